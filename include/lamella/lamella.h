@@ -1,0 +1,33 @@
+/*
+  Lamella: effective stress, tangent and debonding of fruit and plant tissue.
+
+  Everything a program needs; each part has its own header, to be read in this order:
+    scene.h      what the user describes, converted to nondimensional numbers
+    response.h   what a material point is asked and what it answers; the responder table
+    rve.h        solves the representative volume element
+    database.h   stores responses, answers from them
+    cache.h      answers from a database and solves what it lacks
+    macro.h      the macroscale finite element solver
+
+  Conventions throughout
+  * Every function that can fail returns a PetscErrorCode. PETSC_ERR_USER_INPUT: the user's file or
+    argument is wrong and the message says where and what would be right. PETSC_ERR_FILE_OPEN, _READ,
+    _WRITE, _UNEXPECTED: input or output failed. A solve that does not converge is no error: see LamStatus.
+  * Inside the library everything is nondimensional: lengths in apothems a of the cell, stresses in
+    C1 + C2 of the wall. LamScales converts at the edge.
+  * Tensors are row-major, 3x3 as 9 numbers (11 12 13 21 22 23 31 32 33); the tangent is dP_ij/dF_kl,
+    81 numbers, row ij, column kl.
+*/
+#ifndef LAMELLA_LAMELLA_H
+#define LAMELLA_LAMELLA_H
+
+#include <lamella/scene.h>
+#include <lamella/response.h>
+#include <lamella/rve.h>
+#include <lamella/database.h>
+#include <lamella/cache.h>
+#include <lamella/macro.h>
+
+#define LAMELLA_VERSION "0.1.0"
+
+#endif

@@ -1,0 +1,67 @@
+/*
+  The macroscale solver: total Lagrangian finite elements in plane strain whose material is a responder.
+
+    LamMacroCreate(comm, &macro); LamMacroSetScene(macro, scene); LamMacroSetUp(macro);
+    LamMacroGetPointCount(macro, &points);             to make the responder
+    LamMacroSetResponder(macro, &responder); LamMacroSetMonitor(macro, step_done, ctx);
+    LamMacroSolve(macro, &reason); LamMacroDestroy(&macro);
+*/
+#ifndef LAMELLA_MACRO_H
+#define LAMELLA_MACRO_H
+
+#include <petscsys.h>
+#include <lamella/scene.h>
+#include <lamella/response.h>
+
+typedef struct LamMacro_s *LamMacro;
+
+typedef struct {
+  PetscInt step;         /* 1.. ; inflation, where asked for, is step 0; else turgor acts first in step 1 */
+  PetscReal load_factor; /* share of the boundary displacements: 0 (after inflation) to 1 */
+  PetscInt boundary_count;
+  char boundary[LAM_MAX_BOUNDARIES][LAM_NAME_LENGTH]; /* each named side once */
+  PetscReal reaction[LAM_MAX_BOUNDARIES][2];          /* force on the body, stress * macro length, per thickness;
+                                                         a corner's is shared among the sides that prescribe it */
+  PetscReal work;                                     /* of the boundary forces since the start, stress * length^2 */
+  PetscReal debonded_fraction, max_gap, turgor_mean;
+  PetscInt newton_iterations;                         /* all of the step, cutbacks included */
+  PetscInt cutbacks;
+  PetscInt64 queries, hits, solves, failures;         /* of this step, all ranks */
+  PetscReal seconds, solve_seconds;                   /* wall time; time inside the responder's solves, this rank */
+  PetscReal residuals[64];                            /* of the last Newton iteration series, over the norm of the
+                                                         element forces; residual_count entries */
+  PetscInt residual_count;
+} LamMacroStep;
+
+typedef enum { LAM_MACRO_DONE, LAM_MACRO_STOPPED, LAM_MACRO_NOT_CONVERGED } LamMacroReason;
+
+/* Called on all ranks after each converged step; sets *stop to end the run after it. */
+typedef PetscErrorCode (*LamMacroMonitor)(LamMacro macro, const LamMacroStep *step, PetscBool *stop, void *ctx);
+
+PetscErrorCode LamMacroCreate(MPI_Comm comm, LamMacro *macro);
+PetscErrorCode LamMacroSetScene(LamMacro macro, const LamScene *scene); /* borrows the scene */
+PetscErrorCode LamMacroSetUp(LamMacro macro);
+PetscErrorCode LamMacroGetPointCount(LamMacro macro, PetscInt *points); /* material points on this rank */
+PetscErrorCode LamMacroSetResponder(LamMacro macro, LamResponder *responder); /* borrows it */
+PetscErrorCode LamMacroSetMonitor(LamMacro macro, LamMacroMonitor monitor, void *ctx);
+/* Runs inflation and load steps with cutback. `message` (at least 256 bytes) says why it ended early. */
+PetscErrorCode LamMacroSolve(LamMacro macro, LamMacroReason *reason, char message[256]);
+PetscErrorCode LamMacroDestroy(LamMacro *macro);
+
+/*
+  Fields of the last converged step, gathered on rank 0 of the communicator (others get NULL); the caller frees each
+  with PetscFree. All nondimensional.
+    nodes     [node_count][2]      reference positions        elements [element_count][9] VTK's biquadratic order
+    u         [node_count][2]      displacement
+    F, P      [element_count][9]   mean over the element's points, row-major 3x3
+    indicator [element_count][4]   lumen fraction, opening fraction, debonded fraction, turgor (means)
+*/
+typedef struct {
+  PetscInt node_count, element_count;
+  PetscReal *nodes, *u, *F, *P, *indicator;
+  PetscInt *elements;
+} LamMacroFields;
+PetscErrorCode LamMacroGetFields(LamMacro macro, LamMacroFields *fields);
+PetscErrorCode LamMacroFieldsDestroy(LamMacroFields *fields);
+
+#endif

@@ -1,0 +1,72 @@
+/*
+  The representative volume element: a periodic set of whole hexagonal cells with hyperelastic walls.
+
+    LamRVECreate(comm, &rve); LamRVESetMicrostructure(rve, &micro); LamRVESetUp(rve);
+    LamRVEStateCreate(rve, &state);
+    LamRVESolve(rve, &load, state, &response);       state: in the start, out the solution
+    LamRVEStateDestroy(&state); LamRVEDestroy(&rve);
+*/
+#ifndef LAMELLA_RVE_H
+#define LAMELLA_RVE_H
+
+#include <petscsys.h>
+#include <lamella/response.h>
+
+typedef struct LamRVE_s *LamRVE;           /* mesh, matrix, factor: one per rank and microstructure */
+typedef struct LamRVEState_s *LamRVEState; /* positions of one material point and the load they belong to */
+
+/* `comm`: the communicator that solves one RVE together; at present of one rank. */
+PetscErrorCode LamRVECreate(MPI_Comm comm, LamRVE *rve);
+/* Copies the description. along and through must be chosen. PETSC_ERR_USER_INPUT where it cannot be solved. */
+PetscErrorCode LamRVESetMicrostructure(LamRVE rve, const LamMicrostructure *micro);
+/* Prints each Newton iteration to stderr (residual, step, negative eigenvalues). Off by default. */
+PetscErrorCode LamRVESetMonitor(LamRVE rve, PetscBool on);
+/* Builds the mesh and the sparsity pattern; the factorisation is analysed at the first solve. */
+PetscErrorCode LamRVESetUp(LamRVE rve);
+PetscErrorCode LamRVEDestroy(LamRVE *rve);
+
+/* A state at F = I without turgor: the stress-free reference. */
+PetscErrorCode LamRVEStateCreate(LamRVE rve, LamRVEState *state);
+PetscErrorCode LamRVEStateCopy(LamRVEState from, LamRVEState to);
+PetscErrorCode LamRVEStateReset(LamRVE rve, LamRVEState state);
+PetscErrorCode LamRVEStateDestroy(LamRVEState *state);
+
+/*
+  Finds the equilibrium at `load`, starting from `state`, which it replaces by the solution. Where none is found the
+  state is left as it was, and the response says why. Errors only for faults of the program or of memory.
+*/
+PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
+
+/* Number of unknowns of one solve (displacement components that are free). */
+PetscErrorCode LamRVEGetUnknowns(LamRVE rve, PetscInt *unknowns);
+
+/*
+  What a picture needs. Arrays are owned by the rve and valid until it is destroyed, except where said.
+    nodes:     reference positions, [node][2], in apothems
+    elements:  [element][9], node numbers: corners counter-clockwise, mid-edges, centre
+    x (state): current positions, [node][2]
+*/
+typedef struct {
+  PetscInt node_count, element_count, cell_count;
+  const PetscReal *nodes;     /* [node_count][2] */
+  const PetscInt *elements;   /* [element_count][9] */
+  const PetscInt *cell_of;    /* [element_count]: the cell of an element */
+  PetscReal period[2][2];     /* period vectors (rows), reference, in apothems */
+} LamRVEMesh;
+PetscErrorCode LamRVEGetMesh(LamRVE rve, LamRVEMesh *mesh);
+/* Fields of a state, at mesh nodes; the caller provides the arrays. Any may be NULL.
+     x          [node][2]  current positions
+     fibre      [node]     fibre stretch sqrt(I4) along the wall
+     stress     [node]     largest principal Cauchy stress of the wall, in C1 + C2 */
+PetscErrorCode LamRVEGetFields(LamRVE rve, LamRVEState state, PetscReal x[], PetscReal fibre[], PetscReal stress[]);
+
+/*
+  A responder that solves one RVE per question, warm-started per material point. Borrows `rve`, which must outlive it.
+  `points`: number of material points on this rank.
+*/
+PetscErrorCode LamRVEResponderCreate(LamRVE rve, PetscInt points, LamResponder *responder);
+
+/* Time of one assembly of residual and tangent on this machine, s; needs no MPI (used to predict cost). */
+PetscErrorCode LamRVETimeAssembly(const LamMicrostructure *micro, PetscInt *unknowns, PetscReal *seconds);
+
+#endif

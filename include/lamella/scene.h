@@ -1,0 +1,132 @@
+/*
+  The scene: what the user describes in a YAML file, read, checked and made nondimensional.
+
+  Nothing here needs MPI or PETSc to be initialised.
+*/
+#ifndef LAMELLA_SCENE_H
+#define LAMELLA_SCENE_H
+
+#include <petscsys.h>
+#include <stdio.h>
+
+/* Enumerations and their names in scene files come from one list each. */
+#define LAM_ENUM_ENTRY(symbol, name) symbol,
+#define LAM_NAME_ENTRY(symbol, name) name,
+
+#define LAM_WALL_LAWS(X)                                                                                               \
+  X(LAM_WALL_FIBRE_MOONEY_RIVLIN, "fibre_mooney_rivlin")                                                               \
+  X(LAM_WALL_MOONEY_RIVLIN, "mooney_rivlin")
+#define LAM_INTERFACE_LAWS(X)                                                                                          \
+  X(LAM_INTERFACE_BONDED, "bonded")                                                                                    \
+  X(LAM_INTERFACE_CONTACT, "contact")
+#define LAM_FIBRES(X)                                                                                                  \
+  X(LAM_FIBRES_BOTH, "both")                                                                                           \
+  X(LAM_FIBRES_TENSION, "tension")
+
+typedef enum { LAM_WALL_LAWS(LAM_ENUM_ENTRY) LAM_WALL_LAW_COUNT } LamWallLawType;
+typedef enum { LAM_INTERFACE_LAWS(LAM_ENUM_ENTRY) LAM_INTERFACE_LAW_COUNT } LamInterfaceLawType;
+typedef enum { LAM_FIBRES(LAM_ENUM_ENTRY) LAM_FIBRES_COUNT } LamFibres;
+
+extern const char *const LamWallLawNames[];      /* "fibre_mooney_rivlin", ... */
+extern const char *const LamInterfaceLawNames[]; /* "bonded", "contact" */
+extern const char *const LamFibresNames[];       /* "both", "tension" */
+
+/* Wall material, moduli in units of C1 + C2 (so C1 + C2 = 1). */
+typedef struct {
+  LamWallLawType law;
+  LamFibres fibres;
+  PetscReal C1, C2, C4;
+  PetscReal bulk_modulus;
+} LamWall;
+
+/* One tissue microstructure, nondimensional: all that fixes the map (F, turgor, cohesion) -> response. */
+typedef struct {
+  PetscReal wall_thickness; /* of one cell's wall, in apothems; 0 < t < 1 */
+  PetscReal orientation;    /* angle of face normal 0 to the X1 axis, radian */
+  PetscInt cells[2];        /* cells per period along lattice vectors 0 and 1 */
+  LamWall wall;
+  LamInterfaceLawType interface;
+  PetscReal clearance;     /* in apothems */
+  PetscInt along, through; /* elements per face and through one wall; 0: not chosen yet (the planner does) */
+} LamMicrostructure;
+
+/* The units of the nondimensional numbers: multiply by these to get SI. */
+typedef struct {
+  PetscReal length;       /* apothem of the cell, m */
+  PetscReal stress;       /* C1 + C2, Pa */
+  PetscReal macro_length; /* first edge of the macroscale box, m; 0 without a macro block */
+} LamScales;
+
+/* What a material point is asked. */
+typedef struct {
+  PetscReal F[9];     /* deformation gradient, row-major */
+  PetscReal turgor;   /* lumen pressure p */
+  PetscReal cohesion; /* suction g on separated outer walls; 0 for bonded tissue */
+} LamLoad;
+
+/* Box of states for `build`. */
+typedef struct {
+  PetscReal stretch_min, stretch_max; /* principal logarithmic strains */
+  PetscReal turgor_min, turgor_max;
+  PetscInt count;     /* number of samples; 0: until accuracy is reached */
+  PetscReal accuracy; /* 0 where count is given */
+} LamSample;
+
+#define LAM_MAX_BOUNDARIES 16
+#define LAM_NAME_LENGTH 64
+
+/* A displacement condition on a named side of the macroscale body. */
+typedef struct {
+  char on[LAM_NAME_LENGTH];  /* left, right, bottom, top */
+  PetscBool given[2];        /* PETSC_FALSE: this component is free */
+  PetscReal displacement[2]; /* at the end of the load program, in macro lengths */
+} LamBoundary;
+
+typedef struct {
+  PetscReal box[2]; /* edges, in macro lengths (box[0] = 1) */
+  PetscInt elements[2];
+  PetscInt boundary_count;
+  LamBoundary boundary[LAM_MAX_BOUNDARIES];
+  PetscBool inflate; /* first bring turgor up with only rigid motions held */
+  PetscInt steps;    /* load steps after inflation */
+} LamMacroSpec;
+
+/* A scene: plain data, read-only after LamSceneRead. Blocks that the file does not hold have count 0 or PETSC_FALSE. */
+typedef struct {
+  char path[PETSC_MAX_PATH_LEN];
+  char *text; /* the file's text, for provenance; owned */
+  LamScales scales;
+  LamMicrostructure micro;
+  PetscReal turgor;   /* of the tissue, where a load does not say otherwise; in C1 + C2 */
+  PetscReal cohesion; /* likewise */
+  PetscReal accuracy; /* wanted relative error of the effective stress */
+  PetscInt load_count;
+  LamLoad *loads; /* ramps expanded: states 1..load_count; owned */
+  PetscBool has_sample;
+  LamSample sample;
+  PetscBool has_macro;
+  LamMacroSpec macro;
+} LamScene;
+
+/*
+  Reads and checks a scene file. Any mistake is PETSC_ERR_USER_INPUT with a message
+  "file:line:column: key: value: what is wrong; what would be right".
+*/
+PetscErrorCode LamSceneRead(const char path[], LamScene **scene);
+/* The same from text; `name` stands for the file in messages. */
+PetscErrorCode LamSceneReadText(const char name[], const char text[], LamScene **scene);
+PetscErrorCode LamSceneDestroy(LamScene **scene);
+
+/* Writes the scene reference (Markdown), generated from the same table of keys that the reader uses. */
+PetscErrorCode LamSceneReference(FILE *out);
+
+/* Physical dimensions known to scene files and the command line. */
+typedef enum { LAM_DIMENSION_LENGTH, LAM_DIMENSION_STRESS, LAM_DIMENSION_ANGLE } LamDimension;
+
+/*
+  Converts text such as "0.02 MPa" to SI (m, Pa, rad). PETSC_ERR_USER_INPUT, with the reason, where the unit is
+  missing, unknown or of another dimension, or the number is not finite.
+*/
+PetscErrorCode LamQuantityParse(const char text[], LamDimension dimension, PetscReal *si);
+
+#endif
