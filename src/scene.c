@@ -1,0 +1,112 @@
+/*
+  Reading a scene: file, YAML tree, check against the table of keys, nondimensional data.
+*/
+#include "scene_keys.h"
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A scene is some kilobytes; more is the wrong file. */
+enum { MAX_FILE_SIZE = 1 << 20 };
+
+PetscErrorCode LamSceneDestroy(LamScene **scene)
+{
+  PetscFunctionBeginUser;
+  if (!*scene) PetscFunctionReturn(0);
+  PetscCall(PetscFree((*scene)->text));
+  PetscCall(PetscFree((*scene)->loads));
+  PetscCall(PetscFree(*scene));
+  PetscFunctionReturn(0);
+}
+
+/* Bytes that text has not; libfyaml would complain about them less clearly. */
+static PetscErrorCode CheckText(const char name[], const char text[], size_t length)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(length <= MAX_FILE_SIZE, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%.200s: larger than %d kB; a scene is a short YAML file", name, (int)MAX_FILE_SIZE / 1024);
+  for (size_t i = 0; i < length; i++) {
+    const unsigned char c = (unsigned char)text[i];
+    PetscCheck((c >= 0x20 && c != 0x7F) || c == '\t' || c == '\n' || c == '\r', PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "%.200s: byte %d is 0x%02x, which no text has; a scene is a YAML file", name, (int)i, c);
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SceneBuild(LamDocument *document, LamScene *scene)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamDocumentParse(document->name, document->text, document));
+  PetscCall(LamSceneCheckKeys(document));
+  PetscCall(LamSceneBuildRVE(document, scene));
+  PetscCall(LamSceneBuildLoad(document, scene));
+  PetscCall(LamSceneBuildSample(document, scene));
+  PetscCall(LamSceneBuildMacro(document, scene));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSceneReadText(const char name[], const char text[], LamScene **scene)
+{
+  LamDocument document = {.name = name, .text = text};
+  LamScene *built;
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  *scene = NULL;
+  PetscCall(CheckText(name, text, strlen(text)));
+  PetscCheck(strlen(name) < sizeof(built->path), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%.200s...: the file's name is longer than %d bytes", name, (int)sizeof(built->path) - 1);
+  PetscCall(PetscNew(&built));
+  ierr = SceneBuild(&document, built);
+  PetscCall(LamDocumentDestroy(&document));
+  if (!ierr) ierr = PetscStrncpy(built->path, name, sizeof(built->path));
+  if (!ierr) ierr = PetscStrallocpy(text, &built->text);
+  if (ierr) PetscCall(LamSceneDestroy(&built));
+  PetscCall(ierr);
+  *scene = built;
+  PetscFunctionReturn(0);
+}
+
+/* Reads a stream that may be a pipe; at most one byte more than a scene may have. *error is an errno. */
+static size_t ReadStream(FILE *stream, char buffer[MAX_FILE_SIZE + 2], int *error)
+{
+  size_t length;
+
+  errno = 0;
+  length = fread(buffer, 1, MAX_FILE_SIZE + 1, stream);
+  *error = ferror(stream) ? (errno ? errno : EIO) : 0;
+  buffer[length] = '\0';
+  return length;
+}
+
+static PetscErrorCode ReadBuffer(const char path[], char buffer[MAX_FILE_SIZE + 2], LamScene **scene)
+{
+  FILE *stream = fopen(path, "rb");
+  size_t length;
+  int error;
+
+  PetscFunctionBeginUser;
+  PetscCheck(stream, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%.200s: the scene cannot be opened: %s", path,
+             strerror(errno));
+  length = ReadStream(stream, buffer, &error);
+  fclose(stream);
+  PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%.200s: the scene cannot be read: %s", path,
+             strerror(error));
+  PetscCall(CheckText(path, buffer, length));
+  PetscCall(LamSceneReadText(path, buffer, scene));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSceneRead(const char path[], LamScene **scene)
+{
+  char *buffer;
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  *scene = NULL;
+  PetscCall(PetscMalloc1(MAX_FILE_SIZE + 2, &buffer));
+  ierr = ReadBuffer(path, buffer, scene);
+  PetscCall(PetscFree(buffer));
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}

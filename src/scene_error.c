@@ -1,0 +1,98 @@
+/*
+  Messages about scene files: where, which key, which value, what is wrong and what would be right.
+*/
+#include "scene_yaml.h"
+#include <stdarg.h>
+#include <string.h>
+
+/* PETSc cuts a message at some thousand characters: the parts of unknown length are shortened, each to its share. */
+enum { MESSAGE_LENGTH = 900, NAME_SHOWN = 120, KEY_LENGTH = 120, VALUE_SHOWN = 60, DETAIL_LENGTH = 560 };
+
+/* The path of a node from the root, "load[2].ramp.to". */
+static void NodePath(const LamNode *node, char path[KEY_LENGTH])
+{
+  size_t used;
+
+  path[0] = '\0';
+  if (!node || !node->parent) return;
+  NodePath(node->parent, path);
+  used = strlen(path);
+  if (node->index) {
+    snprintf(path + used, KEY_LENGTH - used, "[%" PetscInt_FMT "]", node->index);
+  } else if (node->name) {
+    snprintf(path + used, KEY_LENGTH - used, "%s%.40s", used ? "." : "", node->name);
+  }
+}
+
+/* Copies text in one line, without control characters, cut after `shown` bytes (not within a UTF-8 sequence). */
+static void CopyPrintable(const char text[], size_t shown, char copy[VALUE_SHOWN + 4])
+{
+  size_t length = strlen(text), n = PetscMin(length, shown);
+
+  while (n < length && n > 0 && ((unsigned char)text[n] & 0xC0) == 0x80) n--;
+  for (size_t i = 0; i < n; i++) copy[i] = (unsigned char)text[i] < 0x20 || text[i] == 0x7F ? ' ' : text[i];
+  memcpy(copy + n, n < length ? "..." : "", n < length ? 4 : 1);
+}
+
+static PetscErrorCode Raise(const LamDocument *document, int line, int column, const char path[], const char value[],
+                            const char format[], va_list arguments)
+{
+  const size_t length = strlen(document->name);
+  const char *name = document->name + (length > NAME_SHOWN ? length - NAME_SHOWN : 0);
+  char shown[VALUE_SHOWN + 4] = "", detail[DETAIL_LENGTH], message[MESSAGE_LENGTH];
+
+  PetscFunctionBeginUser;
+  if (value) CopyPrintable(value, VALUE_SHOWN, shown);
+  vsnprintf(detail, sizeof(detail), format, arguments);
+  snprintf(message, sizeof(message), "%s%s:%d:%d: %s%s%s%s%s", name == document->name ? "" : "...", name, line, column,
+           path, path[0] ? ": " : "", shown, shown[0] ? ": " : "", detail);
+  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s", message);
+}
+
+PetscErrorCode LamSceneFail(const LamDocument *document, const LamNode *node, const char format[], ...)
+{
+  char path[KEY_LENGTH];
+  va_list arguments;
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  NodePath(node, path);
+  va_start(arguments, format);
+  ierr = Raise(document, node->line, node->column, path, node->text, format, arguments);
+  va_end(arguments);
+  PetscFunctionReturn(ierr);
+}
+
+PetscErrorCode LamSceneFailName(const LamDocument *document, const LamNode *node, const char format[], ...)
+{
+  char path[KEY_LENGTH];
+  va_list arguments;
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  NodePath(node, path);
+  va_start(arguments, format);
+  ierr = Raise(document, node->name_line, node->name_column, path, NULL, format, arguments);
+  va_end(arguments);
+  PetscFunctionReturn(ierr);
+}
+
+PetscErrorCode LamSceneFailMissing(const LamDocument *document, const LamNode *node, const char key[],
+                                   const char format[], ...)
+{
+  const PetscBool named = node->name ? PETSC_TRUE : PETSC_FALSE;
+  char path[KEY_LENGTH];
+  size_t used;
+  va_list arguments;
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  NodePath(node, path);
+  used = strlen(path);
+  snprintf(path + used, KEY_LENGTH - used, "%s%s", used ? "." : "", key);
+  va_start(arguments, format);
+  ierr = Raise(document, named ? node->name_line : node->line, named ? node->name_column : node->column, path, NULL,
+               format, arguments);
+  va_end(arguments);
+  PetscFunctionReturn(ierr);
+}

@@ -1,0 +1,266 @@
+/*
+  The table of keys of scene files.
+*/
+#include "scene_keys.h"
+#include "scene_units.h"
+#include <string.h>
+
+const char *const LamWallLawNames[] = {LAM_WALL_LAWS(LAM_NAME_ENTRY)};
+const char *const LamInterfaceLawNames[] = {LAM_INTERFACE_LAWS(LAM_NAME_ENTRY)};
+const char *const LamFibresNames[] = {LAM_FIBRES(LAM_NAME_ENTRY)};
+const char *const LamSideNames[] = {LAM_SIDES(LAM_NAME_ENTRY)};
+static const char *const turgor_mode_names[] = {LAM_TURGOR_MODES(LAM_NAME_ENTRY)};
+static const char *const strategy_names[] = {"two_step", "one_step"};
+
+#define MAP(key_path) .path = key_path, .type = LAM_KEY_MAP
+#define LIST(key_path) .path = key_path, .type = LAM_KEY_LIST
+#define LENGTH(key_path, key_unit)                                                                                     \
+  .path = key_path, .type = LAM_KEY_QUANTITY, .dimension = LAM_DIMENSION_LENGTH, .unit = key_unit
+#define STRESS(key_path) .path = key_path, .type = LAM_KEY_QUANTITY, .dimension = LAM_DIMENSION_STRESS, .unit = "MPa"
+#define ANGLE(key_path) .path = key_path, .type = LAM_KEY_QUANTITY, .dimension = LAM_DIMENSION_ANGLE, .unit = "deg"
+#define REAL(key_path) .path = key_path, .type = LAM_KEY_REAL
+#define INTEGER(key_path) .path = key_path, .type = LAM_KEY_INTEGER
+#define BOOL(key_path) .path = key_path, .type = LAM_KEY_BOOL
+#define TEXT(key_path) .path = key_path, .type = LAM_KEY_TEXT
+#define TENSOR(key_path) .path = key_path, .type = LAM_KEY_TENSOR
+#define NAME(key_path, list)                                                                                           \
+  .path = key_path, .type = LAM_KEY_NAME, .names = list, .name_count = PETSC_STATIC_ARRAY_LENGTH(list)
+#define REQUIRED .required = PETSC_TRUE
+#define NOT_YET .unavailable = PETSC_TRUE
+#define FREE .may_be_free = PETSC_TRUE
+#define ABOVE(x) .lower = {LAM_BOUND_EXCLUDED, x}
+#define FROM(x) .lower = {LAM_BOUND_INCLUDED, x}
+#define TO(x) .upper = {LAM_BOUND_INCLUDED, x}
+
+#define CHOSEN "chosen for the wanted accuracy"
+
+const LamKey LamKeys[] = {
+    {MAP(""), .example = "version: 1", .help = "The scene."},
+    {INTEGER("version"), REQUIRED, FROM(1), TO(1), .example = "1", .help = "Version of the scene format."},
+
+    {MAP("rve"), REQUIRED, .example = "{cell: {...}, wall: {...}}",
+     .help = "The representative volume element: whole hexagonal cells that repeat periodically."},
+    {MAP("rve.cell"), REQUIRED, .example = "{apothem: 75 um, wall_thickness: 11.25 um}", .help = "One cell."},
+    {LENGTH("rve.cell.apothem", "um"), REQUIRED, ABOVE(0), .example = "75 um",
+     .help = "Distance a from the centre of the hexagon to the middle lamella."},
+    {LENGTH("rve.cell.wall_thickness", "um"), REQUIRED, ABOVE(0), .example = "11.25 um",
+     .help = "Thickness t of one cell's wall, less than the apothem; two lumens are 2t apart."},
+    {ANGLE("rve.cell.orientation"), FROM(-360), TO(360), .default_value = "0 deg", .example = "30 deg",
+     .help = "Angle of face normal 0 to the X1 axis; the other normals follow at 60 deg."},
+    {INTEGER("rve.cells"), .size = 2, FROM(1), TO(64), .default_value = "[1, 1]", .example = "[2, 2]",
+     .help = "Cells in one period along lattice vectors 0 and 1."},
+    {MAP("rve.patch"), NOT_YET, .example = "{columns: 6, rows: 6, sides: affine}",
+     .help = "A block of cells between grips instead of a periodic one."},
+    {MAP("rve.wall"), REQUIRED, .example = "{law: mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa}",
+     .help = "Material of the cell walls. The small-strain shear modulus without fibres is C1 + C2."},
+    {NAME("rve.wall.law", LamWallLawNames), REQUIRED, .example = "fibre_mooney_rivlin",
+     .help = "`fibre_mooney_rivlin`: Mooney-Rivlin with fibres along the wall; `mooney_rivlin`: without fibres."},
+    {STRESS("rve.wall.C1"), REQUIRED, ABOVE(0), .example = "0.1 MPa", .help = "First Mooney-Rivlin modulus."},
+    {STRESS("rve.wall.C2"), REQUIRED, FROM(0), .example = "0.01 MPa", .help = "Second Mooney-Rivlin modulus."},
+    {STRESS("rve.wall.C4"), FROM(0), .default_words = "none: required by law `fibre_mooney_rivlin`", .example = "1 MPa",
+     .help = "Fibre modulus; only with law `fibre_mooney_rivlin`."},
+    {STRESS("rve.wall.bulk_modulus"), ABOVE(0), .default_words = "1000 (C1 + C2)", .example = "110 MPa",
+     .help = "Bulk modulus, larger than C1 + C2: walls are nearly incompressible."},
+    {NAME("rve.wall.fibres", LamFibresNames), .default_value = "both", .example = "tension",
+     .help = "Whether fibres also resist compression along the wall (`both`) or stretch alone (`tension`)."},
+    {MAP("rve.interface"), .example = "{law: bonded}", .help = "The middle lamella between the cells."},
+    {NAME("rve.interface.law", LamInterfaceLawNames), .unavailable_names = 1u << LAM_INTERFACE_CONTACT,
+     .default_value = "bonded", .example = "bonded",
+     .help = "`bonded`: cells never part; `contact`: they may part and slide without friction."},
+    {STRESS("rve.interface.cohesion"), FROM(0), .default_value = "0 MPa", .example = "0.001 MPa",
+     .help = "Normal traction that parts the cells; only with law `contact`."},
+    {LENGTH("rve.interface.clearance", "um"), FROM(0), .default_value = "0 um", .example = "0.1 um",
+     .help = "Distance between facing walls at which contact begins to act; only with law `contact`."},
+    {MAP("rve.turgor"), .example = "{mode: prescribed, pressure: 0.02 MPa}", .help = "Pressure in the lumens."},
+    {NAME("rve.turgor.mode", turgor_mode_names), .unavailable_names = 1u << LAM_TURGOR_SEALED,
+     .default_words = "`prescribed` where a pressure is given, else `none`", .example = "prescribed",
+     .help = "`prescribed`: the pressure is given; `sealed`: each cell keeps its water."},
+    {STRESS("rve.turgor.pressure"), .default_words = "none: required by mode `prescribed`", .example = "0.02 MPa",
+     .help = "Turgor of the tissue; negative is suction."},
+    {MAP("rve.mesh"), .default_words = CHOSEN, .example = "{along: 6, through: 2}",
+     .help = "Finite elements of one cell."},
+    {INTEGER("rve.mesh.along"), FROM(1), TO(200), .default_words = CHOSEN, .example = "6",
+     .help = "Elements along one face."},
+    {INTEGER("rve.mesh.through"), FROM(1), TO(50), .default_words = CHOSEN, .example = "2",
+     .help = "Elements through one wall."},
+    {NAME("rve.strategy", strategy_names), .default_value = "two_step", .example = "two_step",
+     .help = "How contact is reached: from the bonded state (`two_step`) or at once (`one_step`). No effect on bonded "
+             "tissue."},
+
+    {LIST("load"), .example = "[{F: [[1, 0.1], [0, 1]]}]",
+     .help = "States for `lamella rve`, numbered from 1, each starting from the one before."},
+    {MAP("load[]"), .example = "{F: [[1, 0.1], [0, 1]]}", .help = "One state (`F`) or several (`ramp`)."},
+    {TENSOR("load[].F"), FROM(-100), TO(100), .example = "[[1, 0.1], [0, 1]]",
+     .help = "Deformation gradient, rows first. 2x2: plane strain; 3x3: with F33 > 0, out-of-plane shears 0. Its "
+             "determinant is positive."},
+    {TENSOR("load[].P"), NOT_YET, .example = "[[0 MPa, x], [x, 0 MPa]]",
+     .help = "Mixed control: the stress components that are given where `F` has `free`."},
+    {MAP("load[].ramp"), .example = "{to: [[1, 0.3], [0, 1]], steps: 10}",
+     .help = "A straight path from the state before (undeformed at the start), one state per step."},
+    {TENSOR("load[].ramp.to"), REQUIRED, FROM(-100), TO(100), .example = "[[1, 0.3], [0, 1]]",
+     .help = "Deformation gradient at the end of the ramp, as `F`."},
+    {INTEGER("load[].ramp.steps"), REQUIRED, FROM(1), TO(10000), .example = "10", .help = "Equal steps."},
+    {STRESS("load[].turgor"), .default_words = "`rve.turgor.pressure`", .example = "0.05 MPa",
+     .help = "Turgor of this entry's states."},
+    {STRESS("load[].cohesion"), FROM(0), .default_words = "`rve.interface.cohesion`", .example = "0.001 MPa",
+     .help = "Cohesion of this entry's states; only with law `contact`."},
+
+    {MAP("sample"), .example = "{stretch: {min: -0.05, max: 0.25}}",
+     .help = "States for `lamella build`: a box of deformations and turgor, filled evenly."},
+    {MAP("sample.stretch"), REQUIRED, .example = "{min: -0.05, max: 0.25}",
+     .help = "Principal logarithmic strains in the plane."},
+    {REAL("sample.stretch.min"), REQUIRED, FROM(-2), TO(2), .example = "-0.05", .help = "Smallest."},
+    {REAL("sample.stretch.max"), REQUIRED, FROM(-2), TO(2), .example = "0.25", .help = "Largest; not below `min`."},
+    {MAP("sample.turgor"), .default_words = "the scene's turgor alone", .example = "{min: 0 MPa, max: 0.05 MPa}",
+     .help = "Turgor."},
+    {STRESS("sample.turgor.min"), REQUIRED, .example = "0 MPa", .help = "Smallest."},
+    {STRESS("sample.turgor.max"), REQUIRED, .example = "0.05 MPa", .help = "Largest; not below `min`."},
+    {INTEGER("sample.count"), FROM(1), TO(100000000), .default_words = "as many as the accuracy needs",
+     .example = "1000", .help = "Number of states."},
+    {REAL("sample.accuracy"), ABOVE(0), TO(0.5), .default_words = "the scene's `accuracy`", .example = "0.01",
+     .help = "Sample until the answers have this error; instead of `count`."},
+
+    {MAP("macro"), .example = "{mesh: {...}, boundary: [...]}", .help = "The body for `lamella fe2`, in plane strain."},
+    {MAP("macro.mesh"), REQUIRED, .example = "{box: [10 mm, 10 mm], elements: [8, 8]}", .help = "Its mesh."},
+    {LENGTH("macro.mesh.box", "mm"), .size = 2, REQUIRED, ABOVE(0), .example = "[10 mm, 10 mm]",
+     .help = "Edges of a rectangular block along X1 and X2; its corner is the origin."},
+    {INTEGER("macro.mesh.elements"), .size = 2, REQUIRED, FROM(1), TO(1000), .example = "[8, 8]",
+     .help = "Quadratic elements along X1 and X2."},
+    {TEXT("macro.mesh.gmsh"), NOT_YET, .example = "file.msh", .help = "A Gmsh file instead of a box."},
+    {LIST("macro.boundary"), REQUIRED, .example = "[{on: bottom, displacement: [0 mm, 0 mm]}]",
+     .help = "Displacement conditions, at most one for each side. Together they hold the body against rigid motion, "
+             "and sides that share a corner agree there."},
+    {MAP("macro.boundary[]"), .example = "{on: bottom, displacement: [0 mm, 0 mm]}", .help = "One side."},
+    {NAME("macro.boundary[].on", LamSideNames), REQUIRED, .example = "bottom", .help = "The side of the box."},
+    {LENGTH("macro.boundary[].displacement", "mm"), .size = 2, REQUIRED, FREE, .example = "[0 mm, free]",
+     .help = "At the end of the load program, along X1 and X2; `free` leaves a component."},
+    {BOOL("macro.inflate"), .default_words = "true with turgor, else false", .example = "true",
+     .help = "First bring turgor up with only rigid motions held; displacements then count from there."},
+    {INTEGER("macro.steps"), FROM(1), TO(10000), .default_value = "10", .example = "10",
+     .help = "Equal load steps after inflation."},
+
+    {MAP("process"), NOT_YET, .example = "{...}", .help = "Tissue that changes in time."},
+    {REAL("accuracy"), ABOVE(0), TO(0.5), .default_value = "0.01", .example = "0.01",
+     .help = "Wanted relative error of the effective stress; what the scene leaves open follows from it."},
+};
+const PetscInt LamKeyCount = PETSC_STATIC_ARRAY_LENGTH(LamKeys);
+
+const LamKey *LamKeyFind(const char path[])
+{
+  for (PetscInt i = 0; i < LamKeyCount; i++) {
+    if (!strcmp(LamKeys[i].path, path)) return &LamKeys[i];
+  }
+  return NULL;
+}
+
+const char *LamKeyName(const LamKey *key)
+{
+  const char *dot = strrchr(key->path, '.');
+
+  return dot ? dot + 1 : key->path;
+}
+
+PetscBool LamKeyIsChild(const LamKey *key, const LamKey *map)
+{
+  const size_t length = strlen(map->path);
+  const char *rest = key->path + length;
+
+  if (!key->path[0] || strncmp(key->path, map->path, length)) return PETSC_FALSE;
+  if (length && *rest++ != '.') return PETSC_FALSE;
+  return strpbrk(rest, ".[") ? PETSC_FALSE : PETSC_TRUE;
+}
+
+static const char *BoundWords(const LamBound *bound, PetscBool lower)
+{
+  if (bound->kind == LAM_BOUND_EXCLUDED) return lower ? "larger than" : "less than";
+  return lower ? "at least" : "at most";
+}
+
+static PetscBool HasOneValue(const LamKey *key)
+{
+  return key->lower.kind == LAM_BOUND_INCLUDED && key->upper.kind == LAM_BOUND_INCLUDED &&
+                 key->lower.value == key->upper.value
+             ? PETSC_TRUE
+             : PETSC_FALSE;
+}
+
+void LamKeyBoundsText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH])
+{
+  const char *space = key->unit ? " " : "", *unit = key->unit ? key->unit : "";
+  char lower[80] = "", upper[80] = "";
+
+  if (HasOneValue(key)) {
+    snprintf(text, LAM_KEY_TEXT_LENGTH, "exactly %g%s%s", (double)key->lower.value, space, unit);
+    return;
+  }
+  if (key->lower.kind != LAM_BOUND_NONE) {
+    snprintf(lower, sizeof(lower), "%s %g%s%s", BoundWords(&key->lower, PETSC_TRUE), (double)key->lower.value, space,
+             unit);
+  }
+  if (key->upper.kind != LAM_BOUND_NONE) {
+    snprintf(upper, sizeof(upper), "%s %.9g%s%s", BoundWords(&key->upper, PETSC_FALSE), (double)key->upper.value, space,
+             unit);
+  }
+  snprintf(text, LAM_KEY_TEXT_LENGTH, "%s%s%s", lower, lower[0] && upper[0] ? " and " : "", upper);
+}
+
+/* "one of bonded, contact", without what this version lacks. */
+static void NamesText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH])
+{
+  size_t used = 0;
+  PetscInt shown = 0;
+
+  text[0] = '\0';
+  for (PetscInt i = 0; i < key->name_count && used < LAM_KEY_TEXT_LENGTH; i++) {
+    if (key->unavailable_names & (1u << i)) continue;
+    used += (size_t)snprintf(text + used, LAM_KEY_TEXT_LENGTH - used, "%s%s", shown++ ? " or " : "", key->names[i]);
+  }
+}
+
+static void SingleText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH])
+{
+  static const char *const articles[] = {"a length", "a stress", "an angle"};
+  const char *what = "a plain number";
+  char bounds[LAM_KEY_TEXT_LENGTH], with_unit[80];
+
+  if (key->type == LAM_KEY_NAME) {
+    NamesText(key, text);
+    return;
+  }
+  LamKeyBoundsText(key, bounds);
+  if (key->type == LAM_KEY_QUANTITY) {
+    snprintf(with_unit, sizeof(with_unit), "%s with its unit", articles[key->dimension]);
+    what = with_unit;
+  } else if (key->type == LAM_KEY_INTEGER) {
+    what = "a whole number";
+  } else if (key->type == LAM_KEY_BOOL) {
+    what = "true or false";
+  } else if (key->type == LAM_KEY_TEXT) {
+    what = "a text";
+  }
+  snprintf(text, LAM_KEY_TEXT_LENGTH, "%s%s%.200s%s", what, bounds[0] ? ", " : "", bounds,
+           key->may_be_free ? ", or free" : "");
+}
+
+void LamKeyExpectation(const LamKey *key, PetscBool single, char text[LAM_KEY_TEXT_LENGTH])
+{
+  char one[LAM_KEY_TEXT_LENGTH];
+
+  SingleText(key, one);
+  if (HasOneValue(key)) {
+    snprintf(text, LAM_KEY_TEXT_LENGTH, "%s", key->example);
+  } else if (key->type == LAM_KEY_MAP) {
+    snprintf(text, LAM_KEY_TEXT_LENGTH, "keys and values, such as %s", key->example);
+  } else if (key->type == LAM_KEY_LIST) {
+    snprintf(text, LAM_KEY_TEXT_LENGTH, "a list, such as %s", key->example);
+  } else if (key->type == LAM_KEY_TENSOR && !single) {
+    snprintf(text, LAM_KEY_TEXT_LENGTH, "2x2 or 3x3 plain numbers, such as %s", key->example);
+  } else if (key->size && !single) {
+    snprintf(text, LAM_KEY_TEXT_LENGTH, "a list of %d, such as %s", (int)key->size, key->example);
+  } else if (key->type == LAM_KEY_NAME || key->type == LAM_KEY_BOOL || (key->size && single) ||
+             key->type == LAM_KEY_TENSOR) {
+    snprintf(text, LAM_KEY_TEXT_LENGTH, "%s", one);
+  } else {
+    snprintf(text, LAM_KEY_TEXT_LENGTH, "%.300s, such as %s", one, key->example);
+  }
+}

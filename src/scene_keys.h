@@ -1,0 +1,97 @@
+/*
+  Private to scene reading: the table of keys. One row per key says everything about it; the reader, the messages and
+  the scene reference (docs/scene.md) follow the table.
+
+  A new key is one row, and a line in the scene_*.c that uses it; a key or a name that becomes available loses its mark.
+*/
+#ifndef LAM_SCENE_KEYS_H
+#define LAM_SCENE_KEYS_H
+
+#include "scene_yaml.h"
+
+#define LAM_TURGOR_MODES(X)                                                                                            \
+  X(LAM_TURGOR_NONE, "none")                                                                                           \
+  X(LAM_TURGOR_PRESCRIBED, "prescribed")                                                                               \
+  X(LAM_TURGOR_SEALED, "sealed")
+#define LAM_SIDES(X)                                                                                                   \
+  X(LAM_BOX_LEFT, "left")                                                                                              \
+  X(LAM_BOX_RIGHT, "right")                                                                                            \
+  X(LAM_BOX_BOTTOM, "bottom")                                                                                          \
+  X(LAM_BOX_TOP, "top")
+
+typedef enum { LAM_TURGOR_MODES(LAM_ENUM_ENTRY) LAM_TURGOR_MODE_COUNT } LamTurgorMode;
+typedef enum { LAM_SIDES(LAM_ENUM_ENTRY) LAM_BOX_COUNT } LamSide;
+
+extern const char *const LamSideNames[];
+
+typedef enum {
+  LAM_KEY_MAP,
+  LAM_KEY_LIST,
+  LAM_KEY_QUANTITY, /* a number with a unit */
+  LAM_KEY_REAL,
+  LAM_KEY_INTEGER,
+  LAM_KEY_NAME, /* one of a few names */
+  LAM_KEY_BOOL,
+  LAM_KEY_TEXT,  /* the node's text is the value */
+  LAM_KEY_TENSOR /* 2x2 or 3x3 plain numbers; kept as 3x3 */
+} LamKeyType;
+
+typedef struct {
+  enum { LAM_BOUND_NONE, LAM_BOUND_INCLUDED, LAM_BOUND_EXCLUDED } kind;
+  PetscReal value; /* in the key's unit */
+} LamBound;
+
+typedef struct LamKey_s {
+  const char *path; /* "rve.wall.C1"; an item of a list is "load[]", what it holds "load[].F" */
+  LamKeyType type;
+  PetscInt size; /* components of a vector; 0: a single value */
+  LamDimension dimension;
+  const char *unit;      /* of a quantity, in messages, bounds and the reference */
+  LamBound lower, upper; /* of each component */
+  const char *const *names;
+  PetscInt name_count;
+  unsigned unavailable_names; /* bit i: names[i] is known, but this version does not have it */
+  PetscBool unavailable;      /* the key is known, but this version does not have it */
+  PetscBool required;         /* wherever the map it belongs to is given */
+  PetscBool may_be_free;      /* components may be `free` */
+  const char *default_value;  /* as one would write it; NULL: none */
+  const char *default_words;  /* a default that depends on other keys, in words */
+  const char *example;
+  const char *help; /* Markdown, without | */
+} LamKey;
+
+extern const LamKey LamKeys[];
+extern const PetscInt LamKeyCount;
+
+const LamKey *LamKeyFind(const char path[]); /* NULL where there is none */
+PetscBool LamKeyIsChild(const LamKey *key, const LamKey *map);
+const char *LamKeyName(const LamKey *key); /* the last part of its path */
+
+#define LAM_KEY_TEXT_LENGTH 400
+/* "larger than 0 MPa", "" without bounds. */
+void LamKeyBoundsText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH]);
+/* What to write: "a stress with its unit larger than 0 MPa, such as 0.1 MPa"; of one component where single is set. */
+void LamKeyExpectation(const LamKey *key, PetscBool single, char text[LAM_KEY_TEXT_LENGTH]);
+
+/* Checks the whole document against the table and sets every node's key and value. */
+PetscErrorCode LamSceneCheckKeys(LamDocument *document);
+
+/*
+  The value of a key: where it is given, *node is its place in the file; else *node is NULL and the value the default
+  (count 0 where there is none). `path` as in the table; `base` is the root, or the list's item that the path is in.
+*/
+PetscErrorCode LamSceneGet(const LamNode *base, const char path[], const LamNode **node, LamValue *value);
+
+/* The parts of a scene, in this order. */
+PetscErrorCode LamSceneBuildRVE(const LamDocument *document, LamScene *scene);
+PetscErrorCode LamSceneBuildLoad(const LamDocument *document, LamScene *scene);
+PetscErrorCode LamSceneBuildSample(const LamDocument *document, LamScene *scene);
+PetscErrorCode LamSceneBuildMacro(const LamDocument *document, LamScene *scene);
+
+/* si / scale; refused where the ratio is not finite. node may be NULL (a default: always finite). */
+PetscErrorCode LamSceneScale(const LamDocument *document, const LamNode *node, PetscReal si, PetscReal scale,
+                             PetscReal *number);
+/* A turgor of the node's own (not the scene's) contradicts an explicit mode: none. */
+PetscErrorCode LamSceneCheckTurgor(const LamDocument *document, const LamNode *node, PetscReal turgor);
+
+#endif

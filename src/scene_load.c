@@ -1,0 +1,190 @@
+/*
+  The `load` and `sample` blocks of a scene.
+*/
+#include "scene_keys.h"
+
+/* More states than anyone waits for; keeps a slip in `steps` from filling the memory. */
+enum { MAX_STATES = 1000000 };
+
+static PetscReal Determinant2D(const PetscReal F[9])
+{
+  return F[0] * F[4] - F[1] * F[3];
+}
+
+/* Plane strain, or generalised plane strain: out-of-plane shears would need three displacement components. */
+static PetscErrorCode CheckF(const LamDocument *document, const LamNode *node, const PetscReal F[9])
+{
+  PetscFunctionBeginUser;
+  if (F[2] != 0.0 || F[5] != 0.0 || F[6] != 0.0 || F[7] != 0.0) {
+    PetscCall(LamSceneFail(document, node,
+                           "this version of Lamella does not have out-of-plane shear yet; write 0 for "
+                           "F13, F23, F31 and F32"));
+  }
+  if (F[8] <= 0.0) PetscCall(LamSceneFail(document, node, "F33 = %g; it must be positive", (double)F[8]));
+  if (Determinant2D(F) <= 0.0) {
+    PetscCall(LamSceneFail(document, node, "F11 F22 - F12 F21 = %g; a deformation gradient has a positive determinant",
+                           (double)Determinant2D(F)));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Checks an entry and says how many states it holds. */
+static PetscErrorCode CheckEntry(const LamDocument *document, const LamNode *entry, PetscInt *states)
+{
+  const LamNode *F_node, *ramp_node;
+  LamValue F, unused, steps;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamSceneGet(entry, "load[].F", &F_node, &F));
+  PetscCall(LamSceneGet(entry, "load[].ramp", &ramp_node, &unused));
+  if (F_node && ramp_node) {
+    PetscCall(LamSceneFailName(document, ramp_node, "given together with F; an entry holds one of them"));
+  }
+  if (!F_node && !ramp_node) {
+    PetscCall(LamSceneFailMissing(
+        document, entry, "F", "missing; write F: [[1, 0.1], [0, 1]], or a ramp: {to: [[1, 0.3], [0, 1]], steps: 10}"));
+  }
+  PetscCall(LamSceneGet(entry, "load[].ramp.steps", NULL, &steps));
+  *states = F_node ? 1 : (PetscInt)steps.number[0];
+  PetscFunctionReturn(0);
+}
+
+/* The turgor and cohesion of an entry: its own or the scene's. */
+static PetscErrorCode BuildPressures(const LamDocument *document, const LamNode *entry, const LamScene *scene,
+                                     LamLoad *load)
+{
+  const LamNode *turgor_node, *cohesion_node;
+  LamValue turgor, cohesion;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamSceneGet(entry, "load[].turgor", &turgor_node, &turgor));
+  PetscCall(LamSceneGet(entry, "load[].cohesion", &cohesion_node, &cohesion));
+  load->turgor = scene->turgor;
+  load->cohesion = scene->cohesion;
+  if (turgor_node) {
+    PetscCall(LamSceneCheckTurgor(document, turgor_node, turgor.number[0]));
+    PetscCall(LamSceneScale(document, turgor_node, turgor.number[0], scene->scales.stress, &load->turgor));
+  }
+  if (cohesion_node) {
+    if (scene->micro.interface == LAM_INTERFACE_BONDED && cohesion.number[0] > 0.0) {
+      PetscCall(LamSceneFail(document, cohesion_node, "contradicts law: bonded, whose cells never part; leave it out"));
+    }
+    PetscCall(LamSceneScale(document, cohesion_node, cohesion.number[0], scene->scales.stress, &load->cohesion));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Appends the states of an entry after scene->load_count. */
+static PetscErrorCode BuildEntry(const LamDocument *document, const LamNode *entry, PetscInt states, LamScene *scene)
+{
+  const LamNode *F_node, *to_node;
+  LamValue F, to;
+  LamLoad load = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+  PetscReal start[9];
+
+  PetscFunctionBeginUser;
+  PetscCall(LamSceneGet(entry, "load[].F", &F_node, &F));
+  PetscCall(LamSceneGet(entry, "load[].ramp.to", &to_node, &to));
+  if (F_node) to = F;
+  PetscCall(CheckF(document, F_node ? F_node : to_node, to.number));
+  if (scene->load_count) load = scene->loads[scene->load_count - 1];
+  PetscCall(PetscArraycpy(start, load.F, 9));
+  PetscCall(BuildPressures(document, entry, scene, &load));
+  for (PetscInt k = 1; k <= states; k++) {
+    const PetscReal s = (PetscReal)k / (PetscReal)states;
+    for (PetscInt i = 0; i < 9; i++) load.F[i] = k == states ? to.number[i] : (1.0 - s) * start[i] + s * to.number[i];
+    if (Determinant2D(load.F) <= 0.0) {
+      PetscCall(LamSceneFail(document, to_node,
+                             "the straight path turns the tissue inside out at step %d (determinant "
+                             "%g); go there by way of a state in between",
+                             (int)k, (double)Determinant2D(load.F)));
+    }
+    scene->loads[scene->load_count++] = load;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSceneBuildLoad(const LamDocument *document, LamScene *scene)
+{
+  const LamNode *list;
+  PetscInt total = 0, states;
+  LamValue unused;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamSceneGet(document->root, "load", &list, &unused));
+  if (!list) PetscFunctionReturn(0);
+  for (const LamNode *entry = list->first; entry; entry = entry->next) {
+    PetscCall(CheckEntry(document, entry, &states));
+    total += states;
+    if (total > MAX_STATES) {
+      PetscCall(LamSceneFail(document, entry, "more than %d states in all; use fewer steps", (int)MAX_STATES));
+    }
+  }
+  PetscCall(PetscCalloc1(total, &scene->loads));
+  for (const LamNode *entry = list->first; entry; entry = entry->next) {
+    PetscCall(CheckEntry(document, entry, &states));
+    PetscCall(BuildEntry(document, entry, states, scene));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Reads <path>.min and <path>.max; *given is PETSC_FALSE where the file has neither. */
+static PetscErrorCode GetRange(const LamDocument *document, const char min_path[], const char max_path[],
+                               const LamNode *nodes[2], PetscReal range[2])
+{
+  LamValue value;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamSceneGet(document->root, min_path, &nodes[0], &value));
+  range[0] = value.number[0];
+  PetscCall(LamSceneGet(document->root, max_path, &nodes[1], &value));
+  range[1] = value.number[0];
+  if (nodes[0] && range[0] > range[1]) {
+    PetscCall(LamSceneFail(document, nodes[0], "min is larger than max (%s in line %d); exchange them", nodes[1]->text,
+                           nodes[1]->line));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode BuildSampleTurgor(const LamDocument *document, LamScene *scene)
+{
+  const LamNode *nodes[2];
+  PetscReal range[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(GetRange(document, "sample.turgor.min", "sample.turgor.max", nodes, range));
+  if (!nodes[0]) {
+    scene->sample.turgor_min = scene->sample.turgor_max = scene->turgor;
+    PetscFunctionReturn(0);
+  }
+  for (PetscInt i = 0; i < 2; i++) PetscCall(LamSceneCheckTurgor(document, nodes[i], range[i]));
+  PetscCall(LamSceneScale(document, nodes[0], range[0], scene->scales.stress, &scene->sample.turgor_min));
+  PetscCall(LamSceneScale(document, nodes[1], range[1], scene->scales.stress, &scene->sample.turgor_max));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSceneBuildSample(const LamDocument *document, LamScene *scene)
+{
+  const LamNode *block, *count_node, *accuracy_node, *stretch_nodes[2];
+  LamValue count, accuracy, unused;
+  PetscReal stretch[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(LamSceneGet(document->root, "sample", &block, &unused));
+  if (!block) PetscFunctionReturn(0);
+  scene->has_sample = PETSC_TRUE;
+  PetscCall(GetRange(document, "sample.stretch.min", "sample.stretch.max", stretch_nodes, stretch));
+  scene->sample.stretch_min = stretch[0];
+  scene->sample.stretch_max = stretch[1];
+  PetscCall(BuildSampleTurgor(document, scene));
+  PetscCall(LamSceneGet(document->root, "sample.count", &count_node, &count));
+  PetscCall(LamSceneGet(document->root, "sample.accuracy", &accuracy_node, &accuracy));
+  if (count_node && accuracy_node) {
+    PetscCall(LamSceneFailName(document, accuracy_node, "given together with count; a sample has one of them"));
+  }
+  if (count_node)
+    scene->sample.count = (PetscInt)count.number[0];
+  else
+    scene->sample.accuracy = accuracy_node ? accuracy.number[0] : scene->accuracy;
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,69 @@
+/*
+  Private to scene reading: a YAML document as a tree of nodes that know where they stand.
+
+  Anchors and aliases are resolved (an alias becomes a copy that stands where the alias does); tags, several documents
+  and keys that are not plain words are refused.
+*/
+#ifndef LAM_SCENE_YAML_H
+#define LAM_SCENE_YAML_H
+
+#include <lamella/scene.h>
+
+typedef enum { LAM_NODE_SCALAR, LAM_NODE_MAP, LAM_NODE_LIST } LamNodeKind;
+
+#define LAM_VALUE_SIZE 9
+
+/* What the scene reader makes of a node. */
+typedef struct {
+  PetscInt count;
+  PetscReal number[LAM_VALUE_SIZE];  /* SI; the index of a name; 0 or 1 of a truth value */
+  PetscBool is_free[LAM_VALUE_SIZE]; /* the component was left `free` */
+} LamValue;
+
+struct LamKey_s;
+
+typedef struct LamNode_s LamNode;
+struct LamNode_s {
+  LamNodeKind kind;
+  int line, column;  /* of the value, from 1 */
+  char *text;        /* a scalar's text; else how the value looks in the file, shortened, or NULL */
+  PetscBool is_null; /* a scalar without text, or the plain words null and ~ */
+  char *name;        /* a map's entry: its key; else NULL */
+  int name_line, name_column;
+  PetscInt index; /* a list's item: from 1; else 0 */
+  PetscInt count; /* of a map's entries or a list's items */
+  LamNode *parent, *first, *last, *next;
+  LamNode *allocated; /* the node allocated before this one */
+  /* set by the scene reader */
+  const struct LamKey_s *key;
+  LamValue value;
+};
+
+typedef struct {
+  const char *name; /* borrowed: what messages call the file */
+  const char *text; /* borrowed */
+  LamNode *root;
+  LamNode *allocated; /* the newest node; the document owns them all */
+  PetscInt node_count;
+} LamDocument;
+
+/* Parses text. The document must be destroyed also after an error. */
+PetscErrorCode LamDocumentParse(const char name[], const char text[], LamDocument *document);
+PetscErrorCode LamDocumentDestroy(LamDocument *document);
+
+/* A map's entry or NULL; `map` may be NULL. */
+LamNode *LamNodeFind(const LamNode *map, const char name[], size_t length);
+
+/*
+  Raises PETSC_ERR_USER_INPUT with the message "file:line:column: key: value: ...". LamSceneFail points at the node's
+  value and shows it; LamSceneFailName points at its key.
+*/
+PetscErrorCode LamSceneFail(const LamDocument *document, const LamNode *node, const char format[], ...)
+    PETSC_ATTRIBUTE_FORMAT(3, 4);
+PetscErrorCode LamSceneFailName(const LamDocument *document, const LamNode *node, const char format[], ...)
+    PETSC_ATTRIBUTE_FORMAT(3, 4);
+/* Likewise for what is missing from the map `node`; key is relative to it. */
+PetscErrorCode LamSceneFailMissing(const LamDocument *document, const LamNode *node, const char key[],
+                                   const char format[], ...) PETSC_ATTRIBUTE_FORMAT(4, 5);
+
+#endif

@@ -1,0 +1,230 @@
+/*
+  Files that are no scenes, by accident or on purpose: each is refused with a message, none crashes the reader.
+*/
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <cmocka.h>
+#include "test_scene_message.h"
+#include <stdlib.h>
+#include <unistd.h>
+
+#define SCENE LAMELLA_SOURCE_DIR "/tests/scenes/tissue-block.yaml"
+
+enum { MESSAGE_LIMIT = 900 };
+
+static void AssertRefusedText(const char text[], const char fragment[])
+{
+  LamScene *scene;
+  PetscErrorCode error;
+
+  CATCH(LamSceneReadText("scene.yaml", text, &scene), error);
+  assert_int_equal(error, PETSC_ERR_USER_INPUT);
+  assert_null(scene);
+  assert_true(strlen(scene_message) < MESSAGE_LIMIT);
+  if (!strstr(scene_message, fragment)) fail_msg("\"%s\" lacks \"%s\"", scene_message, fragment);
+}
+
+static void AssertRefusedFile(const char path[], const char fragment[])
+{
+  LamScene *scene;
+  PetscErrorCode error;
+
+  CATCH(LamSceneRead(path, &scene), error);
+  assert_int_equal(error, PETSC_ERR_USER_INPUT);
+  assert_null(scene);
+  if (!strstr(scene_message, fragment)) fail_msg("\"%s\" lacks \"%s\"", scene_message, fragment);
+}
+
+static char *Repeat(const char start[], const char part[], size_t times, const char end[])
+{
+  const size_t length = strlen(part);
+  char *text = malloc(strlen(start) + times * length + strlen(end) + 1), *p = text + strlen(start);
+
+  strcpy(text, start);
+  for (size_t i = 0; i < times; i++, p += length) memcpy(p, part, length);
+  strcpy(p, end);
+  return text;
+}
+
+static void AssertRefusedRepeat(const char start[], const char part[], size_t times, const char end[],
+                                const char fragment[])
+{
+  char *text = Repeat(start, part, times, end);
+
+  AssertRefusedText(text, fragment);
+  free(text);
+}
+
+static void a_missing_file_is_named(void **state)
+{
+  AssertRefusedFile("no/such/scene.yaml", "no/such/scene.yaml: the scene cannot be opened: No such file");
+}
+
+static void a_directory_is_refused(void **state)
+{
+  AssertRefusedFile(LAMELLA_SOURCE_DIR "/tests", "Is a directory");
+}
+
+static void an_endless_file_is_refused(void **state)
+{
+  AssertRefusedFile("/dev/zero", "larger than 1024 kB");
+}
+
+static void a_text_beyond_1_MB_is_refused(void **state)
+{
+  AssertRefusedRepeat("", "# comment\n", 110000, "version: 1\n", "larger than 1024 kB");
+}
+
+static void a_file_with_null_bytes_is_refused(void **state)
+{
+  char path[] = "lamella-scene-XXXXXX";
+  const int file = mkstemp(path);
+
+  assert_true(file >= 0);
+  assert_int_equal(write(file, "version: 1\n\0garbage", 19), 19);
+  close(file);
+  AssertRefusedFile(path, "byte 11 is 0x00");
+  unlink(path);
+}
+
+static void empty_files_are_refused(void **state)
+{
+  AssertRefusedText("", "1:1: the file holds no scene");
+  AssertRefusedText("# only a comment\n", "the file holds no scene");
+  AssertRefusedText("---\n", "the file holds no scene");
+}
+
+static void invalid_UTF8_is_refused(void **state)
+{
+  AssertRefusedText("version: \xff\xfe\xc0\n", "scene.yaml:1:");
+}
+
+static void deep_nesting_is_refused(void **state)
+{
+  AssertRefusedRepeat("rve: ", "[", 100000, "", "nested more than 32 levels");
+  AssertRefusedRepeat("", "{a: ", 100000, "", "nested more than 32 levels");
+}
+
+static void a_map_of_many_keys_is_refused(void **state)
+{
+  char *text = malloc(1 << 20), *p = text;
+
+  for (int i = 0; i < 50000; i++) p += sprintf(p, "k%d: 1\n", i);
+  AssertRefusedText(text, "more than 256 keys");
+  free(text);
+}
+
+static void multiplying_aliases_are_refused(void **state)
+{
+  AssertRefusedText("a: &a [x, x, x, x, x, x, x, x, x, x]\n"
+                    "b: &b [*a, *a, *a, *a, *a, *a, *a, *a, *a, *a]\n"
+                    "c: &c [*b, *b, *b, *b, *b, *b, *b, *b, *b, *b]\n"
+                    "d: &d [*c, *c, *c, *c, *c, *c, *c, *c, *c, *c]\n"
+                    "e: &e [*d, *d, *d, *d, *d, *d, *d, *d, *d, *d]\n"
+                    "f: &f [*e, *e, *e, *e, *e, *e, *e, *e, *e, *e]\n"
+                    "g: &g [*f, *f, *f, *f, *f, *f, *f, *f, *f, *f]\n",
+                    "values in one file");
+}
+
+static void an_alias_to_what_contains_it_is_refused(void **state)
+{
+  AssertRefusedText("rve: &a {cell: *a}\n", "no finished value has the anchor &a");
+}
+
+static void long_values_and_keys_are_shortened(void **state)
+{
+  AssertRefusedRepeat("version: ", "long", 10000, "\n", "longlong...: is not a number");
+  AssertRefusedRepeat("", "key", 10000, ": 1\n", "unknown key");
+}
+
+static void a_long_name_is_shortened(void **state)
+{
+  char *name = Repeat("", "directory/", 300, "scene.yaml");
+  LamScene *scene;
+  PetscErrorCode error;
+
+  CATCH(LamSceneReadText(name, "version: 2\n", &scene), error);
+  free(name);
+  assert_int_equal(error, PETSC_ERR_USER_INPUT);
+  assert_non_null(strstr(scene_message, "directory/scene.yaml:1:10: version: 2: is out of range; write 1"));
+}
+
+static void percent_signs_are_shown_as_they_are(void **state)
+{
+  AssertRefusedText("version: 100%s%n\n", "version: 100%s%n: is not a plain number");
+}
+
+static char *ReadScene(void)
+{
+  char *text = calloc(1, 1 << 16);
+  FILE *file = fopen(SCENE, "r");
+
+  assert_non_null(file);
+  assert_true(fread(text, 1, (1 << 16) - 1, file) > 0);
+  fclose(file);
+  return text;
+}
+
+/* What is wrong is not judged here: that it is answered, with a message, is. */
+static void AssertAnswered(const char text[])
+{
+  LamScene *scene;
+  PetscErrorCode error;
+
+  CATCH(LamSceneReadText("scene.yaml", text, &scene), error);
+  if (!error)
+    assert_int_equal(LamSceneDestroy(&scene), 0);
+  else if (error != PETSC_ERR_USER_INPUT || !scene_message[0])
+    fail_msg("error %d for\n%s", error, text);
+}
+
+static void a_scene_cut_anywhere_is_answered(void **state)
+{
+  char *text = ReadScene();
+
+  for (size_t n = strlen(text); n > 0; n--) {
+    text[n - 1] = '\0';
+    AssertAnswered(text);
+  }
+  free(text);
+}
+
+static void a_scene_with_any_byte_changed_is_answered(void **state)
+{
+  static const char bytes[] = "{}[]:,&*-? \n\"'#%|>x0\xc3\t";
+  char *text = ReadScene();
+
+  for (size_t i = 0; text[i]; i++) {
+    const char kept = text[i];
+    text[i] = bytes[i % (sizeof(bytes) - 1)];
+    AssertAnswered(text);
+    text[i] = bytes[(i * 7 + 3) % (sizeof(bytes) - 1)];
+    AssertAnswered(text);
+    text[i] = kept;
+  }
+  free(text);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_missing_file_is_named),
+      cmocka_unit_test(a_directory_is_refused),
+      cmocka_unit_test(an_endless_file_is_refused),
+      cmocka_unit_test(a_text_beyond_1_MB_is_refused),
+      cmocka_unit_test(a_file_with_null_bytes_is_refused),
+      cmocka_unit_test(empty_files_are_refused),
+      cmocka_unit_test(invalid_UTF8_is_refused),
+      cmocka_unit_test(deep_nesting_is_refused),
+      cmocka_unit_test(a_map_of_many_keys_is_refused),
+      cmocka_unit_test(multiplying_aliases_are_refused),
+      cmocka_unit_test(an_alias_to_what_contains_it_is_refused),
+      cmocka_unit_test(long_values_and_keys_are_shortened),
+      cmocka_unit_test(a_long_name_is_shortened),
+      cmocka_unit_test(percent_signs_are_shown_as_they_are),
+      cmocka_unit_test(a_scene_cut_anywhere_is_answered),
+      cmocka_unit_test(a_scene_with_any_byte_changed_is_answered),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

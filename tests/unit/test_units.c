@@ -1,0 +1,111 @@
+/*
+  Quantities with units.
+*/
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <cmocka.h>
+#include "test_scene_message.h"
+#include <math.h>
+
+static void AssertSI(const char text[], LamDimension dimension, PetscReal expected)
+{
+  PetscReal si = NAN;
+
+  assert_int_equal(LamQuantityParse(text, dimension, &si), 0);
+  if (!(fabs(si - expected) <= 1e-14 * fabs(expected))) fail_msg("%s is %.17g, not %.17g", text, si, expected);
+}
+
+static void AssertRefused(const char text[], LamDimension dimension, const char fragment[])
+{
+  PetscReal si;
+  PetscErrorCode error;
+
+  CATCH(LamQuantityParse(text, dimension, &si), error);
+  if (error != PETSC_ERR_USER_INPUT) fail_msg("%s: error %d", text, error);
+  if (!strstr(scene_message, fragment)) fail_msg("%s: \"%s\" lacks \"%s\"", text, scene_message, fragment);
+}
+
+static void lengths_become_metres(void **state)
+{
+  AssertSI("75 um", LAM_DIMENSION_LENGTH, 75e-6);
+  AssertSI("11.25um", LAM_DIMENSION_LENGTH, 11.25e-6);
+  AssertSI("75 \xc2\xb5m", LAM_DIMENSION_LENGTH, 75e-6); /* micro sign */
+  AssertSI("  -1e1 mm ", LAM_DIMENSION_LENGTH, -0.01);
+  AssertSI("2 inches", LAM_DIMENSION_LENGTH, 0.0508);
+}
+
+static void stresses_become_pascals(void **state)
+{
+  AssertSI("0.02 MPa", LAM_DIMENSION_STRESS, 0.02e6);
+  AssertSI("+2 bar", LAM_DIMENSION_STRESS, 2e5);
+  AssertSI(".5 N/mm2", LAM_DIMENSION_STRESS, 0.5e6);
+  AssertSI("3.kPa", LAM_DIMENSION_STRESS, 3e3);
+  AssertSI("0 MPa", LAM_DIMENSION_STRESS, 0.0);
+}
+
+static void angles_become_radians(void **state)
+{
+  AssertSI("30 deg", LAM_DIMENSION_ANGLE, PETSC_PI / 6);
+  AssertSI("180 degrees", LAM_DIMENSION_ANGLE, PETSC_PI);
+  AssertSI("0.5 rad", LAM_DIMENSION_ANGLE, 0.5);
+}
+
+static void missing_and_unknown_units_are_refused(void **state)
+{
+  AssertRefused("0.02", LAM_DIMENSION_STRESS, "has no unit; write a stress with its unit, such as 0.1 MPa");
+  AssertRefused("0.02 MPx", LAM_DIMENSION_STRESS, "unknown");
+  AssertRefused("2 3 MPa", LAM_DIMENSION_STRESS, "unknown");
+  AssertRefused("MPa", LAM_DIMENSION_STRESS, "is not a number with a unit");
+  AssertRefused("", LAM_DIMENSION_STRESS, "is not a number with a unit");
+  AssertRefused("- 1 MPa", LAM_DIMENSION_STRESS, "is not a number with a unit");
+}
+
+static void other_dimensions_are_refused(void **state)
+{
+  AssertRefused("1 mm", LAM_DIMENSION_STRESS, "is not a unit of stress");
+  AssertRefused("1 MPa", LAM_DIMENSION_LENGTH, "is not a unit of length");
+  AssertRefused("1 N", LAM_DIMENSION_STRESS, "is not a unit of stress");
+}
+
+/* udunits2 itself converts all of these */
+static void lookalike_units_are_refused(void **state)
+{
+  AssertRefused("1 m-1", LAM_DIMENSION_LENGTH, "is not a unit of length");
+  AssertRefused("1 percent", LAM_DIMENSION_ANGLE, "is not a unit of angle");
+  AssertRefused("1 sr", LAM_DIMENSION_ANGLE, "is not a unit of angle");
+  AssertRefused("1 MPa @ 5", LAM_DIMENSION_STRESS, "is not a unit of stress");
+  AssertRefused("1 lg(re 1 MPa)", LAM_DIMENSION_STRESS, "is not a unit of stress");
+}
+
+static void non_finite_numbers_are_refused(void **state)
+{
+  AssertRefused("nan MPa", LAM_DIMENSION_STRESS, "is not a finite number");
+  AssertRefused(".inf", LAM_DIMENSION_STRESS, "is not a finite number");
+  AssertRefused("-Infinity MPa", LAM_DIMENSION_STRESS, "is not a finite number");
+  AssertRefused("1e999 MPa", LAM_DIMENSION_STRESS, "is too large");
+  AssertRefused("1e305 MPa", LAM_DIMENSION_STRESS, "is too large");
+}
+
+static void hexadecimal_numbers_are_refused(void **state)
+{
+  AssertRefused("0x10 MPa", LAM_DIMENSION_STRESS, "unknown");
+  AssertRefused("0x10", LAM_DIMENSION_STRESS, "unknown");
+}
+
+static void the_message_shows_the_text(void **state)
+{
+  AssertRefused("7 furlongs%n%s", LAM_DIMENSION_STRESS, "7 furlongs%n%s: ");
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(lengths_become_metres),          cmocka_unit_test(stresses_become_pascals),
+      cmocka_unit_test(angles_become_radians),          cmocka_unit_test(missing_and_unknown_units_are_refused),
+      cmocka_unit_test(other_dimensions_are_refused),   cmocka_unit_test(lookalike_units_are_refused),
+      cmocka_unit_test(non_finite_numbers_are_refused), cmocka_unit_test(hexadecimal_numbers_are_refused),
+      cmocka_unit_test(the_message_shows_the_text),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
