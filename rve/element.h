@@ -1,0 +1,83 @@
+/*
+  The wall element: nine-node quadrilateral, discontinuous linear pressure (Q2/P1disc), 3 x 3 Gauss points.
+
+  Energy of one element, with positions x of its nodes:
+    Pi_e = sum_g w_g [ W_matrix(F_g) + W_fibre(I4_g) + U(theta_g) ],
+    theta = projection of J = F33 det F onto span(psi_0, psi_1, psi_2) = linear functions of the reference coordinates,
+  orthonormal on the element, so theta = psi.c with c = sum w psi J. Everything below is a derivative of Pi_e.
+  The pressure is p = psi.q, q = sum w psi U'(theta).
+
+  Independent stresses (Magisano, Leonetti & Garcea, IJNME 2017; Haggblad & Sundberg, Comput. Struct. 1983): the tangent
+  is built with p* and s* = dW_fibre/dI4, which follow their own linearised equations, while the residual is the one
+  of the energy. That is what makes Newton converge in few full steps for kappa, C4 >> C1.
+*/
+#ifndef LAM_RVE_ELEMENT_H
+#define LAM_RVE_ELEMENT_H
+
+#include "mesh.h"
+#include "wall_law.h"
+
+#define LAM_GAUSS 9
+#define LAM_PADDED_NODES 12 /* nodes padded to whole vector registers */
+#define LAM_ELEMENT_DOFS 18 /* dof = 2 node + component */
+#define LAM_PRESSURES 3
+
+typedef struct {
+  PetscReal dN[2 * LAM_GAUSS][LAM_PADDED_NODES]; /* [2 g + J][node]: dN/dX_J; padding is zero */
+  PetscReal weight[LAM_GAUSS];                   /* quadrature weight times reference area */
+  PetscReal psi[LAM_GAUSS][LAM_PRESSURES];
+  PetscReal fibre[2]; /* M */
+} LamElementGeometry;
+
+/* Independent stresses, and the stresses of the last evaluated positions. */
+typedef struct {
+  PetscReal p[LAM_PRESSURES], s[LAM_GAUSS];   /* p*, s* */
+  PetscReal px[LAM_PRESSURES], sx[LAM_GAUSS]; /* of the positions */
+  PetscReal dds[LAM_GAUSS];                   /* d2W_fibre/dI4^2 there */
+  PetscReal H[LAM_PRESSURES][LAM_PRESSURES];  /* dq/dc = sum w psi psi U'' */
+} LamElementStress;
+
+/* X[9][2]: reference positions; fibre: unit vector along the wall. */
+PetscErrorCode LamElementSetGeometry(const PetscReal X[][2], const PetscReal fibre[2], LamElementGeometry *geometry);
+
+typedef struct {
+  PetscReal energy;
+  PetscReal f[LAM_ELEMENT_DOFS];                   /* dPi_e/dx */
+  PetscReal K[LAM_ELEMENT_DOFS][LAM_ELEMENT_DOFS]; /* tangent, symmetric */
+} LamElementResult;
+
+/* Energy alone. *valid is PETSC_FALSE, and nothing else is set, where det F or theta is not positive. */
+void LamElementEnergy(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
+                      const PetscReal x[][2], PetscReal F33, PetscReal *energy, PetscBool *valid);
+
+/* Energy, residual of the energy, tangent with the independent stresses; updates px, sx, dds, H of `stress`. */
+void LamElementEvaluate(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
+                        const PetscReal x[][2], PetscReal F33, LamElementStress *stress, LamElementResult *out,
+                        PetscBool *valid);
+
+/* Moves the independent stresses: stress* += alpha (stress(x) + d stress(x).dx - stress*), at the x of the last
+   evaluation. */
+void LamElementUpdateStress(const LamElementGeometry *geometry, const PetscReal x[][2], const PetscReal dx[][2],
+                            PetscReal F33, PetscReal alpha, LamElementStress *stress);
+
+/* Sets the independent stresses to those of x; PETSC_FALSE where x is not valid. */
+PetscBool LamElementSetConsistentStress(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
+                                        const PetscReal x[][2], PetscReal F33, LamElementStress *stress);
+
+/* Derivatives with respect to F33 at fixed positions, with the stresses of the last evaluation:
+   force = dPi_e/dF33, fx = d2Pi_e/dx dF33, ff = d2Pi_e/dF33^2. */
+void LamElementStretch33(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
+                         const PetscReal x[][2], PetscReal F33, const LamElementStress *stress, PetscReal *force,
+                         PetscReal fx[LAM_ELEMENT_DOFS], PetscReal *ff);
+
+/* Fibre stretch sqrt(I4) and largest in-plane principal Cauchy stress at the Gauss points. */
+void LamElementFields(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
+                      const PetscReal x[][2], PetscReal F33, PetscReal fibre[LAM_GAUSS], PetscReal stress[LAM_GAUSS]);
+
+/* Nine-node shape functions and their derivatives at (xi, eta) in [-1, 1]^2; node order of LamMesh. */
+void LamShape(PetscReal xi, PetscReal eta, PetscReal N[9], PetscReal dN[9][2]);
+
+/* Gauss point g: 3 x 3, abscissae in [-1, 1]. */
+void LamGaussPoint(PetscInt g, PetscReal *xi, PetscReal *eta, PetscReal *weight);
+
+#endif

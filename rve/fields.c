@@ -1,0 +1,70 @@
+/* Fields for pictures: Gauss-point values carried to nodes by a bilinear fit and averaged within a cell. */
+#include "rve_impl.h"
+
+/* Values at an element's nodes of the least-squares bilinear function through the 3 x 3 Gauss values. */
+static void ExtrapolateToNodes(const PetscReal gauss[LAM_GAUSS], PetscReal node[LAM_ELEMENT_NODES])
+{
+  static const PetscReal at[LAM_ELEMENT_NODES][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {0, -1}, {1, 0}, {0, 1}, {-1, 0}, {0, 0}};
+  const PetscReal r2 = 0.6; /* square of the Gauss abscissa */
+  PetscReal c[4] = {0.0, 0.0, 0.0, 0.0};
+
+  for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
+    PetscReal xi, eta, weight;
+
+    LamGaussPoint(g, &xi, &eta, &weight);
+    c[0] += gauss[g] / 9.0;
+    c[1] += gauss[g] * xi / (6.0 * r2);
+    c[2] += gauss[g] * eta / (6.0 * r2);
+    c[3] += gauss[g] * xi * eta / (4.0 * r2 * r2);
+  }
+  for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
+    node[a] = c[0] + c[1] * at[a][0] + c[2] * at[a][1] + c[3] * at[a][0] * at[a][1];
+}
+
+PetscErrorCode LamRVEGetFields(LamRVE rve, LamRVEState state, PetscReal x[], PetscReal fibre[], PetscReal stress[])
+{
+  const LamMesh *mesh = &rve->mesh;
+  PetscInt *count;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mesh->node_count, &count));
+  if (fibre) PetscCall(PetscArrayzero(fibre, mesh->node_count));
+  if (stress) PetscCall(PetscArrayzero(stress, mesh->node_count));
+  for (PetscInt e = 0; e < mesh->element_count; ++e) {
+    PetscReal xe[LAM_ELEMENT_NODES][2], gauss[2][LAM_GAUSS], node[2][LAM_ELEMENT_NODES];
+
+    LamGatherElement(rve, state->load.F, state->y, e, xe);
+    LamElementFields(&rve->geometry[e], rve->law, &rve->micro.wall, (const PetscReal(*)[2])xe, state->load.F[8],
+                     gauss[0], gauss[1]);
+    for (PetscInt k = 0; k < 2; ++k) ExtrapolateToNodes(gauss[k], node[k]);
+    for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a) {
+      const PetscInt i = mesh->elements[LAM_ELEMENT_NODES * e + a];
+
+      ++count[i];
+      if (x)
+        for (PetscInt d = 0; d < 2; ++d) x[2 * i + d] = xe[a][d];
+      if (fibre) fibre[i] += node[0][a];
+      if (stress) stress[i] += node[1][a];
+    }
+  }
+  for (PetscInt i = 0; i < mesh->node_count; ++i) {
+    if (fibre) fibre[i] /= (PetscReal)count[i];
+    if (stress) stress[i] /= (PetscReal)count[i];
+  }
+  PetscCall(PetscFree(count));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEGetMesh(LamRVE rve, LamRVEMesh *mesh)
+{
+  PetscFunctionBeginUser;
+  mesh->node_count = rve->mesh.node_count;
+  mesh->element_count = rve->mesh.element_count;
+  mesh->cell_count = rve->mesh.cell_count;
+  mesh->nodes = rve->mesh.X;
+  mesh->elements = rve->mesh.elements;
+  mesh->cell_of = rve->mesh.cell_of;
+  for (PetscInt k = 0; k < 2; ++k)
+    for (PetscInt d = 0; d < 2; ++d) mesh->period[k][d] = rve->mesh.period[k][d];
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,53 @@
+/*
+  Mesh of the RVE: whole hexagonal rings of nine-node quadrilaterals, and how their nodes are tied together.
+
+  Method. A ring lies between the hexagons of apothem 1 - t and 1 (lengths in apothems). Each of its six faces has
+  `along` x `through` elements, uniform along the face, with straight radial mitres at the corners. Face k has the
+  outward normal at orientation + 60 deg k; lattice vector L_k = 2 n_k. Cell (i, j) is centred at i L_0 + j L_1.
+
+  Bonded cells share unknowns: coincident outer nodes form one class, also across the period, where a node is the image
+  of its class's position y at a shift S:  x_node = y_class + F S,  S = X_node - X_class.
+*/
+#ifndef LAM_RVE_MESH_H
+#define LAM_RVE_MESH_H
+
+#include <petscsys.h>
+#include <lamella/scene.h>
+
+#define LAM_FACES 6
+#define LAM_ELEMENT_NODES 9
+
+typedef struct {
+  PetscInt along, through, cell_count;
+  PetscInt ring_nodes;   /* nodes around one ring: 12 along */
+  PetscInt radial_nodes; /* nodes through the wall: 2 through + 1 */
+  PetscInt node_count, element_count, class_count;
+  PetscReal *X;          /* [node][2] reference positions */
+  PetscInt *elements;    /* [element][9]: corners counter-clockwise from the inner edge, mid-edges, centre */
+  PetscInt *cell_of;     /* [element] */
+  PetscInt *node_class;  /* [node] */
+  PetscReal *shift;      /* [node][2] S */
+  PetscBool *has_shift;  /* [element]: one of its nodes has a shift */
+  PetscReal *class_X;    /* [class][2] */
+  PetscReal period[2][2];
+  PetscReal V0;          /* reference area of the RVE, cells and lumens */
+} LamMesh;
+
+PetscErrorCode LamMeshCreate(const LamMicrostructure *micro, LamMesh *mesh);
+PetscErrorCode LamMeshDestroy(LamMesh *mesh);
+
+/* Element numbers: e = ((cell*6 + face)*along + i)*through + m, m = 0 at the lumen. */
+static inline PetscInt LamMeshElement(const LamMesh *mesh, PetscInt cell, PetscInt face, PetscInt i, PetscInt m)
+{
+  return ((cell * LAM_FACES + face) * mesh->along + i) * mesh->through + m;
+}
+static inline PetscInt LamMeshFaceOfElement(const LamMesh *mesh, PetscInt e)
+{
+  return (e / (mesh->along * mesh->through)) % LAM_FACES;
+}
+static inline PetscBool LamMeshElementIsInner(const LamMesh *mesh, PetscInt e)
+{
+  return (PetscBool)(e % mesh->through == 0);
+}
+
+#endif

@@ -1,0 +1,229 @@
+/*
+  Equilibrium of the RVE at one load.
+
+  Method. Both tiers solve K(x, p*, s*) dx = -r(x) with the residual of the energy and the tangent of the independent
+  stresses (element.h). The fast tier takes full steps. The safe tier seeks a minimum of the energy: the matrix is
+  shifted until it is positive definite (inertia correction), steps are limited in length, and a watchdog allows a few
+  steps without decrease (a large step first violates the stiff constraints and is then restored) before it
+  falls back to the best point and a monotone line search.
+
+  References. Magisano, Leonetti & Garcea, Int. J. Numer. Meth. Engng 109 (2017) 1237 (mixed integration points);
+  Chamberlain et al., Math. Prog. Study 16 (1982) 1 (watchdog); Nocedal & Wright, Numerical Optimization, 3.4.
+*/
+#include "rve_impl.h"
+
+#define FAST_ITERATIONS 25
+#define SAFE_ITERATIONS 400
+#define WATCHDOG 4      /* steps without decrease before the safe tier goes back */
+#define STEP_LIMIT 0.05 /* of the safe tier, in apothems */
+#define ARMIJO 1e-4
+
+PetscReal LamNewtonTolerance(LamRVE rve)
+{
+  /* forces of the pressure and of the fibres carry a rounding error of eps times their stiffness in each of n entries */
+  const PetscReal stiffness = rve->micro.wall.bulk_modulus + rve->micro.wall.C4;
+
+  return PetscMax(1e-11, 4.0 * PETSC_MACHINE_EPSILON * stiffness * PetscSqrtReal((PetscReal)rve->ndof));
+}
+
+static PetscErrorCode Report(LamRVE rve, const char tier[], PetscInt iteration, PetscReal residual, PetscReal step,
+                             PetscInt negative, PetscReal shift)
+{
+  PetscFunctionBeginUser;
+  if (rve->monitor)
+    PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR,
+                           "  %s %3d  residual %10.3e  largest step %9.3e  negative eigenvalues %d  shift %g\n", tier,
+                           (int)iteration, (double)residual, (double)step, (int)negative, (double)shift));
+  PetscFunctionReturn(0);
+}
+
+static PetscReal LargestEntry(PetscInt n, const PetscReal v[])
+{
+  PetscReal largest = 0.0;
+
+  for (PetscInt i = 0; i < n; ++i) largest = PetscMax(largest, PetscAbsReal(v[i]));
+  return largest;
+}
+
+/* step := -K^-1 residual with the present factor; the held class does not move. */
+static PetscErrorCode SolveStep(LamRVE rve)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamLinearSolve(&rve->linear, 1, rve->residual + 2, rve->step + 2));
+  rve->step[0] = rve->step[1] = 0.0;
+  for (PetscInt i = 2; i < rve->ndof; ++i) rve->step[i] = -rve->step[i];
+  PetscFunctionReturn(0);
+}
+
+static void TrialPosition(LamRVE rve, PetscReal alpha)
+{
+  for (PetscInt i = 0; i < rve->ndof; ++i) rve->trial[i] = rve->y[i] + alpha * rve->step[i];
+}
+
+PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome)
+{
+  const PetscReal tolerance = LamNewtonTolerance(rve);
+  PetscReal first = 0.0, previous = PETSC_INFINITY;
+  PetscInt growth = 0;
+
+  PetscFunctionBeginUser;
+  *outcome = LAM_NEWTON_STALLED;
+  for (PetscInt it = 0; it <= FAST_ITERATIONS; ++it) {
+    PetscReal energy, norm, largest;
+    PetscBool valid, ok;
+    PetscInt negative;
+
+    PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
+    if (!valid) break;
+    norm = LamResidualNorm(rve, rve->residual);
+    if (norm <= tolerance) {
+      PetscCall(Report(rve, "fast", it, norm, 0.0, 0, 0.0));
+      *outcome = LAM_NEWTON_CONVERGED;
+      break;
+    }
+    if (it == 0) first = norm;
+    growth = norm > previous ? growth + 1 : 0;
+    previous = norm;
+    /* the residual of the energy may grow at first while the stiff constraints are violated, but not for long */
+    if (it == FAST_ITERATIONS || growth >= 4 || !(norm < 1e8 * (1.0 + first))) break;
+    PetscCall(LamLinearFactor(&rve->linear, 0.0, &negative, &ok));
+    ++rve->work.factorisations;
+    if (!ok) break;
+    PetscCall(SolveStep(rve));
+    largest = LargestEntry(rve->ndof, rve->step);
+    PetscCall(Report(rve, "fast", it, norm, largest, negative, 0.0));
+    if (!(largest < 10.0)) break;
+    ++rve->work.iterations;
+    LamUpdateStresses(rve, load, rve->y, rve->step, 1.0);
+    for (PetscInt i = 0; i < rve->ndof; ++i) rve->y[i] += rve->step[i];
+  }
+  PetscFunctionReturn(0);
+}
+
+/* State of the safe tier. */
+typedef struct {
+  PetscReal *best; /* [ndof] position of lowest energy so far */
+  PetscReal best_energy, shift, rounding;
+  PetscInt without_decrease;
+  PetscBool monotone; /* line search on the next step */
+} Descent;
+
+/* Factors K + shift 1 with the smallest tried shift that leaves no negative eigenvalue. */
+static PetscErrorCode FactorPositive(LamRVE rve, Descent *descent, PetscBool *ok)
+{
+  PetscReal diagonal = 0.0, shift = 0.0;
+  PetscInt negative;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < rve->linear.n; ++i)
+    diagonal = PetscMax(diagonal, PetscAbsReal(rve->linear.values[rve->linear.row[i]]));
+  for (PetscInt attempt = 0; attempt < 40; ++attempt) {
+    PetscCall(LamLinearFactor(&rve->linear, shift, &negative, ok));
+    ++rve->work.factorisations;
+    if (*ok && negative == 0) break;
+    *ok = PETSC_FALSE;
+    if (shift > diagonal) break;
+    shift = shift == 0.0 ? PetscMax(descent->shift / 8.0, 1e-7 * diagonal) : 4.0 * shift;
+  }
+  descent->shift = shift;
+  PetscFunctionReturn(0);
+}
+
+/* Halves the step until the energy falls enough; *alpha = 0 where it does not. */
+static PetscErrorCode LineSearch(LamRVE rve, const LamLoad *load, PetscReal energy, PetscReal slope, PetscReal rounding,
+                                 PetscReal *alpha)
+{
+  PetscFunctionBeginUser;
+  for (; *alpha > 1e-5; *alpha *= 0.5) {
+    PetscReal trial;
+    PetscBool valid;
+
+    TrialPosition(rve, *alpha);
+    PetscCall(LamAssembleEnergy(rve, load, rve->trial, &trial, &valid));
+    if (valid && trial <= energy + ARMIJO * *alpha * slope + rounding) PetscFunctionReturn(0);
+  }
+  *alpha = 0.0;
+  PetscFunctionReturn(0);
+}
+
+/* Keeps the lowest point; goes back to it after too many steps without decrease. *moved tells whether y changed. */
+static PetscErrorCode Watch(LamRVE rve, const LamLoad *load, PetscReal energy, PetscBool valid, Descent *descent,
+                            PetscBool *moved)
+{
+  PetscFunctionBeginUser;
+  *moved = PETSC_FALSE;
+  if (valid && energy < descent->best_energy) {
+    PetscCall(PetscArraycpy(descent->best, rve->y, rve->ndof));
+    descent->best_energy = energy;
+    descent->without_decrease = 0;
+    PetscFunctionReturn(0);
+  }
+  if (valid && energy <= descent->best_energy + descent->rounding) PetscFunctionReturn(0);
+  if (valid && ++descent->without_decrease <= WATCHDOG) PetscFunctionReturn(0);
+  PetscCall(PetscArraycpy(rve->y, descent->best, rve->ndof));
+  (void)LamSetConsistentStresses(rve, load, rve->y);
+  descent->without_decrease = 0;
+  descent->monotone = PETSC_TRUE;
+  *moved = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+/* One step of the safe tier from an assembled state; *alpha = 0 where no step lowers the energy. */
+static PetscErrorCode SafeStep(LamRVE rve, const LamLoad *load, PetscInt it, PetscReal energy, PetscReal norm,
+                               Descent *descent, PetscReal *alpha)
+{
+  PetscReal largest, slope = 0.0;
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  *alpha = 0.0;
+  PetscCall(FactorPositive(rve, descent, &ok));
+  if (!ok) PetscFunctionReturn(0);
+  PetscCall(SolveStep(rve));
+  largest = LargestEntry(rve->ndof, rve->step);
+  PetscCall(Report(rve, "safe", it, norm, largest, descent->shift > 0.0 ? 1 : 0, descent->shift));
+  *alpha = largest > STEP_LIMIT ? STEP_LIMIT / largest : 1.0;
+  if (descent->monotone) {
+    for (PetscInt i = 2; i < rve->ndof; ++i) slope += rve->residual[i] * rve->step[i];
+    PetscCall(LineSearch(rve, load, energy, slope, descent->rounding, alpha));
+    descent->monotone = PETSC_FALSE;
+  }
+  LamUpdateStresses(rve, load, rve->y, rve->step, *alpha);
+  for (PetscInt i = 0; i < rve->ndof; ++i) rve->y[i] += *alpha * rve->step[i];
+  ++rve->work.iterations;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome)
+{
+  const PetscReal tolerance = LamNewtonTolerance(rve);
+  Descent descent = {0};
+  PetscReal energy;
+  PetscBool valid;
+
+  PetscFunctionBeginUser;
+  *outcome = LAM_NEWTON_STALLED;
+  PetscCall(LamAssembleEnergy(rve, load, rve->y, &descent.best_energy, &valid));
+  if (!valid) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(rve->ndof, &descent.best));
+  PetscCall(PetscArraycpy(descent.best, rve->y, rve->ndof));
+  (void)LamSetConsistentStresses(rve, load, rve->y);
+  descent.rounding = 1e-14 * rve->micro.wall.bulk_modulus * rve->mesh.V0;
+  for (PetscInt it = 0; it < SAFE_ITERATIONS; ++it) {
+    PetscReal norm, alpha;
+    PetscBool moved;
+
+    PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
+    norm = valid ? LamResidualNorm(rve, rve->residual) : PETSC_INFINITY;
+    if (norm <= tolerance) {
+      *outcome = LAM_NEWTON_CONVERGED;
+      break;
+    }
+    PetscCall(Watch(rve, load, energy, valid, &descent, &moved));
+    if (moved) continue;
+    PetscCall(SafeStep(rve, load, it, energy, norm, &descent, &alpha));
+    if (alpha == 0.0) break;
+  }
+  PetscCall(PetscFree(descent.best));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,216 @@
+#include "rve_impl.h"
+#include <petsctime.h>
+
+PetscErrorCode LamRVECreate(MPI_Comm comm, LamRVE *rve)
+{
+  PetscMPIInt size;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCheck(size == 1, PETSC_COMM_SELF, PETSC_ERR_SUP, "one RVE is solved by one rank, got a communicator of %d", size);
+  PetscCall(PetscNew(rve));
+  (*rve)->comm = comm;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVESetMicrostructure(LamRVE rve, const LamMicrostructure *micro)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(!rve->is_set_up, PETSC_COMM_SELF, PETSC_ERR_ORDER, "the microstructure is set before LamRVESetUp");
+  PetscCheck(micro->interface == LAM_INTERFACE_BONDED, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "interface law '%s' is not available in this version; use 'bonded'", LamInterfaceLawNames[micro->interface]);
+  rve->micro = *micro;
+  rve->has_micro = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVESetMonitor(LamRVE rve, PetscBool on)
+{
+  PetscFunctionBeginUser;
+  rve->monitor = on;
+  PetscFunctionReturn(0);
+}
+
+/* All that needs no MPI: mesh, element geometry, sparsity pattern, work arrays. */
+static PetscErrorCode SetUpArrays(LamRVE rve)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamWallLawGet(rve->micro.wall.law, &rve->law));
+  PetscCall(LamMeshCreate(&rve->micro, &rve->mesh));
+  PetscCall(LamGeometryCreate(rve));
+  PetscCall(LamLinearCreate(&rve->mesh, &rve->linear));
+  rve->ndof = 2 * rve->mesh.class_count;
+  PetscCall(PetscCalloc4(rve->ndof, &rve->y, rve->ndof, &rve->step, rve->ndof, &rve->trial, rve->ndof, &rve->residual));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVESetUp(LamRVE rve)
+{
+  PetscFunctionBeginUser;
+  if (rve->is_set_up) PetscFunctionReturn(0);
+  PetscCheck(rve->has_micro, PETSC_COMM_SELF, PETSC_ERR_ORDER, "LamRVESetMicrostructure comes before LamRVESetUp");
+  PetscCall(SetUpArrays(rve));
+  PetscCall(LamLinearCreateMatrix(&rve->linear));
+  rve->is_set_up = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEDestroy(LamRVE *rve)
+{
+  PetscFunctionBeginUser;
+  if (!*rve) PetscFunctionReturn(0);
+  PetscCall(LamLinearDestroy(&(*rve)->linear));
+  PetscCall(LamMeshDestroy(&(*rve)->mesh));
+  PetscCall(PetscFree((*rve)->geometry));
+  PetscCall(PetscFree((*rve)->stress));
+  PetscCall(PetscFree4((*rve)->y, (*rve)->step, (*rve)->trial, (*rve)->residual));
+  PetscCall(PetscFree(*rve));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEGetUnknowns(LamRVE rve, PetscInt *unknowns)
+{
+  PetscFunctionBeginUser;
+  *unknowns = rve->linear.n;
+  PetscFunctionReturn(0);
+}
+
+static void ReferenceLoad(LamLoad *load)
+{
+  for (PetscInt i = 0; i < 9; ++i) load->F[i] = i % 4 == 0 ? 1.0 : 0.0;
+  load->turgor = load->cohesion = 0.0;
+}
+
+PetscErrorCode LamRVEStateCreate(LamRVE rve, LamRVEState *state)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(rve->is_set_up, PETSC_COMM_SELF, PETSC_ERR_ORDER, "LamRVESetUp comes before LamRVEStateCreate");
+  PetscCall(PetscNew(state));
+  (*state)->n = rve->ndof;
+  PetscCall(PetscMalloc1(rve->ndof, &(*state)->y));
+  PetscCall(PetscArraycpy((*state)->y, rve->mesh.class_X, rve->ndof));
+  ReferenceLoad(&(*state)->load);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEStateCopy(LamRVEState from, LamRVEState to)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(from->n == to->n, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ, "states of different RVEs");
+  PetscCall(PetscArraycpy(to->y, from->y, from->n));
+  to->load = from->load;
+  to->branch = from->branch;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEStateReset(LamRVE rve, LamRVEState state)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(state->y, rve->mesh.class_X, rve->ndof));
+  ReferenceLoad(&state->load);
+  state->branch = 0;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEStateDestroy(LamRVEState *state)
+{
+  PetscFunctionBeginUser;
+  if (!*state) PetscFunctionReturn(0);
+  PetscCall(PetscFree((*state)->y));
+  PetscCall(PetscFree(*state));
+  PetscFunctionReturn(0);
+}
+
+/* Empty where the load can be asked of plane-strain bonded tissue, else why not. */
+static PetscErrorCode CheckLoad(const LamLoad *load, char reason[], size_t length)
+{
+  const PetscReal *F = load->F, det = F[0] * F[4] - F[1] * F[3];
+
+  PetscFunctionBeginUser;
+  reason[0] = '\0';
+  for (PetscInt i = 0; i < 9; ++i)
+    if (PetscIsInfOrNanReal(F[i])) {
+      PetscCall(PetscSNPrintf(reason, length, "F has a component that is not finite"));
+      PetscFunctionReturn(0);
+    }
+  if (PetscIsInfOrNanReal(load->turgor)) PetscCall(PetscSNPrintf(reason, length, "turgor is not finite"));
+  else if (F[2] != 0.0 || F[5] != 0.0 || F[6] != 0.0 || F[7] != 0.0)
+    PetscCall(PetscSNPrintf(reason, length, "F has out-of-plane shear, which plane strain does not carry"));
+  else if (!(det > 0.0) || !(F[8] > 0.0))
+    PetscCall(PetscSNPrintf(reason, length, "F turns the tissue inside out: in-plane determinant %g, F33 %g; both must be positive",
+                            (double)det, (double)F[8]));
+  PetscFunctionReturn(0);
+}
+
+/* Fields of the solution in rve->y, whose consistent tangent is factored. */
+static PetscErrorCode FillFields(LamRVE rve, const LamLoad *load, LamResponse *response)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamHomogenise(rve, load, response));
+  PetscCall(LamFaceTractions(rve, load, response->mean_face_traction, &response->max_traction));
+  response->energy_cohesion2 = response->energy_turgor_cohesion = 0.0;
+  response->opening_fraction = response->debonded_fraction = response->open_fraction = response->max_gap = 0.0;
+  for (PetscInt k = 0; k < 3; ++k) response->debonded_by_face[k] = 0.0;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
+{
+  PetscLogDouble begin, end;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscTime(&begin));
+  PetscCall(LamResponseInit(load, response));
+  response->source = LAM_SOURCE_SOLVE;
+  response->unknowns = rve->linear.n;
+  response->distance = 0.0;
+  PetscCall(CheckLoad(load, response->reason, sizeof(response->reason)));
+  if (response->reason[0]) {
+    response->status = LAM_INVALID_F;
+    PetscFunctionReturn(0);
+  }
+  rve->work.iterations = rve->work.factorisations = 0;
+  rve->lowest_eigenvalue = NAN;
+  PetscCall(LamFollowPath(rve, load, state, &response->branch, &response->negative_eigenvalues, &response->status,
+                          response->reason, sizeof(response->reason)));
+  if (LamResponseHasFields(response)) {
+    PetscCall(FillFields(rve, load, response));
+    response->stable = (PetscBool)(response->status == LAM_CONVERGED);
+    if (!response->stable) response->lowest_eigenvalue = rve->lowest_eigenvalue;
+    PetscCall(PetscArraycpy(state->y, rve->y, rve->ndof));
+    state->load = *load;
+    state->branch = response->branch;
+  }
+  response->newton_iterations = rve->work.iterations;
+  response->factorisations = rve->work.factorisations;
+  PetscCall(PetscTime(&end));
+  response->seconds = end - begin;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVETimeAssembly(const LamMicrostructure *micro, PetscInt *unknowns, PetscReal *seconds)
+{
+  LamRVE rve;
+  LamLoad load;
+  PetscLogDouble begin, now;
+  PetscInt repeats = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&rve));
+  PetscCall(LamRVESetMicrostructure(rve, micro));
+  PetscCall(SetUpArrays(rve));
+  ReferenceLoad(&load);
+  PetscCall(PetscTime(&begin));
+  do {
+    PetscReal energy;
+    PetscBool valid;
+
+    PetscCall(LamAssemble(rve, &load, rve->mesh.class_X, &energy, rve->residual, &valid));
+    ++repeats;
+    PetscCall(PetscTime(&now));
+  } while (now - begin < 0.02);
+  *seconds = (now - begin) / (PetscReal)repeats;
+  *unknowns = rve->linear.n;
+  PetscCall(LamRVEDestroy(&rve));
+  PetscFunctionReturn(0);
+}

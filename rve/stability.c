@@ -1,0 +1,90 @@
+/*
+  Stability of a converged state: inertia of the consistent tangent, and its softest mode.
+
+  Method. A state is stable where the consistent tangent has no negative eigenvalue (prescribed turgor, bonded walls).
+  The lowest eigenvalue and its mode come from inverse iteration on K + shift 1 with a shift just large enough to make
+  it positive definite, bracketed by the inertia: the lowest mode then dominates the inverse.
+*/
+#include "rve_impl.h"
+
+PetscErrorCode LamFactorConsistent(LamRVE rve, const LamLoad *load, PetscInt *negative, PetscBool *ok)
+{
+  PetscReal energy;
+  PetscBool valid;
+
+  PetscFunctionBeginUser;
+  *negative = 0;
+  *ok = LamSetConsistentStresses(rve, load, rve->y);
+  if (!*ok) PetscFunctionReturn(0);
+  PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
+  PetscCall(LamLinearFactor(&rve->linear, 0.0, negative, ok));
+  ++rve->work.factorisations;
+  PetscFunctionReturn(0);
+}
+
+/* Smallest shift, within a factor of 1.2, for which K + shift 1 is positive definite; leaves that factor. */
+static PetscErrorCode BracketLowest(LamRVE rve, PetscReal *shift)
+{
+  PetscReal low = 0.0, high = 0.0, diagonal = 0.0;
+  PetscInt negative;
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < rve->linear.n; ++i)
+    diagonal = PetscMax(diagonal, PetscAbsReal(rve->linear.values[rve->linear.row[i]]));
+  for (high = 1e-8 * diagonal; high < 1e3 * diagonal; high *= 4.0) {
+    PetscCall(LamLinearFactor(&rve->linear, high, &negative, &ok));
+    ++rve->work.factorisations;
+    if (ok && negative == 0) break;
+    low = high;
+  }
+  while (low > 0.0 && high > 1.2 * low) {
+    const PetscReal middle = PetscSqrtReal(low * high);
+
+    PetscCall(LamLinearFactor(&rve->linear, middle, &negative, &ok));
+    ++rve->work.factorisations;
+    if (ok && negative == 0) high = middle;
+    else low = middle;
+  }
+  PetscCall(LamLinearFactor(&rve->linear, high, &negative, &ok));
+  ++rve->work.factorisations;
+  *shift = high;
+  PetscFunctionReturn(0);
+}
+
+static PetscReal Normalise(PetscInt n, PetscReal v[])
+{
+  PetscReal norm = 0.0;
+
+  for (PetscInt i = 0; i < n; ++i) norm += v[i] * v[i];
+  norm = PetscSqrtReal(norm);
+  for (PetscInt i = 0; i < n; ++i) v[i] /= norm;
+  return norm;
+}
+
+PetscErrorCode LamSoftestMode(LamRVE rve, PetscReal *eigenvalue, PetscReal mode[])
+{
+  const PetscInt n = rve->linear.n;
+  PetscReal shift, largest = 0.0, *next;
+
+  PetscFunctionBeginUser;
+  PetscCall(BracketLowest(rve, &shift));
+  PetscCall(PetscMalloc1(n, &next));
+  /* a start without the symmetry of the cell, so that no mode is missed, and the same in every run */
+  for (PetscInt i = 0; i < n; ++i) mode[i] = PetscSinReal(1.0 + 2.399963 * (PetscReal)i);
+  (void)Normalise(n, mode);
+  for (PetscInt it = 0; it < 30; ++it) {
+    PetscCall(LamLinearSolve(&rve->linear, 1, mode, next));
+    PetscCall(PetscArraycpy(mode, next, n));
+    (void)Normalise(n, mode);
+  }
+  LamLinearMultiply(&rve->linear, mode, next);
+  *eigenvalue = 0.0;
+  for (PetscInt i = 0; i < n; ++i) *eigenvalue += mode[i] * next[i];
+  for (PetscInt i = 0; i < n; ++i)
+    if (PetscAbsReal(mode[i]) > PetscAbsReal(largest) * (1.0 + 1e-6)) largest = mode[i];
+  if (largest < 0.0)
+    for (PetscInt i = 0; i < n; ++i) mode[i] = -mode[i]; /* one sign, so that the branch taken is the same in every run */
+  PetscCall(PetscFree(next));
+  PetscFunctionReturn(0);
+}

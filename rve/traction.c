@@ -1,0 +1,177 @@
+/*
+  Tractions on the bonded interfaces between cells.
+
+  Method. In equilibrium the internal forces of one cell at the nodes of an outer face are the loads that its neighbour
+  exerts. Where three cells meet, the forces f_A, f_B, f_C (sum zero) are shared among the three faces by the split of
+  least norm, t_AB = (f_A - f_B)/3. The traction field t = sum N_j t_j on the face solves the mass system
+  int N_i N_j ds t_j = f_i on the current quadratic edges, so it carries the nodal forces exactly. Normal component in
+  tension positive, per current length (Cauchy). Point values at the lumen corners diverge under refinement; averages
+  over a length of one wall thickness converge.
+*/
+#include "rve_impl.h"
+#include <petscblaslapack.h>
+
+#define SAMPLES 8 /* per edge: midpoint rule of the running integrals */
+
+static PetscInt OuterNode(const LamMesh *mesh, PetscInt cell, PetscInt around)
+{
+  return (cell * mesh->ring_nodes + around % mesh->ring_nodes) * mesh->radial_nodes + mesh->radial_nodes - 1;
+}
+
+/* The cell on the other side of face 0, 1 or 2. */
+static PetscInt Neighbour(const LamMicrostructure *micro, PetscInt cell, PetscInt face)
+{
+  static const PetscInt step[3][2] = {{1, 0}, {0, 1}, {-1, 1}}; /* L_2 = L_1 - L_0 */
+  const PetscInt n0 = micro->cells[0], n1 = micro->cells[1];
+  const PetscInt i = (cell / n1 + step[face][0] + n0) % n0, j = (cell % n1 + step[face][1]) % n1;
+
+  return i * n1 + j;
+}
+
+/* Internal forces of the walls at all mesh nodes, before nodes are tied: force[node][2]. */
+static PetscErrorCode NodeForces(LamRVE rve, const LamLoad *load, PetscReal force[])
+{
+  const LamMesh *mesh = &rve->mesh;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(force, 2 * mesh->node_count));
+  for (PetscInt e = 0; e < mesh->element_count; ++e) {
+    PetscReal x[LAM_ELEMENT_NODES][2];
+    LamElementResult element;
+    PetscBool valid;
+
+    if (e % mesh->through != mesh->through - 1) continue; /* only the outermost elements touch a face */
+    LamGatherElement(rve, load->F, rve->y, e, x);
+    LamElementEvaluate(&rve->geometry[e], rve->law, &rve->micro.wall, (const PetscReal(*)[2])x, load->F[8],
+                       &rve->stress[e], &element, &valid);
+    for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
+      for (PetscInt d = 0; d < 2; ++d) force[2 * mesh->elements[LAM_ELEMENT_NODES * e + a] + d] += element.f[2 * a + d];
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Positions x[2 along + 1][2] and loads f likewise of one face, counter-clockwise. */
+static void FaceLoads(LamRVE rve, const LamLoad *load, const PetscReal force[], PetscInt cell, PetscInt face,
+                      PetscReal x[][2], PetscReal f[][2])
+{
+  const LamMesh *mesh = &rve->mesh;
+  const PetscInt last = 2 * mesh->along, other = Neighbour(&rve->micro, cell, face);
+
+  for (PetscInt i = 0; i <= last; ++i) {
+    const PetscInt node = OuterNode(mesh, cell, last * face + i);
+    const PetscInt opposite = OuterNode(mesh, other, last * (face + 4) - i);
+    const PetscReal share = i == 0 || i == last ? 3.0 : 2.0;
+    const PetscReal *S = &mesh->shift[2 * node], *position = &rve->y[2 * mesh->node_class[node]];
+
+    for (PetscInt d = 0; d < 2; ++d) {
+      x[i][d] = position[d] + load->F[3 * d] * S[0] + load->F[3 * d + 1] * S[1];
+      f[i][d] = (force[2 * node + d] - force[2 * opposite + d]) / share;
+    }
+  }
+}
+
+/* Quadratic edge functions at xi in [-1, 1], and the current tangent dx/dxi. */
+static void EdgePoint(const PetscReal x[][2], PetscReal xi, PetscReal N[3], PetscReal tangent[2])
+{
+  const PetscReal d[3] = {xi - 0.5, -2.0 * xi, xi + 0.5};
+
+  N[0] = 0.5 * xi * (xi - 1.0);
+  N[1] = 1.0 - xi * xi;
+  N[2] = 0.5 * xi * (xi + 1.0);
+  for (PetscInt k = 0; k < 2; ++k) tangent[k] = d[0] * x[0][k] + d[1] * x[1][k] + d[2] * x[2][k];
+}
+
+/* Solves the mass system of one face; f becomes the nodal tractions, M is work space of size n x n. */
+static PetscErrorCode FaceTraction(PetscInt along, const PetscReal x[][2], PetscReal f[][2], PetscReal M[], PetscReal b[])
+{
+  const PetscReal point[4] = {-0.861136311594053, -0.339981043584856, 0.339981043584856, 0.861136311594053};
+  const PetscReal weight[4] = {0.347854845137454, 0.652145154862546, 0.652145154862546, 0.347854845137454};
+  const PetscInt n = 2 * along + 1;
+  PetscBLASInt bn, columns = 2, info;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(n, &bn));
+  PetscCall(PetscArrayzero(M, n * n));
+  for (PetscInt e = 0; e < along; ++e)
+    for (PetscInt g = 0; g < 4; ++g) {
+      PetscReal N[3], tangent[2], ds;
+
+      EdgePoint(&x[2 * e], point[g], N, tangent);
+      ds = weight[g] * PetscSqrtReal(tangent[0] * tangent[0] + tangent[1] * tangent[1]);
+      for (PetscInt i = 0; i < 3; ++i)
+        for (PetscInt j = 0; j < 3; ++j) M[(2 * e + i) * n + 2 * e + j] += ds * N[i] * N[j];
+    }
+  for (PetscInt i = 0; i < n; ++i)
+    for (PetscInt d = 0; d < 2; ++d) b[d * n + i] = f[i][d];
+  PetscCallBLAS("LAPACKpotrf", LAPACKpotrf_("L", &bn, M, &bn, &info));
+  PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "face mass matrix is singular (LAPACK potrf: %d)", (int)info);
+  PetscCallBLAS("LAPACKpotrs", LAPACKpotrs_("L", &bn, &columns, M, &bn, b, &bn, &info));
+  for (PetscInt i = 0; i < n; ++i)
+    for (PetscInt d = 0; d < 2; ++d) f[i][d] = b[d * n + i];
+  PetscFunctionReturn(0);
+}
+
+/* Running integrals of normal traction and of current length at sample ends: [along*SAMPLES + 1]. */
+static void Accumulate(PetscInt along, const PetscReal x[][2], const PetscReal t[][2], PetscReal force[], PetscReal length[])
+{
+  force[0] = length[0] = 0.0;
+  for (PetscInt e = 0; e < along; ++e)
+    for (PetscInt s = 0; s < SAMPLES; ++s) {
+      const PetscInt k = e * SAMPLES + s;
+      const PetscReal h = 2.0 / SAMPLES, xi = -1.0 + h * ((PetscReal)s + 0.5);
+      PetscReal N[3], tangent[2], tn = 0.0;
+
+      EdgePoint(&x[2 * e], xi, N, tangent);
+      /* outward normal times ds/dxi is (tangent_2, -tangent_1): the face runs counter-clockwise around its cell */
+      for (PetscInt i = 0; i < 3; ++i) tn += N[i] * (t[2 * e + i][0] * tangent[1] - t[2 * e + i][1] * tangent[0]);
+      force[k + 1] = force[k] + h * tn;
+      length[k + 1] = length[k] + h * PetscSqrtReal(tangent[0] * tangent[0] + tangent[1] * tangent[1]);
+    }
+}
+
+/* Largest mean over windows of reference length `window` (in sub-intervals; at most the whole face). */
+static PetscReal LargestMean(PetscInt count, PetscReal window, const PetscReal force[], const PetscReal length[])
+{
+  PetscReal largest = -PETSC_MAX_REAL;
+
+  if (window >= (PetscReal)count) return force[count] / length[count];
+  for (PetscInt start = 0; (PetscReal)start + window <= (PetscReal)count; ++start) {
+    const PetscReal end = (PetscReal)start + window;
+    const PetscInt k = PetscMin((PetscInt)end, count - 1);
+    const PetscReal part = end - (PetscReal)k;
+    const PetscReal f = force[k] + part * (force[k + 1] - force[k]) - force[start];
+    const PetscReal l = length[k] + part * (length[k + 1] - length[k]) - length[start];
+
+    largest = PetscMax(largest, f / l);
+  }
+  return largest;
+}
+
+PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, PetscReal mean[3], PetscReal *largest)
+{
+  const PetscInt along = rve->mesh.along, n = 2 * along + 1, count = along * SAMPLES;
+  const PetscReal window = rve->micro.wall_thickness * (PetscReal)count / (2.0 / PetscSqrtReal(3.0));
+  PetscReal *force, (*x)[2], (*t)[2], *M, *b, *F, *L;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc5(2 * rve->mesh.node_count, &force, n, &x, n, &t, n * n, &M, 2 * n, &b));
+  PetscCall(PetscMalloc2(count + 1, &F, count + 1, &L));
+  PetscCall(NodeForces(rve, load, force));
+  *largest = -PETSC_MAX_REAL;
+  for (PetscInt face = 0; face < 3; ++face) {
+    PetscReal total = 0.0, length = 0.0;
+
+    for (PetscInt cell = 0; cell < rve->mesh.cell_count; ++cell) {
+      FaceLoads(rve, load, force, cell, face, x, t);
+      PetscCall(FaceTraction(along, (const PetscReal(*)[2])x, t, M, b));
+      Accumulate(along, (const PetscReal(*)[2])x, (const PetscReal(*)[2])t, F, L);
+      total += F[count];
+      length += L[count];
+      *largest = PetscMax(*largest, LargestMean(count, window, F, L));
+    }
+    mean[face] = total / length;
+  }
+  PetscCall(PetscFree5(force, x, t, M, b));
+  PetscCall(PetscFree2(F, L));
+  PetscFunctionReturn(0);
+}
