@@ -1,0 +1,114 @@
+/*
+  lamella info: what a file holds, who wrote it, with what. Needs no MPI.
+*/
+#include "app.h"
+#include <string.h>
+
+static void PrintText(const char label[], const json_t *value)
+{
+  if (json_is_string(value) && json_string_length(value)) printf("%-20s %s\n", label, json_string_value(value));
+}
+
+static void PrintInteger(const char label[], const json_t *value)
+{
+  printf("%-20s %lld\n", label, (long long)json_integer_value(value));
+}
+
+static void PrintRange(const char label[], const json_t *range, const char unit[])
+{
+  if (!json_is_array(range)) return;
+  printf("%-20s %.4g to %.4g%s\n", label, json_number_value(json_array_get(range, 0)),
+         json_number_value(json_array_get(range, 1)), unit);
+}
+
+static void PrintStatuses(const json_t *statuses)
+{
+  const char *name;
+  json_t *count;
+
+  json_object_foreach((json_t *)statuses, name, count)
+  {
+    char label[64];
+
+    snprintf(label, sizeof(label), "  %s", name);
+    PrintInteger(label, count);
+  }
+}
+
+static void PrintMicrostructures(const json_t *list)
+{
+  size_t i;
+  json_t *item;
+
+  json_array_foreach(list, i, item)
+  {
+    const json_t *description = json_object_get(item, "description");
+    const char *name;
+    json_t *value;
+
+    PrintText("microstructure", json_object_get(item, "hash"));
+    printf("  %-18s %.6g um\n", "apothem", 1e6 * json_number_value(json_object_get(item, "apothem_m")));
+    printf("  %-18s %.6g MPa\n", "stress unit C1+C2",
+           1e-6 * json_number_value(json_object_get(item, "stress_unit_Pa")));
+    json_object_foreach((json_t *)description, name, value)
+    {
+      char text[256];
+      const size_t n = json_dumpb(value, text, sizeof(text) - 1, JSON_ENCODE_ANY | JSON_REAL_PRECISION(6));
+
+      text[n < sizeof(text) ? n : 0] = '\0';
+      printf("  %-18s %s\n", name, text);
+    }
+  }
+}
+
+static void PrintTable(const json_t *info)
+{
+  const json_t *coverage = json_object_get(info, "coverage"), *libraries = json_object_get(info, "libraries");
+
+  PrintText("kind", json_object_get(info, "kind"));
+  PrintInteger("records", json_object_get(info, "records"));
+  PrintInteger("failed", json_object_get(info, "failed"));
+  PrintStatuses(json_object_get(info, "statuses"));
+  PrintRange("strain (principal)", json_object_get(coverage, "principal_log_strain"), "");
+  PrintRange("turgor", json_object_get(coverage, "turgor"), " MPa");
+  PrintRange("cohesion", json_object_get(coverage, "cohesion"), " MPa");
+  PrintMicrostructures(json_object_get(info, "microstructures"));
+  PrintInteger("format version", json_object_get(info, "format_version"));
+  PrintText("written by", json_object_get(info, "creator"));
+  PrintText("created", json_object_get(info, "created"));
+  PrintText("host", json_object_get(info, "host"));
+  PrintText("command", json_object_get(info, "command"));
+  PrintText("PETSc", json_object_get(libraries, "PETSc"));
+  PrintText("HDF5", json_object_get(libraries, "HDF5"));
+  PrintText("MPI", json_object_get(libraries, "MPI"));
+}
+
+PetscErrorCode LamCommandInfo(LamArgs *args, int *exit_status)
+{
+  PetscBool json = PETSC_FALSE, done;
+  const char *path, *text;
+  LamDatabase database;
+  json_t *info;
+  const LamOption options[] = {
+      {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object on stdout", &json},
+      {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
+  };
+
+  PetscFunctionBeginUser;
+  PetscCall(LamOptionsParse(args, "info FILE.h5 [--json]", "Tells what a file holds, who wrote it, with what.", options,
+                            1, &path, &done, exit_status));
+  if (done) PetscFunctionReturn(0);
+  PetscCall(LamDatabaseOpen(path, &database));
+  PetscCall(LamDatabaseGetInfo(database, &text));
+  info = json_loads(text, 0, NULL);
+  PetscCheck(info, PETSC_COMM_SELF, PETSC_ERR_LIB, "%s: its description is no JSON", path);
+  if (json) {
+    PetscCall(LamPrintJSON(info));
+  } else {
+    PrintTable(info);
+    json_decref(info);
+  }
+  PetscCall(LamDatabaseClose(&database));
+  *exit_status = LAM_EXIT_OK;
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,45 @@
+/*
+  Private to the database: loaded records and the expansions made from them.
+*/
+#ifndef LAM_DATABASE_INTERNAL_H
+#define LAM_DATABASE_INTERNAL_H
+
+#include "record_internal.h"
+
+/*
+  Second-order expansion of Phi = Psi + p J about a record, in x = (c0, c1, c2, p) with c0 = (C11 + C22)/2,
+  c1 = (C11 - C22)/2, c2 = C12. P33 + p J is a scalar of C and p too and is expanded to first order.
+*/
+typedef struct {
+  PetscReal x[4];
+  PetscReal energy, gradient[4], hessian[4][4];
+  PetscReal P33, P33_gradient[4]; /* of P33 + p J */
+} LamExpansion;
+
+#define LAM_MAX_IMAGES 6
+
+/* The rotations and mirrors that map the lattice to itself, acting on (c1, c2); image 0 is the identity. */
+typedef struct {
+  PetscInt count;
+  PetscReal map[LAM_MAX_IMAGES][2][2];
+  PetscInt face[LAM_MAX_IMAGES][3]; /* face family k of the question is family face[k] of the record */
+} LamImages;
+
+struct LamDatabase_s {
+  LamHeader header; /* owned; its `committed` is that of the file, not n */
+  LamImages images;
+  PetscInt n, capacity;
+  LamResponse *records;     /* owned */
+  PetscInt64 *keys;         /* owned */
+  LamExpansion *expansions; /* owned; x[0] is infinite for records that cannot be used */
+  char *info;               /* owned */
+};
+
+/* ---- query.c ---- */
+void LamImagesMake(const LamMicrostructure *micro, LamImages *images);
+void LamExpansionMake(const LamResponse *record, LamExpansion *expansion);
+
+/* ---- database_info.c ---- */
+PetscErrorCode LamDatabaseDescribe(LamDatabase database, char **json);
+
+#endif

@@ -1,0 +1,29 @@
+/*
+  The one way HDF5 is called: a negative return becomes a PETSc error that names the file and HDF5's own reason.
+*/
+#ifndef LAM_H5CHECK_H
+#define LAM_H5CHECK_H
+
+#include <petscsys.h>
+#include <hdf5.h>
+
+#define LAM_HDF5_REASON_LENGTH 256
+
+/* The innermost reason on HDF5's error stack: the system's own words ("No space left on device") where there are any.
+ */
+void LamHDF5Reason(char reason[LAM_HDF5_REASON_LENGTH]);
+
+/*
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Fflush(file, H5F_SCOPE_GLOBAL));
+  LamCallHDF5(path, PETSC_ERR_FILE_READ, dataset = H5Dopen2(file, "/records", H5P_DEFAULT));
+*/
+#define LamCallHDF5(path, code, ...)                                                                                   \
+  do {                                                                                                                 \
+    if ((__VA_ARGS__) < 0) {                                                                                           \
+      char reason_[LAM_HDF5_REASON_LENGTH];                                                                            \
+      LamHDF5Reason(reason_);                                                                                          \
+      SETERRQ(PETSC_COMM_SELF, code, "%s: %s", path, reason_);                                                         \
+    }                                                                                                                  \
+  } while (0)
+
+#endif

@@ -1,0 +1,102 @@
+/*
+  Private to the record files: types, lock, header. docs/file-format.md describes the layout.
+*/
+#ifndef LAM_RECORD_INTERNAL_H
+#define LAM_RECORD_INTERNAL_H
+
+#include <lamella/database.h>
+#include <stdint.h>
+#include "h5check.h"
+
+#define LAM_FORMAT_NAME "lamella"
+#define LAM_FORMAT_VERSION 1
+#define LAM_TIME_LENGTH 32
+#define LAM_RECORDS_PER_CHUNK 64 /* some 90 kB: one commit touches one or two chunks */
+
+/* ---- record_type.c ---- */
+
+/* One record in memory; the file holds the same members, packed and little-endian, the checksum last. */
+typedef struct {
+  PetscInt64 key;
+  PetscInt microstructure; /* index of the microstructure in the file */
+  LamResponse response;
+  uint32_t checksum; /* CRC-32 (zlib's) of all bytes of the record in the file that come before it */
+} LamRecord;
+
+PetscErrorCode LamRecordTypeCreate(PetscBool in_memory, hid_t *type);
+/* Turns records into the bytes of the file, checksums included; `bytes` is the caller's to free. */
+PetscErrorCode LamRecordsPack(PetscInt n, const PetscInt64 keys[], const LamResponse responses[], hid_t file_type,
+                              void **bytes);
+/* The way back, for bytes of a type that holds at least our members. Names `path` and the record where one is damaged.
+ */
+PetscErrorCode LamRecordsUnpack(const char path[], PetscInt n, const void *bytes, hid_t file_type,
+                                LamResponse responses[], PetscInt64 keys[]);
+/* Checks that every member we know is there, of the type we write. */
+PetscErrorCode LamRecordTypeCheck(const char path[], hid_t file_type);
+
+/* ---- record_lock.c ---- */
+
+/* The writer's lock: the file PATH.lock, which says who holds it. */
+typedef struct {
+  char path[PETSC_MAX_PATH_LEN];
+  int fd; /* -1: not held */
+} LamLock;
+
+PetscErrorCode LamLockTake(const char path[], LamLock *lock);
+PetscErrorCode LamLockRelease(LamLock *lock);
+/* Readers wait while a commit is under way, and a commit waits for readers: milliseconds each. */
+void LamLockBeginCommit(LamLock *lock);
+void LamLockEndCommit(LamLock *lock);
+int LamLockBeginRead(const char path[]); /* a descriptor for LamLockEndRead, or -1 where no writer is about */
+void LamLockEndRead(int fd);
+
+/* ---- record_file.c ---- */
+
+/* What the root group tells. Texts are owned by the header. */
+typedef struct {
+  char kind[LAM_NAME_LENGTH];
+  char creator[LAM_NAME_LENGTH], created[LAM_TIME_LENGTH], host[256];
+  char petsc[LAM_NAME_LENGTH], hdf5[LAM_NAME_LENGTH], mpi[256];
+  char *command;
+  PetscInt format_version;
+  LamScales scales;
+  PetscReal accuracy;
+  char hash[LAM_HASH_LENGTH];
+  char *description;
+  LamMicrostructure micro;
+  PetscInt committed;
+} LamHeader;
+
+PetscErrorCode LamHeaderDestroy(LamHeader *header);
+/* Now, ISO 8601, UTC. */
+void LamTimeNow(char text[LAM_TIME_LENGTH]);
+
+/*
+  Makes sure that the disk takes `bytes` more, and some for HDF5's own tables, before HDF5 begins: HDF5 1.10 crashes at
+  exit over data that it could not write. PETSC_ERR_FILE_WRITE with the system's reason. `create`: starts an empty file.
+*/
+PetscErrorCode LamFileReserve(const char path[], PetscBool create, size_t bytes);
+/* Opens without HDF5's own locks; closing the file closes all that is open in it. */
+PetscErrorCode LamFileOpenRead(const char path[], hid_t *file);
+PetscErrorCode LamFileOpenWrite(const char path[], hid_t *file);
+/* Makes a file without records: header, microstructure, scene, empty record table. */
+PetscErrorCode LamFileCreate(const char path[], const char kind[], const LamScene *scene);
+PetscErrorCode LamFileClose(const char path[], hid_t file);
+/* Brings all that was written to the disk. */
+PetscErrorCode LamFileSync(const char path[], hid_t file);
+/* Reads and checks the header; `file` is left open. */
+PetscErrorCode LamHeaderRead(const char path[], hid_t file, LamHeader *header);
+/* Reads and checks the committed records; arrays are the caller's to free. */
+PetscErrorCode LamFileReadRecords(const char path[], hid_t file, PetscInt committed, LamResponse **responses,
+                                  PetscInt64 **keys);
+PetscErrorCode LamAttributeWriteText(const char path[], hid_t object, const char name[], const char text[]);
+/* Whether `name` ("/a/b/c") is there: every part of it. */
+PetscErrorCode LamFileHas(const char path[], hid_t file, const char name[], PetscBool *has);
+/* Text dataset; groups are made. */
+PetscErrorCode LamFileWriteText(const char path[], hid_t file, const char name[], const char text[]);
+PetscErrorCode LamFileGetText(const char path[], hid_t file, const char name[], char **text);
+
+/* ---- microstructure.c ---- */
+PetscErrorCode LamMicrostructureParse(const char path[], const char json[], LamMicrostructure *micro);
+
+#endif

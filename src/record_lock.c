@@ -1,0 +1,171 @@
+/*
+  One writer per file.
+
+  PATH.lock is made with O_CREAT | O_EXCL and says host, process, the process's start (so that a number used again is
+  not taken for the holder) and the time. The lock of a process that has died on this host is taken over. HDF5's own
+  locks are off: they would shut readers out for as long as a writer lives. Instead a commit takes the lock file
+  exclusively (flock) and a reader shares it while it loads.
+*/
+#include "record_internal.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+typedef struct {
+  char host[256], since[LAM_TIME_LENGTH];
+  long pid;
+  unsigned long long start; /* clock ticks after boot; 0 where the system does not tell */
+} Holder;
+
+static unsigned long long ProcessStart(long pid)
+{
+  char path[64], text[1024], *field;
+  unsigned long long start = 0;
+  size_t n;
+  FILE *file;
+
+  snprintf(path, sizeof(path), "/proc/%ld/stat", pid);
+  file = fopen(path, "r");
+  if (!file) return 0;
+  n = fread(text, 1, sizeof(text) - 1, file);
+  fclose(file);
+  text[n] = '\0';
+  field = strrchr(text, ')'); /* the name before it may hold anything; the start is the 20th field behind it */
+  for (int i = 0; field && i < 20; i++) field = strchr(field + 1, ' ');
+  if (field) sscanf(field, "%llu", &start);
+  return start;
+}
+
+static void HolderSelf(Holder *self)
+{
+  memset(self, 0, sizeof(*self));
+  if (gethostname(self->host, sizeof(self->host) - 1)) snprintf(self->host, sizeof(self->host), "unknown");
+  self->pid = (long)getpid();
+  self->start = ProcessStart(self->pid);
+  LamTimeNow(self->since);
+}
+
+static PetscBool HolderRead(int fd, Holder *holder)
+{
+  char text[512] = "";
+  const ssize_t n = pread(fd, text, sizeof(text) - 1, 0);
+
+  memset(holder, 0, sizeof(*holder));
+  return (PetscBool)(n > 0 && sscanf(text, "%255s %ld %llu %31s", holder->host, &holder->pid, &holder->start,
+                                     holder->since) == 4);
+}
+
+/* Only of a process on this host can we know that it is gone. */
+static PetscBool HolderIsDead(const Holder *holder)
+{
+  Holder self;
+
+  HolderSelf(&self);
+  if (strcmp(holder->host, self.host)) return PETSC_FALSE;
+  if (kill((pid_t)holder->pid, 0) && errno == ESRCH) return PETSC_TRUE;
+  return (PetscBool)(holder->start && ProcessStart(holder->pid) != holder->start);
+}
+
+/* Removes the lock at `path` where its holder is dead; the holder otherwise. *removed: try to make it again. */
+static PetscErrorCode RemoveStale(const char path[], const char data_path[], PetscBool *removed)
+{
+  const int fd = open(path, O_RDONLY | O_CLOEXEC);
+  struct stat opened, named;
+  Holder holder;
+  PetscBool known;
+
+  PetscFunctionBeginUser;
+  *removed = PETSC_TRUE;
+  if (fd < 0) PetscFunctionReturn(0); /* released meanwhile */
+  flock(fd, LOCK_EX);                 /* of two that find it stale, the second sees below that it has gone */
+  known = HolderRead(fd, &holder);
+  if (fstat(fd, &opened) || stat(path, &named) || opened.st_ino != named.st_ino) {
+    close(fd);
+    PetscFunctionReturn(0);
+  }
+  *removed = (PetscBool)(known && HolderIsDead(&holder));
+  if (*removed) unlink(path);
+  close(fd);
+  PetscCheck(*removed || known, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN,
+             "%s: another process is writing to it (%s does not say which); remove the lock if none is", data_path,
+             path);
+  PetscCheck(*removed, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN,
+             "%s: process %ld on %s has been writing to it since %s; wait, or remove %s if it is gone", data_path,
+             holder.pid, holder.host, holder.since, path);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamLockTake(const char path[], LamLock *lock)
+{
+  char text[512];
+  Holder self;
+  int length;
+
+  PetscFunctionBeginUser;
+  lock->fd = -1;
+  length = snprintf(lock->path, sizeof(lock->path), "%s.lock", path);
+  PetscCheck(length < (int)sizeof(lock->path), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: the path is too long", path);
+  while (lock->fd < 0) {
+    PetscBool removed;
+
+    lock->fd = open(lock->path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+    if (lock->fd >= 0) break;
+    PetscCheck(errno == EEXIST, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: cannot make the lock %s: %s", path,
+               lock->path, strerror(errno));
+    PetscCall(RemoveStale(lock->path, path, &removed));
+  }
+  HolderSelf(&self);
+  length = snprintf(text, sizeof(text), "%s %ld %llu %s\n", self.host, self.pid, self.start, self.since);
+  if (write(lock->fd, text, (size_t)length) != length) {
+    const int error = errno;
+
+    PetscCall(LamLockRelease(lock));
+    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s.lock: %s", path, strerror(error));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamLockRelease(LamLock *lock)
+{
+  struct stat opened, named;
+
+  PetscFunctionBeginUser;
+  if (lock->fd < 0) PetscFunctionReturn(0);
+  /* a user may have removed our lock and another writer made its own */
+  if (!fstat(lock->fd, &opened) && !stat(lock->path, &named) && opened.st_ino == named.st_ino) unlink(lock->path);
+  close(lock->fd);
+  lock->fd = -1;
+  PetscFunctionReturn(0);
+}
+
+/* Where the file system has no flock the calls fail and a reader may, rarely, meet a half-made commit and say so. */
+void LamLockBeginCommit(LamLock *lock)
+{
+  flock(lock->fd, LOCK_EX);
+}
+
+void LamLockEndCommit(LamLock *lock)
+{
+  flock(lock->fd, LOCK_UN);
+}
+
+int LamLockBeginRead(const char path[])
+{
+  char name[PETSC_MAX_PATH_LEN];
+  int fd;
+
+  if (snprintf(name, sizeof(name), "%s.lock", path) >= (int)sizeof(name)) return -1;
+  fd = open(name, O_RDONLY | O_CLOEXEC);
+  if (fd >= 0) flock(fd, LOCK_SH);
+  return fd;
+}
+
+void LamLockEndRead(int fd)
+{
+  if (fd >= 0) close(fd);
+}

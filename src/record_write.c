@@ -1,0 +1,383 @@
+/*
+  The writer of record files.
+
+  Method
+    Each commit opens the file, appends, syncs, raises the counter, syncs and closes. A kill at any instant leaves the
+    records below the counter as they were; what lies beyond it is overwritten by the next append. A new file is made
+    under another name and takes its place at the first commit.
+*/
+#include "record_internal.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <libgen.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+struct LamRecordWriter_s {
+  char path[PETSC_MAX_PATH_LEN];
+  char temporary[PETSC_MAX_PATH_LEN];
+  PetscBool published; /* the file has its own name */
+  PetscBool written;   /* something besides the header */
+  LamLock lock;
+  PetscInt n, capacity;
+  PetscInt64 *keys; /* owned */
+};
+
+static const char *CurrentPath(LamRecordWriter w)
+{
+  return w->published ? w->path : w->temporary;
+}
+
+/* ---- open ---- */
+
+static PetscErrorCode CheckSame(const char path[], hid_t file, const char kind[], const LamScene *scene, LamHeader *h)
+{
+  char hash[LAM_HASH_LENGTH], *json;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamHeaderRead(path, file, h));
+  PetscCheck(!strcmp(h->kind, kind), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: is of kind \"%s\", \"%s\" is wanted; give another file name", path, h->kind, kind);
+  PetscCall(LamMicrostructureDescribe(&scene->micro, &json, hash));
+  PetscCall(PetscFree(json));
+  PetscCheck(!strcmp(h->hash, hash), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: holds microstructure %s, the scene %s describes %s; give another file name", path, h->hash,
+             scene->path, hash);
+  PetscFunctionReturn(0);
+}
+
+/* Appending needs exactly our record type: members that a later version has added would be left empty. */
+static PetscErrorCode CheckType(const char path[], hid_t file)
+{
+  hid_t dataset, theirs, ours;
+  htri_t same;
+
+  PetscFunctionBeginUser;
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, dataset = H5Dopen2(file, "/records", H5P_DEFAULT));
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, theirs = H5Dget_type(dataset));
+  PetscCall(LamRecordTypeCreate(PETSC_FALSE, &ours));
+  LamCallHDF5(path, PETSC_ERR_LIB, same = H5Tequal(theirs, ours));
+  LamCallHDF5(path, PETSC_ERR_LIB, H5Tclose(ours));
+  LamCallHDF5(path, PETSC_ERR_LIB, H5Tclose(theirs));
+  LamCallHDF5(path, PETSC_ERR_LIB, H5Dclose(dataset));
+  PetscCheck(same > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: its records have other members than this lamella writes; go on with the version that wrote it", path);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadExisting(LamRecordWriter w, hid_t file, const char kind[], const LamScene *scene)
+{
+  LamResponse *responses;
+  LamHeader header;
+
+  PetscFunctionBeginUser;
+  PetscCall(CheckSame(w->path, file, kind, scene, &header));
+  PetscCall(CheckType(w->path, file));
+  PetscCall(LamFileReadRecords(w->path, file, header.committed, &responses, &w->keys));
+  PetscCall(PetscFree(responses));
+  w->n = w->capacity = header.committed;
+  PetscCall(LamHeaderDestroy(&header));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Start(LamRecordWriter w, const char kind[], LamWriteMode mode, const LamScene *scene)
+{
+  PetscErrorCode ierr;
+  hid_t file;
+
+  PetscFunctionBeginUser;
+  w->published = (PetscBool)(mode == LAM_WRITE_APPEND && !access(w->path, F_OK));
+  if (!w->published) {
+    PetscCall(LamFileReserve(w->temporary, PETSC_TRUE, scene->text ? strlen(scene->text) : 0));
+    PetscCall(LamFileCreate(w->temporary, kind, scene));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(LamFileOpenRead(w->path, &file));
+  ierr = ReadExisting(w, file, kind, scene);
+  H5Fclose(file);
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Destroy(LamRecordWriter *writer)
+{
+  PetscFunctionBeginUser;
+  if (!(*writer)->published) unlink((*writer)->temporary);
+  PetscCall(LamLockRelease(&(*writer)->lock));
+  PetscCall(PetscFree((*writer)->keys));
+  PetscCall(PetscFree(*writer));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRecordWriterOpen(const char path[], const char kind[], LamWriteMode mode, const LamScene *scene,
+                                   LamRecordWriter *writer)
+{
+  PetscErrorCode ierr;
+  LamRecordWriter w;
+
+  PetscFunctionBeginUser;
+  *writer = NULL;
+  PetscCheck(strlen(path) + 8 < PETSC_MAX_PATH_LEN, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: the path is too long",
+             path);
+  PetscCall(PetscNew(&w));
+  PetscCall(PetscStrncpy(w->path, path, sizeof(w->path)));
+  snprintf(w->temporary, sizeof(w->temporary), "%.*s.tmp", PETSC_MAX_PATH_LEN - 8, path);
+  ierr = LamLockTake(path, &w->lock);
+  if (ierr) {
+    (void)PetscFree(w);
+    PetscCall(ierr);
+  }
+  ierr = Start(w, kind, mode, scene);
+  if (ierr) (void)Destroy(&w);
+  PetscCall(ierr);
+  *writer = w;
+  PetscFunctionReturn(0);
+}
+
+/* ---- commit ---- */
+
+static PetscErrorCode Append(const char path[], hid_t dataset, hsize_t before, PetscInt n, const PetscInt64 keys[],
+                             const LamResponse responses[])
+{
+  const hsize_t count = (hsize_t)n, after = before + count;
+  hid_t type, space, memory;
+  void *bytes;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRecordTypeCreate(PETSC_FALSE, &type));
+  PetscCall(LamRecordsPack(n, keys, responses, type, &bytes));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dset_extent(dataset, &after));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, space = H5Dget_space(dataset));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, memory = H5Screate_simple(1, &count, NULL));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Sselect_hyperslab(space, H5S_SELECT_SET, &before, NULL, &count, NULL));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dwrite(dataset, type, memory, space, H5P_DEFAULT, bytes));
+  LamCallHDF5(path, PETSC_ERR_LIB, H5Sclose(memory));
+  LamCallHDF5(path, PETSC_ERR_LIB, H5Sclose(space));
+  LamCallHDF5(path, PETSC_ERR_LIB, H5Tclose(type));
+  PetscCall(PetscFree(bytes));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode AppendAndCount(LamRecordWriter w, const char path[], hid_t file, PetscInt n,
+                                     const PetscInt64 keys[], const LamResponse responses[])
+{
+  const PetscInt64 committed = w->n + n;
+  hid_t dataset, counter;
+
+  PetscFunctionBeginUser;
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, dataset = H5Dopen2(file, "/records", H5P_DEFAULT));
+  PetscCall(Append(path, dataset, (hsize_t)w->n, n, keys, responses));
+  PetscCall(LamFileSync(path, file));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, counter = H5Aopen(dataset, "committed", H5P_DEFAULT));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Awrite(counter, H5T_NATIVE_INT64, &committed));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Aclose(counter));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dclose(dataset));
+  PetscCall(LamFileSync(path, file));
+  PetscFunctionReturn(0);
+}
+
+/* Gives the new file its name, for good. */
+static PetscErrorCode Publish(LamRecordWriter w)
+{
+  char copy[PETSC_MAX_PATH_LEN];
+  int directory;
+
+  PetscFunctionBeginUser;
+  if (w->published) PetscFunctionReturn(0);
+  PetscCheck(!rename(w->temporary, w->path), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s: %s", w->path, strerror(errno));
+  w->published = PETSC_TRUE;
+  PetscCall(PetscStrncpy(copy, w->path, sizeof(copy)));
+  directory = open(dirname(copy), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (directory >= 0) {
+    fsync(directory); /* some file systems cannot; the file itself is on the disk */
+    close(directory);
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CommitLocked(LamRecordWriter w, PetscInt n, const PetscInt64 keys[],
+                                   const LamResponse responses[])
+{
+  PetscErrorCode ierr;
+  hid_t file;
+
+  PetscFunctionBeginUser;
+  if (n) {
+    PetscCall(LamFileReserve(CurrentPath(w), PETSC_FALSE, ((size_t)n + LAM_RECORDS_PER_CHUNK) * sizeof(LamRecord)));
+    PetscCall(LamFileOpenWrite(CurrentPath(w), &file));
+    ierr = AppendAndCount(w, CurrentPath(w), file, n, keys, responses);
+    if (ierr) H5Fclose(file);
+    PetscCall(ierr);
+    PetscCall(LamFileClose(CurrentPath(w), file));
+  }
+  PetscCall(Publish(w));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode KeepKeys(LamRecordWriter w, PetscInt n, const PetscInt64 keys[])
+{
+  PetscFunctionBeginUser;
+  if (w->n + n > w->capacity) {
+    w->capacity = PetscMax(2 * w->capacity, w->n + n);
+    PetscCall(PetscRealloc((size_t)w->capacity * sizeof(*w->keys), &w->keys));
+  }
+  if (n) PetscCall(PetscArraycpy(w->keys + w->n, keys, n));
+  w->n += n;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRecordWriterCommit(LamRecordWriter writer, PetscInt n, const PetscInt64 keys[],
+                                     const LamResponse responses[])
+{
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  LamLockBeginCommit(&writer->lock);
+  ierr = CommitLocked(writer, n, keys, responses);
+  LamLockEndCommit(&writer->lock);
+  PetscCall(ierr);
+  writer->written = PETSC_TRUE;
+  PetscCall(KeepKeys(writer, n, keys));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRecordWriterGetKeys(LamRecordWriter writer, PetscInt *n, const PetscInt64 *keys[])
+{
+  PetscFunctionBeginUser;
+  *n = writer->n;
+  *keys = writer->keys;
+  PetscFunctionReturn(0);
+}
+
+/* A file that holds arrays and no records gets its name here; one that holds nothing leaves no trace. */
+PetscErrorCode LamRecordWriterClose(LamRecordWriter *writer)
+{
+  PetscErrorCode ierr = 0;
+
+  PetscFunctionBeginUser;
+  if (!*writer) PetscFunctionReturn(0);
+  if ((*writer)->written) ierr = Publish(*writer);
+  PetscCall(Destroy(writer));
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+/* ---- arrays and texts beside the records ---- */
+
+typedef PetscErrorCode (*WriteFunction)(const char path[], hid_t file, void *ctx);
+
+static PetscErrorCode WriteSynced(const char path[], hid_t file, WriteFunction write, void *ctx)
+{
+  PetscFunctionBeginUser;
+  PetscCall(write(path, file, ctx));
+  PetscCall(LamFileSync(path, file));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WithFile(LamRecordWriter w, size_t bytes, WriteFunction write, void *ctx)
+{
+  const char *path = CurrentPath(w);
+  PetscErrorCode ierr;
+  hid_t file = H5I_INVALID_HID;
+
+  PetscFunctionBeginUser;
+  LamLockBeginCommit(&w->lock);
+  ierr = LamFileReserve(path, PETSC_FALSE, bytes);
+  if (!ierr) ierr = LamFileOpenWrite(path, &file);
+  if (!ierr) ierr = WriteSynced(path, file, write, ctx);
+  if (!ierr)
+    ierr = LamFileClose(path, file);
+  else if (file >= 0)
+    H5Fclose(file);
+  LamLockEndCommit(&w->lock);
+  PetscCall(ierr);
+  w->written = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+typedef struct {
+  const char *name;
+  hid_t file_type, memory_type;
+  PetscInt rank;
+  const PetscInt *dims;
+  const void *values;
+  const char *unit; /* or NULL */
+} Array;
+
+static size_t ArrayBytes(const Array *a)
+{
+  size_t bytes = sizeof(PetscInt64); /* reals and integers alike have 8 bytes in the file */
+
+  for (PetscInt i = 0; i < a->rank; i++) bytes *= (size_t)a->dims[i];
+  return bytes;
+}
+
+static PetscErrorCode WriteArray(const char path[], hid_t file, void *ctx)
+{
+  const Array *a = ctx;
+  hsize_t dims[4];
+  hid_t groups, space, dataset;
+  PetscBool has;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileHas(path, file, a->name, &has));
+  if (has) LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Ldelete(file, a->name, H5P_DEFAULT));
+  for (PetscInt i = 0; i < a->rank; i++) dims[i] = (hsize_t)a->dims[i];
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, groups = H5Pcreate(H5P_LINK_CREATE));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Pset_create_intermediate_group(groups, 1));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, space = H5Screate_simple((int)a->rank, dims, NULL));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE,
+              dataset = H5Dcreate2(file, a->name, a->file_type, space, groups, H5P_DEFAULT, H5P_DEFAULT));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dwrite(dataset, a->memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, a->values));
+  if (a->unit) PetscCall(LamAttributeWriteText(path, dataset, "unit", a->unit));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dclose(dataset));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Sclose(space));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Pclose(groups));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRecordWriterReals(LamRecordWriter writer, const char name[], PetscInt rank, const PetscInt dims[],
+                                    const PetscReal values[], const char unit[])
+{
+  Array array = {name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, rank, dims, values, unit};
+
+  PetscFunctionBeginUser;
+  PetscCheck(rank >= 0 && rank <= 4, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "rank %" PetscInt_FMT, rank);
+  PetscCall(WithFile(writer, ArrayBytes(&array), WriteArray, &array));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRecordWriterInts(LamRecordWriter writer, const char name[], PetscInt rank, const PetscInt dims[],
+                                   const PetscInt values[])
+{
+  const hid_t memory = sizeof(PetscInt) == sizeof(PetscInt64) ? H5T_NATIVE_INT64 : H5T_NATIVE_INT;
+  Array array = {name, H5T_STD_I64LE, memory, rank, dims, values, NULL};
+
+  PetscFunctionBeginUser;
+  PetscCheck(rank >= 0 && rank <= 4, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "rank %" PetscInt_FMT, rank);
+  PetscCall(WithFile(writer, ArrayBytes(&array), WriteArray, &array));
+  PetscFunctionReturn(0);
+}
+
+typedef struct {
+  const char *name, *text;
+} Text;
+
+static PetscErrorCode WriteText(const char path[], hid_t file, void *ctx)
+{
+  const Text *t = ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileWriteText(path, file, t->name, t->text));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRecordWriterText(LamRecordWriter writer, const char name[], const char text[])
+{
+  Text t = {name, text};
+
+  PetscFunctionBeginUser;
+  PetscCall(WithFile(writer, strlen(text), WriteText, &t));
+  PetscFunctionReturn(0);
+}

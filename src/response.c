@@ -1,0 +1,96 @@
+/*
+  Responses: their names, their table of members, their error norm.
+*/
+#include <lamella/response.h>
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+const char *const LamStatusNames[] = {LAM_STATUSES(LAM_NAME_ENTRY) NULL};
+const char *const LamSourceNames[] = {LAM_SOURCES(LAM_NAME_ENTRY) NULL};
+
+#define AT(member) offsetof(LamResponse, member)
+#define REAL(name, count, power, help)                                                                                 \
+  {                                                                                                                    \
+#name, LAM_MEMBER_REAL, count, AT(name), power, NULL, help                                                         \
+  }
+#define LOAD(name, count, power, help)                                                                                 \
+  {                                                                                                                    \
+#name, LAM_MEMBER_REAL, count, AT(load.name), power, NULL, help                                                    \
+  }
+#define INT(name, help)                                                                                                \
+  {                                                                                                                    \
+#name, LAM_MEMBER_INT, 1, AT(name), 0, NULL, help                                                                  \
+  }
+
+const LamMember LamResponseMembers[] = {
+    LOAD(F, 9, 0, "deformation gradient"),
+    LOAD(turgor, 1, 1, "lumen pressure p"),
+    LOAD(cohesion, 1, 1, "suction g on separated outer walls"),
+    {"status", LAM_MEMBER_ENUM, 1, AT(status), 0, LamStatusNames, "how the solve ended"},
+    {"source", LAM_MEMBER_ENUM, 1, AT(source), 0, LamSourceNames, "solve or database"},
+    REAL(energy, 1, 1, "potential Psi per reference volume, turgor and cohesion included"),
+    REAL(P, 9, 1, "effective first Piola-Kirchhoff stress dPsi/dF"),
+    REAL(tangent, 81, 1, "effective tangent dP_ij/dF_kl, row ij, column kl"),
+    REAL(P_turgor, 9, 0, "dP/dp"),
+    REAL(energy_turgor2, 1, -1, "d2Psi/dp2"),
+    REAL(P_cohesion, 9, 0, "dP/dg"),
+    REAL(energy_cohesion2, 1, -1, "d2Psi/dg2"),
+    REAL(energy_turgor_cohesion, 1, -1, "d2Psi/dpdg"),
+    REAL(lumen_fraction, 1, 0, "lumen volume over V0, -dPsi/dp"),
+    REAL(opening_fraction, 1, 0, "gap volume over V0, dPsi/dg"),
+    REAL(debonded_fraction, 1, 0, "share of the interface length without contact"),
+    REAL(debonded_by_face, 3, 0, "the same per face family"),
+    REAL(open_fraction, 1, 0, "share of the interface length with a gap above 1e-3 apothems"),
+    REAL(max_gap, 1, 0, "largest gap, in apothems"),
+    REAL(max_traction, 1, 1, "largest normal Cauchy traction averaged over one wall thickness"),
+    REAL(mean_face_traction, 3, 1, "mean normal Cauchy traction per face family"),
+    REAL(lowest_eigenvalue, 1, 1, "softest mode, where it was computed"),
+    INT(floating_cells, "cells that nothing holds"),
+    INT(negative_eigenvalues, "of the consistent tangent"),
+    {"stable", LAM_MEMBER_BOOL, 1, AT(stable), 0, NULL, "whether the state is stable"},
+    INT(branch, "number of branch switches on the way"),
+    INT(newton_iterations, "all Newton iterations of the state"),
+    INT(factorisations, "all factorisations of the state"),
+    INT(unknowns, "unknowns of the solve"),
+    REAL(seconds, 1, 0, "time of the solve, s"),
+    REAL(error_estimate, 1, 0, "estimated relative error of P"),
+    REAL(distance, 1, 0, "distance in strain to the record that answered"),
+    {"reason", LAM_MEMBER_TEXT, sizeof(((LamResponse *)0)->reason), AT(reason), 0, NULL,
+     "why the status is not converged"},
+    {NULL, LAM_MEMBER_REAL, 0, 0, 0, NULL, NULL},
+};
+
+PetscErrorCode LamResponseInit(const LamLoad *load, LamResponse *response)
+{
+  const LamLoad copy = *load; /* the load may be the response's own */
+
+  PetscFunctionBeginUser;
+  memset(response, 0, sizeof(*response));
+  for (const LamMember *m = LamResponseMembers; m->name; m++) {
+    PetscReal *value = (PetscReal *)((char *)response + m->offset);
+
+    if (m->type != LAM_MEMBER_REAL) continue;
+    for (PetscInt i = 0; i < m->count; i++) value[i] = NAN;
+  }
+  response->load = copy;
+  response->status = LAM_NOT_CONVERGED;
+  PetscFunctionReturn(0);
+}
+
+PetscBool LamResponseHasFields(const LamResponse *response)
+{
+  return (PetscBool)(response->status == LAM_CONVERGED || response->status == LAM_UNSTABLE);
+}
+
+/* The floor 0.0227 is 2.5e-3 MPa of the reference wall (C1 + C2 = 0.11 MPa): below it stress counts as zero. */
+PetscReal LamStressError(const PetscReal P[9], const PetscReal P_ref[9])
+{
+  PetscReal difference = 0, reference = 0;
+
+  for (PetscInt i = 0; i < 9; i++) {
+    difference += (P[i] - P_ref[i]) * (P[i] - P_ref[i]);
+    reference += P_ref[i] * P_ref[i];
+  }
+  return sqrt(difference) / (sqrt(reference) + 0.0227);
+}

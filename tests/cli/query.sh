@@ -1,0 +1,59 @@
+#!/usr/bin/env bash
+# lamella query: answers in reach, refusals out of reach, many questions from standard input.
+set -euo pipefail
+lamella=$1
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+cd "$dir"
+
+fail() { echo "FAILED: $*" >&2; exit 1; }
+expect() {
+  local wanted=$1 status=0
+  shift
+  "$@" >out 2>err || status=$?
+  [ "$status" = "$wanted" ] || { cat out err >&2; fail "status $status, wanted $wanted: $*"; }
+}
+
+cat >s.yaml <<'YAML'
+version: 1
+rve:
+  cell: {apothem: 75 um, wall_thickness: 11.25 um}
+  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
+  interface: {law: bonded}
+  turgor: {mode: prescribed, pressure: 0.02 MPa}
+  mesh: {along: 4, through: 1}
+sample:
+  stretch: {min: 0, max: 0.06}
+  turgor: {min: 0.01 MPa, max: 0.03 MPa}
+  count: 40
+YAML
+"$lamella" build s.yaml -d db.h5 --quiet >/dev/null
+
+# in reach
+expect 0 "$lamella" query db.h5 -F "1.03 0.01 0 1.02" -p "0.02 MPa" --radius 0.05 --json --tangent
+[ "$(wc -l <out)" = 1 ] || fail "more than one line"
+grep -q '"source": *"database"' out || fail "no source: $(cat out)"
+grep -q '"tangent": *\[' out || fail "no tangent"
+expect 0 "$lamella" query db.h5 -F "1.03 0.01 0 0 1.02 0 0 0 1" -p "20 kPa" --radius 0.05
+
+# out of reach: said so, not solved
+expect 3 "$lamella" query db.h5 -F "1.5 0 0 1.5" -p "0.02 MPa" --json
+grep -q '"status": *"out_of_reach"' out || fail "status: $(cat out)"
+grep -q '"reason"' out || fail "no reason: $(cat out)"
+expect 3 "$lamella" query db.h5 -F "-1 0 0 1" --json
+grep -q '"status": *"invalid_F"' out || fail "status: $(cat out)"
+
+# many questions
+printf '1.03 0.01 0 1.02\n\n1.02,0,0,1.02 ; 0.025 MPa\n' >lines
+expect 0 "$lamella" query db.h5 -F - -p "0.02 MPa" --radius 0.05 --json <lines
+[ "$(wc -l <out)" = 2 ] || fail "not two answers"
+printf '1.03 0.01 0 1.02\n1.02 zero 0 1.02\n' >lines
+expect 2 "$lamella" query db.h5 -F - -p "0.02 MPa" --radius 0.05 --json <lines
+grep -q 'line 2' err || fail "the line is not named: $(cat err)"
+
+# usage and wrong files
+expect 1 "$lamella" query db.h5
+expect 1 "$lamella" query db.h5 -F "1 0 0"
+expect 1 "$lamella" query db.h5 -F "1 0 0 1" -p 0.02
+expect 2 "$lamella" query s.yaml -F "1 0 0 1"
+expect 4 "$lamella" query missing.h5 -F "1 0 0 1"

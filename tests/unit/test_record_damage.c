@@ -1,0 +1,253 @@
+/* Record files that are damaged, foreign, full or held by another writer: refused with the reason. */
+#include "record_fixture.h"
+#include <hdf5.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include "record_internal.h"
+
+static void AssertUnreadable(PetscErrorCode code, const char part[])
+{
+  LamDatabase db;
+
+  assert_int_equal(LamDatabaseOpen(path, &db), code);
+  if (!strstr(message, part) || !strstr(message, path)) fail_msg("message: %s", message);
+}
+
+/* ---- damage ---- */
+
+static void a_changed_byte_is_found_and_the_record_named(void **state)
+{
+  unsigned char *bytes;
+  hid_t file, dataset, type;
+  size_t size;
+
+  WriteFile(4);
+  file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+  dataset = H5Dopen2(file, "/records", H5P_DEFAULT);
+  type = H5Dget_type(dataset);
+  size = H5Tget_size(type);
+  bytes = malloc(4 * size);
+  H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes);
+  bytes[2 * size + 100] ^= 1;
+  H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes);
+  free(bytes);
+  H5Fclose(file);
+  H5Tclose(type);
+  H5Dclose(dataset);
+  AssertUnreadable(PETSC_ERR_USER_INPUT, "record 2 is damaged");
+}
+
+static void a_missing_file_is_named_with_the_reason(void **state)
+{
+  AssertUnreadable(PETSC_ERR_FILE_OPEN, "No such file or directory");
+}
+
+static void a_file_that_is_not_hdf5_is_refused(void **state)
+{
+  FILE *file = fopen(path, "w");
+
+  fputs("version: 1\n", file);
+  fclose(file);
+  AssertUnreadable(PETSC_ERR_USER_INPUT, "not an HDF5 file");
+}
+
+static void a_foreign_hdf5_file_is_refused(void **state)
+{
+  H5Fclose(H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
+  AssertUnreadable(PETSC_ERR_USER_INPUT, "not written by lamella");
+}
+
+/* Cut anywhere, a file is refused; it never crashes the reader and never passes. */
+static void a_cut_file_is_refused(void **state)
+{
+  struct stat info;
+
+  for (int part = 1; part < 16; part++) {
+    WriteFile(80);
+    stat(path, &info);
+    assert_int_equal(truncate(path, info.st_size * part / 16), 0);
+    AssertUnreadable(PETSC_ERR_USER_INPUT, "");
+  }
+}
+
+static void another_format_version_is_refused(void **state)
+{
+  const int version = 99;
+  hid_t file, attribute;
+
+  WriteFile(1);
+  file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+  attribute = H5Aopen(file, "format_version", H5P_DEFAULT);
+  H5Awrite(attribute, H5T_NATIVE_INT, &version);
+  H5Aclose(attribute);
+  H5Fclose(file);
+  AssertUnreadable(PETSC_ERR_USER_INPUT, "format version 99");
+}
+
+/* Our record type with one more number before the checksum. */
+static hid_t TypeWithAddedMember(void)
+{
+  hid_t ours, type;
+  size_t checksum, size;
+
+  assert_int_equal(LamRecordTypeCreate(PETSC_FALSE, &ours), 0);
+  size = H5Tget_size(ours);
+  checksum = size - sizeof(uint32_t);
+  type = H5Tcreate(H5T_COMPOUND, size + sizeof(double));
+  for (int i = 0; i + 1 < H5Tget_nmembers(ours); i++) {
+    char *name = H5Tget_member_name(ours, (unsigned)i);
+
+    H5Tinsert(type, name, H5Tget_member_offset(ours, (unsigned)i), H5Tget_member_type(ours, (unsigned)i));
+    H5free_memory(name);
+  }
+  H5Tinsert(type, "added", checksum, H5T_IEEE_F64LE);
+  H5Tinsert(type, "checksum", checksum + sizeof(double), H5T_STD_U32LE);
+  return type;
+}
+
+static void members_added_by_later_versions_are_passed_over(void **state)
+{
+  const LamResponse wanted[2] = {Response(0), Response(1)}, *records;
+  const PetscInt64 keys[2] = {0, 1}, committed = 2;
+  const hsize_t count = 2;
+  const hid_t type = TypeWithAddedMember(), space = H5Screate_simple(1, &count, NULL);
+  hid_t file, dataset, attribute;
+  LamDatabase db;
+  void *bytes;
+
+  WriteFile(1);
+  assert_int_equal(LamRecordsPack(2, keys, wanted, type, &bytes), 0);
+  file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+  H5Ldelete(file, "/records", H5P_DEFAULT);
+  dataset = H5Dcreate2(file, "/records", type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes);
+  attribute = H5Acreate2(dataset, "committed", H5T_STD_I64LE, H5Screate(H5S_SCALAR), H5P_DEFAULT, H5P_DEFAULT);
+  H5Awrite(attribute, H5T_NATIVE_INT64, &committed);
+  H5Aclose(attribute);
+  H5Dclose(dataset);
+  H5Fclose(file);
+  PetscFree(bytes);
+  assert_int_equal(LamDatabaseOpen(path, &db), 0);
+  LamDatabaseGetRecords(db, NULL, &records, NULL);
+  for (int i = 0; i < 2; i++) AssertSame(&records[i], &wanted[i]);
+  LamDatabaseClose(&db);
+}
+
+static void a_counter_beyond_the_extent_is_refused(void **state)
+{
+  const long long count = 1000;
+  hid_t file, dataset, attribute;
+
+  WriteFile(1);
+  file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+  dataset = H5Dopen2(file, "/records", H5P_DEFAULT);
+  attribute = H5Aopen(dataset, "committed", H5P_DEFAULT);
+  H5Awrite(attribute, H5T_NATIVE_LLONG, &count);
+  H5Aclose(attribute);
+  H5Dclose(dataset);
+  H5Fclose(file);
+  AssertUnreadable(PETSC_ERR_USER_INPUT, "1000 records");
+}
+
+static void another_microstructure_is_not_appended_to(void **state)
+{
+  LamScene scene = Scene();
+  LamRecordWriter writer;
+
+  WriteFile(1);
+  scene.micro.wall_thickness = 0.2;
+  assert_int_equal(LamRecordWriterOpen(path, "database", LAM_WRITE_APPEND, &scene, &writer), PETSC_ERR_USER_INPUT);
+  assert_non_null(strstr(message, "microstructure"));
+  assert_int_equal(access(lock_path, F_OK), -1);
+}
+
+/* The limit on the file's size stands for a full disk. */
+static void a_full_disk_is_reported_and_spares_the_records(void **state)
+{
+  struct rlimit old, small;
+  LamResponse *r = calloc(2000, sizeof(*r));
+  PetscInt64 *keys = calloc(2000, sizeof(*keys));
+  LamRecordWriter writer;
+
+  WriteFile(3);
+  for (PetscInt i = 0; i < 2000; i++) r[i] = Response(i);
+  writer = Open(LAM_WRITE_APPEND);
+  getrlimit(RLIMIT_FSIZE, &old);
+  small = old;
+  small.rlim_cur = 500000;
+  signal(SIGXFSZ, SIG_IGN);
+  setrlimit(RLIMIT_FSIZE, &small);
+  assert_int_equal(LamRecordWriterCommit(writer, 2000, keys, r), PETSC_ERR_FILE_WRITE);
+  setrlimit(RLIMIT_FSIZE, &old);
+  assert_non_null(strstr(message, "File too large"));
+  LamRecordWriterClose(&writer);
+  assert_int_equal(CountRecords(), 3);
+  free(r);
+  free(keys);
+}
+
+/* ---- lock ---- */
+
+static void a_second_writer_is_told_who_holds_the_lock(void **state)
+{
+  LamScene scene = Scene();
+  LamRecordWriter writer = Open(LAM_WRITE_CREATE), second;
+  char pid[32];
+
+  snprintf(pid, sizeof(pid), "process %d ", (int)getpid());
+  assert_int_equal(LamRecordWriterOpen(path, "database", LAM_WRITE_CREATE, &scene, &second), PETSC_ERR_FILE_OPEN);
+  assert_non_null(strstr(message, pid));
+  LamRecordWriterClose(&writer);
+}
+
+static void the_lock_of_a_dead_process_is_taken_over(void **state)
+{
+  const pid_t child = fork();
+  LamRecordWriter writer;
+
+  if (child == 0) {
+    Open(LAM_WRITE_CREATE);
+    _exit(0);
+  }
+  waitpid(child, NULL, 0);
+  assert_int_equal(access(lock_path, F_OK), 0);
+  writer = Open(LAM_WRITE_CREATE);
+  Commit(writer, 0, 1);
+  LamRecordWriterClose(&writer);
+  assert_int_equal(access(lock_path, F_OK), -1);
+}
+
+static void the_lock_of_another_host_is_respected(void **state)
+{
+  LamScene scene = Scene();
+  LamRecordWriter writer;
+  FILE *file = fopen(lock_path, "w");
+
+  fputs("elsewhere 1 1 2026-01-01T00:00:00Z\n", file);
+  fclose(file);
+  assert_int_equal(LamRecordWriterOpen(path, "database", LAM_WRITE_CREATE, &scene, &writer), PETSC_ERR_FILE_OPEN);
+  assert_non_null(strstr(message, "elsewhere"));
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      TEST(a_changed_byte_is_found_and_the_record_named),
+      TEST(a_missing_file_is_named_with_the_reason),
+      TEST(a_file_that_is_not_hdf5_is_refused),
+      TEST(a_foreign_hdf5_file_is_refused),
+      TEST(a_cut_file_is_refused),
+      TEST(another_format_version_is_refused),
+      TEST(members_added_by_later_versions_are_passed_over),
+      TEST(a_counter_beyond_the_extent_is_refused),
+      TEST(another_microstructure_is_not_appended_to),
+      TEST(a_full_disk_is_reported_and_spares_the_records),
+      TEST(a_second_writer_is_told_who_holds_the_lock),
+      TEST(the_lock_of_a_dead_process_is_taken_over),
+      TEST(the_lock_of_another_host_is_respected),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

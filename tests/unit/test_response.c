@@ -1,0 +1,91 @@
+/* Responses: what is unknown is NaN, the table of members is complete, the error norm is the contract's. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+#include <lamella/response.h>
+#include <math.h>
+#include <string.h>
+
+static const LamLoad shear = {{1, 0.1, 0, 0, 1, 0, 0, 0, 1}, 0.2, 0};
+
+static void a_new_response_knows_nothing_but_its_load(void **state)
+{
+  LamResponse r;
+
+  assert_int_equal(LamResponseInit(&shear, &r), 0);
+  assert_memory_equal(&r.load, &shear, sizeof(shear));
+  assert_int_equal(r.status, LAM_NOT_CONVERGED);
+  assert_true(isnan(r.energy) && isnan(r.P[8]) && isnan(r.tangent[80]) && isnan(r.mean_face_traction[2]));
+  assert_int_equal(r.newton_iterations, 0);
+}
+
+static void a_response_may_be_cleared_with_its_own_load(void **state)
+{
+  LamResponse r = {.load = shear};
+
+  assert_int_equal(LamResponseInit(&r.load, &r), 0);
+  assert_memory_equal(&r.load, &shear, sizeof(shear));
+}
+
+/* Every byte of a response belongs to one member of the table, up to padding. */
+static void the_table_covers_the_whole_response(void **state)
+{
+  size_t covered = 0;
+
+  for (const LamMember *m = LamResponseMembers; m->name; m++) {
+    const size_t size = m->type == LAM_MEMBER_REAL   ? sizeof(PetscReal)
+                        : m->type == LAM_MEMBER_INT  ? sizeof(PetscInt)
+                        : m->type == LAM_MEMBER_TEXT ? 1
+                                                     : sizeof(int);
+
+    assert_true(m->offset + size * (size_t)m->count <= sizeof(LamResponse));
+    covered += size * (size_t)m->count;
+  }
+  assert_in_range(sizeof(LamResponse) - covered, 0, 2 * sizeof(PetscReal));
+}
+
+static void members_have_different_names(void **state)
+{
+  for (const LamMember *a = LamResponseMembers; a->name; a++)
+    for (const LamMember *b = a + 1; b->name; b++) assert_string_not_equal(a->name, b->name);
+}
+
+static void the_stress_error_is_relative_with_a_floor(void **state)
+{
+  const PetscReal zero[9] = {0}, P[9] = {3, 0, 0, 0, 4, 0, 0, 0, 0};
+
+  assert_float_equal(LamStressError(zero, P), 5 / 5.0227, 1e-15);
+  assert_float_equal(LamStressError(P, zero), 5 / 0.0227, 1e-12);
+}
+
+static void only_converged_and_unstable_states_have_fields(void **state)
+{
+  LamResponse r = {0};
+  const LamStatus with[] = {LAM_CONVERGED, LAM_UNSTABLE};
+  int count = 0;
+
+  for (int s = 0; s < LAM_STATUS_COUNT; s++) {
+    r.status = (LamStatus)s;
+    count += LamResponseHasFields(&r);
+  }
+  assert_int_equal(count, 2);
+  for (int i = 0; i < 2; i++) {
+    r.status = with[i];
+    assert_true(LamResponseHasFields(&r));
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_new_response_knows_nothing_but_its_load),
+      cmocka_unit_test(a_response_may_be_cleared_with_its_own_load),
+      cmocka_unit_test(the_table_covers_the_whole_response),
+      cmocka_unit_test(members_have_different_names),
+      cmocka_unit_test(the_stress_error_is_relative_with_a_floor),
+      cmocka_unit_test(only_converged_and_unstable_states_have_fields),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
