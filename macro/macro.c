@@ -1,0 +1,113 @@
+/*
+  Life of the macroscale solver: creation, set-up, destruction.
+*/
+#include "macro_impl.h"
+
+PetscErrorCode LamMacroCreate(MPI_Comm comm, LamMacro *macro)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(macro));
+  (*macro)->comm = comm;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroSetScene(LamMacro macro, const LamScene *scene)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(scene->has_macro, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: macro: missing; a macroscale run needs this block", scene->path);
+  PetscCall(LamMacroBoundaryCheck(&scene->macro));
+  PetscCall(LamMacroBoundaryNames(&scene->macro, &macro->step));
+  macro->scene = scene;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CreatePoints(LamMacro macro)
+{
+  PetscInt n = macro->point_count;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &macro->point_index));
+  for (PetscInt p = 0; p < n; p++) macro->point_index[p] = p;
+  PetscCall(PetscCalloc1(n, &macro->loads));
+  PetscCall(PetscCalloc1(n, &macro->responses));
+  PetscCall(PetscCalloc1(n, &macro->now));
+  PetscCall(PetscCalloc1(n, &macro->accepted));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CreateUnknowns(LamMacro macro)
+{
+  PetscInt local;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMCreateGlobalVector(macro->dm, &macro->u));
+  PetscCall(VecDuplicate(macro->u, &macro->trial));
+  PetscCall(VecDuplicate(macro->u, &macro->residual));
+  PetscCall(VecDuplicate(macro->u, &macro->force));
+  PetscCall(VecDuplicate(macro->u, &macro->force_accepted));
+  PetscCall(VecZeroEntries(macro->u));
+  PetscCall(VecZeroEntries(macro->force_accepted));
+  PetscCall(VecGetLocalSize(macro->u, &local));
+  PetscCall(PetscMalloc1(local, &macro->constraints));
+  PetscCall(DMSetMatType(macro->dm, MATAIJ));
+  PetscCall(DMCreateMatrix(macro->dm, &macro->tangent));
+  PetscCall(MatSetOption(macro->tangent, MAT_KEEP_NONZERO_PATTERN, PETSC_TRUE));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroSetUp(LamMacro macro)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(macro->scene, macro->comm, PETSC_ERR_ORDER, "call LamMacroSetScene() first");
+  PetscCall(LamMacroMeshCreate(macro));
+  PetscCall(CreatePoints(macro));
+  PetscCall(CreateUnknowns(macro));
+  PetscCall(LamMacroNewtonCreate(macro));
+  PetscCall(LamMacroHoldBoundaries(macro)); /* refuses a body that is not held before anything is solved */
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroGetPointCount(LamMacro macro, PetscInt *points)
+{
+  PetscFunctionBeginUser;
+  *points = macro->point_count;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroSetResponder(LamMacro macro, LamResponder *responder)
+{
+  PetscFunctionBeginUser;
+  macro->responder = responder;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroSetMonitor(LamMacro macro, LamMacroMonitor monitor, void *ctx)
+{
+  PetscFunctionBeginUser;
+  macro->monitor = monitor;
+  macro->monitor_ctx = ctx;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroDestroy(LamMacro *macro)
+{
+  PetscFunctionBeginUser;
+  if (!*macro) PetscFunctionReturn(0);
+  PetscCall(SNESDestroy(&(*macro)->snes));
+  PetscCall(MatDestroy(&(*macro)->tangent));
+  PetscCall(VecDestroy(&(*macro)->u));
+  PetscCall(VecDestroy(&(*macro)->trial));
+  PetscCall(VecDestroy(&(*macro)->residual));
+  PetscCall(VecDestroy(&(*macro)->force));
+  PetscCall(VecDestroy(&(*macro)->force_accepted));
+  PetscCall(PetscFree((*macro)->constraints));
+  PetscCall(PetscFree((*macro)->point_index));
+  PetscCall(PetscFree((*macro)->loads));
+  PetscCall(PetscFree((*macro)->responses));
+  PetscCall(PetscFree((*macro)->now));
+  PetscCall(PetscFree((*macro)->accepted));
+  PetscCall(LamMacroMeshDestroy(*macro));
+  PetscCall(PetscFree(*macro));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,301 @@
+/*
+  Equilibrium of the body along its load program.
+
+  Method. Newton's method with the consistent tangent, full steps; load steps with cutback.
+
+  Algorithm.
+  1. Inflation: only rigid motions are held, the turgor acts at once. Without `inflate` the turgor acts while the
+     prescribed sides are held where they are in the reference state; this belongs to step 1.
+  2. The prescribed displacements count from there and grow in `steps` equal steps.
+  3. Where Newton fails, or a material point has no response, the increment is halved, MAX_HALVINGS times at most, and
+     doubled again after each success.
+
+  Converged means: norm of the residual <= RELATIVE_TOLERANCE times the norm of the element forces before they cancel
+  at the nodes (largest in this series of iterations), or <= ABSOLUTE_TOLERANCE (C1 + C2) times the box's first edge,
+  which is rounding error and decides only for a body without any stress.
+
+  Reference: Wriggers, Nonlinear Finite Element Methods, ch. 5.
+*/
+#include <petsctime.h>
+#include "macro_impl.h"
+
+static const PetscReal RELATIVE_TOLERANCE = 1e-9, ABSOLUTE_TOLERANCE = 1e-12;
+enum { MAX_HALVINGS = 8, MAX_ITERATIONS = 15 };
+
+/* Where the program stands: shares of turgor and of the prescribed displacements. */
+typedef struct {
+  PetscReal turgor, load;
+} Stage;
+
+static PetscErrorCode FormResidual(SNES snes, Vec u, Vec residual, void *ctx)
+{
+  LamMacro macro = (LamMacro)ctx;
+  PetscReal scale;
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamMacroEvaluate(macro, u, &ok));
+  if (!ok) {
+    PetscCall(VecZeroEntries(residual));
+    PetscCall(SNESSetFunctionDomainError(snes));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(LamMacroAssembleForce(macro, macro->force, &scale));
+  macro->force_scale = PetscMax(macro->force_scale, scale);
+  PetscCall(VecCopy(macro->force, residual));
+  PetscCall(LamMacroConstrainResidual(macro, u, residual));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode FormTangent(SNES snes, Vec u, Mat J, Mat preconditioner, void *ctx)
+{
+  LamMacro macro = (LamMacro)ctx;
+
+  PetscFunctionBeginUser;
+  /* SNES has just evaluated the residual at u: the stored responses belong to it */
+  PetscCall(LamMacroAssembleTangent(macro, preconditioner));
+  PetscCall(LamMacroConstrainTangent(macro, preconditioner));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, PetscReal ynorm, PetscReal fnorm,
+                                      SNESConvergedReason *reason, void *ctx)
+{
+  LamMacro macro = (LamMacro)ctx;
+
+  PetscFunctionBeginUser;
+  *reason = SNES_CONVERGED_ITERATING;
+  if (PetscIsInfOrNanReal(fnorm))
+    *reason = SNES_DIVERGED_FNORM_NAN;
+  else if (fnorm <= ABSOLUTE_TOLERANCE)
+    *reason = SNES_CONVERGED_FNORM_ABS;
+  else if (fnorm <= RELATIVE_TOLERANCE * macro->force_scale)
+    *reason = SNES_CONVERGED_FNORM_RELATIVE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroNewtonCreate(LamMacro macro)
+{
+  SNESLineSearch search;
+  KSP ksp;
+  PC pc;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESCreate(macro->comm, &macro->snes));
+  PetscCall(SNESSetOptionsPrefix(macro->snes, "macro_"));
+  PetscCall(SNESSetType(macro->snes, SNESNEWTONLS));
+  PetscCall(SNESSetFunction(macro->snes, macro->residual, FormResidual, macro));
+  PetscCall(SNESSetJacobian(macro->snes, macro->tangent, macro->tangent, FormTangent, macro));
+  PetscCall(SNESSetConvergenceTest(macro->snes, TestConvergence, macro, NULL));
+  PetscCall(SNESSetTolerances(macro->snes, 0, 0, 0, MAX_ITERATIONS, PETSC_MAX_INT));
+  PetscCall(SNESSetConvergenceHistory(macro->snes, macro->history, NULL, PETSC_STATIC_ARRAY_LENGTH(macro->history),
+                                      PETSC_TRUE));
+  PetscCall(SNESGetLineSearch(macro->snes, &search));
+  PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHBASIC));
+  PetscCall(SNESGetKSP(macro->snes, &ksp));
+  PetscCall(KSPSetType(ksp, KSPPREONLY));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCSetType(pc, PCLU));
+  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  PetscCall(SNESSetFromOptions(macro->snes));
+  PetscFunctionReturn(0);
+}
+
+/* The state in `trial` and its responses become the last converged ones. */
+static PetscErrorCode Accept(LamMacro macro)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamMacroAddWork(macro));
+  PetscCall(VecCopy(macro->trial, macro->u));
+  PetscCall(VecCopy(macro->force, macro->force_accepted));
+  PetscCall(PetscArraycpy(macro->accepted, macro->now, macro->point_count));
+  if (macro->responder->accept) PetscCall(macro->responder->accept(macro->responder->ctx));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Reject(LamMacro macro)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(macro->now, macro->accepted, macro->point_count));
+  if (macro->responder->reject) PetscCall(macro->responder->reject(macro->responder->ctx));
+  PetscFunctionReturn(0);
+}
+
+/* Residual norms of the last series of iterations, relative to its force scale, for the step's report. */
+static PetscErrorCode KeepHistory(LamMacro macro)
+{
+  LamMacroStep *step = &macro->step;
+  PetscInt n;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESGetConvergenceHistory(macro->snes, NULL, NULL, &n));
+  step->residual_count = PetscMin(n, (PetscInt)PETSC_STATIC_ARRAY_LENGTH(step->residuals));
+  for (PetscInt k = 0; k < step->residual_count; k++)
+    step->residuals[k] = macro->force_scale > 0 ? macro->history[k] / macro->force_scale : macro->history[k];
+  PetscFunctionReturn(0);
+}
+
+/* One Newton solution at `stage`, from the last converged state. Where it fails, `trouble` says why. */
+static PetscErrorCode TryStage(LamMacro macro, Stage stage, PetscBool *converged)
+{
+  SNESConvergedReason reason;
+  PetscInt iterations;
+
+  PetscFunctionBeginUser;
+  macro->turgor = stage.turgor * macro->scene->turgor;
+  macro->force_scale = 0;
+  macro->trouble[0] = '\0';
+  PetscCall(LamMacroSetLoadFactor(macro, stage.load));
+  PetscCall(VecCopy(macro->u, macro->trial));
+  PetscCall(SNESSolve(macro->snes, NULL, macro->trial));
+  PetscCall(SNESGetConvergedReason(macro->snes, &reason));
+  PetscCall(SNESGetIterationNumber(macro->snes, &iterations));
+  macro->step.newton_iterations += iterations;
+  PetscCall(KeepHistory(macro));
+  *converged = reason > 0 ? PETSC_TRUE : PETSC_FALSE;
+  if (reason == SNES_DIVERGED_LINEAR_SOLVE) {
+    PetscCall(PetscStrncpy(macro->trouble, "the tangent of the body is singular", sizeof(macro->trouble)));
+  } else if (reason < 0 && !macro->trouble[0]) {
+    PetscReal last = macro->step.residual_count ? macro->step.residuals[macro->step.residual_count - 1] : 0;
+    PetscCall(PetscSNPrintf(macro->trouble, sizeof(macro->trouble),
+                            "%s after %" PetscInt_FMT " Newton iterations, relative residual %.1e",
+                            SNESConvergedReasons[reason], iterations, (double)last));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Goes from one stage to the next, in smaller increments where that fails. `reached` is how far it came. */
+static PetscErrorCode Advance(LamMacro macro, Stage from, Stage to, Stage *reached, PetscBool *converged)
+{
+  const PetscReal smallest = PetscPowRealInt(0.5, MAX_HALVINGS);
+  PetscReal done = 0, increment = 1;
+
+  PetscFunctionBeginUser;
+  *reached = from;
+  *converged = PETSC_TRUE;
+  while (done < 1) {
+    PetscReal next = PetscMin(1, done + increment);
+    Stage stage = {from.turgor + next * (to.turgor - from.turgor), from.load + next * (to.load - from.load)};
+    PetscCall(TryStage(macro, stage, converged));
+    if (*converged) {
+      PetscCall(Accept(macro));
+      *reached = stage;
+      done = next;
+      increment *= 2;
+    } else {
+      PetscCall(Reject(macro));
+      macro->step.cutbacks++;
+      increment = 0.5 * (next - done);
+      if (increment < smallest) break;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+static void MeanIndicators(LamMacro macro, PetscReal sum[4], PetscReal *max_gap)
+{
+  sum[0] = sum[1] = sum[2] = sum[3] = 0;
+  *max_gap = -PETSC_INFINITY;
+  for (PetscInt p = 0; p < macro->point_count; p++) {
+    const LamMaterialPoint *point = &macro->accepted[p];
+    sum[0] += macro->weight[p];
+    sum[1] += macro->weight[p] * point->debonded_fraction;
+    sum[2] += macro->weight[p] * point->load.turgor;
+    if (point->max_gap > *max_gap) *max_gap = point->max_gap;
+  }
+}
+
+/* Completes the report of a converged step. */
+static PetscErrorCode FinishStep(LamMacro macro, PetscInt number, PetscReal load_factor, PetscLogDouble start)
+{
+  LamMacroStep *step = &macro->step;
+  LamResponder *responder = macro->responder, *before = &macro->counted;
+  PetscReal sum[4];
+  PetscInt64 counts[4] = {responder->queries - before->queries, responder->hits - before->hits,
+                          responder->solves - before->solves, responder->failures - before->failures};
+  PetscLogDouble now;
+
+  PetscFunctionBeginUser;
+  step->step = number;
+  step->load_factor = load_factor;
+  PetscCall(LamMacroReactions(macro, step));
+  MeanIndicators(macro, sum, &step->max_gap);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPIU_SUM, macro->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &step->max_gap, 1, MPIU_REAL, MPIU_MAX, macro->comm));
+  step->debonded_fraction = sum[1] / sum[0];
+  step->turgor_mean = sum[2] / sum[0];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counts, 4, MPIU_INT64, MPI_SUM, macro->comm));
+  step->queries = counts[0];
+  step->hits = counts[1];
+  step->solves = counts[2];
+  step->failures = counts[3];
+  step->solve_seconds = responder->solve_seconds - before->solve_seconds;
+  PetscCall(PetscTime(&now));
+  step->seconds = now - start;
+  PetscFunctionReturn(0);
+}
+
+/* Starts the report of a step; the work adds up over the steps. */
+static PetscErrorCode StartStep(LamMacro macro, PetscLogDouble *start)
+{
+  PetscFunctionBeginUser;
+  macro->step.newton_iterations = macro->step.cutbacks = 0;
+  macro->counted = *macro->responder;
+  PetscCall(PetscTime(start));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Report(LamMacro macro, PetscInt number, PetscReal load_factor, PetscLogDouble start,
+                             PetscBool *stop)
+{
+  PetscFunctionBeginUser;
+  PetscCall(FinishStep(macro, number, load_factor, start));
+  if (macro->monitor) PetscCall(macro->monitor(macro, &macro->step, stop, macro->monitor_ctx));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode DescribeEnd(LamMacro macro, PetscInt number, Stage reached, char message[256])
+{
+  PetscFunctionBeginUser;
+  if (number == 0)
+    PetscCall(PetscSNPrintf(message, 256, "turgor: reached %.4g of 1: %s", (double)reached.turgor, macro->trouble));
+  else
+    PetscCall(PetscSNPrintf(message, 256, "step %" PetscInt_FMT ": reached load factor %.4g: %s", number,
+                            (double)reached.load, macro->trouble));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroSolve(LamMacro macro, LamMacroReason *reason, char message[256])
+{
+  const LamMacroSpec *spec = &macro->scene->macro;
+  Stage stage = {0, 0}, to = {1, 0};
+  PetscBool converged, stop = PETSC_FALSE;
+  PetscLogDouble start;
+
+  PetscFunctionBeginUser;
+  PetscCheck(macro->responder, macro->comm, PETSC_ERR_ORDER, "call LamMacroSetResponder() first");
+  *reason = LAM_MACRO_NOT_CONVERGED;
+  message[0] = '\0';
+  if (spec->inflate)
+    PetscCall(LamMacroHoldRigidMotions(macro));
+  else
+    PetscCall(LamMacroHoldBoundaries(macro));
+  PetscCall(StartStep(macro, &start));
+  PetscCall(Advance(macro, stage, to, &stage, &converged));
+  if (!converged) PetscCall(DescribeEnd(macro, 0, stage, message));
+  if (converged && spec->inflate) {
+    PetscCall(Report(macro, 0, 0, start, &stop));
+    PetscCall(LamMacroHoldBoundaries(macro));
+    PetscCall(StartStep(macro, &start));
+  }
+  for (PetscInt k = 1; k <= spec->steps && converged && !stop; k++) {
+    to.load = (PetscReal)k / spec->steps;
+    PetscCall(Advance(macro, stage, to, &stage, &converged));
+    if (!converged) PetscCall(DescribeEnd(macro, k, stage, message));
+    if (!converged) break;
+    PetscCall(Report(macro, k, to.load, start, &stop));
+    PetscCall(StartStep(macro, &start));
+  }
+  if (converged) *reason = stop && stage.load < 1 ? LAM_MACRO_STOPPED : LAM_MACRO_DONE;
+  PetscFunctionReturn(0);
+}

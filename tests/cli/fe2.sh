@@ -1,0 +1,81 @@
+# slow: the command fe2: steps, exit statuses, warm databases
+set -eu
+lamella=$1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+fail() {
+  echo "$1" >&2
+  exit 1
+}
+
+# scene NAME SHEAR STEPS: a body of 2 x 2 elements, inflated, then sheared
+scene() {
+  cat >"$1" <<YAML
+version: 1
+rve:
+  cell: {apothem: 75 um, wall_thickness: 11.25 um}
+  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
+  interface: {law: bonded}
+  turgor: {mode: prescribed, pressure: 0.02 MPa}
+  mesh: {along: 4, through: 1}
+macro:
+  mesh: {box: [10 mm, 10 mm], elements: [2, 2]}
+  boundary:
+    - {on: bottom, displacement: [0 mm, 0 mm]}
+    - {on: top, displacement: [$2, 0 mm]}
+  inflate: true
+  steps: $3
+YAML
+}
+# values KEY FILE: the numbers of a key, one per line
+values() { sed -n "s/.*\"$1\": *\([-0-9.e+]*\).*/\1/p" "$2"; }
+sum() { awk '{s += $1} END {printf "%d\n", s}'; }
+# shear FILE: horizontal reactions of the top side
+shear() { sed -n 's/.*"top": *\[ *\([-0-9.e+]*\),.*/\1/p' "$1"; }
+
+scene small.yaml "1 mm" 2
+"$lamella" fe2 small.yaml --json -o small.h5 >direct.jsonl
+[ "$(values step direct.jsonl | tr '\n' ' ')" = "0 1 2 " ] || fail "inflation and two steps are not reported as 0 1 2"
+[ "$(values load_factor direct.jsonl | tail -n 1 | cut -c1)" = 1 ] || fail "the last step's load factor is not 1"
+for key in work debonded_fraction max_gap turgor_mean newton_iterations queries hits solves failures seconds peak_memory_mb; do
+  [ "$(grep -c "\"$key\"" direct.jsonl)" = 3 ] || fail "--json lacks $key"
+done
+[ -f small.h5 ] && [ -f small.xdmf ] || fail "-o did not write small.h5 and small.xdmf"
+"$lamella" info small.h5 --json | grep -q '"kind": *"fe2"' || fail "small.h5 is not of kind fe2"
+
+# the cache answers within the scene's accuracy, and a second run solves nothing
+"$lamella" fe2 small.yaml --json -d db.h5 >cold.jsonl
+"$lamella" fe2 small.yaml --json -d db.h5 >warm.jsonl
+[ "$(values solves cold.jsonl | sum)" -gt 0 ] || fail "a cold cache solved nothing"
+[ "$(values solves warm.jsonl | sum)" = 0 ] || fail "a warm cache solved again"
+for run in cold warm; do
+  [ "$(echo "$(shear direct.jsonl | tail -n 1) $(shear $run.jsonl | tail -n 1)" |
+    awk '{d = $1 - $2; print (d * d < 0.02 * 0.02 * $1 * $1)}')" = 1 ] || fail "the $run cache's reaction is off by more than 2 %"
+done
+"$lamella" fe2 small.yaml --json -d db.h5 --response database >database.jsonl || fail "a complete database does not answer"
+
+# a state out of the database's reach: status 3, converged steps kept
+scene far.yaml "3 mm" 3
+status=0
+"$lamella" fe2 far.yaml --json -d db.h5 --response database -o far.h5 >far.jsonl 2>far.err || status=$?
+[ $status = 3 ] || fail "out of reach ended with status $status instead of 3"
+grep -q "element .* point .* out_of_reach" far.err || fail "the message names no material point: $(cat far.err)"
+[ "$(values step far.jsonl | head -n 1)" = 0 ] && [ -f far.h5 ] || fail "the steps before the failure are lost"
+
+# usage and input
+for arguments in "small.yaml --response guess" "small.yaml --response database" "small.yaml -d db.h5 --response direct"; do
+  status=0
+  # shellcheck disable=SC2086
+  "$lamella" fe2 $arguments >/dev/null 2>&1 || status=$?
+  [ $status = 1 ] || fail "fe2 $arguments ended with status $status instead of 1"
+done
+sed 's/wall_thickness: 11.25/wall_thickness: 10/' small.yaml >other.yaml
+status=0
+"$lamella" fe2 other.yaml -d db.h5 >/dev/null 2>other.err || status=$?
+[ $status = 2 ] || fail "a database of another tissue ended with status $status instead of 2"
+sed 's/on: top, displacement: \[1 mm, 0 mm\]/on: left, displacement: [1 mm, 0 mm]/' small.yaml >contradiction.yaml
+status=0
+"$lamella" fe2 contradiction.yaml >/dev/null 2>&1 || status=$?
+[ $status = 2 ] || fail "sides that contradict each other ended with status $status instead of 2"

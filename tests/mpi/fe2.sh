@@ -1,0 +1,42 @@
+# fe2 on two ranks: the same reactions to 1e-8, direct and from a cache
+set -eu
+lamella=$1
+command -v mpirun >/dev/null || exit 77
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+fail() {
+  echo "$1" >&2
+  exit 1
+}
+
+cat >block.yaml <<'YAML'
+version: 1
+rve:
+  cell: {apothem: 75 um, wall_thickness: 11.25 um}
+  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
+  interface: {law: bonded}
+  turgor: {mode: prescribed, pressure: 0.02 MPa}
+  mesh: {along: 4, through: 1}
+macro:
+  mesh: {box: [10 mm, 10 mm], elements: [2, 2]}
+  boundary:
+    - {on: bottom, displacement: [0 mm, 0 mm]}
+    - {on: top, displacement: [1 mm, 0.2 mm]}
+  inflate: true
+  steps: 2
+YAML
+# reactions FILE: all of them, one per line
+reactions() { grep -o '"reaction": *{[^}]*}' "$1" | grep -o '\[[^]]*\]' | tr -d '[],' | tr ' ' '\n' | grep .; }
+
+for response in direct cache; do
+  "$lamella" fe2 block.yaml --json --response $response -o one.h5 >one.jsonl
+  mpirun -n 2 "$lamella" fe2 block.yaml --json --response $response -o two.h5 >two.jsonl
+  [ "$(wc -l <two.jsonl)" = 3 ] || fail "$response: not one object per step on two ranks"
+  reactions one.jsonl >one.txt
+  reactions two.jsonl >two.txt
+  [ -s one.txt ] || fail "$response: no reactions"
+  paste one.txt two.txt | awk '{d = $1 - $2; if (d < 0) d = -d; if (d > worst) worst = d; a = $1 < 0 ? -$1 : $1; if (a > size) size = a}
+    END {exit !(NR > 0 && worst <= 1e-8 * size)}' || fail "$response: reactions depend on the number of ranks"
+done

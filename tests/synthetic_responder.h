@@ -1,0 +1,155 @@
+/*
+  A material with known answers, behind the responder table: compressible neo-Hookean tissue under turgor,
+    Psi = mu/2 (tr C - 3 - 2 ln J) + lambda/2 (ln J)^2 - p J.
+  It can refuse to answer far from the reference state, or far from the last accepted state of the point.
+*/
+#ifndef LAM_SYNTHETIC_RESPONDER_H
+#define LAM_SYNTHETIC_RESPONDER_H
+
+#include <lamella/response.h>
+#include <math.h>
+#include <string.h>
+
+typedef struct {
+  PetscReal mu, lambda;
+  PetscReal largest_strain;                /* |F - 1| beyond which there is no answer */
+  PetscReal largest_step;                  /* |F - F accepted| beyond which there is no answer */
+  PetscInt points;                         /* of which accepted states are kept */
+  PetscReal (*accepted)[9], (*current)[9]; /* [points] */
+  PetscInt accepts, rejects, calls;
+  LamResponder *self;
+} Synthetic;
+
+static inline PetscReal SyntheticDistance(const PetscReal a[9], const PetscReal b[9])
+{
+  PetscReal sum = 0;
+
+  for (int k = 0; k < 9; k++) sum += (a[k] - b[k]) * (a[k] - b[k]);
+  return sqrt(sum);
+}
+
+static inline PetscReal SyntheticInverseTranspose(const PetscReal F[9], PetscReal G[9])
+{
+  PetscReal J;
+
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++) {
+      int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+      G[3 * i + j] = F[3 * i1 + j1] * F[3 * i2 + j2] - F[3 * i1 + j2] * F[3 * i2 + j1];
+    }
+  }
+  J = F[0] * G[0] + F[1] * G[1] + F[2] * G[2];
+  for (int k = 0; k < 9; k++) G[k] /= J;
+  return J;
+}
+
+static inline void SyntheticEvaluate(const Synthetic *material, const LamLoad *load, LamResponse *response)
+{
+  const PetscReal *F = load->F, mu = material->mu, lambda = material->lambda;
+  PetscReal G[9], J = SyntheticInverseTranspose(F, G), trace = 0, pressure = lambda * log(J) - load->turgor * J;
+
+  for (int k = 0; k < 9; k++) trace += F[k] * F[k];
+  response->energy = 0.5 * mu * (trace - 3 - 2 * log(J)) + 0.5 * lambda * log(J) * log(J) - load->turgor * J;
+  for (int k = 0; k < 9; k++) {
+    response->P[k] = mu * (F[k] - G[k]) + pressure * G[k];
+    response->P_turgor[k] = -J * G[k];
+  }
+  for (int ij = 0; ij < 9; ij++) {
+    for (int kl = 0; kl < 9; kl++) {
+      int i = ij / 3, j = ij % 3, k = kl / 3, l = kl % 3;
+      response->tangent[9 * ij + kl] =
+          mu * (ij == kl) + (lambda - load->turgor * J) * G[ij] * G[kl] + (mu - pressure) * G[3 * i + l] * G[3 * k + j];
+    }
+  }
+  response->energy_turgor2 = 0;
+  response->lumen_fraction = J;
+  response->opening_fraction = response->debonded_fraction = response->max_gap = 0;
+  response->status = LAM_CONVERGED;
+  response->source = LAM_SOURCE_SOLVE;
+  response->stable = PETSC_TRUE;
+}
+
+static inline PetscErrorCode SyntheticRespond(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[],
+                                              LamResponse responses[])
+{
+  Synthetic *material = (Synthetic *)ctx;
+  const PetscReal identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+
+  PetscFunctionBeginUser;
+  material->calls++;
+  material->self->queries += n;
+  material->self->solves += n;
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal *from = points[i] < 0 ? identity : material->accepted[points[i]];
+    PetscCall(LamResponseInit(&loads[i], &responses[i]));
+    if (SyntheticDistance(loads[i].F, identity) > material->largest_strain ||
+        SyntheticDistance(loads[i].F, from) > material->largest_step) {
+      responses[i].status = LAM_NOT_CONVERGED;
+      PetscCall(PetscStrncpy(responses[i].reason, "too far", sizeof(responses[i].reason)));
+      material->self->failures++;
+      continue;
+    }
+    SyntheticEvaluate(material, &loads[i], &responses[i]);
+    if (points[i] >= 0) memcpy(material->current[points[i]], loads[i].F, sizeof(identity));
+  }
+  PetscFunctionReturn(0);
+}
+
+static inline PetscErrorCode SyntheticAccept(void *ctx)
+{
+  Synthetic *material = (Synthetic *)ctx;
+
+  PetscFunctionBeginUser;
+  material->accepts++;
+  PetscCall(PetscArraycpy(material->accepted, material->current, material->points));
+  PetscFunctionReturn(0);
+}
+
+static inline PetscErrorCode SyntheticReject(void *ctx)
+{
+  Synthetic *material = (Synthetic *)ctx;
+
+  PetscFunctionBeginUser;
+  material->rejects++;
+  PetscCall(PetscArraycpy(material->current, material->accepted, material->points));
+  PetscFunctionReturn(0);
+}
+
+static inline PetscErrorCode SyntheticDestroy(void **ctx)
+{
+  Synthetic *material = (Synthetic *)*ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(material->accepted));
+  PetscCall(PetscFree(material->current));
+  PetscCall(PetscFree(*ctx));
+  PetscFunctionReturn(0);
+}
+
+/* mu = 1, lambda = 2, no limits; *material may be changed afterwards. */
+static inline PetscErrorCode SyntheticCreate(PetscInt points, LamResponder *responder, Synthetic **material)
+{
+  const PetscReal identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(material));
+  (*material)->mu = 1;
+  (*material)->lambda = 2;
+  (*material)->largest_strain = (*material)->largest_step = PETSC_INFINITY;
+  (*material)->points = points;
+  (*material)->self = responder;
+  PetscCall(PetscMalloc1(points, &(*material)->accepted));
+  PetscCall(PetscMalloc1(points, &(*material)->current));
+  for (PetscInt p = 0; p < points; p++) {
+    memcpy((*material)->accepted[p], identity, sizeof(identity));
+    memcpy((*material)->current[p], identity, sizeof(identity));
+  }
+  *responder = (LamResponder){.ctx = *material,
+                              .respond = SyntheticRespond,
+                              .accept = SyntheticAccept,
+                              .reject = SyntheticReject,
+                              .destroy = SyntheticDestroy};
+  PetscFunctionReturn(0);
+}
+
+#endif

@@ -1,0 +1,329 @@
+/*
+  Claims about the macroscale solver, with a material of known answers. Runs on any number of ranks.
+*/
+#include "macro_fixture.h"
+#include "macro_impl.h"
+
+static PetscInt SideNumber(const LamMacroStep *step, const char name[])
+{
+  for (PetscInt s = 0; s < step->boundary_count; s++) {
+    if (!strcmp(step->boundary[s], name)) return s;
+  }
+  return -1;
+}
+
+/* The tangent of Newton's method is the derivative of its residual, prescribed components included. */
+static void TangentIsDerivative(void **state)
+{
+  const PetscReal h = 1e-6;
+  Fixture fixture;
+  PetscRandom random;
+  Vec u, direction, product, plus, minus;
+  PetscReal error, norm;
+
+  FixtureShear(&fixture, 2, 0.1, 1);
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  LamMacro macro = fixture.macro;
+  macro->turgor = 0.3;
+  assert_ok(VecDuplicate(macro->u, &u));
+  assert_ok(VecDuplicate(macro->u, &direction));
+  assert_ok(VecDuplicate(macro->u, &product));
+  assert_ok(VecDuplicate(macro->u, &plus));
+  assert_ok(VecDuplicate(macro->u, &minus));
+  assert_ok(PetscRandomCreate(PETSC_COMM_WORLD, &random));
+  assert_ok(PetscRandomSetInterval(random, -0.03, 0.03));
+  assert_ok(VecSetRandom(u, random));
+  assert_ok(VecSetRandom(direction, random));
+  assert_ok(SNESComputeFunction(macro->snes, u, plus));
+  assert_ok(SNESComputeJacobian(macro->snes, u, macro->tangent, macro->tangent));
+  assert_ok(MatMult(macro->tangent, direction, product));
+  assert_ok(VecAXPY(u, h, direction));
+  assert_ok(SNESComputeFunction(macro->snes, u, plus));
+  assert_ok(VecAXPY(u, -2 * h, direction));
+  assert_ok(SNESComputeFunction(macro->snes, u, minus));
+  assert_ok(VecAXPY(plus, -1, minus));
+  assert_ok(VecAXPY(product, -1 / (2 * h), plus));
+  assert_ok(VecNorm(product, NORM_2, &error));
+  assert_ok(VecNorm(plus, NORM_2, &norm));
+  assert_true(error < 1e-8 * norm / (2 * h));
+  assert_ok(PetscRandomDestroy(&random));
+  assert_ok(VecDestroy(&u));
+  assert_ok(VecDestroy(&direction));
+  assert_ok(VecDestroy(&product));
+  assert_ok(VecDestroy(&plus));
+  assert_ok(VecDestroy(&minus));
+  FixtureDestroy(&fixture);
+}
+
+/* Each residual is at most a constant times the square of the one before, down to rounding. */
+static void NewtonIsQuadratic(void **state)
+{
+  Fixture fixture;
+
+  FixtureShear(&fixture, 3, 0.3, 1);
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  FixtureSolve(&fixture);
+  assert_int_equal(fixture.reason, LAM_MACRO_DONE);
+  const LamMacroStep *step = FixtureLast(&fixture);
+  assert_true(step->residual_count >= 4);
+  for (PetscInt k = 1; k + 1 < step->residual_count; k++)
+    assert_true(step->residuals[k + 1] < 2 * PetscSqr(step->residuals[k]) + 1e-14);
+  FixtureDestroy(&fixture);
+}
+
+static void InflationIsFreeOfStress(void **state)
+{
+  Fixture fixture;
+  LamMacroFields fields;
+
+  FixtureShear(&fixture, 2, 0.1, 1);
+  fixture.scene.turgor = 0.4;
+  fixture.scene.macro.inflate = PETSC_TRUE;
+  fixture.stop_after = 0;
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  FixtureSolve(&fixture);
+  assert_int_equal(fixture.reason, LAM_MACRO_STOPPED);
+  assert_int_equal(FixtureLast(&fixture)->step, 0);
+  assert_true(PetscAbsReal(FixtureLast(&fixture)->turgor_mean - 0.4) < 1e-14);
+  assert_ok(LamMacroGetFields(fixture.macro, &fields));
+  for (PetscInt e = 0; e < fields.element_count; e++) {
+    for (PetscInt k = 0; k < 8; k++) assert_true(PetscAbsReal(fields.P[9 * e + k]) < 1e-11);
+    assert_true(fields.F[9 * e] > 1.05); /* it has grown */
+  }
+  assert_ok(LamMacroFieldsDestroy(&fields));
+  FixtureDestroy(&fixture);
+}
+
+/* After inflation the sides count from where they are: without displacement nothing happens. */
+static void DisplacementsCountFromInflated(void **state)
+{
+  Fixture fixture;
+
+  FixtureShear(&fixture, 2, 0, 1);
+  fixture.scene.turgor = 0.4;
+  fixture.scene.macro.inflate = PETSC_TRUE;
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  FixtureSolve(&fixture);
+  assert_int_equal(fixture.reason, LAM_MACRO_DONE);
+  assert_int_equal(fixture.step_count, 2);
+  assert_true(PetscAbsReal(FixtureLast(&fixture)->reaction[0][1]) < 1e-9);
+  FixtureDestroy(&fixture);
+}
+
+/* Without `inflate` the turgor presses against the held sides: they pull the body together. */
+static void TurgorPressesOnHeldSides(void **state)
+{
+  Fixture fixture;
+
+  FixtureBiaxial(&fixture, 0, 0, 1);
+  fixture.scene.turgor = 0.4;
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  FixtureSolve(&fixture);
+  const LamMacroStep *step = FixtureLast(&fixture);
+  assert_int_equal(fixture.step_count, 1);
+  assert_int_equal(step->step, 1);
+  assert_true(PetscAbsReal(step->reaction[SideNumber(step, "top")][1] + 0.4) < 1e-12);
+  FixtureDestroy(&fixture);
+}
+
+static void ReactionsBalance(void **state)
+{
+  Fixture fixture;
+
+  FixtureScene(&fixture, 2, 3, 1, 1);
+  FixtureBoundary(&fixture, "bottom", 0, 0);
+  FixtureBoundary(&fixture, "left", 0, NAN);
+  FixtureBoundary(&fixture, "top", NAN, 0.2);
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  FixtureSolve(&fixture);
+  const LamMacroStep *step = FixtureLast(&fixture);
+  for (PetscInt i = 0; i < 2; i++) {
+    PetscReal sum = 0;
+    for (PetscInt s = 0; s < step->boundary_count; s++) sum += step->reaction[s][i];
+    assert_true(PetscAbsReal(sum) < 1e-9);
+  }
+  assert_true(step->reaction[SideNumber(step, "top")][1] > 0.1);
+  FixtureDestroy(&fixture);
+}
+
+/* A step that the material cannot follow is cut, and the end is the same as without that limit. */
+static void CutbackReachesTheSameEnd(void **state)
+{
+  Fixture cut, whole;
+
+  FixtureShear(&cut, 2, 0.4, 1);
+  FixtureSetUp(&cut, PETSC_COMM_WORLD);
+  cut.material->largest_step = 0.25;
+  FixtureSolve(&cut);
+  FixtureShear(&whole, 2, 0.4, 1);
+  FixtureSetUp(&whole, PETSC_COMM_WORLD);
+  FixtureSolve(&whole);
+  assert_int_equal(cut.reason, LAM_MACRO_DONE);
+  assert_true(FixtureLast(&cut)->cutbacks > 0);
+  assert_int_equal(FixtureLast(&whole)->cutbacks, 0);
+  assert_int_equal(cut.material->rejects, FixtureLast(&cut)->cutbacks);
+  assert_true(PetscAbsReal(FixtureLast(&cut)->reaction[1][0] - FixtureLast(&whole)->reaction[1][0]) < 1e-9);
+  FixtureDestroy(&cut);
+  FixtureDestroy(&whole);
+}
+
+/* Where the material has no answer any more, the run ends, keeps its steps and names a point that failed. */
+static void FailureNamesThePoint(void **state)
+{
+  Fixture fixture;
+
+  FixtureBiaxial(&fixture, 0.5, 0, 5);
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  fixture.material->largest_strain = 0.25;
+  FixtureSolve(&fixture);
+  assert_int_equal(fixture.reason, LAM_MACRO_NOT_CONVERGED);
+  assert_int_equal(fixture.step_count, 2);
+  assert_non_null(strstr(fixture.message, "step 3"));
+  assert_non_null(strstr(fixture.message, "element 0, point"));
+  assert_non_null(strstr(fixture.message, "turgor 0 MPa"));
+  assert_non_null(strstr(fixture.message, "not_converged: too far"));
+  FixtureDestroy(&fixture);
+}
+
+/* The last converged state serves the next step's first iteration: the material is asked once per iteration. */
+static void NothingIsAskedTwice(void **state)
+{
+  Fixture fixture;
+  PetscInt iterations = 0;
+
+  FixtureShear(&fixture, 2, 0.2, 2);
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  FixtureSolve(&fixture);
+  for (PetscInt k = 0; k < fixture.step_count; k++) iterations += fixture.steps[k].newton_iterations;
+  assert_int_equal(fixture.material->calls, 1 + iterations);
+  FixtureDestroy(&fixture);
+}
+
+/* Points, and their numbers, are summed over the ranks. */
+static void CountsAreOfAllRanks(void **state)
+{
+  Fixture fixture;
+
+  FixtureShear(&fixture, 2, 0.1, 1);
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  FixtureSolve(&fixture);
+  assert_int_equal(FixtureLast(&fixture)->queries, 36 * fixture.material->calls);
+  FixtureDestroy(&fixture);
+}
+
+static void MonitorStopsTheRun(void **state)
+{
+  Fixture fixture;
+
+  FixtureShear(&fixture, 2, 0.2, 4);
+  fixture.stop_after = 2;
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  FixtureSolve(&fixture);
+  assert_int_equal(fixture.reason, LAM_MACRO_STOPPED);
+  assert_int_equal(fixture.step_count, 2);
+  FixtureDestroy(&fixture);
+}
+
+/* Reactions, work and fields are those of one rank. */
+static void RanksDoNotMatter(void **state)
+{
+  Fixture one, all;
+  LamMacroFields fields_one, fields_all;
+
+  FixtureShear(&one, 4, 0.3, 2);
+  FixtureSetUp(&one, PETSC_COMM_SELF);
+  FixtureSolve(&one);
+  FixtureShear(&all, 4, 0.3, 2);
+  FixtureSetUp(&all, PETSC_COMM_WORLD);
+  FixtureSolve(&all);
+  const LamMacroStep *a = FixtureLast(&one), *b = FixtureLast(&all);
+  assert_true(PetscAbsReal(a->reaction[1][0] - b->reaction[1][0]) < 1e-11);
+  assert_true(PetscAbsReal(a->work - b->work) < 1e-11);
+  assert_ok(LamMacroGetFields(one.macro, &fields_one));
+  assert_ok(LamMacroGetFields(all.macro, &fields_all));
+  for (PetscInt k = 0; k < 2 * fields_all.node_count; k++) {
+    assert_true(fields_one.nodes[k] == fields_all.nodes[k]);
+    assert_true(PetscAbsReal(fields_one.u[k] - fields_all.u[k]) < 1e-11);
+  }
+  for (PetscInt k = 0; k < 9 * fields_all.element_count; k++) {
+    assert_int_equal(fields_one.elements[k], fields_all.elements[k]);
+    assert_true(PetscAbsReal(fields_one.P[k] - fields_all.P[k]) < 1e-11);
+  }
+  assert_ok(LamMacroFieldsDestroy(&fields_one));
+  assert_ok(LamMacroFieldsDestroy(&fields_all));
+  FixtureDestroy(&one);
+  FixtureDestroy(&all);
+}
+
+/* Elements are listed as VTK wants them: corners counter-clockwise, mid-edges, centre. */
+static void ElementsAreInOrder(void **state)
+{
+  Fixture fixture;
+  LamMacroFields fields;
+
+  FixtureScene(&fixture, 3, 2, 0.5, 1);
+  FixtureBoundary(&fixture, "bottom", 0, 0);
+  FixtureSetUp(&fixture, PETSC_COMM_SELF);
+  assert_ok(LamMacroGetFields(fixture.macro, &fields));
+  assert_int_equal(fields.element_count, 6);
+  assert_int_equal(fields.node_count, 35);
+  for (PetscInt e = 0; e < fields.element_count; e++) {
+    const PetscInt *element = &fields.elements[9 * e];
+    const PetscReal *X[9];
+    for (int a = 0; a < 9; a++) X[a] = &fields.nodes[2 * element[a]];
+    for (int i = 0; i < 2; i++) {
+      for (int a = 0; a < 4; a++) assert_true(PetscAbsReal(X[4 + a][i] - 0.5 * (X[a][i] + X[(a + 1) % 4][i])) < 1e-14);
+      assert_true(PetscAbsReal(X[8][i] - 0.5 * (X[0][i] + X[2][i])) < 1e-14);
+    }
+    PetscReal twice_area = (X[1][0] - X[0][0]) * (X[3][1] - X[0][1]) - (X[1][1] - X[0][1]) * (X[3][0] - X[0][0]);
+    assert_true(PetscAbsReal(twice_area - 1. / 12) < 1e-14);
+  }
+  assert_ok(LamMacroFieldsDestroy(&fields));
+  FixtureDestroy(&fixture);
+}
+
+static void ContradictingSidesAreRefused(void **state)
+{
+  Fixture fixture;
+
+  FixtureShear(&fixture, 2, 0.1, 1);
+  FixtureBoundary(&fixture, "left", 0, NAN);
+  assert_ok(PetscPushErrorHandler(PetscIgnoreErrorHandler, NULL));
+  assert_int_equal(LamMacroBoundaryCheck(&fixture.scene.macro), PETSC_ERR_USER_INPUT);
+  assert_ok(PetscPopErrorHandler());
+}
+
+static void LooseBodyIsRefused(void **state)
+{
+  Fixture fixture;
+
+  FixtureScene(&fixture, 2, 2, 1, 1);
+  FixtureBoundary(&fixture, "bottom", NAN, 0);
+  FixtureBoundary(&fixture, "top", NAN, 0.1);
+  assert_ok(LamMacroCreate(PETSC_COMM_WORLD, &fixture.macro));
+  assert_ok(LamMacroSetScene(fixture.macro, &fixture.scene));
+  assert_ok(PetscPushErrorHandler(PetscIgnoreErrorHandler, NULL));
+  assert_int_equal(LamMacroSetUp(fixture.macro), PETSC_ERR_USER_INPUT);
+  assert_ok(PetscPopErrorHandler());
+  assert_ok(LamMacroDestroy(&fixture.macro));
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(TangentIsDerivative),      cmocka_unit_test(NewtonIsQuadratic),
+      cmocka_unit_test(InflationIsFreeOfStress),  cmocka_unit_test(DisplacementsCountFromInflated),
+      cmocka_unit_test(TurgorPressesOnHeldSides), cmocka_unit_test(ReactionsBalance),
+      cmocka_unit_test(CutbackReachesTheSameEnd), cmocka_unit_test(FailureNamesThePoint),
+      cmocka_unit_test(NothingIsAskedTwice),      cmocka_unit_test(CountsAreOfAllRanks),
+      cmocka_unit_test(MonitorStopsTheRun),       cmocka_unit_test(RanksDoNotMatter),
+      cmocka_unit_test(ElementsAreInOrder),       cmocka_unit_test(ContradictingSidesAreRefused),
+      cmocka_unit_test(LooseBodyIsRefused),
+  };
+  int failed;
+
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  cmocka_set_message_output(CM_OUTPUT_STDOUT);
+  failed = cmocka_run_group_tests(tests, NULL, NULL);
+  return PetscFinalize() || failed;
+}

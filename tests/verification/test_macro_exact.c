@@ -1,0 +1,110 @@
+/*
+  The macroscale solver against exact results: homogeneous deformation, and the balance of work and energy.
+*/
+#include "macro_fixture.h"
+
+/* Between rollers F = diag(1 + ux, 1 + uy) everywhere, and P is the material's there. */
+static void HomogeneousDeformationIsExact(void **state)
+{
+  const LamLoad load = {{1.2, 0, 0, 0, 0.9, 0, 0, 0, 1}, 0.1, 0};
+  Fixture fixture;
+  LamMacroFields fields;
+  LamResponse exact;
+
+  FixtureBiaxial(&fixture, 0.2, -0.1, 2);
+  fixture.scene.turgor = load.turgor;
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  FixtureSolve(&fixture);
+  assert_int_equal(fixture.reason, LAM_MACRO_DONE);
+  assert_ok(LamResponseInit(&load, &exact));
+  SyntheticEvaluate(fixture.material, &load, &exact);
+  assert_ok(LamMacroGetFields(fixture.macro, &fields));
+  for (PetscInt k = 0; k < 9 * fields.element_count; k++) {
+    assert_true(PetscAbsReal(fields.F[k] - load.F[k % 9]) < 1e-12);
+    assert_true(PetscAbsReal(fields.P[k] - exact.P[k % 9]) < 1e-12);
+  }
+  assert_ok(LamMacroFieldsDestroy(&fields));
+  FixtureDestroy(&fixture);
+}
+
+/* Reactions are stress times length of the side. */
+static void ReactionsAreStressTimesLength(void **state)
+{
+  const LamLoad load = {{1.2, 0, 0, 0, 0.9, 0, 0, 0, 1}, 0, 0};
+  Fixture fixture;
+  LamResponse exact;
+
+  FixtureBiaxial(&fixture, 0.2, -0.1, 2);
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  FixtureSolve(&fixture);
+  assert_ok(LamResponseInit(&load, &exact));
+  SyntheticEvaluate(fixture.material, &load, &exact);
+  const LamMacroStep *step = FixtureLast(&fixture); /* sides: left, right, bottom, top */
+  assert_true(PetscAbsReal(step->reaction[0][0] + 0.6 * exact.P[0]) < 1e-11);
+  assert_true(PetscAbsReal(step->reaction[1][0] - 0.6 * exact.P[0]) < 1e-11);
+  assert_true(PetscAbsReal(step->reaction[2][1] + exact.P[4]) < 1e-11);
+  assert_true(PetscAbsReal(step->reaction[3][1] - exact.P[4]) < 1e-11);
+  assert_true(step->reaction[3][0] == 0); /* rollers carry nothing sideways */
+  FixtureDestroy(&fixture);
+}
+
+/* Error of the work against the stored energy, after `steps` steps. */
+static PetscReal WorkError(PetscInt steps)
+{
+  const LamLoad load = {{1.3, 0, 0, 0, 1.1, 0, 0, 0, 1}, 0, 0};
+  Fixture fixture;
+  LamResponse exact;
+  PetscReal work;
+
+  FixtureBiaxial(&fixture, 0.3, 0.1, steps);
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  FixtureSolve(&fixture);
+  assert_ok(LamResponseInit(&load, &exact));
+  SyntheticEvaluate(fixture.material, &load, &exact);
+  work = FixtureLast(&fixture)->work;
+  FixtureDestroy(&fixture);
+  return PetscAbsReal(work - 0.6 * exact.energy);
+}
+
+/* The work of the sides becomes stored energy; the trapezoidal rule's error falls with the square of the step. */
+static void WorkBecomesEnergy(void **state)
+{
+  PetscReal coarse = WorkError(2), fine = WorkError(8);
+
+  assert_true(fine < 2e-4);
+  assert_true(PetscAbsReal(coarse / fine - 16) < 1);
+}
+
+/* A clamped block in shear: quadratic elements, the reaction converges as the mesh is refined. */
+static void ShearConverges(void **state)
+{
+  PetscReal force[3];
+
+  for (int k = 0; k < 3; k++) {
+    Fixture fixture;
+    FixtureShear(&fixture, 2 << k, 0.2, 1);
+    FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+    FixtureSolve(&fixture);
+    force[k] = FixtureLast(&fixture)->reaction[1][0];
+    FixtureDestroy(&fixture);
+  }
+  assert_true(force[0] > force[1] && force[1] > force[2]); /* stiffer on coarse meshes */
+  assert_true((force[1] - force[2]) < 0.6 * (force[0] - force[1]));
+  assert_true((force[1] - force[2]) < 0.01 * force[2]);
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(HomogeneousDeformationIsExact),
+      cmocka_unit_test(ReactionsAreStressTimesLength),
+      cmocka_unit_test(WorkBecomesEnergy),
+      cmocka_unit_test(ShearConverges),
+  };
+  int failed;
+
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  cmocka_set_message_output(CM_OUTPUT_STDOUT);
+  failed = cmocka_run_group_tests(tests, NULL, NULL);
+  return PetscFinalize() || failed;
+}
