@@ -1,0 +1,88 @@
+/*
+  The program `lamella`: what its commands share. The only part that knows the RVE solver, the database and the
+  macroscale solver at once.
+*/
+#ifndef LAM_APP_H
+#define LAM_APP_H
+
+#include <lamella/lamella.h>
+#include <jansson.h>
+
+/* Exit statuses (docs/commands.md). */
+enum { LAM_EXIT_OK = 0, LAM_EXIT_USAGE = 1, LAM_EXIT_INPUT = 2, LAM_EXIT_UNSOLVED = 3, LAM_EXIT_IO = 4 };
+
+/* The command line of one command: argv[0] is the command's name; what followed `--` is kept for PETSc. */
+typedef struct {
+  int argc;
+  char **argv;
+  int petsc_argc; /* petsc_argv[0] is the program's name */
+  char **petsc_argv;
+} LamArgs;
+
+/* A command: returns an error of the library, or sets the exit status. */
+typedef PetscErrorCode (*LamCommandFunction)(LamArgs *args, int *exit_status);
+PetscErrorCode LamCommandCheck(LamArgs *args, int *exit_status);
+PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status);
+PetscErrorCode LamCommandBuild(LamArgs *args, int *exit_status);
+PetscErrorCode LamCommandQuery(LamArgs *args, int *exit_status);
+PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status);
+PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status);
+PetscErrorCode LamCommandInfo(LamArgs *args, int *exit_status);
+
+/* Starts MPI and PETSc for a command that solves; after parsing the command line. main() finalises. */
+PetscErrorCode LamAppInitialize(LamArgs *args);
+PetscBool LamAppIsRoot(void); /* rank 0, or no MPI */
+
+/* ---- options.c: GNU-style options from a table ---- */
+typedef enum { LAM_OPTION_FLAG, LAM_OPTION_TEXT } LamOptionType;
+typedef struct {
+  char short_name; /* 0: none */
+  const char *long_name;
+  LamOptionType type;
+  const char *argument; /* shown in the help: "OUT.h5" */
+  const char *help;
+  void *value; /* PetscBool * or const char ** */
+} LamOption;
+/*
+  Parses options (table ends with long_name NULL) and the positional arguments, of which there must be exactly
+  `positional_count`. `usage` is the line after "Usage: lamella ", `summary` what the command does. *done is set where
+  --help was answered or the usage was wrong (*exit_status says which): the command then returns at once.
+*/
+PetscErrorCode LamOptionsParse(LamArgs *args, const char usage[], const char summary[], const LamOption options[],
+                               int positional_count, const char *positional[], PetscBool *done, int *exit_status);
+
+/* ---- output.c ---- */
+/* The contract's JSON object of a solved state; physical units. state < 0: no "state" member. The caller owns it. */
+PetscErrorCode LamResponseToJSON(const LamResponse *response, const LamScales *scales, PetscInt state,
+                                 PetscBool tangent, json_t **object);
+json_t *LamJSONReal(PetscReal value);                       /* null where not finite */
+json_t *LamJSONReals(PetscInt n, const PetscReal values[], PetscReal scale);
+PetscErrorCode LamPrintJSON(json_t *object);                /* one line on stdout, rank 0; takes ownership */
+PetscErrorCode LamPrintResponseHeader(void);                /* table of states for a person, stdout */
+PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales *scales, PetscInt state);
+
+/* ---- progress.c: a bar on stderr where it is a terminal, else nothing ---- */
+typedef struct {
+  PetscBool on;
+  PetscInt64 total;
+  PetscLogDouble start;
+} LamProgress;
+PetscErrorCode LamProgressStart(LamProgress *progress, PetscInt64 total, PetscBool quiet);
+PetscErrorCode LamProgressUpdate(LamProgress *progress, PetscInt64 done, PetscInt64 failed);
+PetscErrorCode LamProgressEnd(LamProgress *progress);
+
+/* ---- signals.c: SIGINT, SIGTERM, SIGUSR1 ask the command to commit and stop ---- */
+PetscErrorCode LamSignalsInstall(void);
+PetscBool LamStopRequested(void);
+int LamStopExitStatus(void); /* 130 after SIGINT, 143 after SIGTERM and SIGUSR1, else 0 */
+
+/* ---- plan.c: what a scene requires ---- */
+typedef struct {
+  LamMicrostructure micro; /* with along and through chosen */
+  PetscInt unknowns;       /* of one RVE */
+  PetscInt states;         /* RVE solves predicted for `load` or `sample`; for fe2 with direct response */
+} LamPlan;
+/* Chooses what the scene leaves open; changes nothing the scene says. */
+PetscErrorCode LamPlanMake(const LamScene *scene, LamPlan *plan);
+
+#endif

@@ -1,0 +1,299 @@
+/*
+  Axes with round ticks, curves with markers, legends.
+*/
+#include "plot.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const LamColour Ink = {0.15, 0.15, 0.15}, Faint = {0.87, 0.87, 0.87};
+static const double TickLength = 2.5, Gap = 3.0;
+
+LamTicks LamTicksChoose(PetscReal low, PetscReal high, PetscInt wanted, PetscBool whole)
+{
+  LamTicks ticks = {low, high - low, 1, 0, 0};
+  const PetscReal raw = (high - low) / PetscMax(wanted, 1);
+  const PetscReal largest = PetscMax(PetscAbsReal(low), PetscAbsReal(high));
+  PetscReal power, share;
+
+  if (!(raw > 0) || PetscIsInfOrNanReal(raw)) return ticks;
+  power = PetscPowReal(10, PetscFloorReal(PetscLog10Real(raw)));
+  share = raw / power;
+  ticks.step = power * (share < 1.5 ? 1 : share < 3 ? 2 : share < 7 ? 5 : 10);
+  if (whole) ticks.step = PetscMax(ticks.step, 1);
+  /* A tick on the limit itself must not fall victim to rounding. */
+  ticks.first = ticks.step * PetscCeilReal(low / ticks.step - 1e-9);
+  ticks.count = 1 + (PetscInt)PetscFloorReal((high - ticks.first) / ticks.step + 1e-9);
+  if (!whole && (largest < 2e-3 || largest >= 1e4))
+    ticks.exponent = 3 * (PetscInt)PetscFloorReal(PetscLog10Real(largest) / 3 + 1e-9);
+  ticks.decimals =
+      PetscMax(0, -(PetscInt)PetscFloorReal(PetscLog10Real(ticks.step * PetscPowReal(10, -ticks.exponent)) + 1e-9));
+  return ticks;
+}
+
+void LamTicksFormat(const LamTicks *ticks, PetscInt i, char text[32])
+{
+  PetscReal value = (ticks->first + i * ticks->step) * PetscPowReal(10, -ticks->exponent);
+
+  if (PetscAbsReal(value) < 1e-6 * ticks->step * PetscPowReal(10, -ticks->exponent)) value = 0;
+  snprintf(text, 32, "%s%.*f", value < 0 ? "\u2212" : "", (int)ticks->decimals, (double)PetscAbsReal(value));
+}
+
+void LamAxisPad(LamAxis *axis)
+{
+  PetscReal range;
+
+  if (!(axis->low <= axis->high)) axis->low = 0, axis->high = 1; /* no finite point */
+  range = axis->high - axis->low;
+  if (range <= 1e-9 * PetscMax(PetscAbsReal(axis->low), PetscAbsReal(axis->high)) || range < 1e-300) {
+    const PetscReal half = axis->whole || axis->low == 0 ? 1 : 0.5 * PetscAbsReal(axis->low);
+
+    axis->low -= half;
+    axis->high += half;
+    return;
+  }
+  axis->low -= 0.06 * range;
+  axis->high += 0.06 * range;
+}
+
+void LamAxisLabel(const LamAxis *axis, size_t size, char text[])
+{
+  char power[32] = "";
+
+  if (axis->ticks.exponent)
+    snprintf(power, sizeof power, "10^{%s%d}", axis->ticks.exponent < 0 ? "\u2212" : "",
+             abs((int)axis->ticks.exponent));
+  if (axis->unit)
+    snprintf(text, size, "%s (%s%s%s)", axis->label, power, *power ? " " : "", axis->unit);
+  else if (*power)
+    snprintf(text, size, "%s (%s)", axis->label, power);
+  else
+    snprintf(text, size, "%s", axis->label);
+}
+
+double LamTicksWidth(LamCanvas canvas, const LamTicks *ticks)
+{
+  double widest = 0;
+  char text[32];
+
+  for (PetscInt i = 0; i < ticks->count; i++) {
+    LamTicksFormat(ticks, i, text);
+    widest = PetscMax(widest, LamCanvasTextWidth(canvas, LAM_TICK_SIZE, text));
+  }
+  return widest;
+}
+
+void LamAxesLayout(LamCanvas canvas, LamRect outer, LamAxes *axes)
+{
+  const double below = TickLength + Gap + LAM_TICK_SIZE + Gap + LAM_TEXT_SIZE;
+  double left, right;
+  PetscInt wanted;
+
+  axes->frame.y = outer.y + 0.5 * LAM_TICK_SIZE;
+  axes->frame.height = outer.height - 0.5 * LAM_TICK_SIZE - below;
+  axes->y.ticks =
+      LamTicksChoose(axes->y.low, axes->y.high, (PetscInt)PetscMax(2, axes->frame.height / 26), axes->y.whole);
+  left = LAM_TEXT_SIZE + Gap + 1 + LamTicksWidth(canvas, &axes->y.ticks) + Gap + TickLength;
+  wanted = (PetscInt)PetscMax(2, (outer.width - left) / 28);
+  do { /* labels need half a label of air between them */
+    axes->x.ticks = LamTicksChoose(axes->x.low, axes->x.high, wanted, axes->x.whole);
+    right = 0.5 * LamTicksWidth(canvas, &axes->x.ticks);
+  } while (--wanted > 1 && 3.0 * right * axes->x.ticks.count > outer.width - left - right);
+  axes->frame.x = outer.x + left;
+  axes->frame.width = outer.width - left - right;
+}
+
+double LamAxesX(const LamAxes *axes, PetscReal x)
+{
+  return axes->frame.x + axes->frame.width * (x - axes->x.low) / (axes->x.high - axes->x.low);
+}
+
+double LamAxesY(const LamAxes *axes, PetscReal y)
+{
+  return axes->frame.y + axes->frame.height * (1 - (y - axes->y.low) / (axes->y.high - axes->y.low));
+}
+
+static void Line(cairo_t *cr, double x0, double y0, double x1, double y1)
+{
+  cairo_move_to(cr, x0, y0);
+  cairo_line_to(cr, x1, y1);
+}
+
+/* Ticks and numbers of the x axis (horizontal) or the y axis, and light lines across the frame. */
+static void DrawTicks(LamCanvas canvas, const LamAxes *axes, PetscBool horizontal)
+{
+  cairo_t *cr = LamCanvasCairo(canvas);
+  const LamRect f = axes->frame;
+  const double bottom = f.y + f.height;
+  const LamTicks *ticks = horizontal ? &axes->x.ticks : &axes->y.ticks;
+
+  for (PetscInt i = 0; i < ticks->count; i++) {
+    const PetscReal value = ticks->first + i * ticks->step;
+    const double at = horizontal ? LamAxesX(axes, value) : LamAxesY(axes, value);
+    char text[32];
+
+    LamCanvasSetColour(canvas, Faint);
+    cairo_set_line_width(cr, PetscAbsReal(value) < 1e-9 * ticks->step ? 1.0 : 0.4); /* zero stands out */
+    if (horizontal)
+      Line(cr, at, f.y, at, bottom);
+    else
+      Line(cr, f.x, at, f.x + f.width, at);
+    cairo_stroke(cr);
+    LamCanvasSetColour(canvas, Ink);
+    cairo_set_line_width(cr, 0.6);
+    if (horizontal)
+      Line(cr, at, bottom, at, bottom + TickLength);
+    else
+      Line(cr, f.x - TickLength, at, f.x, at);
+    cairo_stroke(cr);
+    LamTicksFormat(ticks, i, text);
+    if (horizontal)
+      LamCanvasText(canvas, at, bottom + TickLength + Gap + 0.4 * LAM_TICK_SIZE, 0.5, 0, LAM_TICK_SIZE, text);
+    else
+      LamCanvasText(canvas, f.x - TickLength - Gap, at, 1, 0, LAM_TICK_SIZE, text);
+  }
+}
+
+void LamAxesDraw(LamCanvas canvas, const LamAxes *axes)
+{
+  cairo_t *cr = LamCanvasCairo(canvas);
+  const LamRect f = axes->frame;
+  char label[128];
+
+  DrawTicks(canvas, axes, PETSC_TRUE);
+  DrawTicks(canvas, axes, PETSC_FALSE);
+  LamCanvasSetColour(canvas, Ink);
+  cairo_set_line_width(cr, 0.6);
+  cairo_rectangle(cr, f.x, f.y, f.width, f.height);
+  cairo_stroke(cr);
+  LamAxisLabel(&axes->x, sizeof label, label);
+  LamCanvasText(canvas, f.x + 0.5 * f.width,
+                f.y + f.height + TickLength + Gap + LAM_TICK_SIZE + Gap + 0.4 * LAM_TEXT_SIZE, 0.5, 0, LAM_TEXT_SIZE,
+                label);
+  LamAxisLabel(&axes->y, sizeof label, label);
+  LamCanvasText(canvas, f.x - TickLength - Gap - LamTicksWidth(canvas, &axes->y.ticks) - Gap - 1 - 0.5 * LAM_TEXT_SIZE,
+                f.y + 0.5 * f.height, 0.5, M_PI_2, LAM_TEXT_SIZE, label);
+}
+
+PetscErrorCode LamSeriesCreate(PetscInt n, LamSeries *series)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMemzero(series, sizeof *series));
+  series->n = n;
+  PetscCall(PetscCalloc2(n, &series->x, n, &series->y));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSeriesDestroy(LamSeries *series)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree2(series->x, series->y));
+  PetscFunctionReturn(0);
+}
+
+static PetscBool Finite(const LamSeries *series, PetscInt i)
+{
+  return (PetscBool)(!PetscIsInfOrNanReal(series->x[i]) && !PetscIsInfOrNanReal(series->y[i]));
+}
+
+void LamSeriesExtend(const LamSeries *series, LamAxes *axes)
+{
+  for (PetscInt i = 0; i < series->n; i++) {
+    if (!Finite(series, i)) continue;
+    axes->x.low = PetscMin(axes->x.low, series->x[i]);
+    axes->x.high = PetscMax(axes->x.high, series->x[i]);
+    axes->y.low = PetscMin(axes->y.low, series->y[i]);
+    axes->y.high = PetscMax(axes->y.high, series->y[i]);
+  }
+}
+
+static void SetDash(cairo_t *cr, PetscBool dashed)
+{
+  const double dash[] = {3.2, 1.8};
+
+  cairo_set_dash(cr, dash, dashed ? 2 : 0, 0);
+}
+
+void LamSeriesDraw(LamCanvas canvas, const LamAxes *axes, const LamSeries *series)
+{
+  cairo_t *cr = LamCanvasCairo(canvas);
+  const LamStyle *style = &series->style;
+  const PetscInt stride = style->line && series->n > 40 ? (series->n + 19) / 20 : 1;
+  const double size = series->n > 300 ? 2.4 : 3.8;
+  PetscBool drawing = PETSC_FALSE;
+
+  LamCanvasSetColour(canvas, style->colour);
+  if (style->line) {
+    cairo_set_line_width(cr, 1.0);
+    SetDash(cr, style->dashed);
+    for (PetscInt i = 0; i < series->n; i++) {
+      if (!Finite(series, i))
+        drawing = PETSC_FALSE;
+      else if (drawing)
+        cairo_line_to(cr, LamAxesX(axes, series->x[i]), LamAxesY(axes, series->y[i]));
+      else {
+        cairo_move_to(cr, LamAxesX(axes, series->x[i]), LamAxesY(axes, series->y[i]));
+        drawing = PETSC_TRUE;
+      }
+    }
+    cairo_stroke(cr);
+    SetDash(cr, PETSC_FALSE);
+  }
+  for (PetscInt i = 0; i < series->n; i++) {
+    if (!Finite(series, i) || (i % stride && i != series->n - 1)) continue;
+    LamCanvasMarker(canvas, LamAxesX(axes, series->x[i]), LamAxesY(axes, series->y[i]), size, style->marker,
+                    style->hollow);
+  }
+}
+
+double LamLegend(LamCanvas canvas, LamRect outer, PetscInt n, const LamSeries series[], PetscBool draw)
+{
+  cairo_t *cr = LamCanvasCairo(canvas);
+  const double row = 1.5 * LAM_TICK_SIZE, space = 7;
+  double x = outer.x, y = outer.y;
+
+  for (PetscInt i = 0; i < n; i++) {
+    const LamStyle *style = &series[i].style;
+    const double sample = style->line ? 14 : 6;
+    const double width = sample + Gap + LamCanvasTextWidth(canvas, LAM_TICK_SIZE, series[i].label);
+
+    if (!series[i].label[0]) continue;
+    if (x > outer.x && x + width > outer.x + outer.width) {
+      x = outer.x;
+      y += row;
+    }
+    if (draw) {
+      const double middle = y + 0.5 * row;
+
+      LamCanvasSetColour(canvas, style->colour);
+      cairo_set_line_width(cr, 1.0);
+      SetDash(cr, style->dashed);
+      if (style->line) Line(cr, x, middle, x + sample, middle);
+      cairo_stroke(cr);
+      SetDash(cr, PETSC_FALSE);
+      if (style->marker != LAM_MARKER_COUNT)
+        LamCanvasMarker(canvas, x + 0.5 * sample, middle, 3.8, style->marker, style->hollow);
+      LamCanvasSetColour(canvas, Ink);
+      LamCanvasText(canvas, x + sample + Gap, middle, 0, 0, LAM_TICK_SIZE, series[i].label);
+    }
+    x += width + space;
+  }
+  return x == outer.x && y == outer.y ? 0 : y + row - outer.y;
+}
+
+void LamChart(LamCanvas canvas, LamRect outer, LamAxes *axes, PetscInt n, const LamSeries series[])
+{
+  double legend;
+
+  axes->x.low = axes->y.low = PETSC_INFINITY;
+  axes->x.high = axes->y.high = -PETSC_INFINITY;
+  for (PetscInt i = 0; i < n; i++) LamSeriesExtend(&series[i], axes);
+  LamAxisPad(&axes->x);
+  LamAxisPad(&axes->y);
+  LamAxesLayout(canvas, outer, axes); /* the legend is as wide as the frame */
+  legend = LamLegend(canvas, axes->frame, n, series, PETSC_FALSE) + Gap;
+  LamAxesLayout(canvas, (LamRect){outer.x, outer.y + legend, outer.width, outer.height - legend}, axes);
+  LamLegend(canvas, (LamRect){axes->frame.x, outer.y, axes->frame.width, legend}, n, series, PETSC_TRUE);
+  LamAxesDraw(canvas, axes);
+  for (PetscInt i = 0; i < n; i++) LamSeriesDraw(canvas, axes, &series[i]);
+}

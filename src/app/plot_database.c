@@ -1,0 +1,196 @@
+/*
+  Picture of a response database: where in strain its records lie, and what they answered.
+
+  Coordinates: with principal logarithmic strains e1 >= e2 of the plane, m = (e1 + e2)/2 = half ln J and
+  r = (e1 - e2)/2, the size of the isochoric strain.
+*/
+#include "plot.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const LamColour Ink = {0.12, 0.12, 0.16}, Failure = {0.80, 0.15, 0.05};
+
+typedef enum { COLOUR_STRESS, COLOUR_TURGOR } ColourBy;
+
+typedef struct {
+  PetscInt n, failed, outside; /* records, of them without an answer, of them without a finite strain */
+  PetscReal (*strain)[2];      /* e1 >= e2; owned */
+  PetscReal *value;            /* NaN: no answer; owned */
+  LamColourRange range;
+} DatabasePicture;
+
+/* Principal logarithmic strains of the plane: half the logarithms of the eigenvalues of the plane part of C = F^T F. */
+static void PrincipalStrains(const PetscReal F[9], PetscReal strain[2])
+{
+  PetscReal C[3] = {0, 0, 0}, mean, radius;
+
+  for (int k = 0; k < 3; k++) {
+    C[0] += F[3 * k] * F[3 * k];
+    C[1] += F[3 * k] * F[3 * k + 1];
+    C[2] += F[3 * k + 1] * F[3 * k + 1];
+  }
+  mean = 0.5 * (C[0] + C[2]);
+  radius = hypot(0.5 * (C[0] - C[2]), C[1]);
+  strain[0] = 0.5 * PetscLogReal(mean + radius);
+  strain[1] = mean > radius ? 0.5 * PetscLogReal(mean - radius) : NAN;
+}
+
+static PetscErrorCode FindColour(const LamPlotRequest *request, ColourBy *by)
+{
+  PetscFunctionBeginUser;
+  *by = COLOUR_STRESS;
+  if (!request->field || !strcmp(request->field, "stress")) PetscFunctionReturn(0);
+  PetscCheck(!strcmp(request->field, "turgor"), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "--field %s: a database has stress and turgor", request->field);
+  *by = COLOUR_TURGOR;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode LoadDatabase(const LamPlotRequest *request, ColourBy by, DatabasePicture *p)
+{
+  LamDatabase database;
+  LamMicrostructure micro;
+  LamScales scales;
+  const LamResponse *records;
+  const PetscInt64 *keys;
+  const char *hash;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMemzero(p, sizeof *p));
+  PetscCall(LamDatabaseOpen(request->input, &database));
+  PetscCall(LamDatabaseGetRecords(database, &p->n, &records, &keys));
+  PetscCall(LamDatabaseGetMicrostructure(database, &micro, &scales, &hash));
+  PetscCheck(p->n > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no records to draw", request->input);
+  PetscCall(PetscMalloc1(p->n, &p->strain));
+  PetscCall(PetscMalloc1(p->n, &p->value));
+  for (PetscInt i = 0; i < p->n; i++) {
+    PetscReal square = 0;
+
+    PrincipalStrains(records[i].load.F, p->strain[i]);
+    for (int k = 0; k < 9; k++)
+      if (!PetscIsInfOrNanReal(records[i].P[k])) square += PetscSqr(records[i].P[k]);
+    p->value[i] = (by == COLOUR_STRESS ? PetscSqrtReal(square) : records[i].load.turgor) * scales.stress * 1e-6;
+    if (!LamResponseHasFields(&records[i])) {
+      p->value[i] = NAN;
+      p->failed++;
+    }
+    if (PetscIsInfOrNanReal(p->strain[i][0]) || PetscIsInfOrNanReal(p->strain[i][1])) p->outside++;
+  }
+  PetscCall(LamColourRangeFind(p->n, p->value, &p->range));
+  PetscCall(LamDatabaseClose(&database));
+  PetscFunctionReturn(0);
+}
+
+typedef void (*Projection)(const PetscReal strain[2], PetscReal point[2]);
+static void ToVolumeAndShape(const PetscReal strain[2], PetscReal point[2])
+{
+  point[0] = 0.5 * (strain[0] + strain[1]);
+  point[1] = 0.5 * (strain[0] - strain[1]);
+}
+static void ToPrincipal(const PetscReal strain[2], PetscReal point[2])
+{
+  point[0] = strain[0];
+  point[1] = strain[1];
+}
+
+/* In the order of the records, failures last, so that none is hidden. */
+static void DrawMarkers(LamCanvas canvas, const LamAxes *axes, const DatabasePicture *p, Projection project)
+{
+  cairo_t *cr = LamCanvasCairo(canvas);
+  const double size = p->n > 3000 ? 1.6 : p->n > 300 ? 2.6 : 4;
+  PetscReal point[2];
+
+  for (int failures = 0; failures < 2; failures++) {
+    for (PetscInt i = 0; i < p->n; i++) {
+      const PetscBool failed = PetscIsNanReal(p->value[i]);
+
+      project(p->strain[i], point);
+      if ((int)failed != failures || PetscIsInfOrNanReal(point[0]) || PetscIsInfOrNanReal(point[1])) continue;
+      if (failed) {
+        LamCanvasSetColour(canvas, Failure);
+        LamCanvasMarker(canvas, LamAxesX(axes, point[0]), LamAxesY(axes, point[1]), size, LAM_MARKER_CROSS,
+                        PETSC_FALSE);
+        continue;
+      }
+      LamCanvasSetColour(canvas, LamColourMap(LamColourShare(&p->range, p->value[i])));
+      cairo_new_path(cr);
+      cairo_arc(cr, LamAxesX(axes, point[0]), LamAxesY(axes, point[1]), 0.5 * size, 0, 2 * M_PI);
+      cairo_fill(cr);
+    }
+  }
+}
+
+static PetscErrorCode DrawScatter(LamCanvas canvas, LamRect outer, const DatabasePicture *p, LamAxes *axes,
+                                  Projection project)
+{
+  const PetscBool many = (PetscBool)(p->n > 1500);
+  PetscReal point[2];
+
+  PetscFunctionBeginUser;
+  axes->x.low = axes->y.low = PETSC_INFINITY;
+  axes->x.high = axes->y.high = -PETSC_INFINITY;
+  for (PetscInt i = 0; i < p->n; i++) {
+    LamSeries one = {.n = 1, .x = &point[0], .y = &point[1]};
+
+    project(p->strain[i], point);
+    LamSeriesExtend(&one, axes);
+  }
+  LamAxisPad(&axes->x);
+  LamAxisPad(&axes->y);
+  LamAxesLayout(canvas, outer, axes);
+  LamAxesDraw(canvas, axes);
+  if (many) PetscCall(LamCanvasBeginImage(canvas, axes->frame));
+  DrawMarkers(canvas, axes, p, project);
+  if (many) LamCanvasEndImage(canvas);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Title(const DatabasePicture *p, size_t size, char title[])
+{
+  char item[96];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(title, size, "%" PetscInt_FMT " record%s", p->n, p->n == 1 ? "" : "s"));
+  if (p->failed) {
+    PetscCall(PetscSNPrintf(item, sizeof item, ",  %" PetscInt_FMT " without an answer (crosses)", p->failed));
+    PetscCall(PetscStrlcat(title, item, size));
+  }
+  if (p->outside) {
+    PetscCall(PetscSNPrintf(item, sizeof item, ",  %" PetscInt_FMT " without a strain (not drawn)", p->outside));
+    PetscCall(PetscStrlcat(title, item, size));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamPlotDatabase(const LamPlotRequest *request)
+{
+  LamAxes shape = {.x = {.label = "mean strain $m$ = ½ ln $J$"}, .y = {.label = "isochoric strain $r$"}};
+  LamAxes principal = {.x = {.label = "larger principal log. strain $e$_{1}"},
+                       .y = {.label = "smaller principal log. strain $e$_{2}"}};
+  DatabasePicture picture;
+  LamCanvas canvas;
+  LamRect rect;
+  ColourBy by;
+  char title[256];
+  double width;
+
+  PetscFunctionBeginUser;
+  PetscCheck(request->state < 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "--state: a database is drawn as a whole");
+  PetscCall(FindColour(request, &by));
+  PetscCall(LoadDatabase(request, by, &picture));
+  PetscCall(LamCanvasCreate(request->output, LAM_PLOT_WIDTH, LAM_PLOT_HEIGHT, &canvas));
+  PetscCall(Title(&picture, sizeof title, title));
+  LamCanvasSetColour(canvas, Ink);
+  LamCanvasText(canvas, 9, 12, 0, 0, LAM_TEXT_SIZE + 0.75, title);
+  width = 0.5 * (LAM_PLOT_WIDTH - 18 - 10 - LamColourBarWidth(canvas, &picture.range));
+  rect = (LamRect){9, 21, width, LAM_PLOT_HEIGHT - 27};
+  PetscCall(DrawScatter(canvas, rect, &picture, &shape, ToVolumeAndShape));
+  rect.x += width + 10;
+  PetscCall(DrawScatter(canvas, rect, &picture, &principal, ToPrincipal));
+  LamColourBar(canvas, principal.frame, &picture.range, by == COLOUR_STRESS ? "‖$P$‖" : "turgor $p$", "MPa");
+  PetscCall(LamCanvasFinish(&canvas));
+  PetscCall(PetscFree(picture.strain));
+  PetscCall(PetscFree(picture.value));
+  PetscFunctionReturn(0);
+}

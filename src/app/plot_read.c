@@ -1,0 +1,68 @@
+/*
+  Arrays that a picture cannot do without, read and checked.
+*/
+#include "plot.h"
+
+static PetscErrorCode CheckShape(const char path[], const char name[], PetscInt rank, const PetscInt dims[4],
+                                 PetscInt rows, PetscInt columns)
+{
+  PetscInt size = 1;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 1; i < rank; i++) size *= dims[i];
+  PetscCheck(rank > 0 && dims[0] > 0 && size == columns && (rows < 0 || dims[0] == rows), PETSC_COMM_SELF,
+             PETSC_ERR_USER_INPUT,
+             "%s: %s is damaged: %" PetscInt_FMT " rows of %" PetscInt_FMT " numbers do not fit the rest of the file",
+             path, name, rank > 0 ? dims[0] : 0, size);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamPlotReadReals(const char path[], const char name[], PetscInt rows, PetscInt columns,
+                                PetscReal **values)
+{
+  PetscBool found;
+  PetscInt rank, dims[4];
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileReadReals(path, name, &found, &rank, dims, values));
+  PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no %s to draw", path, name);
+  PetscCall(CheckShape(path, name, rank, dims, rows, columns));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamPlotReadPoints(const char path[], const char name[], PetscInt rows, PetscInt *count,
+                                 PetscReal **points)
+{
+  PetscBool found;
+  PetscInt rank, dims[4], columns;
+  PetscReal *values;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileReadReals(path, name, &found, &rank, dims, &values));
+  PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no %s to draw", path, name);
+  columns = rank == 2 && dims[1] == 3 ? 3 : 2;
+  PetscCall(CheckShape(path, name, rank, dims, rows, columns));
+  PetscCall(PetscMalloc1(2 * dims[0], points));
+  for (PetscInt i = 0; i < dims[0]; i++)
+    for (int k = 0; k < 2; k++) (*points)[2 * i + k] = values[columns * i + k];
+  *count = dims[0];
+  PetscCall(PetscFree(values));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamPlotReadElements(const char path[], const char name[], PetscInt node_count, PetscInt *count,
+                                   PetscInt **elements)
+{
+  PetscBool found;
+  PetscInt rank, dims[4];
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileReadInts(path, name, &found, &rank, dims, elements));
+  PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no %s to draw", path, name);
+  PetscCall(CheckShape(path, name, rank, dims, -1, 9));
+  for (PetscInt i = 0; i < 9 * dims[0]; i++)
+    PetscCheck((*elements)[i] >= 0 && (*elements)[i] < node_count, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "%s: %s is damaged: there is no node %" PetscInt_FMT, path, name, (*elements)[i]);
+  *count = dims[0];
+  PetscFunctionReturn(0);
+}

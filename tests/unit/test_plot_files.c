@@ -1,0 +1,303 @@
+/* Pictures of whole files: each kind is drawn in each format, and what cannot be drawn is refused with the reason. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <setjmp.h>
+#include <cmocka.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+#include "plot.h"
+
+#define RVE_FILE "test_plot_rve.h5"
+#define FE2_FILE "test_plot_fe2.h5"
+#define DATABASE_FILE "test_plot_database.h5"
+
+static char Message[1024]; /* of the last error */
+
+static PetscErrorCode keep_message(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
+                                   PetscErrorType type, const char *message, void *ctx)
+{
+  if (type == PETSC_ERROR_INITIAL) snprintf(Message, sizeof Message, "%s", message);
+  return code;
+}
+
+#define OK(call) assert_int_equal((call), 0)
+
+static LamScene Scene;
+
+static void fill_scene(void)
+{
+  static char text[] = "version: 1\n";
+
+  Scene.text = text;
+  snprintf(Scene.path, sizeof Scene.path, "test.yaml");
+  Scene.scales = (LamScales){75e-6, 0.11e6, 0.01};
+  Scene.micro = (LamMicrostructure){.wall_thickness = 0.5, .cells = {1, 1}, .along = 1, .through = 1};
+  Scene.micro.wall = (LamWall){LAM_WALL_FIBRE_MOONEY_RIVLIN, LAM_FIBRES_BOTH, 10. / 11, 1. / 11, 100. / 11, 1000};
+  Scene.accuracy = 0.01;
+}
+
+/* One hexagonal ring of wall thickness 0.5: nodes on three hexagons, twelve each, corners first. */
+static void make_ring(PetscReal nodes[36][2], PetscInt elements[6][9])
+{
+  for (int layer = 0; layer < 3; layer++) {
+    for (int i = 0; i < 12; i++) {
+      const double radius = (0.5 + 0.25 * layer) * (i % 2 ? 1 : 2 / sqrt(3)), angle = M_PI / 6 * (i - 1);
+
+      nodes[12 * layer + i][0] = radius * cos(angle);
+      nodes[12 * layer + i][1] = radius * sin(angle);
+    }
+  }
+  for (int e = 0; e < 6; e++) {
+    const PetscInt a = 2 * e, m = a + 1, b = (a + 2) % 12;
+    const PetscInt list[9] = {a, 24 + a, 24 + b, b, 12 + a, 24 + m, 12 + b, m, 12 + m};
+
+    memcpy(elements[e], list, sizeof list);
+  }
+}
+
+/* States 1 and 2 of simple shear; state 3 has no answer. */
+static void write_states(LamRecordWriter writer, PetscReal nodes[36][2])
+{
+  const PetscInt points[2] = {36, 2}, values[1] = {36};
+  PetscReal x[36][2], field[36];
+  char name[64];
+
+  for (PetscInt64 k = 1; k <= 3; k++) {
+    const LamLoad load = {{1, 0.1 * k, 0, 0, 1, 0, 0, 0, 1}, 0.2, 0};
+    LamResponse response;
+
+    OK(LamResponseInit(&load, &response));
+    for (int i = 0; i < 9; i++) response.P[i] = 0.01 * k * i;
+    response.status = k < 3 ? LAM_CONVERGED : LAM_NO_EQUILIBRIUM;
+    if (k == 3) snprintf(response.reason, sizeof response.reason, "limit load");
+    OK(LamRecordWriterCommit(writer, 1, &k, &response));
+    if (k == 3) return;
+    for (int i = 0; i < 36; i++) {
+      x[i][0] = nodes[i][0] + load.F[1] * nodes[i][1];
+      x[i][1] = nodes[i][1];
+      field[i] = 1 + 0.1 * k * nodes[i][0];
+    }
+    snprintf(name, sizeof name, "/fields/%d/x", (int)k);
+    OK(LamRecordWriterReals(writer, name, 2, points, &x[0][0], "apothem"));
+    snprintf(name, sizeof name, "/fields/%d/wall_stress", (int)k);
+    OK(LamRecordWriterReals(writer, name, 1, values, field, "MPa"));
+    snprintf(name, sizeof name, "/fields/%d/fibre_stretch", (int)k);
+    OK(LamRecordWriterReals(writer, name, 1, values, field, "1"));
+  }
+}
+
+static void write_rve(void)
+{
+  const PetscReal period[2][2] = {{2, 0}, {1, sqrt(3)}};
+  const PetscInt points[2] = {36, 2}, quads[2] = {6, 9}, cells[1] = {6}, two[2] = {2, 2}, cell_of[6] = {0};
+  PetscReal nodes[36][2];
+  PetscInt elements[6][9];
+  LamRecordWriter writer;
+
+  make_ring(nodes, elements);
+  OK(LamRecordWriterOpen(RVE_FILE, "rve", LAM_WRITE_CREATE, &Scene, &writer));
+  OK(LamRecordWriterReals(writer, "/mesh/nodes", 2, points, &nodes[0][0], "apothem"));
+  OK(LamRecordWriterInts(writer, "/mesh/elements", 2, quads, &elements[0][0]));
+  OK(LamRecordWriterInts(writer, "/mesh/cell_of", 1, cells, cell_of));
+  OK(LamRecordWriterReals(writer, "/mesh/period", 2, two, &period[0][0], "apothem"));
+  write_states(writer, nodes);
+  OK(LamRecordWriterClose(&writer));
+}
+
+/* One element of 10 mm, sheared in two steps. */
+static void write_fe2(void)
+{
+  static const PetscReal nodes[9][2] = {{0, 0}, {10, 0}, {10, 10}, {0, 10}, {5, 0}, {10, 5}, {5, 10}, {0, 5}, {5, 5}};
+  const PetscInt elements[9] = {0, 1, 2, 3, 4, 5, 6, 7, 8}, points[2] = {9, 2}, one[2] = {1, 9}, four[2] = {1, 4};
+  const PetscInt steps[3] = {0, 1, 2}, count[1] = {3}, curve[3] = {3, 2, 2};
+  const PetscReal tensor[9] = {0.1, 0.2, 0, 0.2, 0.3, 0, 0, 0, 0.1}, indicator[4] = {0.7, 0, 0, 0.02},
+                  load[3] = {0, 0.5, 1};
+  const PetscReal reaction[3][2][2] = {{{0}}, {{-1, 0}, {1, 0}}, {{-2, 0.1}, {2, -0.1}}};
+  LamRecordWriter writer;
+  char name[64];
+
+  OK(LamRecordWriterOpen(FE2_FILE, "fe2", LAM_WRITE_CREATE, &Scene, &writer));
+  OK(LamRecordWriterReals(writer, "/macro/nodes", 2, points, &nodes[0][0], "mm"));
+  OK(LamRecordWriterInts(writer, "/macro/elements", 2, one, elements));
+  OK(LamRecordWriterText(writer, "/macro/boundaries", "bottom\ntop\n"));
+  for (int k = 0; k < 3; k++) {
+    PetscReal u[9][2];
+
+    for (int i = 0; i < 9; i++) {
+      u[i][0] = 0.1 * k * nodes[i][1];
+      u[i][1] = 0;
+    }
+    snprintf(name, sizeof name, "/macro/step/%d/u", k);
+    OK(LamRecordWriterReals(writer, name, 2, points, &u[0][0], "mm"));
+    snprintf(name, sizeof name, "/macro/step/%d/cauchy", k);
+    OK(LamRecordWriterReals(writer, name, 2, one, tensor, "MPa"));
+    snprintf(name, sizeof name, "/macro/step/%d/indicator", k);
+    OK(LamRecordWriterReals(writer, name, 2, four, indicator, "1"));
+  }
+  OK(LamRecordWriterReals(writer, "/macro/curve/load_factor", 1, count, load, "1"));
+  OK(LamRecordWriterReals(writer, "/macro/curve/reaction", 3, curve, &reaction[0][0][0], "N/mm"));
+  OK(LamRecordWriterInts(writer, "/macro/steps", 1, count, steps));
+  OK(LamRecordWriterClose(&writer));
+}
+
+static void write_database(void)
+{
+  LamRecordWriter writer;
+
+  OK(LamRecordWriterOpen(DATABASE_FILE, "database", LAM_WRITE_CREATE, &Scene, &writer));
+  for (PetscInt64 k = 0; k < 4; k++) {
+    const LamLoad load = {{1 + 0.05 * k, 0.1, 0, 0, 1, 0, 0, 0, 1}, 0, 0};
+    LamResponse response;
+
+    OK(LamResponseInit(&load, &response));
+    for (int i = 0; i < 9; i++) response.P[i] = 0.1 * k;
+    response.status = k ? LAM_CONVERGED : LAM_NOT_CONVERGED;
+    OK(LamRecordWriterCommit(writer, 1, &k, &response));
+  }
+  OK(LamRecordWriterClose(&writer));
+}
+
+static int write_files(void **state)
+{
+  PetscErrorHandlingInitialized = PETSC_TRUE; /* before PetscInitialize PETSc calls no handler else */
+  PetscPushErrorHandler(keep_message, NULL);
+  fill_scene();
+  write_rve();
+  write_fe2();
+  write_database();
+  return 0;
+}
+
+static int remove_files(void **state)
+{
+  remove(RVE_FILE);
+  remove(FE2_FILE);
+  remove(DATABASE_FILE);
+  PetscPopErrorHandler();
+  return 0;
+}
+
+/* Draws with `plot` into `output`, and checks how the file starts. */
+static void draws(PetscErrorCode (*plot)(const LamPlotRequest *), const char input[], const char output[],
+                  const char start[])
+{
+  const LamPlotRequest request = {input, output, -1, NULL};
+  char bytes[16] = "";
+  FILE *file;
+
+  OK(plot(&request));
+  file = fopen(output, "rb");
+  assert_non_null(file);
+  assert_true(fread(bytes, 1, sizeof bytes - 1, file) > strlen(start));
+  fclose(file);
+  remove(output);
+  assert_memory_equal(bytes, start, strlen(start));
+}
+
+static void rve_states_are_drawn_as_png(void **state)
+{
+  draws(LamPlotRVE, RVE_FILE, "test_plot_rve.png", "\x89PNG");
+}
+static void rve_states_are_drawn_as_svg(void **state)
+{
+  draws(LamPlotRVE, RVE_FILE, "test_plot_rve.svg", "<?xml");
+}
+static void rve_states_are_drawn_as_pdf(void **state)
+{
+  draws(LamPlotRVE, RVE_FILE, "test_plot_rve.PDF", "%PDF");
+}
+static void fe2_runs_are_drawn(void **state)
+{
+  draws(LamPlotFE2, FE2_FILE, "test_plot_fe2.pdf", "%PDF");
+}
+static void databases_are_drawn(void **state)
+{
+  draws(LamPlotDatabase, DATABASE_FILE, "test_plot_db.pdf", "%PDF");
+}
+
+/* Expects that `plot` refuses the request with `code` and a message that contains `words`, and writes nothing. */
+static void refuses(PetscErrorCode (*plot)(const LamPlotRequest *), const LamPlotRequest *request, PetscErrorCode code,
+                    const char words[])
+{
+  assert_int_equal(plot(request), code);
+  assert_non_null(strstr(Message, words));
+  assert_int_not_equal(access(request->output, F_OK), 0);
+}
+
+static void a_state_that_is_not_there_is_refused(void **state)
+{
+  const LamPlotRequest request = {RVE_FILE, "test_plot_none.pdf", 7, NULL};
+
+  refuses(LamPlotRVE, &request, PETSC_ERR_USER_INPUT, "states 1 to 3");
+}
+
+static void a_state_without_an_answer_is_refused_with_its_reason(void **state)
+{
+  const LamPlotRequest request = {RVE_FILE, "test_plot_none.pdf", 3, NULL};
+
+  refuses(LamPlotRVE, &request, PETSC_ERR_USER_INPUT, "limit load");
+}
+
+static void an_unknown_field_is_refused_with_the_known_ones(void **state)
+{
+  const LamPlotRequest request = {FE2_FILE, "test_plot_none.pdf", -1, "colour"};
+
+  refuses(LamPlotFE2, &request, PETSC_ERR_USER_INPUT, "von_mises, ");
+}
+
+static void a_step_that_is_not_there_is_refused(void **state)
+{
+  const LamPlotRequest request = {FE2_FILE, "test_plot_none.pdf", 9, NULL};
+
+  refuses(LamPlotFE2, &request, PETSC_ERR_USER_INPUT, "steps 0 to 2");
+}
+
+static void a_field_that_the_file_lacks_is_refused(void **state)
+{
+  const LamPlotRequest request = {FE2_FILE, "test_plot_none.pdf", -1, "P_12"};
+
+  refuses(LamPlotFE2, &request, PETSC_ERR_USER_INPUT, "/macro/step/2/P");
+}
+
+static void a_state_of_a_database_is_refused(void **state)
+{
+  const LamPlotRequest request = {DATABASE_FILE, "test_plot_none.pdf", 1, NULL};
+
+  refuses(LamPlotDatabase, &request, PETSC_ERR_USER_INPUT, "--state");
+}
+
+static void an_output_that_cannot_be_written_is_an_error_of_output(void **state)
+{
+  const LamPlotRequest request = {DATABASE_FILE, "no-such-folder/a.pdf", -1, NULL};
+
+  refuses(LamPlotDatabase, &request, PETSC_ERR_FILE_WRITE, "no-such-folder/a.pdf");
+}
+
+static void only_three_formats_are_accepted(void **state)
+{
+  assert_int_equal(LamCanvasCheckPath("a.gif"), PETSC_ERR_USER_INPUT);
+  assert_non_null(strstr(Message, ".png, .svg or .pdf"));
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(rve_states_are_drawn_as_png),
+      cmocka_unit_test(rve_states_are_drawn_as_svg),
+      cmocka_unit_test(rve_states_are_drawn_as_pdf),
+      cmocka_unit_test(fe2_runs_are_drawn),
+      cmocka_unit_test(databases_are_drawn),
+      cmocka_unit_test(a_state_that_is_not_there_is_refused),
+      cmocka_unit_test(a_state_without_an_answer_is_refused_with_its_reason),
+      cmocka_unit_test(an_unknown_field_is_refused_with_the_known_ones),
+      cmocka_unit_test(a_step_that_is_not_there_is_refused),
+      cmocka_unit_test(a_field_that_the_file_lacks_is_refused),
+      cmocka_unit_test(a_state_of_a_database_is_refused),
+      cmocka_unit_test(an_output_that_cannot_be_written_is_an_error_of_output),
+      cmocka_unit_test(only_three_formats_are_accepted),
+  };
+  return cmocka_run_group_tests(tests, write_files, remove_files);
+}
