@@ -4,7 +4,8 @@
   Area under one quadratic edge with nodes 0 (start), 1 (middle), 2 (end): 1/2 sum_{a<b} D_ab x_a x x_b, and the
   area inside a closed loop is the sum over its edges. Positions x enter quadratically, so the Hessian is constant.
 */
-static const PetscReal edge_area[3][3] = {{0.0, 4.0 / 3.0, -1.0 / 3.0}, {-4.0 / 3.0, 0.0, 4.0 / 3.0}, {1.0 / 3.0, -4.0 / 3.0, 0.0}};
+static const PetscReal edge_area[3][3] = {
+    {0.0, 4.0 / 3.0, -1.0 / 3.0}, {-4.0 / 3.0, 0.0, 4.0 / 3.0}, {1.0 / 3.0, -4.0 / 3.0, 0.0}};
 /* The inner edge of an element at the lumen, counter-clockwise around the lumen. */
 static const PetscInt inner_edge[3] = {0, 7, 3};
 
@@ -16,8 +17,7 @@ PetscErrorCode LamGeometryCreate(LamRVE rve)
   PetscCall(PetscMalloc1(mesh->element_count, &rve->geometry));
   PetscCall(PetscCalloc1(mesh->element_count, &rve->stress));
   for (PetscInt e = 0; e < mesh->element_count; ++e) {
-    const PetscReal angle =
-        rve->micro.orientation + (PetscReal)LamMeshFaceOfElement(mesh, e) * 60.0 * PETSC_PI / 180.0;
+    const PetscReal angle = rve->micro.orientation + (PetscReal)LamMeshFaceOfElement(mesh, e) * 60.0 * PETSC_PI / 180.0;
     const PetscReal along[2] = {-PetscSinReal(angle), PetscCosReal(angle)};
     PetscReal X[LAM_ELEMENT_NODES][2];
 
@@ -28,7 +28,8 @@ PetscErrorCode LamGeometryCreate(LamRVE rve)
   PetscFunctionReturn(0);
 }
 
-void LamGatherElement(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt e, PetscReal x[LAM_ELEMENT_NODES][2])
+void LamGatherElement(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt e,
+                      PetscReal x[LAM_ELEMENT_NODES][2])
 {
   const LamMesh *mesh = &rve->mesh;
   const PetscInt *nodes = &mesh->elements[LAM_ELEMENT_NODES * e];
@@ -94,7 +95,8 @@ PetscReal LamLumenArea(LamRVE rve, const PetscReal y[], PetscReal factor, PetscR
   return area;
 }
 
-PetscErrorCode LamAssembleEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy, PetscBool *valid)
+PetscErrorCode LamAssembleEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy,
+                                 PetscBool *valid)
 {
   PetscFunctionBeginUser;
   *energy = -load->turgor * load->F[8] * LamLumenArea(rve, y, 0.0, NULL);
@@ -103,7 +105,8 @@ PetscErrorCode LamAssembleEnergy(LamRVE rve, const LamLoad *load, const PetscRea
     PetscReal x[LAM_ELEMENT_NODES][2], element;
 
     LamGatherElement(rve, load->F, y, e, x);
-    LamElementEnergy(&rve->geometry[e], rve->law, &rve->micro.wall, (const PetscReal(*)[2])x, load->F[8], &element, valid);
+    LamElementEnergy(&rve->geometry[e], rve->law, &rve->micro.wall, (const PetscReal(*)[2])x, load->F[8], &element,
+                     valid);
     if (!*valid) break;
     *energy += element;
   }
@@ -123,8 +126,8 @@ static void Scatter(LamRVE rve, PetscInt e, const LamElementResult *element, Pet
       if (position[pair] >= 0) values[position[pair]] += element->K[i][j];
 }
 
-PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy, PetscReal residual[],
-                           PetscBool *valid)
+PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy,
+                           PetscReal residual[], PetscBool *valid)
 {
   const PetscReal pressure = load->turgor * load->F[8];
 
@@ -163,6 +166,17 @@ void LamUpdateStresses(LamRVE rve, const LamLoad *load, const PetscReal y[], con
     LamElementUpdateStress(&rve->geometry[e], (const PetscReal(*)[2])x, (const PetscReal(*)[2])dx, load->F[8], alpha,
                            &rve->stress[e]);
   }
+}
+
+PetscBool LamPositionsAreValid(LamRVE rve, const LamLoad *load, const PetscReal y[])
+{
+  for (PetscInt e = 0; e < rve->mesh.element_count; ++e) {
+    PetscReal x[LAM_ELEMENT_NODES][2];
+
+    LamGatherElement(rve, load->F, y, e, x);
+    if (!LamElementIsValid(&rve->geometry[e], (const PetscReal(*)[2])x, load->F[8])) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
 }
 
 PetscBool LamSetConsistentStresses(LamRVE rve, const LamLoad *load, const PetscReal y[])

@@ -148,6 +148,13 @@ static inline PetscReal FibreStretch(const LamElementGeometry *geometry, const P
   return Fm[0] * Fm[0] + Fm[1] * Fm[1];
 }
 
+PetscBool LamElementIsValid(const LamElementGeometry *geometry, const PetscReal x[][2], PetscReal F33)
+{
+  PetscReal F[LAM_GAUSS][4], theta[LAM_GAUSS];
+
+  return Kinematics(geometry, x, F33, F, theta);
+}
+
 void LamElementEnergy(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
                       const PetscReal x[][2], PetscReal F33, PetscReal *energy, PetscBool *valid)
 {
@@ -282,9 +289,9 @@ void LamElementEvaluate(const LamElementGeometry *geometry, const LamWallLaw *la
                         PetscBool *valid)
 {
   PetscReal F[LAM_GAUSS][4], theta[LAM_GAUSS];
-  PetscReal T[3][2 * LAM_GAUSS][LAM_PADDED_NODES];                /* A dN for the component pairs 11, 12, 22 */
-  PetscReal K[3][9][LAM_PADDED_NODES] = {{{0}}};                  /* blocks 11, 12, 22 */
-  PetscReal D[2][LAM_PRESSURES][LAM_PADDED_NODES] = {{{0}}};      /* dc/dx */
+  PetscReal T[3][2 * LAM_GAUSS][LAM_PADDED_NODES];           /* A dN for the component pairs 11, 12, 22 */
+  PetscReal K[3][9][LAM_PADDED_NODES] = {{{0}}};             /* blocks 11, 12, 22 */
+  PetscReal D[2][LAM_PRESSURES][LAM_PADDED_NODES] = {{{0}}}; /* dc/dx */
   PetscReal f[2][LAM_PADDED_NODES] = {{0}};
 
   *valid = Kinematics(geometry, x, F33, F, theta);
@@ -343,8 +350,7 @@ void LamElementUpdateStress(const LamElementGeometry *geometry, const PetscReal 
     for (PetscInt k = 0; k < LAM_PRESSURES; ++k) dc[k] += geometry->weight[g] * geometry->psi[g][k] * dJ;
     (void)FibreStretch(geometry, F, Fm);
     (void)FibreStretch(geometry, dF, dFm);
-    stress->s[g] +=
-        alpha * (stress->sx[g] + stress->dds[g] * 2.0 * (Fm[0] * dFm[0] + Fm[1] * dFm[1]) - stress->s[g]);
+    stress->s[g] += alpha * (stress->sx[g] + stress->dds[g] * 2.0 * (Fm[0] * dFm[0] + Fm[1] * dFm[1]) - stress->s[g]);
   }
   for (PetscInt k = 0; k < LAM_PRESSURES; ++k) {
     PetscReal q = stress->px[k];
@@ -402,8 +408,7 @@ void LamElementStretch33(const LamElementGeometry *geometry, const LamWallLaw *l
     for (PetscInt a = 0; a < 9; ++a)
       for (PetscInt i = 0; i < 2; ++i)
         for (PetscInt J = 0; J < 2; ++J)
-          fx[2 * a + i] +=
-              w * (k.A[2 * i + J][4] + (p + F33 * dp) * cof[2 * i + J]) * geometry->dN[2 * g + J][a];
+          fx[2 * a + i] += w * (k.A[2 * i + J][4] + (p + F33 * dp) * cof[2 * i + J]) * geometry->dN[2 * g + J][a];
   }
 }
 

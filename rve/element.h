@@ -46,6 +46,9 @@ typedef struct {
   PetscReal K[LAM_ELEMENT_DOFS][LAM_ELEMENT_DOFS]; /* tangent, symmetric */
 } LamElementResult;
 
+/* PETSC_FALSE where det F or theta is not positive at a Gauss point. */
+PetscBool LamElementIsValid(const LamElementGeometry *geometry, const PetscReal x[][2], PetscReal F33);
+
 /* Energy alone. *valid is PETSC_FALSE, and nothing else is set, where det F or theta is not positive. */
 void LamElementEnergy(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
                       const PetscReal x[][2], PetscReal F33, PetscReal *energy, PetscBool *valid);

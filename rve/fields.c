@@ -4,7 +4,8 @@
 /* Values at an element's nodes of the least-squares bilinear function through the 3 x 3 Gauss values. */
 static void ExtrapolateToNodes(const PetscReal gauss[LAM_GAUSS], PetscReal node[LAM_ELEMENT_NODES])
 {
-  static const PetscReal at[LAM_ELEMENT_NODES][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {0, -1}, {1, 0}, {0, 1}, {-1, 0}, {0, 0}};
+  static const PetscReal at[LAM_ELEMENT_NODES][2] = {{-1, -1}, {1, -1}, {1, 1},  {-1, 1}, {0, -1},
+                                                     {1, 0},   {0, 1},  {-1, 0}, {0, 0}};
   const PetscReal r2 = 0.6; /* square of the Gauss abscissa */
   PetscReal c[4] = {0.0, 0.0, 0.0, 0.0};
 

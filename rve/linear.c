@@ -71,8 +71,10 @@ static PetscInt FindEntry(const LamLinear *linear, PetscInt i, PetscInt j)
   while (high - low > 1) {
     const PetscInt middle = (low + high) / 2;
 
-    if (linear->column[middle] <= column) low = middle;
-    else high = middle;
+    if (linear->column[middle] <= column)
+      low = middle;
+    else
+      high = middle;
   }
   return low;
 }

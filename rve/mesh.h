@@ -22,15 +22,15 @@ typedef struct {
   PetscInt ring_nodes;   /* nodes around one ring: 12 along */
   PetscInt radial_nodes; /* nodes through the wall: 2 through + 1 */
   PetscInt node_count, element_count, class_count;
-  PetscReal *X;          /* [node][2] reference positions */
-  PetscInt *elements;    /* [element][9]: corners counter-clockwise from the inner edge, mid-edges, centre */
-  PetscInt *cell_of;     /* [element] */
-  PetscInt *node_class;  /* [node] */
-  PetscReal *shift;      /* [node][2] S */
-  PetscBool *has_shift;  /* [element]: one of its nodes has a shift */
-  PetscReal *class_X;    /* [class][2] */
+  PetscReal *X;         /* [node][2] reference positions */
+  PetscInt *elements;   /* [element][9]: corners counter-clockwise from the inner edge, mid-edges, centre */
+  PetscInt *cell_of;    /* [element] */
+  PetscInt *node_class; /* [node] */
+  PetscReal *shift;     /* [node][2] S */
+  PetscBool *has_shift; /* [element]: one of its nodes has a shift */
+  PetscReal *class_X;   /* [class][2] */
   PetscReal period[2][2];
-  PetscReal V0;          /* reference area of the RVE, cells and lumens */
+  PetscReal V0; /* reference area of the RVE, cells and lumens */
 } LamMesh;
 
 PetscErrorCode LamMeshCreate(const LamMicrostructure *micro, LamMesh *mesh);

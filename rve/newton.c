@@ -1,11 +1,12 @@
 /*
   Equilibrium of the RVE at one load.
 
-  Method. Both tiers solve K(x, p*, s*) dx = -r(x) with the residual of the energy and the tangent of the independent
-  stresses (element.h). The fast tier takes full steps. The safe tier seeks a minimum of the energy: the matrix is
-  shifted until it is positive definite (inertia correction), steps are limited in length, and a watchdog allows a few
-  steps without decrease (a large step first violates the stiff constraints and is then restored) before it
-  falls back to the best point and a monotone line search.
+  Method. Both tiers solve (K(x, p*, s*) + shift 1) dx = -r(x) with the residual of the energy and the tangent of the
+  independent stresses (element.h); the shift is zero where K is positive definite, else just large enough (inertia
+  correction). The fast tier takes full steps, shortened only where a volume would turn inside out. The safe tier seeks
+  a minimum of the energy: steps are limited in length, and a watchdog allows a few steps without decrease (a large step
+  first violates the stiff constraints and is then restored) before it falls back to the best point and a monotone
+  line search.
 
   References. Magisano, Leonetti & Garcea, Int. J. Numer. Meth. Engng 109 (2017) 1237 (mixed integration points);
   Chamberlain et al., Math. Prog. Study 16 (1982) 1 (watchdog); Nocedal & Wright, Numerical Optimization, 3.4.
@@ -20,20 +21,20 @@
 
 PetscReal LamNewtonTolerance(LamRVE rve)
 {
-  /* forces of the pressure and of the fibres carry a rounding error of eps times their stiffness in each of n entries */
+  /* forces of the pressure and of the fibres carry a rounding error of eps times their stiffness in each of n entries
+   */
   const PetscReal stiffness = rve->micro.wall.bulk_modulus + rve->micro.wall.C4;
 
   return PetscMax(1e-11, 4.0 * PETSC_MACHINE_EPSILON * stiffness * PetscSqrtReal((PetscReal)rve->ndof));
 }
 
 static PetscErrorCode Report(LamRVE rve, const char tier[], PetscInt iteration, PetscReal residual, PetscReal step,
-                             PetscInt negative, PetscReal shift)
+                             PetscReal shift)
 {
   PetscFunctionBeginUser;
   if (rve->monitor)
-    PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR,
-                           "  %s %3d  residual %10.3e  largest step %9.3e  negative eigenvalues %d  shift %g\n", tier,
-                           (int)iteration, (double)residual, (double)step, (int)negative, (double)shift));
+    PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR, "  %-5s %3d  residual %10.3e  largest step %9.3e  shift %g\n",
+                           tier, (int)iteration, (double)residual, (double)step, (double)shift));
   PetscFunctionReturn(0);
 }
 
@@ -60,56 +61,9 @@ static void TrialPosition(LamRVE rve, PetscReal alpha)
   for (PetscInt i = 0; i < rve->ndof; ++i) rve->trial[i] = rve->y[i] + alpha * rve->step[i];
 }
 
-PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome)
-{
-  const PetscReal tolerance = LamNewtonTolerance(rve);
-  PetscReal first = 0.0, previous = PETSC_INFINITY;
-  PetscInt growth = 0;
-
-  PetscFunctionBeginUser;
-  *outcome = LAM_NEWTON_STALLED;
-  for (PetscInt it = 0; it <= FAST_ITERATIONS; ++it) {
-    PetscReal energy, norm, largest;
-    PetscBool valid, ok;
-    PetscInt negative;
-
-    PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
-    if (!valid) break;
-    norm = LamResidualNorm(rve, rve->residual);
-    if (norm <= tolerance) {
-      PetscCall(Report(rve, "fast", it, norm, 0.0, 0, 0.0));
-      *outcome = LAM_NEWTON_CONVERGED;
-      break;
-    }
-    if (it == 0) first = norm;
-    growth = norm > previous ? growth + 1 : 0;
-    previous = norm;
-    /* the residual of the energy may grow at first while the stiff constraints are violated, but not for long */
-    if (it == FAST_ITERATIONS || growth >= 4 || !(norm < 1e8 * (1.0 + first))) break;
-    PetscCall(LamLinearFactor(&rve->linear, 0.0, &negative, &ok));
-    ++rve->work.factorisations;
-    if (!ok) break;
-    PetscCall(SolveStep(rve));
-    largest = LargestEntry(rve->ndof, rve->step);
-    PetscCall(Report(rve, "fast", it, norm, largest, negative, 0.0));
-    if (!(largest < 10.0)) break;
-    ++rve->work.iterations;
-    LamUpdateStresses(rve, load, rve->y, rve->step, 1.0);
-    for (PetscInt i = 0; i < rve->ndof; ++i) rve->y[i] += rve->step[i];
-  }
-  PetscFunctionReturn(0);
-}
-
-/* State of the safe tier. */
-typedef struct {
-  PetscReal *best; /* [ndof] position of lowest energy so far */
-  PetscReal best_energy, shift, rounding;
-  PetscInt without_decrease;
-  PetscBool monotone; /* line search on the next step */
-} Descent;
-
-/* Factors K + shift 1 with the smallest tried shift that leaves no negative eigenvalue. */
-static PetscErrorCode FactorPositive(LamRVE rve, Descent *descent, PetscBool *ok)
+/* Factors K + shift 1 with the smallest tried shift that leaves no negative eigenvalue; last_shift: in the one before.
+ */
+static PetscErrorCode FactorPositive(LamRVE rve, PetscReal *last_shift, PetscBool *ok)
 {
   PetscReal diagonal = 0.0, shift = 0.0;
   PetscInt negative;
@@ -123,11 +77,71 @@ static PetscErrorCode FactorPositive(LamRVE rve, Descent *descent, PetscBool *ok
     if (*ok && negative == 0) break;
     *ok = PETSC_FALSE;
     if (shift > diagonal) break;
-    shift = shift == 0.0 ? PetscMax(descent->shift / 8.0, 1e-7 * diagonal) : 4.0 * shift;
+    shift = shift == 0.0 ? PetscMax(*last_shift / 8.0, 1e-7 * diagonal) : 4.0 * shift;
   }
-  descent->shift = shift;
+  *last_shift = shift;
   PetscFunctionReturn(0);
 }
+
+/* Largest of 1, 1/2, ... 1/64 for which no volume along rve->step turns inside out; 0: none. */
+static PetscErrorCode ValidStep(LamRVE rve, const LamLoad *load, PetscReal *alpha)
+{
+  PetscFunctionBeginUser;
+  for (*alpha = 1.0; *alpha > 0.01; *alpha *= 0.5) {
+    TrialPosition(rve, *alpha);
+    if (LamPositionsAreValid(rve, load, rve->trial)) PetscFunctionReturn(0);
+  }
+  *alpha = 0.0;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome)
+{
+  const PetscReal tolerance = LamNewtonTolerance(rve);
+  PetscReal first = 0.0, previous = PETSC_INFINITY, shift = 0.0;
+  PetscInt growth = 0;
+
+  PetscFunctionBeginUser;
+  *outcome = LAM_NEWTON_STALLED;
+  for (PetscInt it = 0; it <= FAST_ITERATIONS; ++it) {
+    PetscReal energy, norm, largest, alpha;
+    PetscBool valid, ok;
+
+    PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
+    if (!valid) break;
+    norm = LamResidualNorm(rve, rve->residual);
+    if (norm <= tolerance) {
+      PetscCall(Report(rve, "fast", it, norm, 0.0, 0.0));
+      *outcome = LAM_NEWTON_CONVERGED;
+      break;
+    }
+    if (it == 0) first = norm;
+    growth = norm > previous ? growth + 1 : 0;
+    previous = norm;
+    /* the residual of the energy may grow at first while the stiff constraints are violated, but not for long */
+    if (it == FAST_ITERATIONS || growth >= 4 || !(norm < 1e8 * (1.0 + first))) break;
+    PetscCall(FactorPositive(rve, &shift, &ok));
+    if (!ok) break;
+    PetscCall(SolveStep(rve));
+    largest = LargestEntry(rve->ndof, rve->step);
+    PetscCall(Report(rve, "fast", it, norm, largest, shift));
+    if (!(largest < 10.0)) break;
+    ++rve->work.iterations;
+    PetscCall(ValidStep(rve, load, &alpha));
+    if (alpha == 0.0) break;
+    LamUpdateStresses(rve, load, rve->y, rve->step, alpha);
+    for (PetscInt i = 0; i < rve->ndof; ++i) rve->y[i] += alpha * rve->step[i];
+  }
+  PetscFunctionReturn(0);
+}
+
+/* State of the safe tier. */
+typedef struct {
+  PetscReal *best; /* [ndof] position of lowest energy so far */
+  PetscReal best_energy, shift, rounding;
+  PetscInt without_decrease;
+  PetscBool monotone; /* line search on the next step */
+} Descent;
 
 /* Halves the step until the energy falls enough; *alpha = 0 where it does not. */
 static PetscErrorCode LineSearch(LamRVE rve, const LamLoad *load, PetscReal energy, PetscReal slope, PetscReal rounding,
@@ -177,11 +191,11 @@ static PetscErrorCode SafeStep(LamRVE rve, const LamLoad *load, PetscInt it, Pet
 
   PetscFunctionBeginUser;
   *alpha = 0.0;
-  PetscCall(FactorPositive(rve, descent, &ok));
+  PetscCall(FactorPositive(rve, &descent->shift, &ok));
   if (!ok) PetscFunctionReturn(0);
   PetscCall(SolveStep(rve));
   largest = LargestEntry(rve->ndof, rve->step);
-  PetscCall(Report(rve, "safe", it, norm, largest, descent->shift > 0.0 ? 1 : 0, descent->shift));
+  PetscCall(Report(rve, "safe", it, norm, largest, descent->shift));
   *alpha = largest > STEP_LIMIT ? STEP_LIMIT / largest : 1.0;
   if (descent->monotone) {
     for (PetscInt i = 2; i < rve->ndof; ++i) slope += rve->residual[i] * rve->step[i];

@@ -61,7 +61,7 @@ static PetscErrorCode LeaveSaddle(LamRVE rve, const LamLoad *load, PetscInt *bra
   PetscCall(LamFactorConsistent(rve, load, negative, ok));
   if (!*ok || *negative == 0) PetscFunctionReturn(0);
   PetscCall(PetscMalloc2(rve->linear.n, &mode, rve->ndof, &saddle));
-  for (PetscInt k = 0; k < MAX_BRANCH_SWITCHES && *ok && *negative > 0; ++k) {
+  for (PetscInt k = 0; k<MAX_BRANCH_SWITCHES && * ok && * negative> 0; ++k) {
     LamNewtonOutcome outcome;
     PetscReal largest = 0.0;
 
@@ -69,8 +69,9 @@ static PetscErrorCode LeaveSaddle(LamRVE rve, const LamLoad *load, PetscInt *bra
     unstable = *negative;
     PetscCall(LamSoftestMode(rve, &rve->lowest_eigenvalue, mode));
     if (rve->monitor)
-      PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR, "  saddle: %d negative eigenvalues, lowest %.3e; leaving it\n",
-                             (int)unstable, (double)rve->lowest_eigenvalue));
+      PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR,
+                             "  saddle: %d negative eigenvalues, lowest %.3e; leaving it\n", (int)unstable,
+                             (double)rve->lowest_eigenvalue));
     for (PetscInt i = 0; i < rve->linear.n; ++i) largest = PetscMax(largest, PetscAbsReal(mode[i]));
     for (PetscInt i = 0; i < rve->linear.n; ++i) rve->y[2 + i] += KICK * mode[i] / largest;
     PetscCall(LamNewtonSafe(rve, load, &outcome));
@@ -175,8 +176,9 @@ PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state,
     PetscCall(PetscSNPrintf(reason, length, "only a saddle was found: %d negative eigenvalues, lowest %.3g (C1+C2)",
                             (int)*negative, (double)rve->lowest_eigenvalue));
   if (*status == LAM_NOT_CONVERGED)
-    PetscCall(PetscSNPrintf(reason, length,
-                            "no equilibrium found beyond %.4g of the way from the state before (substeps of %.2g, %d iterations)",
-                            (double)reached, (double)MIN_SUBSTEP, (int)rve->work.iterations));
+    PetscCall(PetscSNPrintf(
+        reason, length,
+        "no equilibrium found beyond %.4g of the way from the state before (substeps of %.2g, %d iterations)",
+        (double)reached, (double)MIN_SUBSTEP, (int)rve->work.iterations));
   PetscFunctionReturn(0);
 }

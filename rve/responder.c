@@ -7,14 +7,15 @@
 #include "rve_impl.h"
 
 typedef struct {
-  LamRVE rve; /* borrowed */
+  LamRVE rve;              /* borrowed */
   LamResponder *responder; /* borrowed: its counters */
   PetscInt points;
   LamRVEState *accepted, *latest; /* [points] */
   LamRVEState scratch;
 } DirectResponder;
 
-static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[], LamResponse responses[])
+static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[],
+                              LamResponse responses[])
 {
   DirectResponder *direct = (DirectResponder *)ctx;
 

@@ -7,7 +7,8 @@ PetscErrorCode LamRVECreate(MPI_Comm comm, LamRVE *rve)
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCheck(size == 1, PETSC_COMM_SELF, PETSC_ERR_SUP, "one RVE is solved by one rank, got a communicator of %d", size);
+  PetscCheck(size == 1, PETSC_COMM_SELF, PETSC_ERR_SUP, "one RVE is solved by one rank, got a communicator of %d",
+             size);
   PetscCall(PetscNew(rve));
   (*rve)->comm = comm;
   PetscFunctionReturn(0);
@@ -18,7 +19,8 @@ PetscErrorCode LamRVESetMicrostructure(LamRVE rve, const LamMicrostructure *micr
   PetscFunctionBeginUser;
   PetscCheck(!rve->is_set_up, PETSC_COMM_SELF, PETSC_ERR_ORDER, "the microstructure is set before LamRVESetUp");
   PetscCheck(micro->interface == LAM_INTERFACE_BONDED, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "interface law '%s' is not available in this version; use 'bonded'", LamInterfaceLawNames[micro->interface]);
+             "interface law '%s' is not available in this version; use 'bonded'",
+             LamInterfaceLawNames[micro->interface]);
   rve->micro = *micro;
   rve->has_micro = PETSC_TRUE;
   PetscFunctionReturn(0);
@@ -133,11 +135,13 @@ static PetscErrorCode CheckLoad(const LamLoad *load, char reason[], size_t lengt
       PetscCall(PetscSNPrintf(reason, length, "F has a component that is not finite"));
       PetscFunctionReturn(0);
     }
-  if (PetscIsInfOrNanReal(load->turgor)) PetscCall(PetscSNPrintf(reason, length, "turgor is not finite"));
+  if (PetscIsInfOrNanReal(load->turgor))
+    PetscCall(PetscSNPrintf(reason, length, "turgor is not finite"));
   else if (F[2] != 0.0 || F[5] != 0.0 || F[6] != 0.0 || F[7] != 0.0)
     PetscCall(PetscSNPrintf(reason, length, "F has out-of-plane shear, which plane strain does not carry"));
   else if (!(det > 0.0) || !(F[8] > 0.0))
-    PetscCall(PetscSNPrintf(reason, length, "F turns the tissue inside out: in-plane determinant %g, F33 %g; both must be positive",
+    PetscCall(PetscSNPrintf(reason, length,
+                            "F turns the tissue inside out: in-plane determinant %g, F33 %g; both must be positive",
                             (double)det, (double)F[8]));
   PetscFunctionReturn(0);
 }

@@ -23,18 +23,18 @@
 /* The symmetric matrix in upper compressed rows (values are written in place) and its factor. */
 typedef struct {
   PetscInt n, nonzeros;
-  PetscInt *row, *column;  /* [n+1], [nonzeros]; the diagonal comes first in a row */
-  PetscReal *values;       /* [nonzeros] */
-  PetscInt *position;      /* [element][LAM_PAIRS] index into values, -1: held; pairs of element dofs i <= j, row by row */
+  PetscInt *row, *column; /* [n+1], [nonzeros]; the diagonal comes first in a row */
+  PetscReal *values;      /* [nonzeros] */
+  PetscInt *position; /* [element][LAM_PAIRS] index into values, -1: held; pairs of element dofs i <= j, row by row */
   Mat matrix, factor;
-  Vec rhs, solution;       /* placeholders for the callers' arrays */
+  Vec rhs, solution; /* placeholders for the callers' arrays */
   PetscBool analysed;
 } LamLinear;
 
 /* Positions of one material point and the load they balance. */
 struct LamRVEState_s {
-  PetscInt n;      /* length of y */
-  PetscReal *y;    /* [class][2] */
+  PetscInt n;   /* length of y */
+  PetscReal *y; /* [class][2] */
   LamLoad load;
   PetscInt branch; /* number of saddles left on the way here */
 };
@@ -52,22 +52,27 @@ struct LamRVE_s {
   LamElementGeometry *geometry; /* [element] */
   LamElementStress *stress;     /* [element]: independent stresses of the iteration under way */
   LamLinear linear;
-  PetscInt ndof;                /* 2 class_count */
+  PetscInt ndof;                          /* 2 class_count */
   PetscReal *y, *step, *trial, *residual; /* [ndof] each: position, Newton step, trial position, residual */
-  LamWork work;                 /* of the solve under way */
-  PetscReal lowest_eigenvalue;  /* of the last unstable state met */
+  LamWork work;                           /* of the solve under way */
+  PetscReal lowest_eigenvalue;            /* of the last unstable state met */
 };
 
 /* ---- assembly.c ---- */
 PetscErrorCode LamGeometryCreate(LamRVE rve);
 /* Positions of an element's nodes: x_a = y_class + F S. */
-void LamGatherElement(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt e, PetscReal x[LAM_ELEMENT_NODES][2]);
+void LamGatherElement(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt e,
+                      PetscReal x[LAM_ELEMENT_NODES][2]);
 /* Energy (walls - turgor x lumen), not divided by V0; *valid as LamElementEnergy. */
-PetscErrorCode LamAssembleEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy, PetscBool *valid);
+PetscErrorCode LamAssembleEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy,
+                                 PetscBool *valid);
 /* Energy, residual [ndof] and, into linear.values, the tangent with independent stresses. */
-PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy, PetscReal residual[],
-                           PetscBool *valid);
+PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy,
+                           PetscReal residual[], PetscBool *valid);
+/* Moves the independent stresses by alpha along the displacement dy from y. */
 void LamUpdateStresses(LamRVE rve, const LamLoad *load, const PetscReal y[], const PetscReal dy[], PetscReal alpha);
+/* PETSC_FALSE where an element volume is not positive. */
+PetscBool LamPositionsAreValid(LamRVE rve, const LamLoad *load, const PetscReal y[]);
 /* Independent stresses := those of positions y; PETSC_FALSE where y is not valid. */
 PetscBool LamSetConsistentStresses(LamRVE rve, const LamLoad *load, const PetscReal y[]);
 /* Area inside the lumens and its gradient (added to gradient [ndof], may be NULL) times `factor`. */

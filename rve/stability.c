@@ -43,8 +43,10 @@ static PetscErrorCode BracketLowest(LamRVE rve, PetscReal *shift)
 
     PetscCall(LamLinearFactor(&rve->linear, middle, &negative, &ok));
     ++rve->work.factorisations;
-    if (ok && negative == 0) high = middle;
-    else low = middle;
+    if (ok && negative == 0)
+      high = middle;
+    else
+      low = middle;
   }
   PetscCall(LamLinearFactor(&rve->linear, high, &negative, &ok));
   ++rve->work.factorisations;
@@ -84,7 +86,8 @@ PetscErrorCode LamSoftestMode(LamRVE rve, PetscReal *eigenvalue, PetscReal mode[
   for (PetscInt i = 0; i < n; ++i)
     if (PetscAbsReal(mode[i]) > PetscAbsReal(largest) * (1.0 + 1e-6)) largest = mode[i];
   if (largest < 0.0)
-    for (PetscInt i = 0; i < n; ++i) mode[i] = -mode[i]; /* one sign, so that the branch taken is the same in every run */
+    for (PetscInt i = 0; i < n; ++i)
+      mode[i] = -mode[i]; /* one sign, so that the branch taken is the same in every run */
   PetscCall(PetscFree(next));
   PetscFunctionReturn(0);
 }

@@ -82,7 +82,8 @@ static void EdgePoint(const PetscReal x[][2], PetscReal xi, PetscReal N[3], Pets
 }
 
 /* Solves the mass system of one face; f becomes the nodal tractions, M is work space of size n x n. */
-static PetscErrorCode FaceTraction(PetscInt along, const PetscReal x[][2], PetscReal f[][2], PetscReal M[], PetscReal b[])
+static PetscErrorCode FaceTraction(PetscInt along, const PetscReal x[][2], PetscReal f[][2], PetscReal M[],
+                                   PetscReal b[])
 {
   const PetscReal point[4] = {-0.861136311594053, -0.339981043584856, 0.339981043584856, 0.861136311594053};
   const PetscReal weight[4] = {0.347854845137454, 0.652145154862546, 0.652145154862546, 0.347854845137454};
@@ -112,7 +113,8 @@ static PetscErrorCode FaceTraction(PetscInt along, const PetscReal x[][2], Petsc
 }
 
 /* Running integrals of normal traction and of current length at sample ends: [along*SAMPLES + 1]. */
-static void Accumulate(PetscInt along, const PetscReal x[][2], const PetscReal t[][2], PetscReal force[], PetscReal length[])
+static void Accumulate(PetscInt along, const PetscReal x[][2], const PetscReal t[][2], PetscReal force[],
+                       PetscReal length[])
 {
   force[0] = length[0] = 0.0;
   for (PetscInt e = 0; e < along; ++e)
