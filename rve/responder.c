@@ -1,8 +1,10 @@
 /*
   The direct responder: one RVE solve per question, warm-started from the material point's last state.
 
-  Each point keeps two states: the accepted one, from which every question of a load step starts (so answers do not
-  depend on the history of iterations), and the latest solution. A question without a point starts from the reference.
+  Each point keeps two states: the accepted one of the last load step, and the latest solution, which is nearer to the
+  next question. A question starts from the latest one, unless that has left the accepted branch (buckled on the way):
+  an iterate of the macroscale Newton must not decide which branch the tissue is on. A question without a point starts
+  from the reference.
 */
 #include "rve_impl.h"
 
@@ -28,7 +30,8 @@ static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], cons
                (int)direct->points);
     if (point >= 0) {
       state = direct->latest[point];
-      PetscCall(LamRVEStateCopy(direct->accepted[point], state));
+      if (state->branch != direct->accepted[point]->branch)
+        PetscCall(LamRVEStateCopy(direct->accepted[point], state));
     } else {
       PetscCall(LamRVEStateReset(direct->rve, state));
     }
