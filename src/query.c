@@ -385,13 +385,18 @@ static void FillStress(const LamExpansion *m, Tensor F, const LamResponse *recor
   FillTangent(m, K, record->tangent[80], r->tangent);
 }
 
-/* What the potential does not give is the record's, faces renamed. */
+/*
+  What the potential does not give is the record's, faces renamed. Face tractions of bonded tissue are shifted by the
+  difference in turgor: by the effective-stress principle a change dp adds the uniform pressure dp to the walls.
+*/
 static void CopyIndicators(LamDatabase db, const Nearest *at, LamResponse *r)
 {
   const LamResponse *record = &db->records[at->record];
   const PetscInt *face = db->images.face[at->image];
+  PetscReal pressure = 0;
 
   if (db->header.micro.interface == LAM_INTERFACE_BONDED) {
+    pressure = r->load.turgor - record->load.turgor;
     for (int i = 0; i < 9; i++) r->P_cohesion[i] = 0;
     r->energy_cohesion2 = r->energy_turgor_cohesion = 0;
   }
@@ -399,10 +404,10 @@ static void CopyIndicators(LamDatabase db, const Nearest *at, LamResponse *r)
   r->debonded_fraction = record->debonded_fraction;
   r->open_fraction = record->open_fraction;
   r->max_gap = record->max_gap;
-  r->max_traction = record->max_traction;
+  r->max_traction = record->max_traction - pressure;
   for (int k = 0; k < 3; k++) {
     r->debonded_by_face[k] = record->debonded_by_face[face[k]];
-    r->mean_face_traction[k] = record->mean_face_traction[face[k]];
+    r->mean_face_traction[k] = record->mean_face_traction[face[k]] - pressure;
   }
   r->lowest_eigenvalue = record->lowest_eigenvalue;
   r->floating_cells = record->floating_cells;
