@@ -19,14 +19,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/*
-  Radius over sqrt(accuracy). The expansion of the potential is of second order, so the stress error grows with the
-  square of the distance: error = (distance / TRUST_COEFFICIENT)^2. Measured with tests/bench/bench_query.c on 480
-  held-out states of the default tissue (principal strains -0.02 to 0.25): 99 % of the errors lie below that with
-  0.286 to 0.296 at distances 0.005 to 0.04.
-*/
-static const PetscReal TRUST_COEFFICIENT = 0.28;
-
 typedef struct {
   MPI_Comm comm;
   LamDatabase database; /* borrowed */
@@ -43,11 +35,6 @@ typedef struct {
   LamLoad *chosen;     /* sorted */
   LamResponse *solved; /* of each chosen question */
 } Round;
-
-PetscReal LamTrustRadius(PetscReal accuracy)
-{
-  return TRUST_COEFFICIENT * PetscSqrtReal(accuracy);
-}
 
 /* Binary grid of 2^-33, about 1e-10: sums in another order end on the same question, and rounding is exact. */
 static PetscReal OnGrid(PetscReal x)

@@ -18,7 +18,4 @@
 PetscErrorCode LamCacheResponderCreate(MPI_Comm comm, LamDatabase database, LamResponder *solver, PetscReal accuracy,
                                        PetscInt points, LamResponder *responder);
 
-/* Trust radius (strain) of the nearest-record expansion for a wanted accuracy; measured, docs/verification.md. */
-PetscReal LamTrustRadius(PetscReal accuracy);
-
 #endif

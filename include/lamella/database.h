@@ -92,4 +92,7 @@ PetscErrorCode LamDatabaseAdd(LamDatabase database, PetscInt n, const LamRespons
 PetscErrorCode LamDatabaseQuery(LamDatabase database, const LamLoad *load, PetscReal radius, PetscInt *hint,
                                 LamResponse *response);
 
+/* Trust radius (strain) of the nearest-record expansion for a wanted accuracy; measured, docs/verification.md. */
+PetscReal LamTrustRadius(PetscReal accuracy);
+
 #endif
