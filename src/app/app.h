@@ -9,7 +9,14 @@
 #include <jansson.h>
 
 /* Exit statuses (docs/commands.md). */
-enum { LAM_EXIT_OK = 0, LAM_EXIT_USAGE = 1, LAM_EXIT_INPUT = 2, LAM_EXIT_UNSOLVED = 3, LAM_EXIT_IO = 4 };
+enum {
+  LAM_EXIT_OK = 0,
+  LAM_EXIT_USAGE = 1,
+  LAM_EXIT_INPUT = 2,
+  LAM_EXIT_UNSOLVED = 3,
+  LAM_EXIT_IO = 4,
+  LAM_EXIT_FAULT = 70 /* of the program, or no memory left */
+};
 
 /* The command line of one command: argv[0] is the command's name; what followed `--` is kept for PETSc. */
 typedef struct {
@@ -32,6 +39,8 @@ PetscErrorCode LamCommandInfo(LamArgs *args, int *exit_status);
 /* Starts MPI and PETSc for a command that solves; after parsing the command line. main() finalises. */
 PetscErrorCode LamAppInitialize(LamArgs *args);
 PetscBool LamAppIsRoot(void); /* rank 0, or no MPI */
+/* The name nearest to a misspelt one, NULL where none is near; names end with NULL. */
+const char *LamSuggest(const char word[], const char *const names[]);
 
 /* ---- options.c: GNU-style options from a table ---- */
 typedef enum { LAM_OPTION_FLAG, LAM_OPTION_TEXT } LamOptionType;
@@ -64,8 +73,8 @@ PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales 
 /* ---- progress.c: a bar on stderr where it is a terminal, else nothing ---- */
 typedef struct {
   PetscBool on;
-  PetscInt64 total;
-  PetscLogDouble start;
+  PetscInt64 total, first; /* first: done at the first update */
+  PetscLogDouble start, drawn;
 } LamProgress;
 PetscErrorCode LamProgressStart(LamProgress *progress, PetscInt64 total, PetscBool quiet);
 PetscErrorCode LamProgressUpdate(LamProgress *progress, PetscInt64 done, PetscInt64 failed);
@@ -80,7 +89,10 @@ int LamStopExitStatus(void); /* 130 after SIGINT, 143 after SIGTERM and SIGUSR1,
 typedef struct {
   LamMicrostructure micro; /* with along and through chosen */
   PetscInt unknowns;       /* of one RVE */
-  PetscInt states;         /* RVE solves predicted for `load` or `sample`; for fe2 with direct response */
+  PetscInt load_states;    /* RVE solves of `rve`, `build` and `fe2` with direct response; 0: no such block */
+  PetscInt sample_states;  /* 0 also where an accuracy decides how many */
+  PetscInt64 macro_states; /* predicted */
+  PetscInt macro_points;
 } LamPlan;
 /* Chooses what the scene leaves open; changes nothing the scene says. */
 PetscErrorCode LamPlanMake(const LamScene *scene, LamPlan *plan);

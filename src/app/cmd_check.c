@@ -1,0 +1,192 @@
+/*
+  lamella check: what a scene will have modelled, and what that will cost. Needs no MPI.
+
+  Method. One assembly is timed on this machine; everything else is a multiple of it. The multiples are measured
+  (docs/commands.md has the figures): they hold within a factor of two from 236 to 10,000 unknowns.
+*/
+#include "app.h"
+#include <math.h>
+
+/* An iteration (assembly, factorisation, solve) costs this many assemblies. */
+#define ITERATION_ASSEMBLIES 7.0
+/* Factorisations of a state on its own, and of a material point in a load step under way; tangent included. */
+#define STATE_FACTORISATIONS 6.0
+#define POINT_FACTORISATIONS 5.0
+/* Resident memory, MB: the program with its libraries; matrix, factor and mesh per unknown. */
+#define PROGRAM_MB 50.0
+#define UNKNOWN_MB 0.0015
+
+typedef struct {
+  LamScene *scene;
+  LamPlan plan;
+  PetscReal assembly, state, point; /* seconds: one assembly, one state, one answer during a macroscale step */
+  PetscReal memory;                 /* MB, one rank */
+} Check;
+
+static PetscErrorCode Predict(Check *check)
+{
+  const PetscReal n = (PetscReal)check->plan.unknowns;
+  PetscReal iteration;
+  PetscInt unknowns;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVETimeAssembly(&check->plan.micro, &unknowns, &check->assembly));
+  PetscCheck(unknowns == check->plan.unknowns, PETSC_COMM_SELF, PETSC_ERR_PLIB,
+             "the plan has %" PetscInt_FMT " unknowns, the RVE %" PetscInt_FMT, check->plan.unknowns, unknowns);
+  iteration = ITERATION_ASSEMBLIES * check->assembly;
+  check->state = STATE_FACTORISATIONS * iteration;
+  check->point = POINT_FACTORISATIONS * iteration;
+  /* each material point keeps its positions, accepted and tried */
+  check->memory = PROGRAM_MB + UNKNOWN_MB * n + (PetscReal)check->plan.macro_points * 2 * sizeof(PetscReal) * n / 1e6;
+  PetscFunctionReturn(0);
+}
+
+/* ---- for a program ---- */
+
+static json_t *Cost(json_t *states, PetscReal seconds)
+{
+  return json_pack("{s:o, s:o}", "states", states, "seconds", LamJSONReal(seconds));
+}
+
+static json_t *Mesh(const Check *check)
+{
+  const LamMicrostructure *given = &check->scene->micro, *micro = &check->plan.micro;
+
+  return json_pack("{s:I, s:I, s:b}", "along", (json_int_t)micro->along, "through", (json_int_t)micro->through,
+                   "chosen", !given->along || !given->through);
+}
+
+static PetscErrorCode PrintObject(const Check *check)
+{
+  const LamPlan *plan = &check->plan;
+  const LamScene *scene = check->scene;
+  const LamMicrostructure *micro = &plan->micro;
+  const PetscReal MPa = scene->scales.stress * 1e-6;
+  json_t *o;
+
+  PetscFunctionBeginUser;
+  o = json_pack("{s:s, s:b, s:[I,I], s:s, s:s, s:o, s:o, s:o, s:I, s:o, s:o, s:o}", "scene", scene->path,
+                "plane_strain", 1, "cells", (json_int_t)micro->cells[0], (json_int_t)micro->cells[1], "interface",
+                LamInterfaceLawNames[micro->interface], "wall_law", LamWallLawNames[micro->wall.law], "turgor",
+                LamJSONReal(scene->turgor * MPa), "accuracy", LamJSONReal(scene->accuracy), "mesh", Mesh(check),
+                "unknowns", (json_int_t)plan->unknowns, "seconds_per_assembly", LamJSONReal(check->assembly),
+                "seconds_per_state", LamJSONReal(check->state), "memory_mb", LamJSONReal(check->memory));
+  PetscCheck(o, PETSC_COMM_SELF, PETSC_ERR_LIB, "the plan cannot be written as JSON");
+  if (plan->load_states)
+    json_object_set_new(o, "load", Cost(json_integer(plan->load_states), (PetscReal)plan->load_states * check->state));
+  if (scene->has_sample)
+    json_object_set_new(o, "sample",
+                        plan->sample_states
+                            ? Cost(json_integer(plan->sample_states), (PetscReal)plan->sample_states * check->state)
+                            : Cost(json_null(), NAN));
+  if (scene->has_macro) {
+    json_t *macro = Cost(json_integer(plan->macro_states), (PetscReal)plan->macro_states * check->point);
+
+    json_object_set_new(macro, "points", json_integer(plan->macro_points));
+    json_object_set_new(o, "macro", macro);
+  }
+  PetscCall(LamPrintJSON(o));
+  PetscFunctionReturn(0);
+}
+
+/* ---- for a person ---- */
+
+static void PrintSeconds(PetscReal seconds)
+{
+  if (seconds < 1)
+    printf("%.2g ms", (double)(1e3 * seconds));
+  else if (seconds < 120)
+    printf("%.2g s", (double)seconds);
+  else if (seconds < 7200)
+    printf("%.2g min", (double)(seconds / 60));
+  else
+    printf("%.2g h", (double)(seconds / 3600));
+}
+
+static void PrintModel(const Check *check)
+{
+  const LamScene *scene = check->scene;
+  const LamMicrostructure *given = &scene->micro, *micro = &check->plan.micro;
+  const LamWall *wall = &micro->wall;
+  const PetscReal MPa = scene->scales.stress * 1e-6;
+
+  printf("%-12s %s\n", "scene", scene->path);
+  printf("%-12s plane strain, %" PetscInt_FMT " x %" PetscInt_FMT
+         " cells per period, wall %.4g of the apothem (%.4g um), "
+         "face normal 0 at %.4g deg\n",
+         "model", micro->cells[0], micro->cells[1], (double)micro->wall_thickness, (double)(1e6 * scene->scales.length),
+         (double)(micro->orientation * 180 / PETSC_PI));
+  printf("%-12s %s: C1 %.4g, C2 %.4g", "wall", LamWallLawNames[wall->law], (double)(wall->C1 * MPa),
+         (double)(wall->C2 * MPa));
+  if (wall->law == LAM_WALL_FIBRE_MOONEY_RIVLIN)
+    printf(", C4 %.4g (fibres: %s)", (double)(wall->C4 * MPa), LamFibresNames[wall->fibres]);
+  printf(", bulk modulus %.4g MPa\n", (double)(wall->bulk_modulus * MPa));
+  printf("%-12s %s\n", "interface",
+         micro->interface == LAM_INTERFACE_BONDED ? "bonded: no unknowns of its own" : "contact");
+  if (scene->turgor != 0)
+    printf("%-12s %.4g MPa in every lumen\n", "turgor", (double)(scene->turgor * MPa));
+  else
+    printf("%-12s none, where no load says otherwise\n", "turgor");
+  printf("%-12s %" PetscInt_FMT " elements along a face, %" PetscInt_FMT " through a wall", "mesh", micro->along,
+         micro->through);
+  if (!given->along || !given->through)
+    printf(" (chosen for an accuracy of %.2g %%)\n", (double)(100 * scene->accuracy));
+  else
+    printf(" (as the scene says)\n");
+}
+
+static void PrintStates(const char label[], PetscInt64 states, PetscReal seconds)
+{
+  printf("%-12s %lld state%s, about ", label, (long long)states, states == 1 ? "" : "s");
+  PrintSeconds(seconds);
+  putchar('\n');
+}
+
+static void PrintCost(const Check *check)
+{
+  const LamPlan *plan = &check->plan;
+  const LamScene *scene = check->scene;
+
+  printf("%-12s %" PetscInt_FMT "; one state about ", "unknowns", plan->unknowns);
+  PrintSeconds(check->state);
+  printf("\n%-12s about %.0f MB per rank\n", "memory", (double)check->memory);
+  if (plan->load_states) PrintStates("rve", plan->load_states, (PetscReal)plan->load_states * check->state);
+  if (plan->sample_states)
+    PrintStates("build", plan->sample_states, (PetscReal)plan->sample_states * check->state);
+  else if (scene->has_sample)
+    printf("%-12s states until the error is below %.2g %%\n", "build", (double)(100 * scene->sample.accuracy));
+  if (!scene->has_macro) return;
+  printf("%-12s %" PetscInt_FMT " x %" PetscInt_FMT " elements, %" PetscInt_FMT " material points, %" PetscInt_FMT
+         " load steps%s\n",
+         "fe2", scene->macro.elements[0], scene->macro.elements[1], plan->macro_points, scene->macro.steps,
+         scene->macro.inflate ? " after inflation" : "");
+  PrintStates("  direct", plan->macro_states, (PetscReal)plan->macro_states * check->point);
+}
+
+PetscErrorCode LamCommandCheck(LamArgs *args, int *exit_status)
+{
+  PetscBool json = PETSC_FALSE, done;
+  Check check = {0};
+  const char *path;
+  const LamOption options[] = {
+      {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object on stdout", &json},
+      {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
+  };
+
+  PetscFunctionBeginUser;
+  PetscCall(LamOptionsParse(args, "check SCENE [--json]",
+                            "Reads and checks a scene; prints what will be modelled and its predicted cost.", options,
+                            1, &path, &done, exit_status));
+  if (done) PetscFunctionReturn(0);
+  PetscCall(LamSceneRead(path, &check.scene));
+  PetscCall(LamPlanMake(check.scene, &check.plan));
+  PetscCall(Predict(&check));
+  if (json) {
+    PetscCall(PrintObject(&check));
+  } else {
+    PrintModel(&check);
+    PrintCost(&check);
+  }
+  PetscCall(LamSceneDestroy(&check.scene));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,312 @@
+/*
+  lamella: the program. Finds the command, runs it, tells errors, ends with the documented status.
+
+  Errors. The library returns PETSc error codes. The handler below keeps the words of the first one and the way it came;
+  nothing is printed before the error has reached main, where it is told once: mistakes of the user and failures of
+  input and output in their own words, anything else as a fault of the program with its trace.
+  Under MPI the ranks agree at the end: an error that all have is told by the lowest rank that knows the words; a rank
+  that is alone with its error waits a moment for the others, then tells it and ends the job.
+*/
+#define _GNU_SOURCE /* RTLD_DEFAULT */
+#include "app.h"
+#include <dlfcn.h>
+#include <errno.h>
+#include <hdf5.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sundials/sundials_version.h>
+#include <time.h>
+#include <petsctime.h>
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/lsan_interface.h>
+#endif
+
+static const struct {
+  const char *name, *summary;
+  LamCommandFunction run;
+  PetscBool solves; /* runs under mpirun; the others need no MPI */
+} Commands[] = {
+    {"check", "read and check a scene; print the plan and its predicted cost", LamCommandCheck, PETSC_FALSE},
+    {"rve", "solve the RVE along the scene's load", LamCommandRVE, PETSC_TRUE},
+    {"build", "fill a response database", LamCommandBuild, PETSC_TRUE},
+    {"query", "one answer, or many, from a database", LamCommandQuery, PETSC_FALSE},
+    {"fe2", "solve the scene's macroscale problem", LamCommandFE2, PETSC_TRUE},
+    {"plot", "draw what a file holds", LamCommandPlot, PETSC_FALSE},
+    {"info", "tell what a file holds, who wrote it, with what", LamCommandInfo, PETSC_FALSE},
+};
+enum { COMMAND_COUNT = PETSC_STATIC_ARRAY_LENGTH(Commands) };
+
+/* How long a rank waits for the others to end too, s: with an error of its own, and with one it was told of. */
+#define OWN_ERROR_PATIENCE 3.0
+#define SHARED_ERROR_PATIENCE 60.0
+
+static struct {
+  PetscErrorCode code;
+  char message[2048], trace[2048];
+} Error; /* the last that arose on this rank */
+
+static PetscBool CommandSolves;
+static MPI_Comm EndComm = MPI_COMM_NULL; /* for the agreement at the end */
+
+/* ---- errors ---- */
+
+static PetscErrorCode KeepError(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
+                                PetscErrorType type, const char *message, void *ctx)
+{
+  size_t length;
+
+  (void)comm;
+  (void)ctx;
+  if (type == PETSC_ERROR_INITIAL) {
+    Error.code = code;
+    Error.trace[0] = '\0';
+    snprintf(Error.message, sizeof(Error.message), "%s", message ? message : "");
+  }
+  length = strlen(Error.trace);
+  snprintf(Error.trace + length, sizeof(Error.trace) - length, "  %s, %s:%d\n", function, file, line);
+  return code;
+}
+
+static int StatusOf(PetscErrorCode code)
+{
+  switch (code) {
+  case PETSC_ERR_USER_INPUT:
+    return LAM_EXIT_INPUT;
+  case PETSC_ERR_FILE_OPEN:
+  case PETSC_ERR_FILE_READ:
+  case PETSC_ERR_FILE_WRITE:
+  case PETSC_ERR_FILE_UNEXPECTED:
+    return LAM_EXIT_IO;
+  default:
+    return LAM_EXIT_FAULT;
+  }
+}
+
+static void TellError(PetscErrorCode code)
+{
+  const char *general = NULL;
+
+  fflush(stdout);
+  if (StatusOf(code) != LAM_EXIT_FAULT) {
+    fprintf(stderr, "lamella: %s\n", Error.message);
+    return;
+  }
+  (void)PetscErrorMessage(code, &general, NULL);
+  fprintf(stderr, "lamella: %s%s%s\n%s", general ? general : "", general && Error.message[0] ? ": " : "", Error.message,
+          Error.trace);
+  if (code != PETSC_ERR_MEM) fprintf(stderr, "This is a fault of Lamella, please report it.\n");
+}
+
+#ifdef __SANITIZE_ADDRESS__
+/* Asked by the leak checker at exit: an error returns past the clean-up, its memory is left to the system. */
+int __lsan_is_turned_off(void)
+{
+  return Error.code != 0;
+}
+#endif
+
+/* ---- MPI: start, agreement, end ---- */
+
+static PetscBool MPIRuns(void)
+{
+  int initialized = 0, finalized = 0;
+
+  MPI_Initialized(&initialized);
+  MPI_Finalized(&finalized);
+  return (PetscBool)(initialized && !finalized);
+}
+
+PetscBool LamAppIsRoot(void)
+{
+  int rank = 0;
+
+  if (MPIRuns()) {
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  } else if (CommandSolves) { /* a usage error under mpirun is told once, too */
+    const char *launched = getenv("OMPI_COMM_WORLD_RANK");
+
+    rank = launched ? atoi(launched) : 0;
+  }
+  return (PetscBool)(rank == 0);
+}
+
+PetscErrorCode LamAppInitialize(LamArgs *args)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsSetValue(NULL, "-no_signal_handler", "true")); /* SIGTERM is ours */
+  PetscCall(PetscInitialize(&args->petsc_argc, &args->petsc_argv, NULL, NULL));
+  PetscCallMPI(MPI_Comm_dup(MPI_COMM_WORLD, &EndComm));
+  PetscCall(LamSignalsInstall());
+  PetscFunctionReturn(0);
+}
+
+/* Whether all ranks have come here within `patience` seconds (negative: however long it takes). */
+static PetscBool AwaitOthers(MPI_Request *request, double patience)
+{
+  const struct timespec pause = {0, 1000000}; /* ranks that have nothing to do leave the processor to the others */
+  const double start = MPI_Wtime();
+  int done = 0;
+
+  while (MPI_Test(request, &done, MPI_STATUS_IGNORE) == MPI_SUCCESS && !done) {
+    if (patience >= 0 && MPI_Wtime() - start > patience) return PETSC_FALSE;
+    nanosleep(&pause, NULL);
+  }
+  return (PetscBool)done;
+}
+
+/* The ranks end with one status, the largest; errors are told by the lowest rank that knows their words. */
+static void AgreeAtEnd(PetscErrorCode code, int *status)
+{
+  const PetscBool own = (PetscBool)(code && code == Error.code);
+  int rank, size, mine[2], all[2];
+  MPI_Request request;
+
+  MPI_Comm_rank(EndComm, &rank);
+  MPI_Comm_size(EndComm, &size);
+  mine[0] = *status;
+  mine[1] = own ? size - rank : 0;
+  MPI_Iallreduce(mine, all, 2, MPI_INT, MPI_MAX, EndComm, &request);
+  if (!AwaitOthers(&request, own ? OWN_ERROR_PATIENCE : code ? SHARED_ERROR_PATIENCE : -1)) {
+    if (own) TellError(code);
+    fprintf(stderr, "lamella: rank %d ends the job\n", rank);
+    MPI_Abort(EndComm, *status);
+  }
+  if (own && all[1] == mine[1]) TellError(code);
+  *status = all[0];
+  MPI_Comm_free(&EndComm);
+}
+
+static void EndRun(PetscErrorCode code, int *status)
+{
+  if (code) *status = StatusOf(code);
+  if (EndComm != MPI_COMM_NULL)
+    AgreeAtEnd(code, status);
+  else if (code)
+    TellError(code);
+  if (PetscInitializeCalled && PetscFinalize()) *status = PetscMax(*status, LAM_EXIT_FAULT);
+  if (!fflush(stdout) && !ferror(stdout)) return;
+  if (*status != LAM_EXIT_IO) fprintf(stderr, "lamella: standard output: %s\n", strerror(errno));
+  *status = LAM_EXIT_IO;
+}
+
+/* ---- help and versions ---- */
+
+static void PrintHelp(FILE *out)
+{
+  fprintf(out, "Usage: lamella COMMAND [ARGUMENTS] [-- PETSC-OPTIONS]\n"
+               "Effective stress, tangent and debonding of fruit and plant tissue from its cell walls.\n\n");
+  for (int i = 0; i < COMMAND_COUNT; i++) fprintf(out, "  %-8s %s\n", Commands[i].name, Commands[i].summary);
+  fprintf(out, "\nlamella COMMAND --help tells more, lamella --version the versions of the libraries.\n");
+}
+
+static PetscErrorCode PrintVersion(void)
+{
+  char petsc[256], sundials[64], mpi[MPI_MAX_LIBRARY_VERSION_STRING];
+  unsigned major, minor, release;
+  int length;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscGetVersion(petsc, sizeof(petsc)));
+  PetscCheck(H5get_libversion(&major, &minor, &release) >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "HDF5 has no version");
+  PetscCheck(!SUNDIALSGetVersion(sundials, sizeof(sundials)), PETSC_COMM_SELF, PETSC_ERR_LIB,
+             "SUNDIALS has no version");
+  PetscCallMPI(MPI_Get_library_version(mpi, &length));
+  mpi[strcspn(mpi, ",\n")] = '\0'; /* the rest is about who packaged it */
+  petsc[strcspn(petsc, ",")] = '\0';
+  printf("lamella %s\nPETSc %s\nHDF5 %u.%u.%u\nSUNDIALS %s\nMPI %s\n", LAMELLA_VERSION,
+         petsc + strcspn(petsc, "0123456789"), major, minor, release, sundials, mpi);
+  PetscFunctionReturn(0);
+}
+
+/* ---- the command line ---- */
+
+static void TellUnknown(const char word[])
+{
+  const char *commands[COMMAND_COUNT + 1] = {NULL}, *const options[] = {"--help", "--version", NULL}, *near;
+
+  for (int i = 0; i < COMMAND_COUNT; i++) commands[i] = Commands[i].name;
+  near = LamSuggest(word, word[0] == '-' ? options : commands);
+  fprintf(stderr, "lamella: %s '%s' is unknown", word[0] == '-' ? "option" : "command", word);
+  if (near) fprintf(stderr, "; did you mean '%s'?", near);
+  fprintf(stderr, "\nTry 'lamella --help'.\n");
+}
+
+/* Whether the word is the option, under either name. */
+static PetscBool Is(const char word[], const char short_name[], const char long_name[])
+{
+  return (PetscBool)(!strcmp(word, short_name) || !strcmp(word, long_name));
+}
+
+static PetscErrorCode RunCommand(LamArgs *args, int *status)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < COMMAND_COUNT; i++) {
+    if (strcmp(args->argv[0], Commands[i].name)) continue;
+    CommandSolves = Commands[i].solves;
+    PetscCall(Commands[i].run(args, status));
+    PetscFunctionReturn(0);
+  }
+  TellUnknown(args->argv[0]);
+  *status = LAM_EXIT_USAGE;
+  PetscFunctionReturn(0);
+}
+
+/* argv[0] is the program's name. What follows `--`, whose place the program's name takes, is for PETSc alone. */
+static PetscErrorCode RunProgram(int argc, char *argv[], int *status)
+{
+  static char *program_only[2]; /* PETSc keeps the address */
+  LamArgs args = {.argv = argv + 1, .petsc_argc = 1, .petsc_argv = program_only};
+
+  PetscFunctionBeginUser;
+  program_only[0] = argv[0];
+  while (1 + args.argc < argc && strcmp(args.argv[args.argc], "--")) args.argc++;
+  if (1 + args.argc < argc) {
+    args.petsc_argc = argc - 1 - args.argc;
+    args.petsc_argv = args.argv + args.argc;
+    args.petsc_argv[0] = argv[0];
+  }
+  if (!args.argc) {
+    PrintHelp(stderr);
+    *status = LAM_EXIT_USAGE;
+  } else if (Is(args.argv[0], "-h", "--help")) {
+    PrintHelp(stdout);
+  } else if (Is(args.argv[0], "-V", "--version")) {
+    PetscCall(PrintVersion());
+  } else {
+    PetscCall(RunCommand(&args, status));
+  }
+  PetscFunctionReturn(0);
+}
+
+/*
+  The matrices of an RVE are too small for threads, which cost more than they bring and crowd the ranks. The libraries
+  read OMP_NUM_THREADS and OPENBLAS_NUM_THREADS when they are loaded, before main: so they are told by their functions,
+  where they have any, unless the user has set the variable.
+*/
+static void UseOneThread(void)
+{
+  const char *const libraries[][2] = {{"OMP_NUM_THREADS", "omp_set_num_threads"},
+                                      {"OPENBLAS_NUM_THREADS", "openblas_set_num_threads"}};
+
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(libraries); i++) {
+    void (*set)(int);
+
+    *(void **)&set = dlsym(RTLD_DEFAULT, libraries[i][1]);
+    if (set && !getenv(libraries[i][0])) set(1);
+  }
+}
+
+int main(int argc, char *argv[])
+{
+  int status = LAM_EXIT_OK;
+  PetscErrorCode code;
+
+  UseOneThread();
+  signal(SIGPIPE, SIG_IGN);                   /* a closed pipe is an error of writing, told as such */
+  PetscErrorHandlingInitialized = PETSC_TRUE; /* else PETSc calls no handler before PetscInitialize */
+  code = PetscPushErrorHandler(KeepError, NULL);
+  if (!code) code = RunProgram(argc, argv, &status);
+  EndRun(code, &status);
+  return status;
+}
