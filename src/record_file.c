@@ -4,7 +4,7 @@
 #include "record_internal.h"
 #include <errno.h>
 #include <fcntl.h>
-#include <lamella/lamella.h>
+#include <lamella/version.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>

@@ -200,6 +200,7 @@ PetscErrorCode LamFileReadRecords(const char path[], hid_t file, PetscInt commit
 {
   hid_t dataset, type;
   void *bytes = NULL;
+  PetscErrorCode ierr = 0;
 
   PetscFunctionBeginUser;
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, dataset = H5Dopen2(file, "/records", H5P_DEFAULT));
@@ -207,11 +208,10 @@ PetscErrorCode LamFileReadRecords(const char path[], hid_t file, PetscInt commit
   PetscCall(LamRecordTypeCheck(path, type));
   PetscCall(PetscMalloc1(committed + 1, responses));
   PetscCall(PetscMalloc1(committed + 1, keys));
-  if (committed) {
-    PetscCall(ReadBytes(path, dataset, type, committed, &bytes));
-    PetscCall(LamRecordsUnpack(path, committed, bytes, type, *responses, *keys));
-  }
-  PetscCall(PetscFree(bytes));
+  if (committed) ierr = ReadBytes(path, dataset, type, committed, &bytes);
+  if (committed && !ierr) ierr = LamRecordsUnpack(path, committed, bytes, type, *responses, *keys);
+  PetscCall(PetscFree(bytes)); /* also of damaged records: a program may go on without this file */
+  PetscCall(ierr);
   LamCallHDF5(path, PETSC_ERR_LIB, H5Tclose(type));
   LamCallHDF5(path, PETSC_ERR_LIB, H5Dclose(dataset));
   PetscFunctionReturn(0);

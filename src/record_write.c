@@ -68,16 +68,18 @@ static PetscErrorCode CheckType(const char path[], hid_t file)
 
 static PetscErrorCode ReadExisting(LamRecordWriter w, hid_t file, const char kind[], const LamScene *scene)
 {
-  LamResponse *responses;
-  LamHeader header;
+  LamResponse *responses = NULL;
+  LamHeader header = {0};
+  PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
-  PetscCall(CheckSame(w->path, file, kind, scene, &header));
-  PetscCall(CheckType(w->path, file));
-  PetscCall(LamFileReadRecords(w->path, file, header.committed, &responses, &w->keys));
-  PetscCall(PetscFree(responses));
+  ierr = CheckSame(w->path, file, kind, scene, &header);
+  if (!ierr) ierr = CheckType(w->path, file);
+  if (!ierr) ierr = LamFileReadRecords(w->path, file, header.committed, &responses, &w->keys);
   w->n = w->capacity = header.committed;
+  PetscCall(PetscFree(responses));
   PetscCall(LamHeaderDestroy(&header));
+  PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 
