@@ -42,6 +42,16 @@ build() { # PRESET DIRECTORY
   cmake --build "$2"
 }
 
+# The one that the system's alternatives choose; they are not touched, another program may need them as they are.
+report_blas() {
+  local blas
+  blas=$(readlink -f "/usr/lib/$(gcc -print-multiarch)/libblas.so.3")
+  case "$blas" in
+  */openblas-*) echo "BLAS         $blas" ;;
+  *) echo "BLAS         $blas: slow; update-alternatives --config libblas.so.3-$(gcc -print-multiarch) chooses OpenBLAS" ;;
+  esac
+}
+
 main_job() {
   local begin=$SECONDS
   mkdir -p main-job
@@ -51,6 +61,7 @@ main_job() {
   build/lamella plot main-job/tissue-block.h5 -o main-job/tissue-block.png
   echo "result       main-job/tissue-block.h5 (main-job/tissue-block.xdmf for ParaView)"
   echo "picture      main-job/tissue-block.png"
+  report_blas
   echo "time         $((SECONDS - begin)) s"
 }
 

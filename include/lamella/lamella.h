@@ -8,6 +8,7 @@
     database.h   stores responses, answers from them
     cache.h      answers from a database and solves what it lacks
     macro.h      the macroscale finite element solver
+    version.h    LAMELLA_VERSION
 
   Conventions throughout
   * Every function that can fail returns a PetscErrorCode. PETSC_ERR_USER_INPUT: the user's file or
@@ -27,7 +28,6 @@
 #include <lamella/database.h>
 #include <lamella/cache.h>
 #include <lamella/macro.h>
-
-#define LAMELLA_VERSION "0.1.0"
+#include <lamella/version.h>
 
 #endif

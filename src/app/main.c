@@ -59,6 +59,8 @@ static PetscErrorCode KeepError(MPI_Comm comm, int line, const char *function, c
   (void)comm;
   (void)ctx;
   if (type == PETSC_ERROR_INITIAL) {
+    /* PETSc 3.18 gives the line of the caller as the code where malloc fails, and the caller's name as the words */
+    if (!strcmp(function, "PetscMallocAlign")) code = PETSC_ERR_MEM;
     Error.code = code;
     Error.trace[0] = '\0';
     snprintf(Error.message, sizeof(Error.message), "%s", message ? message : "");
@@ -92,10 +94,13 @@ static void TellError(PetscErrorCode code)
     fprintf(stderr, "lamella: %s\n", Error.message);
     return;
   }
+  if (code == PETSC_ERR_MEM) {
+    fprintf(stderr, "lamella: out of memory (%s); lamella check tells what a scene needs\n", Error.message);
+    return;
+  }
   (void)PetscErrorMessage(code, &general, NULL);
-  fprintf(stderr, "lamella: %s%s%s\n%s", general ? general : "", general && Error.message[0] ? ": " : "", Error.message,
-          Error.trace);
-  if (code != PETSC_ERR_MEM) fprintf(stderr, "This is a fault of Lamella, please report it.\n");
+  fprintf(stderr, "lamella: %s%s%s\n%sThis is a fault of Lamella, please report it.\n", general ? general : "",
+          general && Error.message[0] ? ": " : "", Error.message, Error.trace);
 }
 
 #ifdef __SANITIZE_ADDRESS__

@@ -116,20 +116,20 @@ PetscErrorCode LamPrintResponseHeader(void)
 {
   PetscFunctionBeginUser;
   if (!LamAppIsRoot()) PetscFunctionReturn(0);
-  printf("%5s %8s %8s %8s %8s %8s  %-14s %11s %11s %11s %11s %7s %11s %5s %9s\n", "state", "F11", "F12", "F21", "F22",
+  printf("%5s %7s %7s %7s %7s %7s  %-14s %10s %10s %10s %10s %6s %10s %5s %8s\n", "state", "F11", "F12", "F21", "F22",
          "turgor", "status", "P11", "P12", "P21", "P22", "lumen", "traction", "iter.", "time");
-  printf("%5s %8s %8s %8s %8s %8s  %-14s %11s %11s %11s %11s %7s %11s %5s %9s\n", "", "", "", "", "", "MPa", "", "MPa",
+  printf("%5s %7s %7s %7s %7s %7s  %-14s %10s %10s %10s %10s %6s %10s %5s %8s\n", "", "", "", "", "", "MPa", "", "MPa",
          "MPa", "MPa", "MPa", "of V0", "MPa", "", "ms");
   PetscCall(FlushOutput());
   PetscFunctionReturn(0);
 }
 
-static void PrintCell(int width, int digits, PetscReal value)
+static void PrintStress(PetscReal value)
 {
   if (isfinite(value))
-    printf(" %*.*e", width, digits, (double)value);
+    printf(" %10.3e", (double)value);
   else
-    printf(" %*s", width, "-");
+    printf(" %10s", "-");
 }
 
 PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales *scales, PetscInt state)
@@ -140,15 +140,15 @@ PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales 
   PetscFunctionBeginUser;
   if (!LamAppIsRoot()) PetscFunctionReturn(0);
   printf("%5" PetscInt_FMT, state);
-  for (int k = 0; k < 4; k++) printf(" %8.4f", (double)F[in_plane[k]]);
-  printf(" %8.4g  %-14s", (double)(response->load.turgor * MPa), LamStatusNames[response->status]);
-  for (int k = 0; k < 4; k++) PrintCell(11, 4, response->P[in_plane[k]] * MPa);
+  for (int k = 0; k < 4; k++) printf(" %7.4f", (double)F[in_plane[k]]);
+  printf(" %7.4g  %-14s", (double)(response->load.turgor * MPa), LamStatusNames[response->status]);
+  for (int k = 0; k < 4; k++) PrintStress(response->P[in_plane[k]] * MPa);
   if (isfinite(response->lumen_fraction))
-    printf(" %7.4f", (double)response->lumen_fraction);
+    printf(" %6.4f", (double)response->lumen_fraction);
   else
-    printf(" %7s", "-");
-  PrintCell(11, 4, response->max_traction * MPa);
-  printf(" %5" PetscInt_FMT " %9.2f\n", response->newton_iterations, (double)(1e3 * response->seconds));
+    printf(" %6s", "-");
+  PrintStress(response->max_traction * MPa);
+  printf(" %5" PetscInt_FMT " %8.2f\n", response->newton_iterations, (double)(1e3 * response->seconds));
   if (response->status != LAM_CONVERGED) printf("      %s\n", response->reason);
   PetscCall(FlushOutput());
   PetscFunctionReturn(0);

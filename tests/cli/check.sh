@@ -1,0 +1,81 @@
+# lamella check: the plan, without MPI, in agreement with what is then solved.
+set -u
+lamella=$1 source=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failures=0
+
+fail() {
+  echo "check: $1" >&2
+  failures=$((failures + 1))
+}
+
+# number FILE NAME: the first number of that name in a JSON line
+number() { grep -oE "\"$2\": *[-0-9.e+]+" "$1" | head -1 | sed 's/.*: *//'; }
+
+# scene CELLS THICKNESS ACCURACY MESH: writes scene.yaml
+scene() {
+  cat >scene.yaml <<YAML
+version: 1
+rve:
+  cell: {apothem: 75 um, wall_thickness: $2 um}
+  cells: $1
+  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
+  turgor: {pressure: 0.02 MPa}
+$4
+load:
+  - {ramp: {to: [[1, 0.02], [0, 1]], steps: 2}}
+sample:
+  stretch: {min: 0, max: 0.1}
+  count: 7
+macro:
+  mesh: {box: [10 mm, 5 mm], elements: [4, 2]}
+  boundary:
+    - {on: bottom, displacement: [0 mm, 0 mm]}
+  steps: 3
+accuracy: $3
+YAML
+}
+
+# mesh WANTED: along and through of the plan
+mesh() {
+  "$lamella" check scene.yaml --json >plan.json || fail "fails: $(cat scene.yaml)"
+  found="$(number plan.json along) $(number plan.json through)"
+  [ "$found" = "$1" ] || fail "chooses $found elements instead of $1: $(grep -E 'cell:|accuracy|mesh' scene.yaml)"
+}
+
+scene "[1, 1]" 11.25 0.01 ""
+mesh "6 2"
+scene "[1, 1]" 11.25 0.005 ""
+mesh "12 4"
+scene "[1, 1]" 11.25 0.001 ""
+mesh "20 6"
+scene "[1, 1]" 30 0.01 ""
+mesh "12 4"
+scene "[1, 1]" 11.25 0.001 "  mesh: {along: 3, through: 1}"
+mesh "3 1"
+scene "[1, 1]" 11.25 0.001 "  mesh: {along: 5}"
+mesh "5 6"
+
+# the numbers of states of each block
+[ "$(number plan.json states)" = 2 ] || fail "counts $(number plan.json states) states of the load"
+grep -q '"sample": {"states": 7,' plan.json || fail "does not count the samples: $(cat plan.json)"
+[ "$(number plan.json points)" = 72 ] || fail "counts $(number plan.json points) material points"
+
+# as many unknowns as are solved for
+for cells in "[1, 1]" "[2, 3]"; do
+  scene "$cells" 11.25 0.01 "  mesh: {along: 2, through: 1}"
+  "$lamella" check scene.yaml --json >plan.json
+  "$lamella" rve scene.yaml --json --quiet >states.json || fail "rve: $?"
+  [ "$(number plan.json unknowns)" = "$(number states.json unknowns)" ] ||
+    fail "$cells: $(number plan.json unknowns) unknowns, solved for $(number states.json unknowns)"
+done
+
+# for a person: model, mesh, cost
+"$lamella" check "$source/tests/scenes/tissue-block.yaml" >text.txt || fail "exit status $?"
+for words in "plane strain" fibre_mooney_rivlin bonded "0.02 MPa" "6 elements along" "644; one state" "about .* MB" \
+  "576 material points"; do
+  grep -qE "$words" text.txt || fail "does not say \"$words\": $(cat text.txt)"
+done
+exit $((failures > 0))

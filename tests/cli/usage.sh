@@ -1,0 +1,74 @@
+# The command line: help, versions, mistakes of usage, errors of writing.
+set -u
+lamella=$1 source=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failures=0
+
+fail() {
+  echo "usage: $1" >&2
+  failures=$((failures + 1))
+}
+
+# expect STATUS WORDS COMMAND...: the exit status, and words in what is said on stdout or stderr
+expect() {
+  wanted=$1 words=$2
+  shift 2
+  "$@" >out.txt 2>err.txt </dev/null
+  status=$?
+  [ $status -eq "$wanted" ] || fail "exit status $status instead of $wanted: $*: $(cat err.txt)"
+  grep -qF -e "$words" out.txt err.txt || fail "no \"$words\" from: $*: $(cat out.txt err.txt)"
+}
+
+expect 1 "Usage: lamella COMMAND" "$lamella"
+[ -s out.txt ] && fail "a mistake of usage writes to stdout"
+expect 0 "Usage: lamella COMMAND" "$lamella" --help
+[ -s err.txt ] && fail "help goes to stderr"
+cp out.txt help.txt
+for command in check rve build query fe2 plot info; do
+  grep -q "^  $command " help.txt || fail "--help does not name $command"
+  expect 0 "Usage: lamella $command" "$lamella" $command --help
+  [ -s err.txt ] && fail "$command --help goes to stderr"
+  expect 1 "lamella $command --help" "$lamella" $command
+  expect 1 "lamella $command --help" "$lamella" $command a b
+  expect 1 "--no-such-option" "$lamella" $command --no-such-option
+done
+
+version=$(sed -n 's/^project(lamella VERSION \([0-9.]*\).*/\1/p' "$source/CMakeLists.txt")
+expect 0 "lamella $version" "$lamella" --version
+for library in PETSc HDF5 SUNDIALS MPI; do
+  grep -qE "^$library .*[0-9]+\.[0-9]+" out.txt || fail "--version does not name $library: $(cat out.txt)"
+done
+
+expect 1 "did you mean 'query'" "$lamella" qeury db.h5
+expect 1 "did you mean '--version'" "$lamella" --versoin
+expect 1 "'frobnicate' is unknown" "$lamella" frobnicate
+expect 1 "did you mean '--json'" "$lamella" check --jsom scene.yaml
+expect 1 "option '-o' needs a value" "$lamella" rve scene.yaml -o
+expect 1 "option '--output' needs a value" "$lamella" rve scene.yaml --output
+expect 1 "option '--output' needs a value" "$lamella" rve scene.yaml --output=
+expect 1 "option '--json=yes' takes no value" "$lamella" check scene.yaml --json=yes
+expect 2 "missing.yaml" "$lamella" check missing.yaml
+expect 4 "missing.h5" "$lamella" info missing.h5
+
+# what follows -- is for PETSc alone, and PETSc sees nothing else
+scene=$source/tests/scenes/shear-bonded.yaml
+expect 0 '"unknowns": 644' "$lamella" check "$scene" --json -- --no-such-option
+expect 1 "one argument too many" "$lamella" check "$scene" extra -- more
+expect 0 "Petsc Release Version" "$lamella" rve "$scene" --quiet -- -version
+
+# stdout that cannot be written
+if [ -w /dev/full ]; then
+  "$lamella" --help >/dev/full 2>err.txt
+  [ $? -eq 4 ] && grep -q "standard output" err.txt || fail "a full disk goes unnoticed: $(cat err.txt)"
+  "$lamella" check "$scene" --json >/dev/full 2>err.txt
+  [ $? -eq 4 ] && grep -q "standard output" err.txt || fail "JSON on a full disk goes unnoticed: $(cat err.txt)"
+fi
+("$lamella" check "$scene" 2>err.txt; echo $? >status.txt) | true
+case $(cat status.txt) in
+0) ;; # written before the reader was gone
+4) grep -q "standard output" err.txt || fail "a closed pipe is not told: $(cat err.txt)" ;;
+*) fail "a closed pipe ends with status $(cat status.txt)" ;;
+esac
+exit $((failures > 0))

@@ -1,0 +1,38 @@
+# rve on two ranks: rank 0 solves the chain; output, mistakes and exit status as in serial.
+set -u
+lamella=$1 source=$2
+command -v mpirun >/dev/null || exit 77
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failures=0
+
+fail() {
+  echo "mpi rve: $1" >&2
+  failures=$((failures + 1))
+}
+
+scene=$source/tests/scenes/shear-bonded.yaml
+"$lamella" rve "$scene" --json >one.txt || fail "serial: exit status $?"
+mpirun -n 2 "$lamella" rve "$scene" --json -o two.h5 >two.txt || fail "two ranks: exit status $?"
+sed 's/"seconds": [^,]*,//' one.txt >one.cut
+sed 's/"seconds": [^,]*,//' two.txt >two.cut
+cmp -s one.cut two.cut || fail "the states depend on the number of ranks: $(diff one.cut two.cut)"
+
+# a mistake in the scene, and one in the usage, are told once
+mpirun -n 2 "$lamella" rve "$source/tests/scenes/bad/F-huge.yaml" 2>err.txt
+[ $? -eq 2 ] || fail "a wrong scene does not end with status 2: $(cat err.txt)"
+[ "$(grep -c 'F-huge.yaml:8:11' err.txt)" -eq 1 ] || fail "a wrong scene is not told once: $(cat err.txt)"
+mpirun -n 2 "$lamella" build "$source/tests/scenes/bad/F-huge.yaml" -d db.h5 2>err.txt
+[ $? -eq 2 ] || fail "a wrong scene does not end build with status 2: $(cat err.txt)"
+[ "$(grep -c 'F-huge.yaml:8:11' err.txt)" -eq 1 ] || fail "a wrong scene is not told once by all ranks: $(cat err.txt)"
+mpirun -n 2 "$lamella" rve --no-such-option 2>err.txt
+[ $? -eq 1 ] || fail "a mistake of usage does not end with status 1: $(cat err.txt)"
+[ "$(grep -c 'is unknown' err.txt)" -eq 1 ] || fail "a mistake of usage is not told once: $(cat err.txt)"
+
+# a rank that is alone with its error ends the job, and its words are seen
+mpirun -n 1 "$lamella" build "$source/tests/scenes/tissue-block.yaml" -d alone.h5 : \
+  -n 1 "$lamella" build missing.yaml -d alone.h5 >out.txt 2>err.txt
+[ $? -eq 2 ] || fail "a lone error does not end with its status: $(cat err.txt)"
+grep -q 'lamella: missing.yaml' err.txt || fail "a lone error is not seen: $(cat err.txt)"
+exit $((failures > 0))
