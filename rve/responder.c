@@ -30,8 +30,7 @@ static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], cons
                (int)direct->points);
     if (point >= 0) {
       state = direct->latest[point];
-      if (state->branch != direct->accepted[point]->branch)
-        PetscCall(LamRVEStateCopy(direct->accepted[point], state));
+      if (state->branch != direct->accepted[point]->branch) PetscCall(LamRVEStateCopy(direct->accepted[point], state));
     } else {
       PetscCall(LamRVEStateReset(direct->rve, state));
     }

@@ -158,6 +158,22 @@ static PetscErrorCode FillFields(LamRVE rve, const LamLoad *load, LamResponse *r
   PetscFunctionReturn(0);
 }
 
+/* A state in which walls have passed through each other is not an answer. */
+static PetscErrorCode RefuseCollapsedLumen(LamRVE rve, LamResponse *response)
+{
+  PetscInt cell;
+
+  PetscFunctionBeginUser;
+  if (!LamResponseHasFields(response)) PetscFunctionReturn(0);
+  PetscCall(LamFindCollapsedLumen(rve, rve->y, &cell));
+  if (cell < 0) PetscFunctionReturn(0);
+  response->status = LAM_NOT_CONVERGED;
+  PetscCall(PetscSNPrintf(
+      response->reason, sizeof(response->reason),
+      "the lumen of cell %d has collapsed: its walls touch, and contact inside a lumen is not modelled", (int)cell));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
 {
   PetscLogDouble begin, end;
@@ -177,6 +193,7 @@ PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, L
   rve->lowest_eigenvalue = NAN;
   PetscCall(LamFollowPath(rve, load, state, &response->branch, &response->negative_eigenvalues, &response->status,
                           response->reason, sizeof(response->reason)));
+  PetscCall(RefuseCollapsedLumen(rve, response));
   if (LamResponseHasFields(response)) {
     PetscCall(FillFields(rve, load, response));
     response->stable = (PetscBool)(response->status == LAM_CONVERGED);

@@ -6,6 +6,7 @@
     newton.c             one equilibrium from a start: fast and safe tier
     stability.c          softest mode of a converged state
     path.c               start, substeps, leaving a saddle
+    lumen.c              lumens whose walls have met
     homogenise.c         stress, tangent and couplings by static condensation
     traction.c           interface tractions of bonded faces
 
@@ -108,6 +109,10 @@ PetscErrorCode LamSoftestMode(LamRVE rve, PetscReal *eigenvalue, PetscReal mode[
 /* Finds a stable equilibrium at `load` from `state`; leaves it in rve->y with the consistent tangent factored. */
 PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, PetscInt *branch, PetscInt *negative,
                              LamStatus *status, char reason[], size_t length);
+
+/* ---- lumen.c ---- */
+/* The first cell whose inner loop crosses itself at positions y, -1: none. */
+PetscErrorCode LamFindCollapsedLumen(LamRVE rve, const PetscReal y[], PetscInt *cell);
 
 /* ---- homogenise.c, traction.c ---- */
 /* Fills energy, P, tangent, couplings and lumen fraction from rve->y and the factored consistent tangent. */

@@ -11,7 +11,7 @@
 #include "rve_impl.h"
 #include <petscblaslapack.h>
 
-#define SAMPLES 8 /* per edge: midpoint rule of the running integrals */
+#define SAMPLES 8 /* per edge: sub-intervals of the running integrals */
 
 static PetscInt OuterNode(const LamMesh *mesh, PetscInt cell, PetscInt around)
 {
@@ -116,18 +116,25 @@ static PetscErrorCode FaceTraction(PetscInt along, const PetscReal x[][2], Petsc
 static void Accumulate(PetscInt along, const PetscReal x[][2], const PetscReal t[][2], PetscReal force[],
                        PetscReal length[])
 {
+  const PetscReal half = 1.0 / SAMPLES; /* of a sub-interval */
+
   force[0] = length[0] = 0.0;
   for (PetscInt e = 0; e < along; ++e)
     for (PetscInt s = 0; s < SAMPLES; ++s) {
       const PetscInt k = e * SAMPLES + s;
-      const PetscReal h = 2.0 / SAMPLES, xi = -1.0 + h * ((PetscReal)s + 0.5);
-      PetscReal N[3], tangent[2], tn = 0.0;
 
-      EdgePoint(&x[2 * e], xi, N, tangent);
-      /* outward normal times ds/dxi is (tangent_2, -tangent_1): the face runs counter-clockwise around its cell */
-      for (PetscInt i = 0; i < 3; ++i) tn += N[i] * (t[2 * e + i][0] * tangent[1] - t[2 * e + i][1] * tangent[0]);
-      force[k + 1] = force[k] + h * tn;
-      length[k + 1] = length[k] + h * PetscSqrtReal(tangent[0] * tangent[0] + tangent[1] * tangent[1]);
+      force[k + 1] = force[k];
+      length[k + 1] = length[k];
+      for (PetscInt side = -1; side <= 1; side += 2) { /* two Gauss points: exact for t.n, a cubic */
+        const PetscReal xi = -1.0 + half * (2.0 * (PetscReal)s + 1.0 + (PetscReal)side / PetscSqrtReal(3.0));
+        PetscReal N[3], tangent[2], tn = 0.0;
+
+        EdgePoint(&x[2 * e], xi, N, tangent);
+        /* outward normal times ds/dxi is (tangent_2, -tangent_1): the face runs counter-clockwise around its cell */
+        for (PetscInt i = 0; i < 3; ++i) tn += N[i] * (t[2 * e + i][0] * tangent[1] - t[2 * e + i][1] * tangent[0]);
+        force[k + 1] += half * tn;
+        length[k + 1] += half * PetscSqrtReal(tangent[0] * tangent[0] + tangent[1] * tangent[1]);
+      }
     }
 }
 
