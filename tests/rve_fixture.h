@@ -1,4 +1,4 @@
-/* What tests of the RVE share: the default tissue, loads, solving from the reference state. */
+/* What tests of the RVE share: solving the tissue of tissue.h from the reference state. */
 #ifndef LAM_RVE_FIXTURE_H
 #define LAM_RVE_FIXTURE_H
 
@@ -8,28 +8,7 @@
 #include <stdint.h>
 #include <math.h>
 #include <cmocka.h>
-#include <lamella/lamella.h>
-
-#define TISSUE_STRESS 0.11 /* C1 + C2 of the default tissue, MPa */
-
-/* The default tissue (C1 = 0.1, C2 = 0.01, C4 = 1 MPa) with one cell and the coarse mesh. */
-static inline LamMicrostructure DefaultTissue(void)
-{
-  LamMicrostructure micro = {.wall_thickness = 0.15, .cells = {1, 1}, .along = 6, .through = 2};
-
-  micro.wall.C1 = 0.1 / TISSUE_STRESS;
-  micro.wall.C2 = 0.01 / TISSUE_STRESS;
-  micro.wall.C4 = 1.0 / TISSUE_STRESS;
-  micro.wall.bulk_modulus = 1000.0;
-  return micro;
-}
-
-static inline LamLoad PlaneLoad(double F11, double F12, double F21, double F22, double turgor)
-{
-  LamLoad load = {.F = {F11, F12, 0, F21, F22, 0, 0, 0, 1}, .turgor = turgor};
-
-  return load;
-}
+#include "tissue.h"
 
 static inline LamRVE NewRVE(const LamMicrostructure *micro)
 {

@@ -323,8 +323,8 @@ static PetscErrorCode RunAll(Build *b, PetscBool resume)
     else
       (void)LamRecordWriterClose(&b->writer);
   } else {
-    ierr = LamDispatchServe(&b->dispatch);
-    if (ierr) MPI_Abort(b->dispatch.comm, LAM_EXIT_IO);
+    /* alone with its error, a worker goes straight to main, which tells it and ends the job */
+    PetscCall(LamDispatchServe(&b->dispatch));
   }
   PetscCall(Share(b, ierr));
   if (root) PetscCall(Summary(b));
