@@ -22,16 +22,18 @@
 PetscReal LamNewtonTolerance(LamRVE rve)
 {
   /* Forces of the pressure and of the fibres carry a rounding error of eps times their stiffness in each of n entries.
-     Gradients are differences of positions, so it grows with the size of the RVE over the depth of an element; the
-     floor measured from t = 0.003 to 0.5 and up to 8 x 8 cells is 0.4 to 0.55 aspect x cells (docs/verification.md). */
+     Gradients are differences of positions, so it grows with the size of the RVE over the depth of an element. The
+     floor measured from t = 0.003 to 0.5 and up to 8 x 8 cells stays below 0.6 slenderness x size
+     (docs/verification.md). */
   const LamMicrostructure *micro = &rve->micro;
   const PetscReal stiffness = micro->wall.bulk_modulus + micro->wall.C4;
   const PetscReal aspect =
       2.0 / PetscSqrtReal(3.0) * (PetscReal)micro->through / ((PetscReal)micro->along * micro->wall_thickness);
-  const PetscReal cells = (PetscReal)PetscMax(micro->cells[0], micro->cells[1]);
+  const PetscReal slenderness = PetscMax(aspect, 1.0 / aspect);
+  const PetscReal size = 1.0 + PetscSqrtReal(3.0) * (PetscReal)(PetscMax(micro->cells[0], micro->cells[1]) - 1);
   const PetscReal rounding = PETSC_MACHINE_EPSILON * stiffness * PetscSqrtReal((PetscReal)rve->ndof);
 
-  return PetscMax(1e-11, PetscMax(4.0, aspect * cells) * rounding);
+  return PetscMax(1e-11, PetscMax(4.0, slenderness * size) * rounding);
 }
 
 static PetscErrorCode Report(LamRVE rve, const char tier[], PetscInt iteration, PetscReal residual, PetscReal step,

@@ -311,7 +311,7 @@ static PetscErrorCode Share(Build *b, PetscErrorCode ierr)
 static PetscErrorCode RunAll(Build *b, PetscBool resume)
 {
   const PetscBool root = (PetscBool)(b->dispatch.rank == 0);
-  PetscErrorCode ierr;
+  PetscErrorCode ierr = 0;
 
   PetscFunctionBeginUser;
   PetscCall(Share(b, root ? OpenWriter(b, resume) : 0));
