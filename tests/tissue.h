@@ -1,0 +1,45 @@
+/* The tissue that tests and bench programs share, loads, and one solve from the reference state. */
+#ifndef LAM_TISSUE_H
+#define LAM_TISSUE_H
+
+#include <lamella/lamella.h>
+
+#define TISSUE_STRESS 0.11 /* C1 + C2 of the default tissue, MPa */
+
+/* The default tissue (C1 = 0.1, C2 = 0.01, C4 = 1 MPa) with one cell and the coarse mesh. */
+static inline LamMicrostructure DefaultTissue(void)
+{
+  LamMicrostructure micro = {.wall_thickness = 0.15, .cells = {1, 1}, .along = 6, .through = 2};
+
+  micro.wall.C1 = 0.1 / TISSUE_STRESS;
+  micro.wall.C2 = 0.01 / TISSUE_STRESS;
+  micro.wall.C4 = 1.0 / TISSUE_STRESS;
+  micro.wall.bulk_modulus = 1000.0;
+  return micro;
+}
+
+static inline LamLoad PlaneLoad(double F11, double F12, double F21, double F22, double turgor)
+{
+  LamLoad load = {.F = {F11, F12, 0, F21, F22, 0, 0, 0, 1}, .turgor = turgor};
+
+  return load;
+}
+
+/* Solves one load with a new RVE, from F = I in one go. */
+static inline PetscErrorCode SolveOnce(const LamMicrostructure *micro, const LamLoad *load, LamResponse *response)
+{
+  LamRVE rve;
+  LamRVEState state;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
+  PetscCall(LamRVESetMicrostructure(rve, micro));
+  PetscCall(LamRVESetUp(rve));
+  PetscCall(LamRVEStateCreate(rve, &state));
+  PetscCall(LamRVESolve(rve, load, state, response));
+  PetscCall(LamRVEStateDestroy(&state));
+  PetscCall(LamRVEDestroy(&rve));
+  PetscFunctionReturn(0);
+}
+
+#endif

@@ -1,0 +1,241 @@
+/* Wall law kernels against closed forms and against finite differences at random states. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <math.h>
+#include <cmocka.h>
+#include "assert_near.h"
+#include "wall_law.h"
+#include "random_reals.h"
+
+#define STATES 40
+
+static const LamWall wall = {
+    .law = LAM_WALL_FIBRE_MOONEY_RIVLIN, .C1 = 0.7, .C2 = 0.3, .C4 = 12.0, .bulk_modulus = 1000.0};
+
+/* Relative to 1 + |expected|. */
+static void AssertClose(double value, double expected, double tolerance)
+{
+  assert_near(value, expected, tolerance * (1.0 + fabs(expected)));
+}
+
+static void RandomState(uint64_t *seed, double F[4], double *F33)
+{
+  for (int i = 0; i < 4; i++) F[i] = (i % 3 == 0 ? 1.0 : 0.0) + RandomReal(seed, -0.35, 0.35);
+  *F33 = RandomReal(seed, 0.8, 1.3);
+}
+
+static LamKernel Matrix(const double F[4], double F33)
+{
+  const LamWallLaw *law;
+  LamKernel kernel;
+
+  assert_int_equal(LamWallLawGet(LAM_WALL_MOONEY_RIVLIN, &law), 0);
+  law->matrix(&wall, F, F33, &kernel);
+  return kernel;
+}
+
+static LamKernel1 Fibre(const LamWall *of, double I4)
+{
+  const LamWallLaw *law;
+  LamKernel1 kernel;
+
+  assert_int_equal(LamWallLawGet(LAM_WALL_FIBRE_MOONEY_RIVLIN, &law), 0);
+  law->fibre(of, I4, &kernel);
+  return kernel;
+}
+
+/* Uniaxial tension of an incompressible body: W and s1 - s2 = C1 (l^2 - 1/l) + C2 (l - 1/l^2) (Mooney). */
+static void MatrixUniaxialIsExact(void **state)
+{
+  for (double l = 0.6; l < 2.1; l += 0.3) {
+    const double r = 1.0 / sqrt(l), F[4] = {l, 0, 0, r};
+    const LamKernel k = Matrix(F, r);
+
+    AssertClose(k.W, 0.5 * wall.C1 * (l * l + 2.0 / l - 3.0) + 0.5 * wall.C2 * (2.0 * l + 1.0 / (l * l) - 3.0), 1e-13);
+    AssertClose(l * k.P[0] - r * k.P[3], wall.C1 * (l * l - 1.0 / l) + wall.C2 * (l - 1.0 / (l * l)), 1e-13);
+    AssertClose(r * k.P[4], r * k.P[3], 1e-13);
+  }
+}
+
+/* Simple shear: s12 = (C1 + C2) g, s11 - s33 = C1 g^2, s22 - s33 = -C2 g^2 (Rivlin). */
+static void MatrixSimpleShearIsExact(void **state)
+{
+  for (double g = -1.0; g < 1.1; g += 0.4) {
+    const double F[4] = {1, g, 0, 1};
+    const LamKernel k = Matrix(F, 1.0);
+    const double s11 = k.P[0] + g * k.P[1], s22 = k.P[3], s12 = k.P[1];
+
+    AssertClose(k.W, 0.5 * (wall.C1 + wall.C2) * g * g, 1e-13);
+    AssertClose(s12, (wall.C1 + wall.C2) * g, 1e-13);
+    AssertClose(s11 - k.P[4], wall.C1 * g * g, 1e-13);
+    AssertClose(s22 - k.P[4], -wall.C2 * g * g, 1e-13);
+  }
+}
+
+/* A change of volume neither stores energy in the matrix nor gives it a pressure. */
+static void MatrixIsIsochoric(void **state)
+{
+  uint64_t seed = 3;
+
+  for (int n = 0; n < STATES; n++) {
+    double F[4], G[4], F33, trace;
+    LamKernel k;
+
+    RandomState(&seed, F, &F33);
+    for (int i = 0; i < 4; i++) G[i] = 1.2 * F[i];
+    k = Matrix(F, F33);
+    trace = F33 * k.P[4];
+    for (int i = 0; i < 4; i++) trace += F[i] * k.P[i];
+    AssertClose(Matrix(G, 1.2 * F33).W, k.W, 1e-12);
+    AssertClose(trace, 0.0, 1e-12);
+  }
+}
+
+/* Uniaxial tension along the fibres adds the Cauchy stress 2 I4 dW/dI4 = C4 l^2 (l^2 - 1) to the matrix's. */
+static void FibreUniaxialIsExact(void **state)
+{
+  for (double l = 0.6; l < 2.1; l += 0.3) {
+    const LamKernel1 k = Fibre(&wall, l * l);
+
+    AssertClose(k.W, 0.25 * wall.C4 * pow(l * l - 1.0, 2), 1e-13);
+    AssertClose(2.0 * l * l * k.d, wall.C4 * l * l * (l * l - 1.0), 1e-13);
+  }
+}
+
+/* Shear across the fibres, M = e2, Fm = (g, 1): the fibres add C4 g^3, the cubic of Mihai, Safar & Wyatt, eq. 3.26. */
+static void FibreSimpleShearIsExact(void **state)
+{
+  for (double g = -1.0; g < 1.1; g += 0.4) {
+    const LamKernel1 k = Fibre(&wall, 1.0 + g * g);
+
+    AssertClose(2.0 * k.d * g, wall.C4 * g * g * g, 1e-13);
+  }
+}
+
+/* `fibres: tension` leaves shortened fibres slack and changes nothing for stretched ones. */
+static void SlackFibresCarryNothing(void **state)
+{
+  LamWall tension = wall;
+  LamKernel1 slack, taut, both;
+
+  tension.fibres = LAM_FIBRES_TENSION;
+  slack = Fibre(&tension, 0.81);
+  taut = Fibre(&tension, 1.21);
+  both = Fibre(&wall, 1.21);
+  assert_true(slack.W == 0.0 && slack.d == 0.0 && slack.dd == 0.0);
+  assert_true(taut.W == both.W && taut.d == both.d && taut.dd == both.dd);
+}
+
+static void PlainLawHasNoFibres(void **state)
+{
+  const LamWallLaw *law;
+
+  assert_int_equal(LamWallLawGet(LAM_WALL_MOONEY_RIVLIN, &law), 0);
+  assert_null(law->fibre);
+}
+
+/* One number of the kernel as a function of component c of (F, F33), and its fourth-order central difference. */
+static double MatrixDifference(const double F[4], double F33, int c, int value)
+{
+  static const double at[4] = {-2, -1, 1, 2}, weight[4] = {1, -8, 8, -1};
+  const double h = 2e-4;
+  double sum = 0.0;
+
+  for (int k = 0; k < 4; k++) {
+    double G[5] = {F[0], F[1], F[2], F[3], F33};
+    LamKernel kernel;
+
+    G[c] += at[k] * h;
+    kernel = Matrix(G, G[4]);
+    sum += weight[k] * (value < 0 ? kernel.W : kernel.P[value]);
+  }
+  return sum / (12.0 * h);
+}
+
+static void MatrixStressIsDerivativeOfEnergy(void **state)
+{
+  uint64_t seed = 11;
+
+  for (int n = 0; n < STATES; n++) {
+    double F[4], F33;
+
+    RandomState(&seed, F, &F33);
+    for (int c = 0; c < LAM_KERNEL_COMPONENTS; c++)
+      AssertClose(Matrix(F, F33).P[c], MatrixDifference(F, F33, c, -1), 1e-9);
+  }
+}
+
+static void MatrixTangentIsDerivativeOfStress(void **state)
+{
+  uint64_t seed = 12;
+
+  for (int n = 0; n < STATES; n++) {
+    double F[4], F33;
+
+    RandomState(&seed, F, &F33);
+    for (int c = 0; c < LAM_KERNEL_COMPONENTS; c++)
+      for (int r = 0; r < LAM_KERNEL_COMPONENTS; r++)
+        AssertClose(Matrix(F, F33).A[r][c], MatrixDifference(F, F33, c, r), 1e-9);
+  }
+}
+
+static void FibreDerivativesFollowFromEnergy(void **state)
+{
+  const double h = 1e-3;
+
+  for (double I4 = 0.5; I4 < 2.0; I4 += 0.2) { /* central differences are exact for a quadratic */
+    AssertClose(Fibre(&wall, I4).d, (Fibre(&wall, I4 + h).W - Fibre(&wall, I4 - h).W) / (2.0 * h), 1e-10);
+    AssertClose(Fibre(&wall, I4).dd, (Fibre(&wall, I4 + h).d - Fibre(&wall, I4 - h).d) / (2.0 * h), 1e-10);
+  }
+}
+
+static void VolumetricDerivativesFollowFromEnergy(void **state)
+{
+  const double h = 1e-5;
+
+  for (double J = 0.8; J < 1.3; J += 0.07) {
+    LamKernel1 k, plus, minus;
+
+    LamVolumetric(&wall, J, &k);
+    LamVolumetric(&wall, J + h, &plus);
+    LamVolumetric(&wall, J - h, &minus);
+    AssertClose(k.W, 0.25 * wall.bulk_modulus * (J * J - 1.0 - 2.0 * log(J)), 1e-12);
+    AssertClose(k.d, (plus.W - minus.W) / (2.0 * h), 1e-6);
+    AssertClose(k.dd, (plus.d - minus.d) / (2.0 * h), 1e-6);
+  }
+}
+
+/* Small strains: shear modulus C1 + C2, bulk modulus kappa. */
+static void SmallStrainModuliAreThoseOfTheLaw(void **state)
+{
+  const double unit[4] = {1, 0, 0, 1};
+  const LamKernel k = Matrix(unit, 1.0);
+  LamKernel1 u;
+
+  LamVolumetric(&wall, 1.0, &u);
+  AssertClose(k.A[1][1], wall.C1 + wall.C2, 1e-13);
+  AssertClose(k.A[0][0] - k.A[0][3], 2.0 * (wall.C1 + wall.C2), 1e-13);
+  AssertClose(u.dd, wall.bulk_modulus, 1e-13);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(MatrixUniaxialIsExact),
+      cmocka_unit_test(MatrixSimpleShearIsExact),
+      cmocka_unit_test(MatrixIsIsochoric),
+      cmocka_unit_test(FibreUniaxialIsExact),
+      cmocka_unit_test(FibreSimpleShearIsExact),
+      cmocka_unit_test(SlackFibresCarryNothing),
+      cmocka_unit_test(PlainLawHasNoFibres),
+      cmocka_unit_test(MatrixStressIsDerivativeOfEnergy),
+      cmocka_unit_test(MatrixTangentIsDerivativeOfStress),
+      cmocka_unit_test(FibreDerivativesFollowFromEnergy),
+      cmocka_unit_test(VolumetricDerivativesFollowFromEnergy),
+      cmocka_unit_test(SmallStrainModuliAreThoseOfTheLaw),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

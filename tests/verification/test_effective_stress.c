@@ -1,0 +1,35 @@
+/* Effective-stress principle of bonded tissue: P + p J F^-T does not depend on p as the walls become incompressible. */
+#include "rve_fixture.h"
+#include "figures_effective_stress.h"
+
+static double remainders[3]; /* at kappa = 1e2, 1e3, 1e4 */
+
+static int SolveAll(void **state)
+{
+  for (int k = 0; k < 3; k++)
+    if (EffectiveStressRemainder(pow(10.0, 2 + k), &remainders[k])) return 1;
+  return 0;
+}
+
+static void RemainderIsSmall(void **state)
+{
+  assert_true(remainders[1] < 0.02);
+}
+
+static void RemainderFallsAsOneOverBulkModulus(void **state)
+{
+  for (int k = 1; k < 3; k++) assert_in_range((int)(100.0 * remainders[k - 1] / remainders[k]), 900, 1100);
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(RemainderIsSmall),
+      cmocka_unit_test(RemainderFallsAsOneOverBulkModulus),
+  };
+  int failed;
+
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  failed = cmocka_run_group_tests(tests, SolveAll, NULL);
+  return PetscFinalize() || failed;
+}

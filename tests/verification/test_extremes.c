@@ -1,0 +1,126 @@
+/* Large deformations are answered with stable states; impossible ones with a true reason. */
+#include "rve_fixture.h"
+#include "figures_extremes.h"
+
+static void LargeDeformationsAreAnswered(void **state)
+{
+  const LamMicrostructure micro = DefaultTissue();
+  Extreme list[EXTREMES];
+
+  ListExtremes(list);
+  for (int k = 0; k < EXTREMES; k++) {
+    const LamResponse r = SolveTissue(&micro, list[k].load);
+
+    if (r.status != LAM_CONVERGED)
+      fail_msg("%s, turgor %g: %s: %s", list[k].name, r.load.turgor, LamStatusNames[r.status], r.reason);
+    assert_true(r.stable);
+    assert_int_equal(r.negative_eigenvalues, 0);
+    assert_string_equal(r.reason, "");
+  }
+}
+
+/* Asked in small steps, the tissue reaches the state that it reaches at one go. */
+static void OneGoAndSmallStepsAgree(void **state)
+{
+  const LamMicrostructure micro = DefaultTissue();
+  const LamResponse once = SolveTissue(&micro, PlaneLoad(1, 0.8, 0, 1, 0.02 / TISSUE_STRESS));
+  LamRVE rve = NewRVE(&micro);
+  LamRVEState point;
+  LamResponse r;
+
+  assert_int_equal(LamRVEStateCreate(rve, &point), 0);
+  for (int k = 1; k <= 8; k++) {
+    const LamLoad load = PlaneLoad(1, 0.1 * k, 0, 1, 0.02 / TISSUE_STRESS);
+
+    assert_int_equal(LamRVESolve(rve, &load, point, &r), 0);
+  }
+  assert_true(LamStressError(r.P, once.P) < 1e-8);
+  assert_int_equal(LamRVEStateDestroy(&point), 0);
+  assert_int_equal(LamRVEDestroy(&rve), 0);
+}
+
+static void AssertInvalid(LamLoad load, const char fragment[])
+{
+  const LamMicrostructure micro = DefaultTissue();
+  const LamResponse r = SolveTissue(&micro, load);
+
+  assert_int_equal(r.status, LAM_INVALID_F);
+  if (!strstr(r.reason, fragment)) fail_msg("reason \"%s\" lacks \"%s\"", r.reason, fragment);
+  assert_false(r.stable);
+  assert_true(isnan(r.P[0]));
+}
+
+static void InsideOutIsInvalid(void **state)
+{
+  AssertInvalid(PlaneLoad(-1, 0, 0, 1, 0), "inside out");
+  AssertInvalid(PlaneLoad(1, 1, 1, 1, 0), "inside out");
+}
+
+static void NegativeThicknessIsInvalid(void **state)
+{
+  LamLoad load = PlaneLoad(1, 0, 0, 1, 0);
+
+  load.F[8] = -1.0;
+  AssertInvalid(load, "F33");
+}
+
+static void NotANumberIsInvalid(void **state)
+{
+  AssertInvalid(PlaneLoad(NAN, 0, 0, 1, 0), "not finite");
+  AssertInvalid(PlaneLoad(1, INFINITY, 0, 1, 0), "not finite");
+  AssertInvalid(PlaneLoad(1, 0, 0, 1, NAN), "not finite");
+}
+
+static void OutOfPlaneShearIsInvalid(void **state)
+{
+  LamLoad load = PlaneLoad(1, 0, 0, 1, 0);
+
+  load.F[2] = 0.1;
+  AssertInvalid(load, "out-of-plane");
+}
+
+/* Walls that have passed through each other are not an answer. */
+static void CollapsedLumenIsRefused(void **state)
+{
+  const LamMicrostructure micro = DefaultTissue();
+  const LamResponse open = SolveTissue(&micro, PlaneLoad(0.7, 0, 0, 1, 0));
+  const LamResponse closed = SolveTissue(&micro, PlaneLoad(0.6, 0, 0, 1, 0));
+
+  assert_int_equal(open.status, LAM_CONVERGED);
+  assert_int_equal(closed.status, LAM_NOT_CONVERGED);
+  assert_non_null(strstr(closed.reason, "collapsed"));
+}
+
+/* A failed solve leaves the state as it was: the next load is answered as if nothing had happened. */
+static void FailureLeavesTheStateAsItWas(void **state)
+{
+  const LamMicrostructure micro = DefaultTissue();
+  const LamLoad first = PlaneLoad(1, 0.1, 0, 1, 0.1), bad = PlaneLoad(0, 0, 0, 0, 0.1);
+  LamRVE rve = NewRVE(&micro);
+  LamRVEState point;
+  LamResponse before, failed, after;
+
+  assert_int_equal(LamRVEStateCreate(rve, &point), 0);
+  assert_int_equal(LamRVESolve(rve, &first, point, &before), 0);
+  assert_int_equal(LamRVESolve(rve, &bad, point, &failed), 0);
+  assert_int_equal(failed.status, LAM_INVALID_F);
+  assert_int_equal(LamRVESolve(rve, &first, point, &after), 0);
+  assert_int_equal(after.newton_iterations, 0);
+  assert_int_equal(LamRVEStateDestroy(&point), 0);
+  assert_int_equal(LamRVEDestroy(&rve), 0);
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(LargeDeformationsAreAnswered), cmocka_unit_test(OneGoAndSmallStepsAgree),
+      cmocka_unit_test(InsideOutIsInvalid),           cmocka_unit_test(NegativeThicknessIsInvalid),
+      cmocka_unit_test(NotANumberIsInvalid),          cmocka_unit_test(OutOfPlaneShearIsInvalid),
+      cmocka_unit_test(CollapsedLumenIsRefused),      cmocka_unit_test(FailureLeavesTheStateAsItWas),
+  };
+  int failed;
+
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  failed = cmocka_run_group_tests(tests, NULL, NULL);
+  return PetscFinalize() || failed;
+}

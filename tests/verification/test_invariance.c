@@ -1,0 +1,230 @@
+/* What the answer must not depend on: the observer, the lattice's symmetry, the number of cells, the user's units. */
+#include "rve_fixture.h"
+#include "assert_near.h"
+
+#define TOLERANCE 1e-8
+#define TURGOR (0.02 / TISSUE_STRESS)
+
+static const double F0[9] = {1.06, 0.13, 0, -0.04, 0.99, 0, 0, 0, 1};
+
+static void Multiply(const double A[9], const double B[9], double C[9])
+{
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      C[3 * i + j] = 0.0;
+      for (int k = 0; k < 3; k++) C[3 * i + j] += A[3 * i + k] * B[3 * k + j];
+    }
+}
+
+static void Transpose(const double A[9], double T[9])
+{
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) T[3 * i + j] = A[3 * j + i];
+}
+
+static void Rotation(double angle, double Q[9])
+{
+  const double R[9] = {cos(angle), -sin(angle), 0, sin(angle), cos(angle), 0, 0, 0, 1};
+
+  memcpy(Q, R, sizeof(R));
+}
+
+/* Q A R^T. */
+static void Turn(const double Q[9], const double A[9], const double R[9], double out[9])
+{
+  double QA[9], Rt[9];
+
+  Multiply(Q, A, QA);
+  Transpose(R, Rt);
+  Multiply(QA, Rt, out);
+}
+
+static LamLoad LoadOf(const double F[9], double turgor)
+{
+  LamLoad load = {.turgor = turgor};
+
+  memcpy(load.F, F, sizeof(load.F));
+  return load;
+}
+
+/* b must be a with the current configuration turned by Q and the reference one by R: P -> Q P R^T, A likewise. */
+static void AssertTurned(const LamResponse *a, const LamResponse *b, const double Q[9], const double R[9])
+{
+  static const int plane[4] = {0, 1, 3, 4};
+  double P[9];
+
+  assert_int_equal(b->status, LAM_CONVERGED);
+  Turn(Q, a->P, R, P);
+  for (int i = 0; i < 9; i++) assert_near(b->P[i], P[i], TOLERANCE);
+  for (int m = 0; m < 4; m++)
+    for (int n = 0; n < 4; n++) {
+      const int i = plane[m] / 3, j = plane[m] % 3, k = plane[n] / 3, l = plane[n] % 3;
+      double expected = 0.0;
+
+      for (int p = 0; p < 2; p++)
+        for (int q = 0; q < 2; q++)
+          for (int r = 0; r < 2; r++)
+            for (int s = 0; s < 2; s++)
+              expected +=
+                  Q[3 * i + p] * R[3 * j + q] * Q[3 * k + r] * R[3 * l + s] * a->tangent[9 * (3 * p + q) + 3 * r + s];
+      assert_near(b->tangent[9 * plane[m] + plane[n]], expected, TOLERANCE * fabs(a->tangent[0]));
+    }
+  assert_near(b->energy, a->energy, TOLERANCE);
+  assert_near(b->lumen_fraction, a->lumen_fraction, TOLERANCE);
+  assert_near(b->max_traction, a->max_traction, TOLERANCE * (1.0 + fabs(a->max_traction)));
+}
+
+static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+
+static void RotationOfTheObserver(void **state)
+{
+  const LamMicrostructure micro = DefaultTissue();
+  const LamResponse a = SolveTissue(&micro, LoadOf(F0, TURGOR));
+
+  for (double angle = 0.4; angle < 3.2; angle += 1.2) {
+    double Q[9], F[9];
+    LamResponse b;
+
+    Rotation(angle, Q);
+    Multiply(Q, F0, F);
+    b = SolveTissue(&micro, LoadOf(F, TURGOR));
+    AssertTurned(&a, &b, Q, identity);
+  }
+}
+
+/* The cell is the same after each symmetry R of the hexagon: P(R F R^T) = R P(F) R^T. */
+static void AssertSymmetry(const double R[9])
+{
+  const LamMicrostructure micro = DefaultTissue();
+  const LamResponse a = SolveTissue(&micro, LoadOf(F0, TURGOR));
+  double F[9];
+  LamResponse b;
+
+  Turn(R, F0, R, F);
+  b = SolveTissue(&micro, LoadOf(F, TURGOR));
+  AssertTurned(&a, &b, R, R);
+}
+
+static void RotationOfTheLatticeBySixtyDegrees(void **state)
+{
+  double R[9];
+
+  Rotation(PETSC_PI / 3.0, R);
+  AssertSymmetry(R);
+}
+
+static void MirrorOfTheLattice(void **state)
+{
+  static const double along[9] = {1, 0, 0, 0, -1, 0, 0, 0, 1}, across[9] = {-1, 0, 0, 0, 1, 0, 0, 0, 1};
+
+  AssertSymmetry(along);
+  AssertSymmetry(across);
+}
+
+/* `orientation` turns the cell: P = R P0(R^T F R) R^T. */
+static void OrientationTurnsTheCell(void **state)
+{
+  const double angle = 0.37;
+  LamMicrostructure micro = DefaultTissue();
+  const LamResponse a = SolveTissue(&micro, LoadOf(F0, TURGOR));
+  LamResponse b;
+  double R[9], F[9];
+
+  Rotation(angle, R);
+  Turn(R, F0, R, F);
+  micro.orientation = angle;
+  b = SolveTissue(&micro, LoadOf(F, TURGOR));
+  AssertTurned(&a, &b, R, R);
+}
+
+/* Before a pattern longer than a cell appears, more cells answer like one. */
+static void NumberOfCells(void **state)
+{
+  static const int cells[][2] = {{1, 2}, {2, 1}, {2, 2}};
+  LamMicrostructure micro = DefaultTissue();
+  const LamResponse a = SolveTissue(&micro, LoadOf(F0, TURGOR));
+
+  for (int k = 0; k < 3; k++) {
+    LamResponse b;
+
+    micro.cells[0] = cells[k][0];
+    micro.cells[1] = cells[k][1];
+    b = SolveTissue(&micro, LoadOf(F0, TURGOR));
+    AssertTurned(&a, &b, identity, identity);
+    for (int f = 0; f < 3; f++) assert_near(b.mean_face_traction[f], a.mean_face_traction[f], TOLERANCE);
+  }
+}
+
+/* A path does not matter where there is one stable state: in steps by another way, with another turgor. */
+static void PathToTheLoad(void **state)
+{
+  const LamMicrostructure micro = DefaultTissue();
+  const LamResponse a = SolveTissue(&micro, LoadOf(F0, TURGOR));
+  const LamLoad way[2] = {PlaneLoad(1.1, -0.1, 0.1, 1.1, 3.0 * TURGOR), LoadOf(F0, TURGOR)};
+  LamRVE rve = NewRVE(&micro);
+  LamRVEState point;
+  LamResponse b;
+
+  assert_int_equal(LamRVEStateCreate(rve, &point), 0);
+  for (int k = 0; k < 2; k++) assert_int_equal(LamRVESolve(rve, &way[k], point, &b), 0);
+  AssertTurned(&a, &b, identity, identity);
+  assert_int_equal(LamRVEStateDestroy(&point), 0);
+  assert_int_equal(LamRVEDestroy(&rve), 0);
+}
+
+/* Stresses in Pa of the one load of a scene. */
+static void SolveScene(const char text[], double P[9])
+{
+  LamScene *scene;
+  LamResponse r;
+
+  assert_int_equal(LamSceneReadText("units.yaml", text, &scene), 0);
+  r = SolveTissue(&scene->micro, scene->loads[0]);
+  assert_int_equal(r.status, LAM_CONVERGED);
+  for (int i = 0; i < 9; i++) P[i] = scene->scales.stress * r.P[i];
+  assert_int_equal(LamSceneDestroy(&scene), 0);
+}
+
+#define SCENE(cell, wall, pressure)                                                                                    \
+  "version: 1\n"                                                                                                       \
+  "rve:\n"                                                                                                             \
+  "  cell: " cell "\n"                                                                                                 \
+  "  wall: " wall "\n"                                                                                                 \
+  "  interface: {law: bonded}\n"                                                                                       \
+  "  turgor: {mode: prescribed, pressure: " pressure "}\n"                                                             \
+  "  mesh: {along: 6, through: 2}\n"                                                                                   \
+  "load:\n"                                                                                                            \
+  "  - {F: [[1.02, 0.1], [0, 1]]}\n"
+
+static void SystemOfUnits(void **state)
+{
+  static const char *const scenes[3] = {
+      SCENE("{apothem: 75 um, wall_thickness: 11.25 um, orientation: 30 deg}",
+            "{law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa, bulk_modulus: 110 MPa}", "0.02 MPa"),
+      SCENE("{apothem: 7.5e-5 m, wall_thickness: 1.125e-5 m, orientation: 0.5235987755982988 rad}",
+            "{law: fibre_mooney_rivlin, C1: 1e5 Pa, C2: 1e4 Pa, C4: 1e6 Pa, bulk_modulus: 1.1e8 Pa}", "2e4 Pa"),
+      SCENE("{apothem: 0.075 mm, wall_thickness: 11250 nm, orientation: 30 deg}",
+            "{law: fibre_mooney_rivlin, C1: 1 bar, C2: 0.1 bar, C4: 10 bar, bulk_modulus: 1100 bar}", "200 mbar")};
+  double first[9], P[9];
+
+  SolveScene(scenes[0], first);
+  for (int k = 1; k < 3; k++) {
+    SolveScene(scenes[k], P);
+    for (int i = 0; i < 9; i++) assert_near(P[i], first[i], TOLERANCE * fabs(first[0]));
+  }
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(RotationOfTheObserver), cmocka_unit_test(RotationOfTheLatticeBySixtyDegrees),
+      cmocka_unit_test(MirrorOfTheLattice),    cmocka_unit_test(OrientationTurnsTheCell),
+      cmocka_unit_test(NumberOfCells),         cmocka_unit_test(PathToTheLoad),
+      cmocka_unit_test(SystemOfUnits),
+  };
+  int failed;
+
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  failed = cmocka_run_group_tests(tests, NULL, NULL);
+  return PetscFinalize() || failed;
+}
