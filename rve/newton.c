@@ -91,6 +91,17 @@ static PetscErrorCode FactorPositive(LamRVE rve, PetscReal *last_shift, PetscBoo
   PetscFunctionReturn(0);
 }
 
+/*
+  A step that moves nothing by more than rounding ends the iteration, also where the residual cannot come down to the
+  tolerance because large stresses cancel in it.
+*/
+static PetscBool AtRounding(LamRVE rve, PetscReal norm, PetscReal tolerance, PetscReal largest)
+{
+  const PetscReal extent = PetscMax(1.0, LargestEntry(rve->ndof, rve->y));
+
+  return (PetscBool)(largest <= 500.0 * PETSC_MACHINE_EPSILON * extent && norm <= 1e3 * tolerance);
+}
+
 /* Largest of 1, 1/2, ... 1/64 for which no volume along rve->step turns inside out; 0: none. */
 static PetscErrorCode ValidStep(LamRVE rve, const LamLoad *load, PetscReal *alpha)
 {
@@ -133,6 +144,10 @@ PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamNewtonOutcome *
     PetscCall(SolveStep(rve));
     largest = LargestEntry(rve->ndof, rve->step);
     PetscCall(Report(rve, "fast", it, norm, largest, shift));
+    if (AtRounding(rve, norm, tolerance, largest)) {
+      *outcome = LAM_NEWTON_CONVERGED;
+      break;
+    }
     if (!(largest < 10.0)) break;
     ++rve->work.iterations;
     PetscCall(ValidStep(rve, load, &alpha));
@@ -231,7 +246,7 @@ PetscErrorCode LamNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *
   PetscCall(PetscArraycpy(descent.best, rve->y, rve->ndof));
   (void)LamSetConsistentStresses(rve, load, rve->y);
   descent.rounding = 1e-14 * rve->micro.wall.bulk_modulus * rve->mesh.V0;
-  for (PetscInt it = 0; it < SAFE_ITERATIONS; ++it) {
+  for (PetscInt it = 0; it < SAFE_ITERATIONS && rve->work.iterations < LAM_ITERATION_BUDGET; ++it) {
     PetscReal norm, alpha;
     PetscBool moved;
 
@@ -244,6 +259,10 @@ PetscErrorCode LamNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *
     PetscCall(Watch(rve, load, energy, valid, &descent, &moved));
     if (moved) continue;
     PetscCall(SafeStep(rve, load, it, energy, norm, &descent, &alpha));
+    if (AtRounding(rve, norm, tolerance, LargestEntry(rve->ndof, rve->step))) {
+      *outcome = LAM_NEWTON_CONVERGED;
+      break;
+    }
     if (alpha == 0.0) break;
   }
   PetscCall(PetscFree(descent.best));

@@ -125,7 +125,7 @@ static PetscErrorCode Substeps(LamRVE rve, PetscReal y_from[], const LamLoad *st
 
   PetscFunctionBeginUser;
   *reached = 0.0;
-  while (*reached < 1.0) {
+  while (*reached < 1.0 && rve->work.iterations < LAM_ITERATION_BUDGET) {
     const PetscReal t = PetscMin(1.0, *reached + step);
     const LamLoad next = t >= 1.0 ? *load : Between(start, load, t);
     PetscInt switches = *branch;
@@ -150,35 +150,40 @@ PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state,
                              LamStatus *status, char reason[], size_t length)
 {
   LamLoad start = state->load;
-  PetscReal *from, reached = 1.0;
-  PetscBool converged;
+  PetscReal *from, *saddle, reached = 1.0;
+  PetscInt saddle_negative, saddle_branch;
+  PetscBool converged, is_saddle;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(rve->ndof, &from));
+  PetscCall(PetscMalloc2(rve->ndof, &from, rve->ndof, &saddle));
   PetscCall(PetscArraycpy(from, state->y, rve->ndof));
   RotateState(rve->ndof, from, start.F, RotationAngle(load->F) - RotationAngle(start.F));
   *branch = state->branch;
   PetscCall(Step(rve, from, &start, load, branch, negative, &converged));
-  if (!converged || *negative > 0) {
-    const PetscBool saddle = converged;
-
+  is_saddle = (PetscBool)(converged && *negative > 0);
+  if (!converged || is_saddle) {
+    PetscCall(PetscArraycpy(saddle, rve->y, rve->ndof));
+    saddle_negative = *negative;
+    saddle_branch = *branch;
     *branch = state->branch;
     PetscCall(Substeps(rve, from, &start, load, branch, negative, &reached));
     converged = (PetscBool)(reached >= 1.0);
-    if (!converged && saddle) { /* the unstable state is all there is: give it, and say so */
-      AffineStart(rve, from, &start, load);
-      PetscCall(Step(rve, state->y, &state->load, load, branch, negative, &converged));
+    if (!converged && is_saddle) { /* the unstable state is all there is: give it, and say so */
+      PetscCall(PetscArraycpy(rve->y, saddle, rve->ndof));
+      PetscCall(LamFactorConsistent(rve, load, negative, &converged));
+      *negative = saddle_negative;
+      *branch = saddle_branch;
     }
   }
-  PetscCall(PetscFree(from));
+  PetscCall(PetscFree2(from, saddle));
   *status = converged ? (*negative > 0 ? LAM_UNSTABLE : LAM_CONVERGED) : LAM_NOT_CONVERGED;
   if (*status == LAM_UNSTABLE)
     PetscCall(PetscSNPrintf(reason, length, "only a saddle was found: %d negative eigenvalues, lowest %.3g (C1+C2)",
                             (int)*negative, (double)rve->lowest_eigenvalue));
   if (*status == LAM_NOT_CONVERGED)
     PetscCall(PetscSNPrintf(
-        reason, length,
-        "no equilibrium found beyond %.4g of the way from the state before (substeps of %.2g, %d iterations)",
-        (double)reached, (double)MIN_SUBSTEP, (int)rve->work.iterations));
+        reason, length, "no equilibrium found beyond %.4g of the way from the state before, after %d iterations%s",
+        (double)reached, (int)rve->work.iterations,
+        rve->work.iterations < LAM_ITERATION_BUDGET ? " and the smallest substep" : ": give states in between"));
   PetscFunctionReturn(0);
 }

@@ -92,6 +92,8 @@ PetscErrorCode LamLinearSolve(LamLinear *linear, PetscInt count, const PetscReal
 void LamLinearMultiply(const LamLinear *linear, const PetscReal x[], PetscReal y[]);
 
 /* ---- newton.c ---- */
+/* Iterations that one state may take in all, substeps included: some seconds on the default mesh. */
+#define LAM_ITERATION_BUDGET 2000
 typedef enum { LAM_NEWTON_CONVERGED, LAM_NEWTON_STALLED } LamNewtonOutcome;
 /* From rve->y to equilibrium at `load`. Fast: full steps. Safe: inertia-corrected steps that lower the energy. */
 PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome);

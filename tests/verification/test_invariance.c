@@ -92,6 +92,26 @@ static void RotationOfTheObserver(void **state)
   }
 }
 
+/* A solution that is turned is a solution: the start for a turned load is turned with it. */
+static void RotationOfASolutionCostsNothing(void **state)
+{
+  const LamMicrostructure micro = DefaultTissue();
+  LamRVE rve = NewRVE(&micro);
+  LamRVEState point;
+  LamLoad load = LoadOf(F0, TURGOR);
+  LamResponse r;
+  double Q[9];
+
+  Rotation(1.3, Q);
+  assert_int_equal(LamRVEStateCreate(rve, &point), 0);
+  assert_int_equal(LamRVESolve(rve, &load, point, &r), 0);
+  Multiply(Q, F0, load.F);
+  assert_int_equal(LamRVESolve(rve, &load, point, &r), 0);
+  assert_in_range(r.newton_iterations, 0, 1);
+  assert_int_equal(LamRVEStateDestroy(&point), 0);
+  assert_int_equal(LamRVEDestroy(&rve), 0);
+}
+
 /* The cell is the same after each symmetry R of the hexagon: P(R F R^T) = R P(F) R^T. */
 static void AssertSymmetry(const double R[9])
 {
@@ -217,9 +237,13 @@ static void SystemOfUnits(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(RotationOfTheObserver), cmocka_unit_test(RotationOfTheLatticeBySixtyDegrees),
-      cmocka_unit_test(MirrorOfTheLattice),    cmocka_unit_test(OrientationTurnsTheCell),
-      cmocka_unit_test(NumberOfCells),         cmocka_unit_test(PathToTheLoad),
+      cmocka_unit_test(RotationOfTheObserver),
+      cmocka_unit_test(RotationOfASolutionCostsNothing),
+      cmocka_unit_test(RotationOfTheLatticeBySixtyDegrees),
+      cmocka_unit_test(MirrorOfTheLattice),
+      cmocka_unit_test(OrientationTurnsTheCell),
+      cmocka_unit_test(NumberOfCells),
+      cmocka_unit_test(PathToTheLoad),
       cmocka_unit_test(SystemOfUnits),
   };
   int failed;
