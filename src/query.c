@@ -22,6 +22,7 @@
 #include "database_internal.h"
 #include <math.h>
 #include <petsctime.h>
+#include <stdio.h>
 #include <string.h>
 
 #define STRAIN_WEIGHT 0.5
@@ -385,17 +386,16 @@ static void FillStress(const LamExpansion *m, Tensor F, const LamResponse *recor
 }
 
 /*
-  What the potential does not give is the record's, faces renamed. Face tractions of bonded tissue are shifted by the
-  difference in turgor: by the effective-stress principle a change dp adds the uniform pressure dp to the walls.
+  What the potential does not give. For bonded tissue gaps and fractions are zero wherever it is asked; tractions on the
+  faces are the record's where the question is the record's own state, and unknown elsewhere: they are not interpolated.
 */
 static void CopyIndicators(LamDatabase db, const Nearest *at, LamResponse *r)
 {
   const LamResponse *record = &db->records[at->record];
   const PetscInt *face = db->images.face[at->image];
-  PetscReal pressure = 0;
+  const PetscReal unknown = sqrt(at->distance2) < TIE ? 0 : NAN; /* added to what is not interpolated */
 
   if (db->header.micro.interface == LAM_INTERFACE_BONDED) {
-    pressure = r->load.turgor - record->load.turgor;
     for (int i = 0; i < 9; i++) r->P_cohesion[i] = 0;
     r->energy_cohesion2 = r->energy_turgor_cohesion = 0;
   }
@@ -403,10 +403,10 @@ static void CopyIndicators(LamDatabase db, const Nearest *at, LamResponse *r)
   r->debonded_fraction = record->debonded_fraction;
   r->open_fraction = record->open_fraction;
   r->max_gap = record->max_gap;
-  r->max_traction = record->max_traction - pressure;
+  r->max_traction = record->max_traction + unknown;
   for (int k = 0; k < 3; k++) {
     r->debonded_by_face[k] = record->debonded_by_face[face[k]];
-    r->mean_face_traction[k] = record->mean_face_traction[face[k]] - pressure;
+    r->mean_face_traction[k] = record->mean_face_traction[face[k]] + unknown;
   }
   r->lowest_eigenvalue = record->lowest_eigenvalue;
   r->floating_cells = record->floating_cells;
@@ -450,7 +450,7 @@ static PetscBool QuestionIsGood(const LamLoad *load, LamResponse *r)
   J = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
   if (!isfinite(sum) || !(J > 0)) {
     r->status = LAM_INVALID_F;
-    PetscSNPrintf(r->reason, sizeof(r->reason), "det F = %g; a deformation gradient needs det F > 0", (double)J);
+    snprintf(r->reason, sizeof(r->reason), "det F = %g; a deformation gradient needs det F > 0", (double)J);
     return PETSC_FALSE;
   }
   if (!PlaneStrain(F)) {

@@ -4,12 +4,15 @@
 #include "scene_keys.h"
 #include <math.h>
 
+/* Ratios to the apothem and to C1 + C2 beyond which double precision holds nothing of the walls. */
+#define LARGEST_RATIO 1e9
+
 PetscErrorCode LamSceneScale(const LamDocument *document, const LamNode *node, PetscReal si, PetscReal scale,
                              PetscReal *number)
 {
   PetscFunctionBeginUser;
   *number = si / scale;
-  if (node && !isfinite(*number)) {
+  if (node && !(fabs(*number) <= LARGEST_RATIO)) {
     PetscCall(LamSceneFail(document, node, "is beyond all measure against the cell's apothem or C1 + C2; check units"));
   }
   PetscFunctionReturn(0);

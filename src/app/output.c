@@ -148,7 +148,11 @@ PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales 
   else
     printf(" %6s", "-");
   PrintStress(response->max_traction * MPa);
-  printf(" %5" PetscInt_FMT " %8.2f\n", response->newton_iterations, (double)(1e3 * response->seconds));
+  printf(" %5" PetscInt_FMT, response->newton_iterations);
+  if (PetscIsInfOrNanReal(response->seconds))
+    printf(" %8s\n", "-");
+  else
+    printf(" %8.2f\n", (double)(1e3 * response->seconds));
   if (response->status != LAM_CONVERGED) printf("      %s\n", response->reason);
   PetscCall(FlushOutput());
   PetscFunctionReturn(0);
