@@ -18,6 +18,8 @@
 #define WATCHDOG 4      /* steps without decrease before the safe tier goes back */
 #define STEP_LIMIT 0.05 /* of the safe tier, in apothems */
 #define ARMIJO 1e-4
+#define SADDLE_RESIDUAL 1e-4 /* of an indefinite state below which Newton would only creep along a saddle */
+#define ESCAPE_STEP 0.01     /* along a direction of negative curvature, in apothems */
 
 PetscReal LamNewtonTolerance(LamRVE rve)
 {
@@ -148,6 +150,10 @@ PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamNewtonOutcome *
       *outcome = LAM_NEWTON_CONVERGED;
       break;
     }
+    if (shift > 0.0 && norm < SADDLE_RESIDUAL) {
+      *outcome = LAM_NEWTON_NEAR_SADDLE;
+      break;
+    }
     if (!(largest < 10.0)) break;
     ++rve->work.iterations;
     PetscCall(ValidStep(rve, load, &alpha));
@@ -161,6 +167,7 @@ PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamNewtonOutcome *
 /* State of the safe tier. */
 typedef struct {
   PetscReal *best; /* [ndof] position of lowest energy so far */
+  PetscReal *mode; /* [n] softest mode of the last indefinite matrix */
   PetscReal best_energy, shift, rounding;
   PetscInt without_decrease;
   PetscBool monotone; /* line search on the next step */
@@ -205,6 +212,30 @@ static PetscErrorCode Watch(LamRVE rve, const LamLoad *load, PetscReal energy, P
   PetscFunctionReturn(0);
 }
 
+/*
+  Adds to the step a piece of the softest mode, downhill, where the matrix is indefinite and the Newton step is small:
+  near a saddle the residual has next to nothing of that mode, and Newton alone would creep.
+*/
+static PetscErrorCode AddNegativeCurvature(LamRVE rve, Descent *descent)
+{
+  const PetscInt n = rve->linear.n;
+  PetscReal *image = rve->trial + 2, curvature = 0.0, slope = 0.0, largest, sign;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamImproveSoftestMode(rve, 4, descent->mode));
+  LamLinearMultiply(&rve->linear, descent->mode, image);
+  for (PetscInt i = 0; i < n; ++i) {
+    curvature += descent->mode[i] * image[i];
+    slope += descent->mode[i] * rve->residual[i + 2];
+  }
+  if (curvature >= 0.0) PetscFunctionReturn(0);
+  largest = LargestEntry(n, descent->mode);
+  sign = slope > LamNewtonTolerance(rve) ? -1.0 : 1.0; /* the mode has a sign of its own where the slope has none */
+  for (PetscInt i = 0; i < n; ++i) rve->step[i + 2] += sign * ESCAPE_STEP / largest * descent->mode[i];
+  ++rve->work.escapes;
+  PetscFunctionReturn(0);
+}
+
 /* One step of the safe tier from an assembled state; *alpha = 0 where no step lowers the energy. */
 static PetscErrorCode SafeStep(LamRVE rve, const LamLoad *load, PetscInt it, PetscReal energy, PetscReal norm,
                                Descent *descent, PetscReal *alpha)
@@ -217,6 +248,8 @@ static PetscErrorCode SafeStep(LamRVE rve, const LamLoad *load, PetscInt it, Pet
   PetscCall(FactorPositive(rve, &descent->shift, &ok));
   if (!ok) PetscFunctionReturn(0);
   PetscCall(SolveStep(rve));
+  if (descent->shift > 0.0 && LargestEntry(rve->ndof, rve->step) < 0.5 * ESCAPE_STEP)
+    PetscCall(AddNegativeCurvature(rve, descent));
   largest = LargestEntry(rve->ndof, rve->step);
   PetscCall(Report(rve, "safe", it, norm, largest, descent->shift));
   *alpha = largest > STEP_LIMIT ? STEP_LIMIT / largest : 1.0;
@@ -242,7 +275,8 @@ PetscErrorCode LamNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *
   *outcome = LAM_NEWTON_STALLED;
   PetscCall(LamAssembleEnergy(rve, load, rve->y, &descent.best_energy, &valid));
   if (!valid) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1(rve->ndof, &descent.best));
+  PetscCall(PetscMalloc2(rve->ndof, &descent.best, rve->linear.n, &descent.mode));
+  LamStartMode(rve, descent.mode);
   PetscCall(PetscArraycpy(descent.best, rve->y, rve->ndof));
   (void)LamSetConsistentStresses(rve, load, rve->y);
   descent.rounding = 1e-14 * rve->micro.wall.bulk_modulus * rve->mesh.V0;
@@ -265,6 +299,6 @@ PetscErrorCode LamNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *
     }
     if (alpha == 0.0) break;
   }
-  PetscCall(PetscFree(descent.best));
+  PetscCall(PetscFree2(descent.best, descent.mode));
   PetscFunctionReturn(0);
 }

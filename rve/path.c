@@ -92,6 +92,7 @@ static PetscErrorCode LeaveSaddle(LamRVE rve, const LamLoad *load, PetscInt *bra
 static PetscErrorCode Step(LamRVE rve, const PetscReal from[], const LamLoad *load_from, const LamLoad *load_to,
                            PetscInt *branch, PetscInt *negative, PetscBool *converged)
 {
+  const PetscInt escapes = rve->work.escapes;
   LamNewtonOutcome outcome;
   PetscBool ok = PETSC_FALSE;
 
@@ -101,7 +102,10 @@ static PetscErrorCode Step(LamRVE rve, const PetscReal from[], const LamLoad *lo
   if (outcome == LAM_NEWTON_STALLED) {
     AffineStart(rve, from, load_from, load_to);
     PetscCall(LamNewtonSafe(rve, load_to, &outcome));
+  } else if (outcome == LAM_NEWTON_NEAR_SADDLE) {
+    PetscCall(LamNewtonSafe(rve, load_to, &outcome));
   }
+  if (rve->work.escapes > escapes) ++*branch;
   if (outcome == LAM_NEWTON_CONVERGED) PetscCall(LeaveSaddle(rve, load_to, branch, negative, &ok));
   *converged = ok;
   PetscFunctionReturn(0);

@@ -189,7 +189,7 @@ PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, L
     response->status = LAM_INVALID_F;
     PetscFunctionReturn(0);
   }
-  rve->work.iterations = rve->work.factorisations = 0;
+  rve->work = (LamWork){0};
   rve->lowest_eigenvalue = NAN;
   PetscCall(LamFollowPath(rve, load, state, &response->branch, &response->negative_eigenvalues, &response->status,
                           response->reason, sizeof(response->reason)));

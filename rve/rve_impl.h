@@ -42,6 +42,7 @@ struct LamRVEState_s {
 
 typedef struct {
   PetscInt iterations, factorisations;
+  PetscInt escapes; /* steps along a direction of negative curvature */
 } LamWork;
 
 struct LamRVE_s {
@@ -94,8 +95,9 @@ void LamLinearMultiply(const LamLinear *linear, const PetscReal x[], PetscReal y
 /* ---- newton.c ---- */
 /* Iterations that one state may take in all, substeps included: some seconds on the default mesh. */
 #define LAM_ITERATION_BUDGET 2000
-typedef enum { LAM_NEWTON_CONVERGED, LAM_NEWTON_STALLED } LamNewtonOutcome;
-/* From rve->y to equilibrium at `load`. Fast: full steps. Safe: inertia-corrected steps that lower the energy. */
+typedef enum { LAM_NEWTON_CONVERGED, LAM_NEWTON_NEAR_SADDLE, LAM_NEWTON_STALLED } LamNewtonOutcome;
+/* From rve->y to equilibrium at `load`. Fast: full steps. Safe: inertia-corrected steps that lower the energy and leave
+   saddles; never ends NEAR_SADDLE. */
 PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome);
 PetscErrorCode LamNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome);
 /* Tolerance of the residual norm: the rounding error of the stiff forces, but at least 1e-11. */
@@ -104,6 +106,11 @@ PetscReal LamNewtonTolerance(LamRVE rve);
 /* ---- stability.c ---- */
 /* Assembles and factors the consistent tangent at rve->y and counts its negative eigenvalues. */
 PetscErrorCode LamFactorConsistent(LamRVE rve, const LamLoad *load, PetscInt *negative, PetscBool *ok);
+/* A start for the softest mode without the symmetry of the cell, so that no mode is missed, the same in every run. */
+void LamStartMode(LamRVE rve, PetscReal mode[]);
+/* Inverse iterations with the present factor; unit vector, its largest entry positive, so that the branch taken is the
+   same in every run. */
+PetscErrorCode LamImproveSoftestMode(LamRVE rve, PetscInt iterations, PetscReal mode[]);
 /* The most negative eigenvalue of the matrix in linear.values and its unit eigenvector, mode[n]. */
 PetscErrorCode LamSoftestMode(LamRVE rve, PetscReal *eigenvalue, PetscReal mode[]);
 

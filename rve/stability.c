@@ -64,30 +64,44 @@ static PetscReal Normalise(PetscInt n, PetscReal v[])
   return norm;
 }
 
-PetscErrorCode LamSoftestMode(LamRVE rve, PetscReal *eigenvalue, PetscReal mode[])
+void LamStartMode(LamRVE rve, PetscReal mode[])
+{
+  for (PetscInt i = 0; i < rve->linear.n; ++i) mode[i] = PetscSinReal(1.0 + 2.399963 * (PetscReal)i);
+}
+
+PetscErrorCode LamImproveSoftestMode(LamRVE rve, PetscInt iterations, PetscReal mode[])
 {
   const PetscInt n = rve->linear.n;
-  PetscReal shift, largest = 0.0, *next;
+  PetscReal largest = 0.0, *next;
 
   PetscFunctionBeginUser;
-  PetscCall(BracketLowest(rve, &shift));
   PetscCall(PetscMalloc1(n, &next));
-  /* a start without the symmetry of the cell, so that no mode is missed, and the same in every run */
-  for (PetscInt i = 0; i < n; ++i) mode[i] = PetscSinReal(1.0 + 2.399963 * (PetscReal)i);
-  (void)Normalise(n, mode);
-  for (PetscInt it = 0; it < 30; ++it) {
+  for (PetscInt it = 0; it < iterations; ++it) {
     PetscCall(LamLinearSolve(&rve->linear, 1, mode, next));
     PetscCall(PetscArraycpy(mode, next, n));
     (void)Normalise(n, mode);
   }
-  LamLinearMultiply(&rve->linear, mode, next);
-  *eigenvalue = 0.0;
-  for (PetscInt i = 0; i < n; ++i) *eigenvalue += mode[i] * next[i];
+  PetscCall(PetscFree(next));
   for (PetscInt i = 0; i < n; ++i)
     if (PetscAbsReal(mode[i]) > PetscAbsReal(largest) * (1.0 + 1e-6)) largest = mode[i];
   if (largest < 0.0)
-    for (PetscInt i = 0; i < n; ++i)
-      mode[i] = -mode[i]; /* one sign, so that the branch taken is the same in every run */
-  PetscCall(PetscFree(next));
+    for (PetscInt i = 0; i < n; ++i) mode[i] = -mode[i];
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSoftestMode(LamRVE rve, PetscReal *eigenvalue, PetscReal mode[])
+{
+  const PetscInt n = rve->linear.n;
+  PetscReal shift, *image;
+
+  PetscFunctionBeginUser;
+  PetscCall(BracketLowest(rve, &shift));
+  LamStartMode(rve, mode);
+  PetscCall(LamImproveSoftestMode(rve, 30, mode));
+  PetscCall(PetscMalloc1(n, &image));
+  LamLinearMultiply(&rve->linear, mode, image);
+  *eigenvalue = 0.0;
+  for (PetscInt i = 0; i < n; ++i) *eigenvalue += mode[i] * image[i];
+  PetscCall(PetscFree(image));
   PetscFunctionReturn(0);
 }
