@@ -50,6 +50,14 @@ void LamLockEndCommit(LamLock *lock);
 int LamLockBeginRead(const char path[]); /* a descriptor for LamLockEndRead, or -1 where no writer is about */
 void LamLockEndRead(int fd);
 
+/* ---- record_target.c ---- */
+
+/* The file behind a link; otherwise the path as it was given, for messages. False: no file there, or too long a path.
+ */
+PetscBool LamPathFollow(const char path[], char target[PETSC_MAX_PATH_LEN]);
+/* The file that a writer of `path` writes: links are followed, and what CREATE must not replace is refused. */
+PetscErrorCode LamTargetFind(const char path[], const char kind[], LamWriteMode mode, char target[PETSC_MAX_PATH_LEN]);
+
 /* ---- record_file.c ---- */
 
 /* What the root group tells. Texts are owned by the header. */

@@ -156,10 +156,11 @@ void LamLockEndCommit(LamLock *lock)
 
 int LamLockBeginRead(const char path[])
 {
-  char name[PETSC_MAX_PATH_LEN];
+  char target[PETSC_MAX_PATH_LEN], name[PETSC_MAX_PATH_LEN];
   int fd;
 
-  if (snprintf(name, sizeof(name), "%s.lock", path) >= (int)sizeof(name)) return -1;
+  if (!LamPathFollow(path, target)) return -1; /* the writer's lock is beside the file, not beside a link to it */
+  if (snprintf(name, sizeof(name), "%s.lock", target) >= (int)sizeof(name)) return -1;
   fd = open(name, O_RDONLY | O_CLOEXEC);
   if (fd >= 0) flock(fd, LOCK_SH);
   return fd;

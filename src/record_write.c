@@ -120,16 +120,14 @@ PetscErrorCode LamRecordWriterOpen(const char path[], const char kind[], LamWrit
 
   PetscFunctionBeginUser;
   *writer = NULL;
-  PetscCheck(strlen(path) + 8 < PETSC_MAX_PATH_LEN, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: the path is too long",
-             path);
   PetscCall(PetscNew(&w));
-  PetscCall(PetscStrncpy(w->path, path, sizeof(w->path)));
-  snprintf(w->temporary, sizeof(w->temporary), "%.*s.tmp", PETSC_MAX_PATH_LEN - 8, path);
-  ierr = LamLockTake(path, &w->lock);
+  ierr = LamTargetFind(path, kind, mode, w->path);
+  if (!ierr) ierr = LamLockTake(w->path, &w->lock);
   if (ierr) {
     (void)PetscFree(w);
     PetscCall(ierr);
   }
+  snprintf(w->temporary, sizeof(w->temporary), "%.*s.tmp", PETSC_MAX_PATH_LEN - 8, w->path);
   ierr = Start(w, kind, mode, scene);
   if (ierr) (void)Destroy(&w);
   PetscCall(ierr);

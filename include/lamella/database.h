@@ -21,14 +21,21 @@ typedef struct LamRecordWriter_s *LamRecordWriter;
 #define LAM_HASH_LENGTH 17
 PetscErrorCode LamMicrostructureDescribe(const LamMicrostructure *micro, char **json, char hash[LAM_HASH_LENGTH]);
 
+/*
+  Keys of records in a database: below LAM_CACHE_KEY the number of the state in the scene's sample sequence; from it on
+  (LAM_CACHE_KEY, LAM_CACHE_KEY + 1, ...) records from elsewhere, such as a cache of fe2, which belong to no sequence.
+*/
+#define LAM_CACHE_KEY ((PetscInt64)1 << 62)
+
 /* ---- writing ---- */
 
 typedef enum { LAM_WRITE_CREATE, LAM_WRITE_APPEND } LamWriteMode;
 
 /*
-  Starts a file (CREATE: replaces what is there, atomically at the first commit; APPEND: goes on with a file of the
-  same microstructure, PETSC_ERR_USER_INPUT where it differs; a missing file is started). `kind`: "rve", "database",
-  "fe2". Takes the lock PATH.lock; PETSC_ERR_FILE_OPEN with the holder where another process has it.
+  Starts a file (CREATE: replaces a file of the same kind, or an empty one, atomically at the first commit and refuses
+  to replace anything else, PETSC_ERR_USER_INPUT; APPEND: goes on with a file of the same microstructure,
+  PETSC_ERR_USER_INPUT where it differs; a missing file is started). Symbolic links are followed. `kind`: "rve",
+  "database", "fe2". Takes the lock PATH.lock; PETSC_ERR_FILE_OPEN with the holder where another process has it.
 */
 PetscErrorCode LamRecordWriterOpen(const char path[], const char kind[], LamWriteMode mode, const LamScene *scene,
                                    LamRecordWriter *writer);

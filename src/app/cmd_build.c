@@ -3,7 +3,8 @@
 
   Method
     States are solved in any order on all ranks and committed in the order of their numbers, so the file does not
-    depend on the number of ranks, and what is committed is always states 0..n-1: --resume goes on with n.
+    depend on the number of ranks (except times, and checksums, which cover them), and the sample states in it are
+    always 0..n-1: --resume goes on with n. Records with a key from LAM_CACHE_KEY on are of others, and passed over.
     With a count, that many states. With an accuracy, batches: each is first predicted from the records before it, then
     solved, and the build ends when 95 % of the states of the last two batches were within the trust radius of a record
     and predicted with an error below the accuracy, or at MOST_RECORDS.
@@ -28,7 +29,7 @@ typedef struct {
   LamProgress progress;
   PetscInt64 target; /* number of states at most */
 
-  PetscInt64 committed, begun_with; /* states 0..committed-1 are in the file; begun_with: when this run began */
+  PetscInt64 committed, begun_with; /* sample states 0..committed-1 are in the file; begun_with: when this run began */
   PetscInt capacity;
   LamResponse *waiting; /* [capacity] states committed, committed+1, ...: solved or not yet */
   PetscBool *solved;    /* [capacity] */
@@ -207,7 +208,27 @@ static PetscErrorCode RunUntilAccurate(Build *b, const LamResponse old[], PetscI
 
 /* ---- going on with a file ---- */
 
-/* The file must hold states 0, 1, ... of this very box. */
+/* The sample states of a file, without what others have added to it; old[] and keys[] are the caller's to free. */
+static PetscErrorCode SampleStates(LamDatabase file, PetscInt *n, LamResponse **old, PetscInt64 **keys)
+{
+  const LamResponse *all = NULL;
+  const PetscInt64 *all_keys = NULL;
+  PetscInt count = 0;
+
+  PetscFunctionBeginUser;
+  if (file) PetscCall(LamDatabaseGetRecords(file, &count, &all, &all_keys));
+  PetscCall(PetscMalloc1(count, old));
+  PetscCall(PetscMalloc1(count, keys));
+  *n = 0;
+  for (PetscInt i = 0; i < count; i++) {
+    if (all_keys[i] >= LAM_CACHE_KEY) continue;
+    (*old)[*n] = all[i];
+    (*keys)[(*n)++] = all_keys[i];
+  }
+  PetscFunctionReturn(0);
+}
+
+/* They must be states 0, 1, ... of this very box. */
 static PetscErrorCode CheckOld(const Build *b, PetscInt n, const LamResponse old[], const PetscInt64 keys[])
 {
   PetscFunctionBeginUser;
@@ -219,7 +240,7 @@ static PetscErrorCode CheckOld(const Build *b, PetscInt n, const LamResponse old
     difference = fabs(load.turgor - old[i].load.turgor) + fabs(load.cohesion - old[i].load.cohesion);
     for (int k = 0; k < 9; k++) difference += fabs(load.F[k] - old[i].load.F[k]);
     PetscCheck(keys[i] == i && difference < 1e-9, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "%s: record %" PetscInt_FMT " is not state %" PetscInt_FMT
+               "%s: sample record %" PetscInt_FMT " is not state %" PetscInt_FMT
                " of the sample box of %s; --resume needs the "
                "scene that the file was begun with",
                b->path, i, i, b->scene->path);
@@ -229,12 +250,12 @@ static PetscErrorCode CheckOld(const Build *b, PetscInt n, const LamResponse old
 
 static PetscErrorCode RunFrom(Build *b, LamDatabase file)
 {
-  const LamResponse *old = NULL;
-  const PetscInt64 *keys = NULL;
+  LamResponse *old;
+  PetscInt64 *keys;
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
-  if (file) PetscCall(LamDatabaseGetRecords(file, &n, &old, &keys));
+  PetscCall(SampleStates(file, &n, &old, &keys));
   PetscCall(CheckOld(b, n, old, keys));
   for (PetscInt i = 0; i < n; i++) b->failed += old[i].status != LAM_CONVERGED;
   b->committed = b->begun_with = n;
@@ -244,6 +265,8 @@ static PetscErrorCode RunFrom(Build *b, LamDatabase file)
   else
     PetscCall(RunUntilAccurate(b, old, n));
   PetscCall(LamProgressEnd(&b->progress));
+  PetscCall(PetscFree(old));
+  PetscCall(PetscFree(keys));
   PetscFunctionReturn(0);
 }
 

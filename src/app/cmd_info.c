@@ -2,6 +2,7 @@
   lamella info: what a file holds, who wrote it, with what. Needs no MPI.
 */
 #include "app.h"
+#include <math.h>
 #include <string.h>
 
 static void PrintText(const char label[], const json_t *value)
@@ -61,11 +62,23 @@ static void PrintMicrostructures(const json_t *list)
   }
 }
 
+/* A run that is under way, or was killed, has no status. */
+static void PrintRun(const json_t *run)
+{
+  const json_t *load_factor = json_object_get(run, "load_factor"), *status = json_object_get(run, "status");
+
+  if (!run) return;
+  PrintInteger("steps", json_object_get(run, "steps"));
+  if (json_is_number(load_factor)) printf("%-20s %.6g\n", "load factor", json_number_value(load_factor));
+  printf("%-20s %s\n", "status", json_is_string(status) ? json_string_value(status) : "not finished");
+}
+
 static void PrintTable(const json_t *info)
 {
   const json_t *coverage = json_object_get(info, "coverage"), *libraries = json_object_get(info, "libraries");
 
   PrintText("kind", json_object_get(info, "kind"));
+  PrintRun(json_object_get(info, "run"));
   PrintInteger("records", json_object_get(info, "records"));
   PrintInteger("failed", json_object_get(info, "failed"));
   PrintStatuses(json_object_get(info, "statuses"));
@@ -81,6 +94,30 @@ static void PrintTable(const json_t *info)
   PrintText("PETSc", json_object_get(libraries, "PETSc"));
   PrintText("HDF5", json_object_get(libraries, "HDF5"));
   PrintText("MPI", json_object_get(libraries, "MPI"));
+}
+
+/* ---- the macroscale run of an fe2 file ---- */
+
+static PetscErrorCode ReadRun(const char path[], json_t *info)
+{
+  PetscInt rank, dims[4], *steps = NULL, count = 0;
+  PetscReal *factor = NULL, reached = NAN;
+  PetscBool has_steps, has_factor, has_status;
+  char *status = NULL;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileReadInts(path, "/macro/steps", &has_steps, &rank, dims, &steps));
+  if (has_steps && rank == 1) count = dims[0];
+  PetscCall(PetscFree(steps));
+  PetscCall(LamFileReadReals(path, "/macro/curve/load_factor", &has_factor, &rank, dims, &factor));
+  if (has_factor && rank == 1 && dims[0]) reached = factor[dims[0] - 1];
+  PetscCall(PetscFree(factor));
+  PetscCall(LamFileReadText(path, "/macro/status", &has_status, &status));
+  json_object_set_new(info, "run",
+                      json_pack("{s:I, s:o, s:o?}", "steps", (json_int_t)count, "load_factor", LamJSONReal(reached),
+                                "status", has_status ? json_string(status) : NULL));
+  PetscCall(PetscFree(status));
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamCommandInfo(LamArgs *args, int *exit_status)
@@ -102,6 +139,7 @@ PetscErrorCode LamCommandInfo(LamArgs *args, int *exit_status)
   PetscCall(LamDatabaseGetInfo(database, &text));
   info = json_loads(text, 0, NULL);
   PetscCheck(info, PETSC_COMM_SELF, PETSC_ERR_LIB, "%s: its description is no JSON", path);
+  if (!strcmp(json_string_value(json_object_get(info, "kind")), "fe2")) PetscCall(ReadRun(path, info));
   if (json) {
     PetscCall(LamPrintJSON(info));
   } else {

@@ -182,6 +182,20 @@ static void AgreeAtEnd(PetscErrorCode code, int *status)
   MPI_Comm_free(&EndComm);
 }
 
+/* A misspelt option after `--` would otherwise be ignored without a word. */
+static PetscErrorCode WarnOfUnusedOptions(void)
+{
+  PetscInt n;
+  char **names, **values;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
+  for (PetscInt i = 0; i < n && LamAppIsRoot(); i++)
+    fprintf(stderr, "lamella: PETSc option -%s was not used\n", names[i]);
+  PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
+  PetscFunctionReturn(0);
+}
+
 static void EndRun(PetscErrorCode code, int *status)
 {
   if (code) *status = StatusOf(code);
@@ -189,6 +203,7 @@ static void EndRun(PetscErrorCode code, int *status)
     AgreeAtEnd(code, status);
   else if (code)
     TellError(code);
+  if (PetscInitializeCalled && !code) (void)WarnOfUnusedOptions();
   if (PetscInitializeCalled && PetscFinalize()) *status = PetscMax(*status, LAM_EXIT_FAULT);
   if (!fflush(stdout) && !ferror(stdout)) return;
   if (*status != LAM_EXIT_IO) fprintf(stderr, "lamella: standard output: %s\n", strerror(errno));

@@ -63,6 +63,27 @@ expect 2 "$lamella" build other.yaml -d a.h5 --resume --quiet
 sed 's/C4: 1 MPa/C4: 2 MPa/' more.yaml >stiff.yaml
 expect 2 "$lamella" build stiff.yaml -d a.h5 --resume --quiet
 
+# what fe2 adds to the database is none of the sample's states: the build goes on all the same
+cat >macro.part <<'YAML'
+macro:
+  mesh: {box: [10 mm, 10 mm], elements: [1, 1]}
+  boundary:
+    - {on: bottom, displacement: [0 mm, 0 mm]}
+    - {on: top, displacement: [2 mm, 0 mm]}
+  steps: 1
+YAML
+scene 5 | cat - macro.part >five.yaml
+expect 0 "$lamella" build five.yaml -d e.h5 --quiet
+expect 0 "$lamella" fe2 five.yaml -d e.h5 --quiet
+added=$(($(member e.h5 records) - 5))
+[ "$added" -gt 0 ] || fail "fe2 added no records"
+scene 9 >nine.yaml
+expect 0 "$lamella" build nine.yaml -d e.h5 --resume --json
+[ "$(tail -n 1 out | grep -c '"records": *9,')" = 1 ] || fail "sample states: $(tail -n 1 out)"
+[ "$(member e.h5 records)" = $((9 + added)) ] || fail "not 9 sample states and $added of fe2"
+expect 0 "$lamella" fe2 five.yaml -d e.h5 --quiet
+expect 0 "$lamella" build nine.yaml -d e.h5 --resume --quiet
+
 # stopped by a signal: what is solved is there, and the build goes on
 "$lamella" build many.yaml -d c.h5 --json >c.out 2>/dev/null &
 pid=$!

@@ -43,6 +43,24 @@ grep -q 'records *3' out || fail "table: $(cat out)"
 expect 0 "$lamella" info rve.h5 --json
 grep -q '"kind": *"rve"' out || fail "kind: $(cat out)"
 
+# how far a macroscale run has come: the inflation and two steps
+cat >macro.yaml <<'YAML'
+macro:
+  mesh: {box: [10 mm, 10 mm], elements: [1, 1]}
+  boundary:
+    - {on: bottom, displacement: [0 mm, 0 mm]}
+    - {on: top, displacement: [1 mm, 0 mm]}
+  steps: 2
+YAML
+cat s.yaml macro.yaml >fe2.yaml
+"$lamella" fe2 fe2.yaml -d db.h5 -o fe2.h5 --quiet >/dev/null
+expect 0 "$lamella" info fe2.h5 --json
+grep -qE '"run": \{"steps": 3, "load_factor": 1\.0, "status": "done"\}' out || fail "run: $(cat out)"
+expect 0 "$lamella" info fe2.h5
+grep -qE '^steps +3$' out && grep -qE '^load factor +1$' out && grep -qE '^status +done$' out || fail "table: $(cat out)"
+expect 0 "$lamella" info rve.h5 --json
+if grep -q '"run"' out; then fail "a file of states has a run"; fi
+
 # cut short, of another program, not there
 head -c 3000 db.h5 >cut.h5
 expect 2 "$lamella" info cut.h5

@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# -o replaces an older result of the same command, and nothing else.
+set -euo pipefail
+lamella=$1
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+cd "$dir"
+
+fail() { echo "FAILED: $*" >&2; exit 1; }
+expect() {
+  local wanted=$1 status=0
+  shift
+  timeout 60 "$@" >out 2>err || status=$?
+  [ "$status" = "$wanted" ] || { cat out err >&2; fail "status $status, wanted $wanted: $*"; }
+}
+
+cat >s.yaml <<'YAML'
+version: 1
+rve:
+  cell: {apothem: 75 um, wall_thickness: 11.25 um}
+  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
+  interface: {law: bonded}
+  turgor: {mode: prescribed, pressure: 0.02 MPa}
+  mesh: {along: 4, through: 1}
+load:
+  - {F: [[1, 0.1], [0, 1]]}
+sample:
+  stretch: {min: 0, max: 0.05}
+  turgor: {min: 0.01 MPa, max: 0.03 MPa}
+  count: 3
+YAML
+cp s.yaml before.yaml
+
+# the scene, a database, a pipe
+expect 2 "$lamella" rve s.yaml -o s.yaml
+grep -q 's.yaml: exists and is not a file' err || fail "message: $(cat err)"
+cmp -s s.yaml before.yaml || fail "the scene is destroyed"
+"$lamella" build s.yaml -d tissue.db.h5 --quiet >/dev/null
+cp tissue.db.h5 before.h5
+expect 2 "$lamella" rve s.yaml -o tissue.db.h5
+grep -q 'tissue.db.h5: exists and is of kind "database"' err || fail "message: $(cat err)"
+cmp -s tissue.db.h5 before.h5 || fail "the database is destroyed"
+mkfifo pipe
+expect 2 "$lamella" rve s.yaml -o pipe
+[ -p pipe ] || fail "the pipe is replaced"
+[ -z "$(find . -name '*.lock' -o -name '*.tmp')" ] || fail "files are left behind: $(ls)"
+
+# a result of its own, also behind a link, and an empty file
+mkdir results
+expect 0 "$lamella" rve s.yaml -o results/rve.h5
+expect 0 "$lamella" rve s.yaml -o results/rve.h5
+ln -s results/rve.h5 link.h5
+expect 0 "$lamella" rve s.yaml -o link.h5
+[ -L link.h5 ] || fail "the link is replaced"
+expect 0 "$lamella" info results/rve.h5
+: >empty.h5
+expect 0 "$lamella" rve s.yaml -o empty.h5
