@@ -90,13 +90,23 @@ static PetscErrorCode DescribeTrouble(LamMacro macro, PetscInt64 failed, PetscIn
     const LamResponse *response = &macro->responses[point];
     const PetscReal *F = macro->loads[point].F;
     PetscCall(PetscSNPrintf(macro->trouble, sizeof(macro->trouble),
-                            "%" PetscInt64_FMT " points without response; element %d, point %" PetscInt_FMT
-                            ": F = [%.5g %.5g %.5g %.5g], turgor %.4g MPa: %s: %.70s",
-                            failed, mine.element, point % LAM_MACRO_POINTS, (double)F[0], (double)F[1], (double)F[3],
-                            (double)F[4], (double)(macro->loads[point].turgor * macro->scene->scales.stress * 1e-6),
-                            LamStatusNames[response->status], response->reason));
+                            "%s: %s; %" PetscInt64_FMT " points without response, the first in element %d, point "
+                            "%" PetscInt_FMT ": F = [%.5g %.5g %.5g %.5g], turgor %.4g MPa",
+                            LamStatusNames[response->status], response->reason, failed, mine.element,
+                            point % LAM_MACRO_POINTS, (double)F[0], (double)F[1], (double)F[3], (double)F[4],
+                            (double)(macro->loads[point].turgor * macro->scene->scales.stress * 1e-6)));
   }
   PetscCallMPI(MPI_Bcast(macro->trouble, sizeof(macro->trouble), MPI_CHAR, first.rank, macro->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Whether any rank was asked to stop: a signal may reach only one of them. */
+static PetscErrorCode AskStop(LamMacro macro)
+{
+  PetscFunctionBeginUser;
+  if (!macro->stop) PetscFunctionReturn(0);
+  macro->stopped = macro->stop();
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &macro->stopped, 1, MPIU_BOOL, MPI_LOR, macro->comm));
   PetscFunctionReturn(0);
 }
 
@@ -113,6 +123,7 @@ PetscErrorCode LamMacroEvaluate(LamMacro macro, Vec u, PetscBool *ok)
   if (known) PetscFunctionReturn(0);
   PetscCall(macro->responder->respond(macro->responder->ctx, macro->point_count, macro->loads, macro->point_index,
                                       macro->responses));
+  PetscCall(AskStop(macro));
   for (PetscInt p = 0; p < macro->point_count; p++) {
     KeepResponse(&macro->loads[p], &macro->responses[p], &macro->now[p]);
     if (macro->now[p].known) continue;
@@ -123,7 +134,7 @@ PetscErrorCode LamMacroEvaluate(LamMacro macro, Vec u, PetscBool *ok)
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPIU_INT64, MPI_SUM, macro->comm));
   if (failed) PetscCall(DescribeTrouble(macro, failed, first));
-  *ok = failed ? PETSC_FALSE : PETSC_TRUE;
+  *ok = failed || macro->stopped ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 

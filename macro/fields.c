@@ -12,7 +12,7 @@ typedef struct {
 typedef struct {
   PetscInt number;
   PetscInt nodes[LAM_MACRO_NODES];
-  PetscReal F[9], P[9], indicator[4];
+  PetscReal F[9], P[9], cauchy[9], indicator[4];
 } ElementRecord;
 
 /* Gathers n items of `size` bytes from each rank on rank 0; `all` is NULL elsewhere. The caller frees it. */
@@ -81,6 +81,29 @@ static PetscErrorCode ElementNodes(LamMacro macro, PetscInt cell, PetscInt nodes
   PetscFunctionReturn(0);
 }
 
+static PetscReal Determinant(const PetscReal F[9])
+{
+  return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
+}
+
+/* Mean of the Cauchy stress P F^T / J over the present volume J w: of the means of P and F it would be another. */
+static void MeanCauchy(const LamMaterialPoint points[LAM_MACRO_POINTS], const PetscReal weight[LAM_MACRO_POINTS],
+                       PetscReal cauchy[9])
+{
+  PetscReal volume = 0;
+
+  if (!points[0].known) return; /* nothing has been solved */
+  for (PetscInt q = 0; q < LAM_MACRO_POINTS; q++) volume += weight[q] * Determinant(points[q].load.F);
+  for (PetscInt q = 0; q < LAM_MACRO_POINTS; q++) {
+    const PetscReal *P = points[q].P, *F = points[q].load.F;
+    for (int i = 0; i < 3; i++) {
+      for (int j = 0; j < 3; j++) {
+        for (int k = 0; k < 3; k++) cauchy[3 * i + j] += weight[q] / volume * P[3 * i + k] * F[3 * j + k];
+      }
+    }
+  }
+}
+
 static void ElementMeans(LamMacro macro, PetscInt element, ElementRecord *record)
 {
   PetscReal area = 0;
@@ -109,6 +132,7 @@ static PetscErrorCode CollectElements(LamMacro macro, PetscInt *n, ElementRecord
     (*elements)[e].number = macro->number[cell - macro->mesh_start];
     PetscCall(ElementNodes(macro, cell, (*elements)[e].nodes));
     ElementMeans(macro, e, &(*elements)[e]);
+    MeanCauchy(&macro->accepted[e * LAM_MACRO_POINTS], &macro->weight[e * LAM_MACRO_POINTS], (*elements)[e].cauchy);
   }
   PetscFunctionReturn(0);
 }
@@ -121,6 +145,7 @@ static PetscErrorCode Allocate(LamMacroFields *fields)
   PetscCall(PetscMalloc1(LAM_MACRO_NODES * fields->element_count, &fields->elements));
   PetscCall(PetscMalloc1(9 * fields->element_count, &fields->F));
   PetscCall(PetscMalloc1(9 * fields->element_count, &fields->P));
+  PetscCall(PetscMalloc1(9 * fields->element_count, &fields->cauchy));
   PetscCall(PetscMalloc1(4 * fields->element_count, &fields->indicator));
   PetscFunctionReturn(0);
 }
@@ -152,6 +177,7 @@ PetscErrorCode LamMacroGetFields(LamMacro macro, LamMacroFields *fields)
     PetscCall(PetscArraycpy(&fields->elements[LAM_MACRO_NODES * element->number], element->nodes, LAM_MACRO_NODES));
     PetscCall(PetscArraycpy(&fields->F[9 * element->number], element->F, 9));
     PetscCall(PetscArraycpy(&fields->P[9 * element->number], element->P, 9));
+    PetscCall(PetscArraycpy(&fields->cauchy[9 * element->number], element->cauchy, 9));
     PetscCall(PetscArraycpy(&fields->indicator[4 * element->number], element->indicator, 4));
   }
   PetscCall(PetscFree(all_nodes));
@@ -167,6 +193,7 @@ PetscErrorCode LamMacroFieldsDestroy(LamMacroFields *fields)
   PetscCall(PetscFree(fields->elements));
   PetscCall(PetscFree(fields->F));
   PetscCall(PetscFree(fields->P));
+  PetscCall(PetscFree(fields->cauchy));
   PetscCall(PetscFree(fields->indicator));
   PetscFunctionReturn(0);
 }

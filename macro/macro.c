@@ -90,6 +90,13 @@ PetscErrorCode LamMacroSetMonitor(LamMacro macro, LamMacroMonitor monitor, void 
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamMacroSetStop(LamMacro macro, PetscBool (*stop)(void))
+{
+  PetscFunctionBeginUser;
+  macro->stop = stop;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamMacroDestroy(LamMacro *macro)
 {
   PetscFunctionBeginUser;

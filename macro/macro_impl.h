@@ -47,7 +47,9 @@ struct LamMacro_s {
   const LamScene *scene;   /* borrowed */
   LamResponder *responder; /* borrowed */
   LamMacroMonitor monitor;
-  void *monitor_ctx; /* borrowed */
+  void *monitor_ctx;       /* borrowed */
+  PetscBool (*stop)(void); /* NULL: never */
+  PetscBool stopped;       /* it was asked for; the same on all ranks */
 
   /* mesh */
   DM dm;
@@ -74,7 +76,7 @@ struct LamMacro_s {
   PetscReal turgor;      /* turgor of the tissue now */
   PetscReal force_scale; /* largest norm of the element forces in this series of Newton iterations */
   PetscReal history[64];
-  char trouble[192]; /* why the last evaluation failed */
+  char trouble[LAM_MESSAGE_LENGTH - 64]; /* why the last evaluation failed; how far it came is said before it */
 
   /* boundary */
   PetscInt constraint_count;
@@ -108,7 +110,8 @@ PetscErrorCode LamMacroReactions(LamMacro macro, LamMacroStep *step);
 
 /* assembly.c */
 /*
-  Responses of all points at displacement u. *ok is PETSC_FALSE on all ranks where one is missing; `trouble` says which.
+  Responses of all points at displacement u. *ok is PETSC_FALSE on all ranks where one is missing (`trouble` says which)
+  or a stop was asked for (`stopped`).
   Nothing is asked where deformation and turgor are those of the last evaluation.
 */
 PetscErrorCode LamMacroEvaluate(LamMacro macro, Vec u, PetscBool *ok);

@@ -184,6 +184,7 @@ static PetscErrorCode Advance(LamMacro macro, Stage from, Stage to, Stage *reach
       increment *= 2;
     } else {
       PetscCall(Reject(macro));
+      if (macro->stopped) break;
       macro->step.cutbacks++;
       increment = 0.5 * (next - done);
       if (increment < smallest) break;
@@ -245,6 +246,7 @@ static PetscErrorCode StartStep(LamMacro macro, PetscLogDouble *start)
   PetscFunctionReturn(0);
 }
 
+/* Hands the step to the monitor. */
 static PetscErrorCode Report(LamMacro macro, PetscInt number, PetscReal load_factor, PetscLogDouble start,
                              PetscBool *stop)
 {
@@ -254,27 +256,42 @@ static PetscErrorCode Report(LamMacro macro, PetscInt number, PetscReal load_fac
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode DescribeEnd(LamMacro macro, PetscInt number, Stage reached, char message[256])
+static PetscErrorCode DescribeEnd(LamMacro macro, PetscInt number, Stage reached, char message[LAM_MESSAGE_LENGTH])
 {
   PetscFunctionBeginUser;
   if (number == 0)
-    PetscCall(PetscSNPrintf(message, 256, "turgor: reached %.4g of 1: %s", (double)reached.turgor, macro->trouble));
+    PetscCall(PetscSNPrintf(message, LAM_MESSAGE_LENGTH, "turgor: reached %.4g of 1: %s", (double)reached.turgor,
+                            macro->trouble));
   else
-    PetscCall(PetscSNPrintf(message, 256, "step %" PetscInt_FMT ": reached load factor %.4g: %s", number,
+    PetscCall(PetscSNPrintf(message, LAM_MESSAGE_LENGTH, "step %" PetscInt_FMT ": reached load factor %.4g: %s", number,
                             (double)reached.load, macro->trouble));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamMacroSolve(LamMacro macro, LamMacroReason *reason, char message[256])
+/* The run ends within a step. The increments that converged since the last report were dear: they are reported. */
+static PetscErrorCode EndWithinStep(LamMacro macro, PetscInt number, Stage reported, Stage reached,
+                                    PetscLogDouble start, char message[LAM_MESSAGE_LENGTH])
+{
+  const PetscInt first = macro->scene->macro.inflate ? 0 : 1;
+  PetscBool ends = PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  if (!macro->stopped) PetscCall(DescribeEnd(macro, number, reached, message));
+  if (reached.load > reported.load || (reached.turgor > reported.turgor && macro->scene->turgor != 0))
+    PetscCall(Report(macro, PetscMax(number, first), reached.load, start, &ends));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroSolve(LamMacro macro, LamMacroReason *reason, char message[LAM_MESSAGE_LENGTH])
 {
   const LamMacroSpec *spec = &macro->scene->macro;
-  Stage stage = {0, 0}, to = {1, 0};
+  Stage reported = {0, 0}, stage = {0, 0}, to = {1, 0};
   PetscBool converged, stop = PETSC_FALSE;
+  PetscInt number = 0;
   PetscLogDouble start;
 
   PetscFunctionBeginUser;
   PetscCheck(macro->responder, macro->comm, PETSC_ERR_ORDER, "call LamMacroSetResponder() first");
-  *reason = LAM_MACRO_NOT_CONVERGED;
   message[0] = '\0';
   if (spec->inflate)
     PetscCall(LamMacroHoldRigidMotions(macro));
@@ -282,20 +299,24 @@ PetscErrorCode LamMacroSolve(LamMacro macro, LamMacroReason *reason, char messag
     PetscCall(LamMacroHoldBoundaries(macro));
   PetscCall(StartStep(macro, &start));
   PetscCall(Advance(macro, stage, to, &stage, &converged));
-  if (!converged) PetscCall(DescribeEnd(macro, 0, stage, message));
   if (converged && spec->inflate) {
     PetscCall(Report(macro, 0, 0, start, &stop));
+    reported = stage;
     PetscCall(LamMacroHoldBoundaries(macro));
     PetscCall(StartStep(macro, &start));
   }
-  for (PetscInt k = 1; k <= spec->steps && converged && !stop; k++) {
-    to.load = (PetscReal)k / spec->steps;
+  while (converged && !stop && number < spec->steps) {
+    to.load = (PetscReal)++number / spec->steps;
     PetscCall(Advance(macro, stage, to, &stage, &converged));
-    if (!converged) PetscCall(DescribeEnd(macro, k, stage, message));
     if (!converged) break;
-    PetscCall(Report(macro, k, to.load, start, &stop));
+    PetscCall(Report(macro, number, to.load, start, &stop));
+    reported = stage;
     PetscCall(StartStep(macro, &start));
   }
-  if (converged) *reason = stop && stage.load < 1 ? LAM_MACRO_STOPPED : LAM_MACRO_DONE;
+  if (!converged) PetscCall(EndWithinStep(macro, number, reported, stage, start, message));
+  if (converged)
+    *reason = stop && number < spec->steps ? LAM_MACRO_STOPPED : LAM_MACRO_DONE;
+  else
+    *reason = macro->stopped ? LAM_MACRO_STOPPED : LAM_MACRO_NOT_CONVERGED;
   PetscFunctionReturn(0);
 }

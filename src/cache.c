@@ -136,12 +136,28 @@ static PetscErrorCode Choose(const Cache *cache, PetscInt n, const LamLoad missi
   PetscFunctionReturn(0);
 }
 
+/* Adds what was solved, failed or not: all of it, unless the solver was stopped on the way. */
+static PetscErrorCode AddSolved(Cache *cache, const Round *round)
+{
+  LamResponse *records;
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(round->chosen_count, &records));
+  for (PetscInt k = 0; k < round->chosen_count; k++) {
+    if (round->solved[k].status != LAM_OUT_OF_REACH) records[n++] = round->solved[k];
+  }
+  PetscCall(LamDatabaseAdd(cache->database, n, records));
+  PetscCall(PetscFree(records));
+  PetscFunctionReturn(0);
+}
+
 /* Step 4: question k goes to rank k mod ranks. */
 static PetscErrorCode SolveChosen(Cache *cache, Round *round)
 {
   PetscMPIInt rank, ranks, *starts;
   PetscInt n = 0, *points;
-  PetscReal before = cache->solver->solve_seconds;
+  const LamResponder before = *cache->solver;
   LamLoad *loads;
   LamResponse *mine, *all;
 
@@ -154,12 +170,12 @@ static PetscErrorCode SolveChosen(Cache *cache, Round *round)
     points[n++] = -1; /* from the reference state: the answer must not depend on who solves it */
   }
   PetscCall(cache->solver->respond(cache->solver->ctx, n, loads, points, mine));
-  cache->self->solves += n;
-  cache->self->solve_seconds += cache->solver->solve_seconds - before;
+  cache->self->solves += cache->solver->solves - before.solves;
+  cache->self->solve_seconds += cache->solver->solve_seconds - before.solve_seconds;
   PetscCall(AllGather(cache->comm, sizeof(LamResponse), n, mine, &starts, (void **)&all));
   PetscCall(PetscMalloc1(round->chosen_count, &round->solved));
   for (PetscInt k = 0; k < round->chosen_count; k++) round->solved[k] = all[starts[k % ranks] + k / ranks];
-  PetscCall(LamDatabaseAdd(cache->database, round->chosen_count, round->solved));
+  PetscCall(AddSolved(cache, round));
   PetscCall(PetscFree(starts));
   PetscCall(PetscFree(all));
   PetscCall(PetscFree3(loads, points, mine));
@@ -238,9 +254,9 @@ static PetscErrorCode CacheRespond(void *ctx, PetscInt n, const LamLoad loads[],
                "material point %" PetscInt_FMT ", of %" PetscInt_FMT, points[i], cache->points);
     PetscCall(Ask(cache, &loads[i], points[i], &responses[i]));
     if (responses[i].status == LAM_OUT_OF_REACH) missing[left++] = i;
+    if (LamResponseHasFields(&responses[i])) cache->self->hits++;
   }
   cache->self->queries += n;
-  cache->self->hits += n - left;
   while (cache->solver) {
     PetscCallMPI(MPI_Allreduce(&left, &anywhere, 1, MPIU_INT, MPI_SUM, cache->comm));
     if (!anywhere) break;

@@ -25,7 +25,7 @@ typedef struct {
   LamMacroStep steps[FIXTURE_MAX_STEPS]; /* reports of the converged steps */
   PetscInt stop_after;                   /* -1: never */
   LamMacroReason reason;
-  char message[256];
+  char message[LAM_MESSAGE_LENGTH];
 } Fixture;
 
 static inline PetscErrorCode FixtureMonitor(LamMacro macro, const LamMacroStep *step, PetscBool *stop, void *ctx)

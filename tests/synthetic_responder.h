@@ -14,6 +14,7 @@ typedef struct {
   PetscReal mu, lambda;
   PetscReal largest_strain;                /* |F - 1| beyond which there is no answer */
   PetscReal largest_step;                  /* |F - F accepted| beyond which there is no answer */
+  const char *reason;                      /* why there is none */
   PetscInt points;                         /* of which accepted states are kept */
   PetscReal (*accepted)[9], (*current)[9]; /* [points] */
   PetscInt accepts, rejects, calls;
@@ -85,7 +86,7 @@ static inline PetscErrorCode SyntheticRespond(void *ctx, PetscInt n, const LamLo
     if (SyntheticDistance(loads[i].F, identity) > material->largest_strain ||
         SyntheticDistance(loads[i].F, from) > material->largest_step) {
       responses[i].status = LAM_NOT_CONVERGED;
-      PetscCall(PetscStrncpy(responses[i].reason, "too far", sizeof(responses[i].reason)));
+      PetscCall(PetscStrncpy(responses[i].reason, material->reason, sizeof(responses[i].reason)));
       material->self->failures++;
       continue;
     }
@@ -136,6 +137,7 @@ static inline PetscErrorCode SyntheticCreate(PetscInt points, LamResponder *resp
   (*material)->mu = 1;
   (*material)->lambda = 2;
   (*material)->largest_strain = (*material)->largest_step = PETSC_INFINITY;
+  (*material)->reason = "too far";
   (*material)->points = points;
   (*material)->self = responder;
   PetscCall(PetscMalloc1(points, &(*material)->accepted));

@@ -3,8 +3,8 @@
 
     LamMacroCreate(comm, &macro); LamMacroSetScene(macro, scene); LamMacroSetUp(macro);
     LamMacroGetPointCount(macro, &points);             to make the responder
-    LamMacroSetResponder(macro, &responder); LamMacroSetMonitor(macro, step_done, ctx);
-    LamMacroSolve(macro, &reason); LamMacroDestroy(&macro);
+    LamMacroSetResponder(macro, &responder); LamMacroSetMonitor(macro, step_done, ctx); LamMacroSetStop(macro, stop);
+    LamMacroSolve(macro, &reason, message); LamMacroDestroy(&macro);
 */
 #ifndef LAMELLA_MACRO_H
 #define LAMELLA_MACRO_H
@@ -17,7 +17,8 @@ typedef struct LamMacro_s *LamMacro;
 
 typedef struct {
   PetscInt step;         /* 1.. ; inflation, where asked for, is step 0; else turgor acts first in step 1 */
-  PetscReal load_factor; /* share of the boundary displacements: 0 (after inflation) to 1 */
+  PetscReal load_factor; /* share of the boundary displacements: 0 (after inflation) to 1; the last step of a run that
+                            failed or was stopped in it ends at the last converged increment */
   PetscInt boundary_count;
   char boundary[LAM_MAX_BOUNDARIES][LAM_NAME_LENGTH]; /* each named side once */
   PetscReal reaction[LAM_MAX_BOUNDARIES][2];          /* force on the body, stress * macro length, per thickness;
@@ -35,7 +36,10 @@ typedef struct {
 
 typedef enum { LAM_MACRO_DONE, LAM_MACRO_STOPPED, LAM_MACRO_NOT_CONVERGED } LamMacroReason;
 
-/* Called on all ranks after each converged step; sets *stop to end the run after it. */
+enum { LAM_MESSAGE_LENGTH = 512 };
+
+/* Called on all ranks after each converged step, and after one that came only part of its way; sets *stop to end the
+   run after it. */
 typedef PetscErrorCode (*LamMacroMonitor)(LamMacro macro, const LamMacroStep *step, PetscBool *stop, void *ctx);
 
 PetscErrorCode LamMacroCreate(MPI_Comm comm, LamMacro *macro);
@@ -44,8 +48,16 @@ PetscErrorCode LamMacroSetUp(LamMacro macro);
 PetscErrorCode LamMacroGetPointCount(LamMacro macro, PetscInt *points); /* material points on this rank */
 PetscErrorCode LamMacroSetResponder(LamMacro macro, LamResponder *responder); /* borrows it */
 PetscErrorCode LamMacroSetMonitor(LamMacro macro, LamMacroMonitor monitor, void *ctx);
-/* Runs inflation and load steps with cutback. `message` (at least 256 bytes) says why it ended early. */
-PetscErrorCode LamMacroSolve(LamMacro macro, LamMacroReason *reason, char message[256]);
+/*
+  `stop` is asked after each batch of responses; true on any rank, the increment under way is given up and the run ends
+  with LAM_MACRO_STOPPED. Once true it must stay so. A responder may then leave its batch unfinished (LAM_OUT_OF_REACH).
+*/
+PetscErrorCode LamMacroSetStop(LamMacro macro, PetscBool (*stop)(void));
+/*
+  Runs inflation and load steps with cutback. What was reached when it ends early is reported to the monitor as a step;
+  `message` says why it failed.
+*/
+PetscErrorCode LamMacroSolve(LamMacro macro, LamMacroReason *reason, char message[LAM_MESSAGE_LENGTH]);
 PetscErrorCode LamMacroDestroy(LamMacro *macro);
 
 /*
@@ -54,11 +66,12 @@ PetscErrorCode LamMacroDestroy(LamMacro *macro);
     nodes     [node_count][2]      reference positions        elements [element_count][9] VTK's biquadratic order
     u         [node_count][2]      displacement
     F, P      [element_count][9]   mean over the element's points, row-major 3x3
+    cauchy    [element_count][9]   mean of P F^T / J over the element's present volume
     indicator [element_count][4]   lumen fraction, opening fraction, debonded fraction, turgor (means)
 */
 typedef struct {
   PetscInt node_count, element_count;
-  PetscReal *nodes, *u, *F, *P, *indicator;
+  PetscReal *nodes, *u, *F, *P, *cauchy, *indicator;
   PetscInt *elements;
 } LamMacroFields;
 PetscErrorCode LamMacroGetFields(LamMacro macro, LamMacroFields *fields);

@@ -13,7 +13,7 @@
   X(LAM_NO_EQUILIBRIUM, "no_equilibrium") /* with a certificate in `reason` */                                         \
   X(LAM_NOT_CONVERGED, "not_converged")                                                                                \
   X(LAM_INVALID_F, "invalid_F")                                                                                        \
-  X(LAM_OUT_OF_REACH, "out_of_reach") /* a database cannot answer here; never from a solve */
+  X(LAM_OUT_OF_REACH, "out_of_reach") /* a database cannot answer here, or a stop came before the solve; never of a solve */
 typedef enum { LAM_STATUSES(LAM_ENUM_ENTRY) LAM_STATUS_COUNT } LamStatus;
 extern const char *const LamStatusNames[];
 
@@ -89,7 +89,8 @@ extern const LamMember LamResponseMembers[]; /* ends with a NULL name */
 /*
   The responder table: all that the macroscale solver knows of the tissue. `respond` is collective over the
   communicator of the macroscale problem. Point indices are local to a rank, 0..n-1, and name a material point for
-  good, so that a responder can keep a state for each; -1: none.
+  good, so that a responder can keep a state for each; -1: none. A responder that is stopped in the middle of a batch
+  answers the rest with LAM_OUT_OF_REACH.
 */
 typedef struct LamResponder_s {
   void *ctx; /* owned by the responder */
@@ -97,7 +98,12 @@ typedef struct LamResponder_s {
   PetscErrorCode (*accept)(void *ctx); /* the load step has converged: its states become the starting points */
   PetscErrorCode (*reject)(void *ctx); /* the load step is given up: go back to the last accepted one */
   PetscErrorCode (*destroy)(void **ctx);
-  PetscInt64 queries, hits, solves, failures; /* counted on this rank since creation */
+  /*
+    Counted on this rank since creation. A question is a hit (a record that was there before answers it), or a failure
+    (no fields in the answer), or else it had to be solved for: queries - hits - failures. `solves` are the solves made:
+    with a cache fewer than the questions solved for, where close ones share a solve, and failed solves count, too.
+  */
+  PetscInt64 queries, hits, solves, failures;
   PetscReal solve_seconds;
 } LamResponder;
 

@@ -7,9 +7,11 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <petsctime.h>
 #include <unistd.h>
 #include "fe2_file.h"
+#include "interruptible.h"
 
 typedef enum { RESPONSE_DIRECT, RESPONSE_CACHE, RESPONSE_DATABASE } ResponseType;
 static const char *const ResponseNames[] = {"direct", "cache", "database"};
@@ -25,7 +27,7 @@ typedef struct {
   LamMacro macro;
   LamRVE rve;
   LamDatabase database;
-  LamResponder direct, cache; /* ctx NULL: not in use */
+  LamResponder direct, solver, cache; /* direct behind the signals' `solver`; destroy NULL: not in use */
 
   /* rank 0 only */
   LamRecordWriter records; /* appends what the cache solves to the database's file */
@@ -68,6 +70,38 @@ static PetscBool ChooseResponse(Run *run)
     fprintf(stderr, "lamella fe2: --response database needs a database; give -d DB.h5\n");
   else if (run->response == RESPONSE_DIRECT && run->database_path)
     fprintf(stderr, "lamella fe2: --response direct uses no database; leave out -d, or choose cache or database\n");
+  else
+    return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Whether two paths name one file, which need not exist yet: then its folder counts. */
+static PetscBool SameFile(const char a[], const char b[])
+{
+  const char *const paths[2] = {a, b}, *names[2];
+  char folder[PETSC_MAX_PATH_LEN];
+  struct stat s[2];
+
+  if (!stat(a, &s[0]) && !stat(b, &s[1])) return (PetscBool)(s[0].st_dev == s[1].st_dev && s[0].st_ino == s[1].st_ino);
+  for (int i = 0; i < 2; i++) {
+    const char *slash = strrchr(paths[i], '/');
+    snprintf(folder, sizeof(folder), "%.*s/.", slash ? (int)(slash - paths[i]) : 1, slash ? paths[i] : ".");
+    if (stat(folder, &s[i])) return PETSC_FALSE;
+    names[i] = slash ? slash + 1 : paths[i];
+  }
+  return (PetscBool)(!strcmp(names[0], names[1]) && s[0].st_dev == s[1].st_dev && s[0].st_ino == s[1].st_ino);
+}
+
+/* PETSC_FALSE, with a message, where a file would be written over by another. */
+static PetscBool CheckPaths(const Run *run)
+{
+  const char *dot = run->out_path ? strrchr(run->out_path, '.') : NULL;
+
+  if (dot && !strcmp(dot, ".xdmf"))
+    fprintf(stderr, "lamella fe2: -o %s: name the HDF5 file, %.*s.h5; the .xdmf file is written beside it\n",
+            run->out_path, (int)(dot - run->out_path), run->out_path);
+  else if (run->out_path && run->database_path && SameFile(run->out_path, run->database_path))
+    fprintf(stderr, "lamella fe2: -o %s is the database of -d; the results would replace it\n", run->out_path);
   else
     return PETSC_TRUE;
   return PETSC_FALSE;
@@ -130,7 +164,6 @@ static PetscErrorCode Prepare(Run *run)
 /* Wires the responder that the options ask for to the macroscale solver. */
 static PetscErrorCode Connect(Run *run)
 {
-  LamResponder *solver = NULL;
   PetscInt points;
 
   PetscFunctionBeginUser;
@@ -141,13 +174,15 @@ static PetscErrorCode Connect(Run *run)
     PetscCall(LamRVESetUp(run->rve));
     /* behind a cache no point keeps a state: all its solves start from the reference */
     PetscCall(LamRVEResponderCreate(run->rve, run->response == RESPONSE_DIRECT ? points : 0, &run->direct));
-    solver = &run->direct;
+    PetscCall(LamInterruptibleResponderCreate(&run->direct, LamStopRequested, &run->solver));
   }
+  PetscCall(LamMacroSetStop(run->macro, LamStopRequested));
   if (run->response == RESPONSE_DIRECT) {
-    PetscCall(LamMacroSetResponder(run->macro, &run->direct));
+    PetscCall(LamMacroSetResponder(run->macro, &run->solver));
     PetscFunctionReturn(0);
   }
-  PetscCall(LamCacheResponderCreate(run->comm, run->database, solver, run->scene->accuracy, points, &run->cache));
+  PetscCall(LamCacheResponderCreate(run->comm, run->database, run->rve ? &run->solver : NULL, run->scene->accuracy,
+                                    points, &run->cache));
   PetscCall(LamMacroSetResponder(run->macro, &run->cache));
   PetscFunctionReturn(0);
 }
@@ -163,6 +198,7 @@ static PetscErrorCode OpenFiles(Run *run)
   if (run->response != RESPONSE_CACHE || !run->database_path) PetscFunctionReturn(0);
   PetscCall(LamRecordWriterOpen(run->database_path, "database", LAM_WRITE_APPEND, run->scene, &run->records));
   PetscCall(LamRecordWriterGetKeys(run->records, &n, &keys));
+  run->next_key = LAM_CACHE_KEY; /* below are the samples of `build`, which has to find them unsolved */
   for (PetscInt k = 0; k < n; k++) run->next_key = PetscMax(run->next_key, keys[k] + 1);
   PetscFunctionReturn(0);
 }
@@ -266,6 +302,7 @@ static PetscErrorCode PrintTotals(const Run *run)
 static PetscErrorCode RecordSolved(Run *run)
 {
   const LamResponse *records;
+  PetscErrorCode ierr;
   PetscInt64 *keys;
   PetscInt n;
 
@@ -274,10 +311,12 @@ static PetscErrorCode RecordSolved(Run *run)
   n -= run->recorded;
   if (!n) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(n, &keys));
-  for (PetscInt k = 0; k < n; k++) keys[k] = run->next_key++;
-  PetscCall(LamRecordWriterCommit(run->records, n, keys, records + run->recorded));
-  run->recorded += n;
+  for (PetscInt k = 0; k < n; k++) keys[k] = run->next_key + k;
+  ierr = LamRecordWriterCommit(run->records, n, keys, records + run->recorded);
   PetscCall(PetscFree(keys));
+  PetscCall(ierr);
+  run->next_key += n;
+  run->recorded += n;
   PetscFunctionReturn(0);
 }
 
@@ -328,19 +367,35 @@ static PetscErrorCode StepDone(LamMacro macro, const LamMacroStep *step, PetscBo
 /* Rank 0: what was solved is kept, whatever the end was. */
 static PetscErrorCode CloseFiles(Run *run, const char status[])
 {
+  PetscErrorCode ierr = 0, closed;
+
   PetscFunctionBeginUser;
   if (run->records) {
-    PetscCall(RecordSolved(run)); /* of a step that did not converge */
-    PetscCall(LamRecordWriterClose(&run->records));
+    ierr = RecordSolved(run); /* of a step that did not converge */
+    closed = LamRecordWriterClose(&run->records);
+    if (!ierr) ierr = closed;
   }
-  PetscCall(LamFE2FileClose(&run->out, status));
+  closed = LamFE2FileClose(&run->out, status);
+  if (!ierr) ierr = closed;
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+/* After an error, which is the one to tell: no lock is left, and of the cache's solves what can still be written. */
+static PetscErrorCode CloseAfterError(Run *run)
+{
+  PetscFunctionBeginUser;
+  if (!LamAppIsRoot()) PetscFunctionReturn(0);
+  PetscCall(PetscPushErrorHandler(PetscIgnoreErrorHandler, NULL));
+  (void)CloseFiles(run, NULL);
+  PetscCall(PetscPopErrorHandler());
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode SolveAndClose(Run *run, int *exit_status)
 {
   const PetscInt total = run->scene->macro.steps + (run->scene->macro.inflate ? 1 : 0);
-  char message[256], status[320] = "done";
+  char message[LAM_MESSAGE_LENGTH], status[LAM_MESSAGE_LENGTH + 32] = "done";
   int signal_status = LAM_EXIT_OK;
   LamMacroReason reason;
   PetscErrorCode ierr = 0;
@@ -371,6 +426,7 @@ static PetscErrorCode Destroy(Run *run)
   PetscFunctionBeginUser;
   PetscCall(LamMacroDestroy(&run->macro));
   if (run->cache.destroy) PetscCall(run->cache.destroy(&run->cache.ctx));
+  if (run->solver.destroy) PetscCall(run->solver.destroy(&run->solver.ctx));
   if (run->direct.destroy) PetscCall(run->direct.destroy(&run->direct.ctx));
   PetscCall(LamRVEDestroy(&run->rve));
   PetscCall(LamDatabaseClose(&run->database));
@@ -378,9 +434,20 @@ static PetscErrorCode Destroy(Run *run)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Solve(Run *run, int *exit_status)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Prepare(run));
+  PetscCall(Connect(run));
+  PetscCall(OpenFilesOnRoot(run));
+  PetscCall(SolveAndClose(run, exit_status));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status)
 {
   Run run = {0};
+  PetscErrorCode ierr;
   PetscBool done;
   const LamOption options[] = {
       {'d', "database", LAM_OPTION_TEXT, "DB.h5", "response database; a cache adds to it what it solves",
@@ -400,16 +467,15 @@ PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status)
                             "Solves the macroscale problem of a scene.", options, 1, &run.scene_path, &done,
                             exit_status));
   if (done) PetscFunctionReturn(0);
-  if (!ChooseResponse(&run)) {
+  if (!ChooseResponse(&run) || !CheckPaths(&run)) {
     *exit_status = LAM_EXIT_USAGE;
     PetscFunctionReturn(0);
   }
   PetscCall(LamAppInitialize(args));
   run.comm = PETSC_COMM_WORLD;
-  PetscCall(Prepare(&run));
-  PetscCall(Connect(&run));
-  PetscCall(OpenFilesOnRoot(&run));
-  PetscCall(SolveAndClose(&run, exit_status));
+  ierr = Solve(&run, exit_status);
+  if (ierr) PetscCall(CloseAfterError(&run));
+  PetscCall(ierr);
   PetscCall(Destroy(&run));
   PetscFunctionReturn(0);
 }

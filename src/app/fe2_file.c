@@ -27,18 +27,6 @@ PetscErrorCode LamFE2FileOpen(const char path[], const LamScene *scene, LamFE2Fi
   PetscFunctionReturn(0);
 }
 
-/* Cauchy stress P F^T / J. */
-static void Cauchy(const PetscReal F[9], const PetscReal P[9], PetscReal sigma[9])
-{
-  const PetscReal J =
-      F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
-
-  for (int i = 0; i < 3; i++) {
-    for (int j = 0; j < 3; j++)
-      sigma[3 * i + j] = (P[3 * i] * F[3 * j] + P[3 * i + 1] * F[3 * j + 1] + P[3 * i + 2] * F[3 * j + 2]) / J;
-  }
-}
-
 /* Writes values * factor as [rows][columns], or [rows] where columns is 1; of rows `stride` long, from `first`. */
 static PetscErrorCode WriteColumns(LamFE2File file, const char name[], PetscInt rows, PetscInt stride, PetscInt first,
                                    PetscInt columns, const PetscReal values[], PetscReal factor, const char unit[])
@@ -84,19 +72,15 @@ static PetscErrorCode StepName(PetscInt step, const char name[], char path[96])
 static PetscErrorCode WriteTensors(LamFE2File file, PetscInt step, const LamMacroFields *fields)
 {
   const PetscReal MPa = file->scales.stress * 1e-6;
-  PetscReal *cauchy;
   char name[96];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(9 * fields->element_count, &cauchy));
-  for (PetscInt e = 0; e < fields->element_count; e++) Cauchy(&fields->F[9 * e], &fields->P[9 * e], &cauchy[9 * e]);
   PetscCall(StepName(step, "F", name));
   PetscCall(WriteColumns(file, name, fields->element_count, 9, 0, 9, fields->F, 1, "1"));
   PetscCall(StepName(step, "P", name));
   PetscCall(WriteColumns(file, name, fields->element_count, 9, 0, 9, fields->P, MPa, "MPa"));
   PetscCall(StepName(step, "cauchy", name));
-  PetscCall(WriteColumns(file, name, fields->element_count, 9, 0, 9, cauchy, MPa, "MPa"));
-  PetscCall(PetscFree(cauchy));
+  PetscCall(WriteColumns(file, name, fields->element_count, 9, 0, 9, fields->cauchy, MPa, "MPa"));
   PetscFunctionReturn(0);
 }
 
@@ -189,11 +173,11 @@ PetscErrorCode LamFE2FileAddStep(LamFE2File file, const LamMacroStep *step, cons
 
 PetscErrorCode LamFE2FileClose(LamFE2File *file, const char status[])
 {
-  PetscErrorCode ierr;
+  PetscErrorCode ierr = 0;
 
   PetscFunctionBeginUser;
   if (!*file) PetscFunctionReturn(0);
-  ierr = LamRecordWriterText((*file)->writer, "/macro/status", status);
+  if (status) ierr = LamRecordWriterText((*file)->writer, "/macro/status", status);
   if (ierr)
     (void)LamRecordWriterClose(&(*file)->writer);
   else

@@ -6,11 +6,12 @@
     /macro/elements         [element][9]   node numbers, VTK's biquadratic order
     /macro/boundaries                      names of the sides, one per line
     /macro/step/<k>/u       [node][3]      displacement, mm; the third component is 0
-    /macro/step/<k>/F, P, cauchy [element][9]   means over the element, row-major; P and cauchy in MPa
+    /macro/step/<k>/F, P, cauchy [element][9]   means over the element, row-major; P and cauchy in MPa;
+                                                cauchy over its present volume
     /macro/step/<k>/indicator [element][4] lumen, opening, debonded fraction, turgor (MPa); each also under its own name
     /macro/curve/load_factor, work [step]; /macro/curve/reaction [step][side][2], N/mm
     /macro/steps            [step]         numbers of the complete steps; written last
-    /macro/status                          how the run ended
+    /macro/status                          how the run ended; absent where a kill or an error ended it
 */
 #ifndef LAM_FE2_FILE_H
 #define LAM_FE2_FILE_H
@@ -22,7 +23,7 @@ typedef struct LamFE2File_s *LamFE2File;
 /* Borrows the scene. Nothing is visible under `path` before the first step is complete. */
 PetscErrorCode LamFE2FileOpen(const char path[], const LamScene *scene, LamFE2File *file);
 PetscErrorCode LamFE2FileAddStep(LamFE2File file, const LamMacroStep *step, const LamMacroFields *fields);
-/* `status`: "done", "stopped", or why the run did not converge. */
+/* `status`: "done", "stopped", or why the run did not converge; NULL after an error. */
 PetscErrorCode LamFE2FileClose(LamFE2File *file, const char status[]);
 
 #endif

@@ -56,16 +56,45 @@ for run in cold warm; do
 done
 "$lamella" fe2 small.yaml --json -d db.h5 --response database >database.jsonl || fail "a complete database does not answer"
 
+# what the cache adds does not pass for samples of `build`: its keys count from 2^62
+if /usr/bin/python3 -c 'import h5py' 2>/dev/null; then
+  /usr/bin/python3 - <<'PYTHON' || fail "the cache's records have keys of samples, or the same twice"
+import h5py
+with h5py.File("db.h5") as file:
+    keys = list(file["records"]["key"])
+assert keys == list(range(2**62, 2**62 + len(keys))), keys
+PYTHON
+fi
+
+# an error on the way (a folder is where OUT.xdmf belongs) closes the files: the cache's solves are kept, no lock is left
+mkdir error.xdmf
+status=0
+"$lamella" fe2 small.yaml -d kept.h5 -o error.h5 >/dev/null 2>error.err || status=$?
+[ $status = 4 ] && grep -q "error.xdmf" error.err || fail "an .xdmf that cannot be written: status $status, $(cat error.err)"
+[ -z "$(ls -A | grep -E 'lock|tmp' || true)" ] || fail "an error leaves $(ls -A | grep -E 'lock|tmp')"
+"$lamella" info error.h5 >/dev/null || fail "error.h5 cannot be read"
+"$lamella" info kept.h5 --json | grep -q '"records": *[1-9]' || fail "an error loses what the cache solved: $("$lamella" info kept.h5 --json)"
+rm -rf error.xdmf
+
+# a database that cannot be written to: the results' lock is given back, and the file that was there stays
+cp small.h5 before.h5
+status=0
+"$lamella" fe2 small.yaml -d missing/db.h5 -o before.h5 >/dev/null 2>missing.err || status=$?
+[ $status = 4 ] || fail "a database in no folder ended with status $status instead of 4"
+[ -z "$(ls -A | grep -E 'lock|tmp' || true)" ] || fail "a missing folder leaves $(ls -A | grep -E 'lock|tmp')"
+cmp -s small.h5 before.h5 || fail "a run that could not start changed the results of the last one"
+
 # a state out of the database's reach: status 3, converged steps kept
 scene far.yaml "3 mm" 3
 status=0
 "$lamella" fe2 far.yaml --json -d db.h5 --response database -o far.h5 >far.jsonl 2>far.err || status=$?
 [ $status = 3 ] || fail "out of reach ended with status $status instead of 3"
-grep -q "element .* point .* out_of_reach" far.err || fail "the message names no material point: $(cat far.err)"
+grep -q "out_of_reach: .*element .* point" far.err || fail "the message names no material point: $(cat far.err)"
 [ "$(values step far.jsonl | head -n 1)" = 0 ] && [ -f far.h5 ] || fail "the steps before the failure are lost"
 
 # usage and input
-for arguments in "small.yaml --response guess" "small.yaml --response database" "small.yaml -d db.h5 --response direct"; do
+for arguments in "small.yaml --response guess" "small.yaml --response database" "small.yaml -d db.h5 --response direct" \
+  "small.yaml -d db.h5 -o ./db.h5" "small.yaml -d new.h5 -o $work/new.h5" "small.yaml -o new.xdmf"; do
   status=0
   # shellcheck disable=SC2086
   "$lamella" fe2 $arguments >/dev/null 2>&1 || status=$?

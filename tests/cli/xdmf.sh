@@ -44,7 +44,10 @@ with h5py.File("moved/block.h5") as h5, meshio.xdmf.TimeSeriesReader("moved/bloc
             assert np.array_equal(cell[name][0], step[name]), name
     assert np.allclose(cell["turgor"][0], 0.02)
     F, P, cauchy = (np.asarray(cell[name][0]).reshape(-1, 3, 3) for name in ("F", "P", "cauchy"))
-    assert np.allclose(cauchy * np.linalg.det(F)[:, None, None], P @ F.transpose(0, 2, 1))
+    size = np.abs(cauchy).max()
+    assert np.allclose(cauchy, cauchy.transpose(0, 2, 1), rtol=0, atol=1e-6 * size) # as in every point
+    of_means = P @ F.transpose(0, 2, 1) / np.linalg.det(F)[:, None, None] # not the mean, but not far from it
+    assert np.allclose(cauchy, of_means, rtol=0, atol=0.2 * size), (cauchy, of_means)
     names = h5["macro/boundaries"][()]
     names = (names.decode() if isinstance(names, bytes) else names).split("\n")
     assert names == ["bottom", "top"], names

@@ -38,8 +38,8 @@ static void SetUp(Fixture *fixture, MPI_Comm comm, PetscBool solve)
                                              .through = 1};
   assert_ok(LamDatabaseCreateEmpty(&fixture->scene, &fixture->database));
   assert_ok(SyntheticCreate(POINTS, &fixture->solver, &fixture->material));
-  assert_ok(
-      LamCacheResponderCreate(comm, fixture->database, solve ? &fixture->solver : NULL, ACCURACY, POINTS, &fixture->cache));
+  assert_ok(LamCacheResponderCreate(comm, fixture->database, solve ? &fixture->solver : NULL, ACCURACY, POINTS,
+                                    &fixture->cache));
 }
 
 static void TearDown(Fixture *fixture)
@@ -155,6 +155,59 @@ static void FailedSolveIsTheAnswer(void **state)
   TearDown(&fixture);
 }
 
+/* queries = hits + solved for + failures: close questions are solved for by one solve, a new record is no hit. */
+static void CountsAddUp(void **state)
+{
+  const PetscReal step = 0.2 * LamTrustRadius(ACCURACY);
+  Fixture fixture;
+
+  SetUp(&fixture, PETSC_COMM_SELF, PETSC_TRUE);
+  fixture.material->largest_strain = 0.2;
+  for (PetscInt p = 0; p < 4; p++) SetLoad(&fixture, p, step * p);
+  SetLoad(&fixture, 4, 0.25);
+  Respond(&fixture, 5);
+  assert_int_equal(fixture.cache.queries, 5);
+  assert_int_equal(fixture.cache.hits, 0);
+  assert_int_equal(fixture.cache.solves, 2);
+  assert_int_equal(fixture.cache.failures, 1);
+  fixture.loads[5] = fixture.loads[0];
+  fixture.loads[5].F[0] = -1; /* a query refuses it: no hit */
+  fixture.points[5] = 5;
+  Respond(&fixture, 6);
+  assert_int_equal(fixture.cache.queries, 11);
+  assert_int_equal(fixture.cache.hits, 4);
+  assert_int_equal(fixture.cache.failures, 3);
+  TearDown(&fixture);
+}
+
+static PetscErrorCode RespondStopped(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[],
+                                     LamResponse responses[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(SyntheticRespond(ctx, n, loads, points, responses));
+  for (PetscInt k = 1; k < n; k++) {
+    PetscCall(LamResponseInit(&loads[k], &responses[k]));
+    responses[k].status = LAM_OUT_OF_REACH;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Of a batch that the solver left unfinished the solved part is kept, and nothing else. */
+static void StoppedBatchKeepsWhatIsSolved(void **state)
+{
+  Fixture fixture;
+
+  SetUp(&fixture, PETSC_COMM_SELF, PETSC_TRUE);
+  fixture.solver.respond = RespondStopped;
+  for (PetscInt p = 0; p < 3; p++) SetLoad(&fixture, p, 0.1 * p);
+  Respond(&fixture, 3);
+  assert_int_equal(fixture.responses[0].status, LAM_CONVERGED);
+  assert_int_equal(fixture.responses[1].status, LAM_OUT_OF_REACH);
+  assert_int_equal(fixture.responses[2].status, LAM_OUT_OF_REACH);
+  assert_int_equal(RecordCount(&fixture), 1);
+  TearDown(&fixture);
+}
+
 /* Within a load step a point stays with its record though another has come nearer; after it the nearest answers. */
 static void PointKeepsItsRecordWithinAStep(void **state)
 {
@@ -213,10 +266,11 @@ static void RecordsDoNotDependOnRanks(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(SecondQuestionIsAHit),      cmocka_unit_test(AnswersAreAccurate),
-      cmocka_unit_test(CloseQuestionsShareASolve), cmocka_unit_test(DatabaseAloneNeverSolves),
-      cmocka_unit_test(FailedSolveIsTheAnswer),    cmocka_unit_test(PointKeepsItsRecordWithinAStep),
-      cmocka_unit_test(RecordsDoNotDependOnRanks),
+      cmocka_unit_test(SecondQuestionIsAHit),          cmocka_unit_test(AnswersAreAccurate),
+      cmocka_unit_test(CloseQuestionsShareASolve),     cmocka_unit_test(DatabaseAloneNeverSolves),
+      cmocka_unit_test(FailedSolveIsTheAnswer),        cmocka_unit_test(PointKeepsItsRecordWithinAStep),
+      cmocka_unit_test(RecordsDoNotDependOnRanks),     cmocka_unit_test(CountsAddUp),
+      cmocka_unit_test(StoppedBatchKeepsWhatIsSolved),
   };
   int failed;
 

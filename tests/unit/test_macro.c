@@ -177,11 +177,133 @@ static void FailureNamesThePoint(void **state)
   fixture.material->largest_strain = 0.25;
   FixtureSolve(&fixture);
   assert_int_equal(fixture.reason, LAM_MACRO_NOT_CONVERGED);
-  assert_int_equal(fixture.step_count, 2);
   assert_non_null(strstr(fixture.message, "step 3"));
   assert_non_null(strstr(fixture.message, "element 0, point"));
   assert_non_null(strstr(fixture.message, "turgor 0 MPa"));
   assert_non_null(strstr(fixture.message, "not_converged: too far"));
+  FixtureDestroy(&fixture);
+}
+
+/* The increments of a step that fails later are reported, as a step that came part of its way. */
+static void PartOfAStepIsReported(void **state)
+{
+  LamMacroFields fields;
+  Fixture fixture;
+
+  FixtureBiaxial(&fixture, 0.5, 0, 5);
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  fixture.material->largest_strain = 0.23;
+  FixtureSolve(&fixture);
+  assert_int_equal(fixture.reason, LAM_MACRO_NOT_CONVERGED);
+  assert_int_equal(fixture.step_count, 3);
+  const LamMacroStep *step = FixtureLast(&fixture);
+  assert_int_equal(step->step, 3);
+  assert_true(step->load_factor > 0.45 && step->load_factor <= 0.46);
+  assert_true(step->work > fixture.steps[1].work);
+  assert_ok(LamMacroGetFields(fixture.macro, &fields));
+  for (PetscInt e = 0; e < fields.element_count; e++)
+    assert_true(PetscAbsReal(fields.F[9 * e] - 1 - 0.5 * step->load_factor) < 1e-9);
+  assert_ok(LamMacroFieldsDestroy(&fields));
+  FixtureDestroy(&fixture);
+}
+
+/* A step of which nothing converged is not reported. */
+static void NothingReachedIsNotReported(void **state)
+{
+  Fixture fixture;
+
+  FixtureBiaxial(&fixture, 0.5, 0, 2);
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  fixture.material->largest_strain = 1e-6;
+  FixtureSolve(&fixture);
+  assert_int_equal(fixture.reason, LAM_MACRO_NOT_CONVERGED);
+  assert_int_equal(fixture.step_count, 0);
+  FixtureDestroy(&fixture);
+}
+
+/* The longest reason that a solver can give is told whole, and the point behind it. */
+static void ReasonIsNotCutOff(void **state)
+{
+  char reason[sizeof(((LamResponse *)NULL)->reason)];
+  Fixture fixture;
+
+  memset(reason, 'x', sizeof(reason) - 1);
+  reason[sizeof(reason) - 1] = '\0';
+  FixtureBiaxial(&fixture, 0.5, 0, 1000);
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  fixture.material->largest_strain = 1e-6;
+  fixture.material->reason = reason;
+  FixtureSolve(&fixture);
+  assert_non_null(strstr(fixture.message, reason));
+  assert_non_null(strstr(fixture.message, "turgor 0 MPa"));
+  FixtureDestroy(&fixture);
+}
+
+static PetscInt BatchesLeft; /* until CountedStop is true */
+
+static PetscBool CountedStop(void)
+{
+  return (PetscBool)(BatchesLeft-- <= 0);
+}
+
+/* A stop ends the run in the middle of a load step, on the word of one rank, at the last converged increment. */
+static void StopEndsWithinAStep(void **state)
+{
+  PetscMPIInt rank;
+  PetscInt calls;
+  Fixture fixture;
+
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  FixtureShear(&fixture, 2, 0.4, 2);
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  FixtureSolve(&fixture);
+  calls = fixture.material->calls;
+  FixtureDestroy(&fixture);
+  FixtureShear(&fixture, 2, 0.4, 2);
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  BatchesLeft = rank == 0 ? calls - 2 : 2 * calls;
+  assert_ok(LamMacroSetStop(fixture.macro, CountedStop));
+  FixtureSolve(&fixture);
+  assert_int_equal(fixture.reason, LAM_MACRO_STOPPED);
+  assert_int_equal(fixture.step_count, 1);
+  assert_int_equal(fixture.material->calls, calls - 1);
+  assert_int_equal(fixture.material->rejects, 1);
+  FixtureDestroy(&fixture);
+}
+
+/* An element's Cauchy stress is the mean over its present volume: with its volume, it adds up to the virial sum P F^T.
+ */
+static void CauchyIsTheMeanOverThePresentVolume(void **state)
+{
+  PetscReal error = 0, of_means = 0;
+  LamMacroFields fields;
+  Fixture fixture;
+
+  FixtureShear(&fixture, 2, 0.6, 2);
+  FixtureSetUp(&fixture, PETSC_COMM_SELF);
+  FixtureSolve(&fixture);
+  LamMacro macro = fixture.macro;
+  assert_ok(LamMacroGetFields(macro, &fields));
+  for (PetscInt e = 0; e < fields.element_count; e++) {
+    const PetscReal *F = &fields.F[9 * e], *P = &fields.P[9 * e], *cauchy = NULL;
+    PetscReal virial[2][2] = {{0}}, volume = 0, G[9];
+    for (PetscInt q = 9 * e; q < 9 * e + 9; q++) {
+      const LamMaterialPoint *point = &macro->accepted[q];
+      volume += macro->weight[q] * SyntheticInverseTranspose(point->load.F, G);
+      for (int ij = 0; ij < 4; ij++) {
+        for (int k = 0; k < 3; k++)
+          virial[ij / 2][ij % 2] += macro->weight[q] * point->P[3 * (ij / 2) + k] * point->load.F[3 * (ij % 2) + k];
+      }
+    }
+    cauchy = &fields.cauchy[9 * macro->number[macro->cell_start + e - macro->mesh_start]];
+    for (int ij = 0; ij < 4; ij++)
+      error = PetscMax(error, PetscAbsReal(cauchy[3 * (ij / 2) + ij % 2] - virial[ij / 2][ij % 2] / volume));
+    of_means = PetscMax(
+        of_means, PetscAbsReal(fields.cauchy[9 * e] - (P[0] * F[0] + P[1] * F[1]) / SyntheticInverseTranspose(F, G)));
+  }
+  assert_true(error < 1e-13);
+  assert_true(of_means > 1e-4); /* the stress of the means is another one */
+  assert_ok(LamMacroFieldsDestroy(&fields));
   FixtureDestroy(&fixture);
 }
 
@@ -318,7 +440,9 @@ int main(int argc, char **argv)
       cmocka_unit_test(NothingIsAskedTwice),      cmocka_unit_test(CountsAreOfAllRanks),
       cmocka_unit_test(MonitorStopsTheRun),       cmocka_unit_test(RanksDoNotMatter),
       cmocka_unit_test(ElementsAreInOrder),       cmocka_unit_test(ContradictingSidesAreRefused),
-      cmocka_unit_test(LooseBodyIsRefused),
+      cmocka_unit_test(LooseBodyIsRefused),       cmocka_unit_test(PartOfAStepIsReported),
+      cmocka_unit_test(ReasonIsNotCutOff),        cmocka_unit_test(NothingReachedIsNotReported),
+      cmocka_unit_test(StopEndsWithinAStep),      cmocka_unit_test(CauchyIsTheMeanOverThePresentVolume),
   };
   int failed;
 

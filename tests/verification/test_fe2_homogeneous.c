@@ -53,7 +53,7 @@ static void StressIsThatOfOneRVE(void **unused)
   LamMacroReason reason;
   LamMacroFields fields;
   LamResponse exact;
-  char message[256];
+  char message[LAM_MESSAGE_LENGTH];
 
   SetUp(&body);
   assert_int_equal(LamMacroSolve(body.macro, &reason, message), 0);

@@ -1,0 +1,76 @@
+/*
+  Responder that hands a batch on question by question, until it is asked to stop.
+*/
+#include "interruptible.h"
+
+typedef struct {
+  LamResponder *solver, *self; /* borrowed */
+  PetscBool (*stop)(void);
+} Interruptible;
+
+static PetscErrorCode LeaveOut(const LamLoad *load, LamResponse *response)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamResponseInit(load, response));
+  response->status = LAM_OUT_OF_REACH;
+  PetscCall(PetscStrncpy(response->reason, "stopped before it was solved", sizeof(response->reason)));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[],
+                              LamResponse responses[])
+{
+  Interruptible *i = (Interruptible *)ctx;
+  const LamResponder before = *i->solver;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < n; k++) {
+    if (i->stop())
+      PetscCall(LeaveOut(&loads[k], &responses[k]));
+    else
+      PetscCall(i->solver->respond(i->solver->ctx, 1, &loads[k], &points[k], &responses[k]));
+    if (!LamResponseHasFields(&responses[k])) i->self->failures++;
+  }
+  i->self->queries += n;
+  i->self->solves += i->solver->solves - before.solves;
+  i->self->solve_seconds += i->solver->solve_seconds - before.solve_seconds;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Accept(void *ctx)
+{
+  Interruptible *i = (Interruptible *)ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(i->solver->accept(i->solver->ctx));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Reject(void *ctx)
+{
+  Interruptible *i = (Interruptible *)ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(i->solver->reject(i->solver->ctx));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Destroy(void **ctx)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(*ctx));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamInterruptibleResponderCreate(LamResponder *solver, PetscBool (*stop)(void), LamResponder *responder)
+{
+  Interruptible *i;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&i));
+  i->solver = solver;
+  i->self = responder;
+  i->stop = stop;
+  *responder = (LamResponder){.ctx = i, .respond = Respond, .accept = Accept, .reject = Reject, .destroy = Destroy};
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,28 @@
+# slow: a signal to one of two ranks ends fe2 on both in good order
+set -eu
+lamella=$1
+source=$2
+command -v mpirun >/dev/null || exit 77
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+fail() {
+  echo "$1" >&2
+  exit 1
+}
+
+sed 's/elements: \[8, 8\]/elements: [5, 5]/' "$source/tests/scenes/tissue-block.yaml" >tissue.yaml
+for response in direct cache; do
+  mpirun -n 2 "$lamella" fe2 tissue.yaml --json --quiet --response $response -o $response.h5 >out.jsonl 2>out.err &
+  run=$!
+  until [ -f $response.h5 ] || ! kill -0 $run 2>/dev/null; do sleep 0.1; done
+  rank=$(pgrep -P $run | tail -n 1)
+  kill -s TERM "$rank" || fail "$response: the run had ended: $(cat out.err)"
+  status=0
+  wait $run || status=$?
+  [ $status = 143 ] || fail "$response: status $status instead of 143: $(cat out.err)"
+  [ "$(wc -l <out.jsonl)" -lt 6 ] || fail "$response: the run went on to its end"
+  [ -z "$(ls -A | grep -E 'lock|tmp' || true)" ] || fail "$response: $(ls -A | grep -E 'lock|tmp') is left"
+  "$lamella" info $response.h5 >/dev/null || fail "$response: the file of a stopped run cannot be read"
+done
