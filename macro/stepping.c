@@ -12,14 +12,14 @@
 
   Converged means: norm of the residual <= RELATIVE_TOLERANCE times the norm of the element forces before they cancel
   at the nodes (largest in this series of iterations), or <= ABSOLUTE_TOLERANCE (C1 + C2) times the box's first edge,
-  which is rounding error and decides only for a body without any stress.
+  which is the rounding error that responders leave in their stresses; it decides only for a body next to unstressed.
 
   Reference: Wriggers, Nonlinear Finite Element Methods, ch. 5.
 */
 #include <petsctime.h>
 #include "macro_impl.h"
 
-static const PetscReal RELATIVE_TOLERANCE = 1e-9, ABSOLUTE_TOLERANCE = 1e-12;
+static const PetscReal RELATIVE_TOLERANCE = 1e-9, ABSOLUTE_TOLERANCE = 1e-10;
 enum { MAX_HALVINGS = 8, MAX_ITERATIONS = 15 };
 
 /* Where the program stands: shares of turgor and of the prescribed displacements. */
