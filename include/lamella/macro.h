@@ -25,12 +25,12 @@ typedef struct {
                                                          a corner's is shared among the sides that prescribe it */
   PetscReal work;                                     /* of the boundary forces since the start, stress * length^2 */
   PetscReal debonded_fraction, max_gap, turgor_mean;
-  PetscInt newton_iterations;                         /* all of the step, cutbacks included */
+  PetscInt newton_iterations; /* all of the step, cutbacks included */
   PetscInt cutbacks;
-  PetscInt64 queries, hits, solves, failures;         /* of this step, all ranks */
-  PetscReal seconds, solve_seconds;                   /* wall time; time inside the responder's solves, this rank */
-  PetscReal residuals[64];                            /* of the last Newton iteration series, over the norm of the
-                                                         element forces; residual_count entries */
+  PetscInt64 queries, hits, solves, failures; /* of this step, all ranks */
+  PetscReal seconds, solve_seconds;           /* wall time; time inside the responder's solves, this rank */
+  PetscReal residuals[64];                    /* of the last Newton iteration series, over the norm of the
+                                                 element forces; residual_count entries */
   PetscInt residual_count;
 } LamMacroStep;
 
@@ -45,7 +45,7 @@ typedef PetscErrorCode (*LamMacroMonitor)(LamMacro macro, const LamMacroStep *st
 PetscErrorCode LamMacroCreate(MPI_Comm comm, LamMacro *macro);
 PetscErrorCode LamMacroSetScene(LamMacro macro, const LamScene *scene); /* borrows the scene */
 PetscErrorCode LamMacroSetUp(LamMacro macro);
-PetscErrorCode LamMacroGetPointCount(LamMacro macro, PetscInt *points); /* material points on this rank */
+PetscErrorCode LamMacroGetPointCount(LamMacro macro, PetscInt *points);       /* material points on this rank */
 PetscErrorCode LamMacroSetResponder(LamMacro macro, LamResponder *responder); /* borrows it */
 PetscErrorCode LamMacroSetMonitor(LamMacro macro, LamMacroMonitor monitor, void *ctx);
 /*

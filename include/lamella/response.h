@@ -13,7 +13,8 @@
   X(LAM_NO_EQUILIBRIUM, "no_equilibrium") /* with a certificate in `reason` */                                         \
   X(LAM_NOT_CONVERGED, "not_converged")                                                                                \
   X(LAM_INVALID_F, "invalid_F")                                                                                        \
-  X(LAM_OUT_OF_REACH, "out_of_reach") /* a database cannot answer here, or a stop came before the solve; never of a solve */
+  X(LAM_OUT_OF_REACH,                                                                                                  \
+    "out_of_reach") /* a database cannot answer here, or a stop came before the solve; never of a solve */
 typedef enum { LAM_STATUSES(LAM_ENUM_ENTRY) LAM_STATUS_COUNT } LamStatus;
 extern const char *const LamStatusNames[];
 
@@ -32,34 +33,34 @@ typedef struct {
   LamLoad load; /* the question: F, turgor, cohesion */
   LamStatus status;
   LamSource source;
-  PetscReal energy;      /* Psi */
-  PetscReal P[9];        /* dPsi/dF: effective first Piola-Kirchhoff stress, fluid included */
-  PetscReal tangent[81]; /* dP_ij/dF_kl */
-  PetscReal P_turgor[9]; /* dP/dp */
-  PetscReal energy_turgor2;    /* d2Psi/dp2; dPsi/dp is -lumen_fraction */
-  PetscReal P_cohesion[9];     /* dP/dg; 0 for bonded tissue */
-  PetscReal energy_cohesion2;  /* d2Psi/dg2; dPsi/dg is opening_fraction */
+  PetscReal energy;                 /* Psi */
+  PetscReal P[9];                   /* dPsi/dF: effective first Piola-Kirchhoff stress, fluid included */
+  PetscReal tangent[81];            /* dP_ij/dF_kl */
+  PetscReal P_turgor[9];            /* dP/dp */
+  PetscReal energy_turgor2;         /* d2Psi/dp2; dPsi/dp is -lumen_fraction */
+  PetscReal P_cohesion[9];          /* dP/dg; 0 for bonded tissue */
+  PetscReal energy_cohesion2;       /* d2Psi/dg2; dPsi/dg is opening_fraction */
   PetscReal energy_turgor_cohesion; /* d2Psi/dpdg */
-  PetscReal lumen_fraction;    /* V_lumen / V0 */
-  PetscReal opening_fraction;  /* V_gap / V0 */
-  PetscReal debonded_fraction; /* share of interface length without contact; 0 for bonded tissue */
+  PetscReal lumen_fraction;         /* V_lumen / V0 */
+  PetscReal opening_fraction;       /* V_gap / V0 */
+  PetscReal debonded_fraction;      /* share of interface length without contact; 0 for bonded tissue */
   PetscReal debonded_by_face[3];
-  PetscReal open_fraction;         /* share of interface length with a gap above 1e-3 */
+  PetscReal open_fraction; /* share of interface length with a gap above 1e-3 */
   PetscReal max_gap;
   PetscReal max_traction;          /* largest normal Cauchy traction averaged over one wall thickness, tension > 0 */
   PetscReal mean_face_traction[3]; /* mean normal Cauchy traction per face family, tension > 0 */
   PetscReal lowest_eigenvalue;     /* estimate of the softest mode where it was computed (unstable states), else NaN */
   PetscInt floating_cells;
-  PetscInt negative_eigenvalues;   /* of the consistent tangent */
+  PetscInt negative_eigenvalues; /* of the consistent tangent */
   PetscBool stable;
-  PetscInt branch;                 /* 0: reached without leaving a saddle; n: after n branch switches */
-  PetscInt newton_iterations;      /* all of them: rejected steps and substeps included */
+  PetscInt branch;            /* 0: reached without leaving a saddle; n: after n branch switches */
+  PetscInt newton_iterations; /* all of them: rejected steps and substeps included */
   PetscInt factorisations;
   PetscInt unknowns;
   PetscReal seconds;
-  PetscReal error_estimate;        /* relative error of P, contract's norm */
-  PetscReal distance;              /* of a query to the record that answered, in strain; 0 for a solve */
-  char reason[192];                /* why the status is not `converged`; empty otherwise */
+  PetscReal error_estimate; /* relative error of P, contract's norm */
+  PetscReal distance;       /* of a query to the record that answered, in strain; 0 for a solve */
+  char reason[192];         /* why the status is not `converged`; empty otherwise */
 } LamResponse;
 
 /* Clears a response to "nothing known": reals NaN, counts 0, status LAM_NOT_CONVERGED; copies the load. */
@@ -78,10 +79,10 @@ typedef enum { LAM_MEMBER_REAL, LAM_MEMBER_INT, LAM_MEMBER_BOOL, LAM_MEMBER_ENUM
 typedef struct {
   const char *name;
   LamMemberType type;
-  PetscInt count;             /* numbers, or bytes of text */
-  size_t offset;              /* in LamResponse */
-  PetscReal stress_power;     /* physical value = number * (C1 + C2)^stress_power */
-  const char *const *names;   /* of an enumeration, else NULL */
+  PetscInt count;           /* numbers, or bytes of text */
+  size_t offset;            /* in LamResponse */
+  PetscReal stress_power;   /* physical value = number * (C1 + C2)^stress_power */
+  const char *const *names; /* of an enumeration, else NULL */
   const char *help;
 } LamMember;
 extern const LamMember LamResponseMembers[]; /* ends with a NULL name */
@@ -94,7 +95,8 @@ extern const LamMember LamResponseMembers[]; /* ends with a NULL name */
 */
 typedef struct LamResponder_s {
   void *ctx; /* owned by the responder */
-  PetscErrorCode (*respond)(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[], LamResponse responses[]);
+  PetscErrorCode (*respond)(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[],
+                            LamResponse responses[]);
   PetscErrorCode (*accept)(void *ctx); /* the load step has converged: its states become the starting points */
   PetscErrorCode (*reject)(void *ctx); /* the load step is given up: go back to the last accepted one */
   PetscErrorCode (*destroy)(void **ctx);

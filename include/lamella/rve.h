@@ -48,10 +48,10 @@ PetscErrorCode LamRVEGetUnknowns(LamRVE rve, PetscInt *unknowns);
 */
 typedef struct {
   PetscInt node_count, element_count, cell_count;
-  const PetscReal *nodes;     /* [node_count][2] */
-  const PetscInt *elements;   /* [element_count][9] */
-  const PetscInt *cell_of;    /* [element_count]: the cell of an element */
-  PetscReal period[2][2];     /* period vectors (rows), reference, in apothems */
+  const PetscReal *nodes;   /* [node_count][2] */
+  const PetscInt *elements; /* [element_count][9] */
+  const PetscInt *cell_of;  /* [element_count]: the cell of an element */
+  PetscReal period[2][2];   /* period vectors (rows), reference, in apothems */
 } LamRVEMesh;
 PetscErrorCode LamRVEGetMesh(LamRVE rve, LamRVEMesh *mesh);
 /* Fields of a state, at mesh nodes; the caller provides the arrays. Any may be NULL.

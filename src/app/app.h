@@ -64,10 +64,10 @@ PetscErrorCode LamOptionsParse(LamArgs *args, const char usage[], const char sum
 /* The contract's JSON object of a solved state; physical units. state < 0: no "state" member. The caller owns it. */
 PetscErrorCode LamResponseToJSON(const LamResponse *response, const LamScales *scales, PetscInt state,
                                  PetscBool tangent, json_t **object);
-json_t *LamJSONReal(PetscReal value);                       /* null where not finite */
+json_t *LamJSONReal(PetscReal value); /* null where not finite */
 json_t *LamJSONReals(PetscInt n, const PetscReal values[], PetscReal scale);
-PetscErrorCode LamPrintJSON(json_t *object);                /* one line on stdout, rank 0; takes ownership */
-PetscErrorCode LamPrintResponseHeader(void);                /* table of states for a person, stdout */
+PetscErrorCode LamPrintJSON(json_t *object); /* one line on stdout, rank 0; takes ownership */
+PetscErrorCode LamPrintResponseHeader(void); /* table of states for a person, stdout */
 PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales *scales, PetscInt state);
 
 /* ---- progress.c: a bar on stderr where it is a terminal, else nothing ---- */

@@ -268,8 +268,7 @@ static void the_tangent_is_the_gradient_of_the_answered_stress(void **state)
     a = Ask(db, plus);
     b = Ask(db, minus);
     for (int j = 0; j < 4; j++)
-      assert_near((a.P[in_plane[j]] - b.P[in_plane[j]]) / (2 * h), r.tangent[9 * in_plane[j] + in_plane[i]],
-                         1e-8);
+      assert_near((a.P[in_plane[j]] - b.P[in_plane[j]]) / (2 * h), r.tangent[9 * in_plane[j] + in_plane[i]], 1e-8);
     assert_near((a.P[8] - b.P[8]) / (2 * h), r.tangent[72 + in_plane[i]], 1e-8);
   }
   LamDatabaseClose(&db);
