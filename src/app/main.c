@@ -139,6 +139,7 @@ PetscBool LamAppIsRoot(void)
 PetscErrorCode LamAppInitialize(LamArgs *args)
 {
   PetscFunctionBeginUser;
+  setenv("HWLOC_HIDE_ERRORS", "2", 0); /* in a container without /sys MPI's hwloc complains of that on every start */
   PetscCall(PetscOptionsSetValue(NULL, "-no_signal_handler", "true")); /* SIGTERM is ours */
   PetscCall(PetscInitialize(&args->petsc_argc, &args->petsc_argv, NULL, NULL));
   PetscCallMPI(MPI_Comm_dup(MPI_COMM_WORLD, &EndComm));
