@@ -26,6 +26,13 @@ PetscErrorCode LamRVESetMicrostructure(LamRVE rve, const LamMicrostructure *micr
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamRVESetStrategy(LamRVE rve, LamStrategy strategy)
+{
+  PetscFunctionBeginUser;
+  rve->strategy = strategy;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamRVESetMonitor(LamRVE rve, PetscBool on)
 {
   PetscFunctionBeginUser;

@@ -48,6 +48,7 @@ typedef struct {
 struct LamRVE_s {
   MPI_Comm comm;
   LamMicrostructure micro;
+  LamStrategy strategy;
   PetscBool has_micro, is_set_up, monitor;
   const LamWallLaw *law;
   LamMesh mesh;

@@ -7,10 +7,10 @@
 
 const char *const LamWallLawNames[] = {LAM_WALL_LAWS(LAM_NAME_ENTRY)};
 const char *const LamInterfaceLawNames[] = {LAM_INTERFACE_LAWS(LAM_NAME_ENTRY)};
+const char *const LamStrategyNames[] = {LAM_STRATEGIES(LAM_NAME_ENTRY)};
 const char *const LamFibresNames[] = {LAM_FIBRES(LAM_NAME_ENTRY)};
 const char *const LamSideNames[] = {LAM_SIDES(LAM_NAME_ENTRY)};
 static const char *const turgor_mode_names[] = {LAM_TURGOR_MODES(LAM_NAME_ENTRY)};
-static const char *const strategy_names[] = {"two_step", "one_step"};
 
 #define MAP(key_path) .path = key_path, .type = LAM_KEY_MAP
 #define LIST(key_path) .path = key_path, .type = LAM_KEY_LIST
@@ -83,7 +83,7 @@ const LamKey LamKeys[] = {
      .help = "Elements along one face."},
     {INTEGER("rve.mesh.through"), FROM(1), TO(50), .default_words = CHOSEN, .example = "2",
      .help = "Elements through one wall."},
-    {NAME("rve.strategy", strategy_names), .default_value = "two_step", .example = "two_step",
+    {NAME("rve.strategy", LamStrategyNames), .default_value = "two_step", .example = "two_step",
      .help = "How contact is reached: from the bonded state (`two_step`) or at once (`one_step`). No effect on bonded "
              "tissue."},
 

@@ -24,6 +24,8 @@ extern const char *const LamStatusNames[];
 typedef enum { LAM_SOURCES(LAM_ENUM_ENTRY) LAM_SOURCE_COUNT } LamSource;
 extern const char *const LamSourceNames[];
 
+#define LAM_VISIBLE_GAP 1e-3 /* apothems: a gap above it counts as open */
+
 /*
   Nondimensional (stresses in C1 + C2, lengths in apothems). A number that is not known is NaN in memory and null in
   JSON. In plane strain tangent entries that involve an out-of-plane shear component (13, 23, 31, 32) are NaN.
@@ -43,14 +45,23 @@ typedef struct {
   PetscReal energy_turgor_cohesion; /* d2Psi/dpdg */
   PetscReal lumen_fraction;         /* V_lumen / V0 */
   PetscReal opening_fraction;       /* V_gap / V0 */
+  PetscReal opening_by_face[3];     /* area between facing walls of a face family / V0; junction voids left out */
   PetscReal debonded_fraction;      /* share of interface length without contact; 0 for bonded tissue */
   PetscReal debonded_by_face[3];
-  PetscReal open_fraction; /* share of interface length with a gap above 1e-3 */
-  PetscReal max_gap;
+  PetscReal open_fraction; /* share of interface length with a gap above LAM_VISIBLE_GAP */
+  PetscReal open_by_face[3];
+  PetscReal debonded_spread, open_spread; /* change of the two fractions on a second mesh; NaN: not computed */
+  PetscReal max_gap, mean_gap;            /* between facing walls; mean over the interface length */
+  PetscReal max_penetration;              /* pointwise; goes to zero with the mesh */
+  /* sum over closed faces of length n(x)n over the whole interface length: 11, 22, 12; its trace is the closed share */
+  PetscReal fabric[3];
   PetscReal max_traction;          /* largest normal Cauchy traction averaged over one wall thickness, tension > 0 */
   PetscReal mean_face_traction[3]; /* mean normal Cauchy traction per face family, tension > 0 */
   PetscReal lowest_eigenvalue;     /* estimate of the softest mode where it was computed (unstable states), else NaN */
-  PetscInt floating_cells;
+  PetscInt floating_cells;         /* cells without any contact */
+  PetscInt zero_modes;             /* motions of the cells that change no energy: cells slide or spin free */
+  PetscInt cell_clusters;          /* groups of cells that contact joins */
+  PetscInt percolating_directions; /* of the period, 0 to 2: how many independent ones a group spans */
   PetscInt negative_eigenvalues; /* of the consistent tangent */
   PetscBool stable;
   PetscInt branch;            /* 0: reached without leaving a saddle; n: after n branch switches */

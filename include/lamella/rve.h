@@ -19,6 +19,8 @@ typedef struct LamRVEState_s *LamRVEState; /* positions of one material point an
 PetscErrorCode LamRVECreate(MPI_Comm comm, LamRVE *rve);
 /* Copies the description. along and through must be chosen. PETSC_ERR_USER_INPUT where it cannot be solved. */
 PetscErrorCode LamRVESetMicrostructure(LamRVE rve, const LamMicrostructure *micro);
+/* How contact is reached: LAM_TWO_STEP (default) or LAM_ONE_STEP. No effect on bonded tissue. */
+PetscErrorCode LamRVESetStrategy(LamRVE rve, LamStrategy strategy);
 /* Prints each Newton iteration to stderr (residual, step, negative eigenvalues). Off by default. */
 PetscErrorCode LamRVESetMonitor(LamRVE rve, PetscBool on);
 /* Builds the mesh and the sparsity pattern; the factorisation is analysed at the first solve. */
@@ -59,6 +61,19 @@ PetscErrorCode LamRVEGetMesh(LamRVE rve, LamRVEMesh *mesh);
      fibre      [node]     fibre stretch sqrt(I4) along the wall
      stress     [node]     largest principal Cauchy stress of the wall, in C1 + C2 */
 PetscErrorCode LamRVEGetFields(LamRVE rve, LamRVEState state, PetscReal x[], PetscReal fibre[], PetscReal stress[]);
+
+/*
+  Samples along the interfaces of a contact state, for pictures and profiles; the caller provides the arrays, any may be
+  NULL. LamRVEGetInterfaceSize: `faces` = 3 per cell (face families 0, 1, 2 of cell 0, then of cell 1, ...), `points` per
+  face, evenly spaced in the reference along the slave wall, counter-clockwise around its cell. Bonded tissue has none.
+     from      [face][point][2]  current position on the wall of the face's cell
+     to        [face][point][2]  nearest point of the facing wall (in the image that faces it); NaN: it faces none
+     gap       [face][point]     distance, in apothems (< 0: penetration); NaN: it faces none
+     pressure  [face][point]     contact pressure (Cauchy, >= 0), in C1 + C2; the traction is cohesion - pressure
+*/
+PetscErrorCode LamRVEGetInterfaceSize(LamRVE rve, PetscInt *faces, PetscInt *points);
+PetscErrorCode LamRVEGetInterface(LamRVE rve, LamRVEState state, PetscReal from[], PetscReal to[], PetscReal gap[],
+                                  PetscReal pressure[]);
 
 /*
   A responder that solves one RVE per question, warm-started per material point. Borrows `rve`, which must outlive it.

@@ -19,16 +19,21 @@
 #define LAM_INTERFACE_LAWS(X)                                                                                          \
   X(LAM_INTERFACE_BONDED, "bonded")                                                                                    \
   X(LAM_INTERFACE_CONTACT, "contact")
+#define LAM_STRATEGIES(X)                                                                                              \
+  X(LAM_TWO_STEP, "two_step") /* bonded tissue first, then release to contact */                                       \
+  X(LAM_ONE_STEP, "one_step") /* contact at once from the affine state */
 #define LAM_FIBRES(X)                                                                                                  \
   X(LAM_FIBRES_BOTH, "both")                                                                                           \
   X(LAM_FIBRES_TENSION, "tension")
 
 typedef enum { LAM_WALL_LAWS(LAM_ENUM_ENTRY) LAM_WALL_LAW_COUNT } LamWallLawType;
 typedef enum { LAM_INTERFACE_LAWS(LAM_ENUM_ENTRY) LAM_INTERFACE_LAW_COUNT } LamInterfaceLawType;
+typedef enum { LAM_STRATEGIES(LAM_ENUM_ENTRY) LAM_STRATEGY_COUNT } LamStrategy;
 typedef enum { LAM_FIBRES(LAM_ENUM_ENTRY) LAM_FIBRES_COUNT } LamFibres;
 
 extern const char *const LamWallLawNames[];      /* "fibre_mooney_rivlin", ... */
 extern const char *const LamInterfaceLawNames[]; /* "bonded", "contact" */
+extern const char *const LamStrategyNames[];     /* "two_step", "one_step" */
 extern const char *const LamFibresNames[];       /* "both", "tension" */
 
 /* Wall material, moduli in units of C1 + C2 (so C1 + C2 = 1). */
@@ -99,7 +104,8 @@ typedef struct {
   LamMicrostructure micro;
   PetscReal turgor;   /* of the tissue, where a load does not say otherwise; in C1 + C2 */
   PetscReal cohesion; /* likewise */
-  PetscReal accuracy; /* wanted relative error of the effective stress */
+  LamStrategy strategy; /* how contact is reached */
+  PetscReal accuracy;   /* wanted relative error of the effective stress */
   PetscInt load_count;
   LamLoad *loads; /* ramps expanded: states 1..load_count; owned */
   PetscBool has_sample;
