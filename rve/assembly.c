@@ -6,8 +6,9 @@
 */
 static const PetscReal edge_area[3][3] = {
     {0.0, 4.0 / 3.0, -1.0 / 3.0}, {-4.0 / 3.0, 0.0, 4.0 / 3.0}, {1.0 / 3.0, -4.0 / 3.0, 0.0}};
-/* The inner edge of an element at the lumen, counter-clockwise around the lumen. */
-static const PetscInt inner_edge[3] = {0, 7, 3};
+/* Counter-clockwise around their loop: the edge at the lumen of an innermost element, the edge at the interface of an
+   outermost one. */
+static const PetscInt inner_edge[3] = {0, 7, 3}, outer_edge[3] = {1, 5, 2};
 
 PetscErrorCode LamGeometryCreate(LamRVE rve)
 {
@@ -42,26 +43,26 @@ void LamGatherElement(LamRVE rve, const PetscReal F[9], const PetscReal y[], Pet
   }
 }
 
-static PetscReal EdgeArea(const PetscReal x[LAM_ELEMENT_NODES][2])
+static PetscReal EdgeArea(const PetscInt edge[3], const PetscReal x[LAM_ELEMENT_NODES][2])
 {
   PetscReal area = 0.0;
 
   for (PetscInt a = 0; a < 3; ++a)
     for (PetscInt b = a + 1; b < 3; ++b) {
-      const PetscReal *xa = x[inner_edge[a]], *xb = x[inner_edge[b]];
+      const PetscReal *xa = x[edge[a]], *xb = x[edge[b]];
 
       area += 0.5 * edge_area[a][b] * (xa[0] * xb[1] - xa[1] * xb[0]);
     }
   return area;
 }
 
-/* Adds factor * d(area)/dx and factor * d2(area)/dxdx of the inner edge. */
-static void AddEdgeArea(const PetscReal x[LAM_ELEMENT_NODES][2], PetscReal factor, PetscReal f[LAM_ELEMENT_DOFS],
-                        PetscReal K[LAM_ELEMENT_DOFS][LAM_ELEMENT_DOFS])
+/* Adds factor * d(area)/dx and factor * d2(area)/dxdx of an edge. */
+static void AddEdgeArea(const PetscInt edge[3], const PetscReal x[LAM_ELEMENT_NODES][2], PetscReal factor,
+                        PetscReal f[LAM_ELEMENT_DOFS], PetscReal K[LAM_ELEMENT_DOFS][LAM_ELEMENT_DOFS])
 {
   for (PetscInt a = 0; a < 3; ++a)
     for (PetscInt b = 0; b < 3; ++b) {
-      const PetscInt na = inner_edge[a], nb = inner_edge[b];
+      const PetscInt na = edge[a], nb = edge[b];
       const PetscReal c = 0.5 * factor * edge_area[a][b];
 
       f[2 * na] += c * x[nb][1];
@@ -73,33 +74,59 @@ static void AddEdgeArea(const PetscReal x[LAM_ELEMENT_NODES][2], PetscReal facto
     }
 }
 
-PetscReal LamLumenArea(LamRVE rve, const PetscReal y[], PetscReal factor, PetscReal gradient[])
+/* Area inside the loops that `edge` of every `through`-th element from `first` makes. */
+static PetscReal LoopArea(LamRVE rve, const PetscInt edge[3], PetscInt first, const PetscReal y[], PetscReal factor,
+                          PetscReal gradient[])
 {
-  static const PetscReal no_shift[9] = {0}; /* nodes at the lumen have no shift */
+  static const PetscReal no_shift[9] = {0}; /* nodes of free loops have no shift */
   const LamMesh *mesh = &rve->mesh;
   PetscReal area = 0.0, x[LAM_ELEMENT_NODES][2];
 
-  for (PetscInt e = 0; e < mesh->element_count; e += mesh->through) {
+  for (PetscInt e = first; e < mesh->element_count; e += mesh->through) {
     LamGatherElement(rve, no_shift, y, e, x);
-    area += EdgeArea((const PetscReal(*)[2])x);
+    area += EdgeArea(edge, (const PetscReal(*)[2])x);
     if (gradient) {
       PetscReal f[LAM_ELEMENT_DOFS] = {0};
 
-      AddEdgeArea((const PetscReal(*)[2])x, factor, f, NULL);
+      AddEdgeArea(edge, (const PetscReal(*)[2])x, factor, f, NULL);
       for (PetscInt k = 0; k < 3; ++k)
         for (PetscInt d = 0; d < 2; ++d)
-          gradient[2 * mesh->node_class[mesh->elements[LAM_ELEMENT_NODES * e + inner_edge[k]]] + d] +=
-              f[2 * inner_edge[k] + d];
+          gradient[2 * mesh->node_class[mesh->elements[LAM_ELEMENT_NODES * e + edge[k]]] + d] += f[2 * edge[k] + d];
     }
   }
   return area;
+}
+
+PetscReal LamLumenArea(LamRVE rve, const PetscReal y[], PetscReal factor, PetscReal gradient[])
+{
+  return LoopArea(rve, inner_edge, 0, y, factor, gradient);
+}
+
+PetscReal LamCellArea(LamRVE rve, const PetscReal y[], PetscReal factor, PetscReal gradient[])
+{
+  return LoopArea(rve, outer_edge, rve->mesh.through - 1, y, factor, gradient);
+}
+
+PetscReal LamSuction(LamRVE rve, const LamLoad *load)
+{
+  return rve->contact ? load->cohesion * load->F[8] : 0.0;
+}
+
+/* Potential of turgor and cohesion, -p V_lumen + g V_gap. */
+static PetscReal LoopEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[])
+{
+  const PetscReal *F = load->F, g = LamSuction(rve, load), cell = (F[0] * F[4] - F[1] * F[3]) * rve->mesh.V0;
+  PetscReal energy = -load->turgor * F[8] * LamLumenArea(rve, y, 0.0, NULL);
+
+  if (g != 0.0) energy += g * (cell - LamCellArea(rve, y, 0.0, NULL));
+  return energy;
 }
 
 PetscErrorCode LamAssembleEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy,
                                  PetscBool *valid)
 {
   PetscFunctionBeginUser;
-  *energy = -load->turgor * load->F[8] * LamLumenArea(rve, y, 0.0, NULL);
+  *energy = LoopEnergy(rve, load, y);
   *valid = PETSC_TRUE;
   for (PetscInt e = 0; e < rve->mesh.element_count; ++e) {
     PetscReal x[LAM_ELEMENT_NODES][2], element;
@@ -129,10 +156,10 @@ static void Scatter(LamRVE rve, PetscInt e, const LamElementResult *element, Pet
 PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy,
                            PetscReal residual[], PetscBool *valid)
 {
-  const PetscReal pressure = load->turgor * load->F[8];
+  const PetscReal pressure = load->turgor * load->F[8], suction = LamSuction(rve, load);
 
   PetscFunctionBeginUser;
-  *energy = 0.0;
+  *energy = LoopEnergy(rve, load, y);
   *valid = PETSC_TRUE;
   PetscCall(PetscArrayzero(residual, rve->ndof));
   PetscCall(PetscArrayzero(rve->linear.values, rve->linear.nonzeros));
@@ -145,10 +172,10 @@ PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[],
                        &rve->stress[e], &element, valid);
     if (!*valid) break;
     *energy += element.energy;
-    if (LamMeshElementIsInner(&rve->mesh, e) && pressure != 0.0) {
-      *energy -= pressure * EdgeArea((const PetscReal(*)[2])x);
-      AddEdgeArea((const PetscReal(*)[2])x, -pressure, element.f, element.K);
-    }
+    if (LamMeshElementIsInner(&rve->mesh, e) && pressure != 0.0)
+      AddEdgeArea(inner_edge, (const PetscReal(*)[2])x, -pressure, element.f, element.K);
+    if (LamMeshElementIsOuter(&rve->mesh, e) && suction != 0.0)
+      AddEdgeArea(outer_edge, (const PetscReal(*)[2])x, -suction, element.f, element.K);
     Scatter(rve, e, &element, residual);
   }
   PetscFunctionReturn(0);

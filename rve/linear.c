@@ -11,63 +11,113 @@ static int CompareKeys(const void *a, const void *b)
   return x < y ? -1 : x > y;
 }
 
-/* Sorted unique keys row * n + column, row <= column, of coupled classes (class 0, held, left out). */
-static PetscErrorCode CollectBlocks(const LamMesh *mesh, PetscInt *count, PetscInt64 **blocks)
+/* Sorts keys and keeps one of each. */
+static PetscInt SortUnique(PetscInt n, PetscInt64 keys[])
 {
-  const PetscInt classes = mesh->class_count;
+  PetscInt unique = 0;
+
+  qsort(keys, (size_t)n, sizeof(*keys), CompareKeys);
+  for (PetscInt i = 0; i < n; ++i)
+    if (i == 0 || keys[i] != keys[i - 1]) keys[unique++] = keys[i];
+  return unique;
+}
+
+/* Appends the keys row * classes + column, row <= column, of all pairs of a set of classes (class 0, held, left out).
+ */
+static void AddClique(PetscInt classes, PetscInt size, const PetscInt members[], PetscInt *n, PetscInt64 keys[])
+{
+  for (PetscInt a = 0; a < size; ++a)
+    for (PetscInt b = a; b < size; ++b) {
+      const PetscInt ca = members[a], cb = members[b];
+
+      if (ca > 0 && cb > 0) keys[(*n)++] = (PetscInt64)PetscMin(ca, cb) * classes + PetscMax(ca, cb);
+    }
+}
+
+/* Sorted unique keys of coupled classes: those of an element, and those of a coupling. */
+static PetscErrorCode CollectBlocks(const LamMesh *mesh, const LamCouplings *couplings, PetscInt *count,
+                                    PetscInt64 **blocks)
+{
+  const PetscInt size = couplings->size;
   PetscInt n = 0, unique = 0;
   PetscInt64 *keys;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(mesh->element_count * 45, &keys));
-  for (PetscInt e = 0; e < mesh->element_count; ++e)
-    for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
-      for (PetscInt b = a; b < LAM_ELEMENT_NODES; ++b) {
-        const PetscInt ca = mesh->node_class[mesh->elements[LAM_ELEMENT_NODES * e + a]];
-        const PetscInt cb = mesh->node_class[mesh->elements[LAM_ELEMENT_NODES * e + b]];
+  PetscCall(PetscMalloc1(mesh->element_count * 45 + couplings->count * size * (size + 1) / 2, &keys));
+  for (PetscInt e = 0; e < mesh->element_count; ++e) {
+    PetscInt members[LAM_ELEMENT_NODES];
 
-        if (ca > 0 && cb > 0) keys[n++] = (PetscInt64)PetscMin(ca, cb) * classes + PetscMax(ca, cb);
-      }
-  qsort(keys, (size_t)n, sizeof(*keys), CompareKeys);
-  for (PetscInt i = 0; i < n; ++i)
-    if (i == 0 || keys[i] != keys[i - 1]) keys[unique++] = keys[i];
-  *count = unique;
+    for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
+      members[a] = mesh->node_class[mesh->elements[LAM_ELEMENT_NODES * e + a]];
+    AddClique(mesh->class_count, LAM_ELEMENT_NODES, members, &n, keys);
+  }
+  unique = SortUnique(n, keys);
+  n = unique; /* couplings are appended to what elements gave */
+  for (PetscInt g = 0; g < couplings->count; ++g)
+    AddClique(mesh->class_count, size, &couplings->classes[g * size], &n, keys);
+  *count = n > unique ? SortUnique(n, keys) : unique;
   *blocks = keys;
   PetscFunctionReturn(0);
 }
 
-/* Rows of unknowns from rows of 2 x 2 class blocks; within a row the diagonal block comes first. */
-static PetscErrorCode FillRows(const LamMesh *mesh, PetscInt count, const PetscInt64 blocks[], LamLinear *linear)
+/* Sorted unique keys class * couplings + coupling of the members of couplings. */
+static PetscErrorCode CollectMembers(const LamCouplings *couplings, PetscInt *count, PetscInt64 **members)
 {
-  PetscInt at = 0, block = 0;
+  const PetscInt n = couplings->count * couplings->size;
 
   PetscFunctionBeginUser;
-  for (PetscInt c = 1; c < mesh->class_count; ++c) {
-    PetscInt end = block;
-
-    while (end < count && blocks[end] / mesh->class_count == c) ++end;
-    for (PetscInt d = 0; d < 2; ++d) {
-      linear->row[2 * (c - 1) + d] = at;
-      for (PetscInt b = block; b < end; ++b) {
-        const PetscInt column = 2 * ((PetscInt)(blocks[b] % mesh->class_count) - 1);
-
-        if (b > block || d == 0) linear->column[at++] = column;
-        linear->column[at++] = column + 1;
-      }
-    }
-    block = end;
-  }
-  linear->row[linear->n] = at;
-  PetscCheck(at == linear->nonzeros, PETSC_COMM_SELF, PETSC_ERR_PLIB, "sparsity pattern has %d entries, expected %d",
-             (int)at, (int)linear->nonzeros);
+  PetscCall(PetscMalloc1(n, members));
+  for (PetscInt i = 0; i < n; ++i)
+    (*members)[i] = (PetscInt64)couplings->classes[i] * couplings->count + i / couplings->size;
+  *count = SortUnique(n, *members);
   PetscFunctionReturn(0);
 }
 
-static PetscInt FindEntry(const LamLinear *linear, PetscInt i, PetscInt j)
+/*
+  Rows of unknowns: 2 x 2 class blocks, the diagonal block first, then the multipliers of the couplings of the class; a
+  multiplier's row holds its diagonal. Counts only where linear->row is NULL.
+*/
+static PetscInt FillRows(const LamMesh *mesh, const LamCouplings *couplings, PetscInt count, const PetscInt64 blocks[],
+                         PetscInt member_count, const PetscInt64 members[], LamLinear *linear)
+{
+  PetscInt at = 0, block = 0, member = 0;
+
+  for (PetscInt c = 1; c < mesh->class_count; ++c) {
+    PetscInt end = block, member_end;
+
+    while (end < count && blocks[end] / mesh->class_count == c) ++end;
+    while (member < member_count && members[member] / couplings->count < c) ++member;
+    for (member_end = member; member_end < member_count && members[member_end] / couplings->count == c;) ++member_end;
+    for (PetscInt d = 0; d < 2; ++d) {
+      if (linear->row) linear->row[2 * (c - 1) + d] = at;
+      for (PetscInt b = block; b < end; ++b) {
+        const PetscInt column = 2 * ((PetscInt)(blocks[b] % mesh->class_count) - 1);
+
+        for (PetscInt k = b > block || d == 0 ? 0 : 1; k < 2; ++k, ++at)
+          if (linear->row) linear->column[at] = column + k;
+      }
+      for (PetscInt g = member; g < member_end; ++g)
+        for (PetscInt k = 0; k < couplings->multipliers; ++k, ++at)
+          if (linear->row)
+            linear->column[at] =
+                linear->positions + (PetscInt)(members[g] % couplings->count) * couplings->multipliers + k;
+    }
+    block = end;
+  }
+  for (PetscInt i = linear->positions; i < linear->n; ++i, ++at)
+    if (linear->row) linear->row[i] = at, linear->column[at] = i;
+  if (linear->row) linear->row[linear->n] = at;
+  return at;
+}
+
+PetscInt LamLinearEntry(const LamLinear *linear, PetscInt i, PetscInt j)
 {
   const PetscInt row = PetscMin(i, j), column = PetscMax(i, j);
-  PetscInt low = linear->row[row], high = linear->row[row + 1];
+  PetscInt low, high;
 
+  if (row < 0) return -1;
+  low = linear->row[row];
+  high = linear->row[row + 1];
   while (high - low > 1) {
     const PetscInt middle = (low + high) / 2;
 
@@ -79,21 +129,26 @@ static PetscInt FindEntry(const LamLinear *linear, PetscInt i, PetscInt j)
   return low;
 }
 
-PetscErrorCode LamLinearCreate(const LamMesh *mesh, LamLinear *linear)
+PetscErrorCode LamLinearCreate(const LamMesh *mesh, const LamCouplings *couplings, LamLinear *linear)
 {
-  PetscInt count = 0;
-  PetscInt64 *blocks = NULL;
+  static const LamCouplings none = {0};
+  PetscInt count = 0, member_count = 0;
+  PetscInt64 *blocks = NULL, *members = NULL;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(linear, sizeof(*linear)));
-  PetscCall(CollectBlocks(mesh, &count, &blocks));
-  linear->n = 2 * (mesh->class_count - 1);
-  linear->nonzeros = 4 * count - (mesh->class_count - 1); /* diagonal blocks keep three of four entries */
-  PetscCall(PetscMalloc1(linear->n + 1, &linear->row));
+  if (!couplings) couplings = &none;
+  PetscCall(CollectBlocks(mesh, couplings, &count, &blocks));
+  PetscCall(CollectMembers(couplings, &member_count, &members));
+  linear->positions = 2 * (mesh->class_count - 1);
+  linear->n = linear->positions + couplings->count * couplings->multipliers;
+  linear->nonzeros = FillRows(mesh, couplings, count, blocks, member_count, members, linear);
   PetscCall(PetscMalloc1(linear->nonzeros, &linear->column));
   PetscCall(PetscCalloc1(linear->nonzeros, &linear->values));
-  PetscCall(FillRows(mesh, count, blocks, linear));
+  PetscCall(PetscMalloc1(linear->n + 1, &linear->row));
+  (void)FillRows(mesh, couplings, count, blocks, member_count, members, linear);
   PetscCall(PetscFree(blocks));
+  PetscCall(PetscFree(members));
   PetscCall(PetscMalloc1(LAM_PAIRS * mesh->element_count, &linear->position));
   for (PetscInt e = 0; e < mesh->element_count; ++e)
     for (PetscInt i = 0, pair = 0; i < LAM_ELEMENT_DOFS; ++i)
@@ -102,7 +157,7 @@ PetscErrorCode LamLinearCreate(const LamMesh *mesh, LamLinear *linear)
         const PetscInt cj = mesh->node_class[mesh->elements[LAM_ELEMENT_NODES * e + j / 2]];
 
         linear->position[LAM_PAIRS * e + pair] =
-            ci == 0 || cj == 0 ? -1 : FindEntry(linear, 2 * (ci - 1) + i % 2, 2 * (cj - 1) + j % 2);
+            ci == 0 || cj == 0 ? -1 : LamLinearEntry(linear, 2 * (ci - 1) + i % 2, 2 * (cj - 1) + j % 2);
       }
   PetscFunctionReturn(0);
 }
@@ -158,7 +213,7 @@ PetscErrorCode LamLinearFactor(LamLinear *linear, PetscReal shift, PetscInt *neg
   PetscFunctionBeginUser;
   PetscCall(MatSeqSBAIJGetArray(linear->matrix, &values));
   if (shift != 0.0)
-    for (PetscInt i = 0; i < linear->n; ++i) values[linear->row[i]] += shift;
+    for (PetscInt i = 0; i < linear->positions; ++i) values[linear->row[i]] += shift;
   PetscCall(MatSeqSBAIJRestoreArray(linear->matrix, &values));
   if (!linear->analysed) PetscCall(Analyse(linear));
   PetscCall(MatFactorInfoInitialize(&info));
@@ -168,7 +223,7 @@ PetscErrorCode LamLinearFactor(LamLinear *linear, PetscReal shift, PetscInt *neg
   *negative = 0;
   if (*ok) PetscCall(MatGetInertia(linear->factor, negative, NULL, NULL));
   if (shift != 0.0)
-    for (PetscInt i = 0; i < linear->n; ++i) linear->values[linear->row[i]] -= shift;
+    for (PetscInt i = 0; i < linear->positions; ++i) linear->values[linear->row[i]] -= shift;
   PetscFunctionReturn(0);
 }
 

@@ -93,7 +93,8 @@ static PetscReal WrapCoordinate(PetscReal c)
   return PetscFloorReal(wrapped * grid + 0.5) >= grid ? 0.0 : wrapped;
 }
 
-static PetscErrorCode FindClasses(LamMesh *mesh)
+/* Coincident outer nodes, also across the period, get the same representative. */
+static PetscErrorCode TieOuterNodes(LamMesh *mesh)
 {
   const PetscReal(*p)[2] = (const PetscReal(*)[2])mesh->period;
   const PetscReal det = p[0][0] * p[1][1] - p[0][1] * p[1][0];
@@ -105,7 +106,7 @@ static PetscErrorCode FindClasses(LamMesh *mesh)
   PetscCall(PetscMalloc1(outer_count, &outer));
   for (PetscInt cell = 0; cell < mesh->cell_count; ++cell)
     for (PetscInt around = 0; around < mesh->ring_nodes; ++around) {
-      const PetscInt node = NodeNumber(mesh, cell, around, mesh->radial_nodes - 1);
+      const PetscInt node = LamMeshOuterNode(mesh, cell, around);
       const PetscReal *X = &mesh->X[2 * node];
 
       outer[n].node = node;
@@ -115,7 +116,6 @@ static PetscErrorCode FindClasses(LamMesh *mesh)
       ++n;
     }
   qsort(outer, (size_t)outer_count, sizeof(*outer), CompareOuterNodes);
-  for (PetscInt i = 0; i < mesh->node_count; ++i) mesh->node_class[i] = i; /* representative node, for now */
   for (PetscInt i = 1; i < outer_count; ++i)
     if (outer[i].key[0] == outer[i - 1].key[0] && outer[i].key[1] == outer[i - 1].key[1])
       mesh->node_class[outer[i].node] = mesh->node_class[outer[i - 1].node];
@@ -181,7 +181,8 @@ PetscErrorCode LamMeshCreate(const LamMicrostructure *micro, LamMesh *mesh)
   PetscCall(PetscMalloc1(mesh->element_count, &mesh->has_shift));
   PlaceNodes(micro, mesh);
   ConnectElements(mesh);
-  PetscCall(FindClasses(mesh));
+  for (PetscInt i = 0; i < mesh->node_count; ++i) mesh->node_class[i] = i; /* representative node, for now */
+  if (micro->interface == LAM_INTERFACE_BONDED) PetscCall(TieOuterNodes(mesh));
   PetscCall(NumberClasses(mesh));
   PetscFunctionReturn(0);
 }
@@ -197,4 +198,22 @@ PetscErrorCode LamMeshDestroy(LamMesh *mesh)
   PetscCall(PetscFree(mesh->has_shift));
   PetscCall(PetscFree(mesh->class_X));
   PetscFunctionReturn(0);
+}
+
+void LamMeshNeighbour(const LamMicrostructure *micro, const LamMesh *mesh, PetscInt cell, PetscInt face,
+                      PetscInt *other, PetscReal shift[2])
+{
+  static const PetscInt step[3][2] = {{1, 0}, {0, 1}, {-1, 1}}; /* L_2 = L_1 - L_0 */
+  const PetscInt at[2] = {cell / micro->cells[1], cell % micro->cells[1]};
+  PetscInt index[2];
+
+  shift[0] = shift[1] = 0.0;
+  for (PetscInt k = 0; k < 2; ++k) {
+    const PetscInt n = micro->cells[k], to = at[k] + step[face][k];
+    const PetscInt wraps = to < 0 ? -1 : to / n;
+
+    index[k] = to - wraps * n;
+    for (PetscInt d = 0; d < 2; ++d) shift[d] += (PetscReal)wraps * mesh->period[k][d];
+  }
+  *other = index[0] * micro->cells[1] + index[1];
 }

@@ -5,8 +5,9 @@
   `along` x `through` elements, uniform along the face, with straight radial mitres at the corners. Face k has the
   outward normal at orientation + 60 deg k; lattice vector L_k = 2 n_k. Cell (i, j) is centred at i L_0 + j L_1.
 
-  Bonded cells share unknowns: coincident outer nodes form one class, also across the period, where a node is the image
-  of its class's position y at a shift S:  x_node = y_class + F S,  S = X_node - X_class.
+  Contact leaves every cell its own nodes: each node is a class, without shift. Bonded cells share unknowns: coincident
+  outer nodes form one class, also across the period, where a node is the image of its class's position y at a shift S:
+  x_node = y_class + F S,  S = X_node - X_class.
 */
 #ifndef LAM_RVE_MESH_H
 #define LAM_RVE_MESH_H
@@ -35,11 +36,19 @@ typedef struct {
 
 PetscErrorCode LamMeshCreate(const LamMicrostructure *micro, LamMesh *mesh);
 PetscErrorCode LamMeshDestroy(LamMesh *mesh);
+/* The cell across face 0, 1 or 2 of a cell, and the shift S of its image that lies there. */
+void LamMeshNeighbour(const LamMicrostructure *micro, const LamMesh *mesh, PetscInt cell, PetscInt face,
+                      PetscInt *other, PetscReal shift[2]);
 
 /* Element numbers: e = ((cell*6 + face)*along + i)*through + m, m = 0 at the lumen. */
 static inline PetscInt LamMeshElement(const LamMesh *mesh, PetscInt cell, PetscInt face, PetscInt i, PetscInt m)
 {
   return ((cell * LAM_FACES + face) * mesh->along + i) * mesh->through + m;
+}
+/* Node `around` of the outer loop of a cell, counter-clockwise; face k starts at 2 along k. */
+static inline PetscInt LamMeshOuterNode(const LamMesh *mesh, PetscInt cell, PetscInt around)
+{
+  return (cell * mesh->ring_nodes + around % mesh->ring_nodes) * mesh->radial_nodes + mesh->radial_nodes - 1;
 }
 static inline PetscInt LamMeshFaceOfElement(const LamMesh *mesh, PetscInt e)
 {
@@ -48,6 +57,10 @@ static inline PetscInt LamMeshFaceOfElement(const LamMesh *mesh, PetscInt e)
 static inline PetscBool LamMeshElementIsInner(const LamMesh *mesh, PetscInt e)
 {
   return (PetscBool)(e % mesh->through == 0);
+}
+static inline PetscBool LamMeshElementIsOuter(const LamMesh *mesh, PetscInt e)
+{
+  return (PetscBool)(e % mesh->through == mesh->through - 1);
 }
 
 #endif

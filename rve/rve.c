@@ -18,9 +18,6 @@ PetscErrorCode LamRVESetMicrostructure(LamRVE rve, const LamMicrostructure *micr
 {
   PetscFunctionBeginUser;
   PetscCheck(!rve->is_set_up, PETSC_COMM_SELF, PETSC_ERR_ORDER, "the microstructure is set before LamRVESetUp");
-  PetscCheck(micro->interface == LAM_INTERFACE_BONDED, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "interface law '%s' is not available in this version; use 'bonded'",
-             LamInterfaceLawNames[micro->interface]);
   rve->micro = *micro;
   rve->has_micro = PETSC_TRUE;
   PetscFunctionReturn(0);
@@ -47,7 +44,17 @@ static PetscErrorCode SetUpArrays(LamRVE rve)
   PetscCall(LamWallLawGet(rve->micro.wall.law, &rve->law));
   PetscCall(LamMeshCreate(&rve->micro, &rve->mesh));
   PetscCall(LamGeometryCreate(rve));
-  PetscCall(LamLinearCreate(&rve->mesh, &rve->linear));
+  if (rve->micro.interface == LAM_INTERFACE_CONTACT) {
+    LamCouplings couplings;
+
+    PetscCall(LamContactCreate(&rve->micro, &rve->mesh, &rve->contact));
+    couplings =
+        (LamCouplings){rve->contact->face_count, rve->contact->chain, rve->contact->hats, rve->contact->classes};
+    PetscCall(LamLinearCreate(&rve->mesh, &couplings, &rve->linear));
+    PetscCall(LamContactSetMatrix(rve->contact, &rve->linear));
+  } else {
+    PetscCall(LamLinearCreate(&rve->mesh, NULL, &rve->linear));
+  }
   rve->ndof = 2 * rve->mesh.class_count;
   PetscCall(PetscCalloc4(rve->ndof, &rve->y, rve->ndof, &rve->step, rve->ndof, &rve->trial, rve->ndof, &rve->residual));
   PetscFunctionReturn(0);
@@ -60,6 +67,15 @@ PetscErrorCode LamRVESetUp(LamRVE rve)
   PetscCheck(rve->has_micro, PETSC_COMM_SELF, PETSC_ERR_ORDER, "LamRVESetMicrostructure comes before LamRVESetUp");
   PetscCall(SetUpArrays(rve));
   PetscCall(LamLinearCreateMatrix(&rve->linear));
+  if (rve->contact) {
+    LamMicrostructure bonded = rve->micro;
+
+    bonded.interface = LAM_INTERFACE_BONDED;
+    PetscCall(LamRVECreate(rve->comm, &rve->bonded));
+    PetscCall(LamRVESetMicrostructure(rve->bonded, &bonded));
+    PetscCall(LamRVESetMonitor(rve->bonded, rve->monitor));
+    PetscCall(LamRVESetUp(rve->bonded));
+  }
   rve->is_set_up = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
@@ -68,6 +84,8 @@ PetscErrorCode LamRVEDestroy(LamRVE *rve)
 {
   PetscFunctionBeginUser;
   if (!*rve) PetscFunctionReturn(0);
+  PetscCall(LamRVEDestroy(&(*rve)->bonded));
+  PetscCall(LamContactDestroy(&(*rve)->contact));
   PetscCall(LamLinearDestroy(&(*rve)->linear));
   PetscCall(LamMeshDestroy(&(*rve)->mesh));
   PetscCall(PetscFree((*rve)->geometry));

@@ -17,13 +17,25 @@
 
 #include <petscmat.h>
 #include <lamella/rve.h>
+#include "contact.h"
 #include "element.h"
 
 #define LAM_PAIRS (LAM_ELEMENT_DOFS * (LAM_ELEMENT_DOFS + 1) / 2)
 
-/* The symmetric matrix in upper compressed rows (values are written in place) and its factor. */
+/* Classes that are coupled beyond elements: `count` sets of `size` classes, each with unknowns of its own, multipliers.
+ */
+typedef struct {
+  PetscInt count, size, multipliers;
+  const PetscInt *classes; /* [count][size] */
+} LamCouplings;
+
+/*
+  The symmetric matrix in upper compressed rows (values are written in place) and its factor. Its unknowns are the
+  positions, then the multipliers of the couplings, set by set.
+*/
 typedef struct {
   PetscInt n, nonzeros;
+  PetscInt positions;     /* unknowns that are positions */
   PetscInt *row, *column; /* [n+1], [nonzeros]; the diagonal comes first in a row */
   PetscReal *values;      /* [nonzeros] */
   PetscInt *position; /* [element][LAM_PAIRS] index into values, -1: held; pairs of element dofs i <= j, row by row */
@@ -38,6 +50,11 @@ struct LamRVEState_s {
   PetscReal *y; /* [class][2] */
   LamLoad load;
   PetscInt branch; /* number of saddles left on the way here */
+  /* contact tissue only */
+  PetscInt multipliers;
+  PetscReal *lambda;  /* [multipliers] */
+  PetscBool solved;   /* y and lambda are a solution, not the reference */
+  LamRVEState bonded; /* of the bonded tissue; owned */
 };
 
 typedef struct {
@@ -55,6 +72,8 @@ struct LamRVE_s {
   LamElementGeometry *geometry; /* [element] */
   LamElementStress *stress;     /* [element]: independent stresses of the iteration under way */
   LamLinear linear;
+  LamContact *contact;                    /* NULL for bonded tissue; owned */
+  LamRVE bonded;                          /* contact tissue: the same tissue, bonded; owned */
   PetscInt ndof;                          /* 2 class_count */
   PetscReal *y, *step, *trial, *residual; /* [ndof] each: position, Newton step, trial position, residual */
   LamWork work;                           /* of the solve under way */
@@ -66,7 +85,11 @@ PetscErrorCode LamGeometryCreate(LamRVE rve);
 /* Positions of an element's nodes: x_a = y_class + F S. */
 void LamGatherElement(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt e,
                       PetscReal x[LAM_ELEMENT_NODES][2]);
-/* Energy (walls - turgor x lumen), not divided by V0; *valid as LamElementEnergy. */
+/* The same for the area inside the outer loops of contact tissue. */
+PetscReal LamCellArea(LamRVE rve, const PetscReal y[], PetscReal factor, PetscReal gradient[]);
+/* Suction on the outer loops per reference thickness: g F33; 0 for bonded tissue. */
+PetscReal LamSuction(LamRVE rve, const LamLoad *load);
+/* Energy (walls - p V_lumen + g V_gap), not divided by V0; *valid as LamElementEnergy. */
 PetscErrorCode LamAssembleEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy,
                                  PetscBool *valid);
 /* Energy, residual [ndof] and, into linear.values, the tangent with independent stresses. */
@@ -83,11 +106,37 @@ PetscReal LamLumenArea(LamRVE rve, const PetscReal y[], PetscReal factor, PetscR
 /* Norm of the residual without the held class. */
 PetscReal LamResidualNorm(LamRVE rve, const PetscReal residual[]);
 
+/* ---- contact.c ---- */
+#define LAM_CONTACT_SCALE 9.0 /* weighs gaps (apothems) against multipliers (C1 + C2): 1 MPa per apothem by default */
+PetscErrorCode LamContactCreate(const LamMicrostructure *micro, const LamMesh *mesh, LamContact **contact);
+PetscErrorCode LamContactSetMatrix(LamContact *contact, const LamLinear *linear);
+PetscErrorCode LamContactDestroy(LamContact **contact);
+/* Chains of face f at positions y; x[chain][2] is work space that they point into. */
+LamMortarChains LamContactChains(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt f, PetscReal x[][2]);
+/* Gaps, weights, rows and second derivatives at positions y with the present multipliers. follow: the junction status
+   follows y, else it stays. */
+PetscErrorCode LamContactEvaluate(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscBool follow);
+/* Whether the junction status is the one of positions y. */
+PetscErrorCode LamContactStatusHolds(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscBool *holds);
+/* Active set of the last evaluation: lambda - c (gap + compliance lambda) > 0. Returns the number of changes. */
+PetscInt LamContactFindActive(LamContact *contact, PetscReal compliance);
+PetscInt LamContactCountActive(const LamContact *contact);
+/* max |min(lambda, c gap)| over all hats. */
+PetscReal LamContactComplementarity(const LamContact *contact);
+/* residual [ndof] += -B^T lambda. */
+void LamContactAddForce(LamRVE rve, PetscReal residual[]);
+/* Adds to linear.values the second derivative of -sum lambda G, the rows of active hats, -compliance D on their
+   diagonal, 1 on the others'. */
+void LamContactAddTangent(LamRVE rve, PetscReal compliance);
+
 /* ---- linear.c ---- */
-PetscErrorCode LamLinearCreate(const LamMesh *mesh, LamLinear *linear);
+/* couplings: NULL for none. */
+PetscErrorCode LamLinearCreate(const LamMesh *mesh, const LamCouplings *couplings, LamLinear *linear);
+/* Index into values of the entry of unknowns i and j, which must be coupled; -1 where one of them is negative. */
+PetscInt LamLinearEntry(const LamLinear *linear, PetscInt i, PetscInt j);
 PetscErrorCode LamLinearCreateMatrix(LamLinear *linear); /* needs PETSc; the rest above does not */
 PetscErrorCode LamLinearDestroy(LamLinear *linear);
-/* Factors values + shift 1. *ok is PETSC_FALSE where the matrix is singular to working precision. */
+/* Factors values + shift 1 (on the positions). *ok is PETSC_FALSE where the matrix is singular to working precision. */
 PetscErrorCode LamLinearFactor(LamLinear *linear, PetscReal shift, PetscInt *negative, PetscBool *ok);
 /* solution = K^-1 rhs, arrays of length n; count right-hand sides, one after the other. */
 PetscErrorCode LamLinearSolve(LamLinear *linear, PetscInt count, const PetscReal rhs[], PetscReal solution[]);
@@ -119,6 +168,12 @@ PetscErrorCode LamSoftestMode(LamRVE rve, PetscReal *eigenvalue, PetscReal mode[
 /* Finds a stable equilibrium at `load` from `state`; leaves it in rve->y with the consistent tangent factored. */
 PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, PetscInt *branch, PetscInt *negative,
                              LamStatus *status, char reason[], size_t length);
+
+/* ---- contact_newton.c, contact_path.c ---- */
+/* compliant: the start may be far from contact. */
+PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, PetscBool compliant, LamNewtonOutcome *outcome);
+PetscErrorCode LamContactStartBonded(LamRVE rve, const LamLoad *load, LamRVEState state, PetscBool *ok);
+PetscErrorCode LamContactStartAffine(LamRVE rve, const LamLoad *load);
 
 /* ---- lumen.c ---- */
 /* The first cell whose inner loop crosses itself at positions y, -1: none. */

@@ -13,21 +13,6 @@
 
 #define SAMPLES 8 /* per edge: sub-intervals of the running integrals */
 
-static PetscInt OuterNode(const LamMesh *mesh, PetscInt cell, PetscInt around)
-{
-  return (cell * mesh->ring_nodes + around % mesh->ring_nodes) * mesh->radial_nodes + mesh->radial_nodes - 1;
-}
-
-/* The cell on the other side of face 0, 1 or 2. */
-static PetscInt Neighbour(const LamMicrostructure *micro, PetscInt cell, PetscInt face)
-{
-  static const PetscInt step[3][2] = {{1, 0}, {0, 1}, {-1, 1}}; /* L_2 = L_1 - L_0 */
-  const PetscInt n0 = micro->cells[0], n1 = micro->cells[1];
-  const PetscInt i = (cell / n1 + step[face][0] + n0) % n0, j = (cell % n1 + step[face][1]) % n1;
-
-  return i * n1 + j;
-}
-
 /* Internal forces of the walls at all mesh nodes, before nodes are tied: force[node][2]. */
 static PetscErrorCode NodeForces(LamRVE rve, const LamLoad *load, PetscReal force[])
 {
@@ -40,7 +25,7 @@ static PetscErrorCode NodeForces(LamRVE rve, const LamLoad *load, PetscReal forc
     LamElementResult element;
     PetscBool valid;
 
-    if (e % mesh->through != mesh->through - 1) continue; /* only the outermost elements touch a face */
+    if (!LamMeshElementIsOuter(mesh, e)) continue; /* only the outermost elements touch a face */
     LamGatherElement(rve, load->F, rve->y, e, x);
     LamElementEvaluate(&rve->geometry[e], rve->law, &rve->micro.wall, (const PetscReal(*)[2])x, load->F[8],
                        &rve->stress[e], &element, &valid);
@@ -55,11 +40,14 @@ static void FaceLoads(LamRVE rve, const LamLoad *load, const PetscReal force[], 
                       PetscReal x[][2], PetscReal f[][2])
 {
   const LamMesh *mesh = &rve->mesh;
-  const PetscInt last = 2 * mesh->along, other = Neighbour(&rve->micro, cell, face);
+  const PetscInt last = 2 * mesh->along;
+  PetscInt other;
+  PetscReal image[2];
 
+  LamMeshNeighbour(&rve->micro, mesh, cell, face, &other, image);
   for (PetscInt i = 0; i <= last; ++i) {
-    const PetscInt node = OuterNode(mesh, cell, last * face + i);
-    const PetscInt opposite = OuterNode(mesh, other, last * (face + 4) - i);
+    const PetscInt node = LamMeshOuterNode(mesh, cell, last * face + i);
+    const PetscInt opposite = LamMeshOuterNode(mesh, other, last * (face + 4) - i);
     const PetscReal share = i == 0 || i == last ? 3.0 : 2.0;
     const PetscReal *S = &mesh->shift[2 * node], *position = &rve->y[2 * mesh->node_class[node]];
 

@@ -1,0 +1,289 @@
+#include "rve_impl.h"
+
+#define LEAST_WEIGHT 1e-3 /* of a full hat: below it a hat carries nothing */
+
+/* Outer nodes of face k of a cell, counter-clockwise. */
+static void ChainNodes(const LamMesh *mesh, PetscInt cell, PetscInt k, PetscInt nodes[])
+{
+  for (PetscInt i = 0; i <= 2 * mesh->along; ++i) nodes[i] = LamMeshOuterNode(mesh, cell, 2 * mesh->along * k + i);
+}
+
+/* Where the entries of each face lie in the matrix. */
+static void FindPositions(const LamLinear *linear, LamContact *contact)
+{
+  const PetscInt dofs = contact->dofs, pairs = dofs * (dofs + 1) / 2;
+
+  for (PetscInt f = 0; f < contact->face_count; ++f) {
+    PetscInt *unknown = &contact->unknown[f * dofs], *position = &contact->position[f * pairs];
+
+    for (PetscInt i = 0; i < dofs; ++i) {
+      const PetscInt class = contact->classes[f * contact->chain + i / 2];
+
+      unknown[i] = class == 0 ? -1 : 2 * (class - 1) + i % 2;
+    }
+    for (PetscInt i = 0, pair = 0; i < dofs; ++i)
+      for (PetscInt j = i; j < dofs; ++j, ++pair) position[pair] = LamLinearEntry(linear, unknown[i], unknown[j]);
+    for (PetscInt h = f * contact->hats; h < (f + 1) * contact->hats; ++h) {
+      contact->diagonal[h] = LamLinearEntry(linear, linear->positions + h, linear->positions + h);
+      for (PetscInt i = 0; i < dofs; ++i)
+        contact->coupling[h * dofs + i] = LamLinearEntry(linear, unknown[i], linear->positions + h);
+    }
+  }
+}
+
+PetscErrorCode LamContactCreate(const LamMicrostructure *micro, const LamMesh *mesh, LamContact **out)
+{
+  const PetscInt along = mesh->along;
+  LamContact *contact;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&contact));
+  contact->face_count = 3 * mesh->cell_count;
+  contact->hats = 2 * along + 1;
+  contact->chain = 2 * contact->hats;
+  contact->dofs = LamMortarDofs(along, along);
+  contact->count = contact->face_count * contact->hats;
+  PetscCall(PetscMalloc4(contact->face_count, &contact->faces, contact->face_count * contact->chain, &contact->nodes,
+                         contact->face_count * contact->chain, &contact->classes, along, &contact->J0));
+  PetscCall(PetscCalloc4(contact->count, &contact->lambda, contact->count, &contact->gap, contact->count,
+                         &contact->weight, contact->count, &contact->active));
+  PetscCall(PetscCalloc2(contact->count * contact->dofs, &contact->rows,
+                         contact->face_count * contact->dofs * contact->dofs, &contact->hessian));
+  for (PetscInt e = 0; e < along; ++e) contact->J0[e] = 2.0 / PetscSqrtReal(3.0) / (PetscReal)along;
+  for (PetscInt f = 0; f < contact->face_count; ++f) {
+    LamContactFace *face = &contact->faces[f];
+
+    face->cell = f / 3;
+    face->face = f % 3;
+    face->first = 1;
+    face->last = contact->hats - 2;
+    LamMeshNeighbour(micro, mesh, face->cell, face->face, &face->other, face->shift);
+    ChainNodes(mesh, face->cell, face->face, &contact->nodes[f * contact->chain]);
+    ChainNodes(mesh, face->other, face->face + 3, &contact->nodes[f * contact->chain + contact->hats]);
+  }
+  for (PetscInt i = 0; i < contact->face_count * contact->chain; ++i)
+    contact->classes[i] = mesh->node_class[contact->nodes[i]];
+  PetscCall(LamMortarSegmentsCreate(along, along, &contact->segments));
+  PetscCall(LamMortarResultCreate(along, along, &contact->result));
+  *out = contact;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamContactSetMatrix(LamContact *contact, const LamLinear *linear)
+{
+  const PetscInt pairs = contact->dofs * (contact->dofs + 1) / 2;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc4(contact->face_count * pairs, &contact->position, contact->count * contact->dofs,
+                         &contact->coupling, contact->count, &contact->diagonal, contact->face_count * contact->dofs,
+                         &contact->unknown));
+  FindPositions(linear, contact);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamContactDestroy(LamContact **contact)
+{
+  PetscFunctionBeginUser;
+  if (!*contact) PetscFunctionReturn(0);
+  PetscCall(LamMortarSegmentsDestroy(&(*contact)->segments));
+  PetscCall(LamMortarResultDestroy(&(*contact)->result));
+  PetscCall(PetscFree4((*contact)->faces, (*contact)->nodes, (*contact)->classes, (*contact)->J0));
+  PetscCall(PetscFree4((*contact)->lambda, (*contact)->gap, (*contact)->weight, (*contact)->active));
+  PetscCall(PetscFree2((*contact)->rows, (*contact)->hessian));
+  PetscCall(PetscFree4((*contact)->position, (*contact)->coupling, (*contact)->diagonal, (*contact)->unknown));
+  PetscCall(PetscFree(*contact));
+  PetscFunctionReturn(0);
+}
+
+/* Current positions of both chains of a face; x[chain][2]. */
+static void GatherChains(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt f, PetscReal x[][2])
+{
+  const LamContact *contact = rve->contact;
+  const PetscReal *S = contact->faces[f].shift;
+
+  for (PetscInt i = 0; i < contact->chain; ++i) {
+    const PetscReal *position = &y[2 * contact->classes[f * contact->chain + i]];
+    const PetscReal image = i < contact->hats ? 0.0 : 1.0;
+
+    x[i][0] = position[0] + image * (F[0] * S[0] + F[1] * S[1]);
+    x[i][1] = position[1] + image * (F[3] * S[0] + F[4] * S[1]);
+  }
+}
+
+LamMortarChains LamContactChains(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt f, PetscReal x[][2])
+{
+  const LamMortarChains chains = {rve->mesh.along,          rve->mesh.along,
+                                  (const PetscReal(*)[2])x, (const PetscReal(*)[2])(x + rve->contact->hats),
+                                  rve->contact->J0,         rve->micro.clearance};
+
+  GatherChains(rve, F, y, f, x);
+  return chains;
+}
+
+/* The hats with multipliers of their own, from the ends of the overlap in units of half-edges. */
+static void Junction(const LamMortarSegments *segments, PetscInt hats, PetscInt *first, PetscInt *last)
+{
+  const PetscInt count = segments->count;
+
+  if (count == 0) {
+    *first = hats;
+    *last = -1;
+    return;
+  }
+  *first = segments->vertex[0] >= 0 || segments->s[0] > 0.0 ? (PetscInt)PetscCeilReal(2.0 * segments->s[0] + 0.5) : 1;
+  *last = segments->vertex[count - 1] >= 0 || segments->s[count - 1] < 0.5 * (PetscReal)(hats - 1)
+              ? (PetscInt)PetscFloorReal(2.0 * segments->s[count - 1] - 0.5)
+              : hats - 2;
+}
+
+/* Gives merged hats the multiplier of the hat that they are merged into. */
+static void SpreadMultipliers(const LamContactFace *face, PetscInt hats, PetscReal lambda[])
+{
+  for (PetscInt j = 0; j < hats; ++j)
+    lambda[j] = face->first > face->last ? 0.0 : lambda[PetscMax(face->first, PetscMin(face->last, j))];
+}
+
+/* Adds weights, gaps and rows of merged hats to the hat that takes them, and stores them. */
+static void MergeHats(LamContact *contact, PetscInt f)
+{
+  const LamContactFace *face = &contact->faces[f];
+  const PetscInt dofs = contact->dofs, base = f * contact->hats;
+  const LamMortarResult *result = &contact->result;
+
+  PetscArrayzero(&contact->weight[base], contact->hats);
+  PetscArrayzero(&contact->gap[base], contact->hats);
+  PetscArrayzero(&contact->rows[base * dofs], contact->hats * dofs);
+  if (face->first > face->last) return;
+  for (PetscInt j = 0; j < contact->hats; ++j) {
+    const PetscInt to = base + PetscMax(face->first, PetscMin(face->last, j));
+
+    contact->weight[to] += result->weight[j];
+    contact->gap[to] += result->gap[j];
+    for (PetscInt i = 0; i < dofs; ++i) contact->rows[to * dofs + i] += result->dgap[j * dofs + i];
+  }
+}
+
+PetscErrorCode LamContactEvaluate(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscBool follow)
+{
+  LamContact *contact = rve->contact;
+  PetscReal(*x)[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(contact->chain, &x));
+  for (PetscInt f = 0; f < contact->face_count; ++f) {
+    const LamMortarChains chains = LamContactChains(rve, load->F, y, f, x);
+    LamContactFace *face = &contact->faces[f];
+    PetscReal *lambda = &contact->lambda[f * contact->hats];
+
+    LamMortarFindSegments(&chains, &contact->segments);
+    if (follow) Junction(&contact->segments, contact->hats, &face->first, &face->last);
+    SpreadMultipliers(face, contact->hats, lambda);
+    LamMortarEvaluate(&chains, &contact->segments, lambda, LAM_MORTAR_POINTS, &contact->result);
+    PetscCall(PetscArraycpy(&contact->hessian[f * contact->dofs * contact->dofs], contact->result.hessian,
+                            contact->dofs * contact->dofs));
+    MergeHats(contact, f);
+  }
+  for (PetscInt h = 0; h < contact->count; ++h)
+    contact->gap[h] = contact->weight[h] > 0.0 ? contact->gap[h] / contact->weight[h] : 0.0;
+  PetscCall(PetscFree(x));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamContactStatusHolds(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscBool *holds)
+{
+  LamContact *contact = rve->contact;
+  PetscReal(*x)[2];
+
+  PetscFunctionBeginUser;
+  *holds = PETSC_TRUE;
+  PetscCall(PetscMalloc1(contact->chain, &x));
+  for (PetscInt f = 0; f < contact->face_count; ++f) {
+    const LamMortarChains chains = LamContactChains(rve, load->F, y, f, x);
+    PetscInt first, last;
+
+    LamMortarFindSegments(&chains, &contact->segments);
+    Junction(&contact->segments, contact->hats, &first, &last);
+    if (first != contact->faces[f].first || last != contact->faces[f].last) *holds = PETSC_FALSE;
+  }
+  PetscCall(PetscFree(x));
+  PetscFunctionReturn(0);
+}
+
+static PetscBool Carries(const LamContact *contact, PetscInt h)
+{
+  const LamContactFace *face = &contact->faces[h / contact->hats];
+  const PetscInt j = h % contact->hats;
+
+  return (PetscBool)(j >= face->first && j <= face->last && contact->weight[h] > LEAST_WEIGHT * 0.5 * contact->J0[0]);
+}
+
+PetscInt LamContactFindActive(LamContact *contact, PetscReal compliance)
+{
+  PetscInt changes = 0;
+
+  for (PetscInt h = 0; h < contact->count; ++h) {
+    const PetscReal gap = contact->gap[h] + compliance * contact->lambda[h];
+    const PetscBool active = (PetscBool)(Carries(contact, h) && contact->lambda[h] - LAM_CONTACT_SCALE * gap > 0.0);
+
+    changes += active != contact->active[h];
+    contact->active[h] = active;
+  }
+  return changes;
+}
+
+PetscReal LamContactComplementarity(const LamContact *contact)
+{
+  PetscReal largest = 0.0;
+
+  for (PetscInt h = 0; h < contact->count; ++h)
+    if (Carries(contact, h)) {
+      const PetscReal r = PetscMin(contact->lambda[h], LAM_CONTACT_SCALE * contact->gap[h]);
+
+      largest = PetscMax(largest, PetscAbsReal(r));
+    }
+  return largest;
+}
+
+PetscInt LamContactCountActive(const LamContact *contact)
+{
+  PetscInt count = 0;
+
+  for (PetscInt h = 0; h < contact->count; ++h) count += contact->active[h];
+  return count;
+}
+
+void LamContactAddForce(LamRVE rve, PetscReal residual[])
+{
+  const LamContact *contact = rve->contact;
+
+  for (PetscInt h = 0; h < contact->count; ++h) {
+    const PetscInt f = h / contact->hats, j = h % contact->hats;
+    const PetscReal *row = &contact->rows[h * contact->dofs];
+
+    if (j < contact->faces[f].first || j > contact->faces[f].last || contact->lambda[h] == 0.0) continue;
+    for (PetscInt i = 0; i < contact->dofs; ++i)
+      residual[2 * contact->classes[f * contact->chain + i / 2] + i % 2] -= contact->lambda[h] * row[i];
+  }
+}
+
+void LamContactAddTangent(LamRVE rve, PetscReal compliance)
+{
+  const LamContact *contact = rve->contact;
+  const PetscInt dofs = contact->dofs;
+  PetscReal *values = rve->linear.values;
+
+  for (PetscInt f = 0; f < contact->face_count; ++f) {
+    const PetscInt *position = &contact->position[f * (dofs * (dofs + 1) / 2)];
+    const PetscReal *hessian = &contact->hessian[f * dofs * dofs];
+
+    for (PetscInt i = 0, pair = 0; i < dofs; ++i)
+      for (PetscInt j = i; j < dofs; ++j, ++pair)
+        if (position[pair] >= 0) values[position[pair]] -= hessian[i * dofs + j];
+  }
+  for (PetscInt h = 0; h < contact->count; ++h) {
+    values[contact->diagonal[h]] = contact->active[h] ? -compliance * contact->weight[h] : 1.0;
+    if (!contact->active[h]) continue;
+    for (PetscInt i = 0; i < dofs; ++i)
+      if (contact->coupling[h * dofs + i] >= 0) values[contact->coupling[h * dofs + i]] -= contact->rows[h * dofs + i];
+  }
+}

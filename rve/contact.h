@@ -1,0 +1,51 @@
+/*
+  Contact with cohesion between the outer walls of neighbouring cells.
+
+  Each cell's faces 0, 1, 2 are slaves; face k is paired with face k + 3 of the cell, or of the image of the cell, that
+  lies across it. Terms of the potential (docs/theory.md, Contact):
+    - sum_A lambda_A G_A(x, F)     multipliers times weighted gaps, lambda >= 0, G >= 0, lambda G = 0
+    + g F33 (det F V0 - A_outer)   cohesion, in assembly.c beside turgor, whose form it shares
+  F enters through the images' shifts F S alone.
+
+  Junction rule. A hat whose support the overlap cuts short is merged into the next inner one: hat j takes the
+  multiplier of hat clamp(j, first, last), and its weight, gap and rows are added there. This status follows the iterate
+  for some iterations and is then frozen.
+*/
+#ifndef LAM_RVE_CONTACT_H
+#define LAM_RVE_CONTACT_H
+
+#include "mesh.h"
+#include "mortar.h"
+
+typedef struct {
+  PetscInt cell, face;  /* the slave */
+  PetscInt other;       /* cell of the master, face + 3 */
+  PetscReal shift[2];   /* S of the master's image */
+  PetscInt first, last; /* hats with a multiplier of their own; first > last: none */
+} LamContactFace;
+
+typedef struct {
+  PetscInt face_count; /* 3 per cell */
+  PetscInt hats;       /* per face: 2 along + 1 */
+  PetscInt chain;      /* nodes of both chains of a face: slave 0.., then master */
+  PetscInt dofs;       /* 2 chain */
+  PetscInt count;      /* multipliers: face_count * hats; of face f: f * hats + j */
+  LamContactFace *faces;
+  PetscInt *nodes;            /* [face][chain] mesh nodes, counter-clockwise each */
+  PetscInt *classes;          /* [face][chain] their classes */
+  PetscReal *J0;              /* [along] reference lengths of the edges of a face */
+  PetscReal *lambda;          /* [count]; merged hats carry the value of the hat that they are merged into */
+  PetscReal *gap;             /* [count] weighted gap over weight of the positions last evaluated; 0 where merged */
+  PetscReal *weight;          /* [count] */
+  PetscReal *rows;            /* [count][dofs] dG of unmerged hats */
+  PetscReal *hessian;         /* [face][dofs][dofs] second derivative of sum lambda G */
+  PetscBool *active;          /* [count]: in contact; false where merged */
+  PetscInt *position;         /* [face][dofs (dofs + 1)/2]: index into the matrix of pairs of dofs, row by row */
+  PetscInt *coupling;         /* [count][dofs]: of dof and multiplier */
+  PetscInt *diagonal;         /* [count] */
+  PetscInt *unknown;          /* [face][dofs] */
+  LamMortarSegments segments; /* work space */
+  LamMortarResult result;
+} LamContact;
+
+#endif
