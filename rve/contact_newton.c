@@ -35,7 +35,7 @@ static PetscReal LargestEntry(PetscInt n, const PetscReal v[])
 static PetscErrorCode FactorStable(LamRVE rve, PetscReal *last_shift, PetscBool *ok)
 {
   const PetscInt active = LamContactCountActive(rve->contact);
-  PetscReal diagonal = 0.0, shift = 0.0;
+  PetscReal diagonal = 0.0, shift = LAM_CONTACT_PROXIMAL;
   PetscInt negative;
 
   PetscFunctionBeginUser;
@@ -47,7 +47,7 @@ static PetscErrorCode FactorStable(LamRVE rve, PetscReal *last_shift, PetscBool 
     if (*ok && negative <= active) break;
     *ok = PETSC_FALSE;
     if (shift > diagonal) break;
-    shift = shift == 0.0 ? PetscMax(*last_shift / 8.0, 1e-7 * diagonal) : 4.0 * shift;
+    shift = attempt == 0 ? PetscMax(*last_shift / 8.0, 1e-7 * diagonal) : 4.0 * shift;
   }
   *last_shift = shift;
   PetscFunctionReturn(0);

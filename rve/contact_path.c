@@ -1,42 +1,148 @@
 /*
   From a known state to contact equilibrium at a new load.
+
+  Method. Starts are tried in this order until one ends in a stable equilibrium:
+    (i)   a near state: the contact state before, turned and moved affinely, with its multipliers;
+    (ii)  the strategy's start: two_step solves the bonded tissue at the load and releases it, with the tractions that
+          bonding carried as first multipliers; one_step starts from the affine state;
+    (iii) coming down: contact that a larger cohesion holds tight is easy to reach; from there the cohesion is lowered
+          to the asked one, each solution starting the next;
+    (iv)  substeps in load from the contact state before.
+  A converged state with a negative eigenvalue on its active set is a saddle and is left along its unstable mode.
+
+  Mihai, Safar & Wyatt, J. Eng. Math. (successive deformation decomposition) for (ii); docs/theory.md, turgor and
+  cohesion act through their sum, for (iii).
 */
 #include "rve_impl.h"
 
-/* rve->y := the bonded solution; multipliers: the least-squares fit of the forces that bonding carried. */
-PetscErrorCode LamContactStartBonded(LamRVE rve, const LamLoad *load, LamRVEState state, PetscBool *ok)
+#define NEAR 0.03  /* largest change of F (and of turgor and cohesion) that counts as near */
+#define TIGHT 0.5  /* cohesion that is added first, C1 + C2 */
+#define LOOSE 1e-3 /* of it: from here the rest is taken away at once */
+#define EASE 0.25  /* first factor by which it is lowered */
+#define MIN_SUBSTEP (1.0 / 64.0)
+#define MAX_BRANCH_SWITCHES 4
+#define KICK 0.01 /* apothems: start along an unstable mode */
+
+/* A solution to start from. */
+typedef struct {
+  LamLoad load;
+  PetscReal *y, *lambda;
+} Solution;
+
+static PetscErrorCode SolutionCreate(LamRVE rve, Solution *solution)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(rve->ndof, &solution->y, rve->contact->count, &solution->lambda));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SolutionDestroy(Solution *solution)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree2(solution->y, solution->lambda));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Save(LamRVE rve, const LamLoad *load, Solution *solution)
+{
+  PetscFunctionBeginUser;
+  solution->load = *load;
+  PetscCall(PetscArraycpy(solution->y, rve->y, rve->ndof));
+  PetscCall(PetscArraycpy(solution->lambda, rve->contact->lambda, rve->contact->count));
+  PetscFunctionReturn(0);
+}
+
+/* What a try ended in. */
+typedef struct {
+  PetscBool converged;
+  PetscInt negative, branch;
+} Outcome;
+
+/* Leaves saddles along their unstable mode. Ends with the consistent tangent factored. */
+static PetscErrorCode LeaveSaddle(LamRVE rve, const LamLoad *load, Outcome *out)
+{
+  const PetscInt positions = rve->linear.positions;
+  PetscReal *mode;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFactorConsistent(rve, load, &out->negative, &out->converged));
+  PetscCall(PetscMalloc1(rve->linear.n, &mode));
+  for (PetscInt k = 0; k < MAX_BRANCH_SWITCHES && out->converged && out->negative > 0; ++k) {
+    LamNewtonOutcome outcome;
+    PetscReal largest = 0.0;
+
+    PetscCall(LamSoftestMode(rve, &rve->lowest_eigenvalue, mode));
+    for (PetscInt i = 0; i < positions; ++i) largest = PetscMax(largest, PetscAbsReal(mode[i]));
+    if (rve->monitor)
+      PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR,
+                             "  saddle: %d negative eigenvalues, lowest %.3e; leaving it\n", (int)out->negative,
+                             (double)rve->lowest_eigenvalue));
+    for (PetscInt i = 0; i < positions; ++i) rve->y[2 + i] += KICK * mode[i] / largest;
+    PetscCall(LamContactNewton(rve, load, PETSC_FALSE, &outcome));
+    out->converged = (PetscBool)(outcome == LAM_NEWTON_CONVERGED);
+    if (out->converged) {
+      ++out->branch;
+      PetscCall(LamFactorConsistent(rve, load, &out->negative, &out->converged));
+    }
+  }
+  PetscCall(PetscFree(mode));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Try(LamRVE rve, const LamLoad *load, PetscBool compliant, Outcome *out)
+{
+  LamNewtonOutcome outcome;
+
+  PetscFunctionBeginUser;
+  *out = (Outcome){0};
+  PetscCall(LamContactNewton(rve, load, compliant, &outcome));
+  out->converged = (PetscBool)(outcome == LAM_NEWTON_CONVERGED);
+  if (out->converged) PetscCall(LeaveSaddle(rve, load, out));
+  PetscFunctionReturn(0);
+}
+
+static PetscBool IsStable(const Outcome *out)
+{
+  return (PetscBool)(out->converged && out->negative <= 0);
+}
+
+/* Positions of the bonded solution, and its wall stresses. */
+static void TakeBondedPositions(LamRVE rve, const LamLoad *load)
+{
+  const LamMesh *mesh = &rve->mesh, *bonded = &rve->bonded->mesh;
+
+  for (PetscInt i = 0; i < mesh->node_count; ++i) {
+    const PetscReal *S = &bonded->shift[2 * i], *position = &rve->bonded->y[2 * bonded->node_class[i]];
+
+    for (PetscInt d = 0; d < 2; ++d)
+      rve->y[2 * mesh->node_class[i] + d] = position[d] + load->F[3 * d] * S[0] + load->F[3 * d + 1] * S[1];
+  }
+  (void)LamSetConsistentStresses(rve, load, rve->y);
+}
+
+/*
+  Multipliers that fit the forces r that bonding carried, B^T lambda = r, in least squares: the solution of
+  [1 -B^T; -B 0] [v; lambda] = [-r; 0]. Those in tension become zero.
+*/
+static PetscErrorCode FitMultipliers(LamRVE rve, const LamLoad *load, PetscBool *ok)
 {
   LamContact *contact = rve->contact;
-  const LamMesh *mesh = &rve->mesh, *bonded = &rve->bonded->mesh;
-  const PetscInt n = rve->linear.n, positions = rve->linear.positions;
-  LamResponse response;
+  const PetscInt positions = rve->linear.positions;
   PetscReal energy, *rhs, *solution;
   PetscInt negative;
   PetscBool valid;
 
   PetscFunctionBeginUser;
-  PetscCall(LamRVESolve(rve->bonded, load, state->bonded, &response));
-  rve->work.iterations += response.newton_iterations;
-  rve->work.factorisations += response.factorisations;
-  *ok = LamResponseHasFields(&response);
-  if (!*ok) PetscFunctionReturn(0);
-  for (PetscInt i = 0; i < mesh->node_count; ++i)
-    for (PetscInt d = 0; d < 2; ++d)
-      rve->y[2 * mesh->node_class[i] + d] = rve->bonded->y[2 * bonded->node_class[i] + d] +
-                                            load->F[3 * d] * bonded->shift[2 * i] +
-                                            load->F[3 * d + 1] * bonded->shift[2 * i + 1];
-  (void)LamSetConsistentStresses(rve, load, rve->y);
   PetscCall(PetscArrayzero(contact->lambda, contact->count));
   PetscCall(LamContactEvaluate(rve, load, rve->y, PETSC_TRUE));
   PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
   for (PetscInt h = 0; h < contact->count; ++h) contact->active[h] = (PetscBool)(contact->weight[h] > 0.0);
   PetscCall(PetscArrayzero(rve->linear.values, rve->linear.nonzeros));
   LamContactAddTangent(rve, 0.0);
-  for (PetscInt i = 0; i < positions; ++i) rve->linear.values[rve->linear.row[i]] = 1.0;
-  PetscCall(LamLinearFactor(&rve->linear, 0.0, &negative, ok));
+  PetscCall(LamLinearFactor(&rve->linear, 1.0, &negative, ok));
   ++rve->work.factorisations;
   if (!*ok) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc2(n, &rhs, n, &solution));
+  PetscCall(PetscCalloc2(rve->linear.n, &rhs, rve->linear.n, &solution));
   for (PetscInt i = 0; i < positions; ++i) rhs[i] = -rve->residual[i + 2];
   PetscCall(LamLinearSolve(&rve->linear, 1, rhs, solution));
   for (PetscInt h = 0; h < contact->count; ++h)
@@ -45,8 +151,30 @@ PetscErrorCode LamContactStartBonded(LamRVE rve, const LamLoad *load, LamRVEStat
   PetscFunctionReturn(0);
 }
 
+/* Step one of two: the bonded tissue at `load`; *ok where it has an equilibrium. Once per state. */
+static PetscErrorCode SolveBonded(LamRVE rve, const LamLoad *load, LamRVEState bonded, PetscBool *ok)
+{
+  LamResponse response;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVESetMonitor(rve->bonded, rve->monitor));
+  PetscCall(LamRVESolve(rve->bonded, load, bonded, &response));
+  rve->work.iterations += response.newton_iterations;
+  rve->work.factorisations += response.factorisations;
+  *ok = LamResponseHasFields(&response);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode StartReleased(LamRVE rve, const LamLoad *load, PetscBool *ok)
+{
+  PetscFunctionBeginUser;
+  TakeBondedPositions(rve, load);
+  PetscCall(FitMultipliers(rve, load, ok));
+  PetscFunctionReturn(0);
+}
+
 /* rve->y := F X, stress-free walls, multipliers that balance turgor and cohesion. */
-PetscErrorCode LamContactStartAffine(LamRVE rve, const LamLoad *load)
+static PetscErrorCode StartAffine(LamRVE rve, const LamLoad *load)
 {
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < rve->mesh.class_count; ++c) {
@@ -57,5 +185,135 @@ PetscErrorCode LamContactStartAffine(LamRVE rve, const LamLoad *load)
   PetscCall(PetscArrayzero(rve->stress, rve->mesh.element_count));
   for (PetscInt h = 0; h < rve->contact->count; ++h)
     rve->contact->lambda[h] = PetscMax(0.0, load->turgor + load->cohesion);
+  PetscFunctionReturn(0);
+}
+
+/* From a solution, moved affinely to the new load. */
+static PetscErrorCode StartNear(LamRVE rve, const Solution *from, const LamLoad *load)
+{
+  PetscFunctionBeginUser;
+  LamMoveAffinely(rve, from->y, &from->load, load);
+  PetscCall(PetscArraycpy(rve->contact->lambda, from->lambda, rve->contact->count));
+  PetscFunctionReturn(0);
+}
+
+/* Continuation from a solution to `load`, in halved steps where it fails. */
+static PetscErrorCode Substeps(LamRVE rve, Solution *at, const LamLoad *load, Outcome *out)
+{
+  const LamLoad start = at->load;
+  PetscReal reached = 0.0, step = 0.5;
+
+  PetscFunctionBeginUser;
+  *out = (Outcome){0};
+  while (reached < 1.0 && rve->work.iterations < LAM_ITERATION_BUDGET) {
+    const PetscReal t = PetscMin(1.0, reached + step);
+    const LamLoad next = t >= 1.0 ? *load : LamLoadBetween(&start, load, t);
+
+    PetscCall(StartNear(rve, at, &next));
+    PetscCall(Try(rve, &next, PETSC_FALSE, out));
+    if (IsStable(out)) {
+      PetscCall(Save(rve, &next, at));
+      reached = t;
+      step *= 2.0;
+    } else {
+      step *= 0.5;
+      if (step < MIN_SUBSTEP) break;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Contact held tight by an added cohesion, which is lowered step by step. */
+static PetscErrorCode ComeDown(LamRVE rve, const LamLoad *load, PetscBool has_bonded, Solution *at, Outcome *out)
+{
+  PetscReal added = TIGHT, factor = EASE;
+  LamLoad tight = *load;
+  PetscBool ok = PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  *out = (Outcome){0};
+  tight.cohesion = load->cohesion + added;
+  if (has_bonded) PetscCall(StartReleased(rve, &tight, &ok));
+  if (!has_bonded || !ok) PetscCall(StartAffine(rve, &tight));
+  PetscCall(Try(rve, &tight, PETSC_TRUE, out));
+  if (!IsStable(out)) PetscFunctionReturn(0);
+  PetscCall(Save(rve, &tight, at));
+  while (added > 0.0 && rve->work.iterations < LAM_ITERATION_BUDGET) {
+    const PetscReal next = added * factor < LOOSE * TIGHT ? 0.0 : added * factor;
+
+    tight.cohesion = load->cohesion + next;
+    PetscCall(StartNear(rve, at, &tight));
+    PetscCall(Try(rve, &tight, PETSC_FALSE, out));
+    if (IsStable(out)) {
+      PetscCall(Save(rve, &tight, at));
+      added = next;
+    } else {
+      if (next == 0.0 && factor > 0.0) factor = 0.5 * (1.0 + factor);
+      factor = PetscSqrtReal(factor);
+      if (factor > 0.95) break;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscReal LoadDistance(const LamLoad *a, const LamLoad *b)
+{
+  PetscReal largest = PetscMax(PetscAbsReal(a->turgor - b->turgor), PetscAbsReal(a->cohesion - b->cohesion));
+
+  for (PetscInt i = 0; i < 9; ++i) largest = PetscMax(largest, PetscAbsReal(a->F[i] - b->F[i]));
+  return largest;
+}
+
+static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state, Solution *before, Outcome *out)
+{
+  Solution at;
+  PetscBool ok, has_bonded = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  *out = (Outcome){0};
+  if (state->solved && LoadDistance(&before->load, load) <= NEAR) {
+    PetscCall(StartNear(rve, before, load));
+    PetscCall(Try(rve, load, PETSC_FALSE, out));
+    if (IsStable(out)) PetscFunctionReturn(0);
+  }
+  if (rve->strategy == LAM_TWO_STEP) {
+    PetscCall(SolveBonded(rve, load, state->bonded, &has_bonded));
+    if (has_bonded) PetscCall(StartReleased(rve, load, &ok));
+  }
+  if (!has_bonded || !ok) PetscCall(StartAffine(rve, load));
+  PetscCall(Try(rve, load, PETSC_TRUE, out));
+  if (IsStable(out)) PetscFunctionReturn(0);
+  PetscCall(SolutionCreate(rve, &at));
+  PetscCall(ComeDown(rve, load, has_bonded, &at, out));
+  PetscCall(SolutionDestroy(&at));
+  if (IsStable(out) || !state->solved) PetscFunctionReturn(0);
+  PetscCall(Substeps(rve, before, load, out));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
+{
+  Solution before;
+  Outcome out;
+
+  PetscFunctionBeginUser;
+  PetscCall(SolutionCreate(rve, &before));
+  before.load = state->load;
+  PetscCall(PetscArraycpy(before.y, state->y, rve->ndof));
+  PetscCall(PetscArraycpy(before.lambda, state->lambda, rve->contact->count));
+  LamRotatePositions(rve->ndof, before.y, before.load.F, LamRotationAngle(load->F) - LamRotationAngle(before.load.F));
+  PetscCall(TryAll(rve, load, state, &before, &out));
+  PetscCall(SolutionDestroy(&before));
+  response->branch = state->branch + out.branch;
+  response->negative_eigenvalues = PetscMax(0, out.negative);
+  response->status = out.converged ? (out.negative > 0 ? LAM_UNSTABLE : LAM_CONVERGED) : LAM_NOT_CONVERGED;
+  if (response->status == LAM_UNSTABLE)
+    PetscCall(PetscSNPrintf(response->reason, sizeof(response->reason),
+                            "only a saddle was found: %d negative eigenvalues, lowest %.3g (C1+C2)", (int)out.negative,
+                            (double)rve->lowest_eigenvalue));
+  if (response->status == LAM_NOT_CONVERGED)
+    PetscCall(PetscSNPrintf(response->reason, sizeof(response->reason),
+                            "no contact equilibrium found from any start, after %d iterations: give states in between",
+                            (int)rve->work.iterations));
   PetscFunctionReturn(0);
 }

@@ -1,22 +1,27 @@
 /*
   Effective stress, tangent and couplings of a converged state.
 
-  Method. Psi(q) = (1/V0) min_y L(y, q) with q = (F11, F12, F21, F22, F33, p). F enters L through the image shifts
-  x_a = y + F S_a, through F33 in the walls and in the lumen volume F33 A_lumen; p through -p F33 A_lumen. Then
+  Method. Psi(q) = (1/V0) min_y L(y, q) with q = (F11, F12, F21, F22, F33, p, g). F enters L through the image shifts
+  x_a = y + F S_a, through F33 in the walls and in the volumes, and in contact through det F in
+  V_gap = F33 (det F V0 - A_outer); p through -p F33 A_lumen, g through g V_gap. Then
     dPsi/dq   = L_q / V0,
-    d2Psi/dq2 = (L_qq - L_qy K^-1 L_yq) / V0         (static condensation with the factor of the converged state).
-  So P_ij = (1/V0) sum_a f_ai S_aj over shifted nodes, f_a the nodal forces of the walls, and the tangent is symmetric
-  by construction.
+    d2Psi/dq2 = (L_qq - L_qy K^-1 L_yq) / V0         (static condensation with the factor of the converged state),
+  where in contact y includes the active multipliers, whose rows are -dG/dF.
+  So P_ij = (1/V0) sum_a f_ai S_aj over shifted nodes, f_a the nodal forces of walls or contact, and the tangent is
+  symmetric by construction. Bonded tissue does not feel g.
 */
 #include "rve_impl.h"
 
-#define NQ 6
+#define NQ 7
 #define Q_F33 4
 #define Q_TURGOR 5
+#define Q_COHESION 6
 
 typedef struct {
+  PetscInt nq;   /* NQ, for bonded tissue without the cohesion */
+  PetscInt size; /* of a column: the held class, the other positions, the multipliers */
   PetscReal Lq[NQ], Lqq[NQ][NQ];
-  PetscReal *R; /* [NQ][ndof]: L_yq, one column after the other, the held class included */
+  PetscReal *R; /* [nq][size]: L_yq, one column after the other */
 } Condensation;
 
 /* F couplings of one element that has shifted nodes. */
@@ -33,7 +38,7 @@ static void AddShifted(LamRVE rve, PetscInt e, const LamElementResult *element, 
     for (PetscInt k = 0; k < 2; ++k)
       for (PetscInt l = 0; l < 2; ++l) {
         const PetscInt q = 2 * k + l;
-        PetscReal *column = c->R + q * rve->ndof;
+        PetscReal *column = c->R + q * c->size;
 
         c->Lq[q] += element->f[2 * b + k] * Sb[l];
         c->Lqq[q][Q_F33] += fx[2 * b + k] * Sb[l];
@@ -63,7 +68,7 @@ static void AddElement(LamRVE rve, const LamLoad *load, PetscInt e, Condensation
   c->Lq[Q_F33] += force33;
   c->Lqq[Q_F33][Q_F33] += ff;
   for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
-    for (PetscInt i = 0; i < 2; ++i) c->R[Q_F33 * rve->ndof + 2 * mesh->node_class[nodes[a]] + i] += fx[2 * a + i];
+    for (PetscInt i = 0; i < 2; ++i) c->R[Q_F33 * c->size + 2 * mesh->node_class[nodes[a]] + i] += fx[2 * a + i];
   if (mesh->has_shift[e]) {
     LamElementResult element;
     PetscBool valid;
@@ -77,26 +82,69 @@ static void AddElement(LamRVE rve, const LamLoad *load, PetscInt e, Condensation
 /* Terms of the lumen volume F33 A. */
 static void AddLumen(LamRVE rve, const LamLoad *load, Condensation *c)
 {
-  const PetscReal area = LamLumenArea(rve, rve->y, -load->turgor, c->R + Q_F33 * rve->ndof);
+  const PetscReal area = LamLumenArea(rve, rve->y, -load->turgor, c->R + Q_F33 * c->size);
 
-  (void)LamLumenArea(rve, rve->y, -load->F[8], c->R + Q_TURGOR * rve->ndof);
+  (void)LamLumenArea(rve, rve->y, -load->F[8], c->R + Q_TURGOR * c->size);
   c->Lq[Q_F33] -= load->turgor * area;
   c->Lq[Q_TURGOR] -= load->F[8] * area;
   c->Lqq[Q_F33][Q_TURGOR] -= area;
 }
 
+/* Terms of the gap volume F33 (det F V0 - A). */
+static void AddGapVolume(LamRVE rve, const LamLoad *load, Condensation *c)
+{
+  const PetscReal *F = load->F, g = load->cohesion, V0 = rve->mesh.V0, F33 = F[8];
+  const PetscReal cof[4] = {F[4], -F[3], -F[1], F[0]};
+  const PetscReal cells = LamCellArea(rve, rve->y, -g, c->R + Q_F33 * c->size);
+  const PetscReal gap = (F[0] * F[4] - F[1] * F[3]) * V0 - cells;
+
+  (void)LamCellArea(rve, rve->y, -F33, c->R + Q_COHESION * c->size);
+  c->Lq[Q_COHESION] += F33 * gap;
+  c->Lq[Q_F33] += g * gap;
+  c->Lqq[Q_F33][Q_COHESION] += gap;
+  for (PetscInt q = 0; q < 4; ++q) {
+    c->Lq[q] += g * F33 * V0 * cof[q];
+    c->Lqq[q][Q_F33] += g * V0 * cof[q];
+    c->Lqq[q][Q_COHESION] += F33 * V0 * cof[q];
+    c->Lqq[q][3 - q] += g * F33 * V0 * (q == 0 || q == 3 ? 1.0 : -1.0); /* d2(det F) */
+  }
+}
+
+/* Terms of one face whose master is shifted. */
+static void AddContactFace(LamRVE rve, PetscInt f, Condensation *c)
+{
+  const LamContact *contact = rve->contact;
+  const PetscInt dofs = contact->dofs, slave = 2 * contact->hats, *classes = &contact->classes[f * contact->chain];
+  const PetscReal *S = contact->faces[f].shift, *hessian = &contact->hessian[f * dofs * dofs];
+
+  for (PetscInt j = slave; j < dofs; ++j)
+    for (PetscInt l = 0; l < 2; ++l) {
+      const PetscInt q = 2 * (j % 2) + l;
+      PetscReal *column = c->R + q * c->size;
+
+      for (PetscInt i = 0; i < dofs; ++i) column[2 * classes[i / 2] + i % 2] -= hessian[i * dofs + j] * S[l];
+      for (PetscInt i = slave; i < dofs; ++i)
+        for (PetscInt k = 0; k < 2; ++k) c->Lqq[2 * (i % 2) + k][q] -= S[k] * hessian[i * dofs + j] * S[l];
+      for (PetscInt h = f * contact->hats; h < (f + 1) * contact->hats; ++h) {
+        if (!contact->active[h]) continue;
+        c->Lq[q] -= contact->lambda[h] * contact->rows[h * dofs + j] * S[l];
+        column[rve->ndof + h] -= contact->rows[h * dofs + j] * S[l];
+      }
+    }
+}
+
 /* H = (L_qq - R^T K^-1 R) / V0. */
 static PetscErrorCode Condense(LamRVE rve, Condensation *c, PetscReal H[NQ][NQ])
 {
-  const PetscInt n = rve->linear.n;
+  const PetscInt n = rve->linear.n, nq = c->nq;
   PetscReal *R, *X;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(NQ * n, &R, NQ * n, &X));
-  for (PetscInt q = 0; q < NQ; ++q) PetscCall(PetscArraycpy(R + q * n, c->R + q * rve->ndof + 2, n));
-  PetscCall(LamLinearSolve(&rve->linear, NQ, R, X));
-  for (PetscInt q = 0; q < NQ; ++q)
-    for (PetscInt r = q; r < NQ; ++r) {
+  PetscCall(PetscMalloc2(nq * n, &R, nq * n, &X));
+  for (PetscInt q = 0; q < nq; ++q) PetscCall(PetscArraycpy(R + q * n, c->R + q * c->size + 2, n));
+  PetscCall(LamLinearSolve(&rve->linear, nq, R, X));
+  for (PetscInt q = 0; q < nq; ++q)
+    for (PetscInt r = q; r < nq; ++r) {
       PetscReal a = 0.0, b = 0.0;
 
       for (PetscInt i = 0; i < n; ++i) {
@@ -112,25 +160,33 @@ static PetscErrorCode Condense(LamRVE rve, Condensation *c, PetscReal H[NQ][NQ])
 PetscErrorCode LamHomogenise(LamRVE rve, const LamLoad *load, LamResponse *response)
 {
   static const PetscInt component[5] = {0, 1, 3, 4, 8}; /* of F11 F12 F21 F22 F33 in row-major 3x3 */
-  Condensation c = {0};
-  PetscReal H[NQ][NQ], energy;
+  Condensation c = {.nq = rve->contact ? NQ : NQ - 1, .size = rve->linear.n + 2};
+  PetscReal H[NQ][NQ] = {{0}}, energy;
   PetscBool valid;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(NQ * rve->ndof, &c.R));
+  PetscCall(PetscCalloc1(c.nq * c.size, &c.R));
   PetscCall(LamAssembleEnergy(rve, load, rve->y, &energy, &valid));
   for (PetscInt e = 0; e < rve->mesh.element_count; ++e) AddElement(rve, load, e, &c);
   AddLumen(rve, load, &c);
+  if (rve->contact) {
+    AddGapVolume(rve, load, &c);
+    for (PetscInt f = 0; f < rve->contact->face_count; ++f) AddContactFace(rve, f, &c);
+  }
   PetscCall(Condense(rve, &c, H));
   PetscCall(PetscFree(c.R));
   response->energy = energy / rve->mesh.V0;
   response->lumen_fraction = -c.Lq[Q_TURGOR] / rve->mesh.V0;
+  response->opening_fraction = c.Lq[Q_COHESION] / rve->mesh.V0;
   for (PetscInt i = 0; i < 9; ++i) response->P[i] = response->P_turgor[i] = response->P_cohesion[i] = 0.0;
   for (PetscInt q = 0; q < 5; ++q) {
     response->P[component[q]] = c.Lq[q] / rve->mesh.V0;
     response->P_turgor[component[q]] = H[q][Q_TURGOR];
+    response->P_cohesion[component[q]] = H[q][Q_COHESION];
     for (PetscInt r = 0; r < 5; ++r) response->tangent[9 * component[q] + component[r]] = H[q][r];
   }
   response->energy_turgor2 = H[Q_TURGOR][Q_TURGOR];
+  response->energy_cohesion2 = H[Q_COHESION][Q_COHESION];
+  response->energy_turgor_cohesion = H[Q_TURGOR][Q_COHESION];
   PetscFunctionReturn(0);
 }

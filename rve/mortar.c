@@ -217,6 +217,7 @@ typedef struct {
   PetscInt n; /* local dofs */
   PetscInt dof[BREAK_DOFS];
   PetscReal t[2], z[2], cs, Xss_t;
+  PetscReal Xs[2], dN[3];                        /* of the slave edge */
   PetscReal R[2][BREAK_DOFS], dt[2][BREAK_DOFS]; /* d(X - y_v), dt_v */
   PetscReal zd2t[BREAK_DOFS][BREAK_DOFS];        /* z . second variation of t_v */
   PetscReal ds[BREAK_DOFS];
@@ -277,6 +278,8 @@ static void SetBreak(const LamMortarChains *chains, PetscInt v, PetscInt edge, P
     AddUnitTangent(&chains->y[2 * v], -1.0, 0.5, EDGE_DOFS + 4, b);
   }
   LamEdgeCurvature(&chains->x[2 * edge], curvature);
+  for (PetscInt d = 0; d < 2; ++d) b->Xs[d] = p.Xs[d];
+  for (PetscInt a = 0; a < 3; ++a) b->dN[a] = p.dN[a];
   b->cs = LamDot(p.Xs, b->t);
   b->Xss_t = 4.0 * LamDot(curvature, b->t);
   for (PetscInt i = 0; i < b->n; ++i) {
@@ -285,15 +288,15 @@ static void SetBreak(const LamMortarChains *chains, PetscInt v, PetscInt edge, P
   }
 }
 
-/* M += c d2s of a break point. */
-static void AddSecondMotion(const Break *b, const Point *p, PetscReal c, PetscReal M[][BREAK_DOFS])
+/* M += c d2s of a cut. */
+static void AddSecondMotion(const Break *b, PetscReal c, PetscReal M[][BREAK_DOFS])
 {
   PetscReal cq[BREAK_DOFS] = {0};
   const PetscReal f = -c / b->cs;
 
-  for (PetscInt i = 0; i < b->n; ++i) cq[i] = p->Xs[0] * b->dt[0][i] + p->Xs[1] * b->dt[1][i];
+  for (PetscInt i = 0; i < b->n; ++i) cq[i] = b->Xs[0] * b->dt[0][i] + b->Xs[1] * b->dt[1][i];
   for (PetscInt a = 0; a < 3; ++a)
-    for (PetscInt d = 0; d < 2; ++d) cq[2 * a + d] += 2.0 * p->dN[a] * b->t[d];
+    for (PetscInt d = 0; d < 2; ++d) cq[2 * a + d] += 2.0 * b->dN[a] * b->t[d];
   AddSymmetric(b->n, 0.5 * f * b->Xss_t, b->ds, b->ds, M);
   AddSymmetric(b->n, f, cq, b->ds, M);
   for (PetscInt d = 0; d < 2; ++d) AddSymmetric(b->n, f, b->R[d], b->dt[d], M);
@@ -301,43 +304,73 @@ static void AddSecondMotion(const Break *b, const Point *p, PetscReal c, PetscRe
     for (PetscInt j = i; j < b->n; ++j) M[i][j] += f * b->zd2t[i][j];
 }
 
+/* What moves a break point: the cut of a master vertex, through the ramp where the overlap ends. */
+typedef struct {
+  PetscInt vertex, edge, piece;
+  PetscReal s, cut;
+  PetscReal slope, bend; /* ds/dcut, d2s/dcut2 */
+  PetscInt sides;        /* master edges that meet there */
+  PetscInt master[2];
+  PetscReal sign[2]; /* of the integrals over them */
+} Motion;
+
+static Motion FindMotion(const LamMortarChains *chains, const LamMortarSegments *segments, PetscInt k)
+{
+  /* a place on the same half-edge, inside the overlap */
+  const PetscReal inside = 0.5 * (segments->s[k] + segments->s[k + 1 < segments->count ? k + 1 : k - 1]);
+  const PetscInt v = segments->vertex[k];
+  Motion motion = {
+      v,          (PetscInt)inside, (PetscInt)(2.0 * inside), segments->s[k], segments->cut[v], 1.0, 0.0, 2,
+      {v - 1, v}, {-1.0, 1.0}};
+
+  if (v == 0 || v == chains->m) {
+    const PetscReal *ramp = segments->ramp[v == 0 ? 1 : 0];
+
+    motion.slope = ramp[0];
+    motion.bend = v == 0 ? -ramp[1] : ramp[1];
+    motion.sides = 1;
+    motion.master[0] = v == 0 ? 0 : chains->m - 1;
+    motion.sign[0] = v == 0 ? 1.0 : -1.0;
+  }
+  return motion;
+}
+
 /*
-  The terms of a moving break point, with `sign` [q] = sum of sign * q over the master edges that meet there:
+  The terms of a moving break point, with [q] = sum of sign * q over the master edges that meet there:
     dG_A   phi_A [gamma] ds,
     d2     lambda sym([N], ds) + (lambda [gamma_s] + lambda' [gamma]) ds(x)ds + lambda [gamma] d2s.
   Interior vertex v: edge v (sign +) minus edge v-1. Ends of the overlap: one edge, + at the upper end, - at the lower.
 */
-static void AddBreak(const LamMortarChains *chains, PetscReal s, PetscInt v, PetscReal inside, const PetscReal lambda[],
+static void AddBreak(const LamMortarChains *chains, const Motion *motion, const PetscReal lambda[],
                      LamMortarResult *result)
 {
-  const PetscBool end = (PetscBool)(v == 0 || v == chains->m);
-  const PetscInt edge = (PetscInt)inside, piece = (PetscInt)(2.0 * inside), dofs = LamMortarDofs(chains->n, chains->m);
-  const PetscReal J0 = chains->J0[edge];
-  const Hats hats = HatsAt(piece, s, lambda);
-  PetscReal M[BREAK_DOFS][BREAK_DOFS] = {{0}}, gamma = 0.0, gamma_s = 0.0, N[BREAK_DOFS] = {0};
+  const PetscInt dofs = LamMortarDofs(chains->n, chains->m);
+  const PetscReal J0 = chains->J0[motion->edge];
+  const Hats hats = HatsAt(motion->piece, motion->s, lambda);
+  PetscReal M[BREAK_DOFS][BREAK_DOFS] = {{0}}, gamma = 0.0, gamma_s = 0.0, N[BREAK_DOFS] = {0}, ds[BREAK_DOFS];
   Break b;
-  Point p;
 
-  SetBreak(chains, v, edge, s, &b);
-  for (PetscInt k = 0; k < (end ? 1 : 2); ++k) {
-    const PetscInt master = end ? PetscMin(v, chains->m - 1) : v - 1 + k;
-    const PetscReal sign = end ? (v == 0 ? 1.0 : -1.0) : (k == 0 ? -1.0 : 1.0);
+  SetBreak(chains, motion->vertex, motion->edge, motion->cut, &b);
+  for (PetscInt k = 0; k < motion->sides; ++k) {
     PetscReal row[POINT_DOFS];
+    Point p;
 
-    SetPoint(chains, edge, s, master, &p);
+    SetPoint(chains, motion->edge, motion->s, motion->master[k], &p);
     RelativeRow(&p, p.normal, row);
-    gamma += sign * (p.g + (end ? chains->clearance : 0.0));
-    gamma_s += sign * LamDot(p.normal, p.Xs);
+    gamma += motion->sign[k] * (p.g + chains->clearance);
+    gamma_s += motion->sign[k] * LamDot(p.normal, p.Xs);
     for (PetscInt i = 0; i < EDGE_DOFS; ++i) {
-      N[i] += sign * row[i];
-      N[EDGE_DOFS + 4 * k + i] += sign * row[EDGE_DOFS + i];
+      N[i] += motion->sign[k] * row[i];
+      N[EDGE_DOFS + 4 * k + i] += motion->sign[k] * row[EDGE_DOFS + i];
     }
   }
-  AddGapRows(&hats, J0 * gamma, b.n, b.dof, b.ds, dofs, result);
+  for (PetscInt i = 0; i < b.n; ++i) ds[i] = motion->slope * b.ds[i];
+  AddGapRows(&hats, J0 * gamma, b.n, b.dof, ds, dofs, result);
   if (hats.lambda == 0.0 && hats.slope == 0.0) return;
-  AddSymmetric(b.n, J0 * hats.lambda, N, b.ds, M);
-  AddSymmetric(b.n, 0.5 * J0 * (hats.lambda * gamma_s + hats.slope * gamma), b.ds, b.ds, M);
-  AddSecondMotion(&b, &p, J0 * hats.lambda * gamma, M);
+  AddSymmetric(b.n, J0 * hats.lambda, N, ds, M);
+  AddSymmetric(b.n, 0.5 * J0 * (hats.lambda * gamma_s + hats.slope * gamma), ds, ds, M);
+  AddSecondMotion(&b, J0 * hats.lambda * gamma * motion->slope, M);
+  AddSymmetric(b.n, 0.5 * J0 * hats.lambda * gamma * motion->bend, b.ds, b.ds, M);
   ScatterHessian(b.n, b.dof, (const PetscReal(*)[BREAK_DOFS])M, dofs, result->hessian);
 }
 
@@ -353,12 +386,12 @@ void LamMortarEvaluate(const LamMortarChains *chains, const LamMortarSegments *s
   for (PetscInt k = 0; k + 1 < count; ++k)
     if (segments->s[k + 1] - segments->s[k] > LAM_SHORT_SEGMENT)
       AddSegment(chains, segments->s[k], segments->s[k + 1], segments->master[k], lambda, points, result);
-  for (PetscInt k = 0; k < count; ++k) {
-    /* a place on the same half-edge, inside the overlap */
-    const PetscReal inside = 0.5 * (segments->s[k] + segments->s[k + 1 < count ? k + 1 : k - 1]);
+  for (PetscInt k = 0; k < count; ++k)
+    if (segments->vertex[k] >= 0) {
+      const Motion motion = FindMotion(chains, segments, k);
 
-    if (segments->vertex[k] >= 0) AddBreak(chains, segments->s[k], segments->vertex[k], inside, lambda, result);
-  }
+      AddBreak(chains, &motion, lambda, result);
+    }
 }
 
 void LamMortarSlavePoint(const LamMortarChains *chains, PetscReal s, PetscReal X[2], PetscReal Xs[2])

@@ -34,12 +34,13 @@ static inline PetscInt LamMortarDofs(PetscInt n, PetscInt m)
 
 /* Where integration is broken: half-edges of the slave, planes through master vertices, ends of the overlap. */
 typedef struct {
-  PetscReal *cut;    /* [m+1]: where the plane of a master vertex meets the slave; n or 0 where it lies beyond */
-  PetscBool *is_cut; /* [m+1]: it does meet the slave, so that place moves */
-  PetscInt count;    /* break points; 0: no overlap */
-  PetscReal *s;      /* [count] ascending */
-  PetscInt *vertex;  /* [count]: the master vertex whose plane is here, so that it moves; -1: fixed */
-  PetscInt *master;  /* [count-1]: master edge of each segment */
+  PetscReal *cut;       /* [m+1]: where the plane of a master vertex meets the slave; n or 0 where it lies beyond */
+  PetscBool *is_cut;    /* [m+1]: it does meet the slave, so that place moves */
+  PetscInt count;       /* break points; 0: no overlap */
+  PetscReal *s;         /* [count] ascending */
+  PetscInt *vertex;     /* [count]: the master vertex whose plane is here, so that it moves; -1: fixed */
+  PetscInt *master;     /* [count-1]: master edge of each segment */
+  PetscReal ramp[2][2]; /* lower, upper end of the overlap: first and second derivative of its ramp */
 } LamMortarSegments;
 
 PetscErrorCode LamMortarSegmentsCreate(PetscInt n, PetscInt m, LamMortarSegments *segments);

@@ -3,12 +3,13 @@
 
   Method. A plane through each master vertex, along the mean of the unit tangents that meet there (at the chain's ends
   the one-sided tangent), cuts the slave chain at the root of a quadratic. The planes of the end vertices bound the
-  overlap. A break point nearer than a dead band to the slave's end is put there, so that an end does not flicker
-  between moving and fixed.
+  overlap. Where such a cut passes the slave's own end, at distance u, the overlap's end follows the ramp h(u) instead
+  of max(u, 0): h = 0 for u <= 0, u^2 (2 w - u)/w^2 up to the width w, u beyond. The potential then has a continuous
+  gradient there; with the kink, Newton's method cycles between a moving and a fixed end.
 */
 #include "mortar_impl.h"
 
-#define DEAD_BAND 1e-3 /* of an edge */
+#define RAMP 0.1 /* w, in edges; less than one half */
 
 PetscErrorCode LamMortarSegmentsCreate(PetscInt n, PetscInt m, LamMortarSegments *segments)
 {
@@ -92,6 +93,17 @@ static void Insert(LamMortarSegments *segments, PetscReal s, PetscInt vertex)
   segments->vertex[at] = vertex;
 }
 
+/* Distance of the overlap's end from the slave's end, where the cut is at distance u; slope[2]: h', h''. */
+static PetscReal Ramp(PetscReal u, PetscReal slope[2])
+{
+  slope[0] = 1.0;
+  slope[1] = 0.0;
+  if (u >= RAMP) return u;
+  slope[0] = u <= 0.0 ? 0.0 : u * (4.0 * RAMP - 3.0 * u) / (RAMP * RAMP);
+  slope[1] = u <= 0.0 ? 0.0 : (4.0 * RAMP - 6.0 * u) / (RAMP * RAMP);
+  return u <= 0.0 ? 0.0 : u * u * (2.0 * RAMP - u) / (RAMP * RAMP);
+}
+
 void LamMortarFindSegments(const LamMortarChains *chains, LamMortarSegments *segments)
 {
   const PetscInt n = chains->n, m = chains->m;
@@ -99,14 +111,12 @@ void LamMortarFindSegments(const LamMortarChains *chains, LamMortarSegments *seg
   PetscBool lo_moves, hi_moves;
 
   for (PetscInt v = 0; v <= m; ++v) FindCut(chains, v, segments);
-  lo = segments->cut[m];
-  lo_moves = (PetscBool)(segments->is_cut[m] && lo >= DEAD_BAND);
-  if (lo < DEAD_BAND) lo = 0.0;
-  hi = segments->cut[0];
-  hi_moves = (PetscBool)(segments->is_cut[0] && hi <= (PetscReal)n - DEAD_BAND);
-  if (hi > (PetscReal)n - DEAD_BAND) hi = (PetscReal)n;
+  lo = Ramp(segments->cut[m], segments->ramp[0]);
+  lo_moves = (PetscBool)(segments->is_cut[m] && lo > 0.0);
+  hi = (PetscReal)n - Ramp((PetscReal)n - segments->cut[0], segments->ramp[1]);
+  hi_moves = (PetscBool)(segments->is_cut[0] && hi < (PetscReal)n);
   segments->count = 0;
-  if (!(hi - lo > DEAD_BAND)) return;
+  if (!(hi - lo > RAMP)) return;
   Insert(segments, lo, lo_moves ? m : -1);
   Insert(segments, hi, hi_moves ? 0 : -1);
   for (PetscInt j = 0; j <= 2 * n; ++j)

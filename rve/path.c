@@ -13,13 +13,12 @@
 #define KICK 0.02 /* apothems: start along an unstable mode */
 
 /* Rotation angle of the polar decomposition of the in-plane part of F. */
-static PetscReal RotationAngle(const PetscReal F[9])
+PetscReal LamRotationAngle(const PetscReal F[9])
 {
   return atan2(F[3] - F[1], F[0] + F[4]);
 }
 
-/* Rotates positions and load about the origin. */
-static void RotateState(PetscInt n, PetscReal y[], PetscReal F[9], PetscReal angle)
+void LamRotatePositions(PetscInt n, PetscReal y[], PetscReal F[9], PetscReal angle)
 {
   const PetscReal c = PetscCosReal(angle), s = PetscSinReal(angle);
 
@@ -37,8 +36,7 @@ static void RotateState(PetscInt n, PetscReal y[], PetscReal F[9], PetscReal ang
   }
 }
 
-/* rve->y := from + (F_to - F_from) X, with the independent stresses of `from`. */
-static void AffineStart(LamRVE rve, const PetscReal from[], const LamLoad *load_from, const LamLoad *load_to)
+void LamMoveAffinely(LamRVE rve, const PetscReal from[], const LamLoad *load_from, const LamLoad *load_to)
 {
   const PetscReal *A = load_from->F, *B = load_to->F;
 
@@ -97,10 +95,10 @@ static PetscErrorCode Step(LamRVE rve, const PetscReal from[], const LamLoad *lo
   PetscBool ok = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  AffineStart(rve, from, load_from, load_to);
+  LamMoveAffinely(rve, from, load_from, load_to);
   PetscCall(LamNewtonFast(rve, load_to, &outcome));
   if (outcome == LAM_NEWTON_STALLED) {
-    AffineStart(rve, from, load_from, load_to);
+    LamMoveAffinely(rve, from, load_from, load_to);
     PetscCall(LamNewtonSafe(rve, load_to, &outcome));
   } else if (outcome == LAM_NEWTON_NEAR_SADDLE) {
     PetscCall(LamNewtonSafe(rve, load_to, &outcome));
@@ -111,12 +109,13 @@ static PetscErrorCode Step(LamRVE rve, const PetscReal from[], const LamLoad *lo
   PetscFunctionReturn(0);
 }
 
-static LamLoad Between(const LamLoad *a, const LamLoad *b, PetscReal t)
+LamLoad LamLoadBetween(const LamLoad *a, const LamLoad *b, PetscReal t)
 {
   LamLoad load = *b;
 
   for (PetscInt i = 0; i < 9; ++i) load.F[i] = (1.0 - t) * a->F[i] + t * b->F[i];
   load.turgor = (1.0 - t) * a->turgor + t * b->turgor;
+  load.cohesion = (1.0 - t) * a->cohesion + t * b->cohesion;
   return load;
 }
 
@@ -131,9 +130,9 @@ static PetscErrorCode Substeps(LamRVE rve, PetscReal y_from[], const LamLoad *st
   *reached = 0.0;
   while (*reached < 1.0 && rve->work.iterations < LAM_ITERATION_BUDGET) {
     const PetscReal t = PetscMin(1.0, *reached + step);
-    const LamLoad next = t >= 1.0 ? *load : Between(start, load, t);
+    const LamLoad next = t >= 1.0 ? *load : LamLoadBetween(start, load, t);
     PetscInt switches = *branch;
-    PetscBool converged;
+    PetscBool converged = PETSC_FALSE;
 
     PetscCall(Step(rve, y_from, &at, &next, &switches, negative, &converged));
     if (converged && *negative == 0) {
@@ -156,12 +155,12 @@ PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state,
   LamLoad start = state->load;
   PetscReal *from, *saddle, reached = 1.0;
   PetscInt saddle_negative, saddle_branch;
-  PetscBool converged, is_saddle;
+  PetscBool converged = PETSC_FALSE, is_saddle;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(rve->ndof, &from, rve->ndof, &saddle));
   PetscCall(PetscArraycpy(from, state->y, rve->ndof));
-  RotateState(rve->ndof, from, start.F, RotationAngle(load->F) - RotationAngle(start.F));
+  LamRotatePositions(rve->ndof, from, start.F, LamRotationAngle(load->F) - LamRotationAngle(start.F));
   *branch = state->branch;
   PetscCall(Step(rve, from, &start, load, branch, negative, &converged));
   is_saddle = (PetscBool)(converged && *negative > 0);

@@ -114,19 +114,24 @@ PetscErrorCode LamRVEStateCreate(LamRVE rve, LamRVEState *state)
   PetscCheck(rve->is_set_up, PETSC_COMM_SELF, PETSC_ERR_ORDER, "LamRVESetUp comes before LamRVEStateCreate");
   PetscCall(PetscNew(state));
   (*state)->n = rve->ndof;
-  PetscCall(PetscMalloc1(rve->ndof, &(*state)->y));
-  PetscCall(PetscArraycpy((*state)->y, rve->mesh.class_X, rve->ndof));
-  ReferenceLoad(&(*state)->load);
+  (*state)->multipliers = rve->contact ? rve->contact->count : 0;
+  PetscCall(PetscMalloc2((*state)->n, &(*state)->y, (*state)->multipliers, &(*state)->lambda));
+  if (rve->bonded) PetscCall(LamRVEStateCreate(rve->bonded, &(*state)->bonded));
+  PetscCall(LamRVEStateReset(rve, *state));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamRVEStateCopy(LamRVEState from, LamRVEState to)
 {
   PetscFunctionBeginUser;
-  PetscCheck(from->n == to->n, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ, "states of different RVEs");
+  PetscCheck(from->n == to->n && from->multipliers == to->multipliers, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ,
+             "states of different RVEs");
   PetscCall(PetscArraycpy(to->y, from->y, from->n));
+  PetscCall(PetscArraycpy(to->lambda, from->lambda, from->multipliers));
   to->load = from->load;
   to->branch = from->branch;
+  to->solved = from->solved;
+  if (from->bonded) PetscCall(LamRVEStateCopy(from->bonded, to->bonded));
   PetscFunctionReturn(0);
 }
 
@@ -134,8 +139,11 @@ PetscErrorCode LamRVEStateReset(LamRVE rve, LamRVEState state)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(state->y, rve->mesh.class_X, rve->ndof));
+  PetscCall(PetscArrayzero(state->lambda, state->multipliers));
   ReferenceLoad(&state->load);
   state->branch = 0;
+  state->solved = PETSC_FALSE;
+  if (rve->bonded) PetscCall(LamRVEStateReset(rve->bonded, state->bonded));
   PetscFunctionReturn(0);
 }
 
@@ -143,7 +151,8 @@ PetscErrorCode LamRVEStateDestroy(LamRVEState *state)
 {
   PetscFunctionBeginUser;
   if (!*state) PetscFunctionReturn(0);
-  PetscCall(PetscFree((*state)->y));
+  PetscCall(LamRVEStateDestroy(&(*state)->bonded));
+  PetscCall(PetscFree2((*state)->y, (*state)->lambda));
   PetscCall(PetscFree(*state));
   PetscFunctionReturn(0);
 }
@@ -176,10 +185,12 @@ static PetscErrorCode FillFields(LamRVE rve, const LamLoad *load, LamResponse *r
 {
   PetscFunctionBeginUser;
   PetscCall(LamHomogenise(rve, load, response));
+  if (rve->contact) {
+    PetscCall(LamContactIndicators(rve, load, response));
+    PetscFunctionReturn(0);
+  }
   PetscCall(LamFaceTractions(rve, load, response->mean_face_traction, &response->max_traction));
-  response->energy_cohesion2 = response->energy_turgor_cohesion = 0.0;
-  response->opening_fraction = response->debonded_fraction = response->open_fraction = response->max_gap = 0.0;
-  for (PetscInt k = 0; k < 3; ++k) response->debonded_by_face[k] = 0.0;
+  PetscCall(LamBondedIndicators(rve, load, response));
   PetscFunctionReturn(0);
 }
 
@@ -216,14 +227,19 @@ PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, L
   }
   rve->work = (LamWork){0};
   rve->lowest_eigenvalue = NAN;
-  PetscCall(LamFollowPath(rve, load, state, &response->branch, &response->negative_eigenvalues, &response->status,
-                          response->reason, sizeof(response->reason)));
+  if (rve->contact)
+    PetscCall(LamContactFollowPath(rve, load, state, response));
+  else
+    PetscCall(LamFollowPath(rve, load, state, &response->branch, &response->negative_eigenvalues, &response->status,
+                            response->reason, sizeof(response->reason)));
   PetscCall(RefuseCollapsedLumen(rve, response));
   if (LamResponseHasFields(response)) {
     PetscCall(FillFields(rve, load, response));
     response->stable = (PetscBool)(response->status == LAM_CONVERGED);
     if (!response->stable) response->lowest_eigenvalue = rve->lowest_eigenvalue;
     PetscCall(PetscArraycpy(state->y, rve->y, rve->ndof));
+    if (rve->contact) PetscCall(PetscArraycpy(state->lambda, rve->contact->lambda, state->multipliers));
+    state->solved = PETSC_TRUE;
     state->load = *load;
     state->branch = response->branch;
   }

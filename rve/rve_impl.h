@@ -154,7 +154,10 @@ PetscErrorCode LamNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *
 PetscReal LamNewtonTolerance(LamRVE rve);
 
 /* ---- stability.c ---- */
-/* Assembles and factors the consistent tangent at rve->y and counts its negative eigenvalues. */
+/* Negative eigenvalues that the matrix of a stable state has: one for each active multiplier. */
+PetscInt LamActiveMultipliers(LamRVE rve);
+/* Assembles and factors the consistent tangent at rve->y and counts its negative eigenvalues; of contact
+   tissue those beyond the active multipliers. */
 PetscErrorCode LamFactorConsistent(LamRVE rve, const LamLoad *load, PetscInt *negative, PetscBool *ok);
 /* A start for the softest mode without the symmetry of the cell, so that no mode is missed, the same in every run. */
 void LamStartMode(LamRVE rve, PetscReal mode[]);
@@ -165,15 +168,24 @@ PetscErrorCode LamImproveSoftestMode(LamRVE rve, PetscInt iterations, PetscReal 
 PetscErrorCode LamSoftestMode(LamRVE rve, PetscReal *eigenvalue, PetscReal mode[]);
 
 /* ---- path.c ---- */
+/* Rotation angle of the polar decomposition of the in-plane part of F. */
+PetscReal LamRotationAngle(const PetscReal F[9]);
+/* Rotates positions y[n] and the deformation gradient they belong to about the origin. */
+void LamRotatePositions(PetscInt n, PetscReal y[], PetscReal F[9], PetscReal angle);
+/* rve->y := from + (F_to - F_from) X, with the independent stresses of `from`. */
+void LamMoveAffinely(LamRVE rve, const PetscReal from[], const LamLoad *load_from, const LamLoad *load_to);
+/* The load at the share t of the straight way from a to b. */
+LamLoad LamLoadBetween(const LamLoad *a, const LamLoad *b, PetscReal t);
 /* Finds a stable equilibrium at `load` from `state`; leaves it in rve->y with the consistent tangent factored. */
 PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, PetscInt *branch, PetscInt *negative,
                              LamStatus *status, char reason[], size_t length);
 
 /* ---- contact_newton.c, contact_path.c ---- */
+#define LAM_CONTACT_PROXIMAL 1e-8 /* shift of every contact matrix: a cell that nothing holds must not be singular */
 /* compliant: the start may be far from contact. */
 PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, PetscBool compliant, LamNewtonOutcome *outcome);
-PetscErrorCode LamContactStartBonded(LamRVE rve, const LamLoad *load, LamRVEState state, PetscBool *ok);
-PetscErrorCode LamContactStartAffine(LamRVE rve, const LamLoad *load);
+/* As LamFollowPath; the solution is in rve->y and contact->lambda. */
+PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
 
 /* ---- lumen.c ---- */
 /* The first cell whose inner loop crosses itself at positions y, -1: none. */
@@ -182,7 +194,15 @@ PetscErrorCode LamFindCollapsedLumen(LamRVE rve, const PetscReal y[], PetscInt *
 /* ---- homogenise.c, traction.c ---- */
 /* Fills energy, P, tangent, couplings and lumen fraction from rve->y and the factored consistent tangent. */
 PetscErrorCode LamHomogenise(LamRVE rve, const LamLoad *load, LamResponse *response);
+/* Largest mean force per length over windows of `window` sub-intervals (at most the whole face), from running integrals
+   [count + 1]. */
+PetscReal LamLargestWindowMean(PetscInt count, PetscReal window, const PetscReal force[], const PetscReal length[]);
 /* Mean normal traction per face family and the largest one averaged over a wall thickness (Cauchy). */
 PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, PetscReal mean[3], PetscReal *largest);
+
+/* ---- indicators.c ---- */
+/* Fills the debonding indicators from rve->y and the multipliers; of contact tissue the tractions, too. */
+PetscErrorCode LamContactIndicators(LamRVE rve, const LamLoad *load, LamResponse *response);
+PetscErrorCode LamBondedIndicators(LamRVE rve, const LamLoad *load, LamResponse *response);
 
 #endif

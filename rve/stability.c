@@ -1,11 +1,17 @@
 /*
   Stability of a converged state: inertia of the consistent tangent, and its softest mode.
 
-  Method. A state is stable where the consistent tangent has no negative eigenvalue (prescribed turgor, bonded walls).
+  Method. A state is stable where the consistent tangent has no negative eigenvalue (prescribed turgor, bonded walls);
+  in contact, where it has none on motions that keep the active gaps closed: as many as active multipliers in all.
   The lowest eigenvalue and its mode come from inverse iteration on K + shift 1 with a shift just large enough to make
   it positive definite, bracketed by the inertia: the lowest mode then dominates the inverse.
 */
 #include "rve_impl.h"
+
+PetscInt LamActiveMultipliers(LamRVE rve)
+{
+  return rve->contact ? LamContactCountActive(rve->contact) : 0;
+}
 
 PetscErrorCode LamFactorConsistent(LamRVE rve, const LamLoad *load, PetscInt *negative, PetscBool *ok)
 {
@@ -17,7 +23,12 @@ PetscErrorCode LamFactorConsistent(LamRVE rve, const LamLoad *load, PetscInt *ne
   *ok = LamSetConsistentStresses(rve, load, rve->y);
   if (!*ok) PetscFunctionReturn(0);
   PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
+  if (rve->contact) {
+    PetscCall(LamContactEvaluate(rve, load, rve->y, PETSC_FALSE));
+    LamContactAddTangent(rve, 0.0);
+  }
   PetscCall(LamLinearFactor(&rve->linear, 0.0, negative, ok));
+  *negative -= LamActiveMultipliers(rve);
   ++rve->work.factorisations;
   PetscFunctionReturn(0);
 }
@@ -30,12 +41,12 @@ static PetscErrorCode BracketLowest(LamRVE rve, PetscReal *shift)
   PetscBool ok;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < rve->linear.n; ++i)
+  for (PetscInt i = 0; i < rve->linear.positions; ++i)
     diagonal = PetscMax(diagonal, PetscAbsReal(rve->linear.values[rve->linear.row[i]]));
   for (high = 1e-8 * diagonal; high < 1e3 * diagonal; high *= 4.0) {
     PetscCall(LamLinearFactor(&rve->linear, high, &negative, &ok));
     ++rve->work.factorisations;
-    if (ok && negative == 0) break;
+    if (ok && negative == LamActiveMultipliers(rve)) break;
     low = high;
   }
   while (low > 0.0 && high > 1.2 * low) {
@@ -43,7 +54,7 @@ static PetscErrorCode BracketLowest(LamRVE rve, PetscReal *shift)
 
     PetscCall(LamLinearFactor(&rve->linear, middle, &negative, &ok));
     ++rve->work.factorisations;
-    if (ok && negative == 0)
+    if (ok && negative == LamActiveMultipliers(rve))
       high = middle;
     else
       low = middle;
@@ -66,7 +77,8 @@ static PetscReal Normalise(PetscInt n, PetscReal v[])
 
 void LamStartMode(LamRVE rve, PetscReal mode[])
 {
-  for (PetscInt i = 0; i < rve->linear.n; ++i) mode[i] = PetscSinReal(1.0 + 2.399963 * (PetscReal)i);
+  for (PetscInt i = 0; i < rve->linear.n; ++i) mode[i] = 0.0; /* multipliers have no part in a mode */
+  for (PetscInt i = 0; i < rve->linear.positions; ++i) mode[i] = PetscSinReal(1.0 + 2.399963 * (PetscReal)i);
 }
 
 PetscErrorCode LamImproveSoftestMode(LamRVE rve, PetscInt iterations, PetscReal mode[])
@@ -78,7 +90,7 @@ PetscErrorCode LamImproveSoftestMode(LamRVE rve, PetscInt iterations, PetscReal 
   PetscCall(PetscMalloc1(n, &next));
   for (PetscInt it = 0; it < iterations; ++it) {
     PetscCall(LamLinearSolve(&rve->linear, 1, mode, next));
-    PetscCall(PetscArraycpy(mode, next, n));
+    PetscCall(PetscArraycpy(mode, next, rve->linear.positions));
     (void)Normalise(n, mode);
   }
   PetscCall(PetscFree(next));
@@ -101,7 +113,7 @@ PetscErrorCode LamSoftestMode(LamRVE rve, PetscReal *eigenvalue, PetscReal mode[
   PetscCall(PetscMalloc1(n, &image));
   LamLinearMultiply(&rve->linear, mode, image);
   *eigenvalue = 0.0;
-  for (PetscInt i = 0; i < n; ++i) *eigenvalue += mode[i] * image[i];
+  for (PetscInt i = 0; i < rve->linear.positions; ++i) *eigenvalue += mode[i] * image[i];
   PetscCall(PetscFree(image));
   PetscFunctionReturn(0);
 }

@@ -126,8 +126,7 @@ static void Accumulate(PetscInt along, const PetscReal x[][2], const PetscReal t
     }
 }
 
-/* Largest mean over windows of reference length `window` (in sub-intervals; at most the whole face). */
-static PetscReal LargestMean(PetscInt count, PetscReal window, const PetscReal force[], const PetscReal length[])
+PetscReal LamLargestWindowMean(PetscInt count, PetscReal window, const PetscReal force[], const PetscReal length[])
 {
   PetscReal largest = -PETSC_MAX_REAL;
 
@@ -164,7 +163,7 @@ PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, PetscReal mean[
       Accumulate(along, (const PetscReal(*)[2])x, (const PetscReal(*)[2])t, F, L);
       total += F[count];
       length += L[count];
-      *largest = PetscMax(*largest, LargestMean(count, window, F, L));
+      *largest = PetscMax(*largest, LamLargestWindowMean(count, window, F, L));
     }
     mean[face] = total / length;
   }

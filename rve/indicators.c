@@ -1,0 +1,283 @@
+/*
+  Debonding indicators of a state: how far cells have come apart, where, and what still joins them.
+
+  Method. The slave side of every face is sampled along the segments of the overlap. Shares of the interface length are
+  by reference length of the slave walls. A wall outside the overlap faces a junction void: it carries no contact, but
+  its distance is nobody's gap; a face without any overlap is open as a whole. Mean tractions are Cauchy: the force over
+  the current length of the whole face, tension positive.
+*/
+#include "rve_impl.h"
+#include "mortar_impl.h"
+
+#define SAMPLES 4        /* intervals of a segment */
+#define WINDOW_SAMPLES 8 /* per edge, for the largest mean traction */
+
+/* Sums over the faces of one family. */
+typedef struct {
+  PetscReal length;                /* reference length of the slave walls */
+  PetscReal current_length, force; /* force: normal, tension > 0, per reference thickness */
+  PetscReal closed, open;          /* reference lengths */
+  PetscReal opening;               /* area between the walls */
+  PetscReal gap;                   /* integral of the gap over the reference length */
+} FamilySums;
+
+typedef struct {
+  FamilySums family[3];
+  PetscReal max_gap, max_penetration, max_traction;
+  PetscReal fabric[3];
+} Sums;
+
+/* Share of an interval with linear values a, b that lies above a threshold. */
+static PetscReal ShareAbove(PetscReal a, PetscReal b, PetscReal threshold)
+{
+  const PetscReal high = PetscMax(a, b), low = PetscMin(a, b);
+
+  if (low > threshold) return 1.0;
+  return high <= threshold ? 0.0 : (high - threshold) / (high - low);
+}
+
+static void SampleSegment(const LamMortarChains *chains, PetscReal from, PetscReal to, PetscInt master,
+                          FamilySums *family, Sums *sums)
+{
+  PetscReal last = 0.0;
+
+  for (PetscInt k = 0; k <= SAMPLES; ++k) {
+    const PetscReal s = from + (to - from) * (PetscReal)k / SAMPLES, inside = 0.5 * (from + to);
+    PetscReal nearest[2], X[2], Xs[2];
+    /* the edge is that of the segment, also at its ends */
+    const PetscReal gap =
+        LamMortarGap(chains, PetscMin(PetscMax(s, PetscFloorReal(inside)), PetscFloorReal(inside) + 1.0 - 1e-12),
+                     master, nearest) -
+        chains->clearance;
+
+    LamMortarSlavePoint(chains, s, X, Xs);
+    sums->max_gap = PetscMax(sums->max_gap, gap);
+    sums->max_penetration = PetscMax(sums->max_penetration, -gap - chains->clearance);
+    if (k > 0) {
+      const PetscReal ds = (to - from) / SAMPLES, mean = 0.5 * (PetscMax(0.0, last) + PetscMax(0.0, gap));
+      const PetscReal J0 = chains->J0[(PetscInt)inside];
+
+      family->open += ShareAbove(last, gap, LAM_VISIBLE_GAP) * ds * J0;
+      family->gap += mean * ds * J0;
+      family->opening += mean * ds * PetscSqrtReal(LamDot(Xs, Xs));
+    }
+    last = gap;
+  }
+}
+
+/* Normal force and current length along one face: running integrals at WINDOW_SAMPLES per edge. */
+static void FaceForce(const LamMortarChains *chains, const PetscReal lambda[], PetscReal lo, PetscReal hi, PetscReal g,
+                      PetscReal F33, PetscReal force[], PetscReal length[])
+{
+  force[0] = length[0] = 0.0;
+  for (PetscInt k = 0; k < chains->n * WINDOW_SAMPLES; ++k) {
+    const PetscReal h = 1.0 / WINDOW_SAMPLES;
+
+    force[k + 1] = force[k];
+    length[k + 1] = length[k];
+    for (PetscInt side = -1; side <= 1; side += 2) {
+      const PetscReal s = h * ((PetscReal)k + 0.5 + 0.5 * (PetscReal)side / PetscSqrtReal(3.0));
+      const PetscInt piece = (PetscInt)(2.0 * s);
+      const PetscReal u = 2.0 * s - (PetscReal)piece;
+      PetscReal X[2], Xs[2], ds;
+
+      LamMortarSlavePoint(chains, s, X, Xs);
+      ds = 0.5 * h * PetscSqrtReal(LamDot(Xs, Xs));
+      length[k + 1] += ds;
+      force[k + 1] += g * ds;
+      if (s > lo && s < hi)
+        force[k + 1] -= 0.5 * h * chains->J0[(PetscInt)s] * ((1.0 - u) * lambda[piece] + u * lambda[piece + 1]) / F33;
+    }
+  }
+}
+
+/* Adds weight n(x)n of the wall's normal at hat j. */
+static void AddFabric(const LamMortarChains *chains, PetscInt j, PetscReal weight, PetscReal fabric[3])
+{
+  PetscReal X[2], Xs[2], m;
+
+  LamMortarSlavePoint(chains, 0.5 * (PetscReal)j, X, Xs);
+  m = LamDot(Xs, Xs);
+  fabric[0] += weight * Xs[1] * Xs[1] / m; /* n = (Xs_2, -Xs_1)/|Xs| */
+  fabric[1] += weight * Xs[0] * Xs[0] / m;
+  fabric[2] -= weight * Xs[0] * Xs[1] / m;
+}
+
+static PetscErrorCode AddFace(LamRVE rve, const LamLoad *load, PetscInt f, Sums *sums)
+{
+  LamContact *contact = rve->contact;
+  const PetscInt count = rve->mesh.along * WINDOW_SAMPLES;
+  const PetscReal *lambda = &contact->lambda[f * contact->hats];
+  const PetscReal window = rve->micro.wall_thickness * (PetscReal)count / (2.0 / PetscSqrtReal(3.0));
+  FamilySums *family = &sums->family[contact->faces[f].face];
+  const LamMortarSegments *segments = &contact->segments;
+  PetscReal(*x)[2], *force, *length, J0 = 0.0;
+  LamMortarChains chains;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(contact->chain, &x, count + 1, &force, count + 1, &length));
+  chains = LamContactChains(rve, load->F, rve->y, f, x);
+  LamMortarFindSegments(&chains, &contact->segments);
+  for (PetscInt k = 0; k + 1 < segments->count; ++k)
+    SampleSegment(&chains, segments->s[k], segments->s[k + 1], segments->master[k], family, sums);
+  FaceForce(&chains, lambda, segments->count ? segments->s[0] : 0.0,
+            segments->count ? segments->s[segments->count - 1] : 0.0, load->cohesion, load->F[8], force, length);
+  for (PetscInt e = 0; e < chains.n; ++e) J0 += chains.J0[e];
+  family->length += J0;
+  family->current_length += length[count];
+  family->force += force[count];
+  if (segments->count == 0) family->open += J0;
+  sums->max_traction = PetscMax(sums->max_traction, LamLargestWindowMean(count, window, force, length));
+  for (PetscInt j = 0; j < contact->hats; ++j) {
+    const PetscInt h = f * contact->hats + j;
+
+    if (!contact->active[h]) continue;
+    family->closed += contact->weight[h];
+    AddFabric(&chains, j, contact->weight[h], sums->fabric);
+  }
+  PetscCall(PetscFree3(x, force, length));
+  PetscFunctionReturn(0);
+}
+
+static PetscBool FaceIsClosed(const LamContact *contact, PetscInt f)
+{
+  for (PetscInt h = f * contact->hats; h < (f + 1) * contact->hats; ++h)
+    if (contact->active[h]) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Rank of the lattice that cycles span: adds vector v to a basis of `rank` vectors. */
+static void AddCycle(const PetscReal v[2], PetscReal basis[2][2], PetscInt *rank)
+{
+  const PetscReal size = LamDot(v, v);
+
+  if (size < 1e-6 || *rank == 2) return;
+  if (*rank == 0 || PetscAbsReal(basis[0][0] * v[1] - basis[0][1] * v[0]) > 1e-3) {
+    basis[*rank][0] = v[0];
+    basis[*rank][1] = v[1];
+    ++*rank;
+  }
+}
+
+/*
+  Groups of cells that closed faces join. place[cell] is the shift of the image of a cell that belongs to the same
+  connected piece as the image of its root; a face that joins two cells of one group again gives a cycle, a period
+  vector that the piece spans.
+*/
+static PetscErrorCode CountClusters(LamRVE rve, LamResponse *response)
+{
+  const LamContact *contact = rve->contact;
+  const PetscInt cells = rve->mesh.cell_count;
+  PetscInt *group;
+  PetscReal(*place)[2];
+  PetscBool *touched;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(cells, &group, cells, &place, cells, &touched));
+  for (PetscInt c = 0; c < cells; ++c) {
+    group[c] = -1;
+    touched[c] = PETSC_FALSE;
+  }
+  for (PetscInt f = 0; f < contact->face_count; ++f)
+    if (FaceIsClosed(contact, f)) touched[contact->faces[f].cell] = touched[contact->faces[f].other] = PETSC_TRUE;
+  response->cell_clusters = response->percolating_directions = response->floating_cells = 0;
+  for (PetscInt root = 0; root < cells; ++root) {
+    PetscReal basis[2][2];
+    PetscInt rank = 0;
+    PetscBool grown = PETSC_TRUE;
+
+    if (!touched[root]) ++response->floating_cells;
+    if (group[root] >= 0) continue;
+    group[root] = response->cell_clusters++;
+    place[root][0] = place[root][1] = 0.0;
+    while (grown) {
+      grown = PETSC_FALSE;
+      for (PetscInt f = 0; f < contact->face_count; ++f) {
+        const LamContactFace *face = &contact->faces[f];
+        const PetscInt a = face->cell, b = face->other;
+
+        if (!FaceIsClosed(contact, f) || (group[a] != group[root] && group[b] != group[root])) continue;
+        if (group[a] == group[b]) continue;
+        for (PetscInt d = 0; d < 2; ++d) {
+          if (group[b] < 0) place[b][d] = place[a][d] + face->shift[d];
+          if (group[a] < 0) place[a][d] = place[b][d] - face->shift[d];
+        }
+        group[a] = group[b] = group[root];
+        grown = PETSC_TRUE;
+      }
+    }
+    for (PetscInt f = 0; f < contact->face_count; ++f) {
+      const LamContactFace *face = &contact->faces[f];
+
+      if (FaceIsClosed(contact, f) && group[face->cell] == group[root]) {
+        const PetscReal v[2] = {place[face->cell][0] + face->shift[0] - place[face->other][0],
+                                place[face->cell][1] + face->shift[1] - place[face->other][1]};
+
+        AddCycle(v, basis, &rank);
+      }
+    }
+    response->percolating_directions = PetscMax(response->percolating_directions, rank);
+  }
+  PetscCall(PetscFree3(group, place, touched));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamContactIndicators(LamRVE rve, const LamLoad *load, LamResponse *response)
+{
+  Sums sums = {.max_gap = -PETSC_MAX_REAL, .max_traction = -PETSC_MAX_REAL};
+  PetscReal length = 0.0, closed = 0.0, open = 0.0, gap = 0.0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt f = 0; f < rve->contact->face_count; ++f) PetscCall(AddFace(rve, load, f, &sums));
+  for (PetscInt k = 0; k < 3; ++k) {
+    const FamilySums *family = &sums.family[k];
+
+    response->opening_by_face[k] = family->opening * load->F[8] / rve->mesh.V0;
+    response->debonded_by_face[k] = PetscMax(0.0, 1.0 - family->closed / family->length);
+    response->open_by_face[k] = family->open / family->length;
+    response->mean_face_traction[k] = family->force / family->current_length;
+    length += family->length;
+    closed += family->closed;
+    open += family->open;
+    gap += family->gap;
+  }
+  response->debonded_fraction = PetscMax(0.0, 1.0 - closed / length);
+  response->open_fraction = open / length;
+  response->mean_gap = gap / length;
+  response->max_gap = sums.max_gap > -PETSC_MAX_REAL ? PetscMax(0.0, sums.max_gap) : NAN;
+  response->max_penetration = PetscMax(0.0, sums.max_penetration);
+  response->max_traction = sums.max_traction;
+  for (PetscInt i = 0; i < 3; ++i) response->fabric[i] = sums.fabric[i] / length;
+  PetscCall(CountClusters(rve, response));
+  PetscFunctionReturn(0);
+}
+
+/* Everything is joined; the fabric is that of all faces, by their current chords. */
+PetscErrorCode LamBondedIndicators(LamRVE rve, const LamLoad *load, LamResponse *response)
+{
+  const LamMesh *mesh = &rve->mesh;
+  PetscReal fabric[3] = {0.0, 0.0, 0.0};
+  PetscInt edges = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt e = mesh->through - 1; e < mesh->element_count; e += mesh->through) {
+    PetscReal x[LAM_ELEMENT_NODES][2], chord[2];
+
+    if (LamMeshFaceOfElement(mesh, e) > 2) continue;
+    LamGatherElement(rve, load->F, rve->y, e, x);
+    for (PetscInt d = 0; d < 2; ++d) chord[d] = x[2][d] - x[1][d]; /* the ends of the outer edge */
+    fabric[0] += chord[1] * chord[1] / LamDot(chord, chord);
+    fabric[1] += chord[0] * chord[0] / LamDot(chord, chord);
+    fabric[2] -= chord[0] * chord[1] / LamDot(chord, chord);
+    ++edges;
+  }
+  for (PetscInt i = 0; i < 3; ++i) response->fabric[i] = fabric[i] / (PetscReal)edges;
+  response->debonded_fraction = response->open_fraction = response->max_gap = response->mean_gap = 0.0;
+  response->max_penetration = 0.0;
+  for (PetscInt k = 0; k < 3; ++k)
+    response->debonded_by_face[k] = response->open_by_face[k] = response->opening_by_face[k] = 0.0;
+  response->floating_cells = response->zero_modes = 0;
+  response->cell_clusters = 1;
+  response->percolating_directions = 2;
+  PetscFunctionReturn(0);
+}
