@@ -18,6 +18,7 @@
 
 #define ITERATIONS 40
 #define FOLLOW_ITERATIONS 6 /* in which the junction status follows the iterate */
+#define FOLLOW_FAR 25       /* the same while steps are shortened */
 #define COMPLIANT_ITERATIONS 4
 #define COMPLIANCE 0.033 /* apothems / (C1 + C2), in the first iteration; falls by the same factor each time */
 #define COMPLIANCE_DECAY 0.3
@@ -115,6 +116,7 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, PetscBool compl
   LamContact *contact = rve->contact;
   PetscReal shift = 0.0, *rhs, *solution, *lambda_new;
   PetscInt follow_until = FOLLOW_ITERATIONS;
+  PetscInt restarts = 0;
 
   PetscFunctionBeginUser;
   *outcome = LAM_NEWTON_STALLED;
@@ -141,7 +143,7 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, PetscBool compl
       PetscCall(Report(rve, it, norm, gap, changes, 0.0, 0.0, 0.0));
       PetscCall(LamContactStatusHolds(rve, load, rve->y, &holds));
       *outcome = LAM_NEWTON_CONVERGED;
-      if (holds || it < follow_until || follow_until > FOLLOW_ITERATIONS) break;
+      if (holds || restarts++ > 2) break;
       *outcome = LAM_NEWTON_STALLED;
       follow_until = it + 2;
       continue;
@@ -153,6 +155,7 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, PetscBool compl
     PetscCall(StepLength(rve, load, &alpha));
     PetscCall(Report(rve, it, norm, gap, changes, LargestEntry(rve->ndof, rve->step), alpha, shift));
     if (alpha == 0.0) break;
+    if (alpha < 1.0 && it < FOLLOW_FAR) follow_until = PetscMax(follow_until, it + 3);
     TakeStep(rve, load, alpha, lambda_new);
   }
   PetscCall(PetscFree3(rhs, solution, lambda_new));

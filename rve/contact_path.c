@@ -201,7 +201,7 @@ static PetscErrorCode StartNear(LamRVE rve, const Solution *from, const LamLoad 
 static PetscErrorCode Substeps(LamRVE rve, Solution *at, const LamLoad *load, Outcome *out)
 {
   const LamLoad start = at->load;
-  PetscReal reached = 0.0, step = 0.5;
+  PetscReal reached = 0.0, step = 0.25;
 
   PetscFunctionBeginUser;
   *out = (Outcome){0};
@@ -223,36 +223,66 @@ static PetscErrorCode Substeps(LamRVE rve, Solution *at, const LamLoad *load, Ou
   PetscFunctionReturn(0);
 }
 
-/* Contact held tight by an added cohesion, which is lowered step by step. */
-static PetscErrorCode ComeDown(LamRVE rve, const LamLoad *load, PetscBool has_bonded, Solution *at, Outcome *out)
+/* From a solution at a larger cohesion down to `load`. */
+static PetscErrorCode ComeDown(LamRVE rve, const LamLoad *load, Solution *at, Outcome *out)
 {
-  PetscReal added = TIGHT, factor = EASE;
+  PetscReal added = at->load.cohesion - load->cohesion, factor = EASE;
+  LamLoad next = *load;
+
+  PetscFunctionBeginUser;
+  while (added > 0.0 && rve->work.iterations < LAM_ITERATION_BUDGET) {
+    const PetscReal less = added * factor < LOOSE * TIGHT ? 0.0 : added * factor;
+
+    next.cohesion = load->cohesion + less;
+    PetscCall(StartNear(rve, at, &next));
+    PetscCall(Try(rve, &next, PETSC_FALSE, out));
+    if (IsStable(out)) {
+      PetscCall(Save(rve, &next, at));
+      added = less;
+    } else {
+      factor = PetscSqrtReal(factor);
+      if (factor > 0.95) break;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Contact held tight by an added cohesion, at the asked F from the bonded or affine start, then let loose. */
+static PetscErrorCode TightThenLoose(LamRVE rve, const LamLoad *load, PetscBool has_bonded, Solution *at, Outcome *out)
+{
   LamLoad tight = *load;
   PetscBool ok = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  *out = (Outcome){0};
-  tight.cohesion = load->cohesion + added;
+  tight.cohesion = load->cohesion + TIGHT;
   if (has_bonded) PetscCall(StartReleased(rve, &tight, &ok));
   if (!has_bonded || !ok) PetscCall(StartAffine(rve, &tight));
   PetscCall(Try(rve, &tight, PETSC_TRUE, out));
   if (!IsStable(out)) PetscFunctionReturn(0);
   PetscCall(Save(rve, &tight, at));
-  while (added > 0.0 && rve->work.iterations < LAM_ITERATION_BUDGET) {
-    const PetscReal next = added * factor < LOOSE * TIGHT ? 0.0 : added * factor;
+  PetscCall(ComeDown(rve, load, at, out));
+  PetscFunctionReturn(0);
+}
 
-    tight.cohesion = load->cohesion + next;
-    PetscCall(StartNear(rve, at, &tight));
-    PetscCall(Try(rve, &tight, PETSC_FALSE, out));
-    if (IsStable(out)) {
-      PetscCall(Save(rve, &tight, at));
-      added = next;
-    } else {
-      if (next == 0.0 && factor > 0.0) factor = 0.5 * (1.0 + factor);
-      factor = PetscSqrtReal(factor);
-      if (factor > 0.95) break;
-    }
-  }
+/* Tight contact from the undeformed (turned) tissue to the asked F in substeps, then let loose. */
+static PetscErrorCode WalkThenLoose(LamRVE rve, const LamLoad *load, Solution *at, Outcome *out)
+{
+  const PetscReal angle = LamRotationAngle(load->F), c = PetscCosReal(angle), s = PetscSinReal(angle);
+  LamLoad tight = *load, start;
+
+  PetscFunctionBeginUser;
+  tight.cohesion = load->cohesion + TIGHT;
+  start = tight;
+  start.F[0] = start.F[4] = c;
+  start.F[1] = -s;
+  start.F[3] = s;
+  PetscCall(StartAffine(rve, &start));
+  PetscCall(Try(rve, &start, PETSC_TRUE, out));
+  if (!IsStable(out)) PetscFunctionReturn(0);
+  PetscCall(Save(rve, &start, at));
+  PetscCall(Substeps(rve, at, &tight, out));
+  if (!IsStable(out)) PetscFunctionReturn(0);
+  PetscCall(ComeDown(rve, load, at, out));
   PetscFunctionReturn(0);
 }
 
@@ -284,7 +314,8 @@ static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state,
   PetscCall(Try(rve, load, PETSC_TRUE, out));
   if (IsStable(out)) PetscFunctionReturn(0);
   PetscCall(SolutionCreate(rve, &at));
-  PetscCall(ComeDown(rve, load, has_bonded, &at, out));
+  PetscCall(TightThenLoose(rve, load, has_bonded, &at, out));
+  if (!IsStable(out)) PetscCall(WalkThenLoose(rve, load, &at, out));
   PetscCall(SolutionDestroy(&at));
   if (IsStable(out) || !state->solved) PetscFunctionReturn(0);
   PetscCall(Substeps(rve, before, load, out));
