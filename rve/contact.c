@@ -47,8 +47,9 @@ PetscErrorCode LamContactCreate(const LamMicrostructure *micro, const LamMesh *m
                          contact->face_count * contact->chain, &contact->classes, along, &contact->J0));
   PetscCall(PetscCalloc4(contact->count, &contact->lambda, contact->count, &contact->gap, contact->count,
                          &contact->weight, contact->count, &contact->active));
-  PetscCall(PetscCalloc2(contact->count * contact->dofs, &contact->rows,
-                         contact->face_count * contact->dofs * contact->dofs, &contact->hessian));
+  PetscCall(PetscCalloc3(contact->count * contact->dofs, &contact->rows,
+                         contact->face_count * contact->dofs * contact->dofs, &contact->hessian, 2 * mesh->class_count,
+                         &contact->held));
   for (PetscInt e = 0; e < along; ++e) contact->J0[e] = 2.0 / PetscSqrtReal(3.0) / (PetscReal)along;
   for (PetscInt f = 0; f < contact->face_count; ++f) {
     LamContactFace *face = &contact->faces[f];
@@ -89,7 +90,7 @@ PetscErrorCode LamContactDestroy(LamContact **contact)
   PetscCall(LamMortarResultDestroy(&(*contact)->result));
   PetscCall(PetscFree4((*contact)->faces, (*contact)->nodes, (*contact)->classes, (*contact)->J0));
   PetscCall(PetscFree4((*contact)->lambda, (*contact)->gap, (*contact)->weight, (*contact)->active));
-  PetscCall(PetscFree2((*contact)->rows, (*contact)->hessian));
+  PetscCall(PetscFree3((*contact)->rows, (*contact)->hessian, (*contact)->held));
   PetscCall(PetscFree4((*contact)->position, (*contact)->coupling, (*contact)->diagonal, (*contact)->unknown));
   PetscCall(PetscFree(*contact));
   PetscFunctionReturn(0);
@@ -266,7 +267,7 @@ void LamContactAddForce(LamRVE rve, PetscReal residual[])
   }
 }
 
-void LamContactAddTangent(LamRVE rve, PetscReal compliance)
+void LamContactAddCurvature(LamRVE rve)
 {
   const LamContact *contact = rve->contact;
   const PetscInt dofs = contact->dofs;
@@ -280,10 +281,43 @@ void LamContactAddTangent(LamRVE rve, PetscReal compliance)
       for (PetscInt j = i; j < dofs; ++j, ++pair)
         if (position[pair] >= 0) values[position[pair]] -= hessian[i * dofs + j];
   }
+}
+
+void LamContactSetRows(LamRVE rve, PetscReal compliance)
+{
+  const LamContact *contact = rve->contact;
+  const PetscInt dofs = contact->dofs;
+  PetscReal *values = rve->linear.values;
+
   for (PetscInt h = 0; h < contact->count; ++h) {
+    const PetscInt *coupling = &contact->coupling[h * dofs];
+    const PetscReal *row = &contact->rows[h * dofs];
+
     values[contact->diagonal[h]] = contact->active[h] ? -compliance * contact->weight[h] : 1.0;
-    if (!contact->active[h]) continue;
     for (PetscInt i = 0; i < dofs; ++i)
-      if (contact->coupling[h * dofs + i] >= 0) values[contact->coupling[h * dofs + i]] -= contact->rows[h * dofs + i];
+      if (coupling[i] >= 0) values[coupling[i]] = contact->active[h] ? -row[i] : 0.0;
   }
+}
+
+PetscInt LamContactPredictActive(LamRVE rve, const PetscReal step[], const PetscReal lambda[], PetscReal compliance)
+{
+  LamContact *contact = rve->contact;
+  PetscInt changes = 0;
+
+  for (PetscInt h = 0; h < contact->count; ++h) {
+    const PetscReal *row = &contact->rows[h * contact->dofs];
+    const PetscInt *classes = &contact->classes[(h / contact->hats) * contact->chain];
+    PetscReal gap = contact->gap[h];
+    PetscBool active;
+
+    if (!Carries(contact, h)) continue;
+    for (PetscInt i = 0; i < contact->dofs; ++i) gap += row[i] * step[2 * classes[i / 2] + i % 2] / contact->weight[h];
+    gap += compliance * lambda[h];
+    active = (PetscBool)(lambda[h] - LAM_CONTACT_SCALE * gap > 0.0);
+    /* an active hat has no gap: rounding must not open it */
+    if (contact->active[h] && lambda[h] > 0.0) active = PETSC_TRUE;
+    changes += active != contact->active[h];
+    contact->active[h] = active;
+  }
+  return changes;
 }

@@ -16,13 +16,18 @@
 */
 #include "rve_impl.h"
 
-#define ITERATIONS 40
+#define ITERATIONS 40 /* from a start far from contact */
+#define NEAR_ITERATIONS 20
+#define ACTIVE_SET_SOLVES 6 /* solves with one linearisation until the active set fits the step */
+#define RUNAWAY 0.5         /* apothems: a step this large from a near start leads nowhere */
 #define FOLLOW_ITERATIONS 6 /* in which the junction status follows the iterate */
 #define FOLLOW_FAR 25       /* the same while steps are shortened */
 #define COMPLIANT_ITERATIONS 4
 #define COMPLIANCE 0.033 /* apothems / (C1 + C2), in the first iteration; falls by the same factor each time */
 #define COMPLIANCE_DECAY 0.3
-#define STEP_LIMIT 0.02 /* apothems */
+#define STEP_LIMIT 0.02      /* apothems, from a start far from contact */
+#define FAR_LIMIT 0.2        /* else */
+#define LOOSE_TOLERANCE 1e-4 /* while the interface is being released */
 
 static PetscReal LargestEntry(PetscInt n, const PetscReal v[])
 {
@@ -73,12 +78,12 @@ static PetscErrorCode SolveStep(LamRVE rve, const PetscReal residual[], PetscRea
 }
 
 /* Step length: limited, and halved until no volume turns inside out; 0: none. */
-static PetscErrorCode StepLength(LamRVE rve, const LamLoad *load, PetscReal *alpha)
+static PetscErrorCode StepLength(LamRVE rve, const LamLoad *load, PetscReal limit, PetscReal *alpha)
 {
   const PetscReal largest = LargestEntry(rve->ndof, rve->step);
 
   PetscFunctionBeginUser;
-  for (*alpha = PetscMin(1.0, STEP_LIMIT / PetscMax(largest, 1e-300)); *alpha > 1e-4; *alpha *= 0.5) {
+  for (*alpha = PetscMin(1.0, limit / PetscMax(largest, 1e-300)); *alpha > 1e-4; *alpha *= 0.5) {
     for (PetscInt i = 0; i < rve->ndof; ++i) rve->trial[i] = rve->y[i] + *alpha * rve->step[i];
     if (LamPositionsAreValid(rve, load, rve->trial)) PetscFunctionReturn(0);
   }
@@ -112,7 +117,9 @@ static PetscErrorCode Report(LamRVE rve, PetscInt it, PetscReal norm, PetscReal 
 
 PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, PetscBool compliant, LamNewtonOutcome *outcome)
 {
-  const PetscReal tolerance = LamNewtonTolerance(rve);
+  const PetscBool under_way = (PetscBool)(rve->contact->share > 0.0);
+  const PetscReal tolerance = under_way ? LOOSE_TOLERANCE : LamNewtonTolerance(rve);
+  const PetscReal gap_tolerance = under_way ? LOOSE_TOLERANCE : 1e-10;
   LamContact *contact = rve->contact;
   PetscReal shift = 0.0, *rhs, *solution, *lambda_new;
   PetscInt follow_until = FOLLOW_ITERATIONS;
@@ -122,7 +129,8 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, PetscBool compl
   *outcome = LAM_NEWTON_STALLED;
   PetscCall(
       PetscMalloc3(PetscMax(rve->ndof, rve->linear.n), &rhs, rve->linear.n, &solution, contact->count, &lambda_new));
-  for (PetscInt it = 0; it <= ITERATIONS && rve->work.iterations < LAM_ITERATION_BUDGET; ++it) {
+  for (PetscInt it = 0; it <= (compliant ? ITERATIONS : NEAR_ITERATIONS) && rve->work.iterations < LAM_ITERATION_BUDGET;
+       ++it) {
     const PetscReal compliance =
         compliant && it < COMPLIANT_ITERATIONS ? COMPLIANCE * PetscPowReal(COMPLIANCE_DECAY, (PetscReal)it) : 0.0;
     PetscReal energy, norm, gap, alpha;
@@ -133,11 +141,13 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, PetscBool compl
     PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
     if (!valid) break;
     changes = LamContactFindActive(contact, compliance);
+    if (contact->share > 0.0)
+      for (PetscInt i = 0; i < rve->ndof; ++i) rve->residual[i] -= contact->share * contact->held[i];
     PetscCall(PetscArraycpy(rhs, rve->residual, rve->ndof));
     LamContactAddForce(rve, rhs);
     norm = LamResidualNorm(rve, rhs);
     gap = LamContactComplementarity(contact);
-    if (compliance == 0.0 && norm <= tolerance && gap <= 1e-10) {
+    if (compliance == 0.0 && norm <= tolerance && gap <= gap_tolerance) {
       PetscBool holds;
 
       PetscCall(Report(rve, it, norm, gap, changes, 0.0, 0.0, 0.0));
@@ -148,13 +158,23 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, PetscBool compl
       follow_until = it + 2;
       continue;
     }
-    LamContactAddTangent(rve, compliance);
-    PetscCall(FactorStable(rve, &shift, &ok));
+    LamContactAddCurvature(rve);
+    for (PetscInt k = 0; k < ACTIVE_SET_SOLVES; ++k) {
+      PetscInt more;
+
+      LamContactSetRows(rve, compliance);
+      PetscCall(FactorStable(rve, &shift, &ok));
+      if (!ok) break;
+      PetscCall(SolveStep(rve, rve->residual, rhs, solution, lambda_new));
+      if (k + 1 == ACTIVE_SET_SOLVES) break;
+      more = LamContactPredictActive(rve, rve->step, lambda_new, compliance);
+      changes += more;
+      if (more == 0) break;
+    }
     if (!ok) break;
-    PetscCall(SolveStep(rve, rve->residual, rhs, solution, lambda_new));
-    PetscCall(StepLength(rve, load, &alpha));
+    PetscCall(StepLength(rve, load, compliant ? STEP_LIMIT : FAR_LIMIT, &alpha));
     PetscCall(Report(rve, it, norm, gap, changes, LargestEntry(rve->ndof, rve->step), alpha, shift));
-    if (alpha == 0.0) break;
+    if (alpha == 0.0 || (!compliant && LargestEntry(rve->ndof, rve->step) > RUNAWAY)) break;
     if (alpha < 1.0 && it < FOLLOW_FAR) follow_until = PetscMax(follow_until, it + 3);
     TakeStep(rve, load, alpha, lambda_new);
   }

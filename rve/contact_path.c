@@ -15,10 +15,11 @@
 */
 #include "rve_impl.h"
 
-#define NEAR 0.03  /* largest change of F (and of turgor and cohesion) that counts as near */
-#define TIGHT 0.5  /* cohesion that is added first, C1 + C2 */
-#define LOOSE 1e-3 /* of it: from here the rest is taken away at once */
-#define EASE 0.25  /* first factor by which it is lowered */
+#define NEAR 0.03         /* largest change of F (and of turgor and cohesion) that counts as near */
+#define TIGHT 0.5         /* cohesion that is added first, C1 + C2 */
+#define LOOSE 1e-3        /* of it: from here the rest is taken away at once */
+#define EASE 0.25         /* first factor by which it is lowered */
+#define FIRST_RELEASE 0.5 /* share of the held forces that is taken away first */
 #define MIN_SUBSTEP (1.0 / 64.0)
 #define MAX_BRANCH_SWITCHES 4
 #define KICK 0.01 /* apothems: start along an unstable mode */
@@ -138,7 +139,7 @@ static PetscErrorCode FitMultipliers(LamRVE rve, const LamLoad *load, PetscBool 
   PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
   for (PetscInt h = 0; h < contact->count; ++h) contact->active[h] = (PetscBool)(contact->weight[h] > 0.0);
   PetscCall(PetscArrayzero(rve->linear.values, rve->linear.nonzeros));
-  LamContactAddTangent(rve, 0.0);
+  LamContactSetRows(rve, 0.0);
   PetscCall(LamLinearFactor(&rve->linear, 1.0, &negative, ok));
   ++rve->work.factorisations;
   if (!*ok) PetscFunctionReturn(0);
@@ -165,11 +166,64 @@ static PetscErrorCode SolveBonded(LamRVE rve, const LamLoad *load, LamRVEState b
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode StartReleased(LamRVE rve, const LamLoad *load, PetscBool *ok)
+/* From a solution, moved affinely to the new load. */
+static PetscErrorCode StartNear(LamRVE rve, const Solution *from, const LamLoad *load)
 {
+  PetscFunctionBeginUser;
+  LamMoveAffinely(rve, from->y, &from->load, load);
+  PetscCall(PetscArraycpy(rve->contact->lambda, from->lambda, rve->contact->count));
+  PetscFunctionReturn(0);
+}
+
+/* rve->y: the bonded solution; contact->held: what bonding carries and the fitted multipliers do not. */
+static PetscErrorCode StartBonded(LamRVE rve, const LamLoad *load, PetscBool *ok)
+{
+  PetscReal energy;
+  PetscBool valid;
+
   PetscFunctionBeginUser;
   TakeBondedPositions(rve, load);
   PetscCall(FitMultipliers(rve, load, ok));
+  PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->contact->held, &valid));
+  LamContactAddForce(rve, rve->contact->held);
+  PetscFunctionReturn(0);
+}
+
+/*
+  Step two of two: releases the interface. The forces that bonding carried and contact does not are taken away in
+  shares, so that every Newton iteration starts near its solution and takes full steps.
+*/
+static PetscErrorCode Release(LamRVE rve, const LamLoad *load, Solution *at, Outcome *out)
+{
+  PetscReal share = 1.0, step = FIRST_RELEASE;
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  *out = (Outcome){0};
+  PetscCall(StartBonded(rve, load, &ok));
+  if (!ok) PetscFunctionReturn(0);
+  PetscCall(Save(rve, load, at));
+  while (share > 0.0 && rve->work.iterations < LAM_ITERATION_BUDGET) {
+    LamNewtonOutcome outcome;
+
+    rve->contact->share = PetscMax(0.0, share - step);
+    if (rve->contact->share == 0.0) {
+      PetscCall(Try(rve, load, PETSC_FALSE, out));
+      outcome = IsStable(out) ? LAM_NEWTON_CONVERGED : LAM_NEWTON_STALLED;
+    } else {
+      PetscCall(LamContactNewton(rve, load, PETSC_FALSE, &outcome));
+    }
+    if (outcome == LAM_NEWTON_CONVERGED) {
+      share = rve->contact->share;
+      PetscCall(Save(rve, load, at));
+      step *= 2.0;
+    } else {
+      step *= 0.5;
+      if (step < MIN_SUBSTEP) break;
+      PetscCall(StartNear(rve, at, load));
+    }
+  }
+  rve->contact->share = 0.0;
   PetscFunctionReturn(0);
 }
 
@@ -185,15 +239,6 @@ static PetscErrorCode StartAffine(LamRVE rve, const LamLoad *load)
   PetscCall(PetscArrayzero(rve->stress, rve->mesh.element_count));
   for (PetscInt h = 0; h < rve->contact->count; ++h)
     rve->contact->lambda[h] = PetscMax(0.0, load->turgor + load->cohesion);
-  PetscFunctionReturn(0);
-}
-
-/* From a solution, moved affinely to the new load. */
-static PetscErrorCode StartNear(LamRVE rve, const Solution *from, const LamLoad *load)
-{
-  PetscFunctionBeginUser;
-  LamMoveAffinely(rve, from->y, &from->load, load);
-  PetscCall(PetscArraycpy(rve->contact->lambda, from->lambda, rve->contact->count));
   PetscFunctionReturn(0);
 }
 
@@ -251,15 +296,17 @@ static PetscErrorCode ComeDown(LamRVE rve, const LamLoad *load, Solution *at, Ou
 static PetscErrorCode TightThenLoose(LamRVE rve, const LamLoad *load, PetscBool has_bonded, Solution *at, Outcome *out)
 {
   LamLoad tight = *load;
-  PetscBool ok = PETSC_TRUE;
 
   PetscFunctionBeginUser;
   tight.cohesion = load->cohesion + TIGHT;
-  if (has_bonded) PetscCall(StartReleased(rve, &tight, &ok));
-  if (!has_bonded || !ok) PetscCall(StartAffine(rve, &tight));
-  PetscCall(Try(rve, &tight, PETSC_TRUE, out));
+  if (has_bonded) {
+    PetscCall(Release(rve, &tight, at, out));
+  } else {
+    PetscCall(StartAffine(rve, &tight));
+    PetscCall(Try(rve, &tight, PETSC_TRUE, out));
+    PetscCall(Save(rve, &tight, at));
+  }
   if (!IsStable(out)) PetscFunctionReturn(0);
-  PetscCall(Save(rve, &tight, at));
   PetscCall(ComeDown(rve, load, at, out));
   PetscFunctionReturn(0);
 }
@@ -294,10 +341,10 @@ static PetscReal LoadDistance(const LamLoad *a, const LamLoad *b)
   return largest;
 }
 
-static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state, Solution *before, Outcome *out)
+static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state, Solution *before, Solution *at,
+                             Outcome *out)
 {
-  Solution at;
-  PetscBool ok, has_bonded = PETSC_FALSE;
+  PetscBool has_bonded = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   *out = (Outcome){0};
@@ -306,35 +353,34 @@ static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state,
     PetscCall(Try(rve, load, PETSC_FALSE, out));
     if (IsStable(out)) PetscFunctionReturn(0);
   }
-  if (rve->strategy == LAM_TWO_STEP) {
-    PetscCall(SolveBonded(rve, load, state->bonded, &has_bonded));
-    if (has_bonded) PetscCall(StartReleased(rve, load, &ok));
+  if (rve->strategy == LAM_TWO_STEP) PetscCall(SolveBonded(rve, load, state->bonded, &has_bonded));
+  if (has_bonded) {
+    PetscCall(Release(rve, load, at, out));
+  } else {
+    PetscCall(StartAffine(rve, load));
+    PetscCall(Try(rve, load, PETSC_TRUE, out));
   }
-  if (!has_bonded || !ok) PetscCall(StartAffine(rve, load));
-  PetscCall(Try(rve, load, PETSC_TRUE, out));
-  if (IsStable(out)) PetscFunctionReturn(0);
-  PetscCall(SolutionCreate(rve, &at));
-  PetscCall(TightThenLoose(rve, load, has_bonded, &at, out));
-  if (!IsStable(out)) PetscCall(WalkThenLoose(rve, load, &at, out));
-  PetscCall(SolutionDestroy(&at));
-  if (IsStable(out) || !state->solved) PetscFunctionReturn(0);
-  PetscCall(Substeps(rve, before, load, out));
+  if (!IsStable(out)) PetscCall(TightThenLoose(rve, load, has_bonded, at, out));
+  if (!IsStable(out)) PetscCall(WalkThenLoose(rve, load, at, out));
+  if (!IsStable(out) && state->solved) PetscCall(Substeps(rve, before, load, out));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
 {
-  Solution before;
+  Solution before, at;
   Outcome out;
 
   PetscFunctionBeginUser;
   PetscCall(SolutionCreate(rve, &before));
+  PetscCall(SolutionCreate(rve, &at));
   before.load = state->load;
   PetscCall(PetscArraycpy(before.y, state->y, rve->ndof));
   PetscCall(PetscArraycpy(before.lambda, state->lambda, rve->contact->count));
   LamRotatePositions(rve->ndof, before.y, before.load.F, LamRotationAngle(load->F) - LamRotationAngle(before.load.F));
-  PetscCall(TryAll(rve, load, state, &before, &out));
+  PetscCall(TryAll(rve, load, state, &before, &at, &out));
   PetscCall(SolutionDestroy(&before));
+  PetscCall(SolutionDestroy(&at));
   response->branch = state->branch + out.branch;
   response->negative_eigenvalues = PetscMax(0, out.negative);
   response->status = out.converged ? (out.negative > 0 ? LAM_UNSTABLE : LAM_CONVERGED) : LAM_NOT_CONVERGED;

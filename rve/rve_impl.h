@@ -125,9 +125,13 @@ PetscInt LamContactCountActive(const LamContact *contact);
 PetscReal LamContactComplementarity(const LamContact *contact);
 /* residual [ndof] += -B^T lambda. */
 void LamContactAddForce(LamRVE rve, PetscReal residual[]);
-/* Adds to linear.values the second derivative of -sum lambda G, the rows of active hats, -compliance D on their
-   diagonal, 1 on the others'. */
-void LamContactAddTangent(LamRVE rve, PetscReal compliance);
+/* The active set that positions after `step` [ndof] and multipliers lambda would have, by the present linearisation.
+   Returns the number of changes. */
+PetscInt LamContactPredictActive(LamRVE rve, const PetscReal step[], const PetscReal lambda[], PetscReal compliance);
+/* Adds the second derivative of -sum lambda G to linear.values. */
+void LamContactAddCurvature(LamRVE rve);
+/* Sets the rows of the multipliers in linear.values: -dG and -compliance D for active hats, 0 and 1 for the others. */
+void LamContactSetRows(LamRVE rve, PetscReal compliance);
 
 /* ---- linear.c ---- */
 /* couplings: NULL for none. */

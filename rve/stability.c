@@ -25,7 +25,8 @@ PetscErrorCode LamFactorConsistent(LamRVE rve, const LamLoad *load, PetscInt *ne
   PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
   if (rve->contact) {
     PetscCall(LamContactEvaluate(rve, load, rve->y, PETSC_FALSE));
-    LamContactAddTangent(rve, 0.0);
+    LamContactAddCurvature(rve);
+    LamContactSetRows(rve, 0.0);
   }
   PetscCall(LamLinearFactor(&rve->linear, 0.0, negative, ok));
   *negative -= LamActiveMultipliers(rve);
