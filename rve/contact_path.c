@@ -15,11 +15,12 @@
 */
 #include "rve_impl.h"
 
-#define NEAR 0.03         /* largest change of F (and of turgor and cohesion) that counts as near */
-#define TIGHT 0.5         /* cohesion that is added first, C1 + C2 */
-#define LOOSE 1e-3        /* of it: from here the rest is taken away at once */
-#define EASE 0.25         /* first factor by which it is lowered */
-#define FIRST_RELEASE 0.5 /* share of the held forces that is taken away first */
+#define NEAR 0.03           /* largest change of F (and of turgor and cohesion) that counts as near */
+#define TIGHT 0.5           /* cohesion that is added first, C1 + C2 */
+#define LOOSE 1e-3          /* of it: from here the rest is taken away at once */
+#define EASE 0.25           /* first factor by which it is lowered */
+#define FIRST_RELEASE 0.5   /* share of the held forces that is taken away first */
+#define LEAST_RELEASE 0.125 /* smaller shares: descent takes over */
 #define MIN_SUBSTEP (1.0 / 64.0)
 #define MAX_BRANCH_SWITCHES 4
 #define KICK 0.01 /* apothems: start along an unstable mode */
@@ -219,11 +220,18 @@ static PetscErrorCode Release(LamRVE rve, const LamLoad *load, Solution *at, Out
       step *= 2.0;
     } else {
       step *= 0.5;
-      if (step < MIN_SUBSTEP) break;
       PetscCall(StartNear(rve, at, load));
+      if (step < LEAST_RELEASE) break;
     }
   }
   rve->contact->share = 0.0;
+  if (share > 0.0) {
+    LamNewtonOutcome outcome;
+
+    PetscCall(LamContactNewtonSafe(rve, load, &outcome));
+    out->converged = (PetscBool)(outcome == LAM_NEWTON_CONVERGED);
+    if (out->converged) PetscCall(LeaveSaddle(rve, load, out));
+  }
   PetscFunctionReturn(0);
 }
 

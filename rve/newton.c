@@ -48,14 +48,6 @@ static PetscErrorCode Report(LamRVE rve, const char tier[], PetscInt iteration, 
   PetscFunctionReturn(0);
 }
 
-static PetscReal LargestEntry(PetscInt n, const PetscReal v[])
-{
-  PetscReal largest = 0.0;
-
-  for (PetscInt i = 0; i < n; ++i) largest = PetscMax(largest, PetscAbsReal(v[i]));
-  return largest;
-}
-
 /* step := -K^-1 residual with the present factor; the held class does not move. */
 static PetscErrorCode SolveStep(LamRVE rve)
 {
@@ -99,7 +91,7 @@ static PetscErrorCode FactorPositive(LamRVE rve, PetscReal *last_shift, PetscBoo
 */
 static PetscBool AtRounding(LamRVE rve, PetscReal norm, PetscReal tolerance, PetscReal largest)
 {
-  const PetscReal extent = PetscMax(1.0, LargestEntry(rve->ndof, rve->y));
+  const PetscReal extent = PetscMax(1.0, LamLargestEntry(rve->ndof, rve->y));
 
   return (PetscBool)(largest <= 500.0 * PETSC_MACHINE_EPSILON * extent && norm <= 1e3 * tolerance);
 }
@@ -144,7 +136,7 @@ PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamNewtonOutcome *
     PetscCall(FactorPositive(rve, &shift, &ok));
     if (!ok) break;
     PetscCall(SolveStep(rve));
-    largest = LargestEntry(rve->ndof, rve->step);
+    largest = LamLargestEntry(rve->ndof, rve->step);
     PetscCall(Report(rve, "fast", it, norm, largest, shift));
     if (AtRounding(rve, norm, tolerance, largest)) {
       *outcome = LAM_NEWTON_CONVERGED;
@@ -229,7 +221,7 @@ static PetscErrorCode AddNegativeCurvature(LamRVE rve, Descent *descent)
     slope += descent->mode[i] * rve->residual[i + 2];
   }
   if (curvature >= 0.0) PetscFunctionReturn(0);
-  largest = LargestEntry(n, descent->mode);
+  largest = LamLargestEntry(n, descent->mode);
   sign = slope > LamNewtonTolerance(rve) ? -1.0 : 1.0; /* the mode has a sign of its own where the slope has none */
   for (PetscInt i = 0; i < n; ++i) rve->step[i + 2] += sign * ESCAPE_STEP / largest * descent->mode[i];
   ++rve->work.escapes;
@@ -248,9 +240,9 @@ static PetscErrorCode SafeStep(LamRVE rve, const LamLoad *load, PetscInt it, Pet
   PetscCall(FactorPositive(rve, &descent->shift, &ok));
   if (!ok) PetscFunctionReturn(0);
   PetscCall(SolveStep(rve));
-  if (descent->shift > 0.0 && LargestEntry(rve->ndof, rve->step) < 0.5 * ESCAPE_STEP)
+  if (descent->shift > 0.0 && LamLargestEntry(rve->ndof, rve->step) < 0.5 * ESCAPE_STEP)
     PetscCall(AddNegativeCurvature(rve, descent));
-  largest = LargestEntry(rve->ndof, rve->step);
+  largest = LamLargestEntry(rve->ndof, rve->step);
   PetscCall(Report(rve, "safe", it, norm, largest, descent->shift));
   *alpha = largest > STEP_LIMIT ? STEP_LIMIT / largest : 1.0;
   if (descent->monotone) {
@@ -293,7 +285,7 @@ PetscErrorCode LamNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *
     PetscCall(Watch(rve, load, energy, valid, &descent, &moved));
     if (moved) continue;
     PetscCall(SafeStep(rve, load, it, energy, norm, &descent, &alpha));
-    if (AtRounding(rve, norm, tolerance, LargestEntry(rve->ndof, rve->step))) {
+    if (AtRounding(rve, norm, tolerance, LamLargestEntry(rve->ndof, rve->step))) {
       *outcome = LAM_NEWTON_CONVERGED;
       break;
     }

@@ -80,6 +80,14 @@ struct LamRVE_s {
   PetscReal lowest_eigenvalue;            /* of the last unstable state met */
 };
 
+static inline PetscReal LamLargestEntry(PetscInt n, const PetscReal v[])
+{
+  PetscReal largest = 0.0;
+
+  for (PetscInt i = 0; i < n; ++i) largest = PetscMax(largest, PetscAbsReal(v[i]));
+  return largest;
+}
+
 /* ---- assembly.c ---- */
 PetscErrorCode LamGeometryCreate(LamRVE rve);
 /* Positions of an element's nodes: x_a = y_class + F S. */
@@ -184,10 +192,30 @@ LamLoad LamLoadBetween(const LamLoad *a, const LamLoad *b, PetscReal t);
 PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, PetscInt *branch, PetscInt *negative,
                              LamStatus *status, char reason[], size_t length);
 
-/* ---- contact_newton.c, contact_path.c ---- */
+/* ---- contact_step.c ---- */
 #define LAM_CONTACT_PROXIMAL 1e-8 /* shift of every contact matrix: a cell that nothing holds must not be singular */
-/* compliant: the start may be far from contact. */
+#define LAM_GAP_TOLERANCE 1e-10   /* of max |min(lambda, c gap)| */
+typedef struct {
+  PetscReal *rhs, *solution, *image; /* work space */
+  PetscReal *lambda;                 /* [multipliers] after the step */
+  PetscReal shift;                   /* of the last factor */
+} LamContactStep;
+PetscErrorCode LamContactStepCreate(LamRVE rve, LamContactStep *step);
+PetscErrorCode LamContactStepDestroy(LamContactStep *step);
+/* After LamAssemble: takes the held forces off rve->residual; norm: of the residual with contact forces. */
+void LamContactResidual(LamRVE rve, LamContactStep *step, PetscReal *norm);
+/* rve->step and step->lambda from the assembled state, whose tangent it completes; norm: of its residual. *ok is
+   PETSC_FALSE where no shift helps. */
+PetscErrorCode LamContactSolveStep(LamRVE rve, PetscReal norm, PetscReal compliance, LamContactStep *step,
+                                   PetscBool *ok);
+/* Moves positions, wall stresses and multipliers by alpha. */
+void LamContactTakeStep(LamRVE rve, const LamLoad *load, PetscReal alpha, const LamContactStep *step);
+
+/* ---- contact_newton.c, contact_safe.c, contact_path.c ---- */
+/* From rve->y, contact->lambda and the independent stresses to equilibrium at `load`. compliant: the start may be far
+   from contact. Fast: full steps. Safe: descent on the energy, from consistent stresses. */
 PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, PetscBool compliant, LamNewtonOutcome *outcome);
+PetscErrorCode LamContactNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome);
 /* As LamFollowPath; the solution is in rve->y and contact->lambda. */
 PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
 

@@ -1,0 +1,164 @@
+/*
+  Contact equilibrium by descent, for starts from which the fast iteration does not come home.
+
+  Method. Sequential quadratic programming on the energy Pi of walls, turgor and cohesion under G >= 0: each step solves
+  the fast iteration's linear system with the active set that fits the step and a matrix made positive definite on the
+  free motions, so it points downhill for the merit
+      phi = Pi - share held.x + mu sum_A D_A max(0, -gap_A),      mu > largest multiplier.
+  Steps are limited in length; a watchdog allows a few steps without decrease (a large step first violates the stiff
+  walls and is then restored) before it goes back to the best point and searches along the line. Small steps of an
+  indefinite matrix get a piece of the unstable mode, so saddles are left.
+
+  References. Nocedal & Wright, Numerical Optimization, chapters 15 and 18; Chamberlain et al., Math. Prog. Study 16
+  (1982) 1 (watchdog).
+*/
+#include "rve_impl.h"
+
+#define SAFE_ITERATIONS 150
+#define FOLLOW_ITERATIONS 40
+#define WATCHDOG 4
+#define STEP_LIMIT 0.05
+#define ARMIJO 1e-4
+
+typedef struct {
+  PetscReal energy, violation; /* of the merit: Pi - share held.x, and sum D max(0, -gap) */
+} Merit;
+
+typedef struct {
+  PetscReal *y, *lambda; /* the best point so far */
+  Merit merit;
+  PetscReal mu;
+  PetscInt without_decrease;
+  PetscBool monotone, known;
+} Best;
+
+static PetscReal Value(Merit merit, PetscReal mu)
+{
+  return merit.energy + mu * merit.violation;
+}
+
+/* Merit at the evaluated contact of positions y. */
+static Merit MeritOf(LamRVE rve, PetscReal energy, const PetscReal y[])
+{
+  const LamContact *contact = rve->contact;
+  Merit merit = {energy, 0.0};
+
+  if (contact->share > 0.0)
+    for (PetscInt i = 0; i < rve->ndof; ++i) merit.energy -= contact->share * contact->held[i] * y[i];
+  for (PetscInt h = 0; h < contact->count; ++h) merit.violation += contact->weight[h] * PetscMax(0.0, -contact->gap[h]);
+  return merit;
+}
+
+/* Halves the step until the merit falls enough; *alpha = 0 where it does not. Ends with contact evaluated at rve->y. */
+static PetscErrorCode LineSearch(LamRVE rve, const LamLoad *load, Merit now, PetscReal mu, PetscReal slope,
+                                 PetscReal rounding, PetscReal *alpha)
+{
+  PetscFunctionBeginUser;
+  for (; *alpha > 1e-5; *alpha *= 0.5) {
+    PetscReal energy;
+    PetscBool valid;
+
+    for (PetscInt i = 0; i < rve->ndof; ++i) rve->trial[i] = rve->y[i] + *alpha * rve->step[i];
+    PetscCall(LamAssembleEnergy(rve, load, rve->trial, &energy, &valid));
+    if (!valid) continue;
+    PetscCall(LamContactEvaluate(rve, load, rve->trial, PETSC_FALSE));
+    if (Value(MeritOf(rve, energy, rve->trial), mu) <=
+        Value(now, mu) + ARMIJO * *alpha * PetscMin(0.0, slope) + rounding)
+      PetscFunctionReturn(0);
+  }
+  *alpha = 0.0;
+  PetscFunctionReturn(0);
+}
+
+/* Keeps the point of least merit; goes back to it after too many steps without decrease. */
+static PetscErrorCode Watch(LamRVE rve, const LamLoad *load, Merit now, PetscBool valid, PetscReal rounding, Best *best,
+                            PetscBool *moved)
+{
+  PetscFunctionBeginUser;
+  *moved = PETSC_FALSE;
+  if (valid && (!best->known || Value(now, best->mu) < Value(best->merit, best->mu))) {
+    PetscCall(PetscArraycpy(best->y, rve->y, rve->ndof));
+    PetscCall(PetscArraycpy(best->lambda, rve->contact->lambda, rve->contact->count));
+    best->merit = now;
+    best->known = PETSC_TRUE;
+    best->without_decrease = 0;
+    PetscFunctionReturn(0);
+  }
+  if (valid && Value(now, best->mu) <= Value(best->merit, best->mu) + rounding) PetscFunctionReturn(0);
+  if (valid && ++best->without_decrease <= WATCHDOG) PetscFunctionReturn(0);
+  PetscCall(PetscArraycpy(rve->y, best->y, rve->ndof));
+  PetscCall(PetscArraycpy(rve->contact->lambda, best->lambda, rve->contact->count));
+  (void)LamSetConsistentStresses(rve, load, rve->y);
+  best->without_decrease = 0;
+  best->monotone = PETSC_TRUE;
+  *moved = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SafeStep(LamRVE rve, const LamLoad *load, PetscReal norm, Merit now, PetscReal rounding,
+                               LamContactStep *step, Best *best, PetscReal *alpha)
+{
+  PetscReal slope = 0.0, largest;
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  *alpha = 0.0;
+  PetscCall(LamContactSolveStep(rve, norm, 0.0, step, &ok));
+  if (!ok) PetscFunctionReturn(0);
+  for (PetscInt h = 0; h < rve->contact->count; ++h) best->mu = PetscMax(best->mu, 1.5 * step->lambda[h]);
+  largest = LamLargestEntry(rve->ndof, rve->step);
+  *alpha = PetscMin(1.0, STEP_LIMIT / PetscMax(largest, 1e-300));
+  if (best->monotone) {
+    for (PetscInt i = 2; i < rve->ndof; ++i) slope += rve->residual[i] * rve->step[i];
+    PetscCall(LineSearch(rve, load, now, best->mu, slope - best->mu * now.violation, rounding, alpha));
+    best->monotone = PETSC_FALSE;
+  }
+  if (rve->monitor)
+    PetscCall(
+        PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR,
+                     "  safe  residual %9.3e  energy %.10e  violation %9.3e  active %d  step %9.3e x %g  shift %g\n",
+                     (double)norm, (double)now.energy, (double)now.violation, (int)LamContactCountActive(rve->contact),
+                     (double)largest, (double)*alpha, (double)step->shift));
+  LamContactTakeStep(rve, load, *alpha, step);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamContactNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome)
+{
+  const PetscReal tolerance = LamNewtonTolerance(rve);
+  const PetscReal rounding = 1e-14 * rve->micro.wall.bulk_modulus * rve->mesh.V0;
+  LamContact *contact = rve->contact;
+  LamContactStep step;
+  Best best = {.mu = 0.1};
+
+  PetscFunctionBeginUser;
+  *outcome = LAM_NEWTON_STALLED;
+  if (!LamSetConsistentStresses(rve, load, rve->y)) PetscFunctionReturn(0);
+  PetscCall(LamContactStepCreate(rve, &step));
+  PetscCall(PetscMalloc2(rve->ndof, &best.y, contact->count, &best.lambda));
+  for (PetscInt it = 0; it < SAFE_ITERATIONS && rve->work.iterations < LAM_ITERATION_BUDGET; ++it) {
+    PetscReal energy, norm = PETSC_INFINITY, alpha;
+    PetscBool valid, moved;
+    Merit now = {0};
+
+    PetscCall(LamContactEvaluate(rve, load, rve->y, (PetscBool)(it < FOLLOW_ITERATIONS)));
+    PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
+    if (valid) {
+      LamContactResidual(rve, &step, &norm);
+      (void)LamContactFindActive(contact, 0.0);
+      if (norm <= tolerance && LamContactComplementarity(contact) <= LAM_GAP_TOLERANCE) {
+        *outcome = LAM_NEWTON_CONVERGED;
+        break;
+      }
+      PetscCall(LamAssembleEnergy(rve, load, rve->y, &energy, &valid));
+      now = MeritOf(rve, energy, rve->y);
+    }
+    PetscCall(Watch(rve, load, now, valid, rounding, &best, &moved));
+    if (moved) continue;
+    PetscCall(SafeStep(rve, load, norm, now, rounding, &step, &best, &alpha));
+    if (alpha == 0.0) break;
+  }
+  PetscCall(PetscFree2(best.y, best.lambda));
+  PetscCall(LamContactStepDestroy(&step));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,137 @@
+/*
+  One step of an active-set iteration: residual, linear system, active set, escape from a saddle.
+
+  Method. With one linearisation of the gaps the active set is found that fits the step: hats whose multiplier would
+  pull are let go, hats whose gap would close beyond zero are taken in, and the system is solved again. The matrix gets
+  the smallest shift tried that leaves as many negative eigenvalues as active hats, and always a minute one, so that a
+  cell that nothing holds is not singular.
+*/
+#include "rve_impl.h"
+
+#define ACTIVE_SET_SOLVES 6  /* solves with one linearisation until the active set fits the step */
+#define SADDLE_RESIDUAL 1e-3 /* of an indefinite state below which Newton would only creep along a saddle */
+#define ESCAPE_STEP 0.01     /* along a direction of negative curvature, in apothems */
+
+PetscErrorCode LamContactStepCreate(LamRVE rve, LamContactStep *step)
+{
+  const PetscInt n = rve->linear.n;
+
+  PetscFunctionBeginUser;
+  step->shift = 0.0;
+  PetscCall(PetscMalloc4(n + 2, &step->rhs, n, &step->solution, rve->contact->count, &step->lambda, n, &step->image));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamContactStepDestroy(LamContactStep *step)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree4(step->rhs, step->solution, step->lambda, step->image));
+  PetscFunctionReturn(0);
+}
+
+void LamContactResidual(LamRVE rve, LamContactStep *step, PetscReal *norm)
+{
+  const LamContact *contact = rve->contact;
+
+  if (contact->share > 0.0)
+    for (PetscInt i = 0; i < rve->ndof; ++i) rve->residual[i] -= contact->share * contact->held[i];
+  for (PetscInt i = 0; i < rve->ndof; ++i) step->rhs[i] = rve->residual[i];
+  LamContactAddForce(rve, step->rhs);
+  *norm = LamResidualNorm(rve, step->rhs);
+}
+
+/* Factors with the smallest tried shift that leaves as many negative eigenvalues as active hats. */
+static PetscErrorCode FactorStable(LamRVE rve, PetscReal *last_shift, PetscBool *ok)
+{
+  const PetscInt active = LamContactCountActive(rve->contact);
+  PetscReal diagonal = 0.0, shift = LAM_CONTACT_PROXIMAL;
+  PetscInt negative;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < rve->linear.positions; ++i)
+    diagonal = PetscMax(diagonal, PetscAbsReal(rve->linear.values[rve->linear.row[i]]));
+  for (PetscInt attempt = 0; attempt < 40; ++attempt) {
+    PetscCall(LamLinearFactor(&rve->linear, shift, &negative, ok));
+    ++rve->work.factorisations;
+    if (*ok && negative <= active) break;
+    *ok = PETSC_FALSE;
+    if (shift > diagonal) break;
+    shift = attempt == 0 ? PetscMax(*last_shift / 8.0, 1e-7 * diagonal) : 4.0 * shift;
+  }
+  *last_shift = shift;
+  PetscFunctionReturn(0);
+}
+
+/* rve->step and the new multipliers with the present factor. */
+static PetscErrorCode Solve(LamRVE rve, LamContactStep *step)
+{
+  const LamContact *contact = rve->contact;
+  const PetscInt positions = rve->linear.positions;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < positions; ++i) step->rhs[i] = -rve->residual[i + 2];
+  for (PetscInt h = 0; h < contact->count; ++h)
+    step->rhs[positions + h] = contact->active[h] ? contact->gap[h] * contact->weight[h] : 0.0;
+  PetscCall(LamLinearSolve(&rve->linear, 1, step->rhs, step->solution));
+  rve->step[0] = rve->step[1] = 0.0;
+  PetscCall(PetscArraycpy(rve->step + 2, step->solution, positions));
+  for (PetscInt h = 0; h < contact->count; ++h)
+    step->lambda[h] = contact->active[h] ? step->solution[positions + h] : 0.0;
+  PetscFunctionReturn(0);
+}
+
+/*
+  Near a saddle the residual has next to nothing of the unstable mode, and shifted Newton steps creep. Adds to a small
+  step a piece of that mode, downhill, or along the mode's own sign where it is level. residual: with contact forces.
+*/
+static PetscErrorCode AddNegativeCurvature(LamRVE rve, const PetscReal residual[], PetscReal mode[], PetscReal image[])
+{
+  const PetscInt positions = rve->linear.positions;
+  PetscReal curvature = 0.0, slope = 0.0, largest, sign;
+
+  PetscFunctionBeginUser;
+  LamStartMode(rve, mode);
+  PetscCall(LamImproveSoftestMode(rve, 6, mode));
+  LamLinearMultiply(&rve->linear, mode, image);
+  for (PetscInt i = 0; i < positions; ++i) {
+    curvature += mode[i] * image[i];
+    slope += mode[i] * residual[i + 2];
+  }
+  if (curvature >= 0.0) PetscFunctionReturn(0);
+  largest = LamLargestEntry(positions, mode);
+  sign = slope > LamNewtonTolerance(rve) ? -1.0 : 1.0;
+  for (PetscInt i = 0; i < positions; ++i) rve->step[i + 2] += sign * ESCAPE_STEP / largest * mode[i];
+  ++rve->work.escapes;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamContactSolveStep(LamRVE rve, PetscReal norm, PetscReal compliance, LamContactStep *step,
+                                   PetscBool *ok)
+{
+  PetscFunctionBeginUser;
+  LamContactAddCurvature(rve);
+  for (PetscInt k = 0; k < ACTIVE_SET_SOLVES; ++k) {
+    LamContactSetRows(rve, compliance);
+    PetscCall(FactorStable(rve, &step->shift, ok));
+    if (!*ok) PetscFunctionReturn(0);
+    PetscCall(Solve(rve, step));
+    if (k + 1 == ACTIVE_SET_SOLVES || LamContactPredictActive(rve, rve->step, step->lambda, compliance) == 0) break;
+  }
+  if (step->shift > LAM_CONTACT_PROXIMAL && LamLargestEntry(rve->ndof, rve->step) < 0.5 * ESCAPE_STEP &&
+      norm < SADDLE_RESIDUAL) {
+    PetscCall(PetscArraycpy(step->rhs, rve->residual, rve->ndof));
+    LamContactAddForce(rve, step->rhs);
+    PetscCall(AddNegativeCurvature(rve, step->rhs, step->solution, step->image));
+  }
+  PetscFunctionReturn(0);
+}
+
+void LamContactTakeStep(LamRVE rve, const LamLoad *load, PetscReal alpha, const LamContactStep *step)
+{
+  LamContact *contact = rve->contact;
+
+  LamUpdateStresses(rve, load, rve->y, rve->step, alpha);
+  for (PetscInt i = 0; i < rve->ndof; ++i) rve->y[i] += alpha * rve->step[i];
+  for (PetscInt h = 0; h < contact->count; ++h) contact->lambda[h] += alpha * (step->lambda[h] - contact->lambda[h]);
+  ++rve->work.iterations;
+}
