@@ -16,6 +16,7 @@
 
   Reference: Wriggers, Nonlinear Finite Element Methods, ch. 5.
 */
+#include <math.h>
 #include <petsctime.h>
 #include "macro_impl.h"
 
@@ -202,7 +203,8 @@ static void MeanIndicators(LamMacro macro, PetscReal sum[4], PetscReal *max_gap)
     sum[0] += macro->weight[p];
     sum[1] += macro->weight[p] * point->debonded_fraction;
     sum[2] += macro->weight[p] * point->load.turgor;
-    if (point->max_gap > *max_gap) *max_gap = point->max_gap;
+    /* a database that does not know it at one point does not know it at all: infinite, which MPI_MAX keeps */
+    *max_gap = PetscMax(*max_gap, PetscIsInfOrNanReal(point->max_gap) ? INFINITY : point->max_gap);
   }
 }
 

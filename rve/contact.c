@@ -1,5 +1,6 @@
 #include "rve_impl.h"
 
+#define HYSTERESIS 0.2    /* of the junction status, in half-edges */
 #define LEAST_WEIGHT 1e-3 /* of a full hat: below it a hat carries nothing */
 
 /* Outer nodes of face k of a cell, counter-clockwise. */
@@ -121,20 +122,33 @@ LamMortarChains LamContactChains(LamRVE rve, const PetscReal F[9], const PetscRe
   return chains;
 }
 
-/* The hats with multipliers of their own, from the ends of the overlap in units of half-edges. */
+/* Keeps an old value while `exact`, the place that decides, is not clearly beyond the range that belongs to it. */
+static PetscInt WithHysteresis(PetscInt old, PetscReal low, PetscReal high, PetscReal exact, PetscInt fresh)
+{
+  return exact > low - HYSTERESIS && exact <= high + HYSTERESIS ? old : fresh;
+}
+
+/*
+  The hats with multipliers of their own, from the ends of the overlap in units of half-edges, u: at a moving lower end
+  ceil(u + 1/2), at a fixed one 1; likewise above. A little hysteresis keeps the status from flickering.
+*/
 static void Junction(const LamMortarSegments *segments, PetscInt hats, PetscInt *first, PetscInt *last)
 {
   const PetscInt count = segments->count;
+  PetscReal lo, hi;
+  PetscInt low, high;
 
   if (count == 0) {
     *first = hats;
     *last = -1;
     return;
   }
-  *first = segments->vertex[0] >= 0 || segments->s[0] > 0.0 ? (PetscInt)PetscCeilReal(2.0 * segments->s[0] + 0.5) : 1;
-  *last = segments->vertex[count - 1] >= 0 || segments->s[count - 1] < 0.5 * (PetscReal)(hats - 1)
-              ? (PetscInt)PetscFloorReal(2.0 * segments->s[count - 1] - 0.5)
-              : hats - 2;
+  lo = 2.0 * segments->s[0];
+  hi = 2.0 * segments->s[count - 1];
+  low = PetscMax(1, (PetscInt)PetscCeilReal(lo + 0.5));
+  high = PetscMin(hats - 2, (PetscInt)PetscFloorReal(hi - 0.5));
+  *first = WithHysteresis(*first, (PetscReal)*first - 1.5, (PetscReal)*first - 0.5, lo, low);
+  *last = WithHysteresis(*last, -(PetscReal)*last - 1.5, -(PetscReal)*last - 0.5, -hi, high);
 }
 
 /* Gives merged hats the multiplier of the hat that they are merged into. */
@@ -200,7 +214,7 @@ PetscErrorCode LamContactStatusHolds(LamRVE rve, const LamLoad *load, const Pets
   PetscCall(PetscMalloc1(contact->chain, &x));
   for (PetscInt f = 0; f < contact->face_count; ++f) {
     const LamMortarChains chains = LamContactChains(rve, load->F, y, f, x);
-    PetscInt first, last;
+    PetscInt first = contact->faces[f].first, last = contact->faces[f].last;
 
     LamMortarFindSegments(&chains, &contact->segments);
     Junction(&contact->segments, contact->hats, &first, &last);

@@ -15,7 +15,6 @@
 #include "rve_impl.h"
 
 #define SAFE_ITERATIONS 150
-#define FOLLOW_ITERATIONS 40
 #define WATCHDOG 4
 #define STEP_LIMIT 0.05
 #define ARMIJO 1e-4
@@ -141,7 +140,7 @@ PetscErrorCode LamContactNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOu
     PetscBool valid, moved;
     Merit now = {0};
 
-    PetscCall(LamContactEvaluate(rve, load, rve->y, (PetscBool)(it < FOLLOW_ITERATIONS)));
+    PetscCall(LamContactEvaluate(rve, load, rve->y, PETSC_TRUE));
     PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
     if (valid) {
       LamContactResidual(rve, &step, &norm);

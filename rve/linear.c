@@ -16,6 +16,7 @@ static PetscInt SortUnique(PetscInt n, PetscInt64 keys[])
 {
   PetscInt unique = 0;
 
+  if (n == 0) return 0;
   qsort(keys, (size_t)n, sizeof(*keys), CompareKeys);
   for (PetscInt i = 0; i < n; ++i)
     if (i == 0 || keys[i] != keys[i - 1]) keys[unique++] = keys[i];

@@ -8,12 +8,14 @@
 
 /*
   Second-order expansion of Phi = Psi + p J about a record, in x = (c0, c1, c2, p) with c0 = (C11 + C22)/2,
-  c1 = (C11 - C22)/2, c2 = C12. P33 + p J is a scalar of C and p too and is expanded to first order.
+  c1 = (C11 - C22)/2, c2 = C12. P33 + p J and the opening dPsi/dg are scalars of C and p too and are expanded to first
+  order.
 */
 typedef struct {
   PetscReal x[4];
   PetscReal energy, gradient[4], hessian[4][4];
   PetscReal P33, P33_gradient[4]; /* of P33 + p J */
+  PetscReal opening, opening_gradient[4];
 } LamExpansion;
 
 #define LAM_MAX_IMAGES 6
@@ -38,6 +40,11 @@ struct LamDatabase_s {
 /* ---- query.c ---- */
 void LamImagesMake(const LamMicrostructure *micro, LamImages *images);
 void LamExpansionMake(const LamResponse *record, LamExpansion *expansion);
+
+/* ---- query_indicators.c ---- */
+/* `face`: the record's name of each face family of the question; `own`: the question is the record's own state. */
+void LamIndicatorsCopy(const LamResponse *record, const PetscInt face[3], PetscBool own, LamInterfaceLawType interface,
+                       LamResponse *r);
 
 /* ---- database_info.c ---- */
 PetscErrorCode LamDatabaseDescribe(LamDatabase database, char **json);

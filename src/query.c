@@ -11,7 +11,8 @@
   Algorithm
     Record to expansion: with dF_a = 1/2 F^-T D_a, D = I, diag(1,-1), offdiag(1,1), a change dF_a changes c_a alone;
       E_a  = P : dF_a,   E_ab = dF_a : A : dF_b - S : sym(dF_a^T dF_b),   S = F^-1 P
-    (the second term because C is held on a straight line: F^T d2F + d2F^T F = -2 sym(dF_a^T dF_b)).
+    (the second term because C is held on a straight line: F^T d2F + d2F^T F = -2 sym(dF_a^T dF_b));
+    the opening of contact tissue, dPsi/dg, changes by (dP/dg) : dF_a and by d2Psi/dpdg.
     Question to answer: c1 + i c2 of the question is rotated by 120 k degrees and mirrored in the axes of the lattice,
     the nearest record taken, its gradient and Hessian mapped back, and with K_a = F D_a, S = sum E_a D_a
       P = F S,   A_iJkL = delta_ik S_JL + sum E_ab (K_a)_iJ (K_b)_kL.
@@ -212,12 +213,34 @@ static void ExpandThickness(const LamResponse *r, Tensor dF[3], LamExpansion *e)
   e->P33_gradient[3] = r->P_turgor[8] + J;
 }
 
+static void ExpandOpening(const LamResponse *r, Tensor dF[3], LamExpansion *e)
+{
+  Tensor Pg;
+
+  InPlane(r->P_cohesion, Pg);
+  e->opening = r->opening_fraction;
+  for (int a = 0; a < 3; a++) e->opening_gradient[a] = Contract(Pg, dF[a]);
+  e->opening_gradient[3] = r->energy_turgor_cohesion;
+}
+
 static PetscBool PlaneStrain(const PetscReal F[9])
 {
   const PetscReal tiny = 10 * PETSC_MACHINE_EPSILON;
 
   return (PetscBool)(fabs(F[2]) <= tiny && fabs(F[5]) <= tiny && fabs(F[6]) <= tiny && fabs(F[7]) <= tiny &&
                      fabs(F[8] - 1) <= tiny);
+}
+
+/* Cells that float have a stress, but may have no tangent. */
+static PetscBool IsFinite(const LamExpansion *e)
+{
+  PetscReal sum = e->energy;
+
+  for (int a = 0; a < 4; a++) {
+    sum += e->gradient[a];
+    for (int b = 0; b < 4; b++) sum += e->hessian[a][b];
+  }
+  return (PetscBool)isfinite(sum);
 }
 
 void LamExpansionMake(const LamResponse *record, LamExpansion *e)
@@ -233,7 +256,9 @@ void LamExpansionMake(const LamResponse *record, LamExpansion *e)
   Variations(F, dF);
   ExpandEnergy(record, dF, e);
   ExpandThickness(record, dF, e);
+  ExpandOpening(record, dF, e);
   AddFluid(1, e->x, &e->energy, e->gradient, e->hessian);
+  if (!IsFinite(e)) e->x[0] = INFINITY;
 }
 
 /* ---- the nearest record ---- */
@@ -243,13 +268,14 @@ typedef struct {
   PetscReal distance2;
 } Nearest;
 
-/* Contact tissue is expanded at fixed cohesion; bonded tissue does not feel it. */
+/* Contact tissue is expanded at fixed cohesion, up to the grid that a cache rounds its questions to; bonded tissue does
+   not feel it. */
 static PetscBool CohesionFits(LamDatabase db, PetscInt i, const LamLoad *load)
 {
   const PetscReal other = db->records[i].load.cohesion;
 
   return (PetscBool)(db->header.micro.interface == LAM_INTERFACE_BONDED ||
-                     fabs(other - load->cohesion) <= 1e-12 * (1 + fabs(other)));
+                     fabs(other - load->cohesion) <= 1e-9 * (1 + fabs(other)));
 }
 
 /* Square of the distance; infinite for a record that cannot be used. */
@@ -318,9 +344,11 @@ static void Evaluate(LamDatabase db, const Nearest *at, const PetscReal x[4], La
     model->energy += (e->gradient[a] + 0.5 * slope) * delta[a];
     model->gradient[a] += slope;
     model->P33 += e->P33_gradient[a] * delta[a];
+    model->opening += e->opening_gradient[a] * delta[a];
   }
   MapBack(&db->images, at->image, model->gradient);
   MapBack(&db->images, at->image, model->P33_gradient);
+  MapBack(&db->images, at->image, model->opening_gradient);
   MapBackHessian(&db->images, at->image, model->hessian);
   AddFluid(-1, x, &model->energy, model->gradient, model->hessian);
 }
@@ -366,7 +394,8 @@ static void FillTangent(const LamExpansion *m, Tensor K[3], PetscReal A3333, Pet
   A[80] = A3333;
 }
 
-static void FillStress(const LamExpansion *m, Tensor F, const LamResponse *record, LamResponse *r)
+/* Stress, tangent and all else that the potential gives. */
+static void FillPotential(const LamExpansion *m, Tensor F, const LamResponse *record, LamResponse *r)
 {
   const PetscReal S_turgor[3] = {m->hessian[0][3], m->hessian[1][3], m->hessian[2][3]};
   Tensor K[3];
@@ -374,46 +403,21 @@ static void FillStress(const LamExpansion *m, Tensor F, const LamResponse *recor
   for (int a = 0; a < 3; a++)
     for (int i = 0; i < 2; i++)
       for (int j = 0; j < 2; j++) K[a][i][j] = F[i][0] * D[a][0][j] + F[i][1] * D[a][1][j];
-  for (int i = 0; i < 9; i++) r->P[i] = r->P_turgor[i] = 0; /* plane strain has no out-of-plane shear stress */
+  for (int i = 0; i < 9; i++) /* plane strain has no out-of-plane shear stress */
+    r->P[i] = r->P_turgor[i] = r->P_cohesion[i] = 0;
   PushForward(K, m->gradient, r->P);
   PushForward(K, S_turgor, r->P_turgor);
+  PushForward(K, m->opening_gradient, r->P_cohesion);
   r->P[8] = m->P33;
   r->P_turgor[8] = m->P33_gradient[3];
+  r->P_cohesion[8] = record->P_cohesion[8];
   r->energy = m->energy;
   r->energy_turgor2 = m->hessian[3][3];
+  r->energy_cohesion2 = record->energy_cohesion2;
+  r->energy_turgor_cohesion = m->opening_gradient[3];
   r->lumen_fraction = -m->gradient[3];
+  r->opening_fraction = m->opening;
   FillTangent(m, K, record->tangent[80], r->tangent);
-}
-
-/*
-  What the potential does not give. For bonded tissue gaps and fractions are zero wherever it is asked; tractions on the
-  faces are the record's where the question is the record's own state, and unknown elsewhere: they are not interpolated.
-*/
-static void CopyIndicators(LamDatabase db, const Nearest *at, LamResponse *r)
-{
-  const LamResponse *record = &db->records[at->record];
-  const PetscInt *face = db->images.face[at->image];
-  const PetscReal unknown = sqrt(at->distance2) < TIE ? 0 : NAN; /* added to what is not interpolated */
-
-  if (db->header.micro.interface == LAM_INTERFACE_BONDED) {
-    for (int i = 0; i < 9; i++) r->P_cohesion[i] = 0;
-    r->energy_cohesion2 = r->energy_turgor_cohesion = 0;
-  }
-  r->opening_fraction = record->opening_fraction;
-  r->debonded_fraction = record->debonded_fraction;
-  r->open_fraction = record->open_fraction;
-  r->max_gap = record->max_gap;
-  r->max_traction = record->max_traction + unknown;
-  for (int k = 0; k < 3; k++) {
-    r->debonded_by_face[k] = record->debonded_by_face[face[k]];
-    r->mean_face_traction[k] = record->mean_face_traction[face[k]] + unknown;
-  }
-  r->lowest_eigenvalue = record->lowest_eigenvalue;
-  r->floating_cells = record->floating_cells;
-  r->negative_eigenvalues = record->negative_eigenvalues;
-  r->stable = record->stable;
-  r->branch = record->branch;
-  r->unknowns = record->unknowns;
 }
 
 /*
@@ -498,8 +502,9 @@ PetscErrorCode LamDatabaseQuery(LamDatabase database, const LamLoad *load, Petsc
   }
   Evaluate(database, &at, x, &model);
   ThicknessFluid(x, &model);
-  FillStress(&model, F, &database->records[at.record], response);
-  CopyIndicators(database, &at, response);
+  FillPotential(&model, F, &database->records[at.record], response);
+  LamIndicatorsCopy(&database->records[at.record], database->images.face[at.image], sqrt(at.distance2) < TIE,
+                    database->header.micro.interface, response);
   response->status = LAM_CONVERGED;
   response->distance = sqrt(at.distance2);
   response->error_estimate = ErrorEstimate(response->distance);

@@ -27,11 +27,11 @@ PetscErrorCode LamRecordTypeCreate(PetscBool in_memory, hid_t *type);
 /* Turns records into the bytes of the file, checksums included; `bytes` is the caller's to free. */
 PetscErrorCode LamRecordsPack(PetscInt n, const PetscInt64 keys[], const LamResponse responses[], hid_t file_type,
                               void **bytes);
-/* The way back, for bytes of a type that holds at least our members. Names `path` and the record where one is damaged.
+/* The way back, for bytes of a type that has passed the check below. Names `path` and the record where one is damaged.
  */
 PetscErrorCode LamRecordsUnpack(const char path[], PetscInt n, const void *bytes, hid_t file_type,
                                 LamResponse responses[], PetscInt64 keys[]);
-/* Checks that every member we know is there, of the type we write. */
+/* Checks that every member we know is there, of the type we write; what was added later may be missing. */
 PetscErrorCode LamRecordTypeCheck(const char path[], hid_t file_type);
 
 /* ---- record_lock.c ---- */

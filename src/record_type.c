@@ -107,6 +107,21 @@ PetscErrorCode LamRecordTypeCreate(PetscBool in_memory, hid_t *type)
   PetscFunctionReturn(0);
 }
 
+/*
+  Members that files of format version 1 did not have from its beginning: where one is missing it is not known (NaN),
+  and a count is 0. Bonded tissue has no gaps, so such files lack nothing.
+*/
+static const char *const added_members[] = {
+    "opening_by_face", "open_by_face", "debonded_spread", "open_spread",   "mean_gap",
+    "max_penetration", "fabric",       "zero_modes",      "cell_clusters", "percolating_directions"};
+
+static PetscBool WasAdded(const char name[])
+{
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(added_members); i++)
+    if (!strcmp(name, added_members[i])) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 PetscErrorCode LamRecordTypeCheck(const char path[], hid_t file_type)
 {
   hid_t ours;
@@ -122,7 +137,7 @@ PetscErrorCode LamRecordTypeCheck(const char path[], hid_t file_type)
     const int at = H5Tget_member_index(file_type, name);
     const hid_t wanted = H5Tget_member_type(ours, (unsigned)i);
     const hid_t found = at < 0 ? H5I_INVALID_HID : H5Tget_member_type(file_type, (unsigned)at);
-    const PetscBool same = (PetscBool)(found >= 0 && H5Tequal(wanted, found) > 0);
+    const PetscBool same = (PetscBool)(at < 0 ? WasAdded(name) : H5Tequal(wanted, found) > 0);
 
     if (found >= 0) LamCallHDF5(path, PETSC_ERR_LIB, H5Tclose(found));
     LamCallHDF5(path, PETSC_ERR_LIB, H5Tclose(wanted));
@@ -156,15 +171,12 @@ static uint32_t Checksum(const uint32_t table[256], const unsigned char *bytes, 
   return crc ^ 0xFFFFFFFFu;
 }
 
-/* Converts n records in place; `bytes` has room for the larger of both types. */
-static PetscErrorCode Convert(hid_t from, hid_t to, PetscInt n, void *bytes)
+/* Converts n records in place; `bytes` has room for the larger of both types. `background`, of type `to`, gives what
+   `from` lacks. */
+static PetscErrorCode Convert(hid_t from, hid_t to, PetscInt n, void *bytes, void *background)
 {
-  void *background;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc(((size_t)n + 1) * H5Tget_size(to), &background));
   LamCallHDF5("records", PETSC_ERR_LIB, H5Tconvert(from, to, (size_t)n, bytes, background, H5P_DEFAULT));
-  PetscCall(PetscFree(background));
   PetscFunctionReturn(0);
 }
 
@@ -176,6 +188,7 @@ PetscErrorCode LamRecordsPack(PetscInt n, const PetscInt64 keys[], const LamResp
   unsigned char *packed;
   LamRecord *records;
   hid_t memory_type;
+  void *zeros;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc(((size_t)n + 1) * PetscMax(size, sizeof(LamRecord)), bytes));
@@ -185,7 +198,9 @@ PetscErrorCode LamRecordsPack(PetscInt n, const PetscInt64 keys[], const LamResp
     records[i].response = responses[i];
   }
   PetscCall(LamRecordTypeCreate(PETSC_TRUE, &memory_type));
-  PetscCall(Convert(memory_type, file_type, n, *bytes));
+  PetscCall(PetscCalloc(((size_t)n + 1) * size, &zeros));
+  PetscCall(Convert(memory_type, file_type, n, *bytes, zeros));
+  PetscCall(PetscFree(zeros));
   LamCallHDF5("records", PETSC_ERR_LIB, H5Tclose(memory_type));
   ChecksumTable(table);
   packed = *bytes;
@@ -214,11 +229,22 @@ static PetscErrorCode CheckSums(const char path[], PetscInt n, const unsigned ch
   PetscFunctionReturn(0);
 }
 
+/* Records of which nothing is known. */
+static PetscErrorCode UnknownRecords(PetscInt n, LamRecord **records)
+{
+  const LamLoad load = {{0}, 0, 0};
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n + 1, records));
+  for (PetscInt i = 0; i < n; i++) PetscCall(LamResponseInit(&load, &(*records)[i].response));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamRecordsUnpack(const char path[], PetscInt n, const void *bytes, hid_t file_type,
                                 LamResponse responses[], PetscInt64 keys[])
 {
   const size_t size = H5Tget_size(file_type);
-  LamRecord *records;
+  LamRecord *records, *unknown;
   hid_t memory_type;
 
   PetscFunctionBeginUser;
@@ -226,7 +252,9 @@ PetscErrorCode LamRecordsUnpack(const char path[], PetscInt n, const void *bytes
   PetscCall(PetscMalloc(((size_t)n + 1) * PetscMax(size, sizeof(LamRecord)), &records));
   memcpy(records, bytes, (size_t)n * size);
   PetscCall(LamRecordTypeCreate(PETSC_TRUE, &memory_type));
-  PetscCall(Convert(file_type, memory_type, n, records));
+  PetscCall(UnknownRecords(n, &unknown));
+  PetscCall(Convert(file_type, memory_type, n, records, unknown));
+  PetscCall(PetscFree(unknown));
   LamCallHDF5(path, PETSC_ERR_LIB, H5Tclose(memory_type));
   for (PetscInt i = 0; i < n; i++) {
     LamResponse *r = &responses[i];

@@ -64,8 +64,7 @@ const LamKey LamKeys[] = {
     {NAME("rve.wall.fibres", LamFibresNames), .default_value = "both", .example = "tension",
      .help = "Whether fibres also resist compression along the wall (`both`) or stretch alone (`tension`)."},
     {MAP("rve.interface"), .example = "{law: bonded}", .help = "The middle lamella between the cells."},
-    {NAME("rve.interface.law", LamInterfaceLawNames), .unavailable_names = 1u << LAM_INTERFACE_CONTACT,
-     .default_value = "bonded", .example = "bonded",
+    {NAME("rve.interface.law", LamInterfaceLawNames), .default_value = "bonded", .example = "contact",
      .help = "`bonded`: cells never part; `contact`: they may part and slide without friction."},
     {STRESS("rve.interface.cohesion"), FROM(0), .default_value = "0 MPa", .example = "0.001 MPa",
      .help = "Normal traction that parts the cells; only with law `contact`."},
@@ -135,7 +134,8 @@ const LamKey LamKeys[] = {
     {LENGTH("macro.boundary[].displacement", "mm"), .size = 2, REQUIRED, FREE, .example = "[0 mm, free]",
      .help = "At the end of the load program, along X1 and X2; `free` leaves a component."},
     {BOOL("macro.inflate"), .default_words = "true with turgor, else false", .example = "true",
-     .help = "First bring turgor up with only rigid motions held; displacements then count from there."},
+     .help = "First bring turgor up with only rigid motions held; displacements then count from there. With law "
+             "`contact` it needs a cohesion: nothing else holds free tissue together."},
     {INTEGER("macro.steps"), FROM(1), TO(10000), .default_value = "10", .example = "10",
      .help = "Equal load steps after inflation."},
 

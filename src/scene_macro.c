@@ -104,6 +104,27 @@ static PetscErrorCode BuildMesh(const LamDocument *document, LamScene *scene)
   PetscFunctionReturn(0);
 }
 
+/*
+  A body that inflates freely ends at zero total stress, where every mean face traction is zero, whatever the turgor is:
+  contact alone then holds no cell.
+*/
+static PetscErrorCode CheckInflation(const LamDocument *document, const LamNode *block, const LamNode *inflate_node,
+                                     const LamScene *scene)
+{
+  static const char *const remedy =
+      "free tissue is held together only by the lamella; give interface.cohesion > 0, or inflate: false";
+
+  PetscFunctionBeginUser;
+  if (!scene->macro.inflate || scene->micro.interface != LAM_INTERFACE_CONTACT || scene->cohesion > 0.0)
+    PetscFunctionReturn(0);
+  if (inflate_node)
+    PetscCall(LamSceneFail(document, inflate_node, "law: contact has no cohesion; %s", remedy));
+  else
+    PetscCall(LamSceneFailMissing(document, block, "inflate",
+                                  "missing, so true with turgor, but law: contact has no cohesion; %s", remedy));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamSceneBuildMacro(const LamDocument *document, LamScene *scene)
 {
   const LamNode *block, *list, *inflate_node;
@@ -118,6 +139,7 @@ PetscErrorCode LamSceneBuildMacro(const LamDocument *document, LamScene *scene)
   PetscCall(LamSceneGet(document->root, "macro.inflate", &inflate_node, &inflate));
   scene->macro.inflate = scene->turgor != 0.0 ? PETSC_TRUE : PETSC_FALSE;
   if (inflate_node) scene->macro.inflate = inflate.number[0] != 0.0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(CheckInflation(document, block, inflate_node, scene));
   PetscCall(LamSceneGet(document->root, "macro.steps", NULL, &steps));
   scene->macro.steps = (PetscInt)steps.number[0];
   PetscCall(LamSceneGet(document->root, "macro.boundary", &list, &unused));

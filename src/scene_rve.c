@@ -110,7 +110,7 @@ static PetscErrorCode BuildInterface(const LamDocument *document, LamScene *scen
 {
   const LamNode *cohesion_node, *clearance_node;
   PetscReal cohesion, clearance;
-  PetscInt law;
+  PetscInt law, strategy;
 
   PetscFunctionBeginUser;
   PetscCall(GetName(document, "rve.interface.law", NULL, &law));
@@ -120,7 +120,9 @@ static PetscErrorCode BuildInterface(const LamDocument *document, LamScene *scen
     PetscCall(LamSceneFail(document, cohesion > 0.0 ? cohesion_node : clearance_node,
                            "contradicts law: bonded, whose cells never part; leave it out"));
   }
+  PetscCall(GetName(document, "rve.strategy", NULL, &strategy));
   scene->micro.interface = (LamInterfaceLawType)law;
+  scene->strategy = (LamStrategy)strategy;
   PetscCall(LamSceneScale(document, cohesion_node, cohesion, scene->scales.stress, &scene->cohesion));
   PetscCall(LamSceneScale(document, clearance_node, clearance, scene->scales.length, &scene->micro.clearance));
   PetscFunctionReturn(0);

@@ -91,10 +91,12 @@ PetscErrorCode LamDatabaseAdd(LamDatabase database, PetscInt n, const LamRespons
   where no usable record (converged, stable) lies within `radius` (PETSC_INFINITY: any). `hint`, where not NULL, is
   in/out: opaque, names the record and image that answered, to be preferred while within radius (-1: none), so that
   answers stay smooth during a load step.
-  Energy, in-plane stress and tangent, lumen fraction and their turgor derivatives come from one potential; P33 is of
-  first order; the tangent's entry 33,33, the openings, tractions and other indicators are the record's (faces renamed).
-  error_estimate grows with the square of the distance and is LamTrustRadius's accuracy at its radius.
-  Safe to call from several threads at once, each with its own hint, while nobody adds records.
+  Energy, in-plane stress and tangent, lumen fraction and their turgor derivatives come from one potential; P33 and the
+  opening fraction are of first order, their derivatives of zeroth; the tangent's entry 33,33 is the record's.
+  Tractions, and for contact tissue gaps, shares of the interface and counts of cells, are the record's (faces renamed)
+  where the question is its own state, else NaN and 0. Contact tissue is answered from records of the question's
+  cohesion. error_estimate grows with the square of the distance and is LamTrustRadius's accuracy at its radius. Safe to
+  call from several threads at once, each with its own hint, while nobody adds records.
 */
 PetscErrorCode LamDatabaseQuery(LamDatabase database, const LamLoad *load, PetscReal radius, PetscInt *hint,
                                 LamResponse *response);

@@ -24,7 +24,8 @@ typedef struct {
   PetscReal reaction[LAM_MAX_BOUNDARIES][2];          /* force on the body, stress * macro length, per thickness;
                                                          a corner's is shared among the sides that prescribe it */
   PetscReal work;                                     /* of the boundary forces since the start, stress * length^2 */
-  PetscReal debonded_fraction, max_gap, turgor_mean;
+  PetscReal debonded_fraction, max_gap;               /* not finite where the responder does not know them */
+  PetscReal turgor_mean;
   PetscInt newton_iterations; /* all of the step, cutbacks included */
   PetscInt cutbacks;
   PetscInt64 queries, hits, solves, failures; /* of this step, all ranks */

@@ -67,8 +67,10 @@ PetscErrorCode LamResponseToJSON(const LamResponse *response, const LamScales *s
 json_t *LamJSONReal(PetscReal value); /* null where not finite */
 json_t *LamJSONReals(PetscInt n, const PetscReal values[], PetscReal scale);
 PetscErrorCode LamPrintJSON(json_t *object); /* one line on stdout, rank 0; takes ownership */
-PetscErrorCode LamPrintResponseHeader(void); /* table of states for a person, stdout */
-PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales *scales, PetscInt state);
+/* Table of states for a person, stdout; contact tissue has columns of its own. */
+PetscErrorCode LamPrintResponseHeader(LamInterfaceLawType interface);
+PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales *scales, LamInterfaceLawType interface,
+                                   PetscInt state);
 
 /* ---- progress.c: a bar on stderr where it is a terminal, else nothing ---- */
 typedef struct {

@@ -32,6 +32,7 @@ PetscErrorCode LamDispatchCreate(MPI_Comm comm, const LamScene *scene, LamDispat
   PetscCallMPI(MPI_Comm_size(comm, &dispatch->size));
   PetscCall(LamRVECreate(PETSC_COMM_SELF, &dispatch->rve));
   PetscCall(LamRVESetMicrostructure(dispatch->rve, &scene->micro));
+  PetscCall(LamRVESetStrategy(dispatch->rve, scene->strategy));
   PetscCall(LamRVESetUp(dispatch->rve));
   PetscCall(LamRVEStateCreate(dispatch->rve, &dispatch->state));
   PetscFunctionReturn(0);

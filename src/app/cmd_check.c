@@ -12,6 +12,8 @@
 /* Factorisations of a state on its own, and of a material point in a load step under way; tangent included. */
 #define STATE_FACTORISATIONS 6.0
 #define POINT_FACTORISATIONS 5.0
+/* A state of contact tissue against a bonded one: more iterations, and a matrix that faces fill. */
+#define CONTACT_FACTOR 4.0
 /* Resident memory, MB: the program with its libraries; matrix, factor and mesh per unknown. */
 #define PROGRAM_MB 50.0
 #define UNKNOWN_MB 0.0015
@@ -37,7 +39,7 @@ static PetscErrorCode Predict(Check *check)
   cell.cells[0] = cell.cells[1] = 1;
   PetscCall(LamRVETimeAssembly(&cell, &unknowns, &check->assembly));
   check->assembly *= cells;
-  iteration = ITERATION_ASSEMBLIES * check->assembly;
+  iteration = ITERATION_ASSEMBLIES * check->assembly * (cell.interface == LAM_INTERFACE_CONTACT ? CONTACT_FACTOR : 1);
   check->state = STATE_FACTORISATIONS * iteration;
   check->point = POINT_FACTORISATIONS * iteration;
   /* each material point keeps its positions, accepted and tried */
@@ -76,6 +78,11 @@ static PetscErrorCode PrintObject(const Check *check)
                 "unknowns", (json_int_t)plan->unknowns, "seconds_per_assembly", LamJSONReal(check->assembly),
                 "seconds_per_state", LamJSONReal(check->state), "memory_mb", LamJSONReal(check->memory));
   PetscCheck(o, PETSC_COMM_SELF, PETSC_ERR_LIB, "the plan cannot be written as JSON");
+  if (micro->interface == LAM_INTERFACE_CONTACT) {
+    json_object_set_new(o, "cohesion", LamJSONReal(scene->cohesion * MPa));
+    json_object_set_new(o, "clearance", LamJSONReal(micro->clearance));
+    json_object_set_new(o, "strategy", json_string(LamStrategyNames[scene->strategy]));
+  }
   if (plan->load_states)
     json_object_set_new(o, "load", Cost(json_integer(plan->load_states), (PetscReal)plan->load_states * check->state));
   if (scene->has_sample)
@@ -125,8 +132,12 @@ static void PrintModel(const Check *check)
   if (wall->law == LAM_WALL_FIBRE_MOONEY_RIVLIN)
     printf(", C4 %.4g (fibres: %s)", (double)(wall->C4 * MPa), LamFibresNames[wall->fibres]);
   printf(", bulk modulus %.4g MPa\n", (double)(wall->bulk_modulus * MPa));
-  printf("%-12s %s\n", "interface",
-         micro->interface == LAM_INTERFACE_BONDED ? "bonded: no unknowns of its own" : "contact");
+  if (micro->interface == LAM_INTERFACE_BONDED)
+    printf("%-12s bonded: no unknowns of its own\n", "interface");
+  else
+    printf("%-12s contact: cohesion %.4g MPa, clearance %.4g um, strategy %s\n", "interface",
+           (double)(scene->cohesion * MPa), (double)(1e6 * micro->clearance * scene->scales.length),
+           LamStrategyNames[scene->strategy]);
   if (scene->turgor != 0)
     printf("%-12s %.4g MPa in every lumen\n", "turgor", (double)(scene->turgor * MPa));
   else

@@ -171,6 +171,7 @@ static PetscErrorCode Connect(Run *run)
   if (run->response != RESPONSE_DATABASE) {
     PetscCall(LamRVECreate(PETSC_COMM_SELF, &run->rve));
     PetscCall(LamRVESetMicrostructure(run->rve, &run->scene->micro));
+    PetscCall(LamRVESetStrategy(run->rve, run->scene->strategy));
     PetscCall(LamRVESetUp(run->rve));
     /* behind a cache no point keeps a state: all its solves start from the reference */
     PetscCall(LamRVEResponderCreate(run->rve, run->response == RESPONSE_DIRECT ? points : 0, &run->direct));

@@ -8,11 +8,12 @@
 #include <string.h>
 
 typedef struct {
-  const char *deformation, *turgor, *radius_text;
+  const char *deformation, *turgor, *cohesion, *radius_text;
   PetscBool json, tangent;
   LamDatabase database;
   LamScales scales;
-  PetscReal default_turgor, radius, accuracy;
+  LamInterfaceLawType interface;
+  PetscReal default_turgor, default_cohesion, radius, accuracy;
   PetscInt answered, refused;
 } Query;
 
@@ -66,33 +67,52 @@ static PetscErrorCode Answer(Query *q, const LamLoad *load)
   else
     q->refused++;
   if (!q->json) {
-    PetscCall(LamPrintResponseRow(&response, &q->scales, state));
+    PetscCall(LamPrintResponseRow(&response, &q->scales, q->interface, state));
     PetscFunctionReturn(0);
   }
   PetscCall(LamResponseToJSON(&response, &q->scales, state, q->tangent, &object));
-  json_object_set_new(object, "distance", LamJSONReal(response.distance));
   PetscCall(LamPrintJSON(object));
   PetscFunctionReturn(0);
 }
 
-/* One line of stdin: numbers, and a turgor with its unit behind a semicolon. Empty lines are passed over. */
+/* Takes what stands behind the last semicolon of a line off; NULL: there is none. */
+static char *CutLast(char line[])
+{
+  char *semicolon = strrchr(line, ';');
+
+  if (!semicolon) return NULL;
+  *semicolon = '\0';
+  return semicolon + 1;
+}
+
+/* A stress with its unit, as "0.02 MPa". */
+static PetscErrorCode ReadPressure(const Query *q, const char text[], PetscReal *pressure)
+{
+  PetscReal pascal;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamQuantityParse(text, LAM_DIMENSION_STRESS, &pascal));
+  *pressure = pascal / q->scales.stress;
+  PetscFunctionReturn(0);
+}
+
+/* One line of stdin: numbers, and behind semicolons a turgor and a cohesion. Empty lines are passed over. */
 static PetscErrorCode AnswerLine(Query *q, PetscInt number, char line[])
 {
-  LamLoad load = {.turgor = q->default_turgor};
-  char *semicolon = strchr(line, ';'), problem[128];
+  LamLoad load = {.turgor = q->default_turgor, .cohesion = q->default_cohesion};
+  char *first, *second, problem[128];
 
   PetscFunctionBeginUser;
   line[strcspn(line, "\r\n")] = '\0';
   if (line[strspn(line, " \t")] == '\0') PetscFunctionReturn(0);
-  if (semicolon) {
-    PetscReal pascal;
-
-    *semicolon = '\0';
-    PetscCall(LamQuantityParse(semicolon + 1, LAM_DIMENSION_STRESS, &pascal));
-    load.turgor = pascal / q->scales.stress;
-  }
+  second = CutLast(line);
+  first = CutLast(line);
+  if (first) PetscCall(ReadPressure(q, second, &load.cohesion));
+  if (second) PetscCall(ReadPressure(q, first ? first : second, &load.turgor));
   PetscCheck(ParseDeformation(line, load.F, problem), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "standard input, line %" PetscInt_FMT ": %s; 4 or 9 numbers are wanted, such as 1 0.1 0 1 ; 0.02 MPa",
+             "standard input, line %" PetscInt_FMT
+             ": %s; 4 or 9 numbers are wanted, such as 1 0.1 0 1 ; 0.02 MPa, and for contact tissue "
+             "a second ; with a cohesion",
              number, problem);
   PetscCall(Answer(q, &load));
   PetscFunctionReturn(0);
@@ -125,7 +145,6 @@ static PetscBool UsageError(const char option[], const char value[], const char 
 static PetscBool ReadValues(Query *q, LamLoad *load, int *exit_status)
 {
   char problem[128], *end;
-  PetscReal pascal = 0;
 
   if (!q->deformation) {
     fprintf(stderr, "lamella query: the deformation gradient is missing; give -F \"1 0.1 0 1\", or -F - for lines of "
@@ -135,9 +154,12 @@ static PetscBool ReadValues(Query *q, LamLoad *load, int *exit_status)
   }
   if (strcmp(q->deformation, "-") && !ParseDeformation(q->deformation, load->F, problem))
     return UsageError("-F", q->deformation, problem, exit_status);
-  if (q->turgor && LamQuantityParse(q->turgor, LAM_DIMENSION_STRESS, &pascal))
+  if (q->turgor && ReadPressure(q, q->turgor, &q->default_turgor))
     return UsageError("-p", q->turgor, "a pressure with its unit is wanted, such as \"0.02 MPa\"", exit_status);
-  q->default_turgor = load->turgor = pascal / q->scales.stress;
+  if (q->cohesion && ReadPressure(q, q->cohesion, &q->default_cohesion))
+    return UsageError("-g", q->cohesion, "a stress with its unit is wanted, such as \"0.001 MPa\"", exit_status);
+  load->turgor = q->default_turgor;
+  load->cohesion = q->default_cohesion;
   q->radius = LamTrustRadius(q->accuracy);
   if (q->radius_text) {
     q->radius = strtod(q->radius_text, &end);
@@ -147,8 +169,23 @@ static PetscBool ReadValues(Query *q, LamLoad *load, int *exit_status)
   return PETSC_TRUE;
 }
 
+/* The cohesion of all records, 0 where they differ. */
+static PetscErrorCode CommonCohesion(LamDatabase database, PetscReal *cohesion)
+{
+  const LamResponse *records;
+  PetscInt n;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamDatabaseGetRecords(database, &n, &records, NULL));
+  *cohesion = n ? records[0].load.cohesion : 0;
+  for (PetscInt i = 1; i < n; i++)
+    if (records[i].load.cohesion != records[0].load.cohesion) *cohesion = 0;
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Open(Query *q, const char path[])
 {
+  LamMicrostructure micro;
   char kind[LAM_NAME_LENGTH];
   const char *text;
   json_t *info;
@@ -158,7 +195,9 @@ static PetscErrorCode Open(Query *q, const char path[])
   PetscCheck(!strcmp(kind, "database") || !strcmp(kind, "rve"), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: is of kind \"%s\"; a response database is wanted, as lamella build writes it", path, kind);
   PetscCall(LamDatabaseOpen(path, &q->database));
-  PetscCall(LamDatabaseGetMicrostructure(q->database, NULL, &q->scales, NULL));
+  PetscCall(LamDatabaseGetMicrostructure(q->database, &micro, &q->scales, NULL));
+  q->interface = micro.interface;
+  PetscCall(CommonCohesion(q->database, &q->default_cohesion));
   PetscCall(LamDatabaseGetInfo(q->database, &text));
   info = json_loads(text, 0, NULL);
   q->accuracy = json_number_value(json_object_get(info, "accuracy"));
@@ -176,6 +215,9 @@ PetscErrorCode LamCommandQuery(LamArgs *args, int *exit_status)
       {'F', "deformation", LAM_OPTION_TEXT, "\"F11 F12 F21 F22\"",
        "4 or 9 numbers, row-major; -: lines of standard input", &q.deformation},
       {'p', "turgor", LAM_OPTION_TEXT, "PRESSURE", "turgor with its unit, \"0.02 MPa\"; 0 where not given", &q.turgor},
+      {'g', "cohesion", LAM_OPTION_TEXT, "STRESS",
+       "cohesion of contact tissue with its unit, \"0.001 MPa\"; where not given that of the records, 0 if they differ",
+       &q.cohesion},
       {0, "radius", LAM_OPTION_TEXT, "STRAIN", "how far a record is trusted; by default after the file's accuracy",
        &q.radius_text},
       {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per answer on stdout", &q.json},
@@ -184,12 +226,13 @@ PetscErrorCode LamCommandQuery(LamArgs *args, int *exit_status)
   };
 
   PetscFunctionBeginUser;
-  PetscCall(LamOptionsParse(args, "query DB.h5 -F \"1 0.1 0 1\" [-p \"0.02 MPa\"] [--json] [--tangent]",
+  PetscCall(LamOptionsParse(args,
+                            "query DB.h5 -F \"1 0.1 0 1\" [-p \"0.02 MPa\"] [-g \"0.001 MPa\"] [--json] [--tangent]",
                             "Answers from a response database; never solves.", options, 1, &path, &done, exit_status));
   if (done) PetscFunctionReturn(0);
   PetscCall(Open(&q, path));
   if (ReadValues(&q, &load, exit_status)) {
-    if (!q.json) PetscCall(LamPrintResponseHeader());
+    if (!q.json) PetscCall(LamPrintResponseHeader(q.interface));
     if (strcmp(q.deformation, "-"))
       PetscCall(Answer(&q, &load));
     else

@@ -4,18 +4,18 @@
   The states depend on one another: each starts from the last one that has an answer. So rank 0 solves the chain, and
   further ranks wait.
 */
-#include "app.h"
+#include "onset.h"
 #include <petsctime.h>
 #include <string.h>
 
 typedef struct {
   const char *scene_path, *out_path;
-  PetscBool json, tangent, monitor, quiet;
+  PetscBool json, tangent, monitor, quiet, second_mesh, find_onset;
 
   LamScene *scene;
-  LamRVE rve;
-  LamRVEState state;
-  LamRVEMesh mesh;
+  LamMeshes meshes; /* the scene's, and with --second-mesh a finer one */
+  LamRVEMesh mesh;  /* of the scene's */
+  LamOnset onset;
   LamRecordWriter writer; /* NULL without -o */
   LamProgress progress;
   PetscInt solved, failed;
@@ -57,12 +57,45 @@ static PetscErrorCode WriteFields(Run *run, PetscInt number)
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(2 * n, &x, n, &fibre, n, &stress));
-  PetscCall(LamRVEGetFields(run->rve, run->state, x, fibre, stress));
+  PetscCall(LamRVEGetFields(run->meshes.rve[0], run->meshes.state[0], x, fibre, stress));
   for (PetscInt i = 0; i < n; i++) stress[i] *= MPa;
   PetscCall(WriteField(run, number, "x", 2, x, "apothem"));
   PetscCall(WriteField(run, number, "fibre_stretch", 1, fibre, "1"));
   PetscCall(WriteField(run, number, "wall_stress", 1, stress, "MPa"));
   PetscCall(PetscFree3(x, fibre, stress));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WriteInterfaceField(Run *run, PetscInt number, const char name[], PetscInt rank,
+                                          const PetscInt dims[3], const PetscReal values[], const char unit[])
+{
+  char path[LAM_NAME_LENGTH];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(path, sizeof(path), "/fields/%" PetscInt_FMT "/interface/%s", number, name));
+  PetscCall(LamRecordWriterReals(run->writer, path, rank, dims, values, unit));
+  PetscFunctionReturn(0);
+}
+
+/* Samples along the faces of contact tissue; bonded tissue has none. */
+static PetscErrorCode WriteInterface(Run *run, PetscInt number)
+{
+  const PetscReal MPa = run->scene->scales.stress * 1e-6;
+  PetscReal *from, *to, *gap, *pressure;
+  PetscInt dims[3] = {0, 0, 2}, n;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEGetInterfaceSize(run->meshes.rve[0], &dims[0], &dims[1]));
+  if (!dims[0]) PetscFunctionReturn(0);
+  n = dims[0] * dims[1];
+  PetscCall(PetscMalloc4(2 * n, &from, 2 * n, &to, n, &gap, n, &pressure));
+  PetscCall(LamRVEGetInterface(run->meshes.rve[0], run->meshes.state[0], from, to, gap, pressure));
+  for (PetscInt i = 0; i < n; i++) pressure[i] *= MPa;
+  PetscCall(WriteInterfaceField(run, number, "from", 3, dims, from, "apothem"));
+  PetscCall(WriteInterfaceField(run, number, "to", 3, dims, to, "apothem"));
+  PetscCall(WriteInterfaceField(run, number, "gap", 2, dims, gap, "apothem"));
+  PetscCall(WriteInterfaceField(run, number, "pressure", 2, dims, pressure, "MPa"));
+  PetscCall(PetscFree4(from, to, gap, pressure));
   PetscFunctionReturn(0);
 }
 
@@ -72,7 +105,10 @@ static PetscErrorCode WriteState(Run *run, PetscInt number, const LamResponse *r
   const PetscInt64 key = number;
 
   PetscFunctionBeginUser;
-  if (LamResponseHasFields(response)) PetscCall(WriteFields(run, number));
+  if (LamResponseHasFields(response)) {
+    PetscCall(WriteFields(run, number));
+    PetscCall(WriteInterface(run, number));
+  }
   PetscCall(LamRecordWriterCommit(run->writer, 1, &key, response));
   PetscFunctionReturn(0);
 }
@@ -91,19 +127,51 @@ static void PrintTangent(const LamResponse *response, PetscReal MPa)
   }
 }
 
-static PetscErrorCode Tell(Run *run, PetscInt number, const LamResponse *response)
+/* What the second mesh says of the state. */
+static void PrintSecondMesh(const LamResponse responses[2])
+{
+  const LamSeparation separation = LamSeparationOf(responses);
+
+  if (!LamResponseHasFields(&responses[0])) return;
+  if (separation == LAM_SEPARATION_UNKNOWN) {
+    printf("      second mesh: %s: %s\n", LamStatusNames[responses[1].status], responses[1].reason);
+    return;
+  }
+  printf("      second mesh: P differs by %.2g %%, debonded by %.2g, open by %.2g; ",
+         (double)(100 * responses[0].error_estimate), (double)responses[0].debonded_spread,
+         (double)responses[0].open_spread);
+  if (separation == LAM_SEPARATION_NONE)
+    printf("not separated\n");
+  else
+    printf("separated (%s)\n", LamSeparationNames[separation]);
+}
+
+static void SetSecondMesh(json_t *object, const LamResponse responses[2])
+{
+  const LamSeparation separation = LamSeparationOf(responses);
+
+  json_object_set_new(object, "separated",
+                      separation == LAM_SEPARATION_UNKNOWN ? json_null()
+                                                           : json_boolean(separation != LAM_SEPARATION_NONE));
+  if (!LamResponseHasFields(&responses[1]))
+    json_object_set_new(object, "second_mesh_reason", json_string(responses[1].reason));
+}
+
+static PetscErrorCode Tell(Run *run, PetscInt number, const LamResponse responses[2])
 {
   const LamScales *scales = &run->scene->scales;
   json_t *object;
 
   PetscFunctionBeginUser;
   if (run->json) {
-    PetscCall(LamResponseToJSON(response, scales, number, run->tangent, &object));
+    PetscCall(LamResponseToJSON(&responses[0], scales, number, run->tangent, &object));
+    if (run->second_mesh) SetSecondMesh(object, responses);
     PetscCall(LamPrintJSON(object));
     PetscFunctionReturn(0);
   }
-  PetscCall(LamPrintResponseRow(response, scales, number));
-  if (run->tangent) PrintTangent(response, scales->stress * 1e-6);
+  PetscCall(LamPrintResponseRow(&responses[0], scales, run->scene->micro.interface, number));
+  if (run->second_mesh) PrintSecondMesh(responses);
+  if (run->tangent) PrintTangent(&responses[0], scales->stress * 1e-6);
   PetscFunctionReturn(0);
 }
 
@@ -122,23 +190,29 @@ static PetscErrorCode TellEnd(const Run *run)
 
 /* ---- the command ---- */
 
+/* PETSC_FALSE, with a message, where an option asks for what bonded tissue does not have. */
+static PetscBool OptionsFit(const Run *run)
+{
+  if (!run->second_mesh || run->scene->micro.interface == LAM_INTERFACE_CONTACT) return PETSC_TRUE;
+  fprintf(stderr,
+          "lamella rve: %s: the cells of %s are bonded and never separate; leave it out, or write law: contact\n",
+          run->find_onset ? "--onset" : "--second-mesh", run->scene_path);
+  return PETSC_FALSE;
+}
+
 static PetscErrorCode Prepare(Run *run)
 {
   LamPlan plan;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscTime(&run->start));
-  PetscCall(LamSceneRead(run->scene_path, &run->scene));
   PetscCheck(run->scene->load_count, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: has no block `load`, which says what states to solve", run->scene_path);
   PetscCall(LamPlanMake(run->scene, &plan));
   run->scene->micro = plan.micro;
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &run->rve));
-  PetscCall(LamRVESetMicrostructure(run->rve, &run->scene->micro));
-  PetscCall(LamRVESetMonitor(run->rve, run->monitor));
-  PetscCall(LamRVESetUp(run->rve));
-  PetscCall(LamRVEStateCreate(run->rve, &run->state));
-  PetscCall(LamRVEGetMesh(run->rve, &run->mesh));
+  PetscCall(LamMeshesCreate(run->scene, run->second_mesh ? 2 : 1, &run->meshes));
+  PetscCall(LamRVESetMonitor(run->meshes.rve[0], run->monitor));
+  PetscCall(LamRVEGetMesh(run->meshes.rve[0], &run->mesh));
+  if (run->find_onset) PetscCall(LamOnsetCreate(&run->meshes, &run->onset));
   PetscFunctionReturn(0);
 }
 
@@ -149,15 +223,16 @@ static PetscErrorCode SolveStates(Run *run)
 
   PetscFunctionBeginUser;
   PetscCall(LamProgressStart(&run->progress, run->scene->load_count, quiet));
-  if (!run->json) PetscCall(LamPrintResponseHeader());
+  if (!run->json) PetscCall(LamPrintResponseHeader(run->scene->micro.interface));
   while (run->solved < run->scene->load_count && !LamStopRequested()) {
-    LamResponse response;
+    LamResponse responses[2];
 
-    PetscCall(LamRVESolve(run->rve, &run->scene->loads[run->solved], run->state, &response));
+    PetscCall(LamMeshesSolve(&run->meshes, &run->scene->loads[run->solved], responses));
     run->solved++;
-    if (response.status != LAM_CONVERGED) run->failed++;
-    if (run->writer) PetscCall(WriteState(run, run->solved, &response));
-    PetscCall(Tell(run, run->solved, &response));
+    if (responses[0].status != LAM_CONVERGED) run->failed++;
+    if (run->find_onset) PetscCall(LamOnsetWatch(&run->onset, &run->meshes, run->solved, responses));
+    if (run->writer) PetscCall(WriteState(run, run->solved, &responses[0]));
+    PetscCall(Tell(run, run->solved, responses));
     PetscCall(LamProgressUpdate(&run->progress, run->solved, run->failed));
   }
   PetscCall(LamProgressEnd(&run->progress));
@@ -167,10 +242,24 @@ static PetscErrorCode SolveStates(Run *run)
 static PetscErrorCode Destroy(Run *run)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamRVEStateDestroy(&run->state));
-  PetscCall(LamRVEDestroy(&run->rve));
+  PetscCall(LamOnsetDestroy(&run->onset));
+  PetscCall(LamMeshesDestroy(&run->meshes));
   PetscCall(LamSceneDestroy(&run->scene));
   PetscFunctionReturn(0);
+}
+
+static PetscErrorCode FindOnset(Run *run)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamOnsetFind(&run->onset, &run->meshes));
+  PetscCall(LamOnsetPrint(&run->onset, &run->scene->scales, run->json));
+  PetscFunctionReturn(0);
+}
+
+static int ExitStatus(const Run *run)
+{
+  if (LamStopRequested()) return LamStopExitStatus();
+  return run->failed || run->onset.status == LAM_ONSET_NOT_CONVERGED ? LAM_EXIT_UNSOLVED : LAM_EXIT_OK;
 }
 
 static PetscErrorCode RunOnRoot(Run *run, int *exit_status)
@@ -178,6 +267,13 @@ static PetscErrorCode RunOnRoot(Run *run, int *exit_status)
   PetscErrorCode ierr = 0;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscTime(&run->start));
+  PetscCall(LamSceneRead(run->scene_path, &run->scene));
+  if (!OptionsFit(run)) {
+    *exit_status = LAM_EXIT_USAGE;
+    PetscCall(Destroy(run));
+    PetscFunctionReturn(0);
+  }
   PetscCall(Prepare(run));
   if (run->out_path) {
     PetscCall(LamRecordWriterOpen(run->out_path, "rve", LAM_WRITE_CREATE, run->scene, &run->writer));
@@ -190,8 +286,9 @@ static PetscErrorCode RunOnRoot(Run *run, int *exit_status)
     if (!ierr) ierr = closed;
   }
   PetscCall(ierr);
+  if (run->find_onset) PetscCall(FindOnset(run));
   PetscCall(TellEnd(run));
-  *exit_status = LamStopRequested() ? LamStopExitStatus() : run->failed ? LAM_EXIT_UNSOLVED : LAM_EXIT_OK;
+  *exit_status = ExitStatus(run);
   PetscCall(Destroy(run));
   PetscFunctionReturn(0);
 }
@@ -204,16 +301,24 @@ PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
       {'o', "output", LAM_OPTION_TEXT, "OUT.h5", "states and fields, for plot and query", &run.out_path},
       {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per state on stdout", &run.json},
       {0, "tangent", LAM_OPTION_FLAG, NULL, "the effective tangent too", &run.tangent},
+      {0, "second-mesh", LAM_OPTION_FLAG, NULL,
+       "solve contact tissue on a mesh with twice the elements along a face, too: errors, and whether cells separate",
+       &run.second_mesh},
+      {0, "onset", LAM_OPTION_FLAG, NULL,
+       "find where along the load the cells begin to separate, on two meshes (includes --second-mesh)",
+       &run.find_onset},
       {0, "monitor", LAM_OPTION_FLAG, NULL, "each Newton iteration on stderr", &run.monitor},
       {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &run.quiet},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
   };
 
   PetscFunctionBeginUser;
-  PetscCall(LamOptionsParse(args, "rve SCENE [-o OUT.h5] [--json] [--tangent] [--monitor] [--quiet]",
-                            "Solves the representative volume element along the scene's load.", options, 1,
-                            &run.scene_path, &done, exit_status));
+  PetscCall(LamOptionsParse(
+      args, "rve SCENE [-o OUT.h5] [--json] [--tangent] [--second-mesh] [--onset] [--monitor] [--quiet]",
+      "Solves the representative volume element along the scene's load.", options, 1, &run.scene_path, &done,
+      exit_status));
   if (done) PetscFunctionReturn(0);
+  if (run.find_onset) run.second_mesh = PETSC_TRUE;
   PetscCall(LamAppInitialize(args));
   if (LamAppIsRoot()) PetscCall(RunOnRoot(&run, exit_status));
   PetscFunctionReturn(0);

@@ -24,66 +24,52 @@ json_t *LamJSONReals(PetscInt n, const PetscReal values[], PetscReal scale)
   return list;
 }
 
-static void SetReal(json_t *object, const char name[], PetscReal value)
+/* One member in physical units: stresses in MPa. */
+static json_t *MemberToJSON(const LamMember *m, const LamResponse *response, PetscReal MPa)
 {
-  json_object_set_new(object, name, LamJSONReal(value));
+  const char *at = (const char *)response + m->offset;
+  const PetscReal scale = PetscPowReal(MPa, m->stress_power);
+
+  switch (m->type) {
+  case LAM_MEMBER_REAL:
+    return m->count > 1 ? LamJSONReals(m->count, (const PetscReal *)(const void *)at, scale)
+                        : LamJSONReal(*(const PetscReal *)(const void *)at * scale);
+  case LAM_MEMBER_INT:
+    return json_integer(*(const PetscInt *)(const void *)at);
+  case LAM_MEMBER_BOOL:
+    return json_boolean(*(const PetscBool *)(const void *)at);
+  case LAM_MEMBER_ENUM:
+    return json_string(m->names[*(const int *)(const void *)at]);
+  case LAM_MEMBER_TEXT:
+    return json_string(at);
+  }
+  return NULL;
 }
 
-static void SetInteger(json_t *object, const char name[], PetscInt value)
+/* Derivatives are for programs that asked for the tangent; a reason and a distance are not of every state. */
+static PetscBool IsTold(const LamMember *m, const LamResponse *response, PetscBool tangent)
 {
-  json_object_set_new(object, name, json_integer(value));
-}
+  static const char *const derivatives[] = {"tangent",    "P_turgor",         "energy_turgor2",
+                                            "P_cohesion", "energy_cohesion2", "energy_turgor_cohesion"};
 
-static void SetText(json_t *object, const char name[], const char text[])
-{
-  json_object_set_new(object, name, json_string(text));
-}
-
-static void SetInterface(json_t *object, const LamResponse *r, PetscReal MPa)
-{
-  SetReal(object, "opening_fraction", r->opening_fraction);
-  SetReal(object, "debonded_fraction", r->debonded_fraction);
-  json_object_set_new(object, "debonded_by_face", LamJSONReals(3, r->debonded_by_face, 1));
-  SetReal(object, "open_fraction", r->open_fraction);
-  SetReal(object, "max_gap", r->max_gap);
-  SetReal(object, "max_traction", r->max_traction * MPa);
-  json_object_set_new(object, "mean_face_traction", LamJSONReals(3, r->mean_face_traction, MPa));
-  SetInteger(object, "floating_cells", r->floating_cells);
-}
-
-static void SetSolution(json_t *object, const LamResponse *r)
-{
-  json_object_set_new(object, "stable", json_boolean(r->stable));
-  SetInteger(object, "negative_eigenvalues", r->negative_eigenvalues);
-  SetInteger(object, "branch", r->branch);
-  SetInteger(object, "newton_iterations", r->newton_iterations);
-  SetInteger(object, "factorisations", r->factorisations);
-  SetReal(object, "seconds", r->seconds);
-  SetInteger(object, "unknowns", r->unknowns);
-  SetReal(object, "error_estimate", r->error_estimate);
-  SetText(object, "source", LamSourceNames[r->source]);
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(derivatives); i++)
+    if (!strcmp(m->name, derivatives[i])) return tangent;
+  if (!strcmp(m->name, "reason")) return (PetscBool)(response->status != LAM_CONVERGED);
+  if (!strcmp(m->name, "distance")) return (PetscBool)(response->source == LAM_SOURCE_DATABASE);
+  return PETSC_TRUE;
 }
 
 PetscErrorCode LamResponseToJSON(const LamResponse *response, const LamScales *scales, PetscInt state,
                                  PetscBool tangent, json_t **object)
 {
-  const PetscReal MPa = scales->stress * PASCAL_TO_MPA;
   json_t *o = json_object();
 
   PetscFunctionBeginUser;
   PetscCheck(o, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for a JSON object");
-  if (state >= 0) SetInteger(o, "state", state);
-  json_object_set_new(o, "F", LamJSONReals(9, response->load.F, 1));
-  SetReal(o, "turgor", response->load.turgor * MPa);
-  SetReal(o, "cohesion", response->load.cohesion * MPa);
-  SetText(o, "status", LamStatusNames[response->status]);
-  if (response->status != LAM_CONVERGED) SetText(o, "reason", response->reason);
-  SetReal(o, "energy", response->energy * MPa);
-  json_object_set_new(o, "P", LamJSONReals(9, response->P, MPa));
-  if (tangent) json_object_set_new(o, "tangent", LamJSONReals(81, response->tangent, MPa));
-  SetReal(o, "lumen_fraction", response->lumen_fraction);
-  SetInterface(o, response, MPa);
-  SetSolution(o, response);
+  if (state >= 0) json_object_set_new(o, "state", json_integer(state));
+  for (const LamMember *m = LamResponseMembers; m->name; m++)
+    if (IsTold(m, response, tangent))
+      json_object_set_new(o, m->name, MemberToJSON(m, response, scales->stress * PASCAL_TO_MPA));
   *object = o;
   PetscFunctionReturn(0);
 }
@@ -112,27 +98,48 @@ PetscErrorCode LamPrintJSON(json_t *object)
 
 /* ---- table ---- */
 
-PetscErrorCode LamPrintResponseHeader(void)
+PetscErrorCode LamPrintResponseHeader(LamInterfaceLawType interface)
 {
+  const PetscBool contact = (PetscBool)(interface == LAM_INTERFACE_CONTACT);
+
   PetscFunctionBeginUser;
   if (!LamAppIsRoot()) PetscFunctionReturn(0);
-  printf("%5s %7s %7s %7s %7s %7s  %-14s %10s %10s %10s %10s %6s %10s %5s %8s\n", "state", "F11", "F12", "F21", "F22",
-         "turgor", "status", "P11", "P12", "P21", "P22", "lumen", "traction", "iter.", "time");
-  printf("%5s %7s %7s %7s %7s %7s  %-14s %10s %10s %10s %10s %6s %10s %5s %8s\n", "", "", "", "", "", "MPa", "", "MPa",
-         "MPa", "MPa", "MPa", "of V0", "MPa", "", "ms");
+  printf("%5s %7s %7s %7s %7s %7s  %-14s %10s %10s %10s %10s %6s %10s", "state", "F11", "F12", "F21", "F22", "turgor",
+         "status", "P11", "P12", "P21", "P22", "lumen", "traction");
+  if (contact) printf(" %9s %9s %8s %8s %9s %8s", "cohesion", "opening", "debonded", "open", "largest", "floating");
+  printf(" %5s %8s\n", "iter.", "time");
+  printf("%5s %7s %7s %7s %7s %7s  %-14s %10s %10s %10s %10s %6s %10s", "", "", "", "", "", "MPa", "", "MPa", "MPa",
+         "MPa", "MPa", "of V0", "MPa");
+  if (contact) printf(" %9s %9s %8s %8s %9s %8s", "MPa", "of V0", "share", "share", "gap/a", "cells");
+  printf(" %5s %8s\n", "", "ms");
   PetscCall(FlushOutput());
   PetscFunctionReturn(0);
 }
 
-static void PrintStress(PetscReal value)
+/* A number in a column, fixed ('f') or with exponent ('e'); "-" where it is not known. */
+static void PrintColumn(int width, int decimals, char notation, PetscReal value)
 {
-  if (isfinite(value))
-    printf(" %10.3e", (double)value);
+  if (!isfinite(value))
+    printf(" %*s", width, "-");
+  else if (notation == 'e')
+    printf(" %*.*e", width, decimals, (double)value);
   else
-    printf(" %10s", "-");
+    printf(" %*.*f", width, decimals, (double)value);
 }
 
-PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales *scales, PetscInt state)
+/* The columns of contact tissue. */
+static void PrintContact(const LamResponse *response, PetscReal MPa)
+{
+  printf(" %9.4g", (double)(response->load.cohesion * MPa));
+  PrintColumn(9, 2, 'e', response->opening_fraction);
+  PrintColumn(8, 4, 'f', response->debonded_fraction);
+  PrintColumn(8, 4, 'f', response->open_fraction);
+  PrintColumn(9, 2, 'e', response->max_gap);
+  printf(" %8" PetscInt_FMT, response->floating_cells);
+}
+
+PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales *scales, LamInterfaceLawType interface,
+                                   PetscInt state)
 {
   const PetscReal MPa = scales->stress * PASCAL_TO_MPA, *F = response->load.F;
   const PetscInt in_plane[4] = {0, 1, 3, 4};
@@ -142,17 +149,13 @@ PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales 
   printf("%5" PetscInt_FMT, state);
   for (int k = 0; k < 4; k++) printf(" %7.4f", (double)F[in_plane[k]]);
   printf(" %7.4g  %-14s", (double)(response->load.turgor * MPa), LamStatusNames[response->status]);
-  for (int k = 0; k < 4; k++) PrintStress(response->P[in_plane[k]] * MPa);
-  if (isfinite(response->lumen_fraction))
-    printf(" %6.4f", (double)response->lumen_fraction);
-  else
-    printf(" %6s", "-");
-  PrintStress(response->max_traction * MPa);
+  for (int k = 0; k < 4; k++) PrintColumn(10, 3, 'e', response->P[in_plane[k]] * MPa);
+  PrintColumn(6, 4, 'f', response->lumen_fraction);
+  PrintColumn(10, 3, 'e', response->max_traction * MPa);
+  if (interface == LAM_INTERFACE_CONTACT) PrintContact(response, MPa);
   printf(" %5" PetscInt_FMT, response->newton_iterations);
-  if (PetscIsInfOrNanReal(response->seconds))
-    printf(" %8s\n", "-");
-  else
-    printf(" %8.2f\n", (double)(1e3 * response->seconds));
+  PrintColumn(8, 2, 'f', 1e3 * response->seconds);
+  putchar('\n');
   if (response->status != LAM_CONVERGED) printf("      %s\n", response->reason);
   PetscCall(FlushOutput());
   PetscFunctionReturn(0);

@@ -29,13 +29,16 @@ static void ChooseMesh(PetscReal accuracy, LamMicrostructure *micro)
   if (!micro->through) micro->through = Meshes[m].through;
 }
 
-/* Two for each node; bonded cells share their faces, whose corners belong to three; one node is held. */
+/* Two for each node; bonded cells share their faces, whose corners belong to three; one node is held. Cells in contact
+   have a multiplier for each end and middle of the elements along three of their faces. */
 static PetscInt CountUnknowns(const LamMicrostructure *micro)
 {
   const PetscInt ring = 12 * micro->along, cells = micro->cells[0] * micro->cells[1];
-  const PetscInt outer = micro->interface == LAM_INTERFACE_BONDED ? 3 * (2 * micro->along - 1) + 2 : ring;
+  const PetscBool bonded = (PetscBool)(micro->interface == LAM_INTERFACE_BONDED);
+  const PetscInt outer = bonded ? 3 * (2 * micro->along - 1) + 2 : ring;
+  const PetscInt multipliers = bonded ? 0 : 3 * (2 * micro->along + 1);
 
-  return 2 * (cells * (ring * 2 * micro->through + outer) - 1);
+  return 2 * (cells * (ring * 2 * micro->through + outer) - 1) + cells * multipliers;
 }
 
 PetscErrorCode LamPlanMake(const LamScene *scene, LamPlan *plan)

@@ -5,6 +5,7 @@
     plot_axes.c      ticks, axes, curves, legends
     plot_colour.c    colour map, limits of colour scales, colour bars
     plot_field.c     views of the plane, fields on meshes of nine-node quadrilaterals, scale bars
+    plot_interface.c gaps and contact pressure between cells
     plot_outline.c   edges and closed outlines of such meshes
     plot_curves.c    stress-load curves
     plot_read.c      arrays of a file, checked
@@ -149,7 +150,8 @@ PetscErrorCode LamColourRangeFind(PetscInt n, const PetscReal values[], LamColou
 PetscReal LamColourShare(const LamColourRange *range, PetscReal value);
 /* Width that a colour bar needs to the right of its picture, and the bar itself, as high as `frame`. */
 double LamColourBarWidth(LamCanvas canvas, const LamColourRange *range);
-void LamColourBar(LamCanvas canvas, LamRect frame, const LamColourRange *range, const char label[], const char unit[]);
+void LamColourBar(LamCanvas canvas, LamRect frame, const LamColourRange *range, LamColour (*map)(PetscReal share),
+                  const char label[], const char unit[]);
 
 /* ---- plot_field.c ---- */
 /* World to page: x_page = frame.x + (X - origin[0])*scale, y_page = frame.y + frame.height - (Y - origin[1])*scale. */
@@ -184,6 +186,28 @@ PetscErrorCode LamFieldPaint(LamCanvas canvas, const LamView *view, const LamFie
    the view's world. Returns the width used, label included. */
 double LamScaleBar(LamCanvas canvas, const LamView *view, double x, double y, double width, PetscReal unit_length,
                    const char unit[]);
+
+/* ---- plot_interface.c ---- */
+/* Samples along the faces of contact tissue at one state, as docs/file-format.md describes them. */
+typedef struct {
+  PetscInt faces, points;    /* points of each face */
+  PetscReal *from, *to;      /* [face][point][2]; owned */
+  PetscReal *gap, *pressure; /* [face][point], apothems and MPa; owned */
+  PetscReal largest_pressure;
+  PetscBool is_open;   /* a gap is above LAM_VISIBLE_GAP */
+  LamColourRange gaps; /* from 0 to the widest one */
+} LamInterface;
+/* PETSC_ERR_USER_INPUT where the file lacks them. */
+PetscErrorCode LamInterfaceRead(const char path[], PetscInt64 state, LamInterface *interface);
+PetscErrorCode LamInterfaceDestroy(LamInterface *interface);
+LamColour LamGapColour(PetscReal share);
+/* Of one periodic image. */
+void LamInterfaceDrawGaps(LamCanvas canvas, const LamView *view, const LamInterface *interface,
+                          const PetscReal shift[2]);
+void LamInterfaceDrawPressure(LamCanvas canvas, const LamView *view, const LamInterface *interface,
+                              const PetscReal shift[2]);
+/* What the ribbons mean, from (x, y) to the right. */
+void LamInterfaceDrawKey(LamCanvas canvas, double x, double y, const LamInterface *interface);
 
 /* ---- plot_outline.c ---- */
 typedef struct {

@@ -84,14 +84,14 @@ double LamColourBarWidth(LamCanvas canvas, const LamColourRange *range)
 }
 
 /* The colours, with a pointed end where values lie beyond the limit. */
-static void DrawBar(LamCanvas canvas, LamRect bar, const LamColourRange *range)
+static void DrawBar(LamCanvas canvas, LamRect bar, const LamColourRange *range, LamColour (*map)(PetscReal share))
 {
   cairo_t *cr = LamCanvasCairo(canvas);
   cairo_pattern_t *colours = cairo_pattern_create_linear(0, bar.y + bar.height, 0, bar.y);
   const double right = bar.x + bar.width, middle = bar.x + 0.5 * bar.width, bottom = bar.y + bar.height;
 
   for (int i = 0; i <= 32; i++) {
-    const LamColour c = LamColourMap(i / 32.0);
+    const LamColour c = map(i / 32.0);
 
     cairo_pattern_add_color_stop_rgb(colours, i / 32.0, c.r, c.g, c.b);
   }
@@ -110,7 +110,8 @@ static void DrawBar(LamCanvas canvas, LamRect bar, const LamColourRange *range)
   cairo_stroke(cr);
 }
 
-void LamColourBar(LamCanvas canvas, LamRect frame, const LamColourRange *range, const char label[], const char unit[])
+void LamColourBar(LamCanvas canvas, LamRect frame, const LamColourRange *range, LamColour (*map)(PetscReal share),
+                  const char label[], const char unit[])
 {
   cairo_t *cr = LamCanvasCairo(canvas);
   const LamRect bar = {frame.x + frame.width + BarGap, frame.y + (range->clipped[1] ? Arrow : 0), BarThickness,
@@ -119,7 +120,7 @@ void LamColourBar(LamCanvas canvas, LamRect frame, const LamColourRange *range, 
   const double right = bar.x + bar.width;
   char text[128];
 
-  DrawBar(canvas, bar, range);
+  DrawBar(canvas, bar, range, map);
   for (PetscInt i = 0; i < axes.y.ticks.count; i++) {
     const double y = LamAxesY(&axes, axes.y.ticks.first + i * axes.y.ticks.step);
 

@@ -188,7 +188,8 @@ PetscErrorCode LamPlotDatabase(const LamPlotRequest *request)
   PetscCall(DrawScatter(canvas, rect, &picture, &shape, ToVolumeAndShape));
   rect.x += width + 10;
   PetscCall(DrawScatter(canvas, rect, &picture, &principal, ToPrincipal));
-  LamColourBar(canvas, principal.frame, &picture.range, by == COLOUR_STRESS ? "‖$P$‖" : "turgor $p$", "MPa");
+  LamColourBar(canvas, principal.frame, &picture.range, LamColourMap, by == COLOUR_STRESS ? "‖$P$‖" : "turgor $p$",
+               "MPa");
   PetscCall(LamCanvasFinish(&canvas));
   PetscCall(PetscFree(picture.strain));
   PetscCall(PetscFree(picture.value));

@@ -233,7 +233,7 @@ static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const FE2Pictur
   LamBoxExtend(box, p->node_count, p->nodes, none);
   LamViewFit(outer, box, &view);
   PetscCall(DrawBody(canvas, &view, p, &range));
-  LamColourBar(canvas, outer, &range, p->field->label, p->field->unit);
+  LamColourBar(canvas, outer, &range, LamColourMap, p->field->label, p->field->unit);
   y = outer.y + outer.height + 11;
   LamScaleBar(canvas, &view, outer.x, y, 0.18 * outer.width, 1, "mm");
   width = LamCanvasTextWidth(canvas, LAM_TICK_SIZE, reference);

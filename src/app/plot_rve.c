@@ -30,6 +30,8 @@ typedef struct {
   PetscInt *elements, *cell_of;  /* owned */
   PetscReal *period;             /* [2][2], rows, reference; owned */
   LamOutline outline;            /* loops per cell: walls outside, lumens inside */
+  PetscBool has_interface;       /* contact tissue */
+  LamInterface interface;
 } RVEPicture;
 
 static PetscErrorCode FindField(const LamPlotRequest *request, const RVEFieldRow **field)
@@ -102,6 +104,8 @@ static PetscErrorCode LoadRVE(const LamPlotRequest *request, RVEPicture *p)
   PetscCall(FieldName(p, p->field->name, sizeof name, name));
   PetscCall(LamPlotReadReals(path, name, p->node_count, 1, &p->values));
   PetscCall(LamOutlineCreate(p->element_count, p->elements, p->cell_of, &p->outline));
+  p->has_interface = (PetscBool)(p->micro.interface == LAM_INTERFACE_CONTACT);
+  if (p->has_interface) PetscCall(LamInterfaceRead(path, p->keys[p->index], &p->interface));
   PetscFunctionReturn(0);
 }
 
@@ -109,6 +113,7 @@ static PetscErrorCode UnloadRVE(RVEPicture *p)
 {
   PetscFunctionBeginUser;
   PetscCall(LamOutlineDestroy(&p->outline));
+  PetscCall(LamInterfaceDestroy(&p->interface));
   PetscCall(PetscFree(p->nodes));
   PetscCall(PetscFree(p->x));
   PetscCall(PetscFree(p->values));
@@ -254,6 +259,10 @@ static PetscErrorCode DrawTissue(LamCanvas canvas, const LamView *view, const RV
   }
   ReferencePath(canvas, view, p, reference);
   StrokeReference(canvas, 0.9);
+  for (PetscInt i = 0; i < count && p->has_interface; i++) {
+    LamInterfaceDrawPressure(canvas, view, &p->interface, images[i].shift);
+    LamInterfaceDrawGaps(canvas, view, &p->interface, images[i].shift);
+  }
   cairo_restore(cr);
   LamCanvasSetColour(canvas, WallLine);
   cairo_set_line_width(cr, 0.6);
@@ -293,8 +302,10 @@ static PetscErrorCode Title(const RVEPicture *p, size_t size, char title[])
   PetscFunctionReturn(0);
 }
 
-/* Scale bar, and what the dashed line and the paler cells are. */
-static void DrawKey(LamCanvas canvas, const LamView *view, const RVEPicture *p)
+static const double KeyRow = 10;
+
+/* Scale bar, and what the dashed line, the paler cells and the ribbons are; as far as `right`. */
+static void DrawKey(LamCanvas canvas, const LamView *view, double right, const RVEPicture *p)
 {
   cairo_t *cr = LamCanvasCairo(canvas);
   const LamRect f = view->frame;
@@ -303,16 +314,19 @@ static void DrawKey(LamCanvas canvas, const LamView *view, const RVEPicture *p)
   const double width = LamCanvasTextWidth(canvas, LAM_TICK_SIZE, reference);
 
   LamScaleBar(canvas, view, f.x, y, 0.18 * f.width, 1e-6 / p->scales.length, "µm");
-  cairo_move_to(cr, f.x + f.width - width - 23, y);
+  cairo_move_to(cr, right - width - 23, y);
   cairo_rel_line_to(cr, 19, 0);
   StrokeReference(canvas, 0.9);
   LamCanvasSetColour(canvas, WallLine);
-  LamCanvasText(canvas, f.x + f.width, y, 1, 0, LAM_TICK_SIZE, reference);
+  LamCanvasText(canvas, right, y, 1, 0, LAM_TICK_SIZE, reference);
+  if (p->has_interface) LamInterfaceDrawKey(canvas, f.x, y + KeyRow, &p->interface);
 }
 
 static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const RVEPicture *p)
 {
-  const PetscReal none[2] = {0, 0}, margin = 1.1; /* apothems: the nearest neighbours show */
+  /* apothems: the nearest neighbours show; at contact less of them, for the sake of the gaps */
+  const PetscReal none[2] = {0, 0}, margin = p->has_interface ? 0.5 : 1.1;
+  const double right = outer.x + outer.width;
   PetscReal reference[2], box[4];
   LamColourRange range;
   LamView view;
@@ -320,6 +334,8 @@ static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const RVEPictur
   PetscFunctionBeginUser;
   PetscCall(LamColourRangeFind(p->node_count, p->values, &range));
   outer.width -= LamColourBarWidth(canvas, &range);
+  if (p->has_interface) outer.height -= KeyRow;
+  if (p->interface.is_open) outer.width -= LamColourBarWidth(canvas, &p->interface.gaps);
   CentreReference(p, reference);
   LamBoxEmpty(box);
   LamBoxExtend(box, p->node_count, p->x, none);
@@ -330,8 +346,11 @@ static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const RVEPictur
   }
   LamViewFit(outer, box, &view);
   PetscCall(DrawTissue(canvas, &view, p, &range, reference));
-  LamColourBar(canvas, outer, &range, p->field->label, p->field->unit);
-  DrawKey(canvas, &view, p);
+  LamColourBar(canvas, outer, &range, LamColourMap, p->field->label, p->field->unit);
+  DrawKey(canvas, &view, p->interface.is_open ? right : outer.x + outer.width, p);
+  if (!p->interface.is_open) PetscFunctionReturn(0);
+  outer.width += LamColourBarWidth(canvas, &range);
+  LamColourBar(canvas, outer, &p->interface.gaps, LamGapColour, "gap", "apothems");
   PetscFunctionReturn(0);
 }
 

@@ -1,15 +1,5 @@
 # Scenes that are wrong: exit status 2, a message with file, line, key and value, nothing written.
-set -u
-lamella=$1 source=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failures=0
-
-fail() {
-  echo "bad_scene: $1" >&2
-  failures=$((failures + 1))
-}
+. "$(dirname "$0")/common.sh"
 
 # refused WORDS COMMAND...: status 2, the words on stderr, nothing on stdout
 refused() {
@@ -37,4 +27,3 @@ refused "F-huge.yaml:8:11: load[1].F[1][1]: 1e200" "$lamella" rve "$source/tests
 refused "no block \`load\`" "$lamella" rve "$source/tests/scenes/tissue-block.yaml" -o out.h5
 refused "no block \`sample\`" "$lamella" build "$source/tests/scenes/shear-bonded.yaml" -d out.h5
 [ -z "$(ls out.h5* 2>/dev/null)" ] || fail "a scene without a block leaves $(ls out.h5*)"
-exit $((failures > 0))

@@ -1,19 +1,7 @@
 #!/usr/bin/env bash
 # lamella build: counts, refusal of an existing file, resumption, signals.
-set -euo pipefail
-lamella=$1
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
-cd "$dir"
-
-fail() { echo "FAILED: $*" >&2; exit 1; }
-# expect STATUS COMMAND...: the command ends with that status
-expect() {
-  local wanted=$1 status=0
-  shift
-  "$@" >out 2>err || status=$?
-  [ "$status" = "$wanted" ] || { cat out err >&2; fail "status $status, wanted $wanted: $*"; }
-}
+. "$(dirname "$0")/common.sh"
+set -e -o pipefail
 # member FILE NAME: a number from `info --json`
 member() { "$lamella" info "$1" --json | sed "s/.*\"$2\":\s*\([0-9]*\).*/\1/"; }
 
@@ -43,13 +31,13 @@ expect 0 "$lamella" build s.yaml -d a.h5 --quiet
 
 # what is there is not overwritten
 expect 2 "$lamella" build s.yaml -d a.h5 --quiet
-grep -q -- --resume err || fail "the message does not tell of --resume: $(cat err)"
+grep -q -- --resume err.txt || fail "the message does not tell of --resume: $(cat err.txt)"
 
 # --resume goes on, and gives the same file as one run
 expect 0 "$lamella" build more.yaml -d a.h5 --resume --quiet
 [ "$(member a.h5 records)" = 30 ] || fail "not 30 records"
 expect 0 "$lamella" build more.yaml -d b.h5 --resume --json
-[ "$(tail -n 1 out | grep -c '"records": *30, *"failed": *0')" = 1 ] || fail "progress: $(tail -n 1 out)"
+[ "$(tail -n 1 out.txt | grep -c '"records": *30, *"failed": *0')" = 1 ] || fail "progress: $(tail -n 1 out.txt)"
 for file in a b; do
   printf '1 0.02 0 1\n1.04 0.01 0.02 1.07 ; 0.015 MPa\n' |
     "$lamella" query $file.h5 -F - --radius 1 --json --tangent | sed 's/"seconds": *[^,}]*//' >$file.json
@@ -79,7 +67,7 @@ added=$(($(member e.h5 records) - 5))
 [ "$added" -gt 0 ] || fail "fe2 added no records"
 scene 9 >nine.yaml
 expect 0 "$lamella" build nine.yaml -d e.h5 --resume --json
-[ "$(tail -n 1 out | grep -c '"records": *9,')" = 1 ] || fail "sample states: $(tail -n 1 out)"
+[ "$(tail -n 1 out.txt | grep -c '"records": *9,')" = 1 ] || fail "sample states: $(tail -n 1 out.txt)"
 [ "$(member e.h5 records)" = $((9 + added)) ] || fail "not 9 sample states and $added of fe2"
 expect 0 "$lamella" fe2 five.yaml -d e.h5 --quiet
 expect 0 "$lamella" build nine.yaml -d e.h5 --resume --quiet

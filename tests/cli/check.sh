@@ -1,15 +1,5 @@
 # lamella check: the plan, without MPI, in agreement with what is then solved.
-set -u
-lamella=$1 source=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failures=0
-
-fail() {
-  echo "check: $1" >&2
-  failures=$((failures + 1))
-}
+. "$(dirname "$0")/common.sh"
 
 # number FILE NAME: the first number of that name in a JSON line
 number() { grep -oE "\"$2\": *[-0-9.e+]+" "$1" | head -1 | sed 's/.*: *//'; }
@@ -78,4 +68,3 @@ for words in "plane strain" fibre_mooney_rivlin bonded "0.02 MPa" "6 elements al
   "576 material points"; do
   grep -qE "$words" text.txt || fail "does not say \"$words\": $(cat text.txt)"
 done
-exit $((failures > 0))

@@ -1,14 +1,6 @@
 # slow: the command fe2: steps, exit statuses, warm databases
-set -eu
-lamella=$1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-
-fail() {
-  echo "$1" >&2
-  exit 1
-}
+. "$(dirname "$0")/common.sh"
+set -e
 
 # scene NAME SHEAR STEPS: a body of 2 x 2 elements, inflated, then sheared
 scene() {

@@ -1,15 +1,6 @@
 # slow: a signal ends fe2 at once, in good order
-set -eu
-lamella=$1
-source=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-
-fail() {
-  echo "$1" >&2
-  exit 1
-}
+. "$(dirname "$0")/common.sh"
+set -e
 
 # inflated in a few seconds; the load step takes longer: a run that waits for its end is late
 sed 's/^  steps: 5/  steps: 1/; s/elements: \[8, 8\]/elements: [5, 5]/' "$source/tests/scenes/tissue-block.yaml" >slow.yaml

@@ -1,18 +1,7 @@
 #!/usr/bin/env bash
 # lamella info: describes what lamella wrote, refuses what it did not write.
-set -euo pipefail
-lamella=$1
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
-cd "$dir"
-
-fail() { echo "FAILED: $*" >&2; exit 1; }
-expect() {
-  local wanted=$1 status=0
-  shift
-  "$@" >out 2>err || status=$?
-  [ "$status" = "$wanted" ] || { cat out err >&2; fail "status $status, wanted $wanted: $*"; }
-}
+. "$(dirname "$0")/common.sh"
+set -e -o pipefail
 
 cat >s.yaml <<'YAML'
 version: 1
@@ -33,15 +22,15 @@ YAML
 "$lamella" rve s.yaml -o rve.h5 >/dev/null 2>&1
 
 expect 0 "$lamella" info db.h5 --json
-[ "$(wc -l <out)" = 1 ] || fail "more than one line"
+[ "$(wc -l <out.txt)" = 1 ] || fail "more than one line"
 for part in '"kind": *"database"' '"records": *3' '"failed": *0' '"format_version": *1' '"microstructures": *\[{"hash"' \
   '"wall_thickness": *0.1[45]' '"PETSc"' '"HDF5"'; do
-  grep -q "$part" out || fail "$part is missing: $(cat out)"
+  grep -q "$part" out.txt || fail "$part is missing: $(cat out.txt)"
 done
 expect 0 "$lamella" info db.h5
-grep -q 'records *3' out || fail "table: $(cat out)"
+grep -q 'records *3' out.txt || fail "table: $(cat out.txt)"
 expect 0 "$lamella" info rve.h5 --json
-grep -q '"kind": *"rve"' out || fail "kind: $(cat out)"
+grep -q '"kind": *"rve"' out.txt || fail "kind: $(cat out.txt)"
 
 # how far a macroscale run has come: the inflation and two steps
 cat >macro.yaml <<'YAML'
@@ -55,16 +44,16 @@ YAML
 cat s.yaml macro.yaml >fe2.yaml
 "$lamella" fe2 fe2.yaml -d db.h5 -o fe2.h5 --quiet >/dev/null
 expect 0 "$lamella" info fe2.h5 --json
-grep -qE '"run": \{"steps": 3, "load_factor": 1\.0, "status": "done"\}' out || fail "run: $(cat out)"
+grep -qE '"run": \{"steps": 3, "load_factor": 1\.0, "status": "done"\}' out.txt || fail "run: $(cat out.txt)"
 expect 0 "$lamella" info fe2.h5
-grep -qE '^steps +3$' out && grep -qE '^load factor +1$' out && grep -qE '^status +done$' out || fail "table: $(cat out)"
+grep -qE '^steps +3$' out.txt && grep -qE '^load factor +1$' out.txt && grep -qE '^status +done$' out.txt || fail "table: $(cat out.txt)"
 expect 0 "$lamella" info rve.h5 --json
-if grep -q '"run"' out; then fail "a file of states has a run"; fi
+if grep -q '"run"' out.txt; then fail "a file of states has a run"; fi
 
 # cut short, of another program, not there
 head -c 3000 db.h5 >cut.h5
 expect 2 "$lamella" info cut.h5
-grep -q 'cut.h5' err || fail "the file is not named: $(cat err)"
+grep -q 'cut.h5' err.txt || fail "the file is not named: $(cat err.txt)"
 expect 2 "$lamella" info s.yaml
 expect 4 "$lamella" info missing.h5
 expect 1 "$lamella" info

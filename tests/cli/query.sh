@@ -1,18 +1,7 @@
 #!/usr/bin/env bash
 # lamella query: answers in reach, refusals out of reach, many questions from standard input.
-set -euo pipefail
-lamella=$1
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
-cd "$dir"
-
-fail() { echo "FAILED: $*" >&2; exit 1; }
-expect() {
-  local wanted=$1 status=0
-  shift
-  "$@" >out 2>err || status=$?
-  [ "$status" = "$wanted" ] || { cat out err >&2; fail "status $status, wanted $wanted: $*"; }
-}
+. "$(dirname "$0")/common.sh"
+set -e -o pipefail
 
 cat >s.yaml <<'YAML'
 version: 1
@@ -31,25 +20,25 @@ YAML
 
 # in reach
 expect 0 "$lamella" query db.h5 -F "1.03 0.01 0 1.02" -p "0.02 MPa" --radius 0.05 --json --tangent
-[ "$(wc -l <out)" = 1 ] || fail "more than one line"
-grep -q '"source": *"database"' out || fail "no source: $(cat out)"
-grep -q '"tangent": *\[' out || fail "no tangent"
+[ "$(wc -l <out.txt)" = 1 ] || fail "more than one line"
+grep -q '"source": *"database"' out.txt || fail "no source: $(cat out.txt)"
+grep -q '"tangent": *\[' out.txt || fail "no tangent"
 expect 0 "$lamella" query db.h5 -F "1.03 0.01 0 0 1.02 0 0 0 1" -p "20 kPa" --radius 0.05
 
 # out of reach: said so, not solved
 expect 3 "$lamella" query db.h5 -F "1.5 0 0 1.5" -p "0.02 MPa" --json
-grep -q '"status": *"out_of_reach"' out || fail "status: $(cat out)"
-grep -q '"reason"' out || fail "no reason: $(cat out)"
+grep -q '"status": *"out_of_reach"' out.txt || fail "status: $(cat out.txt)"
+grep -q '"reason"' out.txt || fail "no reason: $(cat out.txt)"
 expect 3 "$lamella" query db.h5 -F "-1 0 0 1" --json
-grep -q '"status": *"invalid_F"' out || fail "status: $(cat out)"
+grep -q '"status": *"invalid_F"' out.txt || fail "status: $(cat out.txt)"
 
 # many questions
 printf '1.03 0.01 0 1.02\n\n1.02,0,0,1.02 ; 0.025 MPa\n' >lines
 expect 0 "$lamella" query db.h5 -F - -p "0.02 MPa" --radius 0.05 --json <lines
-[ "$(wc -l <out)" = 2 ] || fail "not two answers"
+[ "$(wc -l <out.txt)" = 2 ] || fail "not two answers"
 printf '1.03 0.01 0 1.02\n1.02 zero 0 1.02\n' >lines
 expect 2 "$lamella" query db.h5 -F - -p "0.02 MPa" --radius 0.05 --json <lines
-grep -q 'line 2' err || fail "the line is not named: $(cat err)"
+grep -q 'line 2' err.txt || fail "the line is not named: $(cat err.txt)"
 
 # usage and wrong files
 expect 1 "$lamella" query db.h5

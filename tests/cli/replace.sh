@@ -1,17 +1,12 @@
 #!/usr/bin/env bash
 # -o replaces an older result of the same command, and nothing else.
-set -euo pipefail
-lamella=$1
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
-cd "$dir"
-
-fail() { echo "FAILED: $*" >&2; exit 1; }
+. "$(dirname "$0")/common.sh"
+set -e -o pipefail
 expect() {
   local wanted=$1 status=0
   shift
-  timeout 60 "$@" >out 2>err || status=$?
-  [ "$status" = "$wanted" ] || { cat out err >&2; fail "status $status, wanted $wanted: $*"; }
+  timeout 60 "$@" >out.txt 2>err.txt || status=$?
+  [ "$status" = "$wanted" ] || { cat out.txt err.txt >&2; fail "status $status, wanted $wanted: $*"; }
 }
 
 cat >s.yaml <<'YAML'
@@ -33,12 +28,12 @@ cp s.yaml before.yaml
 
 # the scene, a database, a pipe
 expect 2 "$lamella" rve s.yaml -o s.yaml
-grep -q 's.yaml: exists and is not a file' err || fail "message: $(cat err)"
+grep -q 's.yaml: exists and is not a file' err.txt || fail "message: $(cat err.txt)"
 cmp -s s.yaml before.yaml || fail "the scene is destroyed"
 "$lamella" build s.yaml -d tissue.db.h5 --quiet >/dev/null
 cp tissue.db.h5 before.h5
 expect 2 "$lamella" rve s.yaml -o tissue.db.h5
-grep -q 'tissue.db.h5: exists and is of kind "database"' err || fail "message: $(cat err)"
+grep -q 'tissue.db.h5: exists and is of kind "database"' err.txt || fail "message: $(cat err.txt)"
 cmp -s tissue.db.h5 before.h5 || fail "the database is destroyed"
 mkfifo pipe
 expect 2 "$lamella" rve s.yaml -o pipe

@@ -1,24 +1,5 @@
 # lamella rve: states in order, JSON and table, the file, failed states, signals, errors of writing.
-set -u
-lamella=$1 source=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failures=0
-
-fail() {
-  echo "rve: $1" >&2
-  failures=$((failures + 1))
-}
-
-# expect STATUS COMMAND...: into out.txt and err.txt
-expect() {
-  wanted=$1
-  shift
-  "$@" >out.txt 2>err.txt
-  status=$?
-  [ $status -eq "$wanted" ] || fail "exit status $status instead of $wanted: $*: $(cat err.txt)"
-}
+. "$(dirname "$0")/common.sh"
 
 # scene MESH LOAD...: writes scene.yaml
 scene() {
@@ -113,4 +94,3 @@ if [ -w /dev/full ]; then
   "$lamella" rve "$source/tests/scenes/shear-bonded.yaml" --json 2>err.txt >/dev/full
   [ $? -eq 4 ] || fail "a full disk goes unnoticed: $(cat err.txt)"
 fi
-exit $((failures > 0))

@@ -1,15 +1,5 @@
 # The command line: help, versions, mistakes of usage, errors of writing.
-set -u
-lamella=$1 source=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failures=0
-
-fail() {
-  echo "usage: $1" >&2
-  failures=$((failures + 1))
-}
+. "$(dirname "$0")/common.sh"
 
 # expect STATUS WORDS COMMAND...: the exit status, and words in what is said on stdout or stderr
 expect() {
@@ -71,4 +61,3 @@ case $(cat status.txt) in
 4) grep -q "standard output" err.txt || fail "a closed pipe is not told: $(cat err.txt)" ;;
 *) fail "a closed pipe ends with status $(cat status.txt)" ;;
 esac
-exit $((failures > 0))

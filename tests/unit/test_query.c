@@ -384,6 +384,117 @@ static void faces_are_renamed_with_the_image(void **state)
   }
 }
 
+/* ---- contact ---- */
+
+static const PetscReal g = 0.2; /* cohesion of the records */
+
+/* The exact response with a gap whose volume is linear in C and p: 0.05 + 0.2 (c0 - 1) - 0.03 p. */
+static LamResponse ExactContact(LamLoad load)
+{
+  LamResponse r;
+  PetscReal x[4], K[3][9];
+
+  load.cohesion = g;
+  r = Exact(&load);
+  Invariants(load.F, load.turgor, x);
+  Slopes(load.F, K);
+  r.opening_fraction = 0.05 + 0.2 * (x[0] - 1) - 0.03 * x[3];
+  for (int i = 0; i < 9; i++) r.P_cohesion[i] = 0.2 * K[0][i];
+  r.energy_turgor_cohesion = -0.03;
+  r.energy_cohesion2 = -0.5;
+  r.max_gap = 0.01;
+  r.cell_clusters = 1;
+  for (int k = 0; k < 3; k++) r.fabric[k] = 0.1 * k;
+  return r;
+}
+
+static LamDatabase MakeContact(LamLoad load)
+{
+  LamScene scene = {.micro = {.wall_thickness = 0.15,
+                              .orientation = THETA,
+                              .cells = {1, 1},
+                              .along = 6,
+                              .through = 2,
+                              .wall = {.C1 = 0.9, .C2 = 0.1, .C4 = 9, .bulk_modulus = 1000},
+                              .interface = LAM_INTERFACE_CONTACT},
+                    .scales = {.length = 75e-6, .stress = 0.11e6},
+                    .accuracy = 0.01};
+  const LamResponse r = ExactContact(load);
+  LamDatabase db;
+
+  assert_int_equal(LamDatabaseCreateEmpty(&scene, &db), 0);
+  assert_int_equal(LamDatabaseAdd(db, 1, &r), 0);
+  return db;
+}
+
+static LamResponse AskContact(LamDatabase db, LamLoad load)
+{
+  load.cohesion = g;
+  return Ask(db, load);
+}
+
+static void the_opening_follows_its_derivatives(void **state)
+{
+  LamDatabase db = MakeContact(Load(1.1, 0.1, 0, 1, 0.3));
+  const LamResponse exact = ExactContact(probe), r = AskContact(db, probe);
+
+  AssertClose(1, &r.opening_fraction, &exact.opening_fraction, 1e-14);
+  AssertClose(9, r.P_cohesion, exact.P_cohesion, 1e-14);
+  AssertClose(1, &r.energy_turgor_cohesion, &exact.energy_turgor_cohesion, 1e-14);
+  LamDatabaseClose(&db);
+}
+
+static void gaps_are_known_in_the_state_of_a_record_alone(void **state)
+{
+  LamDatabase db = MakeContact(probe);
+  LamLoad near = probe, turned = probe;
+  LamResponse r = AskContact(db, probe);
+
+  assert_near(r.max_gap, 0.01, 1e-15);
+  assert_near(r.fabric[2], 0.2, 1e-15);
+  assert_int_equal(r.cell_clusters, 1);
+  near.F[1] += 1e-3;
+  r = AskContact(db, near);
+  assert_true(isnan(r.max_gap) && isnan(r.fabric[2]) && isnan(r.debonded_fraction) && isnan(r.max_traction));
+  assert_int_equal(r.cell_clusters, 0);
+  for (int j = 0; j < 3; j++) { /* turned by a right angle in space: the same gaps elsewhere */
+    turned.F[j] = -probe.F[3 + j];
+    turned.F[3 + j] = probe.F[j];
+  }
+  r = AskContact(db, turned);
+  assert_near(r.max_gap, 0.01, 1e-15);
+  assert_true(isnan(r.fabric[2]));
+  LamDatabaseClose(&db);
+}
+
+static void contact_tissue_is_answered_at_the_cohesion_of_its_records(void **state)
+{
+  LamDatabase db = MakeContact(probe);
+  LamLoad load = probe;
+  LamResponse r;
+
+  load.cohesion = g + 1e-10; /* a cache rounds so much */
+  assert_int_equal(LamDatabaseQuery(db, &load, 0.01, NULL, &r), 0);
+  assert_int_equal(r.status, LAM_CONVERGED);
+  load.cohesion = 0;
+  assert_int_equal(LamDatabaseQuery(db, &load, 0.01, NULL, &r), 0);
+  assert_int_equal(r.status, LAM_OUT_OF_REACH);
+  LamDatabaseClose(&db);
+}
+
+static void a_record_without_a_tangent_does_not_answer(void **state)
+{
+  LamResponse floating = ExactContact(probe);
+  LamDatabase db = MakeContact(Load(1.1, 0.1, 0, 1, 0.3));
+  LamLoad load = probe;
+
+  for (int i = 0; i < 81; i++) floating.tangent[i] = NAN;
+  assert_int_equal(LamDatabaseAdd(db, 1, &floating), 0);
+  load.cohesion = g;
+  assert_true(Ask(db, load).distance > 0.01);
+  LamDatabaseClose(&db);
+}
+
 static void unequal_cell_counts_have_no_sixfold_symmetry(void **state)
 {
   LamDatabase db = Make(2, 1);
@@ -511,6 +622,10 @@ int main(void)
       cmocka_unit_test(a_rotation_of_space_rotates_the_stress),
       cmocka_unit_test(images_of_the_lattice_have_the_same_answer),
       cmocka_unit_test(faces_are_renamed_with_the_image),
+      cmocka_unit_test(the_opening_follows_its_derivatives),
+      cmocka_unit_test(gaps_are_known_in_the_state_of_a_record_alone),
+      cmocka_unit_test(contact_tissue_is_answered_at_the_cohesion_of_its_records),
+      cmocka_unit_test(a_record_without_a_tangent_does_not_answer),
       cmocka_unit_test(unequal_cell_counts_have_no_sixfold_symmetry),
       cmocka_unit_test(a_quadratic_potential_is_answered_exactly),
       cmocka_unit_test(the_stress_error_falls_with_the_square_of_the_distance),

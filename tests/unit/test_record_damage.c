@@ -87,53 +87,146 @@ static void another_format_version_is_refused(void **state)
   AssertUnreadable(PETSC_ERR_USER_INPUT, "format version 99");
 }
 
-/* Our record type with one more number before the checksum. */
-static hid_t TypeWithAddedMember(void)
+/* Whether `name` is one of the names, which end with NULL. */
+static bool IsOneOf(const char name[], const char *const names[])
+{
+  while (*names && strcmp(name, *names)) names++;
+  return *names;
+}
+
+/* Our record type without some members, but with a number named `added` before the checksum, where not NULL. */
+static hid_t ChangedType(const char *const removed[], const char added[])
 {
   hid_t ours, type;
-  size_t checksum, size;
+  size_t end = 0;
 
   assert_int_equal(LamRecordTypeCreate(PETSC_FALSE, &ours), 0);
-  size = H5Tget_size(ours);
-  checksum = size - sizeof(uint32_t);
-  type = H5Tcreate(H5T_COMPOUND, size + sizeof(double));
+  type = H5Tcreate(H5T_COMPOUND, H5Tget_size(ours) + sizeof(double));
   for (int i = 0; i + 1 < H5Tget_nmembers(ours); i++) {
     char *name = H5Tget_member_name(ours, (unsigned)i);
+    const hid_t member = H5Tget_member_type(ours, (unsigned)i);
 
-    H5Tinsert(type, name, H5Tget_member_offset(ours, (unsigned)i), H5Tget_member_type(ours, (unsigned)i));
+    if (!IsOneOf(name, removed)) {
+      H5Tinsert(type, name, end, member);
+      end += H5Tget_size(member);
+    }
+    H5Tclose(member);
     H5free_memory(name);
   }
-  H5Tinsert(type, "added", checksum, H5T_IEEE_F64LE);
-  H5Tinsert(type, "checksum", checksum + sizeof(double), H5T_STD_U32LE);
+  if (added) {
+    H5Tinsert(type, added, end, H5T_IEEE_F64LE);
+    end += sizeof(double);
+  }
+  H5Tinsert(type, "checksum", end, H5T_STD_U32LE);
+  H5Tset_size(type, end + sizeof(uint32_t));
+  H5Tclose(ours);
   return type;
 }
 
-static void members_added_by_later_versions_are_passed_over(void **state)
+/* A file of two records of another type. */
+static void WriteTyped(hid_t type, const LamResponse records[2])
 {
-  const LamResponse wanted[2] = {Response(0), Response(1)}, *records;
   const PetscInt64 keys[2] = {0, 1}, committed = 2;
-  const hsize_t count = 2;
-  const hid_t type = TypeWithAddedMember(), space = H5Screate_simple(1, &count, NULL);
+  const hsize_t count = 2, unlimited = H5S_UNLIMITED, chunk = 64;
+  const hid_t space = H5Screate_simple(1, &count, &unlimited), list = H5Pcreate(H5P_DATASET_CREATE);
   hid_t file, dataset, attribute;
-  LamDatabase db;
   void *bytes;
 
   WriteFile(1);
-  assert_int_equal(LamRecordsPack(2, keys, wanted, type, &bytes), 0);
+  assert_int_equal(LamRecordsPack(2, keys, records, type, &bytes), 0);
+  H5Pset_chunk(list, 1, &chunk);
   file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
   H5Ldelete(file, "/records", H5P_DEFAULT);
-  dataset = H5Dcreate2(file, "/records", type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  dataset = H5Dcreate2(file, "/records", type, space, H5P_DEFAULT, list, H5P_DEFAULT);
   H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes);
   attribute = H5Acreate2(dataset, "committed", H5T_STD_I64LE, H5Screate(H5S_SCALAR), H5P_DEFAULT, H5P_DEFAULT);
   H5Awrite(attribute, H5T_NATIVE_INT64, &committed);
   H5Aclose(attribute);
   H5Dclose(dataset);
   H5Fclose(file);
+  H5Pclose(list);
+  H5Sclose(space);
+  H5Tclose(type);
   PetscFree(bytes);
+}
+
+static void members_added_by_later_versions_are_passed_over(void **state)
+{
+  const LamResponse wanted[2] = {Response(0), Response(1)}, *records;
+  const char *const none[] = {NULL};
+  LamDatabase db;
+
+  WriteTyped(ChangedType(none, "added"), wanted);
   assert_int_equal(LamDatabaseOpen(path, &db), 0);
   LamDatabaseGetRecords(db, NULL, &records, NULL);
   for (int i = 0; i < 2; i++) AssertSame(&records[i], &wanted[i]);
   LamDatabaseClose(&db);
+}
+
+static const char *const indicators[] = {"opening_by_face",
+                                         "open_by_face",
+                                         "debonded_spread",
+                                         "open_spread",
+                                         "mean_gap",
+                                         "max_penetration",
+                                         "fabric",
+                                         "zero_modes",
+                                         "cell_clusters",
+                                         "percolating_directions",
+                                         NULL};
+
+/* What a file of before the indicators of contact gives back of a response. */
+static LamResponse WithoutIndicators(LamResponse r)
+{
+  for (int k = 0; k < 3; k++) r.opening_by_face[k] = r.open_by_face[k] = r.fabric[k] = NAN;
+  r.debonded_spread = r.open_spread = r.mean_gap = r.max_penetration = NAN;
+  r.zero_modes = r.cell_clusters = r.percolating_directions = 0;
+  return r;
+}
+
+static void AssertSameNumbers(LamResponse a, LamResponse b)
+{
+  for (const LamMember *m = LamResponseMembers; m->name; m++)
+    for (PetscInt i = 0; m->type == LAM_MEMBER_REAL && i < m->count; i++) {
+      const PetscReal p = ((PetscReal *)((char *)&a + m->offset))[i], q = ((PetscReal *)((char *)&b + m->offset))[i];
+
+      if (p != q && !(isnan(p) && isnan(q))) fail_msg("%s is %g, not %g", m->name, (double)p, (double)q);
+    }
+  assert_int_equal(a.zero_modes, b.zero_modes);
+  assert_int_equal(a.newton_iterations, b.newton_iterations);
+  assert_string_equal(a.reason, b.reason);
+}
+
+static void members_that_an_older_file_lacks_are_not_known(void **state)
+{
+  const LamResponse written[2] = {Response(0), Response(1)}, *records;
+  LamDatabase db;
+
+  WriteTyped(ChangedType(indicators, NULL), written);
+  assert_int_equal(LamDatabaseOpen(path, &db), 0);
+  LamDatabaseGetRecords(db, NULL, &records, NULL);
+  for (int i = 0; i < 2; i++) AssertSameNumbers(records[i], WithoutIndicators(written[i]));
+  LamDatabaseClose(&db);
+}
+
+static void an_older_file_is_not_appended_to(void **state)
+{
+  const LamResponse written[2] = {Response(0), Response(1)};
+  LamScene scene = Scene();
+  LamRecordWriter writer;
+
+  WriteTyped(ChangedType(indicators, NULL), written);
+  assert_int_equal(LamRecordWriterOpen(path, "database", LAM_WRITE_APPEND, &scene, &writer), PETSC_ERR_USER_INPUT);
+  assert_non_null(strstr(message, "go on with the version that wrote it"));
+}
+
+static void a_member_that_every_file_has_may_not_be_missing(void **state)
+{
+  const LamResponse written[2] = {Response(0), Response(1)};
+  const char *const stress[] = {"P", NULL};
+
+  WriteTyped(ChangedType(stress, NULL), written);
+  AssertUnreadable(PETSC_ERR_USER_INPUT, "member \"P\" of /records is missing");
 }
 
 static void a_counter_beyond_the_extent_is_refused(void **state)
@@ -242,6 +335,9 @@ int main(void)
       TEST(a_cut_file_is_refused),
       TEST(another_format_version_is_refused),
       TEST(members_added_by_later_versions_are_passed_over),
+      TEST(members_that_an_older_file_lacks_are_not_known),
+      TEST(an_older_file_is_not_appended_to),
+      TEST(a_member_that_every_file_has_may_not_be_missing),
       TEST(a_counter_beyond_the_extent_is_refused),
       TEST(another_microstructure_is_not_appended_to),
       TEST(a_full_disk_is_reported_and_spares_the_records),

@@ -122,11 +122,27 @@ static void what_is_left_out_has_its_default(void **state)
   AssertNear(scene->micro.wall.bulk_modulus, 1000.0);
   assert_int_equal(scene->micro.wall.fibres, LAM_FIBRES_BOTH);
   assert_int_equal(scene->micro.interface, LAM_INTERFACE_BONDED);
+  assert_int_equal(scene->strategy, LAM_TWO_STEP);
   AssertNear(scene->turgor, 0.0);
   AssertNear(scene->cohesion, 0.0);
   AssertNear(scene->accuracy, 0.01);
   assert_int_equal(scene->micro.along, 0);
   assert_int_equal(scene->load_count, 0);
+  assert_int_equal(LamSceneDestroy(&scene), 0);
+}
+
+static void cells_that_come_apart_have_cohesion_clearance_and_a_strategy(void **state)
+{
+  LamScene *scene = Read(RVE "  interface: {law: contact, cohesion: 0.011 MPa, clearance: 0.75 um}\n"
+                             "  strategy: one_step\n"
+                             "load:\n  - {F: [[1, 0], [0, 1]]}\n  - {F: [[1, 0], [0, 1]], cohesion: 0 MPa}\n");
+
+  assert_int_equal(scene->micro.interface, LAM_INTERFACE_CONTACT);
+  assert_int_equal(scene->strategy, LAM_ONE_STEP);
+  AssertNear(scene->cohesion, 0.1);
+  AssertNear(scene->micro.clearance, 0.01);
+  AssertNear(scene->loads[0].cohesion, 0.1);
+  AssertNear(scene->loads[1].cohesion, 0.0);
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
@@ -251,6 +267,20 @@ static void inflation_is_asked_for_by_turgor(void **state)
   assert_int_equal(LamSceneDestroy(&told), 0);
 }
 
+/* A body of contact tissue that is held, or whose lamella has cohesion, may carry turgor; tests/scenes/bad has the
+ * rest.
+ */
+static void contact_tissue_inflates_with_cohesion(void **state)
+{
+  LamScene *cohesive = Read(TURGID "  interface: {law: contact, cohesion: 0.001 MPa}\n" CLAMPED);
+  LamScene *held = Read(TURGID "  interface: {law: contact}\n" CLAMPED "  inflate: false\n");
+
+  assert_true(cohesive->macro.inflate);
+  assert_false(held->macro.inflate);
+  assert_int_equal(LamSceneDestroy(&cohesive), 0);
+  assert_int_equal(LamSceneDestroy(&held), 0);
+}
+
 static void rollers_leave_a_component_free(void **state)
 {
   LamScene *scene = Read(RVE MACRO "    - {on: bottom, displacement: [free, 0 mm]}\n"
@@ -284,6 +314,7 @@ int main(void)
       cmocka_unit_test(the_macro_block_is_measured_in_its_first_edge),
       cmocka_unit_test(the_sample_is_as_written),
       cmocka_unit_test(what_is_left_out_has_its_default),
+      cmocka_unit_test(cells_that_come_apart_have_cohesion_clearance_and_a_strategy),
       cmocka_unit_test(one_number_of_the_mesh_may_be_given_alone),
       cmocka_unit_test(a_sample_without_turgor_takes_that_of_the_scene),
       cmocka_unit_test(a_sample_with_a_count_has_no_accuracy),
@@ -295,6 +326,7 @@ int main(void)
       cmocka_unit_test(units_do_not_change_the_microstructure),
       cmocka_unit_test(anchors_aliases_quotes_and_CRLF_are_read),
       cmocka_unit_test(inflation_is_asked_for_by_turgor),
+      cmocka_unit_test(contact_tissue_inflates_with_cohesion),
       cmocka_unit_test(rollers_leave_a_component_free),
       cmocka_unit_test(opposite_sides_hold_the_rotation),
   };

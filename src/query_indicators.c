@@ -1,0 +1,75 @@
+/*
+  What an answer takes from its record as it is: all that the potential does not give.
+
+  Tractions and gaps are not interpolated: contact switches between two states, and a mean of "open" and "closed" is
+  neither. They are the record's where the question is the record's own state, and unknown (NaN; counts 0) elsewhere.
+*/
+#include "database_internal.h"
+#include <math.h>
+
+/* Whether both ask for the same F: a rotated state has the record's strain, but another orientation in space. */
+static PetscBool SameF(const LamLoad *a, const LamLoad *b)
+{
+  for (int i = 0; i < 9; i++)
+    if (fabs(a->F[i] - b->F[i]) > 1e-14) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+/* Bonded tissue has no gaps and hangs together, wherever it is asked. */
+static void CopyBonded(const LamResponse *record, LamResponse *r)
+{
+  for (int i = 0; i < 9; i++) r->P_cohesion[i] = 0;
+  r->energy_cohesion2 = r->energy_turgor_cohesion = 0;
+  r->opening_fraction = record->opening_fraction;
+  r->mean_gap = record->mean_gap;
+  r->max_gap = record->max_gap;
+  r->max_penetration = record->max_penetration;
+  r->debonded_fraction = record->debonded_fraction;
+  r->open_fraction = record->open_fraction;
+  r->cell_clusters = record->cell_clusters;
+  r->percolating_directions = record->percolating_directions;
+  for (int k = 0; k < 3; k++) {
+    r->opening_by_face[k] = record->opening_by_face[k];
+    r->debonded_by_face[k] = record->debonded_by_face[k];
+    r->open_by_face[k] = record->open_by_face[k];
+  }
+}
+
+static void CopyContact(const LamResponse *record, const PetscInt face[3], LamResponse *r)
+{
+  for (int k = 0; k < 3; k++) {
+    r->opening_by_face[k] = record->opening_by_face[face[k]];
+    r->debonded_by_face[k] = record->debonded_by_face[face[k]];
+    r->open_by_face[k] = record->open_by_face[face[k]];
+  }
+  r->debonded_fraction = record->debonded_fraction;
+  r->debonded_spread = record->debonded_spread;
+  r->open_fraction = record->open_fraction;
+  r->open_spread = record->open_spread;
+  r->max_gap = record->max_gap;
+  r->mean_gap = record->mean_gap;
+  r->max_penetration = record->max_penetration;
+  r->floating_cells = record->floating_cells;
+  r->zero_modes = record->zero_modes;
+  r->cell_clusters = record->cell_clusters;
+  r->percolating_directions = record->percolating_directions;
+}
+
+void LamIndicatorsCopy(const LamResponse *record, const PetscInt face[3], PetscBool own, LamInterfaceLawType interface,
+                       LamResponse *r)
+{
+  if (interface == LAM_INTERFACE_BONDED)
+    CopyBonded(record, r);
+  else if (own)
+    CopyContact(record, face, r);
+  if (own) r->max_traction = record->max_traction;
+  for (int k = 0; k < 3 && own; k++) {
+    r->mean_face_traction[k] = record->mean_face_traction[face[k]];
+    r->fabric[k] = SameF(&record->load, &r->load) ? record->fabric[k] : NAN;
+  }
+  r->lowest_eigenvalue = record->lowest_eigenvalue;
+  r->negative_eigenvalues = record->negative_eigenvalues;
+  r->stable = record->stable;
+  r->branch = record->branch;
+  r->unknowns = record->unknowns;
+}

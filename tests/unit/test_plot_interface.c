@@ -1,0 +1,183 @@
+/* Gaps and contact pressure in pictures: where they are drawn, and in which colour. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <setjmp.h>
+#include <cmocka.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "plot.h"
+
+/* A face along the X axis from -1.5 to 1.5: a gap of 0.5 to the left of the origin, contact to the right, where the
+   pressure grows with X up to 2 MPa. */
+#define POINTS 7
+typedef struct {
+  PetscReal from[POINTS][2], to[POINTS][2], gap[POINTS], pressure[POINTS];
+} Samples;
+
+static Samples HalfOpen(void)
+{
+  Samples s;
+
+  for (int i = 0; i < POINTS; i++) {
+    const PetscReal x = -1.5 + 0.5 * i;
+
+    s.from[i][0] = s.to[i][0] = x;
+    s.from[i][1] = 0;
+    s.gap[i] = s.to[i][1] = x < 0 ? 0.5 : 0;
+    s.pressure[i] = x > 0 ? x * 2 / 1.5 : 0;
+  }
+  return s;
+}
+
+/* Draws the face in a PNG of 400 x 400 pixels, and reads the colour at (x, y). */
+static uint32_t Pixel(Samples *s, PetscReal x, PetscReal y)
+{
+  const PetscReal box[4] = {-2, -2, 2, 2}, none[2] = {0, 0};
+  const LamInterface interface = {.faces = 1,
+                                  .points = POINTS,
+                                  .from = &s->from[0][0],
+                                  .to = &s->to[0][0],
+                                  .gap = s->gap,
+                                  .pressure = s->pressure,
+                                  .largest_pressure = 2,
+                                  .is_open = PETSC_TRUE,
+                                  .gaps = {0, 0.5, {PETSC_FALSE, PETSC_FALSE}}};
+  const char path[] = "test_plot_interface.png";
+  cairo_surface_t *surface;
+  LamCanvas canvas;
+  LamView view;
+  uint32_t pixel;
+
+  assert_int_equal(LamCanvasCreate(path, 72, 72, &canvas), 0);
+  LamViewFit((LamRect){0, 0, 72, 72}, box, &view);
+  LamInterfaceDrawPressure(canvas, &view, &interface, none);
+  LamInterfaceDrawGaps(canvas, &view, &interface, none);
+  assert_int_equal(LamCanvasFinish(&canvas), 0);
+  surface = cairo_image_surface_create_from_png(path);
+  remove(path);
+  pixel = *(const uint32_t *)(const void *)(cairo_image_surface_get_data(surface) +
+                                            (int)(100 * (2 - y)) * cairo_image_surface_get_stride(surface) +
+                                            4 * (int)(100 * (x + 2)));
+  cairo_surface_destroy(surface);
+  return pixel & 0xffffff;
+}
+
+static const uint32_t white = 0xffffff;
+
+static void an_open_face_is_filled_with_the_colour_of_its_gap(void **state)
+{
+  Samples s = HalfOpen();
+  const uint32_t pixel = Pixel(&s, -1, 0.25);
+  const LamColour wanted = LamGapColour(1);
+
+  assert_true(abs((int)(pixel >> 16) - (int)lround(255 * wanted.r)) <= 2);
+  assert_true(abs((int)(pixel >> 8 & 0xff) - (int)lround(255 * wanted.g)) <= 2);
+  assert_true(abs((int)(pixel & 0xff) - (int)lround(255 * wanted.b)) <= 2);
+}
+
+static void a_closed_face_shows_no_gap(void **state)
+{
+  Samples s = HalfOpen();
+
+  assert_int_equal(Pixel(&s, 1, 0.25), white);
+}
+
+static void a_gap_thinner_than_a_line_is_seen(void **state)
+{
+  Samples s = HalfOpen();
+
+  for (int i = 0; i < POINTS; i++) s.gap[i] = s.to[i][1] = 2 * LAM_VISIBLE_GAP;
+  assert_int_not_equal(Pixel(&s, -1, 0.02), white);
+}
+
+static void a_gap_too_small_to_count_is_not_drawn(void **state)
+{
+  Samples s = HalfOpen();
+
+  for (int i = 0; i < POINTS; i++) s.gap[i] = s.to[i][1] = 0.9 * LAM_VISIBLE_GAP;
+  assert_int_equal(Pixel(&s, -1, 0.005), white);
+}
+
+static void samples_that_face_no_wall_show_no_gap(void **state)
+{
+  Samples s = HalfOpen();
+
+  for (int i = 0; i < 3; i++) s.gap[i] = s.to[i][0] = s.to[i][1] = NAN;
+  assert_int_equal(Pixel(&s, -1, 0.25), white);
+}
+
+static void the_ribbon_is_as_wide_as_the_pressure(void **state)
+{
+  Samples s = HalfOpen();
+
+  assert_int_not_equal(Pixel(&s, 1.4, 0.1), white);
+  assert_int_not_equal(Pixel(&s, 1.4, -0.1), white);
+  assert_int_equal(Pixel(&s, 0.5, 0.1), white);
+  assert_int_not_equal(Pixel(&s, 0.5, 0.03), white);
+}
+
+static void brightness_falls_along_the_colours_of_gaps(void **state)
+{
+  PetscReal last = 1;
+
+  for (int i = 0; i <= 50; i++) {
+    const LamColour c = LamGapColour(i / 50.0);
+    const PetscReal luminance = 0.2126 * pow(c.r, 2.2) + 0.7152 * pow(c.g, 2.2) + 0.0722 * pow(c.b, 2.2);
+
+    assert_true(luminance < last);
+    last = luminance;
+  }
+}
+
+static char message[512];
+
+static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
+                                  PetscErrorType type, const char *text, void *ctx)
+{
+  if (type == PETSC_ERROR_INITIAL) snprintf(message, sizeof message, "%s", text);
+  return code;
+}
+
+static void a_file_without_samples_is_refused(void **state)
+{
+  LamScene scene = {.text = "version: 1\n",
+                    .micro = {.wall_thickness = 0.5,
+                              .cells = {1, 1},
+                              .along = 1,
+                              .through = 1,
+                              .wall = {.C1 = 0.9, .C2 = 0.1, .bulk_modulus = 1000},
+                              .interface = LAM_INTERFACE_CONTACT},
+                    .scales = {.length = 75e-6, .stress = 0.11e6},
+                    .accuracy = 0.01};
+  const char path[] = "test_plot_interface.h5";
+  LamRecordWriter writer;
+  LamInterface interface;
+
+  assert_int_equal(LamRecordWriterOpen(path, "rve", LAM_WRITE_CREATE, &scene, &writer), 0);
+  assert_int_equal(LamRecordWriterText(writer, "/note", "no samples"), 0);
+  assert_int_equal(LamRecordWriterClose(&writer), 0);
+  PetscErrorHandlingInitialized = PETSC_TRUE; /* before PetscInitialize PETSc calls no handler else */
+  PetscPushErrorHandler(KeepMessage, NULL);
+  assert_int_equal(LamInterfaceRead(path, 1, &interface), PETSC_ERR_USER_INPUT);
+  PetscPopErrorHandler();
+  remove(path);
+  assert_non_null(strstr(message, "/fields/1/interface/from is missing"));
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(an_open_face_is_filled_with_the_colour_of_its_gap),
+      cmocka_unit_test(a_closed_face_shows_no_gap),
+      cmocka_unit_test(a_gap_thinner_than_a_line_is_seen),
+      cmocka_unit_test(a_gap_too_small_to_count_is_not_drawn),
+      cmocka_unit_test(samples_that_face_no_wall_show_no_gap),
+      cmocka_unit_test(the_ribbon_is_as_wide_as_the_pressure),
+      cmocka_unit_test(brightness_falls_along_the_colours_of_gaps),
+      cmocka_unit_test(a_file_without_samples_is_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
