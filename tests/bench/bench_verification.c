@@ -3,6 +3,8 @@
 #include <sys/resource.h>
 #include <petsctime.h>
 #include "figures_buckling.h"
+#include "figures_contact.h"
+#include "figures_contact_blocks.h"
 #include "figures_derivatives.h"
 #include "figures_effective_stress.h"
 #include "figures_extremes.h"
@@ -10,6 +12,7 @@
 #include "figures_reference.h"
 
 #define DATA LAMELLA_SOURCE_DIR "/tests/verification/data/bonded.json"
+#define CONTACT_DATA LAMELLA_SOURCE_DIR "/tests/verification/data/contact.json"
 #define TURGOR (0.02 / TISSUE_STRESS)
 
 static double PeakMemory(void)
@@ -247,11 +250,141 @@ static PetscErrorCode RoundingFloor(void)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode ContactBlocks(void)
+{
+  PatchError patch;
+
+  PetscFunctionBeginUser;
+  PetscCall(ComputePatch(&patch));
+  printf("\ncontact patch test: deformation gradient %.1e, stress %.1e, multipliers %.1e (C1 + C2)\n", patch.gradient,
+         patch.stress, patch.multiplier);
+  printf("Hertz, error of peak pressure and half-width against the theory\nbase      elements  nodes  iterations  peak "
+         "     "
+         "half-width\n");
+  for (int curvature = 0; curvature < 2; curvature++)
+    for (int even = 8; even <= 64; even *= 2) {
+      Hertz h;
+
+      PetscCall(ComputeHertz(even, curvature, &h));
+      printf("%-9s %-9d %-6d %-11d %+.3f %%  %+.3f %%\n", curvature ? "cylinder" : "flat", even, (int)h.nodes,
+             (int)h.iterations, 100.0 * (h.peak / h.peak_theory - 1.0),
+             100.0 * (h.half_width / h.half_width_theory - 1.0));
+    }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ContactReference(void)
+{
+  static const int mesh[][2] = {{6, 2}, {12, 4}, {24, 4}};
+
+  PetscFunctionBeginUser;
+  printf("\ncontact.json, 1e-5 MPa\nshear  turgor  mesh   error  allowed  iterations  debonded  open    largest gap  "
+         "penetration\n");
+  for (size_t m = 0; m < sizeof(mesh) / sizeof(mesh[0]); m++) {
+    ContactReferenceCase cases[CONTACT_CASES_MAX];
+    int count;
+
+    PetscCall(CompareContact(CONTACT_DATA, mesh[m][0], mesh[m][1], &count, cases));
+    for (int k = 0; k < count; k++) {
+      const LamResponse *r = &cases[k].response;
+
+      printf("%-6g %-7g %2dx%-3d %-6.1f %-8.1f %-11d %-9.3f %-7.3f %-12.4f %.4f\n", cases[k].shear, cases[k].turgor,
+             mesh[m][0], mesh[m][1], 1e5 * cases[k].error, 1e5 * cases[k].allowed, (int)r->newton_iterations,
+             r->debonded_fraction, r->open_fraction, r->max_gap, r->max_penetration);
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ContactDerivatives(void)
+{
+  ContactState list[CONTACT_STATES];
+
+  PetscFunctionBeginUser;
+  ListContactStates(list);
+  printf("\ncontact, finite differences inside one contact set\n%-18s switches  P        lumen    opening  tangent  "
+         "symmetry P_turgor P_cohes. volumes\n",
+         "state");
+  for (int s = 0; s < CONTACT_STATES; s++) {
+    ContactDerivativeError e;
+    ContactSweep sweep;
+
+    PetscCall(SweepContact(&list[s], &sweep));
+    e = DerivativeError(&sweep);
+    printf("%-18s %-9d %.1e  %.1e  %.1e  %.1e  %.1e  %.1e  %.1e  %.1e\n", list[s].name, sweep.switches, e.stress,
+           e.lumen, e.opening, e.tangent, e.symmetry, e.turgor_coupling, e.cohesion_coupling, e.volumes);
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ContactComplementarity(void)
+{
+  PetscFunctionBeginUser;
+  printf("\ncomplementarity and pointwise penetration\nload  along  pressure x gap  tension  overlap  penetration\n");
+  for (int k = 0; k < PENETRATION_LOADS; k++)
+    for (int along = 6; along <= 24; along *= 2) {
+      const LamMicrostructure micro = ContactTissue(along, along == 6 ? 2 : 4);
+      const LamLoad load = PenetrationLoad(k);
+      Complementarity c;
+
+      PetscCall(ComputeComplementarity(&micro, &load, &c));
+      printf("%-5d %-6d %-15.1e %-8.1e %-8.1e %.5f\n", k, along, c.product, c.tension, c.overlap,
+             c.response.max_penetration);
+    }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ContactTractions(void)
+{
+  static const double load[][2] = {{0.001, 0}, {0, 0.001}, {0.005, 0}, {0.02, 0}, {0.015, 0.005}, {0.05, 0}};
+
+  PetscFunctionBeginUser;
+  printf("\nmean face tractions against statics, error over the spread between faces\nturgor  cohesion  strain  small "
+         "strains  current faces\n");
+  for (size_t k = 0; k < sizeof(load) / sizeof(load[0]); k++)
+    for (double strain = 1e-2; strain > 2e-4; strain /= PetscSqrtReal(10.0)) {
+      StaticTractions s;
+
+      PetscCall(ComputeStaticTractions(strain, load[k][0], load[k][1], &s));
+      printf("%-7g %-9g %-7.1e %-14.2e %.2e\n", load[k][0], load[k][1], strain, s.reference, s.current);
+    }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ContactPrinciple(void)
+{
+  PetscFunctionBeginUser;
+  printf("\ncontact, differences of P + p J F^-T at p + g = 0.025 MPa, over p + g\nkappa/C1  along  shear 0.1  stretch "
+         "1.05  shear 0.2  converged\n");
+  for (double kappa = 1e3; kappa < 2e5; kappa *= 10.0)
+    for (int along = 6; along <= 12; along *= 2) {
+      double difference[PRINCIPLE_LOADS];
+      int converged;
+
+      PetscCall(ComputePrinciple(kappa, along, along / 3, difference, &converged));
+      printf("%-9g %-6d %-10.2e %-13.2e %-10.2e %d of %d\n", kappa, along, difference[0], difference[1], difference[2],
+             converged, PRINCIPLE_LOADS * PRINCIPLE_PAIRS);
+    }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Contact(void)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ContactBlocks());
+  PetscCall(ContactReference());
+  PetscCall(ContactDerivatives());
+  PetscCall(ContactComplementarity());
+  PetscCall(ContactTractions());
+  PetscCall(ContactPrinciple());
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   if (Memory() || Reference() || Derivatives() || PressureAtRest() || ThinWalls() || BucklingTable() || Extremes() ||
-      Tractions() || RoundingFloor())
+      Tractions() || RoundingFloor() || Contact())
     return 1;
   return PetscFinalize() ? 1 : 0;
 }

@@ -1,0 +1,86 @@
+/* A pair of chains of quadratic edges and the evaluation of its weighted gaps, for tests of the mortar kernel. */
+#ifndef LAM_MORTAR_FIXTURE_H
+#define LAM_MORTAR_FIXTURE_H
+
+#include <string.h>
+#include "mortar.h"
+#include "random_reals.h"
+
+#define SLAVE_EDGES 2
+#define MASTER_EDGES 3
+#define HATS (2 * SLAVE_EDGES + 1)
+#define MASTER_NODES (2 * MASTER_EDGES + 1)
+#define CHAIN_NODES (HATS + MASTER_NODES)
+#define CHAIN_DOFS (2 * CHAIN_NODES)
+
+typedef struct {
+  double x[CHAIN_NODES][2]; /* slave, then master */
+  double J0[SLAVE_EDGES], lambda[HATS], clearance;
+} Chains;
+
+typedef struct {
+  double weight[HATS], gap[HATS], dgap[HATS][CHAIN_DOFS];
+  double energy, gradient[CHAIN_DOFS], hessian[CHAIN_DOFS][CHAIN_DOFS]; /* of sum lambda G */
+  double cut[MASTER_EDGES + 1], breaks[2 * SLAVE_EDGES + MASTER_EDGES + 2];
+  int break_count;
+} ChainValues;
+
+static inline LamMortarChains MortarChains(const Chains *c)
+{
+  return (LamMortarChains){SLAVE_EDGES, MASTER_EDGES, (const double(*)[2])c->x, (const double(*)[2])(c->x + HATS),
+                           c->J0,       c->clearance};
+}
+
+static inline PetscErrorCode EvaluateChains(const Chains *c, int points, ChainValues *values)
+{
+  const LamMortarChains chains = MortarChains(c);
+  LamMortarSegments segments;
+  LamMortarResult result;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamMortarSegmentsCreate(SLAVE_EDGES, MASTER_EDGES, &segments));
+  PetscCall(LamMortarResultCreate(SLAVE_EDGES, MASTER_EDGES, &result));
+  LamMortarFindSegments(&chains, &segments);
+  LamMortarEvaluate(&chains, &segments, c->lambda, points, &result);
+  memset(values, 0, sizeof(*values));
+  memcpy(values->weight, result.weight, sizeof(values->weight));
+  memcpy(values->gap, result.gap, sizeof(values->gap));
+  memcpy(values->dgap, result.dgap, sizeof(values->dgap));
+  memcpy(values->hessian, result.hessian, sizeof(values->hessian));
+  memcpy(values->cut, segments.cut, sizeof(values->cut));
+  memcpy(values->breaks, segments.s, (size_t)segments.count * sizeof(double));
+  values->break_count = segments.count;
+  for (int A = 0; A < HATS; A++) {
+    values->energy += c->lambda[A] * values->gap[A];
+    for (int i = 0; i < CHAIN_DOFS; i++) values->gradient[i] += c->lambda[A] * values->dgap[A][i];
+  }
+  PetscCall(LamMortarResultDestroy(&result));
+  PetscCall(LamMortarSegmentsDestroy(&segments));
+  PetscFunctionReturn(0);
+}
+
+/*
+  The slave runs from (1, 0) to (-1, 0) below the master, which runs from left to right; both are bent and kinked at
+  random and turned by some angle. The planes of the master's ends pass the slave about `from` and `to` edges inside its
+  ends (< 0: outside).
+*/
+static inline Chains RandomChains(double from, double to, uint64_t *seed)
+{
+  const double angle = RandomReal(seed, 0.0, 6.0), c = cos(angle), s = sin(angle);
+  const double left = -1.0 + to, right = 1.0 - from;
+  Chains chains;
+
+  for (int a = 0; a < CHAIN_NODES; a++) {
+    const double place = a < HATS ? 1.0 - 0.5 * a : left + (right - left) * (a - HATS) / (MASTER_NODES - 1.0);
+    const double x = place + RandomReal(seed, -0.02, 0.02), y = (a < HATS ? 0.0 : 0.06) + RandomReal(seed, -0.02, 0.02);
+
+    chains.x[a][0] = c * x - s * y + 0.3;
+    chains.x[a][1] = s * x + c * y - 0.2;
+  }
+  for (int e = 0; e < SLAVE_EDGES; e++) chains.J0[e] = RandomReal(seed, 0.7, 1.3);
+  for (int A = 0; A < HATS; A++) chains.lambda[A] = RandomReal(seed, -0.2, 1.0);
+  chains.clearance = RandomReal(seed, 0.0, 0.05);
+  return chains;
+}
+
+#endif

@@ -1,0 +1,82 @@
+/* Pressure only where cells touch, no tension, no overlap on average, and equilibrium. */
+#include "rve_fixture.h"
+#include "assert_near.h"
+#include "figures_contact.h"
+
+#define MESHES 3
+
+static Complementarity results[PENETRATION_LOADS][MESHES];
+
+static int SolveAll(void **state)
+{
+  static const int along[MESHES] = {6, 12, 24};
+
+  for (int k = 0; k < PENETRATION_LOADS; k++)
+    for (int m = 0; m < MESHES; m++) {
+      const LamMicrostructure micro = ContactTissue(along[m], m == 0 ? 2 : 4);
+      const LamLoad load = PenetrationLoad(k);
+
+      if (ComputeComplementarity(&micro, &load, &results[k][m])) return 1;
+      if (results[k][m].response.status != LAM_CONVERGED) return 1;
+    }
+  return 0;
+}
+
+static void PressureTimesGapVanishes(void **state)
+{
+  for (int k = 0; k < PENETRATION_LOADS; k++)
+    for (int m = 0; m < MESHES; m++) assert_near(results[k][m].product, 0.0, 1e-9);
+}
+
+static void NoHatPulls(void **state)
+{
+  for (int k = 0; k < PENETRATION_LOADS; k++)
+    for (int m = 0; m < MESHES; m++) assert_near(results[k][m].tension, 0.0, 1e-9);
+}
+
+static void NoHatOverlaps(void **state)
+{
+  for (int k = 0; k < PENETRATION_LOADS; k++)
+    for (int m = 0; m < MESHES; m++) assert_near(results[k][m].overlap, 0.0, 1e-9);
+}
+
+static void PointwisePenetrationFallsWithTheMesh(void **state)
+{
+  for (int k = 0; k < PENETRATION_LOADS; k++)
+    for (int m = 1; m < MESHES; m++)
+      assert_true(results[k][m].response.max_penetration < 0.9 * results[k][m - 1].response.max_penetration);
+}
+
+/* Where fields are given, also those of an unstable state, they are of an equilibrium at the load that was asked. */
+static void AnswersAreEquilibria(void **state)
+{
+  const LamLoad loads[] = {ContactLoad(1.1, 0, 0, 1.1, 0, 0.005), ContactLoad(1.07, 0, 0, 1.07, 0, 0.005),
+                           ContactLoad(1, 0.1, 0, 1, 0, 0), ContactLoad(0.97, 0, 0, 1.1, 0, 0)};
+  LamMicrostructure micro = ContactTissue(6, 2);
+
+  micro.cells[0] = 2;
+  for (size_t k = 0; k < sizeof(loads) / sizeof(loads[0]); k++) {
+    Complementarity result;
+
+    assert_int_equal(ComputeComplementarity(&micro, &loads[k], &result), 0);
+    assert_true(result.residual < 10.0);
+  }
+}
+
+static int Run(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(PressureTimesGapVanishes),
+      cmocka_unit_test(NoHatPulls),
+      cmocka_unit_test(NoHatOverlaps),
+      cmocka_unit_test(PointwisePenetrationFallsWithTheMesh),
+      cmocka_unit_test(AnswersAreEquilibria),
+  };
+
+  return cmocka_run_group_tests(tests, SolveAll, NULL);
+}
+
+int main(int argc, char **argv)
+{
+  return RunWithPetsc(argc, argv, Run);
+}

@@ -1,0 +1,71 @@
+/* Hertz contact of a cylinder with a flat and with an equal cylinder, plane strain. */
+#include "rve_fixture.h"
+#include "assert_near.h"
+#include "figures_contact_blocks.h"
+
+#define TOLERANCE 5e-3
+
+static Hertz coarse[2], fine[2]; /* by curvature of the base */
+
+static int Solve(void **state)
+{
+  for (int k = 0; k < 2; k++) {
+    if (ComputeHertz(8, k, &coarse[k])) return 1;
+    if (ComputeHertz(32, k, &fine[k])) return 1;
+  }
+  return 0;
+}
+
+static double PeakError(const Hertz *hertz)
+{
+  return fabs(hertz->peak / hertz->peak_theory - 1.0);
+}
+
+static double HalfWidthError(const Hertz *hertz)
+{
+  return fabs(hertz->half_width / hertz->half_width_theory - 1.0);
+}
+
+static void PeakPressureOnAFlat(void **state)
+{
+  assert_near(PeakError(&fine[0]), 0.0, TOLERANCE);
+}
+
+static void HalfWidthOnAFlat(void **state)
+{
+  assert_near(HalfWidthError(&fine[0]), 0.0, TOLERANCE);
+}
+
+static void PeakPressureOnACylinder(void **state)
+{
+  assert_near(PeakError(&fine[1]), 0.0, TOLERANCE);
+}
+
+static void HalfWidthOnACylinder(void **state)
+{
+  assert_near(HalfWidthError(&fine[1]), 0.0, TOLERANCE);
+}
+
+static void ErrorsFallWithTheMesh(void **state)
+{
+  for (int k = 0; k < 2; k++) {
+    assert_true(PeakError(&fine[k]) < 0.5 * PeakError(&coarse[k]));
+    assert_true(HalfWidthError(&fine[k]) < 0.5 * HalfWidthError(&coarse[k]));
+  }
+}
+
+static int Run(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(PeakPressureOnAFlat),     cmocka_unit_test(HalfWidthOnAFlat),
+      cmocka_unit_test(PeakPressureOnACylinder), cmocka_unit_test(HalfWidthOnACylinder),
+      cmocka_unit_test(ErrorsFallWithTheMesh),
+  };
+
+  return cmocka_run_group_tests(tests, Solve, NULL);
+}
+
+int main(int argc, char **argv)
+{
+  return RunWithPetsc(argc, argv, Run);
+}

@@ -1,0 +1,70 @@
+/* Contact tissue against values of an independent mortar program (data/contact.json). */
+#include "rve_fixture.h"
+#include "assert_near.h"
+#include "figures_contact.h"
+
+#define DATA LAMELLA_SOURCE_DIR "/tests/verification/data/contact.json"
+#define SHARED LAMELLA_SOURCE_DIR "/../shared/reference/contact.json"
+#define MESHES 2
+
+static ContactReferenceCase cases[MESHES][CONTACT_CASES_MAX];
+static int count;
+
+static int SolveAll(void **state)
+{
+  static const int along[MESHES] = {12, 24};
+
+  for (int m = 0; m < MESHES; m++)
+    if (CompareContact(DATA, along[m], 4, &count, cases[m])) return 1;
+  return 0;
+}
+
+/* Without turgor there are several discrete solutions: those values are not asserted. */
+static void StressAgrees(void **state)
+{
+  for (int m = 0; m < MESHES; m++)
+    for (int k = 0; k < count; k++)
+      if (cases[m][k].turgor > 0.0) assert_near(cases[m][k].error, 0.0, cases[m][k].allowed);
+}
+
+static void LumenFractionAgrees(void **state)
+{
+  for (int m = 0; m < MESHES; m++)
+    for (int k = 0; k < count; k++)
+      if (cases[m][k].turgor > 0.0) assert_near(cases[m][k].lumen, 0.0, 1e-4);
+}
+
+static void DryStateIsAnswered(void **state)
+{
+  for (int k = 0; k < count; k++)
+    if (cases[0][k].turgor == 0.0) assert_int_equal(cases[0][k].response.status, LAM_CONVERGED);
+}
+
+/* The copy in the repository is the original. */
+static void CopyOfTheReferenceIsFaithful(void **state)
+{
+  json_t *original = json_load_file(SHARED, 0, NULL), *copy = json_load_file(DATA, 0, NULL);
+  const int equal = !original || json_equal(original, copy), absent = !original;
+
+  json_decref(original);
+  json_decref(copy);
+  if (absent) skip();
+  assert_true(equal);
+}
+
+static int Run(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(StressAgrees),
+      cmocka_unit_test(LumenFractionAgrees),
+      cmocka_unit_test(DryStateIsAnswered),
+      cmocka_unit_test(CopyOfTheReferenceIsFaithful),
+  };
+
+  return cmocka_run_group_tests(tests, SolveAll, NULL);
+}
+
+int main(int argc, char **argv)
+{
+  return RunWithPetsc(argc, argv, Run);
+}

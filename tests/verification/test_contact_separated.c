@@ -1,0 +1,150 @@
+/* Cells that nothing holds together: no stress, no stiffness, and a state that says so. */
+#include "rve_fixture.h"
+#include "assert_near.h"
+#include "figures_contact.h"
+
+#define C1 (0.1 / TISSUE_STRESS)
+#define APART 4
+
+#define FAR 2 /* from here on also cells that cohesion swells are apart */
+
+static const double apart[APART][4] = {
+    {1.03, 0, 0, 1.03}, {1.05, 0.1, 0, 1.05}, {1.1, 0, 0, 1.1}, {1.15, 0.1, 0, 1.15}};
+
+/* Free tissue moved apart; cohesion in MPa. */
+static LamResponse SolveApart(int k, double cohesion)
+{
+  const LamMicrostructure micro = ContactTissue(6, 2);
+
+  return SolveTissue(&micro, ContactLoad(apart[k][0], apart[k][1], apart[k][2], apart[k][3], 0, cohesion));
+}
+
+static void StateIsConvergedAndFloats(void **state)
+{
+  for (int k = 0; k < APART; k++) {
+    const LamResponse r = SolveApart(k, 0.0);
+
+    assert_int_equal(r.status, LAM_CONVERGED);
+    assert_true(r.stable);
+    assert_int_equal(r.floating_cells, 1);
+  }
+}
+
+static void StressVanishes(void **state)
+{
+  for (int k = 0; k < APART; k++) {
+    const LamResponse r = SolveApart(k, 0.0);
+
+    for (int i = 0; i < 9; i++) assert_near(r.P[i], 0.0, 1e-8 * C1);
+  }
+}
+
+static void StiffnessVanishes(void **state)
+{
+  for (int k = 0; k < APART; k++) {
+    const LamResponse r = SolveApart(k, 0.0);
+
+    for (int i = 0; i < 4; i++)
+      for (int j = 0; j < 4; j++)
+        assert_near(r.tangent[9 * contact_components[i] + contact_components[j]], 0.0, 1e-8 * C1);
+  }
+}
+
+/* Two separate rings too, each of which can move and spin on its own. */
+static void EveryCellFloats(void **state)
+{
+  LamMicrostructure micro = ContactTissue(6, 2);
+  LamResponse r;
+
+  micro.cells[0] = 2;
+  r = SolveTissue(&micro, ContactLoad(1.1, 0, 0, 1.1, 0, 0));
+  assert_int_equal(r.status, LAM_CONVERGED);
+  assert_int_equal(r.floating_cells, 2);
+  assert_int_equal(r.cell_clusters, 2);
+  for (int i = 0; i < 9; i++) assert_near(r.P[i], 0.0, 1e-8 * C1);
+}
+
+static void OpeningIsTheGrowthOfTheTissue(void **state)
+{
+  for (int k = 0; k < APART; k++) {
+    const LamResponse r = SolveApart(k, 0.0);
+
+    assert_near(r.opening_fraction, apart[k][0] * apart[k][3] - apart[k][1] * apart[k][2] - 1.0, 1e-8);
+  }
+}
+
+/* Parallel faces: twice the apothem's growth, where cells keep their orientation. */
+static void GapIsThatOfTheFaces(void **state)
+{
+  assert_near(SolveApart(0, 0.0).max_gap, 2.0 * (apart[0][0] - 1.0), 1e-3);
+  assert_near(SolveApart(2, 0.0).max_gap, 2.0 * (apart[2][0] - 1.0), 1e-3);
+}
+
+/* The middle lamella pulls with g on everything: P = g cof F in the plane. */
+static void CohesionAloneIsAHydrostaticStress(void **state)
+{
+  for (int k = FAR; k < APART; k++) {
+    const LamResponse r = SolveApart(k, 0.005);
+    const double *F = r.load.F, cofactor[4] = {F[4], -F[3], -F[1], F[0]};
+
+    assert_int_equal(r.status, LAM_CONVERGED);
+    assert_int_equal(r.floating_cells, 1);
+    for (int i = 0; i < 4; i++) assert_near(r.P[contact_components[i]], r.load.cohesion * cofactor[i], 1e-8 * C1);
+  }
+}
+
+/* Free rings under suction are the same wherever they are. */
+static void RingsApartDoNotFeelTheDistance(void **state)
+{
+  double ring[APART];
+
+  for (int k = FAR; k < APART; k++) {
+    const LamResponse r = SolveApart(k, 0.005);
+    const double *F = r.load.F;
+
+    ring[k] = r.energy - r.load.cohesion * (F[0] * F[4] - F[1] * F[3]);
+    assert_near(ring[k], ring[FAR], 1e-9);
+  }
+}
+
+/* What is not known is NaN by its meaning only: out-of-plane shear, the second mesh, the softest mode, the estimate. */
+static void EverythingElseIsANumber(void **state)
+{
+  for (int k = 0; k < 2 * APART; k++) {
+    const LamResponse r = SolveApart(k / 2, k % 2 ? 0.005 : 0.0);
+    const double reals[] = {r.energy,         r.energy_turgor2,   r.energy_cohesion2,  r.energy_turgor_cohesion,
+                            r.lumen_fraction, r.opening_fraction, r.debonded_fraction, r.open_fraction,
+                            r.mean_gap,       r.max_gap,          r.max_penetration,   r.max_traction};
+
+    for (size_t i = 0; i < sizeof(reals) / sizeof(reals[0]); i++) assert_true(isfinite(reals[i]));
+    for (int i = 0; i < 3; i++) {
+      assert_true(isfinite(r.mean_face_traction[i]) && isfinite(r.opening_by_face[i]));
+      assert_true(isfinite(r.debonded_by_face[i]) && isfinite(r.open_by_face[i]) && isfinite(r.fabric[i]));
+    }
+    for (int i = 0; i < 9; i++) assert_true(isfinite(r.P[i]) && isfinite(r.P_turgor[i]) && isfinite(r.P_cohesion[i]));
+    for (int i = 0; i < 5; i++)
+      for (int j = 0; j < 5; j++) assert_true(isfinite(r.tangent[9 * contact_components[i] + contact_components[j]]));
+  }
+}
+
+static int Run(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(StateIsConvergedAndFloats),
+      cmocka_unit_test(StressVanishes),
+      cmocka_unit_test(StiffnessVanishes),
+      cmocka_unit_test(EveryCellFloats),
+      cmocka_unit_test(OpeningIsTheGrowthOfTheTissue),
+      cmocka_unit_test(GapIsThatOfTheFaces),
+      cmocka_unit_test(CohesionAloneIsAHydrostaticStress),
+      cmocka_unit_test(RingsApartDoNotFeelTheDistance),
+      cmocka_unit_test(EverythingElseIsANumber),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
+
+int main(int argc, char **argv)
+{
+  return RunWithPetsc(argc, argv, Run);
+}
