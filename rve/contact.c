@@ -1,5 +1,6 @@
 #include "rve_impl.h"
 
+#define OVERHANG 0.4      /* half-edges by which a hat's centre may lie outside the overlap */
 #define HYSTERESIS 0.2    /* of the junction status, in half-edges */
 #define LEAST_WEIGHT 1e-3 /* of a full hat: below it a hat carries nothing */
 
@@ -57,8 +58,8 @@ PetscErrorCode LamContactCreate(const LamMicrostructure *micro, const LamMesh *m
 
     face->cell = f / 3;
     face->face = f % 3;
-    face->first = 1;
-    face->last = contact->hats - 2;
+    face->first = 0;
+    face->last = contact->hats - 1;
     LamMeshNeighbour(micro, mesh, face->cell, face->face, &face->other, face->shift);
     ChainNodes(mesh, face->cell, face->face, &contact->nodes[f * contact->chain]);
     ChainNodes(mesh, face->other, face->face + 3, &contact->nodes[f * contact->chain + contact->hats]);
@@ -129,8 +130,8 @@ static PetscInt WithHysteresis(PetscInt old, PetscReal low, PetscReal high, Pets
 }
 
 /*
-  The hats with multipliers of their own, from the ends of the overlap in units of half-edges, u: at a moving lower end
-  ceil(u + 1/2), at a fixed one 1; likewise above. A little hysteresis keeps the status from flickering.
+  The hats with multipliers of their own: those whose centre lies inside the overlap, or outside by no more than
+  OVERHANG. The ends of the overlap count in half-edges, u. A little hysteresis keeps the status from flickering.
 */
 static void Junction(const LamMortarSegments *segments, PetscInt hats, PetscInt *first, PetscInt *last)
 {
@@ -143,12 +144,12 @@ static void Junction(const LamMortarSegments *segments, PetscInt hats, PetscInt 
     *last = -1;
     return;
   }
-  lo = 2.0 * segments->s[0];
-  hi = 2.0 * segments->s[count - 1];
-  low = PetscMax(1, (PetscInt)PetscCeilReal(lo + 0.5));
-  high = PetscMin(hats - 2, (PetscInt)PetscFloorReal(hi - 0.5));
-  *first = WithHysteresis(*first, (PetscReal)*first - 1.5, (PetscReal)*first - 0.5, lo, low);
-  *last = WithHysteresis(*last, -(PetscReal)*last - 1.5, -(PetscReal)*last - 0.5, -hi, high);
+  lo = 2.0 * segments->s[0] - OVERHANG;
+  hi = 2.0 * segments->s[count - 1] + OVERHANG;
+  low = PetscMax(0, (PetscInt)PetscCeilReal(lo));
+  high = PetscMin(hats - 1, (PetscInt)PetscFloorReal(hi));
+  *first = WithHysteresis(*first, (PetscReal)*first - 1.0, (PetscReal)*first, lo, low);
+  *last = WithHysteresis(*last, -(PetscReal)*last - 1.0, -(PetscReal)*last, -hi, high);
 }
 
 /* Gives merged hats the multiplier of the hat that they are merged into. */

@@ -273,6 +273,7 @@ static PetscErrorCode Substeps(LamRVE rve, Solution *at, const LamLoad *load, Ou
       if (step < MIN_SUBSTEP) break;
     }
   }
+  if (reached < 1.0) *out = (Outcome){0}; /* what there is belongs to another load */
   PetscFunctionReturn(0);
 }
 
@@ -297,6 +298,7 @@ static PetscErrorCode ComeDown(LamRVE rve, const LamLoad *load, Solution *at, Ou
       if (factor > 0.95) break;
     }
   }
+  if (added > 0.0) *out = (Outcome){0}; /* as in Substeps */
   PetscFunctionReturn(0);
 }
 
@@ -314,8 +316,10 @@ static PetscErrorCode TightThenLoose(LamRVE rve, const LamLoad *load, PetscBool 
     PetscCall(Try(rve, &tight, PETSC_TRUE, out));
     PetscCall(Save(rve, &tight, at));
   }
-  if (!IsStable(out)) PetscFunctionReturn(0);
-  PetscCall(ComeDown(rve, load, at, out));
+  if (IsStable(out))
+    PetscCall(ComeDown(rve, load, at, out));
+  else
+    *out = (Outcome){0};
   PetscFunctionReturn(0);
 }
 
@@ -333,11 +337,14 @@ static PetscErrorCode WalkThenLoose(LamRVE rve, const LamLoad *load, Solution *a
   start.F[3] = s;
   PetscCall(StartAffine(rve, &start));
   PetscCall(Try(rve, &start, PETSC_TRUE, out));
-  if (!IsStable(out)) PetscFunctionReturn(0);
-  PetscCall(Save(rve, &start, at));
-  PetscCall(Substeps(rve, at, &tight, out));
-  if (!IsStable(out)) PetscFunctionReturn(0);
-  PetscCall(ComeDown(rve, load, at, out));
+  if (IsStable(out)) {
+    PetscCall(Save(rve, &start, at));
+    PetscCall(Substeps(rve, at, &tight, out));
+  }
+  if (IsStable(out))
+    PetscCall(ComeDown(rve, load, at, out));
+  else
+    *out = (Outcome){0};
   PetscFunctionReturn(0);
 }
 
@@ -349,10 +356,48 @@ static PetscReal LoadDistance(const LamLoad *a, const LamLoad *b)
   return largest;
 }
 
-static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state, Solution *before, Solution *at,
-                             Outcome *out)
+/* Remembers the first saddle found at the asked load: where nothing better comes, it is the answer. */
+static PetscErrorCode KeepSaddle(LamRVE rve, const LamLoad *load, const Outcome *out, Outcome *kept, Solution *saddle)
+{
+  PetscFunctionBeginUser;
+  if (kept->converged || !out->converged || out->negative <= 0) PetscFunctionReturn(0);
+  PetscCall(Save(rve, load, saddle));
+  *kept = *out;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode GiveSaddle(LamRVE rve, const Solution *saddle, const Outcome *kept, Outcome *out)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(rve->y, saddle->y, rve->ndof));
+  PetscCall(PetscArraycpy(rve->contact->lambda, saddle->lambda, rve->contact->count));
+  PetscCall(LamContactEvaluate(rve, &saddle->load, rve->y, PETSC_TRUE));
+  (void)LamContactFindActive(rve->contact, 0.0);
+  *out = *kept;
+  PetscCall(LamFactorConsistent(rve, &saddle->load, &out->negative, &out->converged));
+  PetscFunctionReturn(0);
+}
+
+/* The strategy's start. */
+static PetscErrorCode FirstTry(LamRVE rve, const LamLoad *load, LamRVEState state, PetscBool *has_bonded, Solution *at,
+                               Outcome *out)
+{
+  PetscFunctionBeginUser;
+  if (rve->strategy == LAM_TWO_STEP) PetscCall(SolveBonded(rve, load, state->bonded, has_bonded));
+  if (*has_bonded) {
+    PetscCall(Release(rve, load, at, out));
+  } else {
+    PetscCall(StartAffine(rve, load));
+    PetscCall(Try(rve, load, PETSC_TRUE, out));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state, Solution *before, Outcome *out)
 {
   PetscBool has_bonded = PETSC_FALSE;
+  Outcome kept = {0};
+  Solution at, saddle;
 
   PetscFunctionBeginUser;
   *out = (Outcome){0};
@@ -361,34 +406,35 @@ static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state,
     PetscCall(Try(rve, load, PETSC_FALSE, out));
     if (IsStable(out)) PetscFunctionReturn(0);
   }
-  if (rve->strategy == LAM_TWO_STEP) PetscCall(SolveBonded(rve, load, state->bonded, &has_bonded));
-  if (has_bonded) {
-    PetscCall(Release(rve, load, at, out));
-  } else {
-    PetscCall(StartAffine(rve, load));
-    PetscCall(Try(rve, load, PETSC_TRUE, out));
+  PetscCall(SolutionCreate(rve, &at));
+  PetscCall(SolutionCreate(rve, &saddle));
+  for (PetscInt k = 0; k < 4 && !IsStable(out); ++k) {
+    PetscCall(KeepSaddle(rve, load, out, &kept, &saddle));
+    *out = (Outcome){0};
+    if (k == 0) PetscCall(FirstTry(rve, load, state, &has_bonded, &at, out));
+    if (k == 1) PetscCall(TightThenLoose(rve, load, has_bonded, &at, out));
+    if (k == 2) PetscCall(WalkThenLoose(rve, load, &at, out));
+    if (k == 3 && state->solved) PetscCall(Substeps(rve, before, load, out));
   }
-  if (!IsStable(out)) PetscCall(TightThenLoose(rve, load, has_bonded, at, out));
-  if (!IsStable(out)) PetscCall(WalkThenLoose(rve, load, at, out));
-  if (!IsStable(out) && state->solved) PetscCall(Substeps(rve, before, load, out));
+  if (!IsStable(out) && kept.converged) PetscCall(GiveSaddle(rve, &saddle, &kept, out));
+  PetscCall(SolutionDestroy(&at));
+  PetscCall(SolutionDestroy(&saddle));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
 {
-  Solution before, at;
+  Solution before;
   Outcome out;
 
   PetscFunctionBeginUser;
   PetscCall(SolutionCreate(rve, &before));
-  PetscCall(SolutionCreate(rve, &at));
   before.load = state->load;
   PetscCall(PetscArraycpy(before.y, state->y, rve->ndof));
   PetscCall(PetscArraycpy(before.lambda, state->lambda, rve->contact->count));
   LamRotatePositions(rve->ndof, before.y, before.load.F, LamRotationAngle(load->F) - LamRotationAngle(before.load.F));
-  PetscCall(TryAll(rve, load, state, &before, &at, &out));
+  PetscCall(TryAll(rve, load, state, &before, &out));
   PetscCall(SolutionDestroy(&before));
-  PetscCall(SolutionDestroy(&at));
   response->branch = state->branch + out.branch;
   response->negative_eigenvalues = PetscMax(0, out.negative);
   response->status = out.converged ? (out.negative > 0 ? LAM_UNSTABLE : LAM_CONVERGED) : LAM_NOT_CONVERGED;

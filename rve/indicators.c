@@ -248,6 +248,7 @@ PetscErrorCode LamContactIndicators(LamRVE rve, const LamLoad *load, LamResponse
   response->max_penetration = PetscMax(0.0, sums.max_penetration);
   response->max_traction = sums.max_traction;
   for (PetscInt i = 0; i < 3; ++i) response->fabric[i] = sums.fabric[i] / length;
+  response->zero_modes = rve->zero_modes;
   PetscCall(CountClusters(rve, response));
   PetscFunctionReturn(0);
 }

@@ -78,6 +78,7 @@ struct LamRVE_s {
   PetscReal *y, *step, *trial, *residual; /* [ndof] each: position, Newton step, trial position, residual */
   LamWork work;                           /* of the solve under way */
   PetscReal lowest_eigenvalue;            /* of the last unstable state met */
+  PetscInt zero_modes;                    /* of the consistent tangent last factored */
 };
 
 static inline PetscReal LamLargestEntry(PetscInt n, const PetscReal v[])
@@ -168,8 +169,8 @@ PetscReal LamNewtonTolerance(LamRVE rve);
 /* ---- stability.c ---- */
 /* Negative eigenvalues that the matrix of a stable state has: one for each active multiplier. */
 PetscInt LamActiveMultipliers(LamRVE rve);
-/* Assembles and factors the consistent tangent at rve->y and counts its negative eigenvalues; of contact
-   tissue those beyond the active multipliers. */
+/* Sets rve->zero_modes, too. Assembles and factors the consistent tangent at rve->y and counts its negative
+   eigenvalues; of contact tissue those beyond the active multipliers. */
 PetscErrorCode LamFactorConsistent(LamRVE rve, const LamLoad *load, PetscInt *negative, PetscBool *ok);
 /* A start for the softest mode without the symmetry of the cell, so that no mode is missed, the same in every run. */
 void LamStartMode(LamRVE rve, PetscReal mode[]);

@@ -8,9 +8,49 @@
 */
 #include "rve_impl.h"
 
+#define ZERO_MODE 1e-9 /* eigenvalues below it in size count as zero, (C1 + C2) apothem^0 per unit mode */
+
 PetscInt LamActiveMultipliers(LamRVE rve)
 {
   return rve->contact ? LamContactCountActive(rve->contact) : 0;
+}
+
+/* Factors with a shift; negative: eigenvalues beyond those of the active multipliers. */
+static PetscErrorCode FactorShifted(LamRVE rve, PetscReal shift, PetscInt *negative, PetscBool *ok)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamLinearFactor(&rve->linear, shift, negative, ok));
+  *negative -= LamActiveMultipliers(rve);
+  ++rve->work.factorisations;
+  PetscFunctionReturn(0);
+}
+
+/*
+  Contact tissue may have motions that change no energy: cells that slide or spin free. Where inverse iteration finds an
+  eigenvalue below ZERO_MODE in size, they are counted by the inertia on both sides of zero, do not count as negative,
+  and the factor is left with the shift, in which they are harmless: no force acts along them.
+*/
+static PetscErrorCode CountZeroModes(LamRVE rve, PetscInt *negative, PetscBool *ok)
+{
+  PetscReal *mode, *image, eigenvalue = 0.0;
+  PetscInt below, above;
+
+  PetscFunctionBeginUser;
+  if (*ok) {
+    PetscCall(PetscMalloc2(rve->linear.n, &mode, rve->linear.n, &image));
+    LamStartMode(rve, mode);
+    PetscCall(LamImproveSoftestMode(rve, 3, mode));
+    LamLinearMultiply(&rve->linear, mode, image);
+    for (PetscInt i = 0; i < rve->linear.positions; ++i) eigenvalue += mode[i] * image[i];
+    PetscCall(PetscFree2(mode, image));
+    if (PetscAbsReal(eigenvalue) > ZERO_MODE) PetscFunctionReturn(0);
+  }
+  PetscCall(FactorShifted(rve, -ZERO_MODE, &below, ok));
+  if (*ok) PetscCall(FactorShifted(rve, ZERO_MODE, &above, ok));
+  if (!*ok) PetscFunctionReturn(0);
+  rve->zero_modes = below - above;
+  *negative = above;
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamFactorConsistent(LamRVE rve, const LamLoad *load, PetscInt *negative, PetscBool *ok)
@@ -20,6 +60,7 @@ PetscErrorCode LamFactorConsistent(LamRVE rve, const LamLoad *load, PetscInt *ne
 
   PetscFunctionBeginUser;
   *negative = 0;
+  rve->zero_modes = 0;
   *ok = LamSetConsistentStresses(rve, load, rve->y);
   if (!*ok) PetscFunctionReturn(0);
   PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
@@ -28,9 +69,8 @@ PetscErrorCode LamFactorConsistent(LamRVE rve, const LamLoad *load, PetscInt *ne
     LamContactAddCurvature(rve);
     LamContactSetRows(rve, 0.0);
   }
-  PetscCall(LamLinearFactor(&rve->linear, 0.0, negative, ok));
-  *negative -= LamActiveMultipliers(rve);
-  ++rve->work.factorisations;
+  PetscCall(FactorShifted(rve, 0.0, negative, ok));
+  if (rve->contact) PetscCall(CountZeroModes(rve, negative, ok));
   PetscFunctionReturn(0);
 }
 
