@@ -42,6 +42,7 @@ typedef struct {
   PetscBool *active;          /* [count]: in contact; false where merged */
   PetscReal *held;            /* [2 classes] forces that bonding carried and contact does not, ... */
   PetscReal share;            /* ... and the share of them that still acts; 0 but during release */
+  PetscReal largest_step;     /* of the Newton iteration last made */
   PetscInt *position;         /* [face][dofs (dofs + 1)/2]: index into the matrix of pairs of dofs, row by row */
   PetscInt *coupling;         /* [count][dofs]: of dof and multiplier */
   PetscInt *diagonal;         /* [count] */

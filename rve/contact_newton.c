@@ -18,7 +18,6 @@
 
 #define ITERATIONS 40 /* from a start far from contact */
 #define NEAR_ITERATIONS 20
-#define RUNAWAY 0.5         /* apothems: a step this large from a near start leads nowhere */
 #define FOLLOW_ITERATIONS 6 /* in which the junction status follows the iterate */
 #define FOLLOW_FAR 25       /* the same while steps are shortened */
 #define COMPLIANT_ITERATIONS 4
@@ -56,8 +55,9 @@ static PetscErrorCode Report(LamRVE rve, PetscInt it, PetscReal norm, PetscReal 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, PetscBool compliant, LamNewtonOutcome *outcome)
+PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, PetscReal reach, LamNewtonOutcome *outcome)
 {
+  const PetscBool compliant = (PetscBool)(reach == LAM_FAR);
   const PetscBool under_way = (PetscBool)(rve->contact->share > 0.0);
   const PetscReal tolerance = under_way ? LOOSE_TOLERANCE : LamNewtonTolerance(rve);
   const PetscReal gap_tolerance = under_way ? LOOSE_TOLERANCE : LAM_GAP_TOLERANCE;
@@ -94,9 +94,10 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, PetscBool compl
     }
     PetscCall(LamContactSolveStep(rve, norm, compliance, &step, &ok));
     if (!ok) break;
+    rve->contact->largest_step = LamLargestEntry(rve->ndof, rve->step);
     PetscCall(StepLength(rve, load, compliant ? STEP_LIMIT : FAR_LIMIT, &alpha));
-    PetscCall(Report(rve, it, norm, gap, changes, LamLargestEntry(rve->ndof, rve->step), alpha, step.shift));
-    if (alpha == 0.0 || (!compliant && LamLargestEntry(rve->ndof, rve->step) > RUNAWAY)) break;
+    PetscCall(Report(rve, it, norm, gap, changes, rve->contact->largest_step, alpha, step.shift));
+    if (alpha == 0.0 || (!compliant && rve->contact->largest_step > reach)) break;
     if (alpha < 1.0 && it < FOLLOW_FAR) follow_until = PetscMax(follow_until, it + 3);
     LamContactTakeStep(rve, load, alpha, &step);
   }

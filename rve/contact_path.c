@@ -15,12 +15,14 @@
 */
 #include "rve_impl.h"
 
-#define NEAR 0.03           /* largest change of F (and of turgor and cohesion) that counts as near */
-#define TIGHT 0.5           /* cohesion that is added first, C1 + C2 */
-#define LOOSE 1e-3          /* of it: from here the rest is taken away at once */
-#define EASE 0.25           /* first factor by which it is lowered */
-#define FIRST_RELEASE 0.5   /* share of the held forces that is taken away first */
-#define LEAST_RELEASE 0.125 /* smaller shares: descent takes over */
+#define NEAR 0.03          /* largest change of F (and of turgor and cohesion) that counts as near */
+#define TIGHT 0.5          /* cohesion that is added first, C1 + C2 */
+#define LOOSE 1e-3         /* of it: from here the rest is taken away at once */
+#define LEAST_EASE 0.85    /* nearer to 1 it is given up */
+#define EASE 0.25          /* first factor by which it is lowered */
+#define REACH 0.5          /* apothems: a larger step from a near start leads nowhere */
+#define RELEASE_REACH 0.1  /* the same for the first step of a release */
+#define LEAST_RELEASE 0.06 /* smaller shares: descent takes over */
 #define MIN_SUBSTEP (1.0 / 64.0)
 #define MAX_BRANCH_SWITCHES 4
 #define KICK 0.01 /* apothems: start along an unstable mode */
@@ -80,7 +82,7 @@ static PetscErrorCode LeaveSaddle(LamRVE rve, const LamLoad *load, Outcome *out)
                              "  saddle: %d negative eigenvalues, lowest %.3e; leaving it\n", (int)out->negative,
                              (double)rve->lowest_eigenvalue));
     for (PetscInt i = 0; i < positions; ++i) rve->y[2 + i] += KICK * mode[i] / largest;
-    PetscCall(LamContactNewton(rve, load, PETSC_FALSE, &outcome));
+    PetscCall(LamContactNewton(rve, load, REACH, &outcome));
     out->converged = (PetscBool)(outcome == LAM_NEWTON_CONVERGED);
     if (out->converged) {
       ++out->branch;
@@ -91,14 +93,26 @@ static PetscErrorCode LeaveSaddle(LamRVE rve, const LamLoad *load, Outcome *out)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Try(LamRVE rve, const LamLoad *load, PetscBool compliant, Outcome *out)
+static PetscErrorCode Try(LamRVE rve, const LamLoad *load, PetscReal reach, Outcome *out)
 {
   LamNewtonOutcome outcome;
 
   PetscFunctionBeginUser;
   *out = (Outcome){0};
-  PetscCall(LamContactNewton(rve, load, compliant, &outcome));
+  PetscCall(LamContactNewton(rve, load, reach, &outcome));
   out->converged = (PetscBool)(outcome == LAM_NEWTON_CONVERGED);
+  if (out->converged) PetscCall(LeaveSaddle(rve, load, out));
+  PetscFunctionReturn(0);
+}
+
+/* The same by descent. */
+static PetscErrorCode Descend(LamRVE rve, const LamLoad *load, Outcome *out)
+{
+  LamNewtonOutcome outcome;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamContactNewtonSafe(rve, load, &outcome));
+  *out = (Outcome){(PetscBool)(outcome == LAM_NEWTON_CONVERGED), 0, 0};
   if (out->converged) PetscCall(LeaveSaddle(rve, load, out));
   PetscFunctionReturn(0);
 }
@@ -190,13 +204,30 @@ static PetscErrorCode StartBonded(LamRVE rve, const LamLoad *load, PetscBool *ok
   PetscFunctionReturn(0);
 }
 
+/* One release from `share` to rve->contact->share, the last one to a stable state at the load. */
+static PetscErrorCode ReleaseTo(LamRVE rve, const LamLoad *load, PetscReal reach, Outcome *out, PetscBool *reached)
+{
+  LamNewtonOutcome outcome;
+
+  PetscFunctionBeginUser;
+  if (rve->contact->share == 0.0) {
+    PetscCall(Try(rve, load, reach, out));
+    *reached = IsStable(out);
+  } else {
+    PetscCall(LamContactNewton(rve, load, reach, &outcome));
+    *reached = (PetscBool)(outcome == LAM_NEWTON_CONVERGED);
+  }
+  PetscFunctionReturn(0);
+}
+
 /*
-  Step two of two: releases the interface. The forces that bonding carried and contact does not are taken away in
-  shares, so that every Newton iteration starts near its solution and takes full steps.
+  Step two of two: releases the interface. The forces that bonding carried and contact does not are taken away at once
+  where that moves little, else in shares, so that every Newton iteration starts near its solution and takes full steps.
+  Where small shares fail, too, descent takes over.
 */
 static PetscErrorCode Release(LamRVE rve, const LamLoad *load, Solution *at, Outcome *out)
 {
-  PetscReal share = 1.0, step = FIRST_RELEASE;
+  PetscReal share = 1.0, step = 1.0;
   PetscBool ok;
 
   PetscFunctionBeginUser;
@@ -205,33 +236,26 @@ static PetscErrorCode Release(LamRVE rve, const LamLoad *load, Solution *at, Out
   if (!ok) PetscFunctionReturn(0);
   PetscCall(Save(rve, load, at));
   while (share > 0.0 && rve->work.iterations < LAM_ITERATION_BUDGET) {
-    LamNewtonOutcome outcome;
+    const PetscInt iterations = rve->work.iterations;
+    PetscBool reached = PETSC_FALSE;
 
     rve->contact->share = PetscMax(0.0, share - step);
-    if (rve->contact->share == 0.0) {
-      PetscCall(Try(rve, load, PETSC_FALSE, out));
-      outcome = IsStable(out) ? LAM_NEWTON_CONVERGED : LAM_NEWTON_STALLED;
-    } else {
-      PetscCall(LamContactNewton(rve, load, PETSC_FALSE, &outcome));
-    }
-    if (outcome == LAM_NEWTON_CONVERGED) {
+    PetscCall(ReleaseTo(rve, load, RELEASE_REACH, out, &reached));
+    if (reached) {
       share = rve->contact->share;
       PetscCall(Save(rve, load, at));
       step *= 2.0;
-    } else {
-      step *= 0.5;
-      PetscCall(StartNear(rve, at, load));
-      if (step < LEAST_RELEASE) break;
+      continue;
     }
+    /* the first linear step tells how much of it is near */
+    step *= rve->work.iterations == iterations
+                ? PetscMax(0.1, PetscMin(0.5, 0.6 * RELEASE_REACH / rve->contact->largest_step))
+                : 0.5;
+    PetscCall(StartNear(rve, at, load));
+    if (step < LEAST_RELEASE) break;
   }
   rve->contact->share = 0.0;
-  if (share > 0.0) {
-    LamNewtonOutcome outcome;
-
-    PetscCall(LamContactNewtonSafe(rve, load, &outcome));
-    out->converged = (PetscBool)(outcome == LAM_NEWTON_CONVERGED);
-    if (out->converged) PetscCall(LeaveSaddle(rve, load, out));
-  }
+  if (share > 0.0) PetscCall(Descend(rve, load, out));
   PetscFunctionReturn(0);
 }
 
@@ -263,7 +287,7 @@ static PetscErrorCode Substeps(LamRVE rve, Solution *at, const LamLoad *load, Ou
     const LamLoad next = t >= 1.0 ? *load : LamLoadBetween(&start, load, t);
 
     PetscCall(StartNear(rve, at, &next));
-    PetscCall(Try(rve, &next, PETSC_FALSE, out));
+    PetscCall(Try(rve, &next, REACH, out));
     if (IsStable(out)) {
       PetscCall(Save(rve, &next, at));
       reached = t;
@@ -272,6 +296,11 @@ static PetscErrorCode Substeps(LamRVE rve, Solution *at, const LamLoad *load, Ou
       step *= 0.5;
       if (step < MIN_SUBSTEP) break;
     }
+  }
+  if (reached < 1.0) { /* a branch has ended: down to whatever comes next */
+    PetscCall(StartNear(rve, at, load));
+    PetscCall(Descend(rve, load, out));
+    if (IsStable(out)) PetscFunctionReturn(0);
   }
   if (reached < 1.0) *out = (Outcome){0}; /* what there is belongs to another load */
   PetscFunctionReturn(0);
@@ -289,14 +318,19 @@ static PetscErrorCode ComeDown(LamRVE rve, const LamLoad *load, Solution *at, Ou
 
     next.cohesion = load->cohesion + less;
     PetscCall(StartNear(rve, at, &next));
-    PetscCall(Try(rve, &next, PETSC_FALSE, out));
+    PetscCall(Try(rve, &next, REACH, out));
     if (IsStable(out)) {
       PetscCall(Save(rve, &next, at));
       added = less;
     } else {
       factor = PetscSqrtReal(factor);
-      if (factor > 0.95) break;
+      if (factor > LEAST_EASE) break;
     }
+  }
+  if (added > 0.0) {
+    PetscCall(StartNear(rve, at, load));
+    PetscCall(Descend(rve, load, out));
+    if (IsStable(out)) PetscFunctionReturn(0);
   }
   if (added > 0.0) *out = (Outcome){0}; /* as in Substeps */
   PetscFunctionReturn(0);
@@ -313,7 +347,7 @@ static PetscErrorCode TightThenLoose(LamRVE rve, const LamLoad *load, PetscBool 
     PetscCall(Release(rve, &tight, at, out));
   } else {
     PetscCall(StartAffine(rve, &tight));
-    PetscCall(Try(rve, &tight, PETSC_TRUE, out));
+    PetscCall(Try(rve, &tight, LAM_FAR, out));
     PetscCall(Save(rve, &tight, at));
   }
   if (IsStable(out))
@@ -336,7 +370,7 @@ static PetscErrorCode WalkThenLoose(LamRVE rve, const LamLoad *load, Solution *a
   start.F[1] = -s;
   start.F[3] = s;
   PetscCall(StartAffine(rve, &start));
-  PetscCall(Try(rve, &start, PETSC_TRUE, out));
+  PetscCall(Try(rve, &start, LAM_FAR, out));
   if (IsStable(out)) {
     PetscCall(Save(rve, &start, at));
     PetscCall(Substeps(rve, at, &tight, out));
@@ -388,7 +422,7 @@ static PetscErrorCode FirstTry(LamRVE rve, const LamLoad *load, LamRVEState stat
     PetscCall(Release(rve, load, at, out));
   } else {
     PetscCall(StartAffine(rve, load));
-    PetscCall(Try(rve, load, PETSC_TRUE, out));
+    PetscCall(Try(rve, load, LAM_FAR, out));
   }
   PetscFunctionReturn(0);
 }
@@ -403,7 +437,7 @@ static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state,
   *out = (Outcome){0};
   if (state->solved && LoadDistance(&before->load, load) <= NEAR) {
     PetscCall(StartNear(rve, before, load));
-    PetscCall(Try(rve, load, PETSC_FALSE, out));
+    PetscCall(Try(rve, load, REACH, out));
     if (IsStable(out)) PetscFunctionReturn(0);
   }
   PetscCall(SolutionCreate(rve, &at));

@@ -14,9 +14,11 @@
 */
 #include "rve_impl.h"
 
-#define SAFE_ITERATIONS 150
+#define SAFE_ITERATIONS 300
 #define WATCHDOG 4
-#define STEP_LIMIT 0.05
+#define STEP_LIMIT 0.05 /* apothems; smaller after a failure, down to ... */
+#define LEAST_STEP_LIMIT 1e-3
+#define LEAST_WEIGHT 0.01 /* of the violation in the merit, C1 + C2 */
 #define ARMIJO 1e-4
 
 typedef struct {
@@ -26,7 +28,7 @@ typedef struct {
 typedef struct {
   PetscReal *y, *lambda; /* the best point so far */
   Merit merit;
-  PetscReal mu;
+  PetscReal mu, limit; /* weight of the violation; of the step length */
   PetscInt without_decrease;
   PetscBool monotone, known;
 } Best;
@@ -81,6 +83,7 @@ static PetscErrorCode Watch(LamRVE rve, const LamLoad *load, Merit now, PetscBoo
     best->merit = now;
     best->known = PETSC_TRUE;
     best->without_decrease = 0;
+    best->limit = PetscMin(STEP_LIMIT, 1.3 * best->limit);
     PetscFunctionReturn(0);
   }
   if (valid && Value(now, best->mu) <= Value(best->merit, best->mu) + rounding) PetscFunctionReturn(0);
@@ -90,8 +93,18 @@ static PetscErrorCode Watch(LamRVE rve, const LamLoad *load, Merit now, PetscBoo
   (void)LamSetConsistentStresses(rve, load, rve->y);
   best->without_decrease = 0;
   best->monotone = PETSC_TRUE;
+  best->limit = PetscMax(LEAST_STEP_LIMIT, 0.25 * best->limit);
   *moved = PETSC_TRUE;
   PetscFunctionReturn(0);
+}
+
+/* mu stays above the multipliers, but not far: a heavy weight on the violation makes the steps along it tiny. */
+static void SetWeight(LamRVE rve, const PetscReal lambda[], Best *best)
+{
+  PetscReal largest = LEAST_WEIGHT;
+
+  for (PetscInt h = 0; h < rve->contact->count; ++h) largest = PetscMax(largest, lambda[h]);
+  if (best->mu < 1.2 * largest || best->mu > 4.0 * largest) best->mu = 1.5 * largest;
 }
 
 static PetscErrorCode SafeStep(LamRVE rve, const LamLoad *load, PetscReal norm, Merit now, PetscReal rounding,
@@ -104,9 +117,9 @@ static PetscErrorCode SafeStep(LamRVE rve, const LamLoad *load, PetscReal norm, 
   *alpha = 0.0;
   PetscCall(LamContactSolveStep(rve, norm, 0.0, step, &ok));
   if (!ok) PetscFunctionReturn(0);
-  for (PetscInt h = 0; h < rve->contact->count; ++h) best->mu = PetscMax(best->mu, 1.5 * step->lambda[h]);
+  SetWeight(rve, step->lambda, best);
   largest = LamLargestEntry(rve->ndof, rve->step);
-  *alpha = PetscMin(1.0, STEP_LIMIT / PetscMax(largest, 1e-300));
+  *alpha = PetscMin(1.0, best->limit / PetscMax(largest, 1e-300));
   if (best->monotone) {
     for (PetscInt i = 2; i < rve->ndof; ++i) slope += rve->residual[i] * rve->step[i];
     PetscCall(LineSearch(rve, load, now, best->mu, slope - best->mu * now.violation, rounding, alpha));
@@ -128,7 +141,7 @@ PetscErrorCode LamContactNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOu
   const PetscReal rounding = 1e-14 * rve->micro.wall.bulk_modulus * rve->mesh.V0;
   LamContact *contact = rve->contact;
   LamContactStep step;
-  Best best = {.mu = 0.1};
+  Best best = {.mu = LEAST_WEIGHT, .limit = STEP_LIMIT};
 
   PetscFunctionBeginUser;
   *outcome = LAM_NEWTON_STALLED;

@@ -8,7 +8,7 @@
 */
 #include "rve_impl.h"
 
-#define ACTIVE_SET_SOLVES 6  /* solves with one linearisation until the active set fits the step */
+#define ACTIVE_SET_SOLVES 3  /* solves with one linearisation until the active set fits the step */
 #define SADDLE_RESIDUAL 1e-3 /* of an indefinite state below which Newton would only creep along a saddle */
 #define ESCAPE_STEP 0.01     /* along a direction of negative curvature, in apothems */
 
@@ -40,11 +40,12 @@ void LamContactResidual(LamRVE rve, LamContactStep *step, PetscReal *norm)
   *norm = LamResidualNorm(rve, step->rhs);
 }
 
-/* Factors with the smallest tried shift that leaves as many negative eigenvalues as active hats. */
-static PetscErrorCode FactorStable(LamRVE rve, PetscReal *last_shift, PetscBool *ok)
+/* Factors with the smallest tried shift that leaves as many negative eigenvalues as active hats; again: from the last
+   one upwards. */
+static PetscErrorCode FactorStable(LamRVE rve, PetscBool again, PetscReal *last_shift, PetscBool *ok)
 {
   const PetscInt active = LamContactCountActive(rve->contact);
-  PetscReal diagonal = 0.0, shift = LAM_CONTACT_PROXIMAL;
+  PetscReal diagonal = 0.0, shift = again ? *last_shift : LAM_CONTACT_PROXIMAL;
   PetscInt negative;
 
   PetscFunctionBeginUser;
@@ -56,7 +57,7 @@ static PetscErrorCode FactorStable(LamRVE rve, PetscReal *last_shift, PetscBool 
     if (*ok && negative <= active) break;
     *ok = PETSC_FALSE;
     if (shift > diagonal) break;
-    shift = attempt == 0 ? PetscMax(*last_shift / 8.0, 1e-7 * diagonal) : 4.0 * shift;
+    shift = shift < 1e-7 * diagonal ? PetscMax(*last_shift / 8.0, 1e-7 * diagonal) : 4.0 * shift;
   }
   *last_shift = shift;
   PetscFunctionReturn(0);
@@ -112,7 +113,7 @@ PetscErrorCode LamContactSolveStep(LamRVE rve, PetscReal norm, PetscReal complia
   LamContactAddCurvature(rve);
   for (PetscInt k = 0; k < ACTIVE_SET_SOLVES; ++k) {
     LamContactSetRows(rve, compliance);
-    PetscCall(FactorStable(rve, &step->shift, ok));
+    PetscCall(FactorStable(rve, (PetscBool)(k > 0), &step->shift, ok));
     if (!*ok) PetscFunctionReturn(0);
     PetscCall(Solve(rve, step));
     if (k + 1 == ACTIVE_SET_SOLVES || LamContactPredictActive(rve, rve->step, step->lambda, compliance) == 0) break;

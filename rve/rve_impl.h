@@ -213,9 +213,11 @@ PetscErrorCode LamContactSolveStep(LamRVE rve, PetscReal norm, PetscReal complia
 void LamContactTakeStep(LamRVE rve, const LamLoad *load, PetscReal alpha, const LamContactStep *step);
 
 /* ---- contact_newton.c, contact_safe.c, contact_path.c ---- */
-/* From rve->y, contact->lambda and the independent stresses to equilibrium at `load`. compliant: the start may be far
-   from contact. Fast: full steps. Safe: descent on the energy, from consistent stresses. */
-PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, PetscBool compliant, LamNewtonOutcome *outcome);
+/* From rve->y, contact->lambda and the independent stresses to equilibrium at `load`. Fast: full steps; one larger than
+   `reach` (apothems) ends it as stalled; LAM_FAR: the start may be far from contact, steps are shortened. Safe: descent
+   on the energy, from consistent stresses. */
+#define LAM_FAR 0.0
+PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, PetscReal reach, LamNewtonOutcome *outcome);
 PetscErrorCode LamContactNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome);
 /* As LamFollowPath; the solution is in rve->y and contact->lambda. */
 PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
