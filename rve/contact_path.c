@@ -25,7 +25,9 @@
 #define LEAST_RELEASE 0.06 /* smaller shares: descent takes over */
 #define MIN_SUBSTEP (1.0 / 64.0)
 #define MAX_BRANCH_SWITCHES 4
-#define KICK 0.01 /* apothems: start along an unstable mode */
+#define SHALLOW 0.02       /* apothems: penetration that the mesh explains ... */
+#define SHALLOW_SHARE 0.25 /* ... and in wall thicknesses */
+#define KICK 0.01          /* apothems: start along an unstable mode */
 
 /* A solution to start from. */
 typedef struct {
@@ -60,6 +62,8 @@ static PetscErrorCode Save(LamRVE rve, const LamLoad *load, Solution *solution)
 typedef struct {
   PetscBool converged;
   PetscInt negative, branch;
+  PetscReal overlap; /* depth of a wall inside another cell, where it is too deep to be an answer */
+  PetscInt pair[2];  /* these cells */
 } Outcome;
 
 /* Leaves saddles along their unstable mode. Ends with the consistent tangent factored. */
@@ -105,6 +109,20 @@ static PetscErrorCode Try(LamRVE rve, const LamLoad *load, PetscReal reach, Outc
   PetscFunctionReturn(0);
 }
 
+/* A state in which cells lie in each other is none. */
+static PetscErrorCode RefuseOverlap(LamRVE rve, const LamLoad *load, Outcome *out)
+{
+  PetscReal depth;
+
+  PetscFunctionBeginUser;
+  if (!out->converged) PetscFunctionReturn(0);
+  PetscCall(LamFindOverlap(rve, load->F, rve->y, &depth, out->pair));
+  if (depth <= PetscMax(SHALLOW, SHALLOW_SHARE * rve->micro.wall_thickness)) PetscFunctionReturn(0);
+  out->converged = PETSC_FALSE;
+  out->overlap = depth;
+  PetscFunctionReturn(0);
+}
+
 /* The same by descent. */
 static PetscErrorCode Descend(LamRVE rve, const LamLoad *load, Outcome *out)
 {
@@ -112,7 +130,7 @@ static PetscErrorCode Descend(LamRVE rve, const LamLoad *load, Outcome *out)
 
   PetscFunctionBeginUser;
   PetscCall(LamContactNewtonSafe(rve, load, &outcome));
-  *out = (Outcome){(PetscBool)(outcome == LAM_NEWTON_CONVERGED), 0, 0};
+  *out = (Outcome){.converged = (PetscBool)(outcome == LAM_NEWTON_CONVERGED)};
   if (out->converged) PetscCall(LeaveSaddle(rve, load, out));
   PetscFunctionReturn(0);
 }
@@ -430,7 +448,7 @@ static PetscErrorCode FirstTry(LamRVE rve, const LamLoad *load, LamRVEState stat
 static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state, Solution *before, Outcome *out)
 {
   PetscBool has_bonded = PETSC_FALSE;
-  Outcome kept = {0};
+  Outcome kept = {0}, refused = {0};
   Solution at, saddle;
 
   PetscFunctionBeginUser;
@@ -438,6 +456,7 @@ static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state,
   if (state->solved && LoadDistance(&before->load, load) <= NEAR) {
     PetscCall(StartNear(rve, before, load));
     PetscCall(Try(rve, load, REACH, out));
+    PetscCall(RefuseOverlap(rve, load, out));
     if (IsStable(out)) PetscFunctionReturn(0);
   }
   PetscCall(SolutionCreate(rve, &at));
@@ -449,7 +468,10 @@ static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state,
     if (k == 1) PetscCall(TightThenLoose(rve, load, has_bonded, &at, out));
     if (k == 2) PetscCall(WalkThenLoose(rve, load, &at, out));
     if (k == 3 && state->solved) PetscCall(Substeps(rve, before, load, out));
+    PetscCall(RefuseOverlap(rve, load, out));
+    if (out->overlap > 0.0) refused = *out;
   }
+  if (!IsStable(out)) *out = refused;
   if (!IsStable(out) && kept.converged) PetscCall(GiveSaddle(rve, &saddle, &kept, out));
   PetscCall(SolutionDestroy(&at));
   PetscCall(SolutionDestroy(&saddle));
@@ -476,7 +498,13 @@ PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState
     PetscCall(PetscSNPrintf(response->reason, sizeof(response->reason),
                             "only a saddle was found: %d negative eigenvalues, lowest %.3g (C1+C2)", (int)out.negative,
                             (double)rve->lowest_eigenvalue));
-  if (response->status == LAM_NOT_CONVERGED)
+  if (response->status == LAM_NOT_CONVERGED && out.overlap > 0.0)
+    PetscCall(
+        PetscSNPrintf(response->reason, sizeof(response->reason),
+                      "a wall of cell %d lies %.3g apothems inside cell %d: it meets a wall that it does not face, "
+                      "which is not modelled, or the mesh along the faces is too coarse",
+                      (int)out.pair[0], (double)out.overlap, (int)out.pair[1]));
+  else if (response->status == LAM_NOT_CONVERGED)
     PetscCall(PetscSNPrintf(response->reason, sizeof(response->reason),
                             "no contact equilibrium found from any start, after %d iterations: give states in between",
                             (int)rve->work.iterations));

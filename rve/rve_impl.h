@@ -222,9 +222,12 @@ PetscErrorCode LamContactNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOu
 /* As LamFollowPath; the solution is in rve->y and contact->lambda. */
 PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
 
-/* ---- lumen.c ---- */
+/* ---- lumen.c, overlap.c ---- */
 /* The first cell whose inner loop crosses itself at positions y, -1: none. */
 PetscErrorCode LamFindCollapsedLumen(LamRVE rve, const PetscReal y[], PetscInt *cell);
+/* How deep an outer wall lies inside another cell, apothems, and the two cells; 0 and -1, -1 where none does. */
+PetscErrorCode LamFindOverlap(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscReal *depth,
+                              PetscInt pair[2]);
 
 /* ---- homogenise.c, traction.c ---- */
 /* Fills energy, P, tangent, couplings and lumen fraction from rve->y and the factored consistent tangent. */
