@@ -92,6 +92,7 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, PetscReal reach
       follow_until = it + 2;
       continue;
     }
+    LamContactAddCurvature(rve);
     PetscCall(LamContactSolveStep(rve, norm, compliance, &step, &ok));
     if (!ok) break;
     rve->contact->largest_step = LamLargestEntry(rve->ndof, rve->step);

@@ -25,7 +25,7 @@
 #define LEAST_RELEASE 0.06 /* smaller shares: descent takes over */
 #define MIN_SUBSTEP (1.0 / 64.0)
 #define MAX_BRANCH_SWITCHES 4
-#define SHALLOW 0.02       /* apothems: penetration that the mesh explains ... */
+#define SHALLOW 0.03       /* apothems: penetration that the mesh explains ... */
 #define SHALLOW_SHARE 0.25 /* ... and in wall thicknesses */
 #define KICK 0.01          /* apothems: start along an unstable mode */
 

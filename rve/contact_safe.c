@@ -5,9 +5,9 @@
   the fast iteration's linear system with the active set that fits the step and a matrix made positive definite on the
   free motions, so it points downhill for the merit
       phi = Pi - share held.x + mu sum_A D_A max(0, -gap_A),      mu > largest multiplier.
-  Steps are limited in length; a watchdog allows a few steps without decrease (a large step first violates the stiff
-  walls and is then restored) before it goes back to the best point and searches along the line. Small steps of an
-  indefinite matrix get a piece of the unstable mode, so saddles are left.
+  Steps are limited in length by the shift; a watchdog allows a few steps without decrease (a large step first violates
+  the stiff walls and is then restored) before it goes back to the best point and searches along the line. Small steps
+  of an indefinite matrix get a piece of the unstable mode, so saddles are left.
 
   References. Nocedal & Wright, Numerical Optimization, chapters 15 and 18; Chamberlain et al., Math. Prog. Study 16
   (1982) 1 (watchdog).
@@ -15,10 +15,13 @@
 #include "rve_impl.h"
 
 #define SAFE_ITERATIONS 300
+#define FOLLOW_ITERATIONS 150 /* in which the junction status follows the iterate */
 #define WATCHDOG 4
 #define STEP_LIMIT 0.05 /* apothems; smaller after a failure, down to ... */
 #define LEAST_STEP_LIMIT 1e-3
 #define LEAST_WEIGHT 0.01 /* of the violation in the merit, C1 + C2 */
+#define SHORTENINGS 6
+#define LEAST_FLOOR 1e-4 /* of the shift that shortens steps */
 #define ARMIJO 1e-4
 
 typedef struct {
@@ -92,6 +95,7 @@ static PetscErrorCode Watch(LamRVE rve, const LamLoad *load, Merit now, PetscBoo
   PetscCall(PetscArraycpy(rve->contact->lambda, best->lambda, rve->contact->count));
   (void)LamSetConsistentStresses(rve, load, rve->y);
   best->without_decrease = 0;
+  best->known = PETSC_FALSE; /* its merit changes with the junction status */
   best->monotone = PETSC_TRUE;
   best->limit = PetscMax(LEAST_STEP_LIMIT, 0.25 * best->limit);
   *moved = PETSC_TRUE;
@@ -107,6 +111,29 @@ static void SetWeight(LamRVE rve, const PetscReal lambda[], Best *best)
   if (best->mu < 1.2 * largest || best->mu > 4.0 * largest) best->mu = 1.5 * largest;
 }
 
+/*
+  A step no longer than `limit`, by a larger shift rather than by scaling: it still corrects the whole violation of gaps
+  and of the stiff walls, and only the soft motions are held back.
+*/
+static PetscErrorCode ShortStep(LamRVE rve, PetscReal norm, PetscReal limit, LamContactStep *step, PetscBool *ok)
+{
+  PetscFunctionBeginUser;
+  LamContactAddCurvature(rve);
+  for (PetscInt k = 0; k < SHORTENINGS; ++k) {
+    PetscReal ratio;
+
+    PetscCall(LamContactSolveStep(rve, norm, 0.0, step, ok));
+    if (!*ok) PetscFunctionReturn(0);
+    ratio = LamLargestEntry(rve->ndof, rve->step) / limit;
+    if (ratio <= 1.0) {
+      if (ratio < 0.3) step->floor = step->floor < LEAST_FLOOR ? 0.0 : 0.25 * step->floor;
+      break;
+    }
+    step->floor = PetscMin(PetscMax(2.0, ratio), 10.0) * PetscMax(step->shift, LEAST_FLOOR);
+  }
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode SafeStep(LamRVE rve, const LamLoad *load, PetscReal norm, Merit now, PetscReal rounding,
                                LamContactStep *step, Best *best, PetscReal *alpha)
 {
@@ -115,7 +142,7 @@ static PetscErrorCode SafeStep(LamRVE rve, const LamLoad *load, PetscReal norm, 
 
   PetscFunctionBeginUser;
   *alpha = 0.0;
-  PetscCall(LamContactSolveStep(rve, norm, 0.0, step, &ok));
+  PetscCall(ShortStep(rve, norm, best->limit, step, &ok));
   if (!ok) PetscFunctionReturn(0);
   SetWeight(rve, step->lambda, best);
   largest = LamLargestEntry(rve->ndof, rve->step);
@@ -153,7 +180,7 @@ PetscErrorCode LamContactNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOu
     PetscBool valid, moved;
     Merit now = {0};
 
-    PetscCall(LamContactEvaluate(rve, load, rve->y, PETSC_TRUE));
+    PetscCall(LamContactEvaluate(rve, load, rve->y, (PetscBool)(it < FOLLOW_ITERATIONS)));
     PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
     if (valid) {
       LamContactResidual(rve, &step, &norm);

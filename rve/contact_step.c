@@ -17,7 +17,7 @@ PetscErrorCode LamContactStepCreate(LamRVE rve, LamContactStep *step)
   const PetscInt n = rve->linear.n;
 
   PetscFunctionBeginUser;
-  step->shift = 0.0;
+  step->shift = step->floor = 0.0;
   PetscCall(PetscMalloc4(n + 2, &step->rhs, n, &step->solution, rve->contact->count, &step->lambda, n, &step->image));
   PetscFunctionReturn(0);
 }
@@ -40,12 +40,12 @@ void LamContactResidual(LamRVE rve, LamContactStep *step, PetscReal *norm)
   *norm = LamResidualNorm(rve, step->rhs);
 }
 
-/* Factors with the smallest tried shift that leaves as many negative eigenvalues as active hats; again: from the last
-   one upwards. */
-static PetscErrorCode FactorStable(LamRVE rve, PetscBool again, PetscReal *last_shift, PetscBool *ok)
+/* Factors with the smallest tried shift that leaves as many negative eigenvalues as active hats, from the floor
+   upwards; again: from the last one. */
+static PetscErrorCode FactorStable(LamRVE rve, PetscBool again, LamContactStep *step, PetscBool *ok)
 {
   const PetscInt active = LamContactCountActive(rve->contact);
-  PetscReal diagonal = 0.0, shift = again ? *last_shift : LAM_CONTACT_PROXIMAL;
+  PetscReal diagonal = 0.0, shift = again ? step->shift : PetscMax(step->floor, LAM_CONTACT_PROXIMAL);
   PetscInt negative;
 
   PetscFunctionBeginUser;
@@ -57,9 +57,9 @@ static PetscErrorCode FactorStable(LamRVE rve, PetscBool again, PetscReal *last_
     if (*ok && negative <= active) break;
     *ok = PETSC_FALSE;
     if (shift > diagonal) break;
-    shift = shift < 1e-7 * diagonal ? PetscMax(*last_shift / 8.0, 1e-7 * diagonal) : 4.0 * shift;
+    shift = shift < 1e-7 * diagonal ? PetscMax(step->shift / 8.0, 1e-7 * diagonal) : 4.0 * shift;
   }
-  *last_shift = shift;
+  step->shift = shift;
   PetscFunctionReturn(0);
 }
 
@@ -110,10 +110,9 @@ PetscErrorCode LamContactSolveStep(LamRVE rve, PetscReal norm, PetscReal complia
                                    PetscBool *ok)
 {
   PetscFunctionBeginUser;
-  LamContactAddCurvature(rve);
   for (PetscInt k = 0; k < ACTIVE_SET_SOLVES; ++k) {
     LamContactSetRows(rve, compliance);
-    PetscCall(FactorStable(rve, (PetscBool)(k > 0), &step->shift, ok));
+    PetscCall(FactorStable(rve, (PetscBool)(k > 0), step, ok));
     if (!*ok) PetscFunctionReturn(0);
     PetscCall(Solve(rve, step));
     if (k + 1 == ACTIVE_SET_SOLVES || LamContactPredictActive(rve, rve->step, step->lambda, compliance) == 0) break;

@@ -200,12 +200,13 @@ typedef struct {
   PetscReal *rhs, *solution, *image; /* work space */
   PetscReal *lambda;                 /* [multipliers] after the step */
   PetscReal shift;                   /* of the last factor */
+  PetscReal floor;                   /* least shift: the larger, the shorter the step */
 } LamContactStep;
 PetscErrorCode LamContactStepCreate(LamRVE rve, LamContactStep *step);
 PetscErrorCode LamContactStepDestroy(LamContactStep *step);
 /* After LamAssemble: takes the held forces off rve->residual; norm: of the residual with contact forces. */
 void LamContactResidual(LamRVE rve, LamContactStep *step, PetscReal *norm);
-/* rve->step and step->lambda from the assembled state, whose tangent it completes; norm: of its residual. *ok is
+/* rve->step and step->lambda from the assembled state with its contact curvature; norm: of its residual. *ok is
    PETSC_FALSE where no shift helps. */
 PetscErrorCode LamContactSolveStep(LamRVE rve, PetscReal norm, PetscReal compliance, LamContactStep *step,
                                    PetscBool *ok);
