@@ -9,6 +9,7 @@
 #include "rve_impl.h"
 
 #define ACTIVE_SET_SOLVES 3  /* solves with one linearisation until the active set fits the step */
+#define LEAST_SHIFT 1e-9     /* of the largest diagonal entry: cells that hardly touch move against tiny stiffness */
 #define SADDLE_RESIDUAL 1e-3 /* of an indefinite state below which Newton would only creep along a saddle */
 #define ESCAPE_STEP 0.01     /* along a direction of negative curvature, in apothems */
 
@@ -57,7 +58,7 @@ static PetscErrorCode FactorStable(LamRVE rve, PetscBool again, LamContactStep *
     if (*ok && negative <= active) break;
     *ok = PETSC_FALSE;
     if (shift > diagonal) break;
-    shift = shift < 1e-7 * diagonal ? PetscMax(step->shift / 8.0, 1e-7 * diagonal) : 4.0 * shift;
+    shift = shift < LEAST_SHIFT * diagonal ? PetscMax(step->shift / 8.0, LEAST_SHIFT * diagonal) : 8.0 * shift;
   }
   step->shift = shift;
   PetscFunctionReturn(0);
