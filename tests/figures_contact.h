@@ -60,6 +60,7 @@ static inline PetscErrorCode CompareContact(const char path[], PetscInt along, P
 
 /* ---- complementarity, penetration and equilibrium ---- */
 #define PENETRATION_LOADS 3
+#define MODERATE_LOADS 2 /* the first ones */
 static inline LamLoad PenetrationLoad(int k)
 {
   const LamLoad loads[PENETRATION_LOADS] = {ContactLoad(1, 0.1, 0, 1, 0.02, 0),

@@ -60,7 +60,7 @@ static inline void ListContactStates(ContactState list[CONTACT_STATES])
   list[0].load = ContactLoad(1, 0.15, 0, 1, 0.03, 0);
   list[1].load = ContactLoad(1, 0.2, 0, 1, 0.02, 0.005);
   list[2].load = ContactLoad(1.06, 0.05, 0, 1.01, 0.01, 0.005);
-  list[3].load = ContactLoad(1.02, 0.1, -0.03, 0.99, 0.03, 0.002);
+  list[3].load = ContactLoad(1.02, 0.08, -0.03, 0.99, 0.03, 0.002);
   list[3].load.F[8] = 1.03;
   list[3].micro.orientation = 0.3;
   list[3].micro.wall_thickness = 0.2;

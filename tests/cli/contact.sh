@@ -9,7 +9,7 @@ rve:
   cell: {apothem: 75 um, wall_thickness: 11.25 um}
   wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
   interface: {law: contact, cohesion: $1}
-  turgor: {pressure: 0.02 MPa}
+  turgor: {pressure: 0.002 MPa}
   mesh: {along: 4, through: 1}
 load:
 YAML
@@ -115,13 +115,13 @@ expect 0 "$lamella" plot apart.h5 -o apart.svg
 grep -q '<svg' apart.svg || fail "no SVG picture"
 
 # answers from a database of contact tissue: at the cohesion of its records, gaps only in a record's own state
-expect 0 "$lamella" query spread.h5 -F "1 0.0201 0 1" -p "0.02 MPa" --json
+expect 0 "$lamella" query spread.h5 -F "1 0.0201 0 1" -p "0.002 MPa" --json
 grep -qE '"cohesion": 0.001[,0].*"opening_fraction": -?[0-9].*"max_gap": null' out.txt || fail "answer: $(cat out.txt)"
-expect 0 "$lamella" query spread.h5 -F "1 0.02 0 1" -p "0.02 MPa" -g "1 kPa" --json
+expect 0 "$lamella" query spread.h5 -F "1 0.02 0 1" -p "0.002 MPa" -g "1 kPa" --json
 grep -qE '"max_gap": [0-9]' out.txt || fail "a record does not answer for itself: $(cat out.txt)"
-expect 3 "$lamella" query spread.h5 -F "1 0.02 0 1" -p "0.02 MPa" -g "0 MPa"
+expect 3 "$lamella" query spread.h5 -F "1 0.02 0 1" -p "0.002 MPa" -g "0 MPa"
 grep -q 'same cohesion' out.txt || fail "the reason does not name the cohesion: $(cat out.txt)"
-printf '1 0.0201 0 1 ; 0.02 MPa ; 0.001 MPa\n1 0.0201 0 1 ; 0.02 MPa ; 0.002 MPa\n' >lines
+printf '1 0.0201 0 1 ; 0.002 MPa ; 0.001 MPa\n1 0.0201 0 1 ; 0.002 MPa ; 0.002 MPa\n' >lines
 "$lamella" query spread.h5 -F - --json <lines >out.txt
 [ $? -eq 3 ] && [ "$(grep -c '"converged"' out.txt)" -eq 1 ] || fail "cohesions of lines: $(cat out.txt)"
 expect 1 "$lamella" query spread.h5 -F "1 0.02 0 1" -g 0.001
