@@ -2,7 +2,7 @@
   What an answer takes from its record as it is: all that the potential does not give.
 
   Tractions and gaps are not interpolated: contact switches between two states, and a mean of "open" and "closed" is
-  neither. They are the record's where the question is the record's own state, and unknown (NaN; counts 0) elsewhere.
+  neither. They are the record's where the question is the record's own state, and unknown (NaN, LAM_UNKNOWN_COUNT) elsewhere.
 */
 #include "database_internal.h"
 #include <math.h>
@@ -62,6 +62,8 @@ void LamIndicatorsCopy(const LamResponse *record, const PetscInt face[3], PetscB
     CopyBonded(record, r);
   else if (own)
     CopyContact(record, face, r);
+  else
+    r->floating_cells = r->zero_modes = r->cell_clusters = r->percolating_directions = LAM_UNKNOWN_COUNT;
   if (own) r->max_traction = record->max_traction;
   for (int k = 0; k < 3 && own; k++) {
     r->mean_face_traction[k] = record->mean_face_traction[face[k]];

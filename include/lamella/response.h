@@ -25,6 +25,7 @@ typedef enum { LAM_SOURCES(LAM_ENUM_ENTRY) LAM_SOURCE_COUNT } LamSource;
 extern const char *const LamSourceNames[];
 
 #define LAM_VISIBLE_GAP 1e-3 /* apothems: a gap above it counts as open */
+#define LAM_UNKNOWN_COUNT -1 /* a count that is not known; null in JSON */
 
 /*
   Nondimensional (stresses in C1 + C2, lengths in apothems). A number that is not known is NaN in memory and null in

@@ -34,8 +34,11 @@ static json_t *MemberToJSON(const LamMember *m, const LamResponse *response, Pet
   case LAM_MEMBER_REAL:
     return m->count > 1 ? LamJSONReals(m->count, (const PetscReal *)(const void *)at, scale)
                         : LamJSONReal(*(const PetscReal *)(const void *)at * scale);
-  case LAM_MEMBER_INT:
-    return json_integer(*(const PetscInt *)(const void *)at);
+  case LAM_MEMBER_INT: {
+    const PetscInt count = *(const PetscInt *)(const void *)at;
+
+    return count == LAM_UNKNOWN_COUNT ? json_null() : json_integer(count);
+  }
   case LAM_MEMBER_BOOL:
     return json_boolean(*(const PetscBool *)(const void *)at);
   case LAM_MEMBER_ENUM:
@@ -135,7 +138,10 @@ static void PrintContact(const LamResponse *response, PetscReal MPa)
   PrintColumn(8, 4, 'f', response->debonded_fraction);
   PrintColumn(8, 4, 'f', response->open_fraction);
   PrintColumn(9, 2, 'e', response->max_gap);
-  printf(" %8" PetscInt_FMT, response->floating_cells);
+  if (response->floating_cells == LAM_UNKNOWN_COUNT)
+    printf(" %8s", "-");
+  else
+    printf(" %8" PetscInt_FMT, response->floating_cells);
 }
 
 PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales *scales, LamInterfaceLawType interface,
