@@ -236,7 +236,7 @@ PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, L
   if (LamResponseHasFields(response)) {
     PetscCall(FillFields(rve, load, response));
     response->stable = (PetscBool)(response->status == LAM_CONVERGED);
-    if (!response->stable) response->lowest_eigenvalue = rve->lowest_eigenvalue;
+    if (!response->stable || response->zero_modes > 0) response->lowest_eigenvalue = rve->lowest_eigenvalue;
     PetscCall(PetscArraycpy(state->y, rve->y, rve->ndof));
     if (rve->contact) PetscCall(PetscArraycpy(state->lambda, rve->contact->lambda, state->multipliers));
     state->solved = PETSC_TRUE;

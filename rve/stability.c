@@ -49,6 +49,7 @@ static PetscErrorCode CountZeroModes(LamRVE rve, PetscInt *negative, PetscBool *
   if (*ok) PetscCall(FactorShifted(rve, ZERO_MODE, &above, ok));
   if (!*ok) PetscFunctionReturn(0);
   rve->zero_modes = below - above;
+  rve->lowest_eigenvalue = eigenvalue;
   *negative = above;
   PetscFunctionReturn(0);
 }
