@@ -17,6 +17,7 @@
 #include "rve_impl.h"
 
 #define ITERATIONS 40 /* from a start far from contact */
+#define CYCLE_AFTER 9 /* iterations: from here on steps that change the active set are halved, which ends cycles */
 #define NEAR_ITERATIONS 20
 #define FOLLOW_ITERATIONS 6 /* in which the junction status follows the iterate */
 #define FOLLOW_FAR 25       /* the same while steps are shortened */
@@ -99,6 +100,7 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, PetscReal reach
     PetscCall(StepLength(rve, load, compliant ? STEP_LIMIT : FAR_LIMIT, &alpha));
     PetscCall(Report(rve, it, norm, gap, changes, rve->contact->largest_step, alpha, step.shift));
     if (alpha == 0.0 || (!compliant && rve->contact->largest_step > reach)) break;
+    if (it >= CYCLE_AFTER && changes > 0) alpha *= 0.5;
     if (alpha < 1.0 && it < FOLLOW_FAR) follow_until = PetscMax(follow_until, it + 3);
     LamContactTakeStep(rve, load, alpha, &step);
   }
