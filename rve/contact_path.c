@@ -15,7 +15,7 @@
 */
 #include "rve_impl.h"
 
-#define NEAR 0.1           /* largest change of F (and of turgor and cohesion) that counts as near */
+#define NEAR 0.04           /* largest change of F (and of turgor and cohesion) that counts as near */
 #define TIGHT 0.5          /* cohesion that is added first, C1 + C2 */
 #define LOOSE 1e-3         /* of it: from here the rest is taken away at once */
 #define LEAST_EASE 0.85    /* nearer to 1 it is given up */
