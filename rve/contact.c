@@ -1,7 +1,6 @@
 #include "rve_impl.h"
 
 #define OVERHANG 0.4      /* half-edges by which a hat's centre may lie outside the overlap */
-#define HYSTERESIS 0.2    /* of the junction status, in half-edges */
 #define LEAST_WEIGHT 1e-3 /* of a full hat: below it a hat carries nothing */
 
 /* Outer nodes of face k of a cell, counter-clockwise. */
@@ -45,6 +44,10 @@ PetscErrorCode LamContactCreate(const LamMicrostructure *micro, const LamMesh *m
   contact->chain = 2 * contact->hats;
   contact->dofs = LamMortarDofs(along, along);
   contact->count = contact->face_count * contact->hats;
+  contact->hysteresis = LAM_HYSTERESIS;
+  PetscCheck((PetscReal)contact->face_count * contact->dofs * contact->dofs < PETSC_MAX_INT, PETSC_COMM_SELF,
+             PETSC_ERR_USER_INPUT, "%d cells with %d elements along a face are too many for one RVE",
+             (int)mesh->cell_count, (int)along);
   PetscCall(PetscMalloc4(contact->face_count, &contact->faces, contact->face_count * contact->chain, &contact->nodes,
                          contact->face_count * contact->chain, &contact->classes, along, &contact->J0));
   PetscCall(PetscCalloc4(contact->count, &contact->lambda, contact->count, &contact->gap, contact->count,
@@ -124,18 +127,20 @@ LamMortarChains LamContactChains(LamRVE rve, const PetscReal F[9], const PetscRe
 }
 
 /* Keeps an old value while `exact`, the place that decides, is not clearly beyond the range that belongs to it. */
-static PetscInt WithHysteresis(PetscInt old, PetscReal low, PetscReal high, PetscReal exact, PetscInt fresh)
+static PetscInt WithHysteresis(PetscReal margin, PetscInt old, PetscReal low, PetscReal high, PetscReal exact,
+                               PetscInt fresh)
 {
-  return exact > low - HYSTERESIS && exact <= high + HYSTERESIS ? old : fresh;
+  return exact > low - margin && exact <= high + margin ? old : fresh;
 }
 
 /*
   The hats with multipliers of their own: those whose centre lies inside the overlap, or outside by no more than
   OVERHANG. The ends of the overlap count in half-edges, u. A little hysteresis keeps the status from flickering.
 */
-static void Junction(const LamMortarSegments *segments, PetscInt hats, PetscInt *first, PetscInt *last)
+static void Junction(const LamContact *contact, PetscInt *first, PetscInt *last)
 {
-  const PetscInt count = segments->count;
+  const LamMortarSegments *segments = &contact->segments;
+  const PetscInt count = segments->count, hats = contact->hats;
   PetscReal lo, hi;
   PetscInt low, high;
 
@@ -148,8 +153,8 @@ static void Junction(const LamMortarSegments *segments, PetscInt hats, PetscInt 
   hi = 2.0 * segments->s[count - 1] + OVERHANG;
   low = PetscMax(0, (PetscInt)PetscCeilReal(lo));
   high = PetscMin(hats - 1, (PetscInt)PetscFloorReal(hi));
-  *first = WithHysteresis(*first, (PetscReal)*first - 1.0, (PetscReal)*first, lo, low);
-  *last = WithHysteresis(*last, -(PetscReal)*last - 1.0, -(PetscReal)*last, -hi, high);
+  *first = WithHysteresis(contact->hysteresis, *first, (PetscReal)*first - 1.0, (PetscReal)*first, lo, low);
+  *last = WithHysteresis(contact->hysteresis, *last, -(PetscReal)*last - 1.0, -(PetscReal)*last, -hi, high);
 }
 
 /* Gives merged hats the multiplier of the hat that they are merged into. */
@@ -192,7 +197,7 @@ PetscErrorCode LamContactEvaluate(LamRVE rve, const LamLoad *load, const PetscRe
     PetscReal *lambda = &contact->lambda[f * contact->hats];
 
     LamMortarFindSegments(&chains, &contact->segments);
-    if (follow) Junction(&contact->segments, contact->hats, &face->first, &face->last);
+    if (follow) Junction(contact, &face->first, &face->last);
     SpreadMultipliers(face, contact->hats, lambda);
     LamMortarEvaluate(&chains, &contact->segments, lambda, LAM_MORTAR_POINTS, &contact->result);
     PetscCall(PetscArraycpy(&contact->hessian[f * contact->dofs * contact->dofs], contact->result.hessian,
@@ -218,7 +223,7 @@ PetscErrorCode LamContactStatusHolds(LamRVE rve, const LamLoad *load, const Pets
     PetscInt first = contact->faces[f].first, last = contact->faces[f].last;
 
     LamMortarFindSegments(&chains, &contact->segments);
-    Junction(&contact->segments, contact->hats, &first, &last);
+    Junction(contact, &first, &last);
     if (first != contact->faces[f].first || last != contact->faces[f].last) *holds = PETSC_FALSE;
   }
   PetscCall(PetscFree(x));

@@ -7,9 +7,9 @@
     + g F33 (det F V0 - A_outer)   cohesion, in assembly.c beside turgor, whose form it shares
   F enters through the images' shifts F S alone.
 
-  Junction rule. A hat whose support the overlap cuts short is merged into the next inner one: hat j takes the
+  Junction rule. A hat whose centre lies too far outside the overlap is merged into the next inner one: hat j takes the
   multiplier of hat clamp(j, first, last), and its weight, gap and rows are added there. This status follows the iterate
-  for some iterations and is then frozen.
+  for some iterations, with a little hysteresis, and is then frozen.
 */
 #ifndef LAM_RVE_CONTACT_H
 #define LAM_RVE_CONTACT_H
@@ -43,6 +43,7 @@ typedef struct {
   PetscReal *held;            /* [2 classes] forces that bonding carried and contact does not, ... */
   PetscReal share;            /* ... and the share of them that still acts; 0 but during release */
   PetscReal largest_step;     /* of the Newton iteration last made */
+  PetscReal hysteresis;       /* of the junction status, in half-edges */
   PetscInt *position;         /* [face][dofs (dofs + 1)/2]: index into the matrix of pairs of dofs, row by row */
   PetscInt *coupling;         /* [count][dofs]: of dof and multiplier */
   PetscInt *diagonal;         /* [count] */

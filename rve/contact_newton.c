@@ -21,11 +21,12 @@
 #define NEAR_ITERATIONS 20
 #define FOLLOW_ITERATIONS 6 /* in which the junction status follows the iterate */
 #define FOLLOW_FAR 25       /* the same while steps are shortened */
+#define RESTARTS 3          /* with the junction status of a solution, where it has changed */
 #define COMPLIANT_ITERATIONS 4
 #define COMPLIANCE 0.033 /* apothems / (C1 + C2), in the first iteration; falls by the same factor each time */
 #define COMPLIANCE_DECAY 0.3
 #define STEP_LIMIT 0.02      /* apothems, from a start far from contact */
-#define FAR_LIMIT 0.2        /* else */
+#define NEAR_LIMIT 0.2       /* else */
 #define LOOSE_TOLERANCE 1e-4 /* while the interface is being released */
 
 /* Step length: limited, and halved until no volume turns inside out; 0: none. */
@@ -68,6 +69,7 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, PetscReal reach
 
   PetscFunctionBeginUser;
   *outcome = LAM_NEWTON_STALLED;
+  rve->contact->hysteresis = LAM_HYSTERESIS;
   PetscCall(LamContactStepCreate(rve, &step));
   for (PetscInt it = 0; it <= most && rve->work.iterations < LAM_ITERATION_BUDGET; ++it) {
     const PetscReal compliance =
@@ -88,8 +90,10 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, PetscReal reach
       PetscCall(Report(rve, it, norm, gap, changes, 0.0, 0.0, 0.0));
       PetscCall(LamContactStatusHolds(rve, load, rve->y, &holds));
       *outcome = LAM_NEWTON_CONVERGED;
-      if (holds || restarts++ > 2) break;
+      if (holds) break;
       *outcome = LAM_NEWTON_STALLED;
+      if (restarts++ == RESTARTS) break;
+      rve->contact->hysteresis += LAM_MORE_HYSTERESIS;
       follow_until = it + 2;
       continue;
     }
@@ -97,7 +101,7 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, PetscReal reach
     PetscCall(LamContactSolveStep(rve, norm, compliance, &step, &ok));
     if (!ok) break;
     rve->contact->largest_step = LamLargestEntry(rve->ndof, rve->step);
-    PetscCall(StepLength(rve, load, compliant ? STEP_LIMIT : FAR_LIMIT, &alpha));
+    PetscCall(StepLength(rve, load, compliant ? STEP_LIMIT : NEAR_LIMIT, &alpha));
     PetscCall(Report(rve, it, norm, gap, changes, rve->contact->largest_step, alpha, step.shift));
     if (alpha == 0.0 || (!compliant && rve->contact->largest_step > reach)) break;
     if (it >= CYCLE_AFTER && changes > 0) alpha *= 0.5;

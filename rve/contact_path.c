@@ -7,232 +7,51 @@
           bonding carried as first multipliers; one_step starts from the affine state;
     (iii) coming down: contact that a larger cohesion holds tight is easy to reach; from there the cohesion is lowered
           to the asked one, each solution starting the next;
-    (iv)  substeps in load from the contact state before.
-  A converged state with a negative eigenvalue on its active set is a saddle and is left along its unstable mode.
+    (iv)  walking: the same, where the tight state is reached in substeps from the undeformed (turned) tissue;
+    (v)   substeps in load from the contact state before.
+  Where a continuation ends, descent goes down to whatever comes next. A saddle is the answer only where nothing stable
+  is found.
 
   Mihai, Safar & Wyatt, J. Eng. Math. (successive deformation decomposition) for (ii); docs/theory.md, turgor and
   cohesion act through their sum, for (iii).
 */
-#include "rve_impl.h"
+#include "contact_path.h"
 
-#define NEAR 0.04           /* largest change of F (and of turgor and cohesion) that counts as near */
+#define NEAR 0.04          /* largest change of F (and of turgor and cohesion) that counts as near */
 #define TIGHT 0.5          /* cohesion that is added first, C1 + C2 */
 #define LOOSE 1e-3         /* of it: from here the rest is taken away at once */
 #define LEAST_EASE 0.85    /* nearer to 1 it is given up */
 #define EASE 0.25          /* first factor by which it is lowered */
-#define REACH 0.5          /* apothems: a larger step from a near start leads nowhere */
-#define RELEASE_REACH 0.1  /* the same for the first step of a release */
+#define RELEASE_REACH 0.1  /* apothems: a larger first step shows that less must be released */
 #define LEAST_RELEASE 0.06 /* smaller shares: descent takes over */
 #define MIN_SUBSTEP (1.0 / 64.0)
-#define MAX_BRANCH_SWITCHES 4
-#define SHALLOW 0.03       /* apothems: penetration that the mesh explains ... */
-#define SHALLOW_SHARE 0.25 /* ... and in wall thicknesses */
-#define KICK 0.01          /* apothems: start along an unstable mode */
 
-/* A solution to start from. */
-typedef struct {
-  LamLoad load;
-  PetscReal *y, *lambda;
-} Solution;
-
-static PetscErrorCode SolutionCreate(LamRVE rve, Solution *solution)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(rve->ndof, &solution->y, rve->contact->count, &solution->lambda));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode SolutionDestroy(Solution *solution)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree2(solution->y, solution->lambda));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Save(LamRVE rve, const LamLoad *load, Solution *solution)
-{
-  PetscFunctionBeginUser;
-  solution->load = *load;
-  PetscCall(PetscArraycpy(solution->y, rve->y, rve->ndof));
-  PetscCall(PetscArraycpy(solution->lambda, rve->contact->lambda, rve->contact->count));
-  PetscFunctionReturn(0);
-}
-
-/* What a try ended in. */
-typedef struct {
-  PetscBool converged;
-  PetscInt negative, branch;
-  PetscReal overlap; /* depth of a wall inside another cell, where it is too deep to be an answer */
-  PetscInt pair[2];  /* these cells */
-} Outcome;
-
-/* Leaves saddles along their unstable mode. Ends with the consistent tangent factored. */
-static PetscErrorCode LeaveSaddle(LamRVE rve, const LamLoad *load, Outcome *out)
-{
-  const PetscInt positions = rve->linear.positions;
-  PetscReal *mode;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamFactorConsistent(rve, load, &out->negative, &out->converged));
-  PetscCall(PetscMalloc1(rve->linear.n, &mode));
-  for (PetscInt k = 0; k < MAX_BRANCH_SWITCHES && out->converged && out->negative > 0; ++k) {
-    LamNewtonOutcome outcome;
-    PetscReal largest = 0.0;
-
-    PetscCall(LamSoftestMode(rve, &rve->lowest_eigenvalue, mode));
-    for (PetscInt i = 0; i < positions; ++i) largest = PetscMax(largest, PetscAbsReal(mode[i]));
-    if (rve->monitor)
-      PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR,
-                             "  saddle: %d negative eigenvalues, lowest %.3e; leaving it\n", (int)out->negative,
-                             (double)rve->lowest_eigenvalue));
-    for (PetscInt i = 0; i < positions; ++i) rve->y[2 + i] += KICK * mode[i] / largest;
-    PetscCall(LamContactNewton(rve, load, REACH, &outcome));
-    out->converged = (PetscBool)(outcome == LAM_NEWTON_CONVERGED);
-    if (out->converged) {
-      ++out->branch;
-      PetscCall(LamFactorConsistent(rve, load, &out->negative, &out->converged));
-    }
-  }
-  PetscCall(PetscFree(mode));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Try(LamRVE rve, const LamLoad *load, PetscReal reach, Outcome *out)
-{
-  LamNewtonOutcome outcome;
-
-  PetscFunctionBeginUser;
-  *out = (Outcome){0};
-  PetscCall(LamContactNewton(rve, load, reach, &outcome));
-  out->converged = (PetscBool)(outcome == LAM_NEWTON_CONVERGED);
-  if (out->converged) PetscCall(LeaveSaddle(rve, load, out));
-  PetscFunctionReturn(0);
-}
-
-/* A state in which cells lie in each other is none. */
-static PetscErrorCode RefuseOverlap(LamRVE rve, const LamLoad *load, Outcome *out)
-{
-  PetscReal depth;
-
-  PetscFunctionBeginUser;
-  if (!out->converged) PetscFunctionReturn(0);
-  PetscCall(LamFindOverlap(rve, load->F, rve->y, &depth, out->pair));
-  if (depth <= PetscMax(SHALLOW, SHALLOW_SHARE * rve->micro.wall_thickness)) PetscFunctionReturn(0);
-  out->converged = PETSC_FALSE;
-  out->overlap = depth;
-  PetscFunctionReturn(0);
-}
-
-/* The same by descent. */
-static PetscErrorCode Descend(LamRVE rve, const LamLoad *load, Outcome *out)
-{
-  LamNewtonOutcome outcome;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamContactNewtonSafe(rve, load, &outcome));
-  *out = (Outcome){.converged = (PetscBool)(outcome == LAM_NEWTON_CONVERGED)};
-  if (out->converged) PetscCall(LeaveSaddle(rve, load, out));
-  PetscFunctionReturn(0);
-}
-
-static PetscBool IsStable(const Outcome *out)
-{
-  return (PetscBool)(out->converged && out->negative <= 0);
-}
-
-/* Positions of the bonded solution, and its wall stresses. */
-static void TakeBondedPositions(LamRVE rve, const LamLoad *load)
-{
-  const LamMesh *mesh = &rve->mesh, *bonded = &rve->bonded->mesh;
-
-  for (PetscInt i = 0; i < mesh->node_count; ++i) {
-    const PetscReal *S = &bonded->shift[2 * i], *position = &rve->bonded->y[2 * bonded->node_class[i]];
-
-    for (PetscInt d = 0; d < 2; ++d)
-      rve->y[2 * mesh->node_class[i] + d] = position[d] + load->F[3 * d] * S[0] + load->F[3 * d + 1] * S[1];
-  }
-  (void)LamSetConsistentStresses(rve, load, rve->y);
-}
-
-/*
-  Multipliers that fit the forces r that bonding carried, B^T lambda = r, in least squares: the solution of
-  [1 -B^T; -B 0] [v; lambda] = [-r; 0]. Those in tension become zero.
-*/
-static PetscErrorCode FitMultipliers(LamRVE rve, const LamLoad *load, PetscBool *ok)
-{
-  LamContact *contact = rve->contact;
-  const PetscInt positions = rve->linear.positions;
-  PetscReal energy, *rhs, *solution;
-  PetscInt negative;
-  PetscBool valid;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(contact->lambda, contact->count));
-  PetscCall(LamContactEvaluate(rve, load, rve->y, PETSC_TRUE));
-  PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
-  for (PetscInt h = 0; h < contact->count; ++h) contact->active[h] = (PetscBool)(contact->weight[h] > 0.0);
-  PetscCall(PetscArrayzero(rve->linear.values, rve->linear.nonzeros));
-  LamContactSetRows(rve, 0.0);
-  PetscCall(LamLinearFactor(&rve->linear, 1.0, &negative, ok));
-  ++rve->work.factorisations;
-  if (!*ok) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc2(rve->linear.n, &rhs, rve->linear.n, &solution));
-  for (PetscInt i = 0; i < positions; ++i) rhs[i] = -rve->residual[i + 2];
-  PetscCall(LamLinearSolve(&rve->linear, 1, rhs, solution));
-  for (PetscInt h = 0; h < contact->count; ++h)
-    contact->lambda[h] = contact->active[h] ? PetscMax(0.0, solution[positions + h]) : 0.0;
-  PetscCall(PetscFree2(rhs, solution));
-  PetscFunctionReturn(0);
-}
-
-/* Step one of two: the bonded tissue at `load`; *ok where it has an equilibrium. Once per state. */
-static PetscErrorCode SolveBonded(LamRVE rve, const LamLoad *load, LamRVEState bonded, PetscBool *ok)
+/* Step one of two: the bonded tissue at `load`, from a copy of `state`; *ok where it has an equilibrium. */
+static PetscErrorCode SolveBonded(LamRVE rve, const LamLoad *load, LamRVEState state, PetscBool *ok)
 {
   LamResponse response;
 
   PetscFunctionBeginUser;
   PetscCall(LamRVESetMonitor(rve->bonded, rve->monitor));
-  PetscCall(LamRVESolve(rve->bonded, load, bonded, &response));
+  PetscCall(LamRVEStateCopy(state, rve->bonded_state));
+  PetscCall(LamRVESolve(rve->bonded, load, rve->bonded_state, &response));
   rve->work.iterations += response.newton_iterations;
   rve->work.factorisations += response.factorisations;
   *ok = LamResponseHasFields(&response);
   PetscFunctionReturn(0);
 }
 
-/* From a solution, moved affinely to the new load. */
-static PetscErrorCode StartNear(LamRVE rve, const Solution *from, const LamLoad *load)
-{
-  PetscFunctionBeginUser;
-  LamMoveAffinely(rve, from->y, &from->load, load);
-  PetscCall(PetscArraycpy(rve->contact->lambda, from->lambda, rve->contact->count));
-  PetscFunctionReturn(0);
-}
-
-/* rve->y: the bonded solution; contact->held: what bonding carries and the fitted multipliers do not. */
-static PetscErrorCode StartBonded(LamRVE rve, const LamLoad *load, PetscBool *ok)
-{
-  PetscReal energy;
-  PetscBool valid;
-
-  PetscFunctionBeginUser;
-  TakeBondedPositions(rve, load);
-  PetscCall(FitMultipliers(rve, load, ok));
-  PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->contact->held, &valid));
-  LamContactAddForce(rve, rve->contact->held);
-  PetscFunctionReturn(0);
-}
-
-/* One release from `share` to rve->contact->share, the last one to a stable state at the load. */
-static PetscErrorCode ReleaseTo(LamRVE rve, const LamLoad *load, PetscReal reach, Outcome *out, PetscBool *reached)
+/* One release to rve->contact->share, the last one to equilibrium at the load. */
+static PetscErrorCode ReleaseTo(LamRVE rve, const LamLoad *load, LamContactOutcome *out, PetscBool *reached)
 {
   LamNewtonOutcome outcome;
 
   PetscFunctionBeginUser;
   if (rve->contact->share == 0.0) {
-    PetscCall(Try(rve, load, reach, out));
-    *reached = IsStable(out);
+    PetscCall(LamContactTry(rve, load, RELEASE_REACH, out));
+    *reached = out->converged;
   } else {
-    PetscCall(LamContactNewton(rve, load, reach, &outcome));
+    PetscCall(LamContactNewton(rve, load, RELEASE_REACH, &outcome));
     *reached = (PetscBool)(outcome == LAM_NEWTON_CONVERGED);
   }
   PetscFunctionReturn(0);
@@ -243,25 +62,25 @@ static PetscErrorCode ReleaseTo(LamRVE rve, const LamLoad *load, PetscReal reach
   where that moves little, else in shares, so that every Newton iteration starts near its solution and takes full steps.
   Where small shares fail, too, descent takes over.
 */
-static PetscErrorCode Release(LamRVE rve, const LamLoad *load, Solution *at, Outcome *out)
+static PetscErrorCode Release(LamRVE rve, const LamLoad *load, LamContactSolution *at, LamContactOutcome *out)
 {
   PetscReal share = 1.0, step = 1.0;
   PetscBool ok;
 
   PetscFunctionBeginUser;
-  *out = (Outcome){0};
-  PetscCall(StartBonded(rve, load, &ok));
+  *out = (LamContactOutcome){0};
+  PetscCall(LamContactStartBonded(rve, load, &ok));
   if (!ok) PetscFunctionReturn(0);
-  PetscCall(Save(rve, load, at));
+  PetscCall(LamContactSave(rve, load, at));
   while (share > 0.0 && rve->work.iterations < LAM_ITERATION_BUDGET) {
     const PetscInt iterations = rve->work.iterations;
     PetscBool reached = PETSC_FALSE;
 
     rve->contact->share = PetscMax(0.0, share - step);
-    PetscCall(ReleaseTo(rve, load, RELEASE_REACH, out, &reached));
+    PetscCall(ReleaseTo(rve, load, out, &reached));
     if (reached) {
       share = rve->contact->share;
-      PetscCall(Save(rve, load, at));
+      PetscCall(LamContactSave(rve, load, at));
       step *= 2.0;
       continue;
     }
@@ -269,93 +88,86 @@ static PetscErrorCode Release(LamRVE rve, const LamLoad *load, Solution *at, Out
     step *= rve->work.iterations == iterations
                 ? PetscMax(0.1, PetscMin(0.5, 0.6 * RELEASE_REACH / rve->contact->largest_step))
                 : 0.5;
-    PetscCall(StartNear(rve, at, load));
+    PetscCall(LamContactStartNear(rve, at, load));
     if (step < LEAST_RELEASE) break;
   }
   rve->contact->share = 0.0;
-  if (share > 0.0) PetscCall(Descend(rve, load, out));
+  if (share > 0.0) PetscCall(LamContactDescend(rve, load, out));
   PetscFunctionReturn(0);
 }
 
-/* rve->y := F X, stress-free walls, multipliers that balance turgor and cohesion. */
-static PetscErrorCode StartAffine(LamRVE rve, const LamLoad *load)
+/* From a solution at another load, by descent. */
+static PetscErrorCode DescendFrom(LamRVE rve, const LamContactSolution *at, const LamLoad *load, LamContactOutcome *out)
 {
   PetscFunctionBeginUser;
-  for (PetscInt c = 0; c < rve->mesh.class_count; ++c) {
-    const PetscReal *X = &rve->mesh.class_X[2 * c];
-
-    for (PetscInt d = 0; d < 2; ++d) rve->y[2 * c + d] = load->F[3 * d] * X[0] + load->F[3 * d + 1] * X[1];
-  }
-  PetscCall(PetscArrayzero(rve->stress, rve->mesh.element_count));
-  for (PetscInt h = 0; h < rve->contact->count; ++h)
-    rve->contact->lambda[h] = PetscMax(0.0, load->turgor + load->cohesion);
+  PetscCall(LamContactStartNear(rve, at, load));
+  PetscCall(LamContactDescend(rve, load, out));
   PetscFunctionReturn(0);
 }
 
 /* Continuation from a solution to `load`, in halved steps where it fails. */
-static PetscErrorCode Substeps(LamRVE rve, Solution *at, const LamLoad *load, Outcome *out)
+static PetscErrorCode Substeps(LamRVE rve, LamContactSolution *at, const LamLoad *load, LamContactOutcome *out)
 {
   const LamLoad start = at->load;
   PetscReal reached = 0.0, step = 0.25;
 
   PetscFunctionBeginUser;
-  *out = (Outcome){0};
-  while (reached < 1.0 && rve->work.iterations < LAM_ITERATION_BUDGET) {
+  while (reached < 1.0 && rve->work.iterations < LAM_ITERATION_BUDGET && step >= MIN_SUBSTEP) {
     const PetscReal t = PetscMin(1.0, reached + step);
     const LamLoad next = t >= 1.0 ? *load : LamLoadBetween(&start, load, t);
 
-    PetscCall(StartNear(rve, at, &next));
-    PetscCall(Try(rve, &next, REACH, out));
-    if (IsStable(out)) {
-      PetscCall(Save(rve, &next, at));
+    PetscCall(LamContactStartNear(rve, at, &next));
+    PetscCall(LamContactTry(rve, &next, LAM_NEAR_REACH, out));
+    if (LamContactIsStable(out)) {
+      PetscCall(LamContactSave(rve, &next, at));
       reached = t;
       step *= 2.0;
     } else {
       step *= 0.5;
-      if (step < MIN_SUBSTEP) break;
     }
   }
-  if (reached < 1.0) { /* a branch has ended: down to whatever comes next */
-    PetscCall(StartNear(rve, at, load));
-    PetscCall(Descend(rve, load, out));
-    if (IsStable(out)) PetscFunctionReturn(0);
-  }
-  if (reached < 1.0) *out = (Outcome){0}; /* what there is belongs to another load */
+  if (reached < 1.0) PetscCall(DescendFrom(rve, at, load, out));
   PetscFunctionReturn(0);
 }
 
 /* From a solution at a larger cohesion down to `load`. */
-static PetscErrorCode ComeDown(LamRVE rve, const LamLoad *load, Solution *at, Outcome *out)
+static PetscErrorCode ComeDown(LamRVE rve, const LamLoad *load, LamContactSolution *at, LamContactOutcome *out)
 {
   PetscReal added = at->load.cohesion - load->cohesion, factor = EASE;
   LamLoad next = *load;
 
   PetscFunctionBeginUser;
-  while (added > 0.0 && rve->work.iterations < LAM_ITERATION_BUDGET) {
+  while (added > 0.0 && rve->work.iterations < LAM_ITERATION_BUDGET && factor <= LEAST_EASE) {
     const PetscReal less = added * factor < LOOSE * TIGHT ? 0.0 : added * factor;
 
     next.cohesion = load->cohesion + less;
-    PetscCall(StartNear(rve, at, &next));
-    PetscCall(Try(rve, &next, REACH, out));
-    if (IsStable(out)) {
-      PetscCall(Save(rve, &next, at));
+    PetscCall(LamContactStartNear(rve, at, &next));
+    PetscCall(LamContactTry(rve, &next, LAM_NEAR_REACH, out));
+    if (LamContactIsStable(out)) {
+      PetscCall(LamContactSave(rve, &next, at));
       added = less;
     } else {
       factor = PetscSqrtReal(factor);
-      if (factor > LEAST_EASE) break;
     }
   }
-  if (added > 0.0) {
-    PetscCall(StartNear(rve, at, load));
-    PetscCall(Descend(rve, load, out));
-    if (IsStable(out)) PetscFunctionReturn(0);
-  }
-  if (added > 0.0) *out = (Outcome){0}; /* as in Substeps */
+  if (added > 0.0) PetscCall(DescendFrom(rve, at, load, out));
+  PetscFunctionReturn(0);
+}
+
+/* From a stable tight state, if there is one, down to the load; otherwise there is nothing. */
+static PetscErrorCode Loosen(LamRVE rve, const LamLoad *load, LamContactSolution *at, LamContactOutcome *out)
+{
+  PetscFunctionBeginUser;
+  if (LamContactIsStable(out))
+    PetscCall(ComeDown(rve, load, at, out));
+  else
+    *out = (LamContactOutcome){0};
   PetscFunctionReturn(0);
 }
 
 /* Contact held tight by an added cohesion, at the asked F from the bonded or affine start, then let loose. */
-static PetscErrorCode TightThenLoose(LamRVE rve, const LamLoad *load, PetscBool has_bonded, Solution *at, Outcome *out)
+static PetscErrorCode TightThenLoose(LamRVE rve, const LamLoad *load, PetscBool has_bonded, LamContactSolution *at,
+                                     LamContactOutcome *out)
 {
   LamLoad tight = *load;
 
@@ -364,19 +176,16 @@ static PetscErrorCode TightThenLoose(LamRVE rve, const LamLoad *load, PetscBool 
   if (has_bonded) {
     PetscCall(Release(rve, &tight, at, out));
   } else {
-    PetscCall(StartAffine(rve, &tight));
-    PetscCall(Try(rve, &tight, LAM_FAR, out));
-    PetscCall(Save(rve, &tight, at));
+    PetscCall(LamContactStartAffine(rve, &tight));
+    PetscCall(LamContactTry(rve, &tight, LAM_FAR, out));
   }
-  if (IsStable(out))
-    PetscCall(ComeDown(rve, load, at, out));
-  else
-    *out = (Outcome){0};
+  PetscCall(LamContactSave(rve, &tight, at));
+  PetscCall(Loosen(rve, load, at, out));
   PetscFunctionReturn(0);
 }
 
 /* Tight contact from the undeformed (turned) tissue to the asked F in substeps, then let loose. */
-static PetscErrorCode WalkThenLoose(LamRVE rve, const LamLoad *load, Solution *at, Outcome *out)
+static PetscErrorCode WalkThenLoose(LamRVE rve, const LamLoad *load, LamContactSolution *at, LamContactOutcome *out)
 {
   const PetscReal angle = LamRotationAngle(load->F), c = PetscCosReal(angle), s = PetscSinReal(angle);
   LamLoad tight = *load, start;
@@ -387,16 +196,15 @@ static PetscErrorCode WalkThenLoose(LamRVE rve, const LamLoad *load, Solution *a
   start.F[0] = start.F[4] = c;
   start.F[1] = -s;
   start.F[3] = s;
-  PetscCall(StartAffine(rve, &start));
-  PetscCall(Try(rve, &start, LAM_FAR, out));
-  if (IsStable(out)) {
-    PetscCall(Save(rve, &start, at));
+  start.F[8] = 1.0;
+  PetscCall(LamContactStartAffine(rve, &start));
+  PetscCall(LamContactTry(rve, &start, LAM_FAR, out));
+  if (LamContactIsStable(out)) {
+    PetscCall(LamContactSave(rve, &start, at));
     PetscCall(Substeps(rve, at, &tight, out));
+    PetscCall(LamContactSave(rve, &tight, at));
   }
-  if (IsStable(out))
-    PetscCall(ComeDown(rve, load, at, out));
-  else
-    *out = (Outcome){0};
+  PetscCall(Loosen(rve, load, at, out));
   PetscFunctionReturn(0);
 }
 
@@ -408,105 +216,125 @@ static PetscReal LoadDistance(const LamLoad *a, const LamLoad *b)
   return largest;
 }
 
-/* Remembers the first saddle found at the asked load: where nothing better comes, it is the answer. */
-static PetscErrorCode KeepSaddle(LamRVE rve, const LamLoad *load, const Outcome *out, Outcome *kept, Solution *saddle)
-{
-  PetscFunctionBeginUser;
-  if (kept->converged || !out->converged || out->negative <= 0) PetscFunctionReturn(0);
-  PetscCall(Save(rve, load, saddle));
-  *kept = *out;
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode GiveSaddle(LamRVE rve, const Solution *saddle, const Outcome *kept, Outcome *out)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(rve->y, saddle->y, rve->ndof));
-  PetscCall(PetscArraycpy(rve->contact->lambda, saddle->lambda, rve->contact->count));
-  PetscCall(LamContactEvaluate(rve, &saddle->load, rve->y, PETSC_TRUE));
-  (void)LamContactFindActive(rve->contact, 0.0);
-  *out = *kept;
-  PetscCall(LamFactorConsistent(rve, &saddle->load, &out->negative, &out->converged));
-  PetscFunctionReturn(0);
-}
-
 /* The strategy's start. */
-static PetscErrorCode FirstTry(LamRVE rve, const LamLoad *load, LamRVEState state, PetscBool *has_bonded, Solution *at,
-                               Outcome *out)
+static PetscErrorCode FirstTry(LamRVE rve, const LamLoad *load, LamRVEState state, PetscBool *has_bonded,
+                               LamContactSolution *at, LamContactOutcome *out)
 {
   PetscFunctionBeginUser;
   if (rve->strategy == LAM_TWO_STEP) PetscCall(SolveBonded(rve, load, state->bonded, has_bonded));
   if (*has_bonded) {
     PetscCall(Release(rve, load, at, out));
   } else {
-    PetscCall(StartAffine(rve, load));
-    PetscCall(Try(rve, load, LAM_FAR, out));
+    PetscCall(LamContactStartAffine(rve, load));
+    PetscCall(LamContactTry(rve, load, LAM_FAR, out));
   }
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state, Solution *before, Outcome *out)
+/* What is worth remembering of tries that gave nothing stable: the first saddle, the last refusal. */
+typedef struct {
+  LamContactOutcome saddle, refused;
+  LamContactSolution at;
+  PetscReal eigenvalue; /* of the saddle */
+} SecondBest;
+
+static PetscErrorCode Remember(LamRVE rve, const LamLoad *load, const LamContactOutcome *out, SecondBest *best)
 {
-  PetscBool has_bonded = PETSC_FALSE;
-  Outcome kept = {0}, refused = {0};
-  Solution at, saddle;
+  PetscFunctionBeginUser;
+  if (out->refusal != LAM_NOT_REFUSED) best->refused = *out;
+  if (best->saddle.converged || !out->converged || out->negative <= 0) PetscFunctionReturn(0);
+  PetscCall(LamContactSave(rve, load, &best->at));
+  best->saddle = *out;
+  best->eigenvalue = rve->lowest_eigenvalue;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode GiveSecondBest(LamRVE rve, const LamLoad *load, const SecondBest *best, LamContactOutcome *out)
+{
+  PetscInt negative;
 
   PetscFunctionBeginUser;
-  *out = (Outcome){0};
-  if (state->solved && LoadDistance(&before->load, load) <= NEAR) {
-    PetscCall(StartNear(rve, before, load));
-    PetscCall(Try(rve, load, REACH, out));
-    PetscCall(RefuseOverlap(rve, load, out));
-    if (IsStable(out)) PetscFunctionReturn(0);
+  *out = best->refused;
+  if (!best->saddle.converged) PetscFunctionReturn(0);
+  *out = best->saddle;
+  PetscCall(LamContactRestore(rve, &best->at));
+  PetscCall(LamFactorConsistent(rve, load, &negative, &out->converged));
+  rve->lowest_eigenvalue = best->eigenvalue;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state, LamContactSolution *before,
+                             LamContactOutcome *out)
+{
+  const PetscBool near = (PetscBool)(state->solved && LoadDistance(&before->load, load) <= NEAR);
+  PetscBool has_bonded = PETSC_FALSE;
+  LamContactSolution at;
+  SecondBest best = {.eigenvalue = NAN};
+
+  PetscFunctionBeginUser;
+  PetscCall(LamContactSolutionCreate(rve, &at));
+  PetscCall(LamContactSolutionCreate(rve, &best.at));
+  *out = (LamContactOutcome){0};
+  for (PetscInt k = near ? 0 : 1; k < 5 && !LamContactIsStable(out); ++k) {
+    PetscCall(Remember(rve, load, out, &best));
+    *out = (LamContactOutcome){0};
+    if (k == 0) {
+      PetscCall(LamContactStartNear(rve, before, load));
+      PetscCall(LamContactTry(rve, load, LAM_NEAR_REACH, out));
+    }
+    if (k == 1) PetscCall(FirstTry(rve, load, state, &has_bonded, &at, out));
+    if (k == 2) PetscCall(TightThenLoose(rve, load, has_bonded, &at, out));
+    if (k == 3) PetscCall(WalkThenLoose(rve, load, &at, out));
+    if (k == 4 && state->solved) PetscCall(Substeps(rve, before, load, out));
   }
-  PetscCall(SolutionCreate(rve, &at));
-  PetscCall(SolutionCreate(rve, &saddle));
-  for (PetscInt k = 0; k < 4 && !IsStable(out); ++k) {
-    PetscCall(KeepSaddle(rve, load, out, &kept, &saddle));
-    *out = (Outcome){0};
-    if (k == 0) PetscCall(FirstTry(rve, load, state, &has_bonded, &at, out));
-    if (k == 1) PetscCall(TightThenLoose(rve, load, has_bonded, &at, out));
-    if (k == 2) PetscCall(WalkThenLoose(rve, load, &at, out));
-    if (k == 3 && state->solved) PetscCall(Substeps(rve, before, load, out));
-    PetscCall(RefuseOverlap(rve, load, out));
-    if (out->overlap > 0.0) refused = *out;
+  if (!LamContactIsStable(out)) {
+    PetscCall(Remember(rve, load, out, &best));
+    PetscCall(GiveSecondBest(rve, load, &best, out));
   }
-  if (!IsStable(out)) *out = refused;
-  if (!IsStable(out) && kept.converged) PetscCall(GiveSaddle(rve, &saddle, &kept, out));
-  PetscCall(SolutionDestroy(&at));
-  PetscCall(SolutionDestroy(&saddle));
+  if (out->converged && has_bonded) PetscCall(LamRVEStateCopy(rve->bonded_state, state->bonded));
+  PetscCall(LamContactSolutionDestroy(&at));
+  PetscCall(LamContactSolutionDestroy(&best.at));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode GiveReason(LamRVE rve, const LamContactOutcome *out, char reason[], size_t length)
+{
+  PetscFunctionBeginUser;
+  if (out->converged)
+    PetscCall(PetscSNPrintf(reason, length, "only a saddle was found: %d negative eigenvalues, lowest %.3g (C1+C2)",
+                            (int)out->negative, (double)rve->lowest_eigenvalue));
+  else if (out->refusal == LAM_CELLS_OVERLAP)
+    PetscCall(
+        PetscSNPrintf(reason, length,
+                      "a wall of cell %d lies %.3g apothems inside cell %d: it meets a wall that it does not face, "
+                      "which is not modelled, or the mesh along the faces is too coarse",
+                      (int)out->cell[0], (double)out->depth, (int)out->cell[1]));
+  else if (out->refusal == LAM_LUMEN_COLLAPSED)
+    PetscCall(LamCollapseReason(out->cell[0], reason, length));
+  else
+    PetscCall(PetscSNPrintf(reason, length,
+                            "no contact equilibrium found from any start, after %d iterations: give states in between",
+                            (int)rve->work.iterations));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
 {
-  Solution before;
-  Outcome out;
+  LamContactSolution before;
+  LamContactOutcome out;
 
   PetscFunctionBeginUser;
-  PetscCall(SolutionCreate(rve, &before));
+  PetscCall(LamContactSolutionCreate(rve, &before));
   before.load = state->load;
   PetscCall(PetscArraycpy(before.y, state->y, rve->ndof));
   PetscCall(PetscArraycpy(before.lambda, state->lambda, rve->contact->count));
   LamRotatePositions(rve->ndof, before.y, before.load.F, LamRotationAngle(load->F) - LamRotationAngle(before.load.F));
   PetscCall(TryAll(rve, load, state, &before, &out));
-  PetscCall(SolutionDestroy(&before));
+  PetscCall(LamContactSolutionDestroy(&before));
   response->branch = state->branch + out.branch;
   response->negative_eigenvalues = PetscMax(0, out.negative);
   response->status = out.converged ? (out.negative > 0 ? LAM_UNSTABLE : LAM_CONVERGED) : LAM_NOT_CONVERGED;
-  if (response->status == LAM_UNSTABLE)
-    PetscCall(PetscSNPrintf(response->reason, sizeof(response->reason),
-                            "only a saddle was found: %d negative eigenvalues, lowest %.3g (C1+C2)", (int)out.negative,
-                            (double)rve->lowest_eigenvalue));
-  if (response->status == LAM_NOT_CONVERGED && out.overlap > 0.0)
-    PetscCall(
-        PetscSNPrintf(response->reason, sizeof(response->reason),
-                      "a wall of cell %d lies %.3g apothems inside cell %d: it meets a wall that it does not face, "
-                      "which is not modelled, or the mesh along the faces is too coarse",
-                      (int)out.pair[0], (double)out.overlap, (int)out.pair[1]));
-  else if (response->status == LAM_NOT_CONVERGED)
-    PetscCall(PetscSNPrintf(response->reason, sizeof(response->reason),
-                            "no contact equilibrium found from any start, after %d iterations: give states in between",
-                            (int)rve->work.iterations));
+  response->max_penetration = out.converged ? PetscMax(0.0, out.depth) : NAN;
+  if (response->status != LAM_CONVERGED) PetscCall(GiveReason(rve, &out, response->reason, sizeof(response->reason)));
   PetscFunctionReturn(0);
 }

@@ -4,7 +4,7 @@
   Method. Sequential quadratic programming on the energy Pi of walls, turgor and cohesion under G >= 0: each step solves
   the fast iteration's linear system with the active set that fits the step and a matrix made positive definite on the
   free motions, so it points downhill for the merit
-      phi = Pi - share held.x + mu sum_A D_A max(0, -gap_A),      mu > largest multiplier.
+      phi = Pi + mu sum_A D_A max(0, -gap_A),      mu > largest multiplier.
   Steps are limited in length by the shift; a watchdog allows a few steps without decrease (a large step first violates
   the stiff walls and is then restored) before it goes back to the best point and searches along the line. Small steps
   of an indefinite matrix get a piece of the unstable mode, so saddles are left.
@@ -15,6 +15,7 @@
 #include "rve_impl.h"
 
 #define SAFE_ITERATIONS 300
+#define RESTARTS 3            /* with the junction status of a solution, where it has changed */
 #define FOLLOW_ITERATIONS 150 /* in which the junction status follows the iterate */
 #define WATCHDOG 4
 #define STEP_LIMIT 0.05 /* apothems; smaller after a failure, down to ... */
@@ -25,7 +26,7 @@
 #define ARMIJO 1e-4
 
 typedef struct {
-  PetscReal energy, violation; /* of the merit: Pi - share held.x, and sum D max(0, -gap) */
+  PetscReal energy, violation; /* of the merit: Pi, and sum D max(0, -gap) */
 } Merit;
 
 typedef struct {
@@ -41,14 +42,12 @@ static PetscReal Value(Merit merit, PetscReal mu)
   return merit.energy + mu * merit.violation;
 }
 
-/* Merit at the evaluated contact of positions y. */
-static Merit MeritOf(LamRVE rve, PetscReal energy, const PetscReal y[])
+/* Merit at the evaluated contact. */
+static Merit MeritOf(LamRVE rve, PetscReal energy)
 {
   const LamContact *contact = rve->contact;
   Merit merit = {energy, 0.0};
 
-  if (contact->share > 0.0)
-    for (PetscInt i = 0; i < rve->ndof; ++i) merit.energy -= contact->share * contact->held[i] * y[i];
   for (PetscInt h = 0; h < contact->count; ++h) merit.violation += contact->weight[h] * PetscMax(0.0, -contact->gap[h]);
   return merit;
 }
@@ -66,8 +65,7 @@ static PetscErrorCode LineSearch(LamRVE rve, const LamLoad *load, Merit now, Pet
     PetscCall(LamAssembleEnergy(rve, load, rve->trial, &energy, &valid));
     if (!valid) continue;
     PetscCall(LamContactEvaluate(rve, load, rve->trial, PETSC_FALSE));
-    if (Value(MeritOf(rve, energy, rve->trial), mu) <=
-        Value(now, mu) + ARMIJO * *alpha * PetscMin(0.0, slope) + rounding)
+    if (Value(MeritOf(rve, energy), mu) <= Value(now, mu) + ARMIJO * *alpha * PetscMin(0.0, slope) + rounding)
       PetscFunctionReturn(0);
   }
   *alpha = 0.0;
@@ -167,11 +165,13 @@ PetscErrorCode LamContactNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOu
   const PetscReal tolerance = LamNewtonTolerance(rve);
   const PetscReal rounding = 1e-14 * rve->micro.wall.bulk_modulus * rve->mesh.V0;
   LamContact *contact = rve->contact;
+  PetscInt follow_until = FOLLOW_ITERATIONS, restarts = 0;
   LamContactStep step;
   Best best = {.mu = LEAST_WEIGHT, .limit = STEP_LIMIT};
 
   PetscFunctionBeginUser;
   *outcome = LAM_NEWTON_STALLED;
+  contact->hysteresis = LAM_HYSTERESIS;
   if (!LamSetConsistentStresses(rve, load, rve->y)) PetscFunctionReturn(0);
   PetscCall(LamContactStepCreate(rve, &step));
   PetscCall(PetscMalloc2(rve->ndof, &best.y, contact->count, &best.lambda));
@@ -180,17 +180,24 @@ PetscErrorCode LamContactNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOu
     PetscBool valid, moved;
     Merit now = {0};
 
-    PetscCall(LamContactEvaluate(rve, load, rve->y, (PetscBool)(it < FOLLOW_ITERATIONS)));
+    PetscCall(LamContactEvaluate(rve, load, rve->y, (PetscBool)(it < follow_until)));
     PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
     if (valid) {
       LamContactResidual(rve, &step, &norm);
       (void)LamContactFindActive(contact, 0.0);
       if (norm <= tolerance && LamContactComplementarity(contact) <= LAM_GAP_TOLERANCE) {
-        *outcome = LAM_NEWTON_CONVERGED;
-        break;
+        PetscBool holds;
+
+        PetscCall(LamContactStatusHolds(rve, load, rve->y, &holds));
+        if (holds) *outcome = LAM_NEWTON_CONVERGED;
+        if (holds || restarts++ == RESTARTS) break;
+        contact->hysteresis += LAM_MORE_HYSTERESIS;
+        follow_until = it + 2;
+        best.known = PETSC_FALSE;
+        continue;
       }
       PetscCall(LamAssembleEnergy(rve, load, rve->y, &energy, &valid));
-      now = MeritOf(rve, energy, rve->y);
+      now = MeritOf(rve, energy);
     }
     PetscCall(Watch(rve, load, now, valid, rounding, &best, &moved));
     if (moved) continue;

@@ -39,24 +39,21 @@ static PetscReal ShareAbove(PetscReal a, PetscReal b, PetscReal threshold)
 static void SampleSegment(const LamMortarChains *chains, PetscReal from, PetscReal to, PetscInt master,
                           FamilySums *family, Sums *sums)
 {
+  const PetscInt edge = (PetscInt)(0.5 * (from + to)); /* also at the segment's ends */
+  const PetscReal ds = (to - from) / SAMPLES, J0 = chains->J0[edge];
   PetscReal last = 0.0;
 
   for (PetscInt k = 0; k <= SAMPLES; ++k) {
-    const PetscReal s = from + (to - from) * (PetscReal)k / SAMPLES, inside = 0.5 * (from + to);
+    const PetscReal s = PetscMin(from + ds * (PetscReal)k, (PetscReal)edge + 1.0 - 1e-12);
     PetscReal nearest[2], X[2], Xs[2];
-    /* the edge is that of the segment, also at its ends */
-    const PetscReal gap =
-        LamMortarGap(chains, PetscMin(PetscMax(s, PetscFloorReal(inside)), PetscFloorReal(inside) + 1.0 - 1e-12),
-                     master, nearest) -
-        chains->clearance;
+    const PetscReal gap = LamMortarGap(chains, s, master, nearest) - chains->clearance;
 
-    LamMortarSlavePoint(chains, s, X, Xs);
     sums->max_gap = PetscMax(sums->max_gap, gap);
     sums->max_penetration = PetscMax(sums->max_penetration, -gap - chains->clearance);
     if (k > 0) {
-      const PetscReal ds = (to - from) / SAMPLES, mean = 0.5 * (PetscMax(0.0, last) + PetscMax(0.0, gap));
-      const PetscReal J0 = chains->J0[(PetscInt)inside];
+      const PetscReal mean = 0.5 * (PetscMax(0.0, last) + PetscMax(0.0, gap));
 
+      LamMortarSlavePoint(chains, s - 0.5 * ds, X, Xs);
       family->open += ShareAbove(last, gap, LAM_VISIBLE_GAP) * ds * J0;
       family->gap += mean * ds * J0;
       family->opening += mean * ds * PetscSqrtReal(LamDot(Xs, Xs));
@@ -65,29 +62,38 @@ static void SampleSegment(const LamMortarChains *chains, PetscReal from, PetscRe
   }
 }
 
+/* Force of contact over the part of [a, b] that lies in the overlap [lo, hi]: linear on a half-edge, so the midpoint
+   rule is exact. */
+static PetscReal ContactForce(const LamMortarChains *chains, const PetscReal lambda[], PetscReal a, PetscReal b,
+                              PetscReal lo, PetscReal hi)
+{
+  const PetscReal from = PetscMax(a, lo), to = PetscMin(b, hi), s = 0.5 * (from + to);
+  const PetscInt piece = (PetscInt)(2.0 * s);
+  const PetscReal u = 2.0 * s - (PetscReal)piece;
+
+  if (to <= from) return 0.0;
+  return (to - from) * chains->J0[(PetscInt)s] * ((1.0 - u) * lambda[piece] + u * lambda[piece + 1]);
+}
+
 /* Normal force and current length along one face: running integrals at WINDOW_SAMPLES per edge. */
 static void FaceForce(const LamMortarChains *chains, const PetscReal lambda[], PetscReal lo, PetscReal hi, PetscReal g,
                       PetscReal F33, PetscReal force[], PetscReal length[])
 {
+  const PetscReal h = 1.0 / WINDOW_SAMPLES;
+
   force[0] = length[0] = 0.0;
   for (PetscInt k = 0; k < chains->n * WINDOW_SAMPLES; ++k) {
-    const PetscReal h = 1.0 / WINDOW_SAMPLES;
+    PetscReal ds = 0.0;
 
-    force[k + 1] = force[k];
-    length[k + 1] = length[k];
     for (PetscInt side = -1; side <= 1; side += 2) {
-      const PetscReal s = h * ((PetscReal)k + 0.5 + 0.5 * (PetscReal)side / PetscSqrtReal(3.0));
-      const PetscInt piece = (PetscInt)(2.0 * s);
-      const PetscReal u = 2.0 * s - (PetscReal)piece;
-      PetscReal X[2], Xs[2], ds;
+      PetscReal X[2], Xs[2];
 
-      LamMortarSlavePoint(chains, s, X, Xs);
-      ds = 0.5 * h * PetscSqrtReal(LamDot(Xs, Xs));
-      length[k + 1] += ds;
-      force[k + 1] += g * ds;
-      if (s > lo && s < hi)
-        force[k + 1] -= 0.5 * h * chains->J0[(PetscInt)s] * ((1.0 - u) * lambda[piece] + u * lambda[piece + 1]) / F33;
+      LamMortarSlavePoint(chains, h * ((PetscReal)k + 0.5 + 0.5 * (PetscReal)side / PetscSqrtReal(3.0)), X, Xs);
+      ds += 0.5 * h * PetscSqrtReal(LamDot(Xs, Xs));
     }
+    length[k + 1] = length[k] + ds;
+    force[k + 1] =
+        force[k] + g * ds - ContactForce(chains, lambda, h * (PetscReal)k, h * (PetscReal)(k + 1), lo, hi) / F33;
   }
 }
 
@@ -159,66 +165,80 @@ static void AddCycle(const PetscReal v[2], PetscReal basis[2][2], PetscInt *rank
   }
 }
 
-/*
-  Groups of cells that closed faces join. place[cell] is the shift of the image of a cell that belongs to the same
-  connected piece as the image of its root; a face that joins two cells of one group again gives a cycle, a period
-  vector that the piece spans.
-*/
+/* Groups of cells that closed faces join. */
+typedef struct {
+  PetscInt *group;       /* [cell], -1: none yet */
+  PetscReal (*place)[2]; /* [cell]: shift of the image that belongs to the same connected piece as its root */
+} Clusters;
+
+/* Takes all cells into the group of `root` that closed faces join to it. */
+static void Grow(const LamContact *contact, PetscInt root, Clusters *clusters)
+{
+  PetscInt *group = clusters->group;
+  PetscBool grown = PETSC_TRUE;
+
+  while (grown) {
+    grown = PETSC_FALSE;
+    for (PetscInt f = 0; f < contact->face_count; ++f) {
+      const LamContactFace *face = &contact->faces[f];
+      const PetscInt a = face->cell, b = face->other;
+      const PetscBool from_a = (PetscBool)(group[a] == group[root]);
+
+      if (!FaceIsClosed(contact, f) || from_a == (PetscBool)(group[b] == group[root])) continue;
+      for (PetscInt d = 0; d < 2; ++d) {
+        if (from_a)
+          clusters->place[b][d] = clusters->place[a][d] + face->shift[d];
+        else
+          clusters->place[a][d] = clusters->place[b][d] - face->shift[d];
+      }
+      group[a] = group[b] = group[root];
+      grown = PETSC_TRUE;
+    }
+  }
+}
+
+/* A face that joins two cells of one group again gives a cycle, a period vector that the piece spans: their rank. */
+static PetscInt Rank(const LamContact *contact, PetscInt root, const Clusters *clusters)
+{
+  PetscReal basis[2][2];
+  PetscInt rank = 0;
+
+  for (PetscInt f = 0; f < contact->face_count; ++f) {
+    const LamContactFace *face = &contact->faces[f];
+    PetscReal v[2];
+
+    if (!FaceIsClosed(contact, f) || clusters->group[face->cell] != clusters->group[root]) continue;
+    for (PetscInt d = 0; d < 2; ++d)
+      v[d] = clusters->place[face->cell][d] + face->shift[d] - clusters->place[face->other][d];
+    AddCycle(v, basis, &rank);
+  }
+  return rank;
+}
+
 static PetscErrorCode CountClusters(LamRVE rve, LamResponse *response)
 {
   const LamContact *contact = rve->contact;
   const PetscInt cells = rve->mesh.cell_count;
-  PetscInt *group;
-  PetscReal(*place)[2];
   PetscBool *touched;
+  Clusters clusters;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(cells, &group, cells, &place, cells, &touched));
-  for (PetscInt c = 0; c < cells; ++c) {
-    group[c] = -1;
-    touched[c] = PETSC_FALSE;
-  }
+  PetscCall(PetscMalloc2(cells, &clusters.group, cells, &clusters.place));
+  PetscCall(PetscCalloc1(cells, &touched));
+  for (PetscInt c = 0; c < cells; ++c) clusters.group[c] = -1;
   for (PetscInt f = 0; f < contact->face_count; ++f)
     if (FaceIsClosed(contact, f)) touched[contact->faces[f].cell] = touched[contact->faces[f].other] = PETSC_TRUE;
   response->cell_clusters = response->percolating_directions = response->floating_cells = 0;
   for (PetscInt root = 0; root < cells; ++root) {
-    PetscReal basis[2][2];
-    PetscInt rank = 0;
-    PetscBool grown = PETSC_TRUE;
-
     if (!touched[root]) ++response->floating_cells;
-    if (group[root] >= 0) continue;
-    group[root] = response->cell_clusters++;
-    place[root][0] = place[root][1] = 0.0;
-    while (grown) {
-      grown = PETSC_FALSE;
-      for (PetscInt f = 0; f < contact->face_count; ++f) {
-        const LamContactFace *face = &contact->faces[f];
-        const PetscInt a = face->cell, b = face->other;
-
-        if (!FaceIsClosed(contact, f) || (group[a] != group[root] && group[b] != group[root])) continue;
-        if (group[a] == group[b]) continue;
-        for (PetscInt d = 0; d < 2; ++d) {
-          if (group[b] < 0) place[b][d] = place[a][d] + face->shift[d];
-          if (group[a] < 0) place[a][d] = place[b][d] - face->shift[d];
-        }
-        group[a] = group[b] = group[root];
-        grown = PETSC_TRUE;
-      }
-    }
-    for (PetscInt f = 0; f < contact->face_count; ++f) {
-      const LamContactFace *face = &contact->faces[f];
-
-      if (FaceIsClosed(contact, f) && group[face->cell] == group[root]) {
-        const PetscReal v[2] = {place[face->cell][0] + face->shift[0] - place[face->other][0],
-                                place[face->cell][1] + face->shift[1] - place[face->other][1]};
-
-        AddCycle(v, basis, &rank);
-      }
-    }
-    response->percolating_directions = PetscMax(response->percolating_directions, rank);
+    if (clusters.group[root] >= 0) continue;
+    clusters.group[root] = response->cell_clusters++;
+    clusters.place[root][0] = clusters.place[root][1] = 0.0;
+    Grow(contact, root, &clusters);
+    response->percolating_directions = PetscMax(response->percolating_directions, Rank(contact, root, &clusters));
   }
-  PetscCall(PetscFree3(group, place, touched));
+  PetscCall(PetscFree2(clusters.group, clusters.place));
+  PetscCall(PetscFree(touched));
   PetscFunctionReturn(0);
 }
 
@@ -245,7 +265,7 @@ PetscErrorCode LamContactIndicators(LamRVE rve, const LamLoad *load, LamResponse
   response->open_fraction = open / length;
   response->mean_gap = gap / length;
   response->max_gap = sums.max_gap > -PETSC_MAX_REAL ? PetscMax(0.0, sums.max_gap) : NAN;
-  response->max_penetration = PetscMax(0.0, sums.max_penetration);
+  response->max_penetration = PetscMax(response->max_penetration, sums.max_penetration);
   response->max_traction = sums.max_traction;
   for (PetscInt i = 0; i < 3; ++i) response->fabric[i] = sums.fabric[i] / length;
   response->zero_modes = rve->zero_modes;

@@ -1,6 +1,6 @@
 /*
   Lumens whose walls have met. Contact of a cell's wall with itself is not modelled, so a state in which an inner loop
-  crosses itself is no answer; it occurs far in compression.
+  crosses itself, or runs clockwise because the ring has turned inside out, is no answer; it occurs far in compression.
 
   Method. The inner loop of each cell is taken as the polygon of its nodes (two per element); the loop is simple as long
   as no two of its sides that do not follow each other cross. Boxes of sides are compared before the sides.
@@ -36,6 +36,24 @@ static PetscBool CrossesItself(PetscInt n, const PetscReal x[][2])
   return PETSC_FALSE;
 }
 
+/* Twice the signed area of a polygon. */
+static PetscReal SignedArea(PetscInt n, const PetscReal x[][2])
+{
+  PetscReal area = 0.0;
+
+  for (PetscInt i = 0, j = n - 1; i < n; j = i++) area += x[j][0] * x[i][1] - x[j][1] * x[i][0];
+  return area;
+}
+
+PetscErrorCode LamCollapseReason(PetscInt cell, char reason[], size_t length)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(
+      reason, length, "the lumen of cell %d has collapsed: its walls touch, and contact inside a lumen is not modelled",
+      (int)cell));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamFindCollapsedLumen(LamRVE rve, const PetscReal y[], PetscInt *cell)
 {
   const LamMesh *mesh = &rve->mesh;
@@ -51,7 +69,9 @@ PetscErrorCode LamFindCollapsedLumen(LamRVE rve, const PetscReal y[], PetscInt *
       x[i][0] = position[0];
       x[i][1] = position[1];
     }
-    if (CrossesItself(mesh->ring_nodes, (const PetscReal(*)[2])x)) *cell = c;
+    if (SignedArea(mesh->ring_nodes, (const PetscReal(*)[2])x) <= 0.0 ||
+        CrossesItself(mesh->ring_nodes, (const PetscReal(*)[2])x))
+      *cell = c;
   }
   PetscCall(PetscFree(x));
   PetscFunctionReturn(0);

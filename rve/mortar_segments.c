@@ -60,6 +60,7 @@ static void FindCut(const LamMortarChains *chains, PetscInt v, LamMortarSegments
 
   PlaneDirection(chains, v, t);
   segments->is_cut[v] = PETSC_FALSE;
+  segments->cut[v] = 0.0;
   for (PetscInt e = 0; e < chains->n; ++e) {
     for (PetscInt a = 0; a < 3; ++a) {
       const PetscReal z[2] = {chains->x[2 * e + a][0] - chains->y[2 * v][0],
@@ -67,7 +68,6 @@ static void FindCut(const LamMortarChains *chains, PetscInt v, LamMortarSegments
 
       side[a] = LamDot(z, t);
     }
-    if (e == 0 && side[0] <= 0.0) segments->cut[v] = 0.0;
     if (e == chains->n - 1 && !segments->is_cut[v] && side[2] > 0.0) segments->cut[v] = (PetscReal)chains->n;
     if (side[0] > 0.0 && side[2] <= 0.0) {
       const PetscReal s = (PetscReal)e + 0.5 * (1.0 + FallingRoot(side[0], side[1], side[2]));
@@ -111,6 +111,11 @@ void LamMortarFindSegments(const LamMortarChains *chains, LamMortarSegments *seg
   PetscBool lo_moves, hi_moves;
 
   for (PetscInt v = 0; v <= m; ++v) FindCut(chains, v, segments);
+  for (PetscInt v = 1; v <= m; ++v)
+    if (segments->cut[v] > segments->cut[v - 1]) { /* planes that cross before they reach a far slave */
+      segments->cut[v] = segments->cut[v - 1];
+      segments->is_cut[v] = PETSC_FALSE;
+    }
   lo = Ramp(segments->cut[m], segments->ramp[0]);
   lo_moves = (PetscBool)(segments->is_cut[m] && lo > 0.0);
   hi = (PetscReal)n - Ramp((PetscReal)n - segments->cut[0], segments->ramp[1]);

@@ -75,6 +75,7 @@ PetscErrorCode LamRVESetUp(LamRVE rve)
     PetscCall(LamRVESetMicrostructure(rve->bonded, &bonded));
     PetscCall(LamRVESetMonitor(rve->bonded, rve->monitor));
     PetscCall(LamRVESetUp(rve->bonded));
+    PetscCall(LamRVEStateCreate(rve->bonded, &rve->bonded_state));
   }
   rve->is_set_up = PETSC_TRUE;
   PetscFunctionReturn(0);
@@ -84,6 +85,7 @@ PetscErrorCode LamRVEDestroy(LamRVE *rve)
 {
   PetscFunctionBeginUser;
   if (!*rve) PetscFunctionReturn(0);
+  PetscCall(LamRVEStateDestroy(&(*rve)->bonded_state));
   PetscCall(LamRVEDestroy(&(*rve)->bonded));
   PetscCall(LamContactDestroy(&(*rve)->contact));
   PetscCall(LamLinearDestroy(&(*rve)->linear));
@@ -157,7 +159,7 @@ PetscErrorCode LamRVEStateDestroy(LamRVEState *state)
   PetscFunctionReturn(0);
 }
 
-/* Empty where the load can be asked of plane-strain bonded tissue, else why not. */
+/* Empty where the load can be asked of plane-strain tissue, else why not. */
 static PetscErrorCode CheckLoad(const LamLoad *load, char reason[], size_t length)
 {
   const PetscReal *F = load->F, det = F[0] * F[4] - F[1] * F[3];
@@ -171,6 +173,9 @@ static PetscErrorCode CheckLoad(const LamLoad *load, char reason[], size_t lengt
     }
   if (PetscIsInfOrNanReal(load->turgor))
     PetscCall(PetscSNPrintf(reason, length, "turgor is not finite"));
+  else if (!(load->cohesion >= 0.0) || PetscIsInfOrNanReal(load->cohesion))
+    PetscCall(
+        PetscSNPrintf(reason, length, "cohesion is %g; it must be finite and not negative", (double)load->cohesion));
   else if (F[2] != 0.0 || F[5] != 0.0 || F[6] != 0.0 || F[7] != 0.0)
     PetscCall(PetscSNPrintf(reason, length, "F has out-of-plane shear, which plane strain does not carry"));
   else if (!(det > 0.0) || !(F[8] > 0.0))
@@ -200,13 +205,11 @@ static PetscErrorCode RefuseCollapsedLumen(LamRVE rve, LamResponse *response)
   PetscInt cell;
 
   PetscFunctionBeginUser;
-  if (!LamResponseHasFields(response)) PetscFunctionReturn(0);
+  if (!LamResponseHasFields(response) || rve->contact) PetscFunctionReturn(0); /* contact has looked itself */
   PetscCall(LamFindCollapsedLumen(rve, rve->y, &cell));
   if (cell < 0) PetscFunctionReturn(0);
   response->status = LAM_NOT_CONVERGED;
-  PetscCall(PetscSNPrintf(
-      response->reason, sizeof(response->reason),
-      "the lumen of cell %d has collapsed: its walls touch, and contact inside a lumen is not modelled", (int)cell));
+  PetscCall(LamCollapseReason(cell, response->reason, sizeof(response->reason)));
   PetscFunctionReturn(0);
 }
 

@@ -74,6 +74,7 @@ struct LamRVE_s {
   LamLinear linear;
   LamContact *contact;                    /* NULL for bonded tissue; owned */
   LamRVE bonded;                          /* contact tissue: the same tissue, bonded; owned */
+  LamRVEState bonded_state;               /* of `bonded`, work space; owned */
   PetscInt ndof;                          /* 2 class_count */
   PetscReal *y, *step, *trial, *residual; /* [ndof] each: position, Newton step, trial position, residual */
   LamWork work;                           /* of the solve under way */
@@ -117,6 +118,7 @@ PetscReal LamResidualNorm(LamRVE rve, const PetscReal residual[]);
 
 /* ---- contact.c ---- */
 #define LAM_CONTACT_SCALE 9.0 /* weighs gaps (apothems) against multipliers (C1 + C2): 1 MPa per apothem by default */
+#define LAM_HYSTERESIS 0.2    /* half-edges */
 PetscErrorCode LamContactCreate(const LamMicrostructure *micro, const LamMesh *mesh, LamContact **contact);
 PetscErrorCode LamContactSetMatrix(LamContact *contact, const LamLinear *linear);
 PetscErrorCode LamContactDestroy(LamContact **contact);
@@ -224,8 +226,9 @@ PetscErrorCode LamContactNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOu
 PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
 
 /* ---- lumen.c, overlap.c ---- */
-/* The first cell whose inner loop crosses itself at positions y, -1: none. */
+/* The first cell whose inner loop crosses itself or is inside out at positions y, -1: none. */
 PetscErrorCode LamFindCollapsedLumen(LamRVE rve, const PetscReal y[], PetscInt *cell);
+PetscErrorCode LamCollapseReason(PetscInt cell, char reason[], size_t length);
 /* How deep an outer wall lies inside another cell, apothems, and the two cells; 0 and -1, -1 where none does. */
 PetscErrorCode LamFindOverlap(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscReal *depth,
                               PetscInt pair[2]);

@@ -1,0 +1,49 @@
+/* Shared by the files that lead to contact equilibrium: contact_start.c, contact_try.c, contact_path.c. */
+#ifndef LAM_RVE_CONTACT_PATH_H
+#define LAM_RVE_CONTACT_PATH_H
+
+#include "rve_impl.h"
+
+/* A solution, to start from or to come back to. */
+typedef struct {
+  LamLoad load;
+  PetscReal *y, *lambda;
+  PetscInt (*hats)[2]; /* [face]: first and last hat of the junction status */
+} LamContactSolution;
+
+/* ---- contact_start.c ---- */
+PetscErrorCode LamContactSolutionCreate(LamRVE rve, LamContactSolution *solution);
+PetscErrorCode LamContactSolutionDestroy(LamContactSolution *solution);
+PetscErrorCode LamContactSave(LamRVE rve, const LamLoad *load, LamContactSolution *solution);
+/* Back to a solution, with its active set and junction status. */
+PetscErrorCode LamContactRestore(LamRVE rve, const LamContactSolution *solution);
+/* From a solution, moved affinely to the new load. */
+PetscErrorCode LamContactStartNear(LamRVE rve, const LamContactSolution *from, const LamLoad *load);
+/* rve->y := F X, stress-free walls, multipliers that balance turgor and cohesion. */
+PetscErrorCode LamContactStartAffine(LamRVE rve, const LamLoad *load);
+/* rve->y: the positions last solved for by rve->bonded, which belong to the same F; contact->held: what bonding carries
+   and the multipliers fitted to it do not. */
+PetscErrorCode LamContactStartBonded(LamRVE rve, const LamLoad *load, PetscBool *ok);
+
+/* ---- contact_try.c ---- */
+typedef enum { LAM_NOT_REFUSED, LAM_CELLS_OVERLAP, LAM_LUMEN_COLLAPSED } LamRefusal;
+/* What a try at one load ended in. */
+typedef struct {
+  PetscBool converged;
+  PetscInt negative;  /* eigenvalues; > 0: a saddle */
+  PetscInt branch;    /* saddles left on the way */
+  LamRefusal refusal; /* why a solution is no answer; it then counts as not converged */
+  PetscInt cell[2];   /* the cells concerned */
+  PetscReal depth;    /* of the wall of the first inside the second */
+} LamContactOutcome;
+#define LAM_NEAR_REACH 0.5 /* apothems: a larger step from a near start leads nowhere */
+/* Newton from the present start, by full steps or by descent; saddles are left, what is no answer is refused. Ends with
+   the consistent tangent factored. */
+PetscErrorCode LamContactTry(LamRVE rve, const LamLoad *load, PetscReal reach, LamContactOutcome *out);
+PetscErrorCode LamContactDescend(LamRVE rve, const LamLoad *load, LamContactOutcome *out);
+static inline PetscBool LamContactIsStable(const LamContactOutcome *out)
+{
+  return (PetscBool)(out->converged && out->negative <= 0);
+}
+
+#endif

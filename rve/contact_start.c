@@ -1,0 +1,126 @@
+/*
+  Starts for contact equilibrium.
+
+  Mihai, Safar & Wyatt, J. Eng. Math. (successive deformation decomposition) for the bonded start.
+*/
+#include "contact_path.h"
+
+PetscErrorCode LamContactSolutionCreate(LamRVE rve, LamContactSolution *solution)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(rve->ndof, &solution->y, rve->contact->count, &solution->lambda, rve->contact->face_count,
+                         &solution->hats));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamContactSolutionDestroy(LamContactSolution *solution)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree3(solution->y, solution->lambda, solution->hats));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamContactSave(LamRVE rve, const LamLoad *load, LamContactSolution *solution)
+{
+  PetscFunctionBeginUser;
+  solution->load = *load;
+  PetscCall(PetscArraycpy(solution->y, rve->y, rve->ndof));
+  PetscCall(PetscArraycpy(solution->lambda, rve->contact->lambda, rve->contact->count));
+  for (PetscInt f = 0; f < rve->contact->face_count; ++f) {
+    solution->hats[f][0] = rve->contact->faces[f].first;
+    solution->hats[f][1] = rve->contact->faces[f].last;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamContactRestore(LamRVE rve, const LamContactSolution *solution)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(rve->y, solution->y, rve->ndof));
+  PetscCall(PetscArraycpy(rve->contact->lambda, solution->lambda, rve->contact->count));
+  for (PetscInt f = 0; f < rve->contact->face_count; ++f) {
+    rve->contact->faces[f].first = solution->hats[f][0];
+    rve->contact->faces[f].last = solution->hats[f][1];
+  }
+  PetscCall(LamContactEvaluate(rve, &solution->load, rve->y, PETSC_FALSE));
+  (void)LamContactFindActive(rve->contact, 0.0);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamContactStartNear(LamRVE rve, const LamContactSolution *from, const LamLoad *load)
+{
+  PetscFunctionBeginUser;
+  LamMoveAffinely(rve, from->y, &from->load, load);
+  PetscCall(PetscArraycpy(rve->contact->lambda, from->lambda, rve->contact->count));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamContactStartAffine(LamRVE rve, const LamLoad *load)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < rve->mesh.class_count; ++c) {
+    const PetscReal *X = &rve->mesh.class_X[2 * c];
+
+    for (PetscInt d = 0; d < 2; ++d) rve->y[2 * c + d] = load->F[3 * d] * X[0] + load->F[3 * d + 1] * X[1];
+  }
+  PetscCall(PetscArrayzero(rve->stress, rve->mesh.element_count));
+  for (PetscInt h = 0; h < rve->contact->count; ++h)
+    rve->contact->lambda[h] = PetscMax(0.0, load->turgor + load->cohesion);
+  PetscFunctionReturn(0);
+}
+
+/* Positions of the bonded solution, and its wall stresses. */
+static void TakeBondedPositions(LamRVE rve, const LamLoad *load)
+{
+  const LamMesh *mesh = &rve->mesh, *bonded = &rve->bonded->mesh;
+
+  for (PetscInt i = 0; i < mesh->node_count; ++i) {
+    const PetscReal *S = &bonded->shift[2 * i], *position = &rve->bonded->y[2 * bonded->node_class[i]];
+
+    for (PetscInt d = 0; d < 2; ++d)
+      rve->y[2 * mesh->node_class[i] + d] = position[d] + load->F[3 * d] * S[0] + load->F[3 * d + 1] * S[1];
+  }
+  (void)LamSetConsistentStresses(rve, load, rve->y);
+}
+
+/*
+  Multipliers that fit the forces r that bonding carried, B^T lambda = r, in least squares: the solution of
+  [1 -B^T; -B 0] [v; lambda] = [-r; 0]. Those in tension become zero.
+*/
+static PetscErrorCode FitMultipliers(LamRVE rve, const LamLoad *load, PetscBool *ok)
+{
+  LamContact *contact = rve->contact;
+  const PetscInt positions = rve->linear.positions;
+  PetscReal energy, *rhs, *solution;
+  PetscInt negative;
+  PetscBool valid;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(contact->lambda, contact->count));
+  PetscCall(LamContactEvaluate(rve, load, rve->y, PETSC_TRUE));
+  PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
+  for (PetscInt h = 0; h < contact->count; ++h) contact->active[h] = (PetscBool)(contact->weight[h] > 0.0);
+  PetscCall(PetscArrayzero(rve->linear.values, rve->linear.nonzeros));
+  LamContactSetRows(rve, 0.0);
+  PetscCall(LamLinearFactor(&rve->linear, 1.0, &negative, ok));
+  ++rve->work.factorisations;
+  if (!*ok) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc2(rve->linear.n, &rhs, rve->linear.n, &solution));
+  for (PetscInt i = 0; i < positions; ++i) rhs[i] = -rve->residual[i + 2];
+  PetscCall(LamLinearSolve(&rve->linear, 1, rhs, solution));
+  for (PetscInt h = 0; h < contact->count; ++h)
+    contact->lambda[h] = contact->active[h] ? PetscMax(0.0, solution[positions + h]) : 0.0;
+  PetscCall(PetscFree2(rhs, solution));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamContactStartBonded(LamRVE rve, const LamLoad *load, PetscBool *ok)
+{
+  PetscFunctionBeginUser;
+  TakeBondedPositions(rve, load);
+  PetscCall(FitMultipliers(rve, load, ok));
+  if (!*ok) PetscFunctionReturn(0);
+  PetscCall(PetscArraycpy(rve->contact->held, rve->residual, rve->ndof));
+  LamContactAddForce(rve, rve->contact->held);
+  PetscFunctionReturn(0);
+}

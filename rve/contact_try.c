@@ -1,0 +1,121 @@
+/*
+  One try for contact equilibrium at one load, from the present start.
+
+  Method. Newton by full steps, or descent. A converged state with a negative eigenvalue on its active set is a saddle;
+  it is left along its unstable mode, and kept where that leads nowhere. A state in which cells lie in each other deeper
+  than the mesh explains, or a lumen has collapsed or turned inside out, is no answer: the walls that meet there do not
+  feel each other in the model.
+*/
+#include "contact_path.h"
+
+#define MAX_BRANCH_SWITCHES 4
+#define KICK 0.01         /* apothems: start along an unstable mode */
+#define EDGE_SHARE 0.2    /* penetration that the mesh explains, in edge lengths, ... */
+#define WALL_SHARE 0.25   /* ... or in wall thicknesses, ... */
+#define DEEPEST_WALL 0.05 /* ... of the latter no more than this, apothems */
+
+static PetscReal LargestDifference(PetscInt n, const PetscReal a[], const PetscReal b[])
+{
+  PetscReal largest = 0.0;
+
+  for (PetscInt i = 0; i < n; ++i) largest = PetscMax(largest, PetscAbsReal(a[i] - b[i]));
+  return largest;
+}
+
+/* One kick along the softest mode of the present factor; *left where it ends in another equilibrium. */
+static PetscErrorCode Kick(LamRVE rve, const LamLoad *load, const LamContactSolution *saddle, PetscReal mode[],
+                           PetscBool *left)
+{
+  const PetscInt positions = rve->linear.positions;
+  LamNewtonOutcome outcome;
+  PetscReal largest;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamSoftestMode(rve, &rve->lowest_eigenvalue, mode));
+  if (rve->monitor)
+    PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR, "  saddle: lowest eigenvalue %.3e; leaving it\n",
+                           (double)rve->lowest_eigenvalue));
+  largest = LamLargestEntry(positions, mode);
+  for (PetscInt i = 0; i < positions; ++i) rve->y[2 + i] += KICK * mode[i] / largest;
+  PetscCall(LamContactNewton(rve, load, LAM_NEAR_REACH, &outcome));
+  *left = (PetscBool)(outcome == LAM_NEWTON_CONVERGED && LargestDifference(rve->ndof, rve->y, saddle->y) > 0.1 * KICK);
+  PetscFunctionReturn(0);
+}
+
+/* Leaves saddles; ends at the last one where its mode leads nowhere. */
+static PetscErrorCode LeaveSaddles(LamRVE rve, const LamLoad *load, LamContactOutcome *out)
+{
+  LamContactSolution saddle;
+  PetscReal *mode;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFactorConsistent(rve, load, &out->negative, &out->converged));
+  if (!out->converged || out->negative <= 0) PetscFunctionReturn(0);
+  PetscCall(LamContactSolutionCreate(rve, &saddle));
+  PetscCall(PetscMalloc1(rve->linear.n, &mode));
+  for (PetscInt k = 0; k < MAX_BRANCH_SWITCHES && out->converged && out->negative > 0; ++k) {
+    PetscBool left = PETSC_FALSE;
+
+    PetscCall(LamContactSave(rve, load, &saddle));
+    PetscCall(Kick(rve, load, &saddle, mode, &left));
+    if (!left) PetscCall(LamContactRestore(rve, &saddle));
+    PetscCall(LamFactorConsistent(rve, load, &out->negative, &out->converged));
+    if (!left) break;
+    ++out->branch;
+  }
+  PetscCall(PetscFree(mode));
+  PetscCall(LamContactSolutionDestroy(&saddle));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Refuse(LamRVE rve, const LamLoad *load, LamContactOutcome *out)
+{
+  const LamMicrostructure *micro = &rve->micro;
+  const PetscReal edge = 2.0 / PetscSqrtReal(3.0) / (PetscReal)micro->along;
+  const PetscReal shallow = PetscMax(EDGE_SHARE * edge, PetscMin(DEEPEST_WALL, WALL_SHARE * micro->wall_thickness));
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFindCollapsedLumen(rve, rve->y, &out->cell[0]));
+  if (out->cell[0] >= 0) {
+    out->refusal = LAM_LUMEN_COLLAPSED;
+  } else {
+    PetscCall(LamFindOverlap(rve, load->F, rve->y, &out->depth, out->cell));
+    out->depth -= micro->clearance; /* contact acts from there */
+    if (out->depth > shallow) out->refusal = LAM_CELLS_OVERLAP;
+  }
+  if (out->refusal != LAM_NOT_REFUSED) out->converged = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Judge(LamRVE rve, const LamLoad *load, LamNewtonOutcome outcome, PetscInt escapes,
+                            LamContactOutcome *out)
+{
+  PetscFunctionBeginUser;
+  *out = (LamContactOutcome){.converged = (PetscBool)(outcome == LAM_NEWTON_CONVERGED)};
+  if (rve->work.escapes > escapes) ++out->branch;
+  if (out->converged) PetscCall(LeaveSaddles(rve, load, out));
+  if (out->converged) PetscCall(Refuse(rve, load, out));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamContactTry(LamRVE rve, const LamLoad *load, PetscReal reach, LamContactOutcome *out)
+{
+  const PetscInt escapes = rve->work.escapes;
+  LamNewtonOutcome outcome;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamContactNewton(rve, load, reach, &outcome));
+  PetscCall(Judge(rve, load, outcome, escapes, out));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamContactDescend(LamRVE rve, const LamLoad *load, LamContactOutcome *out)
+{
+  const PetscInt escapes = rve->work.escapes;
+  LamNewtonOutcome outcome;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamContactNewtonSafe(rve, load, &outcome));
+  PetscCall(Judge(rve, load, outcome, escapes, out));
+  PetscFunctionReturn(0);
+}
