@@ -117,8 +117,9 @@ PetscReal LamLumenArea(LamRVE rve, const PetscReal y[], PetscReal factor, PetscR
 PetscReal LamResidualNorm(LamRVE rve, const PetscReal residual[]);
 
 /* ---- contact.c ---- */
-#define LAM_CONTACT_SCALE 9.0 /* weighs gaps (apothems) against multipliers (C1 + C2): 1 MPa per apothem by default */
-#define LAM_HYSTERESIS 0.2    /* half-edges */
+#define LAM_CONTACT_SCALE 9.0   /* weighs gaps (apothems) against multipliers (C1 + C2): 1 MPa per apothem by default */
+#define LAM_HYSTERESIS 0.2      /* of the junction status, in half-edges; ... */
+#define LAM_MORE_HYSTERESIS 0.1 /* ... added each time a solution has changed it */
 PetscErrorCode LamContactCreate(const LamMicrostructure *micro, const LamMesh *mesh, LamContact **contact);
 PetscErrorCode LamContactSetMatrix(LamContact *contact, const LamLinear *linear);
 PetscErrorCode LamContactDestroy(LamContact **contact);
