@@ -57,7 +57,7 @@ static inline void ListContactStates(ContactState list[CONTACT_STATES])
     list[k].name = names[k];
     list[k].micro = ContactTissue(6, 2);
   }
-  list[0].load = ContactLoad(1, 0.15, 0, 1, 0.03, 0);
+  list[0].load = ContactLoad(1, 0.15, 0, 1, 0.03, 0.0002);
   list[1].load = ContactLoad(1, 0.2, 0, 1, 0.02, 0.005);
   list[2].load = ContactLoad(1.06, 0.05, 0, 1.01, 0.01, 0.005);
   list[3].load = ContactLoad(1.02, 0.08, -0.03, 0.99, 0.03, 0.002);

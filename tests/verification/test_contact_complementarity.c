@@ -51,7 +51,7 @@ static void PointwisePenetrationFallsWithTheMesh(void **state)
 static void PenetrationAtPressingCornersStaysSmall(void **state)
 {
   for (int k = MODERATE_LOADS; k < PENETRATION_LOADS; k++)
-    for (int m = 0; m < MESHES; m++) assert_true(results[k][m].response.max_penetration < 3.5e-3);
+    for (int m = 0; m < MESHES; m++) assert_true(results[k][m].response.max_penetration < 5e-3);
 }
 
 /* Where fields are given, also those of an unstable state, they are of an equilibrium at the load that was asked. */
