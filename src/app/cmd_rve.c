@@ -251,7 +251,7 @@ static PetscErrorCode Destroy(Run *run)
 static PetscErrorCode FindOnset(Run *run)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamOnsetFind(&run->onset, &run->meshes));
+  PetscCall(LamOnsetFind(&run->onset, &run->meshes, run->scene->load_count));
   PetscCall(LamOnsetPrint(&run->onset, &run->scene->scales, run->json));
   PetscFunctionReturn(0);
 }
@@ -259,7 +259,7 @@ static PetscErrorCode FindOnset(Run *run)
 static int ExitStatus(const Run *run)
 {
   if (LamStopRequested()) return LamStopExitStatus();
-  return run->failed || run->onset.status == LAM_ONSET_NOT_CONVERGED ? LAM_EXIT_UNSOLVED : LAM_EXIT_OK;
+  return run->failed || LamOnsetIsUnsolved(&run->onset) ? LAM_EXIT_UNSOLVED : LAM_EXIT_OK;
 }
 
 static PetscErrorCode RunOnRoot(Run *run, int *exit_status)

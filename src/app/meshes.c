@@ -6,9 +6,6 @@
 
 const char *const LamSeparationNames[] = {LAM_SEPARATIONS(LAM_NAME_ENTRY)};
 
-/* How near to the cohesion a mean face traction reaches it, as a share of p + g. */
-#define REACHED 1e-3
-
 static PetscErrorCode CreateOne(const LamScene *scene, PetscInt refinement, LamRVE *rve, LamRVEState *state)
 {
   LamMicrostructure micro = scene->micro;
@@ -54,24 +51,4 @@ PetscErrorCode LamMeshesSolve(LamMeshes *meshes, const LamLoad *load, LamRespons
   first->debonded_spread = fabs(first->debonded_fraction - second->debonded_fraction);
   first->open_spread = fabs(first->open_fraction - second->open_fraction);
   PetscFunctionReturn(0);
-}
-
-/* Whether a face family carries no contact any more. */
-static PetscBool TractionReached(const LamResponse *r)
-{
-  const PetscReal g = r->load.cohesion, margin = REACHED * (r->load.turgor + g);
-
-  for (PetscInt k = 0; k < 3; k++)
-    if (r->mean_face_traction[k] >= g - margin) return PETSC_TRUE;
-  return PETSC_FALSE;
-}
-
-LamSeparation LamSeparationOf(const LamResponse responses[2])
-{
-  const LamResponse *a = &responses[0], *b = &responses[1];
-
-  if (!LamResponseHasFields(a) || !LamResponseHasFields(b)) return LAM_SEPARATION_UNKNOWN;
-  if (a->max_gap > LAM_VISIBLE_GAP && b->max_gap > LAM_VISIBLE_GAP) return LAM_SEPARATION_GAP;
-  if (TractionReached(a) && TractionReached(b)) return LAM_SEPARATION_TRACTION;
-  return LAM_SEPARATION_NONE;
 }

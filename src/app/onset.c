@@ -42,12 +42,41 @@ static void KeepSeparated(LamOnset *onset, const LamResponse responses[2], LamSe
   for (PetscInt m = 0; m < 2; m++) onset->responses[m] = responses[m];
 }
 
+/* `where`: the load that has no answer. */
+static PetscErrorCode KeepReason(LamOnset *onset, const char where[], const LamResponse responses[2])
+{
+  const PetscInt m = LamResponseHasFields(&responses[0]) ? 1 : 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(onset->reason, sizeof(onset->reason), "%s has no answer on the %s mesh: %s", where,
+                          m ? "second" : "first", responses[m].reason));
+  PetscFunctionReturn(0);
+}
+
+/* The first state without an answer is the one to look at. */
+static PetscErrorCode KeepUnknown(LamOnset *onset, PetscInt number, const LamResponse responses[2])
+{
+  char where[LAM_NAME_LENGTH];
+
+  PetscFunctionBeginUser;
+  if (onset->status == LAM_ONSET_UNKNOWN) PetscFunctionReturn(0);
+  onset->status = LAM_ONSET_UNKNOWN;
+  PetscCall(PetscSNPrintf(where, sizeof(where), "state %" PetscInt_FMT, number));
+  PetscCall(KeepReason(onset, where, responses));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamOnsetWatch(LamOnset *onset, const LamMeshes *meshes, PetscInt number, const LamResponse responses[2])
 {
   const LamSeparation separation = LamSeparationOf(responses);
 
   PetscFunctionBeginUser;
-  if (onset->states[1] || separation == LAM_SEPARATION_UNKNOWN) PetscFunctionReturn(0);
+  onset->last = number;
+  if (onset->states[1]) PetscFunctionReturn(0);
+  if (separation == LAM_SEPARATION_UNKNOWN) {
+    PetscCall(KeepUnknown(onset, number, responses));
+    PetscFunctionReturn(0);
+  }
   if (separation == LAM_SEPARATION_NONE) {
     onset->states[0] = number;
     onset->ends[0] = responses[0].load;
@@ -57,6 +86,7 @@ PetscErrorCode LamOnsetWatch(LamOnset *onset, const LamMeshes *meshes, PetscInt 
   onset->states[1] = number;
   onset->ends[1] = responses[0].load;
   onset->status = onset->states[0] ? LAM_ONSET_FOUND : LAM_ONSET_BEFORE_FIRST;
+  if (onset->status == LAM_ONSET_FOUND) onset->reason[0] = '\0'; /* states without an answer are passed over */
   KeepSeparated(onset, responses, separation);
   PetscFunctionReturn(0);
 }
@@ -84,10 +114,8 @@ static PetscErrorCode Halve(LamOnset *onset, LamMeshes *meshes)
   PetscCall(LamMeshesSolve(meshes, &load, responses));
   separation = LamSeparationOf(responses);
   if (separation == LAM_SEPARATION_UNKNOWN) {
-    const LamResponse *failed = &responses[LamResponseHasFields(&responses[0]) ? 1 : 0];
-
     onset->status = LAM_ONSET_NOT_CONVERGED;
-    PetscCall(PetscStrncpy(onset->reason, failed->reason, sizeof(onset->reason)));
+    PetscCall(KeepReason(onset, "a load in between", responses));
   } else if (separation == LAM_SEPARATION_NONE) {
     onset->bracket[0] = middle;
     PetscCall(KeepClosed(onset, meshes));
@@ -98,17 +126,28 @@ static PetscErrorCode Halve(LamOnset *onset, LamMeshes *meshes)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamOnsetFind(LamOnset *onset, LamMeshes *meshes)
+PetscErrorCode LamOnsetFind(LamOnset *onset, LamMeshes *meshes, PetscInt count)
 {
   PetscFunctionBeginUser;
-  if (LamStopRequested() && !onset->states[1]) onset->status = LAM_ONSET_STOPPED;
+  if (onset->status == LAM_ONSET_NOT_MET && onset->last < count) {
+    onset->status = LAM_ONSET_UNKNOWN;
+    PetscCall(PetscSNPrintf(onset->reason, sizeof(onset->reason), "stopped by a signal before state %" PetscInt_FMT,
+                            onset->last + 1));
+  }
   while (onset->status == LAM_ONSET_FOUND && onset->bracket[1] - onset->bracket[0] > RESOLUTION) {
-    if (LamStopRequested())
+    if (LamStopRequested()) {
       onset->status = LAM_ONSET_STOPPED;
-    else
+      PetscCall(PetscStrncpy(onset->reason, "stopped by a signal", sizeof(onset->reason)));
+    } else {
       PetscCall(Halve(onset, meshes));
+    }
   }
   PetscFunctionReturn(0);
+}
+
+PetscBool LamOnsetIsUnsolved(const LamOnset *onset)
+{
+  return (PetscBool)(onset->reason[0] != '\0');
 }
 
 /* ---- what is told ---- */
@@ -128,6 +167,7 @@ static json_t *BracketToJSON(const LamOnset *onset, PetscReal MPa)
   json_t *o = json_object(), *gaps = json_array(), *tractions = json_array();
 
   json_object_set_new(o, "status", json_string(LamOnsetStatusNames[onset->status]));
+  if (onset->reason[0]) json_object_set_new(o, "reason", json_string(onset->reason));
   if (!onset->states[1]) return o;
   json_object_set_new(o, "states", json_pack("[I, I]", (json_int_t)onset->states[0], (json_int_t)onset->states[1]));
   json_object_set_new(o, "fraction", json_real(onset->bracket[1]));
@@ -143,7 +183,6 @@ static json_t *BracketToJSON(const LamOnset *onset, PetscReal MPa)
   }
   json_object_set_new(o, "max_gap", gaps);
   json_object_set_new(o, "mean_face_traction", tractions);
-  if (onset->reason[0]) json_object_set_new(o, "reason", json_string(onset->reason));
   return o;
 }
 
@@ -164,7 +203,7 @@ static void PrintBracket(const LamOnset *onset, PetscReal MPa)
   else
     printf("  mean traction of face family %" PetscInt_FMT " reaches the cohesion on both meshes\n",
            LoosestFace(&onset->responses[1]));
-  if (onset->status == LAM_ONSET_NOT_CONVERGED) printf("  not bracketed further: %s\n", onset->reason);
+  if (onset->reason[0]) printf("  not bracketed further: %s\n", onset->reason);
 }
 
 PetscErrorCode LamOnsetPrint(const LamOnset *onset, const LamScales *scales, PetscBool json)
@@ -176,12 +215,16 @@ PetscErrorCode LamOnsetPrint(const LamOnset *onset, const LamScales *scales, Pet
     PetscCall(LamPrintJSON(json_pack("{s:o}", "onset", BracketToJSON(onset, MPa))));
     PetscFunctionReturn(0);
   }
-  if (!onset->states[1])
+  if (onset->status == LAM_ONSET_NOT_MET) {
     printf("onset of separation: not met, no state is separated\n");
-  else if (onset->status == LAM_ONSET_BEFORE_FIRST)
+  } else if (onset->status == LAM_ONSET_UNKNOWN) {
+    printf("onset of separation: unknown, no state is known to be separated; %s\n", onset->reason);
+  } else if (onset->status == LAM_ONSET_BEFORE_FIRST) {
     printf("onset of separation: before state %" PetscInt_FMT ", the first that is known, which is separated\n",
            onset->states[1]);
-  else
+    if (onset->reason[0]) printf("  %s\n", onset->reason);
+  } else {
     PrintBracket(onset, MPa);
+  }
   PetscFunctionReturn(0);
 }

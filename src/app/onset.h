@@ -1,16 +1,11 @@
 /*
-  Where cells begin to come apart along a load, judged on two meshes. For contact tissue.
-
-  The tissue counts as separated where on both meshes
-    gap            the largest gap between facing walls exceeds LAM_VISIBLE_GAP, or
-    face_traction  the mean traction of a face family reaches the cohesion g, within 1e-3 of p + g, which presses the
-                   faces together: contact carries nothing there any more.
-  Two meshes, because one alone opens at its junctions by as much as its elements are long.
+  Where cells begin to come apart along a load, judged on two meshes (separation.h). For contact tissue.
 */
 #ifndef LAM_ONSET_H
 #define LAM_ONSET_H
 
 #include "app.h"
+#include "separation.h"
 
 /* The tissue of a scene on its own mesh and, where count is 2, on one with twice the elements along a face. */
 typedef struct {
@@ -28,35 +23,26 @@ PetscErrorCode LamMeshesDestroy(LamMeshes *meshes);
 */
 PetscErrorCode LamMeshesSolve(LamMeshes *meshes, const LamLoad *load, LamResponse responses[2]);
 
-#define LAM_SEPARATIONS(X)                                                                                             \
-  X(LAM_SEPARATION_UNKNOWN, "unknown") /* a mesh has no answer */                                                      \
-  X(LAM_SEPARATION_NONE, "none")                                                                                       \
-  X(LAM_SEPARATION_GAP, "gap")                                                                                         \
-  X(LAM_SEPARATION_TRACTION, "face_traction")
-typedef enum { LAM_SEPARATIONS(LAM_ENUM_ENTRY) LAM_SEPARATION_COUNT } LamSeparation;
-extern const char *const LamSeparationNames[];
-
-/* Which criterion both meshes fulfil; of both the gap is named. */
-LamSeparation LamSeparationOf(const LamResponse responses[2]);
-
 #define LAM_ONSET_STATUSES(X)                                                                                          \
-  X(LAM_ONSET_NOT_MET, "not_met")               /* no state is separated */                                            \
+  X(LAM_ONSET_NOT_MET, "not_met")               /* every state has an answer and none is separated */                  \
+  X(LAM_ONSET_UNKNOWN, "unknown")               /* no state is known to be separated, but not all are known */         \
   X(LAM_ONSET_FOUND, "found")                   /* bracketed */                                                        \
   X(LAM_ONSET_BEFORE_FIRST, "before_the_first") /* no state that is not separated comes before one that is */          \
   X(LAM_ONSET_NOT_CONVERGED, "not_converged")   /* a load in between has no answer: the bracket is as wide as it is */ \
-  X(LAM_ONSET_STOPPED, "stopped")               /* by a signal, before or after that */
+  X(LAM_ONSET_STOPPED, "stopped")               /* by a signal: likewise */
 typedef enum { LAM_ONSET_STATUSES(LAM_ENUM_ENTRY) LAM_ONSET_STATUS_COUNT } LamOnsetStatus;
 extern const char *const LamOnsetStatusNames[];
 
 typedef struct {
   LamOnsetStatus status;
+  PetscInt last;            /* number of the last state that was watched */
   PetscInt states[2];       /* numbers of the states around it: not separated, separated */
   LamLoad ends[2];          /* their loads */
   PetscReal bracket[2];     /* shares of the way between them: not separated, separated */
   LamLoad load;             /* at bracket[1] */
   LamSeparation criterion;  /* there */
   LamResponse responses[2]; /* there, on both meshes */
-  char reason[192];         /* of LAM_ONSET_NOT_CONVERGED */
+  char reason[256];         /* why it is not known, or not better; empty otherwise */
   LamRVEState closed[2];    /* on both meshes at bracket[0]; owned */
 } LamOnset;
 
@@ -64,9 +50,11 @@ PetscErrorCode LamOnsetCreate(const LamMeshes *meshes, LamOnset *onset);
 PetscErrorCode LamOnsetDestroy(LamOnset *onset);
 /* Takes note of state `number`, which has just been solved on both meshes. */
 PetscErrorCode LamOnsetWatch(LamOnset *onset, const LamMeshes *meshes, PetscInt number, const LamResponse responses[2]);
-/* After the last state: bisects the load between the two states around the onset to 1e-3 of the way. Leaves other
-   states in `meshes`. */
-PetscErrorCode LamOnsetFind(LamOnset *onset, LamMeshes *meshes);
+/* After the last state that was solved of `count`: bisects the load between the two states around the onset to 1e-3 of
+   the way. Leaves other states in `meshes`. */
+PetscErrorCode LamOnsetFind(LamOnset *onset, LamMeshes *meshes, PetscInt count);
+/* Whether a load without an answer keeps the onset from being known, or known better. */
+PetscBool LamOnsetIsUnsolved(const LamOnset *onset);
 /* One JSON object {"onset": {...}} or a few lines for a person, on stdout. */
 PetscErrorCode LamOnsetPrint(const LamOnset *onset, const LamScales *scales, PetscBool json);
 

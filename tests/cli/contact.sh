@@ -75,6 +75,26 @@ done
 scene "0.001 MPa" "{F: [[1, 0], [0, 1]]}" "{F: [[1, 1e-4], [0, 1]]}"
 expect 0 "$lamella" rve scene.yaml --onset
 grep -q 'not met' out.txt || fail "an onset where nothing separates: $(cat out.txt)"
+
+# what is not known is not called "not met": walls fill more than the area that is left, so the second state fails
+scene "0.001 MPa" "{F: [[1, 0], [0, 1]]}" "{F: [[0.5, 0], [0, 0.5]]}" "{F: [[1, 1e-4], [0, 1]]}"
+expect 3 "$lamella" rve scene.yaml --onset --json
+sed '$!d' out.txt | grep -q '"onset": {"status": "unknown", "reason": "state 2 has no answer on the first mesh: ' ||
+  fail "an onset of which a state is missing: $(sed '$!d' out.txt)"
+expect 3 "$lamella" rve scene.yaml --onset
+grep -q 'onset of separation: unknown, .*state 2 has no answer' out.txt || fail "the table: $(cat out.txt)"
+sed -i '/0.5/d' scene.yaml
+sed -i '$s/$/\n  - {ramp: {to: [[1, 2e-4], [0, 1]], steps: 5000}}/' scene.yaml
+rm out.txt
+"$lamella" rve scene.yaml --onset --json >out.txt 2>err.txt &
+pid=$!
+until [ -s out.txt ] || ! kill -0 $pid 2>/dev/null; do sleep 0.05; done
+kill -TERM $pid || fail "the run had ended: $(tail -1 out.txt)"
+status=0
+wait $pid || status=$?
+[ $status -eq 143 ] || fail "exit status $status of a run that was stopped"
+sed '$!d' out.txt | grep -qE '"status": "unknown", "reason": "stopped by a signal before state [0-9]+"' ||
+  fail "an onset of a run that was stopped: $(sed '$!d' out.txt)"
 # cells that float apart, one by one without contact
 scene "0.001 MPa" "{F: [[1, 0], [0, 1]], turgor: 0 MPa}" "{F: [[1.05, 0], [0, 1.05]], turgor: 0 MPa}"
 expect 0 "$lamella" rve scene.yaml --second-mesh --json -o apart.h5
