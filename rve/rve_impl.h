@@ -6,9 +6,14 @@
     newton.c             one equilibrium from a start: fast and safe tier
     stability.c          softest mode of a converged state
     path.c               start, substeps, leaving a saddle
-    lumen.c              lumens whose walls have met
+    mortar.c mortar_segments.c            gaps between two chains of edges and their variations
+    contact.c            cell faces in contact: pairs, junctions, active set
+    contact_step.c contact_newton.c contact_safe.c    one contact equilibrium from a start
+    contact_start.c contact_try.c contact_path.c      starts, judging a solution, ways to it
+    lumen.c overlap.c    lumens whose walls have met, cells that lie in each other
     homogenise.c         stress, tangent and couplings by static condensation
     traction.c           interface tractions of bonded faces
+    indicators.c interface.c              how far cells have come apart; gaps and pressures for pictures
 
   Unknowns are the current positions y of node classes; class 0 is held, so unknown = 2 (class - 1) + component.
 */
