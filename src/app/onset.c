@@ -164,7 +164,7 @@ static PetscInt LoosestFace(const LamResponse *r)
 
 static json_t *BracketToJSON(const LamOnset *onset, PetscReal MPa)
 {
-  json_t *o = json_object(), *gaps = json_array(), *tractions = json_array();
+  json_t *o = json_object(), *gaps, *tractions;
 
   json_object_set_new(o, "status", json_string(LamOnsetStatusNames[onset->status]));
   if (onset->reason[0]) json_object_set_new(o, "reason", json_string(onset->reason));
@@ -177,6 +177,8 @@ static json_t *BracketToJSON(const LamOnset *onset, PetscReal MPa)
   json_object_set_new(o, "cohesion", LamJSONReal(onset->load.cohesion * MPa));
   json_object_set_new(o, "criterion", json_string(LamSeparationNames[onset->criterion]));
   json_object_set_new(o, "face", json_integer(LoosestFace(&onset->responses[1])));
+  gaps = json_array();
+  tractions = json_array();
   for (PetscInt m = 0; m < 2; m++) {
     json_array_append_new(gaps, LamJSONReal(onset->responses[m].max_gap));
     json_array_append_new(tractions, LamJSONReals(3, onset->responses[m].mean_face_traction, MPa));
