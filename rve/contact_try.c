@@ -13,6 +13,7 @@
 #define EDGE_SHARE 0.2    /* penetration that the mesh explains, in edge lengths, ... */
 #define WALL_SHARE 0.25   /* ... or in wall thicknesses, ... */
 #define DEEPEST_WALL 0.05 /* ... of the latter no more than this, apothems */
+#define HALF_WALL 0.5     /* and never more than this share of the wall */
 
 static PetscReal LargestDifference(PetscInt n, const PetscReal a[], const PetscReal b[])
 {
@@ -72,7 +73,8 @@ static PetscErrorCode Refuse(LamRVE rve, const LamLoad *load, LamContactOutcome 
 {
   const LamMicrostructure *micro = &rve->micro;
   const PetscReal edge = 2.0 / PetscSqrtReal(3.0) / (PetscReal)micro->along;
-  const PetscReal shallow = PetscMax(EDGE_SHARE * edge, PetscMin(DEEPEST_WALL, WALL_SHARE * micro->wall_thickness));
+  const PetscReal mesh = PetscMax(EDGE_SHARE * edge, PetscMin(DEEPEST_WALL, WALL_SHARE * micro->wall_thickness));
+  const PetscReal shallow = PetscMin(mesh, HALF_WALL * micro->wall_thickness);
 
   PetscFunctionBeginUser;
   PetscCall(LamFindCollapsedLumen(rve, rve->y, &out->cell[0]));
