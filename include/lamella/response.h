@@ -63,7 +63,7 @@ typedef struct {
   PetscInt zero_modes;             /* motions of the cells that change no energy: cells slide or spin free */
   PetscInt cell_clusters;          /* groups of cells that contact joins */
   PetscInt percolating_directions; /* of the period, 0 to 2: how many independent ones a group spans */
-  PetscInt negative_eigenvalues; /* of the consistent tangent */
+  PetscInt negative_eigenvalues;   /* of the consistent tangent */
   PetscBool stable;
   PetscInt branch;            /* 0: reached without leaving a saddle; n: after n branch switches */
   PetscInt newton_iterations; /* all of them: rejected steps and substeps included */
