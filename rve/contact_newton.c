@@ -5,13 +5,14 @@
   their weighted gaps are linearised to zero, the other multipliers are zero; multipliers of active hats are solved for,
   not incremented. As in the bonded tiers the tangent has independent wall stresses, and a shift where it is not
   positive definite on the free motions. With first iterates far from contact the rows get a compliance that fades:
-  G + c D lambda = 0. Steps are limited in length. The junction status follows the iterate for a while and is then
-  frozen, so that it cannot flicker; a solution whose status has changed is iterated on.
+  G + c D lambda = 0, and steps are short. From near starts steps are full, and a step that reaches too far ends the
+  try; late steps that still change the active set are halved. The junction status follows the iterate for a while and
+  is then frozen, so that it cannot flicker; a solution whose status has changed is iterated on.
 
     [ K - sum lambda d2G + shift   -B^T  ] [ dx         ]   [ -r0 ]      r0: residual without contact forces
     [ -B                           -c D  ] [ lambda_new ] = [  G  ]
 
-  References. Hueeber & Wohlmuth, Comput. Methods Appl. Mech. Engrg 194 (2005) 3147; Popp, Gee & Wall, Int. J. Numer.
+  References. Hueber & Wohlmuth, Comput. Methods Appl. Mech. Engrg 194 (2005) 3147; Popp, Gee & Wall, Int. J. Numer.
   Meth. Engng 79 (2009) 1354.
 */
 #include "rve_impl.h"

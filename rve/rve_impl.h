@@ -202,7 +202,7 @@ PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state,
                              LamStatus *status, char reason[], size_t length);
 
 /* ---- contact_step.c ---- */
-#define LAM_CONTACT_PROXIMAL 1e-8 /* shift of every contact matrix: a cell that nothing holds must not be singular */
+#define LAM_CONTACT_PROXIMAL 1e-8 /* shift of every contact step: a cell that nothing holds must not be singular */
 #define LAM_GAP_TOLERANCE 1e-10   /* of max |min(lambda, c gap)| */
 typedef struct {
   PetscReal *rhs, *solution, *image; /* work space */

@@ -8,7 +8,7 @@
 */
 #include "rve_impl.h"
 
-#define ZERO_MODE 1e-9 /* eigenvalues below it in size count as zero, (C1 + C2) apothem^0 per unit mode */
+#define ZERO_MODE 1e-9 /* eigenvalues below it in size, for modes of unit length, count as zero; C1 + C2 */
 
 PetscInt LamActiveMultipliers(LamRVE rve)
 {
