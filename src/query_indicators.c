@@ -2,7 +2,8 @@
   What an answer takes from its record as it is: all that the potential does not give.
 
   Tractions and gaps are not interpolated: contact switches between two states, and a mean of "open" and "closed" is
-  neither. They are the record's where the question is the record's own state, and unknown (NaN, LAM_UNKNOWN_COUNT) elsewhere.
+  neither. They are the record's where the question is the record's own state, and unknown (NaN, LAM_UNKNOWN_COUNT)
+  elsewhere.
 */
 #include "database_internal.h"
 #include <math.h>

@@ -102,8 +102,8 @@ typedef struct {
   char *text; /* the file's text, for provenance; owned */
   LamScales scales;
   LamMicrostructure micro;
-  PetscReal turgor;   /* of the tissue, where a load does not say otherwise; in C1 + C2 */
-  PetscReal cohesion; /* likewise */
+  PetscReal turgor;     /* of the tissue, where a load does not say otherwise; in C1 + C2 */
+  PetscReal cohesion;   /* likewise */
   LamStrategy strategy; /* how contact is reached */
   PetscReal accuracy;   /* wanted relative error of the effective stress */
   PetscInt load_count;
