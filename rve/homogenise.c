@@ -185,6 +185,8 @@ PetscErrorCode LamHomogenise(LamRVE rve, const LamLoad *load, LamResponse *respo
     response->P_cohesion[component[q]] = H[q][Q_COHESION];
     for (PetscInt r = 0; r < 5; ++r) response->tangent[9 * component[q] + component[r]] = H[q][r];
   }
+  response->energy_turgor = c.Lq[Q_TURGOR] / rve->mesh.V0;
+  response->energy_cohesion = c.Lq[Q_COHESION] / rve->mesh.V0;
   response->energy_turgor2 = H[Q_TURGOR][Q_TURGOR];
   response->energy_cohesion2 = H[Q_COHESION][Q_COHESION];
   response->energy_turgor_cohesion = H[Q_TURGOR][Q_COHESION];

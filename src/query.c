@@ -189,7 +189,7 @@ static void ExpandEnergy(const LamResponse *r, Tensor dF[3], LamExpansion *e)
     e->gradient[a] = Contract(P, dF[a]);
     e->hessian[a][3] = e->hessian[3][a] = Contract(Pp, dF[a]);
   }
-  e->gradient[3] = -r->lumen_fraction;
+  e->gradient[3] = r->energy_turgor;
   e->hessian[3][3] = r->energy_turgor2;
   for (int a = 0; a < 3; a++)
     for (int b = 0; b <= a; b++) {
@@ -218,7 +218,7 @@ static void ExpandOpening(const LamResponse *r, Tensor dF[3], LamExpansion *e)
   Tensor Pg;
 
   InPlane(r->P_cohesion, Pg);
-  e->opening = r->opening_fraction;
+  e->opening = r->energy_cohesion;
   for (int a = 0; a < 3; a++) e->opening_gradient[a] = Contract(Pg, dF[a]);
   e->opening_gradient[3] = r->energy_turgor_cohesion;
 }
@@ -415,6 +415,8 @@ static void FillPotential(const LamExpansion *m, Tensor F, const LamResponse *re
   r->energy_turgor2 = m->hessian[3][3];
   r->energy_cohesion2 = record->energy_cohesion2;
   r->energy_turgor_cohesion = m->opening_gradient[3];
+  r->energy_turgor = m->gradient[3];
+  r->energy_cohesion = m->opening;
   r->lumen_fraction = -m->gradient[3];
   r->opening_fraction = m->opening;
   FillTangent(m, K, record->tangent[80], r->tangent);

@@ -20,7 +20,7 @@ static PetscBool SameF(const LamLoad *a, const LamLoad *b)
 static void CopyBonded(const LamResponse *record, LamResponse *r)
 {
   for (int i = 0; i < 9; i++) r->P_cohesion[i] = 0;
-  r->energy_cohesion2 = r->energy_turgor_cohesion = 0;
+  r->energy_cohesion = r->energy_cohesion2 = r->energy_turgor_cohesion = 0;
   r->opening_fraction = record->opening_fraction;
   r->mean_gap = record->mean_gap;
   r->max_gap = record->max_gap;

@@ -8,6 +8,7 @@
 const char *const LamWallLawNames[] = {LAM_WALL_LAWS(LAM_NAME_ENTRY)};
 const char *const LamInterfaceLawNames[] = {LAM_INTERFACE_LAWS(LAM_NAME_ENTRY)};
 const char *const LamStrategyNames[] = {LAM_STRATEGIES(LAM_NAME_ENTRY)};
+const char *const LamPatchSidesNames[] = {LAM_PATCH_SIDES(LAM_NAME_ENTRY)};
 const char *const LamFibresNames[] = {LAM_FIBRES(LAM_NAME_ENTRY)};
 const char *const LamSideNames[] = {LAM_SIDES(LAM_NAME_ENTRY)};
 static const char *const turgor_mode_names[] = {LAM_TURGOR_MODES(LAM_NAME_ENTRY)};

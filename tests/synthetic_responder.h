@@ -64,6 +64,7 @@ static inline void SyntheticEvaluate(const Synthetic *material, const LamLoad *l
   }
   response->energy_turgor2 = 0;
   response->lumen_fraction = J;
+  response->energy_turgor = -J;
   response->opening_fraction = response->debonded_fraction = response->max_gap = 0;
   response->status = LAM_CONVERGED;
   response->source = LAM_SOURCE_SOLVE;

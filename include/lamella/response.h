@@ -40,9 +40,11 @@ typedef struct {
   PetscReal P[9];                   /* dPsi/dF: effective first Piola-Kirchhoff stress, fluid included */
   PetscReal tangent[81];            /* dP_ij/dF_kl */
   PetscReal P_turgor[9];            /* dP/dp */
-  PetscReal energy_turgor2;         /* d2Psi/dp2; dPsi/dp is -lumen_fraction */
+  PetscReal energy_turgor;          /* dPsi/dp: -lumen_fraction, where all cells have the same turgor */
+  PetscReal energy_turgor2;         /* d2Psi/dp2 */
   PetscReal P_cohesion[9];          /* dP/dg; 0 for bonded tissue */
-  PetscReal energy_cohesion2;       /* d2Psi/dg2; dPsi/dg is opening_fraction */
+  PetscReal energy_cohesion;        /* dPsi/dg: opening_fraction, where all cells have the same cohesion */
+  PetscReal energy_cohesion2;       /* d2Psi/dg2 */
   PetscReal energy_turgor_cohesion; /* d2Psi/dpdg */
   PetscReal lumen_fraction;         /* V_lumen / V0 */
   PetscReal opening_fraction;       /* V_gap / V0 */

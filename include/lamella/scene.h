@@ -22,6 +22,9 @@
 #define LAM_STRATEGIES(X)                                                                                              \
   X(LAM_TWO_STEP, "two_step") /* bonded tissue first, then release to contact */                                       \
   X(LAM_ONE_STEP, "one_step") /* contact at once from the affine state */
+#define LAM_PATCH_SIDES(X)                                                                                             \
+  X(LAM_SIDES_AFFINE, "affine") /* the lateral outer walls follow F, as those in the grips do */                       \
+  X(LAM_SIDES_FREE, "free")
 #define LAM_FIBRES(X)                                                                                                  \
   X(LAM_FIBRES_BOTH, "both")                                                                                           \
   X(LAM_FIBRES_TENSION, "tension")
@@ -29,11 +32,13 @@
 typedef enum { LAM_WALL_LAWS(LAM_ENUM_ENTRY) LAM_WALL_LAW_COUNT } LamWallLawType;
 typedef enum { LAM_INTERFACE_LAWS(LAM_ENUM_ENTRY) LAM_INTERFACE_LAW_COUNT } LamInterfaceLawType;
 typedef enum { LAM_STRATEGIES(LAM_ENUM_ENTRY) LAM_STRATEGY_COUNT } LamStrategy;
+typedef enum { LAM_PATCH_SIDES(LAM_ENUM_ENTRY) LAM_PATCH_SIDES_COUNT } LamPatchSides;
 typedef enum { LAM_FIBRES(LAM_ENUM_ENTRY) LAM_FIBRES_COUNT } LamFibres;
 
 extern const char *const LamWallLawNames[];      /* "fibre_mooney_rivlin", ... */
 extern const char *const LamInterfaceLawNames[]; /* "bonded", "contact" */
 extern const char *const LamStrategyNames[];     /* "two_step", "one_step" */
+extern const char *const LamPatchSidesNames[];   /* "affine", "free" */
 extern const char *const LamFibresNames[];       /* "both", "tension" */
 
 /* Wall material, moduli in units of C1 + C2 (so C1 + C2 = 1). */
@@ -44,12 +49,23 @@ typedef struct {
   PetscReal bulk_modulus;
 } LamWall;
 
+/* What may differ from cell to cell. */
+typedef struct {
+  PetscReal wall_thickness;   /* in apothems */
+  LamWall wall;               /* moduli in the C1 + C2 of the tissue */
+  PetscReal turgor, cohesion; /* times those of the load; between two cells the smaller cohesion holds */
+} LamCell;
+
 /* One tissue microstructure, nondimensional: all that fixes the map (F, turgor, cohesion) -> response. */
 typedef struct {
   PetscReal wall_thickness; /* of one cell's wall, in apothems; 0 < t < 1 */
   PetscReal orientation;    /* angle of face normal 0 to the X1 axis, radian */
-  PetscInt cells[2];        /* cells per period along lattice vectors 0 and 1 */
+  PetscBool is_patch;       /* a block of cells between grips, else a periodic one */
+  LamPatchSides sides;      /* of a patch */
+  PetscInt cells[2];        /* per period along lattice vectors 0 and 1; of a patch: columns and rows */
   LamWall wall;
+  LamCell *cell; /* [cells[0] cells[1]], cell = i cells[1] + j; NULL: all alike. Belongs to whoever holds the original:
+                    copies of the struct borrow it */
   LamInterfaceLawType interface;
   PetscReal clearance;     /* in apothems */
   PetscInt along, through; /* elements per face and through one wall; 0: not chosen yet (the planner does) */

@@ -52,8 +52,9 @@ static json_t *MemberToJSON(const LamMember *m, const LamResponse *response, Pet
 /* Derivatives are for programs that asked for the tangent; a reason and a distance are not of every state. */
 static PetscBool IsTold(const LamMember *m, const LamResponse *response, PetscBool tangent)
 {
-  static const char *const derivatives[] = {"tangent",    "P_turgor",         "energy_turgor2",
-                                            "P_cohesion", "energy_cohesion2", "energy_turgor_cohesion"};
+  static const char *const derivatives[] = {
+      "tangent",    "P_turgor",        "energy_turgor",    "energy_turgor2",
+      "P_cohesion", "energy_cohesion", "energy_cohesion2", "energy_turgor_cohesion"};
 
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(derivatives); i++)
     if (!strcmp(m->name, derivatives[i])) return tangent;

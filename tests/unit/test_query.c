@@ -126,6 +126,7 @@ static LamResponse Exact(const LamLoad *load)
   Slopes(load->F, K);
   r.energy = W.value;
   r.lumen_fraction = -W.gradient[3];
+  r.energy_turgor = W.gradient[3];
   r.energy_turgor2 = W.hessian[3][3];
   for (int i = 0; i < 9; i++) {
     r.P[i] = r.P_turgor[i] = 0;
@@ -398,7 +399,7 @@ static LamResponse ExactContact(LamLoad load)
   r = Exact(&load);
   Invariants(load.F, load.turgor, x);
   Slopes(load.F, K);
-  r.opening_fraction = 0.05 + 0.2 * (x[0] - 1) - 0.03 * x[3];
+  r.opening_fraction = r.energy_cohesion = 0.05 + 0.2 * (x[0] - 1) - 0.03 * x[3];
   for (int i = 0; i < 9; i++) r.P_cohesion[i] = 0.2 * K[0][i];
   r.energy_turgor_cohesion = -0.03;
   r.energy_cohesion2 = -0.5;
