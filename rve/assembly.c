@@ -6,9 +6,8 @@
 */
 static const PetscReal edge_area[3][3] = {
     {0.0, 4.0 / 3.0, -1.0 / 3.0}, {-4.0 / 3.0, 0.0, 4.0 / 3.0}, {1.0 / 3.0, -4.0 / 3.0, 0.0}};
-/* Counter-clockwise around their loop: the edge at the lumen of an innermost element, the edge at the interface of an
-   outermost one. */
-static const PetscInt inner_edge[3] = {0, 7, 3}, outer_edge[3] = {1, 5, 2};
+/* The edge at the lumen of an innermost element, counter-clockwise around the lumen. */
+static const PetscInt inner_edge[3] = {0, 7, 3};
 
 PetscErrorCode LamGeometryCreate(LamRVE rve)
 {
@@ -32,15 +31,8 @@ PetscErrorCode LamGeometryCreate(LamRVE rve)
 void LamGatherElement(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt e,
                       PetscReal x[LAM_ELEMENT_NODES][2])
 {
-  const LamMesh *mesh = &rve->mesh;
-  const PetscInt *nodes = &mesh->elements[LAM_ELEMENT_NODES * e];
-
-  for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a) {
-    const PetscReal *S = &mesh->shift[2 * nodes[a]], *position = &y[2 * mesh->node_class[nodes[a]]];
-
-    x[a][0] = position[0] + F[0] * S[0] + F[1] * S[1];
-    x[a][1] = position[1] + F[3] * S[0] + F[4] * S[1];
-  }
+  for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
+    LamNodePosition(rve, F, y, rve->mesh.elements[LAM_ELEMENT_NODES * e + a], x[a]);
 }
 
 static PetscReal EdgeArea(const PetscInt edge[3], const PetscReal x[LAM_ELEMENT_NODES][2])
@@ -74,37 +66,32 @@ static void AddEdgeArea(const PetscInt edge[3], const PetscReal x[LAM_ELEMENT_NO
     }
 }
 
-/* Area inside the loops that `edge` of every `through`-th element from `first` makes. */
-static PetscReal LoopArea(LamRVE rve, const PetscInt edge[3], PetscInt first, const PetscReal y[], PetscReal factor,
-                          PetscReal gradient[])
+PetscReal LamLumenArea(LamRVE rve, const PetscReal y[], PetscReal factor, PetscReal gradient[], PetscReal *plain)
 {
-  static const PetscReal no_shift[9] = {0}; /* nodes of free loops have no shift */
+  static const PetscReal no_shift[9] = {0}; /* nodes of lumens have no shift */
   const LamMesh *mesh = &rve->mesh;
-  PetscReal area = 0.0, x[LAM_ELEMENT_NODES][2];
+  PetscReal area = 0.0, all = 0.0, x[LAM_ELEMENT_NODES][2];
 
-  for (PetscInt e = first; e < mesh->element_count; e += mesh->through) {
+  for (PetscInt e = 0; e < mesh->element_count; e += mesh->through) {
+    const PetscReal turgor = LamTurgorFactor(rve, mesh->cell_of[e]);
+    PetscReal edge;
+
     LamGatherElement(rve, no_shift, y, e, x);
-    area += EdgeArea(edge, (const PetscReal(*)[2])x);
+    edge = EdgeArea(inner_edge, (const PetscReal(*)[2])x);
+    all += edge;
+    area += turgor * edge;
     if (gradient) {
       PetscReal f[LAM_ELEMENT_DOFS] = {0};
 
-      AddEdgeArea(edge, (const PetscReal(*)[2])x, factor, f, NULL);
+      AddEdgeArea(inner_edge, (const PetscReal(*)[2])x, factor * turgor, f, NULL);
       for (PetscInt k = 0; k < 3; ++k)
         for (PetscInt d = 0; d < 2; ++d)
-          gradient[2 * mesh->node_class[mesh->elements[LAM_ELEMENT_NODES * e + edge[k]]] + d] += f[2 * edge[k] + d];
+          gradient[2 * mesh->node_class[mesh->elements[LAM_ELEMENT_NODES * e + inner_edge[k]]] + d] +=
+              f[2 * inner_edge[k] + d];
     }
   }
+  if (plain) *plain = all;
   return area;
-}
-
-PetscReal LamLumenArea(LamRVE rve, const PetscReal y[], PetscReal factor, PetscReal gradient[])
-{
-  return LoopArea(rve, inner_edge, 0, y, factor, gradient);
-}
-
-PetscReal LamCellArea(LamRVE rve, const PetscReal y[], PetscReal factor, PetscReal gradient[])
-{
-  return LoopArea(rve, outer_edge, rve->mesh.through - 1, y, factor, gradient);
 }
 
 PetscReal LamSuction(LamRVE rve, const LamLoad *load)
@@ -115,10 +102,10 @@ PetscReal LamSuction(LamRVE rve, const LamLoad *load)
 /* Potential of turgor and cohesion, -p V_lumen + g V_gap. */
 static PetscReal LoopEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[])
 {
-  const PetscReal *F = load->F, g = LamSuction(rve, load), cell = (F[0] * F[4] - F[1] * F[3]) * rve->mesh.V0;
-  PetscReal energy = -load->turgor * F[8] * LamLumenArea(rve, y, 0.0, NULL);
+  const PetscReal g = LamSuction(rve, load);
+  PetscReal energy = -load->turgor * load->F[8] * LamLumenArea(rve, y, 0.0, NULL, NULL);
 
-  if (g != 0.0) energy += g * (cell - LamCellArea(rve, y, 0.0, NULL));
+  if (g != 0.0) energy += g * LamGapAreaEvaluate(&rve->contact->gaps, load->F, y, NULL);
   return energy;
 }
 
@@ -132,8 +119,8 @@ PetscErrorCode LamAssembleEnergy(LamRVE rve, const LamLoad *load, const PetscRea
     PetscReal x[LAM_ELEMENT_NODES][2], element;
 
     LamGatherElement(rve, load->F, y, e, x);
-    LamElementEnergy(&rve->geometry[e], rve->law, &rve->micro.wall, (const PetscReal(*)[2])x, load->F[8], &element,
-                     valid);
+    LamElementEnergy(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])x, load->F[8],
+                     &element, valid);
     if (!*valid) break;
     *energy += element;
   }
@@ -168,15 +155,18 @@ PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[],
     LamElementResult element;
 
     LamGatherElement(rve, load->F, y, e, x);
-    LamElementEvaluate(&rve->geometry[e], rve->law, &rve->micro.wall, (const PetscReal(*)[2])x, load->F[8],
+    LamElementEvaluate(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])x, load->F[8],
                        &rve->stress[e], &element, valid);
     if (!*valid) break;
     *energy += element.energy;
     if (LamMeshElementIsInner(&rve->mesh, e) && pressure != 0.0)
-      AddEdgeArea(inner_edge, (const PetscReal(*)[2])x, -pressure, element.f, element.K);
-    if (LamMeshElementIsOuter(&rve->mesh, e) && suction != 0.0)
-      AddEdgeArea(outer_edge, (const PetscReal(*)[2])x, -suction, element.f, element.K);
+      AddEdgeArea(inner_edge, (const PetscReal(*)[2])x, -pressure * LamTurgorFactor(rve, rve->mesh.cell_of[e]),
+                  element.f, element.K);
     Scatter(rve, e, &element, residual);
+  }
+  if (suction != 0.0) {
+    LamGapAreaAddGradient(&rve->contact->gaps, load->F, y, suction, residual);
+    LamGapAreaAddHessian(&rve->contact->gaps, suction, rve->linear.values);
   }
   PetscFunctionReturn(0);
 }
@@ -212,7 +202,7 @@ PetscBool LamSetConsistentStresses(LamRVE rve, const LamLoad *load, const PetscR
     PetscReal x[LAM_ELEMENT_NODES][2];
 
     LamGatherElement(rve, load->F, y, e, x);
-    if (!LamElementSetConsistentStress(&rve->geometry[e], rve->law, &rve->micro.wall, (const PetscReal(*)[2])x,
+    if (!LamElementSetConsistentStress(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])x,
                                        load->F[8], &rve->stress[e]))
       return PETSC_FALSE;
   }

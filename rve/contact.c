@@ -32,6 +32,40 @@ static void FindPositions(const LamLinear *linear, LamContact *contact)
   }
 }
 
+static PetscInt CountFaces(const LamMesh *mesh)
+{
+  PetscInt count = 0;
+
+  for (PetscInt k = 0; k < LAM_FACES * mesh->cell_count; ++k) count += k % LAM_FACES < 3 && mesh->neighbour[k] >= 0;
+  return count;
+}
+
+/* Faces with their nodes. */
+static void PlaceFaces(const LamMicrostructure *micro, const LamMesh *mesh, LamContact *contact)
+{
+  PetscInt f = 0;
+
+  for (PetscInt cell = 0; cell < mesh->cell_count; ++cell)
+    for (PetscInt k = 0; k < 3; ++k) {
+      const PetscReal *image;
+      const PetscInt other = LamMeshNeighbour(mesh, cell, k, &image);
+      PetscInt *nodes = &contact->nodes[f * contact->chain];
+
+      if (other < 0) continue;
+      contact->faces[f] = (LamContactFace){
+          cell, k, other, {image[0], image[1]}, LamFaceCohesion(micro, cell, other), 0, contact->hats - 1};
+      ChainNodes(mesh, cell, k, nodes);
+      ChainNodes(mesh, other, k + 3, nodes + contact->hats);
+      for (PetscInt i = 0; i < contact->chain; ++i) {
+        contact->classes[f * contact->chain + i] = mesh->node_class[nodes[i]];
+        for (PetscInt d = 0; d < 2; ++d)
+          contact->shift[2 * (f * contact->chain + i) + d] =
+              mesh->shift[2 * nodes[i] + d] + (i < contact->hats ? 0.0 : image[d]);
+      }
+      ++f;
+    }
+}
+
 PetscErrorCode LamContactCreate(const LamMicrostructure *micro, const LamMesh *mesh, LamContact **out)
 {
   const PetscInt along = mesh->along;
@@ -39,7 +73,7 @@ PetscErrorCode LamContactCreate(const LamMicrostructure *micro, const LamMesh *m
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&contact));
-  contact->face_count = 3 * mesh->cell_count;
+  contact->face_count = CountFaces(mesh);
   contact->hats = 2 * along + 1;
   contact->chain = 2 * contact->hats;
   contact->dofs = LamMortarDofs(along, along);
@@ -48,34 +82,24 @@ PetscErrorCode LamContactCreate(const LamMicrostructure *micro, const LamMesh *m
   PetscCheck((PetscReal)contact->face_count * contact->dofs * contact->dofs < PETSC_MAX_INT, PETSC_COMM_SELF,
              PETSC_ERR_USER_INPUT, "%d cells with %d elements along a face are too many for one RVE",
              (int)mesh->cell_count, (int)along);
-  PetscCall(PetscMalloc4(contact->face_count, &contact->faces, contact->face_count * contact->chain, &contact->nodes,
-                         contact->face_count * contact->chain, &contact->classes, along, &contact->J0));
+  PetscCall(PetscMalloc5(contact->face_count, &contact->faces, contact->face_count * contact->chain, &contact->nodes,
+                         contact->face_count * contact->chain, &contact->classes,
+                         2 * contact->face_count * contact->chain, &contact->shift, along, &contact->J0));
   PetscCall(PetscCalloc4(contact->count, &contact->lambda, contact->count, &contact->gap, contact->count,
                          &contact->weight, contact->count, &contact->active));
   PetscCall(PetscCalloc3(contact->count * contact->dofs, &contact->rows,
                          contact->face_count * contact->dofs * contact->dofs, &contact->hessian, 2 * mesh->class_count,
                          &contact->held));
   for (PetscInt e = 0; e < along; ++e) contact->J0[e] = 2.0 / PetscSqrtReal(3.0) / (PetscReal)along;
-  for (PetscInt f = 0; f < contact->face_count; ++f) {
-    LamContactFace *face = &contact->faces[f];
-
-    face->cell = f / 3;
-    face->face = f % 3;
-    face->first = 0;
-    face->last = contact->hats - 1;
-    LamMeshNeighbour(micro, mesh, face->cell, face->face, &face->other, face->shift);
-    ChainNodes(mesh, face->cell, face->face, &contact->nodes[f * contact->chain]);
-    ChainNodes(mesh, face->other, face->face + 3, &contact->nodes[f * contact->chain + contact->hats]);
-  }
-  for (PetscInt i = 0; i < contact->face_count * contact->chain; ++i)
-    contact->classes[i] = mesh->node_class[contact->nodes[i]];
+  PlaceFaces(micro, mesh, contact);
+  PetscCall(LamGapAreaCreate(micro, mesh, &contact->gaps));
   PetscCall(LamMortarSegmentsCreate(along, along, &contact->segments));
   PetscCall(LamMortarResultCreate(along, along, &contact->result));
   *out = contact;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamContactSetMatrix(LamContact *contact, const LamLinear *linear)
+PetscErrorCode LamContactSetMatrix(const LamLinear *linear, LamContact *contact)
 {
   const PetscInt pairs = contact->dofs * (contact->dofs + 1) / 2;
 
@@ -84,6 +108,7 @@ PetscErrorCode LamContactSetMatrix(LamContact *contact, const LamLinear *linear)
                          &contact->coupling, contact->count, &contact->diagonal, contact->face_count * contact->dofs,
                          &contact->unknown));
   FindPositions(linear, contact);
+  LamGapAreaSetMatrix(linear, &contact->gaps);
   PetscFunctionReturn(0);
 }
 
@@ -93,7 +118,8 @@ PetscErrorCode LamContactDestroy(LamContact **contact)
   if (!*contact) PetscFunctionReturn(0);
   PetscCall(LamMortarSegmentsDestroy(&(*contact)->segments));
   PetscCall(LamMortarResultDestroy(&(*contact)->result));
-  PetscCall(PetscFree4((*contact)->faces, (*contact)->nodes, (*contact)->classes, (*contact)->J0));
+  PetscCall(LamGapAreaDestroy(&(*contact)->gaps));
+  PetscCall(PetscFree5((*contact)->faces, (*contact)->nodes, (*contact)->classes, (*contact)->shift, (*contact)->J0));
   PetscCall(PetscFree4((*contact)->lambda, (*contact)->gap, (*contact)->weight, (*contact)->active));
   PetscCall(PetscFree3((*contact)->rows, (*contact)->hessian, (*contact)->held));
   PetscCall(PetscFree4((*contact)->position, (*contact)->coupling, (*contact)->diagonal, (*contact)->unknown));
@@ -105,14 +131,13 @@ PetscErrorCode LamContactDestroy(LamContact **contact)
 static void GatherChains(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt f, PetscReal x[][2])
 {
   const LamContact *contact = rve->contact;
-  const PetscReal *S = contact->faces[f].shift;
 
   for (PetscInt i = 0; i < contact->chain; ++i) {
-    const PetscReal *position = &y[2 * contact->classes[f * contact->chain + i]];
-    const PetscReal image = i < contact->hats ? 0.0 : 1.0;
+    const PetscInt k = f * contact->chain + i;
+    const PetscReal *S = &contact->shift[2 * k], *position = &y[2 * contact->classes[k]];
 
-    x[i][0] = position[0] + image * (F[0] * S[0] + F[1] * S[1]);
-    x[i][1] = position[1] + image * (F[3] * S[0] + F[4] * S[1]);
+    x[i][0] = position[0] + F[0] * S[0] + F[1] * S[1];
+    x[i][1] = position[1] + F[3] * S[0] + F[4] * S[1];
   }
 }
 

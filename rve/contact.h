@@ -4,7 +4,7 @@
   Each cell's faces 0, 1, 2 are slaves; face k is paired with face k + 3 of the cell, or of the image of the cell, that
   lies across it. Terms of the potential (docs/theory.md, Contact):
     - sum_A lambda_A G_A(x, F)     multipliers times weighted gaps, lambda >= 0, G >= 0, lambda G = 0
-    + g F33 (det F V0 - A_outer)   cohesion, in assembly.c beside turgor, whose form it shares
+    + g F33 A_gap(x, F)            cohesion, in gap_area.c
   F enters through the images' shifts F S alone.
 
   Junction rule. A hat whose centre lies too far outside the overlap is merged into the next inner one: hat j takes the
@@ -14,25 +14,29 @@
 #ifndef LAM_RVE_CONTACT_H
 #define LAM_RVE_CONTACT_H
 
+#include "gap_area.h"
 #include "mesh.h"
 #include "mortar.h"
 
 typedef struct {
   PetscInt cell, face;  /* the slave */
   PetscInt other;       /* cell of the master, face + 3 */
-  PetscReal shift[2];   /* S of the master's image */
+  PetscReal shift[2];   /* of the master's image */
+  PetscReal cohesion;   /* times the load's */
   PetscInt first, last; /* hats with a multiplier of their own; first > last: none */
 } LamContactFace;
 
 typedef struct {
-  PetscInt face_count; /* 3 per cell */
+  PetscInt face_count; /* 3 per cell, without those of a patch that have no partner */
   PetscInt hats;       /* per face: 2 along + 1 */
   PetscInt chain;      /* nodes of both chains of a face: slave 0.., then master */
   PetscInt dofs;       /* 2 chain */
   PetscInt count;      /* multipliers: face_count * hats; of face f: f * hats + j */
   LamContactFace *faces;
-  PetscInt *nodes;            /* [face][chain] mesh nodes, counter-clockwise each */
-  PetscInt *classes;          /* [face][chain] their classes */
+  PetscInt *nodes;   /* [face][chain] mesh nodes, counter-clockwise each */
+  PetscInt *classes; /* [face][chain] their classes */
+  PetscReal *shift;  /* [face][chain][2] of the nodes: x = y_class + F shift */
+  LamGapArea gaps;
   PetscReal *J0;              /* [along] reference lengths of the edges of a face */
   PetscReal *lambda;          /* [count]; merged hats carry the value of the hat that they are merged into */
   PetscReal *gap;             /* [count] weighted gap over weight of the positions last evaluated; 0 where merged */

@@ -163,7 +163,7 @@ static PetscErrorCode SafeStep(LamRVE rve, const LamLoad *load, PetscReal norm, 
 PetscErrorCode LamContactNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome)
 {
   const PetscReal tolerance = LamNewtonTolerance(rve);
-  const PetscReal rounding = 1e-14 * rve->micro.wall.bulk_modulus * rve->mesh.V0;
+  const PetscReal rounding = 1e-14 * rve->stiffest * rve->mesh.V0;
   LamContact *contact = rve->contact;
   PetscInt follow_until = FOLLOW_ITERATIONS, restarts = 0;
   LamContactStep step;

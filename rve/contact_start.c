@@ -75,7 +75,8 @@ static void TakeBondedPositions(LamRVE rve, const LamLoad *load)
   const LamMesh *mesh = &rve->mesh, *bonded = &rve->bonded->mesh;
 
   for (PetscInt i = 0; i < mesh->node_count; ++i) {
-    const PetscReal *S = &bonded->shift[2 * i], *position = &rve->bonded->y[2 * bonded->node_class[i]];
+    const PetscReal *from = &bonded->shift[2 * i], *to = &mesh->shift[2 * i];
+    const PetscReal S[2] = {from[0] - to[0], from[1] - to[1]}, *position = &rve->bonded->y[2 * bonded->node_class[i]];
 
     for (PetscInt d = 0; d < 2; ++d)
       rve->y[2 * mesh->node_class[i] + d] = position[d] + load->F[3 * d] * S[0] + load->F[3 * d + 1] * S[1];

@@ -73,8 +73,8 @@ static PetscErrorCode Refuse(LamRVE rve, const LamLoad *load, LamContactOutcome 
 {
   const LamMicrostructure *micro = &rve->micro;
   const PetscReal edge = 2.0 / PetscSqrtReal(3.0) / (PetscReal)micro->along;
-  const PetscReal mesh = PetscMax(EDGE_SHARE * edge, PetscMin(DEEPEST_WALL, WALL_SHARE * micro->wall_thickness));
-  const PetscReal shallow = PetscMin(mesh, HALF_WALL * micro->wall_thickness);
+  const PetscReal mesh = PetscMax(EDGE_SHARE * edge, PetscMin(DEEPEST_WALL, WALL_SHARE * rve->thinnest));
+  const PetscReal shallow = PetscMin(mesh, HALF_WALL * rve->thinnest);
 
   PetscFunctionBeginUser;
   PetscCall(LamFindCollapsedLumen(rve, rve->y, &out->cell[0]));

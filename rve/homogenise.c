@@ -2,8 +2,7 @@
   Effective stress, tangent and couplings of a converged state.
 
   Method. Psi(q) = (1/V0) min_y L(y, q) with q = (F11, F12, F21, F22, F33, p, g). F enters L through the image shifts
-  x_a = y + F S_a, through F33 in the walls and in the volumes, and in contact through det F in
-  V_gap = F33 (det F V0 - A_outer); p through -p F33 A_lumen, g through g V_gap. Then
+  x_a = y + F S_a and through F33 in the walls and in the volumes; p through -p F33 A_lumen, g through g F33 A_gap. Then
     dPsi/dq   = L_q / V0,
     d2Psi/dq2 = (L_qq - L_qy K^-1 L_yq) / V0         (static condensation with the factor of the converged state),
   where in contact y includes the active multipliers, whose rows are -dG/dF.
@@ -21,7 +20,8 @@ typedef struct {
   PetscInt nq;   /* NQ, for bonded tissue without the cohesion */
   PetscInt size; /* of a column: the held class, the other positions, the multipliers */
   PetscReal Lq[NQ], Lqq[NQ][NQ];
-  PetscReal *R; /* [nq][size]: L_yq, one column after the other */
+  PetscReal lumen, gap; /* areas */
+  PetscReal *R;         /* [nq][size]: L_yq, one column after the other */
 } Condensation;
 
 /* F couplings of one element that has shifted nodes. */
@@ -63,7 +63,7 @@ static void AddElement(LamRVE rve, const LamLoad *load, PetscInt e, Condensation
   PetscReal x[LAM_ELEMENT_NODES][2], force33, ff, fx[LAM_ELEMENT_DOFS];
 
   LamGatherElement(rve, load->F, rve->y, e, x);
-  LamElementStretch33(&rve->geometry[e], rve->law, &rve->micro.wall, (const PetscReal(*)[2])x, load->F[8],
+  LamElementStretch33(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])x, load->F[8],
                       &rve->stress[e], &force33, fx, &ff);
   c->Lq[Q_F33] += force33;
   c->Lqq[Q_F33][Q_F33] += ff;
@@ -73,7 +73,7 @@ static void AddElement(LamRVE rve, const LamLoad *load, PetscInt e, Condensation
     LamElementResult element;
     PetscBool valid;
 
-    LamElementEvaluate(&rve->geometry[e], rve->law, &rve->micro.wall, (const PetscReal(*)[2])x, load->F[8],
+    LamElementEvaluate(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])x, load->F[8],
                        &rve->stress[e], &element, &valid);
     AddShifted(rve, e, &element, fx, c);
   }
@@ -82,53 +82,59 @@ static void AddElement(LamRVE rve, const LamLoad *load, PetscInt e, Condensation
 /* Terms of the lumen volume F33 A. */
 static void AddLumen(LamRVE rve, const LamLoad *load, Condensation *c)
 {
-  const PetscReal area = LamLumenArea(rve, rve->y, -load->turgor, c->R + Q_F33 * c->size);
+  const PetscReal area = LamLumenArea(rve, rve->y, -load->turgor, c->R + Q_F33 * c->size, &c->lumen);
 
-  (void)LamLumenArea(rve, rve->y, -load->F[8], c->R + Q_TURGOR * c->size);
+  (void)LamLumenArea(rve, rve->y, -load->F[8], c->R + Q_TURGOR * c->size, NULL);
   c->Lq[Q_F33] -= load->turgor * area;
   c->Lq[Q_TURGOR] -= load->F[8] * area;
   c->Lqq[Q_F33][Q_TURGOR] -= area;
 }
 
-/* Terms of the gap volume F33 (det F V0 - A). */
+/* Terms of the gap volume F33 A. */
 static void AddGapVolume(LamRVE rve, const LamLoad *load, Condensation *c)
 {
-  const PetscReal *F = load->F, g = load->cohesion, V0 = rve->mesh.V0, F33 = F[8];
-  const PetscReal cof[4] = {F[4], -F[3], -F[1], F[0]};
-  const PetscReal cells = LamCellArea(rve, rve->y, -g, c->R + Q_F33 * c->size);
-  const PetscReal gap = (F[0] * F[4] - F[1] * F[3]) * V0 - cells;
+  const LamGapArea *gaps = &rve->contact->gaps;
+  const PetscReal *F = load->F, *y = rve->y, g = load->cohesion, F33 = F[8];
+  const PetscReal area = LamGapAreaEvaluate(gaps, F, y, &c->gap);
+  PetscReal *R[4], second[4][4] = {{0}}, first[4] = {0};
 
-  (void)LamCellArea(rve, rve->y, -F33, c->R + Q_COHESION * c->size);
-  c->Lq[Q_COHESION] += F33 * gap;
-  c->Lq[Q_F33] += g * gap;
-  c->Lqq[Q_F33][Q_COHESION] += gap;
+  for (PetscInt q = 0; q < 4; ++q) R[q] = c->R + q * c->size;
+  LamGapAreaAddGradient(gaps, F, y, g, c->R + Q_F33 * c->size);
+  LamGapAreaAddGradient(gaps, F, y, F33, c->R + Q_COHESION * c->size);
+  LamGapAreaAddShifts(gaps, F, y, 1.0, first, NULL, NULL);
+  LamGapAreaAddShifts(gaps, F, y, g * F33, c->Lq, second, R);
+  c->Lq[Q_COHESION] += F33 * area;
+  c->Lq[Q_F33] += g * area;
+  c->Lqq[Q_F33][Q_COHESION] += area;
   for (PetscInt q = 0; q < 4; ++q) {
-    c->Lq[q] += g * F33 * V0 * cof[q];
-    c->Lqq[q][Q_F33] += g * V0 * cof[q];
-    c->Lqq[q][Q_COHESION] += F33 * V0 * cof[q];
-    c->Lqq[q][3 - q] += g * F33 * V0 * (q == 0 || q == 3 ? 1.0 : -1.0); /* d2(det F) */
+    c->Lqq[q][Q_F33] += g * first[q];
+    c->Lqq[q][Q_COHESION] += F33 * first[q];
+    for (PetscInt r = 0; r < 4; ++r) c->Lqq[q][r] += second[q][r];
   }
 }
 
-/* Terms of one face whose master is shifted. */
+/* Terms of one face of whose nodes some are shifted. */
 static void AddContactFace(LamRVE rve, PetscInt f, Condensation *c)
 {
   const LamContact *contact = rve->contact;
-  const PetscInt dofs = contact->dofs, slave = 2 * contact->hats, *classes = &contact->classes[f * contact->chain];
-  const PetscReal *S = contact->faces[f].shift, *hessian = &contact->hessian[f * dofs * dofs];
+  const PetscInt dofs = contact->dofs, *classes = &contact->classes[f * contact->chain];
+  const PetscReal *S = &contact->shift[2 * f * contact->chain], *hessian = &contact->hessian[f * dofs * dofs];
 
-  for (PetscInt j = slave; j < dofs; ++j)
+  for (PetscInt j = 0; j < dofs; ++j)
     for (PetscInt l = 0; l < 2; ++l) {
+      const PetscReal Sj = S[2 * (j / 2) + l];
       const PetscInt q = 2 * (j % 2) + l;
       PetscReal *column = c->R + q * c->size;
 
-      for (PetscInt i = 0; i < dofs; ++i) column[2 * classes[i / 2] + i % 2] -= hessian[i * dofs + j] * S[l];
-      for (PetscInt i = slave; i < dofs; ++i)
-        for (PetscInt k = 0; k < 2; ++k) c->Lqq[2 * (i % 2) + k][q] -= S[k] * hessian[i * dofs + j] * S[l];
+      if (Sj == 0.0) continue;
+      for (PetscInt i = 0; i < dofs; ++i) {
+        column[2 * classes[i / 2] + i % 2] -= hessian[i * dofs + j] * Sj;
+        for (PetscInt k = 0; k < 2; ++k) c->Lqq[2 * (i % 2) + k][q] -= S[2 * (i / 2) + k] * hessian[i * dofs + j] * Sj;
+      }
       for (PetscInt h = f * contact->hats; h < (f + 1) * contact->hats; ++h) {
         if (!contact->active[h]) continue;
-        c->Lq[q] -= contact->lambda[h] * contact->rows[h * dofs + j] * S[l];
-        column[rve->ndof + h] -= contact->rows[h * dofs + j] * S[l];
+        c->Lq[q] -= contact->lambda[h] * contact->rows[h * dofs + j] * Sj;
+        column[rve->ndof + h] -= contact->rows[h * dofs + j] * Sj;
       }
     }
 }
@@ -176,8 +182,8 @@ PetscErrorCode LamHomogenise(LamRVE rve, const LamLoad *load, LamResponse *respo
   PetscCall(Condense(rve, &c, H));
   PetscCall(PetscFree(c.R));
   response->energy = energy / rve->mesh.V0;
-  response->lumen_fraction = -c.Lq[Q_TURGOR] / rve->mesh.V0;
-  response->opening_fraction = c.Lq[Q_COHESION] / rve->mesh.V0;
+  response->lumen_fraction = load->F[8] * c.lumen / rve->mesh.V0;
+  response->opening_fraction = load->F[8] * c.gap / rve->mesh.V0;
   for (PetscInt i = 0; i < 9; ++i) response->P[i] = response->P_turgor[i] = response->P_cohesion[i] = 0.0;
   for (PetscInt q = 0; q < 5; ++q) {
     response->P[component[q]] = c.Lq[q] / rve->mesh.V0;

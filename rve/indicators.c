@@ -114,7 +114,8 @@ static PetscErrorCode AddFace(LamRVE rve, const LamLoad *load, PetscInt f, Sums 
   LamContact *contact = rve->contact;
   const PetscInt count = rve->mesh.along * WINDOW_SAMPLES;
   const PetscReal *lambda = &contact->lambda[f * contact->hats];
-  const PetscReal window = rve->micro.wall_thickness * (PetscReal)count / (2.0 / PetscSqrtReal(3.0));
+  const PetscReal window = LamFaceThickness(rve, contact->faces[f].cell, contact->faces[f].other) * (PetscReal)count /
+                           (2.0 / PetscSqrtReal(3.0));
   FamilySums *family = &sums->family[contact->faces[f].face];
   const LamMortarSegments *segments = &contact->segments;
   PetscReal(*x)[2], *force, *length, J0 = 0.0;
@@ -127,7 +128,8 @@ static PetscErrorCode AddFace(LamRVE rve, const LamLoad *load, PetscInt f, Sums 
   for (PetscInt k = 0; k + 1 < segments->count; ++k)
     SampleSegment(&chains, segments->s[k], segments->s[k + 1], segments->master[k], family, sums);
   FaceForce(&chains, lambda, segments->count ? segments->s[0] : 0.0,
-            segments->count ? segments->s[segments->count - 1] : 0.0, load->cohesion, load->F[8], force, length);
+            segments->count ? segments->s[segments->count - 1] : 0.0, load->cohesion * contact->faces[f].cohesion,
+            load->F[8], force, length);
   for (PetscInt e = 0; e < chains.n; ++e) J0 += chains.J0[e];
   family->length += J0;
   family->current_length += length[count];
@@ -215,6 +217,13 @@ static PetscInt Rank(const LamContact *contact, PetscInt root, const Clusters *c
   return rank;
 }
 
+static PetscBool IsHeld(const LamMesh *mesh, PetscInt cell)
+{
+  for (PetscInt k = LAM_FACES * cell; k < LAM_FACES * (cell + 1); ++k)
+    if (mesh->held[k]) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 static PetscErrorCode CountClusters(LamRVE rve, LamResponse *response)
 {
   const LamContact *contact = rve->contact;
@@ -230,13 +239,14 @@ static PetscErrorCode CountClusters(LamRVE rve, LamResponse *response)
     if (FaceIsClosed(contact, f)) touched[contact->faces[f].cell] = touched[contact->faces[f].other] = PETSC_TRUE;
   response->cell_clusters = response->percolating_directions = response->floating_cells = 0;
   for (PetscInt root = 0; root < cells; ++root) {
-    if (!touched[root]) ++response->floating_cells;
+    if (!touched[root] && !IsHeld(&rve->mesh, root)) ++response->floating_cells;
     if (clusters.group[root] >= 0) continue;
     clusters.group[root] = response->cell_clusters++;
     clusters.place[root][0] = clusters.place[root][1] = 0.0;
     Grow(contact, root, &clusters);
     response->percolating_directions = PetscMax(response->percolating_directions, Rank(contact, root, &clusters));
   }
+  if (rve->micro.is_patch) response->percolating_directions = LAM_UNKNOWN_COUNT; /* there is no period */
   PetscCall(PetscFree2(clusters.group, clusters.place));
   PetscCall(PetscFree(touched));
   PetscFunctionReturn(0);
@@ -283,8 +293,11 @@ PetscErrorCode LamBondedIndicators(LamRVE rve, const LamLoad *load, LamResponse 
   PetscFunctionBeginUser;
   for (PetscInt e = mesh->through - 1; e < mesh->element_count; e += mesh->through) {
     PetscReal x[LAM_ELEMENT_NODES][2], chord[2];
+    const PetscReal *image;
 
-    if (LamMeshFaceOfElement(mesh, e) > 2) continue;
+    if (LamMeshFaceOfElement(mesh, e) > 2 ||
+        LamMeshNeighbour(mesh, mesh->cell_of[e], LamMeshFaceOfElement(mesh, e), &image) < 0)
+      continue;
     LamGatherElement(rve, load->F, rve->y, e, x);
     for (PetscInt d = 0; d < 2; ++d) chord[d] = x[2][d] - x[1][d]; /* the ends of the outer edge */
     fabric[0] += chord[1] * chord[1] / LamDot(chord, chord);
@@ -292,13 +305,13 @@ PetscErrorCode LamBondedIndicators(LamRVE rve, const LamLoad *load, LamResponse 
     fabric[2] -= chord[0] * chord[1] / LamDot(chord, chord);
     ++edges;
   }
-  for (PetscInt i = 0; i < 3; ++i) response->fabric[i] = fabric[i] / (PetscReal)edges;
+  for (PetscInt i = 0; i < 3; ++i) response->fabric[i] = edges ? fabric[i] / (PetscReal)edges : 0.0;
   response->debonded_fraction = response->open_fraction = response->max_gap = response->mean_gap = 0.0;
   response->max_penetration = 0.0;
   for (PetscInt k = 0; k < 3; ++k)
     response->debonded_by_face[k] = response->open_by_face[k] = response->opening_by_face[k] = 0.0;
   response->floating_cells = response->zero_modes = 0;
   response->cell_clusters = 1;
-  response->percolating_directions = 2;
+  response->percolating_directions = rve->micro.is_patch ? LAM_UNKNOWN_COUNT : 2;
   PetscFunctionReturn(0);
 }

@@ -1,5 +1,8 @@
 #include "mesh.h"
 
+/* L_0 ... L_5 in terms of L_0 and L_1. */
+static const PetscInt lattice[LAM_FACES][2] = {{1, 0}, {0, 1}, {-1, 1}, {-1, 0}, {0, -1}, {1, -1}};
+
 /* Corner `k` of the unit hexagon (apothem 1): the start of face k, going counter-clockwise. */
 static void HexagonCorner(PetscReal orientation, PetscInt k, PetscReal corner[2])
 {
@@ -17,6 +20,95 @@ static void LatticeVector(PetscReal orientation, PetscInt k, PetscReal L[2])
   L[1] = 2.0 * PetscSinReal(angle);
 }
 
+/* Rounded down, also below zero. */
+static PetscInt HalfOf(PetscInt n)
+{
+  return n >= 0 ? n / 2 : -((1 - n) / 2);
+}
+
+/*
+  How a patch lies in its lattice. Cells that stand on a corner have L_m along the rows; those that stand on an edge
+  have L_m 30 degrees above them. Either way L_{m+1} leads to the row above.
+*/
+static PetscBool StandsOnEdge(const LamMicrostructure *micro, PetscInt *m)
+{
+  const PetscInt turns = (PetscInt)PetscFloorReal(micro->orientation / (PETSC_PI / 6.0) + 0.5); /* by 30 degrees */
+  const PetscBool on_edge = (PetscBool)(turns % 2 != 0);
+
+  *m = (((on_edge ? 1 - turns : -turns) / 2) % LAM_FACES + LAM_FACES) % LAM_FACES;
+  return on_edge;
+}
+
+/* Lattice coordinates of a cell. */
+static void CellIndex(const LamMicrostructure *micro, PetscInt cell, PetscInt index[2])
+{
+  const PetscInt i = cell / micro->cells[1], j = cell % micro->cells[1]; /* of a patch: column, row */
+  PetscInt m, along, up;
+  PetscBool on_edge;
+
+  index[0] = i;
+  index[1] = j;
+  if (!micro->is_patch) return;
+  on_edge = StandsOnEdge(micro, &m);
+  along = on_edge ? i : i - HalfOf(j);
+  up = on_edge ? j - HalfOf(i) : j;
+  for (PetscInt d = 0; d < 2; ++d) index[d] = along * lattice[m][d] + up * lattice[(m + 1) % LAM_FACES][d];
+}
+
+/* Column and row of lattice coordinates in a patch, also beyond it. */
+static void PatchPlace(const LamMicrostructure *micro, const PetscInt index[2], PetscInt *column, PetscInt *row)
+{
+  PetscInt m, along, up;
+  const PetscBool on_edge = StandsOnEdge(micro, &m);
+  const PetscInt *a = lattice[m], *b = lattice[(m + 1) % LAM_FACES];
+
+  along = index[0] * b[1] - index[1] * b[0]; /* a and b are turned L_0 and L_1: their determinant is 1 */
+  up = a[0] * index[1] - a[1] * index[0];
+  *column = on_edge ? along : along + HalfOf(up);
+  *row = on_edge ? up + HalfOf(along) : up;
+}
+
+/* The neighbour beyond a face of a periodic cell, and the shift of its image. */
+static PetscInt PeriodicNeighbour(const LamMicrostructure *micro, const LamMesh *mesh, const PetscInt index[2],
+                                  PetscReal image[2])
+{
+  PetscInt wrapped[2];
+
+  image[0] = image[1] = 0.0;
+  for (PetscInt k = 0; k < 2; ++k) {
+    const PetscInt n = micro->cells[k], wraps = index[k] < 0 ? -1 : index[k] / n;
+
+    wrapped[k] = index[k] - wraps * n;
+    for (PetscInt d = 0; d < 2; ++d) image[d] += (PetscReal)wraps * mesh->period[k][d];
+  }
+  return wrapped[0] * micro->cells[1] + wrapped[1];
+}
+
+static void FindNeighbours(const LamMicrostructure *micro, LamMesh *mesh)
+{
+  for (PetscInt cell = 0; cell < mesh->cell_count; ++cell)
+    for (PetscInt face = 0; face < LAM_FACES; ++face) {
+      const PetscInt k = LAM_FACES * cell + face;
+      PetscInt index[2], column, row;
+
+      CellIndex(micro, cell, index);
+      for (PetscInt d = 0; d < 2; ++d) index[d] += lattice[face][d];
+      if (!micro->is_patch) {
+        mesh->neighbour[k] = PeriodicNeighbour(micro, mesh, index, &mesh->image[2 * k]);
+        continue;
+      }
+      PatchPlace(micro, index, &column, &row);
+      if (column >= 0 && column < micro->cells[0] && row >= 0 && row < micro->cells[1]) {
+        mesh->neighbour[k] = column * micro->cells[1] + row;
+      } else {
+        mesh->neighbour[k] = -1;
+        mesh->held[k] = (PetscBool)(micro->sides == LAM_SIDES_AFFINE || row < 0 || row >= micro->cells[1]);
+      }
+    }
+}
+
+#define ORIGIN -1 /* representative of nodes that are held at F X */
+
 static PetscInt NodeNumber(const LamMesh *mesh, PetscInt cell, PetscInt around, PetscInt radial)
 {
   return (cell * mesh->ring_nodes + around % mesh->ring_nodes) * mesh->radial_nodes + radial;
@@ -27,10 +119,13 @@ static void PlaceNodes(const LamMicrostructure *micro, LamMesh *mesh)
   PetscReal L[2][2];
 
   for (PetscInt k = 0; k < 2; ++k) LatticeVector(micro->orientation, k, L[k]);
-  for (PetscInt k = 0; k < 2; ++k)
+  for (PetscInt k = 0; k < 2 && !micro->is_patch; ++k)
     for (PetscInt d = 0; d < 2; ++d) mesh->period[k][d] = L[k][d] * (PetscReal)micro->cells[k];
   for (PetscInt cell = 0; cell < mesh->cell_count; ++cell) {
-    const PetscReal ci = (PetscReal)(cell / micro->cells[1]), cj = (PetscReal)(cell % micro->cells[1]);
+    const PetscReal thickness = LamWallThickness(micro, cell);
+    PetscInt index[2];
+
+    CellIndex(micro, cell, index);
 
     for (PetscInt around = 0; around < mesh->ring_nodes; ++around) {
       const PetscInt face = around / (2 * mesh->along);
@@ -40,11 +135,12 @@ static void PlaceNodes(const LamMicrostructure *micro, LamMesh *mesh)
       HexagonCorner(micro->orientation, face, a);
       HexagonCorner(micro->orientation, face + 1, b);
       for (PetscInt r = 0; r < mesh->radial_nodes; ++r) {
-        const PetscReal apothem =
-            1.0 - micro->wall_thickness * (1.0 - (PetscReal)r / (PetscReal)(mesh->radial_nodes - 1));
+        const PetscReal apothem = 1.0 - thickness * (1.0 - (PetscReal)r / (PetscReal)(mesh->radial_nodes - 1));
         PetscReal *X = &mesh->X[2 * NodeNumber(mesh, cell, around, r)];
 
-        for (PetscInt d = 0; d < 2; ++d) X[d] = ci * L[0][d] + cj * L[1][d] + apothem * ((1.0 - u) * a[d] + u * b[d]);
+        for (PetscInt d = 0; d < 2; ++d)
+          X[d] =
+              (PetscReal)index[0] * L[0][d] + (PetscReal)index[1] * L[1][d] + apothem * ((1.0 - u) * a[d] + u * b[d]);
       }
     }
   }
@@ -69,81 +165,65 @@ static void ConnectElements(LamMesh *mesh)
         }
 }
 
-typedef struct {
-  PetscReal key[2]; /* lattice coordinates modulo one period, rounded */
-  PetscInt node;
-} OuterNode;
-
-static int CompareOuterNodes(const void *pa, const void *pb)
+/* The first of the nodes that a node is tied to. */
+static PetscInt FirstOf(const PetscInt tied[], PetscInt node)
 {
-  const OuterNode *a = (const OuterNode *)pa, *b = (const OuterNode *)pb;
-
-  for (PetscInt d = 0; d < 2; ++d)
-    if (a->key[d] != b->key[d]) return a->key[d] < b->key[d] ? -1 : 1;
-  return a->node < b->node ? -1 : (a->node > b->node);
+  while (tied[node] != node) node = tied[node];
+  return node;
 }
 
-/* Coordinate along the period vectors, modulo 1, on a grid that separates nodes and joins rounding. */
-static PetscReal WrapCoordinate(PetscReal c)
+/* Nodes of facing walls coincide, also across the period: they get the same representative, the first of them. */
+static void TieOuterNodes(LamMesh *mesh)
 {
-  const PetscReal grid = 1048576.0;
-  const PetscReal rounded = PetscFloorReal(c * grid + 0.5) / grid;
-  const PetscReal wrapped = rounded - PetscFloorReal(rounded);
+  const PetscInt last = 2 * mesh->along;
 
-  return PetscFloorReal(wrapped * grid + 0.5) >= grid ? 0.0 : wrapped;
-}
-
-/* Coincident outer nodes, also across the period, get the same representative. */
-static PetscErrorCode TieOuterNodes(LamMesh *mesh)
-{
-  const PetscReal(*p)[2] = (const PetscReal(*)[2])mesh->period;
-  const PetscReal det = p[0][0] * p[1][1] - p[0][1] * p[1][0];
-  const PetscInt outer_count = mesh->cell_count * mesh->ring_nodes;
-  OuterNode *outer;
-  PetscInt n = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(outer_count, &outer));
   for (PetscInt cell = 0; cell < mesh->cell_count; ++cell)
-    for (PetscInt around = 0; around < mesh->ring_nodes; ++around) {
-      const PetscInt node = LamMeshOuterNode(mesh, cell, around);
-      const PetscReal *X = &mesh->X[2 * node];
+    for (PetscInt face = 0; face < LAM_FACES; ++face) {
+      const PetscReal *image;
+      const PetscInt other = LamMeshNeighbour(mesh, cell, face, &image);
 
-      outer[n].node = node;
-      /* the offset keeps faces, which lie at multiples of 1/2 or 1/3 of a period, away from the seam */
-      outer[n].key[0] = WrapCoordinate((X[0] * p[1][1] - X[1] * p[1][0]) / det + 0.123456789);
-      outer[n].key[1] = WrapCoordinate((X[1] * p[0][0] - X[0] * p[0][1]) / det + 0.123456789);
-      ++n;
+      for (PetscInt i = 0; other >= 0 && i <= last; ++i) {
+        const PetscInt a = FirstOf(mesh->node_class, LamMeshOuterNode(mesh, cell, last * face + i));
+        const PetscInt b = FirstOf(mesh->node_class, LamMeshOuterNode(mesh, other, last * (face + 4) - i));
+
+        mesh->node_class[PetscMax(a, b)] = PetscMin(a, b);
+      }
     }
-  qsort(outer, (size_t)outer_count, sizeof(*outer), CompareOuterNodes);
-  for (PetscInt i = 1; i < outer_count; ++i)
-    if (outer[i].key[0] == outer[i - 1].key[0] && outer[i].key[1] == outer[i - 1].key[1])
-      mesh->node_class[outer[i].node] = mesh->node_class[outer[i - 1].node];
-  PetscCall(PetscFree(outer));
-  PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < mesh->node_count; ++i) mesh->node_class[i] = FirstOf(mesh->node_class, i);
 }
 
-/* Numbers the classes in node order and sets the shifts. */
-static PetscErrorCode NumberClasses(LamMesh *mesh)
+/* Nodes of outer walls that follow F have the origin for representative. */
+static void HoldNodes(LamMesh *mesh)
+{
+  for (PetscInt k = 0; k < LAM_FACES * mesh->cell_count; ++k)
+    for (PetscInt i = 0; mesh->held[k] && i <= 2 * mesh->along; ++i)
+      mesh->node_class[LamMeshOuterNode(mesh, k / LAM_FACES, 2 * mesh->along * (k % LAM_FACES) + i)] = ORIGIN;
+}
+
+/* Numbers the classes in node order, after the origin where there is one, and sets the shifts. */
+static PetscErrorCode NumberClasses(PetscBool has_origin, LamMesh *mesh)
 {
   PetscInt *number;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(mesh->node_count, &number));
-  mesh->class_count = 0;
+  mesh->class_count = has_origin ? 1 : 0;
   for (PetscInt i = 0; i < mesh->node_count; ++i)
     if (mesh->node_class[i] == i) number[i] = mesh->class_count++;
-  PetscCall(PetscMalloc1(2 * mesh->class_count, &mesh->class_X));
+  PetscCall(PetscCalloc1(2 * mesh->class_count, &mesh->class_X));
   for (PetscInt i = 0; i < mesh->node_count; ++i) {
     const PetscInt representative = mesh->node_class[i];
 
     for (PetscInt d = 0; d < 2; ++d) {
-      mesh->shift[2 * i + d] = representative == i ? 0.0 : mesh->X[2 * i + d] - mesh->X[2 * representative + d];
+      const PetscReal X = representative == ORIGIN ? 0.0 : mesh->X[2 * representative + d];
+
+      mesh->shift[2 * i + d] = representative == i ? 0.0 : mesh->X[2 * i + d] - X;
       if (PetscAbsReal(mesh->shift[2 * i + d]) < 1e-9) mesh->shift[2 * i + d] = 0.0;
-      mesh->class_X[2 * number[representative] + d] = mesh->X[2 * representative + d];
+      if (representative != ORIGIN) mesh->class_X[2 * number[representative] + d] = X;
     }
   }
-  for (PetscInt i = 0; i < mesh->node_count; ++i) mesh->node_class[i] = number[mesh->node_class[i]];
+  for (PetscInt i = 0; i < mesh->node_count; ++i)
+    mesh->node_class[i] = mesh->node_class[i] == ORIGIN ? 0 : number[mesh->node_class[i]];
   PetscCall(PetscFree(number));
   for (PetscInt e = 0; e < mesh->element_count; ++e) {
     mesh->has_shift[e] = PETSC_FALSE;
@@ -156,15 +236,28 @@ static PetscErrorCode NumberClasses(LamMesh *mesh)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode CheckMicrostructure(const LamMicrostructure *micro)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(micro->along > 0 && micro->through > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "elements along a face and through a wall must be chosen, got %d and %d", (int)micro->along,
+             (int)micro->through);
+  PetscCheck(micro->cells[0] > 0 && micro->cells[1] > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "a block of %d x %d cells is empty", (int)micro->cells[0], (int)micro->cells[1]);
+  for (PetscInt cell = 0; cell < micro->cells[0] * micro->cells[1]; ++cell) {
+    const PetscReal t = LamWallThickness(micro, cell);
+
+    PetscCheck(t > 0.0 && t < 1.0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "wall thickness is %g apothems; it must lie between 0 and 1", (double)t);
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamMeshCreate(const LamMicrostructure *micro, LamMesh *mesh)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(mesh, sizeof(*mesh)));
-  PetscCheck(micro->along > 0 && micro->through > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
-             "elements along a face and through a wall must be chosen, got %d and %d", (int)micro->along,
-             (int)micro->through);
-  PetscCheck(micro->wall_thickness > 0.0 && micro->wall_thickness < 1.0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "wall thickness is %g apothems; it must lie between 0 and 1", (double)micro->wall_thickness);
+  PetscCall(CheckMicrostructure(micro));
   mesh->along = micro->along;
   mesh->through = micro->through;
   mesh->cell_count = micro->cells[0] * micro->cells[1];
@@ -179,11 +272,15 @@ PetscErrorCode LamMeshCreate(const LamMicrostructure *micro, LamMesh *mesh)
   PetscCall(PetscMalloc1(mesh->node_count, &mesh->node_class));
   PetscCall(PetscMalloc1(2 * mesh->node_count, &mesh->shift));
   PetscCall(PetscMalloc1(mesh->element_count, &mesh->has_shift));
+  PetscCall(PetscCalloc3(LAM_FACES * mesh->cell_count, &mesh->neighbour, 2 * LAM_FACES * mesh->cell_count, &mesh->image,
+                         LAM_FACES * mesh->cell_count, &mesh->held));
   PlaceNodes(micro, mesh);
+  FindNeighbours(micro, mesh);
   ConnectElements(mesh);
   for (PetscInt i = 0; i < mesh->node_count; ++i) mesh->node_class[i] = i; /* representative node, for now */
-  if (micro->interface == LAM_INTERFACE_BONDED) PetscCall(TieOuterNodes(mesh));
-  PetscCall(NumberClasses(mesh));
+  if (micro->interface == LAM_INTERFACE_BONDED) TieOuterNodes(mesh);
+  HoldNodes(mesh);
+  PetscCall(NumberClasses(micro->is_patch, mesh));
   PetscFunctionReturn(0);
 }
 
@@ -197,23 +294,6 @@ PetscErrorCode LamMeshDestroy(LamMesh *mesh)
   PetscCall(PetscFree(mesh->shift));
   PetscCall(PetscFree(mesh->has_shift));
   PetscCall(PetscFree(mesh->class_X));
+  PetscCall(PetscFree3(mesh->neighbour, mesh->image, mesh->held));
   PetscFunctionReturn(0);
-}
-
-void LamMeshNeighbour(const LamMicrostructure *micro, const LamMesh *mesh, PetscInt cell, PetscInt face,
-                      PetscInt *other, PetscReal shift[2])
-{
-  static const PetscInt step[3][2] = {{1, 0}, {0, 1}, {-1, 1}}; /* L_2 = L_1 - L_0 */
-  const PetscInt at[2] = {cell / micro->cells[1], cell % micro->cells[1]};
-  PetscInt index[2];
-
-  shift[0] = shift[1] = 0.0;
-  for (PetscInt k = 0; k < 2; ++k) {
-    const PetscInt n = micro->cells[k], to = at[k] + step[face][k];
-    const PetscInt wraps = to < 0 ? -1 : to / n;
-
-    index[k] = to - wraps * n;
-    for (PetscInt d = 0; d < 2; ++d) shift[d] += (PetscReal)wraps * mesh->period[k][d];
-  }
-  *other = index[0] * micro->cells[1] + index[1];
 }

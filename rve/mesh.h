@@ -8,6 +8,14 @@
   Contact leaves every cell its own nodes: each node is a class, without shift. Bonded cells share unknowns: coincident
   outer nodes form one class, also across the period, where a node is the image of its class's position y at a shift S:
   x_node = y_class + F S,  S = X_node - X_class.
+
+  A patch is a finite block of cells between grips, columns x rows, whose rows run along the lattice direction nearest
+  to X1; every second row (or column, where cells stand on an edge) is offset by half a cell. Outer walls without a
+  neighbour that follow F - those in the grips, and with affine sides all of them - belong to class 0, the origin:
+  x_node = F X_node. So F enters a patch as it enters a period, through shifts, and P is the mean of the boundary
+  forces.
+
+  Class 0 is held at y = F X: it takes out translations, and in a patch it carries the boundary.
 */
 #ifndef LAM_RVE_MESH_H
 #define LAM_RVE_MESH_H
@@ -23,22 +31,28 @@ typedef struct {
   PetscInt ring_nodes;   /* nodes around one ring: 12 along */
   PetscInt radial_nodes; /* nodes through the wall: 2 through + 1 */
   PetscInt node_count, element_count, class_count;
-  PetscReal *X;         /* [node][2] reference positions */
-  PetscInt *elements;   /* [element][9]: corners counter-clockwise from the inner edge, mid-edges, centre */
-  PetscInt *cell_of;    /* [element] */
-  PetscInt *node_class; /* [node] */
-  PetscReal *shift;     /* [node][2] S */
-  PetscBool *has_shift; /* [element]: one of its nodes has a shift */
-  PetscReal *class_X;   /* [class][2] */
-  PetscReal period[2][2];
-  PetscReal V0; /* reference area of the RVE, cells and lumens */
+  PetscReal *X;           /* [node][2] reference positions */
+  PetscInt *elements;     /* [element][9]: corners counter-clockwise from the inner edge, mid-edges, centre */
+  PetscInt *cell_of;      /* [element] */
+  PetscInt *node_class;   /* [node] */
+  PetscReal *shift;       /* [node][2] S */
+  PetscBool *has_shift;   /* [element]: one of its nodes has a shift */
+  PetscReal *class_X;     /* [class][2] */
+  PetscInt *neighbour;    /* [cell][6] the cell across each face; -1: none */
+  PetscReal *image;       /* [cell][6][2] shift of its image that lies there */
+  PetscBool *held;        /* [cell][6] outer walls that follow F */
+  PetscReal period[2][2]; /* rows; zero for a patch */
+  PetscReal V0;           /* reference area of the RVE, cells and lumens */
 } LamMesh;
 
 PetscErrorCode LamMeshCreate(const LamMicrostructure *micro, LamMesh *mesh);
 PetscErrorCode LamMeshDestroy(LamMesh *mesh);
-/* The cell across face 0, 1 or 2 of a cell, and the shift S of its image that lies there. */
-void LamMeshNeighbour(const LamMicrostructure *micro, const LamMesh *mesh, PetscInt cell, PetscInt face,
-                      PetscInt *other, PetscReal shift[2]);
+/* The cell across a face, -1: none; shift [2] of its image that lies there. */
+static inline PetscInt LamMeshNeighbour(const LamMesh *mesh, PetscInt cell, PetscInt face, const PetscReal **image)
+{
+  *image = &mesh->image[2 * (LAM_FACES * cell + face)];
+  return mesh->neighbour[LAM_FACES * cell + face];
+}
 
 /* Element numbers: e = ((cell*6 + face)*along + i)*through + m, m = 0 at the lumen. */
 static inline PetscInt LamMeshElement(const LamMesh *mesh, PetscInt cell, PetscInt face, PetscInt i, PetscInt m)

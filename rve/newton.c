@@ -28,12 +28,11 @@ PetscReal LamNewtonTolerance(LamRVE rve)
      floor measured from t = 0.003 to 0.5 and up to 8 x 8 cells stays below 0.6 slenderness x size
      (docs/verification.md). */
   const LamMicrostructure *micro = &rve->micro;
-  const PetscReal stiffness = micro->wall.bulk_modulus + micro->wall.C4;
   const PetscReal aspect =
-      2.0 / PetscSqrtReal(3.0) * (PetscReal)micro->through / ((PetscReal)micro->along * micro->wall_thickness);
+      2.0 / PetscSqrtReal(3.0) * (PetscReal)micro->through / ((PetscReal)micro->along * rve->thinnest);
   const PetscReal slenderness = PetscMax(aspect, 1.0 / aspect);
   const PetscReal size = 1.0 + PetscSqrtReal(3.0) * (PetscReal)(PetscMax(micro->cells[0], micro->cells[1]) - 1);
-  const PetscReal rounding = PETSC_MACHINE_EPSILON * stiffness * PetscSqrtReal((PetscReal)rve->ndof);
+  const PetscReal rounding = PETSC_MACHINE_EPSILON * rve->stiffest * PetscSqrtReal((PetscReal)rve->ndof);
 
   return PetscMax(1e-11, PetscMax(4.0, slenderness * size) * rounding);
 }
@@ -271,7 +270,7 @@ PetscErrorCode LamNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *
   LamStartMode(rve, descent.mode);
   PetscCall(PetscArraycpy(descent.best, rve->y, rve->ndof));
   (void)LamSetConsistentStresses(rve, load, rve->y);
-  descent.rounding = 1e-14 * rve->micro.wall.bulk_modulus * rve->mesh.V0;
+  descent.rounding = 1e-14 * rve->stiffest * rve->mesh.V0;
   for (PetscInt it = 0; it < SAFE_ITERATIONS && rve->work.iterations < LAM_ITERATION_BUDGET; ++it) {
     PetscReal norm, alpha;
     PetscBool moved;

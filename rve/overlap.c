@@ -73,32 +73,34 @@ static void Centre(const LamMesh *mesh, PetscInt cell, PetscReal centre[2])
   for (PetscInt d = 0; d < 2; ++d) centre[d] = 0.5 * (mesh->X[2 * a + d] + mesh->X[2 * b + d]);
 }
 
+/* Whether centre a of an image at S is within reach of centre b. */
+static PetscBool AreNear(const PetscReal a[2], const PetscReal S[2], const PetscReal b[2])
+{
+  return (PetscBool)(PetscSqr(a[0] + S[0] - b[0]) + PetscSqr(a[1] + S[1] - b[1]) <= REACH * REACH);
+}
+
 PetscErrorCode LamFindOverlap(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscReal *depth, PetscInt pair[2])
 {
   const LamMesh *mesh = &rve->mesh;
-  const PetscInt n = mesh->ring_nodes, cells = mesh->cell_count;
-  PetscReal(*x)[2];
+  const PetscInt n = mesh->ring_nodes, cells = mesh->cell_count, reach = rve->micro.is_patch ? 0 : 2;
+  PetscReal(*x)[2], (*centre)[2];
 
   PetscFunctionBeginUser;
   *depth = 0.0;
   pair[0] = pair[1] = -1;
-  PetscCall(PetscMalloc1(cells * n, &x));
-  for (PetscInt i = 0; i < cells * n; ++i)
-    for (PetscInt d = 0; d < 2; ++d) x[i][d] = y[2 * mesh->node_class[LamMeshOuterNode(mesh, i / n, i % n)] + d];
+  PetscCall(PetscMalloc2(cells * n, &x, cells, &centre));
+  for (PetscInt a = 0; a < cells; ++a) Centre(mesh, a, centre[a]);
+  for (PetscInt i = 0; i < cells * n; ++i) LamNodePosition(rve, F, y, LamMeshOuterNode(mesh, i / n, i % n), x[i]);
   for (PetscInt b = 0; b < cells; ++b) {
     const Box box = BoxOf(n, (const PetscReal(*)[2]) & x[b * n]);
-    PetscReal at_b[2];
 
-    Centre(mesh, b, at_b);
     for (PetscInt a = 0; a < cells; ++a)
-      for (PetscInt i = -2; i <= 2; ++i)
-        for (PetscInt j = -2; j <= 2; ++j) {
-          PetscReal S[2], shift[2], at_a[2], found;
+      for (PetscInt i = -reach; i <= reach; ++i)
+        for (PetscInt j = -reach; j <= reach; ++j) {
+          PetscReal S[2], shift[2], found;
 
-          Centre(mesh, a, at_a);
           for (PetscInt d = 0; d < 2; ++d) S[d] = (PetscReal)i * mesh->period[0][d] + (PetscReal)j * mesh->period[1][d];
-          if (a == b && i == 0 && j == 0) continue;
-          if (PetscSqr(at_a[0] + S[0] - at_b[0]) + PetscSqr(at_a[1] + S[1] - at_b[1]) > REACH * REACH) continue;
+          if ((a == b && i == 0 && j == 0) || !AreNear(centre[a], S, centre[b])) continue;
           shift[0] = F[0] * S[0] + F[1] * S[1];
           shift[1] = F[3] * S[0] + F[4] * S[1];
           found = Depth(n, (const PetscReal(*)[2]) & x[a * n], shift, (const PetscReal(*)[2]) & x[b * n], &box);
@@ -109,6 +111,6 @@ PetscErrorCode LamFindOverlap(LamRVE rve, const PetscReal F[9], const PetscReal 
           }
         }
   }
-  PetscCall(PetscFree(x));
+  PetscCall(PetscFree2(x, centre));
   PetscFunctionReturn(0);
 }

@@ -18,7 +18,15 @@ PetscErrorCode LamRVESetMicrostructure(LamRVE rve, const LamMicrostructure *micr
 {
   PetscFunctionBeginUser;
   PetscCheck(!rve->is_set_up, PETSC_COMM_SELF, PETSC_ERR_ORDER, "the microstructure is set before LamRVESetUp");
+  PetscCall(PetscFree(rve->micro.cell));
   rve->micro = *micro;
+  rve->micro.cell = NULL;
+  if (micro->cell) {
+    const PetscInt count = micro->cells[0] * micro->cells[1];
+
+    PetscCall(PetscMalloc1(count, &rve->micro.cell));
+    PetscCall(PetscArraycpy(rve->micro.cell, micro->cell, count));
+  }
   rve->has_micro = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
@@ -37,12 +45,31 @@ PetscErrorCode LamRVESetMonitor(LamRVE rve, PetscBool on)
   PetscFunctionReturn(0);
 }
 
+/* Law of each cell, and the extremes over the cells. */
+static PetscErrorCode SetUpWalls(LamRVE rve)
+{
+  const LamMicrostructure *micro = &rve->micro;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(rve->mesh.cell_count, &rve->law));
+  rve->thinnest = 1.0;
+  rve->stiffest = 0.0;
+  for (PetscInt cell = 0; cell < rve->mesh.cell_count; ++cell) {
+    const LamWall *wall = micro->cell ? &micro->cell[cell].wall : &micro->wall;
+
+    PetscCall(LamWallLawGet(wall->law, &rve->law[cell]));
+    rve->thinnest = PetscMin(rve->thinnest, LamWallThickness(micro, cell));
+    rve->stiffest = PetscMax(rve->stiffest, wall->bulk_modulus + wall->C4);
+  }
+  PetscFunctionReturn(0);
+}
+
 /* All that needs no MPI: mesh, element geometry, sparsity pattern, work arrays. */
 static PetscErrorCode SetUpArrays(LamRVE rve)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamWallLawGet(rve->micro.wall.law, &rve->law));
   PetscCall(LamMeshCreate(&rve->micro, &rve->mesh));
+  PetscCall(SetUpWalls(rve));
   PetscCall(LamGeometryCreate(rve));
   if (rve->micro.interface == LAM_INTERFACE_CONTACT) {
     LamCouplings couplings;
@@ -51,7 +78,7 @@ static PetscErrorCode SetUpArrays(LamRVE rve)
     couplings =
         (LamCouplings){rve->contact->face_count, rve->contact->chain, rve->contact->hats, rve->contact->classes};
     PetscCall(LamLinearCreate(&rve->mesh, &couplings, &rve->linear));
-    PetscCall(LamContactSetMatrix(rve->contact, &rve->linear));
+    PetscCall(LamContactSetMatrix(&rve->linear, rve->contact));
   } else {
     PetscCall(LamLinearCreate(&rve->mesh, NULL, &rve->linear));
   }
@@ -90,6 +117,8 @@ PetscErrorCode LamRVEDestroy(LamRVE *rve)
   PetscCall(LamContactDestroy(&(*rve)->contact));
   PetscCall(LamLinearDestroy(&(*rve)->linear));
   PetscCall(LamMeshDestroy(&(*rve)->mesh));
+  PetscCall(PetscFree((*rve)->law));
+  PetscCall(PetscFree((*rve)->micro.cell));
   PetscCall(PetscFree((*rve)->geometry));
   PetscCall(PetscFree((*rve)->stress));
   PetscCall(PetscFree4((*rve)->y, (*rve)->step, (*rve)->trial, (*rve)->residual));

@@ -2,6 +2,7 @@
   Private parts of the RVE solver, in the order of the data flow:
     mesh.h element.h     geometry and pointwise physics
     assembly.c           sums over elements: energy, residual, tangent
+    gap_area.c           area between the cells, on which cohesion works
     linear.c             factorisation, inertia, solves
     newton.c             one equilibrium from a start: fast and safe tier
     stability.c          softest mode of a converged state
@@ -72,7 +73,9 @@ struct LamRVE_s {
   LamMicrostructure micro;
   LamStrategy strategy;
   PetscBool has_micro, is_set_up, monitor;
-  const LamWallLaw *law;
+  const LamWallLaw **law; /* [cell]; owned, the laws are not */
+  PetscReal stiffest;     /* bulk and fibre modulus, of the stiffest cell */
+  PetscReal thinnest;     /* wall, apothems */
   LamMesh mesh;
   LamElementGeometry *geometry; /* [element] */
   LamElementStress *stress;     /* [element]: independent stresses of the iteration under way */
@@ -87,6 +90,35 @@ struct LamRVE_s {
   PetscInt zero_modes;                    /* of the consistent tangent last factored */
 };
 
+/* Of the cell that an element belongs to. */
+static inline const LamWallLaw *LamLawOf(LamRVE rve, PetscInt element)
+{
+  return rve->law[rve->mesh.cell_of[element]];
+}
+static inline const LamWall *LamWallOf(LamRVE rve, PetscInt element)
+{
+  return rve->micro.cell ? &rve->micro.cell[rve->mesh.cell_of[element]].wall : &rve->micro.wall;
+}
+/* Turgor of a cell over that of the load. */
+static inline PetscReal LamTurgorFactor(LamRVE rve, PetscInt cell)
+{
+  return rve->micro.cell ? rve->micro.cell[cell].turgor : 1.0;
+}
+
+/* Thickness of the thinner wall between two cells. */
+static inline PetscReal LamFaceThickness(LamRVE rve, PetscInt a, PetscInt b)
+{
+  return PetscMin(LamWallThickness(&rve->micro, a), LamWallThickness(&rve->micro, b));
+}
+
+static inline void LamNodePosition(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt node, PetscReal x[2])
+{
+  const PetscReal *S = &rve->mesh.shift[2 * node], *position = &y[2 * rve->mesh.node_class[node]];
+
+  x[0] = position[0] + F[0] * S[0] + F[1] * S[1];
+  x[1] = position[1] + F[3] * S[0] + F[4] * S[1];
+}
+
 static inline PetscReal LamLargestEntry(PetscInt n, const PetscReal v[])
 {
   PetscReal largest = 0.0;
@@ -100,9 +132,7 @@ PetscErrorCode LamGeometryCreate(LamRVE rve);
 /* Positions of an element's nodes: x_a = y_class + F S. */
 void LamGatherElement(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt e,
                       PetscReal x[LAM_ELEMENT_NODES][2]);
-/* The same for the area inside the outer loops of contact tissue. */
-PetscReal LamCellArea(LamRVE rve, const PetscReal y[], PetscReal factor, PetscReal gradient[]);
-/* Suction on the outer loops per reference thickness: g F33; 0 for bonded tissue. */
+/* Suction on walls that have a partner, per reference thickness: g F33; 0 for bonded tissue. */
 PetscReal LamSuction(LamRVE rve, const LamLoad *load);
 /* Energy (walls - p V_lumen + g V_gap), not divided by V0; *valid as LamElementEnergy. */
 PetscErrorCode LamAssembleEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy,
@@ -116,8 +146,9 @@ void LamUpdateStresses(LamRVE rve, const LamLoad *load, const PetscReal y[], con
 PetscBool LamPositionsAreValid(LamRVE rve, const LamLoad *load, const PetscReal y[]);
 /* Independent stresses := those of positions y; PETSC_FALSE where y is not valid. */
 PetscBool LamSetConsistentStresses(LamRVE rve, const LamLoad *load, const PetscReal y[]);
-/* Area inside the lumens and its gradient (added to gradient [ndof], may be NULL) times `factor`. */
-PetscReal LamLumenArea(LamRVE rve, const PetscReal y[], PetscReal factor, PetscReal gradient[]);
+/* Area inside the lumens, weighted with their turgor factors; factor times its gradient is added to gradient [ndof];
+   plain: the area without weights. Both may be NULL. */
+PetscReal LamLumenArea(LamRVE rve, const PetscReal y[], PetscReal factor, PetscReal gradient[], PetscReal *plain);
 /* Norm of the residual without the held class. */
 PetscReal LamResidualNorm(LamRVE rve, const PetscReal residual[]);
 
@@ -126,7 +157,7 @@ PetscReal LamResidualNorm(LamRVE rve, const PetscReal residual[]);
 #define LAM_HYSTERESIS 0.2      /* of the junction status, in half-edges; ... */
 #define LAM_MORE_HYSTERESIS 0.1 /* ... added each time a solution has changed it */
 PetscErrorCode LamContactCreate(const LamMicrostructure *micro, const LamMesh *mesh, LamContact **contact);
-PetscErrorCode LamContactSetMatrix(LamContact *contact, const LamLinear *linear);
+PetscErrorCode LamContactSetMatrix(const LamLinear *linear, LamContact *contact);
 PetscErrorCode LamContactDestroy(LamContact **contact);
 /* Chains of face f at positions y; x[chain][2] is work space that they point into. */
 LamMortarChains LamContactChains(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt f, PetscReal x[][2]);
@@ -149,6 +180,9 @@ PetscInt LamContactPredictActive(LamRVE rve, const PetscReal step[], const Petsc
 void LamContactAddCurvature(LamRVE rve);
 /* Sets the rows of the multipliers in linear.values: -dG and -compliance D for active hats, 0 and 1 for the others. */
 void LamContactSetRows(LamRVE rve, PetscReal compliance);
+
+/* ---- gap_area.c; the rest is in gap_area.h ---- */
+void LamGapAreaSetMatrix(const LamLinear *linear, LamGapArea *area);
 
 /* ---- linear.c ---- */
 /* couplings: NULL for none. */

@@ -27,12 +27,21 @@ static PetscErrorCode NodeForces(LamRVE rve, const LamLoad *load, PetscReal forc
 
     if (!LamMeshElementIsOuter(mesh, e)) continue; /* only the outermost elements touch a face */
     LamGatherElement(rve, load->F, rve->y, e, x);
-    LamElementEvaluate(&rve->geometry[e], rve->law, &rve->micro.wall, (const PetscReal(*)[2])x, load->F[8],
+    LamElementEvaluate(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])x, load->F[8],
                        &rve->stress[e], &element, &valid);
     for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
       for (PetscInt d = 0; d < 2; ++d) force[2 * mesh->elements[LAM_ELEMENT_NODES * e + a] + d] += element.f[2 * a + d];
   }
   PetscFunctionReturn(0);
+}
+
+/* Whether node i of a face is where three cells meet; where a patch ends there are two. */
+static PetscBool IsJunctionOfThree(const LamMesh *mesh, PetscInt cell, PetscInt face, PetscInt i)
+{
+  const PetscInt next = i == 0 ? face + LAM_FACES - 1 : face + 1;
+  const PetscReal *image;
+
+  return (PetscBool)(i % (2 * mesh->along) == 0 && LamMeshNeighbour(mesh, cell, next % LAM_FACES, &image) >= 0);
 }
 
 /* Positions x[2 along + 1][2] and loads f likewise of one face, counter-clockwise. */
@@ -41,14 +50,13 @@ static void FaceLoads(LamRVE rve, const LamLoad *load, const PetscReal force[], 
 {
   const LamMesh *mesh = &rve->mesh;
   const PetscInt last = 2 * mesh->along;
-  PetscInt other;
-  PetscReal image[2];
+  const PetscReal *image;
+  const PetscInt other = LamMeshNeighbour(mesh, cell, face, &image);
 
-  LamMeshNeighbour(&rve->micro, mesh, cell, face, &other, image);
   for (PetscInt i = 0; i <= last; ++i) {
     const PetscInt node = LamMeshOuterNode(mesh, cell, last * face + i);
     const PetscInt opposite = LamMeshOuterNode(mesh, other, last * (face + 4) - i);
-    const PetscReal share = i == 0 || i == last ? 3.0 : 2.0;
+    const PetscReal share = IsJunctionOfThree(mesh, cell, face, i) ? 3.0 : 2.0;
     const PetscReal *S = &mesh->shift[2 * node], *position = &rve->y[2 * mesh->node_class[node]];
 
     for (PetscInt d = 0; d < 2; ++d) {
@@ -146,7 +154,6 @@ PetscReal LamLargestWindowMean(PetscInt count, PetscReal window, const PetscReal
 PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, PetscReal mean[3], PetscReal *largest)
 {
   const PetscInt along = rve->mesh.along, n = 2 * along + 1, count = along * SAMPLES;
-  const PetscReal window = rve->micro.wall_thickness * (PetscReal)count / (2.0 / PetscSqrtReal(3.0));
   PetscReal *force, (*x)[2], (*t)[2], *M, *b, *F, *L;
 
   PetscFunctionBeginUser;
@@ -158,6 +165,12 @@ PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, PetscReal mean[
     PetscReal total = 0.0, length = 0.0;
 
     for (PetscInt cell = 0; cell < rve->mesh.cell_count; ++cell) {
+      const PetscReal *image;
+      const PetscInt other = LamMeshNeighbour(&rve->mesh, cell, face, &image);
+      PetscReal window;
+
+      if (other < 0) continue;
+      window = LamFaceThickness(rve, cell, other) * (PetscReal)count / (2.0 / PetscSqrtReal(3.0));
       FaceLoads(rve, load, force, cell, face, x, t);
       PetscCall(FaceTraction(along, (const PetscReal(*)[2])x, t, M, b));
       Accumulate(along, (const PetscReal(*)[2])x, (const PetscReal(*)[2])t, F, L);
@@ -165,7 +178,7 @@ PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, PetscReal mean[
       length += L[count];
       *largest = PetscMax(*largest, LamLargestWindowMean(count, window, F, L));
     }
-    mean[face] = total / length;
+    mean[face] = length > 0.0 ? total / length : NAN; /* a narrow patch may lack a family */
   }
   PetscCall(PetscFree5(force, x, t, M, b));
   PetscCall(PetscFree2(F, L));

@@ -71,6 +71,12 @@ typedef struct {
   PetscInt along, through; /* elements per face and through one wall; 0: not chosen yet (the planner does) */
 } LamMicrostructure;
 
+/* Of a cell's wall, in apothems. */
+static inline PetscReal LamWallThickness(const LamMicrostructure *micro, PetscInt cell)
+{
+  return micro->cell ? micro->cell[cell].wall_thickness : micro->wall_thickness;
+}
+
 /* The units of the nondimensional numbers: multiply by these to get SI. */
 typedef struct {
   PetscReal length;       /* apothem of the cell, m */
