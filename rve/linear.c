@@ -1,6 +1,5 @@
 /*
-  The linear systems of the RVE: one sparsity pattern for life, values written in place, MUMPS LDL^T through PETSc,
-  which pivots safely on indefinite matrices and counts negative eigenvalues (Sylvester's law of inertia).
+  The linear systems of the RVE: one sparsity pattern for life, values written in place. factor.c factors them.
 */
 #include "rve_impl.h"
 
@@ -163,24 +162,17 @@ PetscErrorCode LamLinearCreate(const LamMesh *mesh, const LamCouplings *coupling
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamLinearCreateMatrix(LamLinear *linear)
+PetscErrorCode LamLinearCreateMatrix(MPI_Comm comm, LamLinear *linear)
 {
   PetscFunctionBeginUser;
-  PetscCall(MatCreateSeqSBAIJWithArrays(PETSC_COMM_SELF, 1, linear->n, linear->n, linear->row, linear->column,
-                                        linear->values, &linear->matrix));
-  PetscCall(MatSetOption(linear->matrix, MAT_SYMMETRIC, PETSC_TRUE));
-  PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, linear->n, NULL, &linear->rhs));
-  PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, linear->n, NULL, &linear->solution));
+  PetscCall(LamFactorCreate(comm, linear->n, linear->row, linear->column, linear->values, &linear->factor));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamLinearDestroy(LamLinear *linear)
 {
   PetscFunctionBeginUser;
-  PetscCall(MatDestroy(&linear->factor));
-  PetscCall(MatDestroy(&linear->matrix));
-  PetscCall(VecDestroy(&linear->rhs));
-  PetscCall(VecDestroy(&linear->solution));
+  PetscCall(LamFactorDestroy(&linear->factor));
   PetscCall(PetscFree(linear->row));
   PetscCall(PetscFree(linear->column));
   PetscCall(PetscFree(linear->values));
@@ -188,64 +180,19 @@ PetscErrorCode LamLinearDestroy(LamLinear *linear)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Analyse(LamLinear *linear)
-{
-  MatFactorInfo info;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatFactorInfoInitialize(&info));
-  PetscCall(MatGetFactor(linear->matrix, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, &linear->factor));
-  PetscCall(MatMumpsSetIcntl(linear->factor, 14, 50)); /* workspace margin, per cent */
-  PetscCall(MatMumpsSetIcntl(linear->factor, 10, 0));  /* no iterative refinement: Newton refines */
-  PetscCall(MatMumpsSetIcntl(linear->factor, 8, 0)); /* no scaling: the unknowns are alike; saves a fifth of the time */
-  PetscCall(
-      MatMumpsSetIcntl(linear->factor, 7, 4)); /* PORD: the fastest factor of those tried from 600 to 6000 unknowns */
-  PetscCall(MatCholeskyFactorSymbolic(linear->factor, linear->matrix, NULL, &info));
-  linear->analysed = PETSC_TRUE;
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode LamLinearFactor(LamLinear *linear, PetscReal shift, PetscInt *negative, PetscBool *ok)
 {
-  MatFactorInfo info;
-  MatFactorError error;
-  PetscScalar *values; /* = linear->values; taken through PETSc so that it knows of the change */
-
   PetscFunctionBeginUser;
-  PetscCall(MatSeqSBAIJGetArray(linear->matrix, &values));
-  if (shift != 0.0)
-    for (PetscInt i = 0; i < linear->positions; ++i) values[linear->row[i]] += shift;
-  PetscCall(MatSeqSBAIJRestoreArray(linear->matrix, &values));
-  if (!linear->analysed) PetscCall(Analyse(linear));
-  PetscCall(MatFactorInfoInitialize(&info));
-  PetscCall(MatCholeskyFactorNumeric(linear->factor, linear->matrix, &info));
-  PetscCall(MatFactorGetError(linear->factor, &error));
-  *ok = (PetscBool)(error == MAT_FACTOR_NOERROR);
-  *negative = 0;
-  if (*ok) PetscCall(MatGetInertia(linear->factor, negative, NULL, NULL));
-  if (shift != 0.0)
-    for (PetscInt i = 0; i < linear->positions; ++i) linear->values[linear->row[i]] -= shift;
+  for (PetscInt i = 0; i < linear->positions && shift != 0.0; ++i) linear->values[linear->row[i]] += shift;
+  PetscCall(LamFactorNumeric(linear->factor, negative, ok));
+  for (PetscInt i = 0; i < linear->positions && shift != 0.0; ++i) linear->values[linear->row[i]] -= shift;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamLinearSolve(LamLinear *linear, PetscInt count, const PetscReal rhs[], PetscReal solution[])
 {
   PetscFunctionBeginUser;
-  if (count == 1) {
-    PetscCall(VecPlaceArray(linear->rhs, rhs));
-    PetscCall(VecPlaceArray(linear->solution, solution));
-    PetscCall(MatSolve(linear->factor, linear->rhs, linear->solution));
-    PetscCall(VecResetArray(linear->rhs));
-    PetscCall(VecResetArray(linear->solution));
-  } else {
-    Mat B, X;
-
-    PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, linear->n, count, (PetscScalar *)rhs, &B));
-    PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, linear->n, count, solution, &X));
-    PetscCall(MatMatSolve(linear->factor, B, X));
-    PetscCall(MatDestroy(&B));
-    PetscCall(MatDestroy(&X));
-  }
+  PetscCall(LamFactorSolve(linear->factor, count, rhs, solution));
   PetscFunctionReturn(0);
 }
 

@@ -3,14 +3,23 @@
 
 PetscErrorCode LamRVECreate(MPI_Comm comm, LamRVE *rve)
 {
-  PetscMPIInt size;
-
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCheck(size == 1, PETSC_COMM_SELF, PETSC_ERR_SUP, "one RVE is solved by one rank, got a communicator of %d",
-             size);
   PetscCall(PetscNew(rve));
   (*rve)->comm = comm;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEServe(MPI_Comm comm)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamFactorServe(comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEDismiss(MPI_Comm comm)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamFactorDismiss(comm));
   PetscFunctionReturn(0);
 }
 
@@ -93,7 +102,7 @@ PetscErrorCode LamRVESetUp(LamRVE rve)
   if (rve->is_set_up) PetscFunctionReturn(0);
   PetscCheck(rve->has_micro, PETSC_COMM_SELF, PETSC_ERR_ORDER, "LamRVESetMicrostructure comes before LamRVESetUp");
   PetscCall(SetUpArrays(rve));
-  PetscCall(LamLinearCreateMatrix(&rve->linear));
+  PetscCall(LamLinearCreateMatrix(rve->comm, &rve->linear));
   if (rve->contact) {
     LamMicrostructure bonded = rve->micro;
 

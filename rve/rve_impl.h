@@ -3,7 +3,7 @@
     mesh.h element.h     geometry and pointwise physics
     assembly.c           sums over elements: energy, residual, tangent
     gap_area.c           area between the cells, on which cohesion works
-    linear.c             factorisation, inertia, solves
+    linear.c factor.c    sparsity pattern; factorisation, inertia, solves
     newton.c             one equilibrium from a start: fast and safe tier
     stability.c          softest mode of a converged state
     path.c               start, substeps, leaving a saddle
@@ -21,10 +21,10 @@
 #ifndef LAM_RVE_IMPL_H
 #define LAM_RVE_IMPL_H
 
-#include <petscmat.h>
 #include <lamella/rve.h>
 #include "contact.h"
 #include "element.h"
+#include "factor.h"
 
 #define LAM_PAIRS (LAM_ELEMENT_DOFS * (LAM_ELEMENT_DOFS + 1) / 2)
 
@@ -45,9 +45,7 @@ typedef struct {
   PetscInt *row, *column; /* [n+1], [nonzeros]; the diagonal comes first in a row */
   PetscReal *values;      /* [nonzeros] */
   PetscInt *position; /* [element][LAM_PAIRS] index into values, -1: held; pairs of element dofs i <= j, row by row */
-  Mat matrix, factor;
-  Vec rhs, solution; /* placeholders for the callers' arrays */
-  PetscBool analysed;
+  LamFactor factor;   /* owned */
 } LamLinear;
 
 /* Positions of one material point and the load they balance. */
@@ -189,7 +187,7 @@ void LamGapAreaSetMatrix(const LamLinear *linear, LamGapArea *area);
 PetscErrorCode LamLinearCreate(const LamMesh *mesh, const LamCouplings *couplings, LamLinear *linear);
 /* Index into values of the entry of unknowns i and j, which must be coupled; -1 where one of them is negative. */
 PetscInt LamLinearEntry(const LamLinear *linear, PetscInt i, PetscInt j);
-PetscErrorCode LamLinearCreateMatrix(LamLinear *linear); /* needs PETSc; the rest above does not */
+PetscErrorCode LamLinearCreateMatrix(MPI_Comm comm, LamLinear *linear); /* needs PETSc; the rest above does not */
 PetscErrorCode LamLinearDestroy(LamLinear *linear);
 /* Factors values + shift 1 (on the positions). *ok is PETSC_FALSE where the matrix is singular to working precision. */
 PetscErrorCode LamLinearFactor(LamLinear *linear, PetscReal shift, PetscInt *negative, PetscBool *ok);

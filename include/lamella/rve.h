@@ -15,8 +15,14 @@
 typedef struct LamRVE_s *LamRVE;           /* mesh, matrix, factor: one per rank and microstructure */
 typedef struct LamRVEState_s *LamRVEState; /* positions of one material point and the load they belong to */
 
-/* `comm`: the communicator that solves one RVE together; at present of one rank. */
+/*
+  `comm`: the ranks that solve the RVE together. Of several, rank 0 makes all calls below; the others call LamRVEServe,
+  which takes part in the factorisations of all RVEs of this communicator, and returns when rank 0 calls LamRVEDismiss.
+  That pays from some 20,000 unknowns.
+*/
 PetscErrorCode LamRVECreate(MPI_Comm comm, LamRVE *rve);
+PetscErrorCode LamRVEServe(MPI_Comm comm);
+PetscErrorCode LamRVEDismiss(MPI_Comm comm);
 /* Copies the description. along and through must be chosen. PETSC_ERR_USER_INPUT where it cannot be solved. */
 PetscErrorCode LamRVESetMicrostructure(LamRVE rve, const LamMicrostructure *micro);
 /* How contact is reached: LAM_TWO_STEP (default) or LAM_ONE_STEP. No effect on bonded tissue. */
