@@ -1,0 +1,88 @@
+/* The cubic of generalised shear, Section 3 of Mihai, Safar & Wyatt, against a strip of wall elements (docs/paper.md).
+ */
+#include "rve_fixture.h"
+#include "assert_near.h"
+#include "figures_strip.h"
+
+#define INCOMPRESSIBLE 1e8 /* bulk modulus over C1 + C2: no part in the errors of these meshes */
+
+static StripErrors coarse, fine; /* 8 and 16 rows */
+
+static int Solve(void **state)
+{
+  return ComputeStrip(DefaultStrip(8, INCOMPRESSIBLE), &coarse) ||
+         ComputeStrip(DefaultStrip(16, INCOMPRESSIBLE), &fine);
+}
+
+static void DisplacementConvergesWithOrderThree(void **state)
+{
+  assert_true(fine.displacement < 2e-6);
+  assert_near(log2(coarse.displacement / fine.displacement), 3.0, 0.15);
+}
+
+static void ShearConvergesWithOrderTwo(void **state)
+{
+  assert_true(fine.gradient < 2e-4);
+  assert_near(log2(coarse.gradient / fine.gradient), 2.0, 0.15);
+}
+
+static void StressesConvergeWithOrderTwo(void **state)
+{
+  assert_near(log2(coarse.shear / fine.shear), 2.0, 0.15);
+  assert_near(log2(coarse.normal / fine.normal), 2.0, 0.2);
+}
+
+static void HeightsStay(void **state)
+{
+  assert_near(fine.lateral, 0.0, 1e-8);
+}
+
+/* A traction at the top gives the displacement that was prescribed. */
+static void TractionMovesTheTopAsTheCubicSays(void **state)
+{
+  StripProblem pulled = DefaultStrip(16, INCOMPRESSIBLE);
+  StripErrors errors;
+
+  pulled.pulled = PETSC_TRUE;
+  assert_int_equal(ComputeStrip(pulled, &errors), 0);
+  assert_near(errors.nodal, 0.0, 1e-6);
+}
+
+/* Fibres at 75 degrees: the cubic of any angle. */
+static void ObliqueFibresFollowTheirCubic(void **state)
+{
+  StripProblem oblique = DefaultStrip(16, INCOMPRESSIBLE);
+  StripErrors errors;
+
+  oblique.psi = 75.0 * PETSC_PI / 180.0;
+  assert_int_equal(ComputeStrip(oblique, &errors), 0);
+  assert_near(errors.displacement, 0.0, 1e-6);
+}
+
+/* Walls that can be compressed miss the incompressible solution by about 0.3 / kappa. */
+static void CompressibilityCostsItsInverse(void **state)
+{
+  StripErrors soft, stiff;
+
+  assert_int_equal(ComputeStrip(DefaultStrip(16, 1e2), &soft), 0);
+  assert_int_equal(ComputeStrip(DefaultStrip(16, 1e3), &stiff), 0);
+  assert_near(1e3 * stiff.displacement, 0.31, 0.03);
+  assert_near(log10(soft.displacement / stiff.displacement), 1.0, 0.1);
+}
+
+static int Run(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(DisplacementConvergesWithOrderThree), cmocka_unit_test(ShearConvergesWithOrderTwo),
+      cmocka_unit_test(StressesConvergeWithOrderTwo),        cmocka_unit_test(HeightsStay),
+      cmocka_unit_test(TractionMovesTheTopAsTheCubicSays),   cmocka_unit_test(ObliqueFibresFollowTheirCubic),
+      cmocka_unit_test(CompressibilityCostsItsInverse),
+  };
+
+  return cmocka_run_group_tests(tests, Solve, NULL);
+}
+
+int main(int argc, char **argv)
+{
+  return RunWithPetsc(argc, argv, Run);
+}
