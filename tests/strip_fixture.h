@@ -4,8 +4,8 @@
 
   Held at X2 = 0; X2 = 1 stays at its height and is moved by f(1), or pulled by the shear traction a + b. In X1 the
   strip repeats with the period `length`, but the pressure rises by a `length` from one period to the next: the right
-  side is pressed by that much (Cauchy, follower) more than the left one. Periodic displacements are a prolongation from
-  free components to all, x = X + map of y.
+  side is pressed by that much (Cauchy, follower) more than the left one. Or, another problem, the left side is moved by
+  f(X2) and the right one is a free face. Displacements are a prolongation of the free components.
 */
 #ifndef LAM_STRIP_FIXTURE_H
 #define LAM_STRIP_FIXTURE_H
@@ -18,7 +18,8 @@ typedef struct {
   double psi, a, b;
   double length;
   PetscInt columns, rows;
-  PetscBool pulled; /* by a traction at X2 = 1, else moved by f(1) */
+  PetscBool pulled;    /* by a traction at X2 = 1, else moved by f(1) */
+  PetscBool free_face; /* on the right, with the left side moved by f(X2); else periodic */
 } StripProblem;
 
 typedef struct {
@@ -36,7 +37,7 @@ static inline void StripPlace(void *ctx, PetscInt i, PetscInt j, PetscReal X[2])
   X[1] = (double)j / (double)(2 * problem->rows);
 }
 
-/* What is held, where it starts (simple shear), and which components are those of the period before. */
+/* What is held, where it starts (simple shear; generalised where that is held), and which components repeat others. */
 static inline PetscErrorCode StripConstrain(Strip *strip)
 {
   const StripProblem *p = strip->problem;
@@ -48,17 +49,19 @@ static inline PetscErrorCode StripConstrain(Strip *strip)
   PetscCall(PetscMalloc1(2 * nodes, &strip->map));
   for (PetscInt node = 0; node < nodes; ++node) {
     const PetscBool bottom = (PetscBool)(node < across), top = (PetscBool)(node >= nodes - across);
+    const PetscBool guided = (PetscBool)(p->free_face && node % across == 0);
+    const PetscBool repeats = (PetscBool)(!p->free_face && node % across == across - 1);
 
-    b->held[node][0] = (PetscBool)(bottom || (top && !p->pulled));
-    b->held[node][1] = (PetscBool)(bottom || top);
-    b->x[node][0] += slide * b->X[node][1];
+    b->held[node][0] = (PetscBool)(bottom || guided || (top && !p->pulled));
+    b->held[node][1] = (PetscBool)(bottom || guided || top);
+    b->x[node][0] += p->free_face ? ShearProfile(&p->wall, p->psi, p->a, p->b, b->X[node][1]) : slide * b->X[node][1];
     for (PetscInt d = 0; d < 2; ++d) {
       const PetscInt before = 2 * (node - 2 * p->columns) + d;
 
       if (b->held[node][d])
         strip->map[2 * node + d] = -1;
       else
-        strip->map[2 * node + d] = node % across == across - 1 ? strip->map[before] : strip->size++;
+        strip->map[2 * node + d] = repeats ? strip->map[before] : strip->size++;
     }
   }
   PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, 2 * nodes, strip->size, 1, NULL, &strip->prolongation));
@@ -112,7 +115,7 @@ static inline PetscErrorCode StripAddPressure(const Strip *strip, Mat K, PetscRe
   const double pressure = strip->problem->a * strip->problem->length;
 
   PetscFunctionBeginUser;
-  for (PetscInt edge = 0; edge < strip->problem->rows; ++edge)
+  for (PetscInt edge = 0; edge < strip->problem->rows && !strip->problem->free_face; ++edge)
     for (PetscInt k = 0; k < 3; ++k)
       for (PetscInt l = 0; l < 3; ++l) {
         const PetscInt from = (2 * edge + k + 1) * across - 1, to = (2 * edge + l + 1) * across - 1;
@@ -188,7 +191,7 @@ static inline PetscErrorCode StripIterate(Strip *strip, double tolerance, PetscB
   PetscFunctionReturn(0);
 }
 
-/* Newton's method from simple shear down to a few times the rounding error of the residual; an error where it does not
+/* Newton's method down to a few times the rounding error of the residual; an error where it does not
    converge. */
 static inline PetscErrorCode StripSolve(Strip *strip, PetscInt *iterations)
 {

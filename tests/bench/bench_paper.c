@@ -55,6 +55,29 @@ static void Gaps(void)
   }
 }
 
+/* Default tissue, then stiffer fibres; kappa = 1000 (C1 + C2). */
+static PetscErrorCode Faces(void)
+{
+  static const double cases[][2] = {{10.0 / 1.1, 0.5},  {10.0 / 1.1, 0.2}, {10.0 / 1.1, 0.1},
+                                    {10.0 / 1.1, 0.01}, {100.0, 0.5},      {100.0, 0.1}};
+
+  PetscFunctionBeginUser;
+  printf("\ngap between free faces over k: computed, of the cubic, of the power 4/3\n");
+  for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+    LamWall wall = DefaultStrip(1, 1e3).wall;
+    FreeFaces f = {{0}, {0}, {0}};
+    double least = 0.0;
+
+    wall.C4 = cases[i][0];
+    PetscCall(ComputeFreeFaces(&wall, cases[i][1], &f));
+    for (int j = 0; j < FACE_NODES; j++) least = fmin(least, f.computed[j]);
+    printf("C4 = %.3g, k = %g, least %.1e\n", wall.C4, cases[i][1], least);
+    for (int j = FACE_ELEMENTS / 2; j < FACE_NODES; j += FACE_ELEMENTS / 2)
+      printf("  X2 = %.2f  %.4f  %.4f  %.4f\n", j / (FACE_NODES - 1.0), f.computed[j], f.sheared[j], f.power[j]);
+  }
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Meshes(const char *title, StripProblem problem)
 {
   StripErrors e, before = {0};
@@ -102,7 +125,8 @@ int main(void)
   if (Stresses()) return 1;
   Tractions();
   Gaps();
-  if (Meshes("moved", DefaultStrip(1, 1e8)) || Meshes("pulled", pulled) || Meshes("oblique", oblique) || BulkModuli())
+  if (Faces() || Meshes("moved", DefaultStrip(1, 1e8)) || Meshes("pulled", pulled) || Meshes("oblique", oblique) ||
+      BulkModuli())
     return 1;
   return PetscFinalize() ? 1 : 0;
 }
