@@ -96,6 +96,7 @@ typedef struct {
   PetscInt64 macro_states; /* predicted */
   PetscInt macro_points;
 } LamPlan;
+#define LAM_PARALLEL_UNKNOWNS 20000 /* of one RVE: from here on several ranks factor its matrix together */
 /* Chooses what the scene leaves open; changes nothing the scene says. */
 PetscErrorCode LamPlanMake(const LamScene *scene, LamPlan *plan);
 

@@ -1,8 +1,8 @@
 /*
   lamella rve: solves the RVE along the scene's load.
 
-  The states depend on one another: each starts from the last one that has an answer. So rank 0 solves the chain, and
-  further ranks wait.
+  The states depend on one another: each starts from the last one that has an answer. So rank 0 solves the chain;
+  further ranks help it to factor the matrices of large RVEs, else they wait.
 */
 #include "onset.h"
 #include <petsctime.h>
@@ -209,7 +209,8 @@ static PetscErrorCode Prepare(Run *run)
              "%s: has no block `load`, which says what states to solve", run->scene_path);
   PetscCall(LamPlanMake(run->scene, &plan));
   run->scene->micro = plan.micro;
-  PetscCall(LamMeshesCreate(run->scene, run->second_mesh ? 2 : 1, &run->meshes));
+  PetscCall(LamMeshesCreate(plan.unknowns < LAM_PARALLEL_UNKNOWNS ? PETSC_COMM_SELF : PETSC_COMM_WORLD, run->scene,
+                            run->second_mesh ? 2 : 1, &run->meshes));
   PetscCall(LamRVESetMonitor(run->meshes.rve[0], run->monitor));
   PetscCall(LamRVEGetMesh(run->meshes.rve[0], &run->mesh));
   if (run->find_onset) PetscCall(LamOnsetCreate(&run->meshes, &run->onset));
@@ -320,6 +321,13 @@ PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
   if (done) PetscFunctionReturn(0);
   if (run.find_onset) run.second_mesh = PETSC_TRUE;
   PetscCall(LamAppInitialize(args));
-  if (LamAppIsRoot()) PetscCall(RunOnRoot(&run, exit_status));
+  if (LamAppIsRoot()) {
+    const PetscErrorCode ierr = RunOnRoot(&run, exit_status);
+
+    PetscCall(LamRVEDismiss(PETSC_COMM_WORLD));
+    PetscCall(ierr);
+  } else {
+    PetscCall(LamRVEServe(PETSC_COMM_WORLD));
+  }
   PetscFunctionReturn(0);
 }

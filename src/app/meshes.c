@@ -6,13 +6,14 @@
 
 const char *const LamSeparationNames[] = {LAM_SEPARATIONS(LAM_NAME_ENTRY)};
 
-static PetscErrorCode CreateOne(const LamScene *scene, PetscInt refinement, LamRVE *rve, LamRVEState *state)
+static PetscErrorCode CreateOne(MPI_Comm comm, const LamScene *scene, PetscInt refinement, LamRVE *rve,
+                                LamRVEState *state)
 {
   LamMicrostructure micro = scene->micro;
 
   PetscFunctionBeginUser;
   micro.along *= refinement;
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, rve));
+  PetscCall(LamRVECreate(comm, rve));
   PetscCall(LamRVESetMicrostructure(*rve, &micro));
   PetscCall(LamRVESetStrategy(*rve, scene->strategy));
   PetscCall(LamRVESetUp(*rve));
@@ -20,11 +21,11 @@ static PetscErrorCode CreateOne(const LamScene *scene, PetscInt refinement, LamR
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamMeshesCreate(const LamScene *scene, PetscInt count, LamMeshes *meshes)
+PetscErrorCode LamMeshesCreate(MPI_Comm comm, const LamScene *scene, PetscInt count, LamMeshes *meshes)
 {
   PetscFunctionBeginUser;
   *meshes = (LamMeshes){.count = count};
-  for (PetscInt m = 0; m < count; m++) PetscCall(CreateOne(scene, m + 1, &meshes->rve[m], &meshes->state[m]));
+  for (PetscInt m = 0; m < count; m++) PetscCall(CreateOne(comm, scene, m + 1, &meshes->rve[m], &meshes->state[m]));
   PetscFunctionReturn(0);
 }
 

@@ -14,8 +14,9 @@ typedef struct {
   LamRVEState state[2]; /* the last states that have an answer */
 } LamMeshes;
 
-/* `scene` holds the mesh to use (along and through chosen). PETSC_ERR_USER_INPUT as LamRVESetMicrostructure. */
-PetscErrorCode LamMeshesCreate(const LamScene *scene, PetscInt count, LamMeshes *meshes);
+/* `scene` holds the mesh to use (along and through chosen); `comm` as for LamRVECreate. PETSC_ERR_USER_INPUT as
+   LamRVESetMicrostructure. */
+PetscErrorCode LamMeshesCreate(MPI_Comm comm, const LamScene *scene, PetscInt count, LamMeshes *meshes);
 PetscErrorCode LamMeshesDestroy(LamMeshes *meshes);
 /*
   Solves on every mesh from its last state. With two, responses[0] gets what the second tells of it: error_estimate,
