@@ -8,7 +8,8 @@
     (iii) coming down: contact that a larger cohesion holds tight is easy to reach; from there the cohesion is lowered
           to the asked one, each solution starting the next;
     (iv)  walking: the same, where the tight state is reached in substeps from the undeformed (turned) tissue;
-    (v)   substeps in load from the contact state before.
+    (v)   substeps in load from the contact state before;
+    (vi)  where one_step has found nothing, two_step after all.
   Where a continuation ends, descent goes down to whatever comes next. A saddle is the answer only where nothing stable
   is found.
 
@@ -22,6 +23,8 @@
 #define LOOSE 1e-3         /* of it: from here the rest is taken away at once */
 #define LEAST_EASE 0.85    /* nearer to 1 it is given up */
 #define EASE 0.25          /* first factor by which it is lowered */
+#define BORNE 0.5          /* turgor, C1 + C2, that the affine state bears */
+#define MUCH_TURGOR 1.5    /* the same; beyond it the stretch is what is raised in steps */
 #define RELEASE_REACH 0.1  /* apothems: a larger first step shows that less must be released */
 #define LEAST_RELEASE 0.06 /* smaller shares: descent takes over */
 #define MIN_SUBSTEP (1.0 / 64.0)
@@ -216,18 +219,48 @@ static PetscReal LoadDistance(const LamLoad *a, const LamLoad *b)
   return largest;
 }
 
-/* The strategy's start. */
-static PetscErrorCode FirstTry(LamRVE rve, const LamLoad *load, LamRVEState state, PetscBool *has_bonded,
-                               LamContactSolution *at, LamContactOutcome *out)
+/* The load without its stretch: turgor, cohesion and the rotation of F. */
+static LamLoad Unstretched(const LamLoad *load)
+{
+  const PetscReal angle = LamRotationAngle(load->F), c = PetscCosReal(angle), s = PetscSinReal(angle);
+  LamLoad start = *load;
+
+  start.F[0] = start.F[4] = c;
+  start.F[1] = -s;
+  start.F[3] = s;
+  start.F[8] = 1.0;
+  return start;
+}
+
+/*
+  From the affine state. Its unstressed walls do not bear much turgor once they are sheared: of more, a part comes first
+  and rises from there; of much more, the unstretched tissue comes first.
+*/
+static PetscErrorCode TryAffine(LamRVE rve, const LamLoad *load, LamContactSolution *at, LamContactOutcome *out)
+{
+  const PetscBool bears = (PetscBool)(load->turgor <= BORNE);
+  LamLoad start = load->turgor <= MUCH_TURGOR ? *load : Unstretched(load);
+
+  PetscFunctionBeginUser;
+  if (load->turgor <= MUCH_TURGOR) start.turgor = PetscMin(load->turgor, BORNE);
+  PetscCall(LamContactStartAffine(rve, &start));
+  PetscCall(LamContactTry(rve, &start, LAM_FAR, out));
+  if (bears || !LamContactIsStable(out)) PetscFunctionReturn(0);
+  PetscCall(LamContactSave(rve, &start, at));
+  PetscCall(Substeps(rve, at, load, out));
+  PetscFunctionReturn(0);
+}
+
+/* A strategy's start. */
+static PetscErrorCode TryStrategy(LamRVE rve, LamStrategy strategy, const LamLoad *load, LamRVEState state,
+                                  PetscBool *has_bonded, LamContactSolution *at, LamContactOutcome *out)
 {
   PetscFunctionBeginUser;
-  if (rve->strategy == LAM_TWO_STEP) PetscCall(SolveBonded(rve, load, state->bonded, has_bonded));
-  if (*has_bonded) {
+  if (strategy == LAM_TWO_STEP) PetscCall(SolveBonded(rve, load, state->bonded, has_bonded));
+  if (*has_bonded)
     PetscCall(Release(rve, load, at, out));
-  } else {
-    PetscCall(LamContactStartAffine(rve, load));
-    PetscCall(LamContactTry(rve, load, LAM_FAR, out));
-  }
+  else
+    PetscCall(TryAffine(rve, load, at, out));
   PetscFunctionReturn(0);
 }
 
@@ -275,17 +308,20 @@ static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state,
   PetscCall(LamContactSolutionCreate(rve, &at));
   PetscCall(LamContactSolutionCreate(rve, &best.at));
   *out = (LamContactOutcome){0};
-  for (PetscInt k = near ? 0 : 1; k < 5 && !LamContactIsStable(out); ++k) {
+  for (PetscInt k = near ? 0 : 1; k < 7 && !LamContactIsStable(out); ++k) {
     PetscCall(Remember(rve, load, out, &best));
     *out = (LamContactOutcome){0};
     if (k == 0) {
       PetscCall(LamContactStartNear(rve, before, load));
       PetscCall(LamContactTry(rve, load, LAM_NEAR_REACH, out));
     }
-    if (k == 1) PetscCall(FirstTry(rve, load, state, &has_bonded, &at, out));
+    if (k == 1) PetscCall(TryStrategy(rve, rve->strategy, load, state, &has_bonded, &at, out));
     if (k == 2) PetscCall(TightThenLoose(rve, load, has_bonded, &at, out));
     if (k == 3) PetscCall(WalkThenLoose(rve, load, &at, out));
     if (k == 4 && state->solved) PetscCall(Substeps(rve, before, load, out));
+    if (k == 5 && rve->strategy == LAM_ONE_STEP)
+      PetscCall(TryStrategy(rve, LAM_TWO_STEP, load, state, &has_bonded, &at, out));
+    if (k == 6 && rve->strategy == LAM_ONE_STEP) PetscCall(TightThenLoose(rve, load, has_bonded, &at, out));
   }
   if (!LamContactIsStable(out)) {
     PetscCall(Remember(rve, load, out, &best));
