@@ -57,7 +57,7 @@ PetscErrorCode LamDatabaseCreateEmpty(const LamScene *scene, LamDatabase *databa
   db->header.format_version = LAM_FORMAT_VERSION;
   db->header.scales = scene->scales;
   db->header.accuracy = scene->accuracy;
-  db->header.micro = scene->micro;
+  PetscCall(LamMicrostructureCopy(&scene->micro, &db->header.micro));
   PetscCall(PetscStrncpy(db->header.kind, "database", sizeof(db->header.kind)));
   PetscCall(LamMicrostructureDescribe(&scene->micro, &db->header.description, db->header.hash));
   LamImagesMake(&scene->micro, &db->images);

@@ -90,9 +90,10 @@ static void AddFluid(PetscReal s, const PetscReal x[4], PetscReal *energy, Petsc
 
 void LamImagesMake(const LamMicrostructure *micro, LamImages *images)
 {
-  const PetscBool hexagonal = (PetscBool)(micro->cells[0] == micro->cells[1]);
+  const PetscBool hexagonal = (PetscBool)(micro->cells[0] == micro->cells[1] && !micro->is_patch && !micro->cell);
 
-  images->count = hexagonal ? LAM_MAX_IMAGES : 1; /* unequal counts leave the half turn, which C does not see */
+  /* unequal counts leave the half turn, which C does not see; cells that differ leave nothing */
+  images->count = hexagonal ? LAM_MAX_IMAGES : 1;
   for (PetscInt i = 0; i < images->count; i++) {
     const PetscInt turn = i % 3;
     const PetscBool mirror = (PetscBool)(i >= 3);

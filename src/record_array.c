@@ -136,11 +136,13 @@ static PetscErrorCode ReadText(const char path[], hid_t file, Question *q)
 static PetscErrorCode ReadKind(const char path[], hid_t file, Question *q)
 {
   LamHeader header;
+  PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
-  PetscCall(LamHeaderRead(path, file, &header));
-  PetscCall(PetscStrncpy(q->kind, header.kind, sizeof(q->kind)));
+  ierr = LamHeaderRead(path, file, &header);
+  if (!ierr) ierr = PetscStrncpy(q->kind, header.kind, sizeof(q->kind));
   PetscCall(LamHeaderDestroy(&header));
+  PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 

@@ -60,7 +60,7 @@ PetscErrorCode LamTargetFind(const char path[], const char kind[], LamWriteMode 
 
 /* ---- record_file.c ---- */
 
-/* What the root group tells. Texts are owned by the header. */
+/* What the root group tells. Texts and the cells of `micro` are owned by the header. */
 typedef struct {
   char kind[LAM_NAME_LENGTH];
   char creator[LAM_NAME_LENGTH], created[LAM_TIME_LENGTH], host[256];

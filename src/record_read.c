@@ -73,6 +73,7 @@ PetscErrorCode LamHeaderDestroy(LamHeader *header)
   PetscFunctionBeginUser;
   PetscCall(PetscFree(header->command));
   PetscCall(PetscFree(header->description));
+  PetscCall(LamMicrostructureDestroy(&header->micro));
   PetscFunctionReturn(0);
 }
 

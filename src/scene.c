@@ -15,6 +15,7 @@ PetscErrorCode LamSceneDestroy(LamScene **scene)
   if (!*scene) PetscFunctionReturn(0);
   PetscCall(PetscFree((*scene)->text));
   PetscCall(PetscFree((*scene)->loads));
+  PetscCall(LamMicrostructureDestroy(&(*scene)->micro));
   PetscCall(PetscFree(*scene));
   PetscFunctionReturn(0);
 }
@@ -42,6 +43,7 @@ static PetscErrorCode SceneBuild(LamDocument *document, LamScene *scene)
   PetscCall(LamSceneBuildLoad(document, scene));
   PetscCall(LamSceneBuildSample(document, scene));
   PetscCall(LamSceneBuildMacro(document, scene));
+  PetscCall(LamSceneCheckPatch(document, scene));
   PetscFunctionReturn(0);
 }
 

@@ -349,16 +349,11 @@ PetscErrorCode LamSceneGet(const LamNode *base, const char path[], const LamNode
 {
   const LamKey *key = LamKeyFind(path);
   const size_t skip = strlen(base->key->path);
-  const char *part = path + skip + (skip ? 1 : 0);
-  const LamNode *found = base;
+  const LamNode *found;
 
   PetscFunctionBeginUser;
   PetscCheck(key, PETSC_COMM_SELF, PETSC_ERR_PLIB, "the table of scene keys lacks %s", path);
-  while (found && *part) {
-    const size_t length = strcspn(part, ".");
-    found = LamNodeFind(found, part, length);
-    part += length + (part[length] ? 1 : 0);
-  }
+  found = LamNodeFindPath(base, path + skip + (skip ? 1 : 0));
   *value = (LamValue){0};
   if (node) *node = found;
   if (found)

@@ -88,6 +88,17 @@ PetscErrorCode LamSceneBuildLoad(const LamDocument *document, LamScene *scene);
 PetscErrorCode LamSceneBuildSample(const LamDocument *document, LamScene *scene);
 PetscErrorCode LamSceneBuildMacro(const LamDocument *document, LamScene *scene);
 
+/* scene_cells.c, part of the RVE: how many cells, and what differs from cell to cell. */
+PetscErrorCode LamSceneBuildCells(const LamDocument *document, LamScene *scene);
+/* What a patch allows in the rest of a scene that is built. */
+PetscErrorCode LamSceneCheckPatch(const LamDocument *document, const LamScene *scene);
+/*
+  The wall at <prefix>.law, <prefix>.C1, ..., moduli over `stress` (Pa). What is not given is that of `own`, its bulk
+  modulus in proportion to C1 + C2; NULL: as the table of keys says.
+*/
+PetscErrorCode LamSceneReadWall(const LamDocument *document, const LamNode *base, const char prefix[], PetscReal stress,
+                                const LamWall *own, LamWall *wall);
+
 /* si / scale; refused where the ratio is not finite. node may be NULL (a default: always finite). */
 PetscErrorCode LamSceneScale(const LamDocument *document, const LamNode *node, PetscReal si, PetscReal scale,
                              PetscReal *number);

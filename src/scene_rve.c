@@ -45,7 +45,7 @@ static PetscErrorCode BuildCell(const LamDocument *document, LamScene *scene)
   LamMicrostructure *micro = &scene->micro;
   const LamNode *node;
   PetscReal thickness;
-  LamValue cells, along, through;
+  LamValue along, through;
 
   PetscFunctionBeginUser;
   PetscCall(GetReal(document, "rve.cell.apothem", &node, &scene->scales.length));
@@ -55,8 +55,6 @@ static PetscErrorCode BuildCell(const LamDocument *document, LamScene *scene)
   }
   PetscCall(LamSceneScale(document, node, thickness, scene->scales.length, &micro->wall_thickness));
   PetscCall(GetReal(document, "rve.cell.orientation", NULL, &micro->orientation));
-  PetscCall(LamSceneGet(document->root, "rve.cells", NULL, &cells));
-  for (PetscInt i = 0; i < 2; i++) micro->cells[i] = (PetscInt)cells.number[i];
   /* what is not given stays 0: the planner chooses */
   PetscCall(LamSceneGet(document->root, "rve.mesh.along", NULL, &along));
   PetscCall(LamSceneGet(document->root, "rve.mesh.through", NULL, &through));
@@ -65,44 +63,91 @@ static PetscErrorCode BuildCell(const LamDocument *document, LamScene *scene)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BuildWall(const LamDocument *document, LamScene *scene)
+/* Reads <prefix>.<name>; *number stays as it is where the file does not give it. */
+static PetscErrorCode GetPart(const LamNode *base, const char prefix[], const char name[], const LamNode **node,
+                              PetscReal *number)
 {
-  LamWall *wall = &scene->micro.wall;
-  const LamNode *C1_node, *C2_node, *C4_node, *bulk_node, *map = NULL;
-  PetscReal C1, C2, C4, bulk;
-  PetscInt law, fibres;
-  LamValue unused;
+  char path[80];
+  LamValue value;
 
   PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(document->root, "rve.wall", &map, &unused));
-  PetscCall(GetName(document, "rve.wall.law", NULL, &law));
-  PetscCall(GetName(document, "rve.wall.fibres", NULL, &fibres));
-  PetscCall(GetReal(document, "rve.wall.C1", &C1_node, &C1));
-  PetscCall(GetReal(document, "rve.wall.C2", &C2_node, &C2));
-  PetscCall(GetReal(document, "rve.wall.C4", &C4_node, &C4));
-  PetscCall(GetReal(document, "rve.wall.bulk_modulus", &bulk_node, &bulk));
-  if (law == LAM_WALL_FIBRE_MOONEY_RIVLIN && !C4_node) {
+  snprintf(path, sizeof(path), "%s.%s", prefix, name);
+  PetscCall(LamSceneGet(base, path, node, &value));
+  if (value.count) *number = value.number[0];
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode GetModulus(const LamDocument *document, const LamNode *base, const char prefix[],
+                                 const char name[], PetscReal stress, const LamNode **node, PetscReal *modulus)
+{
+  PetscReal si = 0.0;
+
+  PetscFunctionBeginUser;
+  PetscCall(GetPart(base, prefix, name, node, &si));
+  if (*node) PetscCall(LamSceneScale(document, *node, si, stress, modulus));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CheckFibres(const LamDocument *document, const LamNode *map, const LamNode *C4_node,
+                                  PetscBool has_C4, LamWall *wall)
+{
+  PetscFunctionBeginUser;
+  if (wall->law == LAM_WALL_FIBRE_MOONEY_RIVLIN && !has_C4) {
     PetscCall(LamSceneFailMissing(document, map, "C4",
                                   "missing; write the fibre modulus, such as 1 MPa, or law: mooney_rivlin"));
   }
-  if (law == LAM_WALL_MOONEY_RIVLIN && C4 > 0.0) {
+  if (wall->law == LAM_WALL_FIBRE_MOONEY_RIVLIN) PetscFunctionReturn(0);
+  if (C4_node && wall->C4 > 0.0) {
     PetscCall(LamSceneFail(document, C4_node,
                            "law mooney_rivlin has no fibres; leave C4 out, or write law: "
                            "fibre_mooney_rivlin"));
   }
-  if (!bulk_node) bulk = 1000.0 * (C1 + C2);
-  if (bulk <= C1 + C2) {
-    PetscCall(LamSceneFail(document, bulk_node,
-                           "cell walls are nearly incompressible; write more than C1 + C2 = %g MPa",
-                           (double)(C1 + C2) * 1e-6));
-  }
-  scene->scales.stress = C1 + C2;
+  wall->C4 = 0.0;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSceneReadWall(const LamDocument *document, const LamNode *base, const char prefix[], PetscReal stress,
+                                const LamWall *own, LamWall *wall)
+{
+  const PetscReal bulk_ratio = own ? own->bulk_modulus / (own->C1 + own->C2) : 1000.0;
+  const LamNode *map, *node, *C4_node, *bulk_node;
+  PetscBool has_C4 = (PetscBool)(own && own->law == LAM_WALL_FIBRE_MOONEY_RIVLIN);
+  PetscReal law, fibres;
+  LamValue unused;
+
+  PetscFunctionBeginUser;
+  *wall = own ? *own : (LamWall){0};
+  law = (PetscReal)wall->law;
+  fibres = (PetscReal)wall->fibres;
+  PetscCall(LamSceneGet(base, prefix, &map, &unused));
+  PetscCall(GetPart(base, prefix, "law", &node, &law));
+  PetscCall(GetPart(base, prefix, "fibres", &node, &fibres));
   wall->law = (LamWallLawType)law;
   wall->fibres = (LamFibres)fibres;
-  PetscCall(LamSceneScale(document, C1_node, C1, C1 + C2, &wall->C1));
-  PetscCall(LamSceneScale(document, C2_node, C2, C1 + C2, &wall->C2));
-  PetscCall(LamSceneScale(document, C4_node, C4, C1 + C2, &wall->C4));
-  PetscCall(LamSceneScale(document, bulk_node ? bulk_node : C1_node, bulk, C1 + C2, &wall->bulk_modulus));
+  PetscCall(GetModulus(document, base, prefix, "C1", stress, &node, &wall->C1));
+  PetscCall(GetModulus(document, base, prefix, "C2", stress, &node, &wall->C2));
+  PetscCall(GetModulus(document, base, prefix, "C4", stress, &C4_node, &wall->C4));
+  PetscCall(CheckFibres(document, map, C4_node, (PetscBool)(C4_node || has_C4), wall));
+  wall->bulk_modulus = bulk_ratio * (wall->C1 + wall->C2);
+  PetscCall(GetModulus(document, base, prefix, "bulk_modulus", stress, &bulk_node, &wall->bulk_modulus));
+  if (wall->bulk_modulus <= wall->C1 + wall->C2) {
+    PetscCall(LamSceneFail(document, bulk_node ? bulk_node : map,
+                           "cell walls are nearly incompressible; write a bulk modulus of more than C1 + C2 = %g MPa",
+                           (double)((wall->C1 + wall->C2) * stress) * 1e-6));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The wall of the tissue; its C1 + C2 is the unit of stress. */
+static PetscErrorCode BuildWall(const LamDocument *document, LamScene *scene)
+{
+  PetscReal C1, C2;
+
+  PetscFunctionBeginUser;
+  PetscCall(GetReal(document, "rve.wall.C1", NULL, &C1));
+  PetscCall(GetReal(document, "rve.wall.C2", NULL, &C2));
+  scene->scales.stress = C1 + C2;
+  PetscCall(LamSceneReadWall(document, document->root, "rve.wall", C1 + C2, NULL, &scene->micro.wall));
   PetscFunctionReturn(0);
 }
 
@@ -166,6 +211,7 @@ PetscErrorCode LamSceneBuildRVE(const LamDocument *document, LamScene *scene)
   PetscCall(BuildWall(document, scene));
   PetscCall(BuildInterface(document, scene));
   PetscCall(BuildTurgor(document, scene));
+  PetscCall(LamSceneBuildCells(document, scene));
   PetscCall(GetReal(document, "accuracy", NULL, &scene->accuracy));
   PetscFunctionReturn(0);
 }

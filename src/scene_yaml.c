@@ -63,6 +63,17 @@ LamNode *LamNodeFind(const LamNode *map, const char name[], size_t length)
   return NULL;
 }
 
+const LamNode *LamNodeFindPath(const LamNode *base, const char path[])
+{
+  while (base && *path) {
+    const size_t length = strcspn(path, ".");
+
+    base = LamNodeFind(base, path, length);
+    path += length + (path[length] ? 1 : 0);
+  }
+  return base;
+}
+
 static PetscErrorCode TextCopy(const char text[], size_t length, char **copy)
 {
   PetscFunctionBeginUser;

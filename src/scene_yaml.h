@@ -53,6 +53,8 @@ PetscErrorCode LamDocumentDestroy(LamDocument *document);
 
 /* A map's entry or NULL; `map` may be NULL. */
 LamNode *LamNodeFind(const LamNode *map, const char name[], size_t length);
+/* What stands at a path of keys below `base`, such as "cell.apothem"; NULL where there is nothing. */
+const LamNode *LamNodeFindPath(const LamNode *base, const char path[]);
 
 /*
   Raises PETSC_ERR_USER_INPUT with the message "file:line:column: key: value: ...". LamSceneFail points at the node's

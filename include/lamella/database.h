@@ -68,6 +68,7 @@ PetscErrorCode LamDatabaseCreateEmpty(const LamScene *scene, LamDatabase *databa
 PetscErrorCode LamDatabaseClose(LamDatabase *database);
 PetscErrorCode LamDatabaseGetRecords(LamDatabase database, PetscInt *n, const LamResponse *records[],
                                      const PetscInt64 *keys[]);
+/* The cells of *micro are borrowed from the database. */
 PetscErrorCode LamDatabaseGetMicrostructure(LamDatabase database, LamMicrostructure *micro, LamScales *scales,
                                             const char *hash[]);
 /* Provenance for `info`: JSON text, owned by the database. */

@@ -23,6 +23,7 @@
 #define LAMELLA_LAMELLA_H
 
 #include <lamella/scene.h>
+#include <lamella/lattice.h>
 #include <lamella/response.h>
 #include <lamella/rve.h>
 #include <lamella/database.h>

@@ -71,6 +71,10 @@ typedef struct {
   PetscInt along, through; /* elements per face and through one wall; 0: not chosen yet (the planner does) */
 } LamMicrostructure;
 
+/* A copy that owns its cells; it is to be destroyed. A scene destroys its own microstructure. */
+PetscErrorCode LamMicrostructureCopy(const LamMicrostructure *micro, LamMicrostructure *copy);
+PetscErrorCode LamMicrostructureDestroy(LamMicrostructure *micro);
+
 /* Of a cell's wall, in apothems. */
 static inline PetscReal LamWallThickness(const LamMicrostructure *micro, PetscInt cell)
 {

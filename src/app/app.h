@@ -88,8 +88,17 @@ PetscBool LamStopRequested(void);
 int LamStopExitStatus(void); /* 130 after SIGINT, 143 after SIGTERM and SIGUSR1, else 0 */
 
 /* ---- plan.c: what a scene requires ---- */
+/* Cells that differ: smallest and largest. */
 typedef struct {
-  LamMicrostructure micro; /* with along and through chosen */
+  PetscInt kinds; /* different cells; 0: all alike, and nothing below is set */
+  PetscReal wall_thickness[2];
+  PetscReal shear_modulus[2]; /* C1 + C2, over that of the scene's own wall */
+  PetscReal turgor[2], cohesion[2];
+} LamCellSpread;
+
+typedef struct {
+  LamMicrostructure micro; /* with along and through chosen; borrows the scene's cells */
+  LamCellSpread spread;
   PetscInt unknowns;       /* of one RVE */
   PetscInt load_states;    /* RVE solves of `rve`, `build` and `fe2` with direct response; 0: no such block */
   PetscInt sample_states;  /* 0 also where an accuracy decides how many */

@@ -25,10 +25,11 @@ static PetscReal Between(PetscReal min, PetscReal max, PetscReal share)
 void LamSampleLoad(const LamScene *scene, PetscInt64 index, LamLoad *load)
 {
   const LamSample *box = &scene->sample;
-  const PetscReal wedge = scene->micro.cells[0] == scene->micro.cells[1] ? PETSC_PI / 6 : PETSC_PI / 2;
+  const LamMicrostructure *micro = &scene->micro;
+  const PetscReal wedge = micro->cells[0] == micro->cells[1] && !micro->cell ? PETSC_PI / 6 : PETSC_PI / 2;
   const PetscReal e0 = exp(Between(box->stretch_min, box->stretch_max, RadicalInverse(index + 1, 2)));
   const PetscReal e1 = exp(Between(box->stretch_min, box->stretch_max, RadicalInverse(index + 1, 3)));
-  const PetscReal angle = scene->micro.orientation + wedge * RadicalInverse(index + 1, 5);
+  const PetscReal angle = micro->orientation + wedge * RadicalInverse(index + 1, 5);
   const PetscReal c = cos(angle), s = sin(angle);
   const PetscReal U11 = c * c * e0 + s * s * e1, U12 = c * s * (e0 - e1), U22 = s * s * e0 + c * c * e1;
 

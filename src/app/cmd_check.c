@@ -37,6 +37,8 @@ static PetscErrorCode Predict(Check *check)
 
   PetscFunctionBeginUser;
   cell.cells[0] = cell.cells[1] = 1;
+  cell.is_patch = PETSC_FALSE;
+  cell.cell = NULL;
   PetscCall(LamRVETimeAssembly(&cell, &unknowns, &check->assembly));
   check->assembly *= cells;
   iteration = ITERATION_ASSEMBLIES * check->assembly * (cell.interface == LAM_INTERFACE_CONTACT ? CONTACT_FACTOR : 1);
@@ -62,6 +64,14 @@ static json_t *Mesh(const Check *check)
                    "chosen", !given->along || !given->through);
 }
 
+static json_t *Spread(const LamCellSpread *spread, PetscReal MPa)
+{
+  return json_pack("{s:I, s:o, s:o, s:o, s:o}", "kinds", (json_int_t)spread->kinds, "wall_thickness",
+                   LamJSONReals(2, spread->wall_thickness, 1), "shear_modulus",
+                   LamJSONReals(2, spread->shear_modulus, MPa), "turgor", LamJSONReals(2, spread->turgor, 1),
+                   "cohesion", LamJSONReals(2, spread->cohesion, 1));
+}
+
 static PetscErrorCode PrintObject(const Check *check)
 {
   const LamPlan *plan = &check->plan;
@@ -78,6 +88,11 @@ static PetscErrorCode PrintObject(const Check *check)
                 "unknowns", (json_int_t)plan->unknowns, "seconds_per_assembly", LamJSONReal(check->assembly),
                 "seconds_per_state", LamJSONReal(check->state), "memory_mb", LamJSONReal(check->memory));
   PetscCheck(o, PETSC_COMM_SELF, PETSC_ERR_LIB, "the plan cannot be written as JSON");
+  if (micro->is_patch)
+    json_object_set_new(o, "patch",
+                        json_pack("{s:I, s:I, s:s}", "columns", (json_int_t)micro->cells[0], "rows",
+                                  (json_int_t)micro->cells[1], "sides", LamPatchSidesNames[micro->sides]));
+  if (plan->spread.kinds) json_object_set_new(o, "variation", Spread(&plan->spread, MPa));
   if (micro->interface == LAM_INTERFACE_CONTACT) {
     json_object_set_new(o, "cohesion", LamJSONReal(scene->cohesion * MPa));
     json_object_set_new(o, "clearance", LamJSONReal(micro->clearance));
@@ -114,6 +129,16 @@ static void PrintSeconds(PetscReal seconds)
     printf("%.2g h", (double)(seconds / 3600));
 }
 
+static void PrintSpread(const LamCellSpread *spread, PetscReal MPa)
+{
+  printf("%-12s %" PetscInt_FMT
+         " different: wall %.4g to %.4g of the apothem, C1 + C2 %.4g to %.4g MPa, turgor %.4g to "
+         "%.4g and cohesion %.4g to %.4g times the load's\n",
+         "cells", spread->kinds, (double)spread->wall_thickness[0], (double)spread->wall_thickness[1],
+         (double)(spread->shear_modulus[0] * MPa), (double)(spread->shear_modulus[1] * MPa), (double)spread->turgor[0],
+         (double)spread->turgor[1], (double)spread->cohesion[0], (double)spread->cohesion[1]);
+}
+
 static void PrintModel(const Check *check)
 {
   const LamScene *scene = check->scene;
@@ -122,16 +147,20 @@ static void PrintModel(const Check *check)
   const PetscReal MPa = scene->scales.stress * 1e-6;
 
   printf("%-12s %s\n", "scene", scene->path);
-  printf("%-12s plane strain, %" PetscInt_FMT " x %" PetscInt_FMT
-         " cells per period, wall %.4g of the apothem (%.4g um), "
-         "face normal 0 at %.4g deg\n",
-         "model", micro->cells[0], micro->cells[1], (double)micro->wall_thickness, (double)(1e6 * scene->scales.length),
-         (double)(micro->orientation * 180 / PETSC_PI));
+  printf("%-12s plane strain, ", "model");
+  if (micro->is_patch)
+    printf("a patch of %" PetscInt_FMT " columns and %" PetscInt_FMT " rows of cells between grips, lateral sides %s",
+           micro->cells[0], micro->cells[1], LamPatchSidesNames[micro->sides]);
+  else
+    printf("%" PetscInt_FMT " x %" PetscInt_FMT " cells per period", micro->cells[0], micro->cells[1]);
+  printf(", wall %.4g of the apothem (%.4g um), face normal 0 at %.4g deg\n", (double)micro->wall_thickness,
+         (double)(1e6 * scene->scales.length), (double)(micro->orientation * 180 / PETSC_PI));
   printf("%-12s %s: C1 %.4g, C2 %.4g", "wall", LamWallLawNames[wall->law], (double)(wall->C1 * MPa),
          (double)(wall->C2 * MPa));
   if (wall->law == LAM_WALL_FIBRE_MOONEY_RIVLIN)
     printf(", C4 %.4g (fibres: %s)", (double)(wall->C4 * MPa), LamFibresNames[wall->fibres]);
   printf(", bulk modulus %.4g MPa\n", (double)(wall->bulk_modulus * MPa));
+  if (check->plan.spread.kinds) PrintSpread(&check->plan.spread, MPa);
   if (micro->interface == LAM_INTERFACE_BONDED)
     printf("%-12s bonded: no unknowns of its own\n", "interface");
   else

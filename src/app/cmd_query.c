@@ -196,6 +196,10 @@ static PetscErrorCode Open(Query *q, const char path[])
              "%s: is of kind \"%s\"; a response database is wanted, as lamella build writes it", path, kind);
   PetscCall(LamDatabaseOpen(path, &q->database));
   PetscCall(LamDatabaseGetMicrostructure(q->database, &micro, &q->scales, NULL));
+  PetscCheck(!micro.is_patch, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: holds states of a patch between grips, a body whose answer is its own and no material point's; query "
+             "a file of periodic cells (rve.cells), or solve the patch with lamella rve",
+             path);
   q->interface = micro.interface;
   PetscCall(CommonCohesion(q->database, &q->default_cohesion));
   PetscCall(LamDatabaseGetInfo(q->database, &text));

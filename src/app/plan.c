@@ -6,6 +6,8 @@
   THICK_WALL bend less and shear more, and need the next finer one.
 */
 #include "app.h"
+#include <stdlib.h>
+#include <string.h>
 
 /* From coarse to fine; the last serves whatever is wanted beyond it. */
 static const struct {
@@ -21,24 +23,105 @@ enum { MESH_COUNT = PETSC_STATIC_ARRAY_LENGTH(Meshes) };
 
 static void ChooseMesh(PetscReal accuracy, LamMicrostructure *micro)
 {
+  PetscReal thickest = micro->wall_thickness;
   int m = 0;
 
+  for (PetscInt c = 0; micro->cell && c < micro->cells[0] * micro->cells[1]; c++)
+    thickest = PetscMax(thickest, micro->cell[c].wall_thickness);
   while (m < MESH_COUNT - 1 && accuracy < Meshes[m].accuracy) m++;
-  if (micro->wall_thickness > THICK_WALL) m = PetscMin(m + 1, MESH_COUNT - 1);
+  if (thickest > THICK_WALL) m = PetscMin(m + 1, MESH_COUNT - 1);
   if (!micro->along) micro->along = Meshes[m].along;
   if (!micro->through) micro->through = Meshes[m].through;
 }
 
-/* Two for each node; bonded cells share their faces, whose corners belong to three; one node is held. Cells in contact
-   have a multiplier for each end and middle of the elements along three of their faces. */
+/* Faces and corners of the outer loops whose nodes are unknowns of their own, and pairs of facing walls. */
+typedef struct {
+  PetscInt faces, corners, pairs;
+} Outer;
+
+/* A face, and the corner at its end, which belongs to the next face too, of one cell. */
+static void CountFace(const LamMicrostructure *micro, PetscInt cell, PetscInt face, Outer *outer)
+{
+  const PetscBool bonded = (PetscBool)(micro->interface == LAM_INTERFACE_BONDED);
+  PetscBool held[2];
+  PetscInt other[2];
+
+  for (PetscInt k = 0; k < 2; k++) other[k] = LamLatticeNeighbour(micro, cell, (face + k) % LAM_FACES, NULL, &held[k]);
+  outer->pairs += other[0] > cell;
+  /* bonded cells share what they have in common: it is counted for the first of them */
+  if (!held[0] && !(bonded && other[0] >= 0 && other[0] < cell)) outer->faces++;
+  for (PetscInt k = 0; k < 2; k++)
+    if (held[k] || (bonded && other[k] >= 0 && other[k] < cell)) return;
+  outer->corners++;
+}
+
+static Outer CountOuter(const LamMicrostructure *micro)
+{
+  const PetscInt cells = micro->cells[0] * micro->cells[1];
+  Outer outer = {3 * cells, 2 * cells, 3 * cells}; /* of bonded cells in a period; a corner belongs to three */
+
+  if (!micro->is_patch && micro->interface == LAM_INTERFACE_CONTACT) outer.faces = outer.corners = LAM_FACES * cells;
+  if (!micro->is_patch) return outer;
+  outer = (Outer){0, 0, 0};
+  for (PetscInt cell = 0; cell < cells; cell++)
+    for (PetscInt face = 0; face < LAM_FACES; face++) CountFace(micro, cell, face, &outer);
+  return outer;
+}
+
+/* Two for each node that is not held: of a period one node, of a patch the outer walls that follow F. Cells in contact
+   have a multiplier for each end and middle of the elements along a face that has a partner. */
 static PetscInt CountUnknowns(const LamMicrostructure *micro)
 {
-  const PetscInt ring = 12 * micro->along, cells = micro->cells[0] * micro->cells[1];
-  const PetscBool bonded = (PetscBool)(micro->interface == LAM_INTERFACE_BONDED);
-  const PetscInt outer = bonded ? 3 * (2 * micro->along - 1) + 2 : ring;
-  const PetscInt multipliers = bonded ? 0 : 3 * (2 * micro->along + 1);
+  const PetscInt along = micro->along, cells = micro->cells[0] * micro->cells[1];
+  const Outer outer = CountOuter(micro);
+  const PetscInt nodes = cells * 12 * along * 2 * micro->through + outer.faces * (2 * along - 1) + outer.corners;
+  const PetscInt multipliers = micro->interface == LAM_INTERFACE_CONTACT ? outer.pairs * (2 * along + 1) : 0;
 
-  return 2 * (cells * (ring * 2 * micro->through + outer) - 1) + cells * multipliers;
+  return 2 * (nodes - (micro->is_patch ? 0 : 1)) + multipliers;
+}
+
+/* Any order that brings equal cells together. */
+static int CompareCells(const void *a, const void *b)
+{
+  return memcmp(a, b, sizeof(LamCell));
+}
+
+static PetscErrorCode CountKinds(PetscInt count, const LamCell cells[], PetscInt *kinds)
+{
+  LamCell *sorted;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(count, &sorted));
+  PetscCall(PetscArraycpy(sorted, cells, count));
+  qsort(sorted, (size_t)count, sizeof(*sorted), CompareCells);
+  *kinds = 1;
+  for (PetscInt c = 1; c < count; c++) *kinds += CompareCells(&sorted[c - 1], &sorted[c]) != 0;
+  PetscCall(PetscFree(sorted));
+  PetscFunctionReturn(0);
+}
+
+static void Widen(PetscBool first, PetscReal value, PetscReal range[2])
+{
+  range[0] = first ? value : PetscMin(range[0], value);
+  range[1] = first ? value : PetscMax(range[1], value);
+}
+
+static PetscErrorCode MeasureSpread(const LamMicrostructure *micro, LamCellSpread *spread)
+{
+  const PetscInt count = micro->cells[0] * micro->cells[1];
+
+  PetscFunctionBeginUser;
+  if (!micro->cell) PetscFunctionReturn(0);
+  PetscCall(CountKinds(count, micro->cell, &spread->kinds));
+  for (PetscInt c = 0; c < count; c++) {
+    const LamCell *cell = &micro->cell[c];
+
+    Widen(!c, cell->wall_thickness, spread->wall_thickness);
+    Widen(!c, cell->wall.C1 + cell->wall.C2, spread->shear_modulus);
+    Widen(!c, cell->turgor, spread->turgor);
+    Widen(!c, cell->cohesion, spread->cohesion);
+  }
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamPlanMake(const LamScene *scene, LamPlan *plan)
@@ -47,6 +130,7 @@ PetscErrorCode LamPlanMake(const LamScene *scene, LamPlan *plan)
   *plan = (LamPlan){.micro = scene->micro, .load_states = scene->load_count};
   ChooseMesh(scene->accuracy, &plan->micro);
   plan->unknowns = CountUnknowns(&plan->micro);
+  PetscCall(MeasureSpread(&plan->micro, &plan->spread));
   if (scene->has_sample) plan->sample_states = scene->sample.count;
   if (scene->has_macro) {
     const LamMacroSpec *macro = &scene->macro;

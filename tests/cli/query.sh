@@ -46,3 +46,35 @@ expect 1 "$lamella" query db.h5 -F "1 0 0"
 expect 1 "$lamella" query db.h5 -F "1 0 0 1" -p 0.02
 expect 2 "$lamella" query s.yaml -F "1 0 0 1"
 expect 4 "$lamella" query missing.h5 -F "1 0 0 1"
+
+# a patch is no material point: its file answers no question
+cat >patch.yaml <<'YAML'
+version: 1
+rve:
+  cell: {apothem: 75 um, wall_thickness: 11.25 um}
+  patch: {columns: 2, rows: 2}
+  wall: {law: mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa}
+  mesh: {along: 2, through: 1}
+load:
+  - {F: [[1, 0.01], [0, 1]]}
+YAML
+expect 0 "$lamella" rve patch.yaml -o patch.h5
+expect 2 "$lamella" query patch.h5 -F "1 0.01 0 1"
+grep -q "patch.h5: holds states of a patch between grips" err.txt || fail "the reason: $(cat err.txt)"
+
+# cells that differ answer from their own records, and not from mirrored ones
+cat >uneven.yaml <<'YAML'
+version: 1
+rve:
+  cell: {apothem: 75 um, wall_thickness: 11.25 um}
+  cells: [2, 2]
+  wall: {law: mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa}
+  variation: {kinds: [{wall_thickness: 22.5 um}], list: [0, 1, 0, 0]}
+  turgor: {pressure: 0.02 MPa}
+  mesh: {along: 2, through: 1}
+load:
+  - {F: [[1, 0.1], [0, 1]]}
+YAML
+expect 0 "$lamella" rve uneven.yaml -o uneven.h5
+expect 0 "$lamella" query uneven.h5 -F "1 0.1 0 1" -p "0.02 MPa" --radius 0.01
+expect 3 "$lamella" query uneven.h5 -F "1 -0.1 0 1" -p "0.02 MPa" --radius 0.01

@@ -1,0 +1,82 @@
+#include <lamella/lattice.h>
+
+/* L_0 ... L_5 in terms of L_0 and L_1. */
+static const PetscInt lattice[LAM_FACES][2] = {{1, 0}, {0, 1}, {-1, 1}, {-1, 0}, {0, -1}, {1, -1}};
+
+/* Rounded down, also below zero. */
+static PetscInt HalfOf(PetscInt n)
+{
+  return n >= 0 ? n / 2 : -((1 - n) / 2);
+}
+
+/*
+  How a patch lies in its lattice. Cells that stand on a corner have L_m along the rows; those that stand on an edge
+  have L_m 30 degrees above them. Either way L_{m+1} leads to the row above.
+*/
+static PetscBool StandsOnEdge(const LamMicrostructure *micro, PetscInt *m)
+{
+  const PetscInt turns = (PetscInt)PetscFloorReal(micro->orientation / (PETSC_PI / 6.0) + 0.5); /* by 30 degrees */
+  const PetscBool on_edge = (PetscBool)(turns % 2 != 0);
+
+  *m = (((on_edge ? 1 - turns : -turns) / 2) % LAM_FACES + LAM_FACES) % LAM_FACES;
+  return on_edge;
+}
+
+/* Column and row of lattice coordinates in a patch, also beyond it. */
+static void PatchPlace(const LamMicrostructure *micro, const PetscInt index[2], PetscInt *column, PetscInt *row)
+{
+  PetscInt m, along, up;
+  const PetscBool on_edge = StandsOnEdge(micro, &m);
+  const PetscInt *a = lattice[m], *b = lattice[(m + 1) % LAM_FACES];
+
+  along = index[0] * b[1] - index[1] * b[0]; /* a and b are turned L_0 and L_1: their determinant is 1 */
+  up = a[0] * index[1] - a[1] * index[0];
+  *column = on_edge ? along : along + HalfOf(up);
+  *row = on_edge ? up + HalfOf(along) : up;
+}
+
+void LamLatticeIndex(const LamMicrostructure *micro, PetscInt cell, PetscInt index[2])
+{
+  const PetscInt i = cell / micro->cells[1], j = cell % micro->cells[1];
+  PetscInt m, along, up;
+  PetscBool on_edge;
+
+  index[0] = i;
+  index[1] = j;
+  if (!micro->is_patch) return;
+  on_edge = StandsOnEdge(micro, &m);
+  along = on_edge ? i : i - HalfOf(j);
+  up = on_edge ? j - HalfOf(i) : j;
+  for (PetscInt d = 0; d < 2; ++d) index[d] = along * lattice[m][d] + up * lattice[(m + 1) % LAM_FACES][d];
+}
+
+PetscInt LamLatticeNeighbour(const LamMicrostructure *micro, PetscInt cell, PetscInt face, PetscInt wraps[2],
+                             PetscBool *held)
+{
+  PetscInt index[2], place[2];
+
+  LamLatticeIndex(micro, cell, index);
+  if (held) *held = PETSC_FALSE;
+  for (PetscInt d = 0; d < 2; ++d) {
+    const PetscInt n = micro->cells[d];
+    PetscInt periods;
+
+    index[d] += lattice[face][d];
+    periods = index[d] < 0 ? -1 : index[d] / n; /* a neighbour is one lattice vector away */
+    place[d] = index[d] - periods * n;
+    if (wraps) wraps[d] = micro->is_patch ? 0 : periods;
+  }
+  if (micro->is_patch) {
+    PatchPlace(micro, index, &place[0], &place[1]);
+    if (place[0] < 0 || place[0] >= micro->cells[0] || place[1] < 0 || place[1] >= micro->cells[1]) {
+      if (held) *held = (PetscBool)(micro->sides == LAM_SIDES_AFFINE || place[1] < 0 || place[1] >= micro->cells[1]);
+      return -1;
+    }
+  }
+  return place[0] * micro->cells[1] + place[1];
+}
+
+PetscReal LamLatticeDistance(PetscInt d0, PetscInt d1)
+{
+  return PetscSqrtReal((PetscReal)(d0 * d0 + d0 * d1 + d1 * d1));
+}

@@ -1,0 +1,420 @@
+/*
+  The cells of a scene: how many, in a period or in a patch between grips, and what differs from cell to cell.
+*/
+#include "scene_keys.h"
+#include "scene_random.h"
+#include <math.h>
+#include <string.h>
+
+/* What a field varies, and its keys. */
+#define FIELD_PROPERTIES(X)                                                                                            \
+  X(FIELD_WALL, "rve.variation.field.wall")                                                                            \
+  X(FIELD_THICKNESS, "rve.variation.field.wall_thickness")                                                             \
+  X(FIELD_TURGOR, "rve.variation.field.turgor")                                                                        \
+  X(FIELD_COHESION, "rve.variation.field.cohesion")
+enum { FIELD_PROPERTIES(LAM_ENUM_ENTRY) FIELD_COUNT };
+static const char *const field_paths[] = {FIELD_PROPERTIES(LAM_NAME_ENTRY)};
+
+typedef struct {
+  const LamDocument *document;
+  const LamNode *block; /* rve.variation */
+  PetscInt kind_count;
+  LamCell *kinds;    /* [1 + kind_count]; kind 0 is the scene's own cell; owned */
+  PetscInt *kind_of; /* [cell]; owned */
+} Variation;
+
+static LamCell OwnCell(const LamMicrostructure *micro)
+{
+  return (LamCell){.wall_thickness = micro->wall_thickness, .wall = micro->wall, .turgor = 1.0, .cohesion = 1.0};
+}
+
+/* ---- the block of cells ---- */
+
+static PetscErrorCode BuildBlock(const LamDocument *document, LamMicrostructure *micro)
+{
+  const LamNode *patch, *cells_node;
+  LamValue unused, cells, columns, rows, sides;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamSceneGet(document->root, "rve.patch", &patch, &unused));
+  PetscCall(LamSceneGet(document->root, "rve.cells", &cells_node, &cells));
+  if (!patch) {
+    for (PetscInt i = 0; i < 2; i++) micro->cells[i] = (PetscInt)cells.number[i];
+    PetscFunctionReturn(0);
+  }
+  if (cells_node) {
+    PetscCall(LamSceneFailName(document, cells_node,
+                               "given together with patch in line %d; a block of cells is periodic or between grips",
+                               patch->name_line));
+  }
+  PetscCall(LamSceneGet(document->root, "rve.patch.columns", NULL, &columns));
+  PetscCall(LamSceneGet(document->root, "rve.patch.rows", NULL, &rows));
+  PetscCall(LamSceneGet(document->root, "rve.patch.sides", NULL, &sides));
+  micro->is_patch = PETSC_TRUE;
+  micro->sides = (LamPatchSides)sides.number[0];
+  micro->cells[0] = (PetscInt)columns.number[0];
+  micro->cells[1] = (PetscInt)rows.number[0];
+  PetscFunctionReturn(0);
+}
+
+/* ---- kinds of cells ---- */
+
+static PetscErrorCode FailBonded(const LamDocument *document, const LamNode *node)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamSceneFail(document, node, "contradicts law: bonded, whose cells never part; leave it out"));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadKind(const LamDocument *document, const LamNode *kind, const LamScene *scene, LamCell *cell)
+{
+  const LamMicrostructure *micro = &scene->micro;
+  const LamNode *thickness_node, *wall_node, *cohesion_node;
+  LamValue thickness, turgor, cohesion, unused;
+
+  PetscFunctionBeginUser;
+  *cell = OwnCell(micro);
+  PetscCall(LamSceneGet(kind, "rve.variation.kinds[].wall_thickness", &thickness_node, &thickness));
+  PetscCall(LamSceneGet(kind, "rve.variation.kinds[].wall", &wall_node, &unused));
+  PetscCall(LamSceneGet(kind, "rve.variation.kinds[].turgor", NULL, &turgor));
+  PetscCall(LamSceneGet(kind, "rve.variation.kinds[].cohesion", &cohesion_node, &cohesion));
+  if (thickness_node) {
+    if (thickness.number[0] >= scene->scales.length) {
+      PetscCall(
+          LamSceneFail(document, thickness_node, "the wall fills the cell; write a thickness less than the apothem"));
+    }
+    PetscCall(
+        LamSceneScale(document, thickness_node, thickness.number[0], scene->scales.length, &cell->wall_thickness));
+  }
+  if (wall_node) {
+    PetscCall(LamSceneReadWall(document, kind, "rve.variation.kinds[].wall", scene->scales.stress, &micro->wall,
+                               &cell->wall));
+  }
+  if (cohesion_node && micro->interface == LAM_INTERFACE_BONDED) PetscCall(FailBonded(document, cohesion_node));
+  cell->turgor = turgor.number[0];
+  cell->cohesion = cohesion.number[0];
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode KindNumber(const Variation *v, const LamNode *node, PetscInt *kind)
+{
+  PetscFunctionBeginUser;
+  *kind = (PetscInt)node->value.number[0];
+  if (*kind > v->kind_count) {
+    PetscCall(
+        LamSceneFail(v->document, node, "there are kinds 1 to %d only; 0 is the scene's own cell", (int)v->kind_count));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode AssignList(Variation *v, const LamNode *list, const PetscInt cells[2])
+{
+  PetscInt cell = 0;
+
+  PetscFunctionBeginUser;
+  if (list->count != cells[0] * cells[1]) {
+    PetscCall(LamSceneFail(v->document, list, "has %d entries; write one for each of the %d x %d cells",
+                           (int)list->count, (int)cells[0], (int)cells[1]));
+  }
+  for (const LamNode *item = list->first; item; item = item->next) {
+    PetscCall(KindNumber(v, item, &v->kind_of[cell++]));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode AssignPattern(Variation *v, const LamNode *pattern, const PetscInt cells[2])
+{
+  const PetscInt rows = pattern->count, columns = pattern->first->count;
+
+  PetscFunctionBeginUser;
+  for (const LamNode *row = pattern->first; row; row = row->next) {
+    PetscInt j = 0;
+
+    if (row->count != columns) {
+      PetscCall(LamSceneFail(v->document, row, "has %d entries, the first one %d; write lists of the same length",
+                             (int)row->count, (int)columns));
+    }
+    for (const LamNode *item = row->first; item; item = item->next, j++) {
+      PetscInt kind;
+
+      PetscCall(KindNumber(v, item, &kind));
+      for (PetscInt i = row->index - 1; i < cells[0]; i += rows)
+        for (PetscInt at = j; at < cells[1]; at += columns) v->kind_of[i * cells[1] + at] = kind;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Shares of all cells, rounded so that they add up, then shuffled. */
+static PetscErrorCode AssignRandom(Variation *v, const LamNode *random, const PetscInt cells[2])
+{
+  const PetscInt count = cells[0] * cells[1];
+  const LamNode *shares;
+  PetscReal sum = 0.0;
+  PetscInt cell = 0, kind = 1;
+  LamValue unused, seed;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamSceneGet(v->document->root, "rve.variation.random.shares", &shares, &unused));
+  PetscCall(LamSceneGet(v->document->root, "rve.variation.random.seed", NULL, &seed));
+  if (shares->count != v->kind_count) {
+    PetscCall(LamSceneFail(v->document, shares, "has %d entries; write one for each of the %d kinds",
+                           (int)shares->count, (int)v->kind_count));
+  }
+  for (const LamNode *item = shares->first; item; item = item->next, kind++) {
+    sum += item->value.number[0];
+    if (sum > 1.0 + 1e-9) PetscCall(LamSceneFail(v->document, shares, "adds up to more than 1; lower the shares"));
+    while (cell < PetscMin(count, (PetscInt)floor(sum * (PetscReal)count + 0.5))) v->kind_of[cell++] = kind;
+  }
+  LamRandomShuffle((PetscInt)seed.number[0], count, v->kind_of);
+  PetscFunctionReturn(0);
+}
+
+/* The one of list, pattern and random that a scene has. */
+static PetscErrorCode AssignKinds(Variation *v, const PetscInt cells[2])
+{
+  static const struct {
+    const char *path;
+    PetscErrorCode (*assign)(Variation *, const LamNode *, const PetscInt[2]);
+  } ways[] = {{"rve.variation.list", AssignList},
+              {"rve.variation.pattern", AssignPattern},
+              {"rve.variation.random", AssignRandom}};
+  const LamNode *found = NULL;
+  PetscInt way = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt w = 0; w < (PetscInt)PETSC_STATIC_ARRAY_LENGTH(ways); w++) {
+    const LamNode *node = LamNodeFindPath(v->document->root, ways[w].path);
+
+    if (node && found) {
+      PetscCall(
+          LamSceneFailName(v->document, node, "given together with %s; a variation has one of them", found->name));
+    }
+    if (!node) continue;
+    found = node;
+    way = w;
+  }
+  if (!found) {
+    PetscCall(LamSceneFailMissing(v->document, v->block, "list",
+                                  "missing; write which cell is of which kind as a list, a pattern or random"));
+  }
+  PetscCall(ways[way].assign(v, found, cells));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadKinds(Variation *v, const LamNode *kinds, LamScene *scene)
+{
+  LamMicrostructure *micro = &scene->micro;
+  PetscInt k = 1;
+
+  PetscFunctionBeginUser;
+  v->kinds[0] = OwnCell(micro);
+  for (const LamNode *kind = kinds->first; kind; kind = kind->next, k++) {
+    PetscCall(ReadKind(v->document, kind, scene, &v->kinds[k]));
+  }
+  PetscCall(AssignKinds(v, micro->cells));
+  for (PetscInt c = 0; c < micro->cells[0] * micro->cells[1]; c++) micro->cell[c] = v->kinds[v->kind_of[c]];
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode BuildKinds(const LamDocument *document, const LamNode *block, const LamNode *kinds,
+                                 LamScene *scene)
+{
+  const PetscInt *cells = scene->micro.cells;
+  Variation v = {.document = document, .block = block, .kind_count = kinds->count};
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(1 + v.kind_count, &v.kinds, cells[0] * cells[1], &v.kind_of));
+  ierr = ReadKinds(&v, kinds, scene);
+  PetscCall(PetscFree2(v.kinds, v.kind_of));
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+/* ---- fields ---- */
+
+static PetscErrorCode ApplyFactors(const LamDocument *document, const LamNode *field, const PetscReal factors[],
+                                   LamMicrostructure *micro)
+{
+  const PetscInt count = micro->cells[0] * micro->cells[1];
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < count; c++) {
+    const PetscReal stiffness = factors[FIELD_WALL * count + c];
+    LamCell *cell = &micro->cell[c];
+
+    *cell = OwnCell(micro);
+    cell->wall.C1 *= stiffness;
+    cell->wall.C2 *= stiffness;
+    cell->wall.C4 *= stiffness;
+    cell->wall.bulk_modulus *= stiffness;
+    cell->wall_thickness *= factors[FIELD_THICKNESS * count + c];
+    cell->turgor = factors[FIELD_TURGOR * count + c];
+    cell->cohesion = factors[FIELD_COHESION * count + c];
+    if (cell->wall_thickness >= 1.0) {
+      PetscCall(LamSceneFail(document, field,
+                             "the wall of cell (%d, %d) becomes %.3g apothems thick and fills it; write a smaller "
+                             "wall_thickness here, thinner walls, or another seed",
+                             (int)(c / micro->cells[1]), (int)(c % micro->cells[1]), (double)cell->wall_thickness));
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode BuildField(const LamDocument *document, const LamNode *field, LamMicrostructure *micro)
+{
+  PetscReal variation[FIELD_COUNT], *factors;
+  LamValue value, correlation, seed;
+  const LamNode *node;
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < FIELD_COUNT; p++) {
+    PetscCall(LamSceneGet(document->root, field_paths[p], &node, &value));
+    variation[p] = value.number[0];
+    if (p == FIELD_COHESION && node && micro->interface == LAM_INTERFACE_BONDED) PetscCall(FailBonded(document, node));
+  }
+  PetscCall(LamSceneGet(document->root, "rve.variation.field.correlation", NULL, &correlation));
+  PetscCall(LamSceneGet(document->root, "rve.variation.field.seed", NULL, &seed));
+  PetscCall(PetscMalloc1(FIELD_COUNT * micro->cells[0] * micro->cells[1], &factors));
+  ierr = LamRandomFactors(micro, (PetscInt)seed.number[0], correlation.number[0], FIELD_COUNT, variation, factors);
+  if (!ierr) ierr = ApplyFactors(document, field, factors, micro);
+  PetscCall(PetscFree(factors));
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+/* ---- variation ---- */
+
+/* Up to rounding of units. */
+static PetscBool AreEqual(PetscReal a, PetscReal b)
+{
+  return (PetscBool)(fabs(a - b) <= 1e-12 * fabs(b));
+}
+
+static PetscBool AreSame(const LamCell *a, const LamCell *b)
+{
+  const LamWall *v = &a->wall, *w = &b->wall;
+  const PetscBool has_fibres = (PetscBool)(w->law == LAM_WALL_FIBRE_MOONEY_RIVLIN);
+
+  return (PetscBool)(AreEqual(a->wall_thickness, b->wall_thickness) && AreEqual(a->turgor, b->turgor) &&
+                     AreEqual(a->cohesion, b->cohesion) && v->law == w->law && AreEqual(v->C1, w->C1) &&
+                     AreEqual(v->C2, w->C2) && AreEqual(v->bulk_modulus, w->bulk_modulus) &&
+                     (!has_fibres || (v->fibres == w->fibres && AreEqual(v->C4, w->C4))));
+}
+
+/* Cells that are all the scene's own are no variation, and cost nothing. */
+static PetscErrorCode DropVariation(LamMicrostructure *micro)
+{
+  const LamCell own = OwnCell(micro);
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < micro->cells[0] * micro->cells[1]; c++) {
+    if (!AreSame(&micro->cell[c], &own)) PetscFunctionReturn(0);
+  }
+  PetscCall(PetscFree(micro->cell));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSceneBuildCells(const LamDocument *document, LamScene *scene)
+{
+  LamMicrostructure *micro = &scene->micro;
+  const LamNode *block, *kinds = LamNodeFindPath(document->root, "rve.variation.kinds");
+  const LamNode *field = LamNodeFindPath(document->root, "rve.variation.field");
+
+  PetscFunctionBeginUser;
+  PetscCall(BuildBlock(document, micro));
+  block = LamNodeFindPath(document->root, "rve.variation");
+  if (!block) PetscFunctionReturn(0);
+  if (field && block->count > 1) {
+    PetscCall(LamSceneFailName(document, field,
+                               "given together with %s; a variation has a field alone, or kinds and one of list, "
+                               "pattern and random",
+                               field == block->first ? block->last->name : block->first->name));
+  }
+  if (!field && !kinds) {
+    PetscCall(LamSceneFailMissing(document, block, "kinds",
+                                  "missing; write the kinds of cells, such as [{turgor: 0.5}], or a field, such as "
+                                  "{turgor: 0.3}"));
+  }
+  PetscCall(PetscCalloc1(micro->cells[0] * micro->cells[1], &micro->cell));
+  if (field)
+    PetscCall(BuildField(document, field, micro));
+  else
+    PetscCall(BuildKinds(document, block, kinds, scene));
+  PetscCall(DropVariation(micro));
+  PetscFunctionReturn(0);
+}
+
+/* ---- what a patch allows ---- */
+
+/*
+  In contact without cohesion a wall only pushes. A cell between the grips whose outer wall is free is pushed out by its
+  neighbours, and by its own turgor, and nothing brings it back.
+*/
+static PetscErrorCode CheckHold(const LamDocument *document, const LamNode *node, PetscReal cohesion)
+{
+  const char *remedy = "without cohesion nothing holds the outer cells of a patch whose sides are free: their "
+                       "neighbours push them out; write a cohesion larger than 0 MPa, law: bonded, or sides: affine";
+
+  PetscFunctionBeginUser;
+  if (cohesion > 0.0) PetscFunctionReturn(0);
+  if (!node) node = LamNodeFindPath(document->root, "rve.interface.cohesion");
+  if (node)
+    PetscCall(LamSceneFail(document, node, "%s", remedy));
+  else
+    PetscCall(
+        LamSceneFailMissing(document, LamNodeFindPath(document->root, "rve.interface"), "cohesion", "%s", remedy));
+  PetscFunctionReturn(0);
+}
+
+/* Cells whose own cohesion is 0 at the sides. */
+static PetscErrorCode CheckSideCells(const LamDocument *document, const LamMicrostructure *micro)
+{
+  const PetscInt columns = micro->cells[0], rows = micro->cells[1];
+
+  PetscFunctionBeginUser;
+  for (PetscInt row = 1; micro->cell && row < rows - 1; row++)
+    for (PetscInt side = 0; side < 2; side++) {
+      const PetscInt column = side ? columns - 1 : 0;
+
+      if (micro->cell[column * rows + row].cohesion > 0.0) continue;
+      PetscCall(
+          LamSceneFailName(document, LamNodeFindPath(document->root, "rve.variation"),
+                           "cell (%d, %d) at a free side has no cohesion, and its neighbours push it out; give it "
+                           "some, or write sides: affine",
+                           (int)column, (int)row));
+    }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSceneCheckPatch(const LamDocument *document, const LamScene *scene)
+{
+  static const char *const others[] = {"sample", "macro"};
+  const LamMicrostructure *micro = &scene->micro;
+  const LamNode *loads = LamNodeFindPath(document->root, "load"), *patch = LamNodeFindPath(document->root, "rve.patch");
+
+  PetscFunctionBeginUser;
+  if (!micro->is_patch) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < 2; i++) {
+    const LamNode *node = LamNodeFindPath(document->root, others[i]);
+
+    if (!node) continue;
+    PetscCall(LamSceneFailName(document, node,
+                               "a patch (line %d) is a body between grips, no material point, and is solved by "
+                               "lamella rve and map; leave %s out, or write rve.cells instead of the patch",
+                               patch->name_line, others[i]));
+  }
+  /* two rows: every cell is held by a grip */
+  if (micro->interface != LAM_INTERFACE_CONTACT || micro->sides != LAM_SIDES_FREE || micro->cells[1] <= 2)
+    PetscFunctionReturn(0);
+  if (!loads) PetscCall(CheckHold(document, NULL, scene->cohesion));
+  for (const LamNode *entry = loads ? loads->first : NULL; entry; entry = entry->next) {
+    const LamNode *node = LamNodeFind(entry, "cohesion", strlen("cohesion"));
+
+    PetscCall(CheckHold(document, node, node ? node->value.number[0] : scene->cohesion));
+  }
+  PetscCall(CheckSideCells(document, micro));
+  PetscFunctionReturn(0);
+}
