@@ -1,8 +1,5 @@
 #include "mesh.h"
 
-/* L_0 ... L_5 in terms of L_0 and L_1. */
-static const PetscInt lattice[LAM_FACES][2] = {{1, 0}, {0, 1}, {-1, 1}, {-1, 0}, {0, -1}, {1, -1}};
-
 /* Corner `k` of the unit hexagon (apothem 1): the start of face k, going counter-clockwise. */
 static void HexagonCorner(PetscReal orientation, PetscInt k, PetscReal corner[2])
 {
@@ -20,91 +17,15 @@ static void LatticeVector(PetscReal orientation, PetscInt k, PetscReal L[2])
   L[1] = 2.0 * PetscSinReal(angle);
 }
 
-/* Rounded down, also below zero. */
-static PetscInt HalfOf(PetscInt n)
-{
-  return n >= 0 ? n / 2 : -((1 - n) / 2);
-}
-
-/*
-  How a patch lies in its lattice. Cells that stand on a corner have L_m along the rows; those that stand on an edge
-  have L_m 30 degrees above them. Either way L_{m+1} leads to the row above.
-*/
-static PetscBool StandsOnEdge(const LamMicrostructure *micro, PetscInt *m)
-{
-  const PetscInt turns = (PetscInt)PetscFloorReal(micro->orientation / (PETSC_PI / 6.0) + 0.5); /* by 30 degrees */
-  const PetscBool on_edge = (PetscBool)(turns % 2 != 0);
-
-  *m = (((on_edge ? 1 - turns : -turns) / 2) % LAM_FACES + LAM_FACES) % LAM_FACES;
-  return on_edge;
-}
-
-/* Lattice coordinates of a cell. */
-static void CellIndex(const LamMicrostructure *micro, PetscInt cell, PetscInt index[2])
-{
-  const PetscInt i = cell / micro->cells[1], j = cell % micro->cells[1]; /* of a patch: column, row */
-  PetscInt m, along, up;
-  PetscBool on_edge;
-
-  index[0] = i;
-  index[1] = j;
-  if (!micro->is_patch) return;
-  on_edge = StandsOnEdge(micro, &m);
-  along = on_edge ? i : i - HalfOf(j);
-  up = on_edge ? j - HalfOf(i) : j;
-  for (PetscInt d = 0; d < 2; ++d) index[d] = along * lattice[m][d] + up * lattice[(m + 1) % LAM_FACES][d];
-}
-
-/* Column and row of lattice coordinates in a patch, also beyond it. */
-static void PatchPlace(const LamMicrostructure *micro, const PetscInt index[2], PetscInt *column, PetscInt *row)
-{
-  PetscInt m, along, up;
-  const PetscBool on_edge = StandsOnEdge(micro, &m);
-  const PetscInt *a = lattice[m], *b = lattice[(m + 1) % LAM_FACES];
-
-  along = index[0] * b[1] - index[1] * b[0]; /* a and b are turned L_0 and L_1: their determinant is 1 */
-  up = a[0] * index[1] - a[1] * index[0];
-  *column = on_edge ? along : along + HalfOf(up);
-  *row = on_edge ? up + HalfOf(along) : up;
-}
-
-/* The neighbour beyond a face of a periodic cell, and the shift of its image. */
-static PetscInt PeriodicNeighbour(const LamMicrostructure *micro, const LamMesh *mesh, const PetscInt index[2],
-                                  PetscReal image[2])
-{
-  PetscInt wrapped[2];
-
-  image[0] = image[1] = 0.0;
-  for (PetscInt k = 0; k < 2; ++k) {
-    const PetscInt n = micro->cells[k], wraps = index[k] < 0 ? -1 : index[k] / n;
-
-    wrapped[k] = index[k] - wraps * n;
-    for (PetscInt d = 0; d < 2; ++d) image[d] += (PetscReal)wraps * mesh->period[k][d];
-  }
-  return wrapped[0] * micro->cells[1] + wrapped[1];
-}
-
 static void FindNeighbours(const LamMicrostructure *micro, LamMesh *mesh)
 {
-  for (PetscInt cell = 0; cell < mesh->cell_count; ++cell)
-    for (PetscInt face = 0; face < LAM_FACES; ++face) {
-      const PetscInt k = LAM_FACES * cell + face;
-      PetscInt index[2], column, row;
+  for (PetscInt k = 0; k < LAM_FACES * mesh->cell_count; ++k) {
+    PetscInt wraps[2];
 
-      CellIndex(micro, cell, index);
-      for (PetscInt d = 0; d < 2; ++d) index[d] += lattice[face][d];
-      if (!micro->is_patch) {
-        mesh->neighbour[k] = PeriodicNeighbour(micro, mesh, index, &mesh->image[2 * k]);
-        continue;
-      }
-      PatchPlace(micro, index, &column, &row);
-      if (column >= 0 && column < micro->cells[0] && row >= 0 && row < micro->cells[1]) {
-        mesh->neighbour[k] = column * micro->cells[1] + row;
-      } else {
-        mesh->neighbour[k] = -1;
-        mesh->held[k] = (PetscBool)(micro->sides == LAM_SIDES_AFFINE || row < 0 || row >= micro->cells[1]);
-      }
-    }
+    mesh->neighbour[k] = LamLatticeNeighbour(micro, k / LAM_FACES, k % LAM_FACES, wraps, &mesh->held[k]);
+    for (PetscInt d = 0; d < 2; ++d)
+      mesh->image[2 * k + d] = (PetscReal)wraps[0] * mesh->period[0][d] + (PetscReal)wraps[1] * mesh->period[1][d];
+  }
 }
 
 #define ORIGIN -1 /* representative of nodes that are held at F X */
@@ -125,7 +46,7 @@ static void PlaceNodes(const LamMicrostructure *micro, LamMesh *mesh)
     const PetscReal thickness = LamWallThickness(micro, cell);
     PetscInt index[2];
 
-    CellIndex(micro, cell, index);
+    LamLatticeIndex(micro, cell, index);
 
     for (PetscInt around = 0; around < mesh->ring_nodes; ++around) {
       const PetscInt face = around / (2 * mesh->along);

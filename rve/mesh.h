@@ -9,11 +9,9 @@
   outer nodes form one class, also across the period, where a node is the image of its class's position y at a shift S:
   x_node = y_class + F S,  S = X_node - X_class.
 
-  A patch is a finite block of cells between grips, columns x rows, whose rows run along the lattice direction nearest
-  to X1; every second row (or column, where cells stand on an edge) is offset by half a cell. Outer walls without a
-  neighbour that follow F - those in the grips, and with affine sides all of them - belong to class 0, the origin:
-  x_node = F X_node. So F enters a patch as it enters a period, through shifts, and P is the mean of the boundary
-  forces.
+  A patch is a finite block of cells between grips (lattice.h). Outer walls without a neighbour that follow F - those in
+  the grips, and with affine sides all of them - belong to class 0, the origin: x_node = F X_node. So F enters a patch
+  as it enters a period, through shifts, and P is the mean of the boundary forces.
 
   Class 0 is held at y = F X: it takes out translations, and in a patch it carries the boundary.
 */
@@ -21,9 +19,8 @@
 #define LAM_RVE_MESH_H
 
 #include <petscsys.h>
-#include <lamella/scene.h>
+#include <lamella/lattice.h>
 
-#define LAM_FACES 6
 #define LAM_ELEMENT_NODES 9
 
 typedef struct {

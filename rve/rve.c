@@ -27,15 +27,8 @@ PetscErrorCode LamRVESetMicrostructure(LamRVE rve, const LamMicrostructure *micr
 {
   PetscFunctionBeginUser;
   PetscCheck(!rve->is_set_up, PETSC_COMM_SELF, PETSC_ERR_ORDER, "the microstructure is set before LamRVESetUp");
-  PetscCall(PetscFree(rve->micro.cell));
-  rve->micro = *micro;
-  rve->micro.cell = NULL;
-  if (micro->cell) {
-    const PetscInt count = micro->cells[0] * micro->cells[1];
-
-    PetscCall(PetscMalloc1(count, &rve->micro.cell));
-    PetscCall(PetscArraycpy(rve->micro.cell, micro->cell, count));
-  }
+  PetscCall(LamMicrostructureDestroy(&rve->micro));
+  PetscCall(LamMicrostructureCopy(micro, &rve->micro));
   rve->has_micro = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
@@ -127,7 +120,7 @@ PetscErrorCode LamRVEDestroy(LamRVE *rve)
   PetscCall(LamLinearDestroy(&(*rve)->linear));
   PetscCall(LamMeshDestroy(&(*rve)->mesh));
   PetscCall(PetscFree((*rve)->law));
-  PetscCall(PetscFree((*rve)->micro.cell));
+  PetscCall(LamMicrostructureDestroy(&(*rve)->micro));
   PetscCall(PetscFree((*rve)->geometry));
   PetscCall(PetscFree((*rve)->stress));
   PetscCall(PetscFree4((*rve)->y, (*rve)->step, (*rve)->trial, (*rve)->residual));
