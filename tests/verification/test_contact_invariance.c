@@ -4,7 +4,8 @@
 #include "turned_response.h"
 
 #define TOLERANCE 1e-8
-#define SCATTER 1e-4 /* C1 + C2: of slaves that become masters, with 6 elements a face */
+#define SCATTER 1e-4    /* C1 + C2: of slaves that become masters, with 6 elements a face */
+#define OTHER_HATS 5e-4 /* the same where the hats at a junction settle differently: several discrete solutions */
 
 static const double F0[9] = {1.04, 0.12, 0, -0.03, 0.99, 0, 0, 0, 1};
 
@@ -107,7 +108,7 @@ static void SymmetriesOfTheLattice(void **state)
 
 static void SymmetriesOfTheLatticeOnAFinerMesh(void **state)
 {
-  assert_near(SymmetryError(24, 2), 0.0, SCATTER);
+  assert_near(SymmetryError(24, 2), 0.0, OTHER_HATS);
 }
 
 #define SCENE(cell, wall, cohesion, pressure)                                                                          \
