@@ -24,7 +24,7 @@ typedef struct {
 typedef struct {
   FamilySums family[3];
   PetscReal max_gap, max_penetration, max_traction;
-  PetscReal fabric[3];
+  PetscReal fabric[3], jumps[3];
 } Sums;
 
 /* Share of an interval with linear values a, b that lies above a threshold. */
@@ -109,6 +109,28 @@ static void AddFabric(const LamMortarChains *chains, PetscInt j, PetscReal weigh
   fabric[2] -= weight * Xs[0] * Xs[1] / m;
 }
 
+/* Second moment of the jumps between points of the two walls that were one, where these have come apart. x[2 hats]:
+   nodes of the slave, then of the master, which runs the other way. */
+static void AddJumps(const LamMortarChains *chains, PetscInt hats, const PetscReal x[][2], PetscReal jumps[3])
+{
+  static const PetscReal simpson[3] = {1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0};
+
+  for (PetscInt e = 0; e < chains->n; ++e)
+    for (PetscInt i = 0; i < 3; ++i) {
+      const PetscInt at = 2 * e + i;
+      const PetscReal w = simpson[i] * chains->J0[e];
+      PetscReal jump[2], X[2], Xs[2];
+
+      for (PetscInt d = 0; d < 2; ++d) jump[d] = x[2 * hats - 1 - at][d] - x[at][d];
+      LamMortarSlavePoint(chains, PetscMin(0.5 * (PetscReal)at, (PetscReal)(e + 1) - 1e-12), X, Xs);
+      /* the normal of the slave is (Xs_2, -Xs_1)/|Xs| */
+      if ((jump[0] * Xs[1] - jump[1] * Xs[0]) <= LAM_VISIBLE_GAP * PetscSqrtReal(LamDot(Xs, Xs))) continue;
+      jumps[0] += w * jump[0] * jump[0];
+      jumps[1] += w * jump[1] * jump[1];
+      jumps[2] += w * jump[0] * jump[1];
+    }
+}
+
 static PetscErrorCode AddFace(LamRVE rve, const LamLoad *load, PetscInt f, Sums *sums)
 {
   LamContact *contact = rve->contact;
@@ -135,6 +157,7 @@ static PetscErrorCode AddFace(LamRVE rve, const LamLoad *load, PetscInt f, Sums 
   family->current_length += length[count];
   family->force += force[count];
   if (segments->count == 0) family->open += J0;
+  AddJumps(&chains, contact->hats, (const PetscReal(*)[2])x, sums->jumps);
   sums->max_traction = PetscMax(sums->max_traction, LamLargestWindowMean(count, window, force, length));
   for (PetscInt j = 0; j < contact->hats; ++j) {
     const PetscInt h = f * contact->hats + j;
@@ -277,7 +300,10 @@ PetscErrorCode LamContactIndicators(LamRVE rve, const LamLoad *load, LamResponse
   response->max_gap = sums.max_gap > -PETSC_MAX_REAL ? PetscMax(0.0, sums.max_gap) : NAN;
   response->max_penetration = PetscMax(response->max_penetration, sums.max_penetration);
   response->max_traction = sums.max_traction;
-  for (PetscInt i = 0; i < 3; ++i) response->fabric[i] = sums.fabric[i] / length;
+  for (PetscInt i = 0; i < 3; ++i) {
+    response->fabric[i] = sums.fabric[i] / length;
+    response->opening_moment[i] = sums.jumps[i] / length;
+  }
   response->zero_modes = rve->zero_modes;
   PetscCall(CountClusters(rve, response));
   PetscFunctionReturn(0);
@@ -305,7 +331,10 @@ PetscErrorCode LamBondedIndicators(LamRVE rve, const LamLoad *load, LamResponse 
     fabric[2] -= chord[0] * chord[1] / LamDot(chord, chord);
     ++edges;
   }
-  for (PetscInt i = 0; i < 3; ++i) response->fabric[i] = edges ? fabric[i] / (PetscReal)edges : 0.0;
+  for (PetscInt i = 0; i < 3; ++i) {
+    response->fabric[i] = edges ? fabric[i] / (PetscReal)edges : 0.0;
+    response->opening_moment[i] = 0.0;
+  }
   response->debonded_fraction = response->open_fraction = response->max_gap = response->mean_gap = 0.0;
   response->max_penetration = 0.0;
   for (PetscInt k = 0; k < 3; ++k)

@@ -69,6 +69,7 @@ void LamIndicatorsCopy(const LamResponse *record, const PetscInt face[3], PetscB
   for (int k = 0; k < 3 && own; k++) {
     r->mean_face_traction[k] = record->mean_face_traction[face[k]];
     r->fabric[k] = SameF(&record->load, &r->load) ? record->fabric[k] : NAN;
+    r->opening_moment[k] = SameF(&record->load, &r->load) ? record->opening_moment[k] : NAN;
   }
   r->lowest_eigenvalue = record->lowest_eigenvalue;
   r->negative_eigenvalues = record->negative_eigenvalues;

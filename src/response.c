@@ -52,6 +52,7 @@ const LamMember LamResponseMembers[] = {
     REAL(mean_gap, 1, 0, "mean gap over the interface length, in apothems"),
     REAL(max_penetration, 1, 0, "largest pointwise penetration, in apothems; falls with the mesh"),
     REAL(fabric, 3, 0, "fabric tensor of the closed faces: 11, 22, 12"),
+    REAL(opening_moment, 3, 0, "second moment of the jumps across open interfaces, apothem^2: 11, 22, 12"),
     REAL(max_traction, 1, 1, "largest normal Cauchy traction averaged over one wall thickness"),
     REAL(mean_face_traction, 3, 1, "mean normal Cauchy traction per face family"),
     REAL(lowest_eigenvalue, 1, 1, "softest mode, where it was computed"),

@@ -58,6 +58,9 @@ typedef struct {
   PetscReal max_penetration;              /* pointwise; goes to zero with the mesh */
   /* sum over closed faces of length n(x)n over the whole interface length: 11, 22, 12; its trace is the closed share */
   PetscReal fabric[3];
+  /* mean over the interface length of jump(x)jump where walls have come apart, apothems^2: 11, 22, 12; jump: between
+     points that were one. Its first axis is the direction in which cells come apart */
+  PetscReal opening_moment[3];
   PetscReal max_traction;          /* largest normal Cauchy traction averaged over one wall thickness, tension > 0 */
   PetscReal mean_face_traction[3]; /* mean normal Cauchy traction per face family, tension > 0 */
   PetscReal lowest_eigenvalue;     /* estimate of the softest mode where it was computed (unstable states), else NaN */
