@@ -1,11 +1,6 @@
+#include "edge_area.h"
 #include "rve_impl.h"
 
-/*
-  Area under one quadratic edge with nodes 0 (start), 1 (middle), 2 (end): 1/2 sum_{a<b} D_ab x_a x x_b, and the
-  area inside a closed loop is the sum over its edges. Positions x enter quadratically, so the Hessian is constant.
-*/
-static const PetscReal edge_area[3][3] = {
-    {0.0, 4.0 / 3.0, -1.0 / 3.0}, {-4.0 / 3.0, 0.0, 4.0 / 3.0}, {1.0 / 3.0, -4.0 / 3.0, 0.0}};
 /* The edge at the lumen of an innermost element, counter-clockwise around the lumen. */
 static const PetscInt inner_edge[3] = {0, 7, 3};
 
@@ -35,37 +30,6 @@ void LamGatherElement(LamRVE rve, const PetscReal F[9], const PetscReal y[], Pet
     LamNodePosition(rve, F, y, rve->mesh.elements[LAM_ELEMENT_NODES * e + a], x[a]);
 }
 
-static PetscReal EdgeArea(const PetscInt edge[3], const PetscReal x[LAM_ELEMENT_NODES][2])
-{
-  PetscReal area = 0.0;
-
-  for (PetscInt a = 0; a < 3; ++a)
-    for (PetscInt b = a + 1; b < 3; ++b) {
-      const PetscReal *xa = x[edge[a]], *xb = x[edge[b]];
-
-      area += 0.5 * edge_area[a][b] * (xa[0] * xb[1] - xa[1] * xb[0]);
-    }
-  return area;
-}
-
-/* Adds factor * d(area)/dx and factor * d2(area)/dxdx of an edge. */
-static void AddEdgeArea(const PetscInt edge[3], const PetscReal x[LAM_ELEMENT_NODES][2], PetscReal factor,
-                        PetscReal f[LAM_ELEMENT_DOFS], PetscReal K[LAM_ELEMENT_DOFS][LAM_ELEMENT_DOFS])
-{
-  for (PetscInt a = 0; a < 3; ++a)
-    for (PetscInt b = 0; b < 3; ++b) {
-      const PetscInt na = edge[a], nb = edge[b];
-      const PetscReal c = 0.5 * factor * edge_area[a][b];
-
-      f[2 * na] += c * x[nb][1];
-      f[2 * na + 1] -= c * x[nb][0];
-      if (K) {
-        K[2 * na][2 * nb + 1] += c;
-        K[2 * nb + 1][2 * na] += c;
-      }
-    }
-}
-
 PetscReal LamLumenArea(LamRVE rve, const PetscReal y[], PetscReal factor, PetscReal gradient[], PetscReal *plain)
 {
   static const PetscReal no_shift[9] = {0}; /* nodes of lumens have no shift */
@@ -77,13 +41,13 @@ PetscReal LamLumenArea(LamRVE rve, const PetscReal y[], PetscReal factor, PetscR
     PetscReal edge;
 
     LamGatherElement(rve, no_shift, y, e, x);
-    edge = EdgeArea(inner_edge, (const PetscReal(*)[2])x);
+    edge = LamEdgeArea(inner_edge, (const PetscReal(*)[2])x);
     all += edge;
     area += turgor * edge;
     if (gradient) {
       PetscReal f[LAM_ELEMENT_DOFS] = {0};
 
-      AddEdgeArea(inner_edge, (const PetscReal(*)[2])x, factor * turgor, f, NULL);
+      LamAddEdgeArea(inner_edge, (const PetscReal(*)[2])x, factor * turgor, f, NULL);
       for (PetscInt k = 0; k < 3; ++k)
         for (PetscInt d = 0; d < 2; ++d)
           gradient[2 * mesh->node_class[mesh->elements[LAM_ELEMENT_NODES * e + inner_edge[k]]] + d] +=
@@ -160,8 +124,8 @@ PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[],
     if (!*valid) break;
     *energy += element.energy;
     if (LamMeshElementIsInner(&rve->mesh, e) && pressure != 0.0)
-      AddEdgeArea(inner_edge, (const PetscReal(*)[2])x, -pressure * LamTurgorFactor(rve, rve->mesh.cell_of[e]),
-                  element.f, element.K);
+      LamAddEdgeArea(inner_edge, (const PetscReal(*)[2])x, -pressure * LamTurgorFactor(rve, rve->mesh.cell_of[e]),
+                     element.f, element.K);
     Scatter(rve, e, &element, residual);
   }
   if (suction != 0.0) {

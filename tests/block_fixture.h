@@ -1,19 +1,31 @@
 /*
   Bodies of wall elements in frictionless contact along one pair of chains, for tests of the mortar kernel in mechanics
-  that has nothing to do with cells. Energy: walls minus sum lambda G; held components keep their starting positions.
+  that has nothing to do with cells. Energy: walls, plus pressures times the areas at the sides they press on, minus sum
+  lambda G; held components keep their starting positions.
 
     BlocksCreate(nodes, elements, n, m, &blocks); BlocksAddGrid(...) for every body; slave, master, J0, held, x;
     BlocksSolve(blocks, &iterations); BlocksDestroy(blocks);
+
+  With plane_stress every element has its own stretch F33, at which its mean stress P33 vanishes; it is eliminated in
+  the element. Pressures then are per reference thickness.
 */
 #ifndef LAM_BLOCK_FIXTURE_H
 #define LAM_BLOCK_FIXTURE_H
 
 #include <petscmat.h>
-#include "element.h"
+#include "edge_area.h"
 #include "mortar.h"
 
 #define BLOCKS_ITERATIONS 40
-#define BLOCKS_SCALE 1.0 /* weighs gaps against multipliers in the active set */
+#define BLOCKS_SIDES 4
+
+/* Sides of an element in the grid: below, right, above, left; counter-clockwise. */
+static const PetscInt blocks_side[BLOCKS_SIDES][3] = {{0, 4, 1}, {1, 5, 2}, {2, 6, 3}, {3, 7, 0}};
+
+/* dPi_e/dF33, d2Pi_e/dx dF33, d2Pi_e/dF33^2 of the last evaluation. */
+typedef struct {
+  PetscReal force, fx[LAM_ELEMENT_DOFS], ff;
+} BlocksThickness;
 
 typedef struct {
   PetscInt node_count, element_count, n, m;
@@ -22,11 +34,20 @@ typedef struct {
   PetscInt (*elements)[LAM_ELEMENT_NODES]; /* [element] node order of LamMesh */
   LamElementGeometry *geometry;            /* [element] */
   LamElementStress *stress;                /* [element] */
+  LamWall *wall_of;                        /* [element]: `wall` when its grid was added */
+  PetscReal *F33;                          /* [element] */
+  BlocksThickness *thickness;              /* [element] */
+  PetscReal (*pressure)[BLOCKS_SIDES];     /* [element]: Cauchy pressure on its sides */
   PetscInt *chain;                         /* nodes of both chains: slave [2n+1], then master [2m+1] */
   PetscReal (*chain_x)[2], *J0, *lambda;   /* J0[n], lambda[2n+1] */
   PetscBool *active;                       /* [2n+1] */
-  LamWall wall;
+  PetscBool ends_held;                     /* the chains' ends are: their hats go with their neighbours' */
+  PetscBool plane_stress;
+  PetscReal scale;    /* weighs gaps against multipliers in the active set */
+  PetscReal fibre[2]; /* of the grids that are added next */
+  LamWall wall;       /* likewise */
   const LamWallLaw *law;
+  PetscInt negative; /* eigenvalues of the last factor */
   LamMortarSegments segments;
   LamMortarResult result;
 } Blocks;
@@ -43,9 +64,12 @@ static inline PetscErrorCode BlocksCreate(PetscInt nodes, PetscInt elements, Pet
   b->wall.C1 = 0.9;
   b->wall.C2 = 0.1;
   b->wall.bulk_modulus = 1000.0;
+  b->fibre[0] = 1.0;
+  b->scale = 1.0;
   PetscCall(LamWallLawGet(LAM_WALL_MOONEY_RIVLIN, &b->law));
   PetscCall(PetscCalloc3(nodes, &b->X, nodes, &b->x, nodes, &b->held));
-  PetscCall(PetscCalloc3(elements, &b->elements, elements, &b->geometry, elements, &b->stress));
+  PetscCall(PetscCalloc7(elements, &b->elements, elements, &b->geometry, elements, &b->stress, elements, &b->wall_of,
+                         elements, &b->F33, elements, &b->thickness, elements, &b->pressure));
   PetscCall(
       PetscCalloc5(chain, &b->chain, chain, &b->chain_x, n, &b->J0, 2 * n + 1, &b->lambda, 2 * n + 1, &b->active));
   PetscCall(LamMortarSegmentsCreate(n, m, &b->segments));
@@ -57,7 +81,7 @@ static inline PetscErrorCode BlocksDestroy(Blocks *b)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree3(b->X, b->x, b->held));
-  PetscCall(PetscFree3(b->elements, b->geometry, b->stress));
+  PetscCall(PetscFree7(b->elements, b->geometry, b->stress, b->wall_of, b->F33, b->thickness, b->pressure));
   PetscCall(PetscFree5(b->chain, b->chain_x, b->J0, b->lambda, b->active));
   PetscCall(LamMortarSegmentsDestroy(&b->segments));
   PetscCall(LamMortarResultDestroy(&b->result));
@@ -72,7 +96,6 @@ static inline PetscErrorCode BlocksAddGrid(Blocks *b, PetscInt nx, PetscInt ny,
 {
   static const PetscInt at[LAM_ELEMENT_NODES][2] = {{0, 0}, {2, 0}, {2, 2}, {0, 2}, {1, 0},
                                                     {2, 1}, {1, 2}, {0, 1}, {1, 1}};
-  const PetscReal axis[2] = {1.0, 0.0};
 
   PetscFunctionBeginUser;
   *first = b->node_count;
@@ -93,7 +116,9 @@ static inline PetscErrorCode BlocksAddGrid(Blocks *b, PetscInt nx, PetscInt ny,
       b->elements[element][a] = node;
       for (PetscInt d = 0; d < 2; ++d) X[a][d] = b->X[node][d];
     }
-    PetscCall(LamElementSetGeometry((const PetscReal(*)[2])X, axis, &b->geometry[element]));
+    PetscCall(LamElementSetGeometry((const PetscReal(*)[2])X, b->fibre, &b->geometry[element]));
+    b->wall_of[element] = b->wall;
+    b->F33[element] = 1.0;
   }
   PetscFunctionReturn(0);
 }
@@ -119,39 +144,130 @@ static inline PetscInt BlocksRow(const Blocks *b, PetscInt node, PetscInt d)
   return b->held[node][d] ? -1 : 2 * node + d;
 }
 
-/* Adds the walls' residual and tangent. */
+static inline void BlocksEvaluate(Blocks *b, PetscInt e, const PetscReal x[][2], LamElementResult *element,
+                                  PetscBool *valid)
+{
+  LamElementEvaluate(&b->geometry[e], b->law, &b->wall_of[e], x, b->F33[e], &b->stress[e], element, valid);
+}
+
+/* Plane stress: residual and tangent of an element without its stretch F33, whose own equation is force = 0. */
+static inline void BlocksReleaseThickness(Blocks *b, PetscInt e, const PetscReal x[][2], LamElementResult *element)
+{
+  BlocksThickness *t = &b->thickness[e];
+
+  LamElementStretch33(&b->geometry[e], b->law, &b->wall_of[e], x, b->F33[e], &b->stress[e], &t->force, t->fx, &t->ff);
+  for (PetscInt i = 0; i < LAM_ELEMENT_DOFS; ++i) {
+    element->f[i] -= t->fx[i] * t->force / t->ff;
+    for (PetscInt j = 0; j < LAM_ELEMENT_DOFS; ++j) element->K[i][j] -= t->fx[i] * t->fx[j] / t->ff;
+  }
+}
+
+/* Step of F33 that goes with dx, and of the element pressures with it: dp = H int psi det F dF33. */
+static inline void BlocksStepThickness(Blocks *b, PetscInt e, const PetscReal x[][2], const PetscReal dx[][2])
+{
+  const BlocksThickness *t = &b->thickness[e];
+  const LamElementGeometry *geometry = &b->geometry[e];
+  PetscReal dF33 = -t->force / t->ff, dc[LAM_PRESSURES] = {0.0};
+
+  for (PetscInt i = 0; i < LAM_ELEMENT_DOFS; ++i) dF33 -= t->fx[i] * dx[i / 2][i % 2] / t->ff;
+  for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
+    PetscReal F[4] = {0.0};
+
+    for (PetscInt c = 0; c < 4; ++c)
+      for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a) F[c] += x[a][c / 2] * geometry->dN[2 * g + c % 2][a];
+    for (PetscInt k = 0; k < LAM_PRESSURES; ++k)
+      dc[k] += geometry->weight[g] * geometry->psi[g][k] * (F[0] * F[3] - F[1] * F[2]) * dF33;
+  }
+  for (PetscInt k = 0; k < LAM_PRESSURES; ++k)
+    for (PetscInt l = 0; l < LAM_PRESSURES; ++l) b->stress[e].p[k] += b->stress[e].H[k][l] * dc[l];
+  b->F33[e] += dF33;
+}
+
+/* Residual and tangent of an element with the pressures on its sides. */
+static inline void BlocksElement(Blocks *b, PetscInt e, LamElementResult *element, PetscBool *valid)
+{
+  PetscReal x[LAM_ELEMENT_NODES][2];
+
+  BlocksGather(b, e, x);
+  BlocksEvaluate(b, e, (const PetscReal(*)[2])x, element, valid);
+  if (!*valid) return;
+  if (b->plane_stress) BlocksReleaseThickness(b, e, (const PetscReal(*)[2])x, element);
+  for (PetscInt side = 0; side < BLOCKS_SIDES; ++side)
+    if (b->pressure[e][side] != 0.0)
+      LamAddEdgeArea(blocks_side[side], (const PetscReal(*)[2])x, b->pressure[e][side], element->f, element->K);
+}
+
+/* Adds the walls' residual, of held components too (reactions), and their tangent without these. */
 static inline PetscErrorCode BlocksAddWalls(Blocks *b, Mat K, PetscReal residual[], PetscBool *valid)
 {
   PetscFunctionBeginUser;
   *valid = PETSC_TRUE;
   for (PetscInt e = 0; e < b->element_count && *valid; ++e) {
-    PetscReal x[LAM_ELEMENT_NODES][2];
     PetscInt row[LAM_ELEMENT_DOFS];
     LamElementResult element;
 
-    BlocksGather(b, e, x);
-    LamElementEvaluate(&b->geometry[e], b->law, &b->wall, (const PetscReal(*)[2])x, 1.0, &b->stress[e], &element,
-                       valid);
-    for (PetscInt i = 0; i < LAM_ELEMENT_DOFS; ++i) {
+    BlocksElement(b, e, &element, valid);
+    for (PetscInt i = 0; i < LAM_ELEMENT_DOFS && *valid; ++i) {
       row[i] = BlocksRow(b, b->elements[e][i / 2], i % 2);
-      if (row[i] >= 0) residual[row[i]] += element.f[i];
+      residual[2 * b->elements[e][i / 2] + i % 2] += element.f[i];
     }
-    PetscCall(MatSetValues(K, LAM_ELEMENT_DOFS, row, LAM_ELEMENT_DOFS, row, &element.K[0][0], ADD_VALUES));
+    if (K && *valid)
+      PetscCall(MatSetValues(K, LAM_ELEMENT_DOFS, row, LAM_ELEMENT_DOFS, row, &element.K[0][0], ADD_VALUES));
   }
   PetscFunctionReturn(0);
+}
+
+/* Independent stresses to begin with in bodies under a hydrostatic pressure. */
+static inline void BlocksStartUnder(Blocks *b, PetscReal pressure)
+{
+  for (PetscInt e = 0; e < b->element_count; ++e)
+    for (PetscInt k = 0; k < LAM_PRESSURES; ++k) {
+      b->stress[e].p[k] = 0.0;
+      for (PetscInt g = 0; g < LAM_GAUSS; ++g)
+        b->stress[e].p[k] -= pressure * b->geometry[e].weight[g] * b->geometry[e].psi[g][k];
+    }
+}
+
+/* Adds the row of hat `from` to that of hat `to` and clears it. */
+static inline void BlocksMergeHat(Blocks *b, PetscInt from, PetscInt to)
+{
+  const PetscInt dofs = LamMortarDofs(b->n, b->m);
+
+  b->result.gap[to] += b->result.gap[from];
+  b->result.weight[to] += b->result.weight[from];
+  b->result.gap[from] = 0.0;
+  for (PetscInt i = 0; i < dofs; ++i) {
+    b->result.dgap[to * dofs + i] += b->result.dgap[from * dofs + i];
+    b->result.dgap[from * dofs + i] = 0.0;
+  }
+}
+
+static inline PetscBool BlocksHatIsMerged(const Blocks *b, PetscInt A)
+{
+  return (PetscBool)(b->ends_held && (A == 0 || A == 2 * b->n));
+}
+
+/* Weighted gaps at the present positions. */
+static inline void BlocksFindGaps(Blocks *b)
+{
+  const LamMortarChains chains = BlocksChains(b);
+
+  LamMortarFindSegments(&chains, &b->segments);
+  LamMortarEvaluate(&chains, &b->segments, b->lambda, LAM_MORTAR_POINTS, &b->result);
+  if (!b->ends_held) return;
+  BlocksMergeHat(b, 0, 1);
+  BlocksMergeHat(b, 2 * b->n, 2 * b->n - 1);
 }
 
 /* Weighted gaps, active set (its changes are returned), and their part of the tangent. */
 static inline PetscErrorCode BlocksAddContact(Blocks *b, Mat K, PetscInt *changes)
 {
-  const LamMortarChains chains = BlocksChains(b);
   const PetscInt hats = 2 * b->n + 1, dofs = LamMortarDofs(b->n, b->m);
   PetscInt *row;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(dofs, &row));
-  LamMortarFindSegments(&chains, &b->segments);
-  LamMortarEvaluate(&chains, &b->segments, b->lambda, LAM_MORTAR_POINTS, &b->result);
+  BlocksFindGaps(b);
   for (PetscInt i = 0; i < dofs; ++i) row[i] = BlocksRow(b, b->chain[i / 2], i % 2);
   for (PetscInt i = 0; i < dofs * dofs; ++i) b->result.hessian[i] *= -1.0;
   PetscCall(MatSetValues(K, dofs, row, dofs, row, b->result.hessian, ADD_VALUES));
@@ -159,7 +275,7 @@ static inline PetscErrorCode BlocksAddContact(Blocks *b, Mat K, PetscInt *change
   for (PetscInt A = 0; A < hats; ++A) {
     const PetscInt multiplier = 2 * b->node_count + A;
     const PetscReal gap = b->result.gap[A] / b->result.weight[A];
-    const PetscBool active = (PetscBool)(b->lambda[A] - BLOCKS_SCALE * gap > 0.0);
+    const PetscBool active = (PetscBool)(!BlocksHatIsMerged(b, A) && b->lambda[A] - b->scale * gap > 0.0);
 
     *changes += active != b->active[A];
     b->active[A] = active;
@@ -173,7 +289,7 @@ static inline PetscErrorCode BlocksAddContact(Blocks *b, Mat K, PetscInt *change
   PetscFunctionReturn(0);
 }
 
-/* Largest residual of equilibrium and of the active gaps; residual: of the walls. */
+/* Largest residual of equilibrium, in the plane and across, and of the active gaps; residual: of the walls. */
 static inline PetscReal BlocksError(const Blocks *b, const PetscReal residual[])
 {
   const PetscInt dofs = LamMortarDofs(b->n, b->m);
@@ -187,12 +303,14 @@ static inline PetscReal BlocksError(const Blocks *b, const PetscReal residual[])
   }
   for (PetscInt i = 0; i < 2 * b->node_count; ++i)
     if (!b->held[i / 2][i % 2]) largest = PetscMax(largest, PetscAbsReal(r[i]));
+  for (PetscInt e = 0; e < b->element_count; ++e) largest = PetscMax(largest, PetscAbsReal(b->thickness[e].force));
   (void)PetscFree(r);
   return largest;
 }
 
-/* solution := K^-1 rhs. */
-static inline PetscErrorCode BlocksFactorAndSolve(Mat K, PetscInt size, PetscReal rhs[], PetscReal solution[])
+/* solution := K^-1 rhs. negative: number of negative eigenvalues of a symmetric K; NULL: K need not be symmetric. */
+static inline PetscErrorCode BlocksFactorAndSolve(Mat K, PetscInt size, PetscReal rhs[], PetscReal solution[],
+                                                  PetscInt *negative)
 {
   MatFactorInfo info;
   Mat factor;
@@ -202,9 +320,16 @@ static inline PetscErrorCode BlocksFactorAndSolve(Mat K, PetscInt size, PetscRea
   PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, size, rhs, &right));
   PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, size, solution, &left));
   PetscCall(MatFactorInfoInitialize(&info));
-  PetscCall(MatGetFactor(K, MATSOLVERMUMPS, MAT_FACTOR_LU, &factor));
-  PetscCall(MatLUFactorSymbolic(factor, K, NULL, NULL, &info));
-  PetscCall(MatLUFactorNumeric(factor, K, &info));
+  PetscCall(MatGetFactor(K, MATSOLVERMUMPS, negative ? MAT_FACTOR_CHOLESKY : MAT_FACTOR_LU, &factor));
+  PetscCall(MatMumpsSetIcntl(factor, 14, 50)); /* workspace margin, per cent */
+  if (negative) {
+    PetscCall(MatCholeskyFactorSymbolic(factor, K, NULL, &info));
+    PetscCall(MatCholeskyFactorNumeric(factor, K, &info));
+    PetscCall(MatGetInertia(factor, negative, NULL, NULL));
+  } else {
+    PetscCall(MatLUFactorSymbolic(factor, K, NULL, NULL, &info));
+    PetscCall(MatLUFactorNumeric(factor, K, &info));
+  }
   PetscCall(MatSolve(factor, right, left));
   PetscCall(MatDestroy(&factor));
   PetscCall(VecDestroy(&right));
@@ -220,39 +345,62 @@ static inline void BlocksStep(Blocks *b, const PetscReal solution[])
 
     BlocksGather(b, e, x);
     for (PetscInt i = 0; i < LAM_ELEMENT_DOFS; ++i) dx[i / 2][i % 2] = solution[2 * b->elements[e][i / 2] + i % 2];
-    LamElementUpdateStress(&b->geometry[e], (const PetscReal(*)[2])x, (const PetscReal(*)[2])dx, 1.0, 1.0,
+    LamElementUpdateStress(&b->geometry[e], (const PetscReal(*)[2])x, (const PetscReal(*)[2])dx, b->F33[e], 1.0,
                            &b->stress[e]);
+    if (b->plane_stress) BlocksStepThickness(b, e, (const PetscReal(*)[2])x, (const PetscReal(*)[2])dx);
   }
   for (PetscInt i = 0; i < 2 * b->node_count; ++i) b->x[i / 2][i % 2] += solution[i];
   for (PetscInt A = 0; A < 2 * b->n + 1; ++A) b->lambda[A] = b->active[A] ? solution[2 * b->node_count + A] : 0.0;
+  if (!b->ends_held) return;
+  b->lambda[0] = b->lambda[1];
+  b->lambda[2 * b->n] = b->lambda[2 * b->n - 1];
 }
 
-/* One Newton step, or none where the residuals are below `tolerance`. */
-static inline PetscErrorCode BlocksIterate(Blocks *b, PetscReal tolerance, PetscBool *done)
+static inline PetscErrorCode BlocksMatrix(const Blocks *b, PetscInt size, Mat *K)
 {
-  const PetscInt positions = 2 * b->node_count, size = positions + 2 * b->n + 1;
-  PetscReal *rhs, *solution;
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, size, size, 120, NULL, K));
+  PetscCall(MatSetOption(*K, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
+  PetscCall(MatSetOption(*K, MAT_IGNORE_ZERO_ENTRIES, PETSC_TRUE));
+  PetscCall(MatSetOption(*K, MAT_SYMMETRIC, PETSC_TRUE));
+  for (PetscInt i = 0; i < 2 * b->node_count; ++i)
+    if (b->held[i / 2][i % 2]) PetscCall(MatSetValue(*K, i, i, 1.0, ADD_VALUES));
+  PetscFunctionReturn(0);
+}
+
+/* Residuals and tangent at the present positions; `done` where the residuals are below `tolerance`. */
+static inline PetscErrorCode BlocksAssemble(Blocks *b, PetscReal tolerance, Mat K, PetscReal rhs[], PetscBool *valid,
+                                            PetscBool *done)
+{
+  const PetscInt positions = 2 * b->node_count;
   PetscInt changes = 0;
-  PetscBool valid = PETSC_TRUE;
-  Mat K;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(size, &rhs, size, &solution));
-  PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, size, size, 120, NULL, &K));
-  PetscCall(MatSetOption(K, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
-  PetscCall(MatSetOption(K, MAT_IGNORE_ZERO_ENTRIES, PETSC_TRUE));
-  for (PetscInt i = 0; i < positions; ++i)
-    if (b->held[i / 2][i % 2]) PetscCall(MatSetValue(K, i, i, 1.0, ADD_VALUES));
-  PetscCall(BlocksAddWalls(b, K, rhs, &valid));
-  PetscCheck(valid, PETSC_COMM_SELF, PETSC_ERR_CONV_FAILED, "an element is inside out");
+  PetscCall(BlocksAddWalls(b, K, rhs, valid));
+  if (!*valid) PetscFunctionReturn(0);
   PetscCall(BlocksAddContact(b, K, &changes));
   PetscCall(MatAssemblyBegin(K, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(K, MAT_FINAL_ASSEMBLY));
   *done = (PetscBool)(changes == 0 && BlocksError(b, rhs) <= tolerance);
-  if (!*done) {
-    for (PetscInt i = 0; i < positions; ++i) rhs[i] *= -1.0;
-    for (PetscInt A = 0; A < 2 * b->n + 1; ++A) rhs[positions + A] = b->active[A] ? b->result.gap[A] : 0.0;
-    PetscCall(BlocksFactorAndSolve(K, size, rhs, solution));
+  for (PetscInt i = 0; i < positions; ++i) rhs[i] *= b->held[i / 2][i % 2] ? 0.0 : -1.0;
+  for (PetscInt A = 0; A < 2 * b->n + 1; ++A) rhs[positions + A] = b->active[A] ? b->result.gap[A] : 0.0;
+  PetscFunctionReturn(0);
+}
+
+/* One Newton step, or none where the residuals are below `tolerance` or an element is inside out (not valid). */
+static inline PetscErrorCode BlocksIterate(Blocks *b, PetscReal tolerance, PetscBool *valid, PetscBool *done)
+{
+  const PetscInt size = 2 * b->node_count + 2 * b->n + 1;
+  PetscReal *rhs, *solution;
+  Mat K;
+
+  PetscFunctionBeginUser;
+  *done = PETSC_FALSE;
+  PetscCall(PetscCalloc2(size, &rhs, size, &solution));
+  PetscCall(BlocksMatrix(b, size, &K));
+  PetscCall(BlocksAssemble(b, tolerance, K, rhs, valid, done));
+  if (*valid && !*done) {
+    PetscCall(BlocksFactorAndSolve(K, size, rhs, solution, &b->negative));
     BlocksStep(b, solution);
   }
   PetscCall(MatDestroy(&K));
@@ -260,17 +408,28 @@ static inline PetscErrorCode BlocksIterate(Blocks *b, PetscReal tolerance, Petsc
   PetscFunctionReturn(0);
 }
 
-/* Newton's method with active sets from the present positions and multipliers; an error where it does not converge. */
-static inline PetscErrorCode BlocksSolve(Blocks *b, PetscReal tolerance, PetscInt *iterations)
+/* Newton's method with active sets from the present positions and multipliers. */
+static inline PetscErrorCode BlocksTry(Blocks *b, PetscReal tolerance, PetscInt *iterations, PetscBool *converged)
 {
-  PetscBool done = PETSC_FALSE;
+  PetscBool valid = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  for (*iterations = 0; *iterations < BLOCKS_ITERATIONS; ++*iterations) {
-    PetscCall(BlocksIterate(b, tolerance, &done));
-    if (done) break;
+  *converged = PETSC_FALSE;
+  for (*iterations = 0; *iterations < BLOCKS_ITERATIONS && valid; ++*iterations) {
+    PetscCall(BlocksIterate(b, tolerance, &valid, converged));
+    if (*converged) break;
   }
-  PetscCheck(done, PETSC_COMM_SELF, PETSC_ERR_CONV_FAILED, "no contact equilibrium of the blocks in %d iterations",
+  PetscFunctionReturn(0);
+}
+
+/* The same; an error where it does not converge. */
+static inline PetscErrorCode BlocksSolve(Blocks *b, PetscReal tolerance, PetscInt *iterations)
+{
+  PetscBool converged;
+
+  PetscFunctionBeginUser;
+  PetscCall(BlocksTry(b, tolerance, iterations, &converged));
+  PetscCheck(converged, PETSC_COMM_SELF, PETSC_ERR_CONV_FAILED, "no contact equilibrium of the blocks in %d iterations",
              BLOCKS_ITERATIONS);
   PetscFunctionReturn(0);
 }

@@ -83,12 +83,10 @@ static inline PetscErrorCode StripCreate(StripProblem *problem, Strip *strip)
   strip->problem = problem;
   PetscCall(BlocksCreate(nodes, problem->columns * problem->rows, 0, 0, &strip->blocks));
   strip->blocks.wall = problem->wall;
+  strip->blocks.fibre[0] = cos(problem->psi);
+  strip->blocks.fibre[1] = sin(problem->psi);
   PetscCall(LamWallLawGet(problem->wall.law, &strip->blocks.law));
   PetscCall(BlocksAddGrid(&strip->blocks, problem->columns, problem->rows, StripPlace, problem, &first));
-  for (PetscInt e = 0; e < strip->blocks.element_count; ++e) { /* the pressures span the same for any fibre */
-    strip->blocks.geometry[e].fibre[0] = cos(problem->psi);
-    strip->blocks.geometry[e].fibre[1] = sin(problem->psi);
-  }
   PetscCall(StripConstrain(strip));
   PetscFunctionReturn(0);
 }
@@ -181,7 +179,7 @@ static inline PetscErrorCode StripIterate(Strip *strip, double tolerance, PetscB
   *done = (PetscBool)(largest <= tolerance);
   if (!*done) {
     PetscCall(MatPtAP(K, strip->prolongation, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &reduced));
-    PetscCall(BlocksFactorAndSolve(reduced, strip->size, residual, y));
+    PetscCall(BlocksFactorAndSolve(reduced, strip->size, residual, y, NULL));
     PetscCall(MatDestroy(&reduced));
     for (PetscInt i = 0; i < all; ++i) step[i] = strip->map[i] < 0 ? 0.0 : y[strip->map[i]];
     BlocksStep(&strip->blocks, step);
