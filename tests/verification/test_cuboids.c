@@ -1,0 +1,135 @@
+/* Two cuboids in contact under generalised shear (Mihai, Safar & Wyatt, Section 4.1). */
+#include "rve_fixture.h"
+#include "assert_near.h"
+#include "figures_cuboids.h"
+
+#define SHEAR 0.5
+#define N 12
+#define FINE 16
+#define PRESSURES 5
+
+static const double pressures[PRESSURES] = {0.0, 0.01, 0.02, 0.05, 0.1}; /* MPa */
+static CuboidsProfile unequal[PRESSURES];
+
+static CuboidsProfile Profile(CuboidsSetup setup)
+{
+  CuboidsProfile profile;
+  Cuboids cuboids;
+
+  assert_int_equal(CuboidsCompute(&setup, &cuboids, &profile), 0);
+  assert_int_equal(CuboidsDestroy(&cuboids), 0);
+  return profile;
+}
+
+static int Solve(void **state)
+{
+  for (int k = 0; k < PRESSURES; k++) unequal[k] = Profile(CuboidsUnequal(N, SHEAR, pressures[k]));
+  return 0;
+}
+
+static void LargestGapIsConvergedTo2PerCent(void **state)
+{
+  const CuboidsProfile fine = Profile(CuboidsUnequal(FINE, SHEAR, pressures[1]));
+
+  assert_near(unequal[1].largest / fine.largest, 1.0, 0.02);
+}
+
+static void GapOpensWhereFibresAreOfUnequalStiffness(void **state)
+{
+  const CuboidsProfile equal = Profile(CuboidsDefault(N, SHEAR, 0.0));
+
+  assert_true(unequal[0].largest > 5.0 * equal.largest);
+  assert_true(unequal[0].apart > 0.3);
+}
+
+static void PressureClosesTheGap(void **state)
+{
+  for (int k = 1; k < PRESSURES; k++) assert_true(unequal[k].area < unequal[k - 1].area);
+  assert_true(unequal[PRESSURES - 1].largest < 0.02 * unequal[0].largest);
+}
+
+/* Turning the blocks upside down turns the sign of the shear. */
+static void OppositeShearTurnsTheGapUpsideDown(void **state)
+{
+  const CuboidsProfile opposite = Profile(CuboidsUnequal(N, -SHEAR, pressures[1]));
+
+  for (int k = 0; k < CUBOIDS_SAMPLES; k++) assert_near(opposite.gap[CUBOIDS_SAMPLES - 1 - k], unequal[1].gap[k], 1e-8);
+}
+
+/* Mirrored from left to right, the other body is the slave. */
+static void ChoiceOfTheSlaveDoesNotMatter(void **state)
+{
+  CuboidsSetup setup = CuboidsUnequal(N, -SHEAR, 0.0);
+  const LamWall left = setup.wall[0];
+  CuboidsProfile mirrored;
+
+  setup.wall[0] = setup.wall[1];
+  setup.wall[1] = left;
+  mirrored = Profile(setup);
+  assert_near(mirrored.largest / unequal[0].largest, 1.0, 0.02);
+  assert_near(mirrored.area / unequal[0].area, 1.0, 0.02);
+}
+
+/* Grips, pressure on the outer side and the pressure that the contact gives to the left body. */
+static void ForcesBalanceAcrossTheInterface(void **state)
+{
+  CuboidsSetup setup = CuboidsUnequal(N, SHEAR, 0.02);
+  CuboidsProfile profile;
+  Cuboids cuboids;
+  double left[2], right[2], contact[2];
+
+  assert_int_equal(CuboidsCompute(&setup, &cuboids, &profile), 0);
+  assert_int_equal(CuboidsGripForce(&cuboids, 0, left), 0);
+  assert_int_equal(CuboidsGripForce(&cuboids, 1, right), 0);
+  CuboidsContactForce(&cuboids, contact);
+  for (int d = 0; d < 2; d++) assert_near(left[d] + right[d], 0.0, 1e-8);
+  assert_near(left[0] + contact[0] + setup.pressure, 0.0, 0.01 * setup.pressure);
+  assert_near(left[1] + contact[1] - setup.pressure * SHEAR, 0.0, 0.01 * setup.pressure);
+  assert_int_equal(CuboidsDestroy(&cuboids), 0);
+}
+
+/* Up to pressure over bulk modulus, here a tenth of the default. */
+static void CohesionActsAsPressure(void **state)
+{
+  CuboidsSetup setup = CuboidsUnequal(N, SHEAR, pressures[2]);
+  CuboidsProfile pressed, held;
+
+  setup.wall[0].bulk_modulus = setup.wall[1].bulk_modulus = 1e4;
+  pressed = Profile(setup);
+  setup.cohesion = setup.pressure;
+  setup.pressure = 0.0;
+  held = Profile(setup);
+  assert_near(CuboidsGapError(&held, &pressed), 0.0, 4e-3);
+}
+
+/* Faces without traction let the blocks thin along X3 and press on each other. */
+static void FreedomAlongX3ClosesTheGap(void **state)
+{
+  CuboidsSetup setup = CuboidsUnequal(N, 0.2, 0.0);
+  CuboidsProfile strain = Profile(setup), stress;
+
+  setup.plane_stress = PETSC_TRUE;
+  stress = Profile(setup);
+  assert_true(stress.largest < 0.1 * strain.largest);
+}
+
+static int Run(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(LargestGapIsConvergedTo2PerCent),
+      cmocka_unit_test(GapOpensWhereFibresAreOfUnequalStiffness),
+      cmocka_unit_test(PressureClosesTheGap),
+      cmocka_unit_test(OppositeShearTurnsTheGapUpsideDown),
+      cmocka_unit_test(ChoiceOfTheSlaveDoesNotMatter),
+      cmocka_unit_test(ForcesBalanceAcrossTheInterface),
+      cmocka_unit_test(CohesionActsAsPressure),
+      cmocka_unit_test(FreedomAlongX3ClosesTheGap),
+  };
+
+  return cmocka_run_group_tests(tests, Solve, NULL);
+}
+
+int main(int argc, char **argv)
+{
+  return RunWithPetsc(argc, argv, Run);
+}
