@@ -95,6 +95,13 @@ typedef struct {
   PetscReal cohesion; /* suction g on separated outer walls; 0 for bonded tissue */
 } LamLoad;
 
+/* What the tissue bears, in C1 + C2; NaN: not given. */
+typedef struct {
+  PetscReal wall;           /* Cauchy stress along a wall, averaged over its thickness and as long a stretch */
+  PetscReal lamella_normal; /* traction that parts bonded cells, averaged over a length of one wall thickness */
+  PetscReal lamella_shear;  /* likewise, along the face */
+} LamStrength;
+
 /* Box of states for `build`. */
 typedef struct {
   PetscReal stretch_min, stretch_max; /* principal logarithmic strains */
@@ -131,7 +138,8 @@ typedef struct {
   PetscReal turgor;     /* of the tissue, where a load does not say otherwise; in C1 + C2 */
   PetscReal cohesion;   /* likewise */
   LamStrategy strategy; /* how contact is reached */
-  PetscReal accuracy;   /* wanted relative error of the effective stress */
+  LamStrength strength;
+  PetscReal accuracy; /* wanted relative error of the effective stress */
   PetscInt load_count;
   LamLoad *loads; /* ramps expanded: states 1..load_count; owned */
   PetscBool has_sample;
