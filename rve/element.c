@@ -432,3 +432,26 @@ void LamElementFields(const LamElementGeometry *geometry, const LamWallLaw *law,
     stress[g] = 0.5 * (s11 + s22) + PetscSqrtReal(0.25 * PetscSqr(s11 - s22) + s12 * s12);
   }
 }
+
+void LamElementWallPoints(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
+                          const PetscReal x[][2], PetscReal F33, LamWallPoint points[LAM_GAUSS])
+{
+  PetscReal F[LAM_GAUSS][4], theta[LAM_GAUSS];
+  LamElementStress local = {0};
+
+  (void)Kinematics(geometry, x, F33, F, theta);
+  (void)Pressures(geometry, wall, theta, &local);
+  for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
+    const PetscReal w = geometry->weight[g];
+    PetscReal P[4], A[4][4], Fm[2], tm[2];
+    const PetscReal I4 = FibreStretch(geometry, F[g], Fm);
+
+    points[g].energy = PointStress(geometry, g, law, wall, F[g], F33, &local, P, A);
+    points[g].reference = w;
+    points[g].volume = w * F33 * Det(F[g]);
+    points[g].stretch = w * PetscSqrtReal(I4);
+    /* w J sigma = (w P) F^T; m = Fm / |Fm| */
+    for (PetscInt k = 0; k < 2; ++k) tm[k] = (Fm[0] * F[g][k] + Fm[1] * F[g][2 + k]) / I4; /* F^T m / |Fm| */
+    points[g].tension = Fm[0] * (P[0] * tm[0] + P[1] * tm[1]) + Fm[1] * (P[2] * tm[0] + P[3] * tm[1]);
+  }
+}

@@ -77,6 +77,16 @@ void LamElementStretch33(const LamElementGeometry *geometry, const LamWallLaw *l
 void LamElementFields(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
                       const PetscReal x[][2], PetscReal F33, PetscReal fibre[LAM_GAUSS], PetscReal stress[LAM_GAUSS]);
 
+/* What a Gauss point adds to integrals over the wall, per reference thickness. */
+typedef struct {
+  PetscReal reference, volume; /* reference and current volume */
+  PetscReal stretch;           /* int sqrt(I4) dV, reference */
+  PetscReal energy;            /* int W_matrix + W_fibre dV, reference */
+  PetscReal tension;           /* int m.sigma m dv, current, m the current direction of the fibre, sigma Cauchy */
+} LamWallPoint;
+void LamElementWallPoints(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
+                          const PetscReal x[][2], PetscReal F33, LamWallPoint points[LAM_GAUSS]);
+
 /* Nine-node shape functions and their derivatives at (xi, eta) in [-1, 1]^2; node order of LamMesh. */
 void LamShape(PetscReal xi, PetscReal eta, PetscReal N[9], PetscReal dN[9][2]);
 

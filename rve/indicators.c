@@ -23,7 +23,8 @@ typedef struct {
 
 typedef struct {
   FamilySums family[3];
-  PetscReal max_gap, max_penetration, max_traction;
+  PetscReal max_gap, max_penetration;
+  LamLargestMean traction;
   PetscReal fabric[3], jumps[3];
 } Sums;
 
@@ -136,8 +137,7 @@ static PetscErrorCode AddFace(LamRVE rve, const LamLoad *load, PetscInt f, Sums 
   LamContact *contact = rve->contact;
   const PetscInt count = rve->mesh.along * WINDOW_SAMPLES;
   const PetscReal *lambda = &contact->lambda[f * contact->hats];
-  const PetscReal window = LamFaceThickness(rve, contact->faces[f].cell, contact->faces[f].other) * (PetscReal)count /
-                           (2.0 / PetscSqrtReal(3.0));
+  const PetscReal thickness = LamFaceThickness(rve, contact->faces[f].cell, contact->faces[f].other);
   FamilySums *family = &sums->family[contact->faces[f].face];
   const LamMortarSegments *segments = &contact->segments;
   PetscReal(*x)[2], *force, *length, J0 = 0.0;
@@ -158,7 +158,7 @@ static PetscErrorCode AddFace(LamRVE rve, const LamLoad *load, PetscInt f, Sums 
   family->force += force[count];
   if (segments->count == 0) family->open += J0;
   AddJumps(&chains, contact->hats, (const PetscReal(*)[2])x, sums->jumps);
-  sums->max_traction = PetscMax(sums->max_traction, LamLargestWindowMean(count, window, force, length));
+  LamTakeLargestMean(thickness, contact->faces[f].cell, contact->faces[f].face, count, force, length, &sums->traction);
   for (PetscInt j = 0; j < contact->hats; ++j) {
     const PetscInt h = f * contact->hats + j;
 
@@ -277,7 +277,7 @@ static PetscErrorCode CountClusters(LamRVE rve, LamResponse *response)
 
 PetscErrorCode LamContactIndicators(LamRVE rve, const LamLoad *load, LamResponse *response)
 {
-  Sums sums = {.max_gap = -PETSC_MAX_REAL, .max_traction = -PETSC_MAX_REAL};
+  Sums sums = {.max_gap = -PETSC_MAX_REAL, .traction = LAM_NO_MEAN};
   PetscReal length = 0.0, closed = 0.0, open = 0.0, gap = 0.0;
 
   PetscFunctionBeginUser;
@@ -299,7 +299,9 @@ PetscErrorCode LamContactIndicators(LamRVE rve, const LamLoad *load, LamResponse
   response->mean_gap = gap / length;
   response->max_gap = sums.max_gap > -PETSC_MAX_REAL ? PetscMax(0.0, sums.max_gap) : NAN;
   response->max_penetration = PetscMax(response->max_penetration, sums.max_penetration);
-  response->max_traction = sums.max_traction;
+  response->max_traction = sums.traction.value;
+  PetscCall(PetscArraycpy(response->normal_place, sums.traction.place, 3));
+  response->max_lamella_shear = 0.0; /* there is no friction */
   for (PetscInt i = 0; i < 3; ++i) {
     response->fabric[i] = sums.fabric[i] / length;
     response->opening_moment[i] = sums.jumps[i] / length;

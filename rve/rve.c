@@ -221,11 +221,12 @@ static PetscErrorCode FillFields(LamRVE rve, const LamLoad *load, LamResponse *r
 {
   PetscFunctionBeginUser;
   PetscCall(LamHomogenise(rve, load, response));
+  PetscCall(LamWallMeasures(rve, load, response));
   if (rve->contact) {
     PetscCall(LamContactIndicators(rve, load, response));
     PetscFunctionReturn(0);
   }
-  PetscCall(LamFaceTractions(rve, load, response->mean_face_traction, &response->max_traction));
+  PetscCall(LamFaceTractions(rve, load, response));
   PetscCall(LamBondedIndicators(rve, load, response));
   PetscFunctionReturn(0);
 }

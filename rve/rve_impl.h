@@ -13,7 +13,8 @@
     contact_start.c contact_try.c contact_path.c      starts, judging a solution, ways to it
     lumen.c overlap.c    lumens whose walls have met, cells that lie in each other
     homogenise.c         stress, tangent and couplings by static condensation
-    traction.c           interface tractions of bonded faces
+    traction.c           largest means along faces; interface tractions of bonded faces
+    failure.c            stretch, energy and tension of the walls
     indicators.c interface.c              how far cells have come apart; gaps and pressures for pictures
 
   Unknowns are the current positions y of node classes; class 0 is held, so unknown = 2 (class - 1) + component.
@@ -271,14 +272,26 @@ PetscErrorCode LamCollapseReason(PetscInt cell, char reason[], size_t length);
 PetscErrorCode LamFindOverlap(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscReal *depth,
                               PetscInt pair[2]);
 
-/* ---- homogenise.c, traction.c ---- */
+/* ---- homogenise.c, traction.c, failure.c ---- */
 /* Fills energy, P, tangent, couplings and lumen fraction from rve->y and the factored consistent tangent. */
 PetscErrorCode LamHomogenise(LamRVE rve, const LamLoad *load, LamResponse *response);
-/* Largest mean force per length over windows of `window` sub-intervals (at most the whole face), from running integrals
-   [count + 1]. */
-PetscReal LamLargestWindowMean(PetscInt count, PetscReal window, const PetscReal force[], const PetscReal length[]);
-/* Mean normal traction per face family and the largest one averaged over a wall thickness (Cauchy). */
-PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, PetscReal mean[3], PetscReal *largest);
+/* The largest mean over a stretch of a face that is as long as the wall of its cell is thick, and where it is. */
+typedef struct {
+  PetscReal value;
+  PetscReal place[3]; /* cell, face, middle of the stretch as a share of the face, counter-clockwise around the cell */
+} LamLargestMean;
+#define LAM_NO_MEAN                                                                                                    \
+  {                                                                                                                    \
+    .value = -PETSC_MAX_REAL, .place = { NAN, NAN, NAN }                                                               \
+  }
+/* Takes a face into account, with windows of length `thickness`: running integrals [count + 1] over equal sub-intervals
+   of its reference length. */
+void LamTakeLargestMean(PetscReal thickness, PetscInt cell, PetscInt face, PetscInt count, const PetscReal integral[],
+                        const PetscReal length[], LamLargestMean *largest);
+/* Bonded tissue: mean normal traction per face family, largest normal and shear traction (Cauchy) and their places. */
+PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, LamResponse *response);
+/* Fills the measures of the walls from rve->y. */
+PetscErrorCode LamWallMeasures(LamRVE rve, const LamLoad *load, LamResponse *response);
 
 /* ---- indicators.c ---- */
 /* Fills the debonding indicators from rve->y and the multipliers; of contact tissue the tractions, too. */

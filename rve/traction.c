@@ -5,8 +5,8 @@
   exerts. Where three cells meet, the forces f_A, f_B, f_C (sum zero) are shared among the three faces by the split of
   least norm, t_AB = (f_A - f_B)/3. The traction field t = sum N_j t_j on the face solves the mass system
   int N_i N_j ds t_j = f_i on the current quadratic edges, so it carries the nodal forces exactly. Normal component in
-  tension positive, per current length (Cauchy). Point values at the lumen corners diverge under refinement; averages
-  over a length of one wall thickness converge.
+  tension positive, shear component without sign, per current length (Cauchy). Point values at the lumen corners diverge
+  under refinement; averages over a length of one wall thickness converge.
 */
 #include "rve_impl.h"
 #include <petscblaslapack.h>
@@ -108,79 +108,122 @@ static PetscErrorCode FaceTraction(PetscInt along, const PetscReal x[][2], Petsc
   PetscFunctionReturn(0);
 }
 
-/* Running integrals of normal traction and of current length at sample ends: [along*SAMPLES + 1]. */
-static void Accumulate(PetscInt along, const PetscReal x[][2], const PetscReal t[][2], PetscReal force[],
-                       PetscReal length[])
+/* Running integrals along a face at sample ends [along*SAMPLES + 1]. */
+typedef struct {
+  PetscReal *normal, *shear, *back; /* forces; back = -shear */
+  PetscReal *length;                /* current */
+} FaceSums;
+
+static void Accumulate(PetscInt along, const PetscReal x[][2], const PetscReal t[][2], FaceSums *sums)
 {
   const PetscReal half = 1.0 / SAMPLES; /* of a sub-interval */
 
-  force[0] = length[0] = 0.0;
+  sums->normal[0] = sums->shear[0] = sums->back[0] = sums->length[0] = 0.0;
   for (PetscInt e = 0; e < along; ++e)
     for (PetscInt s = 0; s < SAMPLES; ++s) {
       const PetscInt k = e * SAMPLES + s;
+      PetscReal tn = 0.0, ts = 0.0, ds = 0.0;
 
-      force[k + 1] = force[k];
-      length[k + 1] = length[k];
-      for (PetscInt side = -1; side <= 1; side += 2) { /* two Gauss points: exact for t.n, a cubic */
+      for (PetscInt side = -1; side <= 1; side += 2) { /* two Gauss points: exact for t.n and t.tangent, cubics */
         const PetscReal xi = -1.0 + half * (2.0 * (PetscReal)s + 1.0 + (PetscReal)side / PetscSqrtReal(3.0));
-        PetscReal N[3], tangent[2], tn = 0.0;
+        PetscReal N[3], tangent[2];
 
         EdgePoint(&x[2 * e], xi, N, tangent);
         /* outward normal times ds/dxi is (tangent_2, -tangent_1): the face runs counter-clockwise around its cell */
-        for (PetscInt i = 0; i < 3; ++i) tn += N[i] * (t[2 * e + i][0] * tangent[1] - t[2 * e + i][1] * tangent[0]);
-        force[k + 1] += half * tn;
-        length[k + 1] += half * PetscSqrtReal(tangent[0] * tangent[0] + tangent[1] * tangent[1]);
+        for (PetscInt i = 0; i < 3; ++i) {
+          tn += N[i] * (t[2 * e + i][0] * tangent[1] - t[2 * e + i][1] * tangent[0]);
+          ts += N[i] * (t[2 * e + i][0] * tangent[0] + t[2 * e + i][1] * tangent[1]);
+        }
+        ds += PetscSqrtReal(tangent[0] * tangent[0] + tangent[1] * tangent[1]);
       }
+      sums->normal[k + 1] = sums->normal[k] + half * tn;
+      sums->shear[k + 1] = sums->shear[k] + half * ts;
+      sums->back[k + 1] = -sums->shear[k + 1];
+      sums->length[k + 1] = sums->length[k] + half * ds;
     }
 }
 
-PetscReal LamLargestWindowMean(PetscInt count, PetscReal window, const PetscReal force[], const PetscReal length[])
+/* Value of a running integral at place s of the face, in sub-intervals. */
+static PetscReal RunningAt(PetscInt count, const PetscReal integral[], PetscReal s)
+{
+  const PetscInt k = PetscMin((PetscInt)s, count - 1);
+
+  return integral[k] + (s - (PetscReal)k) * (integral[k + 1] - integral[k]);
+}
+
+/* Largest mean over windows of `window` sub-intervals (at most the whole face), and the window's middle. Windows begin
+   or end at the ends of sub-intervals, so those flush with either end of the face are among them. */
+static PetscReal LargestWindowMean(PetscInt count, PetscReal window, const PetscReal integral[],
+                                   const PetscReal length[], PetscReal *middle)
 {
   PetscReal largest = -PETSC_MAX_REAL;
 
-  if (window >= (PetscReal)count) return force[count] / length[count];
-  for (PetscInt start = 0; (PetscReal)start + window <= (PetscReal)count; ++start) {
-    const PetscReal end = (PetscReal)start + window;
-    const PetscInt k = PetscMin((PetscInt)end, count - 1);
-    const PetscReal part = end - (PetscReal)k;
-    const PetscReal f = force[k] + part * (force[k + 1] - force[k]) - force[start];
-    const PetscReal l = length[k] + part * (length[k + 1] - length[k]) - length[start];
+  *middle = 0.5 * (PetscReal)count;
+  if (window >= (PetscReal)count) return integral[count] / length[count];
+  for (PetscInt k = 0; k <= count; ++k)
+    for (PetscInt side = -1; side <= 1; side += 2) {
+      const PetscReal other = (PetscReal)k + (PetscReal)side * window;
+      PetscReal mean;
 
-    largest = PetscMax(largest, f / l);
-  }
+      if (other < 0.0 || other > (PetscReal)count) continue;
+      mean = (RunningAt(count, integral, other) - integral[k]) / (RunningAt(count, length, other) - length[k]);
+      if (mean <= largest) continue;
+      largest = mean;
+      *middle = 0.5 * ((PetscReal)k + other);
+    }
   return largest;
 }
 
-PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, PetscReal mean[3], PetscReal *largest)
+void LamTakeLargestMean(PetscReal thickness, PetscInt cell, PetscInt face, PetscInt count, const PetscReal integral[],
+                        const PetscReal length[], LamLargestMean *largest)
+{
+  const PetscReal window = thickness * (PetscReal)count / (2.0 / PetscSqrtReal(3.0));
+  PetscReal middle;
+  const PetscReal mean = LargestWindowMean(count, window, integral, length, &middle);
+
+  /* faces that symmetry makes alike differ by rounding: the first of them is named */
+  if (mean <= largest->value + 1e-10 * PetscAbsReal(largest->value)) return;
+  *largest = (LamLargestMean){mean, {(PetscReal)cell, (PetscReal)face, middle / (PetscReal)count}};
+}
+
+PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, LamResponse *response)
 {
   const PetscInt along = rve->mesh.along, n = 2 * along + 1, count = along * SAMPLES;
-  PetscReal *force, (*x)[2], (*t)[2], *M, *b, *F, *L;
+  PetscReal *force, (*x)[2], (*t)[2], *M, *b;
+  LamLargestMean normal = LAM_NO_MEAN, shear = LAM_NO_MEAN;
+  FaceSums sums;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc5(2 * rve->mesh.node_count, &force, n, &x, n, &t, n * n, &M, 2 * n, &b));
-  PetscCall(PetscMalloc2(count + 1, &F, count + 1, &L));
+  PetscCall(
+      PetscMalloc4(count + 1, &sums.normal, count + 1, &sums.shear, count + 1, &sums.back, count + 1, &sums.length));
   PetscCall(NodeForces(rve, load, force));
-  *largest = -PETSC_MAX_REAL;
   for (PetscInt face = 0; face < 3; ++face) {
     PetscReal total = 0.0, length = 0.0;
 
     for (PetscInt cell = 0; cell < rve->mesh.cell_count; ++cell) {
       const PetscReal *image;
       const PetscInt other = LamMeshNeighbour(&rve->mesh, cell, face, &image);
-      PetscReal window;
+      PetscReal thickness;
 
       if (other < 0) continue;
-      window = LamFaceThickness(rve, cell, other) * (PetscReal)count / (2.0 / PetscSqrtReal(3.0));
+      thickness = LamFaceThickness(rve, cell, other);
       FaceLoads(rve, load, force, cell, face, x, t);
       PetscCall(FaceTraction(along, (const PetscReal(*)[2])x, t, M, b));
-      Accumulate(along, (const PetscReal(*)[2])x, (const PetscReal(*)[2])t, F, L);
-      total += F[count];
-      length += L[count];
-      *largest = PetscMax(*largest, LamLargestWindowMean(count, window, F, L));
+      Accumulate(along, (const PetscReal(*)[2])x, (const PetscReal(*)[2])t, &sums);
+      total += sums.normal[count];
+      length += sums.length[count];
+      LamTakeLargestMean(thickness, cell, face, count, sums.normal, sums.length, &normal);
+      LamTakeLargestMean(thickness, cell, face, count, sums.shear, sums.length, &shear);
+      LamTakeLargestMean(thickness, cell, face, count, sums.back, sums.length, &shear);
     }
-    mean[face] = length > 0.0 ? total / length : NAN; /* a narrow patch may lack a family */
+    response->mean_face_traction[face] = length > 0.0 ? total / length : NAN; /* a narrow patch may lack a family */
   }
+  response->max_traction = normal.value;
+  response->max_lamella_shear = shear.value;
+  PetscCall(PetscArraycpy(response->normal_place, normal.place, 3));
+  PetscCall(PetscArraycpy(response->shear_place, shear.place, 3));
   PetscCall(PetscFree5(force, x, t, M, b));
-  PetscCall(PetscFree2(F, L));
+  PetscCall(PetscFree4(sums.normal, sums.shear, sums.back, sums.length));
   PetscFunctionReturn(0);
 }

@@ -56,6 +56,27 @@ static void CopyContact(const LamResponse *record, const PetscInt face[3], LamRe
   r->percolating_directions = record->percolating_directions;
 }
 
+/* What walls and lamella bear, at the record's own state; places and the fabric hold only in its own orientation. */
+static void CopyLoads(const LamResponse *record, const PetscInt face[3], LamResponse *r)
+{
+  r->max_traction = record->max_traction;
+  r->max_lamella_shear = record->max_lamella_shear;
+  r->max_fibre_stretch = record->max_fibre_stretch;
+  r->max_wall_energy = record->max_wall_energy;
+  r->max_wall_tension = record->max_wall_tension;
+  r->net_wall_tension = record->net_wall_tension;
+  for (int k = 0; k < 3; k++) {
+    r->mean_face_traction[k] = record->mean_face_traction[face[k]];
+    r->mean_wall_tension[k] = record->mean_wall_tension[face[k]];
+    if (!SameF(&record->load, &r->load)) continue;
+    r->fabric[k] = record->fabric[k];
+    r->opening_moment[k] = record->opening_moment[k];
+    r->normal_place[k] = record->normal_place[k];
+    r->shear_place[k] = record->shear_place[k];
+    r->wall_place[k] = record->wall_place[k];
+  }
+}
+
 void LamIndicatorsCopy(const LamResponse *record, const PetscInt face[3], PetscBool own, LamInterfaceLawType interface,
                        LamResponse *r)
 {
@@ -65,12 +86,7 @@ void LamIndicatorsCopy(const LamResponse *record, const PetscInt face[3], PetscB
     CopyContact(record, face, r);
   else
     r->floating_cells = r->zero_modes = r->cell_clusters = r->percolating_directions = LAM_UNKNOWN_COUNT;
-  if (own) r->max_traction = record->max_traction;
-  for (int k = 0; k < 3 && own; k++) {
-    r->mean_face_traction[k] = record->mean_face_traction[face[k]];
-    r->fabric[k] = SameF(&record->load, &r->load) ? record->fabric[k] : NAN;
-    r->opening_moment[k] = SameF(&record->load, &r->load) ? record->opening_moment[k] : NAN;
-  }
+  if (own) CopyLoads(record, face, r);
   r->lowest_eigenvalue = record->lowest_eigenvalue;
   r->negative_eigenvalues = record->negative_eigenvalues;
   r->stable = record->stable;

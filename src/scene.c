@@ -40,6 +40,7 @@ static PetscErrorCode SceneBuild(LamDocument *document, LamScene *scene)
   PetscCall(LamDocumentParse(document->name, document->text, document));
   PetscCall(LamSceneCheckKeys(document));
   PetscCall(LamSceneBuildRVE(document, scene));
+  PetscCall(LamSceneBuildStrength(document, scene));
   PetscCall(LamSceneBuildLoad(document, scene));
   PetscCall(LamSceneBuildSample(document, scene));
   PetscCall(LamSceneBuildMacro(document, scene));

@@ -153,6 +153,16 @@ const LamKey LamKeys[] = {
      .help = "How contact is reached: from the bonded state (`two_step`) or at once (`one_step`). No effect on bonded "
              "tissue."},
 
+    {MAP("strength"), .default_words = "not known: no verdict that needs it",
+     .example = "{wall: 0.5 MPa, lamella_normal: 0.02 MPa, lamella_shear: 0.05 MPa}",
+     .help = "What the tissue bears, for `lamella rve --failure`."},
+    {STRESS("strength.wall"), ABOVE(0), .default_words = "not known", .example = "0.5 MPa",
+     .help = "Cauchy stress along a wall at which it tears, averaged over the wall's thickness and as long a stretch."},
+    {STRESS("strength.lamella_normal"), ABOVE(0), .default_words = "not known", .example = "0.02 MPa",
+     .help = "Normal traction, averaged over one wall thickness, that parts bonded cells; contact has its cohesion."},
+    {STRESS("strength.lamella_shear"), ABOVE(0), .default_words = "not known", .example = "0.05 MPa",
+     .help = "Shear traction, likewise, that parts bonded cells."},
+
     {LIST("load"), .example = "[{F: [[1, 0.1], [0, 1]]}]",
      .help = "States for `lamella rve`, numbered from 1, each starting from the one before."},
     {MAP("load[]"), .example = "{F: [[1, 0.1], [0, 1]]}", .help = "One state (`F`) or several (`ramp`)."},

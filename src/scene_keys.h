@@ -84,6 +84,7 @@ PetscErrorCode LamSceneGet(const LamNode *base, const char path[], const LamNode
 
 /* The parts of a scene, in this order. */
 PetscErrorCode LamSceneBuildRVE(const LamDocument *document, LamScene *scene);
+PetscErrorCode LamSceneBuildStrength(const LamDocument *document, LamScene *scene);
 PetscErrorCode LamSceneBuildLoad(const LamDocument *document, LamScene *scene);
 PetscErrorCode LamSceneBuildSample(const LamDocument *document, LamScene *scene);
 PetscErrorCode LamSceneBuildMacro(const LamDocument *document, LamScene *scene);

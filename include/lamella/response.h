@@ -61,8 +61,17 @@ typedef struct {
   /* mean over the interface length of jump(x)jump where walls have come apart, apothems^2: 11, 22, 12; jump: between
      points that were one. Its first axis is the direction in which cells come apart */
   PetscReal opening_moment[3];
-  PetscReal max_traction;          /* largest normal Cauchy traction averaged over one wall thickness, tension > 0 */
+  PetscReal max_traction;      /* largest normal Cauchy traction averaged over one wall thickness, tension > 0 */
+  PetscReal normal_place[3];   /* of max_traction: cell, face, place along the face in [0, 1] */
+  PetscReal max_lamella_shear; /* the same of the shear traction, without sign; 0 for contact tissue */
+  PetscReal shear_place[3];
   PetscReal mean_face_traction[3]; /* mean normal Cauchy traction per face family, tension > 0 */
+  /* walls, averaged over the whole thickness t of a wall and a length t along it: fibre stretch, energy density
+     without U, Cauchy stress along the fibre; the largest such means */
+  PetscReal max_fibre_stretch, max_wall_energy, max_wall_tension;
+  PetscReal wall_place[3];         /* of max_wall_tension: cell, face 0..5, place along the face in [0, 1] */
+  PetscReal mean_wall_tension[3];  /* Cauchy stress along the fibre, mean over the walls of a face family */
+  PetscReal net_wall_tension;      /* mean over all walls of that stress + turgor of the cell: 0, the walls are slack */
   PetscReal lowest_eigenvalue;     /* estimate of the softest mode where it was computed (unstable states), else NaN */
   PetscInt floating_cells;         /* cells without any contact */
   PetscInt zero_modes;             /* motions of the cells that change no energy: cells slide or spin free */

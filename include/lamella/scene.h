@@ -138,8 +138,8 @@ typedef struct {
   PetscReal turgor;     /* of the tissue, where a load does not say otherwise; in C1 + C2 */
   PetscReal cohesion;   /* likewise */
   LamStrategy strategy; /* how contact is reached */
-  LamStrength strength;
-  PetscReal accuracy; /* wanted relative error of the effective stress */
+  LamStrength strength; /* what walls and lamella bear */
+  PetscReal accuracy;   /* wanted relative error of the effective stress */
   PetscInt load_count;
   LamLoad *loads; /* ramps expanded: states 1..load_count; owned */
   PetscBool has_sample;

@@ -4,18 +4,19 @@
   The states depend on one another: each starts from the last one that has an answer. So rank 0 solves the chain;
   further ranks help it to factor the matrices of large RVEs, else they wait.
 */
-#include "onset.h"
+#include "failure.h"
 #include <petsctime.h>
 #include <string.h>
 
 typedef struct {
   const char *scene_path, *out_path;
-  PetscBool json, tangent, monitor, quiet, second_mesh, find_onset;
+  PetscBool json, tangent, monitor, quiet, second_mesh, find_onset, find_failure;
 
   LamScene *scene;
   LamMeshes meshes; /* the scene's, and with --second-mesh a finer one */
   LamRVEMesh mesh;  /* of the scene's */
   LamOnset onset;
+  LamFailure failure;
   LamRecordWriter writer; /* NULL without -o */
   LamProgress progress;
   PetscInt solved, failed;
@@ -171,6 +172,7 @@ static PetscErrorCode Tell(Run *run, PetscInt number, const LamResponse response
   }
   PetscCall(LamPrintResponseRow(&responses[0], scales, run->scene->micro.interface, number));
   if (run->second_mesh) PrintSecondMesh(responses);
+  if (run->find_failure) PetscCall(LamFailurePrintState(&responses[0], &run->scene->strength, scales));
   if (run->tangent) PrintTangent(&responses[0], scales->stress * 1e-6);
   PetscFunctionReturn(0);
 }
@@ -202,6 +204,7 @@ static PetscBool OptionsFit(const Run *run)
 
 static PetscErrorCode Prepare(Run *run)
 {
+  const PetscBool contact = (PetscBool)(run->scene->micro.interface == LAM_INTERFACE_CONTACT);
   LamPlan plan;
 
   PetscFunctionBeginUser;
@@ -209,11 +212,20 @@ static PetscErrorCode Prepare(Run *run)
              "%s: has no block `load`, which says what states to solve", run->scene_path);
   PetscCall(LamPlanMake(run->scene, &plan));
   run->scene->micro = plan.micro;
+  if (run->find_failure && contact) run->second_mesh = PETSC_TRUE; /* separation is judged on two */
   PetscCall(LamMeshesCreate(plan.unknowns < LAM_PARALLEL_UNKNOWNS ? PETSC_COMM_SELF : PETSC_COMM_WORLD, run->scene,
                             run->second_mesh ? 2 : 1, &run->meshes));
   PetscCall(LamRVESetMonitor(run->meshes.rve[0], run->monitor));
   PetscCall(LamRVEGetMesh(run->meshes.rve[0], &run->mesh));
   if (run->find_onset) PetscCall(LamOnsetCreate(&run->meshes, &run->onset));
+  if (run->find_failure) {
+    const LamFailureProgram program = {.interface = run->scene->micro.interface,
+                                       .strength = &run->scene->strength,
+                                       .count = run->scene->load_count,
+                                       .loads = run->scene->loads};
+
+    PetscCall(LamFailureCreate(&run->meshes, &program, &run->failure));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -232,6 +244,7 @@ static PetscErrorCode SolveStates(Run *run)
     run->solved++;
     if (responses[0].status != LAM_CONVERGED) run->failed++;
     if (run->find_onset) PetscCall(LamOnsetWatch(&run->onset, &run->meshes, run->solved, responses));
+    if (run->find_failure) PetscCall(LamFailureWatch(&run->failure, &run->meshes, run->solved, responses));
     if (run->writer) PetscCall(WriteState(run, run->solved, &responses[0]));
     PetscCall(Tell(run, run->solved, responses));
     PetscCall(LamProgressUpdate(&run->progress, run->solved, run->failed));
@@ -244,6 +257,7 @@ static PetscErrorCode Destroy(Run *run)
 {
   PetscFunctionBeginUser;
   PetscCall(LamOnsetDestroy(&run->onset));
+  PetscCall(LamFailureDestroy(&run->failure));
   PetscCall(LamMeshesDestroy(&run->meshes));
   PetscCall(LamSceneDestroy(&run->scene));
   PetscFunctionReturn(0);
@@ -254,6 +268,14 @@ static PetscErrorCode FindOnset(Run *run)
   PetscFunctionBeginUser;
   PetscCall(LamOnsetFind(&run->onset, &run->meshes, run->scene->load_count));
   PetscCall(LamOnsetPrint(&run->onset, &run->scene->scales, run->json));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TellFailure(Run *run)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamFailureConclude(&run->failure));
+  PetscCall(LamFailurePrint(&run->failure, &run->scene->scales, run->json));
   PetscFunctionReturn(0);
 }
 
@@ -288,6 +310,7 @@ static PetscErrorCode RunOnRoot(Run *run, int *exit_status)
   }
   PetscCall(ierr);
   if (run->find_onset) PetscCall(FindOnset(run));
+  if (run->find_failure) PetscCall(TellFailure(run));
   PetscCall(TellEnd(run));
   *exit_status = ExitStatus(run);
   PetscCall(Destroy(run));
@@ -308,6 +331,9 @@ PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
       {0, "onset", LAM_OPTION_FLAG, NULL,
        "find where along the load the cells begin to separate, on two meshes (includes --second-mesh)",
        &run.find_onset},
+      {0, "failure", LAM_OPTION_FLAG, NULL,
+       "what walls and lamella bear, and how the tissue fails first along the load (contact: includes --second-mesh)",
+       &run.find_failure},
       {0, "monitor", LAM_OPTION_FLAG, NULL, "each Newton iteration on stderr", &run.monitor},
       {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &run.quiet},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
@@ -315,7 +341,7 @@ PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
 
   PetscFunctionBeginUser;
   PetscCall(LamOptionsParse(
-      args, "rve SCENE [-o OUT.h5] [--json] [--tangent] [--second-mesh] [--onset] [--monitor] [--quiet]",
+      args, "rve SCENE [-o OUT.h5] [--json] [--tangent] [--second-mesh] [--onset] [--failure] [--monitor] [--quiet]",
       "Solves the representative volume element along the scene's load.", options, 1, &run.scene_path, &done,
       exit_status));
   if (done) PetscFunctionReturn(0);

@@ -39,7 +39,7 @@ static PetscErrorCode TimeParts(LamRVE rve, const LamLoad *load, Times *median)
 {
   double t[5][REPEATS];
   LamResponse response;
-  PetscReal energy, mean[3], largest;
+  PetscReal energy;
   PetscInt negative;
   PetscBool ok, valid;
 
@@ -57,7 +57,7 @@ static PetscErrorCode TimeParts(LamRVE rve, const LamLoad *load, Times *median)
     PetscCall(LamResponseInit(load, &response));
     PetscCall(LamHomogenise(rve, load, &response));
     PetscCall(PetscTime(&a[4]));
-    PetscCall(LamFaceTractions(rve, load, mean, &largest));
+    PetscCall(LamFaceTractions(rve, load, &response));
     PetscCall(PetscTime(&a[5]));
     for (PetscInt i = 0; i < 5; ++i) t[i][k] = a[i + 1] - a[i];
   }

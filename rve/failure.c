@@ -1,0 +1,114 @@
+/*
+  How hard the walls are strained: what decides where they tear, and whether turgor still holds them taut.
+
+  Method. Integrals over the walls run along each face, through the whole thickness: the mitred element columns are
+  crossed by three Gauss points along the face, whose values, integrated through the thickness, are taken as a quadratic
+  function there. Means over a stretch as long as the wall is thick converge under refinement where point values at the
+  corners of the lumen do not.
+*/
+#include "rve_impl.h"
+
+#define SAMPLES 8 /* per element column: sub-intervals of the running integrals */
+
+enum { REFERENCE, VOLUME, STRETCH, ENERGY, TENSION, INTEGRALS };
+
+/* Running integrals along one face, [along * SAMPLES + 1] each. */
+typedef struct {
+  PetscReal *running[INTEGRALS];
+} WallSums;
+
+/* Integral of the quadratic function with value 1 at Gauss point g and 0 at the other two, from -1 to xi. */
+static PetscReal QuadraticIntegral(PetscInt g, PetscReal xi)
+{
+  const PetscReal r2 = 0.6, r = PetscSqrtReal(r2), cubic = (xi * xi * xi + 1.0) / 3.0;
+  const PetscReal square = 0.5 * (xi * xi - 1.0);
+
+  if (g == 1) return xi + 1.0 - cubic / r2;
+  return (cubic + (g == 0 ? -r : r) * square) / (2.0 * r2);
+}
+
+/* Share of the whole integral of Gauss point g along the face that lies before sub-interval s ends. */
+static void SetShares(PetscReal share[SAMPLES][3])
+{
+  for (PetscInt s = 0; s < SAMPLES; ++s)
+    for (PetscInt g = 0; g < 3; ++g)
+      share[s][g] = QuadraticIntegral(g, -1.0 + 2.0 * (PetscReal)(s + 1) / SAMPLES) / QuadraticIntegral(g, 1.0);
+}
+
+/* Integrals through the wall at the three Gauss points along the face of element column i. */
+static void SumThroughWall(LamRVE rve, const LamLoad *load, PetscInt cell, PetscInt face, PetscInt i,
+                           PetscReal column[3][INTEGRALS])
+{
+  for (PetscInt h = 0; h < 3; ++h)
+    for (PetscInt q = 0; q < INTEGRALS; ++q) column[h][q] = 0.0;
+  for (PetscInt m = 0; m < rve->mesh.through; ++m) {
+    const PetscInt e = LamMeshElement(&rve->mesh, cell, face, i, m);
+    PetscReal x[LAM_ELEMENT_NODES][2];
+    LamWallPoint points[LAM_GAUSS];
+
+    LamGatherElement(rve, load->F, rve->y, e, x);
+    LamElementWallPoints(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])x, load->F[8],
+                         points);
+    for (PetscInt g = 0; g < LAM_GAUSS; ++g) { /* g / 3 counts along the face, g % 3 through the wall */
+      PetscReal *sum = column[g / 3];
+
+      sum[REFERENCE] += points[g].reference;
+      sum[VOLUME] += points[g].volume;
+      sum[STRETCH] += points[g].stretch;
+      sum[ENERGY] += points[g].energy;
+      sum[TENSION] += points[g].tension;
+    }
+  }
+}
+
+static void SumAlongFace(LamRVE rve, const LamLoad *load, const PetscReal share[SAMPLES][3], PetscInt cell,
+                         PetscInt face, WallSums *sums)
+{
+  for (PetscInt q = 0; q < INTEGRALS; ++q) sums->running[q][0] = 0.0;
+  for (PetscInt i = 0; i < rve->mesh.along; ++i) {
+    PetscReal column[3][INTEGRALS];
+
+    SumThroughWall(rve, load, cell, face, i, column);
+    for (PetscInt q = 0; q < INTEGRALS; ++q) {
+      PetscReal *running = &sums->running[q][i * SAMPLES];
+
+      for (PetscInt s = 0; s < SAMPLES; ++s)
+        running[s + 1] =
+            running[0] + share[s][0] * column[0][q] + share[s][1] * column[1][q] + share[s][2] * column[2][q];
+    }
+  }
+}
+
+PetscErrorCode LamWallMeasures(LamRVE rve, const LamLoad *load, LamResponse *response)
+{
+  const PetscInt count = rve->mesh.along * SAMPLES;
+  PetscReal share[SAMPLES][3], tension[3] = {0.0, 0.0, 0.0}, volume[3] = {0.0, 0.0, 0.0}, net = 0.0, *work;
+  LamLargestMean stretch = LAM_NO_MEAN, energy = LAM_NO_MEAN, stress = LAM_NO_MEAN;
+  WallSums sums;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(INTEGRALS * (count + 1), &work));
+  for (PetscInt q = 0; q < INTEGRALS; ++q) sums.running[q] = &work[q * (count + 1)];
+  SetShares(share);
+  for (PetscInt cell = 0; cell < rve->mesh.cell_count; ++cell)
+    for (PetscInt face = 0; face < LAM_FACES; ++face) {
+      const PetscReal *reference = sums.running[REFERENCE], *current = sums.running[VOLUME];
+      const PetscReal *pull = sums.running[TENSION], thickness = LamFaceThickness(rve, cell, cell);
+
+      SumAlongFace(rve, load, (const PetscReal(*)[3])share, cell, face, &sums);
+      LamTakeLargestMean(thickness, cell, face, count, sums.running[STRETCH], reference, &stretch);
+      LamTakeLargestMean(thickness, cell, face, count, sums.running[ENERGY], reference, &energy);
+      LamTakeLargestMean(thickness, cell, face, count, pull, current, &stress);
+      tension[face % 3] += pull[count];
+      volume[face % 3] += current[count];
+      net += pull[count] + load->turgor * LamTurgorFactor(rve, cell) * current[count];
+    }
+  PetscCall(PetscFree(work));
+  response->max_fibre_stretch = stretch.value;
+  response->max_wall_energy = energy.value;
+  response->max_wall_tension = stress.value;
+  PetscCall(PetscArraycpy(response->wall_place, stress.place, 3));
+  for (PetscInt k = 0; k < 3; ++k) response->mean_wall_tension[k] = tension[k] / volume[k];
+  response->net_wall_tension = net / (volume[0] + volume[1] + volume[2]);
+  PetscFunctionReturn(0);
+}

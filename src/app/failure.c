@@ -1,0 +1,415 @@
+/*
+  Failure along a program of loads.
+
+  Method. The states are watched in order. Between the last one and a new one, each criterion that is reached at the new
+  one alone is bracketed to RESOLUTION of the way: the load in between, linear in F, turgor and cohesion, is solved from
+  the nearest known one below at which the criterion is not reached, because contact and stable branches are easier lost
+  than found again. Next points come from the secant of the excess, a little to that side of it where the bracket is
+  wide, and every third from halving, which is all that criteria without a continuous excess have. The end of a stable
+  branch is solved once more from the near side: a long step alone may leave a branch that goes on.
+
+  A state without an answer ends it; before, the way to it is halved APPROACHES times, for what is reached on it.
+*/
+#include "failure_criteria.h"
+
+const char *const LamFailureModeNames[] = {LAM_FAILURE_MODES(LAM_NAME_ENTRY)};
+const char *const LamCriterionNames[] = {LAM_CRITERIA(LAM_NAME_ENTRY)};
+
+#define RESOLUTION 1e-3 /* of the way between two states */
+#define APPROACHES 3
+#define ATTEMPTS 3 /* at an instability */
+
+static const LamStrength not_given = {NAN, NAN, NAN};
+
+/* A place on the way between two states at which everything is known. */
+typedef struct {
+  PetscReal share; /* of the way */
+  LamResponse responses[2];
+  LamRVEState states[2]; /* owned */
+} Point;
+
+/* The way from one state to the next. */
+typedef struct {
+  LamMeshes *meshes;
+  PetscReal from;  /* load factor at share 0 and ... */
+  PetscReal reach; /* ... the difference to it at share 1 */
+  LamLoad ends[2];
+} Way;
+
+LamFailureMode LamFailureModeOf(LamCriterion criterion)
+{
+  static const LamFailureMode modes[] = {[LAM_CRITERION_LAMELLA_NORMAL] = LAM_FAILURE_SEPARATION,
+                                         [LAM_CRITERION_LAMELLA_SHEAR] = LAM_FAILURE_SEPARATION,
+                                         [LAM_CRITERION_CONTACT] = LAM_FAILURE_SEPARATION,
+                                         [LAM_CRITERION_WALL] = LAM_FAILURE_RUPTURE,
+                                         [LAM_CRITERION_STABILITY] = LAM_FAILURE_BUCKLING,
+                                         [LAM_CRITERION_TURGOR] = LAM_FAILURE_TURGOR_LOSS,
+                                         [LAM_CRITERION_COUNT] = LAM_FAILURE_NONE};
+
+  return modes[criterion];
+}
+
+/* ---- points ---- */
+
+static PetscErrorCode PointCreate(const LamMeshes *meshes, Point *point)
+{
+  PetscFunctionBeginUser;
+  *point = (Point){0};
+  for (PetscInt m = 0; m < meshes->count; m++) PetscCall(LamRVEStateCreate(meshes->rve[m], &point->states[m]));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode PointDestroy(Point *point)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt m = 0; m < 2; m++) PetscCall(LamRVEStateDestroy(&point->states[m]));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CopyStates(const LamMeshes *meshes, const LamRVEState from[2], const LamRVEState to[2])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt m = 0; m < meshes->count; m++) PetscCall(LamRVEStateCopy(from[m], to[m]));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode PointCopy(const LamMeshes *meshes, const Point *from, Point *to)
+{
+  PetscFunctionBeginUser;
+  to->share = from->share;
+  for (PetscInt m = 0; m < 2; m++) to->responses[m] = from->responses[m];
+  PetscCall(CopyStates(meshes, from->states, to->states));
+  PetscFunctionReturn(0);
+}
+
+static LamLoad LoadAt(const Way *way, PetscReal share)
+{
+  const LamLoad *a = &way->ends[0], *b = &way->ends[1];
+  LamLoad load;
+
+  for (int i = 0; i < 9; i++) load.F[i] = (1 - share) * a->F[i] + share * b->F[i];
+  load.turgor = (1 - share) * a->turgor + share * b->turgor;
+  load.cohesion = (1 - share) * a->cohesion + share * b->cohesion;
+  return load;
+}
+
+/* One mesh speaks for both. */
+static void Complete(const LamMeshes *meshes, LamResponse responses[2])
+{
+  if (meshes->count < 2) responses[1] = responses[0];
+}
+
+/* Solves at a share of the way from the states of `start`; known: it has an answer. */
+static PetscErrorCode SolveAt(const Way *way, const Point *start, PetscReal share, Point *point, PetscBool *known)
+{
+  LamMeshes *meshes = way->meshes;
+  const LamLoad load = LoadAt(way, share);
+
+  PetscFunctionBeginUser;
+  PetscCall(CopyStates(meshes, start->states, meshes->state));
+  PetscCall(LamMeshesSolve(meshes, &load, point->responses));
+  Complete(meshes, point->responses);
+  PetscCall(CopyStates(meshes, meshes->state, point->states));
+  point->share = share;
+  *known = LamHaveFields(point->responses);
+  PetscFunctionReturn(0);
+}
+
+/* ---- one criterion on the way between two states ---- */
+
+/* Bracket of one criterion. */
+typedef struct {
+  LamCriterion criterion;
+  Point *low;  /* not reached */
+  Point *high; /* reached */
+  PetscReal excess[2];
+  PetscInt tries;
+} Search;
+
+static PetscReal ExcessOf(const LamFailure *failure, const Search *search, const Point *point)
+{
+  return LamCriterionExcess(search->criterion, failure, search->low->responses, point->responses);
+}
+
+/* Where to look next. The secant converges from one side; half a resolution beyond it, the bracket closes. */
+static PetscReal NextShare(const Search *search)
+{
+  const PetscReal low = search->low->share, high = search->high->share, middle = 0.5 * (low + high);
+  const PetscReal secant = low + (high - low) * search->excess[0] / (search->excess[0] - search->excess[1]);
+  const PetscReal beyond = 0.45 * RESOLUTION * (secant - low < high - secant ? 1 : -1);
+
+  if (search->tries % 3 == 2 || search->criterion == LAM_CRITERION_CONTACT ||
+      search->criterion == LAM_CRITERION_STABILITY)
+    return middle;
+  return PetscMin(PetscMax(secant + beyond, low + 0.1 * RESOLUTION), high - 0.1 * RESOLUTION);
+}
+
+/* Narrows the bracket; *known is PETSC_FALSE where a load in it has no answer. */
+static PetscErrorCode Narrow(LamFailure *failure, const Way *way, Search *search, Point *point, PetscBool *known)
+{
+  PetscFunctionBeginUser;
+  *known = PETSC_TRUE;
+  while (search->high->share - search->low->share > RESOLUTION && !LamStopRequested()) {
+    PetscReal excess;
+
+    PetscCall(SolveAt(way, search->low, NextShare(search), point, known));
+    if (!*known) break;
+    excess = ExcessOf(failure, search, point);
+    search->excess[excess >= 0] = excess;
+    PetscCall(PointCopy(way->meshes, point, excess >= 0 ? search->high : search->low));
+    search->tries++;
+  }
+  PetscFunctionReturn(0);
+}
+
+static void SetPlace(const LamResponse *r, LamCriterion criterion, PetscReal place[3])
+{
+  const PetscReal *from = NULL;
+
+  if (criterion == LAM_CRITERION_LAMELLA_NORMAL || criterion == LAM_CRITERION_CONTACT) from = r->normal_place;
+  if (criterion == LAM_CRITERION_LAMELLA_SHEAR) from = r->shear_place;
+  if (criterion == LAM_CRITERION_WALL) from = r->wall_place;
+  for (PetscInt i = 0; i < 3; i++) place[i] = from ? from[i] : NAN;
+}
+
+static void KeepOnset(LamFailure *failure, const Way *way, const Search *search)
+{
+  LamCriterionOnset *onset = &failure->onset[search->criterion];
+
+  onset->bracket[0] = way->from + way->reach * search->low->share;
+  onset->bracket[1] = onset->factor = way->from + way->reach * search->high->share;
+  onset->response = search->high->responses[0];
+  SetPlace(&onset->response, search->criterion, onset->place);
+}
+
+/* Finds the criterion between two points; not kept where it proves to be reached by a long step alone. */
+static PetscErrorCode Seek(LamFailure *failure, const Way *way, LamCriterion criterion, const Point *from,
+                           const Point *to)
+{
+  Point low, high, point;
+  Search search = {.criterion = criterion, .low = &low, .high = &high};
+  PetscBool known, confirmed = PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  PetscCall(PointCreate(way->meshes, &low));
+  PetscCall(PointCreate(way->meshes, &high));
+  PetscCall(PointCreate(way->meshes, &point));
+  PetscCall(PointCopy(way->meshes, from, &low));
+  PetscCall(PointCopy(way->meshes, to, &high));
+  search.excess[0] = ExcessOf(failure, &search, &low);
+  search.excess[1] = ExcessOf(failure, &search, &high);
+  for (PetscInt k = 0; k < ATTEMPTS; k++) {
+    PetscCall(Narrow(failure, way, &search, &point, &known));
+    if (!known || criterion != LAM_CRITERION_STABILITY || LamStopRequested()) break;
+    PetscCall(SolveAt(way, &low, high.share, &point, &known));
+    confirmed = (PetscBool)(!known || ExcessOf(failure, &search, &point) >= 0);
+    if (confirmed) break;
+    PetscCall(PointCopy(way->meshes, &point, &low)); /* it is on the stable branch: the end of that lies further on */
+    PetscCall(PointCopy(way->meshes, to, &high));
+  }
+  if (confirmed) KeepOnset(failure, way, &search);
+  PetscCall(PointDestroy(&low));
+  PetscCall(PointDestroy(&high));
+  PetscCall(PointDestroy(&point));
+  PetscFunctionReturn(0);
+}
+
+/* ---- from state to state ---- */
+
+/* Seeks all criteria that are reached at `to` and have not been before. */
+static PetscErrorCode Judge(LamFailure *failure, const Way *way, const Point *from, const Point *to)
+{
+  PetscFunctionBeginUser;
+  for (int c = 0; c < LAM_CRITERION_COUNT; c++) {
+    const LamCriterion criterion = (LamCriterion)c;
+
+    if (!failure->onset[c].judged || !isnan(failure->onset[c].factor)) continue;
+    if (LamCriterionExcess(criterion, failure, from->responses, to->responses) < 0) continue;
+    PetscCall(Seek(failure, way, criterion, from, to));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* `point` is the last that is known. */
+static PetscErrorCode Accept(LamFailure *failure, const Way *way, const Point *point)
+{
+  PetscFunctionBeginUser;
+  failure->followed = way->from + way->reach * point->share;
+  for (PetscInt m = 0; m < 2; m++) failure->last[m] = point->responses[m];
+  if (LamIsTurgid(&point->responses[0])) failure->turgid = PETSC_TRUE;
+  if (LamIsTaut(&point->responses[0])) failure->taut = PETSC_TRUE;
+  PetscCall(CopyStates(way->meshes, point->states, failure->before));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode KeepReason(LamFailure *failure, PetscReal factor, const LamResponse responses[2])
+{
+  const PetscInt m = LamResponseHasFields(&responses[0]) ? 1 : 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(failure->reason, sizeof(failure->reason), "load factor %.4g has no answer%s: %s",
+                          (double)factor, m ? " on the second mesh" : "", responses[m].reason));
+  PetscFunctionReturn(0);
+}
+
+/* `to` has no answer: comes near to it from `from`, and judges as far as there are answers. */
+static PetscErrorCode Approach(LamFailure *failure, const Way *way, Point *from, Point *to)
+{
+  PetscReal unknown = 1;
+  Point point;
+
+  PetscFunctionBeginUser;
+  PetscCall(KeepReason(failure, way->from + way->reach, to->responses));
+  PetscCall(PointCreate(way->meshes, &point));
+  for (PetscInt k = 0; k < APPROACHES && !LamStopRequested(); k++) {
+    PetscBool known;
+
+    PetscCall(SolveAt(way, from, 0.5 * (from->share + unknown), &point, &known));
+    if (!known) {
+      unknown = point.share;
+      PetscCall(KeepReason(failure, way->from + way->reach * unknown, point.responses));
+      continue;
+    }
+    PetscCall(Judge(failure, way, from, &point));
+    PetscCall(Accept(failure, way, &point));
+    PetscCall(PointCopy(way->meshes, &point, from));
+  }
+  PetscCall(PointDestroy(&point));
+  PetscFunctionReturn(0);
+}
+
+static PetscBool IsReached(const LamFailure *failure)
+{
+  for (int c = 0; c < LAM_CRITERION_COUNT; c++)
+    if (!isnan(failure->onset[c].factor)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+PetscErrorCode LamFailureWatch(LamFailure *failure, LamMeshes *meshes, PetscInt number, const LamResponse responses[2])
+{
+  Way way = {meshes, (PetscReal)(number - 1), 1, {failure->last[0].load, responses[0].load}};
+  Point from, to;
+
+  PetscFunctionBeginUser;
+  if (failure->reason[0] || (failure->program.stop_at_first && IsReached(failure))) PetscFunctionReturn(0);
+  PetscCall(PointCreate(meshes, &from));
+  PetscCall(PointCreate(meshes, &to));
+  PetscCall(CopyStates(meshes, failure->before, from.states));
+  PetscCall(CopyStates(meshes, meshes->state, to.states));
+  for (PetscInt m = 0; m < 2; m++) {
+    from.responses[m] = failure->last[m];
+    to.responses[m] = responses[m];
+  }
+  Complete(meshes, to.responses);
+  to.share = 1;
+  if (LamHaveFields(to.responses)) {
+    PetscCall(Judge(failure, &way, &from, &to));
+    PetscCall(Accept(failure, &way, &to));
+  } else {
+    PetscCall(Approach(failure, &way, &from, &to));
+  }
+  PetscCall(CopyStates(meshes, to.states, meshes->state));
+  PetscCall(PointDestroy(&from));
+  PetscCall(PointDestroy(&to));
+  PetscFunctionReturn(0);
+}
+
+/* ---- begin and end ---- */
+
+/* Solves state 0 and judges it by itself. */
+static PetscErrorCode Begin(LamFailure *failure, LamMeshes *meshes)
+{
+  Way way = {.meshes = meshes};
+  PetscBool known;
+  Point start, zero;
+
+  PetscFunctionBeginUser;
+  way.ends[0] = failure->program.loads[0];
+  for (int i = 0; i < 9; i++) way.ends[0].F[i] = i % 4 ? 0 : 1;
+  way.ends[1] = way.ends[0];
+  PetscCall(PointCreate(meshes, &start)); /* the stress-free reference */
+  PetscCall(PointCreate(meshes, &zero));
+  PetscCall(SolveAt(&way, &start, 0, &zero, &known));
+  start.responses[0] = start.responses[1] = zero.responses[0];
+  start.responses[0].branch = 0;
+  failure->last[0].load = way.ends[0];
+  if (known) {
+    PetscCall(Judge(failure, &way, &start, &zero));
+    PetscCall(Accept(failure, &way, &zero));
+  } else {
+    PetscCall(KeepReason(failure, 0, zero.responses));
+  }
+  PetscCall(PointDestroy(&start));
+  PetscCall(PointDestroy(&zero));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFailureCreate(LamMeshes *meshes, const LamFailureProgram *program, LamFailure *failure)
+{
+  Point present;
+
+  PetscFunctionBeginUser;
+  *failure = (LamFailure){.factor = NAN, .followed = NAN, .criterion = LAM_CRITERION_COUNT, .program = *program};
+  if (!program->strength) failure->program.strength = &not_given;
+  for (int c = 0; c < LAM_CRITERION_COUNT; c++) {
+    LamCriterionOnset *onset = &failure->onset[c];
+
+    *onset = (LamCriterionOnset){.factor = NAN, .bracket = {NAN, NAN}, .place = {NAN, NAN, NAN}};
+    onset->judged = LamCriterionIsJudged((LamCriterion)c, program->interface, failure->program.strength);
+  }
+  for (PetscInt m = 0; m < meshes->count; m++) PetscCall(LamRVEStateCreate(meshes->rve[m], &failure->before[m]));
+  PetscCall(PointCreate(meshes, &present));
+  PetscCall(CopyStates(meshes, meshes->state, present.states));
+  PetscCall(Begin(failure, meshes));
+  PetscCall(CopyStates(meshes, present.states, meshes->state));
+  PetscCall(PointDestroy(&present));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFailureConclude(LamFailure *failure)
+{
+  PetscFunctionBeginUser;
+  for (int c = 0; c < LAM_CRITERION_COUNT; c++) {
+    const PetscReal factor = failure->onset[c].factor;
+
+    if (!isnan(factor) && !(factor >= failure->factor)) { /* also where none is known yet */
+      failure->factor = factor;
+      failure->criterion = (LamCriterion)c;
+    }
+  }
+  failure->mode = LamFailureModeOf(failure->criterion);
+  if (failure->criterion == LAM_CRITERION_COUNT && failure->reason[0]) failure->mode = LAM_FAILURE_UNKNOWN;
+  failure->response =
+      failure->criterion == LAM_CRITERION_COUNT ? failure->last[0] : failure->onset[failure->criterion].response;
+  failure->load = failure->response.load;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFailureDestroy(LamFailure *failure)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt m = 0; m < 2; m++) PetscCall(LamRVEStateDestroy(&failure->before[m]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFailureFind(LamMeshes *meshes, const LamFailureProgram *program, LamFailure *failure)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamFailureCreate(meshes, program, failure));
+  for (PetscInt m = 0; m < meshes->count; m++) PetscCall(LamRVEStateReset(meshes->rve[m], meshes->state[m]));
+  for (PetscInt k = 0; k < program->count && !failure->reason[0]; k++) {
+    LamResponse responses[2];
+
+    if (program->stop_at_first && IsReached(failure)) break;
+    if (LamStopRequested()) {
+      PetscCall(PetscSNPrintf(failure->reason, sizeof(failure->reason),
+                              "stopped by a signal before state %" PetscInt_FMT, k + 1));
+      break;
+    }
+    PetscCall(LamMeshesSolve(meshes, &program->loads[k], responses));
+    PetscCall(LamFailureWatch(failure, meshes, k + 1, responses));
+  }
+  PetscCall(LamFailureConclude(failure));
+  PetscCall(LamFailureDestroy(failure));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,153 @@
+/*
+  What is told of failure: what a state bears, and the verdict on a program of loads.
+*/
+#include "failure_criteria.h"
+
+/* ---- a state ---- */
+
+static void PrintPlace(const PetscReal place[3])
+{
+  if (isfinite(place[0]))
+    printf(" at cell %.0f face %.0f, %.2f along", (double)place[0], (double)place[1], (double)place[2]);
+}
+
+/* "wall 0.143 MPa, 0.29 of its strength, at cell ..." */
+static void PrintMeasure(const char name[], PetscReal value, PetscReal strength, const PetscReal place[3],
+                         PetscReal MPa)
+{
+  printf("%s %.4g MPa", name, (double)(value * MPa));
+  if (isfinite(strength)) printf(" = %.4g of its strength", (double)(value / strength));
+  PrintPlace(place);
+}
+
+static void PrintMeasures(const LamResponse *r, const LamStrength *strength, PetscReal MPa)
+{
+  PrintMeasure("wall tension", r->max_wall_tension, strength->wall, r->wall_place, MPa);
+  PrintMeasure("; lamella, normal", r->max_traction, strength->lamella_normal, r->normal_place, MPa);
+  if (r->max_lamella_shear > 0)
+    PrintMeasure("; shear", r->max_lamella_shear, strength->lamella_shear, r->shear_place, MPa);
+  putchar('\n');
+}
+
+PetscErrorCode LamFailurePrintState(const LamResponse *response, const LamStrength *strength, const LamScales *scales)
+{
+  PetscFunctionBeginUser;
+  if (!LamResponseHasFields(response)) PetscFunctionReturn(0);
+  printf("      ");
+  PrintMeasures(response, strength, scales->stress * 1e-6);
+  PetscFunctionReturn(0);
+}
+
+/* ---- the verdict, for programs ---- */
+
+static json_t *PlaceToJSON(const PetscReal place[3])
+{
+  if (!isfinite(place[0])) return json_null();
+  return json_pack("{s:I, s:I, s:f}", "cell", (json_int_t)place[0], "face", (json_int_t)place[1], "along",
+                   (double)place[2]);
+}
+
+static json_t *OnsetToJSON(const LamCriterionOnset *onset)
+{
+  json_t *o = json_object();
+
+  json_object_set_new(o, "judged", json_boolean(onset->judged));
+  if (!onset->judged) return o;
+  json_object_set_new(o, "factor", LamJSONReal(onset->factor));
+  if (isnan(onset->factor)) return o;
+  json_object_set_new(o, "bracket", LamJSONReals(2, onset->bracket, 1));
+  json_object_set_new(o, "place", PlaceToJSON(onset->place));
+  return o;
+}
+
+/* Below which ratio of strengths a wall breaks before the lamella; NaN where the lamella bears nothing. */
+static PetscReal Ratio(PetscReal wall, PetscReal lamella)
+{
+  return wall > 0 && lamella > 0 ? wall / lamella : NAN;
+}
+
+static json_t *FailureToJSON(const LamFailure *failure, PetscReal MPa)
+{
+  const LamResponse *r = &failure->response;
+  const LamStrength *strength = failure->program.strength;
+  const PetscReal strengths[3] = {strength->wall, strength->lamella_normal, strength->lamella_shear};
+  const PetscReal measures[3] = {r->max_wall_tension, r->max_traction, r->max_lamella_shear};
+  const PetscReal ratios[2] = {Ratio(measures[0], measures[1]), Ratio(measures[0], measures[2])};
+  json_t *o = json_object(), *criteria = json_object();
+
+  json_object_set_new(o, "mode", json_string(LamFailureModeNames[failure->mode]));
+  json_object_set_new(o, "criterion",
+                      failure->criterion == LAM_CRITERION_COUNT ? json_null()
+                                                                : json_string(LamCriterionNames[failure->criterion]));
+  json_object_set_new(o, "factor", LamJSONReal(failure->factor));
+  json_object_set_new(o, "followed", LamJSONReal(failure->followed));
+  if (failure->reason[0]) json_object_set_new(o, "reason", json_string(failure->reason));
+  json_object_set_new(o, "F", LamJSONReals(9, failure->load.F, 1));
+  json_object_set_new(o, "turgor", LamJSONReal(failure->load.turgor * MPa));
+  json_object_set_new(o, "cohesion", LamJSONReal(failure->load.cohesion * MPa));
+  json_object_set_new(o, "strength", LamJSONReals(3, strengths, MPa));
+  json_object_set_new(o, "measures", LamJSONReals(3, measures, MPa));
+  json_object_set_new(o, "wall_over_lamella", LamJSONReals(2, ratios, 1));
+  for (int c = 0; c < LAM_CRITERION_COUNT; c++)
+    json_object_set_new(criteria, LamCriterionNames[c], OnsetToJSON(&failure->onset[c]));
+  json_object_set_new(o, "criteria", criteria);
+  return o;
+}
+
+/* ---- the verdict, for a person ---- */
+
+static void PrintVerdict(const LamFailure *failure)
+{
+  if (failure->mode == LAM_FAILURE_NONE)
+    printf("failure: no criterion is reached up to load factor %.4g\n", (double)failure->followed);
+  else if (failure->mode == LAM_FAILURE_UNKNOWN)
+    printf("failure: unknown\n");
+  else
+    printf("failure: %s (%s) at load factor %.4f\n", LamFailureModeNames[failure->mode],
+           LamCriterionNames[failure->criterion], (double)failure->factor);
+  if (failure->reason[0]) printf("  %s\n", failure->reason);
+}
+
+static void PrintOnset(LamCriterion criterion, const LamCriterionOnset *onset)
+{
+  printf("  %-15s", LamCriterionNames[criterion]);
+  if (!onset->judged)
+    printf("not judged\n");
+  else if (isnan(onset->factor))
+    printf("not reached\n");
+  else {
+    printf("reached at %.4f (bracket %.4f to %.4f)", (double)onset->factor, (double)onset->bracket[0],
+           (double)onset->bracket[1]);
+    PrintPlace(onset->place);
+    putchar('\n');
+  }
+}
+
+static void PrintFailure(const LamFailure *failure, PetscReal MPa)
+{
+  const LamResponse *r = &failure->response;
+  const LamLoad *load = &failure->load;
+
+  PrintVerdict(failure);
+  if (!LamResponseHasFields(r)) return;
+  printf("  F = [%.6g, %.6g; %.6g, %.6g], turgor %.6g MPa, cohesion %.6g MPa\n  ", (double)load->F[0],
+         (double)load->F[1], (double)load->F[3], (double)load->F[4], (double)(load->turgor * MPa),
+         (double)(load->cohesion * MPa));
+  PrintMeasures(r, failure->program.strength, MPa);
+  if (isfinite(Ratio(r->max_wall_tension, r->max_traction)))
+    printf("  walls would tear before the lamella parts where it is more than 1/%.4g as strong\n",
+           (double)Ratio(r->max_wall_tension, r->max_traction));
+  for (int c = 0; c < LAM_CRITERION_COUNT; c++) PrintOnset((LamCriterion)c, &failure->onset[c]);
+}
+
+PetscErrorCode LamFailurePrint(const LamFailure *failure, const LamScales *scales, PetscBool json)
+{
+  const PetscReal MPa = scales->stress * 1e-6;
+
+  PetscFunctionBeginUser;
+  if (json)
+    PetscCall(LamPrintJSON(json_pack("{s:o}", "failure", FailureToJSON(failure, MPa))));
+  else
+    PrintFailure(failure, MPa);
+  PetscFunctionReturn(0);
+}
