@@ -24,6 +24,8 @@ typedef struct {
 typedef struct {
   FamilySums family[3];
   PetscReal max_gap, max_penetration;
+  PetscReal gap_at;       /* where max_gap is, in edges of its face */
+  PetscReal gap_place[3]; /* the same as cell, face, share of the face */
   LamLargestMean traction;
   PetscReal fabric[3], jumps[3];
 } Sums;
@@ -49,7 +51,10 @@ static void SampleSegment(const LamMortarChains *chains, PetscReal from, PetscRe
     PetscReal nearest[2], X[2], Xs[2];
     const PetscReal gap = LamMortarGap(chains, s, master, nearest) - chains->clearance;
 
-    sums->max_gap = PetscMax(sums->max_gap, gap);
+    if (gap > sums->max_gap) {
+      sums->max_gap = gap;
+      sums->gap_at = s;
+    }
     sums->max_penetration = PetscMax(sums->max_penetration, -gap - chains->clearance);
     if (k > 0) {
       const PetscReal mean = 0.5 * (PetscMax(0.0, last) + PetscMax(0.0, gap));
@@ -140,6 +145,7 @@ static PetscErrorCode AddFace(LamRVE rve, const LamLoad *load, PetscInt f, Sums 
   const PetscReal thickness = LamFaceThickness(rve, contact->faces[f].cell, contact->faces[f].other);
   FamilySums *family = &sums->family[contact->faces[f].face];
   const LamMortarSegments *segments = &contact->segments;
+  const PetscReal max_gap = sums->max_gap;
   PetscReal(*x)[2], *force, *length, J0 = 0.0;
   LamMortarChains chains;
 
@@ -149,6 +155,11 @@ static PetscErrorCode AddFace(LamRVE rve, const LamLoad *load, PetscInt f, Sums 
   LamMortarFindSegments(&chains, &contact->segments);
   for (PetscInt k = 0; k + 1 < segments->count; ++k)
     SampleSegment(&chains, segments->s[k], segments->s[k + 1], segments->master[k], family, sums);
+  if (sums->max_gap > max_gap) {
+    sums->gap_place[0] = (PetscReal)contact->faces[f].cell;
+    sums->gap_place[1] = (PetscReal)contact->faces[f].face;
+    sums->gap_place[2] = sums->gap_at / (PetscReal)chains.n;
+  }
   FaceForce(&chains, lambda, segments->count ? segments->s[0] : 0.0,
             segments->count ? segments->s[segments->count - 1] : 0.0, load->cohesion * contact->faces[f].cohesion,
             load->F[8], force, length);
@@ -298,6 +309,7 @@ PetscErrorCode LamContactIndicators(LamRVE rve, const LamLoad *load, LamResponse
   response->open_fraction = open / length;
   response->mean_gap = gap / length;
   response->max_gap = sums.max_gap > -PETSC_MAX_REAL ? PetscMax(0.0, sums.max_gap) : NAN;
+  if (sums.max_gap > 0.0) PetscCall(PetscArraycpy(response->gap_place, sums.gap_place, 3));
   response->max_penetration = PetscMax(response->max_penetration, sums.max_penetration);
   response->max_traction = sums.traction.value;
   PetscCall(PetscArraycpy(response->normal_place, sums.traction.place, 3));

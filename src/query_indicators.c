@@ -71,6 +71,7 @@ static void CopyLoads(const LamResponse *record, const PetscInt face[3], LamResp
     if (!SameF(&record->load, &r->load)) continue;
     r->fabric[k] = record->fabric[k];
     r->opening_moment[k] = record->opening_moment[k];
+    r->gap_place[k] = record->gap_place[k];
     r->normal_place[k] = record->normal_place[k];
     r->shear_place[k] = record->shear_place[k];
     r->wall_place[k] = record->wall_place[k];

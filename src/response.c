@@ -49,6 +49,7 @@ const LamMember LamResponseMembers[] = {
     REAL(debonded_spread, 1, 0, "change of debonded_fraction on a second mesh"),
     REAL(open_spread, 1, 0, "change of open_fraction on a second mesh"),
     REAL(max_gap, 1, 0, "largest gap, in apothems"),
+    REAL(gap_place, 3, 0, "where it is: cell, face, place along the face in [0, 1]"),
     REAL(mean_gap, 1, 0, "mean gap over the interface length, in apothems"),
     REAL(max_penetration, 1, 0, "largest pointwise penetration, in apothems; falls with the mesh"),
     REAL(fabric, 3, 0, "fabric tensor of the closed faces: 11, 22, 12"),

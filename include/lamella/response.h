@@ -55,6 +55,7 @@ typedef struct {
   PetscReal open_by_face[3];
   PetscReal debonded_spread, open_spread; /* change of the two fractions on a second mesh; NaN: not computed */
   PetscReal max_gap, mean_gap;            /* between facing walls; mean over the interface length */
+  PetscReal gap_place[3];                 /* of max_gap: cell, face 0..2, place along the face in [0, 1] */
   PetscReal max_penetration;              /* pointwise; goes to zero with the mesh */
   /* sum over closed faces of length n(x)n over the whole interface length: 11, 22, 12; its trace is the closed share */
   PetscReal fabric[3];

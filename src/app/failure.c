@@ -162,24 +162,32 @@ static PetscErrorCode Narrow(LamFailure *failure, const Way *way, Search *search
   PetscFunctionReturn(0);
 }
 
-static void SetPlace(const LamResponse *r, LamCriterion criterion, PetscReal place[3])
+/* What names the place at which a criterion is reached; NULL: it has none. */
+static const PetscReal *PlaceOf(const LamResponse *r, LamCriterion criterion)
 {
-  const PetscReal *from = NULL;
-
-  if (criterion == LAM_CRITERION_LAMELLA_NORMAL || criterion == LAM_CRITERION_CONTACT) from = r->normal_place;
-  if (criterion == LAM_CRITERION_LAMELLA_SHEAR) from = r->shear_place;
-  if (criterion == LAM_CRITERION_WALL) from = r->wall_place;
-  for (PetscInt i = 0; i < 3; i++) place[i] = from ? from[i] : NAN;
+  switch (criterion) {
+  case LAM_CRITERION_LAMELLA_NORMAL:
+    return r->normal_place;
+  case LAM_CRITERION_LAMELLA_SHEAR:
+    return r->shear_place;
+  case LAM_CRITERION_CONTACT: /* a face may be free of traction without any gap */
+    return LamGapIsVisible(r) ? r->gap_place : r->normal_place;
+  case LAM_CRITERION_WALL:
+    return r->wall_place;
+  default:
+    return NULL;
+  }
 }
 
 static void KeepOnset(LamFailure *failure, const Way *way, const Search *search)
 {
   LamCriterionOnset *onset = &failure->onset[search->criterion];
+  const PetscReal *place = PlaceOf(&search->high->responses[0], search->criterion);
 
   onset->bracket[0] = way->from + way->reach * search->low->share;
   onset->bracket[1] = onset->factor = way->from + way->reach * search->high->share;
   onset->response = search->high->responses[0];
-  SetPlace(&onset->response, search->criterion, onset->place);
+  for (PetscInt i = 0; i < 3; i++) onset->place[i] = place ? place[i] : NAN;
 }
 
 /* Finds the criterion between two points; not kept where it proves to be reached by a long step alone. */

@@ -3,29 +3,31 @@
 */
 #include "failure_criteria.h"
 
+#define NO_SHEAR 1e-9 /* C1 + C2: rounding */
+
 /* ---- a state ---- */
 
+/* Cell, face, share of the face. */
 static void PrintPlace(const PetscReal place[3])
 {
-  if (isfinite(place[0]))
-    printf(" at cell %.0f face %.0f, %.2f along", (double)place[0], (double)place[1], (double)place[2]);
+  if (isfinite(place[0])) printf(" at %.0f/%.0f/%.2f", (double)place[0], (double)place[1], (double)place[2]);
 }
 
-/* "wall 0.143 MPa, 0.29 of its strength, at cell ..." */
+/* "wall 0.143 MPa (0.29 of its strength) at 0/2/0.44" */
 static void PrintMeasure(const char name[], PetscReal value, PetscReal strength, const PetscReal place[3],
                          PetscReal MPa)
 {
   printf("%s %.4g MPa", name, (double)(value * MPa));
-  if (isfinite(strength)) printf(" = %.4g of its strength", (double)(value / strength));
+  if (isfinite(strength)) printf(" (%.3g of its strength)", (double)(value / strength));
   PrintPlace(place);
 }
 
 static void PrintMeasures(const LamResponse *r, const LamStrength *strength, PetscReal MPa)
 {
-  PrintMeasure("wall tension", r->max_wall_tension, strength->wall, r->wall_place, MPa);
-  PrintMeasure("; lamella, normal", r->max_traction, strength->lamella_normal, r->normal_place, MPa);
-  if (r->max_lamella_shear > 0)
-    PrintMeasure("; shear", r->max_lamella_shear, strength->lamella_shear, r->shear_place, MPa);
+  PrintMeasure("wall", r->max_wall_tension, strength->wall, r->wall_place, MPa);
+  PrintMeasure(", lamella normal", r->max_traction, strength->lamella_normal, r->normal_place, MPa);
+  if (r->max_lamella_shear > NO_SHEAR)
+    PrintMeasure(", shear", r->max_lamella_shear, strength->lamella_shear, r->shear_place, MPa);
   putchar('\n');
 }
 
@@ -60,19 +62,29 @@ static json_t *OnsetToJSON(const LamCriterionOnset *onset)
   return o;
 }
 
-/* Below which ratio of strengths a wall breaks before the lamella; NaN where the lamella bears nothing. */
+/* A wall that is less than so many times as strong as the lamella gives way first; NaN where one of them is not pulled.
+ */
 static PetscReal Ratio(PetscReal wall, PetscReal lamella)
 {
-  return wall > 0 && lamella > 0 ? wall / lamella : NAN;
+  return wall > 0 && lamella > NO_SHEAR ? wall / lamella : NAN;
+}
+
+static json_t *ThreeToJSON(PetscReal wall, PetscReal normal, PetscReal shear, PetscReal scale)
+{
+  json_t *o = json_object();
+
+  json_object_set_new(o, "wall", LamJSONReal(wall * scale));
+  json_object_set_new(o, "lamella_normal", LamJSONReal(normal * scale));
+  json_object_set_new(o, "lamella_shear", LamJSONReal(shear * scale));
+  return o;
 }
 
 static json_t *FailureToJSON(const LamFailure *failure, PetscReal MPa)
 {
   const LamResponse *r = &failure->response;
   const LamStrength *strength = failure->program.strength;
-  const PetscReal strengths[3] = {strength->wall, strength->lamella_normal, strength->lamella_shear};
-  const PetscReal measures[3] = {r->max_wall_tension, r->max_traction, r->max_lamella_shear};
-  const PetscReal ratios[2] = {Ratio(measures[0], measures[1]), Ratio(measures[0], measures[2])};
+  const PetscReal wall = r->max_wall_tension, normal = r->max_traction, shear = r->max_lamella_shear;
+  const PetscReal ratios[2] = {Ratio(wall, normal), Ratio(wall, shear)};
   json_t *o = json_object(), *criteria = json_object();
 
   json_object_set_new(o, "mode", json_string(LamFailureModeNames[failure->mode]));
@@ -85,8 +97,9 @@ static json_t *FailureToJSON(const LamFailure *failure, PetscReal MPa)
   json_object_set_new(o, "F", LamJSONReals(9, failure->load.F, 1));
   json_object_set_new(o, "turgor", LamJSONReal(failure->load.turgor * MPa));
   json_object_set_new(o, "cohesion", LamJSONReal(failure->load.cohesion * MPa));
-  json_object_set_new(o, "strength", LamJSONReals(3, strengths, MPa));
-  json_object_set_new(o, "measures", LamJSONReals(3, measures, MPa));
+  json_object_set_new(o, "strength",
+                      ThreeToJSON(strength->wall, strength->lamella_normal, strength->lamella_shear, MPa));
+  json_object_set_new(o, "measures", ThreeToJSON(wall, normal, shear, MPa));
   json_object_set_new(o, "wall_over_lamella", LamJSONReals(2, ratios, 1));
   for (int c = 0; c < LAM_CRITERION_COUNT; c++)
     json_object_set_new(criteria, LamCriterionNames[c], OnsetToJSON(&failure->onset[c]));
@@ -135,7 +148,7 @@ static void PrintFailure(const LamFailure *failure, PetscReal MPa)
          (double)(load->cohesion * MPa));
   PrintMeasures(r, failure->program.strength, MPa);
   if (isfinite(Ratio(r->max_wall_tension, r->max_traction)))
-    printf("  walls would tear before the lamella parts where it is more than 1/%.4g as strong\n",
+    printf("  there a wall less than %.4g times as strong as the lamella in normal direction tears first\n",
            (double)Ratio(r->max_wall_tension, r->max_traction));
   for (int c = 0; c < LAM_CRITERION_COUNT; c++) PrintOnset((LamCriterion)c, &failure->onset[c]);
 }

@@ -1,0 +1,177 @@
+/*
+  Tension of the walls against statics. At F = lambda 1 the line along a face normal through the centre of a cell is a
+  line of symmetry: it stays straight and bears no shear. It cuts two walls of current thickness h each across and the
+  lumen between, in all 2 lambda (F33 = 1), so with the macroscopic Cauchy stress Sigma
+    2 lambda Sigma = 2 h sigma - p (2 lambda - 2 h),      (sigma + p) h = lambda (Sigma + p)
+  sigma the mean stress along the wall there, where it is largest, but for the corners, and uniform. At Sigma = 0 the
+  double wall's 2 (sigma + p) h is sqrt(3) p l, l = 2 lambda/sqrt(3) the length of a face.
+*/
+#include "rve_fixture.h"
+#include "assert_near.h"
+
+#define ALONG 16 /* even: the middle of a face is a node */
+
+static LamMicrostructure Thin(double thickness)
+{
+  LamMicrostructure micro = DefaultTissue();
+
+  micro.wall_thickness = thickness;
+  micro.along = ALONG;
+  return micro;
+}
+
+/* Distance of the inner from the outer node in the middle of face 0. */
+static double MiddleThickness(LamRVE rve, LamRVEState state)
+{
+  const PetscInt radial = 2 * 2 + 1; /* nodes through two elements */
+  PetscReal *x;
+  LamRVEMesh mesh;
+  double h;
+
+  assert_int_equal(LamRVEGetMesh(rve, &mesh), 0);
+  assert_int_equal(PetscMalloc1(2 * mesh.node_count, &x), 0);
+  assert_int_equal(LamRVEGetFields(rve, state, x, NULL, NULL), 0);
+  {
+    const PetscReal *inner = &x[2 * radial * ALONG], *outer = &x[2 * (radial * ALONG + radial - 1)];
+
+    h = hypot(outer[0] - inner[0], outer[1] - inner[1]);
+  }
+  assert_int_equal(PetscFree(x), 0);
+  return h;
+}
+
+/* (sigma + p) h over lambda (Sigma + p). */
+static double OverStatics(double thickness, double stretch, double turgor)
+{
+  const LamMicrostructure micro = Thin(thickness);
+  const LamLoad load = PlaneLoad(stretch, 0, 0, stretch, turgor);
+  LamRVE rve = NewRVE(&micro);
+  LamRVEState state;
+  LamResponse r;
+  double h;
+
+  assert_int_equal(LamRVEStateCreate(rve, &state), 0);
+  assert_int_equal(LamRVESolve(rve, &load, state, &r), 0);
+  h = MiddleThickness(rve, state);
+  assert_int_equal(LamRVEStateDestroy(&state), 0);
+  assert_int_equal(LamRVEDestroy(&rve), 0);
+  return (r.max_wall_tension + turgor) * h / (stretch * (r.P[0] / stretch + turgor));
+}
+
+static void LargestTensionIsThatOfTheCut(void **state)
+{
+  static const double thickness[3] = {0.15, 0.08, 0.04}, stretch[2] = {1.03, 1.1}, turgor[2] = {0.0, 0.2};
+
+  for (int t = 0; t < 3; t++)
+    for (int s = 0; s < 2; s++)
+      for (int p = 0; p < 2; p++) assert_near(OverStatics(thickness[t], stretch[s], turgor[p]), 1.0, 0.01);
+}
+
+/* The turgor that leaves no total stress at this stretch: P = P0 - p J F^-T but for the walls' compressibility. */
+static void FreeTissueHasTheTensionOfTheHexagon(void **state)
+{
+  const double stretch = 1.04;
+  const LamMicrostructure micro = Thin(0.05);
+  LamLoad load = PlaneLoad(stretch, 0, 0, stretch, 0);
+  LamRVE rve = NewRVE(&micro);
+  LamRVEState point;
+  LamResponse r;
+  double tension;
+
+  assert_int_equal(LamRVEStateCreate(rve, &point), 0);
+  for (int k = 0; k < 3; k++) {
+    assert_int_equal(LamRVESolve(rve, &load, point, &r), 0);
+    load.turgor += r.P[0] / stretch;
+  }
+  assert_near(r.P[0], 0.0, 1e-6 * r.load.turgor);
+  tension = 2 * (r.max_wall_tension + r.load.turgor) * MiddleThickness(rve, point);
+  assert_near(tension / (sqrt(3.0) * r.load.turgor * (2 * stretch / sqrt(3.0))), 1.0, 0.005);
+  assert_int_equal(LamRVEStateDestroy(&point), 0);
+  assert_int_equal(LamRVEDestroy(&rve), 0);
+}
+
+/* Bonded walls do not feel turgor at a given F, but for the pressure that they stand in. */
+static void TurgorTakesItselfFromTheTension(void **state)
+{
+  const LamMicrostructure micro = DefaultTissue();
+  const LamResponse dry = SolveTissue(&micro, PlaneLoad(1.05, 0.1, 0, 1, 0));
+  const LamResponse turgid = SolveTissue(&micro, PlaneLoad(1.05, 0.1, 0, 1, 0.2));
+
+  assert_near(turgid.max_wall_tension, dry.max_wall_tension - 0.2, 2e-3);
+  assert_near(turgid.net_wall_tension, dry.net_wall_tension, 2e-3);
+  assert_near(turgid.max_fibre_stretch, dry.max_fibre_stretch, 2e-4);
+}
+
+/* Means over windows: not those at points, which diverge at the corners. */
+static void MeasuresConverge(void **state)
+{
+  static const int mesh[2][2] = {{12, 2}, {24, 4}};
+  LamResponse r[2];
+
+  for (int m = 0; m < 2; m++) {
+    LamMicrostructure micro = DefaultTissue();
+
+    micro.along = mesh[m][0];
+    micro.through = mesh[m][1];
+    r[m] = SolveTissue(&micro, PlaneLoad(1, 0.2, 0, 1, 0.2));
+  }
+  assert_near(r[0].max_wall_tension, r[1].max_wall_tension, 0.02 * r[1].max_wall_tension);
+  assert_near(r[0].max_lamella_shear, r[1].max_lamella_shear, 0.02 * r[1].max_lamella_shear);
+  assert_near(r[0].max_wall_energy, r[1].max_wall_energy, 0.02 * r[1].max_wall_energy);
+  assert_near(r[0].max_fibre_stretch - 1, r[1].max_fibre_stretch - 1, 0.02 * (r[1].max_fibre_stretch - 1));
+}
+
+/* F = diag: the lamella of face 0 bears no shear by symmetry; that of a bonded honeycomb under equal stretch none at
+   all. */
+static void NoShearWhereSymmetryForbidsIt(void **state)
+{
+  const LamMicrostructure micro = DefaultTissue();
+  const LamResponse equal = SolveTissue(&micro, PlaneLoad(1.05, 0, 0, 1.05, 0.2));
+  const LamResponse pulled = SolveTissue(&micro, PlaneLoad(1.1, 0, 0, 0.95, 0.2));
+
+  assert_near(equal.max_lamella_shear, 0.0, 1e-9);
+  assert_true(pulled.max_lamella_shear > 0.05 && pulled.shear_place[1] > 0);
+}
+
+/* Another sign of shear is a mirror image: faces 1 and 2 change places, and run the other way. */
+static void PlacesFollowTheMirror(void **state)
+{
+  const LamMicrostructure micro = DefaultTissue();
+  const LamResponse a = SolveTissue(&micro, PlaneLoad(1.05, 0.1, 0, 1, 0.2));
+  const LamResponse b = SolveTissue(&micro, PlaneLoad(1.05, -0.1, 0, 1, 0.2));
+
+  assert_near(b.max_wall_tension, a.max_wall_tension, 1e-9);
+  assert_near(b.max_lamella_shear, a.max_lamella_shear, 1e-9);
+  for (int k = 0; k < 3; k++) assert_near(b.mean_wall_tension[k], a.mean_wall_tension[(3 - k) % 3], 1e-9);
+  assert_near(fmod(b.normal_place[1] + a.normal_place[1], 3), 0.0, 0);
+}
+
+/* Contact bears no more than the cohesion, and no shear. */
+static void ContactBearsTheCohesionAtMost(void **state)
+{
+  LamMicrostructure micro = DefaultTissue();
+  LamLoad load = PlaneLoad(1.06, 0, 0, 1, 0.2);
+  LamResponse r;
+
+  micro.interface = LAM_INTERFACE_CONTACT;
+  load.cohesion = 0.02;
+  r = SolveTissue(&micro, load);
+  assert_near(r.max_traction, 0.02, 1e-12);
+  assert_true(r.max_gap > LAM_VISIBLE_GAP && r.gap_place[2] >= 0 && r.gap_place[2] <= 1);
+  assert_near(r.max_lamella_shear, 0.0, 0);
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(LargestTensionIsThatOfTheCut),    cmocka_unit_test(FreeTissueHasTheTensionOfTheHexagon),
+      cmocka_unit_test(TurgorTakesItselfFromTheTension), cmocka_unit_test(MeasuresConverge),
+      cmocka_unit_test(NoShearWhereSymmetryForbidsIt),   cmocka_unit_test(PlacesFollowTheMirror),
+      cmocka_unit_test(ContactBearsTheCohesionAtMost),
+  };
+  int failed;
+
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  failed = cmocka_run_group_tests(tests, NULL, NULL);
+  return PetscFinalize() || failed;
+}
