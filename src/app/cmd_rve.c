@@ -282,7 +282,8 @@ static PetscErrorCode TellFailure(Run *run)
 static int ExitStatus(const Run *run)
 {
   if (LamStopRequested()) return LamStopExitStatus();
-  return run->failed || LamOnsetIsUnsolved(&run->onset) ? LAM_EXIT_UNSOLVED : LAM_EXIT_OK;
+  if (run->failed || LamOnsetIsUnsolved(&run->onset)) return LAM_EXIT_UNSOLVED;
+  return run->failure.mode == LAM_FAILURE_UNKNOWN ? LAM_EXIT_UNSOLVED : LAM_EXIT_OK;
 }
 
 static PetscErrorCode RunOnRoot(Run *run, int *exit_status)

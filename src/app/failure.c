@@ -376,7 +376,12 @@ PetscErrorCode LamFailureCreate(LamMeshes *meshes, const LamFailureProgram *prog
 
 PetscErrorCode LamFailureConclude(LamFailure *failure)
 {
+  const PetscBool to_the_end = (PetscBool)(failure->followed >= (PetscReal)failure->program.count);
+
   PetscFunctionBeginUser;
+  if (!to_the_end && !failure->reason[0] && !(failure->program.stop_at_first && IsReached(failure)))
+    PetscCall(PetscSNPrintf(failure->reason, sizeof(failure->reason), "stopped by a signal behind load factor %.4g",
+                            (double)failure->followed));
   for (int c = 0; c < LAM_CRITERION_COUNT; c++) {
     const PetscReal factor = failure->onset[c].factor;
 
@@ -405,15 +410,10 @@ PetscErrorCode LamFailureFind(LamMeshes *meshes, const LamFailureProgram *progra
   PetscFunctionBeginUser;
   PetscCall(LamFailureCreate(meshes, program, failure));
   for (PetscInt m = 0; m < meshes->count; m++) PetscCall(LamRVEStateReset(meshes->rve[m], meshes->state[m]));
-  for (PetscInt k = 0; k < program->count && !failure->reason[0]; k++) {
+  for (PetscInt k = 0; k < program->count && !failure->reason[0] && !LamStopRequested(); k++) {
     LamResponse responses[2];
 
     if (program->stop_at_first && IsReached(failure)) break;
-    if (LamStopRequested()) {
-      PetscCall(PetscSNPrintf(failure->reason, sizeof(failure->reason),
-                              "stopped by a signal before state %" PetscInt_FMT, k + 1));
-      break;
-    }
     PetscCall(LamMeshesSolve(meshes, &program->loads[k], responses));
     PetscCall(LamFailureWatch(failure, meshes, k + 1, responses));
   }

@@ -114,7 +114,7 @@ static void PrintVerdict(const LamFailure *failure)
   if (failure->mode == LAM_FAILURE_NONE)
     printf("failure: no criterion is reached up to load factor %.4g\n", (double)failure->followed);
   else if (failure->mode == LAM_FAILURE_UNKNOWN)
-    printf("failure: unknown\n");
+    printf("failure: unknown; no criterion is reached up to load factor %.4g\n", (double)failure->followed);
   else
     printf("failure: %s (%s) at load factor %.4f\n", LamFailureModeNames[failure->mode],
            LamCriterionNames[failure->criterion], (double)failure->factor);

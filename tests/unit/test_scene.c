@@ -305,6 +305,19 @@ static void opposite_sides_hold_the_rotation(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
+static void strengths_are_measured_in_moduli_and_may_be_left_out(void **state)
+{
+  LamScene *scene = Read(RVE "strength: {wall: 0.55 MPa, lamella_shear: 11 kPa}\n");
+
+  AssertNear(scene->strength.wall, 5);
+  assert_true(isnan(scene->strength.lamella_normal));
+  AssertNear(scene->strength.lamella_shear, 0.1);
+  assert_int_equal(LamSceneDestroy(&scene), 0);
+  scene = Read(RVE);
+  assert_true(isnan(scene->strength.wall));
+  assert_int_equal(LamSceneDestroy(&scene), 0);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -329,6 +342,7 @@ int main(void)
       cmocka_unit_test(contact_tissue_inflates_with_cohesion),
       cmocka_unit_test(rollers_leave_a_component_free),
       cmocka_unit_test(opposite_sides_hold_the_rotation),
+      cmocka_unit_test(strengths_are_measured_in_moduli_and_may_be_left_out),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
