@@ -128,10 +128,10 @@ static PetscErrorCode PrintOnsets(const char name[], LamInterfaceLawType interfa
 static PetscErrorCode Onsets(void)
 {
   LamLoad pull[PULL_STATES], shear[SHEAR_STATES], slip[SHEAR_STATES], shrink[3];
-  const LamStrength wall = {.wall = 0.03 / TISSUE_STRESS, .lamella_normal = NAN, .lamella_shear = NAN};
+  const LamStrength wall = {.wall = 0.004 / TISSUE_STRESS, .lamella_normal = NAN, .lamella_shear = NAN};
   const LamFailureProgram pulled = {.strength = &figures_strength, .count = PULL_STATES, .loads = pull};
   const LamFailureProgram sheared = {.strength = &figures_strength, .count = SHEAR_STATES, .loads = shear};
-  const LamFailureProgram slipped = {.strength = &wall, .count = SHEAR_STATES, .loads = slip};
+  const LamFailureProgram slipped = {.strength = &wall, .count = 3, .loads = slip};
   const LamFailureProgram shrunk = {.count = 3, .loads = shrink};
 
   PetscFunctionBeginUser;

@@ -47,6 +47,13 @@ expect 0 "$lamella" rve contact.yaml --json --failure
 [ "$(verdict criterion)" = '"contact"' ] || fail "cells do not part: $(sed -n '$p' out.txt)"
 sed -n 1p out.txt | grep -q '"separated": true' || fail "contact is judged on one mesh"
 
+# where --onset finds it, too
+sed -e 's/  - {F: .*/  - {F: [[1, 0], [0, 1]]}\n  - {F: [[1.04, 0], [0, 1]]}/' contact.yaml >onset.yaml
+expect 0 "$lamella" rve onset.yaml --json --failure --onset
+onset=$(grep '"onset"' out.txt | grep -oE '"fraction": *[0-9.]+' | sed 's/.*: *//')
+verdict factor | awk -v onset="$onset" '{ d = $1 - 1 - onset; if (onset == "" || d > 1e-3 || d < -1e-3) exit 1 }' ||
+  fail "--onset says $onset, --failure $(verdict factor)"
+
 # a load without an answer: the states are told, the verdict is unknown, and why
 sed -e '/^strength/d' -e '/ramp/d' -e 's/{F: .*/{F: [[0.3, 0], [0, 2]]}/' "$example" >collapsed.yaml
 expect 3 "$lamella" rve collapsed.yaml --json --failure
