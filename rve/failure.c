@@ -93,7 +93,7 @@ PetscErrorCode LamWallMeasures(LamRVE rve, const LamLoad *load, LamResponse *res
   for (PetscInt cell = 0; cell < rve->mesh.cell_count; ++cell)
     for (PetscInt face = 0; face < LAM_FACES; ++face) {
       const PetscReal *reference = sums.running[REFERENCE], *current = sums.running[VOLUME];
-      const PetscReal *pull = sums.running[TENSION], thickness = LamFaceThickness(rve, cell, cell);
+      const PetscReal *pull = sums.running[TENSION], thickness = LamWallThickness(&rve->micro, cell);
 
       SumAlongFace(rve, load, (const PetscReal(*)[3])share, cell, face, &sums);
       LamTakeLargestMean(thickness, cell, face, count, sums.running[STRETCH], reference, &stretch);

@@ -36,7 +36,7 @@ static inline PetscErrorCode FollowProgram(const LamMicrostructure *micro, LamFa
 
   PetscFunctionBeginUser;
   program.interface = micro->interface;
-  PetscCall(LamMeshesCreate(&scene, micro->interface == LAM_INTERFACE_CONTACT ? 2 : 1, &meshes));
+  PetscCall(LamMeshesCreate(PETSC_COMM_SELF, &scene, micro->interface == LAM_INTERFACE_CONTACT ? 2 : 1, &meshes));
   PetscCall(LamFailureFind(&meshes, &program, failure));
   PetscCall(LamMeshesDestroy(&meshes));
   PetscFunctionReturn(0);
