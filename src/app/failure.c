@@ -340,7 +340,7 @@ static PetscErrorCode Begin(LamFailure *failure, LamMeshes *meshes)
   PetscCall(SolveAt(&way, &start, 0, &zero, &known));
   start.responses[0] = start.responses[1] = zero.responses[0];
   start.responses[0].branch = 0;
-  failure->last[0].load = way.ends[0];
+  PetscCall(LamResponseInit(&way.ends[0], &failure->last[0]));
   if (known) {
     PetscCall(Judge(failure, &way, &start, &zero));
     PetscCall(Accept(failure, &way, &zero));

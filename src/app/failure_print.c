@@ -111,7 +111,9 @@ static json_t *FailureToJSON(const LamFailure *failure, PetscReal MPa)
 
 static void PrintVerdict(const LamFailure *failure)
 {
-  if (failure->mode == LAM_FAILURE_NONE)
+  if (isnan(failure->followed))
+    printf("failure: unknown from the beginning\n");
+  else if (failure->mode == LAM_FAILURE_NONE)
     printf("failure: no criterion is reached up to load factor %.4g\n", (double)failure->followed);
   else if (failure->mode == LAM_FAILURE_UNKNOWN)
     printf("failure: unknown; no criterion is reached up to load factor %.4g\n", (double)failure->followed);
