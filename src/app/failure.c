@@ -293,61 +293,84 @@ static PetscBool IsReached(const LamFailure *failure)
   return PETSC_FALSE;
 }
 
+/* The first load that is known, at `way->from`, is judged by itself: what it reaches lies there or before. */
+static PetscErrorCode JudgeFirst(LamFailure *failure, const Way *way, const Point *point)
+{
+  Point start;
+
+  PetscFunctionBeginUser;
+  PetscCall(PointCreate(way->meshes, &start)); /* the stress-free reference */
+  for (PetscInt m = 0; m < 2; m++) start.responses[m] = point->responses[m];
+  start.responses[0].branch = 0;
+  PetscCall(Judge(failure, way, &start, point));
+  PetscCall(Accept(failure, way, point));
+  PetscCall(PointDestroy(&start));
+  PetscFunctionReturn(0);
+}
+
+/* Judges a new state, and the way to it. */
+static PetscErrorCode Take(LamFailure *failure, LamMeshes *meshes, PetscInt number, Point *to)
+{
+  const PetscBool known = LamHaveFields(to->responses), first = (PetscBool)isnan(failure->followed);
+  Way way = {meshes, (PetscReal)(number - 1), 1, {failure->last[0].load, to->responses[0].load}};
+  Point from;
+
+  PetscFunctionBeginUser;
+  PetscCall(PointCreate(meshes, &from));
+  PetscCall(CopyStates(meshes, failure->before, from.states));
+  for (PetscInt m = 0; m < 2; m++) from.responses[m] = failure->last[m];
+  if (first && known) {
+    way = (Way){meshes, (PetscReal)number, 0, {to->responses[0].load, to->responses[0].load}};
+    to->share = 0;
+    PetscCall(JudgeFirst(failure, &way, to));
+  } else if (first) {
+    PetscCall(KeepReason(failure, (PetscReal)number, to->responses));
+  } else if (known) {
+    to->share = 1;
+    PetscCall(Judge(failure, &way, &from, to));
+    PetscCall(Accept(failure, &way, to));
+  } else {
+    PetscCall(Approach(failure, &way, &from, to));
+  }
+  PetscCall(PointDestroy(&from));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamFailureWatch(LamFailure *failure, LamMeshes *meshes, PetscInt number, const LamResponse responses[2])
 {
-  Way way = {meshes, (PetscReal)(number - 1), 1, {failure->last[0].load, responses[0].load}};
-  Point from, to;
+  Point point;
 
   PetscFunctionBeginUser;
   if (failure->reason[0] || (failure->program.stop_at_first && IsReached(failure))) PetscFunctionReturn(0);
-  PetscCall(PointCreate(meshes, &from));
-  PetscCall(PointCreate(meshes, &to));
-  PetscCall(CopyStates(meshes, failure->before, from.states));
-  PetscCall(CopyStates(meshes, meshes->state, to.states));
-  for (PetscInt m = 0; m < 2; m++) {
-    from.responses[m] = failure->last[m];
-    to.responses[m] = responses[m];
-  }
-  Complete(meshes, to.responses);
-  to.share = 1;
-  if (LamHaveFields(to.responses)) {
-    PetscCall(Judge(failure, &way, &from, &to));
-    PetscCall(Accept(failure, &way, &to));
-  } else {
-    PetscCall(Approach(failure, &way, &from, &to));
-  }
-  PetscCall(CopyStates(meshes, to.states, meshes->state));
-  PetscCall(PointDestroy(&from));
-  PetscCall(PointDestroy(&to));
+  PetscCall(PointCreate(meshes, &point));
+  PetscCall(CopyStates(meshes, meshes->state, point.states));
+  for (PetscInt m = 0; m < meshes->count; m++) point.responses[m] = responses[m];
+  Complete(meshes, point.responses);
+  PetscCall(Take(failure, meshes, number, &point));
+  PetscCall(CopyStates(meshes, point.states, meshes->state));
+  PetscCall(PointDestroy(&point));
   PetscFunctionReturn(0);
 }
 
 /* ---- begin and end ---- */
 
-/* Solves state 0 and judges it by itself. */
+/* State 0; where it has no answer the program begins with state 1. */
 static PetscErrorCode Begin(LamFailure *failure, LamMeshes *meshes)
 {
   Way way = {.meshes = meshes};
   PetscBool known;
-  Point start, zero;
+  Point reference, zero;
 
   PetscFunctionBeginUser;
   way.ends[0] = failure->program.loads[0];
   for (int i = 0; i < 9; i++) way.ends[0].F[i] = i % 4 ? 0 : 1;
   way.ends[1] = way.ends[0];
-  PetscCall(PointCreate(meshes, &start)); /* the stress-free reference */
-  PetscCall(PointCreate(meshes, &zero));
-  PetscCall(SolveAt(&way, &start, 0, &zero, &known));
-  start.responses[0] = start.responses[1] = zero.responses[0];
-  start.responses[0].branch = 0;
   PetscCall(LamResponseInit(&way.ends[0], &failure->last[0]));
-  if (known) {
-    PetscCall(Judge(failure, &way, &start, &zero));
-    PetscCall(Accept(failure, &way, &zero));
-  } else {
-    PetscCall(KeepReason(failure, 0, zero.responses));
-  }
-  PetscCall(PointDestroy(&start));
+  PetscCall(PointCreate(meshes, &reference));
+  PetscCall(PointCreate(meshes, &zero));
+  PetscCall(SolveAt(&way, &reference, 0, &zero, &known));
+  if (known) PetscCall(JudgeFirst(failure, &way, &zero));
+  PetscCall(PointDestroy(&reference));
   PetscCall(PointDestroy(&zero));
   PetscFunctionReturn(0);
 }

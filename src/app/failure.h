@@ -4,8 +4,8 @@
     LamFailureFind(&meshes, &program, &failure);      mode, factor, load, response
 
   Load factor: the number of a state, with a fraction for the share of the way from it to the next, along which F,
-  turgor and cohesion are linear. State 0 is F = I at the turgor and cohesion of state 1. docs/theory.md has the
-  definitions.
+  turgor and cohesion are linear. State 0 is F = I at the turgor and cohesion of state 1; where it has no answer the
+  program begins with state 1. docs/theory.md has the definitions.
 */
 #ifndef LAM_FAILURE_H
 #define LAM_FAILURE_H
