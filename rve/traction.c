@@ -181,7 +181,8 @@ void LamTakeLargestMean(PetscReal thickness, PetscInt cell, PetscInt face, Petsc
   PetscReal middle;
   const PetscReal mean = LargestWindowMean(count, window, integral, length, &middle);
 
-  /* faces that symmetry makes alike differ by rounding: the first of them is named; nothing compares with no mean yet */
+  /* faces that symmetry makes alike differ by rounding: the first of them is named; nothing compares with no mean yet
+   */
   if (mean <= largest->value + 1e-10 * PetscAbsReal(largest->value)) return;
   *largest = (LamLargestMean){mean, {(PetscReal)cell, (PetscReal)face, middle / (PetscReal)count}};
 }
