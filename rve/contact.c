@@ -40,6 +40,28 @@ static PetscInt CountFaces(const LamMesh *mesh)
   return count;
 }
 
+static LamContactFace NewFace(const LamMicrostructure *micro, const LamMesh *mesh, PetscInt cell, PetscInt k,
+                              PetscInt hats)
+{
+  const PetscReal *image;
+  const PetscInt other = LamMeshNeighbour(mesh, cell, k, &image);
+  const PetscBool *held = &mesh->held[LAM_FACES * cell], *facing = &mesh->held[LAM_FACES * other];
+  /* the outer walls that meet the face at its start and end: k - 1 and k + 1 of the cell, k + 4 and k + 2 of the other
+   */
+  const PetscInt low = held[(k + 5) % LAM_FACES] && facing[(k + 4) % LAM_FACES] ? 1 : 0;
+  const PetscInt high = hats - 1 - (held[k + 1] && facing[k + 2] ? 1 : 0);
+
+  return (LamContactFace){.cell = cell,
+                          .face = k,
+                          .other = other,
+                          .shift = {image[0], image[1]},
+                          .cohesion = LamFaceCohesion(micro, cell, other),
+                          .low = low,
+                          .high = high,
+                          .first = low,
+                          .last = high};
+}
+
 /* Faces with their nodes. */
 static void PlaceFaces(const LamMicrostructure *micro, const LamMesh *mesh, LamContact *contact)
 {
@@ -52,8 +74,7 @@ static void PlaceFaces(const LamMicrostructure *micro, const LamMesh *mesh, LamC
       PetscInt *nodes = &contact->nodes[f * contact->chain];
 
       if (other < 0) continue;
-      contact->faces[f] = (LamContactFace){
-          cell, k, other, {image[0], image[1]}, LamFaceCohesion(micro, cell, other), 0, contact->hats - 1};
+      contact->faces[f] = NewFace(micro, mesh, cell, k, contact->hats);
       ChainNodes(mesh, cell, k, nodes);
       ChainNodes(mesh, other, k + 3, nodes + contact->hats);
       for (PetscInt i = 0; i < contact->chain; ++i) {
@@ -160,9 +181,10 @@ static PetscInt WithHysteresis(PetscReal margin, PetscInt old, PetscReal low, Pe
 
 /*
   The hats with multipliers of their own: those whose centre lies inside the overlap, or outside by no more than
-  OVERHANG. The ends of the overlap count in half-edges, u. A little hysteresis keeps the status from flickering.
+  OVERHANG. The ends of the overlap count in half-edges, u. A little hysteresis keeps the status from flickering. Where
+  both walls are held at a corner its gap is no unknown, and a multiplier of its own would find nothing to act on.
 */
-static void Junction(const LamContact *contact, PetscInt *first, PetscInt *last)
+static void Junction(const LamContact *contact, const LamContactFace *face, PetscInt *first, PetscInt *last)
 {
   const LamMortarSegments *segments = &contact->segments;
   const PetscInt count = segments->count, hats = contact->hats;
@@ -180,6 +202,8 @@ static void Junction(const LamContact *contact, PetscInt *first, PetscInt *last)
   high = PetscMin(hats - 1, (PetscInt)PetscFloorReal(hi));
   *first = WithHysteresis(contact->hysteresis, *first, (PetscReal)*first - 1.0, (PetscReal)*first, lo, low);
   *last = WithHysteresis(contact->hysteresis, *last, -(PetscReal)*last - 1.0, -(PetscReal)*last, -hi, high);
+  *first = PetscMax(*first, face->low);
+  *last = PetscMin(*last, face->high);
 }
 
 /* Gives merged hats the multiplier of the hat that they are merged into. */
@@ -222,7 +246,7 @@ PetscErrorCode LamContactEvaluate(LamRVE rve, const LamLoad *load, const PetscRe
     PetscReal *lambda = &contact->lambda[f * contact->hats];
 
     LamMortarFindSegments(&chains, &contact->segments);
-    if (follow) Junction(contact, &face->first, &face->last);
+    if (follow) Junction(contact, face, &face->first, &face->last);
     SpreadMultipliers(face, contact->hats, lambda);
     LamMortarEvaluate(&chains, &contact->segments, lambda, LAM_MORTAR_POINTS, &contact->result);
     PetscCall(PetscArraycpy(&contact->hessian[f * contact->dofs * contact->dofs], contact->result.hessian,
@@ -248,7 +272,7 @@ PetscErrorCode LamContactStatusHolds(LamRVE rve, const LamLoad *load, const Pets
     PetscInt first = contact->faces[f].first, last = contact->faces[f].last;
 
     LamMortarFindSegments(&chains, &contact->segments);
-    Junction(contact, &first, &last);
+    Junction(contact, &contact->faces[f], &first, &last);
     if (first != contact->faces[f].first || last != contact->faces[f].last) *holds = PETSC_FALSE;
   }
   PetscCall(PetscFree(x));

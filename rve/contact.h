@@ -23,6 +23,7 @@ typedef struct {
   PetscInt other;       /* cell of the master, face + 3 */
   PetscReal shift[2];   /* of the master's image */
   PetscReal cohesion;   /* times the load's */
+  PetscInt low, high;   /* hats that may have one: all but those of corners where both walls are held */
   PetscInt first, last; /* hats with a multiplier of their own; first > last: none */
 } LamContactFace;
 
