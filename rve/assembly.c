@@ -135,17 +135,17 @@ PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[],
   PetscFunctionReturn(0);
 }
 
-void LamUpdateStresses(LamRVE rve, const LamLoad *load, const PetscReal y[], const PetscReal dy[], PetscReal alpha)
+void LamUpdateStresses(LamRVE rve, const LamLoad *load, const PetscReal y[], const PetscReal dy[],
+                       const PetscReal dF[9], PetscReal alpha)
 {
-  static const PetscReal no_change[9] = {0}; /* F is held during an iteration */
 
   for (PetscInt e = 0; e < rve->mesh.element_count; ++e) {
     PetscReal x[LAM_ELEMENT_NODES][2], dx[LAM_ELEMENT_NODES][2];
 
     LamGatherElement(rve, load->F, y, e, x);
-    LamGatherElement(rve, no_change, dy, e, dx);
-    LamElementUpdateStress(&rve->geometry[e], (const PetscReal(*)[2])x, (const PetscReal(*)[2])dx, load->F[8], alpha,
-                           &rve->stress[e]);
+    LamGatherElement(rve, dF, dy, e, dx);
+    LamElementUpdateStress(&rve->geometry[e], (const PetscReal(*)[2])x, (const PetscReal(*)[2])dx, load->F[8], dF[8],
+                           alpha, &rve->stress[e]);
   }
 }
 

@@ -368,25 +368,30 @@ void LamContactSetRows(LamRVE rve, PetscReal compliance)
   }
 }
 
-PetscInt LamContactPredictActive(LamRVE rve, const PetscReal step[], const PetscReal lambda[], PetscReal compliance)
+PetscErrorCode LamContactPredictActive(LamRVE rve, const PetscReal step[], const PetscReal dF[9],
+                                       const PetscReal lambda[], PetscReal compliance, PetscInt *changes)
 {
   LamContact *contact = rve->contact;
-  PetscInt changes = 0;
+  PetscReal(*dx)[2];
 
+  PetscFunctionBeginUser;
+  *changes = 0;
+  PetscCall(PetscMalloc1(contact->chain, &dx));
   for (PetscInt h = 0; h < contact->count; ++h) {
     const PetscReal *row = &contact->rows[h * contact->dofs];
-    const PetscInt *classes = &contact->classes[(h / contact->hats) * contact->chain];
     PetscReal gap = contact->gap[h];
     PetscBool active;
 
+    if (h % contact->hats == 0) GatherChains(rve, dF, step, h / contact->hats, dx);
     if (!Carries(contact, h)) continue;
-    for (PetscInt i = 0; i < contact->dofs; ++i) gap += row[i] * step[2 * classes[i / 2] + i % 2] / contact->weight[h];
+    for (PetscInt i = 0; i < contact->dofs; ++i) gap += row[i] * dx[i / 2][i % 2] / contact->weight[h];
     gap += compliance * lambda[h];
     active = (PetscBool)(lambda[h] - LAM_CONTACT_SCALE * gap > 0.0);
     /* an active hat has no gap: rounding must not open it */
     if (contact->active[h] && lambda[h] > 0.0) active = PETSC_TRUE;
-    changes += active != contact->active[h];
+    *changes += active != contact->active[h];
     contact->active[h] = active;
   }
-  return changes;
+  PetscCall(PetscFree(dx));
+  PetscFunctionReturn(0);
 }

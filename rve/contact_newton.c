@@ -31,14 +31,15 @@
 #define LOOSE_TOLERANCE 1e-4 /* while the interface is being released */
 
 /* Step length: limited, and halved until no volume turns inside out; 0: none. */
-static PetscErrorCode StepLength(LamRVE rve, const LamLoad *load, PetscReal limit, PetscReal *alpha)
+static PetscErrorCode StepLength(LamRVE rve, const LamLoad *load, const LamBorder *border, PetscReal limit,
+                                 PetscReal *alpha)
 {
-  const PetscReal largest = LamLargestEntry(rve->ndof, rve->step);
-
   PetscFunctionBeginUser;
-  for (*alpha = PetscMin(1.0, limit / PetscMax(largest, 1e-300)); *alpha > 1e-4; *alpha *= 0.5) {
+  for (*alpha = PetscMin(1.0, limit / PetscMax(rve->contact->largest_step, 1e-300)); *alpha > 1e-4; *alpha *= 0.5) {
+    const LamLoad moved = LamBorderMoved(border, load, *alpha);
+
     for (PetscInt i = 0; i < rve->ndof; ++i) rve->trial[i] = rve->y[i] + *alpha * rve->step[i];
-    if (LamPositionsAreValid(rve, load, rve->trial)) PetscFunctionReturn(0);
+    if (LamPositionsAreValid(rve, &moved, rve->trial)) PetscFunctionReturn(0);
   }
   *alpha = 0.0;
   PetscFunctionReturn(0);
@@ -58,7 +59,8 @@ static PetscErrorCode Report(LamRVE rve, PetscInt it, PetscReal norm, PetscReal 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, PetscReal reach, LamNewtonOutcome *outcome)
+PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, LamBorder *border, PetscReal reach,
+                                LamNewtonOutcome *outcome)
 {
   const PetscBool compliant = (PetscBool)(reach == LAM_FAR);
   const PetscBool under_way = (PetscBool)(rve->contact->share > 0.0);
@@ -72,6 +74,7 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, PetscReal reach
   *outcome = LAM_NEWTON_STALLED;
   rve->contact->hysteresis = LAM_HYSTERESIS;
   PetscCall(LamContactStepCreate(rve, &step));
+  step.border = border;
   for (PetscInt it = 0; it <= most && rve->work.iterations < LAM_ITERATION_BUDGET; ++it) {
     const PetscReal compliance =
         compliant && it < COMPLIANT_ITERATIONS ? COMPLIANCE * PetscPowReal(COMPLIANCE_DECAY, (PetscReal)it) : 0.0;
@@ -84,6 +87,7 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, PetscReal reach
     if (!valid) break;
     changes = LamContactFindActive(rve->contact, compliance);
     LamContactResidual(rve, &step, &norm);
+    PetscCall(LamBorderAssemble(rve, border, &norm));
     gap = LamContactComplementarity(rve->contact);
     if (compliance == 0.0 && norm <= tolerance && gap <= gap_tolerance) {
       PetscBool holds;
@@ -101,8 +105,9 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, PetscReal reach
     LamContactAddCurvature(rve);
     PetscCall(LamContactSolveStep(rve, norm, compliance, &step, &ok));
     if (!ok) break;
-    rve->contact->largest_step = LamLargestEntry(rve->ndof, rve->step);
-    PetscCall(StepLength(rve, load, compliant ? STEP_LIMIT : NEAR_LIMIT, &alpha));
+    rve->contact->largest_step =
+        PetscMax(LamLargestEntry(rve->ndof, rve->step), LamLargestEntry(9, LamBorderStep(border)));
+    PetscCall(StepLength(rve, load, border, compliant ? STEP_LIMIT : NEAR_LIMIT, &alpha));
     PetscCall(Report(rve, it, norm, gap, changes, rve->contact->largest_step, alpha, step.shift));
     if (alpha == 0.0 || (!compliant && rve->contact->largest_step > reach)) break;
     if (it >= CYCLE_AFTER && changes > 0) alpha *= 0.5;

@@ -54,7 +54,7 @@ static PetscErrorCode ReleaseTo(LamRVE rve, const LamLoad *load, LamContactOutco
     PetscCall(LamContactTry(rve, load, RELEASE_REACH, out));
     *reached = out->converged;
   } else {
-    PetscCall(LamContactNewton(rve, load, RELEASE_REACH, &outcome));
+    PetscCall(LamContactNewton(rve, load, NULL, RELEASE_REACH, &outcome));
     *reached = (PetscBool)(outcome == LAM_NEWTON_CONVERGED);
   }
   PetscFunctionReturn(0);
@@ -211,12 +211,13 @@ static PetscErrorCode WalkThenLoose(LamRVE rve, const LamLoad *load, LamContactS
   PetscFunctionReturn(0);
 }
 
-static PetscReal LoadDistance(const LamLoad *a, const LamLoad *b)
+PetscBool LamContactIsNear(const LamLoad *from, const LamLoad *load)
 {
-  PetscReal largest = PetscMax(PetscAbsReal(a->turgor - b->turgor), PetscAbsReal(a->cohesion - b->cohesion));
+  PetscReal largest =
+      PetscMax(PetscAbsReal(from->turgor - load->turgor), PetscAbsReal(from->cohesion - load->cohesion));
 
-  for (PetscInt i = 0; i < 9; ++i) largest = PetscMax(largest, PetscAbsReal(a->F[i] - b->F[i]));
-  return largest;
+  for (PetscInt i = 0; i < 9; ++i) largest = PetscMax(largest, PetscAbsReal(from->F[i] - load->F[i]));
+  return (PetscBool)(largest <= NEAR);
 }
 
 /* The load without its stretch: turgor, cohesion and the rotation of F. */
@@ -299,7 +300,7 @@ static PetscErrorCode GiveSecondBest(LamRVE rve, const LamLoad *load, const Seco
 static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state, LamContactSolution *before,
                              LamContactOutcome *out)
 {
-  const PetscBool near = (PetscBool)(state->solved && LoadDistance(&before->load, load) <= NEAR);
+  const PetscBool near = (PetscBool)(state->solved && LamContactIsNear(&before->load, load));
   PetscBool has_bonded = PETSC_FALSE;
   LamContactSolution at;
   SecondBest best = {.eigenvalue = NAN};
@@ -361,10 +362,7 @@ PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState
 
   PetscFunctionBeginUser;
   PetscCall(LamContactSolutionCreate(rve, &before));
-  before.load = state->load;
-  PetscCall(PetscArraycpy(before.y, state->y, rve->ndof));
-  PetscCall(PetscArraycpy(before.lambda, state->lambda, rve->contact->count));
-  LamRotatePositions(rve->ndof, before.y, before.load.F, LamRotationAngle(load->F) - LamRotationAngle(before.load.F));
+  PetscCall(LamContactTurnState(rve, state, load, &before));
   PetscCall(TryAll(rve, load, state, &before, &out));
   PetscCall(LamContactSolutionDestroy(&before));
   response->branch = state->branch + out.branch;

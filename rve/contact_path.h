@@ -17,6 +17,8 @@ PetscErrorCode LamContactSolutionDestroy(LamContactSolution *solution);
 PetscErrorCode LamContactSave(LamRVE rve, const LamLoad *load, LamContactSolution *solution);
 /* Back to a solution, with its active set and junction status. */
 PetscErrorCode LamContactRestore(LamRVE rve, const LamContactSolution *solution);
+/* The solution that `state` holds, turned as the new load turns. */
+PetscErrorCode LamContactTurnState(LamRVE rve, LamRVEState state, const LamLoad *load, LamContactSolution *solution);
 /* From a solution, moved affinely to the new load. */
 PetscErrorCode LamContactStartNear(LamRVE rve, const LamContactSolution *from, const LamLoad *load);
 /* rve->y := F X, stress-free walls, multipliers that balance turgor and cohesion. */
@@ -24,6 +26,10 @@ PetscErrorCode LamContactStartAffine(LamRVE rve, const LamLoad *load);
 /* rve->y: the positions last solved for by rve->bonded, which belong to the same F; contact->held: what bonding carries
    and the multipliers fitted to it do not. */
 PetscErrorCode LamContactStartBonded(LamRVE rve, const LamLoad *load, PetscBool *ok);
+
+/* ---- contact_path.c ---- */
+/* Whether Newton may start from a solution at the load `from`. */
+PetscBool LamContactIsNear(const LamLoad *from, const LamLoad *load);
 
 /* ---- contact_try.c ---- */
 typedef enum { LAM_NOT_REFUSED, LAM_CELLS_OVERLAP, LAM_LUMEN_COLLAPSED } LamRefusal;
@@ -41,6 +47,8 @@ typedef struct {
    the consistent tangent factored. */
 PetscErrorCode LamContactTry(LamRVE rve, const LamLoad *load, PetscReal reach, LamContactOutcome *out);
 PetscErrorCode LamContactDescend(LamRVE rve, const LamLoad *load, LamContactOutcome *out);
+/* The same with free components of F; saddles are not left. */
+PetscErrorCode LamContactTryMixed(LamRVE rve, LamBorder *border, PetscReal reach, LamContactOutcome *out);
 static inline PetscBool LamContactIsStable(const LamContactOutcome *out)
 {
   return (PetscBool)(out->converged && out->negative <= 0);

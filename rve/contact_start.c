@@ -47,6 +47,17 @@ PetscErrorCode LamContactRestore(LamRVE rve, const LamContactSolution *solution)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamContactTurnState(LamRVE rve, LamRVEState state, const LamLoad *load, LamContactSolution *solution)
+{
+  PetscFunctionBeginUser;
+  solution->load = state->load;
+  PetscCall(PetscArraycpy(solution->y, state->y, rve->ndof));
+  PetscCall(PetscArraycpy(solution->lambda, state->lambda, rve->contact->count));
+  LamRotatePositions(rve->ndof, solution->y, solution->load.F,
+                     LamRotationAngle(load->F) - LamRotationAngle(solution->load.F));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamContactStartNear(LamRVE rve, const LamContactSolution *from, const LamLoad *load)
 {
   PetscFunctionBeginUser;

@@ -19,6 +19,7 @@ PetscErrorCode LamContactStepCreate(LamRVE rve, LamContactStep *step)
 
   PetscFunctionBeginUser;
   step->shift = step->floor = 0.0;
+  step->border = NULL;
   PetscCall(PetscMalloc4(n + 2, &step->rhs, n, &step->solution, rve->contact->count, &step->lambda, n, &step->image));
   PetscFunctionReturn(0);
 }
@@ -74,7 +75,7 @@ static PetscErrorCode Solve(LamRVE rve, LamContactStep *step)
   for (PetscInt i = 0; i < positions; ++i) step->rhs[i] = -rve->residual[i + 2];
   for (PetscInt h = 0; h < contact->count; ++h)
     step->rhs[positions + h] = contact->active[h] ? contact->gap[h] * contact->weight[h] : 0.0;
-  PetscCall(LamLinearSolve(&rve->linear, 1, step->rhs, step->solution));
+  PetscCall(LamBorderSolve(rve, step->border, step->rhs, step->solution));
   rve->step[0] = rve->step[1] = 0.0;
   PetscCall(PetscArraycpy(rve->step + 2, step->solution, positions));
   for (PetscInt h = 0; h < contact->count; ++h)
@@ -110,13 +111,17 @@ static PetscErrorCode AddNegativeCurvature(LamRVE rve, const PetscReal residual[
 PetscErrorCode LamContactSolveStep(LamRVE rve, PetscReal norm, PetscReal compliance, LamContactStep *step,
                                    PetscBool *ok)
 {
+  PetscInt changes;
+
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < ACTIVE_SET_SOLVES; ++k) {
     LamContactSetRows(rve, compliance);
     PetscCall(FactorStable(rve, (PetscBool)(k > 0), step, ok));
     if (!*ok) PetscFunctionReturn(0);
     PetscCall(Solve(rve, step));
-    if (k + 1 == ACTIVE_SET_SOLVES || LamContactPredictActive(rve, rve->step, step->lambda, compliance) == 0) break;
+    if (k + 1 == ACTIVE_SET_SOLVES) break;
+    PetscCall(LamContactPredictActive(rve, rve->step, LamBorderStep(step->border), step->lambda, compliance, &changes));
+    if (changes == 0) break;
   }
   if (step->shift > LAM_CONTACT_PROXIMAL && LamLargestEntry(rve->ndof, rve->step) < 0.5 * ESCAPE_STEP &&
       norm < SADDLE_RESIDUAL) {
@@ -131,8 +136,9 @@ void LamContactTakeStep(LamRVE rve, const LamLoad *load, PetscReal alpha, const 
 {
   LamContact *contact = rve->contact;
 
-  LamUpdateStresses(rve, load, rve->y, rve->step, alpha);
+  LamUpdateStresses(rve, load, rve->y, rve->step, LamBorderStep(step->border), alpha);
   for (PetscInt i = 0; i < rve->ndof; ++i) rve->y[i] += alpha * rve->step[i];
   for (PetscInt h = 0; h < contact->count; ++h) contact->lambda[h] += alpha * (step->lambda[h] - contact->lambda[h]);
+  if (step->border) step->border->load = LamBorderMoved(step->border, load, alpha);
   ++rve->work.iterations;
 }

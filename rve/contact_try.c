@@ -38,7 +38,7 @@ static PetscErrorCode Kick(LamRVE rve, const LamLoad *load, const LamContactSolu
                            (double)rve->lowest_eigenvalue));
   largest = LamLargestEntry(positions, mode);
   for (PetscInt i = 0; i < positions; ++i) rve->y[2 + i] += KICK * mode[i] / largest;
-  PetscCall(LamContactNewton(rve, load, LAM_NEAR_REACH, &outcome));
+  PetscCall(LamContactNewton(rve, load, NULL, LAM_NEAR_REACH, &outcome));
   *left = (PetscBool)(outcome == LAM_NEWTON_CONVERGED && LargestDifference(rve->ndof, rve->y, saddle->y) > 0.1 * KICK);
   PetscFunctionReturn(0);
 }
@@ -106,8 +106,21 @@ PetscErrorCode LamContactTry(LamRVE rve, const LamLoad *load, PetscReal reach, L
   LamNewtonOutcome outcome;
 
   PetscFunctionBeginUser;
-  PetscCall(LamContactNewton(rve, load, reach, &outcome));
+  PetscCall(LamContactNewton(rve, load, NULL, reach, &outcome));
   PetscCall(Judge(rve, load, outcome, escapes, out));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamContactTryMixed(LamRVE rve, LamBorder *border, PetscReal reach, LamContactOutcome *out)
+{
+  LamNewtonOutcome outcome;
+
+  PetscFunctionBeginUser;
+  *out = (LamContactOutcome){0};
+  PetscCall(LamContactNewton(rve, &border->load, border, reach, &outcome));
+  if (outcome != LAM_NEWTON_CONVERGED) PetscFunctionReturn(0);
+  PetscCall(LamFactorConsistent(rve, &border->load, &out->negative, &out->converged));
+  if (LamContactIsStable(out)) PetscCall(Refuse(rve, &border->load, out));
   PetscFunctionReturn(0);
 }
 

@@ -337,7 +337,7 @@ void LamElementEvaluate(const LamElementGeometry *geometry, const LamWallLaw *la
 }
 
 void LamElementUpdateStress(const LamElementGeometry *geometry, const PetscReal x[][2], const PetscReal dx[][2],
-                            PetscReal F33, PetscReal alpha, LamElementStress *stress)
+                            PetscReal F33, PetscReal dF33, PetscReal alpha, LamElementStress *stress)
 {
   PetscReal dc[LAM_PRESSURES] = {0.0, 0.0, 0.0};
 
@@ -346,7 +346,7 @@ void LamElementUpdateStress(const LamElementGeometry *geometry, const PetscReal 
 
     Gradient(geometry, g, x, F);
     Gradient(geometry, g, dx, dF);
-    dJ = F33 * (F[3] * dF[0] - F[2] * dF[1] - F[1] * dF[2] + F[0] * dF[3]);
+    dJ = F33 * (F[3] * dF[0] - F[2] * dF[1] - F[1] * dF[2] + F[0] * dF[3]) + dF33 * Det(F);
     for (PetscInt k = 0; k < LAM_PRESSURES; ++k) dc[k] += geometry->weight[g] * geometry->psi[g][k] * dJ;
     (void)FibreStretch(geometry, F, Fm);
     (void)FibreStretch(geometry, dF, dFm);
@@ -398,8 +398,9 @@ void LamElementStretch33(const LamElementGeometry *geometry, const LamWallLaw *l
   }
   for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
     const PetscReal w = geometry->weight[g], cof[4] = {F[g][3], -F[g][2], -F[g][1], F[g][0]};
-    /* dp of the pressure field that F33 changes directly, plus the geometric part p dcof */
-    const PetscReal p = AtPoint(geometry, g, stress->px), dp = AtPoint(geometry, g, HDf);
+    /* dp of the pressure field that F33 changes directly, plus the geometric part p* dcof */
+    const PetscReal p = AtPoint(geometry, g, stress->px), p_star = AtPoint(geometry, g, stress->p);
+    const PetscReal dp = AtPoint(geometry, g, HDf);
     LamKernel k;
 
     law->matrix(wall, F[g], F33, &k);
@@ -408,7 +409,7 @@ void LamElementStretch33(const LamElementGeometry *geometry, const LamWallLaw *l
     for (PetscInt a = 0; a < 9; ++a)
       for (PetscInt i = 0; i < 2; ++i)
         for (PetscInt J = 0; J < 2; ++J)
-          fx[2 * a + i] += w * (k.A[2 * i + J][4] + (p + F33 * dp) * cof[2 * i + J]) * geometry->dN[2 * g + J][a];
+          fx[2 * a + i] += w * (k.A[2 * i + J][4] + (p_star + F33 * dp) * cof[2 * i + J]) * geometry->dN[2 * g + J][a];
   }
 }
 

@@ -58,17 +58,17 @@ void LamElementEvaluate(const LamElementGeometry *geometry, const LamWallLaw *la
                         const PetscReal x[][2], PetscReal F33, LamElementStress *stress, LamElementResult *out,
                         PetscBool *valid);
 
-/* Moves the independent stresses: stress* += alpha (stress(x) + d stress(x).dx - stress*), at the x of the last
+/* Moves the independent stresses: stress* += alpha (stress(x) + d stress(x).(dx, dF33) - stress*), at the x of the last
    evaluation. */
 void LamElementUpdateStress(const LamElementGeometry *geometry, const PetscReal x[][2], const PetscReal dx[][2],
-                            PetscReal F33, PetscReal alpha, LamElementStress *stress);
+                            PetscReal F33, PetscReal dF33, PetscReal alpha, LamElementStress *stress);
 
 /* Sets the independent stresses to those of x; PETSC_FALSE where x is not valid. */
 PetscBool LamElementSetConsistentStress(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
                                         const PetscReal x[][2], PetscReal F33, LamElementStress *stress);
 
-/* Derivatives with respect to F33 at fixed positions, with the stresses of the last evaluation:
-   force = dPi_e/dF33, fx = d2Pi_e/dx dF33, ff = d2Pi_e/dF33^2. */
+/* Derivatives with respect to F33 at fixed positions: force = dPi_e/dF33 with the stresses of the last evaluation, and
+   as in the tangent with the independent ones fx = d2Pi_e/dx dF33, ff = d2Pi_e/dF33^2. */
 void LamElementStretch33(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
                          const PetscReal x[][2], PetscReal F33, const LamElementStress *stress, PetscReal *force,
                          PetscReal fx[LAM_ELEMENT_DOFS], PetscReal *ff);

@@ -16,6 +16,8 @@
 #define Q_TURGOR 5
 #define Q_COHESION 6
 
+const PetscInt LamFComponent[LAM_F_COUNT] = {0, 1, 3, 4, 8};
+
 typedef struct {
   PetscInt nq;   /* NQ, for bonded tissue without the cohesion */
   PetscInt size; /* of a column: the held class, the other positions, the multipliers */
@@ -132,11 +134,18 @@ static void AddContactFace(LamRVE rve, PetscInt f, Condensation *c)
         for (PetscInt k = 0; k < 2; ++k) c->Lqq[2 * (i % 2) + k][q] -= S[2 * (i / 2) + k] * hessian[i * dofs + j] * Sj;
       }
       for (PetscInt h = f * contact->hats; h < (f + 1) * contact->hats; ++h) {
-        if (!contact->active[h]) continue;
-        c->Lq[q] -= contact->lambda[h] * contact->rows[h * dofs + j] * Sj;
-        column[rve->ndof + h] -= contact->rows[h * dofs + j] * Sj;
+        if (contact->active[h]) c->Lq[q] -= contact->lambda[h] * contact->rows[h * dofs + j] * Sj;
+        column[rve->ndof + h] -= contact->rows[h * dofs + j] * Sj; /* counts where active */
       }
     }
+}
+
+void LamCopyActive(LamRVE rve, const PetscReal column[], PetscReal copy[])
+{
+  const PetscInt positions = rve->linear.positions;
+
+  for (PetscInt i = 0; i < positions; ++i) copy[i] = column[i];
+  for (PetscInt i = positions; i < rve->linear.n; ++i) copy[i] = rve->contact->active[i - positions] ? column[i] : 0.0;
 }
 
 /* H = (L_qq - R^T K^-1 R) / V0. */
@@ -147,7 +156,7 @@ static PetscErrorCode Condense(LamRVE rve, Condensation *c, PetscReal H[NQ][NQ])
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(nq * n, &R, nq * n, &X));
-  for (PetscInt q = 0; q < nq; ++q) PetscCall(PetscArraycpy(R + q * n, c->R + q * c->size + 2, n));
+  for (PetscInt q = 0; q < nq; ++q) LamCopyActive(rve, c->R + q * c->size + 2, R + q * n);
   PetscCall(LamLinearSolve(&rve->linear, nq, R, X));
   for (PetscInt q = 0; q < nq; ++q)
     for (PetscInt r = q; r < nq; ++r) {
@@ -163,22 +172,48 @@ static PetscErrorCode Condense(LamRVE rve, Condensation *c, PetscReal H[NQ][NQ])
   PetscFunctionReturn(0);
 }
 
+/* Sums L_q, L_qq and R, which the caller frees. */
+static PetscErrorCode Assemble(LamRVE rve, const LamLoad *load, Condensation *c)
+{
+  PetscFunctionBeginUser;
+  c->nq = rve->contact ? NQ : NQ - 1;
+  c->size = rve->linear.n + 2;
+  PetscCall(PetscCalloc1(c->nq * c->size, &c->R));
+  for (PetscInt e = 0; e < rve->mesh.element_count; ++e) AddElement(rve, load, e, c);
+  AddLumen(rve, load, c);
+  if (rve->contact) {
+    AddGapVolume(rve, load, c);
+    for (PetscInt f = 0; f < rve->contact->face_count; ++f) AddContactFace(rve, f, c);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamAssembleGradient(LamRVE rve, const LamLoad *load, PetscReal Lq[LAM_F_COUNT],
+                                   PetscReal Lqq[LAM_F_COUNT][LAM_F_COUNT], PetscReal R[])
+{
+  Condensation c = {0};
+
+  PetscFunctionBeginUser;
+  PetscCall(Assemble(rve, load, &c));
+  for (PetscInt q = 0; q < LAM_F_COUNT; ++q) {
+    Lq[q] = c.Lq[q];
+    for (PetscInt r = q; r < LAM_F_COUNT; ++r) Lqq[q][r] = Lqq[r][q] = c.Lqq[q][r];
+    PetscCall(PetscArraycpy(R + q * rve->linear.n, c.R + q * c.size + 2, rve->linear.n));
+  }
+  PetscCall(PetscFree(c.R));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamHomogenise(LamRVE rve, const LamLoad *load, LamResponse *response)
 {
-  static const PetscInt component[5] = {0, 1, 3, 4, 8}; /* of F11 F12 F21 F22 F33 in row-major 3x3 */
-  Condensation c = {.nq = rve->contact ? NQ : NQ - 1, .size = rve->linear.n + 2};
+  const PetscInt *component = LamFComponent;
+  Condensation c = {0};
   PetscReal H[NQ][NQ] = {{0}}, energy;
   PetscBool valid;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(c.nq * c.size, &c.R));
   PetscCall(LamAssembleEnergy(rve, load, rve->y, &energy, &valid));
-  for (PetscInt e = 0; e < rve->mesh.element_count; ++e) AddElement(rve, load, e, &c);
-  AddLumen(rve, load, &c);
-  if (rve->contact) {
-    AddGapVolume(rve, load, &c);
-    for (PetscInt f = 0; f < rve->contact->face_count; ++f) AddContactFace(rve, f, &c);
-  }
+  PetscCall(Assemble(rve, load, &c));
   PetscCall(Condense(rve, &c, H));
   PetscCall(PetscFree(c.R));
   response->energy = energy / rve->mesh.V0;

@@ -47,13 +47,13 @@ static PetscErrorCode Report(LamRVE rve, const char tier[], PetscInt iteration, 
   PetscFunctionReturn(0);
 }
 
-/* step := -K^-1 residual with the present factor; the held class does not move. */
-static PetscErrorCode SolveStep(LamRVE rve)
+/* step := -K^-1 residual with the present factor, or that of the bordered system; the held class does not move. */
+static PetscErrorCode SolveStep(LamRVE rve, LamBorder *border)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamLinearSolve(&rve->linear, 1, rve->residual + 2, rve->step + 2));
+  for (PetscInt i = 2; i < rve->ndof; ++i) rve->trial[i] = -rve->residual[i];
+  PetscCall(LamBorderSolve(rve, border, rve->trial + 2, rve->step + 2));
   rve->step[0] = rve->step[1] = 0.0;
-  for (PetscInt i = 2; i < rve->ndof; ++i) rve->step[i] = -rve->step[i];
   PetscFunctionReturn(0);
 }
 
@@ -96,18 +96,28 @@ static PetscBool AtRounding(LamRVE rve, PetscReal norm, PetscReal tolerance, Pet
 }
 
 /* Largest of 1, 1/2, ... 1/64 for which no volume along rve->step turns inside out; 0: none. */
-static PetscErrorCode ValidStep(LamRVE rve, const LamLoad *load, PetscReal *alpha)
+static PetscErrorCode ValidStep(LamRVE rve, const LamLoad *load, const LamBorder *border, PetscReal *alpha)
 {
   PetscFunctionBeginUser;
   for (*alpha = 1.0; *alpha > 0.01; *alpha *= 0.5) {
+    const LamLoad moved = LamBorderMoved(border, load, *alpha);
+
     TrialPosition(rve, *alpha);
-    if (LamPositionsAreValid(rve, load, rve->trial)) PetscFunctionReturn(0);
+    if (LamPositionsAreValid(rve, &moved, rve->trial)) PetscFunctionReturn(0);
   }
   *alpha = 0.0;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome)
+static void TakeStep(LamRVE rve, const LamLoad *load, LamBorder *border, PetscReal alpha)
+{
+  LamUpdateStresses(rve, load, rve->y, rve->step, LamBorderStep(border), alpha);
+  for (PetscInt i = 0; i < rve->ndof; ++i) rve->y[i] += alpha * rve->step[i];
+  if (border) border->load = LamBorderMoved(border, load, alpha);
+  ++rve->work.iterations;
+}
+
+PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border, LamNewtonOutcome *outcome)
 {
   const PetscReal tolerance = LamNewtonTolerance(rve);
   PetscReal first = 0.0, previous = PETSC_INFINITY, shift = 0.0;
@@ -122,6 +132,7 @@ PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamNewtonOutcome *
     PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
     if (!valid) break;
     norm = LamResidualNorm(rve, rve->residual);
+    PetscCall(LamBorderAssemble(rve, border, &norm));
     if (norm <= tolerance) {
       PetscCall(Report(rve, "fast", it, norm, 0.0, 0.0));
       *outcome = LAM_NEWTON_CONVERGED;
@@ -134,8 +145,8 @@ PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamNewtonOutcome *
     if (it == FAST_ITERATIONS || growth >= 4 || !(norm < 1e8 * (1.0 + first))) break;
     PetscCall(FactorPositive(rve, &shift, &ok));
     if (!ok) break;
-    PetscCall(SolveStep(rve));
-    largest = LamLargestEntry(rve->ndof, rve->step);
+    PetscCall(SolveStep(rve, border));
+    largest = PetscMax(LamLargestEntry(rve->ndof, rve->step), LamLargestEntry(9, LamBorderStep(border)));
     PetscCall(Report(rve, "fast", it, norm, largest, shift));
     if (AtRounding(rve, norm, tolerance, largest)) {
       *outcome = LAM_NEWTON_CONVERGED;
@@ -146,11 +157,9 @@ PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamNewtonOutcome *
       break;
     }
     if (!(largest < 10.0)) break;
-    ++rve->work.iterations;
-    PetscCall(ValidStep(rve, load, &alpha));
+    PetscCall(ValidStep(rve, load, border, &alpha));
     if (alpha == 0.0) break;
-    LamUpdateStresses(rve, load, rve->y, rve->step, alpha);
-    for (PetscInt i = 0; i < rve->ndof; ++i) rve->y[i] += alpha * rve->step[i];
+    TakeStep(rve, load, border, alpha);
   }
   PetscFunctionReturn(0);
 }
@@ -238,7 +247,7 @@ static PetscErrorCode SafeStep(LamRVE rve, const LamLoad *load, PetscInt it, Pet
   *alpha = 0.0;
   PetscCall(FactorPositive(rve, &descent->shift, &ok));
   if (!ok) PetscFunctionReturn(0);
-  PetscCall(SolveStep(rve));
+  PetscCall(SolveStep(rve, NULL));
   if (descent->shift > 0.0 && LamLargestEntry(rve->ndof, rve->step) < 0.5 * ESCAPE_STEP)
     PetscCall(AddNegativeCurvature(rve, descent));
   largest = LamLargestEntry(rve->ndof, rve->step);
@@ -249,9 +258,7 @@ static PetscErrorCode SafeStep(LamRVE rve, const LamLoad *load, PetscInt it, Pet
     PetscCall(LineSearch(rve, load, energy, slope, descent->rounding, alpha));
     descent->monotone = PETSC_FALSE;
   }
-  LamUpdateStresses(rve, load, rve->y, rve->step, *alpha);
-  for (PetscInt i = 0; i < rve->ndof; ++i) rve->y[i] += *alpha * rve->step[i];
-  ++rve->work.iterations;
+  TakeStep(rve, load, NULL, *alpha);
   PetscFunctionReturn(0);
 }
 

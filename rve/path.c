@@ -96,7 +96,7 @@ static PetscErrorCode Step(LamRVE rve, const PetscReal from[], const LamLoad *lo
 
   PetscFunctionBeginUser;
   LamMoveAffinely(rve, from, load_from, load_to);
-  PetscCall(LamNewtonFast(rve, load_to, &outcome));
+  PetscCall(LamNewtonFast(rve, load_to, NULL, &outcome));
   if (outcome == LAM_NEWTON_STALLED) {
     LamMoveAffinely(rve, from, load_from, load_to);
     PetscCall(LamNewtonSafe(rve, load_to, &outcome));

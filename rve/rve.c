@@ -190,8 +190,7 @@ PetscErrorCode LamRVEStateDestroy(LamRVEState *state)
   PetscFunctionReturn(0);
 }
 
-/* Empty where the load can be asked of plane-strain tissue, else why not. */
-static PetscErrorCode CheckLoad(const LamLoad *load, char reason[], size_t length)
+PetscErrorCode LamCheckLoad(const LamLoad *load, char reason[], size_t length)
 {
   const PetscReal *F = load->F, det = F[0] * F[4] - F[1] * F[3];
 
@@ -245,39 +244,52 @@ static PetscErrorCode RefuseCollapsedLumen(LamRVE rve, LamResponse *response)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamAcceptSolution(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
+{
+  PetscFunctionBeginUser;
+  PetscCall(RefuseCollapsedLumen(rve, response));
+  if (!LamResponseHasFields(response)) PetscFunctionReturn(0);
+  PetscCall(FillFields(rve, load, response));
+  response->stable = (PetscBool)(response->status == LAM_CONVERGED);
+  if (!response->stable || response->zero_modes > 0) response->lowest_eigenvalue = rve->lowest_eigenvalue;
+  PetscCall(PetscArraycpy(state->y, rve->y, rve->ndof));
+  if (rve->contact) PetscCall(PetscArraycpy(state->lambda, rve->contact->lambda, state->multipliers));
+  state->solved = PETSC_TRUE;
+  state->load = *load;
+  state->branch = response->branch;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamResponse *response)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamResponseInit(load, response));
+  response->source = LAM_SOURCE_SOLVE;
+  response->unknowns = rve->linear.n;
+  response->distance = 0.0;
+  rve->work = (LamWork){0};
+  rve->lowest_eigenvalue = NAN;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
 {
   PetscLogDouble begin, end;
 
   PetscFunctionBeginUser;
   PetscCall(PetscTime(&begin));
-  PetscCall(LamResponseInit(load, response));
-  response->source = LAM_SOURCE_SOLVE;
-  response->unknowns = rve->linear.n;
-  response->distance = 0.0;
-  PetscCall(CheckLoad(load, response->reason, sizeof(response->reason)));
+  PetscCall(LamBeginResponse(rve, load, response));
+  PetscCall(LamCheckLoad(load, response->reason, sizeof(response->reason)));
   if (response->reason[0]) {
     response->status = LAM_INVALID_F;
     PetscFunctionReturn(0);
   }
-  rve->work = (LamWork){0};
-  rve->lowest_eigenvalue = NAN;
   if (rve->contact)
     PetscCall(LamContactFollowPath(rve, load, state, response));
   else
     PetscCall(LamFollowPath(rve, load, state, &response->branch, &response->negative_eigenvalues, &response->status,
                             response->reason, sizeof(response->reason)));
-  PetscCall(RefuseCollapsedLumen(rve, response));
-  if (LamResponseHasFields(response)) {
-    PetscCall(FillFields(rve, load, response));
-    response->stable = (PetscBool)(response->status == LAM_CONVERGED);
-    if (!response->stable || response->zero_modes > 0) response->lowest_eigenvalue = rve->lowest_eigenvalue;
-    PetscCall(PetscArraycpy(state->y, rve->y, rve->ndof));
-    if (rve->contact) PetscCall(PetscArraycpy(state->lambda, rve->contact->lambda, state->multipliers));
-    state->solved = PETSC_TRUE;
-    state->load = *load;
-    state->branch = response->branch;
-  }
+  PetscCall(LamAcceptSolution(rve, load, state, response));
   response->newton_iterations = rve->work.iterations;
   response->factorisations = rve->work.factorisations;
   PetscCall(PetscTime(&end));

@@ -5,6 +5,7 @@
     gap_area.c           area between the cells, on which cohesion works
     linear.c factor.c    sparsity pattern; factorisation, inertia, solves
     newton.c             one equilibrium from a start: fast and safe tier
+    border.h             components of F that join the unknowns where stress is prescribed
     stability.c          softest mode of a converged state
     path.c               start, substeps, leaving a saddle
     mortar.c mortar_segments.c            gaps between two chains of edges and their variations
@@ -13,6 +14,7 @@
     contact_start.c contact_try.c contact_path.c      starts, judging a solution, ways to it
     lumen.c overlap.c    lumens whose walls have met, cells that lie in each other
     homogenise.c         stress, tangent and couplings by static condensation
+    mixed.c mixed_fast.c mixed_safe.c     states of which some components of P are prescribed
     traction.c           largest means along faces; interface tractions of bonded faces
     failure.c            stretch, energy and tension of the walls
     indicators.c interface.c              how far cells have come apart; gaps and pressures for pictures
@@ -23,6 +25,7 @@
 #define LAM_RVE_IMPL_H
 
 #include <lamella/rve.h>
+#include "border.h"
 #include "contact.h"
 #include "element.h"
 #include "factor.h"
@@ -139,8 +142,9 @@ PetscErrorCode LamAssembleEnergy(LamRVE rve, const LamLoad *load, const PetscRea
 /* Energy, residual [ndof] and, into linear.values, the tangent with independent stresses. */
 PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy,
                            PetscReal residual[], PetscBool *valid);
-/* Moves the independent stresses by alpha along the displacement dy from y. */
-void LamUpdateStresses(LamRVE rve, const LamLoad *load, const PetscReal y[], const PetscReal dy[], PetscReal alpha);
+/* Moves the independent stresses by alpha along the displacement dy from y and the change dF from load->F. */
+void LamUpdateStresses(LamRVE rve, const LamLoad *load, const PetscReal y[], const PetscReal dy[],
+                       const PetscReal dF[9], PetscReal alpha);
 /* PETSC_FALSE where an element volume is not positive. */
 PetscBool LamPositionsAreValid(LamRVE rve, const LamLoad *load, const PetscReal y[]);
 /* Independent stresses := those of positions y; PETSC_FALSE where y is not valid. */
@@ -172,9 +176,10 @@ PetscInt LamContactCountActive(const LamContact *contact);
 PetscReal LamContactComplementarity(const LamContact *contact);
 /* residual [ndof] += -B^T lambda. */
 void LamContactAddForce(LamRVE rve, PetscReal residual[]);
-/* The active set that positions after `step` [ndof] and multipliers lambda would have, by the present linearisation.
-   Returns the number of changes. */
-PetscInt LamContactPredictActive(LamRVE rve, const PetscReal step[], const PetscReal lambda[], PetscReal compliance);
+/* The active set that positions after `step` [ndof], F after dF and multipliers lambda would have, by the present
+   linearisation. Returns the number of changes. */
+PetscErrorCode LamContactPredictActive(LamRVE rve, const PetscReal step[], const PetscReal dF[9],
+                                       const PetscReal lambda[], PetscReal compliance, PetscInt *changes);
 /* Adds the second derivative of -sum lambda G to linear.values. */
 void LamContactAddCurvature(LamRVE rve);
 /* Sets the rows of the multipliers in linear.values: -dG and -compliance D for active hats, 0 and 1 for the others. */
@@ -201,8 +206,8 @@ void LamLinearMultiply(const LamLinear *linear, const PetscReal x[], PetscReal y
 #define LAM_ITERATION_BUDGET 2000
 typedef enum { LAM_NEWTON_CONVERGED, LAM_NEWTON_NEAR_SADDLE, LAM_NEWTON_STALLED } LamNewtonOutcome;
 /* From rve->y to equilibrium at `load`. Fast: full steps. Safe: inertia-corrected steps that lower the energy and leave
-   saddles; never ends NEAR_SADDLE. */
-PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome);
+   saddles; never ends NEAR_SADDLE. border: NULL, or the free components of F; the load is then border->load. */
+PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border, LamNewtonOutcome *outcome);
 PetscErrorCode LamNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome);
 /* Tolerance of the residual norm: the rounding error of the stiff forces, but at least 1e-11. */
 PetscReal LamNewtonTolerance(LamRVE rve);
@@ -242,6 +247,7 @@ typedef struct {
   PetscReal *lambda;                 /* [multipliers] after the step */
   PetscReal shift;                   /* of the last factor */
   PetscReal floor;                   /* least shift: the larger, the shorter the step */
+  LamBorder *border;                 /* borrowed; NULL: F is prescribed */
 } LamContactStep;
 PetscErrorCode LamContactStepCreate(LamRVE rve, LamContactStep *step);
 PetscErrorCode LamContactStepDestroy(LamContactStep *step);
@@ -251,15 +257,16 @@ void LamContactResidual(LamRVE rve, LamContactStep *step, PetscReal *norm);
    PETSC_FALSE where no shift helps. */
 PetscErrorCode LamContactSolveStep(LamRVE rve, PetscReal norm, PetscReal compliance, LamContactStep *step,
                                    PetscBool *ok);
-/* Moves positions, wall stresses and multipliers by alpha. */
+/* Moves positions, wall stresses, multipliers and a free F by alpha. */
 void LamContactTakeStep(LamRVE rve, const LamLoad *load, PetscReal alpha, const LamContactStep *step);
 
 /* ---- contact_newton.c, contact_safe.c, contact_path.c ---- */
 /* From rve->y, contact->lambda and the independent stresses to equilibrium at `load`. Fast: full steps; one larger than
    `reach` (apothems) ends it as stalled; LAM_FAR: the start may be far from contact, steps are shortened. Safe: descent
-   on the energy, from consistent stresses. */
+   on the energy, from consistent stresses. border: as in LamNewtonFast. */
 #define LAM_FAR 0.0
-PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, PetscReal reach, LamNewtonOutcome *outcome);
+PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, LamBorder *border, PetscReal reach,
+                                LamNewtonOutcome *outcome);
 PetscErrorCode LamContactNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome);
 /* As LamFollowPath; the solution is in rve->y and contact->lambda. */
 PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
@@ -273,6 +280,12 @@ PetscErrorCode LamFindOverlap(LamRVE rve, const PetscReal F[9], const PetscReal 
                               PetscInt pair[2]);
 
 /* ---- homogenise.c, traction.c, failure.c ---- */
+/* L_q, L_qq and R = L_yq [LAM_F_COUNT][n] of the components of F at rve->y, after LamAssemble there; rows of R for all
+   multipliers, as if they were active. */
+PetscErrorCode LamAssembleGradient(LamRVE rve, const LamLoad *load, PetscReal Lq[LAM_F_COUNT],
+                                   PetscReal Lqq[LAM_F_COUNT][LAM_F_COUNT], PetscReal R[]);
+/* Copies a column [n] with zeros for multipliers that are not active. */
+void LamCopyActive(LamRVE rve, const PetscReal column[], PetscReal copy[]);
 /* Fills energy, P, tangent, couplings and lumen fraction from rve->y and the factored consistent tangent. */
 PetscErrorCode LamHomogenise(LamRVE rve, const LamLoad *load, LamResponse *response);
 /* The largest mean over a stretch of a face that is as long as the wall of its cell is thick, and where it is. */
@@ -292,6 +305,15 @@ void LamTakeLargestMean(PetscReal thickness, PetscInt cell, PetscInt face, Petsc
 PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, LamResponse *response);
 /* Fills the measures of the walls from rve->y. */
 PetscErrorCode LamWallMeasures(LamRVE rve, const LamLoad *load, LamResponse *response);
+
+/* ---- rve.c ---- */
+/* Empty where the load can be asked of plane-strain tissue, else why not. */
+PetscErrorCode LamCheckLoad(const LamLoad *load, char reason[], size_t length);
+/* A response without answer, and no work yet. */
+PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamResponse *response);
+/* Fills the fields of a response whose status says that rve->y (and the multipliers) are a solution at `load`, with its
+   consistent tangent factored, and stores it in `state`; refuses it where a lumen has collapsed. */
+PetscErrorCode LamAcceptSolution(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
 
 /* ---- indicators.c ---- */
 /* Fills the debonding indicators from rve->y and the multipliers; of contact tissue the tractions, too. */

@@ -188,3 +188,14 @@ PetscErrorCode LamSceneBuildSample(const LamDocument *document, LamScene *scene)
     scene->sample.accuracy = accuracy_node ? accuracy.number[0] : scene->accuracy;
   PetscFunctionReturn(0);
 }
+
+LamLoad LamLoadAfter(const LamLoad *load, const LamStressControl *control, const PetscReal before[9])
+{
+  LamLoad after = *load;
+
+  for (PetscInt i = 0; i < 9 && control; i++) {
+    if (control->given[i]) after.F[i] = before[i];
+    if (control->follows[i]) after.F[i] = (1.0 - control->share) * before[i] + control->share * load->F[i];
+  }
+  return after;
+}

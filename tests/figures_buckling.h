@@ -27,7 +27,7 @@ static inline PetscErrorCode SolveSymmetric(LamRVE rve, const LamLoad *load, Pet
     PetscCall(LamLinearSolve(&rve->linear, 1, rve->residual + 2, rve->step + 2));
     rve->step[0] = rve->step[1] = 0.0;
     for (PetscInt i = 2; i < rve->ndof; i++) rve->step[i] = -rve->step[i];
-    LamUpdateStresses(rve, load, rve->y, rve->step, 1.0);
+    LamUpdateStresses(rve, load, rve->y, rve->step, LamBorderStep(NULL), 1.0);
     for (PetscInt i = 0; i < rve->ndof; i++) rve->y[i] += rve->step[i];
   }
   *ok = PETSC_FALSE;

@@ -45,6 +45,15 @@ PetscErrorCode LamRVEStateDestroy(LamRVEState *state);
 */
 PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
 
+/*
+  The same with stress prescribed in place of components of F: load->F holds the given components and a first guess of
+  the free ones, such as those of `state`; response->load.F is the solution (NaN where there is none). F12 and F21
+  cannot both be free. A state is stable where it is so at its F and dP/dF of the free components is positive definite;
+  an equilibrium that is not is LAM_UNSTABLE, with the reason.
+*/
+PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStressControl *control, LamRVEState state,
+                                LamResponse *response);
+
 /* Number of unknowns of one solve (displacement components that are free). */
 PetscErrorCode LamRVEGetUnknowns(LamRVE rve, PetscInt *unknowns);
 

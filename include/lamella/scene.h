@@ -102,6 +102,18 @@ typedef struct {
   PetscReal lamella_shear;  /* likewise, along the face */
 } LamStrength;
 
+/*
+  What else a load prescribes where F does not say it all: stress, and components that go on from the state before.
+  P[i] and F[i] are alternatives; F12 and F21 are not both free. Row-major as F.
+*/
+typedef struct {
+  PetscBool given[9]; /* P is prescribed; F is free, and in a load only the first guess */
+  PetscReal P[9];
+  PetscBool follows[9]; /* F goes from that of the state before, which reading does not know, by `share` of the way to
+                           that of the load */
+  PetscReal share;
+} LamStressControl;
+
 /* Box of states for `build`. */
 typedef struct {
   PetscReal stretch_min, stretch_max; /* principal logarithmic strains */
@@ -141,7 +153,8 @@ typedef struct {
   LamStrength strength; /* what walls and lamella bear */
   PetscReal accuracy;   /* wanted relative error of the effective stress */
   PetscInt load_count;
-  LamLoad *loads; /* ramps expanded: states 1..load_count; owned */
+  LamLoad *loads;             /* ramps expanded: states 1..load_count; owned */
+  LamStressControl *controls; /* of the loads; NULL where F is given in all of them; owned */
   PetscBool has_sample;
   LamSample sample;
   PetscBool has_macro;
@@ -156,6 +169,10 @@ PetscErrorCode LamSceneRead(const char path[], LamScene **scene);
 /* The same from text; `name` stands for the file in messages. */
 PetscErrorCode LamSceneReadText(const char name[], const char text[], LamScene **scene);
 PetscErrorCode LamSceneDestroy(LamScene **scene);
+
+/* A load after a state at F = before: free components have that for their guess, others follow it. control may be NULL.
+ */
+LamLoad LamLoadAfter(const LamLoad *load, const LamStressControl *control, const PetscReal before[9]);
 
 /* Writes the scene reference (Markdown), generated from the same table of keys that the reader uses. */
 PetscErrorCode LamSceneReference(FILE *out);

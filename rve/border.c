@@ -1,0 +1,127 @@
+#include "rve_impl.h"
+#include <petscblaslapack.h>
+
+PetscErrorCode LamBorderCreate(LamRVE rve, const LamLoad *load, const LamStressControl *control, LamBorder **out)
+{
+  const PetscInt n = rve->linear.n;
+  LamBorder *border;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&border));
+  border->load = *load;
+  for (PetscInt q = 0; q < LAM_F_COUNT; ++q) {
+    const PetscInt component = LamFComponent[q];
+
+    if (!control->given[component]) continue;
+    border->q[border->count] = q;
+    border->P[border->count++] = control->P[component];
+  }
+  PetscCall(PetscMalloc3(LAM_F_COUNT * n, &border->R, (border->count + 1) * n, &border->rhs, (border->count + 1) * n,
+                         &border->solution));
+  *out = border;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamBorderDestroy(LamBorder **border)
+{
+  PetscFunctionBeginUser;
+  if (!*border) PetscFunctionReturn(0);
+  PetscCall(PetscFree3((*border)->R, (*border)->rhs, (*border)->solution));
+  PetscCall(PetscFree(*border));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamBorderAssemble(LamRVE rve, LamBorder *border, PetscReal *norm)
+{
+  const PetscInt n = rve->linear.n, positions = rve->linear.positions;
+  PetscReal Lq[LAM_F_COUNT], sum;
+
+  PetscFunctionBeginUser;
+  if (!border) PetscFunctionReturn(0);
+  sum = *norm * *norm;
+  PetscCall(LamAssembleGradient(rve, &border->load, Lq, border->Lqq, border->R));
+  for (PetscInt k = 0; k < border->count; ++k) {
+    const PetscReal *R = border->R + border->q[k] * n;
+
+    border->residual[k] = border->rest[k] = Lq[border->q[k]] - rve->mesh.V0 * border->P[k];
+    for (PetscInt i = positions; i < n; ++i) /* multipliers enter L by -lambda G, so L_q by lambda R */
+      if (rve->contact->active[i - positions]) border->rest[k] -= rve->contact->lambda[i - positions] * R[i];
+    sum += PetscSqr(border->residual[k]);
+  }
+  *norm = PetscSqrtReal(sum);
+  PetscFunctionReturn(0);
+}
+
+static PetscReal Dot(PetscInt n, const PetscReal a[], const PetscReal b[])
+{
+  PetscReal sum = 0.0;
+
+  for (PetscInt i = 0; i < n; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+PetscErrorCode LamBorderSolve(LamRVE rve, LamBorder *border, const PetscReal rhs[], PetscReal solution[])
+{
+  const PetscInt n = rve->linear.n;
+  PetscReal S[LAM_F_COUNT][LAM_F_COUNT], w[LAM_F_COUNT], V[LAM_F_COUNT][LAM_F_COUNT], b[LAM_F_COUNT],
+      dq[LAM_F_COUNT] = {0};
+
+  PetscFunctionBeginUser;
+  if (!border) {
+    PetscCall(LamLinearSolve(&rve->linear, 1, rhs, solution));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(PetscArraycpy(border->rhs, rhs, n));
+  for (PetscInt k = 0; k < border->count; ++k)
+    LamCopyActive(rve, border->R + border->q[k] * n, border->rhs + (k + 1) * n);
+  PetscCall(LamLinearSolve(&rve->linear, border->count + 1, border->rhs, border->solution));
+  for (PetscInt k = 0; k < border->count; ++k) {
+    const PetscReal *R = border->rhs + (k + 1) * n;
+
+    b[k] = -border->rest[k] - Dot(n, R, border->solution);
+    for (PetscInt l = k; l < border->count; ++l)
+      S[k][l] = S[l][k] = border->Lqq[border->q[k]][border->q[l]] - Dot(n, R, border->solution + (l + 1) * n);
+  }
+  PetscCall(LamSmallEigenvectors(border->count, (const PetscReal(*)[LAM_F_COUNT])S, w, V));
+  for (PetscInt k = 0; k < border->count; ++k) {
+    const PetscReal share = Dot(border->count, V[k], b) / w[k];
+
+    for (PetscInt l = 0; l < border->count; ++l) dq[l] += share * V[k][l];
+  }
+  PetscCall(PetscArraycpy(solution, border->solution, n));
+  for (PetscInt k = 0; k < border->count; ++k) {
+    border->dF[LamFComponent[border->q[k]]] = dq[k];
+    for (PetscInt i = 0; i < n; ++i) solution[i] -= dq[k] * border->solution[(k + 1) * n + i];
+  }
+  PetscFunctionReturn(0);
+}
+
+const PetscReal *LamBorderStep(const LamBorder *border)
+{
+  static const PetscReal no_change[9] = {0};
+
+  return border ? border->dF : no_change;
+}
+
+LamLoad LamBorderMoved(const LamBorder *border, const LamLoad *load, PetscReal alpha)
+{
+  const PetscReal *dF = LamBorderStep(border);
+  LamLoad moved = *load;
+
+  for (PetscInt i = 0; i < 9; ++i) moved.F[i] += alpha * dF[i];
+  return moved;
+}
+
+PetscErrorCode LamSmallEigenvectors(PetscInt n, const PetscReal A[LAM_F_COUNT][LAM_F_COUNT], PetscReal w[LAM_F_COUNT],
+                                    PetscReal V[LAM_F_COUNT][LAM_F_COUNT])
+{
+  PetscBLASInt size = (PetscBLASInt)n, stride = LAM_F_COUNT, length = 8 * LAM_F_COUNT, info;
+  PetscReal work[8 * LAM_F_COUNT];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(&V[0][0], &A[0][0], LAM_F_COUNT * LAM_F_COUNT));
+  LAPACKsyev_("V", "U", &size, &V[0][0], &stride, w, work, &length, &info);
+  PetscCheck(info >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK syev: argument %d", (int)-info);
+  if (info > 0) w[0] = NAN; /* entries that are not finite: no step comes of it */
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,158 @@
+/*
+  States of which some components of P are prescribed and those of F free.
+
+  Method. Fast tier: the free components join the unknowns of the Newton iteration (border.h), which costs right-hand
+  sides but no factorisation of its own. Where it fails, or ends in a state that is not stable under the prescribed
+  stress: safe tier, descent on Psi(F) - P.F over the free components. A state is stable under the control where it is
+  at its F and dP/dF of the free components is positive definite. An equilibrium that is not is given as unstable where
+  nothing stable is found.
+*/
+#include "mixed.h"
+#include <petsctime.h>
+
+static const char *const component_names[9] = {"11", "12", "13", "21", "22", "23", "31", "32", "33"};
+
+PetscErrorCode LamMixedLook(const LamStressControl *control, const LamResponse *response, LamMixedView *view)
+{
+  PetscFunctionBeginUser;
+  *view = (LamMixedView){.potential = response->energy};
+  for (PetscInt q = 0; q < LAM_F_COUNT; ++q) {
+    const PetscInt c = LamFComponent[q];
+
+    if (!control->given[c]) continue;
+    view->excess[view->count] = response->P[c] - control->P[c];
+    view->largest = PetscMax(view->largest, PetscAbsReal(view->excess[view->count]));
+    view->potential -= control->P[c] * response->load.F[c];
+    view->component[view->count++] = c;
+  }
+  for (PetscInt k = 0; k < view->count; ++k)
+    for (PetscInt l = 0; l < view->count; ++l)
+      view->A[k][l] = response->tangent[9 * view->component[k] + view->component[l]];
+  PetscCall(LamSmallEigenvectors(view->count, (const PetscReal(*)[LAM_F_COUNT])view->A, view->w, view->V));
+  PetscFunctionReturn(0);
+}
+
+/* Empty where the control can be asked of plane-strain tissue, else why not. */
+static PetscErrorCode CheckControl(const LamStressControl *control, char reason[], size_t length)
+{
+  static const PetscBool in_plane[9] = {1, 1, 0, 1, 1, 0, 0, 0, 1};
+
+  PetscFunctionBeginUser;
+  reason[0] = '\0';
+  for (PetscInt i = 0; i < 9; ++i) {
+    if (!control->given[i]) continue;
+    if (!in_plane[i])
+      PetscCall(PetscSNPrintf(reason, length, "P%s is prescribed; plane strain has no F%s to follow it",
+                              component_names[i], component_names[i]));
+    else if (PetscIsInfOrNanReal(control->P[i]))
+      PetscCall(PetscSNPrintf(reason, length, "the prescribed P%s is not finite", component_names[i]));
+  }
+  if (control->given[1] && control->given[3])
+    PetscCall(PetscSNPrintf(reason, length, "F12 and F21 are both free: the tissue can rotate; prescribe one of them"));
+  PetscFunctionReturn(0);
+}
+
+/* The free component to prescribe instead so that the state is stable, -1: none alone does it. */
+static PetscErrorCode FindRemedy(const LamMixedView *view, PetscInt *remedy)
+{
+  PetscReal highest = LAM_MIXED_SOFTEST;
+
+  PetscFunctionBeginUser;
+  *remedy = -1;
+  if (view->count == 1) *remedy = view->component[0];
+  for (PetscInt left_out = 0; left_out < view->count && view->count > 1; ++left_out) {
+    PetscReal A[LAM_F_COUNT][LAM_F_COUNT] = {{0}}, w[LAM_F_COUNT], V[LAM_F_COUNT][LAM_F_COUNT];
+
+    for (PetscInt k = 0; k < view->count - 1; ++k)
+      for (PetscInt l = 0; l < view->count - 1; ++l) A[k][l] = view->A[k + (k >= left_out)][l + (l >= left_out)];
+    PetscCall(LamSmallEigenvectors(view->count - 1, (const PetscReal(*)[LAM_F_COUNT])A, w, V));
+    if (!(w[0] > highest)) continue;
+    highest = w[0];
+    *remedy = view->component[left_out];
+  }
+  PetscFunctionReturn(0);
+}
+
+/* An equilibrium at the prescribed stress that does not stay there. */
+static PetscErrorCode CallUnstable(const LamMixedView *view, LamResponse *response)
+{
+  char remedy[32] = "all of F";
+  PetscInt component;
+
+  PetscFunctionBeginUser;
+  PetscCall(FindRemedy(view, &component));
+  if (component >= 0) PetscCall(PetscSNPrintf(remedy, sizeof(remedy), "F%s", component_names[component]));
+  response->status = LAM_UNSTABLE;
+  response->stable = PETSC_FALSE;
+  response->lowest_eigenvalue = view->w[0];
+  PetscCall(PetscSNPrintf(response->reason, sizeof(response->reason),
+                          "in equilibrium, but not stable under the prescribed stress: lowest stiffness %.3g (C1+C2); "
+                          "stable where %s is prescribed instead",
+                          (double)view->w[0], remedy));
+  PetscFunctionReturn(0);
+}
+
+/* Both tiers; `state` is replaced by a solution. */
+static PetscErrorCode SolveTiers(LamRVE rve, const LamLoad *load, const LamStressControl *control, LamRVEState state,
+                                 LamResponse *response)
+{
+  LamRVEState fast;
+  LamMixedView view;
+  LamLoad guess = *load;
+  LamResponse safe;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEStateCreate(rve, &fast));
+  PetscCall(LamRVEStateCopy(state, fast));
+  PetscCall(LamMixedFast(rve, &guess, control, fast, response));
+  if (LamResponseHasFields(response)) {
+    PetscCall(LamMixedLook(control, response, &view));
+    if (!LamMixedIsStable(&view)) PetscCall(CallUnstable(&view, response));
+  }
+  if (response->status != LAM_CONVERGED) {
+    const PetscInt iterations = response->newton_iterations, factorisations = response->factorisations;
+
+    PetscCall(LamMixedSafe(rve, &guess, control, state, &safe));
+    if (safe.status == LAM_UNSTABLE) {
+      PetscCall(LamMixedLook(control, &safe, &view));
+      if (!LamMixedIsStable(&view)) PetscCall(CallUnstable(&view, &safe));
+    }
+    if (safe.status == LAM_CONVERGED || !LamResponseHasFields(response)) {
+      *response = safe;
+      PetscCall(LamRVEStateCopy(state, fast));
+    }
+    response->newton_iterations = iterations + safe.newton_iterations;
+    response->factorisations = factorisations + safe.factorisations;
+  }
+  if (LamResponseHasFields(response)) PetscCall(LamRVEStateCopy(fast, state));
+  PetscCall(LamRVEStateDestroy(&fast));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStressControl *control, LamRVEState state,
+                                LamResponse *response)
+{
+  PetscLogDouble begin, end;
+  PetscBool any = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < 9; ++i) any = (PetscBool)(any || control->given[i]);
+  if (!any) {
+    PetscCall(LamRVESolve(rve, load, state, response));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(PetscTime(&begin));
+  PetscCall(LamBeginResponse(rve, load, response));
+  PetscCall(LamCheckLoad(load, response->reason, sizeof(response->reason)));
+  if (!response->reason[0]) PetscCall(CheckControl(control, response->reason, sizeof(response->reason)));
+  if (response->reason[0])
+    response->status = LAM_INVALID_F;
+  else
+    PetscCall(SolveTiers(rve, load, control, state, response));
+  if (!LamResponseHasFields(response)) /* not known */
+    for (PetscInt i = 0; i < 9; ++i)
+      if (control->given[i]) response->load.F[i] = NAN;
+  PetscCall(PetscTime(&end));
+  response->seconds = end - begin;
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,108 @@
+/*
+  Fast tier of prescribed stress: the Newton iterations of newton.c and contact_newton.c with free components of F.
+
+  Method. The start is the state before, turned and moved affinely to the guess of F. Contact tissue that has no near
+  state takes the two steps of its strategy: the bonded tissue under the same control, then release to contact with F
+  still free.
+*/
+#include "mixed.h"
+#include "contact_path.h"
+
+static PetscErrorCode TryBonded(LamRVE rve, LamBorder *border, LamRVEState state, PetscBool *solved)
+{
+  LamNewtonOutcome outcome;
+  LamLoad start = state->load;
+  PetscReal *from;
+  PetscInt negative;
+
+  PetscFunctionBeginUser;
+  *solved = PETSC_FALSE;
+  PetscCall(PetscMalloc1(rve->ndof, &from));
+  PetscCall(PetscArraycpy(from, state->y, rve->ndof));
+  LamRotatePositions(rve->ndof, from, start.F, LamRotationAngle(border->load.F) - LamRotationAngle(start.F));
+  LamMoveAffinely(rve, from, &start, &border->load);
+  PetscCall(PetscFree(from));
+  PetscCall(LamNewtonFast(rve, &border->load, border, &outcome));
+  if (outcome != LAM_NEWTON_CONVERGED) PetscFunctionReturn(0);
+  PetscCall(LamFactorConsistent(rve, &border->load, &negative, solved));
+  if (negative > 0) *solved = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Contact from the state before. */
+static PetscErrorCode TryNear(LamRVE rve, LamBorder *border, LamRVEState state, LamContactOutcome *out)
+{
+  LamContactSolution before;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamContactSolutionCreate(rve, &before));
+  PetscCall(LamContactTurnState(rve, state, &border->load, &before));
+  PetscCall(LamContactStartNear(rve, &before, &border->load));
+  PetscCall(LamContactTryMixed(rve, border, LAM_NEAR_REACH, out));
+  PetscCall(LamContactSolutionDestroy(&before));
+  PetscFunctionReturn(0);
+}
+
+/* Contact from the bonded tissue under the same control, which gives the F to start from also where contact fails. */
+static PetscErrorCode TryRelease(LamRVE rve, LamBorder *border, const LamStressControl *control, LamRVEState state,
+                                 LamContactOutcome *out)
+{
+  LamResponse response;
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVESetMonitor(rve->bonded, rve->monitor));
+  PetscCall(LamRVEStateCopy(state->bonded, rve->bonded_state));
+  PetscCall(LamRVESolveMixed(rve->bonded, &border->load, control, rve->bonded_state, &response));
+  rve->work.iterations += response.newton_iterations;
+  rve->work.factorisations += response.factorisations;
+  if (response.status != LAM_CONVERGED) PetscFunctionReturn(0);
+  PetscCall(PetscArraycpy(border->load.F, response.load.F, 9));
+  PetscCall(PetscArraycpy(rve->bonded->y, rve->bonded_state->y, rve->bonded->ndof));
+  PetscCall(LamContactStartBonded(rve, &border->load, &ok));
+  if (ok) PetscCall(LamContactTryMixed(rve, border, LAM_NEAR_REACH, out));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TryContact(LamRVE rve, LamBorder *border, LamLoad *load, const LamStressControl *control,
+                                 LamRVEState state, LamResponse *response, PetscBool *solved)
+{
+  LamContactOutcome out = {0};
+
+  PetscFunctionBeginUser;
+  if (state->solved && LamContactIsNear(&state->load, load)) PetscCall(TryNear(rve, border, state, &out));
+  if (!LamContactIsStable(&out) && rve->strategy == LAM_TWO_STEP) {
+    border->load = *load;
+    PetscCall(TryRelease(rve, border, control, state, &out));
+    if (LamContactIsStable(&out)) PetscCall(LamRVEStateCopy(rve->bonded_state, state->bonded));
+    PetscCall(PetscArraycpy(load->F, rve->bonded_state->load.F, 9));
+  }
+  *solved = LamContactIsStable(&out);
+  response->max_penetration = *solved ? PetscMax(0.0, out.depth) : NAN;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMixedFast(LamRVE rve, LamLoad *load, const LamStressControl *control, LamRVEState state,
+                            LamResponse *response)
+{
+  LamBorder *border;
+  PetscBool solved;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamBeginResponse(rve, load, response));
+  PetscCall(LamBorderCreate(rve, load, control, &border));
+  if (rve->contact)
+    PetscCall(TryContact(rve, border, load, control, state, response, &solved));
+  else
+    PetscCall(TryBonded(rve, border, state, &solved));
+  if (solved) {
+    response->load = border->load;
+    response->status = LAM_CONVERGED;
+    response->branch = state->branch;
+    PetscCall(LamAcceptSolution(rve, &border->load, state, response));
+  }
+  response->newton_iterations = rve->work.iterations;
+  response->factorisations = rve->work.factorisations;
+  PetscCall(LamBorderDestroy(&border));
+  PetscFunctionReturn(0);
+}
