@@ -1,6 +1,8 @@
 #include "rve_impl.h"
 #include <petscblaslapack.h>
 
+#define LONG_STEP 0.1 /* apothems */
+
 PetscErrorCode LamBorderCreate(LamRVE rve, const LamLoad *load, const LamStressControl *control, LamBorder **out)
 {
   const PetscInt n = rve->linear.n;
@@ -39,6 +41,7 @@ PetscErrorCode LamBorderAssemble(LamRVE rve, LamBorder *border, PetscReal *norm)
   PetscFunctionBeginUser;
   if (!border) PetscFunctionReturn(0);
   sum = *norm * *norm;
+  border->waits = PETSC_FALSE;
   PetscCall(LamAssembleGradient(rve, &border->load, Lq, border->Lqq, border->R));
   for (PetscInt k = 0; k < border->count; ++k) {
     const PetscReal *R = border->R + border->q[k] * n;
@@ -60,11 +63,23 @@ static PetscReal Dot(PetscInt n, const PetscReal a[], const PetscReal b[])
   return sum;
 }
 
+/* The step for a change dq of the free components. */
+static void SetStep(LamRVE rve, LamBorder *border, const PetscReal dq[], PetscReal solution[])
+{
+  const PetscInt n = rve->linear.n;
+
+  for (PetscInt i = 0; i < n; ++i) solution[i] = border->solution[i];
+  for (PetscInt k = 0; k < border->count; ++k) {
+    border->dF[LamFComponent[border->q[k]]] = dq[k];
+    for (PetscInt i = 0; i < n; ++i) solution[i] -= dq[k] * border->solution[(k + 1) * n + i];
+  }
+}
+
 PetscErrorCode LamBorderSolve(LamRVE rve, LamBorder *border, const PetscReal rhs[], PetscReal solution[])
 {
   const PetscInt n = rve->linear.n;
   PetscReal S[LAM_F_COUNT][LAM_F_COUNT], w[LAM_F_COUNT], V[LAM_F_COUNT][LAM_F_COUNT], b[LAM_F_COUNT],
-      dq[LAM_F_COUNT] = {0};
+      dq[LAM_F_COUNT] = {0}, largest;
 
   PetscFunctionBeginUser;
   if (!border) {
@@ -88,10 +103,12 @@ PetscErrorCode LamBorderSolve(LamRVE rve, LamBorder *border, const PetscReal rhs
 
     for (PetscInt l = 0; l < border->count; ++l) dq[l] += share * V[k][l];
   }
-  PetscCall(PetscArraycpy(solution, border->solution, n));
-  for (PetscInt k = 0; k < border->count; ++k) {
-    border->dF[LamFComponent[border->q[k]]] = dq[k];
-    for (PetscInt i = 0; i < n; ++i) solution[i] -= dq[k] * border->solution[(k + 1) * n + i];
+  SetStep(rve, border, dq, solution);
+  largest = PetscMax(LamLargestEntry(rve->linear.positions, solution), LamLargestEntry(9, border->dF));
+  if (border->patience > 0 && largest > LONG_STEP) border->waits = PETSC_TRUE;
+  if (border->waits) {
+    PetscCall(PetscArrayzero(dq, LAM_F_COUNT));
+    SetStep(rve, border, dq, solution);
   }
   PetscFunctionReturn(0);
 }

@@ -28,6 +28,8 @@ typedef struct {
   PetscReal *R;              /* [LAM_F_COUNT][n] */
   PetscReal *rhs, *solution; /* [count + 1][n] */
   PetscReal dF[9];           /* the step */
+  PetscBool waits;           /* F does in this iteration */
+  PetscInt patience;         /* iterations left in which F waits for contact to settle where the step would be long */
 } LamBorder;
 
 /* Where a border may be NULL, F is prescribed. */

@@ -139,6 +139,9 @@ void LamContactTakeStep(LamRVE rve, const LamLoad *load, PetscReal alpha, const 
   LamUpdateStresses(rve, load, rve->y, rve->step, LamBorderStep(step->border), alpha);
   for (PetscInt i = 0; i < rve->ndof; ++i) rve->y[i] += alpha * rve->step[i];
   for (PetscInt h = 0; h < contact->count; ++h) contact->lambda[h] += alpha * (step->lambda[h] - contact->lambda[h]);
-  if (step->border) step->border->load = LamBorderMoved(step->border, load, alpha);
+  if (step->border) {
+    step->border->load = LamBorderMoved(step->border, load, alpha);
+    step->border->patience = PetscMax(0, step->border->patience - 1);
+  }
   ++rve->work.iterations;
 }

@@ -8,6 +8,8 @@
 #include "mixed.h"
 #include "contact_path.h"
 
+#define PATIENCE 3 /* iterations after release */
+
 static PetscErrorCode TryBonded(LamRVE rve, LamBorder *border, LamRVEState state, PetscBool *solved)
 {
   LamNewtonOutcome outcome;
@@ -60,6 +62,7 @@ static PetscErrorCode TryRelease(LamRVE rve, LamBorder *border, const LamStressC
   PetscCall(PetscArraycpy(border->load.F, response.load.F, 9));
   PetscCall(PetscArraycpy(rve->bonded->y, rve->bonded_state->y, rve->bonded->ndof));
   PetscCall(LamContactStartBonded(rve, &border->load, &ok));
+  border->patience = PATIENCE;
   if (ok) PetscCall(LamContactTryMixed(rve, border, LAM_NEAR_REACH, out));
   PetscFunctionReturn(0);
 }

@@ -166,7 +166,9 @@ static PetscErrorCode GiveReason(const Descent *d, LamResponse *response)
 {
   const LamMixedView *view = &d->now.view;
   const PetscReal *F = d->now.response.load.F;
-  const char *why = LamMixedIsStable(view) ? "give states in between" : "it has passed a limit load: prescribe F";
+  const char *why = !LamMixedIsStable(view)                   ? "it has passed a limit load: prescribe F"
+                    : LamResponseHasFields(&d->next.response) ? "give states in between"
+                                                              : d->next.response.reason;
 
   PetscFunctionBeginUser;
   response->status = LAM_NOT_CONVERGED;

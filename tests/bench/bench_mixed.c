@@ -1,4 +1,5 @@
-/* States under mixed control from the undeformed tissue against the same states at the F that they have; prints figures.
+/* States under mixed control from the undeformed tissue against the same states at the F that they have; prints
+ * figures.
  */
 #include <stdio.h>
 #include "figures_mixed.h"
@@ -6,8 +7,8 @@
 int main(int argc, char **argv)
 {
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  printf("%-34s %-14s %5s %5s %6s %8s %8s  %8s %8s %8s\n", "state", "status", "mixed", "at F", "extra", "P", "at F", "F11",
-         "F22", "F33");
+  printf("%-34s %-14s %5s %5s %6s %8s %8s  %8s %8s %8s\n", "state", "status", "mixed", "at F", "extra", "P", "at F",
+         "F11", "F22", "F33");
   printf("%-34s %-14s %5s %5s %6s %8s %8s\n", "", "", "factorisations", "", "", "off by", "off by");
   for (int k = 0; k < MIXED_CASES; k++) {
     const MixedCase *c = &mixed_cases[k];
