@@ -15,6 +15,7 @@ PetscErrorCode LamSceneDestroy(LamScene **scene)
   if (!*scene) PetscFunctionReturn(0);
   PetscCall(PetscFree((*scene)->text));
   PetscCall(PetscFree((*scene)->loads));
+  PetscCall(PetscFree((*scene)->controls));
   PetscCall(LamMicrostructureDestroy(&(*scene)->micro));
   PetscCall(PetscFree(*scene));
   PetscFunctionReturn(0);

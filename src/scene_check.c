@@ -180,12 +180,13 @@ static PetscErrorCode ReadSingle(const LamDocument *document, const LamNode *nod
 
   PetscFunctionBeginUser;
   PetscCall(CheckKind(document, node, key, PETSC_TRUE, LAM_NODE_SCALAR));
-  if (key->may_be_free && !strcmp(node->text, "free")) {
+  if (key->free_word && !strcmp(node->text, key->free_word)) {
     value->is_free[value->count++] = PETSC_TRUE;
     PetscFunctionReturn(0);
   }
   switch (key->type) {
   case LAM_KEY_QUANTITY:
+  case LAM_KEY_QUANTITY_TENSOR:
     PetscCall(ReadQuantity(document, node, key, &number));
     break;
   case LAM_KEY_NAME:
@@ -219,7 +220,7 @@ static PetscErrorCode ReadVector(const LamDocument *document, LamNode *node, con
   PetscFunctionReturn(0);
 }
 
-/* Two rows of two or three of three; 2x2 is completed with F33 = 1. */
+/* Two rows of two or three of three; 2x2 plain numbers are completed with F33 = 1. */
 static PetscErrorCode ReadTensor(const LamDocument *document, LamNode *node, const LamKey *key)
 {
   LamValue read = {0};
@@ -234,18 +235,19 @@ static PetscErrorCode ReadTensor(const LamDocument *document, LamNode *node, con
       PetscCall(FailValue(document, node, key, PETSC_FALSE, "is no square tensor"));
     }
     for (const LamNode *item = row->first; item; item = item->next) {
-      if (item->kind == LAM_NODE_SCALAR && (!strcmp(item->text, "free") || !strcmp(item->text, "x"))) {
-        PetscCall(LamSceneFail(document, item,
-                               "this version of Lamella does not have mixed control yet; write a plain "
-                               "number for every component"));
-      }
       PetscCall(ReadSingle(document, item, key, &read));
     }
   }
   node->value.count = LAM_VALUE_SIZE;
-  node->value.number[8] = 1.0;
+  if (key->type == LAM_KEY_TENSOR)
+    node->value.number[8] = 1.0;
+  else
+    for (PetscInt i = 0; i < LAM_VALUE_SIZE; i++) node->value.is_free[i] = PETSC_TRUE;
   for (PetscInt i = 0; i < read.count; i++) {
-    node->value.number[3 * (i / node->count) + i % node->count] = read.number[i];
+    const PetscInt to = (PetscInt)(3 * (i / node->count) + i % node->count);
+
+    node->value.number[to] = read.number[i];
+    node->value.is_free[to] = read.is_free[i];
   }
   PetscFunctionReturn(0);
 }
@@ -307,6 +309,7 @@ static PetscErrorCode ReadNode(const LamDocument *document, LamNode *node, const
     PetscCall(ReadList(document, node, key));
     break;
   case LAM_KEY_TENSOR:
+  case LAM_KEY_QUANTITY_TENSOR:
     PetscCall(ReadTensor(document, node, key));
     break;
   default:

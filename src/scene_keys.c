@@ -24,11 +24,14 @@ static const char *const turgor_mode_names[] = {LAM_TURGOR_MODES(LAM_NAME_ENTRY)
 #define BOOL(key_path) .path = key_path, .type = LAM_KEY_BOOL
 #define TEXT(key_path) .path = key_path, .type = LAM_KEY_TEXT
 #define TENSOR(key_path) .path = key_path, .type = LAM_KEY_TENSOR
+#define STRESS_TENSOR(key_path)                                                                                        \
+  .path = key_path, .type = LAM_KEY_QUANTITY_TENSOR, .dimension = LAM_DIMENSION_STRESS, .unit = "MPa"
 #define NAME(key_path, list)                                                                                           \
   .path = key_path, .type = LAM_KEY_NAME, .names = list, .name_count = PETSC_STATIC_ARRAY_LENGTH(list)
 #define REQUIRED .required = PETSC_TRUE
 #define NOT_YET .unavailable = PETSC_TRUE
-#define FREE .may_be_free = PETSC_TRUE
+#define FREE .free_word = "free"
+#define OPEN .free_word = "x"
 #define ABOVE(x) .lower = {LAM_BOUND_EXCLUDED, x}
 #define FROM(x) .lower = {LAM_BOUND_INCLUDED, x}
 #define TO(x) .upper = {LAM_BOUND_INCLUDED, x}
@@ -166,15 +169,20 @@ const LamKey LamKeys[] = {
     {LIST("load"), .example = "[{F: [[1, 0.1], [0, 1]]}]",
      .help = "States for `lamella rve`, numbered from 1, each starting from the one before."},
     {MAP("load[]"), .example = "{F: [[1, 0.1], [0, 1]]}", .help = "One state (`F`) or several (`ramp`)."},
-    {TENSOR("load[].F"), FROM(-100), TO(100), .example = "[[1, 0.1], [0, 1]]",
+    {TENSOR("load[].F"), FREE, FROM(-100), TO(100), .example = "[[1, 0.1], [0, 1]]",
      .help = "Deformation gradient, rows first. 2x2: plane strain; 3x3: with F33 > 0, out-of-plane shears 0. Its "
-             "determinant is positive."},
-    {TENSOR("load[].P"), NOT_YET, .example = "[[0 MPa, x], [x, 0 MPa]]",
-     .help = "Mixed control: the stress components that are given where `F` has `free`."},
+             "determinant is positive. `free` where `P` is given instead; F12 and F21 not both."},
+    {STRESS_TENSOR("load[].P"), OPEN, .example = "[[0 MPa, x], [x, 0 MPa]]",
+     .help = "Mixed control: the components of the first Piola-Kirchhoff stress that are given, `x` where `F` is. 2x2: "
+             "P33 is not."},
     {MAP("load[].ramp"), .example = "{to: [[1, 0.3], [0, 1]], steps: 10}",
      .help = "A straight path from the state before (undeformed at the start), one state per step."},
-    {TENSOR("load[].ramp.to"), REQUIRED, FROM(-100), TO(100), .example = "[[1, 0.3], [0, 1]]",
+    {TENSOR("load[].ramp.to"), REQUIRED, FREE, FROM(-100), TO(100), .example = "[[1, 0.3], [0, 1]]",
      .help = "Deformation gradient at the end of the ramp, as `F`."},
+    {STRESS_TENSOR("load[].ramp.P"), OPEN, .example = "[[0 MPa, x], [x, 0 MPa]]",
+     .help =
+         "Stress at the end of the ramp, as `P`; it goes straight from the one prescribed before, from 0 where none "
+         "was."},
     {INTEGER("load[].ramp.steps"), REQUIRED, FROM(1), TO(10000), .example = "10", .help = "Equal steps."},
     {STRESS("load[].turgor"), .default_words = "`rve.turgor.pressure`", .example = "0.05 MPa",
      .help = "Turgor of this entry's states."},
@@ -305,7 +313,7 @@ static void SingleText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH])
     return;
   }
   LamKeyBoundsText(key, bounds);
-  if (key->type == LAM_KEY_QUANTITY) {
+  if (key->unit) {
     snprintf(with_unit, sizeof(with_unit), "%s with its unit", articles[key->dimension]);
     what = with_unit;
   } else if (key->type == LAM_KEY_INTEGER) {
@@ -315,8 +323,8 @@ static void SingleText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH])
   } else if (key->type == LAM_KEY_TEXT) {
     what = "a text";
   }
-  snprintf(text, LAM_KEY_TEXT_LENGTH, "%s%s%.200s%s", what, bounds[0] ? ", " : "", bounds,
-           key->may_be_free ? ", or free" : "");
+  snprintf(text, LAM_KEY_TEXT_LENGTH, "%s%s%.200s%s%s", what, bounds[0] ? ", " : "", bounds,
+           key->free_word ? ", or " : "", key->free_word ? key->free_word : "");
 }
 
 void LamKeyExpectation(const LamKey *key, PetscBool single, char text[LAM_KEY_TEXT_LENGTH])
@@ -332,10 +340,12 @@ void LamKeyExpectation(const LamKey *key, PetscBool single, char text[LAM_KEY_TE
     snprintf(text, LAM_KEY_TEXT_LENGTH, "a list, such as %s", key->example);
   } else if (key->type == LAM_KEY_TENSOR && !single) {
     snprintf(text, LAM_KEY_TEXT_LENGTH, "2x2 or 3x3 plain numbers, such as %s", key->example);
+  } else if (key->type == LAM_KEY_QUANTITY_TENSOR && !single) {
+    snprintf(text, LAM_KEY_TEXT_LENGTH, "2x2 or 3x3 values with units, such as %s", key->example);
   } else if (key->size && !single) {
     snprintf(text, LAM_KEY_TEXT_LENGTH, "a list of %d, such as %s", (int)key->size, key->example);
   } else if (key->type == LAM_KEY_NAME || key->type == LAM_KEY_BOOL || (key->size && single) ||
-             key->type == LAM_KEY_TENSOR) {
+             key->type == LAM_KEY_TENSOR || key->type == LAM_KEY_QUANTITY_TENSOR) {
     snprintf(text, LAM_KEY_TEXT_LENGTH, "%s", one);
   } else {
     snprintf(text, LAM_KEY_TEXT_LENGTH, "%.300s, such as %s", one, key->example);

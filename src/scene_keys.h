@@ -32,8 +32,9 @@ typedef enum {
   LAM_KEY_INTEGER,
   LAM_KEY_NAME, /* one of a few names */
   LAM_KEY_BOOL,
-  LAM_KEY_TEXT,  /* the node's text is the value */
-  LAM_KEY_TENSOR /* 2x2 or 3x3 plain numbers; kept as 3x3 */
+  LAM_KEY_TEXT,           /* the node's text is the value */
+  LAM_KEY_TENSOR,         /* 2x2 or 3x3 plain numbers; kept as 3x3 */
+  LAM_KEY_QUANTITY_TENSOR /* likewise, each with a unit; 2x2: the others are left open */
 } LamKeyType;
 
 typedef struct {
@@ -53,7 +54,7 @@ typedef struct LamKey_s {
   unsigned unavailable_names; /* bit i: names[i] is known, but this version does not have it */
   PetscBool unavailable;      /* the key is known, but this version does not have it */
   PetscBool required;         /* wherever the map it belongs to is given */
-  PetscBool may_be_free;      /* components may be `free` */
+  const char *free_word;      /* leaves a component open; NULL: none may be */
   const char *default_value;  /* as one would write it; NULL: none */
   const char *default_words;  /* a default that depends on other keys, in words */
   const char *example;
@@ -99,6 +100,14 @@ PetscErrorCode LamSceneCheckPatch(const LamDocument *document, const LamScene *s
 */
 PetscErrorCode LamSceneReadWall(const LamDocument *document, const LamNode *base, const char prefix[], PetscReal stress,
                                 const LamWall *own, LamWall *wall);
+/* The control that the tensors of an entry say (P_node NULL: F alone), stresses over `scale`; refused where a component
+   has neither or both of F and P, or the tissue can rotate. */
+PetscErrorCode LamSceneReadControl(const LamDocument *document, const LamNode *F_node, const LamNode *P_node,
+                                   PetscReal scale, LamStressControl *control);
+/* Step 1..steps of a ramp: prescribed stresses go straight from those before (0 where there was none), and F follows
+   the state before where it was free there. */
+void LamSceneRampControl(const LamStressControl *from, const LamStressControl *to, PetscInt step, PetscInt steps,
+                         LamStressControl *control);
 
 /* si / scale; refused where the ratio is not finite. node may be NULL (a default: always finite). */
 PetscErrorCode LamSceneScale(const LamDocument *document, const LamNode *node, PetscReal si, PetscReal scale,

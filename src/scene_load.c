@@ -11,17 +11,29 @@ static PetscReal Determinant2D(const PetscReal F[9])
   return F[0] * F[4] - F[1] * F[3];
 }
 
-/* Plane strain, or generalised plane strain: out-of-plane shears would need three displacement components. */
-static PetscErrorCode CheckF(const LamDocument *document, const LamNode *node, const PetscReal F[9])
+static PetscBool IsInPlane(PetscInt i)
 {
+  return (PetscBool)(i < 2 || i == 3 || i == 4);
+}
+
+/* Plane strain, or generalised plane strain: out-of-plane shears would need three displacement components. */
+static PetscErrorCode CheckF(const LamDocument *document, const LamNode *node)
+{
+  const PetscReal *F = node->value.number;
+  const PetscBool *is_free = node->value.is_free;
+  PetscBool complete = PETSC_TRUE;
+
   PetscFunctionBeginUser;
   if (F[2] != 0.0 || F[5] != 0.0 || F[6] != 0.0 || F[7] != 0.0) {
     PetscCall(LamSceneFail(document, node,
                            "this version of Lamella does not have out-of-plane shear yet; write 0 for "
                            "F13, F23, F31 and F32"));
   }
-  if (F[8] <= 0.0) PetscCall(LamSceneFail(document, node, "F33 = %g; it must be positive", (double)F[8]));
-  if (Determinant2D(F) <= 0.0) {
+  if (F[8] <= 0.0 && !is_free[8]) {
+    PetscCall(LamSceneFail(document, node, "F33 = %g; it must be positive", (double)F[8]));
+  }
+  for (PetscInt i = 0; i < 9; i++) complete = (PetscBool)(complete && !(IsInPlane(i) && is_free[i]));
+  if (complete && Determinant2D(F) <= 0.0) {
     PetscCall(LamSceneFail(document, node, "F11 F22 - F12 F21 = %g; a deformation gradient has a positive determinant",
                            (double)Determinant2D(F)));
   }
@@ -74,31 +86,67 @@ static PetscErrorCode BuildPressures(const LamDocument *document, const LamNode 
   PetscFunctionReturn(0);
 }
 
+/* What an entry prescribes: F and P, or those at the end of its ramp. */
+static PetscErrorCode GetTarget(const LamDocument *document, const LamNode *entry, const LamNode **F_node,
+                                const LamNode **P_node)
+{
+  const LamNode *outer_node;
+  LamValue unused;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamSceneGet(entry, "load[].F", F_node, &unused));
+  PetscCall(LamSceneGet(entry, "load[].P", P_node, &unused));
+  if (*F_node) PetscFunctionReturn(0);
+  outer_node = *P_node;
+  PetscCall(LamSceneGet(entry, "load[].ramp.to", F_node, &unused));
+  PetscCall(LamSceneGet(entry, "load[].ramp.P", P_node, &unused));
+  if (outer_node) {
+    PetscCall(LamSceneFailName(document, outer_node, "stands beside a ramp; write it into the ramp, beside `to`"));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* F of one step of a straight path; *known is PETSC_FALSE where a component in the plane is not known yet. */
+static void StepF(const PetscReal start[9], const LamNode *F_node, const LamStressControl *control, PetscReal s,
+                  PetscReal F[9], PetscBool *known)
+{
+  *known = PETSC_TRUE;
+  for (PetscInt i = 0; i < 9; i++) {
+    const PetscReal to = F_node->value.number[i];
+
+    F[i] = control->given[i] ? start[i] : s == 1.0 || control->follows[i] ? to : (1.0 - s) * start[i] + s * to;
+    if (IsInPlane(i) && (control->given[i] || control->follows[i])) *known = PETSC_FALSE;
+  }
+}
+
 /* Appends the states of an entry after scene->load_count. */
 static PetscErrorCode BuildEntry(const LamDocument *document, const LamNode *entry, PetscInt states, LamScene *scene)
 {
-  const LamNode *F_node, *to_node;
-  LamValue F, to;
+  const LamNode *F_node, *P_node;
   LamLoad load = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+  LamStressControl before = {0}, target, control;
   PetscReal start[9];
 
   PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(entry, "load[].F", &F_node, &F));
-  PetscCall(LamSceneGet(entry, "load[].ramp.to", &to_node, &to));
-  if (F_node) to = F;
-  PetscCall(CheckF(document, F_node ? F_node : to_node, to.number));
+  PetscCall(GetTarget(document, entry, &F_node, &P_node));
+  PetscCall(LamSceneReadControl(document, F_node, P_node, scene->scales.stress, &target));
+  PetscCall(CheckF(document, F_node));
   if (scene->load_count) load = scene->loads[scene->load_count - 1];
+  if (scene->load_count && scene->controls) before = scene->controls[scene->load_count - 1];
   PetscCall(PetscArraycpy(start, load.F, 9));
   PetscCall(BuildPressures(document, entry, scene, &load));
   for (PetscInt k = 1; k <= states; k++) {
-    const PetscReal s = (PetscReal)k / (PetscReal)states;
-    for (PetscInt i = 0; i < 9; i++) load.F[i] = k == states ? to.number[i] : (1.0 - s) * start[i] + s * to.number[i];
-    if (Determinant2D(load.F) <= 0.0) {
-      PetscCall(LamSceneFail(document, to_node,
+    PetscBool known;
+
+    LamSceneRampControl(&before, &target, k, states, &control);
+    StepF(start, F_node, &control, (PetscReal)k / (PetscReal)states, load.F, &known);
+    if (known && Determinant2D(load.F) <= 0.0) {
+      PetscCall(LamSceneFail(document, F_node,
                              "the straight path turns the tissue inside out at step %d (determinant "
                              "%g); go there by way of a state in between",
                              (int)k, (double)Determinant2D(load.F)));
     }
+    if (scene->controls) scene->controls[scene->load_count] = control;
     scene->loads[scene->load_count++] = load;
   }
   PetscFunctionReturn(0);
@@ -108,19 +156,25 @@ PetscErrorCode LamSceneBuildLoad(const LamDocument *document, LamScene *scene)
 {
   const LamNode *list;
   PetscInt total = 0, states;
+  PetscBool mixed = PETSC_FALSE;
   LamValue unused;
 
   PetscFunctionBeginUser;
   PetscCall(LamSceneGet(document->root, "load", &list, &unused));
   if (!list) PetscFunctionReturn(0);
   for (const LamNode *entry = list->first; entry; entry = entry->next) {
+    const LamNode *F_node, *P_node;
+
     PetscCall(CheckEntry(document, entry, &states));
+    PetscCall(GetTarget(document, entry, &F_node, &P_node));
+    if (P_node) mixed = PETSC_TRUE;
     total += states;
     if (total > MAX_STATES) {
       PetscCall(LamSceneFail(document, entry, "more than %d states in all; use fewer steps", (int)MAX_STATES));
     }
   }
   PetscCall(PetscCalloc1(total, &scene->loads));
+  if (mixed) PetscCall(PetscCalloc1(total, &scene->controls));
   for (const LamNode *entry = list->first; entry; entry = entry->next) {
     PetscCall(CheckEntry(document, entry, &states));
     PetscCall(BuildEntry(document, entry, states, scene));
@@ -187,15 +241,4 @@ PetscErrorCode LamSceneBuildSample(const LamDocument *document, LamScene *scene)
   else
     scene->sample.accuracy = accuracy_node ? accuracy.number[0] : scene->accuracy;
   PetscFunctionReturn(0);
-}
-
-LamLoad LamLoadAfter(const LamLoad *load, const LamStressControl *control, const PetscReal before[9])
-{
-  LamLoad after = *load;
-
-  for (PetscInt i = 0; i < 9 && control; i++) {
-    if (control->given[i]) after.F[i] = before[i];
-    if (control->follows[i]) after.F[i] = (1.0 - control->share) * before[i] + control->share * load->F[i];
-  }
-  return after;
 }

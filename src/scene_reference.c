@@ -33,8 +33,16 @@ static const char *const introduction =
 
 static const char *TypeText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH])
 {
-  static const char *const types[] = {
-      "map", "list", "", "number", "whole number", "", "true or false", "text", "2x2 or 3x3 numbers"};
+  static const char *const types[] = {"map",
+                                      "list",
+                                      "",
+                                      "number",
+                                      "whole number",
+                                      "",
+                                      "true or false",
+                                      "text",
+                                      "2x2 or 3x3 numbers",
+                                      "2x2 or 3x3 stresses"};
   static const char *const dimensions[] = {"length", "stress", "angle"};
   const char *type = key->type == LAM_KEY_QUANTITY ? dimensions[key->dimension] : types[key->type];
   size_t used = 0;
@@ -55,8 +63,9 @@ static void WriteRow(FILE *out, const LamKey *key)
   char type[LAM_KEY_TEXT_LENGTH], bounds[LAM_KEY_TEXT_LENGTH];
 
   LamKeyBoundsText(key, bounds);
-  fprintf(out, "| `%s` | %s%s%s%s | ", key->path, TypeText(key, type), bounds[0] ? ", " : "", bounds,
-          key->may_be_free ? ", or `free`" : "");
+  fprintf(out, "| `%s` | %s%s%s", key->path, TypeText(key, type), bounds[0] ? ", " : "", bounds);
+  if (key->free_word) fprintf(out, ", or `%s`", key->free_word);
+  fprintf(out, " | ");
   if (key->unavailable)
     fprintf(out, "*not in this version*");
   else if (key->required)

@@ -17,7 +17,7 @@ typedef enum { LAM_NODE_SCALAR, LAM_NODE_MAP, LAM_NODE_LIST } LamNodeKind;
 typedef struct {
   PetscInt count;
   PetscReal number[LAM_VALUE_SIZE];  /* SI; the index of a name; 0 or 1 of a truth value */
-  PetscBool is_free[LAM_VALUE_SIZE]; /* the component was left `free` */
+  PetscBool is_free[LAM_VALUE_SIZE]; /* the component was left open */
 } LamValue;
 
 struct LamKey_s;

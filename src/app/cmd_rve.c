@@ -6,6 +6,7 @@
 */
 #include "failure.h"
 #include <petsctime.h>
+#include <math.h>
 #include <string.h>
 
 typedef struct {
@@ -158,6 +159,25 @@ static void SetSecondMesh(json_t *object, const LamResponse responses[2])
     json_object_set_new(object, "second_mesh_reason", json_string(responses[1].reason));
 }
 
+/* What a state prescribes beside its load; NULL: nothing. */
+static const LamStressControl *Control(const Run *run, PetscInt number)
+{
+  return run->scene->controls ? &run->scene->controls[number - 1] : NULL;
+}
+
+/* The components of P that were prescribed; null where F was. */
+static void SetPrescribed(json_t *object, const LamStressControl *control, PetscReal MPa)
+{
+  PetscReal P[9];
+  PetscBool any = PETSC_FALSE;
+
+  for (int i = 0; i < 9 && control; i++) {
+    P[i] = control->given[i] ? control->P[i] : NAN;
+    if (control->given[i]) any = PETSC_TRUE;
+  }
+  if (any) json_object_set_new(object, "P_prescribed", LamJSONReals(9, P, MPa));
+}
+
 static PetscErrorCode Tell(Run *run, PetscInt number, const LamResponse responses[2])
 {
   const LamScales *scales = &run->scene->scales;
@@ -166,6 +186,7 @@ static PetscErrorCode Tell(Run *run, PetscInt number, const LamResponse response
   PetscFunctionBeginUser;
   if (run->json) {
     PetscCall(LamResponseToJSON(&responses[0], scales, number, run->tangent, &object));
+    SetPrescribed(object, Control(run, number), scales->stress * 1e-6);
     if (run->second_mesh) SetSecondMesh(object, responses);
     PetscCall(LamPrintJSON(object));
     PetscFunctionReturn(0);
@@ -240,7 +261,7 @@ static PetscErrorCode SolveStates(Run *run)
   while (run->solved < run->scene->load_count && !LamStopRequested()) {
     LamResponse responses[2];
 
-    PetscCall(LamMeshesSolve(&run->meshes, &run->scene->loads[run->solved], responses));
+    PetscCall(LamMeshesSolve(&run->meshes, &run->scene->loads[run->solved], Control(run, run->solved + 1), responses));
     run->solved++;
     if (responses[0].status != LAM_CONVERGED) run->failed++;
     if (run->find_onset) PetscCall(LamOnsetWatch(&run->onset, &run->meshes, run->solved, responses));

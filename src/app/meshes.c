@@ -24,7 +24,7 @@ static PetscErrorCode CreateOne(MPI_Comm comm, const LamScene *scene, PetscInt r
 PetscErrorCode LamMeshesCreate(MPI_Comm comm, const LamScene *scene, PetscInt count, LamMeshes *meshes)
 {
   PetscFunctionBeginUser;
-  *meshes = (LamMeshes){.count = count};
+  *meshes = (LamMeshes){.count = count, .F = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   for (PetscInt m = 0; m < count; m++) PetscCall(CreateOne(comm, scene, m + 1, &meshes->rve[m], &meshes->state[m]));
   PetscFunctionReturn(0);
 }
@@ -39,14 +39,19 @@ PetscErrorCode LamMeshesDestroy(LamMeshes *meshes)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamMeshesSolve(LamMeshes *meshes, const LamLoad *load, LamResponse responses[2])
+PetscErrorCode LamMeshesSolve(LamMeshes *meshes, const LamLoad *load, const LamStressControl *control,
+                              LamResponse responses[2])
 {
+  static const LamStressControl none = {0};
+  const LamLoad asked = LamLoadAfter(load, control, meshes->F);
   LamResponse *first = &responses[0];
   const LamResponse *second = &responses[1];
 
   PetscFunctionBeginUser;
-  for (PetscInt m = 0; m < meshes->count; m++)
-    PetscCall(LamRVESolve(meshes->rve[m], load, meshes->state[m], &responses[m]));
+  PetscCall(LamRVESolveMixed(meshes->rve[0], &asked, control ? control : &none, meshes->state[0], first));
+  if (LamResponseHasFields(first)) PetscCall(PetscArraycpy(meshes->F, first->load.F, 9));
+  for (PetscInt m = 1; m < meshes->count; m++)
+    PetscCall(LamRVESolve(meshes->rve[m], &first->load, meshes->state[m], &responses[m]));
   if (meshes->count < 2 || !LamResponseHasFields(first) || !LamResponseHasFields(second)) PetscFunctionReturn(0);
   first->error_estimate = LamStressError(first->P, second->P);
   first->debonded_spread = fabs(first->debonded_fraction - second->debonded_fraction);

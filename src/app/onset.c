@@ -111,7 +111,7 @@ static PetscErrorCode Halve(LamOnset *onset, LamMeshes *meshes)
 
   PetscFunctionBeginUser;
   for (PetscInt m = 0; m < 2; m++) PetscCall(LamRVEStateCopy(onset->closed[m], meshes->state[m]));
-  PetscCall(LamMeshesSolve(meshes, &load, responses));
+  PetscCall(LamMeshesSolve(meshes, &load, NULL, responses));
   separation = LamSeparationOf(responses);
   if (separation == LAM_SEPARATION_UNKNOWN) {
     onset->status = LAM_ONSET_NOT_CONVERGED;

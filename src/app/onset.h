@@ -12,6 +12,7 @@ typedef struct {
   PetscInt count;
   LamRVE rve[2];
   LamRVEState state[2]; /* the last states that have an answer */
+  PetscReal F[9];       /* of the first mesh's */
 } LamMeshes;
 
 /* `scene` holds the mesh to use (along and through chosen); `comm` as for LamRVECreate. PETSC_ERR_USER_INPUT as
@@ -20,9 +21,11 @@ PetscErrorCode LamMeshesCreate(MPI_Comm comm, const LamScene *scene, PetscInt co
 PetscErrorCode LamMeshesDestroy(LamMeshes *meshes);
 /*
   Solves on every mesh from its last state. With two, responses[0] gets what the second tells of it: error_estimate,
-  debonded_spread, open_spread; they stay unknown where the second has no answer.
+  debonded_spread, open_spread; they stay unknown where the second has no answer. control: NULL, or what else the load
+  prescribes; the second mesh is then solved at the F that the first has found.
 */
-PetscErrorCode LamMeshesSolve(LamMeshes *meshes, const LamLoad *load, LamResponse responses[2]);
+PetscErrorCode LamMeshesSolve(LamMeshes *meshes, const LamLoad *load, const LamStressControl *control,
+                              LamResponse responses[2]);
 
 #define LAM_ONSET_STATUSES(X)                                                                                          \
   X(LAM_ONSET_NOT_MET, "not_met")               /* every state has an answer and none is separated */                  \

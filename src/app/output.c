@@ -154,7 +154,7 @@ PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales 
   PetscFunctionBeginUser;
   if (!LamAppIsRoot()) PetscFunctionReturn(0);
   printf("%5" PetscInt_FMT, state);
-  for (int k = 0; k < 4; k++) printf(" %7.4f", (double)F[in_plane[k]]);
+  for (int k = 0; k < 4; k++) PrintColumn(7, 4, 'f', F[in_plane[k]]);
   printf(" %7.4g  %-14s", (double)(response->load.turgor * MPa), LamStatusNames[response->status]);
   for (int k = 0; k < 4; k++) PrintColumn(10, 3, 'e', response->P[in_plane[k]] * MPa);
   PrintColumn(6, 4, 'f', response->lumen_fraction);
