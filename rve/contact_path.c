@@ -334,7 +334,7 @@ static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state,
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode GiveReason(LamRVE rve, const LamContactOutcome *out, char reason[], size_t length)
+PetscErrorCode LamContactReason(LamRVE rve, const LamContactOutcome *out, char reason[], size_t length)
 {
   PetscFunctionBeginUser;
   if (out->converged)
@@ -369,6 +369,7 @@ PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState
   response->negative_eigenvalues = PetscMax(0, out.negative);
   response->status = out.converged ? (out.negative > 0 ? LAM_UNSTABLE : LAM_CONVERGED) : LAM_NOT_CONVERGED;
   response->max_penetration = out.converged ? PetscMax(0.0, out.depth) : NAN;
-  if (response->status != LAM_CONVERGED) PetscCall(GiveReason(rve, &out, response->reason, sizeof(response->reason)));
+  if (response->status != LAM_CONVERGED)
+    PetscCall(LamContactReason(rve, &out, response->reason, sizeof(response->reason)));
   PetscFunctionReturn(0);
 }

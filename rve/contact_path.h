@@ -27,10 +27,6 @@ PetscErrorCode LamContactStartAffine(LamRVE rve, const LamLoad *load);
    and the multipliers fitted to it do not. */
 PetscErrorCode LamContactStartBonded(LamRVE rve, const LamLoad *load, PetscBool *ok);
 
-/* ---- contact_path.c ---- */
-/* Whether Newton may start from a solution at the load `from`. */
-PetscBool LamContactIsNear(const LamLoad *from, const LamLoad *load);
-
 /* ---- contact_try.c ---- */
 typedef enum { LAM_NOT_REFUSED, LAM_CELLS_OVERLAP, LAM_LUMEN_COLLAPSED } LamRefusal;
 /* What a try at one load ended in. */
@@ -53,5 +49,11 @@ static inline PetscBool LamContactIsStable(const LamContactOutcome *out)
 {
   return (PetscBool)(out->converged && out->negative <= 0);
 }
+
+/* ---- contact_path.c ---- */
+/* Whether Newton may start from a solution at the load `from`. */
+PetscBool LamContactIsNear(const LamLoad *from, const LamLoad *load);
+/* Why an outcome is not a stable state. */
+PetscErrorCode LamContactReason(LamRVE rve, const LamContactOutcome *out, char reason[], size_t length);
 
 #endif

@@ -3,7 +3,8 @@
 
   Method. Fast tier: the free components join the unknowns of the Newton iteration (border.h), which costs right-hand
   sides but no factorisation of its own. Where it fails, or ends in a state that is not stable under the prescribed
-  stress: safe tier, descent on Psi(F) - P.F over the free components. A state is stable under the control where it is
+  stress: safe tier, continuation from the state before,
+  and descent on Psi(F) - P.F over the free components. A state is stable under the control where it is
   at its F and dP/dF of the free components is positive definite. An equilibrium that is not is given as unstable where
   nothing stable is found.
 */

@@ -28,7 +28,7 @@ static inline PetscBool LamMixedIsStable(const LamMixedView *view)
 /* ---- mixed_fast.c, mixed_safe.c ---- */
 /* From `state`, which a solution replaces, with the first guess load->F; iterations and factorisations of the response
    count all of it. Fast: one Newton iteration on positions and F; what it finds need not be stable under the control,
-   and where it fails load->F may be a better guess. Safe: descent on the potential, one full solve per F. */
+   and where it fails load->F may be a better guess. Safe: continuation from `state`, then descent on the potential. */
 PetscErrorCode LamMixedFast(LamRVE rve, LamLoad *load, const LamStressControl *control, LamRVEState state,
                             LamResponse *response);
 PetscErrorCode LamMixedSafe(LamRVE rve, const LamLoad *load, const LamStressControl *control, LamRVEState state,

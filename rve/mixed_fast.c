@@ -81,6 +81,8 @@ static PetscErrorCode TryContact(LamRVE rve, LamBorder *border, LamLoad *load, c
     PetscCall(PetscArraycpy(load->F, rve->bonded_state->load.F, 9));
   }
   *solved = LamContactIsStable(&out);
+  if (out.refusal != LAM_NOT_REFUSED)
+    PetscCall(LamContactReason(rve, &out, response->reason, sizeof(response->reason)));
   response->max_penetration = *solved ? PetscMax(0.0, out.depth) : NAN;
   PetscFunctionReturn(0);
 }

@@ -1,16 +1,23 @@
 /*
-  Safe tier of prescribed stress: descent on Psi(F) - P.F over the free components of F.
+  Safe tier of prescribed stress: continuation, then descent.
 
-  Method. At each F a full solve gives Psi, P and dP/dF. Newton steps with the absolute values of the eigenvalues of
-  dP/dF lead downhill also where the tissue is not stable under the prescribed stress; they are limited in length and
-  halved until the potential falls enough. At a saddle the step is along the softest mode. Where the next step is short
-  the fast tier is tried from there. A stress beyond a limit load has no minimum: F runs away, which the reason tells.
+  Method. (i) Continuation: stress, given components of F, turgor and cohesion go straight from the state before in
+  steps of the fast tier, halved where it fails or ends in a state that is not stable under the prescribed stress.
+  (ii) Descent on Psi(F) - P.F over the free components from the last state reached, with one full solve per F: Newton
+  steps with the absolute values of the eigenvalues of dP/dF lead downhill also where the tissue is not stable under the
+  prescribed stress; they are limited in length and halved until the potential falls enough. A saddle is left along its
+  softest mode. Where a step is short the fast tier is tried from there. So the tissue snaps to another stable state
+  where there is one. Beyond a limit load there is none, and F runs away: then the bracket of (i) is the answer.
 
   Reference. Nocedal & Wright, Numerical Optimization, 3.4.
 */
 #include "mixed.h"
 
-#define ITERATIONS 30
+#define BUDGET 800 /* iterations in all */
+#define LEAST_SHARE (1.0 / 512.0)
+#define LIMIT_SHARE 0.2 /* of the stiffness at the start: less, before continuation ends, is that of a limit load */
+#define DESCENTS 30
+#define LOST 5 /* steps in a row without stability: F runs away */
 #define HALVINGS 6
 #define STEP_LIMIT 0.25      /* of a component of F */
 #define NEAR_STEP 0.1        /* from here on the fast tier has a chance */
@@ -20,6 +27,7 @@
 #define ARMIJO 1e-4
 #define ROUNDING 1e-13 /* of the potential, times the bulk modulus */
 
+/* A state with the response that it has and what the control sees of it. */
 typedef struct {
   LamRVEState state;
   LamResponse response;
@@ -29,26 +37,95 @@ typedef struct {
 typedef struct {
   LamRVE rve;
   const LamStressControl *control;
+  const LamLoad *load;
   Iterate now, next;
-  PetscReal step[LAM_F_COUNT], slope, longest;
+  PetscReal step[LAM_F_COUNT], slope, longest; /* of descent */
+  PetscReal reached, failed;                   /* shares of the way from the state before */
+  PetscReal first_stiffness, stiffness;        /* at the state before and at the share reached */
+  char refusal[192];                           /* of the last try */
   PetscInt iterations, factorisations;
-} Descent;
+} Search;
 
-static PetscErrorCode Count(Descent *d, const LamResponse *response)
+static void Count(Search *s, const LamResponse *response)
+{
+  s->iterations += response->newton_iterations;
+  s->factorisations += response->factorisations;
+}
+
+static void Swap(Search *s)
+{
+  const Iterate before = s->now;
+
+  s->now = s->next;
+  s->next = before;
+}
+
+/* next := the full solve at `load` from `from`. */
+static PetscErrorCode SolveAt(Search *s, const LamLoad *load, LamRVEState from)
 {
   PetscFunctionBeginUser;
-  d->iterations += response->newton_iterations;
-  d->factorisations += response->factorisations;
+  PetscCall(LamRVEStateCopy(from, s->next.state));
+  PetscCall(LamRVESolve(s->rve, load, s->next.state, &s->next.response));
+  Count(s, &s->next.response);
+  if (LamResponseHasFields(&s->next.response)) PetscCall(LamMixedLook(s->control, &s->next.response, &s->next.view));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SolveAt(Descent *d, const LamLoad *load, LamRVEState from, Iterate *iterate)
+/* next := the fast tier from `now`; *solved where it is stable under the control. */
+static PetscErrorCode TryFast(Search *s, const LamLoad *guess, const LamStressControl *control, PetscBool *solved)
 {
+  LamLoad load = *guess;
+
   PetscFunctionBeginUser;
-  PetscCall(LamRVEStateCopy(from, iterate->state));
-  PetscCall(LamRVESolve(d->rve, load, iterate->state, &iterate->response));
-  PetscCall(Count(d, &iterate->response));
-  if (LamResponseHasFields(&iterate->response)) PetscCall(LamMixedLook(d->control, &iterate->response, &iterate->view));
+  PetscCall(LamRVEStateCopy(s->now.state, s->next.state));
+  PetscCall(LamMixedFast(s->rve, &load, control, s->next.state, &s->next.response));
+  Count(s, &s->next.response);
+  PetscCall(PetscStrncpy(s->refusal, s->next.response.reason, sizeof(s->refusal)));
+  *solved = LamResponseHasFields(&s->next.response);
+  if (!*solved) PetscFunctionReturn(0);
+  PetscCall(LamMixedLook(control, &s->next.response, &s->next.view));
+  *solved = LamMixedIsStable(&s->next.view);
+  PetscFunctionReturn(0);
+}
+
+/* What is asked at the share t of the way from `start`, with the free components of `now` for a guess. */
+static void AskBetween(const Search *s, const LamResponse *start, PetscReal t, LamLoad *load, LamStressControl *control)
+{
+  *load = LamLoadBetween(&start->load, s->load, t);
+  *control = *s->control;
+  for (PetscInt i = 0; i < 9; ++i) {
+    if (!control->given[i]) continue;
+    load->F[i] = s->now.response.load.F[i];
+    control->P[i] = (1.0 - t) * start->P[i] + t * s->control->P[i];
+  }
+}
+
+/* From `now`, the state before, as far towards the asked one as stable states lead. */
+static PetscErrorCode Continue(Search *s)
+{
+  const LamResponse start = s->now.response;
+  PetscReal step = 0.5;
+
+  PetscFunctionBeginUser;
+  s->first_stiffness = s->stiffness = s->now.view.w[0];
+  while (s->reached < 1.0 && step >= LEAST_SHARE && s->iterations < BUDGET) {
+    const PetscReal t = PetscMin(1.0, s->reached + step);
+    LamStressControl control;
+    LamLoad load;
+    PetscBool solved;
+
+    AskBetween(s, &start, t, &load, &control);
+    PetscCall(TryFast(s, &load, &control, &solved));
+    if (solved) {
+      Swap(s);
+      s->reached = t;
+      s->stiffness = s->now.view.w[0];
+      step *= 2.0;
+    } else {
+      s->failed = t;
+      step *= 0.5;
+    }
+  }
   PetscFunctionReturn(0);
 }
 
@@ -58,154 +135,160 @@ static PetscReal Tolerance(LamRVE rve)
 }
 
 /* The step from `now`, downhill. */
-static void FindStep(Descent *d)
+static void FindStep(Search *s)
 {
-  const LamMixedView *view = &d->now.view;
-  const PetscBool kick = (PetscBool)(view->largest <= Tolerance(d->rve)); /* then at a saddle */
+  const LamMixedView *view = &s->now.view;
+  const PetscBool kick = (PetscBool)(view->largest <= Tolerance(s->rve)); /* then at a saddle */
 
-  d->longest = d->slope = 0.0;
-  for (PetscInt k = 0; k < view->count; ++k) d->step[k] = kick ? KICK * view->V[0][k] : 0.0;
+  s->longest = s->slope = 0.0;
+  for (PetscInt k = 0; k < view->count; ++k) s->step[k] = kick ? KICK * view->V[0][k] : 0.0;
   for (PetscInt m = 0; m < view->count && !kick; ++m) {
     PetscReal share = 0.0;
 
     for (PetscInt k = 0; k < view->count; ++k) share -= view->V[m][k] * view->excess[k];
     share /= PetscMax(PetscAbsReal(view->w[m]), LEAST_STIFFNESS);
-    for (PetscInt k = 0; k < view->count; ++k) d->step[k] += share * view->V[m][k];
+    for (PetscInt k = 0; k < view->count; ++k) s->step[k] += share * view->V[m][k];
   }
-  for (PetscInt k = 0; k < view->count; ++k) d->longest = PetscMax(d->longest, PetscAbsReal(d->step[k]));
+  for (PetscInt k = 0; k < view->count; ++k) s->longest = PetscMax(s->longest, PetscAbsReal(s->step[k]));
   for (PetscInt k = 0; k < view->count; ++k) {
-    d->step[k] *= PetscMin(1.0, STEP_LIMIT / PetscMax(d->longest, 1e-300));
-    d->slope += d->step[k] * view->excess[k];
+    s->step[k] *= PetscMin(1.0, STEP_LIMIT / PetscMax(s->longest, 1e-300));
+    s->slope += s->step[k] * view->excess[k];
   }
 }
 
 /* Whether `next` is better: a lower potential, or near the solution, where its differences drown in rounding, less
    stress that is not balanced. */
-static PetscBool IsBetter(const Descent *d, PetscReal alpha)
+static PetscBool IsBetter(const Search *s, PetscReal alpha)
 {
-  const PetscReal rounding = ROUNDING * d->rve->micro.wall.bulk_modulus;
-  const PetscReal fall = d->now.view.potential - d->next.view.potential;
+  const PetscReal rounding = ROUNDING * s->rve->micro.wall.bulk_modulus;
+  const PetscReal fall = s->now.view.potential - s->next.view.potential;
 
-  if (d->next.response.status != LAM_CONVERGED) return PETSC_FALSE;
-  if (fall > rounding) return (PetscBool)(fall >= -ARMIJO * alpha * d->slope);
-  return (PetscBool)(fall >= -rounding && d->next.view.largest <= 0.5 * d->now.view.largest);
+  if (s->next.response.status != LAM_CONVERGED) return PETSC_FALSE;
+  if (fall > rounding) return (PetscBool)(fall >= -ARMIJO * alpha * s->slope);
+  return (PetscBool)(fall >= -rounding && s->next.view.largest <= 0.5 * s->now.view.largest);
 }
 
-/* One step; *moved is PETSC_FALSE where none leads down. */
-static PetscErrorCode TakeStep(Descent *d, PetscBool *moved)
+/* One step of descent; *moved is PETSC_FALSE where none leads down. */
+static PetscErrorCode TakeStep(Search *s, PetscBool *moved)
 {
   PetscReal alpha = 1.0;
 
   PetscFunctionBeginUser;
   *moved = PETSC_FALSE;
-  for (PetscInt k = 0; k < HALVINGS && !*moved; ++k, alpha *= 0.5) {
-    LamLoad load = d->now.response.load;
+  for (PetscInt k = 0; k < HALVINGS && !*moved && s->iterations < BUDGET; ++k, alpha *= 0.5) {
+    LamLoad load = s->now.response.load;
 
-    for (PetscInt i = 0; i < d->now.view.count; ++i) load.F[d->now.view.component[i]] += alpha * d->step[i];
-    PetscCall(SolveAt(d, &load, d->now.state, &d->next));
-    *moved = IsBetter(d, alpha);
+    for (PetscInt i = 0; i < s->now.view.count; ++i) load.F[s->now.view.component[i]] += alpha * s->step[i];
+    PetscCall(SolveAt(s, &load, s->now.state));
+    *moved = IsBetter(s, alpha);
   }
-  if (*moved) {
-    const Iterate before = d->now;
-
-    d->now = d->next;
-    d->next = before;
-  }
-  PetscFunctionReturn(0);
-}
-
-/* The fast tier from `now`. */
-static PetscErrorCode TryFast(Descent *d, PetscBool *solved)
-{
-  LamLoad load = d->now.response.load;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamRVEStateCopy(d->now.state, d->next.state));
-  PetscCall(LamMixedFast(d->rve, &load, d->control, d->next.state, &d->next.response));
-  PetscCall(Count(d, &d->next.response));
-  *solved = LamResponseHasFields(&d->next.response);
-  if (!*solved) PetscFunctionReturn(0);
-  PetscCall(LamMixedLook(d->control, &d->next.response, &d->next.view));
-  *solved = LamMixedIsStable(&d->next.view);
-  if (*solved) {
-    const Iterate before = d->now;
-
-    d->now = d->next;
-    d->next = before;
-  }
+  if (*moved) Swap(s);
   PetscFunctionReturn(0);
 }
 
 /* Descends from `now`; *found: an equilibrium at the prescribed stress, stable or the last saddle. */
-static PetscErrorCode Descend(Descent *d, PetscBool *found)
+static PetscErrorCode Descend(Search *s, PetscBool *found)
 {
+  PetscInt lost = 0;
+
   PetscFunctionBeginUser;
   *found = PETSC_FALSE;
-  for (PetscInt it = 0; it < ITERATIONS && d->iterations < LAM_ITERATION_BUDGET; ++it) {
-    const PetscBool there = (PetscBool)(d->now.view.largest <= Tolerance(d->rve));
+  for (PetscInt it = 0; it < DESCENTS && lost < LOST; ++it) {
+    const PetscBool there = (PetscBool)(s->now.view.largest <= Tolerance(s->rve));
+    const PetscBool stable = LamMixedIsStable(&s->now.view);
     PetscBool moved;
 
-    if (there && LamMixedIsStable(&d->now.view)) {
-      *found = PETSC_TRUE;
+    *found = (PetscBool)(there && stable);
+    if (*found) break;
+    FindStep(s);
+    if (!there && stable && s->longest <= NEAR_STEP) PetscCall(TryFast(s, &s->now.response.load, s->control, found));
+    if (*found) {
+      Swap(s);
       break;
     }
-    FindStep(d);
-    if (!there && d->longest <= NEAR_STEP && LamMixedIsStable(&d->now.view)) {
-      PetscCall(TryFast(d, found));
-      if (*found) break;
-    }
-    PetscCall(TakeStep(d, &moved));
+    PetscCall(TakeStep(s, &moved));
     *found = (PetscBool)(there && !moved);
     if (!moved) break;
+    lost = stable ? 0 : lost + 1;
   }
   PetscFunctionReturn(0);
 }
 
-/* Why there is no answer. */
-static PetscErrorCode GiveReason(const Descent *d, LamResponse *response)
+/* Continuation and descent from `state`. */
+static PetscErrorCode Find(Search *s, LamRVEState state, PetscBool *found)
 {
-  const LamMixedView *view = &d->now.view;
-  const PetscReal *F = d->now.response.load.F;
-  const char *why = !LamMixedIsStable(view)                   ? "it has passed a limit load: prescribe F"
-                    : LamResponseHasFields(&d->next.response) ? "give states in between"
-                                                              : d->next.response.reason;
+  const LamLoad start = state->load;
+  LamLoad load = *s->load;
 
   PetscFunctionBeginUser;
-  response->status = LAM_NOT_CONVERGED;
-  PetscCall(PetscSNPrintf(response->reason, sizeof(response->reason),
-                          "the prescribed stress is not reached: off by %.3g (C1+C2) at F = [%.4g, %.4g; %.4g, %.4g], "
-                          "F33 %.4g, stiffness there %.3g; %s",
-                          (double)view->largest, (double)F[0], (double)F[1], (double)F[3], (double)F[4], (double)F[8],
-                          (double)view->w[0], why));
+  *found = PETSC_FALSE;
+  PetscCall(SolveAt(s, &start, state));
+  if (LamResponseHasFields(&s->next.response)) {
+    Swap(s);
+    PetscCall(Continue(s));
+    *found = (PetscBool)(s->reached >= 1.0);
+    if (*found) PetscFunctionReturn(0);
+    for (PetscInt k = 0; k < s->now.view.count; ++k)
+      load.F[s->now.view.component[k]] = s->now.response.load.F[s->now.view.component[k]];
+    PetscCall(SolveAt(s, &load, s->now.state));
+  } else {
+    PetscCall(SolveAt(s, &load, state));
+  }
+  if (!LamResponseHasFields(&s->next.response)) {
+    PetscCall(PetscStrncpy(s->refusal, s->next.response.reason, sizeof(s->refusal)));
+    PetscFunctionReturn(0);
+  }
+  Swap(s);
+  PetscCall(Descend(s, found));
+  PetscFunctionReturn(0);
+}
+
+/* Why there is no answer. A limit load is one where the stiffness has fallen to a fraction when states end. */
+static PetscErrorCode GiveReason(const Search *s, LamResponse *response)
+{
+  const PetscBool limit = (PetscBool)(s->reached > 0.0 && s->stiffness < LIMIT_SHARE * s->first_stiffness &&
+                                      s->failed - s->reached <= 2.0 * LEAST_SHARE);
+  const char *what = limit ? "a limit load lies" : "stable states end";
+
+  PetscFunctionBeginUser;
+  response->status = limit ? LAM_NO_EQUILIBRIUM : LAM_NOT_CONVERGED;
+  if (s->failed == 0.0) /* no solution to continue from */
+    PetscCall(PetscStrncpy(response->reason, s->refusal, sizeof(response->reason)));
+  else if (s->first_stiffness <= LAM_MIXED_SOFTEST)
+    PetscCall(PetscSNPrintf(response->reason, sizeof(response->reason),
+                            "the state before is not stable under the prescribed stress (stiffness %.3g C1+C2), and no "
+                            "stable one was found from there: prescribe F",
+                            (double)s->first_stiffness));
+  else
+    PetscCall(PetscSNPrintf(response->reason, sizeof(response->reason),
+                            "%s between %.4g and %.4g of the way from the state before; stiffness under the prescribed "
+                            "stress %.3g before, %.3g there (C1+C2)%s%.60s",
+                            what, (double)s->reached, (double)s->failed, (double)s->first_stiffness,
+                            (double)s->stiffness, s->refusal[0] ? "; " : "", s->refusal));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamMixedSafe(LamRVE rve, const LamLoad *load, const LamStressControl *control, LamRVEState state,
                             LamResponse *response)
 {
-  Descent d = {.rve = rve, .control = control};
-  PetscBool found = PETSC_FALSE;
+  Search s = {.rve = rve, .control = control, .load = load};
+  PetscBool found;
 
   PetscFunctionBeginUser;
-  PetscCall(LamRVEStateCreate(rve, &d.now.state));
-  PetscCall(LamRVEStateCreate(rve, &d.next.state));
-  PetscCall(SolveAt(&d, load, state, &d.now));
-  if (LamResponseHasFields(&d.now.response)) {
-    PetscCall(Descend(&d, &found));
-    if (found) {
-      *response = d.now.response;
-      if (!LamMixedIsStable(&d.now.view)) response->status = LAM_UNSTABLE;
-      PetscCall(LamRVEStateCopy(d.now.state, state));
-    } else {
-      PetscCall(LamBeginResponse(rve, load, response));
-      PetscCall(GiveReason(&d, response));
-    }
+  PetscCall(LamRVEStateCreate(rve, &s.now.state));
+  PetscCall(LamRVEStateCreate(rve, &s.next.state));
+  PetscCall(Find(&s, state, &found));
+  if (found) {
+    *response = s.now.response;
+    if (!LamMixedIsStable(&s.now.view)) response->status = LAM_UNSTABLE;
+    PetscCall(LamRVEStateCopy(s.now.state, state));
   } else {
-    *response = d.now.response; /* no answer at the first guess: for the reason it gives */
+    PetscCall(LamBeginResponse(rve, load, response));
+    PetscCall(GiveReason(&s, response));
   }
-  response->newton_iterations = d.iterations;
-  response->factorisations = d.factorisations;
-  PetscCall(LamRVEStateDestroy(&d.now.state));
-  PetscCall(LamRVEStateDestroy(&d.next.state));
+  response->newton_iterations = s.iterations;
+  response->factorisations = s.factorisations;
+  PetscCall(LamRVEStateDestroy(&s.now.state));
+  PetscCall(LamRVEStateDestroy(&s.next.state));
   PetscFunctionReturn(0);
 }

@@ -319,7 +319,7 @@ static void PressureBasisIsOrthonormal(void **state)
     }
 }
 
-/* A full update along dx leads the independent stresses to those of x + dx, up to the square of dx. */
+/* A full update along dx and dF33 leads the independent stresses to those of x + dx, F33 + dF33, up to the square. */
 static void StressUpdateIsTheLinearisation(void **state)
 {
   double error[2];
@@ -336,9 +336,10 @@ static void StressUpdateIsTheLinearisation(void **state)
         dx[a][i] = size * RandomReal(&direction, -1, 1);
         moved.x[a][i] += dx[a][i];
       }
+    moved.F33 += size;
     assert_true(LamElementSetConsistentStress(&moved.geometry, moved.law, &wall, (const double(*)[2])moved.x, moved.F33,
                                               &moved.stress));
-    LamElementUpdateStress(&element.geometry, (const double(*)[2])element.x, (const double(*)[2])dx, element.F33, 0.0,
+    LamElementUpdateStress(&element.geometry, (const double(*)[2])element.x, (const double(*)[2])dx, element.F33, size,
                            1.0, &element.stress);
     error[k] = 0.0;
     for (int p = 0; p < LAM_PRESSURES; p++) error[k] += fabs(element.stress.p[p] - moved.stress.p[p]);

@@ -1,0 +1,196 @@
+/* Mixed control: the prescribed stress is reached, by the state that F alone would give, and what has none is told. */
+#include "rve_fixture.h"
+#include "assert_near.h"
+#include "figures_mixed.h"
+#include <string.h>
+
+static MixedResult results[MIXED_CASES];
+
+static int SolveAll(void **state)
+{
+  for (int k = 0; k < MIXED_CASES; k++)
+    if (SolveMixedCase(&mixed_cases[k], &results[k])) return 1;
+  return 0;
+}
+
+/* A case from the undeformed tissue. */
+static LamResponse Solve(const LamMicrostructure *micro, const MixedCase *c)
+{
+  static const double undeformed[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  LamRVE rve = NewRVE(micro);
+  LamStressControl control;
+  LamResponse response;
+  LamRVEState state;
+  LamLoad load;
+
+  MixedLoad(c, undeformed, &load, &control);
+  assert_int_equal(LamRVEStateCreate(rve, &state), 0);
+  assert_int_equal(LamRVESolveMixed(rve, &load, &control, state, &response), 0);
+  assert_int_equal(LamRVEStateDestroy(&state), 0);
+  assert_int_equal(LamRVEDestroy(&rve), 0);
+  return response;
+}
+
+static LamResponse SolveDefault(MixedCase c)
+{
+  const LamMicrostructure micro = c.contact ? ContactTissue(6, 2) : DefaultTissue();
+
+  return Solve(&micro, &c);
+}
+
+static void StressIsReached(void **state)
+{
+  for (int k = 0; k < MIXED_CASES; k++) {
+    assert_int_equal(results[k].mixed.status, LAM_CONVERGED);
+    assert_near(results[k].stress, 0.0, 1e-8);
+  }
+}
+
+static void StateIsThatOfItsF(void **state)
+{
+  for (int k = 0; k < MIXED_CASES; k++) {
+    assert_near(results[k].apart, 0.0, 1e-8);
+    assert_near(results[k].mixed.energy, results[k].plain.energy, 1e-10);
+  }
+}
+
+static void FactorisationsAreFewMore(void **state)
+{
+  for (int k = 0; k < MIXED_CASES; k++)
+    if (results[k].extra > 3) fail_msg("%s: %d more", mixed_cases[k].name, results[k].extra);
+}
+
+/* Bisection on F11 of states with prescribed F finds the same. */
+static void BisectionAgrees(void **state)
+{
+  const MixedCase c = {.turgor = 0.02, .F = {FREE, 0, 0, 1.1}, .F33 = 1};
+  const LamResponse mixed = SolveDefault(c);
+  const LamMicrostructure micro = DefaultTissue();
+  double low = 0.9, high = 1.1;
+  LamRVE rve = NewRVE(&micro);
+
+  for (int k = 0; k < 35; k++) {
+    const double middle = 0.5 * (low + high);
+
+    if (SolveFromReference(rve, PlaneLoad(middle, 0, 0, 1.1, 0.02 / TISSUE_STRESS)).P[0] < 0)
+      low = middle;
+    else
+      high = middle;
+  }
+  assert_int_equal(LamRVEDestroy(&rve), 0);
+  assert_near(mixed.load.F[0], 0.5 * (low + high), 1e-10);
+}
+
+/* Where stress is prescribed, Psi - P.F is stationary: its differences in F22 have their minimum there. */
+static void SwollenTissueHasTheLeastEnergy(void **state)
+{
+  const MixedCase c = {.turgor = 0.02, .F = {FREE, FREE, 0, FREE}, .F33 = 1};
+  const LamResponse swollen = SolveDefault(c);
+  const LamMicrostructure micro = DefaultTissue();
+  LamRVE rve = NewRVE(&micro);
+
+  for (int sign = -1; sign <= 1; sign += 2) {
+    LamLoad load = swollen.load;
+
+    load.F[4] += 1e-3 * sign;
+    assert_true(SolveFromReference(rve, load).energy > swollen.energy);
+  }
+  assert_int_equal(LamRVEDestroy(&rve), 0);
+  assert_near(swollen.load.F[0], swollen.load.F[4], 1e-8); /* hexagons swell alike in all directions */
+}
+
+/* Free swelling with F21 prescribed is the same swelling, turned. */
+static void PrescribedF21TurnsTheTissue(void **state)
+{
+  const double angle = 0.2;
+  const MixedCase c = {.turgor = 0.02, .F = {FREE, FREE, 0, FREE}, .F33 = 1};
+  const LamResponse upright = SolveDefault(c);
+  const double stretch = upright.load.F[0];
+  const MixedCase turned = {.turgor = 0.02, .F = {FREE, FREE, stretch * sin(angle), FREE}, .F33 = 1};
+  const LamResponse response = SolveDefault(turned);
+
+  assert_int_equal(response.status, LAM_CONVERGED);
+  assert_near(response.energy, upright.energy, 1e-10);
+  assert_near(response.load.F[0], stretch * cos(angle), 1e-8);
+  assert_near(response.load.F[1], -stretch * sin(angle), 1e-8);
+}
+
+/* Cells whose axes are turned by 60 deg are the same tissue. */
+static void LatticeSymmetryHolds(void **state)
+{
+  const MixedCase c = {.turgor = 0.02, .F = {FREE, 0.2, 0, FREE}, .F33 = FREE, .P = {0.01, 0, 0, 0}};
+  LamMicrostructure micro = DefaultTissue();
+  const LamResponse before = Solve(&micro, &c);
+  LamResponse after;
+
+  micro.orientation = PETSC_PI / 3;
+  after = Solve(&micro, &c);
+  for (int i = 0; i < 9; i++) assert_near(after.load.F[i], before.load.F[i], 1e-8);
+}
+
+static void RotationMustNotBeFree(void **state)
+{
+  const LamResponse r = SolveDefault((MixedCase){.F = {1, FREE, FREE, 1}, .F33 = 1});
+
+  assert_int_equal(r.status, LAM_INVALID_F);
+  assert_non_null(strstr(r.reason, "rotate"));
+}
+
+static void StressMustBeFinite(void **state)
+{
+  const LamResponse r = SolveDefault((MixedCase){.F = {1, 0, 0, FREE}, .F33 = 1, .P = {0, 0, 0, INFINITY}});
+
+  assert_int_equal(r.status, LAM_INVALID_F);
+}
+
+/* Dry cells under too much compression: a state that shears away unless F12 is held. */
+static void UnstableStateNamesTheStableControl(void **state)
+{
+  const MixedCase free_shear = {.F = {FREE, FREE, 0, FREE}, .F33 = 1, .P = {0, 0, 0, -0.01}};
+  const MixedCase held_shear = {.F = {FREE, 0, 0, FREE}, .F33 = 1, .P = {0, 0, 0, -0.01}};
+  const LamResponse unstable = SolveDefault(free_shear), stable = SolveDefault(held_shear);
+
+  assert_int_equal(unstable.status, LAM_UNSTABLE);
+  assert_false(unstable.stable);
+  assert_true(unstable.lowest_eigenvalue < 0);
+  assert_non_null(strstr(unstable.reason, "stable where F12 is prescribed"));
+  assert_int_equal(stable.status, LAM_CONVERGED);
+  assert_near(stable.load.F[4], unstable.load.F[4], 1e-8);
+}
+
+/* A stress that nothing carries: the reason brackets where stable states end, and F is not given. */
+static void UnreachableStressIsBracketed(void **state)
+{
+  const LamResponse r = SolveDefault((MixedCase){.F = {FREE, FREE, 0, FREE}, .F33 = 1, .P = {0, 0, 0, -0.05}});
+  double reached = -1, failed = -1;
+
+  assert_false(LamResponseHasFields(&r));
+  assert_true(isnan(r.load.F[0]) && r.load.F[3] == 0);
+  assert_non_null(strstr(r.reason, "between"));
+  assert_int_equal(sscanf(strstr(r.reason, "between"), "between %lf and %lf", &reached, &failed), 2);
+  assert_true(reached > 0.1 && failed < 0.25 && reached < failed);
+}
+
+static int Run(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(StressIsReached),
+      cmocka_unit_test(StateIsThatOfItsF),
+      cmocka_unit_test(FactorisationsAreFewMore),
+      cmocka_unit_test(BisectionAgrees),
+      cmocka_unit_test(SwollenTissueHasTheLeastEnergy),
+      cmocka_unit_test(PrescribedF21TurnsTheTissue),
+      cmocka_unit_test(LatticeSymmetryHolds),
+      cmocka_unit_test(RotationMustNotBeFree),
+      cmocka_unit_test(StressMustBeFinite),
+      cmocka_unit_test(UnstableStateNamesTheStableControl),
+      cmocka_unit_test(UnreachableStressIsBracketed),
+  };
+
+  return cmocka_run_group_tests(tests, SolveAll, NULL);
+}
+
+int main(int argc, char **argv)
+{
+  return RunWithPetsc(argc, argv, Run);
+}
