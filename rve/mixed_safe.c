@@ -13,7 +13,7 @@
 */
 #include "mixed.h"
 
-#define BUDGET 800 /* iterations in all */
+#define BUDGET 400 /* iterations of continuation, and of each descent */
 #define LEAST_SHARE (1.0 / 512.0)
 #define LIMIT_SHARE 0.2 /* of the stiffness at the start: less, before continuation ends, is that of a limit load */
 #define DESCENTS 30
@@ -43,7 +43,7 @@ typedef struct {
   PetscReal reached, failed;                   /* shares of the way from the state before */
   PetscReal first_stiffness, stiffness;        /* at the state before and at the share reached */
   char refusal[192];                           /* of the last try */
-  PetscInt iterations, factorisations;
+  PetscInt iterations, factorisations, most;   /* most: iterations until the present part gives up */
 } Search;
 
 static void Count(Search *s, const LamResponse *response)
@@ -108,7 +108,8 @@ static PetscErrorCode Continue(Search *s)
 
   PetscFunctionBeginUser;
   s->first_stiffness = s->stiffness = s->now.view.w[0];
-  while (s->reached < 1.0 && step >= LEAST_SHARE && s->iterations < BUDGET) {
+  s->most = s->iterations + BUDGET;
+  while (s->reached < 1.0 && step >= LEAST_SHARE && s->iterations < s->most) {
     const PetscReal t = PetscMin(1.0, s->reached + step);
     LamStressControl control;
     LamLoad load;
@@ -175,7 +176,7 @@ static PetscErrorCode TakeStep(Search *s, PetscBool *moved)
 
   PetscFunctionBeginUser;
   *moved = PETSC_FALSE;
-  for (PetscInt k = 0; k < HALVINGS && !*moved && s->iterations < BUDGET; ++k, alpha *= 0.5) {
+  for (PetscInt k = 0; k < HALVINGS && !*moved && s->iterations < s->most; ++k, alpha *= 0.5) {
     LamLoad load = s->now.response.load;
 
     for (PetscInt i = 0; i < s->now.view.count; ++i) load.F[s->now.view.component[i]] += alpha * s->step[i];
@@ -214,32 +215,45 @@ static PetscErrorCode Descend(Search *s, PetscBool *found)
   PetscFunctionReturn(0);
 }
 
-/* Continuation and descent from `state`. */
+/* Descent from the full solve at `load`, from `from`. */
+static PetscErrorCode DescendFrom(Search *s, const LamLoad *load, LamRVEState from, PetscBool *found)
+{
+  PetscFunctionBeginUser;
+  *found = PETSC_FALSE;
+  s->most = s->iterations + BUDGET;
+  PetscCall(SolveAt(s, load, from));
+  if (LamResponseHasFields(&s->next.response)) {
+    Swap(s);
+    PetscCall(Descend(s, found));
+  } else {
+    PetscCall(PetscStrncpy(s->refusal, s->next.response.reason, sizeof(s->refusal)));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Contact tissue that has no state before starts from the guess of F; else continuation, and descent from its end. */
 static PetscErrorCode Find(Search *s, LamRVEState state, PetscBool *found)
 {
   const LamLoad start = state->load;
   LamLoad load = *s->load;
 
   PetscFunctionBeginUser;
-  *found = PETSC_FALSE;
-  PetscCall(SolveAt(s, &start, state));
-  if (LamResponseHasFields(&s->next.response)) {
-    Swap(s);
-    PetscCall(Continue(s));
-    *found = (PetscBool)(s->reached >= 1.0);
-    if (*found) PetscFunctionReturn(0);
-    for (PetscInt k = 0; k < s->now.view.count; ++k)
-      load.F[s->now.view.component[k]] = s->now.response.load.F[s->now.view.component[k]];
-    PetscCall(SolveAt(s, &load, s->now.state));
-  } else {
-    PetscCall(SolveAt(s, &load, state));
+  if (s->rve->contact && !state->solved) {
+    PetscCall(DescendFrom(s, &load, state, found));
+    if (*found && LamMixedIsStable(&s->now.view)) PetscFunctionReturn(0);
   }
+  PetscCall(SolveAt(s, &start, state));
   if (!LamResponseHasFields(&s->next.response)) {
-    PetscCall(PetscStrncpy(s->refusal, s->next.response.reason, sizeof(s->refusal)));
+    PetscCall(DescendFrom(s, &load, state, found));
     PetscFunctionReturn(0);
   }
   Swap(s);
-  PetscCall(Descend(s, found));
+  PetscCall(Continue(s));
+  *found = (PetscBool)(s->reached >= 1.0);
+  if (*found) PetscFunctionReturn(0);
+  for (PetscInt k = 0; k < s->now.view.count; ++k)
+    load.F[s->now.view.component[k]] = s->now.response.load.F[s->now.view.component[k]];
+  PetscCall(DescendFrom(s, &load, s->now.state, found));
   PetscFunctionReturn(0);
 }
 

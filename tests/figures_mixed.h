@@ -6,6 +6,7 @@
 #define LAM_FIGURES_MIXED_H
 
 #include "figures_contact_derivatives.h"
+#include "mixed.h"
 
 #define FREE NAN /* in place of a component of F */
 
