@@ -20,7 +20,7 @@
 #define LOST 5 /* steps in a row without stability: F runs away */
 #define HALVINGS 6
 #define STEP_LIMIT 0.25      /* of a component of F */
-#define NEAR_STEP 0.1        /* from here on the fast tier has a chance */
+#define NEAR_STEP 0.2        /* from here on the fast tier has a chance */
 #define KICK 0.01            /* of F along an unstable mode */
 #define LEAST_STIFFNESS 1e-3 /* C1 + C2: bounds the steps of tissue that has next to none */
 #define STRESS_TOLERANCE 1e-9

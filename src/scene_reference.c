@@ -13,6 +13,7 @@ static const char *const introduction =
     "Examples: [shear-bonded.yaml](../tests/scenes/shear-bonded.yaml) (a cell under turgor, sheared),\n"
     "[shear-contact.yaml](../tests/scenes/shear-contact.yaml) (cells that come apart while their turgor falls),\n"
     "[shear-dry.yaml](../tests/scenes/shear-dry.yaml) (dry cells, sheared until they separate),\n"
+    "[uniaxial.yaml](../tests/scenes/uniaxial.yaml) (a cell that swells, then stretched with its sides free),\n"
     "[hexagons-dry.yaml](../tests/scenes/hexagons-dry.yaml) and\n"
     "[hexagons-turgid.yaml](../tests/scenes/hexagons-turgid.yaml) (a patch of cells between grips, empty and under "
     "turgor),\n"
