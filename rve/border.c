@@ -79,7 +79,7 @@ PetscErrorCode LamBorderSolve(LamRVE rve, LamBorder *border, const PetscReal rhs
 {
   const PetscInt n = rve->linear.n;
   PetscReal S[LAM_F_COUNT][LAM_F_COUNT], w[LAM_F_COUNT], V[LAM_F_COUNT][LAM_F_COUNT], b[LAM_F_COUNT],
-      dq[LAM_F_COUNT] = {0}, largest;
+      dq[LAM_F_COUNT] = {0};
 
   PetscFunctionBeginUser;
   if (!border) {
@@ -104,13 +104,26 @@ PetscErrorCode LamBorderSolve(LamRVE rve, LamBorder *border, const PetscReal rhs
     for (PetscInt l = 0; l < border->count; ++l) dq[l] += share * V[k][l];
   }
   SetStep(rve, border, dq, solution);
-  largest = PetscMax(LamLargestEntry(rve->linear.positions, solution), LamLargestEntry(9, border->dF));
-  if (border->patience > 0 && largest > LONG_STEP) border->waits = PETSC_TRUE;
+  if (border->patience > 0 && LamBorderReach(rve, border, solution) > LONG_STEP) border->waits = PETSC_TRUE;
   if (border->waits) {
     PetscCall(PetscArrayzero(dq, LAM_F_COUNT));
     SetStep(rve, border, dq, solution);
   }
   PetscFunctionReturn(0);
+}
+
+PetscReal LamBorderReach(LamRVE rve, const LamBorder *border, const PetscReal dy[])
+{
+  const PetscReal *dF = LamBorderStep(border), *held = rve->mesh.class_X;
+  PetscReal largest = LamLargestEntry(9, dF);
+
+  for (PetscInt c = 1; c < rve->mesh.class_count; ++c) {
+    const PetscReal X[2] = {rve->mesh.class_X[2 * c] - held[0], rve->mesh.class_X[2 * c + 1] - held[1]};
+
+    for (PetscInt i = 0; i < 2; ++i)
+      largest = PetscMax(largest, PetscAbsReal(dy[2 * (c - 1) + i] - dF[3 * i] * X[0] - dF[3 * i + 1] * X[1]));
+  }
+  return largest;
 }
 
 const PetscReal *LamBorderStep(const LamBorder *border)

@@ -39,6 +39,9 @@ PetscErrorCode LamBorderDestroy(LamBorder **border);
 PetscErrorCode LamBorderAssemble(LamRVE rve, LamBorder *border, PetscReal *norm);
 /* solution = dy for K dy + R dq = rhs, with the present factor, and the step of F; both of length n. */
 PetscErrorCode LamBorderSolve(LamRVE rve, LamBorder *border, const PetscReal rhs[], PetscReal solution[]);
+/* How far a step dy [positions, without the held class] goes beyond the affine part of the step of F, apothems, or the
+   latter, if it is larger. */
+PetscReal LamBorderReach(LamRVE rve, const LamBorder *border, const PetscReal dy[]);
 /* The step of F, zero where it is prescribed. */
 const PetscReal *LamBorderStep(const LamBorder *border);
 /* `load` with F moved by alpha along the step. */

@@ -105,8 +105,7 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, LamBorder *bord
     LamContactAddCurvature(rve);
     PetscCall(LamContactSolveStep(rve, norm, compliance, &step, &ok));
     if (!ok) break;
-    rve->contact->largest_step =
-        PetscMax(LamLargestEntry(rve->ndof, rve->step), LamLargestEntry(9, LamBorderStep(border)));
+    rve->contact->largest_step = LamBorderReach(rve, border, rve->step + 2);
     PetscCall(StepLength(rve, load, border, compliant ? STEP_LIMIT : NEAR_LIMIT, &alpha));
     PetscCall(Report(rve, it, norm, gap, changes, rve->contact->largest_step, alpha, step.shift));
     if (alpha == 0.0 || (!compliant && rve->contact->largest_step > reach)) break;

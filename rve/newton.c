@@ -146,7 +146,7 @@ PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border,
     PetscCall(FactorPositive(rve, &shift, &ok));
     if (!ok) break;
     PetscCall(SolveStep(rve, border));
-    largest = PetscMax(LamLargestEntry(rve->ndof, rve->step), LamLargestEntry(9, LamBorderStep(border)));
+    largest = LamBorderReach(rve, border, rve->step + 2);
     PetscCall(Report(rve, "fast", it, norm, largest, shift));
     if (AtRounding(rve, norm, tolerance, largest)) {
       *outcome = LAM_NEWTON_CONVERGED;
