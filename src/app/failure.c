@@ -107,7 +107,7 @@ static PetscErrorCode SolveAt(const Way *way, const Point *start, PetscReal shar
 
   PetscFunctionBeginUser;
   PetscCall(CopyStates(meshes, start->states, meshes->state));
-  PetscCall(LamMeshesSolve(meshes, &load, point->responses));
+  PetscCall(LamMeshesSolve(meshes, &load, NULL, point->responses));
   Complete(meshes, point->responses);
   PetscCall(CopyStates(meshes, meshes->state, point->states));
   point->share = share;
@@ -437,7 +437,7 @@ PetscErrorCode LamFailureFind(LamMeshes *meshes, const LamFailureProgram *progra
     LamResponse responses[2];
 
     if (program->stop_at_first && IsReached(failure)) break;
-    PetscCall(LamMeshesSolve(meshes, &program->loads[k], responses));
+    PetscCall(LamMeshesSolve(meshes, &program->loads[k], NULL, responses));
     PetscCall(LamFailureWatch(failure, meshes, k + 1, responses));
   }
   PetscCall(LamFailureConclude(failure));
