@@ -1,12 +1,10 @@
 /*
-  Private to `lamella build`: which states are sampled, and who solves them.
+  Private to `lamella build`: which states are sampled, and how one is solved.
 */
 #ifndef LAM_BUILD_H
 #define LAM_BUILD_H
 
 #include "app.h"
-
-/* ---- build_sample.c ---- */
 
 /*
   The state number `index` (0, 1, ...) of the scene's sample box: point index + 1 of the Halton sequence with bases
@@ -16,27 +14,16 @@
 */
 void LamSampleLoad(const LamScene *scene, PetscInt64 index, LamLoad *load);
 
-/* ---- build_dispatch.c: work handed out by rank 0, one state at a time ---- */
-
+/* Every rank has one. */
 typedef struct {
-  MPI_Comm comm;
-  PetscMPIInt rank, size;
   const LamScene *scene; /* borrowed */
   LamRVE rve;            /* owned */
   LamRVEState state;     /* owned */
-} LamDispatch;
+} LamSampler;
 
-/* Called on rank 0 for each solved state, in any order. */
-typedef PetscErrorCode (*LamSolved)(void *ctx, PetscInt64 index, const LamResponse *response);
-
-/* Every rank gets an RVE of its own. Collective. */
-PetscErrorCode LamDispatchCreate(MPI_Comm comm, const LamScene *scene, LamDispatch *dispatch);
-/* Rank 0: has states first..last-1 solved; fewer where a stop is requested (none is begun after that). */
-PetscErrorCode LamDispatchRun(LamDispatch *dispatch, PetscInt64 first, PetscInt64 last, LamSolved solved, void *ctx);
-/* Rank 0: sends the others home. */
-PetscErrorCode LamDispatchEnd(LamDispatch *dispatch);
-/* Other ranks: solve what rank 0 sends until it says the end. */
-PetscErrorCode LamDispatchServe(LamDispatch *dispatch);
-PetscErrorCode LamDispatchDestroy(LamDispatch *dispatch);
+PetscErrorCode LamSamplerCreate(const LamScene *scene, LamSampler *sampler);
+/* A LamWork (dispatch.h): `result` is a LamResponse. Each state starts from the stress-free reference. */
+PetscErrorCode LamSamplerSolve(void *sampler, PetscInt64 index, void *result);
+PetscErrorCode LamSamplerDestroy(LamSampler *sampler);
 
 #endif

@@ -10,6 +10,7 @@
     and predicted with an error below the accuracy, or at MOST_RECORDS.
 */
 #include "build.h"
+#include "dispatch.h"
 #include <math.h>
 #include <petsctime.h>
 #include <stdlib.h>
@@ -24,6 +25,7 @@ typedef struct {
   LamScene *scene;
   const char *path;
   PetscBool json, quiet;
+  LamSampler sampler;
   LamDispatch dispatch;
   LamRecordWriter writer;
   LamProgress progress;
@@ -106,15 +108,15 @@ static PetscErrorCode Reserve(Build *b, PetscInt n)
   PetscFunctionReturn(0);
 }
 
-/* LamSolved */
-static PetscErrorCode Arrive(void *ctx, PetscInt64 index, const LamResponse *response)
+/* A LamWorked */
+static PetscErrorCode Arrive(void *ctx, PetscInt64 index, const void *result)
 {
   Build *b = ctx;
   const PetscInt at = (PetscInt)(index - b->committed);
 
   PetscFunctionBeginUser;
   PetscCall(Reserve(b, at + 1));
-  b->waiting[at] = *response;
+  b->waiting[at] = *(const LamResponse *)result;
   b->solved[at] = PETSC_TRUE;
   b->arrived++;
   PetscCall(LamProgressUpdate(&b->progress, b->begun_with + b->arrived, b->failed));
@@ -319,17 +321,6 @@ static PetscErrorCode OpenWriter(Build *b, PetscBool resume)
   PetscFunctionReturn(0);
 }
 
-/* An error of rank 0 ends every rank; it has been told once. */
-static PetscErrorCode Share(Build *b, PetscErrorCode ierr)
-{
-  int code = (int)ierr;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Bcast(&code, 1, MPI_INT, 0, b->dispatch.comm));
-  if (code) return (PetscErrorCode)code;
-  PetscFunctionReturn(0);
-}
-
 /* Rank 0 keeps the file. A worker that fails cannot tell rank 0, which waits for its result: it ends the job. */
 static PetscErrorCode RunAll(Build *b, PetscBool resume)
 {
@@ -337,7 +328,7 @@ static PetscErrorCode RunAll(Build *b, PetscBool resume)
   PetscErrorCode ierr = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(Share(b, root ? OpenWriter(b, resume) : 0));
+  PetscCall(LamDispatchShare(&b->dispatch, root ? OpenWriter(b, resume) : 0));
   if (root) {
     ierr = RunRoot(b);
     PetscCall(LamDispatchEnd(&b->dispatch));
@@ -349,7 +340,7 @@ static PetscErrorCode RunAll(Build *b, PetscBool resume)
     /* alone with its error, a worker goes straight to main, which tells it and ends the job */
     PetscCall(LamDispatchServe(&b->dispatch));
   }
-  PetscCall(Share(b, ierr));
+  PetscCall(LamDispatchShare(&b->dispatch, ierr));
   if (root) PetscCall(Summary(b));
   PetscFunctionReturn(0);
 }
@@ -381,7 +372,8 @@ static PetscErrorCode Prepare(Build *b, const char scene_path[])
   PetscCall(PetscTime(&b->start));
   b->last_commit = b->start;
   PetscCall(LamSignalsInstall());
-  PetscCall(LamDispatchCreate(PETSC_COMM_WORLD, b->scene, &b->dispatch));
+  PetscCall(LamSamplerCreate(b->scene, &b->sampler));
+  PetscCall(LamDispatchCreate(PETSC_COMM_WORLD, LamSamplerSolve, &b->sampler, sizeof(LamResponse), &b->dispatch));
   PetscFunctionReturn(0);
 }
 
@@ -393,6 +385,7 @@ static PetscErrorCode Destroy(Build *b)
   PetscCall(PetscFree(b->errors));
   PetscCall(LamDatabaseClose(&b->database));
   PetscCall(LamDispatchDestroy(&b->dispatch));
+  PetscCall(LamSamplerDestroy(&b->sampler));
   PetscCall(LamSceneDestroy(&b->scene));
   PetscFunctionReturn(0);
 }
