@@ -46,6 +46,7 @@ static PetscErrorCode SceneBuild(LamDocument *document, LamScene *scene)
   PetscCall(LamSceneBuildSample(document, scene));
   PetscCall(LamSceneBuildMacro(document, scene));
   PetscCall(LamSceneCheckPatch(document, scene));
+  PetscCall(LamSceneBuildMap(document, scene));
   PetscFunctionReturn(0);
 }
 

@@ -11,6 +11,8 @@ const char *const LamStrategyNames[] = {LAM_STRATEGIES(LAM_NAME_ENTRY)};
 const char *const LamPatchSidesNames[] = {LAM_PATCH_SIDES(LAM_NAME_ENTRY)};
 const char *const LamFibresNames[] = {LAM_FIBRES(LAM_NAME_ENTRY)};
 const char *const LamSideNames[] = {LAM_SIDES(LAM_NAME_ENTRY)};
+const char *const LamMapQuantityNames[] = {LAM_MAP_QUANTITIES(LAM_NAME_ENTRY)};
+static const char *const spacing_names[] = {LAM_SPACINGS(LAM_NAME_ENTRY)};
 static const char *const turgor_mode_names[] = {LAM_TURGOR_MODES(LAM_NAME_ENTRY)};
 
 #define MAP(key_path) .path = key_path, .type = LAM_KEY_MAP
@@ -38,6 +40,26 @@ static const char *const turgor_mode_names[] = {LAM_TURGOR_MODES(LAM_NAME_ENTRY)
 
 #define CHOSEN "chosen for the wanted accuracy"
 #define OWN "that of the scene's own cell"
+
+/* The axes of a map are alike. `from` and `to` have the unit of the quantity, so they are read as text. */
+#define MAP_AXIS(axis, sample)                                                                                         \
+  {MAP("map." axis), REQUIRED, .example = sample, .help = "The axis " axis "."},                                       \
+      {NAME("map." axis ".quantity", LamMapQuantityNames), REQUIRED, .example = "turgor",                              \
+       .help = "What varies. `shear` (F12) and `load_factor` (0 to 1) say how far the load is followed, the others "   \
+               "replace what the scene says."},                                                                        \
+      {TEXT("map." axis ".from"), REQUIRED, .example = "0 MPa",                                                        \
+       .help = "The first value, with the unit of the quantity; `shear` and `load_factor` are plain numbers."},        \
+      {TEXT("map." axis ".to"), REQUIRED, .example = "0.3 MPa", .help = "The last value; larger than `from`."},        \
+      {INTEGER("map." axis ".points"),                                                                                 \
+       REQUIRED,                                                                                                       \
+       FROM(2),                                                                                                        \
+       TO(1000),                                                                                                       \
+       .example = "13",                                                                                                \
+       .help = "Number of values, the ends included."},                                                                \
+  {                                                                                                                    \
+    NAME("map." axis ".spacing", spacing_names), .default_value = "linear", .example = "log",                          \
+                                                 .help = "`linear`: equal differences; `log`: equal ratios."           \
+  }
 
 const LamKey LamKeys[] = {
     {MAP(""), .example = "version: 1", .help = "The scene."},
@@ -223,6 +245,11 @@ const LamKey LamKeys[] = {
              "`contact` it needs a cohesion: nothing else holds free tissue together."},
     {INTEGER("macro.steps"), FROM(1), TO(10000), .default_value = "10", .example = "10",
      .help = "Equal load steps after inflation."},
+
+    {MAP("map"), .example = "{x: {...}, y: {...}}",
+     .help = "For `lamella map`: two quantities that vary; at each point the load is followed until the tissue fails."},
+    MAP_AXIS("x", "{quantity: turgor, from: 0 MPa, to: 0.3 MPa, points: 13}"),
+    MAP_AXIS("y", "{quantity: cohesion, from: 0 MPa, to: 0.05 MPa, points: 11}"),
 
     {MAP("process"), NOT_YET, .example = "{...}", .help = "Tissue that changes in time."},
     {REAL("accuracy"), ABOVE(0), TO(0.5), .default_value = "0.01", .example = "0.01",

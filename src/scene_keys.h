@@ -19,8 +19,13 @@
   X(LAM_BOX_BOTTOM, "bottom")                                                                                          \
   X(LAM_BOX_TOP, "top")
 
+#define LAM_SPACINGS(X)                                                                                                \
+  X(LAM_SPACING_LINEAR, "linear")                                                                                      \
+  X(LAM_SPACING_LOG, "log")
+
 typedef enum { LAM_TURGOR_MODES(LAM_ENUM_ENTRY) LAM_TURGOR_MODE_COUNT } LamTurgorMode;
 typedef enum { LAM_SIDES(LAM_ENUM_ENTRY) LAM_BOX_COUNT } LamSide;
+typedef enum { LAM_SPACINGS(LAM_ENUM_ENTRY) LAM_SPACING_COUNT } LamSpacing;
 
 extern const char *const LamSideNames[];
 
@@ -89,6 +94,7 @@ PetscErrorCode LamSceneBuildStrength(const LamDocument *document, LamScene *scen
 PetscErrorCode LamSceneBuildLoad(const LamDocument *document, LamScene *scene);
 PetscErrorCode LamSceneBuildSample(const LamDocument *document, LamScene *scene);
 PetscErrorCode LamSceneBuildMacro(const LamDocument *document, LamScene *scene);
+PetscErrorCode LamSceneBuildMap(const LamDocument *document, LamScene *scene);
 
 /* scene_cells.c, part of the RVE: how many cells, and what differs from cell to cell. */
 PetscErrorCode LamSceneBuildCells(const LamDocument *document, LamScene *scene);

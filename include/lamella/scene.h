@@ -122,6 +122,35 @@ typedef struct {
   PetscReal accuracy; /* 0 where count is given */
 } LamSample;
 
+#define LAM_MAP_QUANTITIES(X)                                                                                          \
+  X(LAM_MAP_TURGOR, "turgor")                                                                                          \
+  X(LAM_MAP_COHESION, "cohesion")                                                                                      \
+  X(LAM_MAP_SHEAR, "shear")             /* F12 that the load has reached */                                            \
+  X(LAM_MAP_LOAD_FACTOR, "load_factor") /* share of the load's states that has been passed */                          \
+  X(LAM_MAP_WALL_STRENGTH, "wall_strength")                                                                            \
+  X(LAM_MAP_LAMELLA_NORMAL, "lamella_normal")                                                                          \
+  X(LAM_MAP_LAMELLA_SHEAR, "lamella_shear")                                                                            \
+  X(LAM_MAP_C4, "C4")                                                                                                  \
+  X(LAM_MAP_WALL_THICKNESS, "wall_thickness")
+typedef enum { LAM_MAP_QUANTITIES(LAM_ENUM_ENTRY) LAM_MAP_QUANTITY_COUNT } LamMapQuantity;
+extern const char *const LamMapQuantityNames[]; /* "turgor", "cohesion", ... */
+
+/* One axis of a map, in C1 + C2 and apothems. */
+typedef struct {
+  LamMapQuantity quantity;
+  PetscReal from, to; /* from < to */
+  PetscInt points;    /* at least 2, the ends included */
+  PetscBool is_log;   /* equal ratios instead of equal differences; from > 0 */
+} LamMapAxis;
+typedef enum { LAM_MAP_X, LAM_MAP_Y, LAM_MAP_AXIS_COUNT } LamMapDirection;
+
+/* The value of point i = 0..points-1. */
+PetscReal LamMapAxisValue(const LamMapAxis *axis, PetscInt i);
+/* "MPa", "um" or "1", and *scale the factor to it. */
+const char *LamMapQuantityUnit(LamMapQuantity quantity, const LamScales *scales, PetscReal *scale);
+/* Whether it says how far the load is followed, not what tissue is loaded. */
+PetscBool LamMapQuantityIsLoad(LamMapQuantity quantity);
+
 #define LAM_MAX_BOUNDARIES 16
 #define LAM_NAME_LENGTH 64
 
@@ -159,6 +188,8 @@ typedef struct {
   LamSample sample;
   PetscBool has_macro;
   LamMacroSpec macro;
+  PetscBool has_map;
+  LamMapAxis map[LAM_MAP_AXIS_COUNT]; /* at most one of them is of the load */
 } LamScene;
 
 /*
