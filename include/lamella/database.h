@@ -35,7 +35,7 @@ typedef enum { LAM_WRITE_CREATE, LAM_WRITE_APPEND } LamWriteMode;
   Starts a file (CREATE: replaces a file of the same kind, or an empty one, atomically at the first commit and refuses
   to replace anything else, PETSC_ERR_USER_INPUT; APPEND: goes on with a file of the same microstructure,
   PETSC_ERR_USER_INPUT where it differs; a missing file is started). Symbolic links are followed. `kind`: "rve",
-  "database", "fe2". Takes the lock PATH.lock; PETSC_ERR_FILE_OPEN with the holder where another process has it.
+  "database", "fe2", "map". Takes the lock PATH.lock; PETSC_ERR_FILE_OPEN with the holder where another process has it.
 */
 PetscErrorCode LamRecordWriterOpen(const char path[], const char kind[], LamWriteMode mode, const LamScene *scene,
                                    LamRecordWriter *writer);
@@ -50,7 +50,8 @@ PetscErrorCode LamRecordWriterGetKeys(LamRecordWriter writer, PetscInt *n, const
 PetscErrorCode LamRecordWriterClose(LamRecordWriter *writer);
 
 /*
-  Writes an array as dataset `name` ("/mesh/nodes", groups are made), replacing it where it exists; dims[rank],
+  Writes an array as dataset `name` ("/mesh/nodes", groups are made), replacing it where it exists (in place, with the
+  unit it has, where the shape is the same); dims[rank],
   rank <= 4. For geometry, fields and tables beside the records; on return it is on the disk. `unit` is stored as
   attribute "unit" ("MPa", "apothem", "1"). LamRecordWriterText stores a UTF-8 string dataset.
 */
@@ -80,7 +81,7 @@ PetscErrorCode LamFileReadReals(const char path[], const char name[], PetscBool 
 PetscErrorCode LamFileReadInts(const char path[], const char name[], PetscBool *found, PetscInt *rank, PetscInt dims[4],
                                PetscInt **values);
 PetscErrorCode LamFileReadText(const char path[], const char name[], PetscBool *found, char **text);
-/* The file's kind: "rve", "database" or "fe2". */
+/* The file's kind: "rve", "database", "fe2" or "map". */
 PetscErrorCode LamFileReadKind(const char path[], char kind[LAM_NAME_LENGTH]);
 
 /* Adds solved records in memory (cache); they are answered from at once. */

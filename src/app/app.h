@@ -33,6 +33,7 @@ PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandBuild(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandQuery(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status);
+PetscErrorCode LamCommandMap(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandInfo(LamArgs *args, int *exit_status);
 

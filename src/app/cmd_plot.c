@@ -11,7 +11,7 @@
 static const struct {
   const char *kind;
   PetscErrorCode (*plot)(const LamPlotRequest *request);
-} Plots[] = {{"rve", LamPlotRVE}, {"fe2", LamPlotFE2}, {"database", LamPlotDatabase}};
+} Plots[] = {{"rve", LamPlotRVE}, {"fe2", LamPlotFE2}, {"database", LamPlotDatabase}, {"map", LamPlotMap}};
 
 /* FILE.h5 becomes FILE.png. */
 static PetscErrorCode DefaultOutput(const char input[], size_t size, char output[])
@@ -73,6 +73,6 @@ PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status)
     *exit_status = LAM_EXIT_OK;
     PetscFunctionReturn(0);
   }
-  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: is of kind \"%s\"; plot draws rve, fe2 and database files", input,
-          kind);
+  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: is of kind \"%s\"; plot draws rve, fe2, database and map files",
+          input, kind);
 }

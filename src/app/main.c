@@ -32,6 +32,7 @@ static const struct {
     {"build", "fill a response database", LamCommandBuild, PETSC_TRUE},
     {"query", "one answer, or many, from a database", LamCommandQuery, PETSC_FALSE},
     {"fe2", "solve the scene's macroscale problem", LamCommandFE2, PETSC_TRUE},
+    {"map", "tell how tissue fails over two of its quantities", LamCommandMap, PETSC_TRUE},
     {"plot", "draw what a file holds", LamCommandPlot, PETSC_FALSE},
     {"info", "tell what a file holds, who wrote it, with what", LamCommandInfo, PETSC_FALSE},
 };

@@ -1,0 +1,61 @@
+/*
+  Private to `lamella map`: how tissue fails over two of its quantities.
+
+    map_path.c     follows the load at the values of one point, or of a row of points
+    map_table.c    the verdicts as arrays of the result file
+    cmd_map.c      hands paths out, commits, tells
+
+  Points are numbered y * points_x + x, from 0; that is the key of their record. Where an axis is of the load (shear,
+  load_factor), one path along the load answers all points along that axis: they are cuts of it. Else every point has a
+  path of its own, cut at the load's end.
+*/
+#ifndef LAM_MAP_H
+#define LAM_MAP_H
+
+#include "failure.h"
+
+/* What one point is answered. Plain data, sent between ranks. */
+typedef struct {
+  PetscInt64 number;      /* of the point */
+  LamFailureMode mode;    /* reached on the way to the point */
+  LamCriterion criterion; /* that decides the mode; LAM_CRITERION_COUNT: none */
+  PetscReal load_factor;  /* share of the load's states at which it is reached, 0 to 1; NaN: none */
+  PetscReal F[9];         /* there; NaN: none */
+  PetscReal place[3];     /* cell, face 0..5, place along the face in [0, 1]; NaN where it has none */
+  char reason[256];       /* why the mode is unknown; empty otherwise */
+  LamResponse response;   /* at the point itself, whatever failed before */
+} LamMapPoint;
+
+/* ---- map_path.c ---- */
+
+PetscInt LamMapPointCount(const LamScene *scene);
+PetscInt LamMapPathCount(const LamScene *scene);
+PetscInt LamMapCutCount(const LamScene *scene); /* points of one path */
+/* Number of the point at cut `cut` of path `path`. */
+PetscInt64 LamMapPointNumber(const LamScene *scene, PetscInt path, PetscInt cut);
+/* RVE solves of one path, without those that bracket the failure. */
+PetscInt LamMapPathStates(const LamScene *scene);
+/* Follows a path; points [cuts]. *complete is false where a stop was requested before its end. */
+PetscErrorCode LamMapFollow(const LamScene *scene, PetscInt path, LamMapPoint points[], PetscBool *complete);
+
+/* ---- map_table.c ---- */
+
+/* Row by row, y outer; a mode of -1: not known yet. */
+typedef struct {
+  PetscInt points[LAM_MAP_AXIS_COUNT];
+  PetscInt *mode, *criterion; /* owned */
+  PetscReal *load_factor;     /* owned */
+  PetscReal *F;               /* [point][9]; owned */
+  PetscReal *place;           /* [point][3]; owned */
+} LamMapTable;
+
+PetscErrorCode LamMapTableCreate(const LamScene *scene, LamMapTable *table);
+PetscErrorCode LamMapTableDestroy(LamMapTable *table);
+void LamMapTableSet(LamMapTable *table, const LamMapPoint *point);
+/* Of the points that `known` marks. PETSC_ERR_USER_INPUT where the file lacks them. */
+PetscErrorCode LamMapTableRead(const char path[], const PetscBool known[], LamMapTable *table);
+PetscErrorCode LamMapTableWrite(LamRecordWriter writer, const LamMapTable *table);
+/* What the axes are, and the names of modes and criteria; once, before the table. */
+PetscErrorCode LamMapAxesWrite(LamRecordWriter writer, const LamScene *scene);
+
+#endif

@@ -1,0 +1,282 @@
+/*
+  One path of a map: the load at one value of what is not of the load, followed state by state.
+
+  Method
+    The states of the path are F = I at the turgor and cohesion of the load's first state, the load's own states, and
+    the cuts between them; behind the last cut nothing is solved. The failure is looked for (failure.h) up to the first
+    state that has failed; the states behind it are solved for their indicators only, on the first mesh.
+*/
+#include "map.h"
+#include <math.h>
+
+typedef struct {
+  PetscInt count;
+  LamLoad *loads;   /* [count]; owned */
+  PetscReal *place; /* [count] state of the scene's load, with fraction; owned */
+  PetscInt *cut;    /* [cuts] state of the path; owned */
+} Path;
+
+/* The axis of the load, or NULL. */
+static const LamMapAxis *LoadAxis(const LamScene *scene)
+{
+  for (int a = 0; a < LAM_MAP_AXIS_COUNT; a++)
+    if (LamMapQuantityIsLoad(scene->map[a].quantity)) return &scene->map[a];
+  return NULL;
+}
+
+PetscInt LamMapPointCount(const LamScene *scene)
+{
+  return scene->map[LAM_MAP_X].points * scene->map[LAM_MAP_Y].points;
+}
+
+PetscInt LamMapCutCount(const LamScene *scene)
+{
+  const LamMapAxis *axis = LoadAxis(scene);
+
+  return axis ? axis->points : 1;
+}
+
+PetscInt LamMapPathCount(const LamScene *scene)
+{
+  return LamMapPointCount(scene) / LamMapCutCount(scene);
+}
+
+/* x and y of a cut. */
+static void PointOf(const LamScene *scene, PetscInt path, PetscInt cut, PetscInt at[LAM_MAP_AXIS_COUNT])
+{
+  const LamMapAxis *axis = LoadAxis(scene);
+  const PetscInt nx = scene->map[LAM_MAP_X].points;
+
+  if (!axis) {
+    at[LAM_MAP_X] = path % nx;
+    at[LAM_MAP_Y] = path / nx;
+  } else {
+    const LamMapDirection along = axis == &scene->map[LAM_MAP_X] ? LAM_MAP_X : LAM_MAP_Y;
+
+    at[along] = cut;
+    at[1 - along] = path;
+  }
+}
+
+PetscInt64 LamMapPointNumber(const LamScene *scene, PetscInt path, PetscInt cut)
+{
+  PetscInt at[LAM_MAP_AXIS_COUNT];
+
+  PointOf(scene, path, cut, at);
+  return (PetscInt64)at[LAM_MAP_Y] * scene->map[LAM_MAP_X].points + at[LAM_MAP_X];
+}
+
+/* ---- the scene of one path ---- */
+
+static void SetQuantity(LamScene *scene, LamMapQuantity quantity, PetscReal value)
+{
+  switch (quantity) {
+  case LAM_MAP_TURGOR:
+    for (PetscInt i = 0; i < scene->load_count; i++) scene->loads[i].turgor = value;
+    break;
+  case LAM_MAP_COHESION:
+    for (PetscInt i = 0; i < scene->load_count; i++) scene->loads[i].cohesion = value;
+    break;
+  case LAM_MAP_WALL_STRENGTH:
+    scene->strength.wall = value;
+    break;
+  case LAM_MAP_LAMELLA_NORMAL:
+    scene->strength.lamella_normal = value;
+    break;
+  case LAM_MAP_LAMELLA_SHEAR:
+    scene->strength.lamella_shear = value;
+    break;
+  case LAM_MAP_C4:
+    scene->micro.wall.C4 = value;
+    break;
+  case LAM_MAP_WALL_THICKNESS:
+    scene->micro.wall_thickness = value;
+    break;
+  default: /* of the load: cuts */
+    break;
+  }
+}
+
+/* A copy with the values of the path and loads of its own; everything else is borrowed. */
+static PetscErrorCode CopyScene(const LamScene *scene, PetscInt path, LamScene *copy)
+{
+  PetscInt at[LAM_MAP_AXIS_COUNT];
+  LamPlan plan;
+
+  PetscFunctionBeginUser;
+  *copy = *scene;
+  PetscCall(PetscMalloc1(scene->load_count, &copy->loads));
+  PetscCall(PetscArraycpy(copy->loads, scene->loads, scene->load_count));
+  PointOf(scene, path, 0, at);
+  for (int a = 0; a < LAM_MAP_AXIS_COUNT; a++)
+    SetQuantity(copy, scene->map[a].quantity, LamMapAxisValue(&scene->map[a], at[a]));
+  PetscCall(LamPlanMake(copy, &plan)); /* other walls may need another mesh */
+  copy->micro = plan.micro;
+  PetscFunctionReturn(0);
+}
+
+/* ---- the states ---- */
+
+/* Where along the scene's load a cut lies: a state with the share of the way to the next. */
+static PetscReal CutPlace(const LamScene *scene, PetscInt cut)
+{
+  const LamMapAxis *axis = LoadAxis(scene);
+  const PetscReal value = axis ? LamMapAxisValue(axis, cut) : 1;
+  PetscReal before = 0;
+  PetscInt i = 0;
+
+  if (!axis || axis->quantity == LAM_MAP_LOAD_FACTOR) return value * (PetscReal)scene->load_count;
+  while (i < scene->load_count - 1 && scene->loads[i].F[1] < value) before = scene->loads[i++].F[1];
+  return (PetscReal)i + (value - before) / (scene->loads[i].F[1] - before);
+}
+
+/* State 0 is F = I at the turgor and cohesion of state 1. */
+static LamLoad LoadAt(const LamScene *scene, PetscReal place)
+{
+  const PetscInt k = PetscMin((PetscInt)place, scene->load_count - 1);
+  const PetscReal share = place - (PetscReal)k;
+  const LamLoad *to = &scene->loads[k];
+  LamLoad from = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .turgor = to->turgor, .cohesion = to->cohesion}, load;
+
+  if (k) from = scene->loads[k - 1];
+  for (int i = 0; i < 9; i++) load.F[i] = share < 1 ? (1 - share) * from.F[i] + share * to->F[i] : to->F[i];
+  load.turgor = (1 - share) * from.turgor + share * to->turgor;
+  load.cohesion = (1 - share) * from.cohesion + share * to->cohesion;
+  return load;
+}
+
+static PetscErrorCode PathCreate(const LamScene *scene, Path *path)
+{
+  const PetscInt cuts = LamMapCutCount(scene), most = scene->load_count + 1 + cuts;
+  const PetscReal same = 1e-9; /* a cut at a state is that state */
+  PetscInt whole = 0;
+
+  PetscFunctionBeginUser;
+  path->count = 0;
+  PetscCall(PetscMalloc3(most, &path->loads, most, &path->place, cuts, &path->cut));
+  for (PetscInt cut = 0; cut < cuts;) {
+    const PetscReal place = CutPlace(scene, cut);
+    const PetscBool is_cut = (PetscBool)(place <= (PetscReal)whole + same);
+
+    path->place[path->count] = is_cut && place < (PetscReal)whole - same ? place : (PetscReal)whole++;
+    if (is_cut) path->cut[cut++] = path->count;
+    path->loads[path->count] = LoadAt(scene, path->place[path->count]);
+    path->count++;
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode PathDestroy(Path *path)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree3(path->loads, path->place, path->cut));
+  PetscFunctionReturn(0);
+}
+
+PetscInt LamMapPathStates(const LamScene *scene)
+{
+  const PetscReal last = CutPlace(scene, LamMapCutCount(scene) - 1);
+
+  return 1 + (PetscInt)ceil(last) + (LoadAxis(scene) ? LamMapCutCount(scene) - 1 : 0);
+}
+
+/* ---- following ---- */
+
+static PetscBool HasFailed(const LamFailure *failure)
+{
+  for (int c = 0; c < LAM_CRITERION_COUNT; c++)
+    if (failure->onset[c].judged && !isnan(failure->onset[c].factor)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Solves the states; `responses` [count] on the first mesh. */
+static PetscErrorCode Solve(LamMeshes *meshes, const Path *path, LamFailure *failure, LamResponse responses[],
+                            PetscBool *complete)
+{
+  PetscFunctionBeginUser;
+  *complete = PETSC_FALSE;
+  for (PetscInt k = 0; k < path->count; k++) {
+    LamResponse both[2];
+
+    if (LamStopRequested()) PetscFunctionReturn(0);
+    if (HasFailed(failure)) {
+      PetscCall(LamRVESolve(meshes->rve[0], &path->loads[k], meshes->state[0], &responses[k]));
+      continue;
+    }
+    PetscCall(LamMeshesSolve(meshes, &path->loads[k], both));
+    responses[k] = both[0];
+    PetscCall(LamFailureWatch(failure, meshes, k + 1, both));
+  }
+  *complete = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+/* A load factor of the path as a share of the scene's load. */
+static PetscReal ShareOfLoad(const LamScene *scene, const Path *path, PetscReal factor)
+{
+  const PetscInt k = PetscMin((PetscInt)factor, path->count);
+  PetscReal place;
+
+  if (k < 1) return 0; /* by turgor alone: the path begins at F = I */
+  place = path->place[k - 1];
+  if (k < path->count) place += (factor - (PetscReal)k) * (path->place[k] - place);
+  return place / (PetscReal)scene->load_count;
+}
+
+/* What the failure means for a point that the path passes at its state `state` (from 1). */
+static PetscErrorCode Judge(const LamScene *scene, const Path *path, const LamFailure *failure, PetscInt state,
+                            LamMapPoint *point)
+{
+  const PetscReal reached = (PetscReal)state;
+
+  PetscFunctionBeginUser;
+  point->mode = LAM_FAILURE_NONE;
+  point->criterion = LAM_CRITERION_COUNT;
+  point->load_factor = NAN;
+  for (int i = 0; i < 9; i++) point->F[i] = NAN;
+  for (int i = 0; i < 3; i++) point->place[i] = NAN;
+  if (failure->mode != LAM_FAILURE_NONE && failure->mode != LAM_FAILURE_UNKNOWN && failure->factor <= reached) {
+    const LamCriterionOnset *onset = &failure->onset[failure->criterion];
+
+    point->mode = failure->mode;
+    point->criterion = failure->criterion;
+    point->load_factor = ShareOfLoad(scene, path, failure->factor);
+    PetscCall(PetscArraycpy(point->F, failure->load.F, 9));
+    PetscCall(PetscArraycpy(point->place, onset->place, 3));
+  } else if (failure->mode == LAM_FAILURE_UNKNOWN && failure->followed < reached) {
+    point->mode = LAM_FAILURE_UNKNOWN;
+    PetscCall(PetscStrncpy(point->reason, failure->reason, sizeof(point->reason)));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMapFollow(const LamScene *scene, PetscInt number, LamMapPoint points[], PetscBool *complete)
+{
+  LamFailureProgram program;
+  LamResponse *responses;
+  LamFailure failure;
+  LamMeshes meshes;
+  LamScene own;
+  Path path;
+
+  PetscFunctionBeginUser;
+  PetscCall(CopyScene(scene, number, &own));
+  PetscCall(PathCreate(&own, &path));
+  PetscCall(PetscMalloc1(path.count, &responses));
+  program = (LamFailureProgram){own.micro.interface, &own.strength, path.count, path.loads, PETSC_TRUE};
+  PetscCall(LamMeshesCreate(&own, own.micro.interface == LAM_INTERFACE_CONTACT ? 2 : 1, &meshes));
+  PetscCall(LamFailureCreate(&meshes, &program, &failure));
+  PetscCall(Solve(&meshes, &path, &failure, responses, complete));
+  if (*complete) PetscCall(LamFailureConclude(&failure));
+  for (PetscInt c = 0; c < LamMapCutCount(scene) && *complete; c++) {
+    points[c].number = LamMapPointNumber(scene, number, c);
+    points[c].response = responses[path.cut[c]];
+    PetscCall(Judge(scene, &path, &failure, path.cut[c] + 1, &points[c]));
+  }
+  PetscCall(LamFailureDestroy(&failure));
+  PetscCall(LamMeshesDestroy(&meshes));
+  PetscCall(PetscFree(responses));
+  PetscCall(PathDestroy(&path));
+  PetscCall(PetscFree(own.loads));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,167 @@
+/*
+  The verdicts of a map as arrays of its file, beside the records (docs/file-format.md).
+*/
+#include "map.h"
+#include <math.h>
+
+static PetscInt Count(const LamMapTable *table)
+{
+  return table->points[LAM_MAP_X] * table->points[LAM_MAP_Y];
+}
+
+static void Clear(LamMapTable *table, PetscInt i)
+{
+  table->mode[i] = table->criterion[i] = -1;
+  table->load_factor[i] = NAN;
+  for (int k = 0; k < 9; k++) table->F[9 * i + k] = NAN;
+  for (int k = 0; k < 3; k++) table->place[3 * i + k] = NAN;
+}
+
+PetscErrorCode LamMapTableCreate(const LamScene *scene, LamMapTable *table)
+{
+  const PetscInt n = LamMapPointCount(scene);
+
+  PetscFunctionBeginUser;
+  for (int a = 0; a < LAM_MAP_AXIS_COUNT; a++) table->points[a] = scene->map[a].points;
+  PetscCall(PetscMalloc5(n, &table->mode, n, &table->criterion, n, &table->load_factor, 9 * n, &table->F, 3 * n,
+                         &table->place));
+  for (PetscInt i = 0; i < n; i++) Clear(table, i);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMapTableDestroy(LamMapTable *table)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree5(table->mode, table->criterion, table->load_factor, table->F, table->place));
+  PetscFunctionReturn(0);
+}
+
+void LamMapTableSet(LamMapTable *table, const LamMapPoint *point)
+{
+  const PetscInt64 i = point->number;
+
+  table->mode[i] = (PetscInt)point->mode;
+  table->criterion[i] = point->criterion == LAM_CRITERION_COUNT ? -1 : (PetscInt)point->criterion;
+  table->load_factor[i] = point->load_factor;
+  for (int k = 0; k < 9; k++) table->F[9 * i + k] = point->F[k];
+  for (int k = 0; k < 3; k++) table->place[3 * i + k] = point->place[k];
+}
+
+/* ---- writing ---- */
+
+/* Names, one per line, in the order of their numbers. */
+static PetscErrorCode WriteNames(LamRecordWriter writer, const char name[], PetscInt count, const char *const names[])
+{
+  char text[1024] = "";
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < count; i++) {
+    PetscCall(PetscStrlcat(text, names[i], sizeof(text)));
+    PetscCall(PetscStrlcat(text, "\n", sizeof(text)));
+  }
+  PetscCall(LamRecordWriterText(writer, name, text));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WriteAxis(LamRecordWriter writer, char letter, const LamMapAxis *axis, const LamScales *scales)
+{
+  char name[LAM_NAME_LENGTH];
+  const char *unit;
+  PetscReal *values, scale;
+
+  PetscFunctionBeginUser;
+  unit = LamMapQuantityUnit(axis->quantity, scales, &scale);
+  PetscCall(PetscMalloc1(axis->points, &values));
+  for (PetscInt i = 0; i < axis->points; i++) values[i] = LamMapAxisValue(axis, i) * scale;
+  PetscCall(PetscSNPrintf(name, sizeof(name), "/map/%c/quantity", letter));
+  PetscCall(LamRecordWriterText(writer, name, LamMapQuantityNames[axis->quantity]));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "/map/%c/spacing", letter));
+  PetscCall(LamRecordWriterText(writer, name, axis->is_log ? "log" : "linear"));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "/map/%c/unit", letter));
+  PetscCall(LamRecordWriterText(writer, name, unit));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "/map/%c/values", letter));
+  PetscCall(LamRecordWriterReals(writer, name, 1, &axis->points, values, unit));
+  PetscCall(PetscFree(values));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMapAxesWrite(LamRecordWriter writer, const LamScene *scene)
+{
+  PetscFunctionBeginUser;
+  PetscCall(WriteAxis(writer, 'x', &scene->map[LAM_MAP_X], &scene->scales));
+  PetscCall(WriteAxis(writer, 'y', &scene->map[LAM_MAP_Y], &scene->scales));
+  PetscCall(WriteNames(writer, "/map/modes", LAM_FAILURE_MODE_COUNT, LamFailureModeNames));
+  PetscCall(WriteNames(writer, "/map/criteria", LAM_CRITERION_COUNT, LamCriterionNames));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMapTableWrite(LamRecordWriter writer, const LamMapTable *table)
+{
+  const PetscInt dims[4] = {table->points[LAM_MAP_Y], table->points[LAM_MAP_X], 3, 3};
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRecordWriterInts(writer, "/map/mode", 2, dims, table->mode));
+  PetscCall(LamRecordWriterInts(writer, "/map/criterion", 2, dims, table->criterion));
+  PetscCall(LamRecordWriterReals(writer, "/map/load_factor", 2, dims, table->load_factor, "1"));
+  PetscCall(LamRecordWriterReals(writer, "/map/F", 4, dims, table->F, "1"));
+  PetscCall(LamRecordWriterReals(writer, "/map/place", 3, dims, table->place, "1"));
+  PetscFunctionReturn(0);
+}
+
+/* ---- reading ---- */
+
+/* Whether an array is there, with `width` numbers for each point. */
+static PetscErrorCode CheckArray(const char path[], const char name[], PetscBool found, PetscInt rank,
+                                 const PetscInt dims[4], PetscInt wanted)
+{
+  PetscInt count = found ? 1 : 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < rank; i++) count *= dims[i];
+  PetscCheck(count == wanted, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: %s holds %" PetscInt_FMT " numbers instead of %" PetscInt_FMT "; the file is damaged, begin it anew",
+             path, name, count, wanted);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadInts(const char path[], const char name[], PetscInt count, PetscInt values[])
+{
+  PetscInt rank = 0, dims[4], *read = NULL;
+  PetscBool found;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileReadInts(path, name, &found, &rank, dims, &read));
+  PetscCall(CheckArray(path, name, found, rank, dims, count));
+  PetscCall(PetscArraycpy(values, read, count));
+  PetscCall(PetscFree(read));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadReals(const char path[], const char name[], PetscInt count, PetscReal values[])
+{
+  PetscInt rank = 0, dims[4];
+  PetscReal *read = NULL;
+  PetscBool found;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileReadReals(path, name, &found, &rank, dims, &read));
+  PetscCall(CheckArray(path, name, found, rank, dims, count));
+  PetscCall(PetscArraycpy(values, read, count));
+  PetscCall(PetscFree(read));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMapTableRead(const char path[], const PetscBool known[], LamMapTable *table)
+{
+  const PetscInt n = Count(table);
+
+  PetscFunctionBeginUser;
+  PetscCall(ReadInts(path, "/map/mode", n, table->mode));
+  PetscCall(ReadInts(path, "/map/criterion", n, table->criterion));
+  PetscCall(ReadReals(path, "/map/load_factor", n, table->load_factor));
+  PetscCall(ReadReals(path, "/map/F", 9 * n, table->F));
+  PetscCall(ReadReals(path, "/map/place", 3 * n, table->place));
+  for (PetscInt i = 0; i < n; i++)
+    if (!known[i]) Clear(table, i);
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,493 @@
+/*
+  Picture of a map: left how the tissue fails, right a number of each point.
+
+  Each point is a cell of the picture, whose edges are half-way to its neighbours.
+*/
+#include "plot.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const LamColour Ink = {0.15, 0.15, 0.15}, Empty = {0.93, 0.93, 0.93};
+
+/* Colours of Okabe and Ito; a mode that is not here is drawn as unknown. */
+static const struct {
+  const char *name, *label;
+  LamColour colour;
+} Modes[] = {
+    {"none", "no failure", {0.80, 0.90, 0.78}},
+    {"separation", "cells separate", {0.34, 0.71, 0.91}},
+    {"rupture", "walls rupture", {0.84, 0.37, 0.00}},
+    {"buckling", "walls buckle", {0.80, 0.60, 0.78}},
+    {"turgor_loss", "turgor is lost", {0.96, 0.87, 0.45}},
+    {"unknown", "not known", {1, 1, 1}},
+};
+enum { MODE_COUNT = PETSC_STATIC_ARRAY_LENGTH(Modes), UNKNOWN = MODE_COUNT - 1, NAME_LENGTH = 32 };
+
+/* One axis: where its points and the edges of their cells lie, logarithms where the spacing is. */
+typedef struct {
+  PetscInt n;
+  PetscReal *at, *edge; /* [n], [n + 1]; owned */
+  PetscBool is_log;
+  char quantity[NAME_LENGTH], unit[NAME_LENGTH], label[96];
+} Side;
+
+typedef struct {
+  Side x, y;
+  PetscInt n;             /* points of the map */
+  PetscInt *mode;         /* [n] number in Modes, -1: no answer yet; owned */
+  PetscReal *load_factor; /* [n]; owned */
+  PetscReal *F;           /* [n][9] where the tissue fails; owned */
+  PetscReal *value;       /* [n] of the field; owned */
+  const char *field, *unit;
+  LamColourRange range;
+} MapPicture;
+
+/* ---- reading ---- */
+
+static PetscErrorCode ReadText(const char path[], const char name[], size_t size, char text[])
+{
+  PetscBool found;
+  char *read;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileReadText(path, name, &found, &read));
+  PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no %s to draw", path, name);
+  PetscCall(PetscStrncpy(text, read, size));
+  PetscCall(PetscFree(read));
+  PetscFunctionReturn(0);
+}
+
+static void LabelSide(Side *side)
+{
+  static const struct {
+    const char *quantity, *label;
+  } labels[] = {{"turgor", "turgor $p$"},
+                {"cohesion", "cohesion $g$"},
+                {"shear", "shear $F$_{12}"},
+                {"load_factor", "load factor"},
+                {"wall_strength", "strength of the wall"},
+                {"lamella_normal", "normal strength of the lamella"},
+                {"lamella_shear", "shear strength of the lamella"},
+                {"C4", "fibre modulus $C$_{4}"},
+                {"wall_thickness", "wall thickness $t$"}};
+  const char *label = side->quantity;
+
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(labels); i++)
+    if (!strcmp(side->quantity, labels[i].quantity)) label = labels[i].label;
+  if (side->is_log && strcmp(side->unit, "1"))
+    snprintf(side->label, sizeof side->label, "log_{10} of %s in %s", label, side->unit);
+  else
+    snprintf(side->label, sizeof side->label, "%s%s", side->is_log ? "log_{10} of " : "", label);
+}
+
+static PetscErrorCode ReadSide(const char path[], char letter, Side *side)
+{
+  char name[LAM_NAME_LENGTH], spacing[NAME_LENGTH];
+  PetscInt rank, dims[4];
+  PetscBool found;
+
+  PetscFunctionBeginUser;
+  snprintf(name, sizeof name, "/map/%c/quantity", letter);
+  PetscCall(ReadText(path, name, sizeof side->quantity, side->quantity));
+  snprintf(name, sizeof name, "/map/%c/unit", letter);
+  PetscCall(ReadText(path, name, sizeof side->unit, side->unit));
+  snprintf(name, sizeof name, "/map/%c/spacing", letter);
+  PetscCall(ReadText(path, name, sizeof spacing, spacing));
+  snprintf(name, sizeof name, "/map/%c/values", letter);
+  PetscCall(LamFileReadReals(path, name, &found, &rank, dims, &side->at));
+  PetscCheck(found && rank == 1 && dims[0] > 1, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no %s to draw", path,
+             name);
+  side->n = dims[0];
+  side->is_log = (PetscBool)!strcmp(spacing, "log");
+  PetscCall(PetscMalloc1(side->n + 1, &side->edge));
+  for (PetscInt i = 0; i < side->n && side->is_log; i++) side->at[i] = log10(side->at[i]);
+  for (PetscInt i = 1; i < side->n; i++) side->edge[i] = 0.5 * (side->at[i - 1] + side->at[i]);
+  side->edge[0] = 1.5 * side->at[0] - 0.5 * side->at[1];
+  side->edge[side->n] = 1.5 * side->at[side->n - 1] - 0.5 * side->at[side->n - 2];
+  LabelSide(side);
+  PetscFunctionReturn(0);
+}
+
+/* The file's numbers of modes follow its own list of names. */
+static PetscErrorCode ReadModes(const char path[], MapPicture *p)
+{
+  PetscInt rank, dims[4], number[16], count = 0;
+  char names[512], *rest;
+  PetscBool found;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReadText(path, "/map/modes", sizeof names, names));
+  for (char *name = strtok_r(names, "\n", &rest); name && count < 16; name = strtok_r(NULL, "\n", &rest)) {
+    number[count] = UNKNOWN;
+    for (PetscInt k = 0; k < MODE_COUNT; k++)
+      if (!strcmp(name, Modes[k].name)) number[count] = k;
+    count++;
+  }
+  PetscCall(LamFileReadInts(path, "/map/mode", &found, &rank, dims, &p->mode));
+  PetscCheck(found && rank == 2 && dims[0] == p->y.n && dims[1] == p->x.n, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: /map/mode does not fit the axes; the file is damaged", path);
+  for (PetscInt i = 0; i < p->n; i++)
+    if (p->mode[i] >= 0) p->mode[i] = p->mode[i] < count ? number[p->mode[i]] : UNKNOWN;
+  PetscFunctionReturn(0);
+}
+
+/* A number that every record has: its name in the table of members. */
+static const LamMember *FindMember(const char name[])
+{
+  for (const LamMember *m = LamResponseMembers; m->name; m++)
+    if (m->count == 1 && (m->type == LAM_MEMBER_REAL || m->type == LAM_MEMBER_INT) && !strcmp(m->name, name)) return m;
+  return NULL;
+}
+
+static PetscErrorCode ReadMember(const char path[], const LamMember *member, MapPicture *p)
+{
+  LamDatabase database;
+  LamMicrostructure micro;
+  LamScales scales;
+  const LamResponse *records;
+  const PetscInt64 *keys;
+  const char *hash;
+  PetscInt n;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamDatabaseOpen(path, &database));
+  PetscCall(LamDatabaseGetRecords(database, &n, &records, &keys));
+  PetscCall(LamDatabaseGetMicrostructure(database, &micro, &scales, &hash));
+  for (PetscInt i = 0; i < n; i++) {
+    const char *at = (const char *)&records[i] + member->offset;
+
+    if (keys[i] < 0 || keys[i] >= p->n || !LamResponseHasFields(&records[i])) continue;
+    p->value[keys[i]] = member->type == LAM_MEMBER_INT ? (PetscReal) * (const PetscInt *)(const void *)at
+                                                       : *(const PetscReal *)(const void *)at;
+    p->value[keys[i]] *= PetscPowReal(scales.stress * 1e-6, member->stress_power);
+  }
+  p->unit = member->stress_power == 1 ? "MPa" : NULL;
+  PetscCall(LamDatabaseClose(&database));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadField(const LamPlotRequest *request, MapPicture *p)
+{
+  const LamMember *member;
+
+  PetscFunctionBeginUser;
+  p->field = request->field ? request->field : "load_factor";
+  p->unit = NULL;
+  PetscCall(PetscMalloc1(p->n, &p->value));
+  for (PetscInt i = 0; i < p->n; i++) p->value[i] = NAN;
+  if (!strcmp(p->field, "load_factor")) {
+    PetscCall(PetscArraycpy(p->value, p->load_factor, p->n));
+  } else {
+    member = FindMember(p->field);
+    PetscCheck(member, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "--field %s: a map has load_factor and the single numbers of its records, such as open_fraction, "
+               "debonded_fraction, max_gap, max_traction, energy",
+               p->field);
+    PetscCall(ReadMember(request->input, member, p));
+  }
+  PetscCall(LamColourRangeFind(p->n, p->value, &p->range));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadMap(const LamPlotRequest *request, MapPicture *p)
+{
+  PetscFunctionBeginUser;
+  memset(p, 0, sizeof *p);
+  PetscCall(ReadSide(request->input, 'x', &p->x));
+  PetscCall(ReadSide(request->input, 'y', &p->y));
+  p->n = p->x.n * p->y.n;
+  PetscCall(ReadModes(request->input, p));
+  PetscCall(LamPlotReadReals(request->input, "/map/load_factor", p->y.n, p->x.n, &p->load_factor));
+  PetscCall(LamPlotReadReals(request->input, "/map/F", p->y.n, 9 * p->x.n, &p->F));
+  PetscCall(ReadField(request, p));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Destroy(MapPicture *p)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(p->x.at));
+  PetscCall(PetscFree(p->x.edge));
+  PetscCall(PetscFree(p->y.at));
+  PetscCall(PetscFree(p->y.edge));
+  PetscCall(PetscFree(p->mode));
+  PetscCall(PetscFree(p->load_factor));
+  PetscCall(PetscFree(p->F));
+  PetscCall(PetscFree(p->value));
+  PetscFunctionReturn(0);
+}
+
+/* ---- drawing ---- */
+
+static LamAxes AxesOf(const MapPicture *p)
+{
+  const char *x_unit = p->x.is_log || !strcmp(p->x.unit, "1") ? NULL : p->x.unit;
+  const char *y_unit = p->y.is_log || !strcmp(p->y.unit, "1") ? NULL : p->y.unit;
+
+  return (LamAxes){.x = {p->x.edge[0], p->x.edge[p->x.n], p->x.label, x_unit, PETSC_FALSE, {0}},
+                   .y = {p->y.edge[0], p->y.edge[p->y.n], p->y.label, y_unit, PETSC_FALSE, {0}}};
+}
+
+/* A cell of the picture; neighbours overlap by a hair, so that no seam shows. */
+static void CellPath(cairo_t *cr, const LamAxes *axes, const MapPicture *p, PetscInt i)
+{
+  const PetscInt x = i % p->x.n, y = i / p->x.n;
+  const double left = LamAxesX(axes, p->x.edge[x]), right = LamAxesX(axes, p->x.edge[x + 1]);
+  const double bottom = LamAxesY(axes, p->y.edge[y]), top = LamAxesY(axes, p->y.edge[y + 1]), hair = 0.15;
+
+  cairo_rectangle(cr, left, top - hair, right - left + hair, bottom - top + hair);
+}
+
+/* A thin cross, where there is no answer. */
+static void CrossCell(cairo_t *cr, const LamAxes *axes, const MapPicture *p, PetscInt i)
+{
+  const double x = LamAxesX(axes, p->x.at[i % p->x.n]), y = LamAxesY(axes, p->y.at[i / p->x.n]), h = 1.8;
+
+  cairo_set_line_width(cr, 0.7);
+  cairo_move_to(cr, x - h, y - h);
+  cairo_line_to(cr, x + h, y + h);
+  cairo_move_to(cr, x - h, y + h);
+  cairo_line_to(cr, x + h, y - h);
+  cairo_stroke(cr);
+}
+
+static void DrawModes(LamCanvas canvas, const LamAxes *axes, const MapPicture *p)
+{
+  cairo_t *cr = LamCanvasCairo(canvas);
+
+  for (PetscInt i = 0; i < p->n; i++) {
+    LamCanvasSetColour(canvas, p->mode[i] < 0 ? Empty : Modes[p->mode[i]].colour);
+    CellPath(cr, axes, p, i);
+    cairo_fill(cr);
+    LamCanvasSetColour(canvas, Ink);
+    if (p->mode[i] == UNKNOWN) CrossCell(cr, axes, p, i);
+  }
+}
+
+static void DrawField(LamCanvas canvas, const LamAxes *axes, const MapPicture *p)
+{
+  cairo_t *cr = LamCanvasCairo(canvas);
+
+  for (PetscInt i = 0; i < p->n; i++) {
+    LamCanvasSetColour(canvas, isnan(p->value[i]) ? Empty : LamColourMap(LamColourShare(&p->range, p->value[i])));
+    CellPath(cr, axes, p, i);
+    cairo_fill(cr);
+  }
+}
+
+/* ---- the onset, finer than the cells ---- */
+
+/* Where a row or column of points along the load fails, in the axis' own quantity; NaN: nowhere. */
+static PetscReal OnsetAlong(const MapPicture *p, const Side *side, PetscInt last)
+{
+  const PetscReal onset = !strcmp(side->quantity, "shear") ? p->F[9 * last + 1] : p->load_factor[last];
+
+  return side->is_log ? log10(onset) : onset;
+}
+
+static PetscBool IsOfLoad(const Side *side)
+{
+  return (PetscBool)(!strcmp(side->quantity, "shear") || !strcmp(side->quantity, "load_factor"));
+}
+
+/* Where an axis is of the load: the load at which each path fails. */
+static void DrawOnset(LamCanvas canvas, const LamAxes *axes, const MapPicture *p)
+{
+  const PetscBool x_is_load = IsOfLoad(&p->x);
+  const Side *load = x_is_load ? &p->x : &p->y, *other = x_is_load ? &p->y : &p->x;
+  cairo_t *cr = LamCanvasCairo(canvas);
+  PetscBool drawing = PETSC_FALSE;
+
+  LamCanvasSetColour(canvas, Ink);
+  cairo_set_line_width(cr, 1.0);
+  for (PetscInt k = 0; k < other->n; k++) {
+    const PetscInt last = x_is_load ? k * p->x.n + p->x.n - 1 : (p->y.n - 1) * p->x.n + k;
+    const PetscReal onset = OnsetAlong(p, load, last), at = other->at[k];
+    const double x = LamAxesX(axes, x_is_load ? onset : at), y = LamAxesY(axes, x_is_load ? at : onset);
+
+    if (isnan(onset) || onset < load->edge[0]) {
+      drawing = PETSC_FALSE;
+      continue;
+    }
+    (drawing ? cairo_line_to : cairo_move_to)(cr, x, y);
+    drawing = PETSC_TRUE;
+  }
+  cairo_stroke(cr);
+}
+
+/* ---- contours ---- */
+
+/* Where `level` lies between two points; false: not between them. */
+static PetscBool Crossing(const MapPicture *p, PetscInt a, PetscInt b, PetscReal level, PetscReal at[2])
+{
+  const PetscReal va = p->load_factor[a], vb = p->load_factor[b];
+  PetscReal share;
+
+  if (isnan(va) || isnan(vb) || (va < level) == (vb < level)) return PETSC_FALSE;
+  share = (level - va) / (vb - va);
+  at[0] = (1 - share) * p->x.at[a % p->x.n] + share * p->x.at[b % p->x.n];
+  at[1] = (1 - share) * p->y.at[a / p->x.n] + share * p->y.at[b / p->x.n];
+  return PETSC_TRUE;
+}
+
+/* The piece of a contour between four points of one mode; between modes the load factor may jump. */
+static PetscBool ContourPiece(const MapPicture *p, PetscInt x, PetscInt y, PetscReal level, PetscReal piece[2][2])
+{
+  const PetscInt a = y * p->x.n + x, b = a + 1, c = b + p->x.n, d = a + p->x.n;
+  const PetscInt sides[4][2] = {{a, b}, {b, c}, {c, d}, {d, a}};
+  int found = 0;
+
+  if (p->mode[a] != p->mode[b] || p->mode[a] != p->mode[c] || p->mode[a] != p->mode[d]) return PETSC_FALSE;
+  for (int s = 0; s < 4 && found < 2; s++) found += Crossing(p, sides[s][0], sides[s][1], level, piece[found]);
+  return (PetscBool)(found == 2);
+}
+
+/* A contour with its level once, where there is room for it: at the piece nearest to the diagonal. */
+static void DrawContour(LamCanvas canvas, const LamAxes *axes, const MapPicture *p, PetscReal level, const char text[])
+{
+  cairo_t *cr = LamCanvasCairo(canvas);
+  const LamRect f = axes->frame;
+  double best = INFINITY, at[2] = {0, 0};
+
+  LamCanvasSetColour(canvas, Ink);
+  cairo_set_line_width(cr, 0.7);
+  for (PetscInt y = 0; y + 1 < p->y.n; y++)
+    for (PetscInt x = 0; x + 1 < p->x.n; x++) {
+      PetscReal piece[2][2];
+      double middle[2], far;
+
+      if (!ContourPiece(p, x, y, level, piece)) continue;
+      cairo_move_to(cr, LamAxesX(axes, piece[0][0]), LamAxesY(axes, piece[0][1]));
+      cairo_line_to(cr, LamAxesX(axes, piece[1][0]), LamAxesY(axes, piece[1][1]));
+      middle[0] = LamAxesX(axes, 0.5 * (piece[0][0] + piece[1][0]));
+      middle[1] = LamAxesY(axes, 0.5 * (piece[0][1] + piece[1][1]));
+      far = fabs((middle[0] - f.x) / f.width - (f.y + f.height - middle[1]) / f.height);
+      if (far >= best) continue;
+      best = far;
+      memcpy(at, middle, sizeof at);
+    }
+  cairo_stroke(cr);
+  if (isinf(best)) return;
+  LamCanvasText(canvas, at[0] + 2, at[1] - 4, 0, 0, LAM_TICK_SIZE - 1, text);
+}
+
+static PetscErrorCode DrawContours(LamCanvas canvas, const LamAxes *axes, const MapPicture *p)
+{
+  LamColourRange range;
+  LamTicks ticks;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamColourRangeFind(p->n, p->load_factor, &range));
+  ticks = LamTicksChoose(range.low, range.high, 6, PETSC_FALSE);
+  for (PetscInt i = 0; i < ticks.count; i++) {
+    char text[32];
+
+    LamTicksFormat(&ticks, i, text);
+    DrawContour(canvas, axes, p, ticks.first + (PetscReal)i * ticks.step, text);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* ---- the page ---- */
+
+/* The modes that occur, with the number of their points; two rows at most. Returns the height used. */
+static double DrawLegend(LamCanvas canvas, LamRect outer, const MapPicture *p)
+{
+  cairo_t *cr = LamCanvasCairo(canvas);
+  const double row = 1.6 * LAM_TICK_SIZE, box = LAM_TICK_SIZE;
+  double x = outer.x, y = outer.y + 0.5 * row;
+
+  for (PetscInt k = 0; k < MODE_COUNT; k++) {
+    PetscInt count = 0;
+    double width;
+
+    for (PetscInt i = 0; i < p->n; i++) count += p->mode[i] == k;
+    if (!count) continue;
+    width = box + 3 + LamCanvasTextWidth(canvas, LAM_TICK_SIZE, Modes[k].label) + 9;
+    if (x > outer.x && x + width > outer.x + outer.width) {
+      x = outer.x;
+      y += row;
+    }
+    cairo_rectangle(cr, x, y - 0.5 * box, box, box);
+    LamCanvasSetColour(canvas, Modes[k].colour);
+    cairo_fill_preserve(cr);
+    LamCanvasSetColour(canvas, Ink);
+    cairo_set_line_width(cr, 0.4);
+    cairo_stroke(cr);
+    LamCanvasText(canvas, x + box + 3, y, 0, 0, LAM_TICK_SIZE, Modes[k].label);
+    x += width;
+  }
+  return y + 0.5 * row - outer.y;
+}
+
+static const char *FieldLabel(const char field[])
+{
+  static const struct {
+    const char *field, *label;
+  } labels[] = {{"load_factor", "load factor at failure"},
+                {"open_fraction", "open share of the interface"},
+                {"debonded_fraction", "debonded share of the interface"},
+                {"max_gap", "largest gap / apothem"},
+                {"max_traction", "largest interface traction"}};
+
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(labels); i++)
+    if (!strcmp(field, labels[i].field)) return labels[i].label;
+  return field;
+}
+
+/* The frame over the cells, whose colours hide its lines and ticks. */
+static void DrawFrame(LamCanvas canvas, const LamAxes *axes)
+{
+  cairo_t *cr = LamCanvasCairo(canvas);
+  const LamRect f = axes->frame;
+
+  LamCanvasSetColour(canvas, Ink);
+  cairo_set_line_width(cr, 0.6);
+  cairo_rectangle(cr, f.x, f.y, f.width, f.height);
+  cairo_stroke(cr);
+}
+
+static PetscErrorCode DrawPage(LamCanvas canvas, const MapPicture *p)
+{
+  const double bar = LamColourBarWidth(canvas, &p->range), width = 0.5 * (LAM_PLOT_WIDTH - 18 - 14 - bar), top = 6;
+  LamRect left = {9, top, width, LAM_PLOT_HEIGHT - top - 6}, right;
+  LamAxes axes = AxesOf(p);
+  double legend;
+
+  PetscFunctionBeginUser;
+  legend = DrawLegend(canvas, left, p) + 4;
+  left.y += legend;
+  left.height -= legend;
+  right = left;
+  right.x += width + 14;
+  LamAxesLayout(canvas, left, &axes);
+  LamAxesDraw(canvas, &axes);
+  DrawModes(canvas, &axes, p);
+  if (IsOfLoad(&p->x) || IsOfLoad(&p->y))
+    DrawOnset(canvas, &axes, p);
+  else
+    PetscCall(DrawContours(canvas, &axes, p));
+  DrawFrame(canvas, &axes);
+  LamAxesLayout(canvas, right, &axes);
+  LamAxesDraw(canvas, &axes);
+  DrawField(canvas, &axes, p);
+  DrawFrame(canvas, &axes);
+  LamColourBar(canvas, axes.frame, &p->range, LamColourMap, FieldLabel(p->field), p->unit);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamPlotMap(const LamPlotRequest *request)
+{
+  MapPicture picture;
+  LamCanvas canvas;
+
+  PetscFunctionBeginUser;
+  PetscCheck(request->state < 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "--state: a map is drawn as a whole");
+  PetscCall(ReadMap(request, &picture));
+  PetscCall(LamCanvasCreate(request->output, LAM_PLOT_WIDTH, LAM_PLOT_HEIGHT, &canvas));
+  PetscCall(DrawPage(canvas, &picture));
+  PetscCall(LamCanvasFinish(&canvas));
+  PetscCall(Destroy(&picture));
+  PetscFunctionReturn(0);
+}
