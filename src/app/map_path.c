@@ -4,7 +4,8 @@
   Method
     The states of the path are F = I at the turgor and cohesion of the load's first state, the load's own states, and
     the cuts between them; behind the last cut nothing is solved. The failure is looked for (failure.h) up to the first
-    state that has failed; the states behind it are solved for their indicators only, on the first mesh.
+    state that has failed or has no answer; the states behind it are solved for their indicators only, on the first
+    mesh.
 */
 #include "map.h"
 #include <math.h>
@@ -182,11 +183,12 @@ PetscInt LamMapPathStates(const LamScene *scene)
 
 /* ---- following ---- */
 
-static PetscBool HasFailed(const LamFailure *failure)
+/* Nothing more is to be learnt of the failure: one is found, or a state has no answer. */
+static PetscBool IsDecided(const LamFailure *failure)
 {
   for (int c = 0; c < LAM_CRITERION_COUNT; c++)
-    if (failure->onset[c].judged && !isnan(failure->onset[c].factor)) return PETSC_TRUE;
-  return PETSC_FALSE;
+    if (!isnan(failure->onset[c].factor)) return PETSC_TRUE;
+  return (PetscBool)(failure->reason[0] != '\0');
 }
 
 /* Solves the states; `responses` [count] on the first mesh. */
@@ -199,7 +201,7 @@ static PetscErrorCode Solve(LamMeshes *meshes, const Path *path, LamFailure *fai
     LamResponse both[2];
 
     if (LamStopRequested()) PetscFunctionReturn(0);
-    if (HasFailed(failure)) {
+    if (IsDecided(failure)) {
       PetscCall(LamRVESolve(meshes->rve[0], &path->loads[k], meshes->state[0], &responses[k]));
       continue;
     }
