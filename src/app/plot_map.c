@@ -391,31 +391,49 @@ static PetscErrorCode DrawContours(LamCanvas canvas, const LamAxes *axes, const 
 
 /* ---- the page ---- */
 
-/* The modes that occur, with the number of their points; two rows at most. Returns the height used. */
+/* An entry of the legend: a box of a mode's colour, or a line (colour NULL). */
+static void DrawSample(LamCanvas canvas, double x, double y, const LamColour *colour)
+{
+  const double box = LAM_TICK_SIZE;
+  cairo_t *cr = LamCanvasCairo(canvas);
+
+  if (colour) {
+    cairo_rectangle(cr, x, y - 0.5 * box, box, box);
+    LamCanvasSetColour(canvas, *colour);
+    cairo_fill_preserve(cr);
+  } else {
+    cairo_move_to(cr, x, y);
+    cairo_line_to(cr, x + box, y);
+  }
+  LamCanvasSetColour(canvas, Ink);
+  cairo_set_line_width(cr, colour ? 0.4 : 1.0);
+  cairo_stroke(cr);
+}
+
+static PetscBool Occurs(const MapPicture *p, PetscInt mode)
+{
+  for (PetscInt i = 0; i < p->n; i++)
+    if (p->mode[i] == mode) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* The modes that occur, and what the lines are. Returns the height used. */
 static double DrawLegend(LamCanvas canvas, LamRect outer, const MapPicture *p)
 {
-  cairo_t *cr = LamCanvasCairo(canvas);
-  const double row = 1.6 * LAM_TICK_SIZE, box = LAM_TICK_SIZE;
+  const double row = 1.6 * LAM_TICK_SIZE, sample = LAM_TICK_SIZE + 3;
   double x = outer.x, y = outer.y + 0.5 * row;
 
-  for (PetscInt k = 0; k < MODE_COUNT; k++) {
-    PetscInt count = 0;
-    double width;
+  for (PetscInt k = 0; k <= MODE_COUNT; k++) {
+    const char *label = k < MODE_COUNT ? Modes[k].label : IsOfLoad(&p->x) || IsOfLoad(&p->y) ? "onset" : "load factor";
+    const double width = sample + LamCanvasTextWidth(canvas, LAM_TICK_SIZE, label) + 9;
 
-    for (PetscInt i = 0; i < p->n; i++) count += p->mode[i] == k;
-    if (!count) continue;
-    width = box + 3 + LamCanvasTextWidth(canvas, LAM_TICK_SIZE, Modes[k].label) + 9;
+    if (k < MODE_COUNT && !Occurs(p, k)) continue;
     if (x > outer.x && x + width > outer.x + outer.width) {
       x = outer.x;
       y += row;
     }
-    cairo_rectangle(cr, x, y - 0.5 * box, box, box);
-    LamCanvasSetColour(canvas, Modes[k].colour);
-    cairo_fill_preserve(cr);
-    LamCanvasSetColour(canvas, Ink);
-    cairo_set_line_width(cr, 0.4);
-    cairo_stroke(cr);
-    LamCanvasText(canvas, x + box + 3, y, 0, 0, LAM_TICK_SIZE, Modes[k].label);
+    DrawSample(canvas, x, y, k < MODE_COUNT ? &Modes[k].colour : NULL);
+    LamCanvasText(canvas, x + sample, y, 0, 0, LAM_TICK_SIZE, label);
     x += width;
   }
   return y + 0.5 * row - outer.y;
