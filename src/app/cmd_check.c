@@ -4,7 +4,7 @@
   Method. One assembly is timed on this machine; everything else is a multiple of it. The multiples are measured
   (docs/commands.md has the figures): they hold within a factor of two from 236 to 10,000 unknowns.
 */
-#include "app.h"
+#include "map.h"
 #include <math.h>
 
 /* An iteration (assembly, factorisation, solve) costs this many assemblies. */
@@ -14,6 +14,10 @@
 #define POINT_FACTORISATIONS 5.0
 /* A state of contact tissue against a bonded one: more iterations, and a matrix that faces fill. */
 #define CONTACT_FACTOR 4.0
+/* A map: states that bracket the failure of one path; a state of contact tissue on two meshes against one on the first.
+ */
+#define BRACKET_STATES 10
+#define TWO_MESHES 5.0
 /* Resident memory, MB: the program with its libraries; matrix, factor and mesh per unknown. */
 #define PROGRAM_MB 50.0
 #define UNKNOWN_MB 0.0015
@@ -47,6 +51,15 @@ static PetscErrorCode Predict(Check *check)
   /* each material point keeps its positions, accepted and tried */
   check->memory = PROGRAM_MB + UNKNOWN_MB * n + (PetscReal)check->plan.macro_points * 2 * sizeof(PetscReal) * n / 1e6;
   PetscFunctionReturn(0);
+}
+
+/* Seconds of a map on one rank. */
+static PetscReal MapSeconds(const Check *check)
+{
+  const PetscInt bracket = BRACKET_STATES * LamMapPathCount(check->scene);
+  const PetscReal meshes = check->plan.micro.interface == LAM_INTERFACE_CONTACT ? TWO_MESHES : 1;
+
+  return (PetscReal)(check->plan.map_states + bracket) * meshes * check->state;
 }
 
 /* ---- for a program ---- */
@@ -105,6 +118,12 @@ static PetscErrorCode PrintObject(const Check *check)
                         plan->sample_states
                             ? Cost(json_integer(plan->sample_states), (PetscReal)plan->sample_states * check->state)
                             : Cost(json_null(), NAN));
+  if (scene->has_map) {
+    json_t *map = Cost(json_integer(plan->map_states), MapSeconds(check));
+
+    json_object_set_new(map, "points", json_integer(plan->map_points));
+    json_object_set_new(o, "map", map);
+  }
   if (scene->has_macro) {
     json_t *macro = Cost(json_integer(plan->macro_states), (PetscReal)plan->macro_states * check->point);
 
@@ -199,6 +218,11 @@ static void PrintCost(const Check *check)
     PrintStates("build", plan->sample_states, (PetscReal)plan->sample_states * check->state);
   else if (scene->has_sample)
     printf("%-12s states until the error is below %.2g %%\n", "build", (double)(100 * scene->sample.accuracy));
+  if (scene->has_map) {
+    printf("%-12s %" PetscInt_FMT " points, %" PetscInt_FMT " paths\n", "map", plan->map_points,
+           LamMapPathCount(scene));
+    PrintStates("  paths", plan->map_states, MapSeconds(check));
+  }
   if (!scene->has_macro) return;
   printf("%-12s %" PetscInt_FMT " x %" PetscInt_FMT " elements, %" PetscInt_FMT " material points, %" PetscInt_FMT
          " load steps%s\n",

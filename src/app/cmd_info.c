@@ -79,12 +79,38 @@ static void PrintRun(const json_t *run)
   printf("%-20s %s\n", "status", json_is_string(status) ? json_string_value(status) : "not finished");
 }
 
+static void PrintMap(const json_t *map)
+{
+  const char *const letters[] = {"x", "y"};
+  const char *mode;
+  json_t *count;
+
+  if (!map) return;
+  for (size_t a = 0; a < PETSC_STATIC_ARRAY_LENGTH(letters); a++) {
+    const json_t *axis = json_object_get(map, letters[a]);
+    const char *unit = json_string_value(json_object_get(axis, "unit"));
+
+    printf("%-20s %s, %.6g to %.6g%s%s, %lld points\n", letters[a],
+           json_string_value(json_object_get(axis, "quantity")), json_number_value(json_object_get(axis, "from")),
+           json_number_value(json_object_get(axis, "to")), strcmp(unit, "1") ? " " : "", strcmp(unit, "1") ? unit : "",
+           (long long)json_integer_value(json_object_get(axis, "points")));
+  }
+  json_object_foreach(json_object_get(map, "modes"), mode, count)
+  {
+    char label[64];
+
+    snprintf(label, sizeof(label), "  %s", mode);
+    PrintInteger(label, count);
+  }
+}
+
 static void PrintTable(const json_t *info)
 {
   const json_t *coverage = json_object_get(info, "coverage"), *libraries = json_object_get(info, "libraries");
 
   PrintText("kind", json_object_get(info, "kind"));
   PrintRun(json_object_get(info, "run"));
+  PrintMap(json_object_get(info, "map"));
   PrintInteger("records", json_object_get(info, "records"));
   PrintInteger("failed", json_object_get(info, "failed"));
   PrintStatuses(json_object_get(info, "statuses"));
@@ -126,6 +152,75 @@ static PetscErrorCode ReadRun(const char path[], json_t *info)
   PetscFunctionReturn(0);
 }
 
+/* ---- the axes and modes of a map ---- */
+
+static PetscErrorCode ReadAxis(const char path[], char letter, json_t *map)
+{
+  PetscInt rank, dims[4] = {0};
+  PetscReal *values = NULL;
+  PetscBool found, has_quantity, has_unit;
+  char name[LAM_NAME_LENGTH], *quantity = NULL, *unit = NULL;
+  json_t *axis = json_object();
+
+  PetscFunctionBeginUser;
+  snprintf(name, sizeof(name), "/map/%c/quantity", letter);
+  PetscCall(LamFileReadText(path, name, &has_quantity, &quantity));
+  snprintf(name, sizeof(name), "/map/%c/unit", letter);
+  PetscCall(LamFileReadText(path, name, &has_unit, &unit));
+  snprintf(name, sizeof(name), "/map/%c/values", letter);
+  PetscCall(LamFileReadReals(path, name, &found, &rank, dims, &values));
+  PetscCheck(has_quantity && has_unit && found && rank == 1 && dims[0] > 1, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: the axis %c of the map is missing; the file is damaged", path, letter);
+  json_object_set_new(axis, "quantity", json_string(quantity));
+  json_object_set_new(axis, "unit", json_string(unit));
+  json_object_set_new(axis, "from", LamJSONReal(values[0]));
+  json_object_set_new(axis, "to", LamJSONReal(values[dims[0] - 1]));
+  json_object_set_new(axis, "points", json_integer((json_int_t)dims[0]));
+  snprintf(name, sizeof(name), "%c", letter);
+  json_object_set_new(map, name, axis);
+  PetscCall(PetscFree(quantity));
+  PetscCall(PetscFree(unit));
+  PetscCall(PetscFree(values));
+  PetscFunctionReturn(0);
+}
+
+/* How many points each mode has. */
+static PetscErrorCode ReadModes(const char path[], json_t *map)
+{
+  PetscInt rank, dims[4] = {0}, *mode = NULL, number = 0;
+  PetscBool found, named;
+  char *names = NULL, *rest = NULL;
+  json_t *modes = json_object();
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileReadText(path, "/map/modes", &named, &names));
+  PetscCall(LamFileReadInts(path, "/map/mode", &found, &rank, dims, &mode));
+  PetscCheck(named && found && rank == 2, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: the modes of the map are missing; the file is damaged", path);
+  for (char *name = strtok_r(names, "\n", &rest); name; name = strtok_r(NULL, "\n", &rest), number++) {
+    PetscInt count = 0;
+
+    for (PetscInt i = 0; i < dims[0] * dims[1]; i++) count += mode[i] == number;
+    if (count) json_object_set_new(modes, name, json_integer((json_int_t)count));
+  }
+  json_object_set_new(map, "modes", modes);
+  PetscCall(PetscFree(names));
+  PetscCall(PetscFree(mode));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadMap(const char path[], json_t *info)
+{
+  json_t *map = json_object();
+
+  PetscFunctionBeginUser;
+  json_object_set_new(info, "map", map);
+  PetscCall(ReadAxis(path, 'x', map));
+  PetscCall(ReadAxis(path, 'y', map));
+  PetscCall(ReadModes(path, map));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamCommandInfo(LamArgs *args, int *exit_status)
 {
   PetscBool json = PETSC_FALSE, done;
@@ -146,6 +241,7 @@ PetscErrorCode LamCommandInfo(LamArgs *args, int *exit_status)
   info = json_loads(text, 0, NULL);
   PetscCheck(info, PETSC_COMM_SELF, PETSC_ERR_LIB, "%s: its description is no JSON", path);
   if (!strcmp(json_string_value(json_object_get(info, "kind")), "fe2")) PetscCall(ReadRun(path, info));
+  if (!strcmp(json_string_value(json_object_get(info, "kind")), "map")) PetscCall(ReadMap(path, info));
   if (json) {
     PetscCall(LamPrintJSON(info));
   } else {

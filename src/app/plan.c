@@ -5,7 +5,7 @@
   0.3 and stretch up to 1.25. The coarsest mesh that stays below the wanted accuracy is taken. Walls thicker than
   THICK_WALL bend less and shear more, and need the next finer one.
 */
-#include "app.h"
+#include "map.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -132,6 +132,10 @@ PetscErrorCode LamPlanMake(const LamScene *scene, LamPlan *plan)
   plan->unknowns = CountUnknowns(&plan->micro);
   PetscCall(MeasureSpread(&plan->micro, &plan->spread));
   if (scene->has_sample) plan->sample_states = scene->sample.count;
+  if (scene->has_map) {
+    plan->map_points = LamMapPointCount(scene);
+    plan->map_states = LamMapPathCount(scene) * LamMapPathStates(scene);
+  }
   if (scene->has_macro) {
     const LamMacroSpec *macro = &scene->macro;
 

@@ -1,0 +1,94 @@
+/*
+  The axes of a map: what a scene's block becomes.
+*/
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <setjmp.h>
+#include <cmocka.h>
+#include <lamella/scene.h>
+#include <math.h>
+#include <string.h>
+#include "assert_near.h"
+
+#define SCENE                                                                                                          \
+  "version: 1\n"                                                                                                       \
+  "rve:\n"                                                                                                             \
+  "  cell: {apothem: 75 um, wall_thickness: 11.25 um}\n"                                                               \
+  "  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}\n"                                         \
+  "  interface: {law: contact}\n"                                                                                      \
+  "load:\n"                                                                                                            \
+  "  - {ramp: {to: [[1, 0.3], [0, 1]], steps: 3}}\n"
+#define TURGOR "  x: {quantity: turgor, from: 0 MPa, to: 2.2 bar, points: 5}\n"
+#define SHEAR "  y: {quantity: shear, from: 0.1, to: 0.3, points: 3}\n"
+
+static LamScene *read_scene(const char text[])
+{
+  LamScene *scene = NULL;
+
+  assert_int_equal(LamSceneReadText("scene.yaml", text, &scene), 0);
+  return scene;
+}
+
+static void a_scene_without_the_block_has_no_map(void **state)
+{
+  LamScene *scene = read_scene(SCENE);
+
+  assert_false(scene->has_map);
+  LamSceneDestroy(&scene);
+}
+
+static void stresses_become_multiples_of_C1_and_C2(void **state)
+{
+  LamScene *scene = read_scene(SCENE "map:\n" TURGOR SHEAR);
+
+  assert_true(scene->has_map);
+  assert_int_equal(scene->map[LAM_MAP_X].quantity, LAM_MAP_TURGOR);
+  assert_int_equal(scene->map[LAM_MAP_X].points, 5);
+  assert_near(LamMapAxisValue(&scene->map[LAM_MAP_X], 0), 0, 1e-14);
+  assert_near(LamMapAxisValue(&scene->map[LAM_MAP_X], 4), 2, 1e-14);
+  LamSceneDestroy(&scene);
+}
+
+static void linear_points_have_equal_differences(void **state)
+{
+  LamScene *scene = read_scene(SCENE "map:\n" TURGOR SHEAR);
+  const LamMapAxis *y = &scene->map[LAM_MAP_Y];
+
+  for (int i = 0; i < 3; i++) assert_near(LamMapAxisValue(y, i), 0.1 * (i + 1), 1e-15);
+  LamSceneDestroy(&scene);
+}
+
+static void log_points_have_equal_ratios(void **state)
+{
+  LamScene *scene =
+      read_scene(SCENE "map:\n" TURGOR "  y: {quantity: C4, from: 0.11 MPa, to: 11 MPa, points: 3, spacing: log}\n");
+  const LamMapAxis *y = &scene->map[LAM_MAP_Y];
+
+  for (int i = 0; i < 3; i++) assert_near(LamMapAxisValue(y, i), pow(10, i), 1e-12);
+  LamSceneDestroy(&scene);
+}
+
+static void units_bring_the_numbers_back(void **state)
+{
+  LamScene *scene =
+      read_scene(SCENE "map:\n" TURGOR "  y: {quantity: wall_thickness, from: 7.5 um, to: 15 um, points: 2}\n");
+  PetscReal scale;
+
+  assert_string_equal(LamMapQuantityUnit(LAM_MAP_TURGOR, &scene->scales, &scale), "MPa");
+  assert_near(scale * scene->map[LAM_MAP_X].to, 0.22, 1e-15);
+  assert_string_equal(LamMapQuantityUnit(LAM_MAP_WALL_THICKNESS, &scene->scales, &scale), "um");
+  assert_near(scale * scene->map[LAM_MAP_Y].to, 15, 1e-13);
+  assert_string_equal(LamMapQuantityUnit(LAM_MAP_SHEAR, &scene->scales, &scale), "1");
+  LamSceneDestroy(&scene);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_scene_without_the_block_has_no_map), cmocka_unit_test(stresses_become_multiples_of_C1_and_C2),
+      cmocka_unit_test(linear_points_have_equal_differences), cmocka_unit_test(log_points_have_equal_ratios),
+      cmocka_unit_test(units_bring_the_numbers_back),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
