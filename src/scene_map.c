@@ -141,6 +141,9 @@ static PetscErrorCode CheckShear(const LamDocument *document, const AxisNodes *n
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < scene->load_count; i++) {
+    if (scene->controls && (scene->controls[i].given[1] || scene->controls[i].follows[1]))
+      PetscCall(LamSceneFail(document, nodes->quantity,
+                             "F12 of the load is free at state %d; write quantity: load_factor", (int)i + 1));
     if (scene->loads[i].F[1] <= last)
       PetscCall(LamSceneFail(document, nodes->quantity,
                              "F12 of the load does not grow at state %d; write quantity: load_factor", (int)i + 1));

@@ -243,7 +243,8 @@ static PetscErrorCode Prepare(Run *run)
     const LamFailureProgram program = {.interface = run->scene->micro.interface,
                                        .strength = &run->scene->strength,
                                        .count = run->scene->load_count,
-                                       .loads = run->scene->loads};
+                                       .loads = run->scene->loads,
+                                       .controls = run->scene->controls};
 
     PetscCall(LamFailureCreate(&run->meshes, &program, &run->failure));
   }

@@ -34,6 +34,8 @@ typedef struct {
   PetscReal from;  /* load factor at share 0 and ... */
   PetscReal reach; /* ... the difference to it at share 1 */
   LamLoad ends[2];
+  LamStressControl control; /* at share 1: what is given; components of F that follow are in the loads already */
+  PetscReal P[9];           /* at share 0 */
 } Way;
 
 LamFailureMode LamFailureModeOf(LamCriterion criterion)
@@ -93,6 +95,28 @@ static LamLoad LoadAt(const Way *way, PetscReal share)
   return load;
 }
 
+static LamStressControl ControlAt(const Way *way, PetscReal share)
+{
+  LamStressControl control = way->control;
+
+  for (int i = 0; i < 9 && share < 1; i++) control.P[i] = (1 - share) * way->P[i] + share * way->control.P[i];
+  return control;
+}
+
+/* The way to a load, from a state with F and P. `control` may be NULL. */
+static Way MakeWay(LamMeshes *meshes, PetscReal from, PetscReal reach, const LamLoad *before, const PetscReal P[9],
+                   const LamLoad *load, const LamStressControl *control)
+{
+  Way way = {.meshes = meshes, .from = from, .reach = reach, .ends = {*before, LamLoadAfter(load, control, before->F)}};
+
+  if (control) way.control = *control;
+  for (int i = 0; i < 9; i++) {
+    way.P[i] = P[i];
+    way.control.follows[i] = PETSC_FALSE;
+  }
+  return way;
+}
+
 /* One mesh speaks for both. */
 static void Complete(const LamMeshes *meshes, LamResponse responses[2])
 {
@@ -104,10 +128,12 @@ static PetscErrorCode SolveAt(const Way *way, const Point *start, PetscReal shar
 {
   LamMeshes *meshes = way->meshes;
   const LamLoad load = LoadAt(way, share);
+  const LamStressControl control = ControlAt(way, share);
 
   PetscFunctionBeginUser;
   PetscCall(CopyStates(meshes, start->states, meshes->state));
-  PetscCall(LamMeshesSolve(meshes, &load, NULL, point->responses));
+  PetscCall(PetscArraycpy(meshes->F, start->responses[0].load.F, 9));
+  PetscCall(LamMeshesSolve(meshes, &load, &control, point->responses));
   Complete(meshes, point->responses);
   PetscCall(CopyStates(meshes, meshes->state, point->states));
   point->share = share;
@@ -312,7 +338,9 @@ static PetscErrorCode JudgeFirst(LamFailure *failure, const Way *way, const Poin
 static PetscErrorCode Take(LamFailure *failure, LamMeshes *meshes, PetscInt number, Point *to)
 {
   const PetscBool known = LamHaveFields(to->responses), first = (PetscBool)isnan(failure->followed);
-  Way way = {meshes, (PetscReal)(number - 1), 1, {failure->last[0].load, to->responses[0].load}};
+  const LamFailureProgram *program = &failure->program;
+  Way way = MakeWay(meshes, (PetscReal)(number - 1), 1, &failure->last[0].load, failure->last[0].P,
+                    &program->loads[number - 1], program->controls ? &program->controls[number - 1] : NULL);
   Point from;
 
   PetscFunctionBeginUser;
@@ -320,7 +348,8 @@ static PetscErrorCode Take(LamFailure *failure, LamMeshes *meshes, PetscInt numb
   PetscCall(CopyStates(meshes, failure->before, from.states));
   for (PetscInt m = 0; m < 2; m++) from.responses[m] = failure->last[m];
   if (first && known) {
-    way = (Way){meshes, (PetscReal)number, 0, {to->responses[0].load, to->responses[0].load}};
+    way = MakeWay(meshes, (PetscReal)number, 0, &to->responses[0].load, to->responses[0].P, &to->responses[0].load,
+                  NULL);
     to->share = 0;
     PetscCall(JudgeFirst(failure, &way, to));
   } else if (first) {
@@ -348,6 +377,7 @@ PetscErrorCode LamFailureWatch(LamFailure *failure, LamMeshes *meshes, PetscInt 
   Complete(meshes, point.responses);
   PetscCall(Take(failure, meshes, number, &point));
   PetscCall(CopyStates(meshes, point.states, meshes->state));
+  if (LamResponseHasFields(&point.responses[0])) PetscCall(PetscArraycpy(meshes->F, point.responses[0].load.F, 9));
   PetscCall(PointDestroy(&point));
   PetscFunctionReturn(0);
 }
@@ -357,16 +387,19 @@ PetscErrorCode LamFailureWatch(LamFailure *failure, LamMeshes *meshes, PetscInt 
 /* State 0; where it has no answer the program begins with state 1. */
 static PetscErrorCode Begin(LamFailure *failure, LamMeshes *meshes)
 {
-  Way way = {.meshes = meshes};
+  const LamFailureProgram *program = &failure->program;
+  const PetscReal none[9] = {0};
+  LamLoad load = program->loads[0];
   PetscBool known;
   Point reference, zero;
+  Way way;
 
   PetscFunctionBeginUser;
-  way.ends[0] = failure->program.loads[0];
-  for (int i = 0; i < 9; i++) way.ends[0].F[i] = i % 4 ? 0 : 1;
-  way.ends[1] = way.ends[0];
-  PetscCall(LamResponseInit(&way.ends[0], &failure->last[0]));
+  for (int i = 0; i < 9; i++) load.F[i] = i % 4 ? 0 : 1;
+  way = MakeWay(meshes, 0, 0, &load, none, &load, program->controls);
+  PetscCall(LamResponseInit(&load, &failure->last[0]));
   PetscCall(PointCreate(meshes, &reference));
+  reference.responses[0].load = load;
   PetscCall(PointCreate(meshes, &zero));
   PetscCall(SolveAt(&way, &reference, 0, &zero, &known));
   if (known) PetscCall(JudgeFirst(failure, &way, &zero));
@@ -437,7 +470,8 @@ PetscErrorCode LamFailureFind(LamMeshes *meshes, const LamFailureProgram *progra
     LamResponse responses[2];
 
     if (program->stop_at_first && IsReached(failure)) break;
-    PetscCall(LamMeshesSolve(meshes, &program->loads[k], NULL, responses));
+    PetscCall(
+        LamMeshesSolve(meshes, &program->loads[k], program->controls ? &program->controls[k] : NULL, responses));
     PetscCall(LamFailureWatch(failure, meshes, k + 1, responses));
   }
   PetscCall(LamFailureConclude(failure));

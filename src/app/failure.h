@@ -4,8 +4,9 @@
     LamFailureFind(&meshes, &program, &failure);      mode, factor, load, response
 
   Load factor: the number of a state, with a fraction for the share of the way from it to the next, along which F,
-  turgor and cohesion are linear. State 0 is F = I at the turgor and cohesion of state 1; where it has no answer the
-  program begins with state 1. docs/theory.md has the definitions.
+  turgor and cohesion are linear; where P is prescribed instead of F, P is, from its value in the state before. State 0
+  is F = I, or P = 0 where state 1 prescribes P, at the turgor and cohesion of state 1; where it has no answer the program
+  begins with state 1. docs/theory.md has the definitions.
 */
 #ifndef LAM_FAILURE_H
 #define LAM_FAILURE_H
@@ -41,6 +42,7 @@ typedef struct {
   const LamStrength *strength; /* NULL: none is given */
   PetscInt count;
   const LamLoad *loads;
+  const LamStressControl *controls; /* of the loads; NULL: F is given in all of them */
   PetscBool stop_at_first; /* at the first state at which a criterion is reached; else all are sought, to the end */
 } LamFailureProgram;
 

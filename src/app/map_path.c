@@ -12,9 +12,10 @@
 
 typedef struct {
   PetscInt count;
-  LamLoad *loads;   /* [count]; owned */
-  PetscReal *place; /* [count] state of the scene's load, with fraction; owned */
-  PetscInt *cut;    /* [cuts] state of the path; owned */
+  LamLoad *loads;             /* [count]; owned */
+  LamStressControl *controls; /* [count]; owned; NULL where F is given in all loads */
+  PetscReal *place;           /* [count] state of the scene's load, with fraction; owned */
+  PetscInt *cut;              /* [cuts] state of the path; owned */
 } Path;
 
 /* The axis of the load, or NULL. */
@@ -131,10 +132,16 @@ static PetscReal CutPlace(const LamScene *scene, PetscInt cut)
   return (PetscReal)i + (value - before) / (scene->loads[i].F[1] - before);
 }
 
-/* State 0 is F = I at the turgor and cohesion of state 1. */
+/* The scene's state that ends the way on which a place lies, from 0. */
+static PetscInt WayOf(PetscReal place)
+{
+  return PetscMax((PetscInt)ceil(place) - 1, 0);
+}
+
+/* State `place` of the scene's load; state 0 is F = I at the turgor and cohesion of state 1. */
 static LamLoad LoadAt(const LamScene *scene, PetscReal place)
 {
-  const PetscInt k = PetscMin((PetscInt)place, scene->load_count - 1);
+  const PetscInt k = WayOf(place);
   const PetscReal share = place - (PetscReal)k;
   const LamLoad *to = &scene->loads[k];
   LamLoad from = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .turgor = to->turgor, .cohesion = to->cohesion}, load;
@@ -146,6 +153,37 @@ static LamLoad LoadAt(const LamScene *scene, PetscReal place)
   return load;
 }
 
+/*
+  What is prescribed there beside the load: P goes straight from that of the state before, or 0. Components of F that
+  follow go `control.share` of the way from their value in the scene's state before to that of the load; from `before`,
+  which lies on this way too, it is the rest of it.
+*/
+static LamStressControl ControlAt(const LamScene *scene, PetscReal before, PetscReal place)
+{
+  const PetscInt k = WayOf(place);
+  const PetscReal share = place - (PetscReal)k, done = PetscMax(before - (PetscReal)k, 0);
+  LamStressControl control = scene->controls[k], from = {0};
+
+  if (k) from = scene->controls[k - 1];
+  for (int i = 0; i < 9 && share < 1; i++)
+    if (control.given[i]) control.P[i] = share * control.P[i] + (from.given[i] ? (1 - share) * from.P[i] : 0);
+  control.share *= (share - done) / (1 - control.share * done);
+  return control;
+}
+
+/* The state whose place is set. */
+static void AddState(const LamScene *scene, Path *path)
+{
+  const PetscInt n = path->count++;
+  const PetscReal place = path->place[n];
+
+  path->loads[n] = LoadAt(scene, place);
+  if (!path->controls) return;
+  path->controls[n] = ControlAt(scene, n ? path->place[n - 1] : 0, place);
+  for (int i = 0; i < 9; i++)
+    if (path->controls[n].follows[i]) path->loads[n].F[i] = scene->loads[WayOf(place)].F[i];
+}
+
 static PetscErrorCode PathCreate(const LamScene *scene, Path *path)
 {
   const PetscInt cuts = LamMapCutCount(scene), most = scene->load_count + 1 + cuts;
@@ -153,7 +191,8 @@ static PetscErrorCode PathCreate(const LamScene *scene, Path *path)
   PetscInt whole = 0;
 
   PetscFunctionBeginUser;
-  path->count = 0;
+  *path = (Path){0};
+  if (scene->controls) PetscCall(PetscMalloc1(most, &path->controls));
   PetscCall(PetscMalloc3(most, &path->loads, most, &path->place, cuts, &path->cut));
   for (PetscInt cut = 0; cut < cuts;) {
     const PetscReal place = CutPlace(scene, cut);
@@ -161,8 +200,7 @@ static PetscErrorCode PathCreate(const LamScene *scene, Path *path)
 
     path->place[path->count] = is_cut && place < (PetscReal)whole - same ? place : (PetscReal)whole++;
     if (is_cut) path->cut[cut++] = path->count;
-    path->loads[path->count] = LoadAt(scene, path->place[path->count]);
-    path->count++;
+    AddState(scene, path);
   }
   PetscFunctionReturn(0);
 }
@@ -171,6 +209,7 @@ static PetscErrorCode PathDestroy(Path *path)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree3(path->loads, path->place, path->cut));
+  PetscCall(PetscFree(path->controls));
   PetscFunctionReturn(0);
 }
 
@@ -195,21 +234,20 @@ static PetscBool IsDecided(const LamFailure *failure)
 static PetscErrorCode Solve(LamMeshes *meshes, const Path *path, LamFailure *failure, LamResponse responses[],
                             PetscBool *complete)
 {
+  const PetscInt mesh_count = meshes->count;
+  PetscInt k;
+
   PetscFunctionBeginUser;
-  *complete = PETSC_FALSE;
-  for (PetscInt k = 0; k < path->count; k++) {
+  for (k = 0; k < path->count && !LamStopRequested(); k++) {
     LamResponse both[2];
 
-    if (LamStopRequested()) PetscFunctionReturn(0);
-    if (IsDecided(failure)) {
-      PetscCall(LamRVESolve(meshes->rve[0], &path->loads[k], meshes->state[0], &responses[k]));
-      continue;
-    }
-    PetscCall(LamMeshesSolve(meshes, &path->loads[k], both));
+    meshes->count = IsDecided(failure) ? 1 : mesh_count;
+    PetscCall(LamMeshesSolve(meshes, &path->loads[k], path->controls ? &path->controls[k] : NULL, both));
     responses[k] = both[0];
-    PetscCall(LamFailureWatch(failure, meshes, k + 1, both));
+    PetscCall(LamFailureWatch(failure, meshes, k + 1, both)); /* nothing more where it is decided */
   }
-  *complete = PETSC_TRUE;
+  meshes->count = mesh_count;
+  *complete = (PetscBool)(k == path->count);
   PetscFunctionReturn(0);
 }
 
@@ -265,7 +303,7 @@ PetscErrorCode LamMapFollow(const LamScene *scene, PetscInt number, LamMapPoint 
   PetscCall(CopyScene(scene, number, &own));
   PetscCall(PathCreate(&own, &path));
   PetscCall(PetscMalloc1(path.count, &responses));
-  program = (LamFailureProgram){own.micro.interface, &own.strength, path.count, path.loads, PETSC_TRUE};
+  program = (LamFailureProgram){own.micro.interface, &own.strength, path.count, path.loads, path.controls, PETSC_TRUE};
   PetscCall(LamMeshesCreate(&own, own.micro.interface == LAM_INTERFACE_CONTACT ? 2 : 1, &meshes));
   PetscCall(LamFailureCreate(&meshes, &program, &failure));
   PetscCall(Solve(&meshes, &path, &failure, responses, complete));
