@@ -20,10 +20,9 @@ typedef struct {
   LamFailureMode mode;    /* reached on the way to the point */
   LamCriterion criterion; /* that decides the mode; LAM_CRITERION_COUNT: none */
   PetscReal load_factor;  /* share of the load's states at which it is reached, 0 to 1; NaN: none */
-  PetscReal F[9];         /* there; NaN: none */
   PetscReal place[3];     /* cell, face 0..5, place along the face in [0, 1]; NaN where it has none */
   char reason[256];       /* why the mode is unknown; empty otherwise */
-  LamResponse response;   /* at the point itself, whatever failed before */
+  LamResponse response;   /* where the tissue fails or has no answer, else at the point itself */
 } LamMapPoint;
 
 /* ---- map_path.c ---- */
@@ -33,7 +32,7 @@ PetscInt LamMapPathCount(const LamScene *scene);
 PetscInt LamMapCutCount(const LamScene *scene); /* points of one path */
 /* Number of the point at cut `cut` of path `path`. */
 PetscInt64 LamMapPointNumber(const LamScene *scene, PetscInt path, PetscInt cut);
-/* RVE solves of one path, without those that bracket the failure. */
+/* RVE solves of one path at most, without those that bracket the failure. */
 PetscInt LamMapPathStates(const LamScene *scene);
 /* Follows a path; points [cuts]. *complete is false where a stop was requested before its end. */
 PetscErrorCode LamMapFollow(const LamScene *scene, PetscInt path, LamMapPoint points[], PetscBool *complete);
@@ -45,7 +44,6 @@ typedef struct {
   PetscInt points[LAM_MAP_AXIS_COUNT];
   PetscInt *mode, *criterion; /* owned */
   PetscReal *load_factor;     /* owned */
-  PetscReal *F;               /* [point][9]; owned */
   PetscReal *place;           /* [point][3]; owned */
 } LamMapTable;
 

@@ -3,12 +3,15 @@
 
   Method
     The states of the path are F = I at the turgor and cohesion of the load's first state, the load's own states, and
-    the cuts between them; behind the last cut nothing is solved. The failure is looked for (failure.h) up to the first
-    state that has failed or has no answer; the states behind it are solved for their indicators only, on the first
-    mesh.
+    the cuts between them. Where stress is prescribed, turgor alone can break the tissue, and is brought up first, in
+    INFLATION steps; at prescribed F = I it only presses the cells together. They are solved in order until the tissue
+  fails (failure.h) or a state has no answer; the walls and the interface know no damage, so the states behind a failure
+  are not asked for.
 */
 #include "map.h"
 #include <math.h>
+
+enum { INFLATION = 4 };
 
 typedef struct {
   PetscInt count;
@@ -184,9 +187,27 @@ static void AddState(const LamScene *scene, Path *path)
     if (path->controls[n].follows[i]) path->loads[n].F[i] = scene->loads[WayOf(place)].F[i];
 }
 
+/* Without turgor there is nothing to bring up. */
+static PetscInt InflationOf(const LamScene *scene)
+{
+  return scene->controls && scene->loads[0].turgor != 0 ? INFLATION : 0;
+}
+
+/* States at F = I, or at the prescribed stress of 0, with less turgor than the load's first state. */
+static void AddInflation(const LamScene *scene, Path *path)
+{
+  const PetscInt steps = InflationOf(scene);
+
+  for (PetscInt k = 0; k < steps; k++) {
+    path->place[path->count] = 0;
+    AddState(scene, path);
+    path->loads[k].turgor *= (PetscReal)k / (PetscReal)steps;
+  }
+}
+
 static PetscErrorCode PathCreate(const LamScene *scene, Path *path)
 {
-  const PetscInt cuts = LamMapCutCount(scene), most = scene->load_count + 1 + cuts;
+  const PetscInt cuts = LamMapCutCount(scene), most = INFLATION + scene->load_count + 1 + cuts;
   const PetscReal same = 1e-9; /* a cut at a state is that state */
   PetscInt whole = 0;
 
@@ -194,6 +215,7 @@ static PetscErrorCode PathCreate(const LamScene *scene, Path *path)
   *path = (Path){0};
   if (scene->controls) PetscCall(PetscMalloc1(most, &path->controls));
   PetscCall(PetscMalloc3(most, &path->loads, most, &path->place, cuts, &path->cut));
+  AddInflation(scene, path);
   for (PetscInt cut = 0; cut < cuts;) {
     const PetscReal place = CutPlace(scene, cut);
     const PetscBool is_cut = (PetscBool)(place <= (PetscReal)whole + same);
@@ -217,7 +239,8 @@ PetscInt LamMapPathStates(const LamScene *scene)
 {
   const PetscReal last = CutPlace(scene, LamMapCutCount(scene) - 1);
 
-  return 1 + (PetscInt)ceil(last) + (LoadAxis(scene) ? LamMapCutCount(scene) - 1 : 0);
+  return (scene->controls ? INFLATION : 0) + 1 + (PetscInt)ceil(last) +
+         (LoadAxis(scene) ? LamMapCutCount(scene) - 1 : 0);
 }
 
 /* ---- following ---- */
@@ -230,24 +253,19 @@ static PetscBool IsDecided(const LamFailure *failure)
   return (PetscBool)(failure->reason[0] != '\0');
 }
 
-/* Solves the states; `responses` [count] on the first mesh. */
+/* Solves the states, as far as there is something to learn; `responses` [solved] on the first mesh. */
 static PetscErrorCode Solve(LamMeshes *meshes, const Path *path, LamFailure *failure, LamResponse responses[],
-                            PetscBool *complete)
+                            PetscInt *solved)
 {
-  const PetscInt mesh_count = meshes->count;
-  PetscInt k;
-
   PetscFunctionBeginUser;
-  for (k = 0; k < path->count && !LamStopRequested(); k++) {
+  for (*solved = 0; *solved < path->count && !IsDecided(failure) && !LamStopRequested(); (*solved)++) {
+    const PetscInt k = *solved;
     LamResponse both[2];
 
-    meshes->count = IsDecided(failure) ? 1 : mesh_count;
     PetscCall(LamMeshesSolve(meshes, &path->loads[k], path->controls ? &path->controls[k] : NULL, both));
     responses[k] = both[0];
-    PetscCall(LamFailureWatch(failure, meshes, k + 1, both)); /* nothing more where it is decided */
+    PetscCall(LamFailureWatch(failure, meshes, k + 1, both));
   }
-  meshes->count = mesh_count;
-  *complete = (PetscBool)(k == path->count);
   PetscFunctionReturn(0);
 }
 
@@ -257,15 +275,15 @@ static PetscReal ShareOfLoad(const LamScene *scene, const Path *path, PetscReal 
   const PetscInt k = PetscMin((PetscInt)factor, path->count);
   PetscReal place;
 
-  if (k < 1) return 0; /* by turgor alone: the path begins at F = I */
+  if (k < 1) return 0; /* at the first state of all */
   place = path->place[k - 1];
   if (k < path->count) place += (factor - (PetscReal)k) * (path->place[k] - place);
   return place / (PetscReal)scene->load_count;
 }
 
-/* What the failure means for a point that the path passes at its state `state` (from 1). */
+/* What the failure means for a point that the path passes at its state `state` (from 1), `last` the last one solved. */
 static PetscErrorCode Judge(const LamScene *scene, const Path *path, const LamFailure *failure, PetscInt state,
-                            LamMapPoint *point)
+                            const LamResponse *own, const LamResponse *last, LamMapPoint *point)
 {
   const PetscReal reached = (PetscReal)state;
 
@@ -273,50 +291,62 @@ static PetscErrorCode Judge(const LamScene *scene, const Path *path, const LamFa
   point->mode = LAM_FAILURE_NONE;
   point->criterion = LAM_CRITERION_COUNT;
   point->load_factor = NAN;
-  for (int i = 0; i < 9; i++) point->F[i] = NAN;
   for (int i = 0; i < 3; i++) point->place[i] = NAN;
-  if (failure->mode != LAM_FAILURE_NONE && failure->mode != LAM_FAILURE_UNKNOWN && failure->factor <= reached) {
-    const LamCriterionOnset *onset = &failure->onset[failure->criterion];
-
+  if (failure->criterion != LAM_CRITERION_COUNT && failure->factor <= reached) {
     point->mode = failure->mode;
     point->criterion = failure->criterion;
     point->load_factor = ShareOfLoad(scene, path, failure->factor);
-    PetscCall(PetscArraycpy(point->F, failure->load.F, 9));
-    PetscCall(PetscArraycpy(point->place, onset->place, 3));
+    point->response = failure->response;
+    PetscCall(PetscArraycpy(point->place, failure->onset[failure->criterion].place, 3));
   } else if (failure->mode == LAM_FAILURE_UNKNOWN && failure->followed < reached) {
     point->mode = LAM_FAILURE_UNKNOWN;
+    point->response = *last;
     PetscCall(PetscStrncpy(point->reason, failure->reason, sizeof(point->reason)));
+  } else {
+    point->response = *own;
   }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamMapFollow(const LamScene *scene, PetscInt number, LamMapPoint points[], PetscBool *complete)
+/* The scene of the path has its loads, mesh and strengths. */
+static PetscErrorCode FollowOwn(const LamScene *own, PetscInt number, LamMapPoint points[], PetscBool *complete)
 {
   LamFailureProgram program;
   LamResponse *responses;
   LamFailure failure;
   LamMeshes meshes;
-  LamScene own;
+  PetscInt solved;
   Path path;
 
   PetscFunctionBeginUser;
-  PetscCall(CopyScene(scene, number, &own));
-  PetscCall(PathCreate(&own, &path));
+  PetscCall(PathCreate(own, &path));
   PetscCall(PetscMalloc1(path.count, &responses));
-  program = (LamFailureProgram){own.micro.interface, &own.strength, path.count, path.loads, path.controls, PETSC_TRUE};
-  PetscCall(LamMeshesCreate(&own, own.micro.interface == LAM_INTERFACE_CONTACT ? 2 : 1, &meshes));
+  program =
+      (LamFailureProgram){own->micro.interface, &own->strength, path.count, path.loads, path.controls, PETSC_TRUE};
+  PetscCall(LamMeshesCreate(own, own->micro.interface == LAM_INTERFACE_CONTACT ? 2 : 1, &meshes));
   PetscCall(LamFailureCreate(&meshes, &program, &failure));
-  PetscCall(Solve(&meshes, &path, &failure, responses, complete));
-  if (*complete) PetscCall(LamFailureConclude(&failure));
-  for (PetscInt c = 0; c < LamMapCutCount(scene) && *complete; c++) {
-    points[c].number = LamMapPointNumber(scene, number, c);
-    points[c].response = responses[path.cut[c]];
-    PetscCall(Judge(scene, &path, &failure, path.cut[c] + 1, &points[c]));
+  PetscCall(Solve(&meshes, &path, &failure, responses, &solved));
+  *complete = (PetscBool)!LamStopRequested();
+  PetscCall(LamFailureConclude(&failure));
+  for (PetscInt c = 0; c < LamMapCutCount(own) && *complete; c++) {
+    points[c].number = LamMapPointNumber(own, number, c);
+    PetscCall(Judge(own, &path, &failure, path.cut[c] + 1, &responses[path.cut[c]],
+                    solved ? &responses[solved - 1] : &failure.response, &points[c]));
   }
   PetscCall(LamFailureDestroy(&failure));
   PetscCall(LamMeshesDestroy(&meshes));
   PetscCall(PetscFree(responses));
   PetscCall(PathDestroy(&path));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMapFollow(const LamScene *scene, PetscInt path, LamMapPoint points[], PetscBool *complete)
+{
+  LamScene own;
+
+  PetscFunctionBeginUser;
+  PetscCall(CopyScene(scene, path, &own));
+  PetscCall(FollowOwn(&own, path, points, complete));
   PetscCall(PetscFree(own.loads));
   PetscFunctionReturn(0);
 }

@@ -13,7 +13,6 @@ static void Clear(LamMapTable *table, PetscInt i)
 {
   table->mode[i] = table->criterion[i] = -1;
   table->load_factor[i] = NAN;
-  for (int k = 0; k < 9; k++) table->F[9 * i + k] = NAN;
   for (int k = 0; k < 3; k++) table->place[3 * i + k] = NAN;
 }
 
@@ -23,8 +22,7 @@ PetscErrorCode LamMapTableCreate(const LamScene *scene, LamMapTable *table)
 
   PetscFunctionBeginUser;
   for (int a = 0; a < LAM_MAP_AXIS_COUNT; a++) table->points[a] = scene->map[a].points;
-  PetscCall(PetscMalloc5(n, &table->mode, n, &table->criterion, n, &table->load_factor, 9 * n, &table->F, 3 * n,
-                         &table->place));
+  PetscCall(PetscMalloc4(n, &table->mode, n, &table->criterion, n, &table->load_factor, 3 * n, &table->place));
   for (PetscInt i = 0; i < n; i++) Clear(table, i);
   PetscFunctionReturn(0);
 }
@@ -32,7 +30,7 @@ PetscErrorCode LamMapTableCreate(const LamScene *scene, LamMapTable *table)
 PetscErrorCode LamMapTableDestroy(LamMapTable *table)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree5(table->mode, table->criterion, table->load_factor, table->F, table->place));
+  PetscCall(PetscFree4(table->mode, table->criterion, table->load_factor, table->place));
   PetscFunctionReturn(0);
 }
 
@@ -43,7 +41,6 @@ void LamMapTableSet(LamMapTable *table, const LamMapPoint *point)
   table->mode[i] = (PetscInt)point->mode;
   table->criterion[i] = point->criterion == LAM_CRITERION_COUNT ? -1 : (PetscInt)point->criterion;
   table->load_factor[i] = point->load_factor;
-  for (int k = 0; k < 9; k++) table->F[9 * i + k] = point->F[k];
   for (int k = 0; k < 3; k++) table->place[3 * i + k] = point->place[k];
 }
 
@@ -97,13 +94,12 @@ PetscErrorCode LamMapAxesWrite(LamRecordWriter writer, const LamScene *scene)
 
 PetscErrorCode LamMapTableWrite(LamRecordWriter writer, const LamMapTable *table)
 {
-  const PetscInt dims[4] = {table->points[LAM_MAP_Y], table->points[LAM_MAP_X], 3, 3};
+  const PetscInt dims[3] = {table->points[LAM_MAP_Y], table->points[LAM_MAP_X], 3};
 
   PetscFunctionBeginUser;
   PetscCall(LamRecordWriterInts(writer, "/map/mode", 2, dims, table->mode));
   PetscCall(LamRecordWriterInts(writer, "/map/criterion", 2, dims, table->criterion));
   PetscCall(LamRecordWriterReals(writer, "/map/load_factor", 2, dims, table->load_factor, "1"));
-  PetscCall(LamRecordWriterReals(writer, "/map/F", 4, dims, table->F, "1"));
   PetscCall(LamRecordWriterReals(writer, "/map/place", 3, dims, table->place, "1"));
   PetscFunctionReturn(0);
 }
@@ -159,7 +155,6 @@ PetscErrorCode LamMapTableRead(const char path[], const PetscBool known[], LamMa
   PetscCall(ReadInts(path, "/map/mode", n, table->mode));
   PetscCall(ReadInts(path, "/map/criterion", n, table->criterion));
   PetscCall(ReadReals(path, "/map/load_factor", n, table->load_factor));
-  PetscCall(ReadReals(path, "/map/F", 9 * n, table->F));
   PetscCall(ReadReals(path, "/map/place", 3 * n, table->place));
   for (PetscInt i = 0; i < n; i++)
     if (!known[i]) Clear(table, i);

@@ -37,7 +37,7 @@ typedef struct {
   PetscInt n;             /* points of the map */
   PetscInt *mode;         /* [n] number in Modes, -1: no answer yet; owned */
   PetscReal *load_factor; /* [n]; owned */
-  PetscReal *F;           /* [n][9] where the tissue fails; owned */
+  PetscReal *shear;       /* [n] F12 of the record; owned */
   PetscReal *value;       /* [n] of the field; owned */
   const char *field, *unit;
   LamColourRange range;
@@ -140,7 +140,18 @@ static const LamMember *FindMember(const char name[])
   return NULL;
 }
 
-static PetscErrorCode ReadMember(const char path[], const LamMember *member, MapPicture *p)
+/* The member of a record in physical units; NaN where it has no fields. */
+static PetscReal MemberValue(const LamMember *member, const LamResponse *record, const LamScales *scales)
+{
+  const char *at = (const char *)record + member->offset;
+
+  if (!LamResponseHasFields(record)) return NAN;
+  if (member->type == LAM_MEMBER_INT) return (PetscReal) * (const PetscInt *)(const void *)at;
+  return *(const PetscReal *)(const void *)at * PetscPowReal(scales->stress * 1e-6, member->stress_power);
+}
+
+/* member: NULL for none. */
+static PetscErrorCode ReadRecords(const char path[], const LamMember *member, MapPicture *p)
 {
   LamDatabase database;
   LamMicrostructure micro;
@@ -155,14 +166,11 @@ static PetscErrorCode ReadMember(const char path[], const LamMember *member, Map
   PetscCall(LamDatabaseGetRecords(database, &n, &records, &keys));
   PetscCall(LamDatabaseGetMicrostructure(database, &micro, &scales, &hash));
   for (PetscInt i = 0; i < n; i++) {
-    const char *at = (const char *)&records[i] + member->offset;
-
-    if (keys[i] < 0 || keys[i] >= p->n || !LamResponseHasFields(&records[i])) continue;
-    p->value[keys[i]] = member->type == LAM_MEMBER_INT ? (PetscReal) * (const PetscInt *)(const void *)at
-                                                       : *(const PetscReal *)(const void *)at;
-    p->value[keys[i]] *= PetscPowReal(scales.stress * 1e-6, member->stress_power);
+    if (keys[i] < 0 || keys[i] >= p->n) continue;
+    p->shear[keys[i]] = records[i].load.F[1];
+    if (member) p->value[keys[i]] = MemberValue(member, &records[i], &scales);
   }
-  p->unit = member->stress_power == 1 ? "MPa" : NULL;
+  p->unit = member && member->stress_power == 1 ? "MPa" : NULL;
   PetscCall(LamDatabaseClose(&database));
   PetscFunctionReturn(0);
 }
@@ -173,19 +181,18 @@ static PetscErrorCode ReadField(const LamPlotRequest *request, MapPicture *p)
 
   PetscFunctionBeginUser;
   p->field = request->field ? request->field : "load_factor";
-  p->unit = NULL;
+  member = FindMember(p->field);
+  PetscCheck(member || !strcmp(p->field, "load_factor"), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "--field %s: a map has load_factor and the single numbers of its records, such as max_wall_tension, "
+             "max_traction, open_fraction, max_gap, energy",
+             p->field);
   PetscCall(PetscMalloc1(p->n, &p->value));
-  for (PetscInt i = 0; i < p->n; i++) p->value[i] = NAN;
-  if (!strcmp(p->field, "load_factor")) {
-    PetscCall(PetscArraycpy(p->value, p->load_factor, p->n));
-  } else {
-    member = FindMember(p->field);
-    PetscCheck(member, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "--field %s: a map has load_factor and the single numbers of its records, such as open_fraction, "
-               "debonded_fraction, max_gap, max_traction, energy",
-               p->field);
-    PetscCall(ReadMember(request->input, member, p));
+  PetscCall(PetscMalloc1(p->n, &p->shear));
+  for (PetscInt i = 0; i < p->n; i++) {
+    p->value[i] = member ? NAN : p->load_factor[i];
+    p->shear[i] = NAN;
   }
+  PetscCall(ReadRecords(request->input, member, p));
   PetscCall(LamColourRangeFind(p->n, p->value, &p->range));
   PetscFunctionReturn(0);
 }
@@ -199,7 +206,6 @@ static PetscErrorCode ReadMap(const LamPlotRequest *request, MapPicture *p)
   p->n = p->x.n * p->y.n;
   PetscCall(ReadModes(request->input, p));
   PetscCall(LamPlotReadReals(request->input, "/map/load_factor", p->y.n, p->x.n, &p->load_factor));
-  PetscCall(LamPlotReadReals(request->input, "/map/F", p->y.n, 9 * p->x.n, &p->F));
   PetscCall(ReadField(request, p));
   PetscFunctionReturn(0);
 }
@@ -213,7 +219,7 @@ static PetscErrorCode Destroy(MapPicture *p)
   PetscCall(PetscFree(p->y.edge));
   PetscCall(PetscFree(p->mode));
   PetscCall(PetscFree(p->load_factor));
-  PetscCall(PetscFree(p->F));
+  PetscCall(PetscFree(p->shear));
   PetscCall(PetscFree(p->value));
   PetscFunctionReturn(0);
 }
@@ -281,8 +287,9 @@ static void DrawField(LamCanvas canvas, const LamAxes *axes, const MapPicture *p
 /* Where a row or column of points along the load fails, in the axis' own quantity; NaN: nowhere. */
 static PetscReal OnsetAlong(const MapPicture *p, const Side *side, PetscInt last)
 {
-  const PetscReal onset = !strcmp(side->quantity, "shear") ? p->F[9 * last + 1] : p->load_factor[last];
+  const PetscReal onset = !strcmp(side->quantity, "shear") ? p->shear[last] : p->load_factor[last];
 
+  if (isnan(p->load_factor[last])) return NAN;
   return side->is_log ? log10(onset) : onset;
 }
 
@@ -447,7 +454,8 @@ static const char *FieldLabel(const char field[])
                 {"open_fraction", "open share of the interface"},
                 {"debonded_fraction", "debonded share of the interface"},
                 {"max_gap", "largest gap / apothem"},
-                {"max_traction", "largest interface traction"}};
+                {"max_traction", "largest lamella traction"},
+                {"max_wall_tension", "largest wall tension"}};
 
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(labels); i++)
     if (!strcmp(field, labels[i].field)) return labels[i].label;
