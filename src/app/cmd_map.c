@@ -13,7 +13,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#define COMMIT_SECONDS 2.0
+#define COMMIT_SECONDS 0.5
 
 /* What a rank sends: the points of a path, unless it was stopped before the end. */
 typedef struct {

@@ -10,6 +10,7 @@
 */
 #include "map.h"
 #include <math.h>
+#include <string.h>
 
 enum { INFLATION = 4 };
 
@@ -258,7 +259,8 @@ static PetscErrorCode Solve(LamMeshes *meshes, const Path *path, LamFailure *fai
                             PetscInt *solved)
 {
   PetscFunctionBeginUser;
-  for (*solved = 0; *solved < path->count && !IsDecided(failure) && !LamStopRequested(); (*solved)++) {
+  /* the first state also where the failure search has found no answer there: the record says why */
+  for (*solved = 0; *solved < path->count && !(*solved && IsDecided(failure)) && !LamStopRequested(); (*solved)++) {
     const PetscInt k = *solved;
     LamResponse both[2];
 
@@ -272,13 +274,24 @@ static PetscErrorCode Solve(LamMeshes *meshes, const Path *path, LamFailure *fai
 /* A load factor of the path as a share of the scene's load. */
 static PetscReal ShareOfLoad(const LamScene *scene, const Path *path, PetscReal factor)
 {
-  const PetscInt k = PetscMin((PetscInt)factor, path->count);
+  const PetscInt k = factor >= 1 ? PetscMin((PetscInt)factor, path->count) : 0;
   PetscReal place;
 
-  if (k < 1) return 0; /* at the first state of all */
+  if (!k) return 0; /* at the first state of all, or not even there (NaN) */
   place = path->place[k - 1];
   if (k < path->count) place += (factor - (PetscReal)k) * (path->place[k] - place);
   return place / (PetscReal)scene->load_count;
+}
+
+/* The failure's reason, whose load factor counts the states of the path, told in shares of the load. */
+static PetscErrorCode SetReason(const LamScene *scene, const Path *path, const LamFailure *failure, LamMapPoint *point)
+{
+  const char *why = strstr(failure->reason, ": ");
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(point->reason, sizeof(point->reason), "no answer behind load factor %.4g%s",
+                          (double)ShareOfLoad(scene, path, failure->followed), why ? why : ""));
+  PetscFunctionReturn(0);
 }
 
 /* What the failure means for a point that the path passes at its state `state` (from 1), `last` the last one solved. */
@@ -298,10 +311,10 @@ static PetscErrorCode Judge(const LamScene *scene, const Path *path, const LamFa
     point->load_factor = ShareOfLoad(scene, path, failure->factor);
     point->response = failure->response;
     PetscCall(PetscArraycpy(point->place, failure->onset[failure->criterion].place, 3));
-  } else if (failure->mode == LAM_FAILURE_UNKNOWN && failure->followed < reached) {
+  } else if (failure->mode == LAM_FAILURE_UNKNOWN && !(failure->followed >= reached)) {
     point->mode = LAM_FAILURE_UNKNOWN;
     point->response = *last;
-    PetscCall(PetscStrncpy(point->reason, failure->reason, sizeof(point->reason)));
+    PetscCall(SetReason(scene, path, failure, point));
   } else {
     point->response = *own;
   }
@@ -330,8 +343,8 @@ static PetscErrorCode FollowOwn(const LamScene *own, PetscInt number, LamMapPoin
   PetscCall(LamFailureConclude(&failure));
   for (PetscInt c = 0; c < LamMapCutCount(own) && *complete; c++) {
     points[c].number = LamMapPointNumber(own, number, c);
-    PetscCall(Judge(own, &path, &failure, path.cut[c] + 1, &responses[path.cut[c]],
-                    solved ? &responses[solved - 1] : &failure.response, &points[c]));
+    PetscCall(
+        Judge(own, &path, &failure, path.cut[c] + 1, &responses[path.cut[c]], &responses[solved - 1], &points[c]));
   }
   PetscCall(LamFailureDestroy(&failure));
   PetscCall(LamMeshesDestroy(&meshes));

@@ -13,6 +13,7 @@
 #define RVE_FILE "test_plot_rve.h5"
 #define FE2_FILE "test_plot_fe2.h5"
 #define DATABASE_FILE "test_plot_database.h5"
+#define MAP_FILE "test_plot_map.h5"
 
 static char Message[1024]; /* of the last error */
 
@@ -160,6 +161,36 @@ static void write_database(void)
   OK(LamRecordWriterClose(&writer));
 }
 
+/* Two by three points, the last one not solved yet. */
+static void write_map(void)
+{
+  const PetscInt dims[2] = {2, 3}, nx[1] = {3}, ny[1] = {2}, mode[6] = {0, 1, 1, 0, 2, -1};
+  const PetscReal x[3] = {0, 0.1, 0.2}, y[2] = {0, 0.05}, factor[6] = {NAN, 0.5, 0.5, NAN, 0.9, NAN};
+  LamRecordWriter writer;
+
+  OK(LamRecordWriterOpen(MAP_FILE, "map", LAM_WRITE_CREATE, &Scene, &writer));
+  OK(LamRecordWriterText(writer, "/map/x/quantity", "shear"));
+  OK(LamRecordWriterText(writer, "/map/x/spacing", "linear"));
+  OK(LamRecordWriterText(writer, "/map/x/unit", "1"));
+  OK(LamRecordWriterReals(writer, "/map/x/values", 1, nx, x, "1"));
+  OK(LamRecordWriterText(writer, "/map/y/quantity", "turgor"));
+  OK(LamRecordWriterText(writer, "/map/y/spacing", "linear"));
+  OK(LamRecordWriterText(writer, "/map/y/unit", "MPa"));
+  OK(LamRecordWriterReals(writer, "/map/y/values", 1, ny, y, "MPa"));
+  OK(LamRecordWriterText(writer, "/map/modes", "none\nseparation\nrupture\n"));
+  OK(LamRecordWriterInts(writer, "/map/mode", 2, dims, mode));
+  OK(LamRecordWriterReals(writer, "/map/load_factor", 2, dims, factor, "1"));
+  for (PetscInt64 k = 0; k < 5; k++) {
+    const LamLoad load = {{1, 0.05 * k, 0, 0, 1, 0, 0, 0, 1}, 0, 0};
+    LamResponse response;
+
+    OK(LamResponseInit(&load, &response));
+    response.status = LAM_CONVERGED;
+    OK(LamRecordWriterCommit(writer, 1, &k, &response));
+  }
+  OK(LamRecordWriterClose(&writer));
+}
+
 static int write_files(void **state)
 {
   PetscErrorHandlingInitialized = PETSC_TRUE; /* before PetscInitialize PETSc calls no handler else */
@@ -168,6 +199,7 @@ static int write_files(void **state)
   write_rve();
   write_fe2();
   write_database();
+  write_map();
   return 0;
 }
 
@@ -176,6 +208,7 @@ static int remove_files(void **state)
   remove(RVE_FILE);
   remove(FE2_FILE);
   remove(DATABASE_FILE);
+  remove(MAP_FILE);
   PetscPopErrorHandler();
   return 0;
 }
@@ -216,6 +249,10 @@ static void fe2_runs_are_drawn(void **state)
 static void databases_are_drawn(void **state)
 {
   draws(LamPlotDatabase, DATABASE_FILE, "test_plot_db.pdf", "%PDF");
+}
+static void maps_are_drawn(void **state)
+{
+  draws(LamPlotMap, MAP_FILE, "test_plot_map.pdf", "%PDF");
 }
 
 /* Expects that `plot` refuses the request with `code` and a message that contains `words`, and writes nothing. */
@@ -262,6 +299,13 @@ static void a_field_that_the_file_lacks_is_refused(void **state)
   refuses(LamPlotFE2, &request, PETSC_ERR_USER_INPUT, "/macro/step/2/P");
 }
 
+static void a_field_that_no_record_has_is_refused(void **state)
+{
+  const LamPlotRequest request = {MAP_FILE, "test_plot_none.pdf", -1, "colour"};
+
+  refuses(LamPlotMap, &request, PETSC_ERR_USER_INPUT, "load_factor");
+}
+
 static void a_state_of_a_database_is_refused(void **state)
 {
   const LamPlotRequest request = {DATABASE_FILE, "test_plot_none.pdf", 1, NULL};
@@ -290,6 +334,8 @@ int main(void)
       cmocka_unit_test(rve_states_are_drawn_as_pdf),
       cmocka_unit_test(fe2_runs_are_drawn),
       cmocka_unit_test(databases_are_drawn),
+      cmocka_unit_test(maps_are_drawn),
+      cmocka_unit_test(a_field_that_no_record_has_is_refused),
       cmocka_unit_test(a_state_that_is_not_there_is_refused),
       cmocka_unit_test(a_state_without_an_answer_is_refused_with_its_reason),
       cmocka_unit_test(an_unknown_field_is_refused_with_the_known_ones),

@@ -3,6 +3,7 @@
 #include "assert_near.h"
 #include <hdf5.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 
 static void records_come_back_bit_for_bit(void **state)
@@ -163,6 +164,34 @@ static void arrays_and_texts_come_back(void **state)
   PetscFree(text);
 }
 
+/* A table that is written again and again must not make the file grow. */
+static void an_array_of_the_same_shape_is_written_over_in_place(void **state)
+{
+  const PetscInt dims[1] = {1000};
+  PetscReal *values, *read;
+  PetscInt rank, read_dims[4];
+  LamRecordWriter writer;
+  struct stat before, after;
+  PetscBool found;
+
+  PetscCalloc1(1000, &values);
+  WriteFile(1);
+  writer = Open(LAM_WRITE_APPEND);
+  assert_int_equal(LamRecordWriterReals(writer, "/table", 1, dims, values, "1"), 0);
+  assert_int_equal(stat(path, &before), 0);
+  for (int i = 1; i <= 20; i++) {
+    values[999] = i;
+    assert_int_equal(LamRecordWriterReals(writer, "/table", 1, dims, values, "1"), 0);
+  }
+  assert_int_equal(LamRecordWriterClose(&writer), 0);
+  assert_int_equal(stat(path, &after), 0);
+  assert_int_equal(before.st_size, after.st_size);
+  assert_int_equal(LamFileReadReals(path, "/table", &found, &rank, read_dims, &read), 0);
+  assert_near(read[999], 20, 0);
+  PetscFree(read);
+  PetscFree(values);
+}
+
 static void what_is_not_there_is_not_found(void **state)
 {
   PetscInt rank, dims[4];
@@ -198,6 +227,7 @@ int main(void)
       TEST(a_reader_is_not_shut_out_by_a_writer),
       TEST(a_killed_writer_loses_nothing_it_has_committed),
       TEST(arrays_and_texts_come_back),
+      TEST(an_array_of_the_same_shape_is_written_over_in_place),
       TEST(what_is_not_there_is_not_found),
       TEST(info_counts_records_and_failures),
   };
