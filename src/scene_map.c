@@ -187,6 +187,12 @@ static PetscErrorCode CheckAxis(const LamDocument *document, const AxisNodes *no
   case LAM_MAP_SHEAR:
     PetscCall(CheckShear(document, nodes, scene, axis));
     break;
+  case LAM_MAP_LAMELLA_NORMAL:
+  case LAM_MAP_LAMELLA_SHEAR:
+    if (scene->micro.interface == LAM_INTERFACE_CONTACT)
+      PetscCall(LamSceneFail(document, nodes->quantity,
+                             "law: contact has a cohesion instead; write cohesion, or interface: {law: bonded}"));
+    break;
   case LAM_MAP_C4:
   case LAM_MAP_WALL_THICKNESS:
     PetscCall(CheckWalls(document, nodes, &scene->micro, axis->quantity));

@@ -348,8 +348,8 @@ static PetscErrorCode Take(LamFailure *failure, LamMeshes *meshes, PetscInt numb
   PetscCall(CopyStates(meshes, failure->before, from.states));
   for (PetscInt m = 0; m < 2; m++) from.responses[m] = failure->last[m];
   if (first && known) {
-    way = MakeWay(meshes, (PetscReal)number, 0, &to->responses[0].load, to->responses[0].P, &to->responses[0].load,
-                  NULL);
+    way =
+        MakeWay(meshes, (PetscReal)number, 0, &to->responses[0].load, to->responses[0].P, &to->responses[0].load, NULL);
     to->share = 0;
     PetscCall(JudgeFirst(failure, &way, to));
   } else if (first) {
@@ -470,8 +470,7 @@ PetscErrorCode LamFailureFind(LamMeshes *meshes, const LamFailureProgram *progra
     LamResponse responses[2];
 
     if (program->stop_at_first && IsReached(failure)) break;
-    PetscCall(
-        LamMeshesSolve(meshes, &program->loads[k], program->controls ? &program->controls[k] : NULL, responses));
+    PetscCall(LamMeshesSolve(meshes, &program->loads[k], program->controls ? &program->controls[k] : NULL, responses));
     PetscCall(LamFailureWatch(failure, meshes, k + 1, responses));
   }
   PetscCall(LamFailureConclude(failure));

@@ -336,7 +336,7 @@ static PetscErrorCode FollowOwn(const LamScene *own, PetscInt number, LamMapPoin
   PetscCall(PetscMalloc1(path.count, &responses));
   program =
       (LamFailureProgram){own->micro.interface, &own->strength, path.count, path.loads, path.controls, PETSC_TRUE};
-  PetscCall(LamMeshesCreate(own, own->micro.interface == LAM_INTERFACE_CONTACT ? 2 : 1, &meshes));
+  PetscCall(LamMeshesCreate(PETSC_COMM_SELF, own, own->micro.interface == LAM_INTERFACE_CONTACT ? 2 : 1, &meshes));
   PetscCall(LamFailureCreate(&meshes, &program, &failure));
   PetscCall(Solve(&meshes, &path, &failure, responses, &solved));
   *complete = (PetscBool)!LamStopRequested();
