@@ -60,7 +60,7 @@ static json_t *FailureToJSON(const LamMapPoint *point)
   if (point->criterion == LAM_CRITERION_COUNT) return o;
   json_object_set_new(o, "criterion", json_string(LamCriterionNames[point->criterion]));
   json_object_set_new(o, "load_factor", LamJSONReal(point->load_factor));
-  json_object_set_new(o, "place", LamJSONReals(3, point->place, 1));
+  json_object_set_new(o, "place", LamPlaceToJSON(point->place));
   return o;
 }
 

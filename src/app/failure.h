@@ -5,8 +5,8 @@
 
   Load factor: the number of a state, with a fraction for the share of the way from it to the next, along which F,
   turgor and cohesion are linear; where P is prescribed instead of F, P is, from its value in the state before. State 0
-  is F = I, or P = 0 where state 1 prescribes P, at the turgor and cohesion of state 1; where it has no answer the program
-  begins with state 1. docs/theory.md has the definitions.
+  is F = I, or P = 0 where state 1 prescribes P, at the turgor and cohesion of state 1; where it has no answer the
+  program begins with state 1. docs/theory.md has the definitions.
 */
 #ifndef LAM_FAILURE_H
 #define LAM_FAILURE_H
@@ -89,6 +89,8 @@ PetscErrorCode LamFailureDestroy(LamFailure *failure);
 
 /* A line for a person on what walls and lamella bear in a state, over their strengths where these are given. */
 PetscErrorCode LamFailurePrintState(const LamResponse *response, const LamStrength *strength, const LamScales *scales);
+/* {"cell": 0, "face": 0, "along": 0.06}; null where there is no place. */
+json_t *LamPlaceToJSON(const PetscReal place[3]);
 /* One JSON object {"failure": {...}} or a few lines for a person, on stdout. */
 PetscErrorCode LamFailurePrint(const LamFailure *failure, const LamScales *scales, PetscBool json);
 

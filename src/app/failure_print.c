@@ -42,7 +42,7 @@ PetscErrorCode LamFailurePrintState(const LamResponse *response, const LamStreng
 
 /* ---- the verdict, for programs ---- */
 
-static json_t *PlaceToJSON(const PetscReal place[3])
+json_t *LamPlaceToJSON(const PetscReal place[3])
 {
   if (!isfinite(place[0])) return json_null();
   return json_pack("{s:I, s:I, s:f}", "cell", (json_int_t)place[0], "face", (json_int_t)place[1], "along",
@@ -58,7 +58,7 @@ static json_t *OnsetToJSON(const LamCriterionOnset *onset)
   json_object_set_new(o, "factor", LamJSONReal(onset->factor));
   if (isnan(onset->factor)) return o;
   json_object_set_new(o, "bracket", LamJSONReals(2, onset->bracket, 1));
-  json_object_set_new(o, "place", PlaceToJSON(onset->place));
+  json_object_set_new(o, "place", LamPlaceToJSON(onset->place));
   return o;
 }
 
