@@ -9,7 +9,7 @@
     plot_outline.c   edges and closed outlines of such meshes
     plot_curves.c    stress-load curves
     plot_read.c      arrays of a file, checked
-    plot_rve.c, plot_fe2.c, plot_database.c, plot_map.c    one kind of file each
+    plot_rve.c, plot_fe2.c, plot_database.c, plot_map.c    one kind of file each (plot_map_read.c: what a map shows)
 
   Lengths on the page are points (1/72 inch), y downwards. Text markup: $...$ italic, _{...} subscript, ^{...}
   superscript.

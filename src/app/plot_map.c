@@ -3,230 +3,27 @@
 
   Each point is a cell of the picture, whose edges are half-way to its neighbours.
 */
-#include "plot.h"
+#include "plot_map.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 static const LamColour Ink = {0.15, 0.15, 0.15}, Empty = {0.93, 0.93, 0.93};
 
-/* Colours of Okabe and Ito; a mode that is not here is drawn as unknown. */
+/* Colours of Okabe and Ito, some of them lighter. */
 static const struct {
-  const char *name, *label;
+  const char *label;
   LamColour colour;
-} Modes[] = {
-    {"none", "no failure", {0.80, 0.90, 0.78}},
-    {"separation", "cells separate", {0.34, 0.71, 0.91}},
-    {"rupture", "walls rupture", {0.84, 0.37, 0.00}},
-    {"buckling", "walls buckle", {0.80, 0.60, 0.78}},
-    {"turgor_loss", "turgor is lost", {0.96, 0.87, 0.45}},
-    {"unknown", "not known", {1, 1, 1}},
+} Modes[LAM_MAP_MODE_COUNT] = {
+    [LAM_MAP_NONE] = {"no failure", {0.80, 0.90, 0.78}},
+    [LAM_MAP_SEPARATION] = {"cells separate", {0.34, 0.71, 0.91}},
+    [LAM_MAP_RUPTURE] = {"walls rupture", {0.84, 0.37, 0.00}},
+    [LAM_MAP_BUCKLING] = {"walls buckle", {0.80, 0.60, 0.78}},
+    [LAM_MAP_TURGOR_LOSS] = {"turgor is lost", {0.96, 0.87, 0.45}},
+    [LAM_MAP_UNKNOWN] = {"not known", {1, 1, 1}},
 };
-enum { MODE_COUNT = PETSC_STATIC_ARRAY_LENGTH(Modes), UNKNOWN = MODE_COUNT - 1, NAME_LENGTH = 32 };
 
-/* One axis: where its points and the edges of their cells lie, logarithms where the spacing is. */
-typedef struct {
-  PetscInt n;
-  PetscReal *at, *edge; /* [n], [n + 1]; owned */
-  PetscBool is_log;
-  char quantity[NAME_LENGTH], unit[NAME_LENGTH], label[96];
-} Side;
-
-typedef struct {
-  Side x, y;
-  PetscInt n;             /* points of the map */
-  PetscInt *mode;         /* [n] number in Modes, -1: no answer yet; owned */
-  PetscReal *load_factor; /* [n]; owned */
-  PetscReal *shear;       /* [n] F12 of the record; owned */
-  PetscReal *value;       /* [n] of the field; owned */
-  const char *field, *unit;
-  LamColourRange range;
-} MapPicture;
-
-/* ---- reading ---- */
-
-static PetscErrorCode ReadText(const char path[], const char name[], size_t size, char text[])
-{
-  PetscBool found;
-  char *read;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamFileReadText(path, name, &found, &read));
-  PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no %s to draw", path, name);
-  PetscCall(PetscStrncpy(text, read, size));
-  PetscCall(PetscFree(read));
-  PetscFunctionReturn(0);
-}
-
-static void LabelSide(Side *side)
-{
-  static const struct {
-    const char *quantity, *label;
-  } labels[] = {{"turgor", "turgor $p$"},
-                {"cohesion", "cohesion $g$"},
-                {"shear", "shear $F$_{12}"},
-                {"load_factor", "load factor"},
-                {"wall_strength", "strength of the wall"},
-                {"lamella_normal", "normal strength of the lamella"},
-                {"lamella_shear", "shear strength of the lamella"},
-                {"C4", "fibre modulus $C$_{4}"},
-                {"wall_thickness", "wall thickness $t$"}};
-  const char *label = side->quantity;
-
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(labels); i++)
-    if (!strcmp(side->quantity, labels[i].quantity)) label = labels[i].label;
-  if (side->is_log && strcmp(side->unit, "1"))
-    snprintf(side->label, sizeof side->label, "log_{10} of %s in %s", label, side->unit);
-  else
-    snprintf(side->label, sizeof side->label, "%s%s", side->is_log ? "log_{10} of " : "", label);
-}
-
-static PetscErrorCode ReadSide(const char path[], char letter, Side *side)
-{
-  char name[LAM_NAME_LENGTH], spacing[NAME_LENGTH];
-  PetscInt rank, dims[4];
-  PetscBool found;
-
-  PetscFunctionBeginUser;
-  snprintf(name, sizeof name, "/map/%c/quantity", letter);
-  PetscCall(ReadText(path, name, sizeof side->quantity, side->quantity));
-  snprintf(name, sizeof name, "/map/%c/unit", letter);
-  PetscCall(ReadText(path, name, sizeof side->unit, side->unit));
-  snprintf(name, sizeof name, "/map/%c/spacing", letter);
-  PetscCall(ReadText(path, name, sizeof spacing, spacing));
-  snprintf(name, sizeof name, "/map/%c/values", letter);
-  PetscCall(LamFileReadReals(path, name, &found, &rank, dims, &side->at));
-  PetscCheck(found && rank == 1 && dims[0] > 1, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no %s to draw", path,
-             name);
-  side->n = dims[0];
-  side->is_log = (PetscBool)!strcmp(spacing, "log");
-  PetscCall(PetscMalloc1(side->n + 1, &side->edge));
-  for (PetscInt i = 0; i < side->n && side->is_log; i++) side->at[i] = log10(side->at[i]);
-  for (PetscInt i = 1; i < side->n; i++) side->edge[i] = 0.5 * (side->at[i - 1] + side->at[i]);
-  side->edge[0] = 1.5 * side->at[0] - 0.5 * side->at[1];
-  side->edge[side->n] = 1.5 * side->at[side->n - 1] - 0.5 * side->at[side->n - 2];
-  LabelSide(side);
-  PetscFunctionReturn(0);
-}
-
-/* The file's numbers of modes follow its own list of names. */
-static PetscErrorCode ReadModes(const char path[], MapPicture *p)
-{
-  PetscInt rank, dims[4], number[16], count = 0;
-  char names[512], *rest;
-  PetscBool found;
-
-  PetscFunctionBeginUser;
-  PetscCall(ReadText(path, "/map/modes", sizeof names, names));
-  for (char *name = strtok_r(names, "\n", &rest); name && count < 16; name = strtok_r(NULL, "\n", &rest)) {
-    number[count] = UNKNOWN;
-    for (PetscInt k = 0; k < MODE_COUNT; k++)
-      if (!strcmp(name, Modes[k].name)) number[count] = k;
-    count++;
-  }
-  PetscCall(LamFileReadInts(path, "/map/mode", &found, &rank, dims, &p->mode));
-  PetscCheck(found && rank == 2 && dims[0] == p->y.n && dims[1] == p->x.n, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: /map/mode does not fit the axes; the file is damaged", path);
-  for (PetscInt i = 0; i < p->n; i++)
-    if (p->mode[i] >= 0) p->mode[i] = p->mode[i] < count ? number[p->mode[i]] : UNKNOWN;
-  PetscFunctionReturn(0);
-}
-
-/* A number that every record has: its name in the table of members. */
-static const LamMember *FindMember(const char name[])
-{
-  for (const LamMember *m = LamResponseMembers; m->name; m++)
-    if (m->count == 1 && (m->type == LAM_MEMBER_REAL || m->type == LAM_MEMBER_INT) && !strcmp(m->name, name)) return m;
-  return NULL;
-}
-
-/* The member of a record in physical units; NaN where it has no fields. */
-static PetscReal MemberValue(const LamMember *member, const LamResponse *record, const LamScales *scales)
-{
-  const char *at = (const char *)record + member->offset;
-
-  if (!LamResponseHasFields(record)) return NAN;
-  if (member->type == LAM_MEMBER_INT) return (PetscReal) * (const PetscInt *)(const void *)at;
-  return *(const PetscReal *)(const void *)at * PetscPowReal(scales->stress * 1e-6, member->stress_power);
-}
-
-/* member: NULL for none. */
-static PetscErrorCode ReadRecords(const char path[], const LamMember *member, MapPicture *p)
-{
-  LamDatabase database;
-  LamMicrostructure micro;
-  LamScales scales;
-  const LamResponse *records;
-  const PetscInt64 *keys;
-  const char *hash;
-  PetscInt n;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamDatabaseOpen(path, &database));
-  PetscCall(LamDatabaseGetRecords(database, &n, &records, &keys));
-  PetscCall(LamDatabaseGetMicrostructure(database, &micro, &scales, &hash));
-  for (PetscInt i = 0; i < n; i++) {
-    if (keys[i] < 0 || keys[i] >= p->n) continue;
-    p->shear[keys[i]] = records[i].load.F[1];
-    if (member) p->value[keys[i]] = MemberValue(member, &records[i], &scales);
-  }
-  p->unit = member && member->stress_power == 1 ? "MPa" : NULL;
-  PetscCall(LamDatabaseClose(&database));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ReadField(const LamPlotRequest *request, MapPicture *p)
-{
-  const LamMember *member;
-
-  PetscFunctionBeginUser;
-  p->field = request->field ? request->field : "load_factor";
-  member = FindMember(p->field);
-  PetscCheck(member || !strcmp(p->field, "load_factor"), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "--field %s: a map has load_factor and the single numbers of its records, such as max_wall_tension, "
-             "max_traction, open_fraction, max_gap, energy",
-             p->field);
-  PetscCall(PetscMalloc1(p->n, &p->value));
-  PetscCall(PetscMalloc1(p->n, &p->shear));
-  for (PetscInt i = 0; i < p->n; i++) {
-    p->value[i] = member ? NAN : p->load_factor[i];
-    p->shear[i] = NAN;
-  }
-  PetscCall(ReadRecords(request->input, member, p));
-  PetscCall(LamColourRangeFind(p->n, p->value, &p->range));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ReadMap(const LamPlotRequest *request, MapPicture *p)
-{
-  PetscFunctionBeginUser;
-  memset(p, 0, sizeof *p);
-  PetscCall(ReadSide(request->input, 'x', &p->x));
-  PetscCall(ReadSide(request->input, 'y', &p->y));
-  p->n = p->x.n * p->y.n;
-  PetscCall(ReadModes(request->input, p));
-  PetscCall(LamPlotReadReals(request->input, "/map/load_factor", p->y.n, p->x.n, &p->load_factor));
-  PetscCall(ReadField(request, p));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Destroy(MapPicture *p)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree(p->x.at));
-  PetscCall(PetscFree(p->x.edge));
-  PetscCall(PetscFree(p->y.at));
-  PetscCall(PetscFree(p->y.edge));
-  PetscCall(PetscFree(p->mode));
-  PetscCall(PetscFree(p->load_factor));
-  PetscCall(PetscFree(p->shear));
-  PetscCall(PetscFree(p->value));
-  PetscFunctionReturn(0);
-}
-
-/* ---- drawing ---- */
-
-static LamAxes AxesOf(const MapPicture *p)
+static LamAxes AxesOf(const LamMapPicture *p)
 {
   const char *x_unit = p->x.is_log || !strcmp(p->x.unit, "1") ? NULL : p->x.unit;
   const char *y_unit = p->y.is_log || !strcmp(p->y.unit, "1") ? NULL : p->y.unit;
@@ -236,7 +33,7 @@ static LamAxes AxesOf(const MapPicture *p)
 }
 
 /* A cell of the picture; neighbours overlap by a hair, so that no seam shows. */
-static void CellPath(cairo_t *cr, const LamAxes *axes, const MapPicture *p, PetscInt i)
+static void CellPath(cairo_t *cr, const LamAxes *axes, const LamMapPicture *p, PetscInt i)
 {
   const PetscInt x = i % p->x.n, y = i / p->x.n;
   const double left = LamAxesX(axes, p->x.edge[x]), right = LamAxesX(axes, p->x.edge[x + 1]);
@@ -246,7 +43,7 @@ static void CellPath(cairo_t *cr, const LamAxes *axes, const MapPicture *p, Pets
 }
 
 /* A thin cross, where there is no answer. */
-static void CrossCell(cairo_t *cr, const LamAxes *axes, const MapPicture *p, PetscInt i)
+static void CrossCell(cairo_t *cr, const LamAxes *axes, const LamMapPicture *p, PetscInt i)
 {
   const double x = LamAxesX(axes, p->x.at[i % p->x.n]), y = LamAxesY(axes, p->y.at[i / p->x.n]), h = 1.8;
 
@@ -258,7 +55,7 @@ static void CrossCell(cairo_t *cr, const LamAxes *axes, const MapPicture *p, Pet
   cairo_stroke(cr);
 }
 
-static void DrawModes(LamCanvas canvas, const LamAxes *axes, const MapPicture *p)
+static void DrawModes(LamCanvas canvas, const LamAxes *axes, const LamMapPicture *p)
 {
   cairo_t *cr = LamCanvasCairo(canvas);
 
@@ -267,11 +64,11 @@ static void DrawModes(LamCanvas canvas, const LamAxes *axes, const MapPicture *p
     CellPath(cr, axes, p, i);
     cairo_fill(cr);
     LamCanvasSetColour(canvas, Ink);
-    if (p->mode[i] == UNKNOWN) CrossCell(cr, axes, p, i);
+    if (p->mode[i] == LAM_MAP_UNKNOWN) CrossCell(cr, axes, p, i);
   }
 }
 
-static void DrawField(LamCanvas canvas, const LamAxes *axes, const MapPicture *p)
+static void DrawField(LamCanvas canvas, const LamAxes *axes, const LamMapPicture *p)
 {
   cairo_t *cr = LamCanvasCairo(canvas);
 
@@ -285,7 +82,7 @@ static void DrawField(LamCanvas canvas, const LamAxes *axes, const MapPicture *p
 /* ---- the onset, finer than the cells ---- */
 
 /* Where a row or column of points along the load fails, in the axis' own quantity; NaN: nowhere. */
-static PetscReal OnsetAlong(const MapPicture *p, const Side *side, PetscInt last)
+static PetscReal OnsetAlong(const LamMapPicture *p, const LamMapSide *side, PetscInt last)
 {
   const PetscReal onset = !strcmp(side->quantity, "shear") ? p->shear[last] : p->load_factor[last];
 
@@ -293,16 +90,16 @@ static PetscReal OnsetAlong(const MapPicture *p, const Side *side, PetscInt last
   return side->is_log ? log10(onset) : onset;
 }
 
-static PetscBool IsOfLoad(const Side *side)
+static PetscBool IsOfLoad(const LamMapSide *side)
 {
   return (PetscBool)(!strcmp(side->quantity, "shear") || !strcmp(side->quantity, "load_factor"));
 }
 
 /* Where an axis is of the load: the load at which each path fails. */
-static void DrawOnset(LamCanvas canvas, const LamAxes *axes, const MapPicture *p)
+static void DrawOnset(LamCanvas canvas, const LamAxes *axes, const LamMapPicture *p)
 {
   const PetscBool x_is_load = IsOfLoad(&p->x);
-  const Side *load = x_is_load ? &p->x : &p->y, *other = x_is_load ? &p->y : &p->x;
+  const LamMapSide *load = x_is_load ? &p->x : &p->y, *other = x_is_load ? &p->y : &p->x;
   cairo_t *cr = LamCanvasCairo(canvas);
   PetscBool drawing = PETSC_FALSE;
 
@@ -326,7 +123,7 @@ static void DrawOnset(LamCanvas canvas, const LamAxes *axes, const MapPicture *p
 /* ---- contours ---- */
 
 /* Where `level` lies between two points; false: not between them. */
-static PetscBool Crossing(const MapPicture *p, PetscInt a, PetscInt b, PetscReal level, PetscReal at[2])
+static PetscBool Crossing(const LamMapPicture *p, PetscInt a, PetscInt b, PetscReal level, PetscReal at[2])
 {
   const PetscReal va = p->load_factor[a], vb = p->load_factor[b];
   PetscReal share;
@@ -339,7 +136,7 @@ static PetscBool Crossing(const MapPicture *p, PetscInt a, PetscInt b, PetscReal
 }
 
 /* The piece of a contour between four points of one mode; between modes the load factor may jump. */
-static PetscBool ContourPiece(const MapPicture *p, PetscInt x, PetscInt y, PetscReal level, PetscReal piece[2][2])
+static PetscBool ContourPiece(const LamMapPicture *p, PetscInt x, PetscInt y, PetscReal level, PetscReal piece[2][2])
 {
   const PetscInt a = y * p->x.n + x, b = a + 1, c = b + p->x.n, d = a + p->x.n;
   const PetscInt sides[4][2] = {{a, b}, {b, c}, {c, d}, {d, a}};
@@ -351,7 +148,8 @@ static PetscBool ContourPiece(const MapPicture *p, PetscInt x, PetscInt y, Petsc
 }
 
 /* A contour with its level once, where there is room for it: at the piece nearest to the diagonal. */
-static void DrawContour(LamCanvas canvas, const LamAxes *axes, const MapPicture *p, PetscReal level, const char text[])
+static void DrawContour(LamCanvas canvas, const LamAxes *axes, const LamMapPicture *p, PetscReal level,
+                        const char text[])
 {
   cairo_t *cr = LamCanvasCairo(canvas);
   const LamRect f = axes->frame;
@@ -379,7 +177,7 @@ static void DrawContour(LamCanvas canvas, const LamAxes *axes, const MapPicture 
   LamCanvasText(canvas, at[0] + 2, at[1] - 4, 0, 0, LAM_TICK_SIZE - 1, text);
 }
 
-static PetscErrorCode DrawContours(LamCanvas canvas, const LamAxes *axes, const MapPicture *p)
+static PetscErrorCode DrawContours(LamCanvas canvas, const LamAxes *axes, const LamMapPicture *p)
 {
   LamColourRange range;
   LamTicks ticks;
@@ -417,7 +215,7 @@ static void DrawSample(LamCanvas canvas, double x, double y, const LamColour *co
   cairo_stroke(cr);
 }
 
-static PetscBool Occurs(const MapPicture *p, PetscInt mode)
+static PetscBool Occurs(const LamMapPicture *p, PetscInt mode)
 {
   for (PetscInt i = 0; i < p->n; i++)
     if (p->mode[i] == mode) return PETSC_TRUE;
@@ -425,21 +223,23 @@ static PetscBool Occurs(const MapPicture *p, PetscInt mode)
 }
 
 /* The modes that occur, and what the lines are. Returns the height used. */
-static double DrawLegend(LamCanvas canvas, LamRect outer, const MapPicture *p)
+static double DrawLegend(LamCanvas canvas, LamRect outer, const LamMapPicture *p)
 {
   const double row = 1.6 * LAM_TICK_SIZE, sample = LAM_TICK_SIZE + 3;
   double x = outer.x, y = outer.y + 0.5 * row;
 
-  for (PetscInt k = 0; k <= MODE_COUNT; k++) {
-    const char *label = k < MODE_COUNT ? Modes[k].label : IsOfLoad(&p->x) || IsOfLoad(&p->y) ? "onset" : "load factor";
+  for (PetscInt k = 0; k <= LAM_MAP_MODE_COUNT; k++) {
+    const char *label = k < LAM_MAP_MODE_COUNT               ? Modes[k].label
+                        : IsOfLoad(&p->x) || IsOfLoad(&p->y) ? "onset"
+                                                             : "load factor";
     const double width = sample + LamCanvasTextWidth(canvas, LAM_TICK_SIZE, label) + 9;
 
-    if (k < MODE_COUNT && !Occurs(p, k)) continue;
+    if (k < LAM_MAP_MODE_COUNT && !Occurs(p, k)) continue;
     if (x > outer.x && x + width > outer.x + outer.width) {
       x = outer.x;
       y += row;
     }
-    DrawSample(canvas, x, y, k < MODE_COUNT ? &Modes[k].colour : NULL);
+    DrawSample(canvas, x, y, k < LAM_MAP_MODE_COUNT ? &Modes[k].colour : NULL);
     LamCanvasText(canvas, x + sample, y, 0, 0, LAM_TICK_SIZE, label);
     x += width;
   }
@@ -474,7 +274,7 @@ static void DrawFrame(LamCanvas canvas, const LamAxes *axes)
   cairo_stroke(cr);
 }
 
-static PetscErrorCode DrawPage(LamCanvas canvas, const MapPicture *p)
+static PetscErrorCode DrawPage(LamCanvas canvas, const LamMapPicture *p)
 {
   const double bar = LamColourBarWidth(canvas, &p->range), width = 0.5 * (LAM_PLOT_WIDTH - 18 - 14 - bar), top = 6;
   LamRect left = {9, top, width, LAM_PLOT_HEIGHT - top - 6}, right;
@@ -505,15 +305,15 @@ static PetscErrorCode DrawPage(LamCanvas canvas, const MapPicture *p)
 
 PetscErrorCode LamPlotMap(const LamPlotRequest *request)
 {
-  MapPicture picture;
+  LamMapPicture picture;
   LamCanvas canvas;
 
   PetscFunctionBeginUser;
   PetscCheck(request->state < 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "--state: a map is drawn as a whole");
-  PetscCall(ReadMap(request, &picture));
+  PetscCall(LamMapPictureRead(request, &picture));
   PetscCall(LamCanvasCreate(request->output, LAM_PLOT_WIDTH, LAM_PLOT_HEIGHT, &canvas));
   PetscCall(DrawPage(canvas, &picture));
   PetscCall(LamCanvasFinish(&canvas));
-  PetscCall(Destroy(&picture));
+  PetscCall(LamMapPictureDestroy(&picture));
   PetscFunctionReturn(0);
 }

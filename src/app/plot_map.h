@@ -1,0 +1,42 @@
+/*
+  Private to the picture of a map: what it shows.
+*/
+#ifndef LAM_PLOT_MAP_H
+#define LAM_PLOT_MAP_H
+
+#include "plot.h"
+
+/* As files name them; any other is drawn as unknown. */
+#define LAM_MAP_MODES(X)                                                                                               \
+  X(LAM_MAP_NONE, "none")                                                                                              \
+  X(LAM_MAP_SEPARATION, "separation")                                                                                  \
+  X(LAM_MAP_RUPTURE, "rupture")                                                                                        \
+  X(LAM_MAP_BUCKLING, "buckling")                                                                                      \
+  X(LAM_MAP_TURGOR_LOSS, "turgor_loss")                                                                                \
+  X(LAM_MAP_UNKNOWN, "unknown")
+typedef enum { LAM_MAP_MODES(LAM_ENUM_ENTRY) LAM_MAP_MODE_COUNT } LamMapMode;
+
+/* One axis: where its points and the edges of their cells lie, logarithms where the spacing is. */
+typedef struct {
+  PetscInt n;
+  PetscReal *at, *edge; /* [n], [n + 1]; owned */
+  PetscBool is_log;
+  char quantity[LAM_NAME_LENGTH], unit[LAM_NAME_LENGTH], label[192];
+} LamMapSide;
+
+typedef struct {
+  LamMapSide x, y;
+  PetscInt n;             /* points of the map */
+  PetscInt *mode;         /* [n] a LamMapMode, -1: no answer yet; owned */
+  PetscReal *load_factor; /* [n]; owned */
+  PetscReal *shear;       /* [n] F12 of the record; owned */
+  PetscReal *value;       /* [n] of the field; owned */
+  const char *field, *unit;
+  LamColourRange range;
+} LamMapPicture;
+
+/* ---- plot_map_read.c: PETSC_ERR_USER_INPUT where the file or the request lacks something ---- */
+PetscErrorCode LamMapPictureRead(const LamPlotRequest *request, LamMapPicture *picture);
+PetscErrorCode LamMapPictureDestroy(LamMapPicture *picture);
+
+#endif

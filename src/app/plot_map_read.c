@@ -1,0 +1,188 @@
+/*
+  What the picture of a map shows, from its file.
+*/
+#include "plot_map.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char *const ModeNames[] = {LAM_MAP_MODES(LAM_NAME_ENTRY)};
+
+static PetscErrorCode ReadText(const char path[], const char name[], size_t size, char text[])
+{
+  PetscBool found;
+  char *read;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileReadText(path, name, &found, &read));
+  PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no %s to draw", path, name);
+  PetscCall(PetscStrncpy(text, read, size));
+  PetscCall(PetscFree(read));
+  PetscFunctionReturn(0);
+}
+
+static void LabelSide(LamMapSide *side)
+{
+  static const struct {
+    const char *quantity, *label;
+  } labels[] = {{"turgor", "turgor $p$"},
+                {"cohesion", "cohesion $g$"},
+                {"shear", "shear $F$_{12}"},
+                {"load_factor", "load factor"},
+                {"wall_strength", "strength of the wall"},
+                {"lamella_normal", "normal strength of the lamella"},
+                {"lamella_shear", "shear strength of the lamella"},
+                {"C4", "fibre modulus $C$_{4}"},
+                {"wall_thickness", "wall thickness $t$"}};
+  const char *label = side->quantity;
+
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(labels); i++)
+    if (!strcmp(side->quantity, labels[i].quantity)) label = labels[i].label;
+  if (side->is_log && strcmp(side->unit, "1"))
+    snprintf(side->label, sizeof side->label, "log_{10} of %s in %s", label, side->unit);
+  else
+    snprintf(side->label, sizeof side->label, "%s%s", side->is_log ? "log_{10} of " : "", label);
+}
+
+static PetscErrorCode ReadSide(const char path[], char letter, LamMapSide *side)
+{
+  char name[LAM_NAME_LENGTH], spacing[LAM_NAME_LENGTH];
+  PetscInt rank, dims[4];
+  PetscBool found;
+
+  PetscFunctionBeginUser;
+  snprintf(name, sizeof name, "/map/%c/quantity", letter);
+  PetscCall(ReadText(path, name, sizeof side->quantity, side->quantity));
+  snprintf(name, sizeof name, "/map/%c/unit", letter);
+  PetscCall(ReadText(path, name, sizeof side->unit, side->unit));
+  snprintf(name, sizeof name, "/map/%c/spacing", letter);
+  PetscCall(ReadText(path, name, sizeof spacing, spacing));
+  snprintf(name, sizeof name, "/map/%c/values", letter);
+  PetscCall(LamFileReadReals(path, name, &found, &rank, dims, &side->at));
+  PetscCheck(found && rank == 1 && dims[0] > 1, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no %s to draw", path,
+             name);
+  side->n = dims[0];
+  side->is_log = (PetscBool)!strcmp(spacing, "log");
+  PetscCall(PetscMalloc1(side->n + 1, &side->edge));
+  for (PetscInt i = 0; i < side->n && side->is_log; i++) side->at[i] = log10(side->at[i]);
+  for (PetscInt i = 1; i < side->n; i++) side->edge[i] = 0.5 * (side->at[i - 1] + side->at[i]);
+  side->edge[0] = 1.5 * side->at[0] - 0.5 * side->at[1];
+  side->edge[side->n] = 1.5 * side->at[side->n - 1] - 0.5 * side->at[side->n - 2];
+  LabelSide(side);
+  PetscFunctionReturn(0);
+}
+
+/* The file's numbers of modes follow its own list of names. */
+static PetscErrorCode ReadModes(const char path[], LamMapPicture *p)
+{
+  PetscInt rank, dims[4], number[16], count = 0;
+  char names[512], *rest;
+  PetscBool found;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReadText(path, "/map/modes", sizeof names, names));
+  for (char *name = strtok_r(names, "\n", &rest); name && count < 16; name = strtok_r(NULL, "\n", &rest)) {
+    number[count] = LAM_MAP_UNKNOWN;
+    for (PetscInt k = 0; k < LAM_MAP_MODE_COUNT; k++)
+      if (!strcmp(name, ModeNames[k])) number[count] = k;
+    count++;
+  }
+  PetscCall(LamFileReadInts(path, "/map/mode", &found, &rank, dims, &p->mode));
+  PetscCheck(found && rank == 2 && dims[0] == p->y.n && dims[1] == p->x.n, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: /map/mode does not fit the axes; the file is damaged", path);
+  for (PetscInt i = 0; i < p->n; i++)
+    if (p->mode[i] >= 0) p->mode[i] = p->mode[i] < count ? number[p->mode[i]] : LAM_MAP_UNKNOWN;
+  PetscFunctionReturn(0);
+}
+
+/* A number that every record has: its name in the table of members. */
+static const LamMember *FindMember(const char name[])
+{
+  for (const LamMember *m = LamResponseMembers; m->name; m++)
+    if (m->count == 1 && (m->type == LAM_MEMBER_REAL || m->type == LAM_MEMBER_INT) && !strcmp(m->name, name)) return m;
+  return NULL;
+}
+
+/* The member of a record in physical units; NaN where it has no fields. */
+static PetscReal MemberValue(const LamMember *member, const LamResponse *record, const LamScales *scales)
+{
+  const char *at = (const char *)record + member->offset;
+
+  if (!LamResponseHasFields(record)) return NAN;
+  if (member->type == LAM_MEMBER_INT) return (PetscReal) * (const PetscInt *)(const void *)at;
+  return *(const PetscReal *)(const void *)at * PetscPowReal(scales->stress * 1e-6, member->stress_power);
+}
+
+/* member: NULL for none. */
+static PetscErrorCode ReadRecords(const char path[], const LamMember *member, LamMapPicture *p)
+{
+  LamDatabase database;
+  LamMicrostructure micro;
+  LamScales scales;
+  const LamResponse *records;
+  const PetscInt64 *keys;
+  const char *hash;
+  PetscInt n;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamDatabaseOpen(path, &database));
+  PetscCall(LamDatabaseGetRecords(database, &n, &records, &keys));
+  PetscCall(LamDatabaseGetMicrostructure(database, &micro, &scales, &hash));
+  for (PetscInt i = 0; i < n; i++) {
+    if (keys[i] < 0 || keys[i] >= p->n) continue;
+    p->shear[keys[i]] = records[i].load.F[1];
+    if (member) p->value[keys[i]] = MemberValue(member, &records[i], &scales);
+  }
+  p->unit = member && member->stress_power == 1 ? "MPa" : NULL;
+  PetscCall(LamDatabaseClose(&database));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadField(const LamPlotRequest *request, LamMapPicture *p)
+{
+  const LamMember *member;
+
+  PetscFunctionBeginUser;
+  p->field = request->field ? request->field : "load_factor";
+  member = FindMember(p->field);
+  PetscCheck(member || !strcmp(p->field, "load_factor"), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "--field %s: a map has load_factor and the single numbers of its records, such as max_wall_tension, "
+             "max_traction, open_fraction, max_gap, energy",
+             p->field);
+  PetscCall(PetscMalloc1(p->n, &p->value));
+  PetscCall(PetscMalloc1(p->n, &p->shear));
+  for (PetscInt i = 0; i < p->n; i++) {
+    p->value[i] = member ? NAN : p->load_factor[i];
+    p->shear[i] = NAN;
+  }
+  PetscCall(ReadRecords(request->input, member, p));
+  PetscCall(LamColourRangeFind(p->n, p->value, &p->range));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMapPictureRead(const LamPlotRequest *request, LamMapPicture *p)
+{
+  PetscFunctionBeginUser;
+  memset(p, 0, sizeof *p);
+  PetscCall(ReadSide(request->input, 'x', &p->x));
+  PetscCall(ReadSide(request->input, 'y', &p->y));
+  p->n = p->x.n * p->y.n;
+  PetscCall(ReadModes(request->input, p));
+  PetscCall(LamPlotReadReals(request->input, "/map/load_factor", p->y.n, p->x.n, &p->load_factor));
+  PetscCall(ReadField(request, p));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMapPictureDestroy(LamMapPicture *p)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(p->x.at));
+  PetscCall(PetscFree(p->x.edge));
+  PetscCall(PetscFree(p->y.at));
+  PetscCall(PetscFree(p->y.edge));
+  PetscCall(PetscFree(p->mode));
+  PetscCall(PetscFree(p->load_factor));
+  PetscCall(PetscFree(p->shear));
+  PetscCall(PetscFree(p->value));
+  PetscFunctionReturn(0);
+}
