@@ -10,10 +10,8 @@
   x_a = y_a + F S_a; all derivatives follow from the list of pairs.
 */
 #include "gap_area.h"
+#include "edge_area.h"
 #include "rve_impl.h"
-
-/* Area under a quadratic edge with nodes 0 (start), 1 (middle), 2 (end): sum_{a<b} edge_area[a][b] x_a x x_b. */
-static const PetscReal edge_area[3][3] = {{0.0, 2.0 / 3.0, -1.0 / 6.0}, {0.0, 0.0, 2.0 / 3.0}, {0.0, 0.0, 0.0}};
 
 /* A node, seen from the cell whose face it belongs to. */
 typedef struct {
@@ -45,7 +43,7 @@ static Corner AddWall(const LamMesh *mesh, PetscInt cell, PetscInt face, const P
   for (PetscInt e = 0; e < mesh->along; ++e) {
     for (PetscInt i = 0; i < 3; ++i) node[i].node = LamMeshOuterNode(mesh, cell, last * face + 2 * e + i);
     for (PetscInt i = 0; i < 3; ++i)
-      for (PetscInt j = i + 1; j < 3; ++j) AddPair(mesh, node[i], node[j], -edge_area[i][j], cohesion, area);
+      for (PetscInt j = i + 1; j < 3; ++j) AddPair(mesh, node[i], node[j], -0.5 * lam_edge_area[i][j], cohesion, area);
   }
   return node[2];
 }
