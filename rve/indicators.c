@@ -286,6 +286,12 @@ static PetscErrorCode CountClusters(LamRVE rve, LamResponse *response)
   PetscFunctionReturn(0);
 }
 
+/* A narrow patch lacks a family of faces, one cell all of them: nothing is known of what is not there. */
+static PetscReal ShareOf(PetscReal whole, PetscReal part)
+{
+  return whole > 0.0 ? PetscMax(0.0, part / whole) : NAN;
+}
+
 PetscErrorCode LamContactIndicators(LamRVE rve, const LamLoad *load, LamResponse *response)
 {
   Sums sums = {.max_gap = -PETSC_MAX_REAL, .traction = LAM_NO_MEAN};
@@ -297,17 +303,17 @@ PetscErrorCode LamContactIndicators(LamRVE rve, const LamLoad *load, LamResponse
     const FamilySums *family = &sums.family[k];
 
     response->opening_by_face[k] = family->opening * load->F[8] / rve->mesh.V0;
-    response->debonded_by_face[k] = PetscMax(0.0, 1.0 - family->closed / family->length);
-    response->open_by_face[k] = family->open / family->length;
-    response->mean_face_traction[k] = family->force / family->current_length;
+    response->debonded_by_face[k] = ShareOf(family->length, family->length - family->closed);
+    response->open_by_face[k] = ShareOf(family->length, family->open);
+    response->mean_face_traction[k] = family->length > 0.0 ? family->force / family->current_length : NAN;
     length += family->length;
     closed += family->closed;
     open += family->open;
     gap += family->gap;
   }
-  response->debonded_fraction = PetscMax(0.0, 1.0 - closed / length);
-  response->open_fraction = open / length;
-  response->mean_gap = gap / length;
+  response->debonded_fraction = ShareOf(length, length - closed);
+  response->open_fraction = ShareOf(length, open);
+  response->mean_gap = ShareOf(length, gap);
   response->max_gap = sums.max_gap > -PETSC_MAX_REAL ? PetscMax(0.0, sums.max_gap) : NAN;
   if (sums.max_gap > 0.0) PetscCall(PetscArraycpy(response->gap_place, sums.gap_place, 3));
   response->max_penetration = PetscMax(response->max_penetration, sums.max_penetration);
@@ -315,8 +321,8 @@ PetscErrorCode LamContactIndicators(LamRVE rve, const LamLoad *load, LamResponse
   PetscCall(PetscArraycpy(response->normal_place, sums.traction.place, 3));
   response->max_lamella_shear = 0.0; /* there is no friction */
   for (PetscInt i = 0; i < 3; ++i) {
-    response->fabric[i] = sums.fabric[i] / length;
-    response->opening_moment[i] = sums.jumps[i] / length;
+    response->fabric[i] = length > 0.0 ? sums.fabric[i] / length : NAN;
+    response->opening_moment[i] = length > 0.0 ? sums.jumps[i] / length : NAN;
   }
   response->zero_modes = rve->zero_modes;
   PetscCall(CountClusters(rve, response));
