@@ -59,6 +59,16 @@ static inline double TurnedTangentError(const LamResponse *a, const LamResponse 
   return error;
 }
 
+/* Largest |b - Q a Q^T| of a symmetric tensor of the current configuration: 11, 22, 12. */
+static inline double TurnedMomentError(const double a[3], const double b[3], const double Q[9])
+{
+  const double A[9] = {a[0], a[2], 0, a[2], a[1], 0, 0, 0, 0};
+  double B[9];
+
+  TurnTensor(Q, A, Q, B);
+  return fmax(fabs(b[0] - B[0]), fmax(fabs(b[1] - B[4]), fabs(b[2] - B[1])));
+}
+
 /* b must be a with the current configuration turned by Q and the reference one by R: P -> Q P R^T, A likewise. */
 static inline void AssertTurnedResponse(const LamResponse *a, const LamResponse *b, const double Q[9],
                                         const double R[9], double tolerance)
@@ -72,6 +82,8 @@ static inline void AssertTurnedResponse(const LamResponse *a, const LamResponse 
   assert_near(b->opening_fraction, a->opening_fraction, tolerance);
   assert_near(b->debonded_fraction, a->debonded_fraction, tolerance);
   assert_near(b->max_traction, a->max_traction, tolerance);
+  assert_near(TurnedMomentError(a->fabric, b->fabric, Q), 0.0, tolerance);
+  assert_near(TurnedMomentError(a->opening_moment, b->opening_moment, Q), 0.0, tolerance);
 }
 
 #endif

@@ -1,0 +1,124 @@
+/*
+  Figures of patches between grips that the tests assert and the bench program prints: the block of Section 4.2 of the
+  source paper in simple shear, by both strategies, and the directions in which its cells come apart. Turgor and
+  cohesion in MPa, angles in degrees.
+*/
+#ifndef LAM_FIGURES_PATCH_H
+#define LAM_FIGURES_PATCH_H
+
+#include "figures_contact_derivatives.h"
+
+#define DEGREE (PETSC_PI / 180.0)
+#define PATCH_ORIENTATION 30.0 /* cells stand on an edge */
+#define PATCH_SHEAR 0.2
+#define PATCH_TURGORS 5
+static const double patch_turgors[PATCH_TURGORS] = {0, 0.01, 0.05, 0.1, 0.3};
+
+static inline LamMicrostructure PatchTissue(PetscInt columns, PetscInt rows, double orientation,
+                                            LamInterfaceLawType interface)
+{
+  LamMicrostructure micro = DefaultTissue();
+
+  micro.is_patch = PETSC_TRUE;
+  micro.cells[0] = columns;
+  micro.cells[1] = rows;
+  micro.orientation = orientation * DEGREE;
+  micro.interface = interface;
+  return micro;
+}
+
+/* n x n cells in contact, as in the paper. */
+static inline LamMicrostructure PaperPatch(PetscInt n)
+{
+  return PatchTissue(n, n, PATCH_ORIENTATION, LAM_INTERFACE_CONTACT);
+}
+
+static inline PetscErrorCode PatchCreate(const LamMicrostructure *micro, LamStrategy strategy, LamRVE *rve,
+                                         LamRVEState *state)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamRVECreate(PETSC_COMM_SELF, rve));
+  PetscCall(LamRVESetMicrostructure(*rve, micro));
+  PetscCall(LamRVESetStrategy(*rve, strategy));
+  PetscCall(LamRVESetUp(*rve));
+  PetscCall(LamRVEStateCreate(*rve, state));
+  PetscFunctionReturn(0);
+}
+
+static inline PetscErrorCode PatchDestroy(LamRVE *rve, LamRVEState *state)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEStateDestroy(state));
+  PetscCall(LamRVEDestroy(rve));
+  PetscFunctionReturn(0);
+}
+
+/* The states of 3 x 3 cells by both strategies, each from F = I in one go. */
+static inline PetscErrorCode SolvePatchStates(LamResponse list[PATCH_TURGORS][LAM_STRATEGY_COUNT])
+{
+  const LamMicrostructure micro = PaperPatch(3);
+
+  PetscFunctionBeginUser;
+  for (int strategy = 0; strategy < LAM_STRATEGY_COUNT; strategy++) {
+    LamRVE rve;
+    LamRVEState state;
+
+    PetscCall(PatchCreate(&micro, (LamStrategy)strategy, &rve, &state));
+    for (int p = 0; p < PATCH_TURGORS; p++) {
+      const LamLoad load = ContactLoad(1, PATCH_SHEAR, 0, 1, patch_turgors[p], 0);
+
+      PetscCall(LamRVEStateReset(rve, state));
+      PetscCall(LamRVESolve(rve, &load, state, &list[p][strategy]));
+    }
+    PetscCall(PatchDestroy(&rve, &state));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* First axis of a symmetric tensor 11, 22, 12, from X1. */
+static inline double FirstAxis(const double moment[3])
+{
+  return 0.5 * atan2(2.0 * moment[2], moment[0] - moment[1]) / DEGREE;
+}
+
+/* Of the larger principal stretch in simple shear: tan 2 theta = 2/shear. */
+static inline double StretchAxis(double shear)
+{
+  return 0.5 * atan2(2.0, shear) / DEGREE;
+}
+
+/* Between two axes, which have no sign. */
+static inline double AngleBetweenAxes(double a, double b)
+{
+  const double angle = fabs(fmod(a - b, 180.0));
+
+  return fmin(angle, 180.0 - angle);
+}
+
+/* Second moment n(x)n of the normals of a state's interfaces, weighted with the gap: 11, 22, 12. */
+static inline PetscErrorCode GapWeightedNormals(LamRVE rve, LamRVEState state, double moment[3])
+{
+  PetscInt faces, points;
+  double *from, *gap;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEGetInterfaceSize(rve, &faces, &points));
+  PetscCall(PetscMalloc2(2 * faces * points, &from, faces * points, &gap));
+  PetscCall(LamRVEGetInterface(rve, state, from, NULL, gap, NULL));
+  moment[0] = moment[1] = moment[2] = 0.0;
+  for (PetscInt k = 0; k < faces * points; k++) {
+    const double *x = &from[2 * k];
+    double chord[2], weight;
+
+    if (k % points == points - 1 || !(gap[k] > 0.0)) continue; /* NaN: it faces no wall */
+    for (int d = 0; d < 2; d++) chord[d] = x[2 + d] - x[d];
+    weight = gap[k] / hypot(chord[0], chord[1]);
+    moment[0] += weight * chord[1] * chord[1];
+    moment[1] += weight * chord[0] * chord[0];
+    moment[2] -= weight * chord[0] * chord[1];
+  }
+  PetscCall(PetscFree2(from, gap));
+  PetscFunctionReturn(0);
+}
+
+#endif

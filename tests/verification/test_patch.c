@@ -1,0 +1,151 @@
+/* What the answer of a patch must not depend on, its limit of many cells, and the smallest patches. */
+#include "rve_fixture.h"
+#include "figures_patch.h"
+#include "turned_response.h"
+
+#define TOLERANCE 1e-8
+#define SCATTER 1e-4 /* C1 + C2: of slaves that become masters, with 6 elements a face */
+
+static const double F0[9] = {1.03, 0.1, 0, -0.02, 1.01, 0, 0, 0, 1};
+
+/* Under turgor; with cohesion, which bonded tissue does not feel. */
+static LamResponse SolvePatch(const LamMicrostructure *micro, const double F[9])
+{
+  LamLoad load = {.turgor = 0.02 / TISSUE_STRESS};
+
+  memcpy(load.F, F, sizeof(load.F));
+  if (micro->interface == LAM_INTERFACE_CONTACT) load.cohesion = 0.002 / TISSUE_STRESS;
+  return SolveTissue(micro, load);
+}
+
+static void RotationOfTheObserver(void **state)
+{
+  for (int interface = 0; interface < LAM_INTERFACE_LAW_COUNT; interface++)
+    for (int sides = 0; sides < LAM_PATCH_SIDES_COUNT; sides++) {
+      LamMicrostructure micro = PatchTissue(2, 3, 30, (LamInterfaceLawType)interface);
+      double Q[9], F[9];
+      LamResponse a, b;
+
+      micro.sides = (LamPatchSides)sides;
+      a = SolvePatch(&micro, F0);
+      RotationTensor(0.7, Q);
+      TurnTensor(Q, F0, turned_identity, F);
+      b = SolvePatch(&micro, F);
+      AssertTurnedResponse(&a, &b, Q, turned_identity, TOLERANCE);
+    }
+}
+
+/* Cells turned by 60 degrees lie in the same places; only the numbers of their faces change. */
+static void CellsTurnedBySixtyDegrees(void **state)
+{
+  for (int orientation = 0; orientation <= 30; orientation += 30) {
+    LamMicrostructure micro = PatchTissue(3, 2, orientation, LAM_INTERFACE_BONDED), turned = micro;
+    LamResponse a, b;
+
+    turned.orientation += 60 * DEGREE;
+    a = SolvePatch(&micro, F0);
+    b = SolvePatch(&turned, F0);
+    AssertTurnedResponse(&a, &b, turned_identity, turned_identity, TOLERANCE);
+    micro.interface = turned.interface = LAM_INTERFACE_CONTACT;
+    a = SolvePatch(&micro, F0);
+    b = SolvePatch(&turned, F0);
+    assert_near(TurnedStressError(&a, &b, turned_identity, turned_identity), 0.0, SCATTER);
+  }
+}
+
+/* Three columns of cells on an edge, turned by a right angle, are three rows of cells on a corner. */
+static void CellsOnAnEdgeAreTurnedCellsOnACorner(void **state)
+{
+  LamMicrostructure micro = PatchTissue(3, 2, 30, LAM_INTERFACE_BONDED),
+                    turned = PatchTissue(2, 3, 0, LAM_INTERFACE_BONDED);
+  double R[9], F[9];
+  LamResponse a, b;
+
+  RotationTensor(-PETSC_PI / 2.0, R);
+  TurnTensor(R, F0, R, F);
+  a = SolvePatch(&micro, F0);
+  b = SolvePatch(&turned, F);
+  AssertTurnedResponse(&a, &b, R, R, TOLERANCE);
+  micro.interface = turned.interface = LAM_INTERFACE_CONTACT;
+  a = SolvePatch(&micro, F0);
+  b = SolvePatch(&turned, F);
+  assert_near(TurnedStressError(&a, &b, R, R), 0.0, SCATTER);
+}
+
+/* The boundary holds a layer of cells: the stress of n x n cells differs from the periodic one by a term in 1/n. */
+static void BondedPatchTendsToThePeriodicTissue(void **state)
+{
+  static const int n[3] = {2, 4, 8};
+  LamMicrostructure micro = DefaultTissue();
+  LamResponse periodic;
+  double P[3][9], limit[9];
+
+  micro.orientation = 30 * DEGREE;
+  micro.along = 4;
+  micro.through = 1;
+  periodic = SolvePatch(&micro, F0);
+  micro.is_patch = PETSC_TRUE;
+  for (int k = 0; k < 3; k++) {
+    LamResponse r;
+
+    micro.cells[0] = micro.cells[1] = n[k];
+    r = SolvePatch(&micro, F0);
+    assert_int_equal(r.status, LAM_CONVERGED);
+    memcpy(P[k], r.P, sizeof(P[k]));
+  }
+  for (int i = 0; i < 9; i++) limit[i] = 2.0 * P[2][i] - P[1][i];
+  assert_near(LamStressError(P[1], periodic.P) / LamStressError(P[0], periodic.P), 0.5, 0.1);
+  assert_near(LamStressError(P[2], periodic.P) / LamStressError(P[1], periodic.P), 0.5, 0.05);
+  assert_near(LamStressError(limit, periodic.P), 0.0, 0.01);
+}
+
+static void SmallestPatches(void **state)
+{
+  static const int cells[][2] = {{1, 1}, {1, 4}, {4, 1}};
+
+  for (int k = 0; k < 3; k++)
+    for (int orientation = 0; orientation <= 30; orientation += 30)
+      for (int interface = 0; interface < LAM_INTERFACE_LAW_COUNT; interface++) {
+        const LamMicrostructure micro =
+            PatchTissue(cells[k][0], cells[k][1], orientation, (LamInterfaceLawType)interface);
+        const LamResponse r = SolvePatch(&micro, F0);
+
+        assert_int_equal(r.status, LAM_CONVERGED);
+        assert_true(r.stable);
+      }
+}
+
+/* One cell has no interface: contact does not change it, and of what would be open nothing is known. */
+static void OneCellHasNoInterface(void **state)
+{
+  const LamMicrostructure bonded = PatchTissue(1, 1, 30, LAM_INTERFACE_BONDED),
+                          contact = PatchTissue(1, 1, 30, LAM_INTERFACE_CONTACT);
+  const LamResponse a = SolvePatch(&bonded, F0), b = SolvePatch(&contact, F0);
+
+  assert_near(TurnedStressError(&a, &b, turned_identity, turned_identity), 0.0, TOLERANCE);
+  assert_near(TurnedTangentError(&a, &b, turned_identity, turned_identity), 0.0, TOLERANCE);
+  assert_near(b.opening_fraction, 0.0, 1e-14);
+  assert_true(isnan(b.open_fraction));
+  assert_true(isnan(b.debonded_fraction));
+  assert_true(isnan(a.max_traction));
+  assert_true(isnan(b.max_traction));
+}
+
+static int Run(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(RotationOfTheObserver),
+      cmocka_unit_test(CellsTurnedBySixtyDegrees),
+      cmocka_unit_test(CellsOnAnEdgeAreTurnedCellsOnACorner),
+      cmocka_unit_test(BondedPatchTendsToThePeriodicTissue),
+      cmocka_unit_test(SmallestPatches),
+      cmocka_unit_test(OneCellHasNoInterface),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
+
+int main(int argc, char **argv)
+{
+  return RunWithPetsc(argc, argv, Run);
+}

@@ -1,0 +1,52 @@
+/* Section 4.2 of the source paper on 3 x 3 cells: sheared between grips, empty and under turgor, by both strategies. */
+#include "rve_fixture.h"
+#include "assert_near.h"
+#include "figures_patch.h"
+
+static LamResponse states[PATCH_TURGORS][LAM_STRATEGY_COUNT];
+
+static int SolveAll(void **state)
+{
+  return SolvePatchStates(states) ? 1 : 0;
+}
+
+static void BothStrategiesConverge(void **state)
+{
+  for (int p = 0; p < PATCH_TURGORS; p++)
+    for (int strategy = 0; strategy < LAM_STRATEGY_COUNT; strategy++) {
+      assert_int_equal(states[p][strategy].status, LAM_CONVERGED);
+      assert_true(states[p][strategy].stable);
+    }
+}
+
+static void BothStrategiesFindTheSameStress(void **state)
+{
+  for (int p = 0; p < PATCH_TURGORS; p++)
+    assert_near(LamStressError(states[p][LAM_ONE_STEP].P, states[p][LAM_TWO_STEP].P), 0.0, 1e-6);
+}
+
+static void TurgorClosesTheInterfaces(void **state)
+{
+  for (int p = 1; p < PATCH_TURGORS; p++) {
+    assert_true(states[p][LAM_TWO_STEP].open_fraction < states[p - 1][LAM_TWO_STEP].open_fraction);
+    assert_true(states[p][LAM_TWO_STEP].max_gap < states[p - 1][LAM_TWO_STEP].max_gap);
+  }
+  assert_true(states[0][LAM_TWO_STEP].open_fraction > 0.5);
+  assert_true(states[PATCH_TURGORS - 1][LAM_TWO_STEP].open_fraction < 0.1);
+}
+
+static int Run(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(BothStrategiesConverge),
+      cmocka_unit_test(BothStrategiesFindTheSameStress),
+      cmocka_unit_test(TurgorClosesTheInterfaces),
+  };
+
+  return cmocka_run_group_tests(tests, SolveAll, NULL);
+}
+
+int main(int argc, char **argv)
+{
+  return RunWithPetsc(argc, argv, Run);
+}
