@@ -1,0 +1,46 @@
+/* Tissue whose cells differ, for tests: four cells with walls, thickness, turgor and cohesion of their own. */
+#ifndef LAM_FIGURES_UNEVEN_H
+#define LAM_FIGURES_UNEVEN_H
+
+#include "figures_patch.h"
+
+#define UNEVEN_CELLS 4
+
+/* The cell that is like all of the tissue. */
+static inline LamCell PlainCell(const LamMicrostructure *micro)
+{
+  return (LamCell){.wall_thickness = micro->wall_thickness, .wall = micro->wall, .turgor = 1.0, .cohesion = 1.0};
+}
+
+/* A thick and a thin one, one without fibres, one with stiffer fibres in tension only; all with other factors. */
+static inline void UnevenCells(const LamMicrostructure *micro, LamCell cells[UNEVEN_CELLS])
+{
+  static const double thickness[UNEVEN_CELLS] = {0.15, 0.2, 0.12, 0.18}, turgor[UNEVEN_CELLS] = {1.0, 1.4, 0.7, 0.9},
+                      cohesion[UNEVEN_CELLS] = {1.0, 0.5, 1.5, 0.8};
+
+  for (int k = 0; k < UNEVEN_CELLS; k++) {
+    cells[k] = PlainCell(micro);
+    cells[k].wall_thickness = thickness[k];
+    cells[k].turgor = turgor[k];
+    cells[k].cohesion = cohesion[k];
+  }
+  cells[2].wall.law = LAM_WALL_MOONEY_RIVLIN;
+  cells[2].wall.C1 *= 2.0;
+  cells[3].wall.fibres = LAM_FIBRES_TENSION;
+  cells[3].wall.C4 *= 1.5;
+}
+
+/* 2 x 2 cells, in a period or between grips; borrows `cells`. */
+static inline LamMicrostructure UnevenTissue(PetscBool is_patch, LamInterfaceLawType interface,
+                                             LamCell cells[UNEVEN_CELLS])
+{
+  LamMicrostructure micro = PatchTissue(2, 2, 10, interface);
+
+  micro.is_patch = is_patch;
+  micro.along = 4;
+  UnevenCells(&micro, cells);
+  micro.cell = cells;
+  return micro;
+}
+
+#endif
