@@ -99,6 +99,51 @@ static void BondedPatchTendsToThePeriodicTissue(void **state)
   assert_near(LamStressError(limit, periodic.P), 0.0, 0.01);
 }
 
+/* Inside the outer walls of all cells, each made of quadratic edges. */
+static double AreaOfCells(LamRVE rve, LamRVEState state)
+{
+  static const double D[3][3] = {{0, 4.0 / 3.0, -1.0 / 3.0}, {0, 0, 4.0 / 3.0}, {0, 0, 0}};
+  static const int edge[3] = {1, 5, 2}; /* of an element on the outside */
+  double area = 0.0, *x;
+  LamRVEMesh mesh;
+
+  assert_int_equal(LamRVEGetMesh(rve, &mesh), 0);
+  assert_int_equal(PetscMalloc1(2 * mesh.node_count, &x), 0);
+  assert_int_equal(LamRVEGetFields(rve, state, x, NULL, NULL), 0);
+  for (PetscInt e = 0; e < mesh.element_count; e++) {
+    if (!LamMeshElementIsOuter(&rve->mesh, e)) continue;
+    for (int i = 0; i < 3; i++)
+      for (int j = i + 1; j < 3; j++) {
+        const double *a = &x[2 * mesh.elements[9 * e + edge[i]]], *b = &x[2 * mesh.elements[9 * e + edge[j]]];
+
+        area += 0.5 * D[i][j] * (a[0] * b[1] - a[1] * b[0]);
+      }
+  }
+  assert_int_equal(PetscFree(x), 0);
+  return area;
+}
+
+/* Sides that follow F keep the area of the block: what is not cell is gap. */
+static void CellsAndGapsFillThePatch(void **state)
+{
+  for (int orientation = 0; orientation <= 30; orientation += 30) {
+    const LamMicrostructure micro = PatchTissue(3, 3, orientation, LAM_INTERFACE_CONTACT);
+    const LamLoad load = ContactLoad(1.03, 0.2, -0.02, 1.01, 0.01, 0);
+    const double V0 = 9.0 * 2.0 * sqrt(3.0), J = 1.03 * 1.01 + 0.2 * 0.02;
+    LamRVE rve = NewRVE(&micro);
+    LamRVEState solution;
+    LamResponse r;
+
+    assert_int_equal(LamRVEStateCreate(rve, &solution), 0);
+    assert_int_equal(LamRVESolve(rve, &load, solution, &r), 0);
+    assert_int_equal(r.status, LAM_CONVERGED);
+    assert_true(r.opening_fraction > 1e-3);
+    assert_near(r.opening_fraction, J - AreaOfCells(rve, solution) / V0, 1e-12);
+    assert_int_equal(LamRVEStateDestroy(&solution), 0);
+    assert_int_equal(LamRVEDestroy(&rve), 0);
+  }
+}
+
 static void SmallestPatches(void **state)
 {
   static const int cells[][2] = {{1, 1}, {1, 4}, {4, 1}};
@@ -138,6 +183,7 @@ static int Run(void)
       cmocka_unit_test(CellsTurnedBySixtyDegrees),
       cmocka_unit_test(CellsOnAnEdgeAreTurnedCellsOnACorner),
       cmocka_unit_test(BondedPatchTendsToThePeriodicTissue),
+      cmocka_unit_test(CellsAndGapsFillThePatch),
       cmocka_unit_test(SmallestPatches),
       cmocka_unit_test(OneCellHasNoInterface),
   };
