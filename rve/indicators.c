@@ -317,7 +317,7 @@ PetscErrorCode LamContactIndicators(LamRVE rve, const LamLoad *load, LamResponse
   response->max_gap = sums.max_gap > -PETSC_MAX_REAL ? PetscMax(0.0, sums.max_gap) : NAN;
   if (sums.max_gap > 0.0) PetscCall(PetscArraycpy(response->gap_place, sums.gap_place, 3));
   response->max_penetration = PetscMax(response->max_penetration, sums.max_penetration);
-  response->max_traction = sums.traction.value;
+  response->max_traction = LamLargestMeanValue(&sums.traction);
   PetscCall(PetscArraycpy(response->normal_place, sums.traction.place, 3));
   response->max_lamella_shear = 0.0; /* there is no friction */
   for (PetscInt i = 0; i < 3; ++i) {

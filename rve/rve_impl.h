@@ -297,6 +297,11 @@ typedef struct {
   {                                                                                                                    \
     .value = -PETSC_MAX_REAL, .place = { NAN, NAN, NAN }                                                               \
   }
+/* A patch of one cell has no face between cells: its largest mean is unknown. */
+static inline PetscReal LamLargestMeanValue(const LamLargestMean *largest)
+{
+  return largest->value > -PETSC_MAX_REAL ? largest->value : NAN;
+}
 /* Takes a face into account, with windows of length `thickness`: running integrals [count + 1] over equal sub-intervals
    of its reference length. */
 void LamTakeLargestMean(PetscReal thickness, PetscInt cell, PetscInt face, PetscInt count, const PetscReal integral[],

@@ -220,8 +220,8 @@ PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, LamResponse *re
     }
     response->mean_face_traction[face] = length > 0.0 ? total / length : NAN; /* a narrow patch may lack a family */
   }
-  response->max_traction = normal.value;
-  response->max_lamella_shear = shear.value;
+  response->max_traction = LamLargestMeanValue(&normal);
+  response->max_lamella_shear = LamLargestMeanValue(&shear);
   PetscCall(PetscArraycpy(response->normal_place, normal.place, 3));
   PetscCall(PetscArraycpy(response->shear_place, shear.place, 3));
   PetscCall(PetscFree5(force, x, t, M, b));
