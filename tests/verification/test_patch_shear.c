@@ -19,10 +19,16 @@ static void BothStrategiesConverge(void **state)
     }
 }
 
-static void BothStrategiesFindTheSameStress(void **state)
+static void BothStrategiesFindTheSameStressUnderTurgor(void **state)
 {
-  for (int p = 0; p < PATCH_TURGORS; p++)
+  for (int p = 1; p < PATCH_TURGORS; p++)
     assert_near(LamStressError(states[p][LAM_ONE_STEP].P, states[p][LAM_TWO_STEP].P), 0.0, 1e-6);
+}
+
+/* Empty tissue has several discrete solutions, which differ in hats at junctions. */
+static void BothStrategiesFindCloseStressesInEmptyTissue(void **state)
+{
+  assert_near(LamStressError(states[0][LAM_ONE_STEP].P, states[0][LAM_TWO_STEP].P), 0.0, 5e-3);
 }
 
 static void TurgorClosesTheInterfaces(void **state)
@@ -39,7 +45,8 @@ static int Run(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(BothStrategiesConverge),
-      cmocka_unit_test(BothStrategiesFindTheSameStress),
+      cmocka_unit_test(BothStrategiesFindTheSameStressUnderTurgor),
+      cmocka_unit_test(BothStrategiesFindCloseStressesInEmptyTissue),
       cmocka_unit_test(TurgorClosesTheInterfaces),
   };
 
