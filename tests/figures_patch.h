@@ -53,6 +53,65 @@ static inline PetscErrorCode PatchDestroy(LamRVE *rve, LamRVEState *state)
   PetscFunctionReturn(0);
 }
 
+/* ---- derivatives ---- */
+#define PATCH_STATES 5
+static inline ContactState PatchState(const char *name, PetscInt columns, PetscInt rows, double orientation,
+                                      LamInterfaceLawType interface, LamPatchSides sides)
+{
+  ContactState state = {.name = name,
+                        .micro = PatchTissue(columns, rows, orientation, interface),
+                        .load = ContactLoad(1.02, 0.08, -0.03, 1.01, 0.02, 0),
+                        .step = CONTACT_STEP_LARGE_RVE};
+
+  state.load.F[8] = 1.01;
+  state.micro.sides = sides;
+  state.micro.along = 4;
+  if (interface == LAM_INTERFACE_CONTACT) state.load.cohesion = 0.005 / TISSUE_STRESS;
+  return state;
+}
+
+static inline void ListPatchStates(ContactState list[PATCH_STATES])
+{
+  list[0] = PatchState("bonded", 2, 2, 30, LAM_INTERFACE_BONDED, LAM_SIDES_AFFINE);
+  list[1] = PatchState("bonded, free sides", 2, 2, 0, LAM_INTERFACE_BONDED, LAM_SIDES_FREE);
+  list[2] = PatchState("contact, on a corner", 2, 3, 0, LAM_INTERFACE_CONTACT, LAM_SIDES_AFFINE);
+  list[3] = PatchState("contact, on an edge", 3, 2, 30, LAM_INTERFACE_CONTACT, LAM_SIDES_AFFINE);
+  list[4] = PatchState("contact, free sides", 2, 3, 30, LAM_INTERFACE_CONTACT, LAM_SIDES_FREE);
+}
+
+/* ---- the limit of many cells ---- */
+#define PATCH_SIZES 3
+static const int patch_sizes[PATCH_SIZES] = {2, 4, 8};
+
+/* Errors of the stress of bonded n x n cells under turgor against the periodic tissue, on a coarse mesh; *limit: of the
+   extrapolation in 1/n from the last two. */
+static inline PetscErrorCode BondedPatchErrors(double error[PATCH_SIZES], double *limit)
+{
+  const LamLoad load = ContactLoad(1.03, 0.1, -0.02, 1.01, 0.02, 0);
+  LamMicrostructure micro = PatchTissue(1, 1, PATCH_ORIENTATION, LAM_INTERFACE_BONDED);
+  LamResponse periodic, r;
+  double last[9], extrapolated[9];
+
+  PetscFunctionBeginUser;
+  micro.along = 4;
+  micro.through = 1;
+  micro.is_patch = PETSC_FALSE;
+  PetscCall(SolveOnce(&micro, &load, &periodic));
+  micro.is_patch = PETSC_TRUE;
+  for (int k = 0; k < PATCH_SIZES; k++) {
+    micro.cells[0] = micro.cells[1] = patch_sizes[k];
+    PetscCall(SolveOnce(&micro, &load, &r));
+    error[k] = LamStressError(r.P, periodic.P);
+    for (int i = 0; i < 9; i++) {
+      extrapolated[i] = k > 0 ? 2.0 * r.P[i] - last[i] : NAN; /* sizes double */
+      last[i] = r.P[i];
+    }
+  }
+  *limit = LamStressError(extrapolated, periodic.P);
+  PetscFunctionReturn(0);
+}
+
+/* ---- Section 4.2 of the source paper ---- */
 /* The states of 3 x 3 cells by both strategies, each from F = I in one go. */
 static inline PetscErrorCode SolvePatchStates(LamResponse list[PATCH_TURGORS][LAM_STRATEGY_COUNT])
 {

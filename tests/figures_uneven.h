@@ -43,4 +43,28 @@ static inline LamMicrostructure UnevenTissue(PetscBool is_patch, LamInterfaceLaw
   return micro;
 }
 
+/* ---- derivatives ---- */
+#define UNEVEN_STATES 4
+/* Partly open, where it may open. */
+static inline LamLoad UnevenLoad(const LamMicrostructure *micro)
+{
+  LamLoad load = ContactLoad(1.02, 0.08, -0.03, 1.01, 0.02, 0);
+
+  if (micro->interface == LAM_INTERFACE_CONTACT) load.cohesion = 0.005 / TISSUE_STRESS;
+  return load;
+}
+
+/* Periodic and between grips, bonded (even numbers) and in contact; borrows `cells`. */
+static inline void ListUnevenStates(LamCell cells[UNEVEN_CELLS], ContactState list[UNEVEN_STATES])
+{
+  static const char *const names[UNEVEN_STATES] = {"period, bonded", "period, contact", "patch, bonded",
+                                                   "patch, contact"};
+
+  for (int s = 0; s < UNEVEN_STATES; s++) {
+    list[s] = (ContactState){.name = names[s], .step = CONTACT_STEP_LARGE_RVE};
+    list[s].micro = UnevenTissue((PetscBool)(s / 2), s % 2 ? LAM_INTERFACE_CONTACT : LAM_INTERFACE_BONDED, cells);
+    list[s].load = UnevenLoad(&list[s].micro);
+  }
+}
+
 #endif

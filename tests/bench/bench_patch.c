@@ -1,15 +1,16 @@
 /*
-  Blocks of cells between grips in simple shear, as in Section 4.2 of the source paper: both strategies, blocks of
+  Patches and cells that differ against differences and the periodic tissue; blocks of cells between grips in simple
+  shear, as in Section 4.2 of the source paper: both strategies, blocks of
   growing size, the interfaces against turgor, and the directions in which empty cells come apart; prints figures,
   asserts nothing. Every state from F = I in one go, one thread, but for the last table, which walks.
 
     bench_patch [--full]
-      --full   also blocks of more than 8 x 8 cells
+      --full   also blocks of more than 8 x 8 cells, empty ones up to a shear of 0.1
 */
 #include <getopt.h>
 #include <stdio.h>
 #include <sys/resource.h>
-#include "figures_patch.h"
+#include "figures_uneven.h"
 
 #define COUNT(list) ((int)(sizeof(list) / sizeof((list)[0])))
 #define LARGEST_BLOCK 8 /* without --full */
@@ -19,6 +20,48 @@ static double PeakMemory(void)
   struct rusage usage;
 
   return getrusage(RUSAGE_SELF, &usage) ? NAN : (double)usage.ru_maxrss / 1024.0;
+}
+
+static PetscErrorCode PrintDerivative(const ContactState *state)
+{
+  ContactDerivativeError e;
+  ContactSweep sweep;
+
+  PetscFunctionBeginUser;
+  PetscCall(SweepContact(state, &sweep));
+  e = DerivativeError(&sweep);
+  printf("%-22s %-6.2f %8d %8.0e %8.0e %8.0e %8.0e %9.0e %9.0e\n", state->name, sweep.response.open_fraction,
+         sweep.switches, e.stress, fmax(e.turgor, e.cohesion), e.tangent, fmax(e.turgor_coupling, e.cohesion_coupling),
+         e.lumen, e.opening);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode PrintDerivatives(void)
+{
+  ContactState patches[PATCH_STATES], uneven[UNEVEN_STATES];
+  LamCell cells[UNEVEN_CELLS];
+
+  PetscFunctionBeginUser;
+  ListPatchStates(patches);
+  ListUnevenStates(cells, uneven);
+  printf("largest errors against differences; volumes: dPsi/dp + V_lumen/V0 and dPsi/dg - V_gap/V0\n"
+         "patch                  open   switches        P  dp, dg   tangent couplings    volumes\n");
+  for (int s = 0; s < PATCH_STATES; s++) PetscCall(PrintDerivative(&patches[s]));
+  printf("cells that differ\n");
+  for (int s = 0; s < UNEVEN_STATES; s++) PetscCall(PrintDerivative(&uneven[s]));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode PrintBondedLimit(void)
+{
+  double error[PATCH_SIZES], limit;
+
+  PetscFunctionBeginUser;
+  PetscCall(BondedPatchErrors(error, &limit));
+  printf("\nbonded n x n cells against the periodic tissue, error of the stress:");
+  for (int k = 0; k < PATCH_SIZES; k++) printf("  n = %d: %.4f", patch_sizes[k], error[k]);
+  printf("  extrapolated: %.4f\n", limit);
+  PetscFunctionReturn(0);
 }
 
 static PetscErrorCode PrintStrategies(void)
@@ -45,9 +88,24 @@ static PetscErrorCode PrintStrategies(void)
   PetscFunctionReturn(0);
 }
 
+/* The limit of many cells: extrapolated from the last two blocks, and one cell a period. */
+static PetscErrorCode PrintLimit(const LamLoad *load, double extrapolated)
+{
+  LamMicrostructure micro = PaperPatch(1);
+  LamResponse r;
+
+  PetscFunctionBeginUser;
+  micro.is_patch = PETSC_FALSE;
+  PetscCall(SolveOnce(&micro, load, &r));
+  printf("limit of P12, extrapolated in 1/n: %.6f; periodic: %.6f\n", extrapolated, TISSUE_STRESS * r.P[1]);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode PrintSizes(PetscBool full)
 {
   static const int sizes[] = {4, 6, 8, 10, 12, 16};
+  const LamLoad load = ContactLoad(1, PATCH_SHEAR, 0, 1, 0.02, 0);
+  double sum[2] = {0, 0}, extrapolated = NAN; /* sum: n P12 of a block and of the one before */
 
   PetscFunctionBeginUser;
   printf("\nn x n cells, turgor 0.02 MPa, shear %g; peak: of the process so far\n"
@@ -55,15 +113,18 @@ static PetscErrorCode PrintSizes(PetscBool full)
          PATCH_SHEAR);
   for (int k = 0; k < COUNT(sizes) && (full || sizes[k] <= LARGEST_BLOCK); k++) {
     const LamMicrostructure micro = PaperPatch(sizes[k]);
-    const LamLoad load = ContactLoad(1, PATCH_SHEAR, 0, 1, 0.02, 0);
     LamResponse r;
 
     PetscCall(SolveOnce(&micro, &load, &r));
+    sum[1] = sum[0];
+    sum[0] = sizes[k] * TISSUE_STRESS * r.P[1];
+    if (k > 0) extrapolated = (sum[0] - sum[1]) / (sizes[k] - sizes[k - 1]);
     printf("%-3d %-9d %-12s %-8.2f %-8.3f %-4d %-5d %-10.0f %-6.3f %.6f\n", sizes[k], (int)r.unknowns,
            LamStatusNames[r.status], r.seconds, r.seconds / (sizes[k] * sizes[k]), (int)r.newton_iterations,
            (int)r.factorisations, PeakMemory(), r.open_fraction, TISSUE_STRESS * r.P[1]);
     fflush(stdout);
   }
+  PetscCall(PrintLimit(&load, extrapolated));
   PetscFunctionReturn(0);
 }
 
@@ -123,7 +184,8 @@ static PetscErrorCode PrintDirections(PetscBool full)
     LamRVEState state;
 
     PetscCall(PatchCreate(&micro, LAM_TWO_STEP, &rve, &state));
-    for (int s = 1; s <= 6; s++) PetscCall(PrintDirection(rve, state, sizes[k], 0.05 * s));
+    for (int s = 1; s <= (sizes[k] > LARGEST_BLOCK ? 2 : 6); s++)
+      PetscCall(PrintDirection(rve, state, sizes[k], 0.05 * s));
     PetscCall(PatchDestroy(&rve, &state));
   }
   PetscFunctionReturn(0);
@@ -132,6 +194,8 @@ static PetscErrorCode PrintDirections(PetscBool full)
 static PetscErrorCode Run(PetscBool full)
 {
   PetscFunctionBeginUser;
+  PetscCall(PrintDerivatives());
+  PetscCall(PrintBondedLimit());
   PetscCall(PrintStrategies());
   PetscCall(PrintSizes(full));
   PetscCall(PrintTurgors());

@@ -3,28 +3,17 @@
 #include "figures_uneven.h"
 #include "turned_response.h"
 
-#define STATES 4
 static LamCell cells[UNEVEN_CELLS];
-static ContactSweep sweeps[STATES];
-static ContactDerivativeError errors[STATES];
-
-/* Partly open, where it may open. */
-static LamLoad GeneralLoad(const LamMicrostructure *micro)
-{
-  LamLoad load = ContactLoad(1.02, 0.08, -0.03, 1.01, 0.02, 0);
-
-  if (micro->interface == LAM_INTERFACE_CONTACT) load.cohesion = 0.005 / TISSUE_STRESS;
-  return load;
-}
+static ContactSweep sweeps[UNEVEN_STATES];
+static ContactDerivativeError errors[UNEVEN_STATES];
 
 static int SweepAll(void **state)
 {
-  for (int s = 0; s < STATES; s++) {
-    ContactState point = {.step = CONTACT_STEP_LARGE_RVE};
+  ContactState list[UNEVEN_STATES];
 
-    point.micro = UnevenTissue((PetscBool)(s / 2), s % 2 ? LAM_INTERFACE_CONTACT : LAM_INTERFACE_BONDED, cells);
-    point.load = GeneralLoad(&point.micro);
-    if (SweepContact(&point, &sweeps[s])) return 1;
+  ListUnevenStates(cells, list);
+  for (int s = 0; s < UNEVEN_STATES; s++) {
+    if (SweepContact(&list[s], &sweeps[s])) return 1;
     errors[s] = DerivativeError(&sweeps[s]);
   }
   return 0;
@@ -32,7 +21,7 @@ static int SweepAll(void **state)
 
 static void StatesConvergeInsideOneContactSet(void **state)
 {
-  for (int s = 0; s < STATES; s++) {
+  for (int s = 0; s < UNEVEN_STATES; s++) {
     assert_int_equal(sweeps[s].response.status, LAM_CONVERGED);
     assert_int_equal(sweeps[s].switches, 0);
   }
@@ -40,7 +29,7 @@ static void StatesConvergeInsideOneContactSet(void **state)
 
 static void ResponsesAreDerivativesOfTheEnergy(void **state)
 {
-  for (int s = 0; s < STATES; s++) {
+  for (int s = 0; s < UNEVEN_STATES; s++) {
     assert_near(errors[s].stress, 0.0, 1e-8);
     assert_near(errors[s].turgor, 0.0, 1e-8);
     assert_near(errors[s].cohesion, 0.0, 1e-8);
@@ -49,7 +38,7 @@ static void ResponsesAreDerivativesOfTheEnergy(void **state)
 
 static void TangentAndCouplingsAreDerivativesOfStress(void **state)
 {
-  for (int s = 0; s < STATES; s++) {
+  for (int s = 0; s < UNEVEN_STATES; s++) {
     assert_near(errors[s].tangent, 0.0, 1e-6);
     assert_near(errors[s].turgor_coupling, 0.0, 1e-6);
     assert_near(errors[s].cohesion_coupling, 0.0, 1e-6);
@@ -60,7 +49,7 @@ static void TangentAndCouplingsAreDerivativesOfStress(void **state)
 /* dPsi/dp weighs lumens with the turgor factors of their cells, dPsi/dg gaps: neither is a volume any more. */
 static void EnergyDerivativesAreNotVolumes(void **state)
 {
-  for (int s = 0; s < STATES; s++) {
+  for (int s = 0; s < UNEVEN_STATES; s++) {
     assert_true(errors[s].lumen > 1e-3);
     if (s % 2) assert_true(errors[s].opening > 1e-5);
   }
@@ -76,9 +65,9 @@ static void EqualCellsAreTheTissue(void **state)
 
       for (int k = 0; k < UNEVEN_CELLS; k++) equal[k] = PlainCell(&micro);
       micro.cell = NULL;
-      a = SolveTissue(&micro, GeneralLoad(&micro));
+      a = SolveTissue(&micro, UnevenLoad(&micro));
       micro.cell = equal;
-      b = SolveTissue(&micro, GeneralLoad(&micro));
+      b = SolveTissue(&micro, UnevenLoad(&micro));
       AssertTurnedResponse(&a, &b, turned_identity, turned_identity, 1e-13);
       assert_near(b.energy_turgor, -b.lumen_fraction, 1e-13);
       if (interface == LAM_INTERFACE_CONTACT) assert_near(b.energy_cohesion, b.opening_fraction, 1e-13);
@@ -100,7 +89,7 @@ static void RepeatedPatternGivesTheSameStress(void **state)
       for (int d = 0; d < 2; d++) micro.cells[d] = blocks[k][d];
       for (int c = 0; c < blocks[k][0] * blocks[k][1]; c++) block[c] = cells[c / blocks[k][1] % 2];
       micro.cell = block;
-      r = SolveTissue(&micro, GeneralLoad(&micro));
+      r = SolveTissue(&micro, UnevenLoad(&micro));
       if (k == 0) first = r;
       AssertTurnedResponse(&first, &r, turned_identity, turned_identity, 1e-8);
     }
@@ -112,7 +101,7 @@ static void ShiftedPatternGivesTheSameResponse(void **state)
 {
   for (int interface = 0; interface < LAM_INTERFACE_LAW_COUNT; interface++) {
     LamMicrostructure micro = UnevenTissue(PETSC_FALSE, (LamInterfaceLawType)interface, cells);
-    const LamResponse a = SolveTissue(&micro, GeneralLoad(&micro));
+    const LamResponse a = SolveTissue(&micro, UnevenLoad(&micro));
 
     for (int shift = 1; shift < UNEVEN_CELLS; shift++) { /* bit 1: along lattice vector 0, bit 0: along 1 */
       LamCell shifted[UNEVEN_CELLS];
@@ -120,7 +109,7 @@ static void ShiftedPatternGivesTheSameResponse(void **state)
 
       for (int k = 0; k < UNEVEN_CELLS; k++) shifted[k ^ shift] = cells[k];
       micro.cell = shifted;
-      b = SolveTissue(&micro, GeneralLoad(&micro));
+      b = SolveTissue(&micro, UnevenLoad(&micro));
       AssertTurnedResponse(&a, &b, turned_identity, turned_identity, 1e-8);
     }
   }
@@ -149,7 +138,7 @@ static void AddForcesOnCells(LamRVE rve, const LamLoad *load, double sums[UNEVEN
 static void ForcesOnEveryCellBalance(void **state)
 {
   const LamMicrostructure micro = UnevenTissue(PETSC_FALSE, LAM_INTERFACE_CONTACT, cells);
-  const LamLoad load = GeneralLoad(&micro);
+  const LamLoad load = UnevenLoad(&micro);
   double sums[UNEVEN_CELLS][3] = {{0}};
   LamRVE rve = NewRVE(&micro);
   const LamResponse r = SolveFromReference(rve, load);
