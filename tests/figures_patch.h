@@ -90,7 +90,7 @@ static inline PetscErrorCode BondedPatchErrors(double error[PATCH_SIZES], double
   const LamLoad load = ContactLoad(1.03, 0.1, -0.02, 1.01, 0.02, 0);
   LamMicrostructure micro = PatchTissue(1, 1, PATCH_ORIENTATION, LAM_INTERFACE_BONDED);
   LamResponse periodic, r;
-  double last[9], extrapolated[9];
+  double last[9] = {0}, extrapolated[9] = {0};
 
   PetscFunctionBeginUser;
   micro.along = 4;
@@ -103,7 +103,7 @@ static inline PetscErrorCode BondedPatchErrors(double error[PATCH_SIZES], double
     PetscCall(SolveOnce(&micro, &load, &r));
     error[k] = LamStressError(r.P, periodic.P);
     for (int i = 0; i < 9; i++) {
-      extrapolated[i] = k > 0 ? 2.0 * r.P[i] - last[i] : NAN; /* sizes double */
+      extrapolated[i] = 2.0 * r.P[i] - last[i]; /* sizes double */
       last[i] = r.P[i];
     }
   }
