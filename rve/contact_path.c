@@ -2,13 +2,14 @@
   From a known state to contact equilibrium at a new load.
 
   Method. Starts are tried in this order until one ends in a stable equilibrium:
-    (i)   a near state: the contact state before, turned and moved affinely, with its multipliers;
+    (i)   a near state: the contact state before, turned and moved affinely, with its multipliers; from it in one step,
+          else in substeps, which stay on the branch as long as it goes on;
     (ii)  the strategy's start: two_step solves the bonded tissue at the load and releases it, with the tractions that
           bonding carried as first multipliers; one_step starts from the affine state;
     (iii) coming down: contact that a larger cohesion holds tight is easy to reach; from there the cohesion is lowered
           to the asked one, each solution starting the next;
     (iv)  walking: the same, where the tight state is reached in substeps from the undeformed (turned) tissue;
-    (v)   substeps in load from the contact state before;
+    (v)   substeps in load from a contact state before that is not near;
     (vi)  where one_step has found nothing, two_step after all.
   Where a continuation ends, descent goes down to whatever comes next. A saddle is the answer only where nothing stable
   is found.
@@ -315,11 +316,12 @@ static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state,
     if (k == 0) {
       PetscCall(LamContactStartNear(rve, before, load));
       PetscCall(LamContactTry(rve, load, LAM_NEAR_REACH, out));
+      if (!LamContactIsStable(out)) PetscCall(Substeps(rve, before, load, out));
     }
     if (k == 1) PetscCall(TryStrategy(rve, rve->strategy, load, state, &has_bonded, &at, out));
     if (k == 2) PetscCall(TightThenLoose(rve, load, has_bonded, &at, out));
     if (k == 3) PetscCall(WalkThenLoose(rve, load, &at, out));
-    if (k == 4 && state->solved) PetscCall(Substeps(rve, before, load, out));
+    if (k == 4 && state->solved && !near) PetscCall(Substeps(rve, before, load, out));
     if (k == 5 && rve->strategy == LAM_ONE_STEP)
       PetscCall(TryStrategy(rve, LAM_TWO_STEP, load, state, &has_bonded, &at, out));
     if (k == 6 && rve->strategy == LAM_ONE_STEP) PetscCall(TightThenLoose(rve, load, has_bonded, &at, out));
