@@ -18,9 +18,11 @@
  */
 #define BRACKET_STATES 10
 #define TWO_MESHES 5.0
-/* Resident memory, MB: the program with its libraries; matrix, factor and mesh per unknown. */
+/* Resident memory, MB: the program with its libraries; matrix, factor and mesh per unknown, of contact tissue with the
+   bonded one that it starts from. */
 #define PROGRAM_MB 50.0
 #define UNKNOWN_MB 0.0015
+#define CONTACT_UNKNOWN_MB 0.003
 
 typedef struct {
   LamScene *scene;
@@ -36,6 +38,7 @@ static PetscErrorCode Predict(Check *check)
   const PetscReal n = (PetscReal)check->plan.unknowns;
   LamMicrostructure cell = check->plan.micro;
   const PetscReal cells = (PetscReal)cell.cells[0] * (PetscReal)cell.cells[1];
+  const PetscBool contact = (PetscBool)(cell.interface == LAM_INTERFACE_CONTACT);
   PetscReal iteration;
   PetscInt unknowns;
 
@@ -45,11 +48,12 @@ static PetscErrorCode Predict(Check *check)
   cell.cell = NULL;
   PetscCall(LamRVETimeAssembly(&cell, &unknowns, &check->assembly));
   check->assembly *= cells;
-  iteration = ITERATION_ASSEMBLIES * check->assembly * (cell.interface == LAM_INTERFACE_CONTACT ? CONTACT_FACTOR : 1);
+  iteration = ITERATION_ASSEMBLIES * check->assembly * (contact ? CONTACT_FACTOR : 1);
   check->state = STATE_FACTORISATIONS * iteration;
   check->point = POINT_FACTORISATIONS * iteration;
   /* each material point keeps its positions, accepted and tried */
-  check->memory = PROGRAM_MB + UNKNOWN_MB * n + (PetscReal)check->plan.macro_points * 2 * sizeof(PetscReal) * n / 1e6;
+  check->memory = PROGRAM_MB + (contact ? CONTACT_UNKNOWN_MB : UNKNOWN_MB) * n +
+                  (PetscReal)check->plan.macro_points * 2 * sizeof(PetscReal) * n / 1e6;
   PetscFunctionReturn(0);
 }
 
@@ -138,14 +142,15 @@ static PetscErrorCode PrintObject(const Check *check)
 
 static void PrintSeconds(PetscReal seconds)
 {
-  if (seconds < 1)
+  /* each unit below 99.5 of it, where two digits need no exponent */
+  if (seconds < 0.0995)
     printf("%.2g ms", (double)(1e3 * seconds));
-  else if (seconds < 120)
+  else if (seconds < 99.5)
     printf("%.2g s", (double)seconds);
-  else if (seconds < 7200)
+  else if (seconds < 99.5 * 60)
     printf("%.2g min", (double)(seconds / 60));
   else
-    printf("%.2g h", (double)(seconds / 3600));
+    printf("%.*f h", seconds < 36000, (double)(seconds / 3600));
 }
 
 static void PrintSpread(const LamCellSpread *spread, PetscReal MPa)
@@ -187,7 +192,8 @@ static void PrintModel(const Check *check)
            (double)(scene->cohesion * MPa), (double)(1e6 * micro->clearance * scene->scales.length),
            LamStrategyNames[scene->strategy]);
   if (scene->turgor != 0)
-    printf("%-12s %.4g MPa in every lumen\n", "turgor", (double)(scene->turgor * MPa));
+    printf("%-12s %.4g MPa %s\n", "turgor", (double)(scene->turgor * MPa),
+           check->plan.spread.kinds ? "times the factor of each cell" : "in every lumen");
   else
     printf("%-12s none, where no load says otherwise\n", "turgor");
   printf("%-12s %" PetscInt_FMT " elements along a face, %" PetscInt_FMT " through a wall", "mesh", micro->along,
