@@ -101,8 +101,8 @@ static PetscErrorCode KindNumber(const Variation *v, const LamNode *node, PetscI
   PetscFunctionBeginUser;
   *kind = (PetscInt)node->value.number[0];
   if (*kind > v->kind_count) {
-    PetscCall(
-        LamSceneFail(v->document, node, "there are kinds 1 to %d only; 0 is the scene's own cell", (int)v->kind_count));
+    PetscCall(LamSceneFail(v->document, node, "kinds has only %d; write a number from 0, the scene's own cell, to %d",
+                           (int)v->kind_count, (int)v->kind_count));
   }
   PetscFunctionReturn(0);
 }

@@ -43,18 +43,21 @@ static PetscErrorCode CheckF(const LamDocument *document, const LamNode *node)
 /* Checks an entry and says how many states it holds. */
 static PetscErrorCode CheckEntry(const LamDocument *document, const LamNode *entry, PetscInt *states)
 {
-  const LamNode *F_node, *ramp_node;
+  const LamNode *F_node, *P_node, *ramp_node;
   LamValue F, unused, steps;
 
   PetscFunctionBeginUser;
   PetscCall(LamSceneGet(entry, "load[].F", &F_node, &F));
+  PetscCall(LamSceneGet(entry, "load[].P", &P_node, &unused));
   PetscCall(LamSceneGet(entry, "load[].ramp", &ramp_node, &unused));
   if (F_node && ramp_node) {
     PetscCall(LamSceneFailName(document, ramp_node, "given together with F; an entry holds one of them"));
   }
   if (!F_node && !ramp_node) {
-    PetscCall(LamSceneFailMissing(
-        document, entry, "F", "missing; write F: [[1, 0.1], [0, 1]], or a ramp: {to: [[1, 0.3], [0, 1]], steps: 10}"));
+    PetscCall(LamSceneFailMissing(document, entry, "F", "missing; write F: %s, or a ramp: {to: %s, steps: 10%s}",
+                                  P_node ? "[[free, 0.1], [0, free]] beside P" : "[[1, 0.1], [0, 1]]",
+                                  P_node ? "[[free, 0.3], [0, free]]" : "[[1, 0.3], [0, 1]]",
+                                  P_node ? ", P: [[0 MPa, x], [x, 0 MPa]]" : ""));
   }
   PetscCall(LamSceneGet(entry, "load[].ramp.steps", NULL, &steps));
   *states = F_node ? 1 : (PetscInt)steps.number[0];

@@ -114,7 +114,8 @@ static void PrintVerdict(const LamFailure *failure)
   if (isnan(failure->followed))
     printf("failure: unknown from the beginning\n");
   else if (failure->mode == LAM_FAILURE_NONE)
-    printf("failure: no criterion is reached up to load factor %.4g\n", (double)failure->followed);
+    printf("failure: none; no criterion that can be judged is reached up to load factor %.4g\n",
+           (double)failure->followed);
   else if (failure->mode == LAM_FAILURE_UNKNOWN)
     printf("failure: unknown; no criterion is reached up to load factor %.4g\n", (double)failure->followed);
   else
@@ -123,11 +124,21 @@ static void PrintVerdict(const LamFailure *failure)
   if (failure->reason[0]) printf("  %s\n", failure->reason);
 }
 
-static void PrintOnset(LamCriterion criterion, const LamCriterionOnset *onset)
+/* Why a criterion is not judged: the other interface, or a strength that the scene does not give. */
+static const char *WhyNotJudged(LamCriterion criterion, LamInterfaceLawType interface)
+{
+  if (criterion == LAM_CRITERION_CONTACT) return "the cells are bonded";
+  if (criterion == LAM_CRITERION_WALL) return "the scene has no strength.wall";
+  if (interface == LAM_INTERFACE_CONTACT) return "cells in contact part by their cohesion";
+  return criterion == LAM_CRITERION_LAMELLA_NORMAL ? "the scene has no strength.lamella_normal"
+                                                   : "the scene has no strength.lamella_shear";
+}
+
+static void PrintOnset(LamCriterion criterion, const LamCriterionOnset *onset, LamInterfaceLawType interface)
 {
   printf("  %-15s", LamCriterionNames[criterion]);
   if (!onset->judged)
-    printf("not judged\n");
+    printf("not judged: %s\n", WhyNotJudged(criterion, interface));
   else if (isnan(onset->factor))
     printf("not reached\n");
   else {
@@ -152,7 +163,10 @@ static void PrintFailure(const LamFailure *failure, PetscReal MPa)
   if (isfinite(Ratio(r->max_wall_tension, r->max_traction)))
     printf("  there a wall less than %.4g times as strong as the lamella in normal direction tears first\n",
            (double)Ratio(r->max_wall_tension, r->max_traction));
-  for (int c = 0; c < LAM_CRITERION_COUNT; c++) PrintOnset((LamCriterion)c, &failure->onset[c]);
+  for (int c = 0; c < LAM_CRITERION_COUNT; c++)
+    PrintOnset((LamCriterion)c, &failure->onset[c], failure->program.interface);
+  printf(
+      "  (load factor 2.5: half-way from state 2 to state 3; at 0/1/0.94: cell 0, face 1, 0.94 of the way along it)\n");
 }
 
 PetscErrorCode LamFailurePrint(const LamFailure *failure, const LamScales *scales, PetscBool json)
