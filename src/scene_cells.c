@@ -389,6 +389,13 @@ static PetscErrorCode CheckSideCells(const LamDocument *document, const LamMicro
   PetscFunctionReturn(0);
 }
 
+PetscBool LamSceneNeedsCohesion(const LamMicrostructure *micro)
+{
+  /* of two rows every cell is held by a grip */
+  return (PetscBool)(micro->is_patch && micro->interface == LAM_INTERFACE_CONTACT && micro->sides == LAM_SIDES_FREE &&
+                     micro->cells[1] > 2);
+}
+
 PetscErrorCode LamSceneCheckPatch(const LamDocument *document, const LamScene *scene)
 {
   static const char *const others[] = {"sample", "macro"};
@@ -406,9 +413,7 @@ PetscErrorCode LamSceneCheckPatch(const LamDocument *document, const LamScene *s
                                "lamella rve and map; leave %s out, or write rve.cells instead of the patch",
                                patch->name_line, others[i]));
   }
-  /* two rows: every cell is held by a grip */
-  if (micro->interface != LAM_INTERFACE_CONTACT || micro->sides != LAM_SIDES_FREE || micro->cells[1] <= 2)
-    PetscFunctionReturn(0);
+  if (!LamSceneNeedsCohesion(micro)) PetscFunctionReturn(0);
   if (!loads) PetscCall(CheckHold(document, NULL, scene->cohesion));
   for (const LamNode *entry = loads ? loads->first : NULL; entry; entry = entry->next) {
     const LamNode *node = LamNodeFind(entry, "cohesion", strlen("cohesion"));

@@ -98,6 +98,8 @@ PetscErrorCode LamSceneBuildMap(const LamDocument *document, LamScene *scene);
 
 /* scene_cells.c, part of the RVE: how many cells, and what differs from cell to cell. */
 PetscErrorCode LamSceneBuildCells(const LamDocument *document, LamScene *scene);
+/* Whether nothing but a cohesion holds cells of the tissue: those at the free sides of a patch in contact. */
+PetscBool LamSceneNeedsCohesion(const LamMicrostructure *micro);
 /* What a patch allows in the rest of a scene that is built. */
 PetscErrorCode LamSceneCheckPatch(const LamDocument *document, const LamScene *scene);
 /*

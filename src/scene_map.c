@@ -169,6 +169,18 @@ static PetscErrorCode CheckWalls(const LamDocument *document, const AxisNodes *n
   PetscFunctionReturn(0);
 }
 
+/* As CheckHold in scene_cells.c for a cohesion that does not vary. */
+static PetscErrorCode CheckFreeSides(const LamDocument *document, const AxisNodes *nodes, const LamScene *scene,
+                                     const LamMapAxis *axis)
+{
+  PetscFunctionBeginUser;
+  if (LamSceneNeedsCohesion(&scene->micro) && axis->from <= 0.0)
+    PetscCall(LamSceneFail(document, nodes->from,
+                           "without cohesion nothing holds the outer cells of a patch whose sides are free; write more "
+                           "than 0 MPa, or sides: affine"));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode CheckAxis(const LamDocument *document, const AxisNodes *nodes, const LamScene *scene,
                                 const LamMapAxis *axis)
 {
@@ -182,6 +194,7 @@ static PetscErrorCode CheckAxis(const LamDocument *document, const AxisNodes *no
     if (scene->micro.interface == LAM_INTERFACE_BONDED)
       PetscCall(LamSceneFail(document, nodes->quantity,
                              "law: bonded has no cohesion; write interface: {law: contact}, or another quantity"));
+    PetscCall(CheckFreeSides(document, nodes, scene, axis));
     PetscCall(CheckEntries(document, "load[].cohesion", nodes));
     break;
   case LAM_MAP_SHEAR:
