@@ -156,9 +156,10 @@ static void PrintFailure(const LamFailure *failure, PetscReal MPa)
 
   PrintVerdict(failure);
   if (!LamResponseHasFields(r)) return;
-  printf("  F = [%.6g, %.6g; %.6g, %.6g], turgor %.6g MPa, cohesion %.6g MPa\n  ", (double)load->F[0],
-         (double)load->F[1], (double)load->F[3], (double)load->F[4], (double)(load->turgor * MPa),
-         (double)(load->cohesion * MPa));
+  printf("  F = [%.6g, %.6g; %.6g, %.6g], ", (double)load->F[0], (double)load->F[1], (double)load->F[3],
+         (double)load->F[4]);
+  if (load->F[8] != 1) printf("F33 %.6g, ", (double)load->F[8]);
+  printf("turgor %.6g MPa, cohesion %.6g MPa\n  ", (double)(load->turgor * MPa), (double)(load->cohesion * MPa));
   PrintMeasures(r, failure->program.strength, MPa);
   if (isfinite(Ratio(r->max_wall_tension, r->max_traction)))
     printf("  there a wall less than %.4g times as strong as the lamella in normal direction tears first\n",

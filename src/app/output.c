@@ -163,6 +163,8 @@ PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales 
   printf(" %5" PetscInt_FMT, response->newton_iterations);
   PrintColumn(8, 2, 'f', 1e3 * response->seconds);
   putchar('\n');
+  if (LamResponseHasFields(response) && F[8] != 1)
+    printf("      F33 %.4f, P33 %.3e MPa\n", (double)F[8], (double)(response->P[8] * MPa));
   if (response->status != LAM_CONVERGED) printf("      %s\n", response->reason);
   PetscCall(FlushOutput());
   PetscFunctionReturn(0);
