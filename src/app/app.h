@@ -62,7 +62,7 @@ PetscErrorCode LamOptionsParse(LamArgs *args, const char usage[], const char sum
                                int positional_count, const char *positional[], PetscBool *done, int *exit_status);
 
 /* ---- output.c ---- */
-/* The contract's JSON object of a solved state; physical units. state < 0: no "state" member. The caller owns it. */
+/* The JSON object of a solved state, in physical units. state < 0: no "state" member. The caller owns it. */
 PetscErrorCode LamResponseToJSON(const LamResponse *response, const LamScales *scales, PetscInt state,
                                  PetscBool tangent, json_t **object);
 json_t *LamJSONReal(PetscReal value); /* null where not finite */
