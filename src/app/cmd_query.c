@@ -46,7 +46,7 @@ static PetscBool ParseDeformation(const char text[], PetscReal F[9], char proble
     at = end;
   }
   if (n != 4 && n != 9) {
-    PetscSNPrintf(problem, 128, "%d numbers", n);
+    PetscSNPrintf(problem, 128, "%d number%s", n, n == 1 ? "" : "s");
     return PETSC_FALSE;
   }
   for (int i = 0; i < 9; i++) F[i] = n == 9 ? numbers[i] : i == 8;
@@ -144,7 +144,7 @@ static PetscBool UsageError(const char option[], const char value[], const char 
 
 static PetscBool ReadValues(Query *q, LamLoad *load, int *exit_status)
 {
-  char problem[128], *end;
+  char problem[128], wanted[200], *end;
 
   if (!q->deformation) {
     fprintf(stderr, "lamella query: the deformation gradient is missing; give -F \"1 0.1 0 1\", or -F - for lines of "
@@ -152,8 +152,10 @@ static PetscBool ReadValues(Query *q, LamLoad *load, int *exit_status)
     *exit_status = LAM_EXIT_USAGE;
     return PETSC_FALSE;
   }
-  if (strcmp(q->deformation, "-") && !ParseDeformation(q->deformation, load->F, problem))
-    return UsageError("-F", q->deformation, problem, exit_status);
+  if (strcmp(q->deformation, "-") && !ParseDeformation(q->deformation, load->F, problem)) {
+    snprintf(wanted, sizeof(wanted), "%s; 4 or 9 numbers are wanted, such as \"1 0.1 0 1\"", problem);
+    return UsageError("-F", q->deformation, wanted, exit_status);
+  }
   if (q->turgor && ReadPressure(q, q->turgor, &q->default_turgor))
     return UsageError("-p", q->turgor, "a pressure with its unit is wanted, such as \"0.02 MPa\"", exit_status);
   if (q->cohesion && ReadPressure(q, q->cohesion, &q->default_cohesion))
