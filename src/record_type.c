@@ -5,6 +5,7 @@
   covers what is on the disk and a reader in any language can test it.
 */
 #include "record_internal.h"
+#include <math.h>
 #include <stddef.h>
 #include <string.h>
 
@@ -109,11 +110,16 @@ PetscErrorCode LamRecordTypeCreate(PetscBool in_memory, hid_t *type)
 
 /*
   Members that files of format version 1 did not have from its beginning: where one is missing it is not known (NaN),
-  and a count is 0. Bonded tissue has no gaps, so such files lack nothing.
+  and a count is 0. Bonded tissue has no gaps, so such files lack nothing. Cells did not differ then, so that dPsi/dp
+  and dPsi/dg are the fractions.
 */
 static const char *const added_members[] = {
-    "opening_by_face", "open_by_face", "debonded_spread", "open_spread",   "mean_gap",
-    "max_penetration", "fabric",       "zero_modes",      "cell_clusters", "percolating_directions"};
+    "opening_by_face",   "open_by_face",           "debonded_spread", "open_spread",
+    "mean_gap",          "max_penetration",        "fabric",          "zero_modes",
+    "cell_clusters",     "percolating_directions", "energy_turgor",   "energy_cohesion",
+    "gap_place",         "opening_moment",         "normal_place",    "shear_place",
+    "max_lamella_shear", "max_fibre_stretch",      "max_wall_energy", "max_wall_tension",
+    "wall_place",        "mean_wall_tension",      "net_wall_tension"};
 
 static PetscBool WasAdded(const char name[])
 {
@@ -262,6 +268,8 @@ PetscErrorCode LamRecordsUnpack(const char path[], PetscInt n, const void *bytes
     *r = records[i].response;
     keys[i] = records[i].key;
     r->reason[sizeof(r->reason) - 1] = '\0';
+    if (isnan(r->energy_turgor)) r->energy_turgor = -r->lumen_fraction;
+    if (isnan(r->energy_cohesion)) r->energy_cohesion = r->opening_fraction;
     PetscCheck((int)r->status >= 0 && r->status < LAM_STATUS_COUNT && (int)r->source >= 0 &&
                    r->source < LAM_SOURCE_COUNT && records[i].microstructure == 0,
                PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: record %" PetscInt_FMT " has an unknown status or source",

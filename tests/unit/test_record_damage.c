@@ -170,6 +170,19 @@ static const char *const indicators[] = {"opening_by_face",
                                          "mean_gap",
                                          "max_penetration",
                                          "fabric",
+                                         "gap_place",
+                                         "opening_moment",
+                                         "normal_place",
+                                         "shear_place",
+                                         "max_lamella_shear",
+                                         "max_fibre_stretch",
+                                         "max_wall_energy",
+                                         "max_wall_tension",
+                                         "wall_place",
+                                         "mean_wall_tension",
+                                         "net_wall_tension",
+                                         "energy_turgor",
+                                         "energy_cohesion",
                                          "zero_modes",
                                          "cell_clusters",
                                          "percolating_directions",
@@ -178,8 +191,14 @@ static const char *const indicators[] = {"opening_by_face",
 /* What a file of before the indicators of contact gives back of a response. */
 static LamResponse WithoutIndicators(LamResponse r)
 {
-  for (int k = 0; k < 3; k++) r.opening_by_face[k] = r.open_by_face[k] = r.fabric[k] = NAN;
+  for (int k = 0; k < 3; k++) {
+    r.opening_by_face[k] = r.open_by_face[k] = r.fabric[k] = r.opening_moment[k] = r.mean_wall_tension[k] = NAN;
+    r.gap_place[k] = r.normal_place[k] = r.shear_place[k] = r.wall_place[k] = NAN;
+  }
   r.debonded_spread = r.open_spread = r.mean_gap = r.max_penetration = NAN;
+  r.max_lamella_shear = r.max_fibre_stretch = r.max_wall_energy = r.max_wall_tension = r.net_wall_tension = NAN;
+  r.energy_turgor = -r.lumen_fraction;
+  r.energy_cohesion = r.opening_fraction;
   r.zero_modes = r.cell_clusters = r.percolating_directions = 0;
   return r;
 }
