@@ -395,6 +395,11 @@ static void FillTangent(const LamExpansion *m, Tensor K[3], PetscReal A3333, Pet
   A[80] = A3333;
 }
 
+static PetscBool SameNumber(PetscReal a, PetscReal b)
+{
+  return (PetscBool)(fabs(a - b) <= 1e-10);
+}
+
 /* Stress, tangent and all else that the potential gives. */
 static void FillPotential(const LamExpansion *m, Tensor F, const LamResponse *record, LamResponse *r)
 {
@@ -418,8 +423,9 @@ static void FillPotential(const LamExpansion *m, Tensor F, const LamResponse *re
   r->energy_turgor_cohesion = m->opening_gradient[3];
   r->energy_turgor = m->gradient[3];
   r->energy_cohesion = m->opening;
-  r->lumen_fraction = -m->gradient[3];
-  r->opening_fraction = m->opening;
+  /* derivatives of the potential are volumes only where all cells have the same turgor and cohesion */
+  r->lumen_fraction = SameNumber(-record->energy_turgor, record->lumen_fraction) ? -m->gradient[3] : NAN;
+  r->opening_fraction = SameNumber(record->energy_cohesion, record->opening_fraction) ? m->opening : NAN;
   FillTangent(m, K, record->tangent[80], r->tangent);
 }
 

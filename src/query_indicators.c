@@ -56,9 +56,14 @@ static void CopyContact(const LamResponse *record, const PetscInt face[3], LamRe
   r->percolating_directions = record->percolating_directions;
 }
 
-/* What walls and lamella bear, at the record's own state; places and the fabric hold only in its own orientation. */
+/*
+  Volumes, and what walls and lamella bear, at the record's own state; places and the fabric hold only in its own
+  orientation.
+*/
 static void CopyLoads(const LamResponse *record, const PetscInt face[3], LamResponse *r)
 {
+  r->lumen_fraction = record->lumen_fraction;
+  r->opening_fraction = record->opening_fraction;
   r->max_traction = record->max_traction;
   r->max_lamella_shear = record->max_lamella_shear;
   r->max_fibre_stretch = record->max_fibre_stretch;

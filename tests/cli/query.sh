@@ -78,3 +78,12 @@ YAML
 expect 0 "$lamella" rve uneven.yaml -o uneven.h5
 expect 0 "$lamella" query uneven.h5 -F "1 0.1 0 1" -p "0.02 MPa" --radius 0.01
 expect 3 "$lamella" query uneven.h5 -F "1 -0.1 0 1" -p "0.02 MPa" --radius 0.01
+
+# where they differ in turgor dPsi/dp is no lumen volume: that is the record's, and unknown elsewhere
+sed -i 's/wall_thickness: 22.5 um/turgor: 0.5/' uneven.yaml
+expect 0 "$lamella" rve uneven.yaml -o turgor.h5 --json
+lumen=$(grep -oE '"lumen_fraction": [0-9.]+' out.txt)
+expect 0 "$lamella" query turgor.h5 -F "1 0.1 0 1" -p "0.02 MPa" --json
+grep -q "$lumen" out.txt || fail "not the $lumen of the record: $(cat out.txt)"
+expect 0 "$lamella" query turgor.h5 -F "1 0.105 0 1" -p "0.02 MPa" --json
+grep -q '"lumen_fraction": null' out.txt || fail "a lumen volume from dPsi/dp: $(cat out.txt)"
