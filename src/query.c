@@ -6,7 +6,7 @@
     answered energy and the tangent its exact, symmetric Hessian. Coordinates x = (c0, c1, c2, p) are invariants under
     rotation: c0 = (C11 + C22)/2, c1 = (C11 - C22)/2, c2 = C12. The fluid's part -p J of the potential is taken off
     before the expansion and put back exactly; what remains varies slowly with J, and hardly with p
-    (effective-stress principle, design.md Section 6).
+    (effective-stress principle, docs/theory.md Section 6).
 
   Algorithm
     Record to expansion: with dF_a = 1/2 F^-T D_a, D = I, diag(1,-1), offdiag(1,1), a change dF_a changes c_a alone;

@@ -30,7 +30,7 @@ extern const char *const LamSourceNames[];
 /*
   Nondimensional (stresses in C1 + C2, lengths in apothems). A number that is not known is NaN in memory and null in
   JSON. In plane strain tangent entries that involve an out-of-plane shear component (13, 23, 31, 32) are NaN.
-  Psi is the energy per reference volume of design: walls - p V_lumen + g V_gap, of which all else is a derivative.
+  Psi is the energy per reference volume, walls - p V_lumen + g V_gap, of which all else is a derivative.
 */
 typedef struct {
   LamLoad load; /* the question: F, turgor, cohesion */
@@ -85,7 +85,7 @@ typedef struct {
   PetscInt factorisations;
   PetscInt unknowns;
   PetscReal seconds;
-  PetscReal error_estimate; /* relative error of P, contract's norm */
+  PetscReal error_estimate; /* relative error of P, as LamStressError */
   PetscReal distance;       /* of a query to the record that answered, in strain; 0 for a solve */
   char reason[192];         /* why the status is not `converged`; empty otherwise */
 } LamResponse;

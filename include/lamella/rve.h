@@ -1,5 +1,5 @@
 /*
-  The representative volume element: a periodic set of whole hexagonal cells with hyperelastic walls.
+  The representative volume element: whole hexagonal cells with hyperelastic walls, periodic or a patch between grips.
 
     LamRVECreate(comm, &rve); LamRVESetMicrostructure(rve, &micro); LamRVESetUp(rve);
     LamRVEStateCreate(rve, &state);
@@ -79,12 +79,15 @@ PetscErrorCode LamRVEGetFields(LamRVE rve, LamRVEState state, PetscReal x[], Pet
 
 /*
   Samples along the interfaces of a contact state, for pictures and profiles; the caller provides the arrays, any may be
-  NULL. LamRVEGetInterfaceSize: `faces` = 3 per cell (face families 0, 1, 2 of cell 0, then of cell 1, ...), `points`
+  NULL. LamRVEGetInterfaceSize: `faces` = 3 per cell (face families 0, 1, 2 of cell 0, then of cell 1, ...; of a patch
+  those that have a neighbour), `points`
   per face, evenly spaced in the reference along the slave wall, counter-clockwise around its cell. Bonded tissue has
-  none. from      [face][point][2]  current position on the wall of the face's cell to        [face][point][2]  nearest
-  point of the facing wall (in the image that faces it); NaN: it faces none gap       [face][point]     distance, in
-  apothems (< 0: penetration); NaN: it faces none pressure  [face][point]     contact pressure (Cauchy, >= 0), in C1 +
-  C2; the traction is cohesion - pressure
+  none.
+
+    from      [face][point][2]  current position on the wall of the face's cell
+    to        [face][point][2]  nearest point of the facing wall (in the image that faces it); NaN: it faces none
+    gap       [face][point]     distance, in apothems (< 0: penetration); NaN: it faces none
+    pressure  [face][point]     contact pressure (Cauchy, >= 0), in C1 + C2; the traction is cohesion - pressure
 */
 PetscErrorCode LamRVEGetInterfaceSize(LamRVE rve, PetscInt *faces, PetscInt *points);
 PetscErrorCode LamRVEGetInterface(LamRVE rve, LamRVEState state, PetscReal from[], PetscReal to[], PetscReal gap[],

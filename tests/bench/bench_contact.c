@@ -15,7 +15,7 @@
 #define CASES 40
 #define MESHES 2
 #define REPEATS_MAX 99
-#define SAME 1e-6 /* stresses of one equilibrium differ by less, contract's norm */
+#define SAME 1e-6 /* stresses of one equilibrium differ by less, LamStressError */
 
 static const double shears[] = {0.05, 0.1, 0.2, 0.3, 0.5};
 static const double turgors[] = {0, 0.005, 0.02, 0.05}, cohesions[] = {0, 0.005}; /* MPa */
