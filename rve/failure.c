@@ -5,6 +5,8 @@
   crossed by three Gauss points along the face, whose values, integrated through the thickness, are taken as a quadratic
   function there. Means over a stretch as long as the wall is thick converge under refinement where point values at the
   corners of the lumen do not.
+
+  Tension is the Cauchy stress along the fibre over that of the fluid in which the wall stands, -p of its own cell.
 */
 #include "rve_impl.h"
 
@@ -39,6 +41,8 @@ static void SetShares(PetscReal share[SAMPLES][3])
 static void SumThroughWall(LamRVE rve, const LamLoad *load, PetscInt cell, PetscInt face, PetscInt i,
                            PetscReal column[3][INTEGRALS])
 {
+  const PetscReal turgor = load->turgor * LamTurgorFactor(rve, cell);
+
   for (PetscInt h = 0; h < 3; ++h)
     for (PetscInt q = 0; q < INTEGRALS; ++q) column[h][q] = 0.0;
   for (PetscInt m = 0; m < rve->mesh.through; ++m) {
@@ -56,7 +60,7 @@ static void SumThroughWall(LamRVE rve, const LamLoad *load, PetscInt cell, Petsc
       sum[VOLUME] += points[g].volume;
       sum[STRETCH] += points[g].stretch;
       sum[ENERGY] += points[g].energy;
-      sum[TENSION] += points[g].tension;
+      sum[TENSION] += points[g].tension + turgor * points[g].volume;
     }
   }
 }
@@ -82,7 +86,7 @@ static void SumAlongFace(LamRVE rve, const LamLoad *load, const PetscReal share[
 PetscErrorCode LamWallMeasures(LamRVE rve, const LamLoad *load, LamResponse *response)
 {
   const PetscInt count = rve->mesh.along * SAMPLES;
-  PetscReal share[SAMPLES][3], tension[3] = {0.0, 0.0, 0.0}, volume[3] = {0.0, 0.0, 0.0}, net = 0.0, *work;
+  PetscReal share[SAMPLES][3], tension[3] = {0.0, 0.0, 0.0}, volume[3] = {0.0, 0.0, 0.0}, *work;
   LamLargestMean stretch = LAM_NO_MEAN, energy = LAM_NO_MEAN, stress = LAM_NO_MEAN;
   WallSums sums;
 
@@ -101,7 +105,6 @@ PetscErrorCode LamWallMeasures(LamRVE rve, const LamLoad *load, LamResponse *res
       LamTakeLargestMean(thickness, cell, face, count, pull, current, &stress);
       tension[face % 3] += pull[count];
       volume[face % 3] += current[count];
-      net += pull[count] + load->turgor * LamTurgorFactor(rve, cell) * current[count];
     }
   PetscCall(PetscFree(work));
   response->max_fibre_stretch = stretch.value;
@@ -109,6 +112,5 @@ PetscErrorCode LamWallMeasures(LamRVE rve, const LamLoad *load, LamResponse *res
   response->max_wall_tension = stress.value;
   PetscCall(PetscArraycpy(response->wall_place, stress.place, 3));
   for (PetscInt k = 0; k < 3; ++k) response->mean_wall_tension[k] = tension[k] / volume[k];
-  response->net_wall_tension = net / (volume[0] + volume[1] + volume[2]);
   PetscFunctionReturn(0);
 }

@@ -69,7 +69,6 @@ static void CopyLoads(const LamResponse *record, const PetscInt face[3], LamResp
   r->max_fibre_stretch = record->max_fibre_stretch;
   r->max_wall_energy = record->max_wall_energy;
   r->max_wall_tension = record->max_wall_tension;
-  r->net_wall_tension = record->net_wall_tension;
   for (int k = 0; k < 3; k++) {
     r->mean_face_traction[k] = record->mean_face_traction[face[k]];
     r->mean_wall_tension[k] = record->mean_wall_tension[face[k]];

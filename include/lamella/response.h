@@ -68,11 +68,12 @@ typedef struct {
   PetscReal shear_place[3];
   PetscReal mean_face_traction[3]; /* mean normal Cauchy traction per face family, tension > 0 */
   /* walls, averaged over the whole thickness t of a wall and a length t along it: fibre stretch, energy density
-     without U, Cauchy stress along the fibre; the largest such means */
+     without U, tension; the largest such means. Tension: Cauchy stress along the fibre plus the turgor of the wall's
+     own cell, the fluid it stands in. The tractions above are absolute: a gap opens against air (theory.md, Section 23)
+   */
   PetscReal max_fibre_stretch, max_wall_energy, max_wall_tension;
   PetscReal wall_place[3];         /* of max_wall_tension: cell, face 0..5, place along the face in [0, 1] */
-  PetscReal mean_wall_tension[3];  /* Cauchy stress along the fibre, mean over the walls of a face family */
-  PetscReal net_wall_tension;      /* mean over all walls of that stress + turgor of the cell: 0, the walls are slack */
+  PetscReal mean_wall_tension[3];  /* tension, mean over the walls of a face family; 0 on average: slack */
   PetscReal lowest_eigenvalue;     /* estimate of the softest mode where it was computed (unstable states), else NaN */
   PetscInt floating_cells;         /* cells without any contact */
   PetscInt zero_modes;             /* motions of the cells that change no energy: cells slide or spin free */

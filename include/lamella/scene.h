@@ -97,7 +97,7 @@ typedef struct {
 
 /* What the tissue bears, in C1 + C2; NaN: not given. */
 typedef struct {
-  PetscReal wall;           /* Cauchy stress along a wall, averaged over its thickness and as long a stretch */
+  PetscReal wall;           /* tension of a wall, averaged over its thickness and as long a stretch */
   PetscReal lamella_normal; /* traction that parts bonded cells, averaged over a length of one wall thickness */
   PetscReal lamella_shear;  /* likewise, along the face */
 } LamStrength;

@@ -30,7 +30,7 @@ extern const char *const LamFailureModeNames[];
   X(LAM_CRITERION_CONTACT, "contact")               /* contact: the cells are separated (separation.h) */              \
   X(LAM_CRITERION_WALL, "wall")                     /* max_wall_tension reaches its strength */                        \
   X(LAM_CRITERION_STABILITY, "stability")           /* a saddle is met, or no stable branch found */                   \
-  X(LAM_CRITERION_TURGOR, "turgor")                 /* turgor, or the net tension of the walls, falls to 0 */
+  X(LAM_CRITERION_TURGOR, "turgor")                 /* turgor, or the mean tension of the walls, falls to 0 */
 typedef enum { LAM_CRITERIA(LAM_ENUM_ENTRY) LAM_CRITERION_COUNT } LamCriterion;
 extern const char *const LamCriterionNames[];
 

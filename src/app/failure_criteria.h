@@ -7,7 +7,7 @@
 #include "failure.h"
 #include <math.h>
 
-/* Walls count as taut from a net tension of this share of the turgor on. Turgor alone gives them more than p where the
+/* Walls count as taut from a mean tension of this share of the turgor on. Turgor alone gives them more than p where the
    tissue is free; where it is held at F = I it gives them some p^2/kappa, by their compressibility. */
 #define LAM_TAUT 0.1
 
@@ -42,9 +42,15 @@ static inline PetscBool LamIsTurgid(const LamResponse *r)
   return (PetscBool)(r->load.turgor > 0);
 }
 
+/* Over all walls: of each face family every cell has the same share. */
+static inline PetscReal LamMeanTension(const LamResponse *r)
+{
+  return (r->mean_wall_tension[0] + r->mean_wall_tension[1] + r->mean_wall_tension[2]) / 3;
+}
+
 static inline PetscBool LamIsTaut(const LamResponse *r)
 {
-  return (PetscBool)(LamIsTurgid(r) && r->net_wall_tension > LAM_TAUT * r->load.turgor);
+  return (PetscBool)(LamIsTurgid(r) && LamMeanTension(r) > LAM_TAUT * r->load.turgor);
 }
 
 /*
@@ -73,7 +79,7 @@ static inline PetscReal LamCriterionExcess(LamCriterion criterion, const LamFail
     return r->status == LAM_UNSTABLE || r->branch > before[0].branch ? 1 : -1;
   case LAM_CRITERION_TURGOR:
     if (failure->turgid) excess = -r->load.turgor;
-    if (failure->taut) excess = PetscMax(excess, -r->net_wall_tension);
+    if (failure->taut) excess = PetscMax(excess, -LamMeanTension(r));
     return excess;
   default:
     return excess;

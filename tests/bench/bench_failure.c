@@ -4,6 +4,7 @@
 */
 #include <petsctime.h>
 #include <stdio.h>
+#include "failure_criteria.h"
 #include "figures_failure.h"
 #include "rve_impl.h"
 
@@ -73,7 +74,7 @@ static PetscErrorCode PrintMeasures(LamInterfaceLawType interface, int m, const 
   PetscCall(PointValues(rve, state, &fibre, &stress));
   PetscCall(Cost(rve, load, &r, &share));
   printf("  %2dx%d  %.4f  %7.4f   %.5f %.5f %8.5f %8.5f %8.5f %8.5f  %.1f %%\n", meshes[m][0], meshes[m][1], fibre,
-         stress, r.max_fibre_stretch, r.max_wall_energy, r.max_wall_tension, r.net_wall_tension, r.max_traction,
+         stress, r.max_fibre_stretch, r.max_wall_energy, r.max_wall_tension, LamMeanTension(&r), r.max_traction,
          r.max_lamella_shear, 100 * share);
   PetscCall(LamRVEStateDestroy(&state));
   PetscCall(LamRVEDestroy(&rve));
@@ -96,7 +97,7 @@ static PetscErrorCode Measures(void)
 
   PetscFunctionBeginUser;
   printf("measures, C1 + C2; point: largest fibre stretch and principal stress at a node\n"
-         "  mesh  point   point     stretch energy   tension  net      normal   shear    cost\n");
+         "  mesh  point   point     stretch energy   tension  mean     normal   shear    cost\n");
   for (size_t c = 0; c < PETSC_STATIC_ARRAY_LENGTH(cases); c++) {
     printf("%s\n", cases[c].name);
     for (int m = 0; m < cases[c].meshes; m++) PetscCall(PrintMeasures(cases[c].interface, m, &cases[c].load));
@@ -128,7 +129,7 @@ static PetscErrorCode PrintOnsets(const char name[], LamInterfaceLawType interfa
 static PetscErrorCode Onsets(void)
 {
   LamLoad pull[PULL_STATES], shear[SHEAR_STATES], slip[SHEAR_STATES], shrink[3];
-  const LamStrength wall = {.wall = 0.004 / TISSUE_STRESS, .lamella_normal = NAN, .lamella_shear = NAN};
+  const LamStrength wall = {.wall = 0.02 / TISSUE_STRESS, .lamella_normal = NAN, .lamella_shear = NAN};
   const LamFailureProgram pulled = {.strength = &figures_strength, .count = PULL_STATES, .loads = pull};
   const LamFailureProgram sheared = {.strength = &figures_strength, .count = SHEAR_STATES, .loads = shear};
   const LamFailureProgram slipped = {.strength = &wall, .count = 3, .loads = slip};

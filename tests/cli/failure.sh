@@ -10,7 +10,7 @@ verdict() { sed -n '$p' out.txt | grep -oE "\"$1\": *[^,}]+" | head -1 | sed 's/
 expect 0 "$lamella" rve "$example" --json
 grep -v '"failure"' out.txt | sed 's/"seconds": [^,]*,//' >without.txt
 grep -q '"failure"' out.txt && fail "a verdict that nobody asked for"
-for name in max_fibre_stretch max_wall_energy max_wall_tension wall_place mean_wall_tension net_wall_tension normal_place \
+for name in max_fibre_stretch max_wall_energy max_wall_tension wall_place mean_wall_tension normal_place \
   max_lamella_shear shear_place; do
   grep -q "\"$name\":" out.txt || fail "no member $name"
 done

@@ -27,9 +27,20 @@ static LamResponse Response(PetscReal turgor)
   assert_int_equal(LamResponseInit(&load, &response), 0);
   response.status = LAM_CONVERGED;
   response.max_traction = response.max_lamella_shear = response.max_wall_tension = 0.25;
-  response.net_wall_tension = 1;
   response.max_gap = 0;
-  for (int k = 0; k < 3; k++) response.mean_face_traction[k] = -1;
+  for (int k = 0; k < 3; k++) {
+    response.mean_face_traction[k] = -1;
+    response.mean_wall_tension[k] = 1;
+  }
+  return response;
+}
+
+/* A response whose walls bear this tension on average. */
+static LamResponse WithTension(PetscReal turgor, PetscReal tension)
+{
+  LamResponse response = Response(turgor);
+
+  for (int k = 0; k < 3; k++) response.mean_wall_tension[k] = k * tension;
   return response;
 }
 
@@ -76,10 +87,9 @@ static void a_branch_that_is_left_is_an_instability(void **state)
 static void only_turgor_that_was_there_is_lost(void **state)
 {
   LamFailure failure = Begun(LAM_INTERFACE_BONDED, &strength);
-  LamResponse taut = Response(0.1), slack = Response(0.1), dry = Response(0);
+  const LamResponse taut = Response(0.1), slack = WithTension(0.1, -0.01), dry = Response(0);
 
   (void)state;
-  slack.net_wall_tension = -0.01;
   assert_true(Excess(LAM_CRITERION_TURGOR, &failure, dry, slack) < 0);
   failure.turgid = PETSC_TRUE;
   assert_true(Excess(LAM_CRITERION_TURGOR, &failure, taut, slack) < 0);
@@ -92,12 +102,11 @@ static void only_turgor_that_was_there_is_lost(void **state)
 /* At F = I turgor gives walls the little tension of their compressibility: that is not taut. */
 static void walls_are_taut_from_a_share_of_the_turgor_on(void **state)
 {
-  LamResponse r = Response(0.1);
+  const LamResponse slack = WithTension(0.1, 0.9 * LAM_TAUT * 0.1);
+  LamResponse r = WithTension(0.1, 1.1 * LAM_TAUT * 0.1);
 
   (void)state;
-  r.net_wall_tension = 0.9 * LAM_TAUT * 0.1;
-  assert_false(LamIsTaut(&r));
-  r.net_wall_tension = 1.1 * LAM_TAUT * 0.1;
+  assert_false(LamIsTaut(&slack));
   assert_true(LamIsTaut(&r));
   r.load.turgor = 0;
   assert_false(LamIsTaut(&r));

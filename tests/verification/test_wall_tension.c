@@ -2,9 +2,9 @@
   Tension of the walls against statics. At F = lambda 1 the line along a face normal through the centre of a cell is a
   line of symmetry: it stays straight and bears no shear. It cuts two walls of current thickness h each across and the
   lumen between, in all 2 lambda (F33 = 1), so with the macroscopic Cauchy stress Sigma
-    2 lambda Sigma = 2 h sigma - p (2 lambda - 2 h),      (sigma + p) h = lambda (Sigma + p)
-  sigma the mean stress along the wall there, where it is largest, but for the corners, and uniform. At Sigma = 0 the
-  double wall's 2 (sigma + p) h is sqrt(3) p l, l = 2 lambda/sqrt(3) the length of a face.
+    2 lambda Sigma = 2 h sigma - p (2 lambda - 2 h),      T h = lambda (Sigma + p),      T = sigma + p
+  sigma the mean stress along the wall there, where it is largest, but for the corners, and uniform; T is the tension.
+  At Sigma = 0 the double wall's 2 T h is sqrt(3) p l, l = 2 lambda/sqrt(3) the length of a face.
 */
 #include "rve_fixture.h"
 #include "assert_near.h"
@@ -40,7 +40,7 @@ static double MiddleThickness(LamRVE rve, LamRVEState state)
   return h;
 }
 
-/* (sigma + p) h over lambda (Sigma + p). */
+/* T h over lambda (Sigma + p). */
 static double OverStatics(double thickness, double stretch, double turgor)
 {
   const LamMicrostructure micro = Thin(thickness);
@@ -55,7 +55,7 @@ static double OverStatics(double thickness, double stretch, double turgor)
   h = MiddleThickness(rve, state);
   assert_int_equal(LamRVEStateDestroy(&state), 0);
   assert_int_equal(LamRVEDestroy(&rve), 0);
-  return (r.max_wall_tension + turgor) * h / (stretch * (r.P[0] / stretch + turgor));
+  return r.max_wall_tension * h / (stretch * (r.P[0] / stretch + turgor));
 }
 
 static void LargestTensionIsThatOfTheCut(void **state)
@@ -84,22 +84,50 @@ static void FreeTissueHasTheTensionOfTheHexagon(void **state)
     load.turgor += r.P[0] / stretch;
   }
   assert_near(r.P[0], 0.0, 1e-6 * r.load.turgor);
-  tension = 2 * (r.max_wall_tension + r.load.turgor) * MiddleThickness(rve, point);
+  tension = 2 * r.max_wall_tension * MiddleThickness(rve, point);
   assert_near(tension / (sqrt(3.0) * r.load.turgor * (2 * stretch / sqrt(3.0))), 1.0, 0.003);
   assert_int_equal(LamRVEStateDestroy(&point), 0);
   assert_int_equal(LamRVEDestroy(&rve), 0);
 }
 
-/* Bonded walls do not feel turgor at a given F, but for the pressure that they stand in. */
-static void TurgorTakesItselfFromTheTension(void **state)
+/* Bonded walls do not feel turgor at a given F, but for the pressure that they stand in, to O(p/kappa). */
+static void TurgorLeavesTheTensionAsItIs(void **state)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamResponse dry = SolveTissue(&micro, PlaneLoad(1.05, 0.1, 0, 1, 0));
   const LamResponse turgid = SolveTissue(&micro, PlaneLoad(1.05, 0.1, 0, 1, 0.2));
 
-  assert_near(turgid.max_wall_tension, dry.max_wall_tension - 0.2, 2e-3);
-  assert_near(turgid.net_wall_tension, dry.net_wall_tension, 2e-3);
+  assert_near(turgid.max_wall_tension, dry.max_wall_tension, 2e-3);
+  for (int k = 0; k < 3; k++) assert_near(turgid.mean_wall_tension[k], dry.mean_wall_tension[k], 2e-3);
   assert_near(turgid.max_fibre_stretch, dry.max_fibre_stretch, 2e-4);
+}
+
+/* At F = I the walls, held along themselves, are pressed thinner by p/kappa; a uniaxial strain e, with the shear
+   modulus 2 (C1 + C2), leaves stresses that differ by 4 (C1 + C2) e: T = 4 p/kappa, but for the corners. */
+static void ConfinedTissueHasNoTension(void **state)
+{
+  const double turgor = 0.5;
+
+  for (double kappa = 1e3; kappa < 2e4; kappa *= 10) {
+    LamMicrostructure micro = DefaultTissue();
+
+    micro.wall.bulk_modulus = kappa;
+    assert_near(SolveTissue(&micro, PlaneLoad(1, 0, 0, 1, turgor)).max_wall_tension * kappa / (4 * turgor), 1.0, 0.04);
+  }
+}
+
+/* The fluid that a wall stands in is that of its own cell. */
+static void TensionIsAgainstTheFluidOfTheCell(void **state)
+{
+  LamMicrostructure micro = DefaultTissue();
+  const LamResponse alike = SolveTissue(&micro, PlaneLoad(1.05, 0.1, 0, 1, 0.2));
+  LamCell cell = {.wall_thickness = micro.wall_thickness, .wall = micro.wall, .turgor = 2, .cohesion = 1};
+  LamResponse twice;
+
+  micro.cell = &cell;
+  twice = SolveTissue(&micro, PlaneLoad(1.05, 0.1, 0, 1, 0.1));
+  assert_near(twice.max_wall_tension, alike.max_wall_tension, 1e-9);
+  for (int k = 0; k < 3; k++) assert_near(twice.mean_wall_tension[k], alike.mean_wall_tension[k], 1e-9);
 }
 
 /* Means over windows: not those at points, which diverge at the corners. */
@@ -164,9 +192,10 @@ static void ContactBearsTheCohesionAtMost(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(LargestTensionIsThatOfTheCut),    cmocka_unit_test(FreeTissueHasTheTensionOfTheHexagon),
-      cmocka_unit_test(TurgorTakesItselfFromTheTension), cmocka_unit_test(MeasuresConverge),
-      cmocka_unit_test(NoShearWhereSymmetryForbidsIt),   cmocka_unit_test(PlacesFollowTheMirror),
+      cmocka_unit_test(LargestTensionIsThatOfTheCut),      cmocka_unit_test(FreeTissueHasTheTensionOfTheHexagon),
+      cmocka_unit_test(TurgorLeavesTheTensionAsItIs),      cmocka_unit_test(ConfinedTissueHasNoTension),
+      cmocka_unit_test(TensionIsAgainstTheFluidOfTheCell), cmocka_unit_test(MeasuresConverge),
+      cmocka_unit_test(NoShearWhereSymmetryForbidsIt),     cmocka_unit_test(PlacesFollowTheMirror),
       cmocka_unit_test(ContactBearsTheCohesionAtMost),
   };
   int failed;
