@@ -180,7 +180,6 @@ static const char *const indicators[] = {"opening_by_face",
                                          "max_wall_tension",
                                          "wall_place",
                                          "mean_wall_tension",
-                                         "net_wall_tension",
                                          "energy_turgor",
                                          "energy_cohesion",
                                          "zero_modes",
@@ -196,7 +195,7 @@ static LamResponse WithoutIndicators(LamResponse r)
     r.gap_place[k] = r.normal_place[k] = r.shear_place[k] = r.wall_place[k] = NAN;
   }
   r.debonded_spread = r.open_spread = r.mean_gap = r.max_penetration = NAN;
-  r.max_lamella_shear = r.max_fibre_stretch = r.max_wall_energy = r.max_wall_tension = r.net_wall_tension = NAN;
+  r.max_lamella_shear = r.max_fibre_stretch = r.max_wall_energy = r.max_wall_tension = NAN;
   r.energy_turgor = -r.lumen_fraction;
   r.energy_cohesion = r.opening_fraction;
   r.zero_modes = r.cell_clusters = r.percolating_directions = 0;
