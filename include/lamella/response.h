@@ -62,6 +62,7 @@ typedef struct {
   /* mean over the interface length of jump(x)jump where walls have come apart, apothems^2: 11, 22, 12; jump: between
      points that were one. Its first axis is the direction in which cells come apart */
   PetscReal opening_moment[3];
+  /* tractions are NaN where there is no face: in a patch that is too narrow for a family, or has one cell alone */
   PetscReal max_traction;      /* largest normal Cauchy traction averaged over one wall thickness, tension > 0 */
   PetscReal normal_place[3];   /* of max_traction: cell, face, place along the face in [0, 1] */
   PetscReal max_lamella_shear; /* the same of the shear traction, without sign; 0 for contact tissue */

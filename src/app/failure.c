@@ -258,7 +258,7 @@ static PetscErrorCode Judge(LamFailure *failure, const Way *way, const Point *fr
     const LamCriterion criterion = (LamCriterion)c;
 
     if (!failure->onset[c].judged || !isnan(failure->onset[c].factor)) continue;
-    if (LamCriterionExcess(criterion, failure, from->responses, to->responses) < 0) continue;
+    if (!(LamCriterionExcess(criterion, failure, from->responses, to->responses) >= 0)) continue; /* NaN: not there */
     PetscCall(Seek(failure, way, criterion, from, to));
   }
   PetscFunctionReturn(0);

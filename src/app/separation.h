@@ -13,6 +13,7 @@
 #define LAM_SEPARATION_H
 
 #include <lamella/response.h>
+#include <math.h>
 
 /* How near to the cohesion a mean face traction reaches it, as a share of p + g. */
 #define LAM_TRACTION_REACHED 1e-3
@@ -25,10 +26,10 @@
 typedef enum { LAM_SEPARATIONS(LAM_ENUM_ENTRY) LAM_SEPARATION_COUNT } LamSeparation;
 extern const char *const LamSeparationNames[];
 
-/* max_gap is not known where no wall faces its partner. */
+/* max_gap is not known where no wall faces its partner, nor is it of a single cell between grips, which has none. */
 static inline PetscBool LamGapIsVisible(const LamResponse *r)
 {
-  return (PetscBool) !(r->max_gap <= LAM_VISIBLE_GAP);
+  return (PetscBool)(isnan(r->max_gap) ? r->debonded_fraction > 0 : r->max_gap > LAM_VISIBLE_GAP);
 }
 
 /* Whether a face family carries no contact any more. */

@@ -16,6 +16,7 @@ static LamSeparation Judge(PetscReal turgor, PetscReal cohesion, PetscReal max_g
     assert_int_equal(LamResponseInit(&load, &responses[m]), 0);
     responses[m].status = LAM_CONVERGED;
     responses[m].max_gap = max_gap;
+    responses[m].debonded_fraction = 1;
     for (PetscInt k = 0; k < 3; k++) responses[m].mean_face_traction[k] = traction;
   }
   return LamSeparationOf(responses);
