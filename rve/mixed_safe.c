@@ -262,7 +262,7 @@ static PetscErrorCode GiveReason(const Search *s, LamResponse *response)
 {
   const PetscBool limit = (PetscBool)(s->reached > 0.0 && s->stiffness < LIMIT_SHARE * s->first_stiffness &&
                                       s->failed - s->reached <= 2.0 * LEAST_SHARE);
-  const char *what = limit ? "a limit load lies" : "stable states end";
+  const char *what = limit ? "a limit load lies" : "no stable state was found";
 
   PetscFunctionBeginUser;
   response->status = limit ? LAM_NO_EQUILIBRIUM : LAM_NOT_CONVERGED;

@@ -171,6 +171,15 @@ static void UnreachableStressIsBracketed(void **state)
   assert_true(reached > 0.1 && failed < 0.25 && reached < failed);
 }
 
+/* Pulled tissue stiffens without end: where no answer is found that is no end of stable states. */
+static void StressTooFarAwayIsNotCalledALimit(void **state)
+{
+  const LamResponse r = SolveDefault((MixedCase){.F = {FREE, FREE, 0, FREE}, .F33 = 1, .P = {1000, 0, 0, 1000}});
+
+  assert_int_equal(r.status, LAM_NOT_CONVERGED);
+  assert_non_null(strstr(r.reason, "no stable state was found between"));
+}
+
 static int Run(void)
 {
   const struct CMUnitTest tests[] = {
@@ -185,6 +194,7 @@ static int Run(void)
       cmocka_unit_test(StressMustBeFinite),
       cmocka_unit_test(UnstableStateNamesTheStableControl),
       cmocka_unit_test(UnreachableStressIsBracketed),
+      cmocka_unit_test(StressTooFarAwayIsNotCalledALimit),
   };
 
   return cmocka_run_group_tests(tests, SolveAll, NULL);
