@@ -97,6 +97,8 @@ PetscErrorCode LamResponseInit(const LamLoad *load, LamResponse *response)
   }
   response->load = copy;
   response->status = LAM_NOT_CONVERGED;
+  response->floating_cells = response->zero_modes = LAM_UNKNOWN_COUNT;
+  response->cell_clusters = response->percolating_directions = LAM_UNKNOWN_COUNT;
   PetscFunctionReturn(0);
 }
 

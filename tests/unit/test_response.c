@@ -18,6 +18,8 @@ static void a_new_response_knows_nothing_but_its_load(void **state)
   assert_memory_equal(&r.load, &shear, sizeof(shear));
   assert_int_equal(r.status, LAM_NOT_CONVERGED);
   assert_true(isnan(r.energy) && isnan(r.P[8]) && isnan(r.tangent[80]) && isnan(r.mean_face_traction[2]));
+  assert_true(r.floating_cells == LAM_UNKNOWN_COUNT && r.zero_modes == LAM_UNKNOWN_COUNT);
+  assert_true(r.cell_clusters == LAM_UNKNOWN_COUNT && r.percolating_directions == LAM_UNKNOWN_COUNT);
   assert_int_equal(r.newton_iterations, 0);
 }
 
