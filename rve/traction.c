@@ -4,7 +4,8 @@
   Method. In equilibrium the internal forces of one cell at the nodes of an outer face are the loads that its neighbour
   exerts. Where three cells meet, the forces f_A, f_B, f_C (sum zero) are shared among the three faces by the split of
   least norm, t_AB = (f_A - f_B)/3. The traction field t = sum N_j t_j on the face solves the mass system
-  int N_i N_j ds t_j = f_i on the current quadratic edges, so it carries the nodal forces exactly. Normal component in
+  int N_i N_j ds t_j = f_i on the current quadratic edges, so it carries the nodal forces exactly, but for ends that
+  a patch holds: the reaction there is not the interface's, and the traction is extrapolated. Normal component in
   tension positive, shear component without sign, per current length (Cauchy). Point values at the lumen corners diverge
   under refinement; averages over a length of one wall thickness converge.
 */
@@ -77,9 +78,31 @@ static void EdgePoint(const PetscReal x[][2], PetscReal xi, PetscReal N[3], Pets
   for (PetscInt k = 0; k < 2; ++k) tangent[k] = d[0] * x[0][k] + d[1] * x[1][k] + d[2] * x[2][k];
 }
 
-/* Solves the mass system of one face; f becomes the nodal tractions, M is work space of size n x n. */
-static PetscErrorCode FaceTraction(PetscInt along, const PetscReal x[][2], PetscReal f[][2], PetscReal M[],
-                                   PetscReal b[])
+/* Whether node i of a face is held at F X: then its force contains the reaction to that, which is none of the face's.
+ */
+static PetscBool IsHeld(const LamRVE rve, PetscInt cell, PetscInt face, PetscInt i)
+{
+  const PetscInt node = LamMeshOuterNode(&rve->mesh, cell, 2 * rve->mesh.along * face + i);
+
+  return (PetscBool)(rve->micro.is_patch && rve->mesh.node_class[node] == 0);
+}
+
+/* In place of the equation of end node i: its traction goes on linearly from the two nodes inwards. On a face of one
+   element, whose ends may both be held, it equals that of the middle. */
+static void ExtrapolateEnd(PetscInt n, PetscInt i, PetscInt inwards, PetscReal M[], PetscReal b[])
+{
+  const PetscReal slope = n > 3 ? 1.0 : 0.0;
+
+  for (PetscInt j = 0; j < n; ++j) M[j * n + i] = 0.0;
+  M[i * n + i] = 1.0;
+  M[(i + inwards) * n + i] = -1.0 - slope;
+  M[(i + 2 * inwards) * n + i] = slope;
+  b[i] = b[n + i] = 0.0;
+}
+
+/* Solves the mass system of one face; f becomes the nodal tractions, M is work space of size n x n. held: its ends. */
+static PetscErrorCode FaceTraction(PetscInt along, const PetscBool held[2], const PetscReal x[][2], PetscReal f[][2],
+                                   PetscReal M[], PetscReal b[], PetscBLASInt pivots[])
 {
   const PetscReal point[4] = {-0.861136311594053, -0.339981043584856, 0.339981043584856, 0.861136311594053};
   const PetscReal weight[4] = {0.347854845137454, 0.652145154862546, 0.652145154862546, 0.347854845137454};
@@ -100,9 +123,10 @@ static PetscErrorCode FaceTraction(PetscInt along, const PetscReal x[][2], Petsc
     }
   for (PetscInt i = 0; i < n; ++i)
     for (PetscInt d = 0; d < 2; ++d) b[d * n + i] = f[i][d];
-  PetscCallBLAS("LAPACKpotrf", LAPACKpotrf_("L", &bn, M, &bn, &info));
-  PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "face mass matrix is singular (LAPACK potrf: %d)", (int)info);
-  PetscCallBLAS("LAPACKpotrs", LAPACKpotrs_("L", &bn, &columns, M, &bn, b, &bn, &info));
+  if (held[0]) ExtrapolateEnd(n, 0, 1, M, b);
+  if (held[1]) ExtrapolateEnd(n, n - 1, -1, M, b);
+  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&bn, &columns, M, &bn, pivots, b, &bn, &info));
+  PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "face mass matrix is singular (LAPACK gesv: %d)", (int)info);
   for (PetscInt i = 0; i < n; ++i)
     for (PetscInt d = 0; d < 2; ++d) f[i][d] = b[d * n + i];
   PetscFunctionReturn(0);
@@ -191,11 +215,12 @@ PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, LamResponse *re
 {
   const PetscInt along = rve->mesh.along, n = 2 * along + 1, count = along * SAMPLES;
   PetscReal *force, (*x)[2], (*t)[2], *M, *b;
+  PetscBLASInt *pivots;
   LamLargestMean normal = LAM_NO_MEAN, shear = LAM_NO_MEAN;
   FaceSums sums;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc5(2 * rve->mesh.node_count, &force, n, &x, n, &t, n * n, &M, 2 * n, &b));
+  PetscCall(PetscMalloc6(2 * rve->mesh.node_count, &force, n, &x, n, &t, n * n, &M, 2 * n, &b, n, &pivots));
   PetscCall(
       PetscMalloc4(count + 1, &sums.normal, count + 1, &sums.shear, count + 1, &sums.back, count + 1, &sums.length));
   PetscCall(NodeForces(rve, load, force));
@@ -205,12 +230,15 @@ PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, LamResponse *re
     for (PetscInt cell = 0; cell < rve->mesh.cell_count; ++cell) {
       const PetscReal *image;
       const PetscInt other = LamMeshNeighbour(&rve->mesh, cell, face, &image);
+      PetscBool held[2];
       PetscReal thickness;
 
       if (other < 0) continue;
       thickness = LamFaceThickness(rve, cell, other);
+      held[0] = IsHeld(rve, cell, face, 0);
+      held[1] = IsHeld(rve, cell, face, n - 1);
       FaceLoads(rve, load, force, cell, face, x, t);
-      PetscCall(FaceTraction(along, (const PetscReal(*)[2])x, t, M, b));
+      PetscCall(FaceTraction(along, held, (const PetscReal(*)[2])x, t, M, b, pivots));
       Accumulate(along, (const PetscReal(*)[2])x, (const PetscReal(*)[2])t, &sums);
       total += sums.normal[count];
       length += sums.length[count];
@@ -224,7 +252,7 @@ PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, LamResponse *re
   response->max_lamella_shear = LamLargestMeanValue(&shear);
   PetscCall(PetscArraycpy(response->normal_place, normal.place, 3));
   PetscCall(PetscArraycpy(response->shear_place, shear.place, 3));
-  PetscCall(PetscFree5(force, x, t, M, b));
+  PetscCall(PetscFree6(force, x, t, M, b, pivots));
   PetscCall(PetscFree4(sums.normal, sums.shear, sums.back, sums.length));
   PetscFunctionReturn(0);
 }

@@ -150,6 +150,28 @@ static void TurgorIsCohesion(void **state)
   assert_near(p.P[4] - g.P[4], -p.load.turgor * 1.04, 1e-5);
 }
 
+static LamResponse SolveMesh(PetscInt along, PetscInt through)
+{
+  LamMicrostructure micro = Patch(LAM_INTERFACE_BONDED, 2, 1);
+  LamResponse r;
+
+  micro.along = along;
+  micro.through = through;
+  r = SolveTissue(&micro, ContactLoad(1, 0.1, 0, 1, 0.02, 0));
+  assert_int_equal(r.status, LAM_CONVERGED);
+  return r;
+}
+
+/* Both ends of the only face are held: what holds them is no load on the lamella, and would grow as meshes get finer.
+ */
+static void ReactionsDoNotLoadTheLamella(void **state)
+{
+  const LamResponse coarse = SolveMesh(6, 2), fine = SolveMesh(12, 4), coarsest = SolveMesh(1, 1);
+
+  assert_near(coarse.max_lamella_shear, fine.max_lamella_shear, 0.04 * fine.max_lamella_shear);
+  assert_true(isfinite(coarsest.max_lamella_shear));
+}
+
 /* A single cell has nothing that could come apart, whatever the interface law, and no traction to tell. */
 static void ASingleCellIsNotSeparated(void **state)
 {
@@ -167,9 +189,8 @@ static void ASingleCellIsNotSeparated(void **state)
 static int Run(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(DerivativesOfBondedPatches),
-      cmocka_unit_test(DerivativesOfPatchesInContact),
-      cmocka_unit_test(TurgorIsCohesion),
+      cmocka_unit_test(DerivativesOfBondedPatches), cmocka_unit_test(DerivativesOfPatchesInContact),
+      cmocka_unit_test(TurgorIsCohesion),           cmocka_unit_test(ReactionsDoNotLoadTheLamella),
       cmocka_unit_test(ASingleCellIsNotSeparated),
   };
 
