@@ -5,8 +5,9 @@
     gap            the largest gap between facing walls exceeds LAM_VISIBLE_GAP, or no wall faces its partner any more;
                    or
     face_traction  the mean traction of a face family reaches the cohesion g, within 1e-3 of p + g, which presses the
-                   faces together: contact carries nothing there any more. Only with p + g > 0: where nothing presses
-                   them together, faces that just touch carry nothing, either.
+                   faces together, and less than half of it is in contact: contact carries nothing there any more. Only
+                   with p + g > 0: where nothing presses them together, faces that just touch carry nothing, either.
+                   Where cells differ, faces of more cohesion than g bear more while they are in contact.
   Two meshes, because one alone opens at its junctions by as much as its elements are long.
 */
 #ifndef LAM_SEPARATION_H
@@ -38,7 +39,8 @@ static inline PetscBool LamTractionIsReached(const LamResponse *r)
   const PetscReal g = r->load.cohesion, pressing = r->load.turgor + g;
 
   for (PetscInt k = 0; k < 3 && pressing > 0; k++)
-    if (r->mean_face_traction[k] >= g - LAM_TRACTION_REACHED * pressing) return PETSC_TRUE;
+    if (r->mean_face_traction[k] >= g - LAM_TRACTION_REACHED * pressing && r->debonded_by_face[k] > 0.5)
+      return PETSC_TRUE;
   return PETSC_FALSE;
 }
 

@@ -6,8 +6,9 @@
 #include <math.h>
 #include "app/separation.h"
 
-/* Both meshes alike; all face families carry the same traction. */
-static LamSeparation Judge(PetscReal turgor, PetscReal cohesion, PetscReal max_gap, PetscReal traction)
+/* Both meshes alike; all face families carry the same traction, and of each this share is without contact. */
+static LamSeparation JudgeShare(PetscReal turgor, PetscReal cohesion, PetscReal max_gap, PetscReal traction,
+                                PetscReal share)
 {
   const LamLoad load = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .turgor = turgor, .cohesion = cohesion};
   LamResponse responses[2];
@@ -17,9 +18,17 @@ static LamSeparation Judge(PetscReal turgor, PetscReal cohesion, PetscReal max_g
     responses[m].status = LAM_CONVERGED;
     responses[m].max_gap = max_gap;
     responses[m].debonded_fraction = 1;
-    for (PetscInt k = 0; k < 3; k++) responses[m].mean_face_traction[k] = traction;
+    for (PetscInt k = 0; k < 3; k++) {
+      responses[m].mean_face_traction[k] = traction;
+      responses[m].debonded_by_face[k] = share;
+    }
   }
   return LamSeparationOf(responses);
+}
+
+static LamSeparation Judge(PetscReal turgor, PetscReal cohesion, PetscReal max_gap, PetscReal traction)
+{
+  return JudgeShare(turgor, cohesion, max_gap, traction, 1);
 }
 
 static void faces_that_carry_no_contact_are_separated(void **state)
@@ -27,6 +36,13 @@ static void faces_that_carry_no_contact_are_separated(void **state)
   (void)state;
   assert_int_equal(Judge(0.02, 0.01, 0, 0.01 - 0.9e-3 * 0.03), LAM_SEPARATION_TRACTION);
   assert_int_equal(Judge(0.02, 0.01, 0, 0.01 - 1.1e-3 * 0.03), LAM_SEPARATION_NONE);
+}
+
+/* Cells may have more cohesion than the load says. */
+static void closed_faces_are_not_separated_whatever_they_bear(void **state)
+{
+  (void)state;
+  assert_int_equal(JudgeShare(0.02, 0.01, 0, 0.02, 0), LAM_SEPARATION_NONE);
 }
 
 /* The traction is then that of rounding, or the margin has the wrong sign. */
@@ -67,6 +83,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(faces_that_carry_no_contact_are_separated),
+      cmocka_unit_test(closed_faces_are_not_separated_whatever_they_bear),
       cmocka_unit_test(where_nothing_presses_the_gap_alone_decides),
       cmocka_unit_test(cells_of_which_no_walls_face_each_other_are_separated),
       cmocka_unit_test(both_meshes_must_agree),
