@@ -188,19 +188,27 @@ static PetscErrorCode TightThenLoose(LamRVE rve, const LamLoad *load, PetscBool 
   PetscFunctionReturn(0);
 }
 
-/* Tight contact from the undeformed (turned) tissue to the asked F in substeps, then let loose. */
-static PetscErrorCode WalkThenLoose(LamRVE rve, const LamLoad *load, LamContactSolution *at, LamContactOutcome *out)
+/* The load without its stretch: turgor, cohesion and the rotation of F. */
+static LamLoad Unstretched(const LamLoad *load)
 {
   const PetscReal angle = LamRotationAngle(load->F), c = PetscCosReal(angle), s = PetscSinReal(angle);
-  LamLoad tight = *load, start;
+  LamLoad start = *load;
 
-  PetscFunctionBeginUser;
-  tight.cohesion = load->cohesion + TIGHT;
-  start = tight;
   start.F[0] = start.F[4] = c;
   start.F[1] = -s;
   start.F[3] = s;
   start.F[8] = 1.0;
+  return start;
+}
+
+/* Tight contact from the undeformed (turned) tissue to the asked F in substeps, then let loose. */
+static PetscErrorCode WalkThenLoose(LamRVE rve, const LamLoad *load, LamContactSolution *at, LamContactOutcome *out)
+{
+  LamLoad tight = *load, start;
+
+  PetscFunctionBeginUser;
+  tight.cohesion = load->cohesion + TIGHT;
+  start = Unstretched(&tight);
   PetscCall(LamContactStartAffine(rve, &start));
   PetscCall(LamContactTry(rve, &start, LAM_FAR, out));
   if (LamContactIsStable(out)) {
@@ -219,19 +227,6 @@ PetscBool LamContactIsNear(const LamLoad *from, const LamLoad *load)
 
   for (PetscInt i = 0; i < 9; ++i) largest = PetscMax(largest, PetscAbsReal(from->F[i] - load->F[i]));
   return (PetscBool)(largest <= NEAR);
-}
-
-/* The load without its stretch: turgor, cohesion and the rotation of F. */
-static LamLoad Unstretched(const LamLoad *load)
-{
-  const PetscReal angle = LamRotationAngle(load->F), c = PetscCosReal(angle), s = PetscSinReal(angle);
-  LamLoad start = *load;
-
-  start.F[0] = start.F[4] = c;
-  start.F[1] = -s;
-  start.F[3] = s;
-  start.F[8] = 1.0;
-  return start;
 }
 
 /*
