@@ -152,13 +152,13 @@ PetscBool LamOnsetIsUnsolved(const LamOnset *onset)
 
 /* ---- what is told ---- */
 
-/* The family with the largest mean traction. */
+/* The family with the largest mean traction, of those that a patch has. */
 static PetscInt LoosestFace(const LamResponse *r)
 {
   PetscInt face = 0;
 
   for (PetscInt k = 1; k < 3; k++)
-    if (r->mean_face_traction[k] > r->mean_face_traction[face]) face = k;
+    if (isnan(r->mean_face_traction[face]) || r->mean_face_traction[k] > r->mean_face_traction[face]) face = k;
   return face;
 }
 

@@ -100,6 +100,12 @@ scene "0.001 MPa" "{F: [[1, 0], [0, 1]], turgor: 0 MPa}" "{F: [[1.05, 0], [0, 1.
 expect 0 "$lamella" rve scene.yaml --second-mesh --json -o apart.h5
 sed -n 2p out.txt | grep -qE '"floating_cells": 1,.*"separated": true' || fail "no floating cell: $(sed -n 2p out.txt)"
 
+# a patch of one column has no faces of family 0: the onset is not there
+scene "0.002 MPa" "{F: [[1, 0], [0, 1]], turgor: 0.01 MPa}" "{F: [[1, 0], [0, 1.1]], turgor: 0.01 MPa}"
+sed 's/^rve:/&\n  patch: {columns: 1, rows: 2}/' scene.yaml >column.yaml
+expect 0 "$lamella" rve column.yaml --onset --json
+sed '$!d' out.txt | grep -qE '"face": [12],.*"mean_face_traction": \[\[null' || fail "the onset's face: $(sed '$!d' out.txt)"
+
 # bonded tissue has no second mesh and no onset: a mistake of usage
 for option in --second-mesh --onset; do
   expect 1 "$lamella" rve "$source/tests/scenes/shear-bonded.yaml" $option -o none.h5
