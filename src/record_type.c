@@ -109,9 +109,9 @@ PetscErrorCode LamRecordTypeCreate(PetscBool in_memory, hid_t *type)
 }
 
 /*
-  Members that files of format version 1 did not have from its beginning: where one is missing it is not known (NaN),
-  and a count is 0. Bonded tissue has no gaps, so such files lack nothing. Cells did not differ then, so that dPsi/dp
-  and dPsi/dg are the fractions.
+  Members that files of format version 1 did not have from its beginning: where one is missing it is not known (NaN,
+  of a count LAM_UNKNOWN_COUNT). Bonded tissue has no gaps, so such files lack nothing. Cells did not differ then, so
+  that dPsi/dp and dPsi/dg are the fractions.
 */
 static const char *const added_members[] = {
     "opening_by_face",   "open_by_face",           "debonded_spread", "open_spread",

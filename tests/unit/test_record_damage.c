@@ -198,7 +198,7 @@ static LamResponse WithoutIndicators(LamResponse r)
   r.max_lamella_shear = r.max_fibre_stretch = r.max_wall_energy = r.max_wall_tension = NAN;
   r.energy_turgor = -r.lumen_fraction;
   r.energy_cohesion = r.opening_fraction;
-  r.zero_modes = r.cell_clusters = r.percolating_directions = 0;
+  r.zero_modes = r.cell_clusters = r.percolating_directions = LAM_UNKNOWN_COUNT;
   return r;
 }
 
