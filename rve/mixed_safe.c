@@ -15,7 +15,7 @@
 
 #define BUDGET 400 /* iterations of continuation, and of each descent */
 #define LEAST_SHARE (1.0 / 512.0)
-#define LIMIT_SHARE 0.2 /* of the stiffness at the start: less, before continuation ends, is that of a limit load */
+#define FOLD_MARGIN 4.0 /* widths of the bracket within which the stiffness of a limit load vanishes */
 #define DESCENTS 30
 #define LOST 5 /* steps in a row without stability: F runs away */
 #define HALVINGS 6
@@ -42,6 +42,7 @@ typedef struct {
   PetscReal step[LAM_F_COUNT], slope, longest; /* of descent */
   PetscReal reached, failed;                   /* shares of the way from the state before */
   PetscReal first_stiffness, stiffness;        /* at the state before and at the share reached */
+  PetscReal earlier, earlier_stiffness;        /* the share reached before that one, and the stiffness there */
   char refusal[192];                           /* of the last try */
   PetscInt iterations, factorisations, most;   /* most: iterations until the present part gives up */
 } Search;
@@ -119,6 +120,8 @@ static PetscErrorCode Continue(Search *s)
     PetscCall(TryFast(s, &load, &control, &solved));
     if (solved) {
       Swap(s);
+      s->earlier = s->reached;
+      s->earlier_stiffness = s->stiffness;
       s->reached = t;
       s->stiffness = s->now.view.w[0];
       step *= 2.0;
@@ -257,11 +260,23 @@ static PetscErrorCode Find(Search *s, LamRVEState state, PetscBool *found)
   PetscFunctionReturn(0);
 }
 
-/* Why there is no answer. A limit load is one where the stiffness has fallen to a fraction when states end. */
+/*
+  Whether states end in a fold, a limit load: near it the stiffness falls as the square root of the load that is left,
+  so its square, drawn through the last two states, vanishes in the bracket or close behind it.
+*/
+static PetscBool EndsInFold(const Search *s)
+{
+  const PetscReal bracket = s->failed - s->reached;
+  const PetscReal fall = PetscSqr(s->earlier_stiffness) - PetscSqr(s->stiffness);
+
+  if (s->reached <= s->earlier || bracket > 2.0 * LEAST_SHARE || fall <= 0.0) return PETSC_FALSE;
+  return (PetscBool)(PetscSqr(s->stiffness) * (s->reached - s->earlier) / fall <= FOLD_MARGIN * bracket);
+}
+
+/* Why there is no answer. */
 static PetscErrorCode GiveReason(const Search *s, LamResponse *response)
 {
-  const PetscBool limit = (PetscBool)(s->reached > 0.0 && s->stiffness < LIMIT_SHARE * s->first_stiffness &&
-                                      s->failed - s->reached <= 2.0 * LEAST_SHARE);
+  const PetscBool limit = EndsInFold(s);
   const char *what = limit ? "a limit load lies" : "no stable state was found";
 
   PetscFunctionBeginUser;
