@@ -180,6 +180,19 @@ static void StressTooFarAwayIsNotCalledALimit(void **state)
   assert_non_null(strstr(r.reason, "no stable state was found between"));
 }
 
+/* Walls without fibres thin as they are blown up: beyond a turgor there is no equilibrium. */
+static void FreeTissueWithoutFibresHasALimitTurgor(void **state)
+{
+  const MixedCase blown = {.F = {FREE, 0, 0, FREE}, .F33 = 1, .P = {0, 0, 0, 0}, .turgor = 0.05};
+  LamMicrostructure micro = DefaultTissue();
+  LamResponse r;
+
+  micro.wall.law = LAM_WALL_MOONEY_RIVLIN;
+  r = Solve(&micro, &blown);
+  assert_int_equal(r.status, LAM_NO_EQUILIBRIUM);
+  assert_non_null(strstr(r.reason, "a limit load lies between"));
+}
+
 static int Run(void)
 {
   const struct CMUnitTest tests[] = {
@@ -195,6 +208,7 @@ static int Run(void)
       cmocka_unit_test(UnstableStateNamesTheStableControl),
       cmocka_unit_test(UnreachableStressIsBracketed),
       cmocka_unit_test(StressTooFarAwayIsNotCalledALimit),
+      cmocka_unit_test(FreeTissueWithoutFibresHasALimitTurgor),
   };
 
   return cmocka_run_group_tests(tests, SolveAll, NULL);
