@@ -12,6 +12,19 @@ PetscErrorCode LamRVEGetInterfaceSize(LamRVE rve, PetscInt *faces, PetscInt *poi
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamRVEGetInterfaceFaces(LamRVE rve, PetscInt owner[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt f = 0; rve->contact && f < rve->contact->face_count; ++f) {
+    const LamContactFace *face = &rve->contact->faces[f];
+
+    owner[3 * f] = face->cell;
+    owner[3 * f + 1] = face->face;
+    owner[3 * f + 2] = face->other;
+  }
+  PetscFunctionReturn(0);
+}
+
 /* The master edge that faces place s, -1: none. */
 static PetscInt FacingEdge(const LamMortarSegments *segments, PetscReal s)
 {

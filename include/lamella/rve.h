@@ -80,9 +80,9 @@ PetscErrorCode LamRVEGetFields(LamRVE rve, LamRVEState state, PetscReal x[], Pet
 /*
   Samples along the interfaces of a contact state, for pictures and profiles; the caller provides the arrays, any may be
   NULL. LamRVEGetInterfaceSize: `faces` = 3 per cell (face families 0, 1, 2 of cell 0, then of cell 1, ...; of a patch
-  those that have a neighbour), `points`
-  per face, evenly spaced in the reference along the slave wall, counter-clockwise around its cell. Bonded tissue has
-  none.
+  those that have a neighbour), `points` per face, evenly spaced in the reference along the slave wall,
+  counter-clockwise around its cell. Bonded tissue has none. LamRVEGetInterfaceFaces: owner [face][3], the cell, its face
+  (0, 1 or 2) and the cell across it.
 
     from      [face][point][2]  current position on the wall of the face's cell
     to        [face][point][2]  nearest point of the facing wall (in the image that faces it); NaN: it faces none
@@ -90,6 +90,7 @@ PetscErrorCode LamRVEGetFields(LamRVE rve, LamRVEState state, PetscReal x[], Pet
     pressure  [face][point]     contact pressure (Cauchy, >= 0), in C1 + C2; the traction is cohesion - pressure
 */
 PetscErrorCode LamRVEGetInterfaceSize(LamRVE rve, PetscInt *faces, PetscInt *points);
+PetscErrorCode LamRVEGetInterfaceFaces(LamRVE rve, PetscInt owner[]);
 PetscErrorCode LamRVEGetInterface(LamRVE rve, LamRVEState state, PetscReal from[], PetscReal to[], PetscReal gap[],
                                   PetscReal pressure[]);
 

@@ -26,6 +26,21 @@ typedef struct {
 
 /* ---- the file ---- */
 
+/* Which faces the samples of interfaces are of; bonded tissue has none. */
+static PetscErrorCode WriteInterfaceFaces(Run *run)
+{
+  PetscInt dims[2] = {0, 3}, points, *owner;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEGetInterfaceSize(run->meshes.rve[0], &dims[0], &points));
+  if (!dims[0]) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(3 * dims[0], &owner));
+  PetscCall(LamRVEGetInterfaceFaces(run->meshes.rve[0], owner));
+  PetscCall(LamRecordWriterInts(run->writer, "/mesh/interface_faces", 2, dims, owner));
+  PetscCall(PetscFree(owner));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode WriteMesh(Run *run)
 {
   const LamRVEMesh *m = &run->mesh;
@@ -36,6 +51,7 @@ static PetscErrorCode WriteMesh(Run *run)
   PetscCall(LamRecordWriterInts(run->writer, "/mesh/elements", 2, elements, m->elements));
   PetscCall(LamRecordWriterInts(run->writer, "/mesh/cell_of", 1, &m->element_count, m->cell_of));
   PetscCall(LamRecordWriterReals(run->writer, "/mesh/period", 2, period, &m->period[0][0], "apothem"));
+  PetscCall(WriteInterfaceFaces(run));
   PetscFunctionReturn(0);
 }
 

@@ -127,6 +127,7 @@ with h5py.File("apart.h5") as f:
         facing = np.isfinite(gap)
         assert facing.any() and (pressure >= 0).all()
         assert np.allclose(np.linalg.norm(end - start, axis=2)[facing], np.abs(gap[facing]), atol=1e-9)
+    assert (f["mesh/interface_faces"][()] == [[0, 0, 0], [0, 1, 0], [0, 2, 0]]).all()
     assert (pressure == 0).all() and gap[facing].min() > 1e-3
     assert abs(gap[facing].max() / records["max_gap"][1] - 1) < 0.1
 PYTHON
