@@ -1,6 +1,7 @@
 /*
   The cells of a scene: how many, in a period or in a patch between grips, and what differs from cell to cell.
 */
+#include <lamella/lattice.h>
 #include "scene_keys.h"
 #include "scene_random.h"
 #include <math.h>
@@ -265,6 +266,7 @@ static PetscErrorCode ApplyFactors(const LamDocument *document, const LamNode *f
 static PetscErrorCode BuildField(const LamDocument *document, const LamNode *field, LamMicrostructure *micro)
 {
   PetscReal variation[FIELD_COUNT], *factors;
+  PetscBool given = PETSC_FALSE;
   LamValue value, correlation, seed;
   const LamNode *node;
   PetscErrorCode ierr;
@@ -273,7 +275,13 @@ static PetscErrorCode BuildField(const LamDocument *document, const LamNode *fie
   for (PetscInt p = 0; p < FIELD_COUNT; p++) {
     PetscCall(LamSceneGet(document->root, field_paths[p], &node, &value));
     variation[p] = value.number[0];
+    if (node) given = PETSC_TRUE;
     if (p == FIELD_COHESION && node && micro->interface == LAM_INTERFACE_BONDED) PetscCall(FailBonded(document, node));
+  }
+  if (!given) {
+    PetscCall(LamSceneFailName(document, field,
+                               "varies nothing; write a coefficient of variation, such as wall: 0.2, or leave out "
+                               "variation"));
   }
   PetscCall(LamSceneGet(document->root, "rve.variation.field.correlation", NULL, &correlation));
   PetscCall(LamSceneGet(document->root, "rve.variation.field.seed", NULL, &seed));
@@ -369,7 +377,18 @@ static PetscErrorCode CheckHold(const LamDocument *document, const LamNode *node
   PetscFunctionReturn(0);
 }
 
-/* Cells whose own cohesion is 0 at the sides. */
+/* Whether a neighbour holds a cell: between two cells the smaller cohesion acts. */
+static PetscBool IsHeldByNeighbour(const LamMicrostructure *micro, PetscInt cell)
+{
+  for (PetscInt face = 0; face < LAM_FACES; face++) {
+    const PetscInt other = LamLatticeNeighbour(micro, cell, face, NULL, NULL);
+
+    if (other >= 0 && PetscMin(micro->cell[cell].cohesion, micro->cell[other].cohesion) > 0.0) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* Cells at the sides whose interfaces have no cohesion. */
 static PetscErrorCode CheckSideCells(const LamDocument *document, const LamMicrostructure *micro)
 {
   const PetscInt columns = micro->cells[0], rows = micro->cells[1];
@@ -379,11 +398,11 @@ static PetscErrorCode CheckSideCells(const LamDocument *document, const LamMicro
     for (PetscInt side = 0; side < 2; side++) {
       const PetscInt column = side ? columns - 1 : 0;
 
-      if (micro->cell[column * rows + row].cohesion > 0.0) continue;
+      if (IsHeldByNeighbour(micro, column * rows + row)) continue;
       PetscCall(
           LamSceneFailName(document, LamNodeFindPath(document->root, "rve.variation"),
-                           "cell (%d, %d) at a free side has no cohesion, and its neighbours push it out; give it "
-                           "some, or write sides: affine",
+                           "cell (%d, %d) at a free side has no cohesion with any neighbour, and they push it out; "
+                           "give it some, or write sides: affine",
                            (int)column, (int)row));
     }
   PetscFunctionReturn(0);

@@ -116,7 +116,7 @@ static void cells_that_are_all_the_scenes_own_are_no_variation(void **state)
 {
   LamScene *zeros = Read(TWO_BY_THREE KINDS "    pattern: [[0]]\n");
   LamScene *same = Read(RVE "  variation: {kinds: [{wall_thickness: 0.01125 mm, turgor: 1}], list: [1]}\n");
-  LamScene *still = Read(TWO_BY_THREE "  variation: {field: {seed: 3}}\n");
+  LamScene *still = Read(TWO_BY_THREE "  variation: {field: {seed: 3, wall: 0}}\n");
 
   assert_null(zeros->micro.cell);
   assert_null(same->micro.cell);
