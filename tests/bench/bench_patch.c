@@ -1,11 +1,11 @@
 /*
   Patches and cells that differ against differences and the periodic tissue; blocks of cells between grips in simple
-  shear, as in Section 4.2 of the source paper: both strategies, blocks of
-  growing size, the interfaces against turgor, and the directions in which empty cells come apart; prints figures,
-  asserts nothing. Every state from F = I in one go, one thread, but for the last table, which walks.
+  shear, as in Section 4.2 of the source paper: both strategies, blocks of growing size, the interfaces against turgor,
+  and the directions in which empty cells come apart; prints figures, asserts nothing. Every state from F = I in one go,
+  one thread, but for the last table, which walks.
 
     bench_patch [--full]
-      --full   also blocks of more than 8 x 8 cells, empty ones up to a shear of 0.1
+      --full   also blocks of more than 8 x 8 cells, empty ones up to a shear of 0.25 (minutes)
 */
 #include <getopt.h>
 #include <stdio.h>
@@ -184,7 +184,7 @@ static PetscErrorCode PrintDirections(PetscBool full)
     LamRVEState state;
 
     PetscCall(PatchCreate(&micro, LAM_TWO_STEP, &rve, &state));
-    for (int s = 1; s <= (sizes[k] > LARGEST_BLOCK ? 2 : 6); s++)
+    for (int s = 1; s <= (sizes[k] > LARGEST_BLOCK ? 5 : 6); s++)
       PetscCall(PrintDirection(rve, state, sizes[k], 0.05 * s));
     PetscCall(PatchDestroy(&rve, &state));
   }
