@@ -81,8 +81,8 @@ PetscErrorCode LamRVEGetFields(LamRVE rve, LamRVEState state, PetscReal x[], Pet
   Samples along the interfaces of a contact state, for pictures and profiles; the caller provides the arrays, any may be
   NULL. LamRVEGetInterfaceSize: `faces` = 3 per cell (face families 0, 1, 2 of cell 0, then of cell 1, ...; of a patch
   those that have a neighbour), `points` per face, evenly spaced in the reference along the slave wall,
-  counter-clockwise around its cell. Bonded tissue has none. LamRVEGetInterfaceFaces: owner [face][3], the cell, its face
-  (0, 1 or 2) and the cell across it.
+  counter-clockwise around its cell; bonded tissue has none.
+  LamRVEGetInterfaceFaces: owner [face][3], the cell, its face (0, 1 or 2) and the cell across it.
 
     from      [face][point][2]  current position on the wall of the face's cell
     to        [face][point][2]  nearest point of the facing wall (in the image that faces it); NaN: it faces none
