@@ -147,7 +147,7 @@ static PetscErrorCode AddSolved(Cache *cache, const Round *round)
   for (PetscInt k = 0; k < round->chosen_count; k++) {
     if (round->solved[k].status != LAM_OUT_OF_REACH) records[n++] = round->solved[k];
   }
-  PetscCall(LamDatabaseAdd(cache->database, n, records));
+  PetscCall(LamDatabaseAdd(cache->database, n, NULL, records));
   PetscCall(PetscFree(records));
   PetscFunctionReturn(0);
 }
@@ -184,10 +184,8 @@ static PetscErrorCode SolveChosen(Cache *cache, Round *round)
 
 static PetscErrorCode Ask(Cache *cache, const LamLoad *load, PetscInt point, LamResponse *response)
 {
-  PetscInt none = -1;
-
   PetscFunctionBeginUser;
-  PetscCall(LamDatabaseQuery(cache->database, load, cache->radius, point < 0 ? &none : &cache->hint[point], response));
+  PetscCall(LamDatabaseQuery(cache->database, load, PetscSqr(cache->radius / 0.28), response));
   PetscFunctionReturn(0);
 }
 
@@ -317,7 +315,7 @@ PetscErrorCode LamCacheResponderCreate(MPI_Comm comm, LamDatabase database, LamR
   cache->database = database;
   cache->solver = solver;
   cache->self = responder;
-  cache->radius = LamTrustRadius(accuracy);
+  cache->radius = 0.28 * PetscSqrtReal(accuracy);
   cache->points = points;
   PetscCall(PetscMalloc1(points, &cache->hint));
   ForgetHints(cache);

@@ -109,8 +109,8 @@ PetscErrorCode LamDatabaseGetInfo(LamDatabase database, const char *json[])
   PetscFunctionReturn(0);
 }
 
-/* In memory a record's key is its place. */
-PetscErrorCode LamDatabaseAdd(LamDatabase database, PetscInt n, const LamResponse records[])
+/* States of no grid get keys of their own, as a cache gives them. */
+PetscErrorCode LamDatabaseAdd(LamDatabase database, PetscInt n, const PetscInt64 keys[], const LamResponse records[])
 {
   PetscFunctionBeginUser;
   PetscCall(Reserve(database, database->n + n));
@@ -118,7 +118,7 @@ PetscErrorCode LamDatabaseAdd(LamDatabase database, PetscInt n, const LamRespons
     const PetscInt at = database->n++;
 
     database->records[at] = records[i];
-    database->keys[at] = at;
+    database->keys[at] = keys ? keys[i] : LAM_CACHE_KEY + at;
     LamExpansionMake(&records[i], &database->expansions[at]);
   }
   PetscFunctionReturn(0);

@@ -437,7 +437,7 @@ static void FillPotential(const LamExpansion *m, Tensor F, const LamResponse *re
 */
 static const PetscReal TRUST_COEFFICIENT = 0.28;
 
-PetscReal LamTrustRadius(PetscReal accuracy)
+static PetscReal LamTrustRadius(PetscReal accuracy)
 {
   return TRUST_COEFFICIENT * PetscSqrtReal(accuracy);
 }
@@ -487,8 +487,8 @@ static void SetOutOfReach(const Nearest *at, PetscReal radius, LamResponse *r)
                 (double)r->distance, (double)radius);
 }
 
-PetscErrorCode LamDatabaseQuery(LamDatabase database, const LamLoad *load, PetscReal radius, PetscInt *hint,
-                                LamResponse *response)
+static PetscErrorCode NearestQuery(LamDatabase database, const LamLoad *load, PetscReal radius, PetscInt *hint,
+                                   LamResponse *response)
 {
   Nearest at;
   LamExpansion model;
@@ -520,5 +520,12 @@ PetscErrorCode LamDatabaseQuery(LamDatabase database, const LamLoad *load, Petsc
   if (hint) *hint = LAM_MAX_IMAGES * at.record + at.image;
   PetscCall(PetscTime(&end));
   response->seconds = end - start;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamDatabaseQuery(LamDatabase database, const LamLoad *load, PetscReal accuracy, LamResponse *response)
+{
+  PetscFunctionBeginUser;
+  PetscCall(NearestQuery(database, load, LamTrustRadius(accuracy), NULL, response));
   PetscFunctionReturn(0);
 }

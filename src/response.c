@@ -50,6 +50,7 @@ const LamMember LamResponseMembers[] = {
     REAL(open_spread, 1, 0, "change of open_fraction on a second mesh"),
     REAL(max_gap, 1, 0, "largest gap, in apothems"),
     REAL(gap_place, 3, 0, "where it is: cell, face, place along the face in [0, 1]"),
+    REAL(min_gap, 1, 0, "smallest gap where no walls touch, else 0, in apothems"),
     REAL(mean_gap, 1, 0, "mean gap over the interface length, in apothems"),
     REAL(max_penetration, 1, 0, "largest pointwise penetration, in apothems; falls with the mesh"),
     REAL(fabric, 3, 0, "fabric tensor of the closed faces: 11, 22, 12"),
@@ -71,6 +72,8 @@ const LamMember LamResponseMembers[] = {
     INT(percolating_directions, "independent period directions that a group spans"),
     INT(negative_eigenvalues, "of the consistent tangent"),
     {"stable", LAM_MEMBER_BOOL, 1, AT(stable), 0, NULL, "whether the state is stable"},
+    {"indicators_trusted", LAM_MEMBER_BOOL, 1, AT(indicators_trusted), 0, NULL,
+     "whether indicators of an interpolated answer change little between the states around"},
     INT(branch, "number of branch switches on the way"),
     INT(newton_iterations, "all Newton iterations of the state"),
     INT(factorisations, "all factorisations of the state"),
@@ -97,6 +100,7 @@ PetscErrorCode LamResponseInit(const LamLoad *load, LamResponse *response)
   }
   response->load = copy;
   response->status = LAM_NOT_CONVERGED;
+  response->indicators_trusted = PETSC_TRUE;
   response->floating_cells = response->zero_modes = LAM_UNKNOWN_COUNT;
   response->cell_clusters = response->percolating_directions = LAM_UNKNOWN_COUNT;
   PetscFunctionReturn(0);

@@ -22,8 +22,9 @@ typedef struct LamRecordWriter_s *LamRecordWriter;
 PetscErrorCode LamMicrostructureDescribe(const LamMicrostructure *micro, char **json, char hash[LAM_HASH_LENGTH]);
 
 /*
-  Keys of records in a database: below LAM_CACHE_KEY the number of the state in the scene's sample sequence; from it on
-  (LAM_CACHE_KEY, LAM_CACHE_KEY + 1, ...) records from elsewhere, such as a cache of fe2, which belong to no sequence.
+  Keys of records in a database: nodes of its grid (LamKeyIsNode), and from LAM_CACHE_KEY on (LAM_CACHE_KEY,
+  LAM_CACHE_KEY + 1, ...) states that a cache has solved directly. Small numbers: states of an rve file, and of
+  databases older than the grid.
 */
 #define LAM_CACHE_KEY ((PetscInt64)1 << 62)
 
@@ -84,26 +85,68 @@ PetscErrorCode LamFileReadText(const char path[], const char name[], PetscBool *
 /* The file's kind: "rve", "database", "fe2" or "map". */
 PetscErrorCode LamFileReadKind(const char path[], char kind[LAM_NAME_LENGTH]);
 
-/* Adds solved records in memory (cache); they are answered from at once. */
-PetscErrorCode LamDatabaseAdd(LamDatabase database, PetscInt n, const LamResponse records[]);
+/*
+  ---- the table: the potential interpolated on a grid of states ----
+
+  States of the grid (nodes) are lattice strains, the logarithms of the stretches of the three lattice directions, and
+  for contact tissue suction s = turgor + cohesion; docs/theory.md, Section 24. A record is a node where its key says so
+  (LamKeyIsNode). The grid is coarse to begin with and refined where it is asked for: which nodes there are decides what
+  the table answers, and how well.
+*/
+typedef struct LamGrid_s *LamGrid;
+typedef struct LamTable_s *LamTable;
 
 /*
-  Answers from the nearest record by the second-order expansion of the potential in (C, turgor), with objectivity and
-  the D6 symmetry of the cell. response->distance is the distance to the record; status LAM_OUT_OF_REACH with a reason
-  where no usable record (converged, stable) lies within `radius` (PETSC_INFINITY: any). `hint`, where not NULL, is
-  in/out: opaque, names the record and image that answered, to be preferred while within radius (-1: none), so that
-  answers stay smooth during a load step.
-  Energy, in-plane stress and tangent, lumen fraction and their turgor derivatives come from one potential; P33 and the
-  opening fraction are of first order, their derivatives of zeroth; the tangent's entry 33,33 is the record's.
-  Tractions, and for contact tissue gaps, shares of the interface and counts of cells, are the record's (faces renamed)
-  where the question is its own state, else NaN and 0. Contact tissue is answered from records of the question's
-  cohesion. error_estimate grows with the square of the distance and is LamTrustRadius's accuracy at its radius. Safe to
-  call from several threads at once, each with its own hint, while nobody adds records.
+  The grid for a scene: the box of `sample`, else the loads that its turgor and cohesion say. Contact tissue needs
+  `solver` for the states of cells that touch no one. Collective over nothing: make it on one rank, share its text.
 */
-PetscErrorCode LamDatabaseQuery(LamDatabase database, const LamLoad *load, PetscReal radius, PetscInt *hint,
-                                LamResponse *response);
+PetscErrorCode LamGridCreate(const LamScene *scene, LamResponder *solver, LamGrid *grid);
+PetscErrorCode LamGridFromText(const char path[], const LamMicrostructure *micro, const char text[], LamGrid *grid);
+PetscErrorCode LamGridGetText(LamGrid grid, char **text); /* JSON; the caller frees it */
+PetscErrorCode LamGridDestroy(LamGrid *grid);
+#define LAM_GRID_NAME "/table/grid" /* LamRecordWriterText of it, before the first node */
 
-/* Trust radius (strain) of the nearest-record expansion for a wanted accuracy; measured, docs/verification.md. */
-PetscReal LamTrustRadius(PetscReal accuracy);
+/* Keys of nodes lie between those of samples and those of the cache. */
+#define LAM_NODE_KEY ((PetscInt64)1 << 60)
+PetscBool LamKeyIsNode(PetscInt64 key);
+/* The state of a node. */
+PetscErrorCode LamGridNodeLoad(LamGrid grid, PetscInt64 key, LamLoad *load);
+/* The node that a solve of this one may start from: the nearest of the next coarser level; -1: from the reference. */
+PetscInt64 LamGridNodeParent(LamGrid grid, PetscInt64 key);
+
+/* Records in memory; they are answered from at once. keys: of nodes, or NULL: states of no grid. */
+PetscErrorCode LamDatabaseAdd(LamDatabase database, PetscInt n, const PetscInt64 keys[], const LamResponse records[]);
+/* Takes over the grid of a database that has none. LamDatabaseGetGrid: NULL where it has none; borrowed. */
+PetscErrorCode LamDatabaseSetGrid(LamDatabase database, LamGrid *grid);
+PetscErrorCode LamDatabaseGetGrid(LamDatabase database, LamGrid *grid);
+
+/*
+  The table of all records so far. It never changes: what is added later is in another one. Each call adds a reference,
+  LamTableDestroy drops it. The database must outlive it. NULL where the database has no grid.
+*/
+PetscErrorCode LamDatabaseGetTable(LamDatabase database, LamTable *table);
+PetscErrorCode LamTableDestroy(LamTable *table);
+
+/*
+  An answer from the table where its estimated error is at most `accuracy` (PETSC_INFINITY: any), else status
+  LAM_OUT_OF_REACH with a reason. Energy, in-plane stress and tangent and all derivatives with respect to turgor and
+  cohesion come from one potential; P33 and its row of the tangent from an interpolation of its own. Indicators are
+  interpolated between the nodes around, within their bounds; response->indicators_trusted tells whether the nodes
+  agree. error_estimate is what LamStressError would be. Safe to call from several threads at once.
+*/
+PetscErrorCode LamTableQuery(LamTable table, const LamLoad *load, PetscReal accuracy, LamResponse *response);
+/*
+  Keys of the nodes that the table lacks to answer this question to this accuracy, coarser ones first; *n = 0: no node
+  helps (a change of branch, a failed node, the finest level, outside the grid), only a solve of the state itself.
+*/
+#define LAM_MAX_NEEDS 64
+PetscErrorCode LamTableNeeds(LamTable table, const LamLoad *load, PetscReal accuracy, PetscInt *n,
+                             PetscInt64 keys[LAM_MAX_NEEDS]);
+
+/*
+  The answer of the table, else of the records that belong to no grid: the question's own state, or a blend of
+  second-order models of the nearest ones, which is trusted within a strain of 0.04 (query_scatter.c).
+*/
+PetscErrorCode LamDatabaseQuery(LamDatabase database, const LamLoad *load, PetscReal accuracy, LamResponse *response);
 
 #endif

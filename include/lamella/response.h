@@ -55,6 +55,7 @@ typedef struct {
   PetscReal open_by_face[3];
   PetscReal debonded_spread, open_spread; /* change of the two fractions on a second mesh; NaN: not computed */
   PetscReal max_gap, mean_gap;            /* between facing walls; mean over the interface length */
+  PetscReal min_gap;                      /* the smallest, where no walls touch; else 0; NaN: bonded tissue */
   PetscReal gap_place[3];                 /* of max_gap: cell, face 0..2, place along the face in [0, 1] */
   PetscReal max_penetration;              /* pointwise; goes to zero with the mesh */
   /* sum over closed faces of length n(x)n over the whole interface length: 11, 22, 12; its trace is the closed share */
@@ -82,8 +83,10 @@ typedef struct {
   PetscInt percolating_directions; /* of the period, 0 to 2: how many independent ones a group spans */
   PetscInt negative_eigenvalues;   /* of the consistent tangent */
   PetscBool stable;
-  PetscInt branch;            /* 0: reached without leaving a saddle; n: after n branch switches */
-  PetscInt newton_iterations; /* all of them: rejected steps and substeps included */
+  PetscBool indicators_trusted; /* of a database's answer: what is not a derivative of Psi changes little between the
+                                   states around; true for a solve */
+  PetscInt branch;              /* 0: reached without leaving a saddle; n: after n branch switches */
+  PetscInt newton_iterations;   /* all of them: rejected steps and substeps included */
   PetscInt factorisations;
   PetscInt unknowns;
   PetscReal seconds;

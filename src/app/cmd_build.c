@@ -72,7 +72,7 @@ static PetscErrorCode Commit(Build *b, PetscInt n)
   PetscCall(LamRecordWriterCommit(b->writer, n, keys, b->waiting));
   PetscCall(PetscFree(keys));
   for (PetscInt i = 0; i < n; i++) b->failed += b->waiting[i].status != LAM_CONVERGED;
-  if (b->database) PetscCall(LamDatabaseAdd(b->database, n, b->waiting));
+  if (b->database) PetscCall(LamDatabaseAdd(b->database, n, NULL, b->waiting));
   memmove(b->waiting, b->waiting + n, (size_t)(b->capacity - n) * sizeof(*b->waiting));
   memmove(b->solved, b->solved + n, (size_t)(b->capacity - n) * sizeof(*b->solved));
   memset(b->solved + b->capacity - n, 0, (size_t)n * sizeof(*b->solved));
@@ -170,7 +170,6 @@ static void Compare(Build *b, PetscInt n, const LamResponse predicted[], const L
 /* One batch: predict, solve (what the file does not hold), compare. `first` is a multiple of BATCH. */
 static PetscErrorCode RunBatch(Build *b, PetscInt64 first, PetscInt n, const LamResponse old[], PetscInt64 old_count)
 {
-  const PetscReal radius = LamTrustRadius(b->scene->sample.accuracy);
   const PetscInt have = (PetscInt)PetscMin(n, PetscMax(old_count - first, 0));
   const LamResponse *records;
   LamResponse *predicted;
@@ -182,9 +181,9 @@ static PetscErrorCode RunBatch(Build *b, PetscInt64 first, PetscInt n, const Lam
     LamLoad load;
 
     LamSampleLoad(b->scene, first + i, &load);
-    PetscCall(LamDatabaseQuery(b->database, &load, radius, NULL, &predicted[i]));
+    PetscCall(LamDatabaseQuery(b->database, &load, b->scene->sample.accuracy, &predicted[i]));
   }
-  PetscCall(LamDatabaseAdd(b->database, have, old + first));
+  PetscCall(LamDatabaseAdd(b->database, have, NULL, old + first));
   if (have < n) PetscCall(Solve(b, first + n));
   PetscCall(LamDatabaseGetRecords(b->database, &known, &records, NULL));
   if (known == first + n) Compare(b, n, predicted, records + first);

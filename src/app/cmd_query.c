@@ -61,7 +61,7 @@ static PetscErrorCode Answer(Query *q, const LamLoad *load)
   json_t *object;
 
   PetscFunctionBeginUser;
-  PetscCall(LamDatabaseQuery(q->database, load, q->radius, NULL, &response));
+  PetscCall(LamDatabaseQuery(q->database, load, q->radius, &response));
   if (response.status == LAM_CONVERGED)
     q->answered++;
   else
@@ -162,7 +162,7 @@ static PetscBool ReadValues(Query *q, LamLoad *load, int *exit_status)
     return UsageError("-g", q->cohesion, "a stress with its unit is wanted, such as \"0.001 MPa\"", exit_status);
   load->turgor = q->default_turgor;
   load->cohesion = q->default_cohesion;
-  q->radius = LamTrustRadius(q->accuracy);
+  q->radius = q->accuracy;
   if (q->radius_text) {
     q->radius = strtod(q->radius_text, &end);
     if (end == q->radius_text || *end || !(q->radius >= 0))

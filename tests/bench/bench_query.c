@@ -69,7 +69,7 @@ static PetscErrorCode Measure(const LamScene *scene, LamRVE rve, LamRVEState sta
     PetscCall(Solve(rve, state, h, scene->turgor, &centre));
     if (centre.status != LAM_CONVERGED || centre.branch > 0) continue;
     PetscCall(LamDatabaseCreateEmpty(scene, &database));
-    PetscCall(LamDatabaseAdd(database, 1, &centre));
+    PetscCall(LamDatabaseAdd(database, 1, NULL, &centre));
     for (PetscInt k = 0; k < DIRECTIONS; ++k) {
       const double a = Uniform(&seed, -1.0, 1.0), b = Uniform(&seed, -1.0, 1.0), c = Uniform(&seed, -1.0, 1.0);
       const double scale = distance / sqrt(0.5 * (a * a + c * c) + b * b);
@@ -78,7 +78,7 @@ static PetscErrorCode Measure(const LamScene *scene, LamRVE rve, LamRVEState sta
 
       PetscCall(Solve(rve, state, g, scene->turgor, &truth));
       if (truth.status != LAM_CONVERGED || truth.branch > 0) continue;
-      PetscCall(LamDatabaseQuery(database, &truth.load, INFINITY, NULL, &answer));
+      PetscCall(LamDatabaseQuery(database, &truth.load, INFINITY, &answer));
       error[n] = LamStressError(answer.P, truth.P);
       ratio[n] = error[n] / (answer.distance * answer.distance);
       ++n;

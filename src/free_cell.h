@@ -1,0 +1,44 @@
+/*
+  Cells that touch no one: the state of tissue whose neighbours have drawn apart, as a function of suction alone.
+
+  A cell in contact with none is inflated by s = turgor + cohesion and does not feel F. With the potential
+    Phi = Psi - g J,
+  its Phi depends on s alone (and, to O(p / bulk modulus), on p at fixed s). It touches its neighbours where the spacing
+  of the lattice in one of the three directions has the stretch exp(a(s)): a(s) is the logarithm of the free cell's
+  width over 2 apothems (clearance included). So all states with lattice strains above a(s) are known exactly.
+*/
+#ifndef LAM_FREE_CELL_H
+#define LAM_FREE_CELL_H
+
+#include <jansson.h>
+#include <lamella/response.h>
+
+/* Knots evenly spaced in tau = ln(1 + s / scale). */
+typedef struct {
+  PetscInt n;
+  PetscReal scale;                                /* of suction */
+  PetscReal cohesion;                             /* g of the states: turgor is s - g */
+  PetscReal *suction, *strain, *strain_curvature; /* [n] s, a(s), d2a/dtau2 of the cubic spline (not-a-knot) */
+  PetscReal *energy, *slope, *curvature;          /* [n] Phi, dPhi/ds, d2Phi/ds2 along the states */
+  PetscReal *turgor_slope, *turgor_curvature;     /* [n] dPhi/dp and d2Phi/dp2 at fixed s */
+  LamResponse *records; /* [n] the states, for indicators; not part of the JSON: NULL when read */
+} LamFreeCell;
+
+/*
+  Solves n states at equal stretches in both directions, wide enough apart that all cells float, for s from suction_min
+  (> 0) to suction_max. Returns n = 0 and no error where the tissue has no such states (bonded; no floating state
+  found).
+*/
+PetscErrorCode LamFreeCellMake(const LamMicrostructure *micro, PetscReal cohesion, PetscReal suction_min,
+                               PetscReal suction_max, PetscReal scale, PetscInt n, LamResponder *solver,
+                               LamFreeCell *cell);
+PetscErrorCode LamFreeCellDestroy(LamFreeCell *cell);
+/* a(s) and its first two derivatives with respect to s; twice continuously differentiable. s within the knots. */
+void LamFreeCellStrain(const LamFreeCell *cell, PetscReal s, PetscReal strain[3]);
+/* Phi(s), its first two derivatives (quintic Hermite, C2); turgor[2]: dPhi/dp and d2Phi/dp2 at fixed s (C1 in s). */
+void LamFreeCellEnergy(const LamFreeCell *cell, PetscReal s, PetscReal energy[3], PetscReal turgor[2]);
+/* JSON with all digits, and back; PETSC_ERR_USER_INPUT naming `path` where it is not such an object. */
+PetscErrorCode LamFreeCellToJSON(const LamFreeCell *cell, json_t **object);
+PetscErrorCode LamFreeCellFromJSON(const char path[], const json_t *object, LamFreeCell *cell);
+
+#endif

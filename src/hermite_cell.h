@@ -1,0 +1,37 @@
+/*
+  A function of three variables on a cube, from what is known at its eight corners.
+
+  Method
+    Cubic Hermite polynomials along each edge, tensor product; mixed third derivatives are taken as zero. Along an edge
+    at whose ends the pure second derivative is known too, bubbles raise the cubic to a quintic:
+      h^2 (d0 q0(t_k) + d1 q1(t_k)) V_i(t_p) V_j(t_q),   q0 = t^2 (1-t)^3 / 2,   q1 = t^3 (1-t)^2 / 2,
+    d = known second derivative less that of the cubic, V the value functions 1-3t^2+2t^3 and 3t^2-2t^3. Value and
+    gradient are continuous across faces, edges and corners, with any choice of bubbles; at corners the Hessian is
+    exact. docs/theory.md, Section 24.
+*/
+#ifndef LAM_HERMITE_CELL_H
+#define LAM_HERMITE_CELL_H
+
+#include <petscsys.h>
+
+/* Value, gradient and Hessian (11 22 33 23 13 12). */
+typedef struct {
+  PetscReal value, gradient[3], hessian[6];
+} LamJet;
+
+/*
+  Adds to *sum the function at t in [0, 1]^3. corner[c]: bit k of c is the end of direction k (0: t_k = 0). A pure
+  second derivative of a corner that is NaN is not known: that end has no bubble. h: edge of the cube.
+  bubble[k]: gradient of what the bubbles along direction k add, may be NULL.
+*/
+void LamHermiteQuintic(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum, PetscReal bubble[3][3]);
+/* The same without any bubbles. */
+void LamHermiteCubic(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum);
+/*
+  From value and gradient alone, to third order: cubic along the edges, linear between them (transfinite), so that no
+  mixed derivatives are needed. Continuous, not C1. Writes value and gradient.
+*/
+void LamHermiteEdges(const LamJet corner[8], PetscReal h, const PetscReal t[3], PetscReal *value,
+                     PetscReal gradient[3]);
+
+#endif
