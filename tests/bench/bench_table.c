@@ -1,0 +1,98 @@
+/* Times of answers from the table, part by part; prints figures, asserts nothing. */
+#include <math.h>
+#include <stdio.h>
+#include <petsctime.h>
+#include <random_reals.h>
+#include <hermite_cell.h>
+#include "quantile.h"
+
+#define CELLS 32 /* they stay in the nearest cache: the arithmetic alone is timed */
+#define CALLS 200000
+#define REPEATS 7
+#define EDGE 0.05
+
+typedef struct {
+  LamJet corner[8];
+  PetscReal t[3];
+} Cell;
+
+static void RandomCells(Cell cells[CELLS])
+{
+  uint64_t seed = 1;
+
+  for (int n = 0; n < CELLS; n++) {
+    for (int k = 0; k < 3; k++) cells[n].t[k] = RandomReal(&seed, 0, 1);
+    for (int c = 0; c < 8; c++) {
+      LamJet *jet = &cells[n].corner[c];
+
+      jet->value = RandomReal(&seed, -1, 1);
+      for (int i = 0; i < 3; i++) jet->gradient[i] = RandomReal(&seed, -1, 1);
+      for (int i = 0; i < 6; i++) jet->hessian[i] = RandomReal(&seed, -1, 1);
+    }
+  }
+}
+
+static void Quintic(const Cell *cell, LamJet *sum)
+{
+  LamHermiteQuintic(cell->corner, EDGE, cell->t, sum, NULL);
+}
+
+static void QuinticWithBubbles(const Cell *cell, LamJet *sum)
+{
+  PetscReal bubble[3][3];
+
+  LamHermiteQuintic(cell->corner, EDGE, cell->t, sum, bubble);
+  sum->value += bubble[0][0];
+}
+
+static void Cubic(const Cell *cell, LamJet *sum)
+{
+  LamHermiteCubic(cell->corner, EDGE, cell->t, sum);
+}
+
+static void Edges(const Cell *cell, LamJet *sum)
+{
+  PetscReal value, gradient[3];
+
+  LamHermiteEdges(cell->corner, EDGE, cell->t, &value, gradient);
+  sum->value += value + gradient[0];
+}
+
+static PetscErrorCode TimeKernel(const char name[], void (*kernel)(const Cell *cell, LamJet *sum))
+{
+  double times[REPEATS];
+  Cell cells[CELLS];
+  LamJet sum = {0};
+
+  PetscFunctionBeginUser;
+  RandomCells(cells);
+  for (int r = 0; r < REPEATS; r++) {
+    PetscLogDouble start, stop;
+
+    PetscCall(PetscTime(&start));
+    for (int n = 0; n < CALLS; n++) kernel(&cells[n % CELLS], &sum);
+    PetscCall(PetscTime(&stop));
+    times[r] = (stop - start) / CALLS;
+  }
+  if (!isfinite(sum.value)) printf("not finite: "); /* the sum is used: no call can be left out */
+  printf("%-44s %8.1f %8.1f\n", name, 1e9 * Quantile(times, REPEATS, 0), 1e9 * Quantile(times, REPEATS, 0.5));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Kernels(void)
+{
+  PetscFunctionBeginUser;
+  printf("one cell, ns per call                           least   median\n");
+  PetscCall(TimeKernel("quintic: value, gradient, Hessian", Quintic));
+  PetscCall(TimeKernel("the same with the bubbles by direction", QuinticWithBubbles));
+  PetscCall(TimeKernel("cubic: value, gradient, Hessian", Cubic));
+  PetscCall(TimeKernel("edges: value, gradient", Edges));
+  PetscFunctionReturn(0);
+}
+
+int main(int argc, char **argv)
+{
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  if (Kernels()) return 1;
+  return PetscFinalize() ? 1 : 0;
+}
