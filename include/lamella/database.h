@@ -104,6 +104,9 @@ PetscErrorCode LamGridCreate(const LamScene *scene, LamResponder *solver, LamGri
 PetscErrorCode LamGridFromText(const char path[], const LamMicrostructure *micro, const char text[], LamGrid *grid);
 PetscErrorCode LamGridGetText(LamGrid grid, char **text); /* JSON; the caller frees it */
 PetscErrorCode LamGridDestroy(LamGrid *grid);
+/* States that LamGridCreate solved (free cells): to be stored with their keys as the first records; borrowed. None in a
+   grid that was read. */
+PetscErrorCode LamGridGetRecords(LamGrid grid, PetscInt *n, const PetscInt64 *keys[], const LamResponse *records[]);
 #define LAM_GRID_NAME "/table/grid" /* LamRecordWriterText of it, before the first node */
 
 /* Keys of nodes lie between those of samples and those of the cache. */

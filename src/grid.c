@@ -1,0 +1,292 @@
+/*
+  The layout of a grid: made from a scene, kept as JSON text in the file, and its nodes' states.
+*/
+#include "grid.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* Root cells: halving them once gives 1 % (bonded) or some percent (contact) of P; docs/verification.md. */
+#define BONDED_STEP 0.135
+#define CONTACT_STEP 0.08
+#define TAU_STEP 0.75
+#define SUCTION_SCALE (1.0 / 32) /* of the largest suction */
+enum { FREE_KNOTS = 17 };
+
+/* What is taken where a scene has no sample box. */
+static const LamSample default_box = {.stretch_min = -0.02, .stretch_max = 0.25};
+#define LEAST_SUCTION 0.125 /* of the scene's */
+
+/* ---- keys ---- */
+
+PetscBool LamKeyIsNode(PetscInt64 key)
+{
+  return (PetscBool)(key >= LAM_NODE_KEY && key < 2 * LAM_NODE_KEY);
+}
+
+PetscInt64 LamNodeKeyOf(const LamNodePlace *place)
+{
+  PetscInt64 code = 0;
+
+  for (int k = 0; k < 3; k++) code = (code << 14) | (PetscInt64)(place->i[k] + LAM_GRID_REACH);
+  return LAM_NODE_KEY | (code << 12) | (PetscInt64)place->j;
+}
+
+LamNodePlace LamNodePlaceOf(PetscInt64 key)
+{
+  const PetscInt64 code = key & (LAM_NODE_KEY - 1);
+  LamNodePlace place = {.j = (int)(code & 4095)};
+
+  for (int k = 0; k < 3; k++) place.i[k] = (int)((code >> (40 - 14 * k)) & 16383) - LAM_GRID_REACH;
+  return place;
+}
+
+static int LevelOf(int i)
+{
+  int level = LAM_FINEST;
+
+  while (level > 0 && i % 2 == 0) {
+    i /= 2;
+    level--;
+  }
+  return level;
+}
+
+int LamNodeLevel(const LamNodePlace *place)
+{
+  int level = 0;
+
+  for (int k = 0; k < 3; k++) level = PetscMax(level, LevelOf(place->i[k]));
+  return level;
+}
+
+PetscBool LamNodeIsFree(const LamNodePlace *place)
+{
+  return (PetscBool)(place->i[0] == LAM_GRID_REACH - 1);
+}
+
+PetscBool LamPlaceIsFloating(const struct LamGrid_s *grid, const int i[3])
+{
+  return (PetscBool)(grid->free.n && i[0] >= 0 && i[1] >= 0 && i[2] >= 0);
+}
+
+/* ---- nodes ---- */
+
+PetscErrorCode LamGridNodeLoad(LamGrid grid, PetscInt64 key, LamLoad *load)
+{
+  const LamNodePlace place = LamNodePlaceOf(key);
+  PetscReal x[3], U[4] = {0}, shift = grid->origin;
+
+  PetscFunctionBeginUser;
+  PetscCheck(LamKeyIsNode(key), PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "key %lld is not of a node", (long long)key);
+  *load = (LamLoad){.turgor = grid->turgor};
+  if (grid->contact) {
+    const PetscReal s = LamGridSuction(grid, place.j);
+    PetscReal strain[3] = {0};
+
+    if (grid->free.n) LamFreeCellStrain(&grid->free, s, strain);
+    shift += strain[0];
+    load->cohesion = grid->cohesion;
+    load->turgor = s - grid->cohesion;
+  }
+  for (int k = 0; k < 3; k++) x[k] = shift + grid->step * (PetscReal)place.i[k] / LAM_ROOT;
+  /* strains that no F has: an F that a solver refuses */
+  if (!LamLatticeStretch(&grid->axes, x, U)) U[0] = U[1] = U[2] = U[3] = 0;
+  for (int i = 0; i < 4; i++) load->F[3 * (i / 2) + i % 2] = U[i];
+  load->F[8] = 1;
+  PetscFunctionReturn(0);
+}
+
+/* Rounded down to a multiple of 2^bits. */
+static int Floor(int i, int bits)
+{
+  return (i >> bits) * (1 << bits);
+}
+
+PetscInt64 LamGridNodeParent(LamGrid grid, PetscInt64 key)
+{
+  LamNodePlace place = LamNodePlaceOf(key);
+  const int level = LamNodeLevel(&place), suction_level = LevelOf(place.j);
+
+  if (!level && !suction_level) return -1;
+  if (level >= suction_level)
+    for (int k = 0; k < 3; k++) place.i[k] = Floor(place.i[k], LAM_FINEST - level + 1);
+  else /* the higher suction: its cells hold together more firmly */
+    place.j = Floor(place.j + (1 << (LAM_FINEST - suction_level)), LAM_FINEST - suction_level + 1);
+  return LamNodeKeyOf(&place);
+}
+
+/* ---- making ---- */
+
+/* All three lattice directions are alike where the period is as long along both and cells do not differ. */
+static PetscBool IsSymmetric(const LamMicrostructure *micro)
+{
+  return (PetscBool)(micro->cells[0] == micro->cells[1] && !micro->cell);
+}
+
+static void LayOutStrains(const LamScene *scene, const LamSample *box, LamGrid g)
+{
+  const PetscReal range = box->stretch_max - box->stretch_min;
+
+  g->step = g->contact ? CONTACT_STEP : range / PetscMax(1, PetscCeilReal(range / BONDED_STEP - 1e-9));
+  g->origin = g->contact ? 0 : box->stretch_min;
+  if (scene->has_sample)
+    g->turgor = 0.5 * (box->turgor_min + box->turgor_max);
+  else
+    g->turgor = scene->turgor;
+}
+
+static PetscErrorCode LayOutSuction(const LamScene *scene, const LamSample *box, LamResponder *solver, LamGrid g)
+{
+  PetscReal s_min = box->turgor_min + scene->cohesion, s_max = box->turgor_max + scene->cohesion;
+
+  PetscFunctionBeginUser;
+  if (!scene->has_sample) {
+    s_max = scene->turgor + scene->cohesion;
+    s_min = LEAST_SUCTION * s_max;
+  }
+  PetscCheck(s_max > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: cells in contact without turgor or cohesion touch each other only where they are pressed; a database "
+             "needs turgor + cohesion > 0: give sample.turgor or rve.interface.cohesion",
+             scene->path);
+  g->cohesion = scene->cohesion;
+  g->suction_scale = SUCTION_SCALE * s_max;
+  g->tau_min = LamGridTau(g, s_min);
+  g->tau_cells = PetscMax(1, (PetscInt)PetscCeilReal((LamGridTau(g, s_max) - g->tau_min) / TAU_STEP - 1e-9));
+  g->tau_step = PetscMax((LamGridTau(g, s_max) - g->tau_min) / (PetscReal)g->tau_cells, 1e-3);
+  if (!scene->micro.cell)
+    PetscCall(LamFreeCellMake(&scene->micro, g->cohesion, LamGridSuction(g, 0),
+                              LamGridSuction(g, LAM_ROOT * g->tau_cells), g->suction_scale, FREE_KNOTS, solver,
+                              &g->free));
+  PetscFunctionReturn(0);
+}
+
+/* Knot m of the free cell lies at j = m 64 cells / (knots - 1), a whole number. */
+static PetscErrorCode MakeFreeKeys(LamGrid g)
+{
+  const int reach = LAM_GRID_REACH - 1;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(g->free.n + 1, &g->free_keys));
+  for (PetscInt m = 0; m < g->free.n; m++) {
+    const LamNodePlace place = {{reach, reach, reach}, (int)(m * LAM_ROOT * g->tau_cells / (g->free.n - 1))};
+
+    g->free_keys[m] = LamNodeKeyOf(&place);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamGridCreate(const LamScene *scene, LamResponder *solver, LamGrid *grid)
+{
+  const LamMicrostructure *micro = &scene->micro;
+  const LamSample *box = scene->has_sample ? &scene->sample : &default_box;
+  LamGrid g;
+
+  PetscFunctionBeginUser;
+  PetscCheck(
+      !micro->is_patch, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+      "%s: rve.patch: a patch between grips is a body of its own and no material point; a database needs a period "
+      "(rve.cells)",
+      scene->path);
+  PetscCall(PetscNew(&g));
+  *grid = g;
+  g->contact = (PetscBool)(micro->interface == LAM_INTERFACE_CONTACT);
+  g->symmetric = IsSymmetric(micro);
+  g->axes = LamLatticeAxesOf(micro->orientation);
+  LayOutStrains(scene, box, g);
+  if (g->contact) PetscCall(LayOutSuction(scene, box, solver, g));
+  PetscCall(MakeFreeKeys(g));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamGridDestroy(LamGrid *grid)
+{
+  PetscFunctionBeginUser;
+  if (!*grid) PetscFunctionReturn(0);
+  PetscCall(LamFreeCellDestroy(&(*grid)->free));
+  PetscCall(PetscFree((*grid)->free_keys));
+  PetscCall(PetscFree(*grid));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamGridGetRecords(LamGrid grid, PetscInt *n, const PetscInt64 *keys[], const LamResponse *records[])
+{
+  PetscFunctionBeginUser;
+  *n = grid->free.records ? grid->free.n : 0;
+  *keys = grid->free_keys;
+  *records = grid->free.records;
+  PetscFunctionReturn(0);
+}
+
+/* ---- text ---- */
+
+PetscErrorCode LamGridGetText(LamGrid g, char **text)
+{
+  json_t *object = json_pack("{s:f, s:f, s:f}", "origin", g->origin, "step", g->step, "turgor", g->turgor), *cell;
+  char *dumped;
+
+  PetscFunctionBeginUser;
+  if (g->contact) {
+    json_object_set_new(object, "cohesion", json_real(g->cohesion));
+    json_object_set_new(object, "suction_scale", json_real(g->suction_scale));
+    json_object_set_new(object, "tau_min", json_real(g->tau_min));
+    json_object_set_new(object, "tau_step", json_real(g->tau_step));
+    json_object_set_new(object, "tau_cells", json_integer(g->tau_cells));
+    PetscCall(LamFreeCellToJSON(&g->free, &cell));
+    json_object_set_new(object, "free_cell", cell);
+  }
+  dumped = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(17));
+  json_decref(object);
+  PetscCall(PetscStrallocpy(dumped, text));
+  free(dumped);
+  PetscFunctionReturn(0);
+}
+
+static PetscBool ReadReal(const json_t *object, const char name[], PetscReal *value)
+{
+  const json_t *item = json_object_get(object, name);
+
+  *value = json_number_value(item);
+  return (PetscBool)(json_is_number(item) && isfinite(*value));
+}
+
+static PetscBool ReadSuction(const json_t *object, LamGrid g)
+{
+  g->tau_cells = (PetscInt)json_integer_value(json_object_get(object, "tau_cells"));
+  return (PetscBool)(ReadReal(object, "cohesion", &g->cohesion) &&
+                     ReadReal(object, "suction_scale", &g->suction_scale) && ReadReal(object, "tau_min", &g->tau_min) &&
+                     ReadReal(object, "tau_step", &g->tau_step) && g->suction_scale > 0 && g->tau_min >= 0 &&
+                     g->tau_step > 0 && g->tau_cells > 0 && g->tau_cells < 4096 / LAM_ROOT);
+}
+
+static PetscErrorCode ReadText(const char path[], const json_t *object, LamGrid g)
+{
+  PetscBool good = (PetscBool)(ReadReal(object, "origin", &g->origin) && ReadReal(object, "step", &g->step) &&
+                               ReadReal(object, "turgor", &g->turgor) && g->step > 0);
+
+  PetscFunctionBeginUser;
+  if (good && g->contact) good = ReadSuction(object, g);
+  PetscCheck(good, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s is not the layout of a grid; the file is damaged",
+             path, LAM_GRID_NAME);
+  if (g->contact) PetscCall(LamFreeCellFromJSON(path, json_object_get(object, "free_cell"), &g->free));
+  PetscCall(MakeFreeKeys(g));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamGridFromText(const char path[], const LamMicrostructure *micro, const char text[], LamGrid *grid)
+{
+  json_t *object = json_loads(text, 0, NULL);
+  PetscErrorCode ierr;
+  LamGrid g;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&g));
+  g->contact = (PetscBool)(micro->interface == LAM_INTERFACE_CONTACT);
+  g->symmetric = IsSymmetric(micro);
+  g->axes = LamLatticeAxesOf(micro->orientation);
+  ierr = ReadText(path, object, g);
+  json_decref(object);
+  if (ierr) (void)LamGridDestroy(&g);
+  PetscCall(ierr);
+  *grid = g;
+  PetscFunctionReturn(0);
+}

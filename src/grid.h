@@ -1,0 +1,52 @@
+/*
+  Private to the table: where the nodes of a grid lie.
+
+  A node has integer coordinates i[0..2] on the finest level and, for contact tissue, j along suction:
+    bonded   x_k = origin + unit i_k
+    contact  x_k = a(s) + unit i_k,  s = scale (exp(tau) - 1),  tau = tau_min + tau_unit j
+  with a(s) the strain at which free cells touch (free_cell.h). One unit is 2^-LAM_FINEST of a root cell. The level of a
+  node is the coarsest on which all its i lie. Where the three directions are alike i is sorted, ascending.
+*/
+#ifndef LAM_GRID_H
+#define LAM_GRID_H
+
+#include <lamella/database.h>
+#include "free_cell.h"
+#include "lattice_strain.h"
+
+enum { LAM_FINEST = 6, LAM_ROOT = 1 << LAM_FINEST, LAM_GRID_REACH = 8192 };
+
+struct LamGrid_s {
+  PetscBool contact, symmetric;
+  LamLatticeAxes axes;
+  PetscReal origin, step; /* step: edge of a root cell */
+  PetscReal turgor;       /* of bonded nodes */
+  PetscReal cohesion;     /* of contact nodes; their turgor is s - cohesion */
+  PetscReal suction_scale, tau_min, tau_step;
+  PetscInt tau_cells; /* root intervals along tau; 0: bonded */
+  LamFreeCell free;   /* n = 0: none */
+  PetscInt64 *free_keys;
+};
+
+typedef struct {
+  int i[3], j;
+} LamNodePlace;
+
+PetscInt64 LamNodeKeyOf(const LamNodePlace *place);
+LamNodePlace LamNodePlaceOf(PetscInt64 key);
+/* Of the strains alone; 0 is coarsest. */
+int LamNodeLevel(const LamNodePlace *place);
+/* Free cells' states have keys too: PETSC_TRUE and the knot. */
+PetscBool LamNodeIsFree(const LamNodePlace *place);
+/* A place that needs no solve: its cells touch no one. */
+PetscBool LamPlaceIsFloating(const struct LamGrid_s *grid, const int i[3]);
+static inline PetscReal LamGridTau(const struct LamGrid_s *grid, PetscReal s)
+{
+  return log1p(s / grid->suction_scale);
+}
+static inline PetscReal LamGridSuction(const struct LamGrid_s *grid, PetscInt j)
+{
+  return grid->suction_scale * expm1(grid->tau_min + grid->tau_step * (PetscReal)j / LAM_ROOT);
+}
+
+#endif

@@ -1,0 +1,117 @@
+/*
+  Private to the table: nodes with what they add to the coarser levels, cells, and the sum at a point.
+
+  Method
+    Phi is a sum over levels. On level l the nodes whose own level is l carry their data less the sum of the coarser levels
+    there (surplus), all other corners of a cell nothing, so each level's part, and with it the sum, is continuously
+    differentiable whatever nodes there are (hermite_cell.h), and at nodes value, gradient and Hessian are those of the
+    solve. A pure second derivative of the coarser sum jumps across the faces of coarse cells: a node has its surplus on
+    either side.
+    Along suction each node is a column: between two of its states the value is a quintic in tau, the gradient a cubic,
+    second derivatives a blend, so all of them are continuously differentiable in tau, whatever states other columns have.
+    A state that is missing at the end of a root interval adds nothing on finer levels.
+    A cell answers where all its eight columns have states on both sides; the finest such cell gives the error estimate.
+*/
+#ifndef LAM_TABLE_H
+#define LAM_TABLE_H
+
+#include "database_internal.h"
+#include "grid.h"
+#include "hermite_cell.h"
+#include "node_data.h"
+
+/* One solved state: what it adds. */
+typedef struct {
+  int j;
+  PetscBool good;     /* converged, stable, branch 0 */
+  PetscBool has_data; /* else the rest is nothing */
+  PetscInt data;      /* in database->nodes */
+  LamJet phi;         /* pure second derivatives: on the side of larger strain; NaN: not known */
+  PetscReal minus[3]; /* the same on the other side */
+  PetscReal tau1, tau2, gradient_tau[3];
+  PetscReal turgor1, turgor2, turgor_gradient[3]; /* dPhi/dp at fixed s, d2Phi/dp2, gradient of the first */
+} LamTableState;
+
+typedef struct {
+  int i[3];
+  int level;
+  PetscInt first, count; /* states, ascending in j */
+} LamTableNode;
+
+enum { LAM_NODE_MISSING = -1, LAM_NODE_FLOATING = -2 };
+
+typedef struct {
+  int level, i[3]; /* corner of least strains */
+  PetscInt node[8];
+  unsigned char order[8]; /* how the axes of the corner's node lie: axis k is axis LamAxisOrder[order][k] of the node */
+} LamTableCell;
+
+extern const int LamAxisOrder[6][3];
+
+/* Open addressing: place of an item in its array, by its coordinates. */
+typedef struct {
+  PetscInt64 *keys;
+  PetscInt *items;
+  size_t size; /* power of 2; 0: empty */
+} LamPlaceMap;
+
+struct LamTable_s {
+  int references;
+  LamDatabase database; /* borrowed */
+  struct LamGrid_s *grid; /* borrowed */
+  PetscInt state_count, node_count, cell_count;
+  LamTableState *states;
+  LamTableNode *nodes;
+  LamTableCell *cells;
+  LamPlaceMap node_map, cell_map;
+  int levels;          /* one more than the finest of the cells */
+  PetscInt *free_data; /* [grid->free.n] in database->nodes, -1: not there */
+};
+
+/* A point in the grid's coordinates, with its axes sorted where the grid is symmetric. */
+typedef struct {
+  PetscReal u[3]; /* in units of the finest level */
+  int axis[3];    /* axis k here is lattice direction axis[k] */
+  PetscReal tau, v; /* v: along tau, in units */
+  int root;       /* first j of its root interval */
+  PetscReal s;
+} LamTablePoint;
+
+/* The sum of the levels, in the point's axes; derivatives with respect to the grid's coordinates y and tau. */
+typedef struct {
+  LamJet phi;
+  PetscReal tau1, tau2, gradient_tau[3];
+  LamJet turgor1; /* without pure curvature data, but a potential of its own */
+  PetscReal turgor1_tau, turgor2;
+  /* how the answer's gradient would change with a lower order: along y (each direction's bubbles) and along tau */
+  PetscReal bubble[3][3], bump[3];
+} LamTableSum;
+
+/* ---- table_map.c ---- */
+PetscErrorCode LamPlaceMapCreate(PetscInt n, LamPlaceMap *map);
+PetscErrorCode LamPlaceMapDestroy(LamPlaceMap *map);
+PetscInt LamPlaceMapGet(const LamPlaceMap *map, PetscInt64 key); /* -1: not there */
+void LamPlaceMapSet(LamPlaceMap *map, PetscInt64 key, PetscInt item); /* key must be new */
+PetscInt64 LamPlaceMapKey(int level, const int i[3]);
+
+/* ---- table_make.c ---- */
+PetscErrorCode LamTableMake(LamDatabase database, LamTable *table);
+
+/* ---- table_sum.c ---- */
+/* The cell of a level that holds the point; NULL: none. */
+const LamTableCell *LamTableFindCell(LamTable table, const LamTablePoint *point, int level);
+/* Whether all corners have states on both sides of the point, or are known to float. *good: all of them are. */
+PetscBool LamTableCellIsComplete(LamTable table, const LamTableCell *cell, const LamTablePoint *point, PetscBool *good);
+/* The states of a node's column on either side of the point; NULL: missing. */
+void LamTableBracket(LamTable table, const LamTableNode *node, const LamTablePoint *point, const LamTableState *ends[2]);
+/* Adds a cell's part; `estimate`: writes bubble and bump too. */
+void LamTableAddCell(LamTable table, const LamTableCell *cell, const LamTablePoint *point, PetscBool estimate,
+                     LamTableSum *sum);
+
+/* ---- table_indicators.c ---- */
+/* P33, its row and column of the tangent and its pressure derivatives. cell NULL: the cells float. */
+void LamTableThickness(LamTable table, const LamTablePoint *point, const LamTableCell *cell,
+                       const LamLatticeState *lattice, LamResponse *r);
+void LamTableIndicators(LamTable table, const LamTablePoint *point, const LamTableCell *cell, LamResponse *r);
+
+#endif

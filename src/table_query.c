@@ -1,0 +1,413 @@
+/*
+  Answers from a table.
+
+  Algorithm
+    F and suction to a point of the grid; sum of the levels; the finest complete cell decides whether the answer counts
+    and gives the estimate. Then back from (y, tau) to (x, s), and to stress and tangent:
+      Psi(F, p, g) = Phi(x, s) + d Phi_p(x, s) + d^2 Phi_pp / 2 + c J,   d = p - p0
+      bonded   p0 the grid's turgor, c = -p;    contact   p0 = s - g0, g0 the grid's cohesion, c = g.
+*/
+#include "table.h"
+#include <math.h>
+#include <petsctime.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Cells that a change of branch runs through are halved so often, not more: what is left is solved directly. */
+enum { KINK_LEVEL = 3 };
+
+/* What the estimate is made of, times these; calibrated with tests/bench/bench_query.c. */
+#define BUBBLE_WEIGHT 0.5
+#define BUMP_WEIGHT 0.5
+
+/* Where a question lies and what is known there. */
+typedef struct {
+  LamLatticeState lattice;
+  LamTablePoint point;
+  PetscReal free_strain[3]; /* a, a', a'' */
+  PetscBool floating;
+  const LamTableCell *leaf; /* finest complete cell; NULL: none */
+  PetscBool good;           /* its nodes are of one kind */
+  LamTableSum sum;
+} Place;
+
+/* ---- finding the place ---- */
+
+static PetscBool Refuse(LamResponse *r, const char text[])
+{
+  r->status = LAM_OUT_OF_REACH;
+  snprintf(r->reason, sizeof(r->reason), "%s", text);
+  return PETSC_FALSE;
+}
+
+static PetscBool PlaceSuction(LamTable table, const LamLoad *load, Place *place, LamResponse *r)
+{
+  const struct LamGrid_s *grid = table->grid;
+  LamTablePoint *point = &place->point;
+
+  if (!grid->contact) return PETSC_TRUE;
+  point->s = load->turgor + load->cohesion;
+  point->tau = LamGridTau(grid, point->s);
+  point->v = LAM_ROOT * (point->tau - grid->tau_min) / grid->tau_step;
+  if (!(point->v >= -1e-6) || point->v > LAM_ROOT * grid->tau_cells + 1e-6) {
+    r->status = LAM_OUT_OF_REACH;
+    snprintf(r->reason, sizeof(r->reason), "turgor + cohesion is %.4g (C1+C2), the database covers %.4g to %.4g",
+             (double)point->s, (double)LamGridSuction(grid, 0), (double)LamGridSuction(grid, LAM_ROOT * grid->tau_cells));
+    return PETSC_FALSE;
+  }
+  point->v = PetscMin(PetscMax(point->v, 0), LAM_ROOT * grid->tau_cells);
+  point->root = PetscMin((int)point->v / LAM_ROOT, (int)grid->tau_cells - 1) * LAM_ROOT;
+  if (grid->free.n) LamFreeCellStrain(&grid->free, point->s, place->free_strain);
+  return PETSC_TRUE;
+}
+
+static void PlaceStrains(LamTable table, Place *place)
+{
+  const struct LamGrid_s *grid = table->grid;
+  PetscReal u[3];
+
+  place->floating = (PetscBool)(grid->free.n > 0);
+  for (int k = 0; k < 3; k++) {
+    u[k] = (place->lattice.x[k] - grid->origin - place->free_strain[0]) / grid->step * LAM_ROOT;
+    place->floating = (PetscBool)(place->floating && u[k] >= 0);
+  }
+  for (int k = 0; k < 3; k++) {
+    int rank = grid->symmetric ? 0 : k;
+
+    for (int l = 0; l < 3 && grid->symmetric; l++) rank += u[l] < u[k] || (u[l] == u[k] && l < k);
+    place->point.u[rank] = u[k];
+    place->point.axis[rank] = k;
+  }
+}
+
+static void SumLevels(LamTable table, Place *place)
+{
+  for (int level = 0; level < table->levels; level++) {
+    const LamTableCell *cell = LamTableFindCell(table, &place->point, level);
+    PetscBool good, complete = PETSC_FALSE;
+
+    if (!cell && !level) return;
+    if (!cell) continue;
+    if (level == 0 || place->leaf) complete = LamTableCellIsComplete(table, cell, &place->point, &good);
+    if (complete && (!place->leaf || place->leaf->level == level - 1)) {
+      place->leaf = cell;
+      place->good = good;
+      memset(place->sum.bump, 0, sizeof(place->sum.bump));
+    }
+    if (!place->leaf) return;
+    LamTableAddCell(table, cell, &place->point, (PetscBool)(place->leaf == cell), &place->sum);
+  }
+}
+
+/* ---- the estimate ---- */
+
+/* |sum v_k dx_k/dF|, v in the point's axes. */
+static PetscReal StressNorm(LamTable table, const Place *place, const PetscReal v[3])
+{
+  PetscReal g[3], P[4];
+
+  for (int k = 0; k < 3; k++) g[place->point.axis[k]] = v[k];
+  LamLatticeStress(&table->grid->axes, &place->lattice, g, P);
+  return sqrt(P[0] * P[0] + P[1] * P[1] + P[2] * P[2] + P[3] * P[3]);
+}
+
+static void Estimates(LamTable table, const Place *place, PetscReal *along_strain, PetscReal *along_suction)
+{
+  PetscReal square = 0;
+
+  for (int k = 0; k < 3; k++) square += PetscSqr(StressNorm(table, place, place->sum.bubble[k]));
+  *along_strain = BUBBLE_WEIGHT * sqrt(square);
+  *along_suction = table->grid->contact ? BUMP_WEIGHT * StressNorm(table, place, place->sum.bump) : 0;
+}
+
+static PetscReal Relative(PetscReal error, const PetscReal P[9])
+{
+  PetscReal square = 0;
+
+  for (int i = 0; i < 9; i++) square += P[i] * P[i];
+  return error / (sqrt(square) + 0.0227);
+}
+
+/* ---- from the sum to the response ---- */
+
+/* Psi and its derivatives in x, p and g, in the order of the lattice directions. */
+typedef struct {
+  LamJet psi, turgor; /* turgor: dPhi/dp at fixed s */
+  PetscReal s1, s2, gradient_s[3];
+} Potential;
+
+/* From (y, tau) in sorted axes to (x, s). */
+static void Unsort(LamTable table, const Place *place, Potential *p)
+{
+  static const int pair[3][2] = {{1, 2}, {0, 2}, {0, 1}};
+  const LamTableSum *sum = &place->sum;
+  const int *axis = place->point.axis;
+
+  p->psi.value = sum->phi.value;
+  p->turgor.value = sum->turgor1.value;
+  for (int k = 0; k < 3; k++) {
+    const int a = axis[pair[k][0]], b = axis[pair[k][1]];
+
+    p->psi.gradient[axis[k]] = sum->phi.gradient[k];
+    p->psi.hessian[axis[k]] = sum->phi.hessian[k];
+    p->psi.hessian[6 - a - b] = sum->phi.hessian[3 + k];
+    p->turgor.gradient[axis[k]] = sum->turgor1.gradient[k];
+    p->turgor.hessian[axis[k]] = sum->turgor1.hessian[k];
+    p->turgor.hessian[6 - a - b] = sum->turgor1.hessian[3 + k];
+    p->gradient_s[axis[k]] = sum->gradient_tau[k];
+  }
+  p->s1 = sum->tau1;
+  p->s2 = sum->tau2;
+}
+
+static void TauToSuction(LamTable table, const Place *place, Potential *p)
+{
+  static const int entry[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
+  const PetscReal rate = 1 / (place->point.s + table->grid->suction_scale), *a = place->free_strain; /* dtau/ds */
+
+  p->s2 = p->s2 * rate * rate - p->s1 * rate * rate;
+  p->s1 *= rate;
+  for (int k = 0; k < 3; k++) p->gradient_s[k] *= rate;
+  /* x = y + a(s): at fixed x, y moves by -a' ds */
+  for (int k = 0; k < 3; k++) {
+    p->s2 -= 2 * a[1] * p->gradient_s[k] + a[2] * p->psi.gradient[k];
+    p->s1 -= a[1] * p->psi.gradient[k];
+    for (int l = 0; l < 3; l++) p->s2 += a[1] * a[1] * p->psi.hessian[entry[k][l]];
+  }
+  for (int k = 0; k < 3; k++)
+    for (int l = 0; l < 3; l++) p->gradient_s[k] -= a[1] * p->psi.hessian[entry[k][l]];
+}
+
+static void PlaneToFull(const PetscReal a[4], PetscReal full[9])
+{
+  for (int i = 0; i < 9; i++) full[i] = 0; /* plane strain has no out-of-plane shear stress */
+  for (int i = 0; i < 4; i++) full[3 * (i / 2) + i % 2] = a[i];
+}
+
+/* dP/dp and dP/dg, and the other derivatives with respect to p and g. */
+static void FillPressures(LamTable table, const Place *place, const Potential *p, PetscReal d, PetscReal J,
+                          const PetscReal J_x[3], LamResponse *r)
+{
+  const PetscBool contact = table->grid->contact;
+  const PetscReal p1 = p->turgor.value + d * place->sum.turgor2, p2 = place->sum.turgor2,
+                  mixed = contact ? place->sum.turgor1_tau / (place->point.s + table->grid->suction_scale) : 0;
+  PetscReal g[3], P[4];
+
+  /* contact: Psi = Phi(x, s) + d Phi_p + g J with s = p + g and d = g0 - g: p enters through s, g through both */
+  r->energy_turgor = contact ? p->s1 + d * mixed : p1 - J;
+  r->energy_turgor2 = contact ? p->s2 : p2;
+  r->energy_cohesion = contact ? p->s1 + d * mixed - p1 + J : 0;
+  r->energy_cohesion2 = contact ? p->s2 + p2 - 2 * mixed : 0;
+  r->energy_turgor_cohesion = contact ? p->s2 - mixed : 0;
+  for (int k = 0; k < 3; k++) g[k] = contact ? p->gradient_s[k] : p->turgor.gradient[k] - J_x[k];
+  LamLatticeStress(&table->grid->axes, &place->lattice, g, P);
+  PlaneToFull(P, r->P_turgor);
+  for (int k = 0; k < 3; k++) g[k] = contact ? p->gradient_s[k] - p->turgor.gradient[k] + J_x[k] : 0;
+  LamLatticeStress(&table->grid->axes, &place->lattice, g, P);
+  PlaneToFull(P, r->P_cohesion);
+}
+
+static void FillPotential(LamTable table, const Place *place, Potential *p, LamResponse *r)
+{
+  const LamLoad *load = &r->load;
+  const PetscBool contact = table->grid->contact;
+  const PetscReal d = contact ? table->grid->cohesion - load->cohesion : load->turgor - table->grid->turgor;
+  const PetscReal c = contact ? load->cohesion : -load->turgor;
+  PetscReal J, J_x[3], J_xx[6], P[4], A[4][4];
+
+  J = LamLatticeVolume(&table->grid->axes, &place->lattice, J_x, J_xx);
+  FillPressures(table, place, p, d, J, J_x, r);
+  r->energy = p->psi.value + d * (p->turgor.value + 0.5 * d * place->sum.turgor2) + c * J;
+  for (int k = 0; k < 3; k++) p->psi.gradient[k] += d * p->turgor.gradient[k] + c * J_x[k];
+  for (int m = 0; m < 6; m++) p->psi.hessian[m] += d * p->turgor.hessian[m] + c * J_xx[m];
+  LamLatticeStress(&table->grid->axes, &place->lattice, p->psi.gradient, P);
+  LamLatticeTangent(&table->grid->axes, &place->lattice, p->psi.gradient, p->psi.hessian, A);
+  PlaneToFull(P, r->P);
+  for (int a = 0; a < 4; a++)
+    for (int b = 0; b < 4; b++) r->tangent[9 * (3 * (a / 2) + a % 2) + 3 * (b / 2) + b % 2] = A[a][b];
+}
+
+/* ---- the answer ---- */
+
+static PetscBool Locate(LamTable table, const LamLoad *load, Place *place, LamResponse *r)
+{
+  const PetscReal F[4] = {load->F[0], load->F[1], load->F[3], load->F[4]};
+
+  memset(place, 0, sizeof(*place));
+  place->lattice = LamLatticeStateOf(&table->grid->axes, F);
+  if (!PlaceSuction(table, load, place, r)) return PETSC_FALSE;
+  PlaceStrains(table, place);
+  if (!place->floating) SumLevels(table, place);
+  return PETSC_TRUE;
+}
+
+/* Cells that touch no one: P = g J F^-T, exact but for the free cell's own numbers. */
+static void SumFloating(LamTable table, Place *place)
+{
+  const PetscReal rate = place->point.s + table->grid->suction_scale;
+  PetscReal energy[3], turgor[2];
+
+  LamFreeCellEnergy(&table->grid->free, place->point.s, energy, turgor);
+  place->sum.phi.value = energy[0];
+  place->sum.tau1 = energy[1] * rate;
+  place->sum.tau2 = energy[2] * rate * rate + energy[1] * rate;
+  place->sum.turgor1.value = turgor[0];
+  place->sum.turgor2 = turgor[1];
+}
+
+static PetscBool Accept(const Place *place, PetscReal accuracy, LamResponse *r)
+{
+  if (place->floating) return PETSC_TRUE;
+  if (!place->leaf) return Refuse(r, "the database has no nodes around this state");
+  if (!place->good)
+    return Refuse(r, "the states around are not all of one kind: cells buckle, lose contact or have no solution here");
+  if (r->error_estimate <= accuracy) return PETSC_TRUE;
+  r->status = LAM_OUT_OF_REACH;
+  snprintf(r->reason, sizeof(r->reason), "the estimated error is %.2g %%, %.2g %% is asked", 100 * r->error_estimate,
+           100 * accuracy);
+  return PETSC_FALSE;
+}
+
+static void Answer(LamTable table, Place *place, PetscReal accuracy, LamResponse *r)
+{
+  PetscReal along_strain = 0, along_suction = 0;
+  Potential potential;
+
+  if (place->floating)
+    SumFloating(table, place);
+  else if (place->leaf && place->good)
+    Estimates(table, place, &along_strain, &along_suction);
+  else {
+    Accept(place, accuracy, r);
+    return;
+  }
+  Unsort(table, place, &potential);
+  if (table->grid->contact) TauToSuction(table, place, &potential);
+  FillPotential(table, place, &potential, r);
+  LamTableThickness(table, &place->point, place->leaf, &place->lattice, r);
+  r->error_estimate = Relative(hypot(along_strain, along_suction), r->P);
+  if (!Accept(place, accuracy, r)) return;
+  LamTableIndicators(table, &place->point, place->leaf, r);
+  r->status = LAM_CONVERGED;
+}
+
+PetscErrorCode LamTableQuery(LamTable table, const LamLoad *load, PetscReal accuracy, LamResponse *response)
+{
+  PetscLogDouble start, end;
+  Place place;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscTime(&start));
+  PetscCall(LamResponseInit(load, response));
+  response->source = LAM_SOURCE_DATABASE;
+  if (LamQuestionIsGood(load, response) && Locate(table, load, &place, response))
+    Answer(table, &place, accuracy, response);
+  PetscCall(PetscTime(&end));
+  response->seconds = end - start;
+  PetscFunctionReturn(0);
+}
+
+/* ---- what is missing ---- */
+
+typedef struct {
+  LamTable table;
+  PetscInt *n;
+  PetscInt64 *keys;
+  PetscBool hopeless; /* a node was solved in vain */
+} Needs;
+
+static void Need(Needs *needs, const int at[3], int j)
+{
+  const struct LamGrid_s *grid = needs->table->grid;
+  LamNodePlace place = {.j = j};
+  PetscInt node;
+  PetscInt64 key;
+
+  if (LamPlaceIsFloating(grid, at)) return;
+  for (int k = 0; k < 3; k++) {
+    int rank = grid->symmetric ? 0 : k;
+
+    for (int l = 0; l < 3 && grid->symmetric; l++) rank += at[l] < at[k] || (at[l] == at[k] && l < k);
+    place.i[rank] = at[k];
+  }
+  key = LamNodeKeyOf(&place);
+  node = LamPlaceMapGet(&needs->table->node_map, LamPlaceMapKey(0, place.i));
+  for (PetscInt s = 0; node >= 0 && s < needs->table->nodes[node].count; s++) {
+    const LamTableState *state = &needs->table->states[needs->table->nodes[node].first + s];
+
+    if (state->j != j) continue;
+    if (!state->has_data) needs->hopeless = PETSC_TRUE;
+    return;
+  }
+  for (PetscInt m = 0; m < *needs->n; m++)
+    if (needs->keys[m] == key) return;
+  if (*needs->n < LAM_MAX_NEEDS) needs->keys[(*needs->n)++] = key;
+}
+
+/* All corners of the point's cell of a level, at both ends of an interval of suction. */
+static void NeedCell(Needs *needs, const LamTablePoint *point, int level, const int ends[2])
+{
+  const int size = LAM_ROOT >> level;
+
+  for (int c = 0; c < 8; c++) {
+    int at[3];
+
+    for (int k = 0; k < 3; k++) at[k] = (int)floor(point->u[k] / size) * size + (c >> k & 1 ? size : 0);
+    for (int e = 0; e < (needs->table->grid->contact ? 2 : 1); e++) Need(needs, at, ends[e]);
+  }
+}
+
+/* The interval of suction that all columns of the cell have in common around the point. */
+static void CommonInterval(LamTable table, const LamTableCell *cell, const LamTablePoint *point, int ends[2])
+{
+  ends[0] = point->root;
+  ends[1] = table->grid->contact ? point->root + LAM_ROOT : point->root;
+  for (int c = 0; c < 8 && cell && table->grid->contact; c++) {
+    const LamTableState *at[2];
+
+    if (cell->node[c] < 0) continue;
+    LamTableBracket(table, &table->nodes[cell->node[c]], point, at);
+    if (at[0]) ends[0] = PetscMax(ends[0], at[0]->j);
+    if (at[1]) ends[1] = PetscMin(ends[1], at[1]->j);
+  }
+}
+
+/* Beyond the node's places, or with strains that no F has. */
+static PetscBool IsOutside(LamTable table, const Place *place)
+{
+  for (int k = 0; k < 3; k++)
+    if (!(fabs(place->point.u[k]) < LAM_GRID_REACH - 2 * LAM_ROOT)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+PetscErrorCode LamTableNeeds(LamTable table, const LamLoad *load, PetscReal accuracy, PetscInt *n,
+                             PetscInt64 keys[LAM_MAX_NEEDS])
+{
+  Needs needs = {table, n, keys, PETSC_FALSE};
+  PetscReal along_strain, along_suction;
+  LamResponse response;
+  Place place;
+  int ends[2];
+
+  PetscFunctionBeginUser;
+  *n = 0;
+  PetscCall(LamTableQuery(table, load, accuracy, &response));
+  if (response.status != LAM_OUT_OF_REACH) PetscFunctionReturn(0);
+  if (!LamQuestionIsGood(load, &response) || !Locate(table, load, &place, &response) || IsOutside(table, &place))
+    PetscFunctionReturn(0);
+  CommonInterval(table, place.leaf, &place.point, ends);
+  if (!place.leaf)
+    NeedCell(&needs, &place.point, 0, ends);
+  else if (!place.good) {
+    if (place.leaf->level < KINK_LEVEL) NeedCell(&needs, &place.point, place.leaf->level + 1, ends);
+  } else {
+    Estimates(table, &place, &along_strain, &along_suction);
+    if (along_suction > along_strain && ends[1] - ends[0] > 1) {
+      ends[0] = ends[1] = (ends[0] + ends[1]) / 2;
+      NeedCell(&needs, &place.point, place.leaf->level, ends);
+    } else if (place.leaf->level < LAM_FINEST)
+      NeedCell(&needs, &place.point, place.leaf->level + 1, ends);
+  }
+  if (needs.hopeless) *n = 0;
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,257 @@
+/*
+  The table at a point: columns at its suction, cells of all levels, their sum.
+*/
+#include "table.h"
+#include <math.h>
+#include <string.h>
+
+const int LamAxisOrder[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+
+/* ---- columns ---- */
+
+/* Where a point lies between two states: t in [0, 1], h the step in tau. */
+typedef struct {
+  const LamTableState *end[2]; /* NULL: nothing there */
+  PetscReal t, h;
+  PetscReal V[2][3], D[2][3], q[2][3]; /* Hermite functions of the ends, their first and second derivatives in tau */
+} Interval;
+
+void LamTableBracket(LamTable table, const LamTableNode *node, const LamTablePoint *point, const LamTableState *ends[2])
+{
+  const LamTableState *states = &table->states[node->first];
+  const int last = point->root + LAM_ROOT;
+  PetscInt low = 0, high = node->count;
+
+  ends[0] = ends[1] = NULL;
+  if (!table->grid->contact) {
+    ends[0] = ends[1] = states;
+    return;
+  }
+  while (low < high) { /* the first state beyond the point, or at the end of the root interval */
+    const PetscInt middle = (low + high) / 2;
+
+    if (states[middle].j > point->v || states[middle].j >= last)
+      high = middle;
+    else
+      low = middle + 1;
+  }
+  if (low > 0 && states[low - 1].j >= point->root) ends[0] = &states[low - 1];
+  if (low < node->count && states[low].j <= last) ends[1] = &states[low];
+}
+
+static void IntervalOf(LamTable table, const LamTableNode *node, const LamTablePoint *point, Interval *a)
+{
+  const PetscReal unit = table->grid->tau_step / LAM_ROOT;
+  PetscReal t, s, h, from, to;
+
+  LamTableBracket(table, node, point, a->end);
+  if (!table->grid->contact) return;
+  from = a->end[0] ? a->end[0]->j : point->root;
+  to = a->end[1] ? a->end[1]->j : point->root + LAM_ROOT;
+  a->h = h = (to - from) * unit;
+  a->t = t = (point->v - from) / (to - from);
+  s = 1 - t;
+  for (int e = 0; e < 2; e++) {
+    const PetscReal r = e ? t : s, sign = e ? 1 : -1; /* r = 1 at this end; d/dtau = sign d/dr / h */
+
+    a->V[e][0] = r * r * (3 - 2 * r);
+    a->V[e][1] = sign * 6 * r * (1 - r) / h;
+    a->V[e][2] = 6 * (1 - 2 * r) / (h * h);
+    a->D[e][0] = -sign * h * r * r * (1 - r);
+    a->D[e][1] = -(2 * r - 3 * r * r);
+    a->D[e][2] = -sign * (2 - 6 * r) / h;
+    a->q[e][0] = 0.5 * h * h * (1 - r) * (1 - r) * r * r * r;
+    a->q[e][1] = sign * 0.5 * h * (3 * r * r * (1 - r) * (1 - r) - 2 * r * r * r * (1 - r));
+    a->q[e][2] = 0.5 * (6 * r * (1 - r) * (1 - r) - 12 * r * r * (1 - r) + 2 * r * r * r);
+  }
+}
+
+/* A column at a suction: jets of Phi and of its first and second derivative in tau, and of dPhi/dp. */
+typedef struct {
+  LamJet phi[3], turgor1[2];
+  PetscReal turgor2, bump[3];
+} Column;
+
+/* Second derivatives in tau of the cubic at the ends: the quintic's bubbles make up for the rest. */
+static void Defects(const Interval *a, const PetscReal value[2], const PetscReal slope[2], const PetscReal curvature[2],
+                    PetscReal d[2])
+{
+  const PetscReal delta = value[1] - value[0], h = a->h;
+
+  d[0] = curvature[0] - (6 * delta / (h * h) - (4 * slope[0] + 2 * slope[1]) / h);
+  d[1] = curvature[1] - (-6 * delta / (h * h) + (2 * slope[0] + 4 * slope[1]) / h);
+}
+
+static void AddState(const Interval *a, int e, const int order[3], int corner, Column *c)
+{
+  const LamTableState *state = a->end[e];
+
+  for (int d = 0; d < 3; d++) {
+    const PetscReal V = a->V[e][d], D = a->D[e][d];
+    LamJet *jet = &c->phi[d];
+
+    jet->value += V * state->phi.value + D * state->tau1;
+    for (int k = 0; k < 3; k++) {
+      const int n = order[k];
+      const PetscReal pure = corner >> k & 1 ? state->minus[n] : state->phi.hessian[n];
+
+      jet->gradient[k] += V * state->phi.gradient[n] + D * state->gradient_tau[n];
+      jet->hessian[k] += V * pure;
+      jet->hessian[3 + k] += V * state->phi.hessian[3 + n]; /* entry 3 + k lacks axis k */
+    }
+  }
+  for (int d = 0; d < 2; d++) {
+    c->turgor1[d].value += a->V[e][d] * state->turgor1;
+    for (int k = 0; k < 3; k++) c->turgor1[d].gradient[k] += a->V[e][d] * state->turgor_gradient[order[k]];
+  }
+  c->turgor2 += a->V[e][0] * state->turgor2;
+}
+
+/* What the quintic and the cubic add beyond the next lower order. */
+static void AddHigherOrder(const Interval *a, const int order[3], Column *c)
+{
+  PetscReal value[2], slope[2], curvature[2], d[2];
+
+  for (int e = 0; e < 2; e++) {
+    value[e] = a->end[e] ? a->end[e]->phi.value : 0;
+    slope[e] = a->end[e] ? a->end[e]->tau1 : 0;
+    curvature[e] = a->end[e] ? a->end[e]->tau2 : 0;
+  }
+  Defects(a, value, slope, curvature, d);
+  for (int order_tau = 0; order_tau < 3; order_tau++)
+    c->phi[order_tau].value += a->q[0][order_tau] * d[0] + a->q[1][order_tau] * d[1];
+  for (int k = 0; k < 3; k++) {
+    PetscReal bend = 0;
+
+    for (int e = 0; e < 2; e++)
+      if (a->end[e])
+        bend += a->h * a->end[e]->gradient_tau[order[k]] + (e ? -2 : 2) * a->end[e]->phi.gradient[order[k]];
+    c->bump[k] = 0.5 * a->t * (1 - a->t) * bend;
+  }
+}
+
+/* At a fixed suction there is one state. */
+static void TakeState(const LamTableState *state, const int order[3], int corner, Column *c)
+{
+  c->phi[0].value = state->phi.value;
+  c->turgor1[0].value = state->turgor1;
+  c->turgor2 = state->turgor2;
+  for (int k = 0; k < 3; k++) {
+    const int n = order[k];
+
+    c->phi[0].gradient[k] = state->phi.gradient[n];
+    c->phi[0].hessian[k] = corner >> k & 1 ? state->minus[n] : state->phi.hessian[n];
+    c->phi[0].hessian[3 + k] = state->phi.hessian[3 + n];
+    c->turgor1[0].gradient[k] = state->turgor_gradient[n];
+  }
+}
+
+/* Cells that touch no one: Phi of the suction alone, its pure second derivatives not known on the side of contact. */
+static void FloatingColumn(LamTable table, int level, const LamTablePoint *point, Column *c)
+{
+  const PetscReal rate = point->s + table->grid->suction_scale; /* ds/dtau = d2s/dtau2 */
+  PetscReal energy[3], turgor[2];
+
+  for (int k = 0; k < 3; k++) c->phi[0].hessian[k] = c->phi[1].hessian[k] = c->phi[2].hessian[k] = NAN;
+  if (level) return;
+  LamFreeCellEnergy(&table->grid->free, point->s, energy, turgor);
+  c->phi[0].value = energy[0];
+  c->phi[1].value = energy[1] * rate;
+  c->phi[2].value = energy[2] * rate * rate + energy[1] * rate;
+  c->turgor1[0].value = turgor[0];
+  c->turgor2 = turgor[1];
+}
+
+static void MakeColumn(LamTable table, const LamTableCell *cell, int corner, const LamTablePoint *point, Column *c)
+{
+  const PetscInt n = cell->node[corner];
+  const LamTableNode *node = &table->nodes[n];
+  const int *order = LamAxisOrder[cell->order[corner]];
+  Interval a;
+
+  memset(c, 0, sizeof(*c));
+  if (n == LAM_NODE_FLOATING) FloatingColumn(table, cell->level, point, c);
+  if (n < 0 || node->level != cell->level) return;
+  IntervalOf(table, node, point, &a);
+  if (!table->grid->contact) {
+    if (a.end[0]->has_data) TakeState(a.end[0], order, corner, c);
+    return;
+  }
+  for (int e = 0; e < 2; e++) {
+    if (a.end[e] && !a.end[e]->has_data) a.end[e] = NULL;
+    if (a.end[e]) AddState(&a, e, order, corner, c);
+  }
+  AddHigherOrder(&a, order, c);
+}
+
+/* ---- cells ---- */
+
+static int CellCorner(PetscReal u, int level)
+{
+  const int size = LAM_ROOT >> level;
+
+  return (int)floor(u / size) * size;
+}
+
+const LamTableCell *LamTableFindCell(LamTable table, const LamTablePoint *point, int level)
+{
+  int i[3];
+  PetscInt at;
+
+  for (int k = 0; k < 3; k++) {
+    if (!(fabs(point->u[k]) < LAM_GRID_REACH - LAM_ROOT)) return NULL;
+    i[k] = CellCorner(point->u[k], level);
+  }
+  at = LamPlaceMapGet(&table->cell_map, LamPlaceMapKey(level, i));
+  return at < 0 ? NULL : &table->cells[at];
+}
+
+PetscBool LamTableCellIsComplete(LamTable table, const LamTableCell *cell, const LamTablePoint *point, PetscBool *good)
+{
+  *good = PETSC_TRUE;
+  for (int c = 0; c < 8; c++) {
+    const LamTableState *ends[2];
+
+    if (cell->node[c] == LAM_NODE_FLOATING) continue;
+    if (cell->node[c] == LAM_NODE_MISSING) return PETSC_FALSE;
+    LamTableBracket(table, &table->nodes[cell->node[c]], point, ends);
+    for (int e = 0; e < 2; e++) {
+      if (!ends[e] || (!ends[e]->has_data && !cell->level)) return PETSC_FALSE;
+      if (!ends[e]->good) *good = PETSC_FALSE;
+    }
+  }
+  return PETSC_TRUE;
+}
+
+void LamTableAddCell(LamTable table, const LamTableCell *cell, const LamTablePoint *point, PetscBool estimate,
+                     LamTableSum *sum)
+{
+  const int size = LAM_ROOT >> cell->level, orders = table->grid->contact ? 3 : 1;
+  const PetscReal h = table->grid->step / (1 << cell->level);
+  LamJet corner[3][8], turgor[2][8], first = {0}, second = {0}, turgor_tau = {0};
+  PetscReal t[3];
+
+  for (int k = 0; k < 3; k++) t[k] = (point->u[k] - cell->i[k]) / size;
+  for (int c = 0; c < 8; c++) {
+    PetscReal weight = 1;
+    Column column;
+
+    MakeColumn(table, cell, c, point, &column);
+    for (int d = 0; d < orders; d++) corner[d][c] = column.phi[d];
+    for (int d = 0; d < 2; d++) turgor[d][c] = column.turgor1[d];
+    for (int k = 0; k < 3; k++) weight *= c >> k & 1 ? t[k] * t[k] * (3 - 2 * t[k]) : (1 - t[k]) * (1 - t[k]) * (1 + 2 * t[k]);
+    sum->turgor2 += weight * column.turgor2;
+    if (estimate && table->grid->contact)
+      for (int k = 0; k < 3; k++) sum->bump[k] += weight * column.bump[k];
+  }
+  LamHermiteQuintic(corner[0], h, t, &sum->phi, estimate ? sum->bubble : NULL);
+  LamHermiteCubic(turgor[0], h, t, &sum->turgor1);
+  if (!table->grid->contact) return;
+  LamHermiteQuintic(corner[1], h, t, &first, NULL);
+  LamHermiteQuintic(corner[2], h, t, &second, NULL);
+  LamHermiteCubic(turgor[1], h, t, &turgor_tau);
+  sum->tau1 += first.value;
+  sum->tau2 += second.value;
+  sum->turgor1_tau += turgor_tau.value;
+  for (int k = 0; k < 3; k++) sum->gradient_tau[k] += first.gradient[k];
+}
