@@ -1,9 +1,10 @@
 /*
-  Private to the database: loaded records and the expansions made from them.
+  Private to the database: what is in memory of the records, and the expansions made from them.
 */
 #ifndef LAM_DATABASE_INTERNAL_H
 #define LAM_DATABASE_INTERNAL_H
 
+#include "node_data.h"
 #include "record_internal.h"
 
 /*
@@ -27,14 +28,28 @@ typedef struct {
   PetscInt face[LAM_MAX_IMAGES][3]; /* face family k of the question is family face[k] of the record */
 } LamImages;
 
+/*
+  Records 0 .. n-1 are those of the file and, behind them, those added in memory. Of nodes of the grid the database
+  keeps what the table needs, of all others the whole response; the whole responses of nodes in the file are loaded when
+  LamDatabaseGetRecords first asks for them.
+*/
 struct LamDatabase_s {
   LamHeader header; /* owned; its `committed` is that of the file, not n */
+  char *path;       /* owned; NULL: there is no file */
   LamImages images;
   PetscInt n, capacity;
-  LamResponse *records;     /* owned */
-  PetscInt64 *keys;         /* owned */
-  LamExpansion *expansions; /* owned; x[0] is infinite for records that cannot be used */
-  char *info;               /* owned */
+  PetscInt64 *keys; /* [n] owned */
+
+  PetscInt node_count, node_capacity;
+  LamNodeData *nodes; /* [node_count] owned: records with the key of a node, in their order */
+  PetscInt scattered_count, scattered_capacity;
+  LamResponse *scattered;   /* [scattered_count] owned: all other records, in their order */
+  LamExpansion *expansions; /* [scattered_count] owned; x[0] is infinite for records that cannot be used */
+
+  PetscInt records_first,
+      records_capacity; /* records_first: of the file's records before LamDatabaseGetRecords, 0 after */
+  LamResponse *records; /* [n - records_first] owned: number records_first and on */
+  char *info;           /* owned */
 };
 
 /* ---- query.c ---- */

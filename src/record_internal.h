@@ -15,24 +15,34 @@
 
 /* ---- record_type.c ---- */
 
-/* One record in memory; the file holds the same members, packed and little-endian, the checksum last. */
-typedef struct {
-  PetscInt64 key;
-  PetscInt microstructure; /* index of the microstructure in the file */
-  LamResponse response;
-  uint32_t checksum; /* CRC-32 (zlib's) of all bytes of the record in the file that come before it */
-} LamRecord;
+/* The type of a record in the file: key, microstructure, the members of a response, checksum; packed, little-endian. */
+PetscErrorCode LamRecordTypeCreate(hid_t *type);
+/* Checks that every member we know is there, of the type we write; what was added later may be missing. */
+PetscErrorCode LamRecordTypeCheck(const char path[], hid_t file_type);
 
-PetscErrorCode LamRecordTypeCreate(PetscBool in_memory, hid_t *type);
+/* ---- record_bytes.c ---- */
+
+#define LAM_MAX_MEMBERS 96
+#define LAM_NOT_IN_FILE ((size_t)-1)
+
+/* Where the members lie in the bytes of a record, of a type that has passed the check above. */
+typedef struct {
+  size_t size;                    /* of a record; its last 4 bytes are the CRC-32 (zlib's) of those before them */
+  size_t key, microstructure;     /* int64 */
+  size_t member[LAM_MAX_MEMBERS]; /* of LamResponseMembers, in their order; LAM_NOT_IN_FILE where it is missing */
+} LamRecordLayout;
+
+PetscErrorCode LamRecordLayoutMake(hid_t file_type, LamRecordLayout *layout);
+PetscInt64 LamRecordKey(const LamRecordLayout *layout, const unsigned char *bytes);
 /* Turns records into the bytes of the file, checksums included; `bytes` is the caller's to free. */
 PetscErrorCode LamRecordsPack(PetscInt n, const PetscInt64 keys[], const LamResponse responses[], hid_t file_type,
                               void **bytes);
-/* The way back, for bytes of a type that has passed the check below. Names `path` and the record where one is damaged.
- */
-PetscErrorCode LamRecordsUnpack(const char path[], PetscInt n, const void *bytes, hid_t file_type,
-                                LamResponse responses[], PetscInt64 keys[]);
-/* Checks that every member we know is there, of the type we write; what was added later may be missing. */
-PetscErrorCode LamRecordTypeCheck(const char path[], hid_t file_type);
+/* The way back for one record that has been checked. */
+PetscErrorCode LamRecordUnpack(const LamRecordLayout *layout, const unsigned char *bytes, LamResponse *response);
+/* Checks checksum, status, source and microstructure of n records, the first of which is number `first`; names `path`
+   and the record that is damaged. */
+PetscErrorCode LamRecordsCheck(const char path[], const LamRecordLayout *layout, PetscInt first, PetscInt n,
+                               const unsigned char *bytes);
 
 /* ---- record_lock.c ---- */
 
@@ -94,9 +104,11 @@ PetscErrorCode LamFileClose(const char path[], hid_t file);
 PetscErrorCode LamFileSync(const char path[], hid_t file);
 /* Reads and checks the header; `file` is left open. */
 PetscErrorCode LamHeaderRead(const char path[], hid_t file, LamHeader *header);
-/* Reads and checks the committed records; arrays are the caller's to free. */
-PetscErrorCode LamFileReadRecords(const char path[], hid_t file, PetscInt committed, LamResponse **responses,
-                                  PetscInt64 **keys);
+/* A block of checked records: n of them, number `first` and on. The bytes are the file's own. */
+typedef PetscErrorCode (*LamRecordVisitor)(void *ctx, const LamRecordLayout *layout, PetscInt first, PetscInt n,
+                                           const unsigned char *bytes);
+/* Reads the first `count` records once, in blocks, checks them and shows them to the visitor in their order. */
+PetscErrorCode LamFileScanRecords(const char path[], hid_t file, PetscInt count, LamRecordVisitor visit, void *ctx);
 PetscErrorCode LamAttributeWriteText(const char path[], hid_t object, const char name[], const char text[]);
 /* Whether `name` ("/a/b/c") is there: every part of it. */
 PetscErrorCode LamFileHas(const char path[], hid_t file, const char name[], PetscBool *has);
