@@ -1,29 +1,89 @@
 /*
-  The database in memory: loaded once, then only read (queries) or added to (cache).
+  The database in memory: scanned once, then only read (queries) or added to (cache).
 */
 #include "database_internal.h"
 #include <string.h>
 
-static PetscErrorCode Reserve(LamDatabase db, PetscInt n)
+/* ---- growing ---- */
+
+/* Makes room for `n` items more behind `count`. */
+static PetscErrorCode Grow(PetscInt count, PetscInt n, size_t size, PetscInt *capacity, void *items)
 {
   PetscFunctionBeginUser;
-  if (n <= db->capacity) PetscFunctionReturn(0);
-  db->capacity = PetscMax(2 * db->capacity, n);
-  PetscCall(PetscRealloc((size_t)db->capacity * sizeof(*db->records), &db->records));
-  PetscCall(PetscRealloc((size_t)db->capacity * sizeof(*db->keys), &db->keys));
-  PetscCall(PetscRealloc((size_t)db->capacity * sizeof(*db->expansions), &db->expansions));
+  if (count + n <= *capacity) PetscFunctionReturn(0);
+  *capacity = PetscMax(2 * *capacity, count + n);
+  PetscCall(PetscRealloc((size_t)*capacity * size, (void **)items));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode GrowKeys(LamDatabase db, PetscInt n)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Grow(db->n, n, sizeof(*db->keys), &db->capacity, &db->keys));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode GrowNodes(LamDatabase db, PetscInt n)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Grow(db->node_count, n, sizeof(*db->nodes), &db->node_capacity, &db->nodes));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode AddScattered(LamDatabase db, const LamResponse *record)
+{
+  PetscInt capacity = db->scattered_capacity;
+
+  PetscFunctionBeginUser;
+  PetscCall(Grow(db->scattered_count, 1, sizeof(*db->expansions), &capacity, &db->expansions));
+  PetscCall(Grow(db->scattered_count, 1, sizeof(*db->scattered), &db->scattered_capacity, &db->scattered));
+  db->scattered[db->scattered_count] = *record;
+  LamExpansionMake(record, &db->expansions[db->scattered_count++]);
+  PetscFunctionReturn(0);
+}
+
+/* ---- open, close ---- */
+
+typedef struct {
+  LamDatabase db;
+  LamNodeLayout nodes; /* made with the first block */
+} Loading;
+
+static PetscErrorCode LoadBlock(void *ctx, const LamRecordLayout *layout, PetscInt first, PetscInt n,
+                                const unsigned char *bytes)
+{
+  Loading *l = ctx;
+  LamDatabase db = l->db;
+
+  PetscFunctionBeginUser;
+  if (!first) LamNodeLayoutMake(layout, &l->nodes);
+  PetscCall(GrowNodes(db, n));
+  for (PetscInt i = 0; i < n; i++, bytes += layout->size) {
+    const PetscInt64 key = LamRecordInt(bytes + layout->key);
+    LamResponse record;
+
+    db->keys[db->n++] = key;
+    if (LamKeyIsNode(key)) {
+      LamNodeDataFromBytes(&l->nodes, bytes, &db->nodes[db->node_count++]);
+      continue;
+    }
+    PetscCall(LamRecordUnpack(layout, bytes, &record));
+    PetscCall(AddScattered(db, &record));
+  }
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode Load(const char path[], hid_t file, LamDatabase db)
 {
+  Loading loading = {.db = db};
+
   PetscFunctionBeginUser;
   PetscCall(LamHeaderRead(path, file, &db->header));
-  PetscCall(LamFileReadRecords(path, file, db->header.committed, &db->records, &db->keys));
-  db->n = db->capacity = db->header.committed;
-  PetscCall(PetscMalloc1(db->n + 1, &db->expansions));
+  PetscCall(PetscStrallocpy(path, &db->path));
   LamImagesMake(&db->header.micro, &db->images);
-  for (PetscInt i = 0; i < db->n; i++) LamExpansionMake(&db->records[i], &db->expansions[i]);
+  PetscCall(GrowKeys(db, db->header.committed));
+  PetscCall(LamFileScanRecords(path, file, db->header.committed, LoadBlock, &loading));
+  db->records_first = db->n;
   PetscFunctionReturn(0);
 }
 
@@ -72,11 +132,62 @@ PetscErrorCode LamDatabaseClose(LamDatabase *database)
   PetscFunctionBeginUser;
   if (!db) PetscFunctionReturn(0);
   PetscCall(LamHeaderDestroy(&db->header));
-  PetscCall(PetscFree(db->records));
+  PetscCall(PetscFree(db->path));
   PetscCall(PetscFree(db->keys));
+  PetscCall(PetscFree(db->nodes));
+  PetscCall(PetscFree(db->scattered));
   PetscCall(PetscFree(db->expansions));
+  PetscCall(PetscFree(db->records));
   PetscCall(PetscFree(db->info));
   PetscCall(PetscFree(*database));
+  PetscFunctionReturn(0);
+}
+
+/* ---- whole responses ---- */
+
+typedef struct {
+  LamDatabase db;
+  LamResponse *records;
+} Unpacking;
+
+static PetscErrorCode UnpackBlock(void *ctx, const LamRecordLayout *layout, PetscInt first, PetscInt n,
+                                  const unsigned char *bytes)
+{
+  const Unpacking *u = ctx;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = first; i < first + n; i++, bytes += layout->size) {
+    PetscCheck(LamRecordInt(bytes + layout->key) == u->db->keys[i], PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "%s: record %" PetscInt_FMT " has another key than before; the file was replaced while it was in use",
+               u->db->path, i);
+    PetscCall(LamRecordUnpack(layout, bytes, &u->records[i]));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Reads the file's records in front of those added in memory. */
+static PetscErrorCode LoadRecords(LamDatabase db)
+{
+  const PetscInt count = db->records_first;
+  Unpacking unpacking = {.db = db};
+  hid_t file = H5I_INVALID_HID;
+  PetscErrorCode ierr;
+  int lock;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(db->n, &unpacking.records));
+  lock = LamLockBeginRead(db->path);
+  ierr = LamFileOpenRead(db->path, &file);
+  if (!ierr) ierr = LamFileScanRecords(db->path, file, count, UnpackBlock, &unpacking);
+  if (file >= 0) H5Fclose(file);
+  LamLockEndRead(lock);
+  if (ierr) (void)PetscFree(unpacking.records);
+  PetscCall(ierr);
+  PetscCall(PetscArraycpy(unpacking.records + count, db->records, db->n - count));
+  PetscCall(PetscFree(db->records));
+  db->records = unpacking.records;
+  db->records_capacity = db->n;
+  db->records_first = 0;
   PetscFunctionReturn(0);
 }
 
@@ -85,8 +196,19 @@ PetscErrorCode LamDatabaseGetRecords(LamDatabase database, PetscInt *n, const La
 {
   PetscFunctionBeginUser;
   if (n) *n = database->n;
+  if (records && database->records_first) PetscCall(LoadRecords(database));
   if (records) *records = database->records;
   if (keys) *keys = database->keys;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamDatabaseGetAdded(LamDatabase database, PetscInt from, PetscInt *n, const LamResponse *records[])
+{
+  PetscFunctionBeginUser;
+  PetscCheck(from >= database->records_first && from <= database->n, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "record %" PetscInt_FMT " is none of those added", from);
+  *n = database->n - from;
+  *records = database->records + (from - database->records_first);
   PetscFunctionReturn(0);
 }
 
@@ -112,14 +234,22 @@ PetscErrorCode LamDatabaseGetInfo(LamDatabase database, const char *json[])
 /* States of no grid get keys of their own, as a cache gives them. */
 PetscErrorCode LamDatabaseAdd(LamDatabase database, PetscInt n, const PetscInt64 keys[], const LamResponse records[])
 {
+  const PetscInt held = database->n - database->records_first;
+
   PetscFunctionBeginUser;
-  PetscCall(Reserve(database, database->n + n));
+  PetscCall(GrowKeys(database, n));
+  PetscCall(GrowNodes(database, n));
+  PetscCall(Grow(held, n, sizeof(*records), &database->records_capacity, &database->records));
   for (PetscInt i = 0; i < n; i++) {
     const PetscInt at = database->n++;
+    const PetscInt64 key = keys ? keys[i] : LAM_CACHE_KEY + at;
 
-    database->records[at] = records[i];
-    database->keys[at] = keys ? keys[i] : LAM_CACHE_KEY + at;
-    LamExpansionMake(&records[i], &database->expansions[at]);
+    database->keys[at] = key;
+    database->records[held + i] = records[i];
+    if (LamKeyIsNode(key))
+      LamNodeDataFromResponse(&records[i], key, &database->nodes[database->node_count++]);
+    else
+      PetscCall(AddScattered(database, &records[i]));
   }
   PetscFunctionReturn(0);
 }

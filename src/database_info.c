@@ -25,47 +25,68 @@ static json_t *RangeToJSON(const Range *range, PetscReal scale)
   return range->least <= range->most ? json_pack("[f, f]", range->least * scale, range->most * scale) : json_null();
 }
 
-/* Principal logarithmic strains in the plane, from C = F^T F. */
-static void PrincipalStrains(const PetscReal F[9], PetscReal strain[2])
+/* Principal logarithmic strains in the plane, from C = F^T F; F: 11 12 21 22. */
+static void PrincipalStrains(const PetscReal F[4], PetscReal strain[2])
 {
-  const PetscReal C11 = F[0] * F[0] + F[3] * F[3], C22 = F[1] * F[1] + F[4] * F[4], C12 = F[0] * F[1] + F[3] * F[4];
+  const PetscReal C11 = F[0] * F[0] + F[2] * F[2], C22 = F[1] * F[1] + F[3] * F[3], C12 = F[0] * F[1] + F[2] * F[3];
   const PetscReal mean = 0.5 * (C11 + C22), radius = hypot(0.5 * (C11 - C22), C12);
 
   strain[0] = 0.5 * log(mean - radius);
   strain[1] = 0.5 * log(mean + radius);
 }
 
-/* What the usable records span, stresses in MPa. */
-static json_t *Coverage(LamDatabase db)
+/* What the usable records span, and how many there are of each status. */
+typedef struct {
+  Range strain, turgor, cohesion;
+  PetscInt counts[LAM_STATUS_COUNT];
+} Summary;
+
+static void Count(Summary *s, LamStatus status, const PetscReal F[4], PetscReal turgor, PetscReal cohesion)
 {
-  const PetscReal MPa = db->header.scales.stress / PA_PER_MPA;
-  Range strain = {PETSC_INFINITY, PETSC_NINFINITY}, turgor = strain, cohesion = strain;
+  PetscReal principal[2];
 
-  for (PetscInt i = 0; i < db->n; i++) {
-    const LamResponse *r = &db->records[i];
-    PetscReal principal[2];
-
-    if (r->status != LAM_CONVERGED) continue;
-    PrincipalStrains(r->load.F, principal);
-    Widen(&strain, principal[0]);
-    Widen(&strain, principal[1]);
-    Widen(&turgor, r->load.turgor);
-    Widen(&cohesion, r->load.cohesion);
-  }
-  return json_pack("{s:o, s:o, s:o}", "principal_log_strain", RangeToJSON(&strain, 1), "turgor",
-                   RangeToJSON(&turgor, MPa), "cohesion", RangeToJSON(&cohesion, MPa));
+  s->counts[status]++;
+  if (status != LAM_CONVERGED) return;
+  PrincipalStrains(F, principal);
+  Widen(&s->strain, principal[0]);
+  Widen(&s->strain, principal[1]);
+  Widen(&s->turgor, turgor);
+  Widen(&s->cohesion, cohesion);
 }
 
-/* Records by status; *failed counts all but the converged. */
-static json_t *Statuses(LamDatabase db, PetscInt *failed)
+static void Summarise(LamDatabase db, Summary *s)
 {
-  PetscInt counts[LAM_STATUS_COUNT] = {0};
+  const Range nothing = {PETSC_INFINITY, PETSC_NINFINITY};
+
+  *s = (Summary){.strain = nothing, .turgor = nothing, .cohesion = nothing};
+  for (PetscInt i = 0; i < db->node_count; i++) {
+    const LamNodeData *node = &db->nodes[i];
+
+    Count(s, node->status, node->F, node->turgor, node->cohesion);
+  }
+  for (PetscInt i = 0; i < db->scattered_count; i++) {
+    const LamResponse *r = &db->scattered[i];
+    const PetscReal F[4] = {r->load.F[0], r->load.F[1], r->load.F[3], r->load.F[4]};
+
+    Count(s, r->status, F, r->load.turgor, r->load.cohesion);
+  }
+}
+
+/* Stresses in MPa. */
+static json_t *Coverage(const LamHeader *h, const Summary *s)
+{
+  const PetscReal MPa = h->scales.stress / PA_PER_MPA;
+
+  return json_pack("{s:o, s:o, s:o}", "principal_log_strain", RangeToJSON(&s->strain, 1), "turgor",
+                   RangeToJSON(&s->turgor, MPa), "cohesion", RangeToJSON(&s->cohesion, MPa));
+}
+
+static json_t *Statuses(const Summary *s)
+{
   json_t *object = json_object();
 
-  for (PetscInt i = 0; i < db->n; i++) counts[db->records[i].status]++;
-  for (int s = 0; s < LAM_STATUS_COUNT; s++)
-    if (counts[s]) json_object_set_new(object, LamStatusNames[s], json_integer(counts[s]));
-  *failed = db->n - counts[LAM_CONVERGED];
+  for (int i = 0; i < LAM_STATUS_COUNT; i++)
+    if (s->counts[i]) json_object_set_new(object, LamStatusNames[i], json_integer(s->counts[i]));
   return object;
 }
 
@@ -87,14 +108,16 @@ static json_t *Text(const char text[])
 PetscErrorCode LamDatabaseDescribe(LamDatabase db, char **json)
 {
   const LamHeader *h = &db->header;
-  PetscInt failed;
-  json_t *statuses = Statuses(db, &failed), *object;
+  Summary summary;
+  json_t *object;
   char *text;
 
   PetscFunctionBeginUser;
+  Summarise(db, &summary);
   object = json_pack("{s:s, s:I, s:I, s:i, s:o, s:o, s:o, s:f}", "kind", h->kind, "records", (json_int_t)db->n,
-                     "failed", (json_int_t)failed, "format_version", (int)h->format_version, "microstructures",
-                     Microstructures(db), "statuses", statuses, "coverage", Coverage(db), "accuracy", h->accuracy);
+                     "failed", (json_int_t)(db->n - summary.counts[LAM_CONVERGED]), "format_version",
+                     (int)h->format_version, "microstructures", Microstructures(db), "statuses", Statuses(&summary),
+                     "coverage", Coverage(h, &summary), "accuracy", h->accuracy);
   json_object_set_new(object, "creator", Text(h->creator));
   json_object_set_new(object, "created", Text(h->created));
   json_object_set_new(object, "host", Text(h->host));

@@ -273,7 +273,7 @@ typedef struct {
    not feel it. */
 static PetscBool CohesionFits(LamDatabase db, PetscInt i, const LamLoad *load)
 {
-  const PetscReal other = db->records[i].load.cohesion;
+  const PetscReal other = db->scattered[i].load.cohesion;
 
   return (PetscBool)(db->header.micro.interface == LAM_INTERFACE_BONDED ||
                      fabs(other - load->cohesion) <= 1e-9 * (1 + fabs(other)));
@@ -297,7 +297,7 @@ static Nearest FindNearest(LamDatabase db, const LamLoad *load, const PetscReal 
     PetscReal y[4];
 
     MapForward(&db->images, image, x, y);
-    for (PetscInt i = 0; i < db->n; i++) {
+    for (PetscInt i = 0; i < db->scattered_count; i++) {
       const PetscReal d2 = Distance2(y, db->expansions[i].x);
 
       if (!(d2 < limit) || !CohesionFits(db, i, load)) continue;
@@ -317,7 +317,8 @@ static Nearest FindHintedOrNearest(LamDatabase db, const LamLoad *load, const Pe
 {
   Nearest at = {hint / LAM_MAX_IMAGES, hint % LAM_MAX_IMAGES, INFINITY};
 
-  if (hint >= 0 && at.record < db->n && at.image < db->images.count && CohesionFits(db, at.record, load)) {
+  if (hint >= 0 && at.record < db->scattered_count && at.image < db->images.count &&
+      CohesionFits(db, at.record, load)) {
     PetscReal y[4];
 
     MapForward(&db->images, at.image, x, y);
@@ -511,8 +512,8 @@ static PetscErrorCode NearestQuery(LamDatabase database, const LamLoad *load, Pe
   }
   Evaluate(database, &at, x, &model);
   ThicknessFluid(x, &model);
-  FillPotential(&model, F, &database->records[at.record], response);
-  LamIndicatorsCopy(&database->records[at.record], database->images.face[at.image], sqrt(at.distance2) < TIE,
+  FillPotential(&model, F, &database->scattered[at.record], response);
+  LamIndicatorsCopy(&database->scattered[at.record], database->images.face[at.image], sqrt(at.distance2) < TIE,
                     database->header.micro.interface, response);
   response->status = LAM_CONVERGED;
   response->distance = sqrt(at.distance2);

@@ -260,7 +260,7 @@ static PetscErrorCode WriteEmptyRecords(const char path[], hid_t file)
   hid_t type, space, list, dataset;
 
   PetscFunctionBeginUser;
-  PetscCall(LamRecordTypeCreate(PETSC_FALSE, &type));
+  PetscCall(LamRecordTypeCreate(&type));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, space = H5Screate_simple(1, &none, &unlimited));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, list = H5Pcreate(H5P_DATASET_CREATE));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Pset_chunk(list, 1, &chunk));

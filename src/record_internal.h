@@ -24,6 +24,7 @@ PetscErrorCode LamRecordTypeCheck(const char path[], hid_t file_type);
 
 #define LAM_MAX_MEMBERS 96
 #define LAM_NOT_IN_FILE ((size_t)-1)
+#define LAM_RECORD_BYTES (sizeof(LamResponse) + 128) /* a record in the file has less */
 
 /* Where the members lie in the bytes of a record, of a type that has passed the check above. */
 typedef struct {
@@ -33,7 +34,10 @@ typedef struct {
 } LamRecordLayout;
 
 PetscErrorCode LamRecordLayoutMake(hid_t file_type, LamRecordLayout *layout);
-PetscInt64 LamRecordKey(const LamRecordLayout *layout, const unsigned char *bytes);
+/* Where the member lies that is at `response_offset` of LamResponse. */
+size_t LamRecordOffset(const LamRecordLayout *layout, size_t response_offset);
+/* The integer of 8 bytes that begins here. */
+PetscInt64 LamRecordInt(const unsigned char *bytes);
 /* Turns records into the bytes of the file, checksums included; `bytes` is the caller's to free. */
 PetscErrorCode LamRecordsPack(PetscInt n, const PetscInt64 keys[], const LamResponse responses[], hid_t file_type,
                               void **bytes);

@@ -179,41 +179,75 @@ PetscErrorCode LamHeaderRead(const char path[], hid_t file, LamHeader *header)
 
 /* ---- records ---- */
 
-/* The committed records as the bytes of the file. */
-static PetscErrorCode ReadBytes(const char path[], hid_t dataset, hid_t type, PetscInt committed, void **bytes)
+#define BLOCK (4 * LAM_RECORDS_PER_CHUNK) /* some 370 kB: read, checked and used while it is in the processor's cache  \
+                                           */
+
+typedef struct {
+  hid_t dataset, type, space, memory;
+  LamRecordLayout layout;
+  unsigned char *bytes; /* of one block */
+} Scan;
+
+/* Without HDF5's cache of chunks: each is read once, right into our block. */
+static PetscErrorCode ScanOpen(const char path[], hid_t file, Scan *s)
 {
-  const hsize_t start = 0, count = (hsize_t)committed;
-  hid_t space, memory;
+  hid_t access;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc(((size_t)committed + 1) * H5Tget_size(type), bytes));
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, space = H5Dget_space(dataset));
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, memory = H5Screate_simple(1, &count, NULL));
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, NULL, &count, NULL));
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Dread(dataset, type, memory, space, H5P_DEFAULT, *bytes));
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Sclose(memory));
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Sclose(space));
+  LamCallHDF5(path, PETSC_ERR_LIB, access = H5Pcreate(H5P_DATASET_ACCESS));
+  LamCallHDF5(path, PETSC_ERR_LIB, H5Pset_chunk_cache(access, H5D_CHUNK_CACHE_NSLOTS_DEFAULT, 0, 1));
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, s->dataset = H5Dopen2(file, "/records", access));
+  LamCallHDF5(path, PETSC_ERR_LIB, H5Pclose(access));
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, s->type = H5Dget_type(s->dataset));
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, s->space = H5Dget_space(s->dataset));
+  PetscCall(LamRecordTypeCheck(path, s->type));
+  PetscCall(LamRecordLayoutMake(s->type, &s->layout));
+  PetscCall(PetscMalloc(BLOCK * s->layout.size, &s->bytes));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamFileReadRecords(const char path[], hid_t file, PetscInt committed, LamResponse **responses,
-                                  PetscInt64 **keys)
+static PetscErrorCode ScanClose(Scan *s)
 {
-  hid_t dataset, type;
-  void *bytes = NULL;
-  PetscErrorCode ierr = 0;
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(s->bytes));
+  if (s->space >= 0) H5Sclose(s->space);
+  if (s->type >= 0) H5Tclose(s->type);
+  if (s->dataset >= 0) H5Dclose(s->dataset);
+  PetscFunctionReturn(0);
+}
+
+/* The bytes of records first .. first + n - 1, as they are in the file. */
+static PetscErrorCode ReadBlock(const char path[], Scan *s, hsize_t first, hsize_t n)
+{
+  PetscFunctionBeginUser;
+  LamCallHDF5(path, PETSC_ERR_LIB, H5Sselect_hyperslab(s->space, H5S_SELECT_SET, &first, NULL, &n, NULL));
+  LamCallHDF5(path, PETSC_ERR_LIB, s->memory = H5Screate_simple(1, &n, NULL));
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Dread(s->dataset, s->type, s->memory, s->space, H5P_DEFAULT, s->bytes));
+  LamCallHDF5(path, PETSC_ERR_LIB, H5Sclose(s->memory));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ScanBlocks(const char path[], Scan *s, PetscInt count, LamRecordVisitor visit, void *ctx)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt first = 0; first < count; first += BLOCK) {
+    const PetscInt n = PetscMin(BLOCK, count - first);
+
+    PetscCall(ReadBlock(path, s, (hsize_t)first, (hsize_t)n));
+    PetscCall(LamRecordsCheck(path, &s->layout, first, n, s->bytes));
+    PetscCall(visit(ctx, &s->layout, first, n, s->bytes));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFileScanRecords(const char path[], hid_t file, PetscInt count, LamRecordVisitor visit, void *ctx)
+{
+  Scan scan = {.dataset = H5I_INVALID_HID, .type = H5I_INVALID_HID, .space = H5I_INVALID_HID};
+  PetscErrorCode ierr = ScanOpen(path, file, &scan);
 
   PetscFunctionBeginUser;
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, dataset = H5Dopen2(file, "/records", H5P_DEFAULT));
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, type = H5Dget_type(dataset));
-  PetscCall(LamRecordTypeCheck(path, type));
-  PetscCall(PetscMalloc1(committed + 1, responses));
-  PetscCall(PetscMalloc1(committed + 1, keys));
-  if (committed) ierr = ReadBytes(path, dataset, type, committed, &bytes);
-  if (committed && !ierr) ierr = LamRecordsUnpack(path, committed, bytes, type, *responses, *keys);
-  PetscCall(PetscFree(bytes)); /* also of damaged records: a program may go on without this file */
+  if (!ierr) ierr = ScanBlocks(path, &scan, count, visit, ctx);
+  PetscCall(ScanClose(&scan)); /* also of damaged records: a program may go on without this file */
   PetscCall(ierr);
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Tclose(type));
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Dclose(dataset));
   PetscFunctionReturn(0);
 }

@@ -56,7 +56,7 @@ static PetscErrorCode CheckType(const char path[], hid_t file)
   PetscFunctionBeginUser;
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, dataset = H5Dopen2(file, "/records", H5P_DEFAULT));
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, theirs = H5Dget_type(dataset));
-  PetscCall(LamRecordTypeCreate(PETSC_FALSE, &ours));
+  PetscCall(LamRecordTypeCreate(&ours));
   LamCallHDF5(path, PETSC_ERR_LIB, same = H5Tequal(theirs, ours));
   LamCallHDF5(path, PETSC_ERR_LIB, H5Tclose(ours));
   LamCallHDF5(path, PETSC_ERR_LIB, H5Tclose(theirs));
@@ -66,18 +66,28 @@ static PetscErrorCode CheckType(const char path[], hid_t file)
   PetscFunctionReturn(0);
 }
 
+/* Keeps the keys of records in the file. */
+static PetscErrorCode KeepBlockKeys(void *ctx, const LamRecordLayout *layout, PetscInt first, PetscInt n,
+                                    const unsigned char *bytes)
+{
+  LamRecordWriter w = ctx;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++) w->keys[first + i] = LamRecordInt(bytes + (size_t)i * layout->size + layout->key);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode ReadExisting(LamRecordWriter w, hid_t file, const char kind[], const LamScene *scene)
 {
-  LamResponse *responses = NULL;
   LamHeader header = {0};
   PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
   ierr = CheckSame(w->path, file, kind, scene, &header);
   if (!ierr) ierr = CheckType(w->path, file);
-  if (!ierr) ierr = LamFileReadRecords(w->path, file, header.committed, &responses, &w->keys);
   w->n = w->capacity = header.committed;
-  PetscCall(PetscFree(responses));
+  if (!ierr) ierr = PetscMalloc1(w->n + 1, &w->keys);
+  if (!ierr) ierr = LamFileScanRecords(w->path, file, w->n, KeepBlockKeys, w);
   PetscCall(LamHeaderDestroy(&header));
   PetscCall(ierr);
   PetscFunctionReturn(0);
@@ -159,7 +169,7 @@ static PetscErrorCode Append(const char path[], hid_t dataset, hsize_t before, P
   void *bytes;
 
   PetscFunctionBeginUser;
-  PetscCall(LamRecordTypeCreate(PETSC_FALSE, &type));
+  PetscCall(LamRecordTypeCreate(&type));
   PetscCall(LamRecordsPack(n, keys, responses, type, &bytes));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dset_extent(dataset, &after));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, space = H5Dget_space(dataset));
@@ -218,7 +228,7 @@ static PetscErrorCode CommitLocked(LamRecordWriter w, PetscInt n, const PetscInt
 
   PetscFunctionBeginUser;
   if (n) {
-    PetscCall(LamFileReserve(CurrentPath(w), PETSC_FALSE, ((size_t)n + LAM_RECORDS_PER_CHUNK) * sizeof(LamRecord)));
+    PetscCall(LamFileReserve(CurrentPath(w), PETSC_FALSE, ((size_t)n + LAM_RECORDS_PER_CHUNK) * LAM_RECORD_BYTES));
     PetscCall(LamFileOpenWrite(CurrentPath(w), &file));
     ierr = AppendAndCount(w, CurrentPath(w), file, n, keys, responses);
     if (ierr) H5Fclose(file);

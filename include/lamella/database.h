@@ -5,7 +5,7 @@
   description and hash, provenance. docs/file-format.md describes it for readers in other languages.
   One serial writer at a time, guarded by a lock file; it opens, appends, flushes, syncs and closes at each commit, so
   a kill at any instant loses nothing that was committed. Failed samples are kept with their status.
-  Readers load into memory; queries call neither PETSc's parallel parts nor HDF5, and need no MPI.
+  Readers scan the file once; queries call neither PETSc's parallel parts nor HDF5, and need no MPI.
 */
 #ifndef LAMELLA_DATABASE_H
 #define LAMELLA_DATABASE_H
@@ -64,12 +64,22 @@ PetscErrorCode LamRecordWriterText(LamRecordWriter writer, const char name[], co
 
 /* ---- reading ---- */
 
-/* Loads the committed records. PETSC_ERR_USER_INPUT where the file is damaged, of another kind or format version. */
+/*
+  Checks the committed records, and loads what queries need of them. PETSC_ERR_USER_INPUT where the file is damaged, of
+  another kind or format version.
+*/
 PetscErrorCode LamDatabaseOpen(const char path[], LamDatabase *database);
 PetscErrorCode LamDatabaseCreateEmpty(const LamScene *scene, LamDatabase *database);
 PetscErrorCode LamDatabaseClose(LamDatabase *database);
+/*
+  All records, in the order of the file, those added in memory last; borrowed until the next LamDatabaseAdd. The first
+  call that asks for `records` (not NULL) reads the file again, 1.9 kB a record: one thread at a time, and not while
+  another adds. PETSC_ERR_USER_INPUT where the file has been replaced since.
+*/
 PetscErrorCode LamDatabaseGetRecords(LamDatabase database, PetscInt *n, const LamResponse *records[],
                                      const PetscInt64 *keys[]);
+/* Records number `from` and on, all of them added in memory; borrowed likewise. Reads no file. */
+PetscErrorCode LamDatabaseGetAdded(LamDatabase database, PetscInt from, PetscInt *n, const LamResponse *records[]);
 /* The cells of *micro are borrowed from the database. */
 PetscErrorCode LamDatabaseGetMicrostructure(LamDatabase database, LamMicrostructure *micro, LamScales *scales,
                                             const char *hash[]);

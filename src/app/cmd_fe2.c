@@ -308,12 +308,11 @@ static PetscErrorCode RecordSolved(Run *run)
   PetscInt n;
 
   PetscFunctionBeginUser;
-  PetscCall(LamDatabaseGetRecords(run->database, &n, &records, NULL));
-  n -= run->recorded;
+  PetscCall(LamDatabaseGetAdded(run->database, run->recorded, &n, &records));
   if (!n) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(n, &keys));
   for (PetscInt k = 0; k < n; k++) keys[k] = run->next_key + k;
-  ierr = LamRecordWriterCommit(run->records, n, keys, records + run->recorded);
+  ierr = LamRecordWriterCommit(run->records, n, keys, records);
   PetscCall(PetscFree(keys));
   PetscCall(ierr);
   run->next_key += n;

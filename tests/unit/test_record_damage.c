@@ -100,7 +100,7 @@ static hid_t ChangedType(const char *const removed[], const char added[])
   hid_t ours, type;
   size_t end = 0;
 
-  assert_int_equal(LamRecordTypeCreate(PETSC_FALSE, &ours), 0);
+  assert_int_equal(LamRecordTypeCreate(&ours), 0);
   type = H5Tcreate(H5T_COMPOUND, H5Tget_size(ours) + sizeof(double));
   for (int i = 0; i + 1 < H5Tget_nmembers(ours); i++) {
     char *name = H5Tget_member_name(ours, (unsigned)i);
