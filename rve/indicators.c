@@ -23,7 +23,7 @@ typedef struct {
 
 typedef struct {
   FamilySums family[3];
-  PetscReal max_gap, max_penetration;
+  PetscReal max_gap, min_gap, max_penetration;
   PetscReal gap_at;       /* where max_gap is, in edges of its face */
   PetscReal gap_place[3]; /* the same as cell, face, share of the face */
   LamLargestMean traction;
@@ -55,6 +55,9 @@ static void SampleSegment(const LamMortarChains *chains, PetscReal from, PetscRe
       sums->max_gap = gap;
       sums->gap_at = s;
     }
+    /* the gap runs on over the edge's ends, and is a little smaller there than the distance */
+    if (gap < sums->min_gap)
+      sums->min_gap = PetscMin(sums->min_gap, gap > 0.0 ? LamMortarDistance(chains, s, master) : gap);
     sums->max_penetration = PetscMax(sums->max_penetration, -gap - chains->clearance);
     if (k > 0) {
       const PetscReal mean = 0.5 * (PetscMax(0.0, last) + PetscMax(0.0, gap));
@@ -292,9 +295,16 @@ static PetscReal ShareOf(PetscReal whole, PetscReal part)
   return whole > 0.0 ? PetscMax(0.0, part / whole) : NAN;
 }
 
+/* closed: length of the interface that touches. Without any overlap no wall faces another: not known. */
+static PetscReal MinGap(PetscReal closed, const Sums *sums)
+{
+  if (sums->max_gap == -PETSC_MAX_REAL) return NAN;
+  return closed > 0.0 ? 0.0 : PetscMax(0.0, sums->min_gap);
+}
+
 PetscErrorCode LamContactIndicators(LamRVE rve, const LamLoad *load, LamResponse *response)
 {
-  Sums sums = {.max_gap = -PETSC_MAX_REAL, .traction = LAM_NO_MEAN};
+  Sums sums = {.max_gap = -PETSC_MAX_REAL, .min_gap = PETSC_MAX_REAL, .traction = LAM_NO_MEAN};
   PetscReal length = 0.0, closed = 0.0, open = 0.0, gap = 0.0;
 
   PetscFunctionBeginUser;
@@ -315,6 +325,7 @@ PetscErrorCode LamContactIndicators(LamRVE rve, const LamLoad *load, LamResponse
   response->open_fraction = ShareOf(length, open);
   response->mean_gap = ShareOf(length, gap);
   response->max_gap = sums.max_gap > -PETSC_MAX_REAL ? PetscMax(0.0, sums.max_gap) : NAN;
+  response->min_gap = MinGap(closed, &sums);
   if (sums.max_gap > 0.0) PetscCall(PetscArraycpy(response->gap_place, sums.gap_place, 3));
   response->max_penetration = PetscMax(response->max_penetration, sums.max_penetration);
   response->max_traction = LamLargestMeanValue(&sums.traction);

@@ -410,3 +410,15 @@ PetscReal LamMortarGap(const LamMortarChains *chains, PetscReal s, PetscInt edge
   LamEdgeSum(&chains->y[2 * edge], p.M, nearest);
   return p.g + chains->clearance;
 }
+
+PetscReal LamMortarDistance(const LamMortarChains *chains, PetscReal s, PetscInt edge)
+{
+  const PetscReal(*y)[2] = &chains->y[2 * edge];
+  PetscReal X[2], at[2], M[3], dM[3];
+  Point p;
+
+  SetSlave(chains, PetscMin((PetscInt)s, chains->n - 1), s, &p, X);
+  LamEdgeShape(PetscMax(-1.0, PetscMin(1.0, Project(y, X))), M, dM);
+  LamEdgeSum(y, M, at);
+  return hypot(X[0] - at[0], X[1] - at[1]);
+}

@@ -62,6 +62,8 @@ void LamMortarEvaluate(const LamMortarChains *chains, const LamMortarSegments *s
 
 /* Gap at s over master edge `edge` and its nearest point there. */
 PetscReal LamMortarGap(const LamMortarChains *chains, PetscReal s, PetscInt edge, PetscReal nearest[2]);
+/* Distance of the slave at s from master edge `edge`, nothing beyond the edge's ends; without the clearance. */
+PetscReal LamMortarDistance(const LamMortarChains *chains, PetscReal s, PetscInt edge);
 /* Position and tangent dX/ds of the slave at s. */
 void LamMortarSlavePoint(const LamMortarChains *chains, PetscReal s, PetscReal X[2], PetscReal Xs[2]);
 

@@ -48,6 +48,7 @@ static void CopyContact(const LamResponse *record, const PetscInt face[3], LamRe
   r->open_fraction = record->open_fraction;
   r->open_spread = record->open_spread;
   r->max_gap = record->max_gap;
+  r->min_gap = record->min_gap;
   r->mean_gap = record->mean_gap;
   r->max_penetration = record->max_penetration;
   r->floating_cells = record->floating_cells;

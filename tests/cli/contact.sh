@@ -28,8 +28,8 @@ done
 expect 0 "$lamella" rve "$source/tests/scenes/shear-contact.yaml" --json
 states=$(wc -l <out.txt)
 for name in opening_fraction opening_by_face debonded_fraction debonded_by_face open_fraction open_by_face \
-  debonded_spread open_spread max_gap mean_gap max_penetration fabric max_traction mean_face_traction floating_cells \
-  zero_modes cell_clusters percolating_directions; do
+  debonded_spread open_spread max_gap min_gap mean_gap max_penetration fabric max_traction mean_face_traction floating_cells \
+  zero_modes cell_clusters percolating_directions indicators_trusted; do
   [ "$(grep -c "\"$name\":" out.txt)" -eq "$states" ] || fail "no member $name"
 done
 grep -qE '"separated"|"P_cohesion"' out.txt && fail "members that nobody asked for"

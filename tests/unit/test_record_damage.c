@@ -167,6 +167,7 @@ static const char *const indicators[] = {"opening_by_face",
                                          "open_by_face",
                                          "debonded_spread",
                                          "open_spread",
+                                         "min_gap",
                                          "mean_gap",
                                          "max_penetration",
                                          "fabric",
@@ -185,6 +186,7 @@ static const char *const indicators[] = {"opening_by_face",
                                          "zero_modes",
                                          "cell_clusters",
                                          "percolating_directions",
+                                         "indicators_trusted",
                                          NULL};
 
 /* What a file of before the indicators of contact gives back of a response. */
@@ -194,11 +196,12 @@ static LamResponse WithoutIndicators(LamResponse r)
     r.opening_by_face[k] = r.open_by_face[k] = r.fabric[k] = r.opening_moment[k] = r.mean_wall_tension[k] = NAN;
     r.gap_place[k] = r.normal_place[k] = r.shear_place[k] = r.wall_place[k] = NAN;
   }
-  r.debonded_spread = r.open_spread = r.mean_gap = r.max_penetration = NAN;
+  r.debonded_spread = r.open_spread = r.min_gap = r.mean_gap = r.max_penetration = NAN;
   r.max_lamella_shear = r.max_fibre_stretch = r.max_wall_energy = r.max_wall_tension = NAN;
   r.energy_turgor = -r.lumen_fraction;
   r.energy_cohesion = r.opening_fraction;
   r.zero_modes = r.cell_clusters = r.percolating_directions = LAM_UNKNOWN_COUNT;
+  r.indicators_trusted = PETSC_TRUE;
   return r;
 }
 
@@ -212,14 +215,17 @@ static void AssertSameNumbers(LamResponse a, LamResponse b)
     }
   assert_int_equal(a.zero_modes, b.zero_modes);
   assert_int_equal(a.newton_iterations, b.newton_iterations);
+  assert_int_equal(a.indicators_trusted, b.indicators_trusted);
   assert_string_equal(a.reason, b.reason);
 }
 
 static void members_that_an_older_file_lacks_are_not_known(void **state)
 {
-  const LamResponse written[2] = {Response(0), Response(1)}, *records;
+  LamResponse written[2] = {Response(0), Response(1)};
+  const LamResponse *records;
   LamDatabase db;
 
+  written[1].indicators_trusted = PETSC_FALSE;
   WriteTyped(ChangedType(indicators, NULL), written);
   assert_int_equal(LamDatabaseOpen(path, &db), 0);
   LamDatabaseGetRecords(db, NULL, &records, NULL);

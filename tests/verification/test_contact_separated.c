@@ -80,6 +80,41 @@ static void GapIsThatOfTheFaces(void **state)
   assert_near(SolveApart(2, 0.0).max_gap, 2.0 * (apart[2][0] - 1.0), 1e-3);
 }
 
+/* Walls of a cell that bulges face each other at their middles, wherever the next cell is. */
+static void SmallestGapGivesTheWidthOfTheCell(void **state)
+{
+  const LamMicrostructure micro = ContactTissue(6, 2);
+  double width[3];
+
+  for (int k = 0; k < 3; k++) {
+    const double stretch = exp(0.2 + 0.3 * k);
+    const LamResponse r = SolveTissue(&micro, ContactLoad(stretch, 0, 0, stretch, 0.03, 0.0025));
+
+    assert_int_equal(r.floating_cells, 1);
+    width[k] = 2.0 * stretch - r.min_gap;
+    assert_near(width[k], width[0], 1e-7);
+  }
+  assert_true(width[0] > 2.2 && width[0] < 2.5);
+}
+
+static void SmallestGapIsZeroWhereWallsTouch(void **state)
+{
+  const LamMicrostructure micro = ContactTissue(6, 2);
+  const LamResponse r = SolveTissue(&micro, ContactLoad(1.0, 0.3, 0, 1.0, 0, 0.0025));
+
+  assert_true(r.open_fraction > 0.1 && r.debonded_fraction < 1.0);
+  assert_true(r.min_gap == 0.0);
+}
+
+static void BondedTissueHasNoSmallestGap(void **state)
+{
+  const LamMicrostructure micro = DefaultTissue();
+  const LamResponse r = SolveTissue(&micro, PlaneLoad(1.0, 0.1, 0, 1.0, 0.1));
+
+  assert_int_equal(r.status, LAM_CONVERGED);
+  assert_true(isnan(r.min_gap));
+}
+
 /* The middle lamella pulls with g on everything: P = g cof F in the plane. */
 static void CohesionAloneIsAHydrostaticStress(void **state)
 {
@@ -114,7 +149,8 @@ static void EverythingElseIsANumber(void **state)
     const LamResponse r = SolveApart(k / 2, k % 2 ? 0.005 : 0.0);
     const double reals[] = {r.energy,         r.energy_turgor2,   r.energy_cohesion2,  r.energy_turgor_cohesion,
                             r.lumen_fraction, r.opening_fraction, r.debonded_fraction, r.open_fraction,
-                            r.mean_gap,       r.max_gap,          r.max_penetration,   r.max_traction};
+                            r.mean_gap,       r.max_gap,          r.min_gap,           r.max_penetration,
+                            r.max_traction};
 
     for (size_t i = 0; i < sizeof(reals) / sizeof(reals[0]); i++) assert_true(isfinite(reals[i]));
     for (int i = 0; i < 3; i++) {
@@ -136,6 +172,9 @@ static int Run(void)
       cmocka_unit_test(EveryCellFloats),
       cmocka_unit_test(OpeningIsTheGrowthOfTheTissue),
       cmocka_unit_test(GapIsThatOfTheFaces),
+      cmocka_unit_test(SmallestGapGivesTheWidthOfTheCell),
+      cmocka_unit_test(SmallestGapIsZeroWhereWallsTouch),
+      cmocka_unit_test(BondedTissueHasNoSmallestGap),
       cmocka_unit_test(CohesionAloneIsAHydrostaticStress),
       cmocka_unit_test(RingsApartDoNotFeelTheDistance),
       cmocka_unit_test(EverythingElseIsANumber),
