@@ -73,6 +73,20 @@ static PetscErrorCode LoadBlock(void *ctx, const LamRecordLayout *layout, PetscI
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode LoadGrid(const char path[], hid_t file, LamDatabase db)
+{
+  PetscBool has;
+  char *text;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileHas(path, file, LAM_GRID_NAME, &has));
+  if (!has) PetscFunctionReturn(0);
+  PetscCall(LamFileGetText(path, file, LAM_GRID_NAME, &text));
+  PetscCall(LamGridFromText(path, &db->header.micro, text, &db->grid));
+  PetscCall(PetscFree(text));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Load(const char path[], hid_t file, LamDatabase db)
 {
   Loading loading = {.db = db};
@@ -84,6 +98,7 @@ static PetscErrorCode Load(const char path[], hid_t file, LamDatabase db)
   PetscCall(GrowKeys(db, db->header.committed));
   PetscCall(LamFileScanRecords(path, file, db->header.committed, LoadBlock, &loading));
   db->records_first = db->n;
+  PetscCall(LoadGrid(path, file, db));
   PetscFunctionReturn(0);
 }
 
@@ -139,6 +154,8 @@ PetscErrorCode LamDatabaseClose(LamDatabase *database)
   PetscCall(PetscFree(db->expansions));
   PetscCall(PetscFree(db->records));
   PetscCall(PetscFree(db->info));
+  PetscCall(LamTableDestroy(&db->table));
+  PetscCall(LamGridDestroy(&db->grid));
   PetscCall(PetscFree(*database));
   PetscFunctionReturn(0);
 }
@@ -251,5 +268,35 @@ PetscErrorCode LamDatabaseAdd(LamDatabase database, PetscInt n, const PetscInt64
     else
       PetscCall(AddScattered(database, &records[i]));
   }
+  PetscFunctionReturn(0);
+}
+
+/* ---- grid and table ---- */
+
+PetscErrorCode LamDatabaseSetGrid(LamDatabase database, LamGrid *grid)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(!database->grid, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONGSTATE, "the database has a grid");
+  database->grid = *grid;
+  *grid = NULL;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamDatabaseGetGrid(LamDatabase database, LamGrid *grid)
+{
+  PetscFunctionBeginUser;
+  *grid = database->grid;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamDatabaseGetTable(LamDatabase database, LamTable *table)
+{
+  PetscFunctionBeginUser;
+  if (database->grid && (!database->table || database->table_count != database->node_count)) {
+    PetscCall(LamTableDestroy(&database->table));
+    PetscCall(LamTableMake(database, &database->table));
+    database->table_count = database->node_count;
+  }
+  *table = LamTableReference(database->table);
   PetscFunctionReturn(0);
 }

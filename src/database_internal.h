@@ -50,9 +50,15 @@ struct LamDatabase_s {
       records_capacity; /* records_first: of the file's records before LamDatabaseGetRecords, 0 after */
   LamResponse *records; /* [n - records_first] owned: number records_first and on */
   char *info;           /* owned */
+
+  LamGrid grid;   /* owned; NULL: records of no grid only */
+  LamTable table; /* the newest, of table_count records; NULL: none yet */
+  PetscInt table_count;
 };
 
 /* ---- query.c ---- */
+/* PETSC_FALSE, with status and reason, for a question that has no answer in plane strain. */
+PetscBool LamQuestionIsGood(const LamLoad *load, LamResponse *r);
 void LamImagesMake(const LamMicrostructure *micro, LamImages *images);
 void LamExpansionMake(const LamResponse *record, LamExpansion *expansion);
 
@@ -60,6 +66,10 @@ void LamExpansionMake(const LamResponse *record, LamExpansion *expansion);
 /* `face`: the record's name of each face family of the question; `own`: the question is the record's own state. */
 void LamIndicatorsCopy(const LamResponse *record, const PetscInt face[3], PetscBool own, LamInterfaceLawType interface,
                        LamResponse *r);
+
+/* ---- table_make.c ---- */
+PetscErrorCode LamTableMake(LamDatabase database, LamTable *table);
+LamTable LamTableReference(LamTable table); /* one more reference */
 
 /* ---- database_info.c ---- */
 PetscErrorCode LamDatabaseDescribe(LamDatabase database, char **json);

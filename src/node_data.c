@@ -70,10 +70,6 @@ static float *Indicators(LamNodeData *node)
   return (float *)((char *)node + FIRST_INDICATOR);
 }
 
-PetscBool LamKeyIsNode(PetscInt64 key)
-{
-  return (PetscBool)(key >= LAM_NODE_KEY && key < LAM_CACHE_KEY);
-}
 
 /* ---- from a response ---- */
 

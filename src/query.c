@@ -454,8 +454,7 @@ static PetscReal ErrorEstimate(PetscReal distance)
   return accuracy * ratio * ratio;
 }
 
-/* PETSC_FALSE, with status and reason, for a question that has no answer in plane strain. */
-static PetscBool QuestionIsGood(const LamLoad *load, LamResponse *r)
+PetscBool LamQuestionIsGood(const LamLoad *load, LamResponse *r)
 {
   const PetscReal *F = load->F;
   PetscReal sum = load->turgor + load->cohesion, J;
@@ -501,7 +500,7 @@ static PetscErrorCode NearestQuery(LamDatabase database, const LamLoad *load, Pe
   PetscCall(PetscTime(&start));
   PetscCall(LamResponseInit(load, response));
   response->source = LAM_SOURCE_DATABASE;
-  if (!QuestionIsGood(load, response)) PetscFunctionReturn(0);
+  if (!LamQuestionIsGood(load, response)) PetscFunctionReturn(0);
   InPlane(load->F, F);
   Invariants(F, x);
   x[3] = load->turgor;
@@ -526,7 +525,15 @@ static PetscErrorCode NearestQuery(LamDatabase database, const LamLoad *load, Pe
 
 PetscErrorCode LamDatabaseQuery(LamDatabase database, const LamLoad *load, PetscReal accuracy, LamResponse *response)
 {
+  LamTable table;
+
   PetscFunctionBeginUser;
+  PetscCall(LamDatabaseGetTable(database, &table));
+  if (table) {
+    PetscCall(LamTableQuery(table, load, accuracy, response));
+    PetscCall(LamTableDestroy(&table));
+    if (response->status != LAM_OUT_OF_REACH || !database->scattered_count) PetscFunctionReturn(0);
+  }
   PetscCall(NearestQuery(database, load, LamTrustRadius(accuracy), NULL, response));
   PetscFunctionReturn(0);
 }

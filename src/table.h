@@ -2,15 +2,14 @@
   Private to the table: nodes with what they add to the coarser levels, cells, and the sum at a point.
 
   Method
-    Phi is a sum over levels. On level l the nodes whose own level is l carry their data less the sum of the coarser levels
-    there (surplus), all other corners of a cell nothing, so each level's part, and with it the sum, is continuously
-    differentiable whatever nodes there are (hermite_cell.h), and at nodes value, gradient and Hessian are those of the
-    solve. A pure second derivative of the coarser sum jumps across the faces of coarse cells: a node has its surplus on
-    either side.
-    Along suction each node is a column: between two of its states the value is a quintic in tau, the gradient a cubic,
-    second derivatives a blend, so all of them are continuously differentiable in tau, whatever states other columns have.
-    A state that is missing at the end of a root interval adds nothing on finer levels.
-    A cell answers where all its eight columns have states on both sides; the finest such cell gives the error estimate.
+    Phi is a sum over levels. On level l the nodes whose own level is l carry their data less the sum of the coarser
+  levels there (surplus), all other corners of a cell nothing, so each level's part, and with it the sum, is
+  continuously differentiable whatever nodes there are (hermite_cell.h), and at nodes value, gradient and Hessian are
+  those of the solve. A pure second derivative of the coarser sum jumps across the faces of coarse cells: a node has its
+  surplus on either side. Along suction each node is a column: between two of its states the value is a quintic in tau,
+  the gradient a cubic, second derivatives a blend, so all of them are continuously differentiable in tau, whatever
+  states other columns have. A state that is missing at the end of a root interval adds nothing on finer levels. A cell
+  answers where all its eight columns have states on both sides; the finest such cell gives the error estimate.
 */
 #ifndef LAM_TABLE_H
 #define LAM_TABLE_H
@@ -19,6 +18,7 @@
 #include "grid.h"
 #include "hermite_cell.h"
 #include "node_data.h"
+#include <stdatomic.h>
 
 /* One solved state: what it adds. */
 typedef struct {
@@ -56,8 +56,8 @@ typedef struct {
 } LamPlaceMap;
 
 struct LamTable_s {
-  int references;
-  LamDatabase database; /* borrowed */
+  atomic_int references;
+  LamDatabase database;   /* borrowed */
   struct LamGrid_s *grid; /* borrowed */
   PetscInt state_count, node_count, cell_count;
   LamTableState *states;
@@ -70,10 +70,10 @@ struct LamTable_s {
 
 /* A point in the grid's coordinates, with its axes sorted where the grid is symmetric. */
 typedef struct {
-  PetscReal u[3]; /* in units of the finest level */
-  int axis[3];    /* axis k here is lattice direction axis[k] */
+  PetscReal u[3];   /* in units of the finest level */
+  int axis[3];      /* axis k here is lattice direction axis[k] */
   PetscReal tau, v; /* v: along tau, in units */
-  int root;       /* first j of its root interval */
+  int root;         /* first j of its root interval */
   PetscReal s;
 } LamTablePoint;
 
@@ -90,12 +90,9 @@ typedef struct {
 /* ---- table_map.c ---- */
 PetscErrorCode LamPlaceMapCreate(PetscInt n, LamPlaceMap *map);
 PetscErrorCode LamPlaceMapDestroy(LamPlaceMap *map);
-PetscInt LamPlaceMapGet(const LamPlaceMap *map, PetscInt64 key); /* -1: not there */
+PetscInt LamPlaceMapGet(const LamPlaceMap *map, PetscInt64 key);      /* -1: not there */
 void LamPlaceMapSet(LamPlaceMap *map, PetscInt64 key, PetscInt item); /* key must be new */
 PetscInt64 LamPlaceMapKey(int level, const int i[3]);
-
-/* ---- table_make.c ---- */
-PetscErrorCode LamTableMake(LamDatabase database, LamTable *table);
 
 /* ---- table_sum.c ---- */
 /* The cell of a level that holds the point; NULL: none. */
@@ -103,7 +100,8 @@ const LamTableCell *LamTableFindCell(LamTable table, const LamTablePoint *point,
 /* Whether all corners have states on both sides of the point, or are known to float. *good: all of them are. */
 PetscBool LamTableCellIsComplete(LamTable table, const LamTableCell *cell, const LamTablePoint *point, PetscBool *good);
 /* The states of a node's column on either side of the point; NULL: missing. */
-void LamTableBracket(LamTable table, const LamTableNode *node, const LamTablePoint *point, const LamTableState *ends[2]);
+void LamTableBracket(LamTable table, const LamTableNode *node, const LamTablePoint *point,
+                     const LamTableState *ends[2]);
 /* Adds a cell's part; `estimate`: writes bubble and bump too. */
 void LamTableAddCell(LamTable table, const LamTableCell *cell, const LamTablePoint *point, PetscBool estimate,
                      LamTableSum *sum);

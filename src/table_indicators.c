@@ -13,7 +13,7 @@
 /* A state around the point and its part in the answer. */
 typedef struct {
   const LamNodeData *data;
-  const int *order;   /* axis k of the point is axis order[k] of the node */
+  const int *order;       /* axis k of the point is axis order[k] of the node */
   PetscReal weight, side; /* side: factor of `weight` along suction */
   int corner, end;
 } Around;
@@ -181,11 +181,11 @@ void LamTableThickness(LamTable table, const LamTablePoint *point, const LamTabl
 static const struct {
   size_t response, node;
   int count; /* 3: per face family */
-} means[] = {ONE(lumen_fraction) ONE(opening_fraction) THREE(opening_by_face) ONE(debonded_fraction) THREE(
-    debonded_by_face) ONE(open_fraction) THREE(open_by_face) ONE(debonded_spread) ONE(open_spread) ONE(max_gap)
-                 ONE(min_gap) ONE(mean_gap) ONE(max_penetration) ONE(max_traction) ONE(max_lamella_shear)
-                     THREE(mean_face_traction) ONE(max_fibre_stretch) ONE(max_wall_energy) ONE(max_wall_tension)
-                         THREE(mean_wall_tension)};
+} means[] = {ONE(lumen_fraction) ONE(opening_fraction) THREE(opening_by_face) ONE(debonded_fraction)
+                 THREE(debonded_by_face) ONE(open_fraction) THREE(open_by_face) ONE(debonded_spread) ONE(open_spread)
+                     ONE(max_gap) ONE(min_gap) ONE(mean_gap) ONE(max_penetration) ONE(max_traction)
+                         ONE(max_lamella_shear) THREE(mean_face_traction) ONE(max_fibre_stretch) ONE(max_wall_energy)
+                             ONE(max_wall_tension) THREE(mean_wall_tension)};
 #undef ONE
 #undef THREE
 

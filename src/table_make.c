@@ -390,13 +390,20 @@ PetscErrorCode LamTableMake(LamDatabase database, LamTable *table)
   PetscFunctionReturn(0);
 }
 
+/* Of one table several readers may hold references at once, in threads too. */
+LamTable LamTableReference(LamTable table)
+{
+  if (table) atomic_fetch_add(&table->references, 1);
+  return table;
+}
+
 PetscErrorCode LamTableDestroy(LamTable *table)
 {
   LamTable t = *table;
 
   PetscFunctionBeginUser;
   *table = NULL;
-  if (!t || --t->references) PetscFunctionReturn(0);
+  if (!t || atomic_fetch_sub(&t->references, 1) > 1) PetscFunctionReturn(0);
   PetscCall(LamPlaceMapDestroy(&t->node_map));
   PetscCall(LamPlaceMapDestroy(&t->cell_map));
   PetscCall(PetscFree(t->states));

@@ -52,7 +52,8 @@ static PetscBool PlaceSuction(LamTable table, const LamLoad *load, Place *place,
   if (!(point->v >= -1e-6) || point->v > LAM_ROOT * grid->tau_cells + 1e-6) {
     r->status = LAM_OUT_OF_REACH;
     snprintf(r->reason, sizeof(r->reason), "turgor + cohesion is %.4g (C1+C2), the database covers %.4g to %.4g",
-             (double)point->s, (double)LamGridSuction(grid, 0), (double)LamGridSuction(grid, LAM_ROOT * grid->tau_cells));
+             (double)point->s, (double)LamGridSuction(grid, 0),
+             (double)LamGridSuction(grid, LAM_ROOT * grid->tau_cells));
     return PETSC_FALSE;
   }
   point->v = PetscMin(PetscMax(point->v, 0), LAM_ROOT * grid->tau_cells);

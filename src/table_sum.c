@@ -239,7 +239,8 @@ void LamTableAddCell(LamTable table, const LamTableCell *cell, const LamTablePoi
     MakeColumn(table, cell, c, point, &column);
     for (int d = 0; d < orders; d++) corner[d][c] = column.phi[d];
     for (int d = 0; d < 2; d++) turgor[d][c] = column.turgor1[d];
-    for (int k = 0; k < 3; k++) weight *= c >> k & 1 ? t[k] * t[k] * (3 - 2 * t[k]) : (1 - t[k]) * (1 - t[k]) * (1 + 2 * t[k]);
+    for (int k = 0; k < 3; k++)
+      weight *= c >> k & 1 ? t[k] * t[k] * (3 - 2 * t[k]) : (1 - t[k]) * (1 - t[k]) * (1 + 2 * t[k]);
     sum->turgor2 += weight * column.turgor2;
     if (estimate && table->grid->contact)
       for (int k = 0; k < 3; k++) sum->bump[k] += weight * column.bump[k];

@@ -99,7 +99,7 @@ PetscErrorCode LamFileReadKind(const char path[], char kind[LAM_NAME_LENGTH]);
   ---- the table: the potential interpolated on a grid of states ----
 
   States of the grid (nodes) are lattice strains, the logarithms of the stretches of the three lattice directions, and
-  for contact tissue suction s = turgor + cohesion; docs/theory.md, Section 24. A record is a node where its key says so
+  for contact tissue suction s = turgor + cohesion; docs/theory.md, Section 28. A record is a node where its key says so
   (LamKeyIsNode). The grid is coarse to begin with and refined where it is asked for: which nodes there are decides what
   the table answers, and how well.
 */
