@@ -1,0 +1,366 @@
+/*
+  Method
+    A state is a cell among its own images, so far apart that it touches none of them: F = e^x I with x as large as it
+    takes. By symmetry the walls face each other at their middles, so that 2 e^x - (smallest gap) is the cell's width.
+    a and its derivatives are those of the cubic spline in tau; the energy is the quintic Hermite polynomial in s of
+    exact first and second derivatives; what the Taylor step in p needs is cubic Hermite in tau with derivatives of
+    five-point differences.
+*/
+#include "free_cell.h"
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#define FIRST_STRAIN 0.15 /* of the states; as many steps more as it takes */
+#define STRAIN_STEP 0.1
+#define MAX_STRAIN 0.8
+#define MIN_KNOTS 5 /* of the five-point differences */
+
+/* The columns of numbers, one per knot. */
+#define COLUMNS 8
+static const struct {
+  const char *name;
+  size_t offset;
+} columns[COLUMNS] = {{"suction", offsetof(LamFreeCell, suction)},
+                      {"strain", offsetof(LamFreeCell, strain)},
+                      {"strain_curvature", offsetof(LamFreeCell, strain_curvature)},
+                      {"energy", offsetof(LamFreeCell, energy)},
+                      {"slope", offsetof(LamFreeCell, slope)},
+                      {"curvature", offsetof(LamFreeCell, curvature)},
+                      {"turgor_slope", offsetof(LamFreeCell, turgor_slope)},
+                      {"turgor_curvature", offsetof(LamFreeCell, turgor_curvature)}};
+
+static PetscReal **ColumnOf(LamFreeCell *cell, PetscInt k)
+{
+  return (PetscReal **)(void *)((char *)cell + columns[k].offset);
+}
+
+/* All columns in one block, which belongs to the first. */
+static PetscErrorCode Allocate(PetscInt n, LamFreeCell *cell)
+{
+  PetscReal *block;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(COLUMNS * n, &block));
+  cell->n = n;
+  for (PetscInt k = 0; k < COLUMNS; k++) *ColumnOf(cell, k) = block + k * n;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFreeCellDestroy(LamFreeCell *cell)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(cell->suction));
+  PetscCall(PetscFree(cell->records));
+  memset(cell, 0, sizeof(*cell));
+  PetscFunctionReturn(0);
+}
+
+/* ---- the states ---- */
+
+static LamLoad LoadOf(PetscReal x, PetscReal suction, PetscReal cohesion)
+{
+  const PetscReal stretch = PetscExpReal(x);
+
+  return (LamLoad){.F = {stretch, 0, 0, 0, stretch, 0, 0, 0, 1}, .turgor = suction - cohesion, .cohesion = cohesion};
+}
+
+static PetscBool Floats(const LamMicrostructure *micro, const LamResponse *r)
+{
+  return (PetscBool)(r->status == LAM_CONVERGED && r->floating_cells == micro->cells[0] * micro->cells[1] &&
+                     r->min_gap > 0);
+}
+
+/* Asks for all states, then again, farther apart, for those that do not float. *left: those that never did. */
+static PetscErrorCode SolveStates(const LamMicrostructure *micro, const LamFreeCell *cell, LamResponder *solver,
+                                  PetscInt *left)
+{
+  PetscInt *missing, *points;
+  LamResponse *answers;
+  LamLoad *loads;
+
+  PetscFunctionBeginUser;
+  *left = cell->n;
+  PetscCall(PetscMalloc4(cell->n, &missing, cell->n, &points, cell->n, &answers, cell->n, &loads));
+  for (PetscInt j = 0; j < cell->n; j++) missing[j] = j;
+  for (PetscReal x = FIRST_STRAIN; *left > 0 && x < MAX_STRAIN; x += STRAIN_STEP) {
+    const PetscInt asked = *left;
+
+    for (PetscInt i = 0; i < asked; i++) {
+      loads[i] = LoadOf(x, cell->suction[missing[i]], cell->cohesion);
+      points[i] = -1;
+    }
+    PetscCall(solver->respond(solver->ctx, asked, loads, points, answers));
+    *left = 0;
+    for (PetscInt i = 0; i < asked; i++) {
+      const PetscInt j = missing[i];
+
+      if (Floats(micro, &answers[i]))
+        cell->records[j] = answers[i];
+      else
+        missing[(*left)++] = j;
+    }
+  }
+  PetscCall(PetscFree4(missing, points, answers, loads));
+  PetscFunctionReturn(0);
+}
+
+/* ---- knots ---- */
+
+/* Knots lie at tau_j = first + j step. */
+typedef struct {
+  PetscReal first, step;
+} Knots;
+
+static Knots KnotsOf(const LamFreeCell *cell)
+{
+  const PetscReal first = log1p(cell->suction[0] / cell->scale), last = log1p(cell->suction[cell->n - 1] / cell->scale);
+
+  return (Knots){first, (last - first) / (PetscReal)(cell->n - 1)};
+}
+
+static void PlaceKnots(PetscReal suction_min, PetscReal suction_max, LamFreeCell *cell)
+{
+  Knots knots;
+
+  cell->suction[0] = suction_min;
+  cell->suction[cell->n - 1] = suction_max;
+  knots = KnotsOf(cell);
+  for (PetscInt j = 1; j < cell->n - 1; j++)
+    cell->suction[j] = cell->scale * expm1(knots.first + knots.step * (PetscReal)j);
+}
+
+/* The knot left of s and where s is between that one and the next, in tau. */
+static PetscInt Locate(const LamFreeCell *cell, PetscReal s, PetscReal *step, PetscReal *t)
+{
+  const Knots knots = KnotsOf(cell);
+  const PetscReal place = (log1p(s / cell->scale) - knots.first) / knots.step;
+  const PetscInt j = PetscMax(0, PetscMin(cell->n - 2, (PetscInt)place));
+
+  *step = knots.step;
+  *t = place - (PetscReal)j;
+  return j;
+}
+
+/*
+  Second derivatives m of the spline: m_{j-1} + 4 m_j + m_{j+1} = 6 d_j, d_j the second differences over step^2.
+  Not-a-knot means m_0 - 2 m_1 + m_2 = 0, which makes m_1 = d_1, and so at the other end; the rest is tridiagonal.
+*/
+static PetscErrorCode FitSpline(PetscInt n, PetscReal step, const PetscReal a[], PetscReal m[])
+{
+  PetscReal *c;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n, &c));
+  for (PetscInt j = 1; j < n - 1; j++) m[j] = (a[j - 1] - 2.0 * a[j] + a[j + 1]) / (step * step);
+  for (PetscInt j = 2; j < n - 2; j++) { /* m[j] = (what stands here) - c[j] m[j + 1], c[1] = 0 */
+    const PetscReal pivot = 4.0 - c[j - 1];
+
+    m[j] = (6.0 * m[j] - m[j - 1]) / pivot;
+    c[j] = 1.0 / pivot;
+  }
+  for (PetscInt j = n - 3; j > 1; j--) m[j] -= c[j] * m[j + 1];
+  m[0] = 2.0 * m[1] - m[2];
+  m[n - 1] = 2.0 * m[n - 2] - m[n - 3];
+  PetscCall(PetscFree(c));
+  PetscFunctionReturn(0);
+}
+
+/*
+  With Phi = Psi - g J at fixed F: along the states g is fixed and dp = ds; at fixed s dg = -dp.
+*/
+static void Tabulate(PetscReal clearance, LamFreeCell *cell)
+{
+  for (PetscInt j = 0; j < cell->n; j++) {
+    const LamResponse *r = &cell->records[j];
+    const PetscReal *F = r->load.F, J = F[0] * F[4] * F[8];
+
+    cell->strain[j] = PetscLogReal(F[0] - 0.5 * (r->min_gap + clearance));
+    cell->energy[j] = r->energy - cell->cohesion * J;
+    cell->slope[j] = r->energy_turgor;
+    cell->curvature[j] = r->energy_turgor2;
+    cell->turgor_slope[j] = r->energy_turgor - r->energy_cohesion + J;
+    cell->turgor_curvature[j] = r->energy_turgor2 - 2.0 * r->energy_turgor_cohesion + r->energy_cohesion2;
+  }
+}
+
+PetscErrorCode LamFreeCellMake(const LamMicrostructure *micro, PetscReal cohesion, PetscReal suction_min,
+                               PetscReal suction_max, PetscReal scale, PetscInt n, LamResponder *solver,
+                               LamFreeCell *cell)
+{
+  PetscInt left;
+
+  PetscFunctionBeginUser;
+  PetscCheck(n >= MIN_KNOTS && scale > 0 && suction_min >= 0 && suction_max > suction_min, PETSC_COMM_SELF,
+             PETSC_ERR_ARG_OUTOFRANGE, "%d knots of suction from %g to %g, scale %g", (int)n, (double)suction_min,
+             (double)suction_max, (double)scale);
+  memset(cell, 0, sizeof(*cell));
+  /* cells that differ, or that a grip holds, are not free at one suction */
+  if (micro->interface != LAM_INTERFACE_CONTACT || micro->is_patch || micro->cell) PetscFunctionReturn(0);
+  PetscCall(Allocate(n, cell));
+  PetscCall(PetscMalloc1(n, &cell->records));
+  cell->scale = scale;
+  cell->cohesion = cohesion;
+  PlaceKnots(suction_min, suction_max, cell);
+  PetscCall(SolveStates(micro, cell, solver, &left));
+  if (left > 0) {
+    PetscCall(LamFreeCellDestroy(cell));
+    PetscFunctionReturn(0);
+  }
+  Tabulate(micro->clearance, cell);
+  PetscCall(FitSpline(n, KnotsOf(cell).step, cell->strain, cell->strain_curvature));
+  PetscFunctionReturn(0);
+}
+
+/* ---- between the knots ---- */
+
+void LamFreeCellStrain(const LamFreeCell *cell, PetscReal s, PetscReal strain[3])
+{
+  PetscReal h, t, first, second;
+  const PetscInt j = Locate(cell, s, &h, &t);
+  const PetscReal u = 1.0 - t, rate = 1.0 / (s + cell->scale); /* dtau/ds */
+  const PetscReal *a = &cell->strain[j], *m = &cell->strain_curvature[j];
+
+  strain[0] = u * a[0] + t * a[1] + h * h / 6.0 * ((u * u * u - u) * m[0] + (t * t * t - t) * m[1]);
+  first = (a[1] - a[0]) / h + h / 6.0 * ((1.0 - 3.0 * u * u) * m[0] + (3.0 * t * t - 1.0) * m[1]);
+  second = u * m[0] + t * m[1];
+  strain[1] = first * rate;
+  strain[2] = (second - first) * rate * rate;
+}
+
+/* Values, first and second derivatives with respect to t of the quintic Hermite functions: of value, slope and
+   curvature at t = 0. Those at t = 1 are the same at 1 - t, with the sign of the slope's changed. */
+static void Quintic(PetscReal t, PetscReal f[3][3])
+{
+  const PetscReal t2 = t * t, t3 = t2 * t, t4 = t3 * t, t5 = t4 * t;
+
+  f[0][0] = 1.0 - 10.0 * t3 + 15.0 * t4 - 6.0 * t5;
+  f[0][1] = -30.0 * t2 + 60.0 * t3 - 30.0 * t4;
+  f[0][2] = -60.0 * t + 180.0 * t2 - 120.0 * t3;
+  f[1][0] = t - 6.0 * t3 + 8.0 * t4 - 3.0 * t5;
+  f[1][1] = 1.0 - 18.0 * t2 + 32.0 * t3 - 15.0 * t4;
+  f[1][2] = -36.0 * t + 96.0 * t2 - 60.0 * t3;
+  f[2][0] = 0.5 * (t2 - 3.0 * t3 + 3.0 * t4 - t5);
+  f[2][1] = t - 4.5 * t2 + 6.0 * t3 - 2.5 * t4;
+  f[2][2] = 1.0 - 9.0 * t + 18.0 * t2 - 10.0 * t3;
+}
+
+/* d/dtau of what the knots carry times the step, exact for polynomials of degree 4. */
+static PetscReal Difference(PetscInt n, const PetscReal y[], PetscInt j)
+{
+  static const PetscReal weight[MIN_KNOTS][MIN_KNOTS] = {
+      {-25, 48, -36, 16, -3}, {-3, -10, 18, -6, 1}, {1, -8, 0, 8, -1}, {-1, 6, -18, 10, 3}, {3, -16, 36, -48, 25}};
+  const PetscInt from = PetscMax(0, PetscMin(n - MIN_KNOTS, j - 2));
+  PetscReal sum = 0.0;
+
+  for (PetscInt i = 0; i < MIN_KNOTS; i++) sum += weight[j - from][i] * y[from + i];
+  return sum / 12.0;
+}
+
+static PetscReal Cubic(PetscInt n, const PetscReal y[], PetscInt j, PetscReal t)
+{
+  const PetscReal u = 1.0 - t;
+
+  return u * u * (1.0 + 2.0 * t) * y[j] + t * t * (1.0 + 2.0 * u) * y[j + 1] +
+         u * t * (u * Difference(n, y, j) - t * Difference(n, y, j + 1));
+}
+
+void LamFreeCellEnergy(const LamFreeCell *cell, PetscReal s, PetscReal energy[3], PetscReal turgor[2])
+{
+  PetscReal step, tau, left[3][3], right[3][3], power = 1.0;
+  const PetscInt j = Locate(cell, s, &step, &tau);
+  const PetscReal h = cell->suction[j + 1] - cell->suction[j], t = (s - cell->suction[j]) / h;
+  const PetscReal *y = &cell->energy[j], *d = &cell->slope[j], *c = &cell->curvature[j];
+
+  Quintic(t, left);
+  Quintic(1.0 - t, right);
+  for (PetscInt k = 0; k < 3; k++, power /= h) {
+    const PetscReal sign = k == 1 ? -1.0 : 1.0; /* of d/dt at 1 - t */
+
+    energy[k] = power * (left[0][k] * y[0] + h * left[1][k] * d[0] + h * h * left[2][k] * c[0] +
+                         sign * (right[0][k] * y[1] - h * right[1][k] * d[1] + h * h * right[2][k] * c[1]));
+  }
+  turgor[0] = Cubic(cell->n, cell->turgor_slope, j, tau);
+  turgor[1] = Cubic(cell->n, cell->turgor_curvature, j, tau);
+}
+
+/* ---- JSON ---- */
+
+static json_t *Reals(PetscInt n, const PetscReal values[])
+{
+  json_t *list = json_array();
+
+  for (PetscInt i = 0; i < n; i++) json_array_append_new(list, json_real(values[i]));
+  return list;
+}
+
+PetscErrorCode LamFreeCellToJSON(const LamFreeCell *cell, json_t **object)
+{
+  LamFreeCell borrowed = *cell;
+
+  PetscFunctionBeginUser;
+  *object = json_pack("{s:f, s:f}", "scale", cell->scale, "cohesion", cell->cohesion);
+  PetscCheck(*object, PETSC_COMM_SELF, PETSC_ERR_MEM, "no JSON of a free cell: no memory, or not finite");
+  for (PetscInt k = 0; k < COLUMNS; k++)
+    json_object_set_new(*object, columns[k].name, Reals(cell->n, *ColumnOf(&borrowed, k)));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadReal(const char path[], const char name[], const json_t *value, PetscReal *number)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(json_is_number(value), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: \"%s\" of the free cell is not a number; the file is damaged", path, name);
+  *number = json_number_value(value);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadColumn(const char path[], const json_t *object, PetscInt k, LamFreeCell *cell)
+{
+  const json_t *list = json_object_get(object, columns[k].name);
+
+  PetscFunctionBeginUser;
+  PetscCheck(json_is_array(list) && (PetscInt)json_array_size(list) == cell->n, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: \"%s\" of the free cell is no list of %d numbers; the file is damaged", path, columns[k].name,
+             (int)cell->n);
+  for (PetscInt j = 0; j < cell->n; j++)
+    PetscCall(ReadReal(path, columns[k].name, json_array_get(list, (size_t)j), &(*ColumnOf(cell, k))[j]));
+  PetscFunctionReturn(0);
+}
+
+/* Knots are where Locate looks for them. */
+static PetscErrorCode CheckKnots(const char path[], const LamFreeCell *cell)
+{
+  Knots knots;
+
+  PetscFunctionBeginUser;
+  PetscCheck(cell->scale > 0 && cell->suction[0] >= 0 && cell->suction[cell->n - 1] > cell->suction[0], PETSC_COMM_SELF,
+             PETSC_ERR_USER_INPUT, "%s: suction of the free cell from %g to %g, scale %g; the file is damaged", path,
+             (double)cell->suction[0], (double)cell->suction[cell->n - 1], (double)cell->scale);
+  knots = KnotsOf(cell);
+  for (PetscInt j = 0; j < cell->n; j++) {
+    const PetscReal place = (log1p(cell->suction[j] / cell->scale) - knots.first) / knots.step;
+
+    PetscCheck(PetscAbsReal(place - (PetscReal)j) < 1e-6, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "%s: suction %g of the free cell is not the knot %d; the file is damaged", path,
+               (double)cell->suction[j], (int)j);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFreeCellFromJSON(const char path[], const json_t *object, LamFreeCell *cell)
+{
+  const PetscInt n = (PetscInt)json_array_size(json_object_get(object, columns[0].name));
+
+  PetscFunctionBeginUser;
+  memset(cell, 0, sizeof(*cell));
+  PetscCheck(json_is_object(object) && (n == 0 || n >= MIN_KNOTS), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: the free cell is no object, or has %d knots, less than %d; the file is damaged", path, (int)n,
+             MIN_KNOTS);
+  PetscCall(ReadReal(path, "scale", json_object_get(object, "scale"), &cell->scale));
+  PetscCall(ReadReal(path, "cohesion", json_object_get(object, "cohesion"), &cell->cohesion));
+  PetscCall(Allocate(n, cell));
+  for (PetscInt k = 0; k < COLUMNS; k++) PetscCall(ReadColumn(path, object, k, cell));
+  if (n > 0) PetscCall(CheckKnots(path, cell));
+  PetscFunctionReturn(0);
+}
