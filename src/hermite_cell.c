@@ -100,7 +100,7 @@ static inline void AddCubic(const LamJet corner[8], const Functions u[3], LamJet
     data[k + 2][j + 2][i] = at->hessian[3];
     data[k + 2][j][i + 2] = at->hessian[4];
     data[k][j + 2][i + 2] = at->hessian[5];
-    data[k + 2][j + 2][i + 2] = 0;
+    data[k + 2][j + 2][i + 2] = at->third;
   }
   Contract(4, 2, u[0], u[1], u[2], &data[0][0][0], sum);
 }
@@ -120,7 +120,22 @@ static inline void CurvatureSurplus(const LamJet corner[8], PetscInt k, PetscRea
   }
 }
 
-void LamHermiteQuintic(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum, PetscReal bubble[3][3])
+/* Of the part of the mixed third derivatives: products of slope functions. */
+static inline void ThirdGradient(const LamJet corner[8], const Functions u[3], PetscReal gradient[3])
+{
+  Functions slope[3];
+  PetscReal data[8];
+  LamJet jet = {0};
+
+  for (PetscInt c = 0; c < 8; c++) data[c] = corner[c].third;
+  for (PetscInt k = 0; k < 3; k++)
+    for (PetscInt d = 0; d < 2; d++)
+      for (PetscInt e = 0; e < 2; e++) slope[k][d][e] = u[k][d][e + 2];
+  Contract(2, 1, slope[0], slope[1], slope[2], data, &jet);
+  for (PetscInt i = 0; i < 3; i++) gradient[i] = jet.gradient[i];
+}
+
+void LamHermiteQuintic(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum, PetscReal bubble[4][3])
 {
   Functions u[3], q;
 
@@ -138,6 +153,7 @@ void LamHermiteQuintic(const LamJet corner[8], PetscReal h, const PetscReal t[3]
     for (PetscInt i = 0; i < 6; i++) sum->hessian[i] += jet.hessian[i];
     for (PetscInt i = 0; bubble && i < 3; i++) bubble[k][i] = jet.gradient[i];
   }
+  if (bubble) ThirdGradient(corner, u, bubble[3]);
 }
 
 void LamHermiteCubic(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum)

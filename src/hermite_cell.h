@@ -2,7 +2,7 @@
   A function of three variables on a cube, from what is known at its eight corners.
 
   Method
-    Cubic Hermite polynomials along each edge, tensor product; mixed third derivatives are taken as zero. Along an edge
+    Cubic Hermite polynomials along each edge, tensor product. Along an edge
     at whose ends the pure second derivative is known too, bubbles raise the cubic to a quintic:
       h^2 (d0 q0(t_k) + d1 q1(t_k)) V_i(t_p) V_j(t_q),   q0 = t^2 (1-t)^3 / 2,   q1 = t^3 (1-t)^2 / 2,
     d = known second derivative less that of the cubic, V the value functions 1-3t^2+2t^3 and 3t^2-2t^3. Value and
@@ -14,17 +14,18 @@
 
 #include <petscsys.h>
 
-/* Value, gradient and Hessian (11 22 33 23 13 12). */
+/* Value, gradient, Hessian (11 22 33 23 13 12) and the mixed third derivative 123. */
 typedef struct {
-  PetscReal value, gradient[3], hessian[6];
+  PetscReal value, gradient[3], hessian[6], third;
 } LamJet;
 
 /*
-  Adds to *sum the function at t in [0, 1]^3. corner[c]: bit k of c is the end of direction k (0: t_k = 0). A pure
-  second derivative of a corner that is NaN is not known: that end has no bubble. h: edge of the cube.
-  bubble[k]: gradient of what the bubbles along direction k add, may be NULL.
+  Adds to *sum the function (without its third derivative) at t in [0, 1]^3. corner[c]: bit k of c is the end of
+  direction k (0: t_k = 0). A pure second derivative of a corner that is NaN is not known: that end has no bubble. h:
+  edge of the cube. bubble: written, may be NULL: bubble[k] is the gradient of what the bubbles along direction k add,
+  bubble[3] of what the mixed third derivatives do.
 */
-void LamHermiteQuintic(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum, PetscReal bubble[3][3]);
+void LamHermiteQuintic(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum, PetscReal bubble[4][3]);
 /* The same without any bubbles. */
 void LamHermiteCubic(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum);
 /*

@@ -83,8 +83,8 @@ typedef struct {
   PetscReal tau1, tau2, gradient_tau[3];
   LamJet turgor1; /* without pure curvature data, but a potential of its own */
   PetscReal turgor1_tau, turgor2;
-  /* how the answer's gradient would change with a lower order: along y (each direction's bubbles) and along tau */
-  PetscReal bubble[3][3], bump[3];
+  /* how the answer's gradient would change with a lower order: along y (each direction's bubbles, mixed third derivatives) and along tau */
+  PetscReal bubble[4][3], bump[3];
 } LamTableSum;
 
 /* ---- table_map.c ---- */

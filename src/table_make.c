@@ -264,6 +264,12 @@ static PetscErrorCode MakeCells(LamTable table)
 
 /* ---- surplus ---- */
 
+/* Entry of a Hessian between two axes. */
+static int Entry3(int a, int b)
+{
+  return a == b ? a : 6 - a - b;
+}
+
 /* The sum of the coarser levels at a node's state, in the cells that lie on the given sides (bit k: below) of it. */
 static PetscBool CoarseSum(LamTable table, const LamTableNode *node, const LamTableState *state, int sides,
                            LamTableSum *sum, int order[3])
@@ -292,12 +298,6 @@ static PetscBool CoarseSum(LamTable table, const LamTableNode *node, const LamTa
     if (cell) LamTableAddCell(table, cell, &point, PETSC_FALSE, sum);
   }
   return PETSC_TRUE;
-}
-
-/* Entry of a Hessian between two axes. */
-static int Entry3(int a, int b)
-{
-  return a == b ? a : 6 - a - b;
 }
 
 static void SubtractSum(const LamTableSum *sum, const int order[3], LamTableState *state)
@@ -357,16 +357,85 @@ static void MakeSurplus(LamTable table, const LamTableNode *node, LamTableState 
     *state = (LamTableState){.j = state->j, .data = state->data};
 }
 
-static void MakeSurpluses(LamTable table)
+/* ---- mixed third derivatives ---- */
+
+/*
+  What the node at a place adds on a level at suction j; NULL: not known. Nodes of coarser levels and floating cells add
+  nothing. order: as SortAxes gives it.
+*/
+static const LamTableState *FindState(LamTable table, int level, const int at[3], int j, int *order)
 {
-  for (PetscInt n = 0; n < table->node_count; n++) { /* sorted by level */
-    const LamTableNode *node = &table->nodes[n];
+  static const LamTableState nothing = {0};
+  const LamTableNode *node;
+  PetscInt n;
+  int sorted[3];
 
-    for (PetscInt s = 0; s < node->count && node->level; s++) {
-      LamTableState *state = &table->states[node->first + s];
+  *order = SortAxes(table->grid->symmetric, at, sorted);
+  n = LamPlaceMapGet(&table->node_map, LamPlaceMapKey(0, sorted));
+  if (n < 0) return LamPlaceIsFloating(table->grid, at) ? &nothing : NULL;
+  node = &table->nodes[n];
+  for (PetscInt s = 0; s < node->count; s++)
+    if (table->states[node->first + s].j == j && table->states[node->first + s].has_data)
+      return node->level < level ? &nothing : &table->states[node->first + s];
+  return NULL;
+}
 
-      if (state->has_data) MakeSurplus(table, node, state);
-    }
+/* Difference quotient of d2Phi/dx_a dx_b along the third axis k; *sides: 2 where it is central, 0: there is none. */
+static PetscReal MixedSlope(LamTable table, const LamTableNode *node, const LamTableState *state, int k, int *sides)
+{
+  const int size = LAM_ROOT >> node->level, a = (k + 1) % 3, b = (k + 2) % 3;
+  PetscReal mixed[2], length = 0;
+
+  *sides = 0;
+  mixed[0] = mixed[1] = state->phi.hessian[3 + k];
+  for (int side = 0; side < 2; side++) {
+    int at[3] = {node->i[0], node->i[1], node->i[2]}, order;
+    const LamTableState *next;
+
+    at[k] += side ? size : -size;
+    next = FindState(table, node->level, at, state->j, &order);
+    if (!next) continue;
+    mixed[side] = next->phi.hessian[Entry3(LamAxisOrder[order][a], LamAxisOrder[order][b])];
+    length += table->grid->step / (1 << node->level);
+    (*sides)++;
+  }
+  return *sides ? (mixed[1] - mixed[0]) / length : 0;
+}
+
+/* d3/dx_1 dx_2 dx_3 of what the level adds: mean over the axes, of central differences alone where there are any. */
+static PetscReal MixedThird(LamTable table, const LamTableNode *node, const LamTableState *state)
+{
+  PetscReal sum[3] = {0};
+  int count[3] = {0};
+
+  for (int k = 0; k < 3; k++) {
+    int sides;
+    const PetscReal slope = MixedSlope(table, node, state, k, &sides);
+
+    sum[sides] += slope;
+    count[sides]++;
+  }
+  return count[2] ? sum[2] / count[2] : count[1] ? sum[1] / count[1] : 0;
+}
+
+/* Level by level: nodes are sorted so. */
+static void MakeLevels(LamTable table)
+{
+  for (PetscInt first = 0, last; first < table->node_count; first = last) {
+    const int level = table->nodes[first].level;
+
+    for (last = first; last < table->node_count && table->nodes[last].level == level; last++)
+      for (PetscInt s = 0; s < table->nodes[last].count && level; s++) {
+        LamTableState *state = &table->states[table->nodes[last].first + s];
+
+        if (state->has_data) MakeSurplus(table, &table->nodes[last], state);
+      }
+    for (PetscInt n = first; n < last; n++)
+      for (PetscInt s = 0; s < table->nodes[n].count; s++) {
+        LamTableState *state = &table->states[table->nodes[n].first + s];
+
+        if (state->has_data) state->phi.third = MixedThird(table, &table->nodes[n], state);
+      }
   }
 }
 
@@ -385,7 +454,7 @@ PetscErrorCode LamTableMake(LamDatabase database, LamTable *table)
   for (PetscInt m = 0; m < t->grid->free.n; m++) t->free_data[m] = -1;
   PetscCall(MakeNodes(t));
   PetscCall(MakeCells(t));
-  MakeSurpluses(t);
+  MakeLevels(t);
   *table = t;
   PetscFunctionReturn(0);
 }

@@ -116,7 +116,7 @@ static void Estimates(LamTable table, const Place *place, PetscReal *along_strai
 {
   PetscReal square = 0;
 
-  for (int k = 0; k < 3; k++) square += PetscSqr(StressNorm(table, place, place->sum.bubble[k]));
+  for (int k = 0; k < 4; k++) square += PetscSqr(StressNorm(table, place, place->sum.bubble[k]));
   *along_strain = BUBBLE_WEIGHT * sqrt(square);
   *along_suction = table->grid->contact ? BUMP_WEIGHT * StressNorm(table, place, place->sum.bump) : 0;
 }

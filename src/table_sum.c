@@ -91,6 +91,7 @@ static void AddState(const Interval *a, int e, const int order[3], int corner, C
     LamJet *jet = &c->phi[d];
 
     jet->value += V * state->phi.value + D * state->tau1;
+    jet->third += V * state->phi.third;
     for (int k = 0; k < 3; k++) {
       const int n = order[k];
       const PetscReal pure = corner >> k & 1 ? state->minus[n] : state->phi.hessian[n];
@@ -134,6 +135,7 @@ static void AddHigherOrder(const Interval *a, const int order[3], Column *c)
 static void TakeState(const LamTableState *state, const int order[3], int corner, Column *c)
 {
   c->phi[0].value = state->phi.value;
+  c->phi[0].third = state->phi.third;
   c->turgor1[0].value = state->turgor1;
   c->turgor2 = state->turgor2;
   for (int k = 0; k < 3; k++) {

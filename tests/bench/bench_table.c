@@ -39,7 +39,7 @@ static void Quintic(const Cell *cell, LamJet *sum)
 
 static void QuinticWithBubbles(const Cell *cell, LamJet *sum)
 {
-  PetscReal bubble[3][3];
+  PetscReal bubble[4][3];
 
   LamHermiteQuintic(cell->corner, EDGE, cell->t, sum, bubble);
   sum->value += bubble[0][0];

@@ -348,7 +348,7 @@ static void bubbles_are_told_by_direction(void **state)
 
   for (int n = 0; n < SAMPLES; n++) {
     LamJet corner[8], jet = {0}, cubic;
-    double t[3], bubble[3][3];
+    double t[3], bubble[4][3];
 
     RandomCorners(&seed, 0, corner);
     RandomPoint(&seed, t);
