@@ -65,15 +65,21 @@ static LamLoad LoadOf(PetscReal x, PetscReal suction, PetscReal cohesion)
   return (LamLoad){.F = {stretch, 0, 0, 0, stretch, 0, 0, 0, 1}, .turgor = suction - cohesion, .cohesion = cohesion};
 }
 
-static PetscBool Floats(const LamMicrostructure *micro, const LamResponse *r)
+static PetscBool Floats(const LamResponse *r)
 {
-  return (PetscBool)(r->status == LAM_CONVERGED && r->floating_cells == micro->cells[0] * micro->cells[1] &&
-                     r->min_gap > 0);
+  return (PetscBool)(r->status == LAM_CONVERGED && r->floating_cells == 1 && r->min_gap > 0);
+}
+
+/* Cells that differ, or that a grip holds, are not free at one suction. Several in a period drift apart as they like,
+   and no gap tells their width. */
+static PetscBool HasOneCell(const LamMicrostructure *micro)
+{
+  return (PetscBool)(micro->interface == LAM_INTERFACE_CONTACT && !micro->is_patch && !micro->cell &&
+                     micro->cells[0] * micro->cells[1] == 1);
 }
 
 /* Asks for all states, then again, farther apart, for those that do not float. *left: those that never did. */
-static PetscErrorCode SolveStates(const LamMicrostructure *micro, const LamFreeCell *cell, LamResponder *solver,
-                                  PetscInt *left)
+static PetscErrorCode SolveStates(const LamFreeCell *cell, LamResponder *solver, PetscInt *left)
 {
   PetscInt *missing, *points;
   LamResponse *answers;
@@ -95,7 +101,7 @@ static PetscErrorCode SolveStates(const LamMicrostructure *micro, const LamFreeC
     for (PetscInt i = 0; i < asked; i++) {
       const PetscInt j = missing[i];
 
-      if (Floats(micro, &answers[i]))
+      if (Floats(&answers[i]))
         cell->records[j] = answers[i];
       else
         missing[(*left)++] = j;
@@ -167,7 +173,8 @@ static PetscErrorCode FitSpline(PetscInt n, PetscReal step, const PetscReal a[],
 }
 
 /*
-  With Phi = Psi - g J at fixed F: along the states g is fixed and dp = ds; at fixed s dg = -dp.
+  With Phi = Psi - g J at fixed F: along the states g is fixed and dp = ds; at fixed s dg = -dp. Walls touch where the
+  distance of the reference faces is -clearance.
 */
 static void Tabulate(PetscReal clearance, LamFreeCell *cell)
 {
@@ -195,14 +202,13 @@ PetscErrorCode LamFreeCellMake(const LamMicrostructure *micro, PetscReal cohesio
              PETSC_ERR_ARG_OUTOFRANGE, "%d knots of suction from %g to %g, scale %g", (int)n, (double)suction_min,
              (double)suction_max, (double)scale);
   memset(cell, 0, sizeof(*cell));
-  /* cells that differ, or that a grip holds, are not free at one suction */
-  if (micro->interface != LAM_INTERFACE_CONTACT || micro->is_patch || micro->cell) PetscFunctionReturn(0);
+  if (!HasOneCell(micro)) PetscFunctionReturn(0);
   PetscCall(Allocate(n, cell));
   PetscCall(PetscMalloc1(n, &cell->records));
   cell->scale = scale;
   cell->cohesion = cohesion;
   PlaceKnots(suction_min, suction_max, cell);
-  PetscCall(SolveStates(micro, cell, solver, &left));
+  PetscCall(SolveStates(cell, solver, &left));
   if (left > 0) {
     PetscCall(LamFreeCellDestroy(cell));
     PetscFunctionReturn(0);

@@ -26,8 +26,9 @@ typedef struct {
 
 /*
   Solves n states at equal stretches in both directions, wide enough apart that all cells float, for s from suction_min
-  (> 0) to suction_max. Returns n = 0 and no error where the tissue has no such states (bonded; no floating state
-  found).
+  (> 0) to suction_max. Returns n = 0 and no error where the tissue has no such states (bonded; a patch; cells that
+  differ; a state that fails or does not float), and with more than one cell a period: these drift apart, so that no gap
+  tells their width. Where they are alike, a micro and a solver of one cell have the answer. n is at least 5.
 */
 PetscErrorCode LamFreeCellMake(const LamMicrostructure *micro, PetscReal cohesion, PetscReal suction_min,
                                PetscReal suction_max, PetscReal scale, PetscInt n, LamResponder *solver,
