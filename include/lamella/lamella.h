@@ -6,6 +6,7 @@
     response.h   what a material point is asked and what it answers; the responder table
     rve.h        solves the representative volume element
     database.h   stores responses, answers from them
+    family.h     answers for walls between databases
     cache.h      answers from a database and solves what it lacks
     macro.h      the macroscale finite element solver
     version.h    LAMELLA_VERSION
@@ -27,6 +28,7 @@
 #include <lamella/response.h>
 #include <lamella/rve.h>
 #include <lamella/database.h>
+#include <lamella/family.h>
 #include <lamella/cache.h>
 #include <lamella/macro.h>
 #include <lamella/version.h>

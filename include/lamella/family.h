@@ -1,0 +1,41 @@
+/*
+  Tissue between databases: one more axis, along which walls vary in space or time.
+
+  Databases of microstructures that differ in one number, wall thickness t/a, C4/C1 or C2/C1, are the knots of the axis.
+  Between them the potentials are combined with fixed weights w_i(v), so that stress and tangent are still the exact
+  derivatives of one potential:  Psi = sum_i w_i(v) Psi_i(F, p, g),  sum w_i = 1.
+  Weights: the polynomial in ln v through the nearest four knots (or all, where there are fewer). Shares of the
+  interface and strength measures keep their bounds: they are interpolated between the two knots next to v.
+*/
+#ifndef LAMELLA_FAMILY_H
+#define LAMELLA_FAMILY_H
+
+#include <lamella/database.h>
+
+#define LAM_FAMILY_AXES(X)                                                                                             \
+  X(LAM_FAMILY_WALL_THICKNESS, "wall_thickness") /* t/a */                                                             \
+  X(LAM_FAMILY_FIBRES, "C4/C1")                                                                                        \
+  X(LAM_FAMILY_MATRIX, "C2/C1")
+typedef enum { LAM_FAMILY_AXES(LAM_ENUM_ENTRY) LAM_FAMILY_AXIS_COUNT } LamFamilyAxis;
+extern const char *const LamFamilyAxisNames[];
+
+typedef struct LamFamily_s *LamFamily;
+
+/*
+  n >= 2 databases, in any order; borrowed, and not to be added to while the family is asked. PETSC_ERR_USER_INPUT where
+  they differ in more than one of the three numbers (in units of C1 + C2 and apothems), in none, or two are alike.
+*/
+PetscErrorCode LamFamilyCreate(PetscInt n, const LamDatabase databases[], LamFamily *family);
+PetscErrorCode LamFamilyDestroy(LamFamily *family);
+/* The axis and the range of its knots. */
+PetscErrorCode LamFamilyGetAxis(LamFamily family, LamFamilyAxis *axis, PetscReal *least, PetscReal *most);
+/*
+  The answer at `value` of the axis; load and response in units of C1 + C2. Out of reach where one of the databases is,
+  or the value lies outside the knots. error_estimate adds to the databases' own the change of P when the knot farthest
+  from the value is left out (with two knots: a quarter of the change between them). Safe for threads, as
+  LamDatabaseQuery is.
+*/
+PetscErrorCode LamFamilyQuery(LamFamily family, PetscReal value, const LamLoad *load, PetscReal accuracy,
+                              LamResponse *response);
+
+#endif

@@ -1,0 +1,172 @@
+/*
+  Answers for walls between databases, against solves of those walls.
+*/
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <string.h>
+#include <cmocka.h>
+#include "assert_near.h"
+#include "tissue.h"
+
+enum { KNOTS = 4, STATES = 6 };
+#define ASKED 0.005
+
+static const LamLoad loads[STATES] = {
+    {{1.05, 0.04, 0, 0.0, 1.02, 0, 0, 0, 1}, 0.1, 0}, {{1.02, 0.1, 0, 0.03, 1.1, 0, 0, 0, 1}, 0.3, 0},
+    {{1.15, 0.0, 0, 0.0, 1.0, 0, 0, 0, 1}, 0.2, 0},   {{1.1, -0.05, 0, 0.02, 1.1, 0, 0, 0, 1}, 0.0, 0},
+    {{1.0, 0.12, 0, 0.0, 1.03, 0, 0, 0, 1}, 0.4, 0},  {{1.2, 0.02, 0, -0.02, 1.12, 0, 0, 0, 1}, 0.1, 0},
+};
+
+/* A database that answers the loads to ASKED / 5. */
+static void Build(const LamMicrostructure *micro, LamDatabase *db)
+{
+  LamScene scene = {.micro = *micro, .accuracy = ASKED, .scales = {75e-6, 0.11e6, 0}, .turgor = 0.2};
+  PetscInt64 keys[LAM_MAX_NEEDS];
+  LamGrid grid;
+  PetscInt n = 1;
+
+  assert_int_equal(LamGridCreate(&scene, NULL, &grid), 0);
+  assert_int_equal(LamDatabaseCreateEmpty(&scene, db), 0);
+  assert_int_equal(LamDatabaseSetGrid(*db, &grid), 0);
+  assert_int_equal(LamDatabaseGetGrid(*db, &grid), 0);
+  for (int s = 0; s < STATES; s++)
+    for (int round = 0; round < 8; round++) {
+      LamResponse nodes[LAM_MAX_NEEDS];
+      LamTable table;
+
+      assert_int_equal(LamDatabaseGetTable(*db, &table), 0);
+      assert_int_equal(LamTableNeeds(table, &loads[s], ASKED / 5, &n, keys), 0);
+      assert_int_equal(LamTableDestroy(&table), 0);
+      if (!n) break;
+      for (PetscInt k = 0; k < n; k++) {
+        LamLoad load;
+
+        assert_int_equal(LamGridNodeLoad(grid, keys[k], &load), 0);
+        assert_int_equal(SolveOnce(micro, &load, &nodes[k]), 0);
+      }
+      assert_int_equal(LamDatabaseAdd(*db, n, keys, nodes), 0);
+    }
+}
+
+static LamMicrostructure Tissue(LamFamilyAxis axis, PetscReal value)
+{
+  LamMicrostructure micro = DefaultTissue();
+
+  if (axis == LAM_FAMILY_WALL_THICKNESS) micro.wall_thickness = value;
+  if (axis == LAM_FAMILY_FIBRES) micro.wall.C4 = value * micro.wall.C1;
+  if (axis == LAM_FAMILY_MATRIX) {
+    micro.wall.C1 = 1 / (1 + value);
+    micro.wall.C2 = value / (1 + value);
+  }
+  return micro;
+}
+
+/* Knots in an order that is not ascending; errors at a value between them. */
+static void CheckAxis(LamFamilyAxis axis, const PetscReal values[KNOTS], PetscReal between)
+{
+  LamDatabase databases[KNOTS];
+  LamMicrostructure micro = Tissue(axis, between);
+  LamFamily family;
+  LamFamilyAxis found;
+  PetscReal least, most;
+
+  for (int i = 0; i < KNOTS; i++) {
+    const LamMicrostructure knot = Tissue(axis, values[(i + 2) % KNOTS]);
+
+    Build(&knot, &databases[i]);
+  }
+  assert_int_equal(LamFamilyCreate(KNOTS, databases, &family), 0);
+  assert_int_equal(LamFamilyGetAxis(family, &found, &least, &most), 0);
+  assert_int_equal(found, axis);
+  assert_near(least, values[0], 1e-12);
+  assert_near(most, values[KNOTS - 1], 1e-12);
+  for (int s = 0; s < STATES; s++) {
+    LamResponse truth, answer;
+
+    assert_int_equal(SolveOnce(&micro, &loads[s], &truth), 0);
+    assert_int_equal(LamFamilyQuery(family, between, &loads[s], INFINITY, &answer), 0);
+    assert_int_equal(answer.status, LAM_CONVERGED);
+    assert_true(LamStressError(answer.P, truth.P) < 2 * answer.error_estimate + ASKED / 10);
+    assert_near(answer.lumen_fraction, truth.lumen_fraction, 1e-3);
+  }
+  assert_int_equal(LamFamilyDestroy(&family), 0);
+  for (int i = 0; i < KNOTS; i++) assert_int_equal(LamDatabaseClose(&databases[i]), 0);
+}
+
+static void walls_of_any_thickness(void **state)
+{
+  static const PetscReal values[KNOTS] = {0.1, 0.13, 0.17, 0.22};
+
+  CheckAxis(LAM_FAMILY_WALL_THICKNESS, values, 0.15);
+}
+
+static void fibres_of_any_stiffness(void **state)
+{
+  static const PetscReal values[KNOTS] = {4, 7, 12, 20};
+
+  CheckAxis(LAM_FAMILY_FIBRES, values, 9);
+}
+
+static void matrices_of_any_kind(void **state)
+{
+  static const PetscReal values[KNOTS] = {0.05, 0.15, 0.4, 1};
+
+  CheckAxis(LAM_FAMILY_MATRIX, values, 0.25);
+}
+
+static void at_a_knot_the_answer_is_its_database_s(void **state)
+{
+  LamDatabase databases[2];
+  LamFamily family;
+
+  for (int i = 0; i < 2; i++) {
+    const LamMicrostructure micro = Tissue(LAM_FAMILY_FIBRES, i ? 10 : 8);
+
+    Build(&micro, &databases[i]);
+  }
+  assert_int_equal(LamFamilyCreate(2, databases, &family), 0);
+  for (int s = 0; s < STATES; s++) {
+    LamResponse own, answer;
+
+    assert_int_equal(LamDatabaseQuery(databases[0], &loads[s], INFINITY, &own), 0);
+    assert_int_equal(LamFamilyQuery(family, 8, &loads[s], INFINITY, &answer), 0);
+    for (int i = 0; i < 9; i++) assert_near(answer.P[i], own.P[i], 1e-12);
+  }
+  assert_int_equal(LamFamilyDestroy(&family), 0);
+  for (int i = 0; i < 2; i++) assert_int_equal(LamDatabaseClose(&databases[i]), 0);
+}
+
+static void beyond_the_knots_is_refused(void **state)
+{
+  LamDatabase databases[2];
+  LamFamily family;
+  LamResponse answer;
+
+  for (int i = 0; i < 2; i++) {
+    const LamMicrostructure micro = Tissue(LAM_FAMILY_FIBRES, i ? 10 : 8);
+
+    Build(&micro, &databases[i]);
+  }
+  assert_int_equal(LamFamilyCreate(2, databases, &family), 0);
+  assert_int_equal(LamFamilyQuery(family, 11, &loads[0], INFINITY, &answer), 0);
+  assert_int_equal(answer.status, LAM_OUT_OF_REACH);
+  assert_non_null(strstr(answer.reason, "C4/C1 = 11"));
+  assert_int_equal(LamFamilyDestroy(&family), 0);
+  for (int i = 0; i < 2; i++) assert_int_equal(LamDatabaseClose(&databases[i]), 0);
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(walls_of_any_thickness),      cmocka_unit_test(fibres_of_any_stiffness),
+      cmocka_unit_test(matrices_of_any_kind),        cmocka_unit_test(at_a_knot_the_answer_is_its_database_s),
+      cmocka_unit_test(beyond_the_knots_is_refused),
+  };
+  int failed;
+
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  failed = cmocka_run_group_tests(tests, NULL, NULL);
+  return PetscFinalize() || failed;
+}
