@@ -1,5 +1,5 @@
 /*
-  Private to `lamella build`: which states are sampled, and how one is solved.
+  Private to `lamella build`: which states the table is asked, and which nodes it lacks.
 */
 #ifndef LAM_BUILD_H
 #define LAM_BUILD_H
@@ -14,16 +14,62 @@
 */
 void LamSampleLoad(const LamScene *scene, PetscInt64 index, LamLoad *load);
 
-/* Every rank has one. */
+/* What a table says to the first states of the box: each is answered, refused, or waits for nodes. */
+typedef struct {
+  PetscInt asked;
+  PetscInt answered; /* with an estimated error of at most the accuracy */
+  PetscInt refused;  /* where no node helps */
+  PetscInt reached;  /* with any estimate */
+  PetscReal error;   /* estimated error that 95 % of those reached stay below; NaN: none is */
+  char reason[192];  /* of the first that is refused */
+  PetscInt lacking;
+  PetscInt64 *keys; /* [lacking] the nodes that it lacks for those that wait, sorted; owned */
+} LamPoll;
+
+PetscErrorCode LamPollMake(const LamScene *scene, LamDatabase database, PetscReal accuracy, LamPoll *poll);
+/* Whether enough of the box is answered: the last states of 200 are not chased. */
+PetscBool LamPollIsDone(const LamPoll *poll);
+PetscErrorCode LamPollDestroy(LamPoll *poll);
+
+/*
+  ---- rounds: rank 0 decides which nodes are solved ----
+
+  A round is all nodes that the table of the rounds before it lacks. With an accuracy, rounds go on until enough of the
+  box is answered to it; with a count, to any accuracy, then to 1/8, 1/16, ..., until there are so many nodes. What a
+  round asks for depends on the scene, the grid and the rounds before it only: records that the file has got already
+  are used in place of solves in the round that asks for their keys, and in no other. So a build that was interrupted
+  comes to the same nodes as one that was not, whatever else the file holds.
+*/
+typedef struct {
+  PetscInt64 key;
+  const LamResponse *record; /* borrowed from the file */
+} LamKnownNode;
+
 typedef struct {
   const LamScene *scene; /* borrowed */
-  LamRVE rve;            /* owned */
-  LamRVEState state;     /* owned */
-} LamSampler;
+  LamDatabase table;     /* nodes of complete rounds; owned */
+  PetscInt known_count;
+  LamKnownNode *known;     /* [known_count], sorted; owned */
+  PetscInt64 most;         /* nodes at most */
+  PetscInt64 nodes;        /* in the table */
+  PetscInt64 known_failed; /* without an answer, of those that were known */
+  PetscReal accuracy;      /* that is asked for now */
+  LamPoll poll;            /* of the table */
+  /* the round under way: the first n keys of the poll */
+  PetscInt n;
+  LamResponse *responses; /* [n]; owned */
+  PetscInt missing;       /* of the n: to be solved */
+  PetscInt *place;        /* [missing] in responses; owned */
+} LamRounds;
 
-PetscErrorCode LamSamplerCreate(const LamScene *scene, LamSampler *sampler);
-/* A LamWork (dispatch.h): `result` is a LamResponse. Each state starts from the stress-free reference. */
-PetscErrorCode LamSamplerSolve(void *sampler, PetscInt64 index, void *result);
-PetscErrorCode LamSamplerDestroy(LamSampler *sampler);
+/* `file`: what was there before, NULL: nothing; it must outlive the rounds. Takes the grid over. */
+PetscErrorCode LamRoundsCreate(const LamScene *scene, LamDatabase file, LamGrid *grid, LamRounds *rounds);
+/* The next round of which something is missing; missing = 0: there is none, the build is at its end. */
+PetscErrorCode LamRoundsNext(LamRounds *rounds);
+/* All responses are there: the round goes into the table. */
+PetscErrorCode LamRoundsComplete(LamRounds *rounds);
+/* Share of the box that is answered: to the accuracy, or with a count at all. */
+PetscReal LamRoundsAnswered(const LamRounds *rounds);
+PetscErrorCode LamRoundsDestroy(LamRounds *rounds);
 
 #endif

@@ -1,6 +1,5 @@
 /*
-  The states of a sample box, by a low-discrepancy sequence: number i never depends on how many there are, so a
-  database can be continued; and how one is solved.
+  The states of a sample box, by a low-discrepancy sequence: number i never depends on how many there are.
 */
 #include "build.h"
 #include <math.h>
@@ -36,36 +35,4 @@ void LamSampleLoad(const LamScene *scene, PetscInt64 index, LamLoad *load)
   *load = (LamLoad){.F = {U11, U12, 0, U12, U22, 0, 0, 0, 1},
                     .turgor = Between(box->turgor_min, box->turgor_max, RadicalInverse(index + 1, 7)),
                     .cohesion = scene->cohesion};
-}
-
-PetscErrorCode LamSamplerCreate(const LamScene *scene, LamSampler *sampler)
-{
-  PetscFunctionBeginUser;
-  *sampler = (LamSampler){.scene = scene};
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &sampler->rve));
-  PetscCall(LamRVESetMicrostructure(sampler->rve, &scene->micro));
-  PetscCall(LamRVESetStrategy(sampler->rve, scene->strategy));
-  PetscCall(LamRVESetUp(sampler->rve));
-  PetscCall(LamRVEStateCreate(sampler->rve, &sampler->state));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamSamplerSolve(void *ctx, PetscInt64 index, void *result)
-{
-  LamSampler *sampler = ctx;
-  LamLoad load;
-
-  PetscFunctionBeginUser;
-  LamSampleLoad(sampler->scene, index, &load);
-  PetscCall(LamRVEStateReset(sampler->rve, sampler->state));
-  PetscCall(LamRVESolve(sampler->rve, &load, sampler->state, result));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamSamplerDestroy(LamSampler *sampler)
-{
-  PetscFunctionBeginUser;
-  PetscCall(LamRVEStateDestroy(&sampler->state));
-  PetscCall(LamRVEDestroy(&sampler->rve));
-  PetscFunctionReturn(0);
 }

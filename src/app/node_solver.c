@@ -1,0 +1,185 @@
+/*
+  Chains of nodes, from the reference state down to the finest level.
+
+  Method
+    A child starts from its parent's own solution, bit for bit, whether that is remembered or found again: a chain is
+    followed from its last remembered node on, and what is remembered only saves time. Where there is no room left the
+    node that was not needed for longest is forgotten.
+*/
+#include "node_solver.h"
+
+/* What is remembered of a node. */
+typedef struct {
+  LamResponse response;
+  LamRVEState state; /* owned; NULL: bonded tissue */
+} Node;
+
+struct LamNodeChain_s {
+  LamRVE rve;   /* borrowed */
+  LamGrid grid; /* borrowed */
+  PetscBool warm;
+  LamRVEState state; /* of the solve under way; owned */
+  PetscInt n, most, capacity;
+  PetscInt64 *keys, *used; /* [capacity]; used: when it was last */
+  Node *nodes;             /* [capacity] */
+  PetscInt64 time;
+};
+
+/* ---- what is remembered ---- */
+
+static PetscInt Find(LamNodeChain chain, PetscInt64 key)
+{
+  for (PetscInt i = 0; i < chain->n; i++) {
+    if (chain->keys[i] != key) continue;
+    chain->used[i] = chain->time++;
+    return i;
+  }
+  return -1;
+}
+
+static PetscErrorCode Grow(LamNodeChain chain)
+{
+  PetscFunctionBeginUser;
+  if (chain->n < chain->capacity) PetscFunctionReturn(0);
+  chain->capacity = PetscMin(PetscMax(2 * chain->capacity, 64), chain->most);
+  PetscCall(PetscRealloc((size_t)chain->capacity * sizeof(*chain->keys), &chain->keys));
+  PetscCall(PetscRealloc((size_t)chain->capacity * sizeof(*chain->used), &chain->used));
+  PetscCall(PetscRealloc((size_t)chain->capacity * sizeof(*chain->nodes), &chain->nodes));
+  PetscFunctionReturn(0);
+}
+
+/* A place for one more node: a new one, or that of the node that was not needed for longest. */
+static PetscErrorCode TakePlace(LamNodeChain chain, PetscInt *place)
+{
+  PetscInt oldest = 0;
+
+  PetscFunctionBeginUser;
+  if (chain->n < chain->most) {
+    PetscCall(Grow(chain));
+    *place = chain->n++;
+    chain->nodes[*place].state = NULL;
+    PetscFunctionReturn(0);
+  }
+  for (PetscInt i = 1; i < chain->n; i++)
+    if (chain->used[i] < chain->used[oldest]) oldest = i;
+  *place = oldest;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Remember(LamNodeChain chain, PetscInt64 key, const LamResponse *response, PetscInt *place)
+{
+  Node *node;
+
+  PetscFunctionBeginUser;
+  PetscCall(TakePlace(chain, place));
+  node = &chain->nodes[*place];
+  chain->keys[*place] = key;
+  chain->used[*place] = chain->time++;
+  node->response = *response;
+  if (!chain->warm) PetscFunctionReturn(0);
+  if (!node->state) PetscCall(LamRVEStateCreate(chain->rve, &node->state));
+  PetscCall(LamRVEStateCopy(chain->state, node->state));
+  PetscFunctionReturn(0);
+}
+
+/* ---- solves ---- */
+
+/* Children may start from it. */
+static PetscBool Leads(const LamResponse *response)
+{
+  return (PetscBool)(response->status == LAM_CONVERGED && !response->branch && response->floating_cells <= 0);
+}
+
+static PetscErrorCode SolveFromReference(LamNodeChain chain, const LamLoad *load, LamResponse *response)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEStateReset(chain->rve, chain->state));
+  PetscCall(LamRVESolve(chain->rve, load, chain->state, response));
+  PetscFunctionReturn(0);
+}
+
+/* From the state in chain->state, and where that leads nowhere from the reference. */
+static PetscErrorCode SolveFromParent(LamNodeChain chain, const LamLoad *load, LamResponse *response)
+{
+  LamResponse first;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVESolve(chain->rve, load, chain->state, &first));
+  *response = first;
+  if (first.status == LAM_CONVERGED) PetscFunctionReturn(0);
+  PetscCall(SolveFromReference(chain, load, response));
+  response->newton_iterations += first.newton_iterations;
+  response->factorisations += first.factorisations;
+  response->seconds += first.seconds;
+  PetscFunctionReturn(0);
+}
+
+/* Solves the node, its parents first, unless it is remembered. */
+static PetscErrorCode Reach(LamNodeChain chain, PetscInt64 key, PetscInt *place)
+{
+  const PetscInt64 parent = chain->warm ? LamGridNodeParent(chain->grid, key) : -1;
+  PetscInt start = -1;
+  LamResponse response;
+  LamLoad load;
+
+  PetscFunctionBeginUser;
+  *place = Find(chain, key);
+  if (*place >= 0) PetscFunctionReturn(0);
+  if (parent >= 0) PetscCall(Reach(chain, parent, &start));
+  PetscCall(LamGridNodeLoad(chain->grid, key, &load));
+  if (start >= 0 && Leads(&chain->nodes[start].response)) {
+    PetscCall(LamRVEStateCopy(chain->nodes[start].state, chain->state));
+    PetscCall(SolveFromParent(chain, &load, &response));
+  } else {
+    PetscCall(SolveFromReference(chain, &load, &response));
+  }
+  PetscCall(Remember(chain, key, &response, place));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamNodeChainSolve(void *ctx, PetscInt64 key, LamResponse *response)
+{
+  LamNodeChain chain = ctx;
+  PetscInt place;
+
+  PetscFunctionBeginUser;
+  PetscCall(Reach(chain, key, &place));
+  *response = chain->nodes[place].response;
+  PetscFunctionReturn(0);
+}
+
+/* ---- lifecycle ---- */
+
+PetscErrorCode LamNodeChainCreate(LamRVE rve, LamInterfaceLawType interface, LamGrid grid, size_t memory,
+                                  LamNodeChain *chain)
+{
+  PetscInt unknowns;
+  LamNodeChain c;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&c));
+  c->rve = rve;
+  c->grid = grid;
+  c->warm = (PetscBool)(interface == LAM_INTERFACE_CONTACT);
+  PetscCall(LamRVEGetUnknowns(rve, &unknowns));
+  /* positions of the tissue and of the bonded tissue that it starts from */
+  c->most = (PetscInt)(memory / (sizeof(Node) + 2 * sizeof(PetscReal) * (size_t)unknowns)) + 1;
+  PetscCall(LamRVEStateCreate(rve, &c->state));
+  *chain = c;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamNodeChainDestroy(LamNodeChain *chain)
+{
+  LamNodeChain c = *chain;
+
+  PetscFunctionBeginUser;
+  if (!c) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < c->n; i++) PetscCall(LamRVEStateDestroy(&c->nodes[i].state));
+  PetscCall(LamRVEStateDestroy(&c->state));
+  PetscCall(PetscFree(c->keys));
+  PetscCall(PetscFree(c->used));
+  PetscCall(PetscFree(c->nodes));
+  PetscCall(PetscFree(*chain));
+  PetscFunctionReturn(0);
+}

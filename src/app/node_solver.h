@@ -1,0 +1,29 @@
+/*
+  Solves nodes of a database's grid, each from the state of its parent: the nearest node of the next coarser level.
+
+  So a node is on the branch of its neighbours, and its response depends on its key alone: not on who solves it, what
+  was solved before, or what a file holds. Its parent is solved likewise, and so on up to the reference state.
+*/
+#ifndef LAM_NODE_SOLVER_H
+#define LAM_NODE_SOLVER_H
+
+#include "app.h"
+
+typedef struct LamNodeChain_s *LamNodeChain;
+
+/*
+  One per rank and RVE; borrows rve and grid. Of the nodes that it has solved it remembers the latest, of no more than
+  `memory` bytes, for those that follow.
+*/
+#define LAM_NODE_MEMORY ((size_t)256 << 20)
+PetscErrorCode LamNodeChainCreate(LamRVE rve, LamInterfaceLawType interface, LamGrid grid, size_t memory,
+                                  LamNodeChain *chain);
+/*
+  `chain`: a LamNodeChain. The state of bonded tissue is reached from the reference; that of contact tissue from its
+  parent where that is stable, on the first branch and without floating cells, and from the reference where the parent
+  is not, or where no answer is found from it. The counts of both attempts are summed.
+*/
+PetscErrorCode LamNodeChainSolve(void *chain, PetscInt64 key, LamResponse *response);
+PetscErrorCode LamNodeChainDestroy(LamNodeChain *chain);
+
+#endif
