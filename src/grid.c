@@ -23,6 +23,13 @@ PetscBool LamKeyIsNode(PetscInt64 key)
   return (PetscBool)(key >= LAM_NODE_KEY && key < 2 * LAM_NODE_KEY);
 }
 
+PetscBool LamKeyIsFreeCell(PetscInt64 key)
+{
+  const LamNodePlace place = LamNodePlaceOf(key);
+
+  return (PetscBool)(LamKeyIsNode(key) && LamNodeIsFree(&place));
+}
+
 PetscInt64 LamNodeKeyOf(const LamNodePlace *place)
 {
   PetscInt64 code = 0;

@@ -122,6 +122,8 @@ PetscErrorCode LamGridGetRecords(LamGrid grid, PetscInt *n, const PetscInt64 *ke
 /* Keys of nodes lie between those of samples and those of the cache. */
 #define LAM_NODE_KEY ((PetscInt64)1 << 60)
 PetscBool LamKeyIsNode(PetscInt64 key);
+/* Nodes that are free cells' states (LamGridGetRecords): there is no place in the grid for them, and no other solve. */
+PetscBool LamKeyIsFreeCell(PetscInt64 key);
 /* The state of a node. */
 PetscErrorCode LamGridNodeLoad(LamGrid grid, PetscInt64 key, LamLoad *load);
 /* The node that a solve of this one may start from: the nearest of the next coarser level; -1: from the reference. */

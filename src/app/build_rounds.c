@@ -17,6 +17,7 @@ static int CompareKnown(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
+/* The nodes of the file; those of free cells belong to the grid and are in the table from the start. */
 static PetscErrorCode FindKnown(LamDatabase file, LamRounds *rounds)
 {
   const LamResponse *records;
@@ -24,24 +25,35 @@ static PetscErrorCode FindKnown(LamDatabase file, LamRounds *rounds)
   PetscInt n;
 
   PetscFunctionBeginUser;
-  if (!file) PetscFunctionReturn(0);
   PetscCall(LamDatabaseGetRecords(file, &n, &records, &keys));
   PetscCall(PetscMalloc1(n, &rounds->known));
-  for (PetscInt i = 0; i < n; i++)
-    if (LamKeyIsNode(keys[i])) rounds->known[rounds->known_count++] = (LamKnownNode){keys[i], &records[i]};
+  for (PetscInt i = 0; i < n; i++) {
+    if (LamKeyIsFreeCell(keys[i])) {
+      PetscCall(LamDatabaseAdd(rounds->table, 1, &keys[i], &records[i]));
+      rounds->nodes++;
+    } else if (LamKeyIsNode(keys[i]))
+      rounds->known[rounds->known_count++] = (LamKnownNode){keys[i], &records[i]};
+  }
   if (rounds->known_count) qsort(rounds->known, (size_t)rounds->known_count, sizeof(*rounds->known), CompareKnown);
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamRoundsCreate(const LamScene *scene, LamDatabase file, LamGrid *grid, LamRounds *rounds)
 {
+  const LamResponse *records;
+  const PetscInt64 *keys;
+  PetscInt n;
+
   PetscFunctionBeginUser;
   *rounds = (LamRounds){.scene = scene,
                         .most = scene->sample.count ? scene->sample.count : MOST_NODES,
                         .accuracy = scene->sample.count ? PETSC_INFINITY : scene->sample.accuracy};
   PetscCall(LamDatabaseCreateEmpty(scene, &rounds->table));
+  PetscCall(LamGridGetRecords(*grid, &n, &keys, &records));
+  PetscCall(LamDatabaseAdd(rounds->table, n, keys, records));
+  rounds->nodes = n;
   PetscCall(LamDatabaseSetGrid(rounds->table, grid));
-  PetscCall(FindKnown(file, rounds));
+  if (file) PetscCall(FindKnown(file, rounds));
   PetscFunctionReturn(0);
 }
 

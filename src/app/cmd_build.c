@@ -195,66 +195,75 @@ static PetscErrorCode OpenWriter(Build *b, PetscBool resume)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode NewGrid(Build *b, char **text)
+/* Free cells' states come with it: the first commit. */
+static PetscErrorCode NewGrid(Build *b, LamGrid *grid)
 {
+  const LamResponse *records;
+  const PetscInt64 *keys;
   LamResponder solver;
-  LamGrid grid;
+  char *text;
+  PetscInt n;
 
   PetscFunctionBeginUser;
   PetscCall(LamRVEResponderCreate(b->rve, 0, &solver));
-  PetscCall(LamGridCreate(b->scene, &solver, &grid));
+  PetscCall(LamGridCreate(b->scene, &solver, grid));
   PetscCall(solver.destroy(&solver.ctx));
-  PetscCall(LamGridGetText(grid, text));
-  PetscCall(LamGridDestroy(&grid));
-  PetscCall(LamRecordWriterText(b->writer, LAM_GRID_NAME, *text));
+  PetscCall(LamGridGetText(*grid, &text));
+  PetscCall(LamRecordWriterText(b->writer, LAM_GRID_NAME, text));
+  PetscCall(PetscFree(text));
+  PetscCall(LamGridGetRecords(*grid, &n, &keys, &records));
+  PetscCall(LamRecordWriterCommit(b->writer, n, keys, records));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode OldGrid(Build *b, char **text)
+static PetscErrorCode OldGrid(Build *b, LamGrid *grid)
 {
   PetscBool found;
+  char *text;
 
   PetscFunctionBeginUser;
-  PetscCall(LamFileReadText(b->path, LAM_GRID_NAME, &found, text));
+  PetscCall(LamFileReadText(b->path, LAM_GRID_NAME, &found, &text));
   PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: has no grid (%s): its records are of an older lamella, or of no build; give the new database another "
              "name",
              b->path, LAM_GRID_NAME);
+  PetscCall(LamGridFromText(b->path, &b->scene->micro, text, grid));
+  PetscCall(PetscFree(text));
   PetscFunctionReturn(0);
 }
 
-/* The grid from rank 0's text, on all ranks: all have it from the same text. */
-static PetscErrorCode ShareGrid(Build *b, char **text)
-{
-  PetscInt length = *text ? (PetscInt)strlen(*text) + 1 : 0;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Bcast(&length, 1, MPIU_INT, 0, b->dispatch.comm));
-  if (!*text) PetscCall(PetscMalloc1(length, text));
-  PetscCallMPI(MPI_Bcast(*text, (PetscMPIInt)length, MPI_CHAR, 0, b->dispatch.comm));
-  PetscCall(LamGridFromText(b->path, &b->scene->micro, *text, &b->grid));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode StartRounds(Build *b, const char text[])
+static PetscErrorCode StartRounds(Build *b, PetscBool resume)
 {
   LamGrid grid;
 
   PetscFunctionBeginUser;
-  PetscCall(LamGridFromText(b->path, &b->scene->micro, text, &grid));
+  PetscCall(OpenWriter(b, resume));
+  if (b->file)
+    PetscCall(OldGrid(b, &grid));
+  else
+    PetscCall(NewGrid(b, &grid));
   PetscCall(LamRoundsCreate(b->scene, b->file, &grid, &b->rounds));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode StartRoot(Build *b, PetscBool resume, char **text)
+/* The grid, from rank 0 to all: the others, and a later run, have it from its text. */
+static PetscErrorCode ShareGrid(Build *b)
 {
+  char *text = NULL;
+  PetscInt length;
+  LamGrid grid;
+
   PetscFunctionBeginUser;
-  PetscCall(OpenWriter(b, resume));
-  if (b->file)
-    PetscCall(OldGrid(b, text));
-  else
-    PetscCall(NewGrid(b, text));
-  PetscCall(StartRounds(b, *text));
+  if (!b->dispatch.rank) {
+    PetscCall(LamDatabaseGetGrid(b->rounds.table, &grid));
+    PetscCall(LamGridGetText(grid, &text));
+    length = (PetscInt)strlen(text) + 1;
+  }
+  PetscCallMPI(MPI_Bcast(&length, 1, MPIU_INT, 0, b->dispatch.comm));
+  if (!text) PetscCall(PetscMalloc1(length, &text));
+  PetscCallMPI(MPI_Bcast(text, (PetscMPIInt)length, MPI_CHAR, 0, b->dispatch.comm));
+  PetscCall(LamGridFromText(b->path, &b->scene->micro, text, &b->grid));
+  PetscCall(PetscFree(text));
   PetscFunctionReturn(0);
 }
 
@@ -301,15 +310,13 @@ static PetscErrorCode Summary(Build *b)
 static PetscErrorCode RunAll(Build *b, PetscBool resume)
 {
   const PetscBool root = (PetscBool)(b->dispatch.rank == 0);
-  char *text = NULL;
   PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
-  ierr = root ? StartRoot(b, resume, &text) : 0;
+  ierr = root ? StartRounds(b, resume) : 0;
   if (ierr) (void)LamRecordWriterClose(&b->writer);
   PetscCall(LamDispatchShare(&b->dispatch, ierr));
-  PetscCall(ShareGrid(b, &text));
-  PetscCall(PetscFree(text));
+  PetscCall(ShareGrid(b));
   PetscCall(LamNodeChainCreate(b->rve, b->scene->micro.interface, b->grid, LAM_NODE_MEMORY, &b->chain));
   ierr = RunRounds(b);
   if (root && ierr) (void)LamRecordWriterClose(&b->writer);
