@@ -1,0 +1,167 @@
+/* Nodes solved from their parents: where they start, and that their responses depend on nothing else. */
+#include "rve_fixture.h"
+#include "figures_contact_derivatives.h"
+#include "grid.h"
+#include "node_solver.h"
+#include <string.h>
+
+#define MPA (1.0 / TISSUE_STRESS)
+#define ROOM ((size_t)64 << 20)
+enum { HALF = LAM_ROOT / 2, QUARTER = LAM_ROOT / 4 };
+
+/* Without free cells the strains are origin + step i / LAM_ROOT. */
+static struct LamGrid_s grid;
+static LamRVE rve;
+
+static PetscInt64 Key(int i0, int i1, int i2, int j)
+{
+  const LamNodePlace place = {{i0, i1, i2}, j};
+
+  return LamNodeKeyOf(&place);
+}
+
+static LamNodeChain NewChain(LamInterfaceLawType interface, size_t memory)
+{
+  LamNodeChain chain;
+
+  assert_int_equal(LamNodeChainCreate(rve, interface, &grid, memory, &chain), 0);
+  return chain;
+}
+
+static LamResponse Solve(LamNodeChain chain, PetscInt64 key)
+{
+  LamResponse response;
+
+  assert_int_equal(LamNodeChainSolve(chain, key, &response), 0);
+  return response;
+}
+
+/* Equal bits, time apart. */
+static void AssertSame(LamResponse a, LamResponse b)
+{
+  a.seconds = b.seconds = 0;
+  assert_memory_equal(&a, &b, sizeof(a));
+}
+
+static LamResponse SolveAlone(PetscInt64 key)
+{
+  LamNodeChain chain = NewChain(LAM_INTERFACE_CONTACT, ROOM);
+  const LamResponse response = Solve(chain, key);
+
+  assert_int_equal(LamNodeChainDestroy(&chain), 0);
+  return response;
+}
+
+/* ---- contact ---- */
+
+static void ChildStartsFromItsParent(void **unused)
+{
+  const PetscInt64 child = Key(0, HALF, LAM_ROOT, 0), parent = LamGridNodeParent(&grid, child);
+  LamResponse first, second;
+  LamRVEState state;
+  LamLoad load;
+
+  assert_int_equal(parent, Key(0, 0, LAM_ROOT, 0));
+  assert_int_equal(LamRVEStateCreate(rve, &state), 0);
+  assert_int_equal(LamGridNodeLoad(&grid, parent, &load), 0);
+  assert_int_equal(LamRVESolve(rve, &load, state, &first), 0);
+  assert_int_equal(LamGridNodeLoad(&grid, child, &load), 0);
+  assert_int_equal(LamRVESolve(rve, &load, state, &second), 0);
+  assert_int_equal(second.status, LAM_CONVERGED);
+  AssertSame(SolveAlone(parent), first);
+  AssertSame(SolveAlone(child), second);
+  assert_true(memcmp(SolveFromReference(rve, load).P, second.P, sizeof(second.P))); /* another start, other bits */
+  assert_int_equal(LamRVEStateDestroy(&state), 0);
+}
+
+static const int family[][4] = {
+    {0, 0, LAM_ROOT, 0}, {0, HALF, LAM_ROOT, 0}, {0, QUARTER, HALF, 0}, {0, 0, HALF, HALF}, {QUARTER, HALF, HALF, HALF},
+};
+enum { FAMILY = (int)(sizeof(family) / sizeof(family[0])) };
+
+/* Whatever was solved before, and remembered or forgotten: `memory` 0 leaves room for one node. */
+static void OrderAndMemoryDoNotMatter(void **unused)
+{
+  LamResponse alone[FAMILY];
+
+  for (int n = 0; n < FAMILY; n++) alone[n] = SolveAlone(Key(family[n][0], family[n][1], family[n][2], family[n][3]));
+  for (int variant = 0; variant < 4; variant++) {
+    LamNodeChain chain = NewChain(LAM_INTERFACE_CONTACT, variant < 2 ? ROOM : 0);
+
+    for (int k = 0; k < FAMILY; k++) {
+      const int n = variant % 2 ? FAMILY - 1 - k : k;
+
+      AssertSame(Solve(chain, Key(family[n][0], family[n][1], family[n][2], family[n][3])), alone[n]);
+    }
+    assert_int_equal(LamNodeChainDestroy(&chain), 0);
+  }
+}
+
+/* A parent without an answer is no start: the strains of this one are those of no F. */
+static void FailedParentIsPassedOver(void **unused)
+{
+  const PetscInt64 child = Key(HALF, HALF, LAM_ROOT, 0), parent = LamGridNodeParent(&grid, child);
+  const struct LamGrid_s usual = grid;
+  LamLoad load;
+
+  grid.origin = -0.35;
+  grid.step = 0.72;
+  assert_int_equal(parent, Key(0, 0, LAM_ROOT, 0));
+  assert_int_equal(SolveAlone(parent).status, LAM_INVALID_F);
+  assert_int_equal(LamGridNodeLoad(&grid, child, &load), 0);
+  AssertSame(SolveAlone(child), SolveFromReference(rve, load));
+  grid = usual;
+}
+
+/* ---- bonded ---- */
+
+static void BondedNodesStartFromTheReference(void **unused)
+{
+  const PetscInt64 child = Key(0, HALF, LAM_ROOT, 0);
+  LamNodeChain chain = NewChain(LAM_INTERFACE_BONDED, ROOM);
+  LamLoad load;
+
+  assert_int_equal(LamGridNodeLoad(&grid, child, &load), 0);
+  AssertSame(Solve(chain, child), SolveFromReference(rve, load));
+  assert_int_equal(LamNodeChainDestroy(&chain), 0);
+}
+
+static int SetUp(void **state)
+{
+  const LamMicrostructure micro = ContactTissue(4, 1);
+
+  grid = (struct LamGrid_s){.contact = PETSC_TRUE,
+                            .symmetric = PETSC_TRUE,
+                            .axes = LamLatticeAxesOf(0),
+                            .origin = -0.02,
+                            .step = 0.06,
+                            .cohesion = 0.002 * MPA,
+                            .suction_scale = 0.01 * MPA,
+                            .tau_min = log1p(2.0),
+                            .tau_step = 0.5,
+                            .tau_cells = 1};
+  rve = NewRVE(&micro);
+  return 0;
+}
+
+static int TearDown(void **state)
+{
+  return LamRVEDestroy(&rve);
+}
+
+static int Run(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(ChildStartsFromItsParent),
+      cmocka_unit_test(OrderAndMemoryDoNotMatter),
+      cmocka_unit_test(FailedParentIsPassedOver),
+      cmocka_unit_test(BondedNodesStartFromTheReference),
+  };
+
+  return cmocka_run_group_tests(tests, SetUp, TearDown);
+}
+
+int main(int argc, char **argv)
+{
+  return RunWithPetsc(argc, argv, Run);
+}
