@@ -214,7 +214,7 @@ const LamKey LamKeys[] = {
      .help = "Cohesion of this entry's states; only with law `contact`."},
 
     {MAP("sample"), .example = "{stretch: {min: -0.05, max: 0.25}}",
-     .help = "States for `lamella build`: a box of deformations and turgor, filled evenly."},
+     .help = "States for `lamella build`: a box of deformations and turgor, to be answered by a table."},
     {MAP("sample.stretch"), REQUIRED, .example = "{min: -0.05, max: 0.25}",
      .help = "Principal logarithmic strains in the plane."},
     {REAL("sample.stretch.min"), REQUIRED, FROM(-2), TO(2), .example = "-0.05", .help = "Smallest."},
@@ -224,9 +224,9 @@ const LamKey LamKeys[] = {
     {STRESS("sample.turgor.min"), REQUIRED, .example = "0 MPa", .help = "Smallest."},
     {STRESS("sample.turgor.max"), REQUIRED, .example = "0.05 MPa", .help = "Largest; not below `min`."},
     {INTEGER("sample.count"), FROM(1), TO(100000000), .default_words = "as many as the accuracy needs",
-     .example = "1000", .help = "Number of states."},
+     .example = "1000", .help = "Number of nodes of the table; those where it is least accurate come first."},
     {REAL("sample.accuracy"), ABOVE(0), TO(0.5), .default_words = "the scene's `accuracy`", .example = "0.01",
-     .help = "Sample until the answers have this error; instead of `count`."},
+     .help = "Add nodes until the estimated error is below this; instead of `count`."},
 
     {MAP("macro"), .example = "{mesh: {...}, boundary: [...]}", .help = "The body for `lamella fe2`, in plane strain."},
     {MAP("macro.mesh"), REQUIRED, .example = "{box: [10 mm, 10 mm], elements: [8, 8]}", .help = "Its mesh."},
