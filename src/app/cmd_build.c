@@ -213,6 +213,7 @@ static PetscErrorCode NewGrid(Build *b, LamGrid *grid)
   PetscCall(PetscFree(text));
   PetscCall(LamGridGetRecords(*grid, &n, &keys, &records));
   PetscCall(LamRecordWriterCommit(b->writer, n, keys, records));
+  b->added = n;
   PetscFunctionReturn(0);
 }
 
