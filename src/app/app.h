@@ -32,6 +32,7 @@ PetscErrorCode LamCommandCheck(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandBuild(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandQuery(LamArgs *args, int *exit_status);
+PetscErrorCode LamCommandVerify(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandMap(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status);
@@ -60,6 +61,14 @@ typedef struct {
 */
 PetscErrorCode LamOptionsParse(LamArgs *args, const char usage[], const char summary[], const LamOption options[],
                                int positional_count, const char *positional[], PetscBool *done, int *exit_status);
+/* Tells, on rank 0, what is wrong with the value of an option; returns PETSC_FALSE. */
+PetscBool LamUsageError(const char command[], const char option[], const char value[], const char problem[],
+                        int *exit_status);
+/* The value of --accuracy: above 0, or inf. NULL leaves *accuracy as it is; PETSC_FALSE: told as above. */
+PetscBool LamAccuracyParse(const char command[], const char text[], PetscReal *accuracy, int *exit_status);
+/* A whole number from `least` on, likewise. */
+PetscBool LamCountParse(const char command[], const char option[], const char text[], PetscInt least, PetscInt *count,
+                        int *exit_status);
 
 /* ---- output.c ---- */
 /* The JSON object of a solved state, in physical units. state < 0: no "state" member. The caller owns it. */
@@ -68,8 +77,9 @@ PetscErrorCode LamResponseToJSON(const LamResponse *response, const LamScales *s
 json_t *LamJSONReal(PetscReal value); /* null where not finite */
 json_t *LamJSONReals(PetscInt n, const PetscReal values[], PetscReal scale);
 PetscErrorCode LamPrintJSON(json_t *object); /* one line on stdout, rank 0; takes ownership */
-/* Table of states for a person, stdout; contact tissue has columns of its own. */
+/* Table of states for a person, stdout; contact tissue has columns of its own, and answers of a database. */
 PetscErrorCode LamPrintResponseHeader(LamInterfaceLawType interface);
+PetscErrorCode LamPrintAnswerHeader(LamInterfaceLawType interface);
 PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales *scales, LamInterfaceLawType interface,
                                    PetscInt state);
 

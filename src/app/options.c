@@ -2,6 +2,7 @@
   The command line of a command: GNU conventions by getopt_long, the help from the same table.
 */
 #include "app.h"
+#include <errno.h>
 #include <getopt.h>
 #include <stdlib.h>
 #include <string.h>
@@ -220,4 +221,40 @@ PetscErrorCode LamOptionsParse(LamArgs *args, const char usage[], const char sum
     *done = PETSC_FALSE;
   }
   PetscFunctionReturn(0);
+}
+
+/* ---- values ---- */
+
+PetscBool LamUsageError(const char command[], const char option[], const char value[], const char problem[],
+                        int *exit_status)
+{
+  if (LamAppIsRoot()) fprintf(stderr, "lamella %s: %s \"%s\": %s\n", command, option, value, problem);
+  *exit_status = LAM_EXIT_USAGE;
+  return PETSC_FALSE;
+}
+
+PetscBool LamAccuracyParse(const char command[], const char text[], PetscReal *accuracy, int *exit_status)
+{
+  char *end;
+
+  if (!text) return PETSC_TRUE;
+  *accuracy = strtod(text, &end);
+  if (end != text && !*end && *accuracy > 0) return PETSC_TRUE;
+  return LamUsageError(command, "--accuracy", text, "a relative error is wanted, such as 0.01, or inf for any",
+                       exit_status);
+}
+
+PetscBool LamCountParse(const char command[], const char option[], const char text[], PetscInt least, PetscInt *count,
+                        int *exit_status)
+{
+  char *end, wanted[64];
+  long value;
+
+  if (!text) return PETSC_TRUE;
+  errno = 0;
+  value = strtol(text, &end, 10);
+  *count = (PetscInt)value;
+  if (end != text && !*end && !errno && value >= least && value <= PETSC_MAX_INT) return PETSC_TRUE;
+  snprintf(wanted, sizeof(wanted), "a whole number from %" PetscInt_FMT " on is wanted", least);
+  return LamUsageError(command, option, text, wanted, exit_status);
 }

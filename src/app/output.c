@@ -102,7 +102,8 @@ PetscErrorCode LamPrintJSON(json_t *object)
 
 /* ---- table ---- */
 
-PetscErrorCode LamPrintResponseHeader(LamInterfaceLawType interface)
+/* Names and units of the columns; `tail`, `tail_units`: of those at the end. */
+static PetscErrorCode PrintHeader(LamInterfaceLawType interface, const char tail[], const char tail_units[])
 {
   const PetscBool contact = (PetscBool)(interface == LAM_INTERFACE_CONTACT);
 
@@ -111,12 +112,26 @@ PetscErrorCode LamPrintResponseHeader(LamInterfaceLawType interface)
   printf("%5s %7s %7s %7s %7s %7s  %-14s %10s %10s %10s %10s %6s %10s", "state", "F11", "F12", "F21", "F22", "turgor",
          "status", "P11", "P12", "P21", "P22", "lumen", "traction");
   if (contact) printf(" %9s %9s %8s %8s %9s %8s", "cohesion", "opening", "debonded", "open", "largest", "floating");
-  printf(" %5s %8s\n", "iter.", "time");
+  printf(" %s\n", tail);
   printf("%5s %7s %7s %7s %7s %7s  %-14s %10s %10s %10s %10s %6s %10s", "", "", "", "", "", "MPa", "", "MPa", "MPa",
          "MPa", "MPa", "of V0", "MPa");
   if (contact) printf(" %9s %9s %8s %8s %9s %8s", "MPa", "of V0", "share", "share", "gap/a", "cells");
-  printf(" %5s %8s\n", "", "ms");
+  printf(" %s\n", tail_units);
   PetscCall(FlushOutput());
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamPrintResponseHeader(LamInterfaceLawType interface)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PrintHeader(interface, "iter.     time", "            ms"));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamPrintAnswerHeader(LamInterfaceLawType interface)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PrintHeader(interface, "error est. indicators     time", "         %                  us"));
   PetscFunctionReturn(0);
 }
 
@@ -145,6 +160,19 @@ static void PrintContact(const LamResponse *response, PetscReal MPa)
     printf(" %8" PetscInt_FMT, response->floating_cells);
 }
 
+/* What is at the end of a row: the cost of a solve, or how far an answer is to be trusted. */
+static void PrintTail(const LamResponse *response)
+{
+  if (response->source == LAM_SOURCE_SOLVE) {
+    printf(" %5" PetscInt_FMT, response->newton_iterations);
+    PrintColumn(8, 2, 'f', 1e3 * response->seconds);
+  } else {
+    PrintColumn(10, 4, 'f', 100 * response->error_estimate);
+    printf(" %10s", !LamResponseHasFields(response) ? "-" : response->indicators_trusted ? "trusted" : "doubtful");
+    PrintColumn(8, 1, 'f', 1e6 * response->seconds);
+  }
+}
+
 PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales *scales, LamInterfaceLawType interface,
                                    PetscInt state)
 {
@@ -160,8 +188,7 @@ PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales 
   PrintColumn(6, 4, 'f', response->lumen_fraction);
   PrintColumn(10, 3, 'e', response->max_traction * MPa);
   if (interface == LAM_INTERFACE_CONTACT) PrintContact(response, MPa);
-  printf(" %5" PetscInt_FMT, response->newton_iterations);
-  PrintColumn(8, 2, 'f', 1e3 * response->seconds);
+  PrintTail(response);
   putchar('\n');
   if (LamResponseHasFields(response) && F[8] != 1)
     printf("      F33 %.4f, P33 %.3e MPa\n", (double)F[8], (double)(response->P[8] * MPa));

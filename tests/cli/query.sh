@@ -19,11 +19,13 @@ YAML
 "$lamella" build s.yaml -d db.h5 --quiet >/dev/null
 
 # in reach
-expect 0 "$lamella" query db.h5 -F "1.03 0.01 0 1.02" -p "0.02 MPa" --radius 0.05 --json --tangent
+expect 0 "$lamella" query db.h5 -F "1.03 0.01 0 1.02" -p "0.02 MPa" --accuracy inf --json --tangent
 [ "$(wc -l <out.txt)" = 1 ] || fail "more than one line"
-grep -q '"source": *"database"' out.txt || fail "no source: $(cat out.txt)"
-grep -q '"tangent": *\[' out.txt || fail "no tangent"
-expect 0 "$lamella" query db.h5 -F "1.03 0.01 0 0 1.02 0 0 0 1" -p "20 kPa" --radius 0.05
+for part in '"source": *"database"' '"tangent": *\[' '"error_estimate": *[0-9]' '"indicators_trusted": *[tf]'; do
+  grep -q "$part" out.txt || fail "$part is missing: $(cat out.txt)"
+done
+expect 0 "$lamella" query db.h5 -F "1.03 0.01 0 0 1.02 0 0 0 1" -p "20 kPa" --accuracy inf
+grep -q 'error est. indicators' out.txt || fail "no columns of the estimate: $(cat out.txt)"
 
 # out of reach: said so, not solved
 expect 3 "$lamella" query db.h5 -F "1.5 0 0 1.5" -p "0.02 MPa" --json
@@ -32,18 +34,38 @@ grep -q '"reason"' out.txt || fail "no reason: $(cat out.txt)"
 expect 3 "$lamella" query db.h5 -F "-1 0 0 1" --json
 grep -q '"status": *"invalid_F"' out.txt || fail "status: $(cat out.txt)"
 
-# many questions
-printf '1.03 0.01 0 1.02\n\n1.02,0,0,1.02 ; 0.025 MPa\n' >lines
-expect 0 "$lamella" query db.h5 -F - -p "0.02 MPa" --radius 0.05 --json <lines
-[ "$(wc -l <out.txt)" = 2 ] || fail "not two answers"
+# what is asked for decides whether there is an answer
+expect 3 "$lamella" query db.h5 -F "1.03 0.01 0 1.02" --accuracy 1e-12 --json
+grep -q '"status": *"out_of_reach"' out.txt || fail "an answer with an error of 1e-12: $(cat out.txt)"
+
+# many questions; turgor and cohesion in the line, else by -p, else the scene's
+cat >lines <<'LINES'
+# F11 F12 F21 F22, then turgor and cohesion
+1.03 0.01 0 1.02
+
+1.02,0,0,1.02 ; 0.025 MPa
+1.02 0 0 1.02 15kPa 1 kPa
+1.02 0 0 0 1.02 0 0 0 1 ; 0.03 N mm-2; 0.002 MPa
+LINES
+expect 0 "$lamella" query db.h5 -F - --accuracy inf --json <lines
+sed -E 's/.*"turgor": ([^,]*), "cohesion": ([^,]*),.*/\1 \2/' out.txt | awk '{ printf "%.6g %.6g\n", $1, $2 }' >told
+cmp -s told <(printf '0.02 0\n0.025 0\n0.015 0.001\n0.03 0.002\n') || fail "turgor and cohesion of lines: $(cat told)"
+expect 0 "$lamella" query db.h5 -F "1.03 0.01 0 1.02" --accuracy inf
+grep -q "turgor where not given 0.02 MPa, the scene's" out.txt || fail "the turgor is not told: $(cat out.txt)"
+expect 0 "$lamella" query db.h5 -F "1.03 0.01 0 1.02 ; 0.03 MPa" -p "0.01 MPa" --accuracy inf --json
+grep -qE '"turgor": 0.0(3|29999)' out.txt || fail "-p before the question's own turgor: $(cat out.txt)"
 printf '1.03 0.01 0 1.02\n1.02 zero 0 1.02\n' >lines
-expect 2 "$lamella" query db.h5 -F - -p "0.02 MPa" --radius 0.05 --json <lines
-grep -q 'line 2' err.txt || fail "the line is not named: $(cat err.txt)"
+expect 2 "$lamella" query db.h5 -F - -p "0.02 MPa" --accuracy inf --json <lines
+grep -q 'line 2: "zero" is no number' err.txt || fail "the line is not named: $(cat err.txt)"
 
 # usage and wrong files
 expect 1 "$lamella" query db.h5
-expect 1 "$lamella" query db.h5 -F "1 0 0"
+for question in "1 0 0" "1 0 0 1 0.02" "1 0 0 1; 0.02" "1 0 0 1 1 MPa 1 MPa 1 MPa" "1 0 0 1;" "1 0 0 1 20 degC"; do
+  expect 1 "$lamella" query db.h5 -F "$question"
+done
 expect 1 "$lamella" query db.h5 -F "1 0 0 1" -p 0.02
+expect 1 "$lamella" query db.h5 -F "1 0 0 1" --accuracy 0
+expect 1 "$lamella" query db.h5 -F "1 0 0 1" --accuracy "1 %"
 expect 2 "$lamella" query s.yaml -F "1 0 0 1"
 expect 4 "$lamella" query missing.h5 -F "1 0 0 1"
 
@@ -76,8 +98,8 @@ load:
   - {F: [[1, 0.1], [0, 1]]}
 YAML
 expect 0 "$lamella" rve uneven.yaml -o uneven.h5
-expect 0 "$lamella" query uneven.h5 -F "1 0.1 0 1" -p "0.02 MPa" --radius 0.01
-expect 3 "$lamella" query uneven.h5 -F "1 -0.1 0 1" -p "0.02 MPa" --radius 0.01
+expect 0 "$lamella" query uneven.h5 -F "1 0.1 0 1" -p "0.02 MPa"
+expect 3 "$lamella" query uneven.h5 -F "1 -0.1 0 1" -p "0.02 MPa"
 
 # where they differ in turgor dPsi/dp is no lumen volume: that is the record's, and unknown elsewhere
 sed -i 's/wall_thickness: 22.5 um/turgor: 0.5/' uneven.yaml
