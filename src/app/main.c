@@ -31,6 +31,7 @@ static const struct {
     {"rve", "solve the RVE along the scene's load", LamCommandRVE, PETSC_TRUE},
     {"build", "fill a response database", LamCommandBuild, PETSC_TRUE},
     {"query", "one answer, or many, from a database", LamCommandQuery, PETSC_FALSE},
+    {"verify", "solve part of a database's answers afresh and compare", LamCommandVerify, PETSC_TRUE},
     {"fe2", "solve the scene's macroscale problem", LamCommandFE2, PETSC_TRUE},
     {"map", "tell how tissue fails over two of its quantities", LamCommandMap, PETSC_TRUE},
     {"plot", "draw what a file holds", LamCommandPlot, PETSC_FALSE},

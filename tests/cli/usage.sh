@@ -16,7 +16,7 @@ expect 1 "Usage: lamella COMMAND" "$lamella"
 expect 0 "Usage: lamella COMMAND" "$lamella" --help
 [ -s err.txt ] && fail "help goes to stderr"
 cp out.txt help.txt
-for command in check rve build query fe2 plot info; do
+for command in check rve build query verify fe2 map plot info; do
   grep -q "^  $command " help.txt || fail "--help does not name $command"
   expect 0 "Usage: lamella $command" "$lamella" $command --help
   [ -s err.txt ] && fail "$command --help goes to stderr"
@@ -39,6 +39,9 @@ expect 1 "option '-o' needs a value" "$lamella" rve scene.yaml -o
 expect 1 "option '--output' needs a value" "$lamella" rve scene.yaml --output
 expect 1 "option '--output' needs a value" "$lamella" rve scene.yaml --output=
 expect 1 "option '--json=yes' takes no value" "$lamella" check scene.yaml --json=yes
+expect 1 "a whole number from 1 on" "$lamella" verify db.h5 --samples 1.5
+expect 1 "a whole number from 0 on" "$lamella" verify db.h5 --seed -1
+expect 1 "a relative error is wanted" "$lamella" verify db.h5 --accuracy none
 expect 2 "missing.yaml" "$lamella" check missing.yaml
 expect 4 "missing.h5" "$lamella" info missing.h5
 
