@@ -1,8 +1,7 @@
 /*
   What `info` tells of a file, as JSON.
 */
-#include "database_internal.h"
-#include <jansson.h>
+#include "table.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -105,6 +104,20 @@ static json_t *Text(const char text[])
   return string ? string : json_null();
 }
 
+static PetscErrorCode AddTable(LamDatabase db, json_t *object)
+{
+  LamTable table;
+  json_t *described;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamDatabaseGetTable(db, &table));
+  if (!table) PetscFunctionReturn(0);
+  PetscCall(LamTableDescribe(table, db->header.scales.stress / PA_PER_MPA, &described));
+  PetscCall(LamTableDestroy(&table));
+  json_object_set_new(object, "table", described);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamDatabaseDescribe(LamDatabase db, char **json)
 {
   const LamHeader *h = &db->header;
@@ -118,6 +131,8 @@ PetscErrorCode LamDatabaseDescribe(LamDatabase db, char **json)
                      "failed", (json_int_t)(db->n - summary.counts[LAM_CONVERGED]), "format_version",
                      (int)h->format_version, "microstructures", Microstructures(db), "statuses", Statuses(&summary),
                      "coverage", Coverage(h, &summary), "accuracy", h->accuracy);
+  json_object_set_new(object, "scattered", json_integer(db->scattered_count));
+  PetscCall(AddTable(db, object));
   json_object_set_new(object, "creator", Text(h->creator));
   json_object_set_new(object, "created", Text(h->created));
   json_object_set_new(object, "host", Text(h->host));

@@ -112,4 +112,8 @@ void LamTableThickness(LamTable table, const LamTablePoint *point, const LamTabl
                        const LamLatticeState *lattice, LamResponse *r);
 void LamTableIndicators(LamTable table, const LamTablePoint *point, const LamTableCell *cell, LamResponse *r);
 
+/* ---- table_info.c ---- */
+/* The member `table` of what `info` tells; MPa: C1 + C2 in MPa. The caller owns it. */
+PetscErrorCode LamTableDescribe(LamTable table, PetscReal MPa, json_t **object);
+
 #endif

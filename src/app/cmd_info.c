@@ -104,6 +104,55 @@ static void PrintMap(const json_t *map)
   }
 }
 
+/* Integers in a row: of the levels, the coarsest first. */
+static void PrintLevels(const char label[], const json_t *list)
+{
+  size_t i;
+  json_t *item;
+
+  printf("  %-18s", label);
+  json_array_foreach(list, i, item)
+  {
+    printf(" %lld", (long long)json_integer_value(item));
+  }
+  putchar('\n');
+}
+
+static void PrintGrid(const json_t *grid)
+{
+  const json_t *turgor = json_object_get(grid, "turgor");
+
+  printf("  %-18s step %.4g from %.4g", "grid of strains", json_number_value(json_object_get(grid, "step")),
+         json_number_value(json_object_get(grid, "origin")));
+  if (turgor) {
+    printf(", at turgor %.4g MPa\n", json_number_value(turgor));
+    return;
+  }
+  printf(" of free cells, at cohesion %.4g MPa\n", json_number_value(json_object_get(grid, "cohesion")));
+  PrintRange("  free cells", json_object_get(grid, "free_cell_strain"), " in strain");
+  PrintRange("  grid of suction", json_object_get(grid, "suction"), " MPa");
+}
+
+/* What interpolation stands on. */
+static void PrintNodes(const json_t *table)
+{
+  const json_t *flags = json_object_get(table, "flags");
+
+  if (!table) return;
+  PrintInteger("nodes", json_object_get(table, "nodes"));
+  PrintLevels("by level", json_object_get(table, "nodes_by_level"));
+  PrintLevels("complete cells", json_object_get(table, "cells_by_level"));
+  PrintLevels("of them mixed", json_object_get(table, "mixed_cells_by_level"));
+  printf("  %-18s %lld unstable, %lld on another branch, %lld without solution, %lld floating\n", "states",
+         (long long)json_integer_value(json_object_get(flags, "unstable")),
+         (long long)json_integer_value(json_object_get(flags, "other_branch")),
+         (long long)json_integer_value(json_object_get(flags, "failed")),
+         (long long)json_integer_value(json_object_get(flags, "floating")));
+  PrintRange("  lattice strains", json_object_get(table, "lattice_strain"), "");
+  PrintRange("  suction", json_object_get(table, "suction"), " MPa");
+  PrintGrid(json_object_get(table, "grid"));
+}
+
 static void PrintTable(const json_t *info)
 {
   const json_t *coverage = json_object_get(info, "coverage"), *libraries = json_object_get(info, "libraries");
@@ -117,6 +166,8 @@ static void PrintTable(const json_t *info)
   PrintRange("strain (principal)", json_object_get(coverage, "principal_log_strain"), "");
   PrintRange("turgor", json_object_get(coverage, "turgor"), " MPa");
   PrintRange("cohesion", json_object_get(coverage, "cohesion"), " MPa");
+  PrintNodes(json_object_get(info, "table"));
+  if (json_object_get(info, "table")) PrintInteger("scattered records", json_object_get(info, "scattered"));
   PrintMicrostructures(json_object_get(info, "microstructures"));
   PrintInteger("format version", json_object_get(info, "format_version"));
   PrintText("written by", json_object_get(info, "creator"));
