@@ -160,7 +160,9 @@ PetscErrorCode LamTableNeeds(LamTable table, const LamLoad *load, PetscReal accu
 
 /*
   The answer of the table, else of the records that belong to no grid: the question's own state, or a blend of
-  second-order models of the nearest ones, which is trusted within a strain of 0.04 (query_scatter.c).
+  second-order models of the nearest ones, which is trusted within a strain of 0.04 (query_scatter.c). Safe to call from
+  several threads at once as long as none adds records, and where LamDatabaseGetTable, or a first question, has made the
+  table since the last were added.
 */
 PetscErrorCode LamDatabaseQuery(LamDatabase database, const LamLoad *load, PetscReal accuracy, LamResponse *response);
 
