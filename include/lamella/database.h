@@ -126,6 +126,8 @@ PetscBool LamKeyIsNode(PetscInt64 key);
 PetscBool LamKeyIsFreeCell(PetscInt64 key);
 /* The state of a node. */
 PetscErrorCode LamGridNodeLoad(LamGrid grid, PetscInt64 key, LamLoad *load);
+/* How often the grid was halved until this node came in; 0: coarsest; -1: a state of cells that touch no one. */
+PetscInt LamGridNodeLevel(LamGrid grid, PetscInt64 key);
 /* The node that a solve of this one may start from: the nearest of the next coarser level; -1: from the reference. */
 PetscInt64 LamGridNodeParent(LamGrid grid, PetscInt64 key);
 

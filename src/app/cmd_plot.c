@@ -2,7 +2,7 @@
   lamella plot: a picture of what a file holds.
 */
 #include "app.h"
-#include "plot.h"
+#include "plot_slice.h"
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -42,19 +42,31 @@ static PetscErrorCode ParseState(const char text[], PetscInt *state)
 
 PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status)
 {
-  const char *output = NULL, *state = NULL, *field = NULL, *input;
+  LamPlotRequest request = {.state = -1};
+  const char *output = NULL, *state = NULL, *input;
   const LamOption options[] = {
       {'o', "output", LAM_OPTION_TEXT, "FIG.png|.svg|.pdf", "the picture (default: FILE.png)", &output},
       {0, "state", LAM_OPTION_TEXT, "N", "state of an RVE file, step of an fe2 file (default: the last one)", &state},
-      {0, "field", LAM_OPTION_TEXT, "NAME", "field that gives the colours (docs/pictures.md lists them)", &field},
+      {0, "field", LAM_OPTION_TEXT, "NAME", "field that gives the colours (docs/pictures.md lists them)",
+       &request.field},
+      {0, "angle", LAM_OPTION_TEXT, "ANGLE",
+       "slice through a table: first principal axis to the normal of face 0, \"15 deg\" (default: 0)", &request.angle},
+      {0, "suction", LAM_OPTION_TEXT, "PRESSURE",
+       "slice of contact tissue: turgor + cohesion, \"0.02 MPa\" (default: in the middle)", &request.suction},
+      {0, "turgor", LAM_OPTION_TEXT, "PRESSURE", "slice of bonded tissue, \"0.02 MPa\" (default: that of the nodes)",
+       &request.turgor},
+      {0, "accuracy", LAM_OPTION_TEXT, "SHARE", "slice: the error that is asked for (default: that of the file)",
+       &request.accuracy},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL}};
   char kind[LAM_NAME_LENGTH], name[PETSC_MAX_PATH_LEN];
-  LamPlotRequest request = {.state = -1};
   PetscBool done;
 
   PetscFunctionBeginUser;
-  PetscCall(LamOptionsParse(args, "plot FILE.h5 [-o FIG.png|.svg|.pdf] [--state N] [--field NAME]",
-                            "Draws what the file holds.", options, 1, &input, &done, exit_status));
+  PetscCall(
+      LamOptionsParse(args,
+                      "plot FILE.h5 [-o FIG.png|.svg|.pdf] [--state N] [--field NAME]\n"
+                      "                    [--angle ANGLE] [--suction PRESSURE | --turgor PRESSURE] [--accuracy SHARE]",
+                      "Draws what the file holds.", options, 1, &input, &done, exit_status));
   if (done) PetscFunctionReturn(0);
   if (!output) {
     PetscCall(DefaultOutput(input, sizeof name, name));
@@ -64,8 +76,8 @@ PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status)
   if (state) PetscCall(ParseState(state, &request.state));
   request.input = input;
   request.output = output;
-  request.field = field;
   PetscCall(LamFileReadKind(input, kind));
+  if (strcmp(kind, "database")) PetscCall(LamSliceRefuse(&request));
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(Plots); i++) {
     if (strcmp(kind, Plots[i].kind)) continue;
     PetscCall(Plots[i].plot(&request));

@@ -10,6 +10,7 @@
     plot_curves.c    stress-load curves
     plot_read.c      arrays of a file, checked
     plot_rve.c, plot_fe2.c, plot_database.c, plot_map.c    one kind of file each (plot_map_read.c: what a map shows)
+    plot_table.c, plot_slice.c    a database's table: its picture, and what a slice through it holds
 
   Lengths on the page are points (1/72 inch), y downwards. Text markup: $...$ italic, _{...} subscript, ^{...}
   superscript.
@@ -76,10 +77,12 @@ void LamFormatNumber(PetscReal value, char text[32]);
 #define LAM_TEXT_SIZE 7.5  /* labels */
 #define LAM_TICK_SIZE 6.75 /* numbers at ticks, legends */
 
-/* Round numbers first + i*step, i = 0..count-1; labels show value / 10^exponent with `decimals`. */
+/* Round numbers first + i*step, i = 0..count-1; labels show value / 10^exponent with `decimals`, or 10^value where the
+   axis is of logarithms. */
 typedef struct {
   PetscReal first, step;
   PetscInt count, decimals, exponent;
+  PetscBool is_log;
 } LamTicks;
 /* At most about `wanted` ticks in [low, high], steps of 1, 2 or 5 times a power of ten (whole numbers: at least 1). */
 LamTicks LamTicksChoose(PetscReal low, PetscReal high, PetscInt wanted, PetscBool whole);
@@ -105,6 +108,8 @@ void LamAxisLabel(const LamAxis *axis, size_t size, char text[]);
 /* Chooses ticks and the frame inside `outer` that leaves room for numbers and labels. */
 void LamAxesLayout(LamCanvas canvas, LamRect outer, LamAxes *axes);
 void LamAxesDraw(LamCanvas canvas, const LamAxes *axes);
+/* The frame alone: over cells whose colours hide its lines and ticks. */
+void LamAxesFrame(LamCanvas canvas, const LamAxes *axes);
 double LamAxesX(const LamAxes *axes, PetscReal x);
 double LamAxesY(const LamAxes *axes, PetscReal y);
 
@@ -140,10 +145,12 @@ void LamChart(LamCanvas canvas, LamRect outer, LamAxes *axes, PetscInt n, const 
 /* Colour map: perceptually uniform (viridis), share 0..1 (clamped). */
 LamColour LamColourMap(PetscReal share);
 
-/* Limits of a colour scale; clipped: values beyond the lower or upper limit exist. */
+/* Limits of a colour scale; clipped: values beyond the lower or upper limit exist; is_log: values are decadic
+   logarithms of what the bar shows. */
 typedef struct {
   PetscReal low, high;
   PetscBool clipped[2];
+  PetscBool is_log;
 } LamColourRange;
 /* The middle 98 % of the finite values where the rest is far out (stress concentrations), else all of them. */
 PetscErrorCode LamColourRangeFind(PetscInt n, const PetscReal values[], LamColourRange *range);
@@ -269,6 +276,8 @@ typedef struct {
   const char *input, *output;
   PetscInt state;    /* -1: the last one */
   const char *field; /* NULL: the default of the kind */
+  /* of a slice through a table, as the user wrote them; NULL: chosen */
+  const char *angle, *suction, *turgor, *accuracy;
 } LamPlotRequest;
 PetscErrorCode LamPlotRVE(const LamPlotRequest *request);
 PetscErrorCode LamPlotFE2(const LamPlotRequest *request);

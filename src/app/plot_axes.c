@@ -11,7 +11,7 @@ static const double TickLength = 2.5, Gap = 3.0;
 
 LamTicks LamTicksChoose(PetscReal low, PetscReal high, PetscInt wanted, PetscBool whole)
 {
-  LamTicks ticks = {low, high - low, 1, 0, 0};
+  LamTicks ticks = {.first = low, .step = high - low, .count = 1};
   const PetscReal raw = (high - low) / PetscMax(wanted, 1);
   const PetscReal largest = PetscMax(PetscAbsReal(low), PetscAbsReal(high));
   PetscReal power, share;
@@ -35,6 +35,10 @@ void LamTicksFormat(const LamTicks *ticks, PetscInt i, char text[32])
 {
   PetscReal value = (ticks->first + i * ticks->step) * PetscPowReal(10, -ticks->exponent);
 
+  if (ticks->is_log) {
+    snprintf(text, 32, "%g", (double)PetscPowReal(10, value));
+    return;
+  }
   if (PetscAbsReal(value) < 1e-6 * ticks->step * PetscPowReal(10, -ticks->exponent)) value = 0;
   snprintf(text, 32, "%s%.*f", value < 0 ? "\u2212" : "", (int)ticks->decimals, (double)PetscAbsReal(value));
 }
@@ -154,18 +158,25 @@ static void DrawTicks(LamCanvas canvas, const LamAxes *axes, PetscBool horizonta
   }
 }
 
-void LamAxesDraw(LamCanvas canvas, const LamAxes *axes)
+void LamAxesFrame(LamCanvas canvas, const LamAxes *axes)
 {
   cairo_t *cr = LamCanvasCairo(canvas);
+  const LamRect f = axes->frame;
+
+  LamCanvasSetColour(canvas, Ink);
+  cairo_set_line_width(cr, 0.6);
+  cairo_rectangle(cr, f.x, f.y, f.width, f.height);
+  cairo_stroke(cr);
+}
+
+void LamAxesDraw(LamCanvas canvas, const LamAxes *axes)
+{
   const LamRect f = axes->frame;
   char label[128];
 
   DrawTicks(canvas, axes, PETSC_TRUE);
   DrawTicks(canvas, axes, PETSC_FALSE);
-  LamCanvasSetColour(canvas, Ink);
-  cairo_set_line_width(cr, 0.6);
-  cairo_rectangle(cr, f.x, f.y, f.width, f.height);
-  cairo_stroke(cr);
+  LamAxesFrame(canvas, axes);
   LamAxisLabel(&axes->x, sizeof label, label);
   LamCanvasText(canvas, f.x + 0.5 * f.width,
                 f.y + f.height + TickLength + Gap + LAM_TICK_SIZE + Gap + 0.4 * LAM_TEXT_SIZE, 0.5, 0, LAM_TEXT_SIZE,

@@ -39,7 +39,7 @@ PetscErrorCode LamColourRangeFind(PetscInt n, const PetscReal values[], LamColou
   PetscInt m = 0;
 
   PetscFunctionBeginUser;
-  *range = (LamColourRange){0, 1, {PETSC_FALSE, PETSC_FALSE}};
+  *range = (LamColourRange){.low = 0, .high = 1};
   PetscCall(PetscMalloc1(n, &sorted));
   for (PetscInt i = 0; i < n; i++)
     if (!PetscIsInfOrNanReal(values[i])) sorted[m++] = values[i];
@@ -68,7 +68,8 @@ static LamAxes BarAxes(LamRect frame, const LamColourRange *range, const char la
   LamAxes axes = {
       .frame = frame, .x = {.low = 0, .high = 1}, .y = {range->low, range->high, label, unit, PETSC_FALSE, {0}}};
 
-  axes.y.ticks = LamTicksChoose(range->low, range->high, (PetscInt)PetscMax(2, frame.height / 24), PETSC_FALSE);
+  axes.y.ticks = LamTicksChoose(range->low, range->high, (PetscInt)PetscMax(2, frame.height / 24), range->is_log);
+  axes.y.ticks.is_log = range->is_log;
   return axes;
 }
 

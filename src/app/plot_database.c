@@ -4,7 +4,7 @@
   Coordinates: with principal logarithmic strains e1 >= e2 of the plane, m = (e1 + e2)/2 = half ln J and
   r = (e1 - e2)/2, the size of the isochoric strain.
 */
-#include "plot.h"
+#include "plot_slice.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -20,22 +20,6 @@ typedef struct {
   LamColourRange range;
 } DatabasePicture;
 
-/* Principal logarithmic strains of the plane: half the logarithms of the eigenvalues of the plane part of C = F^T F. */
-static void PrincipalStrains(const PetscReal F[9], PetscReal strain[2])
-{
-  PetscReal C[3] = {0, 0, 0}, mean, radius;
-
-  for (int k = 0; k < 3; k++) {
-    C[0] += F[3 * k] * F[3 * k];
-    C[1] += F[3 * k] * F[3 * k + 1];
-    C[2] += F[3 * k + 1] * F[3 * k + 1];
-  }
-  mean = 0.5 * (C[0] + C[2]);
-  radius = hypot(0.5 * (C[0] - C[2]), C[1]);
-  strain[0] = 0.5 * PetscLogReal(mean + radius);
-  strain[1] = mean > radius ? 0.5 * PetscLogReal(mean - radius) : NAN;
-}
-
 static PetscErrorCode FindColour(const LamPlotRequest *request, ColourBy *by)
 {
   PetscFunctionBeginUser;
@@ -47,9 +31,8 @@ static PetscErrorCode FindColour(const LamPlotRequest *request, ColourBy *by)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode LoadDatabase(const LamPlotRequest *request, ColourBy by, DatabasePicture *p)
+static PetscErrorCode LoadDatabase(const LamPlotRequest *request, LamDatabase database, ColourBy by, DatabasePicture *p)
 {
-  LamDatabase database;
   LamMicrostructure micro;
   LamScales scales;
   const LamResponse *records;
@@ -58,16 +41,15 @@ static PetscErrorCode LoadDatabase(const LamPlotRequest *request, ColourBy by, D
 
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(p, sizeof *p));
-  PetscCall(LamDatabaseOpen(request->input, &database));
   PetscCall(LamDatabaseGetRecords(database, &p->n, &records, &keys));
   PetscCall(LamDatabaseGetMicrostructure(database, &micro, &scales, &hash));
   PetscCheck(p->n > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no records to draw", request->input);
   PetscCall(PetscMalloc1(p->n, &p->strain));
   PetscCall(PetscMalloc1(p->n, &p->value));
   for (PetscInt i = 0; i < p->n; i++) {
-    PetscReal square = 0;
+    PetscReal square = 0, angle;
 
-    PrincipalStrains(records[i].load.F, p->strain[i]);
+    LamPrincipalStrains(records[i].load.F, p->strain[i], &angle);
     for (int k = 0; k < 9; k++)
       if (!PetscIsInfOrNanReal(records[i].P[k])) square += PetscSqr(records[i].P[k]);
     p->value[i] = (by == COLOUR_STRESS ? PetscSqrtReal(square) : records[i].load.turgor) * scales.stress * 1e-6;
@@ -78,7 +60,6 @@ static PetscErrorCode LoadDatabase(const LamPlotRequest *request, ColourBy by, D
     if (PetscIsInfOrNanReal(p->strain[i][0]) || PetscIsInfOrNanReal(p->strain[i][1])) p->outside++;
   }
   PetscCall(LamColourRangeFind(p->n, p->value, &p->range));
-  PetscCall(LamDatabaseClose(&database));
   PetscFunctionReturn(0);
 }
 
@@ -163,7 +144,8 @@ static PetscErrorCode Title(const DatabasePicture *p, size_t size, char title[])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamPlotDatabase(const LamPlotRequest *request)
+/* The records as points. */
+static PetscErrorCode PlotRecords(const LamPlotRequest *request, LamDatabase database)
 {
   LamAxes shape = {.x = {.label = "mean strain $m$ = ½ ln $J$"}, .y = {.label = "isochoric strain $r$"}};
   LamAxes principal = {.x = {.label = "larger principal log. strain $e$_{1}"},
@@ -176,9 +158,8 @@ PetscErrorCode LamPlotDatabase(const LamPlotRequest *request)
   double width;
 
   PetscFunctionBeginUser;
-  PetscCheck(request->state < 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "--state: a database is drawn as a whole");
   PetscCall(FindColour(request, &by));
-  PetscCall(LoadDatabase(request, by, &picture));
+  PetscCall(LoadDatabase(request, database, by, &picture));
   PetscCall(LamCanvasCreate(request->output, LAM_PLOT_WIDTH, LAM_PLOT_HEIGHT, &canvas));
   PetscCall(Title(&picture, sizeof title, title));
   LamCanvasSetColour(canvas, Ink);
@@ -193,5 +174,24 @@ PetscErrorCode LamPlotDatabase(const LamPlotRequest *request)
   PetscCall(LamCanvasFinish(&canvas));
   PetscCall(PetscFree(picture.strain));
   PetscCall(PetscFree(picture.value));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamPlotDatabase(const LamPlotRequest *request)
+{
+  LamDatabase database;
+  LamGrid grid;
+
+  PetscFunctionBeginUser;
+  PetscCheck(request->state < 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "--state: a database is drawn as a whole");
+  PetscCall(LamDatabaseOpen(request->input, &database));
+  PetscCall(LamDatabaseGetGrid(database, &grid));
+  if (grid && !request->field)
+    PetscCall(LamPlotTable(request, database));
+  else {
+    PetscCall(LamSliceRefuse(request));
+    PetscCall(PlotRecords(request, database));
+  }
+  PetscCall(LamDatabaseClose(&database));
   PetscFunctionReturn(0);
 }

@@ -62,7 +62,7 @@ PetscErrorCode LamInterfaceRead(const char path[], PetscInt64 state, LamInterfac
     if (interface->pressure[i] > interface->largest_pressure) interface->largest_pressure = interface->pressure[i];
   }
   interface->is_open = (PetscBool)(widest > LAM_VISIBLE_GAP);
-  interface->gaps = (LamColourRange){0, PetscMax(widest, LAM_VISIBLE_GAP), {PETSC_FALSE, PETSC_FALSE}};
+  interface->gaps = (LamColourRange){.low = 0, .high = PetscMax(widest, LAM_VISIBLE_GAP)};
   PetscFunctionReturn(0);
 }
 

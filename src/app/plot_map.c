@@ -262,18 +262,6 @@ static const char *FieldLabel(const char field[])
   return field;
 }
 
-/* The frame over the cells, whose colours hide its lines and ticks. */
-static void DrawFrame(LamCanvas canvas, const LamAxes *axes)
-{
-  cairo_t *cr = LamCanvasCairo(canvas);
-  const LamRect f = axes->frame;
-
-  LamCanvasSetColour(canvas, Ink);
-  cairo_set_line_width(cr, 0.6);
-  cairo_rectangle(cr, f.x, f.y, f.width, f.height);
-  cairo_stroke(cr);
-}
-
 static PetscErrorCode DrawPage(LamCanvas canvas, const LamMapPicture *p)
 {
   const double bar = LamColourBarWidth(canvas, &p->range), width = 0.5 * (LAM_PLOT_WIDTH - 18 - 14 - bar), top = 6;
@@ -294,11 +282,11 @@ static PetscErrorCode DrawPage(LamCanvas canvas, const LamMapPicture *p)
     DrawOnset(canvas, &axes, p);
   else
     PetscCall(DrawContours(canvas, &axes, p));
-  DrawFrame(canvas, &axes);
+  LamAxesFrame(canvas, &axes);
   LamAxesLayout(canvas, right, &axes);
   LamAxesDraw(canvas, &axes);
   DrawField(canvas, &axes, p);
-  DrawFrame(canvas, &axes);
+  LamAxesFrame(canvas, &axes);
   LamColourBar(canvas, axes.frame, &p->range, LamColourMap, FieldLabel(p->field), p->unit);
   PetscFunctionReturn(0);
 }

@@ -84,6 +84,16 @@ static void the_label_of_a_tiny_value_is_its_mantissa(void **state)
   assert_string_equal(text, "20");
 }
 
+static void ticks_of_logarithms_show_the_number(void **state)
+{
+  LamTicks t = LamTicksChoose(-2, 1, 6, PETSC_TRUE);
+  char text[32];
+
+  t.is_log = PETSC_TRUE;
+  LamTicksFormat(&t, 0, text);
+  assert_string_equal(text, "0.01");
+}
+
 static void a_constant_gets_an_axis_around_it(void **state)
 {
   LamAxis axis = {.low = 0.2, .high = 0.2};
@@ -196,6 +206,7 @@ int main(void)
       cmocka_unit_test(tick_labels_have_the_decimals_they_need),
       cmocka_unit_test(tiny_values_get_a_power_of_ten),
       cmocka_unit_test(the_label_of_a_tiny_value_is_its_mantissa),
+      cmocka_unit_test(ticks_of_logarithms_show_the_number),
       cmocka_unit_test(a_constant_gets_an_axis_around_it),
       cmocka_unit_test(numbers_have_a_true_minus_sign),
       cmocka_unit_test(shear_is_drawn_over_its_component),

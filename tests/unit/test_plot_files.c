@@ -217,7 +217,7 @@ static int remove_files(void **state)
 static void draws(PetscErrorCode (*plot)(const LamPlotRequest *), const char input[], const char output[],
                   const char start[])
 {
-  const LamPlotRequest request = {input, output, -1, NULL};
+  const LamPlotRequest request = {.input = input, .output = output, .state = -1};
   char bytes[16] = "";
   FILE *file;
 
@@ -266,56 +266,56 @@ static void refuses(PetscErrorCode (*plot)(const LamPlotRequest *), const LamPlo
 
 static void a_state_that_is_not_there_is_refused(void **state)
 {
-  const LamPlotRequest request = {RVE_FILE, "test_plot_none.pdf", 7, NULL};
+  const LamPlotRequest request = {.input = RVE_FILE, .output = "test_plot_none.pdf", .state = 7};
 
   refuses(LamPlotRVE, &request, PETSC_ERR_USER_INPUT, "states 1 to 3");
 }
 
 static void a_state_without_an_answer_is_refused_with_its_reason(void **state)
 {
-  const LamPlotRequest request = {RVE_FILE, "test_plot_none.pdf", 3, NULL};
+  const LamPlotRequest request = {.input = RVE_FILE, .output = "test_plot_none.pdf", .state = 3};
 
   refuses(LamPlotRVE, &request, PETSC_ERR_USER_INPUT, "limit load");
 }
 
 static void an_unknown_field_is_refused_with_the_known_ones(void **state)
 {
-  const LamPlotRequest request = {FE2_FILE, "test_plot_none.pdf", -1, "colour"};
+  const LamPlotRequest request = {.input = FE2_FILE, .output = "test_plot_none.pdf", .state = -1, .field = "colour"};
 
   refuses(LamPlotFE2, &request, PETSC_ERR_USER_INPUT, "von_mises, ");
 }
 
 static void a_step_that_is_not_there_is_refused(void **state)
 {
-  const LamPlotRequest request = {FE2_FILE, "test_plot_none.pdf", 9, NULL};
+  const LamPlotRequest request = {.input = FE2_FILE, .output = "test_plot_none.pdf", .state = 9};
 
   refuses(LamPlotFE2, &request, PETSC_ERR_USER_INPUT, "steps 0 to 2");
 }
 
 static void a_field_that_the_file_lacks_is_refused(void **state)
 {
-  const LamPlotRequest request = {FE2_FILE, "test_plot_none.pdf", -1, "P_12"};
+  const LamPlotRequest request = {.input = FE2_FILE, .output = "test_plot_none.pdf", .state = -1, .field = "P_12"};
 
   refuses(LamPlotFE2, &request, PETSC_ERR_USER_INPUT, "/macro/step/2/P");
 }
 
 static void a_field_that_no_record_has_is_refused(void **state)
 {
-  const LamPlotRequest request = {MAP_FILE, "test_plot_none.pdf", -1, "colour"};
+  const LamPlotRequest request = {.input = MAP_FILE, .output = "test_plot_none.pdf", .state = -1, .field = "colour"};
 
   refuses(LamPlotMap, &request, PETSC_ERR_USER_INPUT, "load_factor");
 }
 
 static void a_state_of_a_database_is_refused(void **state)
 {
-  const LamPlotRequest request = {DATABASE_FILE, "test_plot_none.pdf", 1, NULL};
+  const LamPlotRequest request = {.input = DATABASE_FILE, .output = "test_plot_none.pdf", .state = 1};
 
   refuses(LamPlotDatabase, &request, PETSC_ERR_USER_INPUT, "--state");
 }
 
 static void an_output_that_cannot_be_written_is_an_error_of_output(void **state)
 {
-  const LamPlotRequest request = {DATABASE_FILE, "no-such-folder/a.pdf", -1, NULL};
+  const LamPlotRequest request = {.input = DATABASE_FILE, .output = "no-such-folder/a.pdf", .state = -1};
 
   refuses(LamPlotDatabase, &request, PETSC_ERR_FILE_WRITE, "no-such-folder/a.pdf");
 }

@@ -1,0 +1,415 @@
+/*
+  Picture of a table: slices through the plane of two principal logarithmic strains whose axes are held.
+
+  Four panels: the potential, the stress, the estimated error with the nodes that lie in the slice, and what opens.
+  Where the table does not answer, all of them show why.
+*/
+#include "plot_slice.h"
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#define FRAME 152.0 /* edge of a panel */
+#define HEADER 54.0 /* height of title and legend */
+#define BELOW 36.0  /* of a panel: numbers, label and air */
+#define GLYPH 19.0  /* radius of the cell in the header */
+#define NODE_SIZE 5.0
+
+static const LamColour Ink = {0.15, 0.15, 0.15}, White = {1, 1, 1}, Failure = {0.80, 0.15, 0.05};
+
+/* How points without a good answer look; hatched rising, falling or both. */
+typedef struct {
+  const char *label;
+  PetscBool filled;
+  LamColour fill, line;
+  PetscBool rising, falling;
+  double spacing; /* of the lines */
+} Look;
+static const Look Looks[LAM_SLICE_VERDICT_COUNT] = {
+    [LAM_SLICE_FLOATING] = {"cells touch no one", PETSC_FALSE, {0}, {0.15, 0.15, 0.15}, PETSC_FALSE, PETSC_TRUE, 7},
+    [LAM_SLICE_INACCURATE] =
+        {"estimated error above", PETSC_FALSE, {0}, {0.15, 0.15, 0.15}, PETSC_TRUE, PETSC_FALSE, 4.5},
+    [LAM_SLICE_KINK] =
+        {"change of branch or failed node", PETSC_TRUE, {0.7, 0.7, 0.7}, {1, 1, 1}, PETSC_TRUE, PETSC_TRUE, 4.5},
+    [LAM_SLICE_NOTHING] = {"no nodes around", PETSC_TRUE, {0.92, 0.92, 0.92}, {1, 1, 1}, PETSC_FALSE, PETSC_FALSE, 0},
+};
+
+/* ---- one panel ---- */
+
+static uint32_t Pixel(LamColour c)
+{
+  return 0xff000000u | (uint32_t)lround(255 * c.r) << 16 | (uint32_t)lround(255 * c.g) << 8 |
+         (uint32_t)lround(255 * c.b);
+}
+
+/* One pixel of a small image for each sample, scaled to the frame. */
+static PetscErrorCode PaintSamples(LamCanvas canvas, LamRect frame, const LamSlice *s, const PetscReal values[],
+                                   const LamColourRange *range)
+{
+  const int n = LAM_SLICE_SAMPLES;
+  cairo_t *cr = LamCanvasCairo(canvas);
+  cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, n, n);
+  uint32_t *pixels;
+  int stride;
+
+  PetscFunctionBeginUser;
+  PetscCheck(!cairo_surface_status(surface), PETSC_COMM_SELF, PETSC_ERR_LIB, "cairo: %s",
+             cairo_status_to_string(cairo_surface_status(surface)));
+  cairo_surface_flush(surface);
+  pixels = (uint32_t *)(void *)cairo_image_surface_get_data(surface);
+  stride = cairo_image_surface_get_stride(surface) / (int)sizeof *pixels;
+  for (int i = 0; i < n * n; i++) {
+    const Look *look = &Looks[s->verdict[i]];
+    const PetscBool blank = (PetscBool)(look->filled || isnan(values[i])); /* an indicator may be unknown */
+
+    pixels[(n - 1 - i / n) * stride + i % n] =
+        Pixel(blank ? look->filled ? look->fill : White : LamColourMap(LamColourShare(range, values[i])));
+  }
+  cairo_surface_mark_dirty(surface);
+  cairo_save(cr);
+  cairo_translate(cr, frame.x, frame.y);
+  cairo_scale(cr, frame.width / n, frame.height / n);
+  cairo_set_source_surface(cr, surface, 0, 0);
+  cairo_pattern_set_filter(cairo_get_source(cr), CAIRO_FILTER_NEAREST);
+  cairo_paint(cr);
+  cairo_restore(cr);
+  cairo_surface_destroy(surface);
+  PetscFunctionReturn(0);
+}
+
+/* Lines through the clip of the canvas; a dark line has a light one below it, so that it shows on any colour. */
+static void Hatch(LamCanvas canvas, LamRect r, const Look *look)
+{
+  cairo_t *cr = LamCanvasCairo(canvas);
+
+  if (!look->rising && !look->falling) return;
+  for (int pass = look->filled; pass < 2; pass++) {
+    LamCanvasSetColour(canvas, pass ? look->line : White);
+    cairo_set_line_width(cr, look->filled ? 0.6 : pass ? 0.4 : 0.9);
+    for (double at = -r.height; at < r.width; at += look->spacing) {
+      if (look->rising) {
+        cairo_move_to(cr, r.x + at, r.y + r.height);
+        cairo_line_to(cr, r.x + at + r.height, r.y);
+      }
+      if (look->falling) {
+        cairo_move_to(cr, r.x + at, r.y);
+        cairo_line_to(cr, r.x + at + r.height, r.y + r.height);
+      }
+    }
+    cairo_stroke(cr);
+  }
+}
+
+/* Hatches the samples of a verdict; rows overlap by a hair, so that no seam shows. */
+static void HatchSamples(LamCanvas canvas, LamRect frame, const LamSlice *s, LamSliceVerdict verdict)
+{
+  const double edge = frame.width / LAM_SLICE_SAMPLES, hair = 0.1;
+  cairo_t *cr = LamCanvasCairo(canvas);
+
+  if (!s->count[verdict] || !(Looks[verdict].rising || Looks[verdict].falling)) return;
+  cairo_save(cr);
+  for (PetscInt row = 0; row < LAM_SLICE_SAMPLES; row++)
+    for (PetscInt i = 0, end; i < LAM_SLICE_SAMPLES; i = end + 1) {
+      const LamSliceVerdict *samples = &s->verdict[row * LAM_SLICE_SAMPLES];
+
+      for (end = i; end < LAM_SLICE_SAMPLES && samples[end] == verdict;) end++;
+      cairo_rectangle(cr, frame.x + edge * (double)i, frame.y + frame.height - edge * (double)(row + 1) - hair,
+                      edge * (double)(end - i), edge + hair);
+    }
+  cairo_clip(cr);
+  Hatch(canvas, frame, &Looks[verdict]);
+  cairo_restore(cr);
+}
+
+static double NodeSize(PetscInt level)
+{
+  return NODE_SIZE * PetscPowReal(0.75, (PetscReal)level);
+}
+
+static void DrawNode(LamCanvas canvas, double x, double y, LamSliceNodeKind kind, PetscInt level)
+{
+  static const LamMarker markers[LAM_SLICE_NODE_KINDS] = {LAM_MARKER_CIRCLE, LAM_MARKER_DIAMOND, LAM_MARKER_CROSS};
+
+  LamCanvasSetColour(canvas, kind == LAM_SLICE_SOUND ? Ink : Failure);
+  LamCanvasMarker(canvas, x, y, NodeSize(level), markers[kind], PETSC_TRUE);
+}
+
+/* Coarse ones first, as they are larger. */
+static void DrawNodes(LamCanvas canvas, const LamAxes *axes, const LamSlice *s, PetscInt levels)
+{
+  for (PetscInt level = 0; level < levels; level++)
+    for (PetscInt i = 0; i < s->node_count; i++) {
+      const LamSliceNode *node = &s->nodes[i];
+
+      if (node->level != level) continue;
+      DrawNode(canvas, LamAxesX(axes, node->at[0]), LamAxesY(axes, node->at[1]), node->kind, level);
+    }
+}
+
+static void DashedBox(LamCanvas canvas, double x, double y, double width, double height)
+{
+  const double dash[] = {3.2, 1.8};
+  cairo_t *cr = LamCanvasCairo(canvas);
+
+  cairo_rectangle(cr, x, y, width, height);
+  for (int pass = 0; pass < 2; pass++) {
+    LamCanvasSetColour(canvas, pass ? Ink : White);
+    cairo_set_line_width(cr, pass ? 0.7 : 1.2);
+    cairo_set_dash(cr, dash, pass ? 2 : 0, 0);
+    if (pass)
+      cairo_stroke(cr);
+    else
+      cairo_stroke_preserve(cr);
+  }
+  cairo_set_dash(cr, dash, 0, 0);
+}
+
+static void DrawBox(LamCanvas canvas, const LamAxes *axes, const LamSlice *s)
+{
+  const double left = LamAxesX(axes, s->box[0]), top = LamAxesY(axes, s->box[1]);
+
+  if (!isnan(s->box[0]))
+    DashedBox(canvas, left, top, LamAxesX(axes, s->box[1]) - left, LamAxesY(axes, s->box[0]) - top);
+}
+
+typedef struct {
+  const LamSlice *slice;
+  LamColourRange range[LAM_SLICE_PANEL_COUNT];
+  PetscInt levels;            /* of the nodes in the slice */
+  double bar;                 /* width of the widest colour bar */
+  char first[96], second[96]; /* labels of the axes */
+} Page;
+
+static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const Page *page, LamSlicePanel panel)
+{
+  const LamSlice *s = page->slice;
+  const PetscBool contact = (PetscBool)(s->interface == LAM_INTERFACE_CONTACT);
+  const struct {
+    const char *label, *unit;
+  } names[LAM_SLICE_PANEL_COUNT] = {{contact ? "potential $Φ$" : "energy of the walls $Φ$", "MPa"},
+                                    {"stress ‖$P$‖", "MPa"},
+                                    {"estimated error of $P$", "%"},
+                                    {contact ? "gaps" : "lumens", "% of $V$_{0}"}};
+  LamAxes axes = {.x = {.low = s->low, .high = s->high, .label = page->first},
+                  .y = {.low = s->low, .high = s->high, .label = page->second}};
+  cairo_t *cr = LamCanvasCairo(canvas);
+
+  PetscFunctionBeginUser;
+  outer.width -= page->bar;
+  LamAxesLayout(canvas, outer, &axes);
+  axes.frame.width = axes.frame.height = PetscMin(axes.frame.width, axes.frame.height);
+  LamAxesDraw(canvas, &axes);
+  cairo_save(cr);
+  cairo_rectangle(cr, axes.frame.x, axes.frame.y, axes.frame.width, axes.frame.height);
+  cairo_clip(cr);
+  PetscCall(PaintSamples(canvas, axes.frame, s, s->value[panel], &page->range[panel]));
+  for (int v = 0; v < LAM_SLICE_VERDICT_COUNT; v++) HatchSamples(canvas, axes.frame, s, (LamSliceVerdict)v);
+  DrawBox(canvas, &axes, s);
+  if (panel == LAM_SLICE_ERROR) DrawNodes(canvas, &axes, s, page->levels);
+  cairo_restore(cr);
+  LamAxesFrame(canvas, &axes);
+  LamColourBar(canvas, axes.frame, &page->range[panel], LamColourMap, names[panel].label, names[panel].unit);
+  PetscFunctionReturn(0);
+}
+
+/* ---- header ---- */
+
+/* Room for the next entry of a legend whose rows are `width` wide; moves the pen on. */
+typedef struct {
+  double left, right, x, y;
+} Pen;
+static void Advance(LamCanvas canvas, Pen *pen, double sample, const char label[], double at[2])
+{
+  const double width = sample + 3 + LamCanvasTextWidth(canvas, LAM_TICK_SIZE, label);
+
+  if (pen->x > pen->left && pen->x + width > pen->right) {
+    pen->x = pen->left;
+    pen->y += 1.6 * LAM_TICK_SIZE;
+  }
+  at[0] = pen->x;
+  at[1] = pen->y;
+  LamCanvasSetColour(canvas, Ink);
+  LamCanvasText(canvas, pen->x + sample + 3, pen->y, 0, 0, LAM_TICK_SIZE, label);
+  pen->x += width + 9;
+}
+
+static void LegendOfVerdict(LamCanvas canvas, Pen *pen, const LamSlice *s, LamSliceVerdict verdict)
+{
+  const Look *look = &Looks[verdict];
+  const double width = 14, height = 7;
+  cairo_t *cr = LamCanvasCairo(canvas);
+  char label[64], number[32];
+  double at[2];
+
+  if (!look->label || !s->count[verdict]) return;
+  LamFormatNumber(100 * s->accuracy, number);
+  if (verdict == LAM_SLICE_INACCURATE)
+    snprintf(label, sizeof label, "%s %s %%", look->label, number);
+  else
+    snprintf(label, sizeof label, "%s", look->label);
+  Advance(canvas, pen, width, label, at);
+  cairo_rectangle(cr, at[0], at[1] - 0.5 * height, width, height);
+  cairo_save(cr);
+  LamCanvasSetColour(canvas, look->filled ? look->fill : LamColourMap(0.6));
+  cairo_fill_preserve(cr);
+  cairo_clip_preserve(cr);
+  cairo_new_path(cr);
+  Hatch(canvas, (LamRect){at[0], at[1] - 0.5 * height, width, height}, look);
+  cairo_restore(cr);
+  LamCanvasSetColour(canvas, Ink);
+  cairo_set_line_width(cr, 0.4);
+  cairo_rectangle(cr, at[0], at[1] - 0.5 * height, width, height);
+  cairo_stroke(cr);
+}
+
+static void LegendOfNodes(LamCanvas canvas, Pen *pen, const Page *page, LamSliceNodeKind kind)
+{
+  static const char *const labels[LAM_SLICE_NODE_KINDS] = {"node", "node on another branch", "node without an answer"};
+  PetscBool occurs[16] = {PETSC_FALSE};
+  PetscInt most = -1;
+  const LamSlice *s = page->slice;
+  char label[128], number[32];
+  double at[2], sample = 0;
+
+  for (PetscInt i = 0; i < s->node_count; i++) {
+    const LamSliceNode *node = &s->nodes[i];
+
+    if (node->kind != kind || node->level >= 16) continue;
+    occurs[node->level] = PETSC_TRUE;
+    most = PetscMax(most, node->level);
+  }
+  if (most < 0) return;
+  for (PetscInt level = 0; level <= most; level++)
+    if (occurs[level]) sample += NodeSize(level) + 2;
+  LamFormatNumber(s->node_suction, number);
+  snprintf(label, sizeof label, "%s%s", labels[kind], most ? ", coarse to fine" : "");
+  if (s->interface == LAM_INTERFACE_CONTACT && fabs(s->turgor + s->cohesion - s->node_suction) > 1e-9)
+    snprintf(label, sizeof label, "%s at %s MPa%s", labels[kind], number, most ? ", coarse to fine" : "");
+  Advance(canvas, pen, sample, label, at);
+  for (PetscInt level = 0; level <= most; level++) {
+    if (!occurs[level]) continue;
+    DrawNode(canvas, at[0] + 0.5 * NodeSize(level), at[1], kind, level);
+    at[0] += NodeSize(level) + 2;
+  }
+}
+
+static void DrawLegend(LamCanvas canvas, const Page *page, Pen pen)
+{
+  double at[2];
+
+  for (int v = 0; v < LAM_SLICE_VERDICT_COUNT; v++) LegendOfVerdict(canvas, &pen, page->slice, (LamSliceVerdict)v);
+  for (int k = 0; k < LAM_SLICE_NODE_KINDS; k++) LegendOfNodes(canvas, &pen, page, (LamSliceNodeKind)k);
+  if (isnan(page->slice->box[0])) return;
+  Advance(canvas, &pen, 14, "box of the scene's sample", at);
+  DashedBox(canvas, at[0], at[1] - 3.5, 14, 7);
+}
+
+static void Arrow(LamCanvas canvas, double x, double y, double angle, double length, const char label[])
+{
+  const double c = cos(angle), n = -sin(angle), head = 3.2; /* the page's y points down */
+  cairo_t *cr = LamCanvasCairo(canvas);
+
+  cairo_move_to(cr, x - length * c, y - length * n);
+  cairo_line_to(cr, x + length * c, y + length * n);
+  for (int side = -1; side < 2; side += 2) {
+    cairo_move_to(cr, x + length * c, y + length * n);
+    cairo_line_to(cr, x + (length - head) * c - 0.5 * side * head * n, y + (length - head) * n + 0.5 * side * head * c);
+  }
+  cairo_stroke(cr);
+  LamCanvasText(canvas, x + (length + 5.5) * c, y + (length + 5.5) * n, 0.5, 0, LAM_TICK_SIZE, label);
+}
+
+/* A cell and the two axes of stretch. */
+static void DrawGlyph(LamCanvas canvas, double x, double y, const LamSlice *s)
+{
+  const double radius = GLYPH * 0.8;
+  cairo_t *cr = LamCanvasCairo(canvas);
+
+  cairo_new_path(cr);
+  for (int k = 0; k < 6; k++) {
+    const double angle = s->orientation + M_PI / 6 + k * M_PI / 3;
+
+    cairo_line_to(cr, x + radius * cos(angle), y - radius * sin(angle));
+  }
+  cairo_close_path(cr);
+  LamCanvasSetColour(canvas, (LamColour){0.80, 0.90, 0.78});
+  cairo_fill_preserve(cr);
+  LamCanvasSetColour(canvas, (LamColour){0.45, 0.55, 0.43});
+  cairo_set_line_width(cr, 1.6);
+  cairo_stroke(cr);
+  LamCanvasSetColour(canvas, Ink);
+  cairo_set_line_width(cr, 0.9);
+  Arrow(canvas, x, y, s->orientation + s->angle, GLYPH, "1");
+  Arrow(canvas, x, y, s->orientation + s->angle + M_PI_2, GLYPH, "2");
+}
+
+static void DrawHeader(LamCanvas canvas, const Page *page)
+{
+  const LamSlice *s = page->slice;
+  const PetscBool contact = (PetscBool)(s->interface == LAM_INTERFACE_CONTACT);
+  char title[256], load[32];
+
+  LamFormatNumber(contact ? s->turgor + s->cohesion : s->turgor, load);
+  snprintf(title, sizeof title, "Table of %" PetscInt_FMT " node%s: slice at %s %s MPa", s->table_nodes,
+           s->table_nodes == 1 ? "" : "s", contact ? "suction" : "turgor", load);
+  LamCanvasSetColour(canvas, Ink);
+  LamCanvasText(canvas, 9, 12, 0, 0, LAM_TEXT_SIZE + 0.75, title);
+  DrawLegend(canvas, page, (Pen){9, LAM_PLOT_WIDTH - 3.4 * GLYPH, 9, 27});
+  DrawGlyph(canvas, LAM_PLOT_WIDTH - 1.6 * GLYPH, 0.5 * HEADER + 2, s);
+}
+
+/* ---- the page ---- */
+
+/* Two decades below the accuracy and one above it, so that tables are drawn alike. */
+static LamColourRange ErrorRange(const LamSlice *s)
+{
+  const PetscReal limit = log10(100 * s->accuracy);
+  LamColourRange range = {.low = limit - 2, .high = limit + 1, .is_log = PETSC_TRUE};
+
+  for (PetscInt i = 0; i < LAM_SLICE_SAMPLES * LAM_SLICE_SAMPLES; i++) {
+    if (s->value[LAM_SLICE_ERROR][i] < range.low) range.clipped[0] = PETSC_TRUE;
+    if (s->value[LAM_SLICE_ERROR][i] > range.high) range.clipped[1] = PETSC_TRUE;
+  }
+  return range;
+}
+
+static PetscErrorCode PreparePage(LamCanvas canvas, const LamSlice *s, Page *page)
+{
+  char angle[32], across[32];
+
+  PetscFunctionBeginUser;
+  *page = (Page){.slice = s};
+  for (int k = 0; k < LAM_SLICE_PANEL_COUNT; k++) {
+    PetscCall(LamColourRangeFind(LAM_SLICE_SAMPLES * LAM_SLICE_SAMPLES, s->value[k], &page->range[k]));
+    if (k == LAM_SLICE_ERROR) page->range[k] = ErrorRange(s);
+    page->bar = PetscMax(page->bar, LamColourBarWidth(canvas, &page->range[k]));
+  }
+  for (PetscInt i = 0; i < s->node_count; i++) page->levels = PetscMax(page->levels, s->nodes[i].level + 1);
+  LamFormatNumber(s->angle * 180 / PETSC_PI, angle);
+  LamFormatNumber(s->angle * 180 / PETSC_PI + 90, across);
+  snprintf(page->first, sizeof page->first, "log. strain $e$_{1}, %s° to face normal", angle);
+  snprintf(page->second, sizeof page->second, "log. strain $e$_{2}, %s° to face normal", across);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamPlotTable(const LamPlotRequest *request, LamDatabase database)
+{
+  const double width = 0.5 * (LAM_PLOT_WIDTH - 18), height = FRAME + BELOW;
+  LamCanvas canvas;
+  LamSlice slice;
+  Page page;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamSliceRead(request, database, &slice));
+  PetscCall(LamCanvasCreate(request->output, LAM_PLOT_WIDTH, HEADER + 2 * height, &canvas));
+  PetscCall(PreparePage(canvas, &slice, &page));
+  DrawHeader(canvas, &page);
+  for (int k = 0; k < LAM_SLICE_PANEL_COUNT; k++) {
+    const LamRect outer = {9 + width * (k % 2), HEADER + height * (int)(k / 2), width, height - 6};
+
+    PetscCall(DrawPanel(canvas, outer, &page, (LamSlicePanel)k));
+  }
+  PetscCall(LamCanvasFinish(&canvas));
+  PetscCall(LamSliceDestroy(&slice));
+  PetscFunctionReturn(0);
+}

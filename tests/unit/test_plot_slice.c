@@ -1,0 +1,261 @@
+/* Slices through a table: what they hold is what the table answers, and nodes lie where their strains are. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <setjmp.h>
+#include <cmocka.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+#include "assert_near.h"
+#include "plot_slice.h"
+#include "table_fixture.h"
+
+#define FILE_NAME "test_plot_slice.h5"
+#define OK(call) assert_int_equal((call), 0)
+
+static const char Text[] = "version: 1\n"
+                           "rve:\n"
+                           "  cell: {apothem: 75 um, wall_thickness: 11.25 um, orientation: 20 deg}\n"
+                           "  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}\n"
+                           "  interface: {law: bonded}\n"
+                           "  mesh: {along: 4, through: 1}\n"
+                           "sample:\n"
+                           "  stretch: {min: 0, max: 0.1}\n"
+                           "  turgor: {min: 0.01 MPa, max: 0.03 MPa}\n"
+                           "accuracy: 0.02\n";
+static const PetscReal MPa = 0.11; /* C1 + C2 */
+static const Synthetic Material = {.mu = 1, .lambda = 2};
+
+static char Message[1024]; /* of the last error */
+
+static PetscErrorCode keep_message(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
+                                   PetscErrorType type, const char *message, void *ctx)
+{
+  if (type == PETSC_ERROR_INITIAL) snprintf(Message, sizeof Message, "%s", message);
+  return code;
+}
+
+/* U with logarithmic strains e1 and e2 along the angle and across. */
+static LamLoad load_of(PetscReal e1, PetscReal e2, PetscReal angle)
+{
+  const PetscReal n[2] = {cos(angle), sin(angle)}, m[2] = {-sin(angle), cos(angle)};
+  LamLoad load = {.F = {0, 0, 0, 0, 0, 0, 0, 0, 1}, .turgor = 0.02 / MPa};
+
+  for (int i = 0; i < 2; i++)
+    for (int j = 0; j < 2; j++) load.F[3 * i + j] = exp(e1) * n[i] * n[j] + exp(e2) * m[i] * m[j];
+  return load;
+}
+
+static int write_file(void **state)
+{
+  const LamLoad loads[] = {load_of(0.02, 0.05, 0.4), load_of(0.08, 0.01, 0.4), load_of(0.07, 0.08, 0.4)};
+  LamScene *scene;
+
+  PetscErrorHandlingInitialized = PETSC_TRUE; /* before PetscInitialize PETSc calls no handler else */
+  PetscPushErrorHandler(keep_message, NULL);
+  OK(LamSceneReadText("test.yaml", Text, &scene));
+  OK(TableFixtureWrite(FILE_NAME, scene, &Material, 3, loads, 1e-4));
+  OK(LamSceneDestroy(&scene));
+  return 0;
+}
+
+static int remove_file(void **state)
+{
+  remove(FILE_NAME);
+  PetscPopErrorHandler();
+  return 0;
+}
+
+static void read_slice(const LamPlotRequest *request, LamSlice *slice)
+{
+  LamDatabase database;
+
+  OK(LamDatabaseOpen(FILE_NAME, &database));
+  OK(LamSliceRead(request, database, slice));
+  OK(LamDatabaseClose(&database));
+}
+
+static const LamPlotRequest Default = {.input = FILE_NAME, .output = "test_plot_slice.png", .state = -1};
+
+static void strains_and_their_axis_come_from_F(void **state)
+{
+  const LamLoad load = load_of(0.2, -0.05, 0.7);
+  PetscReal strain[2], angle;
+
+  LamPrincipalStrains(load.F, strain, &angle);
+  assert_near(strain[0], 0.2, 1e-14);
+  assert_near(strain[1], -0.05, 1e-14);
+  assert_near(angle, 0.7, 1e-14);
+}
+
+/* Wherever the table answers to its accuracy: the stress and potential of the tissue at the deformation of the sample.
+ */
+static void a_slice_holds_the_answers_of_the_tissue(void **state)
+{
+  const LamPlotRequest request = {.input = FILE_NAME, .state = -1, .angle = "15 deg"};
+  PetscInt compared = 0;
+  LamSlice slice;
+
+  read_slice(&request, &slice);
+  for (PetscInt at = 0; at < LAM_SLICE_SAMPLES * LAM_SLICE_SAMPLES; at += 37) {
+    const LamLoad load = load_of(LamSliceStrain(&slice, at % LAM_SLICE_SAMPLES),
+                                 LamSliceStrain(&slice, at / LAM_SLICE_SAMPLES), 35 * PETSC_PI / 180);
+    LamResponse truth;
+    PetscReal square = 0;
+
+    if (slice.verdict[at] != LAM_SLICE_ANSWERED) continue;
+    compared++;
+    OK(LamResponseInit(&load, &truth));
+    SyntheticEvaluate(&Material, &load, &truth);
+    for (int k = 0; k < 9; k++) square += truth.P[k] * truth.P[k];
+    assert_near(slice.value[LAM_SLICE_STRESS][at], sqrt(square) * MPa, 0.02 * MPa);
+    assert_near(slice.value[LAM_SLICE_POTENTIAL][at], (truth.energy + load.turgor * truth.lumen_fraction) * MPa,
+                1e-3 * MPa);
+    assert_near(slice.value[LAM_SLICE_INDICATOR][at], 100 * truth.lumen_fraction, 0.1);
+  }
+  assert_true(compared > 100);
+  OK(LamSliceDestroy(&slice));
+}
+
+/* What is above the diagonal at 0 degrees is what is below it at 30: one square shows both ways of stretching a cell.
+ */
+static void thirty_degrees_are_zero_across(void **state)
+{
+  const LamPlotRequest request = {.input = FILE_NAME, .state = -1, .angle = "30 deg"};
+  const PetscInt n = LAM_SLICE_SAMPLES;
+  LamSlice zero, thirty;
+
+  read_slice(&Default, &zero);
+  read_slice(&request, &thirty);
+  for (PetscInt i = 0; i < n; i += 7)
+    for (PetscInt j = 0; j < n; j += 5) {
+      assert_int_equal(zero.verdict[j * n + i], thirty.verdict[i * n + j]);
+      if (zero.verdict[j * n + i] != LAM_SLICE_ANSWERED) continue;
+      assert_near(zero.value[LAM_SLICE_ERROR][j * n + i], thirty.value[LAM_SLICE_ERROR][i * n + j], 1e-4);
+    }
+  assert_true(zero.node_count == thirty.node_count);
+  OK(LamSliceDestroy(&zero));
+  OK(LamSliceDestroy(&thirty));
+}
+
+static void the_edges_of_a_slice_lie_outside_the_table(void **state)
+{
+  LamSlice slice;
+
+  read_slice(&Default, &slice);
+  assert_int_equal(slice.verdict[0], LAM_SLICE_NOTHING);
+  assert_true(isnan(slice.value[LAM_SLICE_STRESS][0]));
+  OK(LamSliceDestroy(&slice));
+}
+
+static void more_accuracy_is_refused_in_more_places(void **state)
+{
+  const LamPlotRequest strict = {.input = FILE_NAME, .state = -1, .accuracy = "1e-6"};
+  LamSlice loose, tight;
+
+  read_slice(&Default, &loose);
+  read_slice(&strict, &tight);
+  assert_true(tight.count[LAM_SLICE_INACCURATE] > loose.count[LAM_SLICE_INACCURATE]);
+  assert_true(tight.count[LAM_SLICE_NOTHING] == loose.count[LAM_SLICE_NOTHING]);
+  OK(LamSliceDestroy(&loose));
+  OK(LamSliceDestroy(&tight));
+}
+
+/* The logarithms of the stretches of the three lattice directions, ascending. */
+static void lattice_strains(const PetscReal F[9], PetscReal x[3])
+{
+  for (int k = 0; k < 3; k++) {
+    const PetscReal angle = 20 * PETSC_PI / 180 + k * PETSC_PI / 3, c = cos(angle), s = sin(angle);
+
+    x[k] = log(hypot(F[0] * c + F[1] * s, F[3] * c + F[4] * s));
+  }
+  OK(PetscSortReal(3, x));
+}
+
+static void nodes_are_drawn_where_their_strains_are(void **state)
+{
+  const LamResponse *records;
+  LamDatabase database;
+  LamSlice slice;
+  PetscInt n;
+
+  read_slice(&Default, &slice);
+  OK(LamDatabaseOpen(FILE_NAME, &database));
+  OK(LamDatabaseGetRecords(database, &n, &records, NULL));
+  assert_true(slice.node_count > 8);
+  for (PetscInt i = 0; i < slice.node_count; i++) {
+    const LamLoad load = load_of(slice.nodes[i].at[0], slice.nodes[i].at[1], 20 * PETSC_PI / 180);
+    PetscReal best = PETSC_INFINITY, x[3], y[3];
+
+    lattice_strains(load.F, x);
+    for (PetscInt r = 0; r < n; r++) {
+      lattice_strains(records[r].load.F, y);
+      best = PetscMin(best, hypot(hypot(x[0] - y[0], x[1] - y[1]), x[2] - y[2]));
+    }
+    assert_near(best, 0, 1e-9); /* at 0 degrees all nodes lie in the slice, where two strains are equal, or far out */
+  }
+  OK(LamDatabaseClose(&database));
+  OK(LamSliceDestroy(&slice));
+}
+
+static void refuses(const LamPlotRequest *request, const char words[])
+{
+  assert_int_equal(LamPlotDatabase(request), PETSC_ERR_USER_INPUT);
+  assert_non_null(strstr(Message, words));
+}
+
+static void bonded_tissue_has_no_suction(void **state)
+{
+  const LamPlotRequest request = {.input = FILE_NAME, .output = "none.png", .state = -1, .suction = "0.02 MPa"};
+
+  refuses(&request, "--suction 0.02 MPa");
+}
+
+static void an_angle_needs_its_unit(void **state)
+{
+  const LamPlotRequest request = {.input = FILE_NAME, .output = "none.png", .state = -1, .angle = "15"};
+
+  refuses(&request, "unit");
+}
+
+static void an_accuracy_is_a_number_above_zero(void **state)
+{
+  const LamPlotRequest request = {.input = FILE_NAME, .output = "none.png", .state = -1, .accuracy = "-1"};
+
+  refuses(&request, "--accuracy -1");
+}
+
+static void the_records_of_a_table_have_no_slice(void **state)
+{
+  const LamPlotRequest request = {
+      .input = FILE_NAME, .output = "none.png", .state = -1, .field = "stress", .angle = "15 deg"};
+
+  refuses(&request, "--angle 15 deg");
+}
+
+static void a_table_is_drawn(void **state)
+{
+  OK(LamPlotDatabase(&Default));
+  assert_int_equal(access(Default.output, F_OK), 0);
+  remove(Default.output);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(strains_and_their_axis_come_from_F),
+      cmocka_unit_test(a_slice_holds_the_answers_of_the_tissue),
+      cmocka_unit_test(thirty_degrees_are_zero_across),
+      cmocka_unit_test(the_edges_of_a_slice_lie_outside_the_table),
+      cmocka_unit_test(more_accuracy_is_refused_in_more_places),
+      cmocka_unit_test(nodes_are_drawn_where_their_strains_are),
+      cmocka_unit_test(bonded_tissue_has_no_suction),
+      cmocka_unit_test(an_angle_needs_its_unit),
+      cmocka_unit_test(an_accuracy_is_a_number_above_zero),
+      cmocka_unit_test(the_records_of_a_table_have_no_slice),
+      cmocka_unit_test(a_table_is_drawn),
+  };
+  return cmocka_run_group_tests(tests, write_file, remove_file);
+}
