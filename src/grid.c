@@ -103,6 +103,13 @@ PetscErrorCode LamGridNodeLoad(LamGrid grid, PetscInt64 key, LamLoad *load)
   PetscFunctionReturn(0);
 }
 
+PetscInt LamGridNodeLevel(LamGrid grid, PetscInt64 key)
+{
+  const LamNodePlace place = LamNodePlaceOf(key);
+
+  return LamNodeIsFree(&place) ? -1 : LamNodeLevel(&place);
+}
+
 /* Rounded down to a multiple of 2^bits. */
 static int Floor(int i, int bits)
 {

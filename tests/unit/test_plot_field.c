@@ -137,7 +137,7 @@ static void the_area_of_curved_edges_is_exact(void **state)
 static uint32_t painted_pixel(PetscReal x, PetscReal y)
 {
   const PetscReal box[4] = {-2, -2, 2, 2};
-  const LamColourRange range = {-2, 2, {PETSC_FALSE, PETSC_FALSE}};
+  const LamColourRange range = {.low = -2, .high = 2};
   const LamImage image = {{0, 0}, 0};
   PetscReal values[RING_NODES];
   const LamField field = {RING_ELEMENTS, &RingX[0][0], &Ring[0][0], values, PETSC_FALSE};
