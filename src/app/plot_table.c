@@ -14,6 +14,7 @@
 #define BELOW 36.0  /* of a panel: numbers, label and air */
 #define GLYPH 19.0  /* radius of the cell in the header */
 #define NODE_SIZE 5.0
+enum { MOST_LEVELS = 8 }; /* of nodes */
 
 static const LamColour Ink = {0.15, 0.15, 0.15}, White = {1, 1, 1}, Failure = {0.80, 0.15, 0.05};
 
@@ -135,9 +136,9 @@ static void DrawNode(LamCanvas canvas, double x, double y, LamSliceNodeKind kind
 }
 
 /* Coarse ones first, as they are larger. */
-static void DrawNodes(LamCanvas canvas, const LamAxes *axes, const LamSlice *s, PetscInt levels)
+static void DrawNodes(LamCanvas canvas, const LamAxes *axes, const LamSlice *s)
 {
-  for (PetscInt level = 0; level < levels; level++)
+  for (PetscInt level = 0; level < MOST_LEVELS; level++)
     for (PetscInt i = 0; i < s->node_count; i++) {
       const LamSliceNode *node = &s->nodes[i];
 
@@ -175,7 +176,6 @@ static void DrawBox(LamCanvas canvas, const LamAxes *axes, const LamSlice *s)
 typedef struct {
   const LamSlice *slice;
   LamColourRange range[LAM_SLICE_PANEL_COUNT];
-  PetscInt levels;            /* of the nodes in the slice */
   double bar;                 /* width of the widest colour bar */
   char first[96], second[96]; /* labels of the axes */
 } Page;
@@ -205,7 +205,7 @@ static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const Page *pag
   PetscCall(PaintSamples(canvas, axes.frame, s, s->value[panel], &page->range[panel]));
   for (int v = 0; v < LAM_SLICE_VERDICT_COUNT; v++) HatchSamples(canvas, axes.frame, s, (LamSliceVerdict)v);
   DrawBox(canvas, &axes, s);
-  if (panel == LAM_SLICE_ERROR) DrawNodes(canvas, &axes, s, page->levels);
+  if (panel == LAM_SLICE_ERROR) DrawNodes(canvas, &axes, s);
   cairo_restore(cr);
   LamAxesFrame(canvas, &axes);
   LamColourBar(canvas, axes.frame, &page->range[panel], LamColourMap, names[panel].label, names[panel].unit);
@@ -262,44 +262,51 @@ static void LegendOfVerdict(LamCanvas canvas, Pen *pen, const LamSlice *s, LamSl
   cairo_stroke(cr);
 }
 
-static void LegendOfNodes(LamCanvas canvas, Pen *pen, const Page *page, LamSliceNodeKind kind)
+/* Whether the slice has nodes of a kind on each level. Returns the number of levels that it has some on. */
+static PetscInt FindLevels(const LamSlice *s, LamSliceNodeKind kind, PetscBool occurs[MOST_LEVELS])
+{
+  PetscInt found = 0;
+
+  for (PetscInt level = 0; level < MOST_LEVELS; level++) {
+    occurs[level] = PETSC_FALSE;
+    for (PetscInt i = 0; i < s->node_count && !occurs[level]; i++)
+      occurs[level] = (PetscBool)(s->nodes[i].kind == kind && s->nodes[i].level == level);
+    found += occurs[level];
+  }
+  return found;
+}
+
+static void LegendOfNodes(LamCanvas canvas, Pen *pen, const LamSlice *s, LamSliceNodeKind kind)
 {
   static const char *const labels[LAM_SLICE_NODE_KINDS] = {"node", "node on another branch", "node without an answer"};
-  PetscBool occurs[16] = {PETSC_FALSE};
-  PetscInt most = -1;
-  const LamSlice *s = page->slice;
-  char label[128], number[32];
+  const PetscBool elsewhere =
+      (PetscBool)(s->interface == LAM_INTERFACE_CONTACT && fabs(s->turgor + s->cohesion - s->node_suction) > 1e-9);
+  PetscBool occurs[MOST_LEVELS];
+  const PetscInt found = FindLevels(s, kind, occurs);
+  char label[128], number[32], where[64] = "";
   double at[2], sample = 0;
 
-  for (PetscInt i = 0; i < s->node_count; i++) {
-    const LamSliceNode *node = &s->nodes[i];
-
-    if (node->kind != kind || node->level >= 16) continue;
-    occurs[node->level] = PETSC_TRUE;
-    most = PetscMax(most, node->level);
-  }
-  if (most < 0) return;
-  for (PetscInt level = 0; level <= most; level++)
+  if (!found) return;
+  for (PetscInt level = 0; level < MOST_LEVELS; level++)
     if (occurs[level]) sample += NodeSize(level) + 2;
   LamFormatNumber(s->node_suction, number);
-  snprintf(label, sizeof label, "%s%s", labels[kind], most ? ", coarse to fine" : "");
-  if (s->interface == LAM_INTERFACE_CONTACT && fabs(s->turgor + s->cohesion - s->node_suction) > 1e-9)
-    snprintf(label, sizeof label, "%s at %s MPa%s", labels[kind], number, most ? ", coarse to fine" : "");
+  if (elsewhere) snprintf(where, sizeof where, " at %s MPa", number);
+  snprintf(label, sizeof label, "%s%s%s", labels[kind], where, found > 1 ? ", coarse to fine" : "");
   Advance(canvas, pen, sample, label, at);
-  for (PetscInt level = 0; level <= most; level++) {
+  for (PetscInt level = 0; level < MOST_LEVELS; level++) {
     if (!occurs[level]) continue;
     DrawNode(canvas, at[0] + 0.5 * NodeSize(level), at[1], kind, level);
     at[0] += NodeSize(level) + 2;
   }
 }
 
-static void DrawLegend(LamCanvas canvas, const Page *page, Pen pen)
+static void DrawLegend(LamCanvas canvas, const LamSlice *s, Pen pen)
 {
   double at[2];
 
-  for (int v = 0; v < LAM_SLICE_VERDICT_COUNT; v++) LegendOfVerdict(canvas, &pen, page->slice, (LamSliceVerdict)v);
-  for (int k = 0; k < LAM_SLICE_NODE_KINDS; k++) LegendOfNodes(canvas, &pen, page, (LamSliceNodeKind)k);
-  if (isnan(page->slice->box[0])) return;
+  for (int v = 0; v < LAM_SLICE_VERDICT_COUNT; v++) LegendOfVerdict(canvas, &pen, s, (LamSliceVerdict)v);
+  for (int k = 0; k < LAM_SLICE_NODE_KINDS; k++) LegendOfNodes(canvas, &pen, s, (LamSliceNodeKind)k);
+  if (isnan(s->box[0])) return;
   Advance(canvas, &pen, 14, "box of the scene's sample", at);
   DashedBox(canvas, at[0], at[1] - 3.5, 14, 7);
 }
@@ -343,9 +350,8 @@ static void DrawGlyph(LamCanvas canvas, double x, double y, const LamSlice *s)
   Arrow(canvas, x, y, s->orientation + s->angle + M_PI_2, GLYPH, "2");
 }
 
-static void DrawHeader(LamCanvas canvas, const Page *page)
+static void DrawHeader(LamCanvas canvas, const LamSlice *s)
 {
-  const LamSlice *s = page->slice;
   const PetscBool contact = (PetscBool)(s->interface == LAM_INTERFACE_CONTACT);
   char title[256], load[32];
 
@@ -354,7 +360,7 @@ static void DrawHeader(LamCanvas canvas, const Page *page)
            s->table_nodes == 1 ? "" : "s", contact ? "suction" : "turgor", load);
   LamCanvasSetColour(canvas, Ink);
   LamCanvasText(canvas, 9, 12, 0, 0, LAM_TEXT_SIZE + 0.75, title);
-  DrawLegend(canvas, page, (Pen){9, LAM_PLOT_WIDTH - 3.4 * GLYPH, 9, 27});
+  DrawLegend(canvas, s, (Pen){9, LAM_PLOT_WIDTH - 3.4 * GLYPH, 9, 27});
   DrawGlyph(canvas, LAM_PLOT_WIDTH - 1.6 * GLYPH, 0.5 * HEADER + 2, s);
 }
 
@@ -384,7 +390,6 @@ static PetscErrorCode PreparePage(LamCanvas canvas, const LamSlice *s, Page *pag
     if (k == LAM_SLICE_ERROR) page->range[k] = ErrorRange(s);
     page->bar = PetscMax(page->bar, LamColourBarWidth(canvas, &page->range[k]));
   }
-  for (PetscInt i = 0; i < s->node_count; i++) page->levels = PetscMax(page->levels, s->nodes[i].level + 1);
   LamFormatNumber(s->angle * 180 / PETSC_PI, angle);
   LamFormatNumber(s->angle * 180 / PETSC_PI + 90, across);
   snprintf(page->first, sizeof page->first, "log. strain $e$_{1}, %s° to face normal", angle);
@@ -403,7 +408,7 @@ PetscErrorCode LamPlotTable(const LamPlotRequest *request, LamDatabase database)
   PetscCall(LamSliceRead(request, database, &slice));
   PetscCall(LamCanvasCreate(request->output, LAM_PLOT_WIDTH, HEADER + 2 * height, &canvas));
   PetscCall(PreparePage(canvas, &slice, &page));
-  DrawHeader(canvas, &page);
+  DrawHeader(canvas, &slice);
   for (int k = 0; k < LAM_SLICE_PANEL_COUNT; k++) {
     const LamRect outer = {9 + width * (k % 2), HEADER + height * (int)(k / 2), width, height - 6};
 

@@ -58,6 +58,7 @@ expect 2 "--state two" "$lamella" plot rve.h5 --state two
 expect 2 "wall_stress" "$lamella" plot rve.h5 --field colour
 expect 2 ".png, .svg or .pdf" "$lamella" plot rve.h5 -o figure.gif
 expect 4 "no/such/folder.png" "$lamella" plot rve.h5 -o no/such/folder.png
+expect 2 "--angle 15 deg" "$lamella" plot rve.h5 --angle "15 deg"
 expect 1 - "$lamella" plot
 "$lamella" plot absent.h5 >out.txt 2>err.txt && fail "a file that is not there is drawn"
 grep -qF absent.h5 err.txt || fail "the message does not name the file that is not there"
