@@ -1,275 +1,380 @@
 /*
   Responders that answer from a database: alone, or with a solver for what it lacks.
 
-  Method. Answers come from the nearest record by its second-order expansion. Questions out of reach are collected over
-  all ranks, and only a thinned set of them is solved: a question within the trust radius of a chosen one is answered
-  from that one's record.
+  Method. Answers come from the table of a database, whose nodes are solved where questions fall and shared by all
+  questions around. Where no node helps, as next to a change of branch, the state asked for is solved itself.
 
   Algorithm, of one `respond`:
-  1. Query all; the rest is missing. Done where nothing is missing on any rank.
-  2. Gather the missing questions on all ranks, rounded to a grid and sorted: the same list whatever the ranks are.
-  3. Choose greedily in that order: a question further than the radius from all chosen ones is chosen.
-  4. Deal the chosen out in turn, solve, gather the responses on all ranks, add them to each rank's database in order.
-  5. Query the missing again; from 1 with what is still missing. Each round answers at least the chosen ones.
+  1. Ask for all questions: the table that answered the point last in this load step, else the newest, else the records
+     for the question's own state.
+  2. The keys of the nodes that the newest table lacks for what is left, from all ranks, sorted, are dealt out in turn,
+     solved, gathered, and added on all ranks in that order. From 1 with what is left, MAX_ROUNDS times at most.
+  3. Where no node helps any more, what is left, from all ranks and sorted, is dealt out, solved and added as states of
+     no grid.
+  In 2 and 3 questions are rounded, so that what is solved does not depend on the ranks' order of summation; the answer
+  to a rounded question is led back to the one asked by its tangent.
 
-  Reference: Pope, Combustion Theory and Modelling 1 (1997) 41, for storing and retrieving with a trusted neighbourhood.
+  Convergence. A point that was solved for itself in this load step SELF_STAYS times goes on so: at the edge of what the
+  table answers, iterations that step to and fro between two answers would not end.
 */
 #include <lamella/cache.h>
-#include <math.h>
+#include <petsctime.h>
 #include <stdlib.h>
-#include <string.h>
+#include "database_internal.h"
+#include "gather.h"
+#include "rounded_load.h"
+
+enum { MAX_ROUNDS = 12, SELF_STAYS = 2 };
 
 typedef struct {
   MPI_Comm comm;
-  LamDatabase database; /* borrowed */
-  LamResponder *solver; /* borrowed; NULL: database only */
-  LamResponder *self;   /* the responder's counters; borrowed */
-  PetscReal radius;
+  LamDatabase database;       /* borrowed */
+  LamResponder *solver;       /* borrowed; NULL: database only */
+  const LamNodeSolver *nodes; /* borrowed; NULL: by the solver */
+  LamResponder *self;         /* the responder's counters; borrowed */
+  PetscReal accuracy;
   PetscInt points;
-  PetscInt *hint; /* [points] record that answered last in this load step, -1: none */
+  LamTable newest;       /* owned within a `respond`; NULL: the database has no grid */
+  LamTable *table;       /* [points] owned: answered last in this load step; NULL: none */
+  PetscInt *self_solves; /* [points] states solved for the point itself in this load step */
 } Cache;
 
-/* Questions of one round: all that are missing, then the chosen of them. */
+/* Questions of one `respond` that have no answer yet. */
 typedef struct {
-  PetscInt chosen_count;
-  LamLoad *chosen;     /* sorted */
-  LamResponse *solved; /* of each chosen question */
-} Round;
+  const LamLoad *loads;
+  const PetscInt *points;
+  LamResponse *responses;
+  PetscInt n, *at; /* places in the three */
+} Missing;
 
-/* Binary grid of 2^-33, about 1e-10: sums in another order end on the same question, and rounding is exact. */
-static PetscReal OnGrid(PetscReal x)
-{
-  return ldexp(rint(ldexp(x, 33)), -33);
-}
-
-static LamLoad RoundLoad(const LamLoad *load)
-{
-  LamLoad rounded;
-
-  for (int k = 0; k < 9; k++) rounded.F[k] = OnGrid(load->F[k]);
-  rounded.turgor = OnGrid(load->turgor);
-  rounded.cohesion = OnGrid(load->cohesion);
-  return rounded;
-}
-
-/* Order of the keys: F, then turgor, then cohesion. */
-static int CompareLoads(const void *first, const void *second)
-{
-  const LamLoad *a = (const LamLoad *)first, *b = (const LamLoad *)second;
-
-  for (int k = 0; k < 9; k++) {
-    if (a->F[k] != b->F[k]) return a->F[k] < b->F[k] ? -1 : 1;
-  }
-  if (a->turgor != b->turgor) return a->turgor < b->turgor ? -1 : 1;
-  if (a->cohesion != b->cohesion) return a->cohesion < b->cohesion ? -1 : 1;
-  return 0;
-}
-
-/* Distance of two questions, a strain: half the change of (C11 + C22)/2, (C11 - C22)/2, C12, as in a database; and
- * turgor. */
-static PetscReal LoadDistance(const LamLoad *a, const LamLoad *b)
-{
-  PetscReal sum = PetscSqr(a->turgor - b->turgor) + PetscSqr(a->cohesion - b->cohesion);
-
-  for (int i = 0; i < 3; i++) {
-    for (int j = 0; j < 3; j++) {
-      PetscReal difference = 0;
-      for (int k = 0; k < 3; k++) difference += a->F[3 * k + i] * a->F[3 * k + j] - b->F[3 * k + i] * b->F[3 * k + j];
-      sum += 0.125 * PetscSqr(difference);
-    }
-  }
-  return PetscSqrtReal(sum);
-}
-
-/* The first chosen question within the radius, -1: none. */
-static PetscInt Covering(const Cache *cache, const Round *round, const LamLoad *load)
-{
-  for (PetscInt c = 0; c < round->chosen_count; c++) {
-    if (LoadDistance(load, &round->chosen[c]) <= cache->radius) return c;
-  }
-  return -1;
-}
-
-/* Gathers items of `size` bytes from all ranks on all ranks; starts[ranks + 1] counts items. The caller frees both. */
-static PetscErrorCode AllGather(MPI_Comm comm, size_t size, PetscInt n, const void *items, PetscMPIInt **starts,
-                                void **all)
-{
-  PetscMPIInt ranks, bytes, count, *counts;
-  MPI_Datatype type;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(comm, &ranks));
-  PetscCall(PetscMPIIntCast((PetscInt)size, &bytes));
-  PetscCall(PetscMPIIntCast(n, &count));
-  PetscCall(PetscMalloc1(ranks, &counts));
-  PetscCall(PetscMalloc1(ranks + 1, starts));
-  PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts, 1, MPI_INT, comm));
-  (*starts)[0] = 0;
-  for (PetscMPIInt r = 0; r < ranks; r++) (*starts)[r + 1] = (*starts)[r] + counts[r];
-  PetscCall(PetscMalloc(size * (*starts)[ranks], all));
-  PetscCallMPI(MPI_Type_contiguous(bytes, MPI_BYTE, &type));
-  PetscCallMPI(MPI_Type_commit(&type));
-  PetscCallMPI(MPI_Allgatherv(items, count, type, *all, counts, *starts, type, comm));
-  PetscCallMPI(MPI_Type_free(&type));
-  PetscCall(PetscFree(counts));
-  PetscFunctionReturn(0);
-}
-
-/* Steps 2 and 3: the questions to solve, the same on all ranks. */
-static PetscErrorCode Choose(const Cache *cache, PetscInt n, const LamLoad missing[], Round *round)
-{
-  PetscMPIInt ranks, *starts;
-  PetscInt total;
-  LamLoad *all;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(cache->comm, &ranks));
-  PetscCall(AllGather(cache->comm, sizeof(LamLoad), n, missing, &starts, (void **)&all));
-  total = starts[ranks];
-  qsort(all, (size_t)total, sizeof(LamLoad), CompareLoads);
-  round->chosen = all; /* chosen in place: the k-th chosen never comes after the question it is copied from */
-  round->chosen_count = 0;
-  for (PetscInt k = 0; k < total; k++) {
-    if (Covering(cache, round, &all[k]) < 0) round->chosen[round->chosen_count++] = all[k];
-  }
-  PetscCall(PetscFree(starts));
-  PetscFunctionReturn(0);
-}
-
-/* Adds what was solved, failed or not: all of it, unless the solver was stopped on the way. */
-static PetscErrorCode AddSolved(Cache *cache, const Round *round)
-{
-  LamResponse *records;
-  PetscInt n = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(round->chosen_count, &records));
-  for (PetscInt k = 0; k < round->chosen_count; k++) {
-    if (round->solved[k].status != LAM_OUT_OF_REACH) records[n++] = round->solved[k];
-  }
-  PetscCall(LamDatabaseAdd(cache->database, n, NULL, records));
-  PetscCall(PetscFree(records));
-  PetscFunctionReturn(0);
-}
-
-/* Step 4: question k goes to rank k mod ranks. */
-static PetscErrorCode SolveChosen(Cache *cache, Round *round)
-{
-  PetscMPIInt rank, ranks, *starts;
-  PetscInt n = 0, *points;
-  const LamResponder before = *cache->solver;
+/* What is to be solved, the same on all ranks: nodes, or states where keys is NULL. */
+typedef struct {
+  PetscInt n;
+  PetscInt64 *keys;
   LamLoad *loads;
-  LamResponse *mine, *all;
+  LamResponse *responses;
+} Batch;
+
+/* ---- step 1: asking ---- */
+
+static PetscBool GoesOnByItself(const Cache *cache, PetscInt point)
+{
+  return (PetscBool)(point >= 0 && cache->self_solves[point] >= SELF_STAYS);
+}
+
+/* The newest table is the point's own from now on. */
+static PetscErrorCode Hold(Cache *cache, PetscInt point)
+{
+  PetscFunctionBeginUser;
+  if (point < 0) PetscFunctionReturn(0);
+  PetscCall(LamTableDestroy(&cache->table[point]));
+  PetscCall(LamDatabaseGetTable(cache->database, &cache->table[point]));
+  PetscFunctionReturn(0);
+}
+
+/* Out of reach where neither the point's table nor the newest one answers. */
+static PetscErrorCode AskTables(Cache *cache, const LamLoad *load, PetscInt point, LamResponse *response)
+{
+  LamTable own = point < 0 ? NULL : cache->table[point];
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(cache->comm, &rank));
-  PetscCallMPI(MPI_Comm_size(cache->comm, &ranks));
-  PetscCall(PetscMalloc3(round->chosen_count, &loads, round->chosen_count, &points, round->chosen_count, &mine));
-  for (PetscInt k = rank; k < round->chosen_count; k += ranks) {
-    loads[n] = round->chosen[k];
-    points[n++] = -1; /* from the reference state: the answer must not depend on who solves it */
+  if (own) {
+    PetscCall(LamTableQuery(own, load, cache->accuracy, response));
+    if (response->status != LAM_OUT_OF_REACH || own == cache->newest) PetscFunctionReturn(0);
   }
-  PetscCall(cache->solver->respond(cache->solver->ctx, n, loads, points, mine));
-  cache->self->solves += cache->solver->solves - before.solves;
-  cache->self->solve_seconds += cache->solver->solve_seconds - before.solve_seconds;
-  PetscCall(AllGather(cache->comm, sizeof(LamResponse), n, mine, &starts, (void **)&all));
-  PetscCall(PetscMalloc1(round->chosen_count, &round->solved));
-  for (PetscInt k = 0; k < round->chosen_count; k++) round->solved[k] = all[starts[k % ranks] + k / ranks];
-  PetscCall(AddSolved(cache, round));
-  PetscCall(PetscFree(starts));
-  PetscCall(PetscFree(all));
-  PetscCall(PetscFree3(loads, points, mine));
+  PetscCall(LamTableQuery(cache->newest, load, cache->accuracy, response));
+  if (response->status != LAM_OUT_OF_REACH) PetscCall(Hold(cache, point));
+  PetscFunctionReturn(0);
+}
+
+/* Records of no grid: beside a solver the question's own state alone, as blends change with each record. */
+static PetscErrorCode AskRecords(Cache *cache, const LamLoad *load, LamResponse *response)
+{
+  const LamLoad question = cache->solver ? LamLoadRound(load) : *load;
+  LamResponse answer;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamScatterQuery(cache->database, &question, cache->solver ? 0 : cache->accuracy, &answer));
+  if (LamResponseHasFields(&answer)) LamLoadLeadBack(load, &answer);
+  if (LamResponseHasFields(&answer) || !cache->newest) *response = answer; /* else the table's reason stays */
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode Ask(Cache *cache, const LamLoad *load, PetscInt point, LamResponse *response)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamDatabaseQuery(cache->database, load, PetscSqr(cache->radius / 0.28), response));
+  PetscCall(LamResponseInit(load, response));
+  response->status = LAM_OUT_OF_REACH;
+  if (cache->newest && !GoesOnByItself(cache, point)) PetscCall(AskTables(cache, load, point, response));
+  if (response->status == LAM_OUT_OF_REACH) PetscCall(AskRecords(cache, load, response));
   PetscFunctionReturn(0);
 }
 
-/*
-  Step 5 for one question; *answered tells whether it has its answer. A failed solve answers all that it was chosen for:
-  with the same failure.
-*/
-static PetscErrorCode AskAgain(Cache *cache, const Round *round, const LamLoad *load, PetscInt point,
-                               LamResponse *response, PetscBool *answered)
-{
-  LamLoad rounded = RoundLoad(load);
-  PetscInt c;
-
-  PetscFunctionBeginUser;
-  *answered = PETSC_TRUE;
-  PetscCall(Ask(cache, load, point, response));
-  if (response->status != LAM_OUT_OF_REACH) PetscFunctionReturn(0);
-  c = Covering(cache, round, &rounded);
-  PetscCheck(c >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a missing question is not covered by the chosen ones");
-  if (!LamResponseHasFields(&round->solved[c]) || !CompareLoads(&rounded, &round->chosen[c])) {
-    *response = round->solved[c];
-    response->load = *load;
-  } else
-    *answered = PETSC_FALSE;
-  PetscFunctionReturn(0);
-}
-
-/* One round for the `*n` missing questions (places in loads); leaves the still missing ones there. */
-static PetscErrorCode SolveMissing(Cache *cache, PetscInt *n, PetscInt missing[], const LamLoad loads[],
-                                   const PetscInt points[], LamResponse responses[])
+/* Asks for all that is missing; leaves what still is. */
+static PetscErrorCode AskAll(Cache *cache, Missing *missing)
 {
   PetscInt left = 0;
-  LamLoad *questions;
-  Round round = {0};
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(*n, &questions));
-  for (PetscInt k = 0; k < *n; k++) questions[k] = RoundLoad(&loads[missing[k]]);
-  PetscCall(Choose(cache, *n, questions, &round));
-  PetscCall(SolveChosen(cache, &round));
-  for (PetscInt k = 0; k < *n; k++) {
-    PetscInt i = missing[k];
-    PetscBool answered;
-    PetscCall(AskAgain(cache, &round, &loads[i], points[i], &responses[i], &answered));
-    if (!answered) missing[left++] = i;
+  for (PetscInt k = 0; k < missing->n; k++) {
+    const PetscInt i = missing->at[k];
+    PetscCall(Ask(cache, &missing->loads[i], missing->points[i], &missing->responses[i]));
+    if (missing->responses[i].status == LAM_OUT_OF_REACH) missing->at[left++] = i;
   }
-  *n = left;
-  PetscCall(PetscFree(questions));
-  PetscCall(PetscFree(round.chosen));
-  PetscCall(PetscFree(round.solved));
+  missing->n = left;
   PetscFunctionReturn(0);
 }
+
+/* ---- solving ---- */
+
+static PetscErrorCode GetNewest(Cache *cache)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamTableDestroy(&cache->newest));
+  PetscCall(LamDatabaseGetTable(cache->database, &cache->newest));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SolveNodes(Cache *cache, PetscInt n, const PetscInt64 keys[], LamResponse responses[])
+{
+  PetscLogDouble start, end;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscTime(&start));
+  for (PetscInt k = 0; k < n; k++) {
+    PetscCall(cache->nodes->solve(cache->nodes->ctx, keys[k], &responses[k]));
+    if (responses[k].status != LAM_OUT_OF_REACH) cache->self->solves++;
+  }
+  PetscCall(PetscTime(&end));
+  cache->self->solve_seconds += end - start;
+  PetscFunctionReturn(0);
+}
+
+/* All from the reference state: the answer must not depend on who solves it. */
+static PetscErrorCode SolveLoads(Cache *cache, PetscInt n, const LamLoad loads[], LamResponse responses[])
+{
+  const LamResponder before = *cache->solver;
+  PetscInt *points;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &points));
+  for (PetscInt k = 0; k < n; k++) points[k] = -1;
+  PetscCall(cache->solver->respond(cache->solver->ctx, n, loads, points, responses));
+  cache->self->solves += cache->solver->solves - before.solves;
+  cache->self->solve_seconds += cache->solver->solve_seconds - before.solve_seconds;
+  PetscCall(PetscFree(points));
+  PetscFunctionReturn(0);
+}
+
+/* Item k of the batch is solved by rank k mod ranks; all have all responses then. */
+static PetscErrorCode SolveBatch(Cache *cache, Batch *batch)
+{
+  PetscMPIInt rank, ranks, *starts;
+  LamGrid grid;
+  LamLoad *loads;
+  LamResponse *mine, *all;
+  PetscInt64 *keys;
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(cache->comm, &rank));
+  PetscCallMPI(MPI_Comm_size(cache->comm, &ranks));
+  PetscCall(LamDatabaseGetGrid(cache->database, &grid));
+  PetscCall(PetscMalloc3(batch->n, &loads, batch->n, &keys, batch->n, &mine));
+  for (PetscInt k = rank; k < batch->n; k += ranks, n++) {
+    if (batch->keys) {
+      keys[n] = batch->keys[k];
+      PetscCall(LamGridNodeLoad(grid, keys[n], &loads[n]));
+    } else
+      loads[n] = batch->loads[k];
+  }
+  if (batch->keys && cache->nodes)
+    PetscCall(SolveNodes(cache, n, keys, mine));
+  else
+    PetscCall(SolveLoads(cache, n, loads, mine));
+  PetscCall(LamGather(cache->comm, sizeof(LamResponse), n, mine, &starts, (void **)&all));
+  PetscCall(PetscMalloc1(batch->n, &batch->responses));
+  for (PetscInt k = 0; k < batch->n; k++) batch->responses[k] = all[starts[k % ranks] + k / ranks];
+  PetscCall(PetscFree(starts));
+  PetscCall(PetscFree(all));
+  PetscCall(PetscFree3(loads, keys, mine));
+  PetscFunctionReturn(0);
+}
+
+/* Adds what was solved, failed or not. *stopped: the solver was stopped on the way, and the rest is not there. */
+static PetscErrorCode AddBatch(Cache *cache, const Batch *batch, PetscBool *stopped)
+{
+  LamResponse *records;
+  PetscInt64 *keys;
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(batch->n, &records, batch->n, &keys));
+  for (PetscInt k = 0; k < batch->n; k++) {
+    if (batch->responses[k].status == LAM_OUT_OF_REACH) continue;
+    if (batch->keys) keys[n] = batch->keys[k];
+    records[n++] = batch->responses[k];
+  }
+  *stopped = (PetscBool)(n < batch->n);
+  PetscCall(LamDatabaseAdd(cache->database, n, batch->keys ? keys : NULL, records));
+  PetscCall(PetscFree2(records, keys));
+  PetscCall(GetNewest(cache));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SolveAndAdd(Cache *cache, Batch *batch, PetscBool *stopped)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SolveBatch(cache, batch));
+  PetscCall(AddBatch(cache, batch, stopped));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode BatchDestroy(Batch *batch)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(batch->keys));
+  PetscCall(PetscFree(batch->loads));
+  PetscCall(PetscFree(batch->responses));
+  PetscFunctionReturn(0);
+}
+
+/* ---- step 2: nodes ---- */
+
+static int CompareKeys(const void *first, const void *second)
+{
+  const PetscInt64 a = *(const PetscInt64 *)first, b = *(const PetscInt64 *)second;
+
+  return (a > b) - (a < b);
+}
+
+/* The nodes that this rank's questions need, each once. The caller frees *keys. */
+static PetscErrorCode FindMyNeeds(Cache *cache, const Missing *missing, PetscInt *n, PetscInt64 **keys)
+{
+  PetscInt capacity = 16 * LAM_MAX_NEEDS, more;
+
+  PetscFunctionBeginUser;
+  *n = 0;
+  PetscCall(PetscMalloc1(capacity, keys));
+  for (PetscInt k = 0; k < missing->n; k++) {
+    const LamLoad question = LamLoadRound(&missing->loads[missing->at[k]]);
+
+    if (GoesOnByItself(cache, missing->points[missing->at[k]])) continue;
+    if (*n + LAM_MAX_NEEDS > capacity) {
+      LamSortUnique(n, *keys, sizeof(PetscInt64), CompareKeys);
+      capacity = PetscMax(capacity, 2 * (*n + LAM_MAX_NEEDS));
+      PetscCall(PetscRealloc(sizeof(PetscInt64) * (size_t)capacity, keys));
+    }
+    PetscCall(LamTableNeeds(cache->newest, &question, cache->accuracy, &more, *keys + *n));
+    *n += more;
+  }
+  LamSortUnique(n, *keys, sizeof(PetscInt64), CompareKeys);
+  PetscFunctionReturn(0);
+}
+
+/* One round; *ends: no node helps any more, or the solver was stopped. */
+static PetscErrorCode Refine(Cache *cache, Missing *missing, PetscBool *ends, PetscBool *stopped)
+{
+  PetscInt64 *mine;
+  PetscInt n;
+  Batch batch = {0};
+
+  PetscFunctionBeginUser;
+  PetscCall(FindMyNeeds(cache, missing, &n, &mine));
+  PetscCall(LamGatherUnion(cache->comm, sizeof(PetscInt64), CompareKeys, n, mine, &batch.n, (void **)&batch.keys));
+  PetscCall(PetscFree(mine));
+  *ends = (PetscBool)!batch.n;
+  if (!*ends) {
+    PetscCall(SolveAndAdd(cache, &batch, stopped));
+    PetscCall(AskAll(cache, missing));
+  }
+  PetscCall(BatchDestroy(&batch));
+  PetscFunctionReturn(0);
+}
+
+/* ---- step 3: states ---- */
+
+static PetscErrorCode SolveThemselves(Cache *cache, Missing *missing)
+{
+  LamLoad *mine;
+  Batch batch = {0};
+  PetscBool stopped;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(missing->n, &mine));
+  for (PetscInt k = 0; k < missing->n; k++) mine[k] = LamLoadRound(&missing->loads[missing->at[k]]);
+  PetscCall(
+      LamGatherUnion(cache->comm, sizeof(LamLoad), LamLoadCompare, missing->n, mine, &batch.n, (void **)&batch.loads));
+  PetscCall(SolveAndAdd(cache, &batch, &stopped));
+  for (PetscInt k = 0; k < missing->n; k++) {
+    const PetscInt i = missing->at[k], point = missing->points[i];
+    const LamLoad *found =
+        (const LamLoad *)bsearch(&mine[k], batch.loads, (size_t)batch.n, sizeof(LamLoad), LamLoadCompare);
+
+    missing->responses[i] = batch.responses[found - batch.loads];
+    missing->responses[i].load = *found;
+    LamLoadLeadBack(&missing->loads[i], &missing->responses[i]);
+    if (point >= 0) cache->self_solves[point]++;
+  }
+  PetscCall(PetscFree(mine));
+  PetscCall(BatchDestroy(&batch));
+  PetscFunctionReturn(0);
+}
+
+/* Steps 2 and 3. */
+static PetscErrorCode SolveMissing(Cache *cache, Missing *missing)
+{
+  PetscBool ends = (PetscBool)!cache->newest, stopped = PETSC_FALSE;
+  PetscInt anywhere;
+
+  PetscFunctionBeginUser;
+  for (PetscInt round = 0; !stopped; round++) {
+    PetscCallMPI(MPI_Allreduce(&missing->n, &anywhere, 1, MPIU_INT, MPI_SUM, cache->comm));
+    if (!anywhere) break;
+    if (ends || round == MAX_ROUNDS) {
+      PetscCall(SolveThemselves(cache, missing));
+      break;
+    }
+    PetscCall(Refine(cache, missing, &ends, &stopped));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* ---- responder ---- */
 
 static PetscErrorCode CacheRespond(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[],
                                    LamResponse responses[])
 {
   Cache *cache = (Cache *)ctx;
-  PetscInt *missing, left = 0, anywhere;
+  Missing missing = {.loads = loads, .points = points, .responses = responses, .n = n};
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n, &missing));
+  PetscCall(GetNewest(cache));
+  PetscCall(PetscMalloc1(n, &missing.at));
   for (PetscInt i = 0; i < n; i++) {
     PetscCheck(points[i] < cache->points, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
                "material point %" PetscInt_FMT ", of %" PetscInt_FMT, points[i], cache->points);
-    PetscCall(Ask(cache, &loads[i], points[i], &responses[i]));
-    if (responses[i].status == LAM_OUT_OF_REACH) missing[left++] = i;
-    if (LamResponseHasFields(&responses[i])) cache->self->hits++;
+    missing.at[i] = i;
   }
+  PetscCall(AskAll(cache, &missing));
+  for (PetscInt i = 0; i < n; i++) cache->self->hits += LamResponseHasFields(&responses[i]);
   cache->self->queries += n;
-  while (cache->solver) {
-    PetscCallMPI(MPI_Allreduce(&left, &anywhere, 1, MPIU_INT, MPI_SUM, cache->comm));
-    if (!anywhere) break;
-    PetscCall(SolveMissing(cache, &left, missing, loads, points, responses));
-  }
-  for (PetscInt i = 0; i < n; i++) {
-    if (!LamResponseHasFields(&responses[i])) cache->self->failures++;
-  }
-  PetscCall(PetscFree(missing));
+  if (cache->solver) PetscCall(SolveMissing(cache, &missing));
+  for (PetscInt i = 0; i < n; i++) cache->self->failures += !LamResponseHasFields(&responses[i]);
+  PetscCall(PetscFree(missing.at));
+  PetscCall(LamTableDestroy(&cache->newest));
   PetscFunctionReturn(0);
 }
 
-static void ForgetHints(Cache *cache)
+/* A load step ends: the next one begins with the newest table. */
+static PetscErrorCode Forget(Cache *cache)
 {
-  for (PetscInt p = 0; p < cache->points; p++) cache->hint[p] = -1;
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < cache->points; p++) {
+    PetscCall(LamTableDestroy(&cache->table[p]));
+    cache->self_solves[p] = 0;
+  }
+  PetscFunctionReturn(0);
 }
 
 static PetscErrorCode CacheAccept(void *ctx)
@@ -277,7 +382,7 @@ static PetscErrorCode CacheAccept(void *ctx)
   Cache *cache = (Cache *)ctx;
 
   PetscFunctionBeginUser;
-  ForgetHints(cache);
+  PetscCall(Forget(cache));
   if (cache->solver && cache->solver->accept) PetscCall(cache->solver->accept(cache->solver->ctx));
   PetscFunctionReturn(0);
 }
@@ -287,7 +392,7 @@ static PetscErrorCode CacheReject(void *ctx)
   Cache *cache = (Cache *)ctx;
 
   PetscFunctionBeginUser;
-  ForgetHints(cache);
+  PetscCall(Forget(cache));
   if (cache->solver && cache->solver->reject) PetscCall(cache->solver->reject(cache->solver->ctx));
   PetscFunctionReturn(0);
 }
@@ -298,13 +403,17 @@ static PetscErrorCode CacheDestroy(void **ctx)
 
   PetscFunctionBeginUser;
   if (!cache) PetscFunctionReturn(0);
-  PetscCall(PetscFree(cache->hint));
+  PetscCall(Forget(cache));
+  PetscCall(LamTableDestroy(&cache->newest)); /* of a `respond` that ended with an error */
+  PetscCall(PetscFree(cache->table));
+  PetscCall(PetscFree(cache->self_solves));
   PetscCall(PetscFree(*ctx));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamCacheResponderCreate(MPI_Comm comm, LamDatabase database, LamResponder *solver, PetscReal accuracy,
-                                       PetscInt points, LamResponder *responder)
+PetscErrorCode LamCacheResponderCreate(MPI_Comm comm, LamDatabase database, LamResponder *solver,
+                                       const LamNodeSolver *nodes, PetscReal accuracy, PetscInt points,
+                                       LamResponder *responder)
 {
   Cache *cache;
 
@@ -314,11 +423,12 @@ PetscErrorCode LamCacheResponderCreate(MPI_Comm comm, LamDatabase database, LamR
   cache->comm = comm;
   cache->database = database;
   cache->solver = solver;
+  cache->nodes = nodes;
   cache->self = responder;
-  cache->radius = 0.28 * PetscSqrtReal(accuracy);
+  cache->accuracy = accuracy;
   cache->points = points;
-  PetscCall(PetscMalloc1(points, &cache->hint));
-  ForgetHints(cache);
+  PetscCall(PetscCalloc1(points, &cache->table));
+  PetscCall(PetscCalloc1(points, &cache->self_solves));
   *responder = (LamResponder){
       .ctx = cache, .respond = CacheRespond, .accept = CacheAccept, .reject = CacheReject, .destroy = CacheDestroy};
   PetscFunctionReturn(0);

@@ -7,15 +7,25 @@
 #include <lamella/database.h>
 #include <lamella/response.h>
 
+/* Solves a node of the database's grid: the same response whoever solves it, and when. Stopped: LAM_OUT_OF_REACH. */
+typedef struct {
+  void *ctx;
+  PetscErrorCode (*solve)(void *ctx, PetscInt64 key, LamResponse *response);
+} LamNodeSolver;
+
 /*
-  database only (solver NULL): a question out of reach is answered with LAM_OUT_OF_REACH.
-  cache (solver given): misses of one `respond` are gathered over `comm`, put in an order that does not depend on the
-  ranks, thinned (a question within the trust radius of a chosen one waits for its answer), solved, added to the
-  database of every rank, then answered. Within a load step a material point keeps the record it was answered from
-  while that is in reach, so the answers are smooth.
-  accuracy: wanted relative error of the stress; it sets the trust radius. Borrows database and solver.
+  database only (solver NULL): a question that the database cannot answer to the accuracy is LAM_OUT_OF_REACH, with the
+  table's reason.
+  cache (solver given): what the database lacks for the questions of one `respond` is gathered over `comm`, solved and
+  added to the database of every rank: nodes of its grid where they help, else the states asked for. What is added
+  depends on the questions alone, neither on the number of ranks nor on their order.
+  Within a load step a material point is answered from one table as long as that reaches: an answer does not change
+  because other points ask.
+  nodes: NULL: `solver` solves them, each from the reference state. accuracy: wanted relative error of the stress
+  (LamStressError). Borrows database, solver and nodes.
 */
-PetscErrorCode LamCacheResponderCreate(MPI_Comm comm, LamDatabase database, LamResponder *solver, PetscReal accuracy,
-                                       PetscInt points, LamResponder *responder);
+PetscErrorCode LamCacheResponderCreate(MPI_Comm comm, LamDatabase database, LamResponder *solver,
+                                       const LamNodeSolver *nodes, PetscReal accuracy, PetscInt points,
+                                       LamResponder *responder);
 
 #endif

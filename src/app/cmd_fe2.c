@@ -12,6 +12,7 @@
 #include <unistd.h>
 #include "fe2_file.h"
 #include "interruptible.h"
+#include "shared_grid.h"
 
 typedef enum { RESPONSE_DIRECT, RESPONSE_CACHE, RESPONSE_DATABASE } ResponseType;
 static const char *const ResponseNames[] = {"direct", "cache", "database"};
@@ -32,7 +33,8 @@ typedef struct {
   /* rank 0 only */
   LamRecordWriter records; /* appends what the cache solves to the database's file */
   PetscInt recorded;       /* records of the database that are in its file */
-  PetscInt64 next_key;
+  PetscInt64 next_key;     /* of a state that belongs to no grid */
+  char *grid_text;         /* to be written; NULL: the file has it */
   LamFE2File out;
   LamProgress progress;
 
@@ -161,6 +163,24 @@ static PetscErrorCode Prepare(Run *run)
   PetscFunctionReturn(0);
 }
 
+/* A new database has no grid yet, nor has one that is older than the grid. */
+static PetscErrorCode GiveGrid(Run *run)
+{
+  LamGrid grid;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamDatabaseGetGrid(run->database, &grid));
+  if (grid) PetscFunctionReturn(0);
+  if (LamAppIsRoot() && run->recorded && !run->quiet)
+    fprintf(stderr,
+            "lamella fe2: %s: its %" PetscInt_FMT
+            " records belong to no grid; a grid is added, on which new ones lie\n",
+            run->database_path, run->recorded);
+  /* not the solver that a signal stops: a grid is made from all its states or not at all */
+  PetscCall(LamSharedGridMake(run->comm, run->scene, &run->direct, run->database, &run->grid_text));
+  PetscFunctionReturn(0);
+}
+
 /* Wires the responder that the options ask for to the macroscale solver. */
 static PetscErrorCode Connect(Run *run)
 {
@@ -182,8 +202,9 @@ static PetscErrorCode Connect(Run *run)
     PetscCall(LamMacroSetResponder(run->macro, &run->solver));
     PetscFunctionReturn(0);
   }
-  PetscCall(LamCacheResponderCreate(run->comm, run->database, run->rve ? &run->solver : NULL, run->scene->accuracy,
-                                    points, &run->cache));
+  if (run->response == RESPONSE_CACHE) PetscCall(GiveGrid(run));
+  PetscCall(LamCacheResponderCreate(run->comm, run->database, run->rve ? &run->solver : NULL, NULL,
+                                    run->scene->accuracy, points, &run->cache));
   PetscCall(LamMacroSetResponder(run->macro, &run->cache));
   PetscFunctionReturn(0);
 }
@@ -198,8 +219,9 @@ static PetscErrorCode OpenFiles(Run *run)
   if (run->out_path) PetscCall(LamFE2FileOpen(run->out_path, run->scene, &run->out));
   if (run->response != RESPONSE_CACHE || !run->database_path) PetscFunctionReturn(0);
   PetscCall(LamRecordWriterOpen(run->database_path, "database", LAM_WRITE_APPEND, run->scene, &run->records));
+  if (run->grid_text) PetscCall(LamRecordWriterText(run->records, LAM_GRID_NAME, run->grid_text));
   PetscCall(LamRecordWriterGetKeys(run->records, &n, &keys));
-  run->next_key = LAM_CACHE_KEY; /* below are the samples of `build`, which has to find them unsolved */
+  run->next_key = LAM_CACHE_KEY;
   for (PetscInt k = 0; k < n; k++) run->next_key = PetscMax(run->next_key, keys[k] + 1);
   PetscFunctionReturn(0);
 }
@@ -303,6 +325,7 @@ static PetscErrorCode PrintTotals(const Run *run)
 static PetscErrorCode RecordSolved(Run *run)
 {
   const LamResponse *records;
+  const PetscInt64 *in_memory;
   PetscErrorCode ierr;
   PetscInt64 *keys;
   PetscInt n;
@@ -310,12 +333,15 @@ static PetscErrorCode RecordSolved(Run *run)
   PetscFunctionBeginUser;
   PetscCall(LamDatabaseGetAdded(run->database, run->recorded, &n, &records));
   if (!n) PetscFunctionReturn(0);
+  PetscCall(LamDatabaseGetRecords(run->database, NULL, NULL, &in_memory));
   PetscCall(PetscMalloc1(n, &keys));
-  for (PetscInt k = 0; k < n; k++) keys[k] = run->next_key + k;
+  for (PetscInt k = 0; k < n; k++) {
+    keys[k] = in_memory[run->recorded + k];
+    if (!LamKeyIsNode(keys[k])) keys[k] = run->next_key++;
+  }
   ierr = LamRecordWriterCommit(run->records, n, keys, records);
   PetscCall(PetscFree(keys));
   PetscCall(ierr);
-  run->next_key += n;
   run->recorded += n;
   PetscFunctionReturn(0);
 }
@@ -430,6 +456,7 @@ static PetscErrorCode Destroy(Run *run)
   if (run->direct.destroy) PetscCall(run->direct.destroy(&run->direct.ctx));
   PetscCall(LamRVEDestroy(&run->rve));
   PetscCall(LamDatabaseClose(&run->database));
+  PetscCall(PetscFree(run->grid_text));
   PetscCall(LamSceneDestroy(&run->scene));
   PetscFunctionReturn(0);
 }

@@ -1,0 +1,17 @@
+/*
+  The grid of a new database on all ranks.
+*/
+#ifndef LAM_SHARED_GRID_H
+#define LAM_SHARED_GRID_H
+
+#include <lamella/database.h>
+
+/*
+  Gives a database without a grid the one for its scene: made on rank 0, whose `solver` (not collective) solves for it,
+  the same on all ranks, with the records that came of it. *text: on rank 0 the layout, to be written to the database's
+  file as LAM_GRID_NAME before the records; the caller frees it. NULL elsewhere. Collective.
+*/
+PetscErrorCode LamSharedGridMake(MPI_Comm comm, const LamScene *scene, LamResponder *solver, LamDatabase database,
+                                 char **text);
+
+#endif
