@@ -20,11 +20,11 @@
 #include <lamella/cache.h>
 #include <petsctime.h>
 #include <stdlib.h>
-#include "database_internal.h"
 #include "gather.h"
 #include "rounded_load.h"
 
 enum { MAX_ROUNDS = 12, SELF_STAYS = 2 };
+static const PetscReal OWN_STATE = 1e-12; /* distance of a question from its own record, a strain */
 
 typedef struct {
   MPI_Comm comm;
@@ -87,16 +87,20 @@ static PetscErrorCode AskTables(Cache *cache, const LamLoad *load, PetscInt poin
   PetscFunctionReturn(0);
 }
 
-/* Records of no grid: beside a solver the question's own state alone, as blends change with each record. */
+/*
+  Records of no grid. Beside a solver the question's own state alone: blends of states around change with each record.
+*/
 static PetscErrorCode AskRecords(Cache *cache, const LamLoad *load, LamResponse *response)
 {
   const LamLoad question = cache->solver ? LamLoadRound(load) : *load;
   LamResponse answer;
 
   PetscFunctionBeginUser;
-  PetscCall(LamScatterQuery(cache->database, &question, cache->solver ? 0 : cache->accuracy, &answer));
-  if (LamResponseHasFields(&answer)) LamLoadLeadBack(load, &answer);
-  if (LamResponseHasFields(&answer) || !cache->newest) *response = answer; /* else the table's reason stays */
+  PetscCall(LamDatabaseQuery(cache->database, &question, cache->accuracy, &answer));
+  if (cache->solver && !(answer.distance <= OWN_STATE)) PetscFunctionReturn(0);
+  if (!LamResponseHasFields(&answer) && cache->newest) PetscFunctionReturn(0); /* the table's reason stays */
+  LamLoadLeadBack(load, &answer);
+  *response = answer;
   PetscFunctionReturn(0);
 }
 
