@@ -48,14 +48,24 @@ for run in cold warm; do
 done
 "$lamella" fe2 small.yaml --json -d db.h5 --response database >database.jsonl || fail "a complete database does not answer"
 
-# what the cache adds does not pass for samples of `build`: its keys count from 2^62
+# what the cache adds are nodes of a grid that the file holds, each once; keys from 2^62 on are states of no grid
 if /usr/bin/python3 -c 'import h5py' 2>/dev/null; then
-  /usr/bin/python3 - <<'PYTHON' || fail "the cache's records have keys of samples, or the same twice"
+  /usr/bin/python3 - <<'PYTHON' || fail "the cache's records have keys of samples, or the same twice, or there is no grid"
 import h5py
 with h5py.File("db.h5") as file:
-    keys = list(file["records"]["key"])
-assert keys == list(range(2**62, 2**62 + len(keys))), keys
+    keys = sorted(int(key) for key in file["records"]["key"])
+    assert "step" in file["table/grid"][()].decode()
+nodes = [key for key in keys if 2**60 <= key < 2**61]
+assert nodes and len(set(keys)) == len(keys), keys
+assert [key for key in keys if key not in nodes] == list(range(2**62, 2**62 + len(keys) - len(nodes))), keys
 PYTHON
+  # a database older than grids is given one, and that is said once
+  cp db.h5 old.h5
+  /usr/bin/python3 -c 'import h5py; del h5py.File("old.h5", "r+")["table"]'
+  "$lamella" fe2 small.yaml -d old.h5 >/dev/null 2>old.err || fail "a database without a grid: $(cat old.err)"
+  grep -q "old.h5: its [0-9]* records belong to no grid" old.err || fail "a grid is added in silence: $(cat old.err)"
+  "$lamella" fe2 small.yaml -d old.h5 --response database >/dev/null 2>old.err || fail "the added grid: $(cat old.err)"
+  grep -q grid old.err && fail "a grid is added twice"
 fi
 
 # an error on the way (a folder is where OUT.xdmf belongs) closes the files: the cache's solves are kept, no lock is left
