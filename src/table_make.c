@@ -114,13 +114,23 @@ static PetscBool IsFinite(const LamTableState *s)
   return (PetscBool)isfinite(sum);
 }
 
+/*
+  Whether the walls are on another branch than their neighbours in strain. Cells that barely touch leave saddles of
+  another kind, of the motions in which they roll off each other, and end on the one branch that there is.
+*/
+#define BARELY_TOUCHING 0.75 /* share of the interface without contact */
+static PetscBool HasBuckled(const LamNodeData *r)
+{
+  return (PetscBool)(r->branch > 0 && !(r->debonded_fraction > BARELY_TOUCHING));
+}
+
 static void MakeState(const struct LamGrid_s *grid, const LamNodeData *r, PetscInt data, int j, LamTableState *state)
 {
   *state = (LamTableState){.j = j, .data = data};
   if (r->status != LAM_CONVERGED && r->status != LAM_UNSTABLE) return;
   FillState(grid, r, state);
   state->has_data = IsFinite(state);
-  state->good = (PetscBool)(state->has_data && r->status == LAM_CONVERGED && r->stable && r->branch == 0);
+  state->good = (PetscBool)(state->has_data && r->status == LAM_CONVERGED && r->stable && !HasBuckled(r));
   if (!state->has_data) *state = (LamTableState){.j = j, .data = data};
 }
 

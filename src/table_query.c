@@ -14,7 +14,7 @@
 #include <string.h>
 
 /* Cells that a change of branch runs through are halved so often, not more: what is left is solved directly. */
-enum { KINK_LEVEL = 3 };
+enum { KINK_LEVEL = 2 };
 
 /* What the estimate is made of, times these; calibrated with tests/bench/bench_query.c. */
 #define BUBBLE_WEIGHT 0.5
