@@ -26,6 +26,7 @@ static void RandomJet(uint64_t *seed, double unknown, LamJet *jet)
   jet->value = RandomReal(seed, -1, 1);
   for (int i = 0; i < 3; i++) jet->gradient[i] = RandomReal(seed, -1, 1);
   for (int i = 0; i < 6; i++) jet->hessian[i] = RandomReal(seed, -1, 1);
+  jet->third = RandomReal(seed, -1, 1);
   for (int i = 0; i < 3; i++)
     if (RandomReal(seed, 0, 1) < unknown) jet->hessian[i] = NAN;
 }
@@ -115,6 +116,7 @@ static void the_cubic_knows_no_pure_second_derivatives(void **state)
     other[c].value = corner[c].value;
     for (int i = 0; i < 3; i++) other[c].gradient[i] = corner[c].gradient[i];
     for (int i = 3; i < 6; i++) other[c].hessian[i] = corner[c].hessian[i];
+    other[c].third = corner[c].third;
   }
   for (int n = 0; n < SAMPLES; n++) {
     double t[3];
@@ -176,7 +178,7 @@ static void Power(double x, int n, double p[3])
   p[2] = n > 1 ? n * (n - 1) * pow(x, n - 2) : 0;
 }
 
-/* Adds c x^a y^b z^c for exponents n. */
+/* Adds c x^a y^b z^c for exponents n, with its third derivative xyz. */
 static void AddMonomial(const double x[3], const int n[3], double c, LamJet *jet)
 {
   double p[3][3];
@@ -196,9 +198,10 @@ static void AddMonomial(const double x[3], const int n[3], double c, LamJet *jet
     d[second[i]]++;
     jet->hessian[i] += c * p[0][d[0]] * p[1][d[1]] * p[2][d[2]];
   }
+  jet->third += c * p[0][1] * p[1][1] * p[2][1];
 }
 
-/* Cubic in each of two variables, with random coefficients; no mixed third derivatives. */
+/* Cubic in each of two variables, with random coefficients. */
 static LamJet PairsOfCubics(const double x[3])
 {
   uint64_t seed = 5;
@@ -213,7 +216,23 @@ static LamJet PairsOfCubics(const double x[3])
   return jet;
 }
 
-/* The same, and quintics in each variable. */
+/* Cubic in each of the three variables. */
+static LamJet TensorCubics(const double x[3])
+{
+  uint64_t seed = 12;
+  LamJet jet = {0};
+
+  for (int a = 0; a <= 3; a++)
+    for (int b = 0; b <= 3; b++)
+      for (int c = 0; c <= 3; c++) {
+        const int n[3] = {a, b, c};
+
+        AddMonomial(x, n, RandomReal(&seed, -1, 1), &jet);
+      }
+  return jet;
+}
+
+/* Cubic in each of two variables, and quintics in each. */
 static LamJet PairsOfCubicsAndQuintics(const double x[3])
 {
   LamJet jet = PairsOfCubics(x);
@@ -277,9 +296,12 @@ static void check_reproduces(LamJet (*at)(const LamJet corner[8], const double t
   }
 }
 
+/* Cubics in each variable: x y z among them, of which the third derivative alone knows. */
 static void functions_of_the_space_are_reproduced(void **state)
 {
   check_reproduces(Cubic, PairsOfCubics, 1);
+  check_reproduces(Cubic, TensorCubics, 1);
+  check_reproduces(Quintic, TensorCubics, 1);
   check_reproduces(Quintic, PairsOfCubicsAndQuintics, 1);
 }
 
@@ -367,6 +389,27 @@ static void bubbles_are_told_by_direction(void **state)
   }
 }
 
+/* What is missing where no third derivative is known. */
+static void the_part_of_the_third_derivatives_is_told(void **state)
+{
+  uint64_t seed = 13;
+
+  for (int n = 0; n < SAMPLES; n++) {
+    LamJet corner[8], without[8], jet = {0}, plain;
+    double t[3], bubble[4][3];
+
+    RandomCorners(&seed, 0, corner);
+    RandomPoint(&seed, t);
+    LamHermiteQuintic(corner, H, t, &jet, bubble);
+    for (int c = 0; c < 8; c++) {
+      without[c] = corner[c];
+      without[c].third = 0;
+    }
+    plain = Quintic(without, t);
+    for (int i = 0; i < 3; i++) assert_near(bubble[3][i], jet.gradient[i] - plain.gradient[i], 1e-14);
+  }
+}
+
 static void results_are_added_to_the_sum(void **state)
 {
   const double t[3] = {0.2, 0.5, 0.9};
@@ -398,6 +441,7 @@ int main(void)
       cmocka_unit_test(neighbours_agree_in_value_and_gradient),
       cmocka_unit_test(edges_are_continuous),
       cmocka_unit_test(bubbles_are_told_by_direction),
+      cmocka_unit_test(the_part_of_the_third_derivatives_is_told),
       cmocka_unit_test(results_are_added_to_the_sum),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
