@@ -120,22 +120,7 @@ static inline void CurvatureSurplus(const LamJet corner[8], PetscInt k, PetscRea
   }
 }
 
-/* Of the part of the mixed third derivatives: products of slope functions. */
-static inline void ThirdGradient(const LamJet corner[8], const Functions u[3], PetscReal gradient[3])
-{
-  Functions slope[3];
-  PetscReal data[8];
-  LamJet jet = {0};
-
-  for (PetscInt c = 0; c < 8; c++) data[c] = corner[c].third;
-  for (PetscInt k = 0; k < 3; k++)
-    for (PetscInt d = 0; d < 2; d++)
-      for (PetscInt e = 0; e < 2; e++) slope[k][d][e] = u[k][d][e + 2];
-  Contract(2, 1, slope[0], slope[1], slope[2], data, &jet);
-  for (PetscInt i = 0; i < 3; i++) gradient[i] = jet.gradient[i];
-}
-
-void LamHermiteQuintic(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum, PetscReal bubble[4][3])
+void LamHermiteQuintic(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum)
 {
   Functions u[3], q;
 
@@ -151,9 +136,7 @@ void LamHermiteQuintic(const LamJet corner[8], PetscReal h, const PetscReal t[3]
     sum->value += jet.value;
     for (PetscInt i = 0; i < 3; i++) sum->gradient[i] += jet.gradient[i];
     for (PetscInt i = 0; i < 6; i++) sum->hessian[i] += jet.hessian[i];
-    for (PetscInt i = 0; bubble && i < 3; i++) bubble[k][i] = jet.gradient[i];
   }
-  if (bubble) ThirdGradient(corner, u, bubble[3]);
 }
 
 void LamHermiteCubic(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum)
@@ -162,6 +145,27 @@ void LamHermiteCubic(const LamJet corner[8], PetscReal h, const PetscReal t[3], 
 
   for (PetscInt k = 0; k < 3; k++) HermiteFunctions(t[k], h, u[k]);
   AddCubic(corner, u, sum);
+}
+
+void LamHermiteSizes(const LamJet corner[8], PetscReal h, PetscReal bend[3], PetscReal turn[3])
+{
+  for (PetscInt k = 0; k < 3; k++) {
+    PetscReal bends = 0, turns = 0;
+
+    for (PetscInt e = 0; e < 4; e++) { /* edges along k, from c */
+      const PetscInt c = e % (1 << k) + (e >> k << (k + 1));
+      const LamJet *low = &corner[c], *high = &corner[c | 1 << k];
+      const PetscReal rise = 6 * (high->value - low->value), g0 = h * low->gradient[k], g1 = h * high->gradient[k];
+      const PetscReal d0 = h * h * low->hessian[k] - (rise - 4 * g0 - 2 * g1),
+                      d1 = h * h * high->hessian[k] - (2 * g0 + 4 * g1 - rise), cubic = 6 * (g0 + g1) - 2 * rise;
+
+      if (!isnan(d0)) bends += d0 * d0;
+      if (!isnan(d1)) bends += d1 * d1;
+      turns += cubic * cubic;
+    }
+    bend[k] = sqrt(bends / 8) / h;
+    turn[k] = sqrt(turns / 4) / h;
+  }
 }
 
 /*

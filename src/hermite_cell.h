@@ -22,12 +22,17 @@ typedef struct {
 /*
   Adds to *sum the function (without its third derivative) at t in [0, 1]^3. corner[c]: bit k of c is the end of
   direction k (0: t_k = 0). A pure second derivative of a corner that is NaN is not known: that end has no bubble. h:
-  edge of the cube. bubble: written, may be NULL: bubble[k] is the gradient of what the bubbles along direction k add,
-  bubble[3] of what the mixed third derivatives do.
+  edge of the cube.
 */
-void LamHermiteQuintic(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum, PetscReal bubble[4][3]);
+void LamHermiteQuintic(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum);
 /* The same without any bubbles. */
 void LamHermiteCubic(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum);
+/*
+  Root mean squares over the edges of each direction k, of differences of slopes along them: bend[k] = h d, d what the
+  known second derivatives at the ends differ by from those of the cubic; turn[k] = h times the difference of the
+  cubic's second derivatives at the two ends.
+*/
+void LamHermiteSizes(const LamJet corner[8], PetscReal h, PetscReal bend[3], PetscReal turn[3]);
 /*
   From value and gradient alone, to third order: cubic along the edges, linear between them (transfinite), so that no
   mixed derivatives are needed. Continuous, not C1. Writes value and gradient.

@@ -83,8 +83,12 @@ typedef struct {
   PetscReal tau1, tau2, gradient_tau[3];
   LamJet turgor1; /* without pure curvature data, but a potential of its own */
   PetscReal turgor1_tau, turgor2;
-  /* how the answer's gradient would change with a lower order: along y (each direction's bubbles, mixed third derivatives) and along tau */
-  PetscReal bubble[4][3], bump[3];
+  /*
+    What the estimate is made of, components of the gradient: sizes over the finest complete cell of what bubbles add
+    and of how much the slopes turn (LamHermiteSizes, of what its level adds), and over the cells of all levels, between
+    two states of their columns, of the cubic along tau less the line.
+  */
+  PetscReal bend[3], turn[3], bump[3];
 } LamTableSum;
 
 /* ---- table_map.c ---- */
@@ -102,7 +106,7 @@ PetscBool LamTableCellIsComplete(LamTable table, const LamTableCell *cell, const
 /* The states of a node's column on either side of the point; NULL: missing. */
 void LamTableBracket(LamTable table, const LamTableNode *node, const LamTablePoint *point,
                      const LamTableState *ends[2]);
-/* Adds a cell's part; `estimate`: writes bubble and bump too. */
+/* Adds a cell's part; `estimate`: writes bend and turn. */
 void LamTableAddCell(LamTable table, const LamTableCell *cell, const LamTablePoint *point, PetscBool estimate,
                      LamTableSum *sum);
 

@@ -231,7 +231,7 @@ void LamTableAddCell(LamTable table, const LamTableCell *cell, const LamTablePoi
   const int size = LAM_ROOT >> cell->level, orders = table->grid->contact ? 3 : 1;
   const PetscReal h = table->grid->step / (1 << cell->level);
   LamJet corner[3][8], turgor[2][8], first = {0}, second = {0}, turgor_tau = {0};
-  PetscReal t[3];
+  PetscReal t[3], bump[3] = {0};
 
   for (int k = 0; k < 3; k++) t[k] = (point->u[k] - cell->i[k]) / size;
   for (int c = 0; c < 8; c++) {
@@ -244,14 +244,15 @@ void LamTableAddCell(LamTable table, const LamTableCell *cell, const LamTablePoi
     for (int k = 0; k < 3; k++)
       weight *= c >> k & 1 ? t[k] * t[k] * (3 - 2 * t[k]) : (1 - t[k]) * (1 - t[k]) * (1 + 2 * t[k]);
     sum->turgor2 += weight * column.turgor2;
-    if (estimate && table->grid->contact)
-      for (int k = 0; k < 3; k++) sum->bump[k] += weight * column.bump[k];
+    for (int k = 0; k < 3; k++) bump[k] += column.bump[k] * column.bump[k] / 8;
   }
-  LamHermiteQuintic(corner[0], h, t, &sum->phi, estimate ? sum->bubble : NULL);
+  if (estimate) LamHermiteSizes(corner[0], h, sum->bend, sum->turn);
+  for (int k = 0; k < 3; k++) sum->bump[k] = sqrt(sum->bump[k] * sum->bump[k] + bump[k]);
+  LamHermiteQuintic(corner[0], h, t, &sum->phi);
   LamHermiteCubic(turgor[0], h, t, &sum->turgor1);
   if (!table->grid->contact) return;
-  LamHermiteQuintic(corner[1], h, t, &first, NULL);
-  LamHermiteQuintic(corner[2], h, t, &second, NULL);
+  LamHermiteQuintic(corner[1], h, t, &first);
+  LamHermiteQuintic(corner[2], h, t, &second);
   LamHermiteCubic(turgor[1], h, t, &turgor_tau);
   sum->tau1 += first.value;
   sum->tau2 += second.value;
