@@ -37,6 +37,7 @@ typedef struct {
   const LamTableCell *leaf; /* finest complete cell; NULL: none */
   PetscBool good;           /* its nodes are of one kind */
   LamTableSum sum;
+  PetscReal leaf_gradient[3]; /* of the sum up to the leaf */
 } Place;
 
 /* ---- finding the place ---- */
@@ -104,6 +105,7 @@ static void SumLevels(LamTable table, Place *place)
     }
     if (!place->leaf) return;
     LamTableAddCell(table, cell, &place->point, (PetscBool)(place->leaf == cell), &place->sum);
+    if (place->leaf == cell) memcpy(place->leaf_gradient, place->sum.phi.gradient, sizeof(place->leaf_gradient));
   }
 }
 
@@ -136,14 +138,18 @@ static PetscReal Distance(const LamTablePoint *point, const LamTableCell *cell)
   zero where the error does not. B: bubbles, T: turn, S: bump.
     bonded   Distance times, root cell: ROOT_BEND B min(1, (B / (ROOT_TURN T))^2), else |(FINE_BEND B, FINE_TURN T)|
     contact  CONTACT_BEND B and CONTACT_BUMP S: kinks that contact leaves in P may be next to a node
+  At least what nodes of finer, incomplete cells change: where one of them is of another kind, that is its jump.
 */
 static void Estimates(LamTable table, const Place *place, PetscReal *along_strain, PetscReal *along_suction)
 {
   const PetscReal bend = StressSize(place, place->sum.bend), turn = StressSize(place, place->sum.turn);
+  PetscReal finer[3], size;
 
+  for (int k = 0; k < 3; k++) finer[k] = place->sum.phi.gradient[k] - place->leaf_gradient[k];
+  size = StressSize(place, finer);
   *along_suction = 0;
   if (table->grid->contact) {
-    *along_strain = CONTACT_BEND * bend;
+    *along_strain = PetscMax(CONTACT_BEND * bend, size);
     *along_suction = CONTACT_BUMP * StressSize(place, place->sum.bump);
     return;
   }
@@ -151,7 +157,7 @@ static void Estimates(LamTable table, const Place *place, PetscReal *along_strai
     *along_strain = hypot(FINE_BEND * bend, FINE_TURN * turn);
   else
     *along_strain = ROOT_BEND * bend * PetscMin(1, PetscSqr(bend / PetscMax(ROOT_TURN * turn, PETSC_SMALL)));
-  *along_strain *= Distance(&place->point, place->leaf);
+  *along_strain = PetscMax(*along_strain * Distance(&place->point, place->leaf), size);
 }
 
 static PetscReal Relative(PetscReal error, const PetscReal P[9])
