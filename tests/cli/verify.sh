@@ -76,7 +76,9 @@ grep -q '"origin": "what its records span"' out.txt || fail "the states: $(cat o
 # stopped by a signal: what is done is told
 "$lamella" verify db.h5 --samples 100000 --json >stopped.txt 2>/dev/null &
 pid=$!
-sleep 1.5
+listens() { (((0x$(sed -n 's/^SigCgt:\s*//p' /proc/$pid/status) >> 14) & 1)); } # to SIGTERM
+for _ in $(seq 400); do listens && break || sleep 0.05; done
+sleep 0.3
 kill -TERM $pid
 status=0
 wait $pid || status=$?
