@@ -136,8 +136,12 @@ static void DrawNode(LamCanvas canvas, double x, double y, LamSliceNodeKind kind
 }
 
 /* Coarse ones first, as they are larger. */
-static void DrawNodes(LamCanvas canvas, const LamAxes *axes, const LamSlice *s)
+static PetscErrorCode DrawNodes(LamCanvas canvas, const LamAxes *axes, const LamSlice *s)
 {
+  const PetscBool many = (PetscBool)(s->node_count > 1500);
+
+  PetscFunctionBeginUser;
+  if (many) PetscCall(LamCanvasBeginImage(canvas, axes->frame));
   for (PetscInt level = 0; level < MOST_LEVELS; level++)
     for (PetscInt i = 0; i < s->node_count; i++) {
       const LamSliceNode *node = &s->nodes[i];
@@ -145,6 +149,8 @@ static void DrawNodes(LamCanvas canvas, const LamAxes *axes, const LamSlice *s)
       if (node->level != level) continue;
       DrawNode(canvas, LamAxesX(axes, node->at[0]), LamAxesY(axes, node->at[1]), node->kind, level);
     }
+  if (many) LamCanvasEndImage(canvas);
+  PetscFunctionReturn(0);
 }
 
 static void DashedBox(LamCanvas canvas, double x, double y, double width, double height)
@@ -205,7 +211,7 @@ static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const Page *pag
   PetscCall(PaintSamples(canvas, axes.frame, s, s->value[panel], &page->range[panel]));
   for (int v = 0; v < LAM_SLICE_VERDICT_COUNT; v++) HatchSamples(canvas, axes.frame, s, (LamSliceVerdict)v);
   DrawBox(canvas, &axes, s);
-  if (panel == LAM_SLICE_ERROR) DrawNodes(canvas, &axes, s);
+  if (panel == LAM_SLICE_ERROR) PetscCall(DrawNodes(canvas, &axes, s));
   cairo_restore(cr);
   LamAxesFrame(canvas, &axes);
   LamColourBar(canvas, axes.frame, &page->range[panel], LamColourMap, names[panel].label, names[panel].unit);
