@@ -9,6 +9,8 @@
 */
 #include "macro_impl.h"
 
+static const PetscReal LARGEST_CHANGE = 0.75; /* of a deformation gradient in one step, Frobenius norm */
+
 /* Deformation gradients and turgor of all material points, into macro->loads. */
 static PetscErrorCode GatherLoads(LamMacro macro, Vec u)
 {
@@ -110,6 +112,31 @@ static PetscErrorCode AskStop(LamMacro macro)
   PetscFunctionReturn(0);
 }
 
+/*
+  An iteration that has gone astray asks for states that are dear to solve, or to look up, and of no use: *ok tells
+  whether no point has changed by more than LARGEST_CHANGE since the last converged state.
+*/
+static PetscErrorCode CheckChange(LamMacro macro, PetscBool *ok)
+{
+  const PetscReal identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  PetscReal largest = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < macro->point_count; p++) {
+    const PetscReal *F = macro->loads[p].F, *from = macro->accepted[p].known ? macro->accepted[p].load.F : identity;
+    PetscReal square = 0;
+    for (int k = 0; k < 9; k++) square += PetscSqr(F[k] - from[k]);
+    largest = PetscMax(largest, PetscSqrtReal(square));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPIU_MAX, macro->comm));
+  *ok = largest <= LARGEST_CHANGE ? PETSC_TRUE : PETSC_FALSE;
+  if (!*ok)
+    PetscCall(PetscSNPrintf(macro->trouble, sizeof(macro->trouble),
+                            "an iteration changes the deformation gradient of a point by %.2g, %.2g is allowed",
+                            (double)largest, (double)LARGEST_CHANGE));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamMacroEvaluate(LamMacro macro, Vec u, PetscBool *ok)
 {
   PetscInt64 failed = 0;
@@ -121,6 +148,8 @@ PetscErrorCode LamMacroEvaluate(LamMacro macro, Vec u, PetscBool *ok)
   PetscCall(GatherLoads(macro, u));
   PetscCall(AllKnown(macro, &known));
   if (known) PetscFunctionReturn(0);
+  PetscCall(CheckChange(macro, ok));
+  if (!*ok) PetscFunctionReturn(0);
   PetscCall(macro->responder->respond(macro->responder->ctx, macro->point_count, macro->loads, macro->point_index,
                                       macro->responses));
   PetscCall(AskStop(macro));
