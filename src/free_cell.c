@@ -263,15 +263,16 @@ static PetscReal Difference(PetscInt n, const PetscReal y[], PetscInt j)
   return sum / 12.0;
 }
 
-static PetscReal Cubic(PetscInt n, const PetscReal y[], PetscInt j, PetscReal t)
+static void Cubic(PetscInt n, const PetscReal y[], PetscInt j, PetscReal step, PetscReal t, PetscReal value[3])
 {
-  const PetscReal u = 1.0 - t;
+  const PetscReal u = 1.0 - t, a = Difference(n, y, j), b = Difference(n, y, j + 1), rise = y[j + 1] - y[j];
 
-  return u * u * (1.0 + 2.0 * t) * y[j] + t * t * (1.0 + 2.0 * u) * y[j + 1] +
-         u * t * (u * Difference(n, y, j) - t * Difference(n, y, j + 1));
+  value[0] = y[j] + t * t * (1.0 + 2.0 * u) * rise + u * t * (u * a - t * b);
+  value[1] = (6.0 * t * u * rise + u * (1.0 - 3.0 * t) * a + t * (3.0 * t - 2.0) * b) / step;
+  value[2] = (6.0 * (1.0 - 2.0 * t) * rise + (6.0 * t - 4.0) * a + (6.0 * t - 2.0) * b) / (step * step);
 }
 
-void LamFreeCellEnergy(const LamFreeCell *cell, PetscReal s, PetscReal energy[3], PetscReal turgor[2])
+void LamFreeCellEnergy(const LamFreeCell *cell, PetscReal s, PetscReal energy[3], PetscReal turgor[2][3])
 {
   PetscReal step, tau, left[3][3], right[3][3], power = 1.0;
   const PetscInt j = Locate(cell, s, &step, &tau);
@@ -286,8 +287,8 @@ void LamFreeCellEnergy(const LamFreeCell *cell, PetscReal s, PetscReal energy[3]
     energy[k] = power * (left[0][k] * y[0] + h * left[1][k] * d[0] + h * h * left[2][k] * c[0] +
                          sign * (right[0][k] * y[1] - h * right[1][k] * d[1] + h * h * right[2][k] * c[1]));
   }
-  turgor[0] = Cubic(cell->n, cell->turgor_slope, j, tau);
-  turgor[1] = Cubic(cell->n, cell->turgor_curvature, j, tau);
+  Cubic(cell->n, cell->turgor_slope, j, step, tau, turgor[0]);
+  Cubic(cell->n, cell->turgor_curvature, j, step, tau, turgor[1]);
 }
 
 /* ---- JSON ---- */

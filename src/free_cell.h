@@ -36,8 +36,11 @@ PetscErrorCode LamFreeCellMake(const LamMicrostructure *micro, PetscReal cohesio
 PetscErrorCode LamFreeCellDestroy(LamFreeCell *cell);
 /* a(s) and its first two derivatives with respect to s; twice continuously differentiable. s within the knots. */
 void LamFreeCellStrain(const LamFreeCell *cell, PetscReal s, PetscReal strain[3]);
-/* Phi(s), its first two derivatives (quintic Hermite, C2); turgor[2]: dPhi/dp and d2Phi/dp2 at fixed s (C1 in s). */
-void LamFreeCellEnergy(const LamFreeCell *cell, PetscReal s, PetscReal energy[3], PetscReal turgor[2]);
+/*
+  Phi(s), its first two derivatives (quintic Hermite, C2); turgor: dPhi/dp and d2Phi/dp2 at fixed s (C1), each with its
+  first two derivatives with respect to tau = ln(1 + s / scale).
+*/
+void LamFreeCellEnergy(const LamFreeCell *cell, PetscReal s, PetscReal energy[3], PetscReal turgor[2][3]);
 /* JSON with all digits, and back; PETSC_ERR_USER_INPUT naming `path` where it is not such an object. */
 PetscErrorCode LamFreeCellToJSON(const LamFreeCell *cell, json_t **object);
 PetscErrorCode LamFreeCellFromJSON(const char path[], const json_t *object, LamFreeCell *cell);

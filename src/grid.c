@@ -20,7 +20,7 @@ static const LamSample default_box = {.stretch_min = -0.02, .stretch_max = 0.25}
 
 PetscBool LamKeyIsNode(PetscInt64 key)
 {
-  return (PetscBool)(key >= LAM_NODE_KEY && key < 2 * LAM_NODE_KEY);
+  return (PetscBool)(key >= LAM_NODE_KEY && key < LAM_NODE_KEY + ((PetscInt64)1 << 54));
 }
 
 PetscBool LamKeyIsFreeCell(PetscInt64 key)

@@ -29,7 +29,8 @@ typedef struct {
   LamJet phi;         /* pure second derivatives: on the side of larger strain; NaN: not known */
   PetscReal minus[3]; /* the same on the other side */
   PetscReal tau1, tau2, gradient_tau[3];
-  PetscReal turgor1, turgor2, turgor_gradient[3]; /* dPhi/dp at fixed s, d2Phi/dp2, gradient of the first */
+  PetscReal turgor1, turgor2;               /* dPhi/dp at fixed s, d2Phi/dp2 */
+  PetscReal turgor_gradient[3], turgor_tau; /* of the first */
 } LamTableState;
 
 typedef struct {
@@ -74,14 +75,15 @@ typedef struct {
   int axis[3];      /* axis k here is lattice direction axis[k] */
   PetscReal tau, v; /* v: along tau, in units */
   int root;         /* first j of its root interval */
+  PetscReal step;   /* d: turgor beyond that of the grid at this suction */
   PetscReal s;
 } LamTablePoint;
 
 /* The sum of the levels, in the point's axes; derivatives with respect to the grid's coordinates y and tau. */
 typedef struct {
-  LamJet phi;
+  LamJet phi; /* Phi + d Phi_p + d^2 Phi_pp / 2 */
   PetscReal tau1, tau2, gradient_tau[3];
-  LamJet turgor1; /* without pure curvature data, but a potential of its own */
+  LamJet turgor1; /* its derivative in d: value and gradient */
   PetscReal turgor1_tau, turgor2;
   /*
     What the estimate is made of, components of the gradient: sizes over the finest complete cell of what bubbles add
@@ -109,6 +111,9 @@ void LamTableBracket(LamTable table, const LamTableNode *node, const LamTablePoi
 /* Adds a cell's part; `estimate`: writes bend and turn. */
 void LamTableAddCell(LamTable table, const LamTableCell *cell, const LamTablePoint *point, PetscBool estimate,
                      LamTableSum *sum);
+
+/* Adds what cells are that touch no one. */
+void LamTableAddFloating(LamTable table, const LamTablePoint *point, LamTableSum *sum);
 
 /* ---- table_indicators.c ---- */
 /* P33, its row and column of the tangent and its pressure derivatives. cell NULL: the cells float. */

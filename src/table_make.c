@@ -78,11 +78,13 @@ static void MoveAlong(const struct LamGrid_s *grid, PetscReal s, PetscReal phi_s
       phi_ss += a[1] * a[1] * state->phi.hessian[entry[k][l]];
     }
     phi_s += a[1] * state->phi.gradient[k];
+    state->turgor_tau += a[1] * state->turgor_gradient[k];
     phi_ss += 2 * a[1] * gradient_s[k] + a[2] * state->phi.gradient[k];
     state->gradient_tau[k] = moved * rate;
   }
   state->tau1 = phi_s * rate;
   state->tau2 = phi_ss * rate * rate + phi_s * rate;
+  state->turgor_tau *= rate;
 }
 
 /* Bonded: Psi + p J; contact: Psi - g J = Psi + p J - s J. */
@@ -102,12 +104,13 @@ static void FillState(const struct LamGrid_s *grid, const LamNodeData *r, LamTab
     state->turgor_gradient[k] = Contract(at_rest, dF[k]) + J_x[k];
     along[k] = Contract(r->P_turgor, dF[k]);
   }
+  state->turgor_tau = r->energy_turgor2 - r->energy_turgor_cohesion; /* in s, at fixed x */
   if (grid->contact) MoveAlong(grid, r->turgor + r->cohesion, r->energy_turgor, r->energy_turgor2, along, state);
 }
 
 static PetscBool IsFinite(const LamTableState *s)
 {
-  PetscReal sum = s->phi.value + s->tau1 + s->tau2 + s->turgor1 + s->turgor2;
+  PetscReal sum = s->phi.value + s->tau1 + s->tau2 + s->turgor1 + s->turgor2 + s->turgor_tau;
 
   for (int k = 0; k < 3; k++) sum += s->phi.gradient[k] + s->gradient_tau[k] + s->turgor_gradient[k];
   for (int m = 0; m < 6; m++) sum += s->phi.hessian[m];
@@ -124,11 +127,38 @@ static PetscBool HasBuckled(const LamNodeData *r)
   return (PetscBool)(r->branch > 0 && !(r->debonded_fraction > BARELY_TOUCHING));
 }
 
-static void MakeState(const struct LamGrid_s *grid, const LamNodeData *r, PetscInt data, int j, LamTableState *state)
+/* A solve knows the symmetry of its state only to its own tolerance: means over the axes whose places are equal. */
+static void Symmetrise(const int i[3], LamTableState *state)
 {
+  PetscReal *const triples[] = {state->phi.gradient, state->phi.hessian,  state->phi.hessian + 3,
+                                state->minus,        state->gradient_tau, state->turgor_gradient};
+
+  for (size_t n = 0; n < PETSC_STATIC_ARRAY_LENGTH(triples); n++) {
+    const PetscReal old[3] = {triples[n][0], triples[n][1], triples[n][2]};
+
+    for (int k = 0; k < 3; k++) {
+      PetscReal sum = 0;
+      int count = 0;
+
+      for (int l = 0; l < 3; l++)
+        if (i[l] == i[k]) {
+          sum += old[l];
+          count++;
+        }
+      triples[n][k] = sum / count;
+    }
+  }
+}
+
+static void MakeState(const struct LamGrid_s *grid, const LamNodeData *r, PetscInt data, const LamNodePlace *place,
+                      LamTableState *state)
+{
+  const int j = place->j;
+
   *state = (LamTableState){.j = j, .data = data};
   if (r->status != LAM_CONVERGED && r->status != LAM_UNSTABLE) return;
   FillState(grid, r, state);
+  if (grid->symmetric) Symmetrise(place->i, state);
   state->has_data = IsFinite(state);
   state->good = (PetscBool)(state->has_data && r->status == LAM_CONVERGED && r->stable && !HasBuckled(r));
   if (!state->has_data) *state = (LamTableState){.j = j, .data = data};
@@ -151,6 +181,17 @@ static int CompareEntries(const void *first, const void *second)
   return a->data < b->data ? -1 : a->data > b->data;
 }
 
+/* Others are left out: they come from damaged files. */
+static PetscBool IsPlace(const struct LamGrid_s *grid, const LamNodePlace *place)
+{
+  const int *i = place->i, reach = LAM_GRID_REACH - 2 * LAM_ROOT;
+
+  for (int k = 0; k < 3; k++)
+    if (i[k] < -reach || i[k] > reach) return PETSC_FALSE;
+  if (grid->symmetric && (i[0] > i[1] || i[1] > i[2])) return PETSC_FALSE;
+  return (PetscBool)(place->j <= LAM_ROOT * grid->tau_cells && !LamPlaceIsFloating(grid, i));
+}
+
 static PetscErrorCode CollectEntries(LamTable table, PetscInt *n, Entry **entries)
 {
   const LamDatabase db = table->database;
@@ -162,7 +203,7 @@ static PetscErrorCode CollectEntries(LamTable table, PetscInt *n, Entry **entrie
     const LamNodePlace place = LamNodePlaceOf(db->nodes[d].key);
 
     if (!LamNodeIsFree(&place)) {
-      (*entries)[(*n)++] = (Entry){db->nodes[d].key, d, LamNodeLevel(&place)};
+      if (IsPlace(table->grid, &place)) (*entries)[(*n)++] = (Entry){db->nodes[d].key, d, LamNodeLevel(&place)};
       continue;
     }
     for (PetscInt m = 0; m < table->grid->free.n; m++)
@@ -193,7 +234,7 @@ static PetscErrorCode MakeNodes(LamTable table)
       memcpy(node->i, place.i, sizeof(place.i));
       LamPlaceMapSet(&table->node_map, LamPlaceMapKey(0, place.i), table->node_count++);
     }
-    MakeState(table->grid, &table->database->nodes[entries[e].data], entries[e].data, place.j,
+    MakeState(table->grid, &table->database->nodes[entries[e].data], entries[e].data, &place,
               &table->states[table->state_count++]);
     node->count++;
   }
@@ -318,6 +359,7 @@ static void SubtractSum(const LamTableSum *sum, const int order[3], LamTableStat
   state->tau1 -= sum->tau1;
   state->tau2 -= sum->tau2;
   state->turgor1 -= sum->turgor1.value;
+  state->turgor_tau -= sum->turgor1_tau;
   state->turgor2 -= sum->turgor2;
   for (int k = 0; k < 3; k++) {
     state->phi.gradient[k] -= sum->phi.gradient[order[k]];

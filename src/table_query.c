@@ -54,6 +54,7 @@ static PetscBool PlaceSuction(LamTable table, const LamLoad *load, Place *place,
   const struct LamGrid_s *grid = table->grid;
   LamTablePoint *point = &place->point;
 
+  point->step = grid->contact ? grid->cohesion - load->cohesion : load->turgor - grid->turgor;
   if (!grid->contact) return PETSC_TRUE;
   point->s = load->turgor + load->cohesion;
   point->tau = LamGridTau(grid, point->s);
@@ -172,8 +173,8 @@ static PetscReal Relative(PetscReal error, const PetscReal P[9])
 
 /* Psi and its derivatives in x, p and g, in the order of the lattice directions. */
 typedef struct {
-  LamJet psi, turgor; /* turgor: dPhi/dp at fixed s */
-  PetscReal s1, s2, gradient_s[3];
+  LamJet psi, turgor; /* turgor: derivative in d at fixed s; value and gradient */
+  PetscReal s1, s2, gradient_s[3], turgor_s;
 } Potential;
 
 /* From (y, tau) in sorted axes to (x, s). */
@@ -192,12 +193,11 @@ static void Unsort(LamTable table, const Place *place, Potential *p)
     p->psi.hessian[axis[k]] = sum->phi.hessian[k];
     p->psi.hessian[6 - a - b] = sum->phi.hessian[3 + k];
     p->turgor.gradient[axis[k]] = sum->turgor1.gradient[k];
-    p->turgor.hessian[axis[k]] = sum->turgor1.hessian[k];
-    p->turgor.hessian[6 - a - b] = sum->turgor1.hessian[3 + k];
     p->gradient_s[axis[k]] = sum->gradient_tau[k];
   }
   p->s1 = sum->tau1;
   p->s2 = sum->tau2;
+  p->turgor_s = sum->turgor1_tau;
 }
 
 static void TauToSuction(LamTable table, const Place *place, Potential *p)
@@ -207,11 +207,13 @@ static void TauToSuction(LamTable table, const Place *place, Potential *p)
 
   p->s2 = p->s2 * rate * rate - p->s1 * rate * rate;
   p->s1 *= rate;
+  p->turgor_s *= rate;
   for (int k = 0; k < 3; k++) p->gradient_s[k] *= rate;
   /* x = y + a(s): at fixed x, y moves by -a' ds */
   for (int k = 0; k < 3; k++) {
     p->s2 -= 2 * a[1] * p->gradient_s[k] + a[2] * p->psi.gradient[k];
     p->s1 -= a[1] * p->psi.gradient[k];
+    p->turgor_s -= a[1] * p->turgor.gradient[k];
     for (int l = 0; l < 3; l++) p->s2 += a[1] * a[1] * p->psi.hessian[entry[k][l]];
   }
   for (int k = 0; k < 3; k++)
@@ -225,20 +227,19 @@ static void PlaneToFull(const PetscReal a[4], PetscReal full[9])
 }
 
 /* dP/dp and dP/dg, and the other derivatives with respect to p and g. */
-static void FillPressures(LamTable table, const Place *place, const Potential *p, PetscReal d, PetscReal J,
-                          const PetscReal J_x[3], LamResponse *r)
+static void FillPressures(LamTable table, const Place *place, const Potential *p, PetscReal J, const PetscReal J_x[3],
+                          LamResponse *r)
 {
   const PetscBool contact = table->grid->contact;
-  const PetscReal p1 = p->turgor.value + d * place->sum.turgor2, p2 = place->sum.turgor2,
-                  mixed = contact ? place->sum.turgor1_tau / (place->point.s + table->grid->suction_scale) : 0;
+  const PetscReal p1 = p->turgor.value, p2 = place->sum.turgor2;
   PetscReal g[3], P[4];
 
-  /* contact: Psi = Phi(x, s) + d Phi_p + g J with s = p + g and d = g0 - g: p enters through s, g through both */
-  r->energy_turgor = contact ? p->s1 + d * mixed : p1 - J;
+  /* contact: s = p + g and d = g0 - g: p enters through s, g through both */
+  r->energy_turgor = contact ? p->s1 : p1 - J;
   r->energy_turgor2 = contact ? p->s2 : p2;
-  r->energy_cohesion = contact ? p->s1 + d * mixed - p1 + J : 0;
-  r->energy_cohesion2 = contact ? p->s2 + p2 - 2 * mixed : 0;
-  r->energy_turgor_cohesion = contact ? p->s2 - mixed : 0;
+  r->energy_cohesion = contact ? p->s1 - p1 + J : 0;
+  r->energy_cohesion2 = contact ? p->s2 + p2 - 2 * p->turgor_s : 0;
+  r->energy_turgor_cohesion = contact ? p->s2 - p->turgor_s : 0;
   for (int k = 0; k < 3; k++) g[k] = contact ? p->gradient_s[k] : p->turgor.gradient[k] - J_x[k];
   LamLatticeStress(&table->grid->axes, &place->lattice, g, P);
   PlaneToFull(P, r->P_turgor);
@@ -251,15 +252,14 @@ static void FillPotential(LamTable table, const Place *place, Potential *p, LamR
 {
   const LamLoad *load = &r->load;
   const PetscBool contact = table->grid->contact;
-  const PetscReal d = contact ? table->grid->cohesion - load->cohesion : load->turgor - table->grid->turgor;
   const PetscReal c = contact ? load->cohesion : -load->turgor;
   PetscReal J, J_x[3], J_xx[6], P[4], A[4][4];
 
   J = LamLatticeVolume(&table->grid->axes, &place->lattice, J_x, J_xx);
-  FillPressures(table, place, p, d, J, J_x, r);
-  r->energy = p->psi.value + d * (p->turgor.value + 0.5 * d * place->sum.turgor2) + c * J;
-  for (int k = 0; k < 3; k++) p->psi.gradient[k] += d * p->turgor.gradient[k] + c * J_x[k];
-  for (int m = 0; m < 6; m++) p->psi.hessian[m] += d * p->turgor.hessian[m] + c * J_xx[m];
+  FillPressures(table, place, p, J, J_x, r);
+  r->energy = p->psi.value + c * J;
+  for (int k = 0; k < 3; k++) p->psi.gradient[k] += c * J_x[k];
+  for (int m = 0; m < 6; m++) p->psi.hessian[m] += c * J_xx[m];
   LamLatticeStress(&table->grid->axes, &place->lattice, p->psi.gradient, P);
   LamLatticeTangent(&table->grid->axes, &place->lattice, p->psi.gradient, p->psi.hessian, A);
   PlaneToFull(P, r->P);
@@ -281,20 +281,6 @@ static PetscBool Locate(LamTable table, const LamLoad *load, Place *place, LamRe
   return PETSC_TRUE;
 }
 
-/* Cells that touch no one: P = g J F^-T, exact but for the free cell's own numbers. */
-static void SumFloating(LamTable table, Place *place)
-{
-  const PetscReal rate = place->point.s + table->grid->suction_scale;
-  PetscReal energy[3], turgor[2];
-
-  LamFreeCellEnergy(&table->grid->free, place->point.s, energy, turgor);
-  place->sum.phi.value = energy[0];
-  place->sum.tau1 = energy[1] * rate;
-  place->sum.tau2 = energy[2] * rate * rate + energy[1] * rate;
-  place->sum.turgor1.value = turgor[0];
-  place->sum.turgor2 = turgor[1];
-}
-
 static PetscBool Accept(const Place *place, PetscReal accuracy, LamResponse *r)
 {
   if (place->floating) return PETSC_TRUE;
@@ -313,8 +299,8 @@ static void Answer(LamTable table, Place *place, PetscReal accuracy, LamResponse
   PetscReal along_strain = 0, along_suction = 0;
   Potential potential;
 
-  if (place->floating)
-    SumFloating(table, place);
+  if (place->floating) /* P = g J F^-T, exact but for the free cell's own numbers */
+    LamTableAddFloating(table, &place->point, &place->sum);
   else if (place->leaf && place->good)
     Estimates(table, place, &along_strain, &along_suction);
   else {

@@ -66,10 +66,10 @@ static void IntervalOf(LamTable table, const LamTableNode *node, const LamTableP
   }
 }
 
-/* A column at a suction: jets of Phi and of its first and second derivative in tau, and of dPhi/dp. */
+/* A column at a suction: jets of Phi and dPhi/dp, d2Phi/dp2, with their first and second derivatives in tau. */
 typedef struct {
-  LamJet phi[3], turgor1[2];
-  PetscReal turgor2, bump[3];
+  LamJet phi[3], turgor1[3];
+  PetscReal turgor2[3], bump[3];
 } Column;
 
 /* Second derivatives in tau of the cubic at the ends: the quintic's bubbles make up for the rest. */
@@ -88,7 +88,7 @@ static void AddState(const Interval *a, int e, const int order[3], int corner, C
 
   for (int d = 0; d < 3; d++) {
     const PetscReal V = a->V[e][d], D = a->D[e][d];
-    LamJet *jet = &c->phi[d];
+    LamJet *jet = &c->phi[d], *turgor1 = &c->turgor1[d];
 
     jet->value += V * state->phi.value + D * state->tau1;
     jet->third += V * state->phi.third;
@@ -99,13 +99,11 @@ static void AddState(const Interval *a, int e, const int order[3], int corner, C
       jet->gradient[k] += V * state->phi.gradient[n] + D * state->gradient_tau[n];
       jet->hessian[k] += V * pure;
       jet->hessian[3 + k] += V * state->phi.hessian[3 + n]; /* entry 3 + k lacks axis k */
+      turgor1->gradient[k] += V * state->turgor_gradient[n];
     }
+    turgor1->value += V * state->turgor1 + D * state->turgor_tau;
+    c->turgor2[d] += V * state->turgor2;
   }
-  for (int d = 0; d < 2; d++) {
-    c->turgor1[d].value += a->V[e][d] * state->turgor1;
-    for (int k = 0; k < 3; k++) c->turgor1[d].gradient[k] += a->V[e][d] * state->turgor_gradient[order[k]];
-  }
-  c->turgor2 += a->V[e][0] * state->turgor2;
 }
 
 /* What the quintic and the cubic add beyond the next lower order. */
@@ -137,7 +135,7 @@ static void TakeState(const LamTableState *state, const int order[3], int corner
   c->phi[0].value = state->phi.value;
   c->phi[0].third = state->phi.third;
   c->turgor1[0].value = state->turgor1;
-  c->turgor2 = state->turgor2;
+  c->turgor2[0] = state->turgor2;
   for (int k = 0; k < 3; k++) {
     const int n = order[k];
 
@@ -152,7 +150,7 @@ static void TakeState(const LamTableState *state, const int order[3], int corner
 static void FloatingColumn(LamTable table, int level, const LamTablePoint *point, Column *c)
 {
   const PetscReal rate = point->s + table->grid->suction_scale; /* ds/dtau = d2s/dtau2 */
-  PetscReal energy[3], turgor[2];
+  PetscReal energy[3], turgor[2][3];
 
   for (int k = 0; k < 3; k++) c->phi[0].hessian[k] = c->phi[1].hessian[k] = c->phi[2].hessian[k] = NAN;
   if (level) return;
@@ -160,8 +158,10 @@ static void FloatingColumn(LamTable table, int level, const LamTablePoint *point
   c->phi[0].value = energy[0];
   c->phi[1].value = energy[1] * rate;
   c->phi[2].value = energy[2] * rate * rate + energy[1] * rate;
-  c->turgor1[0].value = turgor[0];
-  c->turgor2 = turgor[1];
+  for (int d = 0; d < 3; d++) {
+    c->turgor1[d].value = turgor[0][d];
+    c->turgor2[d] = turgor[1][d];
+  }
 }
 
 static void MakeColumn(LamTable table, const LamTableCell *cell, int corner, const LamTablePoint *point, Column *c)
@@ -225,37 +225,81 @@ PetscBool LamTableCellIsComplete(LamTable table, const LamTableCell *cell, const
   return PETSC_TRUE;
 }
 
+/* t dPhi/dp + w d2Phi/dp2 of a column and of its derivatives in tau. */
+static LamJet TurgorJet(const Column *column, int order_tau, PetscReal t, PetscReal w)
+{
+  const LamJet *turgor1 = &column->turgor1[order_tau];
+  LamJet jet = {.value = t * turgor1->value + w * column->turgor2[order_tau]};
+
+  for (int k = 0; k < 3; k++) jet.gradient[k] = t * turgor1->gradient[k];
+  return jet;
+}
+
+/* The step in turgor, without bubbles: its own derivative in d, and what it adds to Phi where d is not 0. */
+static void AddTurgor(LamTable table, const Column columns[8], PetscReal h, const PetscReal t[3], PetscReal d,
+                      LamTableSum *sum)
+{
+  LamJet corner[8], along[3] = {0}, rate_tau = {0};
+
+  for (int c = 0; c < 8; c++) corner[c] = TurgorJet(&columns[c], 0, 1, d);
+  LamHermiteCubic(corner, h, t, &sum->turgor1);
+  if (table->grid->contact) {
+    for (int c = 0; c < 8; c++) corner[c] = TurgorJet(&columns[c], 1, 1, d);
+    LamHermiteCubic(corner, h, t, &rate_tau);
+    sum->turgor1_tau += rate_tau.value;
+  }
+  if (d == 0) return;
+  for (int order_tau = 0; order_tau < (table->grid->contact ? 3 : 1); order_tau++) {
+    for (int c = 0; c < 8; c++) corner[c] = TurgorJet(&columns[c], order_tau, d, 0.5 * d * d);
+    LamHermiteCubic(corner, h, t, order_tau ? &along[order_tau] : &sum->phi);
+  }
+  sum->tau1 += along[1].value;
+  sum->tau2 += along[2].value;
+  for (int k = 0; k < 3; k++) sum->gradient_tau[k] += along[1].gradient[k];
+}
+
 void LamTableAddCell(LamTable table, const LamTableCell *cell, const LamTablePoint *point, PetscBool estimate,
                      LamTableSum *sum)
 {
   const int size = LAM_ROOT >> cell->level, orders = table->grid->contact ? 3 : 1;
   const PetscReal h = table->grid->step / (1 << cell->level);
-  LamJet corner[3][8], turgor[2][8], first = {0}, second = {0}, turgor_tau = {0};
+  LamJet corner[3][8], first = {0}, second = {0};
+  Column columns[8];
   PetscReal t[3], bump[3] = {0};
 
   for (int k = 0; k < 3; k++) t[k] = (point->u[k] - cell->i[k]) / size;
   for (int c = 0; c < 8; c++) {
     PetscReal weight = 1;
-    Column column;
 
-    MakeColumn(table, cell, c, point, &column);
-    for (int d = 0; d < orders; d++) corner[d][c] = column.phi[d];
-    for (int d = 0; d < 2; d++) turgor[d][c] = column.turgor1[d];
+    MakeColumn(table, cell, c, point, &columns[c]);
+    for (int d = 0; d < orders; d++) corner[d][c] = columns[c].phi[d];
     for (int k = 0; k < 3; k++)
       weight *= c >> k & 1 ? t[k] * t[k] * (3 - 2 * t[k]) : (1 - t[k]) * (1 - t[k]) * (1 + 2 * t[k]);
-    sum->turgor2 += weight * column.turgor2;
-    for (int k = 0; k < 3; k++) bump[k] += column.bump[k] * column.bump[k] / 8;
+    sum->turgor2 += weight * columns[c].turgor2[0];
+    for (int k = 0; k < 3; k++) bump[k] += columns[c].bump[k] * columns[c].bump[k] / 8;
   }
   if (estimate) LamHermiteSizes(corner[0], h, sum->bend, sum->turn);
   for (int k = 0; k < 3; k++) sum->bump[k] = sqrt(sum->bump[k] * sum->bump[k] + bump[k]);
   LamHermiteQuintic(corner[0], h, t, &sum->phi);
-  LamHermiteCubic(turgor[0], h, t, &sum->turgor1);
+  AddTurgor(table, columns, h, t, point->step, sum);
   if (!table->grid->contact) return;
   LamHermiteQuintic(corner[1], h, t, &first);
   LamHermiteQuintic(corner[2], h, t, &second);
-  LamHermiteCubic(turgor[1], h, t, &turgor_tau);
   sum->tau1 += first.value;
   sum->tau2 += second.value;
-  sum->turgor1_tau += turgor_tau.value;
   for (int k = 0; k < 3; k++) sum->gradient_tau[k] += first.gradient[k];
+}
+
+void LamTableAddFloating(LamTable table, const LamTablePoint *point, LamTableSum *sum)
+{
+  const PetscReal d = point->step;
+  Column c = {0};
+
+  FloatingColumn(table, 0, point, &c);
+  sum->phi.value += c.phi[0].value + TurgorJet(&c, 0, d, 0.5 * d * d).value;
+  sum->tau1 += c.phi[1].value + TurgorJet(&c, 1, d, 0.5 * d * d).value;
+  sum->tau2 += c.phi[2].value + TurgorJet(&c, 2, d, 0.5 * d * d).value;
+  sum->turgor1.value += TurgorJet(&c, 0, 1, d).value;
+  sum->turgor1_tau += TurgorJet(&c, 1, 1, d).value;
+  sum->turgor2 += c.turgor2[0];
 }

@@ -57,7 +57,7 @@ static PetscErrorCode CompareBetweenKnots(LamResponder *solver, const LamFreeCel
   for (int k = 0; k < PLACES * (KNOTS - 1); k++) {
     const double *knot = &cell->suction[k / PLACES];
     const double s = knot[0] + (knot[1] - knot[0]) * (k % PLACES + 1) / (PLACES + 1.0);
-    double a[3], energy[3], turgor[2];
+    double a[3], energy[3], turgor[2][3];
     LamResponse r;
 
     LamFreeCellStrain(cell, s, a);
@@ -67,8 +67,8 @@ static PetscErrorCode CompareBetweenKnots(LamResponder *solver, const LamFreeCel
     worst[1] = fmax(worst[1], fabs(energy[0] - (r.energy - COHESION * J)));
     worst[2] = fmax(worst[2], fabs(energy[1] - r.energy_turgor));
     worst[3] = fmax(worst[3], fabs(energy[2] - r.energy_turgor2));
-    worst[4] = fmax(worst[4], fabs(turgor[0] - (r.energy_turgor - r.energy_cohesion + J)));
-    worst[5] = fmax(worst[5], fabs(turgor[1] - (r.energy_turgor2 - 2 * r.energy_turgor_cohesion + r.energy_cohesion2)));
+    worst[4] = fmax(worst[4], fabs(turgor[0][0] - (r.energy_turgor - r.energy_cohesion + J)));
+    worst[5] = fmax(worst[5], fabs(turgor[1][0] - (r.energy_turgor2 - 2 * r.energy_turgor_cohesion + r.energy_cohesion2)));
   }
   printf("largest error between the knots: a %.1e, Phi %.1e, dPhi/ds %.1e, d2Phi/ds2 %.1e, dPhi/dp %.1e, d2Phi/dp2 "
          "%.1e\n",

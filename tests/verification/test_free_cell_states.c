@@ -86,14 +86,14 @@ static void EnergyIsThatOfStatesBetweenTheKnots(void **state)
   for (int j = 0; j < KNOTS - 1; j += 5) {
     const double s = 0.5 * (cell.suction[j] + cell.suction[j + 1]), J = exp(0.7);
     const LamResponse r = SolveApart(0.35, s - COHESION, COHESION);
-    double energy[3], turgor[2];
+    double energy[3], turgor[2][3];
 
     LamFreeCellEnergy(&cell, s, energy, turgor);
     assert_near(energy[0], r.energy - COHESION * J, 1e-9);
     assert_near(energy[1], r.energy_turgor, 1e-7);
     assert_near(energy[2], r.energy_turgor2, 1e-5);
-    assert_near(turgor[0], r.energy_turgor - r.energy_cohesion + J, 1e-7);
-    assert_near(turgor[1], r.energy_turgor2 - 2 * r.energy_turgor_cohesion + r.energy_cohesion2, 1e-7);
+    assert_near(turgor[0][0], r.energy_turgor - r.energy_cohesion + J, 1e-7);
+    assert_near(turgor[1][0], r.energy_turgor2 - 2 * r.energy_turgor_cohesion + r.energy_cohesion2, 1e-7);
   }
 }
 

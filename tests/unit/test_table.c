@@ -1,0 +1,443 @@
+/* Answers of the table from records of a known potential: exact at the nodes, derivatives of one potential between
+ * them. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <unistd.h>
+#include <cmocka.h>
+#include "assert_near.h"
+#define CHECK(call) assert_int_equal(call, 0)
+#include "analytic_table.h"
+
+static const int in_plane[4] = {0, 1, 3, 4};
+
+static AnalyticTable Rough(PetscBool contact, double orientation)
+{
+  AnalyticTable t = AnalyticTableOpen(contact, orientation);
+  uint64_t seed = 1;
+
+  AddRough(&t, 2, &seed);
+  return t;
+}
+
+static LamLoad RandomLoad(const AnalyticTable *t, uint64_t *seed)
+{
+  const double low = t->grid->contact ? -2 * LAM_ROOT : 0, high = t->grid->contact ? 0.4 * LAM_ROOT : 2 * LAM_ROOT;
+  double u[3], v, angle;
+
+  for (int k = 0; k < 3; k++) u[k] = RandomReal(seed, low, high);
+  v = RandomReal(seed, 0, LAM_ROOT * (double)t->grid->tau_cells);
+  angle = RandomReal(seed, -3, 3);
+  return LoadAt(t, u, v, angle);
+}
+
+/* Off the grid's turgor or cohesion at the same suction. */
+static void StepInTurgor(const AnalyticTable *t, double step, LamLoad *load)
+{
+  load->turgor += step;
+  if (t->grid->contact) load->cohesion -= step;
+}
+
+static PetscBool Answers(const AnalyticTable *t, const LamLoad *load, LamResponse *r)
+{
+  *r = Ask(t, load);
+  return (PetscBool)(r->status == LAM_CONVERGED);
+}
+
+/* ---- at nodes ---- */
+
+static void AssertSame(const LamResponse *r, const LamResponse *exact)
+{
+  for (int i = 0; i < 4; i++) {
+    const int a = in_plane[i];
+
+    assert_near(r->P[a], exact->P[a], 1e-9);
+    assert_near(r->P_turgor[a], exact->P_turgor[a], 1e-9);
+    assert_near(r->P_cohesion[a], exact->P_cohesion[a], 1e-9);
+    assert_near(r->tangent[72 + a], exact->tangent[72 + a], 1e-9);
+    for (int j = 0; j < 4; j++) assert_near(r->tangent[9 * a + in_plane[j]], exact->tangent[9 * a + in_plane[j]], 1e-8);
+  }
+  assert_near(r->P[8], exact->P[8], 1e-9);
+  assert_near(r->energy, exact->energy, 1e-10);
+  assert_near(r->energy_turgor, exact->energy_turgor, 1e-9);
+  assert_near(r->energy_cohesion, exact->energy_cohesion, 1e-9);
+  assert_near(r->energy_turgor2, exact->energy_turgor2, 1e-8);
+  assert_near(r->energy_cohesion2, exact->energy_cohesion2, 1e-8);
+  assert_near(r->energy_turgor_cohesion, exact->energy_turgor_cohesion, 1e-8);
+}
+
+static void AssertNodes(AnalyticTable *t)
+{
+  int answered = 0, asked = 0;
+  const PetscInt64 *keys;
+  PetscInt n;
+
+  CHECK(LamDatabaseGetRecords(t->database, &n, NULL, &keys));
+  for (PetscInt k = 0; k < n; k++) {
+    const LamNodePlace place = LamNodePlaceOf(keys[k]);
+    LamResponse r, exact;
+
+    if (LamNodeIsFree(&place)) continue;
+    exact = AnswerOf(t, keys[k]);
+    asked++;
+    if (!Answers(t, &exact.load, &r)) continue;
+    answered++;
+    AssertSame(&r, &exact);
+  }
+  assert_true(answered > 0.5 * asked);
+  AnalyticTableClose(t);
+}
+
+static void bonded_nodes_answer_as_their_records(void **state)
+{
+  AnalyticTable t = Rough(PETSC_FALSE, 0);
+
+  AssertNodes(&t);
+}
+
+static void contact_nodes_answer_as_their_records(void **state)
+{
+  AnalyticTable t = Rough(PETSC_TRUE, 0);
+
+  AssertNodes(&t);
+}
+
+static void nodes_of_a_turned_cell_answer_as_their_records(void **state)
+{
+  AnalyticTable t = Rough(PETSC_TRUE, 17 * acos(-1) / 180);
+
+  AssertNodes(&t);
+}
+
+/* Two cells a period along one lattice direction: the three are not alike. */
+static void without_symmetry_nodes_answer_as_their_records(void **state)
+{
+  const AnalyticTissue tissue = {PETSC_FALSE, 0.1};
+  LamScene scene = AnalyticScene(&tissue);
+  uint64_t seed = 2;
+  AnalyticTable t;
+
+  scene.micro.cells[0] = 2;
+  t = AnalyticTableOpenScene(tissue, scene);
+  assert_false(t.grid->symmetric);
+  AddRough(&t, 2, &seed);
+  AssertNodes(&t);
+}
+
+/* ---- images ---- */
+
+/* F Q of a motion Q of the lattice: turned by 60 k degrees; or M F Q, mirrored at an axis of it and seen in a mirror M.
+ */
+static void Image(const AnalyticTable *t, int image, const PetscReal A[9], PetscReal AQ[9])
+{
+  const double pi = acos(-1), angle = image < 6 ? image * pi / 3 : 2 * (t->tissue.orientation + (image - 6) * pi / 6);
+  const double c = cos(angle), s = sin(angle), m = image < 6 ? 1 : -1, Q[4] = {c, -m * s, s, m * c};
+
+  for (int i = 0; i < 9; i++) AQ[i] = A[i];
+  for (int i = 0; i < 2; i++)
+    for (int j = 0; j < 2; j++) AQ[3 * i + j] = (i ? m : 1) * (A[3 * i] * Q[j] + A[3 * i + 1] * Q[2 + j]);
+}
+
+static void images_answer_alike(void **state)
+{
+  for (int kind = 0; kind < 2; kind++) {
+    AnalyticTable t = Rough((PetscBool)kind, 0.3);
+    uint64_t seed = 3;
+
+    for (int n = 0; n < 20; n++) {
+      LamLoad load = RandomLoad(&t, &seed), turned = load;
+      LamResponse r, other;
+      PetscReal P[9];
+
+      if (!Answers(&t, &load, &r)) continue;
+      for (int image = 1; image < 12; image++) {
+        Image(&t, image, load.F, turned.F);
+        assert_true(Answers(&t, &turned, &other));
+        Image(&t, image, r.P, P);
+        assert_near(other.energy, r.energy, 1e-12);
+        for (int i = 0; i < 4; i++) assert_near(other.P[in_plane[i]], P[in_plane[i]], 1e-11);
+      }
+    }
+    AnalyticTableClose(&t);
+  }
+}
+
+static void stress_turns_with_the_frame(void **state)
+{
+  AnalyticTable t = Rough(PETSC_FALSE, 0);
+  const double u[3] = {30, 70, 90}, c = cos(0.7), s = sin(0.7);
+  const LamLoad straight = LoadAt(&t, u, 0, 0), turned = LoadAt(&t, u, 0, 0.7);
+  LamResponse r, other;
+
+  assert_true(Answers(&t, &straight, &r));
+  assert_true(Answers(&t, &turned, &other));
+  for (int j = 0; j < 2; j++) {
+    assert_near(other.P[j], c * r.P[j] - s * r.P[3 + j], 1e-13);
+    assert_near(other.P[3 + j], s * r.P[j] + c * r.P[3 + j], 1e-13);
+  }
+  AnalyticTableClose(&t);
+}
+
+/* A turned by an angle from both sides, as a material that does not know directions has it. */
+static void TurnTangent(const PetscReal A[81], double angle, double turned[4][4])
+{
+  const double R[2][2] = {{cos(angle), -sin(angle)}, {sin(angle), cos(angle)}};
+
+  for (int a = 0; a < 4; a++)
+    for (int b = 0; b < 4; b++) {
+      turned[a][b] = 0;
+      for (int k = 0; k < 4; k++)
+        for (int l = 0; l < 4; l++)
+          turned[a][b] +=
+              R[a / 2][k / 2] * R[a % 2][k % 2] * R[b / 2][l / 2] * R[b % 2][l % 2] * A[9 * in_plane[k] + in_plane[l]];
+    }
+}
+
+static void the_tangent_is_isotropic_without_isochoric_strain(void **state)
+{
+  for (int kind = 0; kind < 2; kind++) {
+    AnalyticTable t = Rough((PetscBool)kind, 0.3);
+
+    for (int n = 0; n < 30; n++) {
+      const double at = (kind ? -2 * LAM_ROOT : 0) + 4.3 * n, u[3] = {at, at, at};
+      LamLoad load = LoadAt(&t, u, 20 + 2 * n, 0);
+      double turned[4][4];
+      LamResponse r;
+
+      StepInTurgor(&t, 0.02, &load);
+      if (!Answers(&t, &load, &r)) continue;
+      TurnTangent(r.tangent, 0.4 + 0.1 * n, turned);
+      for (int a = 0; a < 16; a++)
+        assert_near(r.tangent[9 * in_plane[a / 4] + in_plane[a % 4]], turned[a / 4][a % 4],
+                    2e-13 * fmax(1, fabs(r.tangent[0])));
+    }
+    AnalyticTableClose(&t);
+  }
+}
+
+/* A solver's records are symmetric to its tolerance only. */
+static void records_that_are_a_little_asymmetric_make_a_symmetric_answer(void **state)
+{
+  AnalyticTable t = AnalyticTableOpen(PETSC_FALSE, 0);
+  const double u[3] = {20, 20, 20};
+  const LamLoad load = LoadAt(&t, u, 0, 0);
+  uint64_t seed = 4;
+  double turned[4][4];
+  LamResponse r;
+
+  for (int at = 0; at < 8; at++) {
+    const int i[3] = {LAM_ROOT * (at & 1), LAM_ROOT * (at >> 1 & 1), LAM_ROOT * (at >> 2)};
+    const PetscInt64 key = KeyOf(&t, i, 0);
+
+    r = AnswerOf(&t, key);
+    for (int k = 0; k < 9; k++) r.P[k] += RandomReal(&seed, -1e-6, 1e-6);
+    for (int k = 0; k < 81; k++) r.tangent[k] += RandomReal(&seed, -1e-6, 1e-6);
+    if (!HasKey(&t, key)) CHECK(LamDatabaseAdd(t.database, 1, &key, &r));
+  }
+  assert_true(Answers(&t, &load, &r));
+  TurnTangent(r.tangent, 0.4, turned);
+  for (int a = 0; a < 16; a++)
+    assert_near(r.tangent[9 * in_plane[a / 4] + in_plane[a % 4]], turned[a / 4][a % 4], 1e-13);
+  AnalyticTableClose(&t);
+}
+
+/* ---- one potential ---- */
+
+/* Far from faces, across which the tangent jumps. */
+static PetscBool IsInside(const AnalyticTable *t, const LamLoad *load)
+{
+  const PetscReal F[4] = {load->F[0], load->F[1], load->F[3], load->F[4]}, s = load->turgor + load->cohesion;
+  const LamLatticeState at = LamLatticeStateOf(&t->grid->axes, F);
+  PetscReal a[3] = {0}, v = 2, u[3];
+
+  if (t->grid->free.n) LamFreeCellStrain(&t->grid->free, s, a);
+  for (int k = 0; k < 3; k++) u[k] = (at.x[k] - a[0] - t->grid->origin) / t->grid->step * LAM_ROOT;
+  if (t->grid->contact) v = LAM_ROOT * (LamGridTau(t->grid, s) - t->grid->tau_min) / t->grid->tau_step;
+  for (int k = 0; k < 3; k++)
+    if (fabs(remainder(u[k], 16)) < 0.05 || fabs(u[k] - u[(k + 1) % 3]) < 0.05) return PETSC_FALSE;
+  return (PetscBool)(fabs(remainder(v, 4)) > 0.05);
+}
+
+typedef void (*Comparison)(const AnalyticTable *t, const LamLoad *load);
+
+static void AtRandomStates(Comparison compare)
+{
+  for (int kind = 0; kind < 2; kind++) {
+    AnalyticTable t = Rough((PetscBool)kind, 0.2);
+    uint64_t seed = 5;
+    int compared = 0;
+
+    for (int n = 0; n < 300; n++) {
+      LamLoad load = RandomLoad(&t, &seed);
+      LamResponse r;
+
+      StepInTurgor(&t, RandomReal(&seed, -0.05, 0.05), &load);
+      if (!IsInside(&t, &load) || !Answers(&t, &load, &r)) continue;
+      compare(&t, &load);
+      compared++;
+    }
+    assert_true(compared > 50);
+    AnalyticTableClose(&t);
+  }
+}
+
+/* The answers at load +- h of one of its numbers. */
+static void Pair(const AnalyticTable *t, const LamLoad *load, size_t offset, double h, LamResponse pair[2])
+{
+  for (int side = 0; side < 2; side++) {
+    LamLoad moved = *load;
+
+    *(PetscReal *)((char *)&moved + offset) += side ? h : -h;
+    assert_true(Answers(t, &moved, &pair[side]));
+  }
+}
+
+#define STEP 1e-6
+#define SLOPE(pair, member) (((pair)[1].member - (pair)[0].member) / (2 * STEP))
+
+static void CompareStress(const AnalyticTable *t, const LamLoad *load)
+{
+  const LamResponse r = Ask(t, load);
+
+  for (int i = 0; i < 4; i++) {
+    LamResponse pair[2];
+
+    Pair(t, load, offsetof(LamLoad, F) + (size_t)in_plane[i] * sizeof(PetscReal), STEP, pair);
+    assert_near(SLOPE(pair, energy), r.P[in_plane[i]], 1e-8);
+  }
+}
+
+static void stress_is_the_slope_of_the_energy(void **state)
+{
+  AtRandomStates(CompareStress);
+}
+
+static void CompareTangent(const AnalyticTable *t, const LamLoad *load)
+{
+  const LamResponse r = Ask(t, load);
+
+  for (int i = 0; i < 4; i++) {
+    LamResponse pair[2];
+
+    Pair(t, load, offsetof(LamLoad, F) + (size_t)in_plane[i] * sizeof(PetscReal), STEP, pair);
+    for (int j = 0; j < 4; j++) {
+      const PetscReal A = r.tangent[9 * in_plane[j] + in_plane[i]];
+
+      assert_near(SLOPE(pair, P[in_plane[j]]), A, 1e-6);
+      assert_near(r.tangent[9 * in_plane[i] + in_plane[j]], A, 1e-11);
+    }
+  }
+}
+
+static void the_tangent_is_symmetric_and_the_slope_of_the_stress(void **state)
+{
+  AtRandomStates(CompareTangent);
+}
+
+static void CompareTurgor(const AnalyticTable *t, const LamLoad *load)
+{
+  const LamResponse r = Ask(t, load);
+  LamResponse pair[2];
+
+  Pair(t, load, offsetof(LamLoad, turgor), STEP, pair);
+  assert_near(SLOPE(pair, energy), r.energy_turgor, 1e-8);
+  assert_near(SLOPE(pair, energy_turgor), r.energy_turgor2, 1e-6);
+  assert_near(SLOPE(pair, energy_cohesion), r.energy_turgor_cohesion, 1e-6);
+  for (int i = 0; i < 4; i++) assert_near(SLOPE(pair, P[in_plane[i]]), r.P_turgor[in_plane[i]], 1e-6);
+}
+
+static void derivatives_in_turgor_are_slopes(void **state)
+{
+  AtRandomStates(CompareTurgor);
+}
+
+static void CompareCohesion(const AnalyticTable *t, const LamLoad *load)
+{
+  const LamResponse r = Ask(t, load);
+  LamResponse pair[2];
+
+  if (!t->grid->contact) return;
+  Pair(t, load, offsetof(LamLoad, cohesion), STEP, pair);
+  assert_near(SLOPE(pair, energy), r.energy_cohesion, 1e-8);
+  assert_near(SLOPE(pair, energy_cohesion), r.energy_cohesion2, 1e-6);
+  assert_near(SLOPE(pair, energy_turgor), r.energy_turgor_cohesion, 1e-6);
+  for (int i = 0; i < 4; i++) assert_near(SLOPE(pair, P[in_plane[i]]), r.P_cohesion[in_plane[i]], 1e-6);
+}
+
+static void derivatives_in_cohesion_are_slopes(void **state)
+{
+  AtRandomStates(CompareCohesion);
+}
+
+/* ---- files ---- */
+
+static void WriteTable(const AnalyticTable *t, const char path[])
+{
+  const LamResponse *records;
+  const PetscInt64 *keys;
+  LamRecordWriter writer;
+  PetscInt n;
+  char *text;
+
+  CHECK(LamDatabaseGetRecords(t->database, &n, &records, &keys));
+  CHECK(LamGridGetText(t->grid, &text));
+  CHECK(LamRecordWriterOpen(path, "database", LAM_WRITE_CREATE, &t->scene, &writer));
+  CHECK(LamRecordWriterText(writer, LAM_GRID_NAME, text));
+  CHECK(LamRecordWriterCommit(writer, n, keys, records));
+  CHECK(LamRecordWriterClose(&writer));
+  CHECK(PetscFree(text));
+}
+
+/* All numbers but the time it took, which is that of the first. */
+static void AssertIdentical(const LamResponse *a, LamResponse *b)
+{
+  b->seconds = a->seconds;
+  assert_memory_equal(a, b, sizeof(*a));
+}
+
+static void a_file_answers_bit_for_bit_as_memory(void **state)
+{
+  for (int kind = 0; kind < 2; kind++) {
+    AnalyticTable t = Rough((PetscBool)kind, 0.1), read;
+    char path[] = "/tmp/lamella_test_table_XXXXXX";
+    uint64_t seed = 6;
+
+    close(mkstemp(path));
+    WriteTable(&t, path);
+    read = t;
+    CHECK(LamDatabaseOpen(path, &read.database));
+    unlink(path);
+    for (int n = 0; n < 200; n++) {
+      const LamLoad load = RandomLoad(&t, &seed);
+      const LamResponse r = Ask(&t, &load);
+      LamResponse other = Ask(&read, &load);
+
+      AssertIdentical(&r, &other);
+    }
+    AnalyticTableClose(&read);
+    AnalyticTableClose(&t);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(bonded_nodes_answer_as_their_records),
+      cmocka_unit_test(contact_nodes_answer_as_their_records),
+      cmocka_unit_test(nodes_of_a_turned_cell_answer_as_their_records),
+      cmocka_unit_test(without_symmetry_nodes_answer_as_their_records),
+      cmocka_unit_test(images_answer_alike),
+      cmocka_unit_test(stress_turns_with_the_frame),
+      cmocka_unit_test(the_tangent_is_isotropic_without_isochoric_strain),
+      cmocka_unit_test(records_that_are_a_little_asymmetric_make_a_symmetric_answer),
+      cmocka_unit_test(stress_is_the_slope_of_the_energy),
+      cmocka_unit_test(the_tangent_is_symmetric_and_the_slope_of_the_stress),
+      cmocka_unit_test(derivatives_in_turgor_are_slopes),
+      cmocka_unit_test(derivatives_in_cohesion_are_slopes),
+      cmocka_unit_test(a_file_answers_bit_for_bit_as_memory),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
