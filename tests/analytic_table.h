@@ -107,6 +107,19 @@ static inline void AddPlace(AnalyticTable *t, const int i[3], int j)
   if (!LamPlaceIsFloating(t->grid, i)) AddKey(t, KeyOf(t, i, j));
 }
 
+/* A node whose solve failed. */
+static inline void AddFailed(AnalyticTable *t, const int i[3], int j)
+{
+  const PetscInt64 key = KeyOf(t, i, j);
+  LamResponse r;
+  LamLoad load;
+
+  if (LamPlaceIsFloating(t->grid, i) || HasKey(t, key)) return;
+  CHECK(LamGridNodeLoad(t->grid, key, &load));
+  CHECK(LamResponseInit(&load, &r));
+  CHECK(LamDatabaseAdd(t->database, 1, &key, &r));
+}
+
 /* All nodes of a block of cells of a level, corner `first`; j: every `along` units of suction. */
 static inline void AddBlock(AnalyticTable *t, int level, const int first[3], int cells, int along)
 {
@@ -155,8 +168,9 @@ static inline LamResponse Ask(const AnalyticTable *t, const LamLoad *load)
   return r;
 }
 
-/* Root cells of a block, and of the finer nodes of two levels some; also some halves and quarters of suction. */
-static inline void AddRough(AnalyticTable *t, int cells, uint64_t *seed)
+/* Root cells of a block, and of the finer nodes of two levels some; also some halves and quarters of suction.
+   Of the finer nodes the share `failing` has no solution. */
+static inline void AddRough(AnalyticTable *t, int cells, double failing, uint64_t *seed)
 {
   const int first[3] = {t->grid->contact ? -LAM_ROOT * cells : 0, t->grid->contact ? -LAM_ROOT * cells : 0,
                         t->grid->contact ? -LAM_ROOT * cells : 0};
@@ -170,7 +184,12 @@ static inline void AddRough(AnalyticTable *t, int cells, uint64_t *seed)
 
       if (RandomReal(seed, 0, 1) > 0.25) continue;
       for (int j = 0; j <= LAM_ROOT * t->grid->tau_cells; j += LAM_ROOT / 4)
-        if (j % LAM_ROOT == 0 || RandomReal(seed, 0, 1) < 0.3) AddPlace(t, i, j);
+        if (j % LAM_ROOT == 0 || RandomReal(seed, 0, 1) < 0.3) {
+          if (RandomReal(seed, 0, 1) < failing)
+            AddFailed(t, i, j);
+          else
+            AddPlace(t, i, j);
+        }
     }
   }
   /* columns of root cells with more states than their neighbours' */

@@ -1,10 +1,17 @@
-/* Times of answers from the table, part by part; prints figures, asserts nothing. */
+/*
+  Times of answers from the table, part by part; the net work of closed cycles and the order of convergence for a known
+  potential. Prints figures, asserts nothing.
+*/
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <petsctime.h>
 #include <random_reals.h>
 #include <hermite_cell.h>
 #include "quantile.h"
+
+#define CHECK(call) PetscCallAbort(PETSC_COMM_SELF, call)
+#include <strain_cycle.h>
 
 #define CELLS 32 /* they stay in the nearest cache: the arithmetic alone is timed */
 #define CALLS 200000
@@ -91,9 +98,75 @@ static PetscErrorCode Kernels(void)
   PetscFunctionReturn(0);
 }
 
+/* ---- of a known potential ---- */
+
+#define CYCLES 20
+#define CYCLE_LENGTH 6
+#define STATES 500
+enum { LEVELS = 3 };
+
+static PetscErrorCode Work(PetscBool contact)
+{
+  double work[CYCLES];
+  uint64_t seed = 1;
+
+  PetscFunctionBeginUser;
+  for (int c = 0; c < CYCLES; c++) {
+    AnalyticTable t = AnalyticTableOpen(contact, 0.2);
+    LamLoad corners[CYCLE_LENGTH];
+
+    AddRough(&t, 2, 0, &seed);
+    CycleCorners(&t, CYCLE_LENGTH, &seed, corners);
+    work[c] = CycleWork(&t, CYCLE_LENGTH, corners);
+    AnalyticTableClose(&t);
+  }
+  printf("%-44s %8.1e %8.1e\n", contact ? "contact" : "bonded", Quantile(work, CYCLES, 0.5), Quantile(work, CYCLES, 1));
+  PetscFunctionReturn(0);
+}
+
+/* Largest error of the stress at random states in one root cell, all of its nodes of a level solved. */
+static double WorstError(PetscBool contact, int level)
+{
+  AnalyticTable t = AnalyticTableOpen(contact, 0.2);
+  const int corner = contact ? -2 * LAM_ROOT : LAM_ROOT, first[3] = {corner, corner, corner};
+  double worst = 0;
+  uint64_t seed = 2;
+
+  for (int l = 0; l <= level; l++) AddBlock(&t, l, first, 1 << l, LAM_ROOT >> l);
+  for (int n = 0; n < STATES; n++) {
+    const double u[3] = {corner + RandomReal(&seed, 0, LAM_ROOT), corner + RandomReal(&seed, 0, LAM_ROOT),
+                         corner + RandomReal(&seed, 0, LAM_ROOT)};
+    const LamLoad load = LoadAt(&t, u, RandomReal(&seed, 0, LAM_ROOT), 0);
+    const LamResponse r = Ask(&t, &load), exact = TissueAnswer(&t.tissue, &load);
+
+    worst = fmax(worst, LamStressError(r.P, exact.P));
+  }
+  AnalyticTableClose(&t);
+  return worst;
+}
+
+static void Convergence(PetscBool contact)
+{
+  double before = 0;
+
+  for (int level = 0; level < LEVELS; level++) {
+    const double error = WorstError(contact, level);
+
+    printf("%-8s level %d                             %8.1e", contact ? "contact" : "bonded", level, error);
+    if (level) printf(" %8.2f", log2(before / error));
+    printf("\n");
+    before = error;
+  }
+}
+
 int main(int argc, char **argv)
 {
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   if (Kernels()) return 1;
+  printf("\nnet work of closed cycles / range of energy       median    worst\n");
+  if (Work(PETSC_FALSE) || Work(PETSC_TRUE)) return 1;
+  printf("\nworst error of P, refined alike everywhere         error    order\n");
+  Convergence(PETSC_FALSE);
+  Convergence(PETSC_TRUE);
   return PetscFinalize() ? 1 : 0;
 }

@@ -18,7 +18,7 @@ static AnalyticTable Rough(PetscBool contact, double orientation)
   AnalyticTable t = AnalyticTableOpen(contact, orientation);
   uint64_t seed = 1;
 
-  AddRough(&t, 2, &seed);
+  AddRough(&t, 2, 0, &seed);
   return t;
 }
 
@@ -117,7 +117,7 @@ static void without_symmetry_nodes_answer_as_their_records(void **state)
   scene.micro.cells[0] = 2;
   t = AnalyticTableOpenScene(tissue, scene);
   assert_false(t.grid->symmetric);
-  AddRough(&t, 2, &seed);
+  AddRough(&t, 2, 0, &seed);
   AssertNodes(&t);
 }
 
