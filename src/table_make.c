@@ -470,6 +470,37 @@ static PetscReal MixedThird(LamTable table, const LamTableNode *node, const LamT
   return count[2] ? sum[2] / count[2] : count[1] ? sum[1] / count[1] : 0;
 }
 
+/* ---- slopes along suction ---- */
+
+/*
+  Slopes of the second derivatives in tau: those of the parabola through a state and its neighbours in the column, of
+  the line where there are two states.
+*/
+static void SlopesAlongSuction(LamTable table, const LamTableNode *node)
+{
+  LamTableState *states = &table->states[node->first];
+  const PetscReal unit = table->grid->tau_step / LAM_ROOT;
+  const PetscInt n = PetscMin(node->count, 3);
+
+  for (PetscInt s = 0; s < node->count; s++) {
+    const PetscInt first = PetscMax(0, PetscMin(s - 1, node->count - n));
+    PetscBool known = (PetscBool)(n > 1);
+
+    for (PetscInt a = first; a < first + n; a++) known = (PetscBool)(known && states[a].has_data);
+    for (PetscInt a = first; a < first + n && known; a++) {
+      PetscReal rise = n == 2 ? 1 : 0, run = 1;
+
+      for (PetscInt b = first; b < first + n; b++) {
+        if (b == a) continue;
+        if (n == 3) rise += unit * (states[s].j - states[b].j);
+        run *= unit * (states[a].j - states[b].j);
+      }
+      for (int m = 0; m < 6; m++) states[s].hessian_tau[m] += rise / run * states[a].phi.hessian[m];
+      for (int k = 0; k < 3; k++) states[s].minus_tau[k] += rise / run * states[a].minus[k];
+    }
+  }
+}
+
 /* Level by level: nodes are sorted so. */
 static void MakeLevels(LamTable table)
 {
@@ -482,12 +513,14 @@ static void MakeLevels(LamTable table)
 
         if (state->has_data) MakeSurplus(table, &table->nodes[last], state);
       }
-    for (PetscInt n = first; n < last; n++)
+    for (PetscInt n = first; n < last; n++) {
       for (PetscInt s = 0; s < table->nodes[n].count; s++) {
         LamTableState *state = &table->states[table->nodes[n].first + s];
 
         if (state->has_data) state->phi.third = MixedThird(table, &table->nodes[n], state);
       }
+      if (table->grid->contact) SlopesAlongSuction(table, &table->nodes[n]);
+    }
   }
 }
 

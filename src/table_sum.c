@@ -95,10 +95,12 @@ static void AddState(const Interval *a, int e, const int order[3], int corner, C
     for (int k = 0; k < 3; k++) {
       const int n = order[k];
       const PetscReal pure = corner >> k & 1 ? state->minus[n] : state->phi.hessian[n];
+      const PetscReal pure_tau = corner >> k & 1 ? state->minus_tau[n] : state->hessian_tau[n];
 
       jet->gradient[k] += V * state->phi.gradient[n] + D * state->gradient_tau[n];
-      jet->hessian[k] += V * pure;
-      jet->hessian[3 + k] += V * state->phi.hessian[3 + n]; /* entry 3 + k lacks axis k */
+      jet->hessian[k] += V * pure + D * pure_tau;
+      jet->hessian[3 + k] +=
+          V * state->phi.hessian[3 + n] + D * state->hessian_tau[3 + n]; /* entry 3 + k lacks axis k */
       turgor1->gradient[k] += V * state->turgor_gradient[n];
     }
     turgor1->value += V * state->turgor1 + D * state->turgor_tau;
