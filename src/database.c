@@ -32,13 +32,10 @@ static PetscErrorCode GrowNodes(LamDatabase db, PetscInt n)
 
 static PetscErrorCode AddScattered(LamDatabase db, const LamResponse *record)
 {
-  PetscInt capacity = db->scattered_capacity;
+  const PetscBool bonded = (PetscBool)(db->header.micro.interface == LAM_INTERFACE_BONDED);
 
   PetscFunctionBeginUser;
-  PetscCall(Grow(db->scattered_count, 1, sizeof(*db->expansions), &capacity, &db->expansions));
-  PetscCall(Grow(db->scattered_count, 1, sizeof(*db->scattered), &db->scattered_capacity, &db->scattered));
-  db->scattered[db->scattered_count] = *record;
-  LamExpansionMake(record, &db->expansions[db->scattered_count++]);
+  PetscCall(LamScatterAdd(&db->scatter, &db->images, bonded, record));
   PetscFunctionReturn(0);
 }
 
@@ -150,8 +147,7 @@ PetscErrorCode LamDatabaseClose(LamDatabase *database)
   PetscCall(PetscFree(db->path));
   PetscCall(PetscFree(db->keys));
   PetscCall(PetscFree(db->nodes));
-  PetscCall(PetscFree(db->scattered));
-  PetscCall(PetscFree(db->expansions));
+  PetscCall(LamScatterDestroy(&db->scatter));
   PetscCall(PetscFree(db->records));
   PetscCall(PetscFree(db->info));
   PetscCall(LamTableDestroy(&db->table));

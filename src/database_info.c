@@ -63,8 +63,8 @@ static void Summarise(LamDatabase db, Summary *s)
 
     Count(s, node->status, node->F, node->turgor, node->cohesion);
   }
-  for (PetscInt i = 0; i < db->scattered_count; i++) {
-    const LamResponse *r = &db->scattered[i];
+  for (PetscInt i = 0; i < db->scatter.n; i++) {
+    const LamResponse *r = &db->scatter.records[i];
     const PetscReal F[4] = {r->load.F[0], r->load.F[1], r->load.F[3], r->load.F[4]};
 
     Count(s, r->status, F, r->load.turgor, r->load.cohesion);

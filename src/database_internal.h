@@ -1,23 +1,12 @@
 /*
-  Private to the database: what is in memory of the records, and the expansions made from them.
+  Private to the database: what is in memory of the records, and what answers are made from.
 */
 #ifndef LAM_DATABASE_INTERNAL_H
 #define LAM_DATABASE_INTERNAL_H
 
+#include "expansion.h"
 #include "node_data.h"
 #include "record_internal.h"
-
-/*
-  Second-order expansion of Phi = Psi + p J about a record, in x = (c0, c1, c2, p) with c0 = (C11 + C22)/2,
-  c1 = (C11 - C22)/2, c2 = C12. P33 + p J and the opening dPsi/dg are scalars of C and p too and are expanded to first
-  order.
-*/
-typedef struct {
-  PetscReal x[4];
-  PetscReal energy, gradient[4], hessian[4][4];
-  PetscReal P33, P33_gradient[4]; /* of P33 + p J */
-  PetscReal opening, opening_gradient[4];
-} LamExpansion;
 
 #define LAM_MAX_IMAGES 6
 
@@ -27,6 +16,32 @@ typedef struct {
   PetscReal map[LAM_MAX_IMAGES][2][2];
   PetscInt face[LAM_MAX_IMAGES][3]; /* face family k of the question is family face[k] of the record */
 } LamImages;
+
+/* What a record may say of the states around it. */
+typedef enum {
+  LAM_SCATTER_BLENDS,  /* converged, stable, branch 0 */
+  LAM_SCATTER_ALONE,   /* another branch: its own state only */
+  LAM_SCATTER_REFUSES, /* failed, unstable or without a tangent: nothing, but that something changes here */
+} LamScatterUse;
+
+typedef struct {
+  LamScatterUse use;
+  PetscInt images;    /* bit i: image i is there; those that fall on an earlier one are left out */
+  LamExpansion model; /* x alone where `use` is LAM_SCATTER_REFUSES */
+} LamScattered;
+
+/* What all images of a state have in common: a scan over these is all that most states cost a query. */
+typedef struct {
+  PetscReal mean, deviator, turgor, cohesion; /* c0, |c1 + i c2|, p, g; mean infinite: not of plane strain */
+} LamScatterPlace;
+
+/* Records that are no nodes of a grid, in their order. */
+typedef struct {
+  PetscInt n, capacity;
+  LamResponse *records;    /* [n] owned */
+  LamScattered *states;    /* [n] owned */
+  LamScatterPlace *places; /* [n] owned */
+} LamScatter;
 
 /*
   Records 0 .. n-1 are those of the file and, behind them, those added in memory. Of nodes of the grid the database
@@ -42,9 +57,7 @@ struct LamDatabase_s {
 
   PetscInt node_count, node_capacity;
   LamNodeData *nodes; /* [node_count] owned: records with the key of a node, in their order */
-  PetscInt scattered_count, scattered_capacity;
-  LamResponse *scattered;   /* [scattered_count] owned: all other records, in their order */
-  LamExpansion *expansions; /* [scattered_count] owned; x[0] is infinite for records that cannot be used */
+  LamScatter scatter; /* all other records */
 
   PetscInt records_first,
       records_capacity; /* records_first: of the file's records before LamDatabaseGetRecords, 0 after */
@@ -56,11 +69,33 @@ struct LamDatabase_s {
   PetscInt table_count;
 };
 
+/* ---- images.c ---- */
+void LamImagesMake(const LamMicrostructure *micro, LamImages *images);
+/* y = M x: the question in the frame of the records. */
+void LamImagesForward(const LamImages *images, PetscInt image, const PetscReal x[LAM_VARIABLES],
+                      PetscReal y[LAM_VARIABLES]);
+/* g <- M^T g, H <- M^T H M: derivatives in the records' frame, in the question's. */
+void LamImagesBack(const LamImages *images, PetscInt image, PetscReal g[LAM_VARIABLES]);
+void LamImagesBackHessian(const LamImages *images, PetscInt image, PetscReal H[LAM_VARIABLES][LAM_VARIABLES]);
+
+/* ---- scatter.c ---- */
+PetscErrorCode LamScatterAdd(LamScatter *scatter, const LamImages *images, PetscBool bonded, const LamResponse *record);
+LamScatterPlace LamScatterPlaceOf(const PetscReal x[LAM_VARIABLES]);
+PetscErrorCode LamScatterDestroy(LamScatter *scatter);
+
 /* ---- query.c ---- */
 /* PETSC_FALSE, with status and reason, for a question that has no answer in plane strain. */
-PetscBool LamQuestionIsGood(const LamLoad *load, LamResponse *r);
-void LamImagesMake(const LamMicrostructure *micro, LamImages *images);
-void LamExpansionMake(const LamResponse *record, LamExpansion *expansion);
+PetscBool LamQuestionIsGood(const LamLoad *load, LamResponse *response);
+
+/* ---- query_scatter.c ---- */
+#define LAM_TRUST_RADIUS 0.04 /* strain: how far from the nearest record a blend is trusted */
+#define LAM_OWN_STATE 1e-6    /* strain: a question so near to a record asks for the record's own state */
+/*
+  The answer to a good question from the scattered records, within `radius` (strain) of the nearest, into a response
+  that LamResponseInit has cleared. Safe from several threads while nobody adds.
+*/
+PetscErrorCode LamScatterQuery(LamDatabase database, const LamLoad *load, PetscReal radius, PetscReal accuracy,
+                               LamResponse *response);
 
 /* ---- query_indicators.c ---- */
 /* `face`: the record's name of each face family of the question; `own`: the question is the record's own state. */
