@@ -131,7 +131,7 @@ PetscErrorCode LamDatabaseDescribe(LamDatabase db, char **json)
                      "failed", (json_int_t)(db->n - summary.counts[LAM_CONVERGED]), "format_version",
                      (int)h->format_version, "microstructures", Microstructures(db), "statuses", Statuses(&summary),
                      "coverage", Coverage(h, &summary), "accuracy", h->accuracy);
-  json_object_set_new(object, "scattered", json_integer(db->scattered_count));
+  json_object_set_new(object, "scattered", json_integer(db->scatter.n));
   PetscCall(AddTable(db, object));
   json_object_set_new(object, "creator", Text(h->creator));
   json_object_set_new(object, "created", Text(h->created));

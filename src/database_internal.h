@@ -80,7 +80,6 @@ void LamImagesBackHessian(const LamImages *images, PetscInt image, PetscReal H[L
 
 /* ---- scatter.c ---- */
 PetscErrorCode LamScatterAdd(LamScatter *scatter, const LamImages *images, PetscBool bonded, const LamResponse *record);
-LamScatterPlace LamScatterPlaceOf(const PetscReal x[LAM_VARIABLES]);
 PetscErrorCode LamScatterDestroy(LamScatter *scatter);
 
 /* ---- query.c ---- */

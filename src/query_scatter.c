@@ -14,130 +14,43 @@
     The nearest model T_1 is taken out, Phi = T_1 + sum w_k (T_k - T_1) / sum w_k, else the weights' steep derivatives
     near a record would multiply rounding. With A, W the two sums and e = A / W:
       e_a  = A_a / W - e W_a / W,   e_ab = A_ab / W - e_a W_b / W - W_a e_b / W - e W_ab / W.
-    Distance: d^2 = (|dc|^2)/4 + (TURGOR_WEIGHT dp)^2, in contact + (SUCTION_WEIGHT (dp + dg))^2. dC/2 is the Green
-    strain, so the distance is a strain. The prototype found 0.1 per MPa for p, that is 0.011 per C1 + C2 of 0.11 MPa.
 
-  Estimate of the error: the models' spread, the root of sum w_k |P_k - P|^2 / sum w_k. ...
+  Estimate of the error of P: the models' spread, (sum w_k |P_k - P|^2 / sum w_k)^1/2, and, since a model that stands
+  alone has no spread, the error of one model at this distance, times the square of the nearest one's share of the
+  weights. docs/performance.md has what was measured.
 
-  What other records say: ...
+  Only records that have converged, are stable and of branch 0 blend. One of another branch answers for its own state;
+  it and those that failed forbid a blend where they are not much further away than the nearest that blends: the
+  potential has a kink between them.
 
   References: Shepard, Proc. 23rd ACM National Conference (1968) 517; Franke and Nielson, Int. J. Numer. Meth. Engng 15
   (1980) 1691.
 */
-#include "database_internal.h"
+#include "scatter.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#define TURGOR_WEIGHT 0.011
-#define SUCTION_WEIGHT 0.5
-#define TIE 1e-14 /* distances (strain) closer than this are equal: the record or image that comes first counts */
-#define REACH 2   /* of the blend, in radii of trust */
-#define DOUBT                                                                                                          \
-  2 /* a record that refuses makes an answer doubtful up to so many distances of the nearest that blends               \
-     */
-
-typedef PetscReal Vector[LAM_VARIABLES];
-typedef PetscReal Matrix[LAM_VARIABLES][LAM_VARIABLES];
-
-/* ---- distance ---- */
-
-typedef struct {
-  PetscReal strain, pp, pg, gg; /* the squared distance's coefficients: of |dc|^2, dp^2, 2 dp dg, dg^2 */
-} Metric;
-
-static Metric MakeMetric(LamDatabase db)
-{
-  const PetscReal turgor = PetscSqr(TURGOR_WEIGHT);
-  const PetscReal suction = db->header.micro.interface == LAM_INTERFACE_BONDED ? 0 : PetscSqr(SUCTION_WEIGHT);
-
-  return (Metric){0.25, turgor + suction, suction, suction};
-}
-
-/* v = M delta; returns delta . M delta. */
-static PetscReal Apply(const Metric *m, const Vector delta, Vector v)
-{
-  PetscReal sum = 0;
-
-  for (int a = 0; a < 3; a++) v[a] = m->strain * delta[a];
-  v[3] = m->pp * delta[3] + m->pg * delta[4];
-  v[4] = m->pg * delta[3] + m->gg * delta[4];
-  for (int a = 0; a < LAM_VARIABLES; a++) sum += v[a] * delta[a];
-  return sum;
-}
-
-/* No image of the state is nearer. */
-static PetscReal LowerBound(const Metric *m, const LamScatterPlace *a, const LamScatterPlace *b)
-{
-  const PetscReal dm = a->mean - b->mean, dd = a->deviator - b->deviator;
-  const PetscReal dp = a->turgor - b->turgor, dg = a->cohesion - b->cohesion;
-
-  return m->strain * (dm * dm + dd * dd) + m->pp * dp * dp + 2 * m->pg * dp * dg + m->gg * dg * dg;
-}
-
-/* ---- the nearest records ---- */
-
-typedef struct {
-  PetscInt state, image; /* state -1: none */
-  PetscReal distance2;
-} Nearest;
-
-typedef struct {
-  LamDatabase db;
-  Metric metric;
-  Vector x; /* of the question */
-  LamScatterPlace place;
-  Vector turned[LAM_MAX_IMAGES];  /* x in the frame of each image */
-  Nearest blends, alone, refuses; /* of each use */
-} Search;
-
-static void BeginSearch(LamDatabase db, const LamLoad *load, Search *search)
-{
-  const Nearest none = {-1, 0, INFINITY};
-
-  *search = (Search){.db = db, .metric = MakeMetric(db), .blends = none, .alone = none, .refuses = none};
-  LamVariables(load, search->x);
-  search->place = LamScatterPlaceOf(search->x);
-  for (PetscInt i = 0; i < db->images.count; i++) LamImagesForward(&db->images, i, search->x, search->turned[i]);
-}
-
-static PetscReal Distance2(const Search *search, const LamScattered *state, PetscInt image)
-{
-  Vector delta, v;
-
-  for (int a = 0; a < LAM_VARIABLES; a++) delta[a] = search->turned[image][a] - state->model.x[a];
-  return Apply(&search->metric, delta, v);
-}
-
-static void FindNearest(Search *search)
-{
-  const LamScatter *scatter = &search->db->scatter;
-  Nearest *const nearest[] = {&search->blends, &search->alone, &search->refuses};
-
-  for (PetscInt k = 0; k < scatter->n; k++) {
-    const LamScattered *state = &scatter->states[k];
-    Nearest *best = nearest[state->use];
-
-    if (!(LowerBound(&search->metric, &search->place, &scatter->places[k]) < best->distance2)) continue;
-    for (PetscInt i = 0; i < search->db->images.count; i++) {
-      PetscReal d2;
-
-      if (!(state->images >> i & 1)) continue;
-      d2 = Distance2(search, state, i);
-      if (d2 < best->distance2 - 2 * TIE * sqrt(d2)) *best = (Nearest){k, i, d2};
-    }
-  }
-}
+/* Relative error of P of one model alone over the square of the distance, at the 99 % level in bonded tissue and at the
+   95 % level in contact tissue, whose walls come apart between two states. */
+#define BONDED_ERROR 12.8
+#define CONTACT_ERROR 100.0
+/* Of the blend, in radii of trust. */
+#define REACH 2
+/* A record that refuses, or is of another branch, forbids a blend within so many distances of the nearest that blends.
+ */
+#define DOUBT 2
 
 /* ---- the blend ---- */
 
 /* A record's model at the question: the expansion's members, without the Hessian, in the question's frame. */
 typedef struct {
   PetscReal energy, P33;
-  Vector gradient, P33_gradient;
+  LamScatterVector gradient, P33_gradient;
 } Model;
 
-static void EvaluateModel(const Search *search, const LamScattered *state, PetscInt image, Vector delta, Model *m)
+static void EvaluateModel(const LamScatterSearch *search, const LamScattered *state, PetscInt image,
+                          LamScatterVector delta, Model *m)
 {
   const LamImages *images = &search->db->images;
   const LamExpansion *e = &state->model;
@@ -162,14 +75,14 @@ static void EvaluateModel(const Search *search, const LamScattered *state, Petsc
 /* w = u^3, u = 1/d^2 - 1/R^2, with its derivatives. */
 typedef struct {
   PetscReal value;
-  Vector gradient;
+  LamScatterVector gradient;
   PetscReal outer, metric; /* its Hessian is outer v v^T + metric M, v = M delta */
-  Vector v;
+  LamScatterVector v;
 } Weight;
 
-static PetscBool MakeWeight(const Metric *metric, const Vector delta, PetscReal reach, Weight *w)
+static PetscBool MakeWeight(const LamScatterMetric *metric, const LamScatterVector delta, PetscReal reach, Weight *w)
 {
-  const PetscReal d2 = Apply(metric, delta, w->v), u = 1 / d2 - 1 / (reach * reach), d4 = d2 * d2;
+  const PetscReal d2 = LamScatterApply(metric, delta, w->v), u = 1 / d2 - 1 / (reach * reach), d4 = d2 * d2;
 
   if (!(u > 0)) return PETSC_FALSE;
   w->value = u * u * u;
@@ -183,16 +96,16 @@ static PetscBool MakeWeight(const Metric *metric, const Vector delta, PetscReal 
 typedef struct {
   Model first;
   PetscReal W, W_metric, A, A_metric, P33, A3333; /* _metric: the part of the Hessian along the metric */
-  Vector W_slope, A_slope, P33_slope;
-  Matrix W_hessian, A_hessian;
-  Matrix own_hessian[LAM_MAX_IMAGES];          /* of the records, each image in its own frame */
-  PetscReal spread, P_mean[3], P_square[3][3]; /* of P33 squared; of the gradients in C */
+  LamScatterVector W_slope, A_slope, P33_slope;
+  LamScatterMatrix W_hessian, A_hessian;
+  LamScatterMatrix own_hessian[LAM_MAX_IMAGES];    /* of the records, each image in its own frame */
+  PetscReal P33_square, P_mean[3], P_square[3][3]; /* P_: of the gradients in C */
 } Sums;
 
 static void AddModel(const Weight *w, const Model *m, Sums *s)
 {
   const PetscReal energy = m->energy - s->first.energy, P33 = m->P33 - s->first.P33;
-  Vector slope;
+  LamScatterVector slope;
 
   for (int a = 0; a < LAM_VARIABLES; a++) slope[a] = m->gradient[a] - s->first.gradient[a];
   s->W += w->value;
@@ -200,7 +113,7 @@ static void AddModel(const Weight *w, const Model *m, Sums *s)
   s->A += w->value * energy;
   s->A_metric += w->metric * energy;
   s->P33 += w->value * P33;
-  s->spread += w->value * P33 * P33;
+  s->P33_square += w->value * P33 * P33;
   for (int a = 0; a < LAM_VARIABLES; a++) {
     s->W_slope[a] += w->gradient[a];
     s->A_slope[a] += w->value * slope[a] + w->gradient[a] * energy;
@@ -218,17 +131,17 @@ static void AddModel(const Weight *w, const Model *m, Sums *s)
   }
 }
 
-static void AddState(const Search *search, PetscInt k, PetscReal reach, Sums *s)
+static void AddState(const LamScatterSearch *search, PetscInt k, PetscReal reach, Sums *s)
 {
   const LamScattered *state = &search->db->scatter.states[k];
   const PetscReal A3333 = search->db->scatter.records[k].tangent[80];
 
   for (PetscInt i = 0; i < search->db->images.count; i++) {
-    Vector delta;
+    LamScatterVector delta;
     Weight w;
     Model m;
 
-    if (!(state->images >> i & 1) || Distance2(search, state, i) >= reach * reach) continue;
+    if (!(state->images >> i & 1) || LamScatterDistance2(search, state, i) >= reach * reach) continue;
     EvaluateModel(search, state, i, delta, &m);
     if (!MakeWeight(&search->metric, delta, reach, &w)) continue;
     AddModel(&w, &m, s);
@@ -238,16 +151,16 @@ static void AddState(const Search *search, PetscInt k, PetscReal reach, Sums *s)
   }
 }
 
-static void Mirror(Matrix H)
+static void Mirror(LamScatterMatrix H)
 {
   for (int a = 0; a < LAM_VARIABLES; a++)
     for (int b = 0; b < a; b++) H[b][a] = H[a][b];
 }
 
 /* The metric's part of the Hessians, and the records' own Hessians in the question's frame. */
-static void CompleteHessians(const Search *search, Sums *s)
+static void CompleteHessians(const LamScatterSearch *search, Sums *s)
 {
-  const Metric *m = &search->metric;
+  const LamScatterMetric *m = &search->metric;
   const PetscReal diagonal[LAM_VARIABLES] = {m->strain, m->strain, m->strain, m->pp, m->gg};
 
   for (int a = 0; a < LAM_VARIABLES; a++) {
@@ -265,10 +178,10 @@ static void CompleteHessians(const Search *search, Sums *s)
 }
 
 /* The blend's expansion at the question, in the question's frame. */
-static void Finish(const Search *search, Sums *s, LamExpansion *blend)
+static void Finish(const LamScatterSearch *search, Sums *s, LamExpansion *blend)
 {
   const PetscReal energy = s->A / s->W, P33 = s->P33 / s->W;
-  Vector slope, l;
+  LamScatterVector slope, l;
 
   CompleteHessians(search, s);
   memcpy(blend->x, search->x, sizeof(blend->x));
@@ -288,9 +201,9 @@ static void Finish(const Search *search, Sums *s, LamExpansion *blend)
 }
 
 /* Root of the weighted mean of |P_k - P|^2 over the models. */
-static PetscReal Spread(const Search *search, const Sums *s, const LamExpansion *blend, const PetscReal F[9])
+static PetscReal Spread(const LamScatterSearch *search, const Sums *s, const LamExpansion *blend, const PetscReal F[9])
 {
-  PetscReal B[3][3], sum = s->spread / s->W - PetscSqr(s->P33 / s->W), slope[3];
+  PetscReal B[3][3], sum = s->P33_square / s->W - PetscSqr(s->P33 / s->W), slope[3];
 
   LamStressMetric(F, B);
   for (int a = 0; a < 3; a++) slope[a] = blend->gradient[a] - s->first.gradient[a];
@@ -300,30 +213,32 @@ static PetscReal Spread(const Search *search, const Sums *s, const LamExpansion 
   return sqrt(PetscMax(sum, 0));
 }
 
-static PetscReal Blend(const Search *search, PetscReal reach, const LamLoad *load, LamExpansion *blend,
-                       PetscReal *A3333)
+/* What LamStressError would say of an error of this size. */
+static PetscReal RelativeError(PetscReal size, const PetscReal P[9])
 {
-  const LamScatter *scatter = &search->db->scatter;
-  Sums sums = {0};
-  Vector delta;
+  PetscReal other[9];
 
-  EvaluateModel(search, &scatter->states[search->blends.state], search->blends.image, delta, &sums.first);
-  for (PetscInt k = 0; k < scatter->n; k++)
-    if (scatter->states[k].use == LAM_SCATTER_BLENDS &&
-        LowerBound(&search->metric, &search->place, &scatter->places[k]) < reach * reach)
-      AddState(search, k, reach, &sums);
-  Finish(search, &sums, blend);
-  *A3333 = sums.A3333 / sums.W;
-  return Spread(search, &sums, blend, load->F);
+  memcpy(other, P, sizeof(other));
+  other[0] += size;
+  return LamStressError(other, P);
+}
+
+/* From the weight of the nearest model. */
+static PetscReal LonelyError(const LamScatterSearch *search, PetscReal reach, const Sums *s)
+{
+  const PetscBool bonded = (PetscBool)(search->db->header.micro.interface == LAM_INTERFACE_BONDED);
+  const PetscReal d2 = search->blends.distance2, u = 1 / d2 - 1 / (reach * reach), share = u * u * u / s->W;
+
+  return (bonded ? BONDED_ERROR : CONTACT_ERROR) * d2 * share * share;
 }
 
 /* ---- the answer ---- */
 
 /* The model of the state that the question is, in the question's frame. */
-static void OwnState(const Search *search, const Nearest *at, LamExpansion *own)
+static void OwnState(const LamScatterSearch *search, const LamScatterNearest *at, LamExpansion *own)
 {
   const LamScattered *state = &search->db->scatter.states[at->state];
-  Vector delta;
+  LamScatterVector delta;
   Model m;
 
   EvaluateModel(search, state, at->image, delta, &m);
@@ -341,8 +256,8 @@ static PetscBool SameNumber(PetscReal a, PetscReal b)
   return (PetscBool)(fabs(a - b) <= 1e-10);
 }
 
-static void Fill(const Search *search, const Nearest *at, PetscBool own, const LamExpansion *e, PetscReal A3333,
-                 LamResponse *r)
+static void Fill(const LamScatterSearch *search, const LamScatterNearest *at, PetscBool own, const LamExpansion *e,
+                 PetscReal A3333, LamResponse *r)
 {
   const LamDatabase db = search->db;
   const LamResponse *record = &db->scatter.records[at->state];
@@ -357,7 +272,7 @@ static void Fill(const Search *search, const Nearest *at, PetscBool own, const L
 }
 
 /* PETSC_FALSE, with the reason, where the nearest records forbid a blend. */
-static PetscBool MayBlend(const Search *search, PetscReal radius, LamResponse *r)
+static PetscBool MayBlend(const LamScatterSearch *search, PetscReal radius, LamResponse *r)
 {
   const PetscReal other = sqrt(PetscMin(search->alone.distance2, search->refuses.distance2));
 
@@ -379,41 +294,68 @@ static PetscBool MayBlend(const Search *search, PetscReal radius, LamResponse *r
   return PETSC_TRUE;
 }
 
-/* What LamStressError would say of an error of this size. */
-static PetscReal RelativeError(PetscReal size, const PetscReal P[9])
+static void AnswerOwnState(const LamScatterSearch *search, const LamScatterNearest *at, LamResponse *r)
 {
-  PetscReal other[9];
+  LamExpansion e;
 
-  memcpy(other, P, sizeof(other));
-  other[0] += size;
-  return LamStressError(other, P);
+  OwnState(search, at, &e);
+  r->distance = sqrt(at->distance2);
+  r->error_estimate = 0;
+  Fill(search, at, PETSC_TRUE, &e, search->db->scatter.records[at->state].tangent[80], r);
+}
+
+static void AnswerBlend(const LamScatterSearch *search, PetscReal reach, LamResponse *r)
+{
+  const LamScatter *scatter = &search->db->scatter;
+  LamExpansion blend;
+  Sums sums = {0};
+  LamScatterVector delta;
+
+  EvaluateModel(search, &scatter->states[search->blends.state], search->blends.image, delta, &sums.first);
+  for (PetscInt k = 0; k < scatter->n; k++)
+    if (scatter->states[k].use == LAM_SCATTER_BLENDS &&
+        LamScatterLowerBound(search, &scatter->places[k]) < reach * reach)
+      AddState(search, k, reach, &sums);
+  Finish(search, &sums, &blend);
+  Fill(search, &search->blends, PETSC_FALSE, &blend, sums.A3333 / sums.W, r);
+  r->error_estimate =
+      hypot(RelativeError(Spread(search, &sums, &blend, r->load.F), r->P), LonelyError(search, reach, &sums));
+}
+
+/* Takes an answer back. */
+static PetscErrorCode Refuse(PetscReal accuracy, LamResponse *r)
+{
+  const LamResponse answer = *r;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamResponseInit(&answer.load, r));
+  r->source = answer.source;
+  r->status = LAM_OUT_OF_REACH;
+  r->distance = answer.distance;
+  r->error_estimate = answer.error_estimate;
+  snprintf(r->reason, sizeof(r->reason),
+           "the nearest record is %.3g away in strain, the estimated error of P is %.2g, asked for is %.2g",
+           (double)r->distance, (double)r->error_estimate, (double)accuracy);
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamScatterQuery(LamDatabase database, const LamLoad *load, PetscReal radius, PetscReal accuracy,
                                LamResponse *response)
 {
-  Search search;
-  LamExpansion e;
-  const Nearest *own;
-  PetscReal A3333, spread;
+  const LamScatterNearest *own;
+  LamScatterSearch search;
 
   PetscFunctionBeginUser;
-  BeginSearch(database, load, &search);
-  FindNearest(&search);
+  LamScatterFind(database, load, &search);
   own = search.alone.distance2 < search.blends.distance2 ? &search.alone : &search.blends;
-  response->status = LAM_OUT_OF_REACH;
-  if (own->state >= 0 && own->distance2 < PetscSqr(LAM_OWN_STATE)) {
-    OwnState(&search, own, &e);
-    A3333 = database->scatter.records[own->state].tangent[80];
-    response->distance = sqrt(own->distance2);
-    response->error_estimate = 0;
-    Fill(&search, own, PETSC_TRUE, &e, A3333, response);
+  if (own->distance2 < PetscSqr(LAM_OWN_STATE)) {
+    AnswerOwnState(&search, own, response);
     PetscFunctionReturn(0);
   }
+  response->status = LAM_OUT_OF_REACH;
   if (search.blends.state >= 0) response->distance = sqrt(search.blends.distance2);
   if (!MayBlend(&search, radius, response)) PetscFunctionReturn(0);
-  spread = Blend(&search, REACH * radius, load, &e, &A3333);
-  Fill(&search, &search.blends, PETSC_FALSE, &e, A3333, response);
-  response->error_estimate = RelativeError(spread, response->P);
+  AnswerBlend(&search, REACH * radius, response);
+  if (!(response->error_estimate <= accuracy)) PetscCall(Refuse(accuracy, response));
   PetscFunctionReturn(0);
 }

@@ -1,9 +1,13 @@
 /*
-  Records that belong to no grid: what each may answer, and its model of the potential.
+  Records that belong to no grid: what each may answer, its model of the potential, and which are near a question.
 */
-#include "database_internal.h"
+#include "scatter.h"
 #include <math.h>
 #include <string.h>
+
+#define TURGOR_WEIGHT 0.011 /* of pressures in C1 + C2 */
+#define SUCTION_WEIGHT 0.5
+#define TIE 1e-14 /* distances (strain) closer than this are equal: the record or image that comes first counts */
 
 /* Bits of the images of a state that fall on no earlier one: on a mirror plane of the lattice they come in pairs. */
 static PetscInt DistinctImages(const LamImages *images, const PetscReal x[LAM_VARIABLES])
@@ -23,7 +27,7 @@ static PetscInt DistinctImages(const LamImages *images, const PetscReal x[LAM_VA
   return distinct;
 }
 
-LamScatterPlace LamScatterPlaceOf(const PetscReal x[LAM_VARIABLES])
+static LamScatterPlace PlaceOf(const PetscReal x[LAM_VARIABLES])
 {
   return (LamScatterPlace){x[0], hypot(x[1], x[2]), x[3], x[4]};
 }
@@ -69,7 +73,7 @@ PetscErrorCode LamScatterAdd(LamScatter *scatter, const LamImages *images, Petsc
   scatter->records[at] = *record;
   if (HasPlace(&record->load)) {
     scatter->states[at] = StateOf(images, bonded, record);
-    scatter->places[at] = LamScatterPlaceOf(scatter->states[at].model.x);
+    scatter->places[at] = PlaceOf(scatter->states[at].model.x);
   } else {
     scatter->states[at] = (LamScattered){.use = LAM_SCATTER_REFUSES};
     scatter->places[at] = (LamScatterPlace){.mean = INFINITY};
@@ -85,4 +89,74 @@ PetscErrorCode LamScatterDestroy(LamScatter *scatter)
   PetscCall(PetscFree(scatter->places));
   *scatter = (LamScatter){0};
   PetscFunctionReturn(0);
+}
+
+/* ---- the nearest records ---- */
+
+static LamScatterMetric MakeMetric(LamDatabase db)
+{
+  const PetscReal turgor = PetscSqr(TURGOR_WEIGHT);
+  const PetscReal suction = db->header.micro.interface == LAM_INTERFACE_BONDED ? 0 : PetscSqr(SUCTION_WEIGHT);
+
+  return (LamScatterMetric){0.25, turgor + suction, suction, suction};
+}
+
+PetscReal LamScatterApply(const LamScatterMetric *m, const LamScatterVector delta, LamScatterVector v)
+{
+  PetscReal sum = 0;
+
+  for (int a = 0; a < 3; a++) v[a] = m->strain * delta[a];
+  v[3] = m->pp * delta[3] + m->pg * delta[4];
+  v[4] = m->pg * delta[3] + m->gg * delta[4];
+  for (int a = 0; a < LAM_VARIABLES; a++) sum += v[a] * delta[a];
+  return sum;
+}
+
+PetscReal LamScatterLowerBound(const LamScatterSearch *search, const LamScatterPlace *place)
+{
+  const LamScatterMetric *m = &search->metric;
+  const LamScatterPlace *at = &search->place;
+  const PetscReal dm = place->mean - at->mean, dd = place->deviator - at->deviator;
+  const PetscReal dp = place->turgor - at->turgor, dg = place->cohesion - at->cohesion;
+
+  return m->strain * (dm * dm + dd * dd) + m->pp * dp * dp + 2 * m->pg * dp * dg + m->gg * dg * dg;
+}
+
+PetscReal LamScatterDistance2(const LamScatterSearch *search, const LamScattered *state, PetscInt image)
+{
+  LamScatterVector delta, v;
+
+  for (int a = 0; a < LAM_VARIABLES; a++) delta[a] = search->turned[image][a] - state->model.x[a];
+  return LamScatterApply(&search->metric, delta, v);
+}
+
+static void Begin(LamDatabase db, const LamLoad *load, LamScatterSearch *search)
+{
+  const LamScatterNearest none = {-1, 0, INFINITY};
+
+  *search = (LamScatterSearch){.db = db, .metric = MakeMetric(db), .blends = none, .alone = none, .refuses = none};
+  LamVariables(load, search->x);
+  search->place = PlaceOf(search->x);
+  for (PetscInt i = 0; i < db->images.count; i++) LamImagesForward(&db->images, i, search->x, search->turned[i]);
+}
+
+void LamScatterFind(LamDatabase db, const LamLoad *load, LamScatterSearch *search)
+{
+  LamScatterNearest *const nearest[] = {&search->blends, &search->alone, &search->refuses}; /* by use */
+  const LamScatter *scatter = &db->scatter;
+
+  Begin(db, load, search);
+  for (PetscInt k = 0; k < scatter->n; k++) {
+    const LamScattered *state = &scatter->states[k];
+    LamScatterNearest *best = nearest[state->use];
+
+    if (!(LamScatterLowerBound(search, &scatter->places[k]) < best->distance2)) continue;
+    for (PetscInt i = 0; i < db->images.count; i++) {
+      PetscReal d2;
+
+      if (!(state->images >> i & 1)) continue;
+      d2 = LamScatterDistance2(search, state, i);
+      if (d2 < best->distance2 - 2 * TIE * sqrt(d2)) *best = (LamScatterNearest){k, i, d2};
+    }
+  }
 }
