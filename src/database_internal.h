@@ -19,8 +19,8 @@ typedef struct {
 
 /* What a record may say of the states around it. */
 typedef enum {
-  LAM_SCATTER_BLENDS,  /* converged, stable, branch 0 */
-  LAM_SCATTER_ALONE,   /* another branch: its own state only */
+  LAM_SCATTER_BLENDS,  /* converged, stable, branch 0, all cells held */
+  LAM_SCATTER_ALONE,   /* another branch, or cells that touch no one: its own state only */
   LAM_SCATTER_REFUSES, /* failed, unstable or without a tangent: nothing, but that something changes here */
 } LamScatterUse;
 

@@ -19,9 +19,9 @@
   alone has no spread, the error of one model at this distance, times the square of the nearest one's share of the
   weights. docs/performance.md has what was measured.
 
-  Only records that have converged, are stable and of branch 0 blend. One of another branch answers for its own state;
-  it and those that failed forbid a blend where they are not much further away than the nearest that blends: the
-  potential has a kink between them.
+  Only records that have converged, are stable, of branch 0 and without cells that float blend. One of another branch,
+  or with cells that touch no one, answers for its own state; it and those that failed forbid a blend where they are not
+  much further away than the nearest that blends: the potential has a kink between them, which no model knows of.
 
   References: Shepard, Proc. 23rd ACM National Conference (1968) 517; Franke and Nielson, Int. J. Numer. Meth. Engng 15
   (1980) 1691.
@@ -277,7 +277,8 @@ static PetscBool MayBlend(const LamScatterSearch *search, PetscReal radius, LamR
   const PetscReal other = sqrt(PetscMin(search->alone.distance2, search->refuses.distance2));
 
   if (search->blends.state < 0) {
-    snprintf(r->reason, sizeof(r->reason), "the database has no usable record (converged, stable, branch 0)");
+    snprintf(r->reason, sizeof(r->reason),
+             "the database has no usable record (converged, stable, branch 0, no cell floats)");
     return PETSC_FALSE;
   }
   if (r->distance > radius) {
@@ -287,7 +288,8 @@ static PetscBool MayBlend(const LamScatterSearch *search, PetscReal radius, LamR
   }
   if (other < DOUBT * r->distance) {
     snprintf(r->reason, sizeof(r->reason),
-             "a state of another branch, or without an answer, is %.3g away in strain, the nearest record %.3g",
+             "a state of another branch, with loose cells or without an answer is %.3g away in strain, the nearest "
+             "record %.3g",
              (double)other, (double)r->distance);
     return PETSC_FALSE;
   }

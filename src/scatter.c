@@ -47,7 +47,7 @@ static LamScattered StateOf(const LamImages *images, PetscBool bonded, const Lam
 
   LamVariables(&record->load, state.model.x);
   if (record->status == LAM_CONVERGED && record->stable && LamExpansionMake(record, bonded, &state.model))
-    state.use = record->branch ? LAM_SCATTER_ALONE : LAM_SCATTER_BLENDS;
+    state.use = record->branch || record->floating_cells > 0 ? LAM_SCATTER_ALONE : LAM_SCATTER_BLENDS;
   state.images = DistinctImages(images, state.model.x);
   return state;
 }

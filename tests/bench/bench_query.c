@@ -1,116 +1,453 @@
 /*
-  Stress error of the nearest-record expansion against its distance, on held-out states of the default tissue; prints
-  figures, asserts nothing. This is where the trust radius of cache.h comes from.
+  Answers without a solve, by three schemes: error of P against number of solves, and time per query. Prints figures,
+  asserts nothing.
+
+    bench_query [--full]      without it a coarse picture in a minute
+
+  linear   P_i + A_i : (F - F_i) of the nearest record, as in situ adaptive tabulation does; no energy's gradient
+  blend    the partition of unity of second-order models (query_scatter.h), here from records however far
+  table    the potential on a grid (table.h), built by rounds to an accuracy
+
+  Default tissue with C4/C1 = 10 and 100, bonded (turgor 0 to 0.05 MPa) and in contact (suction 0.005 to 0.06 MPa,
+  cohesion 0.001 MPa), principal logarithmic strains -0.02 to 0.25. Records of linear and blend are the first of a
+  low-discrepancy sequence, the held-out states come much later in it, the states for which the table is built later
+  still. Linear and blend know the symmetry of the cell, as the table does. States that have buckled (branch > 0), or
+  are not stable, are left out of the errors.
+
+  Columns: solves; states with an answer; error of P (LamStressError) in %, of those: median, 95 %, 99 %, largest; time
+  of a query; and, where the scheme estimates its error, at 1 %: share of states that are answered, share of the answers
+  that are further off than that.
+
+  Reference: Pope, Combustion Theory and Modelling 1 (1997) 41.
 */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
+#include <string.h>
 #include <petsctime.h>
 #include <lamella/lamella.h>
+#include "build.h"
+#include "database_internal.h"
+#include "quantile.h"
 
-#define CENTRES 60
-#define DIRECTIONS 4
+#define ACCURACY 0.01
+#define HELD_OUT 100000  /* where the held-out states begin in the sequence */
+#define QUESTIONS 200000 /* and those for which the table is built */
+#define REPEATS 3        /* of the timing; the least counts */
+
+typedef struct {
+  PetscReal ratio; /* C4/C1 */
+  PetscBool contact;
+} Tissue;
+
+typedef struct {
+  PetscInt states, questions;
+  const PetscInt *counts;      /* of records, ascending, ends with 0 */
+  const PetscReal *accuracies; /* for which the table is built, descending, ends with 0 */
+  PetscInt most;               /* solves of a table */
+} Extent;
+
+/* What all schemes of a tissue share. */
+typedef struct {
+  const LamScene *scene;
+  LamResponder solver;
+  const Extent *extent;
+  PetscInt n;
+  LamResponse *truth; /* [n] held out */
+} Bench;
+
+/* One scheme. `accuracy`: PETSC_INFINITY where any answer will do. */
+typedef struct Scheme_s {
+  const char *name;
+  PetscErrorCode (*answer)(const struct Scheme_s *scheme, const LamLoad *load, PetscReal accuracy, LamResponse *r);
+  LamDatabase database;
+  LamTable table;
+  PetscInt solves;
+  PetscBool estimates; /* the error of its answers */
+} Scheme;
 
 static const char scene_text[] = "version: 1\n"
                                  "rve:\n"
                                  "  cell: {apothem: 75 um, wall_thickness: 11.25 um}\n"
-                                 "  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}\n"
+                                 "  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: %g MPa}\n"
+                                 "  interface: {%s}\n"
+                                 "  turgor: {mode: prescribed, pressure: 0.02 MPa}\n"
                                  "  mesh: {along: 6, through: 2}\n"
-                                 "  turgor: {mode: prescribed, pressure: 0.02 MPa}\n";
+                                 "sample:\n"
+                                 "  stretch: {min: -0.02, max: 0.25}\n"
+                                 "  turgor: {min: %g MPa, max: %g MPa}\n";
 
-static double Uniform(unsigned *seed, double low, double high)
+/* ---- linear ---- */
+
+/* Q A Q^T in the plane. */
+static void Turn(PetscReal Q[2][2], const PetscReal A[4], PetscReal out[4])
 {
-  *seed = *seed * 1664525u + 1013904223u;
-  return low + (high - low) * (double)(*seed >> 8) / 16777216.0;
+  for (int i = 0; i < 2; i++)
+    for (int j = 0; j < 2; j++) {
+      out[2 * i + j] = 0;
+      for (int k = 0; k < 2; k++)
+        for (int l = 0; l < 2; l++) out[2 * i + j] += Q[i][k] * A[2 * k + l] * Q[j][l];
+    }
 }
 
-/* F = exp of the symmetric strain H = (h11, h12, h22), to second order in its difference: enough to place states. */
-static LamLoad StretchLoad(const double h[3], double turgor)
+static void Transpose(PetscReal Q[2][2])
 {
-  const double m = 0.5 * (h[0] + h[2]), d = 0.5 * (h[0] - h[2]), r = sqrt(d * d + h[1] * h[1]);
-  const double c = exp(m) * cosh(r), s = r > 0.0 ? exp(m) * sinh(r) / r : 0.0;
-  const LamLoad load = {.F = {c + s * d, s * h[1], 0, s * h[1], c - s * d, 0, 0, 0, 1}, .turgor = turgor};
+  const PetscReal swap = Q[0][1];
 
-  return load;
+  Q[0][1] = Q[1][0];
+  Q[1][0] = swap;
 }
 
-static int Compare(const void *a, const void *b)
+/* One of the six images of the lattice (its first direction is X1) that differ on symmetric tensors. */
+static void Image(int image, PetscReal Q[2][2])
 {
-  const double x = *(const double *)a, y = *(const double *)b;
+  const PetscReal angle = PETSC_PI / 3 * (image % 3), mirror = image < 3 ? 1 : -1;
+
+  Q[0][0] = cos(angle);
+  Q[0][1] = -mirror * sin(angle);
+  Q[1][0] = sin(angle);
+  Q[1][1] = mirror * cos(angle);
+}
+
+/* F = R U: the rotation and the stretch, in the plane. */
+static void Polar(const PetscReal F[9], PetscReal R[2][2], PetscReal U[4])
+{
+  const PetscReal angle = atan2(F[3] - F[1], F[0] + F[4]), c = cos(angle), s = sin(angle);
+
+  R[0][0] = R[1][1] = c;
+  R[1][0] = s;
+  R[0][1] = -s;
+  U[0] = c * F[0] + s * F[3];
+  U[1] = c * F[1] + s * F[4];
+  U[2] = -s * F[0] + c * F[3];
+  U[3] = -s * F[1] + c * F[4];
+}
+
+/* The square of the distance in stretch, and in pressures as a blend weighs them. */
+static PetscReal Distance2(const LamResponse *record, const PetscReal U[4], const LamLoad *load, PetscBool contact)
+{
+  const PetscReal *F = record->load.F, dp = load->turgor - record->load.turgor;
+  const PetscReal ds = contact ? dp + load->cohesion - record->load.cohesion : 0;
+
+  return PetscSqr(U[0] - F[0]) + PetscSqr(U[1] - F[1]) + PetscSqr(U[2] - F[3]) + PetscSqr(U[3] - F[4]) +
+         PetscSqr(0.011 * dp) + PetscSqr(0.5 * ds);
+}
+
+/* Components 11 12 21 22 and 33 of P_i + A_i : (U - U_i) + dP/dp dp. */
+static void Extrapolate(const LamResponse *record, const PetscReal U[4], const LamLoad *load, PetscReal P[5])
+{
+  static const int at[5] = {0, 1, 3, 4, 8};
+
+  for (int i = 0; i < 5; i++) {
+    P[i] = record->P[at[i]] + record->P_turgor[at[i]] * (load->turgor - record->load.turgor);
+    for (int j = 0; j < 4; j++) P[i] += record->tangent[9 * at[i] + at[j]] * (U[j] - record->load.F[at[j]]);
+  }
+}
+
+static PetscErrorCode AnswerLinear(const Scheme *scheme, const LamLoad *load, PetscReal accuracy, LamResponse *r)
+{
+  const PetscBool contact = (PetscBool)(scheme->database->header.micro.interface == LAM_INTERFACE_CONTACT);
+  PetscReal R[2][2], U[4], best = INFINITY, nearest[4], Q[2][2], P[5], plane[4];
+  const LamResponse *records;
+  PetscInt n, record = 0;
+  int image = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamResponseInit(load, r));
+  PetscCall(LamDatabaseGetRecords(scheme->database, &n, &records, NULL));
+  Polar(load->F, R, U);
+  for (int k = 0; k < 6; k++) {
+    PetscReal turned[4];
+
+    Image(k, Q);
+    Turn(Q, U, turned);
+    for (PetscInt i = 0; i < n; i++) {
+      const PetscReal d2 = Distance2(&records[i], turned, load, contact);
+
+      if (!(d2 < best) || records[i].status != LAM_CONVERGED || records[i].branch) continue;
+      best = d2;
+      record = i;
+      image = k;
+      memcpy(nearest, turned, sizeof(nearest));
+    }
+  }
+  if (!isfinite(best)) PetscFunctionReturn(0);
+  Extrapolate(&records[record], nearest, load, P);
+  Image(image, Q);
+  Transpose(Q);
+  Turn(Q, P, plane);
+  for (int i = 0; i < 9; i++) r->P[i] = 0;
+  for (int i = 0; i < 2; i++)
+    for (int j = 0; j < 2; j++) r->P[3 * i + j] = R[i][0] * plane[j] + R[i][1] * plane[2 + j];
+  r->P[8] = P[4];
+  r->status = LAM_CONVERGED;
+  PetscFunctionReturn(0);
+}
+
+/* ---- blend and table ---- */
+
+static PetscErrorCode AnswerBlend(const Scheme *scheme, const LamLoad *load, PetscReal accuracy, LamResponse *r)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamResponseInit(load, r));
+  PetscCall(
+      LamScatterQuery(scheme->database, load, accuracy < PETSC_INFINITY ? LAM_TRUST_RADIUS : INFINITY, accuracy, r));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode AnswerTable(const Scheme *scheme, const LamLoad *load, PetscReal accuracy, LamResponse *r)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamTableQuery(scheme->table, load, accuracy, r));
+  PetscFunctionReturn(0);
+}
+
+/* ---- one row ---- */
+
+static PetscErrorCode TimeOfAQuery(const Bench *bench, const Scheme *scheme, PetscReal accuracy, PetscReal *time)
+{
+  PetscFunctionBeginUser;
+  *time = INFINITY;
+  for (int repeat = 0; repeat < REPEATS; repeat++) {
+    PetscLogDouble start, end;
+    LamResponse r;
+
+    PetscCall(PetscTime(&start));
+    for (PetscInt i = 0; i < bench->n; i++) PetscCall(scheme->answer(scheme, &bench->truth[i].load, accuracy, &r));
+    PetscCall(PetscTime(&end));
+    *time = PetscMin(*time, (end - start) / bench->n);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Errors of the answers to an accuracy; errors[n] is the caller's. */
+static PetscErrorCode Errors(const Bench *bench, const Scheme *scheme, PetscReal accuracy, PetscInt *n,
+                             PetscReal errors[])
+{
+  PetscFunctionBeginUser;
+  *n = 0;
+  for (PetscInt i = 0; i < bench->n; i++) {
+    LamResponse r;
+
+    PetscCall(scheme->answer(scheme, &bench->truth[i].load, accuracy, &r));
+    if (r.status == LAM_CONVERGED) errors[(*n)++] = LamStressError(r.P, bench->truth[i].P);
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Row(const Bench *bench, const Scheme *scheme)
+{
+  PetscReal *errors, time;
+  PetscInt n, wrong = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(bench->n, &errors));
+  PetscCall(Errors(bench, scheme, PETSC_INFINITY, &n, errors));
+  PetscCall(TimeOfAQuery(bench, scheme, scheme->estimates ? ACCURACY : PETSC_INFINITY, &time));
+  printf("%-7s %6d  %5.1f %%  %8.3f %8.3f %8.3f %8.3f  %8.2f us", scheme->name, (int)scheme->solves,
+         100.0 * n / bench->n, 100 * Quantile(errors, n, 0.5), 100 * Quantile(errors, n, 0.95),
+         100 * Quantile(errors, n, 0.99), 100 * Quantile(errors, n, 1), 1e6 * time);
+  if (scheme->estimates) {
+    PetscCall(Errors(bench, scheme, ACCURACY, &n, errors));
+    for (PetscInt i = 0; i < n; i++) wrong += errors[i] > ACCURACY;
+    printf("  %5.1f %% %5.1f %%", 100.0 * n / bench->n, n ? 100.0 * wrong / n : 0.0);
+  }
+  printf("\n");
+  fflush(stdout);
+  PetscCall(PetscFree(errors));
+  PetscFunctionReturn(0);
+}
+
+/* ---- solves ---- */
+
+static PetscErrorCode Solve(Bench *bench, PetscInt n, const LamLoad loads[], LamResponse responses[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt point = -1;
+
+    PetscCall(bench->solver.respond(bench->solver.ctx, 1, &loads[i], &point, &responses[i]));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* States from number `first` of the sequence on. */
+static PetscErrorCode SolveSamples(Bench *bench, PetscInt64 first, PetscInt n, LamResponse responses[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++) {
+    LamLoad load;
+
+    LamSampleLoad(bench->scene, first + i, &load);
+    PetscCall(Solve(bench, 1, &load, &responses[i]));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SolveHeldOut(Bench *bench)
+{
+  const PetscInt n = bench->extent->states;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &bench->truth));
+  PetscCall(SolveSamples(bench, HELD_OUT, n, bench->truth));
+  bench->n = 0;
+  for (PetscInt i = 0; i < n; i++)
+    if (bench->truth[i].status == LAM_CONVERGED && !bench->truth[i].branch) bench->truth[bench->n++] = bench->truth[i];
+  PetscFunctionReturn(0);
+}
+
+/* ---- scattered records ---- */
+
+static PetscErrorCode CompareScattered(Bench *bench)
+{
+  Scheme linear = {.name = "linear", .answer = AnswerLinear};
+  Scheme blend = {.name = "blend", .answer = AnswerBlend, .estimates = PETSC_TRUE};
+
+  PetscFunctionBeginUser;
+  PetscCall(LamDatabaseCreateEmpty(bench->scene, &linear.database));
+  blend.database = linear.database;
+  for (const PetscInt *count = bench->extent->counts; *count; count++) {
+    const PetscInt more = *count - linear.solves;
+    LamResponse *records;
+
+    PetscCall(PetscMalloc1(more, &records));
+    PetscCall(SolveSamples(bench, linear.solves, more, records));
+    PetscCall(LamDatabaseAdd(linear.database, more, NULL, records));
+    PetscCall(PetscFree(records));
+    linear.solves = blend.solves = *count;
+    PetscCall(Row(bench, &linear));
+    PetscCall(Row(bench, &blend));
+  }
+  PetscCall(LamDatabaseClose(&linear.database));
+  PetscFunctionReturn(0);
+}
+
+/* ---- the table ---- */
+
+static int CompareKeys(const void *a, const void *b)
+{
+  const PetscInt64 x = *(const PetscInt64 *)a, y = *(const PetscInt64 *)b;
 
   return (x > y) - (x < y);
 }
 
-static PetscErrorCode Solve(LamRVE rve, LamRVEState state, const double h[3], double turgor, LamResponse *response)
+/* The nodes that the table lacks for the questions, each once; the caller frees them. */
+static PetscErrorCode Lacking(const Bench *bench, LamTable table, PetscReal accuracy, PetscInt *count,
+                              PetscInt64 **keys)
 {
-  const LamLoad load = StretchLoad(h, turgor);
-
-  PetscFunctionBeginUser;
-  PetscCall(LamRVEStateReset(rve, state));
-  PetscCall(LamRVESolve(rve, &load, state, response));
-  PetscFunctionReturn(0);
-}
-
-/* Errors at one distance from CENTRES records; principal strains of the centres in [low, 0.25]. */
-static PetscErrorCode Measure(const LamScene *scene, LamRVE rve, LamRVEState state, double distance, double low)
-{
-  double error[CENTRES * DIRECTIONS], ratio[CENTRES * DIRECTIONS];
-  unsigned seed = 7;
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < CENTRES; ++i) {
-    const double e1 = Uniform(&seed, low, 0.25), e2 = Uniform(&seed, low, 0.25), angle = Uniform(&seed, 0.0, PETSC_PI);
-    const double m = 0.5 * (e1 + e2), r = 0.5 * (e1 - e2);
-    const double h[3] = {m + r * cos(2.0 * angle), r * sin(2.0 * angle), m - r * cos(2.0 * angle)};
-    LamDatabase database;
-    LamResponse centre;
+  PetscCall(PetscMalloc1(bench->extent->questions * LAM_MAX_NEEDS, keys));
+  for (PetscInt i = 0; i < bench->extent->questions; i++) {
+    LamLoad load;
+    PetscInt more;
 
-    PetscCall(Solve(rve, state, h, scene->turgor, &centre));
-    if (centre.status != LAM_CONVERGED || centre.branch > 0) continue;
-    PetscCall(LamDatabaseCreateEmpty(scene, &database));
-    PetscCall(LamDatabaseAdd(database, 1, NULL, &centre));
-    for (PetscInt k = 0; k < DIRECTIONS; ++k) {
-      const double a = Uniform(&seed, -1.0, 1.0), b = Uniform(&seed, -1.0, 1.0), c = Uniform(&seed, -1.0, 1.0);
-      const double scale = distance / sqrt(0.5 * (a * a + c * c) + b * b);
-      const double g[3] = {h[0] + scale * a, h[1] + scale * b, h[2] + scale * c};
-      LamResponse truth, answer;
-
-      PetscCall(Solve(rve, state, g, scene->turgor, &truth));
-      if (truth.status != LAM_CONVERGED || truth.branch > 0) continue;
-      PetscCall(LamDatabaseQuery(database, &truth.load, INFINITY, &answer));
-      error[n] = LamStressError(answer.P, truth.P);
-      ratio[n] = error[n] / (answer.distance * answer.distance);
-      ++n;
-    }
-    PetscCall(LamDatabaseClose(&database));
+    LamSampleLoad(bench->scene, QUESTIONS + i, &load);
+    PetscCall(LamTableNeeds(table, &load, accuracy, &more, *keys + n));
+    n += more;
   }
-  qsort(error, (size_t)n, sizeof(*error), Compare);
-  qsort(ratio, (size_t)n, sizeof(*ratio), Compare);
-  printf("%8.3f %8.3f %6d   %7.3f %7.3f %7.3f %7.3f   %16.3f\n", low, distance, (int)n, 100 * error[n / 2],
-         100 * error[n * 95 / 100], 100 * error[n * 99 / 100], 100 * error[n - 1], 1.0 / sqrt(ratio[n * 99 / 100]));
+  qsort(*keys, (size_t)n, sizeof(**keys), CompareKeys);
+  *count = 0;
+  for (PetscInt i = 0; i < n; i++)
+    if (!i || (*keys)[i] != (*keys)[i - 1]) (*keys)[(*count)++] = (*keys)[i];
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Run(void)
+static PetscErrorCode AddNodes(Bench *bench, LamDatabase database, PetscInt n, const PetscInt64 keys[])
 {
-  static const double distances[] = {0.005, 0.01, 0.015, 0.02, 0.04};
-  LamScene *scene;
-  LamRVE rve;
-  LamRVEState state;
+  LamResponse *nodes;
+  LamGrid grid;
 
   PetscFunctionBeginUser;
-  PetscCall(LamSceneReadText("bench_query", scene_text, &scene));
+  PetscCall(LamDatabaseGetGrid(database, &grid));
+  PetscCall(PetscMalloc1(n, &nodes));
+  for (PetscInt i = 0; i < n; i++) {
+    LamLoad load;
+
+    PetscCall(LamGridNodeLoad(grid, keys[i], &load));
+    PetscCall(Solve(bench, 1, &load, &nodes[i]));
+  }
+  PetscCall(LamDatabaseAdd(database, n, keys, nodes));
+  PetscCall(PetscFree(nodes));
+  PetscFunctionReturn(0);
+}
+
+/* Rounds until nothing is lacking; *full: the number of solves has come to its end first. */
+static PetscErrorCode Refine(Bench *bench, Scheme *scheme, PetscReal accuracy, PetscBool *full)
+{
+  PetscInt lacking = 1;
+
+  PetscFunctionBeginUser;
+  while (lacking && !*full) {
+    PetscInt64 *keys;
+
+    PetscCall(LamDatabaseGetTable(scheme->database, &scheme->table));
+    PetscCall(Lacking(bench, scheme->table, accuracy, &lacking, &keys));
+    PetscCall(LamTableDestroy(&scheme->table));
+    *full = (PetscBool)(scheme->solves + lacking > bench->extent->most);
+    if (!*full) {
+      PetscCall(AddNodes(bench, scheme->database, lacking, keys));
+      scheme->solves += lacking;
+    }
+    PetscCall(PetscFree(keys));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MeasureTable(Bench *bench)
+{
+  Scheme scheme = {.name = "table", .answer = AnswerTable, .estimates = PETSC_TRUE};
+  PetscBool full = PETSC_FALSE;
+  const LamResponse *records;
+  const PetscInt64 *keys;
+  LamGrid grid;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamDatabaseCreateEmpty(bench->scene, &scheme.database));
+  PetscCall(LamGridCreate(bench->scene, &bench->solver, &grid));
+  PetscCall(LamGridGetRecords(grid, &scheme.solves, &keys, &records));
+  PetscCall(LamDatabaseAdd(scheme.database, scheme.solves, keys, records));
+  PetscCall(LamDatabaseSetGrid(scheme.database, &grid));
+  for (const PetscReal *accuracy = bench->extent->accuracies; *accuracy && !full; accuracy++) {
+    PetscCall(Refine(bench, &scheme, *accuracy, &full));
+    PetscCall(LamDatabaseGetTable(scheme.database, &scheme.table));
+    PetscCall(Row(bench, &scheme));
+    PetscCall(LamTableDestroy(&scheme.table));
+  }
+  PetscCall(LamDatabaseClose(&scheme.database));
+  PetscFunctionReturn(0);
+}
+
+/* ---- one tissue ---- */
+
+static PetscErrorCode Compare(const Tissue *tissue, const Extent *extent)
+{
+  const char *law = tissue->contact ? "law: contact, cohesion: 0.001 MPa" : "law: bonded";
+  char text[sizeof(scene_text) + 100];
+  Bench bench = {.extent = extent};
+  LamScene *scene;
+  LamRVE rve;
+
+  PetscFunctionBeginUser;
+  snprintf(text, sizeof(text), scene_text, 0.1 * tissue->ratio, law, tissue->contact ? 0.004 : 0.0,
+           tissue->contact ? 0.059 : 0.05);
+  PetscCall(LamSceneReadText("bench_query", text, &scene));
   PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
   PetscCall(LamRVESetMicrostructure(rve, &scene->micro));
   PetscCall(LamRVESetUp(rve));
-  PetscCall(LamRVEStateCreate(rve, &state));
-  printf("P error of one record's second-order expansion; states that have buckled are left out\n");
-  printf("  strain distance states   error %% median, 95 %%, 99 %%, max   distance / sqrt(99 %% error)\n");
-  for (PetscInt k = 0; k < 2; ++k)
-    for (size_t i = 0; i < sizeof(distances) / sizeof(distances[0]); ++i)
-      PetscCall(Measure(scene, rve, state, distances[i], k == 0 ? 0.0 : -0.02));
-  PetscCall(LamRVEStateDestroy(&state));
+  PetscCall(LamRVEResponderCreate(rve, 0, &bench.solver));
+  bench.scene = scene;
+  PetscCall(SolveHeldOut(&bench));
+  printf("\n%s, C4/C1 = %g: %d held-out states, %d left out; %.0f ms a solve\n", tissue->contact ? "contact" : "bonded",
+         (double)tissue->ratio, (int)bench.n, (int)(extent->states - bench.n),
+         1e3 * bench.solver.solve_seconds / extent->states);
+  printf(
+      "scheme  solves answers     P error %%: 50 %%, 95 %%, 99 %%, largest     a query     at 1 %%: answered, off\n");
+  PetscCall(CompareScattered(&bench));
+  PetscCall(MeasureTable(&bench));
+  PetscCall(PetscFree(bench.truth));
+  PetscCall(bench.solver.destroy(&bench.solver.ctx));
   PetscCall(LamRVEDestroy(&rve));
   PetscCall(LamSceneDestroy(&scene));
   PetscFunctionReturn(0);
@@ -118,7 +455,15 @@ static PetscErrorCode Run(void)
 
 int main(int argc, char **argv)
 {
+  static const Tissue tissues[] = {{10, PETSC_FALSE}, {100, PETSC_FALSE}, {10, PETSC_TRUE}, {100, PETSC_TRUE}};
+  static const PetscInt few[] = {10, 30, 100, 0}, fewer[] = {10, 30, 0}, many[] = {10, 30, 100, 300, 1000, 0};
+  static const PetscReal coarse[] = {0.03, 0.01, 0}, coarser[] = {0.1, 0}, fine[] = {0.1, 0.03, 0.01, 0.003, 0.001, 0};
+  static const Extent quick[] = {{200, 200, few, coarse, 100}, {60, 100, fewer, coarser, 250}}; /* bonded, contact */
+  static const Extent whole[] = {{2000, 4000, many, fine, 2000}, {500, 1000, many, fine, 3000}};
+  const PetscBool full = (PetscBool)(argc > 1 && !strcmp(argv[1], "--full"));
+
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  if (Run()) return 1;
+  for (size_t i = 0; i < sizeof(tissues) / sizeof(tissues[0]); i++)
+    if (Compare(&tissues[i], &(full ? whole : quick)[tissues[i].contact])) return 1;
   return PetscFinalize() ? 1 : 0;
 }

@@ -164,6 +164,22 @@ static void a_record_without_a_tangent_does_not_answer(void **state)
   LamDatabaseClose(&db);
 }
 
+/* P vanishes with the last contact, or nearly so: a kink, on one side of which all records agree. */
+static void cells_that_float_answer_their_own_state_alone(void **state)
+{
+  LamDatabase db = MakeContacts();
+  LamResponse floating = ExactContact(contact_probe), r;
+  LamLoad near = contact_probe;
+
+  floating.floating_cells = 1;
+  assert_int_equal(LamDatabaseAdd(db, 1, NULL, &floating), 0);
+  Ask(db, contact_probe);
+  near.F[0] += 1e-3;
+  assert_int_equal(LamDatabaseQuery(db, &near, PETSC_INFINITY, &r), 0);
+  assert_int_equal(r.status, LAM_OUT_OF_REACH);
+  LamDatabaseClose(&db);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -172,6 +188,7 @@ int main(void)
       cmocka_unit_test(gaps_are_known_in_the_state_of_a_record_alone),
       cmocka_unit_test(the_distance_is_one_of_suction),
       cmocka_unit_test(a_record_without_a_tangent_does_not_answer),
+      cmocka_unit_test(cells_that_float_answer_their_own_state_alone),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);
