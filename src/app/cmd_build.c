@@ -318,7 +318,7 @@ static PetscErrorCode RunAll(Build *b, PetscBool resume)
   if (ierr) (void)LamRecordWriterClose(&b->writer);
   PetscCall(LamDispatchShare(&b->dispatch, ierr));
   PetscCall(ShareGrid(b));
-  PetscCall(LamNodeChainCreate(b->rve, b->scene->micro.interface, b->grid, LAM_NODE_MEMORY, &b->chain));
+  PetscCall(LamNodeChainCreate(b->rve, b->scene->micro.interface, b->grid, LAM_NODE_MEMORY, NULL, &b->chain));
   ierr = RunRounds(b);
   if (root && ierr) (void)LamRecordWriterClose(&b->writer);
   PetscCall(ierr);

@@ -12,6 +12,7 @@
 #include <unistd.h>
 #include "fe2_file.h"
 #include "interruptible.h"
+#include "node_solver.h"
 #include "shared_grid.h"
 
 typedef enum { RESPONSE_DIRECT, RESPONSE_CACHE, RESPONSE_DATABASE } ResponseType;
@@ -28,6 +29,8 @@ typedef struct {
   LamMacro macro;
   LamRVE rve;
   LamDatabase database;
+  LamNodeChain chain; /* of the cache's nodes */
+  LamNodeSolver nodes;
   LamResponder direct, solver, cache; /* direct behind the signals' `solver`; destroy NULL: not in use */
 
   /* rank 0 only */
@@ -181,6 +184,19 @@ static PetscErrorCode GiveGrid(Run *run)
   PetscFunctionReturn(0);
 }
 
+/* Nodes in the file are equal to those of `build`. */
+static PetscErrorCode CreateNodeSolver(Run *run)
+{
+  LamGrid grid;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamDatabaseGetGrid(run->database, &grid));
+  PetscCall(
+      LamNodeChainCreate(run->rve, run->scene->micro.interface, grid, LAM_NODE_MEMORY, LamStopRequested, &run->chain));
+  run->nodes = (LamNodeSolver){run->chain, LamNodeChainSolve};
+  PetscFunctionReturn(0);
+}
+
 /* Wires the responder that the options ask for to the macroscale solver. */
 static PetscErrorCode Connect(Run *run)
 {
@@ -202,8 +218,11 @@ static PetscErrorCode Connect(Run *run)
     PetscCall(LamMacroSetResponder(run->macro, &run->solver));
     PetscFunctionReturn(0);
   }
-  if (run->response == RESPONSE_CACHE) PetscCall(GiveGrid(run));
-  PetscCall(LamCacheResponderCreate(run->comm, run->database, run->rve ? &run->solver : NULL, NULL,
+  if (run->response == RESPONSE_CACHE) {
+    PetscCall(GiveGrid(run));
+    PetscCall(CreateNodeSolver(run));
+  }
+  PetscCall(LamCacheResponderCreate(run->comm, run->database, run->rve ? &run->solver : NULL, &run->nodes,
                                     run->scene->accuracy, points, &run->cache));
   PetscCall(LamMacroSetResponder(run->macro, &run->cache));
   PetscFunctionReturn(0);
@@ -453,6 +472,7 @@ static PetscErrorCode Destroy(Run *run)
   PetscCall(LamMacroDestroy(&run->macro));
   if (run->cache.destroy) PetscCall(run->cache.destroy(&run->cache.ctx));
   if (run->solver.destroy) PetscCall(run->solver.destroy(&run->solver.ctx));
+  PetscCall(LamNodeChainDestroy(&run->chain));
   if (run->direct.destroy) PetscCall(run->direct.destroy(&run->direct.ctx));
   PetscCall(LamRVEDestroy(&run->rve));
   PetscCall(LamDatabaseClose(&run->database));

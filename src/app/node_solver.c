@@ -18,7 +18,8 @@ struct LamNodeChain_s {
   LamRVE rve;   /* borrowed */
   LamGrid grid; /* borrowed */
   PetscBool warm;
-  LamRVEState state; /* of the solve under way; owned */
+  PetscBool (*stop)(void); /* or NULL */
+  LamRVEState state;       /* of the solve under way; owned */
   PetscInt n, most, capacity;
   PetscInt64 *keys, *used; /* [capacity]; used: when it was last */
   Node *nodes;             /* [capacity] */
@@ -137,12 +138,28 @@ static PetscErrorCode Reach(LamNodeChain chain, PetscInt64 key, PetscInt *place)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode LeaveOut(LamNodeChain chain, PetscInt64 key, LamResponse *response)
+{
+  LamLoad load;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamGridNodeLoad(chain->grid, key, &load));
+  PetscCall(LamResponseInit(&load, response));
+  response->status = LAM_OUT_OF_REACH;
+  PetscCall(PetscStrncpy(response->reason, "stopped before it was solved", sizeof(response->reason)));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamNodeChainSolve(void *ctx, PetscInt64 key, LamResponse *response)
 {
   LamNodeChain chain = ctx;
   PetscInt place;
 
   PetscFunctionBeginUser;
+  if (chain->stop && chain->stop()) {
+    PetscCall(LeaveOut(chain, key, response));
+    PetscFunctionReturn(0);
+  }
   PetscCall(Reach(chain, key, &place));
   *response = chain->nodes[place].response;
   PetscFunctionReturn(0);
@@ -151,7 +168,7 @@ PetscErrorCode LamNodeChainSolve(void *ctx, PetscInt64 key, LamResponse *respons
 /* ---- lifecycle ---- */
 
 PetscErrorCode LamNodeChainCreate(LamRVE rve, LamInterfaceLawType interface, LamGrid grid, size_t memory,
-                                  LamNodeChain *chain)
+                                  PetscBool (*stop)(void), LamNodeChain *chain)
 {
   PetscInt unknowns;
   LamNodeChain c;
@@ -160,6 +177,7 @@ PetscErrorCode LamNodeChainCreate(LamRVE rve, LamInterfaceLawType interface, Lam
   PetscCall(PetscNew(&c));
   c->rve = rve;
   c->grid = grid;
+  c->stop = stop;
   c->warm = (PetscBool)(interface == LAM_INTERFACE_CONTACT);
   PetscCall(LamRVEGetUnknowns(rve, &unknowns));
   /* positions of the tissue and of the bonded tissue that it starts from */

@@ -13,15 +13,16 @@ typedef struct LamNodeChain_s *LamNodeChain;
 
 /*
   One per rank and RVE; borrows rve and grid. Of the nodes that it has solved it remembers the latest, of no more than
-  `memory` bytes, for those that follow.
+  `memory` bytes, for those that follow. Once `stop` (NULL: never) is true nodes are LAM_OUT_OF_REACH.
 */
 #define LAM_NODE_MEMORY ((size_t)256 << 20)
 PetscErrorCode LamNodeChainCreate(LamRVE rve, LamInterfaceLawType interface, LamGrid grid, size_t memory,
-                                  LamNodeChain *chain);
+                                  PetscBool (*stop)(void), LamNodeChain *chain);
 /*
-  `chain`: a LamNodeChain. The state of bonded tissue is reached from the reference; that of contact tissue from its
-  parent where that is stable, on the first branch and without floating cells, and from the reference where the parent
-  is not, or where no answer is found from it. The counts of both attempts are summed.
+  `chain`: a LamNodeChain; with this function it is a LamNodeSolver (cache.h). The state of bonded tissue is reached
+  from the reference; that of contact tissue from its parent where that is stable, on the first branch and without
+  floating cells, and from the reference where the parent is not, or where no answer is found from it. The counts of
+  both attempts are summed.
 */
 PetscErrorCode LamNodeChainSolve(void *chain, PetscInt64 key, LamResponse *response);
 PetscErrorCode LamNodeChainDestroy(LamNodeChain *chain);

@@ -24,7 +24,7 @@ static LamNodeChain NewChain(LamInterfaceLawType interface, size_t memory)
 {
   LamNodeChain chain;
 
-  assert_int_equal(LamNodeChainCreate(rve, interface, &grid, memory, &chain), 0);
+  assert_int_equal(LamNodeChainCreate(rve, interface, &grid, memory, NULL, &chain), 0);
   return chain;
 }
 
@@ -113,6 +113,21 @@ static void FailedParentIsPassedOver(void **unused)
   grid = usual;
 }
 
+static PetscBool Stop(void)
+{
+  return PETSC_TRUE;
+}
+
+static void StoppedNodesAreLeftOut(void **unused)
+{
+  const PetscInt64 key = Key(0, 0, LAM_ROOT, 0);
+  LamNodeChain chain;
+
+  assert_int_equal(LamNodeChainCreate(rve, LAM_INTERFACE_CONTACT, &grid, ROOM, Stop, &chain), 0);
+  assert_int_equal(Solve(chain, key).status, LAM_OUT_OF_REACH);
+  assert_int_equal(LamNodeChainDestroy(&chain), 0);
+}
+
 /* ---- bonded ---- */
 
 static void BondedNodesStartFromTheReference(void **unused)
@@ -152,9 +167,8 @@ static int TearDown(void **state)
 static int Run(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(ChildStartsFromItsParent),
-      cmocka_unit_test(OrderAndMemoryDoNotMatter),
-      cmocka_unit_test(FailedParentIsPassedOver),
+      cmocka_unit_test(ChildStartsFromItsParent),         cmocka_unit_test(OrderAndMemoryDoNotMatter),
+      cmocka_unit_test(FailedParentIsPassedOver),         cmocka_unit_test(StoppedNodesAreLeftOut),
       cmocka_unit_test(BondedNodesStartFromTheReference),
   };
 
