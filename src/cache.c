@@ -98,7 +98,6 @@ static PetscErrorCode AskRecords(Cache *cache, const LamLoad *load, LamResponse 
   PetscFunctionBeginUser;
   PetscCall(LamDatabaseQuery(cache->database, &question, cache->accuracy, &answer));
   if (cache->solver && !(answer.distance <= OWN_STATE)) PetscFunctionReturn(0);
-  if (!LamResponseHasFields(&answer) && cache->newest) PetscFunctionReturn(0); /* the table's reason stays */
   LamLoadLeadBack(load, &answer);
   *response = answer;
   PetscFunctionReturn(0);

@@ -54,6 +54,7 @@ static inline void SyntheticEvaluate(const Synthetic *material, const LamLoad *l
   for (int k = 0; k < 9; k++) {
     response->P[k] = mu * (F[k] - G[k]) + pressure * G[k];
     response->P_turgor[k] = -J * G[k];
+    response->P_cohesion[k] = 0; /* bonded */
   }
   for (int ij = 0; ij < 9; ij++) {
     for (int kl = 0; kl < 9; kl++) {
@@ -62,7 +63,8 @@ static inline void SyntheticEvaluate(const Synthetic *material, const LamLoad *l
           mu * (ij == kl) + (lambda - load->turgor * J) * G[ij] * G[kl] + (mu - pressure) * G[3 * i + l] * G[3 * k + j];
     }
   }
-  response->energy_turgor2 = 0;
+  response->energy_turgor2 = response->energy_turgor_cohesion = 0;
+  response->energy_cohesion = response->energy_cohesion2 = 0;
   response->lumen_fraction = J;
   response->energy_turgor = -J;
   response->opening_fraction = response->debonded_fraction = response->max_gap = 0;
