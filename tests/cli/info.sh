@@ -29,8 +29,12 @@ for part in '"kind": *"database"' '"records": *3' '"failed": *0' '"format_versio
 done
 expect 0 "$lamella" info db.h5
 grep -q 'records *3' out.txt || fail "table: $(cat out.txt)"
+grep -q 'nodes *3' out.txt && grep -q 'grid of strains *step' out.txt || fail "the nodes of the grid: $(cat out.txt)"
+expect 0 "$lamella" info db.h5 --json
+grep -q '"scattered": 0, "table": {"nodes": 3, ' out.txt || fail "the nodes of the grid: $(cat out.txt)"
 expect 0 "$lamella" info rve.h5 --json
 grep -q '"kind": *"rve"' out.txt || fail "kind: $(cat out.txt)"
+if grep -q '"table"' out.txt; then fail "a file of states has a table"; fi
 
 # how far a macroscale run has come: the inflation and two steps
 cat >macro.yaml <<'YAML'
