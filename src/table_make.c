@@ -104,8 +104,9 @@ static void FillState(const struct LamGrid_s *grid, const LamNodeData *r, LamTab
     state->turgor_gradient[k] = Contract(at_rest, dF[k]) + J_x[k];
     along[k] = Contract(r->P_turgor, dF[k]);
   }
+  if (!grid->contact) return; /* bonded tissue does not feel cohesion, whose derivatives need not be known */
   state->turgor_tau = r->energy_turgor2 - r->energy_turgor_cohesion; /* in s, at fixed x */
-  if (grid->contact) MoveAlong(grid, r->turgor + r->cohesion, r->energy_turgor, r->energy_turgor2, along, state);
+  MoveAlong(grid, r->turgor + r->cohesion, r->energy_turgor, r->energy_turgor2, along, state);
 }
 
 static PetscBool IsFinite(const LamTableState *s)
