@@ -58,7 +58,15 @@ expect 2 "--state two" "$lamella" plot rve.h5 --state two
 expect 2 "wall_stress" "$lamella" plot rve.h5 --field colour
 expect 2 ".png, .svg or .pdf" "$lamella" plot rve.h5 -o figure.gif
 expect 4 "no/such/folder.png" "$lamella" plot rve.h5 -o no/such/folder.png
+
+# slices through the table of a database, at an angle; or its records
+expect 0 - "$lamella" plot database.h5 --angle "15 deg" --turgor "0.01 MPa" --accuracy 0.001 -o turned.png
+cmp -s turned.png database.png && fail "slices at 0 and at 15 degrees give the same picture"
+expect 0 - "$lamella" plot database.h5 --field stress -o records.png
+cmp -s records.png database.png && fail "a table and its records give the same picture"
+expect 2 "--suction 0.01 MPa" "$lamella" plot database.h5 --suction "0.01 MPa"
 expect 2 "--angle 15 deg" "$lamella" plot rve.h5 --angle "15 deg"
+
 expect 1 - "$lamella" plot
 "$lamella" plot absent.h5 >out.txt 2>err.txt && fail "a file that is not there is drawn"
 grep -qF absent.h5 err.txt || fail "the message does not name the file that is not there"
