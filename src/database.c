@@ -54,13 +54,13 @@ static PetscErrorCode LoadBlock(void *ctx, const LamRecordLayout *layout, PetscI
 
   PetscFunctionBeginUser;
   if (!first) LamNodeLayoutMake(layout, &l->nodes);
-  PetscCall(GrowNodes(db, n));
   for (PetscInt i = 0; i < n; i++, bytes += layout->size) {
     const PetscInt64 key = LamRecordInt(bytes + layout->key);
     LamResponse record;
 
     db->keys[db->n++] = key;
     if (LamKeyIsNode(key)) {
+      PetscCall(GrowNodes(db, db->header.committed - first - i)); /* once: memory that is not used is not touched */
       LamNodeDataFromBytes(&l->nodes, bytes, &db->nodes[db->node_count++]);
       continue;
     }
@@ -178,6 +178,21 @@ static PetscErrorCode UnpackBlock(void *ctx, const LamRecordLayout *layout, Pets
   PetscFunctionReturn(0);
 }
 
+/* The file may have grown since it was opened, but it must be the same. */
+static PetscErrorCode CheckSame(LamDatabase db, hid_t file)
+{
+  LamHeader header = {0};
+  PetscErrorCode ierr = LamHeaderRead(db->path, file, &header);
+  PetscBool same;
+
+  PetscFunctionBeginUser;
+  same = (PetscBool)(!ierr && !strcmp(header.hash, db->header.hash) && header.committed >= db->records_first);
+  PetscCall(LamHeaderDestroy(&header));
+  PetscCall(ierr);
+  PetscCheck(same, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: the file was replaced while it was in use", db->path);
+  PetscFunctionReturn(0);
+}
+
 /* Reads the file's records in front of those added in memory. */
 static PetscErrorCode LoadRecords(LamDatabase db)
 {
@@ -191,6 +206,7 @@ static PetscErrorCode LoadRecords(LamDatabase db)
   PetscCall(PetscMalloc1(db->n, &unpacking.records));
   lock = LamLockBeginRead(db->path);
   ierr = LamFileOpenRead(db->path, &file);
+  if (!ierr) ierr = CheckSame(db, file);
   if (!ierr) ierr = LamFileScanRecords(db->path, file, count, UnpackBlock, &unpacking);
   if (file >= 0) H5Fclose(file);
   LamLockEndRead(lock);

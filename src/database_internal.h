@@ -59,8 +59,8 @@ struct LamDatabase_s {
   LamNodeData *nodes; /* [node_count] owned: records with the key of a node, in their order */
   LamScatter scatter; /* all other records */
 
-  PetscInt records_first,
-      records_capacity; /* records_first: of the file's records before LamDatabaseGetRecords, 0 after */
+  PetscInt records_first; /* the number of records in the file, until LamDatabaseGetRecords loads them; then 0 */
+  PetscInt records_capacity;
   LamResponse *records; /* [n - records_first] owned: number records_first and on */
   char *info;           /* owned */
 

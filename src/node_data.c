@@ -70,7 +70,6 @@ static float *Indicators(LamNodeData *node)
   return (float *)((char *)node + FIRST_INDICATOR);
 }
 
-
 /* ---- from a response ---- */
 
 void LamNodeDataFromResponse(const LamResponse *response, PetscInt64 key, LamNodeData *node)

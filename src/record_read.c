@@ -179,9 +179,7 @@ PetscErrorCode LamHeaderRead(const char path[], hid_t file, LamHeader *header)
 
 /* ---- records ---- */
 
-#define BLOCK                                                                                                          \
-  (4 * LAM_RECORDS_PER_CHUNK) /* some 370 kB: read, checked and used while it is in the processor's cache              \
-                               */
+#define BLOCK (8 * LAM_RECORDS_PER_CHUNK) /* 0.9 MB: checked and used while it is in the processor's cache */
 
 typedef struct {
   hid_t dataset, type, space, memory;

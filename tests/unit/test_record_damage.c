@@ -17,26 +17,54 @@ static void AssertUnreadable(PetscErrorCode code, const char part[])
 
 /* ---- damage ---- */
 
-static void a_changed_byte_is_found_and_the_record_named(void **state)
+/* Changes a bit of one of the `count` records of the file. */
+static void Damage(size_t count, size_t record)
 {
   unsigned char *bytes;
   hid_t file, dataset, type;
   size_t size;
 
-  WriteFile(4);
   file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
   dataset = H5Dopen2(file, "/records", H5P_DEFAULT);
   type = H5Dget_type(dataset);
   size = H5Tget_size(type);
-  bytes = malloc(4 * size);
+  bytes = malloc(count * size);
   H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes);
-  bytes[2 * size + 100] ^= 1;
+  bytes[record * size + 100] ^= 1;
   H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes);
   free(bytes);
   H5Fclose(file);
   H5Tclose(type);
   H5Dclose(dataset);
+}
+
+static void a_changed_byte_is_found_and_the_record_named(void **state)
+{
+  WriteFile(4);
+  Damage(4, 2);
   AssertUnreadable(PETSC_ERR_USER_INPUT, "record 2 is damaged");
+}
+
+/* Whole responses of nodes are not loaded, and the file is read in blocks; all of it is checked. */
+static void a_changed_byte_is_found_in_any_node(void **state)
+{
+  LamRecordWriter writer = Open(LAM_WRITE_CREATE);
+
+  Commit(writer, LAM_NODE_KEY, 1200);
+  assert_int_equal(LamRecordWriterClose(&writer), 0);
+  Damage(1200, 1199);
+  AssertUnreadable(PETSC_ERR_USER_INPUT, "record 1199 is damaged");
+}
+
+static void a_damaged_file_is_not_appended_to(void **state)
+{
+  LamScene scene = Scene();
+  LamRecordWriter writer;
+
+  WriteFile(4);
+  Damage(4, 3);
+  assert_int_equal(LamRecordWriterOpen(path, "database", LAM_WRITE_APPEND, &scene, &writer), PETSC_ERR_USER_INPUT);
+  assert_non_null(strstr(message, "record 3 is damaged"));
 }
 
 static void a_missing_file_is_named_with_the_reason(void **state)
@@ -353,6 +381,8 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       TEST(a_changed_byte_is_found_and_the_record_named),
+      TEST(a_changed_byte_is_found_in_any_node),
+      TEST(a_damaged_file_is_not_appended_to),
       TEST(a_missing_file_is_named_with_the_reason),
       TEST(a_file_that_is_not_hdf5_is_refused),
       TEST(a_foreign_hdf5_file_is_refused),
