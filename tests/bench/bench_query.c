@@ -459,7 +459,7 @@ int main(int argc, char **argv)
   static const PetscInt few[] = {10, 30, 100, 0}, fewer[] = {10, 30, 0}, many[] = {10, 30, 100, 300, 1000, 0};
   static const PetscReal coarse[] = {0.03, 0.01, 0}, coarser[] = {0.1, 0}, fine[] = {0.1, 0.03, 0.01, 0.003, 0.001, 0};
   static const Extent quick[] = {{200, 200, few, coarse, 100}, {60, 100, fewer, coarser, 250}}; /* bonded, contact */
-  static const Extent whole[] = {{2000, 4000, many, fine, 2000}, {500, 1000, many, fine, 3000}};
+  static const Extent whole[] = {{2000, 2000, many, fine, 1000}, {200, 500, many, fine, 1000}};
   const PetscBool full = (PetscBool)(argc > 1 && !strcmp(argv[1], "--full"));
 
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
