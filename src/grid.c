@@ -2,6 +2,7 @@
   The layout of a grid: made from a scene, kept as JSON text in the file, and its nodes' states.
 */
 #include "grid.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -265,11 +266,25 @@ static PetscBool ReadReal(const json_t *object, const char name[], PetscReal *va
 
 static PetscBool ReadSuction(const json_t *object, LamGrid g)
 {
-  g->tau_cells = (PetscInt)json_integer_value(json_object_get(object, "tau_cells"));
+  const json_int_t cells = json_integer_value(json_object_get(object, "tau_cells"));
+
+  g->tau_cells = (PetscInt)PetscMin(PetscMax(cells, 0), LAM_GRID_REACH);
   return (PetscBool)(ReadReal(object, "cohesion", &g->cohesion) &&
                      ReadReal(object, "suction_scale", &g->suction_scale) && ReadReal(object, "tau_min", &g->tau_min) &&
                      ReadReal(object, "tau_step", &g->tau_step) && g->suction_scale > 0 && g->tau_min >= 0 &&
                      g->tau_step > 0 && g->tau_cells > 0 && g->tau_cells < 4096 / LAM_ROOT);
+}
+
+/* The free cells are those of this grid. */
+static PetscBool FreeCellFits(const struct LamGrid_s *g)
+{
+  const LamFreeCell *free_cell = &g->free;
+  const PetscReal last = LamGridSuction(g, LAM_ROOT * g->tau_cells);
+
+  if (!free_cell->n) return PETSC_TRUE;
+  return (PetscBool)(free_cell->scale == g->suction_scale && free_cell->cohesion == g->cohesion &&
+                     fabs(free_cell->suction[0] - LamGridSuction(g, 0)) < 1e-9 * last &&
+                     fabs(free_cell->suction[free_cell->n - 1] - last) < 1e-9 * last);
 }
 
 static PetscErrorCode ReadText(const char path[], const json_t *object, LamGrid g)
@@ -282,6 +297,8 @@ static PetscErrorCode ReadText(const char path[], const json_t *object, LamGrid 
   PetscCheck(good, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s is not the layout of a grid; the file is damaged",
              path, LAM_GRID_NAME);
   if (g->contact) PetscCall(LamFreeCellFromJSON(path, json_object_get(object, "free_cell"), &g->free));
+  PetscCheck(FreeCellFits(g), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: the free cell of %s is not of this grid; the file is damaged", path, LAM_GRID_NAME);
   PetscCall(MakeFreeKeys(g));
   PetscFunctionReturn(0);
 }
