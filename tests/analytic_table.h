@@ -184,7 +184,7 @@ static inline void AddRough(AnalyticTable *t, int cells, double failing, uint64_
 
       if (RandomReal(seed, 0, 1) > 0.25) continue;
       for (int j = 0; j <= LAM_ROOT * t->grid->tau_cells; j += LAM_ROOT / 4)
-        if (j % LAM_ROOT == 0 || RandomReal(seed, 0, 1) < 0.3) {
+        if (RandomReal(seed, 0, 1) < (j % LAM_ROOT ? 0.3 : 0.9)) {
           if (RandomReal(seed, 0, 1) < failing)
             AddFailed(t, i, j);
           else

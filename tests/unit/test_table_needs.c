@@ -309,6 +309,40 @@ static void keys_of_places_that_are_none_are_left_out(void **state)
   }
 }
 
+static void a_bonded_node_off_its_turgor_is_none(void **state)
+{
+  AnalyticTable t = AnalyticTableOpen(PETSC_FALSE, 0.2);
+  const LamLoad load = Inside(&t);
+  const int corner[3] = {0, 0, 0};
+  PetscInt64 keys[LAM_MAX_NEEDS];
+
+  AddPlace(&t, corner, 5);
+  assert_int_equal(Needs(&t, &load, PETSC_INFINITY, keys), 4);
+  AnalyticTableClose(&t);
+}
+
+static void a_record_where_cells_touch_no_one_changes_nothing(void **state)
+{
+  AnalyticTable t = AnalyticTableOpen(PETSC_TRUE, 0.2);
+  const double u[3] = {-10, 10, 20};
+  const LamLoad load = LoadAt(&t, u, 30, 0);
+  LamResponse before, after, wrong;
+
+  SolveNeeds(&t, &load, PETSC_INFINITY, 2);
+  before = AskFor(&t, &load, PETSC_INFINITY);
+  assert_int_equal(before.status, LAM_CONVERGED);
+  for (int j = 0; j <= LAM_ROOT; j += LAM_ROOT) {
+    const PetscInt64 key = KeyOf(&t, (int[3]){0, 0, 0}, j);
+
+    wrong = AnswerOf(&t, key);
+    wrong.energy += 1;
+    CHECK(LamDatabaseAdd(t.database, 1, &key, &wrong));
+  }
+  after = AskFor(&t, &load, PETSC_INFINITY);
+  assert_memory_equal(after.P, before.P, sizeof(after.P));
+  AnalyticTableClose(&t);
+}
+
 static void any_key_of_a_node_can_be_in_a_file(void **state)
 {
   for (int kind = 0; kind < 4; kind++) {
@@ -364,6 +398,8 @@ int main(void)
       cmocka_unit_test(a_change_of_branch_is_refined_so_far_and_no_further),
       cmocka_unit_test(floating_cells_need_no_node_and_are_exact),
       cmocka_unit_test(keys_of_places_that_are_none_are_left_out),
+      cmocka_unit_test(a_bonded_node_off_its_turgor_is_none),
+      cmocka_unit_test(a_record_where_cells_touch_no_one_changes_nothing),
       cmocka_unit_test(any_key_of_a_node_can_be_in_a_file),
       cmocka_unit_test(a_record_that_is_not_finite_is_as_good_as_failed),
   };
