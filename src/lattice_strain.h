@@ -6,8 +6,9 @@
     c0 = (C11 + C22)/2, c1 = (C11 - C22)/2, c2 = C12:   exp(2 x_k) = c0 + c1 cos 2 theta_k + c2 sin 2 theta_k
   so the three x are one to one with C, and invariant under rotation of the frame of F. Turning the hexagon by 60
   degrees or mirroring it permutes them. Where all three are equal the strain is isotropic; a potential that is
-  symmetric in the three has an isotropic tangent there. Derivatives, with f_k = F n_k, q_k = exp(2 x_k): dx_k/dF_iJ =
-  f_i n_J / q_k,    d2x_k/dF_iJ dF_mN = n_J n_N (delta_im / q_k - 2 f_i f_m / q_k^2) docs/theory.md, Section 28.
+  symmetric in the three has an isotropic tangent there. Derivatives, with f_k = F n_k, q_k = exp(2 x_k):
+    dx_k/dF_iJ = f_i n_J / q_k,    d2x_k/dF_iJ dF_mN = n_J n_N (delta_im / q_k - 2 f_i f_m / q_k^2)
+  docs/theory.md, Section 28.
 */
 #ifndef LAM_LATTICE_STRAIN_H
 #define LAM_LATTICE_STRAIN_H
