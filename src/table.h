@@ -109,6 +109,8 @@ PetscBool LamTableCellIsComplete(LamTable table, const LamTableCell *cell, const
 /* The states of a node's column on either side of the point; NULL: missing. */
 void LamTableBracket(LamTable table, const LamTableNode *node, const LamTablePoint *point,
                      const LamTableState *ends[2]);
+/* Of the corners whose own level is the cell's: those without states, weighed as by linear interpolation, 0 to 1. */
+PetscReal LamTableMissingShare(LamTable table, const LamTableCell *cell, const LamTablePoint *point);
 /* Adds a cell's part; `estimate`: writes bend and turn. */
 void LamTableAddCell(LamTable table, const LamTableCell *cell, const LamTablePoint *point, PetscBool estimate,
                      LamTableSum *sum);

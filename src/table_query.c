@@ -21,12 +21,13 @@ enum { KINK_LEVEL = 2 };
   at the scale of its cells, as contact is everywhere. In root cells of bonded tissue Phi is smooth: where the bubbles
   are small beside the turn of the slope (ROOT_TURN), higher derivatives fall off alike, and the error with them.
 */
-#define ROOT_BEND 0.25
+#define ROOT_BEND 0.3
 #define ROOT_TURN 0.18
 #define FINE_BEND 0.14
 #define FINE_TURN 0.045
-#define CONTACT_BEND 0.2
-#define CONTACT_BUMP 0.6
+#define MISSING_FLOOR 0.25
+#define CONTACT_BEND 0.25
+#define CONTACT_BUMP 0.7
 
 /* Where a question lies and what is known there. */
 typedef struct {
@@ -38,6 +39,7 @@ typedef struct {
   PetscBool good;           /* its nodes are of one kind */
   LamTableSum sum;
   PetscReal leaf_gradient[3]; /* of the sum up to the leaf */
+  const LamTableCell *child;  /* cell of the next finer level, incomplete; NULL: none */
 } Place;
 
 /* ---- finding the place ---- */
@@ -103,8 +105,10 @@ static void SumLevels(LamTable table, Place *place)
     if (complete && (!place->leaf || place->leaf->level == level - 1)) {
       place->leaf = cell;
       place->good = good;
+      place->child = NULL;
     }
     if (!place->leaf) return;
+    if (level == place->leaf->level + 1) place->child = cell;
     LamTableAddCell(table, cell, &place->point, (PetscBool)(place->leaf == cell), &place->sum);
     if (place->leaf == cell) memcpy(place->leaf_gradient, place->sum.phi.gradient, sizeof(place->leaf_gradient));
   }
@@ -144,13 +148,14 @@ static PetscReal Distance(const LamTablePoint *point, const LamTableCell *cell)
 static void Estimates(LamTable table, const Place *place, PetscReal *along_strain, PetscReal *along_suction)
 {
   const PetscReal bend = StressSize(place, place->sum.bend), turn = StressSize(place, place->sum.turn);
-  PetscReal finer[3], size;
+  PetscReal finer[3], size, missing = 1;
 
   for (int k = 0; k < 3; k++) finer[k] = place->sum.phi.gradient[k] - place->leaf_gradient[k];
   size = StressSize(place, finer);
   *along_suction = 0;
+  if (place->child) missing = PetscMax(MISSING_FLOOR, LamTableMissingShare(table, place->child, &place->point));
   if (table->grid->contact) {
-    *along_strain = PetscMax(CONTACT_BEND * bend, size);
+    *along_strain = PetscMax(missing * CONTACT_BEND * bend, size);
     *along_suction = CONTACT_BUMP * StressSize(place, place->sum.bump);
     return;
   }
@@ -158,7 +163,7 @@ static void Estimates(LamTable table, const Place *place, PetscReal *along_strai
     *along_strain = hypot(FINE_BEND * bend, FINE_TURN * turn);
   else
     *along_strain = ROOT_BEND * bend * PetscMin(1, PetscSqr(bend / PetscMax(ROOT_TURN * turn, PETSC_SMALL)));
-  *along_strain = PetscMax(*along_strain * Distance(&place->point, place->leaf), size);
+  *along_strain = PetscMax(*along_strain * missing * Distance(&place->point, place->leaf), size);
 }
 
 static PetscReal Relative(PetscReal error, const PetscReal P[9])

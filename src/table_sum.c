@@ -260,6 +260,28 @@ static void AddTurgor(LamTable table, const Column columns[8], PetscReal h, cons
   for (int k = 0; k < 3; k++) sum->gradient_tau[k] += along[1].gradient[k];
 }
 
+PetscReal LamTableMissingShare(LamTable table, const LamTableCell *cell, const LamTablePoint *point)
+{
+  PetscReal missing = 0, all = 0;
+
+  for (int c = 0; c < 8; c++) {
+    const LamTableNode *node = cell->node[c] >= 0 ? &table->nodes[cell->node[c]] : NULL;
+    const LamTableState *ends[2] = {NULL, NULL};
+    PetscReal weight = 1;
+
+    if (cell->node[c] == LAM_NODE_FLOATING || (node && node->level < cell->level)) continue;
+    for (int k = 0; k < 3; k++) {
+      const PetscReal t = (point->u[k] - cell->i[k]) / (LAM_ROOT >> cell->level);
+
+      weight *= c >> k & 1 ? t : 1 - t;
+    }
+    if (node) LamTableBracket(table, node, point, ends);
+    all += weight;
+    if (!ends[0] || !ends[1]) missing += weight;
+  }
+  return all > 0 ? missing / all : 0;
+}
+
 void LamTableAddCell(LamTable table, const LamTableCell *cell, const LamTablePoint *point, PetscBool estimate,
                      LamTableSum *sum)
 {
