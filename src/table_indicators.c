@@ -3,7 +3,8 @@
 
   P33 + p J (contact: P33 - g J) is interpolated from its value and gradient at the corners of the finest complete cell.
   Indicators are means of the corners, with the weights of linear interpolation, so that they keep their bounds: a share
-  stays between 0 and 1. Faces are renamed as the corner's axes lie. Counts are given where all corners agree.
+  stays between 0 and 1. Those that are stresses are taken relative to the walls' stress, which the potential gives.
+  Faces are renamed as the corner's axes lie. Counts are given where all corners agree.
 */
 #include "table.h"
 #include <math.h>
@@ -130,6 +131,17 @@ static void AddThickness(LamTable table, const Around *around, PetscReal tau_ste
   for (int k = 0; k < 3 && !is_free; k++) jet->gradient[k] += r * gradient[around->order[k]];
 }
 
+/* factor times the gradient in t of the trilinear function of the corners' values. */
+static void AddLinearGradient(const PetscReal value[8], PetscReal factor, const PetscReal t[3], PetscReal gradient[3])
+{
+  for (int c = 0; c < 8; c++) {
+    const PetscReal w[3] = {c & 1 ? t[0] : 1 - t[0], c & 2 ? t[1] : 1 - t[1], c & 4 ? t[2] : 1 - t[2]};
+
+    for (int k = 0; k < 3; k++)
+      gradient[k] += factor * (c >> k & 1 ? 1 : -1) * w[(k + 1) % 3] * w[(k + 2) % 3] * value[c];
+  }
+}
+
 /* P33 and its row and column of the tangent, and its derivatives with respect to turgor and cohesion. */
 void LamTableThickness(LamTable table, const LamTablePoint *point, const LamTableCell *cell,
                        const LamLatticeState *lattice, LamResponse *r)
@@ -137,7 +149,8 @@ void LamTableThickness(LamTable table, const LamTablePoint *point, const LamTabl
   const struct LamGrid_s *grid = table->grid;
   const PetscReal d = grid->contact ? grid->cohesion - r->load.cohesion : r->load.turgor - grid->turgor;
   const PetscReal factor = grid->contact ? r->load.cohesion : -r->load.turgor;
-  PetscReal t[3], value, gradient[3] = {0}, g[3], J, J_x[3], J_xx[6], row[4], turgor = 0, cohesion = 0, stiffness = 0;
+  PetscReal t[3], value, gradient[3] = {0}, g[3], J, J_x[3], J_xx[6], row[4], rate[8] = {0};
+  PetscReal turgor = 0, cohesion = 0, stiffness = 0;
   LamJet corner[8] = {0};
   Surroundings around;
 
@@ -146,17 +159,21 @@ void LamTableThickness(LamTable table, const LamTablePoint *point, const LamTabl
   for (int n = 0; n < around.n; n++) {
     const Around *a = &around.at[n];
     const PetscReal J_node = a->data->F[0] * a->data->F[3] - a->data->F[1] * a->data->F[2];
+    const PetscReal along_p = a->data->P33_turgor + (grid->contact ? 0 : J_node);
+    const PetscReal along_g = grid->contact ? a->data->P33_cohesion - J_node : 0;
 
     AddThickness(table, a, around.tau_step[a->corner], point,
                  (PetscBool)(!cell || cell->node[a->corner] == LAM_NODE_FLOATING), &corner[a->corner]);
-    turgor += a->weight * (a->data->P33_turgor + (grid->contact ? 0 : J_node));
-    if (grid->contact) cohesion += a->weight * (a->data->P33_cohesion - J_node);
+    turgor += a->weight * along_p;
+    cohesion += a->weight * along_g;
+    rate[a->corner] += a->side * (along_p - along_g);
     stiffness += a->weight * a->data->P33_F33;
   }
   value = corner[0].value;
   if (cell) {
     for (int k = 0; k < 3; k++) t[k] = (point->u[k] - cell->i[k]) / (LAM_ROOT >> cell->level);
     LamHermiteEdges(corner, grid->step / (1 << cell->level), t, &value, gradient);
+    AddLinearGradient(rate, d / (grid->step / (1 << cell->level)), t, gradient);
   }
   /* contact: P33' depends on g at fixed s through dP33'/dp - dP33'/dg, as the potential does */
   r->P[8] = value + factor * J + d * (turgor - cohesion);
@@ -175,44 +192,111 @@ void LamTableThickness(LamTable table, const LamTablePoint *point, const LamTabl
 
 /* ---- indicators ---- */
 
-#define ONE(name) {offsetof(LamResponse, name), offsetof(LamNodeData, name), 1},
-#define THREE(name) {offsetof(LamResponse, name), offsetof(LamNodeData, name), 3},
-/* Those that are a mean of the corners; places, and tensors in the frame of the cell, are not. */
+/*
+  How a number follows from the corners' numbers v: sum of weight (v - base)/size, times the point's size, plus its
+  base. MEAN          size 1, base 0 TENSION       size of the walls' stress P + p J F^-T (and a floor), which the
+  potential gives TRACTION      the same; base: normal traction of the walls' stress on the face family, less turgor
+    MAX_TRACTION  base: the largest of the three; with contact the cohesion, which open places bear
+  So turgor at fixed walls adds nothing to a tension and takes p off a traction (with contact: at the cost of cohesion,
+  which falls alike): the effective-stress principle.
+*/
+typedef enum { MEAN, TENSION, TRACTION, MAX_TRACTION } Rule;
+
+#define ONE(name, rule) {offsetof(LamResponse, name), offsetof(LamNodeData, name), 1, rule},
+#define THREE(name, rule) {offsetof(LamResponse, name), offsetof(LamNodeData, name), 3, rule},
+/* Places, and tensors in the frame of the cell, are not among them. */
 static const struct {
   size_t response, node;
   int count; /* 3: per face family */
-} means[] = {ONE(lumen_fraction) ONE(opening_fraction) THREE(opening_by_face) ONE(debonded_fraction)
-                 THREE(debonded_by_face) ONE(open_fraction) THREE(open_by_face) ONE(debonded_spread) ONE(open_spread)
-                     ONE(max_gap) ONE(min_gap) ONE(mean_gap) ONE(max_penetration) ONE(max_traction)
-                         ONE(max_lamella_shear) THREE(mean_face_traction) ONE(max_fibre_stretch) ONE(max_wall_energy)
-                             ONE(max_wall_tension) THREE(mean_wall_tension)};
+  Rule rule;
+} means[] = {
+    ONE(lumen_fraction, MEAN) ONE(opening_fraction, MEAN) THREE(opening_by_face, MEAN) ONE(debonded_fraction, MEAN)
+        THREE(debonded_by_face, MEAN) ONE(open_fraction, MEAN) THREE(open_by_face, MEAN) ONE(debonded_spread, MEAN)
+            ONE(open_spread, MEAN) ONE(max_gap, MEAN) ONE(min_gap, MEAN) ONE(mean_gap, MEAN) ONE(max_penetration, MEAN)
+                ONE(max_traction, MAX_TRACTION) ONE(max_lamella_shear, TENSION) THREE(mean_face_traction, TRACTION)
+                    ONE(max_fibre_stretch, MEAN) ONE(max_wall_energy, TENSION) ONE(max_wall_tension, TENSION)
+                        THREE(mean_wall_tension, TENSION)};
 #undef ONE
 #undef THREE
 
-/* Number of a node, the k-th of three in the point's axes. */
-static PetscReal Number(const Around *around, size_t offset, int count, int k)
+#define STRESS_FLOOR 0.0227
+
+/* Of a state: size of the walls' stress, and bases of tractions per lattice direction. */
+typedef struct {
+  PetscReal size, traction[3], most;
+} WallStress;
+
+/* F, P: in the plane; cohesion: NULL for bonded tissue. Normal of face k: F^-T n_k; its traction: P n_k over the face's
+ * stretch. */
+static WallStress WallStressOf(const LamLatticeAxes *axes, const PetscReal F[4], const PetscReal P[4], PetscReal turgor,
+                               const PetscReal *cohesion)
 {
-  return ((const float *)((const char *)around->data + offset))[count == 3 ? around->order[k] : 0];
+  const PetscReal cofactor[4] = {F[3], -F[2], -F[1], F[0]};
+  WallStress w = {.most = -PETSC_INFINITY};
+  PetscReal S[4], square = 0;
+
+  for (int i = 0; i < 4; i++) {
+    S[i] = P[i] + turgor * cofactor[i];
+    square += S[i] * S[i];
+  }
+  w.size = sqrt(square) + STRESS_FLOOR;
+  for (int k = 0; k < 3; k++) {
+    const PetscReal *n = axes->n[k];
+    const PetscReal m0 = cofactor[0] * n[0] + cofactor[1] * n[1], m1 = cofactor[2] * n[0] + cofactor[3] * n[1];
+    const PetscReal t0 = S[0] * n[0] + S[1] * n[1], t1 = S[2] * n[0] + S[3] * n[1];
+
+    w.traction[k] = (m0 * t0 + m1 * t1) / (m0 * m0 + m1 * m1) - turgor;
+    w.most = cohesion ? *cohesion : PetscMax(w.most, w.traction[k]);
+  }
+  return w;
 }
 
-static PetscReal Mean(const Surroundings *around, size_t offset, int count, int k)
+static PetscReal SizeFor(const WallStress *stress, Rule rule)
+{
+  return rule == MEAN ? 1 : stress->size;
+}
+
+/* k: lattice direction of the state. */
+static PetscReal BaseFor(const WallStress *stress, Rule rule, int k)
+{
+  return rule == TRACTION ? stress->traction[k] : rule == MAX_TRACTION ? stress->most : 0;
+}
+
+/* The states around with their stresses. */
+typedef struct {
+  Surroundings around;
+  WallStress stress[16], here;
+} Neighbours;
+
+/* Of the n-th state, k-th of three in the point's axes: number less base, over the size. */
+static PetscReal Number(const Neighbours *near, int n, size_t i, int k)
+{
+  const Around *at = &near->around.at[n];
+  const float *number = (const float *)((const char *)at->data + means[i].node);
+  const WallStress *stress = &near->stress[n];
+
+  return (number[means[i].count == 3 ? at->order[k] : 0] - BaseFor(stress, means[i].rule, at->order[k])) /
+         SizeFor(stress, means[i].rule);
+}
+
+static PetscReal Mean(const Neighbours *near, size_t i, int k)
 {
   PetscReal sum = 0;
 
-  for (int n = 0; n < around->n; n++)
-    if (around->at[n].weight) sum += around->at[n].weight * Number(&around->at[n], offset, count, k);
+  for (int n = 0; n < near->around.n; n++)
+    if (near->around.at[n].weight) sum += near->around.at[n].weight * Number(near, n, i, k);
   return sum;
 }
 
-/* Weighted standard deviation of the corners: 0 at a node. */
-static PetscReal Spread(const Surroundings *around, size_t offset)
+/* Weighted standard deviation of the corners in units of the indicator: 0 at a node. */
+static PetscReal Spread(const Neighbours *near, size_t i)
 {
-  const PetscReal mean = Mean(around, offset, 1, 0);
+  const PetscReal mean = Mean(near, i, 0);
   PetscReal sum = 0;
 
-  for (int n = 0; n < around->n; n++)
-    if (around->at[n].weight) sum += around->at[n].weight * PetscSqr(Number(&around->at[n], offset, 1, 0) - mean);
-  return sqrt(sum);
+  for (int n = 0; n < near->around.n; n++)
+    if (near->around.at[n].weight) sum += near->around.at[n].weight * PetscSqr(Number(near, n, i, 0) - mean);
+  return sqrt(sum) * SizeFor(&near->here, means[i].rule);
 }
 
 static PetscInt Agreed(const Surroundings *around, size_t offset)
@@ -229,20 +313,21 @@ static PetscInt Agreed(const Surroundings *around, size_t offset)
   return agreed;
 }
 
-#define TRUSTED_SHARE 0.1  /* spread of a share of the interface */
-#define TRUSTED_STRESS 0.1 /* spread of a stress, relative */
-#define STRESS_FLOOR 0.0227
+#define TRUSTED_SHARE 0.1   /* spread of a share of the interface */
+#define TRUSTED_STRESS 0.08 /* spread of a stress, relative */
 
-static PetscBool IsTrusted(const Surroundings *around)
+static PetscBool IsTrusted(const Neighbours *near, const LamResponse *r)
 {
-  static const size_t shares[] = {offsetof(LamNodeData, debonded_fraction), offsetof(LamNodeData, open_fraction)};
-  static const size_t stresses[] = {offsetof(LamNodeData, max_wall_tension), offsetof(LamNodeData, max_traction)};
+  for (size_t i = 0; i < sizeof(means) / sizeof(means[0]); i++) {
+    const size_t of = means[i].response;
+    const PetscBool is_share =
+        (PetscBool)(of == offsetof(LamResponse, debonded_fraction) || of == offsetof(LamResponse, open_fraction));
+    const PetscBool is_stress =
+        (PetscBool)(of == offsetof(LamResponse, max_wall_tension) || of == offsetof(LamResponse, max_traction));
+    const PetscReal value = *(const PetscReal *)((const char *)r + of);
 
-  for (int i = 0; i < 2; i++) {
-    const PetscReal stress = Mean(around, stresses[i], 1, 0);
-
-    if (Spread(around, shares[i]) > TRUSTED_SHARE) return PETSC_FALSE;
-    if (Spread(around, stresses[i]) > TRUSTED_STRESS * (fabs(stress) + STRESS_FLOOR)) return PETSC_FALSE;
+    if (is_share && Spread(near, i) > TRUSTED_SHARE) return PETSC_FALSE;
+    if (is_stress && Spread(near, i) > TRUSTED_STRESS * (fabs(value) + STRESS_FLOOR)) return PETSC_FALSE;
   }
   return PETSC_TRUE;
 }
@@ -255,25 +340,41 @@ static void FillVolumes(LamTable table, LamResponse *r)
   r->opening_fraction = PetscMax(r->energy_cohesion, 0);
 }
 
-void LamTableIndicators(LamTable table, const LamTablePoint *point, const LamTableCell *cell, LamResponse *r)
+static void FillMeans(const Neighbours *near, const int axis[3], LamResponse *r)
 {
-  Surroundings around;
-
-  if (!Surround(table, cell, point, &around)) {
-    r->indicators_trusted = PETSC_FALSE;
-    return;
-  }
   for (size_t i = 0; i < sizeof(means) / sizeof(means[0]); i++) {
     PetscReal *to = (PetscReal *)((char *)r + means[i].response);
 
     for (int k = 0; k < means[i].count; k++)
-      to[means[i].count == 3 ? point->axis[k] : 0] = Mean(&around, means[i].node, means[i].count, k);
+      to[means[i].count == 3 ? axis[k] : 0] =
+          Mean(near, i, k) * SizeFor(&near->here, means[i].rule) + BaseFor(&near->here, means[i].rule, axis[k]);
   }
-  r->floating_cells = Agreed(&around, offsetof(LamNodeData, floating_cells));
-  r->zero_modes = Agreed(&around, offsetof(LamNodeData, zero_modes));
-  r->cell_clusters = Agreed(&around, offsetof(LamNodeData, cell_clusters));
-  r->percolating_directions = Agreed(&around, offsetof(LamNodeData, percolating_directions));
+}
+
+void LamTableIndicators(LamTable table, const LamTablePoint *point, const LamTableCell *cell, LamResponse *r)
+{
+  const PetscReal F[4] = {r->load.F[0], r->load.F[1], r->load.F[3], r->load.F[4]},
+                  P[4] = {r->P[0], r->P[1], r->P[3], r->P[4]};
+  const LamLatticeAxes *axes = &table->grid->axes;
+  const PetscBool contact = table->grid->contact;
+  Neighbours near;
+
+  if (!Surround(table, cell, point, &near.around)) {
+    r->indicators_trusted = PETSC_FALSE;
+    return;
+  }
+  near.here = WallStressOf(axes, F, P, r->load.turgor, contact ? &r->load.cohesion : NULL);
+  for (int n = 0; n < near.around.n; n++) {
+    const LamNodeData *data = near.around.at[n].data;
+
+    near.stress[n] = WallStressOf(axes, data->F, data->P, data->turgor, contact ? &data->cohesion : NULL);
+  }
+  FillMeans(&near, point->axis, r);
+  r->floating_cells = Agreed(&near.around, offsetof(LamNodeData, floating_cells));
+  r->zero_modes = Agreed(&near.around, offsetof(LamNodeData, zero_modes));
+  r->cell_clusters = Agreed(&near.around, offsetof(LamNodeData, cell_clusters));
+  r->percolating_directions = Agreed(&near.around, offsetof(LamNodeData, percolating_directions));
   r->stable = PETSC_TRUE;
-  r->indicators_trusted = IsTrusted(&around);
+  r->indicators_trusted = IsTrusted(&near, r);
   FillVolumes(table, r);
 }
