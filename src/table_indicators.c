@@ -196,7 +196,8 @@ void LamTableThickness(LamTable table, const LamTablePoint *point, const LamTabl
   How a number follows from the corners' numbers v: sum of weight (v - base)/size, times the point's size, plus its
   base. MEAN          size 1, base 0 TENSION       size of the walls' stress P + p J F^-T (and a floor), which the
   potential gives TRACTION      the same; base: normal traction of the walls' stress on the face family, less turgor
-    MAX_TRACTION  base: the largest of the three; with contact the cohesion, which open places bear
+    MAX_TRACTION  base: the largest of the three; with contact the cohesion, which open places bear and none exceeds,
+                  and size: how far the largest of the three stays below it
   So turgor at fixed walls adds nothing to a tension and takes p off a traction (with contact: at the cost of cohesion,
   which falls alike): the effective-stress principle.
 */
@@ -221,9 +222,9 @@ static const struct {
 
 #define STRESS_FLOOR 0.0227
 
-/* Of a state: size of the walls' stress, and bases of tractions per lattice direction. */
+/* Of a state: size of the walls' stress, bases of tractions per lattice direction, base and size of the largest. */
 typedef struct {
-  PetscReal size, traction[3], most;
+  PetscReal size, traction[3], most, room;
 } WallStress;
 
 /* F, P: in the plane; cohesion: NULL for bonded tissue. Normal of face k: F^-T n_k; its traction: P n_k over the face's
@@ -246,14 +247,19 @@ static WallStress WallStressOf(const LamLatticeAxes *axes, const PetscReal F[4],
     const PetscReal t0 = S[0] * n[0] + S[1] * n[1], t1 = S[2] * n[0] + S[3] * n[1];
 
     w.traction[k] = (m0 * t0 + m1 * t1) / (m0 * m0 + m1 * m1) - turgor;
-    w.most = cohesion ? *cohesion : PetscMax(w.most, w.traction[k]);
+    w.most = PetscMax(w.most, w.traction[k]);
+  }
+  w.room = w.size;
+  if (cohesion) {
+    w.room = PetscMax(*cohesion - w.most, 0) + STRESS_FLOOR;
+    w.most = *cohesion;
   }
   return w;
 }
 
 static PetscReal SizeFor(const WallStress *stress, Rule rule)
 {
-  return rule == MEAN ? 1 : stress->size;
+  return rule == MEAN ? 1 : rule == MAX_TRACTION ? stress->room : stress->size;
 }
 
 /* k: lattice direction of the state. */
