@@ -35,6 +35,8 @@
    95 % level in contact tissue, whose walls come apart between two states. */
 #define BONDED_ERROR 12.8
 #define CONTACT_ERROR 100.0
+/* Times the models' spread: models on one side of a place where walls come apart agree with each other. */
+#define CONTACT_DOUBT 3.0
 /* Of the blend, in radii of trust. */
 #define REACH 2
 /* A record that refuses, or is of another branch, forbids a blend within so many distances of the nearest that blends.
@@ -311,6 +313,7 @@ static void AnswerBlend(const LamScatterSearch *search, PetscReal reach, LamResp
   const LamScatter *scatter = &search->db->scatter;
   LamExpansion blend;
   Sums sums = {0};
+  PetscReal spread;
   LamScatterVector delta;
 
   EvaluateModel(search, &scatter->states[search->blends.state], search->blends.image, delta, &sums.first);
@@ -320,8 +323,9 @@ static void AnswerBlend(const LamScatterSearch *search, PetscReal reach, LamResp
       AddState(search, k, reach, &sums);
   Finish(search, &sums, &blend);
   Fill(search, &search->blends, PETSC_FALSE, &blend, sums.A3333 / sums.W, r);
-  r->error_estimate =
-      hypot(RelativeError(Spread(search, &sums, &blend, r->load.F), r->P), LonelyError(search, reach, &sums));
+  spread = RelativeError(Spread(search, &sums, &blend, r->load.F), r->P);
+  if (search->db->header.micro.interface == LAM_INTERFACE_CONTACT) spread *= CONTACT_DOUBT;
+  r->error_estimate = hypot(spread, LonelyError(search, reach, &sums));
 }
 
 /* Takes an answer back. */
