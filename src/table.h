@@ -29,6 +29,7 @@ typedef struct {
   LamJet phi;         /* pure second derivatives: on the side of larger strain; NaN: not known */
   PetscReal minus[3]; /* the same on the other side */
   PetscReal tau1, tau2, gradient_tau[3];
+  PetscReal tau2_minus;                     /* on the side of smaller suction */
   PetscReal hessian_tau[6], minus_tau[3];   /* of differences along the column */
   PetscReal turgor1, turgor2;               /* dPhi/dp at fixed s, d2Phi/dp2 */
   PetscReal turgor_gradient[3], turgor_tau; /* of the first */

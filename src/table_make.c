@@ -84,6 +84,7 @@ static void MoveAlong(const struct LamGrid_s *grid, PetscReal s, PetscReal phi_s
   }
   state->tau1 = phi_s * rate;
   state->tau2 = phi_ss * rate * rate + phi_s * rate;
+  state->tau2_minus = state->tau2;
   state->turgor_tau *= rate;
 }
 
@@ -322,16 +323,16 @@ static int Entry3(int a, int b)
   return a == b ? a : 6 - a - b;
 }
 
-/* The sum of the coarser levels at a node's state, in the cells that lie on the given sides (bit k: below) of it. */
-static PetscBool CoarseSum(LamTable table, const LamTableNode *node, const LamTableState *state, int sides,
-                           LamTableSum *sum, int order[3])
+/* The sum of the coarser levels at a node and v along suction, in the cells on the given sides (bit k: below) of it. */
+static PetscBool CoarseSum(LamTable table, const LamTableNode *node, PetscReal v, int sides, LamTableSum *sum,
+                           int order[3])
 {
-  LamTablePoint point = {.tau = table->grid->tau_min + table->grid->tau_step * state->j / LAM_ROOT, .v = state->j};
+  LamTablePoint point = {.tau = table->grid->tau_min + table->grid->tau_step * v / LAM_ROOT, .v = v};
   PetscReal nudged[3];
 
   memset(sum, 0, sizeof(*sum));
-  point.s = table->grid->contact ? LamGridSuction(table->grid, state->j) : 0;
-  point.root = PetscMin(state->j / LAM_ROOT, (int)table->grid->tau_cells - 1) * LAM_ROOT;
+  point.s = table->grid->contact ? table->grid->suction_scale * expm1(point.tau) : 0;
+  point.root = PetscMin((int)v / LAM_ROOT, (int)table->grid->tau_cells - 1) * LAM_ROOT;
   /* sorted with the sides, so that the cells are found by their sorted corner */
   for (int k = 0; k < 3; k++) nudged[k] = node->i[k] + (sides >> k & 1 ? -0.25 : 0.25);
   for (int k = 0; k < 3; k++) {
@@ -370,9 +371,12 @@ static void SubtractSum(const LamTableSum *sum, const int order[3], LamTableStat
   }
 }
 
+#define BESIDE 1e-6 /* units of suction */
+
 /*
   Takes the sum of the coarser levels off a state. Value, gradient and mixed derivatives are the same in all cells that
-  meet there; a pure second derivative is that of any cell on its side.
+  meet there; a pure second derivative is that of any cell on its side, that along tau of the intervals on its side,
+  which alone need be complete.
 */
 static void MakeSurplus(LamTable table, const LamTableNode *node, LamTableState *state)
 {
@@ -389,7 +393,7 @@ static void MakeSurplus(LamTable table, const LamTableNode *node, LamTableState 
     LamTableSum sum;
     int order[3];
 
-    if ((sides & ~faces) || !CoarseSum(table, node, state, sides, &sum, order)) continue;
+    if ((sides & ~faces) || !CoarseSum(table, node, state->j, sides, &sum, order)) continue;
     for (int k = 0; k < 3; k++) {
       const PetscReal pure = sum.phi.hessian[order[k]];
 
@@ -399,7 +403,9 @@ static void MakeSurplus(LamTable table, const LamTableNode *node, LamTableState 
         plus[k] = pure;
       if (!(faces >> k & 1)) minus[k] = pure;
     }
-    if (!subtracted) SubtractSum(&sum, order, state);
+    if (subtracted) continue;
+    SubtractSum(&sum, order, state);
+    if (CoarseSum(table, node, PetscMax(state->j - BESIDE, 0), sides, &sum, order)) state->tau2_minus -= sum.tau2;
     subtracted = PETSC_TRUE;
   }
   for (int k = 0; k < 3; k++) {

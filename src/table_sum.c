@@ -116,7 +116,7 @@ static void AddHigherOrder(const Interval *a, const int order[3], Column *c)
   for (int e = 0; e < 2; e++) {
     value[e] = a->end[e] ? a->end[e]->phi.value : 0;
     slope[e] = a->end[e] ? a->end[e]->tau1 : 0;
-    curvature[e] = a->end[e] ? a->end[e]->tau2 : 0;
+    curvature[e] = !a->end[e] ? 0 : e ? a->end[e]->tau2_minus : a->end[e]->tau2;
   }
   Defects(a, value, slope, curvature, d);
   for (int order_tau = 0; order_tau < 3; order_tau++)

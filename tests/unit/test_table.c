@@ -154,6 +154,33 @@ static void at_corners_all_numbers_are_the_records(void **state)
   }
 }
 
+/* On demand one interval of suction is solved, and nothing beyond it. */
+static void finer_nodes_of_one_interval_bring_the_answer_nearer(void **state)
+{
+  AnalyticTable t = AnalyticTableOpen(PETSC_TRUE, 0.2);
+  const int corner = -2 * LAM_ROOT;
+  const double u[3] = {corner + 20, corner + 11, corner + 37};
+  const LamLoad load = LoadAt(&t, u, 0.9 * LAM_ROOT, 0.3);
+  const LamResponse exact = TissueAnswer(&t.tissue, &load);
+  double before = 0;
+
+  for (int level = 0; level <= 2; level++) {
+    const int n = (1 << level) + 1, size = LAM_ROOT >> level;
+    LamResponse r;
+
+    for (int at = 0; at < n * n * n; at++)
+      for (int j = 0; j <= LAM_ROOT; j += LAM_ROOT) {
+        const int i[3] = {corner + size * (at % n), corner + size * (at / n % n), corner + size * (at / n / n)};
+
+        AddPlace(&t, i, j);
+      }
+    assert_true(Answers(&t, &load, &r));
+    if (level) assert_true(LamStressError(r.P, exact.P) < 0.7 * before);
+    before = LamStressError(r.P, exact.P);
+  }
+  AnalyticTableClose(&t);
+}
+
 /* ---- images ---- */
 
 /* F Q of a motion Q of the lattice: turned by 60 k degrees; or M F Q, mirrored at an axis of it and seen in a mirror M.
@@ -457,6 +484,7 @@ int main(void)
       cmocka_unit_test(nodes_of_a_turned_cell_answer_as_their_records),
       cmocka_unit_test(without_symmetry_nodes_answer_as_their_records),
       cmocka_unit_test(at_corners_all_numbers_are_the_records),
+      cmocka_unit_test(finer_nodes_of_one_interval_bring_the_answer_nearer),
       cmocka_unit_test(images_answer_alike),
       cmocka_unit_test(stress_turns_with_the_frame),
       cmocka_unit_test(the_tangent_is_isotropic_without_isochoric_strain),

@@ -107,13 +107,14 @@ static void what_is_needed_makes_the_answer(void **state)
     AnalyticTable t = AnalyticTableOpen((PetscBool)contact, 0.2);
     const LamLoad load = Inside(&t);
     const LamResponse exact = TissueAnswer(&t.tissue, &load);
+    const double accuracy = contact ? 1e-3 : 1e-6;
     LamResponse r;
 
-    assert_true(SolveNeeds(&t, &load, 1e-6, 12) < 12);
-    r = AskFor(&t, &load, 1e-6);
+    assert_true(SolveNeeds(&t, &load, accuracy, 12) < 12);
+    r = AskFor(&t, &load, accuracy);
     assert_int_equal(r.status, LAM_CONVERGED);
-    assert_true(r.error_estimate <= 1e-6);
-    assert_true(LamStressError(r.P, exact.P) < 1e-5);
+    assert_true(r.error_estimate <= accuracy);
+    assert_true(LamStressError(r.P, exact.P) < accuracy);
     AnalyticTableClose(&t);
   }
 }
@@ -204,6 +205,25 @@ static void a_root_cell_with_a_failed_corner_cannot_be_helped(void **state)
   AnalyticTableClose(&t);
 }
 
+/* Cells that barely touch leave saddles of another kind. */
+static void another_branch_of_cells_that_barely_touch_is_none(void **state)
+{
+  AnalyticTable t = AnalyticTableOpen(PETSC_TRUE, 0.2);
+  const LamLoad load = Inside(&t);
+  PetscInt64 keys[LAM_MAX_NEEDS];
+  const PetscInt n = Needs(&t, &load, PETSC_INFINITY, keys);
+
+  for (PetscInt k = 0; k < n; k++) {
+    LamResponse r = AnswerOf(&t, keys[k]);
+
+    r.branch = (PetscInt)(k % 2);
+    r.debonded_fraction = 0.8;
+    CHECK(LamDatabaseAdd(t.database, 1, &keys[k], &r));
+  }
+  assert_int_equal(AskFor(&t, &load, PETSC_INFINITY).status, LAM_CONVERGED);
+  AnalyticTableClose(&t);
+}
+
 /* A failed node of a finer level spoils the cells it is a corner of, and only these. */
 static void a_failed_finer_node_spoils_its_own_cells(void **state)
 {
@@ -237,7 +257,7 @@ static void a_change_of_branch_is_refined_so_far_and_no_further(void **state)
       finest = PetscMax(finest, LamNodeLevel(&place));
     }
   }
-  assert_int_equal(finest, 3);
+  assert_int_equal(finest, 2);
   assert_int_equal(AskFor(&t, &load, PETSC_INFINITY).status, LAM_OUT_OF_REACH);
   AnalyticTableClose(&t);
 }
@@ -394,6 +414,7 @@ int main(void)
       cmocka_unit_test(a_cell_with_an_unstable_corner_is_refused_its_children_are_not),
       cmocka_unit_test(a_cell_with_a_corner_on_another_branch_is_refused_its_children_are_not),
       cmocka_unit_test(a_root_cell_with_a_failed_corner_cannot_be_helped),
+      cmocka_unit_test(another_branch_of_cells_that_barely_touch_is_none),
       cmocka_unit_test(a_failed_finer_node_spoils_its_own_cells),
       cmocka_unit_test(a_change_of_branch_is_refined_so_far_and_no_further),
       cmocka_unit_test(floating_cells_need_no_node_and_are_exact),
