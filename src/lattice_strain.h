@@ -44,8 +44,8 @@ static inline LamLatticeAxes LamLatticeAxesOf(PetscReal orientation)
   return axes;
 }
 
-/* F: in-plane part, row-major. */
-static inline LamLatticeState LamLatticeStateOf(const LamLatticeAxes *axes, const PetscReal F[4])
+/* F: in-plane part, row-major. Without the logarithms: x is left out. */
+static inline LamLatticeState LamLatticeSquaresOf(const LamLatticeAxes *axes, const PetscReal F[4])
 {
   LamLatticeState s;
 
@@ -53,8 +53,16 @@ static inline LamLatticeState LamLatticeStateOf(const LamLatticeAxes *axes, cons
     s.f[k][0] = F[0] * axes->n[k][0] + F[1] * axes->n[k][1];
     s.f[k][1] = F[2] * axes->n[k][0] + F[3] * axes->n[k][1];
     s.q[k] = s.f[k][0] * s.f[k][0] + s.f[k][1] * s.f[k][1];
-    s.x[k] = 0.5 * log(s.q[k]);
+    s.x[k] = NAN;
   }
+  return s;
+}
+
+static inline LamLatticeState LamLatticeStateOf(const LamLatticeAxes *axes, const PetscReal F[4])
+{
+  LamLatticeState s = LamLatticeSquaresOf(axes, F);
+
+  for (int k = 0; k < 3; k++) s.x[k] = 0.5 * log(s.q[k]);
   return s;
 }
 

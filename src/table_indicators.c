@@ -97,7 +97,7 @@ static PetscReal WallThickness(LamTable table, const LamNodeData *r, const Petsc
 {
   const struct LamGrid_s *grid = table->grid;
   const PetscReal factor = grid->contact ? -r->cohesion : r->turgor;
-  const LamLatticeState state = LamLatticeStateOf(&grid->axes, r->F);
+  const LamLatticeState state = LamLatticeSquaresOf(&grid->axes, r->F);
   PetscReal J, J_x[3], J_xx[6], dF[3][4];
 
   J = LamLatticeVolume(&grid->axes, &state, J_x, J_xx);
@@ -111,17 +111,37 @@ static PetscReal WallThickness(LamTable table, const LamNodeData *r, const Petsc
   return r->P33 + factor * J;
 }
 
-/* A corner at the point's suction: cubic along tau in the value, linear in the gradient. */
-static void AddThickness(LamTable table, const Around *around, PetscReal tau_step, const LamTablePoint *point,
-                         PetscBool is_free, LamJet *jet)
+/* Most states around a point have the same few suctions. */
+typedef struct {
+  PetscReal suction[2], strain[2][3];
+  int next;
+} FreeStrain;
+
+static const PetscReal *RecallFreeStrain(const struct LamGrid_s *grid, const LamNodeData *r, FreeStrain *memory)
 {
+  const PetscReal s = r->turgor + r->cohesion;
+  const int at = memory->next;
+
+  if (!grid->contact || !grid->free.n) return memory->strain[0]; /* zeros */
+  for (int i = 0; i < 2; i++)
+    if (memory->suction[i] == s) return memory->strain[i];
+  memory->suction[at] = s;
+  memory->next = 1 - at;
+  LamFreeCellStrain(&grid->free, s, memory->strain[at]);
+  return memory->strain[at];
+}
+
+/* A corner at the point's suction: cubic along tau in the value, linear in the gradient. */
+static void AddThickness(LamTable table, const Around *around, PetscReal tau_step, PetscBool is_free,
+                         FreeStrain *memory, LamJet *jet)
+{
+  static const PetscReal still[3] = {0, 0, 0};
   const struct LamGrid_s *grid = table->grid;
   const PetscReal r = around->side, t = 1 - r;
-  PetscReal gradient[3], slope, value, strain[3] = {0};
+  PetscReal gradient[3], slope, value;
 
-  if (grid->contact && grid->free.n && !is_free)
-    LamFreeCellStrain(&grid->free, around->data->turgor + around->data->cohesion, strain);
-  value = WallThickness(table, around->data, strain, gradient, &slope);
+  value = WallThickness(table, around->data, is_free ? still : RecallFreeStrain(grid, around->data, memory), gradient,
+                        &slope);
   if (!grid->contact) {
     jet->value = value;
   } else {
@@ -151,6 +171,7 @@ void LamTableThickness(LamTable table, const LamTablePoint *point, const LamTabl
   const PetscReal factor = grid->contact ? r->load.cohesion : -r->load.turgor;
   PetscReal t[3], value, gradient[3] = {0}, g[3], J, J_x[3], J_xx[6], row[4], rate[8] = {0};
   PetscReal turgor = 0, cohesion = 0, stiffness = 0;
+  FreeStrain memory = {.suction = {-1, -1}};
   LamJet corner[8] = {0};
   Surroundings around;
 
@@ -162,8 +183,8 @@ void LamTableThickness(LamTable table, const LamTablePoint *point, const LamTabl
     const PetscReal along_p = a->data->P33_turgor + (grid->contact ? 0 : J_node);
     const PetscReal along_g = grid->contact ? a->data->P33_cohesion - J_node : 0;
 
-    AddThickness(table, a, around.tau_step[a->corner], point,
-                 (PetscBool)(!cell || cell->node[a->corner] == LAM_NODE_FLOATING), &corner[a->corner]);
+    AddThickness(table, a, around.tau_step[a->corner], (PetscBool)(!cell || cell->node[a->corner] == LAM_NODE_FLOATING),
+                 &memory, &corner[a->corner]);
     turgor += a->weight * along_p;
     cohesion += a->weight * along_g;
     rate[a->corner] += a->side * (along_p - along_g);
