@@ -27,7 +27,7 @@ enum { KINK_LEVEL = 2 };
 #define FINE_TURN 0.045
 #define MISSING_FLOOR 0.25
 #define CONTACT_BEND 0.25
-#define CONTACT_BUMP 0.7
+#define CONTACT_BUMP 0.5
 
 /* Where a question lies and what is known there. */
 typedef struct {
