@@ -143,7 +143,7 @@ PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStress
     PetscFunctionReturn(0);
   }
   PetscCall(PetscTime(&begin));
-  PetscCall(LamBeginResponse(rve, load, response));
+  PetscCall(LamBeginResponse(rve, load, state, response));
   PetscCall(LamCheckLoad(load, response->reason, sizeof(response->reason)));
   if (!response->reason[0]) PetscCall(CheckControl(control, response->reason, sizeof(response->reason)));
   if (response->reason[0])

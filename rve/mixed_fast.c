@@ -94,7 +94,7 @@ PetscErrorCode LamMixedFast(LamRVE rve, LamLoad *load, const LamStressControl *c
   PetscBool solved;
 
   PetscFunctionBeginUser;
-  PetscCall(LamBeginResponse(rve, load, response));
+  PetscCall(LamBeginResponse(rve, load, state, response));
   PetscCall(LamBorderCreate(rve, load, control, &border));
   if (rve->contact)
     PetscCall(TryContact(rve, border, load, control, state, response, &solved));

@@ -312,7 +312,7 @@ PetscErrorCode LamMixedSafe(LamRVE rve, const LamLoad *load, const LamStressCont
     if (!LamMixedIsStable(&s.now.view)) response->status = LAM_UNSTABLE;
     PetscCall(LamRVEStateCopy(s.now.state, state));
   } else {
-    PetscCall(LamBeginResponse(rve, load, response));
+    PetscCall(LamBeginResponse(rve, load, state, response));
     PetscCall(GiveReason(&s, response));
   }
   response->newton_iterations = s.iterations;

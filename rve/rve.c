@@ -148,7 +148,9 @@ PetscErrorCode LamRVEStateCreate(LamRVE rve, LamRVEState *state)
   PetscCall(PetscNew(state));
   (*state)->n = rve->ndof;
   (*state)->multipliers = rve->contact ? rve->contact->count : 0;
-  PetscCall(PetscMalloc2((*state)->n, &(*state)->y, (*state)->multipliers, &(*state)->lambda));
+  (*state)->faces = rve->contact ? rve->contact->face_count : 0;
+  PetscCall(PetscMalloc3((*state)->n, &(*state)->y, (*state)->multipliers, &(*state)->lambda, (*state)->faces,
+                         &(*state)->hats));
   if (rve->bonded) PetscCall(LamRVEStateCreate(rve->bonded, &(*state)->bonded));
   PetscCall(LamRVEStateReset(rve, *state));
   PetscFunctionReturn(0);
@@ -161,6 +163,7 @@ PetscErrorCode LamRVEStateCopy(LamRVEState from, LamRVEState to)
              "states of different RVEs");
   PetscCall(PetscArraycpy(to->y, from->y, from->n));
   PetscCall(PetscArraycpy(to->lambda, from->lambda, from->multipliers));
+  PetscCall(PetscArraycpy(to->hats, from->hats, from->faces));
   to->load = from->load;
   to->branch = from->branch;
   to->solved = from->solved;
@@ -173,6 +176,10 @@ PetscErrorCode LamRVEStateReset(LamRVE rve, LamRVEState state)
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(state->y, rve->mesh.class_X, rve->ndof));
   PetscCall(PetscArrayzero(state->lambda, state->multipliers));
+  for (PetscInt f = 0; f < state->faces; ++f) {
+    state->hats[f][0] = rve->contact->faces[f].low;
+    state->hats[f][1] = rve->contact->faces[f].high;
+  }
   ReferenceLoad(&state->load);
   state->branch = 0;
   state->solved = PETSC_FALSE;
@@ -185,7 +192,7 @@ PetscErrorCode LamRVEStateDestroy(LamRVEState *state)
   PetscFunctionBeginUser;
   if (!*state) PetscFunctionReturn(0);
   PetscCall(LamRVEStateDestroy(&(*state)->bonded));
-  PetscCall(PetscFree2((*state)->y, (*state)->lambda));
+  PetscCall(PetscFree3((*state)->y, (*state)->lambda, (*state)->hats));
   PetscCall(PetscFree(*state));
   PetscFunctionReturn(0);
 }
@@ -254,13 +261,26 @@ PetscErrorCode LamAcceptSolution(LamRVE rve, const LamLoad *load, LamRVEState st
   if (!response->stable || response->zero_modes > 0) response->lowest_eigenvalue = rve->lowest_eigenvalue;
   PetscCall(PetscArraycpy(state->y, rve->y, rve->ndof));
   if (rve->contact) PetscCall(PetscArraycpy(state->lambda, rve->contact->lambda, state->multipliers));
+  for (PetscInt f = 0; f < state->faces; ++f) {
+    state->hats[f][0] = rve->contact->faces[f].first;
+    state->hats[f][1] = rve->contact->faces[f].last;
+  }
   state->solved = PETSC_TRUE;
   state->load = *load;
   state->branch = response->branch;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamResponse *response)
+/* Junction statuses are those of the state, not those that the solve before has left. */
+static void BeginFrom(LamRVE rve, LamRVEState state)
+{
+  for (PetscInt f = 0; f < state->faces; ++f) {
+    rve->contact->faces[f].first = state->hats[f][0];
+    rve->contact->faces[f].last = state->hats[f][1];
+  }
+}
+
+PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
 {
   PetscFunctionBeginUser;
   PetscCall(LamResponseInit(load, response));
@@ -269,6 +289,7 @@ PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamResponse *re
   response->distance = 0.0;
   rve->work = (LamWork){0};
   rve->lowest_eigenvalue = NAN;
+  BeginFrom(rve, state);
   PetscFunctionReturn(0);
 }
 
@@ -278,7 +299,7 @@ PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, L
 
   PetscFunctionBeginUser;
   PetscCall(PetscTime(&begin));
-  PetscCall(LamBeginResponse(rve, load, response));
+  PetscCall(LamBeginResponse(rve, load, state, response));
   PetscCall(LamCheckLoad(load, response->reason, sizeof(response->reason)));
   if (response->reason[0]) {
     response->status = LAM_INVALID_F;

@@ -60,9 +60,11 @@ struct LamRVEState_s {
   PetscInt branch; /* number of saddles left on the way here */
   /* contact tissue only */
   PetscInt multipliers;
-  PetscReal *lambda;  /* [multipliers] */
-  PetscBool solved;   /* y and lambda are a solution, not the reference */
-  LamRVEState bonded; /* of the bonded tissue; owned */
+  PetscReal *lambda; /* [multipliers] */
+  PetscInt faces;
+  PetscInt (*hats)[2]; /* [faces] junction status: first and last hat */
+  PetscBool solved;    /* y and lambda are a solution, not the reference */
+  LamRVEState bonded;  /* of the bonded tissue; owned */
 };
 
 typedef struct {
@@ -314,8 +316,9 @@ PetscErrorCode LamWallMeasures(LamRVE rve, const LamLoad *load, LamResponse *res
 /* ---- rve.c ---- */
 /* Empty where the load can be asked of plane-strain tissue, else why not. */
 PetscErrorCode LamCheckLoad(const LamLoad *load, char reason[], size_t length);
-/* A response without answer, and no work yet. */
-PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamResponse *response);
+/* A response without answer, no work yet, and nothing left of the solve before: a solve depends on load and state
+ * alone. */
+PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
 /* Fills the fields of a response whose status says that rve->y (and the multipliers) are a solution at `load`, with its
    consistent tangent factored, and stores it in `state`; refuses it where a lumen has collapsed. */
 PetscErrorCode LamAcceptSolution(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
