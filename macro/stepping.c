@@ -7,8 +7,8 @@
   1. Inflation: only rigid motions are held, the turgor acts at once. Without `inflate` the turgor acts while the
      prescribed sides are held where they are in the reference state; this belongs to step 1.
   2. The prescribed displacements count from there and grow in `steps` equal steps.
-  3. Where Newton fails, or a material point has no response, the increment is halved, MAX_HALVINGS times at most, and
-     doubled again after each success.
+  3. Where Newton fails, a material point has no response, or an iteration goes astray, the increment is halved,
+  MAX_HALVINGS times at most, and doubled again after each success.
 
   Converged means: norm of the residual <= RELATIVE_TOLERANCE times the norm of the element forces before they cancel
   at the nodes (largest in this series of iterations), or <= ABSOLUTE_TOLERANCE (C1 + C2) times the box's first edge,

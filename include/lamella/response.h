@@ -133,9 +133,9 @@ typedef struct LamResponder_s {
   PetscErrorCode (*reject)(void *ctx); /* the load step is given up: go back to the last accepted one */
   PetscErrorCode (*destroy)(void **ctx);
   /*
-    Counted on this rank since creation. A question is a hit (a record that was there before answers it), or a failure
-    (no fields in the answer), or else it had to be solved for: queries - hits - failures. `solves` are the solves made:
-    with a cache fewer than the questions solved for, where close ones share a solve, and failed solves count, too.
+    Counted on this rank since creation. A question is a hit (the database as it was answers it), or a failure (no
+    fields in the answer), or else something had to be solved for it: queries - hits - failures. `solves` are the solves
+    made: with a cache those of the nodes, which many questions share, and of states where no node helps, failed or not.
   */
   PetscInt64 queries, hits, solves, failures;
   PetscReal solve_seconds;

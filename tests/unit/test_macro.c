@@ -167,6 +167,21 @@ static void CutbackReachesTheSameEnd(void **state)
   FixtureDestroy(&whole);
 }
 
+/* An increment that would change a point's deformation by more than 0.75 is cut before the material is asked. */
+static void StrayIterationsAreNotAskedFor(void **state)
+{
+  Fixture fixture;
+
+  FixtureBiaxial(&fixture, 1.2, 0, 1);
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  fixture.material->largest_step = 0.75;
+  FixtureSolve(&fixture);
+  assert_int_equal(fixture.reason, LAM_MACRO_DONE);
+  assert_true(FixtureLast(&fixture)->cutbacks > 0);
+  assert_int_equal(FixtureLast(&fixture)->failures, 0);
+  FixtureDestroy(&fixture);
+}
+
 /* Where the material has no answer any more, the run ends, keeps its steps and names a point that failed. */
 static void FailureNamesThePoint(void **state)
 {
@@ -433,16 +448,27 @@ static void LooseBodyIsRefused(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(TangentIsDerivative),      cmocka_unit_test(NewtonIsQuadratic),
-      cmocka_unit_test(InflationIsFreeOfStress),  cmocka_unit_test(DisplacementsCountFromInflated),
-      cmocka_unit_test(TurgorPressesOnHeldSides), cmocka_unit_test(ReactionsBalance),
-      cmocka_unit_test(CutbackReachesTheSameEnd), cmocka_unit_test(FailureNamesThePoint),
-      cmocka_unit_test(NothingIsAskedTwice),      cmocka_unit_test(CountsAreOfAllRanks),
-      cmocka_unit_test(MonitorStopsTheRun),       cmocka_unit_test(RanksDoNotMatter),
-      cmocka_unit_test(ElementsAreInOrder),       cmocka_unit_test(ContradictingSidesAreRefused),
-      cmocka_unit_test(LooseBodyIsRefused),       cmocka_unit_test(PartOfAStepIsReported),
-      cmocka_unit_test(ReasonIsNotCutOff),        cmocka_unit_test(NothingReachedIsNotReported),
-      cmocka_unit_test(StopEndsWithinAStep),      cmocka_unit_test(CauchyIsTheMeanOverThePresentVolume),
+      cmocka_unit_test(TangentIsDerivative),
+      cmocka_unit_test(NewtonIsQuadratic),
+      cmocka_unit_test(InflationIsFreeOfStress),
+      cmocka_unit_test(DisplacementsCountFromInflated),
+      cmocka_unit_test(TurgorPressesOnHeldSides),
+      cmocka_unit_test(ReactionsBalance),
+      cmocka_unit_test(CutbackReachesTheSameEnd),
+      cmocka_unit_test(StrayIterationsAreNotAskedFor),
+      cmocka_unit_test(FailureNamesThePoint),
+      cmocka_unit_test(NothingIsAskedTwice),
+      cmocka_unit_test(CountsAreOfAllRanks),
+      cmocka_unit_test(MonitorStopsTheRun),
+      cmocka_unit_test(RanksDoNotMatter),
+      cmocka_unit_test(ElementsAreInOrder),
+      cmocka_unit_test(ContradictingSidesAreRefused),
+      cmocka_unit_test(LooseBodyIsRefused),
+      cmocka_unit_test(PartOfAStepIsReported),
+      cmocka_unit_test(ReasonIsNotCutOff),
+      cmocka_unit_test(NothingReachedIsNotReported),
+      cmocka_unit_test(StopEndsWithinAStep),
+      cmocka_unit_test(CauchyIsTheMeanOverThePresentVolume),
   };
   int failed;
 
