@@ -27,7 +27,8 @@ PetscBool LamQuestionIsGood(const LamLoad *load, LamResponse *r)
   return PETSC_TRUE;
 }
 
-static PetscErrorCode AskScattered(LamDatabase database, const LamLoad *load, PetscReal accuracy, LamResponse *response)
+static PetscErrorCode AskScattered(LamDatabase database, const LamLoad *load, PetscReal radius, PetscReal accuracy,
+                                   LamResponse *response)
 {
   PetscLogDouble start, end;
 
@@ -35,8 +36,7 @@ static PetscErrorCode AskScattered(LamDatabase database, const LamLoad *load, Pe
   PetscCall(PetscTime(&start));
   PetscCall(LamResponseInit(load, response));
   response->source = LAM_SOURCE_DATABASE;
-  if (LamQuestionIsGood(load, response))
-    PetscCall(LamScatterQuery(database, load, LAM_TRUST_RADIUS, accuracy, response));
+  if (LamQuestionIsGood(load, response)) PetscCall(LamScatterQuery(database, load, radius, accuracy, response));
   PetscCall(PetscTime(&end));
   response->seconds = end - start;
   PetscFunctionReturn(0);
@@ -50,13 +50,14 @@ PetscErrorCode LamDatabaseQuery(LamDatabase database, const LamLoad *load, Petsc
   PetscFunctionBeginUser;
   PetscCall(LamDatabaseGetTable(database, &table));
   if (!table) {
-    PetscCall(AskScattered(database, load, accuracy, response));
+    PetscCall(AskScattered(database, load, LAM_TRUST_RADIUS, accuracy, response));
     PetscFunctionReturn(0);
   }
   PetscCall(LamTableQuery(table, load, accuracy, response));
   PetscCall(LamTableDestroy(&table));
   if (response->status != LAM_OUT_OF_REACH || !database->scatter.n) PetscFunctionReturn(0);
-  PetscCall(AskScattered(database, load, accuracy, &scattered));
+  /* beside a table they are states that it could not answer: each is trusted for itself alone */
+  PetscCall(AskScattered(database, load, 0, accuracy, &scattered));
   if (LamResponseHasFields(&scattered)) *response = scattered; /* else the table's reason stands */
   PetscFunctionReturn(0);
 }

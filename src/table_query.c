@@ -17,6 +17,12 @@
 enum { KINK_LEVEL = 2 };
 
 /*
+  Contact switches between any two states, and a mesh has several solutions some tenths of a percent apart, so there is
+  no end of halving: what these leave is solved directly.
+*/
+enum { CONTACT_LEVEL = 3, CONTACT_INTERVAL = LAM_ROOT / 8 };
+
+/*
   Weights of the estimate, from regression on held-out states; docs/verification.md. Below the root the surplus is rough
   at the scale of its cells, as contact is everywhere. In root cells of bonded tissue Phi is smooth: where the bubbles
   are small beside the turn of the slope (ROOT_TURN), higher derivatives fall off alike, and the error with them.
@@ -433,10 +439,10 @@ PetscErrorCode LamTableNeeds(LamTable table, const LamLoad *load, PetscReal accu
     if (place.leaf->level < KINK_LEVEL) NeedCell(&needs, &place.point, place.leaf->level + 1, ends);
   } else {
     Estimates(table, &place, &along_strain, &along_suction);
-    if (along_suction > along_strain && ends[1] - ends[0] > 1) {
+    if (along_suction > along_strain && ends[1] - ends[0] > CONTACT_INTERVAL) {
       ends[0] = ends[1] = (ends[0] + ends[1]) / 2;
       NeedCell(&needs, &place.point, place.leaf->level, ends);
-    } else if (place.leaf->level < LAM_FINEST)
+    } else if (place.leaf->level < (table->grid->contact ? CONTACT_LEVEL : LAM_FINEST))
       NeedCell(&needs, &place.point, place.leaf->level + 1, ends);
   }
   if (needs.hopeless) *n = 0;
