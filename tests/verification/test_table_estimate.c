@@ -1,0 +1,295 @@
+/*
+  What a table says of its own answers, against fresh solves of states that it has not seen: the error estimate, and
+  which indicators are trusted. The figures of docs/verification.md with slack: small samples.
+*/
+#include <math.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <cmocka.h>
+#include <lamella/lamella.h>
+#include "assert_near.h"
+#include "random_reals.h"
+
+#define BONDED_STATES 60
+#define CONTACT_STATES 40
+
+#define TISSUE                                                                                                         \
+  "version: 1\n"                                                                                                       \
+  "rve:\n"                                                                                                             \
+  "  cell: {apothem: 75 um, wall_thickness: 11.25 um}\n"                                                               \
+  "  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}\n"                                         \
+  "  mesh: {along: 6, through: 2}\n"
+
+static const char bonded_scene[] = TISSUE "  interface: {law: bonded}\n"
+                                          "sample:\n"
+                                          "  stretch: {min: -0.02, max: 0.25}\n"
+                                          "  turgor: {min: 0 MPa, max: 0.05 MPa}\n";
+static const char contact_scene[] = TISSUE "  interface: {law: contact}\n"
+                                           "sample:\n"
+                                           "  stretch: {min: 0.04, max: 0.11}\n"
+                                           "  turgor: {min: 0.02 MPa, max: 0.04 MPa}\n";
+
+typedef struct {
+  LamRVE rve;
+  LamRVEState state;
+} Solver;
+
+typedef struct {
+  LamScene *scene;
+  Solver solver;
+  LamDatabase database;
+} Tissue;
+
+/* The answer of the table and a fresh solve of the same state. */
+typedef struct {
+  LamResponse answer, solve;
+} Pair;
+
+static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[], LamResponse r[])
+{
+  Solver *solver = ctx;
+
+  (void)points;
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(LamRVEStateReset(solver->rve, solver->state));
+    PetscCall(LamRVESolve(solver->rve, &loads[i], solver->state, &r[i]));
+  }
+  PetscFunctionReturn(0);
+}
+
+static void Start(const char scene[], Tissue *t)
+{
+  LamResponder responder = {.ctx = &t->solver, .respond = Respond};
+  const LamResponse *records;
+  const PetscInt64 *keys;
+  LamGrid grid;
+  PetscInt n;
+
+  assert_int_equal(LamSceneReadText("test_table_estimate", scene, &t->scene), 0);
+  assert_int_equal(LamRVECreate(PETSC_COMM_SELF, &t->solver.rve), 0);
+  assert_int_equal(LamRVESetMicrostructure(t->solver.rve, &t->scene->micro), 0);
+  assert_int_equal(LamRVESetUp(t->solver.rve), 0);
+  assert_int_equal(LamRVEStateCreate(t->solver.rve, &t->solver.state), 0);
+  assert_int_equal(LamGridCreate(t->scene, &responder, &grid), 0);
+  assert_int_equal(LamDatabaseCreateEmpty(t->scene, &t->database), 0);
+  assert_int_equal(LamGridGetRecords(grid, &n, &keys, &records), 0);
+  assert_int_equal(LamDatabaseAdd(t->database, n, keys, records), 0);
+  assert_int_equal(LamDatabaseSetGrid(t->database, &grid), 0);
+}
+
+static void Finish(Tissue *t)
+{
+  assert_int_equal(LamDatabaseClose(&t->database), 0);
+  assert_int_equal(LamRVEStateDestroy(&t->solver.state), 0);
+  assert_int_equal(LamRVEDestroy(&t->solver.rve), 0);
+  LamSceneDestroy(&t->scene);
+}
+
+/* Solves what the table lacks to answer the load, until it does or nothing helps. */
+static void Refine(Tissue *t, const LamLoad *load, PetscReal accuracy)
+{
+  PetscInt n = 1;
+
+  while (n) {
+    PetscInt64 keys[LAM_MAX_NEEDS];
+    LamTable table;
+    LamGrid grid;
+
+    assert_int_equal(LamDatabaseGetGrid(t->database, &grid), 0);
+    assert_int_equal(LamDatabaseGetTable(t->database, &table), 0);
+    assert_int_equal(LamTableNeeds(table, load, accuracy, &n, keys), 0);
+    assert_int_equal(LamTableDestroy(&table), 0);
+    for (PetscInt k = 0; k < n; k++) {
+      LamResponse response;
+      LamLoad node;
+
+      assert_int_equal(LamGridNodeLoad(grid, keys[k], &node), 0);
+      assert_int_equal(Respond(&t->solver, 1, &node, NULL, &response), 0);
+      assert_int_equal(LamDatabaseAdd(t->database, 1, &keys[k], &response), 0);
+    }
+  }
+}
+
+static LamLoad RandomLoad(uint64_t *seed, const LamSample *box)
+{
+  const double e0 = exp(RandomReal(seed, box->stretch_min, box->stretch_max)),
+               e1 = exp(RandomReal(seed, box->stretch_min, box->stretch_max)), angle = RandomReal(seed, 0, PETSC_PI),
+               c = cos(angle), s = sin(angle);
+  LamLoad load = {
+      .F = {c * c * e0 + s * s * e1, c * s * (e0 - e1), 0, c * s * (e0 - e1), s * s * e0 + c * c * e1, 0, 0, 0, 1}};
+
+  load.turgor = RandomReal(seed, box->turgor_min, box->turgor_max);
+  return load;
+}
+
+/* Builds a table that answers n random states to the accuracy, then asks n others. Returns how many it answers. */
+static int Compare(Tissue *t, PetscReal accuracy, int n, Pair pairs[])
+{
+  uint64_t seed = 1;
+  LamTable table;
+  int answered = 0;
+
+  for (int i = 0; i < n; i++) {
+    const LamLoad load = RandomLoad(&seed, &t->scene->sample);
+
+    Refine(t, &load, accuracy);
+  }
+  assert_int_equal(LamDatabaseGetTable(t->database, &table), 0);
+  for (int i = 0; i < n; i++) {
+    const LamLoad load = RandomLoad(&seed, &t->scene->sample);
+    Pair *pair = &pairs[answered];
+
+    assert_int_equal(LamTableQuery(table, &load, PETSC_INFINITY, &pair->answer), 0);
+    if (pair->answer.status != LAM_CONVERGED || pair->answer.error_estimate == 0) continue;
+    assert_int_equal(Respond(&t->solver, 1, &load, NULL, &pair->solve), 0);
+    if (pair->solve.status == LAM_CONVERGED) answered++;
+  }
+  assert_int_equal(LamTableDestroy(&table), 0);
+  return answered;
+}
+
+/* At least four of five estimates are within a factor of 5, at most `low` of all are too small by more than 2. */
+static void check_estimates(const Pair pairs[], int n, double low, PetscReal accuracy)
+{
+  int within = 0, too_small = 0;
+
+  for (int i = 0; i < n; i++) {
+    const double error = LamStressError(pairs[i].answer.P, pairs[i].solve.P), estimate = pairs[i].answer.error_estimate;
+
+    within += estimate > 0.2 * error && estimate < 5 * error;
+    too_small += estimate < 0.5 * error;
+    if (estimate <= accuracy) assert_in_range((uintmax_t)(1e9 * error), 0, (uintmax_t)(3e9 * accuracy));
+  }
+  assert_true(within >= 0.75 * n);
+  assert_true(too_small <= low * n);
+}
+
+static PetscBool IsClose(double a, double b)
+{
+  return (PetscBool)(fabs(a - b) < 0.1 * (fabs(b) + 0.0227));
+}
+
+/* Nineteen of twenty trusted answers: largest stresses within 10 %, shares of the interface within 0.1. */
+static void check_trust(const Pair pairs[], int n, double least)
+{
+  int trusted = 0, close = 0;
+
+  for (int i = 0; i < n; i++) {
+    const LamResponse *a = &pairs[i].answer, *b = &pairs[i].solve;
+
+    if (!a->indicators_trusted) continue;
+    trusted++;
+    close += IsClose(a->max_wall_tension, b->max_wall_tension) && IsClose(a->max_traction, b->max_traction) &&
+             fabs(a->open_fraction - b->open_fraction) < 0.1 && fabs(a->debonded_fraction - b->debonded_fraction) < 0.1;
+  }
+  assert_true(trusted >= least * n);
+  assert_true(close >= 0.93 * trusted);
+}
+
+static void check_bounds(const Pair pairs[], int n)
+{
+  for (int i = 0; i < n; i++) {
+    const LamResponse *a = &pairs[i].answer;
+    const PetscReal shares[] = {a->open_fraction, a->debonded_fraction, a->open_by_face[0], a->debonded_by_face[2]};
+
+    for (int k = 0; k < 4; k++) assert_true(shares[k] >= 0 && shares[k] <= 1);
+    assert_true(a->opening_fraction >= 0 && a->max_gap >= 0 && a->opening_by_face[1] >= 0);
+  }
+}
+
+static void bonded_answers_know_their_error(void **state)
+{
+  Pair pairs[BONDED_STATES];
+  Tissue t;
+  int n;
+
+  Start(bonded_scene, &t);
+  n = Compare(&t, 0.01, BONDED_STATES, pairs);
+  assert_int_equal(n, BONDED_STATES);
+  check_estimates(pairs, n, 0.02, 0.01);
+  check_trust(pairs, n, 0.05);
+  check_bounds(pairs, n);
+  Finish(&t);
+}
+
+static void contact_answers_know_their_error(void **state)
+{
+  Pair pairs[CONTACT_STATES];
+  Tissue t;
+  int n;
+
+  Start(contact_scene, &t);
+  n = Compare(&t, 0.03, CONTACT_STATES, pairs);
+  assert_true(n > CONTACT_STATES / 2);
+  check_estimates(pairs, n, 0.05, 0.03);
+  check_trust(pairs, n, 0.1);
+  check_bounds(pairs, n);
+  Finish(&t);
+}
+
+static PetscReal Sum(const PetscReal a[3])
+{
+  return a[0] + a[1] + a[2];
+}
+
+/* Same F, other turgor (with contact at the cost of cohesion): tension stays, tractions change by as much. */
+static void check_shift(const char scene[], LamLoad near, PetscReal d)
+{
+  PetscInt64 keys[LAM_MAX_NEEDS];
+  LamResponse answer, solve;
+  LamTable table;
+  LamGrid grid;
+  LamLoad load;
+  PetscInt n;
+  Tissue t;
+
+  Start(scene, &t);
+  assert_int_equal(LamDatabaseGetGrid(t.database, &grid), 0);
+  assert_int_equal(LamDatabaseGetTable(t.database, &table), 0);
+  assert_int_equal(LamTableNeeds(table, &near, 1, &n, keys), 0);
+  assert_int_equal(LamTableDestroy(&table), 0);
+  Refine(&t, &near, PETSC_INFINITY);
+  assert_int_equal(LamDatabaseGetTable(t.database, &table), 0);
+  /* at a node, where interpolation adds no error: the first whose cell is there */
+  answer.status = LAM_OUT_OF_REACH;
+  for (PetscInt k = 0; k < n && answer.status != LAM_CONVERGED; k++) {
+    assert_int_equal(LamGridNodeLoad(grid, keys[k], &load), 0);
+    for (int i = 0; i < 9; i += 4) load.F[i] *= i < 8 ? 1 + 1e-9 : 1; /* into the cell */
+    load.turgor += d;
+    if (t.scene->micro.interface == LAM_INTERFACE_CONTACT) load.cohesion -= d;
+    assert_int_equal(LamTableQuery(table, &load, PETSC_INFINITY, &answer), 0);
+  }
+  assert_int_equal(LamTableDestroy(&table), 0);
+  assert_int_equal(answer.status, LAM_CONVERGED);
+  assert_int_equal(Respond(&t.solver, 1, &load, NULL, &solve), 0);
+  assert_near(answer.max_wall_tension, solve.max_wall_tension, 2e-3);
+  assert_near(answer.max_traction, solve.max_traction, 2e-3);
+  /* which of three families that are alike comes apart is not determined */
+  assert_near(Sum(answer.mean_face_traction), Sum(solve.mean_face_traction), 2e-3);
+  Finish(&t);
+}
+
+static void turgor_at_fixed_walls_shifts_tractions_alone(void **state)
+{
+  const LamLoad bonded = {.F = {1.1, 0, 0, 0, 1.05, 0, 0, 0, 1}, .turgor = 0.2},
+                contact = {.F = {1.02, 0, 0, 0, 1.01, 0, 0, 0, 1}, .turgor = 0.3};
+
+  check_shift(bonded_scene, bonded, 0.2);
+  check_shift(contact_scene, contact, -0.1);
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(bonded_answers_know_their_error),
+      cmocka_unit_test(contact_answers_know_their_error),
+      cmocka_unit_test(turgor_at_fixed_walls_shifts_tractions_alone),
+  };
+  int failures;
+
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  failures = cmocka_run_group_tests(tests, NULL, NULL);
+  return PetscFinalize() ? 1 : failures;
+}
