@@ -35,10 +35,11 @@ PetscErrorCode LamPollDestroy(LamPoll *poll);
   ---- rounds: rank 0 decides which nodes are solved ----
 
   A round is all nodes that the table of the rounds before it lacks. With an accuracy, rounds go on until enough of the
-  box is answered to it; with a count, to any accuracy, then to 1/8, 1/16, ..., until there are so many nodes. What a
-  round asks for depends on the scene, the grid and the rounds before it only: records that the file has got already
-  are used in place of solves in the round that asks for their keys, and in no other. So a build that was interrupted
-  comes to the same nodes as one that was not, whatever else the file holds.
+  box is answered to it; with a count, to any accuracy, then to 1/8, 1/16, ..., until there are so many nodes. With an
+  accuracy they also end where two one after another have answered less than 1 % of the box more, and half of it is
+  answered. What a round asks for depends on the scene, the grid and the rounds before it only: records that the file
+  has got already are used in place of solves in the round that asks for their keys, and in no other. So a build that
+  was interrupted comes to the same nodes as one that was not, whatever else the file holds.
 */
 typedef struct {
   PetscInt64 key;
@@ -55,6 +56,7 @@ typedef struct {
   PetscInt64 known_failed; /* without an answer, of those that were known */
   PetscReal accuracy;      /* that is asked for now */
   LamPoll poll;            /* of the table */
+  PetscInt best, idle;     /* most states that a table has answered; rounds one after another that hardly added to it */
   /* the round under way: the first n keys of the poll */
   PetscInt n;
   LamResponse *responses; /* [n]; owned */
@@ -66,6 +68,8 @@ typedef struct {
 PetscErrorCode LamRoundsCreate(const LamScene *scene, LamDatabase file, LamGrid *grid, LamRounds *rounds);
 /* The next round of which something is missing; missing = 0: there is none, the build is at its end. */
 PetscErrorCode LamRoundsNext(LamRounds *rounds);
+/* Whether the rounds ended because they hardly added anything. */
+PetscBool LamRoundsAreIdle(const LamRounds *rounds);
 /* All responses are there: the round goes into the table. */
 PetscErrorCode LamRoundsComplete(LamRounds *rounds);
 /* Share of the box that is answered: to the accuracy, or with a count at all. */

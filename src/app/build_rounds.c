@@ -6,6 +6,10 @@
 #include <stdlib.h>
 
 enum { MOST_NODES = 200000 }; /* with an accuracy */
+/* With an accuracy: what a round is to add to the answered share, once that is large, and how often it may add less. */
+#define LEAST_GAIN 0.01
+#define WELL_ANSWERED 0.5
+enum { MOST_IDLE = 2 };
 /* With a count: the first accuracy after any, and the last. */
 #define FIRST_ACCURACY 0.125
 #define LAST_ACCURACY 1e-6
@@ -65,6 +69,21 @@ static PetscErrorCode Poll(LamRounds *rounds)
   PetscFunctionReturn(0);
 }
 
+PetscBool LamRoundsAreIdle(const LamRounds *rounds)
+{
+  return (PetscBool)(!rounds->scene->sample.count && rounds->idle >= MOST_IDLE);
+}
+
+/* What the last round has brought. */
+static void Compare(LamRounds *rounds)
+{
+  const LamPoll *poll = &rounds->poll;
+  const PetscBool gained = (PetscBool)(poll->answered >= rounds->best + LEAST_GAIN * poll->asked);
+
+  rounds->idle = gained || poll->answered < WELL_ANSWERED * poll->asked ? 0 : rounds->idle + 1;
+  rounds->best = PetscMax(rounds->best, poll->answered);
+}
+
 /* Asks the table; with a count for more and more, until it lacks something. */
 static PetscErrorCode PollUntilLacking(LamRounds *rounds)
 {
@@ -74,8 +93,10 @@ static PetscErrorCode PollUntilLacking(LamRounds *rounds)
     rounds->accuracy = PetscMin(FIRST_ACCURACY, rounds->accuracy / 2);
     PetscCall(Poll(rounds));
   }
+  Compare(rounds);
   rounds->n = 0;
-  if (!LamPollIsDone(&rounds->poll)) rounds->n = (PetscInt)PetscMin(rounds->poll.lacking, rounds->most - rounds->nodes);
+  if (!LamPollIsDone(&rounds->poll) && !LamRoundsAreIdle(rounds))
+    rounds->n = (PetscInt)PetscMin(rounds->poll.lacking, rounds->most - rounds->nodes);
   PetscFunctionReturn(0);
 }
 

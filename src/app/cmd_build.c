@@ -288,6 +288,8 @@ static void PrintTable(const Build *b, PetscLogDouble seconds)
   if (b->added) printf("%-16s %.3g\n", "nodes per s", (PetscReal)b->added / seconds);
   if (LamStopRequested())
     printf("%-16s %s\n", "ended", "stopped by a signal");
+  else if (LamRoundsAreIdle(&b->rounds) && !LamPollIsDone(poll))
+    printf("%-16s %s\n", "ended", "where two rounds answered less than 1 % of the box more");
   else if (accuracy && !LamPollIsDone(poll))
     printf("%-16s %s\n", "ended", "at the largest number of records");
 }
