@@ -18,6 +18,7 @@
 #include "grid.h"
 #include "hermite_cell.h"
 #include "node_data.h"
+#include <pthread.h>
 #include <stdatomic.h>
 
 /* One solved state: what it adds. */
@@ -35,14 +36,19 @@ typedef struct {
   PetscReal turgor_gradient[3], turgor_tau; /* of the first */
 } LamTableState;
 
+/* What is there of a node's states: nothing; all but mixed third derivatives and slopes along suction; all. */
+enum { LAM_NODE_RAW, LAM_NODE_SUBTRACTED, LAM_NODE_MADE };
+
 typedef struct {
   int i[3];
   int level;
   PetscInt first, count; /* states, ascending in j */
+  atomic_int stage;
 } LamTableNode;
 
 enum { LAM_NODE_MISSING = -1, LAM_NODE_FLOATING = -2 };
 
+/* Of cells there are no lists: whoever needs one finds its corners among the nodes. */
 typedef struct {
   int level, i[3]; /* corner of least strains */
   PetscInt node[8];
@@ -62,12 +68,13 @@ struct LamTable_s {
   atomic_int references;
   LamDatabase database;   /* borrowed */
   struct LamGrid_s *grid; /* borrowed */
-  PetscInt state_count, node_count, cell_count;
-  LamTableState *states;
-  LamTableNode *nodes;
-  LamTableCell *cells;
-  LamPlaceMap node_map, cell_map;
-  int levels;          /* one more than the finest of the cells */
+  PetscInt state_count, node_count;
+  PetscInt *data;        /* [state_count] in database->nodes */
+  LamTableState *states; /* written under the lock; read where the stage of their node is LAM_NODE_MADE */
+  LamTableNode *nodes;   /* ascending in level */
+  LamPlaceMap node_map;
+  pthread_mutex_t lock;
+  int levels;          /* one more than the finest of the nodes */
   PetscInt *free_data; /* [grid->free.n] in database->nodes, -1: not there */
 };
 
@@ -100,11 +107,33 @@ PetscErrorCode LamPlaceMapCreate(PetscInt n, LamPlaceMap *map);
 PetscErrorCode LamPlaceMapDestroy(LamPlaceMap *map);
 PetscInt LamPlaceMapGet(const LamPlaceMap *map, PetscInt64 key);      /* -1: not there */
 void LamPlaceMapSet(LamPlaceMap *map, PetscInt64 key, PetscInt item); /* key must be new */
-PetscInt64 LamPlaceMapKey(int level, const int i[3]);
+PetscInt64 LamPlaceMapKey(const int i[3]);
+
+/* ---- table_state.c ---- */
+/* Phi and its derivatives of a record; `data`: its number in database->nodes. */
+void LamTableMakeState(const struct LamGrid_s *grid, const LamNodeData *r, PetscInt data, LamTableState *state);
+
+/* ---- table_surplus.c ---- */
+/* Brings node n to LAM_NODE_MADE. From any thread. */
+void LamTableMakeNode(LamTable table, PetscInt n);
+
+/* The states of a node, ascending in j, made where they are not yet. */
+static inline const LamTableState *LamTableStates(LamTable table, const LamTableNode *node)
+{
+  if (atomic_load_explicit(&node->stage, memory_order_acquire) != LAM_NODE_MADE)
+    LamTableMakeNode(table, (PetscInt)(node - table->nodes));
+  return &table->states[node->first];
+}
+
+/* ---- table_cell.c ---- */
+/* Sorts i ascending where directions are alike. Returns the entry of LamAxisOrder that says where each axis went. */
+int LamTableSortAxes(PetscBool symmetric, const int i[3], int sorted[3]);
+/* Fills the cell with its corner of least strains at i (sorted). NULL where no node of its own level touches it. */
+const LamTableCell *LamTableCellAt(LamTable table, int level, const int i[3], LamTableCell *cell);
+/* The same for the cell of a level that holds the point. */
+const LamTableCell *LamTableFindCell(LamTable table, const LamTablePoint *point, int level, LamTableCell *cell);
 
 /* ---- table_sum.c ---- */
-/* The cell of a level that holds the point; NULL: none. */
-const LamTableCell *LamTableFindCell(LamTable table, const LamTablePoint *point, int level);
 /* Whether all corners have states on both sides of the point, or are known to float. *good: all of them are. */
 PetscBool LamTableCellIsComplete(LamTable table, const LamTableCell *cell, const LamTablePoint *point, PetscBool *good);
 /* The states of a node's column on either side of the point; NULL: missing. */

@@ -50,7 +50,7 @@ static void CountNodes(LamTable table, Census *c)
 {
   for (PetscInt n = 0; n < table->node_count; n++)
     for (PetscInt s = 0; s < table->nodes[n].count; s++)
-      CountState(table, &table->states[table->nodes[n].first + s], table->nodes[n].level, c);
+      CountState(table, &LamTableStates(table, &table->nodes[n])[s], table->nodes[n].level, c);
   for (PetscInt m = 0; m < table->grid->free.n; m++) c->free_cell += table->free_data[m] >= 0;
 }
 
@@ -72,18 +72,62 @@ static PetscBool IsComplete(LamTable table, const LamTableCell *cell, int root, 
   return complete;
 }
 
-static void CountCells(LamTable table, Census *c)
+static void CountCell(LamTable table, const LamTableCell *cell, Census *c)
 {
   const int intervals = table->grid->contact ? (int)table->grid->tau_cells : 1;
 
-  for (PetscInt i = 0; i < table->cell_count; i++)
-    for (int j = 0; j < intervals; j++) {
-      PetscBool mixed;
+  for (int j = 0; j < intervals; j++) {
+    PetscBool mixed;
 
-      if (!IsComplete(table, &table->cells[i], LAM_ROOT * j, &mixed)) continue;
-      c->complete[table->cells[i].level]++;
-      c->mixed[table->cells[i].level] += mixed;
+    if (!IsComplete(table, cell, LAM_ROOT * j, &mixed)) continue;
+    c->complete[cell->level]++;
+    c->mixed[cell->level] += mixed;
+  }
+}
+
+/* Each cell once: at the first of its corners whose own level is the cell's. */
+static PetscBool IsFirstCorner(LamTable table, const LamTableCell *cell, int corner)
+{
+  for (int c = 0; c < corner; c++)
+    if (cell->node[c] >= 0 && table->nodes[cell->node[c]].level == cell->level) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+/* Whether axis a of the sorted coordinates comes before axis b. */
+static PetscBool IsBefore(const int order[3], int a, int b)
+{
+  return (PetscBool)(order[0] == a || (order[0] != b && order[1] == a));
+}
+
+/* The cells on a node's own level around one of the places that its sorted coordinates stand for. */
+static void CountCellsAround(LamTable table, int level, const int at[3], Census *c)
+{
+  const int size = LAM_ROOT >> level;
+
+  for (int corner = 0; corner < 8; corner++) {
+    int i[3], sorted[3];
+    LamTableCell cell;
+
+    for (int k = 0; k < 3; k++) i[k] = at[k] - (corner >> k & 1 ? size : 0);
+    if (LamTableSortAxes(table->grid->symmetric, i, sorted)) continue;
+    if (LamTableCellAt(table, level, i, &cell) && IsFirstCorner(table, &cell, corner)) CountCell(table, &cell, c);
+  }
+}
+
+static void CountCells(LamTable table, Census *c)
+{
+  for (PetscInt n = 0; n < table->node_count; n++) {
+    const int *i = table->nodes[n].i;
+
+    for (int o = 0; o < (table->grid->symmetric ? 6 : 1); o++) {
+      const int *order = LamAxisOrder[o];
+      const int at[3] = {i[order[0]], i[order[1]], i[order[2]]};
+
+      /* of equal coordinates in one order alone: other ones give the same place */
+      if ((i[0] == i[1] && IsBefore(order, 1, 0)) || (i[1] == i[2] && IsBefore(order, 2, 1))) continue;
+      CountCellsAround(table, table->nodes[n].level, at, c);
     }
+  }
 }
 
 /* ---- JSON ---- */

@@ -46,9 +46,9 @@ void LamPlaceMapSet(LamPlaceMap *map, PetscInt64 key, PetscInt item)
   map->items[k] = item;
 }
 
-PetscInt64 LamPlaceMapKey(int level, const int i[3])
+PetscInt64 LamPlaceMapKey(const int i[3])
 {
-  PetscInt64 key = level;
+  PetscInt64 key = 0;
 
   for (int k = 0; k < 3; k++) key = (key << 15) | (PetscInt64)(i[k] + LAM_GRID_REACH);
   return key;

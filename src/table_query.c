@@ -46,6 +46,7 @@ typedef struct {
   LamTableSum sum;
   PetscReal leaf_gradient[3]; /* of the sum up to the leaf */
   const LamTableCell *child;  /* cell of the next finer level, incomplete; NULL: none */
+  LamTableCell cells[LAM_FINEST + 1];
 } Place;
 
 /* ---- finding the place ---- */
@@ -102,7 +103,7 @@ static void PlaceStrains(LamTable table, Place *place)
 static void SumLevels(LamTable table, Place *place)
 {
   for (int level = 0; level < table->levels; level++) {
-    const LamTableCell *cell = LamTableFindCell(table, &place->point, level);
+    const LamTableCell *cell = LamTableFindCell(table, &place->point, level, &place->cells[level]);
     PetscBool good, complete = PETSC_FALSE;
 
     if (!cell && !level) return;
@@ -368,9 +369,9 @@ static void Need(Needs *needs, const int at[3], int j)
     place.i[rank] = at[k];
   }
   key = LamNodeKeyOf(&place);
-  node = LamPlaceMapGet(&needs->table->node_map, LamPlaceMapKey(0, place.i));
+  node = LamPlaceMapGet(&needs->table->node_map, LamPlaceMapKey(place.i));
   for (PetscInt s = 0; node >= 0 && s < needs->table->nodes[node].count; s++) {
-    const LamTableState *state = &needs->table->states[needs->table->nodes[node].first + s];
+    const LamTableState *state = &LamTableStates(needs->table, &needs->table->nodes[node])[s];
 
     if (state->j != j) continue;
     if (!state->has_data) needs->hopeless = PETSC_TRUE;

@@ -5,8 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-const int LamAxisOrder[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
-
 /* ---- columns ---- */
 
 /* Where a point lies between two states: t in [0, 1], h the step in tau. */
@@ -18,7 +16,7 @@ typedef struct {
 
 void LamTableBracket(LamTable table, const LamTableNode *node, const LamTablePoint *point, const LamTableState *ends[2])
 {
-  const LamTableState *states = &table->states[node->first];
+  const LamTableState *states = LamTableStates(table, node);
   const int last = point->root + LAM_ROOT;
   PetscInt low = 0, high = node->count;
 
@@ -189,26 +187,6 @@ static void MakeColumn(LamTable table, const LamTableCell *cell, int corner, con
 }
 
 /* ---- cells ---- */
-
-static int CellCorner(PetscReal u, int level)
-{
-  const int size = LAM_ROOT >> level;
-
-  return (int)floor(u / size) * size;
-}
-
-const LamTableCell *LamTableFindCell(LamTable table, const LamTablePoint *point, int level)
-{
-  int i[3];
-  PetscInt at;
-
-  for (int k = 0; k < 3; k++) {
-    if (!(fabs(point->u[k]) < LAM_GRID_REACH - LAM_ROOT)) return NULL;
-    i[k] = CellCorner(point->u[k], level);
-  }
-  at = LamPlaceMapGet(&table->cell_map, LamPlaceMapKey(level, i));
-  return at < 0 ? NULL : &table->cells[at];
-}
 
 PetscBool LamTableCellIsComplete(LamTable table, const LamTableCell *cell, const LamTablePoint *point, PetscBool *good)
 {
