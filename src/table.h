@@ -61,7 +61,7 @@ extern const int LamAxisOrder[6][3];
 typedef struct {
   PetscInt64 *keys;
   PetscInt *items;
-  size_t size; /* power of 2; 0: empty */
+  size_t size; /* power of 2 */
 } LamPlaceMap;
 
 struct LamTable_s {
@@ -105,9 +105,29 @@ typedef struct {
 /* ---- table_map.c ---- */
 PetscErrorCode LamPlaceMapCreate(PetscInt n, LamPlaceMap *map);
 PetscErrorCode LamPlaceMapDestroy(LamPlaceMap *map);
-PetscInt LamPlaceMapGet(const LamPlaceMap *map, PetscInt64 key);      /* -1: not there */
 void LamPlaceMapSet(LamPlaceMap *map, PetscInt64 key, PetscInt item); /* key must be new */
-PetscInt64 LamPlaceMapKey(const int i[3]);
+
+static inline size_t LamPlaceMapSlot(const LamPlaceMap *map, PetscInt64 key)
+{
+  const uint64_t h = (uint64_t)key * 0x9E3779B97F4A7C15u; /* 2^64 over the golden ratio */
+
+  return (size_t)(h >> 20) & (map->size - 1);
+}
+
+/* -1: not there. */
+static inline PetscInt LamPlaceMapGet(const LamPlaceMap *map, PetscInt64 key)
+{
+  for (size_t k = LamPlaceMapSlot(map, key);; k = (k + 1) & (map->size - 1))
+    if (map->items[k] < 0 || map->keys[k] == key) return map->items[k];
+}
+
+static inline PetscInt64 LamPlaceMapKey(const int i[3])
+{
+  PetscInt64 key = 0;
+
+  for (int k = 0; k < 3; k++) key = (key << 15) | (PetscInt64)(i[k] + LAM_GRID_REACH);
+  return key;
+}
 
 /* ---- table_state.c ---- */
 /* Phi and its derivatives of a record; `data`: its number in database->nodes. */

@@ -15,27 +15,47 @@ int LamTableSortAxes(PetscBool symmetric, const int i[3], int sorted[3])
   return 2 * rank[0] + (rank[1] > rank[2]); /* LamAxisOrder ascends */
 }
 
+/*
+  The node at each corner, whose axes lie in the cell's order where the cell's coordinates differ: then the keys of
+  the corners differ by those of the steps. Returns whether one of them is of the cell's own level.
+*/
+static PetscBool FindCorners(LamTable table, LamTableCell *cell)
+{
+  const int size = LAM_ROOT >> cell->level, *i = cell->i;
+  const PetscBool differ = (PetscBool)(!table->grid->symmetric || (i[0] < i[1] && i[1] < i[2]));
+  const PetscInt64 least = LamPlaceMapKey(i), step[3] = {(PetscInt64)size << 30, (PetscInt64)size << 15, size};
+  PetscBool touched = PETSC_FALSE;
+
+  for (int c = 0; c < 8; c++) {
+    PetscInt64 key = least + (c & 1) * step[0] + (c >> 1 & 1) * step[1] + (c >> 2) * step[2];
+
+    cell->order[c] = 0;
+    if (!differ) {
+      const int at[3] = {i[0] + (c & 1) * size, i[1] + (c >> 1 & 1) * size, i[2] + (c >> 2) * size};
+      int sorted[3];
+
+      cell->order[c] = (unsigned char)LamTableSortAxes(PETSC_TRUE, at, sorted);
+      key = LamPlaceMapKey(sorted);
+    }
+    cell->node[c] = LamPlaceMapGet(&table->node_map, key);
+    if (cell->node[c] >= 0 && table->nodes[cell->node[c]].level == cell->level) touched = PETSC_TRUE;
+  }
+  return touched;
+}
+
 const LamTableCell *LamTableCellAt(LamTable table, int level, const int i[3], LamTableCell *cell)
 {
   const int size = LAM_ROOT >> level;
-  PetscBool touched = PETSC_FALSE;
 
   cell->level = level;
   for (int k = 0; k < 3; k++) cell->i[k] = i[k];
+  if (!FindCorners(table, cell)) return NULL;
   for (int c = 0; c < 8; c++) {
-    const int at[3] = {i[0] + (c & 1 ? size : 0), i[1] + (c & 2 ? size : 0), i[2] + (c & 4 ? size : 0)};
-    int sorted[3];
-    PetscInt node;
+    const int at[3] = {i[0] + (c & 1) * size, i[1] + (c >> 1 & 1) * size, i[2] + (c >> 2) * size};
 
-    cell->order[c] = (unsigned char)LamTableSortAxes(table->grid->symmetric, at, sorted);
-    node = LamPlaceMapGet(&table->node_map, LamPlaceMapKey(sorted));
-    if (node >= 0)
-      touched = (PetscBool)(touched || table->nodes[node].level == level);
-    else
-      node = LamPlaceIsFloating(table->grid, at) ? LAM_NODE_FLOATING : LAM_NODE_MISSING;
-    cell->node[c] = node;
+    if (cell->node[c] < 0) cell->node[c] = LamPlaceIsFloating(table->grid, at) ? LAM_NODE_FLOATING : LAM_NODE_MISSING;
   }
-  return touched ? cell : NULL;
+  return cell;
 }
 
 const LamTableCell *LamTableFindCell(LamTable table, const LamTablePoint *point, int level, LamTableCell *cell)
