@@ -68,7 +68,8 @@ static PetscErrorCode CompareBetweenKnots(LamResponder *solver, const LamFreeCel
     worst[2] = fmax(worst[2], fabs(energy[1] - r.energy_turgor));
     worst[3] = fmax(worst[3], fabs(energy[2] - r.energy_turgor2));
     worst[4] = fmax(worst[4], fabs(turgor[0][0] - (r.energy_turgor - r.energy_cohesion + J)));
-    worst[5] = fmax(worst[5], fabs(turgor[1][0] - (r.energy_turgor2 - 2 * r.energy_turgor_cohesion + r.energy_cohesion2)));
+    worst[5] =
+        fmax(worst[5], fabs(turgor[1][0] - (r.energy_turgor2 - 2 * r.energy_turgor_cohesion + r.energy_cohesion2)));
   }
   printf("largest error between the knots: a %.1e, Phi %.1e, dPhi/ds %.1e, d2Phi/ds2 %.1e, dPhi/dp %.1e, d2Phi/dp2 "
          "%.1e\n",
