@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <cmocka.h>
 #include "table_fixture.h"
+#include "database_internal.h"
 #include <pthread.h>
 #include <unistd.h>
 
@@ -96,10 +97,8 @@ static void *Read(void *ctx)
   return NULL;
 }
 
-static void ReadInThreads(LamTable table)
+static void AskAlone(LamTable table)
 {
-  Reader readers[THREADS];
-  pthread_t threads[THREADS];
   PetscInt answered = 0;
 
   for (PetscInt i = 0; i < QUESTIONS; i++) {
@@ -107,6 +106,13 @@ static void ReadInThreads(LamTable table)
     answered += alone[i].status == LAM_CONVERGED;
   }
   assert_true(answered > QUESTIONS / 2 && answered < QUESTIONS);
+}
+
+static void ReadInThreads(LamTable table)
+{
+  Reader readers[THREADS];
+  pthread_t threads[THREADS];
+
   for (int t = 0; t < THREADS; t++) {
     readers[t] = (Reader){.table = table, .first = t * QUESTIONS / THREADS};
     assert_int_equal(pthread_create(&threads[t], NULL, Read, &readers[t]), 0);
@@ -122,6 +128,7 @@ static void threads_that_ask_a_table_are_answered_alike(void **state)
   LamTable table;
 
   assert_int_equal(LamDatabaseGetTable(database, &table), 0);
+  AskAlone(table);
   ReadInThreads(table);
   assert_int_equal(LamTableDestroy(&table), 0);
 }
@@ -129,7 +136,19 @@ static void threads_that_ask_a_table_are_answered_alike(void **state)
 /* The first question, asked by one thread alone, makes the table. */
 static void threads_that_ask_a_database_are_answered_alike(void **state)
 {
+  AskAlone(NULL);
   ReadInThreads(NULL);
+}
+
+/* No node of this table has been made before the threads ask. */
+static void threads_that_make_the_nodes_of_a_table_are_answered_alike(void **state)
+{
+  LamTable table;
+
+  AskAlone(NULL);
+  assert_int_equal(LamTableMake(database, &table), 0);
+  ReadInThreads(table);
+  assert_int_equal(LamTableDestroy(&table), 0);
 }
 
 int main(void)
@@ -137,6 +156,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(threads_that_ask_a_table_are_answered_alike),
       cmocka_unit_test(threads_that_ask_a_database_are_answered_alike),
+      cmocka_unit_test(threads_that_make_the_nodes_of_a_table_are_answered_alike),
   };
 
   return cmocka_run_group_tests(tests, Setup, Teardown);
