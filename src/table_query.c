@@ -81,6 +81,14 @@ static PetscBool PlaceSuction(LamTable table, const LamLoad *load, Place *place,
   return PETSC_TRUE;
 }
 
+/* A strain on a face of cells, but for rounding, lies on it: the edge of a box is part of it, in any rotation. */
+static PetscReal OnFace(PetscReal u)
+{
+  const PetscReal nearest = rint(u), rounding = 1e-11;
+
+  return fabs(u - nearest) < rounding ? nearest : u;
+}
+
 static void PlaceStrains(LamTable table, Place *place)
 {
   const struct LamGrid_s *grid = table->grid;
@@ -88,7 +96,7 @@ static void PlaceStrains(LamTable table, Place *place)
 
   place->floating = (PetscBool)(grid->free.n > 0);
   for (int k = 0; k < 3; k++) {
-    u[k] = (place->lattice.x[k] - grid->origin - place->free_strain[0]) / grid->step * LAM_ROOT;
+    u[k] = OnFace((place->lattice.x[k] - grid->origin - place->free_strain[0]) / grid->step * LAM_ROOT);
     place->floating = (PetscBool)(place->floating && u[k] >= 0);
   }
   for (int k = 0; k < 3; k++) {

@@ -132,6 +132,22 @@ static void an_answer_that_is_not_accurate_says_so(void **state)
   AnalyticTableClose(&t);
 }
 
+/* Rounding puts about half of the rotations below the edge. */
+static void the_edge_of_the_box_is_part_of_it_in_any_rotation(void **state)
+{
+  static const int corner[3] = {0, 0, 0};
+  static const double edge[3] = {0, 0, 20};
+  AnalyticTable t = AnalyticTableOpen(PETSC_FALSE, 0.2);
+
+  AddBlock(&t, 0, corner, 1, 1);
+  for (int n = 0; n < 40; n++) {
+    const LamLoad load = LoadAt(&t, edge, 0, 0.17 * n);
+
+    assert_int_equal(AskFor(&t, &load, PETSC_INFINITY).status, LAM_CONVERGED);
+  }
+  AnalyticTableClose(&t);
+}
+
 static void beyond_the_suctions_no_node_helps(void **state)
 {
   AnalyticTable t = AnalyticTableOpen(PETSC_TRUE, 0.2);
@@ -410,6 +426,7 @@ int main(void)
       cmocka_unit_test(what_is_needed_makes_the_answer),
       cmocka_unit_test(an_answer_that_is_not_accurate_says_so),
       cmocka_unit_test(beyond_the_suctions_no_node_helps),
+      cmocka_unit_test(the_edge_of_the_box_is_part_of_it_in_any_rotation),
       cmocka_unit_test(far_out_no_node_helps),
       cmocka_unit_test(a_cell_with_an_unstable_corner_is_refused_its_children_are_not),
       cmocka_unit_test(a_cell_with_a_corner_on_another_branch_is_refused_its_children_are_not),
