@@ -64,7 +64,7 @@ static PetscInt Collect(const LamAudit *a, size_t offset, PetscReal values[])
 
     if (a->results[i].compared && isfinite(value)) values[n++] = value;
   }
-  qsort(values, (size_t)n, sizeof(*values), Ascending);
+  if (n) qsort(values, (size_t)n, sizeof(*values), Ascending);
   return n;
 }
 

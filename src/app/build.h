@@ -23,10 +23,12 @@ typedef struct {
   PetscReal error;   /* estimated error that 95 % of those reached stay below; NaN: none is */
   char reason[192];  /* of the first that is refused */
   PetscInt lacking;
-  PetscInt64 *keys; /* [lacking] the nodes that it lacks for those that wait, sorted; owned */
+  PetscInt64 *keys; /* [lacking] nodes that it lacks for those that wait, sorted; owned */
 } LamPoll;
 
-PetscErrorCode LamPollMake(const LamScene *scene, LamDatabase database, PetscReal accuracy, LamPoll *poll);
+/* `enough`: of what is lacking, so many nodes are listed, of the cells that most states wait for. */
+PetscErrorCode LamPollMake(const LamScene *scene, LamDatabase database, PetscReal accuracy, PetscInt enough,
+                           LamPoll *poll);
 /* Whether enough of the box is answered: the last states of 200 are not chased. */
 PetscBool LamPollIsDone(const LamPoll *poll);
 PetscErrorCode LamPollDestroy(LamPoll *poll);

@@ -25,6 +25,45 @@ static int CompareReals(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
+/* What a cell lacks, and how many states wait for it. */
+typedef struct {
+  PetscInt n, states;
+  PetscInt64 keys[LAM_MAX_NEEDS];
+} Wish;
+
+static int CompareWishes(const void *a, const void *b)
+{
+  const Wish *x = a, *y = b;
+
+  for (PetscInt i = 0; i < PetscMin(x->n, y->n); i++)
+    if (x->keys[i] != y->keys[i]) return x->keys[i] < y->keys[i] ? -1 : 1;
+  return (x->n > y->n) - (x->n < y->n);
+}
+
+/* Most states for a node first. */
+static int CompareDemand(const void *a, const void *b)
+{
+  const Wish *x = a, *y = b;
+  const PetscInt64 first = (PetscInt64)x->states * y->n, second = (PetscInt64)y->states * x->n;
+
+  return first != second ? (first > second ? -1 : 1) : CompareWishes(a, b);
+}
+
+/* One wish for each cell; returns their number. */
+static PetscInt MergeWishes(PetscInt n, Wish wishes[])
+{
+  PetscInt merged = 0;
+
+  if (n) qsort(wishes, (size_t)n, sizeof(*wishes), CompareWishes);
+  for (PetscInt i = 0; i < n; i++) {
+    if (merged && !CompareWishes(&wishes[i], &wishes[merged - 1]))
+      wishes[merged - 1].states++;
+    else
+      wishes[merged++] = wishes[i];
+  }
+  return merged;
+}
+
 /* Sorts the keys and keeps one of each. */
 static void SortUnique(LamPoll *poll)
 {
@@ -37,26 +76,28 @@ static void SortUnique(LamPoll *poll)
   poll->lacking = n + 1;
 }
 
-static PetscErrorCode Lack(LamPoll *poll, PetscInt n, const PetscInt64 keys[], PetscInt *capacity)
+/* The nodes of the cells that most states wait for, at least `enough` of them where so many are lacking. */
+static PetscErrorCode ChooseNodes(PetscInt n, Wish wishes[], PetscInt enough, LamPoll *poll)
 {
+  const PetscInt cells = MergeWishes(n, wishes);
+
   PetscFunctionBeginUser;
-  if (poll->lacking + n > *capacity) {
-    SortUnique(poll);
-    *capacity = PetscMax(*capacity, 2 * (poll->lacking + n));
-    PetscCall(PetscRealloc((size_t)*capacity * sizeof(*poll->keys), &poll->keys));
+  PetscCall(PetscMalloc1((size_t)cells * LAM_MAX_NEEDS + 1, &poll->keys));
+  if (cells) qsort(wishes, (size_t)cells, sizeof(*wishes), CompareDemand);
+  for (PetscInt c = 0; c < cells && poll->lacking < enough; c++) {
+    PetscCall(PetscArraycpy(poll->keys + poll->lacking, wishes[c].keys, wishes[c].n));
+    poll->lacking += wishes[c].n;
+    if (poll->lacking >= enough) SortUnique(poll); /* cells share nodes */
   }
-  if (n) PetscCall(PetscArraycpy(poll->keys + poll->lacking, keys, n));
-  poll->lacking += n;
+  SortUnique(poll);
   PetscFunctionReturn(0);
 }
 
 /* One state; *error is infinite where the table does not reach it. */
-static PetscErrorCode Ask(LamTable table, const LamLoad *load, PetscReal accuracy, LamPoll *poll, PetscInt *capacity,
+static PetscErrorCode Ask(LamTable table, const LamLoad *load, PetscReal accuracy, LamPoll *poll, Wish *wish,
                           PetscReal *error)
 {
-  PetscInt64 keys[LAM_MAX_NEEDS];
   LamResponse answer;
-  PetscInt n;
 
   PetscFunctionBeginUser;
   PetscCall(LamTableQuery(table, load, PETSC_INFINITY, &answer));
@@ -65,9 +106,8 @@ static PetscErrorCode Ask(LamTable table, const LamLoad *load, PetscReal accurac
     poll->answered++;
     PetscFunctionReturn(0);
   }
-  PetscCall(LamTableNeeds(table, load, accuracy, &n, keys));
-  PetscCall(Lack(poll, n, keys, capacity));
-  if (n) PetscFunctionReturn(0);
+  PetscCall(LamTableNeeds(table, load, accuracy, &wish->n, wish->keys));
+  if (wish->n) PetscFunctionReturn(0);
   if (!poll->refused++) {
     PetscCall(LamTableQuery(table, load, accuracy, &answer));
     PetscCall(PetscStrncpy(poll->reason, answer.reason, sizeof(poll->reason)));
@@ -75,28 +115,35 @@ static PetscErrorCode Ask(LamTable table, const LamLoad *load, PetscReal accurac
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode AskAll(const LamScene *scene, LamTable table, PetscReal accuracy, LamPoll *poll)
+static PetscErrorCode AskAll(const LamScene *scene, LamTable table, PetscReal accuracy, PetscInt enough, LamPoll *poll)
 {
   PetscReal *errors, error;
-  PetscInt capacity = 0;
+  Wish *wishes;
+  PetscInt n = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(poll->asked, &errors));
+  PetscCall(PetscMalloc1(poll->asked, &wishes));
   for (PetscInt i = 0; i < poll->asked; i++) {
     LamLoad load;
 
     LamSampleLoad(scene, i, &load);
-    PetscCall(Ask(table, &load, accuracy, poll, &capacity, &error));
+    wishes[n].n = 0;
+    wishes[n].states = 1;
+    PetscCall(Ask(table, &load, accuracy, poll, &wishes[n], &error));
+    if (wishes[n].n) n++;
     if (isfinite(error)) errors[poll->reached++] = error;
   }
   qsort(errors, (size_t)poll->reached, sizeof(*errors), CompareReals);
   poll->error = poll->reached ? errors[(PetscInt)(QUANTILE * (PetscReal)(poll->reached - 1))] : NAN;
   PetscCall(PetscFree(errors));
-  SortUnique(poll);
+  PetscCall(ChooseNodes(n, wishes, enough, poll));
+  PetscCall(PetscFree(wishes));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamPollMake(const LamScene *scene, LamDatabase database, PetscReal accuracy, LamPoll *poll)
+PetscErrorCode LamPollMake(const LamScene *scene, LamDatabase database, PetscReal accuracy, PetscInt enough,
+                           LamPoll *poll)
 {
   PetscErrorCode ierr;
   LamTable table;
@@ -104,7 +151,7 @@ PetscErrorCode LamPollMake(const LamScene *scene, LamDatabase database, PetscRea
   PetscFunctionBeginUser;
   *poll = (LamPoll){.asked = scene->micro.interface == LAM_INTERFACE_CONTACT ? CONTACT_STATES : BONDED_STATES};
   PetscCall(LamDatabaseGetTable(database, &table));
-  ierr = AskAll(scene, table, accuracy, poll);
+  ierr = AskAll(scene, table, accuracy, enough, poll);
   PetscCall(LamTableDestroy(&table));
   PetscCall(ierr);
   PetscFunctionReturn(0);

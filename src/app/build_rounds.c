@@ -6,6 +6,8 @@
 #include <stdlib.h>
 
 enum { MOST_NODES = 200000 }; /* with an accuracy */
+/* Nodes of a round: so many, or a share of what is there. Few, so that the next round asks a better table. */
+enum { LEAST_ROUND = 100, ROUND_SHARE = 4 };
 /* With an accuracy: what a round is to add to the answered share, once that is large, and how often it may add less. */
 #define LEAST_GAIN 0.01
 #define WELL_ANSWERED 0.5
@@ -65,7 +67,8 @@ static PetscErrorCode Poll(LamRounds *rounds)
 {
   PetscFunctionBeginUser;
   PetscCall(LamPollDestroy(&rounds->poll));
-  PetscCall(LamPollMake(rounds->scene, rounds->table, rounds->accuracy, &rounds->poll));
+  PetscCall(LamPollMake(rounds->scene, rounds->table, rounds->accuracy,
+                        PetscMax(LEAST_ROUND, rounds->nodes / ROUND_SHARE), &rounds->poll));
   PetscFunctionReturn(0);
 }
 
