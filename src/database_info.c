@@ -2,27 +2,12 @@
   What `info` tells of a file, as JSON.
 */
 #include "table.h"
+#include "range.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define PA_PER_MPA 1e6
-
-typedef struct {
-  PetscReal least, most;
-} Range;
-
-static void Widen(Range *range, PetscReal value)
-{
-  range->least = PetscMin(range->least, value);
-  range->most = PetscMax(range->most, value);
-}
-
-/* An empty range is null: min > max would not be finite. */
-static json_t *RangeToJSON(const Range *range, PetscReal scale)
-{
-  return range->least <= range->most ? json_pack("[f, f]", range->least * scale, range->most * scale) : json_null();
-}
 
 /* Principal logarithmic strains in the plane, from C = F^T F; F: 11 12 21 22. */
 static void PrincipalStrains(const PetscReal F[4], PetscReal strain[2])
@@ -36,7 +21,7 @@ static void PrincipalStrains(const PetscReal F[4], PetscReal strain[2])
 
 /* What the usable records span, and how many there are of each status. */
 typedef struct {
-  Range strain, turgor, cohesion;
+  LamRange strain, turgor, cohesion;
   PetscInt counts[LAM_STATUS_COUNT];
 } Summary;
 
@@ -47,15 +32,15 @@ static void Count(Summary *s, LamStatus status, const PetscReal F[4], PetscReal 
   s->counts[status]++;
   if (status != LAM_CONVERGED) return;
   PrincipalStrains(F, principal);
-  Widen(&s->strain, principal[0]);
-  Widen(&s->strain, principal[1]);
-  Widen(&s->turgor, turgor);
-  Widen(&s->cohesion, cohesion);
+  LamRangeWiden(&s->strain, principal[0]);
+  LamRangeWiden(&s->strain, principal[1]);
+  LamRangeWiden(&s->turgor, turgor);
+  LamRangeWiden(&s->cohesion, cohesion);
 }
 
 static void Summarise(LamDatabase db, Summary *s)
 {
-  const Range nothing = {PETSC_INFINITY, PETSC_NINFINITY};
+  const LamRange nothing = {PETSC_INFINITY, PETSC_NINFINITY};
 
   *s = (Summary){.strain = nothing, .turgor = nothing, .cohesion = nothing};
   for (PetscInt i = 0; i < db->node_count; i++) {
@@ -76,8 +61,8 @@ static json_t *Coverage(const LamHeader *h, const Summary *s)
 {
   const PetscReal MPa = h->scales.stress / PA_PER_MPA;
 
-  return json_pack("{s:o, s:o, s:o}", "principal_log_strain", RangeToJSON(&s->strain, 1), "turgor",
-                   RangeToJSON(&s->turgor, MPa), "cohesion", RangeToJSON(&s->cohesion, MPa));
+  return json_pack("{s:o, s:o, s:o}", "principal_log_strain", LamRangeToJSON(&s->strain, 1), "turgor",
+                   LamRangeToJSON(&s->turgor, MPa), "cohesion", LamRangeToJSON(&s->cohesion, MPa));
 }
 
 static json_t *Statuses(const Summary *s)

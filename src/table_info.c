@@ -2,29 +2,15 @@
   What `info` tells of a table: how many nodes and cells of each level, what they span, what cannot be used.
 */
 #include "table.h"
+#include "range.h"
 
 enum { TRIED = 16 }; /* suctions of a root interval */
-
-typedef struct {
-  PetscReal least, most;
-} Range;
-
-static void Widen(Range *range, PetscReal value)
-{
-  range->least = PetscMin(range->least, value);
-  range->most = PetscMax(range->most, value);
-}
-
-static json_t *RangeToJSON(const Range *range, PetscReal scale)
-{
-  return range->least <= range->most ? json_pack("[f, f]", range->least * scale, range->most * scale) : json_null();
-}
 
 typedef struct {
   PetscInt nodes[LAM_FINEST + 1];                               /* states, by the level of their place */
   PetscInt complete[LAM_FINEST + 1], mixed[LAM_FINEST + 1];     /* cells; over an interval of suction each */
   PetscInt unstable, other_branch, failed, floating, free_cell; /* states */
-  Range strain, suction;                                        /* of states that are used */
+  LamRange strain, suction;                                     /* of states that are used */
 } Census;
 
 /* ---- nodes ---- */
@@ -42,8 +28,8 @@ static void CountState(LamTable table, const LamTableState *state, int level, Ce
     c->other_branch++;
   if (data->floating_cells > 0) c->floating++;
   if (!state->good) return;
-  for (int k = 0; k < 3; k++) Widen(&c->strain, LamLatticeStateOf(&table->grid->axes, data->F).x[k]);
-  Widen(&c->suction, data->turgor + data->cohesion);
+  for (int k = 0; k < 3; k++) LamRangeWiden(&c->strain, LamLatticeStateOf(&table->grid->axes, data->F).x[k]);
+  LamRangeWiden(&c->suction, data->turgor + data->cohesion);
 }
 
 static void CountNodes(LamTable table, Census *c)
@@ -144,24 +130,24 @@ static json_t *GridToJSON(const struct LamGrid_s *grid, PetscReal MPa)
 {
   json_t *object =
       json_pack("{s:f, s:f, s:b}", "step", grid->step, "origin", grid->origin, "symmetric", (int)grid->symmetric);
-  Range suction, strain = {PETSC_INFINITY, PETSC_NINFINITY};
+  LamRange suction, strain = {PETSC_INFINITY, PETSC_NINFINITY};
 
   if (!grid->contact) {
     json_object_set_new(object, "turgor", json_real(grid->turgor * MPa));
     return object;
   }
-  suction = (Range){LamGridSuction(grid, 0), LamGridSuction(grid, LAM_ROOT * grid->tau_cells)};
-  for (PetscInt m = 0; m < grid->free.n; m++) Widen(&strain, grid->free.strain[m]);
+  suction = (LamRange){LamGridSuction(grid, 0), LamGridSuction(grid, LAM_ROOT * grid->tau_cells)};
+  for (PetscInt m = 0; m < grid->free.n; m++) LamRangeWiden(&strain, grid->free.strain[m]);
   json_object_set_new(object, "cohesion", json_real(grid->cohesion * MPa));
-  json_object_set_new(object, "suction", RangeToJSON(&suction, MPa));
+  json_object_set_new(object, "suction", LamRangeToJSON(&suction, MPa));
   json_object_set_new(object, "suction_intervals", json_integer(grid->tau_cells));
-  json_object_set_new(object, "free_cell_strain", RangeToJSON(&strain, 1));
+  json_object_set_new(object, "free_cell_strain", LamRangeToJSON(&strain, 1));
   return object;
 }
 
 PetscErrorCode LamTableDescribe(LamTable table, PetscReal MPa, json_t **object)
 {
-  const Range nothing = {PETSC_INFINITY, PETSC_NINFINITY};
+  const LamRange nothing = {PETSC_INFINITY, PETSC_NINFINITY};
   Census c = {.strain = nothing, .suction = nothing};
 
   PetscFunctionBeginUser;
@@ -170,8 +156,8 @@ PetscErrorCode LamTableDescribe(LamTable table, PetscReal MPa, json_t **object)
   *object = json_pack("{s:I, s:I, s:o, s:o, s:o, s:o}", "nodes", (json_int_t)table->state_count, "places",
                       (json_int_t)table->node_count, "nodes_by_level", Levels(table, c.nodes), "cells_by_level",
                       Levels(table, c.complete), "mixed_cells_by_level", Levels(table, c.mixed), "lattice_strain",
-                      RangeToJSON(&c.strain, 1));
-  if (table->grid->contact) json_object_set_new(*object, "suction", RangeToJSON(&c.suction, MPa));
+                      LamRangeToJSON(&c.strain, 1));
+  if (table->grid->contact) json_object_set_new(*object, "suction", LamRangeToJSON(&c.suction, MPa));
   json_object_set_new(*object, "flags",
                       json_pack("{s:I, s:I, s:I, s:I}", "unstable", (json_int_t)c.unstable, "other_branch",
                                 (json_int_t)c.other_branch, "failed", (json_int_t)c.failed, "floating",

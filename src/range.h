@@ -1,0 +1,26 @@
+/*
+  The span of numbers that `info` tells.
+*/
+#ifndef LAM_RANGE_H
+#define LAM_RANGE_H
+
+#include <jansson.h>
+#include <petscsys.h>
+
+typedef struct {
+  PetscReal least, most;
+} LamRange;
+
+static inline void LamRangeWiden(LamRange *range, PetscReal value)
+{
+  range->least = PetscMin(range->least, value);
+  range->most = PetscMax(range->most, value);
+}
+
+/* An empty range is null: min > max would not be finite. */
+static inline json_t *LamRangeToJSON(const LamRange *range, PetscReal scale)
+{
+  return range->least <= range->most ? json_pack("[f, f]", range->least * scale, range->most * scale) : json_null();
+}
+
+#endif
