@@ -75,7 +75,7 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, LamBorder *bord
   rve->contact->hysteresis = LAM_HYSTERESIS;
   PetscCall(LamContactStepCreate(rve, &step));
   step.border = border;
-  for (PetscInt it = 0; it <= most && rve->work.iterations < LAM_ITERATION_BUDGET; ++it) {
+  for (PetscInt it = 0; it <= most && LamMayIterate(rve); ++it) {
     const PetscReal compliance =
         compliant && it < COMPLIANT_ITERATIONS ? COMPLIANCE * PetscPowReal(COMPLIANCE_DECAY, (PetscReal)it) : 0.0;
     PetscReal energy, norm, gap, alpha;

@@ -39,8 +39,7 @@ static PetscErrorCode SolveBonded(LamRVE rve, const LamLoad *load, LamRVEState s
   PetscCall(LamRVESetMonitor(rve->bonded, rve->monitor));
   PetscCall(LamRVEStateCopy(state, rve->bonded_state));
   PetscCall(LamRVESolve(rve->bonded, load, rve->bonded_state, &response));
-  rve->work.iterations += response.newton_iterations;
-  rve->work.factorisations += response.factorisations;
+  LamAddWork(rve, &response);
   *ok = LamResponseHasFields(&response);
   PetscFunctionReturn(0);
 }
@@ -76,7 +75,7 @@ static PetscErrorCode Release(LamRVE rve, const LamLoad *load, LamContactSolutio
   PetscCall(LamContactStartBonded(rve, load, &ok));
   if (!ok) PetscFunctionReturn(0);
   PetscCall(LamContactSave(rve, load, at));
-  while (share > 0.0 && rve->work.iterations < LAM_ITERATION_BUDGET) {
+  while (share > 0.0 && LamMayIterate(rve)) {
     const PetscInt iterations = rve->work.iterations;
     PetscBool reached = PETSC_FALSE;
 
@@ -116,7 +115,7 @@ static PetscErrorCode Substeps(LamRVE rve, LamContactSolution *at, const LamLoad
   PetscReal reached = 0.0, step = 0.25;
 
   PetscFunctionBeginUser;
-  while (reached < 1.0 && rve->work.iterations < LAM_ITERATION_BUDGET && step >= MIN_SUBSTEP) {
+  while (reached < 1.0 && LamMayIterate(rve) && step >= MIN_SUBSTEP) {
     const PetscReal t = PetscMin(1.0, reached + step);
     const LamLoad next = t >= 1.0 ? *load : LamLoadBetween(&start, load, t);
 
@@ -141,7 +140,7 @@ static PetscErrorCode ComeDown(LamRVE rve, const LamLoad *load, LamContactSoluti
   LamLoad next = *load;
 
   PetscFunctionBeginUser;
-  while (added > 0.0 && rve->work.iterations < LAM_ITERATION_BUDGET && factor <= LEAST_EASE) {
+  while (added > 0.0 && LamMayIterate(rve) && factor <= LEAST_EASE) {
     const PetscReal less = added * factor < LOOSE * TIGHT ? 0.0 : added * factor;
 
     next.cohesion = load->cohesion + less;
@@ -305,7 +304,7 @@ static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state,
   PetscCall(LamContactSolutionCreate(rve, &at));
   PetscCall(LamContactSolutionCreate(rve, &best.at));
   *out = (LamContactOutcome){0};
-  for (PetscInt k = near ? 0 : 1; k < 7 && !LamContactIsStable(out); ++k) {
+  for (PetscInt k = near ? 0 : 1; k < 7 && !LamContactIsStable(out) && !rve->work.stopped; ++k) {
     PetscCall(Remember(rve, load, out, &best));
     *out = (LamContactOutcome){0};
     if (k == 0) {

@@ -175,7 +175,7 @@ PetscErrorCode LamContactNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOu
   if (!LamSetConsistentStresses(rve, load, rve->y)) PetscFunctionReturn(0);
   PetscCall(LamContactStepCreate(rve, &step));
   PetscCall(PetscMalloc2(rve->ndof, &best.y, contact->count, &best.lambda));
-  for (PetscInt it = 0; it < SAFE_ITERATIONS && rve->work.iterations < LAM_ITERATION_BUDGET; ++it) {
+  for (PetscInt it = 0; it < SAFE_ITERATIONS && LamMayIterate(rve); ++it) {
     PetscReal energy, norm = PETSC_INFINITY, alpha;
     PetscBool valid, moved;
     Merit now = {0};

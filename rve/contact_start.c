@@ -114,8 +114,7 @@ static PetscErrorCode FitMultipliers(LamRVE rve, const LamLoad *load, PetscBool 
   for (PetscInt h = 0; h < contact->count; ++h) contact->active[h] = (PetscBool)(contact->weight[h] > 0.0);
   PetscCall(PetscArrayzero(rve->linear.values, rve->linear.nonzeros));
   LamContactSetRows(rve, 0.0);
-  PetscCall(LamLinearFactor(&rve->linear, 1.0, &negative, ok));
-  ++rve->work.factorisations;
+  PetscCall(LamRVEFactor(rve, 1.0, &negative, ok));
   if (!*ok) PetscFunctionReturn(0);
   PetscCall(PetscCalloc2(rve->linear.n, &rhs, rve->linear.n, &solution));
   for (PetscInt i = 0; i < positions; ++i) rhs[i] = -rve->residual[i + 2];

@@ -54,8 +54,7 @@ static PetscErrorCode FactorStable(LamRVE rve, PetscBool again, LamContactStep *
   for (PetscInt i = 0; i < rve->linear.positions; ++i)
     diagonal = PetscMax(diagonal, PetscAbsReal(rve->linear.values[rve->linear.row[i]]));
   for (PetscInt attempt = 0; attempt < 40; ++attempt) {
-    PetscCall(LamLinearFactor(&rve->linear, shift, &negative, ok));
-    ++rve->work.factorisations;
+    PetscCall(LamRVEFactor(rve, shift, &negative, ok));
     if (*ok && negative <= active) break;
     *ok = PETSC_FALSE;
     if (shift > diagonal) break;

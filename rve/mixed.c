@@ -110,7 +110,7 @@ static PetscErrorCode SolveTiers(LamRVE rve, const LamLoad *load, const LamStres
     PetscCall(LamMixedLook(control, response, &view));
     if (!LamMixedIsStable(&view)) PetscCall(CallUnstable(&view, response));
   }
-  if (response->status != LAM_CONVERGED) {
+  if (response->status != LAM_CONVERGED && !LamWasStopped(response)) {
     const PetscInt iterations = response->newton_iterations, factorisations = response->factorisations;
 
     PetscCall(LamMixedSafe(rve, &guess, control, state, &safe));
@@ -118,7 +118,7 @@ static PetscErrorCode SolveTiers(LamRVE rve, const LamLoad *load, const LamStres
       PetscCall(LamMixedLook(control, &safe, &view));
       if (!LamMixedIsStable(&view)) PetscCall(CallUnstable(&view, &safe));
     }
-    if (safe.status == LAM_CONVERGED || !LamResponseHasFields(response)) {
+    if (safe.status == LAM_CONVERGED || LamWasStopped(&safe) || !LamResponseHasFields(response)) {
       *response = safe;
       PetscCall(LamRVEStateCopy(state, fast));
     }

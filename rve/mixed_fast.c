@@ -56,8 +56,7 @@ static PetscErrorCode TryRelease(LamRVE rve, LamBorder *border, const LamStressC
   PetscCall(LamRVESetMonitor(rve->bonded, rve->monitor));
   PetscCall(LamRVEStateCopy(state->bonded, rve->bonded_state));
   PetscCall(LamRVESolveMixed(rve->bonded, &border->load, control, rve->bonded_state, &response));
-  rve->work.iterations += response.newton_iterations;
-  rve->work.factorisations += response.factorisations;
+  LamAddWork(rve, &response);
   if (response.status != LAM_CONVERGED) PetscFunctionReturn(0);
   PetscCall(PetscArraycpy(border->load.F, response.load.F, 9));
   PetscCall(PetscArraycpy(rve->bonded->y, rve->bonded_state->y, rve->bonded->ndof));
@@ -74,7 +73,7 @@ static PetscErrorCode TryContact(LamRVE rve, LamBorder *border, LamLoad *load, c
 
   PetscFunctionBeginUser;
   if (state->solved && LamContactIsNear(&state->load, load)) PetscCall(TryNear(rve, border, state, &out));
-  if (!LamContactIsStable(&out) && rve->strategy == LAM_TWO_STEP) {
+  if (!LamContactIsStable(&out) && rve->strategy == LAM_TWO_STEP && !rve->work.stopped) {
     border->load = *load;
     PetscCall(TryRelease(rve, border, control, state, &out));
     if (LamContactIsStable(&out)) PetscCall(LamRVEStateCopy(rve->bonded_state, state->bonded));
@@ -106,6 +105,7 @@ PetscErrorCode LamMixedFast(LamRVE rve, LamLoad *load, const LamStressControl *c
     response->branch = state->branch;
     PetscCall(LamAcceptSolution(rve, &border->load, state, response));
   }
+  if (rve->work.stopped) PetscCall(LamGiveUp(response));
   response->newton_iterations = rve->work.iterations;
   response->factorisations = rve->work.factorisations;
   PetscCall(LamBorderDestroy(&border));

@@ -45,12 +45,19 @@ typedef struct {
   PetscReal earlier, earlier_stiffness;        /* the share reached before that one, and the stiffness there */
   char refusal[192];                           /* of the last try */
   PetscInt iterations, factorisations, most;   /* most: iterations until the present part gives up */
+  PetscBool stopped;                           /* by the interrupt: nothing more is tried */
 } Search;
 
 static void Count(Search *s, const LamResponse *response)
 {
   s->iterations += response->newton_iterations;
   s->factorisations += response->factorisations;
+  if (LamWasStopped(response)) s->stopped = PETSC_TRUE;
+}
+
+static PetscBool MayIterate(const Search *s)
+{
+  return (PetscBool)(s->iterations < s->most && !s->stopped);
 }
 
 static void Swap(Search *s)
@@ -61,10 +68,11 @@ static void Swap(Search *s)
   s->next = before;
 }
 
-/* next := the full solve at `load` from `from`. */
+/* next := the full solve at `load` from `from`; after a stop it stays the one that was stopped. */
 static PetscErrorCode SolveAt(Search *s, const LamLoad *load, LamRVEState from)
 {
   PetscFunctionBeginUser;
+  if (s->stopped) PetscFunctionReturn(0);
   PetscCall(LamRVEStateCopy(from, s->next.state));
   PetscCall(LamRVESolve(s->rve, load, s->next.state, &s->next.response));
   Count(s, &s->next.response);
@@ -110,7 +118,7 @@ static PetscErrorCode Continue(Search *s)
   PetscFunctionBeginUser;
   s->first_stiffness = s->stiffness = s->now.view.w[0];
   s->most = s->iterations + BUDGET;
-  while (s->reached < 1.0 && step >= LEAST_SHARE && s->iterations < s->most) {
+  while (s->reached < 1.0 && step >= LEAST_SHARE && MayIterate(s)) {
     const PetscReal t = PetscMin(1.0, s->reached + step);
     LamStressControl control;
     LamLoad load;
@@ -179,7 +187,7 @@ static PetscErrorCode TakeStep(Search *s, PetscBool *moved)
 
   PetscFunctionBeginUser;
   *moved = PETSC_FALSE;
-  for (PetscInt k = 0; k < HALVINGS && !*moved && s->iterations < s->most; ++k, alpha *= 0.5) {
+  for (PetscInt k = 0; k < HALVINGS && !*moved && MayIterate(s); ++k, alpha *= 0.5) {
     LamLoad load = s->now.response.load;
 
     for (PetscInt i = 0; i < s->now.view.count; ++i) load.F[s->now.view.component[i]] += alpha * s->step[i];
@@ -197,7 +205,7 @@ static PetscErrorCode Descend(Search *s, PetscBool *found)
 
   PetscFunctionBeginUser;
   *found = PETSC_FALSE;
-  for (PetscInt it = 0; it < DESCENTS && lost < LOST; ++it) {
+  for (PetscInt it = 0; it < DESCENTS && lost < LOST && !s->stopped; ++it) {
     const PetscBool there = (PetscBool)(s->now.view.largest <= Tolerance(s->rve));
     const PetscBool stable = LamMixedIsStable(&s->now.view);
     PetscBool moved;
@@ -307,13 +315,13 @@ PetscErrorCode LamMixedSafe(LamRVE rve, const LamLoad *load, const LamStressCont
   PetscCall(LamRVEStateCreate(rve, &s.now.state));
   PetscCall(LamRVEStateCreate(rve, &s.next.state));
   PetscCall(Find(&s, state, &found));
-  if (found) {
+  if (found && !s.stopped) {
     *response = s.now.response;
     if (!LamMixedIsStable(&s.now.view)) response->status = LAM_UNSTABLE;
     PetscCall(LamRVEStateCopy(s.now.state, state));
   } else {
     PetscCall(LamBeginResponse(rve, load, state, response));
-    PetscCall(GiveReason(&s, response));
+    PetscCall(s.stopped ? LamGiveUp(response) : GiveReason(&s, response));
   }
   response->newton_iterations = s.iterations;
   response->factorisations = s.factorisations;

@@ -73,8 +73,7 @@ static PetscErrorCode FactorPositive(LamRVE rve, PetscReal *last_shift, PetscBoo
   for (PetscInt i = 0; i < rve->linear.n; ++i)
     diagonal = PetscMax(diagonal, PetscAbsReal(rve->linear.values[rve->linear.row[i]]));
   for (PetscInt attempt = 0; attempt < 40; ++attempt) {
-    PetscCall(LamLinearFactor(&rve->linear, shift, &negative, ok));
-    ++rve->work.factorisations;
+    PetscCall(LamRVEFactor(rve, shift, &negative, ok));
     if (*ok && negative == 0) break;
     *ok = PETSC_FALSE;
     if (shift > diagonal) break;
@@ -125,7 +124,7 @@ PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border,
 
   PetscFunctionBeginUser;
   *outcome = LAM_NEWTON_STALLED;
-  for (PetscInt it = 0; it <= FAST_ITERATIONS; ++it) {
+  for (PetscInt it = 0; it <= FAST_ITERATIONS && !rve->work.stopped; ++it) {
     PetscReal energy, norm, largest, alpha;
     PetscBool valid, ok;
 
@@ -278,7 +277,7 @@ PetscErrorCode LamNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *
   PetscCall(PetscArraycpy(descent.best, rve->y, rve->ndof));
   (void)LamSetConsistentStresses(rve, load, rve->y);
   descent.rounding = 1e-14 * rve->stiffest * rve->mesh.V0;
-  for (PetscInt it = 0; it < SAFE_ITERATIONS && rve->work.iterations < LAM_ITERATION_BUDGET; ++it) {
+  for (PetscInt it = 0; it < SAFE_ITERATIONS && LamMayIterate(rve); ++it) {
     PetscReal norm, alpha;
     PetscBool moved;
 

@@ -128,7 +128,7 @@ static PetscErrorCode Substeps(LamRVE rve, PetscReal y_from[], const LamLoad *st
 
   PetscFunctionBeginUser;
   *reached = 0.0;
-  while (*reached < 1.0 && rve->work.iterations < LAM_ITERATION_BUDGET) {
+  while (*reached < 1.0 && LamMayIterate(rve)) {
     const PetscReal t = PetscMin(1.0, *reached + step);
     const LamLoad next = t >= 1.0 ? *load : LamLoadBetween(start, load, t);
     PetscInt switches = *branch;

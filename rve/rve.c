@@ -103,6 +103,7 @@ PetscErrorCode LamRVESetUp(LamRVE rve)
     PetscCall(LamRVECreate(rve->comm, &rve->bonded));
     PetscCall(LamRVESetMicrostructure(rve->bonded, &bonded));
     PetscCall(LamRVESetMonitor(rve->bonded, rve->monitor));
+    PetscCall(LamRVESetInterrupt(rve->bonded, rve->interrupt, rve->interrupt_ctx));
     PetscCall(LamRVESetUp(rve->bonded));
     PetscCall(LamRVEStateCreate(rve->bonded, &rve->bonded_state));
   }
@@ -310,6 +311,7 @@ PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, L
   else
     PetscCall(LamFollowPath(rve, load, state, &response->branch, &response->negative_eigenvalues, &response->status,
                             response->reason, sizeof(response->reason)));
+  if (rve->work.stopped) PetscCall(LamGiveUp(response));
   PetscCall(LamAcceptSolution(rve, load, state, response));
   response->newton_iterations = rve->work.iterations;
   response->factorisations = rve->work.factorisations;

@@ -6,6 +6,7 @@
     linear.c factor.c    sparsity pattern; factorisation, inertia, solves
     newton.c             one equilibrium from a start: fast and safe tier
     border.h             components of F that join the unknowns where stress is prescribed
+    interrupt.c          factorisations that ask whether to go on
     stability.c          softest mode of a converged state
     path.c               start, substeps, leaving a saddle
     mortar.c mortar_segments.c            gaps between two chains of edges and their variations
@@ -69,7 +70,8 @@ struct LamRVEState_s {
 
 typedef struct {
   PetscInt iterations, factorisations;
-  PetscInt escapes; /* steps along a direction of negative curvature */
+  PetscInt escapes;  /* steps along a direction of negative curvature */
+  PetscBool stopped; /* by the interrupt: no more is factored or iterated */
 } LamWork;
 
 struct LamRVE_s {
@@ -90,6 +92,8 @@ struct LamRVE_s {
   PetscInt ndof;                          /* 2 class_count */
   PetscReal *y, *step, *trial, *residual; /* [ndof] each: position, Newton step, trial position, residual */
   LamWork work;                           /* of the solve under way */
+  PetscBool (*interrupt)(void *ctx);      /* NULL: never */
+  void *interrupt_ctx;                    /* borrowed */
   PetscReal lowest_eigenvalue;            /* of the last unstable state met */
   PetscInt zero_modes;                    /* of the consistent tangent last factored */
 };
@@ -203,9 +207,26 @@ PetscErrorCode LamLinearFactor(LamLinear *linear, PetscReal shift, PetscInt *neg
 PetscErrorCode LamLinearSolve(LamLinear *linear, PetscInt count, const PetscReal rhs[], PetscReal solution[]);
 void LamLinearMultiply(const LamLinear *linear, const PetscReal x[], PetscReal y[]);
 
-/* ---- newton.c ---- */
+/* ---- interrupt.c ---- */
+/* As LamLinearFactor of rve->linear, and counts it. Once the interrupt has stopped the solve *ok is PETSC_FALSE, and
+   there may be no factor to solve with. */
+PetscErrorCode LamRVEFactor(LamRVE rve, PetscReal shift, PetscInt *negative, PetscBool *ok);
+/* Adds the work of a part of the solve, which ends with it where it was stopped. */
+void LamAddWork(LamRVE rve, const LamResponse *part);
+static inline PetscBool LamWasStopped(const LamResponse *response)
+{
+  return (PetscBool)(response->status == LAM_OUT_OF_REACH);
+}
+/* The response of a solve that was stopped. */
+PetscErrorCode LamGiveUp(LamResponse *response);
 /* Iterations that one state may take in all, substeps included: some seconds on the default mesh. */
 #define LAM_ITERATION_BUDGET 2000
+static inline PetscBool LamMayIterate(LamRVE rve)
+{
+  return (PetscBool)(rve->work.iterations < LAM_ITERATION_BUDGET && !rve->work.stopped);
+}
+
+/* ---- newton.c ---- */
 typedef enum { LAM_NEWTON_CONVERGED, LAM_NEWTON_NEAR_SADDLE, LAM_NEWTON_STALLED } LamNewtonOutcome;
 /* From rve->y to equilibrium at `load`. Fast: full steps. Safe: inertia-corrected steps that lower the energy and leave
    saddles; never ends NEAR_SADDLE. border: NULL, or the free components of F; the load is then border->load. */
@@ -225,7 +246,8 @@ void LamStartMode(LamRVE rve, PetscReal mode[]);
 /* Inverse iterations with the present factor; unit vector, its largest entry positive, so that the branch taken is the
    same in every run. */
 PetscErrorCode LamImproveSoftestMode(LamRVE rve, PetscInt iterations, PetscReal mode[]);
-/* The most negative eigenvalue of the matrix in linear.values and its unit eigenvector, mode[n]. */
+/* The most negative eigenvalue of the matrix in linear.values and its unit eigenvector, mode[n]; where the solve is
+   stopped, NaN and some vector. */
 PetscErrorCode LamSoftestMode(LamRVE rve, PetscReal *eigenvalue, PetscReal mode[]);
 
 /* ---- path.c ---- */

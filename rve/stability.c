@@ -19,9 +19,8 @@ PetscInt LamActiveMultipliers(LamRVE rve)
 static PetscErrorCode FactorShifted(LamRVE rve, PetscReal shift, PetscInt *negative, PetscBool *ok)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamLinearFactor(&rve->linear, shift, negative, ok));
+  PetscCall(LamRVEFactor(rve, shift, negative, ok));
   *negative -= LamActiveMultipliers(rve);
-  ++rve->work.factorisations;
   PetscFunctionReturn(0);
 }
 
@@ -86,23 +85,20 @@ static PetscErrorCode BracketLowest(LamRVE rve, PetscReal *shift)
   for (PetscInt i = 0; i < rve->linear.positions; ++i)
     diagonal = PetscMax(diagonal, PetscAbsReal(rve->linear.values[rve->linear.row[i]]));
   for (high = 1e-8 * diagonal; high < 1e3 * diagonal; high *= 4.0) {
-    PetscCall(LamLinearFactor(&rve->linear, high, &negative, &ok));
-    ++rve->work.factorisations;
+    PetscCall(LamRVEFactor(rve, high, &negative, &ok));
     if (ok && negative == LamActiveMultipliers(rve)) break;
     low = high;
   }
   while (low > 0.0 && high > 1.2 * low) {
     const PetscReal middle = PetscSqrtReal(low * high);
 
-    PetscCall(LamLinearFactor(&rve->linear, middle, &negative, &ok));
-    ++rve->work.factorisations;
+    PetscCall(LamRVEFactor(rve, middle, &negative, &ok));
     if (ok && negative == LamActiveMultipliers(rve))
       high = middle;
     else
       low = middle;
   }
-  PetscCall(LamLinearFactor(&rve->linear, high, &negative, &ok));
-  ++rve->work.factorisations;
+  PetscCall(LamRVEFactor(rve, high, &negative, &ok));
   *shift = high;
   PetscFunctionReturn(0);
 }
@@ -149,8 +145,10 @@ PetscErrorCode LamSoftestMode(LamRVE rve, PetscReal *eigenvalue, PetscReal mode[
   PetscReal shift, *image;
 
   PetscFunctionBeginUser;
-  PetscCall(BracketLowest(rve, &shift));
   LamStartMode(rve, mode);
+  *eigenvalue = NAN;
+  PetscCall(BracketLowest(rve, &shift));
+  if (rve->work.stopped) PetscFunctionReturn(0);
   PetscCall(LamImproveSoftestMode(rve, 30, mode));
   PetscCall(PetscMalloc1(n, &image));
   LamLinearMultiply(&rve->linear, mode, image);

@@ -13,8 +13,7 @@
   X(LAM_NO_EQUILIBRIUM, "no_equilibrium") /* with a certificate in `reason` */                                         \
   X(LAM_NOT_CONVERGED, "not_converged")                                                                                \
   X(LAM_INVALID_F, "invalid_F")                                                                                        \
-  X(LAM_OUT_OF_REACH,                                                                                                  \
-    "out_of_reach") /* a database cannot answer here, or a stop came before the solve; never of a solve */
+  X(LAM_OUT_OF_REACH, "out_of_reach") /* a database cannot answer here, or a stop came before the end of the solve */
 typedef enum { LAM_STATUSES(LAM_ENUM_ENTRY) LAM_STATUS_COUNT } LamStatus;
 extern const char *const LamStatusNames[];
 

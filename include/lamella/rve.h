@@ -29,6 +29,12 @@ PetscErrorCode LamRVESetMicrostructure(LamRVE rve, const LamMicrostructure *micr
 PetscErrorCode LamRVESetStrategy(LamRVE rve, LamStrategy strategy);
 /* Prints each Newton iteration to stderr (residual, step, negative eigenvalues). Off by default. */
 PetscErrorCode LamRVESetMonitor(LamRVE rve, PetscBool on);
+/*
+  Gives solves up on demand: `interrupt` is asked before every factorisation of a solve, of whatever stage, and where it
+  says PETSC_TRUE the solve ends at once: status LAM_OUT_OF_REACH, reason "stopped before it was solved", the state as
+  it was, no error. It may use MPI on other communicators than the RVE's, but not the RVE. NULL: never (default).
+*/
+PetscErrorCode LamRVESetInterrupt(LamRVE rve, PetscBool (*interrupt)(void *ctx), void *ctx);
 /* Builds the mesh and the sparsity pattern; the factorisation is analysed at the first solve. */
 PetscErrorCode LamRVESetUp(LamRVE rve);
 PetscErrorCode LamRVEDestroy(LamRVE *rve);

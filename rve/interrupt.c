@@ -1,0 +1,48 @@
+/*
+  Solves that are given up on demand.
+
+  Method. The one who asked for the solve is asked before each factorisation whether to go on. Once he says no, all
+  factorisations of the solve are refused, and nothing is iterated any more, so that whatever is under way fails; what
+  it failed in is then not told, and no other way is tried.
+*/
+#include "rve_impl.h"
+
+PetscErrorCode LamRVESetInterrupt(LamRVE rve, PetscBool (*interrupt)(void *ctx), void *ctx)
+{
+  PetscFunctionBeginUser;
+  rve->interrupt = interrupt;
+  rve->interrupt_ctx = ctx;
+  if (rve->bonded) PetscCall(LamRVESetInterrupt(rve->bonded, interrupt, ctx));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEFactor(LamRVE rve, PetscReal shift, PetscInt *negative, PetscBool *ok)
+{
+  LamWork *work = &rve->work;
+
+  PetscFunctionBeginUser;
+  if (!work->stopped && rve->interrupt) work->stopped = rve->interrupt(rve->interrupt_ctx);
+  if (work->stopped) {
+    *negative = 0;
+    *ok = PETSC_FALSE;
+    PetscFunctionReturn(0);
+  }
+  PetscCall(LamLinearFactor(&rve->linear, shift, negative, ok));
+  ++work->factorisations;
+  PetscFunctionReturn(0);
+}
+
+void LamAddWork(LamRVE rve, const LamResponse *part)
+{
+  rve->work.iterations += part->newton_iterations;
+  rve->work.factorisations += part->factorisations;
+  if (LamWasStopped(part)) rve->work.stopped = PETSC_TRUE;
+}
+
+PetscErrorCode LamGiveUp(LamResponse *response)
+{
+  PetscFunctionBeginUser;
+  response->status = LAM_OUT_OF_REACH;
+  PetscCall(PetscStrncpy(response->reason, "stopped before it was solved", sizeof(response->reason)));
+  PetscFunctionReturn(0);
+}

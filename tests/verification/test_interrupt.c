@@ -1,0 +1,188 @@
+/* A solve that is interrupted, wherever that is, is given up and leaves nothing behind. */
+#include "rve_fixture.h"
+#include "figures_mixed.h"
+#include <string.h>
+
+#define LIMIT 12      /* calls that are tried one by one; of more, every so many */
+#define UNDISTURBED 6 /* after so many stopped solves one is not */
+
+typedef struct {
+  LamRVE rve;
+  LamRVEState start, state;
+  LamLoad load;
+  LamStressControl control;
+  PetscInt calls, stop_at; /* of the interrupt: asked so far, and which says to stop */
+} Case;
+
+static PetscBool CountAndStop(void *ctx)
+{
+  Case *c = (Case *)ctx;
+
+  return (PetscBool)(++c->calls == c->stop_at);
+}
+
+static LamMicrostructure CoarseTissue(LamMicrostructure micro)
+{
+  micro.along = 2;
+  micro.through = 1;
+  return micro;
+}
+
+static Case NewCase(const LamMicrostructure *micro, LamLoad load)
+{
+  Case c = {.rve = NewRVE(micro), .load = load};
+
+  assert_int_equal(LamRVEStateCreate(c.rve, &c.start), 0);
+  assert_int_equal(LamRVEStateCreate(c.rve, &c.state), 0);
+  return c;
+}
+
+static void Destroy(Case *c)
+{
+  assert_int_equal(LamRVEStateDestroy(&c->start), 0);
+  assert_int_equal(LamRVEStateDestroy(&c->state), 0);
+  assert_int_equal(LamRVEDestroy(&c->rve), 0);
+}
+
+/* From the case's start; stop_at 0: undisturbed. */
+static LamResponse SolveCase(Case *c, PetscInt stop_at)
+{
+  LamResponse response;
+
+  c->calls = 0;
+  c->stop_at = stop_at;
+  assert_int_equal(LamRVEStateCopy(c->start, c->state), 0);
+  assert_int_equal(LamRVESetInterrupt(c->rve, CountAndStop, c), 0);
+  assert_int_equal(LamRVESolveMixed(c->rve, &c->load, &c->control, c->state, &response), 0);
+  return response;
+}
+
+static PetscBool SameStates(const struct LamRVEState_s *a, const struct LamRVEState_s *b)
+{
+  if (memcmp(a->y, b->y, sizeof(PetscReal) * (size_t)a->n)) return PETSC_FALSE;
+  if (memcmp(a->lambda, b->lambda, sizeof(PetscReal) * (size_t)a->multipliers)) return PETSC_FALSE;
+  if (memcmp(a->hats, b->hats, sizeof(*a->hats) * (size_t)a->faces)) return PETSC_FALSE;
+  if (memcmp(&a->load, &b->load, sizeof(LamLoad)) || a->branch != b->branch || a->solved != b->solved)
+    return PETSC_FALSE;
+  return (PetscBool)(!a->bonded || SameStates(a->bonded, b->bonded));
+}
+
+/* All but the time. Bytes, so that NaN equals itself. */
+static void AssertSame(LamResponse a, LamResponse b)
+{
+  a.seconds = b.seconds;
+  for (const LamMember *m = LamResponseMembers; m->name; m++) {
+    const size_t size = m->type == LAM_MEMBER_REAL ? sizeof(PetscReal) * (size_t)m->count : sizeof(PetscInt);
+
+    if (m->type == LAM_MEMBER_REAL || m->type == LAM_MEMBER_INT)
+      if (memcmp((const char *)&a + m->offset, (const char *)&b + m->offset, size)) fail_msg("%s differs", m->name);
+  }
+  assert_int_equal(a.status, b.status);
+  assert_string_equal(a.reason, b.reason);
+}
+
+static void StopEverywhere(Case *c)
+{
+  LamResponse fresh = SolveCase(c, 0);
+  const PetscInt calls = c->calls, stride = PetscMax(1, calls / LIMIT);
+
+  assert_true(calls >= 3);
+  assert_int_equal(calls, fresh.factorisations);
+  for (PetscInt k = 1; k <= calls; k += stride) {
+    const LamResponse stopped = SolveCase(c, k);
+
+    if (stopped.status != LAM_OUT_OF_REACH) fail_msg("stopped at %d of %d: %s", (int)k, (int)calls, stopped.reason);
+    assert_int_equal(c->calls, k); /* it is given up at once */
+    assert_string_equal(stopped.reason, "stopped before it was solved");
+    if (!SameStates(c->start, c->state)) fail_msg("stopped at %d of %d: the state has changed", (int)k, (int)calls);
+    if (k / stride % UNDISTURBED == 0) AssertSame(SolveCase(c, 0), fresh);
+  }
+  AssertSame(SolveCase(c, 0), fresh);
+}
+
+static void StopsBonded(void **state)
+{
+  const LamMicrostructure micro = DefaultTissue();
+  Case c = NewCase(&micro, PlaneLoad(1.1, 0.3, 0, 1, 0.1));
+
+  StopEverywhere(&c);
+  Destroy(&c);
+}
+
+/* Biaxial compression leaves a saddle: safe tier, softest mode. */
+static void StopsBuckling(void **state)
+{
+  const LamMicrostructure micro = CoarseTissue(DefaultTissue());
+  Case c = NewCase(&micro, PlaneLoad(0.9, 0, 0, 0.9, 0));
+
+  assert_true(SolveCase(&c, 0).branch > 0);
+  StopEverywhere(&c);
+  Destroy(&c);
+}
+
+static void StopsContact(void **state)
+{
+  const LamMicrostructure micro = ContactTissue(6, 2);
+  LamLoad load = PlaneLoad(1.05, 0.2, 0, 1, 0.02 / TISSUE_STRESS);
+  Case c;
+
+  load.cohesion = 0.005 / TISSUE_STRESS;
+  c = NewCase(&micro, load);
+  StopEverywhere(&c);
+  assert_int_equal(LamRVEStateCopy(c.state, c.start), 0);
+  c.load.F[1] += 0.02; /* from a state nearby */
+  StopEverywhere(&c);
+  Destroy(&c);
+}
+
+/* Contact that compression makes buckle, and that is hard to find. */
+static void StopsContactBuckling(void **state)
+{
+  const LamMicrostructure micro = CoarseTissue(ContactTissue(6, 2));
+  Case c = NewCase(&micro, PlaneLoad(0.9, 0, 0, 0.9, 0.02 / TISSUE_STRESS));
+
+  StopEverywhere(&c);
+  Destroy(&c);
+}
+
+static void StopMixed(const LamMicrostructure *micro, MixedCase mixed)
+{
+  static const double undeformed[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  Case c = NewCase(micro, PlaneLoad(1, 0, 0, 1, 0));
+
+  MixedLoad(&mixed, undeformed, &c.load, &c.control);
+  StopEverywhere(&c);
+  Destroy(&c);
+}
+
+static void StopsMixed(void **state)
+{
+  const LamMicrostructure bonded = DefaultTissue(), contact = ContactTissue(6, 2);
+
+  StopMixed(&bonded, (MixedCase){.turgor = 0.02, .F = {FREE, 0.3, 0, FREE}, .F33 = 1});
+  StopMixed(&contact, (MixedCase){.turgor = 0.02, .cohesion = 0.02, .F = {FREE, FREE, 0, 1.02}, .F33 = 1});
+}
+
+/* Beyond a limit load: continuation, then descent. */
+static void StopsMixedSearch(void **state)
+{
+  const LamMicrostructure bonded = CoarseTissue(DefaultTissue()), contact = CoarseTissue(ContactTissue(6, 2));
+
+  StopMixed(&bonded, (MixedCase){.F = {FREE, FREE, 0, FREE}, .F33 = 1, .P = {-0.02, 0, 0, -0.02}});
+  StopMixed(&contact, (MixedCase){.turgor = 0.02, .F = {FREE, 0.1, 0, FREE}, .F33 = 1});
+}
+
+static int RunTests(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(StopsBonded),          cmocka_unit_test(StopsBuckling), cmocka_unit_test(StopsContact),
+      cmocka_unit_test(StopsContactBuckling), cmocka_unit_test(StopsMixed),    cmocka_unit_test(StopsMixedSearch),
+  };
+
+  return cmocka_run_group_tests_name("interrupt", tests, NULL, NULL);
+}
+
+int main(int argc, char **argv)
+{
+  return RunWithPetsc(argc, argv, RunTests);
+}
