@@ -118,6 +118,15 @@ static int Floor(int i, int bits)
   return (i >> bits) * (1 << bits);
 }
 
+void LamGridNodePlace(LamGrid grid, PetscInt64 key, PetscReal place[4])
+{
+  const LamNodePlace at = LamNodePlaceOf(key);
+
+  (void)grid;
+  for (int k = 0; k < 3; k++) place[k] = (PetscReal)at.i[k] / LAM_ROOT;
+  place[3] = (PetscReal)at.j / LAM_ROOT;
+}
+
 PetscInt64 LamGridNodeParent(LamGrid grid, PetscInt64 key)
 {
   LamNodePlace place = LamNodePlaceOf(key);

@@ -128,6 +128,8 @@ PetscBool LamKeyIsFreeCell(PetscInt64 key);
 PetscErrorCode LamGridNodeLoad(LamGrid grid, PetscInt64 key, LamLoad *load);
 /* How often the grid was halved until this node came in; 0: coarsest; -1: a state of cells that touch no one. */
 PetscInt LamGridNodeLevel(LamGrid grid, PetscInt64 key);
+/* Where it lies: three lattice strains and the logarithm of suction, in edges of root cells. For distances. */
+void LamGridNodePlace(LamGrid grid, PetscInt64 key, PetscReal place[4]);
 /* The node that a solve of this one may start from: the nearest of the next coarser level; -1: from the reference. */
 PetscInt64 LamGridNodeParent(LamGrid grid, PetscInt64 key);
 

@@ -44,6 +44,13 @@ PetscErrorCode LamRVEStateCreate(LamRVE rve, LamRVEState *state);
 PetscErrorCode LamRVEStateCopy(LamRVEState from, LamRVEState to);
 PetscErrorCode LamRVEStateReset(LamRVE rve, LamRVEState state);
 PetscErrorCode LamRVEStateDestroy(LamRVEState *state);
+/*
+  A state as plain bytes, for a rank that has the same RVE: a solve from the bytes is one from the state, bit for bit.
+  LamRVEStatePack fills LamRVEStateSize bytes.
+*/
+PetscErrorCode LamRVEStateSize(LamRVEState state, size_t *bytes);
+PetscErrorCode LamRVEStatePack(LamRVEState state, void *bytes);
+PetscErrorCode LamRVEStateUnpack(const void *bytes, LamRVEState state);
 
 /*
   Finds the equilibrium at `load`, starting from `state`, which it replaces by the solution. Where none is found the

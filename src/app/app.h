@@ -90,12 +90,15 @@ typedef struct {
   PetscLogDouble start, drawn;
 } LamProgress;
 PetscErrorCode LamProgressStart(LamProgress *progress, PetscInt64 total, PetscBool quiet);
+void LamProgressSetTotal(LamProgress *progress, PetscInt64 total);
 PetscErrorCode LamProgressUpdate(LamProgress *progress, PetscInt64 done, PetscInt64 failed);
 PetscErrorCode LamProgressEnd(LamProgress *progress);
 
 /* ---- signals.c: SIGINT, SIGTERM, SIGUSR1 ask the command to commit and stop ---- */
 PetscErrorCode LamSignalsInstall(void);
 PetscBool LamStopRequested(void);
+/* As if SIGTERM had come: another rank has got a signal. */
+void LamStopRequest(void);
 int LamStopExitStatus(void); /* 130 after SIGINT, 143 after SIGTERM and SIGUSR1, else 0 */
 
 /* ---- plan.c: what a scene requires ---- */

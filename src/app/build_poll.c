@@ -64,6 +64,21 @@ static PetscInt MergeWishes(PetscInt n, Wish wishes[])
   return merged;
 }
 
+static PetscBool Contains(PetscInt n, const PetscInt64 keys[], PetscInt64 key)
+{
+  return (PetscBool)(n && bsearch(&key, keys, (size_t)n, sizeof(*keys), CompareKeys));
+}
+
+/* Leaves out what is on its way. */
+static void LeaveOut(const LamRound *under_way, Wish *wish)
+{
+  PetscInt n = 0;
+
+  for (PetscInt i = 0; i < wish->n && under_way; i++)
+    if (!Contains(under_way->n, under_way->keys, wish->keys[i])) wish->keys[n++] = wish->keys[i];
+  if (under_way) wish->n = n;
+}
+
 /* Sorts the keys and keeps one of each. */
 static void SortUnique(LamPoll *poll)
 {
@@ -115,7 +130,8 @@ static PetscErrorCode Ask(LamTable table, const LamLoad *load, PetscReal accurac
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode AskAll(const LamScene *scene, LamTable table, PetscReal accuracy, PetscInt enough, LamPoll *poll)
+static PetscErrorCode AskAll(const LamScene *scene, const PetscInt states[], LamTable table, PetscReal accuracy,
+                             PetscInt enough, const LamRound *under_way, LamPoll *poll)
 {
   PetscReal *errors, error;
   Wish *wishes;
@@ -127,10 +143,11 @@ static PetscErrorCode AskAll(const LamScene *scene, LamTable table, PetscReal ac
   for (PetscInt i = 0; i < poll->asked; i++) {
     LamLoad load;
 
-    LamSampleLoad(scene, i, &load);
+    LamSampleLoad(scene, states[i], &load);
     wishes[n].n = 0;
     wishes[n].states = 1;
     PetscCall(Ask(table, &load, accuracy, poll, &wishes[n], &error));
+    LeaveOut(under_way, &wishes[n]);
     if (wishes[n].n) n++;
     if (isfinite(error)) errors[poll->reached++] = error;
   }
@@ -142,17 +159,21 @@ static PetscErrorCode AskAll(const LamScene *scene, LamTable table, PetscReal ac
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamPollMake(const LamScene *scene, LamDatabase database, PetscReal accuracy, PetscInt enough,
-                           LamPoll *poll)
+PetscErrorCode LamPollMake(const LamScene *scene, const LamShard *shard, LamDatabase database, PetscReal accuracy,
+                           PetscInt enough, const LamRound *under_way, LamPoll *poll)
 {
+  const PetscBool contact = (PetscBool)(scene->micro.interface == LAM_INTERFACE_CONTACT);
   PetscErrorCode ierr;
+  PetscInt *states;
   LamTable table;
 
   PetscFunctionBeginUser;
-  *poll = (LamPoll){.asked = scene->micro.interface == LAM_INTERFACE_CONTACT ? CONTACT_STATES : BONDED_STATES};
+  *poll = (LamPoll){0};
+  PetscCall(LamShardStates(scene, shard, contact ? CONTACT_STATES : BONDED_STATES, &poll->asked, &states));
   PetscCall(LamDatabaseGetTable(database, &table));
-  ierr = AskAll(scene, table, accuracy, enough, poll);
+  ierr = AskAll(scene, states, table, accuracy, enough, under_way, poll);
   PetscCall(LamTableDestroy(&table));
+  PetscCall(PetscFree(states));
   PetscCall(ierr);
   PetscFunctionReturn(0);
 }

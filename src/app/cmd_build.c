@@ -2,46 +2,62 @@
   lamella build: fills the table of a response database.
 
   Method
-    In rounds (build.h): rank 0 asks the table of the rounds before the states of the sample box, and has the nodes that
-    it lacks solved by all ranks, each from its parent (node_solver.h). Nodes are committed in the order of their keys,
-    round by round, so the file does not depend on the number of ranks (except times, and checksums, which cover them).
+    In rounds (build.h): rank 0 asks the table of complete rounds before the states of the sample box, and has the nodes
+    that it lacks solved by all ranks, each from its parent (node_work.h), those that will take longest first. They are
+    committed in that order, so the file does not depend on the number of ranks (except times, and checksums, which
+    cover them). A node that is late holds up those behind it for no longer than LATE.
 */
 #include "build.h"
-#include "dispatch.h"
-#include "node_solver.h"
-#include <petsctime.h>
+#include <lamella/clock.h>
+#include "node_work.h"
 #include <string.h>
 #include <unistd.h>
 
-enum { COMMIT_RECORDS = 64 };
-#define COMMIT_SECONDS 2.0
+/* A commit follows the last one after so many seconds, and so many times what that one took: it may cost 2 %. */
+#define COMMIT_SECONDS 1.0
+#define COMMIT_SHARE 50.0
+enum { COMMIT_RECORDS = 65536 }; /* more are not kept back */
+#define LATE 30.0                /* s */
+
+/* What is to be committed next: records in the order of the file. */
+typedef struct {
+  PetscInt n, room;
+  PetscInt64 *keys;       /* [n]; owned */
+  LamResponse *responses; /* [n]; owned */
+} Pending;
 
 typedef struct {
   LamScene *scene;
   const char *path;
   PetscBool json, quiet;
+  PetscBool resume;
+  PetscInt group;     /* ranks that one rank hands out to; 0: as many as do */
+  PetscInt team_size; /* ranks that solve one RVE together */
+  LamShard shard;
+  PetscMPIInt rank, size;
+  MPI_Comm team, leaders; /* of this rank; leaders: the first ranks of all teams, MPI_COMM_NULL on the others */
   LamRVE rve;
   LamGrid grid;
-  LamNodeChain chain;
-  LamDispatch dispatch;
-  PetscInt count;   /* nodes to solve in this round; 0: the build is at its end */
-  PetscInt64 *keys; /* [count] theirs */
+  LamNodeWork work;
+  PetscReal start;
 
   /* on rank 0 */
   LamRecordWriter writer;
   LamProgress progress;
   LamDatabase file; /* what was there before; NULL: nothing */
   LamRounds rounds;
-  PetscBool *solved;           /* [count] */
-  PetscInt arrived, committed; /* of the count; the first so many are committed */
-  PetscInt64 added, failed;    /* committed by this run; those without an answer */
-  PetscLogDouble start, last_commit;
+  Pending pending;
+  PetscBool opening;       /* rounds are being opened: what arrives meanwhile opens none */
+  PetscInt64 added, there; /* committed by this run; nodes that rounds have found in the file */
+  PetscInt64 failed;       /* without an answer, of those committed */
+  PetscReal last_commit, commit_seconds, all_commits;
+  PetscReal last_taken; /* when a record was last taken for the file in its turn */
 } Build;
 
 /* Nodes in the file that this build has asked for. */
 static PetscInt64 Records(const Build *b)
 {
-  return b->rounds.nodes + b->rounds.n - b->rounds.missing + b->committed;
+  return b->there + b->added;
 }
 
 static PetscInt64 Failed(const Build *b)
@@ -53,131 +69,163 @@ static PetscInt64 Failed(const Build *b)
 
 static PetscErrorCode Report(Build *b)
 {
-  PetscLogDouble now;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscTime(&now));
   PetscCall(LamPrintJSON(json_pack("{s:I, s:I, s:o, s:o, s:o}", "records", (json_int_t)Records(b), "failed",
-                                   (json_int_t)Failed(b), "seconds", LamJSONReal(now - b->start), "answered",
+                                   (json_int_t)Failed(b), "seconds", LamJSONReal(LamClock() - b->start), "answered",
                                    LamJSONReal(LamRoundsAnswered(&b->rounds)), "error_95",
                                    LamJSONReal(b->rounds.poll.error))));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Commit(Build *b, PetscInt n)
+static PetscErrorCode Commit(Build *b)
 {
-  LamResponse *responses;
+  const PetscReal begin = LamClock();
+  Pending *p = &b->pending;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n, &responses));
-  for (PetscInt k = 0; k < n; k++) {
-    responses[k] = b->rounds.responses[b->rounds.place[b->committed + k]];
-    b->failed += responses[k].status != LAM_CONVERGED;
-  }
-  PetscCall(LamRecordWriterCommit(b->writer, n, b->keys + b->committed, responses));
-  PetscCall(PetscFree(responses));
-  b->committed += n;
-  b->added += n;
-  PetscCall(PetscTime(&b->last_commit));
+  PetscCall(LamRecordWriterCommit(b->writer, p->n, p->keys, p->responses));
+  for (PetscInt i = 0; i < p->n; i++) b->failed += p->responses[i].status != LAM_CONVERGED;
+  b->added += p->n;
+  p->n = 0;
+  b->last_commit = LamClock();
+  b->commit_seconds = b->last_commit - begin;
+  b->all_commits += b->commit_seconds;
   if (b->json) PetscCall(Report(b));
   PetscFunctionReturn(0);
 }
 
-/* Commits the solved nodes that follow without a gap: when they are many, when it is time, or when asked to. */
-static PetscErrorCode CommitReady(Build *b, PetscBool now)
+static PetscErrorCode TakeForFile(Build *b, LamRound *round, PetscInt m)
 {
-  PetscLogDouble time;
-  PetscInt n = 0;
+  const PetscInt i = round->order[m];
+  Pending *p = &b->pending;
 
   PetscFunctionBeginUser;
-  while (b->committed + n < b->count && b->solved[b->committed + n]) n++;
-  PetscCall(PetscTime(&time));
-  if (n && (now || n >= COMMIT_RECORDS || time - b->last_commit >= COMMIT_SECONDS)) PetscCall(Commit(b, n));
+  if (p->n == p->room) {
+    p->room = PetscMax(256, 2 * p->room);
+    PetscCall(PetscRealloc((size_t)p->room * sizeof(*p->keys), &p->keys));
+    PetscCall(PetscRealloc((size_t)p->room * sizeof(*p->responses), &p->responses));
+  }
+  p->keys[p->n] = round->keys[i];
+  p->responses[p->n++] = round->responses[i];
+  round->taken[m] = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+/* What follows without a gap in the order of the file. */
+static PetscErrorCode TakeInTurn(Build *b)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt r = 0; r < b->rounds.open; r++) {
+    LamRound *round = &b->rounds.round[r];
+
+    for (; round->next < round->missing; round->next++) {
+      if (round->taken[round->next]) continue;
+      if (!round->solved[round->order[round->next]]) PetscFunctionReturn(0);
+      PetscCall(TakeForFile(b, round, round->next));
+      b->last_taken = LamClock();
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* All that is there, whatever is missing before it. */
+static PetscErrorCode TakeAll(Build *b)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt r = 0; r < b->rounds.open; r++) {
+    LamRound *round = &b->rounds.round[r];
+
+    for (PetscInt m = round->next; m < round->missing; m++)
+      if (!round->taken[m] && round->solved[round->order[m]]) PetscCall(TakeForFile(b, round, m));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CommitInTime(Build *b)
+{
+  const PetscReal waited = LamClock() - b->last_commit;
+
+  PetscFunctionBeginUser;
+  if (LamClock() - b->last_taken > LATE) PetscCall(TakeAll(b));
+  if (b->pending.n >= COMMIT_RECORDS ||
+      (b->pending.n && waited >= PetscMax(COMMIT_SECONDS, COMMIT_SHARE * b->commit_seconds)))
+    PetscCall(Commit(b));
+  PetscFunctionReturn(0);
+}
+
+/* At a stop, and at the end: everything. */
+static PetscErrorCode CommitAll(void *ctx)
+{
+  Build *b = ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(TakeAll(b));
+  if (b->pending.n) PetscCall(Commit(b));
   PetscFunctionReturn(0);
 }
 
 /* ---- rounds ---- */
 
-/* A LamWork: node `index` of the round's keys. */
-static PetscErrorCode SolveNode(void *ctx, PetscInt64 index, void *result)
+static PetscErrorCode WantRound(Build *b, const LamRound *round)
 {
-  Build *b = ctx;
-
   PetscFunctionBeginUser;
-  PetscCall(LamNodeChainSolve(b->chain, b->keys[index], result));
+  b->there += round->n - round->missing;
+  for (PetscInt m = 0; m < round->missing; m++)
+    PetscCall(LamNodeWorkWant(b->work, round->keys[round->order[m]], round->cost[m]));
   PetscFunctionReturn(0);
 }
 
-/* A LamWorked */
-static PetscErrorCode Arrive(void *ctx, PetscInt64 index, const void *result)
+/* Closes complete rounds and opens the next. */
+static PetscErrorCode OpenRounds(Build *b)
 {
-  Build *b = ctx;
+  LamRound *round;
 
   PetscFunctionBeginUser;
-  b->rounds.responses[b->rounds.place[index]] = *(const LamResponse *)result;
-  b->solved[index] = PETSC_TRUE;
-  b->arrived++;
-  PetscCall(CommitReady(b, PETSC_FALSE));
-  PetscCall(LamProgressUpdate(&b->progress, b->rounds.nodes + b->rounds.n - b->rounds.missing + b->arrived, Failed(b)));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode NextRound(Build *b)
-{
-  PetscFunctionBeginUser;
-  b->count = 0;
-  if (!LamStopRequested()) PetscCall(LamRoundsNext(&b->rounds));
-  if (LamStopRequested()) PetscFunctionReturn(0);
-  b->count = b->rounds.missing;
-  PetscCall(PetscFree(b->solved));
-  PetscCall(PetscCalloc1(b->count, &b->solved));
-  PetscFunctionReturn(0);
-}
-
-/* The keys of the round, from rank 0 to all. */
-static PetscErrorCode ShareRound(Build *b)
-{
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Bcast(&b->count, 1, MPIU_INT, 0, b->dispatch.comm));
-  PetscCall(PetscFree(b->keys));
-  PetscCall(PetscMalloc1(b->count, &b->keys));
-  for (PetscInt k = 0; k < b->count && !b->dispatch.rank; k++) b->keys[k] = b->rounds.poll.keys[b->rounds.place[k]];
-  PetscCallMPI(MPI_Bcast(b->keys, (PetscMPIInt)b->count, MPIU_INT64, 0, b->dispatch.comm));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode SolveRound(Build *b)
-{
-  PetscFunctionBeginUser;
-  PetscCall(LamProgressStart(&b->progress, b->rounds.nodes + b->rounds.n, b->quiet));
-  PetscCall(LamDispatchRun(&b->dispatch, 0, b->count, Arrive, b));
-  PetscCall(CommitReady(b, PETSC_TRUE));
-  PetscCall(LamProgressEnd(&b->progress));
-  if (b->committed < b->count) PetscFunctionReturn(0); /* stopped */
-  PetscCall(LamRoundsComplete(&b->rounds));
-  b->arrived = b->committed = 0;
-  PetscFunctionReturn(0);
-}
-
-/* A worker that fails cannot tell rank 0, which waits for its result: it goes straight to main, which ends the job. */
-static PetscErrorCode RunRounds(Build *b)
-{
-  const PetscBool root = (PetscBool)(b->dispatch.rank == 0);
-  PetscErrorCode ierr = 0;
-
-  PetscFunctionBeginUser;
+  if (b->opening || LamStopRequested()) PetscFunctionReturn(0);
+  b->opening = PETSC_TRUE;
   for (;;) {
-    if (root && !ierr) ierr = NextRound(b);
-    PetscCall(LamDispatchShare(&b->dispatch, ierr));
-    PetscCall(ShareRound(b));
-    if (!b->count) break;
-    if (root) {
-      ierr = SolveRound(b);
-      PetscCall(LamDispatchEnd(&b->dispatch));
-    } else {
-      PetscCall(LamDispatchServe(&b->dispatch));
-    }
+    PetscCall(TakeInTurn(b));
+    PetscCall(LamRoundsNext(&b->rounds, &round));
+    if (!round) break;
+    PetscCall(WantRound(b, round));
   }
+  b->opening = PETSC_FALSE;
+  LamProgressSetTotal(&b->progress, LamRoundsAsked(&b->rounds));
+  PetscFunctionReturn(0);
+}
+
+/* A LamNodeArrived */
+static PetscErrorCode Arrive(void *ctx, PetscInt64 key, const LamResponse *response)
+{
+  Build *b = ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRoundsArrive(&b->rounds, key, response));
+  PetscCall(OpenRounds(b));
+  PetscCall(CommitInTime(b));
+  PetscCall(LamProgressUpdate(&b->progress, LamRoundsThere(&b->rounds), Failed(b)));
+  PetscFunctionReturn(0);
+}
+
+/* A LamNodeKnown */
+static const LamResponse *Known(void *ctx, PetscInt64 key)
+{
+  const Build *b = ctx;
+
+  return LamRoundsKnown(&b->rounds, key);
+}
+
+static PetscErrorCode SolveRounds(Build *b)
+{
+  PetscBool complete;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamProgressStart(&b->progress, 0, b->quiet));
+  b->last_commit = b->last_taken = LamClock();
+  PetscCall(OpenRounds(b));
+  PetscCall(LamNodeWorkRun(b->work, CommitAll, &complete));
+  PetscCall(CommitAll(b));
+  PetscCall(LamProgressEnd(&b->progress));
   PetscFunctionReturn(0);
 }
 
@@ -243,7 +291,7 @@ static PetscErrorCode StartRounds(Build *b, PetscBool resume)
     PetscCall(OldGrid(b, &grid));
   else
     PetscCall(NewGrid(b, &grid));
-  PetscCall(LamRoundsCreate(b->scene, b->file, &grid, &b->rounds));
+  PetscCall(LamRoundsCreate(b->scene, &b->shard, b->file, &grid, &b->rounds));
   PetscFunctionReturn(0);
 }
 
@@ -255,14 +303,14 @@ static PetscErrorCode ShareGrid(Build *b)
   LamGrid grid;
 
   PetscFunctionBeginUser;
-  if (!b->dispatch.rank) {
+  if (!b->rank) {
     PetscCall(LamDatabaseGetGrid(b->rounds.table, &grid));
     PetscCall(LamGridGetText(grid, &text));
     length = (PetscInt)strlen(text) + 1;
   }
-  PetscCallMPI(MPI_Bcast(&length, 1, MPIU_INT, 0, b->dispatch.comm));
+  PetscCallMPI(MPI_Bcast(&length, 1, MPIU_INT, 0, b->leaders));
   if (!text) PetscCall(PetscMalloc1(length, &text));
-  PetscCallMPI(MPI_Bcast(text, (PetscMPIInt)length, MPI_CHAR, 0, b->dispatch.comm));
+  PetscCallMPI(MPI_Bcast(text, (PetscMPIInt)length, MPI_CHAR, 0, b->leaders));
   PetscCall(LamGridFromText(b->path, &b->scene->micro, text, &b->grid));
   PetscCall(PetscFree(text));
   PetscFunctionReturn(0);
@@ -270,7 +318,7 @@ static PetscErrorCode ShareGrid(Build *b)
 
 /* ---- summary ---- */
 
-static void PrintTable(const Build *b, PetscLogDouble seconds)
+static void PrintTable(const Build *b, PetscReal seconds)
 {
   const LamPoll *poll = &b->rounds.poll;
   const PetscReal accuracy = b->scene->sample.accuracy;
@@ -284,7 +332,7 @@ static void PrintTable(const Build *b, PetscLogDouble seconds)
            100 * (PetscReal)poll->refused / (PetscReal)poll->asked, poll->reason);
   if (poll->reached)
     printf("%-16s estimated below %.2g %% at 95 %% of the box that is reached\n", "error of P", 100 * poll->error);
-  printf("%-16s %.3g s on %d rank%s\n", "time", seconds, (int)b->dispatch.size, b->dispatch.size > 1 ? "s" : "");
+  printf("%-16s %.3g s on %d rank%s\n", "time", seconds, (int)b->size, b->size > 1 ? "s" : "");
   if (b->added) printf("%-16s %.3g\n", "nodes per s", (PetscReal)b->added / seconds);
   if (LamStopRequested())
     printf("%-16s %s\n", "ended", "stopped by a signal");
@@ -296,37 +344,88 @@ static void PrintTable(const Build *b, PetscLogDouble seconds)
 
 static PetscErrorCode Summary(Build *b)
 {
-  PetscLogDouble now;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscTime(&now));
   if (b->json)
     PetscCall(Report(b)); /* one object per commit has been printed; this one is of the table at the end */
   else
-    PrintTable(b, now - b->start);
+    PrintTable(b, LamClock() - b->start);
   PetscFunctionReturn(0);
 }
 
 /* ---- the command ---- */
 
-/* Rank 0 keeps the file. */
-static PetscErrorCode RunAll(Build *b, PetscBool resume)
+/* An error of rank 0 ends every rank; it has been told once. */
+static PetscErrorCode Share(MPI_Comm comm, PetscErrorCode ierr)
 {
-  const PetscBool root = (PetscBool)(b->dispatch.rank == 0);
+  int code = (int)ierr;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Bcast(&code, 1, MPI_INT, 0, comm));
+  if (code) return (PetscErrorCode)code;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CreateRVE(Build *b)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamRVECreate(b->team, &b->rve));
+  PetscCall(LamRVESetMicrostructure(b->rve, &b->scene->micro));
+  PetscCall(LamRVESetStrategy(b->rve, b->scene->strategy));
+  PetscCall(LamRVESetUp(b->rve));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CreateWork(Build *b)
+{
+  const LamNodeCustomer customer = {.ctx = b, .arrived = Arrive, .known = Known};
+
+  PetscFunctionBeginUser;
+  PetscCall(LamNodeWorkCreate(b->leaders, b->rve, b->scene->micro.interface, b->grid, LAM_NODE_WORK_MEMORY, b->group,
+                              &customer, &b->work));
+  PetscFunctionReturn(0);
+}
+
+/* Of those that solve an RVE each, or lead a team that does; rank 0 keeps the file. */
+static PetscErrorCode RunLeader(Build *b)
+{
+  const PetscBool root = (PetscBool)(b->rank == 0);
   PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
-  ierr = root ? StartRounds(b, resume) : 0;
+  PetscCall(CreateRVE(b));
+  ierr = root ? StartRounds(b, b->resume) : 0;
   if (ierr) (void)LamRecordWriterClose(&b->writer);
-  PetscCall(LamDispatchShare(&b->dispatch, ierr));
+  PetscCall(Share(b->leaders, ierr));
   PetscCall(ShareGrid(b));
-  PetscCall(LamNodeChainCreate(b->rve, b->scene->micro.interface, b->grid, LAM_NODE_MEMORY, NULL, &b->chain));
-  ierr = RunRounds(b);
-  if (root && ierr) (void)LamRecordWriterClose(&b->writer);
+  PetscCall(CreateWork(b));
+  ierr = root ? SolveRounds(b) : LamNodeWorkServe(b->work);
+  if (ierr)
+    (void)LamRecordWriterClose(&b->writer);
+  else
+    ierr = LamRecordWriterClose(&b->writer);
   PetscCall(ierr);
-  if (root) ierr = LamRecordWriterClose(&b->writer);
-  PetscCall(LamDispatchShare(&b->dispatch, ierr));
-  if (root) PetscCall(Summary(b));
+  PetscFunctionReturn(0);
+}
+
+/*
+  The first rank of each team makes all decisions; the others take part in its factorisations until it dismisses them.
+  A rank that fails alone goes straight to main, which ends the job.
+*/
+static PetscErrorCode RunAll(Build *b)
+{
+  PetscErrorCode ierr = 0;
+
+  PetscFunctionBeginUser;
+  if (b->leaders == MPI_COMM_NULL) {
+    PetscCall(LamRVEServe(b->team));
+  } else {
+    ierr = RunLeader(b);
+    PetscCall(LamNodeWorkDestroy(&b->work));
+    PetscCall(LamRVEDestroy(&b->rve)); /* the team has a part in its factors */
+    if (b->team_size > 1) PetscCall(LamRVEDismiss(b->team));
+  }
+  PetscCall(Share(PETSC_COMM_WORLD, ierr));
+  if (!b->rank) PetscCall(Summary(b));
   PetscFunctionReturn(0);
 }
 
@@ -337,18 +436,21 @@ static PetscErrorCode ExitStatus(Build *b, int *exit_status)
 
   PetscFunctionBeginUser;
   if (LamStopRequested()) status = LamStopExitStatus();
-  PetscCallMPI(MPI_Bcast(&status, 1, MPI_INT, 0, b->dispatch.comm));
+  PetscCallMPI(MPI_Bcast(&status, 1, MPI_INT, 0, PETSC_COMM_WORLD));
   *exit_status = status;
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CreateRVE(Build *b)
+static PetscErrorCode CreateTeams(Build *b)
 {
+  PetscMPIInt place;
+
   PetscFunctionBeginUser;
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &b->rve));
-  PetscCall(LamRVESetMicrostructure(b->rve, &b->scene->micro));
-  PetscCall(LamRVESetStrategy(b->rve, b->scene->strategy));
-  PetscCall(LamRVESetUp(b->rve));
+  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &b->rank));
+  PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &b->size));
+  PetscCallMPI(MPI_Comm_split(PETSC_COMM_WORLD, (int)(b->rank / b->team_size), b->rank, &b->team));
+  PetscCallMPI(MPI_Comm_rank(b->team, &place));
+  PetscCallMPI(MPI_Comm_split(PETSC_COMM_WORLD, place ? MPI_UNDEFINED : 0, b->rank, &b->leaders));
   PetscFunctionReturn(0);
 }
 
@@ -362,56 +464,60 @@ static PetscErrorCode Prepare(Build *b, const char scene_path[])
              "%s: has no block `sample`, which says what states to build from", scene_path);
   PetscCall(LamPlanMake(b->scene, &plan));
   b->scene->micro = plan.micro;
-  PetscCall(PetscTime(&b->start));
-  b->last_commit = b->start;
-  PetscCall(LamSignalsInstall());
-  PetscCall(CreateRVE(b));
-  PetscCall(LamDispatchCreate(PETSC_COMM_WORLD, SolveNode, b, sizeof(LamResponse), &b->dispatch));
+  b->start = LamClock();
+  PetscCall(CreateTeams(b));
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode Destroy(Build *b)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree(b->keys));
-  PetscCall(PetscFree(b->solved));
+  PetscCall(PetscFree(b->pending.keys));
+  PetscCall(PetscFree(b->pending.responses));
   PetscCall(LamRoundsDestroy(&b->rounds));
   PetscCall(LamDatabaseClose(&b->file));
-  PetscCall(LamDispatchDestroy(&b->dispatch));
-  PetscCall(LamNodeChainDestroy(&b->chain));
   PetscCall(LamGridDestroy(&b->grid));
-  PetscCall(LamRVEDestroy(&b->rve));
+  PetscCallMPI(MPI_Comm_free(&b->team));
+  if (b->leaders != MPI_COMM_NULL) PetscCallMPI(MPI_Comm_free(&b->leaders));
   PetscCall(LamSceneDestroy(&b->scene));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamCommandBuild(LamArgs *args, int *exit_status)
 {
-  Build b = {0};
-  PetscBool resume = PETSC_FALSE, done;
-  const char *scene_path;
+  Build b = {.team_size = 1, .shard = {1, 1}};
+  const char *scene_path, *group = NULL, *team = NULL, *shard = NULL;
+  PetscBool done;
   const LamOption options[] = {
       {'d', "database", LAM_OPTION_TEXT, "DB.h5", "the database to fill", &b.path},
-      {0, "resume", LAM_OPTION_FLAG, NULL, "go on with the database where it is there", &resume},
+      {0, "resume", LAM_OPTION_FLAG, NULL, "go on with the database where it is there", &b.resume},
+      {0, "shard", LAM_OPTION_TEXT, "I/N", "only part I of N of the sample box, for `lamella merge`", &shard},
+      {0, "ranks-per-rve", LAM_OPTION_TEXT, "R", "ranks that factor the matrices of one RVE together; default 1",
+       &team},
+      {0, "group", LAM_OPTION_TEXT, "G", "ranks that one rank hands out work to; default 128", &group},
       {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per commit on stdout", &b.json},
       {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &b.quiet},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
   };
 
   PetscFunctionBeginUser;
-  PetscCall(
-      LamOptionsParse(args, "build SCENE -d DB.h5 [--resume] [--json] [--quiet]",
-                      "Solves nodes of a grid until a table of them answers the states of the scene's sample box.",
-                      options, 1, &scene_path, &done, exit_status));
+  PetscCall(LamOptionsParse(
+      args, "build SCENE -d DB.h5 [--resume] [--shard I/N] [--ranks-per-rve R] [--group G] [--json] [--quiet]",
+      "Solves nodes of a grid until a table of them answers the states of the scene's sample box.", options, 1,
+      &scene_path, &done, exit_status));
   if (done) PetscFunctionReturn(0);
   if (!b.path) {
     fprintf(stderr, "lamella build: the database is missing; give -d DB.h5\n");
     *exit_status = LAM_EXIT_USAGE;
     PetscFunctionReturn(0);
   }
+  if ((group && !LamCountParse("build", "--group", group, 1, &b.group, exit_status)) ||
+      (team && !LamCountParse("build", "--ranks-per-rve", team, 1, &b.team_size, exit_status)) ||
+      (shard && !LamShardParse(shard, &b.shard, exit_status)))
+    PetscFunctionReturn(0);
   PetscCall(LamAppInitialize(args));
   PetscCall(Prepare(&b, scene_path));
-  PetscCall(RunAll(&b, resume));
+  PetscCall(RunAll(&b));
   PetscCall(ExitStatus(&b, exit_status));
   PetscCall(Destroy(&b));
   PetscFunctionReturn(0);

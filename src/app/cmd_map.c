@@ -27,6 +27,7 @@ typedef struct {
   LamScene *scene;
   PetscInt paths, cuts;
   LamDispatch dispatch;
+  PetscMPIInt rank, ranks;
   PetscInt *todo; /* paths that the file lacks; owned, all ranks */
   PetscInt todo_count;
 
@@ -130,8 +131,8 @@ static PetscErrorCode Arrive(void *ctx, PetscInt64 index, const void *result)
   PetscFunctionReturn(0);
 }
 
-/* A LamWork */
-static PetscErrorCode Follow(void *ctx, PetscInt64 index, void *result)
+/* Follows the path number `index` of those to do. */
+static PetscErrorCode Follow(void *ctx, PetscInt64 index, const void *input, void *result, size_t *size)
 {
   const Map *m = ctx;
   PathResult *path = result;
@@ -222,8 +223,8 @@ static PetscErrorCode Summary(const Map *m)
   PetscCall(PetscTime(&now));
   PrintLetters(m);
   printf("%" PetscInt_FMT " of %" PetscInt_FMT " points (%" PetscInt_FMT " new), %.3g s on %d rank%s\n",
-         m->old + m->solved, LamMapPointCount(m->scene), m->solved, now - m->start, (int)m->dispatch.size,
-         m->dispatch.size > 1 ? "s" : "");
+         m->old + m->solved, LamMapPointCount(m->scene), m->solved, now - m->start, (int)m->ranks,
+         m->ranks > 1 ? "s" : "");
   if (m->old + m->solved) printf("wrote %s\n", m->path);
   PetscFunctionReturn(0);
 }
@@ -234,9 +235,9 @@ static PetscErrorCode ExitStatus(Map *m, int *exit_status)
   int status = LAM_EXIT_OK;
 
   PetscFunctionBeginUser;
-  if (m->dispatch.rank == 0 && CountMode(m, LAM_FAILURE_UNKNOWN)) status = LAM_EXIT_UNSOLVED;
+  if (m->rank == 0 && CountMode(m, LAM_FAILURE_UNKNOWN)) status = LAM_EXIT_UNSOLVED;
   if (LamStopRequested()) status = LamStopExitStatus();
-  PetscCallMPI(MPI_Bcast(&status, 1, MPI_INT, 0, m->dispatch.comm));
+  PetscCallMPI(MPI_Bcast(&status, 1, MPI_INT, 0, PETSC_COMM_WORLD));
   *exit_status = status;
   PetscFunctionReturn(0);
 }
@@ -264,9 +265,12 @@ static PetscErrorCode OpenWriter(Map *m)
 
 static PetscErrorCode RunRoot(Map *m)
 {
+  PetscBool complete;
+
   PetscFunctionBeginUser;
   PetscCall(LamProgressStart(&m->progress, LamMapPointCount(m->scene), m->quiet));
-  PetscCall(LamDispatchRun(&m->dispatch, 0, m->todo_count, Arrive, m));
+  PetscCall(LamDispatchAdd(m->dispatch, 0, m->todo_count, 1));
+  PetscCall(LamDispatchRun(m->dispatch, NULL, NULL, &complete));
   PetscCall(Commit(m));
   PetscCall(LamProgressEnd(&m->progress));
   PetscFunctionReturn(0);
@@ -285,21 +289,19 @@ static PetscErrorCode CloseAfter(Map *m, PetscErrorCode ierr)
 /* Rank 0 keeps the file. A worker that fails cannot tell rank 0, which waits for its result: it ends the job. */
 static PetscErrorCode RunAll(Map *m)
 {
-  const PetscBool root = (PetscBool)(m->dispatch.rank == 0);
+  const PetscBool root = (PetscBool)(m->rank == 0);
   PetscErrorCode ierr = root ? OpenWriter(m) : 0;
 
   PetscFunctionBeginUser;
   if (ierr) (void)LamRecordWriterClose(&m->writer);
-  PetscCall(LamDispatchShare(&m->dispatch, ierr));
-  PetscCallMPI(MPI_Bcast(m->todo, (PetscMPIInt)m->paths, MPIU_INT, 0, m->dispatch.comm));
+  PetscCall(LamDispatchShare(m->dispatch, ierr));
+  PetscCallMPI(MPI_Bcast(m->todo, (PetscMPIInt)m->paths, MPIU_INT, 0, PETSC_COMM_WORLD));
   if (root) {
-    ierr = RunRoot(m);
-    PetscCall(LamDispatchEnd(&m->dispatch));
-    ierr = CloseAfter(m, ierr);
+    ierr = CloseAfter(m, RunRoot(m));
   } else {
-    PetscCall(LamDispatchServe(&m->dispatch));
+    PetscCall(LamDispatchServe(m->dispatch));
   }
-  PetscCall(LamDispatchShare(&m->dispatch, ierr));
+  PetscCall(LamDispatchShare(m->dispatch, ierr));
   if (root) PetscCall(Summary(m));
   PetscFunctionReturn(0);
 }
@@ -315,15 +317,19 @@ static PetscErrorCode Prepare(Map *m)
   PetscCall(PetscCalloc1(m->paths, &m->todo));
   PetscCall(PetscTime(&m->start));
   m->last_commit = m->start;
-  PetscCall(LamDispatchCreate(PETSC_COMM_WORLD, Follow, m, sizeof(PathResult) + (size_t)m->cuts * sizeof(LamMapPoint),
-                              &m->dispatch));
+  PetscCall(
+      LamDispatchCreate(PETSC_COMM_WORLD,
+                        &(LamDispatchJob){m, .result_size = sizeof(PathResult) + (size_t)m->cuts * sizeof(LamMapPoint),
+                                          .work = Follow, .worked = Arrive},
+                        0, &m->dispatch));
+  PetscCall(LamDispatchGetRank(m->dispatch, &m->rank, &m->ranks));
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode Destroy(Map *m)
 {
   PetscFunctionBeginUser;
-  if (m->dispatch.rank == 0) PetscCall(LamMapTableDestroy(&m->table));
+  if (m->rank == 0) PetscCall(LamMapTableDestroy(&m->table));
   PetscCall(PetscFree(m->waiting));
   PetscCall(PetscFree(m->todo));
   PetscCall(LamDispatchDestroy(&m->dispatch));

@@ -15,6 +15,7 @@ typedef struct {
   PetscInt samples, seed;
   PetscReal accuracy; /* 0: that of the database */
   LamDispatch dispatch;
+  PetscMPIInt rank, ranks;
   PetscLogDouble start;
 
   /* every rank */
@@ -36,7 +37,7 @@ typedef struct {
 /* What rank 0 has drawn, and the tissue, to all. */
 static PetscErrorCode Share(Verify *v)
 {
-  const MPI_Comm comm = v->dispatch.comm;
+  const MPI_Comm comm = PETSC_COMM_WORLD;
   LamMicrostructure *micro = &v->micro;
   LamCell *cells = micro->cell; /* of rank 0: the database's */
   int has_cells = cells != NULL;
@@ -49,11 +50,11 @@ static PetscErrorCode Share(Verify *v)
   PetscCallMPI(MPI_Bcast(&v->count, 1, MPIU_INT, 0, comm));
   n = has_cells ? micro->cells[0] * micro->cells[1] : 0;
   PetscCall(PetscMalloc1(n, &micro->cell));
-  if (v->dispatch.rank == 0) PetscCall(PetscArraycpy(micro->cell, cells, n));
+  if (v->rank == 0) PetscCall(PetscArraycpy(micro->cell, cells, n));
   PetscCallMPI(MPI_Bcast(micro->cell, (PetscMPIInt)((size_t)n * sizeof(LamCell)), MPI_BYTE, 0, comm));
   if (!has_cells) PetscCall(PetscFree(micro->cell));
   PetscCall(PetscMalloc1(v->count, &v->loads));
-  if (v->dispatch.rank == 0) PetscCall(PetscArraycpy(v->loads, v->audit.loads, v->count));
+  if (v->rank == 0) PetscCall(PetscArraycpy(v->loads, v->audit.loads, v->count));
   for (PetscInt i = 0; i < v->count; i++) PetscCallMPI(MPI_Bcast(&v->loads[i], sizeof(LamLoad), MPI_BYTE, 0, comm));
   PetscFunctionReturn(0);
 }
@@ -69,8 +70,8 @@ static PetscErrorCode CreateRVE(Verify *v)
   PetscFunctionReturn(0);
 }
 
-/* A LamWork: from the stress-free reference, as if nothing else were known. */
-static PetscErrorCode Solve(void *ctx, PetscInt64 index, void *result)
+/* From the stress-free reference, as if nothing else were known. */
+static PetscErrorCode Solve(void *ctx, PetscInt64 index, const void *input, void *result, size_t *size)
 {
   Verify *v = ctx;
 
@@ -80,7 +81,6 @@ static PetscErrorCode Solve(void *ctx, PetscInt64 index, void *result)
   PetscFunctionReturn(0);
 }
 
-/* A LamWorked */
 static PetscErrorCode Arrive(void *ctx, PetscInt64 index, const void *result)
 {
   Verify *v = ctx;
@@ -106,9 +106,12 @@ static PetscErrorCode Begin(Verify *v)
 
 static PetscErrorCode RunRoot(Verify *v)
 {
+  PetscBool complete;
+
   PetscFunctionBeginUser;
   PetscCall(LamProgressStart(&v->progress, v->count, v->quiet));
-  PetscCall(LamDispatchRun(&v->dispatch, 0, v->count, Arrive, v));
+  PetscCall(LamDispatchAdd(v->dispatch, 0, v->count, 1));
+  PetscCall(LamDispatchRun(v->dispatch, NULL, NULL, &complete));
   PetscCall(LamProgressEnd(&v->progress));
   PetscFunctionReturn(0);
 }
@@ -121,7 +124,7 @@ static PetscErrorCode Report(Verify *v)
   PetscFunctionBeginUser;
   PetscCall(PetscTime(&now));
   if (!v->json) {
-    PetscCall(LamAuditPrint(&v->audit, v->path, now - v->start, v->dispatch.size));
+    PetscCall(LamAuditPrint(&v->audit, v->path, now - v->start, v->ranks));
     PetscFunctionReturn(0);
   }
   PetscCall(LamAuditToJSON(&v->audit, v->path, now - v->start, &object));
@@ -135,9 +138,9 @@ static PetscErrorCode ExitStatus(Verify *v, int *exit_status)
   int status = LAM_EXIT_OK;
 
   PetscFunctionBeginUser;
-  if (v->dispatch.rank == 0 && (json_object_size(v->audit.unsolved) || !v->audit.answered)) status = LAM_EXIT_UNSOLVED;
+  if (v->rank == 0 && (json_object_size(v->audit.unsolved) || !v->audit.answered)) status = LAM_EXIT_UNSOLVED;
   if (LamStopRequested()) status = LamStopExitStatus();
-  PetscCallMPI(MPI_Bcast(&status, 1, MPI_INT, 0, v->dispatch.comm));
+  PetscCallMPI(MPI_Bcast(&status, 1, MPI_INT, 0, PETSC_COMM_WORLD));
   *exit_status = status;
   PetscFunctionReturn(0);
 }
@@ -147,20 +150,18 @@ static PetscErrorCode ExitStatus(Verify *v, int *exit_status)
 /* A worker that fails cannot tell rank 0, which waits for its result: it ends the job. */
 static PetscErrorCode RunAll(Verify *v)
 {
-  const PetscBool root = (PetscBool)(v->dispatch.rank == 0);
+  const PetscBool root = (PetscBool)(v->rank == 0);
   PetscErrorCode ierr = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(LamDispatchShare(&v->dispatch, root ? Begin(v) : 0));
+  PetscCall(LamDispatchShare(v->dispatch, root ? Begin(v) : 0));
   PetscCall(Share(v));
   PetscCall(CreateRVE(v));
-  if (root) {
+  if (root)
     ierr = RunRoot(v);
-    PetscCall(LamDispatchEnd(&v->dispatch));
-  } else {
-    PetscCall(LamDispatchServe(&v->dispatch));
-  }
-  PetscCall(LamDispatchShare(&v->dispatch, ierr));
+  else
+    PetscCall(LamDispatchServe(v->dispatch));
+  PetscCall(LamDispatchShare(v->dispatch, ierr));
   if (root) PetscCall(Report(v));
   PetscFunctionReturn(0);
 }
@@ -168,7 +169,7 @@ static PetscErrorCode RunAll(Verify *v)
 static PetscErrorCode Destroy(Verify *v)
 {
   PetscFunctionBeginUser;
-  if (v->dispatch.rank == 0) {
+  if (v->rank == 0) {
     PetscCall(LamAuditDestroy(&v->audit));
     PetscCall(LamAnswersClose(&v->from));
   }
@@ -210,7 +211,10 @@ PetscErrorCode LamCommandVerify(LamArgs *args, int *exit_status)
   if (done || !ReadValues(&v, exit_status)) PetscFunctionReturn(0);
   PetscCall(LamAppInitialize(args));
   PetscCall(PetscTime(&v.start));
-  PetscCall(LamDispatchCreate(PETSC_COMM_WORLD, Solve, &v, sizeof(LamResponse), &v.dispatch));
+  PetscCall(LamDispatchCreate(
+      PETSC_COMM_WORLD, &(LamDispatchJob){&v, .result_size = sizeof(LamResponse), .work = Solve, .worked = Arrive}, 0,
+      &v.dispatch));
+  PetscCall(LamDispatchGetRank(v.dispatch, &v.rank, &v.ranks));
   PetscCall(RunAll(&v));
   PetscCall(ExitStatus(&v, exit_status));
   PetscCall(Destroy(&v));

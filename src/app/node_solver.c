@@ -85,30 +85,35 @@ static PetscErrorCode Remember(LamNodeChain chain, PetscInt64 key, const LamResp
 
 /* ---- solves ---- */
 
-/* Children may start from it. */
-static PetscBool Leads(const LamResponse *response)
+PetscBool LamNodeLeads(const LamResponse *response)
 {
   return (PetscBool)(response->status == LAM_CONVERGED && !response->branch && response->floating_cells <= 0);
 }
 
-static PetscErrorCode SolveFromReference(LamNodeChain chain, const LamLoad *load, LamResponse *response)
+static PetscErrorCode SolveFromReference(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamRVEStateReset(chain->rve, chain->state));
-  PetscCall(LamRVESolve(chain->rve, load, chain->state, response));
+  PetscCall(LamRVEStateReset(rve, state));
+  PetscCall(LamRVESolve(rve, load, state, response));
   PetscFunctionReturn(0);
 }
 
-/* From the state in chain->state, and where that leads nowhere from the reference. */
-static PetscErrorCode SolveFromParent(LamNodeChain chain, const LamLoad *load, LamResponse *response)
+PetscErrorCode LamNodeSolve(LamRVE rve, LamGrid grid, PetscInt64 key, PetscBool from_parent, LamRVEState state,
+                            LamResponse *response)
 {
   LamResponse first;
+  LamLoad load;
 
   PetscFunctionBeginUser;
-  PetscCall(LamRVESolve(chain->rve, load, chain->state, &first));
+  PetscCall(LamGridNodeLoad(grid, key, &load));
+  if (!from_parent) {
+    PetscCall(SolveFromReference(rve, &load, state, response));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(LamRVESolve(rve, &load, state, &first));
   *response = first;
   if (first.status == LAM_CONVERGED) PetscFunctionReturn(0);
-  PetscCall(SolveFromReference(chain, load, response));
+  PetscCall(SolveFromReference(rve, &load, state, response));
   response->newton_iterations += first.newton_iterations;
   response->factorisations += first.factorisations;
   response->seconds += first.seconds;
@@ -119,21 +124,17 @@ static PetscErrorCode SolveFromParent(LamNodeChain chain, const LamLoad *load, L
 static PetscErrorCode Reach(LamNodeChain chain, PetscInt64 key, PetscInt *place)
 {
   const PetscInt64 parent = chain->warm ? LamGridNodeParent(chain->grid, key) : -1;
+  PetscBool leads;
   PetscInt start = -1;
   LamResponse response;
-  LamLoad load;
 
   PetscFunctionBeginUser;
   *place = Find(chain, key);
   if (*place >= 0) PetscFunctionReturn(0);
   if (parent >= 0) PetscCall(Reach(chain, parent, &start));
-  PetscCall(LamGridNodeLoad(chain->grid, key, &load));
-  if (start >= 0 && Leads(&chain->nodes[start].response)) {
-    PetscCall(LamRVEStateCopy(chain->nodes[start].state, chain->state));
-    PetscCall(SolveFromParent(chain, &load, &response));
-  } else {
-    PetscCall(SolveFromReference(chain, &load, &response));
-  }
+  leads = (PetscBool)(start >= 0 && LamNodeLeads(&chain->nodes[start].response));
+  if (leads) PetscCall(LamRVEStateCopy(chain->nodes[start].state, chain->state));
+  PetscCall(LamNodeSolve(chain->rve, chain->grid, key, leads, chain->state, &response));
   PetscCall(Remember(chain, key, &response, place));
   PetscFunctionReturn(0);
 }

@@ -9,6 +9,16 @@
 
 #include "app.h"
 
+/*
+  Solves one node. State of contact tissue in: that of its parent (`from_parent`: the parent leads), else anything, for
+  it is reached from the reference then, and also where no answer is found from the parent; the counts of both attempts
+  are summed. State out: the solution, where there is one.
+*/
+PetscErrorCode LamNodeSolve(LamRVE rve, LamGrid grid, PetscInt64 key, PetscBool from_parent, LamRVEState state,
+                            LamResponse *response);
+/* Whether children may start from it: it is stable, on the first branch and without floating cells. */
+PetscBool LamNodeLeads(const LamResponse *response);
+
 typedef struct LamNodeChain_s *LamNodeChain;
 
 /*
@@ -20,9 +30,7 @@ PetscErrorCode LamNodeChainCreate(LamRVE rve, LamInterfaceLawType interface, Lam
                                   PetscBool (*stop)(void), LamNodeChain *chain);
 /*
   `chain`: a LamNodeChain; with this function it is a LamNodeSolver (cache.h). The state of bonded tissue is reached
-  from the reference; that of contact tissue from its parent where that is stable, on the first branch and without
-  floating cells, and from the reference where the parent is not, or where no answer is found from it. The counts of
-  both attempts are summed.
+  from the reference; that of contact tissue from its parent where that leads, whose own is reached likewise.
 */
 PetscErrorCode LamNodeChainSolve(void *chain, PetscInt64 key, LamResponse *response);
 PetscErrorCode LamNodeChainDestroy(LamNodeChain *chain);

@@ -26,6 +26,11 @@ PetscErrorCode LamProgressStart(LamProgress *progress, PetscInt64 total, PetscBo
   PetscFunctionReturn(0);
 }
 
+void LamProgressSetTotal(LamProgress *progress, PetscInt64 total)
+{
+  progress->total = total;
+}
+
 PetscErrorCode LamProgressUpdate(LamProgress *progress, PetscInt64 done, PetscInt64 failed)
 {
   PetscLogDouble now, rate;

@@ -280,6 +280,13 @@ PetscErrorCode LamScheduleDone(LamSchedule schedule, PetscInt child, PetscReal n
   PetscFunctionReturn(0);
 }
 
+PetscReal LamScheduleCost(LamSchedule schedule, PetscInt child, PetscInt64 piece)
+{
+  const Child *c = &schedule->child[child];
+
+  return c->held[FindHeld(c, piece)].cost;
+}
+
 PetscInt64 LamScheduleWaiting(LamSchedule schedule)
 {
   return schedule->waiting;

@@ -37,6 +37,8 @@ PetscErrorCode LamScheduleTake(LamSchedule schedule, PetscInt child, PetscReal n
 /* The result of a piece has come from `child`. *first: nobody was faster; the results of second copies are dropped. */
 PetscErrorCode LamScheduleDone(LamSchedule schedule, PetscInt child, PetscReal now, PetscInt64 piece, PetscBool *first);
 
+/* The predicted cost of a piece that the child has. */
+PetscReal LamScheduleCost(LamSchedule schedule, PetscInt child, PetscInt64 piece);
 /* Pieces that nobody has yet, and those that children have. */
 PetscInt64 LamScheduleWaiting(LamSchedule schedule);
 PetscInt64 LamScheduleOut(LamSchedule schedule);

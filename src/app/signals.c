@@ -35,6 +35,11 @@ PetscErrorCode LamSignalsInstall(void)
   PetscFunctionReturn(0);
 }
 
+void LamStopRequest(void)
+{
+  if (!StopSignal) StopSignal = SIGTERM;
+}
+
 PetscBool LamStopRequested(void)
 {
   return (PetscBool)(StopSignal != 0);

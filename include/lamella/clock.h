@@ -1,0 +1,19 @@
+/*
+  The clock for durations: it does not jump when somebody sets the time of day.
+*/
+#ifndef LAM_CLOCK_H
+#define LAM_CLOCK_H
+
+#include <petscsys.h>
+#include <time.h>
+
+/* Seconds since some moment before the program began. */
+static inline PetscReal LamClock(void)
+{
+  struct timespec now;
+
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (PetscReal)now.tv_sec + 1e-9 * (PetscReal)now.tv_nsec;
+}
+
+#endif
