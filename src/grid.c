@@ -160,6 +160,14 @@ static void LayOutStrains(const LamScene *scene, const LamSample *box, LamGrid g
     g->turgor = scene->turgor;
 }
 
+static PetscErrorCode SolveFreeCell(LamGrid g, const LamMicrostructure *micro, LamResponder *solver, LamFreeCell *cell)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamFreeCellMake(micro, g->cohesion, LamGridSuction(g, 0), LamGridSuction(g, LAM_ROOT * g->tau_cells),
+                            g->suction_scale, FREE_KNOTS, solver, cell));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode LayOutSuction(const LamScene *scene, const LamSample *box, LamResponder *solver, LamGrid g)
 {
   PetscReal s_min = box->turgor_min + scene->cohesion, s_max = box->turgor_max + scene->cohesion;
@@ -178,10 +186,7 @@ static PetscErrorCode LayOutSuction(const LamScene *scene, const LamSample *box,
   g->tau_min = LamGridTau(g, s_min);
   g->tau_cells = PetscMax(1, (PetscInt)PetscCeilReal((LamGridTau(g, s_max) - g->tau_min) / TAU_STEP - 1e-9));
   g->tau_step = PetscMax((LamGridTau(g, s_max) - g->tau_min) / (PetscReal)g->tau_cells, 1e-3);
-  if (!scene->micro.cell)
-    PetscCall(LamFreeCellMake(&scene->micro, g->cohesion, LamGridSuction(g, 0),
-                              LamGridSuction(g, LAM_ROOT * g->tau_cells), g->suction_scale, FREE_KNOTS, solver,
-                              &g->free));
+  if (!scene->micro.cell) PetscCall(SolveFreeCell(g, &scene->micro, solver, &g->free));
   PetscFunctionReturn(0);
 }
 
@@ -239,6 +244,29 @@ PetscErrorCode LamGridGetRecords(LamGrid grid, PetscInt *n, const PetscInt64 *ke
   *n = grid->free.records ? grid->free.n : 0;
   *keys = grid->free_keys;
   *records = grid->free.records;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamGridGetFreeKeys(LamGrid grid, PetscInt *n, const PetscInt64 *keys[])
+{
+  PetscFunctionBeginUser;
+  *n = grid->free.n;
+  *keys = grid->free_keys;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamGridSolveRecords(LamGrid grid, const LamMicrostructure *micro, LamResponder *solver)
+{
+  LamFreeCell again = {0};
+
+  PetscFunctionBeginUser;
+  if (!grid->free.n || grid->free.records) PetscFunctionReturn(0);
+  PetscCall(SolveFreeCell(grid, micro, solver, &again));
+  PetscCheck(again.n == grid->free.n, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "the grid has free cells, and none are found now; it was made by another version of lamella");
+  grid->free.records = again.records;
+  again.records = NULL;
+  PetscCall(LamFreeCellDestroy(&again));
   PetscFunctionReturn(0);
 }
 

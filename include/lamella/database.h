@@ -117,6 +117,9 @@ PetscErrorCode LamGridDestroy(LamGrid *grid);
 /* States that LamGridCreate solved (free cells): to be stored with their keys as the first records; borrowed. None in a
    grid that was read. */
 PetscErrorCode LamGridGetRecords(LamGrid grid, PetscInt *n, const PetscInt64 *keys[], const LamResponse *records[]);
+/* The keys of those records, also of a grid that was read; and the records themselves, solved once more for it. */
+PetscErrorCode LamGridGetFreeKeys(LamGrid grid, PetscInt *n, const PetscInt64 *keys[]);
+PetscErrorCode LamGridSolveRecords(LamGrid grid, const LamMicrostructure *micro, LamResponder *solver);
 #define LAM_GRID_NAME "/table/grid" /* LamRecordWriterText of it, before the first node */
 
 /* Keys of nodes lie between those of samples and those of the cache. */

@@ -26,6 +26,7 @@ static int CompareKnown(const void *a, const void *b)
 /* The nodes of the file; those of free cells belong to the grid and are in the table from the start. */
 static PetscErrorCode FindKnown(LamDatabase file, LamRounds *rounds)
 {
+  const PetscBool from_grid = (PetscBool)(rounds->nodes > 0);
   const LamResponse *records;
   const PetscInt64 *keys;
   PetscInt n;
@@ -35,6 +36,7 @@ static PetscErrorCode FindKnown(LamDatabase file, LamRounds *rounds)
   PetscCall(PetscMalloc1(n, &rounds->known));
   for (PetscInt i = 0; i < n; i++) {
     if (LamKeyIsFreeCell(keys[i])) {
+      if (from_grid) continue;
       PetscCall(LamDatabaseAdd(rounds->table, 1, &keys[i], &records[i]));
       rounds->nodes++;
     } else if (LamKeyIsNode(keys[i]))

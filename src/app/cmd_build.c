@@ -94,9 +94,8 @@ static PetscErrorCode Commit(Build *b)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode TakeForFile(Build *b, LamRound *round, PetscInt m)
+static PetscErrorCode TakeForFile(Build *b, PetscInt64 key, const LamResponse *response)
 {
-  const PetscInt i = round->order[m];
   Pending *p = &b->pending;
 
   PetscFunctionBeginUser;
@@ -105,8 +104,18 @@ static PetscErrorCode TakeForFile(Build *b, LamRound *round, PetscInt m)
     PetscCall(PetscRealloc((size_t)p->room * sizeof(*p->keys), &p->keys));
     PetscCall(PetscRealloc((size_t)p->room * sizeof(*p->responses), &p->responses));
   }
-  p->keys[p->n] = round->keys[i];
-  p->responses[p->n++] = round->responses[i];
+  p->keys[p->n] = key;
+  p->responses[p->n++] = *response;
+  PetscFunctionReturn(0);
+}
+
+/* The node that comes as number m in its round. */
+static PetscErrorCode TakeNode(Build *b, LamRound *round, PetscInt m)
+{
+  const PetscInt i = round->order[m];
+
+  PetscFunctionBeginUser;
+  PetscCall(TakeForFile(b, round->keys[i], &round->responses[i]));
   round->taken[m] = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
@@ -121,7 +130,7 @@ static PetscErrorCode TakeInTurn(Build *b)
     for (; round->next < round->missing; round->next++) {
       if (round->taken[round->next]) continue;
       if (!round->solved[round->order[round->next]]) PetscFunctionReturn(0);
-      PetscCall(TakeForFile(b, round, round->next));
+      PetscCall(TakeNode(b, round, round->next));
       b->last_taken = LamClock();
     }
   }
@@ -136,7 +145,7 @@ static PetscErrorCode TakeAll(Build *b)
     LamRound *round = &b->rounds.round[r];
 
     for (PetscInt m = round->next; m < round->missing; m++)
-      if (!round->taken[m] && round->solved[round->order[m]]) PetscCall(TakeForFile(b, round, m));
+      if (!round->taken[m] && round->solved[round->order[m]]) PetscCall(TakeNode(b, round, m));
   }
   PetscFunctionReturn(0);
 }
@@ -231,43 +240,69 @@ static PetscErrorCode SolveRounds(Build *b)
 
 /* ---- the file and its grid, on rank 0 ---- */
 
-static PetscErrorCode OpenWriter(Build *b, PetscBool resume)
+static PetscErrorCode OpenWriter(Build *b)
 {
   const PetscBool exists = (PetscBool)!access(b->path, F_OK);
 
   PetscFunctionBeginUser;
-  PetscCheck(resume || !exists, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+  PetscCheck(b->resume || !exists, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: exists; give --resume to go on with it, or remove it", b->path);
   PetscCall(LamRecordWriterOpen(b->path, "database", LAM_WRITE_APPEND, b->scene, &b->writer));
   if (exists) PetscCall(LamDatabaseOpen(b->path, &b->file));
   PetscFunctionReturn(0);
 }
 
-/* Free cells' states come with it: the first commit. */
-static PetscErrorCode NewGrid(Build *b, LamGrid *grid)
+/* Free cells' states that come with a grid, those of them that the file has not got. */
+static PetscErrorCode CommitFreeCells(Build *b, LamGrid grid)
 {
   const LamResponse *records;
-  const PetscInt64 *keys;
-  LamResponder solver;
-  char *text;
-  PetscInt n;
+  const PetscInt64 *keys, *there;
+  PetscInt n, n_there, missing = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(LamRVEResponderCreate(b->rve, 0, &solver));
-  PetscCall(LamGridCreate(b->scene, &solver, grid));
-  PetscCall(solver.destroy(&solver.ctx));
-  PetscCall(LamGridGetText(*grid, &text));
-  PetscCall(LamRecordWriterText(b->writer, LAM_GRID_NAME, text));
-  PetscCall(PetscFree(text));
-  PetscCall(LamGridGetRecords(*grid, &n, &keys, &records));
-  PetscCall(LamRecordWriterCommit(b->writer, n, keys, records));
-  b->added = n;
+  PetscCall(LamGridGetRecords(grid, &n, &keys, &records));
+  PetscCall(LamRecordWriterGetKeys(b->writer, &n_there, &there));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscInt k = 0;
+
+    while (k < n_there && there[k] != keys[i]) k++;
+    if (k < n_there) continue;
+    PetscCall(TakeForFile(b, keys[i], &records[i]));
+    missing++;
+  }
+  PetscCall(LamRecordWriterCommit(b->writer, b->pending.n, b->pending.keys, b->pending.responses)); /* or 0: its name */
+  b->added = missing;
+  b->pending.n = 0;
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode OldGrid(Build *b, LamGrid *grid)
+static PetscErrorCode NewGrid(Build *b, LamResponder *solver, LamGrid *grid)
 {
+  char *text;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamGridCreate(b->scene, solver, grid));
+  PetscCall(LamGridGetText(*grid, &text));
+  PetscCall(LamRecordWriterText(b->writer, LAM_GRID_NAME, text));
+  PetscCall(PetscFree(text));
+  PetscCall(CommitFreeCells(b, *grid));
+  PetscFunctionReturn(0);
+}
+
+/* How many of the grid's free cells the file has. */
+static PetscInt CountFreeCells(PetscInt n, const PetscInt64 keys[])
+{
+  PetscInt count = 0;
+
+  for (PetscInt i = 0; i < n; i++) count += LamKeyIsFreeCell(keys[i]);
+  return count;
+}
+
+static PetscErrorCode OldGrid(Build *b, LamResponder *solver, LamGrid *grid)
+{
+  const PetscInt64 *keys;
   PetscBool found;
+  PetscInt n, wanted;
   char *text;
 
   PetscFunctionBeginUser;
@@ -278,20 +313,26 @@ static PetscErrorCode OldGrid(Build *b, LamGrid *grid)
              b->path, LAM_GRID_NAME);
   PetscCall(LamGridFromText(b->path, &b->scene->micro, text, grid));
   PetscCall(PetscFree(text));
+  PetscCall(LamGridGetFreeKeys(*grid, &wanted, &keys));
+  PetscCall(LamRecordWriterGetKeys(b->writer, &n, &keys));
+  if (CountFreeCells(n, keys) >= wanted) PetscFunctionReturn(0);
+  PetscCall(LamGridSolveRecords(*grid, &b->scene->micro, solver)); /* a damaged file may have lost some */
+  PetscCall(CommitFreeCells(b, *grid));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode StartRounds(Build *b, PetscBool resume)
+static PetscErrorCode StartRounds(Build *b)
 {
+  LamResponder solver;
   LamGrid grid;
 
   PetscFunctionBeginUser;
-  PetscCall(OpenWriter(b, resume));
-  if (b->file)
-    PetscCall(OldGrid(b, &grid));
-  else
-    PetscCall(NewGrid(b, &grid));
+  PetscCall(OpenWriter(b));
+  PetscCall(LamRVEResponderCreate(b->rve, 0, &solver));
+  PetscCall(b->file ? OldGrid(b, &solver, &grid) : NewGrid(b, &solver, &grid));
+  PetscCall(solver.destroy(&solver.ctx));
   PetscCall(LamRoundsCreate(b->scene, &b->shard, b->file, &grid, &b->rounds));
+  b->there = b->rounds.nodes - b->added;
   PetscFunctionReturn(0);
 }
 
@@ -393,7 +434,7 @@ static PetscErrorCode RunLeader(Build *b)
 
   PetscFunctionBeginUser;
   PetscCall(CreateRVE(b));
-  ierr = root ? StartRounds(b, b->resume) : 0;
+  ierr = root ? StartRounds(b) : 0;
   if (ierr) (void)LamRecordWriterClose(&b->writer);
   PetscCall(Share(b->leaders, ierr));
   PetscCall(ShareGrid(b));
