@@ -1,0 +1,96 @@
+/* Parts of a sample box: each state is in one of them, they are of like size, and they are boxes. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include "build.h"
+#include "tissue.h"
+
+enum { ASKED = 4096 };
+
+static LamScene Scene(void)
+{
+  LamScene scene = {0};
+
+  scene.micro = (LamMicrostructure){.cells = {1, 1}};
+  scene.sample =
+      (LamSample){.stretch_min = -0.02, .stretch_max = 0.25, .turgor_min = 0, .turgor_max = 0.05 / TISSUE_STRESS};
+  return scene;
+}
+
+static void every_state_is_in_one_part_of_like_size(void **state)
+{
+  const LamScene scene = Scene();
+  const int counts[] = {1, 2, 3, 7, 100};
+
+  for (size_t c = 0; c < sizeof(counts) / sizeof(counts[0]); c++) {
+    int *owner = calloc(ASKED, sizeof(*owner));
+
+    for (PetscInt index = 1; index <= counts[c]; index++) {
+      const LamShard shard = {index, counts[c]};
+      PetscInt n, *states;
+
+      assert_int_equal(LamShardStates(&scene, &shard, ASKED, &n, &states), 0);
+      assert_in_range(n, ASKED / counts[c] - 8, ASKED / counts[c] + 8);
+      for (PetscInt i = 0; i < n; i++) {
+        assert_int_equal(owner[states[i]]++, 0);
+        assert_true(!i || states[i] > states[i - 1]);
+      }
+      PetscFree(states);
+    }
+    for (int i = 0; i < ASKED; i++) assert_int_equal(owner[i], 1);
+    free(owner);
+  }
+}
+
+/* The parts share nodes along their sides only: together they spread little more than the box does. */
+static void a_part_is_a_small_box(void **state)
+{
+  const LamScene scene = Scene();
+  const LamShard shard = {3, 16};
+  PetscInt n, *states;
+  PetscReal low = PETSC_INFINITY, high = PETSC_NINFINITY;
+
+  assert_int_equal(LamShardStates(&scene, &shard, ASKED, &n, &states), 0);
+  for (PetscInt i = 0; i < n; i++) {
+    LamLoad load;
+
+    LamSampleLoad(&scene, states[i], &load);
+    low = PetscMin(low, load.F[0]);
+    high = PetscMax(high, load.F[0]);
+  }
+  assert_true(high - low < 0.6 * (exp(0.25) - exp(-0.02)));
+  PetscFree(states);
+}
+
+static void words_that_say_no_part_are_refused(void **state)
+{
+  const char *const words[] = {"", "1", "0/4", "5/4", "-1/4", "1/0", "1/4x", "a/b", "1/4/2"};
+  LamShard shard;
+  int status;
+
+  for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++) {
+    status = 0;
+    assert_false(LamShardParse(words[i], &shard, &status));
+    assert_int_equal(status, LAM_EXIT_USAGE);
+  }
+  assert_true(LamShardParse("4/4", &shard, &status));
+  assert_int_equal(shard.index, 4);
+  assert_int_equal(shard.count, 4);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_state_is_in_one_part_of_like_size),
+      cmocka_unit_test(a_part_is_a_small_box),
+      cmocka_unit_test(words_that_say_no_part_are_refused),
+  };
+
+  if (!freopen("/dev/null", "w", stderr)) return 1; /* a test says nothing */
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

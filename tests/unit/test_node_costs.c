@@ -1,0 +1,75 @@
+/* Costs of nodes as told from those around. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include "assert_near.h"
+#include "grid.h"
+#include "node_costs.h"
+
+static struct LamGrid_s grid;
+
+static PetscInt64 Key(int i0, int j)
+{
+  const LamNodePlace place = {{i0 * LAM_ROOT, 0, 0}, j};
+
+  return LamNodeKeyOf(&place);
+}
+
+static void Learn(LamNodeCosts costs, PetscInt64 key, PetscInt factorisations)
+{
+  LamResponse response = {.factorisations = factorisations};
+
+  assert_int_equal(LamNodeCostsLearn(costs, key, &response), 0);
+}
+
+static LamNodeCosts New(void)
+{
+  LamNodeCosts costs;
+
+  assert_int_equal(LamNodeCostsCreate(&grid, &costs), 0);
+  return costs;
+}
+
+static void one_that_is_known_is_what_all_cost(void **state)
+{
+  LamNodeCosts costs = New();
+
+  Learn(costs, Key(0, 0), 25);
+  assert_near(LamNodeCostsPredict(costs, Key(50, 7)), 25, 1e-12);
+  LamNodeCostsDestroy(&costs);
+}
+
+static void the_four_nearest_count(void **state)
+{
+  LamNodeCosts costs = New();
+
+  for (int i = 0; i < 4; i++) Learn(costs, Key(20 + i, 0), 1000);
+  for (int i = 0; i < 4; i++) Learn(costs, Key(i, 0), i < 2 ? 10 : 40);
+  for (int i = 0; i < 4; i++) Learn(costs, Key(40 + i, 0), 1000);
+  assert_near(LamNodeCostsPredict(costs, Key(0, 0)), 20, 1e-9); /* the geometric mean */
+  assert_near(LamNodeCostsPredict(costs, Key(30, 0)), 1000, 1e-7);
+  LamNodeCostsDestroy(&costs);
+}
+
+static void the_oldest_are_forgotten(void **state)
+{
+  LamNodeCosts costs = New();
+
+  for (int i = 0; i < 10; i++) Learn(costs, Key(0, 0), 500);
+  for (int i = 0; i < 1024; i++) Learn(costs, Key(9, i), 5);
+  assert_near(LamNodeCostsPredict(costs, Key(0, 0)), 5, 1e-9);
+  LamNodeCostsDestroy(&costs);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(one_that_is_known_is_what_all_cost),
+      cmocka_unit_test(the_four_nearest_count),
+      cmocka_unit_test(the_oldest_are_forgotten),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
