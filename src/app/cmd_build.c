@@ -199,7 +199,7 @@ static PetscErrorCode OpenRounds(Build *b)
     PetscCall(WantRound(b, round));
   }
   b->opening = PETSC_FALSE;
-  LamProgressSetTotal(&b->progress, LamRoundsAsked(&b->rounds));
+  LamProgressSetTotal(&b->progress, b->scene->sample.count ? b->rounds.most : LamRoundsAsked(&b->rounds));
   PetscFunctionReturn(0);
 }
 
