@@ -50,8 +50,8 @@ typedef struct {
   PetscBool opening;       /* rounds are being opened: what arrives meanwhile opens none */
   PetscInt64 added, there; /* committed by this run; nodes that rounds have found in the file */
   PetscInt64 failed;       /* without an answer, of those committed */
-  PetscReal last_commit, commit_seconds, all_commits;
-  PetscReal last_taken; /* when a record was last taken for the file in its turn */
+  PetscReal last_commit, commit_seconds, all_commits; /* when it ended; what it took, and all of them, s */
+  PetscReal last_taken;                               /* when a record was last taken for the file in its turn */
 } Build;
 
 /* Nodes in the file that this build has asked for. */
@@ -375,6 +375,7 @@ static void PrintTable(const Build *b, PetscReal seconds)
     printf("%-16s estimated below %.2g %% at 95 %% of the box that is reached\n", "error of P", 100 * poll->error);
   printf("%-16s %.3g s on %d rank%s\n", "time", seconds, (int)b->size, b->size > 1 ? "s" : "");
   if (b->added) printf("%-16s %.3g\n", "nodes per s", (PetscReal)b->added / seconds);
+  if (b->added) printf("%-16s %.2g %% of the time\n", "commits", 100 * b->all_commits / seconds);
   if (LamStopRequested())
     printf("%-16s %s\n", "ended", "stopped by a signal");
   else if (LamRoundsAreIdle(&b->rounds) && !LamPollIsDone(poll))
