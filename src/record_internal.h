@@ -120,6 +120,19 @@ PetscErrorCode LamFileHas(const char path[], hid_t file, const char name[], Pets
 PetscErrorCode LamFileWriteText(const char path[], hid_t file, const char name[], const char text[]);
 PetscErrorCode LamFileGetText(const char path[], hid_t file, const char name[], char **text);
 
+/* ---- record_room.c ---- */
+
+/* The records that there is room for, committed ones included. */
+PetscErrorCode LamFileReadRoom(const char path[], hid_t file, PetscInt *room);
+/*
+  Makes room for `records` of them or some more where there is less; *room: for how many there was, and is. The file
+  `path` is replaced by a copy, made as `temporary`; killed at any instant, it is as it was. NULL: `temporary` itself,
+  which has no name yet.
+*/
+PetscErrorCode LamFileMakeRoom(const char path[], const char temporary[], PetscInt records, PetscInt *room);
+/* Gives the synced file `from` the name `to`, for good. */
+PetscErrorCode LamFileRename(const char from[], const char to[]);
+
 /* ---- microstructure.c ---- */
 PetscErrorCode LamMicrostructureParse(const char path[], const char json[], LamMicrostructure *micro);
 

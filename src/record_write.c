@@ -2,14 +2,13 @@
   The writer of record files.
 
   Method
-    Each commit opens the file, appends, syncs, raises the counter, syncs and closes. A kill at any instant leaves the
-    records below the counter as they were; what lies beyond it is overwritten by the next append. A new file is made
-    under another name and takes its place at the first commit.
+    Each commit opens the file, writes its records into the room behind those that are there, syncs, raises the counter,
+    syncs and closes. A kill at any instant leaves the records below the counter as they were; what lies beyond it is
+    overwritten by the next commit. A new file is made under another name and takes its place at the first commit; room
+    is made likewise (record_room.c).
 */
 #include "record_internal.h"
 #include <errno.h>
-#include <fcntl.h>
-#include <libgen.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -20,6 +19,7 @@ struct LamRecordWriter_s {
   PetscBool published; /* the file has its own name */
   PetscBool written;   /* something besides the header */
   LamLock lock;
+  PetscInt room; /* of the file, in records */
   PetscInt n, capacity;
   PetscInt64 *keys; /* owned */
 };
@@ -85,6 +85,7 @@ static PetscErrorCode ReadExisting(LamRecordWriter w, hid_t file, const char kin
   PetscFunctionBeginUser;
   ierr = CheckSame(w->path, file, kind, scene, &header);
   if (!ierr) ierr = CheckType(w->path, file);
+  if (!ierr) ierr = LamFileReadRoom(w->path, file, &w->room);
   w->n = w->capacity = header.committed;
   if (!ierr) ierr = PetscMalloc1(w->n + 1, &w->keys);
   if (!ierr) ierr = LamFileScanRecords(w->path, file, w->n, KeepBlockKeys, w);
@@ -119,6 +120,7 @@ static PetscErrorCode Start(LamRecordWriter w, const char kind[], LamWriteMode m
     PetscCall(LamFileCreate(w->temporary, kind, scene));
     PetscFunctionReturn(0);
   }
+  unlink(w->temporary); /* of a run that was killed */
   PetscCall(LamFileOpenRead(w->path, &file));
   ierr = ReadExisting(w, file, kind, scene);
   H5Fclose(file);
@@ -164,14 +166,13 @@ PetscErrorCode LamRecordWriterOpen(const char path[], const char kind[], LamWrit
 static PetscErrorCode Append(const char path[], hid_t dataset, hsize_t before, PetscInt n, const PetscInt64 keys[],
                              const LamResponse responses[])
 {
-  const hsize_t count = (hsize_t)n, after = before + count;
+  const hsize_t count = (hsize_t)n;
   hid_t type, space, memory;
   void *bytes;
 
   PetscFunctionBeginUser;
   PetscCall(LamRecordTypeCreate(&type));
   PetscCall(LamRecordsPack(n, keys, responses, type, &bytes));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dset_extent(dataset, &after));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, space = H5Dget_space(dataset));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, memory = H5Screate_simple(1, &count, NULL));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Sselect_hyperslab(space, H5S_SELECT_SET, &before, NULL, &count, NULL));
@@ -183,6 +184,20 @@ static PetscErrorCode Append(const char path[], hid_t dataset, hsize_t before, P
   PetscFunctionReturn(0);
 }
 
+/* Someone may have put another file in the place of ours. */
+static PetscErrorCode CheckCounter(LamRecordWriter w, const char path[], hid_t counter)
+{
+  PetscInt64 committed;
+
+  PetscFunctionBeginUser;
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Aread(counter, H5T_NATIVE_INT64, &committed));
+  PetscCheck(committed == w->n, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE,
+             "%s: holds %" PetscInt64_FMT " records where this run has left %" PetscInt_FMT
+             "; another program has changed it",
+             path, committed, w->n);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode AppendAndCount(LamRecordWriter w, const char path[], hid_t file, PetscInt n,
                                      const PetscInt64 keys[], const LamResponse responses[])
 {
@@ -191,9 +206,10 @@ static PetscErrorCode AppendAndCount(LamRecordWriter w, const char path[], hid_t
 
   PetscFunctionBeginUser;
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, dataset = H5Dopen2(file, "/records", H5P_DEFAULT));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, counter = H5Aopen(dataset, "committed", H5P_DEFAULT));
+  PetscCall(CheckCounter(w, path, counter));
   PetscCall(Append(path, dataset, (hsize_t)w->n, n, keys, responses));
   PetscCall(LamFileSync(path, file));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, counter = H5Aopen(dataset, "committed", H5P_DEFAULT));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Awrite(counter, H5T_NATIVE_INT64, &committed));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Aclose(counter));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dclose(dataset));
@@ -201,22 +217,12 @@ static PetscErrorCode AppendAndCount(LamRecordWriter w, const char path[], hid_t
   PetscFunctionReturn(0);
 }
 
-/* Gives the new file its name, for good. */
 static PetscErrorCode Publish(LamRecordWriter w)
 {
-  char copy[PETSC_MAX_PATH_LEN];
-  int directory;
-
   PetscFunctionBeginUser;
   if (w->published) PetscFunctionReturn(0);
-  PetscCheck(!rename(w->temporary, w->path), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s: %s", w->path, strerror(errno));
+  PetscCall(LamFileRename(w->temporary, w->path));
   w->published = PETSC_TRUE;
-  PetscCall(PetscStrncpy(copy, w->path, sizeof(copy)));
-  directory = open(dirname(copy), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (directory >= 0) {
-    fsync(directory); /* some file systems cannot; the file itself is on the disk */
-    close(directory);
-  }
   PetscFunctionReturn(0);
 }
 
@@ -228,7 +234,6 @@ static PetscErrorCode CommitLocked(LamRecordWriter w, PetscInt n, const PetscInt
 
   PetscFunctionBeginUser;
   if (n) {
-    PetscCall(LamFileReserve(CurrentPath(w), PETSC_FALSE, ((size_t)n + LAM_RECORDS_PER_CHUNK) * LAM_RECORD_BYTES));
     PetscCall(LamFileOpenWrite(CurrentPath(w), &file));
     ierr = AppendAndCount(w, CurrentPath(w), file, n, keys, responses);
     if (ierr) H5Fclose(file);
@@ -257,6 +262,7 @@ PetscErrorCode LamRecordWriterCommit(LamRecordWriter writer, PetscInt n, const P
   PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
+  PetscCall(LamFileMakeRoom(writer->published ? writer->path : NULL, writer->temporary, writer->n + n, &writer->room));
   LamLockBeginCommit(&writer->lock);
   ierr = CommitLocked(writer, n, keys, responses);
   LamLockEndCommit(&writer->lock);
