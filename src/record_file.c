@@ -72,6 +72,8 @@ static PetscErrorCode FileOpen(const char path[], PetscBool write, hid_t *file)
 
     LamHDF5Reason(reason);
     H5Pclose(access);
+    /* a file that is opened for writing has been read before */
+    PetscCheck(!write, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s: %s", path, reason);
     SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: the file is damaged or cut short: %s", path, reason);
   }
   LamCallHDF5(path, PETSC_ERR_LIB, H5Pclose(access));

@@ -2,9 +2,10 @@
   One writer per file.
 
   PATH.lock is made with O_CREAT | O_EXCL and says host, process, the process's start (so that a number used again is
-  not taken for the holder) and the time. The lock of a process that has died on this host is taken over. HDF5's own
-  locks are off: they would shut readers out for as long as a writer lives. Instead a commit takes the lock file
-  exclusively (flock) and a reader shares it while it loads.
+  not taken for the holder) and the time. The lock of a process that has died on this host is taken over, and one that
+  stays without its line: its maker died before it had written it. A maker that was only slow sees afterwards that it
+  has lost the lock. HDF5's own locks are off: they would shut readers out for as long as a writer lives. Instead a
+  commit takes the lock file exclusively (flock) and a reader shares it while it loads.
 */
 #include "record_internal.h"
 #include <errno.h>
@@ -14,7 +15,10 @@
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
+
+#define UNWRITTEN_SECONDS 2 /* from its making to its line a lock takes far less */
 
 typedef struct {
   char host[256], since[LAM_TIME_LENGTH];
@@ -71,24 +75,47 @@ static PetscBool HolderIsDead(const Holder *holder)
   return (PetscBool)(holder->start && ProcessStart(holder->pid) != holder->start);
 }
 
+/* Whether the open lock still has its name: a user or another writer may have removed it and made one anew. */
+static PetscBool IsNamed(int fd, const char path[])
+{
+  struct stat opened, named;
+
+  return (PetscBool)(!fstat(fd, &opened) && !stat(path, &named) && opened.st_ino == named.st_ino);
+}
+
+/* Waits for the line of a lock that is being made. */
+static PetscBool StaysUnwritten(int fd)
+{
+  const struct timespec pause = {.tv_nsec = 50000000};
+  char text[512];
+
+  for (int k = 0; k < 20 * UNWRITTEN_SECONDS; k++) {
+    const ssize_t n = pread(fd, text, sizeof(text), 0);
+
+    if (n > 0 && text[n - 1] == '\n') return PETSC_FALSE;
+    nanosleep(&pause, NULL);
+  }
+  return PETSC_TRUE;
+}
+
 /* Removes the lock at `path` where its holder is dead; the holder otherwise. *removed: try to make it again. */
 static PetscErrorCode RemoveStale(const char path[], const char data_path[], PetscBool *removed)
 {
   const int fd = open(path, O_RDONLY | O_CLOEXEC);
-  struct stat opened, named;
+  PetscBool unwritten, known;
   Holder holder;
-  PetscBool known;
 
   PetscFunctionBeginUser;
   *removed = PETSC_TRUE;
   if (fd < 0) PetscFunctionReturn(0); /* released meanwhile */
-  flock(fd, LOCK_EX);                 /* of two that find it stale, the second sees below that it has gone */
+  unwritten = StaysUnwritten(fd);
+  flock(fd, LOCK_EX); /* of two that find it stale, the second sees below that it has gone */
   known = HolderRead(fd, &holder);
-  if (fstat(fd, &opened) || stat(path, &named) || opened.st_ino != named.st_ino) {
+  if (!IsNamed(fd, path)) {
     close(fd);
     PetscFunctionReturn(0);
   }
-  *removed = (PetscBool)(known && HolderIsDead(&holder));
+  *removed = (PetscBool)(known ? HolderIsDead(&holder) : unwritten);
   if (*removed) unlink(path);
   close(fd);
   PetscCheck(*removed || known, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN,
@@ -100,28 +127,17 @@ static PetscErrorCode RemoveStale(const char path[], const char data_path[], Pet
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamLockTake(const char path[], LamLock *lock)
+/* Says who holds the lock. Synced, for processes on other hosts. */
+static PetscErrorCode WriteHolder(const char path[], LamLock *lock)
 {
   char text[512];
   Holder self;
   int length;
 
   PetscFunctionBeginUser;
-  lock->fd = -1;
-  length = snprintf(lock->path, sizeof(lock->path), "%s.lock", path);
-  PetscCheck(length < (int)sizeof(lock->path), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: the path is too long", path);
-  while (lock->fd < 0) {
-    PetscBool removed;
-
-    lock->fd = open(lock->path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
-    if (lock->fd >= 0) break;
-    PetscCheck(errno == EEXIST, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: cannot make the lock %s: %s", path,
-               lock->path, strerror(errno));
-    PetscCall(RemoveStale(lock->path, path, &removed));
-  }
   HolderSelf(&self);
   length = snprintf(text, sizeof(text), "%s %ld %llu %s\n", self.host, self.pid, self.start, self.since);
-  if (write(lock->fd, text, (size_t)length) != length) {
+  if (write(lock->fd, text, (size_t)length) != length || fsync(lock->fd)) {
     const int error = errno;
 
     PetscCall(LamLockRelease(lock));
@@ -130,14 +146,34 @@ PetscErrorCode LamLockTake(const char path[], LamLock *lock)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamLockRelease(LamLock *lock)
+PetscErrorCode LamLockTake(const char path[], LamLock *lock)
 {
-  struct stat opened, named;
+  PetscBool removed;
+  int length;
 
   PetscFunctionBeginUser;
+  lock->fd = -1;
+  length = snprintf(lock->path, sizeof(lock->path), "%s.lock", path);
+  PetscCheck(length < (int)sizeof(lock->path), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: the path is too long", path);
+  while (lock->fd < 0) {
+    lock->fd = open(lock->path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+    if (lock->fd < 0) {
+      PetscCheck(errno == EEXIST, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: cannot make the lock %s: %s", path,
+                 lock->path, strerror(errno));
+      PetscCall(RemoveStale(lock->path, path, &removed));
+      continue;
+    }
+    PetscCall(WriteHolder(path, lock));
+    if (!IsNamed(lock->fd, lock->path)) PetscCall(LamLockRelease(lock));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamLockRelease(LamLock *lock)
+{
+  PetscFunctionBeginUser;
   if (lock->fd < 0) PetscFunctionReturn(0);
-  /* a user may have removed our lock and another writer made its own */
-  if (!fstat(lock->fd, &opened) && !stat(lock->path, &named) && opened.st_ino == named.st_ino) unlink(lock->path);
+  if (IsNamed(lock->fd, lock->path)) unlink(lock->path);
   close(lock->fd);
   lock->fd = -1;
   PetscFunctionReturn(0);

@@ -11,12 +11,14 @@
 #include "app.h"
 #include <dlfcn.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <hdf5.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sundials/sundials_version.h>
 #include <time.h>
+#include <unistd.h>
 #include <petsctime.h>
 #ifdef __SANITIZE_ADDRESS__
 #include <sanitizer/lsan_interface.h>
@@ -320,11 +322,33 @@ static void UseOneThread(void)
   }
 }
 
+/* Otherwise a file would get the number of a stream that the caller has closed, and what is printed. */
+static void FillStreams(void)
+{
+  int fd;
+
+  do fd = open("/dev/null", O_RDONLY); /* printing on it fails, and is told */
+  while (fd >= 0 && fd <= STDERR_FILENO);
+  if (fd >= 0) close(fd);
+}
+
+/*
+  HDF5 crashes when it tidies up behind a file that it could not write. It would do so at exit, and in MPI_Finalize
+  where MPI runs when HDF5 begins.
+*/
+static void StartHDF5(void)
+{
+  H5dont_atexit();
+  H5open();
+}
+
 int main(int argc, char *argv[])
 {
   int status = LAM_EXIT_OK;
   PetscErrorCode code;
 
+  FillStreams();
+  StartHDF5();
   UseOneThread();
   signal(SIGPIPE, SIG_IGN);                   /* a closed pipe is an error of writing, told as such */
   PetscErrorHandlingInitialized = PETSC_TRUE; /* else PETSc calls no handler before PetscInitialize */
