@@ -1,0 +1,271 @@
+/*
+  Every instant of commits: the calls that a writer makes on its file are logged and played back one by one, and within
+  one (torn at the middle and at pages), on a copy. What a kill would leave there must hold all that was committed
+  before, unchanged, and go on. Between two syncs the system may bring writes to the disk in any order: any part of them
+  must do, too, which stands for a loss of power.
+*/
+#include "../unit/record_fixture.h"
+#include "write_log.h"
+
+enum { PAGE = 4096, SHUFFLES = 12 };
+
+static char copy[160], base[160]; /* the file at an instant; as it was at the last sync */
+
+static void CopyFile(const char from[], const char to[])
+{
+  char command[400];
+
+  snprintf(command, sizeof(command), "cp %s %s", from, to);
+  assert_int_equal(system(command), 0);
+}
+
+/* ---- what must hold ---- */
+
+static void AssertKept(PetscInt least, PetscInt most)
+{
+  const LamResponse *records;
+  const PetscInt64 *keys;
+  LamDatabase db;
+  PetscInt n;
+
+  if (LamDatabaseOpen(copy, &db)) fail_msg("%s", message);
+  LamDatabaseGetRecords(db, &n, &records, &keys);
+  assert_in_range(n, least, most);
+  for (PetscInt i = 0; i < n; i++) {
+    const LamResponse wanted = Response(i);
+
+    assert_int_equal(keys[i], i);
+    AssertSame(&records[i], &wanted);
+  }
+  LamDatabaseClose(&db);
+}
+
+/* A writer goes on with the copy. */
+static void AssertGoesOn(PetscInt total)
+{
+  LamScene scene = Scene();
+  const PetscInt64 *keys;
+  LamRecordWriter writer;
+  PetscInt n;
+
+  if (LamRecordWriterOpen(copy, "database", LAM_WRITE_APPEND, &scene, &writer)) fail_msg("%s", message);
+  LamRecordWriterGetKeys(writer, &n, &keys);
+  Commit(writer, n, total - n);
+  assert_int_equal(LamRecordWriterClose(&writer), 0);
+  AssertKept(total, total);
+}
+
+/* ---- instants ---- */
+
+/* Half of a write, but no part of a word: memory and disks write whole ones. */
+static size_t Half(const LogEntry *e)
+{
+  return (size_t)e->offset % 8 + e->size / 2 < 8 ? 0 : ((size_t)e->offset + e->size / 2) / 8 * 8 - (size_t)e->offset;
+}
+
+/* A kill within a write: the system stops between pages. */
+static void PlayTorn(int fd, const LogEntry *e, PetscInt before, PetscInt after)
+{
+  size_t page = PAGE - (size_t)e->offset % PAGE;
+
+  if (e->kind != LOG_WRITE) return;
+  assert_int_equal(LogPlay(fd, e, Half(e)), 0);
+  AssertKept(before, after);
+  for (; page < e->size && page < 4 * PAGE; page += PAGE) {
+    assert_int_equal(LogPlay(fd, e, page), 0);
+    AssertKept(before, after);
+  }
+}
+
+/* Some of the writes since the last sync, whole or in part. */
+static void PlaySome(size_t first, size_t end, PetscInt before, PetscInt after)
+{
+  for (int k = 0; k < SHUFFLES; k++) {
+    int fd;
+
+    CopyFile(base, copy);
+    fd = open(copy, O_RDWR);
+    for (size_t i = first; i < end; i++)
+      if (rand() % 2) assert_int_equal(LogPlay(fd, &log_entries[i], rand() % 2 ? SIZE_MAX : Half(&log_entries[i])), 0);
+    close(fd);
+    AssertKept(before, after);
+  }
+}
+
+/* Plays the log back on the copy, which is the file as it was before. */
+static void PlayAll(PetscInt before, PetscInt after)
+{
+  const int fd = open(copy, O_RDWR);
+
+  for (size_t i = 0; i < log_n; i++) {
+    PlayTorn(fd, &log_entries[i], before, after);
+    assert_int_equal(LogPlay(fd, &log_entries[i], SIZE_MAX), 0);
+    AssertKept(before, after);
+  }
+  close(fd);
+}
+
+/* The same for a loss of power; `base` is the file as it was before. */
+static void PlayPowerLoss(PetscInt before, PetscInt after)
+{
+  size_t first = 0;
+
+  for (size_t i = 0; i <= log_n; i++) {
+    if (i < log_n && log_entries[i].kind != LOG_SYNC) continue;
+    PlaySome(first, i, before, after);
+    for (int fd = open(base, O_RDWR); fd >= 0; close(fd), fd = -1)
+      for (; first < i; first++) assert_int_equal(LogPlay(fd, &log_entries[first], SIZE_MAX), 0);
+  }
+}
+
+/* ---- tests ---- */
+
+typedef void (*Play)(PetscInt before, PetscInt after);
+
+/* Commits `n` records at a time to a file of `start`; those are played whose room was there. */
+static void PlayCommits(PetscInt start, PetscInt n, int commits, Play play)
+{
+  LamRecordWriter writer;
+  int played = 0;
+
+  WriteFile(start);
+  writer = Open(LAM_WRITE_APPEND);
+  for (PetscInt before = start; played < commits; before += n) {
+    CopyFile(path, copy);
+    CopyFile(path, base);
+    LogStart(path);
+    Commit(writer, before, n);
+    if (log_n) {
+      play(before, before + n);
+      AssertGoesOn(before + 2 * n);
+      played++;
+    }
+    LogClear();
+  }
+  assert_int_equal(LamRecordWriterClose(&writer), 0);
+}
+
+static void a_kill_at_any_instant_of_a_commit_loses_nothing(void **state)
+{
+  PlayCommits(100, 7, 4, PlayAll);
+  PlayCommits(70, 64, 2, PlayAll);
+}
+
+/* HDF5 has a node of its index for 64 chunks. */
+static void a_kill_loses_nothing_where_the_index_grows(void **state)
+{
+  PlayCommits(64 * 63, 64, 2, PlayAll);
+}
+
+static void a_loss_of_power_within_a_commit_loses_nothing(void **state)
+{
+  PlayCommits(100, 7, 4, PlayPowerLoss);
+  PlayCommits(70, 64, 2, PlayPowerLoss);
+}
+
+/* Room is made in a copy: what has a name is written over, never made longer or shorter. */
+static void a_file_that_has_its_name_keeps_its_length(void **state)
+{
+  LamRecordWriter writer;
+  struct stat info;
+
+  WriteFile(1);
+  writer = Open(LAM_WRITE_APPEND);
+  for (PetscInt n = 1, k = 1; n < 6000; n += k, k = k * 3 / 2 + 1) {
+    stat(path, &info);
+    LogStart(path);
+    Commit(writer, n, k);
+    for (size_t i = 0; i < log_n; i++) {
+      assert_int_not_equal(log_entries[i].kind, LOG_LENGTH);
+      assert_true(log_entries[i].offset + (off_t)log_entries[i].size <= info.st_size);
+    }
+    LogClear();
+  }
+  assert_int_equal(LamRecordWriterClose(&writer), 0);
+}
+
+/* A run that is killed while it makes room leaves any part of a copy. */
+static void a_copy_that_was_left_is_removed(void **state)
+{
+  char temporary[160];
+  LamRecordWriter writer;
+  FILE *file;
+
+  WriteFile(3);
+  snprintf(temporary, sizeof(temporary), "%s.tmp", path);
+  file = fopen(temporary, "w");
+  fputs("part of a copy", file);
+  fclose(file);
+  writer = Open(LAM_WRITE_APPEND);
+  Commit(writer, 3, 200);
+  assert_int_equal(LamRecordWriterClose(&writer), 0);
+  assert_int_equal(access(temporary, F_OK), -1);
+  assert_int_equal(CountRecords(), 203);
+}
+
+static void another_file_in_its_place_is_not_written_to(void **state)
+{
+  LamScene scene = Scene();
+  LamRecordWriter writer, other;
+  LamResponse r = Response(3);
+  PetscInt64 key = 3;
+
+  WriteFile(3);
+  assert_int_equal(LamRecordWriterOpen(copy, "database", LAM_WRITE_CREATE, &scene, &other), 0);
+  Commit(other, 0, 5);
+  assert_int_equal(LamRecordWriterClose(&other), 0);
+  writer = Open(LAM_WRITE_APPEND);
+  assert_int_equal(rename(copy, path), 0);
+  assert_int_equal(LamRecordWriterCommit(writer, 1, &key, &r), PETSC_ERR_FILE_WRITE);
+  assert_non_null(strstr(message, "another program has changed it"));
+  assert_int_equal(LamRecordWriterClose(&writer), 0);
+  assert_int_equal(CountRecords(), 5);
+}
+
+/* A writer that is killed before its lock says whose it is. */
+static void a_lock_without_its_line_is_taken_over(void **state)
+{
+  LamRecordWriter writer;
+
+  WriteFile(1);
+  fclose(fopen(lock_path, "w"));
+  writer = Open(LAM_WRITE_APPEND);
+  Commit(writer, 1, 1);
+  assert_int_equal(LamRecordWriterClose(&writer), 0);
+}
+
+/* ---- a folder for each ---- */
+
+static int EnterCommits(void **state)
+{
+  if (Enter(state)) return -1;
+  snprintf(copy, sizeof(copy), "%s/copy.h5", directory);
+  snprintf(base, sizeof(base), "%s/base.h5", directory);
+  srand(1);
+  return 0;
+}
+
+static int LeaveCommits(void **state)
+{
+  LogClear();
+  unlink(copy);
+  unlink(base);
+  return Leave(state);
+}
+
+#define COMMITS_TEST(f) cmocka_unit_test_setup_teardown(f, EnterCommits, LeaveCommits)
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      COMMITS_TEST(a_kill_at_any_instant_of_a_commit_loses_nothing),
+      COMMITS_TEST(a_kill_loses_nothing_where_the_index_grows),
+      COMMITS_TEST(a_loss_of_power_within_a_commit_loses_nothing),
+      COMMITS_TEST(a_file_that_has_its_name_keeps_its_length),
+      COMMITS_TEST(a_copy_that_was_left_is_removed),
+      COMMITS_TEST(another_file_in_its_place_is_not_written_to),
+      COMMITS_TEST(a_lock_without_its_line_is_taken_over),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
