@@ -19,14 +19,14 @@ rve:
 sample:
   stretch: {min: 0, max: 0.1}
   turgor: {min: 0.01 MPa, max: 0.03 MPa}
-  count: 90
+  count: 70
 """
 # nodes in contact start from others
 CONTACT = (
     BONDED.replace("law: bonded", "law: contact, cohesion: 0.002 MPa")
     .replace("max: 0.1}", "max: 0.06}")
     .replace("min: 0.01", "min: 0.02")
-    .replace("count: 90", "count: 50")
+    .replace("count: 70", "count: 40")
 )
 SCENES = {"bonded": BONDED, "contact": CONTACT}
 PATH = "case.h5"  # where a case has no other
