@@ -130,8 +130,13 @@ PetscErrorCode LamFileReadRoom(const char path[], hid_t file, PetscInt *room);
   which has no name yet.
 */
 PetscErrorCode LamFileMakeRoom(const char path[], const char temporary[], PetscInt records, PetscInt *room);
-/* Gives the synced file `from` the name `to`, for good. */
-PetscErrorCode LamFileRename(const char from[], const char to[]);
+
+/* ---- record_write.c ---- */
+
+/* Sets the number of committed records; syncs nothing. */
+PetscErrorCode LamCounterWrite(const char path[], hid_t dataset, PetscInt committed);
+/* Brings a closed file to the disk and gives it its name, for good. */
+PetscErrorCode LamFilePublish(const char temporary[], const char path[]);
 
 /* ---- microstructure.c ---- */
 PetscErrorCode LamMicrostructureParse(const char path[], const char json[], LamMicrostructure *micro);

@@ -10,7 +10,6 @@
 #include "record_internal.h"
 #include <errno.h>
 #include <fcntl.h>
-#include <libgen.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -122,22 +121,6 @@ static PetscErrorCode CopyFile(const char from[], const char to[])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamFileRename(const char from[], const char to[])
-{
-  char copy[PETSC_MAX_PATH_LEN];
-  int directory;
-
-  PetscFunctionBeginUser;
-  PetscCheck(!rename(from, to), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s: %s", to, strerror(errno));
-  PetscCall(PetscStrncpy(copy, to, sizeof(copy)));
-  directory = open(dirname(copy), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (directory >= 0) {
-    fsync(directory); /* some file systems cannot; the file itself is on the disk */
-    close(directory);
-  }
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode ExtendCopy(const char path[], const char temporary[], PetscInt before, PetscInt room)
 {
   PetscErrorCode ierr;
@@ -145,7 +128,7 @@ static PetscErrorCode ExtendCopy(const char path[], const char temporary[], Pets
   PetscFunctionBeginUser;
   ierr = CopyFile(path, temporary);
   if (!ierr) ierr = ExtendFile(temporary, before, room);
-  if (!ierr) ierr = LamFileRename(temporary, path);
+  if (!ierr) ierr = LamFilePublish(temporary, path);
   if (ierr) unlink(temporary);
   PetscCall(ierr);
   PetscFunctionReturn(0);

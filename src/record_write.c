@@ -9,6 +9,8 @@
 */
 #include "record_internal.h"
 #include <errno.h>
+#include <fcntl.h>
+#include <libgen.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -184,13 +186,28 @@ static PetscErrorCode Append(const char path[], hid_t dataset, hsize_t before, P
   PetscFunctionReturn(0);
 }
 
-/* Someone may have put another file in the place of ours. */
-static PetscErrorCode CheckCounter(LamRecordWriter w, const char path[], hid_t counter)
+PetscErrorCode LamCounterWrite(const char path[], hid_t dataset, PetscInt committed)
 {
-  PetscInt64 committed;
+  const PetscInt64 count = committed;
+  hid_t counter;
 
   PetscFunctionBeginUser;
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, counter = H5Aopen(dataset, "committed", H5P_DEFAULT));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Awrite(counter, H5T_NATIVE_INT64, &count));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Aclose(counter));
+  PetscFunctionReturn(0);
+}
+
+/* Someone may have put another file in the place of ours. */
+static PetscErrorCode CheckCounter(LamRecordWriter w, const char path[], hid_t dataset)
+{
+  PetscInt64 committed;
+  hid_t counter;
+
+  PetscFunctionBeginUser;
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, counter = H5Aopen(dataset, "committed", H5P_DEFAULT));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Aread(counter, H5T_NATIVE_INT64, &committed));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Aclose(counter));
   PetscCheck(committed == w->n, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE,
              "%s: holds %" PetscInt64_FMT " records where this run has left %" PetscInt_FMT
              "; another program has changed it",
@@ -201,19 +218,36 @@ static PetscErrorCode CheckCounter(LamRecordWriter w, const char path[], hid_t c
 static PetscErrorCode AppendAndCount(LamRecordWriter w, const char path[], hid_t file, PetscInt n,
                                      const PetscInt64 keys[], const LamResponse responses[])
 {
-  const PetscInt64 committed = w->n + n;
-  hid_t dataset, counter;
+  hid_t dataset;
 
   PetscFunctionBeginUser;
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, dataset = H5Dopen2(file, "/records", H5P_DEFAULT));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, counter = H5Aopen(dataset, "committed", H5P_DEFAULT));
-  PetscCall(CheckCounter(w, path, counter));
+  PetscCall(CheckCounter(w, path, dataset));
   PetscCall(Append(path, dataset, (hsize_t)w->n, n, keys, responses));
   PetscCall(LamFileSync(path, file));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Awrite(counter, H5T_NATIVE_INT64, &committed));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Aclose(counter));
+  PetscCall(LamCounterWrite(path, dataset, w->n + n));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dclose(dataset));
   PetscCall(LamFileSync(path, file));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFilePublish(const char temporary[], const char path[])
+{
+  const int fd = open(temporary, O_RDONLY | O_CLOEXEC);
+  const PetscBool synced = (PetscBool)(fd >= 0 && !fsync(fd));
+  char copy[PETSC_MAX_PATH_LEN];
+  int error = errno, directory;
+
+  PetscFunctionBeginUser;
+  if (fd >= 0) close(fd);
+  PetscCheck(synced, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s: %s", temporary, strerror(error));
+  PetscCheck(!rename(temporary, path), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s: %s", path, strerror(errno));
+  PetscCall(PetscStrncpy(copy, path, sizeof(copy)));
+  directory = open(dirname(copy), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (directory >= 0) {
+    fsync(directory); /* some file systems cannot; the file itself is on the disk */
+    close(directory);
+  }
   PetscFunctionReturn(0);
 }
 
@@ -221,7 +255,7 @@ static PetscErrorCode Publish(LamRecordWriter w)
 {
   PetscFunctionBeginUser;
   if (w->published) PetscFunctionReturn(0);
-  PetscCall(LamFileRename(w->temporary, w->path));
+  PetscCall(LamFilePublish(w->temporary, w->path));
   w->published = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
