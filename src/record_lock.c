@@ -26,6 +26,7 @@ typedef struct {
   unsigned long long start; /* clock ticks after boot; 0 where the system does not tell */
 } Holder;
 
+/* 0 also of a process that has ended and that no one has waited for: what it had open is closed. */
 static unsigned long long ProcessStart(long pid)
 {
   char path[64], text[1024], *field;
@@ -40,6 +41,7 @@ static unsigned long long ProcessStart(long pid)
   fclose(file);
   text[n] = '\0';
   field = strrchr(text, ')'); /* the name before it may hold anything; the start is the 20th field behind it */
+  if (field && (field[2] == 'Z' || field[2] == 'X')) return 0;
   for (int i = 0; field && i < 20; i++) field = strchr(field + 1, ' ');
   if (field) sscanf(field, "%llu", &start);
   return start;

@@ -63,8 +63,31 @@ def full_cases(fault, levels):
     size = os.path.getsize("undisturbed-bonded.h5") // 1024
     for k in range(levels):
         full_case(fault, "full disk", "bonded", f"size={4 + 4 * (k * 3 * size // levels // 4)}k", "size=10m")
+        full_merge(fault, 4 + 4 * (k * size // levels // 4 // 2))
     for inodes in (2, 3):  # the folder is one; then the lock has none, or the file
         full_case(fault, "no inode left", "bonded", f"size=10m,nr_inodes={inodes}", "nr_inodes=100")
+
+
+def full_merge(fault, size):
+    """The union of two databases does not fit."""
+    out = "disk/union.h5"
+    before = content("undisturbed-bonded.h5")
+
+    def run():
+        status, told = fault.run([fault.lamella, "merge", out, "undisturbed-bonded.h5", "undisturbed-bonded.h5"])
+        check_told(status, told, ["No space left on device"])
+        if os.listdir("disk"):
+            raise Wrong(f"left behind: {os.listdir('disk')}")
+        remount("size=10m")
+        status, told = fault.run([fault.lamella, "merge", out, "undisturbed-bonded.h5"])
+        if status or content(out) != before:
+            raise Wrong(f"when there is room: status {status}: {told}")
+
+    mount(f"size={size}k")
+    try:
+        fault.case("full disk, merge", f"{size} kB", run)
+    finally:
+        unmount()
 
 
 # ---- calls that fail ----

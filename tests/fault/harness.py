@@ -46,22 +46,6 @@ def content(path):
     return {int(r["key"]): b"".join(r[n].tobytes() for n in names) for r in records}, grid
 
 
-def descendants(pid):
-    """Processes that `pid` has started, and they in turn."""
-    parent = {}
-    for entry in os.listdir("/proc"):
-        if entry.isdigit():
-            try:
-                with open(f"/proc/{entry}/stat") as f:
-                    parent[int(entry)] = int(f.read().rpartition(")")[2].split()[1])
-            except OSError:
-                pass
-    found = [pid]
-    for p in found:
-        found += [child for child, its in parent.items() if its == p]
-    return found[1:]
-
-
 def is_alive(pid):
     try:
         with open(f"/proc/{pid}/stat") as f:

@@ -10,22 +10,34 @@ import subprocess
 import sys
 import time
 
-from harness import LIMIT, PATH, SCENES, Fault, Wrong, descendants, is_alive, send
+from harness import LIMIT, PATH, SCENES, Fault, Wrong, is_alive, send
 
 KILLS = ["KILL", "TERM, KILL after 0.05 s", "TERM, KILL after 1 s"]
 
 
-def reap(process, all_pids):
+def programs(fault):
+    """Processes of the program that work in this folder."""
+    found = []
+    for pid in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            if os.path.samefile(f"/proc/{pid}/exe", fault.lamella) and os.path.samefile(f"/proc/{pid}/cwd", "."):
+                found.append(int(pid))
+        except OSError:
+            pass
+    return found
+
+
+def reap(fault, process):
     """Waits until none of a run's processes is alive."""
     end = time.monotonic() + LIMIT
     try:
         process.wait(LIMIT)
     except subprocess.TimeoutExpired:
-        send([process.pid, *all_pids], signal.SIGKILL)
+        send([process.pid, *programs(fault)], signal.SIGKILL)
         raise Wrong(f"mpirun does not end within {LIMIT} s of the death of a rank")
-    while any(is_alive(p) for p in all_pids):
+    while ranks := programs(fault):
         if time.monotonic() > end:
-            send(all_pids, signal.SIGKILL)
+            send(ranks, signal.SIGKILL)
             raise Wrong("a rank lives on")
         time.sleep(0.01)
 
@@ -35,8 +47,7 @@ def disturb(fault, command, delay, how, victims):
     with open("out", "wb") as out, open("err", "wb") as err:
         process = subprocess.Popen(command, stdout=out, stderr=err)
         time.sleep(delay)
-        ranks = descendants(process.pid)
-        ranks = [p for p in ranks if is_program(fault, p)] or [process.pid]
+        ranks = programs(fault) or [process.pid]
         pids = {"one rank": [random.choice(ranks)], "mpirun": [process.pid], "all": [process.pid, *ranks]}[victims]
         if how != "KILL":
             send(pids, signal.SIGTERM)
@@ -45,14 +56,7 @@ def disturb(fault, command, delay, how, victims):
                 process.poll()
                 time.sleep(0.005)
         send(pids, signal.SIGKILL)
-        reap(process, ranks)
-
-
-def is_program(fault, pid):
-    try:
-        return os.path.samefile(f"/proc/{pid}/exe", fault.lamella)
-    except OSError:
-        return False
+        reap(fault, process)
 
 
 def random_case(fault, seconds, k):

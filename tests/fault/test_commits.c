@@ -5,6 +5,8 @@
   must do, too, which stands for a loss of power.
 */
 #include "../unit/record_fixture.h"
+#include <signal.h>
+#include <sys/wait.h>
 #include "write_log.h"
 
 enum { PAGE = 4096, SHUFFLES = 12 };
@@ -234,6 +236,25 @@ static void a_lock_without_its_line_is_taken_over(void **state)
   assert_int_equal(LamRecordWriterClose(&writer), 0);
 }
 
+/* As in a container whose first process waits for no one. */
+static void the_lock_of_a_process_that_no_one_has_waited_for_is_taken_over(void **state)
+{
+  const pid_t child = fork();
+  LamRecordWriter writer;
+  siginfo_t info;
+
+  if (child == 0) {
+    Open(LAM_WRITE_CREATE);
+    _exit(0);
+  }
+  waitid(P_PID, (id_t)child, &info, WEXITED | WNOWAIT);
+  assert_int_equal(access(lock_path, F_OK), 0);
+  writer = Open(LAM_WRITE_CREATE);
+  Commit(writer, 0, 1);
+  assert_int_equal(LamRecordWriterClose(&writer), 0);
+  waitpid(child, NULL, 0);
+}
+
 /* ---- a folder for each ---- */
 
 static int EnterCommits(void **state)
@@ -265,6 +286,7 @@ int main(void)
       COMMITS_TEST(a_copy_that_was_left_is_removed),
       COMMITS_TEST(another_file_in_its_place_is_not_written_to),
       COMMITS_TEST(a_lock_without_its_line_is_taken_over),
+      COMMITS_TEST(the_lock_of_a_process_that_no_one_has_waited_for_is_taken_over),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);
