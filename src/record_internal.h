@@ -130,6 +130,8 @@ PetscErrorCode LamFileReadRoom(const char path[], hid_t file, PetscInt *room);
   which has no name yet.
 */
 PetscErrorCode LamFileMakeRoom(const char path[], const char temporary[], PetscInt records, PetscInt *room);
+/* Writes all of them; 0, or the reason as errno has it. */
+int LamWriteBytes(int fd, const void *bytes, size_t n);
 
 /* ---- record_write.c ---- */
 

@@ -134,17 +134,15 @@ static PetscErrorCode WriteHolder(const char path[], LamLock *lock)
 {
   char text[512];
   Holder self;
-  int length;
+  int length, error;
 
   PetscFunctionBeginUser;
   HolderSelf(&self);
   length = snprintf(text, sizeof(text), "%s %ld %llu %s\n", self.host, self.pid, self.start, self.since);
-  if (write(lock->fd, text, (size_t)length) != length || fsync(lock->fd)) {
-    const int error = errno;
-
-    PetscCall(LamLockRelease(lock));
-    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s.lock: %s", path, strerror(error));
-  }
+  error = LamWriteBytes(lock->fd, text, (size_t)length);
+  if (!error && fsync(lock->fd)) error = errno;
+  if (error) PetscCall(LamLockRelease(lock));
+  PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s.lock: %s", path, strerror(error));
   PetscFunctionReturn(0);
 }
 

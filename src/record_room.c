@@ -88,17 +88,26 @@ static PetscErrorCode ExtendFile(const char path[], PetscInt before, PetscInt ro
 
 /* ---- in a copy ---- */
 
+int LamWriteBytes(int fd, const void *bytes, size_t n)
+{
+  ssize_t part;
+
+  for (size_t done = 0; done < n; done += (size_t)part) {
+    part = write(fd, (const char *)bytes + done, n - done);
+    if (part < 0 && errno != EINTR) return errno;
+    part = PetscMax(part, 0);
+  }
+  return 0;
+}
+
 /* 0, or the reason as errno has it. */
 static int CopyBytes(int in, int out, char bytes[COPY_BYTES])
 {
-  ssize_t n, part;
+  int error = 0;
+  ssize_t n;
 
-  while ((n = read(in, bytes, COPY_BYTES)) > 0)
-    for (ssize_t done = 0; done < n; done += part) {
-      part = write(out, bytes + done, (size_t)(n - done));
-      if (part < 0) return errno;
-    }
-  return n < 0 ? errno : 0;
+  while (!error && (n = read(in, bytes, COPY_BYTES)) > 0) error = LamWriteBytes(out, bytes, (size_t)n);
+  return error || !n ? error : errno;
 }
 
 /* With the permissions of the first. */
