@@ -5,6 +5,18 @@
 #include <stdio.h>
 #include <string.h>
 
+/* A soft or external link could lead HDF5 to a file that the user did not name. */
+static PetscErrorCode CheckLink(const char path[], hid_t file, const char name[])
+{
+  H5L_info_t info;
+
+  PetscFunctionBeginUser;
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Lget_info(file, name, &info, H5P_DEFAULT));
+  PetscCheck(info.type == H5L_TYPE_HARD, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: %s is a link to elsewhere, which lamella never writes", path, name);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamFileHas(const char path[], hid_t file, const char name[], PetscBool *has)
 {
   char part[PETSC_MAX_PATH_LEN];
@@ -18,6 +30,7 @@ PetscErrorCode LamFileHas(const char path[], hid_t file, const char name[], Pets
     if (slash) *slash = '\0';
     LamCallHDF5(path, PETSC_ERR_USER_INPUT, exists = H5Lexists(file, part, H5P_DEFAULT));
     *has = (PetscBool)(exists > 0);
+    if (*has) PetscCall(CheckLink(path, file, part));
     if (!slash) break;
     *slash = '/';
   }
@@ -41,6 +54,7 @@ PetscErrorCode LamFileWriteText(const char path[], hid_t file, const char name[]
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE,
               dataset = H5Dcreate2(file, name, type, space, groups, H5P_DEFAULT, H5P_DEFAULT));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text));
+  PetscCall(LamSumWrite(path, dataset, LAM_SUM, LamBytesSum(0, text, strlen(text))));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dclose(dataset));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Pclose(groups));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Tclose(type));
@@ -50,18 +64,70 @@ PetscErrorCode LamFileWriteText(const char path[], hid_t file, const char name[]
 
 /* ---- reading ---- */
 
+PetscErrorCode LamDatasetCheck(const char path[], hid_t dataset, const char name[], H5D_layout_t wanted)
+{
+  PetscBool ours;
+  hid_t list;
+
+  PetscFunctionBeginUser;
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, list = H5Dget_create_plist(dataset));
+  ours = (PetscBool)(H5Pget_layout(list) == wanted && !H5Pget_nfilters(list) && !H5Pget_external_count(list));
+  LamCallHDF5(path, PETSC_ERR_LIB, H5Pclose(list));
+  PetscCheck(ours, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: %s is compressed, in another file or stored otherwise than lamella does; the file is damaged", path,
+             name);
+  PetscFunctionReturn(0);
+}
+
 typedef struct {
   hid_t dataset, type, space;
+  hsize_t count;
+  size_t bytes; /* of all values in the file */
 } Opened;
 
-static PetscErrorCode Open(const char path[], hid_t file, const char name[], H5T_class_t wanted, Opened *o)
+/* `type`: of the file, H5I_INVALID_HID: a text of fixed length. There cannot be more values than the file has bytes. */
+static PetscErrorCode Open(const char path[], hid_t file, const char name[], hid_t type, Opened *o)
 {
+  hssize_t count;
+  hsize_t size;
+  PetscBool same;
+
   PetscFunctionBeginUser;
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Fget_filesize(file, &size));
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, o->dataset = H5Dopen2(file, name, H5P_DEFAULT));
+  PetscCall(LamDatasetCheck(path, o->dataset, name, H5D_CONTIGUOUS));
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, o->type = H5Dget_type(o->dataset));
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, o->space = H5Dget_space(o->dataset));
-  PetscCheck(H5Tget_class(o->type) == wanted, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+  same = (PetscBool)(type >= 0 ? H5Tequal(o->type, type) > 0
+                               : H5Tget_class(o->type) == H5T_STRING && H5Tis_variable_str(o->type) == 0);
+  PetscCheck(same, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: %s is of another type than lamella writes; the file is damaged", path, name);
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, count = H5Sget_simple_extent_npoints(o->space));
+  o->count = (hsize_t)count;
+  PetscCheck(o->count <= size / PetscMax(H5Tget_size(o->type), 1) && o->count < PETSC_MAX_INT, PETSC_COMM_SELF,
+             PETSC_ERR_USER_INPUT, "%s: %s is said to have %lld values of %zu bytes, the file has %lld; it is damaged",
+             path, name, (long long)count, H5Tget_size(o->type), (long long)size);
+  o->bytes = o->count * H5Tget_size(o->type);
+  PetscFunctionReturn(0);
+}
+
+/* Of an array the unit belongs to the sum. */
+static PetscErrorCode CheckSum(const char path[], const char name[], const Opened *o, const void *values, size_t bytes)
+{
+  PetscBool sound, has;
+  uint32_t sum = LamBytesSum(0, values, bytes);
+  char *unit;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamAttributeHas(path, o->dataset, "unit", &has));
+  if (has) {
+    PetscCall(LamAttributeReadText(path, o->dataset, "unit", &unit));
+    sum = LamBytesSum(sum, unit, strlen(unit));
+    PetscCall(PetscFree(unit));
+  }
+  PetscCall(LamSumMatches(path, o->dataset, LAM_SUM, sum, &sound));
+  PetscCheck(sound, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s is damaged (its checksum differs)" LAM_SALVAGE, path,
+             name);
   PetscFunctionReturn(0);
 }
 
@@ -82,45 +148,53 @@ PetscErrorCode LamFileGetText(const char path[], hid_t file, const char name[], 
   PetscFunctionBeginUser;
   PetscCall(LamFileHas(path, file, name, &has));
   PetscCheck(has, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s is missing; the file is damaged", path, name);
-  PetscCall(Open(path, file, name, H5T_STRING, &o));
-  PetscCheck(H5Tis_variable_str(o.type) == 0 && H5Sget_simple_extent_npoints(o.space) == 1, PETSC_COMM_SELF,
-             PETSC_ERR_USER_INPUT, "%s: %s is not a text as lamella writes it; the file is damaged", path, name);
-  PetscCall(PetscCalloc(H5Tget_size(o.type) + 1, text));
+  PetscCall(Open(path, file, name, H5I_INVALID_HID, &o));
+  PetscCheck(o.count == 1, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s is not one text; the file is damaged", path,
+             name);
+  PetscCall(PetscCalloc(o.bytes + 1, text));
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Dread(o.dataset, o.type, H5S_ALL, H5S_ALL, H5P_DEFAULT, *text));
+  PetscCall(CheckSum(path, name, &o, *text, strlen(*text)));
   PetscCall(Close(path, &o));
   PetscFunctionReturn(0);
 }
 
 typedef struct {
   const char *name;
-  H5T_class_t wanted;
-  hid_t memory_type;
+  hid_t type; /* in the file, 8 bytes a value */
   PetscBool found;
   PetscInt rank, *dims;
   void *values;
+  PetscInt count;
   char kind[LAM_NAME_LENGTH];
 } Question;
 
-static PetscErrorCode ReadArray(const char path[], hid_t file, Question *q)
+static PetscErrorCode Dims(const char path[], const Opened *o, Question *q)
 {
   hsize_t dims[H5S_MAX_RANK];
-  hssize_t count;
-  Opened o;
   int rank;
+
+  PetscFunctionBeginUser;
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, rank = H5Sget_simple_extent_dims(o->space, dims, NULL));
+  PetscCheck(rank <= 4, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s has rank %d; lamella writes rank 4 at most",
+             path, q->name, rank);
+  q->rank = rank;
+  for (int i = 0; i < rank; i++) q->dims[i] = (PetscInt)dims[i];
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadArray(const char path[], hid_t file, Question *q)
+{
+  Opened o;
 
   PetscFunctionBeginUser;
   PetscCall(LamFileHas(path, file, q->name, &q->found));
   if (!q->found) PetscFunctionReturn(0);
-  PetscCall(Open(path, file, q->name, q->wanted, &o));
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, rank = H5Sget_simple_extent_dims(o.space, dims, NULL));
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, count = H5Sget_simple_extent_npoints(o.space));
-  PetscCheck(rank <= 4 && count < PETSC_MAX_INT, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: %s has rank %d and %lld numbers; lamella writes rank 4 at most", path, q->name, rank,
-             (long long)count);
-  q->rank = rank;
-  for (int i = 0; i < rank; i++) q->dims[i] = (PetscInt)dims[i];
-  PetscCall(PetscMalloc(((size_t)count + 1) * H5Tget_size(q->memory_type), &q->values));
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Dread(o.dataset, q->memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, q->values));
+  PetscCall(Open(path, file, q->name, q->type, &o));
+  PetscCall(Dims(path, &o, q));
+  q->count = (PetscInt)o.count;
+  PetscCall(PetscMalloc(o.bytes + 1, &q->values));
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Dread(o.dataset, q->type, H5S_ALL, H5S_ALL, H5P_DEFAULT, q->values));
+  PetscCall(CheckSum(path, q->name, &o, q->values, o.bytes));
   PetscCall(Close(path, &o));
   PetscFunctionReturn(0);
 }
@@ -163,7 +237,7 @@ static PetscErrorCode Ask(const char path[], PetscErrorCode (*read)(const char[]
 PetscErrorCode LamFileReadReals(const char path[], const char name[], PetscBool *found, PetscInt *rank,
                                 PetscInt dims[4], PetscReal **values)
 {
-  Question q = {.name = name, .wanted = H5T_FLOAT, .memory_type = H5T_NATIVE_DOUBLE, .dims = dims};
+  Question q = {.name = name, .type = H5T_IEEE_F64LE, .dims = dims};
 
   PetscFunctionBeginUser;
   PetscCall(Ask(path, ReadArray, &q));
@@ -176,14 +250,17 @@ PetscErrorCode LamFileReadReals(const char path[], const char name[], PetscBool 
 PetscErrorCode LamFileReadInts(const char path[], const char name[], PetscBool *found, PetscInt *rank, PetscInt dims[4],
                                PetscInt **values)
 {
-  Question q = {.name = name, .wanted = H5T_INTEGER, .dims = dims};
+  Question q = {.name = name, .type = H5T_STD_I64LE, .dims = dims};
 
   PetscFunctionBeginUser;
-  q.memory_type = sizeof(PetscInt) == sizeof(PetscInt64) ? H5T_NATIVE_INT64 : H5T_NATIVE_INT;
   PetscCall(Ask(path, ReadArray, &q));
   *found = q.found;
   *rank = q.rank;
-  *values = q.values;
+  *values = NULL;
+  if (!q.found) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(q.count + 1, values));
+  for (PetscInt i = 0; i < q.count; i++) (*values)[i] = (PetscInt)((const PetscInt64 *)q.values)[i];
+  PetscCall(PetscFree(q.values));
   PetscFunctionReturn(0);
 }
 

@@ -29,6 +29,8 @@ PetscErrorCode LamRecordLayoutMake(hid_t file_type, LamRecordLayout *layout)
     PetscCheck(count < LAM_MAX_MEMBERS, PETSC_COMM_SELF, PETSC_ERR_PLIB, "LAM_MAX_MEMBERS is too small");
     layout->member[count++] = at < 0 ? LAM_NOT_IN_FILE : H5Tget_member_offset(file_type, (unsigned)at);
   }
+  layout->status = LamRecordOffset(layout, offsetof(LamResponse, status));
+  layout->source = LamRecordOffset(layout, offsetof(LamResponse, source));
   PetscFunctionReturn(0);
 }
 
@@ -55,23 +57,27 @@ static uint32_t Checksum(const LamRecordLayout *layout, const unsigned char *byt
   return (uint32_t)crc32(0, bytes, (uInt)(layout->size - sizeof(uint32_t)));
 }
 
+const char *LamRecordDamage(const LamRecordLayout *layout, const unsigned char *bytes)
+{
+  uint32_t stored;
+
+  memcpy(&stored, bytes + layout->size - sizeof(stored), sizeof(stored));
+  if (stored != Checksum(layout, bytes)) return "its checksum differs";
+  if (bytes[layout->status] >= LAM_STATUS_COUNT || bytes[layout->source] >= LAM_SOURCE_COUNT ||
+      LamRecordInt(bytes + layout->microstructure))
+    return "its status, source or microstructure is unknown";
+  return NULL;
+}
+
 PetscErrorCode LamRecordsCheck(const char path[], const LamRecordLayout *layout, PetscInt first, PetscInt n,
                                const unsigned char *bytes)
 {
-  const size_t status = LamRecordOffset(layout, offsetof(LamResponse, status));
-  const size_t source = LamRecordOffset(layout, offsetof(LamResponse, source));
-
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++, bytes += layout->size) {
-    uint32_t stored;
+    const char *damage = LamRecordDamage(layout, bytes);
 
-    memcpy(&stored, bytes + layout->size - sizeof(stored), sizeof(stored));
-    PetscCheck(stored == Checksum(layout, bytes), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "%s: record %" PetscInt_FMT " is damaged (its checksum differs); build the file anew", path, first + i);
-    PetscCheck(bytes[status] < LAM_STATUS_COUNT && bytes[source] < LAM_SOURCE_COUNT &&
-                   LamRecordInt(bytes + layout->microstructure) == 0,
-               PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: record %" PetscInt_FMT " has an unknown status or source",
-               path, first + i);
+    PetscCheck(!damage, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "%s: record %" PetscInt_FMT " is damaged (%s)" LAM_SALVAGE, path, first + i, damage);
   }
   PetscFunctionReturn(0);
 }

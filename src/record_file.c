@@ -128,40 +128,6 @@ PetscErrorCode LamFileSync(const char path[], hid_t file)
   PetscFunctionReturn(0);
 }
 
-/* ---- attributes ---- */
-
-PetscErrorCode LamAttributeWriteText(const char path[], hid_t object, const char name[], const char text[])
-{
-  hid_t space, type, attribute;
-
-  PetscFunctionBeginUser;
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, space = H5Screate(H5S_SCALAR));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, type = H5Tcopy(H5T_C_S1));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Tset_size(type, strlen(text) + 1));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Tset_cset(type, H5T_CSET_UTF8));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Awrite(attribute, type, text));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Aclose(attribute));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Tclose(type));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Sclose(space));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode AttributeWriteNumber(const char path[], hid_t object, const char name[], hid_t file_type,
-                                           hid_t memory_type, const void *value)
-{
-  hid_t space, attribute;
-
-  PetscFunctionBeginUser;
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, space = H5Screate(H5S_SCALAR));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE,
-              attribute = H5Acreate2(object, name, file_type, space, H5P_DEFAULT, H5P_DEFAULT));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Awrite(attribute, memory_type, value));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Aclose(attribute));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Sclose(space));
-  PetscFunctionReturn(0);
-}
-
 /* ---- making a file ---- */
 
 void LamTimeNow(char text[LAM_TIME_LENGTH])
@@ -224,7 +190,7 @@ static PetscErrorCode WriteHeader(const char path[], hid_t file, const char kind
 
   PetscFunctionBeginUser;
   PetscCall(LamAttributeWriteText(path, file, "format", LAM_FORMAT_NAME));
-  PetscCall(AttributeWriteNumber(path, file, "format_version", H5T_STD_I32LE, H5T_NATIVE_INT, &version));
+  PetscCall(LamAttributeWriteNumber(path, file, "format_version", H5T_STD_I32LE, H5T_NATIVE_INT, &version));
   PetscCall(LamAttributeWriteText(path, file, "kind", kind));
   PetscCall(WriteProvenance(path, file));
   PetscCall(LamAttributeWriteText(path, file, "units",
@@ -232,12 +198,12 @@ static PetscErrorCode WriteHeader(const char path[], hid_t file, const char kind
   PetscCall(LamAttributeWriteText(path, file, "index_order",
                                   "row-major, 11 12 13 21 22 23 31 32 33; tangent[i][j][k][l] = dP_ij/dF_kl"));
   PetscCall(
-      AttributeWriteNumber(path, file, "length_unit_m", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &scene->scales.length));
+      LamAttributeWriteNumber(path, file, "length_unit_m", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &scene->scales.length));
   PetscCall(
-      AttributeWriteNumber(path, file, "stress_unit_Pa", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &scene->scales.stress));
-  PetscCall(AttributeWriteNumber(path, file, "macro_length_unit_m", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE,
-                                 &scene->scales.macro_length));
-  PetscCall(AttributeWriteNumber(path, file, "accuracy", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &scene->accuracy));
+      LamAttributeWriteNumber(path, file, "stress_unit_Pa", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &scene->scales.stress));
+  PetscCall(LamAttributeWriteNumber(path, file, "macro_length_unit_m", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE,
+                                    &scene->scales.macro_length));
+  PetscCall(LamAttributeWriteNumber(path, file, "accuracy", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &scene->accuracy));
   PetscFunctionReturn(0);
 }
 
@@ -255,11 +221,23 @@ static PetscErrorCode WriteMicrostructure(const char path[], hid_t file, const L
   PetscFunctionReturn(0);
 }
 
+/* The counter and what it is tested with are written over at each commit. */
+static PetscErrorCode WriteCounter(const char path[], hid_t dataset)
+{
+  const PetscInt64 none = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamAttributeWriteNumber(path, dataset, "committed", H5T_STD_I64LE, H5T_NATIVE_INT64, &none));
+  PetscCall(LamSumWrite(path, dataset, LAM_COUNTER_SUM, LamBytesSum(0, &none, sizeof(none))));
+  PetscCall(LamSumWrite(path, dataset, LAM_RECORDS_SUM, 0));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode WriteEmptyRecords(const char path[], hid_t file)
 {
   const hsize_t none = 0, unlimited = H5S_UNLIMITED, chunk = LAM_RECORDS_PER_CHUNK;
-  const PetscInt64 committed = 0;
   hid_t type, space, list, dataset;
+  uint32_t sum;
 
   PetscFunctionBeginUser;
   PetscCall(LamRecordTypeCreate(&type));
@@ -268,7 +246,9 @@ static PetscErrorCode WriteEmptyRecords(const char path[], hid_t file)
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Pset_chunk(list, 1, &chunk));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE,
               dataset = H5Dcreate2(file, "/records", type, space, H5P_DEFAULT, list, H5P_DEFAULT));
-  PetscCall(AttributeWriteNumber(path, dataset, "committed", H5T_STD_I64LE, H5T_NATIVE_INT64, &committed));
+  PetscCall(WriteCounter(path, dataset));
+  PetscCall(LamRecordTypeSum(type, &sum));
+  PetscCall(LamSumWrite(path, dataset, LAM_TYPE_SUM, sum));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dclose(dataset));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Pclose(list));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Sclose(space));
@@ -276,12 +256,20 @@ static PetscErrorCode WriteEmptyRecords(const char path[], hid_t file)
   PetscFunctionReturn(0);
 }
 
+/*
+  The records come first: so the counter and its checksums lie at the same place in every file, within one page of
+  memory, where HDF5 writes them by one call. A kill cannot come between them.
+*/
 static PetscErrorCode WriteAll(const char path[], hid_t file, const char kind[], const LamScene *scene)
 {
+  uint32_t sum;
+
   PetscFunctionBeginUser;
+  PetscCall(WriteEmptyRecords(path, file));
   PetscCall(WriteHeader(path, file, kind, scene));
   PetscCall(WriteMicrostructure(path, file, scene));
-  PetscCall(WriteEmptyRecords(path, file));
+  PetscCall(LamHeaderSum(path, file, &sum));
+  PetscCall(LamSumWrite(path, file, LAM_SUM, sum));
   PetscCall(LamFileSync(path, file));
   PetscFunctionReturn(0);
 }

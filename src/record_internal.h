@@ -13,23 +13,29 @@
 #define LAM_TIME_LENGTH 32
 #define LAM_RECORDS_PER_CHUNK 64 /* some 90 kB: one commit touches one or two chunks */
 
+/* What to do about a damaged file; ends a message. */
+#define LAM_SALVAGE "; \"lamella merge NEW.h5 FILE --salvage\" keeps all sound records of a database"
+
 /* ---- record_type.c ---- */
 
 /* The type of a record in the file: key, microstructure, the members of a response, checksum; packed, little-endian. */
 PetscErrorCode LamRecordTypeCreate(hid_t *type);
-/* Checks that every member we know is there, of the type we write; what was added later may be missing. */
+/* Checks that every member we know is there, of the type we write, what was added later may be missing; and that all
+   members lie one behind the other, the checksum last. */
 PetscErrorCode LamRecordTypeCheck(const char path[], hid_t file_type);
 
 /* ---- record_bytes.c ---- */
 
 #define LAM_MAX_MEMBERS 96
 #define LAM_NOT_IN_FILE ((size_t)-1)
+#define LAM_MAX_RECORD_BYTES 65536                   /* of any version */
 #define LAM_RECORD_BYTES (sizeof(LamResponse) + 128) /* a record in the file has less */
 
 /* Where the members lie in the bytes of a record, of a type that has passed the check above. */
 typedef struct {
   size_t size;                    /* of a record; its last 4 bytes are the CRC-32 (zlib's) of those before them */
   size_t key, microstructure;     /* int64 */
+  size_t status, source;          /* one byte each */
   size_t member[LAM_MAX_MEMBERS]; /* of LamResponseMembers, in their order; LAM_NOT_IN_FILE where it is missing */
 } LamRecordLayout;
 
@@ -43,10 +49,46 @@ PetscErrorCode LamRecordsPack(PetscInt n, const PetscInt64 keys[], const LamResp
                               void **bytes);
 /* The way back for one record that has been checked. */
 PetscErrorCode LamRecordUnpack(const LamRecordLayout *layout, const unsigned char *bytes, LamResponse *response);
-/* Checks checksum, status, source and microstructure of n records, the first of which is number `first`; names `path`
-   and the record that is damaged. */
+/* Checks checksum, status, source and microstructure of a record: what is wrong with it, or NULL. */
+const char *LamRecordDamage(const LamRecordLayout *layout, const unsigned char *bytes);
+/* The same for n records, the first of which is number `first`; names `path` and the record that is damaged. */
 PetscErrorCode LamRecordsCheck(const char path[], const LamRecordLayout *layout, PetscInt first, PetscInt n,
                                const unsigned char *bytes);
+
+/* ---- record_attribute.c ---- */
+
+/* Attributes of one value. What is read must be of exactly `file_type`, a text of at most 64 kB: PETSC_ERR_USER_INPUT.
+ */
+PetscErrorCode LamAttributeWriteText(const char path[], hid_t object, const char name[], const char text[]);
+PetscErrorCode LamAttributeWriteNumber(const char path[], hid_t object, const char name[], hid_t file_type,
+                                       hid_t memory_type, const void *value);
+/* Writes over the value of one that is there. */
+PetscErrorCode LamAttributeUpdate(const char path[], hid_t object, const char name[], hid_t memory_type,
+                                  const void *value);
+PetscErrorCode LamAttributeHas(const char path[], hid_t object, const char name[], PetscBool *has);
+PetscErrorCode LamAttributeReadNumber(const char path[], hid_t object, const char name[], hid_t file_type,
+                                      hid_t memory_type, void *value);
+PetscErrorCode LamAttributeReadText(const char path[], hid_t object, const char name[], char **text); /* to be freed */
+PetscErrorCode LamAttributeCopyText(const char path[], hid_t object, const char name[], size_t length, char value[]);
+
+/* ---- record_sums.c ---- */
+
+/* Attributes: of the root, texts and arrays; and three of /records. Files of earlier versions lack them. */
+#define LAM_SUM "checksum"
+#define LAM_COUNTER_SUM "committed_check" /* of the 8 bytes of `committed` */
+#define LAM_RECORDS_SUM "records_check"   /* of the checksums of the committed records, in their order */
+#define LAM_TYPE_SUM "type_check"         /* of names, offsets and sizes of the members of a record */
+
+PetscErrorCode LamSumWrite(const char path[], hid_t object, const char name[], uint32_t sum);
+/* True also where the object has no such attribute. */
+PetscErrorCode LamSumMatches(const char path[], hid_t object, const char name[], uint32_t sum, PetscBool *matches);
+/* Of the root's attributes, as they are read. */
+PetscErrorCode LamHeaderSum(const char path[], hid_t file, uint32_t *sum);
+/* Of n more bytes behind those that have the sum `before` (0: none). */
+uint32_t LamBytesSum(uint32_t before, const void *bytes, size_t n);
+PetscErrorCode LamRecordTypeSum(hid_t file_type, uint32_t *sum);
+/* The same for records, of which only the checksums enter. */
+uint32_t LamRecordsSum(uint32_t before, const LamRecordLayout *layout, PetscInt n, const unsigned char *bytes);
 
 /* ---- record_lock.c ---- */
 
@@ -106,19 +148,40 @@ PetscErrorCode LamFileCreate(const char path[], const char kind[], const LamScen
 PetscErrorCode LamFileClose(const char path[], hid_t file);
 /* Brings all that was written to the disk. */
 PetscErrorCode LamFileSync(const char path[], hid_t file);
-/* Reads and checks the header; `file` is left open. */
+/* Reads and checks the header; `file` is left open. LamHeaderReadRoot: without the number of committed records. */
 PetscErrorCode LamHeaderRead(const char path[], hid_t file, LamHeader *header);
+PetscErrorCode LamHeaderReadRoot(const char path[], hid_t file, LamHeader *header);
+/* Whether `name` ("/a/b/c") is there: every part of it. PETSC_ERR_USER_INPUT where one is a link to elsewhere. */
+PetscErrorCode LamFileHas(const char path[], hid_t file, const char name[], PetscBool *has);
+/* Text dataset; groups are made. */
+PetscErrorCode LamFileWriteText(const char path[], hid_t file, const char name[], const char text[]);
+PetscErrorCode LamFileGetText(const char path[], hid_t file, const char name[], char **text);
+
+/* Refuses what lamella never writes, before any data is read: another layout, filters, data in other files. */
+PetscErrorCode LamDatasetCheck(const char path[], hid_t dataset, const char name[], H5D_layout_t wanted);
+
+/* ---- record_scan.c ---- */
+
+/* The number of committed records, checked against its checksum, the extent and the size of the file. */
+PetscErrorCode LamCommittedRead(const char path[], hid_t file, PetscInt *committed);
 /* A block of checked records: n of them, number `first` and on. The bytes are the file's own. */
 typedef PetscErrorCode (*LamRecordVisitor)(void *ctx, const LamRecordLayout *layout, PetscInt first, PetscInt n,
                                            const unsigned char *bytes);
 /* Reads the first `count` records once, in blocks, checks them and shows them to the visitor in their order. */
 PetscErrorCode LamFileScanRecords(const char path[], hid_t file, PetscInt count, LamRecordVisitor visit, void *ctx);
-PetscErrorCode LamAttributeWriteText(const char path[], hid_t object, const char name[], const char text[]);
-/* Whether `name` ("/a/b/c") is there: every part of it. */
-PetscErrorCode LamFileHas(const char path[], hid_t file, const char name[], PetscBool *has);
-/* Text dataset; groups are made. */
-PetscErrorCode LamFileWriteText(const char path[], hid_t file, const char name[], const char text[]);
-PetscErrorCode LamFileGetText(const char path[], hid_t file, const char name[], char **text);
+
+/* The same for those who decide themselves what to make of a damaged record: open, read blocks of at most LAM_BLOCK
+   records into scan->bytes, close. */
+typedef struct {
+  hid_t dataset, type, space;
+  LamRecordLayout layout;
+  unsigned char *bytes; /* [LAM_BLOCK * layout.size] owned */
+} LamRecordScan;
+
+#define LAM_BLOCK (8 * LAM_RECORDS_PER_CHUNK) /* 0.9 MB: checked and used while it is in the processor's cache */
+PetscErrorCode LamRecordScanOpen(const char path[], hid_t file, LamRecordScan *scan);
+PetscErrorCode LamRecordScanRead(const char path[], LamRecordScan *scan, PetscInt first, PetscInt n);
+void LamRecordScanClose(LamRecordScan *scan);
 
 /* ---- record_room.c ---- */
 
@@ -135,8 +198,8 @@ int LamWriteBytes(int fd, const void *bytes, size_t n);
 
 /* ---- record_write.c ---- */
 
-/* Sets the number of committed records; syncs nothing. */
-PetscErrorCode LamCounterWrite(const char path[], hid_t dataset, PetscInt committed);
+/* Sets the number of committed records and the sum of their checksums; syncs nothing. */
+PetscErrorCode LamCounterWrite(const char path[], hid_t dataset, PetscInt committed, uint32_t records_sum);
 /* Brings a closed file to the disk and gives it its name, for good. */
 PetscErrorCode LamFilePublish(const char temporary[], const char path[]);
 

@@ -107,10 +107,34 @@ static PetscBool WasAdded(const char name[])
   return PETSC_FALSE;
 }
 
+/* Members without gaps or overlaps, in their order, the checksum last. */
+static PetscErrorCode CheckPacked(const char path[], hid_t file_type)
+{
+  const int members = H5Tget_nmembers(file_type), last = H5Tget_member_index(file_type, "checksum");
+  size_t end = 0;
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < members; i++) {
+    const hid_t member = H5Tget_member_type(file_type, (unsigned)i);
+    const PetscBool follows = (PetscBool)(H5Tget_member_offset(file_type, (unsigned)i) == end);
+
+    end += H5Tget_size(member);
+    H5Tclose(member);
+    PetscCheck(follows, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "%s: member %d of /records does not lie behind the one before it; the file is damaged", path, i);
+  }
+  PetscCheck(end == H5Tget_size(file_type) && end <= LAM_MAX_RECORD_BYTES, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: a record of /records has %zu bytes, its members %zu; the file is damaged", path,
+             H5Tget_size(file_type), end);
+  PetscCheck(last == members - 1, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: the checksum is not the last member of /records", path);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamRecordTypeCheck(const char path[], hid_t file_type)
 {
   hid_t ours;
-  int members, last;
+  int members;
 
   PetscFunctionBeginUser;
   PetscCheck(H5Tget_class(file_type) == H5T_COMPOUND, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
@@ -133,8 +157,6 @@ PetscErrorCode LamRecordTypeCheck(const char path[], hid_t file_type)
     H5free_memory(name);
   }
   LamCallHDF5(path, PETSC_ERR_LIB, H5Tclose(ours));
-  LamCallHDF5(path, PETSC_ERR_LIB, last = H5Tget_member_index(file_type, "checksum"));
-  PetscCheck(H5Tget_member_offset(file_type, (unsigned)last) + sizeof(uint32_t) == H5Tget_size(file_type),
-             PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: the checksum is not the last member of /records", path);
+  PetscCall(CheckPacked(path, file_type));
   PetscFunctionReturn(0);
 }

@@ -24,6 +24,7 @@ struct LamRecordWriter_s {
   PetscInt room; /* of the file, in records */
   PetscInt n, capacity;
   PetscInt64 *keys; /* owned */
+  uint32_t sum;     /* of the checksums of all records */
 };
 
 static const char *CurrentPath(LamRecordWriter w)
@@ -68,7 +69,7 @@ static PetscErrorCode CheckType(const char path[], hid_t file)
   PetscFunctionReturn(0);
 }
 
-/* Keeps the keys of records in the file. */
+/* Keeps the keys of records in the file, and the sum of their checksums. */
 static PetscErrorCode KeepBlockKeys(void *ctx, const LamRecordLayout *layout, PetscInt first, PetscInt n,
                                     const unsigned char *bytes)
 {
@@ -76,6 +77,7 @@ static PetscErrorCode KeepBlockKeys(void *ctx, const LamRecordLayout *layout, Pe
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++) w->keys[first + i] = LamRecordInt(bytes + (size_t)i * layout->size + layout->key);
+  w->sum = LamRecordsSum(w->sum, layout, n, bytes);
   PetscFunctionReturn(0);
 }
 
@@ -165,16 +167,20 @@ PetscErrorCode LamRecordWriterOpen(const char path[], const char kind[], LamWrit
 
 /* ---- commit ---- */
 
+/* *sum: of the checksums of all records, those before and those behind it. */
 static PetscErrorCode Append(const char path[], hid_t dataset, hsize_t before, PetscInt n, const PetscInt64 keys[],
-                             const LamResponse responses[])
+                             const LamResponse responses[], uint32_t *sum)
 {
   const hsize_t count = (hsize_t)n;
   hid_t type, space, memory;
+  LamRecordLayout layout;
   void *bytes;
 
   PetscFunctionBeginUser;
   PetscCall(LamRecordTypeCreate(&type));
+  PetscCall(LamRecordLayoutMake(type, &layout));
   PetscCall(LamRecordsPack(n, keys, responses, type, &bytes));
+  *sum = LamRecordsSum(*sum, &layout, n, bytes);
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, space = H5Dget_space(dataset));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, memory = H5Screate_simple(1, &count, NULL));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Sselect_hyperslab(space, H5S_SELECT_SET, &before, NULL, &count, NULL));
@@ -186,15 +192,19 @@ static PetscErrorCode Append(const char path[], hid_t dataset, hsize_t before, P
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamCounterWrite(const char path[], hid_t dataset, PetscInt committed)
+/* Files of earlier versions have no checksums of the counter, and get none: it has to be written by one call. */
+PetscErrorCode LamCounterWrite(const char path[], hid_t dataset, PetscInt committed, uint32_t records_sum)
 {
   const PetscInt64 count = committed;
-  hid_t counter;
+  const uint32_t sum = LamBytesSum(0, &count, sizeof(count));
+  PetscBool has;
 
   PetscFunctionBeginUser;
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, counter = H5Aopen(dataset, "committed", H5P_DEFAULT));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Awrite(counter, H5T_NATIVE_INT64, &count));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Aclose(counter));
+  PetscCall(LamAttributeUpdate(path, dataset, "committed", H5T_NATIVE_INT64, &count));
+  PetscCall(LamAttributeHas(path, dataset, LAM_COUNTER_SUM, &has));
+  if (has) PetscCall(LamAttributeUpdate(path, dataset, LAM_COUNTER_SUM, H5T_NATIVE_UINT32, &sum));
+  PetscCall(LamAttributeHas(path, dataset, LAM_RECORDS_SUM, &has));
+  if (has) PetscCall(LamAttributeUpdate(path, dataset, LAM_RECORDS_SUM, H5T_NATIVE_UINT32, &records_sum));
   PetscFunctionReturn(0);
 }
 
@@ -218,16 +228,18 @@ static PetscErrorCode CheckCounter(LamRecordWriter w, const char path[], hid_t d
 static PetscErrorCode AppendAndCount(LamRecordWriter w, const char path[], hid_t file, PetscInt n,
                                      const PetscInt64 keys[], const LamResponse responses[])
 {
+  uint32_t sum = w->sum;
   hid_t dataset;
 
   PetscFunctionBeginUser;
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, dataset = H5Dopen2(file, "/records", H5P_DEFAULT));
   PetscCall(CheckCounter(w, path, dataset));
-  PetscCall(Append(path, dataset, (hsize_t)w->n, n, keys, responses));
+  PetscCall(Append(path, dataset, (hsize_t)w->n, n, keys, responses, &sum));
   PetscCall(LamFileSync(path, file));
-  PetscCall(LamCounterWrite(path, dataset, w->n + n));
+  PetscCall(LamCounterWrite(path, dataset, w->n + n, sum));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dclose(dataset));
   PetscCall(LamFileSync(path, file));
+  w->sum = sum;
   PetscFunctionReturn(0);
 }
 
@@ -369,12 +381,44 @@ typedef struct {
   const char *unit; /* or NULL */
 } Array;
 
+static size_t ArrayCount(const Array *a)
+{
+  size_t count = 1;
+
+  for (PetscInt i = 0; i < a->rank; i++) count *= (size_t)a->dims[i];
+  return count;
+}
+
 static size_t ArrayBytes(const Array *a)
 {
-  size_t bytes = sizeof(PetscInt64); /* reals and integers alike have 8 bytes in the file */
+  return 8 * (ArrayCount(a) + 1); /* reals and integers alike have 8 bytes in the file */
+}
 
-  for (PetscInt i = 0; i < a->rank; i++) bytes *= (size_t)a->dims[i];
-  return bytes;
+/* Of the bytes in the file, then of the unit. */
+static uint32_t ArraySum(const Array *a)
+{
+  uint32_t sum = 0;
+
+  if (a->file_type == H5T_IEEE_F64LE) sum = LamBytesSum(0, a->values, 8 * ArrayCount(a));
+  for (size_t i = 0; a->file_type != H5T_IEEE_F64LE && i < ArrayCount(a); i++) {
+    const PetscInt64 value = ((const PetscInt *)a->values)[i];
+
+    sum = LamBytesSum(sum, &value, sizeof(value));
+  }
+  return a->unit ? LamBytesSum(sum, a->unit, strlen(a->unit)) : sum;
+}
+
+/* An array that is written over has no checksum any more: a kill may leave old numbers beside new ones. */
+static PetscErrorCode DropSum(const char path[], hid_t file, hid_t dataset)
+{
+  PetscBool has;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamAttributeHas(path, dataset, LAM_SUM, &has));
+  if (!has) PetscFunctionReturn(0);
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Adelete(dataset, LAM_SUM));
+  PetscCall(LamFileSync(path, file));
+  PetscFunctionReturn(0);
 }
 
 /*
@@ -392,6 +436,7 @@ static PetscErrorCode Overwrite(const char path[], hid_t file, const Array *a, P
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, type = H5Dget_type(dataset));
   *done = (PetscBool)(H5Tequal(type, a->file_type) > 0 && H5Sget_simple_extent_dims(space, dims, NULL) == a->rank);
   for (PetscInt i = 0; i < a->rank && *done; i++) *done = (PetscBool)(dims[i] == (hsize_t)a->dims[i]);
+  if (*done) PetscCall(DropSum(path, file, dataset));
   if (*done)
     LamCallHDF5(path, PETSC_ERR_FILE_WRITE,
                 H5Dwrite(dataset, a->memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, a->values));
@@ -421,6 +466,7 @@ static PetscErrorCode WriteArray(const char path[], hid_t file, void *ctx)
               dataset = H5Dcreate2(file, a->name, a->file_type, space, groups, H5P_DEFAULT, H5P_DEFAULT));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dwrite(dataset, a->memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, a->values));
   if (a->unit) PetscCall(LamAttributeWriteText(path, dataset, "unit", a->unit));
+  PetscCall(LamSumWrite(path, dataset, LAM_SUM, ArraySum(a)));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dclose(dataset));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Sclose(space));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Pclose(groups));

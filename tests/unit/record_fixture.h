@@ -106,6 +106,12 @@ static inline LamRecordWriter Open(LamWriteMode mode)
   return writer;
 }
 
+/* Nodes are of a grid, which a file of them must have. */
+static inline void WriteGrid(LamRecordWriter writer)
+{
+  assert_int_equal(LamRecordWriterText(writer, LAM_GRID_NAME, "{\"origin\":0,\"step\":0.05,\"turgor\":0.1}"), 0);
+}
+
 static inline void WriteFile(PetscInt n)
 {
   LamRecordWriter writer = Open(LAM_WRITE_CREATE);

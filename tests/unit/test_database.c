@@ -108,6 +108,7 @@ static LamDatabase OpenMixed(void)
   LamRecordWriter writer = Open(LAM_WRITE_CREATE);
   LamDatabase db;
 
+  WriteGrid(writer);
   Commit(writer, LAM_NODE_KEY, 700);
   Commit(writer, LAM_CACHE_KEY, 3);
   Commit(writer, LAM_NODE_KEY + 700, 5);
@@ -194,6 +195,7 @@ static void a_file_of_another_tissue_is_noticed(void **state)
   LamRecordWriter writer = Open(LAM_WRITE_CREATE);
   LamDatabase db;
 
+  WriteGrid(writer);
   Commit(writer, LAM_NODE_KEY, 1);
   assert_int_equal(LamRecordWriterClose(&writer), 0);
   assert_int_equal(LamDatabaseOpen(path, &db), 0);

@@ -1,0 +1,193 @@
+/*
+  The records of a file: how many are committed, and their bytes, block by block. What the file says of itself is tested
+  before memory is taken for it.
+*/
+#include "record_internal.h"
+
+/* ---- counter ---- */
+
+static PetscErrorCode CheckCounter(const char path[], hid_t dataset, PetscInt64 count)
+{
+  PetscBool sound;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamSumMatches(path, dataset, LAM_COUNTER_SUM, LamBytesSum(0, &count, sizeof(count)), &sound));
+  PetscCheck(sound, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: the commit counter of /records is damaged (it says %lld)" LAM_SALVAGE, path, (long long)count);
+  PetscFunctionReturn(0);
+}
+
+/* Records are stored as they are, so there cannot be more than the file has room for; nor longer chunks. */
+static PetscErrorCode CheckRoom(const char path[], hid_t file, hid_t dataset, PetscInt64 count)
+{
+  hsize_t size, chunk = 0;
+  hid_t type, list;
+  size_t bytes;
+
+  PetscFunctionBeginUser;
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Fget_filesize(file, &size));
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, type = H5Dget_type(dataset));
+  bytes = PetscMax(H5Tget_size(type), 1);
+  LamCallHDF5(path, PETSC_ERR_LIB, H5Tclose(type));
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, list = H5Dget_create_plist(dataset));
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Pget_chunk(list, 1, &chunk));
+  LamCallHDF5(path, PETSC_ERR_LIB, H5Pclose(list));
+  PetscCheck(!count || ((hsize_t)count <= size / bytes && chunk <= size / bytes), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: %lld records of %zu bytes in chunks of %lld are said to be in %lld bytes; the file is damaged", path,
+             (long long)count, bytes, (long long)chunk, (long long)size);
+  PetscFunctionReturn(0);
+}
+
+/* The list /records, nothing read of it yet. */
+static PetscErrorCode OpenList(const char path[], hid_t file, hid_t access, hid_t *dataset, hid_t *space)
+{
+  PetscBool has;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileHas(path, file, "/records", &has));
+  PetscCheck(has, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: the table /records is missing; the file is damaged",
+             path);
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, *dataset = H5Dopen2(file, "/records", access));
+  PetscCall(LamDatasetCheck(path, *dataset, "/records", H5D_CHUNKED));
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, *space = H5Dget_space(*dataset));
+  PetscCheck(H5Sget_simple_extent_ndims(*space) == 1, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: /records is not a list; the file is damaged", path);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamCommittedRead(const char path[], hid_t file, PetscInt *committed)
+{
+  hid_t dataset, space;
+  PetscInt64 count;
+  hssize_t extent;
+
+  PetscFunctionBeginUser;
+  PetscCall(OpenList(path, file, H5P_DEFAULT, &dataset, &space));
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, extent = H5Sget_simple_extent_npoints(space));
+  PetscCall(LamAttributeReadNumber(path, dataset, "committed", H5T_STD_I64LE, H5T_NATIVE_INT64, &count));
+  PetscCheck(count >= 0 && count <= (PetscInt64)extent && count < PETSC_MAX_INT, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: %lld records are said to be committed, %lld are there; the file is damaged" LAM_SALVAGE, path,
+             (long long)count, (long long)extent);
+  PetscCall(CheckCounter(path, dataset, count));
+  PetscCall(CheckRoom(path, file, dataset, count));
+  *committed = (PetscInt)count;
+  LamCallHDF5(path, PETSC_ERR_LIB, H5Sclose(space));
+  LamCallHDF5(path, PETSC_ERR_LIB, H5Dclose(dataset));
+  PetscFunctionReturn(0);
+}
+
+/* ---- blocks ---- */
+
+static PetscErrorCode CheckType(const char path[], const LamRecordScan *s)
+{
+  PetscBool sound;
+  uint32_t sum;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRecordTypeCheck(path, s->type));
+  PetscCall(LamRecordTypeSum(s->type, &sum));
+  PetscCall(LamSumMatches(path, s->dataset, LAM_TYPE_SUM, sum, &sound));
+  PetscCheck(sound, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: the names of the members of /records are damaged" LAM_SALVAGE, path);
+  PetscFunctionReturn(0);
+}
+
+/* Without HDF5's cache of chunks: each is read once, right into our block. */
+static PetscErrorCode Open(const char path[], hid_t file, LamRecordScan *s)
+{
+  hid_t access;
+
+  PetscFunctionBeginUser;
+  LamCallHDF5(path, PETSC_ERR_LIB, access = H5Pcreate(H5P_DATASET_ACCESS));
+  LamCallHDF5(path, PETSC_ERR_LIB, H5Pset_chunk_cache(access, H5D_CHUNK_CACHE_NSLOTS_DEFAULT, 0, 1));
+  PetscCall(OpenList(path, file, access, &s->dataset, &s->space));
+  LamCallHDF5(path, PETSC_ERR_LIB, H5Pclose(access));
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, s->type = H5Dget_type(s->dataset));
+  PetscCall(CheckType(path, s));
+  PetscCall(LamRecordLayoutMake(s->type, &s->layout));
+  PetscCall(PetscMalloc(LAM_BLOCK * s->layout.size, &s->bytes));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRecordScanOpen(const char path[], hid_t file, LamRecordScan *scan)
+{
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  *scan = (LamRecordScan){.dataset = H5I_INVALID_HID, .type = H5I_INVALID_HID, .space = H5I_INVALID_HID};
+  ierr = Open(path, file, scan);
+  if (ierr) LamRecordScanClose(scan);
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+void LamRecordScanClose(LamRecordScan *scan)
+{
+  (void)PetscFree(scan->bytes);
+  if (scan->space >= 0) H5Sclose(scan->space);
+  if (scan->type >= 0) H5Tclose(scan->type);
+  if (scan->dataset >= 0) H5Dclose(scan->dataset);
+}
+
+PetscErrorCode LamRecordScanRead(const char path[], LamRecordScan *scan, PetscInt first, PetscInt n)
+{
+  const hsize_t from = (hsize_t)first, count = (hsize_t)n;
+  hid_t memory;
+  herr_t failed;
+
+  PetscFunctionBeginUser;
+  LamCallHDF5(path, PETSC_ERR_LIB, H5Sselect_hyperslab(scan->space, H5S_SELECT_SET, &from, NULL, &count, NULL));
+  LamCallHDF5(path, PETSC_ERR_LIB, memory = H5Screate_simple(1, &count, NULL));
+  failed = H5Dread(scan->dataset, scan->type, memory, scan->space, H5P_DEFAULT, scan->bytes);
+  H5Sclose(memory);
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, failed);
+  PetscFunctionReturn(0);
+}
+
+/* ---- all of them ---- */
+
+/* Each record may be sound and yet in the place of another: the list has a checksum too, which holds for all of it. */
+static PetscErrorCode CheckList(const char path[], const LamRecordScan *s, PetscInt count, uint32_t sum)
+{
+  PetscInt64 committed;
+  PetscBool sound;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamAttributeReadNumber(path, s->dataset, "committed", H5T_STD_I64LE, H5T_NATIVE_INT64, &committed));
+  if (committed != count) PetscFunctionReturn(0); /* the file has grown since it was opened */
+  PetscCall(LamSumMatches(path, s->dataset, LAM_RECORDS_SUM, sum, &sound));
+  PetscCheck(sound, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: /records is damaged (each record is sound, but one stands in the place of another)" LAM_SALVAGE,
+             path);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ScanBlocks(const char path[], LamRecordScan *s, PetscInt count, LamRecordVisitor visit, void *ctx)
+{
+  uint32_t sum = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt first = 0; first < count; first += LAM_BLOCK) {
+    const PetscInt n = PetscMin(LAM_BLOCK, count - first);
+
+    PetscCall(LamRecordScanRead(path, s, first, n));
+    PetscCall(LamRecordsCheck(path, &s->layout, first, n, s->bytes));
+    sum = LamRecordsSum(sum, &s->layout, n, s->bytes);
+    PetscCall(visit(ctx, &s->layout, first, n, s->bytes));
+  }
+  PetscCall(CheckList(path, s, count, sum));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFileScanRecords(const char path[], hid_t file, PetscInt count, LamRecordVisitor visit, void *ctx)
+{
+  LamRecordScan scan;
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRecordScanOpen(path, file, &scan));
+  ierr = ScanBlocks(path, &scan, count, visit, ctx);
+  LamRecordScanClose(&scan); /* also of damaged records: a program may go on without this file */
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}

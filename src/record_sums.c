@@ -1,0 +1,104 @@
+/*
+  Checksums of what lies beside the records: CRC-32, zlib's. Each is an attribute of its own; files of earlier versions
+  lack them. docs/file-format.md tells how a reader in another language tests them.
+*/
+#include "record_internal.h"
+#include <string.h>
+#include <zlib.h>
+
+uint32_t LamBytesSum(uint32_t before, const void *bytes, size_t n)
+{
+  return (uint32_t)crc32_z(before, bytes, n);
+}
+
+/* ---- as attributes ---- */
+
+PetscErrorCode LamSumWrite(const char path[], hid_t object, const char name[], uint32_t sum)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamAttributeWriteNumber(path, object, name, H5T_STD_U32LE, H5T_NATIVE_UINT32, &sum));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSumMatches(const char path[], hid_t object, const char name[], uint32_t sum, PetscBool *matches)
+{
+  uint32_t stored = sum;
+  PetscBool has;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamAttributeHas(path, object, name, &has));
+  if (has) PetscCall(LamAttributeReadNumber(path, object, name, H5T_STD_U32LE, H5T_NATIVE_UINT32, &stored));
+  *matches = (PetscBool)(stored == sum);
+  PetscFunctionReturn(0);
+}
+
+/* ---- header ---- */
+
+typedef enum { TEXT, REAL, INT } Kind;
+
+/* The attributes of the root, in the order in which they enter the sum. */
+static const struct {
+  const char *name;
+  Kind kind;
+} header[] = {{"format", TEXT},        {"format_version", INT},  {"kind", TEXT},
+              {"creator", TEXT},       {"created", TEXT},        {"host", TEXT},
+              {"command", TEXT},       {"petsc_version", TEXT},  {"hdf5_version", TEXT},
+              {"mpi_version", TEXT},   {"units", TEXT},          {"index_order", TEXT},
+              {"length_unit_m", REAL}, {"stress_unit_Pa", REAL}, {"macro_length_unit_m", REAL},
+              {"accuracy", REAL},      {"microstructure", TEXT}};
+
+PetscErrorCode LamHeaderSum(const char path[], hid_t file, uint32_t *sum)
+{
+  PetscFunctionBeginUser;
+  *sum = 0;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(header); i++) {
+    const char *name = header[i].name;
+    char *text;
+    double real;
+    int32_t number;
+
+    switch (header[i].kind) {
+    case TEXT:
+      PetscCall(LamAttributeReadText(path, file, name, &text));
+      *sum = LamBytesSum(*sum, text, strlen(text) + 1);
+      PetscCall(PetscFree(text));
+      break;
+    case REAL:
+      PetscCall(LamAttributeReadNumber(path, file, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &real));
+      *sum = LamBytesSum(*sum, &real, sizeof(real));
+      break;
+    case INT:
+      PetscCall(LamAttributeReadNumber(path, file, name, H5T_STD_I32LE, H5T_NATIVE_INT32, &number));
+      *sum = LamBytesSum(*sum, &number, sizeof(number));
+      break;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* ---- records ---- */
+
+PetscErrorCode LamRecordTypeSum(hid_t file_type, uint32_t *sum)
+{
+  const int members = H5Tget_nmembers(file_type);
+
+  PetscFunctionBeginUser;
+  *sum = 0;
+  for (int i = 0; i < members; i++) {
+    const hid_t member = H5Tget_member_type(file_type, (unsigned)i);
+    const uint64_t place[2] = {H5Tget_member_offset(file_type, (unsigned)i), H5Tget_size(member)};
+    char *name = H5Tget_member_name(file_type, (unsigned)i);
+
+    H5Tclose(member);
+    *sum = LamBytesSum(LamBytesSum(*sum, name, strlen(name) + 1), place, sizeof(place));
+    H5free_memory(name);
+  }
+  PetscFunctionReturn(0);
+}
+
+uint32_t LamRecordsSum(uint32_t before, const LamRecordLayout *layout, PetscInt n, const unsigned char *bytes)
+{
+  for (PetscInt i = 0; i < n; i++)
+    before = LamBytesSum(before, bytes + ((size_t)i + 1) * layout->size - sizeof(uint32_t), sizeof(uint32_t));
+  return before;
+}

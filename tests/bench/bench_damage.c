@@ -1,0 +1,237 @@
+/*
+  What a flipped bit does to a small database: each bit of its bytes beside the records is flipped in turn, and a
+  process of its own opens the file and takes all that lamella answers from. Prints how many are read as before,
+  refused, read otherwise without a word, and how many end or hold up the process. The file is removed at the end.
+    bench_damage [--stride BITS] [--list 1]
+  --list 1 names the byte and bit of each that is not read as before or refused.
+*/
+#include <fcntl.h>
+#include <hdf5.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include "grid.h"
+
+#define RECORDS 150 /* three chunks */
+#define SECONDS 10  /* an open takes some milliseconds */
+
+static const char scene_text[] = "version: 1\n"
+                                 "rve:\n"
+                                 "  cell: {apothem: 75 um, wall_thickness: 11.25 um}\n"
+                                 "  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}\n"
+                                 "  mesh: {along: 6, through: 2}\n"
+                                 "  turgor: {mode: prescribed, pressure: 0.02 MPa}\n";
+
+static char directory[64], path[96], message[2048];
+
+static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
+                                  PetscErrorType type, const char *text, void *ctx)
+{
+  if (type == PETSC_ERROR_INITIAL) snprintf(message, sizeof(message), "%s", text);
+  return code;
+}
+
+/* ---- the file ---- */
+
+static PetscErrorCode Synthetic(LamGrid grid, PetscInt64 key, PetscInt number, LamResponse *response)
+{
+  PetscReal next = 0.1 + 1e-6 * (double)number;
+  LamLoad load;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamGridNodeLoad(grid, key, &load));
+  PetscCall(LamResponseInit(&load, response));
+  for (const LamMember *m = LamResponseMembers; m->name; m++)
+    for (PetscInt i = 0; m->type == LAM_MEMBER_REAL && i < m->count; i++)
+      ((PetscReal *)((char *)response + m->offset))[i] = next += 1e-3;
+  response->load = load;
+  response->status = LAM_CONVERGED;
+  response->stable = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WriteNodes(LamGrid grid, LamRecordWriter writer)
+{
+  LamResponse responses[RECORDS];
+  PetscInt64 keys[RECORDS];
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  for (int i = 0; n < RECORDS; i++)
+    for (int j = 0; j <= i && n < RECORDS; j++) {
+      const LamNodePlace place = {.i = {j, j, i}};
+
+      keys[n] = LamNodeKeyOf(&place);
+      PetscCall(Synthetic(grid, keys[n], n, &responses[n]));
+      n++;
+    }
+  PetscCall(LamRecordWriterCommit(writer, n, keys, responses));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Write(void)
+{
+  LamRecordWriter writer;
+  LamScene *scene;
+  LamGrid grid;
+  char *text;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamSceneReadText("bench_damage", scene_text, &scene));
+  PetscCall(LamGridCreate(scene, NULL, &grid));
+  PetscCall(LamRecordWriterOpen(path, "database", LAM_WRITE_CREATE, scene, &writer));
+  PetscCall(LamGridGetText(grid, &text));
+  PetscCall(LamRecordWriterText(writer, LAM_GRID_NAME, text));
+  PetscCall(WriteNodes(grid, writer));
+  PetscCall(LamRecordWriterClose(&writer));
+  PetscCall(PetscFree(text));
+  PetscCall(LamGridDestroy(&grid));
+  PetscCall(LamSceneDestroy(&scene));
+  PetscFunctionReturn(0);
+}
+
+/* Marks the bytes that are records: each has a checksum. */
+static void MarkRecords(unsigned char *marked)
+{
+  const hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT), dataset = H5Dopen2(file, "/records", H5P_DEFAULT);
+  const hid_t space = H5Dget_space(dataset);
+  hsize_t chunks, offset, bytes;
+  unsigned filters;
+  haddr_t address;
+
+  H5Dget_num_chunks(dataset, space, &chunks);
+  for (hsize_t i = 0; i < chunks; i++) {
+    H5Dget_chunk_info(dataset, space, i, &offset, &filters, &address, &bytes);
+    memset(marked + address, 1, bytes);
+  }
+  H5Sclose(space);
+  H5Dclose(dataset);
+  H5Fclose(file);
+}
+
+/* ---- reading it ---- */
+
+static uint64_t Hash(uint64_t hash, const void *bytes, size_t n)
+{
+  for (size_t i = 0; i < n; i++) hash = (hash ^ ((const unsigned char *)bytes)[i]) * 1099511628211u;
+  return hash;
+}
+
+/* FNV-1a of all that lamella answers from. */
+static PetscErrorCode Digest(uint64_t *digest)
+{
+  const LamResponse *records;
+  const PetscInt64 *keys;
+  LamDatabase database;
+  const char *json;
+  PetscInt n;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamDatabaseOpen(path, &database));
+  PetscCall(LamDatabaseGetRecords(database, &n, &records, &keys));
+  PetscCall(LamDatabaseGetInfo(database, &json));
+  *digest = Hash(Hash(14695981039346656037u, json, strlen(json)), keys, (size_t)n * sizeof(*keys));
+  for (PetscInt i = 0; i < n; i++)
+    for (const LamMember *m = LamResponseMembers; m->name; m++) {
+      const size_t size = m->type == LAM_MEMBER_REAL ? sizeof(PetscReal) : m->type == LAM_MEMBER_TEXT ? 1 : sizeof(int);
+
+      *digest = Hash(*digest, (const char *)&records[i] + m->offset, size * (size_t)m->count);
+    }
+  PetscCall(LamDatabaseClose(&database));
+  PetscFunctionReturn(0);
+}
+
+typedef enum { SAME, REFUSED, UNNAMED, DIFFERENT, CRASH, HANG, OUTCOMES } Outcome;
+static const char *const outcomes[OUTCOMES] = {"read as before", "refused, file named", "refused, not named",
+                                               "read otherwise", "process ended",       "process held up"};
+
+static Outcome Try(uint64_t wanted)
+{
+  const pid_t child = fork();
+  int status;
+
+  if (child == 0) {
+    const struct rlimit memory = {(rlim_t)4 << 30, (rlim_t)4 << 30}, none = {0, 0};
+    uint64_t found;
+
+    setrlimit(RLIMIT_AS, &memory);
+    setrlimit(RLIMIT_CORE, &none);
+    alarm(SECONDS);
+    if (Digest(&found)) _exit(strstr(message, path) ? REFUSED : UNNAMED);
+    _exit(found == wanted ? SAME : DIFFERENT);
+  }
+  waitpid(child, &status, 0);
+  if (WIFEXITED(status)) return WEXITSTATUS(status) < CRASH ? (Outcome)WEXITSTATUS(status) : CRASH;
+  return WTERMSIG(status) == SIGALRM ? HANG : CRASH;
+}
+
+static void Flip(int fd, off_t byte, int bit)
+{
+  unsigned char value;
+
+  if (pread(fd, &value, 1, byte) != 1) exit(1);
+  value ^= (unsigned char)(1 << bit);
+  if (pwrite(fd, &value, 1, byte) != 1) exit(1);
+}
+
+static PetscErrorCode Run(PetscInt stride, PetscBool list)
+{
+  PetscInt counts[OUTCOMES] = {0}, beside = 0, tried = 0;
+  unsigned char *marked;
+  struct stat info;
+  uint64_t wanted;
+  int fd;
+
+  PetscFunctionBeginUser;
+  snprintf(directory, sizeof(directory), "/tmp/lamella-bench-XXXXXX");
+  PetscCheck(mkdtemp(directory), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: cannot be made", directory);
+  snprintf(path, sizeof(path), "%s/nodes.h5", directory);
+  PetscCall(Write());
+  fd = open(path, O_RDWR);
+  fstat(fd, &info);
+  PetscCall(PetscCalloc(info.st_size, &marked));
+  MarkRecords(marked);
+  PetscCall(Digest(&wanted));
+  for (off_t bit = 0; bit < 8 * info.st_size; bit++) {
+    Outcome outcome;
+
+    if (marked[bit / 8]) continue;
+    if (beside++ % stride) continue;
+    tried++;
+    Flip(fd, bit / 8, (int)(bit % 8));
+    counts[outcome = Try(wanted)]++;
+    Flip(fd, bit / 8, (int)(bit % 8));
+    if (list && outcome != SAME && outcome != REFUSED)
+      printf("  byte %lld bit %lld: %s\n", (long long)bit / 8, (long long)bit % 8, outcomes[outcome]);
+  }
+  printf("%" PetscInt_FMT " bytes beside %d records, %" PetscInt_FMT " bits flipped\n", beside / 8, RECORDS, tried);
+  for (int i = 0; i < OUTCOMES; i++) printf("  %-20s %8" PetscInt_FMT "\n", outcomes[i], counts[i]);
+  close(fd);
+  unlink(path);
+  rmdir(directory);
+  PetscCall(PetscFree(marked));
+  PetscFunctionReturn(0);
+}
+
+int main(int argc, char **argv)
+{
+  PetscInt stride = 97;
+  PetscBool list = PETSC_FALSE;
+
+  for (int i = 1; i + 1 < argc; i += 2) {
+    if (!strcmp(argv[i], "--stride")) stride = atoi(argv[i + 1]);
+    if (!strcmp(argv[i], "--list")) list = (PetscBool)(atoi(argv[i + 1]) > 0);
+  }
+  if (argc % 2 == 0 || stride < 1) {
+    fprintf(stderr, "usage: bench_damage [--stride BITS] [--list 1]\n");
+    return 2;
+  }
+  PetscErrorHandlingInitialized = PETSC_TRUE; /* PETSc calls no handler before PetscInitialize, which we do without */
+  PetscPushErrorHandler(KeepMessage, NULL);
+  return Run(stride, list) ? 1 : 0;
+}
