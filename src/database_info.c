@@ -3,6 +3,7 @@
 */
 #include "table.h"
 #include "range.h"
+#include "record_json.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -81,14 +82,6 @@ static json_t *Microstructures(LamDatabase db)
                    db->header.scales.stress);
 }
 
-/* Text that may hold anything, as a command line may: null where it is not UTF-8. */
-static json_t *Text(const char text[])
-{
-  json_t *string = text ? json_string(text) : NULL;
-
-  return string ? string : json_null();
-}
-
 static PetscErrorCode AddTable(LamDatabase db, json_t *object)
 {
   LamTable table;
@@ -118,13 +111,14 @@ PetscErrorCode LamDatabaseDescribe(LamDatabase db, char **json)
                      "coverage", Coverage(h, &summary), "accuracy", h->accuracy);
   json_object_set_new(object, "scattered", json_integer(db->scatter.n));
   PetscCall(AddTable(db, object));
-  json_object_set_new(object, "creator", Text(h->creator));
-  json_object_set_new(object, "created", Text(h->created));
-  json_object_set_new(object, "host", Text(h->host));
-  json_object_set_new(object, "command", Text(h->command));
-  json_object_set_new(
-      object, "libraries",
-      json_pack("{s:o, s:o, s:o}", "PETSc", Text(h->petsc), "HDF5", Text(h->hdf5), "MPI", Text(h->mpi)));
+  json_object_set_new(object, "writer", LamWriterToJSON(db->path));
+  json_object_set_new(object, "creator", LamTextToJSON(h->creator));
+  json_object_set_new(object, "created", LamTextToJSON(h->created));
+  json_object_set_new(object, "host", LamTextToJSON(h->host));
+  json_object_set_new(object, "command", LamTextToJSON(h->command));
+  json_object_set_new(object, "libraries",
+                      json_pack("{s:o, s:o, s:o}", "PETSc", LamTextToJSON(h->petsc), "HDF5", LamTextToJSON(h->hdf5),
+                                "MPI", LamTextToJSON(h->mpi)));
   text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(15));
   json_decref(object);
   PetscCheck(text, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "the file's header is damaged: a text in it is not UTF-8");

@@ -199,6 +199,28 @@ static PetscErrorCode ReadArray(const char path[], hid_t file, Question *q)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamFileCheckValues(const char path[], hid_t file, const char name[])
+{
+  PetscInt dims[4];
+  Question q = {.name = name, .dims = dims};
+  H5T_class_t class;
+  hid_t dataset, type;
+
+  PetscFunctionBeginUser;
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, dataset = H5Dopen2(file, name, H5P_DEFAULT));
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, type = H5Dget_type(dataset));
+  class = H5Tget_class(type);
+  LamCallHDF5(path, PETSC_ERR_LIB, H5Tclose(type));
+  LamCallHDF5(path, PETSC_ERR_LIB, H5Dclose(dataset));
+  q.type = class == H5T_FLOAT ? H5T_IEEE_F64LE : H5T_STD_I64LE;
+  if (class == H5T_STRING)
+    PetscCall(LamFileGetText(path, file, name, (char **)&q.values));
+  else
+    PetscCall(ReadArray(path, file, &q));
+  PetscCall(PetscFree(q.values));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode ReadText(const char path[], hid_t file, Question *q)
 {
   PetscFunctionBeginUser;

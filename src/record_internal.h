@@ -105,6 +105,13 @@ void LamLockBeginCommit(LamLock *lock);
 void LamLockEndCommit(LamLock *lock);
 int LamLockBeginRead(const char path[]); /* a descriptor for LamLockEndRead, or -1 where no writer is about */
 void LamLockEndRead(int fd);
+/* Who writes to the file. False: no one, or a process of this host that has died. */
+typedef struct {
+  char host[256], since[LAM_TIME_LENGTH];
+  long pid;
+  unsigned long long start; /* clock ticks after boot; 0 where the system does not tell */
+} LamLockHolder;
+PetscBool LamLockGetHolder(const char path[], LamLockHolder *holder);
 
 /* ---- record_target.c ---- */
 
@@ -156,6 +163,8 @@ PetscErrorCode LamFileHas(const char path[], hid_t file, const char name[], Pets
 /* Text dataset; groups are made. */
 PetscErrorCode LamFileWriteText(const char path[], hid_t file, const char name[], const char text[]);
 PetscErrorCode LamFileGetText(const char path[], hid_t file, const char name[], char **text);
+/* Reads a text or array, whichever it is, and tests its checksum. */
+PetscErrorCode LamFileCheckValues(const char path[], hid_t file, const char name[]);
 
 /* Refuses what lamella never writes, before any data is read: another layout, filters, data in other files. */
 PetscErrorCode LamDatasetCheck(const char path[], hid_t dataset, const char name[], H5D_layout_t wanted);
@@ -182,6 +191,10 @@ typedef struct {
 PetscErrorCode LamRecordScanOpen(const char path[], hid_t file, LamRecordScan *scan);
 PetscErrorCode LamRecordScanRead(const char path[], LamRecordScan *scan, PetscInt first, PetscInt n);
 void LamRecordScanClose(LamRecordScan *scan);
+/* Tests the sum of the checksums of all committed records, `count`; more may have been committed since. */
+PetscErrorCode LamRecordScanEnd(const char path[], const LamRecordScan *scan, PetscInt count, uint32_t sum);
+/* How many records the list has room for, committed or not. */
+PetscInt LamRecordScanRoom(const LamRecordScan *scan, hid_t file);
 
 /* ---- record_room.c ---- */
 

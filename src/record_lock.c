@@ -20,12 +20,6 @@
 
 #define UNWRITTEN_SECONDS 2 /* from its making to its line a lock takes far less */
 
-typedef struct {
-  char host[256], since[LAM_TIME_LENGTH];
-  long pid;
-  unsigned long long start; /* clock ticks after boot; 0 where the system does not tell */
-} Holder;
-
 /* 0 also of a process that has ended and that no one has waited for: what it had open is closed. */
 static unsigned long long ProcessStart(long pid)
 {
@@ -47,7 +41,7 @@ static unsigned long long ProcessStart(long pid)
   return start;
 }
 
-static void HolderSelf(Holder *self)
+static void HolderSelf(LamLockHolder *self)
 {
   memset(self, 0, sizeof(*self));
   if (gethostname(self->host, sizeof(self->host) - 1)) snprintf(self->host, sizeof(self->host), "unknown");
@@ -56,7 +50,7 @@ static void HolderSelf(Holder *self)
   LamTimeNow(self->since);
 }
 
-static PetscBool HolderRead(int fd, Holder *holder)
+static PetscBool HolderRead(int fd, LamLockHolder *holder)
 {
   char text[512] = "";
   const ssize_t n = pread(fd, text, sizeof(text) - 1, 0);
@@ -67,9 +61,9 @@ static PetscBool HolderRead(int fd, Holder *holder)
 }
 
 /* Only of a process on this host can we know that it is gone. */
-static PetscBool HolderIsDead(const Holder *holder)
+static PetscBool HolderIsDead(const LamLockHolder *holder)
 {
-  Holder self;
+  LamLockHolder self;
 
   HolderSelf(&self);
   if (strcmp(holder->host, self.host)) return PETSC_FALSE;
@@ -105,7 +99,7 @@ static PetscErrorCode RemoveStale(const char path[], const char data_path[], Pet
 {
   const int fd = open(path, O_RDONLY | O_CLOEXEC);
   PetscBool unwritten, known;
-  Holder holder;
+  LamLockHolder holder;
 
   PetscFunctionBeginUser;
   *removed = PETSC_TRUE;
@@ -133,7 +127,7 @@ static PetscErrorCode RemoveStale(const char path[], const char data_path[], Pet
 static PetscErrorCode WriteHolder(const char path[], LamLock *lock)
 {
   char text[512];
-  Holder self;
+  LamLockHolder self;
   int length, error;
 
   PetscFunctionBeginUser;
@@ -190,14 +184,20 @@ void LamLockEndCommit(LamLock *lock)
   flock(lock->fd, LOCK_UN);
 }
 
-int LamLockBeginRead(const char path[])
+/* The writer's lock is beside the file, not beside a link to it. */
+static int OpenLock(const char path[])
 {
   char target[PETSC_MAX_PATH_LEN], name[PETSC_MAX_PATH_LEN];
-  int fd;
 
-  if (!LamPathFollow(path, target)) return -1; /* the writer's lock is beside the file, not beside a link to it */
+  if (!LamPathFollow(path, target)) return -1;
   if (snprintf(name, sizeof(name), "%s.lock", target) >= (int)sizeof(name)) return -1;
-  fd = open(name, O_RDONLY | O_CLOEXEC);
+  return open(name, O_RDONLY | O_CLOEXEC);
+}
+
+int LamLockBeginRead(const char path[])
+{
+  const int fd = OpenLock(path);
+
   if (fd >= 0) flock(fd, LOCK_SH);
   return fd;
 }
@@ -205,4 +205,13 @@ int LamLockBeginRead(const char path[])
 void LamLockEndRead(int fd)
 {
   if (fd >= 0) close(fd);
+}
+
+PetscBool LamLockGetHolder(const char path[], LamLockHolder *holder)
+{
+  const int fd = OpenLock(path);
+  const PetscBool known = (PetscBool)(fd >= 0 && HolderRead(fd, holder));
+
+  if (fd >= 0) close(fd);
+  return (PetscBool)(known && !HolderIsDead(holder));
 }

@@ -144,10 +144,19 @@ PetscErrorCode LamRecordScanRead(const char path[], LamRecordScan *scan, PetscIn
   PetscFunctionReturn(0);
 }
 
+PetscInt LamRecordScanRoom(const LamRecordScan *scan, hid_t file)
+{
+  const hssize_t extent = H5Sget_simple_extent_npoints(scan->space);
+  hsize_t size;
+
+  if (extent < 0 || H5Fget_filesize(file, &size) < 0) return 0;
+  return (PetscInt)PetscMin(PetscMin((hsize_t)extent, size / scan->layout.size), PETSC_MAX_INT - 1);
+}
+
 /* ---- all of them ---- */
 
 /* Each record may be sound and yet in the place of another: the list has a checksum too, which holds for all of it. */
-static PetscErrorCode CheckList(const char path[], const LamRecordScan *s, PetscInt count, uint32_t sum)
+PetscErrorCode LamRecordScanEnd(const char path[], const LamRecordScan *s, PetscInt count, uint32_t sum)
 {
   PetscInt64 committed;
   PetscBool sound;
@@ -175,7 +184,7 @@ static PetscErrorCode ScanBlocks(const char path[], LamRecordScan *s, PetscInt c
     sum = LamRecordsSum(sum, &s->layout, n, s->bytes);
     PetscCall(visit(ctx, &s->layout, first, n, s->bytes));
   }
-  PetscCall(CheckList(path, s, count, sum));
+  PetscCall(LamRecordScanEnd(path, s, count, sum));
   PetscFunctionReturn(0);
 }
 

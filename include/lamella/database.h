@@ -92,6 +92,13 @@ PetscErrorCode LamFileReadReals(const char path[], const char name[], PetscBool 
 PetscErrorCode LamFileReadInts(const char path[], const char name[], PetscBool *found, PetscInt *rank, PetscInt dims[4],
                                PetscInt **values);
 PetscErrorCode LamFileReadText(const char path[], const char name[], PetscBool *found, char **text);
+/*
+  Reads all of a file, also behind damage. `json`, the caller's to free: file, sound, records (committed; null where the
+  counter is damaged), sound_records (null where none can be looked at), damaged (a list: record, key and reason, or
+  part and reason), unchecked (parts without a checksum), writer (host, process, since; or null). Errors only where the
+  file is not there or not readable.
+*/
+PetscErrorCode LamFileCheck(const char path[], PetscBool *sound, char **json);
 /* The file's kind: "rve", "database", "fe2" or "map". */
 PetscErrorCode LamFileReadKind(const char path[], char kind[LAM_NAME_LENGTH]);
 

@@ -153,11 +153,22 @@ static void PrintNodes(const json_t *table)
   PrintGrid(json_object_get(table, "grid"));
 }
 
+static void PrintWriter(const json_t *writer)
+{
+  const char *host = json_string_value(json_object_get(writer, "host"));
+  const char *since = json_string_value(json_object_get(writer, "since"));
+
+  if (!host || !since) return;
+  printf("%-20s process %lld on %s, since %s\n", "writer",
+         (long long)json_integer_value(json_object_get(writer, "process")), host, since);
+}
+
 static void PrintTable(const json_t *info)
 {
   const json_t *coverage = json_object_get(info, "coverage"), *libraries = json_object_get(info, "libraries");
 
   PrintText("kind", json_object_get(info, "kind"));
+  PrintWriter(json_object_get(info, "writer"));
   PrintRun(json_object_get(info, "run"));
   PrintMap(json_object_get(info, "map"));
   PrintInteger("records", json_object_get(info, "records"));
@@ -272,34 +283,123 @@ static PetscErrorCode ReadMap(const char path[], json_t *info)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamCommandInfo(LamArgs *args, int *exit_status)
+/* ---- what of it is sound ---- */
+
+#define MAX_LINES 20 /* of damage, for a person */
+
+static void PrintDamage(const json_t *damaged)
 {
-  PetscBool json = PETSC_FALSE, done;
-  const char *path, *text;
-  LamDatabase database;
-  json_t *info;
-  const LamOption options[] = {
-      {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object on stdout", &json},
-      {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
-  };
+  size_t i;
+  json_t *item;
+
+  json_array_foreach(damaged, i, item)
+  {
+    const json_t *record = json_object_get(item, "record"), *key = json_object_get(item, "key");
+    const char *reason = json_string_value(json_object_get(item, "reason"));
+
+    if (i == MAX_LINES) {
+      printf("%-20s and %d more (--json names them)\n", "", (int)json_array_size(damaged) - MAX_LINES);
+      break;
+    }
+    if (!record)
+      printf("%-20s %s: %s\n", "damaged", json_string_value(json_object_get(item, "part")), reason);
+    else if (key)
+      printf("%-20s record %lld (key %lld): %s\n", "damaged", (long long)json_integer_value(record),
+             (long long)json_integer_value(key), reason);
+    else
+      printf("%-20s record %lld: %s\n", "damaged", (long long)json_integer_value(record), reason);
+  }
+}
+
+static void PrintCheck(const char path[], const json_t *check)
+{
+  const json_t *records = json_object_get(check, "records"), *unchecked = json_object_get(check, "unchecked");
+  const json_t *sound_records = json_object_get(check, "sound_records");
+  const PetscBool sound = (PetscBool)json_is_true(json_object_get(check, "sound"));
+  size_t i;
+  json_t *part;
+
+  printf("%-20s %s\n", "file", path);
+  PrintWriter(json_object_get(check, "writer"));
+  if (json_is_integer(records)) PrintInteger("records", records);
+  if (json_is_integer(sound_records)) PrintInteger("sound records", sound_records);
+  json_array_foreach(unchecked, i, part)
+  {
+    printf("%-20s %s\n", "without checksum", json_string_value(part));
+  }
+  PrintDamage(json_object_get(check, "damaged"));
+  printf("%-20s %s\n", "state", sound ? "sound" : "damaged");
+  if (sound) return;
+  printf("%-20s lamella merge NEW.h5 %s --salvage keeps all sound records of a database;\n", "remedy", path);
+  printf("%-20s lamella build SCENE -d NEW.h5 --resume solves the others again\n", "");
+}
+
+static PetscErrorCode CheckFile(const char path[], PetscBool as_json, int *exit_status)
+{
+  PetscBool sound;
+  json_t *check;
+  char *text;
 
   PetscFunctionBeginUser;
-  PetscCall(LamOptionsParse(args, "info FILE.h5 [--json]", "Tells what a file holds, who wrote it, with what.", options,
-                            1, &path, &done, exit_status));
-  if (done) PetscFunctionReturn(0);
+  PetscCall(LamFileCheck(path, &sound, &text));
+  check = json_loads(text, 0, NULL);
+  PetscCall(PetscFree(text));
+  PetscCheck(check, PETSC_COMM_SELF, PETSC_ERR_LIB, "%s: what is damaged is no JSON", path);
+  if (as_json) {
+    PetscCall(LamPrintJSON(check));
+  } else {
+    PrintCheck(path, check);
+    json_decref(check);
+  }
+  *exit_status = sound ? LAM_EXIT_OK : LAM_EXIT_INPUT;
+  PetscFunctionReturn(0);
+}
+
+/* ---- the command ---- */
+
+static PetscErrorCode Describe(const char path[], PetscBool as_json)
+{
+  LamDatabase database;
+  const char *text;
+  json_t *info;
+
+  PetscFunctionBeginUser;
   PetscCall(LamDatabaseOpen(path, &database));
   PetscCall(LamDatabaseGetInfo(database, &text));
   info = json_loads(text, 0, NULL);
   PetscCheck(info, PETSC_COMM_SELF, PETSC_ERR_LIB, "%s: its description is no JSON", path);
   if (!strcmp(json_string_value(json_object_get(info, "kind")), "fe2")) PetscCall(ReadRun(path, info));
   if (!strcmp(json_string_value(json_object_get(info, "kind")), "map")) PetscCall(ReadMap(path, info));
-  if (json) {
+  if (as_json) {
     PetscCall(LamPrintJSON(info));
   } else {
     PrintTable(info);
     json_decref(info);
   }
   PetscCall(LamDatabaseClose(&database));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamCommandInfo(LamArgs *args, int *exit_status)
+{
+  PetscBool json = PETSC_FALSE, check = PETSC_FALSE, done;
+  const char *path;
+  const LamOption options[] = {
+      {0, "check", LAM_OPTION_FLAG, NULL, "read all of it, name what is damaged; exit status 2 where anything is",
+       &check},
+      {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object on stdout", &json},
+      {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
+  };
+
+  PetscFunctionBeginUser;
+  PetscCall(LamOptionsParse(args, "info FILE.h5 [--check] [--json]",
+                            "Tells what a file holds, who wrote it, with what; or what of it is sound.", options, 1,
+                            &path, &done, exit_status));
+  if (done) PetscFunctionReturn(0);
   *exit_status = LAM_EXIT_OK;
+  if (check)
+    PetscCall(CheckFile(path, json, exit_status));
+  else
+    PetscCall(Describe(path, json));
   PetscFunctionReturn(0);
 }

@@ -1,9 +1,10 @@
 /*
-  What a flipped bit does to a small database: each bit of its bytes beside the records is flipped in turn, and a
-  process of its own opens the file and takes all that lamella answers from. Prints how many are read as before,
+  What damage beside the records does to a small database: each bit there is flipped in turn, and two processes of their
+  own open the file: one takes all that lamella answers from, one is `info --check`. Prints how many are read as before,
   refused, read otherwise without a word, and how many end or hold up the process. The file is removed at the end.
-    bench_damage [--stride BITS] [--list 1]
-  --list 1 names the byte and bit of each that is not read as before or refused.
+    bench_damage [--stride BITS] [--zero BYTES] [--list 1]
+  --zero sets so many bytes to zero instead of flipping a bit; --list 1 names the place of each damage that is neither
+  refused nor without effect.
 */
 #include <fcntl.h>
 #include <hdf5.h>
@@ -146,92 +147,158 @@ static PetscErrorCode Digest(uint64_t *digest)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Inspect(PetscBool *sound)
+{
+  char *json;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileCheck(path, sound, &json));
+  PetscCall(PetscFree(json));
+  PetscFunctionReturn(0);
+}
+
 typedef enum { SAME, REFUSED, UNNAMED, DIFFERENT, CRASH, HANG, OUTCOMES } Outcome;
 static const char *const outcomes[OUTCOMES] = {"read as before", "refused, file named", "refused, not named",
                                                "read otherwise", "process ended",       "process held up"};
 
-static Outcome Try(uint64_t wanted)
+static Outcome Open(uint64_t wanted)
+{
+  uint64_t found;
+
+  if (Digest(&found)) return strstr(message, path) ? REFUSED : UNNAMED;
+  return found == wanted ? SAME : DIFFERENT;
+}
+
+static Outcome Check(uint64_t unused)
+{
+  PetscBool sound;
+
+  if (Inspect(&sound)) return strstr(message, path) ? REFUSED : UNNAMED;
+  return sound ? SAME : REFUSED;
+}
+
+static Outcome Try(Outcome (*function)(uint64_t), uint64_t wanted)
 {
   const pid_t child = fork();
   int status;
 
   if (child == 0) {
     const struct rlimit memory = {(rlim_t)4 << 30, (rlim_t)4 << 30}, none = {0, 0};
-    uint64_t found;
 
     setrlimit(RLIMIT_AS, &memory);
     setrlimit(RLIMIT_CORE, &none);
     alarm(SECONDS);
-    if (Digest(&found)) _exit(strstr(message, path) ? REFUSED : UNNAMED);
-    _exit(found == wanted ? SAME : DIFFERENT);
+    _exit(function(wanted));
   }
   waitpid(child, &status, 0);
   if (WIFEXITED(status)) return WEXITSTATUS(status) < CRASH ? (Outcome)WEXITSTATUS(status) : CRASH;
   return WTERMSIG(status) == SIGALRM ? HANG : CRASH;
 }
 
-static void Flip(int fd, off_t byte, int bit)
-{
-  unsigned char value;
+/* ---- damage ---- */
 
-  if (pread(fd, &value, 1, byte) != 1) exit(1);
-  value ^= (unsigned char)(1 << bit);
-  if (pwrite(fd, &value, 1, byte) != 1) exit(1);
+typedef struct {
+  int fd;
+  off_t size;
+  unsigned char *bytes, *marked; /* [size] of the sound file; of its records */
+  PetscInt stride, zeros;
+  PetscBool list;
+  PetscInt beside, tried, open[OUTCOMES], check[OUTCOMES];
+} Run;
+
+static void WriteBytes(const Run *run, off_t from, off_t n, const unsigned char *bytes)
+{
+  if (pwrite(run->fd, bytes, (size_t)n, from) != n) exit(1);
 }
 
-static PetscErrorCode Run(PetscInt stride, PetscBool list)
+/* The bytes from `byte` on that are no records. */
+static off_t Width(const Run *run, off_t byte)
 {
-  PetscInt counts[OUTCOMES] = {0}, beside = 0, tried = 0;
-  unsigned char *marked;
+  off_t n = 1;
+
+  while (n < run->zeros && byte + n < run->size && !run->marked[byte + n]) n++;
+  return n;
+}
+
+static void Damage(Run *run, off_t byte, int bit, uint64_t wanted)
+{
+  const off_t n = Width(run, byte);
+  unsigned char *damaged = calloc((size_t)n, 1);
+  Outcome open, check;
+
+  if (!run->zeros) *damaged = (unsigned char)(run->bytes[byte] ^ 1 << bit);
+  WriteBytes(run, byte, n, damaged);
+  open = Try(Open, wanted);
+  check = Try(Check, 0);
+  if (check == SAME && open != SAME) check = DIFFERENT;
+  WriteBytes(run, byte, n, run->bytes + byte);
+  free(damaged);
+  run->tried++;
+  run->open[open]++;
+  run->check[check]++;
+  if (run->list && (open > REFUSED || check > REFUSED))
+    printf("  byte %lld bit %d: %s; --check: %s\n", (long long)byte, bit, outcomes[open], outcomes[check]);
+}
+
+static void DamageAll(Run *run, uint64_t wanted)
+{
+  for (off_t bit = 0; bit < 8 * run->size; bit++) {
+    if (run->marked[bit / 8]) continue;
+    if (run->beside++ % run->stride == 0) Damage(run, bit / 8, (int)(bit % 8), wanted);
+  }
+  printf("%" PetscInt_FMT " bytes beside %d records; %" PetscInt_FMT " cases\n", run->beside / 8, RECORDS, run->tried);
+  printf("  %-20s %8s %8s\n", "", "open", "--check");
+  for (int i = 0; i < OUTCOMES; i++)
+    printf("  %-20s %8" PetscInt_FMT " %8" PetscInt_FMT "\n", outcomes[i], run->open[i], run->check[i]);
+}
+
+static PetscErrorCode Prepare(Run *run, uint64_t *wanted)
+{
   struct stat info;
-  uint64_t wanted;
-  int fd;
 
   PetscFunctionBeginUser;
   snprintf(directory, sizeof(directory), "/tmp/lamella-bench-XXXXXX");
   PetscCheck(mkdtemp(directory), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: cannot be made", directory);
   snprintf(path, sizeof(path), "%s/nodes.h5", directory);
   PetscCall(Write());
-  fd = open(path, O_RDWR);
-  fstat(fd, &info);
-  PetscCall(PetscCalloc(info.st_size, &marked));
-  MarkRecords(marked);
-  PetscCall(Digest(&wanted));
-  for (off_t bit = 0; bit < 8 * info.st_size; bit++) {
-    Outcome outcome;
+  PetscCall(Digest(wanted));
+  run->fd = open(path, O_RDWR);
+  PetscCheck(run->fd >= 0 && !fstat(run->fd, &info), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s", path);
+  run->size = info.st_size;
+  PetscCall(PetscCalloc2(run->size, &run->marked, run->size, &run->bytes));
+  PetscCheck(pread(run->fd, run->bytes, (size_t)run->size, 0) == run->size, PETSC_COMM_SELF, PETSC_ERR_FILE_READ, "%s",
+             path);
+  MarkRecords(run->marked);
+  PetscFunctionReturn(0);
+}
 
-    if (marked[bit / 8]) continue;
-    if (beside++ % stride) continue;
-    tried++;
-    Flip(fd, bit / 8, (int)(bit % 8));
-    counts[outcome = Try(wanted)]++;
-    Flip(fd, bit / 8, (int)(bit % 8));
-    if (list && outcome != SAME && outcome != REFUSED)
-      printf("  byte %lld bit %lld: %s\n", (long long)bit / 8, (long long)bit % 8, outcomes[outcome]);
-  }
-  printf("%" PetscInt_FMT " bytes beside %d records, %" PetscInt_FMT " bits flipped\n", beside / 8, RECORDS, tried);
-  for (int i = 0; i < OUTCOMES; i++) printf("  %-20s %8" PetscInt_FMT "\n", outcomes[i], counts[i]);
-  close(fd);
+static void Tidy(Run *run)
+{
+  close(run->fd);
   unlink(path);
   rmdir(directory);
-  PetscCall(PetscFree(marked));
-  PetscFunctionReturn(0);
+  (void)PetscFree2(run->marked, run->bytes);
 }
 
 int main(int argc, char **argv)
 {
-  PetscInt stride = 97;
-  PetscBool list = PETSC_FALSE;
+  Run run = {.stride = 997};
+  uint64_t wanted = 0;
+  PetscErrorCode ierr;
 
   for (int i = 1; i + 1 < argc; i += 2) {
-    if (!strcmp(argv[i], "--stride")) stride = atoi(argv[i + 1]);
-    if (!strcmp(argv[i], "--list")) list = (PetscBool)(atoi(argv[i + 1]) > 0);
+    if (!strcmp(argv[i], "--stride")) run.stride = atoi(argv[i + 1]);
+    if (!strcmp(argv[i], "--zero")) run.zeros = atoi(argv[i + 1]);
+    if (!strcmp(argv[i], "--list")) run.list = (PetscBool)(atoi(argv[i + 1]) > 0);
   }
-  if (argc % 2 == 0 || stride < 1) {
-    fprintf(stderr, "usage: bench_damage [--stride BITS] [--list 1]\n");
+  if (argc % 2 == 0 || run.stride < 1 || run.zeros < 0) {
+    fprintf(stderr, "usage: bench_damage [--stride BITS] [--zero BYTES] [--list 1]\n");
     return 2;
   }
   PetscErrorHandlingInitialized = PETSC_TRUE; /* PETSc calls no handler before PetscInitialize, which we do without */
   PetscPushErrorHandler(KeepMessage, NULL);
-  return Run(stride, list) ? 1 : 0;
+  ierr = Prepare(&run, &wanted);
+  if (!ierr) DamageAll(&run, wanted);
+  Tidy(&run);
+  return ierr ? 1 : 0;
 }

@@ -1,0 +1,243 @@
+/*
+  What of a file is sound.
+
+  Method
+    The functions that read a file stop at the first damage. Here each part is read on its own, its error is kept as the
+    part's damage, and the next part is read. Where the number of committed records is not known, all that the list has
+    room for are looked at: what is sound is told then, what is not may never have been committed.
+*/
+#include "record_json.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct {
+  const char *path;
+  hid_t file;
+  LamHeader header;
+  json_t *damaged, *unchecked; /* arrays, owned */
+  PetscBool counted;           /* the commit counter is sound */
+  PetscBool scanned;           /* the records could be looked at */
+  PetscBool has_nodes;
+  PetscInt sound_records;
+  char words[1024]; /* of the last error */
+} Check;
+
+/* ---- errors are what is looked for ---- */
+
+static PetscErrorCode KeepWords(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
+                                PetscErrorType type, const char *text, void *ctx)
+{
+  Check *c = ctx;
+  const size_t n = strlen(c->path);
+  const char *end;
+
+  if (type != PETSC_ERROR_INITIAL || !text) return code;
+  if (!strncmp(text, c->path, n) && !strncmp(text + n, ": ", 2)) text += n + 2;
+  end = strstr(text, LAM_SALVAGE);
+  snprintf(c->words, sizeof(c->words), "%.*s", (int)(end ? end - text : (long)strlen(text)), text);
+  return code;
+}
+
+/* Names and words of a damaged file may hold anything; what is not ASCII is shown as a question mark then. */
+static json_t *Text(const char text[])
+{
+  json_t *string = json_string(text);
+  char copy[1024];
+
+  if (string) return string;
+  snprintf(copy, sizeof(copy), "%s", text);
+  for (char *c = copy; *c; c++)
+    if (*c & 0x80) *c = '?';
+  return json_string(copy);
+}
+
+static void AddPart(Check *c, const char part[])
+{
+  json_array_append_new(c->damaged, json_pack("{s:o, s:o}", "part", Text(part), "reason", Text(c->words)));
+}
+
+/* Whether a function that reads `part` ended without error. */
+static PetscBool Sound(Check *c, const char part[], PetscErrorCode code)
+{
+  if (code && !c->words[0]) snprintf(c->words, sizeof(c->words), "cannot be read");
+  if (code) AddPart(c, part);
+  c->words[0] = '\0';
+  return (PetscBool)!code;
+}
+
+/* What has no checksum: of an earlier version, or an array that is written over. */
+static void AddUnsummed(Check *c, hid_t object, const char name[], const char part[])
+{
+  PetscBool has;
+
+  if (!LamAttributeHas(c->path, object, name, &has) && !has) json_array_append_new(c->unchecked, Text(part));
+  c->words[0] = '\0';
+}
+
+/* ---- records ---- */
+
+static void AddRecord(Check *c, const LamRecordLayout *layout, PetscInt number, const unsigned char *bytes,
+                      const char reason[])
+{
+  json_t *record = json_pack("{s:I, s:o}", "record", (json_int_t)number, "reason", Text(reason));
+
+  if (bytes) json_object_set_new(record, "key", json_integer(LamRecordInt(bytes + layout->key)));
+  json_array_append_new(c->damaged, record);
+}
+
+/* Looks at `n` records; those that cannot be read share a chunk. */
+static void CheckBlock(Check *c, LamRecordScan *scan, PetscInt first, PetscInt n, uint32_t *sum)
+{
+  const PetscBool read = (PetscBool)!LamRecordScanRead(c->path, scan, first, n);
+
+  if (!read && n > LAM_RECORDS_PER_CHUNK) {
+    for (PetscInt i = 0; i < n; i += LAM_RECORDS_PER_CHUNK)
+      CheckBlock(c, scan, first + i, PetscMin(LAM_RECORDS_PER_CHUNK, n - i), sum);
+    return;
+  }
+  for (PetscInt i = 0; i < n; i++) {
+    const unsigned char *bytes = read ? scan->bytes + (size_t)i * scan->layout.size : NULL;
+    const char *damage = read ? LamRecordDamage(&scan->layout, bytes) : c->words;
+
+    if (damage && c->counted) AddRecord(c, &scan->layout, first + i, bytes, damage);
+    if (damage) continue;
+    c->sound_records++;
+    if (LamKeyIsNode(LamRecordInt(bytes + scan->layout.key))) c->has_nodes = PETSC_TRUE;
+  }
+  if (read) *sum = LamRecordsSum(*sum, &scan->layout, n, scan->bytes);
+  c->words[0] = '\0';
+}
+
+static PetscErrorCode CheckRecords(Check *c)
+{
+  LamRecordScan scan;
+  PetscInt count;
+  uint32_t sum = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRecordScanOpen(c->path, c->file, &scan));
+  count = c->counted ? c->header.committed : LamRecordScanRoom(&scan, c->file);
+  for (PetscInt first = 0; first < count; first += LAM_BLOCK)
+    CheckBlock(c, &scan, first, PetscMin(LAM_BLOCK, count - first), &sum);
+  if (c->counted && c->sound_records == count)
+    (void)Sound(c, "order of the records", LamRecordScanEnd(c->path, &scan, count, sum));
+  AddUnsummed(c, scan.dataset, LAM_COUNTER_SUM, "commit counter");
+  AddUnsummed(c, scan.dataset, LAM_RECORDS_SUM, "order of the records");
+  AddUnsummed(c, scan.dataset, LAM_TYPE_SUM, "members of the records");
+  LamRecordScanClose(&scan);
+  PetscFunctionReturn(0);
+}
+
+/* ---- texts and arrays ---- */
+
+static herr_t KeepName(hid_t group, const char name[], const H5L_info_t *info, void *ctx)
+{
+  char path[1024];
+
+  snprintf(path, sizeof(path), "/%s", name);
+  return json_array_append_new(ctx, Text(path)) ? -1 : 0;
+}
+
+static PetscErrorCode ListNames(Check *c, json_t *names)
+{
+  PetscFunctionBeginUser;
+  LamCallHDF5(c->path, PETSC_ERR_USER_INPUT, H5Lvisit(c->file, H5_INDEX_NAME, H5_ITER_NATIVE, KeepName, names));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CheckObject(Check *c, const char name[])
+{
+  H5O_info_t info;
+  PetscBool has;
+  hid_t dataset;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileHas(c->path, c->file, name, &has));
+  LamCallHDF5(c->path, PETSC_ERR_USER_INPUT, H5Oget_info_by_name2(c->file, name, &info, H5O_INFO_BASIC, H5P_DEFAULT));
+  if (info.type == H5O_TYPE_GROUP || !strcmp(name, "/records")) PetscFunctionReturn(0);
+  PetscCall(LamFileCheckValues(c->path, c->file, name));
+  LamCallHDF5(c->path, PETSC_ERR_USER_INPUT, dataset = H5Dopen2(c->file, name, H5P_DEFAULT));
+  AddUnsummed(c, dataset, LAM_SUM, name);
+  LamCallHDF5(c->path, PETSC_ERR_LIB, H5Dclose(dataset));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CheckGrid(Check *c)
+{
+  LamGrid grid;
+  PetscBool has;
+  char *text;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileHas(c->path, c->file, LAM_GRID_NAME, &has));
+  PetscCheck(has || !c->has_nodes || strcmp(c->header.kind, "database"), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: is missing, though there are nodes of a grid", c->path);
+  if (!has) PetscFunctionReturn(0);
+  PetscCall(LamFileGetText(c->path, c->file, LAM_GRID_NAME, &text));
+  PetscCall(LamGridFromText(c->path, &c->header.micro, text, &grid));
+  PetscCall(LamGridDestroy(&grid));
+  PetscCall(PetscFree(text));
+  PetscFunctionReturn(0);
+}
+
+/* ---- all of it ---- */
+
+static void CheckParts(Check *c)
+{
+  json_t *names = json_array(), *name;
+  PetscBool header;
+  size_t i;
+
+  header = Sound(c, "header", LamHeaderReadRoot(c->path, c->file, &c->header));
+  AddUnsummed(c, c->file, LAM_SUM, "header");
+  c->counted = Sound(c, "commit counter", LamCommittedRead(c->path, c->file, &c->header.committed));
+  c->scanned = Sound(c, "/records", CheckRecords(c));
+  (void)Sound(c, "groups", ListNames(c, names));
+  json_array_foreach(names, i, name)
+  {
+    (void)Sound(c, json_string_value(name), CheckObject(c, json_string_value(name)));
+  }
+  if (header) (void)Sound(c, LAM_GRID_NAME, CheckGrid(c));
+  json_decref(names);
+}
+
+/* A file that is not there, or may not be read, is no damage. */
+static PetscErrorCode OpenAndCheck(Check *c)
+{
+  PetscErrorCode ierr;
+  const int lock = LamLockBeginRead(c->path);
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscPushErrorHandler(KeepWords, c));
+  ierr = LamFileOpenRead(c->path, &c->file);
+  if (ierr != PETSC_ERR_FILE_OPEN && ierr != PETSC_ERR_FILE_READ && Sound(c, "file", ierr)) CheckParts(c);
+  if (c->file >= 0) H5Fclose(c->file);
+  LamLockEndRead(lock);
+  PetscCall(PetscPopErrorHandler());
+  if (ierr != PETSC_ERR_FILE_OPEN && ierr != PETSC_ERR_FILE_READ) ierr = 0;
+  if (ierr) SETERRQ(PETSC_COMM_SELF, ierr, "%s: %s", c->path, c->words);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFileCheck(const char path[], PetscBool *sound, char **json)
+{
+  Check c = {.path = path, .file = H5I_INVALID_HID, .damaged = json_array(), .unchecked = json_array()};
+  PetscErrorCode ierr = OpenAndCheck(&c);
+  json_t *object;
+  char *text;
+
+  PetscFunctionBeginUser;
+  *sound = (PetscBool)!json_array_size(c.damaged);
+  object = json_pack("{s:o, s:b, s:o, s:I, s:o, s:o, s:o}", "file", Text(path), "sound", (int)*sound, "records",
+                     c.counted ? json_integer(c.header.committed) : json_null(), "sound_records",
+                     (json_int_t)c.sound_records, "damaged", c.damaged, "unchecked", c.unchecked, "writer",
+                     LamWriterToJSON(path));
+  PetscCall(LamHeaderDestroy(&c.header));
+  text = json_dumps(object, JSON_COMPACT);
+  json_decref(object);
+  if (!ierr) ierr = PetscStrallocpy(text, json);
+  free(text);
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,28 @@
+/*
+  What files say of themselves, as JSON.
+*/
+#ifndef LAM_RECORD_JSON_H
+#define LAM_RECORD_JSON_H
+
+#include <jansson.h>
+#include "record_internal.h"
+
+/* Text that may hold anything, as a command line may: null where it is not UTF-8. */
+static inline json_t *LamTextToJSON(const char text[])
+{
+  json_t *string = text ? json_string(text) : NULL;
+
+  return string ? string : json_null();
+}
+
+/* Who writes to the file: host, process, since; null where no one does. */
+static inline json_t *LamWriterToJSON(const char path[])
+{
+  LamLockHolder holder;
+
+  if (!path || !LamLockGetHolder(path, &holder)) return json_null();
+  return json_pack("{s:o, s:I, s:o}", "host", LamTextToJSON(holder.host), "process", (json_int_t)holder.pid, "since",
+                   LamTextToJSON(holder.since));
+}
+
+#endif
