@@ -283,6 +283,28 @@ static void a_member_that_every_file_has_may_not_be_missing(void **state)
   AssertUnreadable(PETSC_ERR_USER_INPUT, "member \"P\" of /records is missing");
 }
 
+/* The bytes of a record could then be read twice, or behind its end. */
+static void members_that_do_not_lie_one_behind_the_other_are_refused(void **state)
+{
+  const LamResponse written[2] = {Response(0), Response(1)};
+  const char *const none[] = {NULL};
+  hid_t type = ChangedType(none, NULL), wider;
+  const size_t size = H5Tget_size(type);
+
+  wider = H5Tcreate(H5T_COMPOUND, size + 8);
+  for (int i = 0; i < H5Tget_nmembers(type); i++) {
+    char *name = H5Tget_member_name(type, (unsigned)i);
+    const hid_t member = H5Tget_member_type(type, (unsigned)i);
+
+    H5Tinsert(wider, name, H5Tget_member_offset(type, (unsigned)i) + (i > 5 ? 8 : 0), member);
+    H5Tclose(member);
+    H5free_memory(name);
+  }
+  H5Tclose(type);
+  WriteTyped(wider, written);
+  AssertUnreadable(PETSC_ERR_USER_INPUT, "member 6 of /records does not lie behind the one before it");
+}
+
 static void a_counter_beyond_the_extent_is_refused(void **state)
 {
   const long long count = 1000;
@@ -394,6 +416,7 @@ int main(void)
       TEST(members_that_an_older_file_lacks_are_not_known),
       TEST(an_older_file_is_not_appended_to),
       TEST(a_member_that_every_file_has_may_not_be_missing),
+      TEST(members_that_do_not_lie_one_behind_the_other_are_refused),
       TEST(a_counter_beyond_the_extent_is_refused),
       TEST(another_microstructure_is_not_appended_to),
       TEST(a_full_disk_is_reported_and_spares_the_records),
