@@ -52,9 +52,13 @@ static json_t *Text(const char text[])
   return json_string(copy);
 }
 
+/* The words need not name the part again. */
 static void AddPart(Check *c, const char part[])
 {
-  json_array_append_new(c->damaged, json_pack("{s:o, s:o}", "part", Text(part), "reason", Text(c->words)));
+  const size_t n = strlen(part);
+  const char *words = !strncmp(c->words, part, n) && c->words[n] == ' ' ? c->words + n + 1 : c->words;
+
+  json_array_append_new(c->damaged, json_pack("{s:o, s:o}", "part", Text(part), "reason", Text(words)));
 }
 
 /* Whether a function that reads `part` ended without error. */
@@ -80,9 +84,10 @@ static void AddUnsummed(Check *c, hid_t object, const char name[], const char pa
 static void AddRecord(Check *c, const LamRecordLayout *layout, PetscInt number, const unsigned char *bytes,
                       const char reason[])
 {
-  json_t *record = json_pack("{s:I, s:o}", "record", (json_int_t)number, "reason", Text(reason));
+  json_t *record = json_pack("{s:I}", "record", (json_int_t)number);
 
   if (bytes) json_object_set_new(record, "key", json_integer(LamRecordInt(bytes + layout->key)));
+  json_object_set_new(record, "reason", Text(reason));
   json_array_append_new(c->damaged, record);
 }
 

@@ -20,6 +20,7 @@ sample:
 YAML
 "$lamella" build s.yaml -d db.h5 --quiet >/dev/null
 "$lamella" rve s.yaml -o rve.h5 >/dev/null 2>&1
+cp db.h5 three.h5
 
 expect 0 "$lamella" info db.h5 --json
 [ "$(wc -l <out.txt)" = 1 ] || fail "more than one line"
@@ -61,3 +62,32 @@ grep -q 'cut.h5' err.txt || fail "the file is not named: $(cat err.txt)"
 expect 2 "$lamella" info s.yaml
 expect 4 "$lamella" info missing.h5
 expect 1 "$lamella" info
+
+# what of it is sound: a record and a text are changed
+expect 0 "$lamella" info three.h5 --check
+grep -q '^sound records *3$' out.txt && grep -q '^state *sound$' out.txt || fail "a sound file: $(cat out.txt)"
+cp three.h5 damaged.h5
+place=$(LC_ALL=C grep -obUaF 'version: 1' damaged.h5 | head -1 | cut -d: -f1)
+printf w | dd of=damaged.h5 bs=1 seek="$place" conv=notrunc status=none
+printf '\377' | dd of=damaged.h5 bs=1 seek=$(($(stat -c %s damaged.h5) - 106000)) conv=notrunc status=none
+expect 2 "$lamella" info damaged.h5
+grep -q 'damaged.h5: record [0-2] is damaged.*lamella merge' err.txt || fail "no remedy: $(cat err.txt)"
+expect 2 "$lamella" info damaged.h5 --check
+grep -qE '^damaged +record [0-2] \(key [0-9]+\): its checksum differs$' out.txt && grep -qE '^damaged +/scene: ' out.txt &&
+  grep -q '^sound records *2$' out.txt && grep -q 'lamella merge NEW.h5 damaged.h5 --salvage' out.txt || fail "damage: $(cat out.txt)"
+expect 2 "$lamella" info damaged.h5 --check --json
+[ "$(wc -l <out.txt)" = 1 ] && grep -q '"sound": false, "records": 3, "sound_records": 2' out.txt || fail "damage: $(cat out.txt)"
+expect 2 "$lamella" info s.yaml --check
+expect 4 "$lamella" info missing.h5 --check
+
+# the checksums as docs/file-format.md tells to test them
+if /usr/bin/python3 -c 'import h5py' 2>/dev/null; then
+  sed -n '/^    # check all checksums/,/^$/s/^    //p' "$source/docs/file-format.md" >check.py
+  [ -s check.py ] || fail "docs/file-format.md has no program"
+  for file in db.h5 rve.h5 fe2.h5; do
+    /usr/bin/python3 check.py $file >out.txt 2>&1 && [ ! -s out.txt ] || fail "$file is not sound in Python: $(cat out.txt)"
+  done
+  /usr/bin/python3 check.py damaged.h5 >out.txt
+  [ "$(cat out.txt)" = "record: damaged
+/scene: damaged" ] || fail "damage in Python: $(cat out.txt)"
+fi
