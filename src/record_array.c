@@ -119,6 +119,8 @@ static PetscErrorCode CheckSum(const char path[], const char name[], const Opene
   char *unit;
 
   PetscFunctionBeginUser;
+  PetscCall(LamSumHas(path, o->dataset, LAM_SUM, &has));
+  if (!has) PetscFunctionReturn(0);
   PetscCall(LamAttributeHas(path, o->dataset, "unit", &has));
   if (has) {
     PetscCall(LamAttributeReadText(path, o->dataset, "unit", &unit));

@@ -80,6 +80,9 @@ PetscErrorCode LamAttributeCopyText(const char path[], hid_t object, const char 
 #define LAM_TYPE_SUM "type_check"         /* of names, offsets and sizes of the members of a record */
 
 PetscErrorCode LamSumWrite(const char path[], hid_t object, const char name[], uint32_t sum);
+/* Of an array that was written over the sum is there, and says nothing. */
+#define LAM_NO_SUM 0
+PetscErrorCode LamSumHas(const char path[], hid_t object, const char name[], PetscBool *has);
 /* True also where the object has no such attribute. */
 PetscErrorCode LamSumMatches(const char path[], hid_t object, const char name[], uint32_t sum, PetscBool *matches);
 /* Of the root's attributes, as they are read. */

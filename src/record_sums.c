@@ -20,6 +20,17 @@ PetscErrorCode LamSumWrite(const char path[], hid_t object, const char name[], u
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamSumHas(const char path[], hid_t object, const char name[], PetscBool *has)
+{
+  uint32_t stored = LAM_NO_SUM;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamAttributeHas(path, object, name, has));
+  if (*has) PetscCall(LamAttributeReadNumber(path, object, name, H5T_STD_U32LE, H5T_NATIVE_UINT32, &stored));
+  *has = (PetscBool)(stored != LAM_NO_SUM);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamSumMatches(const char path[], hid_t object, const char name[], uint32_t sum, PetscBool *matches)
 {
   uint32_t stored = sum;

@@ -411,12 +411,13 @@ static uint32_t ArraySum(const Array *a)
 /* An array that is written over has no checksum any more: a kill may leave old numbers beside new ones. */
 static PetscErrorCode DropSum(const char path[], hid_t file, hid_t dataset)
 {
-  PetscBool has;
+  const uint32_t none = LAM_NO_SUM;
+  PetscBool summed;
 
   PetscFunctionBeginUser;
-  PetscCall(LamAttributeHas(path, dataset, LAM_SUM, &has));
-  if (!has) PetscFunctionReturn(0);
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Adelete(dataset, LAM_SUM));
+  PetscCall(LamSumHas(path, dataset, LAM_SUM, &summed));
+  if (!summed) PetscFunctionReturn(0);
+  PetscCall(LamAttributeUpdate(path, dataset, LAM_SUM, H5T_NATIVE_UINT32, &none));
   PetscCall(LamFileSync(path, file));
   PetscFunctionReturn(0);
 }
