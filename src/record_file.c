@@ -7,6 +7,7 @@
 #include <lamella/version.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -48,14 +49,21 @@ static PetscErrorCode AccessList(const char path[], hid_t *access)
   PetscFunctionReturn(0);
 }
 
+/* Without O_NONBLOCK a pipe would wait for someone to write into it. */
 static PetscErrorCode FileOpen(const char path[], PetscBool write, hid_t *file)
 {
-  const int fd = open(path, (write ? O_RDWR : O_RDONLY) | O_CLOEXEC);
+  const int fd = open(path, (write ? O_RDWR : O_RDONLY) | O_CLOEXEC | O_NONBLOCK);
+  struct stat status;
   unsigned char byte;
   hid_t access;
 
   PetscFunctionBeginUser;
   PetscCheck(fd >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: %s", path, strerror(errno));
+  if (!fstat(fd, &status) && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)) {
+    close(fd);
+    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+            "%s: is a device, pipe or socket; a file written by lamella is wanted", path);
+  }
   if (read(fd, &byte, 1) < 0) {
     const int error = errno;
 

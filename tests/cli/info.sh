@@ -60,6 +60,8 @@ head -c 3000 db.h5 >cut.h5
 expect 2 "$lamella" info cut.h5
 grep -q 'cut.h5' err.txt || fail "the file is not named: $(cat err.txt)"
 expect 2 "$lamella" info s.yaml
+mkfifo pipe.h5
+expect 2 timeout 10 "$lamella" info pipe.h5 # and does not wait for someone to write into it
 expect 4 "$lamella" info missing.h5
 expect 1 "$lamella" info
 
