@@ -83,6 +83,7 @@ typedef struct {
   hid_t dataset, type, space;
   hsize_t count;
   size_t bytes; /* of all values in the file */
+  PetscBool is_text;
 } Opened;
 
 /* `type`: of the file, H5I_INVALID_HID: a text of fixed length. There cannot be more values than the file has bytes. */
@@ -93,6 +94,7 @@ static PetscErrorCode Open(const char path[], hid_t file, const char name[], hid
   PetscBool same;
 
   PetscFunctionBeginUser;
+  o->is_text = (PetscBool)(type < 0);
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Fget_filesize(file, &size));
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, o->dataset = H5Dopen2(file, name, H5P_DEFAULT));
   PetscCall(LamDatasetCheck(path, o->dataset, name, H5D_CONTIGUOUS));
@@ -112,10 +114,10 @@ static PetscErrorCode Open(const char path[], hid_t file, const char name[], hid
 }
 
 /* Of an array the unit belongs to the sum. */
-static PetscErrorCode CheckSum(const char path[], const char name[], const Opened *o, const void *values, size_t bytes)
+static PetscErrorCode CheckSum(const char path[], const char name[], const Opened *o, const void *values)
 {
   PetscBool sound, has;
-  uint32_t sum = LamBytesSum(0, values, bytes);
+  uint32_t sum = LamBytesSum(0, values, o->is_text ? strlen(values) : o->bytes);
   char *unit;
 
   PetscFunctionBeginUser;
@@ -130,6 +132,27 @@ static PetscErrorCode CheckSum(const char path[], const char name[], const Opene
   PetscCall(LamSumMatches(path, o->dataset, LAM_SUM, sum, &sound));
   PetscCheck(sound, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s is damaged (its checksum differs)" LAM_SALVAGE, path,
              name);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadInto(const char path[], const char name[], const Opened *o, void *values)
+{
+  PetscFunctionBeginUser;
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Dread(o->dataset, o->type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
+  PetscCall(CheckSum(path, name, o, values));
+  PetscFunctionReturn(0);
+}
+
+/* All values, as they are in the file, with a zero behind them; the caller frees them. */
+static PetscErrorCode Read(const char path[], const char name[], const Opened *o, void **values)
+{
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc(o->bytes + 1, values));
+  ierr = ReadInto(path, name, o, *values);
+  if (ierr) (void)PetscFree(*values);
+  PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 
@@ -153,9 +176,7 @@ PetscErrorCode LamFileGetText(const char path[], hid_t file, const char name[], 
   PetscCall(Open(path, file, name, H5I_INVALID_HID, &o));
   PetscCheck(o.count == 1, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s is not one text; the file is damaged", path,
              name);
-  PetscCall(PetscCalloc(o.bytes + 1, text));
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Dread(o.dataset, o.type, H5S_ALL, H5S_ALL, H5P_DEFAULT, *text));
-  PetscCall(CheckSum(path, name, &o, *text, strlen(*text)));
+  PetscCall(Read(path, name, &o, (void **)text));
   PetscCall(Close(path, &o));
   PetscFunctionReturn(0);
 }
@@ -194,9 +215,7 @@ static PetscErrorCode ReadArray(const char path[], hid_t file, Question *q)
   PetscCall(Open(path, file, q->name, q->type, &o));
   PetscCall(Dims(path, &o, q));
   q->count = (PetscInt)o.count;
-  PetscCall(PetscMalloc(o.bytes + 1, &q->values));
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Dread(o.dataset, q->type, H5S_ALL, H5S_ALL, H5P_DEFAULT, q->values));
-  PetscCall(CheckSum(path, q->name, &o, q->values, o.bytes));
+  PetscCall(Read(path, q->name, &o, &q->values));
   PetscCall(Close(path, &o));
   PetscFunctionReturn(0);
 }
