@@ -219,6 +219,41 @@ PetscErrorCode LamCounterWrite(const char path[], hid_t dataset, PetscInt commit
 /* Brings a closed file to the disk and gives it its name, for good. */
 PetscErrorCode LamFilePublish(const char temporary[], const char path[]);
 
+/* ---- record_salvage.c ---- */
+
+#define LAM_SALVAGE_NAMED 10
+typedef struct {
+  PetscInt64 sound;   /* records whose checksum is right */
+  PetscInt64 damaged; /* places where a record can be made out, but its checksum is wrong */
+  PetscInt64 offset[LAM_SALVAGE_NAMED], key[LAM_SALVAGE_NAMED]; /* of the first of these: byte in the file; key */
+} LamSalvage;
+/*
+  Shows the visitor all records of a file whose checksum is right, in the order of the file; also those beyond the
+  commit counter, and whatever state the file is in. Of other types than the present one only where HDF5 reads the type.
+  `first` counts the records shown.
+*/
+PetscErrorCode LamFileSalvage(const char path[], LamRecordVisitor visit, void *ctx, LamSalvage *found);
+
+/* ---- record_remains.c ---- */
+
+/* What a damaged file still tells, found in its bytes. Texts and the cells of `micro` are owned. */
+typedef struct {
+  char *description; /* NULL: none that is sound, and no hash nor micro either */
+  char hash[LAM_HASH_LENGTH];
+  LamMicrostructure micro;
+  char *grid; /* NULL: none */
+  PetscBool has_scales;
+  LamScales scales;
+  PetscReal accuracy;
+  PetscInt64 committed; /* -1: not known */
+  PetscBool names_hash; /* the hash that was asked for stands somewhere in it */
+} LamRemains;
+/* Opens the front of the file in memory, as if it had been cut there: its header can be read, and texts near it. */
+PetscErrorCode LamRemainsOpen(const char path[], hid_t *file);
+/* `hash`: to look for; may be empty. */
+PetscErrorCode LamRemainsFind(const char path[], const char hash[], LamRemains *remains);
+PetscErrorCode LamRemainsDestroy(LamRemains *remains);
+
 /* ---- microstructure.c ---- */
 PetscErrorCode LamMicrostructureParse(const char path[], const char json[], LamMicrostructure *micro);
 

@@ -102,6 +102,36 @@ PetscErrorCode LamFileCheck(const char path[], PetscBool *sound, char **json);
 /* The file's kind: "rve", "database", "fe2" or "map". */
 PetscErrorCode LamFileReadKind(const char path[], char kind[LAM_NAME_LENGTH]);
 
+/* ---- merging ---- */
+
+typedef struct {
+  PetscBool salvage;                /* take all sound records of damaged files, too */
+  const LamScene *scene;            /* whose microstructure and scales the result has; NULL: those of the first file */
+  const char *grid;                 /* text of its grid where no file tells one; NULL: then it has none */
+  PetscBool (*stop)(void);          /* asked now and then whether to give up; NULL: never */
+  void (*tell)(const char words[]); /* what a user should know, a line each; NULL: nobody listens */
+} LamMergeOptions;
+
+typedef struct {
+  PetscInt records;      /* of the result */
+  PetscInt64 duplicates; /* records whose question another one had answered */
+  PetscInt64 differing;  /* of these: with other numbers, times aside */
+  PetscReal difference;  /* largest LamStressError between two answers to a question */
+  PetscInt64 left_out;   /* records that are damaged, or of another grid (salvage) */
+  PetscBool stopped;     /* given up: nothing was written */
+} LamMergeReport;
+
+/*
+  Makes `out` of all records of the files, databases of one microstructure and one grid (text of LAM_GRID_NAME), in
+  their order; each question once: the same node, or the same load. Of two answers one that has converged is kept, else
+  the first. Keys of a cache (LAM_CACHE_KEY) are given anew. Scales and scene are those of the first file, the accuracy
+  is the smallest. Records of earlier types get the present one. Files are read block by block: 30 bytes a record stay
+  in memory. Takes the lock of `out`, and gives it its name when it is complete and on the disk; it must not be there,
+  or be one of the files. PETSC_ERR_USER_INPUT: files that do not belong together, or are damaged; PETSC_ERR_FILE_*.
+*/
+PetscErrorCode LamDatabaseMerge(const char out[], PetscInt n, const char *const files[], const LamMergeOptions *options,
+                                LamMergeReport *report);
+
 /*
   ---- the table: the potential interpolated on a grid of states ----
 

@@ -35,6 +35,7 @@ PetscErrorCode LamCommandQuery(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandVerify(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandMap(LamArgs *args, int *exit_status);
+PetscErrorCode LamCommandMerge(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandInfo(LamArgs *args, int *exit_status);
 
@@ -56,7 +57,8 @@ typedef struct {
 } LamOption;
 /*
   Parses options (table ends with long_name NULL) and the positional arguments, of which there must be exactly
-  `positional_count`. `usage` is the line after "Usage: lamella ", `summary` what the command does. *done is set where
+  `positional_count`, or at least -positional_count where that is negative: `positional` then has room for args->argc of
+  them. `usage` is the line after "Usage: lamella ", `summary` what the command does. *done is set where
   --help was answered or the usage was wrong (*exit_status says which): the command then returns at once.
 */
 PetscErrorCode LamOptionsParse(LamArgs *args, const char usage[], const char summary[], const LamOption options[],

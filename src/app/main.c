@@ -36,6 +36,7 @@ static const struct {
     {"verify", "solve part of a database's answers afresh and compare", LamCommandVerify, PETSC_TRUE},
     {"fe2", "solve the scene's macroscale problem", LamCommandFE2, PETSC_TRUE},
     {"map", "tell how tissue fails over two of its quantities", LamCommandMap, PETSC_TRUE},
+    {"merge", "make one database of several", LamCommandMerge, PETSC_FALSE},
     {"plot", "draw what a file holds", LamCommandPlot, PETSC_FALSE},
     {"info", "tell what a file holds, who wrote it, with what", LamCommandInfo, PETSC_FALSE},
 };
@@ -351,6 +352,7 @@ int main(int argc, char *argv[])
   StartHDF5();
   UseOneThread();
   signal(SIGPIPE, SIG_IGN);                   /* a closed pipe is an error of writing, told as such */
+  signal(SIGXFSZ, SIG_IGN);                   /* so is a file that may not grow */
   PetscErrorHandlingInitialized = PETSC_TRUE; /* else PETSc calls no handler before PetscInitialize */
   code = PetscPushErrorHandler(KeepError, NULL);
   if (!code) code = RunProgram(argc, argv, &status);

@@ -184,10 +184,12 @@ static PetscBool ReadOptions(LamArgs *args, const LamOption options[], const Get
   return PETSC_TRUE;
 }
 
+/* count < 0: at least -count. */
 static PetscBool ReadPositional(const LamArgs *args, int count, const char *positional[])
 {
   const int given = args->argc - optind;
 
+  if (count < 0) count = PetscMax(-count, given);
   for (int i = 0; i < PetscMin(given, count); i++) positional[i] = args->argv[optind + i];
   if (given == count) return PETSC_TRUE;
   if (LamAppIsRoot()) {

@@ -1,0 +1,37 @@
+/*
+  Private to merging: a merge under way, and what its result is of.
+*/
+#ifndef LAM_RECORD_MERGE_H
+#define LAM_RECORD_MERGE_H
+
+#include "record_union.h"
+
+typedef enum {
+  LAM_FILE_SOUND,   /* its header, at least */
+  LAM_FILE_DAMAGED, /* of this tissue, as far as it can be made out */
+  LAM_FILE_UNKNOWN  /* of what tissue cannot be made out any more */
+} LamFileState;
+
+typedef struct {
+  char out[PETSC_MAX_PATH_LEN], temporary[PETSC_MAX_PATH_LEN];
+  PetscInt n;
+  const char *const *files;       /* [n] borrowed */
+  const LamMergeOptions *options; /* borrowed */
+  LamMergeReport *report;         /* borrowed */
+  LamLock lock;
+  LamUnion records;
+  /* of the result, and the files that told it */
+  const char *header_from, *grid_from;
+  LamScene scene; /* micro, scales, accuracy and text; micro and text owned */
+  char hash[LAM_HASH_LENGTH];
+  char *grid_text;     /* owned; NULL: none */
+  LamFileState *state; /* [n] owned */
+} LamMerge;
+
+/* For the user; as printf, without a newline. */
+void LamMergeTell(const LamMerge *merge, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
+/* Reads the headers of all files, and finds those that do not belong together. */
+PetscErrorCode LamMergeReadHeaders(LamMerge *merge);
+PetscErrorCode LamMergeCheckHash(const LamMerge *merge, const char path[], const char hash[]);
+
+#endif

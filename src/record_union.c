@@ -1,0 +1,375 @@
+/*
+  A file that grows by records of other files.
+
+  Method
+    Of each record two numbers of 64 bits stay in memory: a digest of its question, by which a second answer to it is
+    found, and one of all that two solves of it must agree in. Records are copied as bytes, in blocks of whole chunks.
+    Only where the two answers differ the first is read back from the file.
+
+  References
+    G. L. Steele, D. Lea, C. H. Flood, Fast splittable pseudorandom number generators, OOPSLA 2014 (the finaliser of
+    SplitMix64: a bijection, so that digests of two nodes' keys are never equal).
+*/
+#define _GNU_SOURCE /* sync_file_range */
+#include "record_union.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <unistd.h>
+#include <zlib.h>
+
+enum { BLOCK = 8 * LAM_RECORDS_PER_CHUNK, WRITE_BLOCKS = 16, LOAD_BYTES = 11 * sizeof(PetscReal) };
+
+typedef struct {
+  uint64_t question, content;
+  PetscInt at; /* number of the record in the file; -1: a free place of the table */
+} Entry;
+
+struct LamUnion_s {
+  char path[PETSC_MAX_PATH_LEN];
+  hid_t file, dataset, type;
+  LamRecordLayout layout;
+  size_t load, status, P, seconds; /* where they begin in a record */
+  PetscInt n, written;             /* records; those in the file, the others are in `block` */
+  PetscInt64 next_cache_key;
+  unsigned char *block, *kept; /* [BLOCK] records; one record that was read back; owned */
+  PetscInt room;               /* for checksums */
+  uint32_t *checksums;         /* [room] of the records, in their order; owned */
+  size_t used, capacity;       /* of the table; capacity: a power of 2 */
+  Entry *entries;              /* [capacity] hash table with linear probing; owned */
+};
+
+/* ---- create, destroy ---- */
+
+static PetscErrorCode ClearTable(size_t capacity, Entry **entries)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(capacity, entries));
+  for (size_t i = 0; i < capacity; i++) (*entries)[i].at = -1;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Open(LamUnion u)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamRecordTypeCreate(&u->type));
+  PetscCall(LamRecordLayoutMake(u->type, &u->layout));
+  u->load = LamRecordOffset(&u->layout, offsetof(LamResponse, load.F));
+  u->status = LamRecordOffset(&u->layout, offsetof(LamResponse, status));
+  u->P = LamRecordOffset(&u->layout, offsetof(LamResponse, P));
+  u->seconds = LamRecordOffset(&u->layout, offsetof(LamResponse, seconds));
+  PetscCheck(LamRecordOffset(&u->layout, offsetof(LamResponse, load.cohesion)) + sizeof(PetscReal) ==
+                 u->load + LOAD_BYTES,
+             PETSC_COMM_SELF, PETSC_ERR_PLIB, "F, turgor and cohesion do not follow one another in a record");
+  PetscCall(PetscMalloc2((size_t)BLOCK * u->layout.size, &u->block, u->layout.size, &u->kept));
+  u->capacity = 4 * BLOCK;
+  PetscCall(ClearTable(u->capacity, &u->entries));
+  PetscCall(LamFileOpenWrite(u->path, &u->file));
+  LamCallHDF5(u->path, PETSC_ERR_FILE_WRITE, u->dataset = H5Dopen2(u->file, "/records", H5P_DEFAULT));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamUnionCreate(const char path[], LamUnion *records)
+{
+  PetscErrorCode ierr;
+  LamUnion u;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&u));
+  u->file = u->dataset = u->type = H5I_INVALID_HID;
+  u->next_cache_key = LAM_CACHE_KEY;
+  PetscCall(PetscStrncpy(u->path, path, sizeof(u->path)));
+  ierr = Open(u);
+  if (ierr) (void)LamUnionDestroy(&u);
+  PetscCall(ierr);
+  *records = u;
+  PetscFunctionReturn(0);
+}
+
+const LamRecordLayout *LamUnionLayout(LamUnion records)
+{
+  return &records->layout;
+}
+
+PetscErrorCode LamUnionDestroy(LamUnion *records)
+{
+  LamUnion u = *records;
+
+  PetscFunctionBeginUser;
+  if (!u) PetscFunctionReturn(0);
+  if (u->type >= 0) H5Tclose(u->type);
+  if (u->dataset >= 0) H5Dclose(u->dataset);
+  if (u->file >= 0) H5Fclose(u->file);
+  PetscCall(PetscFree2(u->block, u->kept));
+  PetscCall(PetscFree(u->checksums));
+  PetscCall(PetscFree(u->entries));
+  PetscCall(PetscFree(*records));
+  PetscFunctionReturn(0);
+}
+
+/* ---- the file ---- */
+
+/* Between the file and `bytes`: n records, number `first` and on. */
+typedef herr_t (*Transfer)(hid_t, hid_t, hid_t, hid_t, hid_t, void *);
+
+static herr_t Write(hid_t dataset, hid_t type, hid_t memory, hid_t space, hid_t list, void *bytes)
+{
+  return H5Dwrite(dataset, type, memory, space, list, bytes);
+}
+
+static PetscErrorCode TransferRecords(LamUnion u, Transfer transfer, PetscInt first, PetscInt n, unsigned char *bytes)
+{
+  const hsize_t start = (hsize_t)first, count = (hsize_t)n;
+  hid_t space, memory;
+
+  PetscFunctionBeginUser;
+  LamCallHDF5(u->path, PETSC_ERR_LIB, space = H5Dget_space(u->dataset));
+  LamCallHDF5(u->path, PETSC_ERR_LIB, memory = H5Screate_simple(1, &count, NULL));
+  LamCallHDF5(u->path, PETSC_ERR_LIB, H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, NULL, &count, NULL));
+  LamCallHDF5(u->path, PETSC_ERR_FILE_WRITE, transfer(u->dataset, u->type, memory, space, H5P_DEFAULT, bytes));
+  LamCallHDF5(u->path, PETSC_ERR_LIB, H5Sclose(memory));
+  LamCallHDF5(u->path, PETSC_ERR_LIB, H5Sclose(space));
+  PetscFunctionReturn(0);
+}
+
+/* Has the system begin to write, so that the disk is busy while we read on; else it waits for the sync at the end. */
+static PetscErrorCode BeginWriting(LamUnion u)
+{
+#ifdef SYNC_FILE_RANGE_WRITE
+  int *fd;
+
+  PetscFunctionBeginUser;
+  LamCallHDF5(u->path, PETSC_ERR_LIB, H5Fget_vfd_handle(u->file, H5P_DEFAULT, (void **)&fd));
+  (void)sync_file_range(*fd, 0, 0, SYNC_FILE_RANGE_WRITE); /* what fails is told by the sync */
+  PetscFunctionReturn(0);
+#else
+  (void)u;
+  return 0;
+#endif
+}
+
+static PetscErrorCode Flush(LamUnion u)
+{
+  const PetscInt n = u->n - u->written;
+  const hsize_t extent = (hsize_t)u->n;
+
+  PetscFunctionBeginUser;
+  if (!n) PetscFunctionReturn(0);
+  PetscCall(LamFileReserve(u->path, PETSC_FALSE, ((size_t)n + LAM_RECORDS_PER_CHUNK) * u->layout.size));
+  LamCallHDF5(u->path, PETSC_ERR_FILE_WRITE, H5Dset_extent(u->dataset, &extent));
+  PetscCall(TransferRecords(u, Write, u->written, n, u->block));
+  u->written = u->n;
+  if (u->written % (WRITE_BLOCKS * BLOCK) == 0) PetscCall(BeginWriting(u));
+  PetscFunctionReturn(0);
+}
+
+/* What was reserved behind the end is cut off: HDF5 does not know of it. */
+PetscErrorCode LamUnionFinish(LamUnion u)
+{
+  hsize_t bytes;
+
+  PetscFunctionBeginUser;
+  PetscCall(Flush(u));
+  PetscCall(LamCounterWrite(u->path, u->dataset, u->n, LamBytesSum(0, u->checksums, sizeof(uint32_t) * (size_t)u->n)));
+  LamCallHDF5(u->path, PETSC_ERR_FILE_WRITE, H5Dclose(u->dataset));
+  u->dataset = H5I_INVALID_HID;
+  LamCallHDF5(u->path, PETSC_ERR_FILE_WRITE, H5Fflush(u->file, H5F_SCOPE_GLOBAL));
+  LamCallHDF5(u->path, PETSC_ERR_FILE_WRITE, H5Fget_filesize(u->file, &bytes));
+  PetscCall(LamFileClose(u->path, u->file));
+  u->file = H5I_INVALID_HID;
+  PetscCheck(!truncate(u->path, (off_t)bytes), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s: %s", u->path,
+             strerror(errno));
+  PetscFunctionReturn(0);
+}
+
+/* ---- digests ---- */
+
+static uint64_t Mix(uint64_t x)
+{
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+
+static uint64_t Digest(uint64_t digest, const unsigned char *bytes, size_t n)
+{
+  for (size_t i = 0; i < n; i += sizeof(uint64_t)) {
+    uint64_t word = 0;
+
+    memcpy(&word, bytes + i, PetscMin(n - i, sizeof(word)));
+    digest = Mix(digest ^ word);
+  }
+  return digest;
+}
+
+static uint64_t QuestionOf(LamUnion u, const unsigned char *bytes)
+{
+  const PetscInt64 key = LamRecordInt(bytes + u->layout.key);
+  const uint64_t begin = Mix((uint64_t)(key >= LAM_CACHE_KEY ? LAM_CACHE_KEY : key));
+
+  return LamKeyIsNode(key) ? begin : Digest(begin, bytes + u->load, LOAD_BYTES);
+}
+
+/* All but key, time and checksum. */
+static uint64_t ContentOf(LamUnion u, const unsigned char *bytes)
+{
+  const size_t behind = u->seconds + sizeof(PetscReal), end = u->layout.size - sizeof(uint32_t);
+  const uint64_t digest = Digest(1, bytes + u->load, u->seconds - u->load);
+
+  return Digest(digest, bytes + behind, end - behind);
+}
+
+static PetscBool AskTheSame(LamUnion u, const unsigned char *a, const unsigned char *b)
+{
+  const PetscInt64 key_a = LamRecordInt(a + u->layout.key), key_b = LamRecordInt(b + u->layout.key);
+  const PetscBool cached = (PetscBool)(key_a >= LAM_CACHE_KEY && key_b >= LAM_CACHE_KEY);
+
+  if (!cached && key_a != key_b) return PETSC_FALSE;
+  return (PetscBool)(LamKeyIsNode(key_a) || !memcmp(a + u->load, b + u->load, LOAD_BYTES));
+}
+
+/* ---- the table of questions ---- */
+
+/* The entry of the question, or the free place for it. */
+static Entry *Find(const LamUnion u, uint64_t question)
+{
+  size_t i = question & (u->capacity - 1);
+
+  while (u->entries[i].at >= 0 && u->entries[i].question != question) i = (i + 1) & (u->capacity - 1);
+  return &u->entries[i];
+}
+
+static PetscErrorCode GrowTable(LamUnion u)
+{
+  const size_t before = u->capacity;
+  Entry *old = u->entries;
+
+  PetscFunctionBeginUser;
+  if (2 * u->used < u->capacity) PetscFunctionReturn(0);
+  PetscCall(ClearTable(2 * before, &u->entries));
+  u->capacity = 2 * before;
+  for (size_t i = 0; i < before; i++)
+    if (old[i].at >= 0) *Find(u, old[i].question) = old[i];
+  PetscCall(PetscFree(old));
+  PetscFunctionReturn(0);
+}
+
+/* ---- taking ---- */
+
+static void SetKey(LamUnion u, unsigned char *bytes, PetscInt64 key)
+{
+  const size_t end = u->layout.size - sizeof(uint32_t);
+  uint32_t checksum;
+
+  memcpy(bytes + u->layout.key, &key, sizeof(key));
+  checksum = (uint32_t)crc32(0, bytes, (uInt)end);
+  memcpy(bytes + end, &checksum, sizeof(checksum));
+}
+
+/* Of the record number `at`. */
+static void KeepChecksum(LamUnion u, PetscInt at, const unsigned char *bytes)
+{
+  memcpy(&u->checksums[at], bytes + u->layout.size - sizeof(uint32_t), sizeof(uint32_t));
+}
+
+static PetscErrorCode Append(LamUnion u, const unsigned char *bytes)
+{
+  unsigned char *place;
+
+  PetscFunctionBeginUser;
+  if (u->n == u->room) {
+    u->room = PetscMax(2 * u->room, BLOCK);
+    PetscCall(PetscRealloc((size_t)u->room * sizeof(*u->checksums), &u->checksums));
+  }
+  if (u->n - u->written == BLOCK) PetscCall(Flush(u));
+  place = u->block + (size_t)(u->n - u->written) * u->layout.size;
+  memcpy(place, bytes, u->layout.size);
+  if (LamRecordInt(place + u->layout.key) >= LAM_CACHE_KEY) SetKey(u, place, u->next_cache_key++);
+  KeepChecksum(u, u->n++, place);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadBack(LamUnion u, PetscInt at)
+{
+  PetscFunctionBeginUser;
+  if (at < u->written)
+    PetscCall(TransferRecords(u, H5Dread, at, 1, u->kept));
+  else
+    memcpy(u->kept, u->block + (size_t)(at - u->written) * u->layout.size, u->layout.size);
+  PetscFunctionReturn(0);
+}
+
+/* Over the record that was read back; with its key, which of a cache is a new one. */
+static PetscErrorCode Replace(LamUnion u, PetscInt at, const unsigned char *bytes)
+{
+  const PetscInt64 key = LamRecordInt(u->kept + u->layout.key);
+
+  PetscFunctionBeginUser;
+  memcpy(u->kept, bytes, u->layout.size);
+  SetKey(u, u->kept, key);
+  KeepChecksum(u, at, u->kept);
+  if (at < u->written)
+    PetscCall(TransferRecords(u, Write, at, 1, u->kept));
+  else
+    memcpy(u->block + (size_t)(at - u->written) * u->layout.size, u->kept, u->layout.size);
+  PetscFunctionReturn(0);
+}
+
+/* The answer that is kept is another one; or, once in 2^64 pairs of loads, that to another question. */
+static PetscErrorCode Decide(LamUnion u, Entry *entry, uint64_t content, const unsigned char *bytes,
+                             LamMergeReport *report)
+{
+  PetscReal P[9], P_kept[9], difference;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReadBack(u, entry->at));
+  if (!AskTheSame(u, u->kept, bytes)) {
+    PetscCall(Append(u, bytes));
+    PetscFunctionReturn(0);
+  }
+  memcpy(P, bytes + u->P, sizeof(P));
+  memcpy(P_kept, u->kept + u->P, sizeof(P_kept));
+  difference = LamStressError(P, P_kept);
+  report->duplicates++;
+  report->differing++;
+  if (difference > report->difference) report->difference = difference; /* not a number where one has no stress */
+  if (bytes[u->status] != LAM_CONVERGED || u->kept[u->status] == LAM_CONVERGED) PetscFunctionReturn(0);
+  PetscCall(Replace(u, entry->at, bytes));
+  entry->content = content;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamUnionTake(LamUnion u, const unsigned char *bytes, LamMergeReport *report)
+{
+  const uint64_t question = QuestionOf(u, bytes), content = ContentOf(u, bytes);
+  Entry *entry = Find(u, question);
+
+  PetscFunctionBeginUser;
+  if (entry->at < 0) {
+    *entry = (Entry){question, content, u->n};
+    u->used++;
+    PetscCall(Append(u, bytes));
+    PetscCall(GrowTable(u));
+  } else if (entry->content == content) {
+    report->duplicates++;
+  } else {
+    PetscCall(Decide(u, entry, content, bytes, report));
+  }
+  report->records = u->n;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamUnionConvert(LamUnion u, const LamRecordLayout *layout, const unsigned char *bytes,
+                               LamMergeReport *report)
+{
+  const PetscInt64 key = LamRecordInt(bytes + layout->key);
+  LamResponse response;
+  void *converted;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRecordUnpack(layout, bytes, &response));
+  PetscCall(LamRecordsPack(1, &key, &response, u->type, &converted));
+  PetscCall(LamUnionTake(u, converted, report));
+  PetscCall(PetscFree(converted));
+  PetscFunctionReturn(0);
+}
