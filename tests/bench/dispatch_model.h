@@ -1,0 +1,892 @@
+/*
+  A simulation of `lamella build` on many ranks: which rank does what at what time. The decisions are those of the
+  program (schedule.c); ranks, messages, the file and its rounds are modelled.
+
+  Model
+    Inner ranks (rank 0, leaders) have a LamSchedule each. They answer messages in the order of their arrival, between
+    two factorisations where they work on a piece of their own. Rank 0 besides commits what has come, and makes the next
+    round when the last but one is complete; messages wait meanwhile. A message takes processor time at both ends, a
+    latency, and its bytes the bandwidth; the network itself is never full.
+    A piece may stand for several of the same round (its grain), so that a rank gets no more than a given number of
+    pieces in a round: work, messages and bytes are those of all of them.
+    A failure of a machine ends the job. It is started again, asks for the rounds that are complete as the first time,
+    and solves what was not committed.
+*/
+#ifndef LAM_DISPATCH_MODEL_H
+#define LAM_DISPATCH_MODEL_H
+
+#include <schedule.h>
+#include "event_queue.h"
+#include "work_table.h"
+
+/* What things cost, in s and bytes; docs/scaling.md says how they were measured. */
+typedef struct {
+  PetscReal latency, bandwidth; /* of the network, s and bytes/s */
+  PetscReal message, byte;      /* processor time of one message, and of each byte of it, at one end */
+  PetscReal piece;              /* of its description or result, at an inner rank */
+  PetscReal pause;              /* longest sleep of a rank that has nothing to do */
+  PetscReal describe_bytes, result_bytes, node_bytes; /* node: what the table keeps of a result */
+  PetscReal bundle_bytes, bundle_age;                 /* a leader's results go up when they are so many or so old */
+  PetscReal answer, answer_root;                      /* that the schedules of leaders and of rank 0 are told */
+  PetscReal commit, commit_record;                    /* of a commit, and of each record in it */
+  PetscReal poll, poll_node, choose; /* of a round's decision, of each node in the table, of each in the round */
+  PetscReal restart, read_record;    /* after a failure: until the job runs, and to read a record */
+} Costs;
+
+typedef enum { SPEED_UNIFORM, SPEED_SPREAD, SPEED_SLOW } Speeds;
+
+typedef struct {
+  PetscInt ranks;
+  PetscInt group;     /* see LamDispatchCreate; at least `ranks`: flat */
+  PetscInt64 samples; /* of all rounds */
+  PetscReal scale;    /* of all times of work, the factorisation included */
+  PetscReal grain;    /* pieces a rank and round at most; 0: each for itself */
+  Speeds speeds;
+  PetscInt64 least_round; /* pieces; the larger one of this and a share of what is there. 0: one round */
+  PetscInt round_share, open_rounds;
+  PetscInt jobs;           /* that share the ranks and the samples and know nothing of each other */
+  PetscBool leaders_write; /* what they are given, to files of their own; rank 0 keeps the table alone */
+  PetscInt machine;        /* ranks of one */
+  PetscReal mtbf;          /* mean time between failures of a machine, s; 0: none fails */
+  uint64_t seed;
+} Case;
+
+/* Shares of ranks x time, besides counts. */
+typedef struct {
+  PetscReal seconds, work; /* work: mean time of a piece */
+  PetscReal busy;          /* pieces whose results were used */
+  PetscReal starved;       /* idle while rank 0 had nothing to hand out */
+  PetscReal waiting;       /* idle while it had */
+  PetscReal lost;          /* pieces that were done twice, or whose results a failure took, and the time until all ran
+                              again */
+  PetscReal handing, committing, polling; /* of rank 0's time */
+  PetscReal leading;                      /* of the busiest leader's time, messages */
+  PetscInt rounds, failures;
+  PetscInt64 events, records, copies; /* copies: results that were dropped */
+} Outcome;
+
+enum { RESULT, WORK_DOWN, RESULTS_UP, BUNDLE_AGED, FAILURE };
+enum { ROOT = 0, SELF = 0, MOST_AT_ONCE = 64 };
+/* As in cmd_build.c. */
+#define COMMIT_SECONDS 1.0
+#define COMMIT_SHARE 50.0
+enum { COMMIT_RECORDS = 65536 };
+
+typedef struct {
+  PetscInt n, room, next_free;
+  PetscInt64 *pieces; /* owned */
+} Message;
+
+typedef struct {
+  LamSchedule schedule;
+  PetscInt first, children;             /* rank or inner rank of child 0, and how many there are */
+  PetscBool computes;                   /* it is its own child SELF */
+  PetscReal free;                       /* has answered all that has come in */
+  PetscReal handling;                   /* in all */
+  PetscBool working;                    /* on a piece of its own */
+  PetscReal work_begin, work_end, debt; /* debt: time of messages that were answered meanwhile */
+  PetscInt message;                     /* results that wait to go up; -1: none */
+  PetscBool hurry;                      /* they go up when the messages that have come are answered */
+  PetscReal bytes, last_commit;
+  PetscInt64 sent;
+} Inner;
+
+/* Numbers in simulated pieces, each of which stands for `grain` real ones. */
+typedef struct {
+  PetscInt64 count, grain, arrived, added;
+  PetscInt64 total[WORK_CLASSES], committed[WORK_CLASSES];
+} Round;
+
+typedef struct {
+  const Case *c;
+  const Costs *costs;
+  const WorkTable *table;
+  EventQueue queue;
+  PetscInt inner_count, members; /* members: ranks of a group; 1: flat */
+  Inner *inner;                  /* [inner_count]; owned */
+  PetscReal *free, *speed;       /* [ranks] of the work that it was given; owned */
+  PetscInt messages, first_free;
+  Message *message; /* owned */
+  PetscInt decided, complete, round_room;
+  Round *round;                                              /* [decided]; owned */
+  PetscInt64 nodes, table_nodes;                             /* of decided rounds, of complete ones */
+  PetscInt64 uncommitted, pending_n, pending_room, *pending; /* uncommitted: real records */
+  PetscInt starved_n, starved_room;
+  PetscReal *starved; /* [starved_n]: rank 0 runs out, has pieces again, ... */
+  PetscReal *starved_sum;
+  PetscReal last_commit, commit_seconds; /* the end of the last one, and what it took */
+  PetscReal end, started, polled;
+  PetscReal used, saved; /* time of results; those that are committed */
+  PetscReal idle, starving, lost, committing, polling;
+  uint64_t random;
+  Outcome *outcome;
+} Model;
+
+/* ---- pieces: class, round and number in one ---- */
+
+enum { CLASS_SHIFT = 56, ROUND_SHIFT = 40 };
+
+static PetscInt64 PieceOf(int class, PetscInt round, PetscInt64 number)
+{
+  return (PetscInt64) class << CLASS_SHIFT | (PetscInt64)round << ROUND_SHIFT | number;
+}
+
+static int ClassOfPiece(PetscInt64 piece)
+{
+  return (int)(piece >> CLASS_SHIFT);
+}
+
+static Round *RoundOf(const Model *m, PetscInt64 piece)
+{
+  return &m->round[piece >> ROUND_SHIFT & 0xffff];
+}
+
+static PetscReal SecondsOf(const Model *m, PetscInt64 piece)
+{
+  const PetscInt64 grain = RoundOf(m, piece)->grain;
+  PetscReal sum = 0;
+
+  for (PetscInt64 i = 0; i < grain; i++)
+    sum += DrawWork(m->table, ClassOfPiece(piece), MixBits((uint64_t)piece + m->c->seed) + (uint64_t)i);
+  return m->c->scale * sum;
+}
+
+static PetscReal CostOf(const Model *m, PetscInt64 piece)
+{
+  return (PetscReal)RoundOf(m, piece)->grain * m->table->classes[ClassOfPiece(piece)].predicted;
+}
+
+static double Random(Model *m)
+{
+  m->random = MixBits(m->random);
+  return ((double)(m->random >> 11) + 0.5) / 9007199254740992.0;
+}
+
+/* ---- the tree, as LamDispatchCreate makes it ---- */
+
+static PetscInt ParentOf(const Model *m, PetscInt rank)
+{
+  return m->members == 1 ? ROOT : 1 + (rank - 1) / m->members;
+}
+
+static PetscInt ChildNumber(const Model *m, PetscInt rank)
+{
+  return m->members == 1 ? rank : (rank - 1) % m->members;
+}
+
+static PetscBool HandsOutToLeaders(const Model *m, PetscInt inner)
+{
+  return (PetscBool)(inner == ROOT && m->members > 1);
+}
+
+static PetscErrorCode CreateInner(Model *m, PetscInt number)
+{
+  Inner *inner = &m->inner[number];
+  PetscInt *capacity;
+
+  PetscFunctionBeginUser;
+  *inner = (Inner){.message = -1, .free = m->started, .last_commit = m->started, .handling = inner->handling};
+  inner->computes = (PetscBool)(!HandsOutToLeaders(m, number));
+  inner->first = number == ROOT ? (inner->computes ? 0 : 1) : 1 + (number - 1) * m->members;
+  inner->children =
+      number ? PetscMin(m->members, m->c->ranks - inner->first) : (inner->computes ? m->c->ranks : m->inner_count - 1);
+  PetscCall(PetscMalloc1(inner->children, &capacity));
+  for (PetscInt k = 0; k < inner->children; k++)
+    capacity[k] = inner->computes ? 1 : PetscMin(m->members, m->c->ranks - 1 - k * m->members);
+  PetscCall(LamScheduleCreate(inner->children, capacity, number ? m->costs->answer : m->costs->answer_root,
+                              &inner->schedule));
+  PetscCall(PetscFree(capacity));
+  PetscFunctionReturn(0);
+}
+
+/* ---- idle time ---- */
+
+/* How long rank 0 has had nothing to hand out, until then. */
+static PetscReal StarvedUntil(const Model *m, PetscReal time)
+{
+  PetscInt low = 0, high = m->starved_n;
+
+  while (low < high) {
+    const PetscInt middle = (low + high) / 2;
+
+    if (m->starved[middle] <= time)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  if (!low) return 0;
+  return m->starved_sum[low - 1] + (low % 2 ? time - m->starved[low - 1] : 0);
+}
+
+static PetscErrorCode NoteStarved(Model *m, PetscReal now)
+{
+  const PetscBool starved = (PetscBool)!LamScheduleWaiting(m->inner[ROOT].schedule);
+  const PetscInt n = m->starved_n;
+
+  PetscFunctionBeginUser;
+  if (starved == (PetscBool)(n % 2)) PetscFunctionReturn(0);
+  if (n == m->starved_room) {
+    m->starved_room = PetscMax(64, 2 * n);
+    PetscCall(PetscRealloc((size_t)m->starved_room * sizeof(PetscReal), &m->starved));
+    PetscCall(PetscRealloc((size_t)m->starved_room * sizeof(PetscReal), &m->starved_sum));
+  }
+  m->starved[n] = now;
+  m->starved_sum[n] = n ? m->starved_sum[n - 1] + (n % 2 ? now - m->starved[n - 1] : 0) : 0;
+  m->starved_n++;
+  PetscFunctionReturn(0);
+}
+
+static void CountIdle(Model *m, PetscReal from, PetscReal to)
+{
+  if (to <= from) return;
+  m->idle += to - from;
+  m->starving += StarvedUntil(m, to) - StarvedUntil(m, from);
+}
+
+/* ---- ranks that work ---- */
+
+/* The rank has the piece at time `now`; its result is at the rank above when the event comes. */
+static PetscErrorCode Begin(Model *m, PetscInt rank, PetscInt64 piece, PetscReal now)
+{
+  const Costs *costs = m->costs;
+  Inner *own = m->members == 1 ? (rank ? NULL : m->inner) : ChildNumber(m, rank) ? NULL : &m->inner[ParentOf(m, rank)];
+  const PetscReal idle = PetscMax(0, now - m->free[rank]); /* it sleeps between two looks, longer and longer */
+  const PetscReal begin = PetscMax(m->free[rank], now + PetscMin(idle, costs->pause) / 2) + (own ? 0 : costs->message);
+  const PetscReal seconds = SecondsOf(m, piece) / m->speed[rank];
+  PetscReal end = begin + seconds;
+
+  PetscFunctionBeginUser;
+  CountIdle(m, m->free[rank], begin);
+  m->free[rank] = end;
+  if (own) {
+    own->working = PETSC_TRUE;
+    own->work_begin = begin;
+    own->work_end = end;
+  } else {
+    end += costs->message + costs->latency + costs->result_bytes / costs->bandwidth;
+  }
+  PetscCall(EventPush(&m->queue, (Event){.time = end, .what = piece, .kind = RESULT, .whom = (int)rank}));
+  PetscFunctionReturn(0);
+}
+
+/* ---- messages ---- */
+
+static PetscErrorCode NewMessage(Model *m, PetscInt *number)
+{
+  PetscFunctionBeginUser;
+  *number = m->first_free;
+  if (*number >= 0) {
+    m->first_free = m->message[*number].next_free;
+    m->message[*number].n = 0;
+    PetscFunctionReturn(0);
+  }
+  if (!(m->messages & (m->messages - 1))) /* room for a power of two */
+    PetscCall(PetscRealloc((size_t)PetscMax(1, 2 * m->messages) * sizeof(*m->message), &m->message));
+  *number = m->messages++;
+  m->message[*number] = (Message){0};
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode AppendPiece(Model *m, PetscInt number, PetscInt64 piece)
+{
+  Message *message = &m->message[number];
+
+  PetscFunctionBeginUser;
+  if (message->n == message->room) {
+    message->room = PetscMax(4, 2 * message->room);
+    PetscCall(PetscRealloc((size_t)message->room * sizeof(*message->pieces), &message->pieces));
+  }
+  message->pieces[message->n++] = piece;
+  PetscFunctionReturn(0);
+}
+
+static void FreeMessage(Model *m, PetscInt number)
+{
+  m->message[number].next_free = m->first_free;
+  m->first_free = number;
+}
+
+/* When the inner rank begins to answer what has come at `time`. */
+static PetscReal Notices(const Model *m, const Inner *inner, PetscReal time)
+{
+  const PetscReal slice = m->c->scale * m->table->factorisation;
+
+  if (inner->working)
+    time = inner->work_begin + slice * ceil(PetscMax(0, time - inner->work_begin) / slice);
+  else
+    time += PetscMin(m->costs->pause, PetscMax(0, time - PetscMax(inner->free, inner->work_end))) / 2;
+  return PetscMax(time, inner->free);
+}
+
+/* The rank answers something for so long; returns when it has. */
+static PetscReal Handle(Inner *inner, PetscReal begin, PetscReal seconds)
+{
+  inner->handling += seconds;
+  if (inner->working && begin < inner->work_end + inner->debt) inner->debt += seconds;
+  return inner->free = begin + seconds;
+}
+
+static PetscErrorCode SendDown(Model *m, PetscInt number, PetscInt child, PetscInt n, const PetscInt64 pieces[])
+{
+  const Costs *costs = m->costs;
+  Inner *inner = &m->inner[number];
+  PetscReal bytes = 0, arrival;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++) bytes += (PetscReal)RoundOf(m, pieces[i])->grain * costs->describe_bytes;
+  arrival =
+      Handle(inner, inner->free, costs->message + bytes * costs->byte) + costs->latency + bytes / costs->bandwidth;
+  if (HandsOutToLeaders(m, number)) {
+    PetscInt message;
+
+    PetscCall(NewMessage(m, &message));
+    for (PetscInt i = 0; i < n; i++) PetscCall(AppendPiece(m, message, pieces[i]));
+    PetscCall(EventPush(&m->queue, (Event){arrival, message, WORK_DOWN, (int)child + 1}));
+    PetscFunctionReturn(0);
+  }
+  for (PetscInt i = 0; i < n; i++) PetscCall(Begin(m, inner->first + child, pieces[i], arrival));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode HandOutTo(Model *m, PetscInt number, PetscInt child)
+{
+  Inner *inner = &m->inner[number];
+  PetscInt64 pieces[MOST_AT_ONCE];
+  PetscInt n = MOST_AT_ONCE;
+
+  PetscFunctionBeginUser;
+  while (n == MOST_AT_ONCE) {
+    PetscCall(LamScheduleTake(inner->schedule, child, inner->free, MOST_AT_ONCE, &n, pieces));
+    if (n) PetscCall(SendDown(m, number, child, n, pieces));
+  }
+  if (number == ROOT) PetscCall(NoteStarved(m, inner->free));
+  PetscFunctionReturn(0);
+}
+
+/* Its next own piece, where it has none. */
+static PetscErrorCode WorkItself(Model *m, PetscInt number)
+{
+  Inner *inner = &m->inner[number];
+  PetscInt64 piece;
+  PetscInt n;
+
+  PetscFunctionBeginUser;
+  if (!inner->computes || inner->working) PetscFunctionReturn(0);
+  PetscCall(LamScheduleTake(inner->schedule, SELF, inner->free, 1, &n, &piece));
+  if (n) PetscCall(Begin(m, inner->first, piece, inner->free));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode HandOut(Model *m, PetscInt number)
+{
+  PetscFunctionBeginUser;
+  PetscCall(WorkItself(m, number));
+  for (PetscInt child = m->inner[number].computes; child < m->inner[number].children; child++)
+    PetscCall(HandOutTo(m, number, child));
+  PetscFunctionReturn(0);
+}
+
+/* ---- rounds and commits, on rank 0 ---- */
+
+/* All pieces of the round that are not committed. */
+static PetscErrorCode AddPieces(Model *m, PetscInt number)
+{
+  Round *round = &m->round[number];
+
+  PetscFunctionBeginUser;
+  for (int class = 0; class < WORK_CLASSES; class ++) {
+    const PetscInt64 missing = round->total[class] - round->committed[class];
+    const PetscInt64 first = PieceOf(class, number, round->added);
+
+    if (missing) PetscCall(LamScheduleAdd(m->inner[ROOT].schedule, first, missing, CostOf(m, first)));
+    round->added += missing;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Few pieces are drawn one by one, many in the shares of the classes. */
+static void FillRound(Model *m, Round *round)
+{
+  PetscInt64 records = 0, before = 0;
+
+  for (int class = 0; class < WORK_CLASSES; class ++) records += m->table->classes[class].n;
+  for (PetscInt64 i = 0; i < round->count && round->count < 4096; i++) {
+    PetscInt64 record = (PetscInt64)(Random(m) * (double)records);
+    int class = 0;
+
+    while (record >= m->table->classes[class].n) record -= m->table->classes[class ++].n;
+    round->total[class]++;
+  }
+  for (int class = 0; class < WORK_CLASSES && round->count >= 4096; class ++) {
+    const PetscReal share = (PetscReal)(before + m->table->classes[class].n) / (PetscReal)records;
+    const PetscReal begin = (PetscReal)before / (PetscReal)records;
+
+    before += m->table->classes[class].n;
+    round->total[class] = (PetscInt64)(share * (PetscReal)round->count) - (PetscInt64)(begin * (PetscReal)round->count);
+  }
+}
+
+static PetscErrorCode NewRound(Model *m)
+{
+  const PetscInt64 rest = m->c->samples - m->nodes;
+  const PetscInt64 wanted = m->c->least_round ? PetscMax(m->c->least_round, m->table_nodes / m->c->round_share) : rest;
+  const PetscInt64 size = PetscMin(rest, wanted);
+  Round *round;
+
+  PetscFunctionBeginUser;
+  if (m->decided == m->round_room) {
+    m->round_room = PetscMax(64, 2 * m->round_room);
+    PetscCall(PetscRealloc((size_t)m->round_room * sizeof(*m->round), &m->round));
+  }
+  round = &m->round[m->decided];
+  *round = (Round){.grain = 1};
+  if (m->c->grain > 0) round->grain = PetscMax(1, (PetscInt64)((PetscReal)size / (m->c->grain * m->c->ranks)));
+  round->count = size / round->grain;
+  FillRound(m, round);
+  m->nodes += round->count * round->grain;
+  PetscCall(AddPieces(m, m->decided++));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Commit(Model *m)
+{
+  Inner *root = &m->inner[ROOT];
+  const PetscReal seconds =
+      m->c->leaders_write ? 0 : m->costs->commit + (PetscReal)m->uncommitted * m->costs->commit_record;
+
+  PetscFunctionBeginUser;
+  Handle(root, root->free, seconds);
+  root->handling -= seconds;
+  m->committing += seconds;
+  m->commit_seconds = seconds;
+  m->outcome->records += m->uncommitted;
+  m->uncommitted = 0;
+  for (PetscInt64 i = 0; i < m->pending_n; i++) {
+    RoundOf(m, m->pending[i])->committed[ClassOfPiece(m->pending[i])]++;
+    if (m->c->mtbf > 0) m->saved += SecondsOf(m, m->pending[i]);
+  }
+  m->pending_n = 0;
+  m->last_commit = root->free;
+  PetscFunctionReturn(0);
+}
+
+static PetscReal PollSeconds(const Model *m)
+{
+  return m->c->least_round ? m->costs->poll + (PetscReal)m->table_nodes * m->costs->poll_node : 0;
+}
+
+static PetscBool IsComplete(const Round *round)
+{
+  return (PetscBool)(round->arrived == round->count);
+}
+
+/* The next round, where it is time for it and samples are left. */
+static PetscErrorCode Decide(Model *m, PetscBool *any)
+{
+  Inner *root = &m->inner[ROOT];
+
+  PetscFunctionBeginUser;
+  *any = PETSC_FALSE;
+  for (; m->complete < m->decided && IsComplete(&m->round[m->complete]); m->complete++)
+    m->table_nodes += m->round[m->complete].count * m->round[m->complete].grain;
+  while (m->nodes < m->c->samples && m->decided < m->complete + m->c->open_rounds) {
+    PetscReal seconds = PollSeconds(m);
+
+    PetscCall(NewRound(m));
+    seconds += m->costs->choose * (PetscReal)(m->round[m->decided - 1].count * m->round[m->decided - 1].grain);
+    Handle(root, root->free, seconds);
+    root->handling -= seconds;
+    m->polling += seconds;
+    m->polled += seconds;
+    *any = PETSC_TRUE;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* A result that nobody else has brought. */
+static PetscErrorCode Accept(Model *m, PetscInt64 piece)
+{
+  Round *round = RoundOf(m, piece);
+
+  PetscFunctionBeginUser;
+  round->arrived++;
+  m->uncommitted += round->grain;
+  if (m->pending_n == m->pending_room) {
+    m->pending_room = PetscMax(1024, 2 * m->pending_room);
+    PetscCall(PetscRealloc((size_t)m->pending_room * sizeof(*m->pending), &m->pending));
+  }
+  m->pending[m->pending_n++] = piece;
+  PetscFunctionReturn(0);
+}
+
+static PetscBool AllArrived(const Model *m)
+{
+  return (PetscBool)(m->nodes >= m->c->samples && m->complete == m->decided);
+}
+
+/* After results have come to rank 0. */
+static PetscErrorCode Advance(Model *m)
+{
+  PetscBool any;
+
+  PetscFunctionBeginUser;
+  PetscCall(Decide(m, &any));
+  if (any) PetscCall(HandOut(m, ROOT));
+  if (AllArrived(m) || m->uncommitted >= COMMIT_RECORDS ||
+      m->inner[ROOT].free - m->last_commit >= PetscMax(COMMIT_SECONDS, COMMIT_SHARE * m->commit_seconds))
+    PetscCall(Commit(m));
+  if (AllArrived(m)) m->end = m->inner[ROOT].free;
+  PetscFunctionReturn(0);
+}
+
+/* ---- results ---- */
+
+static PetscErrorCode SendUp(Model *m, PetscInt number)
+{
+  const Costs *costs = m->costs;
+  Inner *leader = &m->inner[number];
+  PetscReal arrival;
+
+  PetscFunctionBeginUser;
+  if (leader->message < 0) PetscFunctionReturn(0);
+  arrival = Handle(leader, leader->free, costs->message + leader->bytes * costs->byte) + costs->latency +
+            leader->bytes / costs->bandwidth;
+  PetscCall(EventPush(&m->queue, (Event){arrival, leader->message, RESULTS_UP, (int)number}));
+  leader->message = -1;
+  leader->hurry = PETSC_FALSE;
+  leader->bytes = 0;
+  leader->sent++;
+  PetscFunctionReturn(0);
+}
+
+static PetscReal BytesUp(const Model *m)
+{
+  return m->c->leaders_write ? m->costs->node_bytes : m->costs->result_bytes;
+}
+
+/* A leader keeps the result for the next bundle, and with files of their own writes it. */
+static PetscErrorCode Gather(Model *m, PetscInt number, PetscInt64 piece)
+{
+  const Costs *costs = m->costs;
+  const PetscReal grain = (PetscReal)RoundOf(m, piece)->grain;
+  Inner *leader = &m->inner[number];
+
+  PetscFunctionBeginUser;
+  if (m->c->leaders_write) {
+    const PetscBool due =
+        (PetscBool)(leader->free - leader->last_commit >= PetscMax(COMMIT_SECONDS, COMMIT_SHARE * costs->commit));
+
+    Handle(leader, leader->free, grain * costs->commit_record + (due ? costs->commit : 0));
+    if (due) leader->last_commit = leader->free;
+  }
+  if (leader->message < 0) {
+    PetscCall(NewMessage(m, &leader->message));
+    PetscCall(EventPush(&m->queue, (Event){leader->free + costs->bundle_age, leader->sent, BUNDLE_AGED, (int)number}));
+  }
+  PetscCall(AppendPiece(m, leader->message, piece));
+  leader->bytes += grain * BytesUp(m);
+  PetscFunctionReturn(0);
+}
+
+/* After a leader has answered something: a full bundle at once; where it has no more work, what has come so far. */
+static PetscErrorCode SendUpInTime(Model *m, PetscInt number)
+{
+  Inner *leader = &m->inner[number];
+
+  PetscFunctionBeginUser;
+  if (number == ROOT || leader->message < 0) PetscFunctionReturn(0);
+  if (leader->bytes >= m->costs->bundle_bytes) {
+    PetscCall(SendUp(m, number));
+  } else if (!leader->hurry && !LamScheduleWaiting(leader->schedule)) {
+    leader->hurry = PETSC_TRUE;
+    PetscCall(EventPush(&m->queue, (Event){leader->free, leader->sent, BUNDLE_AGED, (int)number}));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* `rank` worked on it; -1: it comes from a leader. */
+static PetscErrorCode Deliver(Model *m, PetscInt number, PetscInt child, PetscInt rank, PetscInt64 piece)
+{
+  Inner *inner = &m->inner[number];
+  PetscBool first;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamScheduleDone(inner->schedule, child, inner->free, piece, &first));
+  if (rank >= 0 && first) m->used += SecondsOf(m, piece) / m->speed[rank];
+  if (!first)
+    m->outcome->copies++;
+  else if (number != ROOT)
+    PetscCall(Gather(m, number, piece));
+  else
+    PetscCall(Accept(m, piece));
+  PetscFunctionReturn(0);
+}
+
+/* ---- events ---- */
+
+static PetscErrorCode OnOwnResult(Model *m, PetscInt number, Event event)
+{
+  Inner *inner = &m->inner[number];
+
+  PetscFunctionBeginUser;
+  if (inner->debt > 0) { /* messages have made it later */
+    event.time += inner->debt;
+    inner->work_end += inner->debt;
+    m->free[event.whom] += inner->debt;
+    inner->debt = 0;
+    PetscCall(EventPush(&m->queue, event));
+    PetscFunctionReturn(0);
+  }
+  Handle(inner, PetscMax(inner->free, event.time), m->costs->piece);
+  inner->working = PETSC_FALSE;
+  PetscCall(Deliver(m, number, SELF, event.whom, event.what));
+  PetscCall(SendUpInTime(m, number));
+  if (number == ROOT) PetscCall(Advance(m));
+  PetscCall(WorkItself(m, number));
+  if (number == ROOT) PetscCall(NoteStarved(m, inner->free));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode OnResult(Model *m, Event event)
+{
+  const Costs *costs = m->costs;
+  const PetscInt number = ParentOf(m, event.whom), child = ChildNumber(m, event.whom);
+  const PetscReal grain = (PetscReal)RoundOf(m, event.what)->grain;
+  Inner *inner = &m->inner[number];
+
+  PetscFunctionBeginUser;
+  if (inner->computes && child == SELF) {
+    PetscCall(OnOwnResult(m, number, event));
+    PetscFunctionReturn(0);
+  }
+  Handle(inner, Notices(m, inner, event.time),
+         grain * (costs->message + costs->result_bytes * costs->byte + costs->piece));
+  PetscCall(Deliver(m, number, child, event.whom, event.what));
+  PetscCall(HandOutTo(m, number, child));
+  PetscCall(WorkItself(m, number));
+  PetscCall(SendUpInTime(m, number));
+  if (number == ROOT) PetscCall(Advance(m));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode OnResultsUp(Model *m, Event event)
+{
+  const PetscInt n = m->message[event.what].n, child = event.whom - 1;
+  Inner *root = &m->inner[ROOT];
+  PetscReal records = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++) records += (PetscReal)RoundOf(m, m->message[event.what].pieces[i])->grain;
+  Handle(root, Notices(m, root, event.time),
+         m->costs->message + records * (BytesUp(m) * m->costs->byte + m->costs->piece));
+  for (PetscInt i = 0; i < n; i++) PetscCall(Deliver(m, ROOT, child, -1, m->message[event.what].pieces[i]));
+  FreeMessage(m, (PetscInt)event.what);
+  PetscCall(HandOutTo(m, ROOT, child));
+  PetscCall(Advance(m));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode OnWorkDown(Model *m, Event event)
+{
+  const PetscInt n = m->message[event.what].n;
+  Inner *leader = &m->inner[event.whom];
+  PetscReal pieces = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt64 piece = m->message[event.what].pieces[i];
+
+    PetscCall(LamScheduleAdd(leader->schedule, piece, 1, CostOf(m, piece)));
+    pieces += (PetscReal)RoundOf(m, piece)->grain;
+  }
+  Handle(leader, Notices(m, leader, event.time),
+         m->costs->message + pieces * (m->costs->describe_bytes * m->costs->byte + m->costs->piece));
+  FreeMessage(m, (PetscInt)event.what);
+  PetscCall(HandOut(m, event.whom));
+  PetscFunctionReturn(0);
+}
+
+/* ---- failures ---- */
+
+static PetscErrorCode PlanFailure(Model *m)
+{
+  const PetscReal machines = ceil((PetscReal)m->c->ranks / (PetscReal)m->c->machine);
+
+  PetscFunctionBeginUser;
+  if (m->c->mtbf > 0)
+    PetscCall(EventPush(&m->queue, (Event){m->started - log(Random(m)) * m->c->mtbf / machines, 0, FAILURE, 0}));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode StartTree(Model *m)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < m->inner_count; i++) {
+    PetscCall(LamScheduleDestroy(&m->inner[i].schedule));
+    PetscCall(CreateInner(m, i));
+  }
+  for (PetscInt r = 0; r < m->c->ranks; r++) m->free[r] = m->started;
+  m->last_commit = m->started;
+  PetscCall(PlanFailure(m));
+  PetscFunctionReturn(0);
+}
+
+/* What was not committed is gone; SPEED_UNIFORM. */
+static PetscErrorCode OnFailure(Model *m, Event event)
+{
+  PetscFunctionBeginUser;
+  m->outcome->failures++;
+  m->lost += m->used - m->saved;
+  m->used = m->saved;
+  m->queue.n = 0;
+  m->pending_n = m->uncommitted = 0;
+  m->started = event.time + m->costs->restart + m->polled + (PetscReal)m->outcome->records * m->costs->read_record;
+  m->lost += (PetscReal)m->c->ranks * (m->started - event.time);
+  PetscCall(StartTree(m));
+  m->complete = 0;
+  m->table_nodes = 0;
+  for (PetscInt r = 0; r < m->decided; r++) {
+    m->round[r].arrived = 0;
+    for (int class = 0; class < WORK_CLASSES; class ++) m->round[r].arrived += m->round[r].committed[class];
+    PetscCall(AddPieces(m, r));
+  }
+  PetscCall(NoteStarved(m, m->started));
+  PetscCall(HandOut(m, ROOT));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode OnEvent(Model *m, Event event)
+{
+  Inner *leader = &m->inner[event.whom];
+
+  PetscFunctionBeginUser;
+  switch (event.kind) {
+  case RESULT:
+    PetscCall(OnResult(m, event));
+    break;
+  case WORK_DOWN:
+    PetscCall(OnWorkDown(m, event));
+    break;
+  case RESULTS_UP:
+    PetscCall(OnResultsUp(m, event));
+    break;
+  case BUNDLE_AGED:
+    if (leader->sent != event.what) break; /* it has gone */
+    Handle(leader, Notices(m, leader, event.time), 0);
+    PetscCall(SendUp(m, event.whom));
+    break;
+  case FAILURE:
+    PetscCall(OnFailure(m, event));
+    break;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* ---- a whole run ---- */
+
+/* Relative to the ranks that the table was measured on. */
+static PetscReal SpeedOfRank(Model *m)
+{
+  if (m->c->speeds == SPEED_SPREAD) return 1 + 0.1 * sqrt(3.0) * (2 * Random(m) - 1);
+  if (m->c->speeds == SPEED_SLOW && Random(m) < 0.01) return 0.1;
+  return 1;
+}
+
+static PetscErrorCode CreateModel(Model *m)
+{
+  const PetscInt others = m->c->ranks - 1;
+
+  PetscFunctionBeginUser;
+  m->random = m->c->seed;
+  m->first_free = -1;
+  m->members = others <= m->c->group ? 1 : PetscMin(m->c->group, (PetscInt)ceil(sqrt((double)others)));
+  m->inner_count = m->members == 1 ? 1 : 1 + (others + m->members - 1) / m->members;
+  PetscCall(PetscCalloc1(m->inner_count, &m->inner));
+  PetscCall(PetscMalloc1(m->c->ranks, &m->free));
+  PetscCall(PetscMalloc1(m->c->ranks, &m->speed));
+  for (PetscInt r = 0; r < m->c->ranks; r++) m->speed[r] = SpeedOfRank(m);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode DestroyModel(Model *m)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < m->inner_count; i++) PetscCall(LamScheduleDestroy(&m->inner[i].schedule));
+  for (PetscInt i = 0; i < m->messages; i++) PetscCall(PetscFree(m->message[i].pieces));
+  PetscCall(PetscFree(m->inner));
+  PetscCall(PetscFree(m->free));
+  PetscCall(PetscFree(m->speed));
+  PetscCall(PetscFree(m->message));
+  PetscCall(PetscFree(m->round));
+  PetscCall(PetscFree(m->pending));
+  PetscCall(PetscFree(m->starved));
+  PetscCall(PetscFree(m->starved_sum));
+  PetscCall(PetscFree(m->queue.events));
+  PetscFunctionReturn(0);
+}
+
+static void Summarise(Model *m)
+{
+  const PetscReal all = (PetscReal)m->c->ranks * m->end;
+  Outcome *o = m->outcome;
+
+  for (PetscInt r = m->members == 1 ? 0 : 1; r < m->c->ranks; r++) CountIdle(m, m->free[r], m->end);
+  o->seconds = m->end;
+  o->work = m->used / (PetscReal)PetscMax(1, o->records);
+  o->busy = m->used / all;
+  o->starved = m->starving / all;
+  o->waiting = (m->idle - m->starving) / all;
+  o->lost = m->lost / all;
+  o->handing = m->inner[ROOT].handling / m->end;
+  o->committing = m->committing / m->end;
+  o->polling = m->polling / m->end;
+  for (PetscInt i = 1; i < m->inner_count; i++) o->leading = PetscMax(o->leading, m->inner[i].handling / m->end);
+  o->rounds = m->decided;
+}
+
+/* `told`: called every few million events with the share of samples that have come; NULL: not. */
+static PetscErrorCode SimulateDispatch(const Case *c, const Costs *costs, const WorkTable *table, void (*told)(double),
+                                       Outcome *outcome)
+{
+  Model m = {.c = c, .costs = costs, .table = table, .outcome = outcome};
+
+  PetscFunctionBeginUser;
+  *outcome = (Outcome){0};
+  PetscCall(CreateModel(&m));
+  PetscCall(StartTree(&m));
+  PetscCall(Advance(&m));
+  while (m.end <= 0 && m.queue.n) {
+    PetscCall(OnEvent(&m, EventPop(&m.queue)));
+    if (told && ++outcome->events % (1 << 22) == 0) told((double)outcome->records / (double)c->samples);
+  }
+  PetscCheck(m.end > 0 || !c->samples, PETSC_COMM_SELF, PETSC_ERR_PLIB,
+             "%lld of %lld samples: nothing happens any more", (long long)outcome->records, (long long)c->samples);
+  Summarise(&m);
+  PetscCall(DestroyModel(&m));
+  PetscFunctionReturn(0);
+}
+
+/* All jobs of the case: the share that is busy until the last one ends, and the rest as in that one. */
+static PetscErrorCode SimulateJobs(const Case *c, const Costs *costs, const WorkTable *table, void (*told)(double),
+                                   Outcome *outcome)
+{
+  PetscReal busy = 0;
+
+  PetscFunctionBeginUser;
+  *outcome = (Outcome){0};
+  for (PetscInt k = 0; k < c->jobs; k++) {
+    Case part = *c;
+    Outcome o;
+
+    part.ranks /= c->jobs;
+    part.samples /= c->jobs;
+    part.seed += (uint64_t)k;
+    PetscCall(SimulateDispatch(&part, costs, table, told, &o));
+    busy += o.busy * o.seconds / (PetscReal)c->jobs;
+    if (o.seconds > outcome->seconds) *outcome = o;
+  }
+  outcome->busy = busy / outcome->seconds;
+  PetscFunctionReturn(0);
+}
+
+#endif
