@@ -48,6 +48,7 @@ struct LamSchedule_s {
   PetscReal answer;
   Class queue[CLASSES];
   PetscInt64 waiting, out;
+  PetscInt64 spare; /* pieces that children have beyond one for each rank */
   PetscReal waiting_cost;
   Work work; /* seconds: of one rank, summed over ranks */
 };
@@ -153,14 +154,18 @@ static void Judge(LamSchedule s, Child *child)
 
 /* ---- who gets what ---- */
 
-/* So many pieces the child shall have. */
+/*
+  So many pieces the child shall have: one for each of its ranks; ahead of them one more, one for those on the way to
+  the ranks where it hands out itself, and what is done while it waits for an answer. Towards the end its part of the
+  rest.
+*/
 static PetscInt64 Share(LamSchedule s, const Child *child)
 {
   const PetscReal piece = s->work.pieces ? s->work.seconds / (PetscReal)s->work.pieces : 0;
-  const PetscReal ahead = piece > 0 ? PetscMin(MOST_AHEAD, ceil(s->answer / piece)) : 1;
-  const PetscReal rest = (PetscReal)s->waiting / (2 * (PetscReal)s->capacity);
+  const PetscReal ahead = 1 + (child->capacity > 1) + (piece > 0 ? floor(s->answer / piece) : 0);
+  const PetscReal rest = (PetscReal)s->waiting / (PetscReal)s->capacity;
 
-  return child->capacity + (PetscInt64)(child->capacity * PetscMin(PetscMax(1, ahead), rest));
+  return child->capacity + (PetscInt64)(child->capacity * PetscMin(PetscMin(MOST_AHEAD, ahead), rest));
 }
 
 /* Whether this child would be done with the piece after all the others are done with everything else. */
@@ -181,32 +186,53 @@ static PetscErrorCode Hold(LamSchedule s, Child *child, PetscReal now, Held held
   }
   if (!child->n) child->since = now;
   child->held[child->n++] = held;
+  s->spare += child->n > child->capacity;
   s->out++;
   PetscFunctionReturn(0);
 }
 
-/* A piece of a slow child that nobody else has, for one that has nothing to do. */
-static Held *FindToCopy(LamSchedule s, const Child *taker)
+/* The last piece of a child that nobody else has, from held[first] on; NULL: there is none. */
+static Held *LastUncopied(const Child *child, PetscInt first)
 {
-  for (PetscInt c = 0; c < s->children && s->slow; c++) {
-    Child *holder = &s->child[c];
-
-    if (!holder->slow || holder == taker) continue;
-    for (PetscInt i = 0; i < holder->n; i++)
-      if (!holder->held[i].copied) return &holder->held[i];
-  }
+  for (PetscInt i = child->n - 1; i >= first; i--)
+    if (!child->held[i].copied) return &child->held[i];
   return NULL;
 }
 
-static PetscErrorCode TakeCopy(LamSchedule s, Child *child, PetscReal now, PetscInt *n, PetscInt64 pieces[])
+/*
+  For a child that has nothing to do, a piece of another: one that is not begun, of the child that is longest without a
+  result, or else any one of a slow child. NULL: there is none.
+*/
+static Held *FindToCopy(LamSchedule s, const Child *taker)
 {
-  Held *held = child->slow ? NULL : FindToCopy(s, child);
+  PetscReal since = PETSC_INFINITY;
+  Held *found = NULL;
 
+  for (PetscInt c = 0; c < s->children && (s->spare || s->slow); c++) {
+    const Child *holder = &s->child[c];
+    Held *held;
+
+    if (holder == taker || holder->since >= since) continue;
+    held = LastUncopied(holder, holder->slow ? 0 : holder->capacity);
+    if (!held) continue;
+    found = held;
+    since = holder->since;
+  }
+  return found;
+}
+
+static PetscErrorCode TakeCopies(LamSchedule s, Child *child, PetscReal now, PetscInt most, PetscInt *n,
+                                 PetscInt64 pieces[])
+{
   PetscFunctionBeginUser;
-  if (!held) PetscFunctionReturn(0);
-  held->copied = PETSC_TRUE;
-  pieces[(*n)++] = held->piece;
-  PetscCall(Hold(s, child, now, *held));
+  while (*n < most && child->n < child->capacity && !child->slow) {
+    Held *held = FindToCopy(s, child);
+
+    if (!held) break;
+    held->copied = PETSC_TRUE;
+    pieces[(*n)++] = held->piece;
+    PetscCall(Hold(s, child, now, *held));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -232,7 +258,7 @@ PetscErrorCode LamScheduleTake(LamSchedule schedule, PetscInt child, PetscReal n
     pieces[(*n)++] = held.piece;
     PetscCall(Hold(schedule, c, now, held));
   }
-  if (!schedule->waiting && !c->n && most) PetscCall(TakeCopy(schedule, c, now, n, pieces));
+  if (!schedule->waiting) PetscCall(TakeCopies(schedule, c, now, most, n, pieces));
   PetscFunctionReturn(0);
 }
 
@@ -269,6 +295,7 @@ PetscErrorCode LamScheduleDone(LamSchedule schedule, PetscInt child, PetscReal n
              (long long)piece);
   held = c->held[i];
   for (PetscInt k = i; k + 1 < c->n; k++) c->held[k] = c->held[k + 1];
+  schedule->spare -= c->n > c->capacity;
   c->n--;
   c->since = now;
   schedule->out--;

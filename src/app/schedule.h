@@ -9,7 +9,8 @@
     The piece of the longest predicted cost goes first. A child has pieces ahead of the one it works on, so that it does
     not wait for an answer: as many as it takes the time to answer, fewer where hardly anything is left. A child that
     has turned out to be slow gets the shortest piece where the others would be done with all the rest before it is done
-    with the longest; a piece that it holds when nothing else is left is given to a faster one, too.
+    with the longest. When nothing is left a child that has nothing to do is given what another has not begun, or what a
+    slow one has, too: nobody can know how long the piece will take that is in the way.
 
   References
     P. Graham, Bounds on multiprocessing timing anomalies, SIAM J. Appl. Math. 17 (1969) 416-429 (longest first).

@@ -493,7 +493,8 @@ static PetscErrorCode Decide(Model *m, PetscBool *any)
     PetscReal seconds = PollSeconds(m);
 
     PetscCall(NewRound(m));
-    seconds += m->costs->choose * (PetscReal)(m->round[m->decided - 1].count * m->round[m->decided - 1].grain);
+    if (m->c->least_round)
+      seconds += m->costs->choose * (PetscReal)(m->round[m->decided - 1].count * m->round[m->decided - 1].grain);
     Handle(root, root->free, seconds);
     root->handling -= seconds;
     m->polling += seconds;
