@@ -48,7 +48,7 @@ struct LamSchedule_s {
   PetscReal answer;
   Class queue[CLASSES];
   PetscInt64 waiting, out;
-  PetscInt64 spare; /* pieces that children have beyond one for each rank */
+  PetscInt occupied; /* ranks that have a piece */
   PetscReal waiting_cost;
   Work work; /* seconds: of one rank, summed over ranks */
 };
@@ -163,9 +163,9 @@ static PetscInt64 Share(LamSchedule s, const Child *child)
 {
   const PetscReal piece = s->work.pieces ? s->work.seconds / (PetscReal)s->work.pieces : 0;
   const PetscReal ahead = 1 + (child->capacity > 1) + (piece > 0 ? floor(s->answer / piece) : 0);
-  const PetscReal rest = (PetscReal)s->waiting / (PetscReal)s->capacity;
+  const PetscReal rest = (PetscReal)(s->waiting - (s->capacity - s->occupied)) / (PetscReal)s->capacity;
 
-  return child->capacity + (PetscInt64)(child->capacity * PetscMin(PetscMin(MOST_AHEAD, ahead), rest));
+  return child->capacity + (PetscInt64)(child->capacity * PetscMax(0, PetscMin(PetscMin(MOST_AHEAD, ahead), rest)));
 }
 
 /* Whether this child would be done with the piece after all the others are done with everything else. */
@@ -186,7 +186,7 @@ static PetscErrorCode Hold(LamSchedule s, Child *child, PetscReal now, Held held
   }
   if (!child->n) child->since = now;
   child->held[child->n++] = held;
-  s->spare += child->n > child->capacity;
+  s->occupied += child->n <= child->capacity;
   s->out++;
   PetscFunctionReturn(0);
 }
@@ -208,7 +208,7 @@ static Held *FindToCopy(LamSchedule s, const Child *taker)
   PetscReal since = PETSC_INFINITY;
   Held *found = NULL;
 
-  for (PetscInt c = 0; c < s->children && (s->spare || s->slow); c++) {
+  for (PetscInt c = 0; c < s->children && (s->out > s->occupied || s->slow); c++) {
     const Child *holder = &s->child[c];
     Held *held;
 
@@ -295,7 +295,7 @@ PetscErrorCode LamScheduleDone(LamSchedule schedule, PetscInt child, PetscReal n
              (long long)piece);
   held = c->held[i];
   for (PetscInt k = i; k + 1 < c->n; k++) c->held[k] = c->held[k + 1];
-  schedule->spare -= c->n > c->capacity;
+  schedule->occupied -= c->n <= c->capacity;
   c->n--;
   c->since = now;
   schedule->out--;
