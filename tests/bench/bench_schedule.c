@@ -16,8 +16,8 @@
 /* docs/scaling.md, Constants. */
 static const Costs measured = {.latency = 2e-6,
                                .bandwidth = 5e9,
-                               .message = 2e-6,
-                               .byte = 0.3e-9,
+                               .message = 1e-6,
+                               .byte = 0.25e-9,
                                .piece = 2e-6,
                                .pause = 1e-3,
                                .describe_bytes = 64,

@@ -66,7 +66,7 @@ typedef struct {
 } Outcome;
 
 enum { RESULT, WORK_DOWN, RESULTS_UP, BUNDLE_AGED, FAILURE };
-enum { ROOT = 0, SELF = 0, MOST_AT_ONCE = 64 };
+enum { ROOT = 0, SELF = 0, MOST_AT_ONCE = 64, DRAWN_ONE_BY_ONE = 256 };
 /* As in cmd_build.c. */
 #define COMMIT_SECONDS 1.0
 #define COMMIT_SHARE 50.0
@@ -93,7 +93,7 @@ typedef struct {
 
 /* Numbers in simulated pieces, each of which stands for `grain` real ones. */
 typedef struct {
-  PetscInt64 count, grain, arrived, added;
+  PetscInt64 count, grain, arrived, numbers; /* numbers: that have been used in each class */
   PetscInt64 total[WORK_CLASSES], committed[WORK_CLASSES];
 } Round;
 
@@ -388,41 +388,38 @@ static PetscErrorCode HandOut(Model *m, PetscInt number)
 
 /* ---- rounds and commits, on rank 0 ---- */
 
-/* All pieces of the round that are not committed. */
+/* All pieces of the round that are not committed; after a failure under new numbers. */
 static PetscErrorCode AddPieces(Model *m, PetscInt number)
 {
   Round *round = &m->round[number];
 
   PetscFunctionBeginUser;
-  for (int class = 0; class < WORK_CLASSES; class ++) {
+  for (int class = 0; class < WORK_CLASSES; class++) {
     const PetscInt64 missing = round->total[class] - round->committed[class];
-    const PetscInt64 first = PieceOf(class, number, round->added);
+    const PetscInt64 first = PieceOf(class, number, round->numbers);
 
     if (missing) PetscCall(LamScheduleAdd(m->inner[ROOT].schedule, first, missing, CostOf(m, first)));
-    round->added += missing;
   }
+  round->numbers += round->count;
   PetscFunctionReturn(0);
 }
 
 /* Few pieces are drawn one by one, many in the shares of the classes. */
 static void FillRound(Model *m, Round *round)
 {
-  PetscInt64 records = 0, before = 0;
+  const PetscBool few = (PetscBool)(round->count < DRAWN_ONE_BY_ONE);
+  PetscInt64 records = 0;
 
-  for (int class = 0; class < WORK_CLASSES; class ++) records += m->table->classes[class].n;
-  for (PetscInt64 i = 0; i < round->count && round->count < 4096; i++) {
+  for (int class = 0; class < WORK_CLASSES; class ++) {
+    records += m->table->classes[class].n;
+    round->total[class] = few ? 0 : ShareOfClass(m->table, round->count, class);
+  }
+  for (PetscInt64 i = 0; i < round->count && few; i++) {
     PetscInt64 record = (PetscInt64)(Random(m) * (double)records);
     int class = 0;
 
     while (record >= m->table->classes[class].n) record -= m->table->classes[class ++].n;
     round->total[class]++;
-  }
-  for (int class = 0; class < WORK_CLASSES && round->count >= 4096; class ++) {
-    const PetscReal share = (PetscReal)(before + m->table->classes[class].n) / (PetscReal)records;
-    const PetscReal begin = (PetscReal)before / (PetscReal)records;
-
-    before += m->table->classes[class].n;
-    round->total[class] = (PetscInt64)(share * (PetscReal)round->count) - (PetscInt64)(begin * (PetscReal)round->count);
   }
 }
 

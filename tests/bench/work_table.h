@@ -161,6 +161,18 @@ static inline uint64_t MixBits(uint64_t x)
   return x ^ (x >> 31);
 }
 
+/* Of so many pieces those of the class, in proportion to its records. */
+static inline PetscInt64 ShareOfClass(const WorkTable *table, PetscInt64 pieces, int class)
+{
+  PetscInt64 before = 0, records = 0;
+
+  for (int c = 0; c < WORK_CLASSES; c++) {
+    records += table->classes[c].n;
+    before += c < class ? table->classes[c].n : 0;
+  }
+  return (before + table->classes[class].n) * pieces / records - before * pieces / records;
+}
+
 /* Piece `number` of the class, s. */
 static inline PetscReal DrawWork(const WorkTable *table, int class, uint64_t number)
 {
