@@ -4,25 +4,26 @@
     bench_schedule                         the small tables, half a minute
     bench_schedule --full                  all tables, up to 1e9 samples on 100,000 ranks
     bench_schedule --ranks N ...           one case; every value has its option (--help)
-  The work is that of figures_work.h, of contact tissue, unless --database FILE gives another.
+  The work is that of figures_work.h, of contact tissue, whose pieces travel with the state of a node, unless --database
+  FILE gives another; bonded tissue is --describe 64 --result 2000 besides.
 */
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
 #include <figures_work.h>
-#include "dispatch_model.h"
+#include "dispatch_simulation.h"
 
 /* docs/scaling.md, Constants. */
 static const Costs measured = {.latency = 2e-6,
                                .bandwidth = 5e9,
                                .message = 1e-6,
-                               .byte = 0.25e-9,
+                               .byte = 0.21e-9,
                                .piece = 2e-6,
                                .pause = 1e-3,
-                               .describe_bytes = 64,
-                               .result_bytes = 2000,
-                               .node_bytes = 700,
+                               .describe_bytes = 13100,
+                               .result_bytes = 15000,
+                               .node_bytes = 13700,
                                .bundle_bytes = 65536,
                                .bundle_age = 0.02,
                                .answer = 5e-3,
@@ -334,6 +335,8 @@ int main(int argc, char **argv)
       {"round", "pieces of a round at least; 0: all are known", NULL, &c.least_round, NULL},
       {"share", "1/share of the table is a round", &c.round_share, NULL, NULL},
       {"open", "rounds at once", &c.open_rounds, NULL, NULL},
+      {"describe", "bytes that a piece needs", NULL, NULL, &costs.describe_bytes},
+      {"result", "bytes of a result", NULL, NULL, &costs.result_bytes},
       {"latency", "of a message, s", NULL, NULL, &costs.latency},
       {"message", "processor time of one, s", NULL, NULL, &costs.message},
       {"answer", "that leaders' schedules are told, s", NULL, NULL, &costs.answer},

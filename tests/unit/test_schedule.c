@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <cmocka.h>
 #include <petscsys.h>
-#include <bench/dispatch_model.h>
+#include <bench/dispatch_simulation.h>
 #include <random_reals.h>
 
 #define CHECK(call) assert_int_equal((call), 0)
