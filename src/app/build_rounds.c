@@ -7,11 +7,11 @@
 
 enum { MOST_NODES = 200000 }; /* with an accuracy */
 /* Nodes of a round: so many, or a share of what is there. Few, so that the next round asks a better table. */
-enum { LEAST_ROUND = 50, ROUND_SHARE = 8 };
+enum { LEAST_ROUND = 32, ROUND_SHARE = 12 };
 /* With an accuracy: what a round is to add to the answered share, once that is large, and how often it may add less. */
-#define LEAST_GAIN 0.005
+#define LEAST_GAIN 0.003
 #define WELL_ANSWERED 0.5
-enum { MOST_IDLE = 4 };
+enum { MOST_IDLE = 6 };
 /* With a count: the first accuracy after any, and the last. */
 #define FIRST_ACCURACY 0.125
 #define LAST_ACCURACY 1e-6

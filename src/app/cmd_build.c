@@ -5,177 +5,15 @@
     In rounds (build.h): rank 0 asks the table of complete rounds before the states of the sample box, and has the nodes
     that it lacks solved by all ranks, each from its parent (node_work.h), those that will take longest first. They are
     committed in that order, so the file does not depend on the number of ranks (except times, and checksums, which
-    cover them). A node that is late holds up those behind it for no longer than LATE.
+    cover them). A node that is late holds up those behind it for half a minute at most.
 */
-#include "build.h"
+#include "build_run.h"
 #include <lamella/clock.h>
-#include "node_work.h"
 #include <string.h>
-#include <unistd.h>
-
-/* A commit follows the last one after so many seconds, and so many times what that one took: it may cost 2 %. */
-#define COMMIT_SECONDS 1.0
-#define COMMIT_SHARE 50.0
-enum { COMMIT_RECORDS = 65536 }; /* more are not kept back */
-#define LATE 30.0                /* s */
-
-/* What is to be committed next: records in the order of the file. */
-typedef struct {
-  PetscInt n, room;
-  PetscInt64 *keys;       /* [n]; owned */
-  LamResponse *responses; /* [n]; owned */
-} Pending;
-
-typedef struct {
-  LamScene *scene;
-  const char *path;
-  PetscBool json, quiet;
-  PetscBool resume;
-  PetscInt group;     /* ranks that one rank hands out to; 0: as many as do */
-  PetscInt team_size; /* ranks that solve one RVE together */
-  LamShard shard;
-  PetscMPIInt rank, size;
-  MPI_Comm team, leaders; /* of this rank; leaders: the first ranks of all teams, MPI_COMM_NULL on the others */
-  LamRVE rve;
-  LamGrid grid;
-  LamNodeWork work;
-  PetscReal start;
-
-  /* on rank 0 */
-  LamRecordWriter writer;
-  LamProgress progress;
-  LamDatabase file; /* what was there before; NULL: nothing */
-  LamRounds rounds;
-  Pending pending;
-  PetscBool opening;       /* rounds are being opened: what arrives meanwhile opens none */
-  PetscInt64 added, there; /* committed by this run; nodes that rounds have found in the file */
-  PetscInt64 failed;       /* without an answer, of those committed */
-  PetscReal last_commit, commit_seconds, all_commits; /* when it ended; what it took, and all of them, s */
-  PetscReal last_taken;                               /* when a record was last taken for the file in its turn */
-} Build;
-
-/* Nodes in the file that this build has asked for. */
-static PetscInt64 Records(const Build *b)
-{
-  return b->there + b->added;
-}
-
-static PetscInt64 Failed(const Build *b)
-{
-  return b->rounds.known_failed + b->failed;
-}
-
-/* ---- commits ---- */
-
-static PetscErrorCode Report(Build *b)
-{
-  PetscFunctionBeginUser;
-  PetscCall(LamPrintJSON(json_pack("{s:I, s:I, s:o, s:o, s:o}", "records", (json_int_t)Records(b), "failed",
-                                   (json_int_t)Failed(b), "seconds", LamJSONReal(LamClock() - b->start), "answered",
-                                   LamJSONReal(LamRoundsAnswered(&b->rounds)), "error_95",
-                                   LamJSONReal(b->rounds.poll.error))));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Commit(Build *b)
-{
-  const PetscReal begin = LamClock();
-  Pending *p = &b->pending;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamRecordWriterCommit(b->writer, p->n, p->keys, p->responses));
-  for (PetscInt i = 0; i < p->n; i++) b->failed += p->responses[i].status != LAM_CONVERGED;
-  b->added += p->n;
-  p->n = 0;
-  b->last_commit = LamClock();
-  b->commit_seconds = b->last_commit - begin;
-  b->all_commits += b->commit_seconds;
-  if (b->json) PetscCall(Report(b));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode TakeForFile(Build *b, PetscInt64 key, const LamResponse *response)
-{
-  Pending *p = &b->pending;
-
-  PetscFunctionBeginUser;
-  if (p->n == p->room) {
-    p->room = PetscMax(256, 2 * p->room);
-    PetscCall(PetscRealloc((size_t)p->room * sizeof(*p->keys), &p->keys));
-    PetscCall(PetscRealloc((size_t)p->room * sizeof(*p->responses), &p->responses));
-  }
-  p->keys[p->n] = key;
-  p->responses[p->n++] = *response;
-  PetscFunctionReturn(0);
-}
-
-/* The node that comes as number m in its round. */
-static PetscErrorCode TakeNode(Build *b, LamRound *round, PetscInt m)
-{
-  const PetscInt i = round->order[m];
-
-  PetscFunctionBeginUser;
-  PetscCall(TakeForFile(b, round->keys[i], &round->responses[i]));
-  round->taken[m] = PETSC_TRUE;
-  PetscFunctionReturn(0);
-}
-
-/* What follows without a gap in the order of the file. */
-static PetscErrorCode TakeInTurn(Build *b)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt r = 0; r < b->rounds.open; r++) {
-    LamRound *round = &b->rounds.round[r];
-
-    for (; round->next < round->missing; round->next++) {
-      if (round->taken[round->next]) continue;
-      if (!round->solved[round->order[round->next]]) PetscFunctionReturn(0);
-      PetscCall(TakeNode(b, round, round->next));
-      b->last_taken = LamClock();
-    }
-  }
-  PetscFunctionReturn(0);
-}
-
-/* All that is there, whatever is missing before it. */
-static PetscErrorCode TakeAll(Build *b)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt r = 0; r < b->rounds.open; r++) {
-    LamRound *round = &b->rounds.round[r];
-
-    for (PetscInt m = round->next; m < round->missing; m++)
-      if (!round->taken[m] && round->solved[round->order[m]]) PetscCall(TakeNode(b, round, m));
-  }
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode CommitInTime(Build *b)
-{
-  const PetscReal waited = LamClock() - b->last_commit;
-
-  PetscFunctionBeginUser;
-  if (LamClock() - b->last_taken > LATE) PetscCall(TakeAll(b));
-  if (b->pending.n >= COMMIT_RECORDS ||
-      (b->pending.n && waited >= PetscMax(COMMIT_SECONDS, COMMIT_SHARE * b->commit_seconds)))
-    PetscCall(Commit(b));
-  PetscFunctionReturn(0);
-}
-
-/* At a stop, and at the end: everything. */
-static PetscErrorCode CommitAll(void *ctx)
-{
-  Build *b = ctx;
-
-  PetscFunctionBeginUser;
-  PetscCall(TakeAll(b));
-  if (b->pending.n) PetscCall(Commit(b));
-  PetscFunctionReturn(0);
-}
 
 /* ---- rounds ---- */
 
-static PetscErrorCode WantRound(Build *b, const LamRound *round)
+static PetscErrorCode WantRound(LamBuild *b, const LamRound *round)
 {
   PetscFunctionBeginUser;
   b->there += round->n - round->missing;
@@ -185,7 +23,7 @@ static PetscErrorCode WantRound(Build *b, const LamRound *round)
 }
 
 /* Closes complete rounds and opens the next. */
-static PetscErrorCode OpenRounds(Build *b)
+static PetscErrorCode OpenRounds(LamBuild *b)
 {
   LamRound *round;
 
@@ -193,7 +31,7 @@ static PetscErrorCode OpenRounds(Build *b)
   if (b->opening || LamStopRequested()) PetscFunctionReturn(0);
   b->opening = PETSC_TRUE;
   for (;;) {
-    PetscCall(TakeInTurn(b));
+    PetscCall(LamBuildTakeInTurn(b));
     PetscCall(LamRoundsNext(&b->rounds, &round));
     if (!round) break;
     PetscCall(WantRound(b, round));
@@ -206,25 +44,25 @@ static PetscErrorCode OpenRounds(Build *b)
 /* A LamNodeArrived */
 static PetscErrorCode Arrive(void *ctx, PetscInt64 key, const LamResponse *response)
 {
-  Build *b = ctx;
+  LamBuild *b = ctx;
 
   PetscFunctionBeginUser;
   PetscCall(LamRoundsArrive(&b->rounds, key, response));
   PetscCall(OpenRounds(b));
-  PetscCall(CommitInTime(b));
-  PetscCall(LamProgressUpdate(&b->progress, LamRoundsThere(&b->rounds), Failed(b)));
+  PetscCall(LamBuildCommitInTime(b));
+  PetscCall(LamProgressUpdate(&b->progress, LamRoundsThere(&b->rounds), LamBuildFailed(b)));
   PetscFunctionReturn(0);
 }
 
 /* A LamNodeKnown */
 static const LamResponse *Known(void *ctx, PetscInt64 key)
 {
-  const Build *b = ctx;
+  const LamBuild *b = ctx;
 
   return LamRoundsKnown(&b->rounds, key);
 }
 
-static PetscErrorCode SolveRounds(Build *b)
+static PetscErrorCode SolveRounds(LamBuild *b)
 {
   PetscBool complete;
 
@@ -232,112 +70,14 @@ static PetscErrorCode SolveRounds(Build *b)
   PetscCall(LamProgressStart(&b->progress, 0, b->quiet));
   b->last_commit = b->last_taken = LamClock();
   PetscCall(OpenRounds(b));
-  PetscCall(LamNodeWorkRun(b->work, CommitAll, &complete));
-  PetscCall(CommitAll(b));
+  PetscCall(LamNodeWorkRun(b->work, LamBuildCommitAll, &complete));
+  PetscCall(LamBuildCommitAll(b));
   PetscCall(LamProgressEnd(&b->progress));
   PetscFunctionReturn(0);
 }
 
-/* ---- the file and its grid, on rank 0 ---- */
-
-static PetscErrorCode OpenWriter(Build *b)
-{
-  const PetscBool exists = (PetscBool)!access(b->path, F_OK);
-
-  PetscFunctionBeginUser;
-  PetscCheck(b->resume || !exists, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: exists; give --resume to go on with it, or remove it", b->path);
-  PetscCall(LamRecordWriterOpen(b->path, "database", LAM_WRITE_APPEND, b->scene, &b->writer));
-  if (exists) PetscCall(LamDatabaseOpen(b->path, &b->file));
-  PetscFunctionReturn(0);
-}
-
-/* Free cells' states that come with a grid, those of them that the file has not got. */
-static PetscErrorCode CommitFreeCells(Build *b, LamGrid grid)
-{
-  const LamResponse *records;
-  const PetscInt64 *keys, *there;
-  PetscInt n, n_there, missing = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamGridGetRecords(grid, &n, &keys, &records));
-  PetscCall(LamRecordWriterGetKeys(b->writer, &n_there, &there));
-  for (PetscInt i = 0; i < n; i++) {
-    PetscInt k = 0;
-
-    while (k < n_there && there[k] != keys[i]) k++;
-    if (k < n_there) continue;
-    PetscCall(TakeForFile(b, keys[i], &records[i]));
-    missing++;
-  }
-  PetscCall(LamRecordWriterCommit(b->writer, b->pending.n, b->pending.keys, b->pending.responses)); /* or 0: its name */
-  b->added = missing;
-  b->pending.n = 0;
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode NewGrid(Build *b, LamResponder *solver, LamGrid *grid)
-{
-  char *text;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamGridCreate(b->scene, solver, grid));
-  PetscCall(LamGridGetText(*grid, &text));
-  PetscCall(LamRecordWriterText(b->writer, LAM_GRID_NAME, text));
-  PetscCall(PetscFree(text));
-  PetscCall(CommitFreeCells(b, *grid));
-  PetscFunctionReturn(0);
-}
-
-/* How many of the grid's free cells the file has. */
-static PetscInt CountFreeCells(PetscInt n, const PetscInt64 keys[])
-{
-  PetscInt count = 0;
-
-  for (PetscInt i = 0; i < n; i++) count += LamKeyIsFreeCell(keys[i]);
-  return count;
-}
-
-static PetscErrorCode OldGrid(Build *b, LamResponder *solver, LamGrid *grid)
-{
-  const PetscInt64 *keys;
-  PetscBool found;
-  PetscInt n, wanted;
-  char *text;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamFileReadText(b->path, LAM_GRID_NAME, &found, &text));
-  PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: has no grid (%s): its records are of an older lamella, or of no build; give the new database another "
-             "name",
-             b->path, LAM_GRID_NAME);
-  PetscCall(LamGridFromText(b->path, &b->scene->micro, text, grid));
-  PetscCall(PetscFree(text));
-  PetscCall(LamGridGetFreeKeys(*grid, &wanted, &keys));
-  PetscCall(LamRecordWriterGetKeys(b->writer, &n, &keys));
-  if (CountFreeCells(n, keys) >= wanted) PetscFunctionReturn(0);
-  PetscCall(LamGridSolveRecords(*grid, &b->scene->micro, solver)); /* a damaged file may have lost some */
-  PetscCall(CommitFreeCells(b, *grid));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode StartRounds(Build *b)
-{
-  LamResponder solver;
-  LamGrid grid;
-
-  PetscFunctionBeginUser;
-  PetscCall(OpenWriter(b));
-  PetscCall(LamRVEResponderCreate(b->rve, 0, &solver));
-  PetscCall(b->file ? OldGrid(b, &solver, &grid) : NewGrid(b, &solver, &grid));
-  PetscCall(solver.destroy(&solver.ctx));
-  PetscCall(LamRoundsCreate(b->scene, &b->shard, b->file, &grid, &b->rounds));
-  b->there = b->rounds.nodes - b->added;
-  PetscFunctionReturn(0);
-}
-
 /* The grid, from rank 0 to all: the others, and a later run, have it from its text. */
-static PetscErrorCode ShareGrid(Build *b)
+static PetscErrorCode ShareGrid(LamBuild *b)
 {
   char *text = NULL;
   PetscInt length;
@@ -359,14 +99,14 @@ static PetscErrorCode ShareGrid(Build *b)
 
 /* ---- summary ---- */
 
-static void PrintTable(const Build *b, PetscReal seconds)
+static void PrintTable(const LamBuild *b, PetscReal seconds)
 {
   const LamPoll *poll = &b->rounds.poll;
   const PetscReal accuracy = b->scene->sample.accuracy;
 
   printf("%-16s %s\n", "database", b->path);
-  printf("%-16s %lld (%lld new)\n", "records", (long long)Records(b), (long long)b->added);
-  printf("%-16s %lld\n", "failed", (long long)Failed(b));
+  printf("%-16s %lld (%lld new)\n", "records", (long long)LamBuildRecords(b), (long long)b->added);
+  printf("%-16s %lld\n", "failed", (long long)LamBuildFailed(b));
   printf("%-16s %.1f %% of the box\n", "answered", 100 * LamRoundsAnswered(&b->rounds));
   if (poll->refused)
     printf("%-16s %.1f %% of the box, such as: %s\n", "never answered",
@@ -384,11 +124,11 @@ static void PrintTable(const Build *b, PetscReal seconds)
     printf("%-16s %s\n", "ended", "at the largest number of records");
 }
 
-static PetscErrorCode Summary(Build *b)
+static PetscErrorCode Summary(LamBuild *b)
 {
   PetscFunctionBeginUser;
   if (b->json)
-    PetscCall(Report(b)); /* one object per commit has been printed; this one is of the table at the end */
+    PetscCall(LamBuildReport(b)); /* one object per commit has been printed; this one is of the table at the end */
   else
     PrintTable(b, LamClock() - b->start);
   PetscFunctionReturn(0);
@@ -407,7 +147,7 @@ static PetscErrorCode Share(MPI_Comm comm, PetscErrorCode ierr)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CreateRVE(Build *b)
+static PetscErrorCode CreateRVE(LamBuild *b)
 {
   PetscFunctionBeginUser;
   PetscCall(LamRVECreate(b->team, &b->rve));
@@ -417,7 +157,7 @@ static PetscErrorCode CreateRVE(Build *b)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CreateWork(Build *b)
+static PetscErrorCode CreateWork(LamBuild *b)
 {
   const LamNodeCustomer customer = {.ctx = b, .arrived = Arrive, .known = Known};
 
@@ -428,14 +168,14 @@ static PetscErrorCode CreateWork(Build *b)
 }
 
 /* Of those that solve an RVE each, or lead a team that does; rank 0 keeps the file. */
-static PetscErrorCode RunLeader(Build *b)
+static PetscErrorCode RunLeader(LamBuild *b)
 {
   const PetscBool root = (PetscBool)(b->rank == 0);
   PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
   PetscCall(CreateRVE(b));
-  ierr = root ? StartRounds(b) : 0;
+  ierr = root ? LamBuildStart(b) : 0;
   if (ierr) (void)LamRecordWriterClose(&b->writer);
   PetscCall(Share(b->leaders, ierr));
   PetscCall(ShareGrid(b));
@@ -453,7 +193,7 @@ static PetscErrorCode RunLeader(Build *b)
   The first rank of each team makes all decisions; the others take part in its factorisations until it dismisses them.
   A rank that fails alone goes straight to main, which ends the job.
 */
-static PetscErrorCode RunAll(Build *b)
+static PetscErrorCode RunAll(LamBuild *b)
 {
   PetscErrorCode ierr = 0;
 
@@ -472,9 +212,9 @@ static PetscErrorCode RunAll(Build *b)
 }
 
 /* Rank 0's outcome is everyone's: mpirun reports the largest. */
-static PetscErrorCode ExitStatus(Build *b, int *exit_status)
+static PetscErrorCode ExitStatus(LamBuild *b, int *exit_status)
 {
-  int status = Failed(b) ? LAM_EXIT_UNSOLVED : LAM_EXIT_OK;
+  int status = LamBuildFailed(b) ? LAM_EXIT_UNSOLVED : LAM_EXIT_OK;
 
   PetscFunctionBeginUser;
   if (LamStopRequested()) status = LamStopExitStatus();
@@ -483,7 +223,7 @@ static PetscErrorCode ExitStatus(Build *b, int *exit_status)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CreateTeams(Build *b)
+static PetscErrorCode CreateTeams(LamBuild *b)
 {
   PetscMPIInt place;
 
@@ -496,7 +236,7 @@ static PetscErrorCode CreateTeams(Build *b)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Prepare(Build *b, const char scene_path[])
+static PetscErrorCode Prepare(LamBuild *b, const char scene_path[])
 {
   LamPlan plan;
 
@@ -511,7 +251,7 @@ static PetscErrorCode Prepare(Build *b, const char scene_path[])
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Destroy(Build *b)
+static PetscErrorCode Destroy(LamBuild *b)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(b->pending.keys));
@@ -527,12 +267,13 @@ static PetscErrorCode Destroy(Build *b)
 
 PetscErrorCode LamCommandBuild(LamArgs *args, int *exit_status)
 {
-  Build b = {.team_size = 1, .shard = {1, 1}};
+  LamBuild b = {.team_size = 1, .shard = {1, 1}};
   const char *scene_path, *group = NULL, *team = NULL, *shard = NULL;
   PetscBool done;
   const LamOption options[] = {
       {'d', "database", LAM_OPTION_TEXT, "DB.h5", "the database to fill", &b.path},
       {0, "resume", LAM_OPTION_FLAG, NULL, "go on with the database where it is there", &b.resume},
+      {0, "salvage", LAM_OPTION_FLAG, NULL, "with --resume: where it is damaged, with its sound records", &b.salvage},
       {0, "shard", LAM_OPTION_TEXT, "I/N", "only part I of N of the sample box, for `lamella merge`", &shard},
       {0, "ranks-per-rve", LAM_OPTION_TEXT, "R", "ranks that factor the matrices of one RVE together; default 1",
        &team},
@@ -544,12 +285,18 @@ PetscErrorCode LamCommandBuild(LamArgs *args, int *exit_status)
 
   PetscFunctionBeginUser;
   PetscCall(LamOptionsParse(
-      args, "build SCENE -d DB.h5 [--resume] [--shard I/N] [--ranks-per-rve R] [--group G] [--json] [--quiet]",
+      args,
+      "build SCENE -d DB.h5 [--resume [--salvage]] [--shard I/N] [--ranks-per-rve R] [--group G] [--json] [--quiet]",
       "Solves nodes of a grid until a table of them answers the states of the scene's sample box.", options, 1,
       &scene_path, &done, exit_status));
   if (done) PetscFunctionReturn(0);
   if (!b.path) {
     fprintf(stderr, "lamella build: the database is missing; give -d DB.h5\n");
+    *exit_status = LAM_EXIT_USAGE;
+    PetscFunctionReturn(0);
+  }
+  if (b.salvage && !b.resume) {
+    fprintf(stderr, "lamella build: --salvage goes on with a file; give --resume, too\n");
     *exit_status = LAM_EXIT_USAGE;
     PetscFunctionReturn(0);
   }

@@ -1,0 +1,127 @@
+/*
+  What a build writes, and when. Rank 0.
+*/
+#include "build_run.h"
+#include <lamella/clock.h>
+
+/* A commit follows the last one after so many seconds, and so many times what that one took: it may cost 2 %. */
+#define COMMIT_SECONDS 1.0
+#define COMMIT_SHARE 50.0
+enum { COMMIT_RECORDS = 65536 }; /* more are not kept back */
+#define LATE 30.0                /* s */
+
+PetscInt64 LamBuildRecords(const LamBuild *build)
+{
+  return build->there + build->added;
+}
+
+PetscInt64 LamBuildFailed(const LamBuild *build)
+{
+  return build->rounds.known_failed + build->failed;
+}
+
+PetscErrorCode LamBuildReport(LamBuild *b)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamPrintJSON(json_pack("{s:I, s:I, s:o, s:o, s:o}", "records", (json_int_t)LamBuildRecords(b), "failed",
+                                   (json_int_t)LamBuildFailed(b), "seconds", LamJSONReal(LamClock() - b->start),
+                                   "answered", LamJSONReal(LamRoundsAnswered(&b->rounds)), "error_95",
+                                   LamJSONReal(b->rounds.poll.error))));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Commit(LamBuild *b)
+{
+  const PetscReal begin = LamClock();
+  LamPending *p = &b->pending;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRecordWriterCommit(b->writer, p->n, p->keys, p->responses));
+  for (PetscInt i = 0; i < p->n; i++) b->failed += p->responses[i].status != LAM_CONVERGED;
+  b->added += p->n;
+  p->n = 0;
+  b->last_commit = LamClock();
+  b->commit_seconds = b->last_commit - begin;
+  b->all_commits += b->commit_seconds;
+  if (b->json) PetscCall(LamBuildReport(b));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamBuildTake(LamBuild *b, PetscInt64 key, const LamResponse *response)
+{
+  LamPending *p = &b->pending;
+
+  PetscFunctionBeginUser;
+  if (p->n == p->room) {
+    p->room = PetscMax(256, 2 * p->room);
+    PetscCall(PetscRealloc((size_t)p->room * sizeof(*p->keys), &p->keys));
+    PetscCall(PetscRealloc((size_t)p->room * sizeof(*p->responses), &p->responses));
+  }
+  p->keys[p->n] = key;
+  p->responses[p->n++] = *response;
+  PetscFunctionReturn(0);
+}
+
+/* The node that comes as number m in its round. */
+static PetscErrorCode TakeNode(LamBuild *b, LamRound *round, PetscInt m)
+{
+  const PetscInt i = round->order[m];
+
+  PetscFunctionBeginUser;
+  PetscCall(LamBuildTake(b, round->keys[i], &round->responses[i]));
+  round->taken[m] = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+/* What follows without a gap in the order of the file. */
+PetscErrorCode LamBuildTakeInTurn(LamBuild *b)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt r = 0; r < b->rounds.open; r++) {
+    LamRound *round = &b->rounds.round[r];
+
+    for (; round->next < round->missing; round->next++) {
+      if (round->taken[round->next]) continue;
+      if (!round->solved[round->order[round->next]]) PetscFunctionReturn(0);
+      PetscCall(TakeNode(b, round, round->next));
+      b->last_taken = LamClock();
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* All that is there, whatever is missing before it. */
+static PetscErrorCode TakeAll(LamBuild *b)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt r = 0; r < b->rounds.open; r++) {
+    LamRound *round = &b->rounds.round[r];
+
+    for (PetscInt m = round->next; m < round->missing; m++)
+      if (!round->taken[m] && round->solved[round->order[m]]) PetscCall(TakeNode(b, round, m));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamBuildCommitInTime(LamBuild *b)
+{
+  const PetscReal waited = LamClock() - b->last_commit;
+
+  PetscFunctionBeginUser;
+  if (LamClock() - b->last_taken > LATE) PetscCall(TakeAll(b));
+  if (b->pending.n >= COMMIT_RECORDS ||
+      (b->pending.n && waited >= PetscMax(COMMIT_SECONDS, COMMIT_SHARE * b->commit_seconds)))
+    PetscCall(Commit(b));
+  PetscFunctionReturn(0);
+}
+
+/* At a stop, and at the end: everything. */
+PetscErrorCode LamBuildCommitAll(void *ctx)
+{
+  LamBuild *b = ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(TakeAll(b));
+  if (b->pending.n) PetscCall(Commit(b));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,67 @@
+/*
+  Private to `lamella build`: a run of it.
+*/
+#ifndef LAM_BUILD_RUN_H
+#define LAM_BUILD_RUN_H
+
+#include "build.h"
+#include "node_work.h"
+
+/* What is to be committed next: records in the order of the file. */
+typedef struct {
+  PetscInt n, room;
+  PetscInt64 *keys;       /* [n]; owned */
+  LamResponse *responses; /* [n]; owned */
+} LamPending;
+
+typedef struct {
+  LamScene *scene;
+  const char *path;
+  PetscBool json, quiet;
+  PetscBool resume, salvage;
+  PetscInt group;     /* ranks that one rank hands out to; 0: as many as do */
+  PetscInt team_size; /* ranks that solve one RVE together */
+  LamShard shard;
+  PetscMPIInt rank, size;
+  MPI_Comm team, leaders; /* of this rank; leaders: the first ranks of all teams, MPI_COMM_NULL on the others */
+  LamRVE rve;
+  LamGrid grid;
+  LamNodeWork work;
+  PetscReal start;
+
+  /* on rank 0 */
+  LamRecordWriter writer;
+  LamProgress progress;
+  LamDatabase file; /* what was there before; NULL: nothing */
+  LamRounds rounds;
+  LamPending pending;
+  PetscBool opening;       /* rounds are being opened: what arrives meanwhile opens none */
+  PetscInt64 added, there; /* committed by this run; nodes that rounds have found in the file */
+  PetscInt64 failed;       /* without an answer, of those committed */
+  PetscReal last_commit, commit_seconds, all_commits; /* when it ended; what it took, and all of them, s */
+  PetscReal last_taken;                               /* when a record was last taken for the file in its turn */
+} LamBuild;
+
+/* Nodes in the file that this build has asked for, and those of them without an answer. */
+PetscInt64 LamBuildRecords(const LamBuild *build);
+PetscInt64 LamBuildFailed(const LamBuild *build);
+
+/* ---- build_start.c ---- */
+
+/* Rank 0: opens or makes the file, its grid and what comes with it; the rounds begin. Needs the RVE. */
+PetscErrorCode LamBuildStart(LamBuild *build);
+
+/* ---- build_commit.c: rank 0 ---- */
+
+/* One JSON object of how far the build is. */
+PetscErrorCode LamBuildReport(LamBuild *build);
+/* This record comes next in the file. */
+PetscErrorCode LamBuildTake(LamBuild *build, PetscInt64 key, const LamResponse *response);
+/* Takes what follows in the order of the rounds, up to the first node that is not solved. */
+PetscErrorCode LamBuildTakeInTurn(LamBuild *build);
+/* Commits what was taken where it is time. */
+PetscErrorCode LamBuildCommitInTime(LamBuild *build);
+/* At a stop, and at the end: takes all that is solved, and commits it. `build`: a LamBuild. */
+PetscErrorCode LamBuildCommitAll(void *build);
+
+#endif
