@@ -16,7 +16,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { TAG_WORK = 1, TAG_RESULT, TAG_SIGNAL, TAG_STOP, TAG_HOME };
+enum { TAG_WORK = 1, TAG_RESULT, TAG_DROP, TAG_SIGNAL, TAG_STOP, TAG_HOME };
 enum { SELF = 0, MOST_AT_ONCE = 64 };
 /* From a result to the next piece: rank 0 looks at its messages once in a factorisation. s */
 #define ANSWER_TIME 5e-3
@@ -30,7 +30,8 @@ enum { SELF = 0, MOST_AT_ONCE = 64 };
 /* A piece that came from above and has not been done. */
 typedef struct {
   LamBundleItem item;
-  char *bytes; /* owned */
+  char *bytes;       /* owned */
+  PetscBool dropped; /* another rank has done it */
 } Received;
 
 struct LamDispatch_s {
@@ -51,8 +52,10 @@ struct LamDispatch_s {
   void *input;         /* work space */
   void *desk, *result; /* of the piece under way; owned */
   PetscBool stopping, signalled, working;
-  PetscBool failed; /* rank 0 wants no more results */
-  PetscInt at_home; /* children that have gone home */
+  PetscInt64 current; /* the piece under way */
+  PetscBool dropped;  /* it has been done by another rank */
+  PetscBool failed;   /* rank 0 wants no more results */
+  PetscInt at_home;   /* children that have gone home */
   PetscReal pause, service;
   PetscErrorCode ierr; /* of a call from LamDispatchServeWaiting */
 };
@@ -76,8 +79,7 @@ static PetscErrorCode KeepInput(LamDispatch d, const LamBundleItem *item, const 
     PetscCall(PetscRealloc((size_t)d->room * sizeof(*d->inputs), &d->inputs));
   }
   input = &d->inputs[d->received++];
-  input->item = *item;
-  input->bytes = NULL;
+  *input = (Received){.item = *item};
   PetscCall(PetscMalloc(item->size, &input->bytes));
   if (item->size) memcpy(input->bytes, bytes, item->size);
   PetscFunctionReturn(0);
@@ -149,6 +151,40 @@ static PetscErrorCode SendResultsInTime(LamDispatch d)
   PetscFunctionReturn(0);
 }
 
+/* Another rank was faster: what is not done yet need not be. A result without bytes comes back. */
+static PetscErrorCode Drop(LamDispatch d, PetscInt child, PetscInt64 piece)
+{
+  const LamBundleItem item = {.piece = piece};
+  LamBundle bundle = {0};
+
+  PetscFunctionBeginUser;
+  if (d->computes && child == SELF) {
+    if (d->working && d->current == piece) d->dropped = PETSC_TRUE;
+    PetscFunctionReturn(0);
+  }
+  PetscCall(LamBundleAppend(&bundle, &item, NULL));
+  PetscCall(LamMailSend(&d->mail, d->child[child], TAG_DROP, &bundle));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TakeDrop(LamDispatch d)
+{
+  LamBundleItem item;
+  const void *bytes;
+  size_t at = 0;
+
+  PetscFunctionBeginUser;
+  while (LamBundleNext(&d->incoming, &at, &item, &bytes)) {
+    Received *input = FindInput(d, item.piece);
+    const PetscInt child = LamScheduleHolder(d->schedule, item.piece);
+
+    if (!input) continue; /* the result is on its way */
+    input->dropped = PETSC_TRUE;
+    if (child >= 0) PetscCall(Drop(d, child, item.piece));
+  }
+  PetscFunctionReturn(0);
+}
+
 /* A result from `child`: to the caller on rank 0, up the tree elsewhere. */
 static PetscErrorCode Deliver(LamDispatch d, PetscInt child, const LamBundleItem *item, const void *bytes)
 {
@@ -157,6 +193,11 @@ static PetscErrorCode Deliver(LamDispatch d, PetscInt child, const LamBundleItem
   PetscFunctionBeginUser;
   PetscCall(LamScheduleDone(d->schedule, child, LamClock(), item->piece, &first));
   if (!first || d->failed) PetscFunctionReturn(0);
+  if (LamScheduleStale(d->schedule)) {
+    const PetscInt other = LamScheduleHolder(d->schedule, item->piece);
+
+    if (other >= 0) PetscCall(Drop(d, other, item->piece));
+  }
   if (d->parent < 0) {
     d->unfinished--;
     PetscCall(d->job.worked(d->job.ctx, item->piece, bytes));
@@ -268,6 +309,9 @@ static PetscErrorCode Take(LamDispatch d, PetscMPIInt rank, PetscMPIInt tag)
     PetscCall(TakeResults(d, child));
     PetscCall(HandOutTo(d, child));
     break;
+  case TAG_DROP:
+    PetscCall(TakeDrop(d));
+    break;
   case TAG_SIGNAL:
     LamStopRequest();
     break;
@@ -311,7 +355,7 @@ PetscBool LamDispatchServeWaiting(void *dispatch)
     d->ierr = Serve(d, &any);
     d->service += LamClock() - begin;
   }
-  return (PetscBool)(d->ierr || d->stopping || LamStopRequested());
+  return (PetscBool)(d->ierr || d->stopping || d->dropped || LamStopRequested());
 }
 
 PetscReal LamDispatchServiceTime(LamDispatch dispatch)
@@ -321,9 +365,10 @@ PetscReal LamDispatchServiceTime(LamDispatch dispatch)
 
 /* ---- own work ---- */
 
-/* A piece that is given up leaves no result. */
+/* One that another rank has done leaves a result without bytes, one that is given up at a stop leaves none. */
 static PetscErrorCode DoPiece(LamDispatch d, PetscInt64 piece)
 {
+  const Received *input = FindInput(d, piece);
   LamBundleItem item;
   const void *bytes;
   size_t size = d->job.result_size;
@@ -332,12 +377,15 @@ static PetscErrorCode DoPiece(LamDispatch d, PetscInt64 piece)
   PetscCall(FindOut(d, SELF, piece, &item, &bytes));
   if (item.size) memcpy(d->desk, bytes, item.size); /* messages come in while it is worked on */
   memset(d->result, 0, d->job.result_size);
+  d->dropped = (PetscBool)(input && input->dropped);
+  d->current = piece;
   d->working = PETSC_TRUE;
-  PetscCall(d->job.work(d->job.ctx, piece, d->desk, d->result, &size));
+  if (!d->dropped) PetscCall(d->job.work(d->job.ctx, piece, d->desk, d->result, &size));
   d->working = PETSC_FALSE;
   PetscCall(d->ierr);
   if (d->stopping || LamStopRequested()) PetscFunctionReturn(0);
-  item.size = size;
+  item.size = d->dropped ? 0 : size;
+  d->dropped = PETSC_FALSE;
   PetscCall(Deliver(d, SELF, &item, d->result));
   PetscFunctionReturn(0);
 }

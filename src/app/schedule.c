@@ -47,7 +47,7 @@ struct LamSchedule_s {
   Child *child; /* [children]; owned */
   PetscReal answer;
   Class queue[CLASSES];
-  PetscInt64 waiting, out;
+  PetscInt64 waiting, out, stale;
   PetscInt occupied; /* ranks that have a piece */
   PetscReal waiting_cost;
   Work work; /* seconds: of one rank, summed over ranks */
@@ -279,7 +279,9 @@ static void MarkStale(LamSchedule s, PetscInt64 piece)
     Child *child = &s->child[c];
     const PetscInt i = FindHeld(child, piece);
 
-    if (i < child->n) child->held[i].stale = PETSC_TRUE;
+    if (i == child->n) continue;
+    child->held[i].stale = PETSC_TRUE;
+    s->stale++;
   }
 }
 
@@ -303,8 +305,21 @@ PetscErrorCode LamScheduleDone(LamSchedule schedule, PetscInt child, PetscReal n
   Remember(&schedule->work, held.cost, seconds * c->capacity);
   Judge(schedule, c);
   *first = (PetscBool)!held.stale;
+  schedule->stale -= held.stale;
   if (held.copied && !held.stale) MarkStale(schedule, piece);
   PetscFunctionReturn(0);
+}
+
+PetscInt LamScheduleHolder(LamSchedule schedule, PetscInt64 piece)
+{
+  for (PetscInt c = 0; c < schedule->children; c++)
+    if (FindHeld(&schedule->child[c], piece) < schedule->child[c].n) return c;
+  return -1;
+}
+
+PetscInt64 LamScheduleStale(LamSchedule schedule)
+{
+  return schedule->stale;
 }
 
 PetscReal LamScheduleCost(LamSchedule schedule, PetscInt child, PetscInt64 piece)

@@ -38,6 +38,10 @@ PetscErrorCode LamScheduleTake(LamSchedule schedule, PetscInt child, PetscReal n
 /* The result of a piece has come from `child`. *first: nobody was faster; the results of second copies are dropped. */
 PetscErrorCode LamScheduleDone(LamSchedule schedule, PetscInt child, PetscReal now, PetscInt64 piece, PetscBool *first);
 
+/* A child that has the piece, or -1; asked after a first result: one whose work on it is not wanted any more. */
+PetscInt LamScheduleHolder(LamSchedule schedule, PetscInt64 piece);
+/* Pieces that children have although their results have come. */
+PetscInt64 LamScheduleStale(LamSchedule schedule);
 /* The predicted cost of a piece that the child has. */
 PetscReal LamScheduleCost(LamSchedule schedule, PetscInt child, PetscInt64 piece);
 /* Pieces that nobody has yet, and those that children have. */
