@@ -107,3 +107,14 @@ if srun --mpi=list 2>&1 | grep -q pmix; then
   grep -q 'stopped by a signal' steps.log || fail "not saved at TERM: $(cat steps.log)"
   same steps.h5 bonded.h5 || fail "ranks started by srun: the build differs from an undisturbed one"
 fi
+
+# ---- an array of shards, one of which is stopped; their union waits for it, and gets what it lacks ----
+shards=$(job part --array=1-3 --ntasks=1 --output=part.%a.log "$build" contact.yaml part.%a.h5 --shard %a/3)
+union=$(job union --dependency=afterany:"$shards" "$merge" union.h5 part.{1..3}.h5)
+whole=$(job whole --dependency=afterok:"$union" --ntasks=2 --nodes=1 "$build" contact.yaml union.h5)
+by 60 more part.2.h5 0
+scancel --signal=USR1 --batch "${shards}_2"
+by 120 is "$whole" COMPLETED
+[ "$(of "${shards}_2" Restarts)" = 1 ] || fail "the stopped shard was not started again: $(cat part.2.log)"
+[[ ! $(of "$union" StartTime) < $(of "${shards}_2" EndTime) ]] || fail "the merge has not waited for the stopped shard"
+same contact.h5 union.h5 known || fail "the union of shards differs from a build in one: $(cat union.log whole.log)"

@@ -24,11 +24,12 @@ expect() {
   [ $status -eq "$wanted" ] || fail "exit status $status instead of $wanted: $*: $(cat out.txt err.txt)"
 }
 
-# same FILE FILE: the records with the same keys are the same, but for times; their order may differ
+# same FILE FILE [known]: the records with the same keys are the same, but for times; their order may differ; with `known`
+# the second file may have others besides
 if /usr/bin/python3 -c 'import h5py' 2>/dev/null; then
   same() {
-    /usr/bin/python3 - "$1" "$2" <<'PYTHON'
-import h5py, sys
+    /usr/bin/python3 - "$@" <<'PYTHON'
+import h5py, numpy, sys
 
 def records(path):
     with h5py.File(path) as f:
@@ -36,6 +37,8 @@ def records(path):
     return all[all["key"].argsort()]
 
 one, other = records(sys.argv[1]), records(sys.argv[2])
+if sys.argv[3:]:
+    other = other[numpy.isin(other["key"], one["key"])]
 assert len(one) == len(other), f"{len(one)} and {len(other)} records"
 for name in set(one.dtype.names) - {"seconds", "checksum"}:
     assert one[name].tobytes() == other[name].tobytes(), name  # bytes: a NaN equals itself
@@ -43,6 +46,7 @@ PYTHON
   }
 else
   same() {
+    [ $# = 2 ] || return 0 # answers depend on all nodes around
     for file in "$1" "$2"; do
       printf '1 0.02 0 1\n1.04 0.01 0.02 1.07 ; 0.015 MPa\n' >lines
       { "$lamella" query "$file" -F - --json --tangent <lines || [ $? = 3 ]; } | sed 's/"seconds": *[^,}]*//' >"$file.json"
