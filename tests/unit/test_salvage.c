@@ -287,6 +287,25 @@ static void a_changed_description_is_not_believed(void **state)
   AssertNothingLeft();
 }
 
+/* Its records are sound, but which node has which load? */
+static void a_damaged_grid_is_not_believed(void **state)
+{
+  size_t size, place;
+  unsigned char *bytes;
+
+  WriteSound(0);
+  bytes = Bytes(&size);
+  place = (size_t)((unsigned char *)memmem(bytes, size, "\"turgor\":0.2", 12) - bytes);
+  free(bytes);
+  Overwrite(place, 12, "\"turgor\":0.3");
+  assert_int_equal(SalvageShards(1), PETSC_ERR_USER_INPUT);
+  assert_non_null(strstr(message, "its grid cannot be made out"));
+  AssertNothingLeft();
+  WriteShard(1, 1, keys);
+  assert_int_equal(SalvageShards(2), 0);
+  AssertAllSound(COUNT);
+}
+
 static void a_damaged_record_of_an_earlier_type_is_left_out(void **state)
 {
   const PetscInt64 key = Node(1);
@@ -319,6 +338,7 @@ int main(void)
       MERGE_TEST(a_damaged_file_of_other_tissue_is_refused),
       MERGE_TEST(a_file_that_does_not_tell_its_tissue_is_left_out),
       MERGE_TEST(a_changed_description_is_not_believed),
+      MERGE_TEST(a_damaged_grid_is_not_believed),
       MERGE_TEST(a_damaged_record_of_an_earlier_type_is_left_out),
   };
 
