@@ -125,7 +125,7 @@ typedef struct {
   Makes `out` of all records of the files, databases of one microstructure and one grid (text of LAM_GRID_NAME), in
   their order; each question once: the same node, or the same load. Of two answers one that has converged is kept, else
   the first. Keys of a cache (LAM_CACHE_KEY) are given anew. Scales and scene are those of the first file, the accuracy
-  is the smallest. Records of earlier types get the present one. Files are read block by block: 30 bytes a record stay
+  is the smallest. Records of earlier types get the present one. Files are read block by block: 100 bytes a record stay
   in memory. Takes the lock of `out`, and gives it its name when it is complete and on the disk; it must not be there,
   or be one of the files. PETSC_ERR_USER_INPUT: files that do not belong together, or are damaged; PETSC_ERR_FILE_*.
 */
