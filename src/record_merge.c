@@ -263,19 +263,29 @@ static PetscErrorCode WriteTexts(const LamMerge *m, const char list[])
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode StartFile(LamMerge *m)
+static PetscErrorCode MakeFile(const LamMerge *m, const char list[])
 {
-  char *list;
-  size_t bytes;
+  const size_t bytes =
+      strlen(list) + (m->grid_text ? strlen(m->grid_text) : 0) + (m->scene.text ? strlen(m->scene.text) : 0);
 
   PetscFunctionBeginUser;
-  PetscCall(ListFiles(m, &list));
-  bytes = strlen(list) + (m->grid_text ? strlen(m->grid_text) : 0) + (m->scene.text ? strlen(m->scene.text) : 0);
   PetscCall(LamFileReserve(m->temporary, PETSC_TRUE, bytes));
   PetscCall(LamFileCreate(m->temporary, "database", &m->scene));
   PetscCall(LamFileReserve(m->temporary, PETSC_FALSE, bytes));
   PetscCall(WriteTexts(m, list));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode StartFile(LamMerge *m)
+{
+  PetscErrorCode ierr;
+  char *list;
+
+  PetscFunctionBeginUser;
+  PetscCall(ListFiles(m, &list));
+  ierr = MakeFile(m, list);
   PetscCall(PetscFree(list));
+  PetscCall(ierr);
   PetscCall(LamUnionCreate(m->temporary, &m->records));
   PetscFunctionReturn(0);
 }

@@ -27,24 +27,38 @@ static PetscErrorCode NameDamaged(const char path[], const char damaged[])
   PetscFunctionReturn(0);
 }
 
+/* Links are followed: the new file takes the place of the old one, not of the link. */
+static PetscErrorCode FindNames(const char path[], char real[PETSC_MAX_PATH_LEN], char damaged[PETSC_MAX_PATH_LEN])
+{
+  char *found = realpath(path, NULL);
+  const int error = errno;
+  PetscBool fits;
+
+  PetscFunctionBeginUser;
+  PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: %s", path, strerror(error));
+  snprintf(real, PETSC_MAX_PATH_LEN, "%s", found);
+  fits = (PetscBool)(snprintf(damaged, PETSC_MAX_PATH_LEN, "%s.damaged", found) < PETSC_MAX_PATH_LEN);
+  free(found);
+  PetscCheck(fits, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: the path is too long", path);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamBuildSalvage(const LamScene *scene, LamGrid grid, const char path[], void (*tell)(const char words[]),
                                LamMergeReport *report)
 {
-  char damaged[PETSC_MAX_PATH_LEN], *real = realpath(path, NULL), *text;
+  char real[PETSC_MAX_PATH_LEN], damaged[PETSC_MAX_PATH_LEN], *text;
   const char *const files[] = {damaged};
   LamMergeOptions options = {.salvage = PETSC_TRUE, .scene = scene, .stop = LamStopRequested, .tell = tell};
   PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
-  PetscCheck(real && snprintf(damaged, sizeof(damaged), "%s.damaged", real) < (int)sizeof(damaged), PETSC_COMM_SELF,
-             PETSC_ERR_FILE_OPEN, "%s: %s", path, real ? "the path is too long" : strerror(errno));
+  PetscCall(FindNames(path, real, damaged));
+  PetscCall(NameDamaged(real, damaged));
   PetscCall(LamGridGetText(grid, &text));
   options.grid = text;
-  PetscCall(NameDamaged(real, damaged));
   ierr = LamDatabaseMerge(real, 1, files, &options, report);
   if (IsSameFile(real, damaged)) unlink(damaged); /* nothing was made */
   PetscCall(PetscFree(text));
-  free(real);
   PetscCall(ierr);
   PetscFunctionReturn(0);
 }
