@@ -191,6 +191,7 @@ static PetscErrorCode TroubleTable(const WorkTable *table, PetscInt ranks)
   c.samples = 1000 * (PetscInt64)ranks;
   c.scale = 10;
   c.least_round = 0;
+  c.grain = 0; /* a rank that is slow is told by the number of its pieces */
   for (Speeds s = SPEED_UNIFORM; s <= SPEED_SLOW; s++) {
     c.speeds = s;
     PrintHead(titles[s]);
