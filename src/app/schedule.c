@@ -23,8 +23,8 @@ typedef struct {
 typedef struct {
   PetscInt64 piece;
   PetscReal cost;
-  PetscBool copied; /* another child has it, too */
-  PetscBool stale;  /* the other was faster */
+  PetscInt other;  /* a child that has it, too; -1: none */
+  PetscBool stale; /* the other was faster */
 } Held;
 
 /* What has been done, and in what time all ranks together would have done it. */
@@ -36,6 +36,7 @@ typedef struct {
 typedef struct {
   PetscInt capacity;
   PetscInt n, room;
+  PetscInt shared; /* of the n, those that another child has, too */
   Held *held;      /* [n], in the order they were given; owned */
   PetscReal since; /* the last result, or the piece that ended its idleness */
   Work work;       /* seconds: of the child, whatever its capacity */
@@ -99,7 +100,8 @@ static Range *Extreme(LamSchedule s, PetscBool longest, Class **owner)
 /* Takes the first piece of the range of the longest, or the last one of that of the shortest. */
 static Held Pop(LamSchedule s, Class *class, Range *range, PetscBool longest)
 {
-  const Held held = {.piece = longest ? range->first++ : range->first + range->count - 1, .cost = range->cost};
+  const Held held = {
+      .piece = longest ? range->first++ : range->first + range->count - 1, .cost = range->cost, .other = -1};
 
   range->count--;
   if (!range->count) {
@@ -194,8 +196,9 @@ static PetscErrorCode Hold(LamSchedule s, Child *child, PetscReal now, Held held
 /* The last piece of a child that nobody else has, from held[first] on; NULL: there is none. */
 static Held *LastUncopied(const Child *child, PetscInt first)
 {
+  if (child->n - first <= child->shared) return NULL;
   for (PetscInt i = child->n - 1; i >= first; i--)
-    if (!child->held[i].copied) return &child->held[i];
+    if (child->held[i].other < 0) return &child->held[i];
   return NULL;
 }
 
@@ -203,7 +206,7 @@ static Held *LastUncopied(const Child *child, PetscInt first)
   For a child that has nothing to do, a piece of another: one that is not begun, of the child that is longest without a
   result, or else any one of a slow child. NULL: there is none.
 */
-static Held *FindToCopy(LamSchedule s, const Child *taker)
+static Held *FindToCopy(LamSchedule s, const Child *taker, PetscInt *from)
 {
   PetscReal since = PETSC_INFINITY;
   Held *found = NULL;
@@ -216,6 +219,7 @@ static Held *FindToCopy(LamSchedule s, const Child *taker)
     held = LastUncopied(holder, holder->slow ? 0 : holder->capacity);
     if (!held) continue;
     found = held;
+    *from = c;
     since = holder->since;
   }
   return found;
@@ -226,12 +230,17 @@ static PetscErrorCode TakeCopies(LamSchedule s, Child *child, PetscReal now, Pet
 {
   PetscFunctionBeginUser;
   while (*n < most && child->n < child->capacity && !child->slow) {
-    Held *held = FindToCopy(s, child);
+    PetscInt from;
+    Held *held = FindToCopy(s, child, &from), copy;
 
     if (!held) break;
-    held->copied = PETSC_TRUE;
-    pieces[(*n)++] = held->piece;
-    PetscCall(Hold(s, child, now, *held));
+    held->other = (PetscInt)(child - s->child);
+    s->child[from].shared++;
+    child->shared++;
+    copy = *held;
+    copy.other = from;
+    pieces[(*n)++] = copy.piece;
+    PetscCall(Hold(s, child, now, copy));
   }
   PetscFunctionReturn(0);
 }
@@ -273,16 +282,14 @@ static PetscInt FindHeld(const Child *child, PetscInt64 piece)
 }
 
 /* The other child that has this piece need not hurry any more. */
-static void MarkStale(LamSchedule s, PetscInt64 piece)
+static void MarkStale(LamSchedule s, const Held *held)
 {
-  for (PetscInt c = 0; c < s->children; c++) {
-    Child *child = &s->child[c];
-    const PetscInt i = FindHeld(child, piece);
+  Child *child = &s->child[held->other];
+  const PetscInt i = FindHeld(child, held->piece);
 
-    if (i == child->n) continue;
-    child->held[i].stale = PETSC_TRUE;
-    s->stale++;
-  }
+  if (i == child->n) return;
+  child->held[i].stale = PETSC_TRUE;
+  s->stale++;
 }
 
 PetscErrorCode LamScheduleDone(LamSchedule schedule, PetscInt child, PetscReal now, PetscInt64 piece, PetscBool *first)
@@ -299,6 +306,7 @@ PetscErrorCode LamScheduleDone(LamSchedule schedule, PetscInt child, PetscReal n
   for (PetscInt k = i; k + 1 < c->n; k++) c->held[k] = c->held[k + 1];
   schedule->occupied -= c->n <= c->capacity;
   c->n--;
+  c->shared -= held.other >= 0;
   c->since = now;
   schedule->out--;
   Remember(&c->work, held.cost, seconds);
@@ -306,7 +314,7 @@ PetscErrorCode LamScheduleDone(LamSchedule schedule, PetscInt child, PetscReal n
   Judge(schedule, c);
   *first = (PetscBool)!held.stale;
   schedule->stale -= held.stale;
-  if (held.copied && !held.stale) MarkStale(schedule, piece);
+  if (held.other >= 0 && !held.stale) MarkStale(schedule, &held);
   PetscFunctionReturn(0);
 }
 
