@@ -188,7 +188,7 @@ static PetscErrorCode SalvageFiles(LamMerge *m)
   for (PetscInt i = 0; i < m->n && !ierr && !IsStopped(m); i++) ierr = TakeRest(m, grid, i);
   PetscCall(LamGridDestroy(&grid));
   PetscCall(ierr);
-  if (m->report->records || m->report->stopped) PetscFunctionReturn(0);
+  if (m->report->records || m->report->stopped || m->options->scene) PetscFunctionReturn(0); /* or begin afresh */
   PetscCheck(m->grid_text, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: its grid cannot be made out any more, nor is there a sound record of no grid; merge it with a sound "
              "database of the same build, or use build --resume --salvage with its scene",
