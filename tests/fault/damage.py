@@ -87,6 +87,8 @@ def check_salvage(fault, scene, sound):
         # the texts are lost: only the scene knows what the records are of
         shutil.move(DAMAGED, SALVAGED)
         status, told = fault.run(fault.command(scene, SALVAGED, options=["--resume", "--salvage"]))
+        if status and "not one sound record" in told and not sound:
+            return
         if status:
             raise Wrong(f"build --resume --salvage ends with {status}: {told}")
     elif status:
@@ -138,4 +140,5 @@ def main():
     fault.end(cases > 20)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -262,4 +262,5 @@ def main():
     fault.end(long)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -5,4 +5,4 @@ shim=$(realpath "$3")
 /usr/bin/python3 -c 'import h5py' 2>/dev/null || exit 77
 # file systems are mounted in a space of names of our own, where the system lets us have one
 for space in "unshare -m" "unshare -rm" ""; do $space true 2>/dev/null && break; done
-$space /usr/bin/python3 "$source/tests/fault/disk.py" "$lamella" "$shim" 2 40 ${LAMELLA_SEED:-1}
+$space /usr/bin/python3 "$source/tests/fault/disk.py" "$lamella" "$shim" 1 60 ${LAMELLA_SEED:-1}

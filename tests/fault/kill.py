@@ -82,12 +82,13 @@ def random_case(fault, seconds, k):
 
 
 def sweep(fault, scene, stride, do):
-    """A kill at every call that a build makes on its file, folder and lock."""
-    calls = fault.count(scene, PATH)
+    """A kill at every call that a build makes on its file, folder and lock; half: within every write."""
+    call = "write" if do == "half" else None
+    calls = fault.count(scene, PATH, call)
     for at in range(1 + random.randrange(stride), calls + 1, stride):
 
         def run():
-            fault.run(fault.command(scene, PATH, options=["--resume"]), fault.broken(PATH, None if do == "kill" else "write", at, do))
+            fault.run(fault.command(scene, PATH, options=["--resume"]), fault.broken(PATH, call, at, do))
             fault.check_kept(scene, PATH, fault.acknowledged("out"))
             fault.check_completes(scene, PATH)
 
@@ -124,4 +125,5 @@ def main():
     fault.end(long)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -3,4 +3,4 @@
 . "$(dirname "$0")/../cli/common.sh"
 shim=$(realpath "$3")
 /usr/bin/python3 -c 'import h5py' 2>/dev/null || exit 77
-/usr/bin/python3 "$source/tests/fault/kill.py" "$lamella" "$shim" 2 60 ${LAMELLA_SEED:-1}
+/usr/bin/python3 "$source/tests/fault/kill.py" "$lamella" "$shim" 1 70 ${LAMELLA_SEED:-1}
