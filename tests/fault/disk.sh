@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds on disks that are full or fail: some cases; disk_all.sh has all of them.
-. "$(dirname "$0")/../cli/common.sh"
 shim=$(realpath "$3")
+. "$(dirname "$0")/../cli/common.sh"
 /usr/bin/python3 -c 'import h5py' 2>/dev/null || exit 77
 # file systems are mounted in a space of names of our own, where the system lets us have one
 for space in "unshare -m" "unshare -rm" ""; do $space true 2>/dev/null && break; done

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds that are killed lose nothing: some instants; kill_all.sh has all of them.
-. "$(dirname "$0")/../cli/common.sh"
 shim=$(realpath "$3")
+. "$(dirname "$0")/../cli/common.sh"
 /usr/bin/python3 -c 'import h5py' 2>/dev/null || exit 77
 /usr/bin/python3 "$source/tests/fault/kill.py" "$lamella" "$shim" 1 70 ${LAMELLA_SEED:-1}
