@@ -3,7 +3,7 @@
     FAULT_PATH   the text, such as db.h5
     FAULT_CALL   which calls count: some of "write length sync name open close"; all where it is left out. length:
   ftruncate and posix_fallocate; name: rename and unlink; open: only for writing FAULT_AT     n, from 1 on; 0: none
-    FAULT_DO     kill: SIGKILL instead of the call; half: SIGKILL after half of a write; short: half of a write
+    FAULT_DO     kill: SIGKILL instead of the call; half: SIGKILL within a write, between pages; short: half of a write
   succeeds; or a number: the call fails with that errno FAULT_TIMES  how many calls from then on fail; 0: all
     FAULT_COUNT  a file that gets the number of calls so far
 */
@@ -81,14 +81,24 @@ static int IsHitFile(int fd, const char call[])
 
 /* ---- the calls ---- */
 
+/* About half of a write, as far as a kill can leave it: the system stops between pages. All of it where it lies in one.
+ */
+static size_t UpToPage(size_t size, off_t offset)
+{
+  const size_t first = offset > 0 ? (size_t)offset : 0, middle = (first + size / 2) / 4096 * 4096;
+
+  return middle > first ? middle - first : size;
+}
+
 static ssize_t Write(int fd, const void *bytes, size_t size, off_t offset)
 {
   if (IsHitFile(fd, "write")) {
     const int part = Fail();
 
     if (!part) return -1;
-    size = size > 1 ? size / 2 : size;
+    if (part == 's' && size > 1) size /= 2;
     if (part == 'h') {
+      size = UpToPage(size, offset);
       syscall(offset < 0 ? SYS_write : SYS_pwrite64, fd, bytes, size, offset);
       kill(getpid(), SIGKILL);
     }
