@@ -18,8 +18,10 @@
 
 enum { TAG_WORK = 1, TAG_RESULT, TAG_DROP, TAG_SIGNAL, TAG_STOP, TAG_HOME };
 enum { SELF = 0, MOST_AT_ONCE = 64 };
-/* From a result to the next piece: rank 0 looks at its messages once in a factorisation. s */
-#define ANSWER_TIME 5e-3
+/* A rank that works looks for messages so often at most, s: looking takes some time, too. */
+#define LOOK_TIME 2e-3
+/* From a result to the next piece, s: rank 0 may be deciding on a round or committing. */
+#define ANSWER_TIME 0.05
 /* A leader's bundle of results goes up when it is so large, or its first result so old, bytes and s. */
 #define BUNDLE_BYTES 65536
 #define BUNDLE_AGE 0.02
@@ -52,12 +54,12 @@ struct LamDispatch_s {
   void *input;         /* work space */
   void *desk, *result; /* of the piece under way; owned */
   PetscBool stopping, signalled, working;
-  PetscInt64 current; /* the piece under way */
-  PetscBool dropped;  /* it has been done by another rank */
-  PetscBool failed;   /* rank 0 wants no more results */
-  PetscInt at_home;   /* children that have gone home */
-  PetscReal pause, service;
-  PetscErrorCode ierr; /* of a call from LamDispatchServeWaiting */
+  PetscInt64 current;               /* the piece under way */
+  PetscBool dropped;                /* it has been done by another rank */
+  PetscBool failed;                 /* rank 0 wants no more results */
+  PetscInt at_home;                 /* children that have gone home */
+  PetscReal pause, service, looked; /* looked: when it last took messages while it worked */
+  PetscErrorCode ierr;              /* of a call from LamDispatchServeWaiting */
 };
 
 /* ---- pieces from above ---- */
@@ -351,9 +353,10 @@ PetscBool LamDispatchServeWaiting(void *dispatch)
   const PetscReal begin = LamClock();
   PetscBool any;
 
-  if (d->size > 1 && d->working && !d->ierr) {
+  if (d->size > 1 && d->working && !d->ierr && begin - d->looked >= LOOK_TIME) {
     d->ierr = Serve(d, &any);
-    d->service += LamClock() - begin;
+    d->looked = LamClock();
+    d->service += d->looked - begin;
   }
   return (PetscBool)(d->ierr || d->stopping || d->dropped || LamStopRequested());
 }
