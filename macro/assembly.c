@@ -7,6 +7,7 @@
 
   Reference: Bonet & Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 2nd ed., ch. 9.
 */
+#include <time.h>
 #include "macro_impl.h"
 
 static const PetscReal LARGEST_CHANGE = 0.75; /* of a deformation gradient in one step, Frobenius norm */
@@ -102,11 +103,30 @@ static PetscErrorCode DescribeTrouble(LamMacro macro, PetscInt64 failed, PetscIn
   PetscFunctionReturn(0);
 }
 
+/* Waits for the other ranks, which may learn of a request to stop from this one's asking. */
+static PetscErrorCode AwaitOthers(LamMacro macro)
+{
+  const struct timespec pause = {0, 200000};
+  MPI_Request request;
+  int done = 0;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Ibarrier(macro->comm, &request));
+  for (;;) {
+    PetscCallMPI(MPI_Test(&request, &done, MPI_STATUS_IGNORE));
+    if (done) break;
+    (void)macro->stop();
+    nanosleep(&pause, NULL);
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Whether any rank was asked to stop: a signal may reach only one of them. */
 static PetscErrorCode AskStop(LamMacro macro)
 {
   PetscFunctionBeginUser;
   if (!macro->stop) PetscFunctionReturn(0);
+  PetscCall(AwaitOthers(macro));
   macro->stopped = macro->stop();
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &macro->stopped, 1, MPIU_BOOL, MPI_LOR, macro->comm));
   PetscFunctionReturn(0);

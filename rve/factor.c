@@ -215,7 +215,7 @@ PetscErrorCode LamFactorDestroy(LamFactor *factor)
 
 /* ---- the other ranks ---- */
 
-static PetscErrorCode Await(MPI_Comm comm, Order *order)
+static PetscErrorCode Await(MPI_Comm comm, PetscBool (*waiting)(void *ctx), void *ctx, Order *order)
 {
   const struct timespec pause = {0, 200000};
   MPI_Request request;
@@ -225,7 +225,9 @@ static PetscErrorCode Await(MPI_Comm comm, Order *order)
   PetscCallMPI(MPI_Ibcast(order, 3, MPIU_INT, 0, comm, &request));
   while (!done) {
     PetscCallMPI(MPI_Test(&request, &done, MPI_STATUS_IGNORE));
-    if (!done) nanosleep(&pause, NULL);
+    if (done) break;
+    if (waiting) (void)waiting(ctx);
+    nanosleep(&pause, NULL);
   }
   PetscFunctionReturn(0);
 }
@@ -245,7 +247,7 @@ static PetscErrorCode Join(MPI_Comm comm, const Order *order)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamFactorServe(MPI_Comm comm)
+PetscErrorCode LamFactorServe(MPI_Comm comm, PetscBool (*waiting)(void *ctx), void *ctx)
 {
   PetscReal nothing[1] = {0.0};
   Order order;
@@ -255,7 +257,7 @@ PetscErrorCode LamFactorServe(MPI_Comm comm)
     PetscInt negative;
     PetscBool ok;
 
-    PetscCall(Await(comm, &order));
+    PetscCall(Await(comm, waiting, ctx, &order));
     if (order.type == ORDER_CREATE) PetscCall(Join(comm, &order));
     if (order.type == ORDER_NUMERIC) PetscCall(Numeric(Team[order.number], &negative, &ok));
     if (order.type == ORDER_SOLVE) PetscCall(Solve(Team[order.number], nothing, nothing));

@@ -20,8 +20,8 @@ PetscErrorCode LamFactorNumeric(LamFactor factor, PetscInt *negative, PetscBool 
 PetscErrorCode LamFactorSolve(LamFactor factor, PetscInt count, const PetscReal rhs[], PetscReal solution[]);
 PetscErrorCode LamFactorDestroy(LamFactor *factor);
 
-/* On the other ranks: helps until rank 0 calls LamFactorDismiss. */
-PetscErrorCode LamFactorServe(MPI_Comm comm);
+/* On the other ranks: helps until rank 0 calls LamFactorDismiss; `waiting` as for LamRVEServe. */
+PetscErrorCode LamFactorServe(MPI_Comm comm, PetscBool (*waiting)(void *ctx), void *ctx);
 PetscErrorCode LamFactorDismiss(MPI_Comm comm);
 
 #endif

@@ -36,7 +36,7 @@ static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], cons
     }
     PetscCall(LamRVESolve(direct->rve, &loads[i], state, &responses[i]));
     ++direct->responder->queries;
-    ++direct->responder->solves;
+    if (responses[i].status != LAM_OUT_OF_REACH) ++direct->responder->solves;
     if (!LamResponseHasFields(&responses[i])) ++direct->responder->failures;
     direct->responder->solve_seconds += responses[i].seconds;
   }

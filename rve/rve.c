@@ -9,10 +9,10 @@ PetscErrorCode LamRVECreate(MPI_Comm comm, LamRVE *rve)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamRVEServe(MPI_Comm comm)
+PetscErrorCode LamRVEServe(MPI_Comm comm, PetscBool (*waiting)(void *ctx), void *ctx)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamFactorServe(comm));
+  PetscCall(LamFactorServe(comm, waiting, ctx));
   PetscFunctionReturn(0);
 }
 

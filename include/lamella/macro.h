@@ -50,8 +50,9 @@ PetscErrorCode LamMacroGetPointCount(LamMacro macro, PetscInt *points);       /*
 PetscErrorCode LamMacroSetResponder(LamMacro macro, LamResponder *responder); /* borrows it */
 PetscErrorCode LamMacroSetMonitor(LamMacro macro, LamMacroMonitor monitor, void *ctx);
 /*
-  `stop` is asked after each batch of responses; true on any rank, the increment under way is given up and the run ends
-  with LAM_MACRO_STOPPED. Once true it must stay so. A responder may then leave its batch unfinished (LAM_OUT_OF_REACH).
+  `stop` is asked after each batch of responses, and while other ranks are still at theirs; true on any rank, the
+  increment under way is given up and the run ends with LAM_MACRO_STOPPED. Once true it must stay so. A responder may
+  then leave its batch unfinished (LAM_OUT_OF_REACH).
 */
 PetscErrorCode LamMacroSetStop(LamMacro macro, PetscBool (*stop)(void));
 /*

@@ -18,10 +18,12 @@ typedef struct LamRVEState_s *LamRVEState; /* positions of one material point an
 /*
   `comm`: the ranks that solve the RVE together. Of several, rank 0 makes all calls below; the others call LamRVEServe,
   which takes part in the factorisations of all RVEs of this communicator, and returns when rank 0 calls LamRVEDismiss.
+  `waiting` (or NULL) is called now and then while there is nothing to do, so that the rank can talk to others on other
+  communicators; what it returns has no effect.
   That pays from some 20,000 unknowns.
 */
 PetscErrorCode LamRVECreate(MPI_Comm comm, LamRVE *rve);
-PetscErrorCode LamRVEServe(MPI_Comm comm);
+PetscErrorCode LamRVEServe(MPI_Comm comm, PetscBool (*waiting)(void *ctx), void *ctx);
 PetscErrorCode LamRVEDismiss(MPI_Comm comm);
 /* Copies the description. along and through must be chosen. PETSC_ERR_USER_INPUT where it cannot be solved. */
 PetscErrorCode LamRVESetMicrostructure(LamRVE rve, const LamMicrostructure *micro);

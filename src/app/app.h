@@ -99,8 +99,15 @@ PetscErrorCode LamProgressEnd(LamProgress *progress);
 /* ---- signals.c: SIGINT, SIGTERM, SIGUSR1 ask the command to commit and stop ---- */
 PetscErrorCode LamSignalsInstall(void);
 PetscBool LamStopRequested(void);
+PetscBool LamStopInterrupt(void *ctx); /* the same, for LamRVESetInterrupt */
 /* As if SIGTERM had come: another rank has got a signal. */
 void LamStopRequest(void);
+/*
+  Between the two, which are collective, a signal that reaches one rank of `comm` is a request on all: a rank tells it
+  when it asks LamStopRequested, and the others learn it when they do.
+*/
+PetscErrorCode LamStopShare(MPI_Comm comm);
+PetscErrorCode LamStopShareEnd(void);
 int LamStopExitStatus(void); /* 130 after SIGINT, 143 after SIGTERM and SIGUSR1, else 0 */
 
 /* ---- plan.c: what a scene requires ---- */

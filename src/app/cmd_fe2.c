@@ -27,6 +27,7 @@ typedef struct {
   MPI_Comm comm;
   LamScene *scene;
   LamMacro macro;
+  PetscBool stopped; /* before it began: nothing is written */
   LamRVE rve;
   LamDatabase database;
   LamNodeChain chain; /* of the cache's nodes */
@@ -151,7 +152,6 @@ static PetscErrorCode Prepare(Run *run)
 
   PetscFunctionBeginUser;
   PetscCall(PetscTime(&run->start));
-  PetscCall(LamSignalsInstall());
   PetscCall(LamSceneRead(run->scene_path, &run->scene));
   PetscCall(LamMacroCreate(run->comm, &run->macro));
   PetscCall(LamMacroSetScene(run->macro, run->scene));
@@ -169,6 +169,7 @@ static PetscErrorCode Prepare(Run *run)
 /* A new database has no grid yet, nor has one that is older than the grid. */
 static PetscErrorCode GiveGrid(Run *run)
 {
+  PetscBool complete;
   LamGrid grid;
 
   PetscFunctionBeginUser;
@@ -179,8 +180,8 @@ static PetscErrorCode GiveGrid(Run *run)
             "lamella fe2: %s: its %" PetscInt_FMT
             " records belong to no grid; a grid is added, on which new ones lie\n",
             run->database_path, run->recorded);
-  /* not the solver that a signal stops: a grid is made from all its states or not at all */
-  PetscCall(LamSharedGridMake(run->comm, run->scene, &run->direct, run->database, &run->grid_text));
+  PetscCall(LamSharedGridMake(run->comm, run->scene, &run->solver, run->database, &run->grid_text, &complete));
+  run->stopped = (PetscBool)!complete;
   PetscFunctionReturn(0);
 }
 
@@ -209,6 +210,7 @@ static PetscErrorCode Connect(Run *run)
     PetscCall(LamRVESetMicrostructure(run->rve, &run->scene->micro));
     PetscCall(LamRVESetStrategy(run->rve, run->scene->strategy));
     PetscCall(LamRVESetUp(run->rve));
+    PetscCall(LamRVESetInterrupt(run->rve, LamStopInterrupt, NULL));
     /* behind a cache no point keeps a state: all its solves start from the reference */
     PetscCall(LamRVEResponderCreate(run->rve, run->response == RESPONSE_DIRECT ? points : 0, &run->direct));
     PetscCall(LamInterruptibleResponderCreate(&run->direct, LamStopRequested, &run->solver));
@@ -220,6 +222,7 @@ static PetscErrorCode Connect(Run *run)
   }
   if (run->response == RESPONSE_CACHE) {
     PetscCall(GiveGrid(run));
+    if (run->stopped) PetscFunctionReturn(0);
     PetscCall(CreateNodeSolver(run));
   }
   PetscCall(LamCacheResponderCreate(run->comm, run->database, run->rve ? &run->solver : NULL, &run->nodes,
@@ -486,6 +489,10 @@ static PetscErrorCode Solve(Run *run, int *exit_status)
   PetscFunctionBeginUser;
   PetscCall(Prepare(run));
   PetscCall(Connect(run));
+  if (run->stopped) {
+    *exit_status = LamStopExitStatus();
+    PetscFunctionReturn(0);
+  }
   PetscCall(OpenFilesOnRoot(run));
   PetscCall(SolveAndClose(run, exit_status));
   PetscFunctionReturn(0);

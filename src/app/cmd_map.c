@@ -138,7 +138,7 @@ static PetscErrorCode Follow(void *ctx, PetscInt64 index, const void *input, voi
   PathResult *path = result;
 
   PetscFunctionBeginUser;
-  PetscCall(LamMapFollow(m->scene, m->todo[index], path->points, &path->complete));
+  PetscCall(LamMapFollow(m->scene, m->todo[index], LamStopInterrupt, NULL, path->points, &path->complete));
   PetscFunctionReturn(0);
 }
 

@@ -252,6 +252,7 @@ static PetscErrorCode Prepare(Run *run)
   if (run->find_failure && contact) run->second_mesh = PETSC_TRUE; /* separation is judged on two */
   PetscCall(LamMeshesCreate(plan.unknowns < LAM_PARALLEL_UNKNOWNS ? PETSC_COMM_SELF : PETSC_COMM_WORLD, run->scene,
                             run->second_mesh ? 2 : 1, &run->meshes));
+  PetscCall(LamMeshesSetInterrupt(&run->meshes, LamStopInterrupt, NULL));
   PetscCall(LamRVESetMonitor(run->meshes.rve[0], run->monitor));
   PetscCall(LamRVEGetMesh(run->meshes.rve[0], &run->mesh));
   if (run->find_onset) PetscCall(LamOnsetCreate(&run->meshes, &run->onset));
@@ -279,6 +280,7 @@ static PetscErrorCode SolveStates(Run *run)
     LamResponse responses[2];
 
     PetscCall(LamMeshesSolve(&run->meshes, &run->scene->loads[run->solved], Control(run, run->solved + 1), responses));
+    if (run->meshes.stopped) break;
     run->solved++;
     if (responses[0].status != LAM_CONVERGED) run->failed++;
     if (run->find_onset) PetscCall(LamOnsetWatch(&run->onset, &run->meshes, run->solved, responses));
@@ -392,7 +394,7 @@ PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
     PetscCall(LamRVEDismiss(PETSC_COMM_WORLD));
     PetscCall(ierr);
   } else {
-    PetscCall(LamRVEServe(PETSC_COMM_WORLD));
+    PetscCall(LamRVEServe(PETSC_COMM_WORLD, LamStopInterrupt, NULL));
   }
   PetscFunctionReturn(0);
 }

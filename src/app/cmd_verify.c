@@ -66,6 +66,7 @@ static PetscErrorCode CreateRVE(Verify *v)
   PetscCall(LamRVESetMicrostructure(v->rve, &v->micro));
   PetscCall(LamRVESetStrategy(v->rve, v->strategy));
   PetscCall(LamRVESetUp(v->rve));
+  PetscCall(LamRVESetInterrupt(v->rve, LamStopInterrupt, NULL));
   PetscCall(LamRVEStateCreate(v->rve, &v->state));
   PetscFunctionReturn(0);
 }
@@ -83,10 +84,12 @@ static PetscErrorCode Solve(void *ctx, PetscInt64 index, const void *input, void
 
 static PetscErrorCode Arrive(void *ctx, PetscInt64 index, const void *result)
 {
+  const LamResponse *fresh = result;
   Verify *v = ctx;
 
   PetscFunctionBeginUser;
-  PetscCall(LamAuditCompare(&v->audit, (PetscInt)index, result));
+  if (fresh->status == LAM_OUT_OF_REACH) PetscFunctionReturn(0); /* stopped */
+  PetscCall(LamAuditCompare(&v->audit, (PetscInt)index, fresh));
   PetscCall(LamProgressUpdate(&v->progress, v->audit.solved, (PetscInt64)json_object_size(v->audit.unsolved)));
   PetscFunctionReturn(0);
 }

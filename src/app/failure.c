@@ -175,7 +175,7 @@ static PetscErrorCode Narrow(LamFailure *failure, const Way *way, Search *search
 {
   PetscFunctionBeginUser;
   *known = PETSC_TRUE;
-  while (search->high->share - search->low->share > RESOLUTION && !LamStopRequested()) {
+  while (search->high->share - search->low->share > RESOLUTION) {
     PetscReal excess;
 
     PetscCall(SolveAt(way, search->low, NextShare(search), point, known));
@@ -234,7 +234,7 @@ static PetscErrorCode Seek(LamFailure *failure, const Way *way, LamCriterion cri
   search.excess[1] = ExcessOf(failure, &search, &high);
   for (PetscInt k = 0; k < ATTEMPTS; k++) {
     PetscCall(Narrow(failure, way, &search, &point, &known));
-    if (!known || criterion != LAM_CRITERION_STABILITY || LamStopRequested()) break;
+    if (!known || criterion != LAM_CRITERION_STABILITY) break;
     PetscCall(SolveAt(way, &low, high.share, &point, &known));
     confirmed = (PetscBool)(!known || ExcessOf(failure, &search, &point) >= 0);
     if (confirmed) break;
@@ -295,10 +295,11 @@ static PetscErrorCode Approach(LamFailure *failure, const Way *way, Point *from,
   PetscFunctionBeginUser;
   PetscCall(KeepReason(failure, way->from + way->reach, to->responses));
   PetscCall(PointCreate(way->meshes, &point));
-  for (PetscInt k = 0; k < APPROACHES && !LamStopRequested(); k++) {
+  for (PetscInt k = 0; k < APPROACHES; k++) {
     PetscBool known;
 
     PetscCall(SolveAt(way, from, 0.5 * (from->share + unknown), &point, &known));
+    if (way->meshes->stopped) break;
     if (!known) {
       unknown = point.share;
       PetscCall(KeepReason(failure, way->from + way->reach * unknown, point.responses));
@@ -437,7 +438,7 @@ PetscErrorCode LamFailureConclude(LamFailure *failure)
   PetscFunctionBeginUser;
   if (!to_the_end && !failure->reason[0] && !(failure->program.stop_at_first && IsReached(failure)))
     PetscCall(PetscSNPrintf(failure->reason, sizeof(failure->reason), "stopped by a signal behind load factor %.4g",
-                            (double)failure->followed));
+                            (double)(isnan(failure->followed) ? 0 : failure->followed)));
   for (int c = 0; c < LAM_CRITERION_COUNT; c++) {
     const PetscReal factor = failure->onset[c].factor;
 
@@ -466,11 +467,12 @@ PetscErrorCode LamFailureFind(LamMeshes *meshes, const LamFailureProgram *progra
   PetscFunctionBeginUser;
   PetscCall(LamFailureCreate(meshes, program, failure));
   for (PetscInt m = 0; m < meshes->count; m++) PetscCall(LamRVEStateReset(meshes->rve[m], meshes->state[m]));
-  for (PetscInt k = 0; k < program->count && !failure->reason[0] && !LamStopRequested(); k++) {
+  for (PetscInt k = 0; k < program->count && !failure->reason[0]; k++) {
     LamResponse responses[2];
 
     if (program->stop_at_first && IsReached(failure)) break;
     PetscCall(LamMeshesSolve(meshes, &program->loads[k], program->controls ? &program->controls[k] : NULL, responses));
+    if (meshes->stopped) break;
     PetscCall(LamFailureWatch(failure, meshes, k + 1, responses));
   }
   PetscCall(LamFailureConclude(failure));

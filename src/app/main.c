@@ -149,6 +149,7 @@ PetscErrorCode LamAppInitialize(LamArgs *args)
   PetscCall(PetscInitialize(&args->petsc_argc, &args->petsc_argv, NULL, NULL));
   PetscCallMPI(MPI_Comm_dup(MPI_COMM_WORLD, &EndComm));
   PetscCall(LamSignalsInstall());
+  PetscCall(LamStopShare(MPI_COMM_WORLD));
   PetscFunctionReturn(0);
 }
 
@@ -185,6 +186,7 @@ static void AgreeAtEnd(PetscErrorCode code, int *status)
   }
   if (own && all[1] == mine[1]) TellError(code);
   *status = all[0];
+  (void)LamStopShareEnd();
   MPI_Comm_free(&EndComm);
 }
 

@@ -34,8 +34,9 @@ PetscInt LamMapCutCount(const LamScene *scene); /* points of one path */
 PetscInt64 LamMapPointNumber(const LamScene *scene, PetscInt path, PetscInt cut);
 /* RVE solves of one path at most, without those that bracket the failure. */
 PetscInt LamMapPathStates(const LamScene *scene);
-/* Follows a path; points [cuts]. *complete is false where a stop was requested before its end. */
-PetscErrorCode LamMapFollow(const LamScene *scene, PetscInt path, LamMapPoint points[], PetscBool *complete);
+/* Follows a path; points [cuts]. *complete is false where the interrupt (LamMeshesSetInterrupt) has ended it. */
+PetscErrorCode LamMapFollow(const LamScene *scene, PetscInt path, PetscBool (*interrupt)(void *ctx), void *ctx,
+                            LamMapPoint points[], PetscBool *complete);
 
 /* ---- map_table.c ---- */
 

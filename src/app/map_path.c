@@ -260,13 +260,15 @@ static PetscErrorCode Solve(LamMeshes *meshes, const Path *path, LamFailure *fai
 {
   PetscFunctionBeginUser;
   /* the first state also where the failure search has found no answer there: the record says why */
-  for (*solved = 0; *solved < path->count && !(*solved && IsDecided(failure)) && !LamStopRequested(); (*solved)++) {
+  for (*solved = 0; *solved < path->count && !(*solved && IsDecided(failure)); (*solved)++) {
     const PetscInt k = *solved;
     LamResponse both[2];
 
     PetscCall(LamMeshesSolve(meshes, &path->loads[k], path->controls ? &path->controls[k] : NULL, both));
+    if (meshes->stopped) break;
     responses[k] = both[0];
     PetscCall(LamFailureWatch(failure, meshes, k + 1, both));
+    if (meshes->stopped) break;
   }
   PetscFunctionReturn(0);
 }
@@ -322,7 +324,8 @@ static PetscErrorCode Judge(const LamScene *scene, const Path *path, const LamFa
 }
 
 /* The scene of the path has its loads, mesh and strengths. */
-static PetscErrorCode FollowOwn(const LamScene *own, PetscInt number, LamMapPoint points[], PetscBool *complete)
+static PetscErrorCode FollowOwn(const LamScene *own, PetscInt number, PetscBool (*interrupt)(void *ctx), void *ctx,
+                                LamMapPoint points[], PetscBool *complete)
 {
   LamFailureProgram program;
   LamResponse *responses;
@@ -337,9 +340,10 @@ static PetscErrorCode FollowOwn(const LamScene *own, PetscInt number, LamMapPoin
   program =
       (LamFailureProgram){own->micro.interface, &own->strength, path.count, path.loads, path.controls, PETSC_TRUE};
   PetscCall(LamMeshesCreate(PETSC_COMM_SELF, own, own->micro.interface == LAM_INTERFACE_CONTACT ? 2 : 1, &meshes));
+  PetscCall(LamMeshesSetInterrupt(&meshes, interrupt, ctx));
   PetscCall(LamFailureCreate(&meshes, &program, &failure));
   PetscCall(Solve(&meshes, &path, &failure, responses, &solved));
-  *complete = (PetscBool)!LamStopRequested();
+  *complete = (PetscBool)!meshes.stopped;
   PetscCall(LamFailureConclude(&failure));
   for (PetscInt c = 0; c < LamMapCutCount(own) && *complete; c++) {
     points[c].number = LamMapPointNumber(own, number, c);
@@ -353,13 +357,14 @@ static PetscErrorCode FollowOwn(const LamScene *own, PetscInt number, LamMapPoin
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamMapFollow(const LamScene *scene, PetscInt path, LamMapPoint points[], PetscBool *complete)
+PetscErrorCode LamMapFollow(const LamScene *scene, PetscInt path, PetscBool (*interrupt)(void *ctx), void *ctx,
+                            LamMapPoint points[], PetscBool *complete)
 {
   LamScene own;
 
   PetscFunctionBeginUser;
   PetscCall(CopyScene(scene, path, &own));
-  PetscCall(FollowOwn(&own, path, points, complete));
+  PetscCall(FollowOwn(&own, path, interrupt, ctx, points, complete));
   PetscCall(PetscFree(own.loads));
   PetscFunctionReturn(0);
 }

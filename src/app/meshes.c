@@ -29,6 +29,13 @@ PetscErrorCode LamMeshesCreate(MPI_Comm comm, const LamScene *scene, PetscInt co
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamMeshesSetInterrupt(LamMeshes *meshes, PetscBool (*interrupt)(void *ctx), void *ctx)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt m = 0; m < meshes->count; m++) PetscCall(LamRVESetInterrupt(meshes->rve[m], interrupt, ctx));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamMeshesDestroy(LamMeshes *meshes)
 {
   PetscFunctionBeginUser;
@@ -50,8 +57,14 @@ PetscErrorCode LamMeshesSolve(LamMeshes *meshes, const LamLoad *load, const LamS
   PetscFunctionBeginUser;
   PetscCall(LamRVESolveMixed(meshes->rve[0], &asked, control ? control : &none, meshes->state[0], first));
   if (LamResponseHasFields(first)) PetscCall(PetscArraycpy(meshes->F, first->load.F, 9));
-  for (PetscInt m = 1; m < meshes->count; m++)
+  for (PetscInt m = 1; m < meshes->count && first->status != LAM_OUT_OF_REACH; m++) {
     PetscCall(LamRVESolve(meshes->rve[m], &first->load, meshes->state[m], &responses[m]));
+    if (second->status == LAM_OUT_OF_REACH) *first = *second;
+  }
+  if (first->status == LAM_OUT_OF_REACH) {
+    meshes->stopped = PETSC_TRUE;
+    responses[1] = *first;
+  }
   if (meshes->count < 2 || !LamResponseHasFields(first) || !LamResponseHasFields(second)) PetscFunctionReturn(0);
   first->error_estimate = LamStressError(first->P, second->P);
   first->debonded_spread = fabs(first->debonded_fraction - second->debonded_fraction);

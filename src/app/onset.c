@@ -112,6 +112,11 @@ static PetscErrorCode Halve(LamOnset *onset, LamMeshes *meshes)
   PetscFunctionBeginUser;
   for (PetscInt m = 0; m < 2; m++) PetscCall(LamRVEStateCopy(onset->closed[m], meshes->state[m]));
   PetscCall(LamMeshesSolve(meshes, &load, NULL, responses));
+  if (meshes->stopped) {
+    onset->status = LAM_ONSET_STOPPED;
+    PetscCall(PetscStrncpy(onset->reason, "stopped by a signal", sizeof(onset->reason)));
+    PetscFunctionReturn(0);
+  }
   separation = LamSeparationOf(responses);
   if (separation == LAM_SEPARATION_UNKNOWN) {
     onset->status = LAM_ONSET_NOT_CONVERGED;
@@ -134,14 +139,8 @@ PetscErrorCode LamOnsetFind(LamOnset *onset, LamMeshes *meshes, PetscInt count)
     PetscCall(PetscSNPrintf(onset->reason, sizeof(onset->reason), "stopped by a signal before state %" PetscInt_FMT,
                             onset->last + 1));
   }
-  while (onset->status == LAM_ONSET_FOUND && onset->bracket[1] - onset->bracket[0] > RESOLUTION) {
-    if (LamStopRequested()) {
-      onset->status = LAM_ONSET_STOPPED;
-      PetscCall(PetscStrncpy(onset->reason, "stopped by a signal", sizeof(onset->reason)));
-    } else {
-      PetscCall(Halve(onset, meshes));
-    }
-  }
+  while (onset->status == LAM_ONSET_FOUND && onset->bracket[1] - onset->bracket[0] > RESOLUTION)
+    PetscCall(Halve(onset, meshes));
   PetscFunctionReturn(0);
 }
 

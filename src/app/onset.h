@@ -13,11 +13,14 @@ typedef struct {
   LamRVE rve[2];
   LamRVEState state[2]; /* the last states that have an answer */
   PetscReal F[9];       /* of the first mesh's */
+  PetscBool stopped;    /* a solve was, by the interrupt: its responses are LAM_OUT_OF_REACH and tell nothing */
 } LamMeshes;
 
 /* `scene` holds the mesh to use (along and through chosen); `comm` as for LamRVECreate. PETSC_ERR_USER_INPUT as
    LamRVESetMicrostructure. */
 PetscErrorCode LamMeshesCreate(MPI_Comm comm, const LamScene *scene, PetscInt count, LamMeshes *meshes);
+/* As LamRVESetInterrupt, for good: once it has said to stop it must go on saying so. */
+PetscErrorCode LamMeshesSetInterrupt(LamMeshes *meshes, PetscBool (*interrupt)(void *ctx), void *ctx);
 PetscErrorCode LamMeshesDestroy(LamMeshes *meshes);
 /*
   Solves on every mesh from its last state. With two, responses[0] gets what the second tells of it: error_estimate,

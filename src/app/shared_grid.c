@@ -2,11 +2,12 @@
   The grid of a new database on all ranks: rank 0 makes it, the others read what it would write to the file.
 */
 #include "shared_grid.h"
+#include "app.h"
 #include <string.h>
 
 /* What rank 0 sends. */
 typedef struct {
-  PetscMPIInt code, length, n; /* error code of rank 0; bytes of the text; records */
+  PetscMPIInt code, stopped, length, n; /* error code of rank 0; ...; bytes of the text; records */
   char *text;
   PetscInt64 *keys;
   LamResponse *records;
@@ -40,6 +41,11 @@ static PetscErrorCode MakeOnRoot(const LamScene *scene, LamResponder *solver, Ma
 
   PetscFunctionBeginUser;
   PetscCall(LamGridCreate(scene, solver, &grid));
+  made->stopped = LamStopRequested();
+  if (made->stopped) {
+    PetscCall(LamGridDestroy(&grid));
+    PetscFunctionReturn(0);
+  }
   PetscCall(LamGridGetText(grid, &text));
   PetscCall(LamGridGetRecords(grid, &n, &keys, &records));
   PetscCall(PetscMPIIntCast((PetscInt)strlen(text) + 1, &made->length));
@@ -56,14 +62,16 @@ static PetscErrorCode MakeOnRoot(const LamScene *scene, LamResponder *solver, Ma
 /* An error of rank 0, which has told it, is everyone's. */
 static PetscErrorCode Share(MPI_Comm comm, PetscMPIInt rank, Made *made)
 {
-  PetscMPIInt head[3] = {made->code, made->length, made->n}, bytes;
+  PetscMPIInt head[4] = {made->code, made->stopped, made->length, made->n}, bytes;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Bcast(head, 3, MPI_INT, 0, comm));
+  PetscCallMPI(MPI_Bcast(head, 4, MPI_INT, 0, comm));
   made->code = head[0];
   if (made->code) PetscFunctionReturn((PetscErrorCode)made->code);
-  made->length = head[1];
-  made->n = head[2];
+  made->stopped = head[1];
+  if (made->stopped) PetscFunctionReturn(0);
+  made->length = head[2];
+  made->n = head[3];
   if (rank) PetscCall(MadeCreate(made));
   PetscCall(PetscMPIIntCast((PetscInt)((size_t)made->n * sizeof(*made->records)), &bytes));
   PetscCallMPI(MPI_Bcast(made->text, made->length, MPI_CHAR, 0, comm));
@@ -73,7 +81,7 @@ static PetscErrorCode Share(MPI_Comm comm, PetscMPIInt rank, Made *made)
 }
 
 PetscErrorCode LamSharedGridMake(MPI_Comm comm, const LamScene *scene, LamResponder *solver, LamDatabase database,
-                                 char **text)
+                                 char **text, PetscBool *complete)
 {
   PetscMPIInt rank;
   LamGrid grid;
@@ -84,6 +92,8 @@ PetscErrorCode LamSharedGridMake(MPI_Comm comm, const LamScene *scene, LamRespon
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   if (!rank) made.code = (PetscMPIInt)MakeOnRoot(scene, solver, &made);
   PetscCall(Share(comm, rank, &made));
+  *complete = (PetscBool)!made.stopped;
+  if (!*complete) PetscFunctionReturn(0);
   PetscCall(LamGridFromText(scene->path, &scene->micro, made.text, &grid));
   PetscCall(LamDatabaseSetGrid(database, &grid));
   PetscCall(LamDatabaseAdd(database, made.n, made.keys, made.records));

@@ -9,9 +9,10 @@
 /*
   Gives a database without a grid the one for its scene: made on rank 0, whose `solver` (not collective) solves for it,
   the same on all ranks, with the records that came of it. *text: on rank 0 the layout, to be written to the database's
-  file as LAM_GRID_NAME before the records; the caller frees it. NULL elsewhere. Collective.
+  file as LAM_GRID_NAME before the records; the caller frees it. NULL elsewhere. *complete is PETSC_FALSE where a stop
+  was requested on rank 0: nothing is given then, for a grid is made from all its states or not at all. Collective.
 */
 PetscErrorCode LamSharedGridMake(MPI_Comm comm, const LamScene *scene, LamResponder *solver, LamDatabase database,
-                                 char **text);
+                                 char **text, PetscBool *complete);
 
 #endif
