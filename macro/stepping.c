@@ -17,7 +17,7 @@
   Reference: Wriggers, Nonlinear Finite Element Methods, ch. 5.
 */
 #include <math.h>
-#include <petsctime.h>
+#include <lamella/clock.h>
 #include "macro_impl.h"
 
 static const PetscReal RELATIVE_TOLERANCE = 1e-9, ABSOLUTE_TOLERANCE = 1e-10;
@@ -209,14 +209,13 @@ static void MeanIndicators(LamMacro macro, PetscReal sum[4], PetscReal *max_gap)
 }
 
 /* Completes the report of a converged step. */
-static PetscErrorCode FinishStep(LamMacro macro, PetscInt number, PetscReal load_factor, PetscLogDouble start)
+static PetscErrorCode FinishStep(LamMacro macro, PetscInt number, PetscReal load_factor, PetscReal start)
 {
   LamMacroStep *step = &macro->step;
   LamResponder *responder = macro->responder, *before = &macro->counted;
   PetscReal sum[4];
   PetscInt64 counts[4] = {responder->queries - before->queries, responder->hits - before->hits,
                           responder->solves - before->solves, responder->failures - before->failures};
-  PetscLogDouble now;
 
   PetscFunctionBeginUser;
   step->step = number;
@@ -233,24 +232,22 @@ static PetscErrorCode FinishStep(LamMacro macro, PetscInt number, PetscReal load
   step->solves = counts[2];
   step->failures = counts[3];
   step->solve_seconds = responder->solve_seconds - before->solve_seconds;
-  PetscCall(PetscTime(&now));
-  step->seconds = now - start;
+  step->seconds = LamClock() - start;
   PetscFunctionReturn(0);
 }
 
 /* Starts the report of a step; the work adds up over the steps. */
-static PetscErrorCode StartStep(LamMacro macro, PetscLogDouble *start)
+static PetscErrorCode StartStep(LamMacro macro, PetscReal *start)
 {
   PetscFunctionBeginUser;
   macro->step.newton_iterations = macro->step.cutbacks = 0;
   macro->counted = *macro->responder;
-  PetscCall(PetscTime(start));
+  *start = LamClock();
   PetscFunctionReturn(0);
 }
 
 /* Hands the step to the monitor. */
-static PetscErrorCode Report(LamMacro macro, PetscInt number, PetscReal load_factor, PetscLogDouble start,
-                             PetscBool *stop)
+static PetscErrorCode Report(LamMacro macro, PetscInt number, PetscReal load_factor, PetscReal start, PetscBool *stop)
 {
   PetscFunctionBeginUser;
   PetscCall(FinishStep(macro, number, load_factor, start));
@@ -271,8 +268,8 @@ static PetscErrorCode DescribeEnd(LamMacro macro, PetscInt number, Stage reached
 }
 
 /* The run ends within a step. The increments that converged since the last report were dear: they are reported. */
-static PetscErrorCode EndWithinStep(LamMacro macro, PetscInt number, Stage reported, Stage reached,
-                                    PetscLogDouble start, char message[LAM_MESSAGE_LENGTH])
+static PetscErrorCode EndWithinStep(LamMacro macro, PetscInt number, Stage reported, Stage reached, PetscReal start,
+                                    char message[LAM_MESSAGE_LENGTH])
 {
   const PetscInt first = macro->scene->macro.inflate ? 0 : 1;
   PetscBool ends = PETSC_TRUE;
@@ -290,7 +287,7 @@ PetscErrorCode LamMacroSolve(LamMacro macro, LamMacroReason *reason, char messag
   Stage reported = {0, 0}, stage = {0, 0}, to = {1, 0};
   PetscBool converged, stop = PETSC_FALSE;
   PetscInt number = 0;
-  PetscLogDouble start;
+  PetscReal start;
 
   PetscFunctionBeginUser;
   PetscCheck(macro->responder, macro->comm, PETSC_ERR_ORDER, "call LamMacroSetResponder() first");

@@ -9,7 +9,7 @@
   nothing stable is found.
 */
 #include "mixed.h"
-#include <petsctime.h>
+#include <lamella/clock.h>
 
 static const char *const component_names[9] = {"11", "12", "13", "21", "22", "23", "31", "32", "33"};
 
@@ -133,7 +133,7 @@ static PetscErrorCode SolveTiers(LamRVE rve, const LamLoad *load, const LamStres
 PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStressControl *control, LamRVEState state,
                                 LamResponse *response)
 {
-  PetscLogDouble begin, end;
+  const PetscReal begin = LamClock();
   PetscBool any = PETSC_FALSE;
 
   PetscFunctionBeginUser;
@@ -142,7 +142,6 @@ PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStress
     PetscCall(LamRVESolve(rve, load, state, response));
     PetscFunctionReturn(0);
   }
-  PetscCall(PetscTime(&begin));
   PetscCall(LamBeginResponse(rve, load, state, response));
   PetscCall(LamCheckLoad(load, response->reason, sizeof(response->reason)));
   if (!response->reason[0]) PetscCall(CheckControl(control, response->reason, sizeof(response->reason)));
@@ -153,7 +152,6 @@ PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStress
   if (!LamResponseHasFields(response)) /* not known */
     for (PetscInt i = 0; i < 9; ++i)
       if (control->given[i]) response->load.F[i] = NAN;
-  PetscCall(PetscTime(&end));
-  response->seconds = end - begin;
+  response->seconds = LamClock() - begin;
   PetscFunctionReturn(0);
 }

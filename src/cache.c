@@ -18,7 +18,7 @@
   table answers, iterations that step to and fro between two answers would not end.
 */
 #include <lamella/cache.h>
-#include <petsctime.h>
+#include <lamella/clock.h>
 #include <stdlib.h>
 #include "gather.h"
 #include "rounded_load.h"
@@ -140,16 +140,14 @@ static PetscErrorCode GetNewest(Cache *cache)
 
 static PetscErrorCode SolveNodes(Cache *cache, PetscInt n, const PetscInt64 keys[], LamResponse responses[])
 {
-  PetscLogDouble start, end;
+  const PetscReal start = LamClock();
 
   PetscFunctionBeginUser;
-  PetscCall(PetscTime(&start));
   for (PetscInt k = 0; k < n; k++) {
     PetscCall(cache->nodes->solve(cache->nodes->ctx, keys[k], &responses[k]));
     if (responses[k].status != LAM_OUT_OF_REACH) cache->self->solves++;
   }
-  PetscCall(PetscTime(&end));
-  cache->self->solve_seconds += end - start;
+  cache->self->solve_seconds += LamClock() - start;
   PetscFunctionReturn(0);
 }
 

@@ -3,7 +3,7 @@
 */
 #include "database_internal.h"
 #include <math.h>
-#include <petsctime.h>
+#include <lamella/clock.h>
 #include <stdio.h>
 
 PetscBool LamQuestionIsGood(const LamLoad *load, LamResponse *r)
@@ -30,15 +30,13 @@ PetscBool LamQuestionIsGood(const LamLoad *load, LamResponse *r)
 static PetscErrorCode AskScattered(LamDatabase database, const LamLoad *load, PetscReal radius, PetscReal accuracy,
                                    LamResponse *response)
 {
-  PetscLogDouble start, end;
+  const PetscReal start = LamClock();
 
   PetscFunctionBeginUser;
-  PetscCall(PetscTime(&start));
   PetscCall(LamResponseInit(load, response));
   response->source = LAM_SOURCE_DATABASE;
   if (LamQuestionIsGood(load, response)) PetscCall(LamScatterQuery(database, load, radius, accuracy, response));
-  PetscCall(PetscTime(&end));
-  response->seconds = end - start;
+  response->seconds = LamClock() - start;
   PetscFunctionReturn(0);
 }
 

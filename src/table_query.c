@@ -9,7 +9,7 @@
 */
 #include "table.h"
 #include <math.h>
-#include <petsctime.h>
+#include <lamella/clock.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -351,17 +351,15 @@ static void Answer(LamTable table, Place *place, PetscReal accuracy, LamResponse
 
 PetscErrorCode LamTableQuery(LamTable table, const LamLoad *load, PetscReal accuracy, LamResponse *response)
 {
-  PetscLogDouble start, end;
+  const PetscReal start = LamClock();
   Place place;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscTime(&start));
   PetscCall(LamResponseInit(load, response));
   response->source = LAM_SOURCE_DATABASE;
   if (LamQuestionIsGood(load, response) && Locate(table, load, &place, response))
     Answer(table, &place, accuracy, response);
-  PetscCall(PetscTime(&end));
-  response->seconds = end - start;
+  response->seconds = LamClock() - start;
   PetscFunctionReturn(0);
 }
 

@@ -89,7 +89,7 @@ PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales 
 typedef struct {
   PetscBool on;
   PetscInt64 total, first; /* first: done at the first update */
-  PetscLogDouble start, drawn;
+  PetscReal start, drawn;
 } LamProgress;
 PetscErrorCode LamProgressStart(LamProgress *progress, PetscInt64 total, PetscBool quiet);
 void LamProgressSetTotal(LamProgress *progress, PetscInt64 total);

@@ -44,7 +44,7 @@ PetscErrorCode LamAuditDestroy(LamAudit *audit);
 PetscErrorCode LamAuditCompare(LamAudit *audit, PetscInt i, const LamResponse *fresh);
 
 /* ---- audit_report.c ---- */
-PetscErrorCode LamAuditPrint(const LamAudit *audit, const char path[], PetscLogDouble seconds, PetscMPIInt ranks);
-PetscErrorCode LamAuditToJSON(const LamAudit *audit, const char path[], PetscLogDouble seconds, json_t **object);
+PetscErrorCode LamAuditPrint(const LamAudit *audit, const char path[], PetscReal seconds, PetscMPIInt ranks);
+PetscErrorCode LamAuditToJSON(const LamAudit *audit, const char path[], PetscReal seconds, json_t **object);
 
 #endif

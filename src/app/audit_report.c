@@ -154,7 +154,7 @@ static void AddFigures(const Summary *s, json_t *object)
   }
 }
 
-PetscErrorCode LamAuditToJSON(const LamAudit *a, const char path[], PetscLogDouble seconds, json_t **object)
+PetscErrorCode LamAuditToJSON(const LamAudit *a, const char path[], PetscReal seconds, json_t **object)
 {
   Summary s;
   json_t *o;
@@ -203,7 +203,7 @@ static void PrintAccuracy(const LamAudit *a)
     printf("%-16s any\n", "accuracy");
 }
 
-static void PrintQuestions(const LamAudit *a, PetscLogDouble seconds, PetscMPIInt ranks)
+static void PrintQuestions(const LamAudit *a, PetscReal seconds, PetscMPIInt ranks)
 {
   const PetscReal MPa = 1e-6 * a->from->scales.stress, *turgor = a->box.turgor;
 
@@ -254,7 +254,7 @@ static void PrintWorst(const LamAudit *a, PetscInt worst)
          (double)(100 * a->results[worst].error), (double)(100 * a->results[worst].estimate));
 }
 
-PetscErrorCode LamAuditPrint(const LamAudit *a, const char path[], PetscLogDouble seconds, PetscMPIInt ranks)
+PetscErrorCode LamAuditPrint(const LamAudit *a, const char path[], PetscReal seconds, PetscMPIInt ranks)
 {
   Summary s;
 

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
-#include <petsctime.h>
+#include <lamella/clock.h>
 #include <unistd.h>
 #include "fe2_file.h"
 #include "interruptible.h"
@@ -45,7 +45,7 @@ typedef struct {
   /* totals of the converged steps */
   PetscInt64 queries, hits, solves, failures;
   PetscInt steps, newton_iterations;
-  PetscLogDouble start;
+  PetscReal start;
 } Run;
 
 /* Makes an error of rank 0 everyone's. */
@@ -151,7 +151,7 @@ static PetscErrorCode Prepare(Run *run)
   LamPlan plan;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscTime(&run->start));
+  run->start = LamClock();
   PetscCall(LamSceneRead(run->scene_path, &run->scene));
   PetscCall(LamMacroCreate(run->comm, &run->macro));
   PetscCall(LamMacroSetScene(run->macro, run->scene));
@@ -330,14 +330,11 @@ static void PrintRow(const Run *run, const LamMacroStep *step)
 
 static PetscErrorCode PrintTotals(const Run *run)
 {
-  PetscLogDouble now;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscTime(&now));
   printf("%" PetscInt_FMT " steps, %" PetscInt_FMT " Newton iterations, %lld queries, %lld hits, %lld solves, "
          "%lld failures, %.3g s; response %s\n",
          run->steps, run->newton_iterations, (long long)run->queries, (long long)run->hits, (long long)run->solves,
-         (long long)run->failures, now - run->start, ResponseNames[run->response]);
+         (long long)run->failures, LamClock() - run->start, ResponseNames[run->response]);
   PetscFunctionReturn(0);
 }
 

@@ -9,7 +9,7 @@
 */
 #include "dispatch.h"
 #include "map.h"
-#include <petsctime.h>
+#include <lamella/clock.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -37,7 +37,7 @@ typedef struct {
   LamMapPoint *waiting; /* [paths cuts], of them `waiting_count` not committed yet; owned */
   PetscInt waiting_count, solved, old;
   LamProgress progress;
-  PetscLogDouble start, last_commit;
+  PetscReal start, last_commit;
 } Map;
 
 /* ---- what is told of a point ---- */
@@ -87,7 +87,7 @@ static PetscErrorCode Commit(Map *m)
   PetscInt64 *keys;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscTime(&m->last_commit));
+  m->last_commit = LamClock();
   if (!m->waiting_count) PetscFunctionReturn(0);
   PetscCall(PetscMalloc2(m->waiting_count, &keys, m->waiting_count, &responses));
   for (PetscInt i = 0; i < m->waiting_count; i++) {
@@ -116,7 +116,6 @@ static PetscInt CountMode(const Map *m, PetscInt mode)
 static PetscErrorCode Arrive(void *ctx, PetscInt64 index, const void *result)
 {
   const PathResult *path = result;
-  PetscLogDouble now;
   Map *m = ctx;
 
   PetscFunctionBeginUser;
@@ -125,8 +124,7 @@ static PetscErrorCode Arrive(void *ctx, PetscInt64 index, const void *result)
   PetscCall(PetscArraycpy(m->waiting + m->waiting_count, path->points, m->cuts));
   m->waiting_count += m->cuts;
   m->solved += m->cuts;
-  PetscCall(PetscTime(&now));
-  if (now - m->last_commit >= COMMIT_SECONDS) PetscCall(Commit(m));
+  if (LamClock() - m->last_commit >= COMMIT_SECONDS) PetscCall(Commit(m));
   PetscCall(LamProgressUpdate(&m->progress, m->old + m->solved, CountMode(m, LAM_FAILURE_UNKNOWN)));
   PetscFunctionReturn(0);
 }
@@ -216,14 +214,11 @@ static void PrintLetters(const Map *m)
 
 static PetscErrorCode Summary(const Map *m)
 {
-  PetscLogDouble now;
-
   PetscFunctionBeginUser;
   if (m->json) PetscFunctionReturn(0);
-  PetscCall(PetscTime(&now));
   PrintLetters(m);
   printf("%" PetscInt_FMT " of %" PetscInt_FMT " points (%" PetscInt_FMT " new), %.3g s on %d rank%s\n",
-         m->old + m->solved, LamMapPointCount(m->scene), m->solved, now - m->start, (int)m->ranks,
+         m->old + m->solved, LamMapPointCount(m->scene), m->solved, LamClock() - m->start, (int)m->ranks,
          m->ranks > 1 ? "s" : "");
   if (m->old + m->solved) printf("wrote %s\n", m->path);
   PetscFunctionReturn(0);
@@ -315,7 +310,7 @@ static PetscErrorCode Prepare(Map *m)
   m->paths = LamMapPathCount(m->scene);
   m->cuts = LamMapCutCount(m->scene);
   PetscCall(PetscCalloc1(m->paths, &m->todo));
-  PetscCall(PetscTime(&m->start));
+  m->start = LamClock();
   m->last_commit = m->start;
   PetscCall(
       LamDispatchCreate(PETSC_COMM_WORLD,

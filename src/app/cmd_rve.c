@@ -5,7 +5,7 @@
   further ranks help it to factor the matrices of large RVEs, else they wait.
 */
 #include "failure.h"
-#include <petsctime.h>
+#include <lamella/clock.h>
 #include <math.h>
 #include <string.h>
 
@@ -21,7 +21,7 @@ typedef struct {
   LamRecordWriter writer; /* NULL without -o */
   LamProgress progress;
   PetscInt solved, failed;
-  PetscLogDouble start;
+  PetscReal start;
 } Run;
 
 /* ---- the file ---- */
@@ -216,13 +216,10 @@ static PetscErrorCode Tell(Run *run, PetscInt number, const LamResponse response
 
 static PetscErrorCode TellEnd(const Run *run)
 {
-  PetscLogDouble now;
-
   PetscFunctionBeginUser;
   if (run->json) PetscFunctionReturn(0);
-  PetscCall(PetscTime(&now));
   printf("%" PetscInt_FMT " of %" PetscInt_FMT " states solved, %" PetscInt_FMT " failed, %.3g s\n",
-         run->solved - run->failed, run->scene->load_count, run->failed, now - run->start);
+         run->solved - run->failed, run->scene->load_count, run->failed, LamClock() - run->start);
   if (run->out_path) printf("wrote %s\n", run->out_path);
   PetscFunctionReturn(0);
 }
@@ -331,7 +328,7 @@ static PetscErrorCode RunOnRoot(Run *run, int *exit_status)
   PetscErrorCode ierr = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscTime(&run->start));
+  run->start = LamClock();
   PetscCall(LamSceneRead(run->scene_path, &run->scene));
   if (!OptionsFit(run)) {
     *exit_status = LAM_EXIT_USAGE;

@@ -5,7 +5,7 @@
 */
 #include "audit.h"
 #include "dispatch.h"
-#include <petsctime.h>
+#include <lamella/clock.h>
 
 enum { DEFAULT_SAMPLES = 200 };
 
@@ -16,7 +16,7 @@ typedef struct {
   PetscReal accuracy; /* 0: that of the database */
   LamDispatch dispatch;
   PetscMPIInt rank, ranks;
-  PetscLogDouble start;
+  PetscReal start;
 
   /* every rank */
   LamMicrostructure micro;
@@ -121,16 +121,14 @@ static PetscErrorCode RunRoot(Verify *v)
 
 static PetscErrorCode Report(Verify *v)
 {
-  PetscLogDouble now;
   json_t *object;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscTime(&now));
   if (!v->json) {
-    PetscCall(LamAuditPrint(&v->audit, v->path, now - v->start, v->ranks));
+    PetscCall(LamAuditPrint(&v->audit, v->path, LamClock() - v->start, v->ranks));
     PetscFunctionReturn(0);
   }
-  PetscCall(LamAuditToJSON(&v->audit, v->path, now - v->start, &object));
+  PetscCall(LamAuditToJSON(&v->audit, v->path, LamClock() - v->start, &object));
   PetscCall(LamPrintJSON(object));
   PetscFunctionReturn(0);
 }
@@ -213,7 +211,7 @@ PetscErrorCode LamCommandVerify(LamArgs *args, int *exit_status)
                             &v.path, &done, exit_status));
   if (done || !ReadValues(&v, exit_status)) PetscFunctionReturn(0);
   PetscCall(LamAppInitialize(args));
-  PetscCall(PetscTime(&v.start));
+  v.start = LamClock();
   PetscCall(LamDispatchCreate(
       PETSC_COMM_WORLD, &(LamDispatchJob){&v, .result_size = sizeof(LamResponse), .work = Solve, .worked = Arrive}, 0,
       &v.dispatch));

@@ -19,7 +19,7 @@
 #include <sundials/sundials_version.h>
 #include <time.h>
 #include <unistd.h>
-#include <petsctime.h>
+#include <lamella/clock.h>
 #ifdef __SANITIZE_ADDRESS__
 #include <sanitizer/lsan_interface.h>
 #endif
@@ -157,11 +157,11 @@ PetscErrorCode LamAppInitialize(LamArgs *args)
 static PetscBool AwaitOthers(MPI_Request *request, double patience)
 {
   const struct timespec pause = {0, 1000000}; /* ranks that have nothing to do leave the processor to the others */
-  const double start = MPI_Wtime();
+  const double start = LamClock();
   int done = 0;
 
   while (MPI_Test(request, &done, MPI_STATUS_IGNORE) == MPI_SUCCESS && !done) {
-    if (patience >= 0 && MPI_Wtime() - start > patience) return PETSC_FALSE;
+    if (patience >= 0 && LamClock() - start > patience) return PETSC_FALSE;
     nanosleep(&pause, NULL);
   }
   return (PetscBool)done;

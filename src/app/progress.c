@@ -2,13 +2,13 @@
   Progress for a person who waits: a bar, the rate and the time left, on a terminal only.
 */
 #include "app.h"
-#include <petsctime.h>
+#include <lamella/clock.h>
 #include <unistd.h>
 
 enum { BAR_WIDTH = 24 };
 #define REDRAW_SECONDS 0.1
 
-static void PrintDuration(PetscLogDouble seconds)
+static void PrintDuration(PetscReal seconds)
 {
   const long s = (long)(seconds + 0.5);
 
@@ -22,7 +22,7 @@ PetscErrorCode LamProgressStart(LamProgress *progress, PetscInt64 total, PetscBo
 {
   PetscFunctionBeginUser;
   *progress = (LamProgress){.on = (PetscBool)(!quiet && LamAppIsRoot() && isatty(STDERR_FILENO)), .total = total};
-  PetscCall(PetscTime(&progress->start));
+  progress->start = LamClock();
   PetscFunctionReturn(0);
 }
 
@@ -33,12 +33,12 @@ void LamProgressSetTotal(LamProgress *progress, PetscInt64 total)
 
 PetscErrorCode LamProgressUpdate(LamProgress *progress, PetscInt64 done, PetscInt64 failed)
 {
-  PetscLogDouble now, rate;
+  PetscReal now, rate;
   int filled;
 
   PetscFunctionBeginUser;
   if (!progress->on) PetscFunctionReturn(0);
-  PetscCall(PetscTime(&now));
+  now = LamClock();
   if (done < progress->total && now - progress->drawn < REDRAW_SECONDS) PetscFunctionReturn(0);
   if (!progress->drawn) progress->first = done; /* what an earlier run has done says nothing of the rate */
   progress->drawn = now;
@@ -46,10 +46,10 @@ PetscErrorCode LamProgressUpdate(LamProgress *progress, PetscInt64 done, PetscIn
   fputs("\r\033[K[", stderr);
   for (int i = 0; i < BAR_WIDTH; i++) fputc(i < filled ? '#' : '.', stderr);
   fprintf(stderr, "] %lld/%lld", (long long)done, (long long)progress->total);
-  rate = now > progress->start ? (PetscLogDouble)(done - progress->first) / (now - progress->start) : 0;
+  rate = now > progress->start ? (PetscReal)(done - progress->first) / (now - progress->start) : 0;
   if (rate > 0) {
     fprintf(stderr, "  %.3g/s  ", rate);
-    PrintDuration((PetscLogDouble)(progress->total - done) / rate);
+    PrintDuration((PetscReal)(progress->total - done) / rate);
     fputs(" left", stderr);
   }
   if (failed) fprintf(stderr, "  %lld failed", (long long)failed);

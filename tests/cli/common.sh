@@ -4,6 +4,7 @@
 #   fail WORDS                  tells what is wrong; the script goes on, and ends with status 1, as it does where its
 #                               last command fails
 #   expect STATUS COMMAND...    the command ends with that status; what it says is in out.txt and err.txt
+#   same FILE FILE              databases whose records of the same keys are the same, but for times
 set -u
 lamella=$(realpath "$1") source=$(realpath "$2")
 work=$(mktemp -d)
