@@ -199,7 +199,7 @@ static PetscErrorCode RunAll(LamBuild *b)
 
   PetscFunctionBeginUser;
   if (b->leaders == MPI_COMM_NULL) {
-    PetscCall(LamRVEServe(b->team));
+    PetscCall(LamRVEServe(b->team, LamStopInterrupt, NULL));
   } else {
     ierr = RunLeader(b);
     PetscCall(LamNodeWorkDestroy(&b->work));

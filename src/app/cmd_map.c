@@ -136,7 +136,8 @@ static PetscErrorCode Follow(void *ctx, PetscInt64 index, const void *input, voi
   PathResult *path = result;
 
   PetscFunctionBeginUser;
-  PetscCall(LamMapFollow(m->scene, m->todo[index], LamStopInterrupt, NULL, path->points, &path->complete));
+  PetscCall(
+      LamMapFollow(m->scene, m->todo[index], LamDispatchServeWaiting, m->dispatch, path->points, &path->complete));
   PetscFunctionReturn(0);
 }
 

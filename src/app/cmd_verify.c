@@ -66,7 +66,7 @@ static PetscErrorCode CreateRVE(Verify *v)
   PetscCall(LamRVESetMicrostructure(v->rve, &v->micro));
   PetscCall(LamRVESetStrategy(v->rve, v->strategy));
   PetscCall(LamRVESetUp(v->rve));
-  PetscCall(LamRVESetInterrupt(v->rve, LamStopInterrupt, NULL));
+  PetscCall(LamRVESetInterrupt(v->rve, LamDispatchServeWaiting, v->dispatch));
   PetscCall(LamRVEStateCreate(v->rve, &v->state));
   PetscFunctionReturn(0);
 }
