@@ -2,6 +2,7 @@
   Record files as a whole: open, close, sync, header. Provenance is written once, when the file is made.
 */
 #include "record_internal.h"
+#include "whole.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <lamella/version.h>
@@ -111,7 +112,7 @@ PetscErrorCode LamFileReserve(const char path[], PetscBool create, size_t bytes)
   PetscFunctionBeginUser;
   PetscCheck(fd >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: %s", path, strerror(errno));
   end = lseek(fd, 0, SEEK_END);
-  error = posix_fallocate(fd, end, (off_t)(bytes + TABLE_BYTES)); /* what is not used HDF5 cuts off when it closes */
+  error = LamWholeReserve(fd, end, (off_t)(bytes + TABLE_BYTES)); /* what is not used HDF5 cuts off when it closes */
   if (error && ftruncate(fd, end)) error = errno;
   close(fd);
   PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s: %s", path, strerror(error));
@@ -132,7 +133,7 @@ PetscErrorCode LamFileSync(const char path[], hid_t file)
   PetscFunctionBeginUser;
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Fflush(file, H5F_SCOPE_GLOBAL));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Fget_vfd_handle(file, H5P_DEFAULT, (void **)&fd));
-  PetscCheck(!fsync(*fd), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s: %s", path, strerror(errno));
+  PetscCheck(!LamWholeSync(*fd), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s: %s", path, strerror(errno));
   PetscFunctionReturn(0);
 }
 

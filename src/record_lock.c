@@ -8,6 +8,7 @@
   commit takes the lock file exclusively (flock) and a reader shares it while it loads.
 */
 #include "record_internal.h"
+#include "whole.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -105,7 +106,7 @@ static PetscErrorCode RemoveStale(const char path[], const char data_path[], Pet
   *removed = PETSC_TRUE;
   if (fd < 0) PetscFunctionReturn(0); /* released meanwhile */
   unwritten = StaysUnwritten(fd);
-  flock(fd, LOCK_EX); /* of two that find it stale, the second sees below that it has gone */
+  LamWholeLock(fd, LOCK_EX); /* of two that find it stale, the second sees below that it has gone */
   known = HolderRead(fd, &holder);
   if (!IsNamed(fd, path)) {
     close(fd);
@@ -176,12 +177,12 @@ PetscErrorCode LamLockRelease(LamLock *lock)
 /* Where the file system has no flock the calls fail and a reader may, rarely, meet a half-made commit and say so. */
 void LamLockBeginCommit(LamLock *lock)
 {
-  flock(lock->fd, LOCK_EX);
+  LamWholeLock(lock->fd, LOCK_EX);
 }
 
 void LamLockEndCommit(LamLock *lock)
 {
-  flock(lock->fd, LOCK_UN);
+  LamWholeLock(lock->fd, LOCK_UN);
 }
 
 /* The writer's lock is beside the file, not beside a link to it. */
@@ -198,7 +199,7 @@ int LamLockBeginRead(const char path[])
 {
   const int fd = OpenLock(path);
 
-  if (fd >= 0) flock(fd, LOCK_SH);
+  if (fd >= 0) LamWholeLock(fd, LOCK_SH);
   return fd;
 }
 

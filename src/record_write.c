@@ -8,6 +8,7 @@
     is made likewise (record_room.c).
 */
 #include "record_internal.h"
+#include "whole.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <libgen.h>
@@ -257,7 +258,7 @@ PetscErrorCode LamFilePublish(const char temporary[], const char path[])
   PetscCall(PetscStrncpy(copy, path, sizeof(copy)));
   directory = open(dirname(copy), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (directory >= 0) {
-    fsync(directory); /* some file systems cannot; the file itself is on the disk */
+    LamWholeSync(directory); /* some file systems cannot; the file itself is on the disk */
     close(directory);
   }
   PetscFunctionReturn(0);
