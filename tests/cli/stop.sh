@@ -1,0 +1,35 @@
+# A signal ends a run in the middle of a solve: the state under way is given up and not recorded.
+. "$(dirname "$0")/common.sh"
+
+cat >fine.yaml <<'YAML'
+version: 1
+rve:
+  cell: {apothem: 75 um, wall_thickness: 11.25 um}
+  cells: [2, 2]
+  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
+  interface: {law: contact, cohesion: 0.001 MPa}
+  turgor: {mode: prescribed, pressure: 0.05 MPa}
+  mesh: {along: 16, through: 4}
+load:
+  - {F: [[1, 0.2], [0, 1]]}
+strength: {wall: 0.25 MPa}
+YAML
+
+# stop SIGNAL STATUS ITERATION: sends it when the first solve has come so far
+stop() {
+  rm -f out.h5 err.txt
+  "$lamella" rve fine.yaml --json --monitor -o out.h5 >out.txt 2>err.txt &
+  pid=$!
+  until grep -qs "$3" err.txt || ! kill -0 $pid 2>/dev/null; do sleep 0.01; done
+  kill -s "$1" $pid || fail "$1: the run had ended: $(tail -1 err.txt)"
+  status=0
+  wait $pid || status=$?
+  [ $status -eq "$2" ] || fail "$1: exit status $status: $(cat err.txt)"
+  [ ! -s out.txt ] || fail "$1: a state is told: $(cat out.txt)"
+  [ ! -e out.h5 ] || "$lamella" info out.h5 --json | grep -q '"records": 0[,}]' || fail "$1: a state is recorded"
+  [ ! -e out.h5.lock ] || fail "$1: the lock is left behind"
+}
+
+stop TERM 143 '^  fast    0'
+stop INT 130 '^  contact   0'
+stop USR1 143 '^  contact   1'
