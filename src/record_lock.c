@@ -135,7 +135,7 @@ static PetscErrorCode WriteHolder(const char path[], LamLock *lock)
   HolderSelf(&self);
   length = snprintf(text, sizeof(text), "%s %ld %llu %s\n", self.host, self.pid, self.start, self.since);
   error = LamWriteBytes(lock->fd, text, (size_t)length);
-  if (!error && fsync(lock->fd)) error = errno;
+  if (!error && LamWholeSync(lock->fd)) error = errno;
   if (error) PetscCall(LamLockRelease(lock));
   PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s.lock: %s", path, strerror(error));
   PetscFunctionReturn(0);

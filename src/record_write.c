@@ -247,7 +247,7 @@ static PetscErrorCode AppendAndCount(LamRecordWriter w, const char path[], hid_t
 PetscErrorCode LamFilePublish(const char temporary[], const char path[])
 {
   const int fd = open(temporary, O_RDONLY | O_CLOEXEC);
-  const PetscBool synced = (PetscBool)(fd >= 0 && !fsync(fd));
+  const PetscBool synced = (PetscBool)(fd >= 0 && !LamWholeSync(fd));
   char copy[PETSC_MAX_PATH_LEN];
   int error = errno, directory;
 

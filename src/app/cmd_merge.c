@@ -3,7 +3,7 @@
 */
 #include "app.h"
 #include <unistd.h>
-#include <petsctime.h>
+#include <lamella/clock.h>
 
 typedef struct {
   PetscBool json, salvage, quiet;
@@ -16,7 +16,7 @@ static void TellUser(const char words[])
   fprintf(stderr, "lamella merge: %s\n", words);
 }
 
-static PetscErrorCode PrintObject(const Merge *m, const LamMergeReport *report, PetscLogDouble seconds)
+static PetscErrorCode PrintObject(const Merge *m, const LamMergeReport *report, PetscReal seconds)
 {
   PetscFunctionBeginUser;
   PetscCall(LamPrintJSON(json_pack("{s:s, s:I, s:I, s:I, s:I, s:o, s:I, s:o}", "database", m->out, "records",
@@ -27,7 +27,7 @@ static PetscErrorCode PrintObject(const Merge *m, const LamMergeReport *report, 
   PetscFunctionReturn(0);
 }
 
-static void PrintTable(const Merge *m, const LamMergeReport *report, PetscLogDouble seconds)
+static void PrintTable(const Merge *m, const LamMergeReport *report, PetscReal seconds)
 {
   printf("%-16s %s\n", "database", m->out);
   printf("%-16s %" PetscInt_FMT " of %" PetscInt_FMT " file%s\n", "records", report->records, m->n,
@@ -43,13 +43,13 @@ static void PrintTable(const Merge *m, const LamMergeReport *report, PetscLogDou
 static PetscErrorCode Run(const Merge *m, int *exit_status)
 {
   const LamMergeOptions options = {.salvage = m->salvage, .stop = LamStopRequested, .tell = m->quiet ? NULL : TellUser};
-  PetscLogDouble start, end;
+  PetscReal start, end;
   LamMergeReport report;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscTime(&start));
+  start = LamClock();
   PetscCall(LamDatabaseMerge(m->out, m->n, m->files, &options, &report));
-  PetscCall(PetscTime(&end));
+  end = LamClock();
   *exit_status = report.stopped ? LamStopExitStatus() : LAM_EXIT_OK;
   if (report.stopped) PetscFunctionReturn(0);
   if (report.differing && !m->quiet)
