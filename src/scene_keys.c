@@ -227,6 +227,8 @@ const LamKey LamKeys[] = {
      .example = "1000", .help = "Number of nodes of the table; those where it is least accurate come first."},
     {REAL("sample.accuracy"), ABOVE(0), TO(0.5), .default_words = "the scene's `accuracy`", .example = "0.01",
      .help = "Add nodes until the estimated error is below this; instead of `count`."},
+    {INTEGER("sample.round"), FROM(1), TO(1000000), .default_value = "32", .example = "1000",
+     .help = "Nodes that are begun together, at least. More keep more ranks busy, but are chosen from an older table."},
 
     {MAP("macro"), .example = "{mesh: {...}, boundary: [...]}", .help = "The body for `lamella fe2`, in plane strain."},
     {MAP("macro.mesh"), REQUIRED, .example = "{box: [10 mm, 10 mm], elements: [8, 8]}", .help = "Its mesh."},

@@ -223,7 +223,7 @@ static PetscErrorCode BuildSampleTurgor(const LamDocument *document, LamScene *s
 PetscErrorCode LamSceneBuildSample(const LamDocument *document, LamScene *scene)
 {
   const LamNode *block, *count_node, *accuracy_node, *stretch_nodes[2];
-  LamValue count, accuracy, unused;
+  LamValue count, accuracy, round, unused;
   PetscReal stretch[2];
 
   PetscFunctionBeginUser;
@@ -243,5 +243,7 @@ PetscErrorCode LamSceneBuildSample(const LamDocument *document, LamScene *scene)
     scene->sample.count = (PetscInt)count.number[0];
   else
     scene->sample.accuracy = accuracy_node ? accuracy.number[0] : scene->accuracy;
+  PetscCall(LamSceneGet(document->root, "sample.round", &block, &round));
+  scene->sample.round = (PetscInt)round.number[0];
   PetscFunctionReturn(0);
 }

@@ -120,6 +120,7 @@ typedef struct {
   PetscReal turgor_min, turgor_max;
   PetscInt count;     /* number of samples; 0: until accuracy is reached */
   PetscReal accuracy; /* 0 where count is given */
+  PetscInt round;     /* nodes that are begun together, at least */
 } LamSample;
 
 #define LAM_MAP_QUANTITIES(X)                                                                                          \

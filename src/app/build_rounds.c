@@ -6,8 +6,9 @@
 #include <stdlib.h>
 
 enum { MOST_NODES = 200000 }; /* with an accuracy */
-/* Nodes of a round: so many, or a share of what is there. Few, so that the next round asks a better table. */
-enum { LEAST_ROUND = 32, ROUND_SHARE = 12 };
+/* A round is so large a share of what is there, where that is more than the scene's `round`: few nodes, so that the
+   next round asks a better table. */
+enum { ROUND_SHARE = 12 };
 /* With an accuracy: what a round is to add to the answered share, once that is large, and how often it may add less. */
 #define LEAST_GAIN 0.003
 #define WELL_ANSWERED 0.5
@@ -86,7 +87,7 @@ static PetscErrorCode Poll(LamRounds *rounds)
   PetscFunctionBeginUser;
   PetscCall(LamPollDestroy(&rounds->poll));
   PetscCall(LamPollMake(rounds->scene, rounds->shard, rounds->table, rounds->accuracy,
-                        PetscMax(LEAST_ROUND / rounds->shard->count + 1, rounds->nodes / ROUND_SHARE),
+                        PetscMax(rounds->scene->sample.round / rounds->shard->count + 1, rounds->nodes / ROUND_SHARE),
                         rounds->open ? rounds->round : NULL, &rounds->poll));
   PetscFunctionReturn(0);
 }

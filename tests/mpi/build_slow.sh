@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# lamella build where one rank is far slower than the others: the same records in the same order.
+# lamella build where one rank is held up all the time: the same records in the same order.
 . "$(dirname "$0")/../cli/common.sh"
 set -e -o pipefail
 cat >s.yaml <<'YAML'
