@@ -39,8 +39,8 @@ static const Costs measured = {.latency = 2e-6,
 static const Case usual = {.group = 128,
                            .scale = 1,
                            .grain = 64,
-                           .least_round = 50,
-                           .round_share = 8,
+                           .least_round = 32,
+                           .round_share = 12,
                            .open_rounds = 2,
                            .jobs = 1,
                            .machine = 100,
@@ -115,7 +115,7 @@ static PetscErrorCode DispatcherTable(const WorkTable *table, PetscInt most)
 static PetscErrorCode RoundsTable(const WorkTable *table, PetscInt most)
 {
   PetscFunctionBeginUser;
-  PrintHead("In rounds, as build makes them: 50 nodes or 1/8 of the table, two open");
+  PrintHead("In rounds, as build makes them: 32 nodes or 1/12 of the table, two open");
   for (PetscInt64 samples = 10000; samples <= 100 * (PetscInt64)most; samples *= 10)
     for (PetscInt ranks = 10; ranks <= most; ranks *= 10) {
       Case c = usual;
