@@ -5,7 +5,7 @@
 #include <lamella/clock.h>
 
 /* A commit follows the last one after so many seconds, and so many times what that one took: it may cost 2 %. */
-#define COMMIT_SECONDS 1.0
+#define COMMIT_SECONDS 0.1
 #define COMMIT_SHARE 50.0
 enum { COMMIT_RECORDS = 65536 }; /* more are not kept back */
 #define LATE 30.0                /* s */
