@@ -3,13 +3,17 @@
   factorisation; what is under way is given up, what is solved is committed.
 */
 #include "app.h"
+#include <lamella/clock.h>
 #include <signal.h>
 #include <string.h>
 
-/* Several may arrive for one wish to stop: a batch system and mpirun both pass them on. */
+/* Several may arrive for one wish to stop, as a batch system and mpirun both pass them on: those of a burst are one.
+   Whoever goes on wishing gets his way. */
 #define PATIENCE 3
+#define BURST 0.5 /* s */
 
 static volatile sig_atomic_t StopSignal, Count;
+static volatile PetscReal LastSignal;
 
 #define NEIGHBOURS 16 /* below a rank, in the tree by which ranks tell each other */
 
@@ -22,8 +26,12 @@ static struct {
 
 static void Request(int number)
 {
+  const PetscReal now = LamClock();
+  const PetscBool again = (PetscBool)(Count && now - LastSignal < BURST);
+
   StopSignal = number;
-  if (++Count < PATIENCE) return;
+  LastSignal = now;
+  if (again || ++Count < PATIENCE) return;
   signal(number, SIG_DFL);
   raise(number);
 }
