@@ -39,7 +39,7 @@ struct LamNodeWork_s {
 
   /* on rank 0 */
   void *nodes; /* of tsearch, by key */
-  PetscInt64 pieces, room, solves;
+  PetscInt64 pieces, room;
   Node **piece;                      /* [pieces]; owned, the nodes are not */
   TAILQ_HEAD(States, Node_s) states; /* those used last at the end */
   PetscInt64 kept, most;             /* states */
@@ -246,7 +246,6 @@ static PetscErrorCode Solved(void *ctx, PetscInt64 piece, const void *result)
 
   PetscFunctionBeginUser;
   memcpy(&answer, result, sizeof(answer));
-  w->solves++;
   if (node->parent) node->parent->pins--;
   node->queued = PETSC_FALSE;
   node->leads = LamNodeLeads(&answer.response);
@@ -277,16 +276,6 @@ PetscErrorCode LamNodeWorkServe(LamNodeWork work)
   PetscFunctionBeginUser;
   PetscCall(LamDispatchServe(work->dispatch));
   PetscFunctionReturn(0);
-}
-
-LamDispatch LamNodeWorkDispatch(LamNodeWork work)
-{
-  return work->dispatch;
-}
-
-PetscInt64 LamNodeWorkSolves(LamNodeWork work)
-{
-  return work->solves;
 }
 
 PetscErrorCode LamNodeWorkCreate(MPI_Comm comm, LamRVE rve, LamInterfaceLawType interface, LamGrid grid, size_t memory,

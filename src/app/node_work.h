@@ -38,8 +38,5 @@ PetscErrorCode LamNodeWorkWant(LamNodeWork work, PetscInt64 key, PetscReal cost)
 PetscErrorCode LamNodeWorkRun(LamNodeWork work, PetscErrorCode (*stopped)(void *ctx), PetscBool *complete);
 /* The other ranks. */
 PetscErrorCode LamNodeWorkServe(LamNodeWork work);
-LamDispatch LamNodeWorkDispatch(LamNodeWork work); /* borrowed */
-/* Solves so far, those for states alone included. */
-PetscInt64 LamNodeWorkSolves(LamNodeWork work);
 
 #endif

@@ -134,11 +134,6 @@ static PetscReal Speed(const Work *work)
   return work->seconds > 0 ? work->cost / work->seconds : 0;
 }
 
-PetscReal LamScheduleSpeed(LamSchedule schedule, PetscInt child)
-{
-  return Speed(&schedule->child[child].work);
-}
-
 /* Of one rank below the child. */
 static PetscReal RankSpeed(const Child *child)
 {

@@ -47,7 +47,5 @@ PetscReal LamScheduleCost(LamSchedule schedule, PetscInt child, PetscInt64 piece
 /* Pieces that nobody has yet, and those that children have. */
 PetscInt64 LamScheduleWaiting(LamSchedule schedule);
 PetscInt64 LamScheduleOut(LamSchedule schedule);
-/* Predicted cost that a child gets through in a second, all ranks below it together; 0: nothing is known yet. */
-PetscReal LamScheduleSpeed(LamSchedule schedule, PetscInt child);
 
 #endif
