@@ -1,9 +1,8 @@
 /*
   Finite element assembly with the responses of a responder.
 
-  Method. Total Lagrangian, plane strain, nine-node quadrilaterals with 3 x 3 Gauss points: F = 1 + sum_a u_a (x)
-  dN_a/dX at every point of the rank in one batch, then from the stored P and A f_ai = sum_q w P_ij dN_a/dX_j, K_ai,bk =
-  sum_q w dN_a/dX_j A_ijkl dN_b/dX_l.
+  Method. Total Lagrangian, quadratic elements (element.c): F = 1 + sum_a u_a (x) dN_a/dX at every point of the rank in
+  one batch, then from the stored P and A f_ai = sum_q w P_ij dN_a/dX_j, K_ai,bk = sum_q w dN_a/dX_j A_ijkl dN_b/dX_l.
 
   Reference: Bonet & Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 2nd ed., ch. 9.
 */
@@ -11,6 +10,27 @@
 #include "macro_impl.h"
 
 static const PetscReal LARGEST_CHANGE = 0.75; /* of a deformation gradient in one step, Frobenius norm */
+
+/* dN/dX [nodes][dim] at Gauss point q of an element. */
+static const PetscReal *Gradient(LamMacro macro, const LamMacroElement *element, PetscInt q)
+{
+  return &macro->gradient[element->gradient + q * element->kind->nodes * macro->dim];
+}
+
+/* The load of a material point, at displacements ue[nodes][dim] of its element. */
+static LamLoad PointLoad(LamMacro macro, const LamMacroElement *element, PetscInt q, const PetscScalar ue[])
+{
+  const PetscInt dim = macro->dim, point = element->first + q;
+  const PetscReal *dN = Gradient(macro, element, q);
+  LamLoad load = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, macro->turgor * macro->turgor_share[point], macro->cohesion[point]};
+
+  for (PetscInt a = 0; a < element->kind->nodes; a++) {
+    for (PetscInt i = 0; i < dim; i++) {
+      for (PetscInt j = 0; j < dim; j++) load.F[3 * i + j] += PetscRealPart(ue[dim * a + i]) * dN[dim * a + j];
+    }
+  }
+  return load;
+}
 
 /* Deformation gradients and turgor of all material points, into macro->loads. */
 static PetscErrorCode GatherLoads(LamMacro macro, Vec u)
@@ -22,20 +42,13 @@ static PetscErrorCode GatherLoads(LamMacro macro, Vec u)
   PetscCall(DMGetLocalSection(macro->dm, &section));
   PetscCall(DMGetLocalVector(macro->dm, &local));
   PetscCall(DMGlobalToLocal(macro->dm, u, INSERT_VALUES, local));
-  for (PetscInt cell = macro->cell_start; cell < macro->cell_end; cell++) {
+  for (PetscInt e = 0; e < macro->element_count; e++) {
+    const LamMacroElement *element = &macro->elements[e];
     PetscScalar *ue = NULL;
-    PetscCall(DMPlexVecGetClosure(macro->dm, section, local, cell, NULL, &ue));
-    for (PetscInt q = 0; q < LAM_MACRO_POINTS; q++) {
-      PetscInt point = (cell - macro->cell_start) * LAM_MACRO_POINTS + q;
-      const PetscReal *dN = &macro->gradient[point * LAM_MACRO_DOFS];
-      LamLoad *load = &macro->loads[point];
-      *load = (LamLoad){{1, 0, 0, 0, 1, 0, 0, 0, 1}, macro->turgor, macro->scene->cohesion};
-      for (PetscInt a = 0; a < LAM_MACRO_NODES; a++) {
-        for (PetscInt ij = 0; ij < 4; ij++)
-          load->F[3 * (ij / 2) + ij % 2] += PetscRealPart(ue[2 * a + ij / 2]) * dN[2 * a + ij % 2];
-      }
-    }
-    PetscCall(DMPlexVecRestoreClosure(macro->dm, section, local, cell, NULL, &ue));
+    PetscCall(DMPlexVecGetClosure(macro->dm, section, local, macro->mesh_start + e, NULL, &ue));
+    for (PetscInt q = 0; q < element->kind->points; q++)
+      macro->loads[element->first + q] = PointLoad(macro, element, q, ue);
+    PetscCall(DMPlexVecRestoreClosure(macro->dm, section, local, macro->mesh_start + e, NULL, &ue));
   }
   PetscCall(DMRestoreLocalVector(macro->dm, &local));
   PetscFunctionReturn(0);
@@ -60,15 +73,15 @@ static PetscErrorCode AllKnown(LamMacro macro, PetscBool *known)
   PetscFunctionReturn(0);
 }
 
-static void KeepResponse(const LamLoad *load, const LamResponse *response, LamMaterialPoint *point)
+static void KeepResponse(PetscInt dim, const LamLoad *load, const LamResponse *response, LamMaterialPoint *point)
 {
   point->known = LamResponseHasFields(response);
   point->load = *load;
   memcpy(point->P, response->P, sizeof(point->P));
-  for (int i = 0; i < 2; i++)
-    for (int j = 0; j < 2; j++)
-      for (int k = 0; k < 2; k++)
-        for (int l = 0; l < 2; l++) point->A[i][j][k][l] = response->tangent[9 * (3 * i + j) + 3 * k + l];
+  for (PetscInt ij = 0; ij < dim * dim; ij++) {
+    for (PetscInt kl = 0; kl < dim * dim; kl++)
+      point->A[ij * dim * dim + kl] = response->tangent[9 * (3 * (ij / dim) + ij % dim) + 3 * (kl / dim) + kl % dim];
+  }
   point->lumen_fraction = response->lumen_fraction;
   point->opening_fraction = response->opening_fraction;
   point->debonded_fraction = response->debonded_fraction;
@@ -86,8 +99,7 @@ static PetscErrorCode DescribeTrouble(LamMacro macro, PetscInt64 failed, PetscIn
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(macro->comm, &rank));
   mine.rank = rank;
-  mine.element = point < 0 ? PETSC_MPI_INT_MAX
-                           : (int)macro->number[macro->cell_start - macro->mesh_start + point / LAM_MACRO_POINTS];
+  mine.element = point < 0 ? PETSC_MPI_INT_MAX : (int)macro->elements[macro->point_element[point]].number;
   PetscCallMPI(MPI_Allreduce(&mine, &first, 1, MPI_2INT, MPI_MINLOC, macro->comm));
   if (rank == first.rank && point >= 0) {
     const LamResponse *response = &macro->responses[point];
@@ -96,7 +108,8 @@ static PetscErrorCode DescribeTrouble(LamMacro macro, PetscInt64 failed, PetscIn
                             "%s: %s; %" PetscInt64_FMT " points without response, the first in element %d, point "
                             "%" PetscInt_FMT ": F = [%.5g %.5g %.5g %.5g], turgor %.4g MPa",
                             LamStatusNames[response->status], response->reason, failed, mine.element,
-                            point % LAM_MACRO_POINTS, (double)F[0], (double)F[1], (double)F[3], (double)F[4],
+                            point - macro->elements[macro->point_element[point]].first, (double)F[0], (double)F[1],
+                            (double)F[3], (double)F[4],
                             (double)(macro->loads[point].turgor * macro->scene->scales.stress * 1e-6)));
   }
   PetscCallMPI(MPI_Bcast(macro->trouble, sizeof(macro->trouble), MPI_CHAR, first.rank, macro->comm));
@@ -174,17 +187,31 @@ PetscErrorCode LamMacroEvaluate(LamMacro macro, Vec u, PetscBool *ok)
                                       macro->responses));
   PetscCall(AskStop(macro));
   for (PetscInt p = 0; p < macro->point_count; p++) {
-    KeepResponse(&macro->loads[p], &macro->responses[p], &macro->now[p]);
+    KeepResponse(macro->dim, &macro->loads[p], &macro->responses[p], &macro->now[p]);
     if (macro->now[p].known) continue;
     /* elements are not in the order of their numbers on a rank: name the lowest */
-    const PetscInt *number = &macro->number[macro->cell_start - macro->mesh_start];
-    if (first < 0 || number[p / LAM_MACRO_POINTS] < number[first / LAM_MACRO_POINTS]) first = p;
+    if (first < 0 ||
+        macro->elements[macro->point_element[p]].number < macro->elements[macro->point_element[first]].number)
+      first = p;
     failed++;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPIU_INT64, MPI_SUM, macro->comm));
   if (failed) PetscCall(DescribeTrouble(macro, failed, first));
   *ok = failed || macro->stopped ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(0);
+}
+
+/* Adds the forces of Gauss point q to those of its element, fe [nodes][dim]. */
+static void AddPointForce(LamMacro macro, const LamMacroElement *element, PetscInt q, PetscScalar fe[])
+{
+  const PetscInt dim = macro->dim, point = element->first + q;
+  const PetscReal *dN = Gradient(macro, element, q), *P = macro->now[point].P, w = macro->weight[point];
+
+  for (PetscInt a = 0; a < element->kind->nodes; a++) {
+    for (PetscInt i = 0; i < dim; i++) {
+      for (PetscInt j = 0; j < dim; j++) fe[dim * a + i] += w * P[3 * i + j] * dN[dim * a + j];
+    }
+  }
 }
 
 PetscErrorCode LamMacroAssembleForce(LamMacro macro, Vec force, PetscReal *scale)
@@ -197,18 +224,12 @@ PetscErrorCode LamMacroAssembleForce(LamMacro macro, Vec force, PetscReal *scale
   PetscCall(DMGetLocalSection(macro->dm, &section));
   PetscCall(DMGetLocalVector(macro->dm, &local));
   PetscCall(VecZeroEntries(local));
-  for (PetscInt cell = macro->cell_start; cell < macro->cell_end; cell++) {
+  for (PetscInt e = 0; e < macro->element_count; e++) {
+    const LamMacroElement *element = &macro->elements[e];
     PetscScalar fe[LAM_MACRO_DOFS] = {0};
-    for (PetscInt q = 0; q < LAM_MACRO_POINTS; q++) {
-      PetscInt point = (cell - macro->cell_start) * LAM_MACRO_POINTS + q;
-      const PetscReal *dN = &macro->gradient[point * LAM_MACRO_DOFS], *P = macro->now[point].P,
-                      w = macro->weight[point];
-      for (PetscInt a = 0; a < LAM_MACRO_NODES; a++) {
-        for (PetscInt i = 0; i < 2; i++) fe[2 * a + i] += w * (P[3 * i] * dN[2 * a] + P[3 * i + 1] * dN[2 * a + 1]);
-      }
-    }
-    for (PetscInt k = 0; k < LAM_MACRO_DOFS; k++) sum += PetscRealPart(fe[k] * fe[k]);
-    PetscCall(DMPlexVecSetClosure(macro->dm, section, local, cell, fe, ADD_VALUES));
+    for (PetscInt q = 0; q < element->kind->points; q++) AddPointForce(macro, element, q, fe);
+    for (PetscInt k = 0; k < element->kind->nodes * macro->dim; k++) sum += PetscRealPart(fe[k] * fe[k]);
+    PetscCall(DMPlexVecSetClosure(macro->dm, section, local, macro->mesh_start + e, fe, ADD_VALUES));
   }
   PetscCall(VecZeroEntries(force));
   PetscCall(DMLocalToGlobal(macro->dm, local, ADD_VALUES, force));
@@ -218,20 +239,22 @@ PetscErrorCode LamMacroAssembleForce(LamMacro macro, Vec force, PetscReal *scale
   PetscFunctionReturn(0);
 }
 
-/* Adds w dN_a/dX_j A_ijkl dN_b/dX_l to the element tangent. */
-static void AddPointTangent(const LamMaterialPoint *point, const PetscReal dN[LAM_MACRO_DOFS], PetscReal w,
-                            PetscScalar Ke[LAM_MACRO_DOFS * LAM_MACRO_DOFS])
+/* Adds w dN_a/dX_j A_ijkl dN_b/dX_l of Gauss point q to the element tangent, Ke [nodes dim][nodes dim]. */
+static void AddPointTangent(LamMacro macro, const LamMacroElement *element, PetscInt q, PetscScalar Ke[])
 {
-  for (int b = 0; b < LAM_MACRO_NODES; b++) {
-    for (int k = 0; k < 2; k++) {
-      PetscReal S[2][2]; /* w A_ijkl dN_b/dX_l */
-      for (int i = 0; i < 2; i++) {
-        for (int j = 0; j < 2; j++)
-          S[i][j] = w * (point->A[i][j][k][0] * dN[2 * b] + point->A[i][j][k][1] * dN[2 * b + 1]);
+  const PetscInt dim = macro->dim, nodes = element->kind->nodes, dofs = nodes * dim, point = element->first + q;
+  const PetscReal *dN = Gradient(macro, element, q), *A = macro->now[point].A, w = macro->weight[point];
+
+  for (PetscInt b = 0; b < nodes; b++) {
+    for (PetscInt k = 0; k < dim; k++) {
+      PetscReal S[LAM_MACRO_DIM * LAM_MACRO_DIM] = {0}; /* w A_ijkl dN_b/dX_l */
+      for (PetscInt ij = 0; ij < dim * dim; ij++) {
+        for (PetscInt l = 0; l < dim; l++) S[ij] += w * A[(ij * dim + k) * dim + l] * dN[dim * b + l];
       }
-      for (int a = 0; a < LAM_MACRO_NODES; a++) {
-        for (int i = 0; i < 2; i++)
-          Ke[(2 * a + i) * LAM_MACRO_DOFS + 2 * b + k] += S[i][0] * dN[2 * a] + S[i][1] * dN[2 * a + 1];
+      for (PetscInt a = 0; a < nodes; a++) {
+        for (PetscInt i = 0; i < dim; i++) {
+          for (PetscInt j = 0; j < dim; j++) Ke[(dim * a + i) * dofs + dim * b + k] += S[dim * i + j] * dN[dim * a + j];
+        }
       }
     }
   }
@@ -245,13 +268,12 @@ PetscErrorCode LamMacroAssembleTangent(LamMacro macro, Mat tangent)
   PetscCall(DMGetLocalSection(macro->dm, &section));
   PetscCall(DMGetGlobalSection(macro->dm, &global));
   PetscCall(MatZeroEntries(tangent));
-  for (PetscInt cell = macro->cell_start; cell < macro->cell_end; cell++) {
-    PetscScalar Ke[LAM_MACRO_DOFS * LAM_MACRO_DOFS] = {0};
-    for (PetscInt q = 0; q < LAM_MACRO_POINTS; q++) {
-      PetscInt point = (cell - macro->cell_start) * LAM_MACRO_POINTS + q;
-      AddPointTangent(&macro->now[point], &macro->gradient[point * LAM_MACRO_DOFS], macro->weight[point], Ke);
-    }
-    PetscCall(DMPlexMatSetClosure(macro->dm, section, global, tangent, cell, Ke, ADD_VALUES));
+  for (PetscInt e = 0; e < macro->element_count; e++) {
+    const LamMacroElement *element = &macro->elements[e];
+    PetscScalar Ke[LAM_MACRO_DOFS * LAM_MACRO_DOFS];
+    PetscCall(PetscArrayzero(Ke, PetscSqr(element->kind->nodes * macro->dim)));
+    for (PetscInt q = 0; q < element->kind->points; q++) AddPointTangent(macro, element, q, Ke);
+    PetscCall(DMPlexMatSetClosure(macro->dm, section, global, tangent, macro->mesh_start + e, Ke, ADD_VALUES));
   }
   PetscCall(MatAssemblyBegin(tangent, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(tangent, MAT_FINAL_ASSEMBLY));

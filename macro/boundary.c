@@ -7,43 +7,55 @@
 */
 #include "macro_impl.h"
 
-static unsigned int SideFromName(const char name[])
+/* Whether a mesh point lies on the boundary that the condition names. */
+static PetscBool IsOn(LamMacro macro, PetscInt p, const LamBoundary *boundary)
 {
-  static const char *const names[] = {"bottom", "right", "top", "left"};
-
-  for (int s = 0; s < 4; s++) {
-    if (!strcmp(name, names[s])) return 1u << s;
-  }
-  return 0;
+  return (PetscBool)(macro->sets[p - macro->mesh_start] >> LamMacroFindSet(macro, boundary->on) & 1);
 }
 
-static PetscBool SidesMeet(unsigned int a, unsigned int b)
+static PetscErrorCode CheckNames(LamMacro macro)
 {
-  unsigned int both = a | b;
+  const LamMacroSpec *spec = &macro->scene->macro;
 
-  return both == (LAM_SIDE_BOTTOM | LAM_SIDE_TOP) || both == (LAM_SIDE_LEFT | LAM_SIDE_RIGHT) ? PETSC_FALSE
-                                                                                              : PETSC_TRUE;
-}
-
-PetscErrorCode LamMacroBoundaryCheck(const LamMacroSpec *spec)
-{
   PetscFunctionBeginUser;
-  for (PetscInt m = 0; m < spec->boundary_count; m++) {
-    const LamBoundary *one = &spec->boundary[m];
-    PetscCheck(SideFromName(one->on), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "macro.boundary: on: %s: no such side of the body; there are left, right, bottom, top", one->on);
-    for (PetscInt n = 0; n < m; n++) {
-      const LamBoundary *other = &spec->boundary[n];
-      if (!SidesMeet(SideFromName(one->on), SideFromName(other->on))) continue;
-      for (PetscInt i = 0; i < 2; i++) {
-        PetscCheck(!one->given[i] || !other->given[i] || one->displacement[i] == other->displacement[i],
-                   PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-                   "macro.boundary: %s and %s prescribe different %s displacements where they meet; "
-                   "leave that component `free` on one of them",
-                   other->on, one->on, i ? "vertical" : "horizontal");
+  for (PetscInt b = 0; b < spec->boundary_count; b++) {
+    char names[LAM_MESSAGE_LENGTH] = "";
+    if (LamMacroFindSet(macro, spec->boundary[b].on) >= 0) continue;
+    for (PetscInt s = 0; s < macro->set_count; s++) {
+      PetscCall(PetscStrlcat(names, s ? ", " : "", sizeof(names)));
+      PetscCall(PetscStrlcat(names, macro->set_name[s], sizeof(names)));
+    }
+    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "macro.boundary: on: %s: no such boundary of the mesh; there %s %s",
+            spec->boundary[b].on, macro->set_count == 1 ? "is" : "are", macro->set_count ? names : "none");
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroBoundaryCheck(LamMacro macro)
+{
+  const LamMacroSpec *spec = &macro->scene->macro;
+  PetscInt worst = -1; /* (one, other, component) as one number */
+
+  PetscFunctionBeginUser;
+  PetscCall(CheckNames(macro));
+  for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
+    for (PetscInt m = 0; m < spec->boundary_count; m++) {
+      for (PetscInt n = 0; n < m && macro->sets[p - macro->mesh_start]; n++) {
+        const LamBoundary *one = &spec->boundary[m], *other = &spec->boundary[n];
+        if (!IsOn(macro, p, one) || !IsOn(macro, p, other)) continue;
+        for (PetscInt i = 0; i < macro->dim; i++) {
+          if (one->given[i] && other->given[i] && one->displacement[i] != other->displacement[i])
+            worst = PetscMax(worst, (m * LAM_MAX_BOUNDARIES + n) * LAM_MACRO_DIM + i);
+        }
       }
     }
   }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPIU_INT, MPI_MAX, macro->comm));
+  PetscCheck(worst < 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "macro.boundary: %s and %s prescribe different displacements along X%d where they meet; "
+             "leave that component `free` on one of them",
+             spec->boundary[worst / LAM_MACRO_DIM % LAM_MAX_BOUNDARIES].on,
+             spec->boundary[worst / LAM_MACRO_DIM / LAM_MAX_BOUNDARIES].on, (int)(worst % LAM_MACRO_DIM) + 1);
   PetscFunctionReturn(0);
 }
 
@@ -61,50 +73,93 @@ PetscErrorCode LamMacroBoundaryNames(const LamMacroSpec *spec, LamMacroStep *ste
   PetscFunctionReturn(0);
 }
 
-/* Place of a mesh point's first displacement component in this rank's part of a global vector; negative: not owned. */
-static PetscErrorCode OwnedIndex(LamMacro macro, PetscInt p, PetscInt *local)
+static void AddConstraint(LamMacro macro, PetscInt local, PetscInt component, PetscReal base, PetscReal end,
+                          unsigned int sides)
 {
-  PetscSection section;
-  PetscInt offset, start;
+  macro->constraints[macro->constraint_count++] = (LamConstraint){local + component, component, base, end, base, sides};
+}
+
+/* A node of the whole mesh. */
+typedef struct {
+  int number, rank;
+  PetscInt point; /* on that rank */
+  PetscReal X[LAM_MACRO_DIM];
+} Place;
+
+/* The owned node that is farthest from `from` (NULL: the one of the lowest number); of equal ones the lowest. */
+static PetscErrorCode FindNode(LamMacro macro, const Place *from, Place *found)
+{
+  PetscReal farthest = -1, best;
+  struct {
+    int number, rank;
+  } mine = {PETSC_MPI_INT_MAX, 0}, first;
+  PetscMPIInt rank;
 
   PetscFunctionBeginUser;
-  PetscCall(DMGetGlobalSection(macro->dm, &section));
-  PetscCall(PetscSectionGetOffset(section, p, &offset));
-  PetscCall(VecGetOwnershipRange(macro->u, &start, NULL));
-  *local = offset < 0 ? -1 : offset - start;
+  PetscCallMPI(MPI_Comm_rank(macro->comm, &rank));
+  for (int pass = 0; pass < 2; pass++) { /* the greatest distance, then who has it */
+    for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
+      const PetscInt number = macro->node_number[p - macro->mesh_start];
+      PetscReal distance = 0;
+      PetscInt local;
+      PetscCall(LamMacroOwnedIndex(macro, p, &local));
+      if (local < 0) continue;
+      for (PetscInt i = 0; i < macro->dim && from; i++)
+        distance += PetscSqr(macro->position[macro->dim * (p - macro->mesh_start) + i] - from->X[i]);
+      if (pass == 0) farthest = PetscMax(farthest, distance);
+      if (pass == 0 || distance < best * (1 - 1e-9) || number >= mine.number) continue;
+      mine.number = number;
+      found->point = p;
+    }
+    if (pass == 0) PetscCallMPI(MPI_Allreduce(&farthest, &best, 1, MPIU_REAL, MPIU_MAX, macro->comm));
+  }
+  mine.rank = rank;
+  PetscCallMPI(MPI_Allreduce(&mine, &first, 1, MPI_2INT, MPI_MINLOC, macro->comm));
+  found->number = first.number;
+  found->rank = first.rank;
+  if (rank == first.rank)
+    PetscCall(PetscArraycpy(found->X, &macro->position[macro->dim * (found->point - macro->mesh_start)], macro->dim));
+  PetscCallMPI(MPI_Bcast(found->X, LAM_MACRO_DIM, MPIU_REAL, first.rank, macro->comm));
   PetscFunctionReturn(0);
 }
 
-static void AddConstraint(LamMacro macro, PetscInt local, PetscReal base, PetscReal end, unsigned int sides)
+static PetscErrorCode HoldNode(LamMacro macro, const Place *place, PetscInt component)
 {
-  macro->constraints[macro->constraint_count++] = (LamConstraint){local, base, end, base, sides};
+  PetscMPIInt rank;
+  PetscInt local;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(macro->comm, &rank));
+  if (rank != place->rank) PetscFunctionReturn(0);
+  PetscCall(LamMacroOwnedIndex(macro, place->point, &local));
+  AddConstraint(macro, local, component, 0, 0, 0);
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamMacroHoldRigidMotions(LamMacro macro)
 {
+  Place one, other;
+
   PetscFunctionBeginUser;
+  PetscCheck(macro->dim == 2, macro->comm, PETSC_ERR_SUP, "rigid motions are those of the plane");
   macro->constraint_count = 0;
-  for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
-    unsigned int sides = macro->sides[p - macro->mesh_start];
-    PetscInt local = -1;
-    PetscCall(OwnedIndex(macro, p, &local));
-    if (local < 0) continue;
-    if (sides == (LAM_SIDE_BOTTOM | LAM_SIDE_LEFT)) AddConstraint(macro, local, 0, 0, 0);
-    if (sides == (LAM_SIDE_BOTTOM | LAM_SIDE_LEFT) || sides == (LAM_SIDE_BOTTOM | LAM_SIDE_RIGHT))
-      AddConstraint(macro, local + 1, 0, 0, 0);
-  }
+  PetscCall(FindNode(macro, NULL, &one));
+  PetscCall(FindNode(macro, &one, &other));
+  for (PetscInt i = 0; i < 2; i++) PetscCall(HoldNode(macro, &one, i));
+  /* a rotation about the first node moves the other one most along the component in which they differ least */
+  PetscCall(HoldNode(macro, &other, PetscAbsReal(other.X[0] - one.X[0]) < PetscAbsReal(other.X[1] - one.X[1]) ? 0 : 1));
   PetscFunctionReturn(0);
 }
 
-/* The sides (bits of the step's names) that prescribe component i of a node on `sides`, and the displacement. */
-static unsigned int Prescribed(LamMacro macro, unsigned int sides, PetscInt i, PetscReal *displacement)
+/* The names (bits of the step's) that prescribe component i of a node, and the displacement. */
+static unsigned int Prescribed(LamMacro macro, PetscInt p, PetscInt i, PetscReal *displacement)
 {
   const LamMacroSpec *spec = &macro->scene->macro;
   unsigned int by = 0;
 
   for (PetscInt b = 0; b < spec->boundary_count; b++) {
     const LamBoundary *boundary = &spec->boundary[b];
-    if (!boundary->given[i] || !(SideFromName(boundary->on) & sides)) continue;
+    if (!boundary->given[i] || !IsOn(macro, p, boundary)) continue;
     *displacement = boundary->displacement[i];
     for (PetscInt s = 0; s < macro->step.boundary_count; s++) {
       if (!strcmp(macro->step.boundary[s], boundary->on)) by |= 1u << s;
@@ -138,15 +193,16 @@ PetscErrorCode LamMacroHoldBoundaries(LamMacro macro)
   macro->constraint_count = 0;
   PetscCall(VecGetArrayRead(macro->u, &u));
   for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
-    const PetscReal *X = &macro->position[2 * (p - macro->mesh_start)];
+    const PetscReal *X = &macro->position[macro->dim * (p - macro->mesh_start)];
     const PetscReal motion[2][3] = {{1, 0, -X[1]}, {0, 1, X[0]}};
-    PetscInt local = -1;
-    PetscCall(OwnedIndex(macro, p, &local));
+    PetscInt local;
+    if (!macro->sets[p - macro->mesh_start]) continue;
+    PetscCall(LamMacroOwnedIndex(macro, p, &local));
     for (PetscInt i = 0; i < 2 && local >= 0; i++) {
       PetscReal end = 0;
-      unsigned int by = Prescribed(macro, macro->sides[p - macro->mesh_start], i, &end);
+      unsigned int by = Prescribed(macro, p, i, &end);
       if (!by) continue;
-      AddConstraint(macro, local + i, PetscRealPart(u[local + i]), end, by);
+      AddConstraint(macro, local, i, PetscRealPart(u[local + i]), end, by);
       for (int k = 0; k < 9; k++) gram[k] += motion[i][k / 3] * motion[i][k % 3];
     }
   }
@@ -231,7 +287,7 @@ PetscErrorCode LamMacroReactions(LamMacro macro, LamMacroStep *step)
      */
     PetscReal share = PetscRealPart(force[constraint->local]) / PetscMax(1, __builtin_popcount(constraint->sides));
     for (PetscInt s = 0; s < step->boundary_count; s++) {
-      if (constraint->sides >> s & 1) step->reaction[s][constraint->local % 2] += share;
+      if (constraint->sides >> s & 1) step->reaction[s][constraint->component] += share;
     }
   }
   PetscCall(VecRestoreArrayRead(macro->force_accepted, &force));

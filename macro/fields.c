@@ -11,7 +11,7 @@ typedef struct {
 
 typedef struct {
   PetscInt number;
-  PetscInt nodes[LAM_MACRO_NODES];
+  PetscInt nodes[LAM_FIELD_NODES];
   PetscReal F[9], P[9], cauchy[9], indicator[4];
 } ElementRecord;
 
@@ -42,25 +42,21 @@ static PetscErrorCode GatherItems(MPI_Comm comm, size_t size, PetscInt n, const 
 
 static PetscErrorCode CollectNodes(LamMacro macro, PetscInt *n, NodeRecord **nodes)
 {
-  PetscSection section;
   const PetscScalar *u;
-  PetscInt start;
 
   PetscFunctionBeginUser;
-  PetscCall(DMGetGlobalSection(macro->dm, &section));
-  PetscCall(VecGetOwnershipRange(macro->u, &start, NULL));
   PetscCall(PetscCalloc1(macro->mesh_end - macro->mesh_start, nodes));
   PetscCall(VecGetArrayRead(macro->u, &u));
   *n = 0;
   for (PetscInt p = 0; p < macro->mesh_end - macro->mesh_start; p++) {
     NodeRecord *node = &(*nodes)[*n];
-    PetscInt offset;
-    PetscCall(PetscSectionGetOffset(section, macro->mesh_start + p, &offset));
-    if (offset < 0) continue; /* another rank owns it */
-    node->number = macro->number[p];
+    PetscInt local;
+    PetscCall(LamMacroOwnedIndex(macro, macro->mesh_start + p, &local));
+    if (local < 0) continue;
+    node->number = macro->node_number[p];
     for (int i = 0; i < 2; i++) {
       node->X[i] = macro->position[2 * p + i];
-      node->u[i] = PetscRealPart(u[offset - start + i]);
+      node->u[i] = PetscRealPart(u[local + i]);
     }
     (*n)++;
   }
@@ -68,16 +64,24 @@ static PetscErrorCode CollectNodes(LamMacro macro, PetscInt *n, NodeRecord **nod
   PetscFunctionReturn(0);
 }
 
-/* Nodes in VTK's biquadratic order: corners, mid-edges, centre; a closure lists centre, edges, corners. */
-static PetscErrorCode ElementNodes(LamMacro macro, PetscInt cell, PetscInt nodes[LAM_MACRO_NODES])
+/* Nodes in VTK's order: corners, mid-edges, centre; a closure lists centre, edges, corners. A triangle has no centre.
+ */
+static PetscErrorCode ElementNodes(LamMacro macro, PetscInt e, PetscInt nodes[LAM_FIELD_NODES])
 {
-  static const PetscInt order[LAM_MACRO_NODES] = {5, 6, 7, 8, 1, 2, 3, 4, 0};
-  PetscInt size, *closure = NULL;
+  PetscInt size, *closure = NULL, corners, next[3];
 
   PetscFunctionBeginUser;
-  PetscCall(DMPlexGetTransitiveClosure(macro->dm, cell, PETSC_TRUE, &size, &closure));
-  for (int a = 0; a < LAM_MACRO_NODES; a++) nodes[a] = macro->number[closure[2 * order[a]] - macro->mesh_start];
-  PetscCall(DMPlexRestoreTransitiveClosure(macro->dm, cell, PETSC_TRUE, &size, &closure));
+  PetscCall(DMPlexGetTransitiveClosure(macro->dm, macro->mesh_start + e, PETSC_TRUE, &size, &closure));
+  corners = (size - 1) / 2;
+  next[0] = 0, next[1] = corners, next[2] = 2 * corners; /* of vertices, edges, centre */
+  for (int a = 0; a < LAM_FIELD_NODES; a++) nodes[a] = -1;
+  for (PetscInt k = 0; k < size; k++) {
+    const PetscInt node = macro->node_number[closure[2 * k] - macro->mesh_start];
+    PetscInt depth;
+    PetscCall(DMPlexGetPointDepth(macro->dm, closure[2 * k], &depth));
+    if (node >= 0) nodes[next[depth]++] = node;
+  }
+  PetscCall(DMPlexRestoreTransitiveClosure(macro->dm, macro->mesh_start + e, PETSC_TRUE, &size, &closure));
   PetscFunctionReturn(0);
 }
 
@@ -87,14 +91,13 @@ static PetscReal Determinant(const PetscReal F[9])
 }
 
 /* Mean of the Cauchy stress P F^T / J over the present volume J w: of the means of P and F it would be another. */
-static void MeanCauchy(const LamMaterialPoint points[LAM_MACRO_POINTS], const PetscReal weight[LAM_MACRO_POINTS],
-                       PetscReal cauchy[9])
+static void MeanCauchy(PetscInt n, const LamMaterialPoint points[], const PetscReal weight[], PetscReal cauchy[9])
 {
   PetscReal volume = 0;
 
   if (!points[0].known) return; /* nothing has been solved */
-  for (PetscInt q = 0; q < LAM_MACRO_POINTS; q++) volume += weight[q] * Determinant(points[q].load.F);
-  for (PetscInt q = 0; q < LAM_MACRO_POINTS; q++) {
+  for (PetscInt q = 0; q < n; q++) volume += weight[q] * Determinant(points[q].load.F);
+  for (PetscInt q = 0; q < n; q++) {
     const PetscReal *P = points[q].P, *F = points[q].load.F;
     for (int i = 0; i < 3; i++) {
       for (int j = 0; j < 3; j++) {
@@ -104,14 +107,14 @@ static void MeanCauchy(const LamMaterialPoint points[LAM_MACRO_POINTS], const Pe
   }
 }
 
-static void ElementMeans(LamMacro macro, PetscInt element, ElementRecord *record)
+static void ElementMeans(LamMacro macro, const LamMacroElement *element, ElementRecord *record)
 {
   PetscReal area = 0;
 
-  for (PetscInt q = 0; q < LAM_MACRO_POINTS; q++) area += macro->weight[element * LAM_MACRO_POINTS + q];
-  for (PetscInt q = 0; q < LAM_MACRO_POINTS; q++) {
-    const LamMaterialPoint *point = &macro->accepted[element * LAM_MACRO_POINTS + q];
-    const PetscReal share = macro->weight[element * LAM_MACRO_POINTS + q] / area;
+  for (PetscInt q = 0; q < element->kind->points; q++) area += macro->weight[element->first + q];
+  for (PetscInt q = 0; q < element->kind->points; q++) {
+    const LamMaterialPoint *point = &macro->accepted[element->first + q];
+    const PetscReal share = macro->weight[element->first + q] / area;
     const PetscReal indicator[4] = {point->lumen_fraction, point->opening_fraction, point->debonded_fraction,
                                     point->load.turgor};
     for (int k = 0; k < 9; k++) {
@@ -125,14 +128,15 @@ static void ElementMeans(LamMacro macro, PetscInt element, ElementRecord *record
 static PetscErrorCode CollectElements(LamMacro macro, PetscInt *n, ElementRecord **elements)
 {
   PetscFunctionBeginUser;
-  *n = macro->cell_end - macro->cell_start;
+  *n = macro->element_count;
   PetscCall(PetscCalloc1(*n, elements));
   for (PetscInt e = 0; e < *n; e++) {
-    PetscInt cell = macro->cell_start + e;
-    (*elements)[e].number = macro->number[cell - macro->mesh_start];
-    PetscCall(ElementNodes(macro, cell, (*elements)[e].nodes));
-    ElementMeans(macro, e, &(*elements)[e]);
-    MeanCauchy(&macro->accepted[e * LAM_MACRO_POINTS], &macro->weight[e * LAM_MACRO_POINTS], (*elements)[e].cauchy);
+    const LamMacroElement *element = &macro->elements[e];
+    (*elements)[e].number = element->number;
+    PetscCall(ElementNodes(macro, e, (*elements)[e].nodes));
+    ElementMeans(macro, element, &(*elements)[e]);
+    MeanCauchy(element->kind->points, &macro->accepted[element->first], &macro->weight[element->first],
+               (*elements)[e].cauchy);
   }
   PetscFunctionReturn(0);
 }
@@ -142,7 +146,7 @@ static PetscErrorCode Allocate(LamMacroFields *fields)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * fields->node_count, &fields->nodes));
   PetscCall(PetscMalloc1(2 * fields->node_count, &fields->u));
-  PetscCall(PetscMalloc1(LAM_MACRO_NODES * fields->element_count, &fields->elements));
+  PetscCall(PetscMalloc1(LAM_FIELD_NODES * fields->element_count, &fields->elements));
   PetscCall(PetscMalloc1(9 * fields->element_count, &fields->F));
   PetscCall(PetscMalloc1(9 * fields->element_count, &fields->P));
   PetscCall(PetscMalloc1(9 * fields->element_count, &fields->cauchy));
@@ -174,7 +178,7 @@ PetscErrorCode LamMacroGetFields(LamMacro macro, LamMacroFields *fields)
   }
   for (PetscInt k = 0; k < fields->element_count; k++) {
     const ElementRecord *element = &all_elements[k];
-    PetscCall(PetscArraycpy(&fields->elements[LAM_MACRO_NODES * element->number], element->nodes, LAM_MACRO_NODES));
+    PetscCall(PetscArraycpy(&fields->elements[LAM_FIELD_NODES * element->number], element->nodes, LAM_FIELD_NODES));
     PetscCall(PetscArraycpy(&fields->F[9 * element->number], element->F, 9));
     PetscCall(PetscArraycpy(&fields->P[9 * element->number], element->P, 9));
     PetscCall(PetscArraycpy(&fields->cauchy[9 * element->number], element->cauchy, 9));

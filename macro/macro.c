@@ -16,7 +16,6 @@ PetscErrorCode LamMacroSetScene(LamMacro macro, const LamScene *scene)
   PetscFunctionBeginUser;
   PetscCheck(scene->has_macro, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: macro: missing; a macroscale run needs this block", scene->path);
-  PetscCall(LamMacroBoundaryCheck(&scene->macro));
   PetscCall(LamMacroBoundaryNames(&scene->macro, &macro->step));
   macro->scene = scene;
   PetscFunctionReturn(0);
@@ -33,6 +32,12 @@ static PetscErrorCode CreatePoints(LamMacro macro)
   PetscCall(PetscCalloc1(n, &macro->responses));
   PetscCall(PetscCalloc1(n, &macro->now));
   PetscCall(PetscCalloc1(n, &macro->accepted));
+  PetscCall(PetscMalloc1(n, &macro->turgor_share));
+  PetscCall(PetscMalloc1(n, &macro->cohesion));
+  for (PetscInt p = 0; p < n; p++) {
+    macro->turgor_share[p] = macro->scene->turgor;
+    macro->cohesion[p] = macro->scene->cohesion;
+  }
   PetscFunctionReturn(0);
 }
 
@@ -61,6 +66,7 @@ PetscErrorCode LamMacroSetUp(LamMacro macro)
   PetscFunctionBeginUser;
   PetscCheck(macro->scene, macro->comm, PETSC_ERR_ORDER, "call LamMacroSetScene() first");
   PetscCall(LamMacroMeshCreate(macro));
+  PetscCall(LamMacroBoundaryCheck(macro));
   PetscCall(CreatePoints(macro));
   PetscCall(CreateUnknowns(macro));
   PetscCall(LamMacroNewtonCreate(macro));
@@ -72,6 +78,30 @@ PetscErrorCode LamMacroGetPointCount(LamMacro macro, PetscInt *points)
 {
   PetscFunctionBeginUser;
   *points = macro->point_count;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroGetPlaces(LamMacro macro, PetscReal X[], PetscInt group[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(X, macro->place, macro->dim * macro->point_count));
+  for (PetscInt p = 0; p < macro->point_count; p++) group[p] = macro->elements[macro->point_element[p]].group;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroGetGroups(LamMacro macro, PetscInt *count, const char (**names)[LAM_NAME_LENGTH])
+{
+  PetscFunctionBeginUser;
+  *count = macro->group_count;
+  *names = (const char(*)[LAM_NAME_LENGTH])macro->group_name;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroSetPointTissue(LamMacro macro, const PetscReal turgor[], const PetscReal cohesion[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(macro->turgor_share, turgor, macro->point_count));
+  PetscCall(PetscArraycpy(macro->cohesion, cohesion, macro->point_count));
   PetscFunctionReturn(0);
 }
 
@@ -114,6 +144,8 @@ PetscErrorCode LamMacroDestroy(LamMacro *macro)
   PetscCall(PetscFree((*macro)->responses));
   PetscCall(PetscFree((*macro)->now));
   PetscCall(PetscFree((*macro)->accepted));
+  PetscCall(PetscFree((*macro)->turgor_share));
+  PetscCall(PetscFree((*macro)->cohesion));
   PetscCall(LamMacroMeshDestroy(*macro));
   PetscCall(PetscFree(*macro));
   PetscFunctionReturn(0);

@@ -1,11 +1,15 @@
 /*
   Private parts of the macroscale solver.
 
-  mesh.c      box mesh, numbering, shape function gradients
+  mesh.c      distribution, numbering, named sets, geometry of elements
+  mesh_disc.c, mesh_gmsh.c   where meshes come from
+  element.c   kinds of elements: shape functions, Gauss points
   boundary.c  displacement conditions, reactions, work
   assembly.c  gather F, ask the responder, assemble force and tangent
   stepping.c  Newton, load steps, cutback
   fields.c    gathering of fields on rank 0
+
+  The dimension `dim` of the body is that of its mesh; nothing but the responder knows that it is 2 (plane strain).
 */
 #ifndef LAM_MACRO_IMPL_H
 #define LAM_MACRO_IMPL_H
@@ -16,26 +20,52 @@
 #include <lamella/macro.h>
 
 enum {
-  LAM_MACRO_NODES = 9,  /* nodes of an element: centre, edges, corners (order of DMPlex closures) */
-  LAM_MACRO_POINTS = 9, /* Gauss points of an element */
-  LAM_MACRO_DOFS = 2 * LAM_MACRO_NODES
+  LAM_MACRO_DIM = 3, /* most of all that follows */
+  LAM_MACRO_NODES = 27,
+  LAM_MACRO_DOFS = LAM_MACRO_DIM * LAM_MACRO_NODES,
+  LAM_MACRO_KINDS = 2,
+  LAM_MACRO_SETS = 32, /* named boundaries; a bit each */
+  LAM_MACRO_GROUPS = 32
 };
 
-/* Sides of the body, as bits; DMPlex's label "Face Sets" numbers the sides of a box 1..4 in this order. */
-enum { LAM_SIDE_BOTTOM = 1, LAM_SIDE_RIGHT = 2, LAM_SIDE_TOP = 4, LAM_SIDE_LEFT = 8 };
+/* A kind of element: quadratic shape functions at its Gauss points, on DMPlex's reference cell. */
+typedef struct {
+  DMPolytopeType polytope;
+  PetscInt nodes, points; /* nodes in the order of DMPlex closures: interior, (faces,) edges, vertices */
+  PetscReal *gradient;    /* [points][nodes][dim] */
+  PetscReal *value;       /* [points][nodes] */
+  PetscReal *weight;      /* [points] */
+} LamMacroKind;
+
+/* An element of this rank. */
+typedef struct {
+  const LamMacroKind *kind;
+  PetscInt number;   /* in the undistributed mesh, the same for any count of ranks */
+  PetscInt first;    /* of its material points, which follow each other */
+  PetscInt gradient; /* where its dN/dX begin in LamMacro.gradient: [points][nodes][dim] */
+  PetscInt group;    /* the named region it belongs to; -1: none */
+} LamMacroElement;
+
+/* A piece of the body's boundary on this rank that belongs to a named set. */
+typedef struct {
+  PetscInt point;    /* of the mesh */
+  PetscInt element;  /* inside */
+  unsigned int sets; /* bit k: set k */
+} LamMacroFacet;
 
 /* What the solver keeps of a material point's response. */
 typedef struct {
   PetscBool known; /* the rest belongs to `load` */
   LamLoad load;
   PetscReal P[9];
-  PetscReal A[2][2][2][2]; /* dP_ij/dF_kl in the plane */
+  PetscReal A[81]; /* [dim][dim][dim][dim] dP_ij/dF_kl */
   PetscReal lumen_fraction, opening_fraction, debonded_fraction, max_gap;
 } LamMaterialPoint;
 
 /* A displacement component that is prescribed; kept by the rank that owns it. */
 typedef struct {
   PetscInt local;     /* index in this rank's part of a global vector */
+  PetscInt component; /* of the displacement */
   PetscReal base;     /* displacement where the conditions count from */
   PetscReal end;      /* what is added to it at load factor 1 */
   PetscReal target;   /* displacement wanted now */
@@ -53,17 +83,31 @@ struct LamMacro_s {
 
   /* mesh */
   DM dm;
-  PetscInt cell_start, cell_end; /* elements of this rank */
-  PetscInt mesh_start, mesh_end; /* mesh points (cells, edges, vertices) of this rank: the nodes */
-  PetscInt *number;              /* [mesh points] number in the undistributed mesh, the same for any count of ranks */
-  PetscReal *position;           /* [mesh points][2] reference position of the node */
-  unsigned char *sides;          /* [mesh points] LAM_SIDE_ bits */
-  PetscReal *gradient;           /* [elements][points][nodes][2] dN/dX */
-  PetscReal *weight;             /* [elements][points] area of a Gauss point */
+  PetscInt dim;
+  LamMacroKind kinds[LAM_MACRO_KINDS];
+  PetscInt kind_count;
+  PetscInt element_count; /* of this rank: the first mesh points */
+  LamMacroElement *elements;
+  PetscInt mesh_start, mesh_end; /* mesh points (cells, faces, edges, vertices) of this rank; most are nodes */
+  PetscInt *node_number;         /* [mesh points] in the undistributed mesh; -1: no node */
+  PetscReal *position;           /* [mesh points][dim] reference position of the node */
+  PetscReal *gradient;           /* dN/dX, see LamMacroElement */
+  PetscInt set_count;            /* named boundaries */
+  char set_name[LAM_MACRO_SETS][LAM_NAME_LENGTH];
+  unsigned int *sets; /* [mesh points] bit k: on set k */
+  PetscInt facet_count;
+  LamMacroFacet *facets;
+  PetscInt group_count; /* named regions */
+  char group_name[LAM_MACRO_GROUPS][LAM_NAME_LENGTH];
 
-  /* material points, element * 9 + Gauss point */
+  /* material points */
   PetscInt point_count;
-  PetscInt *point_index; /* 0, 1, 2, ... for the responder */
+  PetscInt *point_element; /* [points] the element it is in */
+  PetscReal *weight;       /* [points] area */
+  PetscReal *place;        /* [points][dim] reference position */
+  PetscReal *turgor_share; /* [points] turgor of the tissue there, which the program's share multiplies */
+  PetscReal *cohesion;     /* [points] */
+  PetscInt *point_index;   /* 0, 1, 2, ... for the responder */
   LamLoad *loads;
   LamResponse *responses;
   LamMaterialPoint *now, *accepted; /* of the last evaluation and of the last converged state */
@@ -73,7 +117,7 @@ struct LamMacro_s {
   Vec force, force_accepted; /* internal nodal forces of the last evaluation and of the last converged state */
   Mat tangent;
   SNES snes;
-  PetscReal turgor;      /* turgor of the tissue now */
+  PetscReal turgor;      /* share of the turgor that acts now */
   PetscReal force_scale; /* largest norm of the element forces in this series of Newton iterations */
   PetscReal history[64];
   char trouble[LAM_MESSAGE_LENGTH - 64]; /* why the last evaluation failed; how far it came is said before it */
@@ -89,13 +133,29 @@ struct LamMacro_s {
 /* mesh.c */
 PetscErrorCode LamMacroMeshCreate(LamMacro macro);
 PetscErrorCode LamMacroMeshDestroy(LamMacro macro);
+/* A node's first index in this rank's part of a global vector; -1: no node, or another rank owns it. */
+PetscErrorCode LamMacroOwnedIndex(LamMacro macro, PetscInt point, PetscInt *local);
+/* The named set; -1: none. */
+PetscInt LamMacroFindSet(LamMacro macro, const char name[]);
+
+/* mesh_disc.c: a disc of radius 1 or a part of it about the origin, and the names of a facet's sides by its nodes. */
+PetscErrorCode LamMacroDiscCreate(MPI_Comm comm, LamDiscPart part, const PetscInt elements[2], DM *dm);
+/* mesh_gmsh.c */
+PetscErrorCode LamMacroGmshCreate(MPI_Comm comm, const char path[], DM *dm);
+
+/* element.c */
+/* The kind for a polytope, made where it is not there yet. PETSC_ERR_SUP where there is none. */
+PetscErrorCode LamMacroKindGet(LamMacro macro, DMPolytopeType polytope, const LamMacroKind **kind);
+PetscErrorCode LamMacroKindsDestroy(LamMacro macro);
+/* Whether a mesh point of this type carries a node of quadratic elements. */
+PetscBool LamMacroHasNode(DMPolytopeType type);
 
 /* boundary.c */
-/* Refuses conditions that contradict each other (PETSC_ERR_USER_INPUT). */
-PetscErrorCode LamMacroBoundaryCheck(const LamMacroSpec *spec);
+/* Refuses conditions that contradict each other, or stand for no boundary of the mesh (PETSC_ERR_USER_INPUT). */
+PetscErrorCode LamMacroBoundaryCheck(LamMacro macro);
 /* Fills the names of the step's sides: each named side once. */
 PetscErrorCode LamMacroBoundaryNames(const LamMacroSpec *spec, LamMacroStep *step);
-/* Holds one corner, and one component of the next, so that only rigid motions are prevented. */
+/* Holds as few components as prevent rigid motions. */
 PetscErrorCode LamMacroHoldRigidMotions(LamMacro macro);
 /* Prescribes the scene's displacements, counted from the present ones; PETSC_ERR_USER_INPUT where they leave a rigid
  * motion free. */

@@ -1,147 +1,491 @@
 /*
-  Mesh of the macroscale body: a box of nine-node quadrilaterals, distributed over the ranks.
+  Mesh of the macroscale body: quadratic elements over a DMPlex mesh, distributed over the ranks.
+
+  A node sits on every mesh point that quadratic elements have one on: vertices, edges, quadrilaterals. The geometry is
+  isoparametric: X = sum_a N_a X_a with the same shape functions as the displacement, so edges may be curved.
 */
 #include "macro_impl.h"
 
-/*
-  Numbers of the undistributed mesh for every mesh point of this rank, so that output does not depend on the ranks.
-  `migration` is NULL where nothing was distributed.
-*/
-static PetscErrorCode NumberPoints(LamMacro macro, PetscSF migration)
+#define OUTER "outer facets" /* label of the undistributed mesh's boundary: a rank's own has others, too */
+
+/* ---- numbers that do not depend on the ranks ---- */
+
+/* values[mesh points of this rank] from those of the undistributed mesh (all on rank 0), where migration is not NULL.
+ */
+static PetscErrorCode Migrate(PetscSF migration, PetscInt **values, PetscInt n)
 {
-  PetscInt n = macro->mesh_end - macro->mesh_start;
+  PetscInt *own = *values;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n, &macro->number));
-  for (PetscInt p = 0; p < n; p++) macro->number[p] = p;
-  if (migration) {
-    PetscInt roots, *own;
-    PetscCall(PetscSFGetGraph(migration, &roots, NULL, NULL, NULL));
-    PetscCall(PetscMalloc1(roots, &own));
-    for (PetscInt p = 0; p < roots; p++) own[p] = p;
-    PetscCall(PetscSFBcastBegin(migration, MPIU_INT, own, macro->number, MPI_REPLACE));
-    PetscCall(PetscSFBcastEnd(migration, MPIU_INT, own, macro->number, MPI_REPLACE));
-    PetscCall(PetscFree(own));
+  if (!migration) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(n, values));
+  PetscCall(PetscSFBcastBegin(migration, MPIU_INT, own, *values, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(migration, MPIU_INT, own, *values, MPI_REPLACE));
+  PetscCall(PetscFree(own));
+  PetscFunctionReturn(0);
+}
+
+/* Of the undistributed mesh: number of each node, and of each point (of which the first are the elements). */
+static PetscErrorCode NumberPoints(DM dm, PetscInt **nodes, PetscInt **points)
+{
+  PetscInt start, end, count = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMPlexGetChart(dm, &start, &end));
+  PetscCall(PetscMalloc1(end - start, nodes));
+  PetscCall(PetscMalloc1(end - start, points));
+  for (PetscInt p = start; p < end; p++) {
+    DMPolytopeType type;
+    PetscCall(DMPlexGetCellType(dm, p, &type));
+    (*nodes)[p - start] = LamMacroHasNode(type) ? count++ : -1;
+    (*points)[p - start] = p - start;
   }
   PetscFunctionReturn(0);
 }
 
-/* A node sits at the mean of its mesh point's vertices: elements have straight edges. */
+PetscErrorCode LamMacroOwnedIndex(LamMacro macro, PetscInt point, PetscInt *local)
+{
+  PetscSection section;
+  PetscInt offset, start;
+
+  PetscFunctionBeginUser;
+  *local = -1;
+  if (macro->node_number[point - macro->mesh_start] < 0) PetscFunctionReturn(0);
+  PetscCall(DMGetGlobalSection(macro->dm, &section));
+  PetscCall(PetscSectionGetOffset(section, point, &offset));
+  PetscCall(VecGetOwnershipRange(macro->u, &start, NULL));
+  *local = offset < 0 ? -1 : offset - start;
+  PetscFunctionReturn(0);
+}
+
+/* ---- named boundaries and regions ---- */
+
+PetscInt LamMacroFindSet(LamMacro macro, const char name[])
+{
+  for (PetscInt s = 0; s < macro->set_count; s++) {
+    if (!strcmp(macro->set_name[s], name)) return s;
+  }
+  return -1;
+}
+
+/* Marks the points of stratum `value` of the label with the bit of a new set. */
+static PetscErrorCode AddSet(LamMacro macro, DMLabel label, PetscInt value, const char name[])
+{
+  const unsigned int bit = 1u << macro->set_count;
+
+  PetscFunctionBeginUser;
+  PetscCheck(macro->set_count < LAM_MACRO_SETS, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "the mesh has more than %d named boundaries", LAM_MACRO_SETS);
+  PetscCall(PetscStrncpy(macro->set_name[macro->set_count++], name, LAM_NAME_LENGTH));
+  for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
+    PetscBool on;
+    PetscCall(DMLabelStratumHasPoint(label, value, p, &on));
+    if (on) macro->sets[p - macro->mesh_start] |= bit;
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode AddGroup(LamMacro macro, DMLabel label, PetscInt value, const char name[])
+{
+  PetscFunctionBeginUser;
+  PetscCheck(macro->group_count < LAM_MACRO_GROUPS, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "the mesh has more than %d named regions", LAM_MACRO_GROUPS);
+  PetscCall(PetscStrncpy(macro->group_name[macro->group_count], name, LAM_NAME_LENGTH));
+  for (PetscInt e = 0; e < macro->element_count; e++) {
+    PetscBool in;
+    PetscCall(DMLabelStratumHasPoint(label, value, macro->mesh_start + e, &in));
+    if (in) macro->elements[e].group = macro->group_count;
+  }
+  macro->group_count++;
+  PetscFunctionReturn(0);
+}
+
+/* A side of a box or disc: stratum k + 1 of DMPlex's label of faces. */
+static PetscErrorCode AddSides(LamMacro macro, PetscInt count, const char *const names[])
+{
+  DMLabel label;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMGetLabel(macro->dm, "Face Sets", &label));
+  PetscCheck(label, macro->comm, PETSC_ERR_PLIB, "the mesh has no label of its sides");
+  for (PetscInt side = 0; side < count; side++) {
+    PetscInt size;
+    PetscCall(DMLabelGetStratumSize(label, side + 1, &size));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &size, 1, MPIU_INT, MPI_MAX, macro->comm));
+    if (size) PetscCall(AddSet(macro, label, side + 1, names[side]));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Labels that PETSc or this file makes: no physical groups. */
+static PetscBool IsOwnLabel(const char name[])
+{
+  static const char *const own[] = {"depth", "celltype", "Cell Sets", "Face Sets", "Vertex Sets", OUTER};
+
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(own); k++) {
+    if (!strcmp(name, own[k])) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* Physical groups of a Gmsh file are labels of their names: of elements (regions), or of facets or points. */
+static PetscErrorCode AddPhysicalGroups(LamMacro macro)
+{
+  PetscInt labels;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMGetNumLabels(macro->dm, &labels));
+  for (PetscInt k = 0; k < labels; k++) {
+    const char *name;
+    DMLabel label;
+    PetscInt value = -1, depth = -1;
+
+    PetscCall(DMGetLabelName(macro->dm, k, &name));
+    if (IsOwnLabel(name)) continue;
+    PetscCall(DMGetLabelByNum(macro->dm, k, &label));
+    for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
+      PetscInt d, has;
+      PetscCall(DMLabelGetValue(label, p, &has));
+      if (has < 0) continue;
+      value = has;
+      PetscCall(DMPlexGetPointDepth(macro->dm, p, &d));
+      depth = PetscMax(depth, d);
+    }
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &depth, 1, MPIU_INT, MPI_MAX, macro->comm));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPIU_INT, MPI_MAX, macro->comm));
+    if (depth < 0) continue;
+    if (depth == macro->dim)
+      PetscCall(AddGroup(macro, label, value, name));
+    else
+      PetscCall(AddSet(macro, label, value, name));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode NameSets(LamMacro macro)
+{
+  static const char *const box[] = {"bottom", "right", "top", "left"}, *const disc[] = {"rim", "bottom", "left"};
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(macro->mesh_end - macro->mesh_start, &macro->sets));
+  switch (macro->scene->macro.source) {
+  case LAM_MESH_BOX:
+    PetscCall(AddSides(macro, 4, box));
+    break;
+  case LAM_MESH_DISC:
+    PetscCall(AddSides(macro, 3, disc));
+    break;
+  default:
+    PetscCall(AddPhysicalGroups(macro));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Pieces of the outer boundary that belong to a set. */
+static PetscErrorCode ListFacets(LamMacro macro)
+{
+  PetscInt start, end;
+  DMLabel outer;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMGetLabel(macro->dm, OUTER, &outer));
+  PetscCall(DMPlexGetHeightStratum(macro->dm, 1, &start, &end));
+  PetscCall(PetscMalloc1(end - start, &macro->facets));
+  for (PetscInt p = start; p < end; p++) {
+    const unsigned int sets = macro->sets[p - macro->mesh_start];
+    const PetscInt *support;
+    PetscBool on;
+    PetscCall(DMLabelStratumHasPoint(outer, 1, p, &on));
+    if (!sets || !on) continue;
+    PetscCall(DMPlexGetSupport(macro->dm, p, &support));
+    macro->facets[macro->facet_count++] = (LamMacroFacet){p, support[0] - macro->mesh_start, sets};
+  }
+  PetscFunctionReturn(0);
+}
+
+/* ---- geometry ---- */
+
+/* The mean of a mesh point's vertices; of a quadrilateral with curved edges X = sum edges / 2 - sum vertices / 4. */
+static PetscErrorCode PlaceNode(LamMacro macro, PetscInt point, PetscReal X[])
+{
+  const PetscInt dim = macro->dim;
+  PetscInt size, *closure = NULL, count[2] = {0, 0};
+  PetscReal mean[2][LAM_MACRO_DIM] = {{0}};
+
+  PetscFunctionBeginUser;
+  PetscCall(DMPlexGetTransitiveClosure(macro->dm, point, PETSC_TRUE, &size, &closure));
+  for (PetscInt k = 1; k < size; k++) {
+    PetscInt depth;
+    PetscCall(DMPlexGetPointDepth(macro->dm, closure[2 * k], &depth));
+    if (depth > 1) continue;
+    for (PetscInt i = 0; i < dim; i++)
+      mean[depth][i] += macro->position[dim * (closure[2 * k] - macro->mesh_start) + i];
+    count[depth]++;
+  }
+  PetscCall(DMPlexRestoreTransitiveClosure(macro->dm, point, PETSC_TRUE, &size, &closure));
+  for (PetscInt i = 0; i < dim; i++)
+    X[i] = count[1] == 4 ? 0.5 * mean[1][i] - 0.25 * mean[0][i] : mean[0][i] / count[0];
+  PetscFunctionReturn(0);
+}
+
+/* A mid-edge node of a disc's rim lies on the circle. */
+static void MoveToRim(LamMacro macro, PetscInt point)
+{
+  const PetscInt rim = LamMacroFindSet(macro, "rim");
+  PetscReal *X = &macro->position[macro->dim * (point - macro->mesh_start)],
+            radius = PetscSqrtReal(X[0] * X[0] + X[1] * X[1]);
+
+  if (macro->scene->macro.source != LAM_MESH_DISC || !(macro->sets[point - macro->mesh_start] >> rim & 1)) return;
+  for (int i = 0; i < 2; i++) X[i] /= radius;
+}
+
+/* Vertices first, then edges, then cells: each from those before, where the mesh does not say (quadratic Gmsh files).
+ */
 static PetscErrorCode LocateNodes(LamMacro macro)
 {
-  DM coordinate_dm;
   PetscSection section;
   Vec coordinates;
+  const PetscScalar *x;
+  PetscInt known[2]; /* mesh points that may have coordinates */
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(2 * (macro->mesh_end - macro->mesh_start), &macro->position));
-  PetscCall(DMGetCoordinateDM(macro->dm, &coordinate_dm));
+  PetscCall(PetscCalloc1(macro->dim * (macro->mesh_end - macro->mesh_start), &macro->position));
   PetscCall(DMGetCoordinateSection(macro->dm, &section));
+  PetscCall(PetscSectionGetChart(section, &known[0], &known[1]));
   PetscCall(DMGetCoordinatesLocal(macro->dm, &coordinates));
-  for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
-    PetscReal *X = &macro->position[2 * (p - macro->mesh_start)];
-    PetscScalar *corner = NULL;
-    PetscInt size;
-    PetscCall(DMPlexVecGetClosure(coordinate_dm, section, coordinates, p, &size, &corner));
-    for (PetscInt k = 0; k < size; k++) X[k % 2] += PetscRealPart(corner[k]) / (size / 2);
-    PetscCall(DMPlexVecRestoreClosure(coordinate_dm, section, coordinates, p, &size, &corner));
-  }
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode MarkSides(LamMacro macro)
-{
-  DMLabel label;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(macro->mesh_end - macro->mesh_start, &macro->sides));
-  PetscCall(DMGetLabel(macro->dm, "Face Sets", &label));
-  PetscCheck(label, macro->comm, PETSC_ERR_PLIB, "the box mesh has no label of its sides");
-  for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
-    for (PetscInt side = 0; side < 4; side++) {
-      PetscBool on;
-      PetscCall(DMLabelStratumHasPoint(label, side + 1, p, &on));
-      if (on) macro->sides[p - macro->mesh_start] |= (unsigned char)(1 << side);
-    }
-  }
-  PetscFunctionReturn(0);
-}
-
-/* Quadratic displacements; shape function gradients and areas of all Gauss points, once for ever. */
-static PetscErrorCode Tabulate(LamMacro macro)
-{
-  PetscInt cells = macro->cell_end - macro->cell_start;
-  PetscReal x[LAM_MACRO_POINTS * 2], J[LAM_MACRO_POINTS * 4], invJ[LAM_MACRO_POINTS * 4], detJ[LAM_MACRO_POINTS];
-  const PetscReal *weights;
-  PetscFE fe;
-  PetscQuadrature quadrature;
-  PetscTabulation table;
-  PetscInt points;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscFECreateLagrange(macro->comm, 2, 2, PETSC_FALSE, 2, 2, &fe));
-  PetscCall(DMSetField(macro->dm, 0, NULL, (PetscObject)fe));
-  PetscCall(DMCreateDS(macro->dm));
-  PetscCall(PetscFEGetQuadrature(fe, &quadrature));
-  PetscCall(PetscQuadratureGetData(quadrature, NULL, NULL, &points, NULL, &weights));
-  PetscCall(PetscFEGetCellTabulation(fe, 1, &table));
-  PetscCheck(points == LAM_MACRO_POINTS && table->Nb == LAM_MACRO_DOFS && table->Nc == 2, macro->comm, PETSC_ERR_PLIB,
-             "unexpected element: %" PetscInt_FMT " points, %" PetscInt_FMT " functions", points, table->Nb);
-  PetscCall(PetscMalloc1(cells * LAM_MACRO_POINTS * LAM_MACRO_DOFS, &macro->gradient));
-  PetscCall(PetscMalloc1(cells * LAM_MACRO_POINTS, &macro->weight));
-  for (PetscInt c = 0; c < cells; c++) {
-    PetscCall(DMPlexComputeCellGeometryFEM(macro->dm, macro->cell_start + c, quadrature, x, J, invJ, detJ));
-    for (PetscInt q = 0; q < LAM_MACRO_POINTS; q++) {
-      PetscReal *gradient = &macro->gradient[(c * LAM_MACRO_POINTS + q) * LAM_MACRO_DOFS];
-      macro->weight[c * LAM_MACRO_POINTS + q] = weights[q] * detJ[q];
-      for (PetscInt a = 0; a < LAM_MACRO_NODES; a++) {
-        /* function 2a is node a's first component */
-        const PetscReal *g = &table->T[1][(q * LAM_MACRO_DOFS + 2 * a) * 4];
-        for (PetscInt j = 0; j < 2; j++) gradient[2 * a + j] = g[0] * invJ[4 * q + j] + g[1] * invJ[4 * q + 2 + j];
+  PetscCall(VecGetArrayRead(coordinates, &x));
+  for (PetscInt depth = 0; depth <= macro->dim; depth++) {
+    PetscInt start, end;
+    PetscCall(DMPlexGetDepthStratum(macro->dm, depth, &start, &end));
+    for (PetscInt p = start; p < end; p++) {
+      PetscReal *X = &macro->position[macro->dim * (p - macro->mesh_start)];
+      PetscInt dof = 0, offset = 0;
+      if (p >= known[0] && p < known[1]) {
+        PetscCall(PetscSectionGetDof(section, p, &dof));
+        PetscCall(PetscSectionGetOffset(section, p, &offset));
       }
+      if (dof == macro->dim)
+        for (PetscInt i = 0; i < macro->dim; i++) X[i] = PetscRealPart(x[offset + i]);
+      else
+        PetscCall(PlaceNode(macro, p, X));
+      if (depth == 1) MoveToRim(macro, p);
     }
   }
-  PetscCall(PetscFEDestroy(&fe));
+  PetscCall(VecRestoreArrayRead(coordinates, &x));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamMacroMeshCreate(LamMacro macro)
+/* inverse of J[dim][dim] (row-major) and its determinant. */
+static PetscReal Invert(PetscInt dim, const PetscReal J[], PetscReal inverse[])
 {
-  const LamMacroSpec *spec = &macro->scene->macro;
-  const PetscReal lower[2] = {0, 0};
-  DM distributed;
-  DMLabel label;
-  PetscSF migration = NULL;
+  if (dim == 2) {
+    const PetscReal det = J[0] * J[3] - J[1] * J[2];
+    inverse[0] = J[3] / det, inverse[1] = -J[1] / det, inverse[2] = -J[2] / det, inverse[3] = J[0] / det;
+    return det;
+  }
+  PetscReal det = 0;
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++) {
+      const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+      inverse[3 * j + i] = J[3 * i1 + j1] * J[3 * i2 + j2] - J[3 * i1 + j2] * J[3 * i2 + j1];
+    }
+  }
+  for (int j = 0; j < 3; j++) det += J[j] * inverse[3 * j];
+  for (int k = 0; k < 9; k++) inverse[k] /= det;
+  return det;
+}
+
+/* dN/dX, weight and place of one Gauss point; X [nodes][dim]. */
+static PetscErrorCode MapPoint(LamMacro macro, const LamMacroElement *element, PetscInt q, const PetscReal X[])
+{
+  const LamMacroKind *kind = element->kind;
+  const PetscInt dim = macro->dim;
+  const PetscReal *dN = &kind->gradient[q * kind->nodes * dim], *N = &kind->value[q * kind->nodes];
+  PetscReal *dNdX = &macro->gradient[element->gradient + q * kind->nodes * dim],
+            *place = &macro->place[dim * (element->first + q)];
+  PetscReal J[LAM_MACRO_DIM * LAM_MACRO_DIM] = {0}, inverse[LAM_MACRO_DIM * LAM_MACRO_DIM], det;
 
   PetscFunctionBeginUser;
-  PetscCall(
-      DMPlexCreateBoxMesh(macro->comm, 2, PETSC_FALSE, spec->elements, lower, spec->box, NULL, PETSC_TRUE, &macro->dm));
-  PetscCall(DMGetLabel(macro->dm, "Face Sets", &label));
-  if (label) PetscCall(DMPlexLabelComplete(macro->dm, label)); /* from edges to their vertices */
+  for (PetscInt a = 0; a < kind->nodes; a++) {
+    for (PetscInt i = 0; i < dim; i++) {
+      place[i] += N[a] * X[dim * a + i];
+      for (PetscInt j = 0; j < dim; j++) J[dim * i + j] += X[dim * a + i] * dN[dim * a + j];
+    }
+  }
+  det = Invert(dim, J, inverse);
+  PetscCheck(det > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "element %d of the mesh is inside out or has no area, near (%g, %g)", (int)element->number,
+             (double)place[0], (double)place[1]);
+  macro->weight[element->first + q] = kind->weight[q] * det;
+  for (PetscInt a = 0; a < kind->nodes; a++) {
+    for (PetscInt i = 0; i < dim; i++) {
+      dNdX[dim * a + i] = 0;
+      for (PetscInt j = 0; j < dim; j++) dNdX[dim * a + i] += dN[dim * a + j] * inverse[dim * j + i];
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Reference positions of an element's nodes, [nodes][dim]. */
+static PetscErrorCode ElementPositions(LamMacro macro, PetscInt e, PetscReal X[])
+{
+  PetscInt size, *closure = NULL, node = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMPlexGetTransitiveClosure(macro->dm, macro->mesh_start + e, PETSC_TRUE, &size, &closure));
+  for (PetscInt k = 0; k < size; k++) {
+    const PetscInt p = closure[2 * k] - macro->mesh_start;
+    if (macro->node_number[p] < 0) continue;
+    PetscCall(PetscArraycpy(&X[macro->dim * node++], &macro->position[macro->dim * p], macro->dim));
+  }
+  PetscCall(DMPlexRestoreTransitiveClosure(macro->dm, macro->mesh_start + e, PETSC_TRUE, &size, &closure));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MapElements(LamMacro macro)
+{
+  PetscInt gradients = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt e = 0; e < macro->element_count; e++) {
+    LamMacroElement *element = &macro->elements[e];
+    DMPolytopeType type;
+    PetscCall(DMPlexGetCellType(macro->dm, macro->mesh_start + e, &type));
+    PetscCall(LamMacroKindGet(macro, type, &element->kind));
+    element->first = macro->point_count;
+    element->gradient = gradients;
+    macro->point_count += element->kind->points;
+    gradients += element->kind->points * element->kind->nodes * macro->dim;
+  }
+  PetscCall(PetscMalloc1(gradients, &macro->gradient));
+  PetscCall(PetscMalloc1(macro->point_count, &macro->weight));
+  PetscCall(PetscCalloc1(macro->point_count * macro->dim, &macro->place));
+  PetscCall(PetscMalloc1(macro->point_count, &macro->point_element));
+  for (PetscInt e = 0; e < macro->element_count; e++) {
+    const LamMacroElement *element = &macro->elements[e];
+    PetscReal X[LAM_MACRO_DOFS];
+    PetscCall(ElementPositions(macro, e, X));
+    for (PetscInt q = 0; q < element->kind->points; q++) {
+      macro->point_element[element->first + q] = e;
+      PetscCall(MapPoint(macro, element, q, X));
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* ---- all of it ---- */
+
+/* The undistributed mesh, in macro lengths. */
+static PetscErrorCode CreateMesh(MPI_Comm comm, const LamMacroSpec *spec, DM *dm)
+{
+  const PetscReal lower[2] = {0, 0};
+
+  PetscFunctionBeginUser;
+  switch (spec->source) {
+  case LAM_MESH_BOX:
+    PetscCall(DMPlexCreateBoxMesh(comm, 2, PETSC_FALSE, spec->elements, lower, spec->box, NULL, PETSC_TRUE, dm));
+    break;
+  case LAM_MESH_DISC:
+    PetscCall(LamMacroDiscCreate(comm, spec->disc, spec->elements, dm));
+    break;
+  default:
+    PetscCall(LamMacroGmshCreate(comm, spec->gmsh, dm));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* From facets to their edges and vertices, in all labels of sides; the outer facets get one. */
+static PetscErrorCode CompleteLabels(DM dm)
+{
+  PetscInt labels;
+  DMLabel outer;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMCreateLabel(dm, OUTER));
+  PetscCall(DMGetLabel(dm, OUTER, &outer));
+  PetscCall(DMPlexMarkBoundaryFaces(dm, 1, outer));
+  PetscCall(DMGetNumLabels(dm, &labels));
+  for (PetscInt k = 0; k < labels; k++) {
+    const char *name;
+    DMLabel label;
+    PetscCall(DMGetLabelName(dm, k, &name));
+    if (!strcmp(name, "depth") || !strcmp(name, "celltype") || !strcmp(name, "Cell Sets")) continue;
+    PetscCall(DMGetLabelByNum(dm, k, &label));
+    PetscCall(DMPlexLabelComplete(dm, label));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Distribute(LamMacro macro)
+{
+  PetscInt *points, n;
+  PetscSF migration = NULL;
+  DM distributed;
+
+  PetscFunctionBeginUser;
+  PetscCall(NumberPoints(macro->dm, &macro->node_number, &points));
   PetscCall(DMPlexDistribute(macro->dm, 0, &migration, &distributed));
   if (distributed) {
     PetscCall(DMDestroy(&macro->dm));
     macro->dm = distributed;
   }
-  PetscCall(DMPlexGetHeightStratum(macro->dm, 0, &macro->cell_start, &macro->cell_end));
+  PetscCall(DMPlexGetHeightStratum(macro->dm, 0, NULL, &macro->element_count));
   PetscCall(DMPlexGetChart(macro->dm, &macro->mesh_start, &macro->mesh_end));
-  PetscCall(NumberPoints(macro, migration));
+  n = macro->mesh_end - macro->mesh_start;
+  PetscCall(Migrate(migration, &macro->node_number, n));
+  PetscCall(Migrate(migration, &points, n));
   PetscCall(PetscSFDestroy(&migration));
+  PetscCall(PetscMalloc1(macro->element_count, &macro->elements));
+  for (PetscInt e = 0; e < macro->element_count; e++)
+    macro->elements[e] = (LamMacroElement){.number = points[e], .group = -1};
+  PetscCall(PetscFree(points));
+  PetscFunctionReturn(0);
+}
+
+/* dim unknowns on every node. */
+static PetscErrorCode NumberUnknowns(LamMacro macro)
+{
+  PetscSection section;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSectionCreate(macro->comm, &section));
+  PetscCall(PetscSectionSetChart(section, macro->mesh_start, macro->mesh_end));
+  for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++)
+    PetscCall(PetscSectionSetDof(section, p, macro->node_number[p - macro->mesh_start] < 0 ? 0 : macro->dim));
+  PetscCall(PetscSectionSetUp(section));
+  PetscCall(DMSetLocalSection(macro->dm, section));
+  PetscCall(PetscSectionDestroy(&section));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroMeshCreate(LamMacro macro)
+{
+  PetscFunctionBeginUser;
+  PetscCall(CreateMesh(macro->comm, &macro->scene->macro, &macro->dm));
+  PetscCall(DMGetDimension(macro->dm, &macro->dim));
+  PetscCall(CompleteLabels(macro->dm));
+  PetscCall(Distribute(macro));
+  PetscCall(NameSets(macro));
+  PetscCall(ListFacets(macro));
   PetscCall(LocateNodes(macro));
-  PetscCall(MarkSides(macro));
-  PetscCall(Tabulate(macro));
-  macro->point_count = (macro->cell_end - macro->cell_start) * LAM_MACRO_POINTS;
+  PetscCall(MapElements(macro));
+  PetscCall(NumberUnknowns(macro));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamMacroMeshDestroy(LamMacro macro)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree(macro->number));
+  PetscCall(LamMacroKindsDestroy(macro));
+  PetscCall(PetscFree(macro->elements));
+  PetscCall(PetscFree(macro->node_number));
   PetscCall(PetscFree(macro->position));
-  PetscCall(PetscFree(macro->sides));
   PetscCall(PetscFree(macro->gradient));
+  PetscCall(PetscFree(macro->sets));
+  PetscCall(PetscFree(macro->facets));
+  PetscCall(PetscFree(macro->point_element));
   PetscCall(PetscFree(macro->weight));
+  PetscCall(PetscFree(macro->place));
   PetscCall(DMDestroy(&macro->dm));
   PetscFunctionReturn(0);
 }

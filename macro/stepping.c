@@ -143,7 +143,7 @@ static PetscErrorCode TryStage(LamMacro macro, Stage stage, PetscBool *converged
   PetscInt iterations;
 
   PetscFunctionBeginUser;
-  macro->turgor = stage.turgor * macro->scene->turgor;
+  macro->turgor = stage.turgor;
   macro->force_scale = 0;
   macro->trouble[0] = '\0';
   PetscCall(LamMacroSetLoadFactor(macro, stage.load));

@@ -10,6 +10,7 @@ const char *const LamInterfaceLawNames[] = {LAM_INTERFACE_LAWS(LAM_NAME_ENTRY)};
 const char *const LamStrategyNames[] = {LAM_STRATEGIES(LAM_NAME_ENTRY)};
 const char *const LamPatchSidesNames[] = {LAM_PATCH_SIDES(LAM_NAME_ENTRY)};
 const char *const LamFibresNames[] = {LAM_FIBRES(LAM_NAME_ENTRY)};
+const char *const LamDiscPartNames[] = {LAM_DISC_PARTS(LAM_NAME_ENTRY)};
 const char *const LamSideNames[] = {LAM_SIDES(LAM_NAME_ENTRY)};
 const char *const LamMapQuantityNames[] = {LAM_MAP_QUANTITIES(LAM_NAME_ENTRY)};
 static const char *const spacing_names[] = {LAM_SPACINGS(LAM_NAME_ENTRY)};
@@ -232,16 +233,32 @@ const LamKey LamKeys[] = {
 
     {MAP("macro"), .example = "{mesh: {...}, boundary: [...]}", .help = "The body for `lamella fe2`, in plane strain."},
     {MAP("macro.mesh"), REQUIRED, .example = "{box: [10 mm, 10 mm], elements: [8, 8]}", .help = "Its mesh."},
-    {LENGTH("macro.mesh.box", "mm"), .size = 2, REQUIRED, ABOVE(0), .example = "[10 mm, 10 mm]",
-     .help = "Edges of a rectangular block along X1 and X2; its corner is the origin."},
-    {INTEGER("macro.mesh.elements"), .size = 2, REQUIRED, FROM(1), TO(1000), .example = "[8, 8]",
-     .help = "Quadratic elements along X1 and X2."},
-    {TEXT("macro.mesh.gmsh"), NOT_YET, .example = "file.msh", .help = "A Gmsh file instead of a box."},
+    {LENGTH("macro.mesh.box", "mm"), .size = 2, ABOVE(0), .default_words = "none: one of `box`, `disc`, `gmsh`",
+     .example = "[10 mm, 10 mm]",
+     .help = "Edges of a rectangular block along X1 and X2; its corner is the origin. Its sides are `left`, `right`, "
+             "`bottom`, `top`."},
+    {LENGTH("macro.mesh.disc", "mm"), ABOVE(0), .default_words = "none: one of `box`, `disc`, `gmsh`",
+     .example = "5 mm",
+     .help = "Radius of a disc about the origin. Its sides are `rim` and, of a part, `bottom` (X2 = 0) and `left` "
+             "(X1 = 0)."},
+    {NAME("macro.mesh.part", LamDiscPartNames), .default_value = "whole", .example = "quarter",
+     .help = "Of a disc: `whole`, `half` (X2 >= 0) or `quarter` (X1 >= 0, too)."},
+    {INTEGER("macro.mesh.elements"), .size = 2, FROM(1), TO(1000),
+     .default_words = "none: required with `box` and `disc`", .example = "[8, 8]",
+     .help = "Quadratic elements: of a box along X1 and X2; of a disc along an eighth of the rim, and from the rim to "
+             "the square in its middle, half as wide."},
+    {TEXT("macro.mesh.gmsh"), .default_words = "none: one of `box`, `disc`, `gmsh`", .example = "fruit.msh",
+     .help =
+         "A Gmsh file, its path relative to the scene's folder: triangles and quadrilaterals in the plane, straight "
+         "or quadratic. Physical curves and points are boundaries, physical surfaces are regions, by their names."},
+    {LENGTH("macro.mesh.unit", "mm"), ABOVE(0), .default_value = "1 mm", .example = "1 cm",
+     .help = "Unit of length of the Gmsh file."},
     {LIST("macro.boundary"), REQUIRED, .example = "[{on: bottom, displacement: [0 mm, 0 mm]}]",
      .help = "Displacement conditions, at most one for each side. Together they hold the body against rigid motion, "
              "and sides that share a corner agree there."},
     {MAP("macro.boundary[]"), .example = "{on: bottom, displacement: [0 mm, 0 mm]}", .help = "One side."},
-    {NAME("macro.boundary[].on", LamSideNames), REQUIRED, .example = "bottom", .help = "The side of the box."},
+    {TEXT("macro.boundary[].on"), REQUIRED, .example = "bottom",
+     .help = "The name of a side of the box or disc, or of a physical group of the Gmsh file."},
     {LENGTH("macro.boundary[].displacement", "mm"), .size = 2, REQUIRED, FREE, .example = "[0 mm, free]",
      .help = "At the end of the load program, along X1 and X2; `free` leaves a component."},
     {BOOL("macro.inflate"), .default_words = "true with turgor, else false", .example = "true",

@@ -46,7 +46,16 @@ typedef PetscErrorCode (*LamMacroMonitor)(LamMacro macro, const LamMacroStep *st
 PetscErrorCode LamMacroCreate(MPI_Comm comm, LamMacro *macro);
 PetscErrorCode LamMacroSetScene(LamMacro macro, const LamScene *scene); /* borrows the scene */
 PetscErrorCode LamMacroSetUp(LamMacro macro);
-PetscErrorCode LamMacroGetPointCount(LamMacro macro, PetscInt *points);       /* material points on this rank */
+PetscErrorCode LamMacroGetPointCount(LamMacro macro, PetscInt *points); /* material points on this rank */
+/*
+  Of this rank's material points: X [point][2] reference positions in macro lengths, group [point] the index of the
+  mesh's named region it lies in, -1: none. Names of these regions: of a Gmsh file's physical groups of elements.
+*/
+PetscErrorCode LamMacroGetPlaces(LamMacro macro, PetscReal X[], PetscInt group[]);
+PetscErrorCode LamMacroGetGroups(LamMacro macro, PetscInt *count, const char (**names)[LAM_NAME_LENGTH]);
+/* Tissue that differs from point to point, [point] each: the turgor at full inflation, and the cohesion; where this is
+   not called they are the scene's. */
+PetscErrorCode LamMacroSetPointTissue(LamMacro macro, const PetscReal turgor[], const PetscReal cohesion[]);
 PetscErrorCode LamMacroSetResponder(LamMacro macro, LamResponder *responder); /* borrows it */
 PetscErrorCode LamMacroSetMonitor(LamMacro macro, LamMacroMonitor monitor, void *ctx);
 /*
@@ -65,12 +74,14 @@ PetscErrorCode LamMacroDestroy(LamMacro *macro);
 /*
   Fields of the last converged step, gathered on rank 0 of the communicator (others get NULL); the caller frees each
   with PetscFree. All nondimensional.
-    nodes     [node_count][2]      reference positions        elements [element_count][9] VTK's biquadratic order
+    nodes     [node_count][2]      reference positions
+    elements  [element_count][LAM_FIELD_NODES] VTK's order: corners, mid-edges, centre; of a triangle six, then -1
     u         [node_count][2]      displacement
     F, P      [element_count][9]   mean over the element's points, row-major 3x3
     cauchy    [element_count][9]   mean of P F^T / J over the element's present volume
     indicator [element_count][4]   lumen fraction, opening fraction, debonded fraction, turgor (means)
 */
+enum { LAM_FIELD_NODES = 9 };
 typedef struct {
   PetscInt node_count, element_count;
   PetscReal *nodes, *u, *F, *P, *cauchy, *indicator;

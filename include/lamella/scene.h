@@ -85,7 +85,8 @@ static inline PetscReal LamWallThickness(const LamMicrostructure *micro, PetscIn
 typedef struct {
   PetscReal length;       /* apothem of the cell, m */
   PetscReal stress;       /* C1 + C2, Pa */
-  PetscReal macro_length; /* first edge of the macroscale box, m; 0 without a macro block */
+  PetscReal macro_length; /* first edge of the macroscale box, radius of a disc, unit of a Gmsh file, m; 0 without a
+                             macro block */
 } LamScales;
 
 /* What a material point is asked. */
@@ -152,19 +153,31 @@ const char *LamMapQuantityUnit(LamMapQuantity quantity, const LamScales *scales,
 /* Whether it says how far the load is followed, not what tissue is loaded. */
 PetscBool LamMapQuantityIsLoad(LamMapQuantity quantity);
 
+/* Where the mesh of the macroscale body comes from. */
+#define LAM_DISC_PARTS(X)                                                                                              \
+  X(LAM_DISC_WHOLE, "whole")                                                                                           \
+  X(LAM_DISC_HALF, "half")       /* X2 >= 0 */                                                                         \
+  X(LAM_DISC_QUARTER, "quarter") /* X1, X2 >= 0 */
+typedef enum { LAM_DISC_PARTS(LAM_ENUM_ENTRY) LAM_DISC_PART_COUNT } LamDiscPart;
+extern const char *const LamDiscPartNames[];
+typedef enum { LAM_MESH_BOX, LAM_MESH_DISC, LAM_MESH_GMSH } LamMeshSource;
+
 #define LAM_MAX_BOUNDARIES 16
 #define LAM_NAME_LENGTH 64
 
 /* A displacement condition on a named side of the macroscale body. */
 typedef struct {
-  char on[LAM_NAME_LENGTH];  /* left, right, bottom, top */
+  char on[LAM_NAME_LENGTH];  /* box: left, right, bottom, top; disc: rim, left, bottom; Gmsh: a physical group */
   PetscBool given[2];        /* PETSC_FALSE: this component is free */
   PetscReal displacement[2]; /* at the end of the load program, in macro lengths */
 } LamBoundary;
 
 typedef struct {
-  PetscReal box[2]; /* edges, in macro lengths (box[0] = 1) */
-  PetscInt elements[2];
+  LamMeshSource source;
+  PetscReal box[2];     /* edges, in macro lengths (box[0] = 1) */
+  LamDiscPart disc;     /* of a disc about the origin, whose radius is the macro length */
+  PetscInt elements[2]; /* box: along X1, X2; disc: along an eighth of the rim, and between rim and inner square */
+  char gmsh[PETSC_MAX_PATH_LEN]; /* file; a unit of length there is the macro length */
   PetscInt boundary_count;
   LamBoundary boundary[LAM_MAX_BOUNDARIES];
   PetscBool inflate; /* first bring turgor up with only rigid motions held */

@@ -211,6 +211,20 @@ static void PrintStates(const char label[], PetscInt64 states, PetscReal seconds
   putchar('\n');
 }
 
+static void PrintMacro(const Check *check)
+{
+  const LamPlan *plan = &check->plan;
+  const LamMacroSpec *macro = &check->scene->macro;
+
+  printf("%-12s ", "fe2");
+  if (macro->source == LAM_MESH_GMSH)
+    printf("elements of %s", macro->gmsh);
+  else
+    printf("%" PetscInt_FMT " elements, %" PetscInt_FMT " material points", plan->macro_elements, plan->macro_points);
+  printf(", %" PetscInt_FMT " load steps%s\n", macro->steps, macro->inflate ? " after inflation" : "");
+  if (plan->macro_states) PrintStates("  direct", plan->macro_states, (PetscReal)plan->macro_states * check->point);
+}
+
 static void PrintCost(const Check *check)
 {
   const LamPlan *plan = &check->plan;
@@ -229,12 +243,7 @@ static void PrintCost(const Check *check)
            LamMapPathCount(scene));
     PrintStates("  paths", plan->map_states, MapSeconds(check));
   }
-  if (!scene->has_macro) return;
-  printf("%-12s %" PetscInt_FMT " x %" PetscInt_FMT " elements, %" PetscInt_FMT " material points, %" PetscInt_FMT
-         " load steps%s\n",
-         "fe2", scene->macro.elements[0], scene->macro.elements[1], plan->macro_points, scene->macro.steps,
-         scene->macro.inflate ? " after inflation" : "");
-  PrintStates("  direct", plan->macro_states, (PetscReal)plan->macro_states * check->point);
+  if (scene->has_macro) PrintMacro(check);
 }
 
 PetscErrorCode LamCommandCheck(LamArgs *args, int *exit_status)

@@ -124,6 +124,21 @@ static PetscErrorCode MeasureSpread(const LamMicrostructure *micro, LamCellSprea
   PetscFunctionReturn(0);
 }
 
+/* Elements of the body; 0 where they are in a file that nobody has read yet. */
+static PetscInt CountElements(const LamMacroSpec *macro)
+{
+  static const PetscInt quadrants[] = {[LAM_DISC_WHOLE] = 4, [LAM_DISC_HALF] = 2, [LAM_DISC_QUARTER] = 1};
+
+  switch (macro->source) {
+  case LAM_MESH_BOX:
+    return macro->elements[0] * macro->elements[1];
+  case LAM_MESH_DISC:
+    return quadrants[macro->disc] * macro->elements[0] * (macro->elements[0] + 2 * macro->elements[1]);
+  default:
+    return 0;
+  }
+}
+
 PetscErrorCode LamPlanMake(const LamScene *scene, LamPlan *plan)
 {
   PetscFunctionBeginUser;
@@ -139,7 +154,8 @@ PetscErrorCode LamPlanMake(const LamScene *scene, LamPlan *plan)
   if (scene->has_macro) {
     const LamMacroSpec *macro = &scene->macro;
 
-    plan->macro_points = POINTS_PER_ELEMENT * macro->elements[0] * macro->elements[1];
+    plan->macro_elements = CountElements(macro);
+    plan->macro_points = POINTS_PER_ELEMENT * plan->macro_elements;
     plan->macro_states =
         (PetscInt64)(ANSWERS_PER_STEP * (PetscReal)plan->macro_points * (macro->steps + (macro->inflate ? 1 : 0)));
   }
