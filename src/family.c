@@ -1,10 +1,9 @@
 #include <lamella/family.h>
+#include <lamella/blend.h>
 #include <math.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { MOST_KNOTS = 4 };
 #define SAME 1e-9 /* relative */
 
 const char *const LamFamilyAxisNames[] = {LAM_FAMILY_AXES(LAM_NAME_ENTRY) NULL};
@@ -17,7 +16,8 @@ typedef struct {
 struct LamFamily_s {
   LamFamilyAxis axis;
   PetscInt n;
-  Knot *knots; /* ascending */
+  Knot *knots;       /* ascending */
+  PetscReal *values; /* of the knots */
 };
 
 /* ---- the axis ---- */
@@ -102,6 +102,8 @@ PetscErrorCode LamFamilyCreate(PetscInt n, const LamDatabase databases[], LamFam
     f->knots[i] = (Knot){databases[i], AxisValue(&micro, axis)};
   }
   qsort(f->knots, (size_t)n, sizeof(Knot), CompareKnots);
+  PetscCall(PetscMalloc1(n, &f->values));
+  for (PetscInt i = 0; i < n; i++) f->values[i] = f->knots[i].value;
   for (PetscInt i = 1; i < n; i++)
     PetscCheck(!Same(f->knots[i - 1].value, f->knots[i].value), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                "two of the databases have %s = %g", LamFamilyAxisNames[axis], (double)f->knots[i].value);
@@ -113,6 +115,7 @@ PetscErrorCode LamFamilyDestroy(LamFamily *family)
   PetscFunctionBeginUser;
   if (!*family) PetscFunctionReturn(0);
   PetscCall(PetscFree((*family)->knots));
+  PetscCall(PetscFree((*family)->values));
   PetscCall(PetscFree(*family));
   PetscFunctionReturn(0);
 }
@@ -126,135 +129,14 @@ PetscErrorCode LamFamilyGetAxis(LamFamily family, LamFamilyAxis *axis, PetscReal
   PetscFunctionReturn(0);
 }
 
-/* ---- weights ---- */
-
-/* Of the polynomial in ln v through n knots; knots of value 0 (no fibres, no C2) are on a linear axis. */
-static PetscReal Position(PetscReal value, PetscBool is_log)
-{
-  return is_log ? log(value) : value;
-}
-
-static void Weights(const Knot knots[], PetscInt n, PetscReal value, PetscInt without, PetscReal w[])
-{
-  const PetscBool is_log = (PetscBool)(knots[0].value > 0);
-  const PetscReal x = Position(value, is_log);
-
-  for (PetscInt i = 0; i < n; i++) {
-    const PetscReal at = Position(knots[i].value, is_log);
-
-    w[i] = i != without;
-    for (PetscInt k = 0; k < n; k++) {
-      const PetscReal other = Position(knots[k].value, is_log);
-
-      if (k != i && k != without) w[i] *= (x - other) / (at - other);
-    }
-  }
-}
-
-/* The knots around a value: *first of them, and how many. */
-static void Nearest(LamFamily f, PetscReal value, PetscInt *first, PetscInt *count)
-{
-  PetscInt above = 1;
-
-  while (above < f->n - 1 && f->knots[above].value < value) above++;
-  *count = PetscMin(f->n, MOST_KNOTS);
-  *first = PetscMin(PetscMax(above - *count / 2, 0), f->n - *count);
-}
-
 /* ---- answers ---- */
-
-/* All numbers that are linear in the potential; 33 ones are interpolated likewise. */
-static void AddPotential(PetscReal w, const LamResponse *r, LamResponse *sum)
-{
-  sum->energy += w * r->energy;
-  sum->energy_turgor += w * r->energy_turgor;
-  sum->energy_turgor2 += w * r->energy_turgor2;
-  sum->energy_cohesion += w * r->energy_cohesion;
-  sum->energy_cohesion2 += w * r->energy_cohesion2;
-  sum->energy_turgor_cohesion += w * r->energy_turgor_cohesion;
-  for (int i = 0; i < 9; i++) {
-    sum->P[i] += w * r->P[i];
-    sum->P_turgor[i] += w * r->P_turgor[i];
-    sum->P_cohesion[i] += w * r->P_cohesion[i];
-  }
-  for (int i = 0; i < 81; i++) sum->tangent[i] += w * r->tangent[i];
-}
-
-/* Starts from zero where AddPotential adds. */
-static void ClearPotential(LamResponse *r)
-{
-  r->energy = r->energy_turgor = r->energy_turgor2 = 0;
-  r->energy_cohesion = r->energy_cohesion2 = r->energy_turgor_cohesion = 0;
-  for (int i = 0; i < 9; i++) r->P[i] = r->P_turgor[i] = r->P_cohesion[i] = 0;
-  for (int i = 0; i < 81; i++) r->tangent[i] = 0;
-}
-
-/* Indicators between two answers, t of the way from the first; counts where both agree. */
-static void MixIndicators(const LamResponse *a, const LamResponse *b, PetscReal t, LamResponse *r)
-{
-  for (const LamMember *m = LamResponseMembers; m->name; m++) {
-    const PetscReal *from = (const PetscReal *)((const char *)a + m->offset);
-    const PetscReal *to = (const PetscReal *)((const char *)b + m->offset);
-    PetscReal *mixed = (PetscReal *)((char *)r + m->offset);
-
-    if (m->type != LAM_MEMBER_REAL || m->offset < offsetof(LamResponse, lumen_fraction) ||
-        m->offset > offsetof(LamResponse, mean_wall_tension))
-      continue;
-    for (PetscInt i = 0; i < m->count; i++) mixed[i] = (1 - t) * from[i] + t * to[i];
-  }
-  if (a->floating_cells == b->floating_cells) r->floating_cells = a->floating_cells;
-  if (a->zero_modes == b->zero_modes) r->zero_modes = a->zero_modes;
-  if (a->cell_clusters == b->cell_clusters) r->cell_clusters = a->cell_clusters;
-  if (a->percolating_directions == b->percolating_directions) r->percolating_directions = a->percolating_directions;
-  r->stable = PETSC_TRUE;
-  r->indicators_trusted = (PetscBool)(a->indicators_trusted && b->indicators_trusted);
-  /* volumes are derivatives of the potential where they are so at the knots */
-  if (a->lumen_fraction == -a->energy_turgor) r->lumen_fraction = -r->energy_turgor;
-  r->opening_fraction = PetscMax(r->energy_cohesion, 0);
-}
-
-/* P without the knot farthest away; between two knots, a quarter of the way from one to the other. */
-static PetscReal AxisError(const Knot knots[], PetscInt n, PetscReal value, const LamResponse at[],
-                           const LamResponse *r)
-{
-  const PetscReal low = fabs(log1p(value) - log1p(knots[0].value));
-  const PetscReal high = fabs(log1p(value) - log1p(knots[n - 1].value));
-  PetscReal w[MOST_KNOTS], P[9] = {0};
-
-  if (n == 2) return 0.25 * LamStressError(at[0].P, at[1].P);
-  Weights(knots, n, value, low > high ? 0 : n - 1, w);
-  for (PetscInt i = 0; i < n; i++)
-    for (int k = 0; k < 9; k++) P[k] += w[i] * at[i].P[k];
-  return LamStressError(P, r->P);
-}
-
-static PetscErrorCode Combine(LamFamily f, PetscReal value, PetscInt first, PetscInt n, const LamResponse at[],
-                              LamResponse *r)
-{
-  const Knot *knots = &f->knots[first];
-  PetscReal w[MOST_KNOTS], estimate = 0;
-  PetscInt above = 1;
-
-  PetscFunctionBeginUser;
-  Weights(knots, n, value, -1, w);
-  ClearPotential(r);
-  for (PetscInt i = 0; i < n; i++) {
-    AddPotential(w[i], &at[i], r);
-    estimate += fabs(w[i]) * at[i].error_estimate;
-  }
-  while (above < n - 1 && knots[above].value < value) above++;
-  MixIndicators(&at[above - 1], &at[above],
-                (value - knots[above - 1].value) / (knots[above].value - knots[above - 1].value), r);
-  r->error_estimate = estimate + AxisError(knots, n, value, at, r);
-  r->status = LAM_CONVERGED;
-  PetscFunctionReturn(0);
-}
 
 PetscErrorCode LamFamilyQuery(LamFamily f, PetscReal value, const LamLoad *load, PetscReal accuracy,
                               LamResponse *response)
 {
-  LamResponse at[MOST_KNOTS];
-  PetscInt first, n;
+  LamResponse at[LAM_BLEND_TERMS];
+  LamBlendTerm terms[LAM_BLEND_TERMS];
+  PetscInt n;
 
   PetscFunctionBeginUser;
   PetscCall(LamResponseInit(load, response));
@@ -265,16 +147,18 @@ PetscErrorCode LamFamilyQuery(LamFamily f, PetscReal value, const LamLoad *load,
              LamFamilyAxisNames[f->axis], (double)value, (double)f->knots[0].value, (double)f->knots[f->n - 1].value);
     PetscFunctionReturn(0);
   }
-  Nearest(f, value, &first, &n);
+  n = LamBlendAt(f->n, f->values, value, terms);
   for (PetscInt i = 0; i < n; i++) {
-    PetscCall(LamDatabaseQuery(f->knots[first + i].database, load, accuracy, &at[i]));
+    const Knot *knot = &f->knots[terms[i].knot];
+
+    PetscCall(LamDatabaseQuery(knot->database, load, accuracy, &at[i]));
     if (at[i].status == LAM_CONVERGED) continue;
     response->status = at[i].status;
     snprintf(response->reason, sizeof(response->reason), "at %s = %g: %.150s", LamFamilyAxisNames[f->axis],
-             (double)f->knots[first + i].value, at[i].reason);
+             (double)knot->value, at[i].reason);
     PetscFunctionReturn(0);
   }
-  PetscCall(Combine(f, value, first, n, at, response));
+  LamBlend(n, terms, at, response);
   if (response->error_estimate > accuracy) {
     response->status = LAM_OUT_OF_REACH;
     snprintf(response->reason, sizeof(response->reason),

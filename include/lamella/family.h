@@ -2,10 +2,8 @@
   Tissue between databases: one more axis, along which walls vary in space or time.
 
   Databases of microstructures that differ in one number, wall thickness t/a, C4/C1 or C2/C1, are the knots of the axis.
-  Between them the potentials are combined with fixed weights w_i(v), so that stress and tangent are still the exact
-  derivatives of one potential:  Psi = sum_i w_i(v) Psi_i(F, p, g),  sum w_i = 1.
-  Weights: the polynomial in ln v through the nearest four knots (or all, where there are fewer). Shares of the
-  interface and strength measures keep their bounds: they are interpolated between the two knots next to v.
+  Between them the potentials are combined with fixed weights (blend.h), so that stress and tangent are still the exact
+  derivatives of one potential.
 */
 #ifndef LAMELLA_FAMILY_H
 #define LAMELLA_FAMILY_H

@@ -6,7 +6,9 @@
     response.h   what a material point is asked and what it answers; the responder table
     rve.h        solves the representative volume element
     database.h   stores responses, answers from them
+    blend.h      answers between tissues that differ in one number
     family.h     answers for walls between databases
+    mosaic.h     answers for a body of different tissue
     cache.h      answers from a database and solves what it lacks
     macro.h      the macroscale finite element solver
     version.h    LAMELLA_VERSION
@@ -28,7 +30,9 @@
 #include <lamella/response.h>
 #include <lamella/rve.h>
 #include <lamella/database.h>
+#include <lamella/blend.h>
 #include <lamella/family.h>
+#include <lamella/mosaic.h>
 #include <lamella/cache.h>
 #include <lamella/macro.h>
 #include <lamella/version.h>

@@ -1,0 +1,165 @@
+#include <lamella/blend.h>
+#include <math.h>
+#include <stddef.h>
+
+/* ---- weights ---- */
+
+/* Knots of value 0 (no fibres, no C2) are on a linear axis. */
+static PetscReal Position(PetscReal value, PetscBool is_log)
+{
+  return is_log ? log(value) : value;
+}
+
+/* Of the polynomial through n knots, one left out where `without` is not -1. */
+static void Weights(const PetscReal knots[], PetscInt n, PetscReal value, PetscInt without, PetscReal w[])
+{
+  const PetscBool is_log = (PetscBool)(knots[0] > 0);
+  const PetscReal x = Position(value, is_log);
+
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal at = Position(knots[i], is_log);
+
+    w[i] = i != without;
+    for (PetscInt k = 0; k < n; k++) {
+      const PetscReal other = Position(knots[k], is_log);
+
+      if (k != i && k != without) w[i] *= (x - other) / (at - other);
+    }
+  }
+}
+
+/* The knots around a value: *first of them, and how many. */
+static void Nearest(PetscInt n, const PetscReal knots[], PetscReal value, PetscInt *first, PetscInt *count)
+{
+  PetscInt above = 1;
+
+  while (above < n - 1 && knots[above] < value) above++;
+  *count = PetscMin(n, (PetscInt)LAM_BLEND_TERMS);
+  *first = PetscMin(PetscMax(above - *count / 2, 0), n - *count);
+}
+
+/* Without the knot farthest away. */
+static void CoarseWeights(const PetscReal knots[], PetscInt n, PetscReal value, const PetscReal w[], PetscReal coarse[])
+{
+  const PetscReal low = fabs(log1p(value) - log1p(knots[0])), high = fabs(log1p(value) - log1p(knots[n - 1]));
+
+  if (n > 2) {
+    Weights(knots, n, value, low > high ? 0 : n - 1, coarse);
+  } else {
+    coarse[0] = w[0] + 0.25;
+    coarse[1] = w[1] - 0.25;
+  }
+}
+
+PetscInt LamBlendAt(PetscInt n, const PetscReal knots[], PetscReal value, LamBlendTerm terms[LAM_BLEND_TERMS])
+{
+  PetscReal w[LAM_BLEND_TERMS], coarse[LAM_BLEND_TERMS], t;
+  PetscInt first, count, above = 1;
+
+  if (n == 1) {
+    terms[0] = (LamBlendTerm){.weight = 1, .coarse = 1, .share = 1};
+    return 1;
+  }
+  Nearest(n, knots, value, &first, &count);
+  knots += first;
+  Weights(knots, count, value, -1, w);
+  CoarseWeights(knots, count, value, w, coarse);
+  for (PetscInt i = 0; i < count; i++) terms[i] = (LamBlendTerm){first + i, w[i], coarse[i], 0};
+  while (above < count - 1 && knots[above] < value) above++;
+  t = PetscClipInterval((value - knots[above - 1]) / (knots[above] - knots[above - 1]), 0.0, 1.0);
+  terms[above - 1].share = 1 - t;
+  terms[above].share = t;
+  return count;
+}
+
+/* ---- answers ---- */
+
+/* All numbers that are linear in the potential; 33 ones are interpolated likewise. */
+static void AddPotential(PetscReal w, const LamResponse *r, LamResponse *sum)
+{
+  sum->energy += w * r->energy;
+  sum->energy_turgor += w * r->energy_turgor;
+  sum->energy_turgor2 += w * r->energy_turgor2;
+  sum->energy_cohesion += w * r->energy_cohesion;
+  sum->energy_cohesion2 += w * r->energy_cohesion2;
+  sum->energy_turgor_cohesion += w * r->energy_turgor_cohesion;
+  for (int i = 0; i < 9; i++) {
+    sum->P[i] += w * r->P[i];
+    sum->P_turgor[i] += w * r->P_turgor[i];
+    sum->P_cohesion[i] += w * r->P_cohesion[i];
+  }
+  for (int i = 0; i < 81; i++) sum->tangent[i] += w * r->tangent[i];
+}
+
+/* Starts from zero where AddPotential adds. */
+static void ClearPotential(LamResponse *r)
+{
+  r->energy = r->energy_turgor = r->energy_turgor2 = 0;
+  r->energy_cohesion = r->energy_cohesion2 = r->energy_turgor_cohesion = 0;
+  for (int i = 0; i < 9; i++) r->P[i] = r->P_turgor[i] = r->P_cohesion[i] = 0;
+  for (int i = 0; i < 81; i++) r->tangent[i] = 0;
+}
+
+/* Indicators of the two terms with shares; counts where both agree. */
+static void MixIndicators(const LamResponse *a, const LamResponse *b, PetscReal t, LamResponse *r)
+{
+  for (const LamMember *m = LamResponseMembers; m->name; m++) {
+    const PetscReal *from = (const PetscReal *)((const char *)a + m->offset);
+    const PetscReal *to = (const PetscReal *)((const char *)b + m->offset);
+    PetscReal *mixed = (PetscReal *)((char *)r + m->offset);
+
+    if (m->type != LAM_MEMBER_REAL || m->offset < offsetof(LamResponse, lumen_fraction) ||
+        m->offset > offsetof(LamResponse, mean_wall_tension))
+      continue;
+    for (PetscInt i = 0; i < m->count; i++) mixed[i] = (1 - t) * from[i] + t * to[i];
+  }
+  if (a->floating_cells == b->floating_cells) r->floating_cells = a->floating_cells;
+  if (a->zero_modes == b->zero_modes) r->zero_modes = a->zero_modes;
+  if (a->cell_clusters == b->cell_clusters) r->cell_clusters = a->cell_clusters;
+  if (a->percolating_directions == b->percolating_directions) r->percolating_directions = a->percolating_directions;
+  r->indicators_trusted = (PetscBool)(a->indicators_trusted && b->indicators_trusted);
+  /* volumes are derivatives of the potential where they are so at the knots */
+  if (a->lumen_fraction == -a->energy_turgor) r->lumen_fraction = -r->energy_turgor;
+  r->opening_fraction = PetscMax(r->energy_cohesion, 0);
+}
+
+static void MixShares(PetscInt n, const LamBlendTerm terms[], const LamResponse at[], LamResponse *r)
+{
+  PetscInt first = 0;
+
+  while (first < n - 1 && terms[first].share == 0) first++;
+  if (first == n - 1)
+    MixIndicators(&at[first], &at[first], 0, r);
+  else
+    MixIndicators(&at[first], &at[first + 1], terms[first + 1].share, r);
+}
+
+/* How the terms were found. */
+static void AddEffort(const LamResponse *term, LamResponse *r)
+{
+  if (term->status == LAM_UNSTABLE) r->status = LAM_UNSTABLE;
+  if (term->source == LAM_SOURCE_SOLVE) r->source = LAM_SOURCE_SOLVE;
+  r->stable = (PetscBool)(r->stable && term->stable);
+  r->branch = PetscMax(r->branch, term->branch);
+  r->newton_iterations += term->newton_iterations;
+  r->factorisations += term->factorisations;
+  r->unknowns = PetscMax(r->unknowns, term->unknowns);
+}
+
+void LamBlend(PetscInt n, const LamBlendTerm terms[], const LamResponse at[], LamResponse *r)
+{
+  PetscReal estimate = 0, P[9] = {0};
+
+  ClearPotential(r);
+  r->status = LAM_CONVERGED;
+  r->source = LAM_SOURCE_DATABASE;
+  r->stable = PETSC_TRUE;
+  for (PetscInt i = 0; i < n; i++) {
+    AddPotential(terms[i].weight, &at[i], r);
+    AddEffort(&at[i], r);
+    estimate += fabs(terms[i].weight) * at[i].error_estimate;
+    for (int k = 0; k < 9; k++) P[k] += terms[i].coarse * at[i].P[k];
+  }
+  MixShares(n, terms, at, r);
+  r->error_estimate = estimate + LamStressError(P, r->P);
+}

@@ -1,0 +1,298 @@
+#include <lamella/mosaic.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct {
+  PetscInt tissue_count, n;
+  LamMosaicTissue *tissues;
+  LamMosaicPoint *points;
+  PetscInt (*number)[LAM_BLEND_TERMS]; /* [point] its number in the tissue of each term */
+  LamResponder *self;                  /* the responder's counters; borrowed */
+} Mosaic;
+
+/* The questions of one `respond` to one tissue. */
+typedef struct {
+  PetscInt n;
+  LamLoad *loads;
+  PetscInt *points, (*from)[2]; /* [n] the question and the term that each is for */
+  LamResponse *responses;
+} Batch;
+
+static PetscErrorCode BatchCreate(PetscInt capacity, Batch *batch)
+{
+  PetscFunctionBeginUser;
+  batch->n = 0;
+  PetscCall(PetscMalloc4(capacity, &batch->loads, capacity, &batch->points, capacity, &batch->from, capacity,
+                         &batch->responses));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode BatchDestroy(Batch *batch)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree4(batch->loads, batch->points, batch->from, batch->responses));
+  PetscFunctionReturn(0);
+}
+
+/* ---- turning and scaling ---- */
+
+/* The question in the tissue's own axes and units: F Q. */
+static LamLoad ToTissue(const LamLoad *load, PetscReal angle, PetscReal stress)
+{
+  LamLoad own = {.turgor = load->turgor / stress, .cohesion = load->cohesion / stress};
+  const PetscReal c = cos(angle), s = sin(angle);
+
+  memcpy(own.F, load->F, sizeof(own.F));
+  for (int i = 0; i < 3 && angle != 0; i++) {
+    own.F[3 * i] = c * load->F[3 * i] + s * load->F[3 * i + 1];
+    own.F[3 * i + 1] = c * load->F[3 * i + 1] - s * load->F[3 * i];
+  }
+  return own;
+}
+
+/* A Q^T of the n rows of three that are `stride` apart; entries of a row are `step` apart. */
+static void TurnRows(PetscReal A[], PetscInt n, PetscInt stride, PetscInt step, PetscReal c, PetscReal s)
+{
+  for (PetscInt i = 0; i < n; i++) {
+    PetscReal *a = &A[i * stride];
+    const PetscReal first = a[0], second = a[step];
+
+    a[0] = c * first - s * second;
+    a[step] = s * first + c * second;
+  }
+}
+
+static void Turn(PetscReal angle, LamResponse *r)
+{
+  const PetscReal c = cos(angle), s = sin(angle);
+
+  TurnRows(r->P, 3, 3, 1, c, s);
+  TurnRows(r->P_turgor, 3, 3, 1, c, s);
+  TurnRows(r->P_cohesion, 3, 3, 1, c, s);
+  TurnRows(r->tangent, 27, 3, 1, c, s);                                     /* kl: l */
+  for (int i = 0; i < 3; i++) TurnRows(&r->tangent[27 * i], 9, 1, 9, c, s); /* ij: j */
+}
+
+static void Scale(PetscReal stress, LamResponse *r)
+{
+  for (const LamMember *m = LamResponseMembers; m->name; m++) {
+    const PetscReal factor = m->stress_power == 1 ? stress : m->stress_power == -1 ? 1 / stress : 1;
+    PetscReal *value = (PetscReal *)((char *)r + m->offset);
+
+    if (m->type != LAM_MEMBER_REAL || factor == 1) continue;
+    for (PetscInt i = 0; i < m->count; i++) value[i] *= factor;
+  }
+}
+
+/* The answer in the axes and units of the body. */
+static void ToBody(const LamLoad *load, PetscReal angle, PetscReal stress, LamResponse *r)
+{
+  if (stress != 1) Scale(stress, r);
+  if (angle != 0) Turn(angle, r);
+  r->load = *load;
+}
+
+/* ---- asking ---- */
+
+/* Asks the tissue for all that is its own; answers in the axes and units of the body. */
+static PetscErrorCode AskTissue(const Mosaic *mosaic, PetscInt tissue, PetscInt n, const LamLoad loads[],
+                                const PetscInt points[], Batch *batch)
+{
+  const LamMosaicTissue *t = &mosaic->tissues[tissue];
+
+  PetscFunctionBeginUser;
+  batch->n = 0;
+  for (PetscInt i = 0; i < n; i++) {
+    const LamMosaicPoint *point = &mosaic->points[points[i]];
+
+    for (PetscInt k = 0; k < point->count; k++) {
+      if (point->term[k].knot != tissue) continue;
+      batch->loads[batch->n] = ToTissue(&loads[i], point->angle, t->stress);
+      batch->points[batch->n] = mosaic->number[points[i]][k];
+      batch->from[batch->n][0] = i;
+      batch->from[batch->n++][1] = k;
+    }
+  }
+  PetscCall(t->responder->respond(t->responder->ctx, batch->n, batch->loads, batch->points, batch->responses));
+  for (PetscInt q = 0; q < batch->n; q++) {
+    const PetscInt i = batch->from[q][0];
+
+    ToBody(&loads[i], mosaic->points[points[i]].angle, t->stress, &batch->responses[q]);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The first term without fields is the answer's fate. */
+static PetscErrorCode Refuse(const LamMosaicTissue *tissue, const LamResponse *term, LamResponse *response)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamResponseInit(&term->load, response));
+  response->status = term->status;
+  response->source = term->source;
+  snprintf(response->reason, sizeof(response->reason), "%s%s%.150s", tissue->name, tissue->name[0] ? ": " : "",
+           term->reason);
+  PetscFunctionReturn(0);
+}
+
+/* at[k] answers term k. */
+static PetscErrorCode Combine(const Mosaic *mosaic, const LamMosaicPoint *point, const LamResponse at[],
+                              LamResponse *response)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < point->count; k++) {
+    if (LamResponseHasFields(&at[k])) continue;
+    PetscCall(Refuse(&mosaic->tissues[point->term[k].knot], &at[k], response));
+    PetscFunctionReturn(0);
+  }
+  if (point->count == 1) {
+    *response = at[0];
+    PetscFunctionReturn(0);
+  }
+  PetscCall(LamResponseInit(&at[0].load, response));
+  LamBlend(point->count, point->term, at, response);
+  PetscFunctionReturn(0);
+}
+
+/* What the tissues have counted so far. */
+static void SumCounters(Mosaic *mosaic)
+{
+  LamResponder *sum = mosaic->self;
+
+  sum->queries = sum->hits = sum->solves = sum->failures = 0;
+  sum->solve_seconds = 0;
+  for (PetscInt t = 0; t < mosaic->tissue_count; t++) {
+    const LamResponder *responder = mosaic->tissues[t].responder;
+
+    sum->queries += responder->queries;
+    sum->hits += responder->hits;
+    sum->solves += responder->solves;
+    sum->failures += responder->failures;
+    sum->solve_seconds += responder->solve_seconds;
+  }
+}
+
+/* parts: of question i from start[i] on, one for each term. */
+static PetscErrorCode AskTissues(const Mosaic *mosaic, PetscInt n, const LamLoad loads[], const PetscInt points[],
+                                 const PetscInt start[], LamResponse parts[])
+{
+  Batch batch;
+
+  PetscFunctionBeginUser;
+  PetscCall(BatchCreate(n, &batch));
+  for (PetscInt t = 0; t < mosaic->tissue_count; t++) {
+    PetscCall(AskTissue(mosaic, t, n, loads, points, &batch));
+    for (PetscInt q = 0; q < batch.n; q++) parts[start[batch.from[q][0]] + batch.from[q][1]] = batch.responses[q];
+  }
+  PetscCall(BatchDestroy(&batch));
+  PetscFunctionReturn(0);
+}
+
+/* ---- responder ---- */
+
+static PetscErrorCode MosaicRespond(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[],
+                                    LamResponse responses[])
+{
+  Mosaic *mosaic = (Mosaic *)ctx;
+  PetscInt *start;
+  LamResponse *parts;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n + 1, &start));
+  start[0] = 0;
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCheck(points[i] >= 0 && points[i] < mosaic->n, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "material point %" PetscInt_FMT ", of %" PetscInt_FMT, points[i], mosaic->n);
+    start[i + 1] = start[i] + mosaic->points[points[i]].count;
+  }
+  PetscCall(PetscMalloc1(start[n], &parts));
+  PetscCall(AskTissues(mosaic, n, loads, points, start, parts));
+  for (PetscInt i = 0; i < n; i++)
+    PetscCall(Combine(mosaic, &mosaic->points[points[i]], &parts[start[i]], &responses[i]));
+  PetscCall(PetscFree(parts));
+  PetscCall(PetscFree(start));
+  SumCounters(mosaic);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MosaicAccept(void *ctx)
+{
+  Mosaic *mosaic = (Mosaic *)ctx;
+
+  PetscFunctionBeginUser;
+  for (PetscInt t = 0; t < mosaic->tissue_count; t++) {
+    LamResponder *responder = mosaic->tissues[t].responder;
+
+    if (responder->accept) PetscCall(responder->accept(responder->ctx));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MosaicReject(void *ctx)
+{
+  Mosaic *mosaic = (Mosaic *)ctx;
+
+  PetscFunctionBeginUser;
+  for (PetscInt t = 0; t < mosaic->tissue_count; t++) {
+    LamResponder *responder = mosaic->tissues[t].responder;
+
+    if (responder->reject) PetscCall(responder->reject(responder->ctx));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MosaicDestroy(void **ctx)
+{
+  Mosaic *mosaic = (Mosaic *)*ctx;
+
+  PetscFunctionBeginUser;
+  if (!mosaic) PetscFunctionReturn(0);
+  PetscCall(PetscFree3(mosaic->tissues, mosaic->points, mosaic->number));
+  PetscCall(PetscFree(*ctx));
+  PetscFunctionReturn(0);
+}
+
+PetscInt LamMosaicPointCount(PetscInt n, const LamMosaicPoint points[], PetscInt tissue)
+{
+  PetscInt count = 0;
+
+  for (PetscInt p = 0; p < n; p++)
+    for (PetscInt k = 0; k < points[p].count; k++) count += points[p].term[k].knot == tissue;
+  return count;
+}
+
+/* The points of a tissue are numbered in the order of the body's. */
+static PetscErrorCode NumberPoints(Mosaic *mosaic)
+{
+  PetscInt *next;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mosaic->tissue_count, &next));
+  for (PetscInt p = 0; p < mosaic->n; p++)
+    for (PetscInt k = 0; k < mosaic->points[p].count; k++)
+      mosaic->number[p][k] = next[mosaic->points[p].term[k].knot]++;
+  PetscCall(PetscFree(next));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMosaicCreate(PetscInt tissue_count, const LamMosaicTissue tissues[], PetscInt n,
+                               const LamMosaicPoint points[], LamResponder *responder)
+{
+  Mosaic *mosaic;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&mosaic));
+  mosaic->tissue_count = tissue_count;
+  mosaic->n = n;
+  mosaic->self = responder;
+  PetscCall(PetscMalloc3(tissue_count, &mosaic->tissues, n, &mosaic->points, n, &mosaic->number));
+  PetscCall(PetscArraycpy(mosaic->tissues, tissues, tissue_count));
+  PetscCall(PetscArraycpy(mosaic->points, points, n));
+  PetscCall(NumberPoints(mosaic));
+  *responder = (LamResponder){.ctx = mosaic,
+                              .respond = MosaicRespond,
+                              .accept = MosaicAccept,
+                              .reject = MosaicReject,
+                              .destroy = MosaicDestroy};
+  PetscFunctionReturn(0);
+}
