@@ -1,8 +1,4 @@
-#include "edge_area.h"
 #include "rve_impl.h"
-
-/* The edge at the lumen of an innermost element, counter-clockwise around the lumen. */
-static const PetscInt inner_edge[3] = {0, 7, 3};
 
 PetscErrorCode LamGeometryCreate(LamRVE rve)
 {
@@ -30,44 +26,16 @@ void LamGatherElement(LamRVE rve, const PetscReal F[9], const PetscReal y[], Pet
     LamNodePosition(rve, F, y, rve->mesh.elements[LAM_ELEMENT_NODES * e + a], x[a]);
 }
 
-PetscReal LamLumenArea(LamRVE rve, const PetscReal y[], PetscReal factor, PetscReal gradient[], PetscReal *plain)
-{
-  static const PetscReal no_shift[9] = {0}; /* nodes of lumens have no shift */
-  const LamMesh *mesh = &rve->mesh;
-  PetscReal area = 0.0, all = 0.0, x[LAM_ELEMENT_NODES][2];
-
-  for (PetscInt e = 0; e < mesh->element_count; e += mesh->through) {
-    const PetscReal turgor = LamTurgorFactor(rve, mesh->cell_of[e]);
-    PetscReal edge;
-
-    LamGatherElement(rve, no_shift, y, e, x);
-    edge = LamEdgeArea(inner_edge, (const PetscReal(*)[2])x);
-    all += edge;
-    area += turgor * edge;
-    if (gradient) {
-      PetscReal f[LAM_ELEMENT_DOFS] = {0};
-
-      LamAddEdgeArea(inner_edge, (const PetscReal(*)[2])x, factor * turgor, f, NULL);
-      for (PetscInt k = 0; k < 3; ++k)
-        for (PetscInt d = 0; d < 2; ++d)
-          gradient[2 * mesh->node_class[mesh->elements[LAM_ELEMENT_NODES * e + inner_edge[k]]] + d] +=
-              f[2 * inner_edge[k] + d];
-    }
-  }
-  if (plain) *plain = all;
-  return area;
-}
-
 PetscReal LamSuction(LamRVE rve, const LamLoad *load)
 {
   return rve->contact ? load->cohesion * load->F[8] : 0.0;
 }
 
-/* Potential of turgor and cohesion, -p V_lumen + g V_gap. */
+/* Potential of turgor and cohesion. */
 static PetscReal LoopEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[])
 {
   const PetscReal g = LamSuction(rve, load);
-  PetscReal energy = -load->turgor * load->F[8] * LamLumenArea(rve, y, 0.0, NULL, NULL);
+  PetscReal energy = LamTurgorEnergy(rve, load, y);
 
   if (g != 0.0) energy += g * LamGapAreaEvaluate(&rve->contact->gaps, load->F, y, NULL);
   return energy;
@@ -107,12 +75,12 @@ static void Scatter(LamRVE rve, PetscInt e, const LamElementResult *element, Pet
 PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy,
                            PetscReal residual[], PetscBool *valid)
 {
-  const PetscReal pressure = load->turgor * load->F[8], suction = LamSuction(rve, load);
+  const PetscReal suction = LamSuction(rve, load);
 
   PetscFunctionBeginUser;
   *energy = LoopEnergy(rve, load, y);
   *valid = PETSC_TRUE;
-  PetscCall(PetscArrayzero(residual, rve->ndof));
+  PetscCall(PetscArrayzero(residual, rve->length));
   PetscCall(PetscArrayzero(rve->linear.values, rve->linear.nonzeros));
   for (PetscInt e = 0; e < rve->mesh.element_count; ++e) {
     PetscReal x[LAM_ELEMENT_NODES][2];
@@ -123,11 +91,11 @@ PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[],
                        &rve->stress[e], &element, valid);
     if (!*valid) break;
     *energy += element.energy;
-    if (LamMeshElementIsInner(&rve->mesh, e) && pressure != 0.0)
-      LamAddEdgeArea(inner_edge, (const PetscReal(*)[2])x, -pressure * LamTurgorFactor(rve, rve->mesh.cell_of[e]),
-                     element.f, element.K);
+    if (LamMeshElementIsInner(&rve->mesh, e))
+      LamAddPressure((const PetscReal(*)[2])x, LamTurgor(rve, load, y, rve->mesh.cell_of[e]) * load->F[8], &element);
     Scatter(rve, e, &element, residual);
   }
+  LamSealAssemble(rve, load, y, residual);
   if (suction != 0.0) {
     LamGapAreaAddGradient(&rve->contact->gaps, load->F, y, suction, residual);
     LamGapAreaAddHessian(&rve->contact->gaps, suction, rve->linear.values);
@@ -175,7 +143,7 @@ PetscBool LamSetConsistentStresses(LamRVE rve, const LamLoad *load, const PetscR
 
 PetscReal LamResidualNorm(LamRVE rve, const PetscReal residual[])
 {
-  PetscReal sum = 0.0;
+  PetscReal sum = LamSealError(rve, residual);
 
   for (PetscInt i = 2; i < rve->ndof; ++i) sum += residual[i] * residual[i];
   return PetscSqrtReal(sum);

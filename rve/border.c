@@ -35,7 +35,7 @@ PetscErrorCode LamBorderDestroy(LamBorder **border)
 
 PetscErrorCode LamBorderAssemble(LamRVE rve, LamBorder *border, PetscReal *norm)
 {
-  const PetscInt n = rve->linear.n, positions = rve->linear.positions;
+  const PetscInt n = rve->linear.n, multipliers = rve->contact ? rve->contact->count : 0;
   PetscReal Lq[LAM_F_COUNT], sum;
 
   PetscFunctionBeginUser;
@@ -44,11 +44,11 @@ PetscErrorCode LamBorderAssemble(LamRVE rve, LamBorder *border, PetscReal *norm)
   border->waits = PETSC_FALSE;
   PetscCall(LamAssembleGradient(rve, &border->load, Lq, border->Lqq, border->R));
   for (PetscInt k = 0; k < border->count; ++k) {
-    const PetscReal *R = border->R + border->q[k] * n;
+    const PetscReal *R = border->R + border->q[k] * n + rve->linear.positions;
 
     border->residual[k] = border->rest[k] = Lq[border->q[k]] - rve->mesh.V0 * border->P[k];
-    for (PetscInt i = positions; i < n; ++i) /* multipliers enter L by -lambda G, so L_q by lambda R */
-      if (rve->contact->active[i - positions]) border->rest[k] -= rve->contact->lambda[i - positions] * R[i];
+    for (PetscInt h = 0; h < multipliers; ++h) /* multipliers enter L by -lambda G, so L_q by lambda R */
+      if (rve->contact->active[h]) border->rest[k] -= rve->contact->lambda[h] * R[h];
     sum += PetscSqr(border->residual[k]);
   }
   *norm = PetscSqrtReal(sum);

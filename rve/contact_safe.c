@@ -79,7 +79,7 @@ static PetscErrorCode Watch(LamRVE rve, const LamLoad *load, Merit now, PetscBoo
   PetscFunctionBeginUser;
   *moved = PETSC_FALSE;
   if (valid && (!best->known || Value(now, best->mu) < Value(best->merit, best->mu))) {
-    PetscCall(PetscArraycpy(best->y, rve->y, rve->ndof));
+    PetscCall(PetscArraycpy(best->y, rve->y, rve->length));
     PetscCall(PetscArraycpy(best->lambda, rve->contact->lambda, rve->contact->count));
     best->merit = now;
     best->known = PETSC_TRUE;
@@ -89,9 +89,10 @@ static PetscErrorCode Watch(LamRVE rve, const LamLoad *load, Merit now, PetscBoo
   }
   if (valid && Value(now, best->mu) <= Value(best->merit, best->mu) + rounding) PetscFunctionReturn(0);
   if (valid && ++best->without_decrease <= WATCHDOG) PetscFunctionReturn(0);
-  PetscCall(PetscArraycpy(rve->y, best->y, rve->ndof));
+  PetscCall(PetscArraycpy(rve->y, best->y, rve->length));
   PetscCall(PetscArraycpy(rve->contact->lambda, best->lambda, rve->contact->count));
   (void)LamSetConsistentStresses(rve, load, rve->y);
+  LamSealSetConsistent(rve, load, rve->y);
   best->without_decrease = 0;
   best->known = PETSC_FALSE; /* its merit changes with the junction status */
   best->monotone = PETSC_TRUE;
@@ -173,8 +174,9 @@ PetscErrorCode LamContactNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOu
   *outcome = LAM_NEWTON_STALLED;
   contact->hysteresis = LAM_HYSTERESIS;
   if (!LamSetConsistentStresses(rve, load, rve->y)) PetscFunctionReturn(0);
+  LamSealSetConsistent(rve, load, rve->y);
   PetscCall(LamContactStepCreate(rve, &step));
-  PetscCall(PetscMalloc2(rve->ndof, &best.y, contact->count, &best.lambda));
+  PetscCall(PetscMalloc2(rve->length, &best.y, contact->count, &best.lambda));
   for (PetscInt it = 0; it < SAFE_ITERATIONS && LamMayIterate(rve); ++it) {
     PetscReal energy, norm = PETSC_INFINITY, alpha;
     PetscBool valid, moved;

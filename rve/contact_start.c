@@ -8,7 +8,7 @@
 PetscErrorCode LamContactSolutionCreate(LamRVE rve, LamContactSolution *solution)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(rve->ndof, &solution->y, rve->contact->count, &solution->lambda, rve->contact->face_count,
+  PetscCall(PetscMalloc3(rve->length, &solution->y, rve->contact->count, &solution->lambda, rve->contact->face_count,
                          &solution->hats));
   PetscFunctionReturn(0);
 }
@@ -24,7 +24,7 @@ PetscErrorCode LamContactSave(LamRVE rve, const LamLoad *load, LamContactSolutio
 {
   PetscFunctionBeginUser;
   solution->load = *load;
-  PetscCall(PetscArraycpy(solution->y, rve->y, rve->ndof));
+  PetscCall(PetscArraycpy(solution->y, rve->y, rve->length));
   PetscCall(PetscArraycpy(solution->lambda, rve->contact->lambda, rve->contact->count));
   for (PetscInt f = 0; f < rve->contact->face_count; ++f) {
     solution->hats[f][0] = rve->contact->faces[f].first;
@@ -36,7 +36,7 @@ PetscErrorCode LamContactSave(LamRVE rve, const LamLoad *load, LamContactSolutio
 PetscErrorCode LamContactRestore(LamRVE rve, const LamContactSolution *solution)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(rve->y, solution->y, rve->ndof));
+  PetscCall(PetscArraycpy(rve->y, solution->y, rve->length));
   PetscCall(PetscArraycpy(rve->contact->lambda, solution->lambda, rve->contact->count));
   for (PetscInt f = 0; f < rve->contact->face_count; ++f) {
     rve->contact->faces[f].first = solution->hats[f][0];
@@ -51,7 +51,7 @@ PetscErrorCode LamContactTurnState(LamRVE rve, LamRVEState state, const LamLoad 
 {
   PetscFunctionBeginUser;
   solution->load = state->load;
-  PetscCall(PetscArraycpy(solution->y, state->y, rve->ndof));
+  PetscCall(PetscArraycpy(solution->y, state->y, rve->length));
   PetscCall(PetscArraycpy(solution->lambda, state->lambda, rve->contact->count));
   LamRotatePositions(rve->ndof, solution->y, solution->load.F,
                      LamRotationAngle(load->F) - LamRotationAngle(solution->load.F));
@@ -75,12 +75,13 @@ PetscErrorCode LamContactStartAffine(LamRVE rve, const LamLoad *load)
     for (PetscInt d = 0; d < 2; ++d) rve->y[2 * c + d] = load->F[3 * d] * X[0] + load->F[3 * d + 1] * X[1];
   }
   PetscCall(PetscArrayzero(rve->stress, rve->mesh.element_count));
+  for (PetscInt c = 0; c < rve->linear.lumens; ++c) rve->y[rve->ndof + c] = load->turgor * LamTurgorFactor(rve, c);
   for (PetscInt h = 0; h < rve->contact->count; ++h)
     rve->contact->lambda[h] = PetscMax(0.0, load->turgor + load->cohesion);
   PetscFunctionReturn(0);
 }
 
-/* Positions of the bonded solution, and its wall stresses. */
+/* Positions of the bonded solution, its wall stresses and pressures. */
 static void TakeBondedPositions(LamRVE rve, const LamLoad *load)
 {
   const LamMesh *mesh = &rve->mesh, *bonded = &rve->bonded->mesh;
@@ -92,6 +93,7 @@ static void TakeBondedPositions(LamRVE rve, const LamLoad *load)
     for (PetscInt d = 0; d < 2; ++d)
       rve->y[2 * mesh->node_class[i] + d] = position[d] + load->F[3 * d] * S[0] + load->F[3 * d + 1] * S[1];
   }
+  for (PetscInt c = 0; c < rve->linear.lumens; ++c) rve->y[rve->ndof + c] = rve->bonded->y[rve->bonded->ndof + c];
   (void)LamSetConsistentStresses(rve, load, rve->y);
 }
 
@@ -114,6 +116,7 @@ static PetscErrorCode FitMultipliers(LamRVE rve, const LamLoad *load, PetscBool 
   for (PetscInt h = 0; h < contact->count; ++h) contact->active[h] = (PetscBool)(contact->weight[h] > 0.0);
   PetscCall(PetscArrayzero(rve->linear.values, rve->linear.nonzeros));
   LamContactSetRows(rve, 0.0);
+  LamSealSetOpen(rve);
   PetscCall(LamRVEFactor(rve, 1.0, &negative, ok));
   if (!*ok) PetscFunctionReturn(0);
   PetscCall(PetscCalloc2(rve->linear.n, &rhs, rve->linear.n, &solution));

@@ -37,16 +37,16 @@ void LamContactResidual(LamRVE rve, LamContactStep *step, PetscReal *norm)
 
   if (contact->share > 0.0)
     for (PetscInt i = 0; i < rve->ndof; ++i) rve->residual[i] -= contact->share * contact->held[i];
-  for (PetscInt i = 0; i < rve->ndof; ++i) step->rhs[i] = rve->residual[i];
+  for (PetscInt i = 0; i < rve->length; ++i) step->rhs[i] = rve->residual[i];
   LamContactAddForce(rve, step->rhs);
   *norm = LamResidualNorm(rve, step->rhs);
 }
 
-/* Factors with the smallest tried shift that leaves as many negative eigenvalues as active hats, from the floor
-   upwards; again: from the last one. */
+/* Factors with the smallest tried shift that leaves no negative eigenvalues but those expected, from the floor upwards;
+   again: from the last one. */
 static PetscErrorCode FactorStable(LamRVE rve, PetscBool again, LamContactStep *step, PetscBool *ok)
 {
-  const PetscInt active = LamContactCountActive(rve->contact);
+  const PetscInt expected = LamExpectedNegative(rve);
   PetscReal diagonal = 0.0, shift = again ? step->shift : PetscMax(step->floor, LAM_CONTACT_PROXIMAL);
   PetscInt negative;
 
@@ -55,7 +55,7 @@ static PetscErrorCode FactorStable(LamRVE rve, PetscBool again, LamContactStep *
     diagonal = PetscMax(diagonal, PetscAbsReal(rve->linear.values[rve->linear.row[i]]));
   for (PetscInt attempt = 0; attempt < 40; ++attempt) {
     PetscCall(LamRVEFactor(rve, shift, &negative, ok));
-    if (*ok && negative <= active) break;
+    if (*ok && negative <= expected) break;
     *ok = PETSC_FALSE;
     if (shift > diagonal) break;
     shift = shift < LEAST_SHIFT * diagonal ? PetscMax(step->shift / 8.0, LEAST_SHIFT * diagonal) : 8.0 * shift;
@@ -68,15 +68,17 @@ static PetscErrorCode FactorStable(LamRVE rve, PetscBool again, LamContactStep *
 static PetscErrorCode Solve(LamRVE rve, LamContactStep *step)
 {
   const LamContact *contact = rve->contact;
-  const PetscInt positions = rve->linear.positions;
+  const PetscInt positions = rve->linear.positions, pressures = rve->linear.n - rve->linear.lumens;
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < positions; ++i) step->rhs[i] = -rve->residual[i + 2];
+  for (PetscInt c = 0; c < rve->linear.lumens; ++c) step->rhs[pressures + c] = -rve->residual[rve->ndof + c];
   for (PetscInt h = 0; h < contact->count; ++h)
     step->rhs[positions + h] = contact->active[h] ? contact->gap[h] * contact->weight[h] : 0.0;
   PetscCall(LamBorderSolve(rve, step->border, step->rhs, step->solution));
   rve->step[0] = rve->step[1] = 0.0;
   PetscCall(PetscArraycpy(rve->step + 2, step->solution, positions));
+  PetscCall(PetscArraycpy(rve->step + rve->ndof, step->solution + pressures, rve->linear.lumens));
   for (PetscInt h = 0; h < contact->count; ++h)
     step->lambda[h] = contact->active[h] ? step->solution[positions + h] : 0.0;
   PetscFunctionReturn(0);
@@ -88,21 +90,15 @@ static PetscErrorCode Solve(LamRVE rve, LamContactStep *step)
 */
 static PetscErrorCode AddNegativeCurvature(LamRVE rve, const PetscReal residual[], PetscReal mode[], PetscReal image[])
 {
-  const PetscInt positions = rve->linear.positions;
-  PetscReal curvature = 0.0, slope = 0.0, largest, sign;
+  PetscReal largest, sign;
 
   PetscFunctionBeginUser;
   LamStartMode(rve, mode);
   PetscCall(LamImproveSoftestMode(rve, 6, mode));
-  LamLinearMultiply(&rve->linear, mode, image);
-  for (PetscInt i = 0; i < positions; ++i) {
-    curvature += mode[i] * image[i];
-    slope += mode[i] * residual[i + 2];
-  }
-  if (curvature >= 0.0) PetscFunctionReturn(0);
-  largest = LamLargestEntry(positions, mode);
-  sign = slope > LamNewtonTolerance(rve) ? -1.0 : 1.0;
-  for (PetscInt i = 0; i < positions; ++i) rve->step[i + 2] += sign * ESCAPE_STEP / largest * mode[i];
+  if (LamModeCurvature(rve, mode, image) >= 0.0) PetscFunctionReturn(0);
+  largest = LamLargestEntry(rve->linear.positions, mode);
+  sign = LamModeSlope(rve, mode, residual) > LamNewtonTolerance(rve) ? -1.0 : 1.0;
+  LamAddMode(rve, sign * ESCAPE_STEP / largest, mode, rve->step);
   ++rve->work.escapes;
   PetscFunctionReturn(0);
 }
@@ -124,7 +120,7 @@ PetscErrorCode LamContactSolveStep(LamRVE rve, PetscReal norm, PetscReal complia
   }
   if (step->shift > LAM_CONTACT_PROXIMAL && LamLargestEntry(rve->ndof, rve->step) < 0.5 * ESCAPE_STEP &&
       norm < SADDLE_RESIDUAL) {
-    PetscCall(PetscArraycpy(step->rhs, rve->residual, rve->ndof));
+    PetscCall(PetscArraycpy(step->rhs, rve->residual, rve->length));
     LamContactAddForce(rve, step->rhs);
     PetscCall(AddNegativeCurvature(rve, step->rhs, step->solution, step->image));
   }
@@ -136,7 +132,7 @@ void LamContactTakeStep(LamRVE rve, const LamLoad *load, PetscReal alpha, const 
   LamContact *contact = rve->contact;
 
   LamUpdateStresses(rve, load, rve->y, rve->step, LamBorderStep(step->border), alpha);
-  for (PetscInt i = 0; i < rve->ndof; ++i) rve->y[i] += alpha * rve->step[i];
+  for (PetscInt i = 0; i < rve->length; ++i) rve->y[i] += alpha * rve->step[i];
   for (PetscInt h = 0; h < contact->count; ++h) contact->lambda[h] += alpha * (step->lambda[h] - contact->lambda[h]);
   if (step->border) {
     step->border->load = LamBorderMoved(step->border, load, alpha);

@@ -27,17 +27,14 @@ static PetscReal LargestDifference(PetscInt n, const PetscReal a[], const PetscR
 static PetscErrorCode Kick(LamRVE rve, const LamLoad *load, const LamContactSolution *saddle, PetscReal mode[],
                            PetscBool *left)
 {
-  const PetscInt positions = rve->linear.positions;
   LamNewtonOutcome outcome;
-  PetscReal largest;
 
   PetscFunctionBeginUser;
   PetscCall(LamSoftestMode(rve, &rve->lowest_eigenvalue, mode));
   if (rve->monitor)
     PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR, "  saddle: lowest eigenvalue %.3e; leaving it\n",
                            (double)rve->lowest_eigenvalue));
-  largest = LamLargestEntry(positions, mode);
-  for (PetscInt i = 0; i < positions; ++i) rve->y[2 + i] += KICK * mode[i] / largest;
+  LamAddMode(rve, KICK / LamLargestEntry(rve->linear.positions, mode), mode, rve->y);
   PetscCall(LamContactNewton(rve, load, NULL, LAM_NEAR_REACH, &outcome));
   *left = (PetscBool)(outcome == LAM_NEWTON_CONVERGED && LargestDifference(rve->ndof, rve->y, saddle->y) > 0.1 * KICK);
   PetscFunctionReturn(0);

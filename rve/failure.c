@@ -41,7 +41,7 @@ static void SetShares(PetscReal share[SAMPLES][3])
 static void SumThroughWall(LamRVE rve, const LamLoad *load, PetscInt cell, PetscInt face, PetscInt i,
                            PetscReal column[3][INTEGRALS])
 {
-  const PetscReal turgor = load->turgor * LamTurgorFactor(rve, cell);
+  const PetscReal turgor = LamTurgor(rve, load, rve->y, cell);
 
   for (PetscInt h = 0; h < 3; ++h)
     for (PetscInt q = 0; q < INTEGRALS; ++q) column[h][q] = 0.0;

@@ -5,7 +5,8 @@
   x_a = y + F S_a and through F33 in the walls and in the volumes; p through -p F33 A_lumen, g through g F33 A_gap. Then
     dPsi/dq   = L_q / V0,
     d2Psi/dq2 = (L_qq - L_qy K^-1 L_yq) / V0         (static condensation with the factor of the converged state),
-  where in contact y includes the active multipliers, whose rows are -dG/dF.
+  where in contact y includes the active multipliers, whose rows are -dG/dF, and the pressures of sealed lumens, for
+  which p is the turgor of the load, that of the unloaded water (turgor.c).
   So P_ij = (1/V0) sum_a f_ai S_aj over shifted nodes, f_a the nodal forces of walls or contact, and the tangent is
   symmetric by construction. Bonded tissue does not feel g.
 */
@@ -20,7 +21,7 @@ const PetscInt LamFComponent[LAM_F_COUNT] = {0, 1, 3, 4, 8};
 
 typedef struct {
   PetscInt nq;   /* NQ, for bonded tissue without the cohesion */
-  PetscInt size; /* of a column: the held class, the other positions, the multipliers */
+  PetscInt size; /* of a column: the held class, the other positions, the multipliers, the pressures */
   PetscReal Lq[NQ], Lqq[NQ][NQ];
   PetscReal lumen, gap; /* areas */
   PetscReal *R;         /* [nq][size]: L_yq, one column after the other */
@@ -81,15 +82,55 @@ static void AddElement(LamRVE rve, const LamLoad *load, PetscInt e, Condensation
   }
 }
 
+/* Terms of the turgor of the load where it is that of the lumens. */
+static void AddTurgor(LamRVE rve, const LamLoad *load, Condensation *c)
+{
+  const LamSeal *seal = &rve->seal;
+
+  for (PetscInt k = 0; k < rve->mesh.cell_count; ++k) {
+    const PetscReal factor = LamTurgorFactor(rve, k);
+
+    seal->factor[k] = -load->F[8] * factor;
+    c->Lq[Q_TURGOR] -= load->F[8] * factor * seal->area[k];
+    c->Lqq[Q_F33][Q_TURGOR] -= factor * seal->area[k];
+  }
+  LamLumenAddGradient(rve, rve->y, seal->factor, c->R + Q_TURGOR * c->size);
+}
+
+/* The same where the lumens are sealed, whose pressures are unknowns: V_w (p - (p - p0)^2 / (2 K_w)). */
+static void AddSealedTurgor(LamRVE rve, const LamLoad *load, Condensation *c)
+{
+  const LamSeal *seal = &rve->seal;
+  const PetscInt pressures = c->size - rve->linear.lumens;
+
+  for (PetscInt k = 0; k < rve->linear.lumens; ++k) {
+    const PetscReal factor = LamTurgorFactor(rve, k), compliance = seal->water[k] / seal->bulk_modulus;
+
+    c->R[Q_F33 * c->size + pressures + k] -= seal->area[k];
+    c->R[Q_TURGOR * c->size + pressures + k] += factor * compliance;
+    c->Lq[Q_TURGOR] += factor * compliance * (rve->y[rve->ndof + k] - load->turgor * factor);
+    c->Lqq[Q_TURGOR][Q_TURGOR] -= factor * factor * compliance;
+  }
+}
+
 /* Terms of the lumen volume F33 A. */
 static void AddLumen(LamRVE rve, const LamLoad *load, Condensation *c)
 {
-  const PetscReal area = LamLumenArea(rve, rve->y, -load->turgor, c->R + Q_F33 * c->size, &c->lumen);
+  const LamSeal *seal = &rve->seal;
 
-  (void)LamLumenArea(rve, rve->y, -load->F[8], c->R + Q_TURGOR * c->size, NULL);
-  c->Lq[Q_F33] -= load->turgor * area;
-  c->Lq[Q_TURGOR] -= load->F[8] * area;
-  c->Lqq[Q_F33][Q_TURGOR] -= area;
+  LamLumenAreas(rve, rve->y, seal->area);
+  for (PetscInt k = 0; k < rve->mesh.cell_count; ++k) {
+    const PetscReal pressure = LamTurgor(rve, load, rve->y, k);
+
+    seal->factor[k] = -pressure;
+    c->Lq[Q_F33] -= pressure * seal->area[k];
+    c->lumen += seal->area[k];
+  }
+  LamLumenAddGradient(rve, rve->y, seal->factor, c->R + Q_F33 * c->size);
+  if (seal->closed)
+    AddSealedTurgor(rve, load, c);
+  else
+    AddTurgor(rve, load, c);
 }
 
 /* Terms of the gap volume F33 A. */
@@ -142,10 +183,10 @@ static void AddContactFace(LamRVE rve, PetscInt f, Condensation *c)
 
 void LamCopyActive(LamRVE rve, const PetscReal column[], PetscReal copy[])
 {
-  const PetscInt positions = rve->linear.positions;
+  const PetscInt positions = rve->linear.positions, pressures = rve->linear.n - rve->linear.lumens;
 
-  for (PetscInt i = 0; i < positions; ++i) copy[i] = column[i];
-  for (PetscInt i = positions; i < rve->linear.n; ++i) copy[i] = rve->contact->active[i - positions] ? column[i] : 0.0;
+  for (PetscInt i = 0; i < rve->linear.n; ++i)
+    copy[i] = i < positions || i >= pressures || rve->contact->active[i - positions] ? column[i] : 0.0;
 }
 
 /* H = (L_qq - R^T K^-1 R) / V0. */
@@ -231,5 +272,6 @@ PetscErrorCode LamHomogenise(LamRVE rve, const LamLoad *load, LamResponse *respo
   response->energy_turgor2 = H[Q_TURGOR][Q_TURGOR];
   response->energy_cohesion2 = H[Q_COHESION][Q_COHESION];
   response->energy_turgor_cohesion = H[Q_TURGOR][Q_COHESION];
+  LamTurgorMeasures(rve, load, response);
   PetscFunctionReturn(0);
 }

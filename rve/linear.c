@@ -74,11 +74,13 @@ static PetscErrorCode CollectMembers(const LamCouplings *couplings, PetscInt *co
 }
 
 /*
-  Rows of unknowns: 2 x 2 class blocks, the diagonal block first, then the multipliers of the couplings of the class; a
-  multiplier's row holds its diagonal. Counts only where linear->row is NULL.
+  Rows of unknowns: 2 x 2 class blocks, the diagonal block first, then the multipliers of the couplings of the class,
+  then the pressure of the lumen that it bounds; a multiplier's or pressure's row holds its diagonal. Counts only where
+  linear->row is NULL.
 */
 static PetscInt FillRows(const LamMesh *mesh, const LamCouplings *couplings, PetscInt count, const PetscInt64 blocks[],
-                         PetscInt member_count, const PetscInt64 members[], LamLinear *linear)
+                         PetscInt member_count, const PetscInt64 members[], const PetscInt lumen_of[],
+                         LamLinear *linear)
 {
   PetscInt at = 0, block = 0, member = 0;
 
@@ -101,6 +103,10 @@ static PetscInt FillRows(const LamMesh *mesh, const LamCouplings *couplings, Pet
           if (linear->row)
             linear->column[at] =
                 linear->positions + (PetscInt)(members[g] % couplings->count) * couplings->multipliers + k;
+      if (lumen_of && lumen_of[c] >= 0) {
+        if (linear->row) linear->column[at] = linear->n - linear->lumens + lumen_of[c];
+        ++at;
+      }
     }
     block = end;
   }
@@ -129,10 +135,21 @@ PetscInt LamLinearEntry(const LamLinear *linear, PetscInt i, PetscInt j)
   return low;
 }
 
-PetscErrorCode LamLinearCreate(const LamMesh *mesh, const LamCouplings *couplings, LamLinear *linear)
+/* The cell whose lumen a class bounds, -1: none. */
+static PetscErrorCode FindLumens(const LamMesh *mesh, PetscInt **lumen_of)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(mesh->class_count, lumen_of));
+  for (PetscInt c = 0; c < mesh->class_count; ++c) (*lumen_of)[c] = -1;
+  for (PetscInt i = 0; i < mesh->cell_count * mesh->ring_nodes; ++i)
+    (*lumen_of)[mesh->node_class[i * mesh->radial_nodes]] = i / mesh->ring_nodes;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamLinearCreate(const LamMesh *mesh, const LamCouplings *couplings, PetscInt lumens, LamLinear *linear)
 {
   static const LamCouplings none = {0};
-  PetscInt count = 0, member_count = 0;
+  PetscInt count = 0, member_count = 0, *lumen_of = NULL;
   PetscInt64 *blocks = NULL, *members = NULL;
 
   PetscFunctionBeginUser;
@@ -141,12 +158,15 @@ PetscErrorCode LamLinearCreate(const LamMesh *mesh, const LamCouplings *coupling
   PetscCall(CollectBlocks(mesh, couplings, &count, &blocks));
   PetscCall(CollectMembers(couplings, &member_count, &members));
   linear->positions = 2 * (mesh->class_count - 1);
-  linear->n = linear->positions + couplings->count * couplings->multipliers;
-  linear->nonzeros = FillRows(mesh, couplings, count, blocks, member_count, members, linear);
+  linear->lumens = lumens;
+  linear->n = linear->positions + couplings->count * couplings->multipliers + lumens;
+  if (lumens) PetscCall(FindLumens(mesh, &lumen_of));
+  linear->nonzeros = FillRows(mesh, couplings, count, blocks, member_count, members, lumen_of, linear);
   PetscCall(PetscMalloc1(linear->nonzeros, &linear->column));
   PetscCall(PetscCalloc1(linear->nonzeros, &linear->values));
   PetscCall(PetscMalloc1(linear->n + 1, &linear->row));
-  (void)FillRows(mesh, couplings, count, blocks, member_count, members, linear);
+  (void)FillRows(mesh, couplings, count, blocks, member_count, members, lumen_of, linear);
+  PetscCall(PetscFree(lumen_of));
   PetscCall(PetscFree(blocks));
   PetscCall(PetscFree(members));
   PetscCall(PetscMalloc1(LAM_PAIRS * mesh->element_count, &linear->position));

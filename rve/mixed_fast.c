@@ -19,8 +19,8 @@ static PetscErrorCode TryBonded(LamRVE rve, LamBorder *border, LamRVEState state
 
   PetscFunctionBeginUser;
   *solved = PETSC_FALSE;
-  PetscCall(PetscMalloc1(rve->ndof, &from));
-  PetscCall(PetscArraycpy(from, state->y, rve->ndof));
+  PetscCall(PetscMalloc1(rve->length, &from));
+  PetscCall(PetscArraycpy(from, state->y, rve->length));
   LamRotatePositions(rve->ndof, from, start.F, LamRotationAngle(border->load.F) - LamRotationAngle(start.F));
   LamMoveAffinely(rve, from, &start, &border->load);
   PetscCall(PetscFree(from));
@@ -59,7 +59,7 @@ static PetscErrorCode TryRelease(LamRVE rve, LamBorder *border, const LamStressC
   LamAddWork(rve, &response);
   if (response.status != LAM_CONVERGED) PetscFunctionReturn(0);
   PetscCall(PetscArraycpy(border->load.F, response.load.F, 9));
-  PetscCall(PetscArraycpy(rve->bonded->y, rve->bonded_state->y, rve->bonded->ndof));
+  PetscCall(PetscArraycpy(rve->bonded->y, rve->bonded_state->y, rve->bonded->length));
   PetscCall(LamContactStartBonded(rve, &border->load, &ok));
   border->patience = PATIENCE;
   if (ok) PetscCall(LamContactTryMixed(rve, border, LAM_NEAR_REACH, out));

@@ -47,6 +47,7 @@ void LamMoveAffinely(LamRVE rve, const PetscReal from[], const LamLoad *load_fro
     rve->y[2 * c] = from[2 * c] + (B[0] - A[0]) * X[0] + (B[1] - A[1]) * X[1];
     rve->y[2 * c + 1] = from[2 * c + 1] + (B[3] - A[3]) * X[0] + (B[4] - A[4]) * X[1];
   }
+  for (PetscInt i = rve->ndof; i < rve->length; ++i) rve->y[i] = from[i];
 }
 
 /* Leaves saddles downhill until the state is stable. Ends with the consistent tangent factored. */
@@ -58,26 +59,24 @@ static PetscErrorCode LeaveSaddle(LamRVE rve, const LamLoad *load, PetscInt *bra
   PetscFunctionBeginUser;
   PetscCall(LamFactorConsistent(rve, load, negative, ok));
   if (!*ok || *negative == 0) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc2(rve->linear.n, &mode, rve->ndof, &saddle));
+  PetscCall(PetscMalloc2(rve->linear.n, &mode, rve->length, &saddle));
   for (PetscInt k = 0; k<MAX_BRANCH_SWITCHES && * ok && * negative> 0; ++k) {
     LamNewtonOutcome outcome;
-    PetscReal largest = 0.0;
 
-    PetscCall(PetscArraycpy(saddle, rve->y, rve->ndof));
+    PetscCall(PetscArraycpy(saddle, rve->y, rve->length));
     unstable = *negative;
     PetscCall(LamSoftestMode(rve, &rve->lowest_eigenvalue, mode));
     if (rve->monitor)
       PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR,
                              "  saddle: %d negative eigenvalues, lowest %.3e; leaving it\n", (int)unstable,
                              (double)rve->lowest_eigenvalue));
-    for (PetscInt i = 0; i < rve->linear.n; ++i) largest = PetscMax(largest, PetscAbsReal(mode[i]));
-    for (PetscInt i = 0; i < rve->linear.n; ++i) rve->y[2 + i] += KICK * mode[i] / largest;
+    LamAddMode(rve, KICK / LamLargestEntry(rve->linear.positions, mode), mode, rve->y);
     PetscCall(LamNewtonSafe(rve, load, &outcome));
     if (outcome == LAM_NEWTON_CONVERGED) {
       ++*branch;
       PetscCall(LamFactorConsistent(rve, load, negative, ok));
     } else {
-      PetscCall(PetscArraycpy(rve->y, saddle, rve->ndof));
+      PetscCall(PetscArraycpy(rve->y, saddle, rve->length));
       PetscCall(LamFactorConsistent(rve, load, negative, ok));
       break;
     }
@@ -136,7 +135,7 @@ static PetscErrorCode Substeps(LamRVE rve, PetscReal y_from[], const LamLoad *st
 
     PetscCall(Step(rve, y_from, &at, &next, &switches, negative, &converged));
     if (converged && *negative == 0) {
-      PetscCall(PetscArraycpy(y_from, rve->y, rve->ndof));
+      PetscCall(PetscArraycpy(y_from, rve->y, rve->length));
       at = next;
       *reached = t;
       *branch = switches;
@@ -158,21 +157,21 @@ PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state,
   PetscBool converged = PETSC_FALSE, is_saddle;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(rve->ndof, &from, rve->ndof, &saddle));
-  PetscCall(PetscArraycpy(from, state->y, rve->ndof));
+  PetscCall(PetscMalloc2(rve->length, &from, rve->length, &saddle));
+  PetscCall(PetscArraycpy(from, state->y, rve->length));
   LamRotatePositions(rve->ndof, from, start.F, LamRotationAngle(load->F) - LamRotationAngle(start.F));
   *branch = state->branch;
   PetscCall(Step(rve, from, &start, load, branch, negative, &converged));
   is_saddle = (PetscBool)(converged && *negative > 0);
   if (!converged || is_saddle) {
-    PetscCall(PetscArraycpy(saddle, rve->y, rve->ndof));
+    PetscCall(PetscArraycpy(saddle, rve->y, rve->length));
     saddle_negative = *negative;
     saddle_branch = *branch;
     *branch = state->branch;
     PetscCall(Substeps(rve, from, &start, load, branch, negative, &reached));
     converged = (PetscBool)(reached >= 1.0);
     if (!converged && is_saddle) { /* the unstable state is all there is: give it, and say so */
-      PetscCall(PetscArraycpy(rve->y, saddle, rve->ndof));
+      PetscCall(PetscArraycpy(rve->y, saddle, rve->length));
       PetscCall(LamFactorConsistent(rve, load, negative, &converged));
       *negative = saddle_negative;
       *branch = saddle_branch;

@@ -69,8 +69,12 @@ static PetscErrorCode SetUpWalls(LamRVE rve)
 /* All that needs no MPI: mesh, element geometry, sparsity pattern, work arrays. */
 static PetscErrorCode SetUpArrays(LamRVE rve)
 {
+  PetscInt cells, lumens;
+
   PetscFunctionBeginUser;
   PetscCall(LamMeshCreate(&rve->micro, &rve->mesh));
+  cells = rve->mesh.cell_count;
+  lumens = rve->seal.allowed ? cells : 0;
   PetscCall(SetUpWalls(rve));
   PetscCall(LamGeometryCreate(rve));
   if (rve->micro.interface == LAM_INTERFACE_CONTACT) {
@@ -79,13 +83,16 @@ static PetscErrorCode SetUpArrays(LamRVE rve)
     PetscCall(LamContactCreate(&rve->micro, &rve->mesh, &rve->contact));
     couplings =
         (LamCouplings){rve->contact->face_count, rve->contact->chain, rve->contact->hats, rve->contact->classes};
-    PetscCall(LamLinearCreate(&rve->mesh, &couplings, &rve->linear));
+    PetscCall(LamLinearCreate(&rve->mesh, &couplings, lumens, &rve->linear));
     PetscCall(LamContactSetMatrix(&rve->linear, rve->contact));
   } else {
-    PetscCall(LamLinearCreate(&rve->mesh, NULL, &rve->linear));
+    PetscCall(LamLinearCreate(&rve->mesh, NULL, lumens, &rve->linear));
   }
   rve->ndof = 2 * rve->mesh.class_count;
-  PetscCall(PetscCalloc4(rve->ndof, &rve->y, rve->ndof, &rve->step, rve->ndof, &rve->trial, rve->ndof, &rve->residual));
+  rve->length = rve->ndof + lumens;
+  PetscCall(PetscCalloc4(rve->length, &rve->y, rve->length, &rve->step, rve->length, &rve->trial, rve->length,
+                         &rve->residual));
+  PetscCall(PetscMalloc3(cells, &rve->seal.water, cells, &rve->seal.area, cells, &rve->seal.factor));
   PetscFunctionReturn(0);
 }
 
@@ -102,6 +109,7 @@ PetscErrorCode LamRVESetUp(LamRVE rve)
     bonded.interface = LAM_INTERFACE_BONDED;
     PetscCall(LamRVECreate(rve->comm, &rve->bonded));
     PetscCall(LamRVESetMicrostructure(rve->bonded, &bonded));
+    PetscCall(LamRVESetSealable(rve->bonded, rve->seal.allowed));
     PetscCall(LamRVESetMonitor(rve->bonded, rve->monitor));
     PetscCall(LamRVESetInterrupt(rve->bonded, rve->interrupt, rve->interrupt_ctx));
     PetscCall(LamRVESetUp(rve->bonded));
@@ -124,6 +132,7 @@ PetscErrorCode LamRVEDestroy(LamRVE *rve)
   PetscCall(LamMicrostructureDestroy(&(*rve)->micro));
   PetscCall(PetscFree((*rve)->geometry));
   PetscCall(PetscFree((*rve)->stress));
+  PetscCall(PetscFree3((*rve)->seal.water, (*rve)->seal.area, (*rve)->seal.factor));
   PetscCall(PetscFree4((*rve)->y, (*rve)->step, (*rve)->trial, (*rve)->residual));
   PetscCall(PetscFree(*rve));
   PetscFunctionReturn(0);
@@ -147,7 +156,7 @@ PetscErrorCode LamRVEStateCreate(LamRVE rve, LamRVEState *state)
   PetscFunctionBeginUser;
   PetscCheck(rve->is_set_up, PETSC_COMM_SELF, PETSC_ERR_ORDER, "LamRVESetUp comes before LamRVEStateCreate");
   PetscCall(PetscNew(state));
-  (*state)->n = rve->ndof;
+  (*state)->n = rve->length;
   (*state)->multipliers = rve->contact ? rve->contact->count : 0;
   (*state)->faces = rve->contact ? rve->contact->face_count : 0;
   PetscCall(PetscMalloc3((*state)->n, &(*state)->y, (*state)->multipliers, &(*state)->lambda, (*state)->faces,
@@ -176,6 +185,7 @@ PetscErrorCode LamRVEStateReset(LamRVE rve, LamRVEState state)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(state->y, rve->mesh.class_X, rve->ndof));
+  PetscCall(PetscArrayzero(state->y + rve->ndof, rve->linear.lumens));
   PetscCall(PetscArrayzero(state->lambda, state->multipliers));
   for (PetscInt f = 0; f < state->faces; ++f) {
     state->hats[f][0] = rve->contact->faces[f].low;
@@ -261,6 +271,7 @@ PetscErrorCode LamAcceptSolution(LamRVE rve, const LamLoad *load, LamRVEState st
   response->stable = (PetscBool)(response->status == LAM_CONVERGED);
   if (!response->stable || response->zero_modes > 0) response->lowest_eigenvalue = rve->lowest_eigenvalue;
   PetscCall(PetscArraycpy(state->y, rve->y, rve->ndof));
+  for (PetscInt c = 0; c < rve->linear.lumens; ++c) state->y[rve->ndof + c] = LamTurgor(rve, load, rve->y, c);
   if (rve->contact) PetscCall(PetscArraycpy(state->lambda, rve->contact->lambda, state->multipliers));
   for (PetscInt f = 0; f < state->faces; ++f) {
     state->hats[f][0] = rve->contact->faces[f].first;

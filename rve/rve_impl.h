@@ -2,6 +2,7 @@
   Private parts of the RVE solver, in the order of the data flow:
     mesh.h element.h     geometry and pointwise physics
     assembly.c           sums over elements: energy, residual, tangent
+    turgor.c             areas of lumens, pressures of sealed ones
     gap_area.c           area between the cells, on which cohesion works
     linear.c factor.c    sparsity pattern; factorisation, inertia, solves
     newton.c             one equilibrium from a start: fast and safe tier
@@ -20,7 +21,8 @@
     failure.c            stretch, energy and tension of the walls
     indicators.c interface.c              how far cells have come apart; gaps and pressures for pictures
 
-  Unknowns are the current positions y of node classes; class 0 is held, so unknown = 2 (class - 1) + component.
+  Unknowns are the current positions y of node classes; class 0 is held, so unknown = 2 (class - 1) + component. An RVE
+  that can be sealed has the pressure of each lumen, too: in y after the positions, in the matrix after all else.
 */
 #ifndef LAM_RVE_IMPL_H
 #define LAM_RVE_IMPL_H
@@ -42,11 +44,12 @@ typedef struct {
 
 /*
   The symmetric matrix in upper compressed rows (values are written in place) and its factor. Its unknowns are the
-  positions, then the multipliers of the couplings, set by set.
+  positions, then the multipliers of the couplings, set by set, then the pressures of lumens that can be sealed.
 */
 typedef struct {
   PetscInt n, nonzeros;
   PetscInt positions;     /* unknowns that are positions */
+  PetscInt lumens;        /* unknowns that are pressures */
   PetscInt *row, *column; /* [n+1], [nonzeros]; the diagonal comes first in a row */
   PetscReal *values;      /* [nonzeros] */
   PetscInt *position; /* [element][LAM_PAIRS] index into values, -1: held; pairs of element dofs i <= j, row by row */
@@ -56,7 +59,7 @@ typedef struct {
 /* Positions of one material point and the load they balance. */
 struct LamRVEState_s {
   PetscInt n;   /* length of y */
-  PetscReal *y; /* [class][2] */
+  PetscReal *y; /* [class][2], then [lumens]: the pressures */
   LamLoad load;
   PetscInt branch; /* number of saddles left on the way here */
   /* contact tissue only */
@@ -74,6 +77,16 @@ typedef struct {
   PetscBool stopped; /* by the interrupt: no more is factored or iterated */
 } LamWork;
 
+/* What sealed cells keep. */
+typedef struct {
+  PetscBool allowed;      /* the matrix has room for the pressures */
+  PetscBool closed;       /* now; else turgor is prescribed */
+  PetscReal bulk_modulus; /* K_w */
+  PetscReal *water;       /* [cell] V_w, apothems^2: the lumen in which the water has the turgor of the load */
+  PetscReal *area;        /* [cell] work space */
+  PetscReal *factor;      /* [cell] work space */
+} LamSeal;
+
 struct LamRVE_s {
   MPI_Comm comm;
   LamMicrostructure micro;
@@ -86,11 +99,13 @@ struct LamRVE_s {
   LamElementGeometry *geometry; /* [element] */
   LamElementStress *stress;     /* [element]: independent stresses of the iteration under way */
   LamLinear linear;
-  LamContact *contact;                    /* NULL for bonded tissue; owned */
-  LamRVE bonded;                          /* contact tissue: the same tissue, bonded; owned */
-  LamRVEState bonded_state;               /* of `bonded`, work space; owned */
+  LamContact *contact;      /* NULL for bonded tissue; owned */
+  LamRVE bonded;            /* contact tissue: the same tissue, bonded; owned */
+  LamRVEState bonded_state; /* of `bonded`, work space; owned */
+  LamSeal seal;
   PetscInt ndof;                          /* 2 class_count */
-  PetscReal *y, *step, *trial, *residual; /* [ndof] each: position, Newton step, trial position, residual */
+  PetscInt length;                        /* ndof + linear.lumens */
+  PetscReal *y, *step, *trial, *residual; /* [length] each: position, Newton step, trial position, residual */
   LamWork work;                           /* of the solve under way */
   PetscBool (*interrupt)(void *ctx);      /* NULL: never */
   void *interrupt_ctx;                    /* borrowed */
@@ -111,6 +126,12 @@ static inline const LamWall *LamWallOf(LamRVE rve, PetscInt element)
 static inline PetscReal LamTurgorFactor(LamRVE rve, PetscInt cell)
 {
   return rve->micro.cell ? rve->micro.cell[cell].turgor : 1.0;
+}
+
+/* Pressure in a lumen at y. */
+static inline PetscReal LamTurgor(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscInt cell)
+{
+  return rve->seal.closed ? y[rve->ndof + cell] : load->turgor * LamTurgorFactor(rve, cell);
 }
 
 /* Thickness of the thinner wall between two cells. */
@@ -142,10 +163,11 @@ void LamGatherElement(LamRVE rve, const PetscReal F[9], const PetscReal y[], Pet
                       PetscReal x[LAM_ELEMENT_NODES][2]);
 /* Suction on walls that have a partner, per reference thickness: g F33; 0 for bonded tissue. */
 PetscReal LamSuction(LamRVE rve, const LamLoad *load);
-/* Energy (walls - p V_lumen + g V_gap), not divided by V0; *valid as LamElementEnergy. */
+/* Energy (walls - p V_lumen + g V_gap; in sealed lumens that of the water), not divided by V0; *valid as
+   LamElementEnergy. */
 PetscErrorCode LamAssembleEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy,
                                  PetscBool *valid);
-/* Energy, residual [ndof] and, into linear.values, the tangent with independent stresses. */
+/* Energy, residual [length] and, into linear.values, the tangent with independent stresses. */
 PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy,
                            PetscReal residual[], PetscBool *valid);
 /* Moves the independent stresses by alpha along the displacement dy from y and the change dF from load->F. */
@@ -155,11 +177,27 @@ void LamUpdateStresses(LamRVE rve, const LamLoad *load, const PetscReal y[], con
 PetscBool LamPositionsAreValid(LamRVE rve, const LamLoad *load, const PetscReal y[]);
 /* Independent stresses := those of positions y; PETSC_FALSE where y is not valid. */
 PetscBool LamSetConsistentStresses(LamRVE rve, const LamLoad *load, const PetscReal y[]);
-/* Area inside the lumens, weighted with their turgor factors; factor times its gradient is added to gradient [ndof];
-   plain: the area without weights. Both may be NULL. */
-PetscReal LamLumenArea(LamRVE rve, const PetscReal y[], PetscReal factor, PetscReal gradient[], PetscReal *plain);
 /* Norm of the residual without the held class. */
 PetscReal LamResidualNorm(LamRVE rve, const PetscReal residual[]);
+
+/* ---- turgor.c ---- */
+/* Areas inside the lumens, [cell]; the gradient of sum factor[cell] area[cell] is added to gradient [ndof]. */
+void LamLumenAreas(LamRVE rve, const PetscReal y[], PetscReal area[]);
+void LamLumenAddGradient(LamRVE rve, const PetscReal y[], const PetscReal factor[], PetscReal gradient[]);
+/* Adds the potential -pressure area of an innermost element to its residual and tangent. */
+void LamAddPressure(const PetscReal x[LAM_ELEMENT_NODES][2], PetscReal pressure, LamElementResult *element);
+/* -p V_lumen, or of sealed lumens the energy of their water, from the positions in y alone. */
+PetscReal LamTurgorEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[]);
+/* Rows of the pressures in linear.values and in residual [length], where they have any. */
+void LamSealAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal residual[]);
+/* Rows of pressures that nothing moves. */
+void LamSealSetOpen(LamRVE rve);
+/* Pressures in y := those of the lumens at its positions. */
+void LamSealSetConsistent(LamRVE rve, const LamLoad *load, PetscReal y[]);
+/* Sum of the squares of the pressures' residuals, apothems^2 or, of soft water, its pressure. */
+PetscReal LamSealError(LamRVE rve, const PetscReal residual[]);
+/* Fills the turgor reached. */
+void LamTurgorMeasures(LamRVE rve, const LamLoad *load, LamResponse *response);
 
 /* ---- contact.c ---- */
 #define LAM_CONTACT_SCALE 9.0   /* weighs gaps (apothems) against multipliers (C1 + C2): 1 MPa per apothem by default */
@@ -195,8 +233,8 @@ void LamContactSetRows(LamRVE rve, PetscReal compliance);
 void LamGapAreaSetMatrix(const LamLinear *linear, LamGapArea *area);
 
 /* ---- linear.c ---- */
-/* couplings: NULL for none. */
-PetscErrorCode LamLinearCreate(const LamMesh *mesh, const LamCouplings *couplings, LamLinear *linear);
+/* couplings: NULL for none; lumens: number of cells, or 0 where they cannot be sealed. */
+PetscErrorCode LamLinearCreate(const LamMesh *mesh, const LamCouplings *couplings, PetscInt lumens, LamLinear *linear);
 /* Index into values of the entry of unknowns i and j, which must be coupled; -1 where one of them is negative. */
 PetscInt LamLinearEntry(const LamLinear *linear, PetscInt i, PetscInt j);
 PetscErrorCode LamLinearCreateMatrix(MPI_Comm comm, LamLinear *linear); /* needs PETSc; the rest above does not */
@@ -236,16 +274,22 @@ PetscErrorCode LamNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *
 PetscReal LamNewtonTolerance(LamRVE rve);
 
 /* ---- stability.c ---- */
-/* Negative eigenvalues that the matrix of a stable state has: one for each active multiplier. */
-PetscInt LamActiveMultipliers(LamRVE rve);
+/* Negative eigenvalues that the matrix of a stable state has: one for each active multiplier and sealed lumen. */
+PetscInt LamExpectedNegative(LamRVE rve);
 /* Sets rve->zero_modes, too. Assembles and factors the consistent tangent at rve->y and counts its negative
-   eigenvalues; of contact tissue those beyond the active multipliers. */
+   eigenvalues beyond the expected ones. */
 PetscErrorCode LamFactorConsistent(LamRVE rve, const LamLoad *load, PetscInt *negative, PetscBool *ok);
 /* A start for the softest mode without the symmetry of the cell, so that no mode is missed, the same in every run. */
 void LamStartMode(LamRVE rve, PetscReal mode[]);
-/* Inverse iterations with the present factor; unit vector, its largest entry positive, so that the branch taken is the
-   same in every run. */
+/* Inverse iterations with the present factor; a unit vector of positions, its largest entry positive, so that the
+   branch taken is the same in every run, the change of pressures that goes with it, and no part of the multipliers. */
 PetscErrorCode LamImproveSoftestMode(LamRVE rve, PetscInt iterations, PetscReal mode[]);
+/* to [length] += factor mode */
+void LamAddMode(LamRVE rve, PetscReal factor, const PetscReal mode[], PetscReal to[]);
+/* mode . residual [length] */
+PetscReal LamModeSlope(LamRVE rve, const PetscReal mode[], const PetscReal residual[]);
+/* mode . K mode with the matrix in linear.values; image [n] is work space. */
+PetscReal LamModeCurvature(LamRVE rve, const PetscReal mode[], PetscReal image[]);
 /* The most negative eigenvalue of the matrix in linear.values and its unit eigenvector, mode[n]; where the solve is
    stopped, NaN and some vector. */
 PetscErrorCode LamSoftestMode(LamRVE rve, PetscReal *eigenvalue, PetscReal mode[]);
@@ -255,7 +299,7 @@ PetscErrorCode LamSoftestMode(LamRVE rve, PetscReal *eigenvalue, PetscReal mode[
 PetscReal LamRotationAngle(const PetscReal F[9]);
 /* Rotates positions y[n] and the deformation gradient they belong to about the origin. */
 void LamRotatePositions(PetscInt n, PetscReal y[], PetscReal F[9], PetscReal angle);
-/* rve->y := from + (F_to - F_from) X, with the independent stresses of `from`. */
+/* rve->y := from [length] + (F_to - F_from) X, with the independent stresses and pressures of `from`. */
 void LamMoveAffinely(LamRVE rve, const PetscReal from[], const LamLoad *load_from, const LamLoad *load_to);
 /* The load at the share t of the straight way from a to b. */
 LamLoad LamLoadBetween(const LamLoad *a, const LamLoad *b, PetscReal t);

@@ -2,7 +2,8 @@
   Stability of a converged state: inertia of the consistent tangent, and its softest mode.
 
   Method. A state is stable where the consistent tangent has no negative eigenvalue (prescribed turgor, bonded walls);
-  in contact, where it has none on motions that keep the active gaps closed: as many as active multipliers in all.
+  in contact, where it has none on motions that keep the active gaps closed, and of sealed lumens where it has none
+  once their pressures are eliminated: as many as active multipliers and sealed lumens in all.
   The lowest eigenvalue and its mode come from inverse iteration on K + shift 1 with a shift just large enough to make
   it positive definite, bracketed by the inertia: the lowest mode then dominates the inverse.
 */
@@ -10,17 +11,17 @@
 
 #define ZERO_MODE 1e-9 /* eigenvalues below it in size, for modes of unit length, count as zero; C1 + C2 */
 
-PetscInt LamActiveMultipliers(LamRVE rve)
+PetscInt LamExpectedNegative(LamRVE rve)
 {
-  return rve->contact ? LamContactCountActive(rve->contact) : 0;
+  return (rve->contact ? LamContactCountActive(rve->contact) : 0) + (rve->seal.closed ? rve->linear.lumens : 0);
 }
 
-/* Factors with a shift; negative: eigenvalues beyond those of the active multipliers. */
+/* Factors with a shift; negative: eigenvalues beyond the expected ones. */
 static PetscErrorCode FactorShifted(LamRVE rve, PetscReal shift, PetscInt *negative, PetscBool *ok)
 {
   PetscFunctionBeginUser;
   PetscCall(LamRVEFactor(rve, shift, negative, ok));
-  *negative -= LamActiveMultipliers(rve);
+  *negative -= LamExpectedNegative(rve);
   PetscFunctionReturn(0);
 }
 
@@ -39,8 +40,7 @@ static PetscErrorCode CountZeroModes(LamRVE rve, PetscInt *negative, PetscBool *
     PetscCall(PetscMalloc2(rve->linear.n, &mode, rve->linear.n, &image));
     LamStartMode(rve, mode);
     PetscCall(LamImproveSoftestMode(rve, 3, mode));
-    LamLinearMultiply(&rve->linear, mode, image);
-    for (PetscInt i = 0; i < rve->linear.positions; ++i) eigenvalue += mode[i] * image[i];
+    eigenvalue = LamModeCurvature(rve, mode, image);
     PetscCall(PetscFree2(mode, image));
     if (PetscAbsReal(eigenvalue) > ZERO_MODE) PetscFunctionReturn(0);
   }
@@ -86,14 +86,14 @@ static PetscErrorCode BracketLowest(LamRVE rve, PetscReal *shift)
     diagonal = PetscMax(diagonal, PetscAbsReal(rve->linear.values[rve->linear.row[i]]));
   for (high = 1e-8 * diagonal; high < 1e3 * diagonal; high *= 4.0) {
     PetscCall(LamRVEFactor(rve, high, &negative, &ok));
-    if (ok && negative == LamActiveMultipliers(rve)) break;
+    if (ok && negative == LamExpectedNegative(rve)) break;
     low = high;
   }
   while (low > 0.0 && high > 1.2 * low) {
     const PetscReal middle = PetscSqrtReal(low * high);
 
     PetscCall(LamRVEFactor(rve, middle, &negative, &ok));
-    if (ok && negative == LamActiveMultipliers(rve))
+    if (ok && negative == LamExpectedNegative(rve))
       high = middle;
     else
       low = middle;
@@ -121,22 +121,54 @@ void LamStartMode(LamRVE rve, PetscReal mode[])
 
 PetscErrorCode LamImproveSoftestMode(LamRVE rve, PetscInt iterations, PetscReal mode[])
 {
-  const PetscInt n = rve->linear.n;
+  const PetscInt n = rve->linear.n, positions = rve->linear.positions, pressures = n - rve->linear.lumens;
   PetscReal largest = 0.0, *next;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n, &next));
   for (PetscInt it = 0; it < iterations; ++it) {
+    PetscReal norm;
+
+    PetscCall(
+        PetscArrayzero(mode + pressures, rve->linear.lumens)); /* those of the solution follow from its positions */
     PetscCall(LamLinearSolve(&rve->linear, 1, mode, next));
-    PetscCall(PetscArraycpy(mode, next, rve->linear.positions));
-    (void)Normalise(n, mode);
+    PetscCall(PetscArraycpy(mode, next, positions));
+    norm = Normalise(positions, mode);
+    for (PetscInt i = pressures; i < n; ++i) mode[i] = next[i] / norm;
   }
   PetscCall(PetscFree(next));
-  for (PetscInt i = 0; i < n; ++i)
+  for (PetscInt i = 0; i < positions; ++i)
     if (PetscAbsReal(mode[i]) > PetscAbsReal(largest) * (1.0 + 1e-6)) largest = mode[i];
   if (largest < 0.0)
     for (PetscInt i = 0; i < n; ++i) mode[i] = -mode[i];
   PetscFunctionReturn(0);
+}
+
+void LamAddMode(LamRVE rve, PetscReal factor, const PetscReal mode[], PetscReal to[])
+{
+  const PetscInt pressures = rve->linear.n - rve->linear.lumens;
+
+  for (PetscInt i = 0; i < rve->linear.positions; ++i) to[2 + i] += factor * mode[i];
+  for (PetscInt c = 0; c < rve->linear.lumens; ++c) to[rve->ndof + c] += factor * mode[pressures + c];
+}
+
+PetscReal LamModeSlope(LamRVE rve, const PetscReal mode[], const PetscReal residual[])
+{
+  const PetscInt pressures = rve->linear.n - rve->linear.lumens;
+  PetscReal slope = 0.0;
+
+  for (PetscInt i = 0; i < rve->linear.positions; ++i) slope += mode[i] * residual[2 + i];
+  for (PetscInt c = 0; c < rve->linear.lumens; ++c) slope += mode[pressures + c] * residual[rve->ndof + c];
+  return slope;
+}
+
+PetscReal LamModeCurvature(LamRVE rve, const PetscReal mode[], PetscReal image[])
+{
+  PetscReal curvature = 0.0;
+
+  LamLinearMultiply(&rve->linear, mode, image);
+  for (PetscInt i = 0; i < rve->linear.n; ++i) curvature += mode[i] * image[i];
+  return curvature;
 }
 
 PetscErrorCode LamSoftestMode(LamRVE rve, PetscReal *eigenvalue, PetscReal mode[])
@@ -151,9 +183,7 @@ PetscErrorCode LamSoftestMode(LamRVE rve, PetscReal *eigenvalue, PetscReal mode[
   if (rve->work.stopped) PetscFunctionReturn(0);
   PetscCall(LamImproveSoftestMode(rve, 30, mode));
   PetscCall(PetscMalloc1(n, &image));
-  LamLinearMultiply(&rve->linear, mode, image);
-  *eigenvalue = 0.0;
-  for (PetscInt i = 0; i < rve->linear.positions; ++i) *eigenvalue += mode[i] * image[i];
+  *eigenvalue = LamModeCurvature(rve, mode, image);
   PetscCall(PetscFree(image));
   PetscFunctionReturn(0);
 }

@@ -98,7 +98,8 @@ static const char *const added_members[] = {
     "cell_clusters",     "percolating_directions", "energy_turgor",   "energy_cohesion",
     "gap_place",         "opening_moment",         "normal_place",    "shear_place",
     "max_lamella_shear", "max_fibre_stretch",      "max_wall_energy", "max_wall_tension",
-    "wall_place",        "mean_wall_tension",      "min_gap",         "indicators_trusted"};
+    "wall_place",        "mean_wall_tension",      "min_gap",         "indicators_trusted",
+    "turgor_mean",       "turgor_spread"};
 
 static PetscBool WasAdded(const char name[])
 {

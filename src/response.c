@@ -39,6 +39,8 @@ const LamMember LamResponseMembers[] = {
     REAL(energy_cohesion, 1, 0, "dPsi/dg"),
     REAL(energy_cohesion2, 1, -1, "d2Psi/dg2"),
     REAL(energy_turgor_cohesion, 1, -1, "d2Psi/dpdg"),
+    REAL(turgor_mean, 1, 1, "pressure in the lumens, mean over the cells; of sealed cells that reached"),
+    REAL(turgor_spread, 1, 1, "its largest over the cells minus its smallest"),
     REAL(lumen_fraction, 1, 0, "lumen volume over V0"),
     REAL(opening_fraction, 1, 0, "gap volume over V0"),
     REAL(opening_by_face, 3, 0, "area between facing walls over V0, per face family, without junction voids"),

@@ -363,6 +363,8 @@ static PetscBool IsTrusted(const Neighbours *near, const LamResponse *r)
 static void FillVolumes(LamTable table, LamResponse *r)
 {
   if (table->database->header.micro.cell) return;
+  r->turgor_mean = r->load.turgor;
+  r->turgor_spread = 0;
   r->lumen_fraction = -r->energy_turgor;
   r->opening_fraction = PetscMax(r->energy_cohesion, 0);
 }

@@ -45,6 +45,8 @@ typedef struct {
   PetscReal energy_cohesion;        /* dPsi/dg: opening_fraction, where all cells have the same cohesion */
   PetscReal energy_cohesion2;       /* d2Psi/dg2 */
   PetscReal energy_turgor_cohesion; /* d2Psi/dpdg */
+  PetscReal turgor_mean;            /* pressure in the lumens, mean over the cells; of sealed cells that reached */
+  PetscReal turgor_spread;          /* its largest over the cells minus its smallest */
   PetscReal lumen_fraction;         /* V_lumen / V0 */
   PetscReal opening_fraction;       /* V_gap / V0 */
   PetscReal opening_by_face[3];     /* area between facing walls of a face family / V0; junction voids left out */

@@ -37,6 +37,8 @@ PetscErrorCode LamRVESetMonitor(LamRVE rve, PetscBool on);
   it was, no error. It may use MPI on other communicators than the RVE's, but not the RVE. NULL: never (default).
 */
 PetscErrorCode LamRVESetInterrupt(LamRVE rve, PetscBool (*interrupt)(void *ctx), void *ctx);
+/* Whether the lumens can be sealed: room for their pressures in the matrix. Before LamRVESetUp. Off by default. */
+PetscErrorCode LamRVESetSealable(LamRVE rve, PetscBool on);
 /* Builds the mesh and the sparsity pattern; the factorisation is analysed at the first solve. */
 PetscErrorCode LamRVESetUp(LamRVE rve);
 PetscErrorCode LamRVEDestroy(LamRVE *rve);
@@ -68,6 +70,23 @@ PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, L
 */
 PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStressControl *control, LamRVEState state,
                                 LamResponse *response);
+
+/*
+  Sealed lumens: in all solves from LamRVESeal to LamRVEUnseal each cell keeps its water of bulk modulus K_w (C1 + C2),
+    V_lumen = V_w (1 - (p - p0) / K_w),    p0 = load->turgor times the turgor of the cell over that of the load,
+  and finds its own pressure p. water[cell]: V_w over the V0 of the RVE, the lumen in which the water has the pressure
+  p0; LamRVEGetLumens gives that of a state solved with prescribed p0. Who has many material points seals anew for each
+  of them; that costs nothing. The energy of the response is then
+
+    Psi_s(F) = stat_p [ Psi(F, p) + sum_c v_w (p_c - (p_c - p0)^2 / (2 K_w)) ],    v_w = water,
+
+  all else derivatives of it, those by the turgor at fixed water; turgor_mean and turgor_spread tell the pressures
+  reached. They may be negative: water is not kept from being pulled (docs/theory.md, Sealed lumens). LamRVESeal:
+  PETSC_ERR_ARG_OUTOFRANGE where K_w or water is not positive and finite.
+*/
+PetscErrorCode LamRVEGetLumens(LamRVE rve, LamRVEState state, PetscReal lumen[]);
+PetscErrorCode LamRVESeal(LamRVE rve, PetscReal bulk_modulus, const PetscReal water[]);
+PetscErrorCode LamRVEUnseal(LamRVE rve);
 
 /* Number of unknowns of one solve (displacement components that are free). */
 PetscErrorCode LamRVEGetUnknowns(LamRVE rve, PetscInt *unknowns);

@@ -211,6 +211,8 @@ static const char *const indicators[] = {"opening_by_face",
                                          "max_wall_tension",
                                          "wall_place",
                                          "mean_wall_tension",
+                                         "turgor_mean",
+                                         "turgor_spread",
                                          "energy_turgor",
                                          "energy_cohesion",
                                          "zero_modes",
@@ -228,6 +230,7 @@ static LamResponse WithoutIndicators(LamResponse r)
   }
   r.debonded_spread = r.open_spread = r.min_gap = r.mean_gap = r.max_penetration = NAN;
   r.max_lamella_shear = r.max_fibre_stretch = r.max_wall_energy = r.max_wall_tension = NAN;
+  r.turgor_mean = r.turgor_spread = NAN;
   r.energy_turgor = -r.lumen_fraction;
   r.energy_cohesion = r.opening_fraction;
   r.zero_modes = r.cell_clusters = r.percolating_directions = LAM_UNKNOWN_COUNT;

@@ -1,0 +1,205 @@
+/*
+  Turgor: areas of the lumens, and the pressures of those that are sealed (docs/theory.md, Sealed lumens).
+
+  Method. A sealed cell c keeps its water: with v = V / V_w its lumen over that which holds the water at pressure p0,
+    v = 1 - (p - p0) / K_w.
+  The pressures p join the unknowns, as multipliers with a compliance do: they enter the Lagrangian by
+    sum_c -p V(y) + V_w (p - (p - p0)^2 / (2 K_w)),
+  whose stationary point in p is that equation. It is linear in p, so that a Newton iteration moves p by its own
+  linearised equation, and K_w never multiplies an error of the volume in the residual of the positions. Eliminated, the
+  pressures leave the energy of the water, V_w ((1 - v) p0 + K_w (1 - v)^2 / 2), which descent looks at.
+
+  Each pressure brings one negative eigenvalue. In lumens that are not sealed its row is that of the unit matrix.
+*/
+#include "edge_area.h"
+#include "rve_impl.h"
+
+/* The edge at the lumen of an innermost element, counter-clockwise around the lumen. */
+static const PetscInt inner_edge[3] = {0, 7, 3};
+
+/* Positions of an innermost element; nodes of lumens have no shift. */
+static void GatherInner(LamRVE rve, const PetscReal y[], PetscInt e, PetscReal x[LAM_ELEMENT_NODES][2])
+{
+  static const PetscReal no_shift[9] = {0};
+
+  LamGatherElement(rve, no_shift, y, e, x);
+}
+
+void LamLumenAreas(LamRVE rve, const PetscReal y[], PetscReal area[])
+{
+  const LamMesh *mesh = &rve->mesh;
+
+  for (PetscInt c = 0; c < mesh->cell_count; ++c) area[c] = 0.0;
+  for (PetscInt e = 0; e < mesh->element_count; e += mesh->through) {
+    PetscReal x[LAM_ELEMENT_NODES][2];
+
+    GatherInner(rve, y, e, x);
+    area[mesh->cell_of[e]] += LamEdgeArea(inner_edge, (const PetscReal(*)[2])x);
+  }
+}
+
+void LamLumenAddGradient(LamRVE rve, const PetscReal y[], const PetscReal factor[], PetscReal gradient[])
+{
+  const LamMesh *mesh = &rve->mesh;
+
+  for (PetscInt e = 0; e < mesh->element_count; e += mesh->through) {
+    PetscReal x[LAM_ELEMENT_NODES][2], f[LAM_ELEMENT_DOFS] = {0};
+
+    GatherInner(rve, y, e, x);
+    LamAddEdgeArea(inner_edge, (const PetscReal(*)[2])x, factor[mesh->cell_of[e]], f, NULL);
+    for (PetscInt k = 0; k < 3; ++k)
+      for (PetscInt d = 0; d < 2; ++d)
+        gradient[2 * mesh->node_class[mesh->elements[LAM_ELEMENT_NODES * e + inner_edge[k]]] + d] +=
+            f[2 * inner_edge[k] + d];
+  }
+}
+
+void LamAddPressure(const PetscReal x[LAM_ELEMENT_NODES][2], PetscReal pressure, LamElementResult *element)
+{
+  LamAddEdgeArea(inner_edge, x, -pressure, element->f, element->K);
+}
+
+PetscReal LamTurgorEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[])
+{
+  const LamSeal *seal = &rve->seal;
+  PetscReal energy = 0.0;
+
+  LamLumenAreas(rve, y, seal->area);
+  for (PetscInt c = 0; c < rve->mesh.cell_count; ++c) {
+    const PetscReal p0 = load->turgor * LamTurgorFactor(rve, c), volume = load->F[8] * seal->area[c];
+
+    if (seal->closed) {
+      const PetscReal loss = 1.0 - volume / seal->water[c];
+
+      energy += seal->water[c] * (loss * p0 + 0.5 * seal->bulk_modulus * loss * loss);
+    } else {
+      energy -= p0 * volume;
+    }
+  }
+  return energy;
+}
+
+/* Matrix entries of the lumens' areas: of position and pressure, the last of a position's row. */
+static void AddAreaRows(LamRVE rve, const PetscReal y[], PetscReal factor)
+{
+  const LamMesh *mesh = &rve->mesh;
+  const PetscInt *row = rve->linear.row;
+
+  for (PetscInt e = 0; e < mesh->element_count; e += mesh->through) {
+    PetscReal x[LAM_ELEMENT_NODES][2], f[LAM_ELEMENT_DOFS] = {0};
+
+    GatherInner(rve, y, e, x);
+    LamAddEdgeArea(inner_edge, (const PetscReal(*)[2])x, factor, f, NULL);
+    for (PetscInt k = 0; k < 3; ++k) {
+      const PetscInt class = mesh->node_class[mesh->elements[LAM_ELEMENT_NODES * e + inner_edge[k]]];
+
+      for (PetscInt d = 0; d < 2 && class > 0; ++d)
+        rve->linear.values[row[2 * (class - 1) + d + 1] - 1] += f[2 * inner_edge[k] + d];
+    }
+  }
+}
+
+void LamSealSetOpen(LamRVE rve)
+{
+  for (PetscInt i = rve->linear.n - rve->linear.lumens; i < rve->linear.n; ++i)
+    rve->linear.values[rve->linear.row[i]] = 1.0;
+}
+
+void LamSealAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal residual[])
+{
+  const LamSeal *seal = &rve->seal;
+  const PetscInt first = rve->linear.n - rve->linear.lumens;
+
+  LamSealSetOpen(rve);
+  if (!seal->closed) return;
+  LamLumenAreas(rve, y, seal->area);
+  AddAreaRows(rve, y, -load->F[8]);
+  for (PetscInt c = 0; c < rve->linear.lumens; ++c) {
+    const PetscReal over = y[rve->ndof + c] - load->turgor * LamTurgorFactor(rve, c);
+
+    residual[rve->ndof + c] = seal->water[c] * (1.0 - over / seal->bulk_modulus) - load->F[8] * seal->area[c];
+    rve->linear.values[rve->linear.row[first + c]] = -seal->water[c] / seal->bulk_modulus;
+  }
+}
+
+void LamSealSetConsistent(LamRVE rve, const LamLoad *load, PetscReal y[])
+{
+  const LamSeal *seal = &rve->seal;
+
+  if (!seal->closed) return;
+  LamLumenAreas(rve, y, seal->area);
+  for (PetscInt c = 0; c < rve->linear.lumens; ++c)
+    y[rve->ndof + c] = load->turgor * LamTurgorFactor(rve, c) +
+                       seal->bulk_modulus * (1.0 - load->F[8] * seal->area[c] / seal->water[c]);
+}
+
+PetscReal LamSealError(LamRVE rve, const PetscReal residual[])
+{
+  const LamSeal *seal = &rve->seal;
+  PetscReal sum = 0.0;
+
+  for (PetscInt c = 0; c < rve->linear.lumens && seal->closed; ++c)
+    sum += PetscSqr(residual[rve->ndof + c] / (1.0 + seal->water[c] / seal->bulk_modulus));
+  return sum;
+}
+
+void LamTurgorMeasures(LamRVE rve, const LamLoad *load, LamResponse *response)
+{
+  PetscReal lowest = PETSC_MAX_REAL, highest = -PETSC_MAX_REAL, sum = 0.0;
+
+  for (PetscInt c = 0; c < rve->mesh.cell_count; ++c) {
+    const PetscReal p = LamTurgor(rve, load, rve->y, c);
+
+    sum += p;
+    lowest = PetscMin(lowest, p);
+    highest = PetscMax(highest, p);
+  }
+  response->turgor_mean = sum / (PetscReal)rve->mesh.cell_count;
+  response->turgor_spread = highest - lowest;
+}
+
+/* ---- the interface ---- */
+
+PetscErrorCode LamRVESetSealable(LamRVE rve, PetscBool on)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(!rve->is_set_up, PETSC_COMM_SELF, PETSC_ERR_ORDER, "LamRVESetSealable comes before LamRVESetUp");
+  rve->seal.allowed = on;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVESeal(LamRVE rve, PetscReal bulk_modulus, const PetscReal water[])
+{
+  LamSeal *seal = &rve->seal;
+
+  PetscFunctionBeginUser;
+  PetscCheck(rve->is_set_up && seal->allowed, PETSC_COMM_SELF, PETSC_ERR_ORDER,
+             "LamRVESetSealable and LamRVESetUp come before LamRVESeal");
+  PetscCheck(bulk_modulus > 0.0 && !PetscIsInfOrNanReal(bulk_modulus), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "bulk modulus of water %g; it must be positive and finite", (double)bulk_modulus);
+  for (PetscInt c = 0; c < rve->mesh.cell_count; ++c) {
+    PetscCheck(water[c] > 0.0 && !PetscIsInfOrNanReal(water[c]), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "water of cell %d is %g; it must be positive and finite", (int)c, (double)water[c]);
+    seal->water[c] = water[c] * rve->mesh.V0;
+  }
+  seal->bulk_modulus = bulk_modulus;
+  seal->closed = PETSC_TRUE;
+  if (rve->bonded) PetscCall(LamRVESeal(rve->bonded, bulk_modulus, water));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEUnseal(LamRVE rve)
+{
+  PetscFunctionBeginUser;
+  rve->seal.closed = PETSC_FALSE;
+  if (rve->bonded) PetscCall(LamRVEUnseal(rve->bonded));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEGetLumens(LamRVE rve, LamRVEState state, PetscReal lumen[])
+{
+  PetscFunctionBeginUser;
+  LamLumenAreas(rve, state->y, lumen);
+  for (PetscInt c = 0; c < rve->mesh.cell_count; ++c) lumen[c] *= state->load.F[8] / rve->mesh.V0;
+  PetscFunctionReturn(0);
+}
