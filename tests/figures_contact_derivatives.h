@@ -120,9 +120,25 @@ static inline PetscErrorCode ContactSweepColumn(ContactCentre *at, int column, d
   PetscFunctionReturn(0);
 }
 
+/* All columns about at->centre, which the RVE has just been solved for. */
+static inline PetscErrorCode SweepColumns(ContactCentre *at, double step, ContactSweep *sweep)
+{
+  const LamContact *contact = at->rve->contact;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(contact ? contact->count : 0, &at->active, contact ? contact->face_count : 0, &at->faces));
+  if (contact) {
+    PetscCall(PetscArraycpy(at->active, contact->active, contact->count));
+    PetscCall(PetscArraycpy(at->faces, contact->faces, contact->face_count));
+  }
+  for (int c = 0; c < (contact ? CONTACT_COLUMNS : CONTACT_COHESION); c++)
+    PetscCall(ContactSweepColumn(at, c, step, sweep));
+  PetscCall(PetscFree2(at->active, at->faces));
+  PetscFunctionReturn(0);
+}
+
 static inline PetscErrorCode SweepContact(const ContactState *point, ContactSweep *sweep)
 {
-  const LamContact *contact;
   ContactCentre at;
 
   PetscFunctionBeginUser;
@@ -133,15 +149,7 @@ static inline PetscErrorCode SweepContact(const ContactState *point, ContactSwee
   PetscCall(LamRVEStateCreate(at.rve, &at.centre));
   PetscCall(LamRVEStateCreate(at.rve, &at.state));
   PetscCall(LamRVESolve(at.rve, &point->load, at.centre, &sweep->response));
-  contact = at.rve->contact;
-  PetscCall(PetscMalloc2(contact ? contact->count : 0, &at.active, contact ? contact->face_count : 0, &at.faces));
-  if (contact) {
-    PetscCall(PetscArraycpy(at.active, contact->active, contact->count));
-    PetscCall(PetscArraycpy(at.faces, contact->faces, contact->face_count));
-  }
-  for (int c = 0; c < (contact ? CONTACT_COLUMNS : CONTACT_COHESION); c++)
-    PetscCall(ContactSweepColumn(&at, c, point->step, sweep));
-  PetscCall(PetscFree2(at.active, at.faces));
+  PetscCall(SweepColumns(&at, point->step, sweep));
   PetscCall(LamRVEStateDestroy(&at.state));
   PetscCall(LamRVEStateDestroy(&at.centre));
   PetscCall(LamRVEDestroy(&at.rve));
