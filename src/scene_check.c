@@ -121,9 +121,6 @@ static PetscErrorCode ReadName(const LamDocument *document, const LamNode *node,
   LamKeyExpectation(key, PETSC_TRUE, expected);
   for (PetscInt i = 0; i < key->name_count; i++) {
     if (strcmp(node->text, key->names[i]) != 0) continue;
-    if (key->unavailable_names & (1u << i)) {
-      PetscCall(LamSceneFail(document, node, "this version of Lamella does not have it yet; write %s", expected));
-    }
     *number = (PetscReal)i;
     PetscFunctionReturn(0);
   }

@@ -164,11 +164,14 @@ const LamKey LamKeys[] = {
     {LENGTH("rve.interface.clearance", "um"), FROM(0), .default_value = "0 um", .example = "0.1 um",
      .help = "Distance between facing walls at which contact begins to act; only with law `contact`."},
     {MAP("rve.turgor"), .example = "{mode: prescribed, pressure: 0.02 MPa}", .help = "Pressure in the lumens."},
-    {NAME("rve.turgor.mode", turgor_mode_names), .unavailable_names = 1u << LAM_TURGOR_SEALED,
-     .default_words = "`prescribed` where a pressure is given, else `none`", .example = "prescribed",
-     .help = "`prescribed`: the pressure is given; `sealed`: each cell keeps its water."},
-    {STRESS("rve.turgor.pressure"), .default_words = "none: required by mode `prescribed`", .example = "0.02 MPa",
-     .help = "Turgor of the tissue; negative is suction."},
+    {NAME("rve.turgor.mode", turgor_mode_names), .default_words = "`prescribed` where a pressure is given, else `none`",
+     .example = "prescribed",
+     .help = "`prescribed`: the pressure is given; `sealed`: each cell keeps the water that it has at F = I under that "
+             "pressure, and its pressure follows. `build` tabulates prescribed turgor alone."},
+    {STRESS("rve.turgor.pressure"), .default_words = "none: required by modes `prescribed` and `sealed`",
+     .example = "0.02 MPa", .help = "Turgor of the tissue; negative is suction."},
+    {STRESS("rve.turgor.water_bulk_modulus"), ABOVE(0), .default_value = "2200 MPa", .example = "2.2 GPa",
+     .help = "How water in sealed cells resists compression; only with mode `sealed`."},
     {MAP("rve.mesh"), .default_words = CHOSEN, .example = "{along: 6, through: 2}",
      .help = "Finite elements of one cell."},
     {INTEGER("rve.mesh.along"), FROM(1), TO(200), .default_words = CHOSEN, .example = "6",
@@ -337,16 +340,14 @@ void LamKeyBoundsText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH])
   snprintf(text, LAM_KEY_TEXT_LENGTH, "%s%s%s", lower, lower[0] && upper[0] ? " and " : "", upper);
 }
 
-/* "one of bonded, contact", without what this version lacks. */
+/* "bonded or contact" */
 static void NamesText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH])
 {
   size_t used = 0;
-  PetscInt shown = 0;
 
   text[0] = '\0';
   for (PetscInt i = 0; i < key->name_count && used < LAM_KEY_TEXT_LENGTH; i++) {
-    if (key->unavailable_names & (1u << i)) continue;
-    used += (size_t)snprintf(text + used, LAM_KEY_TEXT_LENGTH - used, "%s%s", shown++ ? " or " : "", key->names[i]);
+    used += (size_t)snprintf(text + used, LAM_KEY_TEXT_LENGTH - used, "%s%s", i ? " or " : "", key->names[i]);
   }
 }
 

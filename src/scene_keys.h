@@ -56,7 +56,6 @@ typedef struct LamKey_s {
   LamBound lower, upper; /* of each component */
   const char *const *names;
   PetscInt name_count;
-  unsigned unavailable_names; /* bit i: names[i] is known, but this version does not have it */
   PetscBool unavailable;      /* the key is known, but this version does not have it */
   PetscBool required;         /* wherever the map it belongs to is given */
   const char *free_word;      /* leaves a component open; NULL: none may be */

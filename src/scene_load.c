@@ -76,6 +76,11 @@ static PetscErrorCode BuildPressures(const LamDocument *document, const LamNode 
   PetscCall(LamSceneGet(entry, "load[].cohesion", &cohesion_node, &cohesion));
   load->turgor = scene->turgor;
   load->cohesion = scene->cohesion;
+  if (turgor_node && scene->sealed) {
+    PetscCall(LamSceneFailName(document, turgor_node,
+                               "contradicts turgor mode: sealed, whose cells find their pressure themselves; leave it "
+                               "out, or write mode: prescribed"));
+  }
   if (turgor_node) {
     PetscCall(LamSceneCheckTurgor(document, turgor_node, turgor.number[0]));
     PetscCall(LamSceneScale(document, turgor_node, turgor.number[0], scene->scales.stress, &load->turgor));
@@ -229,6 +234,11 @@ PetscErrorCode LamSceneBuildSample(const LamDocument *document, LamScene *scene)
   PetscFunctionBeginUser;
   PetscCall(LamSceneGet(document->root, "sample", &block, &unused));
   if (!block) PetscFunctionReturn(0);
+  if (scene->sealed) {
+    PetscCall(LamSceneFailName(document, block,
+                               "contradicts turgor mode: sealed; a database holds states of prescribed turgor, from "
+                               "which those of sealed cells follow: write mode: prescribed"));
+  }
   scene->has_sample = PETSC_TRUE;
   PetscCall(GetRange(document, "sample.stretch.min", "sample.stretch.max", stretch_nodes, stretch));
   scene->sample.stretch_min = stretch[0];

@@ -19,6 +19,7 @@ static const char *const introduction =
     "[hexagons-turgid.yaml](../tests/scenes/hexagons-turgid.yaml) (a patch of cells between grips, empty and under "
     "turgor),\n"
     "[uneven-cells.yaml](../tests/scenes/uneven-cells.yaml) (cells that differ),\n"
+    "[shear-sealed.yaml](../tests/scenes/shear-sealed.yaml) (cells that keep their water),\n"
     "[failure.yaml](../tests/scenes/failure.yaml) (bonded cells pulled until something gives way) and\n"
     "[tissue-block.yaml](../tests/scenes/tissue-block.yaml) (a block of tissue, inflated and sheared).\n\n"
     "* **Quantities** carry a unit that udunits2 knows, such as `75 um`, `0.1 MPa`, `2 bar`, `30 deg`, `0.5 rad`.\n"
@@ -54,8 +55,7 @@ static const char *TypeText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH])
     return text;
   }
   for (PetscInt i = 0; i < key->name_count && used < LAM_KEY_TEXT_LENGTH; i++) {
-    const char *mark = key->unavailable_names & (1u << i) ? " (*not in this version*)" : "";
-    used += (size_t)snprintf(text + used, LAM_KEY_TEXT_LENGTH - used, "%s`%s`%s", i ? ", " : "", key->names[i], mark);
+    used += (size_t)snprintf(text + used, LAM_KEY_TEXT_LENGTH - used, "%s`%s`", i ? ", " : "", key->names[i]);
   }
   return text;
 }

@@ -187,6 +187,23 @@ PetscErrorCode LamSceneCheckTurgor(const LamDocument *document, const LamNode *n
   PetscFunctionReturn(0);
 }
 
+/* Water that cells keep. */
+static PetscErrorCode BuildSeal(const LamDocument *document, const LamNode *mode_node, LamTurgorMode mode,
+                                LamScene *scene)
+{
+  const LamNode *water_node;
+  PetscReal water;
+
+  PetscFunctionBeginUser;
+  scene->sealed = (PetscBool)(mode_node && mode == LAM_TURGOR_SEALED);
+  PetscCall(GetReal(document, "rve.turgor.water_bulk_modulus", &water_node, &water));
+  if (water_node && !scene->sealed)
+    PetscCall(
+        LamSceneFailName(document, water_node, "says nothing where the cells are not sealed; write mode: sealed"));
+  PetscCall(LamSceneScale(document, water_node, water, scene->scales.stress, &scene->water_bulk_modulus));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode BuildTurgor(const LamDocument *document, LamScene *scene)
 {
   const LamNode *mode_node, *pressure_node;
@@ -195,7 +212,8 @@ static PetscErrorCode BuildTurgor(const LamDocument *document, LamScene *scene)
   PetscFunctionBeginUser;
   PetscCall(LamSceneGet(document->root, "rve.turgor.mode", &mode_node, &mode));
   PetscCall(LamSceneGet(document->root, "rve.turgor.pressure", &pressure_node, &pressure));
-  if (mode_node && (LamTurgorMode)mode.number[0] == LAM_TURGOR_PRESCRIBED && !pressure_node) {
+  PetscCall(BuildSeal(document, mode_node, (LamTurgorMode)mode.number[0], scene));
+  if (mode_node && (LamTurgorMode)mode.number[0] != LAM_TURGOR_NONE && !pressure_node) {
     PetscCall(LamSceneFailMissing(document, mode_node->parent, "pressure",
                                   "missing; write a stress with its unit, such as 0.02 MPa, or mode: none"));
   }

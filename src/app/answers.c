@@ -67,6 +67,10 @@ static PetscErrorCode Open(const char path[], LamAnswers *a)
              "a file of periodic cells (rve.cells), or solve the patch with lamella rve",
              path);
   PetscCall(ReadScene(path, &a->scene));
+  PetscCheck(!a->scene->sealed, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: holds states of sealed cells, whose pressure depends on their water; take a file of prescribed "
+             "turgor (rve.turgor.mode: prescribed)",
+             path);
   a->accuracy = a->scene->accuracy;
   a->turgor = a->scene->turgor;
   a->cohesion = a->scene->cohesion;

@@ -98,12 +98,13 @@ static PetscErrorCode PrintObject(const Check *check)
   json_t *o;
 
   PetscFunctionBeginUser;
-  o = json_pack("{s:s, s:b, s:[I,I], s:s, s:s, s:o, s:o, s:o, s:I, s:o, s:o, s:o}", "scene", scene->path,
+  o = json_pack("{s:s, s:b, s:[I,I], s:s, s:s, s:o, s:b, s:o, s:o, s:I, s:o, s:o, s:o}", "scene", scene->path,
                 "plane_strain", 1, "cells", (json_int_t)micro->cells[0], (json_int_t)micro->cells[1], "interface",
                 LamInterfaceLawNames[micro->interface], "wall_law", LamWallLawNames[micro->wall.law], "turgor",
-                LamJSONReal(scene->turgor * MPa), "accuracy", LamJSONReal(scene->accuracy), "mesh", Mesh(check),
-                "unknowns", (json_int_t)plan->unknowns, "seconds_per_assembly", LamJSONReal(check->assembly),
-                "seconds_per_state", LamJSONReal(check->state), "memory_mb", LamJSONReal(check->memory));
+                LamJSONReal(scene->turgor * MPa), "sealed", scene->sealed, "accuracy", LamJSONReal(scene->accuracy),
+                "mesh", Mesh(check), "unknowns", (json_int_t)plan->unknowns, "seconds_per_assembly",
+                LamJSONReal(check->assembly), "seconds_per_state", LamJSONReal(check->state), "memory_mb",
+                LamJSONReal(check->memory));
   PetscCheck(o, PETSC_COMM_SELF, PETSC_ERR_LIB, "the plan cannot be written as JSON");
   if (micro->is_patch)
     json_object_set_new(o, "patch",
@@ -191,9 +192,10 @@ static void PrintModel(const Check *check)
     printf("%-12s contact: cohesion %.4g MPa, clearance %.4g um, strategy %s\n", "interface",
            (double)(scene->cohesion * MPa), (double)(1e6 * micro->clearance * scene->scales.length),
            LamStrategyNames[scene->strategy]);
-  if (scene->turgor != 0)
-    printf("%-12s %.4g MPa %s\n", "turgor", (double)(scene->turgor * MPa),
-           check->plan.spread.kinds ? "times the factor of each cell" : "in every lumen");
+  if (scene->turgor != 0 || scene->sealed)
+    printf("%-12s %.4g MPa %s%s\n", "turgor", (double)(scene->turgor * MPa),
+           check->plan.spread.kinds ? "times the factor of each cell" : "in every lumen",
+           scene->sealed ? " at F = I, where the cells are sealed" : "");
   else
     printf("%-12s none, where no load says otherwise\n", "turgor");
   printf("%-12s %" PetscInt_FMT " elements along a face, %" PetscInt_FMT " through a wall", "mesh", micro->along,

@@ -251,6 +251,7 @@ static PetscErrorCode Prepare(Run *run)
                             run->second_mesh ? 2 : 1, &run->meshes));
   PetscCall(LamMeshesSetInterrupt(&run->meshes, LamStopInterrupt, NULL));
   PetscCall(LamRVESetMonitor(run->meshes.rve[0], run->monitor));
+  PetscCall(LamMeshesSeal(&run->meshes, run->scene, &run->scene->loads[0]));
   PetscCall(LamRVEGetMesh(run->meshes.rve[0], &run->mesh));
   if (run->find_onset) PetscCall(LamOnsetCreate(&run->meshes, &run->onset));
   if (run->find_failure) {

@@ -37,9 +37,15 @@ static inline PetscBool LamHaveFields(const LamResponse responses[2])
   return (PetscBool)(LamResponseHasFields(&responses[0]) && LamResponseHasFields(&responses[1]));
 }
 
+/* What the lumens bear, which sealed ones find themselves; that of the load where the response does not say. */
+static inline PetscReal LamTurgorReached(const LamResponse *r)
+{
+  return isfinite(r->turgor_mean) ? r->turgor_mean : r->load.turgor;
+}
+
 static inline PetscBool LamIsTurgid(const LamResponse *r)
 {
-  return (PetscBool)(r->load.turgor > 0);
+  return (PetscBool)(LamTurgorReached(r) > 0);
 }
 
 /* Over all walls: of each face family every cell has the same share. */
@@ -50,7 +56,7 @@ static inline PetscReal LamMeanTension(const LamResponse *r)
 
 static inline PetscBool LamIsTaut(const LamResponse *r)
 {
-  return (PetscBool)(LamIsTurgid(r) && LamMeanTension(r) > LAM_TAUT * r->load.turgor);
+  return (PetscBool)(LamIsTurgid(r) && LamMeanTension(r) > LAM_TAUT * LamTurgorReached(r));
 }
 
 /*
@@ -78,7 +84,7 @@ static inline PetscReal LamCriterionExcess(LamCriterion criterion, const LamFail
   case LAM_CRITERION_STABILITY:
     return r->status == LAM_UNSTABLE || r->branch > before[0].branch ? 1 : -1;
   case LAM_CRITERION_TURGOR:
-    if (failure->turgid) excess = -r->load.turgor;
+    if (failure->turgid) excess = -LamTurgorReached(r);
     if (failure->taut) excess = PetscMax(excess, -LamMeanTension(r));
     return excess;
   default:

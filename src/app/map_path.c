@@ -188,10 +188,10 @@ static void AddState(const LamScene *scene, Path *path)
     if (path->controls[n].follows[i]) path->loads[n].F[i] = scene->loads[WayOf(place)].F[i];
 }
 
-/* Without turgor there is nothing to bring up. */
+/* Without turgor there is nothing to bring up, and sealed cells begin with all of theirs. */
 static PetscInt InflationOf(const LamScene *scene)
 {
-  return scene->controls && scene->loads[0].turgor != 0 ? INFLATION : 0;
+  return scene->controls && scene->loads[0].turgor != 0 && !scene->sealed ? INFLATION : 0;
 }
 
 /* States at F = I, or at the prescribed stress of 0, with less turgor than the load's first state. */
@@ -341,6 +341,7 @@ static PetscErrorCode FollowOwn(const LamScene *own, PetscInt number, PetscBool 
       (LamFailureProgram){own->micro.interface, &own->strength, path.count, path.loads, path.controls, PETSC_TRUE};
   PetscCall(LamMeshesCreate(PETSC_COMM_SELF, own, own->micro.interface == LAM_INTERFACE_CONTACT ? 2 : 1, &meshes));
   PetscCall(LamMeshesSetInterrupt(&meshes, interrupt, ctx));
+  PetscCall(LamMeshesSeal(&meshes, own, &own->loads[0]));
   PetscCall(LamFailureCreate(&meshes, &program, &failure));
   PetscCall(Solve(&meshes, &path, &failure, responses, &solved));
   *complete = (PetscBool)!meshes.stopped;

@@ -16,6 +16,7 @@ static PetscErrorCode CreateOne(MPI_Comm comm, const LamScene *scene, PetscInt r
   PetscCall(LamRVECreate(comm, rve));
   PetscCall(LamRVESetMicrostructure(*rve, &micro));
   PetscCall(LamRVESetStrategy(*rve, scene->strategy));
+  PetscCall(LamRVESetSealable(*rve, scene->sealed));
   PetscCall(LamRVESetUp(*rve));
   PetscCall(LamRVEStateCreate(*rve, state));
   PetscFunctionReturn(0);
@@ -24,7 +25,7 @@ static PetscErrorCode CreateOne(MPI_Comm comm, const LamScene *scene, PetscInt r
 PetscErrorCode LamMeshesCreate(MPI_Comm comm, const LamScene *scene, PetscInt count, LamMeshes *meshes)
 {
   PetscFunctionBeginUser;
-  *meshes = (LamMeshes){.count = count, .F = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+  *meshes = (LamMeshes){.count = count, .F = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .unsealed.status = LAM_CONVERGED};
   for (PetscInt m = 0; m < count; m++) PetscCall(CreateOne(comm, scene, m + 1, &meshes->rve[m], &meshes->state[m]));
   PetscFunctionReturn(0);
 }
@@ -33,6 +34,37 @@ PetscErrorCode LamMeshesSetInterrupt(LamMeshes *meshes, PetscBool (*interrupt)(v
 {
   PetscFunctionBeginUser;
   for (PetscInt m = 0; m < meshes->count; m++) PetscCall(LamRVESetInterrupt(meshes->rve[m], interrupt, ctx));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SealOne(const LamScene *scene, const LamLoad *load, LamRVE rve, LamRVEState state,
+                              LamResponse *response)
+{
+  PetscReal *water;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVESolve(rve, load, state, response));
+  if (response->status != LAM_CONVERGED) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(scene->micro.cells[0] * scene->micro.cells[1], &water));
+  PetscCall(LamRVEGetLumens(rve, state, water));
+  PetscCall(LamRVESeal(rve, scene->water_bulk_modulus, water));
+  PetscCall(PetscFree(water));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMeshesSeal(LamMeshes *meshes, const LamScene *scene, const LamLoad *first)
+{
+  const LamLoad load = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .turgor = first->turgor, .cohesion = first->cohesion};
+  LamResponse *response = &meshes->unsealed;
+  char reason[sizeof(response->reason)];
+
+  PetscFunctionBeginUser;
+  for (PetscInt m = 0; m < meshes->count && scene->sealed && response->status == LAM_CONVERGED; m++)
+    PetscCall(SealOne(scene, &load, meshes->rve[m], meshes->state[m], response));
+  if (response->status == LAM_CONVERGED || response->status == LAM_OUT_OF_REACH) PetscFunctionReturn(0);
+  PetscCall(PetscStrncpy(reason, response->reason, sizeof(reason)));
+  PetscCall(PetscSNPrintf(response->reason, sizeof(reason),
+                          "no stable state at F = I in which the cells are sealed: %s", reason));
   PetscFunctionReturn(0);
 }
 
@@ -46,6 +78,20 @@ PetscErrorCode LamMeshesDestroy(LamMeshes *meshes)
   PetscFunctionReturn(0);
 }
 
+/* Without water that they have kept the cells have no pressure. */
+static PetscErrorCode GiveUnsealed(LamMeshes *meshes, const LamLoad *load, LamResponse responses[2])
+{
+  const LamResponse *why = &meshes->unsealed;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamResponseInit(load, &responses[0]));
+  responses[0].status = why->status == LAM_UNSTABLE ? LAM_NOT_CONVERGED : why->status;
+  PetscCall(PetscStrncpy(responses[0].reason, why->reason, sizeof(why->reason)));
+  responses[1] = responses[0];
+  meshes->stopped = (PetscBool)(why->status == LAM_OUT_OF_REACH);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamMeshesSolve(LamMeshes *meshes, const LamLoad *load, const LamStressControl *control,
                               LamResponse responses[2])
 {
@@ -55,6 +101,10 @@ PetscErrorCode LamMeshesSolve(LamMeshes *meshes, const LamLoad *load, const LamS
   const LamResponse *second = &responses[1];
 
   PetscFunctionBeginUser;
+  if (meshes->unsealed.status != LAM_CONVERGED) {
+    PetscCall(GiveUnsealed(meshes, &asked, responses));
+    PetscFunctionReturn(0);
+  }
   PetscCall(LamRVESolveMixed(meshes->rve[0], &asked, control ? control : &none, meshes->state[0], first));
   if (LamResponseHasFields(first)) PetscCall(PetscArraycpy(meshes->F, first->load.F, 9));
   for (PetscInt m = 1; m < meshes->count && first->status != LAM_OUT_OF_REACH; m++) {

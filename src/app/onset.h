@@ -14,6 +14,7 @@ typedef struct {
   LamRVEState state[2]; /* the last states that have an answer */
   PetscReal F[9];       /* of the first mesh's */
   PetscBool stopped;    /* a solve was, by the interrupt: its responses are LAM_OUT_OF_REACH and tell nothing */
+  LamResponse unsealed; /* where the cells could not be sealed: why; then there are no answers. Else converged */
 } LamMeshes;
 
 /* `scene` holds the mesh to use (along and through chosen); `comm` as for LamRVECreate. PETSC_ERR_USER_INPUT as
@@ -22,6 +23,11 @@ PetscErrorCode LamMeshesCreate(MPI_Comm comm, const LamScene *scene, PetscInt co
 /* As LamRVESetInterrupt, for good: once it has said to stop it must go on saying so. */
 PetscErrorCode LamMeshesSetInterrupt(LamMeshes *meshes, PetscBool (*interrupt)(void *ctx), void *ctx);
 PetscErrorCode LamMeshesDestroy(LamMeshes *meshes);
+/*
+  Before the first solve, of a scene whose cells are sealed; else without effect. The cells get the water that they have
+  at F = I, with the turgor and cohesion of `first`, and the states are those.
+*/
+PetscErrorCode LamMeshesSeal(LamMeshes *meshes, const LamScene *scene, const LamLoad *first);
 /*
   Solves on every mesh from its last state. With two, responses[0] gets what the second tells of it: error_estimate,
   debonded_spread, open_spread; they stay unknown where the second has no answer. control: NULL, or what else the load

@@ -173,6 +173,15 @@ static void PrintTail(const LamResponse *response)
   }
 }
 
+/* Sealed cells and cells that differ have other pressures than the load says. */
+static PetscBool HasTurgorOfLoad(const LamResponse *r)
+{
+  const PetscReal rounding = 1e-12 * fabs(r->load.turgor);
+
+  return (PetscBool)(!isfinite(r->turgor_mean) ||
+                     (fabs(r->turgor_mean - r->load.turgor) <= rounding && r->turgor_spread <= rounding));
+}
+
 PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales *scales, LamInterfaceLawType interface,
                                    PetscInt state)
 {
@@ -192,6 +201,9 @@ PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales 
   putchar('\n');
   if (LamResponseHasFields(response) && F[8] != 1)
     printf("      F33 %.4f, P33 %.3e MPa\n", (double)F[8], (double)(response->P[8] * MPa));
+  if (LamResponseHasFields(response) && !HasTurgorOfLoad(response))
+    printf("      pressure in the lumens %.4g MPa, spread %.3g MPa\n", (double)(response->turgor_mean * MPa),
+           (double)(response->turgor_spread * MPa));
   if (response->status != LAM_CONVERGED) printf("      %s\n", response->reason);
   PetscCall(FlushOutput());
   PetscFunctionReturn(0);

@@ -145,6 +145,7 @@ PetscErrorCode LamPlanMake(const LamScene *scene, LamPlan *plan)
   *plan = (LamPlan){.micro = scene->micro, .load_states = scene->load_count};
   ChooseMesh(scene->accuracy, &plan->micro);
   plan->unknowns = CountUnknowns(&plan->micro);
+  if (scene->sealed) plan->unknowns += scene->micro.cells[0] * scene->micro.cells[1]; /* the pressures */
   PetscCall(MeasureSpread(&plan->micro, &plan->spread));
   if (scene->has_sample) plan->sample_states = scene->sample.count;
   if (scene->has_map) {
