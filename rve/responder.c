@@ -4,7 +4,7 @@
   Each point keeps two states: the accepted one of the last load step, and the latest solution, which is nearer to the
   next question. A question starts from the latest one, unless that has left the accepted branch (buckled on the way):
   an iterate of the macroscale Newton must not decide which branch the tissue is on. A question without a point starts
-  from the reference.
+  from the reference. Once sealed, each point keeps the water that it had in its accepted state.
 */
 #include "rve_impl.h"
 
@@ -13,8 +13,26 @@ typedef struct {
   LamResponder *responder; /* borrowed: its counters */
   PetscInt points;
   LamRVEState *accepted, *latest; /* [points] */
+  PetscReal *water;               /* [points][cell]; NULL: turgor is prescribed */
+  PetscReal bulk_modulus;         /* of the water */
   LamRVEState scratch;
 } DirectResponder;
+
+/* The RVE is borrowed: it is sealed for one solve at a time. */
+static PetscErrorCode SolvePoint(DirectResponder *direct, PetscInt point, const LamLoad *load, LamRVEState state,
+                                 LamResponse *response)
+{
+  const PetscInt cells = direct->rve->mesh.cell_count;
+
+  PetscFunctionBeginUser;
+  if (direct->water) {
+    PetscCheck(point >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "a sealed answer needs a material point");
+    PetscCall(LamRVESeal(direct->rve, direct->bulk_modulus, &direct->water[point * cells]));
+  }
+  PetscCall(LamRVESolve(direct->rve, load, state, response));
+  if (direct->water) PetscCall(LamRVEUnseal(direct->rve));
+  PetscFunctionReturn(0);
+}
 
 static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[],
                               LamResponse responses[])
@@ -34,7 +52,7 @@ static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], cons
     } else {
       PetscCall(LamRVEStateReset(direct->rve, state));
     }
-    PetscCall(LamRVESolve(direct->rve, &loads[i], state, &responses[i]));
+    PetscCall(SolvePoint(direct, point, &loads[i], state, &responses[i]));
     ++direct->responder->queries;
     if (responses[i].status != LAM_OUT_OF_REACH) ++direct->responder->solves;
     if (!LamResponseHasFields(&responses[i])) ++direct->responder->failures;
@@ -72,6 +90,7 @@ static PetscErrorCode Destroy(void **ctx)
   }
   PetscCall(LamRVEStateDestroy(&direct->scratch));
   PetscCall(PetscFree2(direct->accepted, direct->latest));
+  PetscCall(PetscFree(direct->water));
   PetscCall(PetscFree(*ctx));
   PetscFunctionReturn(0);
 }
@@ -97,5 +116,18 @@ PetscErrorCode LamRVEResponderCreate(LamRVE rve, PetscInt points, LamResponder *
   responder->accept = Accept;
   responder->reject = Reject;
   responder->destroy = Destroy;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEResponderSeal(LamResponder *responder, PetscReal bulk_modulus)
+{
+  DirectResponder *direct = (DirectResponder *)responder->ctx;
+  const PetscInt cells = direct->rve->mesh.cell_count;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(direct->points * cells, &direct->water));
+  for (PetscInt i = 0; i < direct->points; ++i)
+    PetscCall(LamRVEGetLumens(direct->rve, direct->accepted[i], &direct->water[i * cells]));
+  direct->bulk_modulus = bulk_modulus;
   PetscFunctionReturn(0);
 }

@@ -10,6 +10,7 @@
     family.h     answers for walls between databases
     mosaic.h     answers for a body of different tissue
     cache.h      answers from a database and solves what it lacks
+    sealed.h     answers for cells that keep their water, from those for prescribed turgor
     macro.h      the macroscale finite element solver
     version.h    LAMELLA_VERSION
 
@@ -34,6 +35,7 @@
 #include <lamella/family.h>
 #include <lamella/mosaic.h>
 #include <lamella/cache.h>
+#include <lamella/sealed.h>
 #include <lamella/macro.h>
 #include <lamella/version.h>
 

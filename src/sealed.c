@@ -1,0 +1,251 @@
+/*
+  Sealed answers from a responder for prescribed turgor (docs/theory.md, Sealed lumens).
+
+  Method. For each point Newton on the pressure p of
+    c(p) = dPsi/dp + v_w (1 - (p - p0) / K_w) = 0,      dc/dp = Psi_pp - v_w / K_w < 0,
+  from the pressure of the answer before. c falls with p, so every answer bounds the root on one side, and a pressure
+  without an answer bounds how far one can go; a step beyond a bound goes half-way to it.
+*/
+#include <lamella/sealed.h>
+#include <math.h>
+
+#define MOST_QUESTIONS 40
+#define MOST_FAILURES 8 /* pressures without an answer */
+#define TOLERANCE 1e-10 /* of p, relative and C1 + C2 */
+
+typedef struct {
+  MPI_Comm comm;
+  LamResponder *open, *self; /* borrowed */
+  PetscInt points;
+  PetscBool sealed;
+  PetscReal bulk_modulus;
+  PetscReal *water;                        /* [points] */
+  PetscReal *lumen, *accepted_lumen;       /* [points] of the last open answers; 0: none */
+  PetscReal *pressure, *accepted_pressure; /* [points] */
+} Sealed;
+
+/* The search for one pressure. */
+typedef struct {
+  PetscReal low, high; /* the root is between, as far as is known */
+  PetscReal answered;  /* the last pressure with an answer; NaN: none yet */
+  PetscInt failures;
+  PetscBool done; /* where the last answer has fields it is at the root */
+} Search;
+
+void LamResponseSeal(PetscReal p0, PetscReal water, PetscReal bulk_modulus, LamResponse *r)
+{
+  const PetscReal p = r->load.turgor, compliance = water / bulk_modulus, over = p - p0;
+  const PetscReal share = 1 / (compliance - r->energy_turgor2), follows = compliance * share; /* dp/dp0 */
+
+  for (int i = 0; i < 9; i++)
+    for (int j = 0; j < 9; j++) r->tangent[9 * i + j] += share * r->P_turgor[i] * r->P_turgor[j];
+  for (int i = 0; i < 9; i++) {
+    r->P_cohesion[i] += share * r->P_turgor[i] * r->energy_turgor_cohesion;
+    r->P_turgor[i] *= follows;
+  }
+  r->energy += water * p - 0.5 * compliance * over * over;
+  r->energy_cohesion2 += share * r->energy_turgor_cohesion * r->energy_turgor_cohesion;
+  r->energy_turgor_cohesion *= follows;
+  r->energy_turgor = compliance * over;
+  r->energy_turgor2 = compliance * (follows - 1);
+  r->load.turgor = p0;
+  r->turgor_mean = p;
+  r->turgor_spread = 0;
+}
+
+/* Takes an answer at the pressure *p; sets the next one, or that it is the last. */
+static void Advance(const Sealed *s, PetscReal p0, PetscReal water, const LamResponse *r, Search *search, PetscReal *p)
+{
+  PetscReal next = *p;
+
+  if (LamResponseHasFields(r)) {
+    const PetscReal compliance = water / s->bulk_modulus;
+    const PetscReal excess = r->energy_turgor + water - compliance * (*p - p0);
+    const PetscReal step = excess / (compliance - r->energy_turgor2);
+
+    search->answered = *p;
+    search->done = (PetscBool)(fabs(step) <= TOLERANCE * (1 + fabs(*p)));
+    *(excess > 0 ? &search->low : &search->high) = *p;
+    next = *p + step;
+  } else {
+    search->done = (PetscBool)(isnan(search->answered) || ++search->failures == MOST_FAILURES);
+    *(*p > search->answered ? &search->high : &search->low) = *p;
+  }
+  if (search->done) return;
+  if (!(next > search->low && next < search->high)) next = 0.5 * (search->low + search->high);
+  *p = next;
+}
+
+/* The questions of a round: those that are not done. */
+static PetscInt Gather(PetscInt n, const LamLoad loads[], const PetscInt points[], const PetscReal p[],
+                       const Search search[], LamLoad asked[], PetscInt asked_points[], PetscInt from[])
+{
+  PetscInt count = 0;
+
+  for (PetscInt i = 0; i < n; i++) {
+    if (search[i].done) continue;
+    asked[count] = loads[i];
+    asked[count].turgor = p[i];
+    asked_points[count] = points[i];
+    from[count++] = i;
+  }
+  return count;
+}
+
+static PetscErrorCode Finish(Sealed *s, PetscInt point, const LamLoad *load, LamResponse *r)
+{
+  char why[sizeof(r->reason)];
+
+  PetscFunctionBeginUser;
+  if (LamResponseHasFields(r)) {
+    s->pressure[point] = r->load.turgor;
+    LamResponseSeal(load->turgor, s->water[point], s->bulk_modulus, r);
+    PetscFunctionReturn(0);
+  }
+  PetscCall(PetscStrncpy(why, r->reason, sizeof(why)));
+  PetscCall(PetscSNPrintf(r->reason, sizeof(r->reason), "sealed, at a pressure of %.4g (C1+C2): %s",
+                          (double)r->load.turgor, why));
+  r->load = *load;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Find(Sealed *s, PetscInt n, const LamLoad loads[], const PetscInt points[], Search search[],
+                           PetscReal p[], LamResponse responses[])
+{
+  PetscInt *asked_points, *from, most = 1;
+  LamResponse *answers;
+  LamLoad *asked;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc4(n, &asked, n, &asked_points, n, &from, n, &answers));
+  for (PetscInt round = 0; round < MOST_QUESTIONS && most; round++) {
+    const PetscInt count = Gather(n, loads, points, p, search, asked, asked_points, from);
+
+    PetscCallMPI(MPI_Allreduce(&count, &most, 1, MPIU_INT, MPI_MAX, s->comm));
+    if (!most) break;
+    PetscCall(s->open->respond(s->open->ctx, count, asked, asked_points, answers));
+    for (PetscInt k = 0; k < count; k++) {
+      const PetscInt i = from[k];
+
+      responses[i] = answers[k];
+      Advance(s, loads[i].turgor, s->water[points[i]], &answers[k], &search[i], &p[i]);
+    }
+  }
+  PetscCall(PetscFree4(asked, asked_points, from, answers));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode RespondSealed(Sealed *s, PetscInt n, const LamLoad loads[], const PetscInt points[],
+                                    LamResponse responses[])
+{
+  PetscReal *p;
+  Search *search;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n, &p, n, &search));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCheck(points && points[i] >= 0 && points[i] < s->points, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "a sealed answer needs a material point below %d, whose water it is", (int)s->points);
+    p[i] = s->pressure[points[i]];
+    search[i] = (Search){.low = -INFINITY, .high = INFINITY, .answered = NAN};
+  }
+  PetscCall(Find(s, n, loads, points, search, p, responses));
+  for (PetscInt i = 0; i < n; i++) {
+    if (!search[i].done && LamResponseHasFields(&responses[i])) {
+      responses[i].status = LAM_NOT_CONVERGED;
+      PetscCall(PetscStrncpy(responses[i].reason, "the pressure is not found", sizeof(responses[i].reason)));
+    }
+    PetscCall(Finish(s, points[i], &loads[i], &responses[i]));
+  }
+  PetscCall(PetscFree2(p, search));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode RespondOpen(Sealed *s, PetscInt n, const LamLoad loads[], const PetscInt points[],
+                                  LamResponse responses[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(s->open->respond(s->open->ctx, n, loads, points, responses));
+  for (PetscInt i = 0; i < n; i++) {
+    if (!points || points[i] < 0 || !LamResponseHasFields(&responses[i])) continue;
+    s->lumen[points[i]] = -responses[i].energy_turgor;
+    s->pressure[points[i]] = loads[i].turgor;
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[],
+                              LamResponse responses[])
+{
+  Sealed *s = (Sealed *)ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(s->sealed ? RespondSealed(s, n, loads, points, responses) : RespondOpen(s, n, loads, points, responses));
+  s->self->queries = s->open->queries;
+  s->self->hits = s->open->hits;
+  s->self->solves = s->open->solves;
+  s->self->failures = s->open->failures;
+  s->self->solve_seconds = s->open->solve_seconds;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Accept(void *ctx)
+{
+  Sealed *s = (Sealed *)ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(s->accepted_lumen, s->lumen, s->points));
+  PetscCall(PetscArraycpy(s->accepted_pressure, s->pressure, s->points));
+  PetscCall(s->open->accept(s->open->ctx));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Reject(void *ctx)
+{
+  Sealed *s = (Sealed *)ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(s->lumen, s->accepted_lumen, s->points));
+  PetscCall(PetscArraycpy(s->pressure, s->accepted_pressure, s->points));
+  PetscCall(s->open->reject(s->open->ctx));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Destroy(void **ctx)
+{
+  Sealed *s = (Sealed *)*ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree5(s->water, s->lumen, s->accepted_lumen, s->pressure, s->accepted_pressure));
+  PetscCall(PetscFree(*ctx));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSealedResponderCreate(MPI_Comm comm, LamResponder *open, PetscInt points, LamResponder *responder)
+{
+  Sealed *s;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&s));
+  *s = (Sealed){.comm = comm, .open = open, .self = responder, .points = points};
+  PetscCall(PetscCalloc5(points, &s->water, points, &s->lumen, points, &s->accepted_lumen, points, &s->pressure, points,
+                         &s->accepted_pressure));
+  *responder = (LamResponder){.ctx = s, .respond = Respond, .accept = Accept, .reject = Reject, .destroy = Destroy};
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSealedResponderSeal(LamResponder *responder, PetscReal bulk_modulus)
+{
+  Sealed *s = (Sealed *)responder->ctx;
+
+  PetscFunctionBeginUser;
+  PetscCheck(bulk_modulus > 0 && isfinite(bulk_modulus), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "bulk modulus of water %g; it must be positive and finite", (double)bulk_modulus);
+  for (PetscInt i = 0; i < s->points; i++)
+    PetscCheck(s->accepted_lumen[i] > 0, PETSC_COMM_SELF, PETSC_ERR_ORDER,
+               "material point %d has no accepted answer whose water it could keep", (int)i);
+  PetscCall(PetscArraycpy(s->water, s->accepted_lumen, s->points));
+  s->bulk_modulus = bulk_modulus;
+  s->sealed = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,200 @@
+/* Sealed answers from prescribed turgor: those of the solve with sealed lumens, from whatever responder, and
+   derivatives of one energy. */
+#include "rve_fixture.h"
+#include "assert_near.h"
+#include "figures_sealed.h"
+#include "synthetic_responder.h"
+#include <lamella/sealed.h>
+
+#define POINTS 3
+static const PetscInt points[POINTS] = {0, 1, 2};
+
+static LamRVE NewSealable(const LamMicrostructure *micro)
+{
+  LamRVE rve;
+
+  assert_int_equal(LamRVECreate(PETSC_COMM_SELF, &rve), 0);
+  assert_int_equal(LamRVESetMicrostructure(rve, micro), 0);
+  assert_int_equal(LamRVESetSealable(rve, PETSC_TRUE), 0);
+  assert_int_equal(LamRVESetUp(rve), 0);
+  return rve;
+}
+
+static void Ask(LamResponder *responder, const LamLoad loads[POINTS], LamResponse responses[POINTS])
+{
+  assert_int_equal(responder->respond(responder->ctx, POINTS, loads, points, responses), 0);
+}
+
+/* Points that are inflated at different F, so that each has water of its own. */
+static void Inflate(LamResponder *responder, double turgor, double cohesion)
+{
+  LamResponse responses[POINTS];
+  LamLoad loads[POINTS];
+
+  for (int i = 0; i < POINTS; i++) {
+    loads[i] = PlaneLoad(1 + 0.02 * i, 0, 0, 1, turgor);
+    loads[i].cohesion = cohesion;
+  }
+  Ask(responder, loads, responses);
+  for (int i = 0; i < POINTS; i++) assert_int_equal(responses[i].status, LAM_CONVERGED);
+  assert_int_equal(responder->accept(responder->ctx), 0);
+}
+
+static void AssertSameAnswer(const LamResponse *a, const LamResponse *b, double tolerance)
+{
+  const double scale = TangentScale(b);
+
+  assert_int_equal(a->status, LAM_CONVERGED);
+  assert_near(a->turgor_mean, b->turgor_mean, tolerance);
+  assert_near(a->energy, b->energy, tolerance);
+  assert_near(a->load.turgor, b->load.turgor, 0);
+  for (int i = 0; i < 5; i++) {
+    const int c = contact_components[i];
+
+    assert_near(a->P[c], b->P[c], tolerance);
+    assert_near(a->P_turgor[c], b->P_turgor[c], tolerance);
+    assert_near(a->P_cohesion[c], b->P_cohesion[c], 100 * tolerance);
+    for (int j = 0; j < 5; j++)
+      assert_near(a->tangent[9 * c + contact_components[j]], b->tangent[9 * c + contact_components[j]],
+                  tolerance * scale);
+  }
+  assert_near(a->energy_turgor, b->energy_turgor, tolerance);
+  assert_near(a->energy_turgor2, b->energy_turgor2, tolerance);
+  assert_near(a->energy_turgor_cohesion, b->energy_turgor_cohesion, tolerance);
+  assert_near(a->energy_cohesion2, b->energy_cohesion2, 100 * tolerance);
+}
+
+/* The pressure found outside of the solve, and inside. */
+static void BothWaysAgree(void **state)
+{
+  for (int contact = 0; contact < 2; contact++) {
+    const LamMicrostructure micro = contact ? ContactTissue(6, 2) : DefaultTissue();
+    const double turgor = 0.02 / TISSUE_STRESS, cohesion = contact ? 0.005 / TISSUE_STRESS : 0;
+    LamRVE rve = NewSealable(&micro);
+    LamResponder inside, open, outside;
+    LamResponse in[POINTS], out[POINTS];
+    LamLoad loads[POINTS];
+
+    for (int i = 0; i < POINTS; i++) {
+      loads[i] = PlaneLoad(1 + 0.02 * i, 0.1, 0, 1 - 0.001 * i, turgor);
+      loads[i].cohesion = cohesion;
+    }
+    assert_int_equal(LamRVEResponderCreate(rve, POINTS, &inside), 0);
+    assert_int_equal(LamRVEResponderCreate(rve, POINTS, &open), 0);
+    assert_int_equal(LamSealedResponderCreate(PETSC_COMM_SELF, &open, POINTS, &outside), 0);
+    Inflate(&inside, turgor, cohesion);
+    Inflate(&outside, turgor, cohesion);
+    assert_int_equal(LamRVEResponderSeal(&inside, SEALED_WATER), 0);
+    assert_int_equal(LamSealedResponderSeal(&outside, SEALED_WATER), 0);
+    Ask(&inside, loads, in);
+    Ask(&outside, loads, out);
+    for (int i = 0; i < POINTS; i++) AssertSameAnswer(&out[i], &in[i], 1e-8);
+    assert_true(fabs(in[0].turgor_mean - in[2].turgor_mean) > 0.01); /* each has its own water */
+    assert_true(outside.queries == open.queries && outside.solves == open.solves);
+    assert_int_equal(inside.destroy(&inside.ctx), 0);
+    assert_int_equal(outside.destroy(&outside.ctx), 0);
+    assert_int_equal(open.destroy(&open.ctx), 0);
+    assert_int_equal(LamRVEDestroy(&rve), 0);
+  }
+}
+
+static LamResponse AskOne(LamResponder *responder, const LamLoad *load)
+{
+  LamResponse response;
+
+  assert_int_equal(responder->respond(responder->ctx, 1, load, points, &response), 0);
+  return response;
+}
+
+/* Of a material with known answers, whose whole volume is lumen: p = p0 + K_w (1 - J / J0) exactly. */
+static void PressureAndDerivativesAreExact(void **state)
+{
+  const double h = 1e-4, water_modulus = 50;
+  LamLoad load = {.F = {1.05, 0.1, 0, -0.02, 0.98, 0, 0, 0, 1.01}, .turgor = 0.3};
+  LamResponder open, sealed;
+  Synthetic *material;
+  LamResponse r;
+  double J;
+
+  assert_int_equal(SyntheticCreate(POINTS, &open, &material), 0);
+  assert_int_equal(LamSealedResponderCreate(PETSC_COMM_SELF, &open, POINTS, &sealed), 0);
+  Inflate(&sealed, 0.3, 0);
+  assert_int_equal(LamSealedResponderSeal(&sealed, water_modulus), 0);
+  r = AskOne(&sealed, &load);
+  J = (1.05 * 0.98 + 0.1 * 0.02) * 1.01;
+  assert_near(r.turgor_mean, 0.3 + water_modulus * (1 - J), 1e-9);
+  for (int k = 0; k < 9; k++) {
+    LamResponse plus, minus;
+
+    load.F[k] += h;
+    plus = AskOne(&sealed, &load);
+    load.F[k] -= 2 * h;
+    minus = AskOne(&sealed, &load);
+    load.F[k] += h;
+    assert_near(r.P[k], (plus.energy - minus.energy) / (2 * h), 1e-6);
+    for (int i = 0; i < 9; i++) assert_near(r.tangent[9 * i + k], (plus.P[i] - minus.P[i]) / (2 * h), 1e-5);
+  }
+  assert_int_equal(sealed.destroy(&sealed.ctx), 0);
+  assert_int_equal(open.destroy(&open.ctx), 0);
+}
+
+/* A rejected step leaves no trace in the pressures that questions start from. */
+static void RejectedStepIsForgotten(void **state)
+{
+  const LamLoad load = PlaneLoad(1.01, 0, 0, 1, 0.3), far = PlaneLoad(1.2, 0, 0, 1, 0.3);
+  LamResponder open, sealed;
+  Synthetic *material;
+  LamResponse before, after;
+
+  assert_int_equal(SyntheticCreate(POINTS, &open, &material), 0);
+  assert_int_equal(LamSealedResponderCreate(PETSC_COMM_SELF, &open, POINTS, &sealed), 0);
+  Inflate(&sealed, 0.3, 0);
+  assert_int_equal(LamSealedResponderSeal(&sealed, 50), 0);
+  before = AskOne(&sealed, &load);
+  assert_int_equal(sealed.reject(sealed.ctx), 0);
+  (void)AskOne(&sealed, &far);
+  assert_int_equal(sealed.reject(sealed.ctx), 0);
+  after = AskOne(&sealed, &load);
+  assert_memory_equal(before.P, after.P, sizeof(before.P));
+  assert_int_equal(material->rejects, 2);
+  assert_int_equal(sealed.destroy(&sealed.ctx), 0);
+  assert_int_equal(open.destroy(&open.ctx), 0);
+}
+
+/* Where the tissue has no answer, that is the answer, with its reason and the pressure. */
+static void WhatHasNoAnswerIsTold(void **state)
+{
+  const LamLoad load = PlaneLoad(1.2, 0, 0, 1, 0.3);
+  LamResponder open, sealed;
+  Synthetic *material;
+  LamResponse r;
+
+  assert_int_equal(SyntheticCreate(POINTS, &open, &material), 0);
+  assert_int_equal(LamSealedResponderCreate(PETSC_COMM_SELF, &open, POINTS, &sealed), 0);
+  Inflate(&sealed, 0.3, 0);
+  assert_int_equal(LamSealedResponderSeal(&sealed, 50), 0);
+  material->largest_strain = 0.1;
+  r = AskOne(&sealed, &load);
+  assert_int_equal(r.status, LAM_NOT_CONVERGED);
+  assert_non_null(strstr(r.reason, "sealed, at a pressure of 0.3 (C1+C2): too far"));
+  assert_true(r.load.turgor == 0.3 && sealed.failures == 1);
+  assert_int_equal(sealed.destroy(&sealed.ctx), 0);
+  assert_int_equal(open.destroy(&open.ctx), 0);
+}
+
+static int Run(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(BothWaysAgree),
+      cmocka_unit_test(PressureAndDerivativesAreExact),
+      cmocka_unit_test(RejectedStepIsForgotten),
+      cmocka_unit_test(WhatHasNoAnswerIsTold),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
+
+int main(int argc, char **argv)
+{
+  return RunWithPetsc(argc, argv, Run);
+}
