@@ -53,6 +53,12 @@ void LamResponseSeal(PetscReal p0, PetscReal water, PetscReal bulk_modulus, LamR
   r->turgor_spread = 0;
 }
 
+/* d2Psi/dp2, which no stable state has above zero; an interpolated one may. */
+static PetscReal Concavity(const LamResponse *r)
+{
+  return PetscMin(r->energy_turgor2, 0);
+}
+
 /* Takes an answer at the pressure *p; sets the next one, or that it is the last. */
 static void Advance(const Sealed *s, PetscReal p0, PetscReal water, const LamResponse *r, Search *search, PetscReal *p)
 {
@@ -61,7 +67,7 @@ static void Advance(const Sealed *s, PetscReal p0, PetscReal water, const LamRes
   if (LamResponseHasFields(r)) {
     const PetscReal compliance = water / s->bulk_modulus;
     const PetscReal excess = r->energy_turgor + water - compliance * (*p - p0);
-    const PetscReal step = excess / (compliance - r->energy_turgor2);
+    const PetscReal step = excess / (compliance - Concavity(r));
 
     search->answered = *p;
     search->done = (PetscBool)(fabs(step) <= TOLERANCE * (1 + fabs(*p)));
@@ -92,11 +98,30 @@ static PetscInt Gather(PetscInt n, const LamLoad loads[], const PetscInt points[
   return count;
 }
 
+/*
+  An error of the lumen is divided by v_w / K_w - Psi_pp, some 1e-3, before it is one of the pressure. A table of bonded
+  cells has lumens to O(p/kappa) from F alone; where cells part it would have to know their gaps far better than stress
+  needs it.
+*/
+static PetscErrorCode Refuse(LamResponse *r)
+{
+  PetscFunctionBeginUser;
+  if (r->energy_turgor2 <= 0 && (r->source != LAM_SOURCE_DATABASE || r->energy_cohesion == 0)) PetscFunctionReturn(0);
+  r->status = LAM_OUT_OF_REACH;
+  PetscCall(
+      PetscStrncpy(r->reason,
+                   "a database does not know the lumens of cells that part well enough for the pressure of sealed "
+                   "ones: solve directly",
+                   sizeof(r->reason)));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Finish(Sealed *s, PetscInt point, const LamLoad *load, LamResponse *r)
 {
   char why[sizeof(r->reason)];
 
   PetscFunctionBeginUser;
+  if (LamResponseHasFields(r)) PetscCall(Refuse(r));
   if (LamResponseHasFields(r)) {
     s->pressure[point] = r->load.turgor;
     LamResponseSeal(load->turgor, s->water[point], s->bulk_modulus, r);

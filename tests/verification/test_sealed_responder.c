@@ -182,6 +182,91 @@ static void WhatHasNoAnswerIsTold(void **state)
   assert_int_equal(open.destroy(&open.ctx), 0);
 }
 
+/* A database of (F, turgor) that is filled as it is asked; ctx of the responders on it. */
+typedef struct {
+  LamScene *scene;
+  LamRVE rve;
+  LamDatabase database;
+  LamResponder solver, direct, cache, sealed;
+} Tabulated;
+
+static void OpenTable(const char interface[], Tabulated *t)
+{
+  char text[512];
+  LamGrid grid;
+
+  snprintf(text, sizeof(text),
+           "version: 1\nrve:\n  cell: {apothem: 75 um, wall_thickness: 11.25 um}\n"
+           "  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}\n  interface: {%s}\n"
+           "  turgor: {pressure: 0.02 MPa}\n  mesh: {along: 6, through: 2}\nsample: {stretch: {min: -0.2, max: 0.2}}\n",
+           interface);
+  assert_int_equal(LamSceneReadText("scene", text, &t->scene), 0);
+  t->rve = NewSealable(&t->scene->micro);
+  assert_int_equal(LamRVEResponderCreate(t->rve, 0, &t->solver), 0);
+  assert_int_equal(LamRVEResponderCreate(t->rve, POINTS, &t->direct), 0);
+  assert_int_equal(LamDatabaseCreateEmpty(t->scene, &t->database), 0);
+  assert_int_equal(LamGridCreate(t->scene, &t->solver, &grid), 0);
+  assert_int_equal(LamDatabaseSetGrid(t->database, &grid), 0);
+  assert_int_equal(
+      LamCacheResponderCreate(PETSC_COMM_SELF, t->database, &t->solver, NULL, t->scene->accuracy, POINTS, &t->cache),
+      0);
+  assert_int_equal(LamSealedResponderCreate(PETSC_COMM_SELF, &t->cache, POINTS, &t->sealed), 0);
+}
+
+static void CloseTable(Tabulated *t)
+{
+  assert_int_equal(t->sealed.destroy(&t->sealed.ctx), 0);
+  assert_int_equal(t->cache.destroy(&t->cache.ctx), 0);
+  assert_int_equal(t->direct.destroy(&t->direct.ctx), 0);
+  assert_int_equal(t->solver.destroy(&t->solver.ctx), 0);
+  assert_int_equal(LamDatabaseClose(&t->database), 0);
+  assert_int_equal(LamRVEDestroy(&t->rve), 0);
+  assert_int_equal(LamSceneDestroy(&t->scene), 0);
+}
+
+/* Volumes that hardly change: a table made for stress to 1 % gives the pressure, too. */
+static void TableOfBondedCellsGivesThePressure(void **state)
+{
+  LamResponse solved[POINTS], answered[POINTS];
+  LamLoad loads[POINTS];
+  Tabulated t;
+
+  OpenTable("law: bonded", &t);
+  Inflate(&t.direct, t.scene->turgor, 0);
+  Inflate(&t.sealed, t.scene->turgor, 0);
+  assert_int_equal(LamRVEResponderSeal(&t.direct, SEALED_WATER), 0);
+  assert_int_equal(LamSealedResponderSeal(&t.sealed, SEALED_WATER), 0);
+  for (int i = 0; i < POINTS; i++)
+    loads[i] = PlaneLoad(1.05, 0.1 - 0.05 * i, 0, (1 + 0.02 * i) / 1.05, t.scene->turgor);
+  Ask(&t.direct, loads, solved);
+  Ask(&t.sealed, loads, answered);
+  for (int i = 0; i < POINTS; i++) {
+    assert_int_equal(answered[i].source, LAM_SOURCE_DATABASE);
+    assert_true(LamStressError(answered[i].P, solved[i].P) < 0.003);
+    assert_near(answered[i].turgor_mean, solved[i].turgor_mean, 0.002);
+    assert_near(answered[i].tangent[0] / solved[i].tangent[0], 1, 0.002);
+  }
+  CloseTable(&t);
+}
+
+/* Where cells part a table does not know their lumens well enough. */
+static void TableOfCellsThatPartIsRefused(void **state)
+{
+  LamLoad load = PlaneLoad(1, 0, 0, 1, 0.02 / TISSUE_STRESS);
+  LamResponse r;
+  Tabulated t;
+
+  OpenTable("law: contact, cohesion: 0.02 MPa", &t);
+  load.cohesion = t.scene->cohesion;
+  Inflate(&t.sealed, t.scene->turgor, t.scene->cohesion);
+  assert_int_equal(LamSealedResponderSeal(&t.sealed, SEALED_WATER), 0);
+  r = AskOne(&t.sealed, &load);
+  assert_int_equal(r.source, LAM_SOURCE_DATABASE);
+  assert_int_equal(r.status, LAM_OUT_OF_REACH);
+  assert_non_null(strstr(r.reason, "solve directly"));
+  CloseTable(&t);
+}
+
 static int Run(void)
 {
   const struct CMUnitTest tests[] = {
@@ -189,6 +274,8 @@ static int Run(void)
       cmocka_unit_test(PressureAndDerivativesAreExact),
       cmocka_unit_test(RejectedStepIsForgotten),
       cmocka_unit_test(WhatHasNoAnswerIsTold),
+      cmocka_unit_test(TableOfBondedCellsGivesThePressure),
+      cmocka_unit_test(TableOfCellsThatPartIsRefused),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);
