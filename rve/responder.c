@@ -79,6 +79,22 @@ static PetscErrorCode Reject(void *ctx)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Seal(void *ctx, PetscReal bulk_modulus)
+{
+  DirectResponder *direct = (DirectResponder *)ctx;
+  const PetscInt cells = direct->rve->mesh.cell_count;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < direct->points; ++i)
+    PetscCheck(direct->accepted[i]->solved, PETSC_COMM_SELF, PETSC_ERR_ORDER,
+               "material point %d has no accepted answer whose water it could keep", (int)i);
+  PetscCall(PetscMalloc1(direct->points * cells, &direct->water));
+  for (PetscInt i = 0; i < direct->points; ++i)
+    PetscCall(LamRVEGetLumens(direct->rve, direct->accepted[i], &direct->water[i * cells]));
+  direct->bulk_modulus = bulk_modulus;
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Destroy(void **ctx)
 {
   DirectResponder *direct = (DirectResponder *)*ctx;
@@ -115,19 +131,7 @@ PetscErrorCode LamRVEResponderCreate(LamRVE rve, PetscInt points, LamResponder *
   responder->respond = Respond;
   responder->accept = Accept;
   responder->reject = Reject;
+  if (rve->seal.allowed) responder->seal = Seal;
   responder->destroy = Destroy;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamRVEResponderSeal(LamResponder *responder, PetscReal bulk_modulus)
-{
-  DirectResponder *direct = (DirectResponder *)responder->ctx;
-  const PetscInt cells = direct->rve->mesh.cell_count;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(direct->points * cells, &direct->water));
-  for (PetscInt i = 0; i < direct->points; ++i)
-    PetscCall(LamRVEGetLumens(direct->rve, direct->accepted[i], &direct->water[i * cells]));
-  direct->bulk_modulus = bulk_modulus;
   PetscFunctionReturn(0);
 }

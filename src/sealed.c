@@ -236,6 +236,22 @@ static PetscErrorCode Reject(void *ctx)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Seal(void *ctx, PetscReal bulk_modulus)
+{
+  Sealed *s = (Sealed *)ctx;
+
+  PetscFunctionBeginUser;
+  PetscCheck(bulk_modulus > 0 && isfinite(bulk_modulus), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "bulk modulus of water %g; it must be positive and finite", (double)bulk_modulus);
+  for (PetscInt i = 0; i < s->points; i++)
+    PetscCheck(s->accepted_lumen[i] > 0, PETSC_COMM_SELF, PETSC_ERR_ORDER,
+               "material point %d has no accepted answer whose water it could keep", (int)i);
+  PetscCall(PetscArraycpy(s->water, s->accepted_lumen, s->points));
+  s->bulk_modulus = bulk_modulus;
+  s->sealed = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Destroy(void **ctx)
 {
   Sealed *s = (Sealed *)*ctx;
@@ -255,22 +271,7 @@ PetscErrorCode LamSealedResponderCreate(MPI_Comm comm, LamResponder *open, Petsc
   *s = (Sealed){.comm = comm, .open = open, .self = responder, .points = points};
   PetscCall(PetscCalloc5(points, &s->water, points, &s->lumen, points, &s->accepted_lumen, points, &s->pressure, points,
                          &s->accepted_pressure));
-  *responder = (LamResponder){.ctx = s, .respond = Respond, .accept = Accept, .reject = Reject, .destroy = Destroy};
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamSealedResponderSeal(LamResponder *responder, PetscReal bulk_modulus)
-{
-  Sealed *s = (Sealed *)responder->ctx;
-
-  PetscFunctionBeginUser;
-  PetscCheck(bulk_modulus > 0 && isfinite(bulk_modulus), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
-             "bulk modulus of water %g; it must be positive and finite", (double)bulk_modulus);
-  for (PetscInt i = 0; i < s->points; i++)
-    PetscCheck(s->accepted_lumen[i] > 0, PETSC_COMM_SELF, PETSC_ERR_ORDER,
-               "material point %d has no accepted answer whose water it could keep", (int)i);
-  PetscCall(PetscArraycpy(s->water, s->accepted_lumen, s->points));
-  s->bulk_modulus = bulk_modulus;
-  s->sealed = PETSC_TRUE;
+  *responder = (LamResponder){
+      .ctx = s, .respond = Respond, .accept = Accept, .reject = Reject, .seal = Seal, .destroy = Destroy};
   PetscFunctionReturn(0);
 }

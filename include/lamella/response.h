@@ -132,6 +132,12 @@ typedef struct LamResponder_s {
                             LamResponse responses[]);
   PetscErrorCode (*accept)(void *ctx); /* the load step has converged: its states become the starting points */
   PetscErrorCode (*reject)(void *ctx); /* the load step is given up: go back to the last accepted one */
+  /* Once, after accept: the cells of each point keep the water that they have in its accepted state, of bulk modulus
+     K_w (C1 + C2, positive and finite); from here on the turgor of a load is the pressure of that water, and
+     turgor_mean of the response that reached (rve.h, LamRVESeal). A question without a point is then
+     PETSC_ERR_ARG_OUTOFRANGE, as is sealing before each point has an answer PETSC_ERR_ORDER. NULL: turgor is prescribed
+     for good. */
+  PetscErrorCode (*seal)(void *ctx, PetscReal bulk_modulus);
   PetscErrorCode (*destroy)(void **ctx);
   /*
     Counted on this rank since creation. A question is a hit (the database as it was answers it), or a failure (no

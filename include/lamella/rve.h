@@ -130,16 +130,9 @@ PetscErrorCode LamRVEGetInterface(LamRVE rve, LamRVEState state, PetscReal from[
 
 /*
   A responder that solves one RVE per question, warm-started per material point. Borrows `rve`, which must outlive it.
-  `points`: number of material points on this rank.
+  `points`: number of material points on this rank. It can be sealed where `rve` can.
 */
 PetscErrorCode LamRVEResponderCreate(LamRVE rve, PetscInt points, LamResponder *responder);
-/*
-  Once, after accept: each point keeps the water of its accepted state; from here on the turgor of a load is the
-  pressure p0 of that water, as in LamRVESeal, for which `rve` must have been made sealable. Questions without a point
-  are then PETSC_ERR_ARG_OUTOFRANGE.
-*/
-PetscErrorCode LamRVEResponderSeal(LamResponder *responder, PetscReal bulk_modulus);
-
 /* Time of one assembly of residual and tangent on this machine, s; needs no MPI (used to predict cost). */
 PetscErrorCode LamRVETimeAssembly(const LamMicrostructure *micro, PetscInt *unknowns, PetscReal *seconds);
 

@@ -84,8 +84,8 @@ static void BothWaysAgree(void **state)
     assert_int_equal(LamSealedResponderCreate(PETSC_COMM_SELF, &open, POINTS, &outside), 0);
     Inflate(&inside, turgor, cohesion);
     Inflate(&outside, turgor, cohesion);
-    assert_int_equal(LamRVEResponderSeal(&inside, SEALED_WATER), 0);
-    assert_int_equal(LamSealedResponderSeal(&outside, SEALED_WATER), 0);
+    assert_int_equal(inside.seal(inside.ctx, SEALED_WATER), 0);
+    assert_int_equal(outside.seal(outside.ctx, SEALED_WATER), 0);
     Ask(&inside, loads, in);
     Ask(&outside, loads, out);
     for (int i = 0; i < POINTS; i++) AssertSameAnswer(&out[i], &in[i], 1e-8);
@@ -119,7 +119,7 @@ static void PressureAndDerivativesAreExact(void **state)
   assert_int_equal(SyntheticCreate(POINTS, &open, &material), 0);
   assert_int_equal(LamSealedResponderCreate(PETSC_COMM_SELF, &open, POINTS, &sealed), 0);
   Inflate(&sealed, 0.3, 0);
-  assert_int_equal(LamSealedResponderSeal(&sealed, water_modulus), 0);
+  assert_int_equal(sealed.seal(sealed.ctx, water_modulus), 0);
   r = AskOne(&sealed, &load);
   J = (1.05 * 0.98 + 0.1 * 0.02) * 1.01;
   assert_near(r.turgor_mean, 0.3 + water_modulus * (1 - J), 1e-9);
@@ -149,7 +149,7 @@ static void RejectedStepIsForgotten(void **state)
   assert_int_equal(SyntheticCreate(POINTS, &open, &material), 0);
   assert_int_equal(LamSealedResponderCreate(PETSC_COMM_SELF, &open, POINTS, &sealed), 0);
   Inflate(&sealed, 0.3, 0);
-  assert_int_equal(LamSealedResponderSeal(&sealed, 50), 0);
+  assert_int_equal(sealed.seal(sealed.ctx, 50), 0);
   before = AskOne(&sealed, &load);
   assert_int_equal(sealed.reject(sealed.ctx), 0);
   (void)AskOne(&sealed, &far);
@@ -172,7 +172,7 @@ static void WhatHasNoAnswerIsTold(void **state)
   assert_int_equal(SyntheticCreate(POINTS, &open, &material), 0);
   assert_int_equal(LamSealedResponderCreate(PETSC_COMM_SELF, &open, POINTS, &sealed), 0);
   Inflate(&sealed, 0.3, 0);
-  assert_int_equal(LamSealedResponderSeal(&sealed, 50), 0);
+  assert_int_equal(sealed.seal(sealed.ctx, 50), 0);
   material->largest_strain = 0.1;
   r = AskOne(&sealed, &load);
   assert_int_equal(r.status, LAM_NOT_CONVERGED);
@@ -234,8 +234,8 @@ static void TableOfBondedCellsGivesThePressure(void **state)
   OpenTable("law: bonded", &t);
   Inflate(&t.direct, t.scene->turgor, 0);
   Inflate(&t.sealed, t.scene->turgor, 0);
-  assert_int_equal(LamRVEResponderSeal(&t.direct, SEALED_WATER), 0);
-  assert_int_equal(LamSealedResponderSeal(&t.sealed, SEALED_WATER), 0);
+  assert_int_equal(t.direct.seal(t.direct.ctx, SEALED_WATER), 0);
+  assert_int_equal(t.sealed.seal(t.sealed.ctx, SEALED_WATER), 0);
   for (int i = 0; i < POINTS; i++)
     loads[i] = PlaneLoad(1.05, 0.1 - 0.05 * i, 0, (1 + 0.02 * i) / 1.05, t.scene->turgor);
   Ask(&t.direct, loads, solved);
@@ -259,7 +259,7 @@ static void TableOfCellsThatPartIsRefused(void **state)
   OpenTable("law: contact, cohesion: 0.02 MPa", &t);
   load.cohesion = t.scene->cohesion;
   Inflate(&t.sealed, t.scene->turgor, t.scene->cohesion);
-  assert_int_equal(LamSealedResponderSeal(&t.sealed, SEALED_WATER), 0);
+  assert_int_equal(t.sealed.seal(t.sealed.ctx, SEALED_WATER), 0);
   r = AskOne(&t.sealed, &load);
   assert_int_equal(r.source, LAM_SOURCE_DATABASE);
   assert_int_equal(r.status, LAM_OUT_OF_REACH);
