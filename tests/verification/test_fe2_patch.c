@@ -1,0 +1,52 @@
+/* FE2 against a direct patch of n x n cells: the difference falls with n. Larger blocks: test_fe2_patch_sizes. */
+#include "rve_fixture.h"
+#include "figures_fe2_patch.h"
+
+/* From 2 x 2 to 4 x 4 cells, in one step; FE2 on a coarse mesh. */
+static void CheckFalls(int which, int elements)
+{
+  const ScalesCase *c = &scales_cases[which];
+  ScalesCurve two, four, limit;
+
+  assert_int_equal(ScalesSolveLimit(c, elements, 1, &limit), 0);
+  assert_int_equal(ScalesSolveCells(c, 2, PETSC_TRUE, 1, &two), 0);
+  assert_int_equal(ScalesSolveCells(c, 4, PETSC_TRUE, 1, &four), 0);
+  assert_int_equal(limit.steps, 1);
+  assert_int_equal(two.steps, 1);
+  assert_int_equal(four.steps, 1);
+  assert_true(ScalesDifference(1, four.stress, limit.stress) < 0.75 * ScalesDifference(1, two.stress, limit.stress));
+  if (c->interface == LAM_INTERFACE_CONTACT)
+    assert_true(ScalesDifference(1, four.opening, limit.opening) <
+                0.8 * ScalesDifference(1, two.opening, limit.opening));
+}
+
+static void BondedFreeSidesSheared(void **state)
+{
+  CheckFalls(0, 3);
+}
+
+static void ContactFreeSidesPulled(void **state)
+{
+  CheckFalls(4, 2);
+}
+
+static void ContactAffineSidesSheared(void **state)
+{
+  CheckFalls(6, 0);
+}
+
+static int Run(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(BondedFreeSidesSheared),
+      cmocka_unit_test(ContactFreeSidesPulled),
+      cmocka_unit_test(ContactAffineSidesSheared),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
+
+int main(int argc, char **argv)
+{
+  return RunWithPetsc(argc, argv, Run);
+}
