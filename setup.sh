@@ -12,6 +12,7 @@ packages=(
   libpetsc-real-dev libsundials-dev libhdf5-openmpi-dev libopenmpi-dev openmpi-bin
   libopenblas0-serial # MUMPS is 1.4 to 2.4 times faster with it than with the reference BLAS
   libfyaml-dev libudunits2-dev libjansson-dev zlib1g-dev libcairo2-dev fonts-dejavu-core
+  libmuparser-dev # expressions of the position
 )
 test_packages=(libcmocka-dev python3-numpy python3-h5py python3-meshio)
 

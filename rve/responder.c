@@ -3,15 +3,16 @@
 
   Each point keeps two states: the accepted one of the last load step, and the latest solution, which is nearer to the
   next question. A question starts from the latest one, unless that has left the accepted branch (buckled on the way):
-  an iterate of the macroscale Newton must not decide which branch the tissue is on. A question without a point starts
-  from the reference. Once sealed, each point keeps the water that it had in its accepted state.
+  an iterate of the macroscale Newton must not decide which branch the tissue is on. A question without a point, or of
+  one whose states are not kept, starts from the reference. Once sealed, each point keeps the water that it had in its
+  accepted state.
 */
 #include "rve_impl.h"
 
 typedef struct {
-  LamRVE rve;              /* borrowed */
-  LamResponder *responder; /* borrowed: its counters */
-  PetscInt points;
+  LamRVE rve;                     /* borrowed */
+  LamResponder *responder;        /* borrowed: its counters */
+  PetscInt points;                /* whose states are kept */
   LamRVEState *accepted, *latest; /* [points] */
   PetscReal *water;               /* [points][cell]; NULL: turgor is prescribed */
   PetscReal bulk_modulus;         /* of the water */
@@ -26,7 +27,8 @@ static PetscErrorCode SolvePoint(DirectResponder *direct, PetscInt point, const 
 
   PetscFunctionBeginUser;
   if (direct->water) {
-    PetscCheck(point >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "a sealed answer needs a material point");
+    PetscCheck(point >= 0 && point < direct->points, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "a sealed answer needs a material point whose states are kept");
     PetscCall(LamRVESeal(direct->rve, direct->bulk_modulus, &direct->water[point * cells]));
   }
   PetscCall(LamRVESolve(direct->rve, load, state, response));
@@ -44,9 +46,7 @@ static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], cons
     const PetscInt point = points ? points[i] : -1;
     LamRVEState state = direct->scratch;
 
-    PetscCheck(point < direct->points, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "material point %d of %d", (int)point,
-               (int)direct->points);
-    if (point >= 0) {
+    if (point >= 0 && point < direct->points) {
       state = direct->latest[point];
       if (state->branch != direct->accepted[point]->branch) PetscCall(LamRVEStateCopy(direct->accepted[point], state));
     } else {

@@ -10,7 +10,7 @@
   2. The keys of the nodes that the newest table lacks for what is left, from all ranks, sorted, are dealt out in turn,
      solved, gathered, and added on all ranks in that order. From 1 with what is left, MAX_ROUNDS times at most.
   3. Where no node helps any more, what is left, from all ranks and sorted, is dealt out, solved and added as states of
-     no grid.
+     no grid; or it stays without answer (LAM_OUTSIDE_STOP).
   In 2 and 3 questions are rounded, so that what is solved does not depend on the ranks' order of summation; the answer
   to a rounded question is led back to the one asked by its tangent.
 
@@ -31,7 +31,8 @@ typedef struct {
   LamDatabase database;       /* borrowed */
   LamResponder *solver;       /* borrowed; NULL: database only */
   const LamNodeSolver *nodes; /* borrowed; NULL: by the solver */
-  LamResponder *self;         /* the responder's counters; borrowed */
+  LamOutside outside;
+  LamResponder *self; /* the responder's counters; borrowed */
   PetscReal accuracy;
   PetscInt points;
   LamTable newest;       /* owned within a `respond`; NULL: the database has no grid */
@@ -116,6 +117,7 @@ static PetscErrorCode Ask(Cache *cache, const LamLoad *load, PetscInt point, Lam
 /* Asks for all that is missing; leaves what still is. */
 static PetscErrorCode AskAll(Cache *cache, Missing *missing)
 {
+  const PetscReal start = LamClock();
   PetscInt left = 0;
 
   PetscFunctionBeginUser;
@@ -125,6 +127,7 @@ static PetscErrorCode AskAll(Cache *cache, Missing *missing)
     if (missing->responses[i].status == LAM_OUT_OF_REACH) missing->at[left++] = i;
   }
   missing->n = left;
+  cache->self->query_seconds += LamClock() - start;
   PetscFunctionReturn(0);
 }
 
@@ -333,7 +336,7 @@ static PetscErrorCode SolveMissing(Cache *cache, Missing *missing)
     PetscCallMPI(MPI_Allreduce(&missing->n, &anywhere, 1, MPIU_INT, MPI_SUM, cache->comm));
     if (!anywhere) break;
     if (ends || round == MAX_ROUNDS) {
-      PetscCall(SolveThemselves(cache, missing));
+      if (cache->outside == LAM_OUTSIDE_SOLVE) PetscCall(SolveThemselves(cache, missing));
       break;
     }
     PetscCall(Refine(cache, missing, &ends, &stopped));
@@ -361,7 +364,12 @@ static PetscErrorCode CacheRespond(void *ctx, PetscInt n, const LamLoad loads[],
   for (PetscInt i = 0; i < n; i++) cache->self->hits += LamResponseHasFields(&responses[i]);
   cache->self->queries += n;
   if (cache->solver) PetscCall(SolveMissing(cache, &missing));
-  for (PetscInt i = 0; i < n; i++) cache->self->failures += !LamResponseHasFields(&responses[i]);
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscBool answered = LamResponseHasFields(&responses[i]);
+
+    cache->self->failures += !answered;
+    cache->self->interpolated += answered && responses[i].source == LAM_SOURCE_DATABASE;
+  }
   PetscCall(PetscFree(missing.at));
   PetscCall(LamTableDestroy(&cache->newest));
   PetscFunctionReturn(0);
@@ -413,8 +421,8 @@ static PetscErrorCode CacheDestroy(void **ctx)
 }
 
 PetscErrorCode LamCacheResponderCreate(MPI_Comm comm, LamDatabase database, LamResponder *solver,
-                                       const LamNodeSolver *nodes, PetscReal accuracy, PetscInt points,
-                                       LamResponder *responder)
+                                       const LamNodeSolver *nodes, LamOutside outside, PetscReal accuracy,
+                                       PetscInt points, LamResponder *responder)
 {
   Cache *cache;
 
@@ -426,6 +434,7 @@ PetscErrorCode LamCacheResponderCreate(MPI_Comm comm, LamDatabase database, LamR
   cache->solver = solver;
   cache->nodes = nodes;
   cache->self = responder;
+  cache->outside = outside;
   cache->accuracy = accuracy;
   cache->points = points;
   PetscCall(PetscCalloc1(points, &cache->table));

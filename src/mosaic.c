@@ -159,15 +159,17 @@ static void SumCounters(Mosaic *mosaic)
 {
   LamResponder *sum = mosaic->self;
 
-  sum->queries = sum->hits = sum->solves = sum->failures = 0;
-  sum->solve_seconds = 0;
+  sum->queries = sum->hits = sum->interpolated = sum->solves = sum->failures = 0;
+  sum->query_seconds = sum->solve_seconds = 0;
   for (PetscInt t = 0; t < mosaic->tissue_count; t++) {
     const LamResponder *responder = mosaic->tissues[t].responder;
 
     sum->queries += responder->queries;
     sum->hits += responder->hits;
+    sum->interpolated += responder->interpolated;
     sum->solves += responder->solves;
     sum->failures += responder->failures;
+    sum->query_seconds += responder->query_seconds;
     sum->solve_seconds += responder->solve_seconds;
   }
 }
@@ -241,6 +243,19 @@ static PetscErrorCode MosaicReject(void *ctx)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode MosaicSeal(void *ctx, PetscReal bulk_modulus)
+{
+  Mosaic *mosaic = (Mosaic *)ctx;
+
+  PetscFunctionBeginUser;
+  for (PetscInt t = 0; t < mosaic->tissue_count; t++) {
+    const LamMosaicTissue *tissue = &mosaic->tissues[t];
+
+    PetscCall(tissue->responder->seal(tissue->responder->ctx, bulk_modulus / tissue->stress));
+  }
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode MosaicDestroy(void **ctx)
 {
   Mosaic *mosaic = (Mosaic *)*ctx;
@@ -278,6 +293,7 @@ static PetscErrorCode NumberPoints(Mosaic *mosaic)
 PetscErrorCode LamMosaicCreate(PetscInt tissue_count, const LamMosaicTissue tissues[], PetscInt n,
                                const LamMosaicPoint points[], LamResponder *responder)
 {
+  PetscBool sealable = PETSC_TRUE;
   Mosaic *mosaic;
 
   PetscFunctionBeginUser;
@@ -289,10 +305,12 @@ PetscErrorCode LamMosaicCreate(PetscInt tissue_count, const LamMosaicTissue tiss
   PetscCall(PetscArraycpy(mosaic->tissues, tissues, tissue_count));
   PetscCall(PetscArraycpy(mosaic->points, points, n));
   PetscCall(NumberPoints(mosaic));
+  for (PetscInt t = 0; t < tissue_count; t++) sealable = (PetscBool)(sealable && tissues[t].responder->seal);
   *responder = (LamResponder){.ctx = mosaic,
                               .respond = MosaicRespond,
                               .accept = MosaicAccept,
                               .reject = MosaicReject,
+                              .seal = sealable ? MosaicSeal : NULL,
                               .destroy = MosaicDestroy};
   PetscFunctionReturn(0);
 }

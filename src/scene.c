@@ -17,6 +17,7 @@ PetscErrorCode LamSceneDestroy(LamScene **scene)
   PetscCall(PetscFree((*scene)->loads));
   PetscCall(PetscFree((*scene)->controls));
   PetscCall(LamMicrostructureDestroy(&(*scene)->micro));
+  PetscCall(LamSceneDestroyRegions(*scene));
   PetscCall(PetscFree(*scene));
   PetscFunctionReturn(0);
 }
@@ -45,6 +46,8 @@ static PetscErrorCode SceneBuild(LamDocument *document, LamScene *scene)
   PetscCall(LamSceneBuildLoad(document, scene));
   PetscCall(LamSceneBuildSample(document, scene));
   PetscCall(LamSceneBuildMacro(document, scene));
+  PetscCall(LamSceneBuildRegions(document, scene));
+  PetscCall(LamSceneBuildResponse(document, scene));
   PetscCall(LamSceneCheckPatch(document, scene));
   PetscCall(LamSceneBuildMap(document, scene));
   PetscFunctionReturn(0);

@@ -93,7 +93,10 @@ PetscErrorCode LamSceneBuildStrength(const LamDocument *document, LamScene *scen
 PetscErrorCode LamSceneBuildLoad(const LamDocument *document, LamScene *scene);
 PetscErrorCode LamSceneBuildSample(const LamDocument *document, LamScene *scene);
 PetscErrorCode LamSceneBuildMacro(const LamDocument *document, LamScene *scene);
+PetscErrorCode LamSceneBuildResponse(const LamDocument *document, LamScene *scene);
+PetscErrorCode LamSceneBuildRegions(const LamDocument *document, LamScene *scene);
 PetscErrorCode LamSceneBuildMap(const LamDocument *document, LamScene *scene);
+PetscErrorCode LamSceneDestroyRegions(LamScene *scene);
 
 /* scene_cells.c, part of the RVE: how many cells, and what differs from cell to cell. */
 PetscErrorCode LamSceneBuildCells(const LamDocument *document, LamScene *scene);

@@ -21,11 +21,12 @@ typedef struct {
   depends on the questions alone, neither on the number of ranks nor on their order.
   Within a load step a material point is answered from one table as long as that reaches: an answer does not change
   because other points ask.
+  outside: LAM_OUTSIDE_STOP: no state is solved for itself; where no node helps the answer is LAM_OUT_OF_REACH.
   nodes: NULL: `solver` solves them, each from the reference state. accuracy: wanted relative error of the stress
   (LamStressError). Borrows database, solver and nodes.
 */
 PetscErrorCode LamCacheResponderCreate(MPI_Comm comm, LamDatabase database, LamResponder *solver,
-                                       const LamNodeSolver *nodes, PetscReal accuracy, PetscInt points,
-                                       LamResponder *responder);
+                                       const LamNodeSolver *nodes, LamOutside outside, PetscReal accuracy,
+                                       PetscInt points, LamResponder *responder);
 
 #endif

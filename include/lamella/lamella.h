@@ -3,6 +3,7 @@
 
   Everything a program needs; each part has its own header, to be read in this order:
     scene.h      what the user describes, converted to nondimensional numbers
+    place_field.h  numbers that vary with the position
     response.h   what a material point is asked and what it answers; the responder table
     rve.h        solves the representative volume element
     database.h   stores responses, answers from them
@@ -27,6 +28,7 @@
 #define LAMELLA_LAMELLA_H
 
 #include <lamella/scene.h>
+#include <lamella/place_field.h>
 #include <lamella/lattice.h>
 #include <lamella/response.h>
 #include <lamella/rve.h>

@@ -143,9 +143,10 @@ typedef struct LamResponder_s {
     Counted on this rank since creation. A question is a hit (the database as it was answers it), or a failure (no
     fields in the answer), or else something had to be solved for it: queries - hits - failures. `solves` are the solves
     made: with a cache those of the nodes, which many questions share, and of states where no node helps, failed or not.
+    `interpolated` are the answers from a database, as it was or with the nodes that were solved for them.
   */
-  PetscInt64 queries, hits, solves, failures;
-  PetscReal solve_seconds;
+  PetscInt64 queries, hits, interpolated, solves, failures;
+  PetscReal query_seconds, solve_seconds; /* in questions to a database, and in solves */
 } LamResponder;
 
 #endif

@@ -129,8 +129,9 @@ PetscErrorCode LamRVEGetInterface(LamRVE rve, LamRVEState state, PetscReal from[
                                   PetscReal pressure[]);
 
 /*
-  A responder that solves one RVE per question, warm-started per material point. Borrows `rve`, which must outlive it.
-  `points`: number of material points on this rank. It can be sealed where `rve` can.
+  A responder that solves one RVE per question. Borrows `rve`, which must outlive it. Of material points 0..points-1 it
+  keeps two states each (LamRVEStateSize), from which their next solves start; those of others start from the
+  reference. It can be sealed where `rve` can, and then answers for the points that it keeps alone.
 */
 PetscErrorCode LamRVEResponderCreate(LamRVE rve, PetscInt points, LamResponder *responder);
 /* Time of one assembly of residual and tangent on this machine, s; needs no MPI (used to predict cost). */

@@ -8,6 +8,7 @@
 
 #include <petscsys.h>
 #include <stdio.h>
+#include <lamella/place_field.h>
 
 /* Enumerations and their names in scene files come from one list each. */
 #define LAM_ENUM_ENTRY(symbol, name) symbol,
@@ -184,6 +185,46 @@ typedef struct {
   PetscInt steps;    /* load steps after inflation */
 } LamMacroSpec;
 
+#define LAM_MAX_REGIONS 16
+
+/* A part of the body with tissue of its own. Where several cover a point the last one holds. */
+typedef struct {
+  char name[LAM_NAME_LENGTH]; /* letters, digits, - and _ */
+  LamPlaceField where; /* covers the points where it is not 0; NULL: the mesh's physical group of this name; owned */
+  LamMicrostructure micro; /* its orientation is that of the region; owns its cells */
+  LamScales scales;        /* its own apothem and C1 + C2, in which micro, turgor and cohesion are */
+  PetscReal turgor, cohesion;
+} LamRegion;
+
+#define LAM_TISSUE_FIELDS(X)                                                                                           \
+  X(LAM_TISSUE_ORIENTATION, "orientation")                                                                             \
+  X(LAM_TISSUE_TURGOR, "turgor")                                                                                       \
+  X(LAM_TISSUE_COHESION, "cohesion")                                                                                   \
+  X(LAM_TISSUE_WALL_THICKNESS, "wall_thickness")
+typedef enum { LAM_TISSUE_FIELDS(LAM_ENUM_ENTRY) LAM_TISSUE_FIELD_COUNT } LamTissueField;
+extern const char *const LamTissueFieldNames[]; /* "orientation", ... */
+
+/* What varies from point to point: replaces what the tissue and the regions say. */
+typedef struct {
+  LamPlaceField value[LAM_TISSUE_FIELD_COUNT]; /* NULL: does not vary; owned */
+  PetscReal unit[LAM_TISSUE_FIELD_COUNT];      /* SI (rad, Pa, Pa, m) of 1 */
+  PetscInt levels;                             /* wall thicknesses that are solved; 0: not chosen */
+} LamTissueFields;
+
+/* What a cache does with a question that its table cannot be refined to answer. */
+#define LAM_OUTSIDES(X)                                                                                                \
+  X(LAM_OUTSIDE_SOLVE, "solve")                                                                                        \
+  X(LAM_OUTSIDE_STOP, "stop")
+typedef enum { LAM_OUTSIDES(LAM_ENUM_ENTRY) LAM_OUTSIDE_COUNT } LamOutside;
+extern const char *const LamOutsideNames[]; /* "solve", "stop" */
+
+/* How the material points of the body are answered. */
+typedef struct {
+  LamOutside outside;
+  PetscReal warm_start_memory; /* bytes on a rank, of states that direct solves start from */
+} LamResponsePolicy;
+#define LAM_WARM_START_MEMORY 2e9 /* of scenes that do not say it */
+
 /* A scene: plain data, read-only after LamSceneRead. Blocks that the file does not hold have count 0 or PETSC_FALSE. */
 typedef struct {
   char path[PETSC_MAX_PATH_LEN];
@@ -204,6 +245,10 @@ typedef struct {
   LamSample sample;
   PetscBool has_macro;
   LamMacroSpec macro;
+  PetscInt region_count;
+  LamRegion *regions;     /* of the body; owned */
+  LamTissueFields fields; /* likewise */
+  LamResponsePolicy response;
   PetscBool has_map;
   LamMapAxis map[LAM_MAP_AXIS_COUNT]; /* at most one of them is of the load */
 } LamScene;

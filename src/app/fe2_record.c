@@ -3,19 +3,26 @@
 */
 #include "fe2_run.h"
 
-static PetscErrorCode OpenFiles(LamFE2Run *run)
+static PetscErrorCode OpenDatabaseFile(LamFE2Tissue *tissue)
 {
   const PetscInt64 *keys;
   PetscInt n;
 
   PetscFunctionBeginUser;
+  PetscCall(LamRecordWriterOpen(tissue->database_path, "database", LAM_WRITE_APPEND, &tissue->scene, &tissue->records));
+  if (tissue->grid_text) PetscCall(LamRecordWriterText(tissue->records, LAM_GRID_NAME, tissue->grid_text));
+  PetscCall(LamRecordWriterGetKeys(tissue->records, &n, &keys));
+  tissue->next_key = LAM_CACHE_KEY;
+  for (PetscInt k = 0; k < n; k++) tissue->next_key = PetscMax(tissue->next_key, keys[k] + 1);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode OpenFiles(LamFE2Run *run)
+{
+  PetscFunctionBeginUser;
   if (run->out_path) PetscCall(LamFE2FileOpen(run->out_path, run->scene, &run->out));
   if (run->response != LAM_FE2_CACHE || !run->database_path) PetscFunctionReturn(0);
-  PetscCall(LamRecordWriterOpen(run->database_path, "database", LAM_WRITE_APPEND, run->scene, &run->records));
-  if (run->grid_text) PetscCall(LamRecordWriterText(run->records, LAM_GRID_NAME, run->grid_text));
-  PetscCall(LamRecordWriterGetKeys(run->records, &n, &keys));
-  run->next_key = LAM_CACHE_KEY;
-  for (PetscInt k = 0; k < n; k++) run->next_key = PetscMax(run->next_key, keys[k] + 1);
+  for (PetscInt t = 0; t < run->tissues.count; t++) PetscCall(OpenDatabaseFile(&run->tissues.tissues[t]));
   PetscFunctionReturn(0);
 }
 
@@ -31,7 +38,7 @@ PetscErrorCode LamFE2OpenFiles(LamFE2Run *run)
 }
 
 /* Appends what the cache has solved since the last step, so that a later run finds it. */
-static PetscErrorCode RecordSolved(LamFE2Run *run)
+static PetscErrorCode RecordTissue(LamFE2Tissue *tissue)
 {
   const LamResponse *records;
   const PetscInt64 *in_memory;
@@ -40,25 +47,26 @@ static PetscErrorCode RecordSolved(LamFE2Run *run)
   PetscInt n;
 
   PetscFunctionBeginUser;
-  PetscCall(LamDatabaseGetAdded(run->database, run->recorded, &n, &records));
+  if (!tissue->records) PetscFunctionReturn(0);
+  PetscCall(LamDatabaseGetAdded(tissue->database, tissue->recorded, &n, &records));
   if (!n) PetscFunctionReturn(0);
-  PetscCall(LamDatabaseGetRecords(run->database, NULL, NULL, &in_memory));
+  PetscCall(LamDatabaseGetRecords(tissue->database, NULL, NULL, &in_memory));
   PetscCall(PetscMalloc1(n, &keys));
   for (PetscInt k = 0; k < n; k++) {
-    keys[k] = in_memory[run->recorded + k];
-    if (!LamKeyIsNode(keys[k])) keys[k] = run->next_key++;
+    keys[k] = in_memory[tissue->recorded + k];
+    if (!LamKeyIsNode(keys[k])) keys[k] = tissue->next_key++;
   }
-  ierr = LamRecordWriterCommit(run->records, n, keys, records);
+  ierr = LamRecordWriterCommit(tissue->records, n, keys, records);
   PetscCall(PetscFree(keys));
   PetscCall(ierr);
-  run->recorded += n;
+  tissue->recorded += n;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamFE2RecordStep(LamFE2Run *run, const LamMacroStep *step, const LamMacroFields *fields)
 {
   PetscFunctionBeginUser;
-  if (run->records) PetscCall(RecordSolved(run));
+  for (PetscInt t = 0; t < run->tissues.count; t++) PetscCall(RecordTissue(&run->tissues.tissues[t]));
   if (run->out) PetscCall(LamFE2FileAddStep(run->out, step, fields));
   PetscFunctionReturn(0);
 }
@@ -68,9 +76,12 @@ PetscErrorCode LamFE2CloseFiles(LamFE2Run *run, const char status[])
   PetscErrorCode ierr = 0, closed;
 
   PetscFunctionBeginUser;
-  if (run->records) {
-    ierr = RecordSolved(run); /* of a step that did not converge */
-    closed = LamRecordWriterClose(&run->records);
+  for (PetscInt t = 0; t < run->tissues.count; t++) {
+    LamFE2Tissue *tissue = &run->tissues.tissues[t];
+
+    closed = RecordTissue(tissue); /* of a step that did not converge */
+    if (!ierr) ierr = closed;
+    if (tissue->records) closed = LamRecordWriterClose(&tissue->records);
     if (!ierr) ierr = closed;
   }
   closed = LamFE2FileClose(&run->out, status);

@@ -29,126 +29,202 @@ PetscBool LamFE2ChooseResponse(LamFE2Run *run)
   return PETSC_FALSE;
 }
 
+/* ---- databases ---- */
+
 /* Loads the database, on all ranks; the mesh of the RVE, where the scene leaves it open, is the database's. */
-static PetscErrorCode OpenDatabase(LamFE2Run *run)
+static PetscErrorCode OpenDatabase(LamFE2Run *run, LamFE2Tissue *tissue)
 {
-  LamMicrostructure *micro = &run->scene->micro, stored;
-  int exists = run->database_path && !access(run->database_path, F_OK);
+  LamMicrostructure *micro = &tissue->scene.micro, stored;
+  int exists = tissue->database_path[0] && !access(tissue->database_path, F_OK);
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Bcast(&exists, 1, MPI_INT, 0, run->comm));
   if (!exists && run->response != LAM_FE2_DATABASE) PetscFunctionReturn(0);
-  PetscCall(LamDatabaseOpen(run->database_path, &run->database));
-  PetscCall(LamDatabaseGetMicrostructure(run->database, &stored, NULL, NULL));
+  PetscCall(LamDatabaseOpen(tissue->database_path, &tissue->database));
+  PetscCall(LamDatabaseGetMicrostructure(tissue->database, &stored, NULL, NULL));
   if (!micro->along) micro->along = stored.along;
   if (!micro->through) micro->through = stored.through;
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CheckDatabase(LamFE2Run *run)
+static PetscErrorCode CheckDatabase(LamFE2Run *run, LamFE2Tissue *tissue)
 {
   char *json, wanted[LAM_HASH_LENGTH];
   const char *hash;
 
   PetscFunctionBeginUser;
-  PetscCall(LamDatabaseGetMicrostructure(run->database, NULL, NULL, &hash));
-  PetscCall(LamMicrostructureDescribe(&run->scene->micro, &json, wanted));
+  PetscCall(LamDatabaseGetMicrostructure(tissue->database, NULL, NULL, &hash));
+  PetscCall(LamMicrostructureDescribe(&tissue->scene.micro, &json, wanted));
   PetscCall(PetscFree(json));
   PetscCheck(!strcmp(hash, wanted), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: holds microstructure %s, the scene %s describes %s; give a database built from this scene",
-             run->database_path, hash, run->scene_path, wanted);
-  PetscCall(LamDatabaseGetRecords(run->database, &run->recorded, NULL, NULL));
+             "%s: holds microstructure %s, the scene %s describes %s%s%s; give a database built from this scene",
+             tissue->database_path, hash, run->scene_path, wanted, tissue->name[0] ? " for " : "", tissue->name);
+  PetscCall(LamDatabaseGetRecords(tissue->database, &tissue->recorded, NULL, NULL));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue)
+{
+  LamPlan plan;
+
+  PetscFunctionBeginUser;
+  if (run->response != LAM_FE2_DIRECT) PetscCall(OpenDatabase(run, tissue));
+  PetscCall(LamPlanMake(&tissue->scene, &plan));
+  tissue->scene.micro = plan.micro;
+  if (tissue->database)
+    PetscCall(CheckDatabase(run, tissue));
+  else if (run->response == LAM_FE2_CACHE)
+    PetscCall(LamDatabaseCreateEmpty(&tissue->scene, &tissue->database));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamFE2PrepareResponse(LamFE2Run *run)
 {
+  LamFE2Tissues *tissues = &run->tissues;
   LamPlan plan;
 
   PetscFunctionBeginUser;
-  if (run->response != LAM_FE2_DIRECT) PetscCall(OpenDatabase(run));
+  PetscCall(LamFE2TissuesCreate(run->comm, run->macro, run->scene, run->database_path, tissues));
+  for (PetscInt t = 0; t < tissues->count; t++) PetscCall(PrepareTissue(run, &tissues->tissues[t]));
+  /* what files say of the scene's own tissue */
   PetscCall(LamPlanMake(run->scene, &plan));
-  run->scene->micro = plan.micro;
-  if (run->database)
-    PetscCall(CheckDatabase(run));
-  else if (run->response == LAM_FE2_CACHE)
-    PetscCall(LamDatabaseCreateEmpty(run->scene, &run->database));
+  run->scene->micro = tissues->tissues[0].name[0] ? plan.micro : tissues->tissues[0].scene.micro;
+  if (tissues->turgor) PetscCall(LamMacroSetPointTissue(run->macro, tissues->turgor, tissues->cohesion));
   PetscFunctionReturn(0);
 }
 
+/* ---- responders ---- */
+
 /* A new database has no grid yet, nor has one that is older than the grid. */
-static PetscErrorCode GiveGrid(LamFE2Run *run)
+static PetscErrorCode GiveGrid(LamFE2Run *run, LamFE2Tissue *tissue)
 {
   PetscBool complete;
   LamGrid grid;
 
   PetscFunctionBeginUser;
-  PetscCall(LamDatabaseGetGrid(run->database, &grid));
+  PetscCall(LamDatabaseGetGrid(tissue->database, &grid));
   if (grid) PetscFunctionReturn(0);
-  if (LamAppIsRoot() && run->recorded && !run->quiet)
+  if (LamAppIsRoot() && tissue->recorded && !run->quiet)
     fprintf(stderr,
             "lamella fe2: %s: its %" PetscInt_FMT
             " records belong to no grid; a grid is added, on which new ones lie\n",
-            run->database_path, run->recorded);
-  PetscCall(LamSharedGridMake(run->comm, run->scene, &run->solver, run->database, &run->grid_text, &complete));
+            tissue->database_path, tissue->recorded);
+  PetscCall(
+      LamSharedGridMake(run->comm, &tissue->scene, &tissue->solver, tissue->database, &tissue->grid_text, &complete));
   run->stopped = (PetscBool)!complete;
   PetscFunctionReturn(0);
 }
 
 /* Nodes in the file are equal to those of `build`. */
-static PetscErrorCode CreateNodeSolver(LamFE2Run *run)
+static PetscErrorCode CreateNodeSolver(LamFE2Tissue *tissue)
 {
   LamGrid grid;
 
   PetscFunctionBeginUser;
-  PetscCall(LamDatabaseGetGrid(run->database, &grid));
-  PetscCall(
-      LamNodeChainCreate(run->rve, run->scene->micro.interface, grid, LAM_NODE_MEMORY, LamStopRequested, &run->chain));
-  run->nodes = (LamNodeSolver){run->chain, LamNodeChainSolve};
+  PetscCall(LamDatabaseGetGrid(tissue->database, &grid));
+  PetscCall(LamNodeChainCreate(tissue->rve, tissue->scene.micro.interface, grid, LAM_NODE_MEMORY, LamStopRequested,
+                               &tissue->chain));
+  tissue->nodes = (LamNodeSolver){tissue->chain, LamNodeChainSolve};
+  PetscFunctionReturn(0);
+}
+
+/* How many points of the tissue find room for two states each in its share of the memory; sealed ones all keep theirs.
+   Behind a cache none keeps a state: all its solves start from the reference. */
+static PetscErrorCode CountKept(const LamFE2Run *run, const LamFE2Tissue *tissue, PetscInt *kept)
+{
+  const PetscReal memory = run->scene->response.warm_start_memory;
+  LamRVEState state;
+  PetscReal share = 0;
+  size_t bytes;
+
+  PetscFunctionBeginUser;
+  *kept = run->response == LAM_FE2_DIRECT ? tissue->points : 0;
+  if (!*kept || run->scene->sealed) PetscFunctionReturn(0);
+  for (PetscInt t = 0; t < run->tissues.count; t++) share += (PetscReal)run->tissues.tissues[t].points;
+  PetscCall(LamRVEStateCreate(tissue->rve, &state));
+  PetscCall(LamRVEStateSize(state, &bytes));
+  PetscCall(LamRVEStateDestroy(&state));
+  if (share > 0) share = (PetscReal)tissue->points / share;
+  *kept = (PetscInt)PetscMin((PetscReal)tissue->points, share * memory / (2 * (PetscReal)bytes));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CreateSolver(LamFE2Run *run, LamFE2Tissue *tissue)
+{
+  PetscInt kept;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVECreate(PETSC_COMM_SELF, &tissue->rve));
+  PetscCall(LamRVESetMicrostructure(tissue->rve, &tissue->scene.micro));
+  PetscCall(LamRVESetStrategy(tissue->rve, tissue->scene.strategy));
+  PetscCall(LamRVESetUp(tissue->rve));
+  PetscCall(LamRVESetInterrupt(tissue->rve, LamStopInterrupt, NULL));
+  PetscCall(CountKept(run, tissue, &kept));
+  PetscCall(LamRVEResponderCreate(tissue->rve, kept, &tissue->direct));
+  PetscCall(LamInterruptibleResponderCreate(&tissue->direct, LamStopRequested, &tissue->solver));
+  PetscFunctionReturn(0);
+}
+
+/* run->stopped: a signal came before it was ready. */
+static PetscErrorCode CreateResponder(LamFE2Run *run, LamFE2Tissue *tissue, LamResponder **responder)
+{
+  PetscFunctionBeginUser;
+  *responder = run->response == LAM_FE2_DIRECT ? &tissue->solver : &tissue->cache;
+  if (run->response != LAM_FE2_DATABASE) PetscCall(CreateSolver(run, tissue));
+  if (run->response == LAM_FE2_DIRECT) PetscFunctionReturn(0);
+  if (run->response == LAM_FE2_CACHE) {
+    PetscCall(GiveGrid(run, tissue));
+    if (run->stopped) PetscFunctionReturn(0);
+    PetscCall(CreateNodeSolver(tissue));
+  }
+  PetscCall(LamCacheResponderCreate(run->comm, tissue->database, tissue->rve ? &tissue->solver : NULL, &tissue->nodes,
+                                    tissue->scene.response.outside, tissue->scene.accuracy, tissue->points,
+                                    &tissue->cache));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamFE2Connect(LamFE2Run *run)
 {
-  PetscInt points;
+  LamFE2Tissues *tissues = &run->tissues;
+  LamMosaicTissue *parts;
+  LamResponder *responder = NULL;
 
   PetscFunctionBeginUser;
-  PetscCall(LamMacroGetPointCount(run->macro, &points));
-  if (run->response != LAM_FE2_DATABASE) {
-    PetscCall(LamRVECreate(PETSC_COMM_SELF, &run->rve));
-    PetscCall(LamRVESetMicrostructure(run->rve, &run->scene->micro));
-    PetscCall(LamRVESetStrategy(run->rve, run->scene->strategy));
-    PetscCall(LamRVESetUp(run->rve));
-    PetscCall(LamRVESetInterrupt(run->rve, LamStopInterrupt, NULL));
-    /* behind a cache no point keeps a state: all its solves start from the reference */
-    PetscCall(LamRVEResponderCreate(run->rve, run->response == LAM_FE2_DIRECT ? points : 0, &run->direct));
-    PetscCall(LamInterruptibleResponderCreate(&run->direct, LamStopRequested, &run->solver));
-  }
   PetscCall(LamMacroSetStop(run->macro, LamStopRequested));
-  if (run->response == LAM_FE2_DIRECT) {
-    PetscCall(LamMacroSetResponder(run->macro, &run->solver));
-    PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(tissues->count, &parts));
+  for (PetscInt t = 0; t < tissues->count && !run->stopped; t++) {
+    LamFE2Tissue *tissue = &tissues->tissues[t];
+
+    PetscCall(CreateResponder(run, tissue, &responder));
+    parts[t] = (LamMosaicTissue){tissue->name, tissue->stress, responder};
   }
-  if (run->response == LAM_FE2_CACHE) {
-    PetscCall(GiveGrid(run));
-    if (run->stopped) PetscFunctionReturn(0);
-    PetscCall(CreateNodeSolver(run));
+  if (!run->stopped && !tissues->plain) {
+    PetscCall(LamMosaicCreate(tissues->count, parts, tissues->points, tissues->point, &run->mosaic));
+    responder = &run->mosaic;
   }
-  PetscCall(LamCacheResponderCreate(run->comm, run->database, run->rve ? &run->solver : NULL, &run->nodes,
-                                    run->scene->accuracy, points, &run->cache));
-  PetscCall(LamMacroSetResponder(run->macro, &run->cache));
+  PetscCall(PetscFree(parts));
+  if (!run->stopped) PetscCall(LamMacroSetResponder(run->macro, responder));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode DestroyTissue(LamFE2Tissue *tissue)
+{
+  PetscFunctionBeginUser;
+  if (tissue->cache.destroy) PetscCall(tissue->cache.destroy(&tissue->cache.ctx));
+  if (tissue->solver.destroy) PetscCall(tissue->solver.destroy(&tissue->solver.ctx));
+  PetscCall(LamNodeChainDestroy(&tissue->chain));
+  if (tissue->direct.destroy) PetscCall(tissue->direct.destroy(&tissue->direct.ctx));
+  PetscCall(LamRVEDestroy(&tissue->rve));
+  PetscCall(LamDatabaseClose(&tissue->database));
+  PetscCall(PetscFree(tissue->grid_text));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamFE2Disconnect(LamFE2Run *run)
 {
   PetscFunctionBeginUser;
-  if (run->cache.destroy) PetscCall(run->cache.destroy(&run->cache.ctx));
-  if (run->solver.destroy) PetscCall(run->solver.destroy(&run->solver.ctx));
-  PetscCall(LamNodeChainDestroy(&run->chain));
-  if (run->direct.destroy) PetscCall(run->direct.destroy(&run->direct.ctx));
-  PetscCall(LamRVEDestroy(&run->rve));
-  PetscCall(LamDatabaseClose(&run->database));
-  PetscCall(PetscFree(run->grid_text));
+  if (run->mosaic.destroy) PetscCall(run->mosaic.destroy(&run->mosaic.ctx));
+  for (PetscInt t = 0; t < run->tissues.count; t++) PetscCall(DestroyTissue(&run->tissues.tissues[t]));
+  PetscCall(LamFE2TissuesDestroy(&run->tissues));
   PetscFunctionReturn(0);
 }

@@ -1,6 +1,7 @@
 /*
   One run of `lamella fe2`: what its parts share. cmd_fe2.c holds its life, fe2_response.c what answers its material
-  points, fe2_report.c what is told of each step, fe2_record.c the files of rank 0.
+  points, fe2_tissue.c of which tissue these are, fe2_report.c what is told of each step, fe2_record.c the files of rank
+  0.
 
   Rank 0 writes the files. Where it cannot, it says so and the other ranks return the same error in silence.
 */
@@ -9,7 +10,7 @@
 
 #include "app.h"
 #include "fe2_file.h"
-#include "node_solver.h"
+#include "fe2_tissue.h"
 
 typedef enum { LAM_FE2_DIRECT, LAM_FE2_CACHE, LAM_FE2_DATABASE } LamFE2Response;
 extern const char *const LamFE2ResponseNames[];
@@ -24,17 +25,10 @@ typedef struct {
   LamScene *scene;
   LamMacro macro;
   PetscBool stopped; /* before it began: nothing is written */
-  LamRVE rve;
-  LamDatabase database;
-  LamNodeChain chain; /* of the cache's nodes */
-  LamNodeSolver nodes;
-  LamResponder direct, solver, cache; /* direct behind the signals' `solver`; destroy NULL: not in use */
+  LamFE2Tissues tissues;
+  LamResponder mosaic; /* of several tissues; destroy NULL: not in use */
 
   /* rank 0 only */
-  LamRecordWriter records; /* appends what the cache solves to the database's file */
-  PetscInt recorded;       /* records of the database that are in its file */
-  PetscInt64 next_key;     /* of a state that belongs to no grid */
-  char *grid_text;         /* to be written; NULL: the file has it */
   LamFE2File out;
   LamProgress progress;
 
@@ -47,7 +41,7 @@ typedef struct {
 /* ---- fe2_response.c ---- */
 /* Reads --response; PETSC_FALSE, with a message, where the options contradict each other. */
 PetscBool LamFE2ChooseResponse(LamFE2Run *run);
-/* Loads the database, makes the plan of the scene, chooses the mesh of its RVE; collective. */
+/* Finds the tissues, loads their databases, chooses the meshes of their RVEs; collective. */
 PetscErrorCode LamFE2PrepareResponse(LamFE2Run *run);
 /* Wires the responder that the options ask for to the macroscale solver; run->stopped: a signal came before. */
 PetscErrorCode LamFE2Connect(LamFE2Run *run);

@@ -67,7 +67,15 @@ static PetscErrorCode RespondStopped(void *ctx, PetscInt n, const LamLoad loads[
 
 /* ---- fixture ---- */
 
-typedef enum { NO_SOLVER, NO_GRID, CACHE, CACHE_WITH_NODES, CACHE_WITH_BAD_NODES } Kind;
+typedef enum {
+  NO_SOLVER,
+  NO_GRID,
+  CACHE,
+  CACHE_WITH_NODES,
+  CACHE_WITH_BAD_NODES,
+  STOPPING_CACHE,
+  STOPPING_WITH_BAD_NODES
+} Kind;
 
 static void SetUp(Fixture *fixture, MPI_Comm comm, Kind kind)
 {
@@ -89,9 +97,10 @@ static void SetUp(Fixture *fixture, MPI_Comm comm, Kind kind)
     assert_ok(LamDatabaseSetGrid(fixture->database, &grid));
   }
   assert_ok(SyntheticCreate(POINTS, &fixture->solver, &fixture->material));
-  fixture->nodes = (LamNodeSolver){fixture, kind == CACHE_WITH_NODES ? SolveNode : FailNode};
+  fixture->nodes = (LamNodeSolver){fixture, kind == CACHE_WITH_NODES || kind == STOPPING_CACHE ? SolveNode : FailNode};
   assert_ok(LamCacheResponderCreate(comm, fixture->database, kind == NO_SOLVER ? NULL : &fixture->solver,
-                                    kind >= CACHE_WITH_NODES ? &fixture->nodes : NULL, ACCURACY, POINTS,
+                                    kind >= CACHE_WITH_NODES ? &fixture->nodes : NULL,
+                                    kind >= STOPPING_CACHE ? LAM_OUTSIDE_STOP : LAM_OUTSIDE_SOLVE, ACCURACY, POINTS,
                                     &fixture->cache));
 }
 
@@ -328,6 +337,29 @@ static void StoppedBatchKeepsWhatIsSolved(void **state)
   TearDown(&fixture);
 }
 
+/* It refines its table, but solves no state for itself. */
+static void StoppingCacheSolvesNodesAlone(void **state)
+{
+  Fixture fixture;
+
+  SetUp(&fixture, PETSC_COMM_SELF, STOPPING_CACHE);
+  SetLoad(&fixture, 0, 0.1);
+  Respond(&fixture, 1);
+  assert_int_equal(fixture.responses[0].status, LAM_CONVERGED);
+  assert_int_equal(fixture.cache.interpolated, 1);
+  TearDown(&fixture);
+
+  SetUp(&fixture, PETSC_COMM_SELF, STOPPING_WITH_BAD_NODES);
+  SetLoad(&fixture, 0, 0.1);
+  Respond(&fixture, 1);
+  assert_int_equal(fixture.responses[0].status, LAM_OUT_OF_REACH);
+  assert_true(fixture.responses[0].reason[0] != 0);
+  assert_int_equal(fixture.material->calls, 0);
+  assert_int_equal(fixture.cache.interpolated, 0);
+  assert_int_equal(fixture.cache.failures, 1);
+  TearDown(&fixture);
+}
+
 /* ---- within a load step ---- */
 
 /* How the answer to the first question changes when the table is refined, and then `end` is called. */
@@ -440,6 +472,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(FailedSolveIsTheAnswer),
       cmocka_unit_test(CountsAddUp),
       cmocka_unit_test(StoppedBatchKeepsWhatIsSolved),
+      cmocka_unit_test(StoppingCacheSolvesNodesAlone),
       cmocka_unit_test(AnswerStaysUntilTheStepIsAccepted),
       cmocka_unit_test(AnswerStaysUntilTheStepIsRejected),
       cmocka_unit_test(SolvedPointStaysSolved),

@@ -207,9 +207,9 @@ static void OpenTable(const char interface[], Tabulated *t)
   assert_int_equal(LamDatabaseCreateEmpty(t->scene, &t->database), 0);
   assert_int_equal(LamGridCreate(t->scene, &t->solver, &grid), 0);
   assert_int_equal(LamDatabaseSetGrid(t->database, &grid), 0);
-  assert_int_equal(
-      LamCacheResponderCreate(PETSC_COMM_SELF, t->database, &t->solver, NULL, t->scene->accuracy, POINTS, &t->cache),
-      0);
+  assert_int_equal(LamCacheResponderCreate(PETSC_COMM_SELF, t->database, &t->solver, NULL, LAM_OUTSIDE_SOLVE,
+                                           t->scene->accuracy, POINTS, &t->cache),
+                   0);
   assert_int_equal(LamSealedResponderCreate(PETSC_COMM_SELF, &t->cache, POINTS, &t->sealed), 0);
 }
 

@@ -1,0 +1,430 @@
+/*
+  The tissues of a macroscale run.
+
+  Algorithm. Each material point gets the region that covers it, and what the fields say there. A wall thickness that
+  varies gives its region levels: thicknesses at equal ratios from the least to the largest one of its points, rounded
+  outwards, whose answers are blended (blend.h). Then tissues that are alike become one.
+*/
+#include "fe2_tissue.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/*
+  Largest error of a blend of 2, 3, 4 and more levels whose logarithms are h apart, factor h^power;
+  docs/verification.md. Contact switches at thicknesses of its own, so that smooth weights help less.
+*/
+typedef struct {
+  PetscReal factor, power;
+} BlendError;
+static const BlendError BondedErrors[] = {{0.5, 2}, {0.8, 3}, {1.2, 4}};
+static const BlendError ContactErrors[] = {{0.3, 2}, {0.1, 1}, {0.1, 1}};
+enum { MOST_LEVELS = 8 };
+
+/* What a point is, before tissues are told apart. */
+typedef struct {
+  PetscInt region;                         /* -1: none */
+  PetscReal value[LAM_TISSUE_FIELD_COUNT]; /* SI; of the region or the field */
+} Place;
+
+/* The tissues of one region. */
+typedef struct {
+  PetscInt count;
+  PetscReal thickness[MOST_LEVELS]; /* apothems */
+  PetscInt tissue[MOST_LEVELS];
+} Levels;
+
+/* ---- regions ---- */
+
+/* The mesh's group of the region's name. */
+static PetscErrorCode FindGroup(LamMacro macro, const LamScene *scene, const LamRegion *region, PetscInt *group)
+{
+  const char(*names)[LAM_NAME_LENGTH];
+  PetscInt count;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamMacroGetGroups(macro, &count, &names));
+  for (*group = 0; *group < count; ++*group)
+    if (!strcmp(names[*group], region->name)) PetscFunctionReturn(0);
+  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+          "%s: macro.regions: %s: the mesh has no group of elements of this name%s%s; write where: with an expression "
+          "of x and y in mm",
+          scene->path, region->name, count ? ", but " : "", count ? names[0] : "");
+}
+
+/* The last region that covers each point. */
+static PetscErrorCode FindRegions(LamMacro macro, const LamScene *scene, PetscInt n, const PetscReal X[],
+                                  const PetscInt groups[], Place places[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < n; p++) places[p].region = -1;
+  for (PetscInt r = 0; r < scene->region_count; r++) {
+    const LamRegion *region = &scene->regions[r];
+    PetscInt group = -1;
+
+    if (!region->where) PetscCall(FindGroup(macro, scene, region, &group));
+    for (PetscInt p = 0; p < n; p++) {
+      PetscReal inside = groups[p] == group;
+
+      if (region->where) PetscCall(LamPlaceFieldEvaluate(region->where, &X[2 * p], &inside));
+      if (inside != 0) places[p].region = r;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* What the region, or the scene's own tissue, says of a point; SI. */
+static void SetDefaults(const LamScene *scene, Place *place)
+{
+  const LamRegion *region = place->region < 0 ? NULL : &scene->regions[place->region];
+  const LamMicrostructure *micro = region ? &region->micro : &scene->micro;
+  const LamScales *scales = region ? &region->scales : &scene->scales;
+
+  place->value[LAM_TISSUE_ORIENTATION] = micro->orientation;
+  place->value[LAM_TISSUE_TURGOR] = (region ? region->turgor : scene->turgor) * scales->stress;
+  place->value[LAM_TISSUE_COHESION] = (region ? region->cohesion : scene->cohesion) * scales->stress;
+  place->value[LAM_TISSUE_WALL_THICKNESS] = micro->wall_thickness * scales->length;
+}
+
+/* ---- fields ---- */
+
+/* What a field says must be possible there. X in mm. */
+static PetscErrorCode CheckValue(const LamScene *scene, LamTissueField field, const Place *place, const PetscReal X[2])
+{
+  const LamScales *scales = place->region < 0 ? &scene->scales : &scene->regions[place->region].scales;
+  const PetscReal value = place->value[field];
+  char text[120];
+
+  PetscFunctionBeginUser;
+  if (field == LAM_TISSUE_COHESION && value < 0) {
+    snprintf(text, sizeof(text), "is %g MPa at x = %g mm, y = %g mm", value * 1e-6, X[0], X[1]);
+    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: macro.fields.cohesion: %s; it must not be negative",
+            scene->path, text);
+  }
+  if (field == LAM_TISSUE_WALL_THICKNESS && !(value > 0 && value < scales->length)) {
+    snprintf(text, sizeof(text), "is %g um at x = %g mm, y = %g mm; it must lie between 0 and the apothem, %g um",
+             value * 1e6, X[0], X[1], scales->length * 1e6);
+    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: macro.fields.wall_thickness: %s", scene->path, text);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* X: [n][2] in mm. */
+static PetscErrorCode EvaluateFields(const LamScene *scene, PetscInt n, const PetscReal X[], Place places[])
+{
+  const LamTissueFields *fields = &scene->fields;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < n; p++) {
+    Place *place = &places[p];
+    const LamMicrostructure *micro = place->region < 0 ? &scene->micro : &scene->regions[place->region].micro;
+
+    SetDefaults(scene, place);
+    for (LamTissueField k = 0; k < LAM_TISSUE_FIELD_COUNT; k++) {
+      PetscReal value;
+
+      if (!fields->value[k]) continue;
+      if (k == LAM_TISSUE_COHESION && micro->interface == LAM_INTERFACE_BONDED) continue;
+      PetscCall(LamPlaceFieldEvaluate(fields->value[k], &X[2 * p], &value));
+      place->value[k] = value * fields->unit[k];
+      PetscCall(CheckValue(scene, k, place, &X[2 * p]));
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Regions and fields at the points of this rank. The caller frees *places. */
+static PetscErrorCode FindPlaces(LamMacro macro, const LamScene *scene, PetscInt n, Place **places)
+{
+  PetscReal *X;
+  PetscInt *groups;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, places));
+  PetscCall(PetscMalloc2(2 * n, &X, n, &groups));
+  PetscCall(LamMacroGetPlaces(macro, X, groups));
+  for (PetscInt i = 0; i < 2 * n; i++) X[i] *= scene->scales.macro_length * 1e3;
+  PetscCall(FindRegions(macro, scene, n, X, groups, *places));
+  PetscCall(EvaluateFields(scene, n, X, *places));
+  PetscCall(PetscFree2(X, groups));
+  PetscFunctionReturn(0);
+}
+
+/* ---- levels of wall thickness ---- */
+
+/* To two digits, so that another mesh of the body has the same levels. */
+static PetscReal RoundOutwards(PetscReal value, PetscBool up)
+{
+  const PetscReal digit = pow(10, floor(log10(value)) - 1);
+  const PetscReal count = value / digit, nearest = rint(count);
+
+  if (fabs(count - nearest) < 1e-6) return nearest * digit;
+  return (up ? ceil(count) : floor(count)) * digit;
+}
+
+/* As few as keep the error of the blend below a quarter of the wanted one. */
+static PetscInt LevelCount(PetscReal least, PetscReal most, LamInterfaceLawType interface, PetscReal accuracy)
+{
+  const BlendError *errors = interface == LAM_INTERFACE_CONTACT ? ContactErrors : BondedErrors;
+  PetscInt count = 2;
+
+  for (; count < MOST_LEVELS; count++) {
+    const PetscReal h = log(most / least) / (PetscReal)(count - 1);
+    const BlendError *error = &errors[PetscMin(count, (PetscInt)LAM_BLEND_TERMS) - 2];
+
+    if (error->factor * pow(h, error->power) <= 0.25 * accuracy) break;
+  }
+  return count;
+}
+
+/* range: thickness in m of the region's points on all ranks; the second less than the first: it has none. */
+static void ChooseLevels(const LamScene *scene, PetscInt region, const PetscReal range[2], Levels *levels)
+{
+  const LamMicrostructure *micro = region < 0 ? &scene->micro : &scene->regions[region].micro;
+  const PetscReal apothem = region < 0 ? scene->scales.length : scene->regions[region].scales.length;
+  PetscReal least = range[0], most = range[1];
+
+  *levels = (Levels){0};
+  if (most < least) return;
+  levels->count = 1;
+  if (scene->fields.value[LAM_TISSUE_WALL_THICKNESS] && most > least * (1 + 1e-9)) {
+    least = RoundOutwards(least, PETSC_FALSE);
+    most = PetscMin(RoundOutwards(most, PETSC_TRUE), 0.5 * (most + apothem));
+    levels->count =
+        scene->fields.levels ? scene->fields.levels : LevelCount(least, most, micro->interface, scene->accuracy);
+  }
+  for (PetscInt k = 0; k < levels->count; k++)
+    levels->thickness[k] =
+        least / apothem * (levels->count > 1 ? pow(most / least, (PetscReal)k / (PetscReal)(levels->count - 1)) : 1);
+}
+
+/* The range of wall thicknesses of each region on all ranks; ranges[0] is of the scene's own tissue. */
+static PetscErrorCode FindRanges(MPI_Comm comm, PetscInt regions, PetscInt n, const Place places[],
+                                 PetscReal ranges[][2])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt r = 0; r <= regions; r++) ranges[r][0] = ranges[r][1] = -PETSC_INFINITY; /* [0] is the negative */
+  for (PetscInt p = 0; p < n; p++) {
+    const PetscReal thickness = places[p].value[LAM_TISSUE_WALL_THICKNESS];
+    PetscReal *range = ranges[places[p].region + 1];
+
+    range[0] = PetscMax(range[0], -thickness);
+    range[1] = PetscMax(range[1], thickness);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, ranges, 2 * (PetscMPIInt)(regions + 1), MPIU_REAL, MPIU_MAX, comm));
+  for (PetscInt r = 0; r <= regions; r++) ranges[r][0] = -ranges[r][0];
+  PetscFunctionReturn(0);
+}
+
+/* ---- tissues ---- */
+
+/* The scene of one tissue alone. Orientations are angles of the points against the scene's own. */
+static LamScene SceneOf(const LamScene *scene, PetscInt region, PetscReal thickness)
+{
+  LamScene own = *scene;
+  PetscReal stress;
+
+  if (region >= 0) {
+    own.micro = scene->regions[region].micro;
+    own.scales = scene->regions[region].scales;
+  }
+  own.micro.orientation = scene->micro.orientation;
+  own.micro.wall_thickness = thickness;
+  stress = own.scales.stress / scene->scales.stress;
+  own.water_bulk_modulus /= stress;
+  own.sample.turgor_min /= stress;
+  own.sample.turgor_max /= stress;
+  return own;
+}
+
+static PetscErrorCode SameTissue(const LamScene *a, const LamScene *b, PetscBool *same)
+{
+  char hash[2][LAM_HASH_LENGTH], *json;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamMicrostructureDescribe(&a->micro, &json, hash[0]));
+  PetscCall(PetscFree(json));
+  PetscCall(LamMicrostructureDescribe(&b->micro, &json, hash[1]));
+  PetscCall(PetscFree(json));
+  *same = (PetscBool)(!strcmp(hash[0], hash[1]) && a->scales.stress == b->scales.stress &&
+                      a->scales.length == b->scales.length);
+  PetscFunctionReturn(0);
+}
+
+/* DB.h5, DB.NAME.h5; empty without a database. */
+static void NameDatabase(const char database_path[], LamFE2Tissue *tissue)
+{
+  const size_t length = database_path ? strlen(database_path) : 0;
+  const int stem = (int)(length > 3 && !strcmp(database_path + length - 3, ".h5") ? length - 3 : length);
+
+  tissue->database_path[0] = '\0';
+  if (!database_path) return;
+  snprintf(tissue->database_path, sizeof(tissue->database_path), "%.*s%s%s%s", stem, database_path,
+           tissue->name[0] ? "." : "", tissue->name, database_path + stem);
+}
+
+/* The number of the tissue of a region at one of its levels, which is added where it is new. */
+static PetscErrorCode AddTissue(const LamScene *scene, PetscInt region, const Levels *levels, PetscInt level,
+                                const char database_path[], LamFE2Tissues *tissues, PetscInt *number)
+{
+  const LamScene own = SceneOf(scene, region, levels->thickness[level]);
+  LamFE2Tissue *tissue = &tissues->tissues[tissues->count];
+  const char *name = region < 0 ? "" : scene->regions[region].name;
+  PetscBool same;
+
+  PetscFunctionBeginUser;
+  for (*number = 0; *number < tissues->count; ++*number) {
+    PetscCall(SameTissue(&own, &tissues->tissues[*number].scene, &same));
+    if (same) PetscFunctionReturn(0);
+  }
+  tissue->scene = own;
+  tissue->stress = own.scales.stress / scene->scales.stress;
+  if (levels->count > 1)
+    snprintf(tissue->name, sizeof(tissue->name), "%s%st%d", name, name[0] ? "." : "", (int)level + 1);
+  else
+    snprintf(tissue->name, sizeof(tissue->name), "%s", name);
+  NameDatabase(database_path, tissue);
+  tissues->count++;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode AddTissues(MPI_Comm comm, const LamScene *scene, const Place places[], const char database_path[],
+                                 LamFE2Tissues *tissues, Levels levels[])
+{
+  PetscReal ranges[LAM_MAX_REGIONS + 1][2];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1((scene->region_count + 1) * MOST_LEVELS, &tissues->tissues));
+  PetscCall(FindRanges(comm, scene->region_count, tissues->points, places, ranges));
+  for (PetscInt r = -1; r < scene->region_count; r++) {
+    Levels *own = &levels[r + 1];
+
+    ChooseLevels(scene, r, ranges[r + 1], own);
+    if (!scene->fields.value[LAM_TISSUE_WALL_THICKNESS]) /* as it stands in the scene, to the last digit */
+      own->thickness[0] = r < 0 ? scene->micro.wall_thickness : scene->regions[r].micro.wall_thickness;
+    for (PetscInt k = 0; k < own->count; k++)
+      PetscCall(AddTissue(scene, r, own, k, database_path, tissues, &own->tissue[k]));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* ---- points ---- */
+
+static void PlacePoint(const LamScene *scene, const Place *place, const Levels *levels, LamMosaicPoint *point)
+{
+  const LamScales *scales = place->region < 0 ? &scene->scales : &scene->regions[place->region].scales;
+
+  point->count = LamBlendAt(levels->count, levels->thickness, place->value[LAM_TISSUE_WALL_THICKNESS] / scales->length,
+                            point->term);
+  for (PetscInt k = 0; k < point->count; k++) point->term[k].knot = levels->tissue[point->term[k].knot];
+  point->angle = place->value[LAM_TISSUE_ORIENTATION] - scene->micro.orientation;
+}
+
+/* Turgor and cohesion of the points that have a tissue are those that its table is for. */
+static PetscErrorCode SetLoads(MPI_Comm comm, LamFE2Tissues *tissues)
+{
+  PetscReal(*most)[3]; /* turgor, cohesion, and turgor with the other sign */
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(tissues->count, &most));
+  for (PetscInt t = 0; t < tissues->count; t++) most[t][0] = most[t][1] = most[t][2] = -PETSC_INFINITY;
+  for (PetscInt p = 0; p < tissues->points; p++)
+    for (PetscInt k = 0; k < tissues->point[p].count; k++) {
+      PetscReal *of = most[tissues->point[p].term[k].knot];
+
+      of[0] = PetscMax(of[0], tissues->turgor[p]);
+      of[1] = PetscMax(of[1], tissues->cohesion[p]);
+      of[2] = PetscMax(of[2], -tissues->turgor[p]);
+    }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 3 * (PetscMPIInt)tissues->count, MPIU_REAL, MPIU_MAX, comm));
+  for (PetscInt t = 0; t < tissues->count; t++) {
+    LamFE2Tissue *tissue = &tissues->tissues[t];
+    const PetscBool contact = (PetscBool)(tissue->scene.micro.interface == LAM_INTERFACE_CONTACT);
+
+    /* tables of contact tissue reach from the largest suction downwards; those of bonded tissue hold turgor by a slope
+     */
+    tissue->scene.turgor = (contact ? most[t][0] : 0.5 * (most[t][0] - most[t][2])) / tissue->stress;
+    tissue->scene.cohesion = most[t][1] / tissue->stress;
+    tissue->body_points = tissue->points = LamMosaicPointCount(tissues->points, tissues->point, t);
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &tissue->body_points, 1, MPIU_INT64, MPI_SUM, comm));
+  }
+  PetscCall(PetscFree(most));
+  PetscFunctionReturn(0);
+}
+
+/* Whether questions may go to the one tissue as they are, on all ranks. */
+static PetscErrorCode FindPlain(MPI_Comm comm, LamFE2Tissues *tissues)
+{
+  PetscBool plain = (PetscBool)(tissues->count == 1 && tissues->tissues[0].stress == 1);
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < tissues->points && plain; p++) plain = (PetscBool)(tissues->point[p].angle == 0);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &plain, 1, MPIU_BOOL, MPI_LAND, comm));
+  tissues->plain = plain;
+  PetscFunctionReturn(0);
+}
+
+/* Whether a point can be another than the scene's own tissue under its own turgor. */
+static PetscBool Varies(const LamScene *scene)
+{
+  PetscBool varies = (PetscBool)(scene->region_count > 0);
+
+  for (int k = 0; k < LAM_TISSUE_FIELD_COUNT; k++) varies = (PetscBool)(varies || scene->fields.value[k]);
+  return varies;
+}
+
+/* The scene's own tissue everywhere. */
+static PetscErrorCode CreateOne(MPI_Comm comm, const LamScene *scene, const char database_path[],
+                                LamFE2Tissues *tissues)
+{
+  LamFE2Tissue *tissue;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(1, &tissues->tissues));
+  tissues->count = 1;
+  tissues->plain = PETSC_TRUE;
+  tissue = tissues->tissues;
+  tissue->scene = *scene;
+  tissue->stress = 1;
+  NameDatabase(database_path, tissue);
+  tissue->body_points = tissue->points = tissues->points;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &tissue->body_points, 1, MPIU_INT64, MPI_SUM, comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFE2TissuesCreate(MPI_Comm comm, LamMacro macro, const LamScene *scene, const char database_path[],
+                                   LamFE2Tissues *tissues)
+{
+  Levels levels[LAM_MAX_REGIONS + 1];
+  Place *places;
+
+  PetscFunctionBeginUser;
+  *tissues = (LamFE2Tissues){0};
+  PetscCall(LamMacroGetPointCount(macro, &tissues->points));
+  if (!Varies(scene)) {
+    PetscCall(CreateOne(comm, scene, database_path, tissues));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(FindPlaces(macro, scene, tissues->points, &places));
+  PetscCall(AddTissues(comm, scene, places, database_path, tissues, levels));
+  PetscCall(PetscMalloc3(tissues->points, &tissues->point, tissues->points, &tissues->turgor, tissues->points,
+                         &tissues->cohesion));
+  for (PetscInt p = 0; p < tissues->points; p++) {
+    PlacePoint(scene, &places[p], &levels[places[p].region + 1], &tissues->point[p]);
+    tissues->turgor[p] = places[p].value[LAM_TISSUE_TURGOR] / scene->scales.stress;
+    tissues->cohesion[p] = places[p].value[LAM_TISSUE_COHESION] / scene->scales.stress;
+  }
+  PetscCall(PetscFree(places));
+  PetscCall(SetLoads(comm, tissues));
+  PetscCall(FindPlain(comm, tissues));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFE2TissuesDestroy(LamFE2Tissues *tissues)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree3(tissues->point, tissues->turgor, tissues->cohesion));
+  PetscCall(PetscFree(tissues->tissues));
+  tissues->count = 0;
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,145 @@
+/*
+  What the regions and fields of a scene become.
+*/
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <lamella/scene.h>
+#include "assert_near.h"
+#include "unit/test_scene_message.h"
+
+#define SCENE                                                                                                          \
+  "version: 1\n"                                                                                                       \
+  "rve:\n"                                                                                                             \
+  "  cell: {apothem: 75 um, wall_thickness: 11.25 um, orientation: 10 deg}\n"                                          \
+  "  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}\n"                                         \
+  "  interface: {law: contact, cohesion: 0.011 MPa, clearance: 0.75 um}\n"                                             \
+  "  turgor: {pressure: 0.022 MPa}\n"                                                                                  \
+  "  mesh: {along: 6, through: 2}\n"                                                                                   \
+  "macro:\n"                                                                                                           \
+  "  mesh: {box: [10 mm, 10 mm], elements: [2, 2]}\n"                                                                  \
+  "  boundary: [{on: bottom, displacement: [0 mm, 0 mm]}, {on: top, displacement: [1 mm, 0 mm]}]\n"
+
+static LamScene *Read(const char text[])
+{
+  LamScene *scene;
+
+  assert_int_equal(LamSceneReadText("scene.yaml", text, &scene), 0);
+  return scene;
+}
+
+static void what_a_region_leaves_out_is_the_scene_s(void **state)
+{
+  LamScene *scene = Read(SCENE "  regions: [{name: core}]\n");
+  const LamRegion *region = scene->regions;
+
+  assert_int_equal(scene->region_count, 1);
+  assert_string_equal(region->name, "core");
+  assert_null(region->where);
+  assert_memory_equal(&region->micro, &scene->micro, sizeof(region->micro));
+  assert_memory_equal(&region->scales, &scene->scales, sizeof(region->scales));
+  assert_near(region->turgor, scene->turgor, 0);
+  assert_near(region->cohesion, scene->cohesion, 0);
+  assert_int_equal(LamSceneDestroy(&scene), 0);
+}
+
+static void a_region_is_measured_in_its_own_units(void **state)
+{
+  LamScene *scene =
+      Read(SCENE "  regions: [{name: skin, where: y > 9, cell: {apothem: 30 um}, wall: {C1: 0.2 MPa, C2: 0.02 MPa}, "
+                 "turgor: {pressure: 0.044 MPa}, mesh: {along: 12}}]\n");
+  const LamRegion *region = scene->regions;
+
+  assert_non_null(region->where);
+  assert_near(region->scales.length, 30e-6, 1e-18);
+  assert_near(region->scales.stress, 0.22e6, 1e-6);
+  assert_near(region->micro.wall_thickness, 11.25 / 30, 1e-14);
+  assert_near(region->micro.clearance, 0.75 / 30, 1e-14);
+  assert_near(region->micro.wall.C1 + region->micro.wall.C2, 1, 1e-14);
+  assert_near(region->micro.wall.C4, 1 / 0.22, 1e-13);
+  assert_near(region->micro.wall.bulk_modulus, 1000, 1e-9);
+  assert_near(region->turgor, 0.2, 1e-14);
+  assert_near(region->cohesion, 0.05, 1e-14);
+  assert_int_equal(region->micro.along, 12);
+  assert_int_equal(region->micro.through, 2);
+  assert_int_equal(LamSceneDestroy(&scene), 0);
+}
+
+static void a_bonded_region_has_no_cohesion(void **state)
+{
+  LamScene *scene = Read(SCENE "  regions: [{name: skin, interface: {law: bonded}}]\n");
+
+  assert_int_equal(scene->regions[0].micro.interface, LAM_INTERFACE_BONDED);
+  assert_near(scene->regions[0].cohesion, 0, 0);
+  assert_near(scene->regions[0].micro.clearance, 0, 0);
+  assert_int_equal(LamSceneDestroy(&scene), 0);
+}
+
+static void fields_have_units(void **state)
+{
+  const PetscReal X[2] = {4, 5};
+  LamScene *scene = Read(SCENE "  fields:\n"
+                               "    orientation: {expression: 3 * x, unit: deg}\n"
+                               "    turgor: {expression: 0.01 * y, unit: MPa}\n"
+                               "    wall_thickness: {expression: 11, unit: um, levels: 5}\n");
+  const LamTissueFields *fields = &scene->fields;
+  PetscReal value;
+
+  assert_int_equal(LamPlaceFieldEvaluate(fields->value[LAM_TISSUE_ORIENTATION], X, &value), 0);
+  assert_near(value * fields->unit[LAM_TISSUE_ORIENTATION], PETSC_PI / 15, 1e-14);
+  assert_int_equal(LamPlaceFieldEvaluate(fields->value[LAM_TISSUE_TURGOR], X, &value), 0);
+  assert_near(value * fields->unit[LAM_TISSUE_TURGOR], 50e3, 1e-9);
+  assert_null(fields->value[LAM_TISSUE_COHESION]);
+  assert_near(fields->unit[LAM_TISSUE_WALL_THICKNESS], 1e-6, 1e-20);
+  assert_int_equal(fields->levels, 5);
+  assert_int_equal(LamSceneDestroy(&scene), 0);
+}
+
+static void mistakes_are_named(void **state)
+{
+  static const struct {
+    const char *text, *fragment;
+  } bad[] = {
+      {"  regions: [{where: y > 9}]\n", "macro.regions[1].name: missing"},
+      {"  regions: [{name: a/b}]\n", "part of a file's name"},
+      {"  regions: [{name: a}, {name: a}]\n", "another region has this name"},
+      {"  regions: [{name: a, where: y >}]\n", "is no expression of x and y"},
+      {"  regions: [{name: a, cell: {apothem: 10 um}}]\n", "the wall, 11.25 um, fills the cell"},
+      {"  regions: [{name: a, cell: {wall_thickness: 75 um}}]\n", "the wall, 75 um, fills the cell"},
+      {"  regions: [{name: a, interface: {law: bonded, cohesion: 1 MPa}}]\n", "contradicts law: bonded"},
+      {"  regions: [{name: a, wall: {law: mooney_rivlin, C4: 1 MPa}}]\n", "macro.regions[1].wall.C4"},
+      {"  fields: {turgor: {unit: MPa}}\n", "macro.fields.turgor.expression: missing"},
+      {"  fields: {turgor: {expression: x, table: a.csv, unit: MPa}}\n", "given together with expression"},
+      {"  fields: {turgor: {expression: x, unit: mm}}\n", "write the unit of a stress alone"},
+      {"  fields: {turgor: {table: nowhere.csv, unit: MPa}}\n", "cannot be opened"},
+      {"  fields: {wall_thickness: {expression: x, unit: um, levels: 9}}\n", "out of range"},
+  };
+
+  for (size_t i = 0; i < sizeof(bad) / sizeof(*bad); i++) {
+    char text[2000];
+    LamScene *scene;
+    PetscErrorCode error;
+
+    snprintf(text, sizeof(text), SCENE "%s", bad[i].text);
+    CATCH(LamSceneReadText("scene.yaml", text, &scene), error);
+    assert_int_equal(error, PETSC_ERR_USER_INPUT);
+    assert_null(scene);
+    if (!strstr(scene_message, bad[i].fragment)) fail_msg("\"%s\" lacks \"%s\"", scene_message, bad[i].fragment);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(what_a_region_leaves_out_is_the_scene_s),
+      cmocka_unit_test(a_region_is_measured_in_its_own_units),
+      cmocka_unit_test(a_bonded_region_has_no_cohesion),
+      cmocka_unit_test(fields_have_units),
+      cmocka_unit_test(mistakes_are_named),
+  };
+
+  cmocka_set_message_output(CM_OUTPUT_STDOUT);
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
