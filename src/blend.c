@@ -100,7 +100,7 @@ static void ClearPotential(LamResponse *r)
   for (int i = 0; i < 81; i++) r->tangent[i] = 0;
 }
 
-/* Indicators of the two terms with shares; counts where both agree. */
+/* Pressures and indicators of the two terms with shares; counts where both agree. */
 static void MixIndicators(const LamResponse *a, const LamResponse *b, PetscReal t, LamResponse *r)
 {
   for (const LamMember *m = LamResponseMembers; m->name; m++) {
@@ -108,7 +108,7 @@ static void MixIndicators(const LamResponse *a, const LamResponse *b, PetscReal 
     const PetscReal *to = (const PetscReal *)((const char *)b + m->offset);
     PetscReal *mixed = (PetscReal *)((char *)r + m->offset);
 
-    if (m->type != LAM_MEMBER_REAL || m->offset < offsetof(LamResponse, lumen_fraction) ||
+    if (m->type != LAM_MEMBER_REAL || m->offset < offsetof(LamResponse, turgor_mean) ||
         m->offset > offsetof(LamResponse, mean_wall_tension))
       continue;
     for (PetscInt i = 0; i < m->count; i++) mixed[i] = (1 - t) * from[i] + t * to[i];

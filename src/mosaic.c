@@ -243,6 +243,7 @@ static PetscErrorCode MosaicReject(void *ctx)
   PetscFunctionReturn(0);
 }
 
+/* Water is as stiff in all tissues; each term of a blend keeps its own. */
 static PetscErrorCode MosaicSeal(void *ctx, PetscReal bulk_modulus)
 {
   Mosaic *mosaic = (Mosaic *)ctx;
@@ -293,10 +294,11 @@ static PetscErrorCode NumberPoints(Mosaic *mosaic)
 PetscErrorCode LamMosaicCreate(PetscInt tissue_count, const LamMosaicTissue tissues[], PetscInt n,
                                const LamMosaicPoint points[], LamResponder *responder)
 {
-  PetscBool sealable = PETSC_TRUE;
+  PetscBool can_seal = PETSC_TRUE;
   Mosaic *mosaic;
 
   PetscFunctionBeginUser;
+  for (PetscInt t = 0; t < tissue_count; t++) can_seal = (PetscBool)(can_seal && tissues[t].responder->seal);
   PetscCall(PetscNew(&mosaic));
   mosaic->tissue_count = tissue_count;
   mosaic->n = n;
@@ -305,12 +307,11 @@ PetscErrorCode LamMosaicCreate(PetscInt tissue_count, const LamMosaicTissue tiss
   PetscCall(PetscArraycpy(mosaic->tissues, tissues, tissue_count));
   PetscCall(PetscArraycpy(mosaic->points, points, n));
   PetscCall(NumberPoints(mosaic));
-  for (PetscInt t = 0; t < tissue_count; t++) sealable = (PetscBool)(sealable && tissues[t].responder->seal);
   *responder = (LamResponder){.ctx = mosaic,
                               .respond = MosaicRespond,
                               .accept = MosaicAccept,
                               .reject = MosaicReject,
-                              .seal = sealable ? MosaicSeal : NULL,
+                              .seal = can_seal ? MosaicSeal : NULL,
                               .destroy = MosaicDestroy};
   PetscFunctionReturn(0);
 }

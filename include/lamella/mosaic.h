@@ -33,8 +33,7 @@ PetscInt LamMosaicPointCount(PetscInt n, const LamMosaicPoint points[], PetscInt
 /*
   Copies the points and tissues, borrows names and responders. Each `respond` asks the responder of every tissue once,
   also without questions, for it may be collective. Counters are the sums of the tissues': of a blended point every term
-  is a query. It can be sealed where all tissues
-  can. A term without answer is the answer's status and reason.
+  is a query. A term without answer is the answer's status and reason. It can be sealed where all tissues can.
 */
 PetscErrorCode LamMosaicCreate(PetscInt tissue_count, const LamMosaicTissue tissues[], PetscInt n,
                                const LamMosaicPoint points[], LamResponder *responder);

@@ -55,6 +55,15 @@ static PetscErrorCode Reject(void *ctx)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Seal(void *ctx, PetscReal bulk_modulus)
+{
+  Interruptible *i = (Interruptible *)ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(i->solver->seal(i->solver->ctx, bulk_modulus));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Destroy(void **ctx)
 {
   PetscFunctionBeginUser;
@@ -72,5 +81,6 @@ PetscErrorCode LamInterruptibleResponderCreate(LamResponder *solver, PetscBool (
   i->self = responder;
   i->stop = stop;
   *responder = (LamResponder){.ctx = i, .respond = Respond, .accept = Accept, .reject = Reject, .destroy = Destroy};
+  if (solver->seal) responder->seal = Seal;
   PetscFunctionReturn(0);
 }

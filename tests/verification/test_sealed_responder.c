@@ -4,6 +4,7 @@
 #include "assert_near.h"
 #include "figures_sealed.h"
 #include "synthetic_responder.h"
+#include <lamella/mosaic.h>
 #include <lamella/sealed.h>
 
 #define POINTS 3
@@ -136,6 +137,35 @@ static void PressureAndDerivativesAreExact(void **state)
   }
   assert_int_equal(sealed.destroy(&sealed.ctx), 0);
   assert_int_equal(open.destroy(&open.ctx), 0);
+}
+
+/* Tissues of other units have the same water: the pressure is as exact as of one. */
+static void WaterIsTheSameInAllTissues(void **state)
+{
+  static const LamMosaicPoint mosaic_points[2] = {{1, {{0, 1, 1, 1}}, 0}, {1, {{1, 1, 1, 1}}, 0.5}};
+  const LamLoad load = PlaneLoad(1.01, 0.1, 0, 1, 0.3), start = PlaneLoad(1, 0, 0, 1, 0.3);
+  const LamLoad loads[2] = {load, load}, starts[2] = {start, start};
+  LamResponder open[2], sealed[2], mosaic;
+  LamMosaicTissue tissues[2];
+  Synthetic *material;
+  LamResponse r[2];
+
+  for (int t = 0; t < 2; t++) {
+    assert_int_equal(SyntheticCreate(1, &open[t], &material), 0);
+    assert_int_equal(LamSealedResponderCreate(PETSC_COMM_SELF, &open[t], 1, &sealed[t]), 0);
+    tissues[t] = (LamMosaicTissue){"", 1 + 1.5 * t, &sealed[t]};
+  }
+  assert_int_equal(LamMosaicCreate(2, tissues, 2, mosaic_points, &mosaic), 0);
+  assert_int_equal(mosaic.respond(mosaic.ctx, 2, starts, points, r), 0);
+  assert_int_equal(mosaic.accept(mosaic.ctx), 0);
+  assert_int_equal(mosaic.seal(mosaic.ctx, 50), 0);
+  assert_int_equal(mosaic.respond(mosaic.ctx, 2, loads, points, r), 0);
+  for (int t = 0; t < 2; t++) {
+    assert_near(r[t].turgor_mean, 0.3 - 50 * 0.01, 1e-9);
+    assert_int_equal(sealed[t].destroy(&sealed[t].ctx), 0);
+    assert_int_equal(open[t].destroy(&open[t].ctx), 0);
+  }
+  assert_int_equal(mosaic.destroy(&mosaic.ctx), 0);
 }
 
 /* A rejected step leaves no trace in the pressures that questions start from. */
@@ -272,6 +302,7 @@ static int Run(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(BothWaysAgree),
       cmocka_unit_test(PressureAndDerivativesAreExact),
+      cmocka_unit_test(WaterIsTheSameInAllTissues),
       cmocka_unit_test(RejectedStepIsForgotten),
       cmocka_unit_test(WhatHasNoAnswerIsTold),
       cmocka_unit_test(TableOfBondedCellsGivesThePressure),
