@@ -90,8 +90,8 @@ static PetscErrorCode SolveAndPrint(PetscBool full, Study *study)
          c->shear != 0 ? "P12 (MPa)" : "P22 (MPa)", "opening", "debonded", "of stress", "of open.", "seconds");
   PetscCall(SolveLimit(full, study));
   PetscCall(PrintLimit(study));
-  study->block_count = full ? BLOCKS : BLOCKS - 1;
-  for (int k = 0; k < study->block_count; k++) {
+  for (int k = 0; k < (full ? BLOCKS : BLOCKS - 1) && blocks[k] <= c->largest; k++) {
+    study->block_count = k + 1;
     PetscCall(ScalesSolveCells(c, blocks[k], PETSC_TRUE, STEPS, &study->block[k]));
     snprintf(name, sizeof(name), "%d x %d cells", blocks[k], blocks[k]);
     PrintCurve(name, &study->block[k], &study->limit);
