@@ -35,7 +35,19 @@ typedef struct {
   int largest;             /* block that is solved: larger ones that buckle do not find their pattern in minutes */
 } ScalesCase;
 
-#define SCALES_CASES 9
+/* In the order of the list. */
+enum {
+  SCALES_BONDED_FREE_SHEARED,
+  SCALES_BONDED_FREE_PULLED,
+  SCALES_BONDED_FREE_PRESSED,
+  SCALES_CONTACT_FREE_SHEARED,
+  SCALES_CONTACT_FREE_PULLED,
+  SCALES_CONTACT_FREE_PRESSED,
+  SCALES_CONTACT_AFFINE_SHEARED,
+  SCALES_CONTACT_AFFINE_PULLED,
+  SCALES_CONTACT_AFFINE_PRESSED,
+  SCALES_CASES
+};
 static const ScalesCase scales_cases[SCALES_CASES] = {
     {"bonded, free, sheared", LAM_INTERFACE_BONDED, LAM_SIDES_FREE, 0.02, 0, 0.1, 0, 16},
     {"bonded, free, pulled", LAM_INTERFACE_BONDED, LAM_SIDES_FREE, 0.02, 0, 0, 0.1, 16},

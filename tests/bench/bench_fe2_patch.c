@@ -3,7 +3,7 @@
   grows, and of FE2 as its mesh gets finer; prints figures, asserts nothing.
 
     bench_fe2_patch [--full] [--plot FIGURE]
-      --full   also blocks of 16 x 16 cells, and finer meshes of FE2 (an hour); without it two minutes
+      --full   also blocks of 16 x 16 cells, and finer meshes of FE2 (twenty minutes); without it two minutes
       --plot   draws the curves: .png, .svg or .pdf
 */
 #include <getopt.h>
@@ -182,7 +182,10 @@ static PetscErrorCode Draw(const char path[], const Study studies[])
   const struct {
     int study;
     PetscBool opening;
-  } curves[4] = {{0, PETSC_FALSE}, {4, PETSC_FALSE}, {3, PETSC_TRUE}, {8, PETSC_FALSE}};
+  } curves[4] = {{SCALES_BONDED_FREE_SHEARED, PETSC_FALSE},
+                 {SCALES_CONTACT_FREE_PULLED, PETSC_FALSE},
+                 {SCALES_CONTACT_FREE_SHEARED, PETSC_TRUE},
+                 {SCALES_CONTACT_AFFINE_PRESSED, PETSC_FALSE}};
   LamCanvas canvas;
 
   PetscFunctionBeginUser;

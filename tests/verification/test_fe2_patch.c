@@ -22,17 +22,17 @@ static void CheckFalls(int which, int elements)
 
 static void BondedFreeSidesSheared(void **state)
 {
-  CheckFalls(0, 2);
+  CheckFalls(SCALES_BONDED_FREE_SHEARED, 2);
 }
 
 static void ContactFreeSidesPulled(void **state)
 {
-  CheckFalls(4, 1);
+  CheckFalls(SCALES_CONTACT_FREE_PULLED, 1);
 }
 
 static void ContactAffineSidesSheared(void **state)
 {
-  CheckFalls(6, 0);
+  CheckFalls(SCALES_CONTACT_AFFINE_SHEARED, 0);
 }
 
 static int Run(void)

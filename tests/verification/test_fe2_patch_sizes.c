@@ -28,27 +28,28 @@ static void CheckHalves(int which, int elements, double opening)
 
 static void BondedFreeSidesSheared(void **state)
 {
-  CheckHalves(0, 4, 0);
+  CheckHalves(SCALES_BONDED_FREE_SHEARED, 4, 0);
 }
 
 static void ContactFreeSidesPulled(void **state)
 {
-  CheckHalves(4, 2, 0.12);
+  CheckHalves(SCALES_CONTACT_FREE_PULLED, 2, 0.12);
 }
 
 static void ContactAffineSidesSheared(void **state)
 {
-  CheckHalves(6, 0, 0.1);
+  CheckHalves(SCALES_CONTACT_AFFINE_SHEARED, 0, 0.1);
 }
 
 /* Its cells buckle, two to a period: that is what blocks tend to, not tissue of one cell a period. */
 static void ContactAffineSidesPressed(void **state)
 {
+  const ScalesCase *c = &scales_cases[SCALES_CONTACT_AFFINE_PRESSED];
   ScalesCurve cell = {0}, pair = {0};
 
-  CheckHalves(8, 0, 0.4);
-  assert_int_equal(ScalesSolveCells(&scales_cases[8], 1, PETSC_FALSE, 1, &cell), 0);
-  assert_int_equal(ScalesSolveCells(&scales_cases[8], 2, PETSC_FALSE, 1, &pair), 0);
+  CheckHalves(SCALES_CONTACT_AFFINE_PRESSED, 0, 0.4);
+  assert_int_equal(ScalesSolveCells(c, 1, PETSC_FALSE, 1, &cell), 0);
+  assert_int_equal(ScalesSolveCells(c, 2, PETSC_FALSE, 1, &pair), 0);
   assert_true(ScalesDifference(1, cell.stress, pair.stress) > 0.1);
 }
 
