@@ -12,7 +12,7 @@
 
 #define STEPS SCALES_STEPS_MAX
 #define BLOCKS 4
-#define MESHES 3 /* finer ones fail at the corners of sheared boxes, where F grows without bound */
+#define MESHES 3 /* finer ones have points that fail at the corners of sheared boxes, where F is singular */
 static const int blocks[BLOCKS] = {2, 4, 8, 16};
 static const int meshes[MESHES] = {2, 4, 8};
 
