@@ -49,9 +49,11 @@ static PetscErrorCode CreateUnknowns(LamMacro macro)
   PetscCall(DMCreateGlobalVector(macro->dm, &macro->u));
   PetscCall(VecDuplicate(macro->u, &macro->trial));
   PetscCall(VecDuplicate(macro->u, &macro->residual));
+  PetscCall(VecDuplicate(macro->u, &macro->origin));
   PetscCall(VecDuplicate(macro->u, &macro->force));
   PetscCall(VecDuplicate(macro->u, &macro->force_accepted));
   PetscCall(VecZeroEntries(macro->u));
+  PetscCall(VecZeroEntries(macro->origin));
   PetscCall(VecZeroEntries(macro->force_accepted));
   PetscCall(VecGetLocalSize(macro->u, &local));
   PetscCall(PetscMalloc1(local, &macro->constraints));
@@ -136,6 +138,7 @@ PetscErrorCode LamMacroDestroy(LamMacro *macro)
   PetscCall(VecDestroy(&(*macro)->u));
   PetscCall(VecDestroy(&(*macro)->trial));
   PetscCall(VecDestroy(&(*macro)->residual));
+  PetscCall(VecDestroy(&(*macro)->origin));
   PetscCall(VecDestroy(&(*macro)->force));
   PetscCall(VecDestroy(&(*macro)->force_accepted));
   PetscCall(PetscFree((*macro)->constraints));

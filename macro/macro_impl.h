@@ -8,6 +8,7 @@
   assembly.c  gather F, ask the responder, assemble force and tangent
   stepping.c  Newton, load steps, cutback
   fields.c    gathering of fields on rank 0
+  checkpoint.c what a run goes on from
 
   The dimension `dim` of the body is that of its mesh; nothing but the responder knows that it is 2 (plane strain).
 */
@@ -72,6 +73,13 @@ typedef struct {
   unsigned int sides; /* bit s: the s-th named side prescribes it; 0 where only rigid motions are held */
 } LamConstraint;
 
+/* How far the load program has come: the last complete step. */
+typedef struct {
+  PetscBool begun; /* a step is complete */
+  PetscInt number;
+  PetscReal load; /* share of the prescribed displacements; the turgor acts in full */
+} LamMacroProgress;
+
 struct LamMacro_s {
   MPI_Comm comm;
   const LamScene *scene;   /* borrowed */
@@ -114,6 +122,7 @@ struct LamMacro_s {
 
   /* unknowns */
   Vec u, trial, residual;    /* displacement: last converged, Newton iterate; residual of Newton */
+  Vec origin;                /* the displacement that prescribed ones count from */
   Vec force, force_accepted; /* internal nodal forces of the last evaluation and of the last converged state */
   Mat tangent;
   SNES snes;
@@ -126,6 +135,7 @@ struct LamMacro_s {
   PetscInt constraint_count;
   LamConstraint *constraints;
 
+  LamMacroProgress progress;
   LamMacroStep step;    /* being filled */
   LamResponder counted; /* counters at the start of the step */
 };
@@ -178,6 +188,10 @@ PetscErrorCode LamMacroEvaluate(LamMacro macro, Vec u, PetscBool *ok);
 /* Internal nodal forces of the evaluated state; *scale is the norm of the element forces, before they cancel. */
 PetscErrorCode LamMacroAssembleForce(LamMacro macro, Vec force, PetscReal *scale);
 PetscErrorCode LamMacroAssembleTangent(LamMacro macro, Mat tangent);
+
+/* checkpoint.c */
+/* Nodal values of a vector, [node][dim]. */
+PetscErrorCode LamMacroArchiveVec(LamMacro macro, LamArchive archive, const char name[], Vec vec);
 
 /* stepping.c */
 PetscErrorCode LamMacroNewtonCreate(LamMacro macro);

@@ -246,10 +246,13 @@ static PetscErrorCode StartStep(LamMacro macro, PetscReal *start)
   PetscFunctionReturn(0);
 }
 
-/* Hands the step to the monitor. */
-static PetscErrorCode Report(LamMacro macro, PetscInt number, PetscReal load_factor, PetscReal start, PetscBool *stop)
+/* Hands a step to the monitor; one that is complete is what a run may go on from. */
+static PetscErrorCode Report(LamMacro macro, PetscInt number, PetscReal load_factor, PetscBool complete,
+                             PetscReal start, PetscBool *stop)
 {
   PetscFunctionBeginUser;
+  macro->step.complete = complete;
+  if (complete) macro->progress = (LamMacroProgress){PETSC_TRUE, number, load_factor};
   PetscCall(FinishStep(macro, number, load_factor, start));
   if (macro->monitor) PetscCall(macro->monitor(macro, &macro->step, stop, macro->monitor_ctx));
   PetscFunctionReturn(0);
@@ -277,38 +280,49 @@ static PetscErrorCode EndWithinStep(LamMacro macro, PetscInt number, Stage repor
   PetscFunctionBeginUser;
   if (!macro->stopped) PetscCall(DescribeEnd(macro, number, reached, message));
   if (reached.load > reported.load || (reached.turgor > reported.turgor && macro->scene->turgor != 0))
-    PetscCall(Report(macro, PetscMax(number, first), reached.load, start, &ends));
+    PetscCall(Report(macro, PetscMax(number, first), reached.load, PETSC_FALSE, start, &ends));
+  PetscFunctionReturn(0);
+}
+
+/* The turgor comes up; with `inflate` this is a step of its own, from which the displacements count. */
+static PetscErrorCode Inflate(LamMacro macro, Stage *stage, PetscReal *start, PetscBool *converged, PetscBool *stop)
+{
+  const Stage to = {1, 0};
+  const PetscBool inflate = macro->scene->macro.inflate;
+
+  PetscFunctionBeginUser;
+  if (inflate)
+    PetscCall(LamMacroHoldRigidMotions(macro));
+  else
+    PetscCall(LamMacroHoldBoundaries(macro));
+  PetscCall(Advance(macro, *stage, to, stage, converged));
+  if (!*converged || !inflate) PetscFunctionReturn(0);
+  PetscCall(VecCopy(macro->u, macro->origin));
+  PetscCall(Report(macro, 0, 0, PETSC_TRUE, *start, stop));
+  PetscCall(LamMacroHoldBoundaries(macro));
+  PetscCall(StartStep(macro, start));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamMacroSolve(LamMacro macro, LamMacroReason *reason, char message[LAM_MESSAGE_LENGTH])
 {
   const LamMacroSpec *spec = &macro->scene->macro;
-  Stage reported = {0, 0}, stage = {0, 0}, to = {1, 0};
-  PetscBool converged, stop = PETSC_FALSE;
-  PetscInt number = 0;
+  Stage stage = {macro->progress.begun ? 1 : 0, macro->progress.load}, reported, to = {1, 0};
+  PetscBool converged = PETSC_TRUE, stop = PETSC_FALSE;
+  PetscInt number = macro->progress.number;
   PetscReal start;
 
   PetscFunctionBeginUser;
   PetscCheck(macro->responder, macro->comm, PETSC_ERR_ORDER, "call LamMacroSetResponder() first");
   message[0] = '\0';
-  if (spec->inflate)
-    PetscCall(LamMacroHoldRigidMotions(macro));
-  else
-    PetscCall(LamMacroHoldBoundaries(macro));
   PetscCall(StartStep(macro, &start));
-  PetscCall(Advance(macro, stage, to, &stage, &converged));
-  if (converged && spec->inflate) {
-    PetscCall(Report(macro, 0, 0, start, &stop));
-    reported = stage;
-    PetscCall(LamMacroHoldBoundaries(macro));
-    PetscCall(StartStep(macro, &start));
-  }
+  if (!macro->progress.begun) PetscCall(Inflate(macro, &stage, &start, &converged, &stop));
+  reported = macro->progress.begun ? stage : (Stage){0, 0};
   while (converged && !stop && number < spec->steps) {
     to.load = (PetscReal)++number / spec->steps;
     PetscCall(Advance(macro, stage, to, &stage, &converged));
     if (!converged) break;
-    PetscCall(Report(macro, number, to.load, start, &stop));
+    PetscCall(Report(macro, number, to.load, PETSC_TRUE, start, &stop));
     reported = stage;
     PetscCall(StartStep(macro, &start));
   }

@@ -95,6 +95,34 @@ static PetscErrorCode Seal(void *ctx, PetscReal bulk_modulus)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode StateSize(void *ctx, size_t *bytes)
+{
+  DirectResponder *direct = (DirectResponder *)ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEStateSize(direct->scratch, bytes));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Save(void *ctx, PetscInt point, void *bytes)
+{
+  DirectResponder *direct = (DirectResponder *)ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEStatePack(direct->accepted[point], bytes));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Load(void *ctx, PetscInt point, const void *bytes)
+{
+  DirectResponder *direct = (DirectResponder *)ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEStateUnpack(bytes, direct->accepted[point]));
+  PetscCall(LamRVEStateUnpack(bytes, direct->latest[point]));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Destroy(void **ctx)
 {
   DirectResponder *direct = (DirectResponder *)*ctx;
@@ -133,5 +161,8 @@ PetscErrorCode LamRVEResponderCreate(LamRVE rve, PetscInt points, LamResponder *
   responder->reject = Reject;
   if (rve->seal.allowed) responder->seal = Seal;
   responder->destroy = Destroy;
+  responder->state_size = StateSize;
+  responder->save = Save;
+  responder->load = Load;
   PetscFunctionReturn(0);
 }

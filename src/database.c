@@ -41,9 +41,17 @@ static PetscErrorCode AddScattered(LamDatabase db, const LamResponse *record)
 
 /* ---- open, close ---- */
 
+/* Records that are not to be known yet. */
+typedef struct {
+  PetscInt first, n; /* their place in the file */
+  PetscInt64 *keys;
+  LamResponse *records;
+} Later;
+
 typedef struct {
   LamDatabase db;
   LamNodeLayout nodes; /* made with the first block */
+  Later *later;        /* or NULL: all are to be known */
 } Loading;
 
 static PetscErrorCode LoadBlock(void *ctx, const LamRecordLayout *layout, PetscInt first, PetscInt n,
@@ -58,6 +66,11 @@ static PetscErrorCode LoadBlock(void *ctx, const LamRecordLayout *layout, PetscI
     const PetscInt64 key = LamRecordInt(bytes + layout->key);
     LamResponse record;
 
+    if (l->later && first + i >= l->later->first) {
+      l->later->keys[l->later->n] = key;
+      PetscCall(LamRecordUnpack(layout, bytes, &l->later->records[l->later->n++]));
+      continue;
+    }
     db->keys[db->n++] = key;
     if (LamKeyIsNode(key)) {
       PetscCall(GrowNodes(db, db->header.committed - first - i)); /* once: memory that is not used is not touched */
@@ -86,12 +99,24 @@ static PetscErrorCode LoadGrid(const char path[], hid_t file, LamDatabase db)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Load(const char path[], hid_t file, LamDatabase db)
+static PetscErrorCode MakeLater(const char path[], PetscInt committed, Later *later)
 {
-  Loading loading = {.db = db};
+  PetscFunctionBeginUser;
+  PetscCheck(later->first <= committed, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: has %" PetscInt_FMT " records, %" PetscInt_FMT " are wanted; it is another file than before", path,
+             committed, later->first);
+  PetscCall(PetscMalloc1(committed - later->first, &later->keys));
+  PetscCall(PetscMalloc1(committed - later->first, &later->records));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Load(const char path[], hid_t file, Later *later, LamDatabase db)
+{
+  Loading loading = {.db = db, .later = later};
 
   PetscFunctionBeginUser;
   PetscCall(LamHeaderRead(path, file, &db->header));
+  if (later) PetscCall(MakeLater(path, db->header.committed, later));
   PetscCall(PetscStrallocpy(path, &db->path));
   LamImagesMake(&db->header.micro, &db->images);
   PetscCall(GrowKeys(db, db->header.committed));
@@ -101,7 +126,7 @@ static PetscErrorCode Load(const char path[], hid_t file, LamDatabase db)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamDatabaseOpen(const char path[], LamDatabase *database)
+static PetscErrorCode Open(const char path[], Later *later, LamDatabase *database)
 {
   hid_t file = H5I_INVALID_HID;
   PetscErrorCode ierr;
@@ -113,12 +138,32 @@ PetscErrorCode LamDatabaseOpen(const char path[], LamDatabase *database)
   PetscCall(PetscNew(&db));
   lock = LamLockBeginRead(path);
   ierr = LamFileOpenRead(path, &file);
-  if (!ierr) ierr = Load(path, file, db);
+  if (!ierr) ierr = Load(path, file, later, db);
   if (file >= 0) H5Fclose(file);
   LamLockEndRead(lock);
   if (ierr) (void)LamDatabaseClose(&db);
   PetscCall(ierr);
   *database = db;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamDatabaseOpen(const char path[], LamDatabase *database)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Open(path, NULL, database));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamDatabaseOpenFirst(const char path[], PetscInt first, LamDatabase *database, PetscInt *n,
+                                    PetscInt64 *keys[], LamResponse *records[])
+{
+  Later later = {.first = first};
+
+  PetscFunctionBeginUser;
+  PetscCall(Open(path, &later, database));
+  *n = later.n;
+  *keys = later.keys;
+  *records = later.records;
   PetscFunctionReturn(0);
 }
 

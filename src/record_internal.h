@@ -201,6 +201,8 @@ PetscInt LamRecordScanRoom(const LamRecordScan *scan, hid_t file);
 
 /* ---- record_room.c ---- */
 
+/* With the permissions of the first. */
+PetscErrorCode LamFileCopy(const char from[], const char to[]);
 /* The records that there is room for, committed ones included. */
 PetscErrorCode LamFileReadRoom(const char path[], hid_t file, PetscInt *room);
 /*

@@ -110,8 +110,7 @@ static int CopyBytes(int in, int out, char bytes[COPY_BYTES])
   return error || !n ? error : errno;
 }
 
-/* With the permissions of the first. */
-static PetscErrorCode CopyFile(const char from[], const char to[])
+PetscErrorCode LamFileCopy(const char from[], const char to[])
 {
   const int in = open(from, O_RDONLY | O_CLOEXEC);
   int out, error;
@@ -135,7 +134,7 @@ static PetscErrorCode ExtendCopy(const char path[], const char temporary[], Pets
   PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
-  ierr = CopyFile(path, temporary);
+  ierr = LamFileCopy(path, temporary);
   if (!ierr) ierr = ExtendFile(temporary, before, room);
   if (!ierr) ierr = LamFilePublish(temporary, path);
   if (ierr) unlink(temporary);

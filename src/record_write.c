@@ -21,6 +21,7 @@ struct LamRecordWriter_s {
   char temporary[PETSC_MAX_PATH_LEN];
   PetscBool published; /* the file has its own name */
   PetscBool written;   /* something besides the header */
+  PetscBool begun;     /* LamRecordWriterBegin: what is written is no one's before the commit */
   LamLock lock;
   PetscInt room; /* of the file, in records */
   PetscInt n, capacity;
@@ -273,6 +274,15 @@ static PetscErrorCode Publish(LamRecordWriter w)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamRecordWriterBegin(LamRecordWriter writer)
+{
+  PetscFunctionBeginUser;
+  if (writer->published) PetscCall(LamFileCopy(writer->path, writer->temporary));
+  writer->published = PETSC_FALSE;
+  writer->begun = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode CommitLocked(LamRecordWriter w, PetscInt n, const PetscInt64 keys[],
                                    const LamResponse responses[])
 {
@@ -315,6 +325,7 @@ PetscErrorCode LamRecordWriterCommit(LamRecordWriter writer, PetscInt n, const P
   LamLockEndCommit(&writer->lock);
   PetscCall(ierr);
   writer->written = PETSC_TRUE;
+  writer->begun = PETSC_FALSE;
   PetscCall(KeepKeys(writer, n, keys));
   PetscFunctionReturn(0);
 }
@@ -334,7 +345,7 @@ PetscErrorCode LamRecordWriterClose(LamRecordWriter *writer)
 
   PetscFunctionBeginUser;
   if (!*writer) PetscFunctionReturn(0);
-  if ((*writer)->written) ierr = Publish(*writer);
+  if ((*writer)->written && !(*writer)->begun) ierr = Publish(*writer);
   PetscCall(Destroy(writer));
   PetscCall(ierr);
   PetscFunctionReturn(0);

@@ -40,6 +40,12 @@ typedef enum { LAM_WRITE_CREATE, LAM_WRITE_APPEND } LamWriteMode;
 */
 PetscErrorCode LamRecordWriterOpen(const char path[], const char kind[], LamWriteMode mode, const LamScene *scene,
                                    LamRecordWriter *writer);
+/*
+  Until the next LamRecordWriterCommit all is written to a copy, which takes the file's name there: what belongs
+  together appears at once, or, after a kill, not at all. HDF5 has no other way to extend a file that a kill cannot
+  harm.
+*/
+PetscErrorCode LamRecordWriterBegin(LamRecordWriter writer);
 /* Commits n records (0: only gives a new file its name). `keys`: caller's number for each (sample index, state number).
    On return they are on the disk. */
 PetscErrorCode LamRecordWriterCommit(LamRecordWriter writer, PetscInt n, const PetscInt64 keys[],
@@ -69,6 +75,12 @@ PetscErrorCode LamRecordWriterText(LamRecordWriter writer, const char name[], co
   another kind or format version.
 */
 PetscErrorCode LamDatabaseOpen(const char path[], LamDatabase *database);
+/*
+  The same with the first `first` records of the file alone, whatever has been added since; the other *n are handed out
+  with their keys, the caller's to PetscFree. PETSC_ERR_USER_INPUT where the file has fewer.
+*/
+PetscErrorCode LamDatabaseOpenFirst(const char path[], PetscInt first, LamDatabase *database, PetscInt *n,
+                                    PetscInt64 *keys[], LamResponse *records[]);
 PetscErrorCode LamDatabaseCreateEmpty(const LamScene *scene, LamDatabase *database);
 PetscErrorCode LamDatabaseClose(LamDatabase *database);
 /*

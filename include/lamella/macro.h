@@ -10,6 +10,7 @@
 #define LAMELLA_MACRO_H
 
 #include <petscsys.h>
+#include <lamella/archive.h>
 #include <lamella/scene.h>
 #include <lamella/response.h>
 
@@ -19,6 +20,7 @@ typedef struct {
   PetscInt step;         /* 1.. ; inflation, where asked for, is step 0; else turgor acts first in step 1 */
   PetscReal load_factor; /* share of the boundary displacements: 0 (after inflation) to 1; the last step of a run that
                             failed or was stopped in it ends at the last converged increment */
+  PetscBool complete;    /* not one that came only part of its way */
   PetscInt boundary_count;
   char boundary[LAM_MAX_BOUNDARIES][LAM_NAME_LENGTH]; /* each named side once */
   PetscReal reaction[LAM_MAX_BOUNDARIES][2];          /* force on the body, stress * macro length, per thickness;
@@ -69,6 +71,12 @@ PetscErrorCode LamMacroSetStop(LamMacro macro, PetscBool (*stop)(void));
   `message` says why it failed.
 */
 PetscErrorCode LamMacroSolve(LamMacro macro, LamMacroReason *reason, char message[LAM_MESSAGE_LENGTH]);
+/*
+  Writes what a run needs to go on from the last complete step, or reads it, before LamMacroSolve: that goes on then
+  with the next step, as if it had done all before. To be called from the monitor of a complete step, after which
+  nothing else is to be kept. The archive may come from another number of ranks.
+*/
+PetscErrorCode LamMacroArchive(LamMacro macro, LamArchive archive);
 PetscErrorCode LamMacroDestroy(LamMacro *macro);
 
 /*

@@ -140,6 +140,13 @@ typedef struct LamResponder_s {
   PetscErrorCode (*seal)(void *ctx, PetscReal bulk_modulus);
   PetscErrorCode (*destroy)(void **ctx);
   /*
+    The states that the last `accept` left, as bytes, for a run that goes on from them; the same size for all points of
+    all ranks. NULL: there are none to keep. `load` makes a point's bytes its accepted state.
+  */
+  PetscErrorCode (*state_size)(void *ctx, size_t *bytes);
+  PetscErrorCode (*save)(void *ctx, PetscInt point, void *bytes);
+  PetscErrorCode (*load)(void *ctx, PetscInt point, const void *bytes);
+  /*
     Counted on this rank since creation. A question is a hit (the database as it was answers it), or a failure (no
     fields in the answer), or else something had to be solved for it: queries - hits - failures. `solves` are the solves
     made: with a cache those of the nodes, which many questions share, and of states where no node helps, failed or not.

@@ -36,13 +36,15 @@ static PetscBool CheckPaths(const LamFE2Run *run)
             run->out_path, (int)(dot - run->out_path), run->out_path);
   else if (run->out_path && run->database_path && SameFile(run->out_path, run->database_path))
     fprintf(stderr, "lamella fe2: -o %s is the database of -d; the results would replace it\n", run->out_path);
+  else if (run->resume && !run->out_path)
+    fprintf(stderr, "lamella fe2: --resume goes on with the results of a run; give -o OUT.h5, too\n");
   else
     return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
 /* Reads and checks everything; nothing is written before the responder stands, too. */
-static PetscErrorCode Prepare(LamFE2Run *run)
+static PetscErrorCode Prepare(LamFE2Run *run, PetscBool *finished)
 {
   PetscFunctionBeginUser;
   run->start = LamClock();
@@ -53,7 +55,8 @@ static PetscErrorCode Prepare(LamFE2Run *run)
   PetscCall(LamMacroCreate(run->comm, &run->macro));
   PetscCall(LamMacroSetScene(run->macro, run->scene));
   PetscCall(LamMacroSetUp(run->macro));
-  PetscCall(LamFE2PrepareResponse(run));
+  if (run->resume) PetscCall(LamFE2CheckpointFind(run, finished));
+  if (!*finished) PetscCall(LamFE2PrepareResponse(run));
   PetscFunctionReturn(0);
 }
 
@@ -79,21 +82,25 @@ static PetscErrorCode PeakMemory(MPI_Comm comm, PetscReal *megabytes)
   PetscFunctionReturn(0);
 }
 
-/* Rank 0: files, the row or object of the step, totals. */
+/* Rank 0: files, the row or object of the step. */
 static PetscErrorCode EndStep(LamFE2Run *run, const LamMacroStep *step, const LamMacroFields *fields,
                               PetscReal peak_memory)
 {
   PetscFunctionBeginUser;
   PetscCall(LamFE2RecordStep(run, step, fields));
   PetscCall(LamFE2ReportStep(run, step, peak_memory));
-  run->steps++;
-  run->newton_iterations += step->newton_iterations;
-  run->queries += step->queries;
-  run->hits += step->hits;
-  run->solves += step->solves;
-  run->failures += step->failures;
-  PetscCall(LamProgressUpdate(&run->progress, run->steps, 0));
+  PetscCall(LamProgressUpdate(&run->progress, run->totals.steps + 1, 0));
   PetscFunctionReturn(0);
+}
+
+static void Count(const LamMacroStep *step, LamFE2Totals *totals)
+{
+  totals->steps++;
+  totals->newton_iterations += step->newton_iterations;
+  totals->queries += step->queries;
+  totals->hits += step->hits;
+  totals->solves += step->solves;
+  totals->failures += step->failures;
 }
 
 /* LamMacroMonitor */
@@ -110,6 +117,8 @@ static PetscErrorCode StepDone(LamMacro macro, const LamMacroStep *step, PetscBo
   if (LamAppIsRoot()) ierr = EndStep(run, step, &fields, peak_memory);
   PetscCall(LamMacroFieldsDestroy(&fields));
   PetscCall(LamFE2ShareError(run->comm, ierr));
+  Count(step, &run->totals);
+  if (step->complete) PetscCall(LamFE2CheckpointSave(run));
   *stop = LamStopRequested(); /* of any rank: a signal may reach only one of them */
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, stop, 1, MPIU_BOOL, MPI_LOR, run->comm));
   PetscFunctionReturn(0);
@@ -141,6 +150,7 @@ static PetscErrorCode SolveAndClose(LamFE2Run *run, int *exit_status)
     if (reason == LAM_MACRO_NOT_CONVERGED) fprintf(stderr, "lamella fe2: %s: %s\n", run->scene_path, message);
   }
   PetscCall(LamFE2ShareError(run->comm, ierr));
+  if (reason == LAM_MACRO_DONE) PetscCall(LamFE2CheckpointRemove(run));
   PetscFunctionReturn(0);
 }
 
@@ -148,6 +158,7 @@ static PetscErrorCode Destroy(LamFE2Run *run)
 {
   PetscFunctionBeginUser;
   PetscCall(LamMacroDestroy(&run->macro));
+  PetscCall(LamArchiveClose(&run->archive, PETSC_FALSE));
   PetscCall(LamFE2Disconnect(run));
   PetscCall(LamSceneDestroy(&run->scene));
   PetscFunctionReturn(0);
@@ -155,14 +166,18 @@ static PetscErrorCode Destroy(LamFE2Run *run)
 
 static PetscErrorCode Solve(LamFE2Run *run, int *exit_status)
 {
+  PetscBool finished = PETSC_FALSE;
+
   PetscFunctionBeginUser;
-  PetscCall(Prepare(run));
+  PetscCall(Prepare(run, &finished));
+  if (finished) PetscFunctionReturn(0);
   PetscCall(LamFE2Connect(run));
   if (run->stopped) {
     *exit_status = LamStopExitStatus();
     PetscFunctionReturn(0);
   }
   PetscCall(LamFE2OpenFiles(run));
+  PetscCall(LamFE2CheckpointStart(run));
   PetscCall(SolveAndClose(run, exit_status));
   PetscFunctionReturn(0);
 }
@@ -180,13 +195,15 @@ PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status)
        "direct: solve an RVE per material point (default); cache: query, solve what is missing (default with -d); "
        "database: query only",
        &run.response_name},
+      {0, "resume", LAM_OPTION_FLAG, NULL, "go on behind the last complete step of OUT.h5, where there is one",
+       &run.resume},
       {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per load step on stdout", &run.json},
       {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &run.quiet},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
   };
 
   PetscFunctionBeginUser;
-  PetscCall(LamOptionsParse(args, "fe2 SCENE [-d DB.h5] [-o OUT.h5] [--response TYPE] [--json] [--quiet]",
+  PetscCall(LamOptionsParse(args, "fe2 SCENE [-d DB.h5] [-o OUT.h5] [--response TYPE] [--resume] [--json] [--quiet]",
                             "Solves the macroscale problem of a scene.", options, 1, &run.scene_path, &done,
                             exit_status));
   if (done) PetscFunctionReturn(0);

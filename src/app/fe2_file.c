@@ -1,7 +1,6 @@
 /*
   Result file of a macroscale run.
 */
-#include <lamella/database.h>
 #include <string.h>
 #include "fe2_file.h"
 #include "xdmf.h"
@@ -15,13 +14,13 @@ struct LamFE2File_s {
   PetscReal *load_factor, *work, *reaction; /* [step], [step], [step][side][2]; owned */
 };
 
-PetscErrorCode LamFE2FileOpen(const char path[], const LamScene *scene, LamFE2File *file)
+PetscErrorCode LamFE2FileOpen(const char path[], LamWriteMode mode, const LamScene *scene, LamFE2File *file)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscNew(file));
   PetscCall(PetscStrncpy((*file)->path, path, sizeof((*file)->path)));
   (*file)->scales = scene->scales;
-  PetscErrorCode ierr = LamRecordWriterOpen(path, "fe2", LAM_WRITE_CREATE, scene, &(*file)->writer);
+  PetscErrorCode ierr = LamRecordWriterOpen(path, "fe2", mode, scene, &(*file)->writer);
   if (ierr) PetscCall(PetscFree(*file));
   PetscCall(ierr);
   PetscFunctionReturn(0);
@@ -158,6 +157,7 @@ static PetscErrorCode WriteCurves(LamFE2File file)
 PetscErrorCode LamFE2FileAddStep(LamFE2File file, const LamMacroStep *step, const LamMacroFields *fields)
 {
   PetscFunctionBeginUser;
+  PetscCall(LamRecordWriterBegin(file->writer));
   if (!file->step_count) PetscCall(WriteMesh(file, step, fields));
   PetscCall(WriteDisplacement(file, step->step, fields));
   PetscCall(WriteTensors(file, step->step, fields));
@@ -165,9 +165,34 @@ PetscErrorCode LamFE2FileAddStep(LamFE2File file, const LamMacroStep *step, cons
   PetscCall(KeepCurve(file, step));
   PetscCall(WriteCurves(file));
   PetscCall(LamRecordWriterInts(file->writer, "/macro/steps", 1, &file->step_count, file->steps));
-  PetscCall(LamRecordWriterCommit(file->writer, 0, NULL, NULL)); /* the first one puts the file in its place */
+  PetscCall(LamRecordWriterCommit(file->writer, 0, NULL, NULL)); /* the file has the whole step now */
   PetscCall(LamXDMFWrite(file->path, fields->node_count, fields->element_count, file->step_count, file->steps,
                          file->load_factor));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFE2FileArchive(LamFE2File file, LamArchive archive)
+{
+  struct LamFE2File_s none, *f = file ? file : &none;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMemzero(&none, sizeof(none)));
+  PetscCall(LamArchiveShared(archive, "sides", sizeof(f->side_count), &f->side_count));
+  PetscCall(LamArchiveList(archive, "steps", sizeof(PetscInt), &f->step_count, (void **)&f->steps));
+  PetscCall(LamArchiveList(archive, "load factors", sizeof(PetscReal), &f->step_count, (void **)&f->load_factor));
+  PetscCall(LamArchiveList(archive, "works", sizeof(PetscReal), &f->step_count, (void **)&f->work));
+  PetscCall(LamArchiveList(archive, "reactions", 2 * (size_t)f->side_count * sizeof(PetscReal), &f->step_count,
+                           (void **)&f->reaction));
+  f->capacity = f->step_count;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WriteStatus(LamFE2File file, const char status[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamRecordWriterBegin(file->writer));
+  PetscCall(LamRecordWriterText(file->writer, "/macro/status", status));
+  PetscCall(LamRecordWriterCommit(file->writer, 0, NULL, NULL));
   PetscFunctionReturn(0);
 }
 
@@ -177,7 +202,7 @@ PetscErrorCode LamFE2FileClose(LamFE2File *file, const char status[])
 
   PetscFunctionBeginUser;
   if (!*file) PetscFunctionReturn(0);
-  if (status) ierr = LamRecordWriterText((*file)->writer, "/macro/status", status);
+  if (status) ierr = WriteStatus(*file, status);
   if (ierr)
     (void)LamRecordWriterClose(&(*file)->writer);
   else

@@ -16,12 +16,18 @@
 #ifndef LAM_FE2_FILE_H
 #define LAM_FE2_FILE_H
 
+#include <lamella/database.h>
 #include <lamella/macro.h>
 
 typedef struct LamFE2File_s *LamFE2File;
 
-/* Borrows the scene. Nothing is visible under `path` before the first step is complete. */
-PetscErrorCode LamFE2FileOpen(const char path[], const LamScene *scene, LamFE2File *file);
+/*
+  Borrows the scene. CREATE: nothing is visible under `path` before the first step is complete; APPEND: goes on with a
+  file of the same scene, whose steps LamFE2FileArchive tells. A kill leaves the file with complete steps.
+*/
+PetscErrorCode LamFE2FileOpen(const char path[], LamWriteMode mode, const LamScene *scene, LamFE2File *file);
+/* Writes or reads what later steps need to know of the earlier ones; collective, `file` NULL but on rank 0. */
+PetscErrorCode LamFE2FileArchive(LamFE2File file, LamArchive archive);
 PetscErrorCode LamFE2FileAddStep(LamFE2File file, const LamMacroStep *step, const LamMacroFields *fields);
 /* `status`: "done", "stopped", or why the run did not converge; NULL after an error. */
 PetscErrorCode LamFE2FileClose(LamFE2File *file, const char status[]);

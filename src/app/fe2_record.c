@@ -3,6 +3,60 @@
 */
 #include "fe2_run.h"
 
+static PetscErrorCode AddRow(LamFE2Tissue *tissue, PetscInt row)
+{
+  PetscFunctionBeginUser;
+  if (tissue->row_count == tissue->row_capacity) {
+    tissue->row_capacity = PetscMax(64, 2 * tissue->row_capacity);
+    PetscCall(PetscRealloc((size_t)tissue->row_capacity * sizeof(PetscInt), &tissue->rows));
+  }
+  tissue->rows[tissue->row_count++] = row;
+  PetscFunctionReturn(0);
+}
+
+/* Of n new records of the database those that its file does not have; *count of them, with the keys they get there. */
+static PetscErrorCode ChooseNew(LamFE2Tissue *tissue, PetscInt n, const PetscInt64 in_memory[],
+                                const LamResponse records[], PetscInt *count, PetscInt64 keys[], LamResponse chosen[])
+{
+  const PetscInt64 *in_file;
+  PetscInt row;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRecordWriterGetKeys(tissue->records, &row, &in_file));
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscInt known = LamKnownAnswersFind(&tissue->known, in_memory[k], &records[k].load);
+    PetscCall(AddRow(tissue, known >= 0 ? known : row++));
+    if (known >= 0) continue;
+    keys[*count] = LamKeyIsNode(in_memory[k]) ? in_memory[k] : tissue->next_key++;
+    chosen[(*count)++] = records[k];
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Appends what the cache has solved since the last step, so that a later run finds it. */
+static PetscErrorCode RecordTissue(LamFE2Tissue *tissue)
+{
+  const LamResponse *records;
+  const PetscInt64 *in_memory;
+  LamResponse *chosen;
+  PetscErrorCode ierr;
+  PetscInt64 *keys;
+  PetscInt n, count = 0;
+
+  PetscFunctionBeginUser;
+  if (!tissue->records) PetscFunctionReturn(0);
+  PetscCall(LamDatabaseGetAdded(tissue->database, tissue->recorded, &n, &records));
+  if (!n) PetscFunctionReturn(0);
+  PetscCall(LamDatabaseGetRecords(tissue->database, NULL, NULL, &in_memory));
+  PetscCall(PetscMalloc2(n, &keys, n, &chosen));
+  PetscCall(ChooseNew(tissue, n, in_memory + tissue->recorded, records, &count, keys, chosen));
+  ierr = LamRecordWriterCommit(tissue->records, count, keys, chosen);
+  PetscCall(PetscFree2(keys, chosen));
+  PetscCall(ierr);
+  tissue->recorded += n;
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode OpenDatabaseFile(LamFE2Tissue *tissue)
 {
   const PetscInt64 *keys;
@@ -14,13 +68,16 @@ static PetscErrorCode OpenDatabaseFile(LamFE2Tissue *tissue)
   PetscCall(LamRecordWriterGetKeys(tissue->records, &n, &keys));
   tissue->next_key = LAM_CACHE_KEY;
   for (PetscInt k = 0; k < n; k++) tissue->next_key = PetscMax(tissue->next_key, keys[k] + 1);
+  PetscCall(RecordTissue(tissue)); /* states that belong to a new grid */
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode OpenFiles(LamFE2Run *run)
 {
+  const LamWriteMode mode = run->resumed ? LAM_WRITE_APPEND : LAM_WRITE_CREATE;
+
   PetscFunctionBeginUser;
-  if (run->out_path) PetscCall(LamFE2FileOpen(run->out_path, run->scene, &run->out));
+  if (run->out_path) PetscCall(LamFE2FileOpen(run->out_path, mode, run->scene, &run->out));
   if (run->response != LAM_FE2_CACHE || !run->database_path) PetscFunctionReturn(0);
   for (PetscInt t = 0; t < run->tissues.count; t++) PetscCall(OpenDatabaseFile(&run->tissues.tissues[t]));
   PetscFunctionReturn(0);
@@ -34,32 +91,6 @@ PetscErrorCode LamFE2OpenFiles(LamFE2Run *run)
   PetscCallMPI(MPI_Barrier(run->comm)); /* all ranks have read the database: rank 0 may write to it */
   if (LamAppIsRoot()) ierr = OpenFiles(run);
   PetscCall(LamFE2ShareError(run->comm, ierr));
-  PetscFunctionReturn(0);
-}
-
-/* Appends what the cache has solved since the last step, so that a later run finds it. */
-static PetscErrorCode RecordTissue(LamFE2Tissue *tissue)
-{
-  const LamResponse *records;
-  const PetscInt64 *in_memory;
-  PetscErrorCode ierr;
-  PetscInt64 *keys;
-  PetscInt n;
-
-  PetscFunctionBeginUser;
-  if (!tissue->records) PetscFunctionReturn(0);
-  PetscCall(LamDatabaseGetAdded(tissue->database, tissue->recorded, &n, &records));
-  if (!n) PetscFunctionReturn(0);
-  PetscCall(LamDatabaseGetRecords(tissue->database, NULL, NULL, &in_memory));
-  PetscCall(PetscMalloc1(n, &keys));
-  for (PetscInt k = 0; k < n; k++) {
-    keys[k] = in_memory[tissue->recorded + k];
-    if (!LamKeyIsNode(keys[k])) keys[k] = tissue->next_key++;
-  }
-  ierr = LamRecordWriterCommit(tissue->records, n, keys, records);
-  PetscCall(PetscFree(keys));
-  PetscCall(ierr);
-  tissue->recorded += n;
   PetscFunctionReturn(0);
 }
 

@@ -66,7 +66,7 @@ PetscErrorCode LamFE2ReportStep(const LamFE2Run *run, const LamMacroStep *step, 
   if (run->json)
     PetscCall(PrintStepJSON(run, step, peak_memory));
   else {
-    if (!run->steps) PrintHeader(run, step);
+    if (run->totals.steps == run->resumed_steps) PrintHeader(run, step);
     PrintRow(run, step);
   }
   PetscFunctionReturn(0);
@@ -74,10 +74,13 @@ PetscErrorCode LamFE2ReportStep(const LamFE2Run *run, const LamMacroStep *step, 
 
 PetscErrorCode LamFE2ReportTotals(const LamFE2Run *run)
 {
+  const LamFE2Totals *totals = &run->totals;
+
   PetscFunctionBeginUser;
   printf("%" PetscInt_FMT " steps, %" PetscInt_FMT " Newton iterations, %lld queries, %lld hits, %lld solves, "
          "%lld failures, %.3g s; response %s\n",
-         run->steps, run->newton_iterations, (long long)run->queries, (long long)run->hits, (long long)run->solves,
-         (long long)run->failures, LamClock() - run->start, LamFE2ResponseNames[run->response]);
+         totals->steps, totals->newton_iterations, (long long)totals->queries, (long long)totals->hits,
+         (long long)totals->solves, (long long)totals->failures, LamClock() - run->start,
+         LamFE2ResponseNames[run->response]);
   PetscFunctionReturn(0);
 }

@@ -31,6 +31,27 @@ PetscBool LamFE2ChooseResponse(LamFE2Run *run)
 
 /* ---- databases ---- */
 
+/* Loads the database as the run that goes on knew it: the records of its file that are named, in that order. */
+static PetscErrorCode OpenAsItWas(LamFE2Tissue *tissue)
+{
+  LamKnownAnswers *known = &tissue->known;
+  PetscInt64 *keys;
+  LamResponse *records;
+  PetscInt n;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamDatabaseOpenFirst(tissue->database_path, known->first, &tissue->database, &n, &keys, &records));
+  PetscCall(LamKnownAnswersSet(known, known->first, n, keys, records));
+  for (PetscInt k = 0; k < tissue->row_count; k++) {
+    const PetscInt at = tissue->rows[k] - known->first;
+    PetscCheck(at < n, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "%s: has no record %" PetscInt_FMT ", which --resume goes on from; it is another file than before",
+               tissue->database_path, tissue->rows[k]);
+    PetscCall(LamDatabaseAdd(tissue->database, 1, LamKeyIsNode(keys[at]) ? &keys[at] : NULL, &records[at]));
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Loads the database, on all ranks; the mesh of the RVE, where the scene leaves it open, is the database's. */
 static PetscErrorCode OpenDatabase(LamFE2Run *run, LamFE2Tissue *tissue)
 {
@@ -39,8 +60,13 @@ static PetscErrorCode OpenDatabase(LamFE2Run *run, LamFE2Tissue *tissue)
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Bcast(&exists, 1, MPI_INT, 0, run->comm));
-  if (!exists && run->response != LAM_FE2_DATABASE) PetscFunctionReturn(0);
-  PetscCall(LamDatabaseOpen(tissue->database_path, &tissue->database));
+  if (run->archive) PetscCall(LamFE2CheckpointRows(run, run->archive, tissue));
+  if (!exists && run->response != LAM_FE2_DATABASE && !(tissue->known.first + tissue->row_count))
+    PetscFunctionReturn(0);
+  if (run->archive)
+    PetscCall(OpenAsItWas(tissue));
+  else
+    PetscCall(LamDatabaseOpen(tissue->database_path, &tissue->database));
   PetscCall(LamDatabaseGetMicrostructure(tissue->database, &stored, NULL, NULL));
   if (!micro->along) micro->along = stored.along;
   if (!micro->through) micro->through = stored.through;
@@ -60,6 +86,7 @@ static PetscErrorCode CheckDatabase(LamFE2Run *run, LamFE2Tissue *tissue)
              "%s: holds microstructure %s, the scene %s describes %s%s%s; give a database built from this scene",
              tissue->database_path, hash, run->scene_path, wanted, tissue->name[0] ? " for " : "", tissue->name);
   PetscCall(LamDatabaseGetRecords(tissue->database, &tissue->recorded, NULL, NULL));
+  if (!run->archive) tissue->known.first = tissue->recorded;
   PetscFunctionReturn(0);
 }
 
@@ -124,7 +151,9 @@ static PetscErrorCode CreateNodeSolver(LamFE2Tissue *tissue)
   PetscCall(LamDatabaseGetGrid(tissue->database, &grid));
   PetscCall(LamNodeChainCreate(tissue->rve, tissue->scene.micro.interface, grid, LAM_NODE_MEMORY, LamStopRequested,
                                &tissue->chain));
-  tissue->nodes = (LamNodeSolver){tissue->chain, LamNodeChainSolve};
+  tissue->solved = (LamNodeSolver){tissue->chain, LamNodeChainSolve};
+  tissue->known.solver = &tissue->solved;
+  tissue->nodes = (LamNodeSolver){&tissue->known, LamKnownAnswersSolve};
   PetscFunctionReturn(0);
 }
 
@@ -216,6 +245,8 @@ static PetscErrorCode DestroyTissue(LamFE2Tissue *tissue)
   if (tissue->direct.destroy) PetscCall(tissue->direct.destroy(&tissue->direct.ctx));
   PetscCall(LamRVEDestroy(&tissue->rve));
   PetscCall(LamDatabaseClose(&tissue->database));
+  PetscCall(LamKnownAnswersDestroy(&tissue->known));
+  PetscCall(PetscFree(tissue->rows));
   PetscCall(PetscFree(tissue->grid_text));
   PetscFunctionReturn(0);
 }

@@ -15,16 +15,25 @@
 typedef enum { LAM_FE2_DIRECT, LAM_FE2_CACHE, LAM_FE2_DATABASE } LamFE2Response;
 extern const char *const LamFE2ResponseNames[];
 
+/* Of the reported steps. */
+typedef struct {
+  PetscInt64 queries, hits, solves, failures;
+  PetscInt steps, newton_iterations;
+} LamFE2Totals;
+
 typedef struct {
   /* what the command line says */
   const char *scene_path, *database_path, *out_path, *response_name;
-  PetscBool json, quiet;
+  PetscBool json, quiet, resume;
   LamFE2Response response;
 
   MPI_Comm comm;
   LamScene *scene;
   LamMacro macro;
-  PetscBool stopped; /* before it began: nothing is written */
+  PetscBool stopped;      /* before it began: nothing is written */
+  PetscBool resumed;      /* goes on from a complete step: OUT.h5 has it */
+  PetscInt resumed_steps; /* that earlier runs have told */
+  LamArchive archive;     /* what it goes on from, until that is read; NULL: it begins anew */
   LamFE2Tissues tissues;
   LamResponder mosaic; /* of several tissues; destroy NULL: not in use */
 
@@ -32,9 +41,7 @@ typedef struct {
   LamFE2File out;
   LamProgress progress;
 
-  /* totals of the converged steps */
-  PetscInt64 queries, hits, solves, failures;
-  PetscInt steps, newton_iterations;
+  LamFE2Totals totals;
   PetscReal start;
 } LamFE2Run;
 
@@ -60,6 +67,20 @@ PetscErrorCode LamFE2RecordStep(LamFE2Run *run, const LamMacroStep *step, const 
 PetscErrorCode LamFE2CloseFiles(LamFE2Run *run, const char status[]);
 /* After an error, which is the one to tell: no lock is left, and of the cache's solves what can still be written. */
 PetscErrorCode LamFE2CloseAfterError(LamFE2Run *run);
+
+/* ---- fe2_checkpoint.c; collective ---- */
+/*
+  With --resume: looks for OUT.h5.ckpt and checks that it is of this run; *finished: OUT.h5 has all steps of this scene
+  already. Before databases are opened: LamFE2CheckpointRows says which records of a tissue's were known.
+*/
+PetscErrorCode LamFE2CheckpointFind(LamFE2Run *run, PetscBool *finished);
+PetscErrorCode LamFE2CheckpointRows(LamFE2Run *run, LamArchive archive, LamFE2Tissue *tissue);
+/* Takes over what was found, once responder and files stand; else starts OUT.h5.ckpt, so that a database that grows
+   meanwhile does not change what the run would have answered. */
+PetscErrorCode LamFE2CheckpointStart(LamFE2Run *run);
+/* After a complete step, and after the files have it. */
+PetscErrorCode LamFE2CheckpointSave(LamFE2Run *run);
+PetscErrorCode LamFE2CheckpointRemove(LamFE2Run *run);
 
 /* ---- cmd_fe2.c ---- */
 /* Makes an error of rank 0 everyone's. */

@@ -5,6 +5,7 @@
 #define LAM_FE2_TISSUE_H
 
 #include "app.h"
+#include "known_answers.h"
 #include "node_solver.h"
 
 /* One tissue, and what answers for it. */
@@ -18,15 +19,19 @@ typedef struct {
 
   LamRVE rve;
   LamDatabase database;
+  LamKnownAnswers
+      known;          /* records of the database's file that a run which goes on finds again, and does not know yet */
   LamNodeChain chain; /* of the cache's nodes */
-  LamNodeSolver nodes;
+  LamNodeSolver solved, nodes;        /* by the chain; by what is known, too */
   LamResponder direct, solver, cache; /* direct behind the signals' `solver`; destroy NULL: not in use */
 
   /* rank 0 only */
   LamRecordWriter records; /* appends what the cache solves to the database's file */
   PetscInt recorded;       /* records of the database that are in its file */
   PetscInt64 next_key;     /* of a state that belongs to no grid */
-  char *grid_text;         /* to be written; NULL: the file has it */
+  PetscInt row_count, row_capacity;
+  PetscInt *rows;  /* in the file, of the database's records behind the first `known.first`; owned */
+  char *grid_text; /* to be written; NULL: the file has it */
 } LamFE2Tissue;
 
 typedef struct {

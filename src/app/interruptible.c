@@ -64,6 +64,33 @@ static PetscErrorCode Seal(void *ctx, PetscReal bulk_modulus)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode StateSize(void *ctx, size_t *bytes)
+{
+  Interruptible *i = (Interruptible *)ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(i->solver->state_size(i->solver->ctx, bytes));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Save(void *ctx, PetscInt point, void *bytes)
+{
+  Interruptible *i = (Interruptible *)ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(i->solver->save(i->solver->ctx, point, bytes));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Load(void *ctx, PetscInt point, const void *bytes)
+{
+  Interruptible *i = (Interruptible *)ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(i->solver->load(i->solver->ctx, point, bytes));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Destroy(void **ctx)
 {
   PetscFunctionBeginUser;
@@ -82,5 +109,9 @@ PetscErrorCode LamInterruptibleResponderCreate(LamResponder *solver, PetscBool (
   i->stop = stop;
   *responder = (LamResponder){.ctx = i, .respond = Respond, .accept = Accept, .reject = Reject, .destroy = Destroy};
   if (solver->seal) responder->seal = Seal;
+  if (!solver->state_size) PetscFunctionReturn(0);
+  responder->state_size = StateSize;
+  responder->save = Save;
+  responder->load = Load;
   PetscFunctionReturn(0);
 }

@@ -1,0 +1,208 @@
+/*
+  OUT.h5.ckpt: what a macroscale run that is killed or stopped goes on from.
+
+  Method. The file is written anew after each complete step, when the results and the database have it, and takes its
+  name when it is on the disk. So a kill leaves the last complete step, and results that have this step or one more,
+  which is written over. A database may have grown, too: the records that the run knew are those that are named, in
+  their order; others count as not solved yet, and are found where they would be solved.
+*/
+#include "fe2_run.h"
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+static PetscErrorCode CheckpointPath(const LamFE2Run *run, char path[PETSC_MAX_PATH_LEN])
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(path, PETSC_MAX_PATH_LEN, "%s.ckpt", run->out_path));
+  PetscFunctionReturn(0);
+}
+
+/* ---- whose it is ---- */
+
+static size_t LineLength(const char text[])
+{
+  return strcspn(text, "\n");
+}
+
+/* An error that names the first line in which two texts differ; `before` is the text that the file holds. */
+static PetscErrorCode CompareScenes(const char path[], const char before[], const char now[])
+{
+  int line = 1;
+
+  PetscFunctionBeginUser;
+  if (!strcmp(before, now)) PetscFunctionReturn(0);
+  for (;; line++) {
+    const size_t a = LineLength(before), b = LineLength(now);
+    if (a != b || strncmp(before, now, a) || !before[a] || !now[b]) break;
+    before += a + 1;
+    now += b + 1;
+  }
+  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+          "%s: belongs to another scene; line %d was \"%.*s\" and is \"%.*s\"; restore it, or leave out --resume", path,
+          line, (int)LineLength(before), before, (int)LineLength(now), now);
+}
+
+/* The scene and what answers; on reading an error where they are others. */
+static PetscErrorCode ArchiveIdentity(LamFE2Run *run, LamArchive archive, const char path[])
+{
+  PetscInt length = LamAppIsRoot() ? (PetscInt)strlen(run->scene->text) + 1 : 0;
+  char *text = run->scene->text;
+  PetscErrorCode ierr = 0;
+  int response = run->response;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamArchiveList(archive, "scene", 1, &length, (void **)&text));
+  PetscCall(LamArchiveShared(archive, "response", sizeof(response), &response));
+  if (!LamArchiveIsReading(archive)) PetscFunctionReturn(0);
+  if (LamAppIsRoot()) {
+    ierr = CompareScenes(path, text, run->scene->text);
+    PetscCall(PetscFree(text));
+  }
+  PetscCall(LamFE2ShareError(run->comm, ierr));
+  PetscCheck(response == (int)run->response, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: goes on with --response %s; this run has %s", path, LamFE2ResponseNames[response],
+             LamFE2ResponseNames[run->response]);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFE2CheckpointRows(LamFE2Run *run, LamArchive archive, LamFE2Tissue *tissue)
+{
+  char name[2 * LAM_NAME_LENGTH];
+  PetscMPIInt count;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(name, sizeof(name), "records known first %s", tissue->name));
+  PetscCall(LamArchiveShared(archive, name, sizeof(tissue->known.first), &tissue->known.first));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "records known %s", tissue->name));
+  PetscCall(LamArchiveList(archive, name, sizeof(PetscInt), &tissue->row_count, (void **)&tissue->rows));
+  if (!LamArchiveIsReading(archive)) PetscFunctionReturn(0);
+  PetscCall(PetscMPIIntCast(tissue->row_count, &count));
+  PetscCallMPI(MPI_Bcast(&count, 1, MPI_INT, 0, run->comm));
+  if (!LamAppIsRoot()) PetscCall(PetscMalloc1(count, &tissue->rows));
+  tissue->row_count = tissue->row_capacity = count;
+  PetscCallMPI(MPI_Bcast(tissue->rows, count, MPIU_INT, 0, run->comm));
+  PetscFunctionReturn(0);
+}
+
+/* ---- finding ---- */
+
+/* Rank 0: whether the results are complete, and of this scene. */
+static PetscErrorCode IsFinished(const LamFE2Run *run, PetscBool *finished)
+{
+  PetscBool has_status, has_scene;
+  char *status = NULL, *scene = NULL;
+
+  PetscFunctionBeginUser;
+  *finished = PETSC_FALSE;
+  if (access(run->out_path, F_OK)) PetscFunctionReturn(0);
+  PetscCall(LamFileReadText(run->out_path, "/macro/status", &has_status, &status));
+  PetscCall(LamFileReadText(run->out_path, "/scene", &has_scene, &scene));
+  if (has_status && has_scene && !strcmp(status, "done")) {
+    PetscCall(CompareScenes(run->out_path, scene, run->scene->text));
+    *finished = PETSC_TRUE;
+    if (!run->quiet) fprintf(stderr, "lamella fe2: %s: has all steps; there is nothing left to do\n", run->out_path);
+  }
+  PetscCall(PetscFree(status));
+  PetscCall(PetscFree(scene));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFE2CheckpointFind(LamFE2Run *run, PetscBool *finished)
+{
+  char path[PETSC_MAX_PATH_LEN];
+  PetscErrorCode ierr = 0;
+  int exists;
+
+  PetscFunctionBeginUser;
+  PetscCall(CheckpointPath(run, path));
+  exists = !access(path, F_OK);
+  PetscCallMPI(MPI_Bcast(&exists, 1, MPI_INT, 0, run->comm));
+  if (!exists) {
+    if (LamAppIsRoot()) ierr = IsFinished(run, finished);
+    PetscCall(LamFE2ShareError(run->comm, ierr));
+    PetscCallMPI(MPI_Bcast(finished, 1, MPIU_BOOL, 0, run->comm));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(LamArchiveOpen(run->comm, path, &run->archive));
+  PetscCall(ArchiveIdentity(run, run->archive, path));
+  PetscCall(LamArchiveShared(run->archive, "totals", sizeof(run->totals), &run->totals));
+  run->resumed_steps = run->totals.steps;
+  run->resumed = (PetscBool)(run->resumed_steps > 0);
+  PetscFunctionReturn(0);
+}
+
+/* ---- saving, going on ---- */
+
+/* What is there once a step is complete. */
+static PetscErrorCode ArchiveSteps(LamFE2Run *run, LamArchive archive)
+{
+  PetscFunctionBeginUser;
+  if (!run->totals.steps) PetscFunctionReturn(0);
+  PetscCall(LamFE2FileArchive(run->out, archive));
+  PetscCall(LamMacroArchive(run->macro, archive));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Write(LamFE2Run *run, LamArchive archive)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ArchiveIdentity(run, archive, NULL));
+  for (PetscInt t = 0; t < run->tissues.count && run->response != LAM_FE2_DIRECT; t++)
+    PetscCall(LamFE2CheckpointRows(run, archive, &run->tissues.tissues[t]));
+  PetscCall(LamArchiveShared(archive, "totals", sizeof(run->totals), &run->totals));
+  PetscCall(ArchiveSteps(run, archive));
+  PetscFunctionReturn(0);
+}
+
+/* A cache that has no file forgets what it has solved: there is nothing to go on from. */
+static PetscBool CanGoOn(const LamFE2Run *run)
+{
+  return (PetscBool)(run->response == LAM_FE2_DIRECT || run->database_path);
+}
+
+PetscErrorCode LamFE2CheckpointSave(LamFE2Run *run)
+{
+  char path[PETSC_MAX_PATH_LEN];
+  PetscErrorCode ierr;
+  LamArchive archive;
+
+  PetscFunctionBeginUser;
+  if (!run->out_path) PetscFunctionReturn(0);
+  if (!CanGoOn(run)) {
+    PetscCall(LamFE2CheckpointRemove(run)); /* of an earlier run */
+    PetscFunctionReturn(0);
+  }
+  PetscCall(CheckpointPath(run, path));
+  PetscCall(LamArchiveCreate(run->comm, path, &archive));
+  ierr = Write(run, archive);
+  PetscCall(LamArchiveClose(&archive, (PetscBool)!ierr));
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFE2CheckpointStart(LamFE2Run *run)
+{
+  PetscFunctionBeginUser;
+  if (!run->archive) {
+    PetscCall(LamFE2CheckpointSave(run));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(ArchiveSteps(run, run->archive));
+  PetscCall(LamArchiveClose(&run->archive, PETSC_FALSE));
+  if (LamAppIsRoot() && !run->quiet)
+    fprintf(stderr, "lamella fe2: %s: goes on behind %" PetscInt_FMT " complete steps\n", run->out_path,
+            run->resumed_steps);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFE2CheckpointRemove(LamFE2Run *run)
+{
+  char path[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBeginUser;
+  if (!run->out_path || !LamAppIsRoot()) PetscFunctionReturn(0);
+  PetscCall(CheckpointPath(run, path));
+  unlink(path);
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,336 @@
+/*
+  Archives: HDF5 files with one dataset of bytes, [items][size], for each name, and its checksum.
+
+  Rank 0 reads and writes, block by block, so that its memory is bounded by BLOCK_BYTES whatever the ranks hold. An
+  error of its own is everyone's: it has told it.
+*/
+#include <lamella/archive.h>
+#include <string.h>
+#include <unistd.h>
+#include "record_internal.h"
+
+static const size_t BLOCK_BYTES = (size_t)64 << 20;
+
+struct LamArchive_s {
+  MPI_Comm comm;
+  PetscMPIInt rank;
+  PetscBool reading;
+  char path[PETSC_MAX_PATH_LEN], temporary[PETSC_MAX_PATH_LEN];
+  hid_t file; /* rank 0; else, or after an error, invalid */
+};
+
+/* Items of all ranks. `item` is the caller's, with gaps nowhere. */
+typedef struct {
+  const char *name;
+  size_t size;
+  PetscInt total, n; /* of all ranks, of this one */
+  const PetscInt *numbers;
+  char *items;
+  hid_t dataset; /* rank 0 */
+  uint32_t sum;  /* of what was written, or read */
+} Array;
+
+static PetscErrorCode ShareError(LamArchive archive, PetscErrorCode ierr)
+{
+  int code = (int)ierr;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Bcast(&code, 1, MPI_INT, 0, archive->comm));
+  /* no SETERRQ: the message has been printed where the error arose */
+  PetscFunctionReturn((PetscErrorCode)code);
+}
+
+/* ---- rank 0: datasets ---- */
+
+static PetscErrorCode CreateDataset(const LamArchive archive, Array *array)
+{
+  const hsize_t dims[2] = {(hsize_t)array->total, (hsize_t)array->size};
+  hid_t space;
+
+  PetscFunctionBeginUser;
+  LamCallHDF5(archive->path, PETSC_ERR_FILE_WRITE, space = H5Screate_simple(2, dims, NULL));
+  LamCallHDF5(archive->path, PETSC_ERR_FILE_WRITE,
+              array->dataset =
+                  H5Dcreate2(archive->file, array->name, H5T_STD_U8LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  LamCallHDF5(archive->path, PETSC_ERR_LIB, H5Sclose(space));
+  PetscFunctionReturn(0);
+}
+
+/* *total: the items in the file, where array->total is negative; else they must be as many. */
+static PetscErrorCode OpenDataset(const LamArchive archive, Array *array)
+{
+  hsize_t dims[H5S_MAX_RANK] = {0};
+  PetscBool has, same;
+  hid_t space;
+  int rank;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileHas(archive->path, archive->file, array->name, &has));
+  PetscCheck(has, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: holds no %s; another version of lamella wrote it, or it is damaged", archive->path, array->name);
+  LamCallHDF5(archive->path, PETSC_ERR_USER_INPUT, array->dataset = H5Dopen2(archive->file, array->name, H5P_DEFAULT));
+  LamCallHDF5(archive->path, PETSC_ERR_USER_INPUT, space = H5Dget_space(array->dataset));
+  LamCallHDF5(archive->path, PETSC_ERR_USER_INPUT, rank = H5Sget_simple_extent_dims(space, dims, NULL));
+  LamCallHDF5(archive->path, PETSC_ERR_LIB, H5Sclose(space));
+  if (array->total < 0) array->total = (PetscInt)dims[0];
+  same = (PetscBool)(rank == 2 && dims[0] == (hsize_t)array->total && dims[1] == (hsize_t)array->size);
+  PetscCheck(same, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: %s has %lld items of %lld bytes, this run has %" PetscInt_FMT
+             " of %zu; the mesh has changed, or another version of lamella wrote it",
+             archive->path, array->name, (long long)dims[0], (long long)dims[1], array->total, array->size);
+  PetscFunctionReturn(0);
+}
+
+/* Writes, or reads, rows [first, first + rows) of the dataset. */
+static PetscErrorCode MoveBlock(const LamArchive archive, Array *array, PetscInt first, PetscInt rows, char *block)
+{
+  const hsize_t start[2] = {(hsize_t)first, 0}, count[2] = {(hsize_t)rows, (hsize_t)array->size};
+  const char *path = archive->path;
+  hid_t space, memory;
+
+  PetscFunctionBeginUser;
+  LamCallHDF5(path, PETSC_ERR_LIB, space = H5Dget_space(array->dataset));
+  LamCallHDF5(path, PETSC_ERR_LIB, memory = H5Screate_simple(2, count, NULL));
+  LamCallHDF5(path, PETSC_ERR_LIB, H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL));
+  if (archive->reading)
+    LamCallHDF5(path, PETSC_ERR_FILE_READ,
+                H5Dread(array->dataset, H5T_NATIVE_UCHAR, memory, space, H5P_DEFAULT, block));
+  else
+    LamCallHDF5(path, PETSC_ERR_FILE_WRITE,
+                H5Dwrite(array->dataset, H5T_NATIVE_UCHAR, memory, space, H5P_DEFAULT, block));
+  array->sum = LamBytesSum(array->sum, block, (size_t)rows * array->size);
+  LamCallHDF5(path, PETSC_ERR_LIB, H5Sclose(memory));
+  LamCallHDF5(path, PETSC_ERR_LIB, H5Sclose(space));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CloseDataset(const LamArchive archive, Array *array)
+{
+  PetscBool sound = PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  if (archive->reading)
+    PetscCall(LamSumMatches(archive->path, array->dataset, LAM_SUM, array->sum, &sound));
+  else
+    PetscCall(LamSumWrite(archive->path, array->dataset, LAM_SUM, array->sum));
+  LamCallHDF5(archive->path, PETSC_ERR_FILE_WRITE, H5Dclose(array->dataset));
+  PetscCheck(sound, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s is damaged (its checksum differs)", archive->path,
+             array->name);
+  PetscFunctionReturn(0);
+}
+
+/* ---- between ranks ---- */
+
+/* The items of all ranks with numbers [first, first + rows) come together on rank 0, in their order. */
+static PetscErrorCode GatherBlock(const LamArchive archive, const Array *array, PetscInt first, PetscInt rows,
+                                  char *block)
+{
+  const size_t head = sizeof(PetscInt), stride = head + array->size;
+  PetscMPIInt ranks, bytes = 0, *counts, *starts;
+  char *mine, *all = NULL;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(archive->comm, &ranks));
+  PetscCall(PetscMalloc2(ranks, &counts, ranks + 1, &starts));
+  PetscCall(PetscMalloc((size_t)PetscMin(rows, array->n) * stride, &mine));
+  for (PetscInt k = 0; k < array->n; k++) {
+    if (array->numbers[k] < first || array->numbers[k] >= first + rows) continue;
+    memcpy(mine + bytes, &array->numbers[k], head);
+    memcpy(mine + bytes + head, array->items + (size_t)k * array->size, array->size);
+    bytes += (PetscMPIInt)stride;
+  }
+  PetscCallMPI(MPI_Gather(&bytes, 1, MPI_INT, counts, 1, MPI_INT, 0, archive->comm));
+  starts[0] = 0;
+  for (PetscMPIInt r = 0; r < ranks && !archive->rank; r++) starts[r + 1] = starts[r] + counts[r];
+  if (!archive->rank) PetscCall(PetscMalloc((size_t)starts[ranks], &all));
+  PetscCallMPI(MPI_Gatherv(mine, bytes, MPI_BYTE, all, counts, starts, MPI_BYTE, 0, archive->comm));
+  for (PetscMPIInt at = 0; !archive->rank && at < starts[ranks]; at += (PetscMPIInt)stride) {
+    PetscInt number;
+    memcpy(&number, all + at, head);
+    memcpy(block + (size_t)(number - first) * array->size, all + at + head, array->size);
+  }
+  PetscCall(PetscFree(all));
+  PetscCall(PetscFree(mine));
+  PetscCall(PetscFree2(counts, starts));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TakeFromBlock(const LamArchive archive, const Array *array, PetscInt first, PetscInt rows,
+                                    char *block)
+{
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Bcast(block, (PetscMPIInt)((size_t)rows * array->size), MPI_BYTE, 0, archive->comm));
+  for (PetscInt k = 0; k < array->n; k++) {
+    const PetscInt row = array->numbers[k] - first;
+    if (row >= 0 && row < rows)
+      memcpy(array->items + (size_t)k * array->size, block + (size_t)row * array->size, array->size);
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MoveBlocks(const LamArchive archive, Array *array)
+{
+  const PetscInt rows = (PetscInt)PetscMax(1, BLOCK_BYTES / PetscMax(1, array->size));
+  PetscErrorCode ierr = 0;
+  char *block;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc((size_t)PetscMin(rows, array->total) * array->size, &block));
+  for (PetscInt first = 0; first < array->total && !ierr; first += rows) {
+    const PetscInt n = PetscMin(rows, array->total - first);
+    PetscCall(PetscArrayzero(block, (size_t)n * array->size));
+    if (!archive->reading) PetscCall(GatherBlock(archive, array, first, n, block));
+    if (!archive->rank) ierr = MoveBlock(archive, array, first, n, block);
+    ierr = ShareError(archive, ierr);
+    if (!ierr && archive->reading) PetscCall(TakeFromBlock(archive, array, first, n, block));
+  }
+  PetscCall(PetscFree(block));
+  PetscFunctionReturn(ierr);
+}
+
+static PetscErrorCode Move(LamArchive archive, Array *array)
+{
+  PetscErrorCode ierr = 0;
+
+  PetscFunctionBeginUser;
+  if (!archive->rank) ierr = archive->reading ? OpenDataset(archive, array) : CreateDataset(archive, array);
+  PetscCall(ShareError(archive, ierr));
+  PetscCallMPI(MPI_Bcast(&array->total, 1, MPIU_INT, 0, archive->comm));
+  PetscCall(MoveBlocks(archive, array));
+  if (!archive->rank) ierr = CloseDataset(archive, array);
+  PetscCall(ShareError(archive, ierr));
+  PetscFunctionReturn(0);
+}
+
+/* ---- public ---- */
+
+PetscErrorCode LamArchiveItems(LamArchive archive, const char name[], size_t size, PetscInt n, const PetscInt numbers[],
+                               void *items)
+{
+  Array array = {.name = name, .size = size, .n = n, .numbers = numbers, .items = items};
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < n; k++) array.total = PetscMax(array.total, numbers[k] + 1);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &array.total, 1, MPIU_INT, MPI_MAX, archive->comm));
+  PetscCall(Move(archive, &array));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamArchiveShared(LamArchive archive, const char name[], size_t size, void *value)
+{
+  const PetscInt number = 0;
+  Array array = {.name = name,
+                 .size = size,
+                 .total = 1,
+                 .n = archive->reading || !archive->rank ? 1 : 0,
+                 .numbers = &number,
+                 .items = value};
+
+  PetscFunctionBeginUser;
+  PetscCall(Move(archive, &array));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Count(LamArchive archive, const char name[], PetscInt *n)
+{
+  char counter[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(counter, sizeof(counter), "%s count", name));
+  PetscCall(LamArchiveShared(archive, counter, sizeof(*n), n));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamArchiveList(LamArchive archive, const char name[], size_t size, PetscInt *n, void **items)
+{
+  PetscInt *numbers, mine;
+
+  PetscFunctionBeginUser;
+  PetscCall(Count(archive, name, n));
+  mine = archive->rank ? 0 : *n;
+  if (archive->reading) *items = NULL;
+  if (archive->reading && mine) PetscCall(PetscMalloc((size_t)mine * size, items));
+  PetscCall(PetscMalloc1(mine, &numbers));
+  for (PetscInt k = 0; k < mine; k++) numbers[k] = k;
+  PetscCall(LamArchiveItems(archive, name, size, mine, numbers, *items));
+  PetscCall(PetscFree(numbers));
+  *n = mine;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Make(MPI_Comm comm, const char path[], PetscBool reading, LamArchive *archive)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(archive));
+  (*archive)->comm = comm;
+  (*archive)->reading = reading;
+  (*archive)->file = H5I_INVALID_HID;
+  PetscCallMPI(MPI_Comm_rank(comm, &(*archive)->rank));
+  PetscCall(PetscStrncpy((*archive)->path, path, sizeof((*archive)->path)));
+  PetscCall(PetscSNPrintf((*archive)->temporary, sizeof((*archive)->temporary), "%s.tmp", path));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CreateFile(LamArchive archive)
+{
+  PetscFunctionBeginUser;
+  LamCallHDF5(archive->temporary, PETSC_ERR_FILE_OPEN,
+              archive->file = H5Fcreate(archive->temporary, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamArchiveCreate(MPI_Comm comm, const char path[], LamArchive *archive)
+{
+  PetscErrorCode ierr = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(Make(comm, path, PETSC_FALSE, archive));
+  if (!(*archive)->rank) ierr = CreateFile(*archive);
+  ierr = ShareError(*archive, ierr);
+  if (ierr) PetscCall(PetscFree(*archive));
+  PetscFunctionReturn(ierr);
+}
+
+PetscErrorCode LamArchiveOpen(MPI_Comm comm, const char path[], LamArchive *archive)
+{
+  PetscErrorCode ierr = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(Make(comm, path, PETSC_TRUE, archive));
+  if (!(*archive)->rank) ierr = LamFileOpenRead(path, &(*archive)->file);
+  ierr = ShareError(*archive, ierr);
+  if (ierr) PetscCall(PetscFree(*archive));
+  PetscFunctionReturn(ierr);
+}
+
+PetscBool LamArchiveIsReading(LamArchive archive)
+{
+  return archive->reading;
+}
+
+/* On rank 0. */
+static PetscErrorCode CloseFile(LamArchive archive, PetscBool keep)
+{
+  PetscFunctionBeginUser;
+  if (archive->file < 0) PetscFunctionReturn(0);
+  if (archive->reading || !keep) {
+    H5Fclose(archive->file);
+    if (!archive->reading) unlink(archive->temporary);
+    PetscFunctionReturn(0);
+  }
+  PetscCall(LamFileClose(archive->temporary, archive->file));
+  PetscCall(LamFilePublish(archive->temporary, archive->path));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamArchiveClose(LamArchive *archive, PetscBool keep)
+{
+  PetscErrorCode ierr = 0;
+
+  PetscFunctionBeginUser;
+  if (!*archive) PetscFunctionReturn(0);
+  if (!(*archive)->rank) ierr = CloseFile(*archive, keep);
+  ierr = ShareError(*archive, ierr);
+  PetscCall(PetscFree(*archive));
+  PetscFunctionReturn(ierr);
+}
