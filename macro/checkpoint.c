@@ -58,7 +58,8 @@ static PetscErrorCode ArchiveResponder(LamMacro macro, LamArchive archive, const
   PetscFunctionBeginUser;
   if (!responder->state_size) PetscFunctionReturn(0);
   PetscCall(responder->state_size(responder->ctx, &size));
-  PetscCall(PetscMalloc((size_t)macro->point_count * size, &states));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &size, 1, MPI_UNSIGNED_LONG, MPI_MAX, macro->comm));
+  PetscCall(PetscCalloc((size_t)macro->point_count * size, &states));
   for (PetscInt p = 0; p < macro->point_count && !LamArchiveIsReading(archive); p++)
     PetscCall(responder->save(responder->ctx, p, states + (size_t)p * size));
   PetscCall(LamArchiveItems(archive, "tissue states", size, macro->point_count, numbers, states));

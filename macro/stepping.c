@@ -214,6 +214,7 @@ static PetscErrorCode FinishStep(LamMacro macro, PetscInt number, PetscReal load
   LamMacroStep *step = &macro->step;
   LamResponder *responder = macro->responder, *before = &macro->counted;
   PetscReal sum[4];
+  PetscMPIInt ranks;
   PetscInt64 counts[4] = {responder->queries - before->queries, responder->hits - before->hits,
                           responder->solves - before->solves, responder->failures - before->failures};
 
@@ -231,7 +232,9 @@ static PetscErrorCode FinishStep(LamMacro macro, PetscInt number, PetscReal load
   step->hits = counts[1];
   step->solves = counts[2];
   step->failures = counts[3];
-  step->solve_seconds = responder->solve_seconds - before->solve_seconds;
+  PetscCallMPI(MPI_Comm_size(macro->comm, &ranks));
+  step->solve_seconds = (responder->solve_seconds - before->solve_seconds) / ranks;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &step->solve_seconds, 1, MPIU_REAL, MPIU_SUM, macro->comm));
   step->seconds = LamClock() - start;
   PetscFunctionReturn(0);
 }

@@ -31,7 +31,7 @@ typedef struct {
   PetscInt newton_iterations; /* all of the step, cutbacks included */
   PetscInt cutbacks;
   PetscInt64 queries, hits, solves, failures; /* of this step, all ranks */
-  PetscReal seconds, solve_seconds;           /* wall time; time inside the responder's solves, this rank */
+  PetscReal seconds, solve_seconds;           /* wall time; of it within the responder's solves, mean over the ranks */
   PetscReal residuals[64];                    /* of the last Newton iteration series, over the norm of the
                                                  element forces; residual_count entries */
   PetscInt residual_count;

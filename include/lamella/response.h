@@ -140,8 +140,8 @@ typedef struct LamResponder_s {
   PetscErrorCode (*seal)(void *ctx, PetscReal bulk_modulus);
   PetscErrorCode (*destroy)(void **ctx);
   /*
-    The states that the last `accept` left, as bytes, for a run that goes on from them; the same size for all points of
-    all ranks. NULL: there are none to keep. `load` makes a point's bytes its accepted state.
+    The states that the last `accept` left, as bytes, for a run that goes on from them; state_size: of the point on this
+    rank that needs most. NULL: there are none to keep. `load` makes a point's bytes its accepted state.
   */
   PetscErrorCode (*state_size)(void *ctx, size_t *bytes);
   PetscErrorCode (*save)(void *ctx, PetscInt point, void *bytes);

@@ -24,27 +24,29 @@ static PetscErrorCode PrintStepJSON(const LamFE2Run *run, const LamMacroStep *st
   PetscFunctionBeginUser;
   for (PetscInt s = 0; s < step->boundary_count; s++)
     json_object_set_new(reaction, step->boundary[s], LamJSONReals(2, step->reaction[s], ForceUnit(run)));
-  object = json_pack("{s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o}", "step",
+  object = json_pack("{s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "step",
                      (json_int_t)step->step, "load_factor", LamJSONReal(step->load_factor), "reaction", reaction,
                      "work", LamJSONReal(step->work * scales->stress * PetscSqr(scales->macro_length)),
                      "debonded_fraction", LamJSONReal(step->debonded_fraction), "max_gap", LamJSONReal(step->max_gap),
                      "turgor_mean", LamJSONReal(step->turgor_mean * MPa(run)), "newton_iterations",
                      (json_int_t)step->newton_iterations, "cutbacks", (json_int_t)step->cutbacks, "queries",
                      (json_int_t)step->queries, "hits", (json_int_t)step->hits, "solves", (json_int_t)step->solves,
-                     "failures", (json_int_t)step->failures, "seconds", LamJSONReal(step->seconds), "peak_memory_mb",
-                     LamJSONReal(peak_memory), "residuals", LamJSONReals(step->residual_count, step->residuals, 1));
+                     "failures", (json_int_t)step->failures, "seconds", LamJSONReal(step->seconds), "solve_seconds",
+                     LamJSONReal(step->solve_seconds), "peak_memory_mb", LamJSONReal(peak_memory), "residuals",
+                     LamJSONReals(step->residual_count, step->residuals, 1));
   PetscCall(LamPrintJSON(object));
   PetscFunctionReturn(0);
 }
 
 static void PrintHeader(const LamFE2Run *run, const LamMacroStep *step)
 {
-  printf("Reactions in N per mm of thickness; residuals relative to the forces of the elements.\n%4s %7s", "step",
-         "load");
+  printf("Reactions in N per mm of thickness; solving: seconds of it in RVE solves; residuals relative to the forces "
+         "of the elements.\n%4s %7s",
+         "step", "load");
   for (PetscInt s = 0; s < step->boundary_count; s++) {
     for (int i = 0; i < 2; i++) printf(" %*s.%c", 9, step->boundary[s], "xy"[i]);
   }
-  printf(" %5s %8s %8s %8s %8s  %s\n", "iter.", "queries", "hits", "solves", "seconds", "residuals");
+  printf(" %5s %8s %8s %8s %8s %8s  %s\n", "iter.", "queries", "hits", "solves", "seconds", "solving", "residuals");
 }
 
 static void PrintRow(const LamFE2Run *run, const LamMacroStep *step)
@@ -53,8 +55,8 @@ static void PrintRow(const LamFE2Run *run, const LamMacroStep *step)
   for (PetscInt s = 0; s < step->boundary_count; s++) {
     for (int i = 0; i < 2; i++) printf(" %11.4e", (double)(step->reaction[s][i] * ForceUnit(run)));
   }
-  printf(" %5" PetscInt_FMT " %8lld %8lld %8lld %8.2f ", step->newton_iterations, (long long)step->queries,
-         (long long)step->hits, (long long)step->solves, (double)step->seconds);
+  printf(" %5" PetscInt_FMT " %8lld %8lld %8lld %8.2f %8.2f ", step->newton_iterations, (long long)step->queries,
+         (long long)step->hits, (long long)step->solves, (double)step->seconds, (double)step->solve_seconds);
   for (PetscInt k = 0; k < step->residual_count; k++) printf(" %.0e", (double)step->residuals[k]);
   putchar('\n');
   fflush(stdout);

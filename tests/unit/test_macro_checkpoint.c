@@ -1,0 +1,174 @@
+/*
+  A macroscale run that goes on from an archive of an earlier one; archives themselves.
+*/
+#include "macro_fixture.h"
+#include <stdio.h>
+#include <unistd.h>
+
+static const char Path[] = "checkpoint.tmp.ckpt";
+
+/* ---- archives ---- */
+
+typedef struct {
+  PetscInt shared, count;
+  PetscReal items[3][2], *list;
+} Contents;
+
+static PetscErrorCode Transfer(LamArchive archive, Contents *c)
+{
+  const PetscInt numbers[3] = {2, 0, 1};
+
+  PetscFunctionBeginUser;
+  PetscCall(LamArchiveShared(archive, "shared", sizeof(c->shared), &c->shared));
+  PetscCall(LamArchiveItems(archive, "items", sizeof(c->items[0]), 3, numbers, c->items));
+  PetscCall(LamArchiveList(archive, "list", sizeof(PetscReal), &c->count, (void **)&c->list));
+  PetscFunctionReturn(0);
+}
+
+static void WriteArchive(Contents *contents, PetscBool keep)
+{
+  LamArchive archive;
+
+  assert_ok(LamArchiveCreate(PETSC_COMM_SELF, Path, &archive));
+  assert_false(LamArchiveIsReading(archive));
+  assert_ok(Transfer(archive, contents));
+  assert_ok(LamArchiveClose(&archive, keep));
+}
+
+static void WhatIsWrittenIsRead(void **state)
+{
+  PetscReal list[2] = {5, 6};
+  Contents written = {7, 2, {{1, 2}, {3, 4}, {5, 6}}, list}, read = {0};
+  LamArchive archive;
+
+  WriteArchive(&written, PETSC_TRUE);
+  assert_ok(LamArchiveOpen(PETSC_COMM_SELF, Path, &archive));
+  assert_true(LamArchiveIsReading(archive));
+  assert_ok(Transfer(archive, &read));
+  assert_ok(LamArchiveClose(&archive, PETSC_FALSE));
+  assert_int_equal(read.shared, 7);
+  assert_memory_equal(read.items, written.items, sizeof(read.items));
+  assert_int_equal(read.count, 2);
+  assert_memory_equal(read.list, list, sizeof(list));
+  assert_ok(PetscFree(read.list));
+  unlink(Path);
+}
+
+static void WhatIsNotKeptLeavesTheFileBefore(void **state)
+{
+  Contents first = {.shared = 1}, second = {.shared = 2}, read = {0};
+  LamArchive archive;
+
+  WriteArchive(&first, PETSC_TRUE);
+  WriteArchive(&second, PETSC_FALSE);
+  assert_ok(LamArchiveOpen(PETSC_COMM_SELF, Path, &archive));
+  assert_ok(Transfer(archive, &read));
+  assert_ok(LamArchiveClose(&archive, PETSC_FALSE));
+  assert_int_equal(read.shared, 1);
+  unlink(Path);
+}
+
+static void AnotherCountIsRefused(void **state)
+{
+  const PetscInt numbers[2] = {0, 1};
+  Contents contents = {.shared = 1};
+  PetscReal items[2][2];
+  LamArchive archive;
+
+  WriteArchive(&contents, PETSC_TRUE);
+  assert_ok(LamArchiveOpen(PETSC_COMM_SELF, Path, &archive));
+  assert_ok(PetscPushErrorHandler(PetscIgnoreErrorHandler, NULL));
+  assert_int_equal(LamArchiveItems(archive, "items", sizeof(items[0]), 2, numbers, items), PETSC_ERR_USER_INPUT);
+  assert_int_equal(LamArchiveItems(archive, "others", sizeof(items[0]), 2, numbers, items), PETSC_ERR_USER_INPUT);
+  assert_ok(PetscPopErrorHandler());
+  assert_ok(LamArchiveClose(&archive, PETSC_FALSE));
+  unlink(Path);
+}
+
+/* ---- runs ---- */
+
+/* Writes the archive after each complete step, as the program does. */
+static PetscErrorCode SaveMonitor(LamMacro macro, const LamMacroStep *step, PetscBool *stop, void *ctx)
+{
+  LamArchive archive;
+
+  PetscFunctionBeginUser;
+  PetscCall(FixtureMonitor(macro, step, stop, ctx));
+  if (!step->complete) PetscFunctionReturn(0);
+  PetscCall(LamArchiveCreate(PETSC_COMM_WORLD, Path, &archive));
+  PetscCall(LamMacroArchive(macro, archive));
+  PetscCall(LamArchiveClose(&archive, PETSC_TRUE));
+  PetscFunctionReturn(0);
+}
+
+static void Prepare(Fixture *fixture, PetscBool inflate, PetscInt stop_after)
+{
+  FixtureShear(fixture, 3, 0.3, 4);
+  fixture->scene.turgor = 0.1;
+  fixture->scene.macro.inflate = inflate;
+  FixtureSetUp(fixture, PETSC_COMM_WORLD);
+  fixture->stop_after = stop_after;
+  assert_ok(LamMacroSetMonitor(fixture->macro, SaveMonitor, fixture));
+}
+
+/* A run that is stopped after a step, and one that goes on from there, are one that is not stopped, bit for bit. */
+static void CheckGoesOn(PetscBool inflate, PetscInt stop_after)
+{
+  Fixture whole, first, second;
+  LamArchive archive;
+
+  Prepare(&whole, inflate, -1);
+  FixtureSolve(&whole);
+  Prepare(&first, inflate, stop_after);
+  FixtureSolve(&first);
+  assert_int_equal(first.reason, LAM_MACRO_STOPPED);
+  Prepare(&second, inflate, -1);
+  assert_ok(LamArchiveOpen(PETSC_COMM_WORLD, Path, &archive));
+  assert_ok(LamMacroArchive(second.macro, archive));
+  assert_ok(LamArchiveClose(&archive, PETSC_FALSE));
+  FixtureSolve(&second);
+  assert_int_equal(second.reason, LAM_MACRO_DONE);
+  assert_int_equal(first.step_count + second.step_count, whole.step_count);
+  for (PetscInt k = 0; k < second.step_count; k++) {
+    const LamMacroStep *a = &whole.steps[first.step_count + k], *b = &second.steps[k];
+    assert_int_equal(a->step, b->step);
+    assert_int_equal(a->newton_iterations, b->newton_iterations);
+    assert_memory_equal(a->reaction, b->reaction, sizeof(a->reaction));
+    assert_memory_equal(&a->work, &b->work, sizeof(a->work));
+  }
+  unlink(Path);
+  FixtureDestroy(&whole);
+  FixtureDestroy(&first);
+  FixtureDestroy(&second);
+}
+
+static void GoesOnBehindAStep(void **state)
+{
+  CheckGoesOn(PETSC_FALSE, 2);
+}
+
+static void GoesOnBehindInflation(void **state)
+{
+  CheckGoesOn(PETSC_TRUE, 0);
+}
+
+static void GoesOnBehindAStepOfAnInflatedBody(void **state)
+{
+  CheckGoesOn(PETSC_TRUE, 3);
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(WhatIsWrittenIsRead),   cmocka_unit_test(WhatIsNotKeptLeavesTheFileBefore),
+      cmocka_unit_test(AnotherCountIsRefused), cmocka_unit_test(GoesOnBehindAStep),
+      cmocka_unit_test(GoesOnBehindInflation), cmocka_unit_test(GoesOnBehindAStepOfAnInflatedBody),
+  };
+
+  int failed;
+
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  cmocka_set_message_output(CM_OUTPUT_STDOUT);
+  failed = cmocka_run_group_tests(tests, NULL, NULL);
+  return PetscFinalize() || failed;
+}
