@@ -257,6 +257,63 @@ static PetscErrorCode MosaicSeal(void *ctx, PetscReal bulk_modulus)
   PetscFunctionReturn(0);
 }
 
+/* ---- states: those of a point's terms, one behind the other ---- */
+
+static PetscErrorCode StateSize(void *ctx, size_t *bytes)
+{
+  Mosaic *mosaic = (Mosaic *)ctx;
+
+  PetscFunctionBeginUser;
+  *bytes = 0;
+  for (PetscInt p = 0; p < mosaic->n; p++) {
+    size_t sum = 0;
+
+    for (PetscInt k = 0; k < mosaic->points[p].count; k++) {
+      const LamResponder *responder = mosaic->tissues[mosaic->points[p].term[k].knot].responder;
+      size_t size;
+
+      PetscCall(responder->state_size(responder->ctx, &size));
+      sum += size;
+    }
+    *bytes = PetscMax(*bytes, sum);
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Save(void *ctx, PetscInt point, void *bytes)
+{
+  Mosaic *mosaic = (Mosaic *)ctx;
+  char *at = bytes;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < mosaic->points[point].count; k++) {
+    const LamResponder *responder = mosaic->tissues[mosaic->points[point].term[k].knot].responder;
+    size_t size;
+
+    PetscCall(responder->save(responder->ctx, mosaic->number[point][k], at));
+    PetscCall(responder->state_size(responder->ctx, &size));
+    at += size;
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Load(void *ctx, PetscInt point, const void *bytes)
+{
+  Mosaic *mosaic = (Mosaic *)ctx;
+  const char *at = bytes;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < mosaic->points[point].count; k++) {
+    const LamResponder *responder = mosaic->tissues[mosaic->points[point].term[k].knot].responder;
+    size_t size;
+
+    PetscCall(responder->load(responder->ctx, mosaic->number[point][k], at));
+    PetscCall(responder->state_size(responder->ctx, &size));
+    at += size;
+  }
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode MosaicDestroy(void **ctx)
 {
   Mosaic *mosaic = (Mosaic *)*ctx;
@@ -313,5 +370,9 @@ PetscErrorCode LamMosaicCreate(PetscInt tissue_count, const LamMosaicTissue tiss
                               .reject = MosaicReject,
                               .seal = can_seal ? MosaicSeal : NULL,
                               .destroy = MosaicDestroy};
+  if (!tissues[0].responder->state_size) PetscFunctionReturn(0);
+  responder->state_size = StateSize;
+  responder->save = Save;
+  responder->load = Load;
   PetscFunctionReturn(0);
 }
