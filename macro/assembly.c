@@ -3,6 +3,7 @@
 
   Method. Total Lagrangian, quadratic elements (element.c): F = 1 + sum_a u_a (x) dN_a/dX at every point of the rank in
   one batch, then from the stored P and A f_ai = sum_q w P_ij dN_a/dX_j, K_ai,bk = sum_q w dN_a/dX_j A_ijkl dN_b/dX_l.
+  Where lumens are sealed, their pressures are taken out of both, element by element (sealed.c).
 
   Reference: Bonet & Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 2nd ed., ch. 9.
 */
@@ -11,19 +12,14 @@
 
 static const PetscReal LARGEST_CHANGE = 0.75; /* of a deformation gradient in one step, Frobenius norm */
 
-/* dN/dX [nodes][dim] at Gauss point q of an element. */
-static const PetscReal *Gradient(LamMacro macro, const LamMacroElement *element, PetscInt q)
-{
-  return &macro->gradient[element->gradient + q * element->kind->nodes * macro->dim];
-}
-
 /* The load of a material point, at displacements ue[nodes][dim] of its element. */
 static LamLoad PointLoad(LamMacro macro, const LamMacroElement *element, PetscInt q, const PetscScalar ue[])
 {
   const PetscInt dim = macro->dim, point = element->first + q;
-  const PetscReal *dN = Gradient(macro, element, q);
+  const PetscReal *dN = LamMacroGradient(macro, element, q);
   LamLoad load = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, macro->turgor * macro->turgor_share[point], macro->cohesion[point]};
 
+  load.turgor += LamMacroTurgorChange(macro, element, point);
   for (PetscInt a = 0; a < element->kind->nodes; a++) {
     for (PetscInt i = 0; i < dim; i++) {
       for (PetscInt j = 0; j < dim; j++) load.F[3 * i + j] += PetscRealPart(ue[dim * a + i]) * dN[dim * a + j];
@@ -178,6 +174,7 @@ PetscErrorCode LamMacroEvaluate(LamMacro macro, Vec u, PetscBool *ok)
 
   PetscFunctionBeginUser;
   *ok = PETSC_TRUE;
+  PetscCall(LamMacroFollow(macro, u));
   PetscCall(GatherLoads(macro, u));
   PetscCall(AllKnown(macro, &known));
   if (known) PetscFunctionReturn(0);
@@ -187,6 +184,7 @@ PetscErrorCode LamMacroEvaluate(LamMacro macro, Vec u, PetscBool *ok)
                                       macro->responses));
   PetscCall(AskStop(macro));
   for (PetscInt p = 0; p < macro->point_count; p++) {
+    PetscCall(LamMacroKeepSealed(macro, p));
     KeepResponse(macro->dim, &macro->loads[p], &macro->responses[p], &macro->now[p]);
     if (macro->now[p].known) continue;
     /* elements are not in the order of their numbers on a rank: name the lowest */
@@ -205,7 +203,7 @@ PetscErrorCode LamMacroEvaluate(LamMacro macro, Vec u, PetscBool *ok)
 static void AddPointForce(LamMacro macro, const LamMacroElement *element, PetscInt q, PetscScalar fe[])
 {
   const PetscInt dim = macro->dim, point = element->first + q;
-  const PetscReal *dN = Gradient(macro, element, q), *P = macro->now[point].P, w = macro->weight[point];
+  const PetscReal *dN = LamMacroGradient(macro, element, q), *P = macro->now[point].P, w = macro->weight[point];
 
   for (PetscInt a = 0; a < element->kind->nodes; a++) {
     for (PetscInt i = 0; i < dim; i++) {
@@ -228,6 +226,7 @@ PetscErrorCode LamMacroAssembleForce(LamMacro macro, Vec force, PetscReal *scale
     const LamMacroElement *element = &macro->elements[e];
     PetscScalar fe[LAM_MACRO_DOFS] = {0};
     for (PetscInt q = 0; q < element->kind->points; q++) AddPointForce(macro, element, q, fe);
+    PetscCall(LamMacroCondense(macro, element, fe, NULL));
     for (PetscInt k = 0; k < element->kind->nodes * macro->dim; k++) sum += PetscRealPart(fe[k] * fe[k]);
     PetscCall(DMPlexVecSetClosure(macro->dm, section, local, macro->mesh_start + e, fe, ADD_VALUES));
   }
@@ -243,7 +242,7 @@ PetscErrorCode LamMacroAssembleForce(LamMacro macro, Vec force, PetscReal *scale
 static void AddPointTangent(LamMacro macro, const LamMacroElement *element, PetscInt q, PetscScalar Ke[])
 {
   const PetscInt dim = macro->dim, nodes = element->kind->nodes, dofs = nodes * dim, point = element->first + q;
-  const PetscReal *dN = Gradient(macro, element, q), *A = macro->now[point].A, w = macro->weight[point];
+  const PetscReal *dN = LamMacroGradient(macro, element, q), *A = macro->now[point].A, w = macro->weight[point];
 
   for (PetscInt b = 0; b < nodes; b++) {
     for (PetscInt k = 0; k < dim; k++) {
@@ -273,6 +272,7 @@ PetscErrorCode LamMacroAssembleTangent(LamMacro macro, Mat tangent)
     PetscScalar Ke[LAM_MACRO_DOFS * LAM_MACRO_DOFS];
     PetscCall(PetscArrayzero(Ke, PetscSqr(element->kind->nodes * macro->dim)));
     for (PetscInt q = 0; q < element->kind->points; q++) AddPointTangent(macro, element, q, Ke);
+    PetscCall(LamMacroCondense(macro, element, NULL, Ke));
     PetscCall(DMPlexMatSetClosure(macro->dm, section, global, tangent, macro->mesh_start + e, Ke, ADD_VALUES));
   }
   PetscCall(MatAssemblyBegin(tangent, MAT_FINAL_ASSEMBLY));

@@ -1,14 +1,24 @@
 /*
-  Kinds of elements: quadratic Lagrange elements of PetscFE.
+  Kinds of elements: quadratic Lagrange elements of PetscFE; in sealed tissue (sealed.c) triangles have a cubic bubble,
+  without which a linear pressure of their own is too rich for them.
 
   Gauss points: quadrilaterals 3 x 3 (hexahedra 3 x 3 x 3), triangles 3 (tetrahedra: the rule of degree 2). Both
-  integrate the tangent of undistorted elements with constant material to the element's order.
+  integrate the tangent of undistorted elements with constant material to the element's order. Triangles with a bubble
+  have the 6 points of the rule of degree 4, which is that of the bubble's tangent.
+
+  Reference: Crouzeix & Raviart, RAIRO R-3 (1973) 33-75, Example 5.
 */
 #include "macro_impl.h"
 
-enum { SIMPLEX_DEGREE = 2, TENSOR_POINTS = 3 };
+enum { SIMPLEX_DEGREE = 2, BUBBLE_DEGREE = 4, TENSOR_POINTS = 3 };
 
-PetscBool LamMacroHasNode(DMPolytopeType type)
+/* Whether triangles have a node inside. */
+static PetscBool HasBubble(LamMacro macro, DMPolytopeType type)
+{
+  return type == DM_POLYTOPE_TRIANGLE && macro->scene->sealed ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscBool LamMacroHasNode(LamMacro macro, DMPolytopeType type)
 {
   switch (type) {
   case DM_POLYTOPE_POINT:
@@ -17,7 +27,7 @@ PetscBool LamMacroHasNode(DMPolytopeType type)
   case DM_POLYTOPE_HEXAHEDRON:
     return PETSC_TRUE;
   default:
-    return PETSC_FALSE;
+    return HasBubble(macro, type);
   }
 }
 
@@ -26,30 +36,64 @@ static PetscBool IsSimplex(DMPolytopeType type)
   return type == DM_POLYTOPE_TRIANGLE || type == DM_POLYTOPE_TETRAHEDRON ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/*
+  Puts the bubble b = 27 l1 l2 l3 of a triangle in front of its six functions, from which it takes their value at the
+  centre: N_a - N_a(centre) b. So each is 1 at its own node and 0 at the others.
+*/
+static PetscErrorCode AddBubble(PetscFE fe, const PetscReal points[], LamMacroKind *kind)
+{
+  const PetscReal centre[2] = {-1. / 3, -1. / 3};
+  PetscTabulation table;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscFECreateTabulation(fe, 1, 1, centre, 0, &table));
+  for (PetscInt q = 0; q < kind->points; q++) {
+    PetscReal *N = &kind->value[q * kind->nodes], *dN = &kind->gradient[2 * q * kind->nodes];
+    const PetscReal l[3] = {-0.5 * (points[2 * q] + points[2 * q + 1]), 0.5 * (1 + points[2 * q]),
+                            0.5 * (1 + points[2 * q + 1])};
+    N[0] = 27 * l[0] * l[1] * l[2];
+    dN[0] = 13.5 * l[2] * (l[0] - l[1]);
+    dN[1] = 13.5 * l[1] * (l[0] - l[2]);
+    for (PetscInt a = 1; a < kind->nodes; a++) {
+      const PetscReal share = table->T[0][a - 1];
+      N[a] -= share * N[0];
+      for (int i = 0; i < 2; i++) dN[2 * a + i] -= share * dN[i];
+    }
+  }
+  PetscCall(PetscTabulationDestroy(&table));
+  PetscFunctionReturn(0);
+}
+
 /* Fills value, gradient and weight from PetscFE's tables at the quadrature's points. */
-static PetscErrorCode Tabulate(PetscInt dim, PetscFE fe, PetscQuadrature quadrature, LamMacroKind *kind)
+static PetscErrorCode Tabulate(PetscInt dim, PetscFE fe, PetscQuadrature quadrature, PetscBool bubble,
+                               LamMacroKind *kind)
 {
   const PetscReal *points, *weights;
+  const PetscInt first = bubble ? 1 : 0; /* of PetscFE's functions */
   PetscTabulation table;
 
   PetscFunctionBeginUser;
   PetscCall(PetscQuadratureGetData(quadrature, NULL, NULL, &kind->points, &points, &weights));
   PetscCall(PetscFECreateTabulation(fe, 1, kind->points, points, 1, &table));
-  kind->nodes = table->Nb;
+  kind->nodes = first + table->Nb;
   PetscCheck(table->Nc == 1 && kind->nodes <= LAM_MACRO_NODES, PETSC_COMM_SELF, PETSC_ERR_PLIB,
              "unexpected element: %d functions of %d components", (int)table->Nb, (int)table->Nc);
   PetscCall(PetscMalloc3(kind->points * kind->nodes, &kind->value, kind->points * kind->nodes * dim, &kind->gradient,
                          kind->points, &kind->weight));
-  PetscCall(PetscArraycpy(kind->value, table->T[0], kind->points * kind->nodes));
-  PetscCall(PetscArraycpy(kind->gradient, table->T[1], kind->points * kind->nodes * dim));
+  for (PetscInt q = 0; q < kind->points; q++) {
+    PetscReal *N = &kind->value[q * kind->nodes + first], *dN = &kind->gradient[dim * (q * kind->nodes + first)];
+    PetscCall(PetscArraycpy(N, &table->T[0][q * table->Nb], table->Nb));
+    PetscCall(PetscArraycpy(dN, &table->T[1][dim * q * table->Nb], dim * table->Nb));
+  }
   PetscCall(PetscArraycpy(kind->weight, weights, kind->points));
+  if (bubble) PetscCall(AddBubble(fe, points, kind));
   PetscCall(PetscTabulationDestroy(&table));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamMacroKindGet(LamMacro macro, DMPolytopeType polytope, const LamMacroKind **kind)
 {
-  const PetscBool simplex = IsSimplex(polytope);
+  const PetscBool simplex = IsSimplex(polytope), bubble = HasBubble(macro, polytope);
   PetscQuadrature quadrature;
   PetscFE fe;
 
@@ -65,10 +109,11 @@ PetscErrorCode LamMacroKindGet(LamMacro macro, DMPolytopeType polytope, const La
   *kind = &macro->kinds[macro->kind_count++];
   PetscCall(PetscFECreateLagrange(PETSC_COMM_SELF, macro->dim, 1, simplex, 2, TENSOR_POINTS - 1, &fe));
   if (simplex)
-    PetscCall(PetscDTSimplexQuadrature(macro->dim, SIMPLEX_DEGREE, PETSCDTSIMPLEXQUAD_MINSYM, &quadrature));
+    PetscCall(PetscDTSimplexQuadrature(macro->dim, bubble ? BUBBLE_DEGREE : SIMPLEX_DEGREE, PETSCDTSIMPLEXQUAD_MINSYM,
+                                       &quadrature));
   else
     PetscCall(PetscDTGaussTensorQuadrature(macro->dim, 1, TENSOR_POINTS, -1, 1, &quadrature));
-  PetscCall(Tabulate(macro->dim, fe, quadrature, &macro->kinds[macro->kind_count - 1]));
+  PetscCall(Tabulate(macro->dim, fe, quadrature, bubble, &macro->kinds[macro->kind_count - 1]));
   PetscCall(PetscQuadratureDestroy(&quadrature));
   PetscCall(PetscFEDestroy(&fe));
   PetscFunctionReturn(0);

@@ -64,7 +64,7 @@ static PetscErrorCode CollectNodes(LamMacro macro, PetscInt *n, NodeRecord **nod
   PetscFunctionReturn(0);
 }
 
-/* Nodes in VTK's order: corners, mid-edges, centre; a closure lists centre, edges, corners. A triangle has no centre.
+/* Nodes in VTK's order: corners, mid-edges, centre; a closure lists centre, edges, corners. A triangle's is left out.
  */
 static PetscErrorCode ElementNodes(LamMacro macro, PetscInt e, PetscInt nodes[LAM_FIELD_NODES])
 {
@@ -79,7 +79,7 @@ static PetscErrorCode ElementNodes(LamMacro macro, PetscInt e, PetscInt nodes[LA
     const PetscInt node = macro->node_number[closure[2 * k] - macro->mesh_start];
     PetscInt depth;
     PetscCall(DMPlexGetPointDepth(macro->dm, closure[2 * k], &depth));
-    if (node >= 0) nodes[next[depth]++] = node;
+    if (node >= 0 && (depth < 2 || corners > 3)) nodes[next[depth]++] = node;
   }
   PetscCall(DMPlexRestoreTransitiveClosure(macro->dm, macro->mesh_start + e, PETSC_TRUE, &size, &closure));
   PetscFunctionReturn(0);

@@ -71,6 +71,7 @@ PetscErrorCode LamMacroSetUp(LamMacro macro)
   PetscCall(LamMacroBoundaryCheck(macro));
   PetscCall(CreatePoints(macro));
   PetscCall(CreateUnknowns(macro));
+  PetscCall(LamMacroSealCreate(macro));
   PetscCall(LamMacroNewtonCreate(macro));
   PetscCall(LamMacroHoldBoundaries(macro)); /* refuses a body that is not held before anything is solved */
   PetscFunctionReturn(0);
@@ -134,6 +135,7 @@ PetscErrorCode LamMacroDestroy(LamMacro *macro)
   PetscFunctionBeginUser;
   if (!*macro) PetscFunctionReturn(0);
   PetscCall(SNESDestroy(&(*macro)->snes));
+  PetscCall(LamMacroSealDestroy(*macro));
   PetscCall(MatDestroy(&(*macro)->tangent));
   PetscCall(VecDestroy(&(*macro)->u));
   PetscCall(VecDestroy(&(*macro)->trial));

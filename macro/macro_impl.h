@@ -6,6 +6,7 @@
   element.c   kinds of elements: shape functions, Gauss points
   boundary.c  displacement conditions, reactions, work
   assembly.c  gather F, ask the responder, assemble force and tangent
+  sealed.c    pressures of sealed lumens
   stepping.c  Newton, load steps, cutback
   fields.c    gathering of fields on rank 0
   checkpoint.c what a run goes on from
@@ -24,6 +25,7 @@ enum {
   LAM_MACRO_DIM = 3, /* most of all that follows */
   LAM_MACRO_NODES = 27,
   LAM_MACRO_DOFS = LAM_MACRO_DIM * LAM_MACRO_NODES,
+  LAM_MACRO_MODES = LAM_MACRO_DIM + 1, /* of an element's pressure */
   LAM_MACRO_KINDS = 2,
   LAM_MACRO_SETS = 32, /* named boundaries; a bit each */
   LAM_MACRO_GROUPS = 32
@@ -62,6 +64,25 @@ typedef struct {
   PetscReal A[81]; /* [dim][dim][dim][dim] dP_ij/dF_kl */
   PetscReal lumen_fraction, opening_fraction, debonded_fraction, max_gap;
 } LamMaterialPoint;
+
+/* What lumens that are sealed need besides of it; it belongs to the same load. */
+typedef struct {
+  PetscReal P_turgor[LAM_MACRO_DIM * LAM_MACRO_DIM]; /* [dim][dim] dP/dp */
+  PetscReal lumen;                                   /* -dPsi/dp */
+  PetscReal curvature;                               /* d2Psi/dp2 */
+} LamSealedPoint;
+
+/* Lumens that keep their water; there where the scene has them. */
+typedef struct {
+  PetscBool closed; /* else the turgor is still prescribed: the body inflates */
+  PetscInt modes;   /* 1 + dim */
+  PetscReal *shape; /* [points][modes] of the pressure */
+  PetscReal *water; /* [points] the lumen, -dPsi/dp, in which the water has the pressure p0 */
+  PetscReal *change,
+      *last_change;               /* [elements][modes] of p - p0, in the last evaluation and the last converged state */
+  Vec u;                          /* displacement of the last evaluation */
+  LamSealedPoint *now, *accepted; /* [points] */
+} LamMacroSeal;
 
 /* A displacement component that is prescribed; kept by the rank that owns it. */
 typedef struct {
@@ -119,6 +140,7 @@ struct LamMacro_s {
   LamLoad *loads;
   LamResponse *responses;
   LamMaterialPoint *now, *accepted; /* of the last evaluation and of the last converged state */
+  LamMacroSeal *seal;               /* NULL: turgor is prescribed */
 
   /* unknowns */
   Vec u, trial, residual;    /* displacement: last converged, Newton iterate; residual of Newton */
@@ -157,8 +179,8 @@ PetscErrorCode LamMacroGmshCreate(MPI_Comm comm, const char path[], DM *dm);
 /* The kind for a polytope, made where it is not there yet. PETSC_ERR_SUP where there is none. */
 PetscErrorCode LamMacroKindGet(LamMacro macro, DMPolytopeType polytope, const LamMacroKind **kind);
 PetscErrorCode LamMacroKindsDestroy(LamMacro macro);
-/* Whether a mesh point of this type carries a node of quadratic elements. */
-PetscBool LamMacroHasNode(DMPolytopeType type);
+/* Whether a mesh point of this type carries a node of the elements. */
+PetscBool LamMacroHasNode(LamMacro macro, DMPolytopeType type);
 
 /* boundary.c */
 /* Refuses conditions that contradict each other, or stand for no boundary of the mesh (PETSC_ERR_USER_INPUT). */
@@ -179,6 +201,11 @@ PetscErrorCode LamMacroAddWork(LamMacro macro);
 PetscErrorCode LamMacroReactions(LamMacro macro, LamMacroStep *step);
 
 /* assembly.c */
+/* dN/dX [nodes][dim] at Gauss point q of an element. */
+static inline const PetscReal *LamMacroGradient(LamMacro macro, const LamMacroElement *element, PetscInt q)
+{
+  return &macro->gradient[element->gradient + q * element->kind->nodes * macro->dim];
+}
 /*
   Responses of all points at displacement u. *ok is PETSC_FALSE on all ranks where one is missing (`trouble` says which)
   or a stop was asked for (`stopped`).
@@ -188,6 +215,30 @@ PetscErrorCode LamMacroEvaluate(LamMacro macro, Vec u, PetscBool *ok);
 /* Internal nodal forces of the evaluated state; *scale is the norm of the element forces, before they cancel. */
 PetscErrorCode LamMacroAssembleForce(LamMacro macro, Vec force, PetscReal *scale);
 PetscErrorCode LamMacroAssembleTangent(LamMacro macro, Mat tangent);
+
+/* sealed.c: does nothing, and takes no time, where turgor is prescribed (macro->seal is NULL) */
+PetscErrorCode LamMacroSealCreate(LamMacro macro);
+PetscErrorCode LamMacroSealDestroy(LamMacro macro);
+/*
+  Seals the lumens: their water is that of the last converged state, or where the body is not to inflate that of F = 1
+  under the whole turgor, which then becomes the last converged state. *ok: PETSC_FALSE where a point has no response
+  there (`trouble` says which).
+*/
+PetscErrorCode LamMacroSealLumens(LamMacro macro, PetscBool *ok);
+/* The pressures go with the displacement from the last evaluation to u, by their linearised equation; LamMacroFollow:
+   where it has changed. */
+PetscErrorCode LamMacroFollow(LamMacro macro, Vec u);
+PetscErrorCode LamMacroMovePressures(LamMacro macro, Vec u);
+/* Turgor of a point over that with which it was sealed. */
+PetscReal LamMacroTurgorChange(LamMacro macro, const LamMacroElement *element, PetscInt point);
+/* Keeps what pressures need of the point's response; one that does not know it becomes LAM_OUT_OF_REACH. */
+PetscErrorCode LamMacroKeepSealed(LamMacro macro, PetscInt point);
+/* Takes the pressures out of an element's forces fe and tangent Ke (NULL: not wanted), of the last evaluation. */
+PetscErrorCode LamMacroCondense(LamMacro macro, const LamMacroElement *element, PetscScalar fe[], PetscScalar Ke[]);
+/* Norm of the pressures' equations in the last evaluation, over that of the water; 0 where nothing is sealed. */
+PetscErrorCode LamMacroSealedResidual(LamMacro macro, PetscReal *residual);
+PetscErrorCode LamMacroAcceptPressures(LamMacro macro);
+PetscErrorCode LamMacroRejectPressures(LamMacro macro);
 
 /* checkpoint.c */
 /* Nodal values of a vector, [node][dim]. */

@@ -1,7 +1,7 @@
 /*
   Mesh of the macroscale body: quadratic elements over a DMPlex mesh, distributed over the ranks.
 
-  A node sits on every mesh point that quadratic elements have one on: vertices, edges, quadrilaterals. The geometry is
+  A node sits on every mesh point that the elements have one on: vertices, edges, quadrilaterals. The geometry is
   isoparametric: X = sum_a N_a X_a with the same shape functions as the displacement, so edges may be curved.
 */
 #include "macro_impl.h"
@@ -26,18 +26,18 @@ static PetscErrorCode Migrate(PetscSF migration, PetscInt **values, PetscInt n)
 }
 
 /* Of the undistributed mesh: number of each node, and of each point (of which the first are the elements). */
-static PetscErrorCode NumberPoints(DM dm, PetscInt **nodes, PetscInt **points)
+static PetscErrorCode NumberPoints(LamMacro macro, PetscInt **nodes, PetscInt **points)
 {
   PetscInt start, end, count = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(DMPlexGetChart(dm, &start, &end));
+  PetscCall(DMPlexGetChart(macro->dm, &start, &end));
   PetscCall(PetscMalloc1(end - start, nodes));
   PetscCall(PetscMalloc1(end - start, points));
   for (PetscInt p = start; p < end; p++) {
     DMPolytopeType type;
-    PetscCall(DMPlexGetCellType(dm, p, &type));
-    (*nodes)[p - start] = LamMacroHasNode(type) ? count++ : -1;
+    PetscCall(DMPlexGetCellType(macro->dm, p, &type));
+    (*nodes)[p - start] = LamMacroHasNode(macro, type) ? count++ : -1;
     (*points)[p - start] = p - start;
   }
   PetscFunctionReturn(0);
@@ -205,7 +205,10 @@ static PetscErrorCode ListFacets(LamMacro macro)
 
 /* ---- geometry ---- */
 
-/* The mean of a mesh point's vertices; of a quadrilateral with curved edges X = sum edges / 2 - sum vertices / 4. */
+/*
+  The mean of a mesh point's vertices; inside elements with curved edges that of their quadratic map: of a quadrilateral
+  X = sum edges / 2 - sum vertices / 4, of a triangle X = 4/9 sum edges - sum vertices / 9.
+*/
 static PetscErrorCode PlaceNode(LamMacro macro, PetscInt point, PetscReal X[])
 {
   const PetscInt dim = macro->dim;
@@ -223,8 +226,11 @@ static PetscErrorCode PlaceNode(LamMacro macro, PetscInt point, PetscReal X[])
     count[depth]++;
   }
   PetscCall(DMPlexRestoreTransitiveClosure(macro->dm, point, PETSC_TRUE, &size, &closure));
-  for (PetscInt i = 0; i < dim; i++)
-    X[i] = count[1] == 4 ? 0.5 * mean[1][i] - 0.25 * mean[0][i] : mean[0][i] / count[0];
+  for (PetscInt i = 0; i < dim; i++) {
+    X[i] = mean[0][i] / count[0];
+    if (count[1] == 4) X[i] = 0.5 * mean[1][i] - 0.25 * mean[0][i];
+    if (count[1] == 3) X[i] = (4 * mean[1][i] - mean[0][i]) / 9;
+  }
   PetscFunctionReturn(0);
 }
 
@@ -423,7 +429,7 @@ static PetscErrorCode Distribute(LamMacro macro)
   DM distributed;
 
   PetscFunctionBeginUser;
-  PetscCall(NumberPoints(macro->dm, &macro->node_number, &points));
+  PetscCall(NumberPoints(macro, &macro->node_number, &points));
   PetscCall(DMPlexDistribute(macro->dm, 0, &migration, &distributed));
   if (distributed) {
     PetscCall(DMDestroy(&macro->dm));

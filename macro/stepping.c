@@ -7,12 +7,14 @@
   1. Inflation: only rigid motions are held, the turgor acts at once. Without `inflate` the turgor acts while the
      prescribed sides are held where they are in the reference state; this belongs to step 1.
   2. The prescribed displacements count from there and grow in `steps` equal steps.
+  Sealed lumens are sealed after inflation; without `inflate` at F = 1 under the whole turgor, before all else.
   3. Where Newton fails, a material point has no response, or an iteration goes astray, the increment is halved,
   MAX_HALVINGS times at most, and doubled again after each success.
 
   Converged means: norm of the residual <= RELATIVE_TOLERANCE times the norm of the element forces before they cancel
   at the nodes (largest in this series of iterations), or <= ABSOLUTE_TOLERANCE (C1 + C2) times the box's first edge,
   which is the rounding error that responders leave in their stresses; it decides only for a body next to unstressed.
+  Where lumens are sealed, the norm of what they are off their water is also <= RELATIVE_TOLERANCE times the water's.
 
   Reference: Wriggers, Nonlinear Finite Element Methods, ch. 5.
 */
@@ -63,6 +65,7 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
                                       SNESConvergedReason *reason, void *ctx)
 {
   LamMacro macro = (LamMacro)ctx;
+  PetscReal sealed;
 
   PetscFunctionBeginUser;
   *reason = SNES_CONVERGED_ITERATING;
@@ -72,6 +75,9 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
     *reason = SNES_CONVERGED_FNORM_ABS;
   else if (fnorm <= RELATIVE_TOLERANCE * macro->force_scale)
     *reason = SNES_CONVERGED_FNORM_RELATIVE;
+  if (*reason <= 0) PetscFunctionReturn(0);
+  PetscCall(LamMacroSealedResidual(macro, &sealed));
+  if (sealed > RELATIVE_TOLERANCE) *reason = SNES_CONVERGED_ITERATING;
   PetscFunctionReturn(0);
 }
 
@@ -110,6 +116,7 @@ static PetscErrorCode Accept(LamMacro macro)
   PetscCall(VecCopy(macro->trial, macro->u));
   PetscCall(VecCopy(macro->force, macro->force_accepted));
   PetscCall(PetscArraycpy(macro->accepted, macro->now, macro->point_count));
+  PetscCall(LamMacroAcceptPressures(macro));
   if (macro->responder->accept) PetscCall(macro->responder->accept(macro->responder->ctx));
   PetscFunctionReturn(0);
 }
@@ -118,6 +125,7 @@ static PetscErrorCode Reject(LamMacro macro)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(macro->now, macro->accepted, macro->point_count));
+  PetscCall(LamMacroRejectPressures(macro));
   if (macro->responder->reject) PetscCall(macro->responder->reject(macro->responder->ctx));
   PetscFunctionReturn(0);
 }
@@ -298,8 +306,14 @@ static PetscErrorCode Inflate(LamMacro macro, Stage *stage, PetscReal *start, Pe
     PetscCall(LamMacroHoldRigidMotions(macro));
   else
     PetscCall(LamMacroHoldBoundaries(macro));
+  if (!inflate) {
+    PetscCall(LamMacroSealLumens(macro, converged));
+    if (!*converged) PetscFunctionReturn(0);
+    if (macro->seal) stage->turgor = 1;
+  }
   PetscCall(Advance(macro, *stage, to, stage, converged));
   if (!*converged || !inflate) PetscFunctionReturn(0);
+  PetscCall(LamMacroSealLumens(macro, converged));
   PetscCall(VecCopy(macro->u, macro->origin));
   PetscCall(Report(macro, 0, 0, PETSC_TRUE, *start, stop));
   PetscCall(LamMacroHoldBoundaries(macro));

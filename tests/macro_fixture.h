@@ -49,6 +49,14 @@ static inline void FixtureScene(Fixture *fixture, PetscInt nx, PetscInt ny, Pets
   fixture->scene.macro = (LamMacroSpec){.box = {1, height}, .elements = {nx, ny}, .steps = steps};
 }
 
+/* The lumens keep the water that they have with this turgor. */
+static inline void FixtureSeal(Fixture *fixture, PetscReal turgor, PetscReal bulk_modulus)
+{
+  fixture->scene.turgor = turgor;
+  fixture->scene.sealed = PETSC_TRUE;
+  fixture->scene.water_bulk_modulus = bulk_modulus;
+}
+
 /* `NAN` leaves a component free. */
 static inline void FixtureBoundary(Fixture *fixture, const char on[], PetscReal ux, PetscReal uy)
 {
@@ -100,16 +108,22 @@ static inline void FixtureShear(Fixture *fixture, PetscInt elements, PetscReal s
   FixtureBoundary(fixture, "top", shear, 0);
 }
 
+/* Sides that slide, the right one moved by ux, the top one by uy. */
+static inline void FixtureRollers(Fixture *fixture, PetscReal ux, PetscReal uy)
+{
+  FixtureBoundary(fixture, "left", 0, NAN);
+  FixtureBoundary(fixture, "right", ux, NAN);
+  FixtureBoundary(fixture, "bottom", NAN, 0);
+  FixtureBoundary(fixture, "top", NAN, uy);
+}
+
 /* Stretched between rollers: the deformation gradient is diag(1 + ux, 1 + uy) everywhere. */
 static inline void FixtureBiaxial(Fixture *fixture, PetscReal ux, PetscReal uy, PetscInt steps)
 {
   const PetscReal height = 0.6;
 
   FixtureScene(fixture, 3, 2, height, steps);
-  FixtureBoundary(fixture, "left", 0, NAN);
-  FixtureBoundary(fixture, "right", ux, NAN);
-  FixtureBoundary(fixture, "bottom", NAN, 0);
-  FixtureBoundary(fixture, "top", NAN, uy * height);
+  FixtureRollers(fixture, ux, uy * height);
 }
 
 #endif

@@ -1,6 +1,7 @@
 /*
   A material with known answers, behind the responder table: compressible neo-Hookean tissue under turgor,
-    Psi = mu/2 (tr C - 3 - 2 ln J) + lambda/2 (ln J)^2 - p J.
+    Psi = mu/2 (tr C - 3 - 2 ln J) + lambda/2 (ln J)^2 - (phi p + c p^2 / 2) J,
+  whose lumen (phi + c p) J grows with the turgor as that of cells with soft walls.
   It can refuse to answer far from the reference state, or far from the last accepted state of the point.
 */
 #ifndef LAM_SYNTHETIC_RESPONDER_H
@@ -11,7 +12,7 @@
 #include <string.h>
 
 typedef struct {
-  PetscReal mu, lambda;
+  PetscReal mu, lambda, phi, c;
   PetscReal largest_strain;                /* |F - 1| beyond which there is no answer */
   PetscReal largest_step;                  /* |F - F accepted| beyond which there is no answer */
   const char *reason;                      /* why there is none */
@@ -47,26 +48,29 @@ static inline PetscReal SyntheticInverseTranspose(const PetscReal F[9], PetscRea
 static inline void SyntheticEvaluate(const Synthetic *material, const LamLoad *load, LamResponse *response)
 {
   const PetscReal *F = load->F, mu = material->mu, lambda = material->lambda;
-  PetscReal G[9], J = SyntheticInverseTranspose(F, G), trace = 0, pressure = lambda * log(J) - load->turgor * J;
+  const PetscReal p = load->turgor, lumen = material->phi + material->c * p,
+                  push = (material->phi + 0.5 * material->c * p) * p;
+  PetscReal G[9], J = SyntheticInverseTranspose(F, G), trace = 0, pressure = lambda * log(J) - push * J;
 
   for (int k = 0; k < 9; k++) trace += F[k] * F[k];
-  response->energy = 0.5 * mu * (trace - 3 - 2 * log(J)) + 0.5 * lambda * log(J) * log(J) - load->turgor * J;
+  response->energy = 0.5 * mu * (trace - 3 - 2 * log(J)) + 0.5 * lambda * log(J) * log(J) - push * J;
   for (int k = 0; k < 9; k++) {
     response->P[k] = mu * (F[k] - G[k]) + pressure * G[k];
-    response->P_turgor[k] = -J * G[k];
+    response->P_turgor[k] = -lumen * J * G[k];
     response->P_cohesion[k] = 0; /* bonded */
   }
   for (int ij = 0; ij < 9; ij++) {
     for (int kl = 0; kl < 9; kl++) {
       int i = ij / 3, j = ij % 3, k = kl / 3, l = kl % 3;
       response->tangent[9 * ij + kl] =
-          mu * (ij == kl) + (lambda - load->turgor * J) * G[ij] * G[kl] + (mu - pressure) * G[3 * i + l] * G[3 * k + j];
+          mu * (ij == kl) + (lambda - push * J) * G[ij] * G[kl] + (mu - pressure) * G[3 * i + l] * G[3 * k + j];
     }
   }
-  response->energy_turgor2 = response->energy_turgor_cohesion = 0;
+  response->energy_turgor2 = -material->c * J;
+  response->energy_turgor_cohesion = 0;
   response->energy_cohesion = response->energy_cohesion2 = 0;
-  response->lumen_fraction = J;
-  response->energy_turgor = -J;
+  response->lumen_fraction = lumen * J;
+  response->energy_turgor = -lumen * J;
   response->opening_fraction = response->debonded_fraction = response->max_gap = 0;
   response->status = LAM_CONVERGED;
   response->source = LAM_SOURCE_SOLVE;
@@ -130,7 +134,7 @@ static inline PetscErrorCode SyntheticDestroy(void **ctx)
   PetscFunctionReturn(0);
 }
 
-/* mu = 1, lambda = 2, no limits; *material may be changed afterwards. */
+/* mu = 1, lambda = 2, phi = 1, c = 0, no limits; *material may be changed afterwards. */
 static inline PetscErrorCode SyntheticCreate(PetscInt points, LamResponder *responder, Synthetic **material)
 {
   const PetscReal identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -139,6 +143,7 @@ static inline PetscErrorCode SyntheticCreate(PetscInt points, LamResponder *resp
   PetscCall(PetscNew(material));
   (*material)->mu = 1;
   (*material)->lambda = 2;
+  (*material)->phi = 1;
   (*material)->largest_strain = (*material)->largest_step = PETSC_INFINITY;
   (*material)->reason = "too far";
   (*material)->points = points;

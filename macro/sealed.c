@@ -1,0 +1,323 @@
+/*
+  Sealed lumens of the macroscale body: a mixed element whose pressures are condensed.
+
+  Method. Where the lumens of a material point keep their water, its pressure p = p0 + q follows from
+
+    Pi(u, q) = int [ Psi(F(u), p0 + q) + v q - v q^2 / (2 K_w) ] dV    stationary in u and q,
+
+  v = -dPsi/dp at the point as it was sealed, with the turgor p0: the equation of q says that the lumen is
+  v (1 - q / K_w), in the mean. The responder is always asked at a given pressure, so that databases and caches serve as
+  they are, and no question is amplified by K_w. q is linear in each element, q = sum_a psi_a q_a with psi = 1 and
+  (X - X_c) / h about the element's centre, in reference coordinates, and belongs to that element alone (Q2/P1;
+  triangles with a bubble). With
+
+    R_a    = int psi_a [ dPsi/dp + v (1 - q / K_w) ]     f_ai    = int P_ij dN_a/dX_j
+    K_ab   = int psi_a psi_b [ d2Psi/dp2 - v / K_w ]     C_a,bi  = int psi_a dP_ij/dp dN_b/dX_j
+
+  Newton's method for u and q together has the condensed residual f - C^T K^-1 R and tangent A - C^T K^-1 C, and
+  moves the pressures with the displacement,  dq = -K^-1 (R + C du), by their own linearised equation: K_w multiplies no
+  error of the lumen.
+
+  References: Brezzi & Fortin, Mixed and Hybrid Finite Element Methods, VI.4 (Q2/P1, P2 with a bubble/P1); Magisano,
+  Leonetti & Garcea, CMAME 313 (2017) 1004-1025 (independent stresses).
+*/
+#include "macro_impl.h"
+
+#include <petscblaslapack.h> /* needs what PETSc's own headers bring */
+
+/* The equations of an element's pressures; columns of `coupling` are those of its displacements, the last that of R. */
+typedef struct {
+  PetscInt modes, dofs;
+  PetscReal coupling[(LAM_MACRO_DOFS + 1) * LAM_MACRO_MODES]; /* [dofs + 1][modes] C, R */
+  PetscReal solved[(LAM_MACRO_DOFS + 1) * LAM_MACRO_MODES];   /* K^-1 of it */
+} Condensation;
+
+/* ---- creation ---- */
+
+/* psi of an element's points; h is the root of its area. */
+static void FillShape(LamMacro macro, const LamMacroElement *element)
+{
+  const PetscInt dim = macro->dim;
+  PetscReal centre[LAM_MACRO_DIM] = {0}, volume = 0;
+
+  for (PetscInt q = 0; q < element->kind->points; q++) {
+    const PetscInt point = element->first + q;
+    volume += macro->weight[point];
+    for (PetscInt i = 0; i < dim; i++) centre[i] += macro->weight[point] * macro->place[dim * point + i];
+  }
+  for (PetscInt q = 0; q < element->kind->points; q++) {
+    const PetscInt point = element->first + q;
+    PetscReal *shape = &macro->seal->shape[macro->seal->modes * point];
+    shape[0] = 1;
+    for (PetscInt i = 0; i < dim; i++)
+      shape[1 + i] = (macro->place[dim * point + i] - centre[i] / volume) / PetscPowReal(volume, 1.0 / dim);
+  }
+}
+
+PetscErrorCode LamMacroSealCreate(LamMacro macro)
+{
+  LamMacroSeal *seal;
+
+  PetscFunctionBeginUser;
+  if (!macro->scene->sealed) PetscFunctionReturn(0);
+  PetscCall(PetscNew(&seal));
+  macro->seal = seal;
+  seal->modes = 1 + macro->dim;
+  PetscCall(PetscMalloc1(macro->point_count * seal->modes, &seal->shape));
+  PetscCall(PetscMalloc1(macro->point_count, &seal->water));
+  PetscCall(PetscCalloc1(macro->element_count * seal->modes, &seal->change));
+  PetscCall(PetscCalloc1(macro->element_count * seal->modes, &seal->last_change));
+  PetscCall(PetscCalloc1(macro->point_count, &seal->now));
+  PetscCall(PetscCalloc1(macro->point_count, &seal->accepted));
+  PetscCall(VecDuplicate(macro->u, &seal->u));
+  for (PetscInt e = 0; e < macro->element_count; e++) FillShape(macro, &macro->elements[e]);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroSealDestroy(LamMacro macro)
+{
+  LamMacroSeal *seal = macro->seal;
+
+  PetscFunctionBeginUser;
+  if (!seal) PetscFunctionReturn(0);
+  PetscCall(PetscFree(seal->shape));
+  PetscCall(PetscFree(seal->water));
+  PetscCall(PetscFree(seal->change));
+  PetscCall(PetscFree(seal->last_change));
+  PetscCall(PetscFree(seal->now));
+  PetscCall(PetscFree(seal->accepted));
+  PetscCall(VecDestroy(&seal->u));
+  PetscCall(PetscFree(macro->seal));
+  PetscFunctionReturn(0);
+}
+
+/* ---- the element ---- */
+
+PetscReal LamMacroTurgorChange(LamMacro macro, const LamMacroElement *element, PetscInt point)
+{
+  const LamMacroSeal *seal = macro->seal;
+  PetscReal change = 0;
+
+  if (!seal) return 0;
+  for (PetscInt a = 0; a < seal->modes; a++)
+    change += seal->shape[seal->modes * point + a] * seal->change[seal->modes * (element - macro->elements) + a];
+  return change;
+}
+
+/* R [modes] of the last evaluation. */
+static void AddResidual(LamMacro macro, const LamMacroElement *element, PetscReal R[])
+{
+  const LamMacroSeal *seal = macro->seal;
+
+  for (PetscInt point = element->first; point < element->first + element->kind->points; point++) {
+    const PetscReal wanted =
+        seal->water[point] * (1 - LamMacroTurgorChange(macro, element, point) / macro->scene->water_bulk_modulus);
+    for (PetscInt a = 0; a < seal->modes; a++)
+      R[a] += macro->weight[point] * seal->shape[seal->modes * point + a] * (wanted - seal->now[point].lumen);
+  }
+}
+
+/* Adds what Gauss point q gives to C [dofs][modes] and K [modes][modes]. */
+static void AddPoint(LamMacro macro, const LamMacroElement *element, PetscInt q, PetscReal C[], PetscReal K[])
+{
+  const LamMacroSeal *seal = macro->seal;
+  const PetscInt dim = macro->dim, modes = seal->modes, point = element->first + q;
+  const PetscReal *dN = LamMacroGradient(macro, element, q), *shape = &seal->shape[modes * point],
+                  w = macro->weight[point];
+  const LamSealedPoint *response = &seal->now[point];
+  const PetscReal curvature = response->curvature - seal->water[point] / macro->scene->water_bulk_modulus;
+
+  for (PetscInt b = 0; b < element->kind->nodes; b++) {
+    for (PetscInt i = 0; i < dim; i++) {
+      PetscReal force = 0; /* by the pressure */
+      for (PetscInt j = 0; j < dim; j++) force += w * response->P_turgor[dim * i + j] * dN[dim * b + j];
+      for (PetscInt a = 0; a < modes; a++) C[(dim * b + i) * modes + a] += shape[a] * force;
+    }
+  }
+  for (PetscInt a = 0; a < modes; a++) {
+    for (PetscInt b = 0; b < modes; b++) K[a * modes + b] += w * curvature * shape[a] * shape[b];
+  }
+}
+
+static PetscErrorCode CreateCondensation(LamMacro macro, const LamMacroElement *element, Condensation *c)
+{
+  PetscReal K[LAM_MACRO_MODES * LAM_MACRO_MODES] = {0};
+  PetscBLASInt n, columns, pivots[LAM_MACRO_MODES], info;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMemzero(c, sizeof(*c)));
+  c->modes = macro->seal->modes;
+  c->dofs = element->kind->nodes * macro->dim;
+  for (PetscInt q = 0; q < element->kind->points; q++) AddPoint(macro, element, q, c->coupling, K);
+  AddResidual(macro, element, &c->coupling[c->dofs * c->modes]);
+  PetscCall(PetscArraycpy(c->solved, c->coupling, (c->dofs + 1) * c->modes));
+  PetscCall(PetscBLASIntCast(c->modes, &n));
+  PetscCall(PetscBLASIntCast(c->dofs + 1, &columns));
+  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&n, &columns, K, &n, pivots, c->solved, &n, &info));
+  PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_LIB,
+             "the compliance of the water in element %d is singular (LAPACK gesv: %d)", (int)element->number,
+             (int)info);
+  PetscFunctionReturn(0);
+}
+
+static PetscReal Dot(PetscInt n, const PetscReal a[], const PetscReal b[])
+{
+  PetscReal sum = 0;
+
+  for (PetscInt k = 0; k < n; k++) sum += a[k] * b[k];
+  return sum;
+}
+
+PetscErrorCode LamMacroCondense(LamMacro macro, const LamMacroElement *element, PetscScalar fe[], PetscScalar Ke[])
+{
+  Condensation c;
+
+  PetscFunctionBeginUser;
+  if (!macro->seal || !macro->seal->closed) PetscFunctionReturn(0);
+  PetscCall(CreateCondensation(macro, element, &c));
+  for (PetscInt k = 0; k < c.dofs; k++) {
+    const PetscReal *column = &c.coupling[k * c.modes];
+    if (fe) fe[k] -= Dot(c.modes, column, &c.solved[c.dofs * c.modes]);
+    for (PetscInt l = 0; l < c.dofs && Ke; l++) Ke[k * c.dofs + l] -= Dot(c.modes, column, &c.solved[l * c.modes]);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* ---- states ---- */
+
+PetscErrorCode LamMacroMovePressures(LamMacro macro, Vec u)
+{
+  LamMacroSeal *seal = macro->seal;
+  PetscSection section;
+  Vec local;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecAYPX(seal->u, -1, u)); /* the step */
+  PetscCall(DMGetLocalSection(macro->dm, &section));
+  PetscCall(DMGetLocalVector(macro->dm, &local));
+  PetscCall(DMGlobalToLocal(macro->dm, seal->u, INSERT_VALUES, local));
+  for (PetscInt e = 0; e < macro->element_count; e++) {
+    PetscScalar *step = NULL;
+    Condensation c;
+    PetscCall(CreateCondensation(macro, &macro->elements[e], &c));
+    PetscCall(DMPlexVecGetClosure(macro->dm, section, local, macro->mesh_start + e, NULL, &step));
+    for (PetscInt a = 0; a < c.modes; a++) {
+      PetscReal *change = &seal->change[c.modes * e + a];
+      *change -= c.solved[c.dofs * c.modes + a];
+      for (PetscInt k = 0; k < c.dofs; k++) *change -= c.solved[k * c.modes + a] * PetscRealPart(step[k]);
+    }
+    PetscCall(DMPlexVecRestoreClosure(macro->dm, section, local, macro->mesh_start + e, NULL, &step));
+  }
+  PetscCall(DMRestoreLocalVector(macro->dm, &local));
+  PetscCall(VecCopy(u, seal->u));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroFollow(LamMacro macro, Vec u)
+{
+  PetscBool there;
+
+  PetscFunctionBeginUser;
+  if (!macro->seal || !macro->seal->closed) PetscFunctionReturn(0);
+  PetscCall(VecEqual(u, macro->seal->u, &there));
+  if (!there) PetscCall(LamMacroMovePressures(macro, u));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroKeepSealed(LamMacro macro, PetscInt point)
+{
+  LamResponse *response = &macro->responses[point];
+  const PetscInt dim = macro->dim;
+  PetscReal sum = response->energy_turgor2;
+
+  PetscFunctionBeginUser;
+  if (!macro->seal || !LamResponseHasFields(response)) PetscFunctionReturn(0);
+  LamSealedPoint *sealed = &macro->seal->now[point];
+  for (PetscInt ij = 0; ij < dim * dim; ij++) {
+    sealed->P_turgor[ij] = response->P_turgor[3 * (ij / dim) + ij % dim];
+    sum += sealed->P_turgor[ij];
+  }
+  sealed->lumen = -response->energy_turgor;
+  sealed->curvature = response->energy_turgor2;
+  if (!PetscIsInfOrNanReal(sum + sealed->lumen)) PetscFunctionReturn(0);
+  response->status = LAM_OUT_OF_REACH;
+  PetscCall(PetscStrncpy(response->reason,
+                         "the answer does not know its derivatives by the turgor, which sealed "
+                         "cells need",
+                         sizeof(response->reason)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroSealedResidual(LamMacro macro, PetscReal *residual)
+{
+  const LamMacroSeal *seal = macro->seal;
+  PetscReal sum[2] = {0}; /* squares of R, and of the water */
+
+  PetscFunctionBeginUser;
+  *residual = 0;
+  if (!seal || !seal->closed) PetscFunctionReturn(0);
+  for (PetscInt e = 0; e < macro->element_count; e++) {
+    const LamMacroElement *element = &macro->elements[e];
+    PetscReal R[LAM_MACRO_MODES] = {0};
+    AddResidual(macro, element, R);
+    sum[0] += Dot(seal->modes, R, R);
+    sum[1] += PetscSqr(Dot(element->kind->points, &seal->water[element->first], &macro->weight[element->first]));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPIU_SUM, macro->comm));
+  *residual = PetscSqrtReal(sum[0] / sum[1]);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroAcceptPressures(LamMacro macro)
+{
+  LamMacroSeal *seal = macro->seal;
+
+  PetscFunctionBeginUser;
+  if (!seal) PetscFunctionReturn(0);
+  PetscCall(PetscArraycpy(seal->last_change, seal->change, seal->modes * macro->element_count));
+  PetscCall(PetscArraycpy(seal->accepted, seal->now, macro->point_count));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroRejectPressures(LamMacro macro)
+{
+  LamMacroSeal *seal = macro->seal;
+
+  PetscFunctionBeginUser;
+  if (!seal) PetscFunctionReturn(0);
+  PetscCall(PetscArraycpy(seal->change, seal->last_change, seal->modes * macro->element_count));
+  PetscCall(PetscArraycpy(seal->now, seal->accepted, macro->point_count));
+  PetscCall(VecCopy(macro->u, seal->u));
+  PetscFunctionReturn(0);
+}
+
+/* F = 1 under the whole turgor becomes the last converged state, whether the body is in equilibrium there or not. */
+static PetscErrorCode StartUndeformed(LamMacro macro, PetscBool *ok)
+{
+  PetscReal scale;
+
+  PetscFunctionBeginUser;
+  macro->turgor = 1;
+  PetscCall(LamMacroEvaluate(macro, macro->u, ok));
+  if (!*ok) PetscFunctionReturn(0);
+  PetscCall(LamMacroAssembleForce(macro, macro->force_accepted, &scale));
+  PetscCall(PetscArraycpy(macro->accepted, macro->now, macro->point_count));
+  if (macro->responder->accept) PetscCall(macro->responder->accept(macro->responder->ctx));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroSealLumens(LamMacro macro, PetscBool *ok)
+{
+  LamMacroSeal *seal = macro->seal;
+
+  PetscFunctionBeginUser;
+  *ok = PETSC_TRUE;
+  if (!seal) PetscFunctionReturn(0);
+  if (!macro->scene->macro.inflate) PetscCall(StartUndeformed(macro, ok));
+  if (!*ok) PetscFunctionReturn(0);
+  for (PetscInt p = 0; p < macro->point_count; p++) seal->water[p] = seal->now[p].lumen;
+  PetscCall(VecCopy(macro->u, seal->u));
+  PetscCall(LamMacroAcceptPressures(macro));
+  seal->closed = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
