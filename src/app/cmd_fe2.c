@@ -49,9 +49,6 @@ static PetscErrorCode Prepare(LamFE2Run *run, PetscBool *finished)
   PetscFunctionBeginUser;
   run->start = LamClock();
   PetscCall(LamSceneRead(run->scene_path, &run->scene));
-  PetscCheck(!run->scene->sealed, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: rve.turgor.mode: sealed: this version of Lamella does not have it in fe2 yet; write prescribed",
-             run->scene_path);
   PetscCall(LamMacroCreate(run->comm, &run->macro));
   PetscCall(LamMacroSetScene(run->macro, run->scene));
   PetscCall(LamMacroSetUp(run->macro));
