@@ -1,9 +1,8 @@
 /*
   Sealed lumens of the macroscale body, with a material of known answers: the mixed element and its Newton iteration.
 */
-#include "gmsh_writer.h"
 #include "macro_fixture.h"
-#include "macro_impl.h"
+#include "figures_mixed_element.h"
 
 static const GmshElements element_kinds[2] = {GMSH_QUADRILATERALS, GMSH_TRIANGLES};
 
@@ -308,6 +307,22 @@ static void StiffWaterDoesNotLock(void **state)
   }
 }
 
+/* Deformation gradient and turgor of next to incompressible tissue are met with order 2, on uneven meshes. */
+static void ErrorsFallWithTheSquare(void **state)
+{
+  const LamScene scene = {.turgor = 0.2, .sealed = PETSC_TRUE, .water_bulk_modulus = 1e5};
+
+  for (int k = 0; k < 2; k++) {
+    Problem p = {PROBLEM_SMOOTH, 16, element_kinds[k], 1e-6, PETSC_TRUE, &scene, .mu = 1, .lambda = 2, .phi = 0.8};
+    ProblemResult coarse, fine;
+    assert_ok(ProblemSolve(&p, &coarse));
+    p.n = 32;
+    assert_ok(ProblemSolve(&p, &fine));
+    assert_true(fine.residual_count && fine.strain < 0.32 * coarse.strain && fine.turgor < 0.32 * coarse.turgor);
+    assert_true(fine.strain < 1e-3 && fine.turgor < 1e-2);
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
@@ -320,6 +335,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(SealingKeepsTheInflatedState),
       cmocka_unit_test(CutbackReachesTheSameEnd),
       cmocka_unit_test(StiffWaterDoesNotLock),
+      cmocka_unit_test(ErrorsFallWithTheSquare),
   };
   int failed;
 
