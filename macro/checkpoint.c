@@ -79,6 +79,7 @@ static PetscErrorCode ArchiveState(LamMacro macro, LamArchive archive)
   PetscCall(LamMacroArchiveVec(macro, archive, "displacement", macro->u));
   PetscCall(LamMacroArchiveVec(macro, archive, "force", macro->force_accepted));
   PetscCall(LamArchiveItems(archive, "points", sizeof(LamMaterialPoint), macro->point_count, numbers, macro->accepted));
+  PetscCall(LamMacroArchiveSeal(macro, archive, numbers));
   PetscCall(ArchiveResponder(macro, archive, numbers));
   PetscCall(PetscFree(numbers));
   PetscFunctionReturn(0);

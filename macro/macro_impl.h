@@ -239,6 +239,8 @@ PetscErrorCode LamMacroCondense(LamMacro macro, const LamMacroElement *element, 
 PetscErrorCode LamMacroSealedResidual(LamMacro macro, PetscReal *residual);
 PetscErrorCode LamMacroAcceptPressures(LamMacro macro);
 PetscErrorCode LamMacroRejectPressures(LamMacro macro);
+/* Of the last converged state, which is the present one; points [points]: their numbers in the undistributed mesh. */
+PetscErrorCode LamMacroArchiveSeal(LamMacro macro, LamArchive archive, const PetscInt points[]);
 
 /* checkpoint.c */
 /* Nodal values of a vector, [node][dim]. */

@@ -321,3 +321,23 @@ PetscErrorCode LamMacroSealLumens(LamMacro macro, PetscBool *ok)
   seal->closed = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode LamMacroArchiveSeal(LamMacro macro, LamArchive archive, const PetscInt points[])
+{
+  LamMacroSeal *seal = macro->seal;
+  PetscInt *elements;
+
+  PetscFunctionBeginUser;
+  if (!seal) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(macro->element_count, &elements));
+  for (PetscInt e = 0; e < macro->element_count; e++) elements[e] = macro->elements[e].number;
+  PetscCall(LamArchiveShared(archive, "sealed", sizeof(seal->closed), &seal->closed));
+  PetscCall(LamArchiveItems(archive, "water", sizeof(PetscReal), macro->point_count, points, seal->water));
+  PetscCall(
+      LamArchiveItems(archive, "sealed points", sizeof(LamSealedPoint), macro->point_count, points, seal->accepted));
+  PetscCall(LamArchiveItems(archive, "turgor changes", (size_t)seal->modes * sizeof(PetscReal), macro->element_count,
+                            elements, seal->last_change));
+  PetscCall(PetscFree(elements));
+  if (LamArchiveIsReading(archive)) PetscCall(LamMacroRejectPressures(macro));
+  PetscFunctionReturn(0);
+}
