@@ -3,7 +3,8 @@
   grows, and of FE2 as its mesh gets finer; prints figures, asserts nothing.
 
     bench_fe2_patch [--full] [--plot FIGURE]
-      --full   also blocks of 16 x 16 cells, and finer meshes of FE2 (twenty minutes); without it two minutes
+      --full   also blocks of 16 x 16 cells, and finer meshes of FE2 (6 minutes of processor time); without it one
+  minute
       --plot   draws the curves: .png, .svg or .pdf
 */
 #include <getopt.h>
@@ -193,6 +194,7 @@ static PetscErrorCode Draw(const char path[], const Study studies[])
   for (int k = 0; k < 4; k++) {
     const LamRect outer = {9 + k % 2 * width, 18 + k / 2 * (height + 10), width - 18, height - 18};
 
+    LamCanvasSetColour(canvas, (LamColour){0, 0, 0});
     LamCanvasText(canvas, outer.x + 0.5 * outer.width, outer.y - 8, 0.5, 0, LAM_TEXT_SIZE,
                   scales_cases[curves[k].study].name);
     PetscCall(DrawCurves(canvas, outer, &studies[curves[k].study], curves[k].opening));
