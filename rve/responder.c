@@ -131,33 +131,49 @@ static PetscErrorCode Seal(void *ctx, PetscReal bulk_modulus)
   PetscFunctionReturn(0);
 }
 
+/* A state, and where the cells can be sealed K_w (0: they are not) and their water. */
 static PetscErrorCode StateSize(void *ctx, size_t *bytes)
 {
   DirectResponder *direct = (DirectResponder *)ctx;
 
   PetscFunctionBeginUser;
   *bytes = direct->size;
+  if (direct->rve->seal.allowed) *bytes += (size_t)(1 + direct->rve->mesh.cell_count) * sizeof(PetscReal);
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode Save(void *ctx, PetscInt point, void *bytes)
 {
   DirectResponder *direct = (DirectResponder *)ctx;
+  const size_t cells = (size_t)direct->rve->mesh.cell_count;
+  char *seal = (char *)bytes + direct->size;
 
   PetscFunctionBeginUser;
   if (point >= direct->points) PetscCall(LamRVEStateReset(direct->rve, direct->scratch));
   PetscCall(LamRVEStatePack(point < direct->points ? direct->accepted[point] : direct->scratch, bytes));
+  if (!direct->rve->seal.allowed) PetscFunctionReturn(0);
+  memset(seal, 0, (1 + cells) * sizeof(PetscReal));
+  if (!direct->water || point >= direct->points) PetscFunctionReturn(0);
+  memcpy(seal, &direct->bulk_modulus, sizeof(PetscReal));
+  memcpy(seal + sizeof(PetscReal), &direct->water[(size_t)point * cells], cells * sizeof(PetscReal));
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode Load(void *ctx, PetscInt point, const void *bytes)
 {
   DirectResponder *direct = (DirectResponder *)ctx;
+  const size_t cells = (size_t)direct->rve->mesh.cell_count;
+  const char *seal = (const char *)bytes + direct->size;
 
   PetscFunctionBeginUser;
   if (point >= direct->points) PetscFunctionReturn(0);
   PetscCall(LamRVEStateUnpack(bytes, direct->accepted[point]));
   PetscCall(LamRVEStateUnpack(bytes, direct->latest[point]));
+  if (!direct->rve->seal.allowed) PetscFunctionReturn(0);
+  memcpy(&direct->bulk_modulus, seal, sizeof(PetscReal));
+  if (direct->bulk_modulus == 0.0) PetscFunctionReturn(0);
+  if (!direct->water) PetscCall(PetscMalloc1((size_t)direct->points * cells, &direct->water));
+  memcpy(&direct->water[(size_t)point * cells], seal + sizeof(PetscReal), cells * sizeof(PetscReal));
   PetscFunctionReturn(0);
 }
 

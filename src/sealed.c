@@ -8,6 +8,7 @@
 */
 #include <lamella/sealed.h>
 #include <math.h>
+#include <string.h>
 
 #define MOST_QUESTIONS 40
 #define MOST_FAILURES 8 /* pressures without an answer */
@@ -252,6 +253,51 @@ static PetscErrorCode Seal(void *ctx, PetscReal bulk_modulus)
   PetscFunctionReturn(0);
 }
 
+/* What a point keeps, before the bytes of `open`. */
+typedef struct {
+  PetscReal bulk_modulus; /* 0: not sealed */
+  PetscReal water, lumen, pressure;
+} Kept;
+
+static PetscErrorCode StateSize(void *ctx, size_t *bytes)
+{
+  Sealed *s = (Sealed *)ctx;
+
+  PetscFunctionBeginUser;
+  *bytes = 0;
+  if (s->open->state_size) PetscCall(s->open->state_size(s->open->ctx, bytes));
+  *bytes += sizeof(Kept);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Save(void *ctx, PetscInt point, void *bytes)
+{
+  Sealed *s = (Sealed *)ctx;
+  const Kept kept = {s->sealed ? s->bulk_modulus : 0, s->water[point], s->accepted_lumen[point],
+                     s->accepted_pressure[point]};
+
+  PetscFunctionBeginUser;
+  memcpy(bytes, &kept, sizeof(kept));
+  if (s->open->save) PetscCall(s->open->save(s->open->ctx, point, (char *)bytes + sizeof(kept)));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Load(void *ctx, PetscInt point, const void *bytes)
+{
+  Sealed *s = (Sealed *)ctx;
+  Kept kept;
+
+  PetscFunctionBeginUser;
+  memcpy(&kept, bytes, sizeof(kept));
+  s->sealed = (PetscBool)(kept.bulk_modulus > 0);
+  s->bulk_modulus = kept.bulk_modulus;
+  s->water[point] = kept.water;
+  s->lumen[point] = s->accepted_lumen[point] = kept.lumen;
+  s->pressure[point] = s->accepted_pressure[point] = kept.pressure;
+  if (s->open->load) PetscCall(s->open->load(s->open->ctx, point, (const char *)bytes + sizeof(kept)));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Destroy(void **ctx)
 {
   Sealed *s = (Sealed *)*ctx;
@@ -271,7 +317,14 @@ PetscErrorCode LamSealedResponderCreate(MPI_Comm comm, LamResponder *open, Petsc
   *s = (Sealed){.comm = comm, .open = open, .self = responder, .points = points};
   PetscCall(PetscCalloc5(points, &s->water, points, &s->lumen, points, &s->accepted_lumen, points, &s->pressure, points,
                          &s->accepted_pressure));
-  *responder = (LamResponder){
-      .ctx = s, .respond = Respond, .accept = Accept, .reject = Reject, .seal = Seal, .destroy = Destroy};
+  *responder = (LamResponder){.ctx = s,
+                              .respond = Respond,
+                              .accept = Accept,
+                              .reject = Reject,
+                              .seal = Seal,
+                              .state_size = StateSize,
+                              .save = Save,
+                              .load = Load,
+                              .destroy = Destroy};
   PetscFunctionReturn(0);
 }

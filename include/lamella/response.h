@@ -141,7 +141,8 @@ typedef struct LamResponder_s {
   PetscErrorCode (*destroy)(void **ctx);
   /*
     The states that the last `accept` left, as bytes, for a run that goes on from them; state_size: of the point on this
-    rank that needs most. NULL: there are none to keep. `load` makes a point's bytes its accepted state.
+    rank that needs most. NULL: there are none to keep. `load` makes a point's bytes its accepted state, which is sealed
+    if it was.
   */
   PetscErrorCode (*state_size)(void *ctx, size_t *bytes);
   PetscErrorCode (*save)(void *ctx, PetscInt point, void *bytes);

@@ -99,6 +99,44 @@ static void BothWaysAgree(void **state)
   }
 }
 
+/* A run that goes on from the bytes of its points has their water, too. */
+static void BytesKeepTheWater(void **state)
+{
+  for (int outside = 0; outside < 2; outside++) {
+    const LamMicrostructure micro = DefaultTissue();
+    LamRVE rve = NewSealable(&micro);
+    LamResponder direct[2], sealed[2], *r[2];
+    LamResponse before[POINTS], after[POINTS];
+    LamLoad loads[POINTS];
+    size_t size;
+    char *bytes;
+
+    for (int k = 0; k < 2; k++) {
+      assert_int_equal(LamRVEResponderCreate(rve, POINTS, &direct[k]), 0);
+      assert_int_equal(LamSealedResponderCreate(PETSC_COMM_SELF, &direct[k], POINTS, &sealed[k]), 0);
+      r[k] = outside ? &sealed[k] : &direct[k];
+    }
+    Inflate(r[0], 0.2, 0);
+    assert_int_equal(r[0]->seal(r[0]->ctx, SEALED_WATER), 0);
+    assert_int_equal(r[0]->state_size(r[0]->ctx, &size), 0);
+    assert_int_equal(PetscMalloc1(size, &bytes), 0);
+    for (int i = 0; i < POINTS; i++) {
+      assert_int_equal(r[0]->save(r[0]->ctx, i, bytes), 0);
+      assert_int_equal(r[1]->load(r[1]->ctx, i, bytes), 0);
+      loads[i] = PlaneLoad(1 + 0.02 * i, 0.1, 0, 1, 0.2);
+    }
+    Ask(r[0], loads, before);
+    Ask(r[1], loads, after);
+    for (int i = 0; i < POINTS; i++) assert_memory_equal(before[i].P, after[i].P, sizeof(before[i].P));
+    assert_int_equal(PetscFree(bytes), 0);
+    for (int k = 0; k < 2; k++) {
+      assert_int_equal(sealed[k].destroy(&sealed[k].ctx), 0);
+      assert_int_equal(direct[k].destroy(&direct[k].ctx), 0);
+    }
+    assert_int_equal(LamRVEDestroy(&rve), 0);
+  }
+}
+
 static LamResponse AskOne(LamResponder *responder, const LamLoad *load)
 {
   LamResponse response;
@@ -301,6 +339,7 @@ static int Run(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(BothWaysAgree),
+      cmocka_unit_test(BytesKeepTheWater),
       cmocka_unit_test(PressureAndDerivativesAreExact),
       cmocka_unit_test(WaterIsTheSameInAllTissues),
       cmocka_unit_test(RejectedStepIsForgotten),
