@@ -56,11 +56,11 @@ typedef struct LamKey_s {
   LamBound lower, upper; /* of each component */
   const char *const *names;
   PetscInt name_count;
-  PetscBool unavailable;      /* the key is known, but this version does not have it */
-  PetscBool required;         /* wherever the map it belongs to is given */
-  const char *free_word;      /* leaves a component open; NULL: none may be */
-  const char *default_value;  /* as one would write it; NULL: none */
-  const char *default_words;  /* a default that depends on other keys, in words */
+  PetscBool unavailable;     /* the key is known, but this version does not have it */
+  PetscBool required;        /* wherever the map it belongs to is given */
+  const char *free_word;     /* leaves a component open; NULL: none may be */
+  const char *default_value; /* as one would write it; NULL: none */
+  const char *default_words; /* a default that depends on other keys, in words */
   const char *example;
   const char *help; /* Markdown, without | */
 } LamKey;

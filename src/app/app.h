@@ -127,7 +127,7 @@ typedef struct {
   PetscInt sample_states;  /* 0 also where an accuracy decides how many */
   PetscInt64 macro_states; /* predicted */
   PetscInt macro_elements, macro_points; /* 0 also where a file has them */
-  PetscInt map_points, map_states; /* of `map`, without the states that bracket the failure; 0: no such block */
+  PetscInt map_points, map_states;       /* of `map`, without the states that bracket the failure; 0: no such block */
 } LamPlan;
 #define LAM_PARALLEL_UNKNOWNS 20000 /* of one RVE: from here on several ranks factor its matrix together */
 /* Chooses what the scene leaves open; changes nothing the scene says. */

@@ -67,7 +67,8 @@ static PetscErrorCode Run(const LamScene *scene, LamDatabase database, Figures *
       PetscCall(LamGridCreate(scene, &solver, &grid));
       PetscCall(LamDatabaseSetGrid(database, &grid));
     }
-    PetscCall(LamCacheResponderCreate(PETSC_COMM_SELF, database, &solver, NULL, LAM_OUTSIDE_SOLVE, scene->accuracy, points, &cache));
+    PetscCall(LamCacheResponderCreate(PETSC_COMM_SELF, database, &solver, NULL, LAM_OUTSIDE_SOLVE, scene->accuracy,
+                                      points, &cache));
   }
   PetscCall(LamMacroSetResponder(macro, database ? &cache : &solver));
   PetscCall(LamMacroSetMonitor(macro, Note, f));
