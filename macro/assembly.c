@@ -99,13 +99,14 @@ static PetscErrorCode DescribeTrouble(LamMacro macro, PetscInt64 failed, PetscIn
   PetscCallMPI(MPI_Allreduce(&mine, &first, 1, MPI_2INT, MPI_MINLOC, macro->comm));
   if (rank == first.rank && point >= 0) {
     const LamResponse *response = &macro->responses[point];
-    const PetscReal *F = macro->loads[point].F;
+    const PetscReal *F = macro->loads[point].F, *X = &macro->place[macro->dim * point];
+    const PetscReal mm = macro->scene->scales.macro_length * 1e3;
     PetscCall(PetscSNPrintf(macro->trouble, sizeof(macro->trouble),
                             "%s: %s; %" PetscInt64_FMT " points without response, the first in element %d, point "
-                            "%" PetscInt_FMT ": F = [%.5g %.5g %.5g %.5g], turgor %.4g MPa",
+                            "%" PetscInt_FMT " at (%.4g, %.4g) mm: F = [%.5g %.5g %.5g %.5g], turgor %.4g MPa",
                             LamStatusNames[response->status], response->reason, failed, mine.element,
-                            point - macro->elements[macro->point_element[point]].first, (double)F[0], (double)F[1],
-                            (double)F[3], (double)F[4],
+                            point - macro->elements[macro->point_element[point]].first, (double)(X[0] * mm),
+                            (double)(X[1] * mm), (double)F[0], (double)F[1], (double)F[3], (double)F[4],
                             (double)(macro->loads[point].turgor * macro->scene->scales.stress * 1e-6)));
   }
   PetscCallMPI(MPI_Bcast(macro->trouble, sizeof(macro->trouble), MPI_CHAR, first.rank, macro->comm));

@@ -123,6 +123,14 @@ PetscErrorCode LamMacroSetMonitor(LamMacro macro, LamMacroMonitor monitor, void 
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamMacroSetCutback(LamMacro macro, LamMacroCutback cutback, void *ctx)
+{
+  PetscFunctionBeginUser;
+  macro->cutback = cutback;
+  macro->cutback_ctx = ctx;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamMacroSetStop(LamMacro macro, PetscBool (*stop)(void))
 {
   PetscFunctionBeginUser;

@@ -107,6 +107,8 @@ struct LamMacro_s {
   LamResponder *responder; /* borrowed */
   LamMacroMonitor monitor;
   void *monitor_ctx;       /* borrowed */
+  LamMacroCutback cutback; /* NULL: nobody listens */
+  void *cutback_ctx;       /* borrowed */
   PetscBool (*stop)(void); /* NULL: never */
   PetscBool stopped;       /* it was asked for; the same on all ranks */
 

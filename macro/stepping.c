@@ -195,6 +195,7 @@ static PetscErrorCode Advance(LamMacro macro, Stage from, Stage to, Stage *reach
       PetscCall(Reject(macro));
       if (macro->stopped) break;
       macro->step.cutbacks++;
+      if (macro->cutback) PetscCall(macro->cutback(macro, macro->trouble, macro->cutback_ctx));
       increment = 0.5 * (next - done);
       if (increment < smallest) break;
     }
@@ -216,13 +217,31 @@ static void MeanIndicators(LamMacro macro, PetscReal sum[4], PetscReal *max_gap)
   }
 }
 
+/* Where the responder's time went, and how many answers were interpolated. */
+static PetscErrorCode MeanTimes(LamMacro macro)
+{
+  const LamResponder *responder = macro->responder, *before = &macro->counted;
+  LamMacroStep *step = &macro->step;
+  PetscReal seconds[2] = {responder->query_seconds - before->query_seconds,
+                          responder->solve_seconds - before->solve_seconds};
+  PetscMPIInt ranks;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(macro->comm, &ranks));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, seconds, 2, MPIU_REAL, MPIU_SUM, macro->comm));
+  step->query_seconds = seconds[0] / ranks;
+  step->solve_seconds = seconds[1] / ranks;
+  step->interpolated = responder->interpolated - before->interpolated;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &step->interpolated, 1, MPIU_INT64, MPI_SUM, macro->comm));
+  PetscFunctionReturn(0);
+}
+
 /* Completes the report of a converged step. */
 static PetscErrorCode FinishStep(LamMacro macro, PetscInt number, PetscReal load_factor, PetscReal start)
 {
   LamMacroStep *step = &macro->step;
   LamResponder *responder = macro->responder, *before = &macro->counted;
   PetscReal sum[4];
-  PetscMPIInt ranks;
   PetscInt64 counts[4] = {responder->queries - before->queries, responder->hits - before->hits,
                           responder->solves - before->solves, responder->failures - before->failures};
 
@@ -240,9 +259,7 @@ static PetscErrorCode FinishStep(LamMacro macro, PetscInt number, PetscReal load
   step->hits = counts[1];
   step->solves = counts[2];
   step->failures = counts[3];
-  PetscCallMPI(MPI_Comm_size(macro->comm, &ranks));
-  step->solve_seconds = (responder->solve_seconds - before->solve_seconds) / ranks;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &step->solve_seconds, 1, MPIU_REAL, MPIU_SUM, macro->comm));
+  PetscCall(MeanTimes(macro));
   step->seconds = LamClock() - start;
   PetscFunctionReturn(0);
 }

@@ -31,7 +31,9 @@ typedef struct {
   PetscInt newton_iterations; /* all of the step, cutbacks included */
   PetscInt cutbacks;
   PetscInt64 queries, hits, solves, failures; /* of this step, all ranks */
-  PetscReal seconds, solve_seconds;           /* wall time; of it within the responder's solves, mean over the ranks */
+  PetscInt64 interpolated;                    /* answers from a database, likewise; some needed solves of nodes */
+  PetscReal seconds;                          /* wall time */
+  PetscReal query_seconds, solve_seconds;     /* of it in questions to databases and in solves, mean of the ranks */
   PetscReal residuals[64];                    /* of the last Newton iteration series, over the norm of the
                                                  element forces; residual_count entries */
   PetscInt residual_count;
@@ -44,6 +46,9 @@ enum { LAM_MESSAGE_LENGTH = 512 };
 /* Called on all ranks after each converged step, and after one that came only part of its way; sets *stop to end the
    run after it. */
 typedef PetscErrorCode (*LamMacroMonitor)(LamMacro macro, const LamMacroStep *step, PetscBool *stop, void *ctx);
+
+/* Called on all ranks after each attempt at an increment that failed; `why` is the reason, with the material point. */
+typedef PetscErrorCode (*LamMacroCutback)(LamMacro macro, const char why[], void *ctx);
 
 PetscErrorCode LamMacroCreate(MPI_Comm comm, LamMacro *macro);
 PetscErrorCode LamMacroSetScene(LamMacro macro, const LamScene *scene); /* borrows the scene */
@@ -60,6 +65,7 @@ PetscErrorCode LamMacroGetGroups(LamMacro macro, PetscInt *count, const char (**
 PetscErrorCode LamMacroSetPointTissue(LamMacro macro, const PetscReal turgor[], const PetscReal cohesion[]);
 PetscErrorCode LamMacroSetResponder(LamMacro macro, LamResponder *responder); /* borrows it */
 PetscErrorCode LamMacroSetMonitor(LamMacro macro, LamMacroMonitor monitor, void *ctx);
+PetscErrorCode LamMacroSetCutback(LamMacro macro, LamMacroCutback cutback, void *ctx);
 /*
   `stop` is asked after each batch of responses, and while other ranks are still at theirs; true on any rank, the
   increment under way is given up and the run ends with LAM_MACRO_STOPPED. Once true it must stay so. A responder may

@@ -132,6 +132,7 @@ static PetscErrorCode SolveAndClose(LamFE2Run *run, int *exit_status)
   PetscFunctionBeginUser;
   PetscCall(LamProgressStart(&run->progress, total, (PetscBool)(run->quiet || (!run->json && isatty(STDOUT_FILENO)))));
   PetscCall(LamMacroSetMonitor(run->macro, StepDone, run));
+  PetscCall(LamMacroSetCutback(run->macro, LamFE2ReportCutback, run));
   PetscCall(LamMacroSolve(run->macro, &reason, message));
   PetscCall(LamProgressEnd(&run->progress));
   if (reason == LAM_MACRO_STOPPED) {

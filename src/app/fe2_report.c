@@ -16,6 +16,16 @@ static PetscReal MPa(const LamFE2Run *run)
   return run->scene->scales.stress * 1e-6;
 }
 
+/* Who answered, and where the time went that was not in solves. */
+static void AddService(const LamMacroStep *step, json_t *object)
+{
+  const PetscReal other = PetscMax(0, step->seconds - step->query_seconds - step->solve_seconds);
+
+  json_object_set_new(object, "interpolated", json_integer((json_int_t)step->interpolated));
+  json_object_set_new(object, "query_seconds", LamJSONReal(step->query_seconds));
+  json_object_set_new(object, "other_seconds", LamJSONReal(other));
+}
+
 static PetscErrorCode PrintStepJSON(const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory)
 {
   const LamScales *scales = &run->scene->scales;
@@ -34,12 +44,29 @@ static PetscErrorCode PrintStepJSON(const LamFE2Run *run, const LamMacroStep *st
                      "failures", (json_int_t)step->failures, "seconds", LamJSONReal(step->seconds), "solve_seconds",
                      LamJSONReal(step->solve_seconds), "peak_memory_mb", LamJSONReal(peak_memory), "residuals",
                      LamJSONReals(step->residual_count, step->residuals, 1));
+  AddService(step, object);
   PetscCall(LamPrintJSON(object));
   PetscFunctionReturn(0);
 }
 
+/* Where there are several. */
+static void PrintTissues(const LamFE2Tissues *tissues)
+{
+  if (tissues->count == 1) return;
+  printf("%-20s %10s %12s %12s %12s\n", "tissue", "points", "apothem um", "wall um", "C1+C2 MPa");
+  for (PetscInt t = 0; t < tissues->count; t++) {
+    const LamFE2Tissue *tissue = &tissues->tissues[t];
+    const LamScales *scales = &tissue->scene.scales;
+
+    printf("%-20s %10lld %12.4g %12.4g %12.4g\n", tissue->name[0] ? tissue->name : "rve",
+           (long long)tissue->body_points, (double)(scales->length * 1e6),
+           (double)(tissue->scene.micro.wall_thickness * scales->length * 1e6), (double)(scales->stress * 1e-6));
+  }
+}
+
 static void PrintHeader(const LamFE2Run *run, const LamMacroStep *step)
 {
+  PrintTissues(&run->tissues);
   printf("Reactions in N per mm of thickness; solving: seconds of it in RVE solves; residuals relative to the forces "
          "of the elements.\n%4s %7s",
          "step", "load");
@@ -71,6 +98,13 @@ PetscErrorCode LamFE2ReportStep(const LamFE2Run *run, const LamMacroStep *step, 
     if (run->totals.steps == run->resumed_steps) PrintHeader(run, step);
     PrintRow(run, step);
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFE2ReportCutback(LamMacro macro, const char why[], void *run)
+{
+  PetscFunctionBeginUser;
+  if (LamAppIsRoot()) fprintf(stderr, "lamella fe2: %s: cut back: %s\n", ((LamFE2Run *)run)->scene_path, why);
   PetscFunctionReturn(0);
 }
 

@@ -57,6 +57,8 @@ PetscErrorCode LamFE2Disconnect(LamFE2Run *run); /* after the macroscale solver'
 /* ---- fe2_report.c; on rank 0 ---- */
 /* The row, after the first step's header, or the JSON object of a step. peak_memory in MB. */
 PetscErrorCode LamFE2ReportStep(const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory);
+/* LamMacroCutback: a line on stderr; on all ranks. */
+PetscErrorCode LamFE2ReportCutback(LamMacro macro, const char why[], void *run);
 PetscErrorCode LamFE2ReportTotals(const LamFE2Run *run);
 
 /* ---- fe2_record.c; on rank 0 but for the first, which is collective ---- */
