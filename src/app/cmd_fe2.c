@@ -115,9 +115,9 @@ static PetscErrorCode StepDone(LamMacro macro, const LamMacroStep *step, PetscBo
   PetscCall(LamMacroFieldsDestroy(&fields));
   PetscCall(LamFE2ShareError(run->comm, ierr));
   Count(step, &run->totals);
-  if (step->complete) PetscCall(LamFE2CheckpointSave(run));
   *stop = LamStopRequested(); /* of any rank: a signal may reach only one of them */
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, stop, 1, MPIU_BOOL, MPI_LOR, run->comm));
+  if (step->complete) PetscCall(LamFE2CheckpointSave(run, *stop));
   PetscFunctionReturn(0);
 }
 

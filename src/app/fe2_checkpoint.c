@@ -2,14 +2,18 @@
   OUT.h5.ckpt: what a macroscale run that is killed or stopped goes on from.
 
   Method. The file is written anew after each complete step, when the results and the database have it, and takes its
-  name when it is on the disk. So a kill leaves the last complete step, and results that have this step or one more,
-  which is written over. A database may have grown, too: the records that the run knew are those that are named, in
-  their order; others count as not solved yet, and are found where they would be solved.
+  name when it is on the disk; where that would take more than LARGEST_SHARE of the time, after some of them. So a kill
+  leaves a complete step, and results that have this step or more, which are written over. A database may have grown,
+  too: the records that the run knew are those that are named, in their order; others count as not solved yet, and are
+  found where they would be solved.
 */
 #include "fe2_run.h"
 #include <stdio.h>
 #include <string.h>
+#include <lamella/clock.h>
 #include <unistd.h>
+
+static const PetscReal LARGEST_SHARE = 0.02; /* of the run's time for checkpoints */
 
 static PetscErrorCode CheckpointPath(const LamFE2Run *run, char path[PETSC_MAX_PATH_LEN])
 {
@@ -161,31 +165,42 @@ static PetscBool CanGoOn(const LamFE2Run *run)
   return (PetscBool)(run->response == LAM_FE2_DIRECT || run->database_path);
 }
 
-PetscErrorCode LamFE2CheckpointSave(LamFE2Run *run)
+static PetscErrorCode SaveNow(LamFE2Run *run)
 {
+  const PetscReal start = LamClock();
   char path[PETSC_MAX_PATH_LEN];
   PetscErrorCode ierr;
   LamArchive archive;
 
   PetscFunctionBeginUser;
-  if (!run->out_path) PetscFunctionReturn(0);
-  if (!CanGoOn(run)) {
-    PetscCall(LamFE2CheckpointRemove(run)); /* of an earlier run */
-    PetscFunctionReturn(0);
-  }
   PetscCall(CheckpointPath(run, path));
   PetscCall(LamArchiveCreate(run->comm, path, &archive));
   ierr = Write(run, archive);
   PetscCall(LamArchiveClose(&archive, (PetscBool)!ierr));
   PetscCall(ierr);
+  run->saved = LamClock();
+  run->save_seconds = run->saved - start;
+  run->all_save_seconds += run->save_seconds;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFE2CheckpointSave(LamFE2Run *run, PetscBool ends)
+{
+  PetscBool due = (PetscBool)(ends || LARGEST_SHARE * (LamClock() - run->saved) >= run->save_seconds);
+
+  PetscFunctionBeginUser;
+  if (!run->out_path || !CanGoOn(run)) PetscFunctionReturn(0);
+  PetscCallMPI(MPI_Bcast(&due, 1, MPIU_BOOL, 0, run->comm));
+  if (due) PetscCall(SaveNow(run));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamFE2CheckpointStart(LamFE2Run *run)
 {
   PetscFunctionBeginUser;
+  if (!run->archive && !CanGoOn(run)) PetscCall(LamFE2CheckpointRemove(run)); /* of an earlier run */
   if (!run->archive) {
-    PetscCall(LamFE2CheckpointSave(run));
+    PetscCall(LamFE2CheckpointSave(run, PETSC_TRUE));
     PetscFunctionReturn(0);
   }
   PetscCall(ArchiveSteps(run, run->archive));

@@ -33,7 +33,9 @@ typedef struct {
   PetscBool stopped;      /* before it began: nothing is written */
   PetscBool resumed;      /* goes on from a complete step: OUT.h5 has it */
   PetscInt resumed_steps; /* that earlier runs have told */
-  LamArchive archive;     /* what it goes on from, until that is read; NULL: it begins anew */
+  PetscReal saved, save_seconds,
+      all_save_seconds; /* when the checkpoint was written last, how long that took, and all */
+  LamArchive archive;   /* what it goes on from, until that is read; NULL: it begins anew */
   LamFE2Tissues tissues;
   LamResponder mosaic; /* of several tissues; destroy NULL: not in use */
 
@@ -80,8 +82,9 @@ PetscErrorCode LamFE2CheckpointRows(LamFE2Run *run, LamArchive archive, LamFE2Ti
 /* Takes over what was found, once responder and files stand; else starts OUT.h5.ckpt, so that a database that grows
    meanwhile does not change what the run would have answered. */
 PetscErrorCode LamFE2CheckpointStart(LamFE2Run *run);
-/* After a complete step, and after the files have it. */
-PetscErrorCode LamFE2CheckpointSave(LamFE2Run *run);
+/* After a complete step, and after the files have it: where it is due, so that all of them take 2 % of the time at
+   most, or where the run is to end. */
+PetscErrorCode LamFE2CheckpointSave(LamFE2Run *run, PetscBool ends);
 PetscErrorCode LamFE2CheckpointRemove(LamFE2Run *run);
 
 /* ---- cmd_fe2.c ---- */
