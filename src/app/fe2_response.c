@@ -95,6 +95,13 @@ static PetscErrorCode PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue)
   LamPlan plan;
 
   PetscFunctionBeginUser;
+  /* an error of a lumen becomes one of its pressure some 1e3 times over */
+  PetscCheck(!tissue->scene.sealed || run->response == LAM_FE2_DIRECT ||
+                 tissue->scene.micro.interface == LAM_INTERFACE_BONDED,
+             PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: rve.turgor.mode: sealed: of cells in contact a database does not know the lumens well enough; run it "
+             "with --response direct",
+             run->scene_path);
   if (run->response != LAM_FE2_DIRECT) PetscCall(OpenDatabase(run, tissue));
   PetscCall(LamPlanMake(&tissue->scene, &plan));
   tissue->scene.micro = plan.micro;

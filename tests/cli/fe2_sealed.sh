@@ -1,0 +1,42 @@
+# fe2 in sealed tissue: turgor follows the load, a cache answers as well, what no table knows is refused
+. "$(dirname "$0")/common.sh"
+
+cat >block.yaml <<'YAML'
+version: 1
+rve:
+  cell: {apothem: 75 um, wall_thickness: 11.25 um}
+  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
+  interface: {law: bonded}
+  turgor: {mode: sealed, pressure: 0.02 MPa}
+  mesh: {along: 4, through: 1}
+macro:
+  mesh: {box: [10 mm, 10 mm], elements: [2, 1]}
+  boundary:
+    - {on: bottom, displacement: [0 mm, 0 mm]}
+    - {on: top, displacement: [1 mm, -0.5 mm]}
+  inflate: true
+  steps: 2
+YAML
+
+expect 0 "$lamella" fe2 block.yaml --json -o direct.h5
+cp out.txt direct.jsonl
+expect 0 "$lamella" fe2 block.yaml --json --response cache
+cp out.txt cache.jsonl
+if /usr/bin/python3 -c 'import json' 2>/dev/null; then
+  /usr/bin/python3 - <<'PYTHON' || fail "not what sealed tissue does: $(cat direct.jsonl cache.jsonl)"
+import json
+direct, cache = ([json.loads(line) for line in open(name)] for name in ("direct.jsonl", "cache.jsonl"))
+assert [s["step"] for s in direct] == [0, 1, 2]
+assert abs(direct[0]["turgor_mean"] - 0.02) < 1e-12  # inflation has all the water it wants
+assert direct[1]["turgor_mean"] > 0.021 and direct[2]["turgor_mean"] > direct[1]["turgor_mean"]  # pressed
+for one, other in zip(direct[1:], cache[1:]):
+    assert one["cutbacks"] == 0 and one["newton_iterations"] <= 5
+    for i in range(2):
+        a, b = one["reaction"]["top"][i], other["reaction"]["top"][i]
+        assert abs(a - b) < 0.02 * abs(one["reaction"]["top"][1]), (a, b)
+PYTHON
+fi
+
+sed 's/{law: bonded}/{law: contact, cohesion: 0.02 MPa}/' block.yaml >contact.yaml
+expect 2 "$lamella" fe2 contact.yaml --response cache
+grep -q 'direct' err.txt || fail "no remedy: $(cat err.txt)"
