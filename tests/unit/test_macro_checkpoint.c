@@ -101,10 +101,11 @@ static PetscErrorCode SaveMonitor(LamMacro macro, const LamMacroStep *step, Pets
   PetscFunctionReturn(0);
 }
 
-static void Prepare(Fixture *fixture, PetscBool inflate, PetscInt stop_after)
+static void Prepare(Fixture *fixture, PetscBool inflate, PetscBool sealed, PetscInt stop_after)
 {
   FixtureShear(fixture, 3, 0.3, 4);
-  fixture->scene.turgor = 0.1;
+  FixtureSeal(fixture, 0.1, 2e3);
+  fixture->scene.sealed = sealed;
   fixture->scene.macro.inflate = inflate;
   FixtureSetUp(fixture, PETSC_COMM_WORLD);
   fixture->stop_after = stop_after;
@@ -112,17 +113,17 @@ static void Prepare(Fixture *fixture, PetscBool inflate, PetscInt stop_after)
 }
 
 /* A run that is stopped after a step, and one that goes on from there, are one that is not stopped, bit for bit. */
-static void CheckGoesOn(PetscBool inflate, PetscInt stop_after)
+static void CheckGoesOn(PetscBool inflate, PetscBool sealed, PetscInt stop_after)
 {
   Fixture whole, first, second;
   LamArchive archive;
 
-  Prepare(&whole, inflate, -1);
+  Prepare(&whole, inflate, sealed, -1);
   FixtureSolve(&whole);
-  Prepare(&first, inflate, stop_after);
+  Prepare(&first, inflate, sealed, stop_after);
   FixtureSolve(&first);
   assert_int_equal(first.reason, LAM_MACRO_STOPPED);
-  Prepare(&second, inflate, -1);
+  Prepare(&second, inflate, sealed, -1);
   assert_ok(LamArchiveOpen(PETSC_COMM_WORLD, Path, &archive));
   assert_ok(LamMacroArchive(second.macro, archive));
   assert_ok(LamArchiveClose(&archive, PETSC_FALSE));
@@ -144,17 +145,24 @@ static void CheckGoesOn(PetscBool inflate, PetscInt stop_after)
 
 static void GoesOnBehindAStep(void **state)
 {
-  CheckGoesOn(PETSC_FALSE, 2);
+  CheckGoesOn(PETSC_FALSE, PETSC_FALSE, 2);
 }
 
 static void GoesOnBehindInflation(void **state)
 {
-  CheckGoesOn(PETSC_TRUE, 0);
+  CheckGoesOn(PETSC_TRUE, PETSC_FALSE, 0);
 }
 
 static void GoesOnBehindAStepOfAnInflatedBody(void **state)
 {
-  CheckGoesOn(PETSC_TRUE, 3);
+  CheckGoesOn(PETSC_TRUE, PETSC_FALSE, 3);
+}
+
+static void SealedBodyGoesOn(void **state)
+{
+  CheckGoesOn(PETSC_FALSE, PETSC_TRUE, 1);
+  CheckGoesOn(PETSC_TRUE, PETSC_TRUE, 0);
+  CheckGoesOn(PETSC_TRUE, PETSC_TRUE, 2);
 }
 
 int main(int argc, char **argv)
@@ -163,6 +171,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(WhatIsWrittenIsRead),   cmocka_unit_test(WhatIsNotKeptLeavesTheFileBefore),
       cmocka_unit_test(AnotherCountIsRefused), cmocka_unit_test(GoesOnBehindAStep),
       cmocka_unit_test(GoesOnBehindInflation), cmocka_unit_test(GoesOnBehindAStepOfAnInflatedBody),
+      cmocka_unit_test(SealedBodyGoesOn),
   };
 
   int failed;
