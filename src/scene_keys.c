@@ -181,7 +181,8 @@ const LamKey LamKeys[] = {
     {NAME("rve.turgor.mode", turgor_mode_names), .default_words = "`prescribed` where a pressure is given, else `none`",
      .example = "prescribed",
      .help = "`prescribed`: the pressure is given; `sealed`: each cell keeps the water that it has at F = I under that "
-             "pressure, and its pressure follows. `build` tabulates prescribed turgor alone."},
+             "pressure (in `fe2` with `macro.inflate`: in the inflated body), and its pressure follows. `build` tabulates "
+             "prescribed turgor alone."},
     {STRESS("rve.turgor.pressure"), .default_words = "none: required by modes `prescribed` and `sealed`",
      .example = "0.02 MPa", .help = "Turgor of the tissue; negative is suction."},
     {STRESS("rve.turgor.water_bulk_modulus"), ABOVE(0), .default_value = "2200 MPa", .example = "2.2 GPa",
