@@ -1,9 +1,9 @@
-/* FE2 with the real RVE in sealed tissue: the mixed element against one sealed RVE, and the patch test. */
-#include <string.h>
-#include <unistd.h>
-#include <lamella/macro.h>
-#include "gmsh_writer.h"
+/*
+  FE2 with the real RVE, turgor prescribed and sealed: patch test, Cook's membrane, and the mixed element against one
+  sealed RVE.
+*/
 #include "rve_fixture.h"
+#include "figures_mixed_element.h"
 
 static const char scene_text[] = "version: 1\n"
                                  "rve:\n"
@@ -96,12 +96,13 @@ static void PatchTest(void **unused)
   const GmshElements kinds[2] = {GMSH_QUADRILATERALS, GMSH_TRIANGLES};
   const PetscReal F[9] = {stretch[0], 0, 0, 0, stretch[1], 0, 0, 0, 1};
 
-  for (int k = 0; k < 2; k++) {
+  for (int k = 0; k < 4; k++) {
     LamScene *scene;
     LamMacroFields fields;
     assert_int_equal(LamSceneReadText("sealed", scene_text, &scene), 0);
+    scene->sealed = (PetscBool)(k / 2);
     scene->macro.source = LAM_MESH_GMSH;
-    GmshWrite(scene->macro.gmsh, 2, 2, kinds[k], GmshDistorted);
+    GmshWrite(scene->macro.gmsh, 2, 2, kinds[k % 2], GmshDistorted);
     SolveBody(scene, &fields);
     unlink(scene->macro.gmsh);
     for (PetscInt e = 0; e < fields.element_count; e++) {
@@ -113,9 +114,33 @@ static void PatchTest(void **unused)
   }
 }
 
+/* On coarse meshes, where its corners do not count yet, the force on Cook's membrane of dry tissue has order 2. */
+static void CookHasTheOrderOfTheElement(void **unused)
+{
+  LamMicrostructure micro = DefaultTissue();
+
+  micro.along = 3;
+  micro.through = 1;
+  LamRVE rve = NewRVE(&micro);
+  for (int sealed = 0; sealed < 2; sealed++) {
+    const LamScene scene = {.sealed = (PetscBool)sealed, .water_bulk_modulus = 2e4};
+    Problem problem = {.kind = PROBLEM_COOK, .n = 1, .amplitude = 0.5, .scene = &scene, .rve = rve};
+    PetscReal force[3];
+    for (int k = 0; k < 3; k++, problem.n *= 2) {
+      ProblemResult result;
+      assert_int_equal(ProblemSolve(&problem, &result), 0);
+      assert_true(result.residual_count > 0);
+      force[k] = result.force;
+    }
+    assert_true(OrderOf(force) > 2);
+  }
+  assert_int_equal(LamRVEDestroy(&rve), 0);
+}
+
 static int Run(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(StressIsThatOfOneSealedRVE), cmocka_unit_test(PatchTest)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(StressIsThatOfOneSealedRVE), cmocka_unit_test(PatchTest),
+                                     cmocka_unit_test(CookHasTheOrderOfTheElement)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
