@@ -61,6 +61,7 @@ main_job() {
   build/lamella fe2 tests/scenes/tissue-block.yaml -o main-job/tissue-block.h5
   build/lamella plot main-job/tissue-block.h5 -o main-job/tissue-block.png
   echo "result       main-job/tissue-block.h5 (main-job/tissue-block.xdmf for ParaView)"
+  echo "curves       main-job/tissue-block.csv"
   echo "picture      main-job/tissue-block.png"
   report_blas
   echo "time         $((SECONDS - begin)) s"

@@ -78,10 +78,7 @@ static void KeepResponse(PetscInt dim, const LamLoad *load, const LamResponse *r
     for (PetscInt kl = 0; kl < dim * dim; kl++)
       point->A[ij * dim * dim + kl] = response->tangent[9 * (3 * (ij / dim) + ij % dim) + 3 * (kl / dim) + kl % dim];
   }
-  point->lumen_fraction = response->lumen_fraction;
-  point->opening_fraction = response->opening_fraction;
-  point->debonded_fraction = response->debonded_fraction;
-  point->max_gap = response->max_gap;
+  LamMacroKeepFields(response, point->field);
 }
 
 /* Writes which point has no response: of all ranks, the one in the element of the lowest number. */

@@ -5,6 +5,7 @@
   of the tangent are kept. So the first Newton iteration after a change of the targets spreads the change through the
   whole body by the tangent of the last converged state: no layer of elements at the boundary is ever crushed.
 */
+#include <math.h>
 #include "macro_impl.h"
 
 /* Whether a mesh point lies on the boundary that the condition names. */
@@ -272,6 +273,23 @@ PetscErrorCode LamMacroAddWork(LamMacro macro)
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &work, 1, MPIU_REAL, MPIU_SUM, macro->comm));
   macro->step.work += work;
   PetscFunctionReturn(0);
+}
+
+/* During inflation the sides are not held yet: their displacements are 0. */
+void LamMacroDisplacements(LamMacro macro, LamMacroStep *step)
+{
+  const LamMacroSpec *spec = &macro->scene->macro;
+
+  for (PetscInt s = 0; s < step->boundary_count; s++) {
+    for (PetscInt i = 0; i < 2; i++) {
+      step->displacement[s][i] = NAN;
+      for (PetscInt b = 0; b < spec->boundary_count; b++) {
+        const LamBoundary *boundary = &spec->boundary[b];
+        if (boundary->given[i] && !strcmp(boundary->on, step->boundary[s]))
+          step->displacement[s][i] = step->load_factor * boundary->displacement[i];
+      }
+    }
+  }
 }
 
 PetscErrorCode LamMacroReactions(LamMacro macro, LamMacroStep *step)

@@ -1,19 +1,74 @@
 /*
-  Fields of the last converged state, gathered on rank 0 in the numbering of the undistributed mesh.
+  What is kept of a response for the results; fields of the last converged state, gathered on rank 0 in the numbering of
+  the undistributed mesh.
 */
+#include <math.h>
 #include "macro_impl.h"
 
-/* What a rank sends of a node and of an element. */
+const char *const LamPointFieldNames[] = {LAM_POINT_FIELDS(LAM_NAME_ENTRY) NULL};
+
+PetscBool LamPointFieldIsStress(LamPointField field)
+{
+  return (PetscBool)(field == LAM_POINT_TURGOR || field == LAM_POINT_WALL || field == LAM_POINT_NORMAL ||
+                     field == LAM_POINT_SHEAR);
+}
+
+/* What the lumens have: of sealed cells the pressure that was reached. */
+static PetscReal Turgor(const LamResponse *r)
+{
+  return isfinite(r->turgor_mean) ? r->turgor_mean : r->load.turgor;
+}
+
+/* A face bears t = g - (contact pressure), and nothing but p + g presses it together (theory.md, Section 20). */
+static PetscReal FaceUnloading(const LamResponse *r)
+{
+  const PetscReal pressing = Turgor(r) + r->load.cohesion;
+  PetscReal least = PETSC_INFINITY;
+
+  if (!(pressing > 0) || isnan(r->min_gap)) return NAN;
+  for (int k = 0; k < 3; k++) {
+    const PetscReal pressure = r->load.cohesion - r->mean_face_traction[k];
+    least = isnan(pressure) ? least : PetscMin(least, pressure); /* NaN: a patch without faces of this family */
+  }
+  return PetscIsInfReal(least) ? NAN : 1 - least / pressing;
+}
+
+void LamMacroKeepFields(const LamResponse *response, PetscReal field[LAM_POINT_FIELD_COUNT])
+{
+  const PetscBool interpolated = (PetscBool)(response->source == LAM_SOURCE_DATABASE);
+
+  field[LAM_POINT_TURGOR] = Turgor(response);
+  field[LAM_POINT_LUMEN] = response->lumen_fraction;
+  field[LAM_POINT_OPENING] = response->opening_fraction;
+  field[LAM_POINT_DEBONDED] = response->debonded_fraction;
+  field[LAM_POINT_OPEN] = response->open_fraction;
+  field[LAM_POINT_GAP] = response->max_gap;
+  field[LAM_POINT_UNLOADING] = FaceUnloading(response);
+  field[LAM_POINT_WALL] = response->max_wall_tension;
+  field[LAM_POINT_NORMAL] = response->max_traction;
+  field[LAM_POINT_SHEAR] = response->max_lamella_shear;
+  field[LAM_POINT_ERROR] = interpolated ? response->error_estimate : 0;
+  field[LAM_POINT_INTERPOLATED] = interpolated;
+  field[LAM_POINT_DOUBTFUL] = !response->indicators_trusted;
+}
+
+/* What a rank sends of a node, of an element and of a material point. */
 typedef struct {
   PetscInt number;
   PetscReal X[2], u[2];
 } NodeRecord;
 
 typedef struct {
-  PetscInt number;
+  PetscInt number, points;
   PetscInt nodes[LAM_FIELD_NODES];
-  PetscReal F[9], P[9], cauchy[9], indicator[4];
+  PetscReal F[9], P[9], cauchy[9], mean[LAM_POINT_FIELD_COUNT], largest[LAM_POINT_FIELD_COUNT];
 } ElementRecord;
+
+typedef struct {
+  PetscInt element, index; /* number of its element, and which of its points */
+  LamLoad load;
+  PetscReal P[9], field[LAM_POINT_FIELD_COUNT], place[2], position[2], volume;
+} PointRecord;
 
 /* Gathers n items of `size` bytes from each rank on rank 0; `all` is NULL elsewhere. The caller frees it. */
 static PetscErrorCode GatherItems(MPI_Comm comm, size_t size, PetscInt n, const void *items, PetscInt *total,
@@ -107,21 +162,26 @@ static void MeanCauchy(PetscInt n, const LamMaterialPoint points[], const PetscR
   }
 }
 
-static void ElementMeans(LamMacro macro, const LamMacroElement *element, ElementRecord *record)
+static void ElementMeans(PetscInt n, const LamMaterialPoint points[], const PetscReal weight[], ElementRecord *record)
 {
   PetscReal area = 0;
 
-  for (PetscInt q = 0; q < element->kind->points; q++) area += macro->weight[element->first + q];
-  for (PetscInt q = 0; q < element->kind->points; q++) {
-    const LamMaterialPoint *point = &macro->accepted[element->first + q];
-    const PetscReal share = macro->weight[element->first + q] / area;
-    const PetscReal indicator[4] = {point->lumen_fraction, point->opening_fraction, point->debonded_fraction,
-                                    point->load.turgor};
+  for (PetscInt q = 0; q < n; q++) area += weight[q];
+  for (int k = 0; k < LAM_POINT_FIELD_COUNT; k++) record->largest[k] = points[0].field[k];
+  for (PetscInt q = 0; q < n; q++) {
+    const LamMaterialPoint *point = &points[q];
+    const PetscReal share = weight[q] / area;
     for (int k = 0; k < 9; k++) {
       record->F[k] += share * point->load.F[k];
       record->P[k] += share * point->P[k];
     }
-    for (int k = 0; k < 4; k++) record->indicator[k] += share * indicator[k];
+    for (int k = 0; k < LAM_POINT_FIELD_COUNT; k++) {
+      record->mean[k] += share * point->field[k];
+      if (!(point->field[k] <= record->largest[k])) record->largest[k] = point->field[k];
+    }
+  }
+  for (int k = 0; k < LAM_POINT_FIELD_COUNT; k++) {
+    if (isnan(record->mean[k])) record->largest[k] = NAN;
   }
 }
 
@@ -132,60 +192,158 @@ static PetscErrorCode CollectElements(LamMacro macro, PetscInt *n, ElementRecord
   PetscCall(PetscCalloc1(*n, elements));
   for (PetscInt e = 0; e < *n; e++) {
     const LamMacroElement *element = &macro->elements[e];
-    (*elements)[e].number = element->number;
-    PetscCall(ElementNodes(macro, e, (*elements)[e].nodes));
-    ElementMeans(macro, element, &(*elements)[e]);
-    MeanCauchy(element->kind->points, &macro->accepted[element->first], &macro->weight[element->first],
-               (*elements)[e].cauchy);
+    const LamMaterialPoint *points = &macro->accepted[element->first];
+    const PetscReal *weight = &macro->weight[element->first];
+    ElementRecord *record = &(*elements)[e];
+    record->number = element->number;
+    record->points = element->kind->points;
+    PetscCall(ElementNodes(macro, e, record->nodes));
+    ElementMeans(record->points, points, weight, record);
+    MeanCauchy(record->points, points, weight, record->cauchy);
   }
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Allocate(LamMacroFields *fields)
+/* Point q of an element, at displacements ue[nodes][dim] of its nodes: x = X + sum_a N_a u_a. */
+static void FillPoint(LamMacro macro, const LamMacroElement *element, PetscInt q, const PetscScalar ue[],
+                      PointRecord *record)
 {
+  const PetscInt p = element->first + q, nodes = element->kind->nodes;
+  const LamMaterialPoint *point = &macro->accepted[p];
+
+  record->element = element->number;
+  record->index = q;
+  record->load = point->load;
+  record->volume = macro->weight[p];
+  for (int k = 0; k < 9; k++) record->P[k] = point->P[k];
+  for (int k = 0; k < LAM_POINT_FIELD_COUNT; k++) record->field[k] = point->field[k];
+  for (int i = 0; i < 2; i++) {
+    record->place[i] = record->position[i] = macro->place[macro->dim * p + i];
+    for (PetscInt a = 0; a < nodes; a++)
+      record->position[i] += element->kind->value[q * nodes + a] * PetscRealPart(ue[macro->dim * a + i]);
+  }
+}
+
+static PetscErrorCode CollectPoints(LamMacro macro, PetscInt *n, PointRecord **points)
+{
+  PetscSection section;
+  Vec local;
+
   PetscFunctionBeginUser;
+  *n = macro->point_count;
+  PetscCall(PetscMalloc1(*n, points));
+  PetscCall(DMGetLocalSection(macro->dm, &section));
+  PetscCall(DMGetLocalVector(macro->dm, &local));
+  PetscCall(DMGlobalToLocal(macro->dm, macro->u, INSERT_VALUES, local));
+  for (PetscInt e = 0; e < macro->element_count; e++) {
+    const LamMacroElement *element = &macro->elements[e];
+    PetscScalar *ue = NULL;
+    PetscCall(DMPlexVecGetClosure(macro->dm, section, local, macro->mesh_start + e, NULL, &ue));
+    for (PetscInt q = 0; q < element->kind->points; q++)
+      FillPoint(macro, element, q, ue, &(*points)[element->first + q]);
+    PetscCall(DMPlexVecRestoreClosure(macro->dm, section, local, macro->mesh_start + e, NULL, &ue));
+  }
+  PetscCall(DMRestoreLocalVector(macro->dm, &local));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode GetNodes(LamMacro macro, LamMacroFields *fields)
+{
+  NodeRecord *own, *all;
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(CollectNodes(macro, &n, &own));
+  PetscCall(GatherItems(macro->comm, sizeof(NodeRecord), n, own, &fields->node_count, (void **)&all));
+  PetscCall(PetscFree(own));
+  if (!all) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(2 * fields->node_count, &fields->nodes));
   PetscCall(PetscMalloc1(2 * fields->node_count, &fields->u));
-  PetscCall(PetscMalloc1(LAM_FIELD_NODES * fields->element_count, &fields->elements));
-  PetscCall(PetscMalloc1(9 * fields->element_count, &fields->F));
-  PetscCall(PetscMalloc1(9 * fields->element_count, &fields->P));
-  PetscCall(PetscMalloc1(9 * fields->element_count, &fields->cauchy));
-  PetscCall(PetscMalloc1(4 * fields->element_count, &fields->indicator));
+  for (PetscInt k = 0; k < fields->node_count; k++) {
+    PetscCall(PetscArraycpy(&fields->nodes[2 * all[k].number], all[k].X, 2));
+    PetscCall(PetscArraycpy(&fields->u[2 * all[k].number], all[k].u, 2));
+  }
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode KeepElements(const ElementRecord elements[], LamMacroFields *fields)
+{
+  const PetscInt count = fields->element_count, n = LAM_POINT_FIELD_COUNT;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(LAM_FIELD_NODES * count, &fields->elements));
+  PetscCall(PetscMalloc1(9 * count, &fields->F));
+  PetscCall(PetscMalloc1(9 * count, &fields->P));
+  PetscCall(PetscMalloc1(9 * count, &fields->cauchy));
+  PetscCall(PetscMalloc1(n * count, &fields->mean));
+  PetscCall(PetscMalloc1(n * count, &fields->largest));
+  PetscCall(PetscCalloc1(count + 1, &fields->first_point));
+  for (PetscInt k = 0; k < count; k++) {
+    const ElementRecord *element = &elements[k];
+    PetscCall(PetscArraycpy(&fields->elements[LAM_FIELD_NODES * element->number], element->nodes, LAM_FIELD_NODES));
+    PetscCall(PetscArraycpy(&fields->F[9 * element->number], element->F, 9));
+    PetscCall(PetscArraycpy(&fields->P[9 * element->number], element->P, 9));
+    PetscCall(PetscArraycpy(&fields->cauchy[9 * element->number], element->cauchy, 9));
+    PetscCall(PetscArraycpy(&fields->mean[n * element->number], element->mean, n));
+    PetscCall(PetscArraycpy(&fields->largest[n * element->number], element->largest, n));
+    fields->first_point[element->number + 1] = element->points;
+  }
+  for (PetscInt e = 0; e < count; e++) fields->first_point[e + 1] += fields->first_point[e];
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode GetElements(LamMacro macro, LamMacroFields *fields)
+{
+  ElementRecord *own, *all;
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(CollectElements(macro, &n, &own));
+  PetscCall(GatherItems(macro->comm, sizeof(ElementRecord), n, own, &fields->element_count, (void **)&all));
+  PetscCall(PetscFree(own));
+  if (all) PetscCall(KeepElements(all, fields));
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(0);
+}
+
+/* After GetElements. */
+static PetscErrorCode GetPoints(LamMacro macro, LamMacroFields *fields)
+{
+  PointRecord *own, *all;
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(CollectPoints(macro, &n, &own));
+  PetscCall(GatherItems(macro->comm, sizeof(PointRecord), n, own, &fields->point_count, (void **)&all));
+  PetscCall(PetscFree(own));
+  if (!all) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(LAM_POINT_FIELD_COUNT * fields->point_count, &fields->point));
+  PetscCall(PetscMalloc1(fields->point_count, &fields->load));
+  PetscCall(PetscMalloc1(9 * fields->point_count, &fields->point_P));
+  PetscCall(PetscMalloc1(2 * fields->point_count, &fields->place));
+  PetscCall(PetscMalloc1(2 * fields->point_count, &fields->position));
+  PetscCall(PetscMalloc1(fields->point_count, &fields->volume));
+  for (PetscInt k = 0; k < fields->point_count; k++) {
+    const PetscInt p = fields->first_point[all[k].element] + all[k].index;
+    PetscCall(PetscArraycpy(&fields->point[LAM_POINT_FIELD_COUNT * p], all[k].field, LAM_POINT_FIELD_COUNT));
+    fields->load[p] = all[k].load;
+    PetscCall(PetscArraycpy(&fields->point_P[9 * p], all[k].P, 9));
+    PetscCall(PetscArraycpy(&fields->place[2 * p], all[k].place, 2));
+    PetscCall(PetscArraycpy(&fields->position[2 * p], all[k].position, 2));
+    fields->volume[p] = all[k].volume;
+  }
+  PetscCall(PetscFree(all));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamMacroGetFields(LamMacro macro, LamMacroFields *fields)
 {
-  NodeRecord *nodes, *all_nodes;
-  ElementRecord *elements, *all_elements;
-  PetscInt node_count = 0, element_count = 0;
-
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(fields, sizeof(*fields)));
-  PetscCall(CollectNodes(macro, &node_count, &nodes));
-  PetscCall(CollectElements(macro, &element_count, &elements));
-  PetscCall(GatherItems(macro->comm, sizeof(NodeRecord), node_count, nodes, &fields->node_count, (void **)&all_nodes));
-  PetscCall(GatherItems(macro->comm, sizeof(ElementRecord), element_count, elements, &fields->element_count,
-                        (void **)&all_elements));
-  PetscCall(PetscFree(nodes));
-  PetscCall(PetscFree(elements));
-  if (!all_nodes) PetscFunctionReturn(0);
-  PetscCall(Allocate(fields));
-  for (PetscInt k = 0; k < fields->node_count; k++) {
-    const NodeRecord *node = &all_nodes[k];
-    PetscCall(PetscArraycpy(&fields->nodes[2 * node->number], node->X, 2));
-    PetscCall(PetscArraycpy(&fields->u[2 * node->number], node->u, 2));
-  }
-  for (PetscInt k = 0; k < fields->element_count; k++) {
-    const ElementRecord *element = &all_elements[k];
-    PetscCall(PetscArraycpy(&fields->elements[LAM_FIELD_NODES * element->number], element->nodes, LAM_FIELD_NODES));
-    PetscCall(PetscArraycpy(&fields->F[9 * element->number], element->F, 9));
-    PetscCall(PetscArraycpy(&fields->P[9 * element->number], element->P, 9));
-    PetscCall(PetscArraycpy(&fields->cauchy[9 * element->number], element->cauchy, 9));
-    PetscCall(PetscArraycpy(&fields->indicator[4 * element->number], element->indicator, 4));
-  }
-  PetscCall(PetscFree(all_nodes));
-  PetscCall(PetscFree(all_elements));
+  PetscCall(GetNodes(macro, fields));
+  PetscCall(GetElements(macro, fields));
+  PetscCall(GetPoints(macro, fields));
   PetscFunctionReturn(0);
 }
 
@@ -198,6 +356,24 @@ PetscErrorCode LamMacroFieldsDestroy(LamMacroFields *fields)
   PetscCall(PetscFree(fields->F));
   PetscCall(PetscFree(fields->P));
   PetscCall(PetscFree(fields->cauchy));
-  PetscCall(PetscFree(fields->indicator));
+  PetscCall(PetscFree(fields->mean));
+  PetscCall(PetscFree(fields->largest));
+  PetscCall(PetscFree(fields->first_point));
+  PetscCall(PetscFree(fields->point));
+  PetscCall(PetscFree(fields->load));
+  PetscCall(PetscFree(fields->point_P));
+  PetscCall(PetscFree(fields->place));
+  PetscCall(PetscFree(fields->position));
+  PetscCall(PetscFree(fields->volume));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroFindPoint(LamMacro macro, PetscInt element, PetscInt index, PetscInt *point)
+{
+  PetscFunctionBeginUser;
+  *point = -1;
+  for (PetscInt e = 0; e < macro->element_count; e++) {
+    if (macro->elements[e].number == element) *point = macro->elements[e].first + index;
+  }
   PetscFunctionReturn(0);
 }

@@ -8,7 +8,7 @@
   assembly.c  gather F, ask the responder, assemble force and tangent
   sealed.c    pressures of sealed lumens
   stepping.c  Newton, load steps, cutback
-  fields.c    gathering of fields on rank 0
+  fields.c    what is kept of a response for the results, gathering of fields on rank 0
   checkpoint.c what a run goes on from
 
   The dimension `dim` of the body is that of its mesh; nothing but the responder knows that it is 2 (plane strain).
@@ -62,7 +62,7 @@ typedef struct {
   LamLoad load;
   PetscReal P[9];
   PetscReal A[81]; /* [dim][dim][dim][dim] dP_ij/dF_kl */
-  PetscReal lumen_fraction, opening_fraction, debonded_fraction, max_gap;
+  PetscReal field[LAM_POINT_FIELD_COUNT];
 } LamMaterialPoint;
 
 /* What lumens that are sealed need besides of it; it belongs to the same load. */
@@ -200,6 +200,8 @@ PetscErrorCode LamMacroConstrainResidual(LamMacro macro, Vec u, Vec residual);
 PetscErrorCode LamMacroConstrainTangent(LamMacro macro, Mat tangent);
 /* Adds the work of the boundary forces between the last converged state and `trial` (trapezoidal rule). */
 PetscErrorCode LamMacroAddWork(LamMacro macro);
+/* What the sides prescribe at the step's load factor. */
+void LamMacroDisplacements(LamMacro macro, LamMacroStep *step);
 PetscErrorCode LamMacroReactions(LamMacro macro, LamMacroStep *step);
 
 /* assembly.c */
@@ -247,6 +249,10 @@ PetscErrorCode LamMacroArchiveSeal(LamMacro macro, LamArchive archive, const Pet
 /* checkpoint.c */
 /* Nodal values of a vector, [node][dim]. */
 PetscErrorCode LamMacroArchiveVec(LamMacro macro, LamArchive archive, const char name[], Vec vec);
+
+/* fields.c */
+/* What is kept of a response, by LamPointField. */
+void LamMacroKeepFields(const LamResponse *response, PetscReal field[LAM_POINT_FIELD_COUNT]);
 
 /* stepping.c */
 PetscErrorCode LamMacroNewtonCreate(LamMacro macro);

@@ -210,10 +210,11 @@ static void MeanIndicators(LamMacro macro, PetscReal sum[4], PetscReal *max_gap)
   for (PetscInt p = 0; p < macro->point_count; p++) {
     const LamMaterialPoint *point = &macro->accepted[p];
     sum[0] += macro->weight[p];
-    sum[1] += macro->weight[p] * point->debonded_fraction;
+    sum[1] += macro->weight[p] * point->field[LAM_POINT_DEBONDED];
     sum[2] += macro->weight[p] * point->load.turgor;
     /* a database that does not know it at one point does not know it at all: infinite, which MPI_MAX keeps */
-    *max_gap = PetscMax(*max_gap, PetscIsInfOrNanReal(point->max_gap) ? INFINITY : point->max_gap);
+    const PetscReal gap = point->field[LAM_POINT_GAP];
+    *max_gap = PetscMax(*max_gap, PetscIsInfOrNanReal(gap) ? INFINITY : gap);
   }
 }
 
@@ -248,6 +249,7 @@ static PetscErrorCode FinishStep(LamMacro macro, PetscInt number, PetscReal load
   PetscFunctionBeginUser;
   step->step = number;
   step->load_factor = load_factor;
+  LamMacroDisplacements(macro, step);
   PetscCall(LamMacroReactions(macro, step));
   MeanIndicators(macro, sum, &step->max_gap);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPIU_SUM, macro->comm));

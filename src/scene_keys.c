@@ -284,6 +284,10 @@ const LamKey LamKeys[] = {
              "`contact` it needs a cohesion: nothing else holds free tissue together."},
     {INTEGER("macro.steps"), FROM(1), TO(10000), .default_value = "10", .example = "10",
      .help = "Equal load steps after inflation."},
+    {LIST("macro.zoom"), .default_words = "where the tissue is nearest to failure, and the middle",
+     .example = "[[5 mm, 5 mm], [9 mm, 9 mm]]",
+     .help = "Places, at most three, at whose nearest material points the microstructure is kept for pictures."},
+    {LENGTH("macro.zoom[]", "mm"), .size = 2, .example = "[5 mm, 5 mm]", .help = "Position in the undeformed body."},
 
     {MAP("macro.response"), .default_words = "as below", .example = "{outside: stop, warm_start_memory: 2 GB}",
      .help = "How material points are answered."},

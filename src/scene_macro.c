@@ -234,6 +234,24 @@ static PetscErrorCode CheckInflation(const LamDocument *document, const LamNode 
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode BuildZoom(const LamDocument *document, LamScene *scene)
+{
+  const LamNode *list;
+  LamValue unused;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamSceneGet(document->root, "macro.zoom", &list, &unused));
+  if (!list) PetscFunctionReturn(0);
+  if (list->count > LAM_MAX_ZOOMS)
+    PetscCall(LamSceneFail(document, list, "has more than %d places; leave some out", LAM_MAX_ZOOMS));
+  for (const LamNode *item = list->first; item; item = item->next) {
+    PetscReal *place = scene->macro.zoom[scene->macro.zoom_count++];
+    for (int i = 0; i < 2; i++)
+      PetscCall(LamSceneScale(document, item, item->value.number[i], scene->scales.macro_length, &place[i]));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamSceneBuildMacro(const LamDocument *document, LamScene *scene)
 {
   const LamNode *block, *list, *inflate_node;
@@ -255,6 +273,7 @@ PetscErrorCode LamSceneBuildMacro(const LamDocument *document, LamScene *scene)
   for (const LamNode *entry = list->first; entry; entry = entry->next) {
     PetscCall(BuildBoundary(document, entry, scene, &sides));
   }
+  PetscCall(BuildZoom(document, scene));
   if (scene->macro.source == LAM_MESH_BOX) { /* of other bodies the macroscale solver checks it */
     PetscCall(CheckCorners(document, &sides));
     PetscCall(CheckRigidMotions(document, list, &sides));

@@ -25,6 +25,7 @@ typedef struct {
   char boundary[LAM_MAX_BOUNDARIES][LAM_NAME_LENGTH]; /* each named side once */
   PetscReal reaction[LAM_MAX_BOUNDARIES][2];          /* force on the body, stress * macro length, per thickness;
                                                          a corner's is shared among the sides that prescribe it */
+  PetscReal displacement[LAM_MAX_BOUNDARIES][2];      /* prescribed, from where the conditions count; NaN: free */
   PetscReal work;                                     /* of the boundary forces since the start, stress * length^2 */
   PetscReal debonded_fraction, max_gap;               /* not finite where the responder does not know them */
   PetscReal turgor_mean;
@@ -85,23 +86,55 @@ PetscErrorCode LamMacroSolve(LamMacro macro, LamMacroReason *reason, char messag
 PetscErrorCode LamMacroArchive(LamMacro macro, LamArchive archive);
 PetscErrorCode LamMacroDestroy(LamMacro *macro);
 
+/* What is kept of a material point's response beside stress and deformation, one number each; NaN: not known. */
+#define LAM_POINT_FIELDS(X)                                                                                            \
+  X(LAM_POINT_TURGOR, "turgor")                                                                                        \
+  X(LAM_POINT_LUMEN, "lumen_fraction")                                                                                 \
+  X(LAM_POINT_OPENING, "opening_fraction")                                                                             \
+  X(LAM_POINT_DEBONDED, "debonded_fraction")                                                                           \
+  X(LAM_POINT_OPEN, "open_fraction")                                                                                   \
+  X(LAM_POINT_GAP, "max_gap")               /* apothems */                                                             \
+  X(LAM_POINT_UNLOADING, "face_unloading")  /* what the least pressed face family has lost of the pressure p + g that  \
+                                               holds it closed: 1: contact carries nothing; NaN where p + g is 0, and  \
+                                               of bonded tissue */                                                     \
+  X(LAM_POINT_WALL, "wall_tension")         /* LamResponse.max_wall_tension */                                         \
+  X(LAM_POINT_NORMAL, "lamella_normal")     /* max_traction */                                                         \
+  X(LAM_POINT_SHEAR, "lamella_shear")       /* max_lamella_shear */                                                    \
+  X(LAM_POINT_ERROR, "error_estimate")      /* of an interpolated answer; 0: solved */                                 \
+  X(LAM_POINT_INTERPOLATED, "interpolated") /* 1: answered by a database; 0: solved */                                 \
+  X(LAM_POINT_DOUBTFUL, "doubtful")         /* 1: indicators that are not to be trusted; else 0 */
+typedef enum { LAM_POINT_FIELDS(LAM_ENUM_ENTRY) LAM_POINT_FIELD_COUNT } LamPointField;
+extern const char *const LamPointFieldNames[];
+PetscBool LamPointFieldIsStress(LamPointField field); /* in C1 + C2; else a bare number */
+
 /*
-  Fields of the last converged step, gathered on rank 0 of the communicator (others get NULL); the caller frees each
-  with PetscFree. All nondimensional.
-    nodes     [node_count][2]      reference positions
-    elements  [element_count][LAM_FIELD_NODES] VTK's order: corners, mid-edges, centre; of a triangle six, then -1
-    u         [node_count][2]      displacement
-    F, P      [element_count][9]   mean over the element's points, row-major 3x3
-    cauchy    [element_count][9]   mean of P F^T / J over the element's present volume
-    indicator [element_count][4]   lumen fraction, opening fraction, debonded fraction, turgor (means)
+  Fields of the last converged step, gathered on rank 0 of the communicator (others get NULL), in the numbering of the
+  undistributed mesh; the caller frees them with LamMacroFieldsDestroy. All nondimensional. n: LAM_POINT_FIELD_COUNT.
+    nodes       [node_count][2]       reference positions
+    u           [node_count][2]       displacement
+    elements    [element_count][LAM_FIELD_NODES]  VTK's order: corners, mid-edges, centre; of a triangle six, then -1
+    F, P        [element_count][9]    mean over the element's points, row-major 3x3
+    cauchy      [element_count][9]    mean of P F^T / J over the element's present volume
+    mean        [element_count][n]    mean over the element's points, by their reference volume
+    largest     [element_count][n]    largest of the element's points; NaN where one of them is
+    first_point [element_count + 1]   material points of element e: first_point[e] <= p < first_point[e + 1]
+    point       [point_count][n]      of each point
+    load        [point_count]         its deformation gradient, turgor and cohesion
+    point_P     [point_count][9]      its first Piola-Kirchhoff stress
+    place       [point_count][2]      its reference position
+    position    [point_count][2]      its present position
+    volume      [point_count]         the reference volume it stands for
 */
 enum { LAM_FIELD_NODES = 9 };
 typedef struct {
-  PetscInt node_count, element_count;
-  PetscReal *nodes, *u, *F, *P, *cauchy, *indicator;
-  PetscInt *elements;
+  PetscInt node_count, element_count, point_count;
+  PetscReal *nodes, *u, *F, *P, *cauchy, *mean, *largest, *point, *point_P, *place, *position, *volume;
+  LamLoad *load;
+  PetscInt *elements, *first_point;
 } LamMacroFields;
 PetscErrorCode LamMacroGetFields(LamMacro macro, LamMacroFields *fields);
 PetscErrorCode LamMacroFieldsDestroy(LamMacroFields *fields);
+/* The number on this rank of point `index` of an element of the undistributed mesh; -1: another rank has it. */
+PetscErrorCode LamMacroFindPoint(LamMacro macro, PetscInt element, PetscInt index, PetscInt *point);
 
 #endif

@@ -164,6 +164,7 @@ extern const char *const LamDiscPartNames[];
 typedef enum { LAM_MESH_BOX, LAM_MESH_DISC, LAM_MESH_GMSH } LamMeshSource;
 
 #define LAM_MAX_BOUNDARIES 16
+#define LAM_MAX_ZOOMS 3
 #define LAM_NAME_LENGTH 64
 
 /* A displacement condition on a named side of the macroscale body. */
@@ -181,8 +182,10 @@ typedef struct {
   char gmsh[PETSC_MAX_PATH_LEN]; /* file; a unit of length there is the macro length */
   PetscInt boundary_count;
   LamBoundary boundary[LAM_MAX_BOUNDARIES];
-  PetscBool inflate; /* first bring turgor up with only rigid motions held */
-  PetscInt steps;    /* load steps after inflation */
+  PetscBool inflate;                /* first bring turgor up with only rigid motions held */
+  PetscInt steps;                   /* load steps after inflation */
+  PetscInt zoom_count;              /* places at which the RVE is kept for pictures; 0: chosen by the results */
+  PetscReal zoom[LAM_MAX_ZOOMS][2]; /* reference positions, in macro lengths */
 } LamMacroSpec;
 
 #define LAM_MAX_REGIONS 16

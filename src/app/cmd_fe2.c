@@ -54,6 +54,7 @@ static PetscErrorCode Prepare(LamFE2Run *run, PetscBool *finished)
   PetscCall(LamMacroSetUp(run->macro));
   if (run->resume) PetscCall(LamFE2CheckpointFind(run, finished));
   if (!*finished) PetscCall(LamFE2PrepareResponse(run));
+  PetscCall(LamSummaryCreate(run->scene, &run->summary));
   PetscFunctionReturn(0);
 }
 
@@ -84,6 +85,10 @@ static PetscErrorCode EndStep(LamFE2Run *run, const LamMacroStep *step, const La
                               PetscReal peak_memory)
 {
   PetscFunctionBeginUser;
+  if (fields->point_count) {
+    PetscCall(LamSummaryAdd(&run->summary, step, fields));
+    LamSummaryFind(&run->summary);
+  }
   PetscCall(LamFE2RecordStep(run, step, fields));
   PetscCall(LamFE2ReportStep(run, step, peak_memory));
   PetscCall(LamProgressUpdate(&run->progress, run->totals.steps + 1, 0));
@@ -110,7 +115,7 @@ static PetscErrorCode StepDone(LamMacro macro, const LamMacroStep *step, PetscBo
 
   PetscFunctionBeginUser;
   PetscCall(PeakMemory(run->comm, &peak_memory));
-  if (run->out_path) PetscCall(LamMacroGetFields(macro, &fields));
+  if (run->out_path || !run->json) PetscCall(LamMacroGetFields(macro, &fields));
   if (LamAppIsRoot()) ierr = EndStep(run, step, &fields, peak_memory);
   PetscCall(LamMacroFieldsDestroy(&fields));
   PetscCall(LamFE2ShareError(run->comm, ierr));
@@ -135,6 +140,8 @@ static PetscErrorCode SolveAndClose(LamFE2Run *run, int *exit_status)
   PetscCall(LamMacroSetCutback(run->macro, LamFE2ReportCutback, run));
   PetscCall(LamMacroSolve(run->macro, &reason, message));
   PetscCall(LamProgressEnd(&run->progress));
+  if (reason != LAM_MACRO_STOPPED) ierr = LamFE2Zoom(run);
+  PetscCall(LamFE2ShareError(run->comm, ierr));
   if (reason == LAM_MACRO_STOPPED) {
     signal_status = LamStopExitStatus();
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &signal_status, 1, MPI_INT, MPI_MAX, run->comm));
@@ -144,7 +151,7 @@ static PetscErrorCode SolveAndClose(LamFE2Run *run, int *exit_status)
   *exit_status = reason == LAM_MACRO_NOT_CONVERGED ? LAM_EXIT_UNSOLVED : signal_status;
   if (LamAppIsRoot()) {
     ierr = LamFE2CloseFiles(run, status);
-    if (!run->json) PetscCall(LamFE2ReportTotals(run));
+    if (!run->json) PetscCall(LamFE2ReportEnd(run));
     if (reason == LAM_MACRO_NOT_CONVERGED) fprintf(stderr, "lamella fe2: %s: %s\n", run->scene_path, message);
   }
   PetscCall(LamFE2ShareError(run->comm, ierr));
@@ -158,6 +165,7 @@ static PetscErrorCode Destroy(LamFE2Run *run)
   PetscCall(LamMacroDestroy(&run->macro));
   PetscCall(LamArchiveClose(&run->archive, PETSC_FALSE));
   PetscCall(LamFE2Disconnect(run));
+  PetscCall(LamSummaryDestroy(&run->summary));
   PetscCall(LamSceneDestroy(&run->scene));
   PetscFunctionReturn(0);
 }
@@ -188,7 +196,8 @@ PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status)
   const LamOption options[] = {
       {'d', "database", LAM_OPTION_TEXT, "DB.h5", "response database; a cache adds to it what it solves",
        &run.database_path},
-      {'o', "output", LAM_OPTION_TEXT, "OUT.h5", "results, with OUT.xdmf beside it for ParaView", &run.out_path},
+      {'o', "output", LAM_OPTION_TEXT, "OUT.h5", "results, with OUT.xdmf (for ParaView) and OUT.csv (curves) beside it",
+       &run.out_path},
       {0, "response", LAM_OPTION_TEXT, "TYPE",
        "direct: solve an RVE per material point (default); cache: query, solve what is missing (default with -d); "
        "database: query only",

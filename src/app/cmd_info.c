@@ -2,6 +2,7 @@
   lamella info: what a file holds, who wrote it, with what. Needs no MPI.
 */
 #include "app.h"
+#include "fe2_summary.h"
 #include <math.h>
 #include <string.h>
 
@@ -170,6 +171,7 @@ static void PrintTable(const json_t *info)
   PrintText("kind", json_object_get(info, "kind"));
   PrintWriter(json_object_get(info, "writer"));
   PrintRun(json_object_get(info, "run"));
+  LamSummaryPrint(stdout, json_object_get(info, "summary"));
   PrintMap(json_object_get(info, "map"));
   PrintInteger("records", json_object_get(info, "records"));
   PrintInteger("failed", json_object_get(info, "failed"));
@@ -196,8 +198,8 @@ static PetscErrorCode ReadRun(const char path[], json_t *info)
 {
   PetscInt rank, dims[4], *steps = NULL, count = 0;
   PetscReal *factor = NULL, reached = NAN;
-  PetscBool has_steps, has_factor, has_status;
-  char *status = NULL;
+  PetscBool has_steps, has_factor, has_status, has_summary;
+  char *status = NULL, *summary = NULL;
 
   PetscFunctionBeginUser;
   PetscCall(LamFileReadInts(path, "/macro/steps", &has_steps, &rank, dims, &steps));
@@ -207,10 +209,13 @@ static PetscErrorCode ReadRun(const char path[], json_t *info)
   if (has_factor && rank == 1 && dims[0]) reached = factor[dims[0] - 1];
   PetscCall(PetscFree(factor));
   PetscCall(LamFileReadText(path, "/macro/status", &has_status, &status));
+  PetscCall(LamFileReadText(path, "/macro/summary", &has_summary, &summary));
   json_object_set_new(info, "run",
                       json_pack("{s:I, s:o, s:o?}", "steps", (json_int_t)count, "load_factor", LamJSONReal(reached),
                                 "status", has_status ? json_string(status) : NULL));
+  if (has_summary) json_object_set_new(info, "summary", json_loads(summary, 0, NULL));
   PetscCall(PetscFree(status));
+  PetscCall(PetscFree(summary));
   PetscFunctionReturn(0);
 }
 

@@ -5,6 +5,7 @@
   further ranks help it to factor the matrices of large RVEs, else they wait.
 */
 #include "failure.h"
+#include "rve_fields.h"
 #include <lamella/clock.h>
 #include <math.h>
 #include <string.h>
@@ -15,7 +16,6 @@ typedef struct {
 
   LamScene *scene;
   LamMeshes meshes; /* the scene's, and with --second-mesh a finer one */
-  LamRVEMesh mesh;  /* of the scene's */
   LamOnset onset;
   LamFailure failure;
   LamRecordWriter writer; /* NULL without -o */
@@ -26,107 +26,16 @@ typedef struct {
 
 /* ---- the file ---- */
 
-/* Which faces the samples of interfaces are of; bonded tissue has none. */
-static PetscErrorCode WriteInterfaceFaces(Run *run)
-{
-  PetscInt dims[2] = {0, 3}, points, *owner;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamRVEGetInterfaceSize(run->meshes.rve[0], &dims[0], &points));
-  if (!dims[0]) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1(3 * dims[0], &owner));
-  PetscCall(LamRVEGetInterfaceFaces(run->meshes.rve[0], owner));
-  PetscCall(LamRecordWriterInts(run->writer, "/mesh/interface_faces", 2, dims, owner));
-  PetscCall(PetscFree(owner));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode WriteMesh(Run *run)
-{
-  const LamRVEMesh *m = &run->mesh;
-  const PetscInt nodes[2] = {m->node_count, 2}, elements[2] = {m->element_count, 9}, period[2] = {2, 2};
-
-  PetscFunctionBeginUser;
-  PetscCall(LamRecordWriterReals(run->writer, "/mesh/nodes", 2, nodes, m->nodes, "apothem"));
-  PetscCall(LamRecordWriterInts(run->writer, "/mesh/elements", 2, elements, m->elements));
-  PetscCall(LamRecordWriterInts(run->writer, "/mesh/cell_of", 1, &m->element_count, m->cell_of));
-  PetscCall(LamRecordWriterReals(run->writer, "/mesh/period", 2, period, &m->period[0][0], "apothem"));
-  PetscCall(WriteInterfaceFaces(run));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode WriteField(Run *run, PetscInt number, const char name[], PetscInt components,
-                                 const PetscReal values[], const char unit[])
-{
-  const PetscInt dims[2] = {run->mesh.node_count, components};
-  char path[LAM_NAME_LENGTH];
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(path, sizeof(path), "/fields/%" PetscInt_FMT "/%s", number, name));
-  PetscCall(LamRecordWriterReals(run->writer, path, components > 1 ? 2 : 1, dims, values, unit));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode WriteFields(Run *run, PetscInt number)
-{
-  const PetscReal MPa = run->scene->scales.stress * 1e-6;
-  const PetscInt n = run->mesh.node_count;
-  PetscReal *x, *fibre, *stress;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(2 * n, &x, n, &fibre, n, &stress));
-  PetscCall(LamRVEGetFields(run->meshes.rve[0], run->meshes.state[0], x, fibre, stress));
-  for (PetscInt i = 0; i < n; i++) stress[i] *= MPa;
-  PetscCall(WriteField(run, number, "x", 2, x, "apothem"));
-  PetscCall(WriteField(run, number, "fibre_stretch", 1, fibre, "1"));
-  PetscCall(WriteField(run, number, "wall_stress", 1, stress, "MPa"));
-  PetscCall(PetscFree3(x, fibre, stress));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode WriteInterfaceField(Run *run, PetscInt number, const char name[], PetscInt rank,
-                                          const PetscInt dims[3], const PetscReal values[], const char unit[])
-{
-  char path[LAM_NAME_LENGTH];
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(path, sizeof(path), "/fields/%" PetscInt_FMT "/interface/%s", number, name));
-  PetscCall(LamRecordWriterReals(run->writer, path, rank, dims, values, unit));
-  PetscFunctionReturn(0);
-}
-
-/* Samples along the faces of contact tissue; bonded tissue has none. */
-static PetscErrorCode WriteInterface(Run *run, PetscInt number)
-{
-  const PetscReal MPa = run->scene->scales.stress * 1e-6;
-  PetscReal *from, *to, *gap, *pressure;
-  PetscInt dims[3] = {0, 0, 2}, n;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamRVEGetInterfaceSize(run->meshes.rve[0], &dims[0], &dims[1]));
-  if (!dims[0]) PetscFunctionReturn(0);
-  n = dims[0] * dims[1];
-  PetscCall(PetscMalloc4(2 * n, &from, 2 * n, &to, n, &gap, n, &pressure));
-  PetscCall(LamRVEGetInterface(run->meshes.rve[0], run->meshes.state[0], from, to, gap, pressure));
-  for (PetscInt i = 0; i < n; i++) pressure[i] *= MPa;
-  PetscCall(WriteInterfaceField(run, number, "from", 3, dims, from, "apothem"));
-  PetscCall(WriteInterfaceField(run, number, "to", 3, dims, to, "apothem"));
-  PetscCall(WriteInterfaceField(run, number, "gap", 2, dims, gap, "apothem"));
-  PetscCall(WriteInterfaceField(run, number, "pressure", 2, dims, pressure, "MPa"));
-  PetscCall(PetscFree4(from, to, gap, pressure));
-  PetscFunctionReturn(0);
-}
-
 /* The fields come first, so that a record that is committed always has them. */
 static PetscErrorCode WriteState(Run *run, PetscInt number, const LamResponse *response)
 {
   const PetscInt64 key = number;
+  char group[LAM_NAME_LENGTH];
 
   PetscFunctionBeginUser;
-  if (LamResponseHasFields(response)) {
-    PetscCall(WriteFields(run, number));
-    PetscCall(WriteInterface(run, number));
-  }
+  PetscCall(PetscSNPrintf(group, sizeof(group), "/fields/%" PetscInt_FMT, number));
+  if (LamResponseHasFields(response))
+    PetscCall(LamRVEWriteFields(run->writer, group, run->meshes.rve[0], run->meshes.state[0], &run->scene->scales));
   PetscCall(LamRecordWriterCommit(run->writer, 1, &key, response));
   PetscFunctionReturn(0);
 }
@@ -252,7 +161,6 @@ static PetscErrorCode Prepare(Run *run)
   PetscCall(LamMeshesSetInterrupt(&run->meshes, LamStopInterrupt, NULL));
   PetscCall(LamRVESetMonitor(run->meshes.rve[0], run->monitor));
   PetscCall(LamMeshesSeal(&run->meshes, run->scene, &run->scene->loads[0]));
-  PetscCall(LamRVEGetMesh(run->meshes.rve[0], &run->mesh));
   if (run->find_onset) PetscCall(LamOnsetCreate(&run->meshes, &run->onset));
   if (run->find_failure) {
     const LamFailureProgram program = {.interface = run->scene->micro.interface,
@@ -339,7 +247,7 @@ static PetscErrorCode RunOnRoot(Run *run, int *exit_status)
   PetscCall(Prepare(run));
   if (run->out_path) {
     PetscCall(LamRecordWriterOpen(run->out_path, "rve", LAM_WRITE_CREATE, run->scene, &run->writer));
-    ierr = WriteMesh(run);
+    ierr = LamRVEWriteMesh(run->writer, "/mesh", run->meshes.rve[0]);
   }
   if (!ierr) ierr = SolveStates(run);
   if (run->writer) { /* whatever happened: the lock is given up */

@@ -144,6 +144,7 @@ static PetscErrorCode ArchiveSteps(LamFE2Run *run, LamArchive archive)
   PetscFunctionBeginUser;
   if (!run->totals.steps) PetscFunctionReturn(0);
   PetscCall(LamFE2FileArchive(run->out, archive));
+  PetscCall(LamSummaryArchive(&run->summary, archive));
   PetscCall(LamMacroArchive(run->macro, archive));
   PetscFunctionReturn(0);
 }

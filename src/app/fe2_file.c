@@ -1,17 +1,20 @@
 /*
   Result file of a macroscale run.
 */
+#include <stdlib.h>
 #include <string.h>
+#include "fe2_fields.h"
 #include "fe2_file.h"
-#include "xdmf.h"
 
 struct LamFE2File_s {
   char path[PETSC_MAX_PATH_LEN];
   LamRecordWriter writer;
   LamScales scales;
-  PetscInt step_count, capacity, side_count;
-  PetscInt *steps;                          /* owned */
-  PetscReal *load_factor, *work, *reaction; /* [step], [step], [step][side][2]; owned */
+  LamFE2Fields fields;
+  LamXDMFTopology topology;
+  PetscInt topology_length;
+  PetscInt step_count, capacity;
+  PetscInt *steps; /* numbers of the complete ones; owned */
 };
 
 PetscErrorCode LamFE2FileOpen(const char path[], LamWriteMode mode, const LamScene *scene, LamFE2File *file)
@@ -20,15 +23,16 @@ PetscErrorCode LamFE2FileOpen(const char path[], LamWriteMode mode, const LamSce
   PetscCall(PetscNew(file));
   PetscCall(PetscStrncpy((*file)->path, path, sizeof((*file)->path)));
   (*file)->scales = scene->scales;
+  LamFE2FieldsChoose(scene, &(*file)->fields);
   PetscErrorCode ierr = LamRecordWriterOpen(path, "fe2", mode, scene, &(*file)->writer);
   if (ierr) PetscCall(PetscFree(*file));
   PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 
-/* Writes values * factor as [rows][columns], or [rows] where columns is 1; of rows `stride` long, from `first`. */
-static PetscErrorCode WriteColumns(LamFE2File file, const char name[], PetscInt rows, PetscInt stride, PetscInt first,
-                                   PetscInt columns, const PetscReal values[], PetscReal factor, const char unit[])
+/* Writes values * factor as [rows][columns], or [rows] where columns is 1; rows are `stride` long. */
+static PetscErrorCode WriteColumns(LamFE2File file, const char name[], PetscInt rows, PetscInt stride, PetscInt columns,
+                                   const PetscReal values[], PetscReal factor, const char unit[])
 {
   const PetscInt dims[2] = {rows, columns};
   PetscReal *scaled;
@@ -36,138 +40,184 @@ static PetscErrorCode WriteColumns(LamFE2File file, const char name[], PetscInt 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(rows * columns, &scaled));
   for (PetscInt r = 0; r < rows; r++) {
-    for (PetscInt c = 0; c < columns; c++) scaled[r * columns + c] = values[r * stride + first + c] * factor;
+    for (PetscInt c = 0; c < columns; c++) scaled[r * columns + c] = values[r * stride + c] * factor;
   }
   PetscCall(LamRecordWriterReals(file->writer, name, columns > 1 ? 2 : 1, dims, scaled, unit));
   PetscCall(PetscFree(scaled));
   PetscFunctionReturn(0);
 }
 
+static PetscBool IsTriangle(const LamMacroFields *fields, PetscInt e)
+{
+  return (PetscBool)(fields->elements[LAM_FIELD_NODES * e + 6] < 0);
+}
+
+/* Of each element its type in XDMF and its nodes, one after the other. */
+static PetscErrorCode WriteTopology(LamFE2File file, const LamMacroFields *fields)
+{
+  PetscInt *topology, n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(10 * fields->element_count, &topology));
+  for (PetscInt e = 0; e < fields->element_count; e++) {
+    const PetscInt nodes = IsTriangle(fields, e) ? 6 : 9;
+    topology[n++] = nodes == 6 ? LAM_XDMF_TRIANGLE_6 : LAM_XDMF_QUADRILATERAL_9;
+    for (PetscInt a = 0; a < nodes; a++) topology[n++] = fields->elements[LAM_FIELD_NODES * e + a];
+  }
+  PetscCall(LamRecordWriterInts(file->writer, "/macro/topology", 1, &n, topology));
+  PetscCall(PetscFree(topology));
+  file->topology_length = n;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WriteElements(LamFE2File file, const LamMacroFields *fields)
+{
+  PetscInt triangles = 0, dims[2] = {fields->element_count, 9}, *elements;
+
+  PetscFunctionBeginUser;
+  for (PetscInt e = 0; e < dims[0]; e++) triangles += IsTriangle(fields, e);
+  file->topology = triangles == dims[0] ? LAM_XDMF_TRIANGLES : triangles ? LAM_XDMF_MIXED : LAM_XDMF_QUADRILATERALS;
+  if (file->topology == LAM_XDMF_TRIANGLES) dims[1] = 6;
+  PetscCall(PetscMalloc1(dims[0] * dims[1], &elements));
+  for (PetscInt k = 0; k < dims[0] * dims[1]; k++)
+    elements[k] = fields->elements[LAM_FIELD_NODES * (k / dims[1]) + k % dims[1]];
+  PetscCall(LamRecordWriterInts(file->writer, "/macro/elements", 2, dims, elements));
+  PetscCall(PetscFree(elements));
+  if (file->topology == LAM_XDMF_MIXED) PetscCall(WriteTopology(file, fields));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode WriteMesh(LamFE2File file, const LamMacroStep *step, const LamMacroFields *fields)
 {
-  const PetscInt dims[2] = {fields->element_count, 9};
   char names[LAM_MAX_BOUNDARIES * LAM_NAME_LENGTH] = "";
 
   PetscFunctionBeginUser;
-  PetscCall(WriteColumns(file, "/macro/nodes", fields->node_count, 2, 0, 2, fields->nodes,
-                         file->scales.macro_length * 1e3, "mm"));
-  PetscCall(LamRecordWriterInts(file->writer, "/macro/elements", 2, dims, fields->elements));
+  PetscCall(WriteColumns(file, "/macro/nodes", fields->node_count, 2, 2, fields->nodes, file->scales.macro_length * 1e3,
+                         "mm"));
+  PetscCall(WriteElements(file, fields));
   for (PetscInt s = 0; s < step->boundary_count; s++) {
     if (s) PetscCall(PetscStrlcat(names, "\n", sizeof(names)));
     PetscCall(PetscStrlcat(names, step->boundary[s], sizeof(names)));
   }
   PetscCall(LamRecordWriterText(file->writer, "/macro/boundaries", names));
-  file->side_count = step->boundary_count;
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode StepName(PetscInt step, const char name[], char path[96])
+static PetscErrorCode StepName(PetscInt step, const char name[], char path[128])
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(path, 96, "/macro/step/%" PetscInt_FMT "/%s", step, name));
+  PetscCall(PetscSNPrintf(path, 128, "/macro/step/%" PetscInt_FMT "/%s", step, name));
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode WriteTensors(LamFE2File file, PetscInt step, const LamMacroFields *fields)
 {
   const PetscReal MPa = file->scales.stress * 1e-6;
-  char name[96];
+  char name[128];
 
   PetscFunctionBeginUser;
   PetscCall(StepName(step, "F", name));
-  PetscCall(WriteColumns(file, name, fields->element_count, 9, 0, 9, fields->F, 1, "1"));
+  PetscCall(WriteColumns(file, name, fields->element_count, 9, 9, fields->F, 1, "1"));
   PetscCall(StepName(step, "P", name));
-  PetscCall(WriteColumns(file, name, fields->element_count, 9, 0, 9, fields->P, MPa, "MPa"));
+  PetscCall(WriteColumns(file, name, fields->element_count, 9, 9, fields->P, MPa, "MPa"));
   PetscCall(StepName(step, "cauchy", name));
-  PetscCall(WriteColumns(file, name, fields->element_count, 9, 0, 9, fields->cauchy, MPa, "MPa"));
+  PetscCall(WriteColumns(file, name, fields->element_count, 9, 9, fields->cauchy, MPa, "MPa"));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode WriteIndicators(LamFE2File file, PetscInt step, const LamMacroFields *fields)
+static PetscErrorCode WriteScalars(LamFE2File file, PetscInt step, const LamMacroFields *fields)
 {
-  static const char *const names[4] = {"lumen_fraction", "opening_fraction", "debonded_fraction", "turgor"};
-  const PetscReal factor[4] = {1, 1, 1, file->scales.stress * 1e-6};
-  const PetscInt n = fields->element_count;
-  PetscReal *indicator;
-  char name[96];
+  char name[128];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(4 * n, &indicator));
-  for (PetscInt k = 0; k < 4 * n; k++) indicator[k] = fields->indicator[k] * factor[k % 4];
-  PetscCall(StepName(step, "indicator", name));
-  PetscCall(WriteColumns(file, name, n, 4, 0, 4, indicator, 1, "1, 1, 1, MPa"));
-  for (PetscInt k = 0; k < 4; k++) {
-    PetscCall(StepName(step, names[k], name));
-    PetscCall(WriteColumns(file, name, n, 4, k, 1, indicator, 1, k == 3 ? "MPa" : "1"));
+  for (PetscInt k = 0; k < file->fields.count; k++) {
+    const LamFE2Scalar *scalar = &file->fields.scalars[k];
+    const PetscReal *values = scalar->largest ? fields->largest : fields->mean;
+    if (!scalar->unit) continue;
+    PetscCall(StepName(step, file->fields.fields[k].name, name));
+    PetscCall(WriteColumns(file, name, fields->element_count, LAM_POINT_FIELD_COUNT, 1, &values[scalar->field],
+                           scalar->factor, scalar->unit));
   }
-  PetscCall(PetscFree(indicator));
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode WriteDisplacement(LamFE2File file, PetscInt step, const LamMacroFields *fields)
 {
   PetscReal *u;
-  char name[96];
+  char name[128];
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(3 * fields->node_count, &u));
   for (PetscInt k = 0; k < fields->node_count; k++) PetscCall(PetscArraycpy(&u[3 * k], &fields->u[2 * k], 2));
   PetscCall(StepName(step, "u", name));
-  PetscCall(WriteColumns(file, name, fields->node_count, 3, 0, 3, u, file->scales.macro_length * 1e3, "mm"));
+  PetscCall(WriteColumns(file, name, fields->node_count, 3, 3, u, file->scales.macro_length * 1e3, "mm"));
   PetscCall(PetscFree(u));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode KeepCurve(LamFE2File file, const LamMacroStep *step)
+static PetscErrorCode WriteSummary(LamFE2File file, const LamSummary *summary)
 {
-  PetscInt k = file->step_count++, row = 2 * file->side_count;
+  json_t *object = LamSummaryToJSON(summary);
+  char *text = json_dumps(object, JSON_REAL_PRECISION(17));
+  PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
-  if (file->step_count > file->capacity) {
+  json_decref(object);
+  PetscCheck(text, PETSC_COMM_SELF, PETSC_ERR_LIB, "a summary cannot be written as JSON");
+  ierr = LamRecordWriterText(file->writer, "/macro/summary", text);
+  free(text);
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode KeepStep(LamFE2File file, PetscInt step)
+{
+  PetscFunctionBeginUser;
+  if (file->step_count == file->capacity) {
     file->capacity = PetscMax(16, 2 * file->capacity);
-    PetscCall(PetscRealloc(file->capacity * sizeof(PetscInt), &file->steps));
-    PetscCall(PetscRealloc(file->capacity * sizeof(PetscReal), &file->load_factor));
-    PetscCall(PetscRealloc(file->capacity * sizeof(PetscReal), &file->work));
-    PetscCall(PetscRealloc((file->capacity * row + 1) * sizeof(PetscReal), &file->reaction));
+    PetscCall(PetscRealloc((size_t)file->capacity * sizeof(PetscInt), &file->steps));
   }
-  file->steps[k] = step->step;
-  file->load_factor[k] = step->load_factor;
-  file->work[k] = step->work;
-  PetscCall(PetscArraycpy(&file->reaction[k * row], &step->reaction[0][0], row));
+  file->steps[file->step_count++] = step;
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode WriteCurves(LamFE2File file)
+static PetscErrorCode WriteXDMF(LamFE2File file, const LamMacroFields *fields, const LamCurve *curve)
 {
-  const PetscReal newton_per_mm = file->scales.stress * file->scales.macro_length * 1e-3;
-  const PetscReal work_unit = file->scales.stress * PetscSqr(file->scales.macro_length); /* J/m, which is N mm/mm */
-  const PetscInt n = file->step_count, dims[3] = {n, file->side_count, 2};
-  PetscReal *reaction;
+  LamXDMF xdmf = {.node_count = fields->node_count,
+                  .element_count = fields->element_count,
+                  .topology = file->topology,
+                  .topology_length = file->topology_length,
+                  .field_count = file->fields.count,
+                  .fields = file->fields.fields,
+                  .step_count = file->step_count,
+                  .steps = file->steps};
+  PetscReal *times;
 
   PetscFunctionBeginUser;
-  PetscCall(WriteColumns(file, "/macro/curve/load_factor", n, 1, 0, 1, file->load_factor, 1, "1"));
-  PetscCall(WriteColumns(file, "/macro/curve/work", n, 1, 0, 1, file->work, work_unit, "N mm/mm"));
-  PetscCall(PetscMalloc1(n * dims[1] * 2, &reaction));
-  for (PetscInt k = 0; k < n * dims[1] * 2; k++) reaction[k] = file->reaction[k] * newton_per_mm;
-  PetscCall(LamRecordWriterReals(file->writer, "/macro/curve/reaction", 3, dims, reaction, "N/mm"));
-  PetscCall(PetscFree(reaction));
+  PetscCall(LamCurveGetColumn(curve, LAM_CURVE_LOAD_FACTOR, &times));
+  xdmf.times = times;
+  PetscErrorCode ierr = LamXDMFWrite(file->path, &xdmf);
+  PetscCall(PetscFree(times));
+  PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamFE2FileAddStep(LamFE2File file, const LamMacroStep *step, const LamMacroFields *fields)
+PetscErrorCode LamFE2FileAddStep(LamFE2File file, const LamMacroStep *step, const LamMacroFields *fields,
+                                 const LamSummary *summary)
 {
   PetscFunctionBeginUser;
   PetscCall(LamRecordWriterBegin(file->writer));
   if (!file->step_count) PetscCall(WriteMesh(file, step, fields));
   PetscCall(WriteDisplacement(file, step->step, fields));
   PetscCall(WriteTensors(file, step->step, fields));
-  PetscCall(WriteIndicators(file, step->step, fields));
-  PetscCall(KeepCurve(file, step));
-  PetscCall(WriteCurves(file));
+  PetscCall(WriteScalars(file, step->step, fields));
+  PetscCall(KeepStep(file, step->step));
+  PetscCall(LamCurveWrite(&summary->curve, file->writer));
+  PetscCall(WriteSummary(file, summary));
   PetscCall(LamRecordWriterInts(file->writer, "/macro/steps", 1, &file->step_count, file->steps));
   PetscCall(LamRecordWriterCommit(file->writer, 0, NULL, NULL)); /* the file has the whole step now */
-  PetscCall(LamXDMFWrite(file->path, fields->node_count, fields->element_count, file->step_count, file->steps,
-                         file->load_factor));
+  PetscCall(WriteXDMF(file, fields, &summary->curve));
+  PetscCall(LamCurveWriteCSV(&summary->curve, file->path));
   PetscFunctionReturn(0);
 }
 
@@ -177,12 +227,9 @@ PetscErrorCode LamFE2FileArchive(LamFE2File file, LamArchive archive)
 
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(&none, sizeof(none)));
-  PetscCall(LamArchiveShared(archive, "sides", sizeof(f->side_count), &f->side_count));
+  PetscCall(LamArchiveShared(archive, "topology", sizeof(f->topology), &f->topology));
+  PetscCall(LamArchiveShared(archive, "topology length", sizeof(f->topology_length), &f->topology_length));
   PetscCall(LamArchiveList(archive, "steps", sizeof(PetscInt), &f->step_count, (void **)&f->steps));
-  PetscCall(LamArchiveList(archive, "load factors", sizeof(PetscReal), &f->step_count, (void **)&f->load_factor));
-  PetscCall(LamArchiveList(archive, "works", sizeof(PetscReal), &f->step_count, (void **)&f->work));
-  PetscCall(LamArchiveList(archive, "reactions", 2 * (size_t)f->side_count * sizeof(PetscReal), &f->step_count,
-                           (void **)&f->reaction));
   f->capacity = f->step_count;
   PetscFunctionReturn(0);
 }
@@ -194,6 +241,11 @@ static PetscErrorCode WriteStatus(LamFE2File file, const char status[])
   PetscCall(LamRecordWriterText(file->writer, "/macro/status", status));
   PetscCall(LamRecordWriterCommit(file->writer, 0, NULL, NULL));
   PetscFunctionReturn(0);
+}
+
+LamRecordWriter LamFE2FileWriter(LamFE2File file)
+{
+  return file->writer;
 }
 
 PetscErrorCode LamFE2FileClose(LamFE2File *file, const char status[])
@@ -208,9 +260,6 @@ PetscErrorCode LamFE2FileClose(LamFE2File *file, const char status[])
   else
     ierr = LamRecordWriterClose(&(*file)->writer);
   PetscCall(PetscFree((*file)->steps));
-  PetscCall(PetscFree((*file)->load_factor));
-  PetscCall(PetscFree((*file)->work));
-  PetscCall(PetscFree((*file)->reaction));
   PetscCall(PetscFree(*file));
   PetscCall(ierr);
   PetscFunctionReturn(0);

@@ -1,23 +1,24 @@
 /*
-  The result file of a macroscale run, OUT.h5, and OUT.xdmf beside it; written by one rank.
+  The result file of a macroscale run, OUT.h5, with OUT.xdmf and OUT.csv beside it; written by one rank.
 
   Kind "fe2", physical units, each array with its unit as attribute "unit":
     /macro/nodes            [node][2]      reference positions, mm
-    /macro/elements         [element][9]   node numbers, VTK's biquadratic order
+    /macro/elements, topology              node numbers, VTK's order of quadratic elements: xdmf.h
     /macro/boundaries                      names of the sides, one per line
     /macro/step/<k>/u       [node][3]      displacement, mm; the third component is 0
     /macro/step/<k>/F, P, cauchy [element][9]   means over the element, row-major; P and cauchy in MPa;
                                                 cauchy over its present volume
-    /macro/step/<k>/indicator [element][4] lumen, opening, debonded fraction, turgor (MPa); each also under its own name
-    /macro/curve/load_factor, work [step]; /macro/curve/reaction [step][side][2], N/mm
+    /macro/step/<k>/<name>  [element]      means (<name>) and largest values (<name>_max) of what points keep, and both
+                                           over the scene's strengths (<name>_ratio, <name>_ratio_max): fe2_fields.h
+    /macro/curve/<name>     [step]; /macro/curve/displacement, reaction [step][side][2], mm and N/mm: fe2_curve.h
+    /macro/summary                         JSON, of the steps so far: fe2_summary.h
     /macro/steps            [step]         numbers of the complete steps; written last
     /macro/status                          how the run ended; absent where a kill or an error ended it
 */
 #ifndef LAM_FE2_FILE_H
 #define LAM_FE2_FILE_H
 
-#include <lamella/database.h>
-#include <lamella/macro.h>
+#include "fe2_summary.h"
 
 typedef struct LamFE2File_s *LamFE2File;
 
@@ -28,7 +29,11 @@ typedef struct LamFE2File_s *LamFE2File;
 PetscErrorCode LamFE2FileOpen(const char path[], LamWriteMode mode, const LamScene *scene, LamFE2File *file);
 /* Writes or reads what later steps need to know of the earlier ones; collective, `file` NULL but on rank 0. */
 PetscErrorCode LamFE2FileArchive(LamFE2File file, LamArchive archive);
-PetscErrorCode LamFE2FileAddStep(LamFE2File file, const LamMacroStep *step, const LamMacroFields *fields);
+/* `summary` knows the step already. */
+PetscErrorCode LamFE2FileAddStep(LamFE2File file, const LamMacroStep *step, const LamMacroFields *fields,
+                                 const LamSummary *summary);
+/* For what is written beside the steps; borrowed. */
+LamRecordWriter LamFE2FileWriter(LamFE2File file);
 /* `status`: "done", "stopped", or why the run did not converge; NULL after an error. */
 PetscErrorCode LamFE2FileClose(LamFE2File *file, const char status[]);
 

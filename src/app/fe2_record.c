@@ -98,7 +98,7 @@ PetscErrorCode LamFE2RecordStep(LamFE2Run *run, const LamMacroStep *step, const 
 {
   PetscFunctionBeginUser;
   for (PetscInt t = 0; t < run->tissues.count; t++) PetscCall(RecordTissue(&run->tissues.tissues[t]));
-  if (run->out) PetscCall(LamFE2FileAddStep(run->out, step, fields));
+  if (run->out) PetscCall(LamFE2FileAddStep(run->out, step, fields, &run->summary));
   PetscFunctionReturn(0);
 }
 

@@ -108,11 +108,14 @@ PetscErrorCode LamFE2ReportCutback(LamMacro macro, const char why[], void *run)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamFE2ReportTotals(const LamFE2Run *run)
+PetscErrorCode LamFE2ReportEnd(const LamFE2Run *run)
 {
   const LamFE2Totals *totals = &run->totals;
+  json_t *summary = LamSummaryToJSON(&run->summary);
 
   PetscFunctionBeginUser;
+  LamSummaryPrint(stdout, summary);
+  json_decref(summary);
   printf("%" PetscInt_FMT " steps, %" PetscInt_FMT " Newton iterations, %lld queries, %lld hits, %lld solves, "
          "%lld failures, %.3g s, of these %.2g s for checkpoints; response %s\n",
          totals->steps, totals->newton_iterations, (long long)totals->queries, (long long)totals->hits,

@@ -1,7 +1,7 @@
 /*
   One run of `lamella fe2`: what its parts share. cmd_fe2.c holds its life, fe2_response.c what answers its material
   points, fe2_tissue.c of which tissue these are, fe2_report.c what is told of each step, fe2_record.c the files of rank
-  0.
+  0, fe2_zoom.c the microstructure at chosen points.
 
   Rank 0 writes the files. Where it cannot, it says so and the other ranks return the same error in silence.
 */
@@ -41,6 +41,7 @@ typedef struct {
 
   /* rank 0 only */
   LamFE2File out;
+  LamSummary summary;
   LamProgress progress;
 
   LamFE2Totals totals;
@@ -61,7 +62,8 @@ PetscErrorCode LamFE2Disconnect(LamFE2Run *run); /* after the macroscale solver'
 PetscErrorCode LamFE2ReportStep(const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory);
 /* LamMacroCutback: a line on stderr; on all ranks. */
 PetscErrorCode LamFE2ReportCutback(LamMacro macro, const char why[], void *run);
-PetscErrorCode LamFE2ReportTotals(const LamFE2Run *run);
+/* Summary and totals. */
+PetscErrorCode LamFE2ReportEnd(const LamFE2Run *run);
 
 /* ---- fe2_record.c; on rank 0 but for the first, which is collective ---- */
 PetscErrorCode LamFE2OpenFiles(LamFE2Run *run);
@@ -86,6 +88,10 @@ PetscErrorCode LamFE2CheckpointStart(LamFE2Run *run);
    most, or where the run is to end. */
 PetscErrorCode LamFE2CheckpointSave(LamFE2Run *run, PetscBool ends);
 PetscErrorCode LamFE2CheckpointRemove(LamFE2Run *run);
+
+/* ---- fe2_zoom.c ---- */
+/* Adds to the results, after the last step, the microstructure at some material points (`macro.zoom`). Collective. */
+PetscErrorCode LamFE2Zoom(LamFE2Run *run);
 
 /* ---- cmd_fe2.c ---- */
 /* Makes an error of rank 0 everyone's. */

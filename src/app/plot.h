@@ -4,8 +4,9 @@
     plot_canvas.c    the page: output formats, text, markers
     plot_axes.c      ticks, axes, curves, legends
     plot_colour.c    colour map, limits of colour scales, colour bars
-    plot_field.c     views of the plane, fields on meshes of nine-node quadrilaterals, scale bars
+    plot_field.c     views of the plane, fields on meshes of quadratic elements, scale bars
     plot_interface.c gaps and contact pressure between cells
+    plot_tissue.c    cells of an RVE with their images (plot_tissue.h)
     plot_outline.c   edges and closed outlines of such meshes
     plot_curves.c    stress-load curves
     plot_read.c      arrays of a file, checked
@@ -179,10 +180,15 @@ typedef struct {
   PetscReal shift[2];
   PetscReal fade;
 } LamImage;
+static inline int LamElementNodes(const PetscInt nodes[9])
+{
+  return nodes[6] < 0 ? 6 : 9;
+}
 typedef struct {
   PetscInt element_count;
   const PetscReal *x;       /* [node][2], borrowed */
-  const PetscInt *elements; /* [element][9]: corners counter-clockwise, mid-edges, centre; borrowed */
+  const PetscInt *elements; /* [element][9]: corners counter-clockwise, mid-edges, centre; of a triangle six, then -1;
+                               borrowed */
   const PetscReal *values;  /* [node], or [element] where per_element; borrowed */
   PetscBool per_element;
 } LamField;
@@ -204,8 +210,8 @@ typedef struct {
   PetscBool is_open;   /* a gap is above LAM_VISIBLE_GAP */
   LamColourRange gaps; /* from 0 to the widest one */
 } LamInterface;
-/* PETSC_ERR_USER_INPUT where the file lacks them. */
-PetscErrorCode LamInterfaceRead(const char path[], PetscInt64 state, LamInterface *interface);
+/* Of the state whose fields are in `group` ("/fields/3"). PETSC_ERR_USER_INPUT where the file lacks them. */
+PetscErrorCode LamInterfaceRead(const char path[], const char group[], LamInterface *interface);
 PetscErrorCode LamInterfaceDestroy(LamInterface *interface);
 LamColour LamGapColour(PetscReal share);
 /* Of one periodic image. */
@@ -250,7 +256,8 @@ PetscErrorCode LamPlotReadReals(const char path[], const char name[], PetscInt r
 /* Points of the plane [count][2] from two or three coordinates each; rows: their number, -1: any. */
 PetscErrorCode LamPlotReadPoints(const char path[], const char name[], PetscInt rows, PetscInt *count,
                                  PetscReal **points);
-/* Elements [count][9] with node numbers below node_count. */
+/* Elements [count][9] with node numbers below node_count; of a triangle six, then -1 (of triangles alone the file has
+   six columns). */
 PetscErrorCode LamPlotReadElements(const char path[], const char name[], PetscInt node_count, PetscInt *count,
                                    PetscInt **elements);
 

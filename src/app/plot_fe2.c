@@ -1,7 +1,7 @@
 /*
   Picture of an FE2 run: the deformed body at one load step with a field, and the reactions of its sides.
 */
-#include "plot.h"
+#include "plot_fe2.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -13,6 +13,11 @@ typedef struct {
   Measure measure;
   PetscInt component;
 } FE2FieldRow;
+/* A dataset of one number per element, by its name. */
+#define SCALAR(name, label, unit)                                                                                      \
+  {                                                                                                                    \
+    name, label, unit, name, 1, MEASURE_COMPONENT, 0                                                                   \
+  }
 static const FE2FieldRow FE2Fields[] = {
     {"von_mises", "von Mises Cauchy stress", "MPa", "cauchy", 9, MEASURE_VON_MISES, 0},
     {"mean_stress", "mean Cauchy stress", "MPa", "cauchy", 9, MEASURE_MEAN, 0},
@@ -24,13 +29,29 @@ static const FE2FieldRow FE2Fields[] = {
     {"P_21", "nominal stress $P$_{21}", "MPa", "P", 9, MEASURE_COMPONENT, 3},
     {"P_22", "nominal stress $P$_{22}", "MPa", "P", 9, MEASURE_COMPONENT, 4},
     {"J", "volume ratio $J$", NULL, "F", 9, MEASURE_DETERMINANT, 0},
-    {"lumen_fraction", "lumen fraction", NULL, "indicator", 4, MEASURE_COMPONENT, 0},
-    {"opening_fraction", "opening fraction", NULL, "indicator", 4, MEASURE_COMPONENT, 1},
-    {"debonded_fraction", "debonded fraction", NULL, "indicator", 4, MEASURE_COMPONENT, 2},
-    {"turgor", "turgor $p$", "MPa", "indicator", 4, MEASURE_COMPONENT, 3},
+    {"lumen_fraction", "lumen fraction", NULL, "lumen_fraction", 1, MEASURE_COMPONENT, 0},
+    {"opening_fraction", "opening fraction", NULL, "opening_fraction", 1, MEASURE_COMPONENT, 0},
+    {"debonded_fraction", "debonded fraction", NULL, "debonded_fraction", 1, MEASURE_COMPONENT, 0},
+    {"turgor", "turgor $p$", "MPa", "turgor", 1, MEASURE_COMPONENT, 0},
+    SCALAR("open_fraction", "open fraction", NULL),
+    SCALAR("max_gap", "largest gap, mean over points", "apothems"),
+    SCALAR("max_gap_max", "largest gap", "apothems"),
+    SCALAR("face_unloading_max", "unloading of faces, largest", NULL),
+    SCALAR("wall_tension", "wall tension", "MPa"),
+    SCALAR("wall_tension_max", "wall tension, largest", "MPa"),
+    SCALAR("lamella_normal", "normal traction of the lamella", "MPa"),
+    SCALAR("lamella_normal_max", "normal traction of the lamella, largest", "MPa"),
+    SCALAR("lamella_shear", "shear traction of the lamella", "MPa"),
+    SCALAR("lamella_shear_max", "shear traction of the lamella, largest", "MPa"),
+    SCALAR("wall_tension_ratio_max", "wall tension over strength, largest", NULL),
+    SCALAR("lamella_normal_ratio_max", "normal traction over strength, largest", NULL),
+    SCALAR("lamella_shear_ratio_max", "shear traction over strength, largest", NULL),
+    SCALAR("error_estimate", "estimated error of the stress", NULL),
+    SCALAR("interpolated", "share of interpolated answers", NULL),
 };
 
-static const LamColour Ink = {0.12, 0.12, 0.16}, Reference = {0.80, 0.15, 0.05};
+static const LamColour Ink = {0.12, 0.12, 0.16};
+static const double ZoomHeight = 236, CurveHeight = 150; /* of a page with zooms */
 
 typedef struct {
   const FE2FieldRow *field;
@@ -40,16 +61,14 @@ typedef struct {
   PetscReal *nodes, *x; /* [node][2], mm: reference and current; owned */
   PetscReal *values;    /* [element]; owned */
   PetscInt *elements;   /* owned */
-  PetscReal *load;      /* [step]; owned */
-  PetscReal *reaction;  /* [step][side][2], N/mm; owned */
-  PetscInt side_count;
-  char *sides; /* names, one per line; owned */
   LamOutline outline;
+  LamReactions reactions;
+  LamZooms zooms; /* of the last step */
 } FE2Picture;
 
 static PetscErrorCode FindField(const LamPlotRequest *request, const FE2FieldRow **field)
 {
-  char names[512] = "";
+  char names[1024] = "";
 
   PetscFunctionBeginUser;
   *field = &FE2Fields[0];
@@ -106,36 +125,6 @@ static PetscErrorCode FindStep(const LamPlotRequest *request, FE2Picture *p)
   PetscFunctionReturn(0);
 }
 
-/* A quantity per step; a run that was stopped may have written a row more than complete steps. */
-static PetscErrorCode ReadCurve(const char path[], const char name[], PetscInt steps, PetscInt columns,
-                                PetscReal **values)
-{
-  PetscBool found;
-  PetscInt rank, dims[4], size = 1;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamFileReadReals(path, name, &found, &rank, dims, values));
-  PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no %s to draw", path, name);
-  for (PetscInt i = 1; i < rank; i++) size *= dims[i];
-  PetscCheck(rank > 0 && dims[0] >= steps && size == columns, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: %s is damaged: it does not hold %" PetscInt_FMT " numbers for each of %" PetscInt_FMT " steps", path,
-             name, columns, steps);
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode LoadCurves(const char path[], FE2Picture *p)
-{
-  PetscBool found;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamFileReadText(path, "/macro/boundaries", &found, &p->sides));
-  PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no /macro/boundaries to draw", path);
-  for (const char *c = p->sides; *c; c++) p->side_count += *c != '\n' && (c[1] == '\n' || !c[1]);
-  PetscCall(ReadCurve(path, "/macro/curve/load_factor", p->step_count, 1, &p->load));
-  PetscCall(ReadCurve(path, "/macro/curve/reaction", p->step_count, 2 * p->side_count, &p->reaction));
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode LoadFE2(const LamPlotRequest *request, FE2Picture *p)
 {
   const char *path = request->input;
@@ -159,7 +148,8 @@ static PetscErrorCode LoadFE2(const LamPlotRequest *request, FE2Picture *p)
   PetscCall(PetscMalloc1(p->element_count, &p->values));
   for (PetscInt e = 0; e < p->element_count; e++) p->values[e] = Evaluate(p->field, &rows[e * p->field->columns]);
   PetscCall(PetscFree(rows));
-  PetscCall(LoadCurves(path, p));
+  PetscCall(LamReactionsRead(path, p->step_count, &p->reactions));
+  if (p->row == p->step_count - 1) PetscCall(LamZoomsRead(path, &p->zooms));
   PetscCall(LamOutlineCreate(p->element_count, p->elements, NULL, &p->outline));
   PetscFunctionReturn(0);
 }
@@ -173,22 +163,9 @@ static PetscErrorCode UnloadFE2(FE2Picture *p)
   PetscCall(PetscFree(p->x));
   PetscCall(PetscFree(p->values));
   PetscCall(PetscFree(p->elements));
-  PetscCall(PetscFree(p->load));
-  PetscCall(PetscFree(p->reaction));
-  PetscCall(PetscFree(p->sides));
+  PetscCall(LamReactionsDestroy(&p->reactions));
+  PetscCall(LamZoomsDestroy(&p->zooms));
   PetscFunctionReturn(0);
-}
-
-static void StrokeReference(LamCanvas canvas)
-{
-  cairo_t *cr = LamCanvasCairo(canvas);
-  const double dash[] = {3.5, 2.0};
-
-  LamCanvasSetColour(canvas, Reference);
-  cairo_set_dash(cr, dash, 2, 0);
-  cairo_set_line_width(cr, 0.9);
-  cairo_stroke(cr);
-  cairo_set_dash(cr, NULL, 0, 0);
 }
 
 static PetscErrorCode DrawBody(LamCanvas canvas, const LamView *view, const FE2Picture *p, const LamColourRange *range)
@@ -211,123 +188,85 @@ static PetscErrorCode DrawBody(LamCanvas canvas, const LamView *view, const FE2P
   cairo_set_line_width(cr, 0.9);
   cairo_stroke(cr);
   for (PetscInt k = 0; k < p->outline.loop_count; k++) LamOutlineLoopPath(canvas, view, &p->outline, k, p->nodes, none);
-  StrokeReference(canvas);
+  LamStrokeUndeformed(canvas);
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const FE2Picture *p)
+/* The body with its colour bar and key, inside `outer`; *view is where it is. With zooms the bar is on the left, out of
+   the way of the lines that lead to them. */
+static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const FE2Picture *p, LamView *view)
 {
   cairo_t *cr = LamCanvasCairo(canvas);
   const PetscReal none[2] = {0, 0};
   const char *reference = "undeformed";
-  double y, width;
+  double y, width, bar_width;
   PetscReal box[4];
+  LamRect bar;
   LamColourRange range;
-  LamView view;
 
   PetscFunctionBeginUser;
   PetscCall(LamColourRangeFind(p->element_count, p->values, &range));
-  outer.width -= LamColourBarWidth(canvas, &range);
+  bar_width = LamColourBarWidth(canvas, &range);
+  outer.width -= bar_width;
+  bar = outer;
+  if (p->zooms.count) {
+    bar.width = 0;
+    bar.x -= 6;
+    outer.x += bar_width;
+  }
   LamBoxEmpty(box);
   LamBoxExtend(box, p->node_count, p->x, none);
   LamBoxExtend(box, p->node_count, p->nodes, none);
-  LamViewFit(outer, box, &view);
-  PetscCall(DrawBody(canvas, &view, p, &range));
-  LamColourBar(canvas, outer, &range, LamColourMap, p->field->label, p->field->unit);
+  LamViewFit(outer, box, view);
+  PetscCall(DrawBody(canvas, view, p, &range));
+  LamColourBar(canvas, bar, &range, LamColourMap, p->field->label, p->field->unit);
   y = outer.y + outer.height + 11;
-  LamScaleBar(canvas, &view, outer.x, y, 0.18 * outer.width, 1, "mm");
+  LamScaleBar(canvas, view, outer.x, y, 0.18 * outer.width, 1, "mm");
   width = LamCanvasTextWidth(canvas, LAM_TICK_SIZE, reference);
   cairo_move_to(cr, outer.x + outer.width - width - 23, y);
   cairo_rel_line_to(cr, 19, 0);
-  StrokeReference(canvas);
+  LamStrokeUndeformed(canvas);
   LamCanvasSetColour(canvas, Ink);
   LamCanvasText(canvas, outer.x + outer.width, y, 1, 0, LAM_TICK_SIZE, reference);
   PetscFunctionReturn(0);
 }
 
-/* Name of side `side`, from the list of names. */
-static void SideName(const FE2Picture *p, PetscInt side, size_t size, char name[])
+static PetscErrorCode DrawTitle(LamCanvas canvas, double x, const FE2Picture *p)
 {
-  const char *start = p->sides;
-  size_t length;
-
-  for (PetscInt i = 0;; i++) {
-    while (*start == '\n') start++;
-    length = strcspn(start, "\n");
-    if (i == side) break;
-    start += length;
-  }
-  snprintf(name, size, "%.*s", (int)PetscMin(length, size - 1), start);
-}
-
-/* One colour per side; filled circles and full lines for component 1, hollow squares and dashes for component 2. */
-static PetscErrorCode ReactionSeries(const FE2Picture *p, PetscInt *count, LamSeries series[])
-{
-  PetscReal largest = 0;
-  char name[32];
-
-  PetscFunctionBeginUser;
-  *count = 0;
-  for (PetscInt i = 0; i < p->step_count * p->side_count * 2; i++)
-    largest = PetscMax(largest, PetscAbsReal(p->reaction[i]));
-  for (PetscInt side = 0; side < p->side_count; side++) {
-    for (int c = 0; c < 2; c++) {
-      LamSeries *s = &series[*count];
-      PetscReal own = 0;
-
-      PetscCall(LamSeriesCreate(p->step_count, s));
-      for (PetscInt k = 0; k < p->step_count; k++) {
-        s->x[k] = p->load[k];
-        s->y[k] = p->reaction[(k * p->side_count + side) * 2 + c];
-        own = PetscMax(own, PetscAbsReal(s->y[k]));
-      }
-      if (own <= 1e-6 * largest) { /* a roller's free component */
-        PetscCall(LamSeriesDestroy(s));
-        continue;
-      }
-      SideName(p, side, sizeof name, name);
-      s->style = (LamStyle){LamColourOfLine(side), c ? LAM_MARKER_SQUARE : LAM_MARKER_CIRCLE, (PetscBool)c, PETSC_TRUE,
-                            (PetscBool)c};
-      snprintf(s->label, sizeof s->label, "%s $R$_{%d}", name, c + 1);
-      (*count)++;
-    }
-  }
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode DrawReactions(LamCanvas canvas, LamRect outer, const FE2Picture *p)
-{
-  LamSeries *series;
-  LamAxes axes = {.x = {.label = "load factor"}, .y = {.label = "reaction per thickness $R$", .unit = "N/mm"}};
-  PetscInt count;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(2 * p->side_count + 1, &series));
-  PetscCall(ReactionSeries(p, &count, series));
-  LamChart(canvas, outer, &axes, count, series);
-  for (PetscInt i = 0; i < count; i++) PetscCall(LamSeriesDestroy(&series[i]));
-  PetscCall(PetscFree(series));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamPlotFE2(const LamPlotRequest *request)
-{
-  const LamRect left = {9, 25.2, 282, LAM_PLOT_HEIGHT - 51},
-                right = {308, 21, LAM_PLOT_WIDTH - 316, LAM_PLOT_HEIGHT - 24};
-  FE2Picture picture;
-  LamCanvas canvas;
   char title[128], factor[32];
 
   PetscFunctionBeginUser;
-  PetscCall(LoadFE2(request, &picture));
-  PetscCall(LamCanvasCreate(request->output, LAM_PLOT_WIDTH, LAM_PLOT_HEIGHT, &canvas));
-  LamFormatNumber(picture.load[picture.row], factor);
-  PetscCall(PetscSNPrintf(title, sizeof title, "Step %" PetscInt_FMT "%s:  load factor %s,  element means",
-                          picture.step, picture.step ? "" : " (inflated)", factor));
+  LamFormatNumber(p->reactions.load[p->row], factor);
+  PetscCall(PetscSNPrintf(title, sizeof title, "Step %" PetscInt_FMT "%s:  load factor %s,  element means", p->step,
+                          p->step ? "" : " (inflated)", factor));
   LamCanvasSetColour(canvas, Ink);
-  LamCanvasText(canvas, left.x, 12, 0, 0, LAM_TEXT_SIZE + 0.75, title);
-  PetscCall(DrawPanel(canvas, left, &picture));
-  PetscCall(DrawReactions(canvas, right, &picture));
+  LamCanvasText(canvas, x, 12, 0, 0, LAM_TEXT_SIZE + 0.75, title);
+  PetscFunctionReturn(0);
+}
+
+/* Body and reactions side by side; with zooms the body and these, and the reactions below. */
+PetscErrorCode LamPlotFE2(const LamPlotRequest *request)
+{
+  const double row = LAM_PLOT_HEIGHT - 51;
+  LamRect left = {9, 25.2, 282, row}, right = {308, 21, LAM_PLOT_WIDTH - 316, LAM_PLOT_HEIGHT - 24};
+  LamRect zooms = {318, 25.2, LAM_PLOT_WIDTH - 326, row};
+  double height = LAM_PLOT_HEIGHT;
+  FE2Picture picture;
+  LamCanvas canvas;
+  LamView view;
+
+  PetscFunctionBeginUser;
+  PetscCall(LoadFE2(request, &picture));
+  if (picture.zooms.count) {
+    left.height = zooms.height = ZoomHeight;
+    right = (LamRect){9, 25.2 + ZoomHeight + 34, LAM_PLOT_WIDTH - 17, CurveHeight};
+    height = right.y + right.height + 4;
+  }
+  PetscCall(LamCanvasCreate(request->output, LAM_PLOT_WIDTH, height, &canvas));
+  PetscCall(DrawTitle(canvas, left.x, &picture));
+  PetscCall(DrawPanel(canvas, left, &picture, &view));
+  if (picture.zooms.count) PetscCall(LamZoomsDraw(canvas, zooms, &view, &picture.zooms));
+  PetscCall(LamReactionsDraw(canvas, right, &picture.reactions));
   PetscCall(LamCanvasFinish(&canvas));
   PetscCall(UnloadFE2(&picture));
   PetscFunctionReturn(0);

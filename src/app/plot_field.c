@@ -1,5 +1,5 @@
 /*
-  Fields on meshes of nine-node quadrilaterals, and the view they are drawn in.
+  Fields on meshes of nine-node quadrilaterals and six-node triangles, and the view they are drawn in.
 
   Method. Each element is cut into small quadrilaterals whose corners lie on its quadratic surface; each of these is
   filled as two triangles with the value interpolated linearly and coloured pixel by pixel, so colours change smoothly.
@@ -62,6 +62,18 @@ static void ShapeFunctions(PetscReal r, PetscReal s, PetscReal N[9])
   for (int i = 0; i < 9; i++) N[i] = a[at[i][0]] * b[at[i][1]];
 }
 
+/* Quadratic functions of a triangle, the square's side s = 1 shrunk to its third corner: neighbours meet in the same
+   points of an edge, as those of squares do. */
+static void TriangleFunctions(PetscReal r, PetscReal s, PetscReal N[6])
+{
+  const PetscReal u = 0.5 * (1 + r), v = 0.5 * (1 + s), L[3] = {(1 - u) * (1 - v), u * (1 - v), v};
+
+  for (int i = 0; i < 3; i++) {
+    N[i] = L[i] * (2 * L[i] - 1);
+    N[3 + i] = 4 * L[i] * L[(i + 1) % 3];
+  }
+}
+
 #define COLOUR_COUNT 1024
 #define MAX_CUTS 24
 typedef struct {
@@ -116,11 +128,15 @@ static void FillTriangle(Raster *raster, const Vertex a, const Vertex b, const V
 static Vertex ElementVertex(const LamField *field, const LamColourRange *range, const LamView *view, double dots,
                             PetscInt e, const PetscReal shift[2], PetscReal r, PetscReal s)
 {
+  const int nodes = LamElementNodes(&field->elements[9 * e]);
   PetscReal N[9], x = shift[0], y = shift[1], value = field->per_element ? field->values[e] : 0;
   double point[2];
 
-  ShapeFunctions(r, s, N);
-  for (int i = 0; i < 9; i++) {
+  if (nodes == 6)
+    TriangleFunctions(r, s, N);
+  else
+    ShapeFunctions(r, s, N);
+  for (int i = 0; i < nodes; i++) {
     const PetscInt node = field->elements[9 * e + i];
 
     x += N[i] * field->x[2 * node];
@@ -142,7 +158,8 @@ static int FieldCuts(const LamField *field, const LamView *view, double dots)
     PetscReal box[4];
 
     LamBoxEmpty(box);
-    for (int i = 0; i < 9; i++) LamBoxExtend(box, 1, &field->x[2 * field->elements[9 * e + i]], zero);
+    for (int i = 0; i < LamElementNodes(&field->elements[9 * e]); i++)
+      LamBoxExtend(box, 1, &field->x[2 * field->elements[9 * e + i]], zero);
     largest = PetscMax(largest, PetscMax(box[2] - box[0], box[3] - box[1]));
   }
   return (int)PetscClipInterval(largest * view->scale * dots / 4, 1.0, (double)MAX_CUTS);

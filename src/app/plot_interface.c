@@ -27,7 +27,7 @@ LamColour LamGapColour(PetscReal share)
 /* ---- reading ---- */
 
 /* One array of samples; the first one that is read tells how many there are. */
-static PetscErrorCode ReadSamples(const char path[], PetscInt64 state, const char name[], PetscInt columns,
+static PetscErrorCode ReadSamples(const char path[], const char group[], const char name[], PetscInt columns,
                                   LamInterface *interface, PetscReal **values)
 {
   char dataset[96];
@@ -35,7 +35,7 @@ static PetscErrorCode ReadSamples(const char path[], PetscInt64 state, const cha
   PetscInt rank, dims[4] = {0};
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(dataset, sizeof dataset, "/fields/%" PetscInt64_FMT "/interface/%s", state, name));
+  PetscCall(PetscSNPrintf(dataset, sizeof dataset, "%s/interface/%s", group, name));
   PetscCall(LamFileReadReals(path, dataset, &found, &rank, dims, values));
   if (found && !interface->faces) {
     interface->faces = dims[0];
@@ -47,16 +47,16 @@ static PetscErrorCode ReadSamples(const char path[], PetscInt64 state, const cha
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamInterfaceRead(const char path[], PetscInt64 state, LamInterface *interface)
+PetscErrorCode LamInterfaceRead(const char path[], const char group[], LamInterface *interface)
 {
   PetscReal widest = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(interface, sizeof *interface));
-  PetscCall(ReadSamples(path, state, "from", 2, interface, &interface->from));
-  PetscCall(ReadSamples(path, state, "to", 2, interface, &interface->to));
-  PetscCall(ReadSamples(path, state, "gap", 1, interface, &interface->gap));
-  PetscCall(ReadSamples(path, state, "pressure", 1, interface, &interface->pressure));
+  PetscCall(ReadSamples(path, group, "from", 2, interface, &interface->from));
+  PetscCall(ReadSamples(path, group, "to", 2, interface, &interface->to));
+  PetscCall(ReadSamples(path, group, "gap", 1, interface, &interface->gap));
+  PetscCall(ReadSamples(path, group, "pressure", 1, interface, &interface->pressure));
   for (PetscInt i = 0; i < interface->faces * interface->points; i++) {
     if (interface->gap[i] > widest) widest = interface->gap[i];
     if (interface->pressure[i] > interface->largest_pressure) interface->largest_pressure = interface->pressure[i];

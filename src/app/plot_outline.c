@@ -1,5 +1,5 @@
 /*
-  Edges and closed outlines of meshes of nine-node quadrilaterals.
+  Edges and closed outlines of meshes of nine-node quadrilaterals and six-node triangles.
 
   Algorithm. Sort all edges by group and nodes: an edge that comes twice lies inside, one that comes once on the
   boundary of its group. Boundary edges keep the direction of their element, so the outer loop of a ring runs
@@ -66,19 +66,21 @@ PetscErrorCode LamOutlineCreate(PetscInt element_count, const PetscInt elements[
                                 LamOutline *outline)
 {
   LamEdge *edges;
-  PetscInt n = 0, boundary_count = 0;
+  PetscInt total = 0, n = 0, boundary_count = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(outline, sizeof *outline));
   PetscCall(PetscMalloc1(4 * element_count, &edges));
   for (PetscInt e = 0; e < element_count; e++) {
     const PetscInt *nodes = &elements[9 * e];
+    const int corners = LamElementNodes(nodes) == 6 ? 3 : 4;
 
-    for (int k = 0; k < 4; k++)
-      edges[4 * e + k] = (LamEdge){nodes[k], nodes[4 + k], nodes[(k + 1) % 4], groups ? groups[e] : 0, PETSC_TRUE};
+    for (int k = 0; k < corners; k++)
+      edges[total++] =
+          (LamEdge){nodes[k], nodes[corners + k], nodes[(k + 1) % corners], groups ? groups[e] : 0, PETSC_TRUE};
   }
-  qsort(edges, (size_t)(4 * element_count), sizeof *edges, CompareEdges);
-  for (PetscInt i = 0; i < 4 * element_count; i++) {
+  qsort(edges, (size_t)total, sizeof *edges, CompareEdges);
+  for (PetscInt i = 0; i < total; i++) {
     if (n && !CompareEdges(&edges[n - 1], &edges[i])) {
       boundary_count -= edges[n - 1].boundary;
       edges[n - 1].boundary = PETSC_FALSE;

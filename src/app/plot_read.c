@@ -50,6 +50,19 @@ PetscErrorCode LamPlotReadPoints(const char path[], const char name[], PetscInt 
   PetscFunctionReturn(0);
 }
 
+/* Triangles alone: six columns become nine, the last of them -1. */
+static PetscErrorCode Widen(PetscInt count, PetscInt **elements)
+{
+  PetscInt *wide;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(9 * count, &wide));
+  for (PetscInt i = 0; i < 9 * count; i++) wide[i] = i % 9 < 6 ? (*elements)[6 * (i / 9) + i % 9] : -1;
+  PetscCall(PetscFree(*elements));
+  *elements = wide;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamPlotReadElements(const char path[], const char name[], PetscInt node_count, PetscInt *count,
                                    PetscInt **elements)
 {
@@ -59,10 +72,14 @@ PetscErrorCode LamPlotReadElements(const char path[], const char name[], PetscIn
   PetscFunctionBeginUser;
   PetscCall(LamFileReadInts(path, name, &found, &rank, dims, elements));
   PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no %s to draw", path, name);
-  PetscCall(CheckShape(path, name, rank, dims, -1, 9));
-  for (PetscInt i = 0; i < 9 * dims[0]; i++)
-    PetscCheck((*elements)[i] >= 0 && (*elements)[i] < node_count, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "%s: %s is damaged: there is no node %" PetscInt_FMT, path, name, (*elements)[i]);
+  PetscCall(CheckShape(path, name, rank, dims, -1, rank == 2 && dims[1] == 6 ? 6 : 9));
+  if (dims[1] == 6) PetscCall(Widen(dims[0], elements));
+  for (PetscInt i = 0; i < 9 * dims[0]; i++) {
+    const PetscInt node = (*elements)[i];
+    const PetscBool unused = (PetscBool)(i % 9 >= 6 && LamElementNodes(&(*elements)[i - i % 9]) == 6);
+    PetscCheck(unused ? node == -1 : node >= 0 && node < node_count, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "%s: %s is damaged: there is no node %" PetscInt_FMT, path, name, node);
+  }
   *count = dims[0];
   PetscFunctionReturn(0);
 }

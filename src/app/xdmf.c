@@ -1,43 +1,12 @@
 /*
-  Writer of XDMF 3: a temporal collection of grids of biquadratic quadrilaterals.
+  Writer of XDMF 3: a temporal collection of grids of quadratic elements.
 
   Every grid names topology and geometry itself: readers differ in their support of references between grids.
   Reference: https://www.xdmf.org/index.php/XDMF_Model_and_Format
 */
-#include <errno.h>
-#include <stdio.h>
 #include <string.h>
-#include <unistd.h>
+#include "beside.h"
 #include "xdmf.h"
-
-typedef struct {
-  const char *name, *type;
-  PetscBool on_nodes;
-  PetscInt columns;
-} Attribute;
-
-static const Attribute Attributes[] = {
-    {"u", "Vector", PETSC_TRUE, 3},
-    {"F", "Tensor", PETSC_FALSE, 9},
-    {"P", "Tensor", PETSC_FALSE, 9},
-    {"cauchy", "Tensor", PETSC_FALSE, 9},
-    {"lumen_fraction", "Scalar", PETSC_FALSE, 1},
-    {"opening_fraction", "Scalar", PETSC_FALSE, 1},
-    {"debonded_fraction", "Scalar", PETSC_FALSE, 1},
-    {"turgor", "Scalar", PETSC_FALSE, 1},
-};
-
-/* Path of the XDMF file: .h5 or .hdf5 is replaced. */
-static PetscErrorCode XDMFPath(const char hdf5[], const char ending[], size_t size, char path[])
-{
-  const char *dot = strrchr(hdf5, '.');
-  int stem = (int)strlen(hdf5);
-
-  PetscFunctionBeginUser;
-  if (dot && (!strcmp(dot, ".h5") || !strcmp(dot, ".hdf5"))) stem = (int)(dot - hdf5);
-  PetscCall(PetscSNPrintf(path, size, "%.*s%s", stem, hdf5, ending));
-  PetscFunctionReturn(0);
-}
 
 /* File name without its folder, as XML text. */
 static void PrintName(FILE *out, const char path[])
@@ -67,48 +36,53 @@ static void PrintItem(FILE *out, const char hdf5[], const char dataset[], const 
   fprintf(out, ":%s</DataItem>\n", dataset);
 }
 
-static void PrintGrid(FILE *out, const char hdf5[], PetscInt nodes, PetscInt elements, PetscInt step, PetscReal time)
+static void PrintField(FILE *out, const char hdf5[], const LamXDMF *xdmf, PetscInt step, const LamXDMFField *field)
 {
-  fprintf(out, "      <Grid Name=\"step %" PetscInt_FMT "\" GridType=\"Uniform\">\n", step);
-  fprintf(out, "        <Time Value=\"%.17g\"/>\n", (double)time);
-  fprintf(out, "        <Topology TopologyType=\"Quadrilateral_9\" NumberOfElements=\"%" PetscInt_FMT "\">\n",
-          elements);
-  PrintItem(out, hdf5, "/macro/elements", "Int", elements, 9);
-  fputs("        </Topology>\n        <Geometry GeometryType=\"XY\">\n", out);
-  PrintItem(out, hdf5, "/macro/nodes", "Float", nodes, 2);
+  const char *type = field->columns == 1 ? "Scalar" : field->columns == 3 ? "Vector" : "Tensor";
+  char dataset[128];
+
+  snprintf(dataset, sizeof(dataset), "/macro/step/%" PetscInt_FMT "/%s", step, field->name);
+  fprintf(out, "        <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"%s\">\n", field->name, type,
+          field->on_nodes ? "Node" : "Cell");
+  PrintItem(out, hdf5, dataset, "Float", field->on_nodes ? xdmf->node_count : xdmf->element_count, field->columns);
+  fputs("        </Attribute>\n", out);
+}
+
+static void PrintTopology(FILE *out, const char hdf5[], const LamXDMF *xdmf)
+{
+  static const char *const types[] = {"Quadrilateral_9", "Triangle_6", "Mixed"};
+
+  fprintf(out, "        <Topology TopologyType=\"%s\" NumberOfElements=\"%" PetscInt_FMT "\">\n", types[xdmf->topology],
+          xdmf->element_count);
+  if (xdmf->topology == LAM_XDMF_MIXED)
+    PrintItem(out, hdf5, "/macro/topology", "Int", xdmf->topology_length, 1);
+  else
+    PrintItem(out, hdf5, "/macro/elements", "Int", xdmf->element_count, xdmf->topology == LAM_XDMF_TRIANGLES ? 6 : 9);
+  fputs("        </Topology>\n", out);
+}
+
+static void PrintGrid(FILE *out, const char hdf5[], const LamXDMF *xdmf, PetscInt k)
+{
+  fprintf(out, "      <Grid Name=\"step %" PetscInt_FMT "\" GridType=\"Uniform\">\n", xdmf->steps[k]);
+  fprintf(out, "        <Time Value=\"%.17g\"/>\n", (double)xdmf->times[k]);
+  PrintTopology(out, hdf5, xdmf);
+  fputs("        <Geometry GeometryType=\"XY\">\n", out);
+  PrintItem(out, hdf5, "/macro/nodes", "Float", xdmf->node_count, 2);
   fputs("        </Geometry>\n", out);
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(Attributes); k++) {
-    const Attribute *a = &Attributes[k];
-    char dataset[96];
-    snprintf(dataset, sizeof(dataset), "/macro/step/%" PetscInt_FMT "/%s", step, a->name);
-    fprintf(out, "        <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"%s\">\n", a->name, a->type,
-            a->on_nodes ? "Node" : "Cell");
-    PrintItem(out, hdf5, dataset, "Float", a->on_nodes ? nodes : elements, a->columns);
-    fputs("        </Attribute>\n", out);
-  }
+  for (PetscInt f = 0; f < xdmf->field_count; f++) PrintField(out, hdf5, xdmf, xdmf->steps[k], &xdmf->fields[f]);
   fputs("      </Grid>\n", out);
 }
 
-PetscErrorCode LamXDMFWrite(const char hdf5[], PetscInt node_count, PetscInt element_count, PetscInt step_count,
-                            const PetscInt steps[], const PetscReal times[])
+PetscErrorCode LamXDMFWrite(const char hdf5[], const LamXDMF *xdmf)
 {
-  char path[PETSC_MAX_PATH_LEN], temporary[PETSC_MAX_PATH_LEN];
-  FILE *out;
-  int failed;
+  LamBeside file;
 
   PetscFunctionBeginUser;
-  PetscCall(XDMFPath(hdf5, ".xdmf", sizeof(path), path));
-  PetscCall(XDMFPath(hdf5, ".xdmf.tmp", sizeof(temporary), temporary));
-  out = fopen(temporary, "w");
-  PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: %s", temporary, strerror(errno));
-  fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n", out);
-  fputs("    <Grid Name=\"load steps\" GridType=\"Collection\" CollectionType=\"Temporal\">\n", out);
-  for (PetscInt k = 0; k < step_count; k++) PrintGrid(out, hdf5, node_count, element_count, steps[k], times[k]);
-  fputs("    </Grid>\n  </Domain>\n</Xdmf>\n", out);
-  failed = ferror(out);
-  failed |= fclose(out);
-  if (!failed) failed = rename(temporary, path); /* a reader never sees half a file */
-  if (failed) unlink(temporary);
-  PetscCheck(!failed, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s: cannot write", path);
+  PetscCall(LamBesideOpen(hdf5, ".xdmf", &file));
+  fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n", file.out);
+  fputs("    <Grid Name=\"load steps\" GridType=\"Collection\" CollectionType=\"Temporal\">\n", file.out);
+  for (PetscInt k = 0; k < xdmf->step_count; k++) PrintGrid(file.out, hdf5, xdmf, k);
+  fputs("    </Grid>\n  </Domain>\n</Xdmf>\n", file.out);
+  PetscCall(LamBesideClose(&file));
   PetscFunctionReturn(0);
 }

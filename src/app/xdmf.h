@@ -4,14 +4,40 @@
 #ifndef LAM_XDMF_H
 #define LAM_XDMF_H
 
-#include <petscsys.h>
+#include <lamella/macro.h>
+
+/* A field of every step: the dataset "/macro/step/<number>/<name>". */
+typedef struct {
+  char name[LAM_NAME_LENGTH];
+  PetscInt columns;   /* 1: scalar, 3: vector, 9: tensor */
+  PetscBool on_nodes; /* else on elements */
+} LamXDMFField;
+
+/* What /macro/elements holds. */
+typedef enum {
+  LAM_XDMF_QUADRILATERALS, /* [element][9] */
+  LAM_XDMF_TRIANGLES,      /* [element][6] */
+  LAM_XDMF_MIXED /* [element][9], -1 beyond a triangle's nodes; XDMF reads /macro/topology: of each element its type
+                    (LAM_XDMF_TRIANGLE_6, LAM_XDMF_QUADRILATERAL_9) and its nodes */
+} LamXDMFTopology;
+enum { LAM_XDMF_QUADRILATERAL_9 = 0x23, LAM_XDMF_TRIANGLE_6 = 0x24 };
+
+typedef struct {
+  PetscInt node_count, element_count;
+  LamXDMFTopology topology;
+  PetscInt topology_length; /* of /macro/topology */
+  PetscInt field_count;
+  const LamXDMFField *fields; /* borrowed */
+  PetscInt step_count;
+  const PetscInt *steps;  /* their numbers; borrowed */
+  const PetscReal *times; /* borrowed */
+} LamXDMF;
 
 /*
   Writes (or replaces) the XDMF file that describes the load steps of `hdf5`: the same name with the ending .xdmf, and a
-  reference to the file by its name alone, so that both can be moved together. steps[k] is the number in the dataset
-  names "/macro/step/<number>/...", times[k] the load factor. PETSC_ERR_FILE_WRITE where it cannot be written.
+  reference to the file by its name alone, so that both can be moved together. PETSC_ERR_FILE_OPEN,
+  PETSC_ERR_FILE_WRITE where it cannot be written.
 */
-PetscErrorCode LamXDMFWrite(const char hdf5[], PetscInt node_count, PetscInt element_count, PetscInt step_count,
-                            const PetscInt steps[], const PetscReal times[]);
+PetscErrorCode LamXDMFWrite(const char hdf5[], const LamXDMF *xdmf);
 
 #endif

@@ -1,4 +1,4 @@
-# fe2 on two ranks: the same reactions to 1e-8, direct and from a cache, also of sealed tissue
+# fe2 on two ranks: the same reactions, summary and zooms to 1e-8, direct and from a cache, also of sealed tissue
 set -eu
 lamella=$1
 command -v mpirun >/dev/null || exit 77
@@ -19,6 +19,7 @@ rve:
   interface: {law: bonded}
   turgor: {mode: prescribed, pressure: 0.02 MPa}
   mesh: {along: 4, through: 1}
+strength: {wall: 0.17 MPa}
 macro:
   mesh: {box: [10 mm, 10 mm], elements: [2, 2]}
   boundary:
@@ -42,4 +43,18 @@ for case in "block direct" "block cache" "sealed direct"; do
   [ -s one.txt ] || fail "$case: no reactions"
   paste one.txt two.txt | awk '{d = $1 - $2; if (d < 0) d = -d; if (d > worst) worst = d; a = $1 < 0 ? -$1 : $1; if (a > size) size = a}
     END {exit !(NR > 0 && worst <= 1e-8 * size)}' || fail "$case: reactions depend on the number of ranks"
+  /usr/bin/python3 -c 'import h5py' 2>/dev/null || continue
+  /usr/bin/python3 - <<'PYTHON' || fail "$case: fields, summary or zooms depend on the number of ranks"
+import json
+import h5py, numpy as np
+with h5py.File("one.h5") as one, h5py.File("two.h5") as two:
+    def same(name, item):
+        if isinstance(item, h5py.Dataset) and item.dtype.kind in "fi" and "seconds" not in name and "difference" not in name:
+            assert np.allclose(item, two[name], rtol=1e-6, atol=1e-8, equal_nan=True), name
+    for group in "macro", "zoom":
+        one[group].visititems(lambda name, item: same(f"{group}/{name}", item))
+    a, b = (json.loads(h5["macro/summary"][()]) for h5 in (one, two))
+    assert a["rupture"]["point"] == b["rupture"]["point"] and a["rupture"]["element"] == b["rupture"]["element"]
+    assert abs(a["rupture"]["load_factor"] - b["rupture"]["load_factor"]) < 1e-6
+PYTHON
 done

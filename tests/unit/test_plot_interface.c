@@ -161,7 +161,7 @@ static void a_file_without_samples_is_refused(void **state)
   assert_int_equal(LamRecordWriterClose(&writer), 0);
   PetscErrorHandlingInitialized = PETSC_TRUE; /* before PetscInitialize PETSc calls no handler else */
   PetscPushErrorHandler(KeepMessage, NULL);
-  assert_int_equal(LamInterfaceRead(path, 1, &interface), PETSC_ERR_USER_INPUT);
+  assert_int_equal(LamInterfaceRead(path, "/fields/1", &interface), PETSC_ERR_USER_INPUT);
   PetscPopErrorHandler();
   remove(path);
   assert_non_null(strstr(message, "/fields/1/interface/from is missing"));

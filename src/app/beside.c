@@ -1,0 +1,33 @@
+/*
+  Text files beside an HDF5 file, replaced as a whole: a reader never sees half a file.
+*/
+#include "beside.h"
+#include <errno.h>
+#include <string.h>
+#include <unistd.h>
+
+PetscErrorCode LamBesideOpen(const char hdf5[], const char ending[], LamBeside *file)
+{
+  const char *dot = strrchr(hdf5, '.');
+  int stem = (int)strlen(hdf5);
+
+  PetscFunctionBeginUser;
+  if (dot && (!strcmp(dot, ".h5") || !strcmp(dot, ".hdf5"))) stem = (int)(dot - hdf5);
+  PetscCall(PetscSNPrintf(file->path, sizeof(file->path), "%.*s%s", stem, hdf5, ending));
+  PetscCall(PetscSNPrintf(file->temporary, sizeof(file->temporary), "%.*s%s.tmp", stem, hdf5, ending));
+  file->out = fopen(file->temporary, "w");
+  PetscCheck(file->out, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: %s", file->temporary, strerror(errno));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamBesideClose(LamBeside *file)
+{
+  int failed = ferror(file->out);
+
+  PetscFunctionBeginUser;
+  failed |= fclose(file->out);
+  if (!failed) failed = rename(file->temporary, file->path);
+  if (failed) unlink(file->temporary);
+  PetscCheck(!failed, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s: cannot write", file->path);
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,229 @@
+/*
+  Cells in a picture: walls with a field, lumens, outlines, gaps and pressure, and periodic images in paler colours.
+*/
+#include "plot_tissue.h"
+#include <math.h>
+#include <string.h>
+
+static const LamWallField Fields[] = {
+    {"wall_stress", "largest principal Cauchy stress", "MPa"},
+    {"fibre_stretch", "fibre stretch", NULL},
+};
+
+static const LamColour WallLine = {0.12, 0.12, 0.16}, Lumen = {0.90, 0.945, 0.97}, Reference = {0.80, 0.15, 0.05};
+static const PetscReal NeighbourFade = 0.55; /* share of white in the periodic images */
+
+PetscErrorCode LamWallFieldFind(const char name[], const LamWallField **field)
+{
+  PetscFunctionBeginUser;
+  *field = &Fields[0];
+  if (!name) PetscFunctionReturn(0);
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(Fields); i++) {
+    if (strcmp(name, Fields[i].name)) continue;
+    *field = &Fields[i];
+    PetscFunctionReturn(0);
+  }
+  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "--field %s: a file of RVE states has wall_stress and fibre_stretch",
+          name);
+}
+
+/* ---- reading ---- */
+
+PetscErrorCode LamTissueRead(const char path[], const char mesh[], const char fields[], const LamWallField *field,
+                             PetscBool has_interface, const PetscReal F[9], LamTissue *t)
+{
+  PetscInt rank, dims[4], count;
+  PetscBool found;
+  char name[96];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMemzero(t, sizeof *t));
+  PetscCall(PetscArraycpy(t->F, F, 9));
+  PetscCall(PetscSNPrintf(name, sizeof name, "%s/nodes", mesh));
+  PetscCall(LamPlotReadPoints(path, name, -1, &t->node_count, &t->nodes));
+  PetscCall(PetscSNPrintf(name, sizeof name, "%s/elements", mesh));
+  PetscCall(LamPlotReadElements(path, name, t->node_count, &t->element_count, &t->elements));
+  PetscCall(PetscSNPrintf(name, sizeof name, "%s/period", mesh));
+  PetscCall(LamPlotReadReals(path, name, 2, 2, &t->period));
+  PetscCall(PetscSNPrintf(name, sizeof name, "%s/cell_of", mesh));
+  PetscCall(LamFileReadInts(path, name, &found, &rank, dims, &t->cell_of));
+  PetscCheck(found && rank == 1 && dims[0] == t->element_count, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: %s is missing or damaged", path, name);
+  PetscCall(PetscSNPrintf(name, sizeof name, "%s/x", fields));
+  PetscCall(LamPlotReadPoints(path, name, t->node_count, &count, &t->x));
+  PetscCall(PetscSNPrintf(name, sizeof name, "%s/%s", fields, field->name));
+  PetscCall(LamPlotReadReals(path, name, t->node_count, 1, &t->values));
+  PetscCall(LamOutlineCreate(t->element_count, t->elements, t->cell_of, &t->outline));
+  t->has_interface = has_interface;
+  if (has_interface) PetscCall(LamInterfaceRead(path, fields, &t->interface));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamTissueDestroy(LamTissue *t)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamOutlineDestroy(&t->outline));
+  PetscCall(LamInterfaceDestroy(&t->interface));
+  PetscCall(PetscFree(t->nodes));
+  PetscCall(PetscFree(t->x));
+  PetscCall(PetscFree(t->values));
+  PetscCall(PetscFree(t->elements));
+  PetscCall(PetscFree(t->cell_of));
+  PetscCall(PetscFree(t->period));
+  PetscFunctionReturn(0);
+}
+
+/* ---- drawing ---- */
+
+PetscBool LamTissueIsPeriodic(const LamTissue *t)
+{
+  return (PetscBool)(t->period[0] != 0 || t->period[1] != 0);
+}
+
+void LamTissueCentreReference(const LamTissue *t, PetscReal shift[2])
+{
+  shift[0] = shift[1] = 0;
+  for (PetscInt i = 0; i < t->node_count; i++)
+    for (int k = 0; k < 2; k++) shift[k] += (t->x[2 * i + k] - t->nodes[2 * i + k]) / t->node_count;
+}
+
+/* Images x + F.S of the RVE that show in the view; the RVE itself comes last, so that it lies on top. */
+static PetscErrorCode VisibleImages(const LamTissue *t, const LamView *view, PetscInt *count, LamImage **images)
+{
+  const PetscReal *F = t->F, none[2] = {0, 0};
+  const PetscInt reach = LamTissueIsPeriodic(t) ? 12 : 0;
+  PetscReal box[4];
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  LamBoxEmpty(box);
+  LamBoxExtend(box, t->node_count, t->x, none);
+  PetscCall(PetscMalloc1((2 * reach + 1) * (2 * reach + 1), images));
+  for (PetscInt i = -reach; i <= reach; i++) {
+    for (PetscInt j = -reach; j <= reach; j++) {
+      const PetscReal S[2] = {i * t->period[0] + j * t->period[2], i * t->period[1] + j * t->period[3]};
+      const LamImage image = {{F[0] * S[0] + F[1] * S[1], F[3] * S[0] + F[4] * S[1]}, NeighbourFade};
+
+      if ((i || j) && LamViewShows(view, box, image.shift)) (*images)[n++] = image;
+    }
+  }
+  (*images)[n++] = (LamImage){{0, 0}, 0};
+  *count = n;
+  PetscFunctionReturn(0);
+}
+
+/* Path of the outer (or lumen) loops of one image, as far as they show. */
+static void LoopsPath(LamCanvas canvas, const LamView *view, const LamTissue *t, PetscBool lumens,
+                      const PetscReal shift[2])
+{
+  cairo_new_path(LamCanvasCairo(canvas));
+  for (PetscInt k = 0; k < t->outline.loop_count; k++) {
+    const PetscInt first = t->outline.loop_start[k], end = t->outline.loop_start[k + 1];
+    const PetscReal none[2] = {0, 0};
+    PetscReal box[4];
+
+    if ((LamOutlineLoopArea(&t->outline, k, t->nodes) < 0) != lumens) continue;
+    LamBoxEmpty(box);
+    for (PetscInt i = first; i < end; i++)
+      LamBoxExtend(box, 1, &t->x[2 * t->outline.edges[t->outline.loop_edges[i]].start], none);
+    if (LamViewShows(view, box, shift)) LamOutlineLoopPath(canvas, view, &t->outline, k, t->x, shift);
+  }
+}
+
+/* Whether another cell's outer wall lies on this edge of the reference: then the edge is inside the RVE. */
+static PetscBool HasPartner(const LamTissue *t, const LamEdge *edge)
+{
+  const PetscReal *m = &t->nodes[2 * edge->middle];
+
+  for (PetscInt i = 0; i < t->outline.edge_count && t->outline.edges[i].boundary; i++) {
+    const LamEdge *other = &t->outline.edges[i];
+    const PetscReal *n = &t->nodes[2 * other->middle];
+
+    if (other->group != edge->group && hypot(m[0] - n[0], m[1] - n[1]) < 1e-6) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* Path of the undeformed outline of the RVE as a whole. */
+static void ReferencePath(LamCanvas canvas, const LamView *view, const LamTissue *t, const PetscReal shift[2])
+{
+  const LamOutline *o = &t->outline;
+
+  cairo_new_path(LamCanvasCairo(canvas));
+  for (PetscInt k = 0; k < o->loop_count; k++) {
+    PetscBool drawing = PETSC_FALSE;
+
+    if (LamOutlineLoopArea(o, k, t->nodes) < 0) continue;
+    for (PetscInt i = o->loop_start[k]; i < o->loop_start[k + 1]; i++) {
+      const LamEdge *edge = &o->edges[o->loop_edges[i]];
+      const PetscBool inside = HasPartner(t, edge);
+
+      if (!inside) LamOutlineEdgePath(canvas, view, edge, t->nodes, shift, drawing);
+      drawing = (PetscBool)!inside;
+    }
+  }
+}
+
+static LamColour Fade(LamColour colour, PetscReal fade)
+{
+  return (LamColour){colour.r + fade * (1 - colour.r), colour.g + fade * (1 - colour.g),
+                     colour.b + fade * (1 - colour.b)};
+}
+
+void LamStrokeUndeformed(LamCanvas canvas)
+{
+  cairo_t *cr = LamCanvasCairo(canvas);
+  const double dash[] = {3.5, 2.0};
+
+  LamCanvasSetColour(canvas, Reference);
+  cairo_set_dash(cr, dash, 2, 0);
+  cairo_set_line_width(cr, 0.9);
+  cairo_stroke(cr);
+  cairo_set_dash(cr, NULL, 0, 0);
+}
+
+PetscErrorCode LamTissueDraw(LamCanvas canvas, const LamView *view, const LamTissue *t, const LamColourRange *range,
+                             const PetscReal reference[2])
+{
+  cairo_t *cr = LamCanvasCairo(canvas);
+  const LamField field = {t->element_count, t->x, t->elements, t->values, PETSC_FALSE};
+  const LamRect f = view->frame;
+  LamImage *images;
+  PetscInt count = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(VisibleImages(t, view, &count, &images));
+  cairo_save(cr);
+  cairo_rectangle(cr, f.x, f.y, f.width, f.height);
+  cairo_clip(cr);
+  for (PetscInt i = 0; i < count; i++) {
+    LoopsPath(canvas, view, t, PETSC_TRUE, images[i].shift);
+    LamCanvasSetColour(canvas, Fade(Lumen, images[i].fade));
+    cairo_fill(cr);
+  }
+  PetscCall(LamFieldPaint(canvas, view, &field, range, count, images));
+  for (PetscInt i = 0; i < count; i++) {
+    LamCanvasSetColour(canvas, Fade(WallLine, 0.8 * images[i].fade));
+    LoopsPath(canvas, view, t, PETSC_TRUE, images[i].shift);
+    cairo_set_line_width(cr, 0.4);
+    cairo_stroke(cr);
+    LoopsPath(canvas, view, t, PETSC_FALSE, images[i].shift);
+    cairo_set_line_width(cr, images[i].fade > 0 ? 0.5 : 0.9);
+    cairo_stroke(cr);
+  }
+  if (reference) {
+    ReferencePath(canvas, view, t, reference);
+    LamStrokeUndeformed(canvas);
+  }
+  for (PetscInt i = 0; i < count && t->has_interface; i++) {
+    LamInterfaceDrawPressure(canvas, view, &t->interface, images[i].shift);
+    LamInterfaceDrawGaps(canvas, view, &t->interface, images[i].shift);
+  }
+  cairo_restore(cr);
+  LamCanvasSetColour(canvas, WallLine);
+  cairo_set_line_width(cr, 0.6);
+  cairo_rectangle(cr, f.x, f.y, f.width, f.height);
+  cairo_stroke(cr);
+  PetscCall(PetscFree(images));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,42 @@
+/*
+  Cells in a picture: the deformed tissue of one state of an RVE, with its periodic images.
+*/
+#ifndef LAM_PLOT_TISSUE_H
+#define LAM_PLOT_TISSUE_H
+
+#include "plot.h"
+
+typedef struct {
+  const char *name, *label, *unit; /* name: of the dataset and of --field */
+} LamWallField;
+/* The named field; NULL: the first. PETSC_ERR_USER_INPUT where there is none of this name. */
+PetscErrorCode LamWallFieldFind(const char name[], const LamWallField **field);
+
+typedef struct {
+  PetscReal F[9];
+  PetscInt node_count, element_count;
+  PetscReal *nodes, *x, *values; /* [node][2], [node][2], [node]; owned */
+  PetscInt *elements, *cell_of;  /* owned */
+  PetscReal *period;             /* [2][2], rows, reference; owned */
+  LamOutline outline;            /* loops per cell: walls outside, lumens inside */
+  PetscBool has_interface;       /* contact tissue */
+  LamInterface interface;
+} LamTissue;
+
+/* Reads the mesh in the group `mesh` ("/mesh") of the file and a state's fields in the group `fields` ("/fields/3").
+   PETSC_ERR_USER_INPUT where the file lacks them. */
+PetscErrorCode LamTissueRead(const char path[], const char mesh[], const char fields[], const LamWallField *field,
+                             PetscBool has_interface, const PetscReal F[9], LamTissue *tissue);
+PetscErrorCode LamTissueDestroy(LamTissue *tissue);
+/* A patch has no period. */
+PetscBool LamTissueIsPeriodic(const LamTissue *tissue);
+/* Moves the reference so that both centroids coincide: a translation has no meaning in a periodic tissue. */
+void LamTissueCentreReference(const LamTissue *tissue, PetscReal shift[2]);
+/* Lumens, walls with their field, outlines; everything inside the frame of the view. `reference`: shift of the
+   undeformed outline; NULL: it is not drawn. */
+PetscErrorCode LamTissueDraw(LamCanvas canvas, const LamView *view, const LamTissue *tissue,
+                             const LamColourRange *range, const PetscReal reference[2]);
+/* The dashes of what is undeformed, along the current path. */
+void LamStrokeUndeformed(LamCanvas canvas);
+
+#endif

@@ -1,0 +1,103 @@
+/*
+  Mesh and fields of an RVE in a result file.
+*/
+#include "rve_fields.h"
+
+static PetscErrorCode WriteReals(LamRecordWriter writer, const char group[], const char name[], PetscInt rank,
+                                 const PetscInt dims[], const PetscReal values[], const char unit[])
+{
+  char path[2 * LAM_NAME_LENGTH];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", group, name));
+  PetscCall(LamRecordWriterReals(writer, path, rank, dims, values, unit));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WriteInts(LamRecordWriter writer, const char group[], const char name[], PetscInt rank,
+                                const PetscInt dims[], const PetscInt values[])
+{
+  char path[2 * LAM_NAME_LENGTH];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", group, name));
+  PetscCall(LamRecordWriterInts(writer, path, rank, dims, values));
+  PetscFunctionReturn(0);
+}
+
+/* Which faces the samples of interfaces are of; bonded tissue has none. */
+static PetscErrorCode WriteInterfaceFaces(LamRecordWriter writer, const char group[], LamRVE rve)
+{
+  PetscInt dims[2] = {0, 3}, points, *owner;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEGetInterfaceSize(rve, &dims[0], &points));
+  if (!dims[0]) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(3 * dims[0], &owner));
+  PetscCall(LamRVEGetInterfaceFaces(rve, owner));
+  PetscCall(WriteInts(writer, group, "interface_faces", 2, dims, owner));
+  PetscCall(PetscFree(owner));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEWriteMesh(LamRecordWriter writer, const char group[], LamRVE rve)
+{
+  LamRVEMesh mesh;
+  PetscInt nodes[2] = {0, 2}, elements[2] = {0, 9};
+  const PetscInt period[2] = {2, 2};
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEGetMesh(rve, &mesh));
+  nodes[0] = mesh.node_count;
+  elements[0] = mesh.element_count;
+  PetscCall(WriteReals(writer, group, "nodes", 2, nodes, mesh.nodes, "apothem"));
+  PetscCall(WriteInts(writer, group, "elements", 2, elements, mesh.elements));
+  PetscCall(WriteInts(writer, group, "cell_of", 1, elements, mesh.cell_of));
+  PetscCall(WriteReals(writer, group, "period", 2, period, &mesh.period[0][0], "apothem"));
+  PetscCall(WriteInterfaceFaces(writer, group, rve));
+  PetscFunctionReturn(0);
+}
+
+/* Samples along the faces of contact tissue; bonded tissue has none. */
+static PetscErrorCode WriteInterface(LamRecordWriter writer, const char group[], LamRVE rve, LamRVEState state,
+                                     PetscReal MPa)
+{
+  PetscReal *from, *to, *gap, *pressure;
+  PetscInt dims[3] = {0, 0, 2}, n;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEGetInterfaceSize(rve, &dims[0], &dims[1]));
+  if (!dims[0]) PetscFunctionReturn(0);
+  n = dims[0] * dims[1];
+  PetscCall(PetscMalloc4(2 * n, &from, 2 * n, &to, n, &gap, n, &pressure));
+  PetscCall(LamRVEGetInterface(rve, state, from, to, gap, pressure));
+  for (PetscInt i = 0; i < n; i++) pressure[i] *= MPa;
+  PetscCall(WriteReals(writer, group, "interface/from", 3, dims, from, "apothem"));
+  PetscCall(WriteReals(writer, group, "interface/to", 3, dims, to, "apothem"));
+  PetscCall(WriteReals(writer, group, "interface/gap", 2, dims, gap, "apothem"));
+  PetscCall(WriteReals(writer, group, "interface/pressure", 2, dims, pressure, "MPa"));
+  PetscCall(PetscFree4(from, to, gap, pressure));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEWriteFields(LamRecordWriter writer, const char group[], LamRVE rve, LamRVEState state,
+                                 const LamScales *scales)
+{
+  const PetscReal MPa = scales->stress * 1e-6;
+  PetscReal *x, *fibre, *stress;
+  LamRVEMesh mesh;
+  PetscInt dims[2] = {0, 2};
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEGetMesh(rve, &mesh));
+  dims[0] = mesh.node_count;
+  PetscCall(PetscMalloc3(2 * dims[0], &x, dims[0], &fibre, dims[0], &stress));
+  PetscCall(LamRVEGetFields(rve, state, x, fibre, stress));
+  for (PetscInt i = 0; i < dims[0]; i++) stress[i] *= MPa;
+  PetscCall(WriteReals(writer, group, "x", 2, dims, x, "apothem"));
+  PetscCall(WriteReals(writer, group, "fibre_stretch", 1, dims, fibre, "1"));
+  PetscCall(WriteReals(writer, group, "wall_stress", 1, dims, stress, "MPa"));
+  PetscCall(PetscFree3(x, fibre, stress));
+  PetscCall(WriteInterface(writer, group, rve, state, MPa));
+  PetscFunctionReturn(0);
+}

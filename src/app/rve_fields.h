@@ -1,0 +1,16 @@
+/*
+  Mesh and fields of an RVE in a result file, as docs/file-format.md describes them.
+*/
+#ifndef LAM_RVE_FIELDS_H
+#define LAM_RVE_FIELDS_H
+
+#include <lamella/database.h>
+#include <lamella/rve.h>
+
+/* <group>/nodes, elements, cell_of, period; of contact tissue interface_faces. */
+PetscErrorCode LamRVEWriteMesh(LamRecordWriter writer, const char group[], LamRVE rve);
+/* <group>/x, fibre_stretch, wall_stress of a solved state; of contact tissue interface/from, to, gap, pressure. */
+PetscErrorCode LamRVEWriteFields(LamRecordWriter writer, const char group[], LamRVE rve, LamRVEState state,
+                                 const LamScales *scales);
+
+#endif
