@@ -29,6 +29,12 @@ with h5py.File("direct.h5") as h5:
     for F in h5["zoom/F"]:
         print(f"  - {{F: {F[:2, :2].tolist()}}}")
 PYTHON
+# of tissues that differ, in their own units and turned
+cat block.yaml - >regions.yaml <<'YAML'
+  regions: [{name: skin, where: y > 5, cell: {apothem: 50 um, wall_thickness: 9 um}, wall: {C1: 0.15 MPa}}]
+  fields: {orientation: {expression: 3 * x, unit: deg}}
+YAML
+"$lamella" fe2 regions.yaml --quiet -o regions.h5 >/dev/null
 {
   sed '/^macro:/,$d' block.yaml
   echo "load:"
@@ -55,6 +61,8 @@ with h5py.File("direct.h5") as direct, h5py.File("points.h5") as rve:
             if name == "x": # a translation has no meaning
                 ours, theirs = ours - ours.mean(0), theirs - theirs.mean(0)
             assert np.allclose(ours, theirs, rtol=1e-6, atol=1e-7), name
+with h5py.File("regions.h5") as h5:
+    assert np.all(h5["zoom/difference"][()] < 1e-8) and np.allclose(h5["zoom/apothem"], [50, 75])
 for name in "cache", "database":
     with h5py.File(f"{name}.h5") as h5: # interpolated to 1 %
         assert np.all(h5["zoom/difference"][()] < 0.02) and np.any(h5["zoom/difference"][()] > 1e-9)

@@ -49,7 +49,7 @@ import json
 import h5py, numpy as np
 with h5py.File("one.h5") as one, h5py.File("two.h5") as two:
     def same(name, item):
-        if isinstance(item, h5py.Dataset) and item.dtype.kind in "fi" and "seconds" not in name and "difference" not in name:
+        if isinstance(item, h5py.Dataset) and item.dtype.kind in "fi" and not any(word in name for word in ("seconds", "difference", "solves", "hits")):
             assert np.allclose(item, two[name], rtol=1e-6, atol=1e-8, equal_nan=True), name
     for group in "macro", "zoom":
         one[group].visititems(lambda name, item: same(f"{group}/{name}", item))
