@@ -1,63 +1,57 @@
 /*
-  Displacement conditions on the named sides of the body, reactions there and their work.
+  Which displacements of the body are prescribed, and what acts on it at a load parameter.
 
-  Prescribed components stay unknowns. Their equation is (displacement - target) = 0, in units of C1 + C2; their columns
-  of the tangent are kept. So the first Newton iteration after a change of the targets spreads the change through the
-  whole body by the tangent of the last converged state: no layer of elements at the boundary is ever crushed.
+  A node has up to two prescribed directions: components, or the normal of a side of symmetry.
 */
-#include <math.h>
+#include <stdlib.h>
 #include "macro_impl.h"
+#include <petscblaslapack.h>
 
-/* Whether a mesh point lies on the boundary that the condition names. */
-static PetscBool IsOn(LamMacro macro, PetscInt p, const LamBoundary *boundary)
+/* ---- names ---- */
+
+PetscBool LamMacroIsOn(LamMacro macro, PetscInt p, const char on[])
 {
-  return (PetscBool)(macro->sets[p - macro->mesh_start] >> LamMacroFindSet(macro, boundary->on) & 1);
+  const PetscInt set = LamMacroFindSet(macro, on);
+
+  return set >= 0 && macro->sets[p - macro->mesh_start] >> set & 1 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-static PetscErrorCode CheckNames(LamMacro macro)
+static PetscErrorCode CheckName(LamMacro macro, const char key[], const char on[])
 {
-  const LamMacroSpec *spec = &macro->scene->macro;
+  char names[LAM_MESSAGE_LENGTH] = "";
 
   PetscFunctionBeginUser;
-  for (PetscInt b = 0; b < spec->boundary_count; b++) {
-    char names[LAM_MESSAGE_LENGTH] = "";
-    if (LamMacroFindSet(macro, spec->boundary[b].on) >= 0) continue;
-    for (PetscInt s = 0; s < macro->set_count; s++) {
-      PetscCall(PetscStrlcat(names, s ? ", " : "", sizeof(names)));
-      PetscCall(PetscStrlcat(names, macro->set_name[s], sizeof(names)));
-    }
-    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "macro.boundary: on: %s: no such boundary of the mesh; there %s %s",
-            spec->boundary[b].on, macro->set_count == 1 ? "is" : "are", macro->set_count ? names : "none");
+  if (LamMacroFindSet(macro, on) >= 0) PetscFunctionReturn(0);
+  for (PetscInt s = 0; s < macro->set_count; s++) {
+    PetscCall(PetscStrlcat(names, s ? ", " : "", sizeof(names)));
+    PetscCall(PetscStrlcat(names, macro->set_name[s], sizeof(names)));
   }
-  PetscFunctionReturn(0);
+  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: on: %s: no such boundary of the mesh; there %s %s", key, on,
+          macro->set_count == 1 ? "is" : "are", macro->set_count ? names : "none");
 }
 
 PetscErrorCode LamMacroBoundaryCheck(LamMacro macro)
 {
   const LamMacroSpec *spec = &macro->scene->macro;
-  PetscInt worst = -1; /* (one, other, component) as one number */
 
   PetscFunctionBeginUser;
-  PetscCall(CheckNames(macro));
-  for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
-    for (PetscInt m = 0; m < spec->boundary_count; m++) {
-      for (PetscInt n = 0; n < m && macro->sets[p - macro->mesh_start]; n++) {
-        const LamBoundary *one = &spec->boundary[m], *other = &spec->boundary[n];
-        if (!IsOn(macro, p, one) || !IsOn(macro, p, other)) continue;
-        for (PetscInt i = 0; i < macro->dim; i++) {
-          if (one->given[i] && other->given[i] && one->displacement[i] != other->displacement[i])
-            worst = PetscMax(worst, (m * LAM_MAX_BOUNDARIES + n) * LAM_MACRO_DIM + i);
-        }
-      }
-    }
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPIU_INT, MPI_MAX, macro->comm));
-  PetscCheck(worst < 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "macro.boundary: %s and %s prescribe different displacements along X%d where they meet; "
-             "leave that component `free` on one of them",
-             spec->boundary[worst / LAM_MACRO_DIM % LAM_MAX_BOUNDARIES].on,
-             spec->boundary[worst / LAM_MACRO_DIM / LAM_MAX_BOUNDARIES].on, (int)(worst % LAM_MACRO_DIM) + 1);
+  for (PetscInt b = 0; b < spec->boundary_count; b++)
+    PetscCall(CheckName(macro, "macro.boundary", spec->boundary[b].on));
+  if (spec->control.on[0]) PetscCall(CheckName(macro, "macro.control", spec->control.on));
   PetscFunctionReturn(0);
+}
+
+static const char *ReportedName(const LamBoundary *boundary)
+{
+  return boundary->name[0] ? boundary->name : boundary->on;
+}
+
+PetscInt LamMacroSideNumber(const LamMacroStep *step, const LamBoundary *boundary)
+{
+  for (PetscInt s = 0; s < step->boundary_count; s++) {
+    if (!strcmp(step->boundary[s], ReportedName(boundary))) return s;
+  }
+  return -1;
 }
 
 PetscErrorCode LamMacroBoundaryNames(const LamMacroSpec *spec, LamMacroStep *step)
@@ -65,19 +59,182 @@ PetscErrorCode LamMacroBoundaryNames(const LamMacroSpec *spec, LamMacroStep *ste
   PetscFunctionBeginUser;
   step->boundary_count = 0;
   for (PetscInt b = 0; b < spec->boundary_count; b++) {
-    PetscInt s = 0;
-    while (s < step->boundary_count && strcmp(step->boundary[s], spec->boundary[b].on)) s++;
-    if (s < step->boundary_count) continue;
-    PetscCall(PetscStrncpy(step->boundary[s], spec->boundary[b].on, LAM_NAME_LENGTH));
-    step->boundary_count++;
+    if (LamMacroSideNumber(step, &spec->boundary[b]) >= 0) continue;
+    PetscCall(PetscStrncpy(step->boundary[step->boundary_count++], ReportedName(&spec->boundary[b]), LAM_NAME_LENGTH));
   }
   PetscFunctionReturn(0);
 }
 
-static void AddConstraint(LamMacro macro, PetscInt local, PetscInt component, PetscReal base, PetscReal end,
-                          unsigned int sides)
+/* ---- prescribed directions of nodes ---- */
+
+/* Whether two directions of a node are one, which is then prescribed alike by both conditions. */
+static PetscBool Agree(LamMacro macro, const LamConstraint *one, const LamConstraint *other)
 {
-  macro->constraints[macro->constraint_count++] = (LamConstraint){local + component, component, base, end, base, sides};
+  const LamBoundary *boundary = macro->scene->macro.boundary;
+  const PetscReal sign = one->normal[0] * other->normal[0] + one->normal[1] * other->normal[1] > 0 ? 1 : -1;
+
+  if (one->border >= 0 || other->border >= 0) return one->border == other->border ? PETSC_TRUE : PETSC_FALSE;
+  if (PetscAbsReal(one->end - sign * other->end) > 1e-14) return PETSC_FALSE;
+  return one->end == 0 || LamHistoriesAgree(&boundary[one->entry].history, &boundary[other->entry].history)
+             ? PETSC_TRUE
+             : PETSC_FALSE;
+}
+
+/* The displacement along `wanted` that two other directions of its node leave at factor 1. */
+static PetscReal Implied(const LamConstraint *one, const LamConstraint *two, const LamConstraint *wanted)
+{
+  const PetscReal *m = one->normal, *n = two->normal, *w = wanted->normal, det = m[0] * n[1] - m[1] * n[0];
+
+  return ((w[0] * n[1] - w[1] * n[0]) * one->end + (m[0] * w[1] - m[1] * w[0]) * two->end) / det;
+}
+
+/* Adds a direction to those of its node, which are the last ones. *other is an entry that contradicts it, else kept. */
+static void AddConstraint(LamMacro macro, const LamConstraint *constraint, PetscInt *other)
+{
+  const PetscReal parallel = 1e-8;
+  LamConstraint *of_node[2];
+  PetscInt count = 0;
+
+  for (PetscInt k = macro->constraint_count - 1; k >= 0 && macro->constraints[k].local == constraint->local; k--)
+    of_node[count++] = &macro->constraints[k];
+  for (PetscInt k = 0; k < count; k++) {
+    const PetscReal *m = of_node[k]->normal, *n = constraint->normal;
+    if (PetscAbsReal(m[0] * n[1] - m[1] * n[0]) > parallel) continue;
+    if (!Agree(macro, of_node[k], constraint)) *other = of_node[k]->entry;
+    of_node[k]->sides |= constraint->sides;
+    return;
+  }
+  if (count == 2) {
+    if (PetscAbsReal(Implied(of_node[0], of_node[1], constraint) - constraint->end) > 1e-14) *other = of_node[0]->entry;
+    return;
+  }
+  macro->constraints[macro->constraint_count++] = *constraint;
+}
+
+/* Normal of an entry's straight side. */
+static PetscErrorCode SideNormal(LamMacro macro, const LamBoundary *boundary, PetscReal normal[2])
+{
+  PetscBool straight;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamMacroStraightNormal(macro, LamMacroFindSet(macro, boundary->on), normal, &straight));
+  PetscCheck(straight, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "macro.boundary: on: %s: %s needs a straight side, which this is not; %s", boundary->on,
+             LamBoundaryKindNames[boundary->kind],
+             boundary->kind == LAM_BOUNDARY_PLATE ? "give the plate's normal, such as normal: [0, -1]"
+                                                  : "name the straight parts of it on their own");
+  PetscFunctionReturn(0);
+}
+
+/* What the entries prescribe at a node, `normals` those of sides of symmetry; *worst = a contradiction, see below. */
+static void AddNode(LamMacro macro, PetscInt point, PetscInt local, const PetscScalar u[], const PetscReal normals[][2],
+                    PetscBool symmetry_only, PetscInt *worst)
+{
+  const LamMacroSpec *spec = &macro->scene->macro;
+
+  for (PetscInt b = 0; b < spec->boundary_count; b++) {
+    const LamBoundary *boundary = &spec->boundary[b];
+    const PetscBool symmetry = boundary->kind == LAM_BOUNDARY_SYMMETRY ? PETSC_TRUE : PETSC_FALSE;
+    if (!LamMacroIsOn(macro, point, boundary->on) || (symmetry_only && !symmetry)) continue;
+    for (PetscInt i = 0; i < (symmetry ? 1 : macro->dim); i++) {
+      const PetscInt border = boundary->kind == LAM_BOUNDARY_GRIP ? LamMacroFindBorder(macro, b, i) : -1;
+      LamConstraint constraint = {.point = point, .local = local, .entry = b, .border = border};
+      PetscInt other = -1;
+      if (!symmetry && border < 0 &&
+          (!boundary->given[i] || (boundary->kind != LAM_BOUNDARY_DISPLACEMENT && boundary->kind != LAM_BOUNDARY_GRIP)))
+        continue;
+      constraint.sides = 1u << LamMacroSideNumber(&macro->step, boundary);
+      if (!symmetry && border < 0) constraint.end = boundary->displacement[i];
+      for (PetscInt j = 0; j < 2; j++) {
+        constraint.normal[j] = symmetry ? normals[b][j] : i == j;
+        constraint.base += constraint.normal[j] * PetscRealPart(u[local + j]);
+      }
+      constraint.target = constraint.base;
+      AddConstraint(macro, &constraint, &other);
+      if (other >= 0) *worst = PetscMax(*worst, b * LAM_MAX_BOUNDARIES + other);
+    }
+  }
+}
+
+/* All that the scene prescribes, counted from the present displacement; or its symmetry alone. */
+static PetscErrorCode AddNodes(LamMacro macro, PetscBool symmetry_only)
+{
+  const LamMacroSpec *spec = &macro->scene->macro;
+  PetscReal normals[LAM_MAX_BOUNDARIES][2];
+  PetscInt worst = -1; /* entries that contradict each other, as one number */
+  const PetscScalar *u;
+
+  PetscFunctionBeginUser;
+  macro->constraint_count = 0;
+  for (PetscInt b = 0; b < spec->boundary_count; b++) {
+    if (spec->boundary[b].kind == LAM_BOUNDARY_SYMMETRY) PetscCall(SideNormal(macro, &spec->boundary[b], normals[b]));
+  }
+  PetscCall(VecGetArrayRead(macro->u, &u));
+  for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
+    PetscInt local;
+    if (!macro->sets[p - macro->mesh_start]) continue;
+    PetscCall(LamMacroOwnedIndex(macro, p, &local));
+    if (local >= 0) AddNode(macro, p, local, u, (const PetscReal(*)[2])normals, symmetry_only, &worst);
+  }
+  PetscCall(VecRestoreArrayRead(macro->u, &u));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPIU_INT, MPI_MAX, macro->comm));
+  PetscCheck(worst < 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "macro.boundary: %s and %s prescribe different displacements where they meet; "
+             "leave that component `free` on one of them",
+             spec->boundary[worst % LAM_MAX_BOUNDARIES].on, spec->boundary[worst / LAM_MAX_BOUNDARIES].on);
+  PetscFunctionReturn(0);
+}
+
+/* ---- rigid motions ---- */
+
+/* normal . motion of the three rigid motions at X: along X1, along X2, by a rotation. */
+static void RigidMotions(const PetscReal normal[2], const PetscReal X[2], PetscReal motion[3])
+{
+  motion[0] = normal[0];
+  motion[1] = normal[1];
+  motion[2] = normal[1] * X[0] - normal[0] * X[1];
+}
+
+/* Gram matrix of the rigid motions at all constraints; the free component of a grip still feels a rotation. */
+static PetscErrorCode RigidGram(LamMacro macro, PetscReal gram[9])
+{
+  PetscReal border[2 * LAM_MAX_BOUNDARIES + 1][3] = {{0}}; /* count, sum, sum of squares of the rotation */
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(gram, 9));
+  for (PetscInt k = 0; k < macro->constraint_count; k++) {
+    const LamConstraint *constraint = &macro->constraints[k];
+    PetscReal motion[3];
+    RigidMotions(constraint->normal, &macro->position[macro->dim * (constraint->point - macro->mesh_start)], motion);
+    for (int m = 0; m < 9 && constraint->border < 0; m++) gram[m] += motion[m / 3] * motion[m % 3];
+    for (int power = 0; power < 3 && constraint->border >= 0; power++)
+      border[constraint->border][power] += PetscPowRealInt(motion[2], power);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, gram, 9, MPIU_REAL, MPIU_SUM, macro->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, border, 3 * (2 * LAM_MAX_BOUNDARIES + 1), MPIU_REAL, MPIU_SUM, macro->comm));
+  for (PetscInt b = 0; b < macro->border_count; b++) {
+    if (border[b][0] > 0) gram[8] += border[b][2] - PetscSqr(border[b][1]) / border[b][0];
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscReal Determinant(const PetscReal g[9])
+{
+  return g[0] * (g[4] * g[8] - g[5] * g[7]) - g[1] * (g[3] * g[8] - g[5] * g[6]) + g[2] * (g[3] * g[7] - g[4] * g[6]);
+}
+
+/* The conditions hold the body where the Gram matrix of its three rigid motions at them is regular. */
+static PetscErrorCode CheckRigidMotions(LamMacro macro)
+{
+  const PetscReal tiny = 1e-10; /* of numbers of order one and more: lengths are in edges of the box */
+  PetscReal gram[9];
+
+  PetscFunctionBeginUser;
+  PetscCall(RigidGram(macro, gram));
+  PetscCheck(Determinant(gram) > tiny, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "macro.boundary: the displacements leave the body free to move or turn as a whole; prescribe both "
+             "components somewhere, and enough to prevent rotation (plates and indenters do not count)");
+  PetscFunctionReturn(0);
 }
 
 /* A node of the whole mesh. */
@@ -124,192 +281,112 @@ static PetscErrorCode FindNode(LamMacro macro, const Place *from, Place *found)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode HoldNode(LamMacro macro, const Place *place, PetscInt component)
+/* Holds a component of a node where this takes a rigid motion that is free yet: basis [*rank][3] of those that are not.
+ */
+static PetscErrorCode HoldNode(LamMacro macro, const Place *place, PetscInt component, PetscReal basis[][3],
+                               PetscInt *rank)
 {
-  PetscMPIInt rank;
+  const PetscReal independent = 1e-6, normal[2] = {component == 0, component == 1};
+  PetscReal motion[3], square = 0;
+  PetscMPIInt me;
   PetscInt local;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(macro->comm, &rank));
-  if (rank != place->rank) PetscFunctionReturn(0);
+  RigidMotions(normal, place->X, motion);
+  for (PetscInt b = 0; b < *rank; b++) {
+    PetscReal along = 0;
+    for (int m = 0; m < 3; m++) along += motion[m] * basis[b][m];
+    for (int m = 0; m < 3; m++) motion[m] -= along * basis[b][m];
+  }
+  for (int m = 0; m < 3; m++) square += PetscSqr(motion[m]);
+  if (square < independent || *rank == 3) PetscFunctionReturn(0);
+  for (int m = 0; m < 3; m++) basis[*rank][m] = motion[m] / PetscSqrtReal(square);
+  (*rank)++;
+  PetscCallMPI(MPI_Comm_rank(macro->comm, &me));
+  if (me != place->rank) PetscFunctionReturn(0);
   PetscCall(LamMacroOwnedIndex(macro, place->point, &local));
-  AddConstraint(macro, local, component, 0, 0, 0);
+  macro->constraints[macro->constraint_count++] = (LamConstraint){
+      .point = place->point, .local = local, .normal = {normal[0], normal[1]}, .entry = -1, .border = -1};
   PetscFunctionReturn(0);
+}
+
+/* Orthonormal basis of the rigid motions that the constraints hold. */
+static PetscErrorCode HeldMotions(LamMacro macro, PetscReal basis[3][3], PetscInt *rank)
+{
+  const PetscReal tiny = 1e-10;
+  PetscReal gram[9], eigenvalue[3], work[32];
+  PetscBLASInt n = 3, size = 32, info;
+
+  PetscFunctionBeginUser;
+  PetscCall(RigidGram(macro, gram));
+  LAPACKsyev_("V", "U", &n, gram, &n, eigenvalue, work, &size, &info);
+  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK's syev: info %d", (int)info);
+  *rank = 0;
+  for (int k = 0; k < 3; k++) {
+    if (eigenvalue[k] > tiny) PetscCall(PetscArraycpy(basis[(*rank)++], &gram[3 * k], 3));
+  }
+  PetscFunctionReturn(0);
+}
+
+static int CompareConstraints(const void *a, const void *b)
+{
+  const PetscInt one = ((const LamConstraint *)a)->local, other = ((const LamConstraint *)b)->local;
+
+  return (one > other) - (one < other);
 }
 
 PetscErrorCode LamMacroHoldRigidMotions(LamMacro macro)
 {
+  PetscReal basis[3][3];
+  PetscInt rank;
   Place one, other;
 
   PetscFunctionBeginUser;
   PetscCheck(macro->dim == 2, macro->comm, PETSC_ERR_SUP, "rigid motions are those of the plane");
-  macro->constraint_count = 0;
+  macro->loaded = PETSC_FALSE;
+  macro->obstacle_count = macro->obstacle_node_count = 0;
+  PetscCall(LamMacroBordersCreate(macro, PETSC_FALSE));
+  PetscCall(AddNodes(macro, PETSC_TRUE));
+  PetscCall(HeldMotions(macro, basis, &rank));
   PetscCall(FindNode(macro, NULL, &one));
   PetscCall(FindNode(macro, &one, &other));
-  for (PetscInt i = 0; i < 2; i++) PetscCall(HoldNode(macro, &one, i));
+  for (PetscInt i = 0; i < 2; i++) PetscCall(HoldNode(macro, &one, i, basis, &rank));
   /* a rotation about the first node moves the other one most along the component in which they differ least */
-  PetscCall(HoldNode(macro, &other, PetscAbsReal(other.X[0] - one.X[0]) < PetscAbsReal(other.X[1] - one.X[1]) ? 0 : 1));
-  PetscFunctionReturn(0);
-}
-
-/* The names (bits of the step's) that prescribe component i of a node, and the displacement. */
-static unsigned int Prescribed(LamMacro macro, PetscInt p, PetscInt i, PetscReal *displacement)
-{
-  const LamMacroSpec *spec = &macro->scene->macro;
-  unsigned int by = 0;
-
-  for (PetscInt b = 0; b < spec->boundary_count; b++) {
-    const LamBoundary *boundary = &spec->boundary[b];
-    if (!boundary->given[i] || !IsOn(macro, p, boundary)) continue;
-    *displacement = boundary->displacement[i];
-    for (PetscInt s = 0; s < macro->step.boundary_count; s++) {
-      if (!strcmp(macro->step.boundary[s], boundary->on)) by |= 1u << s;
-    }
-  }
-  return by;
-}
-
-/* The conditions hold the body where the Gram matrix of its three rigid motions at them is regular. */
-static PetscErrorCode CheckRigidMotions(LamMacro macro, PetscReal gram[9])
-{
-  const PetscReal tiny = 1e-10; /* of numbers of order one and more: lengths are in edges of the box */
-  PetscReal *g = gram;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, gram, 9, MPIU_REAL, MPIU_SUM, macro->comm));
-  PetscReal det =
-      g[0] * (g[4] * g[8] - g[5] * g[7]) - g[1] * (g[3] * g[8] - g[5] * g[6]) + g[2] * (g[3] * g[7] - g[4] * g[6]);
-  PetscCheck(det > tiny, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "macro.boundary: the displacements leave the body free to move or turn as a whole; "
-             "prescribe both components somewhere, and enough to prevent rotation");
+  const PetscInt most = PetscAbsReal(other.X[0] - one.X[0]) < PetscAbsReal(other.X[1] - one.X[1]) ? 0 : 1;
+  PetscCall(HoldNode(macro, &other, most, basis, &rank));
+  PetscCall(HoldNode(macro, &other, 1 - most, basis, &rank));
+  qsort(macro->constraints, (size_t)macro->constraint_count, sizeof(*macro->constraints), CompareConstraints);
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamMacroHoldBoundaries(LamMacro macro)
 {
-  PetscReal gram[9] = {0};
-  const PetscScalar *u;
-
   PetscFunctionBeginUser;
-  macro->constraint_count = 0;
-  PetscCall(VecGetArrayRead(macro->u, &u));
-  for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
-    const PetscReal *X = &macro->position[macro->dim * (p - macro->mesh_start)];
-    const PetscReal motion[2][3] = {{1, 0, -X[1]}, {0, 1, X[0]}};
-    PetscInt local;
-    if (!macro->sets[p - macro->mesh_start]) continue;
-    PetscCall(LamMacroOwnedIndex(macro, p, &local));
-    for (PetscInt i = 0; i < 2 && local >= 0; i++) {
-      PetscReal end = 0;
-      unsigned int by = Prescribed(macro, p, i, &end);
-      if (!by) continue;
-      AddConstraint(macro, local, i, PetscRealPart(u[local + i]), end, by);
-      for (int k = 0; k < 9; k++) gram[k] += motion[i][k / 3] * motion[i][k % 3];
-    }
-  }
-  PetscCall(VecRestoreArrayRead(macro->u, &u));
-  PetscCall(CheckRigidMotions(macro, gram));
+  macro->loaded = PETSC_TRUE;
+  PetscCall(LamMacroBordersCreate(macro, PETSC_TRUE));
+  PetscCall(AddNodes(macro, PETSC_FALSE));
+  PetscCall(CheckRigidMotions(macro));
+  PetscCall(LamMacroBordersStart(macro));
+  PetscCall(LamMacroObstaclesCreate(macro));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamMacroSetLoadFactor(LamMacro macro, PetscReal load_factor)
 {
+  const LamBoundary *boundary = macro->scene->macro.boundary;
+
   PetscFunctionBeginUser;
+  macro->parameter = load_factor;
   for (PetscInt k = 0; k < macro->constraint_count; k++) {
     LamConstraint *constraint = &macro->constraints[k];
-    constraint->target = constraint->base + load_factor * constraint->end;
+    if (constraint->entry < 0) continue;
+    constraint->target =
+        constraint->base + LamHistoryFactor(&boundary[constraint->entry].history, load_factor) * constraint->end;
   }
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamMacroConstrainResidual(LamMacro macro, Vec u, Vec residual)
-{
-  const PetscScalar *displacement;
-  PetscScalar *r;
-
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(u, &displacement));
-  PetscCall(VecGetArray(residual, &r));
-  for (PetscInt k = 0; k < macro->constraint_count; k++) {
-    const LamConstraint *constraint = &macro->constraints[k];
-    r[constraint->local] = displacement[constraint->local] - constraint->target;
+  for (PetscInt k = 0; k < macro->border_count; k++) {
+    LamBorder *border = &macro->borders[k];
+    if (border->entry < 0) border->target = border->base + load_factor * macro->scene->macro.control.displacement;
   }
-  PetscCall(VecRestoreArray(residual, &r));
-  PetscCall(VecRestoreArrayRead(u, &displacement));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamMacroConstrainTangent(LamMacro macro, Mat tangent)
-{
-  PetscInt start, *rows;
-
-  PetscFunctionBeginUser;
-  PetscCall(VecGetOwnershipRange(macro->u, &start, NULL));
-  PetscCall(PetscMalloc1(macro->constraint_count, &rows));
-  for (PetscInt k = 0; k < macro->constraint_count; k++) rows[k] = start + macro->constraints[k].local;
-  PetscCall(MatZeroRows(tangent, macro->constraint_count, rows, 1, NULL, NULL));
-  PetscCall(PetscFree(rows));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamMacroAddWork(LamMacro macro)
-{
-  const PetscScalar *u0, *u1, *f0, *f1;
-  PetscReal work = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(macro->u, &u0));
-  PetscCall(VecGetArrayRead(macro->trial, &u1));
-  PetscCall(VecGetArrayRead(macro->force_accepted, &f0));
-  PetscCall(VecGetArrayRead(macro->force, &f1));
-  for (PetscInt k = 0; k < macro->constraint_count; k++) {
-    PetscInt i = macro->constraints[k].local;
-    work += 0.5 * PetscRealPart((f0[i] + f1[i]) * (u1[i] - u0[i]));
-  }
-  PetscCall(VecRestoreArrayRead(macro->u, &u0));
-  PetscCall(VecRestoreArrayRead(macro->trial, &u1));
-  PetscCall(VecRestoreArrayRead(macro->force_accepted, &f0));
-  PetscCall(VecRestoreArrayRead(macro->force, &f1));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &work, 1, MPIU_REAL, MPIU_SUM, macro->comm));
-  macro->step.work += work;
-  PetscFunctionReturn(0);
-}
-
-/* During inflation the sides are not held yet: their displacements are 0. */
-void LamMacroDisplacements(LamMacro macro, LamMacroStep *step)
-{
-  const LamMacroSpec *spec = &macro->scene->macro;
-
-  for (PetscInt s = 0; s < step->boundary_count; s++) {
-    for (PetscInt i = 0; i < 2; i++) {
-      step->displacement[s][i] = NAN;
-      for (PetscInt b = 0; b < spec->boundary_count; b++) {
-        const LamBoundary *boundary = &spec->boundary[b];
-        if (boundary->given[i] && !strcmp(boundary->on, step->boundary[s]))
-          step->displacement[s][i] = step->load_factor * boundary->displacement[i];
-      }
-    }
-  }
-}
-
-PetscErrorCode LamMacroReactions(LamMacro macro, LamMacroStep *step)
-{
-  const PetscScalar *force;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(&step->reaction[0][0], 2 * LAM_MAX_BOUNDARIES));
-  PetscCall(VecGetArrayRead(macro->force_accepted, &force));
-  for (PetscInt k = 0; k < macro->constraint_count; k++) {
-    const LamConstraint *constraint = &macro->constraints[k];
-    /* A corner's force belongs to the sides that prescribe it, in equal shares: so the reactions of all sides balance.
-     */
-    PetscReal share = PetscRealPart(force[constraint->local]) / PetscMax(1, __builtin_popcount(constraint->sides));
-    for (PetscInt s = 0; s < step->boundary_count; s++) {
-      if (constraint->sides >> s & 1) step->reaction[s][constraint->component] += share;
-    }
-  }
-  PetscCall(VecRestoreArrayRead(macro->force_accepted, &force));
-  PetscCallMPI(
-      MPI_Allreduce(MPI_IN_PLACE, &step->reaction[0][0], 2 * LAM_MAX_BOUNDARIES, MPIU_REAL, MPIU_SUM, macro->comm));
+  LamMacroObstaclesMove(macro);
   PetscFunctionReturn(0);
 }

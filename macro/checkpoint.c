@@ -69,6 +69,44 @@ static PetscErrorCode ArchiveResponder(LamMacro macro, LamArchive archive, const
   PetscFunctionReturn(0);
 }
 
+/* Which nodes touched, as a vector of numbers 0 and 1. */
+static PetscErrorCode ArchiveTouch(LamMacro macro, LamArchive archive)
+{
+  PetscScalar *touches;
+
+  PetscFunctionBeginUser;
+  if (!macro->obstacle_count) PetscFunctionReturn(0);
+  for (int pass = 0; pass < 2; pass++) { /* the second one takes what was read */
+    if (pass == 0) PetscCall(VecZeroEntries(macro->external));
+    PetscCall(VecGetArray(macro->external, &touches));
+    for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {
+      LamObstacleNode *node = &macro->obstacle_nodes[k];
+      if (pass == 0)
+        touches[node->local] = node->accepted ? 1 : 0;
+      else
+        node->accepted = PetscRealPart(touches[node->local]) > 0.5 ? PETSC_TRUE : PETSC_FALSE;
+    }
+    PetscCall(VecRestoreArray(macro->external, &touches));
+    if (pass == 0) PetscCall(LamMacroArchiveVec(macro, archive, "touch", macro->external));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* What the loads and the prediction of the next step need. */
+static PetscErrorCode ArchiveLoads(LamMacro macro, LamArchive archive)
+{
+  PetscReal borders[PETSC_STATIC_ARRAY_LENGTH(macro->borders)] = {0};
+
+  PetscFunctionBeginUser;
+  PetscCall(LamMacroArchiveVec(macro, archive, "displacement before", macro->before));
+  PetscCall(LamArchiveShared(archive, "passed", sizeof(macro->passed), &macro->passed));
+  PetscCall(ArchiveTouch(macro, archive));
+  for (PetscInt b = 0; b < macro->border_count; b++) borders[b] = macro->borders[b].accepted;
+  PetscCall(LamArchiveShared(archive, "borders", sizeof(borders), borders));
+  for (PetscInt b = 0; b < macro->border_count; b++) macro->borders[b].accepted = macro->borders[b].now = borders[b];
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode ArchiveState(LamMacro macro, LamArchive archive)
 {
   PetscInt *numbers;
@@ -80,6 +118,7 @@ static PetscErrorCode ArchiveState(LamMacro macro, LamArchive archive)
   PetscCall(LamMacroArchiveVec(macro, archive, "force", macro->force_accepted));
   PetscCall(LamArchiveItems(archive, "points", sizeof(LamMaterialPoint), macro->point_count, numbers, macro->accepted));
   PetscCall(LamMacroArchiveSeal(macro, archive, numbers));
+  PetscCall(ArchiveLoads(macro, archive));
   PetscCall(ArchiveResponder(macro, archive, numbers));
   PetscCall(PetscFree(numbers));
   PetscFunctionReturn(0);

@@ -8,6 +8,7 @@ PetscErrorCode LamMacroCreate(MPI_Comm comm, LamMacro *macro)
   PetscFunctionBeginUser;
   PetscCall(PetscNew(macro));
   (*macro)->comm = comm;
+  (*macro)->extrapolates = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
@@ -56,10 +57,12 @@ static PetscErrorCode CreateUnknowns(LamMacro macro)
   PetscCall(VecZeroEntries(macro->origin));
   PetscCall(VecZeroEntries(macro->force_accepted));
   PetscCall(VecGetLocalSize(macro->u, &local));
+  PetscCall(VecDuplicate(macro->u, &macro->external));
+  PetscCall(VecDuplicate(macro->u, &macro->before));
   PetscCall(PetscMalloc1(local, &macro->constraints));
+  PetscCall(PetscMalloc1(local, &macro->rows));
   PetscCall(DMSetMatType(macro->dm, MATAIJ));
   PetscCall(DMCreateMatrix(macro->dm, &macro->tangent));
-  PetscCall(MatSetOption(macro->tangent, MAT_KEEP_NONZERO_PATTERN, PETSC_TRUE));
   PetscFunctionReturn(0);
 }
 
@@ -151,7 +154,13 @@ PetscErrorCode LamMacroDestroy(LamMacro *macro)
   PetscCall(VecDestroy(&(*macro)->origin));
   PetscCall(VecDestroy(&(*macro)->force));
   PetscCall(VecDestroy(&(*macro)->force_accepted));
+  PetscCall(VecDestroy(&(*macro)->external));
+  PetscCall(VecDestroy(&(*macro)->before));
+  PetscCall(LamMacroBordersDestroy(*macro));
+  PetscCall(KSPDestroy(&(*macro)->solver));
   PetscCall(PetscFree((*macro)->constraints));
+  PetscCall(PetscFree((*macro)->rows));
+  PetscCall(PetscFree((*macro)->obstacle_nodes));
   PetscCall(PetscFree((*macro)->point_index));
   PetscCall(PetscFree((*macro)->loads));
   PetscCall(PetscFree((*macro)->responses));

@@ -4,7 +4,13 @@
   mesh.c      distribution, numbering, named sets, geometry of elements
   mesh_disc.c, mesh_gmsh.c   where meshes come from
   element.c   kinds of elements: shape functions, Gauss points
-  boundary.c  displacement conditions, reactions, work
+  facet.c     geometry of the boundary's pieces
+  boundary.c  prescribed displacements, and which of them there are
+  traction.c  dead and follower tractions
+  obstacle.c  rigid plates and indenters
+  rows.c      equations of nodes whose displacement is prescribed or that touch an obstacle
+  border.c    unknowns that are no displacement of a node: of grips, and the factor of the tractions
+  reaction.c  reactions and work
   assembly.c  gather F, ask the responder, assemble force and tangent
   sealed.c    pressures of sealed lumens
   stepping.c  Newton, load steps, cutback
@@ -84,14 +90,17 @@ typedef struct {
   LamSealedPoint *now, *accepted; /* [points] */
 } LamMacroSeal;
 
-/* A displacement component that is prescribed; kept by the rank that owns it. */
+/* A direction in which a node's displacement is prescribed; kept by the rank that owns the node, sorted by `local`. */
 typedef struct {
-  PetscInt local;     /* index in this rank's part of a global vector */
-  PetscInt component; /* of the displacement */
-  PetscReal base;     /* displacement where the conditions count from */
-  PetscReal end;      /* what is added to it at load factor 1 */
-  PetscReal target;   /* displacement wanted now */
-  unsigned int sides; /* bit s: the s-th named side prescribes it; 0 where only rigid motions are held */
+  PetscInt point;                  /* of the mesh */
+  PetscInt local;                  /* the node's first index in this rank's part of a global vector */
+  PetscReal normal[LAM_MACRO_DIM]; /* unit */
+  PetscReal base;                  /* normal . u where the conditions count from */
+  PetscReal end;                   /* what is added to it at factor 1 */
+  PetscReal target;                /* normal . u wanted now */
+  PetscInt entry;     /* of the scene's conditions, whose history the factor is; -1: the target stays at the base */
+  PetscInt border;    /* whose unknown is added to the target; -1: none */
+  unsigned int sides; /* bit s: the s-th name of the step's prescribes it; 0 where only rigid motions are held */
 } LamConstraint;
 
 /* How far the load program has come: the last complete step. */
@@ -100,6 +109,51 @@ typedef struct {
   PetscInt number;
   PetscReal load; /* share of the prescribed displacements; the turgor acts in full */
 } LamMacroProgress;
+
+/* A rigid obstacle: g(x) = n . x - height of a plate, |x - centre| - radius of an indenter; g >= 0 outside. */
+typedef struct {
+  PetscInt entry;               /* of the scene's conditions */
+  PetscInt side;                /* the step's name */
+  PetscReal normal[2], start;   /* of a plate: from it into the body; height where it first touches */
+  PetscReal first[2], place[2]; /* centre of an indenter where it first touches, and now; of a plate place[0] is its
+                                   height now */
+} LamObstacle;
+
+/* A node that may touch obstacles; kept by the rank that owns it. */
+typedef struct {
+  PetscInt local, point;
+  unsigned int obstacles; /* bit o */
+  PetscInt constraint;    /* its prescribed direction; -1: none */
+  PetscBool active;       /* touched in the last residual */
+  PetscBool accepted;     /* touched in the last converged state */
+} LamObstacleNode;
+
+/* The nearest obstacle of a node. */
+typedef struct {
+  PetscInt obstacle;
+  PetscReal gap, normal[2], curvature; /* second derivative of the gap along its tangent */
+} LamTouch;
+
+/*
+  New equations of a node: r'_i = sum_j combine_ij r_j + value_i, where r is the unbalanced force; their derivatives
+  with respect to its own displacement have the further part add_ij.
+*/
+typedef struct {
+  PetscInt local;
+  PetscReal combine[4], add[4], value[2];
+} LamNodeRows;
+
+/*
+  An unknown q beside the displacements, with an equation of its own: the free component of a grip (the total force
+  there is zero), or the factor of all tractions (a mean displacement is prescribed).
+*/
+typedef struct {
+  PetscInt entry, component; /* of the scene's conditions; entry -1: the factor of the tractions */
+  Vec weight;                /* grip: 1 at its nodes; control: share of each node in the mean */
+  Vec column, row, solved;   /* dr'/dq; derivative of the equation by the displacements; K'^-1 column */
+  PetscReal now, accepted;   /* q */
+  PetscReal equation, base, target;
+} LamBorder;
 
 struct LamMacro_s {
   MPI_Comm comm;
@@ -150,14 +204,32 @@ struct LamMacro_s {
   Vec force, force_accepted; /* internal nodal forces of the last evaluation and of the last converged state */
   Mat tangent;
   SNES snes;
-  PetscReal turgor;      /* share of the turgor that acts now */
-  PetscReal force_scale; /* largest norm of the element forces in this series of Newton iterations */
+  Vec before;             /* displacement of the converged state before the last one */
+  PetscReal passed;       /* load parameters from there to the last one; 0: not known, or on another path */
+  PetscReal prediction;   /* increment of this series of iterations over `passed`, until it is used; 0: none */
+  PetscBool extrapolates; /* predictions are made */
+  PetscReal turgor;       /* share of the turgor that acts now */
+  PetscReal force_scale;  /* largest norm of the element forces in this series of Newton iterations */
   PetscReal history[64];
   char trouble[LAM_MESSAGE_LENGTH - 64]; /* why the last evaluation failed; how far it came is said before it */
 
   /* boundary */
+  PetscReal parameter; /* load parameter that acts now */
+  PetscBool loaded;    /* PETSC_FALSE while the body inflates: the scene's conditions do not act yet */
+  Vec external;        /* nodal forces of the tractions; with load control at factor 1 */
   PetscInt constraint_count;
   LamConstraint *constraints;
+  PetscInt obstacle_count;
+  LamObstacle obstacles[LAM_MAX_BOUNDARIES];
+  PetscInt obstacle_node_count;
+  LamObstacleNode *obstacle_nodes;
+  PetscBool fresh;     /* no residual yet in this series of iterations */
+  PetscReal violation; /* largest penetration or distance of nodes that are not as they should be, last residual */
+  PetscInt row_count;
+  LamNodeRows *rows; /* of the last residual */
+  PetscInt border_count;
+  LamBorder borders[2 * LAM_MAX_BOUNDARIES + 1];
+  KSP solver; /* of the unbordered tangent; NULL where the scene needs no border */
 
   LamMacroProgress progress;
   LamMacroStep step;    /* being filled */
@@ -184,24 +256,82 @@ PetscErrorCode LamMacroKindsDestroy(LamMacro macro);
 /* Whether a mesh point of this type carries a node of the elements. */
 PetscBool LamMacroHasNode(LamMacro macro, DMPolytopeType type);
 
+/* facet.c */
+/*
+  Nodes of a facet of a plane body, in the order of DMPlex closures: middle, ends; X [3][2] reference positions. *sense
+  is 1 where the facet runs counter-clockwise around the body from its second node to its third, else -1.
+*/
+PetscErrorCode LamMacroFacetNodes(LamMacro macro, const LamMacroFacet *facet, PetscReal X[6], PetscReal *sense);
+enum { LAM_FACET_POINTS = 3 };
+/* Shape functions N [3] and their derivatives dN [3] at Gauss point q of a facet, xi = -1..1, and its weight. */
+void LamMacroFacetShape(PetscInt q, PetscReal N[3], PetscReal dN[3], PetscReal *weight);
+/* Outward unit normal of a named set whose facets lie on one straight line; *straight says whether they do. */
+PetscErrorCode LamMacroStraightNormal(LamMacro macro, PetscInt set, PetscReal normal[2], PetscBool *straight);
+
 /* boundary.c */
-/* Refuses conditions that contradict each other, or stand for no boundary of the mesh (PETSC_ERR_USER_INPUT). */
+/* Refuses conditions that stand for no boundary of the mesh (PETSC_ERR_USER_INPUT). */
 PetscErrorCode LamMacroBoundaryCheck(LamMacro macro);
-/* Fills the names of the step's sides: each named side once. */
+/* Whether a mesh point lies on the boundary that a condition names. */
+PetscBool LamMacroIsOn(LamMacro macro, PetscInt p, const char on[]);
+/* Fills the names of the step's sides: each once. */
 PetscErrorCode LamMacroBoundaryNames(const LamMacroSpec *spec, LamMacroStep *step);
-/* Holds as few components as prevent rigid motions. */
+/* The number among these of a condition. */
+PetscInt LamMacroSideNumber(const LamMacroStep *step, const LamBoundary *boundary);
+/* Holds sides of symmetry, and as few components as prevent the rigid motions that they leave. */
 PetscErrorCode LamMacroHoldRigidMotions(LamMacro macro);
-/* Prescribes the scene's displacements, counted from the present ones; PETSC_ERR_USER_INPUT where they leave a rigid
- * motion free. */
+/*
+  Prescribes the scene's displacements, counted from the present ones, and brings the obstacles into touch.
+  PETSC_ERR_USER_INPUT where conditions contradict each other or leave a rigid motion free.
+*/
 PetscErrorCode LamMacroHoldBoundaries(LamMacro macro);
+/* Targets, tractions and obstacles at a load parameter. */
 PetscErrorCode LamMacroSetLoadFactor(LamMacro macro, PetscReal load_factor);
-/* Replaces the force residual of prescribed components by (displacement - target), in units of C1 + C2. */
+
+/* traction.c */
+/* Nodal forces of the tractions at displacement u, as they act at macro->parameter; with load control at factor 1. */
+PetscErrorCode LamMacroExternalForce(LamMacro macro, Vec u, Vec external);
+/* Factor of all tractions beside their histories: the unknown of load control, else 1; 0 during inflation. */
+PetscReal LamMacroTractionFactor(LamMacro macro);
+/* Adds minus the derivative of the nodal forces. */
+PetscErrorCode LamMacroAddTractionTangent(LamMacro macro, Mat tangent);
+/* Total force of one condition's tractions at displacement u, all ranks. */
+PetscErrorCode LamMacroTractionSum(LamMacro macro, PetscInt entry, Vec u, PetscReal sum[2]);
+
+/* obstacle.c */
+/* Obstacles where they first touch the present body. */
+PetscErrorCode LamMacroObstaclesCreate(LamMacro macro);
+void LamMacroObstaclesMove(LamMacro macro);
+LamTouch LamMacroNearest(LamMacro macro, const LamObstacleNode *node, const PetscScalar u[]);
+
+/* rows.c */
+/* Turns the unbalanced force at displacement u into the residual; the rows stay for the tangent of the same state. */
 PetscErrorCode LamMacroConstrainResidual(LamMacro macro, Vec u, Vec residual);
 PetscErrorCode LamMacroConstrainTangent(LamMacro macro, Mat tangent);
+/* The linear part of the change alone, for a derivative of the unbalanced force. */
+PetscErrorCode LamMacroCombineRows(LamMacro macro, Vec force);
+
+/* border.c */
+/* Borders of the scene's free grips and load control; without `scene` none. */
+PetscErrorCode LamMacroBordersCreate(LamMacro macro, PetscBool scene);
+PetscErrorCode LamMacroBordersDestroy(LamMacro macro);
+/* The border of a grip's component; -1: none. */
+PetscInt LamMacroFindBorder(LamMacro macro, PetscInt entry, PetscInt component);
+/* Fills weights, and where the equations count from; after the constraints. */
+PetscErrorCode LamMacroBordersStart(LamMacro macro);
+/* Residuals of the borders' equations, from the unbalanced force; then, after the rows, the columns. */
+PetscErrorCode LamMacroBorderEquations(LamMacro macro, Vec u, Vec unbalanced);
+PetscErrorCode LamMacroBorderColumns(LamMacro macro);
+/* Derivatives of the equations, from the tangent before its rows change. */
+PetscErrorCode LamMacroBorderRows(LamMacro macro, Mat tangent);
+/* Makes Newton's linear solver one of the bordered system, where the scene needs it. */
+PetscErrorCode LamMacroBorderSolver(LamMacro macro, KSP ksp);
+
+/* reaction.c */
 /* Adds the work of the boundary forces between the last converged state and `trial` (trapezoidal rule). */
 PetscErrorCode LamMacroAddWork(LamMacro macro);
 /* What the sides prescribe at the step's load factor. */
 void LamMacroDisplacements(LamMacro macro, LamMacroStep *step);
+/* Forces on the body at the named sides, in the last converged state at the parameter that is set. */
 PetscErrorCode LamMacroReactions(LamMacro macro, LamMacroStep *step);
 
 /* assembly.c */

@@ -15,6 +15,7 @@
   at the nodes (largest in this series of iterations), or <= ABSOLUTE_TOLERANCE (C1 + C2) times the box's first edge,
   which is the rounding error that responders leave in their stresses; it decides only for a body next to unstressed.
   Where lumens are sealed, the norm of what they are off their water is also <= RELATIVE_TOLERANCE times the water's.
+  Nodes beside obstacles are where they should be to PENETRATION macro lengths.
 
   Reference: Wriggers, Nonlinear Finite Element Methods, ch. 5.
 */
@@ -22,7 +23,7 @@
 #include <lamella/clock.h>
 #include "macro_impl.h"
 
-static const PetscReal RELATIVE_TOLERANCE = 1e-9, ABSOLUTE_TOLERANCE = 1e-10;
+static const PetscReal RELATIVE_TOLERANCE = 1e-9, ABSOLUTE_TOLERANCE = 1e-10, PENETRATION = 1e-10;
 enum { MAX_HALVINGS = 8, MAX_ITERATIONS = 15 };
 
 /* Where the program stands: shares of turgor and of the prescribed displacements. */
@@ -45,8 +46,11 @@ static PetscErrorCode FormResidual(SNES snes, Vec u, Vec residual, void *ctx)
   }
   PetscCall(LamMacroAssembleForce(macro, macro->force, &scale));
   macro->force_scale = PetscMax(macro->force_scale, scale);
-  PetscCall(VecCopy(macro->force, residual));
+  PetscCall(LamMacroExternalForce(macro, u, macro->external));
+  PetscCall(VecWAXPY(residual, -LamMacroTractionFactor(macro), macro->external, macro->force));
+  PetscCall(LamMacroBorderEquations(macro, u, residual));
   PetscCall(LamMacroConstrainResidual(macro, u, residual));
+  PetscCall(LamMacroBorderColumns(macro));
   PetscFunctionReturn(0);
 }
 
@@ -57,6 +61,8 @@ static PetscErrorCode FormTangent(SNES snes, Vec u, Mat J, Mat preconditioner, v
   PetscFunctionBeginUser;
   /* SNES has just evaluated the residual at u: the stored responses belong to it */
   PetscCall(LamMacroAssembleTangent(macro, preconditioner));
+  PetscCall(LamMacroAddTractionTangent(macro, preconditioner));
+  PetscCall(LamMacroBorderRows(macro, preconditioner));
   PetscCall(LamMacroConstrainTangent(macro, preconditioner));
   PetscFunctionReturn(0);
 }
@@ -69,8 +75,11 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
 
   PetscFunctionBeginUser;
   *reason = SNES_CONVERGED_ITERATING;
+  for (PetscInt b = 0; b < macro->border_count; b++) fnorm = PetscMax(fnorm, PetscAbsReal(macro->borders[b].equation));
   if (PetscIsInfOrNanReal(fnorm))
     *reason = SNES_DIVERGED_FNORM_NAN;
+  else if (macro->violation > PENETRATION)
+    PetscFunctionReturn(0);
   else if (fnorm <= ABSOLUTE_TOLERANCE)
     *reason = SNES_CONVERGED_FNORM_ABS;
   else if (fnorm <= RELATIVE_TOLERANCE * macro->force_scale)
@@ -78,6 +87,27 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
   if (*reason <= 0) PetscFunctionReturn(0);
   PetscCall(LamMacroSealedResidual(macro, &sealed));
   if (sealed > RELATIVE_TOLERANCE) *reason = SNES_CONVERGED_ITERATING;
+  PetscFunctionReturn(0);
+}
+
+/*
+  The first linear solution d of an increment is the tangent of the path at the last converged state. Where the path
+  came there in the same direction from a state before, by h parameters, u_last - u_before = u' h - u'' h^2 / 2 also
+  tells its curvature, and the first iterate is u_last + d + u'' D^2 / 2, exact to the third order in the increment D:
+    u'' D^2 / 2 = r d - r^2 (u_last - u_before),  r = D / h.
+  It asks the tissue nothing.
+*/
+static PetscErrorCode Predict(SNESLineSearch search, Vec x, Vec y, PetscBool *changed, void *ctx)
+{
+  LamMacro macro = (LamMacro)ctx;
+  const PetscReal ratio = macro->prediction;
+
+  PetscFunctionBeginUser;
+  *changed = ratio > 0 ? PETSC_TRUE : PETSC_FALSE;
+  if (!*changed) PetscFunctionReturn(0);
+  PetscCall(VecScale(y, 1 + ratio)); /* SNES subtracts y = -d */
+  PetscCall(VecAXPBYPCZ(y, PetscSqr(ratio), -PetscSqr(ratio), 1, macro->u, macro->before));
+  macro->prediction = 0;
   PetscFunctionReturn(0);
 }
 
@@ -99,11 +129,13 @@ PetscErrorCode LamMacroNewtonCreate(LamMacro macro)
                                       PETSC_TRUE));
   PetscCall(SNESGetLineSearch(macro->snes, &search));
   PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHBASIC));
+  PetscCall(SNESLineSearchSetPreCheck(search, Predict, macro));
   PetscCall(SNESGetKSP(macro->snes, &ksp));
   PetscCall(KSPSetType(ksp, KSPPREONLY));
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCSetType(pc, PCLU));
   PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  PetscCall(LamMacroBorderSolver(macro, ksp));
   PetscCall(SNESSetFromOptions(macro->snes));
   PetscFunctionReturn(0);
 }
@@ -112,11 +144,15 @@ PetscErrorCode LamMacroNewtonCreate(LamMacro macro)
 static PetscErrorCode Accept(LamMacro macro)
 {
   PetscFunctionBeginUser;
+  PetscCall(VecCopy(macro->u, macro->before));
   PetscCall(LamMacroAddWork(macro));
   PetscCall(VecCopy(macro->trial, macro->u));
   PetscCall(VecCopy(macro->force, macro->force_accepted));
   PetscCall(PetscArraycpy(macro->accepted, macro->now, macro->point_count));
   PetscCall(LamMacroAcceptPressures(macro));
+  for (PetscInt b = 0; b < macro->border_count; b++) macro->borders[b].accepted = macro->borders[b].now;
+  for (PetscInt k = 0; k < macro->obstacle_node_count; k++)
+    macro->obstacle_nodes[k].accepted = macro->obstacle_nodes[k].active;
   if (macro->responder->accept) PetscCall(macro->responder->accept(macro->responder->ctx));
   PetscFunctionReturn(0);
 }
@@ -126,6 +162,7 @@ static PetscErrorCode Reject(LamMacro macro)
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(macro->now, macro->accepted, macro->point_count));
   PetscCall(LamMacroRejectPressures(macro));
+  for (PetscInt b = 0; b < macro->border_count; b++) macro->borders[b].now = macro->borders[b].accepted;
   if (macro->responder->reject) PetscCall(macro->responder->reject(macro->responder->ctx));
   PetscFunctionReturn(0);
 }
@@ -141,6 +178,8 @@ static PetscErrorCode KeepHistory(LamMacro macro)
   step->residual_count = PetscMin(n, (PetscInt)PETSC_STATIC_ARRAY_LENGTH(step->residuals));
   for (PetscInt k = 0; k < step->residual_count; k++)
     step->residuals[k] = macro->force_scale > 0 ? macro->history[k] / macro->force_scale : macro->history[k];
+  const PetscReal *r = &step->residuals[PetscMax(step->residual_count, 3) - 3];
+  step->order = step->residual_count < 3 ? NAN : PetscLogReal(r[2] / r[1]) / PetscLogReal(r[1] / r[0]);
   PetscFunctionReturn(0);
 }
 
@@ -153,6 +192,7 @@ static PetscErrorCode TryStage(LamMacro macro, Stage stage, PetscBool *converged
   PetscFunctionBeginUser;
   macro->turgor = stage.turgor;
   macro->force_scale = 0;
+  macro->fresh = PETSC_TRUE;
   macro->trouble[0] = '\0';
   PetscCall(LamMacroSetLoadFactor(macro, stage.load));
   PetscCall(VecCopy(macro->u, macro->trial));
@@ -173,6 +213,26 @@ static PetscErrorCode TryStage(LamMacro macro, Stage stage, PetscBool *converged
   PetscFunctionReturn(0);
 }
 
+/* The same with a prediction where the path goes on, then without. */
+static PetscErrorCode TryIncrement(LamMacro macro, Stage from, Stage to, PetscBool *converged)
+{
+  const PetscReal ratio = macro->passed != 0 ? (to.load - from.load) / macro->passed : 0;
+  /* nodes that come to touch an obstacle make a kink in the path: there predictions save nothing */
+  const PetscBool predicts =
+      macro->extrapolates && !macro->obstacle_count && from.turgor == to.turgor && ratio > 0 ? PETSC_TRUE : PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  macro->prediction = predicts ? ratio : 0;
+  PetscCall(TryStage(macro, to, converged));
+  if (!*converged && predicts && !macro->stopped) {
+    PetscCall(Reject(macro));
+    macro->prediction = 0;
+    PetscCall(TryStage(macro, to, converged));
+  }
+  if (*converged) macro->passed = from.turgor == to.turgor ? to.load - from.load : 0;
+  PetscFunctionReturn(0);
+}
+
 /* Goes from one stage to the next, in smaller increments where that fails. `reached` is how far it came. */
 static PetscErrorCode Advance(LamMacro macro, Stage from, Stage to, Stage *reached, PetscBool *converged)
 {
@@ -185,7 +245,7 @@ static PetscErrorCode Advance(LamMacro macro, Stage from, Stage to, Stage *reach
   while (done < 1) {
     PetscReal next = PetscMin(1, done + increment);
     Stage stage = {from.turgor + next * (to.turgor - from.turgor), from.load + next * (to.load - from.load)};
-    PetscCall(TryStage(macro, stage, converged));
+    PetscCall(TryIncrement(macro, *reached, stage, converged));
     if (*converged) {
       PetscCall(Accept(macro));
       *reached = stage;
@@ -249,6 +309,7 @@ static PetscErrorCode FinishStep(LamMacro macro, PetscInt number, PetscReal load
   PetscFunctionBeginUser;
   step->step = number;
   step->load_factor = load_factor;
+  PetscCall(LamMacroSetLoadFactor(macro, load_factor)); /* an increment that failed had another one */
   LamMacroDisplacements(macro, step);
   PetscCall(LamMacroReactions(macro, step));
   MeanIndicators(macro, sum, &step->max_gap);
@@ -309,7 +370,7 @@ static PetscErrorCode EndWithinStep(LamMacro macro, PetscInt number, Stage repor
 
   PetscFunctionBeginUser;
   if (!macro->stopped) PetscCall(DescribeEnd(macro, number, reached, message));
-  if (reached.load > reported.load || (reached.turgor > reported.turgor && macro->scene->turgor != 0))
+  if (reached.load != reported.load || (reached.turgor > reported.turgor && macro->scene->turgor != 0))
     PetscCall(Report(macro, PetscMax(number, first), reached.load, PETSC_FALSE, start, &ends));
   PetscFunctionReturn(0);
 }
@@ -336,6 +397,7 @@ static PetscErrorCode Inflate(LamMacro macro, Stage *stage, PetscReal *start, Pe
   PetscCall(VecCopy(macro->u, macro->origin));
   PetscCall(Report(macro, 0, 0, PETSC_TRUE, *start, stop));
   PetscCall(LamMacroHoldBoundaries(macro));
+  macro->passed = 0;
   PetscCall(StartStep(macro, start));
   PetscFunctionReturn(0);
 }
@@ -355,7 +417,7 @@ PetscErrorCode LamMacroSolve(LamMacro macro, LamMacroReason *reason, char messag
   if (!macro->progress.begun) PetscCall(Inflate(macro, &stage, &start, &converged, &stop));
   reported = macro->progress.begun ? stage : (Stage){0, 0};
   while (converged && !stop && number < spec->steps) {
-    to.load = (PetscReal)++number / spec->steps;
+    to.load = LamMacroParameter(spec, ++number);
     PetscCall(Advance(macro, stage, to, &stage, &converged));
     if (!converged) break;
     PetscCall(Report(macro, number, to.load, PETSC_TRUE, start, &stop));

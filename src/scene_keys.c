@@ -13,6 +13,7 @@ const char *const LamFibresNames[] = {LAM_FIBRES(LAM_NAME_ENTRY)};
 const char *const LamDiscPartNames[] = {LAM_DISC_PARTS(LAM_NAME_ENTRY)};
 const char *const LamOutsideNames[] = {LAM_OUTSIDES(LAM_NAME_ENTRY)};
 const char *const LamTissueFieldNames[] = {LAM_TISSUE_FIELDS(LAM_NAME_ENTRY)};
+const char *const LamBoundaryKindNames[] = {LAM_BOUNDARY_KINDS(LAM_NAME_ENTRY)};
 const char *const LamSideNames[] = {LAM_SIDES(LAM_NAME_ENTRY)};
 const char *const LamMapQuantityNames[] = {LAM_MAP_QUANTITIES(LAM_NAME_ENTRY)};
 static const char *const spacing_names[] = {LAM_SPACINGS(LAM_NAME_ENTRY)};
@@ -180,9 +181,10 @@ const LamKey LamKeys[] = {
     {MAP("rve.turgor"), .example = "{mode: prescribed, pressure: 0.02 MPa}", .help = "Pressure in the lumens."},
     {NAME("rve.turgor.mode", turgor_mode_names), .default_words = "`prescribed` where a pressure is given, else `none`",
      .example = "prescribed",
-     .help = "`prescribed`: the pressure is given; `sealed`: each cell keeps the water that it has at F = I under that "
-             "pressure (in `fe2` with `macro.inflate`: in the inflated body), and its pressure follows. `build` tabulates "
-             "prescribed turgor alone."},
+     .help =
+         "`prescribed`: the pressure is given; `sealed`: each cell keeps the water that it has at F = I under that "
+         "pressure (in `fe2` with `macro.inflate`: in the inflated body), and its pressure follows. `build` tabulates "
+         "prescribed turgor alone."},
     {STRESS("rve.turgor.pressure"), .default_words = "none: required by modes `prescribed` and `sealed`",
      .example = "0.02 MPa", .help = "Turgor of the tissue; negative is suction."},
     {STRESS("rve.turgor.water_bulk_modulus"), ABOVE(0), .default_value = "2200 MPa", .example = "2.2 GPa",
@@ -272,18 +274,68 @@ const LamKey LamKeys[] = {
     {LENGTH("macro.mesh.unit", "mm"), ABOVE(0), .default_value = "1 mm", .example = "1 cm",
      .help = "Unit of length of the Gmsh file."},
     {LIST("macro.boundary"), REQUIRED, .example = "[{on: bottom, displacement: [0 mm, 0 mm]}]",
-     .help = "Displacement conditions, at most one for each side. Together they hold the body against rigid motion, "
-             "and sides that share a corner agree there."},
-    {MAP("macro.boundary[]"), .example = "{on: bottom, displacement: [0 mm, 0 mm]}", .help = "One side."},
+     .help =
+         "What acts on the sides; each entry is one of `displacement`, `symmetry`, `traction`, `pressure`, `plate`, "
+         "`indenter` and `grip`. A side may have several that do not contradict each other. Displacements, "
+         "symmetry and grips together hold the body against rigid motion; obstacles do not count."},
+    {MAP("macro.boundary[]"), .example = "{on: bottom, displacement: [0 mm, 0 mm]}", .help = "One condition."},
     {TEXT("macro.boundary[].on"), REQUIRED, .example = "bottom",
      .help = "The name of a side of the box or disc, or of a physical group of the Gmsh file."},
-    {LENGTH("macro.boundary[].displacement", "mm"), .size = 2, REQUIRED, FREE, .example = "[0 mm, free]",
-     .help = "At the end of the load program, along X1 and X2; `free` leaves a component."},
+    {TEXT("macro.boundary[].name"), .default_words = "that of the side", .example = "upper plate",
+     .help = "The name under which its force is reported."},
+    {LENGTH("macro.boundary[].displacement", "mm"), .size = 2, FREE, .example = "[0 mm, free]",
+     .help = "At load parameter 1, along X1 and X2; `free` leaves a component. All displacements count from the "
+             "inflated state."},
+    {BOOL("macro.boundary[].symmetry"), .example = "true",
+     .help = "The side, which is straight, does not move along its normal, also while the body inflates."},
+    {STRESS("macro.boundary[].traction"), .size = 2, .example = "[0 MPa, 0.01 MPa]",
+     .help = "Force per reference area at load parameter 1, along X1 and X2. With `follower`: per present area, along "
+             "the present tangent (the outward normal turned by +90 deg) and the present outward normal."},
+    {BOOL("macro.boundary[].follower"), .default_value = "false", .example = "true",
+     .help = "Whether `traction` turns with the side."},
+    {STRESS("macro.boundary[].pressure"), .example = "0.01 MPa",
+     .help = "At load parameter 1, against the present outward normal, per present area."},
+    {MAP("macro.boundary[].plate"), .example = "{displacement: [0 mm, -1 mm]}",
+     .help = "A rigid, flat, frictionless plate that first touches the side and may leave it and come back."},
+    {LENGTH("macro.boundary[].plate.displacement", "mm"), .size = 2, REQUIRED, .example = "[0 mm, -1 mm]",
+     .help = "Of the plate at load parameter 1; only its part along the normal matters."},
+    {REAL("macro.boundary[].plate.normal"), .size = 2, .default_words = "that of the side, where this is straight",
+     .example = "[0, -1]", .help = "From the plate into the body."},
+    {MAP("macro.boundary[].indenter"), .example = "{radius: 2 mm, at: [5 mm, 10 mm], displacement: [0 mm, -1 mm]}",
+     .help = "A rigid, round, frictionless indenter that first touches the side and may leave it and come back."},
+    {LENGTH("macro.boundary[].indenter.radius", "mm"), REQUIRED, ABOVE(0), .example = "2 mm", .help = "Its radius."},
+    {LENGTH("macro.boundary[].indenter.at", "mm"), .size = 2, REQUIRED, .example = "[5 mm, 10 mm]",
+     .help = "A point on the line along which its centre moves, such as the point of the side that it touches first."},
+    {LENGTH("macro.boundary[].indenter.displacement", "mm"), .size = 2, REQUIRED, .example = "[0 mm, -1 mm]",
+     .help = "At load parameter 1; not zero: it is the direction from which the indenter comes."},
+    {LENGTH("macro.boundary[].grip", "mm"), .size = 2, FREE, .example = "[1 mm, free]",
+     .help = "A rigid grip: all points of the side move alike. A `free` component bears no total force."},
+    {LIST("macro.boundary[].history"), .default_words = "the load parameter itself",
+     .example = "[[0, 0], [1, 1], [2, 1]]",
+     .help =
+         "By which factor the entry's displacement, traction or pressure is multiplied: pairs of load parameter and "
+         "factor, straight in between, constant beyond."},
+    {REAL("macro.boundary[].history[]"), .size = 2, .example = "[1, 0.5]", .help = "Load parameter and factor."},
+    {MAP("macro.control"), .default_words = "tractions follow their histories",
+     .example = "{on: top, displacement: [free, -1 mm]}",
+     .help = "Prescribes the mean displacement of a side instead of the tractions, whose common factor is found: past "
+             "the largest load, too."},
+    {TEXT("macro.control.on"), REQUIRED, .example = "top", .help = "The side."},
+    {LENGTH("macro.control.displacement", "mm"), .size = 2, REQUIRED, FREE, .example = "[free, -1 mm]",
+     .help = "Its mean displacement at load parameter 1: one component, the other one `free`."},
     {BOOL("macro.inflate"), .default_words = "true with turgor, else false", .example = "true",
      .help = "First bring turgor up with only rigid motions held; displacements then count from there. With law "
              "`contact` it needs a cohesion: nothing else holds free tissue together."},
-    {INTEGER("macro.steps"), FROM(1), TO(10000), .default_value = "10", .example = "10",
-     .help = "Equal load steps after inflation."},
+    {INTEGER("macro.steps"), FROM(1), TO(10000), .default_words = "10; with `program`: that of its parts",
+     .example = "10", .help = "Equal steps of the load parameter from 0 to 1, after inflation."},
+    {LIST("macro.program"), .default_words = "one ramp from 0 to 1",
+     .example = "[{to: 1, steps: 10}, {to: 0, steps: 10}]",
+     .help = "Ramps of the load parameter, which begins at 0, instead of `steps`."},
+    {MAP("macro.program[]"), .example = "{to: 1, steps: 10}", .help = "One ramp."},
+    {REAL("macro.program[].to"), REQUIRED, FROM(-1000), TO(1000), .example = "1", .help = "Load parameter at its end."},
+    {INTEGER("macro.program[].steps"), REQUIRED, FROM(1), TO(10000), .example = "10", .help = "Its equal steps."},
+    {INTEGER("macro.repeat"), FROM(1), TO(1000), .default_value = "1", .example = "3",
+     .help = "How often `program` is gone through."},
     {LIST("macro.zoom"), .default_words = "where the tissue is nearest to failure, and the middle",
      .example = "[[5 mm, 5 mm], [9 mm, 9 mm]]",
      .help = "Places, at most three, at whose nearest material points the microstructure is kept for pictures."},

@@ -95,6 +95,12 @@ PetscErrorCode LamSceneBuildSample(const LamDocument *document, LamScene *scene)
 PetscErrorCode LamSceneBuildMacro(const LamDocument *document, LamScene *scene);
 PetscErrorCode LamSceneBuildResponse(const LamDocument *document, LamScene *scene);
 PetscErrorCode LamSceneBuildRegions(const LamDocument *document, LamScene *scene);
+/* scene_boundary.c, scene_program.c: parts of the block `macro`. */
+PetscErrorCode LamSceneBuildBoundaries(const LamDocument *document, LamScene *scene);
+PetscErrorCode LamSceneBuildProgram(const LamDocument *document, LamScene *scene);
+/* scene_boundary.c: refuses a name that is no side of a box or disc. `side` is its number, -1 of a Gmsh file. */
+PetscErrorCode LamSceneCheckSide(const LamDocument *document, const LamNode *on, const LamMacroSpec *spec,
+                                 PetscInt *side);
 PetscErrorCode LamSceneBuildMap(const LamDocument *document, LamScene *scene);
 PetscErrorCode LamSceneDestroyRegions(LamScene *scene);
 

@@ -5,128 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The conditions side by side: which components are held, where. */
-typedef struct {
-  const LamNode *entry[LAM_BOX_COUNT]; /* NULL: nothing is said about this side */
-  PetscBool given[LAM_BOX_COUNT][2];
-  PetscReal displacement[LAM_BOX_COUNT][2];
-} Sides;
-
-/* The sides that a box or a disc has, by name; NULL: the mesh's file names them. */
-static const char *const *SideNames(const LamMacroSpec *spec)
-{
-  static const char *const disc[][4] = {
-      [LAM_DISC_WHOLE] = {"rim"}, [LAM_DISC_HALF] = {"rim", "bottom"}, [LAM_DISC_QUARTER] = {"rim", "bottom", "left"}};
-  static const char *const box[] = {LAM_SIDES(LAM_NAME_ENTRY) NULL};
-
-  if (spec->source == LAM_MESH_GMSH) return NULL;
-  return spec->source == LAM_MESH_BOX ? box : disc[spec->disc];
-}
-
-/* Where the name is in the list; -1: not there, and `known` says which are. */
-static PetscInt FindName(const char *const *names, const char name[], char known[80])
-{
-  known[0] = '\0';
-  for (PetscInt k = 0; names[k]; k++) {
-    if (!strcmp(names[k], name)) return k;
-    snprintf(known + strlen(known), 80 - strlen(known), "%s%s", k ? ", " : "", names[k]);
-  }
-  return -1;
-}
-
-static PetscErrorCode CheckSide(const LamDocument *document, const LamNode *on, const LamNode *displacement,
-                                const LamBoundary *boundary, const LamScene *scene, Sides *sides)
-{
-  const char *const *names = SideNames(&scene->macro);
-  char known[80];
-  PetscInt side;
-
-  PetscFunctionBeginUser;
-  if (!names) PetscFunctionReturn(0);
-  side = FindName(names, boundary->on, known);
-  if (side < 0) PetscCall(LamSceneFail(document, on, "is none of the names known here; write one of %s", known));
-  if (sides->entry[side]) {
-    PetscCall(LamSceneFail(document, on,
-                           "this side has a condition already, in line %d; give one condition for each side",
-                           sides->entry[side]->line));
-  }
-  sides->entry[side] = displacement;
-  for (PetscInt c = 0; c < 2; c++) {
-    sides->given[side][c] = boundary->given[c];
-    sides->displacement[side][c] = boundary->displacement[c];
-  }
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode BuildBoundary(const LamDocument *document, const LamNode *entry, LamScene *scene, Sides *sides)
-{
-  LamBoundary *boundary = &scene->macro.boundary[scene->macro.boundary_count++];
-  const LamNode *on, *node;
-  LamValue unused, displacement;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(entry, "macro.boundary[].on", &on, &unused));
-  PetscCall(LamSceneGet(entry, "macro.boundary[].displacement", &node, &displacement));
-  if (strlen(on->text) >= sizeof(boundary->on))
-    PetscCall(LamSceneFail(document, on, "is too long; names have less than %d letters", LAM_NAME_LENGTH));
-  PetscCall(PetscStrncpy(boundary->on, on->text, sizeof(boundary->on)));
-  for (PetscInt c = 0; c < 2; c++) {
-    boundary->given[c] = displacement.is_free[c] ? PETSC_FALSE : PETSC_TRUE;
-    PetscCall(
-        LamSceneScale(document, node, displacement.number[c], scene->scales.macro_length, &boundary->displacement[c]));
-  }
-  PetscCall(CheckSide(document, on, node, boundary, scene, sides));
-  PetscFunctionReturn(0);
-}
-
-/* Sides that meet share a corner: both move it, so they agree. */
-static PetscErrorCode CheckCorners(const LamDocument *document, const Sides *sides)
-{
-  PetscFunctionBeginUser;
-  for (LamSide upright = LAM_BOX_LEFT; upright <= LAM_BOX_RIGHT; upright++) {
-    for (LamSide level = LAM_BOX_BOTTOM; level <= LAM_BOX_TOP; level++) {
-      for (PetscInt c = 0; c < 2; c++) {
-        if (!sides->given[upright][c] || !sides->given[level][c]) continue;
-        if (sides->displacement[upright][c] == sides->displacement[level][c]) continue;
-        PetscCall(LamSceneFail(document, sides->entry[upright],
-                               "%s and %s (line %d) move their common corner differently along X%d; write equal "
-                               "displacements, or free in one of them",
-                               LamSideNames[upright], LamSideNames[level], sides->entry[level]->line, (int)c + 1));
-      }
-    }
-  }
-  PetscFunctionReturn(0);
-}
-
-/*
-  Rigid motions of a box: along X1, along X2, and the rotation u = w (-X2, X1). A side holds a translation where its
-  component is given. The rotation changes u1 along the upright sides and u2 along the level ones, so one of these holds
-  it; a component that is constant along its side holds it only together with the opposite side.
-*/
-static PetscErrorCode CheckRigidMotions(const LamDocument *document, const LamNode *list, const Sides *sides)
-{
-  const PetscBool(*given)[2] = sides->given;
-  PetscBool held[3] = {PETSC_FALSE, PETSC_FALSE, PETSC_FALSE};
-  static const char *const names[] = {"along X1", "along X2", "by a rotation"};
-  static const char *const remedies[] = {
-      "give the first displacement component on a side", "give the second displacement component on a side",
-      "give the first component on left or right, or the second on bottom or top, or one on both opposite sides"};
-
-  PetscFunctionBeginUser;
-  for (LamSide side = 0; side < LAM_BOX_COUNT; side++) {
-    for (PetscInt c = 0; c < 2; c++) held[c] = held[c] || given[side][c] ? PETSC_TRUE : PETSC_FALSE;
-  }
-  held[2] = given[LAM_BOX_LEFT][0] || given[LAM_BOX_RIGHT][0] || given[LAM_BOX_BOTTOM][1] || given[LAM_BOX_TOP][1] ||
-                    (given[LAM_BOX_LEFT][1] && given[LAM_BOX_RIGHT][1]) ||
-                    (given[LAM_BOX_BOTTOM][0] && given[LAM_BOX_TOP][0])
-                ? PETSC_TRUE
-                : PETSC_FALSE;
-  for (PetscInt i = 0; i < 3; i++) {
-    if (!held[i]) PetscCall(LamSceneFailName(document, list, "the body can still move %s; %s", names[i], remedies[i]));
-  }
-  PetscFunctionReturn(0);
-}
-
 /* Exactly one of box, disc and gmsh says where the mesh comes from. */
 static PetscErrorCode ChooseSource(const LamDocument *document, LamMacroSpec *spec, const LamNode **node)
 {
@@ -254,9 +132,8 @@ static PetscErrorCode BuildZoom(const LamDocument *document, LamScene *scene)
 
 PetscErrorCode LamSceneBuildMacro(const LamDocument *document, LamScene *scene)
 {
-  const LamNode *block, *list, *inflate_node;
-  LamValue inflate, steps, unused;
-  Sides sides = {0};
+  const LamNode *block, *inflate_node;
+  LamValue inflate, unused;
 
   PetscFunctionBeginUser;
   PetscCall(LamSceneGet(document->root, "macro", &block, &unused));
@@ -267,16 +144,8 @@ PetscErrorCode LamSceneBuildMacro(const LamDocument *document, LamScene *scene)
   scene->macro.inflate = scene->turgor != 0.0 ? PETSC_TRUE : PETSC_FALSE;
   if (inflate_node) scene->macro.inflate = inflate.number[0] != 0.0 ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(CheckInflation(document, block, inflate_node, scene));
-  PetscCall(LamSceneGet(document->root, "macro.steps", NULL, &steps));
-  scene->macro.steps = (PetscInt)steps.number[0];
-  PetscCall(LamSceneGet(document->root, "macro.boundary", &list, &unused));
-  for (const LamNode *entry = list->first; entry; entry = entry->next) {
-    PetscCall(BuildBoundary(document, entry, scene, &sides));
-  }
+  PetscCall(LamSceneBuildBoundaries(document, scene));
+  PetscCall(LamSceneBuildProgram(document, scene));
   PetscCall(BuildZoom(document, scene));
-  if (scene->macro.source == LAM_MESH_BOX) { /* of other bodies the macroscale solver checks it */
-    PetscCall(CheckCorners(document, &sides));
-    PetscCall(CheckRigidMotions(document, list, &sides));
-  }
   PetscFunctionReturn(0);
 }

@@ -70,6 +70,38 @@ static inline void FixtureBoundary(Fixture *fixture, const char on[], PetscReal 
   boundary->displacement[1] = isnan(uy) ? 0 : uy;
 }
 
+/* Another condition, to be completed. */
+static inline LamBoundary *FixtureAdd(Fixture *fixture, const char on[], LamBoundaryKind kind)
+{
+  LamMacroSpec *spec = &fixture->scene.macro;
+  LamBoundary *boundary = &spec->boundary[spec->boundary_count++];
+
+  strcpy(boundary->on, on);
+  boundary->kind = kind;
+  return boundary;
+}
+
+/* A disc of radius 1, or a part of it. */
+static inline void FixtureDisc(Fixture *fixture, LamDiscPart part, PetscInt along, PetscInt across)
+{
+  fixture->scene.macro.source = LAM_MESH_DISC;
+  fixture->scene.macro.disc = part;
+  fixture->scene.macro.elements[0] = along;
+  fixture->scene.macro.elements[1] = across;
+}
+
+/* Force on the body at a named side in the last step. */
+static inline const PetscReal *FixtureReaction(const Fixture *fixture, const char name[])
+{
+  const LamMacroStep *step = &fixture->steps[fixture->step_count - 1];
+
+  for (PetscInt s = 0; s < step->boundary_count; s++) {
+    if (!strcmp(step->boundary[s], name)) return step->reaction[s];
+  }
+  fail_msg("no side %s", name);
+  return NULL;
+}
+
 static inline void FixtureSetUp(Fixture *fixture, MPI_Comm comm)
 {
   PetscInt points;

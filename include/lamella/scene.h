@@ -167,12 +167,54 @@ typedef enum { LAM_MESH_BOX, LAM_MESH_DISC, LAM_MESH_GMSH } LamMeshSource;
 #define LAM_MAX_ZOOMS 3
 #define LAM_NAME_LENGTH 64
 
-/* A displacement condition on a named side of the macroscale body. */
+/* What a named side of the macroscale body meets. */
+#define LAM_BOUNDARY_KINDS(X)                                                                                          \
+  X(LAM_BOUNDARY_DISPLACEMENT, "displacement")                                                                         \
+  X(LAM_BOUNDARY_SYMMETRY, "symmetry") /* straight; no displacement along its normal, in inflation neither */          \
+  X(LAM_BOUNDARY_TRACTION, "traction") /* dead, or `follower` */                                                       \
+  X(LAM_BOUNDARY_PRESSURE, "pressure") /* a follower traction (0, -pressure) */                                        \
+  X(LAM_BOUNDARY_PLATE, "plate")       /* rigid obstacles, frictionless and unilateral */                              \
+  X(LAM_BOUNDARY_INDENTER, "indenter")                                                                                 \
+  X(LAM_BOUNDARY_GRIP, "grip") /* all nodes move alike; components that are not given bear no total force */
+typedef enum { LAM_BOUNDARY_KINDS(LAM_ENUM_ENTRY) LAM_BOUNDARY_KIND_COUNT } LamBoundaryKind;
+extern const char *const LamBoundaryKindNames[];
+
+#define LAM_HISTORY_POINTS 32
+/* The factor of a load over the load parameter: straight between points, constant beyond. count 0: the parameter. */
 typedef struct {
-  char on[LAM_NAME_LENGTH];  /* box: left, right, bottom, top; disc: rim, left, bottom; Gmsh: a physical group */
-  PetscBool given[2];        /* PETSC_FALSE: this component is free */
-  PetscReal displacement[2]; /* at the end of the load program, in macro lengths */
+  PetscInt count;
+  PetscReal parameter[LAM_HISTORY_POINTS], factor[LAM_HISTORY_POINTS]; /* parameters rise */
+} LamHistory;
+
+/* A condition on a named side. What is prescribed is multiplied by the history's factor. */
+typedef struct {
+  char on[LAM_NAME_LENGTH];   /* box: left, right, bottom, top; disc: rim, left, bottom; Gmsh: a physical group */
+  char name[LAM_NAME_LENGTH]; /* under which its force is reported; "": that of the side */
+  LamBoundaryKind kind;
+  PetscBool given[2];        /* of a displacement or grip; PETSC_FALSE: this component is free */
+  PetscReal displacement[2]; /* of the side or obstacle, in macro lengths; counts from the inflated state */
+  PetscReal traction[2];     /* along X1, X2 per reference area; or, of a follower, along the present tangent (the
+                                outward normal turned by +90 degrees) and the outward normal, per present area */
+  PetscBool follower;
+  PetscReal normal[2]; /* unit, from a plate into the body; 0: that of the straight side */
+  PetscReal radius;    /* of an indenter */
+  PetscReal at[2];     /* reference point that the indenter's centre moves towards */
+  LamHistory history;
 } LamBoundary;
+
+#define LAM_MAX_LEGS 64
+/* A part of the load program: the parameter goes to `to` in equal steps. */
+typedef struct {
+  PetscReal to;
+  PetscInt steps;
+} LamLeg;
+
+/* The mean of one displacement component over a side is prescribed, and the common factor of all tractions unknown. */
+typedef struct {
+  char on[LAM_NAME_LENGTH]; /* "": tractions follow their histories */
+  PetscInt component;
+  PetscReal displacement; /* at load parameter 1 */
+} LamLoadControl;
 
 typedef struct {
   LamMeshSource source;
@@ -182,8 +224,11 @@ typedef struct {
   char gmsh[PETSC_MAX_PATH_LEN]; /* file; a unit of length there is the macro length */
   PetscInt boundary_count;
   LamBoundary boundary[LAM_MAX_BOUNDARIES];
-  PetscBool inflate;                /* first bring turgor up with only rigid motions held */
-  PetscInt steps;                   /* load steps after inflation */
+  LamLoadControl control;
+  PetscBool inflate;                /* first bring turgor up with only rigid motions and symmetry held */
+  PetscInt steps;                   /* load steps after inflation, of the whole program */
+  PetscInt leg_count;               /* 0: the parameter goes from 0 to 1 in `steps` */
+  LamLeg legs[LAM_MAX_LEGS];        /* from 0 on, gone through again and again until all steps are done */
   PetscInt zoom_count;              /* places at which the RVE is kept for pictures; 0: chosen by the results */
   PetscReal zoom[LAM_MAX_ZOOMS][2]; /* reference positions, in macro lengths */
 } LamMacroSpec;
@@ -255,6 +300,13 @@ typedef struct {
   PetscBool has_map;
   LamMapAxis map[LAM_MAP_AXIS_COUNT]; /* at most one of them is of the load */
 } LamScene;
+
+/* The factor of a history at a load parameter. */
+PetscReal LamHistoryFactor(const LamHistory *history, PetscReal parameter);
+/* Whether two histories have equal factors at all parameters. */
+PetscBool LamHistoriesAgree(const LamHistory *one, const LamHistory *other);
+/* The load parameter at the end of load step 0 (the start) to spec->steps. */
+PetscReal LamMacroParameter(const LamMacroSpec *spec, PetscInt step);
 
 /*
   Reads and checks a scene file. Any mistake is PETSC_ERR_USER_INPUT with a message

@@ -34,16 +34,16 @@ static PetscErrorCode PrintStepJSON(const LamFE2Run *run, const LamMacroStep *st
   PetscFunctionBeginUser;
   for (PetscInt s = 0; s < step->boundary_count; s++)
     json_object_set_new(reaction, step->boundary[s], LamJSONReals(2, step->reaction[s], ForceUnit(run)));
-  object = json_pack("{s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "step",
-                     (json_int_t)step->step, "load_factor", LamJSONReal(step->load_factor), "reaction", reaction,
-                     "work", LamJSONReal(step->work * scales->stress * PetscSqr(scales->macro_length)),
-                     "debonded_fraction", LamJSONReal(step->debonded_fraction), "max_gap", LamJSONReal(step->max_gap),
-                     "turgor_mean", LamJSONReal(step->turgor_mean * MPa(run)), "newton_iterations",
-                     (json_int_t)step->newton_iterations, "cutbacks", (json_int_t)step->cutbacks, "queries",
-                     (json_int_t)step->queries, "hits", (json_int_t)step->hits, "solves", (json_int_t)step->solves,
-                     "failures", (json_int_t)step->failures, "seconds", LamJSONReal(step->seconds), "solve_seconds",
-                     LamJSONReal(step->solve_seconds), "peak_memory_mb", LamJSONReal(peak_memory), "residuals",
-                     LamJSONReals(step->residual_count, step->residuals, 1));
+  object = json_pack(
+      "{s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o}", "step",
+      (json_int_t)step->step, "load_factor", LamJSONReal(step->load_factor), "reaction", reaction, "work",
+      LamJSONReal(step->work * scales->stress * PetscSqr(scales->macro_length)), "debonded_fraction",
+      LamJSONReal(step->debonded_fraction), "max_gap", LamJSONReal(step->max_gap), "turgor_mean",
+      LamJSONReal(step->turgor_mean * MPa(run)), "newton_iterations", (json_int_t)step->newton_iterations, "cutbacks",
+      (json_int_t)step->cutbacks, "queries", (json_int_t)step->queries, "hits", (json_int_t)step->hits, "solves",
+      (json_int_t)step->solves, "failures", (json_int_t)step->failures, "seconds", LamJSONReal(step->seconds),
+      "solve_seconds", LamJSONReal(step->solve_seconds), "peak_memory_mb", LamJSONReal(peak_memory), "residuals",
+      LamJSONReals(step->residual_count, step->residuals, 1), "convergence_order", LamJSONReal(step->order));
   AddService(step, object);
   PetscCall(LamPrintJSON(object));
   PetscFunctionReturn(0);

@@ -162,7 +162,7 @@ static void CutbackReachesTheSameEnd(void **state)
   assert_int_equal(cut.reason, LAM_MACRO_DONE);
   assert_true(FixtureLast(&cut)->cutbacks > 0);
   assert_int_equal(FixtureLast(&whole)->cutbacks, 0);
-  assert_int_equal(cut.material->rejects, FixtureLast(&cut)->cutbacks);
+  assert_true(cut.material->rejects >= FixtureLast(&cut)->cutbacks); /* predictions that fail are rejected, too */
   assert_true(PetscAbsReal(FixtureLast(&cut)->reaction[1][0] - FixtureLast(&whole)->reaction[1][0]) < 1e-9);
   FixtureDestroy(&cut);
   FixtureDestroy(&whole);

@@ -1,0 +1,162 @@
+/*
+  Rigid, frictionless obstacles: flat plates and round indenters, which nodes of a named side may touch and leave.
+
+  A node is kept from the nearest obstacle only: obstacles that a node touches at once (a wedge) are beyond this.
+*/
+#include "macro_impl.h"
+
+static PetscBool IsObstacle(const LamBoundary *boundary)
+{
+  return boundary->kind == LAM_BOUNDARY_PLATE || boundary->kind == LAM_BOUNDARY_INDENTER ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Nodes of the obstacles' sides that have at most one prescribed direction; macro->constraints is in their order. */
+static PetscErrorCode ListNodes(LamMacro macro)
+{
+  PetscInt k = 0, size;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(macro->obstacle_nodes));
+  PetscCall(VecGetLocalSize(macro->u, &size));
+  PetscCall(PetscMalloc1(size / macro->dim, &macro->obstacle_nodes));
+  macro->obstacle_node_count = 0;
+  for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
+    LamObstacleNode node = {.point = p, .constraint = -1};
+    PetscInt directions = 0;
+    PetscCall(LamMacroOwnedIndex(macro, p, &node.local));
+    if (node.local < 0) continue;
+    for (PetscInt o = 0; o < macro->obstacle_count; o++) {
+      if (LamMacroIsOn(macro, p, macro->scene->macro.boundary[macro->obstacles[o].entry].on)) node.obstacles |= 1u << o;
+    }
+    if (!node.obstacles) continue;
+    for (k = 0; k < macro->constraint_count; k++) {
+      if (macro->constraints[k].local != node.local) continue;
+      node.constraint = k;
+      directions++;
+    }
+    if (directions < 2) macro->obstacle_nodes[macro->obstacle_node_count++] = node;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* How far the obstacle is moved along its normal, or path, until it touches the first of its nodes. */
+static PetscReal Reach(LamMacro macro, const LamObstacle *obstacle, PetscInt o, const PetscScalar u[])
+{
+  const LamBoundary *boundary = &macro->scene->macro.boundary[obstacle->entry];
+  const PetscReal *d = obstacle->normal; /* of an indenter: of its path */
+  PetscReal reach = PETSC_INFINITY;
+
+  for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {
+    const LamObstacleNode *node = &macro->obstacle_nodes[k];
+    PetscReal x[2], along, aside;
+    if (!(node->obstacles >> o & 1)) continue;
+    for (int i = 0; i < 2; i++)
+      x[i] = macro->position[2 * (node->point - macro->mesh_start) + i] + PetscRealPart(u[node->local + i]) -
+             boundary->at[i];
+    along = x[0] * d[0] + x[1] * d[1];
+    aside = x[0] * d[1] - x[1] * d[0];
+    if (boundary->kind == LAM_BOUNDARY_PLATE)
+      reach = PetscMin(reach, along);
+    else if (PetscAbsReal(aside) < boundary->radius)
+      reach = PetscMin(reach, along - PetscSqrtReal(PetscSqr(boundary->radius) - PetscSqr(aside)));
+  }
+  return reach;
+}
+
+/* From the plate into the body, or along the indenter's path. */
+static PetscErrorCode Direction(LamMacro macro, const LamBoundary *boundary, PetscReal direction[2])
+{
+  PetscReal length;
+  PetscBool straight;
+
+  PetscFunctionBeginUser;
+  if (boundary->kind == LAM_BOUNDARY_INDENTER) {
+    length = PetscSqrtReal(PetscSqr(boundary->displacement[0]) + PetscSqr(boundary->displacement[1]));
+    for (int i = 0; i < 2; i++) direction[i] = boundary->displacement[i] / length;
+  } else if (boundary->normal[0] != 0 || boundary->normal[1] != 0) {
+    for (int i = 0; i < 2; i++) direction[i] = boundary->normal[i];
+  } else {
+    PetscCall(LamMacroStraightNormal(macro, LamMacroFindSet(macro, boundary->on), direction, &straight));
+    PetscCheck(straight, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "macro.boundary: on: %s: plate: the side is curved; say from where the plate looks into the body, such "
+               "as normal: [0, -1]",
+               boundary->on);
+    for (int i = 0; i < 2; i++) direction[i] = -direction[i];
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroObstaclesCreate(LamMacro macro)
+{
+  const LamMacroSpec *spec = &macro->scene->macro;
+  const PetscScalar *u;
+
+  PetscFunctionBeginUser;
+  macro->obstacle_count = macro->obstacle_node_count = 0;
+  for (PetscInt b = 0; b < spec->boundary_count; b++) {
+    if (!IsObstacle(&spec->boundary[b])) continue;
+    LamObstacle *obstacle = &macro->obstacles[macro->obstacle_count++];
+    *obstacle = (LamObstacle){.entry = b, .side = LamMacroSideNumber(&macro->step, &spec->boundary[b])};
+    PetscCall(Direction(macro, &spec->boundary[b], obstacle->normal));
+  }
+  if (!macro->obstacle_count) PetscFunctionReturn(0);
+  PetscCall(ListNodes(macro));
+  PetscCall(VecGetArrayRead(macro->u, &u));
+  for (PetscInt o = 0; o < macro->obstacle_count; o++) {
+    LamObstacle *obstacle = &macro->obstacles[o];
+    obstacle->start = Reach(macro, obstacle, o, u);
+  }
+  PetscCall(VecRestoreArrayRead(macro->u, &u));
+  for (PetscInt o = 0; o < macro->obstacle_count; o++) {
+    LamObstacle *obstacle = &macro->obstacles[o];
+    const LamBoundary *boundary = &spec->boundary[obstacle->entry];
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &obstacle->start, 1, MPIU_REAL, MPIU_MIN, macro->comm));
+    PetscCheck(obstacle->start < PETSC_INFINITY, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "macro.boundary: on: %s: %s: %s", boundary->on, LamBoundaryKindNames[boundary->kind],
+               boundary->kind == LAM_BOUNDARY_PLATE
+                   ? "all nodes of this side are prescribed, so the plate meets nothing; leave one of them out"
+                   : "its path misses the nodes of this side; move `at`, or take a larger radius or a finer mesh");
+    for (int i = 0; i < 2; i++) obstacle->first[i] = boundary->at[i] + obstacle->start * obstacle->normal[i];
+  }
+  LamMacroObstaclesMove(macro);
+  PetscFunctionReturn(0);
+}
+
+void LamMacroObstaclesMove(LamMacro macro)
+{
+  for (PetscInt o = 0; o < macro->obstacle_count; o++) {
+    LamObstacle *obstacle = &macro->obstacles[o];
+    const LamBoundary *boundary = &macro->scene->macro.boundary[obstacle->entry];
+    const PetscReal factor = LamHistoryFactor(&boundary->history, macro->parameter), *d = boundary->displacement;
+    if (boundary->kind == LAM_BOUNDARY_PLATE) {
+      obstacle->place[0] = obstacle->start + factor * (d[0] * obstacle->normal[0] + d[1] * obstacle->normal[1]);
+    } else {
+      for (int i = 0; i < 2; i++) obstacle->place[i] = obstacle->first[i] + factor * d[i];
+    }
+  }
+}
+
+LamTouch LamMacroNearest(LamMacro macro, const LamObstacleNode *node, const PetscScalar u[])
+{
+  const PetscReal *X = &macro->position[2 * (node->point - macro->mesh_start)];
+  LamTouch nearest = {.gap = PETSC_INFINITY};
+
+  for (PetscInt o = 0; o < macro->obstacle_count; o++) {
+    const LamObstacle *obstacle = &macro->obstacles[o];
+    const LamBoundary *boundary = &macro->scene->macro.boundary[obstacle->entry];
+    LamTouch touch = {.obstacle = o, .normal = {obstacle->normal[0], obstacle->normal[1]}};
+    const PetscReal x[2] = {X[0] + PetscRealPart(u[node->local]), X[1] + PetscRealPart(u[node->local + 1])};
+    if (!(node->obstacles >> o & 1)) continue;
+    if (boundary->kind == LAM_BOUNDARY_PLATE) {
+      touch.gap = x[0] * touch.normal[0] + x[1] * touch.normal[1] - obstacle->place[0];
+    } else {
+      const PetscReal from[2] = {x[0] - obstacle->place[0], x[1] - obstacle->place[1]},
+                      distance = PetscMax(PetscSqrtReal(PetscSqr(from[0]) + PetscSqr(from[1])), PETSC_SMALL);
+      touch.gap = distance - boundary->radius;
+      touch.curvature = 1 / distance;
+      for (int i = 0; i < 2; i++) touch.normal[i] = from[i] / distance;
+    }
+    if (touch.gap < nearest.gap) nearest = touch;
+  }
+  return nearest;
+}

@@ -1,0 +1,535 @@
+/*
+  Claims about the loads of the macroscale solver, with a material of known answers. Runs on any number of ranks.
+*/
+#include "macro_fixture.h"
+#include "macro_impl.h"
+
+static void Set(PetscReal vector[2], PetscReal x, PetscReal y)
+{
+  vector[0] = x;
+  vector[1] = y;
+}
+
+/* P of the material at F = diag(a, b, 1). */
+static void Exact(const Fixture *fixture, PetscReal a, PetscReal b, LamResponse *exact)
+{
+  const LamLoad load = {{a, 0, 0, 0, b, 0, 0, 0, 1}, 0, 0};
+
+  assert_ok(LamResponseInit(&load, exact));
+  SyntheticEvaluate(fixture->material, &load, exact);
+}
+
+/* Largest difference of F from that of element 0, and F there. */
+static PetscReal Spread(const Fixture *fixture, PetscReal F[9])
+{
+  PetscReal spread = 0;
+  LamMacroFields fields;
+
+  assert_ok(LamMacroGetFields(fixture->macro, &fields));
+  for (PetscInt k = 0; k < 9 * fields.element_count; k++)
+    spread = PetscMax(spread, PetscAbsReal(fields.F[k] - fields.F[k % 9]));
+  if (fields.element_count) PetscCallVoid(PetscArraycpy(F, fields.F, 9));
+  assert_ok(LamMacroFieldsDestroy(&fields));
+  MPI_Bcast(F, 9, MPIU_REAL, 0, PETSC_COMM_WORLD);
+  MPI_Bcast(&spread, 1, MPIU_REAL, 0, PETSC_COMM_WORLD);
+  return spread;
+}
+
+/* Bordered residual and tangent at a random state against central differences, q of the borders included. */
+static void CheckTangent(Fixture *fixture, PetscReal size)
+{
+  const PetscReal h = 1e-6;
+  PetscReal step[LAM_MAX_BOUNDARIES] = {0}, equation[LAM_MAX_BOUNDARIES] = {0}, error, norm;
+  PetscRandom random;
+  Vec u, direction, product, plus, minus;
+  LamMacro macro = fixture->macro;
+
+  assert_ok(LamMacroSetLoadFactor(macro, 1));
+  assert_ok(VecDuplicate(macro->u, &u));
+  assert_ok(VecDuplicate(macro->u, &direction));
+  assert_ok(VecDuplicate(macro->u, &product));
+  assert_ok(VecDuplicate(macro->u, &plus));
+  assert_ok(VecDuplicate(macro->u, &minus));
+  assert_ok(PetscRandomCreate(PETSC_COMM_WORLD, &random));
+  assert_ok(PetscRandomSetInterval(random, -size, size));
+  assert_ok(VecSetRandom(u, random));
+  assert_ok(VecSetRandom(direction, random));
+  for (PetscInt b = 0; b < macro->border_count; b++) {
+    macro->borders[b].now = 0.02 + 0.01 * b;
+    step[b] = 0.3 * (b + 1) * size;
+  }
+  assert_ok(SNESComputeFunction(macro->snes, u, plus));
+  assert_ok(SNESComputeJacobian(macro->snes, u, macro->tangent, macro->tangent));
+  assert_ok(MatMult(macro->tangent, direction, product));
+  for (PetscInt b = 0; b < macro->border_count; b++) {
+    assert_ok(VecAXPY(product, step[b], macro->borders[b].column));
+    assert_ok(VecDot(macro->borders[b].row, direction, &equation[b]));
+    for (PetscInt l = 0; l < macro->border_count; l++) {
+      PetscReal D = 0;
+      if (macro->borders[b].entry >= 0 && macro->borders[l].entry < 0)
+        assert_ok(VecDot(macro->borders[b].weight, macro->external, &D));
+      equation[b] -= D * step[l];
+    }
+  }
+  for (int side = 1; side >= -1; side -= 2) {
+    assert_ok(VecAXPY(u, side == 1 ? h : -2 * h, direction));
+    for (PetscInt b = 0; b < macro->border_count; b++) macro->borders[b].now += (side == 1 ? h : -2 * h) * step[b];
+    assert_ok(SNESComputeFunction(macro->snes, u, side == 1 ? plus : minus));
+    for (PetscInt b = 0; b < macro->border_count; b++) equation[b] -= side * macro->borders[b].equation / (2 * h);
+  }
+  assert_ok(VecAXPY(plus, -1, minus));
+  assert_ok(VecAXPY(product, -1 / (2 * h), plus));
+  assert_ok(VecNorm(product, NORM_2, &error));
+  assert_ok(VecNorm(plus, NORM_2, &norm));
+  assert_true(error < 1e-8 * norm / (2 * h));
+  for (PetscInt b = 0; b < macro->border_count; b++) assert_true(PetscAbsReal(equation[b]) < 1e-8 * norm / (2 * h));
+  assert_ok(PetscRandomDestroy(&random));
+  assert_ok(VecDestroy(&u));
+  assert_ok(VecDestroy(&direction));
+  assert_ok(VecDestroy(&product));
+  assert_ok(VecDestroy(&plus));
+  assert_ok(VecDestroy(&minus));
+}
+
+static void TangentWithAllLoads(void **state)
+{
+  Fixture fixture;
+  LamBoundary *boundary;
+
+  FixtureScene(&fixture, 3, 3, 1, 1);
+  FixtureAdd(&fixture, "left", LAM_BOUNDARY_SYMMETRY);
+  boundary = FixtureAdd(&fixture, "right", LAM_BOUNDARY_TRACTION);
+  Set(boundary->traction, 0.2, -0.3);
+  boundary->follower = PETSC_TRUE;
+  Set(FixtureAdd(&fixture, "right", LAM_BOUNDARY_TRACTION)->traction, 0.1, 0.2);
+  boundary = FixtureAdd(&fixture, "top", LAM_BOUNDARY_INDENTER);
+  boundary->radius = 0.4;
+  Set(boundary->at, 0.5, 1);
+  Set(boundary->displacement, 0.01, -0.3);
+  FixtureBoundary(&fixture, "bottom", NAN, 0);
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  CheckTangent(&fixture, 0.03);
+  assert_true(fixture.macro->row_count > 0);
+  FixtureDestroy(&fixture);
+}
+
+/* With the factor of the tractions as an unknown, a grip that moves freely sideways, and a plate. */
+static void TangentWithBorders(void **state)
+{
+  Fixture fixture;
+  LamBoundary *boundary;
+
+  FixtureScene(&fixture, 3, 3, 1, 1);
+  FixtureBoundary(&fixture, "bottom", 0, 0);
+  boundary = FixtureAdd(&fixture, "top", LAM_BOUNDARY_GRIP);
+  boundary->given[1] = PETSC_TRUE;
+  boundary->displacement[1] = 0.1;
+  boundary = FixtureAdd(&fixture, "right", LAM_BOUNDARY_PRESSURE);
+  boundary->follower = PETSC_TRUE;
+  boundary->traction[1] = -0.7;
+  Set(FixtureAdd(&fixture, "top", LAM_BOUNDARY_TRACTION)->traction, 0.4, 0);
+  Set(FixtureAdd(&fixture, "left", LAM_BOUNDARY_PLATE)->displacement, 0.02, 0);
+  strcpy(fixture.scene.macro.control.on, "right");
+  fixture.scene.macro.control.displacement = 0.1;
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  assert_int_equal(fixture.macro->border_count, 2);
+  CheckTangent(&fixture, 0.03);
+  FixtureDestroy(&fixture);
+}
+
+/* Dead tractions on two sides: P is the traction everywhere, exactly. */
+static void DeadTractionIsUniform(void **state)
+{
+  Fixture fixture;
+  LamMacroFields fields;
+
+  FixtureScene(&fixture, 3, 2, 0.6, 4);
+  fixture.scene.macro.leg_count = 2;
+  fixture.scene.macro.legs[0] = (LamLeg){0.9999, 3};
+  fixture.scene.macro.legs[1] = (LamLeg){1, 1}; /* so short that Newton's last iteration ends far below its tolerance */
+  FixtureAdd(&fixture, "left", LAM_BOUNDARY_SYMMETRY);
+  FixtureAdd(&fixture, "bottom", LAM_BOUNDARY_SYMMETRY);
+  Set(FixtureAdd(&fixture, "right", LAM_BOUNDARY_TRACTION)->traction, 0.5, 0);
+  Set(FixtureAdd(&fixture, "top", LAM_BOUNDARY_TRACTION)->traction, 0, -0.3);
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  fixture.macro->extrapolates = PETSC_FALSE;
+  FixtureSolve(&fixture);
+  assert_int_equal(fixture.reason, LAM_MACRO_DONE);
+  assert_ok(LamMacroGetFields(fixture.macro, &fields));
+  for (PetscInt e = 0; e < fields.element_count; e++) {
+    assert_true(PetscAbsReal(fields.P[9 * e] - 0.5) < 1e-11);
+    assert_true(PetscAbsReal(fields.P[9 * e + 4] + 0.3) < 1e-11);
+    assert_true(PetscAbsReal(fields.P[9 * e + 1]) + PetscAbsReal(fields.P[9 * e + 3]) < 1e-11);
+  }
+  assert_ok(LamMacroFieldsDestroy(&fields));
+  assert_true(PetscAbsReal(FixtureReaction(&fixture, "left")[0] + 0.3) < 1e-10);
+  assert_true(PetscAbsReal(FixtureReaction(&fixture, "right")[0] - 0.3) < 1e-12);
+  assert_true(PetscAbsReal(FixtureReaction(&fixture, "bottom")[1] - 0.3) < 1e-10);
+  FixtureDestroy(&fixture);
+}
+
+/* A pressure on a disc's rim: the Cauchy stress is -p everywhere, in the same F. */
+static void PressureOnADiscIsUniform(void **state)
+{
+  const PetscReal p = 0.4;
+  PetscReal F[9];
+  Fixture fixture;
+  LamBoundary *boundary;
+  LamMacroFields fields;
+
+  FixtureScene(&fixture, 2, 2, 1, 2);
+  FixtureDisc(&fixture, LAM_DISC_QUARTER, 2, 2);
+  FixtureAdd(&fixture, "left", LAM_BOUNDARY_SYMMETRY);
+  FixtureAdd(&fixture, "bottom", LAM_BOUNDARY_SYMMETRY);
+  boundary = FixtureAdd(&fixture, "rim", LAM_BOUNDARY_PRESSURE);
+  boundary->traction[1] = -p;
+  boundary->follower = PETSC_TRUE;
+  fixture.scene.macro.leg_count = 2;
+  fixture.scene.macro.legs[0] = (LamLeg){0.999, 1};
+  fixture.scene.macro.legs[1] = (LamLeg){1, 1}; /* as above */
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  fixture.macro->extrapolates = PETSC_FALSE;
+  FixtureSolve(&fixture);
+  assert_int_equal(fixture.reason, LAM_MACRO_DONE);
+  assert_true(Spread(&fixture, F) < 1e-10);
+  assert_true(F[0] < 0.99);
+  assert_ok(LamMacroGetFields(fixture.macro, &fields));
+  for (PetscInt e = 0; e < fields.element_count; e++) {
+    assert_true(PetscAbsReal(fields.cauchy[9 * e] + p) < 1e-10);
+    assert_true(PetscAbsReal(fields.cauchy[9 * e + 4] + p) < 1e-10);
+    assert_true(PetscAbsReal(fields.cauchy[9 * e + 1]) < 1e-10);
+  }
+  assert_ok(LamMacroFieldsDestroy(&fields));
+  FixtureDestroy(&fixture);
+}
+
+/* Put x = F X on the whole body. */
+static void Deform(LamMacro macro, const PetscReal F[4])
+{
+  PetscScalar *u;
+
+  assert_ok(VecGetArray(macro->u, &u));
+  for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
+    const PetscReal *X = &macro->position[2 * (p - macro->mesh_start)];
+    PetscInt local;
+    assert_ok(LamMacroOwnedIndex(macro, p, &local));
+    for (int i = 0; i < 2 && local >= 0; i++) u[local + i] = F[2 * i] * X[0] + F[2 * i + 1] * X[1] - X[i];
+  }
+  assert_ok(VecRestoreArray(macro->u, &u));
+}
+
+/* The right side of a square becomes F e2: tangent F e2, outward normal that turned by -90 degrees, per present length.
+ */
+static void FollowerTractionTurns(void **state)
+{
+  const PetscReal F[4] = {1.1, -0.8, 0.3, 0.7}, t[2] = {0.3, -0.2};
+  PetscReal sum[2];
+  Fixture fixture;
+  LamBoundary *boundary;
+
+  FixtureShear(&fixture, 2, 0, 1);
+  boundary = FixtureAdd(&fixture, "right", LAM_BOUNDARY_TRACTION);
+  Set(boundary->traction, t[0], t[1]);
+  boundary->follower = PETSC_TRUE;
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  assert_ok(LamMacroSetLoadFactor(fixture.macro, 1));
+  Deform(fixture.macro, F);
+  assert_ok(LamMacroTractionSum(fixture.macro, 2, fixture.macro->u, sum));
+  assert_true(PetscAbsReal(sum[0] - (t[0] * F[1] + t[1] * F[3])) < 1e-14);
+  assert_true(PetscAbsReal(sum[1] - (t[0] * F[3] - t[1] * F[1])) < 1e-14);
+  FixtureDestroy(&fixture);
+}
+
+/* A plate on a whole side moves it as rollers do. */
+static void PlateIsRollers(void **state)
+{
+  PetscReal F[9];
+  LamResponse exact;
+  Fixture fixture;
+
+  FixtureScene(&fixture, 3, 2, 0.6, 2);
+  FixtureAdd(&fixture, "left", LAM_BOUNDARY_SYMMETRY);
+  FixtureAdd(&fixture, "bottom", LAM_BOUNDARY_SYMMETRY);
+  FixtureBoundary(&fixture, "right", 0.05, NAN);
+  Set(FixtureAdd(&fixture, "top", LAM_BOUNDARY_PLATE)->displacement, 0, -0.12);
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  FixtureSolve(&fixture);
+  assert_int_equal(fixture.reason, LAM_MACRO_DONE);
+  assert_true(Spread(&fixture, F) < 1e-11);
+  assert_true(PetscAbsReal(F[0] - 1.05) + PetscAbsReal(F[4] - 0.8) < 1e-11);
+  Exact(&fixture, 1.05, 0.8, &exact);
+  assert_true(PetscAbsReal(FixtureReaction(&fixture, "top")[1] - exact.P[4]) < 1e-10);
+  assert_true(FixtureReaction(&fixture, "top")[0] == 0);
+  assert_true(PetscAbsReal(FixtureReaction(&fixture, "right")[0] - 0.6 * exact.P[0]) < 1e-10);
+  FixtureDestroy(&fixture);
+}
+
+/* A quarter disc under a plate: the force is that of the mirrored problem, and the contact grows from a point. */
+static void DiscUnderAPlateIsSymmetric(void **state)
+{
+  PetscReal force[2];
+
+  for (int mirrored = 0; mirrored < 2; mirrored++) {
+    Fixture fixture;
+    LamBoundary *plate;
+    FixtureScene(&fixture, 3, 3, 1, 4);
+    FixtureDisc(&fixture, LAM_DISC_QUARTER, 3, 3);
+    FixtureAdd(&fixture, "left", LAM_BOUNDARY_SYMMETRY);
+    FixtureAdd(&fixture, "bottom", LAM_BOUNDARY_SYMMETRY);
+    plate = FixtureAdd(&fixture, "rim", LAM_BOUNDARY_PLATE);
+    plate->displacement[1 - mirrored] = -0.3;
+    plate->normal[1 - mirrored] = -1;
+    FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+    FixtureSolve(&fixture);
+    assert_int_equal(fixture.reason, LAM_MACRO_DONE);
+    assert_true(fixture.macro->violation < 1e-10);
+    force[mirrored] = FixtureReaction(&fixture, "rim")[1 - mirrored];
+    for (PetscInt k = 1; k < 4; k++)
+      assert_true(PetscAbsReal(fixture.steps[k].reaction[2][1 - mirrored]) >
+                  PetscAbsReal(fixture.steps[k - 1].reaction[2][1 - mirrored]));
+    const char *held = mirrored ? "left" : "bottom";
+    assert_true(PetscAbsReal(FixtureReaction(&fixture, held)[1 - mirrored] + force[mirrored]) < 1e-8);
+    FixtureDestroy(&fixture);
+  }
+  assert_true(force[0] < -0.1);
+  assert_true(PetscAbsReal(force[0] - force[1]) < 1e-8);
+}
+
+/* An indenter that goes back leaves the body free of stress. */
+static void UnloadingLeaves(void **state)
+{
+  Fixture fixture;
+  LamBoundary *boundary;
+  PetscReal F[9];
+
+  FixtureScene(&fixture, 4, 4, 1, 6);
+  fixture.scene.macro.leg_count = 2;
+  fixture.scene.macro.legs[0] = (LamLeg){1, 4};
+  fixture.scene.macro.legs[1] = (LamLeg){-0.5, 2};
+  FixtureBoundary(&fixture, "bottom", 0, 0);
+  boundary = FixtureAdd(&fixture, "top", LAM_BOUNDARY_INDENTER);
+  boundary->radius = 0.3;
+  Set(boundary->at, 0.5, 1);
+  Set(boundary->displacement, 0, -0.15);
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  FixtureSolve(&fixture);
+  assert_int_equal(fixture.reason, LAM_MACRO_DONE);
+  assert_int_equal(fixture.step_count, 6);
+  assert_true(fixture.steps[3].reaction[1][1] < -0.05);
+  assert_true(PetscAbsReal(FixtureReaction(&fixture, "top")[1]) < 1e-8);
+  assert_true(Spread(&fixture, F) < 1e-8);
+  FixtureDestroy(&fixture);
+}
+
+/* Soft tissue under a plate that goes back in one step follows it as far as it was pressed, and no farther. */
+static void OneStepBackIsEnough(void **state)
+{
+  Fixture fixture;
+  LamBoundary *plate;
+
+  FixtureScene(&fixture, 3, 3, 1, 4);
+  FixtureDisc(&fixture, LAM_DISC_QUARTER, 3, 3);
+  fixture.scene.macro.leg_count = 3;
+  fixture.scene.macro.legs[0] = (LamLeg){1, 2};
+  fixture.scene.macro.legs[1] = (LamLeg){0.5, 1};
+  fixture.scene.macro.legs[2] = (LamLeg){-1, 1};
+  FixtureAdd(&fixture, "left", LAM_BOUNDARY_SYMMETRY);
+  FixtureAdd(&fixture, "bottom", LAM_BOUNDARY_SYMMETRY);
+  plate = FixtureAdd(&fixture, "rim", LAM_BOUNDARY_PLATE);
+  Set(plate->displacement, 0, -0.2);
+  Set(plate->normal, 0, -1);
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  fixture.material->mu = 0.02;
+  fixture.material->lambda = 0.04;
+  FixtureSolve(&fixture);
+  assert_int_equal(fixture.reason, LAM_MACRO_DONE);
+  for (PetscInt k = 0; k < 3; k++) assert_int_equal(fixture.steps[k].cutbacks, 0);
+  assert_true(PetscAbsReal(fixture.steps[2].reaction[2][1] - fixture.steps[0].reaction[2][1]) < 1e-8);
+  assert_true(PetscAbsReal(FixtureReaction(&fixture, "rim")[1]) < 1e-9);
+  FixtureDestroy(&fixture);
+}
+
+/* A grip that may move sideways bears no force there, and none of its nodes moves otherwise. */
+static void FreeGripBearsNoForce(void **state)
+{
+  Fixture fixture;
+  LamBoundary *grip;
+  LamMacroFields fields;
+
+  FixtureScene(&fixture, 3, 3, 1, 2);
+  FixtureBoundary(&fixture, "bottom", 0, 0);
+  Set(FixtureAdd(&fixture, "right", LAM_BOUNDARY_TRACTION)->traction, 0, 0.2);
+  grip = FixtureAdd(&fixture, "top", LAM_BOUNDARY_GRIP);
+  grip->given[0] = PETSC_TRUE;
+  grip->displacement[0] = 0.3;
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  FixtureSolve(&fixture);
+  assert_int_equal(fixture.reason, LAM_MACRO_DONE);
+  assert_true(PetscAbsReal(FixtureReaction(&fixture, "top")[1]) < 1e-9);
+  assert_true(FixtureReaction(&fixture, "top")[0] > 0.1);
+  assert_true(PetscAbsReal(FixtureReaction(&fixture, "right")[1] - 0.2) < 1e-12);
+  assert_ok(LamMacroGetFields(fixture.macro, &fields));
+  PetscReal up = NAN;
+  for (PetscInt k = 0; k < fields.node_count; k++) {
+    if (fields.nodes[2 * k + 1] != 1) continue;
+    if (isnan(up)) up = fields.u[2 * k + 1];
+    assert_true(PetscAbsReal(fields.u[2 * k] - 0.3) < 1e-12);
+    assert_true(PetscAbsReal(fields.u[2 * k + 1] - up) < 1e-12);
+  }
+  assert_ok(LamMacroFieldsDestroy(&fields));
+  FixtureDestroy(&fixture);
+}
+
+/* Histories: first pressed, then sheared; the same end as both at once. */
+static void HistoriesGoOneAfterTheOther(void **state)
+{
+  PetscReal force[2][2];
+
+  for (int history = 0; history < 2; history++) {
+    Fixture fixture;
+    FixtureShear(&fixture, 2, 0.2, 4);
+    fixture.scene.macro.boundary_count = 1;
+    FixtureBoundary(&fixture, "top", 0.2, NAN);
+    FixtureBoundary(&fixture, "top", NAN, -0.1);
+    if (history) {
+      fixture.scene.macro.leg_count = 1;
+      fixture.scene.macro.legs[0] = (LamLeg){2, 4};
+      fixture.scene.macro.boundary[1].history = (LamHistory){2, {1, 2}, {0, 1}};
+      fixture.scene.macro.boundary[2].history = (LamHistory){2, {0, 1}, {0, 1}};
+    }
+    FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+    FixtureSolve(&fixture);
+    assert_int_equal(fixture.reason, LAM_MACRO_DONE);
+    if (history) assert_true(PetscAbsReal(fixture.steps[1].reaction[1][0]) < 1e-9); /* not sheared yet */
+    for (int i = 0; i < 2; i++) force[history][i] = FixtureReaction(&fixture, "top")[i];
+    FixtureDestroy(&fixture);
+  }
+  for (int i = 0; i < 2; i++) assert_true(PetscAbsReal(force[0][i] - force[1][i]) < 1e-8);
+}
+
+/* There and back again, twice: no force is left, and the work of an elastic body is none. */
+static void CyclesReturn(void **state)
+{
+  Fixture fixture;
+
+  FixtureShear(&fixture, 3, 0.3, 16);
+  fixture.scene.macro.leg_count = 2;
+  fixture.scene.macro.legs[0] = (LamLeg){1, 4};
+  fixture.scene.macro.legs[1] = (LamLeg){0, 4};
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  FixtureSolve(&fixture);
+  assert_int_equal(fixture.reason, LAM_MACRO_DONE);
+  assert_int_equal(fixture.step_count, 16);
+  assert_true(fixture.steps[3].work > 0.01);
+  assert_true(PetscAbsReal(fixture.steps[11].load_factor - 1) < 1e-14);
+  assert_true(PetscAbsReal(FixtureReaction(&fixture, "top")[0]) < 1e-8);
+  assert_true(PetscAbsReal(FixtureLast(&fixture)->work) < 1e-9);
+  FixtureDestroy(&fixture);
+}
+
+static PetscInt Iterations(Fixture *fixture)
+{
+  PetscInt iterations = 0;
+
+  FixtureSolve(fixture);
+  assert_int_equal(fixture->reason, LAM_MACRO_DONE);
+  for (PetscInt k = 0; k < fixture->step_count; k++) iterations += fixture->steps[k].newton_iterations;
+  return iterations;
+}
+
+/* Predictions end at the same state, with fewer iterations. */
+static void PredictionsSaveIterations(void **state)
+{
+  PetscInt iterations[2];
+  PetscReal force[2];
+
+  for (int predict = 0; predict < 2; predict++) {
+    Fixture fixture;
+    FixtureShear(&fixture, 3, 0.5, 20);
+    FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+    fixture.macro->extrapolates = predict ? PETSC_TRUE : PETSC_FALSE;
+    iterations[predict] = Iterations(&fixture);
+    force[predict] = FixtureReaction(&fixture, "top")[0];
+    FixtureDestroy(&fixture);
+  }
+  assert_true(PetscAbsReal(force[0] - force[1]) < 1e-9);
+  assert_true(iterations[1] < 0.8 * iterations[0]);
+}
+
+/* An indenter that nodes touch one after the other takes Newton's method few iterations. */
+static void IndentationIsFast(void **state)
+{
+  Fixture fixture;
+  LamBoundary *boundary;
+
+  FixtureScene(&fixture, 8, 4, 0.5, 10);
+  FixtureBoundary(&fixture, "bottom", 0, 0);
+  boundary = FixtureAdd(&fixture, "top", LAM_BOUNDARY_INDENTER);
+  boundary->radius = 0.3;
+  Set(boundary->at, 0.5, 0.5);
+  Set(boundary->displacement, 0, -0.1);
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  assert_true(Iterations(&fixture) <= 40);
+  for (PetscInt k = 0; k < 10; k++) assert_int_equal(fixture.steps[k].cutbacks, 0);
+  FixtureDestroy(&fixture);
+}
+
+/* Symmetry is held during inflation: its sides stay, and the body is free of stress. */
+static void InflationKeepsSymmetry(void **state)
+{
+  Fixture fixture;
+  LamMacroFields fields;
+
+  FixtureScene(&fixture, 2, 2, 1, 1);
+  FixtureDisc(&fixture, LAM_DISC_QUARTER, 2, 2);
+  FixtureAdd(&fixture, "left", LAM_BOUNDARY_SYMMETRY);
+  FixtureAdd(&fixture, "bottom", LAM_BOUNDARY_SYMMETRY);
+  fixture.scene.turgor = 0.4;
+  fixture.scene.macro.inflate = PETSC_TRUE;
+  fixture.stop_after = 0;
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  FixtureSolve(&fixture);
+  assert_ok(LamMacroGetFields(fixture.macro, &fields));
+  for (PetscInt e = 0; e < fields.element_count; e++)
+    for (PetscInt k = 0; k < 8; k++) assert_true(PetscAbsReal(fields.P[9 * e + k]) < 1e-11);
+  for (PetscInt n = 0; n < fields.node_count; n++)
+    for (PetscInt i = 0; i < 2; i++) assert_true(fields.nodes[2 * n + i] != 0 || fields.u[2 * n + i] == 0);
+  assert_ok(LamMacroFieldsDestroy(&fields));
+  FixtureDestroy(&fixture);
+}
+
+/* Obstacles hold no body. */
+static void ObstaclesDoNotHold(void **state)
+{
+  Fixture fixture;
+
+  FixtureScene(&fixture, 2, 2, 1, 1);
+  FixtureBoundary(&fixture, "left", 0, NAN);
+  Set(FixtureAdd(&fixture, "bottom", LAM_BOUNDARY_PLATE)->displacement, 0, 0);
+  assert_ok(LamMacroCreate(PETSC_COMM_WORLD, &fixture.macro));
+  assert_ok(LamMacroSetScene(fixture.macro, &fixture.scene));
+  assert_ok(PetscPushErrorHandler(PetscIgnoreErrorHandler, NULL));
+  assert_int_equal(LamMacroSetUp(fixture.macro), PETSC_ERR_USER_INPUT);
+  assert_ok(PetscPopErrorHandler());
+  assert_ok(LamMacroDestroy(&fixture.macro));
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(TangentWithAllLoads),         cmocka_unit_test(TangentWithBorders),
+      cmocka_unit_test(DeadTractionIsUniform),       cmocka_unit_test(PressureOnADiscIsUniform),
+      cmocka_unit_test(FollowerTractionTurns),       cmocka_unit_test(PlateIsRollers),
+      cmocka_unit_test(DiscUnderAPlateIsSymmetric),  cmocka_unit_test(UnloadingLeaves),
+      cmocka_unit_test(OneStepBackIsEnough),         cmocka_unit_test(FreeGripBearsNoForce),
+      cmocka_unit_test(HistoriesGoOneAfterTheOther), cmocka_unit_test(CyclesReturn),
+      cmocka_unit_test(PredictionsSaveIterations),   cmocka_unit_test(IndentationIsFast),
+      cmocka_unit_test(InflationKeepsSymmetry),      cmocka_unit_test(ObstaclesDoNotHold),
+  };
+  int failed;
+
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  cmocka_set_message_output(CM_OUTPUT_STDOUT);
+  failed = cmocka_run_group_tests(tests, NULL, NULL);
+  return PetscFinalize() || failed;
+}

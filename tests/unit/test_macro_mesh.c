@@ -1,0 +1,187 @@
+/*
+  Claims about the meshes of the macroscale solver: discs, Gmsh files, and what holds bodies that are no box.
+*/
+#include "gmsh_fixture.h"
+#include "macro_fixture.h"
+#include "macro_impl.h"
+#include <unistd.h>
+
+#define TWO_REGIONS LAMELLA_SOURCE_DIR "/tests/verification/data/two-regions.msh"
+
+static void UseGmsh(Fixture *fixture, const char path[])
+{
+  fixture->scene.macro.source = LAM_MESH_GMSH;
+  strcpy(fixture->scene.macro.gmsh, path);
+}
+
+static PetscReal Area(LamMacro macro)
+{
+  PetscReal area = 0;
+
+  for (PetscInt p = 0; p < macro->point_count; p++) area += macro->weight[p];
+  MPI_Allreduce(MPI_IN_PLACE, &area, 1, MPIU_REAL, MPI_SUM, macro->comm);
+  return area;
+}
+
+/* Error of the area of a part of a disc of radius 1. */
+static PetscReal DiscError(LamDiscPart part, PetscInt along)
+{
+  static const PetscReal share[] = {1, 0.5, 0.25};
+  PetscReal error;
+  Fixture fixture;
+
+  FixtureScene(&fixture, 1, 1, 1, 1);
+  FixtureDisc(&fixture, part, along, along);
+  FixtureBoundary(&fixture, "rim", 0, 0);
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  error = PetscAbsReal(Area(fixture.macro) - PETSC_PI * share[part]);
+  FixtureDestroy(&fixture);
+  return error;
+}
+
+/* Quadratic edges miss a circle's area by O(h^4). */
+static void DiscsHaveTheirArea(void **state)
+{
+  for (LamDiscPart part = LAM_DISC_WHOLE; part < LAM_DISC_PART_COUNT; part++) {
+    const PetscReal coarse = DiscError(part, 2), fine = DiscError(part, 4);
+    assert_true(fine < 1e-4);
+    assert_true(coarse / fine > 14 && coarse / fine < 18);
+  }
+}
+
+static void RimNodesAreOnTheCircle(void **state)
+{
+  PetscInt nodes = 0;
+  Fixture fixture;
+
+  FixtureScene(&fixture, 1, 1, 1, 1);
+  FixtureDisc(&fixture, LAM_DISC_HALF, 3, 2);
+  FixtureBoundary(&fixture, "rim", 0, 0);
+  FixtureSetUp(&fixture, PETSC_COMM_SELF);
+  LamMacro macro = fixture.macro;
+  for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
+    const PetscReal *X = &macro->position[2 * (p - macro->mesh_start)];
+    if (!LamMacroIsOn(macro, p, "rim")) continue;
+    assert_true(PetscAbsReal(X[0] * X[0] + X[1] * X[1] - 1) < 1e-14);
+    nodes++;
+  }
+  assert_int_equal(nodes, 2 * 12 + 1); /* 12 edges along half a circle */
+  FixtureDestroy(&fixture);
+}
+
+/* Distorted triangles and quadrilaterals of two regions: homogeneous deformation is exact, as in a box. */
+static void GmshIsAsGoodAsABox(void **state)
+{
+  const LamLoad load = {{1.2, 0, 0, 0, 0.9, 0, 0, 0, 1}, 0, 0};
+  const char(*groups)[LAM_NAME_LENGTH];
+  PetscInt group_count;
+  LamResponse exact;
+  Fixture fixture;
+  LamMacroFields fields;
+
+  FixtureScene(&fixture, 1, 1, 1, 2);
+  UseGmsh(&fixture, TWO_REGIONS);
+  FixtureBoundary(&fixture, "left", 0, NAN);
+  FixtureBoundary(&fixture, "right", 0.2, NAN);
+  FixtureBoundary(&fixture, "bottom", NAN, 0);
+  FixtureBoundary(&fixture, "top", NAN, -0.1);
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  assert_ok(LamMacroGetGroups(fixture.macro, &group_count, &groups));
+  assert_int_equal(group_count, 2);
+  assert_true(PetscAbsReal(Area(fixture.macro) - 1) < 1e-14);
+  FixtureSolve(&fixture);
+  assert_int_equal(fixture.reason, LAM_MACRO_DONE);
+  assert_ok(LamResponseInit(&load, &exact));
+  SyntheticEvaluate(fixture.material, &load, &exact);
+  assert_ok(LamMacroGetFields(fixture.macro, &fields));
+  for (PetscInt k = 0; k < 9 * fields.element_count; k++) {
+    assert_true(PetscAbsReal(fields.F[k] - load.F[k % 9]) < 1e-12);
+    assert_true(PetscAbsReal(fields.P[k] - exact.P[k % 9]) < 1e-12);
+  }
+  assert_ok(LamMacroFieldsDestroy(&fields));
+  assert_true(PetscAbsReal(FixtureReaction(&fixture, "right")[0] - exact.P[0]) < 1e-11);
+  FixtureDestroy(&fixture);
+}
+
+static const PetscReal ANGLE = 0.4;
+
+static void Turned(PetscReal s, PetscReal t, PetscReal X[2])
+{
+  X[0] = cos(ANGLE) * s - sin(ANGLE) * t;
+  X[1] = sin(ANGLE) * s + cos(ANGLE) * t;
+}
+
+/* Oblique sides of symmetry: a turned square under pressure is the upright one turned. */
+static void ObliqueSymmetryIsUprightTurned(void **state)
+{
+  static const char *const sides[] = {"right", "top"};
+  char path[PETSC_MAX_PATH_LEN];
+  PetscReal P[2][4], force[2];
+
+  snprintf(path, sizeof(path), "/tmp/lamella-turned-%d.msh", (int)getpid());
+  GmshWrite(path, 3, 3, Turned);
+  for (int turned = 0; turned < 2; turned++) {
+    Fixture fixture;
+    LamMacroFields fields;
+    FixtureScene(&fixture, 3, 3, 1, 2);
+    if (turned) UseGmsh(&fixture, path);
+    FixtureAdd(&fixture, "left", LAM_BOUNDARY_SYMMETRY);
+    FixtureAdd(&fixture, "bottom", LAM_BOUNDARY_SYMMETRY);
+    for (int s = 0; s < 2; s++) {
+      LamBoundary *boundary = FixtureAdd(&fixture, sides[s], LAM_BOUNDARY_TRACTION);
+      boundary->follower = PETSC_TRUE;
+      boundary->traction[1] = s ? 0.2 : -0.3;
+    }
+    FixtureSetUp(&fixture, PETSC_COMM_SELF);
+    FixtureSolve(&fixture);
+    assert_int_equal(fixture.reason, LAM_MACRO_DONE);
+    assert_ok(LamMacroGetFields(fixture.macro, &fields));
+    for (int ij = 0; ij < 4; ij++) P[turned][ij] = fields.P[3 * (ij / 2) + ij % 2];
+    assert_ok(LamMacroFieldsDestroy(&fields));
+    const PetscReal *left = FixtureReaction(&fixture, "left");
+    force[turned] = PetscSqrtReal(left[0] * left[0] + left[1] * left[1]);
+    FixtureDestroy(&fixture);
+  }
+  remove(path);
+  const PetscReal c = cos(ANGLE), s = sin(ANGLE), Q[4] = {c, -s, s, c};
+  for (int i = 0; i < 2; i++) {
+    for (int j = 0; j < 2; j++) {
+      PetscReal sum = 0;
+      for (int k = 0; k < 2; k++)
+        for (int l = 0; l < 2; l++) sum += Q[2 * i + k] * P[0][2 * k + l] * Q[2 * j + l];
+      assert_true(PetscAbsReal(sum - P[1][2 * i + j]) < 1e-9);
+    }
+  }
+  assert_true(PetscAbsReal(force[0] - force[1]) < 1e-9);
+}
+
+/* Two points of a body hold it, one does not: a disc whose rim is free along X2 can still move. */
+static void LooseDiscIsRefused(void **state)
+{
+  Fixture fixture;
+
+  FixtureScene(&fixture, 1, 1, 1, 1);
+  FixtureDisc(&fixture, LAM_DISC_WHOLE, 2, 2);
+  FixtureBoundary(&fixture, "rim", 0, NAN);
+  assert_ok(LamMacroCreate(PETSC_COMM_WORLD, &fixture.macro));
+  assert_ok(LamMacroSetScene(fixture.macro, &fixture.scene));
+  assert_ok(PetscPushErrorHandler(PetscIgnoreErrorHandler, NULL));
+  assert_int_equal(LamMacroSetUp(fixture.macro), PETSC_ERR_USER_INPUT);
+  assert_ok(PetscPopErrorHandler());
+  assert_ok(LamMacroDestroy(&fixture.macro));
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(DiscsHaveTheirArea), cmocka_unit_test(RimNodesAreOnTheCircle),
+      cmocka_unit_test(GmshIsAsGoodAsABox), cmocka_unit_test(ObliqueSymmetryIsUprightTurned),
+      cmocka_unit_test(LooseDiscIsRefused),
+  };
+  int failed;
+
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  cmocka_set_message_output(CM_OUTPUT_STDOUT);
+  failed = cmocka_run_group_tests(tests, NULL, NULL);
+  return PetscFinalize() || failed;
+}

@@ -1,0 +1,106 @@
+/*
+  A rigid round indenter on a block against Hertz's line contact: half width a of the contact under the force F per
+  thickness, a^2 = 4 F R / (pi E*), E* = E / (1 - nu^2).
+
+  The pressure is half an ellipse: its second moment over x is F a^2 / 4. Nodal forces of quadratic elements keep second
+  moments, so a is measured by them, much finer than the elements are.
+*/
+#include "macro_fixture.h"
+#include "macro_impl.h"
+
+static const PetscReal E_STAR = 3; /* of the synthetic material, mu = 1, lambda = 2: nu = 1/3, E = 8/3 */
+
+/* Sum of nodal contact forces times x^power, x the distance from the axis; half of the body, one rank. */
+static PetscReal Moment(LamMacro macro, PetscInt power)
+{
+  const PetscScalar *force, *u;
+  PetscReal sum = 0;
+
+  assert_ok(VecGetArrayRead(macro->force_accepted, &force));
+  assert_ok(VecGetArrayRead(macro->u, &u));
+  for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {
+    const LamObstacleNode *node = &macro->obstacle_nodes[k];
+    const PetscReal x = macro->position[2 * (node->point - macro->mesh_start)] + PetscRealPart(u[node->local]);
+    sum -= PetscRealPart(force[node->local + 1]) * PetscPowRealInt(x, power);
+  }
+  assert_ok(VecRestoreArrayRead(macro->u, &u));
+  assert_ok(VecRestoreArrayRead(macro->force_accepted, &force));
+  return sum;
+}
+
+/* a / R = 0.16 and a block 6 times as wide: the half width is 1.8 % below that of the half-space. */
+static void ContactWidthIsHertz(void **state)
+{
+  const PetscReal radius = 0.5;
+  Fixture fixture;
+  LamBoundary *indenter;
+
+  FixtureScene(&fixture, 40, 40, 1, 2);
+  FixtureAdd(&fixture, "left", LAM_BOUNDARY_SYMMETRY);
+  FixtureBoundary(&fixture, "bottom", 0, 0);
+  indenter = FixtureAdd(&fixture, "top", LAM_BOUNDARY_INDENTER);
+  indenter->radius = radius;
+  indenter->at[1] = 1;
+  indenter->displacement[1] = -0.02;
+  FixtureSetUp(&fixture, PETSC_COMM_SELF);
+  FixtureSolve(&fixture);
+  assert_int_equal(fixture.reason, LAM_MACRO_DONE);
+  const PetscReal half = Moment(fixture.macro, 0), square = 4 * Moment(fixture.macro, 2) / half,
+                  hertz = 4 * 2 * half * radius / (PETSC_PI * E_STAR);
+  assert_true(PetscAbsReal(FixtureReaction(&fixture, "top")[1] + half) < 1e-8);
+  assert_true(PetscAbsReal(square / hertz - 1) < 0.05);
+  FixtureDestroy(&fixture);
+}
+
+/* No node is in the indenter, none is pulled, and all that are pressed touch it. */
+static void ComplementarityHolds(void **state)
+{
+  Fixture fixture;
+  LamBoundary *indenter;
+  const PetscScalar *force, *u;
+  PetscInt touching = 0;
+
+  FixtureScene(&fixture, 8, 4, 0.5, 5);
+  FixtureBoundary(&fixture, "bottom", 0, 0);
+  indenter = FixtureAdd(&fixture, "top", LAM_BOUNDARY_INDENTER);
+  indenter->radius = 0.2;
+  indenter->at[0] = 0.55;
+  indenter->at[1] = 0.5;
+  indenter->displacement[1] = -0.12;
+  FixtureSetUp(&fixture, PETSC_COMM_SELF);
+  FixtureSolve(&fixture);
+  assert_int_equal(fixture.reason, LAM_MACRO_DONE);
+  LamMacro macro = fixture.macro;
+  assert_ok(VecGetArrayRead(macro->force_accepted, &force));
+  assert_ok(VecGetArrayRead(macro->u, &u));
+  for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {
+    const LamObstacleNode *node = &macro->obstacle_nodes[k];
+    const LamTouch touch = LamMacroNearest(macro, node, u);
+    const PetscReal f[2] = {PetscRealPart(force[node->local]), PetscRealPart(force[node->local + 1])},
+                    lambda = f[0] * touch.normal[0] + f[1] * touch.normal[1],
+                    aside = f[0] * touch.normal[1] - f[1] * touch.normal[0];
+    assert_true(touch.gap > -1e-10);
+    assert_true(lambda > -1e-8);
+    assert_true(PetscAbsReal(aside) < 1e-8);
+    assert_true(touch.gap < 1e-10 || lambda < 1e-8);
+    if (touch.gap < 1e-10) touching++;
+  }
+  assert_true(touching >= 4);
+  assert_ok(VecRestoreArrayRead(macro->u, &u));
+  assert_ok(VecRestoreArrayRead(macro->force_accepted, &force));
+  FixtureDestroy(&fixture);
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(ContactWidthIsHertz),
+      cmocka_unit_test(ComplementarityHolds),
+  };
+  int failed;
+
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  cmocka_set_message_output(CM_OUTPUT_STDOUT);
+  failed = cmocka_run_group_tests(tests, NULL, NULL);
+  return PetscFinalize() || failed;
+}
