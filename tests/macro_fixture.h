@@ -76,8 +76,8 @@ static inline LamBoundary *FixtureAdd(Fixture *fixture, const char on[], LamBoun
   LamMacroSpec *spec = &fixture->scene.macro;
   LamBoundary *boundary = &spec->boundary[spec->boundary_count++];
 
+  *boundary = (LamBoundary){.kind = kind};
   strcpy(boundary->on, on);
-  boundary->kind = kind;
   return boundary;
 }
 

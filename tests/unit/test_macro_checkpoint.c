@@ -101,9 +101,28 @@ static PetscErrorCode SaveMonitor(LamMacro macro, const LamMacroStep *step, Pets
   PetscFunctionReturn(0);
 }
 
+static PetscBool AllLoads; /* beside displacements */
+
+/* In place of the prescribed top: a grip that moves freely upwards, pulled; a plate against the right side. */
+static void PrepareLoads(Fixture *fixture)
+{
+  LamBoundary *boundary;
+
+  fixture->scene.macro.boundary_count = 1;
+  boundary = FixtureAdd(fixture, "top", LAM_BOUNDARY_GRIP);
+  boundary->given[0] = PETSC_TRUE;
+  boundary->displacement[0] = 0.2;
+  FixtureAdd(fixture, "top", LAM_BOUNDARY_TRACTION)->traction[1] = 0.1;
+  FixtureAdd(fixture, "right", LAM_BOUNDARY_PLATE)->displacement[0] = -0.1;
+  strcpy(fixture->scene.macro.control.on, "left");
+  fixture->scene.macro.control.component = 1;
+  fixture->scene.macro.control.displacement = 0.05;
+}
+
 static void Prepare(Fixture *fixture, PetscBool inflate, PetscBool sealed, PetscInt stop_after)
 {
   FixtureShear(fixture, 3, 0.3, 4);
+  if (AllLoads) PrepareLoads(fixture);
   FixtureSeal(fixture, 0.1, 2e3);
   fixture->scene.sealed = sealed;
   fixture->scene.macro.inflate = inflate;
@@ -165,13 +184,21 @@ static void SealedBodyGoesOn(void **state)
   CheckGoesOn(PETSC_TRUE, PETSC_TRUE, 2);
 }
 
+/* With unknowns beside the displacements, and nodes that touch. */
+static void GoesOnWithLoads(void **state)
+{
+  AllLoads = PETSC_TRUE;
+  CheckGoesOn(PETSC_FALSE, PETSC_FALSE, 2);
+  AllLoads = PETSC_FALSE;
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(WhatIsWrittenIsRead),   cmocka_unit_test(WhatIsNotKeptLeavesTheFileBefore),
       cmocka_unit_test(AnotherCountIsRefused), cmocka_unit_test(GoesOnBehindAStep),
       cmocka_unit_test(GoesOnBehindInflation), cmocka_unit_test(GoesOnBehindAStepOfAnInflatedBody),
-      cmocka_unit_test(SealedBodyGoesOn),
+      cmocka_unit_test(SealedBodyGoesOn),      cmocka_unit_test(GoesOnWithLoads),
   };
 
   int failed;
