@@ -62,7 +62,7 @@ static inline PetscErrorCode ProblemHold(const Problem *problem, LamMacro macro)
       PetscReal u;
       if (!ProblemPrescribes(problem, &macro->position[2 * (p - macro->mesh_start)], i, &u)) continue;
       macro->constraints[macro->constraint_count++] =
-          (LamConstraint){.local = local + i, .component = i, .end = u, .target = u};
+          (LamConstraint){.point = p, .local = local, .normal = {i == 0, i == 1}, .end = u, .target = u, .border = -1};
     }
   }
   PetscFunctionReturn(0);
