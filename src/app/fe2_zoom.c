@@ -232,6 +232,7 @@ static PetscErrorCode ZoomOne(LamFE2Run *run, const Zoom *zoom, const char bytes
   PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
   PetscCall(LamRVESetMicrostructure(rve, &scene->micro));
   PetscCall(LamRVESetStrategy(rve, scene->strategy));
+  if (run->scene->sealed) PetscCall(LamRVESetSealable(rve, PETSC_TRUE)); /* as the one whose states it reads */
   PetscCall(LamRVESetUp(rve));
   PetscCall(LamRVESetInterrupt(rve, LamStopInterrupt, NULL));
   PetscCall(LamRVEStateCreate(rve, &state));
