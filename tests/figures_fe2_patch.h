@@ -169,7 +169,8 @@ static inline PetscErrorCode ScalesNoteStep(LamMacro macro, const LamMacroStep *
 
   PetscFunctionBeginUser;
   PetscCall(LamMacroGetFields(macro, &fields));
-  for (PetscInt e = 0; e < fields.element_count; e++) opening += fields.indicator[4 * e + 1] / fields.element_count;
+  for (PetscInt e = 0; e < fields.element_count; e++)
+    opening += fields.mean[LAM_POINT_FIELD_COUNT * e + LAM_POINT_OPENING] / fields.element_count;
   PetscCall(LamMacroFieldsDestroy(&fields));
   for (PetscInt side = 0; side < step->boundary_count; side++)
     if (!strcmp(step->boundary[side], "top"))

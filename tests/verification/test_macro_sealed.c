@@ -55,7 +55,7 @@ static void PatchTest(void **state)
     assert_ok(LamMacroGetFields(fixture.macro, &fields));
     for (PetscInt e = 0; e < fields.element_count; e++) {
       for (int i = 0; i < 9; i++) assert_true(PetscAbsReal(fields.F[9 * e + i] - F[i]) < 1e-10);
-      assert_true(PetscAbsReal(fields.indicator[4 * e + 3] - turgor) < 1e-10);
+      assert_true(PetscAbsReal(fields.mean[LAM_POINT_FIELD_COUNT * e + LAM_POINT_TURGOR] - turgor) < 1e-10);
     }
     assert_ok(LamMacroFieldsDestroy(&fields));
     FixtureDestroy(&fixture);
@@ -206,7 +206,7 @@ static void LumenFollowsWater(void **state)
     const PetscReal p = SealedTurgor(&fixture, 0.2, 0.95 * 1.03), v = fixture.material->phi + 0.2 * fixture.material->c;
     assert_true(PetscAbsReal(FixtureLast(&fixture)->turgor_mean - p) < 1e-10);
     for (PetscInt q = 0; q < fixture.macro->point_count; q++) {
-      const PetscReal lumen = fixture.macro->accepted[q].lumen_fraction;
+      const PetscReal lumen = fixture.macro->accepted[q].field[LAM_POINT_LUMEN];
       assert_true(PetscAbsReal(lumen - v * (1 - (p - 0.2) / moduli[m])) < 1e-11);
     }
     FixtureDestroy(&fixture);
