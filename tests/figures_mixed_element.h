@@ -122,7 +122,8 @@ static inline PetscErrorCode ProblemMeasure(LamMacro macro, const Problem *probl
   }
   PetscCall(VecGetArrayRead(macro->force, &force));
   for (PetscInt k = 0; k < macro->constraint_count; k++)
-    if (macro->constraints[k].end != 0) result->force += PetscRealPart(force[macro->constraints[k].local]);
+    if (macro->constraints[k].end != 0)
+      result->force += PetscRealPart(force[macro->constraints[k].local + (macro->constraints[k].normal[1] != 0)]);
   PetscCall(VecRestoreArrayRead(macro->force, &force));
   PetscFunctionReturn(0);
 }
