@@ -3,6 +3,7 @@
 
   A node has up to two prescribed directions: components, or the normal of a side of symmetry.
 */
+#include <math.h>
 #include <stdlib.h>
 #include "macro_impl.h"
 #include <petscblaslapack.h>
@@ -244,7 +245,7 @@ typedef struct {
   PetscReal X[LAM_MACRO_DIM];
 } Place;
 
-/* The owned node that is farthest from `from` (NULL: the one of the lowest number); of equal ones the lowest. */
+/* The owned node that is farthest from a place; of equal ones that of the lowest number. */
 static PetscErrorCode FindNode(LamMacro macro, const Place *from, Place *found)
 {
   PetscReal farthest = -1, best;
@@ -262,7 +263,7 @@ static PetscErrorCode FindNode(LamMacro macro, const Place *from, Place *found)
       PetscInt local;
       PetscCall(LamMacroOwnedIndex(macro, p, &local));
       if (local < 0) continue;
-      for (PetscInt i = 0; i < macro->dim && from; i++)
+      for (PetscInt i = 0; i < macro->dim; i++)
         distance += PetscSqr(macro->position[macro->dim * (p - macro->mesh_start) + i] - from->X[i]);
       if (pass == 0) farthest = PetscMax(farthest, distance);
       if (pass == 0 || distance < best * (1 - 1e-9) || number >= mine.number) continue;
@@ -283,10 +284,10 @@ static PetscErrorCode FindNode(LamMacro macro, const Place *from, Place *found)
 
 /* Holds a component of a node where this takes a rigid motion that is free yet: basis [*rank][3] of those that are not.
  */
-static PetscErrorCode HoldNode(LamMacro macro, const Place *place, PetscInt component, PetscReal basis[][3],
+static PetscErrorCode HoldNode(LamMacro macro, const Place *place, const PetscReal normal[2], PetscReal basis[][3],
                                PetscInt *rank)
 {
-  const PetscReal independent = 1e-6, normal[2] = {component == 0, component == 1};
+  const PetscReal independent = 1e-6;
   PetscReal motion[3], square = 0;
   PetscMPIInt me;
   PetscInt local;
@@ -337,6 +338,7 @@ static int CompareConstraints(const void *a, const void *b)
 
 PetscErrorCode LamMacroHoldRigidMotions(LamMacro macro)
 {
+  const Place far = {.X = {1e3, 1e3}}; /* from there the lower left of the body is farthest */
   PetscReal basis[3][3];
   PetscInt rank;
   Place one, other;
@@ -348,13 +350,13 @@ PetscErrorCode LamMacroHoldRigidMotions(LamMacro macro)
   PetscCall(LamMacroBordersCreate(macro, PETSC_FALSE));
   PetscCall(AddNodes(macro, PETSC_TRUE));
   PetscCall(HeldMotions(macro, basis, &rank));
-  PetscCall(FindNode(macro, NULL, &one));
+  PetscCall(FindNode(macro, &far, &one));
   PetscCall(FindNode(macro, &one, &other));
-  for (PetscInt i = 0; i < 2; i++) PetscCall(HoldNode(macro, &one, i, basis, &rank));
-  /* a rotation about the first node moves the other one most along the component in which they differ least */
-  const PetscInt most = PetscAbsReal(other.X[0] - one.X[0]) < PetscAbsReal(other.X[1] - one.X[1]) ? 0 : 1;
-  PetscCall(HoldNode(macro, &other, most, basis, &rank));
-  PetscCall(HoldNode(macro, &other, 1 - most, basis, &rank));
+  const PetscReal line[2] = {other.X[0] - one.X[0], other.X[1] - one.X[1]}, length = hypot(line[0], line[1]);
+  const PetscReal directions[4][2] = {
+      {1, 0}, {0, 1}, {-line[1] / length, line[0] / length}, {line[0] / length, line[1] / length}};
+  /* the other node stays on its line with the first one: a body that swells does not turn */
+  for (int k = 0; k < 4; k++) PetscCall(HoldNode(macro, k < 2 ? &one : &other, directions[k], basis, &rank));
   qsort(macro->constraints, (size_t)macro->constraint_count, sizeof(*macro->constraints), CompareConstraints);
   PetscFunctionReturn(0);
 }

@@ -13,6 +13,7 @@
   reaction.c  reactions and work
   assembly.c  gather F, ask the responder, assemble force and tangent
   sealed.c    pressures of sealed lumens
+  inflation.c first guess of the inflated body
   stepping.c  Newton, load steps, cutback
   fields.c    what is kept of a response for the results, gathering of fields on rank 0
   checkpoint.c what a run goes on from
@@ -383,6 +384,10 @@ PetscErrorCode LamMacroArchiveVec(LamMacro macro, LamArchive archive, const char
 /* fields.c */
 /* What is kept of a response, by LamPointField. */
 void LamMacroKeepFields(const LamResponse *response, PetscReal field[LAM_POINT_FIELD_COUNT]);
+
+/* inflation.c */
+/* Fills u with the homogeneous inflated state of the tissue at the turgor that acts now, where one is found. */
+PetscErrorCode LamMacroGuessInflated(LamMacro macro, Vec u, PetscBool *found);
 
 /* stepping.c */
 PetscErrorCode LamMacroNewtonCreate(LamMacro macro);

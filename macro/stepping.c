@@ -4,8 +4,8 @@
   Method. Newton's method with the consistent tangent, full steps; load steps with cutback.
 
   Algorithm.
-  1. Inflation: only rigid motions are held, the turgor acts at once. Without `inflate` the turgor acts while the
-     prescribed sides are held where they are in the reference state; this belongs to step 1.
+  1. Inflation: only rigid motions are held, the turgor acts at once, first on a guess (inflation.c). Without `inflate`
+  the turgor acts while the prescribed sides are held where they are in the reference state; this belongs to step 1.
   2. The prescribed displacements count from there and grow in `steps` equal steps.
   Sealed lumens are sealed after inflation; without `inflate` at F = 1 under the whole turgor, before all else.
   3. Where Newton fails, a material point has no response, or an iteration goes astray, the increment is halved,
@@ -183,8 +183,11 @@ static PetscErrorCode KeepHistory(LamMacro macro)
   PetscFunctionReturn(0);
 }
 
-/* One Newton solution at `stage`, from the last converged state. Where it fails, `trouble` says why. */
-static PetscErrorCode TryStage(LamMacro macro, Stage stage, PetscBool *converged)
+/*
+  One Newton solution at `stage`, from the last converged state, or from a guess where one is wanted and found, which
+  *guesses tells. Where it fails, `trouble` says why.
+*/
+static PetscErrorCode TryStage(LamMacro macro, Stage stage, PetscBool *guesses, PetscBool *converged)
 {
   SNESConvergedReason reason;
   PetscInt iterations;
@@ -196,6 +199,7 @@ static PetscErrorCode TryStage(LamMacro macro, Stage stage, PetscBool *converged
   macro->trouble[0] = '\0';
   PetscCall(LamMacroSetLoadFactor(macro, stage.load));
   PetscCall(VecCopy(macro->u, macro->trial));
+  if (*guesses) PetscCall(LamMacroGuessInflated(macro, macro->trial, guesses));
   PetscCall(SNESSolve(macro->snes, NULL, macro->trial));
   PetscCall(SNESGetConvergedReason(macro->snes, &reason));
   PetscCall(SNESGetIterationNumber(macro->snes, &iterations));
@@ -213,21 +217,23 @@ static PetscErrorCode TryStage(LamMacro macro, Stage stage, PetscBool *converged
   PetscFunctionReturn(0);
 }
 
-/* The same with a prediction where the path goes on, then without. */
+/* The same with a guess of the inflated body or a prediction where the path goes on, then without. */
 static PetscErrorCode TryIncrement(LamMacro macro, Stage from, Stage to, PetscBool *converged)
 {
   const PetscReal ratio = macro->passed != 0 ? (to.load - from.load) / macro->passed : 0;
   /* nodes that come to touch an obstacle make a kink in the path: there predictions save nothing */
   const PetscBool predicts =
       macro->extrapolates && !macro->obstacle_count && from.turgor == to.turgor && ratio > 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscBool guesses = macro->scene->macro.inflate && from.turgor == 0 && to.turgor == 1 ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBeginUser;
   macro->prediction = predicts ? ratio : 0;
-  PetscCall(TryStage(macro, to, converged));
-  if (!*converged && predicts && !macro->stopped) {
+  PetscCall(TryStage(macro, to, &guesses, converged));
+  if (!*converged && (predicts || guesses) && !macro->stopped) {
     PetscCall(Reject(macro));
     macro->prediction = 0;
-    PetscCall(TryStage(macro, to, converged));
+    guesses = PETSC_FALSE;
+    PetscCall(TryStage(macro, to, &guesses, converged));
   }
   if (*converged) macro->passed = from.turgor == to.turgor ? to.load - from.load : 0;
   PetscFunctionReturn(0);

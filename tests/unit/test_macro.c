@@ -95,6 +95,29 @@ static void InflationIsFreeOfStress(void **state)
   FixtureDestroy(&fixture);
 }
 
+/* A body that swells freely keeps its directions, and its corner; its state is guessed from one point's. */
+static void InflatedBodyDoesNotTurn(void **state)
+{
+  Fixture fixture;
+  LamMacroFields fields;
+
+  FixtureScene(&fixture, 3, 2, 0.6, 1);
+  FixtureBoundary(&fixture, "bottom", 0, 0);
+  fixture.scene.turgor = 0.4;
+  fixture.scene.macro.inflate = PETSC_TRUE;
+  fixture.stop_after = 0;
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  FixtureSolve(&fixture);
+  assert_true(FixtureLast(&fixture)->newton_iterations <= 1);
+  assert_ok(LamMacroGetFields(fixture.macro, &fields));
+  for (PetscInt n = 0; n < fields.node_count; n++) {
+    for (int i = 0; i < 2; i++)
+      assert_true(PetscAbsReal(fields.u[2 * n + i] - (fields.F[0] - 1) * fields.nodes[2 * n + i]) < 1e-9);
+  }
+  assert_ok(LamMacroFieldsDestroy(&fields));
+  FixtureDestroy(&fixture);
+}
+
 /* After inflation the sides count from where they are: without displacement nothing happens. */
 static void DisplacementsCountFromInflated(void **state)
 {
@@ -457,6 +480,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(TangentIsDerivative),
       cmocka_unit_test(NewtonIsQuadratic),
       cmocka_unit_test(InflationIsFreeOfStress),
+      cmocka_unit_test(InflatedBodyDoesNotTurn),
       cmocka_unit_test(DisplacementsCountFromInflated),
       cmocka_unit_test(TurgorPressesOnHeldSides),
       cmocka_unit_test(ReactionsBalance),
