@@ -340,7 +340,7 @@ PetscErrorCode LamMacroHoldRigidMotions(LamMacro macro)
 {
   const Place far = {.X = {1e3, 1e3}}; /* from there the lower left of the body is farthest */
   PetscReal basis[3][3];
-  PetscInt rank;
+  PetscInt rank = 0;
   Place one, other;
 
   PetscFunctionBeginUser;

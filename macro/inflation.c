@@ -117,9 +117,9 @@ static PetscReal Stress(const Energy *energy)
 /* Minimises the energy of the middle point; *found where its stress vanishes. */
 static PetscErrorCode FreeTissue(LamMacro macro, PetscReal e[SYMMETRIC], PetscBool *found)
 {
-  PetscMPIInt rank;
+  PetscMPIInt rank = 0;
   PetscInt point = 0;
-  PetscReal step[SYMMETRIC], share = 1, scale = 0;
+  PetscReal step[SYMMETRIC] = {0}, share = 1, scale = 0;
   Energy now, next;
 
   PetscFunctionBeginUser;

@@ -134,7 +134,7 @@ static PetscErrorCode FindKnots(PetscInt n, const Row rows[], PetscInt axis, Pet
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n, knots));
   for (PetscInt k = 0; k < n; k++) (*knots)[k] = rows[k].x[axis];
-  qsort(*knots, (size_t)n, sizeof(PetscReal), CompareReals);
+  if (n) qsort(*knots, (size_t)n, sizeof(PetscReal), CompareReals);
   *count = 0;
   for (PetscInt k = 0; k < n; k++)
     if (!*count || (*knots)[k] > (*knots)[*count - 1]) (*knots)[(*count)++] = (*knots)[k];
