@@ -24,6 +24,7 @@
 #include "macro_impl.h"
 
 static const PetscReal RELATIVE_TOLERANCE = 1e-9, ABSOLUTE_TOLERANCE = 1e-10, PENETRATION = 1e-10;
+static const PetscReal ROUNDING = 1e-8; /* residuals below it show no order of convergence any more */
 enum { MAX_HALVINGS = 8, MAX_ITERATIONS = 15 };
 
 /* Where the program stands: shares of turgor and of the prescribed displacements. */
@@ -178,8 +179,10 @@ static PetscErrorCode KeepHistory(LamMacro macro)
   step->residual_count = PetscMin(n, (PetscInt)PETSC_STATIC_ARRAY_LENGTH(step->residuals));
   for (PetscInt k = 0; k < step->residual_count; k++)
     step->residuals[k] = macro->force_scale > 0 ? macro->history[k] / macro->force_scale : macro->history[k];
-  const PetscReal *r = &step->residuals[PetscMax(step->residual_count, 3) - 3];
-  step->order = step->residual_count < 3 ? NAN : PetscLogReal(r[2] / r[1]) / PetscLogReal(r[1] / r[0]);
+  n = step->residual_count;
+  while (n > 3 && step->residuals[n - 1] < ROUNDING) n--;
+  const PetscReal *r = &step->residuals[PetscMax(n, 3) - 3];
+  step->order = n < 3 ? NAN : PetscLogReal(r[2] / r[1]) / PetscLogReal(r[1] / r[0]);
   PetscFunctionReturn(0);
 }
 

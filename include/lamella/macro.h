@@ -38,7 +38,7 @@ typedef struct {
   PetscReal residuals[64];                    /* of the last Newton iteration series, over the norm of the
                                                  element forces; residual_count entries */
   PetscInt residual_count;
-  PetscReal order; /* log(r2 / r1) / log(r1 / r0) of its last three; NaN where there are fewer */
+  PetscReal order; /* log(r2 / r1) / log(r1 / r0) of its last three above 1e-8; NaN where there are fewer */
 } LamMacroStep;
 
 typedef enum { LAM_MACRO_DONE, LAM_MACRO_STOPPED, LAM_MACRO_NOT_CONVERGED } LamMacroReason;
