@@ -182,7 +182,7 @@ static PetscErrorCode KeepHistory(LamMacro macro)
   n = step->residual_count;
   while (n > 3 && step->residuals[n - 1] < ROUNDING) n--;
   const PetscReal *r = &step->residuals[PetscMax(n, 3) - 3];
-  step->order = n < 3 ? NAN : PetscLogReal(r[2] / r[1]) / PetscLogReal(r[1] / r[0]);
+  step->order = n < 3 || r[1] >= r[0] ? NAN : PetscLogReal(r[2] / r[1]) / PetscLogReal(r[1] / r[0]);
   PetscFunctionReturn(0);
 }
 

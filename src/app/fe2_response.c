@@ -164,8 +164,8 @@ static PetscErrorCode CreateNodeSolver(LamFE2Tissue *tissue)
   PetscFunctionReturn(0);
 }
 
-/* How many points of the tissue find room for two states each in its share of the memory; sealed ones all keep theirs.
-   Behind a cache none keeps a state: all its solves start from the reference. */
+/* How many points of the tissue find room for two states each in its share of the memory. Behind a cache none keeps a
+   state: all its solves start from the reference. */
 static PetscErrorCode CountKept(const LamFE2Run *run, const LamFE2Tissue *tissue, PetscInt *kept)
 {
   const PetscReal memory = run->scene->response.warm_start_memory;
@@ -175,7 +175,7 @@ static PetscErrorCode CountKept(const LamFE2Run *run, const LamFE2Tissue *tissue
 
   PetscFunctionBeginUser;
   *kept = run->response == LAM_FE2_DIRECT ? tissue->points : 0;
-  if (!*kept || run->scene->sealed) PetscFunctionReturn(0);
+  if (!*kept) PetscFunctionReturn(0);
   for (PetscInt t = 0; t < run->tissues.count; t++) share += (PetscReal)run->tissues.tissues[t].points;
   PetscCall(LamRVEStateCreate(tissue->rve, &state));
   PetscCall(LamRVEStateSize(state, &bytes));

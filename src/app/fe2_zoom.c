@@ -196,7 +196,7 @@ static PetscErrorCode Keep(LamFE2Run *run, const Zoom *zoom, const LamLoad *load
   PetscFunctionReturn(0);
 }
 
-/* A kept state of sealed cells is the solution, whose water no other RVE knows; all others are solved for. */
+/* Of sealed cells the load holds the turgor that they have reached. */
 static PetscErrorCode Solve(LamFE2Run *run, const Zoom *zoom, LamRVE rve, const char bytes[], LamRVEState state,
                             Found *found)
 {
@@ -207,10 +207,6 @@ static PetscErrorCode Solve(LamFE2Run *run, const Zoom *zoom, LamRVE rve, const 
 
   PetscFunctionBeginUser;
   if (bytes) PetscCall(LamRVEStateUnpack(bytes, state));
-  if (bytes && run->scene->sealed) {
-    PetscCall(Keep(run, zoom, &load, zoom->P, rve, state, found));
-    PetscFunctionReturn(0);
-  }
   PetscCall(LamRVESolve(rve, &load, state, &response));
   if (LamResponseHasFields(&response)) {
     BodyStress(response.P, zoom->angle, stress, P);
@@ -232,7 +228,6 @@ static PetscErrorCode ZoomOne(LamFE2Run *run, const Zoom *zoom, const char bytes
   PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
   PetscCall(LamRVESetMicrostructure(rve, &scene->micro));
   PetscCall(LamRVESetStrategy(rve, scene->strategy));
-  if (run->scene->sealed) PetscCall(LamRVESetSealable(rve, PETSC_TRUE)); /* as the one whose states it reads */
   PetscCall(LamRVESetUp(rve));
   PetscCall(LamRVESetInterrupt(rve, LamStopInterrupt, NULL));
   PetscCall(LamRVEStateCreate(rve, &state));
