@@ -9,10 +9,11 @@
      for the question's own state.
   2. The keys of the nodes that the newest table lacks for what is left, from all ranks, sorted, are dealt out in turn,
      solved, gathered, and added on all ranks in that order. From 1 with what is left, MAX_ROUNDS times at most.
-  3. Where no node helps any more, what is left, from all ranks and sorted, is dealt out, solved and added as states of
-     no grid; or it stays without answer (LAM_OUTSIDE_STOP).
-  In 2 and 3 questions are rounded, so that what is solved does not depend on the ranks' order of summation; the answer
-  to a rounded question is led back to the one asked by its tangent.
+  3. Where no node helps any more, what is left, turned and mirrored to the states of nodes (LamTableTurn), from all
+  ranks and sorted, is dealt out, solved, from the nearest node where there is one, and added as states of no grid,
+  which answer; or it stays without answer (LAM_OUTSIDE_STOP). In 2 and 3 questions are rounded, so that what is solved
+  does not depend on the ranks' order of summation; the answer to a rounded question is led back to the one asked by its
+  tangent.
 
   Convergence. A point that was solved for itself in this load step SELF_STAYS times goes on so: at the edge of what the
   table answers, iterations that step to and fro between two answers would not end.
@@ -24,7 +25,7 @@
 #include "rounded_load.h"
 
 enum { MAX_ROUNDS = 12, SELF_STAYS = 2 };
-static const PetscReal OWN_STATE = 1e-12; /* distance of a question from its own record, a strain */
+static const PetscReal OWN_STATE = 1e-8; /* distance of a question from its own record, rounded twice; a strain */
 
 typedef struct {
   MPI_Comm comm;
@@ -154,7 +155,7 @@ static PetscErrorCode SolveNodes(Cache *cache, PetscInt n, const PetscInt64 keys
   PetscFunctionReturn(0);
 }
 
-/* All from the reference state: the answer must not depend on who solves it. */
+/* All from the reference state. */
 static PetscErrorCode SolveLoads(Cache *cache, PetscInt n, const LamLoad loads[], LamResponse responses[])
 {
   const LamResponder before = *cache->solver;
@@ -167,6 +168,28 @@ static PetscErrorCode SolveLoads(Cache *cache, PetscInt n, const LamLoad loads[]
   cache->self->solves += cache->solver->solves - before.solves;
   cache->self->solve_seconds += cache->solver->solve_seconds - before.solve_seconds;
   PetscCall(PetscFree(points));
+  PetscFunctionReturn(0);
+}
+
+/* From the nearest node, else from the reference: the answer must not depend on who solves it. */
+static PetscErrorCode SolveNearNodes(Cache *cache, PetscInt n, const LamLoad loads[], LamResponse responses[])
+{
+  PetscInt64 node;
+  LamLoad turned;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscReal start = LamClock();
+
+    PetscCall(LamTableTurn(cache->newest, &loads[k], &turned, &node));
+    if (node < 0) {
+      PetscCall(SolveLoads(cache, 1, &loads[k], &responses[k]));
+      continue;
+    }
+    PetscCall(cache->nodes->solve_near(cache->nodes->ctx, node, &loads[k], &responses[k]));
+    if (responses[k].status != LAM_OUT_OF_REACH) cache->self->solves++;
+    cache->self->solve_seconds += LamClock() - start;
+  }
   PetscFunctionReturn(0);
 }
 
@@ -194,6 +217,8 @@ static PetscErrorCode SolveBatch(Cache *cache, Batch *batch)
   }
   if (batch->keys && cache->nodes)
     PetscCall(SolveNodes(cache, n, keys, mine));
+  else if (cache->newest && cache->nodes && cache->nodes->solve_near)
+    PetscCall(SolveNearNodes(cache, n, loads, mine));
   else
     PetscCall(SolveLoads(cache, n, loads, mine));
   PetscCall(LamGather(cache->comm, sizeof(LamResponse), n, mine, &starts, (void **)&all));
@@ -298,6 +323,38 @@ static PetscErrorCode Refine(Cache *cache, Missing *missing, PetscBool *ends, Pe
 
 /* ---- step 3: states ---- */
 
+/* The state to solve for a question. */
+static PetscErrorCode StateFor(Cache *cache, const LamLoad *load, LamLoad *state)
+{
+  const LamLoad rounded = LamLoadRound(load);
+  PetscInt64 node;
+
+  PetscFunctionBeginUser;
+  *state = rounded;
+  if (cache->newest) PetscCall(LamTableTurn(cache->newest, &rounded, state, &node));
+  *state = LamLoadRound(state);
+  PetscFunctionReturn(0);
+}
+
+/* Of a state that has just been solved and added. */
+static PetscErrorCode TakeOwnState(Cache *cache, const LamLoad *load, const LamResponse *solved, LamResponse *response)
+{
+  const LamLoad rounded = LamLoadRound(load);
+  const PetscInt point = -1;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamResponseInit(load, response));
+  if (LamResponseHasFields(solved)) PetscCall(AskRecords(cache, load, response));
+  if (!LamResponseHasFields(response)) { /* failed; or unstable, which is no answer of a database */
+    *response = *solved;
+    if (LamResponseHasFields(solved) && LamLoadCompare(&rounded, &solved->load))
+      PetscCall(cache->solver->respond(cache->solver->ctx, 1, &rounded, &point, response));
+    LamLoadLeadBack(load, response);
+  }
+  response->source = LAM_SOURCE_SOLVE;
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode SolveThemselves(Cache *cache, Missing *missing)
 {
   LamLoad *mine;
@@ -306,7 +363,7 @@ static PetscErrorCode SolveThemselves(Cache *cache, Missing *missing)
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(missing->n, &mine));
-  for (PetscInt k = 0; k < missing->n; k++) mine[k] = LamLoadRound(&missing->loads[missing->at[k]]);
+  for (PetscInt k = 0; k < missing->n; k++) PetscCall(StateFor(cache, &missing->loads[missing->at[k]], &mine[k]));
   PetscCall(
       LamGatherUnion(cache->comm, sizeof(LamLoad), LamLoadCompare, missing->n, mine, &batch.n, (void **)&batch.loads));
   PetscCall(SolveAndAdd(cache, &batch, &stopped));
@@ -315,9 +372,7 @@ static PetscErrorCode SolveThemselves(Cache *cache, Missing *missing)
     const LamLoad *found =
         (const LamLoad *)bsearch(&mine[k], batch.loads, (size_t)batch.n, sizeof(LamLoad), LamLoadCompare);
 
-    missing->responses[i] = batch.responses[found - batch.loads];
-    missing->responses[i].load = *found;
-    LamLoadLeadBack(&missing->loads[i], &missing->responses[i]);
+    PetscCall(TakeOwnState(cache, &missing->loads[i], &batch.responses[found - batch.loads], &missing->responses[i]));
     if (point >= 0) cache->self_solves[point]++;
   }
   PetscCall(PetscFree(mine));

@@ -31,7 +31,8 @@ typedef struct {
   PetscReal minus[3]; /* the same on the other side */
   PetscReal tau1, tau2, gradient_tau[3];
   PetscReal tau2_minus;                     /* on the side of smaller suction */
-  PetscReal hessian_tau[6], minus_tau[3];   /* of differences along the column */
+  PetscReal hessian_tau[6], minus_tau[3];   /* of differences along the column, 0 where there is no other state */
+  PetscBool alone;                          /* there is none */
   PetscReal turgor1, turgor2;               /* dPhi/dp at fixed s, d2Phi/dp2 */
   PetscReal turgor_gradient[3], turgor_tau; /* of the first */
 } LamTableState;
@@ -159,6 +160,13 @@ PetscBool LamTableCellIsComplete(LamTable table, const LamTableCell *cell, const
 /* The states of a node's column on either side of the point; NULL: missing. */
 void LamTableBracket(LamTable table, const LamTableNode *node, const LamTablePoint *point,
                      const LamTableState *ends[2]);
+/* Whether what a column is at the point rests on an end of its bracket: not where the other end has its suction. */
+static inline PetscBool LamTableRestsOn(const LamTableState *const ends[2], int e, const LamTablePoint *point)
+{
+  const LamTableState *other = ends[1 - e];
+
+  return (PetscBool)(!other || other == ends[e] || other->j != point->v);
+}
 /* Of the corners whose own level is the cell's: those without states, weighed as by linear interpolation, 0 to 1. */
 PetscReal LamTableMissingShare(LamTable table, const LamTableCell *cell, const LamTablePoint *point);
 /* Adds a cell's part; `estimate`: writes bend and turn. */

@@ -62,10 +62,10 @@ static void AddNode(LamTable table, const LamTableCell *cell, int corner, const 
     AddAround(around, &table->database->nodes[ends[0]->data], order, weight, 1, corner, 0);
     return;
   }
-  t = (point->v - ends[0]->j) / (ends[1]->j - ends[0]->j);
-  around->tau_step[corner] = table->grid->tau_step * (ends[1]->j - ends[0]->j) / LAM_ROOT;
+  t = ends[0] && ends[1] ? (point->v - ends[0]->j) / (ends[1]->j - ends[0]->j) : !ends[0];
+  around->tau_step[corner] = ends[0] && ends[1] ? table->grid->tau_step * (ends[1]->j - ends[0]->j) / LAM_ROOT : 0;
   for (int e = 0; e < 2; e++)
-    AddAround(around, &table->database->nodes[ends[e]->data], order, weight, e ? t : 1 - t, corner, e);
+    if (ends[e]) AddAround(around, &table->database->nodes[ends[e]->data], order, weight, e ? t : 1 - t, corner, e);
 }
 
 /* The corners of the cell; without one, cells that touch no one. */

@@ -8,6 +8,7 @@
       bonded   p0 the grid's turgor, c = -p;    contact   p0 = s - g0, g0 the grid's cohesion, c = g.
 */
 #include "table.h"
+#include "rounded_load.h"
 #include <math.h>
 #include <lamella/clock.h>
 #include <stdio.h>
@@ -58,6 +59,18 @@ static PetscBool Refuse(LamResponse *r, const char text[])
   return PETSC_FALSE;
 }
 
+/*
+  A strain on a face of cells, but for rounding, lies on it: the edge of a box is part of it, in any rotation. So does a
+  suction on that of a node, with the rounding of questions (rounded_load.h): tissue of one turgor needs one node of it.
+*/
+static const PetscReal ROUNDED_STRAIN = 1e-11, ROUNDED_SUCTION = 1e-6;
+static PetscReal OnFace(PetscReal u, PetscReal rounding)
+{
+  const PetscReal nearest = rint(u);
+
+  return fabs(u - nearest) < rounding ? nearest : u;
+}
+
 static PetscBool PlaceSuction(LamTable table, const LamLoad *load, Place *place, LamResponse *r)
 {
   const struct LamGrid_s *grid = table->grid;
@@ -75,18 +88,10 @@ static PetscBool PlaceSuction(LamTable table, const LamLoad *load, Place *place,
              (double)LamGridSuction(grid, LAM_ROOT * grid->tau_cells));
     return PETSC_FALSE;
   }
-  point->v = PetscMin(PetscMax(point->v, 0), LAM_ROOT * grid->tau_cells);
+  point->v = OnFace(PetscMin(PetscMax(point->v, 0), LAM_ROOT * grid->tau_cells), ROUNDED_SUCTION);
   point->root = PetscMin((int)point->v / LAM_ROOT, (int)grid->tau_cells - 1) * LAM_ROOT;
   if (grid->free.n) LamFreeCellStrain(&grid->free, point->s, place->free_strain);
   return PETSC_TRUE;
-}
-
-/* A strain on a face of cells, but for rounding, lies on it: the edge of a box is part of it, in any rotation. */
-static PetscReal OnFace(PetscReal u)
-{
-  const PetscReal nearest = rint(u), rounding = 1e-11;
-
-  return fabs(u - nearest) < rounding ? nearest : u;
 }
 
 static void PlaceStrains(LamTable table, Place *place)
@@ -96,7 +101,7 @@ static void PlaceStrains(LamTable table, Place *place)
 
   place->floating = (PetscBool)(grid->free.n > 0);
   for (int k = 0; k < 3; k++) {
-    u[k] = OnFace((place->lattice.x[k] - grid->origin - place->free_strain[0]) / grid->step * LAM_ROOT);
+    u[k] = OnFace((place->lattice.x[k] - grid->origin - place->free_strain[0]) / grid->step * LAM_ROOT, ROUNDED_STRAIN);
     place->floating = (PetscBool)(place->floating && u[k] >= 0);
   }
   for (int k = 0; k < 3; k++) {
@@ -413,7 +418,8 @@ static void NeedCell(Needs *needs, const LamTablePoint *point, int level, const 
   }
 }
 
-/* The interval of suction that all columns of the cell have in common around the point. */
+/* The interval of suction that all columns of the cell have in common around the point; that end alone which the point
+   lies on. */
 static void CommonInterval(LamTable table, const LamTableCell *cell, const LamTablePoint *point, int ends[2])
 {
   ends[0] = point->root;
@@ -426,6 +432,8 @@ static void CommonInterval(LamTable table, const LamTableCell *cell, const LamTa
     if (at[0]) ends[0] = PetscMax(ends[0], at[0]->j);
     if (at[1]) ends[1] = PetscMin(ends[1], at[1]->j);
   }
+  for (int e = 0; e < 2; e++)
+    if (ends[e] == point->v) ends[1 - e] = ends[e];
 }
 
 /* Beyond the node's places, or with strains that no F has. */
@@ -465,5 +473,47 @@ PetscErrorCode LamTableNeeds(LamTable table, const LamLoad *load, PetscReal accu
       NeedCell(&needs, &place.point, place.leaf->level + 1, ends);
   }
   if (needs.hopeless) *n = 0;
+  PetscFunctionReturn(0);
+}
+
+/* ---- states of their own ---- */
+
+/* Of the states at the corners of a cell, if one of them is nearer than *least, its key. */
+static void FindNearest(LamTable table, const LamTableCell *cell, const LamTablePoint *point, PetscReal *least,
+                        PetscInt64 *key)
+{
+  for (int c = 0; c < 8 && cell; c++) {
+    const LamTableNode *node = cell->node[c] < 0 ? NULL : &table->nodes[cell->node[c]];
+    PetscReal square = 0;
+
+    for (int k = 0; k < 3; k++)
+      square += PetscSqr(point->u[k] - cell->i[k] - (c >> k & 1 ? LAM_ROOT >> cell->level : 0));
+    for (PetscInt s = 0; node && s < node->count; s++) {
+      const LamTableState *state = &LamTableStates(table, node)[s];
+      const PetscReal distance = square + PetscSqr(point->v - state->j);
+
+      if (!state->good || distance >= *least) continue;
+      *least = distance;
+      *key = table->database->nodes[state->data].key;
+    }
+  }
+}
+
+PetscErrorCode LamTableTurn(LamTable table, const LamLoad *load, LamLoad *turned, PetscInt64 *key)
+{
+  PetscReal x[3], U[4], least = PETSC_INFINITY;
+  LamResponse response;
+  Place place;
+
+  PetscFunctionBeginUser;
+  *turned = *load;
+  *key = -1;
+  PetscCall(LamResponseInit(load, &response));
+  if (!LamQuestionIsGood(load, &response) || !Locate(table, load, &place, &response)) PetscFunctionReturn(0);
+  for (int k = 0; k < 3; k++) x[k] = LamOnGrid(place.lattice.x[place.point.axis[k]]);
+  if (!LamLatticeStretch(&table->grid->axes, x, U)) PetscFunctionReturn(0);
+  for (int i = 0; i < 4; i++) turned->F[3 * (i / 2) + i % 2] = U[i];
+  FindNearest(table, place.leaf, &place.point, &least, key);
+  FindNearest(table, place.child, &place.point, &least, key);
   PetscFunctionReturn(0);
 }

@@ -83,6 +83,7 @@ static void Defects(const Interval *a, const PetscReal value[2], const PetscReal
 static void AddState(const Interval *a, int e, const int order[3], int corner, Column *c)
 {
   const LamTableState *state = a->end[e];
+  const PetscBool alone = (PetscBool)(state->alone && a->t == e); /* how its second derivatives go on is not known */
 
   for (int d = 0; d < 3; d++) {
     const PetscReal V = a->V[e][d], D = a->D[e][d];
@@ -96,7 +97,7 @@ static void AddState(const Interval *a, int e, const int order[3], int corner, C
       const PetscReal pure_tau = corner >> k & 1 ? state->minus_tau[n] : state->hessian_tau[n];
 
       jet->gradient[k] += V * state->phi.gradient[n] + D * state->gradient_tau[n];
-      jet->hessian[k] += V * pure + D * pure_tau;
+      jet->hessian[k] += alone && d ? NAN : V * pure + D * pure_tau;
       jet->hessian[3 + k] +=
           V * state->phi.hessian[3 + n] + D * state->hessian_tau[3 + n]; /* entry 3 + k lacks axis k */
       turgor1->gradient[k] += V * state->turgor_gradient[n];
@@ -198,6 +199,7 @@ PetscBool LamTableCellIsComplete(LamTable table, const LamTableCell *cell, const
     if (cell->node[c] == LAM_NODE_MISSING) return PETSC_FALSE;
     LamTableBracket(table, &table->nodes[cell->node[c]], point, ends);
     for (int e = 0; e < 2; e++) {
+      if (!LamTableRestsOn(ends, e, point)) continue;
       if (!ends[e] || (!ends[e]->has_data && !cell->level)) return PETSC_FALSE;
       if (!ends[e]->good) *good = PETSC_FALSE;
     }
@@ -255,7 +257,11 @@ PetscReal LamTableMissingShare(LamTable table, const LamTableCell *cell, const L
     }
     if (node) LamTableBracket(table, node, point, ends);
     all += weight;
-    if (!ends[0] || !ends[1]) missing += weight;
+    for (int e = 0; e < 2; e++) {
+      if (ends[e] || !LamTableRestsOn(ends, e, point)) continue;
+      missing += weight;
+      break;
+    }
   }
   return all > 0 ? missing / all : 0;
 }

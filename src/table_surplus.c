@@ -193,6 +193,8 @@ static void SlopesAlongSuction(LamTable table, const LamTableNode *node)
     const PetscInt first = PetscMax(0, PetscMin(s - 1, node->count - n));
     PetscBool known = (PetscBool)(n > 1);
 
+    states[s].alone = (PetscBool)(n == 1);
+
     for (PetscInt a = first; a < first + n; a++) known = (PetscBool)(known && states[a].has_data);
     for (PetscInt a = first; a < first + n && known; a++) {
       PetscReal rise = n == 2 ? 1 : 0, run = 1;

@@ -11,6 +11,8 @@
 typedef struct {
   void *ctx;
   PetscErrorCode (*solve)(void *ctx, PetscInt64 key, LamResponse *response);
+  /* Solves another state, from the solution of the node. NULL: cannot. */
+  PetscErrorCode (*solve_near)(void *ctx, PetscInt64 key, const LamLoad *load, LamResponse *response);
 } LamNodeSolver;
 
 /*

@@ -213,6 +213,11 @@ PetscErrorCode LamTableQuery(LamTable table, const LamLoad *load, PetscReal accu
 #define LAM_MAX_NEEDS 64
 PetscErrorCode LamTableNeeds(LamTable table, const LamLoad *load, PetscReal accuracy, PetscInt *n,
                              PetscInt64 keys[LAM_MAX_NEEDS]);
+/*
+  The state that this question is a turned or mirrored image of, with F symmetric and its lattice strains in the order of
+  those of nodes (rounded to 1e-10); *key: of the nodes around it the nearest whose solution it can start from, -1: none.
+*/
+PetscErrorCode LamTableTurn(LamTable table, const LamLoad *load, LamLoad *turned, PetscInt64 *key);
 
 /*
   The answer of the table, else of the records that belong to no grid: the question's own state, or a blend of

@@ -158,9 +158,9 @@ static PetscErrorCode CreateNodeSolver(LamFE2Tissue *tissue)
   PetscCall(LamDatabaseGetGrid(tissue->database, &grid));
   PetscCall(LamNodeChainCreate(tissue->rve, tissue->scene.micro.interface, grid, LAM_NODE_MEMORY, LamStopRequested,
                                &tissue->chain));
-  tissue->solved = (LamNodeSolver){tissue->chain, LamNodeChainSolve};
+  tissue->solved = (LamNodeSolver){tissue->chain, LamNodeChainSolve, LamNodeChainSolveNear};
   tissue->known.solver = &tissue->solved;
-  tissue->nodes = (LamNodeSolver){&tissue->known, LamKnownAnswersSolve};
+  tissue->nodes = (LamNodeSolver){&tissue->known, LamKnownAnswersSolve, LamKnownAnswersSolveNear};
   PetscFunctionReturn(0);
 }
 

@@ -70,3 +70,16 @@ PetscErrorCode LamKnownAnswersSolve(void *ctx, PetscInt64 key, LamResponse *resp
     PetscCall(known->solver->solve(known->solver->ctx, key, response));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode LamKnownAnswersSolveNear(void *ctx, PetscInt64 key, const LamLoad *load, LamResponse *response)
+{
+  const LamKnownAnswers *known = ctx;
+  const PetscInt row = LamKnownAnswersFind(known, LAM_CACHE_KEY, load);
+
+  PetscFunctionBeginUser;
+  if (row >= 0)
+    *response = known->records[row - known->first];
+  else
+    PetscCall(known->solver->solve_near(known->solver->ctx, key, load, response));
+  PetscFunctionReturn(0);
+}

@@ -26,7 +26,8 @@ PetscErrorCode LamKnownAnswersSet(LamKnownAnswers *known, PetscInt first, PetscI
 PetscErrorCode LamKnownAnswersDestroy(LamKnownAnswers *known);
 /* The row of the file with this node, or with this state of no grid; -1: none. */
 PetscInt LamKnownAnswersFind(const LamKnownAnswers *known, PetscInt64 key, const LamLoad *load);
-/* A LamNodeSolver's function, ctx a LamKnownAnswers: the record that is there, else the solver's answer. */
+/* A LamNodeSolver's functions, ctx a LamKnownAnswers: the record that is there, else the solver's answer. */
 PetscErrorCode LamKnownAnswersSolve(void *ctx, PetscInt64 key, LamResponse *response);
+PetscErrorCode LamKnownAnswersSolveNear(void *ctx, PetscInt64 key, const LamLoad *load, LamResponse *response);
 
 #endif

@@ -98,25 +98,35 @@ static PetscErrorCode SolveFromReference(LamRVE rve, const LamLoad *load, LamRVE
   PetscFunctionReturn(0);
 }
 
+/* From `state`, or, where it does not lead there or from_state is false, from the reference. */
+static PetscErrorCode SolveFrom(LamRVE rve, const LamLoad *load, PetscBool from_state, LamRVEState state,
+                                LamResponse *response)
+{
+  LamResponse first;
+
+  PetscFunctionBeginUser;
+  if (!from_state) {
+    PetscCall(SolveFromReference(rve, load, state, response));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(LamRVESolve(rve, load, state, &first));
+  *response = first;
+  if (first.status == LAM_CONVERGED) PetscFunctionReturn(0);
+  PetscCall(SolveFromReference(rve, load, state, response));
+  response->newton_iterations += first.newton_iterations;
+  response->factorisations += first.factorisations;
+  response->seconds += first.seconds;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamNodeSolve(LamRVE rve, LamGrid grid, PetscInt64 key, PetscBool from_parent, LamRVEState state,
                             LamResponse *response)
 {
-  LamResponse first;
   LamLoad load;
 
   PetscFunctionBeginUser;
   PetscCall(LamGridNodeLoad(grid, key, &load));
-  if (!from_parent) {
-    PetscCall(SolveFromReference(rve, &load, state, response));
-    PetscFunctionReturn(0);
-  }
-  PetscCall(LamRVESolve(rve, &load, state, &first));
-  *response = first;
-  if (first.status == LAM_CONVERGED) PetscFunctionReturn(0);
-  PetscCall(SolveFromReference(rve, &load, state, response));
-  response->newton_iterations += first.newton_iterations;
-  response->factorisations += first.factorisations;
-  response->seconds += first.seconds;
+  PetscCall(SolveFrom(rve, &load, from_parent, state, response));
   PetscFunctionReturn(0);
 }
 
@@ -139,13 +149,10 @@ static PetscErrorCode Reach(LamNodeChain chain, PetscInt64 key, PetscInt *place)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode LeaveOut(LamNodeChain chain, PetscInt64 key, LamResponse *response)
+static PetscErrorCode LeaveOut(const LamLoad *load, LamResponse *response)
 {
-  LamLoad load;
-
   PetscFunctionBeginUser;
-  PetscCall(LamGridNodeLoad(chain->grid, key, &load));
-  PetscCall(LamResponseInit(&load, response));
+  PetscCall(LamResponseInit(load, response));
   response->status = LAM_OUT_OF_REACH;
   PetscCall(PetscStrncpy(response->reason, "stopped before it was solved", sizeof(response->reason)));
   PetscFunctionReturn(0);
@@ -155,14 +162,36 @@ PetscErrorCode LamNodeChainSolve(void *ctx, PetscInt64 key, LamResponse *respons
 {
   LamNodeChain chain = ctx;
   PetscInt place;
+  LamLoad load;
 
   PetscFunctionBeginUser;
   if (chain->stop && chain->stop()) {
-    PetscCall(LeaveOut(chain, key, response));
+    PetscCall(LamGridNodeLoad(chain->grid, key, &load));
+    PetscCall(LeaveOut(&load, response));
     PetscFunctionReturn(0);
   }
   PetscCall(Reach(chain, key, &place));
   *response = chain->nodes[place].response;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamNodeChainSolveNear(void *ctx, PetscInt64 key, const LamLoad *load, LamResponse *response)
+{
+  LamNodeChain chain = ctx;
+  PetscBool leads = PETSC_FALSE;
+  PetscInt place;
+
+  PetscFunctionBeginUser;
+  if (chain->stop && chain->stop()) {
+    PetscCall(LeaveOut(load, response));
+    PetscFunctionReturn(0);
+  }
+  if (chain->warm) {
+    PetscCall(Reach(chain, key, &place));
+    leads = LamNodeLeads(&chain->nodes[place].response);
+    if (leads) PetscCall(LamRVEStateCopy(chain->nodes[place].state, chain->state));
+  }
+  PetscCall(SolveFrom(chain->rve, load, leads, chain->state, response));
   PetscFunctionReturn(0);
 }
 

@@ -33,6 +33,8 @@ PetscErrorCode LamNodeChainCreate(LamRVE rve, LamInterfaceLawType interface, Lam
   from the reference; that of contact tissue from its parent where that leads, whose own is reached likewise.
 */
 PetscErrorCode LamNodeChainSolve(void *chain, PetscInt64 key, LamResponse *response);
+/* Its solve_near; bonded tissue, and what is not found from the node, from the reference. */
+PetscErrorCode LamNodeChainSolveNear(void *chain, PetscInt64 key, const LamLoad *load, LamResponse *response);
 PetscErrorCode LamNodeChainDestroy(LamNodeChain *chain);
 
 #endif

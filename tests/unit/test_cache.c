@@ -97,7 +97,8 @@ static void SetUp(Fixture *fixture, MPI_Comm comm, Kind kind)
     assert_ok(LamDatabaseSetGrid(fixture->database, &grid));
   }
   assert_ok(SyntheticCreate(POINTS, &fixture->solver, &fixture->material));
-  fixture->nodes = (LamNodeSolver){fixture, kind == CACHE_WITH_NODES || kind == STOPPING_CACHE ? SolveNode : FailNode};
+  fixture->nodes =
+      (LamNodeSolver){fixture, kind == CACHE_WITH_NODES || kind == STOPPING_CACHE ? SolveNode : FailNode, NULL};
   assert_ok(LamCacheResponderCreate(comm, fixture->database, kind == NO_SOLVER ? NULL : &fixture->solver,
                                     kind >= CACHE_WITH_NODES ? &fixture->nodes : NULL,
                                     kind >= STOPPING_CACHE ? LAM_OUTSIDE_STOP : LAM_OUTSIDE_SOLVE, ACCURACY, POINTS,

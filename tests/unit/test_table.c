@@ -181,6 +181,55 @@ static void finer_nodes_of_one_interval_bring_the_answer_nearer(void **state)
   AnalyticTableClose(&t);
 }
 
+/* Tissue of one turgor needs no nodes of another. */
+static void at_the_suction_of_its_states_a_cell_needs_no_others(void **state)
+{
+  AnalyticTable t = AnalyticTableOpen(PETSC_TRUE, 0.2);
+  const int corner = -2 * LAM_ROOT;
+  const double u[3] = {corner + 20, corner + 11, corner + 37};
+  const LamLoad load = LoadAt(&t, u, LAM_ROOT, 0.3), beside = LoadAt(&t, u, 0.9 * LAM_ROOT, 0.3);
+  const LamResponse exact = TissueAnswer(&t.tissue, &load);
+  LamResponse r;
+
+  for (int at = 0; at < 8; at++) {
+    const int i[3] = {corner + LAM_ROOT * (at & 1), corner + LAM_ROOT * (at >> 1 & 1), corner + LAM_ROOT * (at >> 2)};
+
+    AddPlace(&t, i, LAM_ROOT);
+  }
+  assert_true(Answers(&t, &load, &r));
+  assert_true(LamStressError(r.P, exact.P) < 0.02);
+  assert_near(r.energy_turgor, exact.energy_turgor, 0.02);
+  assert_false(Answers(&t, &beside, &r));
+  AnalyticTableClose(&t);
+}
+
+/* The state to solve in a question's stead: not turned, in the order of the nodes, near one of them. */
+static void a_turned_question_has_the_same_answer(void **state)
+{
+  AnalyticTable t = Rough(PETSC_TRUE, 0.2);
+  uint64_t seed = 11;
+  LamTable table;
+  PetscInt near = 0;
+
+  CHECK(LamDatabaseGetTable(t.database, &table));
+  for (int n = 0; n < 50; n++) {
+    const LamLoad load = RandomLoad(&t, &seed);
+    const LamResponse one = TissueAnswer(&t.tissue, &load);
+    LamLoad turned;
+    PetscInt64 key;
+    LamResponse other;
+
+    CHECK(LamTableTurn(table, &load, &turned, &key));
+    other = TissueAnswer(&t.tissue, &turned);
+    assert_near(other.energy, one.energy, 1e-9);
+    assert_true(turned.F[1] == turned.F[3]);
+    near += key >= 0;
+  }
+  assert_true(near > 0);
+  CHECK(LamTableDestroy(&table));
+  AnalyticTableClose(&t);
+}
+
 /* ---- images ---- */
 
 /* F Q of a motion Q of the lattice: turned by 60 k degrees; or M F Q, mirrored at an axis of it and seen in a mirror M.
@@ -485,6 +534,8 @@ int main(void)
       cmocka_unit_test(without_symmetry_nodes_answer_as_their_records),
       cmocka_unit_test(at_corners_all_numbers_are_the_records),
       cmocka_unit_test(finer_nodes_of_one_interval_bring_the_answer_nearer),
+      cmocka_unit_test(at_the_suction_of_its_states_a_cell_needs_no_others),
+      cmocka_unit_test(a_turned_question_has_the_same_answer),
       cmocka_unit_test(images_answer_alike),
       cmocka_unit_test(stress_turns_with_the_frame),
       cmocka_unit_test(the_tangent_is_isotropic_without_isochoric_strain),
