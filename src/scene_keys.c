@@ -341,11 +341,16 @@ const LamKey LamKeys[] = {
      .help = "Places, at most three, at whose nearest material points the microstructure is kept for pictures."},
     {LENGTH("macro.zoom[]", "mm"), .size = 2, .example = "[5 mm, 5 mm]", .help = "Position in the undeformed body."},
 
-    {MAP("macro.response"), .default_words = "as below", .example = "{outside: stop, warm_start_memory: 2 GB}",
+    {MAP("macro.response"), .default_words = "as below", .example = "{outside: stop, accuracy: 0.003}",
      .help = "How material points are answered."},
     {NAME("macro.response.outside", LamOutsideNames), .default_value = "solve", .example = "stop",
      .help = "What a cache does with a state that no node of its table would answer: `solve` it, and add it to the "
              "database, or `stop` the run where smaller steps do not avoid it."},
+    {REAL("macro.response.accuracy"), ABOVE(0), TO(0.5),
+     .default_words = "the scene's `accuracy`; a tenth of it where a cache answers for cells in contact with 12 or "
+                      "more elements along "
+                      "a face",
+     .example = "0.001", .help = "Relative error of P that an answer from a database may have by its estimate."},
     {TEXT("macro.response.warm_start_memory"), .default_words = "2 GB", .example = "500 MB",
      .help = "Memory of a rank for the states from which direct solves start; material points that find no room start "
              "from the reference."},

@@ -34,6 +34,8 @@ PetscErrorCode LamSceneBuildResponse(const LamDocument *document, LamScene *scen
   PetscFunctionBeginUser;
   PetscCall(LamSceneGet(document->root, "macro.response.outside", NULL, &value));
   scene->response.outside = (LamOutside)value.number[0];
+  PetscCall(LamSceneGet(document->root, "macro.response.accuracy", &node, &value));
+  scene->response.accuracy = node ? value.number[0] : 0;
   scene->response.warm_start_memory = LAM_WARM_START_MEMORY;
   PetscCall(LamSceneGet(document->root, "macro.response.warm_start_memory", &node, &value));
   if (node) PetscCall(ReadMemory(document, node, &scene->response.warm_start_memory));

@@ -269,6 +269,7 @@ extern const char *const LamOutsideNames[]; /* "solve", "stop" */
 /* How the material points of the body are answered. */
 typedef struct {
   LamOutside outside;
+  PetscReal accuracy;          /* of an answer from a database, relative error of P; 0: the program chooses */
   PetscReal warm_start_memory; /* bytes on a rank, of states that direct solves start from */
 } LamResponsePolicy;
 #define LAM_WARM_START_MEMORY 2e9 /* of scenes that do not say it */

@@ -98,35 +98,70 @@ static PetscErrorCode SolveFromReference(LamRVE rve, const LamLoad *load, LamRVE
   PetscFunctionReturn(0);
 }
 
-/* From `state`, or, where it does not lead there or from_state is false, from the reference. */
-static PetscErrorCode SolveFrom(LamRVE rve, const LamLoad *load, PetscBool from_state, LamRVEState state,
+#define ONE_STEP 0.04 /* largest change of F, turgor or cohesion that a solve takes at once, ... */
+#define SUBSTEP                                                                                                        \
+  0.0075 /* ... else steps of this: eight of them cost a sixth of a start that contact has to search from */
+
+static PetscInt StepCount(const LamLoad *from, const LamLoad *to)
+{
+  PetscReal largest = PetscMax(PetscAbsReal(to->turgor - from->turgor), PetscAbsReal(to->cohesion - from->cohesion));
+
+  for (int i = 0; i < 9; i++) largest = PetscMax(largest, PetscAbsReal(to->F[i] - from->F[i]));
+  return largest <= ONE_STEP ? 1 : (PetscInt)PetscCeilReal(largest / SUBSTEP);
+}
+
+static LamLoad Between(const LamLoad *from, const LamLoad *to, PetscReal t)
+{
+  LamLoad load = *to;
+
+  if (t == 1) return load;
+  for (int i = 0; i < 9; i++) load.F[i] = (1 - t) * from->F[i] + t * to->F[i];
+  load.turgor = (1 - t) * from->turgor + t * to->turgor;
+  load.cohesion = (1 - t) * from->cohesion + t * to->cohesion;
+  return load;
+}
+
+static void AddEffort(const LamResponse *step, LamResponse *sum)
+{
+  sum->newton_iterations += step->newton_iterations;
+  sum->factorisations += step->factorisations;
+  sum->seconds += step->seconds;
+}
+
+/* From `state`, the solution at `from`; NULL, or where that does not lead there: from the reference. */
+static PetscErrorCode SolveFrom(LamRVE rve, const LamLoad *from, const LamLoad *load, LamRVEState state,
                                 LamResponse *response)
 {
-  LamResponse first;
+  const PetscInt steps = from ? StepCount(from, load) : 0;
+  LamResponse effort = {.status = LAM_CONVERGED};
 
   PetscFunctionBeginUser;
-  if (!from_state) {
-    PetscCall(SolveFromReference(rve, load, state, response));
-    PetscFunctionReturn(0);
+  for (PetscInt k = 1; k <= steps && effort.status == LAM_CONVERGED; k++) {
+    const LamLoad next = Between(from, load, (PetscReal)k / (PetscReal)steps);
+
+    PetscCall(LamRVESolve(rve, &next, state, response));
+    AddEffort(response, &effort);
+    effort.status = response->status;
   }
-  PetscCall(LamRVESolve(rve, load, state, &first));
-  *response = first;
-  if (first.status == LAM_CONVERGED) PetscFunctionReturn(0);
-  PetscCall(SolveFromReference(rve, load, state, response));
-  response->newton_iterations += first.newton_iterations;
-  response->factorisations += first.factorisations;
-  response->seconds += first.seconds;
+  if (!steps || effort.status != LAM_CONVERGED) {
+    PetscCall(SolveFromReference(rve, load, state, response));
+    AddEffort(response, &effort);
+  }
+  response->newton_iterations = effort.newton_iterations;
+  response->factorisations = effort.factorisations;
+  response->seconds = effort.seconds;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamNodeSolve(LamRVE rve, LamGrid grid, PetscInt64 key, PetscBool from_parent, LamRVEState state,
                             LamResponse *response)
 {
-  LamLoad load;
+  LamLoad load, parent;
 
   PetscFunctionBeginUser;
   PetscCall(LamGridNodeLoad(grid, key, &load));
-  PetscCall(SolveFrom(rve, &load, from_parent, state, response));
+  if (from_parent) PetscCall(LamGridNodeLoad(grid, LamGridNodeParent(grid, key), &parent));
+  PetscCall(SolveFrom(rve, from_parent ? &parent : NULL, &load, state, response));
   PetscFunctionReturn(0);
 }
 
@@ -180,6 +215,7 @@ PetscErrorCode LamNodeChainSolveNear(void *ctx, PetscInt64 key, const LamLoad *l
   LamNodeChain chain = ctx;
   PetscBool leads = PETSC_FALSE;
   PetscInt place;
+  LamLoad from;
 
   PetscFunctionBeginUser;
   if (chain->stop && chain->stop()) {
@@ -191,7 +227,8 @@ PetscErrorCode LamNodeChainSolveNear(void *ctx, PetscInt64 key, const LamLoad *l
     leads = LamNodeLeads(&chain->nodes[place].response);
     if (leads) PetscCall(LamRVEStateCopy(chain->nodes[place].state, chain->state));
   }
-  PetscCall(SolveFrom(chain->rve, load, leads, chain->state, response));
+  PetscCall(LamGridNodeLoad(chain->grid, key, &from));
+  PetscCall(SolveFrom(chain->rve, leads ? &from : NULL, load, chain->state, response));
   PetscFunctionReturn(0);
 }
 
