@@ -47,6 +47,8 @@ scene "[1, 1]" 11.25 0.001 "  mesh: {along: 3, through: 1}"
 mesh "3 1"
 scene "[1, 1]" 11.25 0.001 "  mesh: {along: 5}"
 mesh "5 6"
+scene "[1, 1]" 11.25 0.01 "  interface: {law: contact, cohesion: 0.005 MPa}"
+mesh "16 2" # the tangents of cells in contact move the body
 
 # the numbers of states of each block
 [ "$(number plan.json states)" = 2 ] || fail "counts $(number plan.json states) states of the load"

@@ -20,7 +20,7 @@ typedef struct {
   LamDatabase database;
   LamResponder solver, cache;
   LamNodeSolver nodes;
-  PetscInt node_calls;
+  PetscInt node_calls, near_calls;
   Synthetic *material;
   LamLoad loads[POINTS];
   PetscInt points[POINTS];
@@ -41,6 +41,18 @@ static PetscErrorCode SolveNode(void *ctx, PetscInt64 key, LamResponse *response
   PetscCall(LamGridNodeLoad(grid, key, &load));
   PetscCall(LamResponseInit(&load, response));
   SyntheticEvaluate(fixture->material, &load, response);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SolveNear(void *ctx, PetscInt64 key, const LamLoad *load, LamResponse *response)
+{
+  Fixture *fixture = (Fixture *)ctx;
+
+  PetscFunctionBeginUser;
+  PetscCheck(LamKeyIsNode(key), PETSC_COMM_SELF, PETSC_ERR_PLIB, "key %lld", (long long)key);
+  fixture->near_calls++;
+  PetscCall(LamResponseInit(load, response));
+  SyntheticEvaluate(fixture->material, load, response);
   PetscFunctionReturn(0);
 }
 
@@ -220,6 +232,36 @@ static void NodesAreTheNodeSolvers(void **state)
   assert_int_equal(fixture.material->calls, 0);
   assert_int_equal(fixture.cache.solves, fixture.node_calls);
   assert_int_equal(RecordCount(&fixture), fixture.node_calls);
+  TearDown(&fixture);
+}
+
+/* With more accuracy than nodes can give; a question and its mirror image share a solve, and both get their own answer.
+ */
+static void StatesBesideTheTableStartFromANode(void **state)
+{
+  const PetscReal c = cos(0.3), s = sin(0.3);
+  Fixture fixture;
+
+  SetUp(&fixture, PETSC_COMM_SELF, CACHE_WITH_NODES);
+  fixture.nodes.solve_near = SolveNear;
+  assert_ok(fixture.cache.destroy(&fixture.cache.ctx));
+  assert_ok(LamCacheResponderCreate(PETSC_COMM_SELF, fixture.database, &fixture.solver, &fixture.nodes,
+                                    LAM_OUTSIDE_SOLVE, 1e-14, POINTS, &fixture.cache));
+  SetLoad(&fixture, 0, 0.1);
+  fixture.loads[1] = fixture.loads[0];
+  fixture.loads[1].F[1] *= -1;
+  fixture.loads[2] = fixture.loads[0]; /* R F */
+  for (int j = 0; j < 2; j++) {
+    fixture.loads[2].F[j] = c * fixture.loads[0].F[j] - s * fixture.loads[0].F[3 + j];
+    fixture.loads[2].F[3 + j] = s * fixture.loads[0].F[j] + c * fixture.loads[0].F[3 + j];
+  }
+  for (PetscInt p = 0; p < 3; p++) fixture.points[p] = p;
+  Respond(&fixture, 3);
+  assert_int_equal(fixture.near_calls, 1);
+  for (PetscInt p = 0; p < 3; p++) {
+    assert_int_equal(fixture.responses[p].source, LAM_SOURCE_SOLVE);
+    assert_true(Error(&fixture, p) < 1e-10);
+  }
   TearDown(&fixture);
 }
 
@@ -467,6 +509,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(AnswersAreAccurate),
       cmocka_unit_test(QuestionsShareNodes),
       cmocka_unit_test(NodesAreTheNodeSolvers),
+      cmocka_unit_test(StatesBesideTheTableStartFromANode),
       cmocka_unit_test(WithoutNodesTheStateIsSolved),
       cmocka_unit_test(WithoutAGridStatesAreSolved),
       cmocka_unit_test(DatabaseAloneNeverSolves),
