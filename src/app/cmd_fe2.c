@@ -43,6 +43,23 @@ static PetscBool CheckPaths(const LamFE2Run *run)
   return PETSC_FALSE;
 }
 
+/* The same for the databases of regions and levels, whose names follow from that of -d. */
+static PetscBool CheckTissuePaths(const LamFE2Run *run)
+{
+  const LamFE2Tissues *tissues = &run->tissues;
+
+  for (PetscInt t = 0; run->out_path && t < tissues->count; t++) {
+    const LamFE2Tissue *tissue = &tissues->tissues[t];
+
+    if (!tissue->database_path[0] || !SameFile(run->out_path, tissue->database_path)) continue;
+    if (LamAppIsRoot())
+      fprintf(stderr, "lamella fe2: -o %s is the database of %s; the results would replace it\n", run->out_path,
+              tissue->name[0] ? tissue->name : "-d");
+    return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
 /* Reads and checks everything; nothing is written before the responder stands, too. */
 static PetscErrorCode Prepare(LamFE2Run *run, PetscBool *finished)
 {
@@ -177,6 +194,10 @@ static PetscErrorCode Solve(LamFE2Run *run, int *exit_status)
   PetscFunctionBeginUser;
   PetscCall(Prepare(run, &finished));
   if (finished) PetscFunctionReturn(0);
+  if (!CheckTissuePaths(run)) {
+    *exit_status = LAM_EXIT_USAGE;
+    PetscFunctionReturn(0);
+  }
   PetscCall(LamFE2Connect(run));
   if (run->stopped) {
     *exit_status = LamStopExitStatus();
