@@ -89,13 +89,46 @@ static json_t *Spread(const LamCellSpread *spread, PetscReal MPa)
                    "cohesion", LamJSONReals(2, spread->cohesion, 1));
 }
 
+/* The plan of a region's tissue. */
+static PetscErrorCode PlanRegion(const LamScene *scene, const LamRegion *region, LamPlan *plan)
+{
+  LamScene own = *scene;
+
+  PetscFunctionBeginUser;
+  own.micro = region->micro;
+  PetscCall(LamPlanMake(&own, plan));
+  PetscFunctionReturn(0);
+}
+
+/* {name, apothem (um), wall_thickness (apothems), shear_modulus, turgor, cohesion (MPa), mesh, unknowns} of each */
+static PetscErrorCode Regions(const LamScene *scene, json_t **list)
+{
+  PetscFunctionBeginUser;
+  *list = json_array();
+  for (PetscInt k = 0; k < scene->region_count; k++) {
+    const LamRegion *region = &scene->regions[k];
+    const PetscReal MPa = region->scales.stress * 1e-6;
+    LamPlan plan;
+
+    PetscCall(PlanRegion(scene, region, &plan));
+    json_array_append_new(*list,
+                          json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:{s:I, s:I}, s:I}", "name", region->name,
+                                    "apothem", LamJSONReal(1e6 * region->scales.length), "wall_thickness",
+                                    LamJSONReal(region->micro.wall_thickness), "shear_modulus", LamJSONReal(MPa),
+                                    "turgor", LamJSONReal(region->turgor * MPa), "cohesion",
+                                    LamJSONReal(region->cohesion * MPa), "mesh", "along", (json_int_t)plan.micro.along,
+                                    "through", (json_int_t)plan.micro.through, "unknowns", (json_int_t)plan.unknowns));
+  }
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode PrintObject(const Check *check)
 {
   const LamPlan *plan = &check->plan;
   const LamScene *scene = check->scene;
   const LamMicrostructure *micro = &plan->micro;
   const PetscReal MPa = scene->scales.stress * 1e-6;
-  json_t *o;
+  json_t *o, *regions;
 
   PetscFunctionBeginUser;
   o = json_pack("{s:s, s:b, s:[I,I], s:s, s:s, s:o, s:b, s:o, s:o, s:I, s:o, s:o, s:o}", "scene", scene->path,
@@ -133,6 +166,10 @@ static PetscErrorCode PrintObject(const Check *check)
     json_t *macro = Cost(json_integer(plan->macro_states), (PetscReal)plan->macro_states * check->point);
 
     json_object_set_new(macro, "points", json_integer(plan->macro_points));
+    if (scene->region_count) {
+      PetscCall(Regions(scene, &regions));
+      json_object_set_new(macro, "regions", regions);
+    }
     json_object_set_new(o, "macro", macro);
   }
   PetscCall(LamPrintJSON(o));
@@ -195,7 +232,9 @@ static void PrintModel(const Check *check)
   if (scene->turgor != 0 || scene->sealed)
     printf("%-12s %.4g MPa %s%s\n", "turgor", (double)(scene->turgor * MPa),
            check->plan.spread.kinds ? "times the factor of each cell" : "in every lumen",
-           scene->sealed ? " at F = I, where the cells are sealed" : "");
+           !scene->sealed     ? ""
+           : scene->has_macro ? "; the cells are sealed once the body has it"
+                              : " at F = I, where the cells are sealed");
   else
     printf("%-12s none, where no load says otherwise\n", "turgor");
   printf("%-12s %" PetscInt_FMT " elements along a face, %" PetscInt_FMT " through a wall", "mesh", micro->along,
@@ -213,25 +252,53 @@ static void PrintStates(const char label[], PetscInt64 states, PetscReal seconds
   putchar('\n');
 }
 
-static void PrintMacro(const Check *check)
+static PetscErrorCode PrintRegions(const LamScene *scene)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < scene->region_count; k++) {
+    const LamRegion *region = &scene->regions[k];
+    const PetscReal MPa = region->scales.stress * 1e-6;
+    LamPlan plan;
+
+    PetscCall(PlanRegion(scene, region, &plan));
+    printf("  %-10s wall %.4g of the apothem (%.4g um), C1 + C2 %.4g MPa, turgor %.4g MPa", region->name,
+           (double)region->micro.wall_thickness, (double)(1e6 * region->scales.length), (double)MPa,
+           (double)(region->turgor * MPa));
+    if (region->micro.interface == LAM_INTERFACE_CONTACT)
+      printf(", cohesion %.4g MPa", (double)(region->cohesion * MPa));
+    printf("; %" PetscInt_FMT " x %" PetscInt_FMT " elements, %" PetscInt_FMT " unknowns\n", plan.micro.along,
+           plan.micro.through, plan.unknowns);
+  }
+  for (int f = 0, told = 0; f < LAM_TISSUE_FIELD_COUNT; f++) {
+    if (scene->fields.value[f]) printf("%s%s", told++ ? ", " : "  fields     ", LamTissueFieldNames[f]);
+    if (told && f == LAM_TISSUE_FIELD_COUNT - 1) printf(" by position\n");
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode PrintMacro(const Check *check)
 {
   const LamPlan *plan = &check->plan;
   const LamMacroSpec *macro = &check->scene->macro;
 
+  PetscFunctionBeginUser;
   printf("%-12s ", "fe2");
   if (macro->source == LAM_MESH_GMSH)
     printf("elements of %s", macro->gmsh);
   else
     printf("%" PetscInt_FMT " elements, %" PetscInt_FMT " material points", plan->macro_elements, plan->macro_points);
   printf(", %" PetscInt_FMT " load steps%s\n", macro->steps, macro->inflate ? " after inflation" : "");
+  PetscCall(PrintRegions(check->scene));
   if (plan->macro_states) PrintStates("  direct", plan->macro_states, (PetscReal)plan->macro_states * check->point);
+  PetscFunctionReturn(0);
 }
 
-static void PrintCost(const Check *check)
+static PetscErrorCode PrintCost(const Check *check)
 {
   const LamPlan *plan = &check->plan;
   const LamScene *scene = check->scene;
 
+  PetscFunctionBeginUser;
   printf("%-12s %" PetscInt_FMT "; one state about ", "unknowns", plan->unknowns);
   PrintSeconds(check->state);
   printf("\n%-12s about %.0f MB per rank\n", "memory", (double)check->memory);
@@ -245,7 +312,8 @@ static void PrintCost(const Check *check)
            LamMapPathCount(scene));
     PrintStates("  paths", plan->map_states, MapSeconds(check));
   }
-  if (scene->has_macro) PrintMacro(check);
+  if (scene->has_macro) PetscCall(PrintMacro(check));
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamCommandCheck(LamArgs *args, int *exit_status)
@@ -270,7 +338,7 @@ PetscErrorCode LamCommandCheck(LamArgs *args, int *exit_status)
     PetscCall(PrintObject(&check));
   } else {
     PrintModel(&check);
-    PrintCost(&check);
+    PetscCall(PrintCost(&check));
   }
   PetscCall(LamSceneDestroy(&check.scene));
   PetscFunctionReturn(0);
