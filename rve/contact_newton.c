@@ -28,9 +28,6 @@
 #define COMPLIANCE_DECAY 0.3
 #define STEP_LIMIT 0.02      /* apothems, from a start far from contact */
 #define NEAR_LIMIT 0.2       /* else */
-#define SETTLED 4            /* iterations from a near start, after which ... */
-#define ASTRAY 2.0           /* ... a step so many times the shortest one, ... */
-#define FAR_ASTRAY 0.02      /* ... and longer than this, apothems, leads away from the solution */
 #define LOOSE_TOLERANCE 1e-4 /* while the interface is being released */
 
 /* Step length: limited, and halved until no volume turns inside out; 0: none. */
@@ -71,9 +68,6 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, LamBorder *bord
   const PetscReal gap_tolerance = under_way ? LOOSE_TOLERANCE : LAM_GAP_TOLERANCE;
   const PetscInt most = compliant ? ITERATIONS : NEAR_ITERATIONS;
   PetscInt follow_until = FOLLOW_ITERATIONS, restarts = 0;
-  /* dry cells may have to roll a long way */
-  const PetscBool ends_astray = (PetscBool)(!compliant && load->turgor + load->cohesion > 0.0);
-  PetscReal shortest = PETSC_INFINITY;
   LamContactStep step;
 
   PetscFunctionBeginUser;
@@ -115,8 +109,6 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, LamBorder *bord
     PetscCall(StepLength(rve, load, border, compliant ? STEP_LIMIT : NEAR_LIMIT, &alpha));
     PetscCall(Report(rve, it, norm, gap, changes, rve->contact->largest_step, alpha, step.shift));
     if (alpha == 0.0 || (!compliant && rve->contact->largest_step > reach)) break;
-    if (ends_astray && it >= SETTLED && rve->contact->largest_step > PetscMax(FAR_ASTRAY, ASTRAY * shortest)) break;
-    shortest = PetscMin(shortest, rve->contact->largest_step);
     if (it >= CYCLE_AFTER && changes > 0) alpha *= 0.5;
     if (alpha < 1.0 && it < FOLLOW_FAR) follow_until = PetscMax(follow_until, it + 3);
     LamContactTakeStep(rve, load, alpha, &step);
