@@ -214,8 +214,9 @@ PetscErrorCode LamTableQuery(LamTable table, const LamLoad *load, PetscReal accu
 PetscErrorCode LamTableNeeds(LamTable table, const LamLoad *load, PetscReal accuracy, PetscInt *n,
                              PetscInt64 keys[LAM_MAX_NEEDS]);
 /*
-  The state that this question is a turned or mirrored image of, with F symmetric and its lattice strains in the order of
-  those of nodes (rounded to 1e-10); *key: of the nodes around it the nearest whose solution it can start from, -1: none.
+  The state that this question is a turned or mirrored image of, with F symmetric and its lattice strains in the order
+  of those of nodes (rounded to 1e-10); *key: of the nodes around it the nearest whose solution it can start from, -1:
+  none.
 */
 PetscErrorCode LamTableTurn(LamTable table, const LamLoad *load, LamLoad *turned, PetscInt64 *key);
 
