@@ -10,10 +10,11 @@
   2. The keys of the nodes that the newest table lacks for what is left, from all ranks, sorted, are dealt out in turn,
      solved, gathered, and added on all ranks in that order. From 1 with what is left, MAX_ROUNDS times at most.
   3. Where no node helps any more, what is left, turned and mirrored to the states of nodes (LamTableTurn), from all
-  ranks and sorted, is dealt out, solved, from the nearest node where there is one, and added as states of no grid,
-  which answer; or it stays without answer (LAM_OUTSIDE_STOP). In 2 and 3 questions are rounded, so that what is solved
-  does not depend on the ranks' order of summation; the answer to a rounded question is led back to the one asked by its
-  tangent.
+     ranks and sorted, is dealt out, solved, from the nearest node where there is one, and added as states of no grid,
+     which answer; or it stays without answer (LAM_OUTSIDE_STOP).
+
+  Rounding. In 2 and 3 questions are rounded, so that what is solved does not depend on the ranks' order of summation;
+  the answer to a rounded question is led back to the one asked by its tangent.
 
   Convergence. A point that was solved for itself in this load step SELF_STAYS times goes on so: at the edge of what the
   table answers, iterations that step to and fro between two answers would not end.

@@ -98,9 +98,10 @@ static PetscErrorCode SolveFromReference(LamRVE rve, const LamLoad *load, LamRVE
   PetscFunctionReturn(0);
 }
 
-#define ONE_STEP 0.04 /* largest change of F, turgor or cohesion that a solve takes at once, ... */
-#define SUBSTEP                                                                                                        \
-  0.0075 /* ... else steps of this: eight of them cost a sixth of a start that contact has to search from */
+/* Largest change of F, turgor or cohesion that a solve takes at once; else steps of SUBSTEP: eight of them cost a sixth
+   of a start that contact has to search from. */
+#define ONE_STEP 0.04
+#define SUBSTEP 0.0075
 
 static PetscInt StepCount(const LamLoad *from, const LamLoad *to)
 {
