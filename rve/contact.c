@@ -111,7 +111,7 @@ PetscErrorCode LamContactCreate(const LamMicrostructure *micro, const LamMesh *m
   PetscCall(PetscCalloc3(contact->count * contact->dofs, &contact->rows,
                          contact->face_count * contact->dofs * contact->dofs, &contact->hessian, 2 * mesh->class_count,
                          &contact->held));
-  for (PetscInt e = 0; e < along; ++e) contact->J0[e] = 2.0 / PetscSqrtReal(3.0) / (PetscReal)along;
+  for (PetscInt e = 0; e < along; ++e) contact->J0[e] = 2.0 / PetscSqrtReal(3.0) * (mesh->ends[e + 1] - mesh->ends[e]);
   PlaceFaces(micro, mesh, contact);
   PetscCall(LamGapAreaCreate(micro, mesh, &contact->gaps));
   PetscCall(LamMortarSegmentsCreate(along, along, &contact->segments));
@@ -283,8 +283,9 @@ static PetscBool Carries(const LamContact *contact, PetscInt h)
 {
   const LamContactFace *face = &contact->faces[h / contact->hats];
   const PetscInt j = h % contact->hats;
+  const PetscReal half = 0.5 * contact->J0[PetscMin(j, contact->hats - 2) / 2];
 
-  return (PetscBool)(j >= face->first && j <= face->last && contact->weight[h] > LEAST_WEIGHT * 0.5 * contact->J0[0]);
+  return (PetscBool)(j >= face->first && j <= face->last && contact->weight[h] > LEAST_WEIGHT * half);
 }
 
 PetscInt LamContactFindActive(LamContact *contact, PetscReal compliance)

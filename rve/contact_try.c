@@ -69,7 +69,7 @@ static PetscErrorCode LeaveSaddles(LamRVE rve, const LamLoad *load, LamContactOu
 static PetscErrorCode Refuse(LamRVE rve, const LamLoad *load, LamContactOutcome *out)
 {
   const LamMicrostructure *micro = &rve->micro;
-  const PetscReal edge = 2.0 / PetscSqrtReal(3.0) / (PetscReal)micro->along;
+  const PetscReal edge = LamLongestEdge(&rve->mesh);
   const PetscReal mesh = PetscMax(EDGE_SHARE * edge, PetscMin(DEEPEST_WALL, WALL_SHARE * rve->thinnest));
   const PetscReal shallow = PetscMin(mesh, HALF_WALL * rve->thinnest);
 

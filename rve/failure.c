@@ -100,9 +100,9 @@ PetscErrorCode LamWallMeasures(LamRVE rve, const LamLoad *load, LamResponse *res
       const PetscReal *pull = sums.running[TENSION], thickness = LamWallThickness(&rve->micro, cell);
 
       SumAlongFace(rve, load, (const PetscReal(*)[3])share, cell, face, &sums);
-      LamTakeLargestMean(thickness, cell, face, count, sums.running[STRETCH], reference, &stretch);
-      LamTakeLargestMean(thickness, cell, face, count, sums.running[ENERGY], reference, &energy);
-      LamTakeLargestMean(thickness, cell, face, count, pull, current, &stress);
+      LamTakeLargestMean(&rve->mesh, thickness, cell, face, count, sums.running[STRETCH], reference, &stretch);
+      LamTakeLargestMean(&rve->mesh, thickness, cell, face, count, sums.running[ENERGY], reference, &energy);
+      LamTakeLargestMean(&rve->mesh, thickness, cell, face, count, pull, current, &stress);
       tension[face % 3] += pull[count];
       volume[face % 3] += current[count];
     }

@@ -161,7 +161,7 @@ static PetscErrorCode AddFace(LamRVE rve, const LamLoad *load, PetscInt f, Sums 
   if (sums->max_gap > max_gap) {
     sums->gap_place[0] = (PetscReal)contact->faces[f].cell;
     sums->gap_place[1] = (PetscReal)contact->faces[f].face;
-    sums->gap_place[2] = sums->gap_at / (PetscReal)chains.n;
+    sums->gap_place[2] = LamMeshShare(&rve->mesh, sums->gap_at);
   }
   FaceForce(&chains, lambda, segments->count ? segments->s[0] : 0.0,
             segments->count ? segments->s[segments->count - 1] : 0.0, load->cohesion * contact->faces[f].cohesion,
@@ -172,7 +172,8 @@ static PetscErrorCode AddFace(LamRVE rve, const LamLoad *load, PetscInt f, Sums 
   family->force += force[count];
   if (segments->count == 0) family->open += J0;
   AddJumps(&chains, contact->hats, (const PetscReal(*)[2])x, sums->jumps);
-  LamTakeLargestMean(thickness, contact->faces[f].cell, contact->faces[f].face, count, force, length, &sums->traction);
+  LamTakeLargestMean(&rve->mesh, thickness, contact->faces[f].cell, contact->faces[f].face, count, force, length,
+                     &sums->traction);
   for (PetscInt j = 0; j < contact->hats; ++j) {
     const PetscInt h = f * contact->hats + j;
 

@@ -39,7 +39,8 @@ static PetscReal PressureAt(const LamContact *contact, const PetscReal lambda[],
   const PetscInt piece = PetscMin((PetscInt)(2.0 * s), contact->hats - 2);
   const PetscReal u = 2.0 * s - (PetscReal)piece;
 
-  return contact->J0[0] * ((1.0 - u) * lambda[piece] + u * lambda[piece + 1]) / (PetscSqrtReal(LamDot(Xs, Xs)) * F33);
+  return contact->J0[piece / 2] * ((1.0 - u) * lambda[piece] + u * lambda[piece + 1]) /
+         (PetscSqrtReal(LamDot(Xs, Xs)) * F33);
 }
 
 PetscErrorCode LamRVEGetInterface(LamRVE rve, LamRVEState state, PetscReal from[], PetscReal to[], PetscReal gap[],

@@ -35,6 +35,16 @@ static PetscInt NodeNumber(const LamMesh *mesh, PetscInt cell, PetscInt around, 
   return (cell * mesh->ring_nodes + around % mesh->ring_nodes) * mesh->radial_nodes + radial;
 }
 
+static void PlaceEnds(PetscReal grading, LamMesh *mesh)
+{
+  for (PetscInt i = 0; i <= mesh->along; ++i) {
+    const PetscReal s = (PetscReal)i / (PetscReal)mesh->along;
+
+    mesh->ends[i] = s - grading * PetscSinReal(2.0 * PETSC_PI * s) / (2.0 * PETSC_PI);
+  }
+  mesh->ends[mesh->along] = 1.0;
+}
+
 static void PlaceNodes(const LamMicrostructure *micro, LamMesh *mesh)
 {
   PetscReal L[2][2];
@@ -50,7 +60,7 @@ static void PlaceNodes(const LamMicrostructure *micro, LamMesh *mesh)
 
     for (PetscInt around = 0; around < mesh->ring_nodes; ++around) {
       const PetscInt face = around / (2 * mesh->along);
-      const PetscReal u = (PetscReal)(around % (2 * mesh->along)) / (PetscReal)(2 * mesh->along);
+      const PetscReal u = LamMeshShare(mesh, 0.5 * (PetscReal)(around % (2 * mesh->along)));
       PetscReal a[2], b[2];
 
       HexagonCorner(micro->orientation, face, a);
@@ -163,6 +173,8 @@ static PetscErrorCode CheckMicrostructure(const LamMicrostructure *micro)
   PetscCheck(micro->along > 0 && micro->through > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
              "elements along a face and through a wall must be chosen, got %d and %d", (int)micro->along,
              (int)micro->through);
+  PetscCheck(micro->grading >= 0.0 && micro->grading < 1.0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "grading of the mesh is %g; it must lie between 0 and 1", (double)micro->grading);
   PetscCheck(micro->cells[0] > 0 && micro->cells[1] > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
              "a block of %d x %d cells is empty", (int)micro->cells[0], (int)micro->cells[1]);
   for (PetscInt cell = 0; cell < micro->cells[0] * micro->cells[1]; ++cell) {
@@ -187,6 +199,7 @@ PetscErrorCode LamMeshCreate(const LamMicrostructure *micro, LamMesh *mesh)
   mesh->node_count = mesh->cell_count * mesh->ring_nodes * mesh->radial_nodes;
   mesh->element_count = mesh->cell_count * LAM_FACES * micro->along * micro->through;
   mesh->V0 = 2.0 * PetscSqrtReal(3.0) * (PetscReal)mesh->cell_count;
+  PetscCall(PetscMalloc1(mesh->along + 1, &mesh->ends));
   PetscCall(PetscMalloc1(2 * mesh->node_count, &mesh->X));
   PetscCall(PetscMalloc1(LAM_ELEMENT_NODES * mesh->element_count, &mesh->elements));
   PetscCall(PetscMalloc1(mesh->element_count, &mesh->cell_of));
@@ -195,6 +208,7 @@ PetscErrorCode LamMeshCreate(const LamMicrostructure *micro, LamMesh *mesh)
   PetscCall(PetscMalloc1(mesh->element_count, &mesh->has_shift));
   PetscCall(PetscCalloc3(LAM_FACES * mesh->cell_count, &mesh->neighbour, 2 * LAM_FACES * mesh->cell_count, &mesh->image,
                          LAM_FACES * mesh->cell_count, &mesh->held));
+  PlaceEnds(micro->grading, mesh);
   PlaceNodes(micro, mesh);
   FindNeighbours(micro, mesh);
   ConnectElements(mesh);
@@ -208,6 +222,7 @@ PetscErrorCode LamMeshCreate(const LamMicrostructure *micro, LamMesh *mesh)
 PetscErrorCode LamMeshDestroy(LamMesh *mesh)
 {
   PetscFunctionBeginUser;
+  PetscCall(PetscFree(mesh->ends));
   PetscCall(PetscFree(mesh->X));
   PetscCall(PetscFree(mesh->elements));
   PetscCall(PetscFree(mesh->cell_of));

@@ -2,8 +2,11 @@
   Mesh of the RVE: whole hexagonal rings of nine-node quadrilaterals, and how their nodes are tied together.
 
   Method. A ring lies between the hexagons of apothem 1 - t and 1 (lengths in apothems). Each of its six faces has
-  `along` x `through` elements, uniform along the face, with straight radial mitres at the corners. Face k has the
-  outward normal at orientation + 60 deg k; lattice vector L_k = 2 n_k. Cell (i, j) is centred at i L_0 + j L_1.
+  `along` x `through` elements with straight radial mitres at the corners. Element i ends at the shares e(i / along) and
+  e((i + 1) / along) of the face's length,
+    e(s) = s - grading sin(2 pi s) / (2 pi),
+  so that with grading > 0 elements at the corners, where stresses are singular, are smaller. Face k has the outward
+  normal at orientation + 60 deg k; lattice vector L_k = 2 n_k. Cell (i, j) is centred at i L_0 + j L_1.
 
   Contact leaves every cell its own nodes: each node is a class, without shift. Bonded cells share unknowns: coincident
   outer nodes form one class, also across the period, where a node is the image of its class's position y at a shift S:
@@ -28,6 +31,7 @@ typedef struct {
   PetscInt ring_nodes;   /* nodes around one ring: 12 along */
   PetscInt radial_nodes; /* nodes through the wall: 2 through + 1 */
   PetscInt node_count, element_count, class_count;
+  PetscReal *ends;        /* [along + 1] of elements along a face, as shares of its length: 0 to 1 */
   PetscReal *X;           /* [node][2] reference positions */
   PetscInt *elements;     /* [element][9]: corners counter-clockwise from the inner edge, mid-edges, centre */
   PetscInt *cell_of;      /* [element] */
@@ -49,6 +53,32 @@ static inline PetscInt LamMeshNeighbour(const LamMesh *mesh, PetscInt cell, Pets
 {
   *image = &mesh->image[2 * (LAM_FACES * cell + face)];
   return mesh->neighbour[LAM_FACES * cell + face];
+}
+
+/* The outer edges of the elements at a corner and in the middle of a face. */
+static inline PetscReal LamShortestEdge(const LamMesh *mesh)
+{
+  return 2.0 / PetscSqrtReal(3.0) * (mesh->ends[1] - mesh->ends[0]);
+}
+static inline PetscReal LamLongestEdge(const LamMesh *mesh)
+{
+  const PetscInt e = (mesh->along - 1) / 2;
+
+  return 2.0 / PetscSqrtReal(3.0) * (mesh->ends[e + 1] - mesh->ends[e]);
+}
+/* Where a point of a face lies, as a share of its length, counted in elements from its start, 0 to along; and back. */
+static inline PetscReal LamMeshShare(const LamMesh *mesh, PetscReal at)
+{
+  const PetscInt e = PetscMax(0, PetscMin((PetscInt)at, mesh->along - 1));
+
+  return mesh->ends[e] + (at - (PetscReal)e) * (mesh->ends[e + 1] - mesh->ends[e]);
+}
+static inline PetscReal LamMeshPlace(const LamMesh *mesh, PetscReal share)
+{
+  PetscInt e = 0;
+
+  while (e < mesh->along - 1 && share >= mesh->ends[e + 1]) ++e;
+  return (PetscReal)e + (share - mesh->ends[e]) / (mesh->ends[e + 1] - mesh->ends[e]);
 }
 
 /* Element numbers: e = ((cell*6 + face)*along + i)*through + m, m = 0 at the lumen. */

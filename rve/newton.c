@@ -28,9 +28,8 @@ PetscReal LamNewtonTolerance(LamRVE rve)
      floor measured from t = 0.003 to 0.5 and up to 8 x 8 cells stays below 0.6 slenderness x size
      (docs/verification.md). */
   const LamMicrostructure *micro = &rve->micro;
-  const PetscReal aspect =
-      2.0 / PetscSqrtReal(3.0) * (PetscReal)micro->through / ((PetscReal)micro->along * rve->thinnest);
-  const PetscReal slenderness = PetscMax(aspect, 1.0 / aspect);
+  const PetscReal depth = rve->thinnest / (PetscReal)micro->through;
+  const PetscReal slenderness = PetscMax(LamLongestEdge(&rve->mesh) / depth, depth / LamShortestEdge(&rve->mesh));
   const PetscReal size = 1.0 + PetscSqrtReal(3.0) * (PetscReal)(PetscMax(micro->cells[0], micro->cells[1]) - 1);
   const PetscReal rounding = PETSC_MACHINE_EPSILON * rve->stiffest * PetscSqrtReal((PetscReal)rve->ndof);
 

@@ -370,10 +370,10 @@ static inline PetscReal LamLargestMeanValue(const LamLargestMean *largest)
 {
   return largest->value > -PETSC_MAX_REAL ? largest->value : NAN;
 }
-/* Takes a face into account, with windows of length `thickness`: running integrals [count + 1] over equal sub-intervals
-   of its reference length. */
-void LamTakeLargestMean(PetscReal thickness, PetscInt cell, PetscInt face, PetscInt count, const PetscReal integral[],
-                        const PetscReal length[], LamLargestMean *largest);
+/* Takes a face into account, with windows of length `thickness`: running integrals [count + 1] over sub-intervals, of
+   which all elements along the face have as many. */
+void LamTakeLargestMean(const LamMesh *mesh, PetscReal thickness, PetscInt cell, PetscInt face, PetscInt count,
+                        const PetscReal integral[], const PetscReal length[], LamLargestMean *largest);
 /* Bonded tissue: mean normal traction per face family, largest normal and shear traction (Cauchy) and their places. */
 PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, LamResponse *response);
 /* Fills the measures of the walls from rve->y. */

@@ -175,40 +175,42 @@ static PetscReal RunningAt(PetscInt count, const PetscReal integral[], PetscReal
   return integral[k] + (s - (PetscReal)k) * (integral[k + 1] - integral[k]);
 }
 
-/* Largest mean over windows of `window` sub-intervals (at most the whole face), and the window's middle. Windows begin
-   or end at the ends of sub-intervals, so those flush with either end of the face are among them. */
-static PetscReal LargestWindowMean(PetscInt count, PetscReal window, const PetscReal integral[],
+/* Largest mean over windows (shares of the face, at most the whole), and the window's middle. Windows begin or end at
+   the ends of sub-intervals, so those flush with either end of the face are among them. */
+static PetscReal LargestWindowMean(const LamMesh *mesh, PetscInt count, PetscReal window, const PetscReal integral[],
                                    const PetscReal length[], PetscReal *middle)
 {
+  const PetscReal samples = (PetscReal)count / (PetscReal)mesh->along;
   PetscReal largest = -PETSC_MAX_REAL;
 
-  *middle = 0.5 * (PetscReal)count;
-  if (window >= (PetscReal)count) return integral[count] / length[count];
+  *middle = 0.5;
+  if (window >= 1.0) return integral[count] / length[count];
   for (PetscInt k = 0; k <= count; ++k)
     for (PetscInt side = -1; side <= 1; side += 2) {
-      const PetscReal other = (PetscReal)k + (PetscReal)side * window;
-      PetscReal mean;
+      const PetscReal share = LamMeshShare(mesh, (PetscReal)k / samples), other = share + (PetscReal)side * window;
+      PetscReal at, mean;
 
-      if (other < 0.0 || other > (PetscReal)count) continue;
-      mean = (RunningAt(count, integral, other) - integral[k]) / (RunningAt(count, length, other) - length[k]);
+      if (other < 0.0 || other > 1.0) continue;
+      at = samples * LamMeshPlace(mesh, other);
+      mean = (RunningAt(count, integral, at) - integral[k]) / (RunningAt(count, length, at) - length[k]);
       if (mean <= largest) continue;
       largest = mean;
-      *middle = 0.5 * ((PetscReal)k + other);
+      *middle = 0.5 * (share + other);
     }
   return largest;
 }
 
-void LamTakeLargestMean(PetscReal thickness, PetscInt cell, PetscInt face, PetscInt count, const PetscReal integral[],
-                        const PetscReal length[], LamLargestMean *largest)
+void LamTakeLargestMean(const LamMesh *mesh, PetscReal thickness, PetscInt cell, PetscInt face, PetscInt count,
+                        const PetscReal integral[], const PetscReal length[], LamLargestMean *largest)
 {
-  const PetscReal window = thickness * (PetscReal)count / (2.0 / PetscSqrtReal(3.0));
   PetscReal middle;
-  const PetscReal mean = LargestWindowMean(count, window, integral, length, &middle);
+  const PetscReal window = thickness / (2.0 / PetscSqrtReal(3.0));
+  const PetscReal mean = LargestWindowMean(mesh, count, window, integral, length, &middle);
 
   /* faces that symmetry makes alike differ by rounding: the first of them is named; nothing compares with no mean yet
    */
   if (mean <= largest->value + 1e-10 * PetscAbsReal(largest->value)) return;
-  *largest = (LamLargestMean){mean, {(PetscReal)cell, (PetscReal)face, middle / (PetscReal)count}};
+  *largest = (LamLargestMean){mean, {(PetscReal)cell, (PetscReal)face, middle}};
 }
 
 PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, LamResponse *response)
@@ -242,9 +244,9 @@ PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, LamResponse *re
       Accumulate(along, (const PetscReal(*)[2])x, (const PetscReal(*)[2])t, &sums);
       total += sums.normal[count];
       length += sums.length[count];
-      LamTakeLargestMean(thickness, cell, face, count, sums.normal, sums.length, &normal);
-      LamTakeLargestMean(thickness, cell, face, count, sums.shear, sums.length, &shear);
-      LamTakeLargestMean(thickness, cell, face, count, sums.back, sums.length, &shear);
+      LamTakeLargestMean(&rve->mesh, thickness, cell, face, count, sums.normal, sums.length, &normal);
+      LamTakeLargestMean(&rve->mesh, thickness, cell, face, count, sums.shear, sums.length, &shear);
+      LamTakeLargestMean(&rve->mesh, thickness, cell, face, count, sums.back, sums.length, &shear);
     }
     response->mean_face_traction[face] = length > 0.0 ? total / length : NAN; /* a narrow patch may lack a family */
   }

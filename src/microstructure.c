@@ -53,7 +53,9 @@ static void Describe(const LamMicrostructure *micro, FILE *out)
   fprintf(out, "{\"wall_thickness\": %.12g, \"orientation\": %.12g, \"cells\": [%d, %d], ",
           Clean(micro->wall_thickness), Clean(micro->orientation), (int)micro->cells[0], (int)micro->cells[1]);
   if (micro->is_patch) fprintf(out, "\"patch\": {\"sides\": \"%s\"}, ", LamPatchSidesNames[micro->sides]);
-  fprintf(out, "\"mesh\": {\"along\": %d, \"through\": %d}, ", (int)micro->along, (int)micro->through);
+  fprintf(out, "\"mesh\": {\"along\": %d, \"through\": %d", (int)micro->along, (int)micro->through);
+  if (micro->grading != 0) fprintf(out, ", \"grading\": %.12g", Clean(micro->grading));
+  fprintf(out, "}, ");
   DescribeWall(&micro->wall, out);
   fprintf(out, ", \"interface\": {\"law\": \"%s\"", LamInterfaceLawNames[micro->interface]);
   if (micro->interface == LAM_INTERFACE_CONTACT) fprintf(out, ", \"clearance\": %.12g", Clean(micro->clearance));
@@ -168,10 +170,10 @@ static PetscBool ParseObject(json_t *root, LamMicrostructure *m)
   const char *interface;
   int cells[2], along, through, found;
 
-  if (json_unpack(root, "{s:F, s:F, s:[i,i], s?o, s:{s:i, s:i}, s:o, s:{s:s, s?F}, s?o}", "wall_thickness",
+  if (json_unpack(root, "{s:F, s:F, s:[i,i], s?o, s:{s:i, s:i, s?F}, s:o, s:{s:s, s?F}, s?o}", "wall_thickness",
                   &m->wall_thickness, "orientation", &m->orientation, "cells", &cells[0], &cells[1], "patch", &patch,
-                  "mesh", "along", &along, "through", &through, "wall", &wall, "interface", "law", &interface,
-                  "clearance", &m->clearance, "cell", &cells_that_differ))
+                  "mesh", "along", &along, "through", &through, "grading", &m->grading, "wall", &wall, "interface",
+                  "law", &interface, "clearance", &m->clearance, "cell", &cells_that_differ))
     return PETSC_FALSE;
   found = Find(LAM_INTERFACE_LAW_COUNT, LamInterfaceLawNames, interface);
   if (found < 0 || cells[0] < 1 || cells[1] < 1) return PETSC_FALSE;

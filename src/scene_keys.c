@@ -41,6 +41,7 @@ static const char *const turgor_mode_names[] = {LAM_TURGOR_MODES(LAM_NAME_ENTRY)
 #define ABOVE(x) .lower = {LAM_BOUND_EXCLUDED, x}
 #define FROM(x) .lower = {LAM_BOUND_INCLUDED, x}
 #define TO(x) .upper = {LAM_BOUND_INCLUDED, x}
+#define BELOW(x) .upper = {LAM_BOUND_EXCLUDED, x}
 
 #define CHOSEN "chosen for the wanted accuracy"
 #define OWN "that of the scene's own cell"
@@ -195,6 +196,10 @@ const LamKey LamKeys[] = {
      .help = "Elements along one face."},
     {INTEGER("rve.mesh.through"), FROM(1), TO(50), .default_words = CHOSEN, .example = "2",
      .help = "Elements through one wall."},
+    {REAL("rve.mesh.grading"), FROM(0), BELOW(1),
+     .default_words = "chosen for the accuracy where `along` is; else 0: elements are alike", .example = "0.6",
+     .help = "How much smaller elements at the ends of a face, where stresses are singular, are than in its middle: "
+             "about 1 - grading to 1 + grading."},
     {NAME("rve.strategy", LamStrategyNames), .default_value = "two_step", .example = "two_step",
      .help = "How contact is reached: from the bonded state (`two_step`) or at once (`one_step`). No effect on bonded "
              "tissue."},
@@ -399,6 +404,8 @@ const LamKey LamKeys[] = {
      .help = "Elements along one face."},
     {INTEGER("macro.regions[].mesh.through"), FROM(1), TO(50), .default_words = AS_RVE, .example = "2",
      .help = "Elements through one wall."},
+    {REAL("macro.regions[].mesh.grading"), FROM(0), BELOW(1), .default_words = AS_RVE, .example = "0.6",
+     .help = "How much smaller elements at the ends of a face are."},
     {MAP("macro.fields"), .default_words = "nothing varies", .example = "{orientation: {expression: 3 * x, unit: deg}}",
      .help = "Numbers that vary with the reference position, replacing those of `rve` and `macro.regions`."},
     TISSUE_FIELD("orientation", "{expression: 3 * x, unit: deg}", "3 * x", "deg",

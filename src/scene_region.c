@@ -128,7 +128,7 @@ static PetscErrorCode BuildTissue(const LamDocument *document, const LamNode *en
                                   LamRegion *r)
 {
   const LamNode *node;
-  LamValue along, through;
+  LamValue along, through, grading;
 
   PetscFunctionBeginUser;
   PetscCall(LamMicrostructureCopy(&scene->micro, &r->micro));
@@ -142,6 +142,9 @@ static PetscErrorCode BuildTissue(const LamDocument *document, const LamNode *en
   if (node) r->micro.along = (PetscInt)along.number[0];
   PetscCall(LamSceneGet(entry, ITEM ".mesh.through", &node, &through));
   if (node) r->micro.through = (PetscInt)through.number[0];
+  PetscCall(LamSceneGet(entry, ITEM ".mesh.grading", &node, &grading));
+  if (node) r->micro.grading = grading.number[0];
+  if (r->micro.along && r->micro.grading < 0.0) r->micro.grading = 0.0;
   PetscFunctionReturn(0);
 }
 

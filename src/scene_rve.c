@@ -55,11 +55,13 @@ static PetscErrorCode BuildCell(const LamDocument *document, LamScene *scene)
   }
   PetscCall(LamSceneScale(document, node, thickness, scene->scales.length, &micro->wall_thickness));
   PetscCall(GetReal(document, "rve.cell.orientation", NULL, &micro->orientation));
-  /* what is not given stays 0: the planner chooses */
+  /* what is not given stays 0, or negative: the planner chooses */
   PetscCall(LamSceneGet(document->root, "rve.mesh.along", NULL, &along));
   PetscCall(LamSceneGet(document->root, "rve.mesh.through", NULL, &through));
   micro->along = (PetscInt)along.number[0];
   micro->through = (PetscInt)through.number[0];
+  PetscCall(GetReal(document, "rve.mesh.grading", &node, &micro->grading));
+  if (!node) micro->grading = micro->along ? 0.0 : -1.0;
   PetscFunctionReturn(0);
 }
 

@@ -70,6 +70,8 @@ typedef struct {
   LamInterfaceLawType interface;
   PetscReal clearance;     /* in apothems */
   PetscInt along, through; /* elements per face and through one wall; 0: not chosen yet (the planner does) */
+  PetscReal grading;       /* of elements along a face towards its ends, in [0, 1); 0: all alike; negative: not chosen
+                              yet */
 } LamMicrostructure;
 
 /* A copy that owns its cells; it is to be destroyed. A scene destroys its own microstructure. */

@@ -70,6 +70,7 @@ static PetscErrorCode OpenDatabase(LamFE2Run *run, LamFE2Tissue *tissue)
   PetscCall(LamDatabaseGetMicrostructure(tissue->database, &stored, NULL, NULL));
   if (!micro->along) micro->along = stored.along;
   if (!micro->through) micro->through = stored.through;
+  if (micro->grading < 0.0) micro->grading = stored.grading;
   PetscFunctionReturn(0);
 }
 

@@ -39,6 +39,7 @@ static void ChooseMesh(const LamScene *scene, LamMicrostructure *micro)
   if (!micro->along)
     micro->along = uneven && accuracy <= BODY_ACCURACY ? PetscMax(Meshes[m].along, BODY_ALONG) : Meshes[m].along;
   if (!micro->through) micro->through = Meshes[m].through;
+  if (micro->grading < 0.0) micro->grading = 0.0;
 }
 
 /* Faces and corners of the outer loops whose nodes are unknowns of their own, and pairs of facing walls. */
