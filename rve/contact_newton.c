@@ -65,7 +65,7 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, LamBorder *bord
   const PetscBool compliant = (PetscBool)(reach == LAM_FAR);
   const PetscBool under_way = (PetscBool)(rve->contact->share > 0.0);
   const PetscReal tolerance = under_way ? LOOSE_TOLERANCE : LamNewtonTolerance(rve);
-  const PetscReal gap_tolerance = under_way ? LOOSE_TOLERANCE : LAM_GAP_TOLERANCE;
+  const PetscReal gap_tolerance = under_way ? LOOSE_TOLERANCE : LamGapTolerance(rve);
   const PetscInt most = compliant ? ITERATIONS : NEAR_ITERATIONS;
   PetscInt follow_until = FOLLOW_ITERATIONS, restarts = 0;
   LamContactStep step;

@@ -187,7 +187,7 @@ PetscErrorCode LamContactNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOu
     if (valid) {
       LamContactResidual(rve, &step, &norm);
       (void)LamContactFindActive(contact, 0.0);
-      if (norm <= tolerance && LamContactComplementarity(contact) <= LAM_GAP_TOLERANCE) {
+      if (norm <= tolerance && LamContactComplementarity(contact) <= LamGapTolerance(rve)) {
         PetscBool holds;
 
         PetscCall(LamContactStatusHolds(rve, load, rve->y, &holds));

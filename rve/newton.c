@@ -33,7 +33,7 @@ PetscReal LamNewtonTolerance(LamRVE rve)
   const PetscReal size = 1.0 + PetscSqrtReal(3.0) * (PetscReal)(PetscMax(micro->cells[0], micro->cells[1]) - 1);
   const PetscReal rounding = PETSC_MACHINE_EPSILON * rve->stiffest * PetscSqrtReal((PetscReal)rve->ndof);
 
-  return PetscMax(1e-11, PetscMax(4.0, slenderness * size) * rounding);
+  return PetscMax(PetscMax(1e-11, rve->tolerance), PetscMax(4.0, slenderness * size) * rounding);
 }
 
 static PetscErrorCode Report(LamRVE rve, const char tier[], PetscInt iteration, PetscReal residual, PetscReal step,

@@ -40,6 +40,16 @@ PetscErrorCode LamRVESetStrategy(LamRVE rve, LamStrategy strategy)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamRVESetTolerance(LamRVE rve, PetscReal tolerance)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(tolerance >= 0.0 && tolerance < 1.0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "tolerance of the solves is %g; it must lie between 0 and 1", (double)tolerance);
+  rve->tolerance = tolerance;
+  if (rve->bonded) PetscCall(LamRVESetTolerance(rve->bonded, tolerance));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamRVESetMonitor(LamRVE rve, PetscBool on)
 {
   PetscFunctionBeginUser;
@@ -110,6 +120,7 @@ PetscErrorCode LamRVESetUp(LamRVE rve)
     PetscCall(LamRVECreate(rve->comm, &rve->bonded));
     PetscCall(LamRVESetMicrostructure(rve->bonded, &bonded));
     PetscCall(LamRVESetSealable(rve->bonded, rve->seal.allowed));
+    PetscCall(LamRVESetTolerance(rve->bonded, rve->tolerance));
     PetscCall(LamRVESetMonitor(rve->bonded, rve->monitor));
     PetscCall(LamRVESetInterrupt(rve->bonded, rve->interrupt, rve->interrupt_ctx));
     PetscCall(LamRVESetUp(rve->bonded));

@@ -91,6 +91,7 @@ struct LamRVE_s {
   MPI_Comm comm;
   LamMicrostructure micro;
   LamStrategy strategy;
+  PetscReal tolerance; /* asked of solves; 0: rounding */
   PetscBool has_micro, is_set_up, monitor;
   const LamWallLaw **law; /* [cell]; owned, the laws are not */
   PetscReal stiffest;     /* bulk and fibre modulus, of the stiffest cell */
@@ -309,7 +310,11 @@ PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state,
 
 /* ---- contact_step.c ---- */
 #define LAM_CONTACT_PROXIMAL 1e-8 /* shift of every contact step: a cell that nothing holds must not be singular */
-#define LAM_GAP_TOLERANCE 1e-10   /* of max |min(lambda, c gap)| */
+/* Of max |min(lambda, c gap)|. */
+static inline PetscReal LamGapTolerance(LamRVE rve)
+{
+  return PetscMax(1e-10, rve->tolerance);
+}
 typedef struct {
   PetscReal *rhs, *solution, *image; /* work space */
   PetscReal *lambda;                 /* [multipliers] after the step */

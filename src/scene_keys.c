@@ -200,6 +200,10 @@ const LamKey LamKeys[] = {
      .default_words = "chosen for the accuracy where `along` is; else 0: elements are alike", .example = "0.6",
      .help = "How much smaller elements at the ends of a face, where stresses are singular, are than in its middle: "
              "about 1 - grading to 1 + grading."},
+    {REAL("rve.tolerance"), ABOVE(0), TO(0.1), .default_words = "rounding", .example = "1e-6",
+     .help =
+         "Where Newton iterations of the RVE end: residual (forces over (C1 + C2) apothem) and violation of contact. "
+         "Not below rounding."},
     {NAME("rve.strategy", LamStrategyNames), .default_value = "two_step", .example = "two_step",
      .help = "How contact is reached: from the bonded state (`two_step`) or at once (`one_step`). No effect on bonded "
              "tissue."},

@@ -170,6 +170,7 @@ static PetscErrorCode BuildInterface(const LamDocument *document, LamScene *scen
   PetscCall(GetName(document, "rve.strategy", NULL, &strategy));
   scene->micro.interface = (LamInterfaceLawType)law;
   scene->strategy = (LamStrategy)strategy;
+  PetscCall(GetReal(document, "rve.tolerance", NULL, &scene->tolerance));
   PetscCall(LamSceneScale(document, cohesion_node, cohesion, scene->scales.stress, &scene->cohesion));
   PetscCall(LamSceneScale(document, clearance_node, clearance, scene->scales.length, &scene->micro.clearance));
   PetscFunctionReturn(0);

@@ -29,6 +29,9 @@ PetscErrorCode LamRVEDismiss(MPI_Comm comm);
 PetscErrorCode LamRVESetMicrostructure(LamRVE rve, const LamMicrostructure *micro);
 /* How contact is reached: LAM_TWO_STEP (default) or LAM_ONE_STEP. No effect on bonded tissue. */
 PetscErrorCode LamRVESetStrategy(LamRVE rve, LamStrategy strategy);
+/* Ends solves once the residual, forces per thickness over (C1 + C2) apothem, and the complementarity of contact, are
+   below `tolerance`; never below what rounding allows, which is the default, 0. */
+PetscErrorCode LamRVESetTolerance(LamRVE rve, PetscReal tolerance);
 /* Prints each Newton iteration to stderr (residual, step, negative eigenvalues). Off by default. */
 PetscErrorCode LamRVESetMonitor(LamRVE rve, PetscBool on);
 /*

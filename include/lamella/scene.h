@@ -287,6 +287,7 @@ typedef struct {
   PetscReal water_bulk_modulus; /* ... of this bulk modulus, C1 + C2 */
   PetscReal cohesion;           /* likewise */
   LamStrategy strategy;         /* how contact is reached */
+  PetscReal tolerance;          /* of the Newton iterations of an RVE; 0: rounding */
   LamStrength strength;         /* what walls and lamella bear */
   PetscReal accuracy;           /* wanted relative error of the effective stress */
   PetscInt load_count;

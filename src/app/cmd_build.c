@@ -153,6 +153,7 @@ static PetscErrorCode CreateRVE(LamBuild *b)
   PetscCall(LamRVECreate(b->team, &b->rve));
   PetscCall(LamRVESetMicrostructure(b->rve, &b->scene->micro));
   PetscCall(LamRVESetStrategy(b->rve, b->scene->strategy));
+  PetscCall(LamRVESetTolerance(b->rve, b->scene->tolerance));
   PetscCall(LamRVESetUp(b->rve));
   PetscFunctionReturn(0);
 }

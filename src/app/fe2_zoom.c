@@ -228,6 +228,7 @@ static PetscErrorCode ZoomOne(LamFE2Run *run, const Zoom *zoom, const char bytes
   PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
   PetscCall(LamRVESetMicrostructure(rve, &scene->micro));
   PetscCall(LamRVESetStrategy(rve, scene->strategy));
+  PetscCall(LamRVESetTolerance(rve, scene->tolerance));
   PetscCall(LamRVESetUp(rve));
   PetscCall(LamRVESetInterrupt(rve, LamStopInterrupt, NULL));
   PetscCall(LamRVEStateCreate(rve, &state));

@@ -16,6 +16,7 @@ static PetscErrorCode CreateOne(MPI_Comm comm, const LamScene *scene, PetscInt r
   PetscCall(LamRVECreate(comm, rve));
   PetscCall(LamRVESetMicrostructure(*rve, &micro));
   PetscCall(LamRVESetStrategy(*rve, scene->strategy));
+  PetscCall(LamRVESetTolerance(*rve, scene->tolerance));
   PetscCall(LamRVESetSealable(*rve, scene->sealed));
   PetscCall(LamRVESetUp(*rve));
   PetscCall(LamRVEStateCreate(*rve, state));
