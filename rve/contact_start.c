@@ -121,7 +121,7 @@ static PetscErrorCode FitMultipliers(LamRVE rve, const LamLoad *load, PetscBool 
   if (!*ok) PetscFunctionReturn(0);
   PetscCall(PetscCalloc2(rve->linear.n, &rhs, rve->linear.n, &solution));
   for (PetscInt i = 0; i < positions; ++i) rhs[i] = -rve->residual[i + 2];
-  PetscCall(LamLinearSolve(&rve->linear, 1, rhs, solution));
+  PetscCall(LamLinearSolveOnce(&rve->linear, 1, rhs, solution));
   for (PetscInt h = 0; h < contact->count; ++h)
     contact->lambda[h] = contact->active[h] ? PetscMax(0.0, solution[positions + h]) : 0.0;
   PetscCall(PetscFree2(rhs, solution));

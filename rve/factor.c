@@ -2,11 +2,14 @@
   One symbolic analysis for life, values changed in place, MUMPS LDL^T, which pivots safely on indefinite matrices and
   counts negative eigenvalues (Sylvester's law of inertia).
 
+  Small systems that should be positive definite are tried without pivots first (cholesky.h).
+
   With several ranks every collective call is announced by rank 0: an order (what, which matrix, its size) is broadcast,
   and all ranks make the same calls. The matrix is distributed so that rank 0 has all of its rows; MUMPS distributes the
   fronts itself. Ranks that wait leave the processor to others.
 */
 #include "factor.h"
+#include "cholesky.h"
 #include <time.h>
 
 #define MOST_FACTORS 8 /* of several ranks, at a time */
@@ -18,6 +21,8 @@ struct LamFactor_s {
   PetscInt n, nonzeros;
   PetscInt *row, *column; /* borrowed, by rank 0 */
   PetscReal *values;
+  LamCholesky cholesky; /* tried first; NULL: not small, or not definite */
+  PetscBool definite;   /* it holds the factor */
   Mat matrix, factor;
   Vec rhs, solution; /* placeholders for the callers' arrays */
 };
@@ -131,6 +136,7 @@ static PetscErrorCode Solve(LamFactor f, const PetscReal rhs[], PetscReal soluti
 static PetscErrorCode Free(LamFactor f)
 {
   PetscFunctionBeginUser;
+  PetscCall(LamCholeskyDestroy(&f->cholesky));
   PetscCall(MatDestroy(&f->factor));
   PetscCall(MatDestroy(&f->matrix));
   PetscCall(VecDestroy(&f->rhs));
@@ -143,7 +149,7 @@ static PetscErrorCode Free(LamFactor f)
 /* ---- rank 0 ---- */
 
 PetscErrorCode LamFactorCreate(MPI_Comm comm, PetscInt n, PetscInt row[], PetscInt column[], PetscReal values[],
-                               LamFactor *factor)
+                               PetscBool definite, LamFactor *factor)
 {
   LamFactor f;
 
@@ -164,6 +170,8 @@ PetscErrorCode LamFactorCreate(MPI_Comm comm, PetscInt n, PetscInt row[], PetscI
   }
   PetscCall(Announce(f, ORDER_CREATE));
   PetscCall(CreateMatrix(f));
+  if (definite && f->size == 1 && n <= LAM_CHOLESKY_LARGEST)
+    PetscCall(LamCholeskyCreate(n, row, column, values, &f->cholesky));
   *factor = f;
   PetscFunctionReturn(0);
 }
@@ -174,6 +182,11 @@ PetscErrorCode LamFactorNumeric(LamFactor factor, PetscInt *negative, PetscBool 
   PetscScalar *array; /* of one rank it is factor->values; taken through PETSc so that it knows of the change */
 
   PetscFunctionBeginUser;
+  *negative = 0;
+  *ok = PETSC_TRUE;
+  factor->definite = PETSC_FALSE;
+  if (factor->cholesky) PetscCall(LamCholeskyNumeric(factor->cholesky, &factor->definite));
+  if (factor->definite) PetscFunctionReturn(0);
   PetscCall(Announce(factor, ORDER_NUMERIC));
   if (factor->size > 1) PetscCall(MatGetDiagonalBlock(factor->matrix, &rows));
   PetscCall(MatSeqSBAIJGetArray(rows, &array));
@@ -188,6 +201,10 @@ PetscErrorCode LamFactorSolve(LamFactor factor, PetscInt count, const PetscReal 
   Mat B, X;
 
   PetscFunctionBeginUser;
+  if (factor->definite) {
+    PetscCall(LamCholeskySolve(factor->cholesky, count, rhs, solution));
+    PetscFunctionReturn(0);
+  }
   if (count == 1 || factor->size > 1) {
     for (PetscInt k = 0; k < count; ++k) {
       PetscCall(Announce(factor, ORDER_SOLVE));

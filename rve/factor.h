@@ -12,7 +12,7 @@ typedef struct LamFactor_s *LamFactor;
 
 /* Upper triangle in compressed rows: row [n+1], column and values [row[n]] are borrowed. Called by rank 0 alone. */
 PetscErrorCode LamFactorCreate(MPI_Comm comm, PetscInt n, PetscInt row[], PetscInt column[], PetscReal values[],
-                               LamFactor *factor);
+                               PetscBool definite, LamFactor *factor);
 /* Of the present values. *ok is PETSC_FALSE where the matrix is singular to working precision; negative: eigenvalues.
  */
 PetscErrorCode LamFactorNumeric(LamFactor factor, PetscInt *negative, PetscBool *ok);

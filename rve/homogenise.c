@@ -189,27 +189,28 @@ void LamCopyActive(LamRVE rve, const PetscReal column[], PetscReal copy[])
     copy[i] = i < positions || i >= pressures || rve->contact->active[i - positions] ? column[i] : 0.0;
 }
 
-/* H = (L_qq - R^T K^-1 R) / V0. */
+/* H = (L_qq - R^T K^-1 R) / V0. With X = K^-1 (R - rest) it is (L_qq - R^T X - X^T rest - rest^T K^-1 rest) / V0, of
+   which the last term is left out: an error of the solve enters squared. */
 static PetscErrorCode Condense(LamRVE rve, Condensation *c, PetscReal H[NQ][NQ])
 {
   const PetscInt n = rve->linear.n, nq = c->nq;
-  PetscReal *R, *X;
+  PetscReal *R, *X, *rest;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(nq * n, &R, nq * n, &X));
+  PetscCall(PetscMalloc3(nq * n, &R, nq * n, &X, nq * n, &rest));
   for (PetscInt q = 0; q < nq; ++q) LamCopyActive(rve, c->R + q * c->size + 2, R + q * n);
-  PetscCall(LamLinearSolve(&rve->linear, nq, R, X));
+  PetscCall(LamLinearSolve(&rve->linear, nq, R, X, rest));
   for (PetscInt q = 0; q < nq; ++q)
     for (PetscInt r = q; r < nq; ++r) {
       PetscReal a = 0.0, b = 0.0;
 
       for (PetscInt i = 0; i < n; ++i) {
-        a += R[q * n + i] * X[r * n + i];
-        b += R[r * n + i] * X[q * n + i];
+        a += (R[q * n + i] + rest[q * n + i]) * X[r * n + i];
+        b += (R[r * n + i] + rest[r * n + i]) * X[q * n + i];
       }
       H[q][r] = H[r][q] = (c->Lqq[q][r] - 0.5 * (a + b)) / rve->mesh.V0;
     }
-  PetscCall(PetscFree2(R, X));
+  PetscCall(PetscFree3(R, X, rest));
   PetscFunctionReturn(0);
 }
 

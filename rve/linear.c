@@ -3,6 +3,9 @@
 */
 #include "rve_impl.h"
 
+#define RESTS 1e-9 /* of the largest right-hand side that solves with a nearby factor may leave */
+#define POOR 0.1   /* share of a rest that a refinement leaves where the factor is not near */
+
 static int CompareKeys(const void *a, const void *b)
 {
   const PetscInt64 x = *(const PetscInt64 *)a, y = *(const PetscInt64 *)b;
@@ -157,6 +160,7 @@ PetscErrorCode LamLinearCreate(const LamMesh *mesh, const LamCouplings *coupling
   if (!couplings) couplings = &none;
   PetscCall(CollectBlocks(mesh, couplings, &count, &blocks));
   PetscCall(CollectMembers(couplings, &member_count, &members));
+  linear->rate = PETSC_INFINITY;
   linear->positions = 2 * (mesh->class_count - 1);
   linear->lumens = lumens;
   linear->n = linear->positions + couplings->count * couplings->multipliers + lumens;
@@ -185,7 +189,8 @@ PetscErrorCode LamLinearCreate(const LamMesh *mesh, const LamCouplings *coupling
 PetscErrorCode LamLinearCreateMatrix(MPI_Comm comm, LamLinear *linear)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamFactorCreate(comm, linear->n, linear->row, linear->column, linear->values, &linear->factor));
+  PetscCall(LamFactorCreate(comm, linear->n, linear->row, linear->column, linear->values,
+                            (PetscBool)(linear->positions == linear->n), &linear->factor));
   PetscFunctionReturn(0);
 }
 
@@ -203,16 +208,57 @@ PetscErrorCode LamLinearDestroy(LamLinear *linear)
 PetscErrorCode LamLinearFactor(LamLinear *linear, PetscReal shift, PetscInt *negative, PetscBool *ok)
 {
   PetscFunctionBeginUser;
+  linear->nearby = PETSC_FALSE;
+  linear->rate = PETSC_INFINITY;
   for (PetscInt i = 0; i < linear->positions && shift != 0.0; ++i) linear->values[linear->row[i]] += shift;
   PetscCall(LamFactorNumeric(linear->factor, negative, ok));
+  linear->negative = *negative;
   for (PetscInt i = 0; i < linear->positions && shift != 0.0; ++i) linear->values[linear->row[i]] -= shift;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamLinearSolve(LamLinear *linear, PetscInt count, const PetscReal rhs[], PetscReal solution[])
+PetscErrorCode LamLinearSolveOnce(LamLinear *linear, PetscInt count, const PetscReal rhs[], PetscReal solution[])
 {
   PetscFunctionBeginUser;
   PetscCall(LamFactorSolve(linear->factor, count, rhs, solution));
+  PetscFunctionReturn(0);
+}
+
+/* rest := b - K x. */
+static void FindRest(const LamLinear *linear, PetscInt count, const PetscReal rhs[], const PetscReal solution[],
+                     PetscReal rest[])
+{
+  for (PetscInt k = 0; k < count; ++k) LamLinearMultiply(linear, solution + k * linear->n, rest + k * linear->n);
+  for (PetscInt i = 0; i < count * linear->n; ++i) rest[i] = rhs[i] - rest[i];
+}
+
+PetscErrorCode LamLinearSolve(LamLinear *linear, PetscInt count, const PetscReal rhs[], PetscReal solution[],
+                              PetscReal rest[])
+{
+  const PetscInt length = count * linear->n;
+  const PetscReal enough = RESTS * LamLargestEntry(length, rhs);
+  PetscReal *change, before = PETSC_INFINITY, left;
+  PetscBool ok = PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamLinearSolveOnce(linear, count, rhs, solution));
+  PetscCall(PetscArrayzero(rest, length));
+  if (!linear->nearby) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(length, &change));
+  for (;;) {
+    FindRest(linear, count, rhs, solution, rest);
+    left = LamLargestEntry(length, rest);
+    if (left <= enough || !(left <= POOR * before)) break;
+    before = left;
+    PetscCall(LamLinearSolveOnce(linear, count, rest, change));
+    for (PetscInt i = 0; i < length; ++i) solution[i] += change[i];
+  }
+  PetscCall(PetscFree(change));
+  if (left <= enough) PetscFunctionReturn(0);
+  PetscCall(LamLinearFactor(linear, 0.0, &linear->negative, &ok));
+  PetscCheck(ok, PETSC_COMM_SELF, PETSC_ERR_MAT_LU_ZRPVT, "the tangent of a converged state is singular");
+  PetscCall(LamLinearSolveOnce(linear, count, rhs, solution));
+  PetscCall(PetscArrayzero(rest, length));
   PetscFunctionReturn(0);
 }
 

@@ -36,7 +36,7 @@ void LamMatrixMooneyRivlin(const LamWall *wall, const PetscReal F[4], PetscReal 
 {
   const PetscReal cof[4] = {F[3], -F[2], -F[1], F[0]};
   const PetscReal a = F[0] * F[0] + F[1] * F[1] + F[2] * F[2] + F[3] * F[3], j = F[0] * F[3] - F[1] * F[2], f = F33;
-  const PetscReal j13 = cbrt(j), f13 = cbrt(f);
+  const PetscReal j13 = cbrt(j), f13 = f == 1.0 ? 1.0 : cbrt(f);
   const PetscReal j23 = j13 * j13, f23 = f13 * f13;
   Invariants w = {0};
 

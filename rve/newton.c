@@ -15,8 +15,9 @@
 
 #define FAST_ITERATIONS 25
 #define SAFE_ITERATIONS 400
-#define WATCHDOG 4      /* steps without decrease before the safe tier goes back */
-#define STEP_LIMIT 0.05 /* of the safe tier, in apothems */
+#define ROUNDING_MARGIN 1e3 /* residual over the tolerance that rounding of large stresses may leave */
+#define WATCHDOG 4          /* steps without decrease before the safe tier goes back */
+#define STEP_LIMIT 0.05     /* of the safe tier, in apothems */
 #define ARMIJO 1e-4
 #define SADDLE_RESIDUAL 1e-4 /* of an indefinite state below which Newton would only creep along a saddle */
 #define ESCAPE_STEP 0.01     /* along a direction of negative curvature, in apothems */
@@ -44,6 +45,15 @@ static PetscErrorCode Report(LamRVE rve, const char tier[], PetscInt iteration, 
     PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR, "  %-5s %3d  residual %10.3e  largest step %9.3e  shift %g\n",
                            tier, (int)iteration, (double)residual, (double)step, (double)shift));
   PetscFunctionReturn(0);
+}
+
+/*
+  Whether a step with the factor of the iteration before reaches the tolerance: the residual has fallen by a share that
+  is half of what is quadratic in the step, and a step with the old factor leaves about twice that share.
+*/
+static PetscBool FactorServes(LamRVE rve, PetscReal norm, PetscReal tolerance)
+{
+  return (PetscBool)(rve->linear.rate <= LAM_NEAR_RATE && rve->linear.rate * norm <= tolerance);
 }
 
 /* step := -K^-1 residual with the present factor, or that of the bordered system; the held class does not move. */
@@ -90,7 +100,7 @@ static PetscBool AtRounding(LamRVE rve, PetscReal norm, PetscReal tolerance, Pet
 {
   const PetscReal extent = PetscMax(1.0, LamLargestEntry(rve->ndof, rve->y));
 
-  return (PetscBool)(largest <= 500.0 * PETSC_MACHINE_EPSILON * extent && norm <= 1e3 * tolerance);
+  return (PetscBool)(largest <= 500.0 * PETSC_MACHINE_EPSILON * extent && norm <= ROUNDING_MARGIN * tolerance);
 }
 
 /* Largest of 1, 1/2, ... 1/64 for which no volume along rve->step turns inside out; 0: none. */
@@ -115,33 +125,58 @@ static void TakeStep(LamRVE rve, const LamLoad *load, LamBorder *border, PetscRe
   ++rve->work.iterations;
 }
 
+/* How far the factor is from the matrix now, after full steps with it; unknown where it is shifted, or of a system with
+   a border. */
+static void WatchFactor(LamRVE rve, const LamBorder *border, PetscReal shift, PetscReal alpha, PetscReal norm,
+                        PetscReal previous, PetscBool fresh)
+{
+  const PetscReal rate = 2.0 * norm / previous;
+
+  if (border || shift != 0.0 || alpha != 1.0)
+    rve->linear.rate = PETSC_INFINITY;
+  else
+    rve->linear.rate = fresh ? rate : PetscMax(rate, rve->linear.rate);
+}
+
 PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border, LamNewtonOutcome *outcome)
 {
   const PetscReal tolerance = LamNewtonTolerance(rve);
-  PetscReal first = 0.0, previous = PETSC_INFINITY, shift = 0.0;
+  PetscReal first = 0.0, previous = PETSC_INFINITY, shift = 0.0, alpha = 0.0, largest = PETSC_INFINITY;
+  PetscBool fresh = PETSC_FALSE; /* the last step was the first with its factor */
+  PetscBool last = PETSC_FALSE;  /* it should have been the last one */
   PetscInt growth = 0;
 
   PetscFunctionBeginUser;
   *outcome = LAM_NEWTON_STALLED;
+  rve->linear.rate = PETSC_INFINITY;
+  rve->consistent = PETSC_FALSE;
   for (PetscInt it = 0; it <= FAST_ITERATIONS && !rve->work.stopped; ++it) {
-    PetscReal energy, norm, largest, alpha;
-    PetscBool valid, ok;
+    PetscReal energy, norm;
+    PetscBool valid, ok = PETSC_TRUE;
 
+    if (last) last = LamSetConsistentStresses(rve, load, rve->y);
     PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
     if (!valid) break;
     norm = LamResidualNorm(rve, rve->residual);
     PetscCall(LamBorderAssemble(rve, border, &norm));
-    if (norm <= tolerance) {
+    if (it == 0) first = norm;
+    if (it > 0) WatchFactor(rve, border, shift, alpha, norm, previous, fresh);
+    /* the next step would be that share of the last one, or less */
+    if (norm <= tolerance || AtRounding(rve, norm, tolerance, rve->linear.rate * largest)) {
       PetscCall(Report(rve, "fast", it, norm, 0.0, 0.0));
       *outcome = LAM_NEWTON_CONVERGED;
+      rve->consistent = last;
       break;
     }
-    if (it == 0) first = norm;
     growth = norm > previous ? growth + 1 : 0;
+    last = (PetscBool)(norm * PetscSqr(norm / previous) <=
+                       ROUNDING_MARGIN * tolerance); /* as quadratic convergence goes on */
     previous = norm;
     /* the residual of the energy may grow at first while the stiff constraints are violated, but not for long */
     if (it == FAST_ITERATIONS || growth >= 4 || !(norm < 1e8 * (1.0 + first))) break;
-    PetscCall(FactorPositive(rve, &shift, &ok));
+    fresh = (PetscBool)!FactorServes(rve, norm, tolerance);
+    if (it == 0 || border) last = PETSC_FALSE;
+    if (fresh) PetscCall(FactorPositive(rve, &shift, &ok));
     if (!ok) break;
     PetscCall(SolveStep(rve, border));
     largest = LamBorderReach(rve, border, rve->step + 2);
@@ -265,6 +300,8 @@ PetscErrorCode LamNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *
 
   PetscFunctionBeginUser;
   *outcome = LAM_NEWTON_STALLED;
+  rve->linear.rate = PETSC_INFINITY;
+  rve->consistent = PETSC_FALSE;
   PetscCall(LamAssembleEnergy(rve, load, rve->y, &descent.best_energy, &valid));
   if (!valid) PetscFunctionReturn(0);
   PetscCall(PetscMalloc2(rve->length, &descent.best, rve->linear.n, &descent.mode));

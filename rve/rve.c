@@ -249,6 +249,11 @@ static PetscErrorCode FillFields(LamRVE rve, const LamLoad *load, LamResponse *r
 {
   PetscFunctionBeginUser;
   PetscCall(LamHomogenise(rve, load, response));
+  if (!rve->contact && response->status == LAM_CONVERGED && rve->linear.negative > LamExpectedNegative(rve)) {
+    /* a factor that was taken to be near was not */
+    response->status = LAM_UNSTABLE;
+    PetscCall(PetscStrncpy(response->reason, "the state is a saddle", sizeof(response->reason)));
+  }
   PetscCall(LamWallMeasures(rve, load, response));
   if (rve->contact) {
     PetscCall(LamContactIndicators(rve, load, response));
@@ -312,6 +317,8 @@ PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamRVEState sta
   response->distance = 0.0;
   rve->work = (LamWork){0};
   rve->lowest_eigenvalue = NAN;
+  rve->linear.rate = PETSC_INFINITY;
+  rve->consistent = PETSC_FALSE;
   BeginFrom(rve, state);
   PetscFunctionReturn(0);
 }

@@ -54,6 +54,10 @@ typedef struct {
   PetscReal *values;      /* [nonzeros] */
   PetscInt *position; /* [element][LAM_PAIRS] index into values, -1: held; pairs of element dofs i <= j, row by row */
   LamFactor factor;   /* owned */
+  PetscInt negative;  /* eigenvalues of the matrix last factored */
+  PetscReal rate;     /* how far the factor is from the matrix at the positions reached: about the share of a residual
+                         that a step with it leaves; infinite: not known */
+  PetscBool nearby;   /* the factor is of a matrix near `values`: solves refine */
 } LamLinear;
 
 /* Positions of one material point and the load they balance. */
@@ -110,6 +114,7 @@ struct LamRVE_s {
   LamWork work;                           /* of the solve under way */
   PetscBool (*interrupt)(void *ctx);      /* NULL: never */
   void *interrupt_ctx;                    /* borrowed */
+  PetscBool consistent;                   /* residual and linear.values are those of y with its own wall stresses */
   PetscReal lowest_eigenvalue;            /* of the last unstable state met */
   PetscInt zero_modes;                    /* of the consistent tangent last factored */
 };
@@ -242,8 +247,11 @@ PetscErrorCode LamLinearCreateMatrix(MPI_Comm comm, LamLinear *linear); /* needs
 PetscErrorCode LamLinearDestroy(LamLinear *linear);
 /* Factors values + shift 1 (on the positions). *ok is PETSC_FALSE where the matrix is singular to working precision. */
 PetscErrorCode LamLinearFactor(LamLinear *linear, PetscReal shift, PetscInt *negative, PetscBool *ok);
-/* solution = K^-1 rhs, arrays of length n; count right-hand sides, one after the other. */
-PetscErrorCode LamLinearSolve(LamLinear *linear, PetscInt count, const PetscReal rhs[], PetscReal solution[]);
+/* solution = K^-1 rhs with the last factor, arrays of length n; count right-hand sides, one after the other. */
+PetscErrorCode LamLinearSolveOnce(LamLinear *linear, PetscInt count, const PetscReal rhs[], PetscReal solution[]);
+/* The same where the factor may be a nearby one: refines until the rest, rhs - K solution, is small. */
+PetscErrorCode LamLinearSolve(LamLinear *linear, PetscInt count, const PetscReal rhs[], PetscReal solution[],
+                              PetscReal rest[]);
 void LamLinearMultiply(const LamLinear *linear, const PetscReal x[], PetscReal y[]);
 
 /* ---- interrupt.c ---- */
@@ -269,6 +277,7 @@ static inline PetscBool LamMayIterate(LamRVE rve)
 typedef enum { LAM_NEWTON_CONVERGED, LAM_NEWTON_NEAR_SADDLE, LAM_NEWTON_STALLED } LamNewtonOutcome;
 /* From rve->y to equilibrium at `load`. Fast: full steps. Safe: inertia-corrected steps that lower the energy and leave
    saddles; never ends NEAR_SADDLE. border: NULL, or the free components of F; the load is then border->load. */
+#define LAM_NEAR_RATE 1e-3 /* rate of a factor that serves for more than its own iteration */
 PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border, LamNewtonOutcome *outcome);
 PetscErrorCode LamNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome);
 /* Tolerance of the residual norm: the rounding error of the stiff forces, but at least 1e-11. */

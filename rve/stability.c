@@ -61,13 +61,20 @@ PetscErrorCode LamFactorConsistent(LamRVE rve, const LamLoad *load, PetscInt *ne
   PetscFunctionBeginUser;
   *negative = 0;
   rve->zero_modes = 0;
-  *ok = LamSetConsistentStresses(rve, load, rve->y);
+  *ok = (PetscBool)(rve->consistent || LamSetConsistentStresses(rve, load, rve->y));
   if (!*ok) PetscFunctionReturn(0);
-  PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
+  if (!rve->consistent) PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
+  rve->consistent = PETSC_FALSE;
   if (rve->contact) {
     PetscCall(LamContactEvaluate(rve, load, rve->y, PETSC_FALSE));
     LamContactAddCurvature(rve);
     LamContactSetRows(rve, 0.0);
+  }
+  if (rve->linear.rate <= LAM_NEAR_RATE) {
+    /* eigenvalues of K0^-1 K lie within the rate of 1: K has the inertia of the matrix K0 that is factored */
+    rve->linear.nearby = PETSC_TRUE;
+    rve->linear.rate = PETSC_INFINITY;
+    PetscFunctionReturn(0);
   }
   PetscCall(FactorShifted(rve, 0.0, negative, ok));
   if (rve->contact) PetscCall(CountZeroModes(rve, negative, ok));
@@ -131,7 +138,7 @@ PetscErrorCode LamImproveSoftestMode(LamRVE rve, PetscInt iterations, PetscReal 
 
     PetscCall(
         PetscArrayzero(mode + pressures, rve->linear.lumens)); /* those of the solution follow from its positions */
-    PetscCall(LamLinearSolve(&rve->linear, 1, mode, next));
+    PetscCall(LamLinearSolveOnce(&rve->linear, 1, mode, next));
     PetscCall(PetscArraycpy(mode, next, positions));
     norm = Normalise(positions, mode);
     for (PetscInt i = pressures; i < n; ++i) mode[i] = next[i] / norm;

@@ -56,7 +56,8 @@ static void BulkModulusDoesNotMatter(void **state)
     micro.wall.bulk_modulus = k == 0 ? 1e3 : 1e6;
     r[k] = SolveTissue(&micro, PlaneLoad(1, 0.3, 0, 1, TURGOR));
   }
-  assert_int_equal(r[0].newton_iterations, r[1].newton_iterations);
+  /* the last step may be taken with the factor of the one before, or not */
+  assert_in_range(r[1].newton_iterations, r[0].newton_iterations - 1, r[0].newton_iterations + 1);
 }
 
 /* Fibres a hundred times stiffer, at moderate shear: the fibre stress, too, is an unknown of its own. */
