@@ -19,6 +19,7 @@
     mixed.c mixed_fast.c mixed_safe.c     states of which some components of P are prescribed
     traction.c           largest means along faces; interface tractions of bonded faces
     failure.c            stretch, energy and tension of the walls
+    estimate.c           error of P from half as many elements
     indicators.c interface.c              how far cells have come apart; gaps and pressures for pictures
 
   Unknowns are the current positions y of node classes; class 0 is held, so unknown = 2 (class - 1) + component. An RVE

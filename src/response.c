@@ -113,7 +113,6 @@ PetscBool LamResponseHasFields(const LamResponse *response)
   return (PetscBool)(response->status == LAM_CONVERGED || response->status == LAM_UNSTABLE);
 }
 
-/* The floor 0.0227 is 2.5e-3 MPa of the reference wall (C1 + C2 = 0.11 MPa): below it stress counts as zero. */
 PetscReal LamStressError(const PetscReal P[9], const PetscReal P_ref[9])
 {
   PetscReal difference = 0, reference = 0;
@@ -122,5 +121,5 @@ PetscReal LamStressError(const PetscReal P[9], const PetscReal P_ref[9])
     difference += (P[i] - P_ref[i]) * (P[i] - P_ref[i]);
     reference += P_ref[i] * P_ref[i];
   }
-  return sqrt(difference) / (sqrt(reference) + 0.0227);
+  return sqrt(difference) / (sqrt(reference) + LAM_STRESS_FLOOR);
 }

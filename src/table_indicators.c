@@ -241,7 +241,6 @@ static const struct {
 #undef ONE
 #undef THREE
 
-#define STRESS_FLOOR 0.0227
 
 /* Of a state: size of the walls' stress, bases of tractions per lattice direction, base and size of the largest. */
 typedef struct {
@@ -261,7 +260,7 @@ static WallStress WallStressOf(const LamLatticeAxes *axes, const PetscReal F[4],
     S[i] = P[i] + turgor * cofactor[i];
     square += S[i] * S[i];
   }
-  w.size = sqrt(square) + STRESS_FLOOR;
+  w.size = sqrt(square) + LAM_STRESS_FLOOR;
   for (int k = 0; k < 3; k++) {
     const PetscReal *n = axes->n[k];
     const PetscReal m0 = cofactor[0] * n[0] + cofactor[1] * n[1], m1 = cofactor[2] * n[0] + cofactor[3] * n[1];
@@ -272,7 +271,7 @@ static WallStress WallStressOf(const LamLatticeAxes *axes, const PetscReal F[4],
   }
   w.room = w.size;
   if (cohesion) {
-    w.room = PetscMax(*cohesion - w.most, 0) + STRESS_FLOOR;
+    w.room = PetscMax(*cohesion - w.most, 0) + LAM_STRESS_FLOOR;
     w.most = *cohesion;
   }
   return w;
@@ -354,7 +353,7 @@ static PetscBool IsTrusted(const Neighbours *near, const LamResponse *r)
     const PetscReal value = *(const PetscReal *)((const char *)r + of);
 
     if (is_share && Spread(near, i) > TRUSTED_SHARE) return PETSC_FALSE;
-    if (is_stress && Spread(near, i) > TRUSTED_STRESS * (fabs(value) + STRESS_FLOOR)) return PETSC_FALSE;
+    if (is_stress && Spread(near, i) > TRUSTED_STRESS * (fabs(value) + LAM_STRESS_FLOOR)) return PETSC_FALSE;
   }
   return PETSC_TRUE;
 }

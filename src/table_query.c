@@ -203,7 +203,7 @@ static PetscReal Relative(PetscReal error, const PetscReal P[9])
   PetscReal square = 0;
 
   for (int i = 0; i < 9; i++) square += P[i] * P[i];
-  return error / (sqrt(square) + 0.0227);
+  return error / (sqrt(square) + LAM_STRESS_FLOOR);
 }
 
 /* ---- from the sum to the response ---- */

@@ -102,7 +102,9 @@ PetscErrorCode LamResponseInit(const LamLoad *load, LamResponse *response);
 /* True where the fields (stress, tangent) of the response may be used: converged or unstable. */
 PetscBool LamResponseHasFields(const LamResponse *response);
 
-/* Error of stress P against P_ref: |P - P_ref| / (|P_ref| + 0.0227), Frobenius norms, nondimensional. */
+/* Error of stress P against P_ref: |P - P_ref| / (|P_ref| + floor), Frobenius norms, nondimensional. The floor is
+   2.5e-3 MPa of the reference wall (C1 + C2 = 0.11 MPa): below it stress counts as zero. */
+#define LAM_STRESS_FLOOR 0.0227
 PetscReal LamStressError(const PetscReal P[9], const PetscReal P_ref[9]);
 
 /*

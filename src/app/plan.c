@@ -1,45 +1,49 @@
 /*
   What a scene requires: mesh, unknowns, number of solves.
 
-  Mesh. The error of P was measured against 30 x 10 elements (docs/commands.md): bonded cells under turgor, shear up to
-  0.3 and stretch up to 1.25. The coarsest mesh that stays below the wanted accuracy is taken. Walls thicker than
-  THICK_WALL bend less and shear more, and need the next finer one. A body of cells in contact moves by their tangent,
-  which contact that passes from node to node makes uneven: 4-8 % with 6 elements along a face, 2 % with 12, below 1 %
-  with BODY_ALONG (docs/performance.md, FE2).
+  Mesh. The cheapest one whose error of P stays below the wanted accuracy for the scene's walls and loads, by the model
+  of error_model.h. A body of cells in contact moves by their tangent, which contact that passes from node to node makes
+  uneven: 4-8 % with 6 elements along a face, 2 % with 12, below 1 % with BODY_ALONG (docs/performance.md, FE2).
 */
+#include "error_model.h"
 #include "map.h"
 #include <stdlib.h>
 #include <string.h>
 
-/* From coarse to fine; the last serves whatever is wanted beyond it. */
-static const struct {
-  PetscReal accuracy;
-  PetscInt along, through;
-} Meshes[] = {{0.01, 6, 2}, {0.005, 12, 4}, {0.002, 20, 6}};
-enum { MESH_COUNT = PETSC_STATIC_ARRAY_LENGTH(Meshes) };
-#define THICK_WALL 0.2 /* apothems */
 #define BODY_ALONG 16
 #define BODY_ACCURACY 0.01 /* where less is wanted it is not needed */
+#define USUAL_STRAIN 0.2   /* where the loads are not known before they are met: bodies */
 
 /* How often a load step asks every material point: 3 to 4 Newton iterations. */
 #define ANSWERS_PER_STEP 3.5
 #define POINTS_PER_ELEMENT 9 /* 3 x 3 Gauss points of a quadratic element */
 
+/* The largest of what the scene asks of an RVE. */
+static PetscReal LargestStrain(const LamScene *scene)
+{
+  PetscReal strain = scene->has_macro || (!scene->load_count && !scene->has_sample) ? USUAL_STRAIN : 0.0;
+
+  for (PetscInt i = 0; i < scene->load_count; i++) strain = PetscMax(strain, LamStrainSize(scene->loads[i].F));
+  if (scene->has_sample)
+    strain = PetscMax(strain, PetscSqrtReal(2.0) * PetscMax(PetscAbsReal(scene->sample.stretch_min),
+                                                            PetscAbsReal(scene->sample.stretch_max)));
+  return strain;
+}
+
 static void ChooseMesh(const LamScene *scene, LamMicrostructure *micro)
 {
   const PetscBool uneven = (PetscBool)(scene->has_macro && micro->interface == LAM_INTERFACE_CONTACT);
-  const PetscReal accuracy = scene->accuracy;
-  PetscReal thickest = micro->wall_thickness;
-  int m = 0;
+  LamErrorCase c = {micro->interface, micro->wall_thickness, micro->wall.C4 / micro->wall.C1, LargestStrain(scene)};
+  PetscInt along, through;
+  PetscReal grading;
 
-  for (PetscInt c = 0; micro->cell && c < micro->cells[0] * micro->cells[1]; c++)
-    thickest = PetscMax(thickest, micro->cell[c].wall_thickness);
-  while (m < MESH_COUNT - 1 && accuracy < Meshes[m].accuracy) m++;
-  if (thickest > THICK_WALL) m = PetscMin(m + 1, MESH_COUNT - 1);
-  if (!micro->along)
-    micro->along = uneven && accuracy <= BODY_ACCURACY ? PetscMax(Meshes[m].along, BODY_ALONG) : Meshes[m].along;
-  if (!micro->through) micro->through = Meshes[m].through;
-  if (micro->grading < 0.0) micro->grading = 0.0;
+  for (PetscInt k = 0; micro->cell && k < micro->cells[0] * micro->cells[1]; k++)
+    c.thickness = PetscMax(c.thickness, micro->cell[k].wall_thickness);
+  LamCheapestMesh(&c, scene->accuracy, &along, &through, &grading);
+  if (uneven && scene->accuracy <= BODY_ACCURACY) along = PetscMax(along, BODY_ALONG);
+  if (micro->grading < 0.0) micro->grading = micro->along ? 0.0 : grading;
+  if (!micro->along) micro->along = along;
+  if (!micro->through) micro->through = through;
 }
 
 /* Faces and corners of the outer loops whose nodes are unknowns of their own, and pairs of facing walls. */
