@@ -246,33 +246,43 @@ PetscErrorCode LamAssembleGradient(LamRVE rve, const LamLoad *load, PetscReal Lq
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamHomogenise(LamRVE rve, const LamLoad *load, LamResponse *response)
+static PetscErrorCode FillDerivatives(LamRVE rve, Condensation *c, LamResponse *response)
 {
   const PetscInt *component = LamFComponent;
+  PetscReal H[NQ][NQ] = {{0}};
+
+  PetscFunctionBeginUser;
+  PetscCall(Condense(rve, c, H));
+  for (PetscInt i = 0; i < 9; ++i) response->P_turgor[i] = response->P_cohesion[i] = 0.0;
+  for (PetscInt q = 0; q < 5; ++q) {
+    response->P_turgor[component[q]] = H[q][Q_TURGOR];
+    response->P_cohesion[component[q]] = H[q][Q_COHESION];
+    for (PetscInt r = 0; r < 5; ++r) response->tangent[9 * component[q] + component[r]] = H[q][r];
+  }
+  response->energy_turgor2 = H[Q_TURGOR][Q_TURGOR];
+  response->energy_cohesion2 = H[Q_COHESION][Q_COHESION];
+  response->energy_turgor_cohesion = H[Q_TURGOR][Q_COHESION];
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamHomogenise(LamRVE rve, const LamLoad *load, LamResponse *response)
+{
   Condensation c = {0};
-  PetscReal H[NQ][NQ] = {{0}}, energy;
+  PetscReal energy;
   PetscBool valid;
 
   PetscFunctionBeginUser;
   PetscCall(LamAssembleEnergy(rve, load, rve->y, &energy, &valid));
   PetscCall(Assemble(rve, load, &c));
-  PetscCall(Condense(rve, &c, H));
+  if (rve->wanted & LAM_WANT_DERIVATIVES) PetscCall(FillDerivatives(rve, &c, response));
   PetscCall(PetscFree(c.R));
   response->energy = energy / rve->mesh.V0;
   response->lumen_fraction = load->F[8] * c.lumen / rve->mesh.V0;
   response->opening_fraction = load->F[8] * c.gap / rve->mesh.V0;
-  for (PetscInt i = 0; i < 9; ++i) response->P[i] = response->P_turgor[i] = response->P_cohesion[i] = 0.0;
-  for (PetscInt q = 0; q < 5; ++q) {
-    response->P[component[q]] = c.Lq[q] / rve->mesh.V0;
-    response->P_turgor[component[q]] = H[q][Q_TURGOR];
-    response->P_cohesion[component[q]] = H[q][Q_COHESION];
-    for (PetscInt r = 0; r < 5; ++r) response->tangent[9 * component[q] + component[r]] = H[q][r];
-  }
+  for (PetscInt i = 0; i < 9; ++i) response->P[i] = 0.0;
+  for (PetscInt q = 0; q < LAM_F_COUNT; ++q) response->P[LamFComponent[q]] = c.Lq[q] / rve->mesh.V0;
   response->energy_turgor = c.Lq[Q_TURGOR] / rve->mesh.V0;
   response->energy_cohesion = c.Lq[Q_COHESION] / rve->mesh.V0;
-  response->energy_turgor2 = H[Q_TURGOR][Q_TURGOR];
-  response->energy_cohesion2 = H[Q_COHESION][Q_COHESION];
-  response->energy_turgor_cohesion = H[Q_TURGOR][Q_COHESION];
   LamTurgorMeasures(rve, load, response);
   PetscFunctionReturn(0);
 }

@@ -134,6 +134,7 @@ PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStress
                                 LamResponse *response)
 {
   const PetscReal begin = LamClock();
+  const LamWanted wanted = rve->wanted;
   PetscBool any = PETSC_FALSE;
 
   PetscFunctionBeginUser;
@@ -142,6 +143,7 @@ PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStress
     PetscCall(LamRVESolve(rve, load, state, response));
     PetscFunctionReturn(0);
   }
+  rve->wanted |= LAM_WANT_DERIVATIVES; /* which the stability under the prescribed stress is judged by */
   PetscCall(LamBeginResponse(rve, load, state, response));
   PetscCall(LamCheckLoad(load, response->reason, sizeof(response->reason)));
   if (!response->reason[0]) PetscCall(CheckControl(control, response->reason, sizeof(response->reason)));
@@ -152,6 +154,7 @@ PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStress
   if (!LamResponseHasFields(response)) /* not known */
     for (PetscInt i = 0; i < 9; ++i)
       if (control->given[i]) response->load.F[i] = NAN;
+  rve->wanted = wanted;
   response->seconds = LamClock() - begin;
   PetscFunctionReturn(0);
 }

@@ -6,6 +6,7 @@ PetscErrorCode LamRVECreate(MPI_Comm comm, LamRVE *rve)
   PetscFunctionBeginUser;
   PetscCall(PetscNew(rve));
   (*rve)->comm = comm;
+  (*rve)->wanted = LAM_WANT_ALL;
   PetscFunctionReturn(0);
 }
 
@@ -47,6 +48,13 @@ PetscErrorCode LamRVESetTolerance(LamRVE rve, PetscReal tolerance)
              "tolerance of the solves is %g; it must lie between 0 and 1", (double)tolerance);
   rve->tolerance = tolerance;
   if (rve->bonded) PetscCall(LamRVESetTolerance(rve->bonded, tolerance));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVESetWanted(LamRVE rve, LamWanted wanted)
+{
+  PetscFunctionBeginUser;
+  rve->wanted = wanted;
   PetscFunctionReturn(0);
 }
 
@@ -121,6 +129,7 @@ PetscErrorCode LamRVESetUp(LamRVE rve)
     PetscCall(LamRVESetMicrostructure(rve->bonded, &bonded));
     PetscCall(LamRVESetSealable(rve->bonded, rve->seal.allowed));
     PetscCall(LamRVESetTolerance(rve->bonded, rve->tolerance));
+    PetscCall(LamRVESetWanted(rve->bonded, 0)); /* a start: its state alone */
     PetscCall(LamRVESetMonitor(rve->bonded, rve->monitor));
     PetscCall(LamRVESetInterrupt(rve->bonded, rve->interrupt, rve->interrupt_ctx));
     PetscCall(LamRVESetUp(rve->bonded));
@@ -248,12 +257,13 @@ PetscErrorCode LamCheckLoad(const LamLoad *load, char reason[], size_t length)
 static PetscErrorCode FillFields(LamRVE rve, const LamLoad *load, LamResponse *response)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamHomogenise(rve, load, response));
+  if (rve->wanted & (LAM_WANT_STRESS | LAM_WANT_DERIVATIVES)) PetscCall(LamHomogenise(rve, load, response));
   if (!rve->contact && response->status == LAM_CONVERGED && rve->linear.negative > LamExpectedNegative(rve)) {
     /* a factor that was taken to be near was not */
     response->status = LAM_UNSTABLE;
     PetscCall(PetscStrncpy(response->reason, "the state is a saddle", sizeof(response->reason)));
   }
+  if (!(rve->wanted & LAM_WANT_INDICATORS)) PetscFunctionReturn(0);
   PetscCall(LamWallMeasures(rve, load, response));
   if (rve->contact) {
     PetscCall(LamContactIndicators(rve, load, response));

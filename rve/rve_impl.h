@@ -97,6 +97,7 @@ struct LamRVE_s {
   LamMicrostructure micro;
   LamStrategy strategy;
   PetscReal tolerance; /* asked of solves; 0: rounding */
+  LamWanted wanted;    /* of responses */
   PetscBool has_micro, is_set_up, monitor;
   const LamWallLaw **law; /* [cell]; owned, the laws are not */
   PetscReal stiffest;     /* bulk and fibre modulus, of the stiffest cell */
@@ -369,7 +370,8 @@ PetscErrorCode LamAssembleGradient(LamRVE rve, const LamLoad *load, PetscReal Lq
                                    PetscReal Lqq[LAM_F_COUNT][LAM_F_COUNT], PetscReal R[]);
 /* Copies a column [n] with zeros for multipliers that are not active. */
 void LamCopyActive(LamRVE rve, const PetscReal column[], PetscReal copy[]);
-/* Fills energy, P, tangent, couplings and lumen fraction from rve->y and the factored consistent tangent. */
+/* Fills energy, P and lumen fraction from rve->y and, where they are wanted, tangent and couplings with the factored
+   consistent tangent. */
 PetscErrorCode LamHomogenise(LamRVE rve, const LamLoad *load, LamResponse *response);
 /* The largest mean over a stretch of a face that is as long as the wall of its cell is thick, and where it is. */
 typedef struct {

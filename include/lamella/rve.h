@@ -32,6 +32,17 @@ PetscErrorCode LamRVESetStrategy(LamRVE rve, LamStrategy strategy);
 /* Ends solves once the residual, forces per thickness over (C1 + C2) apothem, and the complementarity of contact, are
    below `tolerance`; never below what rounding allows, which is the default, 0. */
 PetscErrorCode LamRVESetTolerance(LamRVE rve, PetscReal tolerance);
+/*
+  What responses are asked for; the rest of their numbers is not computed, and not known. Status and stability, counts
+  of work and the state are always there. Everything by default. Solves under prescribed stress derive in any case.
+*/
+typedef enum {
+  LAM_WANT_STRESS = 1,      /* energy and its first derivatives, lumen and opening, turgor reached */
+  LAM_WANT_DERIVATIVES = 2, /* with stress: tangent, P_turgor, P_cohesion, second derivatives of the energy */
+  LAM_WANT_INDICATORS = 4,  /* tractions, measures of the walls, what has come apart */
+  LAM_WANT_ALL = LAM_WANT_STRESS | LAM_WANT_DERIVATIVES | LAM_WANT_INDICATORS
+} LamWanted;
+PetscErrorCode LamRVESetWanted(LamRVE rve, LamWanted wanted);
 /* Prints each Newton iteration to stderr (residual, step, negative eigenvalues). Off by default. */
 PetscErrorCode LamRVESetMonitor(LamRVE rve, PetscBool on);
 /*
