@@ -76,6 +76,7 @@ PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[],
                            PetscReal residual[], PetscBool *valid)
 {
   const PetscReal suction = LamSuction(rve, load);
+  const PetscBool has_turgor = LamHasTurgor(rve, load);
 
   PetscFunctionBeginUser;
   *energy = LoopEnergy(rve, load, y);
@@ -91,7 +92,7 @@ PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[],
                        &rve->stress[e], &element, valid);
     if (!*valid) break;
     *energy += element.energy;
-    if (LamMeshElementIsInner(&rve->mesh, e))
+    if (has_turgor && LamMeshElementIsInner(&rve->mesh, e))
       LamAddPressure((const PetscReal(*)[2])x, LamTurgor(rve, load, y, rve->mesh.cell_of[e]) * load->F[8], &element);
     Scatter(rve, e, &element, residual);
   }

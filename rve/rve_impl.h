@@ -136,6 +136,12 @@ static inline PetscReal LamTurgorFactor(LamRVE rve, PetscInt cell)
   return rve->micro.cell ? rve->micro.cell[cell].turgor : 1.0;
 }
 
+/* Whether there is pressure in any lumen, whatever the positions. */
+static inline PetscBool LamHasTurgor(LamRVE rve, const LamLoad *load)
+{
+  return (PetscBool)(rve->seal.closed || load->turgor != 0.0);
+}
+
 /* Pressure in a lumen at y. */
 static inline PetscReal LamTurgor(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscInt cell)
 {

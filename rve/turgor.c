@@ -64,6 +64,7 @@ PetscReal LamTurgorEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[])
   const LamSeal *seal = &rve->seal;
   PetscReal energy = 0.0;
 
+  if (!LamHasTurgor(rve, load)) return 0.0;
   LamLumenAreas(rve, y, seal->area);
   for (PetscInt c = 0; c < rve->mesh.cell_count; ++c) {
     const PetscReal p0 = load->turgor * LamTurgorFactor(rve, c), volume = load->F[8] * seal->area[c];
