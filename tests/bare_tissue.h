@@ -1,8 +1,8 @@
 /*
   Tissue without any feature: bonded cells that are all alike, empty lumens. Newton iterations on wall elements, the
   matrix of the converged state factored for its negative eigenvalues, and the stress P; nothing is asked of contact,
-  cohesion, turgor, sealed lumens, cells that differ, tangents or indicators. The step is that of the RVE solver, so that
-  the two can be held against each other.
+  cohesion, turgor, sealed lumens, cells that differ, tangents or indicators. The step is that of the RVE solver, so
+  that the two can be held against each other.
 */
 #ifndef LAM_BARE_TISSUE_H
 #define LAM_BARE_TISSUE_H
@@ -54,7 +54,8 @@ static inline void BareAssemble(LamRVE rve, const LamLoad *load)
   PetscArrayzero(rve->residual, rve->ndof);
   PetscArrayzero(values, rve->linear.nonzeros);
   for (PetscInt e = 0; e < rve->mesh.element_count; e++) {
-    const PetscInt *nodes = &rve->mesh.elements[LAM_ELEMENT_NODES * e], *position = &rve->linear.position[LAM_PAIRS * e];
+    const PetscInt *nodes = &rve->mesh.elements[LAM_ELEMENT_NODES * e],
+                   *position = &rve->linear.position[LAM_PAIRS * e];
     PetscReal x[LAM_ELEMENT_NODES][2];
     LamElementResult element;
     PetscBool valid;

@@ -39,6 +39,8 @@ PetscErrorCode LamCommandMerge(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandInfo(LamArgs *args, int *exit_status);
 
+/* For a command that has to do with record files; before LamAppInitialize. */
+void LamAppStartHDF5(void);
 /* Starts MPI and PETSc for a command that solves; after parsing the command line. main() finalises. */
 PetscErrorCode LamAppInitialize(LamArgs *args);
 PetscBool LamAppIsRoot(void); /* rank 0, or no MPI */

@@ -10,6 +10,8 @@
 #include <math.h>
 #include <string.h>
 
+#define LAM_WANT_TOLD (LAM_WANT_STRESS | LAM_WANT_INDICATORS) /* without --tangent; a file holds all */
+
 typedef struct {
   const char *scene_path, *out_path;
   PetscBool json, tangent, monitor, quiet, second_mesh, find_onset, find_failure;
@@ -159,6 +161,7 @@ static PetscErrorCode Prepare(Run *run)
   PetscCall(LamMeshesCreate(plan.unknowns < LAM_PARALLEL_UNKNOWNS ? PETSC_COMM_SELF : PETSC_COMM_WORLD, run->scene,
                             run->second_mesh ? 2 : 1, &run->meshes));
   PetscCall(LamMeshesSetInterrupt(&run->meshes, LamStopInterrupt, NULL));
+  PetscCall(LamMeshesSetWanted(&run->meshes, run->tangent || run->out_path ? LAM_WANT_ALL : LAM_WANT_TOLD));
   PetscCall(LamRVESetMonitor(run->meshes.rve[0], run->monitor));
   PetscCall(LamMeshesSeal(&run->meshes, run->scene, &run->scene->loads[0]));
   if (run->find_onset) PetscCall(LamOnsetCreate(&run->meshes, &run->onset));
@@ -293,6 +296,7 @@ PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
       exit_status));
   if (done) PetscFunctionReturn(0);
   if (run.find_onset) run.second_mesh = PETSC_TRUE;
+  if (run.out_path) LamAppStartHDF5();
   PetscCall(LamAppInitialize(args));
   if (LamAppIsRoot()) {
     const PetscErrorCode ierr = RunOnRoot(&run, exit_status);

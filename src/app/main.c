@@ -28,17 +28,19 @@ static const struct {
   const char *name, *summary;
   LamCommandFunction run;
   PetscBool solves; /* runs under mpirun; the others need no MPI */
+  PetscBool files;  /* reads or writes records in any case */
 } Commands[] = {
-    {"check", "read and check a scene; print the plan and its predicted cost", LamCommandCheck, PETSC_FALSE},
-    {"rve", "solve the RVE along the scene's load", LamCommandRVE, PETSC_TRUE},
-    {"build", "fill a response database", LamCommandBuild, PETSC_TRUE},
-    {"query", "one answer, or many, from a database", LamCommandQuery, PETSC_FALSE},
-    {"verify", "solve part of a database's answers afresh and compare", LamCommandVerify, PETSC_TRUE},
-    {"fe2", "solve the scene's macroscale problem", LamCommandFE2, PETSC_TRUE},
-    {"map", "tell how tissue fails over two of its quantities", LamCommandMap, PETSC_TRUE},
-    {"merge", "make one database of several", LamCommandMerge, PETSC_FALSE},
-    {"plot", "draw what a file holds", LamCommandPlot, PETSC_FALSE},
-    {"info", "tell what a file holds, who wrote it, with what", LamCommandInfo, PETSC_FALSE},
+    {"check", "read and check a scene; print the plan and its predicted cost", LamCommandCheck, PETSC_FALSE,
+     PETSC_FALSE},
+    {"rve", "solve the RVE along the scene's load", LamCommandRVE, PETSC_TRUE, PETSC_FALSE},
+    {"build", "fill a response database", LamCommandBuild, PETSC_TRUE, PETSC_TRUE},
+    {"query", "one answer, or many, from a database", LamCommandQuery, PETSC_FALSE, PETSC_TRUE},
+    {"verify", "solve part of a database's answers afresh and compare", LamCommandVerify, PETSC_TRUE, PETSC_TRUE},
+    {"fe2", "solve the scene's macroscale problem", LamCommandFE2, PETSC_TRUE, PETSC_TRUE},
+    {"map", "tell how tissue fails over two of its quantities", LamCommandMap, PETSC_TRUE, PETSC_TRUE},
+    {"merge", "make one database of several", LamCommandMerge, PETSC_FALSE, PETSC_TRUE},
+    {"plot", "draw what a file holds", LamCommandPlot, PETSC_FALSE, PETSC_TRUE},
+    {"info", "tell what a file holds, who wrote it, with what", LamCommandInfo, PETSC_FALSE, PETSC_TRUE},
 };
 enum { COMMAND_COUNT = PETSC_STATIC_ARRAY_LENGTH(Commands) };
 
@@ -141,9 +143,31 @@ PetscBool LamAppIsRoot(void)
   return (PetscBool)(rank == 0);
 }
 
+/*
+  HDF5 crashes when it tidies up behind a file that it could not write. It would do so at exit, and in MPI_Finalize
+  where MPI runs when HDF5 begins.
+*/
+void LamAppStartHDF5(void)
+{
+  H5dont_atexit();
+  H5open();
+}
+
+/*
+  Without a launcher there are no other ranks: Open MPI then need not start a daemon, nor look for networks, which takes
+  longer than many a solve.
+*/
+static void ExpectNoRanks(void)
+{
+  if (getenv("OMPI_COMM_WORLD_SIZE") || getenv("PMIX_RANK") || getenv("PMI_RANK")) return;
+  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+  setenv("OMPI_MCA_pml", "ob1", 0);
+}
+
 PetscErrorCode LamAppInitialize(LamArgs *args)
 {
   PetscFunctionBeginUser;
+  ExpectNoRanks();
   setenv("HWLOC_HIDE_ERRORS", "2", 0); /* in a container without /sys MPI's hwloc complains of that on every start */
   PetscCall(PetscOptionsSetValue(NULL, "-no_signal_handler", "true")); /* SIGTERM is ours */
   PetscCall(PetscInitialize(&args->petsc_argc, &args->petsc_argv, NULL, NULL));
@@ -272,6 +296,7 @@ static PetscErrorCode RunCommand(LamArgs *args, int *status)
   for (int i = 0; i < COMMAND_COUNT; i++) {
     if (strcmp(args->argv[0], Commands[i].name)) continue;
     CommandSolves = Commands[i].solves;
+    if (Commands[i].files) LamAppStartHDF5();
     PetscCall(Commands[i].run(args, status));
     PetscFunctionReturn(0);
   }
@@ -335,23 +360,12 @@ static void FillStreams(void)
   if (fd >= 0) close(fd);
 }
 
-/*
-  HDF5 crashes when it tidies up behind a file that it could not write. It would do so at exit, and in MPI_Finalize
-  where MPI runs when HDF5 begins.
-*/
-static void StartHDF5(void)
-{
-  H5dont_atexit();
-  H5open();
-}
-
 int main(int argc, char *argv[])
 {
   int status = LAM_EXIT_OK;
   PetscErrorCode code;
 
   FillStreams();
-  StartHDF5();
   UseOneThread();
   signal(SIGPIPE, SIG_IGN);                   /* a closed pipe is an error of writing, told as such */
   signal(SIGXFSZ, SIG_IGN);                   /* so is a file that may not grow */

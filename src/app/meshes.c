@@ -38,6 +38,14 @@ PetscErrorCode LamMeshesSetInterrupt(LamMeshes *meshes, PetscBool (*interrupt)(v
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamMeshesSetWanted(LamMeshes *meshes, LamWanted wanted)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt m = 0; m < meshes->count; m++)
+    PetscCall(LamRVESetWanted(meshes->rve[m], m ? wanted & ~LAM_WANT_DERIVATIVES : wanted));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode SealOne(const LamScene *scene, const LamLoad *load, LamRVE rve, LamRVEState state,
                               LamResponse *response)
 {

@@ -22,6 +22,8 @@ typedef struct {
 PetscErrorCode LamMeshesCreate(MPI_Comm comm, const LamScene *scene, PetscInt count, LamMeshes *meshes);
 /* As LamRVESetInterrupt, for good: once it has said to stop it must go on saying so. */
 PetscErrorCode LamMeshesSetInterrupt(LamMeshes *meshes, PetscBool (*interrupt)(void *ctx), void *ctx);
+/* As LamRVESetWanted; `wanted` on the first mesh, of the second no derivatives are ever needed. */
+PetscErrorCode LamMeshesSetWanted(LamMeshes *meshes, LamWanted wanted);
 PetscErrorCode LamMeshesDestroy(LamMeshes *meshes);
 /*
   Before the first solve, of a scene whose cells are sealed; else without effect. The cells get the water that they have

@@ -1,6 +1,6 @@
 /*
-  What features cost that a scene leaves off: states of tissue without them against the same problem in which they do not
-  exist, a Newton iteration on wall elements alone, and against tissue that has them. Prints figures.
+  What features cost that a scene leaves off: states of tissue without them against the same problem in which they do
+  not exist, a Newton iteration on wall elements alone, and against tissue that has them. Prints figures.
 
   The two of a comparison take turns in one process; processor time, medians, and the quartiles of the ratios of pairs.
   Bytes are those that malloc has given for an RVE with its matrix, factor and state.
@@ -149,8 +149,9 @@ static PetscErrorCode Compare(const char feature[], const Problem *a, const Prob
   for (int k = 0; k < 2; k++) {
     PrintProblem(&r[k]);
     printf(" %8.3f", 1e3 * Quantile(r[k].seconds, PAIRS, 0.5));
-    if (k == 0) printf(" %9.3f  %.3f to %.3f", Quantile(ratio, PAIRS, 0.5), Quantile(ratio, PAIRS, 0.25),
-                       Quantile(ratio, PAIRS, 0.75));
+    if (k == 0)
+      printf(" %9.3f  %.3f to %.3f", Quantile(ratio, PAIRS, 0.5), Quantile(ratio, PAIRS, 0.25),
+             Quantile(ratio, PAIRS, 0.75));
     putchar('\n');
   }
   for (int k = 0; k < 2; k++) PetscCall(Destroy(&r[k]));
@@ -241,7 +242,8 @@ int main(int argc, char **argv)
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   printf("simple shear %g from F = I; medians of %d, processor time; ratio: first to second, quartiles of the pairs\n",
          SHEAR, PAIRS);
-  printf("  %-42s %8s %9s %10s %5s %5s %8s %9s\n", "", "unknowns", "nonzeros", "bytes", "iter.", "fact.", "ms", "ratio");
+  printf("  %-42s %8s %9s %10s %5s %5s %8s %9s\n", "", "unknowns", "nonzeros", "bytes", "iter.", "fact.", "ms",
+         "ratio");
   for (PetscInt k = 1; k <= 2; k++)
     if (CompareBonded(6 * k, 2 * k)) return 1;
   if (CompareContact(6, 2)) return 1;
