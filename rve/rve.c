@@ -110,7 +110,7 @@ static PetscErrorCode SetUpArrays(LamRVE rve)
   rve->length = rve->ndof + lumens;
   PetscCall(PetscCalloc4(rve->length, &rve->y, rve->length, &rve->step, rve->length, &rve->trial, rve->length,
                          &rve->residual));
-  PetscCall(PetscMalloc3(cells, &rve->seal.water, cells, &rve->seal.area, cells, &rve->seal.factor));
+  PetscCall(PetscMalloc3(lumens, &rve->seal.water, cells, &rve->seal.area, cells, &rve->seal.factor));
   PetscFunctionReturn(0);
 }
 

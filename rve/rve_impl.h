@@ -87,7 +87,7 @@ typedef struct {
   PetscBool allowed;      /* the matrix has room for the pressures */
   PetscBool closed;       /* now; else turgor is prescribed */
   PetscReal bulk_modulus; /* K_w */
-  PetscReal *water;       /* [cell] V_w, apothems^2: the lumen in which the water has the turgor of the load */
+  PetscReal *water;       /* [cell] V_w, apothems^2: the lumen with the turgor of the load; none where not allowed */
   PetscReal *area;        /* [cell] work space */
   PetscReal *factor;      /* [cell] work space */
 } LamSeal;

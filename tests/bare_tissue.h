@@ -124,14 +124,17 @@ static inline void BareStress(LamRVE rve, const LamLoad *load, PetscReal P[9])
 /* From F = I; of the response status, P and the counts of work are filled. */
 static inline PetscErrorCode BareSolve(LamRVE rve, const LamLoad *load, LamResponse *response)
 {
-  static const LamLoad reference = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+  LamLoad start = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   const PetscReal tolerance = LamNewtonTolerance(rve);
   PetscInt negative, iteration = 0;
   PetscBool ok = PETSC_TRUE;
 
   PetscFunctionBeginUser;
   PetscCall(LamResponseInit(load, response));
-  LamMoveAffinely(rve, rve->mesh.class_X, &reference, load);
+  PetscCall(PetscArraycpy(rve->step, rve->mesh.class_X, rve->ndof));
+  LamRotatePositions(rve->ndof, rve->step, start.F, LamRotationAngle(load->F));
+  LamMoveAffinely(rve, rve->step, &start, load);
+  rve->step[0] = rve->step[1] = 0;
   for (; ok && iteration < BARE_ITERATIONS; iteration++) {
     BareAssemble(rve, load);
     if (BareNorm(rve) <= tolerance) break;
