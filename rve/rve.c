@@ -263,8 +263,8 @@ static PetscErrorCode FillFields(LamRVE rve, const LamLoad *load, LamResponse *r
     response->status = LAM_UNSTABLE;
     PetscCall(PetscStrncpy(response->reason, "the state is a saddle", sizeof(response->reason)));
   }
+  if (rve->wanted & LAM_WANT_WALLS) PetscCall(LamWallMeasures(rve, load, response));
   if (!(rve->wanted & LAM_WANT_INDICATORS)) PetscFunctionReturn(0);
-  PetscCall(LamWallMeasures(rve, load, response));
   if (rve->contact) {
     PetscCall(LamContactIndicators(rve, load, response));
     PetscFunctionReturn(0);

@@ -39,8 +39,9 @@ PetscErrorCode LamRVESetTolerance(LamRVE rve, PetscReal tolerance);
 typedef enum {
   LAM_WANT_STRESS = 1,      /* energy and its first derivatives, lumen and opening, turgor reached */
   LAM_WANT_DERIVATIVES = 2, /* with stress: tangent, P_turgor, P_cohesion, second derivatives of the energy */
-  LAM_WANT_INDICATORS = 4,  /* tractions, measures of the walls, what has come apart */
-  LAM_WANT_ALL = LAM_WANT_STRESS | LAM_WANT_DERIVATIVES | LAM_WANT_INDICATORS
+  LAM_WANT_INDICATORS = 4,  /* tractions, what has come apart */
+  LAM_WANT_WALLS = 8,       /* stretch, energy and tension of the walls: what strengths are held against */
+  LAM_WANT_ALL = LAM_WANT_STRESS | LAM_WANT_DERIVATIVES | LAM_WANT_INDICATORS | LAM_WANT_WALLS
 } LamWanted;
 PetscErrorCode LamRVESetWanted(LamRVE rve, LamWanted wanted);
 /* Prints each Newton iteration to stderr (residual, step, negative eigenvalues). Off by default. */

@@ -10,8 +10,6 @@
 #include <math.h>
 #include <string.h>
 
-#define LAM_WANT_TOLD (LAM_WANT_STRESS | LAM_WANT_INDICATORS) /* without --tangent; a file holds all */
-
 typedef struct {
   const char *scene_path, *out_path;
   PetscBool json, tangent, monitor, quiet, second_mesh, find_onset, find_failure;
@@ -147,6 +145,16 @@ static PetscBool OptionsFit(const Run *run)
   return PETSC_FALSE;
 }
 
+/* A file holds all; rows of the table tell neither tangents nor, but for --failure, the walls. */
+static LamWanted Wanted(const Run *run)
+{
+  LamWanted wanted = LAM_WANT_STRESS | LAM_WANT_INDICATORS;
+
+  if (run->tangent) wanted |= LAM_WANT_DERIVATIVES;
+  if (run->json || run->find_failure) wanted |= LAM_WANT_WALLS;
+  return run->out_path ? LAM_WANT_ALL : wanted;
+}
+
 static PetscErrorCode Prepare(Run *run)
 {
   const PetscBool contact = (PetscBool)(run->scene->micro.interface == LAM_INTERFACE_CONTACT);
@@ -161,7 +169,7 @@ static PetscErrorCode Prepare(Run *run)
   PetscCall(LamMeshesCreate(plan.unknowns < LAM_PARALLEL_UNKNOWNS ? PETSC_COMM_SELF : PETSC_COMM_WORLD, run->scene,
                             run->second_mesh ? 2 : 1, &run->meshes));
   PetscCall(LamMeshesSetInterrupt(&run->meshes, LamStopInterrupt, NULL));
-  PetscCall(LamMeshesSetWanted(&run->meshes, run->tangent || run->out_path ? LAM_WANT_ALL : LAM_WANT_TOLD));
+  PetscCall(LamMeshesSetWanted(&run->meshes, Wanted(run)));
   PetscCall(LamRVESetMonitor(run->meshes.rve[0], run->monitor));
   PetscCall(LamMeshesSeal(&run->meshes, run->scene, &run->scene->loads[0]));
   if (run->find_onset) PetscCall(LamOnsetCreate(&run->meshes, &run->onset));

@@ -185,13 +185,17 @@ static PetscErrorCode CompareBonded(PetscInt along, PetscInt through)
   PetscCall(Compare("all features", &off, &other));
 
   off = NewProblem("not asked", &micro, &dry);
-  off.wanted = LAM_WANT_STRESS | LAM_WANT_INDICATORS;
+  off.wanted = LAM_WANT_ALL & ~LAM_WANT_DERIVATIVES;
   other = NewProblem("asked", &micro, &dry);
   PetscCall(Compare("tangent and couplings", &off, &other));
 
   off = NewProblem("not asked", &micro, &dry);
-  off.wanted = LAM_WANT_STRESS | LAM_WANT_DERIVATIVES;
-  PetscCall(Compare("indicators, with the measures for strengths", &off, &other));
+  off.wanted = LAM_WANT_ALL & ~LAM_WANT_INDICATORS;
+  PetscCall(Compare("indicators", &off, &other));
+
+  off = NewProblem("not asked", &micro, &dry);
+  off.wanted = LAM_WANT_ALL & ~LAM_WANT_WALLS;
+  PetscCall(Compare("strengths: measures of the walls", &off, &other));
 
   off = NewProblem("turgor 0", &micro, &dry);
   other = NewProblem("turgor 1e-200", &micro, &dry);
@@ -207,6 +211,11 @@ static PetscErrorCode CompareBonded(PetscInt along, PetscInt through)
   other = NewProblem("a list of equal cells", &micro, &turgid);
   other.micro.cell = &cell;
   PetscCall(Compare("differing cells", &off, &other));
+
+  off = NewProblem("one", &micro, &turgid);
+  other = NewProblem("2 x 1 cells", &micro, &turgid);
+  other.micro.cells[0] = 2;
+  PetscCall(Compare("many cells", &off, &other));
 
   off = NewProblem("bonded", &micro, &turgid);
   other = NewProblem("contact, pressed together", &micro, &turgid);
@@ -229,11 +238,7 @@ static PetscErrorCode CompareContact(PetscInt along, PetscInt through)
   off.name = "stress alone asked";
   off.wanted = LAM_WANT_STRESS;
   other = NewProblem("all asked", &micro, &load);
-  PetscCall(Compare("tangent, couplings, indicators", &off, &other));
-
-  off.name = "tangent and couplings not asked";
-  off.wanted = LAM_WANT_STRESS | LAM_WANT_INDICATORS;
-  PetscCall(Compare("tangent and couplings", &off, &other));
+  PetscCall(Compare("tangent and couplings, indicators, strengths", &off, &other));
   PetscFunctionReturn(0);
 }
 
