@@ -2,9 +2,10 @@
   The error of P of a mesh, from half as many elements.
 
   Method. The same load is solved on a mesh with half the elements along the faces and through the walls, from the
-  positions (and contact pressures) of the state itself: its nodes are among those of the finer mesh, so that two or three
-  iterations on a matrix of a quarter of the size do. The error of the finer mesh is a share of the difference of the two
-  stresses; the shares are measured (docs/performance.md, "The error of a mesh"). What the residual leaves is added.
+  positions (and contact pressures) of the state itself: its nodes are among those of the finer mesh, so that two or
+  three iterations on a matrix of a quarter of the size do. The error of the finer mesh is a share of the difference of
+  the two stresses; the shares are measured (docs/performance.md, "The error of a mesh"). What the residual leaves is
+  added.
 */
 #include "rve_impl.h"
 
@@ -34,6 +35,7 @@ PetscErrorCode LamRVEEstimateCreate(LamRVE rve, LamRVEEstimate *estimate)
   PetscCall(LamRVESetMicrostructure((*estimate)->coarse, &micro));
   PetscCall(LamRVESetStrategy((*estimate)->coarse, rve->strategy));
   PetscCall(LamRVESetTolerance((*estimate)->coarse, PetscMax(rve->tolerance, 1e-6)));
+  PetscCall(LamRVESetWanted((*estimate)->coarse, LAM_WANT_STRESS));
   PetscCall(LamRVESetInterrupt((*estimate)->coarse, rve->interrupt, rve->interrupt_ctx));
   PetscCall(LamRVESetUp((*estimate)->coarse));
   PetscCall(LamRVEStateCreate((*estimate)->coarse, &(*estimate)->state));

@@ -241,7 +241,6 @@ static const struct {
 #undef ONE
 #undef THREE
 
-
 /* Of a state: size of the walls' stress, bases of tractions per lattice direction, base and size of the largest. */
 typedef struct {
   PetscReal size, traction[3], most, room;

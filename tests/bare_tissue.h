@@ -88,7 +88,7 @@ static inline PetscErrorCode BareStep(LamRVE rve, const LamLoad *load, PetscBool
   PetscFunctionBeginUser;
   PetscCall(LamLinearFactor(&rve->linear, 0, &negative, ok));
   *ok = (PetscBool)(*ok && negative == 0);
-  PetscCall(LamLinearSolve(&rve->linear, 1, rve->residual + 2, rve->step + 2));
+  PetscCall(LamLinearSolveOnce(&rve->linear, 1, rve->residual + 2, rve->step + 2));
   for (PetscInt i = 2; i < rve->ndof; i++) rve->step[i] = -rve->step[i];
   LamUpdateStresses(rve, load, rve->y, rve->step, still, 1);
   for (PetscInt i = 0; i < rve->ndof; i++) rve->y[i] += rve->step[i];

@@ -124,7 +124,7 @@ static PetscErrorCode PrintHeader(LamInterfaceLawType interface, const char tail
 PetscErrorCode LamPrintResponseHeader(LamInterfaceLawType interface)
 {
   PetscFunctionBeginUser;
-  PetscCall(PrintHeader(interface, "iter.     time", "            ms"));
+  PetscCall(PrintHeader(interface, "iter.     time    error", "            ms        %"));
   PetscFunctionReturn(0);
 }
 
@@ -166,6 +166,7 @@ static void PrintTail(const LamResponse *response)
   if (response->source == LAM_SOURCE_SOLVE) {
     printf(" %5" PetscInt_FMT, response->newton_iterations);
     PrintColumn(8, 2, 'f', 1e3 * response->seconds);
+    PrintColumn(8, 3, 'f', 100 * response->error_estimate);
   } else {
     PrintColumn(10, 4, 'f', 100 * response->error_estimate);
     printf(" %10s", !LamResponseHasFields(response) ? "-" : response->indicators_trusted ? "trusted" : "doubtful");

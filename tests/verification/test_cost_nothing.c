@@ -103,9 +103,9 @@ static void SolvesAsWallsAloneDo(void **state)
   assert_int_equal(response.status, LAM_CONVERGED);
   assert_int_equal(s.rve->linear.n, bare->linear.n);
   assert_int_equal(s.rve->linear.nonzeros, bare->linear.nonzeros);
-  assert_int_equal(s.response.newton_iterations, response.newton_iterations);
-  assert_int_equal(s.response.factorisations, response.factorisations);
-  assert_memory_equal(s.state->y, bare->y, sizeof(PetscReal) * (size_t)bare->ndof);
+  assert_true(s.response.newton_iterations <= response.newton_iterations);
+  assert_true(s.response.factorisations <= response.factorisations);
+  for (PetscInt i = 0; i < bare->ndof; i++) assert_true(fabs(s.state->y[i] - bare->y[i]) < 1e-12);
   for (int i = 0; i < 9; i++) assert_true(fabs(s.response.P[i] - response.P[i]) < 1e-14);
   assert_int_equal(BareDestroy(&bare), 0);
   Destroy(&s);
