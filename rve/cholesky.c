@@ -11,25 +11,24 @@
 
 struct LamCholesky_s {
   PetscInt n, nonzeros;
-  const PetscReal *values; /* borrowed */
-  PetscInt *place;         /* [n]: new number of an unknown */
-  PetscInt *from;          /* [nonzeros]: where an entry of the renumbered matrix comes from */
-  PetscInt *row, *column;  /* of the renumbered matrix, upper triangle; like `entries` used by `matrix` */
+  PetscReal *values;      /* borrowed */
+  PetscInt *place;        /* [n]: new number of an unknown */
+  PetscInt *from;         /* [nonzeros]: where an entry of the renumbered matrix comes from */
+  PetscInt *row, *column; /* of the renumbered matrix, upper triangle; like `entries` used by `matrix` */
   PetscReal *entries;
   Mat matrix, factor;
   Vec rhs, solution;
 };
 
 /* Numbers the unknowns by approximate minimum degree. */
-static PetscErrorCode Order(LamCholesky c, const PetscInt row[], const PetscInt column[])
+static PetscErrorCode Order(LamCholesky c, PetscInt row[], PetscInt column[])
 {
   Mat graph;
   IS order, same;
   const PetscInt *old;
 
   PetscFunctionBeginUser;
-  PetscCall(MatCreateSeqSBAIJWithArrays(PETSC_COMM_SELF, 1, c->n, c->n, (PetscInt *)row, (PetscInt *)column,
-                                        (PetscScalar *)c->values, &graph));
+  PetscCall(MatCreateSeqSBAIJWithArrays(PETSC_COMM_SELF, 1, c->n, c->n, row, column, c->values, &graph));
   PetscCall(MatSetOption(graph, MAT_SYMMETRIC, PETSC_TRUE));
   PetscCall(MatConvert(graph, MATSEQAIJ, MAT_INPLACE_MATRIX, &graph));
   PetscCall(MatGetOrdering(graph, "amd", &order, &same));
@@ -98,7 +97,7 @@ static PetscErrorCode Analyse(LamCholesky c)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamCholeskyCreate(PetscInt n, const PetscInt row[], const PetscInt column[], const PetscReal values[],
+PetscErrorCode LamCholeskyCreate(PetscInt n, PetscInt row[], PetscInt column[], PetscReal values[],
                                  LamCholesky *cholesky)
 {
   LamCholesky c;

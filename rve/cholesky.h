@@ -12,7 +12,7 @@
 typedef struct LamCholesky_s *LamCholesky;
 
 /* As LamFactorCreate, on this process alone. */
-PetscErrorCode LamCholeskyCreate(PetscInt n, const PetscInt row[], const PetscInt column[], const PetscReal values[],
+PetscErrorCode LamCholeskyCreate(PetscInt n, PetscInt row[], PetscInt column[], PetscReal values[],
                                  LamCholesky *cholesky);
 /* *definite is PETSC_FALSE where the matrix is not positive definite: then there is no factor. */
 PetscErrorCode LamCholeskyNumeric(LamCholesky cholesky, PetscBool *definite);

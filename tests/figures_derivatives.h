@@ -23,6 +23,7 @@ static inline LamMicrostructure RandomTissue(uint64_t *seed)
 
   micro.wall_thickness = RandomReal(seed, 0.06, 0.25);
   micro.orientation = RandomReal(seed, 0.0, 1.0);
+  micro.grading = 0.7 * micro.orientation; /* any */
   return micro;
 }
 

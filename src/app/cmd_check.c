@@ -77,8 +77,8 @@ static json_t *Mesh(const Check *check)
 {
   const LamMicrostructure *given = &check->scene->micro, *micro = &check->plan.micro;
 
-  return json_pack("{s:I, s:I, s:b}", "along", (json_int_t)micro->along, "through", (json_int_t)micro->through,
-                   "chosen", !given->along || !given->through);
+  return json_pack("{s:I, s:I, s:o, s:b}", "along", (json_int_t)micro->along, "through", (json_int_t)micro->through,
+                   "grading", LamJSONReal(micro->grading), "chosen", !given->along || !given->through);
 }
 
 static json_t *Spread(const LamCellSpread *spread, PetscReal MPa)
@@ -239,6 +239,7 @@ static void PrintModel(const Check *check)
     printf("%-12s none, where no load says otherwise\n", "turgor");
   printf("%-12s %" PetscInt_FMT " elements along a face, %" PetscInt_FMT " through a wall", "mesh", micro->along,
          micro->through);
+  if (micro->grading > 0) printf(", graded by %.2g towards the corners", (double)micro->grading);
   if (!given->along || !given->through)
     printf(" (chosen for an accuracy of %.2g %%)\n", (double)(100 * scene->accuracy));
   else

@@ -141,6 +141,38 @@ static void LumenNodesHaveNoShift(void **state)
   assert_int_equal(LamMeshDestroy(&mesh), 0);
 }
 
+/* Elements at the ends of a face are 1 - grading as long as those of an even mesh, to first order; the mesh is
+   symmetric about the middle of the face, so that facing walls have the same nodes. */
+static void GradedElementsAreSmallAtTheCorners(void **state)
+{
+  LamMicrostructure micro = Cells(1, 1, 0.0);
+  LamMesh mesh;
+
+  micro.along = 40;
+  micro.grading = 0.6;
+  mesh = NewMesh(&micro);
+  assert_near(40 * mesh.ends[1], 0.4, 0.01);
+  assert_near(40 * (mesh.ends[21] - mesh.ends[20]), 1.6, 0.01);
+  for (int i = 0; i <= 40; i++) assert_near(mesh.ends[i] + mesh.ends[40 - i], 1.0, 1e-15);
+  assert_near(LamShortestEdge(&mesh), 2 / sqrt(3.0) * mesh.ends[1], 1e-15);
+  assert_near(LamLongestEdge(&mesh), 2 / sqrt(3.0) * (mesh.ends[20] - mesh.ends[19]), 1e-15);
+  assert_int_equal(LamMeshDestroy(&mesh), 0);
+}
+
+static void PlacesAndSharesOfAFaceAreInverse(void **state)
+{
+  LamMicrostructure micro = Cells(1, 1, 0.0);
+  LamMesh mesh;
+
+  micro.grading = 0.7;
+  mesh = NewMesh(&micro);
+  for (int i = 0; i <= 24; i++) {
+    assert_near(LamMeshPlace(&mesh, LamMeshShare(&mesh, 0.25 * i)), 0.25 * i, 1e-14);
+    assert_near(LamMeshShare(&mesh, LamMeshPlace(&mesh, i / 24.0)), i / 24.0, 1e-15);
+  }
+  assert_int_equal(LamMeshDestroy(&mesh), 0);
+}
+
 static void ImpossibleWallThicknessIsRefused(void **state)
 {
   LamMicrostructure micro = DefaultTissue();
@@ -155,10 +187,16 @@ static void ImpossibleWallThicknessIsRefused(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(OneCellHas644Unknowns),   cmocka_unit_test(ClassesGrowWithTheNumberOfCells),
-      cmocka_unit_test(VolumeIsThatOfThePeriod), cmocka_unit_test(ElementsFillTheRing),
-      cmocka_unit_test(ShiftsArePeriodVectors),  cmocka_unit_test(OuterNodesAreSharedByTwoOrThreeCells),
-      cmocka_unit_test(LumenNodesHaveNoShift),   cmocka_unit_test(ImpossibleWallThicknessIsRefused),
+      cmocka_unit_test(OneCellHas644Unknowns),
+      cmocka_unit_test(ClassesGrowWithTheNumberOfCells),
+      cmocka_unit_test(VolumeIsThatOfThePeriod),
+      cmocka_unit_test(ElementsFillTheRing),
+      cmocka_unit_test(ShiftsArePeriodVectors),
+      cmocka_unit_test(OuterNodesAreSharedByTwoOrThreeCells),
+      cmocka_unit_test(GradedElementsAreSmallAtTheCorners),
+      cmocka_unit_test(PlacesAndSharesOfAFaceAreInverse),
+      cmocka_unit_test(LumenNodesHaveNoShift),
+      cmocka_unit_test(ImpossibleWallThicknessIsRefused),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,101 @@
+/* The estimate of the error of P from half as many elements, against the error on a fine mesh. */
+#include "rve_fixture.h"
+#include "rve_impl.h"
+
+#define STATES 6
+
+static const double loads[STATES][5] = {{1, 0.1, 0, 1, 0.18},    {1, 0.2, 0, 1, 0.18}, {1, 0.3, 0, 1, 0.3},
+                                        {1.05, 0, 0, 1.05, 0.1}, {1.1, 0, 0, 1, 0.18}, {1.1, 0.1, 0, 0.98, 0.2}};
+
+static LamLoad Load(int k)
+{
+  return PlaneLoad(loads[k][0], loads[k][1], loads[k][2], loads[k][3], loads[k][4]);
+}
+
+static LamResponse Estimated(const LamMicrostructure *micro, LamLoad load)
+{
+  LamRVE rve = NewRVE(micro);
+  LamRVEState state;
+  LamRVEEstimate estimate;
+  LamResponse response;
+
+  assert_int_equal(LamRVEStateCreate(rve, &state), 0);
+  assert_int_equal(LamRVEEstimateCreate(rve, &estimate), 0);
+  assert_int_equal(LamRVESolve(rve, &load, state, &response), 0);
+  assert_int_equal(LamRVEEstimateError(estimate, state, &response), 0);
+  assert_int_equal(LamRVEEstimateDestroy(&estimate), 0);
+  assert_int_equal(LamRVEStateDestroy(&state), 0);
+  assert_int_equal(LamRVEDestroy(&rve), 0);
+  return response;
+}
+
+/* Number of states whose estimate is within a factor of the error. */
+static int CountWithin(double factor, LamInterfaceLawType interface, double grading, int along)
+{
+  LamMicrostructure micro = DefaultTissue(), fine;
+  int within = 0;
+
+  micro.interface = interface;
+  micro.grading = grading;
+  fine = micro;
+  micro.along = along;
+  fine.along = 16;
+  fine.through = interface == LAM_INTERFACE_BONDED ? 4 : 3;
+  for (int k = 0; k < STATES; k++) {
+    const LamResponse r = Estimated(&micro, Load(k)), truth = SolveTissue(&fine, Load(k));
+    const double error = LamStressError(r.P, truth.P);
+
+    assert_int_equal(r.status, LAM_CONVERGED);
+    assert_true(r.error_estimate > 0);
+    within += r.error_estimate > error / factor && r.error_estimate < error * factor;
+  }
+  return within;
+}
+
+static void IsNearTheErrorOfBondedTissue(void **state)
+{
+  assert_int_equal(CountWithin(5, LAM_INTERFACE_BONDED, 0.7, 6), STATES);
+  assert_true(CountWithin(3, LAM_INTERFACE_BONDED, 0.0, 6) >= STATES - 1);
+}
+
+static void IsNearTheErrorOfContactTissue(void **state)
+{
+  assert_true(CountWithin(5, LAM_INTERFACE_CONTACT, 0.0, 6) >= STATES - 1);
+}
+
+/* An odd number of elements along a face cannot be halved. */
+static void IsNotKnownForOddMeshes(void **state)
+{
+  LamMicrostructure micro = DefaultTissue();
+
+  micro.along = 5;
+  assert_true(isnan(Estimated(&micro, Load(0)).error_estimate));
+}
+
+static void ChangesNothingOfTheState(void **state)
+{
+  LamMicrostructure micro = DefaultTissue();
+  LamRVE rve = NewRVE(&micro);
+  const LamResponse alone = SolveFromReference(rve, Load(1)), both = Estimated(&micro, Load(1));
+
+  assert_int_equal(alone.factorisations, both.factorisations); /* the estimate's are not the state's */
+  assert_memory_equal(alone.P, both.P, sizeof(alone.P));
+  assert_int_equal(LamRVEDestroy(&rve), 0);
+}
+
+static int Run(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(IsNearTheErrorOfBondedTissue),
+      cmocka_unit_test(IsNearTheErrorOfContactTissue),
+      cmocka_unit_test(IsNotKnownForOddMeshes),
+      cmocka_unit_test(ChangesNothingOfTheState),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
+
+int main(int argc, char **argv)
+{
+  return RunWithPetsc(argc, argv, Run);
+}
