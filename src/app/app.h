@@ -34,6 +34,7 @@ PetscErrorCode LamCommandBuild(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandQuery(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandVerify(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status);
+PetscErrorCode LamCommandTradeoff(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandMap(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandMerge(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status);
@@ -104,6 +105,9 @@ PetscBool LamStopRequested(void);
 PetscBool LamStopInterrupt(void *ctx); /* the same, for LamRVESetInterrupt */
 /* As if SIGTERM had come: another rank has got a signal. */
 void LamStopRequest(void);
+/* From that time of LamClock on LamStopRequested says yes, without a signal, until it is set anew; PETSC_INFINITY: never.
+   For what is given a limited time on one rank. */
+void LamStopSetDeadline(PetscReal clock);
 /*
   Between the two, which are collective, a signal that reaches one rank of `comm` is a request on all: a rank tells it
   when it asks LamStopRequested, and the others learn it when they do.

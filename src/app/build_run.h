@@ -46,6 +46,12 @@ typedef struct {
 PetscInt64 LamBuildRecords(const LamBuild *build);
 PetscInt64 LamBuildFailed(const LamBuild *build);
 
+/* ---- cmd_build.c; collective ---- */
+
+/* Fills the file at build->path from build->scene, whose mesh is chosen. Tells nothing but progress and commits. */
+PetscErrorCode LamBuildTable(LamBuild *build);
+PetscErrorCode LamBuildDestroy(LamBuild *build); /* with its scene; NULL: it has none */
+
 /* ---- build_start.c ---- */
 
 /* Rank 0: opens or makes the file, its grid and what comes with it; the rounds begin. Needs the RVE. */

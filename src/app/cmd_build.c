@@ -208,7 +208,6 @@ static PetscErrorCode RunAll(LamBuild *b)
     if (b->team_size > 1) PetscCall(LamRVEDismiss(b->team));
   }
   PetscCall(Share(PETSC_COMM_WORLD, ierr));
-  if (!b->rank) PetscCall(Summary(b));
   PetscFunctionReturn(0);
 }
 
@@ -247,12 +246,19 @@ static PetscErrorCode Prepare(LamBuild *b, const char scene_path[])
              "%s: has no block `sample`, which says what states to build from", scene_path);
   PetscCall(LamPlanMake(b->scene, &plan));
   b->scene->micro = plan.micro;
-  b->start = LamClock();
-  PetscCall(CreateTeams(b));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Destroy(LamBuild *b)
+PetscErrorCode LamBuildTable(LamBuild *b)
+{
+  PetscFunctionBeginUser;
+  b->start = LamClock();
+  PetscCall(CreateTeams(b));
+  PetscCall(RunAll(b));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamBuildDestroy(LamBuild *b)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(b->pending.keys));
@@ -307,8 +313,9 @@ PetscErrorCode LamCommandBuild(LamArgs *args, int *exit_status)
     PetscFunctionReturn(0);
   PetscCall(LamAppInitialize(args));
   PetscCall(Prepare(&b, scene_path));
-  PetscCall(RunAll(&b));
+  PetscCall(LamBuildTable(&b));
+  if (!b.rank) PetscCall(Summary(&b));
   PetscCall(ExitStatus(&b, exit_status));
-  PetscCall(Destroy(&b));
+  PetscCall(LamBuildDestroy(&b));
   PetscFunctionReturn(0);
 }

@@ -14,6 +14,7 @@
 
 static volatile sig_atomic_t StopSignal, Count;
 static volatile PetscReal LastSignal;
+static PetscReal Deadline = PETSC_INFINITY; /* on the clock */
 
 #define NEIGHBOURS 16 /* below a rank, in the tree by which ranks tell each other */
 
@@ -121,10 +122,15 @@ PetscErrorCode LamStopShareEnd(void)
 
 /* ---- asking ---- */
 
+void LamStopSetDeadline(PetscReal clock)
+{
+  Deadline = clock;
+}
+
 PetscBool LamStopRequested(void)
 {
   if (Team.n && !Team.number && Team.comm != MPI_COMM_NULL) PetscCallAbort(PETSC_COMM_SELF, Exchange());
-  return (PetscBool)(StopSignal != 0);
+  return (PetscBool)(StopSignal != 0 || (Deadline < PETSC_INFINITY && LamClock() > Deadline));
 }
 
 PetscBool LamStopInterrupt(void *ctx)

@@ -1,0 +1,90 @@
+/*
+  One setting, answered once by an RVE: it is made, and the states are solved, as `lamella rve` does.
+*/
+#include "tradeoff.h"
+#include "onset.h"
+#include <lamella/clock.h>
+
+LamStopwatch LamStopwatchRead(void)
+{
+  struct timespec cpu;
+
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
+  return (LamStopwatch){(PetscReal)cpu.tv_sec + 1e-9 * (PetscReal)cpu.tv_nsec, LamClock()};
+}
+
+void LamMeasurementAddRun(LamMeasurement *m, LamStopwatch start, PetscReal state_cpu)
+{
+  const LamStopwatch now = LamStopwatchRead();
+
+  if (m->runs >= LAM_MOST_REPEATS) return;
+  m->cpu[m->runs] = now.cpu - start.cpu;
+  m->wall[m->runs] = now.wall - start.wall;
+  m->state_cpu[m->runs] = state_cpu;
+  m->runs++;
+}
+
+PetscErrorCode LamMeasurementInit(const LamSetting *setting, LamMeasurement *m)
+{
+  PetscFunctionBeginUser;
+  *m = (LamMeasurement){.setting = *setting};
+  PetscCall(PetscMalloc3(LAM_MOST_REPEATS, &m->cpu, LAM_MOST_REPEATS, &m->wall, LAM_MOST_REPEATS, &m->state_cpu));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMeasurementDestroy(LamMeasurement *m)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree3(m->cpu, m->wall, m->state_cpu));
+  PetscCall(PetscFree(m->responses));
+  PetscFunctionReturn(0);
+}
+
+/* Goes on behind a state without answer, as `lamella rve` does: the first says why the setting is left out. */
+static PetscErrorCode SolveStates(const LamStates *states, LamMeshes *meshes, LamResponse responses[],
+                                  LamMeasurement *m)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt s = 0; s < states->n && !meshes->stopped; s++) {
+    LamResponse both[2];
+
+    if (!states->chained) PetscCall(LamRVEStateReset(meshes->rve[0], meshes->state[0]));
+    PetscCall(LamMeshesSolve(meshes, &states->loads[s], NULL, both));
+    responses[s] = both[0];
+    if (both[0].status == LAM_CONVERGED || m->reason[0]) continue;
+    PetscCall(PetscSNPrintf(m->reason, sizeof(m->reason), "state %" PetscInt_FMT ": %s: %.120s", s + 1,
+                            LamStatusNames[both[0].status], both[0].reason));
+  }
+  if (meshes->stopped) PetscCall(PetscStrncpy(m->reason, "stopped: the time was over", sizeof(m->reason)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMeasureRVE(const LamScene *scene, const LamStates *states, LamMeasurement *m)
+{
+  const LamStopwatch start = LamStopwatchRead();
+  LamScene own = *scene;
+  LamResponse *responses;
+  LamStopwatch solves;
+  LamMeshes meshes;
+
+  PetscFunctionBeginUser;
+  own.micro = m->setting.micro;
+  own.strategy = m->setting.strategy;
+  own.tolerance = m->setting.tolerance;
+  m->reason[0] = '\0';
+  PetscCall(PetscMalloc1(states->n, &responses));
+  PetscCall(LamMeshesCreate(PETSC_COMM_SELF, &own, 1, &meshes));
+  PetscCall(LamRVEGetUnknowns(meshes.rve[0], &m->unknowns));
+  PetscCall(LamMeshesSetInterrupt(&meshes, LamStopInterrupt, NULL));
+  solves = LamStopwatchRead();
+  PetscCall(LamMeshesSeal(&meshes, &own, &states->loads[0]));
+  PetscCall(SolveStates(states, &meshes, responses, m));
+  if (!m->reason[0])
+    LamMeasurementAddRun(m, start, (LamStopwatchRead().cpu - solves.cpu) / (PetscReal)states->n);
+  if (meshes.stopped || m->responses)
+    PetscCall(PetscFree(responses));
+  else
+    m->responses = responses;
+  PetscCall(LamMeshesDestroy(&meshes));
+  PetscFunctionReturn(0);
+}

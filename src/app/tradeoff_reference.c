@@ -1,0 +1,146 @@
+/*
+  The reference: answers on a mesh that is finer than all settings.
+
+  Method
+    Meshes of a ladder, solved to rounding, graded now more, now less. The error of each is told from the one before,
+    whose own error is mostly the larger: so it is rather too large than too small. Cells in contact may be on another
+    branch on the next mesh; a state at which the meshes do not agree well enough to judge the scene's accuracy says
+    nothing of the settings, and is left out.
+*/
+#include "tradeoff.h"
+#include <lamella/clock.h>
+#include <math.h>
+
+static const struct {
+  PetscInt along, through;
+  PetscReal grading;
+} Ladder[] = {{20, 4, 0.5}, {28, 6, 0.7}, {40, 8, 0.5}, {56, 10, 0.7}, {80, 14, 0.5}, {112, 20, 0.7}};
+enum { RUNGS = PETSC_STATIC_ARRAY_LENGTH(Ladder) };
+
+#define FINER 10.0       /* than what is ranked */
+#define COST_POWER 1.5   /* of the time, in unknowns */
+#define SETTLED 0.1      /* of the scene's accuracy */
+
+static PetscErrorCode Climb(const LamScene *scene, const LamStates *states, int rung, LamMeasurement *m)
+{
+  LamSetting setting = {.knob = LAM_KNOB_MESH, .micro = scene->micro, .strategy = scene->strategy};
+
+  PetscFunctionBeginUser;
+  setting.micro.along = Ladder[rung].along;
+  setting.micro.through = Ladder[rung].through;
+  setting.micro.grading = Ladder[rung].grading;
+  PetscCall(LamMeasurementInit(&setting, m));
+  PetscCall(LamMeasureRVE(scene, states, m));
+  PetscFunctionReturn(0);
+}
+
+/* Which states the errors are taken at. */
+static void Use(PetscReal accuracy, PetscInt n, LamReference *reference)
+{
+  PetscInt settled = 0;
+
+  reference->used_count = reference->known_count = 0;
+  for (PetscInt s = 0; s < n; s++) {
+    reference->known_count += isfinite(reference->difference[s]);
+    settled += reference->difference[s] <= SETTLED * accuracy;
+  }
+  for (PetscInt s = 0; s < n; s++) {
+    const PetscReal difference = reference->difference[s];
+
+    reference->used[s] = (PetscBool)(isfinite(difference) && (!settled || difference <= SETTLED * accuracy));
+    reference->used_count += reference->used[s];
+  }
+}
+
+static void Compare(const LamScene *scene, PetscInt n, const LamResponse coarser[], LamReference *reference)
+{
+  for (PetscInt s = 0; s < n; s++) {
+    const PetscBool known = (PetscBool)(coarser[s].status == LAM_CONVERGED &&
+                                        reference->responses[s].status == LAM_CONVERGED);
+
+    reference->difference[s] = known ? LamStressError(coarser[s].P, reference->responses[s].P) : NAN;
+  }
+  Use(scene->accuracy, n, reference);
+  for (int k = 0; k < LAM_ERROR_KIND_COUNT; k++) {
+    reference->error[k] = reference->used_count && k != LAM_ERROR_MACRO ? 0 : NAN;
+    for (PetscInt s = 0; s < n && k != LAM_ERROR_MACRO; s++)
+      if (reference->used[s])
+        reference->error[k] =
+            PetscMax(reference->error[k], LamErrorOf((LamErrorKind)k, scene->micro.interface, &coarser[s],
+                                                     &reference->responses[s]));
+  }
+}
+
+/* The smallest error of P of the meshes that were measured. */
+static PetscReal SmallestError(const LamReference *reference, PetscInt states, PetscInt n,
+                               const LamMeasurement measured[])
+{
+  PetscReal smallest = PETSC_INFINITY;
+
+  for (PetscInt i = 0; i < n; i++) {
+    PetscReal largest = 0;
+
+    if (!measured[i].runs || measured[i].setting.knob != LAM_KNOB_MESH) continue;
+    for (PetscInt s = 0; s < states; s++)
+      if (reference->used[s])
+        largest = PetscMax(largest, LamStressError(measured[i].responses[s].P, reference->responses[s].P));
+    smallest = PetscMin(smallest, largest);
+  }
+  return smallest;
+}
+
+/* The mesh becomes the reference, and gives its answers away. */
+static void Take(LamMeasurement *m, LamReference *reference)
+{
+  reference->other = reference->micro;
+  reference->micro = m->setting.micro;
+  reference->responses = m->responses;
+  m->responses = NULL;
+}
+
+PetscErrorCode LamReferenceMake(const LamScene *scene, const LamStates *states, PetscInt n,
+                                const LamMeasurement measured[], PetscReal deadline, LamReference *reference)
+{
+  PetscReal cpu = 0, size = 0;
+
+  PetscFunctionBeginUser;
+  *reference = (LamReference){.cpu = NAN};
+  for (int k = 0; k < LAM_ERROR_KIND_COUNT; k++) reference->error[k] = NAN;
+  PetscCall(PetscCalloc1(states->n, &reference->used));
+  PetscCall(PetscMalloc1(states->n, &reference->difference));
+  for (PetscInt s = 0; s < states->n; s++) reference->difference[s] = NAN;
+  LamStopSetDeadline(deadline);
+  for (int rung = 0; rung < RUNGS; rung++) {
+    const PetscReal ratio = (PetscReal)(Ladder[rung].along * Ladder[rung].through) / size;
+    const LamStopwatch start = LamStopwatchRead();
+    LamResponse *coarser = reference->responses;
+    LamMeasurement m;
+
+    if (rung && LamClock() + cpu * PetscPowReal(ratio, COST_POWER) > deadline) break;
+    PetscCall(Climb(scene, states, rung, &m));
+    if (!m.responses) { /* stopped */
+      PetscCall(LamMeasurementDestroy(&m));
+      break;
+    }
+    Take(&m, reference);
+    PetscCall(LamMeasurementDestroy(&m));
+    reference->cpu = cpu = LamStopwatchRead().cpu - start.cpu;
+    size = (PetscReal)(Ladder[rung].along * Ladder[rung].through);
+    if (coarser) Compare(scene, states->n, coarser, reference);
+    PetscCall(PetscFree(coarser));
+    if (reference->used_count &&
+        FINER * reference->error[LAM_ERROR_P] <= SmallestError(reference, states->n, n, measured))
+      break;
+  }
+  LamStopSetDeadline(PETSC_INFINITY);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamReferenceDestroy(LamReference *reference)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(reference->responses));
+  PetscCall(PetscFree(reference->used));
+  PetscCall(PetscFree(reference->difference));
+  PetscFunctionReturn(0);
+}
