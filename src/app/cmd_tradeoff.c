@@ -174,8 +174,8 @@ static PetscErrorCode MeasureAll(Run *run)
   PetscFunctionBeginUser;
   PetscCall(MeasureOnce(run, PART_RVE));
   if (!Signalled())
-    PetscCall(LamReferenceMake(run->scene, &run->states, run->n, run->measured, run->ends[PART_REFERENCE],
-                               &run->reference));
+    PetscCall(
+        LamReferenceMake(run->scene, &run->states, run->n, run->measured, run->ends[PART_REFERENCE], &run->reference));
   PetscCall(Repeat(run, run->ends[PART_REPEATS], PART_RVE, PART_RVE));
   PetscCall(MeasureOnce(run, PART_TABLES));
   PetscCall(MeasureOnce(run, PART_MACRO));

@@ -97,6 +97,7 @@ typedef struct {
   const char *unit;  /* borrowed; NULL: none */
   PetscBool whole;   /* only whole numbers */
   LamTicks ticks;
+  PetscBool is_log; /* what is drawn are decadic logarithms; the numbers are not */
 } LamAxis;
 typedef struct {
   LamRect frame;
@@ -104,6 +105,8 @@ typedef struct {
 } LamAxes;
 /* Widens [low, high] by a share of 0.06 at both ends, or to something drawable where it is empty. */
 void LamAxisPad(LamAxis *axis);
+/* Widens the limits of logarithms to whole powers of ten. */
+void LamAxisPadLog(LamAxis *axis);
 /* "label (10^{-3} MPa)" */
 void LamAxisLabel(const LamAxis *axis, size_t size, char text[]);
 /* Chooses ticks and the frame inside `outer` that leaves room for numbers and labels. */

@@ -36,7 +36,10 @@ void LamTicksFormat(const LamTicks *ticks, PetscInt i, char text[32])
   PetscReal value = (ticks->first + i * ticks->step) * PetscPowReal(10, -ticks->exponent);
 
   if (ticks->is_log) {
-    snprintf(text, 32, "%g", (double)PetscPowReal(10, value));
+    if (value > -3.5 && value < 4.5)
+      snprintf(text, 32, "%g", (double)PetscPowReal(10, value));
+    else
+      snprintf(text, 32, "10^{%s%g}", value < 0 ? "\u2212" : "", (double)PetscAbsReal(value));
     return;
   }
   if (PetscAbsReal(value) < 1e-6 * ticks->step * PetscPowReal(10, -ticks->exponent)) value = 0;
@@ -58,6 +61,13 @@ void LamAxisPad(LamAxis *axis)
   }
   axis->low -= 0.06 * range;
   axis->high += 0.06 * range;
+}
+
+void LamAxisPadLog(LamAxis *axis)
+{
+  if (!(axis->low <= axis->high)) axis->low = axis->high = 0; /* no finite point */
+  axis->low = PetscFloorReal(axis->low - 0.04);
+  axis->high = PetscMax(axis->low + 1, PetscCeilReal(axis->high + 0.04));
 }
 
 void LamAxisLabel(const LamAxis *axis, size_t size, char text[])
@@ -87,6 +97,14 @@ double LamTicksWidth(LamCanvas canvas, const LamTicks *ticks)
   return widest;
 }
 
+static LamTicks ChooseTicks(const LamAxis *axis, PetscInt wanted)
+{
+  LamTicks ticks = LamTicksChoose(axis->low, axis->high, wanted, (PetscBool)(axis->whole || axis->is_log));
+
+  ticks.is_log = axis->is_log;
+  return ticks;
+}
+
 void LamAxesLayout(LamCanvas canvas, LamRect outer, LamAxes *axes)
 {
   const double below = TickLength + Gap + LAM_TICK_SIZE + Gap + LAM_TEXT_SIZE;
@@ -95,12 +113,11 @@ void LamAxesLayout(LamCanvas canvas, LamRect outer, LamAxes *axes)
 
   axes->frame.y = outer.y + 0.5 * LAM_TICK_SIZE;
   axes->frame.height = outer.height - 0.5 * LAM_TICK_SIZE - below;
-  axes->y.ticks =
-      LamTicksChoose(axes->y.low, axes->y.high, (PetscInt)PetscMax(2, axes->frame.height / 26), axes->y.whole);
+  axes->y.ticks = ChooseTicks(&axes->y, (PetscInt)PetscMax(2, axes->frame.height / 26));
   left = LAM_TEXT_SIZE + Gap + 1 + LamTicksWidth(canvas, &axes->y.ticks) + Gap + TickLength;
   wanted = (PetscInt)PetscMax(2, (outer.width - left) / 28);
   do { /* labels need half a label of air between them */
-    axes->x.ticks = LamTicksChoose(axes->x.low, axes->x.high, wanted, axes->x.whole);
+    axes->x.ticks = ChooseTicks(&axes->x, wanted);
     right = 0.5 * LamTicksWidth(canvas, &axes->x.ticks);
   } while (--wanted > 1 && 3.0 * right * axes->x.ticks.count > outer.width - left - right);
   axes->frame.x = outer.x + left;
@@ -137,7 +154,8 @@ static void DrawTicks(LamCanvas canvas, const LamAxes *axes, PetscBool horizonta
     char text[32];
 
     LamCanvasSetColour(canvas, Faint);
-    cairo_set_line_width(cr, PetscAbsReal(value) < 1e-9 * ticks->step ? 1.0 : 0.4); /* zero stands out */
+    /* zero stands out */
+    cairo_set_line_width(cr, !ticks->is_log && PetscAbsReal(value) < 1e-9 * ticks->step ? 1.0 : 0.4);
     if (horizontal)
       Line(cr, at, f.y, at, bottom);
     else
@@ -158,6 +176,29 @@ static void DrawTicks(LamCanvas canvas, const LamAxes *axes, PetscBool horizonta
   }
 }
 
+/* Short ticks at 2, 3, ..., 9 times each power of ten, where powers are ticks themselves. */
+static void DrawMinorTicks(LamCanvas canvas, const LamAxes *axes, PetscBool horizontal)
+{
+  const LamAxis *axis = horizontal ? &axes->x : &axes->y;
+  cairo_t *cr = LamCanvasCairo(canvas);
+  const LamRect f = axes->frame;
+
+  if (!axis->is_log || axis->ticks.step != 1) return;
+  LamCanvasSetColour(canvas, Ink);
+  cairo_set_line_width(cr, 0.4);
+  for (PetscReal power = PetscFloorReal(axis->low); power < axis->high; power++)
+    for (int digit = 2; digit < 10; digit++) {
+      const PetscReal value = power + PetscLog10Real(digit);
+
+      if (value < axis->low || value > axis->high) continue;
+      if (horizontal)
+        Line(cr, LamAxesX(axes, value), f.y + f.height, LamAxesX(axes, value), f.y + f.height + 0.5 * TickLength);
+      else
+        Line(cr, f.x - 0.5 * TickLength, LamAxesY(axes, value), f.x, LamAxesY(axes, value));
+    }
+  cairo_stroke(cr);
+}
+
 void LamAxesFrame(LamCanvas canvas, const LamAxes *axes)
 {
   cairo_t *cr = LamCanvasCairo(canvas);
@@ -176,6 +217,8 @@ void LamAxesDraw(LamCanvas canvas, const LamAxes *axes)
 
   DrawTicks(canvas, axes, PETSC_TRUE);
   DrawTicks(canvas, axes, PETSC_FALSE);
+  DrawMinorTicks(canvas, axes, PETSC_TRUE);
+  DrawMinorTicks(canvas, axes, PETSC_FALSE);
   LamAxesFrame(canvas, axes);
   LamAxisLabel(&axes->x, sizeof label, label);
   LamCanvasText(canvas, f.x + 0.5 * f.width,

@@ -59,6 +59,7 @@ typedef struct {
   PetscBool chained;  /* each starts from the one before, else from the undeformed tissue */
   PetscInt dropped;   /* of the scene's load, which prescribes stress that the planned mesh cannot reach */
   const char *origin; /* "load", "sample", "default" */
+  PetscBool *skip;    /* [n]: is not solved; NULL: all are; borrowed */
 } LamStates;
 
 /* The last step of a body. */
@@ -80,13 +81,15 @@ typedef struct {
 #define LAM_MOST_REPEATS 100
 typedef struct {
   LamSetting setting;
-  PetscInt unknowns;      /* of one RVE */
-  PetscInt nodes;         /* of a table; 0: none */
-  PetscInt runs;          /* how often it was measured; 0: left out */
-  PetscReal *cpu, *wall;  /* [runs] seconds, all included; owned, room for LAM_MOST_REPEATS */
-  PetscReal *state_cpu;   /* [runs] of it, in solves or queries of one state on average; owned, likewise */
+  PetscInt unknowns;               /* of one RVE */
+  PetscInt nodes;                  /* of a table; 0: none */
+  PetscInt runs;                   /* how often it was measured; 0: left out */
+  PetscReal *cpu, *wall;           /* [runs] seconds, all included; owned, room for LAM_MOST_REPEATS */
+  PetscReal *state_cpu;            /* [runs] of it, in solves or queries of one state on average; owned, likewise */
   PetscReal build_cpu, build_wall; /* of a table, or of the one that a body asks: of the last building */
-  LamResponse *responses; /* [states], where runs > 0 all converged; NULL: none; owned */
+  PetscBool stopped;               /* by the time, or a signal */
+  LamResponse *responses; /* [states], where runs > 0 all converged; those that were not solved LAM_OUT_OF_REACH; NULL:
+                             none; owned */
   LamMacroOutcome outcome;
   char reason[192]; /* why it is left out; empty: it is not */
 
@@ -98,12 +101,12 @@ typedef struct {
 
 /* Answers on a mesh that is finer than all settings, and how far they are from those of the next coarser one. */
 typedef struct {
-  LamMicrostructure micro, other; /* the finest mesh, and the one that its error is told from; borrow cells */
-  LamResponse *responses;         /* [states]; owned */
-  PetscBool *used;                /* [states]: errors are taken there; owned */
-  PetscInt used_count;            /* 0: there is no reference */
-  PetscInt known_count;           /* states that have an answer on both meshes */
-  PetscReal *difference;          /* [states] of P between the two meshes; NaN: one has no answer; owned */
+  LamMicrostructure micro, other;        /* the finest mesh, and the one that its error is told from; borrow cells */
+  LamResponse *responses;                /* [states]; owned */
+  PetscBool *used;                       /* [states]: errors are taken there; owned */
+  PetscInt used_count;                   /* 0: there is no reference */
+  PetscInt known_count;                  /* states that have an answer on both meshes */
+  PetscReal *difference;                 /* [states] of P between the two meshes; NaN: one has no answer; owned */
   PetscReal error[LAM_ERROR_KIND_COUNT]; /* largest difference between the two over the states used; NaN: not known */
   PetscReal cpu;                         /* seconds of the finest */
 } LamReference;
@@ -139,7 +142,8 @@ void LamMeasurementAddRun(LamMeasurement *m, LamStopwatch start, PetscReal state
 /* ---- tradeoff_reference.c ---- */
 /*
   Finer and finer meshes, until the last two differ by a tenth of the smallest error of P in `measured`, or the time is
-  over. States at which they differ by more than a tenth of the scene's accuracy are not used, unless all are such.
+  over. States that take too long are given up on the way. States at which the two differ by more than a tenth of the
+  scene's accuracy are not used, unless all are such.
 */
 PetscErrorCode LamReferenceMake(const LamScene *scene, const LamStates *states, PetscInt n,
                                 const LamMeasurement measured[], PetscReal deadline, LamReference *reference);

@@ -156,8 +156,7 @@ PetscErrorCode LamJudge(const LamReference *reference, PetscInt states, PetscInt
 
     m->cpu_spread = LamSpreadOf(m->runs, m->cpu);
     m->wall_spread = LamSpreadOf(m->runs, m->wall);
-    for (int k = 0; k < LAM_ERROR_KIND_COUNT; k++)
-      m->error[k] = (LamMeasuredError){NAN, NAN, PETSC_FALSE, PETSC_FALSE};
+    for (int k = 0; k < LAM_ERROR_KIND_COUNT; k++) m->error[k] = (LamMeasuredError){NAN, NAN, PETSC_FALSE, PETSC_FALSE};
     m->from_plan = NAN;
     if (!m->runs) continue;
     if (m->setting.knob == LAM_KNOB_MACRO && direct) JudgeMacro(direct, m);

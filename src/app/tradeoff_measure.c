@@ -45,9 +45,12 @@ static PetscErrorCode SolveStates(const LamStates *states, LamMeshes *meshes, La
                                   LamMeasurement *m)
 {
   PetscFunctionBeginUser;
-  for (PetscInt s = 0; s < states->n && !meshes->stopped; s++) {
+  for (PetscInt s = 0; s < states->n; s++) {
     LamResponse both[2];
 
+    PetscCall(LamResponseInit(&states->loads[s], &responses[s]));
+    responses[s].status = LAM_OUT_OF_REACH;
+    if (meshes->stopped || (states->skip && states->skip[s])) continue;
     if (!states->chained) PetscCall(LamRVEStateReset(meshes->rve[0], meshes->state[0]));
     PetscCall(LamMeshesSolve(meshes, &states->loads[s], NULL, both));
     responses[s] = both[0];
@@ -55,7 +58,10 @@ static PetscErrorCode SolveStates(const LamStates *states, LamMeshes *meshes, La
     PetscCall(PetscSNPrintf(m->reason, sizeof(m->reason), "state %" PetscInt_FMT ": %s: %.120s", s + 1,
                             LamStatusNames[both[0].status], both[0].reason));
   }
-  if (meshes->stopped) PetscCall(PetscStrncpy(m->reason, "stopped: the time was over", sizeof(m->reason)));
+  if (meshes->stopped) {
+    PetscCall(PetscStrncpy(m->reason, "stopped: the time was over", sizeof(m->reason)));
+    m->stopped = PETSC_TRUE;
+  }
   PetscFunctionReturn(0);
 }
 
@@ -79,9 +85,8 @@ PetscErrorCode LamMeasureRVE(const LamScene *scene, const LamStates *states, Lam
   solves = LamStopwatchRead();
   PetscCall(LamMeshesSeal(&meshes, &own, &states->loads[0]));
   PetscCall(SolveStates(states, &meshes, responses, m));
-  if (!m->reason[0])
-    LamMeasurementAddRun(m, start, (LamStopwatchRead().cpu - solves.cpu) / (PetscReal)states->n);
-  if (meshes.stopped || m->responses)
+  if (!m->reason[0]) LamMeasurementAddRun(m, start, (LamStopwatchRead().cpu - solves.cpu) / (PetscReal)states->n);
+  if (m->responses)
     PetscCall(PetscFree(responses));
   else
     m->responses = responses;

@@ -5,7 +5,8 @@
     Meshes of a ladder, solved to rounding, graded now more, now less. The error of each is told from the one before,
     whose own error is mostly the larger: so it is rather too large than too small. Cells in contact may be on another
     branch on the next mesh; a state at which the meshes do not agree well enough to judge the scene's accuracy says
-    nothing of the settings, and is left out.
+    nothing of the settings, and is left out. So is one on which a mesh would spend more than half of the time that is
+  left: walls that wrinkle on the scale of the mesh do so on every one.
 */
 #include "tradeoff.h"
 #include <lamella/clock.h>
@@ -17,9 +18,9 @@ static const struct {
 } Ladder[] = {{20, 4, 0.5}, {28, 6, 0.7}, {40, 8, 0.5}, {56, 10, 0.7}, {80, 14, 0.5}, {112, 20, 0.7}};
 enum { RUNGS = PETSC_STATIC_ARRAY_LENGTH(Ladder) };
 
-#define FINER 10.0       /* than what is ranked */
-#define COST_POWER 1.5   /* of the time, in unknowns */
-#define SETTLED 0.1      /* of the scene's accuracy */
+#define FINER 10.0     /* than what is ranked */
+#define COST_POWER 1.5 /* of the time, in unknowns */
+#define SETTLED 0.1    /* of the scene's accuracy */
 
 static PetscErrorCode Climb(const LamScene *scene, const LamStates *states, int rung, LamMeasurement *m)
 {
@@ -55,8 +56,8 @@ static void Use(PetscReal accuracy, PetscInt n, LamReference *reference)
 static void Compare(const LamScene *scene, PetscInt n, const LamResponse coarser[], LamReference *reference)
 {
   for (PetscInt s = 0; s < n; s++) {
-    const PetscBool known = (PetscBool)(coarser[s].status == LAM_CONVERGED &&
-                                        reference->responses[s].status == LAM_CONVERGED);
+    const PetscBool known =
+        (PetscBool)(coarser[s].status == LAM_CONVERGED && reference->responses[s].status == LAM_CONVERGED);
 
     reference->difference[s] = known ? LamStressError(coarser[s].P, reference->responses[s].P) : NAN;
   }
@@ -65,9 +66,8 @@ static void Compare(const LamScene *scene, PetscInt n, const LamResponse coarser
     reference->error[k] = reference->used_count && k != LAM_ERROR_MACRO ? 0 : NAN;
     for (PetscInt s = 0; s < n && k != LAM_ERROR_MACRO; s++)
       if (reference->used[s])
-        reference->error[k] =
-            PetscMax(reference->error[k], LamErrorOf((LamErrorKind)k, scene->micro.interface, &coarser[s],
-                                                     &reference->responses[s]));
+        reference->error[k] = PetscMax(reference->error[k], LamErrorOf((LamErrorKind)k, scene->micro.interface,
+                                                                       &coarser[s], &reference->responses[s]));
   }
 }
 
@@ -90,49 +90,90 @@ static PetscReal SmallestError(const LamReference *reference, PetscInt states, P
 }
 
 /* The mesh becomes the reference, and gives its answers away. */
-static void Take(LamMeasurement *m, LamReference *reference)
+static PetscErrorCode Take(const LamScene *scene, PetscInt n, LamMeasurement *m, LamReference *reference)
 {
+  LamResponse *coarser = reference->responses;
+
+  PetscFunctionBeginUser;
   reference->other = reference->micro;
   reference->micro = m->setting.micro;
   reference->responses = m->responses;
   m->responses = NULL;
+  if (coarser) Compare(scene, n, coarser, reference);
+  PetscCall(PetscFree(coarser));
+  PetscFunctionReturn(0);
+}
+
+/* Of the next rung, by the last one, in which the times of the states are. */
+static PetscReal PredictSeconds(int rung, const LamStates *states, const LamReference *reference)
+{
+  const PetscReal before = (PetscReal)(Ladder[rung - 1].along * Ladder[rung - 1].through);
+  const PetscReal ratio = (PetscReal)(Ladder[rung].along * Ladder[rung].through) / before;
+  PetscReal seconds = 0;
+
+  for (PetscInt s = 0; s < states->n; s++)
+    if (!states->skip[s] && reference->responses[s].seconds > 0) seconds += reference->responses[s].seconds;
+  return seconds * PetscPowReal(ratio, COST_POWER);
+}
+
+/* The first state that was stopped takes too long for what comes. */
+static void SkipStopped(const LamResponse responses[], LamStates *states)
+{
+  for (PetscInt s = 0; s < states->n; s++) {
+    if (states->skip[s] || responses[s].status != LAM_OUT_OF_REACH) continue;
+    states->skip[s] = PETSC_TRUE;
+    return;
+  }
+}
+
+static PetscInt CountAnswers(PetscInt n, const LamResponse responses[])
+{
+  PetscInt count = 0;
+
+  for (PetscInt s = 0; s < n; s++) count += responses[s].status == LAM_CONVERGED;
+  return count;
+}
+
+static PetscErrorCode ClimbAll(const LamScene *scene, LamStates *states, PetscInt n, const LamMeasurement measured[],
+                               PetscReal deadline, LamReference *reference)
+{
+  PetscFunctionBeginUser;
+  for (int rung = 0; rung < RUNGS && !LamStopExitStatus(); rung++) {
+    const LamStopwatch start = LamStopwatchRead();
+    PetscBool knows_less;
+    LamMeasurement m;
+
+    if (start.wall + (rung ? PredictSeconds(rung, states, reference) : 0) > deadline) break;
+    LamStopSetDeadline(start.wall + 0.5 * (deadline - start.wall));
+    PetscCall(Climb(scene, states, rung, &m));
+    LamStopSetDeadline(PETSC_INFINITY);
+    if (m.stopped) SkipStopped(m.responses, states);
+    knows_less = (PetscBool)(CountAnswers(states->n, m.responses) < reference->used_count);
+    if (!knows_less) PetscCall(Take(scene, states->n, &m, reference));
+    PetscCall(LamMeasurementDestroy(&m));
+    if (knows_less) break;
+    reference->cpu = LamStopwatchRead().cpu - start.cpu;
+    if (reference->used_count &&
+        FINER * reference->error[LAM_ERROR_P] <= SmallestError(reference, states->n, n, measured))
+      break;
+  }
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamReferenceMake(const LamScene *scene, const LamStates *states, PetscInt n,
                                 const LamMeasurement measured[], PetscReal deadline, LamReference *reference)
 {
-  PetscReal cpu = 0, size = 0;
+  LamStates left = *states;
 
   PetscFunctionBeginUser;
   *reference = (LamReference){.cpu = NAN};
   for (int k = 0; k < LAM_ERROR_KIND_COUNT; k++) reference->error[k] = NAN;
   PetscCall(PetscCalloc1(states->n, &reference->used));
+  PetscCall(PetscCalloc1(states->n, &left.skip));
   PetscCall(PetscMalloc1(states->n, &reference->difference));
   for (PetscInt s = 0; s < states->n; s++) reference->difference[s] = NAN;
-  LamStopSetDeadline(deadline);
-  for (int rung = 0; rung < RUNGS; rung++) {
-    const PetscReal ratio = (PetscReal)(Ladder[rung].along * Ladder[rung].through) / size;
-    const LamStopwatch start = LamStopwatchRead();
-    LamResponse *coarser = reference->responses;
-    LamMeasurement m;
-
-    if (rung && LamClock() + cpu * PetscPowReal(ratio, COST_POWER) > deadline) break;
-    PetscCall(Climb(scene, states, rung, &m));
-    if (!m.responses) { /* stopped */
-      PetscCall(LamMeasurementDestroy(&m));
-      break;
-    }
-    Take(&m, reference);
-    PetscCall(LamMeasurementDestroy(&m));
-    reference->cpu = cpu = LamStopwatchRead().cpu - start.cpu;
-    size = (PetscReal)(Ladder[rung].along * Ladder[rung].through);
-    if (coarser) Compare(scene, states->n, coarser, reference);
-    PetscCall(PetscFree(coarser));
-    if (reference->used_count &&
-        FINER * reference->error[LAM_ERROR_P] <= SmallestError(reference, states->n, n, measured))
-      break;
-  }
-  LamStopSetDeadline(PETSC_INFINITY);
+  PetscCall(ClimbAll(scene, &left, n, measured, deadline, reference));
+  PetscCall(PetscFree(left.skip));
   PetscFunctionReturn(0);
 }
 

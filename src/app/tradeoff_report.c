@@ -36,7 +36,8 @@ static void PrintUnused(const LamTradeoff *t)
     if (t->reference->used[s]) continue;
     printf("%-10s state %" PetscInt_FMT " is not compared: ", "", s + 1);
     if (isfinite(difference))
-      printf("the two finest meshes differ by %.2g %%, more than a tenth of the accuracy\n", (double)(100 * difference));
+      printf("the two finest meshes differ by %.2g %%, more than a tenth of the accuracy\n",
+             (double)(100 * difference));
     else
       printf("it has no answer on the finest meshes\n");
   }
@@ -54,8 +55,8 @@ static void PrintReference(const LamTradeoff *t)
   }
   printf("%-10s %s elements, %.3g core-s; ", "reference", MeshWords(&r->micro, text), (double)r->cpu);
   printf("differs from %s by %.2g %% in P, %.2g %% in the tangent, %.2g in the %s fraction\n",
-         MeshWords(&r->other, text), (double)(100 * r->error[LAM_ERROR_P]),
-         (double)(100 * r->error[LAM_ERROR_TANGENT]), (double)r->error[LAM_ERROR_OPENING], OpeningName(t));
+         MeshWords(&r->other, text), (double)(100 * r->error[LAM_ERROR_P]), (double)(100 * r->error[LAM_ERROR_TANGENT]),
+         (double)r->error[LAM_ERROR_OPENING], OpeningName(t));
   PrintUnused(t);
 }
 

@@ -197,7 +197,7 @@ static void AddResponses(const LamScene *scene, List *list)
 PetscErrorCode LamSettingsMake(const LamScene *scene, LamKnob knob, PetscInt *n, LamSetting **settings)
 {
   static void (*const make[])(const LamScene *, List *) = {
-      [LAM_KNOB_MESH] = AddMeshes,         [LAM_KNOB_STRATEGY] = AddStrategies, [LAM_KNOB_CELLS] = AddCells,
+      [LAM_KNOB_MESH] = AddMeshes,          [LAM_KNOB_STRATEGY] = AddStrategies, [LAM_KNOB_CELLS] = AddCells,
       [LAM_KNOB_TOLERANCE] = AddTolerances, [LAM_KNOB_DATABASE] = AddTables,     [LAM_KNOB_MACRO] = AddResponses};
   List list = {0};
 

@@ -2,8 +2,8 @@
   Which states the settings are to answer: those of the scene's load; where it has none, states of its sample box; else
   shears and stretches.
 
-  All settings answer at the same F. Where the load prescribes stress in place of components of F, these are found first,
-  on the planned mesh.
+  All settings answer at the same F. Where the load prescribes stress in place of components of F, these are found
+  first, on the planned mesh.
 */
 #include "tradeoff.h"
 #include "build.h"
@@ -17,8 +17,7 @@ enum { SHEARS = PETSC_STATIC_ARRAY_LENGTH(Shears), STRETCHES = PETSC_STATIC_ARRA
 
 static void Default(const LamScene *scene, LamStates *states)
 {
-  const LamLoad undeformed = {
-      .F = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .turgor = scene->turgor, .cohesion = scene->cohesion};
+  const LamLoad undeformed = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .turgor = scene->turgor, .cohesion = scene->cohesion};
 
   for (PetscInt s = 0; s < SHEARS + STRETCHES; s++) {
     LamLoad *load = &states->loads[states->n++];

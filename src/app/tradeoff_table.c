@@ -47,8 +47,8 @@ PetscErrorCode LamMeasureTable(const LamScene *scene, const LamStates *states, c
   unlink(table); /* of the run before */
   PetscCall(Build(scene, &m->setting, table, &m->nodes));
   if (LamStopRequested()) {
-    PetscCall(PetscSNPrintf(m->reason, sizeof(m->reason), "stopped: the time was over at %" PetscInt_FMT " nodes",
-                            m->nodes));
+    PetscCall(
+        PetscSNPrintf(m->reason, sizeof(m->reason), "stopped: the time was over at %" PetscInt_FMT " nodes", m->nodes));
     m->nodes = 0;
     PetscFunctionReturn(0);
   }
