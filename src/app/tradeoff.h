@@ -59,7 +59,7 @@ typedef struct {
   PetscBool chained;  /* each starts from the one before, else from the undeformed tissue */
   PetscInt dropped;   /* of the scene's load, which prescribes stress that the planned mesh cannot reach */
   const char *origin; /* "load", "sample", "default" */
-  PetscBool *skip;    /* [n]: is not solved; NULL: all are; borrowed */
+  PetscBool *skip;    /* [n]: is not solved; owned */
 } LamStates;
 
 /* The last step of a body. */
@@ -99,7 +99,7 @@ typedef struct {
   PetscReal from_plan; /* largest difference of P to the planned setting, or of a body to direct answers */
 } LamMeasurement;
 
-/* Answers on a mesh that is finer than all settings, and how far they are from those of the next coarser one. */
+/* Answers on a fine mesh, and how far they are from those of the next coarser one. */
 typedef struct {
   LamMicrostructure micro, other;        /* the finest mesh, and the one that its error is told from; borrow cells */
   LamResponse *responses;                /* [states]; owned */
@@ -119,6 +119,7 @@ PetscErrorCode LamSettingsMake(const LamScene *scene, LamKnob knob, PetscInt *n,
 
 /* ---- tradeoff_states.c ---- */
 PetscErrorCode LamStatesMake(const LamScene *scene, LamStates *states);
+PetscInt LamStatesCount(const LamStates *states); /* without those that are skipped */
 PetscErrorCode LamStatesDestroy(LamStates *states);
 
 /* ---- tradeoff_measure.c, tradeoff_table.c, tradeoff_macro.c: answer once more ---- */
@@ -141,12 +142,14 @@ void LamMeasurementAddRun(LamMeasurement *m, LamStopwatch start, PetscReal state
 
 /* ---- tradeoff_reference.c ---- */
 /*
-  Finer and finer meshes, until the last two differ by a tenth of the smallest error of P in `measured`, or the time is
-  over. States that take too long are given up on the way. States at which the two differ by more than a tenth of the
-  scene's accuracy are not used, unless all are such.
+  Finer and finer meshes, until the last two differ by a hundredth of the scene's accuracy in P, or the time is over:
+  errors from a tenth of the accuracy on can then be told. States that take too long are given up on the way. States at
+  which the two differ by more than a tenth of the scene's accuracy are not used, unless all are such.
 */
-PetscErrorCode LamReferenceMake(const LamScene *scene, const LamStates *states, PetscInt n,
-                                const LamMeasurement measured[], PetscReal deadline, LamReference *reference);
+PetscErrorCode LamReferenceMake(const LamScene *scene, const LamStates *states, PetscReal deadline,
+                                LamReference *reference);
+/* The states that it does not use are answered by no setting. */
+PetscErrorCode LamReferenceSkipUnused(const LamReference *reference, LamStates *states);
 PetscErrorCode LamReferenceDestroy(LamReference *reference);
 
 /* ---- tradeoff_judge.c ---- */
@@ -159,7 +162,7 @@ void LamMacroErrors(const LamMacroOutcome *answer, const LamMacroOutcome *refere
 /* Which points have no other that is at least as good in both, and better in one; NaN: never. */
 void LamParetoMark(PetscInt n, const PetscReal cost[], const PetscReal error[], PetscBool optimal[]);
 /* Fills in what is judged of all measurements. */
-PetscErrorCode LamJudge(const LamReference *reference, PetscInt states, PetscInt n, LamMeasurement measured[]);
+PetscErrorCode LamJudge(const LamReference *reference, const LamStates *states, PetscInt n, LamMeasurement measured[]);
 
 /* ---- tradeoff_report.c, tradeoff_plot.c ---- */
 typedef struct {

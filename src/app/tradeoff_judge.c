@@ -96,12 +96,12 @@ static void JudgeStates(const LamReference *reference, PetscInt states, LamMeasu
   }
 }
 
-static PetscReal FromPlan(PetscInt states, const LamMeasurement *m, const LamMeasurement *plan)
+static PetscReal FromPlan(const LamStates *states, const LamMeasurement *m, const LamMeasurement *plan)
 {
   PetscReal largest = 0;
 
-  for (PetscInt s = 0; s < states; s++)
-    largest = PetscMax(largest, LamStressError(m->responses[s].P, plan->responses[s].P));
+  for (PetscInt s = 0; s < states->n; s++)
+    if (!states->skip[s]) largest = PetscMax(largest, LamStressError(m->responses[s].P, plan->responses[s].P));
   return largest;
 }
 
@@ -137,7 +137,7 @@ static PetscErrorCode MarkOptimal(LamErrorKind kind, PetscInt n, LamMeasurement 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamJudge(const LamReference *reference, PetscInt states, PetscInt n, LamMeasurement measured[])
+PetscErrorCode LamJudge(const LamReference *reference, const LamStates *states, PetscInt n, LamMeasurement measured[])
 {
   const LamMeasurement *plan = NULL, *direct = NULL;
 
@@ -161,7 +161,7 @@ PetscErrorCode LamJudge(const LamReference *reference, PetscInt states, PetscInt
     if (!m->runs) continue;
     if (m->setting.knob == LAM_KNOB_MACRO && direct) JudgeMacro(direct, m);
     if (m->setting.knob == LAM_KNOB_MACRO) continue;
-    if (reference->used_count) JudgeStates(reference, states, m);
+    if (reference->used_count) JudgeStates(reference, states->n, m);
     if (plan) m->from_plan = FromPlan(states, m, plan);
   }
   for (int k = 0; k < LAM_ERROR_KIND_COUNT; k++) PetscCall(MarkOptimal((LamErrorKind)k, n, measured));

@@ -50,7 +50,7 @@ static PetscErrorCode SolveStates(const LamStates *states, LamMeshes *meshes, La
 
     PetscCall(LamResponseInit(&states->loads[s], &responses[s]));
     responses[s].status = LAM_OUT_OF_REACH;
-    if (meshes->stopped || (states->skip && states->skip[s])) continue;
+    if (meshes->stopped || states->skip[s]) continue;
     if (!states->chained) PetscCall(LamRVEStateReset(meshes->rve[0], meshes->state[0]));
     PetscCall(LamMeshesSolve(meshes, &states->loads[s], NULL, both));
     responses[s] = both[0];
@@ -85,7 +85,8 @@ PetscErrorCode LamMeasureRVE(const LamScene *scene, const LamStates *states, Lam
   solves = LamStopwatchRead();
   PetscCall(LamMeshesSeal(&meshes, &own, &states->loads[0]));
   PetscCall(SolveStates(states, &meshes, responses, m));
-  if (!m->reason[0]) LamMeasurementAddRun(m, start, (LamStopwatchRead().cpu - solves.cpu) / (PetscReal)states->n);
+  if (!m->reason[0])
+    LamMeasurementAddRun(m, start, (LamStopwatchRead().cpu - solves.cpu) / (PetscReal)LamStatesCount(states));
   if (m->responses)
     PetscCall(PetscFree(responses));
   else

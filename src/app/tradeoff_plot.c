@@ -190,6 +190,7 @@ static void DrawFront(LamCanvas canvas, const Panel *p)
 {
   cairo_t *cr = LamCanvasCairo(canvas);
   PetscReal at[2], last[2] = {-PETSC_INFINITY, 0};
+  PetscBool drawing = PETSC_FALSE;
 
   LamCanvasSetColour(canvas, Front);
   cairo_set_line_width(cr, 3.5);
@@ -206,11 +207,12 @@ static void DrawFront(LamCanvas canvas, const Panel *p)
       found[1] = at[1];
     }
     if (!next) break;
-    if (isfinite(last[0])) {
+    if (drawing) {
       cairo_line_to(cr, LamAxesX(&p->axes, found[0]), LamAxesY(&p->axes, last[1]));
       cairo_line_to(cr, LamAxesX(&p->axes, found[0]), LamAxesY(&p->axes, found[1]));
     } else
       cairo_move_to(cr, LamAxesX(&p->axes, found[0]), LamAxesY(&p->axes, found[1]));
+    drawing = PETSC_TRUE;
     last[0] = found[0];
     last[1] = found[1];
   }
@@ -246,9 +248,9 @@ static void DrawPoint(LamCanvas canvas, Panel *p, const LamStyle *style, const L
   cairo_line_to(cr, LamAxesX(&p->axes, PetscLog10Real(m->cpu_spread.high)), y);
   cairo_stroke(cr);
   LamCanvasMarker(canvas, x, y, MARKER_SIZE, style->marker, style->hollow);
-  if (m->setting.planned) {
+  if (m->setting.planned && m->setting.knob == LAM_KNOB_MESH) { /* other families have it at the same place */
     LamCanvasSetColour(canvas, Ink);
-    LamCanvasMarker(canvas, x, y, 2 * MARKER_SIZE, LAM_MARKER_RING, PETSC_FALSE);
+    LamCanvasMarker(canvas, x, y, MARKER_SIZE, LAM_MARKER_RING, PETSC_FALSE);
   }
   Take(p, (LamRect){x - h, y - h, 2 * h, 2 * h});
 }
@@ -379,7 +381,7 @@ static void DrawNotes(LamCanvas canvas, LamRect outer)
       "Thick grey line: nothing measured has less error in less time.",
       "Grey area: below ten times the error of the reference,",
       "which is not ranked; the lowest points stand on its edge.",
-      "Bars: from the fastest to the slowest run. What failed is not there.",
+      "Bars: fastest to slowest run. What failed is not there.",
   };
 
   LamCanvasSetColour(canvas, Ink);

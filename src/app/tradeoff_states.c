@@ -70,12 +70,22 @@ PetscErrorCode LamStatesMake(const LamScene *scene, LamStates *states)
     Default(scene, states);
     states->chained = PETSC_FALSE;
   }
+  PetscCall(PetscCalloc1(PetscMax(states->n, 1), &states->skip));
   PetscFunctionReturn(0);
+}
+
+PetscInt LamStatesCount(const LamStates *states)
+{
+  PetscInt count = 0;
+
+  for (PetscInt s = 0; s < states->n; s++) count += !states->skip[s];
+  return count;
 }
 
 PetscErrorCode LamStatesDestroy(LamStates *states)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(states->loads));
+  PetscCall(PetscFree(states->skip));
   PetscFunctionReturn(0);
 }

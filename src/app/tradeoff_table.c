@@ -27,6 +27,7 @@ static PetscErrorCode Ask(const LamStates *states, LamDatabase database, LamResp
 {
   PetscFunctionBeginUser;
   for (PetscInt s = 0; s < states->n && !m->reason[0]; s++) {
+    if (states->skip[s]) continue;
     PetscCall(LamDatabaseQuery(database, &states->loads[s], m->setting.accuracy, &responses[s]));
     if (responses[s].status != LAM_CONVERGED)
       PetscCall(PetscSNPrintf(m->reason, sizeof(m->reason), "state %" PetscInt_FMT ": %s: %.120s", s + 1,
@@ -58,7 +59,8 @@ PetscErrorCode LamMeasureTable(const LamScene *scene, const LamStates *states, c
   m->build_cpu = asked.cpu - start.cpu;
   m->build_wall = asked.wall - start.wall;
   PetscCall(Ask(states, database, responses, m));
-  if (!m->reason[0]) LamMeasurementAddRun(m, start, (LamStopwatchRead().cpu - asked.cpu) / (PetscReal)states->n);
+  if (!m->reason[0])
+    LamMeasurementAddRun(m, start, (LamStopwatchRead().cpu - asked.cpu) / (PetscReal)LamStatesCount(states));
   PetscCall(LamDatabaseClose(&database));
   if (m->reason[0] || m->responses)
     PetscCall(PetscFree(responses));

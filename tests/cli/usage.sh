@@ -16,7 +16,7 @@ expect 1 "Usage: lamella COMMAND" "$lamella"
 expect 0 "Usage: lamella COMMAND" "$lamella" --help
 [ -s err.txt ] && fail "help goes to stderr"
 cp out.txt help.txt
-for command in check rve build query verify fe2 map plot info; do
+for command in check rve build query verify fe2 tradeoff map plot info; do
   grep -q "^  $command " help.txt || fail "--help does not name $command"
   expect 0 "Usage: lamella $command" "$lamella" $command --help
   [ -s err.txt ] && fail "$command --help goes to stderr"

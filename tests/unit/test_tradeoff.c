@@ -1,0 +1,223 @@
+/*
+  lamella tradeoff: spread of times, which settings are the best, errors, and which settings a scene has.
+*/
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+#include <string.h>
+#include "tradeoff.h"
+
+#define CHECK(call) assert_int_equal((call), 0)
+
+/* ---- times ---- */
+
+static void test_spread_of_one_run(void **state)
+{
+  const PetscReal times[] = {2};
+  const LamSpread spread = LamSpreadOf(1, times);
+
+  assert_true(spread.median == 2 && spread.low == 2 && spread.high == 2);
+}
+
+static void test_spread_is_median_and_range(void **state)
+{
+  const PetscReal times[] = {3, 1, 10, 2};
+  LamSpread spread = LamSpreadOf(4, times);
+
+  assert_true(spread.median == 2.5 && spread.low == 1 && spread.high == 10);
+  spread = LamSpreadOf(3, times);
+  assert_true(spread.median == 3);
+}
+
+static void test_no_run_has_no_spread(void **state)
+{
+  assert_true(isnan(LamSpreadOf(0, NULL).median));
+}
+
+/* ---- the best ---- */
+
+static void test_pareto_front(void **state)
+{
+  const PetscReal cost[] = {1, 2, 3, 3, 4}, error[] = {5, 6, 2, 2, 1};
+  const PetscBool expected[] = {PETSC_TRUE, PETSC_FALSE, PETSC_TRUE, PETSC_TRUE, PETSC_TRUE};
+  PetscBool optimal[5];
+
+  LamParetoMark(5, cost, error, optimal);
+  for (int i = 0; i < 5; i++) assert_int_equal(optimal[i], expected[i]);
+}
+
+static void test_what_failed_is_never_the_best(void **state)
+{
+  const PetscReal cost[] = {NAN, 2, 3}, error[] = {0, NAN, 7};
+  PetscBool optimal[3];
+
+  LamParetoMark(3, cost, error, optimal);
+  assert_false(optimal[0]);
+  assert_false(optimal[1]);
+  assert_true(optimal[2]);
+}
+
+/* ---- errors ---- */
+
+static LamResponse Response(PetscReal stress, PetscReal tangent, PetscReal opening, PetscReal lumen)
+{
+  LamResponse r;
+  const LamLoad load = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+
+  CHECK(LamResponseInit(&load, &r));
+  for (int i = 0; i < 9; i++) r.P[i] = i ? 0 : stress;
+  r.tangent[0] = tangent; /* the others stay unknown, as in plane strain */
+  r.opening_fraction = opening;
+  r.lumen_fraction = lumen;
+  r.status = LAM_CONVERGED;
+  return r;
+}
+
+static void test_errors_of_an_answer(void **state)
+{
+  const LamResponse one = Response(1.1, 9, 0.2, 0.6), reference = Response(1, 10, 0.5, 0.5);
+
+  assert_true(LamErrorOf(LAM_ERROR_P, LAM_INTERFACE_BONDED, &one, &reference) == LamStressError(one.P, reference.P));
+  assert_true(fabs(LamErrorOf(LAM_ERROR_TANGENT, LAM_INTERFACE_BONDED, &one, &reference) - 0.1) < 1e-12);
+  assert_true(fabs(LamErrorOf(LAM_ERROR_OPENING, LAM_INTERFACE_CONTACT, &one, &reference) - 0.3) < 1e-12);
+  assert_true(fabs(LamErrorOf(LAM_ERROR_OPENING, LAM_INTERFACE_BONDED, &one, &reference) - 0.1) < 1e-12);
+}
+
+static void test_errors_of_a_body(void **state)
+{
+  const LamMacroOutcome reference = {.boundaries = 2, .reaction = {{3, 0}, {0, 4}}, .work = 2};
+  LamMacroOutcome one = reference;
+  PetscReal errors[2];
+
+  one.reaction[1][1] = 4.5;
+  one.work = 1.8;
+  LamMacroErrors(&one, &reference, errors);
+  assert_true(fabs(errors[0] - 0.1) < 1e-12);
+  assert_true(fabs(errors[1] - 0.1) < 1e-12);
+}
+
+/* Two meshes, of which one is as good as the reference. */
+static void test_an_error_near_the_references_does_not_rank(void **state)
+{
+  LamResponse exact = Response(1, 10, 0, 0.5), good = Response(1.001, 10, 0, 0.5), bad = Response(1.1, 10, 0, 0.5);
+  PetscBool used = PETSC_TRUE, skip = PETSC_FALSE;
+  const LamReference reference = {
+      .responses = &exact, .used = &used, .used_count = 1, .error = {[LAM_ERROR_P] = 0.001}};
+  const LamStates states = {.n = 1, .skip = &skip};
+  PetscReal time[] = {1};
+  LamMeasurement m[2] = {{.runs = 1, .cpu = time, .wall = time, .responses = &good},
+                         {.runs = 1, .cpu = time, .wall = time, .responses = &bad}};
+
+  m[1].setting.planned = PETSC_TRUE;
+  CHECK(LamJudge(&reference, &states, 2, m));
+  assert_false(m[0].error[LAM_ERROR_P].resolved);
+  assert_false(m[0].error[LAM_ERROR_P].optimal);
+  assert_true(m[1].error[LAM_ERROR_P].resolved);
+  assert_true(m[1].error[LAM_ERROR_P].optimal);
+  assert_true(m[1].from_plan == 0);
+  assert_true(m[0].from_plan == LamStressError(good.P, bad.P));
+}
+
+static void test_what_was_not_measured_has_no_error(void **state)
+{
+  LamReference reference = {0};
+  const LamStates states = {0};
+  LamMeasurement m = {.reason = "stopped"};
+
+  CHECK(LamJudge(&reference, &states, 1, &m));
+  assert_true(isnan(m.error[LAM_ERROR_P].largest));
+  assert_false(m.error[LAM_ERROR_P].optimal);
+}
+
+/* ---- settings ---- */
+
+static LamScene *Scene(const char interface[], const char more[])
+{
+  char text[1024];
+  LamScene *scene;
+
+  snprintf(text, sizeof(text),
+           "version: 1\n"
+           "rve:\n"
+           "  cell: {apothem: 75 um, wall_thickness: 11.25 um}\n"
+           "  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}\n"
+           "  interface: {law: %s}\n"
+           "  mesh: {along: 7, through: 2}\n%s",
+           interface, more);
+  CHECK(LamSceneReadText("test", text, &scene));
+  return scene;
+}
+
+static PetscBool Applies(const LamScene *scene, LamKnob knob)
+{
+  const char *why;
+  const PetscBool applies = LamKnobApplies(scene, knob, &why);
+
+  assert_true(applies == (why == NULL));
+  return applies;
+}
+
+static void test_knobs_of_bonded_tissue(void **state)
+{
+  LamScene *scene = Scene("bonded", "");
+
+  assert_true(Applies(scene, LAM_KNOB_MESH));
+  assert_true(Applies(scene, LAM_KNOB_CELLS));
+  assert_true(Applies(scene, LAM_KNOB_TOLERANCE));
+  assert_false(Applies(scene, LAM_KNOB_STRATEGY));
+  assert_false(Applies(scene, LAM_KNOB_DATABASE));
+  assert_false(Applies(scene, LAM_KNOB_MACRO));
+  CHECK(LamSceneDestroy(&scene));
+}
+
+static void test_knobs_of_contact_with_a_sample_box(void **state)
+{
+  LamScene *scene = Scene("contact", "sample: {stretch: {min: 0, max: 0.1}}\n");
+
+  assert_true(Applies(scene, LAM_KNOB_STRATEGY));
+  assert_true(Applies(scene, LAM_KNOB_DATABASE));
+  CHECK(LamSceneDestroy(&scene));
+}
+
+/* Every family has the planned setting once, whatever it is; settings of one family differ in name. */
+static void test_each_family_has_the_plan_once(void **state)
+{
+  const LamKnob knobs[] = {LAM_KNOB_MESH, LAM_KNOB_STRATEGY, LAM_KNOB_CELLS, LAM_KNOB_TOLERANCE};
+  LamScene *scene = Scene("contact", "  cells: [3, 1]\n  tolerance: 0.001\n");
+
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(knobs); k++) {
+    LamSetting *settings;
+    PetscInt n, planned = 0;
+
+    CHECK(LamSettingsMake(scene, knobs[k], &n, &settings));
+    for (PetscInt i = 0; i < n; i++) {
+      planned += settings[i].planned;
+      for (PetscInt j = 0; j < i; j++) assert_string_not_equal(settings[i].label, settings[j].label);
+    }
+    assert_int_equal(planned, 1);
+    CHECK(PetscFree(settings));
+  }
+  CHECK(LamSceneDestroy(&scene));
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_spread_of_one_run),
+      cmocka_unit_test(test_spread_is_median_and_range),
+      cmocka_unit_test(test_no_run_has_no_spread),
+      cmocka_unit_test(test_pareto_front),
+      cmocka_unit_test(test_what_failed_is_never_the_best),
+      cmocka_unit_test(test_errors_of_an_answer),
+      cmocka_unit_test(test_errors_of_a_body),
+      cmocka_unit_test(test_an_error_near_the_references_does_not_rank),
+      cmocka_unit_test(test_what_was_not_measured_has_no_error),
+      cmocka_unit_test(test_knobs_of_bonded_tissue),
+      cmocka_unit_test(test_knobs_of_contact_with_a_sample_box),
+      cmocka_unit_test(test_each_family_has_the_plan_once),
+  };
+  cmocka_set_message_output(CM_OUTPUT_STDOUT);
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
