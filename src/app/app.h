@@ -105,8 +105,8 @@ PetscBool LamStopRequested(void);
 PetscBool LamStopInterrupt(void *ctx); /* the same, for LamRVESetInterrupt */
 /* As if SIGTERM had come: another rank has got a signal. */
 void LamStopRequest(void);
-/* From that time of LamClock on LamStopRequested says yes, without a signal, until it is set anew; PETSC_INFINITY: never.
-   For what is given a limited time on one rank. */
+/* From that time of LamClock on LamStopRequested says yes, without a signal, until it is set anew; PETSC_INFINITY:
+   never. For what is given a limited time on one rank. */
 void LamStopSetDeadline(PetscReal clock);
 /*
   Between the two, which are collective, a signal that reaches one rank of `comm` is a request on all: a rank tells it

@@ -65,8 +65,9 @@ PetscErrorCode LamColourRangeFind(PetscInt n, const PetscReal values[], LamColou
 /* The bar is an axis of its own beside the picture. */
 static LamAxes BarAxes(LamRect frame, const LamColourRange *range, const char label[], const char unit[])
 {
-  LamAxes axes = {
-      .frame = frame, .x = {.low = 0, .high = 1}, .y = {range->low, range->high, label, unit, PETSC_FALSE, {0}, PETSC_FALSE}};
+  LamAxes axes = {.frame = frame,
+                  .x = {.low = 0, .high = 1},
+                  .y = {range->low, range->high, label, unit, PETSC_FALSE, {0}, PETSC_FALSE}};
 
   axes.y.ticks = LamTicksChoose(range->low, range->high, (PetscInt)PetscMax(2, frame.height / 24), range->is_log);
   axes.y.ticks.is_log = range->is_log;

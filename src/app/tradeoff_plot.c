@@ -48,7 +48,7 @@ static LamStyle StyleOf(const Group *g, PetscInt meshes)
   static const LamMarker markers[] = {LAM_MARKER_CIRCLE,   LAM_MARKER_DIAMOND,       LAM_MARKER_SQUARE,
                                       LAM_MARKER_TRIANGLE, LAM_MARKER_TRIANGLE_DOWN, LAM_MARKER_DIAMOND};
   const PetscBool graded = (PetscBool)(g->grading > 0);
-  LamStyle style = {LamColourOfLine(g->knob + 1), markers[g->knob], PETSC_FALSE, PETSC_TRUE, PETSC_FALSE};
+  LamStyle style = {LamColourOfLine(g->knob + 2), markers[g->knob], PETSC_FALSE, PETSC_TRUE, PETSC_FALSE};
 
   if (g->knob == LAM_KNOB_MESH)
     style = (LamStyle){LamColourOfLine(meshes % 3), LAM_MARKER_CIRCLE, graded, PETSC_TRUE, graded};
@@ -127,9 +127,21 @@ static void SetFloor(Panel *p)
   p->floor = p->scale * PetscMax(smallest, p->kind == LAM_ERROR_MACRO ? 0 : p->t->reference->error[p->kind]);
 }
 
+/* Direct answers of a body, which have no error in its panel; NULL: there are none, or it is another panel. */
+static const LamMeasurement *FindDirect(const Panel *p)
+{
+  for (PetscInt i = 0; i < p->t->n && p->kind == LAM_ERROR_MACRO; i++) {
+    const LamMeasurement *m = &p->t->measured[i];
+
+    if (m->setting.knob == LAM_KNOB_MACRO && m->setting.planned && m->runs) return m;
+  }
+  return NULL;
+}
+
 /* Whether the panel has any point. */
 static PetscBool SetLimits(Panel *p)
 {
+  const LamMeasurement *direct = FindDirect(p);
   LamAxes *a = &p->axes;
   PetscReal at[2];
 
@@ -146,6 +158,7 @@ static PetscBool SetLimits(Panel *p)
     a->y.high = PetscMax(a->y.high, at[1]);
   }
   if (!(a->x.low <= a->x.high)) return PETSC_FALSE;
+  if (direct) a->x.high = PetscMax(a->x.high, PetscLog10Real(direct->cpu_spread.high));
   LamAxisPadLog(&a->x);
   LamAxisPadLog(&a->y);
   return PETSC_TRUE;
@@ -241,11 +254,13 @@ static void DrawPoint(LamCanvas canvas, Panel *p, const LamStyle *style, const L
 {
   cairo_t *cr = LamCanvasCairo(canvas);
   const double x = LamAxesX(&p->axes, at[0]), y = LamAxesY(&p->axes, at[1]), h = 0.5 * MARKER_SIZE;
+  const double low = LamAxesX(&p->axes, PetscLog10Real(m->cpu_spread.low));
+  const double high = LamAxesX(&p->axes, PetscLog10Real(m->cpu_spread.high));
 
   LamCanvasSetColour(canvas, style->colour);
   cairo_set_line_width(cr, 0.5);
-  cairo_move_to(cr, LamAxesX(&p->axes, PetscLog10Real(m->cpu_spread.low)), y);
-  cairo_line_to(cr, LamAxesX(&p->axes, PetscLog10Real(m->cpu_spread.high)), y);
+  cairo_move_to(cr, low, y);
+  cairo_line_to(cr, high, y);
   cairo_stroke(cr);
   LamCanvasMarker(canvas, x, y, MARKER_SIZE, style->marker, style->hollow);
   if (m->setting.planned && m->setting.knob == LAM_KNOB_MESH) { /* other families have it at the same place */
@@ -253,6 +268,7 @@ static void DrawPoint(LamCanvas canvas, Panel *p, const LamStyle *style, const L
     LamCanvasMarker(canvas, x, y, MARKER_SIZE, LAM_MARKER_RING, PETSC_FALSE);
   }
   Take(p, (LamRect){x - h, y - h, 2 * h, 2 * h});
+  Take(p, (LamRect){low, y - 0.5, high - low, 1});
 }
 
 static void DrawGroup(LamCanvas canvas, Panel *p, PetscInt g)
@@ -306,26 +322,22 @@ static void DrawLabels(LamCanvas canvas, Panel *p)
       }
 }
 
-/* How long direct answers took, which have no error here. */
+/* How long direct answers took. */
 static void DrawDirect(LamCanvas canvas, Panel *p)
 {
+  const LamMeasurement *direct = FindDirect(p);
   cairo_t *cr = LamCanvasCairo(canvas);
   const LamRect f = p->axes.frame;
+  double x;
 
-  for (PetscInt i = 0; i < p->t->n && p->kind == LAM_ERROR_MACRO; i++) {
-    const LamMeasurement *m = &p->t->measured[i];
-    double x;
-
-    if (m->setting.knob != LAM_KNOB_MACRO || !m->setting.planned || !m->runs) continue;
-    x = LamAxesX(&p->axes, PetscLog10Real(m->cpu_spread.median));
-    if (x < f.x || x > f.x + f.width) return;
-    LamCanvasSetColour(canvas, Ink);
-    cairo_set_line_width(cr, 0.7);
-    cairo_move_to(cr, x, f.y);
-    cairo_line_to(cr, x, f.y + f.height);
-    cairo_stroke(cr);
-    LamCanvasText(canvas, x - 0.7 * LABEL_SIZE, f.y + 4, 1, M_PI_2, LABEL_SIZE, "direct");
-  }
+  if (!direct) return;
+  x = LamAxesX(&p->axes, PetscLog10Real(direct->cpu_spread.median));
+  LamCanvasSetColour(canvas, Ink);
+  cairo_set_line_width(cr, 0.7);
+  cairo_move_to(cr, x, f.y);
+  cairo_line_to(cr, x, f.y + f.height);
+  cairo_stroke(cr);
+  LamCanvasText(canvas, x - 0.8 * LABEL_SIZE, f.y + 4, 1, M_PI_2, LABEL_SIZE, "direct (the reference here)");
 }
 
 static void DrawPanel(LamCanvas canvas, LamRect outer, Panel *p)
@@ -380,7 +392,7 @@ static void DrawNotes(LamCanvas canvas, LamRect outer)
       "Ring: as the scene and the planner say.",
       "Thick grey line: nothing measured has less error in less time.",
       "Grey area: below ten times the error of the reference,",
-      "which is not ranked; the lowest points stand on its edge.",
+      "which is not ranked.",
       "Bars: fastest to slowest run. What failed is not there.",
   };
 

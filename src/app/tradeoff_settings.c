@@ -11,7 +11,7 @@ enum { MOST_SETTINGS = 64 };
 
 static const PetscInt Along[] = {4, 6, 8, 12, 16, 20}, Through[] = {1, 2, 4};
 static const PetscReal Gradings[] = {0, 0.6};
-static const PetscReal Tolerances[] = {1e-1, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 0};
+static const PetscReal Tolerances[] = {1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 0};
 static const PetscInt Cells[][2] = {{1, 1}, {2, 1}, {2, 2}};
 static const PetscReal Accuracies[] = {0.1, 0.03, 0.01, 0.003, 0.001};
 #define COUNT(array) ((PetscInt)PETSC_STATIC_ARRAY_LENGTH(array))
