@@ -1,7 +1,8 @@
 /*
   Errors, spread of times, and which settings are the best.
 
-  An error below ten times that of the reference is not resolved: it may come from either, and does not rank.
+  An error below ten times that of the reference is not resolved: it may come from either, and does not rank. Nor does
+  that of a mesh which is no coarser than the reference, where there was no time for a finer one.
 */
 #include "tradeoff.h"
 #include <math.h>
@@ -76,6 +77,11 @@ void LamParetoMark(PetscInt n, const PetscReal cost[], const PetscReal error[], 
   }
 }
 
+static PetscBool IsCoarser(const LamMicrostructure *a, const LamMicrostructure *b)
+{
+  return (PetscBool)(a->along * a->through < b->along * b->through);
+}
+
 static void JudgeStates(const LamReference *reference, PetscInt states, LamMeasurement *m)
 {
   for (int k = 0; k < LAM_ERROR_MACRO; k++) {
@@ -92,7 +98,8 @@ static void JudgeStates(const LamReference *reference, PetscInt states, LamMeasu
     }
     error->largest = isnan(sum) ? NAN : largest;
     error->mean = sum / (PetscReal)reference->used_count;
-    error->resolved = (PetscBool)(error->largest >= RESOLUTION * reference->error[k]);
+    error->resolved = (PetscBool)(error->largest >= RESOLUTION * reference->error[k] &&
+                                  IsCoarser(&m->setting.micro, &reference->micro));
   }
 }
 

@@ -16,8 +16,9 @@
 static const struct {
   PetscInt along, through;
   PetscReal grading;
-} Ladder[] = {{20, 4, 0}, {28, 6, 0.3}, {40, 8, 0}, {56, 10, 0.3}, {80, 14, 0}, {112, 20, 0.3}};
-enum { RUNGS = PETSC_STATIC_ARRAY_LENGTH(Ladder) };
+} Ladder[] = {{10, 2, 0}, {14, 3, 0.3},  {20, 4, 0},  {28, 6, 0.3},
+              {40, 8, 0}, {56, 10, 0.3}, {80, 14, 0}, {112, 20, 0.3}};
+enum { RUNGS = PETSC_STATIC_ARRAY_LENGTH(Ladder), FINE_RUNG = 3 }; /* from it on finer than all settings */
 
 #define GOAL 0.01      /* of the scene's accuracy: fine enough */
 #define COST_POWER 1.5 /* of the time, in unknowns */
@@ -135,7 +136,7 @@ static PetscErrorCode ClimbAll(const LamScene *scene, LamStates *states, PetscRe
     PetscCall(LamMeasurementDestroy(&m));
     if (knows_less) break;
     reference->cpu = LamStopwatchRead().cpu - start.cpu;
-    if (reference->used_count && reference->error[LAM_ERROR_P] <= GOAL * scene->accuracy) break;
+    if (rung >= FINE_RUNG && reference->used_count && reference->error[LAM_ERROR_P] <= GOAL * scene->accuracy) break;
   }
   PetscFunctionReturn(0);
 }

@@ -103,8 +103,11 @@ static void test_an_error_near_the_references_does_not_rank(void **state)
 {
   LamResponse exact = Response(1, 10, 0, 0.5), good = Response(1.001, 10, 0, 0.5), bad = Response(1.1, 10, 0, 0.5);
   PetscBool used = PETSC_TRUE, skip = PETSC_FALSE;
-  const LamReference reference = {
-      .responses = &exact, .used = &used, .used_count = 1, .error = {[LAM_ERROR_P] = 0.001}};
+  LamReference reference = {.micro = {.along = 28, .through = 6},
+                            .responses = &exact,
+                            .used = &used,
+                            .used_count = 1,
+                            .error = {[LAM_ERROR_P] = 0.001}};
   const LamStates states = {.n = 1, .skip = &skip};
   PetscReal time[] = {1};
   LamMeasurement m[2] = {{.runs = 1, .cpu = time, .wall = time, .responses = &good},
@@ -118,6 +121,11 @@ static void test_an_error_near_the_references_does_not_rank(void **state)
   assert_true(m[1].error[LAM_ERROR_P].optimal);
   assert_true(m[1].from_plan == 0);
   assert_true(m[0].from_plan == LamStressError(good.P, bad.P));
+
+  m[1].setting.micro.along = 28; /* a mesh as fine as the reference */
+  m[1].setting.micro.through = 6;
+  CHECK(LamJudge(&reference, &states, 2, m));
+  assert_false(m[1].error[LAM_ERROR_P].resolved);
 }
 
 static void test_what_was_not_measured_has_no_error(void **state)
