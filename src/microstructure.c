@@ -86,6 +86,19 @@ PetscErrorCode LamMicrostructureDescribe(const LamMicrostructure *micro, char **
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamMicrostructureHashTissue(const LamMicrostructure *micro, char hash[LAM_HASH_LENGTH])
+{
+  LamMicrostructure tissue = *micro;
+  char *text;
+
+  PetscFunctionBeginUser;
+  tissue.along = tissue.through = 0;
+  tissue.grading = 0;
+  PetscCall(LamMicrostructureDescribe(&tissue, &text, hash));
+  PetscCall(PetscFree(text));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamMicrostructureCopy(const LamMicrostructure *micro, LamMicrostructure *copy)
 {
   const PetscInt count = micro->cells[0] * micro->cells[1];

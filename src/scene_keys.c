@@ -200,6 +200,10 @@ const LamKey LamKeys[] = {
      .default_words = "chosen for the accuracy where `along` is; else 0: elements are alike", .example = "0.6",
      .help = "How much smaller elements at the ends of a face, where stresses are singular, are than in its middle: "
              "about 1 - grading to 1 + grading."},
+    {TEXT("rve.mesh.measured"), .default_words = "the program's own figures", .example = "tradeoff/model.json",
+     .help =
+         "File of errors that `lamella tradeoff` has measured for this tissue: what is left open of the mesh is the "
+         "cheapest of those that meets the accuracy."},
     {REAL("rve.tolerance"), ABOVE(0), TO(0.1), .default_words = "rounding", .example = "1e-6",
      .help =
          "Where Newton iterations of the RVE end: residual (forces over (C1 + C2) apothem) and violation of contact. "

@@ -125,6 +125,8 @@ PetscErrorCode LamSceneReadControl(const LamDocument *document, const LamNode *F
 void LamSceneRampControl(const LamStressControl *from, const LamStressControl *to, PetscInt step, PetscInt steps,
                          LamStressControl *control);
 
+/* Of a text that names a file: a path in the file is relative to the scene's folder. */
+PetscErrorCode LamSceneResolvePath(const LamDocument *document, const LamNode *node, char path[PETSC_MAX_PATH_LEN]);
 /* si / scale; refused where the ratio is not finite. node may be NULL (a default: always finite). */
 PetscErrorCode LamSceneScale(const LamDocument *document, const LamNode *node, PetscReal si, PetscReal scale,
                              PetscReal *number);

@@ -44,8 +44,7 @@ static PetscErrorCode CheckBelongs(const LamDocument *document, const char path[
   PetscFunctionReturn(0);
 }
 
-/* A path in the file is relative to the scene's folder. */
-static PetscErrorCode ResolvePath(const LamDocument *document, const LamNode *node, char path[PETSC_MAX_PATH_LEN])
+PetscErrorCode LamSceneResolvePath(const LamDocument *document, const LamNode *node, char path[PETSC_MAX_PATH_LEN])
 {
   const char *slash = strrchr(document->name, '/');
   const int folder = node->text[0] == '/' || !slash ? 0 : (int)(slash - document->name) + 1;
@@ -73,7 +72,7 @@ static PetscErrorCode BuildMesh(const LamDocument *document, LamScene *scene)
     if (elements.count)
       PetscCall(
           LamSceneFail(document, LamNodeFindPath(mesh, "elements"), "a Gmsh file has its own elements; leave it out"));
-    PetscCall(ResolvePath(document, node, spec->gmsh));
+    PetscCall(LamSceneResolvePath(document, node, spec->gmsh));
     PetscCall(LamSceneGet(document->root, "macro.mesh.unit", NULL, &size));
     scene->scales.macro_length = size.number[0];
     PetscFunctionReturn(0);

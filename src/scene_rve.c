@@ -62,6 +62,8 @@ static PetscErrorCode BuildCell(const LamDocument *document, LamScene *scene)
   micro->through = (PetscInt)through.number[0];
   PetscCall(GetReal(document, "rve.mesh.grading", &node, &micro->grading));
   if (!node) micro->grading = micro->along ? 0.0 : -1.0;
+  PetscCall(LamSceneGet(document->root, "rve.mesh.measured", &node, &along));
+  if (node) PetscCall(LamSceneResolvePath(document, node, scene->measured));
   PetscFunctionReturn(0);
 }
 

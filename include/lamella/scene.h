@@ -282,14 +282,15 @@ typedef struct {
   char *text; /* the file's text, for provenance; owned */
   LamScales scales;
   LamMicrostructure micro;
-  PetscReal turgor;             /* of the tissue, where a load does not say otherwise; in C1 + C2 */
-  PetscBool sealed;             /* the cells keep the water that they have at F = I with this turgor, ... */
-  PetscReal water_bulk_modulus; /* ... of this bulk modulus, C1 + C2 */
-  PetscReal cohesion;           /* likewise */
-  LamStrategy strategy;         /* how contact is reached */
-  PetscReal tolerance;          /* of the Newton iterations of an RVE; 0: rounding */
-  LamStrength strength;         /* what walls and lamella bear */
-  PetscReal accuracy;           /* wanted relative error of the effective stress */
+  PetscReal turgor;                  /* of the tissue, where a load does not say otherwise; in C1 + C2 */
+  PetscBool sealed;                  /* the cells keep the water that they have at F = I with this turgor, ... */
+  PetscReal water_bulk_modulus;      /* ... of this bulk modulus, C1 + C2 */
+  PetscReal cohesion;                /* likewise */
+  LamStrategy strategy;              /* how contact is reached */
+  PetscReal tolerance;               /* of the Newton iterations of an RVE; 0: rounding */
+  LamStrength strength;              /* what walls and lamella bear */
+  PetscReal accuracy;                /* wanted relative error of the effective stress */
+  char measured[PETSC_MAX_PATH_LEN]; /* what `tradeoff` has measured of this tissue's meshes; empty: not given */
   PetscInt load_count;
   LamLoad *loads;             /* ramps expanded: states 1..load_count; owned */
   LamStressControl *controls; /* of the loads; NULL where F is given in all of them; owned */

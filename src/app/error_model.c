@@ -1,5 +1,7 @@
 #include "error_model.h"
+#include <jansson.h>
 #include <math.h>
+#include <string.h>
 
 /* error = 10^constant along^a through^b thickness^c fibres^d strain^e; below 10^margin times that are 95 of 100
    states of bonded and 90 of contact tissue, whose discrete solutions scatter. */
@@ -48,4 +50,59 @@ void LamCheapestMesh(const LamErrorCase *c, PetscReal accuracy, PetscInt *along,
   *along = Meshes[m].along;
   *through = Meshes[m].through;
   *grading = Fits[c->interface].grading;
+}
+
+/* ---- what has been measured ---- */
+
+static PetscErrorCode CheckModel(const char path[], json_t *root, const json_error_t *error, const char hash[],
+                                 json_t **list)
+{
+  const char *tissue = "";
+  int format = 0;
+
+  PetscFunctionBeginUser;
+  PetscCheck(root, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: cannot be read: %s; `lamella tradeoff SCENE -o DIR` "
+             "writes DIR/model.json",
+             path, error->text);
+  PetscCheck(!json_unpack(root, "{s:i, s:s, s:o}", "format", &format, "tissue", &tissue, "meshes", list) &&
+                 json_is_array(*list) && format == 1,
+             PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: is no file of measured meshes that this version knows", path);
+  PetscCheck(!strcmp(tissue, hash), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: was measured for another tissue than the scene's; run `lamella tradeoff` again", path);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMeasuredMesh(const char path[], const char hash[], PetscReal accuracy, PetscInt *along,
+                               PetscInt *through, PetscReal *grading)
+{
+  json_error_t error;
+  json_t *root = json_load_file(path, 0, &error), *list = NULL, *entry;
+  double fastest = INFINITY, least = INFINITY;
+  size_t i;
+  PetscErrorCode ierr = CheckModel(path, root, &error, hash, &list);
+
+  PetscFunctionBeginUser;
+  json_array_foreach(list, i, entry)
+  {
+    int a, t;
+    double g, e, seconds;
+
+    if (ierr || json_unpack(entry, "{s:i, s:i, s:F, s:F, s:F}", "along", &a, "through", &t, "grading", &g,
+                            "error_P_max", &e, "seconds_per_state", &seconds))
+      continue;
+    least = fmin(least, e);
+    if (a < 1 || t < 1 || !(e <= accuracy) || !(seconds < fastest)) continue;
+    fastest = seconds;
+    *along = a;
+    *through = t;
+    *grading = g;
+  }
+  json_decref(root);
+  PetscCall(ierr);
+  PetscCheck(isfinite(fastest), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: none of its meshes has an error below the accuracy of %g; the least is %g. Ask for less, or leave "
+             "`measured` out",
+             path, (double)accuracy, least);
+  PetscFunctionReturn(0);
 }

@@ -22,4 +22,12 @@ PetscReal LamErrorOfMesh(const LamErrorCase *c, PetscInt along, PetscInt through
 /* The cheapest mesh of those that the planner knows with that error at most `accuracy`; the finest, if none has. */
 void LamCheapestMesh(const LamErrorCase *c, PetscReal accuracy, PetscInt *along, PetscInt *through, PetscReal *grading);
 
+/*
+  The same by what `tradeoff` has measured of a tissue (its model.json; hash: LamMicrostructureHashTissue): the fastest
+  mesh with a measured error at most `accuracy`. PETSC_ERR_USER_INPUT with the reason where the file cannot be read, is
+  of another tissue, or none of its meshes will do.
+*/
+PetscErrorCode LamMeasuredMesh(const char path[], const char hash[], PetscReal accuracy, PetscInt *along,
+                               PetscInt *through, PetscReal *grading);
+
 #endif

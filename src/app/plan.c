@@ -7,6 +7,7 @@
 */
 #include "error_model.h"
 #include "map.h"
+#include <lamella/database.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -30,20 +31,29 @@ static PetscReal LargestStrain(const LamScene *scene)
   return strain;
 }
 
-static void ChooseMesh(const LamScene *scene, LamMicrostructure *micro)
+static PetscErrorCode ChooseMesh(const LamScene *scene, LamMicrostructure *micro)
 {
   const PetscBool uneven = (PetscBool)(scene->has_macro && micro->interface == LAM_INTERFACE_CONTACT);
   LamErrorCase c = {micro->interface, micro->wall_thickness, micro->wall.C4 / micro->wall.C1, LargestStrain(scene)};
   PetscInt along, through;
   PetscReal grading;
 
+  PetscFunctionBeginUser;
   for (PetscInt k = 0; micro->cell && k < micro->cells[0] * micro->cells[1]; k++)
     c.thickness = PetscMax(c.thickness, micro->cell[k].wall_thickness);
-  LamCheapestMesh(&c, scene->accuracy, &along, &through, &grading);
+  if (scene->measured[0] && !micro->along) {
+    char hash[LAM_HASH_LENGTH];
+
+    PetscCall(LamMicrostructureHashTissue(micro, hash));
+    PetscCall(LamMeasuredMesh(scene->measured, hash, scene->accuracy, &along, &through, &grading));
+  } else {
+    LamCheapestMesh(&c, scene->accuracy, &along, &through, &grading);
+  }
   if (uneven && scene->accuracy <= BODY_ACCURACY) along = PetscMax(along, BODY_ALONG);
   if (micro->grading < 0.0) micro->grading = micro->along ? 0.0 : grading;
   if (!micro->along) micro->along = along;
   if (!micro->through) micro->through = through;
+  PetscFunctionReturn(0);
 }
 
 /* Faces and corners of the outer loops whose nodes are unknowns of their own, and pairs of facing walls. */
@@ -155,7 +165,7 @@ PetscErrorCode LamPlanMake(const LamScene *scene, LamPlan *plan)
 {
   PetscFunctionBeginUser;
   *plan = (LamPlan){.micro = scene->micro, .load_states = scene->load_count};
-  ChooseMesh(scene, &plan->micro);
+  PetscCall(ChooseMesh(scene, &plan->micro));
   plan->unknowns = CountUnknowns(&plan->micro);
   if (scene->sealed) plan->unknowns += scene->micro.cells[0] * scene->micro.cells[1]; /* the pressures */
   PetscCall(MeasureSpread(&plan->micro, &plan->spread));

@@ -230,20 +230,6 @@ static json_t *Reference(const LamTradeoff *t)
                    "core_seconds", LamJSONReal(r->cpu), "states_used", (json_int_t)r->used_count);
 }
 
-/* Of the tissue, whatever its mesh. */
-static PetscErrorCode HashTissue(const LamScene *scene, char hash[LAM_HASH_LENGTH])
-{
-  LamMicrostructure micro = scene->micro;
-  char *text;
-
-  PetscFunctionBeginUser;
-  micro.along = micro.through = 0;
-  micro.grading = 0;
-  PetscCall(LamMicrostructureDescribe(&micro, &text, hash));
-  PetscCall(PetscFree(text));
-  PetscFunctionReturn(0);
-}
-
 /* Whole or not at all. DIR/NAME.json; takes ownership. */
 static PetscErrorCode WriteJSON(const char directory[], const char name[], json_t *object)
 {
@@ -315,7 +301,7 @@ PetscErrorCode LamTradeoffWrite(const LamTradeoff *t, const char directory[])
   char hash[LAM_HASH_LENGTH], path[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
-  PetscCall(HashTissue(t->scene, hash));
+  PetscCall(LamMicrostructureHashTissue(&t->scene->micro, hash));
   PetscCall(WriteData(t, directory, hash));
   PetscCall(WriteModel(t, directory, hash));
   for (size_t e = 0; e < PETSC_STATIC_ARRAY_LENGTH(endings); e++) {
