@@ -295,6 +295,9 @@ static void DrawLabel(LamCanvas canvas, Panel *p, LamColour colour, const LamMea
     const LamRect r = {cx - 0.5 * width - 0.5, cy - 0.5 * LABEL_SIZE, width + 1, LABEL_SIZE};
 
     if (!IsFree(p, r)) continue;
+    cairo_set_source_rgba(LamCanvasCairo(canvas), 1, 1, 1, 0.7); /* lines pass beneath */
+    cairo_rectangle(LamCanvasCairo(canvas), r.x, r.y, r.width, r.height);
+    cairo_fill(LamCanvasCairo(canvas));
     LamCanvasSetColour(canvas, colour);
     LamCanvasText(canvas, cx, cy, 0.5, 0, LABEL_SIZE, m->setting.mark);
     Take(p, r);
