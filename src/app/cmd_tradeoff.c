@@ -248,10 +248,13 @@ static PetscErrorCode RemoveFolder(const Run *run)
 /* The folder of the results is made before anything is measured. */
 static PetscErrorCode CheckDirectory(const Run *run)
 {
+  struct stat status;
+
   PetscFunctionBeginUser;
   if (!run->directory) PetscFunctionReturn(0);
-  PetscCheck(!mkdir(run->directory, 0777) || errno == EEXIST, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: %s",
-             run->directory, strerror(errno));
+  PetscCheck((!mkdir(run->directory, 0777) || errno == EEXIST) && !stat(run->directory, &status), PETSC_COMM_SELF,
+             PETSC_ERR_FILE_OPEN, "%s: %s", run->directory, strerror(errno));
+  PetscCheck(S_ISDIR(status.st_mode), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: is no folder", run->directory);
   PetscCheck(!access(run->directory, W_OK | X_OK), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: %s", run->directory,
              strerror(errno));
   PetscFunctionReturn(0);

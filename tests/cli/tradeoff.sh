@@ -63,6 +63,7 @@ expect 1 "$lamella" tradeoff scene.yaml --only meshes
 expect 1 "$lamella" tradeoff scene.yaml --budget 0
 expect 1 "$lamella" tradeoff scene.yaml --repeats 0
 expect 4 "$lamella" tradeoff scene.yaml -o no/such/folder
+expect 4 "$lamella" tradeoff scene.yaml -o scene.yaml
 expect 2 "$lamella" tradeoff missing.yaml
 
 # no time for a reference: told, with what is there
@@ -70,7 +71,8 @@ expect 3 "$lamella" tradeoff scene.yaml --budget 0.02 --only mesh
 grep -q "^reference *none" out.txt || fail "a reference out of nothing: $(head -3 out.txt)"
 
 # a signal: what is there is told and written
-"$lamella" tradeoff scene.yaml -o stopped --budget 60 --repeats 100 --quiet >out.txt 2>err.txt &
+mkdir temporary
+TMPDIR=$PWD/temporary "$lamella" tradeoff scene.yaml -o stopped --budget 60 --repeats 100 --quiet >out.txt 2>err.txt &
 child=$!
 sleep 1.5
 kill -INT $child
@@ -79,4 +81,4 @@ wait $child || status=$?
 [ $status -eq 130 ] || fail "SIGINT ends with status $status: $(cat err.txt)"
 grep -q "stopped by a signal" out.txt || fail "the stop is not told: $(tail -1 out.txt)"
 grep -q '"stopped": *true' stopped/tradeoff.json || fail "nothing is written at a stop"
-[ -z "$(find "${TMPDIR:-/tmp}" -maxdepth 1 -name 'lamella-??????' -newer scene.yaml 2>/dev/null)" ] || fail "tables are left behind"
+[ -z "$(find temporary -name 'lamella-*')" ] || fail "tables are left behind: $(ls temporary)"
