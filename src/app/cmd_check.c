@@ -7,8 +7,11 @@
 #include "map.h"
 #include <math.h>
 
-/* An iteration (assembly, factorisation, solve) costs this many assemblies. */
+/* An iteration (assembly, factorisation, solve) costs this many assemblies; of bonded tissue small enough for a
+   factorisation without pivots (rve/cholesky.h) the second. */
 #define ITERATION_ASSEMBLIES 7.0
+#define SMALL_ITERATION_ASSEMBLIES 4.0
+#define SMALL_UNKNOWNS 3000
 /* Factorisations of a state on its own, and of a material point in a load step under way; tangent included. */
 #define STATE_FACTORISATIONS 6.0
 #define POINT_FACTORISATIONS 5.0
@@ -48,7 +51,8 @@ static PetscErrorCode Predict(Check *check)
   cell.cell = NULL;
   PetscCall(LamRVETimeAssembly(&cell, &unknowns, &check->assembly));
   check->assembly *= cells;
-  iteration = ITERATION_ASSEMBLIES * check->assembly * (contact ? CONTACT_FACTOR : 1);
+  iteration = !contact && n <= SMALL_UNKNOWNS ? SMALL_ITERATION_ASSEMBLIES : ITERATION_ASSEMBLIES;
+  iteration *= check->assembly * (contact ? CONTACT_FACTOR : 1);
   check->state = STATE_FACTORISATIONS * iteration;
   check->point = POINT_FACTORISATIONS * iteration;
   /* each material point keeps its positions, accepted and tried */

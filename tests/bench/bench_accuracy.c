@@ -194,6 +194,7 @@ int main(int argc, char **argv)
     if (!strcmp(argv[i], "--seed") && i + 1 < argc) seed = (uint64_t)atoi(argv[++i]);
   }
   argc = 1;
+  setvbuf(stdout, NULL, _IOLBF, 0); /* it takes minutes: what is there is told */
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   if (Run(interface, states, seed, list)) return 1;
   return PetscFinalize() ? 1 : 0;
