@@ -4,7 +4,7 @@
     assembly.c           sums over elements: energy, residual, tangent
     turgor.c             areas of lumens, pressures of sealed ones
     gap_area.c           area between the cells, on which cohesion works
-    linear.c factor.c    sparsity pattern; factorisation, inertia, solves
+    linear.c factor.c cholesky.c          sparsity pattern; factorisation, inertia, solves
     newton.c             one equilibrium from a start: fast and safe tier
     border.h             components of F that join the unknowns where stress is prescribed
     interrupt.c          factorisations that ask whether to go on

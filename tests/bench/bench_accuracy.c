@@ -190,9 +190,10 @@ int main(int argc, char **argv)
   for (int i = 1; i < argc; i++) {
     if (!strcmp(argv[i], "--contact")) interface = LAM_INTERFACE_CONTACT;
     if (!strcmp(argv[i], "--list")) list = PETSC_TRUE;
-    if (!strcmp(argv[i], "--states") && i + 1 < argc) states = PetscMin(atoi(argv[++i]), MOST_STATES);
+    if (!strcmp(argv[i], "--states") && i + 1 < argc) states = atoi(argv[++i]);
     if (!strcmp(argv[i], "--seed") && i + 1 < argc) seed = (uint64_t)atoi(argv[++i]);
   }
+  if (states > MOST_STATES) states = MOST_STATES;
   argc = 1;
   setvbuf(stdout, NULL, _IOLBF, 0); /* it takes minutes: what is there is told */
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
