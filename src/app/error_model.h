@@ -17,7 +17,7 @@ typedef struct {
 
 /* Frobenius norm of log U, F = R U, in the plane. */
 PetscReal LamStrainSize(const PetscReal F[9]);
-/* The error of P, as LamStressError, that 95 of 100 bonded, 90 of 100 contact tissues and loads stay below. */
+/* The error of P, as LamStressError, that 90 of 100 tissues and loads stay below. */
 PetscReal LamErrorOfMesh(const LamErrorCase *c, PetscInt along, PetscInt through);
 /* The cheapest mesh of those that the planner knows with that error at most `accuracy`; the finest, if none has. */
 void LamCheapestMesh(const LamErrorCase *c, PetscReal accuracy, PetscInt *along, PetscInt *through, PetscReal *grading);
