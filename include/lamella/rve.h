@@ -87,8 +87,9 @@ PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStress
                                 LamResponse *response);
 
 /*
-  An estimate of the error of a state's P, as LamStressError, from the same load on half as many elements, from the
-  state's own positions: a tenth of the time of a bonded state, a third of a contact one. LamRVEEstimateError sets
+  An estimate of the error of a state's P, as LamStressError, from the same load on half as many elements: a sixth of
+  the time of a bonded state, a tenth to four tenths of a contact one. It keeps the coarse state that it has found, from
+  which the next one starts: one estimate for states that follow each other. LamRVEEstimateError sets
   response->error_estimate of the response that belongs to `state`, and adds its time; NaN where there is none: an odd
   number of elements along a face, sealed cells, or no equilibrium on the coarser mesh. Borrows `rve`.
 */

@@ -301,7 +301,7 @@ PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
       {0, "failure", LAM_OPTION_FLAG, NULL,
        "what walls and lamella bear, and how the tissue fails first along the load (contact: includes --second-mesh)",
        &run.find_failure},
-      {0, "no-estimate", LAM_OPTION_FLAG, NULL, "no estimate of the error: a tenth to a third less time",
+      {0, "no-estimate", LAM_OPTION_FLAG, NULL, "no estimate of the error: a tenth to a quarter less time",
        &run.no_estimate},
       {0, "monitor", LAM_OPTION_FLAG, NULL, "each Newton iteration on stderr", &run.monitor},
       {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &run.quiet},
