@@ -20,14 +20,16 @@ PetscErrorCode LamContactStepCreate(LamRVE rve, LamContactStep *step)
   PetscFunctionBeginUser;
   step->shift = step->floor = 0.0;
   step->border = NULL;
-  PetscCall(PetscMalloc4(n + 2, &step->rhs, n, &step->solution, rve->contact->count, &step->lambda, n, &step->image));
+  step->updates = PETSC_FALSE;
+  PetscCall(PetscMalloc6(n + 2, &step->rhs, n, &step->solution, rve->contact->count, &step->lambda, n, &step->image, n,
+                         &step->first, rve->contact->count, &step->factored));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamContactStepDestroy(LamContactStep *step)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree4(step->rhs, step->solution, step->lambda, step->image));
+  PetscCall(PetscFree6(step->rhs, step->solution, step->lambda, step->image, step->first, step->factored));
   PetscFunctionReturn(0);
 }
 
@@ -64,7 +66,7 @@ static PetscErrorCode FactorStable(LamRVE rve, PetscBool again, LamContactStep *
   PetscFunctionReturn(0);
 }
 
-/* rve->step and the new multipliers with the present factor. */
+/* The solution with the present factor. */
 static PetscErrorCode Solve(LamRVE rve, LamContactStep *step)
 {
   const LamContact *contact = rve->contact;
@@ -76,6 +78,16 @@ static PetscErrorCode Solve(LamRVE rve, LamContactStep *step)
   for (PetscInt h = 0; h < contact->count; ++h)
     step->rhs[positions + h] = contact->active[h] ? contact->gap[h] * contact->weight[h] : 0.0;
   PetscCall(LamBorderSolve(rve, step->border, step->rhs, step->solution));
+  PetscFunctionReturn(0);
+}
+
+/* rve->step and the new multipliers from the solution. */
+static PetscErrorCode TakeSolution(LamRVE rve, LamContactStep *step)
+{
+  const LamContact *contact = rve->contact;
+  const PetscInt positions = rve->linear.positions, pressures = rve->linear.n - rve->linear.lumens;
+
+  PetscFunctionBeginUser;
   rve->step[0] = rve->step[1] = 0.0;
   PetscCall(PetscArraycpy(rve->step + 2, step->solution, positions));
   PetscCall(PetscArraycpy(rve->step + rve->ndof, step->solution + pressures, rve->linear.lumens));
@@ -103,6 +115,21 @@ static PetscErrorCode AddNegativeCurvature(LamRVE rve, const PetscReal residual[
   PetscFunctionReturn(0);
 }
 
+/* Keeps what another active set may be solved with: not where F is free, nor where the shift may be another. */
+static PetscErrorCode FactorAndSolve(LamRVE rve, PetscReal compliance, PetscBool again, LamContactStep *step,
+                                     PetscBool *ok)
+{
+  PetscFunctionBeginUser;
+  LamContactSetRows(rve, compliance);
+  PetscCall(FactorStable(rve, again, step, ok));
+  if (!*ok) PetscFunctionReturn(0);
+  PetscCall(Solve(rve, step));
+  step->updates = (PetscBool)(!step->border && step->shift <= LAM_CONTACT_PROXIMAL);
+  PetscCall(PetscArraycpy(step->factored, rve->contact->active, rve->contact->count));
+  PetscCall(PetscArraycpy(step->first, step->solution, rve->linear.n));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamContactSolveStep(LamRVE rve, PetscReal norm, PetscReal compliance, LamContactStep *step,
                                    PetscBool *ok)
 {
@@ -110,10 +137,13 @@ PetscErrorCode LamContactSolveStep(LamRVE rve, PetscReal norm, PetscReal complia
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < ACTIVE_SET_SOLVES; ++k) {
-    LamContactSetRows(rve, compliance);
-    PetscCall(FactorStable(rve, (PetscBool)(k > 0), step, ok));
+    PetscBool updated = PETSC_FALSE;
+
+    if (k > 0 && step->updates)
+      PetscCall(LamContactUpdateStep(rve, step->factored, step->first, compliance, step->solution, &updated));
+    if (!updated) PetscCall(FactorAndSolve(rve, compliance, (PetscBool)(k > 0), step, ok));
     if (!*ok) PetscFunctionReturn(0);
-    PetscCall(Solve(rve, step));
+    PetscCall(TakeSolution(rve, step));
     if (k + 1 == ACTIVE_SET_SOLVES) break;
     PetscCall(LamContactPredictActive(rve, rve->step, LamBorderStep(step->border), step->lambda, compliance, &changes));
     if (changes == 0) break;

@@ -12,7 +12,7 @@
     path.c               start, substeps, leaving a saddle
     mortar.c mortar_segments.c            gaps between two chains of edges and their variations
     contact.c            cell faces in contact: pairs, junctions, active set
-    contact_step.c contact_newton.c contact_safe.c    one contact equilibrium from a start
+    contact_step.c contact_update.c contact_newton.c contact_safe.c    one contact equilibrium from a start
     contact_start.c contact_try.c contact_path.c      starts, judging a solution, ways to it
     lumen.c overlap.c    lumens whose walls have met, cells that lie in each other
     homogenise.c         stress, tangent and couplings by static condensation
@@ -335,6 +335,9 @@ static inline PetscReal LamGapTolerance(LamRVE rve)
 typedef struct {
   PetscReal *rhs, *solution, *image; /* work space */
   PetscReal *lambda;                 /* [multipliers] after the step */
+  PetscReal *first;                  /* the solution with the last factor, ... */
+  PetscBool *factored;               /* ... and its active set, [multipliers] */
+  PetscBool updates;                 /* other sets may be solved with that factor */
   PetscReal shift;                   /* of the last factor */
   PetscReal floor;                   /* least shift: the larger, the shorter the step */
   LamBorder *border;                 /* borrowed; NULL: F is prescribed */
@@ -343,6 +346,10 @@ PetscErrorCode LamContactStepCreate(LamRVE rve, LamContactStep *step);
 PetscErrorCode LamContactStepDestroy(LamContactStep *step);
 /* After LamAssemble: takes the held forces off rve->residual; norm: of the residual with contact forces. */
 void LamContactResidual(LamRVE rve, LamContactStep *step, PetscReal *norm);
+/* solution [n] of the present active set from `first`, that of the set `before`, whose matrix is factored. *ok is
+   PETSC_FALSE where the sets differ in too many hats, or the new matrix has too many negative eigenvalues. */
+PetscErrorCode LamContactUpdateStep(LamRVE rve, const PetscBool before[], const PetscReal first[], PetscReal compliance,
+                                    PetscReal solution[], PetscBool *ok);
 /* rve->step and step->lambda from the assembled state with its contact curvature; norm: of its residual. *ok is
    PETSC_FALSE where no shift helps. */
 PetscErrorCode LamContactSolveStep(LamRVE rve, PetscReal norm, PetscReal compliance, LamContactStep *step,

@@ -15,7 +15,8 @@ typedef struct {
   PetscBool json, tangent, monitor, quiet, second_mesh, find_onset, find_failure, no_estimate;
 
   LamScene *scene;
-  LamMeshes meshes; /* the scene's, and with --second-mesh a finer one */
+  LamMeshes meshes;        /* the scene's, and with --second-mesh a finer one */
+  LamRVEEstimate estimate; /* NULL: none is made */
   LamOnset onset;
   LamFailure failure;
   LamRecordWriter writer; /* NULL without -o */
@@ -172,7 +173,7 @@ static PetscErrorCode Prepare(Run *run)
   PetscCall(LamMeshesSetInterrupt(&run->meshes, LamStopInterrupt, NULL));
   PetscCall(LamMeshesSetWanted(&run->meshes, Wanted(run)));
   PetscCall(LamRVESetMonitor(run->meshes.rve[0], run->monitor));
-  if (!run->no_estimate) PetscCall(LamMeshesEstimate(&run->meshes));
+  if (!run->no_estimate && !run->second_mesh) PetscCall(LamRVEEstimateCreate(run->meshes.rve[0], &run->estimate));
   PetscCall(LamMeshesSeal(&run->meshes, run->scene, &run->scene->loads[0]));
   if (run->find_onset) PetscCall(LamOnsetCreate(&run->meshes, &run->onset));
   if (run->find_failure) {
@@ -200,6 +201,7 @@ static PetscErrorCode SolveStates(Run *run)
 
     PetscCall(LamMeshesSolve(&run->meshes, &run->scene->loads[run->solved], Control(run, run->solved + 1), responses));
     if (run->meshes.stopped) break;
+    if (run->estimate) PetscCall(LamRVEEstimateError(run->estimate, run->meshes.state[0], &responses[0]));
     run->solved++;
     if (responses[0].status != LAM_CONVERGED) run->failed++;
     if (responses[0].error_estimate > run->scene->accuracy) run->inaccurate++;
@@ -224,6 +226,7 @@ static PetscErrorCode Destroy(Run *run)
   PetscFunctionBeginUser;
   PetscCall(LamOnsetDestroy(&run->onset));
   PetscCall(LamFailureDestroy(&run->failure));
+  PetscCall(LamRVEEstimateDestroy(&run->estimate));
   PetscCall(LamMeshesDestroy(&run->meshes));
   PetscCall(LamSceneDestroy(&run->scene));
   PetscFunctionReturn(0);

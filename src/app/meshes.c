@@ -46,13 +46,6 @@ PetscErrorCode LamMeshesSetWanted(LamMeshes *meshes, LamWanted wanted)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamMeshesEstimate(LamMeshes *meshes)
-{
-  PetscFunctionBeginUser;
-  if (meshes->count == 1) PetscCall(LamRVEEstimateCreate(meshes->rve[0], &meshes->estimate));
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode SealOne(const LamScene *scene, const LamLoad *load, LamRVE rve, LamRVEState state,
                               LamResponse *response)
 {
@@ -87,7 +80,6 @@ PetscErrorCode LamMeshesSeal(LamMeshes *meshes, const LamScene *scene, const Lam
 PetscErrorCode LamMeshesDestroy(LamMeshes *meshes)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamRVEEstimateDestroy(&meshes->estimate));
   for (PetscInt m = 0; m < meshes->count; m++) {
     PetscCall(LamRVEStateDestroy(&meshes->state[m]));
     PetscCall(LamRVEDestroy(&meshes->rve[m]));
@@ -124,7 +116,6 @@ PetscErrorCode LamMeshesSolve(LamMeshes *meshes, const LamLoad *load, const LamS
   }
   PetscCall(LamRVESolveMixed(meshes->rve[0], &asked, control ? control : &none, meshes->state[0], first));
   if (LamResponseHasFields(first)) PetscCall(PetscArraycpy(meshes->F, first->load.F, 9));
-  if (meshes->estimate) PetscCall(LamRVEEstimateError(meshes->estimate, meshes->state[0], first));
   for (PetscInt m = 1; m < meshes->count && first->status != LAM_OUT_OF_REACH; m++) {
     PetscCall(LamRVESolve(meshes->rve[m], &first->load, meshes->state[m], &responses[m]));
     if (second->status == LAM_OUT_OF_REACH) *first = *second;

@@ -11,11 +11,10 @@
 typedef struct {
   PetscInt count;
   LamRVE rve[2];
-  LamRVEState state[2];    /* the last states that have an answer */
-  LamRVEEstimate estimate; /* of the error on the first mesh; NULL: none is made; owned */
-  PetscReal F[9];          /* of the first mesh's */
-  PetscBool stopped;       /* a solve was, by the interrupt: its responses are LAM_OUT_OF_REACH and tell nothing */
-  LamResponse unsealed;    /* where the cells could not be sealed: why; then there are no answers. Else converged */
+  LamRVEState state[2]; /* the last states that have an answer */
+  PetscReal F[9];       /* of the first mesh's */
+  PetscBool stopped;    /* a solve was, by the interrupt: its responses are LAM_OUT_OF_REACH and tell nothing */
+  LamResponse unsealed; /* where the cells could not be sealed: why; then there are no answers. Else converged */
 } LamMeshes;
 
 /* `scene` holds the mesh to use (along and through chosen); `comm` as for LamRVECreate. PETSC_ERR_USER_INPUT as
@@ -25,9 +24,6 @@ PetscErrorCode LamMeshesCreate(MPI_Comm comm, const LamScene *scene, PetscInt co
 PetscErrorCode LamMeshesSetInterrupt(LamMeshes *meshes, PetscBool (*interrupt)(void *ctx), void *ctx);
 /* As LamRVESetWanted; `wanted` on the first mesh, of the second no derivatives are ever needed. */
 PetscErrorCode LamMeshesSetWanted(LamMeshes *meshes, LamWanted wanted);
-/* From now on responses[0] of a solve on one mesh has an error_estimate, from half as many elements (lamella/rve.h).
-   After LamMeshesSetInterrupt. */
-PetscErrorCode LamMeshesEstimate(LamMeshes *meshes);
 PetscErrorCode LamMeshesDestroy(LamMeshes *meshes);
 /*
   Before the first solve, of a scene whose cells are sealed; else without effect. The cells get the water that they have

@@ -54,11 +54,12 @@ static void StateIsThatOfItsF(void **state)
   }
 }
 
-/* In contact the count scatters by some with the rounding of the machine. */
+/* In contact the count scatters by some with the rounding of the machine, and other active sets are factored anew where
+   F is free (rve/contact_update.c). */
 static void FactorisationsAreFewMore(void **state)
 {
   for (int k = 0; k < MIXED_CASES; k++) {
-    const int most = mixed_cases[k].contact ? 6 : 3;
+    const int most = mixed_cases[k].contact ? 10 : 3;
 
     if (!mixed_cases[k].far && results[k].extra > most) fail_msg("%s: %d more", mixed_cases[k].name, results[k].extra);
   }
