@@ -7,6 +7,7 @@ rve:
   cell: {apothem: 75 um, wall_thickness: 11.25 um}
   wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
   turgor: {pressure: 0.02 MPa}
+  mesh: {along: 6, through: 2}
 load:
   - {F: [[1, 0.05], [0, 1]]}
 accuracy: 0.05
@@ -15,7 +16,7 @@ YAML
 expect 0 "$lamella" tradeoff scene.yaml -o out --budget 20 --repeats 2 --only mesh,tolerance,cells --json --quiet
 cp out.txt one.jsonl
 [ ! -s err.txt ] || fail "speaks: $(cat err.txt)"
-[ "$(grep -c '"family": *"mesh"' one.jsonl)" = 36 ] || fail "measures $(grep -c '"mesh"' one.jsonl) meshes"
+[ "$(grep -c '"family": *"mesh"' one.jsonl)" = 36 ] || fail "measures $(grep -c '"family": *"mesh"' one.jsonl) meshes"
 [ "$(grep -c '"planned": *true' one.jsonl)" = 3 ] || fail "the plan is not in each family: $(cat one.jsonl)"
 grep -q '"optimal": *true' one.jsonl || fail "nothing is the best"
 grep -q '"runs": *2' one.jsonl || fail "nothing is repeated"
