@@ -55,14 +55,6 @@ PetscErrorCode LamBorderAssemble(LamRVE rve, LamBorder *border, PetscReal *norm)
   PetscFunctionReturn(0);
 }
 
-static PetscReal Dot(PetscInt n, const PetscReal a[], const PetscReal b[])
-{
-  PetscReal sum = 0.0;
-
-  for (PetscInt i = 0; i < n; ++i) sum += a[i] * b[i];
-  return sum;
-}
-
 /* The step for a change dq of the free components. */
 static void SetStep(LamRVE rve, LamBorder *border, const PetscReal dq[], PetscReal solution[])
 {
@@ -93,13 +85,14 @@ PetscErrorCode LamBorderSolve(LamRVE rve, LamBorder *border, const PetscReal rhs
   for (PetscInt k = 0; k < border->count; ++k) {
     const PetscReal *R = border->rhs + (k + 1) * n;
 
-    b[k] = -border->rest[k] - Dot(n, R, border->solution);
+    b[k] = -border->rest[k] - LamInnerProduct(n, R, border->solution);
     for (PetscInt l = k; l < border->count; ++l)
-      S[k][l] = S[l][k] = border->Lqq[border->q[k]][border->q[l]] - Dot(n, R, border->solution + (l + 1) * n);
+      S[k][l] = S[l][k] =
+          border->Lqq[border->q[k]][border->q[l]] - LamInnerProduct(n, R, border->solution + (l + 1) * n);
   }
   PetscCall(LamSmallEigenvectors(border->count, (const PetscReal(*)[LAM_F_COUNT])S, w, V));
   for (PetscInt k = 0; k < border->count; ++k) {
-    const PetscReal share = Dot(border->count, V[k], b) / w[k];
+    const PetscReal share = LamInnerProduct(border->count, V[k], b) / w[k];
 
     for (PetscInt l = 0; l < border->count; ++l) dq[l] += share * V[k][l];
   }

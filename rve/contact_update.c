@@ -45,14 +45,6 @@ static void SetColumn(LamRVE rve, PetscInt hat, PetscBool taken, PetscReal colum
     if (classes[i / 2] > 0) column[2 * (classes[i / 2] - 1) + i % 2] -= row[i];
 }
 
-static PetscReal Dot(PetscInt n, const PetscReal a[], const PetscReal b[])
-{
-  PetscReal sum = 0.0;
-
-  for (PetscInt i = 0; i < n; ++i) sum += a[i] * b[i];
-  return sum;
-}
-
 /* mu = S^-1 r by the eigenvectors of S; positive: number of positive eigenvalues. *ok where S is not singular. */
 static PetscErrorCode SolveSmall(PetscInt m, PetscReal S[], const PetscReal r[], PetscReal mu[], PetscInt *positive,
                                  PetscBool *ok)
@@ -66,7 +58,7 @@ static PetscErrorCode SolveSmall(PetscInt m, PetscReal S[], const PetscReal r[],
   *positive = 0;
   for (PetscInt k = 0; k < m; ++k) mu[k] = 0.0;
   for (PetscInt k = 0; k < m && *ok; ++k) {
-    const PetscReal share = Dot(m, &S[k * m], r) / w[k];
+    const PetscReal share = LamInnerProduct(m, &S[k * m], r) / w[k];
 
     if (!(PetscAbsReal(w[k]) > LEAST_EIGENVALUE * PetscMax(PetscAbsReal(w[0]), PetscAbsReal(w[m - 1]))))
       *ok = PETSC_FALSE;
@@ -97,9 +89,9 @@ PetscErrorCode LamContactUpdateStep(LamRVE rve, const PetscBool before[], const 
     const PetscReal weight = contact->weight[c.hat[k]];
 
     dropped += !c.taken[k];
-    for (PetscInt l = 0; l < c.count; ++l) S[k * c.count + l] = Dot(n, &B[k * n], &Y[l * n]);
+    for (PetscInt l = 0; l < c.count; ++l) S[k * c.count + l] = LamInnerProduct(n, &B[k * n], &Y[l * n]);
     if (c.taken[k]) S[k * c.count + k] += compliance * weight;
-    r[k] = Dot(n, &B[k * n], first) - (c.taken[k] ? contact->gap[c.hat[k]] * weight : 0.0);
+    r[k] = LamInnerProduct(n, &B[k * n], first) - (c.taken[k] ? contact->gap[c.hat[k]] * weight : 0.0);
   }
   PetscCall(SolveSmall(c.count, S, r, mu, &positive, ok));
   if (rve->linear.negative + positive - dropped > LamExpectedNegative(rve)) *ok = PETSC_FALSE;

@@ -170,6 +170,14 @@ static inline PetscReal LamLargestEntry(PetscInt n, const PetscReal v[])
   return largest;
 }
 
+static inline PetscReal LamInnerProduct(PetscInt n, const PetscReal a[], const PetscReal b[])
+{
+  PetscReal sum = 0.0;
+
+  for (PetscInt i = 0; i < n; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
 /* ---- assembly.c ---- */
 PetscErrorCode LamGeometryCreate(LamRVE rve);
 /* Positions of an element's nodes: x_a = y_class + F S. */
