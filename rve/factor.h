@@ -10,7 +10,8 @@
 
 typedef struct LamFactor_s *LamFactor;
 
-/* Upper triangle in compressed rows: row [n+1], column and values [row[n]] are borrowed. Called by rank 0 alone. */
+/* Upper triangle in compressed rows: row [n+1], column and values [row[n]] are borrowed. definite: the matrix should be
+   positive definite; a small one is then tried without pivots first (cholesky.h). Called by rank 0 alone. */
 PetscErrorCode LamFactorCreate(MPI_Comm comm, PetscInt n, PetscInt row[], PetscInt column[], PetscReal values[],
                                PetscBool definite, LamFactor *factor);
 /* Of the present values. *ok is PETSC_FALSE where the matrix is singular to working precision; negative: eigenvalues.
