@@ -28,7 +28,6 @@
 #define MUCH_TURGOR 1.5    /* the same; beyond it the stretch is what is raised in steps */
 #define RELEASE_REACH 0.1  /* apothems: a larger first step shows that less must be released */
 #define LEAST_RELEASE 0.06 /* smaller shares: descent takes over */
-#define MIN_SUBSTEP (1.0 / 64.0)
 
 /* Step one of two: the bonded tissue at `load`, from a copy of `state`; *ok where it has an equilibrium. */
 static PetscErrorCode SolveBonded(LamRVE rve, const LamLoad *load, LamRVEState state, PetscBool *ok)
@@ -108,28 +107,12 @@ static PetscErrorCode DescendFrom(LamRVE rve, const LamContactSolution *at, cons
   PetscFunctionReturn(0);
 }
 
-/* Continuation from a solution to `load`, in halved steps where it fails. */
+/* Continuation from a solution to `load`; where it is lost without a reason, descent. */
 static PetscErrorCode Substeps(LamRVE rve, LamContactSolution *at, const LamLoad *load, LamContactOutcome *out)
 {
-  const LamLoad start = at->load;
-  PetscReal reached = 0.0, step = 0.25;
-
   PetscFunctionBeginUser;
-  while (reached < 1.0 && LamMayIterate(rve) && step >= MIN_SUBSTEP) {
-    const PetscReal t = PetscMin(1.0, reached + step);
-    const LamLoad next = t >= 1.0 ? *load : LamLoadBetween(&start, load, t);
-
-    PetscCall(LamContactStartNear(rve, at, &next));
-    PetscCall(LamContactTry(rve, &next, LAM_NEAR_REACH, out));
-    if (LamContactIsStable(out)) {
-      PetscCall(LamContactSave(rve, &next, at));
-      reached = t;
-      step *= 2.0;
-    } else {
-      step *= 0.5;
-    }
-  }
-  if (reached < 1.0) PetscCall(DescendFrom(rve, at, load, out));
+  PetscCall(LamContactWalk(rve, at, load, out));
+  if (!LamContactIsStable(out) && out->refusal == LAM_NOT_REFUSED) PetscCall(DescendFrom(rve, at, load, out));
   PetscFunctionReturn(0);
 }
 
@@ -200,22 +183,27 @@ static LamLoad Unstretched(const LamLoad *load)
   return start;
 }
 
-/* Tight contact from the undeformed (turned) tissue to the asked F in substeps, then let loose. */
-static PetscErrorCode WalkThenLoose(LamRVE rve, const LamLoad *load, LamContactSolution *at, LamContactOutcome *out)
+/*
+  From the undeformed (turned) tissue under the load's turgor and cohesion, held tight first where these do not hold it
+  together, in substeps to the asked F.
+*/
+static PetscErrorCode WalkFromRest(LamRVE rve, const LamLoad *load, LamContactSolution *at, LamContactOutcome *out)
 {
-  LamLoad tight = *load, start;
+  const LamLoad rest = Unstretched(load);
+  LamLoad tight = rest;
 
   PetscFunctionBeginUser;
-  tight.cohesion = load->cohesion + TIGHT;
-  start = Unstretched(&tight);
-  PetscCall(LamContactStartAffine(rve, &start));
-  PetscCall(LamContactTry(rve, &start, LAM_FAR, out));
-  if (LamContactIsStable(out)) {
-    PetscCall(LamContactSave(rve, &start, at));
-    PetscCall(Substeps(rve, at, &tight, out));
+  PetscCall(LamContactStartAffine(rve, &rest));
+  PetscCall(LamContactTry(rve, &rest, LAM_FAR, out));
+  PetscCall(LamContactSave(rve, &rest, at));
+  if (!LamContactIsStable(out)) {
+    tight.cohesion += TIGHT;
+    PetscCall(LamContactStartAffine(rve, &tight));
+    PetscCall(LamContactTry(rve, &tight, LAM_FAR, out));
     PetscCall(LamContactSave(rve, &tight, at));
+    PetscCall(Loosen(rve, &rest, at, out));
   }
-  PetscCall(Loosen(rve, load, at, out));
+  if (LamContactIsStable(out)) PetscCall(LamContactWalk(rve, at, load, out));
   PetscFunctionReturn(0);
 }
 
@@ -314,7 +302,7 @@ static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state,
     }
     if (k == 1) PetscCall(TryStrategy(rve, rve->strategy, load, state, &has_bonded, &at, out));
     if (k == 2) PetscCall(TightThenLoose(rve, load, has_bonded, &at, out));
-    if (k == 3) PetscCall(WalkThenLoose(rve, load, &at, out));
+    if (k == 3) PetscCall(WalkFromRest(rve, load, &at, out));
     if (k == 4 && state->solved && !near) PetscCall(Substeps(rve, before, load, out));
     if (k == 5 && rve->strategy == LAM_ONE_STEP)
       PetscCall(TryStrategy(rve, LAM_TWO_STEP, load, state, &has_bonded, &at, out));
@@ -343,7 +331,7 @@ PetscErrorCode LamContactReason(LamRVE rve, const LamContactOutcome *out, char r
                       "which is not modelled, or the mesh along the faces is too coarse",
                       (int)out->cell[0], (double)out->depth, (int)out->cell[1]));
   else if (out->refusal == LAM_LUMEN_COLLAPSED)
-    PetscCall(LamCollapseReason(out->cell[0], reason, length));
+    PetscCall(LamCollapseReason(out->cell[0], out->between, reason, length));
   else
     PetscCall(PetscSNPrintf(reason, length,
                             "no contact equilibrium found from any start, after %d iterations: give states in between",

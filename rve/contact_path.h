@@ -32,11 +32,12 @@ typedef enum { LAM_NOT_REFUSED, LAM_CELLS_OVERLAP, LAM_LUMEN_COLLAPSED } LamRefu
 /* What a try at one load ended in. */
 typedef struct {
   PetscBool converged;
-  PetscInt negative;  /* eigenvalues; > 0: a saddle */
-  PetscInt branch;    /* saddles left on the way */
-  LamRefusal refusal; /* why a solution is no answer; it then counts as not converged */
-  PetscInt cell[2];   /* the cells concerned */
-  PetscReal depth;    /* of the wall of the first inside the second */
+  PetscInt negative;    /* eigenvalues; > 0: a saddle */
+  PetscInt branch;      /* saddles left on the way */
+  LamRefusal refusal;   /* why a solution is no answer; it then counts as not converged */
+  PetscInt cell[2];     /* the cells concerned */
+  PetscReal depth;      /* of the wall of the first inside the second */
+  PetscReal between[2]; /* shares of a way: the last stable state, the next that is none; equal: not known */
 } LamContactOutcome;
 #define LAM_NEAR_REACH 0.5 /* apothems: a larger step from a near start leads nowhere */
 /* Newton from the present start, by full steps or by descent; saddles are left, what is no answer is refused. Ends with
@@ -49,6 +50,11 @@ static inline PetscBool LamContactIsStable(const LamContactOutcome *out)
 {
   return (PetscBool)(out->converged && out->negative <= 0);
 }
+
+/* ---- contact_walk.c ---- */
+/* Continuation from the solution *at, which becomes the last stable one on the straight way to `load`; where the way
+   ends before, *out says in what. */
+PetscErrorCode LamContactWalk(LamRVE rve, LamContactSolution *at, const LamLoad *load, LamContactOutcome *out);
 
 /* ---- contact_path.c ---- */
 /* Whether Newton may start from a solution at the load `from`. */

@@ -45,12 +45,15 @@ static PetscReal SignedArea(PetscInt n, const PetscReal x[][2])
   return area;
 }
 
-PetscErrorCode LamCollapseReason(PetscInt cell, char reason[], size_t length)
+PetscErrorCode LamCollapseReason(PetscInt cell, const PetscReal between[2], char reason[], size_t length)
 {
+  char place[80];
+
   PetscFunctionBeginUser;
+  PetscCall(LamBracketText(between, place, sizeof(place)));
   PetscCall(PetscSNPrintf(
-      reason, length, "the lumen of cell %d has collapsed: its walls touch, and contact inside a lumen is not modelled",
-      (int)cell));
+      reason, length, "the lumen of cell %d collapses%s: its walls touch, and contact inside a lumen is not modelled",
+      (int)cell, place));
   PetscFunctionReturn(0);
 }
 

@@ -11,12 +11,13 @@
   References. Magisano, Leonetti & Garcea, Int. J. Numer. Meth. Engng 109 (2017) 1237 (mixed integration points);
   Chamberlain et al., Math. Prog. Study 16 (1982) 1 (watchdog); Nocedal & Wright, Numerical Optimization, 3.4.
 */
-#include "rve_impl.h"
+#include "newton.h"
 
 #define FAST_ITERATIONS 25
 #define SAFE_ITERATIONS 400
 #define ROUNDING_MARGIN 1e3 /* residual over the tolerance that rounding of large stresses may leave */
 #define WATCHDOG 4          /* steps without decrease before the safe tier goes back */
+#define LEAST_SHIFT 1e-7    /* of the largest diagonal entry */
 #define STEP_LIMIT 0.05     /* of the safe tier, in apothems */
 #define ARMIJO 1e-4
 #define SADDLE_RESIDUAL 1e-4 /* of an indefinite state below which Newton would only creep along a saddle */
@@ -37,8 +38,8 @@ PetscReal LamNewtonTolerance(LamRVE rve)
   return PetscMax(PetscMax(1e-11, rve->tolerance), PetscMax(4.0, slenderness * size) * rounding);
 }
 
-static PetscErrorCode Report(LamRVE rve, const char tier[], PetscInt iteration, PetscReal residual, PetscReal step,
-                             PetscReal shift)
+PetscErrorCode LamReportIteration(LamRVE rve, const char tier[], PetscInt iteration, PetscReal residual, PetscReal step,
+                                  PetscReal shift)
 {
   PetscFunctionBeginUser;
   if (rve->monitor)
@@ -56,8 +57,7 @@ static PetscBool FactorServes(LamRVE rve, PetscReal norm, PetscReal tolerance)
   return (PetscBool)(rve->linear.rate <= LAM_NEAR_RATE && rve->linear.rate * norm <= tolerance);
 }
 
-/* step := -K^-1 residual with the present factor, or that of the bordered system; the held class does not move. */
-static PetscErrorCode SolveStep(LamRVE rve, LamBorder *border)
+PetscErrorCode LamSolveStep(LamRVE rve, LamBorder *border)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 2; i < rve->length; ++i) rve->trial[i] = -rve->residual[i];
@@ -71,9 +71,7 @@ static void TrialPosition(LamRVE rve, PetscReal alpha)
   for (PetscInt i = 0; i < rve->ndof; ++i) rve->trial[i] = rve->y[i] + alpha * rve->step[i];
 }
 
-/* Factors K + shift 1 with the smallest tried shift that leaves no negative eigenvalue but those expected; last_shift:
-   in the one before. */
-static PetscErrorCode FactorPositive(LamRVE rve, PetscReal *last_shift, PetscBool *ok)
+PetscErrorCode LamFactorPositive(LamRVE rve, PetscReal least, PetscReal *last_shift, PetscBool *ok)
 {
   PetscReal diagonal = 0.0, shift = 0.0;
   PetscInt negative;
@@ -86,25 +84,20 @@ static PetscErrorCode FactorPositive(LamRVE rve, PetscReal *last_shift, PetscBoo
     if (*ok && negative <= LamExpectedNegative(rve)) break;
     *ok = PETSC_FALSE;
     if (shift > diagonal) break;
-    shift = shift == 0.0 ? PetscMax(*last_shift / 8.0, 1e-7 * diagonal) : 4.0 * shift;
+    shift = shift == 0.0 ? PetscMax(*last_shift / 8.0, PetscMin(least, LEAST_SHIFT * diagonal)) : 4.0 * shift;
   }
   *last_shift = shift;
   PetscFunctionReturn(0);
 }
 
-/*
-  A step that moves nothing by more than rounding ends the iteration, also where the residual cannot come down to the
-  tolerance because large stresses cancel in it.
-*/
-static PetscBool AtRounding(LamRVE rve, PetscReal norm, PetscReal tolerance, PetscReal largest)
+PetscBool LamAtRounding(LamRVE rve, PetscReal norm, PetscReal tolerance, PetscReal largest)
 {
   const PetscReal extent = PetscMax(1.0, LamLargestEntry(rve->ndof, rve->y));
 
   return (PetscBool)(largest <= 500.0 * PETSC_MACHINE_EPSILON * extent && norm <= ROUNDING_MARGIN * tolerance);
 }
 
-/* Largest of 1, 1/2, ... 1/64 for which no volume along rve->step turns inside out; 0: none. */
-static PetscErrorCode ValidStep(LamRVE rve, const LamLoad *load, const LamBorder *border, PetscReal *alpha)
+PetscErrorCode LamValidStep(LamRVE rve, const LamLoad *load, const LamBorder *border, PetscReal *alpha)
 {
   PetscFunctionBeginUser;
   for (*alpha = 1.0; *alpha > 0.01; *alpha *= 0.5) {
@@ -117,7 +110,7 @@ static PetscErrorCode ValidStep(LamRVE rve, const LamLoad *load, const LamBorder
   PetscFunctionReturn(0);
 }
 
-static void TakeStep(LamRVE rve, const LamLoad *load, LamBorder *border, PetscReal alpha)
+void LamTakeStep(LamRVE rve, const LamLoad *load, LamBorder *border, PetscReal alpha)
 {
   LamUpdateStresses(rve, load, rve->y, rve->step, LamBorderStep(border), alpha);
   for (PetscInt i = 0; i < rve->length; ++i) rve->y[i] += alpha * rve->step[i];
@@ -162,8 +155,8 @@ PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border,
     if (it == 0) first = norm;
     if (it > 0) WatchFactor(rve, border, shift, alpha, norm, previous, fresh);
     /* the next step would be that share of the last one, or less */
-    if (norm <= tolerance || AtRounding(rve, norm, tolerance, rve->linear.rate * largest)) {
-      PetscCall(Report(rve, "fast", it, norm, 0.0, 0.0));
+    if (norm <= tolerance || LamAtRounding(rve, norm, tolerance, rve->linear.rate * largest)) {
+      PetscCall(LamReportIteration(rve, "fast", it, norm, 0.0, 0.0));
       *outcome = LAM_NEWTON_CONVERGED;
       rve->consistent = last;
       break;
@@ -176,12 +169,12 @@ PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border,
     if (it == FAST_ITERATIONS || growth >= 4 || !(norm < 1e8 * (1.0 + first))) break;
     fresh = (PetscBool)!FactorServes(rve, norm, tolerance);
     if (it == 0 || border) last = PETSC_FALSE;
-    if (fresh) PetscCall(FactorPositive(rve, &shift, &ok));
+    if (fresh) PetscCall(LamFactorPositive(rve, PETSC_INFINITY, &shift, &ok));
     if (!ok) break;
-    PetscCall(SolveStep(rve, border));
+    PetscCall(LamSolveStep(rve, border));
     largest = LamBorderReach(rve, border, rve->step + 2);
-    PetscCall(Report(rve, "fast", it, norm, largest, shift));
-    if (AtRounding(rve, norm, tolerance, largest)) {
+    PetscCall(LamReportIteration(rve, "fast", it, norm, largest, shift));
+    if (LamAtRounding(rve, norm, tolerance, largest)) {
       *outcome = LAM_NEWTON_CONVERGED;
       break;
     }
@@ -190,9 +183,9 @@ PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border,
       break;
     }
     if (!(largest < 10.0)) break;
-    PetscCall(ValidStep(rve, load, border, &alpha));
+    PetscCall(LamValidStep(rve, load, border, &alpha));
     if (alpha == 0.0) break;
-    TakeStep(rve, load, border, alpha);
+    LamTakeStep(rve, load, border, alpha);
   }
   PetscFunctionReturn(0);
 }
@@ -274,20 +267,20 @@ static PetscErrorCode SafeStep(LamRVE rve, const LamLoad *load, PetscInt it, Pet
 
   PetscFunctionBeginUser;
   *alpha = 0.0;
-  PetscCall(FactorPositive(rve, &descent->shift, &ok));
+  PetscCall(LamFactorPositive(rve, PETSC_INFINITY, &descent->shift, &ok));
   if (!ok) PetscFunctionReturn(0);
-  PetscCall(SolveStep(rve, NULL));
+  PetscCall(LamSolveStep(rve, NULL));
   if (descent->shift > 0.0 && LamLargestEntry(rve->ndof, rve->step) < 0.5 * ESCAPE_STEP)
     PetscCall(AddNegativeCurvature(rve, descent));
   largest = LamLargestEntry(rve->ndof, rve->step);
-  PetscCall(Report(rve, "safe", it, norm, largest, descent->shift));
+  PetscCall(LamReportIteration(rve, "safe", it, norm, largest, descent->shift));
   *alpha = largest > STEP_LIMIT ? STEP_LIMIT / largest : 1.0;
   if (descent->monotone) {
     for (PetscInt i = 2; i < rve->ndof; ++i) slope += rve->residual[i] * rve->step[i];
     PetscCall(LineSearch(rve, load, energy, slope, descent->rounding, alpha));
     descent->monotone = PETSC_FALSE;
   }
-  TakeStep(rve, load, NULL, *alpha);
+  LamTakeStep(rve, load, NULL, *alpha);
   PetscFunctionReturn(0);
 }
 
@@ -323,7 +316,7 @@ PetscErrorCode LamNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *
     PetscCall(Watch(rve, load, energy, valid, &descent, &moved));
     if (moved) continue;
     PetscCall(SafeStep(rve, load, it, energy, norm, &descent, &alpha));
-    if (AtRounding(rve, norm, tolerance, LamLargestEntry(rve->ndof, rve->step))) {
+    if (LamAtRounding(rve, norm, tolerance, LamLargestEntry(rve->ndof, rve->step))) {
       *outcome = LAM_NEWTON_CONVERGED;
       break;
     }

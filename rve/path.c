@@ -85,26 +85,45 @@ static PetscErrorCode LeaveSaddle(LamRVE rve, const LamLoad *load, PetscInt *bra
   PetscFunctionReturn(0);
 }
 
-/* One step from (from, load_from) to load_to; *reached where a stable state was found, now in rve->y. */
+/* What a step ended in. */
+typedef struct {
+  PetscBool converged;
+  PetscInt negative;  /* eigenvalues; > 0: a saddle */
+  PetscInt collapsed; /* the cell whose lumen is squeezed shut, so that the solution is no answer; -1: none */
+} Outcome;
+
+static PetscBool IsStable(const Outcome *out)
+{
+  return (PetscBool)(out->converged && out->negative == 0 && out->collapsed < 0);
+}
+
+/*
+  One step from (from, load_from) to load_to, whose solution is then in rve->y; branch counts saddles left. thorough:
+  with the safe tier, which takes time where walls are stiff.
+*/
 static PetscErrorCode Step(LamRVE rve, const PetscReal from[], const LamLoad *load_from, const LamLoad *load_to,
-                           PetscInt *branch, PetscInt *negative, PetscBool *converged)
+                           PetscBool thorough, PetscInt *branch, Outcome *out)
 {
   const PetscInt escapes = rve->work.escapes;
   LamNewtonOutcome outcome;
-  PetscBool ok = PETSC_FALSE;
+  PetscInt shut = -1;
 
   PetscFunctionBeginUser;
+  *out = (Outcome){.collapsed = -1};
   LamMoveAffinely(rve, from, load_from, load_to);
   PetscCall(LamNewtonFast(rve, load_to, NULL, &outcome));
   if (outcome == LAM_NEWTON_STALLED) {
     LamMoveAffinely(rve, from, load_from, load_to);
-    PetscCall(LamNewtonSafe(rve, load_to, &outcome));
-  } else if (outcome == LAM_NEWTON_NEAR_SADDLE) {
-    PetscCall(LamNewtonSafe(rve, load_to, &outcome));
+    PetscCall(LamNewtonFlow(rve, load_to, &outcome, &shut));
   }
+  if (outcome == LAM_NEWTON_STALLED && thorough) LamMoveAffinely(rve, from, load_from, load_to);
+  if (outcome == LAM_NEWTON_NEAR_SADDLE || (outcome == LAM_NEWTON_STALLED && thorough))
+    PetscCall(LamNewtonSafe(rve, load_to, &outcome));
   if (rve->work.escapes > escapes) ++*branch;
-  if (outcome == LAM_NEWTON_CONVERGED) PetscCall(LeaveSaddle(rve, load_to, branch, negative, &ok));
-  *converged = ok;
+  out->collapsed = shut;
+  if (outcome != LAM_NEWTON_CONVERGED) PetscFunctionReturn(0);
+  PetscCall(LeaveSaddle(rve, load_to, branch, &out->negative, &out->converged));
+  if (out->converged) PetscCall(LamFindCollapsedLumen(rve, rve->y, &out->collapsed));
   PetscFunctionReturn(0);
 }
 
@@ -118,32 +137,65 @@ LamLoad LamLoadBetween(const LamLoad *a, const LamLoad *b, PetscReal t)
   return load;
 }
 
-/* Substeps from `start` to `load`; y_from holds the last converged positions. */
-static PetscErrorCode Substeps(LamRVE rve, PetscReal y_from[], const LamLoad *start, const LamLoad *load,
-                               PetscInt *branch, PetscInt *negative, PetscReal *reached)
+PetscErrorCode LamBracketText(const PetscReal between[2], char text[], size_t length)
+{
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  if (between[1] > between[0])
+    PetscCall(PetscSNPrintf(text, length, " between %.5g and %.5g of the way", (double)between[0], (double)between[1]));
+  PetscFunctionReturn(0);
+}
+
+/* Substeps along a straight way: how far stable states were found, and why not at `failed`. */
+typedef struct {
+  PetscReal between[2]; /* shares of the way: the last stable state, the next that is none */
+  PetscInt branch;
+  Outcome end; /* at the second */
+} Way;
+
+/* From `start` to `load`; y_from holds the last stable positions. */
+static PetscErrorCode Substeps(LamRVE rve, PetscReal y_from[], const LamLoad *start, const LamLoad *load, Way *way)
 {
   LamLoad at = *start;
   PetscReal step = 0.25;
 
   PetscFunctionBeginUser;
-  *reached = 0.0;
-  while (*reached < 1.0 && LamMayIterate(rve)) {
-    const PetscReal t = PetscMin(1.0, *reached + step);
+  while (way->between[0] < 1.0 && step >= MIN_SUBSTEP && LamMayIterate(rve)) {
+    const PetscBool smallest = (PetscBool)(step < 2.0 * MIN_SUBSTEP);
+    const PetscReal t = PetscMin(1.0, way->between[0] + step);
     const LamLoad next = t >= 1.0 ? *load : LamLoadBetween(start, load, t);
-    PetscInt switches = *branch;
-    PetscBool converged = PETSC_FALSE;
+    PetscInt branch = way->branch;
 
-    PetscCall(Step(rve, y_from, &at, &next, &switches, negative, &converged));
-    if (converged && *negative == 0) {
+    PetscCall(Step(rve, y_from, &at, &next, smallest, &branch, &way->end));
+    if (IsStable(&way->end)) {
       PetscCall(PetscArraycpy(y_from, rve->y, rve->length));
       at = next;
-      *reached = t;
-      *branch = switches;
+      way->between[0] = t;
+      way->branch = branch;
       step = PetscMin(2.0 * step, 1.0);
     } else {
+      way->between[1] = t;
       step *= 0.5;
-      if (step < MIN_SUBSTEP) break;
     }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* What is told where the way ends before the load. */
+static PetscErrorCode EndOfWay(LamRVE rve, const Way *way, LamStatus *status, char reason[], size_t length)
+{
+  const PetscBool out_of_work = (PetscBool)(rve->work.iterations >= LAM_ITERATION_BUDGET);
+
+  PetscFunctionBeginUser;
+  *status = LAM_NOT_CONVERGED;
+  if (way->end.collapsed >= 0 && !out_of_work) {
+    *status = LAM_NO_EQUILIBRIUM;
+    PetscCall(LamCollapseReason(way->end.collapsed, way->between, reason, length));
+  } else {
+    PetscCall(PetscSNPrintf(reason, length,
+                            "no equilibrium found beyond %.4g of the way from the state before, after %d iterations%s",
+                            (double)way->between[0], (int)rve->work.iterations,
+                            out_of_work ? ": give states in between" : " and the smallest substep"));
   }
   PetscFunctionReturn(0);
 }
@@ -152,40 +204,38 @@ PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state,
                              LamStatus *status, char reason[], size_t length)
 {
   LamLoad start = state->load;
-  PetscReal *from, *saddle, reached = 1.0;
-  PetscInt saddle_negative, saddle_branch;
-  PetscBool converged = PETSC_FALSE, is_saddle;
+  PetscReal *from, *saddle;
+  Way way = {.branch = state->branch};
+  Outcome out;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(rve->length, &from, rve->length, &saddle));
   PetscCall(PetscArraycpy(from, state->y, rve->length));
   LamRotatePositions(rve->ndof, from, start.F, LamRotationAngle(load->F) - LamRotationAngle(start.F));
   *branch = state->branch;
-  PetscCall(Step(rve, from, &start, load, branch, negative, &converged));
-  is_saddle = (PetscBool)(converged && *negative > 0);
-  if (!converged || is_saddle) {
+  PetscCall(Step(rve, from, &start, load, PETSC_TRUE, branch, &out));
+  if (!IsStable(&out)) {
     PetscCall(PetscArraycpy(saddle, rve->y, rve->length));
-    saddle_negative = *negative;
-    saddle_branch = *branch;
-    *branch = state->branch;
-    PetscCall(Substeps(rve, from, &start, load, branch, negative, &reached));
-    converged = (PetscBool)(reached >= 1.0);
-    if (!converged && is_saddle) { /* the unstable state is all there is: give it, and say so */
+    PetscCall(Substeps(rve, from, &start, load, &way));
+    if (way.between[0] >= 1.0) {
+      out = way.end;
+      *branch = way.branch;
+    } else if (out.converged && out.collapsed < 0) { /* the unstable state is all there is: give it, and say so */
+      PetscInt again;
+
       PetscCall(PetscArraycpy(rve->y, saddle, rve->length));
-      PetscCall(LamFactorConsistent(rve, load, negative, &converged));
-      *negative = saddle_negative;
-      *branch = saddle_branch;
+      PetscCall(LamFactorConsistent(rve, load, &again, &out.converged));
     }
   }
   PetscCall(PetscFree2(from, saddle));
-  *status = converged ? (*negative > 0 ? LAM_UNSTABLE : LAM_CONVERGED) : LAM_NOT_CONVERGED;
+  *negative = out.negative;
+  if (!out.converged || out.collapsed >= 0) {
+    PetscCall(EndOfWay(rve, &way, status, reason, length));
+    PetscFunctionReturn(0);
+  }
+  *status = out.negative > 0 ? LAM_UNSTABLE : LAM_CONVERGED;
   if (*status == LAM_UNSTABLE)
     PetscCall(PetscSNPrintf(reason, length, "only a saddle was found: %d negative eigenvalues, lowest %.3g (C1+C2)",
-                            (int)*negative, (double)rve->lowest_eigenvalue));
-  if (*status == LAM_NOT_CONVERGED)
-    PetscCall(PetscSNPrintf(
-        reason, length, "no equilibrium found beyond %.4g of the way from the state before, after %d iterations%s",
-        (double)reached, (int)rve->work.iterations,
-        rve->work.iterations < LAM_ITERATION_BUDGET ? " and the smallest substep" : ": give states in between"));
+                            (int)out.negative, (double)rve->lowest_eigenvalue));
   PetscFunctionReturn(0);
 }

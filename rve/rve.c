@@ -277,6 +277,7 @@ static PetscErrorCode FillFields(LamRVE rve, const LamLoad *load, LamResponse *r
 /* A state in which walls have passed through each other is not an answer. */
 static PetscErrorCode RefuseCollapsedLumen(LamRVE rve, LamResponse *response)
 {
+  const PetscReal unknown[2] = {0.0, 0.0};
   PetscInt cell;
 
   PetscFunctionBeginUser;
@@ -284,7 +285,7 @@ static PetscErrorCode RefuseCollapsedLumen(LamRVE rve, LamResponse *response)
   PetscCall(LamFindCollapsedLumen(rve, rve->y, &cell));
   if (cell < 0) PetscFunctionReturn(0);
   response->status = LAM_NOT_CONVERGED;
-  PetscCall(LamCollapseReason(cell, response->reason, sizeof(response->reason)));
+  PetscCall(LamCollapseReason(cell, unknown, response->reason, sizeof(response->reason)));
   PetscFunctionReturn(0);
 }
 

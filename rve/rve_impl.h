@@ -296,6 +296,8 @@ typedef enum { LAM_NEWTON_CONVERGED, LAM_NEWTON_NEAR_SADDLE, LAM_NEWTON_STALLED 
 #define LAM_NEAR_RATE 1e-3 /* rate of a factor that serves for more than its own iteration */
 PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border, LamNewtonOutcome *outcome);
 PetscErrorCode LamNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome);
+/* The same by patience, from unstable starts; shut: the cell whose lumen it came down to shut, -1: none. */
+PetscErrorCode LamNewtonFlow(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome, PetscInt *shut);
 /* Tolerance of the residual norm: the rounding error of the stiff forces, but at least 1e-11. */
 PetscReal LamNewtonTolerance(LamRVE rve);
 
@@ -332,6 +334,9 @@ LamLoad LamLoadBetween(const LamLoad *a, const LamLoad *b, PetscReal t);
 /* Finds a stable equilibrium at `load` from `state`; leaves it in rve->y with the consistent tangent factored. */
 PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, PetscInt *branch, PetscInt *negative,
                              LamStatus *status, char reason[], size_t length);
+
+/* " between 0.25 and 0.26 of the way"; empty where the second share is not above the first: not known. */
+PetscErrorCode LamBracketText(const PetscReal between[2], char text[], size_t length);
 
 /* ---- contact_step.c ---- */
 #define LAM_CONTACT_PROXIMAL 1e-8 /* shift of every contact step: a cell that nothing holds must not be singular */
@@ -379,7 +384,8 @@ PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState
 /* ---- lumen.c, overlap.c ---- */
 /* The first cell whose inner loop crosses itself or is inside out at positions y, -1: none. */
 PetscErrorCode LamFindCollapsedLumen(LamRVE rve, const PetscReal y[], PetscInt *cell);
-PetscErrorCode LamCollapseReason(PetscInt cell, char reason[], size_t length);
+/* between: shares of the way to the load between which its walls first touch, as LamBracketText. */
+PetscErrorCode LamCollapseReason(PetscInt cell, const PetscReal between[2], char reason[], size_t length);
 /* How deep an outer wall lies inside another cell, apothems, and the two cells; 0 and -1, -1 where none does. */
 PetscErrorCode LamFindOverlap(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscReal *depth,
                               PetscInt pair[2]);

@@ -1,0 +1,325 @@
+/*
+  The map of extremes: solves the states of extremes_case.h, judges each, and writes one line of JSON for each to a
+  file; a run that was interrupted goes on where it ended.
+
+    extremes FILE.jsonl [--first ID] [--count N] [--jobs J] [--no-routes]     N states, by default all pairs of ends
+    extremes FILE.jsonl --ids LIST [...]                                      those of a file of numbers
+    extremes --scene ID                                                       the scene of a state
+    extremes --list [--first ID] [--count N]                                  their quantities
+
+  States are solved by worker processes, so that a crash or an endless run is an entry of the map, too.
+*/
+#include "extremes_judge.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <jansson.h>
+#include <math.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { MAX_JOBS = 64 };
+#define PATIENCE 300.0 /* s of the clock after which a worker is ended */
+
+typedef struct {
+  pid_t process;
+  int questions, answers; /* pipes */
+  PetscInt id;            /* being solved; -1: idle */
+  double since;
+} Worker;
+
+typedef struct {
+  const char *path;
+  PetscInt first, end, jobs;
+  PetscBool routes;
+  const char *list; /* file of numbers; NULL: all */
+  char *done;       /* [end - first] */
+  int file;
+} Run;
+
+static double Clock(void)
+{
+  struct timespec t;
+
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static json_t *Real(PetscReal value)
+{
+  return isfinite(value) ? json_real(value) : json_null();
+}
+
+static json_t *Response(const LamResponse *r)
+{
+  json_t *object = json_object(), *P = json_array();
+
+  for (int i = 0; i < 9; i++) json_array_append_new(P, Real(r->P[i]));
+  json_object_set_new(object, "status", json_string(LamStatusNames[r->status]));
+  json_object_set_new(object, "reason", json_string(r->reason));
+  json_object_set_new(object, "P", P);
+  json_object_set_new(object, "energy", Real(r->energy));
+  json_object_set_new(object, "lumen", Real(r->lumen_fraction));
+  json_object_set_new(object, "estimate", Real(r->error_estimate));
+  json_object_set_new(object, "branch", json_integer(r->branch));
+  json_object_set_new(object, "floating", json_integer(r->floating_cells));
+  json_object_set_new(object, "zero_modes", json_integer(r->zero_modes));
+  json_object_set_new(object, "unknowns", json_integer(r->unknowns));
+  json_object_set_new(object, "factorisations", json_integer(r->factorisations));
+  return object;
+}
+
+static json_t *Line(const ExtremesCase *c, const ExtremesResult *r, PetscBool routes)
+{
+  json_t *object = json_object(), *axes = json_object();
+
+  json_object_set_new(object, "id", json_integer(c->id));
+  json_object_set_new(object, "verdict", json_string(ExtremesVerdictNames[r->verdict]));
+  json_object_set_new(object, "contact", json_boolean(c->contact));
+  if (c->pair[0] >= 0)
+    json_object_set_new(object, "pair",
+                        json_pack("[s, s]", ExtremesAxisNames[c->pair[0]], ExtremesAxisNames[c->pair[1]]));
+  for (int k = 0; k < EXTREMES_AXIS_COUNT; k++) json_object_set_new(axes, ExtremesAxisNames[k], Real(c->value[k]));
+  json_object_set_new(object, "axes", axes);
+  json_object_set_new(object, "seconds", Real(r->seconds));
+  json_object_set_new(object, "state", Response(&r->state));
+  if (routes && r->state.status == LAM_CONVERGED) {
+    json_object_set_new(object, "path_error", Real(r->path_error));
+    json_object_set_new(object, "other_error", Real(r->other_error));
+    json_object_set_new(object, "mesh_error", Real(r->mesh_error));
+    json_object_set_new(object, "path", Response(&r->path));
+    if (c->contact) json_object_set_new(object, "other", Response(&r->other));
+    if (r->finer.unknowns) json_object_set_new(object, "finer", Response(&r->finer));
+  }
+  return object;
+}
+
+/* One write to a file opened for appending: lines of several workers do not mix. */
+static void Append(int file, json_t *object)
+{
+  char *text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(12));
+  const size_t length = strlen(text);
+
+  text[length] = '\n';
+  if (write(file, text, length + 1) != (ssize_t)length + 1) fprintf(stderr, "extremes: %s\n", strerror(errno));
+  free(text);
+  json_decref(object);
+}
+
+/* ---- a worker ---- */
+
+static PetscErrorCode Work(const Run *run, int questions, int answers)
+{
+  PetscInt id;
+
+  PetscFunctionBeginUser;
+  while (read(questions, &id, sizeof(id)) == sizeof(id)) {
+    ExtremesCase c;
+    ExtremesResult result;
+
+    ExtremesCaseMake(id, &c);
+    PetscCall(ExtremesJudge(&c, run->routes, &result));
+    Append(run->file, Line(&c, &result, run->routes));
+    if (write(answers, &id, sizeof(id)) != sizeof(id)) break;
+  }
+  PetscFunctionReturn(0);
+}
+
+static void Start(const Run *run, Worker *worker)
+{
+  int questions[2], answers[2];
+
+  if (pipe(questions) || pipe(answers)) exit(1);
+  worker->process = fork();
+  if (worker->process == 0) {
+    PetscErrorCode ierr;
+
+    close(questions[1]);
+    close(answers[0]);
+    ierr = PetscInitialize(NULL, NULL, NULL, NULL);
+    if (!ierr) ierr = Work(run, questions[0], answers[1]);
+    _exit(ierr ? 1 : 0);
+  }
+  close(questions[0]);
+  close(answers[1]);
+  worker->questions = questions[1];
+  worker->answers = answers[0];
+  worker->id = -1;
+}
+
+static void End(Worker *worker)
+{
+  close(worker->questions);
+  close(worker->answers);
+  waitpid(worker->process, NULL, 0);
+}
+
+/* ---- the run ---- */
+
+static void ReadDone(Run *run)
+{
+  json_error_t error;
+  FILE *file = fopen(run->path, "r");
+  char *line = NULL;
+  size_t size = 0;
+
+  while (file && getline(&line, &size, file) > 0) {
+    json_t *object = json_loads(line, 0, &error);
+    const PetscInt id = (PetscInt)json_integer_value(json_object_get(object, "id"));
+
+    if (object && id >= run->first && id < run->end) run->done[id - run->first] = 1;
+    json_decref(object);
+  }
+  free(line);
+  if (file) fclose(file);
+}
+
+/* All but those of the list count as done. */
+static void ReadList(Run *run)
+{
+  FILE *file = fopen(run->list, "r");
+  int id;
+
+  memset(run->done, 1, (size_t)(run->end - run->first));
+  while (file && fscanf(file, "%d", &id) == 1)
+    if (id >= run->first && id < run->end) run->done[id - run->first] = 0;
+  if (file) fclose(file);
+}
+
+static PetscInt Next(Run *run)
+{
+  for (PetscInt id = run->first; id < run->end; id++)
+    if (!run->done[id - run->first]) {
+      run->done[id - run->first] = 1;
+      return id;
+    }
+  return -1;
+}
+
+/* A worker that died or does not come back. */
+static void Bury(Run *run, Worker *worker, PetscBool late)
+{
+  ExtremesCase c;
+  ExtremesResult result = {.verdict = late ? EXTREMES_SLOW : EXTREMES_CRASH, .seconds = Clock() - worker->since};
+
+  if (late) kill(worker->process, SIGKILL);
+  ExtremesCaseMake(worker->id, &c);
+  PetscCallAbort(PETSC_COMM_SELF, LamResponseInit(&(LamLoad){0}, &result.state));
+  Append(run->file, Line(&c, &result, PETSC_FALSE));
+  fprintf(stderr, "\nextremes: state %d: %s\n", (int)worker->id, ExtremesVerdictNames[result.verdict]);
+  End(worker);
+  Start(run, worker);
+}
+
+/* Gives every idle worker a state; the number of those at work. */
+static PetscInt Deal(Run *run, Worker workers[])
+{
+  PetscInt busy = 0;
+
+  for (PetscInt w = 0; w < run->jobs; w++) {
+    if (workers[w].id < 0) {
+      workers[w].id = Next(run);
+      workers[w].since = Clock();
+      if (workers[w].id >= 0 && write(workers[w].questions, &workers[w].id, sizeof(PetscInt)) < 0) exit(1);
+    }
+    busy += workers[w].id >= 0;
+  }
+  return busy;
+}
+
+static void Supervise(Run *run)
+{
+  Worker workers[MAX_JOBS];
+  PetscInt solved = 0;
+  struct pollfd answers[MAX_JOBS];
+
+  for (PetscInt w = 0; w < run->jobs; w++) Start(run, &workers[w]);
+  while (Deal(run, workers)) {
+    for (PetscInt w = 0; w < run->jobs; w++) answers[w] = (struct pollfd){workers[w].answers, POLLIN, 0};
+    poll(answers, (nfds_t)run->jobs, 1000);
+    for (PetscInt w = 0; w < run->jobs; w++) {
+      PetscInt id;
+
+      if (workers[w].id < 0) continue;
+      if (answers[w].revents && read(workers[w].answers, &id, sizeof(id)) != sizeof(id))
+        Bury(run, &workers[w], PETSC_FALSE);
+      else if (answers[w].revents)
+        workers[w].id = -1, solved++;
+      else if (Clock() - workers[w].since > PATIENCE)
+        Bury(run, &workers[w], PETSC_TRUE);
+    }
+    fprintf(stderr, "\r%d", (int)solved);
+  }
+  for (PetscInt w = 0; w < run->jobs; w++) End(&workers[w]);
+  fprintf(stderr, "\n");
+}
+
+static int PrintScene(PetscInt id)
+{
+  ExtremesCase c;
+  char text[EXTREMES_TEXT];
+
+  ExtremesCaseMake(id, &c);
+  ExtremesSceneWrite(&c, &(ExtremesRoute){.finer = 1, .ramp = 1}, sizeof(text), text);
+  fputs(text, stdout);
+  return 0;
+}
+
+static int PrintList(const Run *run)
+{
+  for (PetscInt id = run->first; id < run->end; id++) {
+    ExtremesCase c;
+
+    ExtremesCaseMake(id, &c);
+    printf("%d %d", (int)id, (int)c.contact);
+    for (PetscInt k = 0; k < EXTREMES_AXIS_COUNT; k++) printf(" %.4g", (double)c.value[k]);
+    putchar('\n');
+  }
+  return 0;
+}
+
+int main(int argc, char **argv)
+{
+  Run run = {.first = 0, .end = ExtremesPairCount(), .jobs = 1, .routes = PETSC_TRUE};
+  PetscInt count = -1;
+  PetscBool list = PETSC_FALSE;
+
+  for (int k = 1; k < argc; k++) {
+    const char *value = k + 1 < argc ? argv[k + 1] : "0";
+
+    if (!strcmp(argv[k], "--scene")) return PrintScene(atoi(value));
+    if (!strcmp(argv[k], "--count"))
+      count = atoi(value), k++;
+    else if (!strcmp(argv[k], "--first"))
+      run.first = atoi(value), k++;
+    else if (!strcmp(argv[k], "--jobs"))
+      run.jobs = PetscMin(MAX_JOBS, PetscMax(1, atoi(value))), k++;
+    else if (!strcmp(argv[k], "--ids"))
+      run.list = value, run.end = 1000000, k++;
+    else if (!strcmp(argv[k], "--no-routes"))
+      run.routes = PETSC_FALSE;
+    else if (!strcmp(argv[k], "--list"))
+      list = PETSC_TRUE;
+    else
+      run.path = argv[k];
+  }
+  if (count >= 0) run.end = run.first + count;
+  if (list) return PrintList(&run);
+  if (!run.path) {
+    fprintf(stderr, "extremes FILE.jsonl [--count N] [--first ID] [--jobs J] [--no-routes] | --scene ID\n");
+    return 1;
+  }
+  run.done = calloc((size_t)(run.end - run.first), 1);
+  if (run.list) ReadList(&run);
+  ReadDone(&run);
+  run.file = open(run.path, O_WRONLY | O_CREAT | O_APPEND, 0644);
+  signal(SIGPIPE, SIG_IGN);
+  Supervise(&run);
+  free(run.done);
+  return 0;
+}
