@@ -24,7 +24,8 @@ typedef struct {
 typedef struct {
   FamilySums family[3];
   PetscReal max_gap, min_gap, max_penetration;
-  PetscReal gap_at;       /* where max_gap is, in edges of its face */
+  PetscReal named_gap;    /* of the place that is named for max_gap */
+  PetscReal gap_at;       /* which is, in edges of its face */
   PetscReal gap_place[3]; /* the same as cell, face, share of the face */
   LamLargestMean traction;
   PetscReal fabric[3], jumps[3];
@@ -51,8 +52,9 @@ static void SampleSegment(const LamMortarChains *chains, PetscReal from, PetscRe
     PetscReal nearest[2], X[2], Xs[2];
     const PetscReal gap = LamMortarGap(chains, s, master, nearest) - chains->clearance;
 
-    if (gap > sums->max_gap) {
-      sums->max_gap = gap;
+    sums->max_gap = PetscMax(sums->max_gap, gap);
+    if (LamExceeds(gap, sums->named_gap)) {
+      sums->named_gap = gap;
       sums->gap_at = s;
     }
     /* the gap runs on over the edge's ends, and is a little smaller there than the distance */
@@ -148,7 +150,7 @@ static PetscErrorCode AddFace(LamRVE rve, const LamLoad *load, PetscInt f, Sums 
   const PetscReal thickness = LamFaceThickness(rve, contact->faces[f].cell, contact->faces[f].other);
   FamilySums *family = &sums->family[contact->faces[f].face];
   const LamMortarSegments *segments = &contact->segments;
-  const PetscReal max_gap = sums->max_gap;
+  const PetscReal named_gap = sums->named_gap;
   PetscReal(*x)[2], *force, *length, J0 = 0.0;
   LamMortarChains chains;
 
@@ -158,7 +160,7 @@ static PetscErrorCode AddFace(LamRVE rve, const LamLoad *load, PetscInt f, Sums 
   LamMortarFindSegments(&chains, &contact->segments);
   for (PetscInt k = 0; k + 1 < segments->count; ++k)
     SampleSegment(&chains, segments->s[k], segments->s[k + 1], segments->master[k], family, sums);
-  if (sums->max_gap > max_gap) {
+  if (sums->named_gap > named_gap) {
     sums->gap_place[0] = (PetscReal)contact->faces[f].cell;
     sums->gap_place[1] = (PetscReal)contact->faces[f].face;
     sums->gap_place[2] = LamMeshShare(&rve->mesh, sums->gap_at);
@@ -305,7 +307,8 @@ static PetscReal MinGap(PetscReal closed, const Sums *sums)
 
 PetscErrorCode LamContactIndicators(LamRVE rve, const LamLoad *load, LamResponse *response)
 {
-  Sums sums = {.max_gap = -PETSC_MAX_REAL, .min_gap = PETSC_MAX_REAL, .traction = LAM_NO_MEAN};
+  Sums sums = {
+      .max_gap = -PETSC_MAX_REAL, .named_gap = -PETSC_MAX_REAL, .min_gap = PETSC_MAX_REAL, .traction = LAM_NO_MEAN};
   PetscReal length = 0.0, closed = 0.0, open = 0.0, gap = 0.0;
 
   PetscFunctionBeginUser;

@@ -400,14 +400,20 @@ void LamCopyActive(LamRVE rve, const PetscReal column[], PetscReal copy[]);
 /* Fills energy, P and lumen fraction from rve->y and, where they are wanted, tangent and couplings with the factored
    consistent tangent. */
 PetscErrorCode LamHomogenise(LamRVE rve, const LamLoad *load, LamResponse *response);
+/* Whether a value is larger than that of the place named so far by more than rounding (C1 + C2 or apothems): of places
+   that symmetry makes alike the first one is named, whatever the last digits. Anything exceeds -PETSC_MAX_REAL. */
+static inline PetscBool LamExceeds(PetscReal value, PetscReal named)
+{
+  return (PetscBool)(value > named + 1e-8 * PetscAbsReal(named) + 1e-10);
+}
 /* The largest mean over a stretch of a face that is as long as the wall of its cell is thick, and where it is. */
 typedef struct {
-  PetscReal value;
+  PetscReal value, named; /* named: at the place */
   PetscReal place[3]; /* cell, face, middle of the stretch as a share of the face, counter-clockwise around the cell */
 } LamLargestMean;
 #define LAM_NO_MEAN                                                                                                    \
   {                                                                                                                    \
-    .value = -PETSC_MAX_REAL, .place = { NAN, NAN, NAN }                                                               \
+    .value = -PETSC_MAX_REAL, .named = -PETSC_MAX_REAL, .place = { NAN, NAN, NAN }                                     \
   }
 /* A patch of one cell has no face between cells: its largest mean is unknown. */
 static inline PetscReal LamLargestMeanValue(const LamLargestMean *largest)

@@ -181,7 +181,7 @@ static PetscReal LargestWindowMean(const LamMesh *mesh, PetscInt count, PetscRea
                                    const PetscReal length[], PetscReal *middle)
 {
   const PetscReal samples = (PetscReal)count / (PetscReal)mesh->along;
-  PetscReal largest = -PETSC_MAX_REAL;
+  PetscReal largest = -PETSC_MAX_REAL, named = -PETSC_MAX_REAL;
 
   *middle = 0.5;
   if (window >= 1.0) return integral[count] / length[count];
@@ -193,8 +193,9 @@ static PetscReal LargestWindowMean(const LamMesh *mesh, PetscInt count, PetscRea
       if (other < 0.0 || other > 1.0) continue;
       at = samples * LamMeshPlace(mesh, other);
       mean = (RunningAt(count, integral, at) - integral[k]) / (RunningAt(count, length, at) - length[k]);
-      if (mean <= largest) continue;
-      largest = mean;
+      largest = PetscMax(largest, mean);
+      if (!LamExceeds(mean, named)) continue;
+      named = mean;
       *middle = 0.5 * (share + other);
     }
   return largest;
@@ -207,10 +208,12 @@ void LamTakeLargestMean(const LamMesh *mesh, PetscReal thickness, PetscInt cell,
   const PetscReal window = thickness / (2.0 / PetscSqrtReal(3.0));
   const PetscReal mean = LargestWindowMean(mesh, count, window, integral, length, &middle);
 
-  /* faces that symmetry makes alike differ by rounding: the first of them is named; nothing compares with no mean yet
-   */
-  if (mean <= largest->value + 1e-10 * PetscAbsReal(largest->value)) return;
-  *largest = (LamLargestMean){mean, {(PetscReal)cell, (PetscReal)face, middle}};
+  largest->value = PetscMax(largest->value, mean);
+  if (!LamExceeds(mean, largest->named)) return;
+  largest->named = mean;
+  largest->place[0] = (PetscReal)cell;
+  largest->place[1] = (PetscReal)face;
+  largest->place[2] = middle;
 }
 
 PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, LamResponse *response)

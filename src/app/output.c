@@ -109,11 +109,11 @@ static PetscErrorCode PrintHeader(LamInterfaceLawType interface, const char tail
 
   PetscFunctionBeginUser;
   if (!LamAppIsRoot()) PetscFunctionReturn(0);
-  printf("%5s %7s %7s %7s %7s %7s  %-14s %10s %10s %10s %10s %6s %10s", "state", "F11", "F12", "F21", "F22", "turgor",
+  printf("%5s %7s %7s %7s %7s %9s  %-14s %10s %10s %10s %10s %6s %10s", "state", "F11", "F12", "F21", "F22", "turgor",
          "status", "P11", "P12", "P21", "P22", "lumen", "traction");
   if (contact) printf(" %9s %9s %8s %8s %9s %8s", "cohesion", "opening", "debonded", "open", "largest", "floating");
   printf(" %s\n", tail);
-  printf("%5s %7s %7s %7s %7s %7s  %-14s %10s %10s %10s %10s %6s %10s", "", "", "", "", "", "MPa", "", "MPa", "MPa",
+  printf("%5s %7s %7s %7s %7s %9s  %-14s %10s %10s %10s %10s %6s %10s", "", "", "", "", "", "MPa", "", "MPa", "MPa",
          "MPa", "MPa", "of V0", "MPa");
   if (contact) printf(" %9s %9s %8s %8s %9s %8s", "MPa", "of V0", "share", "share", "gap/a", "cells");
   printf(" %s\n", tail_units);
@@ -193,7 +193,7 @@ PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales 
   if (!LamAppIsRoot()) PetscFunctionReturn(0);
   printf("%5" PetscInt_FMT, state);
   for (int k = 0; k < 4; k++) PrintColumn(7, 4, 'f', F[in_plane[k]]);
-  printf(" %7.4g  %-14s", (double)(response->load.turgor * MPa), LamStatusNames[response->status]);
+  printf(" %9.4g  %-14s", (double)(response->load.turgor * MPa), LamStatusNames[response->status]);
   for (int k = 0; k < 4; k++) PrintColumn(10, 3, 'e', response->P[in_plane[k]] * MPa);
   PrintColumn(6, 4, 'f', response->lumen_fraction);
   PrintColumn(10, 3, 'e', response->max_traction * MPa);
