@@ -34,16 +34,17 @@ static PetscErrorCode ReadScales(const char path[], hid_t file, LamHeader *h)
 {
   const struct {
     const char *name;
-    PetscReal *value, least;
-  } rows[] = {{"length_unit_m", &h->scales.length, PETSC_SMALL},
-              {"stress_unit_Pa", &h->scales.stress, PETSC_SMALL},
-              {"macro_length_unit_m", &h->scales.macro_length, 0},
-              {"accuracy", &h->accuracy, 0}};
+    PetscReal *value;
+    PetscBool is_unit; /* positive, however small */
+  } rows[] = {{"length_unit_m", &h->scales.length, PETSC_TRUE},
+              {"stress_unit_Pa", &h->scales.stress, PETSC_TRUE},
+              {"macro_length_unit_m", &h->scales.macro_length, PETSC_FALSE},
+              {"accuracy", &h->accuracy, PETSC_FALSE}};
 
   PetscFunctionBeginUser;
   for (size_t i = 0; i < sizeof(rows) / sizeof(rows[0]); i++) {
     PetscCall(LamAttributeReadNumber(path, file, rows[i].name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, rows[i].value));
-    PetscCheck(isfinite(*rows[i].value) && *rows[i].value >= 0 && (rows[i].least == 0 || *rows[i].value > 0),
+    PetscCheck(isfinite(*rows[i].value) && *rows[i].value >= 0 && (!rows[i].is_unit || *rows[i].value > 0),
                PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: attribute \"%s\" is %g; the file is damaged", path,
                rows[i].name, (double)*rows[i].value);
   }

@@ -119,22 +119,23 @@ static PetscBool FindNumber(const Front *front, const char **from, const char na
   return PETSC_FALSE;
 }
 
-static PetscBool FindReal(const Front *front, const char name[], PetscReal least, PetscReal *value)
+/* Units are positive, however small: the file's may be of picometres or of micropascals. */
+static PetscBool FindReal(const Front *front, const char name[], PetscBool is_unit, PetscReal *value)
 {
   const char *from = NULL;
 
   return (PetscBool)(FindNumber(front, &from, name, sizeof(real_type), real_type, sizeof(*value), value) &&
-                     isfinite(*value) && *value >= least);
+                     isfinite(*value) && (is_unit ? *value > 0 : *value >= 0));
 }
 
 static void FindNumbers(const Front *front, LamRemains *r)
 {
   const char *from = NULL;
 
-  r->has_scales = (PetscBool)(FindReal(front, "length_unit_m", PETSC_SMALL, &r->scales.length) &&
-                              FindReal(front, "stress_unit_Pa", PETSC_SMALL, &r->scales.stress) &&
-                              FindReal(front, "macro_length_unit_m", 0, &r->scales.macro_length) &&
-                              FindReal(front, "accuracy", 0, &r->accuracy));
+  r->has_scales = (PetscBool)(FindReal(front, "length_unit_m", PETSC_TRUE, &r->scales.length) &&
+                              FindReal(front, "stress_unit_Pa", PETSC_TRUE, &r->scales.stress) &&
+                              FindReal(front, "macro_length_unit_m", PETSC_FALSE, &r->scales.macro_length) &&
+                              FindReal(front, "accuracy", PETSC_FALSE, &r->accuracy));
   if (!FindNumber(front, &from, "committed", sizeof(int_type), int_type, sizeof(r->committed), &r->committed))
     r->committed = -1;
 }

@@ -73,6 +73,8 @@ void LamCanvasMarker(LamCanvas canvas, double x, double y, double size, LamMarke
 LamColour LamColourOfLine(PetscInt index);
 /* "-0.0125" with four digits and a true minus sign; `text` has at least 32 bytes. */
 void LamFormatNumber(PetscReal value, char text[32]);
+/* The same of a number of order one, such as a component of F: what rounding leaves of zero is zero. */
+void LamFormatRatio(PetscReal value, char text[32]);
 
 /* ---- plot_axes.c ---- */
 #define LAM_TEXT_SIZE 7.5  /* labels */

@@ -329,7 +329,6 @@ void LamFormatNumber(PetscReal value, char text[32])
   char plain[24];
   size_t n = 0;
 
-  if (PetscAbsReal(value) < 5e-13) value = 0; /* rounding errors of loads are no news */
   snprintf(plain, sizeof plain, "%.4g", (double)value);
   for (const char *p = plain; *p && n < 28; p++) {
     if (*p == '-') {
@@ -339,4 +338,9 @@ void LamFormatNumber(PetscReal value, char text[32])
       text[n++] = *p;
   }
   text[n] = 0;
+}
+
+void LamFormatRatio(PetscReal value, char text[32])
+{
+  LamFormatNumber(PetscAbsReal(value) < 5e-13 ? 0 : value, text);
 }

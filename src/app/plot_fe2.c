@@ -236,7 +236,7 @@ static PetscErrorCode DrawTitle(LamCanvas canvas, double x, const FE2Picture *p)
   char title[128], factor[32];
 
   PetscFunctionBeginUser;
-  LamFormatNumber(p->reactions.load[p->row], factor);
+  LamFormatRatio(p->reactions.load[p->row], factor);
   PetscCall(PetscSNPrintf(title, sizeof title, "Step %" PetscInt_FMT "%s:  load factor %s,  element means", p->step,
                           p->step ? "" : " (inflated)", factor));
   LamCanvasSetColour(canvas, Ink);

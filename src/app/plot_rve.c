@@ -80,7 +80,7 @@ static PetscErrorCode Title(const RVEPicture *p, size_t size, char title[])
   PetscCall(PetscSNPrintf(title, size, "State %" PetscInt64_FMT ":  $F$ = [", p->keys[p->index]));
   for (int i = 0; i < n; i++) {
     for (int j = 0; j < n; j++) {
-      LamFormatNumber(F[3 * i + j], number);
+      LamFormatRatio(F[3 * i + j], number);
       PetscCall(PetscSNPrintf(item, sizeof item, "%s%s", j ? ", " : i ? "; " : "", number));
       PetscCall(PetscStrlcat(title, item, size));
     }

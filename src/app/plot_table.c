@@ -286,7 +286,8 @@ static void LegendOfNodes(LamCanvas canvas, Pen *pen, const LamSlice *s, LamSlic
 {
   static const char *const labels[LAM_SLICE_NODE_KINDS] = {"node", "node on another branch", "node without an answer"};
   const PetscBool elsewhere =
-      (PetscBool)(s->interface == LAM_INTERFACE_CONTACT && fabs(s->turgor + s->cohesion - s->node_suction) > 1e-9);
+      (PetscBool)(s->interface == LAM_INTERFACE_CONTACT &&
+                  fabs(s->turgor + s->cohesion - s->node_suction) > 1e-9 * fabs(s->node_suction));
   PetscBool occurs[MOST_LEVELS];
   const PetscInt found = FindLevels(s, kind, occurs);
   char label[128], number[32], where[64] = "";
@@ -396,8 +397,8 @@ static PetscErrorCode PreparePage(LamCanvas canvas, const LamSlice *s, Page *pag
     if (k == LAM_SLICE_ERROR) page->range[k] = ErrorRange(s);
     page->bar = PetscMax(page->bar, LamColourBarWidth(canvas, &page->range[k]));
   }
-  LamFormatNumber(s->angle * 180 / PETSC_PI, angle);
-  LamFormatNumber(s->angle * 180 / PETSC_PI + 90, across);
+  LamFormatRatio(s->angle * 180 / PETSC_PI, angle);
+  LamFormatRatio(s->angle * 180 / PETSC_PI + 90, across);
   snprintf(page->first, sizeof page->first, "log. strain $e$_{1}, %s° to face normal", angle);
   snprintf(page->second, sizeof page->second, "log. strain $e$_{2}, %s° to face normal", across);
   PetscFunctionReturn(0);
