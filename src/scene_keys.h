@@ -130,6 +130,9 @@ PetscErrorCode LamSceneResolvePath(const LamDocument *document, const LamNode *n
 /* si / scale; refused where the ratio is not finite. node may be NULL (a default: always finite). */
 PetscErrorCode LamSceneScale(const LamDocument *document, const LamNode *node, PetscReal si, PetscReal scale,
                              PetscReal *number);
+/* Refuses an apothem, C1 + C2 or length of a body, in SI, that is beyond what doubles hold the squares and products of.
+ */
+PetscErrorCode LamSceneCheckScale(const LamDocument *document, const LamNode *node, PetscReal si);
 /* A turgor of the node's own (not the scene's) contradicts an explicit mode: none. */
 PetscErrorCode LamSceneCheckTurgor(const LamDocument *document, const LamNode *node, PetscReal turgor);
 

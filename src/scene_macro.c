@@ -75,6 +75,7 @@ static PetscErrorCode BuildMesh(const LamDocument *document, LamScene *scene)
     PetscCall(LamSceneResolvePath(document, node, spec->gmsh));
     PetscCall(LamSceneGet(document->root, "macro.mesh.unit", NULL, &size));
     scene->scales.macro_length = size.number[0];
+    PetscCall(LamSceneCheckScale(document, LamNodeFindPath(mesh, "unit"), size.number[0]));
     PetscFunctionReturn(0);
   }
   if (!elements.count)
@@ -83,6 +84,7 @@ static PetscErrorCode BuildMesh(const LamDocument *document, LamScene *scene)
   PetscCall(
       LamSceneGet(document->root, spec->source == LAM_MESH_BOX ? "macro.mesh.box" : "macro.mesh.disc", &node, &size));
   scene->scales.macro_length = size.number[0];
+  PetscCall(LamSceneCheckScale(document, node, size.number[0]));
   for (PetscInt i = 0; i < size.count; i++)
     PetscCall(LamSceneScale(document, node, size.number[i], scene->scales.macro_length, &spec->box[i]));
   PetscCall(LamSceneGet(document->root, "macro.mesh.part", NULL, &other));

@@ -31,6 +31,7 @@ static PetscErrorCode BuildCell(const LamDocument *document, const LamNode *entr
   PetscCall(GetLength(entry, ITEM ".cell.apothem", &apothem_node, &r->scales.length));
   PetscCall(GetLength(entry, ITEM ".cell.wall_thickness", &thickness_node, &thickness));
   node = thickness_node ? thickness_node : apothem_node;
+  if (apothem_node) PetscCall(LamSceneCheckScale(document, apothem_node, r->scales.length));
   if (node && thickness >= r->scales.length)
     PetscCall(LamSceneFail(document, node, "the wall, %g um, fills the cell; write a thickness less than the apothem",
                            (double)thickness * 1e6));
@@ -53,6 +54,7 @@ static PetscErrorCode BuildWall(const LamDocument *document, const LamNode *entr
   if (!node) PetscFunctionReturn(0);
   PetscCall(LamSceneReadWall(document, entry, ITEM ".wall", scene->scales.stress, &scene->micro.wall, wall));
   unit = wall->C1 + wall->C2;
+  PetscCall(LamSceneCheckScale(document, node, unit * scene->scales.stress));
   wall->C1 /= unit;
   wall->C2 /= unit;
   wall->C4 /= unit;

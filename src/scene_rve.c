@@ -4,6 +4,9 @@
 #include "scene_keys.h"
 #include <math.h>
 
+/* SI: within these nothing that is told over- or underflows, such as work, a stress times an area. */
+#define LARGEST_SCALE 1e100
+
 /* Ratios to the apothem and to C1 + C2 beyond which double precision holds nothing of the walls. */
 #define LARGEST_RATIO 1e9
 
@@ -15,6 +18,15 @@ PetscErrorCode LamSceneScale(const LamDocument *document, const LamNode *node, P
   if (node && !(fabs(*number) <= LARGEST_RATIO)) {
     PetscCall(LamSceneFail(document, node, "is beyond all measure against the cell's apothem or C1 + C2; check units"));
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSceneCheckScale(const LamDocument *document, const LamNode *node, PetscReal si)
+{
+  PetscFunctionBeginUser;
+  if (!(si >= 1.0 / LARGEST_SCALE && si <= LARGEST_SCALE))
+    PetscCall(LamSceneFail(document, node, "is %g in SI units, beyond %g to %g, all that is reckoned with; check units",
+                           (double)si, 1.0 / LARGEST_SCALE, LARGEST_SCALE));
   PetscFunctionReturn(0);
 }
 
@@ -49,6 +61,7 @@ static PetscErrorCode BuildCell(const LamDocument *document, LamScene *scene)
 
   PetscFunctionBeginUser;
   PetscCall(GetReal(document, "rve.cell.apothem", &node, &scene->scales.length));
+  PetscCall(LamSceneCheckScale(document, node, scene->scales.length));
   PetscCall(GetReal(document, "rve.cell.wall_thickness", &node, &thickness));
   if (thickness >= scene->scales.length) {
     PetscCall(LamSceneFail(document, node, "the wall fills the cell; write a thickness less than the apothem"));
@@ -145,12 +158,14 @@ PetscErrorCode LamSceneReadWall(const LamDocument *document, const LamNode *base
 /* The wall of the tissue; its C1 + C2 is the unit of stress. */
 static PetscErrorCode BuildWall(const LamDocument *document, LamScene *scene)
 {
+  const LamNode *node;
   PetscReal C1, C2;
 
   PetscFunctionBeginUser;
-  PetscCall(GetReal(document, "rve.wall.C1", NULL, &C1));
+  PetscCall(GetReal(document, "rve.wall.C1", &node, &C1));
   PetscCall(GetReal(document, "rve.wall.C2", NULL, &C2));
   scene->scales.stress = C1 + C2;
+  PetscCall(LamSceneCheckScale(document, node, C1 + C2));
   PetscCall(LamSceneReadWall(document, document->root, "rve.wall", C1 + C2, NULL, &scene->micro.wall));
   PetscFunctionReturn(0);
 }
