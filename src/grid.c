@@ -9,6 +9,7 @@
 /* Root cells: with fibres ten times as stiff as the matrix they alone give 0.2 % of P at the 99th percentile (bonded),
    and some percent in contact; docs/verification.md. */
 #define BONDED_STEP 0.135
+#define TURGOR_REACH 0.1 /* of the softest wall's bulk modulus: the second derivatives err by 1e-4 of P there */
 #define CONTACT_STEP 0.08
 #define TAU_STEP 0.75
 #define SUCTION_SCALE (1.0 / 32) /* of the largest suction */
@@ -205,6 +206,19 @@ static PetscErrorCode MakeFreeKeys(LamGrid g)
   PetscFunctionReturn(0);
 }
 
+/* What of the grid follows from the tissue alone. */
+static void SetTissue(const LamMicrostructure *micro, LamGrid g)
+{
+  PetscReal softest = micro->wall.bulk_modulus;
+
+  for (PetscInt c = 0; micro->cell && c < micro->cells[0] * micro->cells[1]; c++)
+    softest = PetscMin(softest, micro->cell[c].wall.bulk_modulus);
+  g->contact = (PetscBool)(micro->interface == LAM_INTERFACE_CONTACT);
+  g->symmetric = IsSymmetric(micro);
+  g->axes = LamLatticeAxesOf(micro->orientation);
+  g->turgor_reach = TURGOR_REACH * softest;
+}
+
 PetscErrorCode LamGridCreate(const LamScene *scene, LamResponder *solver, LamGrid *grid)
 {
   const LamMicrostructure *micro = &scene->micro;
@@ -219,9 +233,7 @@ PetscErrorCode LamGridCreate(const LamScene *scene, LamResponder *solver, LamGri
       scene->path);
   PetscCall(PetscNew(&g));
   *grid = g;
-  g->contact = (PetscBool)(micro->interface == LAM_INTERFACE_CONTACT);
-  g->symmetric = IsSymmetric(micro);
-  g->axes = LamLatticeAxesOf(micro->orientation);
+  SetTissue(micro, g);
   LayOutStrains(scene, box, g);
   if (g->contact) PetscCall(LayOutSuction(scene, box, solver, g));
   PetscCall(MakeFreeKeys(g));
@@ -349,9 +361,7 @@ PetscErrorCode LamGridFromText(const char path[], const LamMicrostructure *micro
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&g));
-  g->contact = (PetscBool)(micro->interface == LAM_INTERFACE_CONTACT);
-  g->symmetric = IsSymmetric(micro);
-  g->axes = LamLatticeAxesOf(micro->orientation);
+  SetTissue(micro, g);
   ierr = ReadText(path, object, g);
   json_decref(object);
   if (ierr) (void)LamGridDestroy(&g);

@@ -21,6 +21,7 @@ struct LamGrid_s {
   LamLatticeAxes axes;
   PetscReal origin, step; /* step: edge of a root cell */
   PetscReal turgor;       /* of bonded nodes */
+  PetscReal turgor_reach; /* how far turgor may be from that of the nodes: their derivatives give the change */
   PetscReal cohesion;     /* of contact nodes; their turgor is s - cohesion */
   PetscReal suction_scale, tau_min, tau_step;
   PetscInt tau_cells; /* root intervals along tau; 0: bonded */

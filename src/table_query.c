@@ -77,6 +77,16 @@ static PetscBool PlaceSuction(LamTable table, const LamLoad *load, Place *place,
   LamTablePoint *point = &place->point;
 
   point->step = grid->contact ? grid->cohesion - load->cohesion : load->turgor - grid->turgor;
+  if (!(fabs(point->step) <= grid->turgor_reach)) {
+    r->status = LAM_OUT_OF_REACH;
+    snprintf(
+        r->reason, sizeof(r->reason),
+        "turgor is %.4g, that of the database's nodes around %.4g (C1+C2): so different it changes the volume of the "
+        "walls; at most %.4g apart",
+        (double)load->turgor, (double)(grid->contact ? load->turgor + load->cohesion - grid->cohesion : grid->turgor),
+        (double)grid->turgor_reach);
+    return PETSC_FALSE;
+  }
   if (!grid->contact) return PETSC_TRUE;
   point->s = load->turgor + load->cohesion;
   point->tau = LamGridTau(grid, point->s);
