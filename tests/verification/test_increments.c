@@ -1,0 +1,83 @@
+/* States that follow each other by increments of 1e-12 to 1e-3, and steps that are too large. */
+#include "rve_fixture.h"
+#include "assert_near.h"
+#include "figures_increments.h"
+
+#define ROUNDING 2e-11 /* C1 + C2: of P, largest of the states here; measured 1.2e-11 */
+
+static const double increments[] = {1e-12, 1e-9, 1e-6, 1e-4};
+#define INCREMENTS ((int)PETSC_STATIC_ARRAY_LENGTH(increments))
+
+static void ForAllKinds(void (*check)(double h, const IncrementWalk *walk))
+{
+  for (int kind = 0; kind < INCREMENT_KIND_COUNT; kind++) {
+    IncrementTissue t;
+
+    assert_int_equal(IncrementCreate((IncrementKind)kind, &t), 0);
+    assert_int_equal(t.at.status, LAM_CONVERGED);
+    for (int i = 0; i < INCREMENTS; i++) {
+      IncrementWalk walk;
+
+      assert_int_equal(IncrementWalkBy(&t, increments[i], &walk), 0);
+      assert_int_equal(walk.solved, INCREMENT_STEPS);
+      check(increments[i], &walk);
+    }
+    assert_int_equal(IncrementDestroy(&t), 0);
+  }
+}
+
+/* Of order h^3 beyond rounding: the mean of two tangents; K_w and contact that changes make its factor large. */
+static void CheckStress(double h, const IncrementWalk *walk)
+{
+  assert_near(walk->error, 0.0, ROUNDING + 1e3 * h * h * h);
+  assert_near(walk->stress, 0.0, ROUNDING);
+}
+
+static void StressFollowsTheTangent(void **state)
+{
+  ForAllKinds(CheckStress);
+}
+
+/* One iteration solves, a second confirms where the first was not small enough; no state costs nothing. */
+static void CheckWork(double h, const IncrementWalk *walk)
+{
+  assert_in_range(walk->iterations, 1, h <= 1e-9 ? 1 : 3);
+  assert_in_range(walk->factorisations, 1, walk->iterations + 2);
+}
+
+static void NoIterationIsWasted(void **state)
+{
+  ForAllKinds(CheckWork);
+}
+
+/* Turgid bonded tissue at one go and in fifty steps: the same state. */
+static void LargeStepsEndWhereSmallOnesDo(void **state)
+{
+  const LamMicrostructure micro = DefaultTissue();
+  LamRVE rve = NewRVE(&micro);
+
+  for (int k = 0; k < LARGE_STEPS; k++) {
+    LargeResult l;
+
+    if (k == 2 || k == 3) continue; /* shear of 2 and 3: as that of 1, and they take longest */
+    assert_int_equal(LargeStepSolve(rve, &large_steps[k], 0.2, 20, &l), 0);
+    if (l.once.status == LAM_CONVERGED && !l.failed)
+      assert_near(l.apart, 0.0, 1e-8);
+    else
+      assert_int_equal(l.once.status, l.small.status);
+  }
+  assert_int_equal(LamRVEDestroy(&rve), 0);
+}
+
+static int Run(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(StressFollowsTheTangent), cmocka_unit_test(NoIterationIsWasted),
+                                     cmocka_unit_test(LargeStepsEndWhereSmallOnesDo)};
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
+
+int main(int argc, char **argv)
+{
+  return RunWithPetsc(argc, argv, Run);
+}
