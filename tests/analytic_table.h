@@ -18,6 +18,7 @@ static inline LamScene AnalyticScene(const AnalyticTissue *tissue)
   LamScene scene = {.path = "analytic", .has_sample = PETSC_TRUE, .scales = {1, 1}};
 
   scene.micro = (LamMicrostructure){.wall_thickness = 0.15, .cells = {1, 1}, .along = 6, .through = 2};
+  scene.micro.wall.bulk_modulus = 1000;
   scene.micro.orientation = tissue->orientation;
   scene.micro.interface = tissue->contact ? LAM_INTERFACE_CONTACT : LAM_INTERFACE_BONDED;
   scene.cohesion = tissue->contact ? TISSUE_G0 : 0;

@@ -34,6 +34,18 @@ grep -q '"reason"' out.txt || fail "no reason: $(cat out.txt)"
 expect 3 "$lamella" query db.h5 -F "-1 0 0 1" --json
 grep -q '"status": *"invalid_F"' out.txt || fail "status: $(cat out.txt)"
 
+# a turgor that changes the volume of the walls is beyond what the nodes' derivatives tell, also where F is in reach
+expect 0 "$lamella" query db.h5 -F "1.03 0.01 0 1.02" -p "2 MPa" --accuracy inf
+expect 3 "$lamella" query db.h5 -F "1.03 0.01 0 1.02" -p "1e40 MPa" --accuracy inf
+grep -q 'it changes the volume of the walls' out.txt || fail "no reason: $(cat out.txt)"
+
+# the unit of a question is of no account
+for turgor in "20 kPa" "2e10 uPa" "2e-5 GPa" "2e-8 TPa"; do
+  expect 0 "$lamella" query db.h5 -F "1.03 0.01 0 1.02" -p "$turgor" --accuracy inf --json
+  sed 's/"seconds": [^,]*,//' out.txt >"told-${turgor#* }"
+  cmp -s told-kPa "told-${turgor#* }" || fail "$turgor: $(cat out.txt)"
+done
+
 # what is asked for decides whether there is an answer
 expect 3 "$lamella" query db.h5 -F "1.03 0.01 0 1.02" --accuracy 1e-12 --json
 grep -q '"status": *"out_of_reach"' out.txt || fail "an answer with an error of 1e-12: $(cat out.txt)"
