@@ -154,8 +154,9 @@ PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border,
     PetscCall(LamBorderAssemble(rve, border, &norm));
     if (it == 0) first = norm;
     if (it > 0) WatchFactor(rve, border, shift, alpha, norm, previous, fresh);
-    /* the next step would be that share of the last one, or less */
-    if (norm <= tolerance || LamAtRounding(rve, norm, tolerance, rve->linear.rate * largest)) {
+    /* an affine move is no solution, however small; else the next step would be that share of the last one, or less */
+    if ((norm <= tolerance && (it > 0 || !rve->moved)) ||
+        LamAtRounding(rve, norm, tolerance, rve->linear.rate * largest)) {
       PetscCall(LamReportIteration(rve, "fast", it, norm, 0.0, 0.0));
       *outcome = LAM_NEWTON_CONVERGED;
       rve->consistent = last;
@@ -175,6 +176,7 @@ PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border,
     largest = LamBorderReach(rve, border, rve->step + 2);
     PetscCall(LamReportIteration(rve, "fast", it, norm, largest, shift));
     if (LamAtRounding(rve, norm, tolerance, largest)) {
+      if (it == 0 && shift == 0.0) LamTakeStep(rve, load, border, 1.0);
       *outcome = LAM_NEWTON_CONVERGED;
       break;
     }

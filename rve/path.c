@@ -40,6 +40,8 @@ void LamMoveAffinely(LamRVE rve, const PetscReal from[], const LamLoad *load_fro
 {
   const PetscReal *A = load_from->F, *B = load_to->F;
 
+  rve->moved = PETSC_FALSE;
+  for (PetscInt i = 0; i < 9; ++i) rve->moved = (PetscBool)(rve->moved || A[i] != B[i]);
   (void)LamSetConsistentStresses(rve, load_from, from);
   for (PetscInt c = 0; c < rve->mesh.class_count; ++c) {
     const PetscReal *X = &rve->mesh.class_X[2 * c];

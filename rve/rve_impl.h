@@ -117,6 +117,7 @@ struct LamRVE_s {
   PetscBool (*interrupt)(void *ctx);      /* NULL: never */
   void *interrupt_ctx;                    /* borrowed */
   PetscBool consistent;                   /* residual and linear.values are those of y with its own wall stresses */
+  PetscBool moved;                        /* y has been moved affinely since it was a solution */
   PetscReal lowest_eigenvalue;            /* of the last unstable state met */
   PetscInt zero_modes;                    /* of the consistent tangent last factored */
 };

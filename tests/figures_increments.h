@@ -132,6 +132,7 @@ static inline double IncrementError(const LamResponse *from, const LamResponse *
 typedef struct {
   PetscInt solved;
   PetscInt iterations, factorisations; /* most of a step */
+  PetscInt fewest;                     /* iterations of a step */
   double error, size;                  /* largest of a step: |P1 - P0 - A dF|, |A dF|, C1 + C2 */
   double stress;                       /* |P - prescribed P|, largest */
   double seconds;                      /* all of them */
@@ -143,7 +144,7 @@ static inline PetscErrorCode IncrementWalkBy(IncrementTissue *t, double h, Incre
   LamResponse last = t->at, r;
 
   PetscFunctionBeginUser;
-  *walk = (IncrementWalk){0};
+  *walk = (IncrementWalk){.fewest = PETSC_MAX_INT};
   PetscCall(LamRVEStateCopy(t->base, t->state));
   for (int k = 1; k <= INCREMENT_STEPS; k++) {
     double error, size;
@@ -157,6 +158,7 @@ static inline PetscErrorCode IncrementWalkBy(IncrementTissue *t, double h, Incre
       if (t->control.given[i])
         walk->stress = PetscMax(walk->stress, PetscAbsReal(r.P[i] - t->control.P[i] - h * k * increment_direction[i]));
     walk->iterations = PetscMax(walk->iterations, r.newton_iterations);
+    walk->fewest = PetscMin(walk->fewest, r.newton_iterations);
     walk->factorisations = PetscMax(walk->factorisations, r.factorisations);
     walk->seconds += r.seconds;
     last = r;
