@@ -10,7 +10,13 @@ const char *const LamPointFieldNames[] = {LAM_POINT_FIELDS(LAM_NAME_ENTRY) NULL}
 PetscBool LamPointFieldIsStress(LamPointField field)
 {
   return (PetscBool)(field == LAM_POINT_TURGOR || field == LAM_POINT_WALL || field == LAM_POINT_NORMAL ||
-                     field == LAM_POINT_SHEAR);
+                     field == LAM_POINT_SHEAR || field == LAM_POINT_ELLIPTICITY);
+}
+
+PetscReal LamPointFieldWorse(LamPointField field, PetscReal a, PetscReal b)
+{
+  if (isnan(a) || isnan(b)) return NAN;
+  return field == LAM_POINT_ELLIPTICITY ? PetscMin(a, b) : PetscMax(a, b);
 }
 
 /* What the lumens have: of sealed cells the pressure that was reached. */
@@ -47,6 +53,7 @@ void LamMacroKeepFields(const LamResponse *response, PetscReal field[LAM_POINT_F
   field[LAM_POINT_WALL] = response->max_wall_tension;
   field[LAM_POINT_NORMAL] = response->max_traction;
   field[LAM_POINT_SHEAR] = response->max_lamella_shear;
+  field[LAM_POINT_ELLIPTICITY] = NAN; /* found for converged states alone (localisation.c) */
   field[LAM_POINT_ERROR] = interpolated ? response->error_estimate : 0;
   field[LAM_POINT_INTERPOLATED] = interpolated;
   field[LAM_POINT_DOUBTFUL] = !response->indicators_trusted;
@@ -177,11 +184,8 @@ static void ElementMeans(PetscInt n, const LamMaterialPoint points[], const Pets
     }
     for (int k = 0; k < LAM_POINT_FIELD_COUNT; k++) {
       record->mean[k] += share * point->field[k];
-      if (!(point->field[k] <= record->largest[k])) record->largest[k] = point->field[k];
+      record->largest[k] = LamPointFieldWorse((LamPointField)k, record->largest[k], point->field[k]);
     }
-  }
-  for (int k = 0; k < LAM_POINT_FIELD_COUNT; k++) {
-    if (isnan(record->mean[k])) record->largest[k] = NAN;
   }
 }
 

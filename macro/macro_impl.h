@@ -383,6 +383,9 @@ PetscErrorCode LamMacroArchiveVec(LamMacro macro, LamArchive archive, const char
 
 /* fields.c */
 /* What is kept of a response, by LamPointField. */
+/* localisation.c: of the last converged state, for the report of its step; fills LAM_POINT_ELLIPTICITY of its points.
+   Collective. */
+PetscErrorCode LamMacroFindLocalisation(LamMacro macro, LamMacroStep *step);
 void LamMacroKeepFields(const LamResponse *response, PetscReal field[LAM_POINT_FIELD_COUNT]);
 
 /* inflation.c */

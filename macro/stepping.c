@@ -326,6 +326,7 @@ static PetscErrorCode FinishStep(LamMacro macro, PetscInt number, PetscReal load
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &step->max_gap, 1, MPIU_REAL, MPIU_MAX, macro->comm));
   step->debonded_fraction = sum[1] / sum[0];
   step->turgor_mean = sum[2] / sum[0];
+  PetscCall(LamMacroFindLocalisation(macro, step));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counts, 4, MPIU_INT64, MPI_SUM, macro->comm));
   step->queries = counts[0];
   step->hits = counts[1];

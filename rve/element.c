@@ -1,4 +1,5 @@
 #include "element.h"
+#include "wall_ellipticity.h"
 
 void LamGaussPoint(PetscInt g, PetscReal *xi, PetscReal *eta, PetscReal *weight)
 {
@@ -434,6 +435,14 @@ void LamElementFields(const LamElementGeometry *geometry, const LamWallLaw *law,
   }
 }
 
+/* d2I4/dFdF times the fibre stress, here a factor: what PointStress takes of the independent stress. */
+static inline void AddFibreCurvature(const LamElementGeometry *geometry, PetscReal factor, PetscReal A[4][4])
+{
+  for (PetscInt i = 0; i < 2; ++i)
+    for (PetscInt j = 0; j < 2; ++j)
+      for (PetscInt l = 0; l < 2; ++l) A[2 * i + j][2 * i + l] += factor * geometry->fibre[j] * geometry->fibre[l];
+}
+
 void LamElementWallPoints(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
                           const PetscReal x[][2], PetscReal F33, LamWallPoint points[LAM_GAUSS])
 {
@@ -454,5 +463,8 @@ void LamElementWallPoints(const LamElementGeometry *geometry, const LamWallLaw *
     /* w J sigma = (w P) F^T; m = Fm / |Fm| */
     for (PetscInt k = 0; k < 2; ++k) tm[k] = (Fm[0] * F[g][k] + Fm[1] * F[g][2 + k]) / I4; /* F^T m / |Fm| */
     points[g].tension = Fm[0] * (P[0] * tm[0] + P[1] * tm[1]) + Fm[1] * (P[2] * tm[0] + P[3] * tm[1]);
+    if (law->fibre) AddFibreCurvature(geometry, 2.0 * w * local.sx[g], A);
+    points[g].ellipticity = LamShearBandStiffness((const PetscReal(*)[4])A, F[g]);
+    points[g].kinked = points[g].ellipticity < 0.0 ? w : 0.0;
   }
 }

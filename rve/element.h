@@ -83,6 +83,8 @@ typedef struct {
   PetscReal stretch;           /* int sqrt(I4) dV, reference */
   PetscReal energy;            /* int W_matrix + W_fibre dV, reference */
   PetscReal tension;           /* int m.sigma m dv, current, m the current direction of the fibre, sigma Cauchy */
+  PetscReal ellipticity;       /* int of the smallest stiffness against isochoric shear bands dV (wall_ellipticity.h) */
+  PetscReal kinked;            /* reference volume where that is negative */
 } LamWallPoint;
 void LamElementWallPoints(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
                           const PetscReal x[][2], PetscReal F33, LamWallPoint points[LAM_GAUSS]);

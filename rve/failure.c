@@ -6,17 +6,21 @@
   function there. Means over a stretch as long as the wall is thick converge under refinement where point values at the
   corners of the lumen do not.
 
+  The stiffness of the wall material against shear bands (wall_ellipticity.h) is averaged in the same way. At the
+  corners stresses are singular, and there the point value would tell of the mesh.
+
   Tension is the Cauchy stress along the fibre over that of the fluid in which the wall stands, -p of its own cell.
 */
 #include "rve_impl.h"
 
 #define SAMPLES 8 /* per element column: sub-intervals of the running integrals */
 
-enum { REFERENCE, VOLUME, STRETCH, ENERGY, TENSION, INTEGRALS };
+enum { REFERENCE, VOLUME, STRETCH, ENERGY, TENSION, SOFTNESS, INTEGRALS };
 
 /* Running integrals along one face, [along * SAMPLES + 1] each. */
 typedef struct {
   PetscReal *running[INTEGRALS];
+  PetscReal kinked; /* reference volume, of all faces so far */
 } WallSums;
 
 /* Integral of the quadratic function with value 1 at Gauss point g and 0 at the other two, from -1 to xi. */
@@ -37,9 +41,9 @@ static void SetShares(PetscReal share[SAMPLES][3])
       share[s][g] = QuadraticIntegral(g, -1.0 + 2.0 * (PetscReal)(s + 1) / SAMPLES) / QuadraticIntegral(g, 1.0);
 }
 
-/* Integrals through the wall at the three Gauss points along the face of element column i. */
+/* Integrals through the wall at the three Gauss points along the face of element column i; adds the kinked volume. */
 static void SumThroughWall(LamRVE rve, const LamLoad *load, PetscInt cell, PetscInt face, PetscInt i,
-                           PetscReal column[3][INTEGRALS])
+                           PetscReal column[3][INTEGRALS], PetscReal *kinked)
 {
   const PetscReal turgor = LamTurgor(rve, load, rve->y, cell);
 
@@ -61,6 +65,8 @@ static void SumThroughWall(LamRVE rve, const LamLoad *load, PetscInt cell, Petsc
       sum[STRETCH] += points[g].stretch;
       sum[ENERGY] += points[g].energy;
       sum[TENSION] += points[g].tension + turgor * points[g].volume;
+      sum[SOFTNESS] -= points[g].ellipticity;
+      *kinked += points[g].kinked;
     }
   }
 }
@@ -72,7 +78,7 @@ static void SumAlongFace(LamRVE rve, const LamLoad *load, const PetscReal share[
   for (PetscInt i = 0; i < rve->mesh.along; ++i) {
     PetscReal column[3][INTEGRALS];
 
-    SumThroughWall(rve, load, cell, face, i, column);
+    SumThroughWall(rve, load, cell, face, i, column, &sums->kinked);
     for (PetscInt q = 0; q < INTEGRALS; ++q) {
       PetscReal *running = &sums->running[q][i * SAMPLES];
 
@@ -86,9 +92,9 @@ static void SumAlongFace(LamRVE rve, const LamLoad *load, const PetscReal share[
 PetscErrorCode LamWallMeasures(LamRVE rve, const LamLoad *load, LamResponse *response)
 {
   const PetscInt count = rve->mesh.along * SAMPLES;
-  PetscReal share[SAMPLES][3], tension[3] = {0.0, 0.0, 0.0}, volume[3] = {0.0, 0.0, 0.0}, *work;
-  LamLargestMean stretch = LAM_NO_MEAN, energy = LAM_NO_MEAN, stress = LAM_NO_MEAN;
-  WallSums sums;
+  PetscReal share[SAMPLES][3], tension[3] = {0.0, 0.0, 0.0}, volume[3] = {0.0, 0.0, 0.0}, walls = 0.0, *work;
+  LamLargestMean stretch = LAM_NO_MEAN, energy = LAM_NO_MEAN, stress = LAM_NO_MEAN, softness = LAM_NO_MEAN;
+  WallSums sums = {.kinked = 0.0};
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(INTEGRALS * (count + 1), &work));
@@ -103,6 +109,8 @@ PetscErrorCode LamWallMeasures(LamRVE rve, const LamLoad *load, LamResponse *res
       LamTakeLargestMean(&rve->mesh, thickness, cell, face, count, sums.running[STRETCH], reference, &stretch);
       LamTakeLargestMean(&rve->mesh, thickness, cell, face, count, sums.running[ENERGY], reference, &energy);
       LamTakeLargestMean(&rve->mesh, thickness, cell, face, count, pull, current, &stress);
+      LamTakeLargestMean(&rve->mesh, thickness, cell, face, count, sums.running[SOFTNESS], reference, &softness);
+      walls += reference[count];
       tension[face % 3] += pull[count];
       volume[face % 3] += current[count];
     }
@@ -111,6 +119,9 @@ PetscErrorCode LamWallMeasures(LamRVE rve, const LamLoad *load, LamResponse *res
   response->max_wall_energy = energy.value;
   response->max_wall_tension = stress.value;
   PetscCall(PetscArraycpy(response->wall_place, stress.place, 3));
+  response->wall_ellipticity = -softness.value;
+  PetscCall(PetscArraycpy(response->kink_place, softness.place, 3));
+  response->kinked_fraction = sums.kinked / walls;
   for (PetscInt k = 0; k < 3; ++k) response->mean_wall_tension[k] = tension[k] / volume[k];
   PetscFunctionReturn(0);
 }

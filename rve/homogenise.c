@@ -11,6 +11,7 @@
   symmetric by construction. Bonded tissue does not feel g.
 */
 #include "rve_impl.h"
+#include <lamella/ellipticity.h>
 
 #define NQ 7
 #define Q_F33 4
@@ -259,6 +260,7 @@ static PetscErrorCode FillDerivatives(LamRVE rve, Condensation *c, LamResponse *
     response->P_cohesion[component[q]] = H[q][Q_COHESION];
     for (PetscInt r = 0; r < 5; ++r) response->tangent[9 * component[q] + component[r]] = H[q][r];
   }
+  LamResponseFindBand(response);
   response->energy_turgor2 = H[Q_TURGOR][Q_TURGOR];
   response->energy_cohesion2 = H[Q_COHESION][Q_COHESION];
   response->energy_turgor_cohesion = H[Q_TURGOR][Q_COHESION];

@@ -56,7 +56,7 @@ static const Row indicators[] = {LAM_NODE_INDICATORS(ONE_INDICATOR, THREE_INDICA
 #define FIRST_INDICATOR offsetof(LamNodeData, lumen_fraction)
 _Static_assert(offsetof(LamNodeData, lumen_fraction) - FIRST_REAL == LAM_NODE_REALS * sizeof(PetscReal),
                "reals of a node are contiguous");
-_Static_assert(offsetof(LamNodeData, mean_wall_tension) + 3 * sizeof(float) - FIRST_INDICATOR ==
+_Static_assert(offsetof(LamNodeData, kinked_fraction) + sizeof(float) - FIRST_INDICATOR ==
                    LAM_NODE_FLOATS * sizeof(float),
                "indicators of a node are contiguous");
 

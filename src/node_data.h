@@ -36,7 +36,9 @@
   ONE(max_wall_energy)                                                                                                 \
   ONE(max_wall_tension)                                                                                                \
   THREE(wall_place)                                                                                                    \
-  THREE(mean_wall_tension)
+  THREE(mean_wall_tension)                                                                                             \
+  ONE(wall_ellipticity)                                                                                                \
+  ONE(kinked_fraction)
 
 #define LAM_NODE_ONE(name) float name;
 #define LAM_NODE_THREE(name) float name[3];
@@ -63,12 +65,12 @@ typedef struct {
   PetscReal P_cohesion[4], P33_cohesion;
   PetscReal energy_cohesion, energy_cohesion2, energy_turgor_cohesion;
 
-  /* indicators, contiguous from lumen_fraction to mean_wall_tension */
+  /* indicators, contiguous from lumen_fraction to kinked_fraction */
   LAM_NODE_INDICATORS(LAM_NODE_ONE, LAM_NODE_THREE)
 } LamNodeData;
 
 #define LAM_NODE_REALS 48
-#define LAM_NODE_FLOATS 48
+#define LAM_NODE_FLOATS 50
 
 /* Where the numbers of a node lie in the bytes of a record. */
 typedef struct {

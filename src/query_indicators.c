@@ -70,6 +70,8 @@ static void CopyLoads(const LamResponse *record, const PetscInt face[3], LamResp
   r->max_fibre_stretch = record->max_fibre_stretch;
   r->max_wall_energy = record->max_wall_energy;
   r->max_wall_tension = record->max_wall_tension;
+  r->wall_ellipticity = record->wall_ellipticity;
+  r->kinked_fraction = record->kinked_fraction;
   for (int k = 0; k < 3; k++) {
     r->mean_face_traction[k] = record->mean_face_traction[face[k]];
     r->mean_wall_tension[k] = record->mean_wall_tension[face[k]];
@@ -80,6 +82,7 @@ static void CopyLoads(const LamResponse *record, const PetscInt face[3], LamResp
     r->normal_place[k] = record->normal_place[k];
     r->shear_place[k] = record->shear_place[k];
     r->wall_place[k] = record->wall_place[k];
+    r->kink_place[k] = record->kink_place[k];
   }
 }
 

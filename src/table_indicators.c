@@ -237,7 +237,7 @@ static const struct {
             ONE(open_spread, MEAN) ONE(max_gap, MEAN) ONE(min_gap, MEAN) ONE(mean_gap, MEAN) ONE(max_penetration, MEAN)
                 ONE(max_traction, MAX_TRACTION) ONE(max_lamella_shear, TENSION) THREE(mean_face_traction, TRACTION)
                     ONE(max_fibre_stretch, MEAN) ONE(max_wall_energy, TENSION) ONE(max_wall_tension, TENSION)
-                        THREE(mean_wall_tension, TENSION)};
+                        THREE(mean_wall_tension, TENSION) ONE(wall_ellipticity, MEAN) ONE(kinked_fraction, MEAN)};
 #undef ONE
 #undef THREE
 

@@ -1,7 +1,8 @@
 /*
-  Buckling of tissue under biaxial compression F = (1 - e) 1: what the test asserts and the bench program prints.
-  The affine start has all symmetries of the cell and plain Newton steps keep them, so the symmetric solution is found
-  also where it is unstable; the inertia of its tangent tells which side of the onset it is on.
+  Buckling of tissue under biaxial compression F = (1 - e) 1, and of rows of cells along any ramp: what the test asserts
+  and the bench program prints. The affine start has all symmetries of the cell and plain Newton steps keep them, so the
+  symmetric solution is found also where it is unstable; the inertia of its tangent tells which side of the onset it is
+  on.
 */
 #ifndef LAM_FIGURES_BUCKLING_H
 #define LAM_FIGURES_BUCKLING_H
@@ -16,7 +17,11 @@ static inline PetscErrorCode SolveSymmetric(LamRVE rve, const LamLoad *load, Pet
 
   PetscFunctionBeginUser;
   (void)LamSetConsistentStresses(rve, &reference, rve->mesh.class_X);
-  for (PetscInt i = 0; i < rve->ndof; i++) rve->y[i] = load->F[0] * rve->mesh.class_X[i];
+  for (PetscInt i = 0; i < rve->ndof; i++) {
+    const PetscReal *X = &rve->mesh.class_X[i - i % 2], *row = &load->F[3 * (i % 2)];
+
+    rve->y[i] = row[0] * X[0] + row[1] * X[1];
+  }
   for (PetscInt it = 0; it < 20; it++) {
     PetscReal energy;
     PetscInt negative;

@@ -31,6 +31,7 @@
 #include <lamella/place_field.h>
 #include <lamella/lattice.h>
 #include <lamella/response.h>
+#include <lamella/ellipticity.h>
 #include <lamella/rve.h>
 #include <lamella/database.h>
 #include <lamella/blend.h>

@@ -29,7 +29,11 @@ typedef struct {
   PetscReal work;                                     /* of the boundary forces since the start, stress * length^2 */
   PetscReal debonded_fraction, max_gap;               /* not finite where the responder does not know them */
   PetscReal turgor_mean;
-  PetscInt newton_iterations; /* all of the step, cutbacks included */
+  PetscReal ellipticity;            /* smallest of the material points (ellipticity.h); NaN: not known */
+  PetscReal localisation_normal[2]; /* of the band that gives in first, there: its reference normal, */
+  PetscReal localisation_place[2];  /* and the reference position of the point, macro lengths */
+  PetscInt localised_points;        /* how many have lost it */
+  PetscInt newton_iterations;       /* all of the step, cutbacks included */
   PetscInt cutbacks;
   PetscInt64 queries, hits, solves, failures; /* of this step, all ranks */
   PetscInt64 interpolated;                    /* answers from a database, likewise; some needed solves of nodes */
@@ -101,12 +105,17 @@ PetscErrorCode LamMacroDestroy(LamMacro *macro);
   X(LAM_POINT_WALL, "wall_tension")         /* LamResponse.max_wall_tension */                                         \
   X(LAM_POINT_NORMAL, "lamella_normal")     /* max_traction */                                                         \
   X(LAM_POINT_SHEAR, "lamella_shear")       /* max_lamella_shear */                                                    \
+  X(LAM_POINT_ELLIPTICITY, "ellipticity")   /* of the tangent (ellipticity.h); sealed cells: with their water. Of an   \
+                                               element's points the smallest counts */                                 \
   X(LAM_POINT_ERROR, "error_estimate")      /* of an interpolated answer; 0: solved */                                 \
   X(LAM_POINT_INTERPOLATED, "interpolated") /* 1: answered by a database; 0: solved */                                 \
   X(LAM_POINT_DOUBTFUL, "doubtful")         /* 1: indicators that are not to be trusted; else 0 */
 typedef enum { LAM_POINT_FIELDS(LAM_ENUM_ENTRY) LAM_POINT_FIELD_COUNT } LamPointField;
 extern const char *const LamPointFieldNames[];
 PetscBool LamPointFieldIsStress(LamPointField field); /* in C1 + C2; else a bare number */
+/* Which of two values counts where one stands for several points: the larger; of what is lost as it falls, the smaller.
+   A NaN is passed on. */
+PetscReal LamPointFieldWorse(LamPointField field, PetscReal a, PetscReal b);
 
 /*
   Fields of the last converged step, gathered on rank 0 of the communicator (others get NULL), in the numbering of the
@@ -117,7 +126,8 @@ PetscBool LamPointFieldIsStress(LamPointField field); /* in C1 + C2; else a bare
     F, P        [element_count][9]    mean over the element's points, row-major 3x3
     cauchy      [element_count][9]    mean of P F^T / J over the element's present volume
     mean        [element_count][n]    mean over the element's points, by their reference volume
-    largest     [element_count][n]    largest of the element's points; NaN where one of them is
+    largest     [element_count][n]    largest of the element's points, of the ellipticity the smallest; NaN where one of
+                                      them is
     first_point [element_count + 1]   material points of element e: first_point[e] <= p < first_point[e + 1]
     point       [point_count][n]      of each point
     load        [point_count]         its deformation gradient, turgor and cohesion

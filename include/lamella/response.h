@@ -75,8 +75,18 @@ typedef struct {
      own cell, the fluid it stands in. The tractions above are absolute: a gap opens against air (theory.md, Section 23)
    */
   PetscReal max_fibre_stretch, max_wall_energy, max_wall_tension;
-  PetscReal wall_place[3];         /* of max_wall_tension: cell, face 0..5, place along the face in [0, 1] */
-  PetscReal mean_wall_tension[3];  /* tension, mean over the walls of a face family; 0 on average: slack */
+  PetscReal wall_place[3];        /* of max_wall_tension: cell, face 0..5, place along the face in [0, 1] */
+  PetscReal mean_wall_tension[3]; /* tension, mean over the walls of a face family; 0 on average: slack */
+  /* whether the wall material still resists kinks: the smallest mean over such windows of its smallest stiffness
+     against shear bands that keep the volume, and the share of the walls' volume where that is negative at the point.
+     There walls wrinkle as finely as the mesh lets them, and error_estimate is no bound */
+  PetscReal wall_ellipticity;
+  PetscReal kink_place[3]; /* of wall_ellipticity: as wall_place */
+  PetscReal kinked_fraction;
+  /* strong ellipticity of the tangent in the plane (ellipticity.h): its smallest stiffness against a band, below 0
+     where the tissue localises over lengths beyond the RVE; reference normal of that band and the direction in which
+     its sides move. Not known where the tangent is not */
+  PetscReal ellipticity, localisation_normal[3], localisation_mode[3];
   PetscReal lowest_eigenvalue;     /* estimate of the softest mode where it was computed (unstable states), else NaN */
   PetscInt floating_cells;         /* cells without any contact */
   PetscInt zero_modes;             /* motions of the cells that change no energy: cells slide or spin free */

@@ -93,6 +93,8 @@ PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStress
   response->error_estimate of the response that belongs to `state`, and adds its time; NaN where there is none: an odd
   number of elements along a face, sealed cells, or no equilibrium on the coarser mesh. Borrows `rve`.
 */
+/* Share of the walls' volume: where more of them has kinked (kinked_fraction) the estimate is not to be trusted. */
+#define LAM_KINKED_SHARE 0.005
 typedef struct LamRVEEstimate_s *LamRVEEstimate;
 PetscErrorCode LamRVEEstimateCreate(LamRVE rve, LamRVEEstimate *estimate);
 PetscErrorCode LamRVEEstimateError(LamRVEEstimate estimate, LamRVEState state, LamResponse *response);

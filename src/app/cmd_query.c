@@ -2,6 +2,7 @@
   lamella query: answers from a database. Never solves, needs no MPI.
 */
 #include "answers.h"
+#include <lamella/ellipticity.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,6 +24,7 @@ static PetscErrorCode Answer(Query *q, const LamLoad *load)
 
   PetscFunctionBeginUser;
   PetscCall(LamDatabaseQuery(q->from.database, load, q->accuracy, &response));
+  if (LamResponseHasFields(&response)) LamResponseFindBand(&response);
   if (response.status == LAM_CONVERGED)
     q->answered++;
   else

@@ -23,6 +23,8 @@ typedef struct {
   LamProgress progress;
   PetscInt solved, failed;
   PetscInt inaccurate; /* states whose estimated error exceeds the wanted one */
+  PetscInt kinked;     /* states in which too much of the walls has kinked for an estimate */
+  PetscReal most_kinked;
   PetscReal start;
 } Run;
 
@@ -147,13 +149,14 @@ static PetscBool OptionsFit(const Run *run)
   return PETSC_FALSE;
 }
 
-/* A file holds all; rows of the table tell neither tangents nor, but for --failure, the walls. */
+/* A file holds all; rows of the table tell no tangents, and of the walls, but for --failure, only whether they leave
+   the estimate what it says. */
 static LamWanted Wanted(const Run *run)
 {
   LamWanted wanted = LAM_WANT_STRESS | LAM_WANT_INDICATORS;
 
   if (run->tangent) wanted |= LAM_WANT_DERIVATIVES;
-  if (run->json || run->find_failure) wanted |= LAM_WANT_WALLS;
+  if (run->json || run->find_failure || !run->no_estimate) wanted |= LAM_WANT_WALLS;
   return run->out_path ? LAM_WANT_ALL : wanted;
 }
 
@@ -188,6 +191,30 @@ static PetscErrorCode Prepare(Run *run)
   PetscFunctionReturn(0);
 }
 
+static void CountDoubts(Run *run, const LamResponse *response)
+{
+  if (response->error_estimate > run->scene->accuracy) run->inaccurate++;
+  if (!(response->kinked_fraction > LAM_KINKED_SHARE)) return;
+  run->kinked++;
+  run->most_kinked = PetscMax(run->most_kinked, response->kinked_fraction);
+}
+
+static void TellDoubts(const Run *run)
+{
+  if (run->inaccurate)
+    fprintf(stderr,
+            "lamella rve: the estimated error of %d of %d states exceeds the wanted accuracy of %.2g %%: write a finer "
+            "rve.mesh (it is %d x %d)\n",
+            (int)run->inaccurate, (int)run->solved, (double)(100 * run->scene->accuracy), (int)run->scene->micro.along,
+            (int)run->scene->micro.through);
+  if (run->kinked)
+    fprintf(stderr,
+            "lamella rve: in %d of %d states walls are compressed along their fibres beyond C4 (1 - I4) > C1 + C2, in "
+            "up to %.2g %% of their volume: they kink on the scale of the mesh, and the estimate of the error does not "
+            "cover that; walls with `fibres: tension` have no such limit\n",
+            (int)run->kinked, (int)run->solved, (double)(100 * run->most_kinked));
+}
+
 static PetscErrorCode SolveStates(Run *run)
 {
   /* rows of a table on the terminal are progress enough */
@@ -204,7 +231,7 @@ static PetscErrorCode SolveStates(Run *run)
     if (run->estimate) PetscCall(LamRVEEstimateError(run->estimate, run->meshes.state[0], &responses[0]));
     run->solved++;
     if (responses[0].status != LAM_CONVERGED) run->failed++;
-    if (responses[0].error_estimate > run->scene->accuracy) run->inaccurate++;
+    CountDoubts(run, &responses[0]);
     if (run->find_onset) PetscCall(LamOnsetWatch(&run->onset, &run->meshes, run->solved, responses));
     if (run->find_failure) PetscCall(LamFailureWatch(&run->failure, &run->meshes, run->solved, responses));
     if (run->writer) PetscCall(WriteState(run, run->solved, &responses[0]));
@@ -212,12 +239,7 @@ static PetscErrorCode SolveStates(Run *run)
     PetscCall(LamProgressUpdate(&run->progress, run->solved, run->failed));
   }
   PetscCall(LamProgressEnd(&run->progress));
-  if (run->inaccurate && !run->quiet)
-    fprintf(stderr,
-            "lamella rve: the estimated error of %d of %d states exceeds the wanted accuracy of %.2g %%: write a finer "
-            "rve.mesh (it is %d x %d)\n",
-            (int)run->inaccurate, (int)run->solved, (double)(100 * run->scene->accuracy), (int)run->scene->micro.along,
-            (int)run->scene->micro.through);
+  if (!run->quiet) TellDoubts(run);
   PetscFunctionReturn(0);
 }
 

@@ -35,6 +35,8 @@ static void FillRow(const LamMacroStep *step, const LamMacroFields *fields, cons
   value[LAM_CURVE_TURGOR] = step->turgor_mean * MPa;
   value[LAM_CURVE_DEBONDED] = step->debonded_fraction;
   value[LAM_CURVE_GAP] = step->max_gap;
+  value[LAM_CURVE_ELLIPTICITY] = step->ellipticity * MPa;
+  value[LAM_CURVE_LOCALISED] = (PetscReal)step->localised_points;
   FillIndicators(fields, MPa, value);
   value[LAM_CURVE_NEWTON] = (PetscReal)step->newton_iterations;
   value[LAM_CURVE_CUTBACKS] = (PetscReal)step->cutbacks;

@@ -21,8 +21,10 @@
   X(LAM_CURVE_WALL, "wall_tension_max", "MPa")                                                                         \
   X(LAM_CURVE_NORMAL, "lamella_normal_max", "MPa")                                                                     \
   X(LAM_CURVE_SHEAR, "lamella_shear_max", "MPa")                                                                       \
-  X(LAM_CURVE_SEPARATED, "separated_share", "1") /* of the body's volume: fe2_summary.h; NaN: not judged */            \
-  X(LAM_CURVE_RUPTURED, "ruptured_share", "1")   /* likewise */                                                        \
+  X(LAM_CURVE_ELLIPTICITY, "ellipticity_min", "MPa") /* smallest of all points */                                      \
+  X(LAM_CURVE_LOCALISED, "localised_points", "1")    /* how many have lost it */                                       \
+  X(LAM_CURVE_SEPARATED, "separated_share", "1")     /* of the body's volume: fe2_summary.h; NaN: not judged */        \
+  X(LAM_CURVE_RUPTURED, "ruptured_share", "1")       /* likewise */                                                    \
   X(LAM_CURVE_ERROR, "error_estimate_max", "1")                                                                        \
   X(LAM_CURVE_NEWTON, "newton_iterations", "1")                                                                        \
   X(LAM_CURVE_CUTBACKS, "cutbacks", "1")                                                                               \

@@ -19,7 +19,8 @@ PetscReal LamFE2Strength(const LamStrength *strength, LamPointField field)
   }
 }
 
-/* Of damage and of what may fail the largest value counts; the others hardly vary within an element. */
+/* Of damage and of what may fail the largest value counts, of ellipticity the smallest; the others hardly vary within
+ * an element. */
 static PetscBool HasLargest(LamPointField field)
 {
   return (PetscBool)(field != LAM_POINT_TURGOR && field != LAM_POINT_LUMEN && field != LAM_POINT_INTERPOLATED &&
@@ -40,7 +41,8 @@ static void AddScalar(LamFE2Fields *f, LamPointField field, const char ending[2]
                       const char unit[])
 {
   for (int largest = 0; largest < (HasLargest(field) ? 2 : 1); largest++)
-    Add(f, LamPointFieldNames[field], ending[largest], 1, (LamFE2Scalar){field, (PetscBool)largest, factor, unit});
+    Add(f, LamPointFieldNames[field], largest && field == LAM_POINT_ELLIPTICITY ? "_min" : ending[largest], 1,
+        (LamFE2Scalar){field, (PetscBool)largest, factor, unit});
 }
 
 void LamFE2FieldsChoose(const LamScene *scene, LamFE2Fields *fields)

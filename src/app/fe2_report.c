@@ -4,6 +4,7 @@
 #include "fe2_run.h"
 #include <stdio.h>
 #include <lamella/clock.h>
+#include <lamella/ellipticity.h>
 
 /* Factors from nondimensional to N per mm of thickness, and MPa. */
 static PetscReal ForceUnit(const LamFE2Run *run)
@@ -26,6 +27,17 @@ static void AddService(const LamMacroStep *step, json_t *object)
   json_object_set_new(object, "other_seconds", LamJSONReal(other));
 }
 
+/* Of the point that resists bands least. */
+static void AddLocalisation(const LamFE2Run *run, const LamMacroStep *step, json_t *object)
+{
+  const PetscReal mm = run->scene->scales.macro_length * 1e3;
+
+  json_object_set_new(object, "ellipticity", LamJSONReal(step->ellipticity * MPa(run)));
+  json_object_set_new(object, "localised_points", json_integer((json_int_t)step->localised_points));
+  json_object_set_new(object, "localisation_normal", LamJSONReals(2, step->localisation_normal, 1));
+  json_object_set_new(object, "localisation_place", LamJSONReals(2, step->localisation_place, mm));
+}
+
 static PetscErrorCode PrintStepJSON(const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory)
 {
   const LamScales *scales = &run->scene->scales;
@@ -44,6 +56,7 @@ static PetscErrorCode PrintStepJSON(const LamFE2Run *run, const LamMacroStep *st
       (json_int_t)step->solves, "failures", (json_int_t)step->failures, "seconds", LamJSONReal(step->seconds),
       "solve_seconds", LamJSONReal(step->solve_seconds), "peak_memory_mb", LamJSONReal(peak_memory), "residuals",
       LamJSONReals(step->residual_count, step->residuals, 1), "convergence_order", LamJSONReal(step->order));
+  AddLocalisation(run, step, object);
   AddService(step, object);
   PetscCall(LamPrintJSON(object));
   PetscFunctionReturn(0);
@@ -89,7 +102,21 @@ static void PrintRow(const LamFE2Run *run, const LamMacroStep *step)
   fflush(stdout);
 }
 
-PetscErrorCode LamFE2ReportStep(const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory)
+/* Once, in the first step that has lost it. */
+static void WarnOfLocalisation(LamFE2Run *run, const LamMacroStep *step)
+{
+  const PetscReal mm = run->scene->scales.macro_length * 1e3;
+
+  if (run->quiet || run->localised || !step->localised_points) return;
+  run->localised = PETSC_TRUE;
+  fprintf(stderr,
+          "lamella fe2: %s: step %d: at %d material points the tissue has lost ellipticity, most at (%.4g, %.4g) mm "
+          "in a band whose normal is at %.1f degrees: it localises, and results then depend on the mesh of the body\n",
+          run->scene_path, (int)step->step, (int)step->localised_points, (double)(step->localisation_place[0] * mm),
+          (double)(step->localisation_place[1] * mm), (double)LamBandAngle(step->localisation_normal));
+}
+
+PetscErrorCode LamFE2ReportStep(LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory)
 {
   PetscFunctionBeginUser;
   if (run->json)
@@ -98,6 +125,7 @@ PetscErrorCode LamFE2ReportStep(const LamFE2Run *run, const LamMacroStep *step, 
     if (run->totals.steps == run->resumed_steps) PrintHeader(run, step);
     PrintRow(run, step);
   }
+  WarnOfLocalisation(run, step);
   PetscFunctionReturn(0);
 }
 

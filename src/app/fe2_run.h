@@ -43,6 +43,7 @@ typedef struct {
   LamFE2File out;
   LamSummary summary;
   LamProgress progress;
+  PetscBool localised; /* has been told */
 
   LamFE2Totals totals;
   PetscReal start;
@@ -58,8 +59,9 @@ PetscErrorCode LamFE2Connect(LamFE2Run *run);
 PetscErrorCode LamFE2Disconnect(LamFE2Run *run); /* after the macroscale solver's end */
 
 /* ---- fe2_report.c; on rank 0 ---- */
-/* The row, after the first step's header, or the JSON object of a step. peak_memory in MB. */
-PetscErrorCode LamFE2ReportStep(const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory);
+/* The row, after the first step's header, or the JSON object of a step; once, that the tissue localises. peak_memory in
+   MB. */
+PetscErrorCode LamFE2ReportStep(LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory);
 /* LamMacroCutback: a line on stderr; on all ranks. */
 PetscErrorCode LamFE2ReportCutback(LamMacro macro, const char why[], void *run);
 /* Summary and totals. */

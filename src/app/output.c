@@ -2,6 +2,7 @@
   Solved states for programs (JSON Lines) and for persons (a table), in physical units.
 */
 #include "app.h"
+#include <lamella/ellipticity.h>
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -183,6 +184,16 @@ static PetscBool HasTurgorOfLoad(const LamResponse *r)
                      (fabs(r->turgor_mean - r->load.turgor) <= rounding && r->turgor_spread <= rounding));
 }
 
+/* Of tissue that localises over lengths beyond the RVE. */
+static void PrintLocalisation(const LamResponse *r, PetscReal MPa)
+{
+  if (!LamResponseHasFields(r) || !LamEllipticityIsLost(r->ellipticity)) return;
+  printf("      the tangent has lost ellipticity (%.3g MPa): the tissue localises, in bands whose normal is at %.1f "
+         "degrees and whose sides move at %.1f degrees\n",
+         (double)(r->ellipticity * MPa), (double)LamBandAngle(r->localisation_normal),
+         (double)LamBandAngle(r->localisation_mode));
+}
+
 PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales *scales, LamInterfaceLawType interface,
                                    PetscInt state)
 {
@@ -205,6 +216,7 @@ PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales 
   if (LamResponseHasFields(response) && !HasTurgorOfLoad(response))
     printf("      pressure in the lumens %.4g MPa, spread %.3g MPa\n", (double)(response->turgor_mean * MPa),
            (double)(response->turgor_spread * MPa));
+  PrintLocalisation(response, MPa);
   if (response->status != LAM_CONVERGED) printf("      %s\n", response->reason);
   PetscCall(FlushOutput());
   PetscFunctionReturn(0);

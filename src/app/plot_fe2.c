@@ -43,6 +43,7 @@ static const FE2FieldRow FE2Fields[] = {
     SCALAR("lamella_normal_max", "normal traction of the lamella, largest", "MPa"),
     SCALAR("lamella_shear", "shear traction of the lamella", "MPa"),
     SCALAR("lamella_shear_max", "shear traction of the lamella, largest", "MPa"),
+    SCALAR("ellipticity_min", "ellipticity of the tangent, smallest", "MPa"),
     SCALAR("wall_tension_ratio_max", "wall tension over strength, largest", NULL),
     SCALAR("lamella_normal_ratio_max", "normal traction over strength, largest", NULL),
     SCALAR("lamella_shear_ratio_max", "shear traction over strength, largest", NULL),

@@ -1,0 +1,76 @@
+/*
+  Ellipticity of the tissue at the material points of a converged state: where it is lost the body localises, in bands
+  as narrow as its elements.
+
+  Of sealed cells the tangent is that with their water: each place keeps its own, so that in a band
+    A + dP/dp (x) dP/dp / (v/K_w - d2Psi/dp2)
+  resists.
+*/
+#include <lamella/ellipticity.h>
+#include <math.h>
+#include "macro_impl.h"
+
+static void PointTangent(LamMacro macro, PetscInt p, PetscReal A[16])
+{
+  const LamMacroSeal *seal = macro->seal;
+
+  for (int i = 0; i < 16; i++) A[i] = macro->accepted[p].A[i];
+  if (!seal || !seal->closed) return;
+  const LamSealedPoint *sealed = &seal->accepted[p];
+  const PetscReal share = 1 / (seal->water[p] / macro->scene->water_bulk_modulus - sealed->curvature);
+
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < 4; j++) A[4 * i + j] += share * sealed->P_turgor[i] * sealed->P_turgor[j];
+}
+
+/* The smallest of all ranks, and of equal ones that of the lowest rank, with what `step` says of it. */
+static PetscErrorCode Share(LamMacro macro, LamMacroStep *step)
+{
+  struct {
+    double value;
+    int rank;
+  } mine, least;
+  PetscReal found[5] = {step->ellipticity, step->localisation_normal[0], step->localisation_normal[1],
+                        step->localisation_place[0], step->localisation_place[1]};
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(macro->comm, &rank));
+  mine.value = isnan(found[0]) ? INFINITY : found[0];
+  mine.rank = rank;
+  PetscCallMPI(MPI_Allreduce(&mine, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, macro->comm));
+  PetscCallMPI(MPI_Bcast(found, 5, MPIU_REAL, least.rank, macro->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &step->localised_points, 1, MPIU_INT, MPI_SUM, macro->comm));
+  step->ellipticity = found[0];
+  for (int i = 0; i < 2; i++) {
+    step->localisation_normal[i] = found[1 + i];
+    step->localisation_place[i] = found[3 + i];
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroFindLocalisation(LamMacro macro, LamMacroStep *step)
+{
+  PetscFunctionBeginUser;
+  PetscAssert(macro->dim == 2, PETSC_COMM_SELF, PETSC_ERR_PLIB, "bands are those of a plane");
+  step->ellipticity = step->localisation_normal[0] = step->localisation_normal[1] = NAN;
+  step->localisation_place[0] = step->localisation_place[1] = NAN;
+  step->localised_points = 0;
+  for (PetscInt p = 0; p < macro->point_count; p++) {
+    LamBand band = {.value = NAN};
+    PetscReal A[16];
+
+    PointTangent(macro, p, A);
+    if (macro->accepted[p].known) LamBandFind(A, &band);
+    macro->accepted[p].field[LAM_POINT_ELLIPTICITY] = band.value;
+    if (LamEllipticityIsLost(band.value)) step->localised_points++;
+    if (isnan(band.value) || band.value >= step->ellipticity) continue;
+    step->ellipticity = band.value;
+    for (int i = 0; i < 2; i++) {
+      step->localisation_normal[i] = band.normal[i];
+      step->localisation_place[i] = macro->place[macro->dim * p + i];
+    }
+  }
+  PetscCall(Share(macro, step));
+  PetscFunctionReturn(0);
+}

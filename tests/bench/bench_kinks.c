@@ -1,0 +1,149 @@
+/*
+  What walls that have kinked do to the error of a mesh: random bonded states on meshes of 6 x 2 to 24 x 8 elements
+  (with
+  --fine 48 x 8), each loaded in steps from F = I. Prints, for each state, the share of the walls that has lost
+  ellipticity on each mesh, the errors of P against the finest, and the a-posteriori estimate of each.
+  Usage: bench_kinks [--states N] [--seed N] [--steps N] [--fine] [--tension] [--graded] [--turgor]
+*/
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <lamella/lamella.h>
+#include "random_reals.h"
+#include "tissue.h"
+
+typedef struct {
+  PetscInt along, through;
+} Mesh;
+static const Mesh meshes[] = {{6, 2}, {12, 4}, {24, 8}, {48, 8}};
+enum { MESHES = PETSC_STATIC_ARRAY_LENGTH(meshes) };
+
+typedef struct {
+  int states, steps, count; /* count: of the meshes */
+  PetscBool tension, graded, turgor;
+  uint64_t seed;
+} Options;
+
+typedef struct {
+  LamMicrostructure micro;
+  LamLoad load;
+  double ratio, shear, e[2];
+} Sample;
+
+static Sample Draw(Options *o)
+{
+  Sample s = {.micro = DefaultTissue(), .load = PlaneLoad(1, 0, 0, 1, 0)};
+  double angle, c, d, a, b;
+
+  s.e[0] = RandomReal(&o->seed, -0.2, 0.4);
+  s.e[1] = RandomReal(&o->seed, -0.2, 0.4);
+  s.shear = RandomReal(&o->seed, 0, 1);
+  angle = RandomReal(&o->seed, 0, PETSC_PI);
+  s.ratio = pow(10, RandomReal(&o->seed, -1, 3)); /* C4 / C1; the lowest tenth of the decades: no fibres */
+  s.micro.wall_thickness = 0.05 * pow(10, RandomReal(&o->seed, 0, 1));
+  s.micro.orientation = RandomReal(&o->seed, 0, 2 * PETSC_PI);
+  if (s.ratio < 0.25) s.ratio = 0;
+  s.micro.wall.C4 = s.micro.wall.C1 * s.ratio;
+  s.micro.wall.fibres = o->tension ? LAM_FIBRES_TENSION : LAM_FIBRES_BOTH;
+  if (o->graded) s.micro.grading = 0.7;
+  c = cos(angle), d = sin(angle), a = exp(s.e[0]), b = exp(s.e[1]);
+  const double U[4] = {c * c * a + d * d * b, c * d * (a - b), c * d * (a - b), d * d * a + c * c * b};
+
+  s.load.F[0] = U[0] + s.shear * U[2];
+  s.load.F[1] = U[1] + s.shear * U[3];
+  s.load.F[3] = U[2];
+  s.load.F[4] = U[3];
+  s.load.turgor = o->turgor ? RandomReal(&o->seed, 0.1, 0.5) : 0;
+  return s;
+}
+
+/* Wrinkled walls have many branches; a state that needs more factorisations than these is left out. */
+#define MOST_FACTORISATIONS 250
+
+static PetscBool IsTooMuch(void *count)
+{
+  return (PetscBool)(++*(int *)count > MOST_FACTORISATIONS);
+}
+
+/* In steps linear in F; the response of the last. */
+static PetscErrorCode SolveOn(const Sample *s, const Options *o, Mesh mesh, LamResponse *response)
+{
+  LamMicrostructure micro = s->micro;
+  LamLoad load = s->load;
+  LamRVE rve;
+  LamRVEState state;
+  LamRVEEstimate e;
+  int count = 0;
+
+  PetscFunctionBeginUser;
+  micro.along = mesh.along;
+  micro.through = mesh.through;
+  PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
+  PetscCall(LamRVESetMicrostructure(rve, &micro));
+  PetscCall(LamRVESetUp(rve));
+  PetscCall(LamRVESetInterrupt(rve, IsTooMuch, &count));
+  PetscCall(LamRVEStateCreate(rve, &state));
+  PetscCall(LamRVEEstimateCreate(rve, &e));
+  response->status = LAM_CONVERGED;
+  for (int k = 1; k <= o->steps && response->status == LAM_CONVERGED; k++) {
+    count = 0;
+    for (int i = 0; i < 9; i++) load.F[i] = (i % 4 ? 0 : 1) * (1 - (double)k / o->steps) + s->load.F[i] * k / o->steps;
+    PetscCall(LamRVESolve(rve, &load, state, response));
+    PetscCall(LamRVEEstimateError(e, state, response)); /* each: it keeps a state of its own */
+  }
+  PetscCall(LamRVEEstimateDestroy(&e));
+  PetscCall(LamRVEStateDestroy(&state));
+  PetscCall(LamRVEDestroy(&rve));
+  PetscFunctionReturn(0);
+}
+
+static void PrintHeader(const Options *o)
+{
+  printf("state    t/a  C4/C1  shear     e1     e2");
+  for (int m = 0; m < o->count; m++)
+    printf(" | %2d x %d kinked, ellip., error, estimate, branch", (int)meshes[m].along, (int)meshes[m].through);
+  printf("\n");
+}
+
+static PetscErrorCode Run(Options *o)
+{
+  PetscFunctionBeginUser;
+  PrintHeader(o);
+  for (int n = 0; n < o->states; n++) {
+    const Sample s = Draw(o);
+    LamResponse r[MESHES];
+
+    for (int m = 0; m < o->count; m++) PetscCall(SolveOn(&s, o, meshes[m], &r[m]));
+    printf("%5d  %.3f  %5.1f  %.3f  %5.2f  %5.2f", n, (double)s.micro.wall_thickness, s.ratio, s.shear, s.e[0], s.e[1]);
+    for (int m = 0; m < o->count; m++) {
+      const LamResponse *truth = &r[o->count - 1];
+
+      printf(" | %.4f %7.3f %.2e %.2e %2d %s", (double)r[m].kinked_fraction, (double)r[m].wall_ellipticity,
+             (double)LamStressError(r[m].P, truth->P), (double)r[m].error_estimate, (int)r[m].branch,
+             r[m].status == LAM_CONVERGED ? "+" : "-");
+    }
+    printf("\n");
+  }
+  PetscFunctionReturn(0);
+}
+
+int main(int argc, char **argv)
+{
+  Options o = {.states = 10, .steps = 8, .count = 3, .seed = 20};
+
+  for (int i = 1; i < argc; i++) {
+    if (!strcmp(argv[i], "--fine")) o.count = MESHES;
+    if (!strcmp(argv[i], "--tension")) o.tension = PETSC_TRUE;
+    if (!strcmp(argv[i], "--graded")) o.graded = PETSC_TRUE;
+    if (!strcmp(argv[i], "--turgor")) o.turgor = PETSC_TRUE;
+    if (!strcmp(argv[i], "--states") && i + 1 < argc) o.states = atoi(argv[++i]);
+    if (!strcmp(argv[i], "--steps") && i + 1 < argc) o.steps = atoi(argv[++i]);
+    if (!strcmp(argv[i], "--seed") && i + 1 < argc) o.seed = (uint64_t)atoi(argv[++i]);
+  }
+  argc = 1;
+  setvbuf(stdout, NULL, _IOLBF, 0); /* it takes minutes: what is there is told */
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  if (Run(&o)) return 1;
+  return PetscFinalize() ? 1 : 0;
+}
