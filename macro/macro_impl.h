@@ -15,6 +15,7 @@
   sealed.c    pressures of sealed lumens
   inflation.c first guess of the inflated body
   stepping.c  Newton, load steps, cutback
+  localisation.c    ellipticity at the material points
   fields.c    what is kept of a response for the results, gathering of fields on rank 0
   checkpoint.c what a run goes on from
 

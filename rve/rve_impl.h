@@ -18,7 +18,7 @@
     homogenise.c         stress, tangent and couplings by static condensation
     mixed.c mixed_fast.c mixed_safe.c     states of which some components of P are prescribed
     traction.c           largest means along faces; interface tractions of bonded faces
-    failure.c            stretch, energy and tension of the walls
+    failure.c            stretch, energy and tension of the walls, and whether they kink (wall_ellipticity.h)
     estimate.c           error of P from half as many elements
     indicators.c interface.c              how far cells have come apart; gaps and pressures for pictures
 

@@ -210,8 +210,8 @@ static void TellDoubts(const Run *run)
   if (run->kinked)
     fprintf(stderr,
             "lamella rve: in %d of %d states walls are compressed along their fibres beyond C4 (1 - I4) > C1 + C2, in "
-            "up to %.2g %% of their volume: they kink on the scale of the mesh, and the estimate of the error does not "
-            "cover that; walls with `fibres: tension` have no such limit\n",
+            "up to %.2g %% of their volume: they kink on the scale of the mesh, and the estimate of the error, though "
+            "taken larger there, is no more than a guess; walls with `fibres: tension` have no such limit\n",
             (int)run->kinked, (int)run->solved, (double)(100 * run->most_kinked));
 }
 

@@ -255,7 +255,9 @@ static const char *FieldLabel(const char field[])
                 {"debonded_fraction", "debonded share of the interface"},
                 {"max_gap", "largest gap / apothem"},
                 {"max_traction", "largest lamella traction"},
-                {"max_wall_tension", "largest wall tension"}};
+                {"max_wall_tension", "largest wall tension"},
+                {"ellipticity", "ellipticity of the tangent"},
+                {"kinked_fraction", "kinked share of the walls"}};
 
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(labels); i++)
     if (!strcmp(field, labels[i].field)) return labels[i].label;
