@@ -255,9 +255,9 @@ static PetscErrorCode WriteEmptyRecords(const char path[], hid_t file)
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Pset_chunk(list, 1, &chunk));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE,
               dataset = H5Dcreate2(file, "/records", type, space, H5P_DEFAULT, list, H5P_DEFAULT));
-  PetscCall(WriteCounter(path, dataset));
   PetscCall(LamRecordTypeSum(type, &sum));
-  PetscCall(LamSumWrite(path, dataset, LAM_TYPE_SUM, sum));
+  PetscCall(LamSumWrite(path, dataset, LAM_TYPE_SUM, sum)); /* before the counter, which so lies in one sector */
+  PetscCall(WriteCounter(path, dataset));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dclose(dataset));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Pclose(list));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Sclose(space));

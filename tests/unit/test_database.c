@@ -62,7 +62,7 @@ static void a_node_holds_the_in_plane_parts_and_33(void **state)
   assert_true(node.energy_turgor_cohesion == r.energy_turgor_cohesion && node.turgor == r.load.turgor);
 }
 
-/* From lumen_fraction to mean_wall_tension, so that the block may be gone through with the table of members. */
+/* From lumen_fraction to kinked_fraction, so that the block may be gone through with the table of members. */
 static void indicators_are_in_the_order_of_the_members(void **state)
 {
   const LamResponse r = Response(3);

@@ -211,6 +211,12 @@ static const char *const indicators[] = {"opening_by_face",
                                          "max_wall_tension",
                                          "wall_place",
                                          "mean_wall_tension",
+                                         "wall_ellipticity",
+                                         "kink_place",
+                                         "kinked_fraction",
+                                         "ellipticity",
+                                         "localisation_normal",
+                                         "localisation_mode",
                                          "turgor_mean",
                                          "turgor_spread",
                                          "energy_turgor",
@@ -226,11 +232,12 @@ static LamResponse WithoutIndicators(LamResponse r)
 {
   for (int k = 0; k < 3; k++) {
     r.opening_by_face[k] = r.open_by_face[k] = r.fabric[k] = r.opening_moment[k] = r.mean_wall_tension[k] = NAN;
+    r.kink_place[k] = r.localisation_normal[k] = r.localisation_mode[k] = NAN;
     r.gap_place[k] = r.normal_place[k] = r.shear_place[k] = r.wall_place[k] = NAN;
   }
   r.debonded_spread = r.open_spread = r.min_gap = r.mean_gap = r.max_penetration = NAN;
   r.max_lamella_shear = r.max_fibre_stretch = r.max_wall_energy = r.max_wall_tension = NAN;
-  r.turgor_mean = r.turgor_spread = NAN;
+  r.turgor_mean = r.turgor_spread = r.wall_ellipticity = r.kinked_fraction = r.ellipticity = NAN;
   r.energy_turgor = -r.lumen_fraction;
   r.energy_cohesion = r.opening_fraction;
   r.zero_modes = r.cell_clusters = r.percolating_directions = LAM_UNKNOWN_COUNT;

@@ -12,13 +12,14 @@ static LamLoad Load(int k)
   return PlaneLoad(loads[k][0], loads[k][1], loads[k][2], loads[k][3], loads[k][4]);
 }
 
-static LamResponse Estimated(const LamMicrostructure *micro, LamLoad load)
+static LamResponse EstimatedOf(const LamMicrostructure *micro, LamLoad load, LamWanted wanted)
 {
   LamRVE rve = NewRVE(micro);
   LamRVEState state;
   LamRVEEstimate estimate;
   LamResponse response;
 
+  assert_int_equal(LamRVESetWanted(rve, wanted), 0);
   assert_int_equal(LamRVEStateCreate(rve, &state), 0);
   assert_int_equal(LamRVEEstimateCreate(rve, &estimate), 0);
   assert_int_equal(LamRVESolve(rve, &load, state, &response), 0);
@@ -27,6 +28,11 @@ static LamResponse Estimated(const LamMicrostructure *micro, LamLoad load)
   assert_int_equal(LamRVEStateDestroy(&state), 0);
   assert_int_equal(LamRVEDestroy(&rve), 0);
   return response;
+}
+
+static LamResponse Estimated(const LamMicrostructure *micro, LamLoad load)
+{
+  return EstimatedOf(micro, load, LAM_WANT_ALL);
 }
 
 /* Number of states whose estimate is within a factor of the error. */
@@ -50,6 +56,17 @@ static int CountWithin(double factor, LamInterfaceLawType interface, double grad
     within += r.error_estimate > error / factor && r.error_estimate < error * factor;
   }
   return within;
+}
+
+/* Finer meshes wrinkle where these cannot: sheared by 0.5, P is 3 % off where half as many elements tell 0.4 %. */
+static void IsLargerWhereWallsKink(void **state)
+{
+  const LamMicrostructure micro = DefaultTissue();
+  const LamLoad load = PlaneLoad(1, 0.5, 0, 1, 0);
+  const LamResponse known = Estimated(&micro, load), unknown = EstimatedOf(&micro, load, LAM_WANT_STRESS);
+
+  assert_true(known.kinked_fraction > LAM_KINKED_SHARE && isnan(unknown.kinked_fraction));
+  assert_true(known.error_estimate > 3.9 * unknown.error_estimate);
 }
 
 static void IsNearTheErrorOfBondedTissue(void **state)
@@ -86,9 +103,8 @@ static void ChangesNothingOfTheState(void **state)
 static int Run(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(IsNearTheErrorOfBondedTissue),
-      cmocka_unit_test(IsNearTheErrorOfContactTissue),
-      cmocka_unit_test(IsNotKnownForOddMeshes),
+      cmocka_unit_test(IsLargerWhereWallsKink),        cmocka_unit_test(IsNearTheErrorOfBondedTissue),
+      cmocka_unit_test(IsNearTheErrorOfContactTissue), cmocka_unit_test(IsNotKnownForOddMeshes),
       cmocka_unit_test(ChangesNothingOfTheState),
   };
 
