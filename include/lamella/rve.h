@@ -38,9 +38,10 @@ PetscErrorCode LamRVESetTolerance(LamRVE rve, PetscReal tolerance);
 */
 typedef enum {
   LAM_WANT_STRESS = 1,      /* energy and its first derivatives, lumen and opening, turgor reached */
-  LAM_WANT_DERIVATIVES = 2, /* with stress: tangent, P_turgor, P_cohesion, second derivatives of the energy */
+  LAM_WANT_DERIVATIVES = 2, /* with stress: tangent and its ellipticity, P_turgor, P_cohesion, second derivatives of
+                               the energy */
   LAM_WANT_INDICATORS = 4,  /* tractions, what has come apart */
-  LAM_WANT_WALLS = 8,       /* stretch, energy and tension of the walls: what strengths are held against */
+  LAM_WANT_WALLS = 8,       /* stretch, energy and tension of the walls: what strengths are held against; kinks */
   LAM_WANT_ALL = LAM_WANT_STRESS | LAM_WANT_DERIVATIVES | LAM_WANT_INDICATORS | LAM_WANT_WALLS
 } LamWanted;
 PetscErrorCode LamRVESetWanted(LamRVE rve, LamWanted wanted);
@@ -93,7 +94,8 @@ PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStress
   response->error_estimate of the response that belongs to `state`, and adds its time; NaN where there is none: an odd
   number of elements along a face, sealed cells, or no equilibrium on the coarser mesh. Borrows `rve`.
 */
-/* Share of the walls' volume: where more of them has kinked (kinked_fraction) the estimate is not to be trusted. */
+/* Share of the walls' volume: where more of them has kinked (kinked_fraction, of responses with LAM_WANT_WALLS) the
+   estimate of bonded tissue is taken larger, and is a guess. */
 #define LAM_KINKED_SHARE 0.005
 typedef struct LamRVEEstimate_s *LamRVEEstimate;
 PetscErrorCode LamRVEEstimateCreate(LamRVE rve, LamRVEEstimate *estimate);

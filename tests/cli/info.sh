@@ -71,7 +71,7 @@ grep -q '^sound records *3$' out.txt && grep -q '^state *sound$' out.txt || fail
 cp three.h5 damaged.h5
 place=$(LC_ALL=C grep -obUaF 'version: 1' damaged.h5 | head -1 | cut -d: -f1)
 printf w | dd of=damaged.h5 bs=1 seek="$place" conv=notrunc status=none
-printf '\377' | dd of=damaged.h5 bs=1 seek=$(($(stat -c %s damaged.h5) - 106000)) conv=notrunc status=none
+printf '\377' | dd of=damaged.h5 bs=1 seek=$(($(stat -c %s damaged.h5) - 112144)) conv=notrunc status=none
 expect 2 "$lamella" info damaged.h5
 grep -q 'damaged.h5: record [0-2] is damaged.*lamella merge' err.txt || fail "no remedy: $(cat err.txt)"
 expect 2 "$lamella" info damaged.h5 --check
