@@ -87,6 +87,10 @@ PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, L
 PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStressControl *control, LamRVEState state,
                                 LamResponse *response);
 
+/* Share of the walls' volume: where more of them has kinked (kinked_fraction, of responses with LAM_WANT_WALLS) the
+   estimate of bonded tissue is taken larger, and is a guess. */
+#define LAM_KINKED_SHARE 0.005
+
 /*
   An estimate of the error of a state's P, as LamStressError, from the same load on half as many elements: a sixth of
   the time of a bonded state, a tenth to four tenths of a contact one. It keeps the coarse state that it has found, from
@@ -94,9 +98,6 @@ PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStress
   response->error_estimate of the response that belongs to `state`, and adds its time; NaN where there is none: an odd
   number of elements along a face, sealed cells, or no equilibrium on the coarser mesh. Borrows `rve`.
 */
-/* Share of the walls' volume: where more of them has kinked (kinked_fraction, of responses with LAM_WANT_WALLS) the
-   estimate of bonded tissue is taken larger, and is a guess. */
-#define LAM_KINKED_SHARE 0.005
 typedef struct LamRVEEstimate_s *LamRVEEstimate;
 PetscErrorCode LamRVEEstimateCreate(LamRVE rve, LamRVEEstimate *estimate);
 PetscErrorCode LamRVEEstimateError(LamRVEEstimate estimate, LamRVEState state, LamResponse *response);
