@@ -50,7 +50,8 @@ static json_t *MemberToJSON(const LamMember *m, const LamResponse *response, Pet
   return NULL;
 }
 
-/* Derivatives are for programs that asked for the tangent; a reason and a distance are not of every state. */
+/* Derivatives are for programs that asked for the tangent, as is what follows from it, which an answer of a database
+   has in any case; a reason and a distance are not of every state. */
 static PetscBool IsTold(const LamMember *m, const LamResponse *response, PetscBool tangent)
 {
   static const char *const derivatives[] = {
@@ -59,6 +60,8 @@ static PetscBool IsTold(const LamMember *m, const LamResponse *response, PetscBo
 
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(derivatives); i++)
     if (!strcmp(m->name, derivatives[i])) return tangent;
+  if (!strcmp(m->name, "ellipticity") || !strncmp(m->name, "localisation", strlen("localisation")))
+    return (PetscBool)(tangent || response->source == LAM_SOURCE_DATABASE);
   if (!strcmp(m->name, "reason")) return (PetscBool)(response->status != LAM_CONVERGED);
   if (!strcmp(m->name, "distance")) return (PetscBool)(response->source == LAM_SOURCE_DATABASE);
   return PETSC_TRUE;
