@@ -1,0 +1,278 @@
+/*
+  The body of extended_quad.c and extended_long.c, which say what a real number is. PETSc's headers come first, so that
+  its own functions keep their types; none of those called takes or gives a real number.
+*/
+#include "extended.h"
+#include <petscmat.h>
+#include <petsctime.h>
+
+#undef PetscAbsReal
+#undef PetscSqrtReal
+#undef PetscCbrtReal
+#undef PetscLogReal
+#undef PetscSinReal
+#undef PetscCosReal
+#undef PetscFloorReal
+#undef PETSC_PI
+#undef PETSC_MACHINE_EPSILON
+#define PetscReal EXTENDED_REAL
+#define PetscAbsReal EXTENDED_FUNCTION(fabs)
+#define PetscSqrtReal EXTENDED_FUNCTION(sqrt)
+#define PetscCbrtReal EXTENDED_FUNCTION(cbrt)
+#define PetscLogReal EXTENDED_FUNCTION(log)
+#define PetscSinReal EXTENDED_FUNCTION(sin)
+#define PetscCosReal EXTENDED_FUNCTION(cos)
+#define PetscFloorReal EXTENDED_FUNCTION(floor)
+#define cbrt EXTENDED_FUNCTION(cbrt)
+#define hypot EXTENDED_FUNCTION(hypot)
+#define PETSC_PI EXTENDED_PI
+#define PETSC_MACHINE_EPSILON EXTENDED_EPSILON
+#include "extended_names.h"
+
+#include "../../src/lattice.c"
+#include "../../rve/mesh.c"
+#include "../../rve/element.c"
+#include "../../rve/wall_law.c"
+#include "../../rve/matrix_mooney_rivlin.c"
+#include "../../rve/fibre_quadratic.c"
+#include "../../rve/turgor.c"
+#include "../../rve/assembly.c"
+#include "../../rve/gap_area.c"
+#include "../../rve/mortar.c"
+#include "../../rve/mortar_segments.c"
+#include "../../rve/contact.c"
+#include "../../rve/linear.c"
+#include "../../rve/homogenise.c"
+
+#define NEWTON_ITERATIONS 60
+#define REFINEMENTS 60
+#define STAGNATION 0.5 /* a refinement that leaves more than this share has reached rounding */
+
+/* The tissue under way, and its double-precision factor: one at a time. */
+static struct LamRVE_s *tissue;
+static const ExtendedStart *started;
+
+PetscErrorCode LamFactorCreate(MPI_Comm comm, PetscInt n, PetscInt row[], PetscInt column[], PetscReal values[],
+                               PetscBool definite, LamFactor *factor)
+{
+  *factor = NULL;
+  return 0;
+}
+PetscErrorCode LamFactorNumeric(LamFactor factor, PetscInt *negative, PetscBool *ok)
+{
+  *negative = 0;
+  *ok = PETSC_TRUE;
+  return 0;
+}
+PetscErrorCode LamFactorDestroy(LamFactor *factor)
+{
+  *factor = NULL;
+  return 0;
+}
+
+/* solution += factor (double-precision inverse) rhs, scaled so that small right-hand sides do not get lost. */
+static PetscErrorCode AddRoughSolution(PetscInt n, const PetscReal rhs[], PetscReal solution[])
+{
+  const PetscReal scale = LamLargestEntry(n, rhs);
+  double *b, *x;
+
+  PetscFunctionBeginUser;
+  if (!(scale > 0)) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc2(n, &b, n, &x));
+  for (PetscInt i = 0; i < n; ++i) b[i] = (double)(rhs[i] / scale);
+  PetscCall((PetscErrorCode)started->solve(started->ctx, b, x));
+  for (PetscInt i = 0; i < n; ++i) solution[i] += scale * x[i];
+  PetscCall(PetscFree2(b, x));
+  PetscFunctionReturn(0);
+}
+
+/* Iterative refinement with the extended matrix. */
+PetscErrorCode LamFactorSolve(LamFactor factor, PetscInt count, const PetscReal rhs[], PetscReal solution[])
+{
+  const PetscInt n = tissue->linear.n;
+  PetscReal *rest;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &rest));
+  for (PetscInt k = 0; k < count; ++k) {
+    PetscReal before = -1, left, *x = solution + k * n;
+
+    PetscCall(PetscArrayzero(x, n));
+    for (PetscInt it = 0; it < REFINEMENTS; ++it) {
+      LamLinearMultiply(&tissue->linear, x, rest);
+      for (PetscInt i = 0; i < n; ++i) rest[i] = rhs[k * n + i] - rest[i];
+      left = LamLargestEntry(n, rest);
+      if (left == 0 || (before >= 0 && !(left < STAGNATION * before))) break;
+      before = left;
+      PetscCall(AddRoughSolution(n, rest, x));
+    }
+  }
+  PetscCall(PetscFree(rest));
+  PetscFunctionReturn(0);
+}
+
+static LamMicrostructure Microstructure(const ExtendedCase *c)
+{
+  LamMicrostructure micro = {.wall_thickness = c->thickness,
+                             .orientation = c->orientation,
+                             .cells = {c->cells[0], c->cells[1]},
+                             .interface = c->contact ? LAM_INTERFACE_CONTACT : LAM_INTERFACE_BONDED,
+                             .clearance = c->clearance,
+                             .along = c->along,
+                             .through = c->through,
+                             .grading = c->grading};
+
+  micro.wall = (LamWall){.law = (LamWallLawType)c->law,
+                         .fibres = (LamFibres)c->fibres,
+                         .C1 = c->C1,
+                         .C2 = c->C2,
+                         .C4 = c->C4,
+                         .bulk_modulus = c->bulk_modulus};
+  return micro;
+}
+
+static PetscErrorCode Create(const ExtendedCase *c, LamRVE *out)
+{
+  LamRVE rve;
+  LamCouplings couplings = {0};
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&rve));
+  rve->micro = Microstructure(c);
+  rve->wanted = LAM_WANT_ALL;
+  PetscCall(LamMeshCreate(&rve->micro, &rve->mesh));
+  PetscCall(PetscMalloc1(rve->mesh.cell_count, &rve->law));
+  for (PetscInt k = 0; k < rve->mesh.cell_count; ++k) PetscCall(LamWallLawGet(rve->micro.wall.law, &rve->law[k]));
+  PetscCall(LamGeometryCreate(rve));
+  if (c->contact) {
+    PetscCall(LamContactCreate(&rve->micro, &rve->mesh, &rve->contact));
+    couplings =
+        (LamCouplings){rve->contact->face_count, rve->contact->chain, rve->contact->hats, rve->contact->classes};
+  }
+  PetscCall(LamLinearCreate(&rve->mesh, c->contact ? &couplings : NULL, 0, &rve->linear));
+  if (c->contact) PetscCall(LamContactSetMatrix(&rve->linear, rve->contact));
+  rve->ndof = rve->length = 2 * rve->mesh.class_count;
+  PetscCall(PetscCalloc3(rve->ndof, &rve->y, rve->linear.n, &rve->step, rve->linear.n + 2, &rve->residual));
+  PetscCall(PetscMalloc2(rve->mesh.cell_count, &rve->seal.area, rve->mesh.cell_count, &rve->seal.factor));
+  *out = rve;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Destroy(LamRVE rve)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamContactDestroy(&rve->contact));
+  PetscCall(LamLinearDestroy(&rve->linear));
+  PetscCall(LamMeshDestroy(&rve->mesh));
+  PetscCall(PetscFree(rve->law));
+  PetscCall(PetscFree(rve->geometry));
+  PetscCall(PetscFree(rve->stress));
+  PetscCall(PetscFree2(rve->seal.area, rve->seal.factor));
+  PetscCall(PetscFree3(rve->y, rve->step, rve->residual));
+  PetscCall(PetscFree(rve));
+  PetscFunctionReturn(0);
+}
+
+/* The class that is held stays where it is in exact arithmetic: 0 of class_X moved by F in double precision is not. */
+static void SetStart(LamRVE rve, const ExtendedStart *start)
+{
+  for (PetscInt i = 0; i < rve->ndof; ++i) rve->y[i] = start->y[i];
+  for (PetscInt h = 0; rve->contact && h < rve->contact->count; ++h) {
+    rve->contact->lambda[h] = start->lambda[h];
+    rve->contact->active[h] = (PetscBool)start->active[h];
+  }
+  for (PetscInt f = 0; rve->contact && f < rve->contact->face_count; ++f) {
+    rve->contact->faces[f].first = start->hats[f][0];
+    rve->contact->faces[f].last = start->hats[f][1];
+  }
+}
+
+/* Residual of positions and active gaps, [2 + n], and the consistent tangent. */
+static PetscErrorCode Linearise(LamRVE rve, const LamLoad *load, PetscReal *norm)
+{
+  PetscReal energy;
+  PetscBool valid = LamSetConsistentStresses(rve, load, rve->y);
+
+  PetscFunctionBeginUser;
+  PetscCheck(valid, PETSC_COMM_SELF, PETSC_ERR_PLIB, "the start is inside out");
+  PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
+  if (rve->contact) {
+    LamContact *contact = rve->contact;
+
+    PetscCall(LamContactEvaluate(rve, load, rve->y, PETSC_FALSE));
+    LamContactAddCurvature(rve);
+    LamContactSetRows(rve, 0);
+    LamContactAddForce(rve, rve->residual);
+    for (PetscInt h = 0; h < contact->count; ++h)
+      rve->residual[rve->ndof + h] = contact->active[h] ? -contact->gap[h] * contact->weight[h] : 0;
+  }
+  *norm = 0;
+  for (PetscInt i = 2; i < rve->linear.n + 2; ++i) *norm += rve->residual[i] * rve->residual[i];
+  *norm = PetscSqrtReal(*norm);
+  PetscFunctionReturn(0);
+}
+
+/* Hats that are merged into another carry its multiplier. */
+static void MoveMultipliers(LamRVE rve)
+{
+  LamContact *contact = rve->contact;
+
+  for (PetscInt h = 0; contact && h < contact->count; ++h)
+    if (contact->active[h]) contact->lambda[h] -= rve->step[rve->linear.positions + h];
+}
+
+/* Newton's method with the double-precision factor, until the residual falls no further. */
+static PetscErrorCode Solve(LamRVE rve, const LamLoad *load, ExtendedAnswer *answer)
+{
+  const double *y0 = started->y;
+  PetscReal norm = 0, before = -1;
+
+  PetscFunctionBeginUser;
+  for (answer->iterations = 0; answer->iterations < NEWTON_ITERATIONS; ++answer->iterations) {
+    PetscCall(Linearise(rve, load, &norm));
+    if (answer->iterations == 0) answer->rounding = (double)norm;
+    if (norm == 0 || (before >= 0 && !(norm < STAGNATION * before))) break;
+    before = norm;
+    PetscCall(PetscArrayzero(rve->step, rve->linear.n));
+    PetscCall(AddRoughSolution(rve->linear.n, rve->residual + 2, rve->step));
+    for (PetscInt i = 0; i < rve->linear.positions; ++i) rve->y[i + 2] -= rve->step[i];
+    MoveMultipliers(rve);
+  }
+  answer->residual = (double)norm;
+  answer->moved = 0;
+  for (PetscInt i = 0; i < rve->ndof; ++i)
+    answer->moved = PetscMax(answer->moved, (double)PetscAbsReal(rve->y[i] - y0[i]));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Measure(LamRVE rve, const LamLoad *load, int tangent, ExtendedAnswer *answer)
+{
+  LamResponse *response;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&response));
+  rve->wanted = tangent ? LAM_WANT_ALL : LAM_WANT_STRESS;
+  PetscCall(LamHomogenise(rve, load, response));
+  for (PetscInt i = 0; i < 9; ++i) answer->P[i] = (double)response->P[i];
+  for (PetscInt i = 0; i < 81; ++i) answer->tangent[i] = (double)response->tangent[i];
+  answer->energy = (double)response->energy;
+  answer->lumen = (double)response->lumen_fraction;
+  answer->opening = (double)response->opening_fraction;
+  PetscCall(PetscFree(response));
+  PetscFunctionReturn(0);
+}
+
+int EXTENDED_SOLVE(const ExtendedCase *c, const ExtendedStart *start, int tangent, ExtendedAnswer *answer)
+{
+  LamLoad load = {.turgor = c->turgor, .cohesion = c->cohesion};
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < 9; ++i) load.F[i] = c->F[i];
+  PetscCall(Create(c, &tissue));
+  started = start;
+  SetStart(tissue, start);
+  PetscCall(Solve(tissue, &load, answer));
+  PetscCall(Measure(tissue, &load, tangent, answer));
+  PetscCall(Destroy(tissue));
+  PetscFunctionReturn(0);
+}
