@@ -9,6 +9,10 @@
   which p is the turgor of the load, that of the unloaded water (turgor.c).
   So P_ij = (1/V0) sum_a f_ai S_aj over shifted nodes, f_a the nodal forces of walls or contact, and the tangent is
   symmetric by construction. Bonded tissue does not feel g.
+
+  Rounding. Positions hold no more than 16 digits, so that r = L_y is not zero but some eps times the stiffest modulus,
+  and so is the error of L_F. To first order the solution lies at y - K^-1 r, and P is (L_F - L_Fy K^-1 r) / V0 there:
+  the work of the wall stresses on the relaxed mode of F, on which stiff walls do none (docs/theory.md, Rounding).
 */
 #include "rve_impl.h"
 #include <lamella/ellipticity.h>
@@ -190,17 +194,52 @@ void LamCopyActive(LamRVE rve, const PetscReal column[], PetscReal copy[])
     copy[i] = i < positions || i >= pressures || rve->contact->active[i - positions] ? column[i] : 0.0;
 }
 
-/* H = (L_qq - R^T K^-1 R) / V0. With X = K^-1 (R - rest) it is (L_qq - R^T X - X^T rest - rest^T K^-1 rest) / V0, of
-   which the last term is left out: an error of the solve enters squared. */
+/* r = L_y [n] at rve->y, of contact with the gaps of active hats; after LamFactorConsistent there. */
+static void CopyResidual(LamRVE rve, PetscReal r[])
+{
+  const LamContact *contact = rve->contact;
+  const PetscInt positions = rve->linear.positions, pressures = rve->linear.n - rve->linear.lumens;
+
+  for (PetscInt i = 0; i < rve->ndof; ++i) rve->trial[i] = rve->residual[i];
+  if (contact) LamContactAddForce(rve, rve->trial);
+  for (PetscInt i = 0; i < positions; ++i) r[i] = rve->trial[i + 2];
+  for (PetscInt h = 0; contact && h < contact->count; ++h)
+    r[positions + h] = contact->active[h] ? -contact->gap[h] * contact->weight[h] : 0.0;
+  for (PetscInt k = 0; k < rve->linear.lumens; ++k)
+    r[pressures + k] = rve->seal.closed ? rve->residual[rve->ndof + k] : 0.0;
+}
+
+/* L_F of the solution next to the positions: -= L_Fy K^-1 r. */
+static PetscErrorCode RelaxStress(LamRVE rve, Condensation *c)
+{
+  const PetscInt n = rve->linear.n;
+  PetscReal *r, *step, *rest, *R;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc4(n, &r, n, &step, n, &rest, n, &R));
+  CopyResidual(rve, r);
+  PetscCall(LamLinearSolve(&rve->linear, 1, r, step, rest));
+  for (PetscInt q = 0; q < LAM_F_COUNT; ++q) {
+    LamCopyActive(rve, c->R + q * c->size + 2, R);
+    c->Lq[q] -= LamInnerProduct(n, R, step);
+  }
+  PetscCall(PetscFree4(r, step, rest, R));
+  PetscFunctionReturn(0);
+}
+
+/* H = (L_qq - R^T K^-1 R) / V0, and L_F as RelaxStress. With X = K^-1 (R - rest) it is (L_qq - R^T X - X^T rest -
+   rest^T K^-1 rest) / V0, of which the last term is left out: an error of the solve enters squared. */
 static PetscErrorCode Condense(LamRVE rve, Condensation *c, PetscReal H[NQ][NQ])
 {
   const PetscInt n = rve->linear.n, nq = c->nq;
-  PetscReal *R, *X, *rest;
+  PetscReal *R, *X, *rest, *residual;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(nq * n, &R, nq * n, &X, nq * n, &rest));
+  PetscCall(PetscMalloc4(nq * n, &R, nq * n, &X, nq * n, &rest, n, &residual));
   for (PetscInt q = 0; q < nq; ++q) LamCopyActive(rve, c->R + q * c->size + 2, R + q * n);
   PetscCall(LamLinearSolve(&rve->linear, nq, R, X, rest));
+  CopyResidual(rve, residual);
+  for (PetscInt q = 0; q < LAM_F_COUNT; ++q) c->Lq[q] -= LamInnerProduct(n, X + q * n, residual);
   for (PetscInt q = 0; q < nq; ++q)
     for (PetscInt r = q; r < nq; ++r) {
       PetscReal a = 0.0, b = 0.0;
@@ -211,7 +250,7 @@ static PetscErrorCode Condense(LamRVE rve, Condensation *c, PetscReal H[NQ][NQ])
       }
       H[q][r] = H[r][q] = (c->Lqq[q][r] - 0.5 * (a + b)) / rve->mesh.V0;
     }
-  PetscCall(PetscFree3(R, X, rest));
+  PetscCall(PetscFree4(R, X, rest, residual));
   PetscFunctionReturn(0);
 }
 
@@ -276,7 +315,10 @@ PetscErrorCode LamHomogenise(LamRVE rve, const LamLoad *load, LamResponse *respo
   PetscFunctionBeginUser;
   PetscCall(LamAssembleEnergy(rve, load, rve->y, &energy, &valid));
   PetscCall(Assemble(rve, load, &c));
-  if (rve->wanted & LAM_WANT_DERIVATIVES) PetscCall(FillDerivatives(rve, &c, response));
+  if (rve->wanted & LAM_WANT_DERIVATIVES)
+    PetscCall(FillDerivatives(rve, &c, response));
+  else
+    PetscCall(RelaxStress(rve, &c));
   PetscCall(PetscFree(c.R));
   response->energy = energy / rve->mesh.V0;
   response->lumen_fraction = load->F[8] * c.lumen / rve->mesh.V0;

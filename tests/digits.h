@@ -78,8 +78,9 @@ static inline PetscErrorCode DigitsCompare(LamRVE rve, const LamResponse *respon
   for (PetscInt h = 0; h < state->multipliers; ++h) active[h] = rve->contact->active[h];
   rve->linear.rate = PETSC_INFINITY;
   PetscCall(LamFactorConsistent(rve, load, &negative, &ok));
-  PetscCall((PetscErrorCode)solve(&c, &(ExtendedStart){state->y, state->lambda, (const int(*)[2])state->hats, active, DigitsSolve, rve},
-                  (rve->wanted & LAM_WANT_DERIVATIVES) != 0, &answer));
+  PetscCall((PetscErrorCode)solve(
+      &c, &(ExtendedStart){state->y, state->lambda, (const int(*)[2])state->hats, active, DigitsSolve, rve},
+      (rve->wanted & LAM_WANT_DERIVATIVES) != 0, &answer));
   PetscCall(PetscFree(active));
   digits->P = DigitsError(9, response->P, answer.P);
   digits->energy = DigitsError(1, &response->energy, &answer.energy);

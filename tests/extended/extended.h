@@ -33,9 +33,9 @@ typedef struct {
 typedef struct {
   double P[9], energy, lumen, opening;
   double tangent[81];
-  double residual;  /* norm of what is left */
-  double moved;     /* largest change of a position, apothems */
-  double rounding;  /* norm of the double-precision positions' own residual, evaluated in extended precision */
+  double residual; /* norm of what is left */
+  double moved;    /* largest change of a position, apothems */
+  double rounding; /* norm of the double-precision positions' own residual, evaluated in extended precision */
   int iterations;
 } ExtendedAnswer;
 

@@ -152,7 +152,8 @@ static PetscErrorCode Create(const ExtendedCase *c, LamRVE *out)
   PetscCall(LamLinearCreate(&rve->mesh, c->contact ? &couplings : NULL, 0, &rve->linear));
   if (c->contact) PetscCall(LamContactSetMatrix(&rve->linear, rve->contact));
   rve->ndof = rve->length = 2 * rve->mesh.class_count;
-  PetscCall(PetscCalloc3(rve->ndof, &rve->y, rve->linear.n, &rve->step, rve->linear.n + 2, &rve->residual));
+  PetscCall(
+      PetscCalloc4(rve->ndof, &rve->y, rve->linear.n, &rve->step, rve->ndof, &rve->trial, rve->ndof, &rve->residual));
   PetscCall(PetscMalloc2(rve->mesh.cell_count, &rve->seal.area, rve->mesh.cell_count, &rve->seal.factor));
   *out = rve;
   PetscFunctionReturn(0);
@@ -168,7 +169,7 @@ static PetscErrorCode Destroy(LamRVE rve)
   PetscCall(PetscFree(rve->geometry));
   PetscCall(PetscFree(rve->stress));
   PetscCall(PetscFree2(rve->seal.area, rve->seal.factor));
-  PetscCall(PetscFree3(rve->y, rve->step, rve->residual));
+  PetscCall(PetscFree4(rve->y, rve->step, rve->trial, rve->residual));
   PetscCall(PetscFree(rve));
   PetscFunctionReturn(0);
 }
@@ -187,8 +188,8 @@ static void SetStart(LamRVE rve, const ExtendedStart *start)
   }
 }
 
-/* Residual of positions and active gaps, [2 + n], and the consistent tangent. */
-static PetscErrorCode Linearise(LamRVE rve, const LamLoad *load, PetscReal *norm)
+/* Gradient [n] of positions and active gaps, and the consistent tangent. */
+static PetscErrorCode Linearise(LamRVE rve, const LamLoad *load, PetscReal gradient[], PetscReal *norm)
 {
   PetscReal energy;
   PetscBool valid = LamSetConsistentStresses(rve, load, rve->y);
@@ -197,17 +198,13 @@ static PetscErrorCode Linearise(LamRVE rve, const LamLoad *load, PetscReal *norm
   PetscCheck(valid, PETSC_COMM_SELF, PETSC_ERR_PLIB, "the start is inside out");
   PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
   if (rve->contact) {
-    LamContact *contact = rve->contact;
-
     PetscCall(LamContactEvaluate(rve, load, rve->y, PETSC_FALSE));
     LamContactAddCurvature(rve);
     LamContactSetRows(rve, 0);
-    LamContactAddForce(rve, rve->residual);
-    for (PetscInt h = 0; h < contact->count; ++h)
-      rve->residual[rve->ndof + h] = contact->active[h] ? -contact->gap[h] * contact->weight[h] : 0;
   }
+  CopyResidual(rve, gradient);
   *norm = 0;
-  for (PetscInt i = 2; i < rve->linear.n + 2; ++i) *norm += rve->residual[i] * rve->residual[i];
+  for (PetscInt i = 0; i < rve->linear.n; ++i) *norm += gradient[i] * gradient[i];
   *norm = PetscSqrtReal(*norm);
   PetscFunctionReturn(0);
 }
@@ -225,19 +222,21 @@ static void MoveMultipliers(LamRVE rve)
 static PetscErrorCode Solve(LamRVE rve, const LamLoad *load, ExtendedAnswer *answer)
 {
   const double *y0 = started->y;
-  PetscReal norm = 0, before = -1;
+  PetscReal norm = 0, before = -1, *gradient;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(rve->linear.n, &gradient));
   for (answer->iterations = 0; answer->iterations < NEWTON_ITERATIONS; ++answer->iterations) {
-    PetscCall(Linearise(rve, load, &norm));
+    PetscCall(Linearise(rve, load, gradient, &norm));
     if (answer->iterations == 0) answer->rounding = (double)norm;
     if (norm == 0 || (before >= 0 && !(norm < STAGNATION * before))) break;
     before = norm;
     PetscCall(PetscArrayzero(rve->step, rve->linear.n));
-    PetscCall(AddRoughSolution(rve->linear.n, rve->residual + 2, rve->step));
+    PetscCall(AddRoughSolution(rve->linear.n, gradient, rve->step));
     for (PetscInt i = 0; i < rve->linear.positions; ++i) rve->y[i + 2] -= rve->step[i];
     MoveMultipliers(rve);
   }
+  PetscCall(PetscFree(gradient));
   answer->residual = (double)norm;
   answer->moved = 0;
   for (PetscInt i = 0; i < rve->ndof; ++i)
