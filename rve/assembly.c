@@ -26,6 +26,21 @@ void LamGatherElement(LamRVE rve, const PetscReal F[9], const PetscReal y[], Pet
     LamNodePosition(rve, F, y, rve->mesh.elements[LAM_ELEMENT_NODES * e + a], x[a]);
 }
 
+void LamGatherDisplacements(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt e,
+                            PetscReal u[LAM_ELEMENT_NODES][2])
+{
+  const LamMesh *mesh = &rve->mesh;
+  const PetscReal H[4] = {F[0] - 1.0, F[1], F[3], F[4] - 1.0};
+
+  for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a) {
+    const PetscInt node = mesh->elements[LAM_ELEMENT_NODES * e + a], class = mesh->node_class[node];
+    const PetscReal *S = &mesh->shift[2 * node];
+
+    u[a][0] = (y[2 * class] - mesh->class_X[2 * class]) + (H[0] * S[0] + H[1] * S[1]);
+    u[a][1] = (y[2 * class + 1] - mesh->class_X[2 * class + 1]) + (H[2] * S[0] + H[3] * S[1]);
+  }
+}
+
 PetscReal LamSuction(LamRVE rve, const LamLoad *load)
 {
   return rve->contact ? load->cohesion * load->F[8] : 0.0;
@@ -48,10 +63,10 @@ PetscErrorCode LamAssembleEnergy(LamRVE rve, const LamLoad *load, const PetscRea
   *energy = LoopEnergy(rve, load, y);
   *valid = PETSC_TRUE;
   for (PetscInt e = 0; e < rve->mesh.element_count; ++e) {
-    PetscReal x[LAM_ELEMENT_NODES][2], element;
+    PetscReal u[LAM_ELEMENT_NODES][2], element;
 
-    LamGatherElement(rve, load->F, y, e, x);
-    LamElementEnergy(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])x, load->F[8],
+    LamGatherDisplacements(rve, load->F, y, e, u);
+    LamElementEnergy(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, load->F[8],
                      &element, valid);
     if (!*valid) break;
     *energy += element;
@@ -84,16 +99,20 @@ PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[],
   PetscCall(PetscArrayzero(residual, rve->length));
   PetscCall(PetscArrayzero(rve->linear.values, rve->linear.nonzeros));
   for (PetscInt e = 0; e < rve->mesh.element_count; ++e) {
-    PetscReal x[LAM_ELEMENT_NODES][2];
+    PetscReal u[LAM_ELEMENT_NODES][2];
     LamElementResult element;
 
-    LamGatherElement(rve, load->F, y, e, x);
-    LamElementEvaluate(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])x, load->F[8],
+    LamGatherDisplacements(rve, load->F, y, e, u);
+    LamElementEvaluate(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, load->F[8],
                        &rve->stress[e], &element, valid);
     if (!*valid) break;
     *energy += element.energy;
-    if (has_turgor && LamMeshElementIsInner(&rve->mesh, e))
+    if (has_turgor && LamMeshElementIsInner(&rve->mesh, e)) {
+      PetscReal x[LAM_ELEMENT_NODES][2];
+
+      LamGatherElement(rve, load->F, y, e, x);
       LamAddPressure((const PetscReal(*)[2])x, LamTurgor(rve, load, y, rve->mesh.cell_of[e]) * load->F[8], &element);
+    }
     Scatter(rve, e, &element, residual);
   }
   LamSealAssemble(rve, load, y, residual);
@@ -109,11 +128,11 @@ void LamUpdateStresses(LamRVE rve, const LamLoad *load, const PetscReal y[], con
 {
 
   for (PetscInt e = 0; e < rve->mesh.element_count; ++e) {
-    PetscReal x[LAM_ELEMENT_NODES][2], dx[LAM_ELEMENT_NODES][2];
+    PetscReal u[LAM_ELEMENT_NODES][2], du[LAM_ELEMENT_NODES][2];
 
-    LamGatherElement(rve, load->F, y, e, x);
-    LamGatherElement(rve, dF, dy, e, dx);
-    LamElementUpdateStress(&rve->geometry[e], (const PetscReal(*)[2])x, (const PetscReal(*)[2])dx, load->F[8], dF[8],
+    LamGatherDisplacements(rve, load->F, y, e, u);
+    LamGatherElement(rve, dF, dy, e, du);
+    LamElementUpdateStress(&rve->geometry[e], (const PetscReal(*)[2])u, (const PetscReal(*)[2])du, load->F[8], dF[8],
                            alpha, &rve->stress[e]);
   }
 }
@@ -121,10 +140,10 @@ void LamUpdateStresses(LamRVE rve, const LamLoad *load, const PetscReal y[], con
 PetscBool LamPositionsAreValid(LamRVE rve, const LamLoad *load, const PetscReal y[])
 {
   for (PetscInt e = 0; e < rve->mesh.element_count; ++e) {
-    PetscReal x[LAM_ELEMENT_NODES][2];
+    PetscReal u[LAM_ELEMENT_NODES][2];
 
-    LamGatherElement(rve, load->F, y, e, x);
-    if (!LamElementIsValid(&rve->geometry[e], (const PetscReal(*)[2])x, load->F[8])) return PETSC_FALSE;
+    LamGatherDisplacements(rve, load->F, y, e, u);
+    if (!LamElementIsValid(&rve->geometry[e], (const PetscReal(*)[2])u, load->F[8])) return PETSC_FALSE;
   }
   return PETSC_TRUE;
 }
@@ -132,10 +151,10 @@ PetscBool LamPositionsAreValid(LamRVE rve, const LamLoad *load, const PetscReal 
 PetscBool LamSetConsistentStresses(LamRVE rve, const LamLoad *load, const PetscReal y[])
 {
   for (PetscInt e = 0; e < rve->mesh.element_count; ++e) {
-    PetscReal x[LAM_ELEMENT_NODES][2];
+    PetscReal u[LAM_ELEMENT_NODES][2];
 
-    LamGatherElement(rve, load->F, y, e, x);
-    if (!LamElementSetConsistentStress(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])x,
+    LamGatherDisplacements(rve, load->F, y, e, u);
+    if (!LamElementSetConsistentStress(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u,
                                        load->F[8], &rve->stress[e]))
       return PETSC_FALSE;
   }

@@ -3,8 +3,8 @@
 
 void LamGaussPoint(PetscInt g, PetscReal *xi, PetscReal *eta, PetscReal *weight)
 {
-  const PetscReal r = PetscSqrtReal(0.6);
-  const PetscReal point[3] = {-r, 0.0, r}, w[3] = {5.0 / 9.0, 8.0 / 9.0, 5.0 / 9.0};
+  const PetscReal r = PetscSqrtReal((PetscReal)3.0 / 5.0);
+  const PetscReal point[3] = {-r, 0.0, r}, w[3] = {(PetscReal)5.0 / 9.0, (PetscReal)8.0 / 9.0, (PetscReal)5.0 / 9.0};
 
   *xi = point[g % 3];
   *eta = point[g / 3];
@@ -99,18 +99,27 @@ PetscErrorCode LamElementSetGeometry(const PetscReal X[][2], const PetscReal fib
   PetscFunctionReturn(0);
 }
 
-/* In-plane deformation gradient at point g: F11 F12 F21 F22. */
-static inline void Gradient(const LamElementGeometry *geometry, PetscInt g, const PetscReal x[][2], PetscReal F[4])
+/* In-plane displacement gradient H at point g: H11 H12 H21 H22. */
+static inline void Gradient(const LamElementGeometry *geometry, PetscInt g, const PetscReal u[][2], PetscReal H[4])
 {
-  F[0] = F[1] = F[2] = F[3] = 0.0;
+  H[0] = H[1] = H[2] = H[3] = 0.0;
   for (PetscInt a = 0; a < 9; ++a) {
     const PetscReal dX = geometry->dN[2 * g][a], dY = geometry->dN[2 * g + 1][a];
 
-    F[0] += x[a][0] * dX;
-    F[1] += x[a][0] * dY;
-    F[2] += x[a][1] * dX;
-    F[3] += x[a][1] * dY;
+    H[0] += u[a][0] * dX;
+    H[1] += u[a][0] * dY;
+    H[2] += u[a][1] * dX;
+    H[3] += u[a][1] * dY;
   }
+}
+
+/* F = 1 + H. */
+static inline void Deformation(const PetscReal H[4], PetscReal F[4])
+{
+  F[0] = 1.0 + H[0];
+  F[1] = H[1];
+  F[2] = H[2];
+  F[3] = 1.0 + H[3];
 }
 
 static inline PetscReal Det(const PetscReal F[4])
@@ -118,67 +127,80 @@ static inline PetscReal Det(const PetscReal F[4])
   return F[0] * F[3] - F[1] * F[2];
 }
 
-/* Gradients at all points and the projected dilatation there; PETSC_FALSE where a volume is not positive. */
-static inline PetscBool Kinematics(const LamElementGeometry *geometry, const PetscReal x[][2], PetscReal F33,
-                                   PetscReal F[LAM_GAUSS][4], PetscReal theta[LAM_GAUSS])
+/* F33 det F - 1. */
+static inline PetscReal Dilation(const PetscReal H[4], PetscReal F33)
+{
+  return F33 * (H[0] + H[3] + (H[0] * H[3] - H[1] * H[2])) + (F33 - 1.0);
+}
+
+/* Gradients H at all points and the projected dilatation theta - 1 there; PETSC_FALSE where a volume is not positive.
+ */
+static inline PetscBool Kinematics(const LamElementGeometry *geometry, const PetscReal u[][2], PetscReal F33,
+                                   PetscReal H[LAM_GAUSS][4], PetscReal dilation[LAM_GAUSS])
 {
   PetscReal c[LAM_PRESSURES] = {0.0, 0.0, 0.0};
   PetscBool valid = PETSC_TRUE;
 
   for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
-    PetscReal J;
+    PetscReal local;
 
-    Gradient(geometry, g, x, F[g]);
-    J = F33 * Det(F[g]);
-    if (!(J > 0.0)) valid = PETSC_FALSE;
-    for (PetscInt k = 0; k < LAM_PRESSURES; ++k) c[k] += geometry->weight[g] * geometry->psi[g][k] * J;
+    Gradient(geometry, g, u, H[g]);
+    local = Dilation(H[g], F33);
+    if (!(1.0 + local > 0.0)) valid = PETSC_FALSE;
+    for (PetscInt k = 0; k < LAM_PRESSURES; ++k) c[k] += geometry->weight[g] * geometry->psi[g][k] * local;
   }
   for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
-    theta[g] = 0.0;
-    for (PetscInt k = 0; k < LAM_PRESSURES; ++k) theta[g] += geometry->psi[g][k] * c[k];
-    if (!(theta[g] > 0.0)) valid = PETSC_FALSE;
+    dilation[g] = 0.0;
+    for (PetscInt k = 0; k < LAM_PRESSURES; ++k) dilation[g] += geometry->psi[g][k] * c[k];
+    if (!(1.0 + dilation[g] > 0.0)) valid = PETSC_FALSE;
   }
   return valid;
 }
 
-/* Fm and I4 = |Fm|^2. */
-static inline PetscReal FibreStretch(const LamElementGeometry *geometry, const PetscReal F[4], PetscReal Fm[2])
+/* I4 - 1, I4 = |Fm|^2; m is a unit vector. */
+static inline PetscReal Extension(const LamElementGeometry *geometry, const PetscReal H[4])
 {
-  Fm[0] = F[0] * geometry->fibre[0] + F[1] * geometry->fibre[1];
-  Fm[1] = F[2] * geometry->fibre[0] + F[3] * geometry->fibre[1];
-  return Fm[0] * Fm[0] + Fm[1] * Fm[1];
+  const PetscReal *m = geometry->fibre, Hm[2] = {H[0] * m[0] + H[1] * m[1], H[2] * m[0] + H[3] * m[1]};
+
+  return 2.0 * (m[0] * Hm[0] + m[1] * Hm[1]) + (Hm[0] * Hm[0] + Hm[1] * Hm[1]);
 }
 
-PetscBool LamElementIsValid(const LamElementGeometry *geometry, const PetscReal x[][2], PetscReal F33)
+/* A m. */
+static inline void AlongFibre(const LamElementGeometry *geometry, const PetscReal A[4], PetscReal Am[2])
 {
-  PetscReal F[LAM_GAUSS][4], theta[LAM_GAUSS];
+  Am[0] = A[0] * geometry->fibre[0] + A[1] * geometry->fibre[1];
+  Am[1] = A[2] * geometry->fibre[0] + A[3] * geometry->fibre[1];
+}
 
-  return Kinematics(geometry, x, F33, F, theta);
+PetscBool LamElementIsValid(const LamElementGeometry *geometry, const PetscReal u[][2], PetscReal F33)
+{
+  PetscReal H[LAM_GAUSS][4], dilation[LAM_GAUSS];
+
+  return Kinematics(geometry, u, F33, H, dilation);
 }
 
 void LamElementEnergy(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                      const PetscReal x[][2], PetscReal F33, PetscReal *energy, PetscBool *valid)
+                      const PetscReal u[][2], PetscReal F33, PetscReal *energy, PetscBool *valid)
 {
-  PetscReal F[LAM_GAUSS][4], theta[LAM_GAUSS];
+  PetscReal H[LAM_GAUSS][4], dilation[LAM_GAUSS];
 
-  *valid = Kinematics(geometry, x, F33, F, theta);
+  *valid = Kinematics(geometry, u, F33, H, dilation);
   if (!*valid) return;
   *energy = 0.0;
   for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
     LamKernel matrix;
-    LamKernel1 u, fibre = {0};
-    PetscReal Fm[2];
+    LamKernel1 volume, fibre = {0};
 
-    law->matrix(wall, F[g], F33, &matrix);
-    LamVolumetric(wall, theta[g], &u);
-    if (law->fibre) law->fibre(wall, FibreStretch(geometry, F[g], Fm), &fibre);
-    *energy += geometry->weight[g] * (matrix.W + u.W + fibre.W);
+    law->matrix(wall, H[g], F33 - 1.0, &matrix);
+    LamVolumetric(wall, dilation[g], &volume);
+    if (law->fibre) law->fibre(wall, Extension(geometry, H[g]), &fibre);
+    *energy += geometry->weight[g] * (matrix.W + volume.W + fibre.W);
   }
 }
 
 /* q = sum w psi U'(theta), H = sum w psi psi U''(theta); returns the volumetric energy. */
 static inline PetscReal Pressures(const LamElementGeometry *geometry, const LamWall *wall,
-                                  const PetscReal theta[LAM_GAUSS], LamElementStress *stress)
+                                  const PetscReal dilation[LAM_GAUSS], LamElementStress *stress)
 {
   PetscReal energy = 0.0;
 
@@ -188,13 +210,13 @@ static inline PetscReal Pressures(const LamElementGeometry *geometry, const LamW
   }
   for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
     const PetscReal *psi = geometry->psi[g];
-    LamKernel1 u;
+    LamKernel1 volume;
 
-    LamVolumetric(wall, theta[g], &u);
-    energy += geometry->weight[g] * u.W;
+    LamVolumetric(wall, dilation[g], &volume);
+    energy += geometry->weight[g] * volume.W;
     for (PetscInt k = 0; k < LAM_PRESSURES; ++k) {
-      stress->px[k] += geometry->weight[g] * psi[k] * u.d;
-      for (PetscInt l = 0; l < LAM_PRESSURES; ++l) stress->H[k][l] += geometry->weight[g] * psi[k] * psi[l] * u.dd;
+      stress->px[k] += geometry->weight[g] * psi[k] * volume.d;
+      for (PetscInt l = 0; l < LAM_PRESSURES; ++l) stress->H[k][l] += geometry->weight[g] * psi[k] * psi[l] * volume.dd;
     }
   }
   return energy;
@@ -206,19 +228,19 @@ static inline PetscReal AtPoint(const LamElementGeometry *geometry, PetscInt g, 
 }
 
 /*
-  Stress w P and tangent w A at point g: the residual with the stresses of x, the tangent with the independent ones.
+  Stress w P and tangent w A at point g: the residual with the stresses of u, the tangent with the independent ones.
   The projection term of the pressure is added in LamElementEvaluate. Returns the energy without U.
 */
 static inline PetscReal PointStress(const LamElementGeometry *geometry, PetscInt g, const LamWallLaw *law,
-                                    const LamWall *wall, const PetscReal F[4], PetscReal F33, LamElementStress *stress,
+                                    const LamWall *wall, const PetscReal H[4], PetscReal F33, LamElementStress *stress,
                                     PetscReal P[4], PetscReal A[4][4])
 {
-  const PetscReal w = geometry->weight[g], cof[4] = {F[3], -F[2], -F[1], F[0]}, *m = geometry->fibre;
+  const PetscReal w = geometry->weight[g], cof[4] = {1.0 + H[3], -H[2], -H[1], 1.0 + H[0]}, *m = geometry->fibre;
   const PetscReal p = F33 * AtPoint(geometry, g, stress->px), p_star = F33 * AtPoint(geometry, g, stress->p);
   PetscReal energy;
   LamKernel k;
 
-  law->matrix(wall, F, F33, &k);
+  law->matrix(wall, H, F33 - 1.0, &k);
   energy = k.W;
   for (PetscInt r = 0; r < 4; ++r) {
     P[r] = w * (k.P[r] + p * cof[r]);
@@ -229,10 +251,12 @@ static inline PetscReal PointStress(const LamElementGeometry *geometry, PetscInt
   A[1][2] -= w * p_star;
   A[2][1] -= w * p_star;
   if (law->fibre) {
-    PetscReal Fm[2], dI4[4];
+    PetscReal F[4], Fm[2], dI4[4];
     LamKernel1 fibre;
 
-    law->fibre(wall, FibreStretch(geometry, F, Fm), &fibre);
+    Deformation(H, F);
+    AlongFibre(geometry, F, Fm);
+    law->fibre(wall, Extension(geometry, H), &fibre);
     energy += fibre.W;
     stress->sx[g] = fibre.d;
     stress->dds[g] = fibre.dd;
@@ -286,24 +310,24 @@ static inline void AddProjection(const PetscReal H[3][3], const PetscReal D[2][L
 }
 
 void LamElementEvaluate(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                        const PetscReal x[][2], PetscReal F33, LamElementStress *stress, LamElementResult *out,
+                        const PetscReal u[][2], PetscReal F33, LamElementStress *stress, LamElementResult *out,
                         PetscBool *valid)
 {
-  PetscReal F[LAM_GAUSS][4], theta[LAM_GAUSS];
+  PetscReal H[LAM_GAUSS][4], dilation[LAM_GAUSS];
   PetscReal T[3][2 * LAM_GAUSS][LAM_PADDED_NODES];           /* A dN for the component pairs 11, 12, 22 */
   PetscReal K[3][9][LAM_PADDED_NODES] = {{{0}}};             /* blocks 11, 12, 22 */
   PetscReal D[2][LAM_PRESSURES][LAM_PADDED_NODES] = {{{0}}}; /* dc/dx */
   PetscReal f[2][LAM_PADDED_NODES] = {{0}};
 
-  *valid = Kinematics(geometry, x, F33, F, theta);
+  *valid = Kinematics(geometry, u, F33, H, dilation);
   if (!*valid) return;
-  out->energy = Pressures(geometry, wall, theta, stress);
+  out->energy = Pressures(geometry, wall, dilation, stress);
   for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
     const PetscReal *dX = geometry->dN[2 * g], *dY = geometry->dN[2 * g + 1];
-    const PetscReal cof[4] = {F[g][3], -F[g][2], -F[g][1], F[g][0]};
+    const PetscReal cof[4] = {1.0 + H[g][3], -H[g][2], -H[g][1], 1.0 + H[g][0]};
     PetscReal P[4], A[4][4];
 
-    out->energy += PointStress(geometry, g, law, wall, F[g], F33, stress, P, A);
+    out->energy += PointStress(geometry, g, law, wall, H[g], F33, stress, P, A);
     for (PetscInt a = 0; a < LAM_PADDED_NODES; ++a) {
       f[0][a] += P[0] * dX[a] + P[1] * dY[a];
       f[1][a] += P[2] * dX[a] + P[3] * dY[a];
@@ -337,20 +361,21 @@ void LamElementEvaluate(const LamElementGeometry *geometry, const LamWallLaw *la
   }
 }
 
-void LamElementUpdateStress(const LamElementGeometry *geometry, const PetscReal x[][2], const PetscReal dx[][2],
+void LamElementUpdateStress(const LamElementGeometry *geometry, const PetscReal u[][2], const PetscReal du[][2],
                             PetscReal F33, PetscReal dF33, PetscReal alpha, LamElementStress *stress)
 {
   PetscReal dc[LAM_PRESSURES] = {0.0, 0.0, 0.0};
 
   for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
-    PetscReal F[4], dF[4], Fm[2], dFm[2], dJ;
+    PetscReal H[4], F[4], dF[4], Fm[2], dFm[2], dJ;
 
-    Gradient(geometry, g, x, F);
-    Gradient(geometry, g, dx, dF);
+    Gradient(geometry, g, u, H);
+    Deformation(H, F);
+    Gradient(geometry, g, du, dF);
     dJ = F33 * (F[3] * dF[0] - F[2] * dF[1] - F[1] * dF[2] + F[0] * dF[3]) + dF33 * Det(F);
     for (PetscInt k = 0; k < LAM_PRESSURES; ++k) dc[k] += geometry->weight[g] * geometry->psi[g][k] * dJ;
-    (void)FibreStretch(geometry, F, Fm);
-    (void)FibreStretch(geometry, dF, dFm);
+    AlongFibre(geometry, F, Fm);
+    AlongFibre(geometry, dF, dFm);
     stress->s[g] += alpha * (stress->sx[g] + stress->dds[g] * 2.0 * (Fm[0] * dFm[0] + Fm[1] * dFm[1]) - stress->s[g]);
   }
   for (PetscInt k = 0; k < LAM_PRESSURES; ++k) {
@@ -362,18 +387,17 @@ void LamElementUpdateStress(const LamElementGeometry *geometry, const PetscReal 
 }
 
 PetscBool LamElementSetConsistentStress(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                                        const PetscReal x[][2], PetscReal F33, LamElementStress *stress)
+                                        const PetscReal u[][2], PetscReal F33, LamElementStress *stress)
 {
-  PetscReal F[LAM_GAUSS][4], theta[LAM_GAUSS];
+  PetscReal H[LAM_GAUSS][4], dilation[LAM_GAUSS];
 
-  if (!Kinematics(geometry, x, F33, F, theta)) return PETSC_FALSE;
-  (void)Pressures(geometry, wall, theta, stress);
+  if (!Kinematics(geometry, u, F33, H, dilation)) return PETSC_FALSE;
+  (void)Pressures(geometry, wall, dilation, stress);
   for (PetscInt k = 0; k < LAM_PRESSURES; ++k) stress->p[k] = stress->px[k];
   for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
     LamKernel1 fibre = {0};
-    PetscReal Fm[2];
 
-    if (law->fibre) law->fibre(wall, FibreStretch(geometry, F[g], Fm), &fibre);
+    if (law->fibre) law->fibre(wall, Extension(geometry, H[g]), &fibre);
     stress->s[g] = stress->sx[g] = fibre.d;
     stress->dds[g] = fibre.dd;
   }
@@ -381,15 +405,16 @@ PetscBool LamElementSetConsistentStress(const LamElementGeometry *geometry, cons
 }
 
 void LamElementStretch33(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                         const PetscReal x[][2], PetscReal F33, const LamElementStress *stress, PetscReal *force,
+                         const PetscReal u[][2], PetscReal F33, const LamElementStress *stress, PetscReal *force,
                          PetscReal fx[LAM_ELEMENT_DOFS], PetscReal *ff)
 {
-  PetscReal Df[LAM_PRESSURES] = {0.0, 0.0, 0.0}, HDf[LAM_PRESSURES], F[LAM_GAUSS][4];
+  PetscReal Df[LAM_PRESSURES] = {0.0, 0.0, 0.0}, HDf[LAM_PRESSURES], H[LAM_GAUSS][4], F[LAM_GAUSS][4];
 
   *force = *ff = 0.0;
   for (PetscInt i = 0; i < LAM_ELEMENT_DOFS; ++i) fx[i] = 0.0;
   for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
-    Gradient(geometry, g, x, F[g]);
+    Gradient(geometry, g, u, H[g]);
+    Deformation(H[g], F[g]);
     for (PetscInt k = 0; k < LAM_PRESSURES; ++k) Df[k] += geometry->weight[g] * geometry->psi[g][k] * Det(F[g]);
   }
   for (PetscInt k = 0; k < LAM_PRESSURES; ++k) {
@@ -404,7 +429,7 @@ void LamElementStretch33(const LamElementGeometry *geometry, const LamWallLaw *l
     const PetscReal dp = AtPoint(geometry, g, HDf);
     LamKernel k;
 
-    law->matrix(wall, F[g], F33, &k);
+    law->matrix(wall, H[g], F33 - 1.0, &k);
     *force += w * (k.P[4] + p * Det(F[g]));
     *ff += w * k.A[4][4];
     for (PetscInt a = 0; a < 9; ++a)
@@ -415,22 +440,23 @@ void LamElementStretch33(const LamElementGeometry *geometry, const LamWallLaw *l
 }
 
 void LamElementFields(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                      const PetscReal x[][2], PetscReal F33, PetscReal fibre[LAM_GAUSS], PetscReal stress[LAM_GAUSS])
+                      const PetscReal u[][2], PetscReal F33, PetscReal fibre[LAM_GAUSS], PetscReal stress[LAM_GAUSS])
 {
-  PetscReal F[LAM_GAUSS][4], theta[LAM_GAUSS];
+  PetscReal H[LAM_GAUSS][4], dilation[LAM_GAUSS];
   LamElementStress local = {0};
 
-  (void)Kinematics(geometry, x, F33, F, theta);
-  (void)Pressures(geometry, wall, theta, &local);
+  (void)Kinematics(geometry, u, F33, H, dilation);
+  (void)Pressures(geometry, wall, dilation, &local);
   for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
-    PetscReal P[4], A[4][4], Fm[2], s11, s22, s12;
-    const PetscReal scale = 1.0 / (geometry->weight[g] * Det(F[g]) * F33);
+    PetscReal P[4], A[4][4], F[4], scale, s11, s22, s12;
 
-    fibre[g] = PetscSqrtReal(FibreStretch(geometry, F[g], Fm));
-    (void)PointStress(geometry, g, law, wall, F[g], F33, &local, P, A);
-    s11 = scale * (P[0] * F[g][0] + P[1] * F[g][1]); /* sigma = P F^T / J */
-    s12 = scale * (P[0] * F[g][2] + P[1] * F[g][3]);
-    s22 = scale * (P[2] * F[g][2] + P[3] * F[g][3]);
+    Deformation(H[g], F);
+    scale = 1.0 / (geometry->weight[g] * Det(F) * F33);
+    fibre[g] = PetscSqrtReal(1.0 + Extension(geometry, H[g]));
+    (void)PointStress(geometry, g, law, wall, H[g], F33, &local, P, A);
+    s11 = scale * (P[0] * F[0] + P[1] * F[1]); /* sigma = P F^T / J */
+    s12 = scale * (P[0] * F[2] + P[1] * F[3]);
+    s22 = scale * (P[2] * F[2] + P[3] * F[3]);
     stress[g] = 0.5 * (s11 + s22) + PetscSqrtReal(0.25 * PetscSqr(s11 - s22) + s12 * s12);
   }
 }
@@ -444,24 +470,26 @@ static inline void AddFibreCurvature(const LamElementGeometry *geometry, PetscRe
 }
 
 void LamElementWallPoints(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                          const PetscReal x[][2], PetscReal F33, LamWallPoint points[LAM_GAUSS])
+                          const PetscReal u[][2], PetscReal F33, LamWallPoint points[LAM_GAUSS])
 {
-  PetscReal F[LAM_GAUSS][4], theta[LAM_GAUSS];
+  PetscReal H[LAM_GAUSS][4], dilation[LAM_GAUSS];
   LamElementStress local = {0};
 
-  (void)Kinematics(geometry, x, F33, F, theta);
-  (void)Pressures(geometry, wall, theta, &local);
+  (void)Kinematics(geometry, u, F33, H, dilation);
+  (void)Pressures(geometry, wall, dilation, &local);
   for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
     const PetscReal w = geometry->weight[g];
-    PetscReal P[4], A[4][4], Fm[2], tm[2];
-    const PetscReal I4 = FibreStretch(geometry, F[g], Fm);
+    const PetscReal I4 = 1.0 + Extension(geometry, H[g]);
+    PetscReal P[4], A[4][4], F[4], Fm[2], tm[2];
 
-    points[g].energy = PointStress(geometry, g, law, wall, F[g], F33, &local, P, A);
+    Deformation(H[g], F);
+    AlongFibre(geometry, F, Fm);
+    points[g].energy = PointStress(geometry, g, law, wall, H[g], F33, &local, P, A);
     points[g].reference = w;
-    points[g].volume = w * F33 * Det(F[g]);
+    points[g].volume = w * F33 * Det(F);
     points[g].stretch = w * PetscSqrtReal(I4);
     /* w J sigma = (w P) F^T; m = Fm / |Fm| */
-    for (PetscInt k = 0; k < 2; ++k) tm[k] = (Fm[0] * F[g][k] + Fm[1] * F[g][2 + k]) / I4; /* F^T m / |Fm| */
+    for (PetscInt k = 0; k < 2; ++k) tm[k] = (Fm[0] * F[k] + Fm[1] * F[2 + k]) / I4; /* F^T m / |Fm| */
     points[g].tension = Fm[0] * (P[0] * tm[0] + P[1] * tm[1]) + Fm[1] * (P[2] * tm[0] + P[3] * tm[1]);
     if (law->fibre) AddFibreCurvature(geometry, 2.0 * w * local.sx[g], A);
     points[g].ellipticity = LamShearBandStiffness((const PetscReal(*)[4])A, F[g]);

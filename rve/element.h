@@ -1,7 +1,8 @@
 /*
   The wall element: nine-node quadrilateral, discontinuous linear pressure (Q2/P1disc), 3 x 3 Gauss points.
 
-  Energy of one element, with positions x of its nodes:
+  Energy of one element. It is given the displacements u of its nodes, whose gradient H = F - 1 keeps its digits where
+  strains are small:
     Pi_e = sum_g w_g [ W_matrix(F_g) + W_fibre(I4_g) + U(theta_g) ],
     theta = projection of J = F33 det F onto span(psi_0, psi_1, psi_2) = linear functions of the reference coordinates,
   orthonormal on the element, so theta = psi.c with c = sum w psi J. Everything below is a derivative of Pi_e.
@@ -47,35 +48,35 @@ typedef struct {
 } LamElementResult;
 
 /* PETSC_FALSE where det F or theta is not positive at a Gauss point. */
-PetscBool LamElementIsValid(const LamElementGeometry *geometry, const PetscReal x[][2], PetscReal F33);
+PetscBool LamElementIsValid(const LamElementGeometry *geometry, const PetscReal u[][2], PetscReal F33);
 
 /* Energy alone. *valid is PETSC_FALSE, and nothing else is set, where det F or theta is not positive. */
 void LamElementEnergy(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                      const PetscReal x[][2], PetscReal F33, PetscReal *energy, PetscBool *valid);
+                      const PetscReal u[][2], PetscReal F33, PetscReal *energy, PetscBool *valid);
 
 /* Energy, residual of the energy, tangent with the independent stresses; updates px, sx, dds, H of `stress`. */
 void LamElementEvaluate(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                        const PetscReal x[][2], PetscReal F33, LamElementStress *stress, LamElementResult *out,
+                        const PetscReal u[][2], PetscReal F33, LamElementStress *stress, LamElementResult *out,
                         PetscBool *valid);
 
-/* Moves the independent stresses: stress* += alpha (stress(x) + d stress(x).(dx, dF33) - stress*), at the x of the last
+/* Moves the independent stresses: stress* += alpha (stress(u) + d stress(u).(du, dF33) - stress*), at the u of the last
    evaluation. */
-void LamElementUpdateStress(const LamElementGeometry *geometry, const PetscReal x[][2], const PetscReal dx[][2],
+void LamElementUpdateStress(const LamElementGeometry *geometry, const PetscReal u[][2], const PetscReal du[][2],
                             PetscReal F33, PetscReal dF33, PetscReal alpha, LamElementStress *stress);
 
-/* Sets the independent stresses to those of x; PETSC_FALSE where x is not valid. */
+/* Sets the independent stresses to those of u; PETSC_FALSE where u is not valid. */
 PetscBool LamElementSetConsistentStress(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                                        const PetscReal x[][2], PetscReal F33, LamElementStress *stress);
+                                        const PetscReal u[][2], PetscReal F33, LamElementStress *stress);
 
 /* Derivatives with respect to F33 at fixed positions: force = dPi_e/dF33 with the stresses of the last evaluation, and
    as in the tangent with the independent ones fx = d2Pi_e/dx dF33, ff = d2Pi_e/dF33^2. */
 void LamElementStretch33(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                         const PetscReal x[][2], PetscReal F33, const LamElementStress *stress, PetscReal *force,
+                         const PetscReal u[][2], PetscReal F33, const LamElementStress *stress, PetscReal *force,
                          PetscReal fx[LAM_ELEMENT_DOFS], PetscReal *ff);
 
 /* Fibre stretch sqrt(I4) and largest in-plane principal Cauchy stress at the Gauss points. */
 void LamElementFields(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                      const PetscReal x[][2], PetscReal F33, PetscReal fibre[LAM_GAUSS], PetscReal stress[LAM_GAUSS]);
+                      const PetscReal u[][2], PetscReal F33, PetscReal fibre[LAM_GAUSS], PetscReal stress[LAM_GAUSS]);
 
 /* What a Gauss point adds to integrals over the wall, per reference thickness. */
 typedef struct {
@@ -87,7 +88,7 @@ typedef struct {
   PetscReal kinked;            /* reference volume where that is negative */
 } LamWallPoint;
 void LamElementWallPoints(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                          const PetscReal x[][2], PetscReal F33, LamWallPoint points[LAM_GAUSS]);
+                          const PetscReal u[][2], PetscReal F33, LamWallPoint points[LAM_GAUSS]);
 
 /* Nine-node shape functions and their derivatives at (xi, eta) in [-1, 1]^2; node order of LamMesh. */
 void LamShape(PetscReal xi, PetscReal eta, PetscReal N[9], PetscReal dN[9][2]);

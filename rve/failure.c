@@ -51,11 +51,11 @@ static void SumThroughWall(LamRVE rve, const LamLoad *load, PetscInt cell, Petsc
     for (PetscInt q = 0; q < INTEGRALS; ++q) column[h][q] = 0.0;
   for (PetscInt m = 0; m < rve->mesh.through; ++m) {
     const PetscInt e = LamMeshElement(&rve->mesh, cell, face, i, m);
-    PetscReal x[LAM_ELEMENT_NODES][2];
+    PetscReal u[LAM_ELEMENT_NODES][2];
     LamWallPoint points[LAM_GAUSS];
 
-    LamGatherElement(rve, load->F, rve->y, e, x);
-    LamElementWallPoints(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])x, load->F[8],
+    LamGatherDisplacements(rve, load->F, rve->y, e, u);
+    LamElementWallPoints(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, load->F[8],
                          points);
     for (PetscInt g = 0; g < LAM_GAUSS; ++g) { /* g / 3 counts along the face, g % 3 through the wall */
       PetscReal *sum = column[g / 3];

@@ -4,11 +4,11 @@
 */
 #include "wall_law.h"
 
-void LamFibreQuadratic(const LamWall *wall, PetscReal I4, LamKernel1 *out)
+void LamFibreQuadratic(const LamWall *wall, PetscReal extension, LamKernel1 *out)
 {
-  const PetscReal active = wall->fibres == LAM_FIBRES_TENSION && I4 <= 1.0 ? 0.0 : wall->C4;
+  const PetscReal active = wall->fibres == LAM_FIBRES_TENSION && extension <= 0.0 ? 0.0 : wall->C4;
 
-  out->W = 0.25 * active * (I4 - 1.0) * (I4 - 1.0);
-  out->d = 0.5 * active * (I4 - 1.0);
+  out->W = 0.25 * active * extension * extension;
+  out->d = 0.5 * active * extension;
   out->dd = 0.5 * active;
 }

@@ -32,11 +32,12 @@ PetscErrorCode LamRVEGetFields(LamRVE rve, LamRVEState state, PetscReal x[], Pet
   if (fibre) PetscCall(PetscArrayzero(fibre, mesh->node_count));
   if (stress) PetscCall(PetscArrayzero(stress, mesh->node_count));
   for (PetscInt e = 0; e < mesh->element_count; ++e) {
-    PetscReal xe[LAM_ELEMENT_NODES][2], gauss[2][LAM_GAUSS], node[2][LAM_ELEMENT_NODES];
+    PetscReal xe[LAM_ELEMENT_NODES][2], u[LAM_ELEMENT_NODES][2], gauss[2][LAM_GAUSS], node[2][LAM_ELEMENT_NODES];
 
     LamGatherElement(rve, state->load.F, state->y, e, xe);
-    LamElementFields(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])xe,
-                     state->load.F[8], gauss[0], gauss[1]);
+    LamGatherDisplacements(rve, state->load.F, state->y, e, u);
+    LamElementFields(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, state->load.F[8],
+                     gauss[0], gauss[1]);
     for (PetscInt k = 0; k < 2; ++k) ExtrapolateToNodes(gauss[k], node[k]);
     for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a) {
       const PetscInt i = mesh->elements[LAM_ELEMENT_NODES * e + a];

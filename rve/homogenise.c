@@ -68,10 +68,10 @@ static void AddElement(LamRVE rve, const LamLoad *load, PetscInt e, Condensation
 {
   const LamMesh *mesh = &rve->mesh;
   const PetscInt *nodes = &mesh->elements[LAM_ELEMENT_NODES * e];
-  PetscReal x[LAM_ELEMENT_NODES][2], force33, ff, fx[LAM_ELEMENT_DOFS];
+  PetscReal u[LAM_ELEMENT_NODES][2], force33, ff, fx[LAM_ELEMENT_DOFS];
 
-  LamGatherElement(rve, load->F, rve->y, e, x);
-  LamElementStretch33(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])x, load->F[8],
+  LamGatherDisplacements(rve, load->F, rve->y, e, u);
+  LamElementStretch33(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, load->F[8],
                       &rve->stress[e], &force33, fx, &ff);
   c->Lq[Q_F33] += force33;
   c->Lqq[Q_F33][Q_F33] += ff;
@@ -81,7 +81,7 @@ static void AddElement(LamRVE rve, const LamLoad *load, PetscInt e, Condensation
     LamElementResult element;
     PetscBool valid;
 
-    LamElementEvaluate(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])x, load->F[8],
+    LamElementEvaluate(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, load->F[8],
                        &rve->stress[e], &element, &valid);
     AddShifted(rve, e, &element, fx, c);
   }

@@ -184,6 +184,10 @@ PetscErrorCode LamGeometryCreate(LamRVE rve);
 /* Positions of an element's nodes: x_a = y_class + F S. */
 void LamGatherElement(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt e,
                       PetscReal x[LAM_ELEMENT_NODES][2]);
+/* Displacements of an element's nodes, u_a = x_a - X_a as y_class - X_class + (F - 1) S: with all digits of their own.
+ */
+void LamGatherDisplacements(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt e,
+                            PetscReal u[LAM_ELEMENT_NODES][2]);
 /* Suction on walls that have a partner, per reference thickness: g F33; 0 for bonded tissue. */
 PetscReal LamSuction(LamRVE rve, const LamLoad *load);
 /* Energy (walls - p V_lumen + g V_gap; in sealed lumens that of the water), not divided by V0; *valid as

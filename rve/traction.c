@@ -22,13 +22,13 @@ static PetscErrorCode NodeForces(LamRVE rve, const LamLoad *load, PetscReal forc
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(force, 2 * mesh->node_count));
   for (PetscInt e = 0; e < mesh->element_count; ++e) {
-    PetscReal x[LAM_ELEMENT_NODES][2];
+    PetscReal u[LAM_ELEMENT_NODES][2];
     LamElementResult element;
     PetscBool valid;
 
     if (!LamMeshElementIsOuter(mesh, e)) continue; /* only the outermost elements touch a face */
-    LamGatherElement(rve, load->F, rve->y, e, x);
-    LamElementEvaluate(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])x, load->F[8],
+    LamGatherDisplacements(rve, load->F, rve->y, e, u);
+    LamElementEvaluate(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, load->F[8],
                        &rve->stress[e], &element, &valid);
     for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
       for (PetscInt d = 0; d < 2; ++d) force[2 * mesh->elements[LAM_ELEMENT_NODES * e + a] + d] += element.f[2 * a + d];

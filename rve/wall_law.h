@@ -4,6 +4,8 @@
   W = W_matrix(F, F33) + W_fibre(I4) + U(J),  plane strain with a prescribed stretch F33 along the prism axis.
   The matrix part is isochoric. U is the same for every law: U(J) = kappa/4 (J^2 - 1 - 2 ln J), applied to the
   projected dilatation (element.h). I4 = M.CM with the full C and M along the wall (Mihai, Safar & Wyatt, eq. 4.1).
+  Kernels take what is left of F, I4 and J where the wall is undeformed, H = F - 1, I4 - 1, J - 1, and give energy and
+  stress with all digits of it, however small it is.
   Energies and stresses in C1 + C2. A new law is one kernel file and one row in wall_law.c.
 */
 #ifndef LAM_RVE_WALL_LAW_H
@@ -12,7 +14,7 @@
 #include <petscsys.h>
 #include <lamella/scene.h>
 
-/* Components of (F, F33) in kernels: 0..3 are F11 F12 F21 F22, 4 is F33. */
+/* Components of (F, F33), and of (H, H33), in kernels: 0..3 are F11 F12 F21 F22, 4 is F33. */
 #define LAM_KERNEL_COMPONENTS 5
 
 typedef struct {
@@ -27,24 +29,46 @@ typedef struct {
 
 typedef struct {
   LamWallLawType type;
-  /* Isochoric matrix; needs det F > 0 and F33 > 0. */
-  void (*matrix)(const LamWall *wall, const PetscReal F[4], PetscReal F33, LamKernel *out);
-  /* Fibres as a function of I4; NULL where the law has none. */
-  void (*fibre)(const LamWall *wall, PetscReal I4, LamKernel1 *out);
+  /* Isochoric matrix at F = 1 + H, F33 = 1 + H33; needs det F > 0 and F33 > 0. */
+  void (*matrix)(const LamWall *wall, const PetscReal H[4], PetscReal H33, LamKernel *out);
+  /* Fibres as a function of I4 = 1 + extension; NULL where the law has none. */
+  void (*fibre)(const LamWall *wall, PetscReal extension, LamKernel1 *out);
 } LamWallLaw;
 
 PetscErrorCode LamWallLawGet(LamWallLawType type, const LamWallLaw **law);
 
 /* Kernels, one file each. */
-void LamMatrixMooneyRivlin(const LamWall *wall, const PetscReal F[4], PetscReal F33, LamKernel *out);
-void LamFibreQuadratic(const LamWall *wall, PetscReal I4, LamKernel1 *out);
+void LamMatrixMooneyRivlin(const LamWall *wall, const PetscReal H[4], PetscReal H33, LamKernel *out);
+void LamFibreQuadratic(const LamWall *wall, PetscReal extension, LamKernel1 *out);
 
-/* U(J) = kappa/4 (J^2 - 1 - 2 ln J), J > 0. */
-static inline void LamVolumetric(const LamWall *wall, PetscReal J, LamKernel1 *out)
+/* The matrix kernel for who has F. */
+static inline void LamMatrixAt(const LamWallLaw *law, const LamWall *wall, const PetscReal F[4], PetscReal F33,
+                               LamKernel *out)
 {
-  out->W = 0.25 * wall->bulk_modulus * ((J - 1.0) * (J + 1.0) - 2.0 * PetscLogReal(J));
-  out->d = 0.5 * wall->bulk_modulus * (J - 1.0) * (J + 1.0) / J;
-  out->dd = 0.5 * wall->bulk_modulus * (1.0 + 1.0 / (J * J));
+  const PetscReal H[4] = {F[0] - 1.0, F[1], F[2], F[3] - 1.0};
+
+  law->matrix(wall, H, F33 - 1.0, out);
+}
+
+/* e - ln(1 + e), e > -1, to all digits also where the two cancel: with s = e/(2 + e) it is 2 s/(1 - s) - 2 artanh s. */
+static inline PetscReal LamLogRest(PetscReal e)
+{
+  const PetscReal s = e / (2.0 + e), s2 = s * s;
+  PetscReal sum = 0.0, power = 1.0;
+
+  if (PetscAbsReal(e) > 0.1) return e - PetscLogReal(1.0 + e);
+  for (PetscInt k = 3; power > PETSC_MACHINE_EPSILON; k += 2, power *= s2) sum += power / (PetscReal)k;
+  return 2.0 * s2 * (1.0 / (1.0 - s) - s * sum);
+}
+
+/* U(J) = kappa/4 (J^2 - 1 - 2 ln J), J = 1 + dilation > 0. */
+static inline void LamVolumetric(const LamWall *wall, PetscReal dilation, LamKernel1 *out)
+{
+  const PetscReal inverse = 1.0 / (1.0 + dilation);
+
+  out->W = 0.25 * wall->bulk_modulus * (dilation * dilation + 2.0 * LamLogRest(dilation));
+  out->d = 0.5 * wall->bulk_modulus * dilation * (2.0 + dilation) * inverse;
+  out->dd = 0.5 * wall->bulk_modulus * (1.0 + inverse * inverse);
 }
 
 #endif

@@ -56,12 +56,12 @@ static inline void BareAssemble(LamRVE rve, const LamLoad *load)
   for (PetscInt e = 0; e < rve->mesh.element_count; e++) {
     const PetscInt *nodes = &rve->mesh.elements[LAM_ELEMENT_NODES * e],
                    *position = &rve->linear.position[LAM_PAIRS * e];
-    PetscReal x[LAM_ELEMENT_NODES][2];
+    PetscReal u[LAM_ELEMENT_NODES][2];
     LamElementResult element;
     PetscBool valid;
 
-    LamGatherElement(rve, load->F, rve->y, e, x);
-    LamElementEvaluate(&rve->geometry[e], rve->law[0], &rve->micro.wall, (const PetscReal(*)[2])x, load->F[8],
+    LamGatherDisplacements(rve, load->F, rve->y, e, u);
+    LamElementEvaluate(&rve->geometry[e], rve->law[0], &rve->micro.wall, (const PetscReal(*)[2])u, load->F[8],
                        &rve->stress[e], &element, &valid);
     for (PetscInt i = 0; i < LAM_ELEMENT_DOFS; i++)
       rve->residual[2 * rve->mesh.node_class[nodes[i / 2]] + i % 2] += element.f[i];
@@ -101,16 +101,16 @@ static inline void BareStress(LamRVE rve, const LamLoad *load, PetscReal P[9])
 {
   for (PetscInt i = 0; i < 9; i++) P[i] = 0;
   for (PetscInt e = 0; e < rve->mesh.element_count; e++) {
-    PetscReal x[LAM_ELEMENT_NODES][2], force33, ff, fx[LAM_ELEMENT_DOFS];
+    PetscReal u[LAM_ELEMENT_NODES][2], force33, ff, fx[LAM_ELEMENT_DOFS];
     LamElementResult element;
     PetscBool valid;
 
-    LamGatherElement(rve, load->F, rve->y, e, x);
-    LamElementStretch33(&rve->geometry[e], rve->law[0], &rve->micro.wall, (const PetscReal(*)[2])x, load->F[8],
+    LamGatherDisplacements(rve, load->F, rve->y, e, u);
+    LamElementStretch33(&rve->geometry[e], rve->law[0], &rve->micro.wall, (const PetscReal(*)[2])u, load->F[8],
                         &rve->stress[e], &force33, fx, &ff);
     P[8] += force33 / rve->mesh.V0;
     if (!rve->mesh.has_shift[e]) continue;
-    LamElementEvaluate(&rve->geometry[e], rve->law[0], &rve->micro.wall, (const PetscReal(*)[2])x, load->F[8],
+    LamElementEvaluate(&rve->geometry[e], rve->law[0], &rve->micro.wall, (const PetscReal(*)[2])u, load->F[8],
                        &rve->stress[e], &element, &valid);
     for (PetscInt a = 0; a < LAM_ELEMENT_NODES; a++) {
       const PetscReal *S = &rve->mesh.shift[2 * rve->mesh.elements[LAM_ELEMENT_NODES * e + a]];

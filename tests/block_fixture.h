@@ -13,6 +13,7 @@
 #define LAM_BLOCK_FIXTURE_H
 
 #include <petscmat.h>
+#include "displaced.h"
 #include "edge_area.h"
 #include "mortar.h"
 
@@ -138,6 +139,15 @@ static inline void BlocksGather(const Blocks *b, PetscInt e, PetscReal x[LAM_ELE
     for (PetscInt d = 0; d < 2; ++d) x[a][d] = b->x[b->elements[e][a]][d];
 }
 
+static inline NodeVectors BlocksDisplaced(const Blocks *b, PetscInt e, const PetscReal x[][2])
+{
+  PetscReal X[LAM_ELEMENT_NODES][2];
+
+  for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
+    for (PetscInt d = 0; d < 2; ++d) X[a][d] = b->X[b->elements[e][a]][d];
+  return Displaced((const PetscReal(*)[2])X, x);
+}
+
 /* Row of a component in the system, -1: held. */
 static inline PetscInt BlocksRow(const Blocks *b, PetscInt node, PetscInt d)
 {
@@ -147,7 +157,8 @@ static inline PetscInt BlocksRow(const Blocks *b, PetscInt node, PetscInt d)
 static inline void BlocksEvaluate(Blocks *b, PetscInt e, const PetscReal x[][2], LamElementResult *element,
                                   PetscBool *valid)
 {
-  LamElementEvaluate(&b->geometry[e], b->law, &b->wall_of[e], x, b->F33[e], &b->stress[e], element, valid);
+  LamElementEvaluate(&b->geometry[e], b->law, &b->wall_of[e], (const PetscReal(*)[2])BlocksDisplaced(b, e, x).u,
+                     b->F33[e], &b->stress[e], element, valid);
 }
 
 /* Plane stress: residual and tangent of an element without its stretch F33, whose own equation is force = 0. */
@@ -155,7 +166,8 @@ static inline void BlocksReleaseThickness(Blocks *b, PetscInt e, const PetscReal
 {
   BlocksThickness *t = &b->thickness[e];
 
-  LamElementStretch33(&b->geometry[e], b->law, &b->wall_of[e], x, b->F33[e], &b->stress[e], &t->force, t->fx, &t->ff);
+  LamElementStretch33(&b->geometry[e], b->law, &b->wall_of[e], (const PetscReal(*)[2])BlocksDisplaced(b, e, x).u,
+                      b->F33[e], &b->stress[e], &t->force, t->fx, &t->ff);
   for (PetscInt i = 0; i < LAM_ELEMENT_DOFS; ++i) {
     element->f[i] -= t->fx[i] * t->force / t->ff;
     for (PetscInt j = 0; j < LAM_ELEMENT_DOFS; ++j) element->K[i][j] -= t->fx[i] * t->fx[j] / t->ff;
@@ -345,8 +357,8 @@ static inline void BlocksStep(Blocks *b, const PetscReal solution[])
 
     BlocksGather(b, e, x);
     for (PetscInt i = 0; i < LAM_ELEMENT_DOFS; ++i) dx[i / 2][i % 2] = solution[2 * b->elements[e][i / 2] + i % 2];
-    LamElementUpdateStress(&b->geometry[e], (const PetscReal(*)[2])x, (const PetscReal(*)[2])dx, b->F33[e], 0.0, 1.0,
-                           &b->stress[e]);
+    LamElementUpdateStress(&b->geometry[e], (const PetscReal(*)[2])BlocksDisplaced(b, e, (const PetscReal(*)[2])x).u,
+                           (const PetscReal(*)[2])dx, b->F33[e], 0.0, 1.0, &b->stress[e]);
     if (b->plane_stress) BlocksStepThickness(b, e, (const PetscReal(*)[2])x, (const PetscReal(*)[2])dx);
   }
   for (PetscInt i = 0; i < 2 * b->node_count; ++i) b->x[i / 2][i % 2] += solution[i];

@@ -80,8 +80,8 @@ static inline void PatchFields(const Blocks *b, PetscInt e, PetscInt g, double F
     F[c] = 0.0;
     for (int a = 0; a < LAM_ELEMENT_NODES; a++) F[c] += x[a][c / 2] * b->geometry[e].dN[2 * g + c % 2][a];
   }
-  b->law->matrix(&b->wall, F, 1.0, &matrix);
-  LamVolumetric(&b->wall, F[0] * F[3] - F[1] * F[2], &u);
+  LamMatrixAt(b->law, &b->wall, F, 1.0, &matrix);
+  LamVolumetric(&b->wall, F[0] * F[3] - F[1] * F[2] - 1.0, &u);
   *P22 = matrix.P[3] + u.d * F[0];
 }
 

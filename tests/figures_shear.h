@@ -6,7 +6,7 @@
 #define LAM_FIGURES_SHEAR_H
 
 #include <string.h>
-#include "element.h"
+#include "displaced.h"
 #include "random_reals.h"
 #include "shear_exact.h"
 
@@ -47,9 +47,9 @@ static inline PetscErrorCode KernelStress(const ShearState *state, double P[5])
 
   PetscFunctionBeginUser;
   PetscCall(LamWallLawGet(LAM_WALL_FIBRE_MOONEY_RIVLIN, &law));
-  law->matrix(&state->wall, F, 1.0, &matrix);
-  law->fibre(&state->wall, Fm[0] * Fm[0] + Fm[1] * Fm[1], &fibre);
-  LamVolumetric(&state->wall, 1.0, &u);
+  LamMatrixAt(law, &state->wall, F, 1.0, &matrix);
+  law->fibre(&state->wall, Fm[0] * Fm[0] + Fm[1] * Fm[1] - 1.0, &fibre);
+  LamVolumetric(&state->wall, 0.0, &u);
   P[4] = matrix.P[4] + u.d;
   for (int c = 0; c < 4; c++) {
     const double cof = c == 1 ? 0.0 : (c == 2 ? -state->s : 1.0);
@@ -188,10 +188,13 @@ static inline PetscErrorCode AddElementErrors(const ShearState *state, uint64_t 
   PetscCall(LamWallLawGet(LAM_WALL_FIBRE_MOONEY_RIVLIN, &law));
   PetscCall(NewShearElement(state, seed, &element));
   scale = ExactElement(&element, state, f, exact[0], exact[1]);
-  LamElementEvaluate(&element.geometry, law, &state->wall, (const double(*)[2])element.x, 1.0, &stress, &result,
-                     &valid);
+  LamElementEvaluate(&element.geometry, law, &state->wall,
+                     (const double(*)[2])Displaced((const double(*)[2])element.X, (const double(*)[2])element.x).u, 1.0,
+                     &stress, &result, &valid);
   PetscCheck(valid, PETSC_COMM_SELF, PETSC_ERR_PLIB, "shear turned an element inside out");
-  LamElementFields(&element.geometry, law, &state->wall, (const double(*)[2])element.x, 1.0, computed[0], computed[1]);
+  LamElementFields(&element.geometry, law, &state->wall,
+                   (const double(*)[2])Displaced((const double(*)[2])element.X, (const double(*)[2])element.x).u, 1.0,
+                   computed[0], computed[1]);
   for (int i = 0; i < LAM_ELEMENT_DOFS; i++) errors->force = fmax(errors->force, fabs(result.f[i] - f[i]) / scale);
   for (int g = 0; g < LAM_GAUSS; g++) {
     errors->stretch = fmax(errors->stretch, fabs(computed[0][g] - exact[0][g]));

@@ -57,8 +57,8 @@ static inline StripPoint StripAtPoint(const Strip *strip, PetscInt e, PetscInt g
   }
   for (int i = 0; i < 2; i++) Fm[i] = point.F[2 * i] * geometry->fibre[0] + point.F[2 * i + 1] * geometry->fibre[1];
   for (int k = 0; k < LAM_PRESSURES; k++) p += geometry->psi[g][k] * b->stress[e].px[k];
-  b->law->matrix(&b->wall, point.F, 1.0, &matrix);
-  b->law->fibre(&b->wall, Fm[0] * Fm[0] + Fm[1] * Fm[1], &fibre);
+  LamMatrixAt(b->law, &b->wall, point.F, 1.0, &matrix);
+  b->law->fibre(&b->wall, Fm[0] * Fm[0] + Fm[1] * Fm[1] - 1.0, &fibre);
   for (int c = 0; c < 4; c++)
     point.P[c] =
         matrix.P[c] + p * (c % 3 ? -1.0 : 1.0) * point.F[3 - c] + 2.0 * fibre.d * Fm[c / 2] * geometry->fibre[c % 2];

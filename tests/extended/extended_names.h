@@ -34,6 +34,7 @@
 #define LamAssemble EXTENDED(Assemble)
 #define LamAssembleEnergy EXTENDED(AssembleEnergy)
 #define LamGatherElement EXTENDED(GatherElement)
+#define LamGatherDisplacements EXTENDED(GatherDisplacements)
 #define LamGeometryCreate EXTENDED(GeometryCreate)
 #define LamPositionsAreValid EXTENDED(PositionsAreValid)
 #define LamResidualNorm EXTENDED(ResidualNorm)

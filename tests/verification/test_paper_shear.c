@@ -69,12 +69,12 @@ static void ProfileHasTheShearOfTheCubic(void **state)
 /* d P12 / d F12 of the kernels. */
 static double ShearTangent(const LamWall *wall, double psi, double s)
 {
-  const double F[4] = {1.0, s, 0.0, 1.0}, Fm1 = cos(psi) + s * sin(psi), M2 = sin(psi);
+  const double H[4] = {0.0, s, 0.0, 0.0}, Fm1 = cos(psi) + s * sin(psi), M2 = sin(psi);
   LamKernel matrix;
   LamKernel1 fibre;
 
-  LamMatrixMooneyRivlin(wall, F, 1.0, &matrix);
-  LamFibreQuadratic(wall, Fm1 * Fm1 + M2 * M2, &fibre);
+  LamMatrixMooneyRivlin(wall, H, 0.0, &matrix);
+  LamFibreQuadratic(wall, Fm1 * Fm1 + M2 * M2 - 1.0, &fibre);
   return matrix.A[1][1] + 4.0 * fibre.dd * PetscSqr(Fm1 * M2) + 2.0 * fibre.d * M2 * M2;
 }
 
