@@ -227,19 +227,17 @@ static PetscErrorCode RelaxStress(LamRVE rve, Condensation *c)
   PetscFunctionReturn(0);
 }
 
-/* H = (L_qq - R^T K^-1 R) / V0, and L_F as RelaxStress. With X = K^-1 (R - rest) it is (L_qq - R^T X - X^T rest -
+/* H = (L_qq - R^T K^-1 R) / V0. With X = K^-1 (R - rest) it is (L_qq - R^T X - X^T rest -
    rest^T K^-1 rest) / V0, of which the last term is left out: an error of the solve enters squared. */
 static PetscErrorCode Condense(LamRVE rve, Condensation *c, PetscReal H[NQ][NQ])
 {
   const PetscInt n = rve->linear.n, nq = c->nq;
-  PetscReal *R, *X, *rest, *residual;
+  PetscReal *R, *X, *rest;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(nq * n, &R, nq * n, &X, nq * n, &rest, n, &residual));
+  PetscCall(PetscMalloc3(nq * n, &R, nq * n, &X, nq * n, &rest));
   for (PetscInt q = 0; q < nq; ++q) LamCopyActive(rve, c->R + q * c->size + 2, R + q * n);
   PetscCall(LamLinearSolve(&rve->linear, nq, R, X, rest));
-  CopyResidual(rve, residual);
-  for (PetscInt q = 0; q < LAM_F_COUNT; ++q) c->Lq[q] -= LamInnerProduct(n, X + q * n, residual);
   for (PetscInt q = 0; q < nq; ++q)
     for (PetscInt r = q; r < nq; ++r) {
       PetscReal a = 0.0, b = 0.0;
@@ -250,7 +248,7 @@ static PetscErrorCode Condense(LamRVE rve, Condensation *c, PetscReal H[NQ][NQ])
       }
       H[q][r] = H[r][q] = (c->Lqq[q][r] - 0.5 * (a + b)) / rve->mesh.V0;
     }
-  PetscCall(PetscFree4(R, X, rest, residual));
+  PetscCall(PetscFree3(R, X, rest));
   PetscFunctionReturn(0);
 }
 
@@ -315,10 +313,8 @@ PetscErrorCode LamHomogenise(LamRVE rve, const LamLoad *load, LamResponse *respo
   PetscFunctionBeginUser;
   PetscCall(LamAssembleEnergy(rve, load, rve->y, &energy, &valid));
   PetscCall(Assemble(rve, load, &c));
-  if (rve->wanted & LAM_WANT_DERIVATIVES)
-    PetscCall(FillDerivatives(rve, &c, response));
-  else
-    PetscCall(RelaxStress(rve, &c));
+  PetscCall(RelaxStress(rve, &c));
+  if (rve->wanted & LAM_WANT_DERIVATIVES) PetscCall(FillDerivatives(rve, &c, response));
   PetscCall(PetscFree(c.R));
   response->energy = energy / rve->mesh.V0;
   response->lumen_fraction = load->F[8] * c.lumen / rve->mesh.V0;

@@ -96,7 +96,13 @@ static inline PetscErrorCode BareStep(LamRVE rve, const LamLoad *load, PetscBool
   PetscFunctionReturn(0);
 }
 
-/* P from the forces on shifted nodes, P33 from those on the walls' faces. */
+/* Entry i of a step for element e; the held class does not move. */
+static inline PetscReal BareMoved(LamRVE rve, PetscInt e, PetscInt i)
+{
+  return rve->step[2 * rve->mesh.node_class[rve->mesh.elements[LAM_ELEMENT_NODES * e + i / 2]] + i % 2];
+}
+
+/* P from the forces on shifted nodes, P33 from those on the walls' faces; rve->step: from the solution to rve->y. */
 static inline void BareStress(LamRVE rve, const LamLoad *load, PetscReal P[9])
 {
   for (PetscInt i = 0; i < 9; i++) P[i] = 0;
@@ -108,10 +114,13 @@ static inline void BareStress(LamRVE rve, const LamLoad *load, PetscReal P[9])
     LamGatherDisplacements(rve, load->F, rve->y, e, u);
     LamElementStretch33(&rve->geometry[e], rve->law[0], &rve->micro.wall, (const PetscReal(*)[2])u, load->F[8],
                         &rve->stress[e], &force33, fx, &ff);
+    for (PetscInt i = 0; i < LAM_ELEMENT_DOFS; i++) force33 -= fx[i] * BareMoved(rve, e, i);
     P[8] += force33 / rve->mesh.V0;
     if (!rve->mesh.has_shift[e]) continue;
     LamElementEvaluate(&rve->geometry[e], rve->law[0], &rve->micro.wall, (const PetscReal(*)[2])u, load->F[8],
                        &rve->stress[e], &element, &valid);
+    for (PetscInt i = 0; i < LAM_ELEMENT_DOFS; i++)
+      for (PetscInt j = 0; j < LAM_ELEMENT_DOFS; j++) element.f[i] -= element.K[i][j] * BareMoved(rve, e, j);
     for (PetscInt a = 0; a < LAM_ELEMENT_NODES; a++) {
       const PetscReal *S = &rve->mesh.shift[2 * rve->mesh.elements[LAM_ELEMENT_NODES * e + a]];
 
@@ -144,6 +153,7 @@ static inline PetscErrorCode BareSolve(LamRVE rve, const LamLoad *load, LamRespo
   ok = LamSetConsistentStresses(rve, load, rve->y);
   BareAssemble(rve, load);
   PetscCall(LamLinearFactor(&rve->linear, 0, &negative, &ok));
+  PetscCall(LamLinearSolveOnce(&rve->linear, 1, rve->residual + 2, rve->step + 2));
   BareStress(rve, load, response->P);
   response->status = ok && negative == 0 ? LAM_CONVERGED : LAM_UNSTABLE;
   response->newton_iterations = iteration;
