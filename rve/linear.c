@@ -3,8 +3,9 @@
 */
 #include "rve_impl.h"
 
-#define RESTS 1e-9 /* of the largest right-hand side that solves with a nearby factor may leave */
-#define POOR 0.1   /* share of a rest that a refinement leaves where the factor is not near */
+#define RESTS 1e-9     /* of the largest right-hand side that solves with a nearby factor may leave */
+#define LEFT_OUT 1e-13 /* C1 + C2: of rest.K^-1 rest, which the tangent leaves out */
+#define POOR 0.1       /* share of a rest that a refinement leaves where the factor is not near */
 
 static int CompareKeys(const void *a, const void *b)
 {
@@ -232,12 +233,24 @@ static void FindRest(const LamLinear *linear, PetscInt count, const PetscReal rh
   for (PetscInt i = 0; i < count * linear->n; ++i) rest[i] = rhs[i] - rest[i];
 }
 
+/* Largest of rest.change of the right-hand sides. */
+static PetscReal LargestWork(PetscInt count, PetscInt n, const PetscReal rest[], const PetscReal change[])
+{
+  PetscReal largest = 0.0;
+
+  for (PetscInt k = 0; k < count; ++k)
+    largest = PetscMax(largest, PetscAbsReal(LamInnerProduct(n, rest + k * n, change + k * n)));
+  return largest;
+}
+
+/* What is small against a right-hand side of stiff forces may yet move soft walls: the work of the rest counts, too. It
+   is known of the rest before, and falls as its square. */
 PetscErrorCode LamLinearSolve(LamLinear *linear, PetscInt count, const PetscReal rhs[], PetscReal solution[],
                               PetscReal rest[])
 {
   const PetscInt length = count * linear->n;
   const PetscReal enough = RESTS * LamLargestEntry(length, rhs);
-  PetscReal *change, before = PETSC_INFINITY, left;
+  PetscReal *change, before = PETSC_INFINITY, left, work = 0.0;
   PetscBool ok = PETSC_TRUE;
 
   PetscFunctionBeginUser;
@@ -248,13 +261,15 @@ PetscErrorCode LamLinearSolve(LamLinear *linear, PetscInt count, const PetscReal
   for (;;) {
     FindRest(linear, count, rhs, solution, rest);
     left = LamLargestEntry(length, rest);
-    if (left <= enough || !(left <= POOR * before)) break;
+    work *= PetscSqr(left / before);
+    if ((left <= enough && work <= LEFT_OUT) || !(left <= POOR * before)) break;
     before = left;
     PetscCall(LamLinearSolveOnce(linear, count, rest, change));
+    work = LargestWork(count, linear->n, rest, change);
     for (PetscInt i = 0; i < length; ++i) solution[i] += change[i];
   }
   PetscCall(PetscFree(change));
-  if (left <= enough) PetscFunctionReturn(0);
+  if (left <= enough && work <= LEFT_OUT) PetscFunctionReturn(0);
   PetscCall(LamLinearFactor(linear, 0.0, &linear->negative, &ok));
   PetscCheck(ok, PETSC_COMM_SELF, PETSC_ERR_MAT_LU_ZRPVT, "the tangent of a converged state is singular");
   PetscCall(LamLinearSolveOnce(linear, count, rhs, solution));
