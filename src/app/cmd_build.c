@@ -8,6 +8,7 @@
     cover them). A node that is late holds up those behind it for half a minute at most.
 */
 #include "build_run.h"
+#include "rounding.h"
 #include <lamella/clock.h>
 #include <string.h>
 
@@ -245,6 +246,7 @@ static PetscErrorCode Prepare(LamBuild *b, const char scene_path[])
   PetscCheck(b->scene->has_sample, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: has no block `sample`, which says what states to build from", scene_path);
   PetscCall(LamPlanMake(b->scene, &plan));
+  PetscCall(LamWarnOfDigits(&plan.micro, b->scene->accuracy));
   b->scene->micro = plan.micro;
   PetscFunctionReturn(0);
 }

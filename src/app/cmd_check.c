@@ -4,6 +4,7 @@
   Method. One assembly is timed on this machine; everything else is a multiple of it. The multiples are measured
   (docs/commands.md has the figures): they hold within a factor of two from 236 to 10,000 unknowns.
 */
+#include "rounding.h"
 #include "map.h"
 #include <math.h>
 
@@ -126,6 +127,19 @@ static PetscErrorCode Regions(const LamScene *scene, json_t **list)
   PetscFunctionReturn(0);
 }
 
+/* {tangent: relative error that rounding stays below, warning: null where it leaves the accuracy} */
+static PetscErrorCode SetDigits(const LamMicrostructure *micro, PetscReal accuracy, json_t *o)
+{
+  char text[256];
+
+  PetscFunctionBeginUser;
+  PetscCall(LamDigitsWarning(micro, accuracy, text, sizeof(text)));
+  json_object_set_new(
+      o, "rounding",
+      json_pack("{s:o, s:s?}", "tangent", LamJSONReal(LamTangentRounding(micro)), "warning", text[0] ? text : NULL));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode PrintObject(const Check *check)
 {
   const LamPlan *plan = &check->plan;
@@ -143,6 +157,7 @@ static PetscErrorCode PrintObject(const Check *check)
                 LamJSONReal(check->assembly), "seconds_per_state", LamJSONReal(check->state), "memory_mb",
                 LamJSONReal(check->memory));
   PetscCheck(o, PETSC_COMM_SELF, PETSC_ERR_LIB, "the plan cannot be written as JSON");
+  PetscCall(SetDigits(micro, scene->accuracy, o));
   if (micro->is_patch)
     json_object_set_new(o, "patch",
                         json_pack("{s:I, s:I, s:s}", "columns", (json_int_t)micro->cells[0], "rows",
@@ -250,6 +265,16 @@ static void PrintModel(const Check *check)
     printf(" (as the scene says)\n");
 }
 
+static PetscErrorCode PrintDigits(const Check *check)
+{
+  char text[256];
+
+  PetscFunctionBeginUser;
+  PetscCall(LamDigitsWarning(&check->plan.micro, check->scene->accuracy, text, sizeof(text)));
+  if (text[0]) printf("%-12s %s\n", "rounding", text);
+  PetscFunctionReturn(0);
+}
+
 static void PrintStates(const char label[], PetscInt64 states, PetscReal seconds)
 {
   printf("%-12s %lld state%s, about ", label, (long long)states, states == 1 ? "" : "s");
@@ -343,6 +368,7 @@ PetscErrorCode LamCommandCheck(LamArgs *args, int *exit_status)
     PetscCall(PrintObject(&check));
   } else {
     PrintModel(&check);
+    PetscCall(PrintDigits(&check));
     PetscCall(PrintCost(&check));
   }
   PetscCall(LamSceneDestroy(&check.scene));

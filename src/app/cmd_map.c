@@ -7,6 +7,7 @@
     points are there. A file that was killed between the two holds verdicts without records; they are not believed, and
     --resume solves these points anew.
 */
+#include "rounding.h"
 #include "dispatch.h"
 #include "map.h"
 #include <lamella/clock.h>
@@ -249,6 +250,7 @@ static PetscErrorCode OpenWriter(Map *m)
 
   PetscFunctionBeginUser;
   PetscCall(LamPlanMake(m->scene, &plan));
+  PetscCall(LamWarnOfDigits(&plan.micro, m->scene->accuracy));
   described.micro = plan.micro;
   PetscCall(LamMapTableCreate(m->scene, &m->table));
   PetscCall(PetscMalloc1(LamMapPointCount(m->scene), &m->waiting));

@@ -4,6 +4,7 @@
   The states depend on one another: each starts from the last one that has an answer. So rank 0 solves the chain;
   further ranks help it to factor the matrices of large RVEs, else they wait.
 */
+#include "rounding.h"
 #include "failure.h"
 #include "rve_fields.h"
 #include <lamella/clock.h>
@@ -169,6 +170,7 @@ static PetscErrorCode Prepare(Run *run)
   PetscCheck(run->scene->load_count, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: has no block `load`, which says what states to solve", run->scene_path);
   PetscCall(LamPlanMake(run->scene, &plan));
+  PetscCall(LamWarnOfDigits(&plan.micro, run->scene->accuracy));
   run->scene->micro = plan.micro;
   if (run->find_failure && contact) run->second_mesh = PETSC_TRUE; /* separation is judged on two */
   PetscCall(LamMeshesCreate(plan.unknowns < LAM_PARALLEL_UNKNOWNS ? PETSC_COMM_SELF : PETSC_COMM_WORLD, run->scene,

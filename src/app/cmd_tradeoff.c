@@ -8,6 +8,7 @@
     setting alone; then tables and bodies. A setting that takes more than half of what is left to its part is given up,
     and told.
 */
+#include "rounding.h"
 #include "tradeoff.h"
 #include <errno.h>
 #include <lamella/clock.h>
@@ -269,6 +270,7 @@ static PetscErrorCode Prepare(Run *run)
   PetscCall(LamSceneRead(run->scene_path, &run->scene));
   PetscCall(CheckDirectory(run));
   PetscCall(LamPlanMake(run->scene, &plan));
+  PetscCall(LamWarnOfDigits(&plan.micro, run->scene->accuracy));
   run->scene->micro = plan.micro;
   PetscCall(LamStatesMake(run->scene, &run->states));
   PetscCheck(run->states.n || Signalled(), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,

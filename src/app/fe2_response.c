@@ -1,6 +1,7 @@
 /*
   What answers the material points of a macroscale run: RVE solves, a database, or both.
 */
+#include "rounding.h"
 #include "fe2_run.h"
 #include <stdio.h>
 #include <string.h>
@@ -105,6 +106,7 @@ static PetscErrorCode PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue)
              run->scene_path);
   if (run->response != LAM_FE2_DIRECT) PetscCall(OpenDatabase(run, tissue));
   PetscCall(LamPlanMake(&tissue->scene, &plan));
+  PetscCall(LamWarnOfDigits(&plan.micro, tissue->scene.accuracy));
   tissue->scene.micro = plan.micro;
   if (tissue->database)
     PetscCall(CheckDatabase(run, tissue));
