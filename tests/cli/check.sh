@@ -112,3 +112,14 @@ sed 's/^  steps: 3/  steps: 3\n  regions:\n    - {name: skin, where: y > 4, cell
 "$lamella" check regions.yaml >regions.txt || fail "fails with regions"
 grep -qE "skin  *wall 0.3 of the apothem \(40 um\).* [0-9]+ x [0-9]+ elements" regions.txt || fail "the region's tissue is not told: $(cat regions.txt)"
 "$lamella" check regions.yaml --json | grep -qE '"regions": *\[\{"name": *"skin"' || fail "no regions: $("$lamella" check regions.yaml --json)"
+
+# digits: one sentence where rounding leaves fewer than the accuracy needs, in check and once on stderr; else nothing
+scene "[1, 1]" 1.5 0.00001 "  mesh: {along: 2, through: 1}"
+sed 's/C4: 1 MPa/C4: 1 MPa, bulk_modulus: 1e7 MPa/; /^sample:/,/count:/d; /^macro:/,/steps: 3/d' scene.yaml >stiff.yaml
+"$lamella" check stiff.yaml >stiff.txt || fail "check fails with stiff walls: $(cat stiff.txt)"
+grep -qE "^rounding .* digits? of the tangent, fewer than an accuracy of 0.001 % needs: take a bulk modulus below" stiff.txt ||
+  fail "is silent of rounding: $(cat stiff.txt)"
+"$lamella" check stiff.yaml --json | grep -q '"warning": "a bulk modulus of' || fail "is silent of rounding in JSON"
+"$lamella" rve stiff.yaml --quiet >/dev/null 2>err.txt
+[ "$(grep -c "digits\? of the tangent" err.txt)" = 1 ] || fail "rve does not say it once: $(cat err.txt)"
+"$lamella" check scene.yaml --json | grep -q '"warning": null' || fail "speaks of rounding without need"
