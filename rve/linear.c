@@ -244,13 +244,13 @@ static PetscReal LargestWork(PetscInt count, PetscInt n, const PetscReal rest[],
 }
 
 /* What is small against a right-hand side of stiff forces may yet move soft walls: the work of the rest counts, too. It
-   is known of the rest before, and falls as its square. */
+   is known of the rest before, and taken to fall as it did last; soft modes may fall more slowly than the rest does. */
 PetscErrorCode LamLinearSolve(LamLinear *linear, PetscInt count, const PetscReal rhs[], PetscReal solution[],
                               PetscReal rest[])
 {
   const PetscInt length = count * linear->n;
   const PetscReal enough = RESTS * LamLargestEntry(length, rhs);
-  PetscReal *change, before = PETSC_INFINITY, left, work = 0.0;
+  PetscReal *change, before = PETSC_INFINITY, left, work = PETSC_INFINITY, fall = 1.0;
   PetscBool ok = PETSC_TRUE;
 
   PetscFunctionBeginUser;
@@ -261,15 +261,16 @@ PetscErrorCode LamLinearSolve(LamLinear *linear, PetscInt count, const PetscReal
   for (;;) {
     FindRest(linear, count, rhs, solution, rest);
     left = LamLargestEntry(length, rest);
-    work *= PetscSqr(left / before);
-    if ((left <= enough && work <= LEFT_OUT) || !(left <= POOR * before)) break;
+    if ((left <= enough && work * fall <= LEFT_OUT) || !(left <= POOR * before)) break;
     before = left;
     PetscCall(LamLinearSolveOnce(linear, count, rest, change));
+    fall = 1.0 / work;
     work = LargestWork(count, linear->n, rest, change);
+    fall = fall > 0.0 ? PetscMin(1.0, fall * work) : 1.0;
     for (PetscInt i = 0; i < length; ++i) solution[i] += change[i];
   }
   PetscCall(PetscFree(change));
-  if (left <= enough && work <= LEFT_OUT) PetscFunctionReturn(0);
+  if (left <= enough && work * fall <= LEFT_OUT) PetscFunctionReturn(0);
   PetscCall(LamLinearFactor(linear, 0.0, &linear->negative, &ok));
   PetscCheck(ok, PETSC_COMM_SELF, PETSC_ERR_MAT_LU_ZRPVT, "the tangent of a converged state is singular");
   PetscCall(LamLinearSolveOnce(linear, count, rhs, solution));
