@@ -3,9 +3,10 @@
 */
 #include "rve_impl.h"
 
-#define RESTS 1e-9     /* of the largest right-hand side that solves with a nearby factor may leave */
-#define LEFT_OUT 1e-13 /* C1 + C2: of rest.K^-1 rest, which the tangent leaves out */
-#define POOR 0.1       /* share of a rest that a refinement leaves where the factor is not near */
+#define RESTS 1e-9      /* of the largest right-hand side that solves with a nearby factor may leave */
+#define LEFT_OUT 1e-13  /* C1 + C2: of rest.K^-1 rest, which the tangent leaves out */
+#define LEAST_FALL 1e-3 /* of that work in a refinement that is counted on */
+#define POOR 0.1        /* share of a rest that a refinement leaves where the factor is not near */
 
 static int CompareKeys(const void *a, const void *b)
 {
@@ -244,7 +245,8 @@ static PetscReal LargestWork(PetscInt count, PetscInt n, const PetscReal rest[],
 }
 
 /* What is small against a right-hand side of stiff forces may yet move soft walls: the work of the rest counts, too. It
-   is known of the rest before, and taken to fall as it did last; soft modes may fall more slowly than the rest does. */
+   is known of the rest before, and taken to fall as it did last, but not to vanish: of soft modes that work falls more
+   slowly. */
 PetscErrorCode LamLinearSolve(LamLinear *linear, PetscInt count, const PetscReal rhs[], PetscReal solution[],
                               PetscReal rest[])
 {
@@ -266,7 +268,7 @@ PetscErrorCode LamLinearSolve(LamLinear *linear, PetscInt count, const PetscReal
     PetscCall(LamLinearSolveOnce(linear, count, rest, change));
     fall = 1.0 / work;
     work = LargestWork(count, linear->n, rest, change);
-    fall = fall > 0.0 ? PetscMin(1.0, fall * work) : 1.0;
+    fall = fall > 0.0 ? PetscMax(LEAST_FALL, PetscMin(1.0, fall * work)) : 1.0;
     for (PetscInt i = 0; i < length; ++i) solution[i] += change[i];
   }
   PetscCall(PetscFree(change));
