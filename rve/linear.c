@@ -4,7 +4,7 @@
 #include "rve_impl.h"
 
 #define RESTS 1e-9      /* of the largest right-hand side that solves with a nearby factor may leave */
-#define LEFT_OUT 1e-13  /* C1 + C2: of rest.K^-1 rest, which the tangent leaves out */
+#define LEFT_OUT 1e-10  /* C1 + C2: of rest.K^-1 rest, which the tangent leaves out */
 #define LEAST_FALL 1e-3 /* of that work in a refinement that is counted on */
 #define POOR 0.1        /* share of a rest that a refinement leaves where the factor is not near */
 
