@@ -492,7 +492,7 @@ void LamElementWallPoints(const LamElementGeometry *geometry, const LamWallLaw *
     for (PetscInt k = 0; k < 2; ++k) tm[k] = (Fm[0] * F[k] + Fm[1] * F[2 + k]) / I4; /* F^T m / |Fm| */
     points[g].tension = Fm[0] * (P[0] * tm[0] + P[1] * tm[1]) + Fm[1] * (P[2] * tm[0] + P[3] * tm[1]);
     if (law->fibre) AddFibreCurvature(geometry, 2.0 * w * local.sx[g], A);
-    points[g].ellipticity = LamShearBandStiffness((const PetscReal(*)[4])A, F[g]);
+    points[g].ellipticity = LamShearBandStiffness((const PetscReal(*)[4])A, F);
     points[g].kinked = points[g].ellipticity < 0.0 ? w : 0.0;
   }
 }
