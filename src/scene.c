@@ -22,6 +22,40 @@ PetscErrorCode LamSceneDestroy(LamScene **scene)
   PetscFunctionReturn(0);
 }
 
+/* Bytes of the character that begins here; 0: it is no UTF-8 (RFC 3629). */
+static size_t CharacterLength(const unsigned char c[])
+{
+  const size_t length = c[0] < 0x80 ? 1 : c[0] < 0xC2 ? 0 : c[0] < 0xE0 ? 2 : c[0] < 0xF0 ? 3 : c[0] < 0xF5 ? 4 : 0;
+  const unsigned char least = c[0] == 0xE0 ? 0xA0 : c[0] == 0xF0 ? 0x90 : 0x80; /* shorter forms are no characters */
+  const unsigned char most = c[0] == 0xED ? 0x9F : c[0] == 0xF4 ? 0x8F : 0xBF;  /* nor are halves of pairs */
+
+  if (length > 1 && (c[1] < least || c[1] > most)) return 0;
+  for (size_t i = 2; i < length; i++)
+    if (c[i] < 0x80 || c[i] > 0xBF) return 0;
+  return length;
+}
+
+/* libfyaml 0.7 never returns from a directive that is no UTF-8. */
+static PetscErrorCode CheckCharacters(const char name[], const char text[])
+{
+  int line = 1, column = 1;
+
+  PetscFunctionBeginUser;
+  for (const unsigned char *c = (const unsigned char *)text; *c;) {
+    const size_t length = CharacterLength(c);
+
+    PetscCheck(length, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "%.200s:%d:%d: byte 0x%02x is no UTF-8; save the scene in that encoding", name, line, column, *c);
+    column++;
+    if (*c == '\n') {
+      line++;
+      column = 1;
+    }
+    c += length;
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Bytes that text has not; libfyaml would complain about them less clearly. */
 static PetscErrorCode CheckText(const char name[], const char text[], size_t length)
 {
@@ -33,6 +67,7 @@ static PetscErrorCode CheckText(const char name[], const char text[], size_t len
     PetscCheck((c >= 0x20 && c != 0x7F) || c == '\t' || c == '\n' || c == '\r', PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                "%.200s: byte %d is 0x%02x, which no text has; a scene is a YAML file", name, (int)i, c);
   }
+  PetscCall(CheckCharacters(name, text));
   PetscFunctionReturn(0);
 }
 

@@ -100,11 +100,12 @@ static PetscErrorCode ReadKind(const LamDocument *document, const LamNode *kind,
 static PetscErrorCode KindNumber(const Variation *v, const LamNode *node, PetscInt *kind)
 {
   PetscFunctionBeginUser;
-  *kind = (PetscInt)node->value.number[0];
-  if (*kind > v->kind_count) {
+  *kind = 0;
+  if (node->value.number[0] > (PetscReal)v->kind_count) {
     PetscCall(LamSceneFail(v->document, node, "kinds has only %d; write a number from 0, the scene's own cell, to %d",
                            (int)v->kind_count, (int)v->kind_count));
   }
+  *kind = (PetscInt)node->value.number[0];
   PetscFunctionReturn(0);
 }
 

@@ -83,6 +83,34 @@ static PetscErrorCode TextCopy(const char text[], size_t length, char **copy)
   PetscFunctionReturn(0);
 }
 
+/*
+  The text of a token; the caller frees it. fy_token_get_text of libfyaml 0.7 loses memory where a text has many
+  escapes, of which its iterator gives the pieces.
+*/
+static PetscErrorCode TokenText(struct fy_token *token, char **text)
+{
+  struct fy_token_iter *pieces = fy_token_iter_create(token);
+  size_t length = 0, room = 64;
+  PetscErrorCode ierr;
+  ssize_t n = 1;
+
+  PetscFunctionBeginUser;
+  PetscCheck(pieces, PETSC_COMM_SELF, PETSC_ERR_MEM, "libfyaml gives no text");
+  *text = NULL;
+  ierr = PetscMalloc1(room, text);
+  while (!ierr && n > 0) {
+    n = fy_token_iter_read(pieces, *text + length, room - length - 1);
+    if (n > 0) length += (size_t)n;
+    if (length + 1 < room) continue;
+    room *= 2;
+    ierr = PetscRealloc(room, text);
+  }
+  fy_token_iter_destroy(pieces);
+  PetscCall(ierr);
+  (*text)[length] = '\0';
+  PetscFunctionReturn(0);
+}
+
 /* A place without a node yet, for messages. */
 static LamNode Place(struct fy_token *token)
 {
@@ -120,12 +148,9 @@ static PetscErrorCode BuilderKey(Builder *builder, struct fy_token *token)
   LamNode *map = builder->stack[builder->depth - 1];
   LamNode key = Place(token);
   const LamNode *earlier;
-  size_t length;
-  const char *text = fy_token_get_text(token, &length);
 
   PetscFunctionBeginUser;
-  PetscCheck(text, PETSC_COMM_SELF, PETSC_ERR_MEM, "libfyaml gives no text for a key");
-  PetscCall(TextCopy(text, length, &builder->name));
+  PetscCall(TokenText(token, &builder->name));
   builder->name_line = key.name_line = key.line;
   builder->name_column = key.name_column = key.column;
   key.name = builder->name;
@@ -133,7 +158,7 @@ static PetscErrorCode BuilderKey(Builder *builder, struct fy_token *token)
   if (!strcmp(key.name, "<<")) {
     PetscCall(LamSceneFailName(builder->document, &key, "merge keys are not read; write the keys out"));
   }
-  earlier = LamNodeFind(map, text, length);
+  earlier = LamNodeFind(map, key.name, strlen(key.name));
   if (earlier) {
     PetscCall(
         LamSceneFailName(builder->document, &key, "given twice, first in line %d; give it once", earlier->name_line));
@@ -147,18 +172,13 @@ static PetscErrorCode BuilderKey(Builder *builder, struct fy_token *token)
 
 static PetscErrorCode AnchorAdd(Builder *builder, struct fy_token *token, LamNode *node)
 {
-  size_t length;
-  const char *text;
-
   PetscFunctionBeginUser;
   if (!token) PetscFunctionReturn(0);
-  text = fy_token_get_text(token, &length);
-  PetscCheck(text, PETSC_COMM_SELF, PETSC_ERR_MEM, "libfyaml gives no text for an anchor");
   if (builder->anchor_count == builder->anchor_capacity) {
     builder->anchor_capacity = PetscMax(8, 2 * builder->anchor_capacity);
     PetscCall(PetscRealloc(sizeof(Anchor) * (size_t)builder->anchor_capacity, &builder->anchors));
   }
-  PetscCall(TextCopy(text, length, &builder->anchors[builder->anchor_count].name));
+  PetscCall(TokenText(token, &builder->anchors[builder->anchor_count].name));
   builder->anchors[builder->anchor_count++].node = node;
   PetscFunctionReturn(0);
 }
@@ -166,8 +186,7 @@ static PetscErrorCode AnchorAdd(Builder *builder, struct fy_token *token, LamNod
 static PetscErrorCode BuilderScalar(Builder *builder, const struct fy_event *event)
 {
   struct fy_token *token = event->scalar.value;
-  size_t length = 0;
-  const char *text = fy_token_get_text(token, &length);
+  const PetscBool empty = (PetscBool)(fy_token_get_text_length(token) == 0);
   LamNode place = Place(token), *node;
 
   PetscFunctionBeginUser;
@@ -179,12 +198,12 @@ static PetscErrorCode BuilderScalar(Builder *builder, const struct fy_event *eve
     PetscFunctionReturn(0);
   }
   /* where a value is left out its token has no place: it is missed at its key */
-  if (!length && builder->name) place = (LamNode){.line = builder->name_line, .column = builder->name_column};
+  if (empty && builder->name) place = (LamNode){.line = builder->name_line, .column = builder->name_column};
   PetscCall(NodeCreate(builder->document, LAM_NODE_SCALAR, place.line, place.column, &node));
   PetscCall(BuilderPut(builder, node));
-  PetscCall(TextCopy(text ? text : "", text ? length : 0, &node->text));
+  PetscCall(TokenText(token, &node->text));
   if (fy_token_scalar_style(token) == FYSS_PLAIN) {
-    node->is_null = !length || !strcmp(node->text, "~") || !strcasecmp(node->text, "null") ? PETSC_TRUE : PETSC_FALSE;
+    node->is_null = empty || !strcmp(node->text, "~") || !strcasecmp(node->text, "null") ? PETSC_TRUE : PETSC_FALSE;
   }
   PetscCall(AnchorAdd(builder, event->scalar.anchor, node));
   PetscFunctionReturn(0);
@@ -252,22 +271,23 @@ static PetscErrorCode BuilderAlias(Builder *builder, struct fy_token *token)
 {
   const LamNode place = Place(token);
   const LamNode *target = NULL;
-  size_t length = 0;
-  const char *text = fy_token_get_text(token, &length);
+  char name[48], *text;
   LamNode *copy;
 
   PetscFunctionBeginUser;
   if (BuilderAtKey(builder)) PetscCall(LamSceneFail(builder->document, &place, "an alias stands where a key should"));
-  for (PetscInt i = builder->anchor_count - 1; text && i >= 0 && !target; i--) {
-    const char *name = builder->anchors[i].name;
-    if (strlen(name) == length && !strncmp(name, text, length)) target = builder->anchors[i].node;
+  PetscCall(TokenText(token, &text));
+  snprintf(name, sizeof(name), "%.40s", text);
+  for (PetscInt i = builder->anchor_count - 1; i >= 0 && !target; i--) {
+    if (!strcmp(builder->anchors[i].name, text)) target = builder->anchors[i].node;
   }
+  PetscCall(PetscFree(text));
   for (int i = 0; i < builder->depth; i++) {
     if (builder->stack[i] == target) target = NULL; /* it would contain itself */
   }
   if (!target) {
-    PetscCall(LamSceneFail(builder->document, &place, "*%.*s: no finished value has the anchor &%.*s before this line",
-                           (int)PetscMin(length, 40), text ? text : "", (int)PetscMin(length, 40), text ? text : ""));
+    PetscCall(LamSceneFail(builder->document, &place, "*%s: no finished value has the anchor &%s before this line",
+                           name, name));
   }
   PetscCall(NodeCopy(builder->document, target, &place, &copy));
   PetscCall(BuilderPut(builder, copy));

@@ -97,7 +97,17 @@ static void empty_files_are_refused(void **state)
 
 static void invalid_UTF8_is_refused(void **state)
 {
-  AssertRefusedText("version: \xff\xfe\xc0\n", "scene.yaml:1:");
+  AssertRefusedText("version: \xff\xfe\xc0\n", "scene.yaml:1:10: byte 0xff is no UTF-8");
+  AssertRefusedText("# \xc3\xa4\n\xc3\xa4\xe0\x80\xaf",
+                    "scene.yaml:2:2: byte 0xe0 is no UTF-8");                     /* an overlong slash */
+  AssertRefusedText("# \xed\xa0\x80\n", "scene.yaml:1:3: byte 0xed is no UTF-8"); /* half of a pair */
+  AssertRefusedText("# \xf0\x9f\x8d", "scene.yaml:1:3: byte 0xf0 is no UTF-8");   /* cut */
+}
+
+/* libfyaml never returned. */
+static void a_directive_that_is_no_UTF8_is_refused(void **state)
+{
+  AssertRefusedText("%a\xd0\n", "scene.yaml:1:3: byte 0xd0 is no UTF-8");
 }
 
 static void deep_nesting_is_refused(void **state)
@@ -216,6 +226,7 @@ int main(void)
       cmocka_unit_test(a_file_with_null_bytes_is_refused),
       cmocka_unit_test(empty_files_are_refused),
       cmocka_unit_test(invalid_UTF8_is_refused),
+      cmocka_unit_test(a_directive_that_is_no_UTF8_is_refused),
       cmocka_unit_test(deep_nesting_is_refused),
       cmocka_unit_test(a_map_of_many_keys_is_refused),
       cmocka_unit_test(multiplying_aliases_are_refused),
