@@ -168,6 +168,18 @@ static PetscErrorCode UnitRead(const char text[], UnitParts *parts, PetscBool *k
   PetscFunctionReturn(0);
 }
 
+/* Whether zero is a factor inside the unit: udunits2 refuses that, and loses the memory of the name behind it. */
+static PetscBool HasZero(const char unit[])
+{
+  for (const char *c = unit; *c; c++) {
+    char *end;
+
+    if (!strchr(" .*/(", *c) || (c > unit && c[-1] == '*')) continue; /* ** 0 is an exponent */
+    if (strtod(c + 1, &end) == 0 && end > c + 1) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
 static PetscErrorCode QuantityConvert(PetscReal number, const char unit_text[], LamDimension dimension, PetscReal *si,
                                       char reason[LAM_REASON_LENGTH])
 {
@@ -180,7 +192,7 @@ static PetscErrorCode QuantityConvert(PetscReal number, const char unit_text[], 
   while (length && isspace((unsigned char)unit_text[length - 1])) length--;
   snprintf(unit, sizeof(unit), "%.*s", (int)PetscMin(length, sizeof(unit)), unit_text);
   /* a factor, sign or bracket in the unit is more likely a slip than meant */
-  if (length < sizeof(unit) && (isalpha((unsigned char)unit[0]) || (unsigned char)unit[0] >= 0x80)) {
+  if (length < sizeof(unit) && (isalpha((unsigned char)unit[0]) || (unsigned char)unit[0] >= 0x80) && !HasZero(unit)) {
     PetscCall(UnitRead(unit, &parts, &known));
   }
   if (!known) {

@@ -68,6 +68,12 @@ static void other_dimensions_are_refused(void **state)
   AssertRefused("1 N", LAM_DIMENSION_STRESS, "is not a unit of stress");
 }
 
+static void a_zero_in_a_unit_is_refused(void **state)
+{
+  AssertRefused("1 a.0MPa", LAM_DIMENSION_STRESS, "the unit \"a.0MPa\" is unknown");
+  AssertRefused("1 MPa/0 m", LAM_DIMENSION_STRESS, "the unit \"MPa/0 m\" is unknown");
+}
+
 /* udunits2 itself converts all of these */
 static void lookalike_units_are_refused(void **state)
 {
@@ -101,11 +107,11 @@ static void the_message_shows_the_text(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(lengths_become_metres),          cmocka_unit_test(stresses_become_pascals),
-      cmocka_unit_test(angles_become_radians),          cmocka_unit_test(missing_and_unknown_units_are_refused),
-      cmocka_unit_test(other_dimensions_are_refused),   cmocka_unit_test(lookalike_units_are_refused),
-      cmocka_unit_test(non_finite_numbers_are_refused), cmocka_unit_test(hexadecimal_numbers_are_refused),
-      cmocka_unit_test(the_message_shows_the_text),
+      cmocka_unit_test(lengths_become_metres),           cmocka_unit_test(stresses_become_pascals),
+      cmocka_unit_test(angles_become_radians),           cmocka_unit_test(missing_and_unknown_units_are_refused),
+      cmocka_unit_test(other_dimensions_are_refused),    cmocka_unit_test(lookalike_units_are_refused),
+      cmocka_unit_test(a_zero_in_a_unit_is_refused),     cmocka_unit_test(non_finite_numbers_are_refused),
+      cmocka_unit_test(hexadecimal_numbers_are_refused), cmocka_unit_test(the_message_shows_the_text),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
