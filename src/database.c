@@ -85,6 +85,7 @@ static PetscErrorCode LoadBlock(void *ctx, const LamRecordLayout *layout, PetscI
 
 static PetscErrorCode LoadGrid(const char path[], hid_t file, LamDatabase db)
 {
+  PetscErrorCode ierr;
   PetscBool has;
   char *text;
 
@@ -94,8 +95,9 @@ static PetscErrorCode LoadGrid(const char path[], hid_t file, LamDatabase db)
              "%s: holds nodes of a grid, but %s is missing; the file is damaged" LAM_SALVAGE, path, LAM_GRID_NAME);
   if (!has) PetscFunctionReturn(0);
   PetscCall(LamFileGetText(path, file, LAM_GRID_NAME, &text));
-  PetscCall(LamGridFromText(path, &db->header.micro, text, &db->grid));
+  ierr = LamGridFromText(path, &db->header.micro, text, &db->grid);
   PetscCall(PetscFree(text));
+  PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 
@@ -158,9 +160,15 @@ PetscErrorCode LamDatabaseOpenFirst(const char path[], PetscInt first, LamDataba
                                     PetscInt64 *keys[], LamResponse *records[])
 {
   Later later = {.first = first};
+  PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
-  PetscCall(Open(path, &later, database));
+  ierr = Open(path, &later, database);
+  if (ierr) {
+    PetscCall(PetscFree(later.keys));
+    PetscCall(PetscFree(later.records));
+  }
+  PetscCall(ierr);
   *n = later.n;
   *keys = later.keys;
   *records = later.records;

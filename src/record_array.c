@@ -86,16 +86,36 @@ typedef struct {
   PetscBool is_text;
 } Opened;
 
-/* `type`: of the file, H5I_INVALID_HID: a text of fixed length. There cannot be more values than the file has bytes. */
-static PetscErrorCode Open(const char path[], hid_t file, const char name[], hid_t type, Opened *o)
+/* Also of one that was opened in part. */
+static void Close(Opened *o)
+{
+  if (o->space >= 0) H5Sclose(o->space);
+  if (o->type >= 0) H5Tclose(o->type);
+  if (o->dataset >= 0) H5Dclose(o->dataset);
+}
+
+/* There cannot be more values than the file has bytes. */
+static PetscErrorCode CheckSize(const char path[], hid_t file, const char name[], Opened *o)
 {
   hssize_t count;
   hsize_t size;
+
+  PetscFunctionBeginUser;
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Fget_filesize(file, &size));
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, count = H5Sget_simple_extent_npoints(o->space));
+  o->count = (hsize_t)count;
+  PetscCheck(o->count <= size / PetscMax(H5Tget_size(o->type), 1) && o->count < PETSC_MAX_INT, PETSC_COMM_SELF,
+             PETSC_ERR_USER_INPUT, "%s: %s is said to have %lld values of %zu bytes, the file has %lld; it is damaged",
+             path, name, (long long)count, H5Tget_size(o->type), (long long)size);
+  o->bytes = o->count * H5Tget_size(o->type);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode OpenParts(const char path[], hid_t file, const char name[], hid_t type, Opened *o)
+{
   PetscBool same;
 
   PetscFunctionBeginUser;
-  o->is_text = (PetscBool)(type < 0);
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Fget_filesize(file, &size));
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, o->dataset = H5Dopen2(file, name, H5P_DEFAULT));
   PetscCall(LamDatasetCheck(path, o->dataset, name, H5D_CONTIGUOUS));
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, o->type = H5Dget_type(o->dataset));
@@ -104,12 +124,21 @@ static PetscErrorCode Open(const char path[], hid_t file, const char name[], hid
                                : H5Tget_class(o->type) == H5T_STRING && H5Tis_variable_str(o->type) == 0);
   PetscCheck(same, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: %s is of another type than lamella writes; the file is damaged", path, name);
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, count = H5Sget_simple_extent_npoints(o->space));
-  o->count = (hsize_t)count;
-  PetscCheck(o->count <= size / PetscMax(H5Tget_size(o->type), 1) && o->count < PETSC_MAX_INT, PETSC_COMM_SELF,
-             PETSC_ERR_USER_INPUT, "%s: %s is said to have %lld values of %zu bytes, the file has %lld; it is damaged",
-             path, name, (long long)count, H5Tget_size(o->type), (long long)size);
-  o->bytes = o->count * H5Tget_size(o->type);
+  PetscCall(CheckSize(path, file, name, o));
+  PetscFunctionReturn(0);
+}
+
+/* `type`: of the file, H5I_INVALID_HID: a text of fixed length. */
+static PetscErrorCode Open(const char path[], hid_t file, const char name[], hid_t type, Opened *o)
+{
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  *o = (Opened){.dataset = H5I_INVALID_HID, .type = H5I_INVALID_HID, .space = H5I_INVALID_HID};
+  o->is_text = (PetscBool)(type < 0);
+  ierr = OpenParts(path, file, name, type, o);
+  if (ierr) Close(o);
+  PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 
@@ -156,17 +185,18 @@ static PetscErrorCode Read(const char path[], const char name[], const Opened *o
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Close(const char path[], Opened *o)
+static PetscErrorCode ReadOneText(const char path[], const char name[], const Opened *o, char **text)
 {
   PetscFunctionBeginUser;
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Sclose(o->space));
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Tclose(o->type));
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Dclose(o->dataset));
+  PetscCheck(o->count == 1, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s is not one text; the file is damaged", path,
+             name);
+  PetscCall(Read(path, name, o, (void **)text));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamFileGetText(const char path[], hid_t file, const char name[], char **text)
 {
+  PetscErrorCode ierr;
   PetscBool has;
   Opened o;
 
@@ -174,10 +204,9 @@ PetscErrorCode LamFileGetText(const char path[], hid_t file, const char name[], 
   PetscCall(LamFileHas(path, file, name, &has));
   PetscCheck(has, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s is missing; the file is damaged", path, name);
   PetscCall(Open(path, file, name, H5I_INVALID_HID, &o));
-  PetscCheck(o.count == 1, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s is not one text; the file is damaged", path,
-             name);
-  PetscCall(Read(path, name, &o, (void **)text));
-  PetscCall(Close(path, &o));
+  ierr = ReadOneText(path, name, &o, text);
+  Close(&o);
+  PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 
@@ -202,21 +231,23 @@ static PetscErrorCode Dims(const char path[], const Opened *o, Question *q)
              path, q->name, rank);
   q->rank = rank;
   for (int i = 0; i < rank; i++) q->dims[i] = (PetscInt)dims[i];
+  q->count = (PetscInt)o->count;
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode ReadArray(const char path[], hid_t file, Question *q)
 {
+  PetscErrorCode ierr;
   Opened o;
 
   PetscFunctionBeginUser;
   PetscCall(LamFileHas(path, file, q->name, &q->found));
   if (!q->found) PetscFunctionReturn(0);
   PetscCall(Open(path, file, q->name, q->type, &o));
-  PetscCall(Dims(path, &o, q));
-  q->count = (PetscInt)o.count;
-  PetscCall(Read(path, q->name, &o, &q->values));
-  PetscCall(Close(path, &o));
+  ierr = Dims(path, &o, q);
+  if (!ierr) ierr = Read(path, q->name, &o, &q->values);
+  Close(&o);
+  PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 

@@ -68,59 +68,94 @@ PetscErrorCode LamAttributeHas(const char path[], hid_t object, const char name[
   PetscFunctionReturn(0);
 }
 
-/* Opens an attribute of one element. */
-static PetscErrorCode Open(const char path[], hid_t object, const char name[], hid_t *attribute, hid_t *type)
-{
-  hid_t space;
-  PetscBool has;
+typedef struct {
+  hid_t attribute, type, space;
+} Opened;
 
+/* Also of one that was opened in part. */
+static void Close(Opened *o)
+{
+  if (o->space >= 0) H5Sclose(o->space);
+  if (o->type >= 0) H5Tclose(o->type);
+  if (o->attribute >= 0) H5Aclose(o->attribute);
+}
+
+static PetscErrorCode OpenParts(const char path[], hid_t object, const char name[], Opened *o)
+{
   PetscFunctionBeginUser;
-  PetscCall(LamAttributeHas(path, object, name, &has));
-  PetscCheck(has, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: attribute \"%s\" is missing; the file is damaged or was not written by lamella", path, name);
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, *attribute = H5Aopen(object, name, H5P_DEFAULT));
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, *type = H5Aget_type(*attribute));
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, space = H5Aget_space(*attribute));
-  PetscCheck(H5Sget_simple_extent_type(space) == H5S_SCALAR, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, o->attribute = H5Aopen(object, name, H5P_DEFAULT));
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, o->type = H5Aget_type(o->attribute));
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, o->space = H5Aget_space(o->attribute));
+  PetscCheck(H5Sget_simple_extent_type(o->space) == H5S_SCALAR, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: attribute \"%s\" is not one value; the file is damaged", path, name);
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Sclose(space));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Close(const char path[], hid_t attribute, hid_t type)
+/* Opens an attribute of one element. */
+static PetscErrorCode Open(const char path[], hid_t object, const char name[], Opened *o)
+{
+  PetscErrorCode ierr;
+  PetscBool has;
+
+  PetscFunctionBeginUser;
+  *o = (Opened){H5I_INVALID_HID, H5I_INVALID_HID, H5I_INVALID_HID};
+  PetscCall(LamAttributeHas(path, object, name, &has));
+  PetscCheck(has, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: attribute \"%s\" is missing; the file is damaged or was not written by lamella", path, name);
+  ierr = OpenParts(path, object, name, o);
+  if (ierr) Close(o);
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadNumber(const char path[], const char name[], const Opened *o, hid_t file_type,
+                                 hid_t memory_type, void *value)
 {
   PetscFunctionBeginUser;
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Tclose(type));
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Aclose(attribute));
+  PetscCheck(H5Tequal(o->type, file_type) > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: attribute \"%s\" is of another type; the file is damaged", path, name);
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Aread(o->attribute, memory_type, value));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamAttributeReadNumber(const char path[], hid_t object, const char name[], hid_t file_type,
                                       hid_t memory_type, void *value)
 {
-  hid_t attribute, type;
+  PetscErrorCode ierr;
+  Opened o;
 
   PetscFunctionBeginUser;
-  PetscCall(Open(path, object, name, &attribute, &type));
-  PetscCheck(H5Tequal(type, file_type) > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: attribute \"%s\" is of another type; the file is damaged", path, name);
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Aread(attribute, memory_type, value));
-  PetscCall(Close(path, attribute, type));
+  PetscCall(Open(path, object, name, &o));
+  ierr = ReadNumber(path, name, &o, file_type, memory_type, value);
+  Close(&o);
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+/* Allocates *text, also where it cannot be read. */
+static PetscErrorCode ReadText(const char path[], const char name[], const Opened *o, char **text)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(
+      H5Tget_class(o->type) == H5T_STRING && H5Tis_variable_str(o->type) == 0 && H5Tget_size(o->type) <= TEXT_BYTES,
+      PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: attribute \"%s\" is not a text; the file is damaged", path, name);
+  PetscCall(PetscCalloc(H5Tget_size(o->type) + 1, text));
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Aread(o->attribute, o->type, *text));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamAttributeReadText(const char path[], hid_t object, const char name[], char **text)
 {
-  hid_t attribute, type;
+  PetscErrorCode ierr;
+  Opened o;
 
   PetscFunctionBeginUser;
-  PetscCall(Open(path, object, name, &attribute, &type));
-  PetscCheck(H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0 && H5Tget_size(type) <= TEXT_BYTES,
-             PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: attribute \"%s\" is not a text; the file is damaged", path,
-             name);
-  PetscCall(PetscCalloc(H5Tget_size(type) + 1, text));
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Aread(attribute, type, *text));
-  PetscCall(Close(path, attribute, type));
+  *text = NULL;
+  PetscCall(Open(path, object, name, &o));
+  ierr = ReadText(path, name, &o, text);
+  Close(&o);
+  if (ierr) PetscCall(PetscFree(*text));
+  PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 

@@ -170,6 +170,7 @@ static PetscErrorCode CheckObject(Check *c, const char name[])
 
 static PetscErrorCode CheckGrid(Check *c)
 {
+  PetscErrorCode ierr;
   LamGrid grid;
   PetscBool has;
   char *text;
@@ -180,9 +181,10 @@ static PetscErrorCode CheckGrid(Check *c)
              "%s: is missing, though there are nodes of a grid", c->path);
   if (!has) PetscFunctionReturn(0);
   PetscCall(LamFileGetText(c->path, c->file, LAM_GRID_NAME, &text));
-  PetscCall(LamGridFromText(c->path, &c->header.micro, text, &grid));
-  PetscCall(LamGridDestroy(&grid));
+  ierr = LamGridFromText(c->path, &c->header.micro, text, &grid);
   PetscCall(PetscFree(text));
+  PetscCall(ierr);
+  PetscCall(LamGridDestroy(&grid));
   PetscFunctionReturn(0);
 }
 

@@ -73,8 +73,11 @@ static PetscErrorCode FileOpen(const char path[], PetscBool write, hid_t *file)
   }
   close(fd);
   PetscCall(AccessList(path, &access));
-  PetscCheck(H5Fis_hdf5(path) > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: is not an HDF5 file; a file written by lamella is wanted", path);
+  if (H5Fis_hdf5(path) <= 0) {
+    H5Pclose(access);
+    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: is not an HDF5 file; a file written by lamella is wanted",
+            path);
+  }
   *file = H5Fopen(path, write ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access);
   if (*file < 0) {
     char reason[LAM_HDF5_REASON_LENGTH];

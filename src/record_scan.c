@@ -38,12 +38,13 @@ static PetscErrorCode CheckRoom(const char path[], hid_t file, hid_t dataset, Pe
   PetscFunctionReturn(0);
 }
 
-/* The list /records, nothing read of it yet. */
+/* The list /records, nothing read of it yet. What has been opened before an error is the caller's to close, too. */
 static PetscErrorCode OpenList(const char path[], hid_t file, hid_t access, hid_t *dataset, hid_t *space)
 {
   PetscBool has;
 
   PetscFunctionBeginUser;
+  *dataset = *space = H5I_INVALID_HID;
   PetscCall(LamFileHas(path, file, "/records", &has));
   PetscCheck(has, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: the table /records is missing; the file is damaged",
              path);
@@ -55,14 +56,12 @@ static PetscErrorCode OpenList(const char path[], hid_t file, hid_t access, hid_
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamCommittedRead(const char path[], hid_t file, PetscInt *committed)
+static PetscErrorCode ReadCommitted(const char path[], hid_t file, hid_t dataset, hid_t space, PetscInt *committed)
 {
-  hid_t dataset, space;
   PetscInt64 count;
   hssize_t extent;
 
   PetscFunctionBeginUser;
-  PetscCall(OpenList(path, file, H5P_DEFAULT, &dataset, &space));
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, extent = H5Sget_simple_extent_npoints(space));
   PetscCall(LamAttributeReadNumber(path, dataset, "committed", H5T_STD_I64LE, H5T_NATIVE_INT64, &count));
   PetscCheck(count >= 0 && count <= (PetscInt64)extent && count < PETSC_MAX_INT, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
@@ -71,8 +70,20 @@ PetscErrorCode LamCommittedRead(const char path[], hid_t file, PetscInt *committ
   PetscCall(CheckCounter(path, dataset, count));
   PetscCall(CheckRoom(path, file, dataset, count));
   *committed = (PetscInt)count;
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Sclose(space));
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Dclose(dataset));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamCommittedRead(const char path[], hid_t file, PetscInt *committed)
+{
+  hid_t dataset, space;
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  ierr = OpenList(path, file, H5P_DEFAULT, &dataset, &space);
+  if (!ierr) ierr = ReadCommitted(path, file, dataset, space, committed);
+  if (space >= 0) H5Sclose(space);
+  if (dataset >= 0) H5Dclose(dataset);
+  PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 
@@ -95,13 +106,15 @@ static PetscErrorCode CheckType(const char path[], const LamRecordScan *s)
 /* Without HDF5's cache of chunks: each is read once, right into our block. */
 static PetscErrorCode Open(const char path[], hid_t file, LamRecordScan *s)
 {
+  PetscErrorCode ierr;
   hid_t access;
 
   PetscFunctionBeginUser;
   LamCallHDF5(path, PETSC_ERR_LIB, access = H5Pcreate(H5P_DATASET_ACCESS));
   LamCallHDF5(path, PETSC_ERR_LIB, H5Pset_chunk_cache(access, H5D_CHUNK_CACHE_NSLOTS_DEFAULT, 0, 1));
-  PetscCall(OpenList(path, file, access, &s->dataset, &s->space));
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Pclose(access));
+  ierr = OpenList(path, file, access, &s->dataset, &s->space);
+  H5Pclose(access);
+  PetscCall(ierr);
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, s->type = H5Dget_type(s->dataset));
   PetscCall(CheckType(path, s));
   PetscCall(LamRecordLayoutMake(s->type, &s->layout));

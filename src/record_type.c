@@ -156,32 +156,44 @@ static PetscErrorCode CheckPacked(const char path[], hid_t file_type)
   PetscFunctionReturn(0);
 }
 
+/* Member i of our type; *problem tells what the file's is, NULL: the same. */
+static PetscErrorCode CompareMember(const char path[], hid_t ours, int i, hid_t file_type, char name[LAM_NAME_LENGTH],
+                                    const char **problem)
+{
+  char *own_name = H5Tget_member_name(ours, (unsigned)i);
+  const int at = H5Tget_member_index(file_type, own_name);
+  hid_t wanted, found;
+
+  PetscFunctionBeginUser;
+  snprintf(name, LAM_NAME_LENGTH, "%s", own_name);
+  H5free_memory(own_name);
+  *problem = at >= 0 || WasAdded(name) ? NULL : "missing";
+  if (at < 0) PetscFunctionReturn(0);
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, found = H5Tget_member_type(file_type, (unsigned)at));
+  wanted = H5Tget_member_type(ours, (unsigned)i);
+  if (H5Tequal(wanted, found) <= 0) *problem = "of another type";
+  H5Tclose(wanted);
+  H5Tclose(found);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamRecordTypeCheck(const char path[], hid_t file_type)
 {
+  char name[LAM_NAME_LENGTH] = "";
+  const char *problem = NULL;
+  PetscErrorCode ierr = 0;
   hid_t ours;
-  int members;
 
   PetscFunctionBeginUser;
   PetscCheck(H5Tget_class(file_type) == H5T_COMPOUND, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: /records is not a table of records; the file is damaged or no Lamella file", path);
   PetscCall(LamRecordTypeCreate(&ours));
-  LamCallHDF5(path, PETSC_ERR_LIB, members = H5Tget_nmembers(ours));
-  for (int i = 0; i < members; i++) {
-    char *name = H5Tget_member_name(ours, (unsigned)i);
-    const int at = H5Tget_member_index(file_type, name);
-    const hid_t wanted = H5Tget_member_type(ours, (unsigned)i);
-    const hid_t found = at < 0 ? H5I_INVALID_HID : H5Tget_member_type(file_type, (unsigned)at);
-    const PetscBool same = (PetscBool)(at < 0 ? WasAdded(name) : H5Tequal(wanted, found) > 0);
-
-    if (found >= 0) LamCallHDF5(path, PETSC_ERR_LIB, H5Tclose(found));
-    LamCallHDF5(path, PETSC_ERR_LIB, H5Tclose(wanted));
-    if (!same) LamCallHDF5(path, PETSC_ERR_LIB, H5Tclose(ours));
-    PetscCheck(same, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "%s: member \"%s\" of /records is %s; the file is damaged or of another format", path, name,
-               found >= 0 ? "of another type" : "missing");
-    H5free_memory(name);
-  }
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Tclose(ours));
+  for (int i = 0; i < H5Tget_nmembers(ours) && !problem && !ierr; i++)
+    ierr = CompareMember(path, ours, i, file_type, name, &problem);
+  H5Tclose(ours);
+  PetscCall(ierr);
+  PetscCheck(!problem, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: member \"%s\" of /records is %s; the file is damaged or of another format", path, name, problem);
   PetscCall(CheckPacked(path, file_type));
   PetscFunctionReturn(0);
 }
