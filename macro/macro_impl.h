@@ -250,6 +250,9 @@ PetscInt LamMacroFindSet(LamMacro macro, const char name[]);
 PetscErrorCode LamMacroDiscCreate(MPI_Comm comm, LamDiscPart part, const PetscInt elements[2], DM *dm);
 /* mesh_gmsh.c */
 PetscErrorCode LamMacroGmshCreate(MPI_Comm comm, const char path[], DM *dm);
+/* Whether PETSc may read the file, which it does without looking; `why` says why not. */
+#define LAM_GMSH_WHY 200
+PetscBool LamGmshCheck(const char path[], char why[LAM_GMSH_WHY]);
 
 /* element.c */
 /* The kind for a polytope, made where it is not there yet. PETSC_ERR_SUP where there is none. */

@@ -1,0 +1,537 @@
+/*
+  What is wrong with a Gmsh file.
+
+  Method
+    PETSc believes a file: how many nodes there are, which of them an element names, how long a word is. What it says of
+    them is tested here first, by the same grammar: MeshFormat, PhysicalNames, Entities (from 4.0 on), Nodes, Elements.
+    What follows is not read.
+
+  References
+    C. Geuzaine and J.-F. Remacle, Gmsh Reference Manual, Sections "MSH file format" and "MSH file format version 2".
+*/
+#include "macro_impl.h"
+#include <errno.h>
+#include <limits.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { MOST_WORD = 128, MOST_NAME = 120, MOST_TAGS = 16, MOST_NODES = 10 };
+#define MOST_SPAN ((int64_t)1 << 20) /* of the tags of nodes, or SPARSE times as many as there are nodes */
+#define SPARSE 64
+
+typedef struct {
+  int64_t a, b; /* a < b */
+} Pair;
+
+typedef struct {
+  Pair *items;
+  size_t n, room;
+} Pairs;
+
+typedef struct {
+  const char *begin, *at, *end;
+  int format; /* 22, 40, 41 */
+  PetscBool binary, swapped;
+  int64_t first, span;   /* of the tags of nodes */
+  unsigned char *known;  /* [span] the node is there; owned */
+  Pairs entities;        /* dimension, tag; owned */
+  Pairs edges, segments; /* of elements of two dimensions, and elements of one; owned */
+  PetscInt elements[4];  /* by dimension */
+  char *why;             /* LAM_GMSH_WHY long */
+} Mesh;
+
+/* Always false: the words stay. */
+static PetscBool Wrong(const Mesh *m, const char format[], ...)
+{
+  int line = 1, length;
+  va_list arguments;
+
+  for (const char *c = m->begin; c + 1 < m->at && !m->binary; c++) line += *c == '\n';
+  length = m->binary ? snprintf(m->why, LAM_GMSH_WHY, "byte %lld: ", (long long)(m->at - m->begin))
+                     : snprintf(m->why, LAM_GMSH_WHY, "line %d: ", line);
+  va_start(arguments, format);
+  vsnprintf(m->why + length, (size_t)(LAM_GMSH_WHY - length), format, arguments);
+  va_end(arguments);
+  return PETSC_FALSE;
+}
+
+/* ---- words and numbers ---- */
+
+static PetscBool IsGap(char c)
+{
+  return (PetscBool)(c == ' ' || (c >= '\t' && c <= '\r'));
+}
+
+/* The gap behind it is passed, too: there binary numbers begin. */
+static PetscBool Word(Mesh *m, char word[MOST_WORD])
+{
+  size_t n = 0;
+
+  while (m->at < m->end && IsGap(*m->at)) m->at++;
+  for (; m->at < m->end && !IsGap(*m->at); n++) {
+    if (n + 1 == MOST_WORD) return Wrong(m, "a word of more than %d bytes", MOST_WORD - 1);
+    word[n] = *m->at++;
+  }
+  word[n] = '\0';
+  if (!n) return Wrong(m, "the file ends early");
+  if (m->at < m->end) m->at++;
+  return PETSC_TRUE;
+}
+
+static PetscBool Expect(Mesh *m, const char wanted[])
+{
+  char word[MOST_WORD];
+
+  if (!Word(m, word)) return PETSC_FALSE;
+  return strcmp(word, wanted) ? Wrong(m, "%s is wanted, not %.40s", wanted, word) : PETSC_TRUE;
+}
+
+static PetscBool WordToInteger(Mesh *m, int64_t least, int64_t most, int64_t *value)
+{
+  char word[MOST_WORD], *end;
+
+  if (!Word(m, word)) return PETSC_FALSE;
+  errno = 0;
+  *value = strtoll(word, &end, 10);
+  if (*end || errno || *value < least || *value > most) return Wrong(m, "%.40s is not the whole number wanted", word);
+  return PETSC_TRUE;
+}
+
+static PetscBool Bytes(Mesh *m, size_t size, void *value)
+{
+  unsigned char *bytes = value;
+
+  if ((size_t)(m->end - m->at) < size) return Wrong(m, "the file ends early");
+  for (size_t i = 0; i < size; i++) bytes[m->swapped ? size - 1 - i : i] = (unsigned char)*m->at++;
+  return PETSC_TRUE;
+}
+
+static PetscBool Integer(Mesh *m, int64_t least, int64_t most, int64_t *value)
+{
+  int32_t number;
+
+  if (!m->binary) return WordToInteger(m, least, most, value);
+  if (!Bytes(m, sizeof(number), &number)) return PETSC_FALSE;
+  *value = number;
+  return *value < least || *value > most ? Wrong(m, "%lld is not the whole number wanted", (long long)*value)
+                                         : PETSC_TRUE;
+}
+
+/* A tag or a number of things; of `each` bytes at least, so there are no more than the file has room for. */
+static PetscBool Long(Mesh *m, int64_t each, int64_t *value)
+{
+  const int64_t most = each ? (m->end - m->at) / each : INT_MAX - 1;
+
+  if (!m->binary) return WordToInteger(m, 0, PetscMin(most, INT_MAX - 1), value);
+  if (!Bytes(m, sizeof(*value), value)) return PETSC_FALSE;
+  return *value < 0 || *value > PetscMin(most, INT_MAX - 1) ? Wrong(m, "%lld of them", (long long)*value) : PETSC_TRUE;
+}
+
+static PetscBool Reals(Mesh *m, int64_t n)
+{
+  for (int64_t i = 0; i < n; i++) {
+    char word[MOST_WORD], *end = word;
+    double value = 0;
+
+    if (m->binary ? !Bytes(m, sizeof(value), &value) : !Word(m, word)) return PETSC_FALSE;
+    if (!m->binary) value = strtod(word, &end);
+    if ((!m->binary && (end == word || *end)) || !isfinite(value)) return Wrong(m, "a coordinate is no finite number");
+  }
+  return PETSC_TRUE;
+}
+
+/* ---- pairs ---- */
+
+static PetscBool Add(Mesh *m, Pairs *p, int64_t a, int64_t b)
+{
+  if (p->n == p->room) {
+    const size_t room = 2 * p->room + 64;
+    Pair *items = realloc(p->items, room * sizeof(*items));
+
+    if (!items) return Wrong(m, "no memory for the mesh");
+    p->items = items;
+    p->room = room;
+  }
+  p->items[p->n++] = (Pair){a, b};
+  return PETSC_TRUE;
+}
+
+static int Compare(const void *a, const void *b)
+{
+  const Pair *p = a, *q = b;
+
+  if (p->a != q->a) return p->a < q->a ? -1 : 1;
+  return (p->b > q->b) - (p->b < q->b);
+}
+
+static PetscBool Has(const Pairs *sorted, int64_t a, int64_t b)
+{
+  const Pair wanted = {a, b};
+
+  return (PetscBool)(sorted->n && bsearch(&wanted, sorted->items, sorted->n, sizeof(wanted), Compare));
+}
+
+static void Sort(Pairs *p)
+{
+  if (p->n) qsort(p->items, p->n, sizeof(*p->items), Compare);
+}
+
+/* ---- the front ---- */
+
+static PetscBool Format(Mesh *m)
+{
+  char version[MOST_WORD];
+  int64_t binary, size;
+  int32_t one = 1;
+
+  if (!Expect(m, "$MeshFormat") || !Word(m, version)) return PETSC_FALSE;
+  m->format = !strcmp(version, "2.2") ? 22 : !strcmp(version, "4") || !strcmp(version, "4.0") ? 40 : 41;
+  if (m->format == 41 && strcmp(version, "4.1")) return Wrong(m, "format %.20s; 2.2, 4.0 and 4.1 are read", version);
+  if (!WordToInteger(m, 0, 1, &binary) || !WordToInteger(m, 8, 8, &size)) return PETSC_FALSE;
+  m->binary = (PetscBool)binary;
+  if (binary && !Bytes(m, sizeof(one), &one)) return PETSC_FALSE;
+  m->swapped = (PetscBool)(binary && one != 1);
+  if (m->swapped && one != 0x01000000) return Wrong(m, "the order of bytes is unknown");
+  return Expect(m, "$EndMeshFormat");
+}
+
+/* Names of labels that PETSc has for itself. */
+static PetscBool IsTaken(const char *name, size_t n)
+{
+  return (PetscBool)((n == 5 && !memcmp(name, "depth", n)) || (n == 8 && !memcmp(name, "celltype", n)));
+}
+
+static PetscBool PhysicalName(Mesh *m)
+{
+  const char *from, *to, *line;
+  int64_t dimension, tag;
+
+  if (!WordToInteger(m, 0, 3, &dimension) || !WordToInteger(m, INT_MIN, INT_MAX, &tag)) return PETSC_FALSE;
+  line = memchr(m->at, '\n', (size_t)(m->end - m->at));
+  if (!line) return Wrong(m, "the file ends early");
+  from = memchr(m->at, '"', (size_t)(line - m->at));
+  for (to = line; from && to > from && *to != '"';) to--;
+  if (!from || to - from < 2 || to - from > MOST_NAME || line - m->at > 2 * MOST_NAME)
+    return Wrong(m, "a name in quotation marks is wanted, of 1 to %d bytes", MOST_NAME - 1);
+  if (memchr(from, '\0', (size_t)(to - from))) return Wrong(m, "a name holds a zero");
+  if (IsTaken(from + 1, (size_t)(to - from - 1)))
+    return Wrong(m, "a physical group cannot have the name %.*s; give it another", (int)(to - from - 1), from + 1);
+  m->at = line + 1;
+  return PETSC_TRUE;
+}
+
+static PetscBool PhysicalNames(Mesh *m)
+{
+  int64_t n;
+
+  if (!WordToInteger(m, 0, m->end - m->at, &n)) return PETSC_FALSE;
+  for (int64_t i = 0; i < n; i++)
+    if (!PhysicalName(m)) return PETSC_FALSE;
+  return Expect(m, "$EndPhysicalNames");
+}
+
+static PetscBool Entity(Mesh *m, int dimension)
+{
+  int64_t tag, n, ignored;
+
+  if (!Integer(m, INT_MIN, INT_MAX, &tag) || !Reals(m, m->format == 41 && !dimension ? 3 : 6)) return PETSC_FALSE;
+  for (int list = 0; list < (dimension ? 2 : 1); list++) { /* of physical groups, of what bounds it */
+    if (!Long(m, 1, &n)) return PETSC_FALSE;
+    if (!list && n > MOST_TAGS) return Wrong(m, "more than %d physical groups of one entity", MOST_TAGS);
+    for (int64_t i = 0; i < n; i++)
+      if (!Integer(m, INT_MIN, INT_MAX, &ignored)) return PETSC_FALSE;
+  }
+  return Add(m, &m->entities, dimension, tag);
+}
+
+static PetscBool Entities(Mesh *m)
+{
+  int64_t n[4];
+
+  for (int k = 0; k < 4; k++)
+    if (!Long(m, 1, &n[k])) return PETSC_FALSE;
+  for (int k = 0; k < 4; k++)
+    for (int64_t i = 0; i < n[k]; i++)
+      if (!Entity(m, k)) return PETSC_FALSE;
+  Sort(&m->entities);
+  return Expect(m, "$EndEntities");
+}
+
+/* What a block begins with: its entity; of elements their type, too. */
+static PetscBool Block(Mesh *m, PetscBool of_elements, int64_t *third, int64_t *n)
+{
+  int64_t first, second;
+  const PetscBool tag_first = (PetscBool)(m->format == 40);
+
+  if (!Integer(m, INT_MIN, INT_MAX, &first) || !Integer(m, INT_MIN, INT_MAX, &second) ||
+      !Integer(m, 0, INT_MAX, third) || !Long(m, 1, n))
+    return PETSC_FALSE;
+  if ((of_elements || m->format == 41) && !Has(&m->entities, tag_first ? second : first, tag_first ? first : second))
+    return Wrong(m, "a block of an entity that is not in $Entities");
+  return PETSC_TRUE;
+}
+
+/* ---- nodes ---- */
+
+static PetscBool KeepTag(Mesh *m, int64_t tags[], int64_t room, int64_t *n, int64_t tag)
+{
+  if (*n == room) return Wrong(m, "there are more nodes than $Nodes says");
+  tags[(*n)++] = tag;
+  return PETSC_TRUE;
+}
+
+/* Formats 2.2 and 4.0: each tag with its place; 4.1: all tags first. */
+static PetscBool NodeBlock(Mesh *m, int64_t count, int64_t tags[], int64_t room, int64_t *n)
+{
+  int64_t tag;
+
+  for (int64_t i = 0; i < count; i++) {
+    if (m->format == 41 ? !Long(m, 0, &tag) : !Integer(m, 0, INT_MAX - 1, &tag)) return PETSC_FALSE;
+    if (!KeepTag(m, tags, room, n, tag) || (m->format < 41 && !Reals(m, 3))) return PETSC_FALSE;
+  }
+  return m->format == 41 ? Reals(m, 3 * count) : PETSC_TRUE;
+}
+
+static PetscBool NodeBlocks(Mesh *m, int64_t blocks, int64_t tags[], int64_t room)
+{
+  int64_t n = 0, count, parametric;
+
+  for (int64_t b = 0; b < blocks; b++) {
+    if (!Block(m, PETSC_FALSE, &parametric, &count)) return PETSC_FALSE;
+    if (m->format == 41 && parametric) return Wrong(m, "parametric coordinates are not read");
+    if (!NodeBlock(m, count, tags, room, &n)) return PETSC_FALSE;
+  }
+  return n < room ? Wrong(m, "there are fewer nodes than $Nodes says") : PETSC_TRUE;
+}
+
+static PetscBool MarkNodes(Mesh *m, int64_t n, const int64_t tags[])
+{
+  int64_t last = 0;
+
+  m->first = INT_MAX;
+  for (int64_t i = 0; i < n; i++) {
+    m->first = PetscMin(m->first, tags[i]);
+    last = PetscMax(last, tags[i]);
+  }
+  m->span = last - m->first + 1;
+  if (m->span < 1 || m->span > PetscMax(MOST_SPAN, SPARSE * n))
+    return Wrong(m, "tags of nodes from %lld to %lld", (long long)m->first, (long long)last);
+  m->known = calloc((size_t)m->span, 1);
+  if (!m->known) return Wrong(m, "no memory for the mesh");
+  for (int64_t i = 0; i < n; i++)
+    if (m->known[tags[i] - m->first]++) return Wrong(m, "node %lld is given twice", (long long)tags[i]);
+  return PETSC_TRUE;
+}
+
+static PetscBool Nodes(Mesh *m)
+{
+  int64_t blocks = 0, n = 0, ignored, *tags, read = 0;
+  PetscBool good;
+
+  if (m->format == 22) {
+    if (!WordToInteger(m, 1, (m->end - m->at) / 8, &n)) return PETSC_FALSE;
+  } else if (!Long(m, 1, &blocks) || !Long(m, 8, &n) ||
+             (m->format == 41 && (!Long(m, 0, &ignored) || !Long(m, 0, &ignored))))
+    return PETSC_FALSE;
+  if (!n) return Wrong(m, "there is no node");
+  tags = malloc((size_t)n * sizeof(*tags));
+  if (!tags) return Wrong(m, "no memory for the mesh");
+  good = m->format == 22 ? NodeBlock(m, n, tags, n, &read) : NodeBlocks(m, blocks, tags, n);
+  if (good) good = MarkNodes(m, n, tags);
+  free(tags);
+  return good ? Expect(m, "$EndNodes") : PETSC_FALSE;
+}
+
+/* ---- elements ---- */
+
+static const struct {
+  int type, dimension, corners, nodes;
+} kinds[] = {{15, 0, 1, 1}, {1, 1, 2, 2},  {8, 1, 2, 3}, {2, 2, 3, 3}, {9, 2, 3, 6}, {3, 2, 4, 4},
+             {10, 2, 4, 9}, {16, 2, 4, 8}, {4, 3, 4, 4}, {5, 3, 8, 8}, {6, 3, 6, 6}, {7, 3, 5, 5}};
+
+/* The kind of elements of a type; -1: not read. */
+static int FindKind(const Mesh *m, int64_t type)
+{
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(kinds); k++)
+    if (kinds[k].type == type) return (int)k;
+  (void)Wrong(m, "elements of type %lld are not read; triangles and quadrilaterals are, straight or quadratic",
+              (long long)type);
+  return -1;
+}
+
+static PetscBool ElementNodes(Mesh *m, int kind)
+{
+  const int corners = kinds[kind].corners, dimension = kinds[kind].dimension;
+  int64_t node[MOST_NODES];
+
+  for (int i = 0; i < kinds[kind].nodes; i++) {
+    if (m->format == 41 ? !Long(m, 0, &node[i]) : !Integer(m, 0, INT_MAX - 1, &node[i])) return PETSC_FALSE;
+    if (node[i] < m->first || node[i] - m->first >= m->span || !m->known[node[i] - m->first])
+      return Wrong(m, "an element has node %lld, which is not in $Nodes", (long long)node[i]);
+    for (int j = 0; j < i; j++)
+      if (node[j] == node[i]) return Wrong(m, "an element has node %lld twice", (long long)node[i]);
+  }
+  m->elements[dimension]++;
+  for (int i = 0; i < corners && dimension == 2; i++) {
+    const int64_t a = node[i], b = node[(i + 1) % corners];
+
+    if (!Add(m, &m->edges, PetscMin(a, b), PetscMax(a, b))) return PETSC_FALSE;
+  }
+  return dimension != 1 || Add(m, &m->segments, PetscMin(node[0], node[1]), PetscMax(node[0], node[1]));
+}
+
+/* Format 2.2: in text each element says its type and its tags, in binary numbers a block of them does. */
+static PetscBool OldElements(Mesh *m, int64_t n)
+{
+  int64_t first, second, tags, ignored;
+
+  for (int64_t e = 0; e < n;) {
+    int64_t count = 1, type;
+    int kind;
+
+    if (!Integer(m, INT_MIN, INT_MAX, &first) || !Integer(m, 0, INT_MAX, &second) || !Integer(m, 0, MOST_TAGS, &tags))
+      return PETSC_FALSE;
+    type = m->binary ? first : second;
+    if (m->binary) count = second;
+    if (!count || count > n - e) return Wrong(m, "there are not as many elements as $Elements says");
+    kind = FindKind(m, type);
+    for (int64_t i = 0; kind >= 0 && i < count; i++, e++) {
+      for (int64_t k = 0; k < tags + m->binary; k++)
+        if (!Integer(m, INT_MIN, INT_MAX, &ignored)) return PETSC_FALSE;
+      if (!ElementNodes(m, kind)) return PETSC_FALSE;
+    }
+    if (kind < 0) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+static PetscBool ElementBlocks(Mesh *m, int64_t blocks, int64_t n)
+{
+  int64_t type, count, ignored, read = 0;
+
+  for (int64_t b = 0; b < blocks; b++) {
+    int kind;
+
+    if (!Block(m, PETSC_TRUE, &type, &count)) return PETSC_FALSE;
+    kind = FindKind(m, type);
+    if (kind < 0) return PETSC_FALSE;
+    read += count;
+    if (read > n) break;
+    for (int64_t i = 0; i < count; i++)
+      if ((m->format == 41 ? !Long(m, 0, &ignored) : !Integer(m, INT_MIN, INT_MAX, &ignored)) || !ElementNodes(m, kind))
+        return PETSC_FALSE;
+  }
+  return read == n ? PETSC_TRUE : Wrong(m, "there are not as many elements as $Elements says");
+}
+
+static PetscBool Elements(Mesh *m)
+{
+  int64_t blocks, n, ignored;
+
+  if (m->format == 22) {
+    if (!WordToInteger(m, 0, (m->end - m->at) / 4, &n) || !OldElements(m, n)) return PETSC_FALSE;
+  } else if (!Long(m, 1, &blocks) || !Long(m, 4, &n) ||
+             (m->format == 41 && (!Long(m, 0, &ignored) || !Long(m, 0, &ignored))) || !ElementBlocks(m, blocks, n)) {
+    return PETSC_FALSE;
+  }
+  return Expect(m, "$EndElements");
+}
+
+/* A plane body, and lines on it. */
+static PetscBool Body(Mesh *m)
+{
+  const int dimension = m->elements[3] ? 3 : m->elements[2] ? 2 : m->elements[1] ? 1 : 0;
+
+  if (dimension != 2) {
+    snprintf(m->why, LAM_GMSH_WHY,
+             "its elements have %d dimensions; the body is plane: mesh a surface in the plane X3 = 0", dimension);
+    return PETSC_FALSE;
+  }
+  Sort(&m->edges);
+  for (size_t i = 0; i < m->segments.n; i++)
+    if (!Has(&m->edges, m->segments.items[i].a, m->segments.items[i].b)) {
+      snprintf(m->why, LAM_GMSH_WHY, "the line from node %lld to %lld is on no element",
+               (long long)m->segments.items[i].a, (long long)m->segments.items[i].b);
+      return PETSC_FALSE;
+    }
+  return PETSC_TRUE;
+}
+
+/* ---- all of it ---- */
+
+/* Comments may stand between sections. */
+static PetscBool Section(Mesh *m, char word[MOST_WORD])
+{
+  if (!Word(m, word)) return PETSC_FALSE;
+  while (!strcmp(word, "$Comments")) {
+    while (strcmp(word, "$EndComments"))
+      if (!Word(m, word)) return PETSC_FALSE;
+    if (!Word(m, word)) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+static PetscBool Read(Mesh *m)
+{
+  char word[MOST_WORD];
+
+  if (!Format(m) || !Section(m, word)) return PETSC_FALSE;
+  if (!strcmp(word, "$PhysicalNames") && (!PhysicalNames(m) || !Section(m, word))) return PETSC_FALSE;
+  if (m->format >= 40) {
+    if (strcmp(word, "$Entities")) return Wrong(m, "$Entities is wanted, not %.40s", word);
+    if (!Entities(m) || !Section(m, word)) return PETSC_FALSE;
+  }
+  if (strcmp(word, "$Nodes")) return Wrong(m, "$Nodes is wanted, not %.40s", word);
+  if (!Nodes(m) || !Section(m, word)) return PETSC_FALSE;
+  if (strcmp(word, "$Elements")) return Wrong(m, "$Elements is wanted, not %.40s", word);
+  return (PetscBool)(Elements(m) && Body(m));
+}
+
+/* The whole file; NULL: *why says the reason. */
+static char *Load(const char path[], size_t *size, char why[LAM_GMSH_WHY])
+{
+  FILE *file = fopen(path, "rb");
+  struct stat status;
+  char *bytes = NULL;
+
+  why[0] = '\0';
+  if (!file || fstat(fileno(file), &status)) {
+    snprintf(why, LAM_GMSH_WHY, "%s", strerror(errno));
+  } else if (!S_ISREG(status.st_mode)) {
+    snprintf(why, LAM_GMSH_WHY, "is no file");
+  } else {
+    *size = (size_t)status.st_size;
+    bytes = malloc(*size + 1);
+    if (!bytes || fread(bytes, 1, *size, file) != *size) snprintf(why, LAM_GMSH_WHY, "cannot be read");
+  }
+  if (file) fclose(file);
+  if (!why[0]) return bytes;
+  free(bytes);
+  return NULL;
+}
+
+PetscBool LamGmshCheck(const char path[], char why[LAM_GMSH_WHY])
+{
+  size_t size = 0;
+  char *bytes = Load(path, &size, why);
+  Mesh m = {.begin = bytes, .at = bytes, .end = bytes + size, .why = why};
+  PetscBool good;
+
+  if (!bytes) return PETSC_FALSE;
+  if (size < 11 || strncmp(bytes, "$MeshFormat", 11)) {
+    snprintf(why, LAM_GMSH_WHY, "is no Gmsh mesh: it does not begin with $MeshFormat");
+    good = PETSC_FALSE;
+  } else
+    good = Read(&m);
+  free(bytes);
+  free(m.known);
+  free(m.entities.items);
+  free(m.edges.items);
+  free(m.segments.items);
+  return good;
+}
