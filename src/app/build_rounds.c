@@ -121,7 +121,7 @@ static PetscErrorCode PollUntilLacking(LamRounds *rounds, PetscInt *n)
   Compare(rounds);
   *n = 0;
   if (!LamPollIsDone(&rounds->poll) && !LamRoundsAreIdle(rounds))
-    *n = (PetscInt)PetscMin(rounds->poll.lacking, rounds->most - rounds->nodes - under_way);
+    *n = (PetscInt)PetscMax(0, PetscMin(rounds->poll.lacking, rounds->most - rounds->nodes - under_way));
   PetscFunctionReturn(0);
 }
 
