@@ -22,9 +22,12 @@
 #include <lamella/database.h>
 #include <cairo.h>
 
-/* Resolution of PNG files, and of images (fields) inside PDF and SVG files, dots per inch. */
+/* Resolution of PNG files, and of images (fields) inside PDF and SVG files, dots per inch. Tests that draw often may
+   ask for less. */
+#ifndef LAM_PLOT_DPI
 #define LAM_PLOT_DPI 400.0
 #define LAM_PLOT_VECTOR_DPI 300.0
+#endif
 
 typedef struct {
   double x, y, width, height; /* left, top */

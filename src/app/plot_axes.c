@@ -16,7 +16,7 @@ LamTicks LamTicksChoose(PetscReal low, PetscReal high, PetscInt wanted, PetscBoo
   const PetscReal largest = PetscMax(PetscAbsReal(low), PetscAbsReal(high));
   PetscReal power, share;
 
-  if (!(raw > 0) || PetscIsInfOrNanReal(raw)) return ticks;
+  if (!(raw > 1e-290) || PetscIsInfOrNanReal(raw)) return ticks; /* powers of ten have an end */
   power = PetscPowReal(10, PetscFloorReal(PetscLog10Real(raw)));
   share = raw / power;
   ticks.step = power * (share < 1.5 ? 1 : share < 3 ? 2 : share < 7 ? 5 : 10);
