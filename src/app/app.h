@@ -40,6 +40,13 @@ PetscErrorCode LamCommandMerge(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandInfo(LamArgs *args, int *exit_status);
 
+/* ---- program.c ---- */
+/* Finds the command and runs it. argv[0] is the program's name; what follows `--`, whose place that takes, is for PETSc
+   alone. */
+PetscErrorCode LamProgramRun(int argc, char *argv[], int *exit_status);
+PetscBool LamProgramSolves(void); /* the command that was found runs under mpirun */
+
+/* ---- main.c ---- */
 /* For a command that has to do with record files; before LamAppInitialize. */
 void LamAppStartHDF5(void);
 /* Starts MPI and PETSc for a command that solves; after parsing the command line. main() finalises. */

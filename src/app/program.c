@@ -1,0 +1,124 @@
+/*
+  The command line as a whole: finds the command, or tells of all.
+*/
+#include "app.h"
+#include <hdf5.h>
+#include <string.h>
+#include <sundials/sundials_version.h>
+
+static const struct {
+  const char *name, *summary;
+  LamCommandFunction run;
+  PetscBool solves; /* runs under mpirun; the others need no MPI */
+  PetscBool files;  /* reads or writes records in any case */
+} Commands[] = {
+    {"check", "read and check a scene; print the plan and its predicted cost", LamCommandCheck, PETSC_FALSE,
+     PETSC_FALSE},
+    {"rve", "solve the RVE along the scene's load", LamCommandRVE, PETSC_TRUE, PETSC_FALSE},
+    {"build", "fill a response database", LamCommandBuild, PETSC_TRUE, PETSC_TRUE},
+    {"query", "one answer, or many, from a database", LamCommandQuery, PETSC_FALSE, PETSC_TRUE},
+    {"verify", "solve part of a database's answers afresh and compare", LamCommandVerify, PETSC_TRUE, PETSC_TRUE},
+    {"fe2", "solve the scene's macroscale problem", LamCommandFE2, PETSC_TRUE, PETSC_TRUE},
+    {"tradeoff", "measure error against time over the scene's knobs", LamCommandTradeoff, PETSC_TRUE, PETSC_TRUE},
+    {"map", "tell how tissue fails over two of its quantities", LamCommandMap, PETSC_TRUE, PETSC_TRUE},
+    {"merge", "make one database of several", LamCommandMerge, PETSC_FALSE, PETSC_TRUE},
+    {"plot", "draw what a file holds", LamCommandPlot, PETSC_FALSE, PETSC_TRUE},
+    {"info", "tell what a file holds, who wrote it, with what", LamCommandInfo, PETSC_FALSE, PETSC_TRUE},
+};
+enum { COMMAND_COUNT = PETSC_STATIC_ARRAY_LENGTH(Commands) };
+
+static PetscBool CommandSolves; /* the one that was found */
+
+/* ---- help and versions ---- */
+
+static void PrintHelp(FILE *out)
+{
+  fprintf(out, "Usage: lamella COMMAND [ARGUMENTS] [-- PETSC-OPTIONS]\n"
+               "Effective stress, tangent and debonding of fruit and plant tissue from its cell walls.\n\n");
+  for (int i = 0; i < COMMAND_COUNT; i++) fprintf(out, "  %-8s %s\n", Commands[i].name, Commands[i].summary);
+  fprintf(out, "\nlamella COMMAND --help tells more, lamella --version the versions of the libraries.\n");
+}
+
+static PetscErrorCode PrintVersion(void)
+{
+  char petsc[256], sundials[64], mpi[MPI_MAX_LIBRARY_VERSION_STRING];
+  unsigned major, minor, release;
+  int length;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscGetVersion(petsc, sizeof(petsc)));
+  PetscCheck(H5get_libversion(&major, &minor, &release) >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "HDF5 has no version");
+  PetscCheck(!SUNDIALSGetVersion(sundials, sizeof(sundials)), PETSC_COMM_SELF, PETSC_ERR_LIB,
+             "SUNDIALS has no version");
+  PetscCallMPI(MPI_Get_library_version(mpi, &length));
+  mpi[strcspn(mpi, ",\n")] = '\0'; /* the rest is about who packaged it */
+  petsc[strcspn(petsc, ",")] = '\0';
+  printf("lamella %s\nPETSc %s\nHDF5 %u.%u.%u\nSUNDIALS %s\nMPI %s\n", LAMELLA_VERSION,
+         petsc + strcspn(petsc, "0123456789"), major, minor, release, sundials, mpi);
+  PetscFunctionReturn(0);
+}
+
+/* ---- the command line ---- */
+
+static void TellUnknown(const char word[])
+{
+  const char *commands[COMMAND_COUNT + 1] = {NULL}, *const options[] = {"--help", "--version", NULL}, *near;
+
+  for (int i = 0; i < COMMAND_COUNT; i++) commands[i] = Commands[i].name;
+  near = LamSuggest(word, word[0] == '-' ? options : commands);
+  fprintf(stderr, "lamella: %s '%s' is unknown", word[0] == '-' ? "option" : "command", word);
+  if (near) fprintf(stderr, "; did you mean '%s'?", near);
+  fprintf(stderr, "\nTry 'lamella --help'.\n");
+}
+
+/* Whether the word is the option, under either name. */
+static PetscBool Is(const char word[], const char short_name[], const char long_name[])
+{
+  return (PetscBool)(!strcmp(word, short_name) || !strcmp(word, long_name));
+}
+
+PetscBool LamProgramSolves(void)
+{
+  return CommandSolves;
+}
+
+static PetscErrorCode RunCommand(LamArgs *args, int *status)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < COMMAND_COUNT; i++) {
+    if (strcmp(args->argv[0], Commands[i].name)) continue;
+    CommandSolves = Commands[i].solves;
+    if (Commands[i].files) LamAppStartHDF5();
+    PetscCall(Commands[i].run(args, status));
+    PetscFunctionReturn(0);
+  }
+  TellUnknown(args->argv[0]);
+  *status = LAM_EXIT_USAGE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamProgramRun(int argc, char *argv[], int *status)
+{
+  static char *program_only[2]; /* PETSc keeps the address */
+  LamArgs args = {.argv = argv + 1, .petsc_argc = 1, .petsc_argv = program_only};
+
+  PetscFunctionBeginUser;
+  program_only[0] = argv[0];
+  while (1 + args.argc < argc && strcmp(args.argv[args.argc], "--")) args.argc++;
+  if (1 + args.argc < argc) {
+    args.petsc_argc = argc - 1 - args.argc;
+    args.petsc_argv = args.argv + args.argc;
+    args.petsc_argv[0] = argv[0];
+  }
+  if (!args.argc) {
+    PrintHelp(stderr);
+    *status = LAM_EXIT_USAGE;
+  } else if (Is(args.argv[0], "-h", "--help")) {
+    PrintHelp(stdout);
+  } else if (Is(args.argv[0], "-V", "--version")) {
+    PetscCall(PrintVersion());
+  } else {
+    PetscCall(RunCommand(&args, status));
+  }
+  PetscFunctionReturn(0);
+}
