@@ -328,21 +328,29 @@ static PetscBool MarkNodes(Mesh *m, int64_t n, const int64_t tags[])
   return PETSC_TRUE;
 }
 
+/* What format 4.1 says of the tags of its nodes. */
+static PetscBool RangeHolds(const Mesh *m, int64_t least, int64_t most)
+{
+  if (least <= m->first && most >= m->first + m->span - 1 && most - least < m->span + MOST_SPAN) return PETSC_TRUE;
+  return Wrong(m, "tags of nodes are said to be from %lld to %lld", (long long)least, (long long)most);
+}
+
 static PetscBool Nodes(Mesh *m)
 {
-  int64_t blocks = 0, n = 0, ignored, *tags, read = 0;
+  int64_t blocks = 0, n = 0, least = 0, most = 0, *tags, read = 0;
   PetscBool good;
 
   if (m->format == 22) {
     if (!WordToInteger(m, 1, (m->end - m->at) / 8, &n)) return PETSC_FALSE;
   } else if (!Long(m, 1, &blocks) || !Long(m, 8, &n) ||
-             (m->format == 41 && (!Long(m, 0, &ignored) || !Long(m, 0, &ignored))))
+             (m->format == 41 && (!Long(m, 0, &least) || !Long(m, 0, &most))))
     return PETSC_FALSE;
   if (!n) return Wrong(m, "there is no node");
   tags = malloc((size_t)n * sizeof(*tags));
   if (!tags) return Wrong(m, "no memory for the mesh");
   good = m->format == 22 ? NodeBlock(m, n, tags, n, &read) : NodeBlocks(m, blocks, tags, n);
   if (good) good = MarkNodes(m, n, tags);
+  if (good && m->format == 41) good = RangeHolds(m, least, most);
   free(tags);
   return good ? Expect(m, "$EndNodes") : PETSC_FALSE;
 }

@@ -83,6 +83,7 @@ static void more_than_the_file_has_room_for_is_refused(void **state)
 static void tags_that_are_far_apart_are_refused(void **state)
 {
   AssertRefused(FORMAT_22 "$Nodes\n2\n1 0 0 0\n2000000000 1 0 0\n$EndNodes\n" ELEMENTS_22, "from 1 to 2000000000");
+  AssertRefused(FORMAT_41 "$Nodes\n1 1 2817 4\n2 1 0 1\n1\n0 0 0\n$EndNodes\n", "said to be from 2817 to 4");
 }
 
 static void a_node_given_twice_is_refused(void **state)
