@@ -230,6 +230,8 @@ static PetscErrorCode ReadAxis(const char path[], char letter, json_t *map)
   json_t *axis = json_object();
 
   PetscFunctionBeginUser;
+  snprintf(name, sizeof(name), "%c", letter);
+  json_object_set_new(map, name, axis);
   snprintf(name, sizeof(name), "/map/%c/quantity", letter);
   PetscCall(LamFileReadText(path, name, &has_quantity, &quantity));
   snprintf(name, sizeof(name), "/map/%c/unit", letter);
@@ -243,8 +245,6 @@ static PetscErrorCode ReadAxis(const char path[], char letter, json_t *map)
   json_object_set_new(axis, "from", LamJSONReal(values[0]));
   json_object_set_new(axis, "to", LamJSONReal(values[dims[0] - 1]));
   json_object_set_new(axis, "points", json_integer((json_int_t)dims[0]));
-  snprintf(name, sizeof(name), "%c", letter);
-  json_object_set_new(map, name, axis);
   PetscCall(PetscFree(quantity));
   PetscCall(PetscFree(unit));
   PetscCall(PetscFree(values));
@@ -260,6 +260,7 @@ static PetscErrorCode ReadModes(const char path[], json_t *map)
   json_t *modes = json_object();
 
   PetscFunctionBeginUser;
+  json_object_set_new(map, "modes", modes);
   PetscCall(LamFileReadText(path, "/map/modes", &named, &names));
   PetscCall(LamFileReadInts(path, "/map/mode", &found, &rank, dims, &mode));
   PetscCheck(named && found && rank == 2, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
@@ -270,7 +271,6 @@ static PetscErrorCode ReadModes(const char path[], json_t *map)
     for (PetscInt i = 0; i < dims[0] * dims[1]; i++) count += mode[i] == number;
     if (count) json_object_set_new(modes, name, json_integer((json_int_t)count));
   }
-  json_object_set_new(map, "modes", modes);
   PetscCall(PetscFree(names));
   PetscCall(PetscFree(mode));
   PetscFunctionReturn(0);
@@ -362,26 +362,35 @@ static PetscErrorCode CheckFile(const char path[], PetscBool as_json, int *exit_
 
 /* ---- the command ---- */
 
+/* What the kind of file has beside records. */
+static PetscErrorCode ReadKind(const char path[], json_t *info)
+{
+  const char *kind = json_string_value(json_object_get(info, "kind"));
+
+  PetscFunctionBeginUser;
+  PetscCheck(kind, PETSC_COMM_SELF, PETSC_ERR_LIB, "%s: its description is no JSON", path);
+  if (!strcmp(kind, "fe2")) PetscCall(ReadRun(path, info));
+  if (!strcmp(kind, "map")) PetscCall(ReadMap(path, info));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Describe(const char path[], PetscBool as_json)
 {
   LamDatabase database;
+  PetscErrorCode ierr;
   const char *text;
-  json_t *info;
+  json_t *info = NULL;
 
   PetscFunctionBeginUser;
   PetscCall(LamDatabaseOpen(path, &database));
-  PetscCall(LamDatabaseGetInfo(database, &text));
-  info = json_loads(text, 0, NULL);
-  PetscCheck(info, PETSC_COMM_SELF, PETSC_ERR_LIB, "%s: its description is no JSON", path);
-  if (!strcmp(json_string_value(json_object_get(info, "kind")), "fe2")) PetscCall(ReadRun(path, info));
-  if (!strcmp(json_string_value(json_object_get(info, "kind")), "map")) PetscCall(ReadMap(path, info));
-  if (as_json) {
-    PetscCall(LamPrintJSON(info));
-  } else {
-    PrintTable(info);
-    json_decref(info);
-  }
+  ierr = LamDatabaseGetInfo(database, &text);
+  if (!ierr) info = json_loads(text, 0, NULL);
+  if (!ierr) ierr = ReadKind(path, info);
+  if (!ierr && as_json) ierr = LamPrintJSON(json_incref(info));
+  if (!ierr && !as_json) PrintTable(info);
+  json_decref(info);
   PetscCall(LamDatabaseClose(&database));
+  PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 

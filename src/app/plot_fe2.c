@@ -246,29 +246,38 @@ static PetscErrorCode DrawTitle(LamCanvas canvas, double x, const FE2Picture *p)
 }
 
 /* Body and reactions side by side; with zooms the body and these, and the reactions below. */
-PetscErrorCode LamPlotFE2(const LamPlotRequest *request)
+static PetscErrorCode DrawFE2(const char output[], const FE2Picture *p)
 {
   const double row = LAM_PLOT_HEIGHT - 51;
   LamRect left = {9, 25.2, 282, row}, right = {308, 21, LAM_PLOT_WIDTH - 316, LAM_PLOT_HEIGHT - 24};
   LamRect zooms = {318, 25.2, LAM_PLOT_WIDTH - 326, row};
   double height = LAM_PLOT_HEIGHT;
-  FE2Picture picture;
   LamCanvas canvas;
   LamView view;
 
   PetscFunctionBeginUser;
-  PetscCall(LoadFE2(request, &picture));
-  if (picture.zooms.count) {
+  if (p->zooms.count) {
     left.height = zooms.height = ZoomHeight;
     right = (LamRect){9, 25.2 + ZoomHeight + 34, LAM_PLOT_WIDTH - 17, CurveHeight};
     height = right.y + right.height + 4;
   }
-  PetscCall(LamCanvasCreate(request->output, LAM_PLOT_WIDTH, height, &canvas));
-  PetscCall(DrawTitle(canvas, left.x, &picture));
-  PetscCall(DrawPanel(canvas, left, &picture, &view));
-  if (picture.zooms.count) PetscCall(LamZoomsDraw(canvas, zooms, &view, &picture.zooms));
-  PetscCall(LamReactionsDraw(canvas, right, &picture.reactions));
+  PetscCall(LamCanvasCreate(output, LAM_PLOT_WIDTH, height, &canvas));
+  PetscCall(DrawTitle(canvas, left.x, p));
+  PetscCall(DrawPanel(canvas, left, p, &view));
+  if (p->zooms.count) PetscCall(LamZoomsDraw(canvas, zooms, &view, &p->zooms));
+  PetscCall(LamReactionsDraw(canvas, right, &p->reactions));
   PetscCall(LamCanvasFinish(&canvas));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamPlotFE2(const LamPlotRequest *request)
+{
+  FE2Picture picture;
+  PetscErrorCode ierr = LoadFE2(request, &picture);
+
+  PetscFunctionBeginUser;
+  if (!ierr) ierr = DrawFE2(request->output, &picture);
   PetscCall(UnloadFE2(&picture));
+  PetscCall(ierr);
   PetscFunctionReturn(0);
 }
