@@ -3,6 +3,7 @@
 #   ./setup.sh            install what is missing, build, run the main job and show its result
 #   ./setup.sh test       the same up to the build, then the tests
 #   ./setup.sh deps       only install what is missing
+#   ./setup.sh fuzz       install clang, too, and build the targets of tests/fuzz with it
 # Needs root or sudo only where a package is missing.
 set -euo pipefail
 cd "$(dirname "$0")"
@@ -15,6 +16,7 @@ packages=(
   libmuparser-dev # expressions of the position
 )
 test_packages=(libcmocka-dev python3-numpy python3-h5py python3-meshio)
+fuzz_packages=(clang libclang-rt-14-dev)
 
 # One thread per rank, on one machine as on a cluster; Open MPI refuses root unless it is told.
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
@@ -37,10 +39,10 @@ install_missing() {
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends "${missing[@]}" >/dev/null
 }
 
-build() { # PRESET DIRECTORY
+build() { # PRESET DIRECTORY [OPTIONS]
   cmake --preset "$1" -G Ninja >"$1.cmake.log" 2>&1 || { cat "$1.cmake.log"; rm -f "$1.cmake.log"; exit 1; }
   rm -f "$1.cmake.log"
-  cmake --build "$2"
+  cmake --build "${@:2}"
 }
 
 # The one that the system's alternatives choose; they are not touched, another program may need them as they are.
@@ -79,5 +81,9 @@ case "${1-run}" in
     build ci build
     ctest --test-dir build --output-on-failure -LE 'slow|bench'
     ;;
-  *) echo "usage: ./setup.sh [deps|test]" >&2; exit 1 ;;
+  fuzz)
+    install_missing "${packages[@]}" "${test_packages[@]}" "${fuzz_packages[@]}"
+    build fuzz build-fuzz --target fuzz
+    ;;
+  *) echo "usage: ./setup.sh [deps|test|fuzz]" >&2; exit 1 ;;
 esac

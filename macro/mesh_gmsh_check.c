@@ -206,6 +206,7 @@ static PetscBool IsTaken(const char *name, size_t n)
   return (PetscBool)((n == 5 && !memcmp(name, "depth", n)) || (n == 8 && !memcmp(name, "celltype", n)));
 }
 
+/* PETSc takes the name to begin right here, and to end at a colon. */
 static PetscBool PhysicalName(Mesh *m)
 {
   const char *from, *to, *line;
@@ -214,11 +215,12 @@ static PetscBool PhysicalName(Mesh *m)
   if (!WordToInteger(m, 0, 3, &dimension) || !WordToInteger(m, INT_MIN, INT_MAX, &tag)) return PETSC_FALSE;
   line = memchr(m->at, '\n', (size_t)(m->end - m->at));
   if (!line) return Wrong(m, "the file ends early");
-  from = memchr(m->at, '"', (size_t)(line - m->at));
-  for (to = line; from && to > from && *to != '"';) to--;
-  if (!from || to - from < 2 || to - from > MOST_NAME || line - m->at > 2 * MOST_NAME)
-    return Wrong(m, "a name in quotation marks is wanted, of 1 to %d bytes", MOST_NAME - 1);
-  if (memchr(from, '\0', (size_t)(to - from))) return Wrong(m, "a name holds a zero");
+  from = m->at;
+  for (to = line; to > from && *to != '"';) to--;
+  if (*from != '"' || to - from < 2 || to - from > MOST_NAME || line - to > MOST_NAME)
+    return Wrong(m, "a name in quotation marks is wanted behind one blank, of 1 to %d bytes", MOST_NAME - 1);
+  if (memchr(from, '\0', (size_t)(line - from)) || memchr(from, ':', (size_t)(line - from)))
+    return Wrong(m, "the name of a physical group holds a colon or a zero; give it another");
   if (IsTaken(from + 1, (size_t)(to - from - 1)))
     return Wrong(m, "a physical group cannot have the name %.*s; give it another", (int)(to - from - 1), from + 1);
   m->at = line + 1;

@@ -112,6 +112,12 @@ static void names_that_are_taken_are_refused(void **state)
   AssertRefused(FORMAT_22 "$PhysicalNames\n1\n1 1 \"celltype\"\n$EndPhysicalNames\n", "cannot have the name celltype");
 }
 
+static void names_that_PETSc_misreads_are_refused(void **state)
+{
+  AssertRefused(FORMAT_22 "$PhysicalNames\n1\n1 1  \"base\"\n$EndPhysicalNames\n", "behind one blank");
+  AssertRefused(FORMAT_22 "$PhysicalNames\n1\n1 1 \"a:b\"\n$EndPhysicalNames\n", "holds a colon");
+}
+
 static void long_words_are_refused(void **state)
 {
   char *text = calloc(1, 20000);
@@ -154,6 +160,7 @@ int main(void)
       cmocka_unit_test(a_line_that_is_on_no_element_is_refused),
       cmocka_unit_test(what_is_no_plane_body_is_refused),
       cmocka_unit_test(names_that_are_taken_are_refused),
+      cmocka_unit_test(names_that_PETSc_misreads_are_refused),
       cmocka_unit_test(long_words_are_refused),
       cmocka_unit_test(a_place_that_is_no_number_is_refused),
       cmocka_unit_test(a_file_cut_anywhere_is_refused),
