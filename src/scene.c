@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <lamella/utf8.h>
 
 /* A scene is some kilobytes; more is the wrong file. */
 enum { MAX_FILE_SIZE = 1 << 20 };
@@ -22,19 +23,6 @@ PetscErrorCode LamSceneDestroy(LamScene **scene)
   PetscFunctionReturn(0);
 }
 
-/* Bytes of the character that begins here; 0: it is no UTF-8 (RFC 3629). */
-static size_t CharacterLength(const unsigned char c[])
-{
-  const size_t length = c[0] < 0x80 ? 1 : c[0] < 0xC2 ? 0 : c[0] < 0xE0 ? 2 : c[0] < 0xF0 ? 3 : c[0] < 0xF5 ? 4 : 0;
-  const unsigned char least = c[0] == 0xE0 ? 0xA0 : c[0] == 0xF0 ? 0x90 : 0x80; /* shorter forms are no characters */
-  const unsigned char most = c[0] == 0xED ? 0x9F : c[0] == 0xF4 ? 0x8F : 0xBF;  /* nor are halves of pairs */
-
-  if (length > 1 && (c[1] < least || c[1] > most)) return 0;
-  for (size_t i = 2; i < length; i++)
-    if (c[i] < 0x80 || c[i] > 0xBF) return 0;
-  return length;
-}
-
 /* libfyaml 0.7 never returns from a directive that is no UTF-8. */
 static PetscErrorCode CheckCharacters(const char name[], const char text[])
 {
@@ -42,7 +30,7 @@ static PetscErrorCode CheckCharacters(const char name[], const char text[])
 
   PetscFunctionBeginUser;
   for (const unsigned char *c = (const unsigned char *)text; *c;) {
-    const size_t length = CharacterLength(c);
+    const size_t length = LamCharacterLength(c);
 
     PetscCheck(length, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                "%.200s:%d:%d: byte 0x%02x is no UTF-8; save the scene in that encoding", name, line, column, *c);

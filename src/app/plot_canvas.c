@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <lamella/utf8.h>
 
 typedef enum { FORMAT_PNG, FORMAT_SVG, FORMAT_PDF, FORMAT_COUNT } Format;
 static const char *const FormatExtensions[] = {".png", ".svg", ".pdf"};
@@ -189,6 +190,17 @@ void LamCanvasSetColour(LamCanvas canvas, LamColour colour)
   cairo_set_source_rgb(canvas->cr, colour.r, colour.g, colour.b);
 }
 
+/* Names come from files, and cairo gives up at bytes that are no UTF-8, as half a character at the end is. */
+static void MendText(char text[])
+{
+  for (char *c = text; *c;) {
+    const size_t length = LamCharacterLength((const unsigned char *)c);
+
+    if (!length) *c = '?';
+    c += length ? length : 1;
+  }
+}
+
 /* Draws or measures one run of text in one style; the current point moves on. Returns its advance. */
 static double TextRun(cairo_t *cr, double size, PetscBool italic, int script, size_t n, const char text[],
                       PetscBool show)
@@ -200,6 +212,7 @@ static double TextRun(cairo_t *cr, double size, PetscBool italic, int script, si
   n = PetscMin(n, sizeof run - 1);
   memcpy(run, text, n);
   run[n] = 0;
+  MendText(run);
   cairo_select_font_face(cr, "sans", italic ? CAIRO_FONT_SLANT_ITALIC : CAIRO_FONT_SLANT_NORMAL,
                          CAIRO_FONT_WEIGHT_NORMAL);
   cairo_set_font_size(cr, script ? 0.72 * size : size);
