@@ -134,7 +134,10 @@ PetscErrorCode LamCanvasFinish(LamCanvas *canvas)
   cairo_surface_finish(c->surface);
   if (!status) status = cairo_surface_status(c->surface);
   cairo_surface_destroy(c->surface);
-  PetscCheck(!status, PETSC_COMM_SELF, PETSC_ERR_LIB, "cairo: %s", cairo_status_to_string(status));
+  PetscCheck(!status || status == CAIRO_STATUS_NO_MEMORY, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: the numbers of the file cannot be drawn (cairo: %s); they are too large, or alike", c->path,
+             cairo_status_to_string(status));
+  PetscCheck(!status, PETSC_COMM_SELF, PETSC_ERR_MEM, "cairo: %s", cairo_status_to_string(status));
   PetscCall(WriteBytes(c->path, c->size, c->bytes));
   PetscCall(PetscFree(c->bytes));
   PetscCall(PetscFree(*canvas));
