@@ -104,12 +104,15 @@ static void FillColours(Raster *raster, PetscReal fade)
 static void FillTriangle(Raster *raster, const Vertex a, const Vertex b, const Vertex c)
 {
   const double area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
-  const int left = (int)PetscMax(0, floor(PetscMin(a.x, PetscMin(b.x, c.x)) - 0.5));
-  const int right = (int)PetscMin(raster->width - 1, ceil(PetscMax(a.x, PetscMax(b.x, c.x)) - 0.5));
-  const int top = (int)PetscMax(0, floor(PetscMin(a.y, PetscMin(b.y, c.y)) - 0.5));
-  const int bottom = (int)PetscMin(raster->height - 1, ceil(PetscMax(a.y, PetscMax(b.y, c.y)) - 0.5));
+  const double first[2] = {PetscMin(a.x, PetscMin(b.x, c.x)), PetscMin(a.y, PetscMin(b.y, c.y))};
+  const double last[2] = {PetscMax(a.x, PetscMax(b.x, c.x)), PetscMax(a.y, PetscMax(b.y, c.y))};
+  int left, right, top, bottom;
 
-  if (area == 0) return;
+  if (area == 0 || !isfinite(area) || !isfinite(a.value + b.value + c.value)) return;
+  left = (int)PetscClipInterval(floor(first[0] - 0.5), 0.0, (double)raster->width);
+  right = (int)PetscClipInterval(ceil(last[0] - 0.5), -1.0, raster->width - 1.0);
+  top = (int)PetscClipInterval(floor(first[1] - 0.5), 0.0, (double)raster->height);
+  bottom = (int)PetscClipInterval(ceil(last[1] - 0.5), -1.0, raster->height - 1.0);
   for (int j = top; j <= bottom; j++) {
     for (int i = left; i <= right; i++) {
       const double x = i + 0.5, y = j + 0.5;
