@@ -66,12 +66,14 @@ alike() {
 import json, sys
 folder, size, stiffness = sys.argv[1], float(sys.argv[2]), float(sys.argv[3])
 STRESS = set("""turgor cohesion energy P P_prescribed tangent turgor_mean turgor_spread max_traction max_lamella_shear
-    mean_face_traction max_wall_energy max_wall_tension mean_wall_tension strength measures y""".split())
-FORCE, WORK, COMPLIANCE = {"reaction"}, {"work"}, {"energy_turgor2"}
+    mean_face_traction max_wall_energy max_wall_tension mean_wall_tension ellipticity wall_ellipticity ellipticity_min
+    strength measures y""".split())
+FORCE, WORK, COMPLIANCE, LENGTH = {"reaction"}, {"work"}, {"energy_turgor2"}, {"localisation_place"}
 LEFT_OUT = set("""seconds solve_seconds query_seconds other_seconds peak_memory_mb residuals convergence_order file scene factorisations
     output newton_iterations""".split())  # rounding and time
 
 def factor_of(key, factor):
+    if key in LENGTH: return size
     if key in STRESS: return stiffness
     if key in FORCE: return stiffness * size
     if key in WORK: return stiffness * size**2

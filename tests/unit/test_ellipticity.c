@@ -217,8 +217,8 @@ static void WallTangent(const LamWall *wall, const double F[4], double angle, do
   LamKernel1 fibre;
 
   assert_int_equal(LamWallLawGet(wall->law, &law), 0);
-  law->matrix(wall, F, 1.0, &matrix);
-  law->fibre(wall, Fm[0] * Fm[0] + Fm[1] * Fm[1], &fibre);
+  LamMatrixAt(law, wall, F, 1.0, &matrix);
+  law->fibre(wall, Fm[0] * Fm[0] + Fm[1] * Fm[1] - 1.0, &fibre);
   for (int a = 0; a < 4; a++)
     for (int b = 0; b < 4; b++) {
       A[a][b] = matrix.A[a][b] + 4 * fibre.dd * Fm[a / 2] * M[a % 2] * Fm[b / 2] * M[b % 2];
