@@ -125,3 +125,24 @@ PetscErrorCode LamWallMeasures(LamRVE rve, const LamLoad *load, LamResponse *res
   for (PetscInt k = 0; k < 3; ++k) response->mean_wall_tension[k] = tension[k] / volume[k];
   PetscFunctionReturn(0);
 }
+
+void LamFindKinks(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *share, PetscReal *lowest)
+{
+  PetscReal kinked = 0.0, all = 0.0;
+
+  *lowest = PETSC_INFINITY;
+  for (PetscInt e = 0; e < rve->mesh.element_count; ++e) {
+    PetscReal u[LAM_ELEMENT_NODES][2];
+    LamWallPoint points[LAM_GAUSS];
+
+    LamGatherDisplacements(rve, load->F, y, e, u);
+    LamElementWallPoints(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, load->F[8],
+                         points);
+    for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
+      kinked += points[g].kinked;
+      all += points[g].reference;
+      *lowest = PetscMin(*lowest, points[g].ellipticity);
+    }
+  }
+  *share = kinked / all;
+}

@@ -9,6 +9,7 @@
 #include "rve_impl.h"
 
 #define MIN_SUBSTEP (1.0 / 512.0)
+#define KINKED_SUBSTEP (1.0 / 64.0)
 #define MAX_BRANCH_SWITCHES 6
 #define KICK 0.02 /* apothems: start along an unstable mode */
 
@@ -152,8 +153,28 @@ PetscErrorCode LamBracketText(const PetscReal between[2], char text[], size_t le
 typedef struct {
   PetscReal between[2]; /* shares of the way: the last stable state, the next that is none */
   PetscInt branch;
-  Outcome end; /* at the second */
+  Outcome end;          /* at the second */
+  PetscReal kinking[2]; /* shares between which the walls lose their ellipticity; equal: they do not */
+  PetscReal kinked;     /* share of the walls' volume at the last stable state */
 } Way;
+
+/* Whether the walls kink at a stable state a share t of the way. */
+static void WatchKinks(LamRVE rve, const LamLoad *load, PetscReal t, Way *way)
+{
+  PetscReal lowest;
+
+  LamFindKinks(rve, load, rve->y, &way->kinked, &lowest);
+  if (way->kinked <= LAM_KINKED_SHARE)
+    way->kinking[0] = way->kinking[1] = t;
+  else if (way->kinking[1] == way->kinking[0])
+    way->kinking[1] = t;
+}
+
+/* Walls that kink answer for the end of the way, wherever the mesh lets it be. */
+static PetscReal LeastStep(const Way *way)
+{
+  return way->kinking[1] > way->kinking[0] ? KINKED_SUBSTEP : MIN_SUBSTEP;
+}
 
 /* From `start` to `load`; y_from holds the last stable positions. */
 static PetscErrorCode Substeps(LamRVE rve, PetscReal y_from[], const LamLoad *start, const LamLoad *load, Way *way)
@@ -162,8 +183,8 @@ static PetscErrorCode Substeps(LamRVE rve, PetscReal y_from[], const LamLoad *st
   PetscReal step = 0.25;
 
   PetscFunctionBeginUser;
-  while (way->between[0] < 1.0 && step >= MIN_SUBSTEP && LamMayIterate(rve)) {
-    const PetscBool smallest = (PetscBool)(step < 2.0 * MIN_SUBSTEP);
+  while (way->between[0] < 1.0 && step >= LeastStep(way) && LamMayIterate(rve)) {
+    const PetscBool smallest = (PetscBool)(step < 2.0 * LeastStep(way));
     const PetscReal t = PetscMin(1.0, way->between[0] + step);
     const LamLoad next = t >= 1.0 ? *load : LamLoadBetween(start, load, t);
     PetscInt branch = way->branch;
@@ -174,6 +195,7 @@ static PetscErrorCode Substeps(LamRVE rve, PetscReal y_from[], const LamLoad *st
       at = next;
       way->between[0] = t;
       way->branch = branch;
+      WatchKinks(rve, &next, t, way);
       step = PetscMin(2.0 * step, 1.0);
     } else {
       way->between[1] = t;
@@ -193,6 +215,15 @@ static PetscErrorCode EndOfWay(LamRVE rve, const Way *way, LamStatus *status, ch
   if (way->end.collapsed >= 0 && !out_of_work) {
     *status = LAM_NO_EQUILIBRIUM;
     PetscCall(LamCollapseReason(way->end.collapsed, way->between, reason, length));
+  } else if (way->kinking[1] > way->kinking[0]) {
+    char place[80];
+
+    *status = LAM_NO_EQUILIBRIUM;
+    PetscCall(LamBracketText(way->kinking, place, sizeof(place)));
+    PetscCall(PetscSNPrintf(reason, length,
+                            "walls lose ellipticity%s and kink ever finer: %.2g %% of them at %.4g, the last stable "
+                            "state on this mesh; `fibres: tension` would not",
+                            place, (double)(100.0 * way->kinked), (double)way->between[0]));
   } else {
     PetscCall(PetscSNPrintf(reason, length,
                             "no equilibrium found beyond %.4g of the way from the state before, after %d iterations%s",
