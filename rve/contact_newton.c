@@ -25,6 +25,7 @@
 #define RESTARTS 3          /* with the junction status of a solution, where it has changed */
 #define COMPLIANT_ITERATIONS 4
 #define COMPLIANCE 0.033 /* apothems / (C1 + C2), in the first iteration; falls by the same factor each time */
+#define USUAL_PRESSURE 0.5 /* C1 + C2: of more turgor and cohesion compliance is less */
 #define COMPLIANCE_DECAY 0.3
 #define STEP_LIMIT 0.02      /* apothems, from a start far from contact */
 #define NEAR_LIMIT 0.2       /* else */
@@ -66,6 +67,8 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, LamBorder *bord
   const PetscBool under_way = (PetscBool)(rve->contact->share > 0.0);
   const PetscReal tolerance = under_way ? LOOSE_TOLERANCE : LamNewtonTolerance(rve);
   const PetscReal gap_tolerance = under_way ? LOOSE_TOLERANCE : LamGapTolerance(rve);
+  /* what it lets gaps close by does not grow with what closes them */
+  const PetscReal first = COMPLIANCE * PetscMin(1.0, USUAL_PRESSURE / PetscMax(1e-300, load->turgor + load->cohesion));
   const PetscInt most = compliant ? ITERATIONS : NEAR_ITERATIONS;
   PetscInt follow_until = FOLLOW_ITERATIONS, restarts = 0;
   LamContactStep step;
@@ -77,7 +80,7 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, LamBorder *bord
   step.border = border;
   for (PetscInt it = 0; it <= most && LamMayIterate(rve); ++it) {
     const PetscReal compliance =
-        compliant && it < COMPLIANT_ITERATIONS ? COMPLIANCE * PetscPowReal(COMPLIANCE_DECAY, (PetscReal)it) : 0.0;
+        compliant && it < COMPLIANT_ITERATIONS ? first * PetscPowReal(COMPLIANCE_DECAY, (PetscReal)it) : 0.0;
     PetscReal energy, norm, gap, alpha;
     PetscInt changes;
     PetscBool valid, ok;

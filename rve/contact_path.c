@@ -258,7 +258,7 @@ typedef struct {
 static PetscErrorCode Remember(LamRVE rve, const LamLoad *load, const LamContactOutcome *out, SecondBest *best)
 {
   PetscFunctionBeginUser;
-  if (out->refusal != LAM_NOT_REFUSED) best->refused = *out;
+  if (out->refusal != LAM_NOT_REFUSED && !(best->refused.between[1] > best->refused.between[0])) best->refused = *out;
   if (best->saddle.converged || !out->converged || out->negative <= 0) PetscFunctionReturn(0);
   PetscCall(LamContactSave(rve, load, &best->at));
   best->saddle = *out;
@@ -320,16 +320,23 @@ static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state,
 
 PetscErrorCode LamContactReason(LamRVE rve, const LamContactOutcome *out, char reason[], size_t length)
 {
+  char place[80];
+
   PetscFunctionBeginUser;
+  PetscCall(LamBracketText(out->between, place, sizeof(place)));
   if (out->converged)
     PetscCall(PetscSNPrintf(reason, length, "only a saddle was found: %d negative eigenvalues, lowest %.3g (C1+C2)",
                             (int)out->negative, (double)rve->lowest_eigenvalue));
+  else if (out->refusal == LAM_WALLS_OVERLAP)
+    PetscCall(PetscSNPrintf(reason, length,
+                            "facing walls of cells %d and %d lie %.3g apothems in each other%s: the mesh along the faces "
+                            "is too coarse",
+                            (int)out->cell[0], (int)out->cell[1], (double)out->depth, place));
   else if (out->refusal == LAM_CELLS_OVERLAP)
-    PetscCall(
-        PetscSNPrintf(reason, length,
-                      "a wall of cell %d lies %.3g apothems inside cell %d: it meets a wall that it does not face, "
-                      "which is not modelled, or the mesh along the faces is too coarse",
-                      (int)out->cell[0], (double)out->depth, (int)out->cell[1]));
+    PetscCall(PetscSNPrintf(reason, length,
+                            "a wall of cell %d meets one of cell %d that it does not face%s: cells that change their "
+                            "neighbours are not modelled",
+                            (int)out->cell[0], (int)out->cell[1], place));
   else if (out->refusal == LAM_LUMEN_COLLAPSED)
     PetscCall(LamCollapseReason(out->cell[0], out->between, reason, length));
   else
@@ -337,6 +344,15 @@ PetscErrorCode LamContactReason(LamRVE rve, const LamContactOutcome *out, char r
                             "no contact equilibrium found from any start, after %d iterations: give states in between",
                             (int)rve->work.iterations));
   PetscFunctionReturn(0);
+}
+
+/* A refusal between two states of a way from rest is a reason of the tissue; others may be of the way that was tried. */
+static LamStatus StatusOf(const LamContactOutcome *out)
+{
+  const PetscBool certain = (PetscBool)(out->refusal >= LAM_CELLS_OVERLAP && out->between[1] > out->between[0]);
+
+  if (out->converged) return out->negative > 0 ? LAM_UNSTABLE : LAM_CONVERGED;
+  return certain ? LAM_NO_EQUILIBRIUM : LAM_NOT_CONVERGED;
 }
 
 PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
@@ -351,7 +367,7 @@ PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState
   PetscCall(LamContactSolutionDestroy(&before));
   response->branch = state->branch + out.branch;
   response->negative_eigenvalues = PetscMax(0, out.negative);
-  response->status = out.converged ? (out.negative > 0 ? LAM_UNSTABLE : LAM_CONVERGED) : LAM_NOT_CONVERGED;
+  response->status = StatusOf(&out);
   response->max_penetration = out.converged ? PetscMax(0.0, out.depth) : NAN;
   if (response->status != LAM_CONVERGED)
     PetscCall(LamContactReason(rve, &out, response->reason, sizeof(response->reason)));

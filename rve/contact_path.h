@@ -28,7 +28,12 @@ PetscErrorCode LamContactStartAffine(LamRVE rve, const LamLoad *load);
 PetscErrorCode LamContactStartBonded(LamRVE rve, const LamLoad *load, PetscBool *ok);
 
 /* ---- contact_try.c ---- */
-typedef enum { LAM_NOT_REFUSED, LAM_CELLS_OVERLAP, LAM_LUMEN_COLLAPSED } LamRefusal;
+typedef enum {
+  LAM_NOT_REFUSED,
+  LAM_WALLS_OVERLAP, /* walls that face each other: contact acts between nodes only, and the mesh is too coarse */
+  LAM_CELLS_OVERLAP, /* a wall has met one that it does not face: contact does not know of that */
+  LAM_LUMEN_COLLAPSED
+} LamRefusal;
 /* What a try at one load ended in. */
 typedef struct {
   PetscBool converged;

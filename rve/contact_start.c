@@ -66,6 +66,23 @@ PetscErrorCode LamContactStartNear(LamRVE rve, const LamContactSolution *from, c
   PetscFunctionReturn(0);
 }
 
+/* Cells swell until facing walls are as far in each other as contact lets them be. */
+static void CloseClearance(LamRVE rve, const LamLoad *load)
+{
+  const LamMesh *mesh = &rve->mesh;
+  const PetscReal swelling = 0.5 * rve->micro.clearance;
+
+  if (swelling == 0.0 || rve->micro.is_patch) return;
+  for (PetscInt i = 0; i < mesh->node_count; ++i) {
+    PetscReal *y = &rve->y[2 * mesh->node_class[i]], centre[2];
+
+    LamMeshCentre(mesh, i / (mesh->ring_nodes * mesh->radial_nodes), centre);
+    for (PetscInt d = 0; d < 2; ++d)
+      for (PetscInt J = 0; J < 2; ++J)
+        y[d] += swelling * load->F[3 * d + J] * (mesh->X[2 * i + J] - centre[J]);
+  }
+}
+
 PetscErrorCode LamContactStartAffine(LamRVE rve, const LamLoad *load)
 {
   PetscFunctionBeginUser;
@@ -74,6 +91,7 @@ PetscErrorCode LamContactStartAffine(LamRVE rve, const LamLoad *load)
 
     for (PetscInt d = 0; d < 2; ++d) rve->y[2 * c + d] = load->F[3 * d] * X[0] + load->F[3 * d + 1] * X[1];
   }
+  CloseClearance(rve, load);
   PetscCall(PetscArrayzero(rve->stress, rve->mesh.element_count));
   for (PetscInt c = 0; c < rve->linear.lumens; ++c) rve->y[rve->ndof + c] = load->turgor * LamTurgorFactor(rve, c);
   for (PetscInt h = 0; h < rve->contact->count; ++h)

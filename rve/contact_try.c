@@ -72,15 +72,16 @@ static PetscErrorCode Refuse(LamRVE rve, const LamLoad *load, LamContactOutcome 
   const PetscReal edge = LamLongestEdge(&rve->mesh);
   const PetscReal mesh = PetscMax(EDGE_SHARE * edge, PetscMin(DEEPEST_WALL, WALL_SHARE * rve->thinnest));
   const PetscReal shallow = PetscMin(mesh, HALF_WALL * rve->thinnest);
+  PetscBool facing;
 
   PetscFunctionBeginUser;
   PetscCall(LamFindCollapsedLumen(rve, rve->y, &out->cell[0]));
   if (out->cell[0] >= 0) {
     out->refusal = LAM_LUMEN_COLLAPSED;
   } else {
-    PetscCall(LamFindOverlap(rve, load->F, rve->y, &out->depth, out->cell));
+    PetscCall(LamFindOverlap(rve, load->F, rve->y, &out->depth, out->cell, &facing));
     out->depth -= micro->clearance; /* contact acts from there */
-    if (out->depth > shallow) out->refusal = LAM_CELLS_OVERLAP;
+    if (out->depth > shallow) out->refusal = facing ? LAM_WALLS_OVERLAP : LAM_CELLS_OVERLAP;
   }
   if (out->refusal != LAM_NOT_REFUSED) out->converged = PETSC_FALSE;
   PetscFunctionReturn(0);

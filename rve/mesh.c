@@ -233,3 +233,10 @@ PetscErrorCode LamMeshDestroy(LamMesh *mesh)
   PetscCall(PetscFree3(mesh->neighbour, mesh->image, mesh->held));
   PetscFunctionReturn(0);
 }
+
+void LamMeshCentre(const LamMesh *mesh, PetscInt cell, PetscReal centre[2])
+{
+  const PetscInt a = LamMeshOuterNode(mesh, cell, 0), b = LamMeshOuterNode(mesh, cell, mesh->ring_nodes / 2);
+
+  for (PetscInt d = 0; d < 2; ++d) centre[d] = 0.5 * (mesh->X[2 * a + d] + mesh->X[2 * b + d]);
+}

@@ -48,6 +48,8 @@ typedef struct {
 
 PetscErrorCode LamMeshCreate(const LamMicrostructure *micro, LamMesh *mesh);
 PetscErrorCode LamMeshDestroy(LamMesh *mesh);
+/* Reference centre of a cell, from opposite nodes of its outer loop. */
+void LamMeshCentre(const LamMesh *mesh, PetscInt cell, PetscReal centre[2]);
 /* The cell across a face, -1: none; shift [2] of its image that lies there. */
 static inline PetscInt LamMeshNeighbour(const LamMesh *mesh, PetscInt cell, PetscInt face, const PetscReal **image)
 {

@@ -6,6 +6,7 @@
   up to two cells away, counts with its distance to that polygon. Boxes are compared first.
 */
 #include "rve_impl.h"
+#include <lamella/lattice.h>
 
 #define REACH 4.1 /* apothems between reference centres: two rings of neighbours */
 
@@ -50,9 +51,9 @@ static PetscReal DistanceTo(const PetscReal p[2], PetscInt n, const PetscReal x[
   return PetscSqrtReal(least);
 }
 
-/* Largest depth of nodes x of one cell, moved by `shift`, inside the polygon of another. */
+/* Largest depth of nodes x of one cell, moved by `shift`, inside the polygon of another; node: which. */
 static PetscReal Depth(PetscInt n, const PetscReal x[][2], const PetscReal shift[2], const PetscReal other[][2],
-                       const Box *box)
+                       const Box *box, PetscInt *node)
 {
   PetscReal depth = 0.0;
 
@@ -60,17 +61,14 @@ static PetscReal Depth(PetscInt n, const PetscReal x[][2], const PetscReal shift
     const PetscReal p[2] = {x[i][0] + shift[0], x[i][1] + shift[1]};
 
     if (p[0] < box->low[0] || p[0] > box->high[0] || p[1] < box->low[1] || p[1] > box->high[1]) continue;
-    if (IsInside(p, n, other)) depth = PetscMax(depth, DistanceTo(p, n, other));
+    if (IsInside(p, n, other)) {
+      const PetscReal distance = DistanceTo(p, n, other);
+
+      if (distance > depth) *node = i;
+      depth = PetscMax(depth, distance);
+    }
   }
   return depth;
-}
-
-/* Reference centre of a cell, from opposite nodes of its outer loop. */
-static void Centre(const LamMesh *mesh, PetscInt cell, PetscReal centre[2])
-{
-  const PetscInt a = LamMeshOuterNode(mesh, cell, 0), b = LamMeshOuterNode(mesh, cell, mesh->ring_nodes / 2);
-
-  for (PetscInt d = 0; d < 2; ++d) centre[d] = 0.5 * (mesh->X[2 * a + d] + mesh->X[2 * b + d]);
 }
 
 /* Whether centre a of an image at S is within reach of centre b. */
@@ -79,7 +77,22 @@ static PetscBool AreNear(const PetscReal a[2], const PetscReal S[2], const Petsc
   return (PetscBool)(PetscSqr(a[0] + S[0] - b[0]) + PetscSqr(a[1] + S[1] - b[1]) <= REACH * REACH);
 }
 
-PetscErrorCode LamFindOverlap(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscReal *depth, PetscInt pair[2])
+/* Whether the wall of cell a at an outer node faces cell b, where a's image i, j periods away meets b itself. */
+static PetscBool Faces(LamRVE rve, PetscInt a, PetscInt node, PetscInt b, PetscInt i, PetscInt j)
+{
+  const PetscInt per_face = rve->mesh.ring_nodes / LAM_FACES, face = node / per_face;
+
+  for (PetscInt k = 0; k < (node % per_face ? 1 : 2); ++k) { /* a corner belongs to the face before, too */
+    PetscInt wraps[2];
+
+    if (LamLatticeNeighbour(&rve->micro, a, (face + LAM_FACES - k) % LAM_FACES, wraps, NULL) != b) continue;
+    if (rve->micro.is_patch || (wraps[0] == -i && wraps[1] == -j)) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+PetscErrorCode LamFindOverlap(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscReal *depth, PetscInt pair[2],
+                              PetscBool *facing)
 {
   const LamMesh *mesh = &rve->mesh;
   const PetscInt n = mesh->ring_nodes, cells = mesh->cell_count, reach = rve->micro.is_patch ? 0 : 2;
@@ -87,9 +100,10 @@ PetscErrorCode LamFindOverlap(LamRVE rve, const PetscReal F[9], const PetscReal 
 
   PetscFunctionBeginUser;
   *depth = 0.0;
+  *facing = PETSC_FALSE;
   pair[0] = pair[1] = -1;
   PetscCall(PetscMalloc2(cells * n, &x, cells, &centre));
-  for (PetscInt a = 0; a < cells; ++a) Centre(mesh, a, centre[a]);
+  for (PetscInt a = 0; a < cells; ++a) LamMeshCentre(mesh, a, centre[a]);
   for (PetscInt i = 0; i < cells * n; ++i) LamNodePosition(rve, F, y, LamMeshOuterNode(mesh, i / n, i % n), x[i]);
   for (PetscInt b = 0; b < cells; ++b) {
     const Box box = BoxOf(n, (const PetscReal(*)[2]) & x[b * n]);
@@ -98,16 +112,18 @@ PetscErrorCode LamFindOverlap(LamRVE rve, const PetscReal F[9], const PetscReal 
       for (PetscInt i = -reach; i <= reach; ++i)
         for (PetscInt j = -reach; j <= reach; ++j) {
           PetscReal S[2], shift[2], found;
+          PetscInt node = 0;
 
           for (PetscInt d = 0; d < 2; ++d) S[d] = (PetscReal)i * mesh->period[0][d] + (PetscReal)j * mesh->period[1][d];
           if ((a == b && i == 0 && j == 0) || !AreNear(centre[a], S, centre[b])) continue;
           shift[0] = F[0] * S[0] + F[1] * S[1];
           shift[1] = F[3] * S[0] + F[4] * S[1];
-          found = Depth(n, (const PetscReal(*)[2]) & x[a * n], shift, (const PetscReal(*)[2]) & x[b * n], &box);
+          found = Depth(n, (const PetscReal(*)[2]) & x[a * n], shift, (const PetscReal(*)[2]) & x[b * n], &box, &node);
           if (found > *depth) {
             *depth = found;
             pair[0] = a;
             pair[1] = b;
+            *facing = Faces(rve, a, node, b, i, j);
           }
         }
   }

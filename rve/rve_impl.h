@@ -391,9 +391,10 @@ PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState
 PetscErrorCode LamFindCollapsedLumen(LamRVE rve, const PetscReal y[], PetscInt *cell);
 /* between: shares of the way to the load between which its walls first touch, as LamBracketText. */
 PetscErrorCode LamCollapseReason(PetscInt cell, const PetscReal between[2], char reason[], size_t length);
-/* How deep an outer wall lies inside another cell, apothems, and the two cells; 0 and -1, -1 where none does. */
-PetscErrorCode LamFindOverlap(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscReal *depth,
-                              PetscInt pair[2]);
+/* How deep an outer wall lies inside another cell, apothems, the two cells, and whether that wall faces that cell; 0
+   and -1, -1 where none does. */
+PetscErrorCode LamFindOverlap(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscReal *depth, PetscInt pair[2],
+                              PetscBool *facing);
 
 /* ---- homogenise.c, traction.c, failure.c ---- */
 /* L_q, L_qq and R = L_yq [LAM_F_COUNT][n] of the components of F at rve->y, after LamAssemble there; rows of R for all

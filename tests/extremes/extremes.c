@@ -7,7 +7,8 @@
     extremes --scene ID                                                       the scene of a state
     extremes --list [--first ID] [--count N]                                  their quantities
 
-  States are solved by worker processes, so that a crash or an endless run is an entry of the map, too.
+  States are solved by worker processes, so that a crash or an endless run is an entry of the map, too. Exit status 3: a
+  state is wrong, not finite, slow or has crashed.
 */
 #include "extremes_judge.h"
 #include <errno.h>
@@ -253,10 +254,35 @@ static void Supervise(Run *run)
       else if (Clock() - workers[w].since > PATIENCE)
         Bury(run, &workers[w], PETSC_TRUE);
     }
-    fprintf(stderr, "\r%d", (int)solved);
+    if (isatty(STDERR_FILENO)) fprintf(stderr, "\r%d", (int)solved);
   }
   for (PetscInt w = 0; w < run->jobs; w++) End(&workers[w]);
-  fprintf(stderr, "\n");
+}
+
+/* Counts by verdict, bonded and in contact, of what the file holds of this run; whether nothing is wrong. */
+static PetscBool Summarise(const Run *run)
+{
+  PetscInt counts[EXTREMES_VERDICT_COUNT][2] = {{0}}, bad = 0;
+  FILE *file = fopen(run->path, "r");
+  char *line = NULL;
+  size_t size = 0;
+
+  while (file && getline(&line, &size, file) > 0) {
+    json_t *object = json_loads(line, 0, NULL);
+    const char *verdict = json_string_value(json_object_get(object, "verdict"));
+
+    for (int v = 0; v < EXTREMES_VERDICT_COUNT && verdict; v++)
+      if (!strcmp(verdict, ExtremesVerdictNames[v])) counts[v][json_is_true(json_object_get(object, "contact"))]++;
+    json_decref(object);
+  }
+  free(line);
+  if (file) fclose(file);
+  printf("%-16s %8s %8s\n", "verdict", "bonded", "contact");
+  for (int v = 0; v < EXTREMES_VERDICT_COUNT; v++) {
+    printf("%-16s %8d %8d\n", ExtremesVerdictNames[v], (int)counts[v][0], (int)counts[v][1]);
+    if (v >= EXTREMES_WRONG) bad += counts[v][0] + counts[v][1];
+  }
+  return (PetscBool)!bad;
 }
 
 static int PrintScene(PetscInt id)
@@ -320,6 +346,7 @@ int main(int argc, char **argv)
   run.file = open(run.path, O_WRONLY | O_CREAT | O_APPEND, 0644);
   signal(SIGPIPE, SIG_IGN);
   Supervise(&run);
+  close(run.file);
   free(run.done);
-  return 0;
+  return Summarise(&run) ? 0 : 3;
 }
