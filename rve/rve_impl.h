@@ -5,15 +5,15 @@
     turgor.c             areas of lumens, pressures of sealed ones
     gap_area.c           area between the cells, on which cohesion works
     linear.c factor.c cholesky.c          sparsity pattern; factorisation, inertia, solves
-    newton.c             one equilibrium from a start: fast and safe tier
+    newton.c newton_flow.c newton.h       one equilibrium from a start: fast, flow and safe tier
     border.h             components of F that join the unknowns where stress is prescribed
     interrupt.c          factorisations that ask whether to go on
     stability.c          softest mode of a converged state
-    path.c               start, substeps, leaving a saddle
+    path.c               start, substeps, leaving a saddle, what ends a way
     mortar.c mortar_segments.c            gaps between two chains of edges and their variations
     contact.c            cell faces in contact: pairs, junctions, active set
     contact_step.c contact_update.c contact_newton.c contact_safe.c    one contact equilibrium from a start
-    contact_start.c contact_try.c contact_path.c      starts, judging a solution, ways to it
+    contact_start.c contact_try.c contact_walk.c contact_path.c           starts, judging a solution, ways to it
     lumen.c overlap.c    lumens whose walls have met, cells that lie in each other
     homogenise.c         stress, tangent and couplings by static condensation
     mixed.c mixed_fast.c mixed_safe.c     states of which some components of P are prescribed
