@@ -24,7 +24,7 @@
 #define FOLLOW_FAR 25       /* the same while steps are shortened */
 #define RESTARTS 3          /* with the junction status of a solution, where it has changed */
 #define COMPLIANT_ITERATIONS 4
-#define COMPLIANCE 0.033 /* apothems / (C1 + C2), in the first iteration; falls by the same factor each time */
+#define COMPLIANCE 0.033   /* apothems / (C1 + C2), in the first iteration; falls by the same factor each time */
 #define USUAL_PRESSURE 0.5 /* C1 + C2: of more turgor and cohesion compliance is less */
 #define COMPLIANCE_DECAY 0.3
 #define STEP_LIMIT 0.02      /* apothems, from a start far from contact */

@@ -8,11 +8,12 @@
           bonding carried as first multipliers; one_step starts from the affine state;
     (iii) coming down: contact that a larger cohesion holds tight is easy to reach; from there the cohesion is lowered
           to the asked one, each solution starting the next;
-    (iv)  walking: the same, where the tight state is reached in substeps from the undeformed (turned) tissue;
+    (iv)  walking from rest: the undeformed (turned) tissue under the load's turgor and cohesion, held tight first where
+          need be, then F in substeps (contact_walk.c);
     (v)   substeps in load from a contact state before that is not near;
     (vi)  where one_step has found nothing, two_step after all.
-  Where a continuation ends, descent goes down to whatever comes next. A saddle is the answer only where nothing stable
-  is found.
+  Where a continuation is lost without a reason, descent goes down to whatever comes next. A saddle is the answer only
+  where nothing stable is found.
 
   Mihai, Safar & Wyatt, J. Eng. Math. (successive deformation decomposition) for (ii); docs/theory.md, turgor and
   cohesion act through their sum, for (iii).
@@ -328,10 +329,11 @@ PetscErrorCode LamContactReason(LamRVE rve, const LamContactOutcome *out, char r
     PetscCall(PetscSNPrintf(reason, length, "only a saddle was found: %d negative eigenvalues, lowest %.3g (C1+C2)",
                             (int)out->negative, (double)rve->lowest_eigenvalue));
   else if (out->refusal == LAM_WALLS_OVERLAP)
-    PetscCall(PetscSNPrintf(reason, length,
-                            "facing walls of cells %d and %d lie %.3g apothems in each other%s: the mesh along the faces "
-                            "is too coarse",
-                            (int)out->cell[0], (int)out->cell[1], (double)out->depth, place));
+    PetscCall(
+        PetscSNPrintf(reason, length,
+                      "facing walls of cells %d and %d lie %.3g apothems in each other%s: the mesh along the faces "
+                      "is too coarse",
+                      (int)out->cell[0], (int)out->cell[1], (double)out->depth, place));
   else if (out->refusal == LAM_CELLS_OVERLAP)
     PetscCall(PetscSNPrintf(reason, length,
                             "a wall of cell %d meets one of cell %d that it does not face%s: cells that change their "
@@ -346,7 +348,8 @@ PetscErrorCode LamContactReason(LamRVE rve, const LamContactOutcome *out, char r
   PetscFunctionReturn(0);
 }
 
-/* A refusal between two states of a way from rest is a reason of the tissue; others may be of the way that was tried. */
+/* A refusal between two states of a way from rest is a reason of the tissue; others may be of the way that was tried.
+ */
 static LamStatus StatusOf(const LamContactOutcome *out)
 {
   const PetscBool certain = (PetscBool)(out->refusal >= LAM_CELLS_OVERLAP && out->between[1] > out->between[0]);

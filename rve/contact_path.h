@@ -1,4 +1,5 @@
-/* Shared by the files that lead to contact equilibrium: contact_start.c, contact_try.c, contact_path.c. */
+/* Shared by the files that lead to contact equilibrium: contact_start.c, contact_try.c,
+   contact_walk.c, contact_path.c. */
 #ifndef LAM_RVE_CONTACT_PATH_H
 #define LAM_RVE_CONTACT_PATH_H
 

@@ -78,8 +78,7 @@ static void CloseClearance(LamRVE rve, const LamLoad *load)
 
     LamMeshCentre(mesh, i / (mesh->ring_nodes * mesh->radial_nodes), centre);
     for (PetscInt d = 0; d < 2; ++d)
-      for (PetscInt J = 0; J < 2; ++J)
-        y[d] += swelling * load->F[3 * d + J] * (mesh->X[2 * i + J] - centre[J]);
+      for (PetscInt J = 0; J < 2; ++J) y[d] += swelling * load->F[3 * d + J] * (mesh->X[2 * i + J] - centre[J]);
   }
 }
 

@@ -54,9 +54,9 @@ PetscErrorCode LamContactWalk(LamRVE rve, LamContactSolution *at, const LamLoad 
     }
   }
   if (rve->monitor)
-    PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR, "  walk: %g to %g, refusal %d, negative %d, converged %d, snaps %d\n",
-                           (double)reached, (double)failed, (int)out->refusal, (int)out->negative, (int)out->converged,
-                           (int)snaps));
+    PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR,
+                           "  walk: %g to %g, refusal %d, negative %d, converged %d, snaps %d\n", (double)reached,
+                           (double)failed, (int)out->refusal, (int)out->negative, (int)out->converged, (int)snaps));
   out->branch = branch;
   out->between[0] = reached;
   out->between[1] = failed;

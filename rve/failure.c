@@ -126,11 +126,10 @@ PetscErrorCode LamWallMeasures(LamRVE rve, const LamLoad *load, LamResponse *res
   PetscFunctionReturn(0);
 }
 
-void LamFindKinks(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *share, PetscReal *lowest)
+void LamFindKinks(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *share)
 {
   PetscReal kinked = 0.0, all = 0.0;
 
-  *lowest = PETSC_INFINITY;
   for (PetscInt e = 0; e < rve->mesh.element_count; ++e) {
     PetscReal u[LAM_ELEMENT_NODES][2];
     LamWallPoint points[LAM_GAUSS];
@@ -141,7 +140,6 @@ void LamFindKinks(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscRea
     for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
       kinked += points[g].kinked;
       all += points[g].reference;
-      *lowest = PetscMin(*lowest, points[g].ellipticity);
     }
   }
   *share = kinked / all;

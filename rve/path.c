@@ -2,9 +2,11 @@
   From a known state to the equilibrium at a new load.
 
   Method. (i) The state is turned rigidly so that its stretch axes follow the new load's rotation, and moved affinely by
-  the rest of the change of F. (ii) Fast tier, then safe tier, at the full load. (iii) Where both fail, the same along
-  the straight line in (F, turgor) in substeps, halved on failure and doubled on success. (iv) A converged state with
-  negative eigenvalues is a saddle: it is left along its unstable mode, downhill, to a stable branch.
+  the rest of the change of F. (ii) Fast tier, flow, then safe tier, at the full load. (iii) Where all fail, the same
+  along the straight line in (F, turgor) in substeps, halved on failure and doubled on success; the safe tier, which
+  takes long where walls are stiff, only in the smallest. (iv) A converged state with negative eigenvalues is a saddle:
+  it is left along its unstable mode, downhill, to a stable branch. (v) What ends the way is bracketed: a lumen that
+  shuts, or walls that have lost ellipticity, which no mesh resolves.
 */
 #include "rve_impl.h"
 
@@ -154,16 +156,15 @@ typedef struct {
   PetscReal between[2]; /* shares of the way: the last stable state, the next that is none */
   PetscInt branch;
   Outcome end;          /* at the second */
-  PetscReal kinking[2]; /* shares between which the walls lose their ellipticity; equal: they do not */
+  PetscReal kinking[2]; /* shares between which the walls lose their ellipticity; equal: they do not; the first below
+                           0: they had lost it before */
   PetscReal kinked;     /* share of the walls' volume at the last stable state */
 } Way;
 
-/* Whether the walls kink at a stable state a share t of the way. */
-static void WatchKinks(LamRVE rve, const LamLoad *load, PetscReal t, Way *way)
+/* Whether the walls kink at a stable state y, a share t of the way. */
+static void WatchKinks(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal t, Way *way)
 {
-  PetscReal lowest;
-
-  LamFindKinks(rve, load, rve->y, &way->kinked, &lowest);
+  LamFindKinks(rve, load, y, &way->kinked);
   if (way->kinked <= LAM_KINKED_SHARE)
     way->kinking[0] = way->kinking[1] = t;
   else if (way->kinking[1] == way->kinking[0])
@@ -183,6 +184,9 @@ static PetscErrorCode Substeps(LamRVE rve, PetscReal y_from[], const LamLoad *st
   PetscReal step = 0.25;
 
   PetscFunctionBeginUser;
+  way->kinking[0] = -1.0;
+  way->kinking[1] = -1.0;
+  WatchKinks(rve, start, y_from, 0.0, way);
   while (way->between[0] < 1.0 && step >= LeastStep(way) && LamMayIterate(rve)) {
     const PetscBool smallest = (PetscBool)(step < 2.0 * LeastStep(way));
     const PetscReal t = PetscMin(1.0, way->between[0] + step);
@@ -195,7 +199,7 @@ static PetscErrorCode Substeps(LamRVE rve, PetscReal y_from[], const LamLoad *st
       at = next;
       way->between[0] = t;
       way->branch = branch;
-      WatchKinks(rve, &next, t, way);
+      WatchKinks(rve, &next, y_from, t, way);
       step = PetscMin(2.0 * step, 1.0);
     } else {
       way->between[1] = t;
@@ -216,10 +220,10 @@ static PetscErrorCode EndOfWay(LamRVE rve, const Way *way, LamStatus *status, ch
     *status = LAM_NO_EQUILIBRIUM;
     PetscCall(LamCollapseReason(way->end.collapsed, way->between, reason, length));
   } else if (way->kinking[1] > way->kinking[0]) {
-    char place[80];
+    char place[80] = " already in the state before";
 
     *status = LAM_NO_EQUILIBRIUM;
-    PetscCall(LamBracketText(way->kinking, place, sizeof(place)));
+    if (way->kinking[0] >= 0.0) PetscCall(LamBracketText(way->kinking, place, sizeof(place)));
     PetscCall(PetscSNPrintf(reason, length,
                             "walls lose ellipticity%s and kink ever finer: %.2g %% of them at %.4g, the last stable "
                             "state on this mesh; `fibres: tension` would not",

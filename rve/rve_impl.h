@@ -434,9 +434,8 @@ void LamTakeLargestMean(const LamMesh *mesh, PetscReal thickness, PetscInt cell,
 PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, LamResponse *response);
 /* Fills the measures of the walls from rve->y. */
 PetscErrorCode LamWallMeasures(LamRVE rve, const LamLoad *load, LamResponse *response);
-/* Share of the walls' volume that has lost ellipticity at positions y, and the least stiffness of the walls against
-   shear bands (wall_ellipticity.h). */
-void LamFindKinks(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *share, PetscReal *lowest);
+/* Share of the walls' volume that has lost ellipticity at positions y (wall_ellipticity.h). */
+void LamFindKinks(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *share);
 
 /* ---- rve.c ---- */
 /* Empty where the load can be asked of plane-strain tissue, else why not. */

@@ -2,6 +2,7 @@
 #define LamLatticeDistance EXTENDED(LatticeDistance)
 #define LamLatticeIndex EXTENDED(LatticeIndex)
 #define LamLatticeNeighbour EXTENDED(LatticeNeighbour)
+#define LamMeshCentre EXTENDED(MeshCentre)
 #define LamMeshCreate EXTENDED(MeshCreate)
 #define LamMeshDestroy EXTENDED(MeshDestroy)
 #define LamElementEnergy EXTENDED(ElementEnergy)

@@ -8,7 +8,7 @@
     extremes --list [--first ID] [--count N]                                  their quantities
 
   States are solved by worker processes, so that a crash or an endless run is an entry of the map, too. Exit status 3: a
-  state is wrong, not finite, slow or has crashed.
+  state is not finite, slow or has crashed; estimates that are too small are counted.
 */
 #include "extremes_judge.h"
 #include <errno.h>
@@ -259,7 +259,8 @@ static void Supervise(Run *run)
   for (PetscInt w = 0; w < run->jobs; w++) End(&workers[w]);
 }
 
-/* Counts by verdict, bonded and in contact, of what the file holds of this run; whether nothing is wrong. */
+/* Counts by verdict, bonded and in contact, of what the file holds of this run; whether nothing is worse than an
+   estimate that is too small. */
 static PetscBool Summarise(const Run *run)
 {
   PetscInt counts[EXTREMES_VERDICT_COUNT][2] = {{0}}, bad = 0;
@@ -280,7 +281,7 @@ static PetscBool Summarise(const Run *run)
   printf("%-16s %8s %8s\n", "verdict", "bonded", "contact");
   for (int v = 0; v < EXTREMES_VERDICT_COUNT; v++) {
     printf("%-16s %8d %8d\n", ExtremesVerdictNames[v], (int)counts[v][0], (int)counts[v][1]);
-    if (v >= EXTREMES_WRONG) bad += counts[v][0] + counts[v][1];
+    if (v > EXTREMES_WRONG) bad += counts[v][0] + counts[v][1];
   }
   return (PetscBool)!bad;
 }
@@ -334,7 +335,7 @@ int main(int argc, char **argv)
     else
       run.path = argv[k];
   }
-  if (count >= 0) run.end = run.first + count;
+  if (count >= 0 || run.first >= run.end) run.end = run.first + PetscMax(1, count);
   if (list) return PrintList(&run);
   if (!run.path) {
     fprintf(stderr, "extremes FILE.jsonl [--count N] [--first ID] [--jobs J] [--no-routes] | --scene ID\n");

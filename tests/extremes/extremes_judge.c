@@ -112,14 +112,15 @@ static PetscErrorCode SolveFiner(const ExtremesCase *c, ExtremesResult *result)
 
 static ExtremesVerdict Verdict(const ExtremesResult *r)
 {
-  const PetscReal allowed = PetscMax(LEAST_ERROR, CONFIDENCE * r->state.error_estimate);
+  const PetscReal estimate = r->state.error_estimate; /* NaN: nothing is claimed */
+  const PetscBool too_small = (PetscBool)(r->mesh_error > PetscMax(LEAST_ERROR, CONFIDENCE * estimate));
   const PetscBool path = (PetscBool)(r->path_error <= SAME), other = (PetscBool)(r->other_error <= SAME);
 
   if (r->seconds > EXTREMES_SECONDS) return EXTREMES_SLOW;
   if (r->state.status == LAM_NOT_CONVERGED || r->state.status == LAM_OUT_OF_REACH) return EXTREMES_NUMERICAL;
   if (LamResponseHasFields(&r->state) && !AllFinite(&r->state)) return EXTREMES_NOT_FINITE;
   if (r->state.status != LAM_CONVERGED) return EXTREMES_REASON;
-  if (r->mesh_error > allowed) return EXTREMES_WRONG;
+  if (!isnan(estimate) && too_small) return EXTREMES_WRONG;
   if (r->path_error > SAME || r->other_error > SAME) return EXTREMES_BRANCH;
   return path || other ? EXTREMES_CONFIRMED : EXTREMES_UNCONFIRMED;
 }

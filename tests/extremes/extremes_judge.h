@@ -8,12 +8,12 @@
 #include <lamella/lamella.h>
 
 #define EXTREMES_VERDICTS(X)                                                                                           \
-  X(EXTREMES_CONFIRMED, "confirmed")     /* converged; all second routes agree */                                      \
+  X(EXTREMES_CONFIRMED, "confirmed")     /* converged; a second route agrees, none differs */                          \
   X(EXTREMES_BRANCH, "another branch")   /* converged; a second route ends in another stable equilibrium */            \
   X(EXTREMES_UNCONFIRMED, "unconfirmed") /* converged; no second route came to an end */                               \
   X(EXTREMES_REASON, "reason")           /* a physical reason, with its certificate */                                 \
   X(EXTREMES_NUMERICAL, "numerical")     /* not_converged */                                                           \
-  X(EXTREMES_WRONG, "wrong")             /* converged; a finer mesh on the same branch differs by 3 estimates */       \
+  X(EXTREMES_WRONG, "wrong")             /* converged; a finer mesh differs by more than 3 estimates */                \
   X(EXTREMES_NOT_FINITE, "not finite")   /* a number that should be there is not */                                    \
   X(EXTREMES_SLOW, "slow")               /* beyond EXTREMES_SECONDS */                                                 \
   X(EXTREMES_CRASH, "crash")
@@ -28,8 +28,7 @@ typedef struct {
   LamResponse state, path, other, finer; /* finer: on twice the elements each way */
   PetscReal path_error, other_error;     /* of P, relative; NaN: no such route, or it did not end */
   PetscReal mesh_error;
-  PetscBool same_branch; /* the finer mesh's state, restricted, leads to the state itself */
-  PetscReal seconds;     /* of processor time, the state alone */
+  PetscReal seconds; /* of processor time, the state alone */
   ExtremesVerdict verdict;
 } ExtremesResult;
 

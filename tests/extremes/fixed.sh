@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# slow: a fixed choice of states of the map of extremes: none is wrong, not finite, beyond its time or a crash
+# slow: a fixed choice of states of the map of extremes: none is not finite, beyond its time or a crash
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
