@@ -33,6 +33,7 @@ macro:
 """
 SHORT = SCENE.replace("{law: contact, cohesion: 0.005 MPa}", "{law: bonded}").replace("[2, 2]", "[2, 1]")
 TOLERANCE = 1e-8
+OF_TANGENT = 1e-6  # of what follows from tangents, which are as much more sensitive to F as walls are near buckling
 LIMIT = 600  # s, for any one run: none may hang
 
 
@@ -113,7 +114,8 @@ def compare(wanted, found):
             raise Wrong(f"{name}: shape {found[name].shape} instead of {values.shape}")
         size = np.nanmax(np.abs(values), initial=0)
         worst = np.nanmax(np.abs(found[name] - values), initial=0)
-        if worst > TOLERANCE * size or (np.isnan(found[name]) != np.isnan(values)).any():
+        tolerance = OF_TANGENT if "ellipticity" in name or "localisation" in name else TOLERANCE
+        if worst > tolerance * size or (np.isnan(found[name]) != np.isnan(values)).any():
             raise Wrong(f"{name}: differs by {worst} of {size}")
 
 
