@@ -27,9 +27,23 @@
 #define COMPLIANCE 0.033   /* apothems / (C1 + C2), in the first iteration; falls by the same factor each time */
 #define USUAL_PRESSURE 0.5 /* C1 + C2: of more turgor and cohesion compliance is less */
 #define COMPLIANCE_DECAY 0.3
-#define STEP_LIMIT 0.02      /* apothems, from a start far from contact */
-#define NEAR_LIMIT 0.2       /* else */
-#define LOOSE_TOLERANCE 1e-4 /* while the interface is being released */
+#define STEP_LIMIT 0.02       /* apothems, from a start far from contact */
+#define NEAR_LIMIT 0.2        /* else */
+#define LOOSE_TOLERANCE 1e-4  /* while the interface is being released */
+#define ROUNDING_MARGIN 100.0 /* times the tolerance: residuals below it may be rounding, ... */
+#define ROUNDING_STEP 1e-11   /* ... if steps are no longer, of the extent */
+
+/*
+  Whether a step only stirs rounding errors of stiff walls, which keep the residual above the tolerance: soft motions
+  answer to them by more than the last digits of a position.
+*/
+static PetscBool IsAtRounding(LamRVE rve, const LamContactStep *step, PetscReal norm, PetscReal tolerance)
+{
+  const PetscReal extent = PetscMax(1.0, LamLargestEntry(rve->ndof, rve->y));
+
+  return (PetscBool)(step->shift <= LAM_CONTACT_PROXIMAL && norm <= ROUNDING_MARGIN * tolerance &&
+                     rve->contact->largest_step <= ROUNDING_STEP * extent);
+}
 
 /* Step length: limited, and halved until no volume turns inside out; 0: none. */
 static PetscErrorCode StepLength(LamRVE rve, const LamLoad *load, const LamBorder *border, PetscReal limit,
@@ -71,6 +85,7 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, LamBorder *bord
   const PetscReal first = COMPLIANCE * PetscMin(1.0, USUAL_PRESSURE / PetscMax(1e-300, load->turgor + load->cohesion));
   const PetscInt most = compliant ? ITERATIONS : NEAR_ITERATIONS;
   PetscInt follow_until = FOLLOW_ITERATIONS, restarts = 0;
+  PetscBool at_rounding = PETSC_FALSE;
   LamContactStep step;
 
   PetscFunctionBeginUser;
@@ -92,7 +107,7 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, LamBorder *bord
     LamContactResidual(rve, &step, &norm);
     PetscCall(LamBorderAssemble(rve, border, &norm));
     gap = LamContactComplementarity(rve->contact);
-    if (compliance == 0.0 && norm <= tolerance && gap <= gap_tolerance) {
+    if (compliance == 0.0 && (norm <= tolerance || at_rounding) && gap <= gap_tolerance) {
       PetscBool holds;
 
       PetscCall(Report(rve, it, norm, gap, changes, 0.0, 0.0, 0.0));
@@ -112,6 +127,7 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, LamBorder *bord
     PetscCall(StepLength(rve, load, border, compliant ? STEP_LIMIT : NEAR_LIMIT, &alpha));
     PetscCall(Report(rve, it, norm, gap, changes, rve->contact->largest_step, alpha, step.shift));
     if (alpha == 0.0 || (!compliant && rve->contact->largest_step > reach)) break;
+    at_rounding = (PetscBool)(changes == 0 && IsAtRounding(rve, &step, norm, tolerance));
     if (it >= CYCLE_AFTER && changes > 0) alpha *= 0.5;
     if (alpha < 1.0 && it < FOLLOW_FAR) follow_until = PetscMax(follow_until, it + 3);
     LamContactTakeStep(rve, load, alpha, &step);

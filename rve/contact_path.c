@@ -22,6 +22,7 @@
 
 #define NEAR 0.04          /* largest change of F (and of turgor and cohesion) that counts as near */
 #define TIGHT 0.5          /* cohesion that is added first, C1 + C2 */
+#define SLACK 1e-3         /* of turgor and cohesion, where the tissue does not bear them from the start */
 #define LOOSE 1e-3         /* of it: from here the rest is taken away at once */
 #define LEAST_EASE 0.85    /* nearer to 1 it is given up */
 #define EASE 0.25          /* first factor by which it is lowered */
@@ -71,7 +72,7 @@ static PetscErrorCode Release(LamRVE rve, const LamLoad *load, LamContactSolutio
   PetscBool ok;
 
   PetscFunctionBeginUser;
-  *out = (LamContactOutcome){0};
+  *out = LAM_NO_OUTCOME;
   PetscCall(LamContactStartBonded(rve, load, &ok));
   if (!ok) PetscFunctionReturn(0);
   PetscCall(LamContactSave(rve, load, at));
@@ -148,7 +149,7 @@ static PetscErrorCode Loosen(LamRVE rve, const LamLoad *load, LamContactSolution
   if (LamContactIsStable(out))
     PetscCall(ComeDown(rve, load, at, out));
   else
-    *out = (LamContactOutcome){0};
+    *out = LAM_NO_OUTCOME;
   PetscFunctionReturn(0);
 }
 
@@ -163,7 +164,7 @@ static PetscErrorCode TightThenLoose(LamRVE rve, const LamLoad *load, PetscBool 
   if (has_bonded) {
     PetscCall(Release(rve, &tight, at, out));
   } else {
-    PetscCall(LamContactStartAffine(rve, &tight));
+    PetscCall(LamContactStartAffine(rve, &tight, PETSC_TRUE));
     PetscCall(LamContactTry(rve, &tight, LAM_FAR, out));
   }
   PetscCall(LamContactSave(rve, &tight, at));
@@ -185,26 +186,44 @@ static LamLoad Unstretched(const LamLoad *load)
 }
 
 /*
-  From the undeformed (turned) tissue under the load's turgor and cohesion, held tight first where these do not hold it
-  together, in substeps to the asked F.
+  From the undeformed (turned) tissue under the load's turgor and cohesion, in substeps to the asked F. These are held
+  tight first where they do not hold it together, and where they are more than it bears from the start, they rise.
 */
 static PetscErrorCode WalkFromRest(LamRVE rve, const LamLoad *load, LamContactSolution *at, LamContactOutcome *out)
 {
   const LamLoad rest = Unstretched(load);
-  LamLoad tight = rest;
+  LamLoad tight = rest, slack = rest;
 
   PetscFunctionBeginUser;
-  PetscCall(LamContactStartAffine(rve, &rest));
+  PetscCall(LamContactStartAffine(rve, &rest, PETSC_TRUE));
   PetscCall(LamContactTry(rve, &rest, LAM_FAR, out));
   PetscCall(LamContactSave(rve, &rest, at));
   if (!LamContactIsStable(out)) {
     tight.cohesion += TIGHT;
-    PetscCall(LamContactStartAffine(rve, &tight));
+    PetscCall(LamContactStartAffine(rve, &tight, PETSC_TRUE));
     PetscCall(LamContactTry(rve, &tight, LAM_FAR, out));
     PetscCall(LamContactSave(rve, &tight, at));
     PetscCall(Loosen(rve, &rest, at, out));
   }
-  if (LamContactIsStable(out)) PetscCall(LamContactWalk(rve, at, load, out));
+  if (!LamContactIsStable(out)) {
+    slack.turgor *= SLACK;
+    slack.cohesion *= SLACK;
+    PetscCall(LamContactStartAffine(rve, &slack, PETSC_FALSE));
+    PetscCall(LamContactTry(rve, &slack, LAM_FAR, out));
+    PetscCall(LamContactSave(rve, &slack, at));
+    if (!LamContactIsStable(out)) {
+      *out = LAM_NO_OUTCOME;
+      PetscFunctionReturn(0);
+    }
+    PetscCall(LamContactWalk(rve, at, &rest, out));
+    out->way = LAM_WAY_OF_TURGOR;
+    if (!LamContactIsStable(out)) {
+      out->converged = PETSC_FALSE;
+      PetscFunctionReturn(0);
+    }
+  }
+  PetscCall(LamContactWalk(rve, at, load, out));
+  out->way = LAM_WAY_FROM_REST;
   PetscFunctionReturn(0);
 }
 
@@ -228,7 +247,7 @@ static PetscErrorCode TryAffine(LamRVE rve, const LamLoad *load, LamContactSolut
 
   PetscFunctionBeginUser;
   if (load->turgor <= MUCH_TURGOR) start.turgor = PetscMin(load->turgor, BORNE);
-  PetscCall(LamContactStartAffine(rve, &start));
+  PetscCall(LamContactStartAffine(rve, &start, PETSC_TRUE));
   PetscCall(LamContactTry(rve, &start, LAM_FAR, out));
   if (bears || !LamContactIsStable(out)) PetscFunctionReturn(0);
   PetscCall(LamContactSave(rve, &start, at));
@@ -249,6 +268,13 @@ static PetscErrorCode TryStrategy(LamRVE rve, LamStrategy strategy, const LamLoa
   PetscFunctionReturn(0);
 }
 
+/* What ends a way between two of its states is a reason of the tissue; other refusals may be of the way tried. */
+static PetscBool IsCertain(const LamContactOutcome *out)
+{
+  return (PetscBool)(out->between[1] > out->between[0] &&
+                     (out->refusal >= LAM_CELLS_OVERLAP || LamIsKinking(&out->kinking)));
+}
+
 /* What is worth remembering of tries that gave nothing stable: the first saddle, the last refusal. */
 typedef struct {
   LamContactOutcome saddle, refused;
@@ -259,7 +285,7 @@ typedef struct {
 static PetscErrorCode Remember(LamRVE rve, const LamLoad *load, const LamContactOutcome *out, SecondBest *best)
 {
   PetscFunctionBeginUser;
-  if (out->refusal != LAM_NOT_REFUSED && !(best->refused.between[1] > best->refused.between[0])) best->refused = *out;
+  if (!IsCertain(&best->refused) && (IsCertain(out) || out->refusal != LAM_NOT_REFUSED)) best->refused = *out;
   if (best->saddle.converged || !out->converged || out->negative <= 0) PetscFunctionReturn(0);
   PetscCall(LamContactSave(rve, load, &best->at));
   best->saddle = *out;
@@ -287,15 +313,16 @@ static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state,
   const PetscBool near = (PetscBool)(state->solved && LamContactIsNear(&before->load, load));
   PetscBool has_bonded = PETSC_FALSE;
   LamContactSolution at;
-  SecondBest best = {.eigenvalue = NAN};
+  SecondBest best = {.refused = LAM_NO_OUTCOME, .eigenvalue = NAN};
 
   PetscFunctionBeginUser;
   PetscCall(LamContactSolutionCreate(rve, &at));
   PetscCall(LamContactSolutionCreate(rve, &best.at));
-  *out = (LamContactOutcome){0};
+  *out = LAM_NO_OUTCOME;
   for (PetscInt k = near ? 0 : 1; k < 7 && !LamContactIsStable(out) && !rve->work.stopped; ++k) {
     PetscCall(Remember(rve, load, out, &best));
-    *out = (LamContactOutcome){0};
+    if (k > 3 && !state->solved && IsCertain(&best.refused)) break; /* it starts nowhere else */
+    *out = LAM_NO_OUTCOME;
     if (k == 0) {
       PetscCall(LamContactStartNear(rve, before, load));
       PetscCall(LamContactTry(rve, load, LAM_NEAR_REACH, out));
@@ -319,6 +346,15 @@ static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state,
   PetscFunctionReturn(0);
 }
 
+/* Which way a bracket is of. */
+static const char *WayText(const LamContactOutcome *out)
+{
+  if (!(out->between[1] > out->between[0]) || out->converged) return "";
+  if (out->way == LAM_WAY_FROM_REST) return "; the way is from the undeformed tissue";
+  if (out->way == LAM_WAY_OF_TURGOR) return "; the way is to its turgor and cohesion, undeformed";
+  return "";
+}
+
 PetscErrorCode LamContactReason(LamRVE rve, const LamContactOutcome *out, char reason[], size_t length)
 {
   char place[80];
@@ -339,23 +375,36 @@ PetscErrorCode LamContactReason(LamRVE rve, const LamContactOutcome *out, char r
                             "a wall of cell %d meets one of cell %d that it does not face%s: cells that change their "
                             "neighbours are not modelled",
                             (int)out->cell[0], (int)out->cell[1], place));
+  else if (out->refusal == LAM_SADDLE)
+    PetscCall(PetscSNPrintf(reason, length,
+                            "stable states end%s: beyond, only a saddle was found, with %d negative eigenvalues", place,
+                            (int)out->negative));
+  else if (out->refusal == LAM_CROSSING)
+    PetscCall(PetscSNPrintf(reason, length,
+                            "stable states end%s: their lowest eigenvalue, %.3g (C1+C2) before, crosses zero there",
+                            place, (double)out->eigenvalue));
+  else if (out->refusal == LAM_WALLS_PASSED)
+    PetscCall(
+        PetscSNPrintf(reason, length,
+                      "facing walls of cells %d and %d slide past each other%s: cells that change their neighbours "
+                      "are not modelled",
+                      (int)out->cell[0], (int)out->cell[1], place));
   else if (out->refusal == LAM_LUMEN_COLLAPSED)
     PetscCall(LamCollapseReason(out->cell[0], out->between, reason, length));
+  else if (LamIsKinking(&out->kinking))
+    PetscCall(LamKinkReason(&out->kinking, out->between[0], reason, length));
   else
     PetscCall(PetscSNPrintf(reason, length,
                             "no contact equilibrium found from any start, after %d iterations: give states in between",
                             (int)rve->work.iterations));
+  PetscCall(PetscStrlcat(reason, WayText(out), length));
   PetscFunctionReturn(0);
 }
 
-/* A refusal between two states of a way from rest is a reason of the tissue; others may be of the way that was tried.
- */
 static LamStatus StatusOf(const LamContactOutcome *out)
 {
-  const PetscBool certain = (PetscBool)(out->refusal >= LAM_CELLS_OVERLAP && out->between[1] > out->between[0]);
-
   if (out->converged) return out->negative > 0 ? LAM_UNSTABLE : LAM_CONVERGED;
-  return certain ? LAM_NO_EQUILIBRIUM : LAM_NOT_CONVERGED;
+  return IsCertain(out) ? LAM_NO_EQUILIBRIUM : LAM_NOT_CONVERGED;
 }
 
 PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)

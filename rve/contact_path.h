@@ -22,8 +22,9 @@ PetscErrorCode LamContactRestore(LamRVE rve, const LamContactSolution *solution)
 PetscErrorCode LamContactTurnState(LamRVE rve, LamRVEState state, const LamLoad *load, LamContactSolution *solution);
 /* From a solution, moved affinely to the new load. */
 PetscErrorCode LamContactStartNear(LamRVE rve, const LamContactSolution *from, const LamLoad *load);
-/* rve->y := F X, stress-free walls, multipliers that balance turgor and cohesion. */
-PetscErrorCode LamContactStartAffine(LamRVE rve, const LamLoad *load);
+/* rve->y := F X, stress-free walls, multipliers that balance turgor and cohesion. swollen: the cells have closed their
+   clearance. */
+PetscErrorCode LamContactStartAffine(LamRVE rve, const LamLoad *load, PetscBool swollen);
 /* rve->y: the positions last solved for by rve->bonded, which belong to the same F; contact->held: what bonding carries
    and the multipliers fitted to it do not. */
 PetscErrorCode LamContactStartBonded(LamRVE rve, const LamLoad *load, PetscBool *ok);
@@ -33,8 +34,12 @@ typedef enum {
   LAM_NOT_REFUSED,
   LAM_WALLS_OVERLAP, /* walls that face each other: contact acts between nodes only, and the mesh is too coarse */
   LAM_CELLS_OVERLAP, /* a wall has met one that it does not face: contact does not know of that */
+  LAM_WALLS_PASSED,  /* walls that face each other have passed each other at once, past the end of one of them */
+  LAM_SADDLE,        /* on a way: the stable states end there, ... */
+  LAM_CROSSING,      /* ... or in an eigenvalue that crosses zero */
   LAM_LUMEN_COLLAPSED
 } LamRefusal;
+typedef enum { LAM_WAY_FROM_BEFORE, LAM_WAY_FROM_REST, LAM_WAY_OF_TURGOR } LamWay;
 /* What a try at one load ended in. */
 typedef struct {
   PetscBool converged;
@@ -42,9 +47,13 @@ typedef struct {
   PetscInt branch;      /* saddles left on the way */
   LamRefusal refusal;   /* why a solution is no answer; it then counts as not converged */
   PetscInt cell[2];     /* the cells concerned */
+  PetscReal eigenvalue; /* lowest, of the last stable state of a way */
   PetscReal depth;      /* of the wall of the first inside the second */
   PetscReal between[2]; /* shares of a way: the last stable state, the next that is none; equal: not known */
+  LamWay way;
+  LamKinking kinking; /* on that way */
 } LamContactOutcome;
+#define LAM_NO_OUTCOME ((LamContactOutcome){.kinking = LAM_NO_KINKING})
 #define LAM_NEAR_REACH 0.5 /* apothems: a larger step from a near start leads nowhere */
 /* Newton from the present start, by full steps or by descent; saddles are left, what is no answer is refused. Ends with
    the consistent tangent factored. */

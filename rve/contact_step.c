@@ -11,6 +11,7 @@
 #define ACTIVE_SET_SOLVES 3  /* solves with one linearisation until the active set fits the step */
 #define LEAST_SHIFT 1e-9     /* of the largest diagonal entry: cells that hardly touch move against tiny stiffness */
 #define SADDLE_RESIDUAL 1e-3 /* of an indefinite state below which Newton would only creep along a saddle */
+#define CREEPING 0.6         /* the same for small steps of more than this share of the one before */
 #define ESCAPE_STEP 0.01     /* along a direction of negative curvature, in apothems */
 
 PetscErrorCode LamContactStepCreate(LamRVE rve, LamContactStep *step)
@@ -19,6 +20,7 @@ PetscErrorCode LamContactStepCreate(LamRVE rve, LamContactStep *step)
 
   PetscFunctionBeginUser;
   step->shift = step->floor = 0.0;
+  step->before = PETSC_INFINITY;
   step->border = NULL;
   step->updates = PETSC_FALSE;
   PetscCall(PetscMalloc6(n + 2, &step->rhs, n, &step->solution, rve->contact->count, &step->lambda, n, &step->image, n,
@@ -49,18 +51,19 @@ void LamContactResidual(LamRVE rve, LamContactStep *step, PetscReal *norm)
 static PetscErrorCode FactorStable(LamRVE rve, PetscBool again, LamContactStep *step, PetscBool *ok)
 {
   const PetscInt expected = LamExpectedNegative(rve);
-  PetscReal diagonal = 0.0, shift = again ? step->shift : PetscMax(step->floor, LAM_CONTACT_PROXIMAL);
+  PetscReal diagonal = 0.0, shift = again ? step->shift : PetscMax(step->floor, LAM_CONTACT_PROXIMAL), least;
   PetscInt negative;
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < rve->linear.positions; ++i)
     diagonal = PetscMax(diagonal, PetscAbsReal(rve->linear.values[rve->linear.row[i]]));
-  for (PetscInt attempt = 0; attempt < 40; ++attempt) {
+  least = PetscMin(LEAST_SHIFT * diagonal, LamBendingStiffness(rve));
+  for (PetscInt attempt = 0; attempt < 60; ++attempt) {
     PetscCall(LamRVEFactor(rve, shift, &negative, ok));
     if (*ok && negative <= expected) break;
     *ok = PETSC_FALSE;
     if (shift > diagonal) break;
-    shift = shift < LEAST_SHIFT * diagonal ? PetscMax(step->shift / 8.0, LEAST_SHIFT * diagonal) : 8.0 * shift;
+    shift = shift < least ? PetscMax(step->shift / 8.0, least) : 8.0 * shift;
   }
   step->shift = shift;
   PetscFunctionReturn(0);
@@ -106,7 +109,7 @@ static PetscErrorCode AddNegativeCurvature(LamRVE rve, const PetscReal residual[
 
   PetscFunctionBeginUser;
   LamStartMode(rve, mode);
-  PetscCall(LamImproveSoftestMode(rve, 6, mode));
+  PetscCall(LamImproveSoftestMode(rve, 12, mode));
   if (LamModeCurvature(rve, mode, image) >= 0.0) PetscFunctionReturn(0);
   largest = LamLargestEntry(rve->linear.positions, mode);
   sign = LamModeSlope(rve, mode, residual) > LamNewtonTolerance(rve) ? -1.0 : 1.0;
@@ -133,6 +136,7 @@ static PetscErrorCode FactorAndSolve(LamRVE rve, PetscReal compliance, PetscBool
 PetscErrorCode LamContactSolveStep(LamRVE rve, PetscReal norm, PetscReal compliance, LamContactStep *step,
                                    PetscBool *ok)
 {
+  PetscReal largest;
   PetscInt changes;
 
   PetscFunctionBeginUser;
@@ -148,12 +152,14 @@ PetscErrorCode LamContactSolveStep(LamRVE rve, PetscReal norm, PetscReal complia
     PetscCall(LamContactPredictActive(rve, rve->step, LamBorderStep(step->border), step->lambda, compliance, &changes));
     if (changes == 0) break;
   }
-  if (step->shift > LAM_CONTACT_PROXIMAL && LamLargestEntry(rve->ndof, rve->step) < 0.5 * ESCAPE_STEP &&
-      norm < SADDLE_RESIDUAL) {
+  largest = LamLargestEntry(rve->ndof, rve->step);
+  if (step->shift > LAM_CONTACT_PROXIMAL && largest < 0.5 * ESCAPE_STEP &&
+      (norm < SADDLE_RESIDUAL || largest > CREEPING * step->before)) {
     PetscCall(PetscArraycpy(step->rhs, rve->residual, rve->length));
     LamContactAddForce(rve, step->rhs);
     PetscCall(AddNegativeCurvature(rve, step->rhs, step->solution, step->image));
   }
+  step->before = largest;
   PetscFunctionReturn(0);
 }
 

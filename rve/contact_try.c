@@ -91,7 +91,8 @@ static PetscErrorCode Judge(LamRVE rve, const LamLoad *load, LamNewtonOutcome ou
                             LamContactOutcome *out)
 {
   PetscFunctionBeginUser;
-  *out = (LamContactOutcome){.converged = (PetscBool)(outcome == LAM_NEWTON_CONVERGED)};
+  *out = LAM_NO_OUTCOME;
+  out->converged = (PetscBool)(outcome == LAM_NEWTON_CONVERGED);
   if (rve->work.escapes > escapes) ++out->branch;
   if (out->converged) PetscCall(LeaveSaddles(rve, load, out));
   if (out->converged) PetscCall(Refuse(rve, load, out));
@@ -114,7 +115,7 @@ PetscErrorCode LamContactTryMixed(LamRVE rve, LamBorder *border, PetscReal reach
   LamNewtonOutcome outcome;
 
   PetscFunctionBeginUser;
-  *out = (LamContactOutcome){0};
+  *out = LAM_NO_OUTCOME;
   PetscCall(LamContactNewton(rve, &border->load, border, reach, &outcome));
   if (outcome != LAM_NEWTON_CONVERGED) PetscFunctionReturn(0);
   PetscCall(LamFactorConsistent(rve, &border->load, &out->negative, &out->converged));

@@ -12,6 +12,8 @@
 #define MIN_STEP (1.0 / 512.0)
 #define GROWTH 2.0
 #define MAX_SNAPS 4
+#define CROSSING_MARGIN 4.0 /* widths of the bracket within which an eigenvalue vanishes that ends the way */
+#define JUMP 2.0 /* of the depth to which walls lie in each other, between neighbouring states: they have passed */
 
 /* Beyond the last step by descent. */
 static PetscErrorCode Snap(LamRVE rve, const LamContactSolution *at, const LamLoad *next, LamContactOutcome *out)
@@ -22,17 +24,108 @@ static PetscErrorCode Snap(LamRVE rve, const LamContactSolution *at, const LamLo
   PetscFunctionReturn(0);
 }
 
+static PetscReal LeastStep(const LamKinking *kinking)
+{
+  return LamIsKinking(kinking) ? LAM_KINKED_SUBSTEP : MIN_STEP;
+}
+
+/* The last two stable states of a way. */
+typedef struct {
+  LamContactSolution *at, earlier;
+  PetscReal reached, before; /* their shares of the way */
+  PetscReal failed;          /* of the next that is not stable */
+  PetscReal depth;           /* to which walls lie in each other at the first */
+} Way;
+
+static PetscErrorCode LowestEigenvalue(LamRVE rve, const LamContactSolution *solution, PetscReal *eigenvalue)
+{
+  PetscInt negative;
+  PetscReal *mode;
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  *eigenvalue = NAN;
+  PetscCall(LamContactRestore(rve, solution));
+  PetscCall(LamFactorConsistent(rve, &solution->load, &negative, &ok));
+  if (!ok) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(rve->linear.n, &mode));
+  PetscCall(LamSoftestMode(rve, eigenvalue, mode));
+  PetscCall(PetscFree(mode));
+  PetscFunctionReturn(0);
+}
+
+/*
+  Whether the stable states end where an eigenvalue crosses zero: near a limit load it falls as the square root of what
+  is left of the load, so its square, drawn through the last two states, vanishes in the bracket or close behind it.
+*/
+static PetscErrorCode FindCrossing(LamRVE rve, const Way *way, LamContactOutcome *out)
+{
+  PetscReal before, fall;
+
+  PetscFunctionBeginUser;
+  if (way->reached <= way->before || rve->work.stopped) PetscFunctionReturn(0);
+  PetscCall(LowestEigenvalue(rve, &way->earlier, &before));
+  PetscCall(LowestEigenvalue(rve, way->at, &out->eigenvalue));
+  fall = PetscSqr(before) - PetscSqr(out->eigenvalue);
+  if (rve->monitor)
+    PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR, "  eigenvalue %g at %g, %g at %g\n", (double)before,
+                           (double)way->before, (double)out->eigenvalue, (double)way->reached));
+  if (fall > 0.0 &&
+      PetscSqr(out->eigenvalue) * (way->reached - way->before) <= CROSSING_MARGIN * (way->failed - way->reached) * fall)
+    out->refusal = LAM_CROSSING;
+  PetscFunctionReturn(0);
+}
+
+/* What has ended the way, with its bracket. */
+static PetscErrorCode End(LamRVE rve, const Way *way, LamContactOutcome *out)
+{
+  PetscFunctionBeginUser;
+  out->between[0] = way->reached;
+  out->between[1] = way->failed;
+  if (out->refusal == LAM_WALLS_OVERLAP && out->depth > JUMP * way->depth) out->refusal = LAM_WALLS_PASSED;
+  if (out->converged && way->failed < 1.0) { /* not the load that was asked for */
+    out->refusal = LAM_SADDLE;
+    out->converged = PETSC_FALSE;
+  }
+  if (rve->monitor)
+    PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR,
+                           "  walk: %g to %g, refusal %d, negative %d, converged %d, depth %.2g after %.2g\n",
+                           (double)way->reached, (double)way->failed, (int)out->refusal, (int)out->negative,
+                           (int)out->converged, (double)out->depth, (double)way->depth));
+  if (!out->converged && out->refusal == LAM_NOT_REFUSED) PetscCall(FindCrossing(rve, way, out));
+  PetscFunctionReturn(0);
+}
+
+/* The state just found, a share t of the way, is its last one. */
+static PetscErrorCode Advance(LamRVE rve, const LamLoad *load, PetscReal t, Way *way)
+{
+  const LamContactSolution at = *way->at;
+
+  PetscFunctionBeginUser;
+  *way->at = way->earlier;
+  way->earlier = at;
+  PetscCall(LamContactSave(rve, load, way->at));
+  way->before = way->reached;
+  way->reached = t;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamContactWalk(LamRVE rve, LamContactSolution *at, const LamLoad *load, LamContactOutcome *out)
 {
   const LamLoad start = at->load;
-  PetscReal reached = 0.0, failed = 1.0, step = FIRST_STEP;
+  Way way = {.at = at, .failed = 1.0};
+  PetscReal step = FIRST_STEP;
   PetscInt snaps = 0, branch = 0;
+  LamKinking kinking = LAM_NO_KINKING;
 
   PetscFunctionBeginUser;
-  *out = (LamContactOutcome){0};
-  while (reached < 1.0 && LamMayIterate(rve)) {
-    const PetscBool last = (PetscBool)(step < MIN_STEP);
-    const PetscReal t = PetscMin(1.0, reached + PetscMax(step, MIN_STEP));
+  *out = LAM_NO_OUTCOME;
+  PetscCall(LamContactSolutionCreate(rve, &way.earlier));
+  LamWatchKinks(rve, &start, at->y, 0.0, &kinking);
+  while (way.reached < 1.0 && LamMayIterate(rve)) {
+    const PetscReal least = LeastStep(&kinking);
+    const PetscBool last = (PetscBool)(step < least);
+    const PetscReal t = PetscMin(1.0, way.reached + PetscMax(step, least));
     const LamLoad next = t >= 1.0 ? *load : LamLoadBetween(&start, load, t);
 
     if (last) {
@@ -43,22 +136,20 @@ PetscErrorCode LamContactWalk(LamRVE rve, LamContactSolution *at, const LamLoad 
       PetscCall(LamContactTry(rve, &next, LAM_NEAR_REACH, out));
     }
     if (LamContactIsStable(out)) {
-      PetscCall(LamContactSave(rve, &next, at));
+      PetscCall(Advance(rve, &next, t, &way));
+      LamWatchKinks(rve, &next, at->y, t, &kinking);
       branch += out->branch + last;
-      reached = t;
-      step = last ? 4.0 * MIN_STEP : GROWTH * step;
+      way.depth = out->depth;
+      step = last ? 4.0 * least : GROWTH * step;
     } else {
-      failed = t;
+      way.failed = t;
       if (last) break;
       step *= 0.5;
     }
   }
-  if (rve->monitor)
-    PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR,
-                           "  walk: %g to %g, refusal %d, negative %d, converged %d, snaps %d\n", (double)reached,
-                           (double)failed, (int)out->refusal, (int)out->negative, (int)out->converged, (int)snaps));
   out->branch = branch;
-  out->between[0] = reached;
-  out->between[1] = failed;
+  out->kinking = kinking;
+  if (way.reached < 1.0) PetscCall(End(rve, &way, out));
+  PetscCall(LamContactSolutionDestroy(&way.earlier));
   PetscFunctionReturn(0);
 }

@@ -12,7 +12,9 @@
 #include "cholesky.h"
 #include <time.h>
 
-#define MOST_FACTORS 8 /* of several ranks, at a time */
+#define MOST_FACTORS 8        /* of several ranks, at a time */
+#define WORKSPACE 50          /* per cent beyond what the analysis expects; more where pivots are put off, ... */
+#define MOST_WORKSPACE 100000 /* ... to four times this at most */
 
 struct LamFactor_s {
   MPI_Comm comm;
@@ -21,6 +23,7 @@ struct LamFactor_s {
   PetscInt n, nonzeros;
   PetscInt *row, *column; /* borrowed, by rank 0 */
   PetscReal *values;
+  PetscInt margin;      /* of MUMPS's workspace, per cent; the same on all ranks */
   LamCholesky cholesky; /* tried first; NULL: not small, or not definite */
   PetscBool definite;   /* it holds the factor */
   Mat matrix, factor;
@@ -97,9 +100,9 @@ static PetscErrorCode Analyse(LamFactor f)
   PetscFunctionBeginUser;
   PetscCall(MatFactorInfoInitialize(&info));
   PetscCall(MatGetFactor(f->matrix, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, &f->factor));
-  PetscCall(MatMumpsSetIcntl(f->factor, 14, 50)); /* workspace margin, per cent */
-  PetscCall(MatMumpsSetIcntl(f->factor, 10, 0));  /* no iterative refinement: Newton refines */
-  PetscCall(MatMumpsSetIcntl(f->factor, 8, 0));   /* no scaling: the unknowns are alike; saves a fifth of the time */
+  PetscCall(MatMumpsSetIcntl(f->factor, 14, f->margin));
+  PetscCall(MatMumpsSetIcntl(f->factor, 10, 0)); /* no iterative refinement: Newton refines */
+  PetscCall(MatMumpsSetIcntl(f->factor, 8, 0));  /* no scaling: the unknowns are alike; saves a fifth of the time */
   /* MUMPS takes the ordering PORD itself, the best of its own from 600 to 200,000 unknowns */
   if (f->size > 1) PetscCall(MatMumpsSetIcntl(f->factor, 13, 1)); /* the inertia of the whole matrix */
   PetscCall(MatCholeskyFactorSymbolic(f->factor, f->matrix, NULL, &info));
@@ -112,10 +115,15 @@ static PetscErrorCode Numeric(LamFactor f, PetscInt *negative, PetscBool *ok)
   MatFactorError error;
 
   PetscFunctionBeginUser;
-  if (!f->factor) PetscCall(Analyse(f));
   PetscCall(MatFactorInfoInitialize(&info));
-  PetscCall(MatCholeskyFactorNumeric(f->factor, f->matrix, &info));
-  PetscCall(MatFactorGetError(f->factor, &error));
+  for (;;) {
+    if (!f->factor) PetscCall(Analyse(f));
+    PetscCall(MatCholeskyFactorNumeric(f->factor, f->matrix, &info));
+    PetscCall(MatFactorGetError(f->factor, &error));
+    if (error != MAT_FACTOR_OUTMEMORY || f->margin > MOST_WORKSPACE) break;
+    f->margin *= 4;                    /* pivots that were put off need more room */
+    PetscCall(MatDestroy(&f->factor)); /* MUMPS would not take it without another analysis */
+  }
   *ok = (PetscBool)(error == MAT_FACTOR_NOERROR);
   *negative = 0;
   if (*ok) PetscCall(MatGetInertia(f->factor, negative, NULL, NULL));
@@ -157,6 +165,7 @@ PetscErrorCode LamFactorCreate(MPI_Comm comm, PetscInt n, PetscInt row[], PetscI
   PetscCall(PetscNew(&f));
   f->comm = comm;
   PetscCallMPI(MPI_Comm_size(comm, &f->size));
+  f->margin = WORKSPACE;
   f->n = n;
   f->nonzeros = row[n];
   f->row = row;
@@ -257,6 +266,7 @@ static PetscErrorCode Join(MPI_Comm comm, const Order *order)
   PetscCall(PetscNew(&f));
   f->comm = comm;
   PetscCallMPI(MPI_Comm_size(comm, &f->size));
+  f->margin = WORKSPACE;
   f->number = order->number;
   f->n = order->n;
   PetscCall(CreateMatrix(f));

@@ -144,3 +144,26 @@ void LamFindKinks(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscRea
   }
   *share = kinked / all;
 }
+
+void LamWatchKinks(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal t, LamKinking *kinking)
+{
+  LamFindKinks(rve, load, y, &kinking->share);
+  if (kinking->share <= LAM_KINKED_SHARE)
+    kinking->between[0] = kinking->between[1] = t;
+  else if (!LamIsKinking(kinking))
+    kinking->between[1] = t;
+}
+
+PetscErrorCode LamKinkReason(const LamKinking *kinking, PetscReal reached, char reason[], size_t length)
+{
+  char place[80] = " already where the way starts";
+
+  PetscFunctionBeginUser;
+  if (kinking->between[0] >= 0.0) PetscCall(LamBracketText(kinking->between, place, sizeof(place)));
+  PetscCall(
+      PetscSNPrintf(reason, length,
+                    "walls lose ellipticity%s and kink ever finer: %.2g %% of them at %.4g, the last stable state "
+                    "on this mesh; `fibres: tension` would not",
+                    place, (double)(100.0 * kinking->share), (double)reached));
+  PetscFunctionReturn(0);
+}

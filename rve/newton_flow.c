@@ -33,7 +33,7 @@ static PetscErrorCode FindStep(LamRVE rve, Flow *flow, PetscBool *ok)
   const PetscReal limit = flow->unstable < BOLD_ITERATIONS ? BOLD_LIMIT : STEP_LIMIT;
 
   PetscFunctionBeginUser;
-  PetscCall(LamFactorPositive(rve, BENDING * PetscPowReal(rve->thinnest, 3.0), &flow->shift, ok));
+  PetscCall(LamFactorPositive(rve, BENDING * LamBendingStiffness(rve), &flow->shift, ok));
   for (PetscInt k = 0; *ok; ++k) {
     PetscInt negative;
 

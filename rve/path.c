@@ -11,7 +11,6 @@
 #include "rve_impl.h"
 
 #define MIN_SUBSTEP (1.0 / 512.0)
-#define KINKED_SUBSTEP (1.0 / 64.0)
 #define MAX_BRANCH_SWITCHES 6
 #define KICK 0.02 /* apothems: start along an unstable mode */
 
@@ -155,26 +154,13 @@ PetscErrorCode LamBracketText(const PetscReal between[2], char text[], size_t le
 typedef struct {
   PetscReal between[2]; /* shares of the way: the last stable state, the next that is none */
   PetscInt branch;
-  Outcome end;          /* at the second */
-  PetscReal kinking[2]; /* shares between which the walls lose their ellipticity; equal: they do not; the first below
-                           0: they had lost it before */
-  PetscReal kinked;     /* share of the walls' volume at the last stable state */
+  Outcome end; /* at the second */
+  LamKinking kinking;
 } Way;
 
-/* Whether the walls kink at a stable state y, a share t of the way. */
-static void WatchKinks(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal t, Way *way)
-{
-  LamFindKinks(rve, load, y, &way->kinked);
-  if (way->kinked <= LAM_KINKED_SHARE)
-    way->kinking[0] = way->kinking[1] = t;
-  else if (way->kinking[1] == way->kinking[0])
-    way->kinking[1] = t;
-}
-
-/* Walls that kink answer for the end of the way, wherever the mesh lets it be. */
 static PetscReal LeastStep(const Way *way)
 {
-  return way->kinking[1] > way->kinking[0] ? KINKED_SUBSTEP : MIN_SUBSTEP;
+  return LamIsKinking(&way->kinking) ? LAM_KINKED_SUBSTEP : MIN_SUBSTEP;
 }
 
 /* From `start` to `load`; y_from holds the last stable positions. */
@@ -184,9 +170,7 @@ static PetscErrorCode Substeps(LamRVE rve, PetscReal y_from[], const LamLoad *st
   PetscReal step = 0.25;
 
   PetscFunctionBeginUser;
-  way->kinking[0] = -1.0;
-  way->kinking[1] = -1.0;
-  WatchKinks(rve, start, y_from, 0.0, way);
+  LamWatchKinks(rve, start, y_from, 0.0, &way->kinking);
   while (way->between[0] < 1.0 && step >= LeastStep(way) && LamMayIterate(rve)) {
     const PetscBool smallest = (PetscBool)(step < 2.0 * LeastStep(way));
     const PetscReal t = PetscMin(1.0, way->between[0] + step);
@@ -199,7 +183,7 @@ static PetscErrorCode Substeps(LamRVE rve, PetscReal y_from[], const LamLoad *st
       at = next;
       way->between[0] = t;
       way->branch = branch;
-      WatchKinks(rve, &next, y_from, t, way);
+      LamWatchKinks(rve, &next, y_from, t, &way->kinking);
       step = PetscMin(2.0 * step, 1.0);
     } else {
       way->between[1] = t;
@@ -219,15 +203,9 @@ static PetscErrorCode EndOfWay(LamRVE rve, const Way *way, LamStatus *status, ch
   if (way->end.collapsed >= 0 && !out_of_work) {
     *status = LAM_NO_EQUILIBRIUM;
     PetscCall(LamCollapseReason(way->end.collapsed, way->between, reason, length));
-  } else if (way->kinking[1] > way->kinking[0]) {
-    char place[80] = " already in the state before";
-
+  } else if (LamIsKinking(&way->kinking)) {
     *status = LAM_NO_EQUILIBRIUM;
-    if (way->kinking[0] >= 0.0) PetscCall(LamBracketText(way->kinking, place, sizeof(place)));
-    PetscCall(PetscSNPrintf(reason, length,
-                            "walls lose ellipticity%s and kink ever finer: %.2g %% of them at %.4g, the last stable "
-                            "state on this mesh; `fibres: tension` would not",
-                            place, (double)(100.0 * way->kinked), (double)way->between[0]));
+    PetscCall(LamKinkReason(&way->kinking, way->between[0], reason, length));
   } else {
     PetscCall(PetscSNPrintf(reason, length,
                             "no equilibrium found beyond %.4g of the way from the state before, after %d iterations%s",
@@ -242,7 +220,7 @@ PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state,
 {
   LamLoad start = state->load;
   PetscReal *from, *saddle;
-  Way way = {.branch = state->branch};
+  Way way = {.branch = state->branch, .kinking = LAM_NO_KINKING};
   Outcome out;
 
   PetscFunctionBeginUser;

@@ -294,6 +294,13 @@ static inline PetscBool LamMayIterate(LamRVE rve)
   return (PetscBool)(rve->work.iterations < LAM_ITERATION_BUDGET && !rve->work.stopped);
 }
 
+/* Of the thinnest wall, per square of an apothem's length of it, C1 + C2: shifts that are larger from the start hide
+   how it buckles. */
+static inline PetscReal LamBendingStiffness(LamRVE rve)
+{
+  return PetscPowReal(rve->thinnest, 3.0);
+}
+
 /* ---- newton.c ---- */
 typedef enum { LAM_NEWTON_CONVERGED, LAM_NEWTON_NEAR_SADDLE, LAM_NEWTON_STALLED } LamNewtonOutcome;
 /* From rve->y to equilibrium at `load`. Fast: full steps. Safe: inertia-corrected steps that lower the energy and leave
@@ -323,7 +330,7 @@ void LamAddMode(LamRVE rve, PetscReal factor, const PetscReal mode[], PetscReal 
 PetscReal LamModeSlope(LamRVE rve, const PetscReal mode[], const PetscReal residual[]);
 /* mode . K mode with the matrix in linear.values; image [n] is work space. */
 PetscReal LamModeCurvature(LamRVE rve, const PetscReal mode[], PetscReal image[]);
-/* The most negative eigenvalue of the matrix in linear.values and its unit eigenvector, mode[n]; where the solve is
+/* The lowest eigenvalue of the matrix in linear.values and its unit eigenvector, mode[n]; where the solve is
    stopped, NaN and some vector. */
 PetscErrorCode LamSoftestMode(LamRVE rve, PetscReal *eigenvalue, PetscReal mode[]);
 
@@ -358,6 +365,7 @@ typedef struct {
   PetscBool updates;                 /* other sets may be solved with that factor */
   PetscReal shift;                   /* of the last factor */
   PetscReal floor;                   /* least shift: the larger, the shorter the step */
+  PetscReal before;                  /* largest entry of the step before */
   LamBorder *border;                 /* borrowed; NULL: F is prescribed */
 } LamContactStep;
 PetscErrorCode LamContactStepCreate(LamRVE rve, LamContactStep *step);
@@ -436,6 +444,25 @@ PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, LamResponse *re
 PetscErrorCode LamWallMeasures(LamRVE rve, const LamLoad *load, LamResponse *response);
 /* Share of the walls' volume that has lost ellipticity at positions y (wall_ellipticity.h). */
 void LamFindKinks(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *share);
+/* Walls along a way of loads: between which shares of it they lose their ellipticity, and how many have at the last
+   stable state. Walls that kink answer for the end of a way, wherever the mesh lets it be. */
+typedef struct {
+  PetscReal between[2]; /* equal: they do not; the first below 0: they had lost it before */
+  PetscReal share;      /* of the walls' volume */
+} LamKinking;
+#define LAM_NO_KINKING                                                                                                 \
+  {                                                                                                                    \
+    .between = { -1.0, -1.0 }                                                                                          \
+  }
+#define LAM_KINKED_SUBSTEP (1.0 / 64.0) /* then this is the smallest substep */
+static inline PetscBool LamIsKinking(const LamKinking *kinking)
+{
+  return (PetscBool)(kinking->between[1] > kinking->between[0]);
+}
+/* Takes note of a stable state y, a share t of the way. */
+void LamWatchKinks(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal t, LamKinking *kinking);
+/* reached: the share of the last stable state. */
+PetscErrorCode LamKinkReason(const LamKinking *kinking, PetscReal reached, char reason[], size_t length);
 
 /* ---- rve.c ---- */
 /* Empty where the load can be asked of plane-strain tissue, else why not. */

@@ -81,7 +81,7 @@ PetscErrorCode LamFactorConsistent(LamRVE rve, const LamLoad *load, PetscInt *ne
   PetscFunctionReturn(0);
 }
 
-/* Smallest shift, within a factor of 1.2, for which K + shift 1 is positive definite; leaves that factor. */
+/* 0, or the smallest shift, within a factor of 1.2, for which K + shift 1 is positive definite; leaves that factor. */
 static PetscErrorCode BracketLowest(LamRVE rve, PetscReal *shift)
 {
   PetscReal low = 0.0, high = 0.0, diagonal = 0.0;
@@ -91,7 +91,10 @@ static PetscErrorCode BracketLowest(LamRVE rve, PetscReal *shift)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < rve->linear.positions; ++i)
     diagonal = PetscMax(diagonal, PetscAbsReal(rve->linear.values[rve->linear.row[i]]));
-  for (high = 1e-8 * diagonal; high < 1e3 * diagonal; high *= 4.0) {
+  PetscCall(LamRVEFactor(rve, 0.0, &negative, &ok));
+  *shift = 0.0;
+  if (ok && negative == LamExpectedNegative(rve)) PetscFunctionReturn(0);
+  for (high = PetscMin(1e-8 * diagonal, LamBendingStiffness(rve)); high < 1e3 * diagonal; high *= 4.0) {
     PetscCall(LamRVEFactor(rve, high, &negative, &ok));
     if (ok && negative == LamExpectedNegative(rve)) break;
     low = high;
