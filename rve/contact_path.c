@@ -19,6 +19,7 @@
   cohesion act through their sum, for (iii).
 */
 #include "contact_path.h"
+#include <string.h>
 
 #define NEAR 0.04          /* largest change of F (and of turgor and cohesion) that counts as near */
 #define TIGHT 0.5          /* cohesion that is added first, C1 + C2 */
@@ -350,14 +351,15 @@ static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state,
 static const char *WayText(const LamContactOutcome *out)
 {
   if (!(out->between[1] > out->between[0]) || out->converged) return "";
-  if (out->way == LAM_WAY_FROM_REST) return "; the way is from the undeformed tissue";
-  if (out->way == LAM_WAY_OF_TURGOR) return "; the way is to its turgor and cohesion, undeformed";
+  if (out->way == LAM_WAY_FROM_REST) return "; from rest";
+  if (out->way == LAM_WAY_OF_TURGOR) return "; turgor at rest";
   return "";
 }
 
 PetscErrorCode LamContactReason(LamRVE rve, const LamContactOutcome *out, char reason[], size_t length)
 {
   char place[80];
+  size_t used;
 
   PetscFunctionBeginUser;
   PetscCall(LamBracketText(out->between, place, sizeof(place)));
@@ -397,7 +399,8 @@ PetscErrorCode LamContactReason(LamRVE rve, const LamContactOutcome *out, char r
     PetscCall(PetscSNPrintf(reason, length,
                             "no contact equilibrium found from any start, after %d iterations: give states in between",
                             (int)rve->work.iterations));
-  PetscCall(PetscStrlcat(reason, WayText(out), length));
+  used = strlen(reason);
+  PetscCall(PetscSNPrintf(reason + used, length - used, "%s", WayText(out)));
   PetscFunctionReturn(0);
 }
 

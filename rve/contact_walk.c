@@ -92,7 +92,8 @@ static PetscErrorCode End(LamRVE rve, const Way *way, LamContactOutcome *out)
                            "  walk: %g to %g, refusal %d, negative %d, converged %d, depth %.2g after %.2g\n",
                            (double)way->reached, (double)way->failed, (int)out->refusal, (int)out->negative,
                            (int)out->converged, (double)out->depth, (double)way->depth));
-  if (!out->converged && out->refusal == LAM_NOT_REFUSED) PetscCall(FindCrossing(rve, way, out));
+  if (!out->converged && out->refusal == LAM_NOT_REFUSED && !LamIsKinking(&out->kinking))
+    PetscCall(FindCrossing(rve, way, out));
   PetscFunctionReturn(0);
 }
 

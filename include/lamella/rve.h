@@ -96,7 +96,8 @@ PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStress
   the time of a bonded state, a tenth to four tenths of a contact one. It keeps the coarse state that it has found, from
   which the next one starts: one estimate for states that follow each other. LamRVEEstimateError sets
   response->error_estimate of the response that belongs to `state`, and adds its time; NaN where there is none: an odd
-  number of elements along a face, sealed cells, or no equilibrium on the coarser mesh. Borrows `rve`.
+  number of elements along a face, sealed cells, no equilibrium on the coarser mesh, or elements far too long for the
+  thinnest wall or too deep for the lumen (docs/extremes.md, "What an estimate is worth"). Borrows `rve`.
 */
 typedef struct LamRVEEstimate_s *LamRVEEstimate;
 PetscErrorCode LamRVEEstimateCreate(LamRVE rve, LamRVEEstimate *estimate);

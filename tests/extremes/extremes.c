@@ -119,7 +119,7 @@ static PetscErrorCode Work(const Run *run, int questions, int answers)
   PetscInt id;
 
   PetscFunctionBeginUser;
-  while (read(questions, &id, sizeof(id)) == sizeof(id)) {
+  while (read(questions, &id, sizeof(id)) == sizeof(id) && id >= 0) {
     ExtremesCase c;
     ExtremesResult result;
 
@@ -153,8 +153,13 @@ static void Start(const Run *run, Worker *worker)
   worker->id = -1;
 }
 
+/* By a word: the end of its pipe would not come, which workers that started later hold open, too. */
 static void End(Worker *worker)
 {
+  const PetscInt no_more = -1;
+
+  if (write(worker->questions, &no_more, sizeof(no_more)) < 0 && errno != EPIPE)
+    fprintf(stderr, "extremes: %s\n", strerror(errno));
   close(worker->questions);
   close(worker->answers);
   waitpid(worker->process, NULL, 0);

@@ -67,12 +67,19 @@ static PetscErrorCode SolveLoads(Solver *s, LamResponse *response)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SolveRoute(const ExtremesCase *c, const ExtremesRoute *route, LamResponse *response)
+/* What a second route may take: it has to be worth its time. */
+static double RouteSeconds(const ExtremesResult *result)
+{
+  return PetscMin(EXTREMES_ROUTE_SECONDS, 1.0 + 15.0 * result->seconds);
+}
+
+static PetscErrorCode SolveRoute(const ExtremesCase *c, const ExtremesRoute *route, double seconds,
+                                 LamResponse *response)
 {
   Solver s;
 
   PetscFunctionBeginUser;
-  PetscCall(SolverCreate(c, route, EXTREMES_ROUTE_SECONDS, &s));
+  PetscCall(SolverCreate(c, route, seconds, &s));
   PetscCall(SolveLoads(&s, response));
   PetscCall(SolverDestroy(&s));
   PetscFunctionReturn(0);
@@ -103,7 +110,7 @@ static PetscErrorCode SolveFiner(const ExtremesCase *c, ExtremesResult *result)
   Solver s;
 
   PetscFunctionBeginUser;
-  PetscCall(SolverCreate(c, &route, 2 * EXTREMES_ROUTE_SECONDS, &s));
+  PetscCall(SolverCreate(c, &route, 2 * RouteSeconds(result), &s));
   PetscCall(SolveLoads(&s, &result->finer));
   result->mesh_error = Difference(&result->state, &result->finer);
   PetscCall(SolverDestroy(&s));
@@ -143,10 +150,10 @@ PetscErrorCode ExtremesJudge(const ExtremesCase *c, PetscBool routes, ExtremesRe
   PetscCall(LamRVEEstimateDestroy(&estimate));
   routes = (PetscBool)(routes && result->state.status == LAM_CONVERGED);
   if (routes) {
-    PetscCall(SolveRoute(c, &ramp, &result->path));
+    PetscCall(SolveRoute(c, &ramp, RouteSeconds(result), &result->path));
     result->path_error = Difference(&result->state, &result->path);
     if (c->contact) {
-      PetscCall(SolveRoute(c, &one_step, &result->other));
+      PetscCall(SolveRoute(c, &one_step, RouteSeconds(result), &result->other));
       result->other_error = Difference(&result->state, &result->other);
     }
     if (s.rve->mesh.element_count <= FINER_LIMIT) PetscCall(SolveFiner(c, result));
