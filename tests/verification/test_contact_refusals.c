@@ -29,6 +29,19 @@ static void CellInsideOutIsNoAnswer(void **state)
   assert_true(r.status != LAM_CONVERGED || r.lumen_fraction > 0.0);
 }
 
+/* Thick walls have no room for a compression: they are followed from rest to where their lumens shut. */
+static void LostTissueHasItsBracket(void **state)
+{
+  LamMicrostructure micro = ContactTissue(4, 2);
+  LamResponse r;
+
+  micro.wall_thickness = 0.95;
+  r = SolveTissue(&micro, ContactLoad(1, 0, 0, 0.6, 0.02, 0.001));
+  assert_int_equal(r.status, LAM_NO_EQUILIBRIUM);
+  assert_non_null(strstr(r.reason, " of the way"));
+  assert_non_null(strstr(r.reason, "; from rest"));
+}
+
 static void CohesionMustBeANumberAndNotNegative(void **state)
 {
   const double values[] = {-0.001, NAN, INFINITY};
@@ -67,9 +80,8 @@ static void FailureLeavesTheState(void **state)
 static int Run(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(ClearanceIsNoPenetration),
-      cmocka_unit_test(CellInsideOutIsNoAnswer),
-      cmocka_unit_test(CohesionMustBeANumberAndNotNegative),
+      cmocka_unit_test(ClearanceIsNoPenetration), cmocka_unit_test(CellInsideOutIsNoAnswer),
+      cmocka_unit_test(LostTissueHasItsBracket),  cmocka_unit_test(CohesionMustBeANumberAndNotNegative),
       cmocka_unit_test(FailureLeavesTheState),
   };
 
