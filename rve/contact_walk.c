@@ -4,7 +4,8 @@
   Method. Each solution, moved affinely, starts the next; a step that fails is halved, one that succeeds is followed by
   a longer one. Where the smallest step still fails without a reason, the tissue may snap: descent looks for the stable
   state beyond, from which the way goes on. What ends it is then bracketed by the last stable state and the next, in
-  which walls meet that contact does not know, a lumen is shut, or no stable state is found.
+  which walls meet that contact does not know or pass each other, a lumen is shut, or nothing stable is found, be it that
+  an eigenvalue crosses zero. Where walls kink on the way, no mesh resolves its end.
 */
 #include "contact_path.h"
 
