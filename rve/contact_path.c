@@ -250,7 +250,11 @@ static PetscErrorCode TryAffine(LamRVE rve, const LamLoad *load, LamContactSolut
   if (load->turgor <= MUCH_TURGOR) start.turgor = PetscMin(load->turgor, BORNE);
   PetscCall(LamContactStartAffine(rve, &start, PETSC_TRUE));
   PetscCall(LamContactTry(rve, &start, LAM_FAR, out));
-  if (bears || !LamContactIsStable(out)) PetscFunctionReturn(0);
+  if (bears) PetscFunctionReturn(0);
+  if (!LamContactIsStable(out)) {
+    *out = LAM_NO_OUTCOME; /* whatever it is, it is of another load */
+    PetscFunctionReturn(0);
+  }
   PetscCall(LamContactSave(rve, &start, at));
   PetscCall(Substeps(rve, at, load, out));
   PetscFunctionReturn(0);

@@ -4,8 +4,8 @@
   Method. Each solution, moved affinely, starts the next; a step that fails is halved, one that succeeds is followed by
   a longer one. Where the smallest step still fails without a reason, the tissue may snap: descent looks for the stable
   state beyond, from which the way goes on. What ends it is then bracketed by the last stable state and the next, in
-  which walls meet that contact does not know or pass each other, a lumen is shut, or nothing stable is found, be it that
-  an eigenvalue crosses zero. Where walls kink on the way, no mesh resolves its end.
+  which walls meet that contact does not know or pass each other, a lumen is shut, or nothing stable is found, be it
+  that an eigenvalue crosses zero. Where walls kink on the way, no mesh resolves its end.
 */
 #include "contact_path.h"
 
@@ -77,15 +77,17 @@ static PetscErrorCode FindCrossing(LamRVE rve, const Way *way, LamContactOutcome
   PetscFunctionReturn(0);
 }
 
-/* What has ended the way, with its bracket. */
+/* What has ended the way, with its bracket. A solution at another load than the one asked for is no outcome. */
 static PetscErrorCode End(LamRVE rve, const Way *way, LamContactOutcome *out)
 {
+  const PetscBool out_of_work = (PetscBool)!LamMayIterate(rve), stable = LamContactIsStable(out);
+
   PetscFunctionBeginUser;
   out->between[0] = way->reached;
   out->between[1] = way->failed;
   if (out->refusal == LAM_WALLS_OVERLAP && out->depth > JUMP * way->depth) out->refusal = LAM_WALLS_PASSED;
-  if (out->converged && way->failed < 1.0) { /* not the load that was asked for */
-    out->refusal = LAM_SADDLE;
+  if (out->converged && (stable || way->failed < 1.0)) {
+    if (!stable) out->refusal = LAM_SADDLE;
     out->converged = PETSC_FALSE;
   }
   if (rve->monitor)
@@ -93,7 +95,7 @@ static PetscErrorCode End(LamRVE rve, const Way *way, LamContactOutcome *out)
                            "  walk: %g to %g, refusal %d, negative %d, converged %d, depth %.2g after %.2g\n",
                            (double)way->reached, (double)way->failed, (int)out->refusal, (int)out->negative,
                            (int)out->converged, (double)out->depth, (double)way->depth));
-  if (!out->converged && out->refusal == LAM_NOT_REFUSED && !LamIsKinking(&out->kinking))
+  if (!out->converged && out->refusal == LAM_NOT_REFUSED && !out_of_work && !LamIsKinking(&out->kinking))
     PetscCall(FindCrossing(rve, way, out));
   PetscFunctionReturn(0);
 }
