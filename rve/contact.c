@@ -111,7 +111,7 @@ PetscErrorCode LamContactCreate(const LamMicrostructure *micro, const LamMesh *m
   PetscCall(PetscCalloc3(contact->count * contact->dofs, &contact->rows,
                          contact->face_count * contact->dofs * contact->dofs, &contact->hessian, 2 * mesh->class_count,
                          &contact->held));
-  for (PetscInt e = 0; e < along; ++e) contact->J0[e] = 2.0 / PetscSqrtReal(3.0) * (mesh->ends[e + 1] - mesh->ends[e]);
+  for (PetscInt e = 0; e < along; ++e) contact->J0[e] = LamFaceLength(mesh) * (mesh->ends[e + 1] - mesh->ends[e]);
   PlaceFaces(micro, mesh, contact);
   PetscCall(LamGapAreaCreate(micro, mesh, &contact->gaps));
   PetscCall(LamMortarSegmentsCreate(along, along, &contact->segments));
@@ -164,9 +164,8 @@ static void GatherChains(LamRVE rve, const PetscReal F[9], const PetscReal y[], 
 
 LamMortarChains LamContactChains(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt f, PetscReal x[][2])
 {
-  const LamMortarChains chains = {rve->mesh.along,          rve->mesh.along,
-                                  (const PetscReal(*)[2])x, (const PetscReal(*)[2])(x + rve->contact->hats),
-                                  rve->contact->J0,         rve->micro.clearance};
+  const LamMortarChains chains = {rve->mesh.along, rve->mesh.along, (const PetscReal(*)[2])x,
+                                  (const PetscReal(*)[2])(x + rve->contact->hats), rve->contact->J0};
 
   GatherChains(rve, F, y, f, x);
   return chains;

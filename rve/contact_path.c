@@ -23,12 +23,15 @@
 
 #define NEAR 0.04          /* largest change of F (and of turgor and cohesion) that counts as near */
 #define TIGHT 0.5          /* cohesion that is added first, C1 + C2 */
-#define SLACK 1e-3         /* of turgor and cohesion, where the tissue does not bear them from the start */
+#define SLACK 1e-3         /* of turgor and cohesion, where the tissue does not bear them from the start; ... */
+#define LEAST_SLACK 1e-7   /* ... down to this where it does not bear that, ... */
+#define SLACK_FACTOR 10.0  /* ... each this much less than the one before */
 #define LOOSE 1e-3         /* of it: from here the rest is taken away at once */
 #define LEAST_EASE 0.85    /* nearer to 1 it is given up */
 #define EASE 0.25          /* first factor by which it is lowered */
 #define BORNE 0.5          /* turgor, C1 + C2, that the affine state bears */
 #define MUCH_TURGOR 1.5    /* the same; beyond it the stretch is what is raised in steps */
+#define START_BUDGET 800   /* iterations: the rest is for the way from rest, which tells what ends it */
 #define RELEASE_REACH 0.1  /* apothems: a larger first step shows that less must be released */
 #define LEAST_RELEASE 0.06 /* smaller shares: descent takes over */
 
@@ -39,6 +42,7 @@ static PetscErrorCode SolveBonded(LamRVE rve, const LamLoad *load, LamRVEState s
 
   PetscFunctionBeginUser;
   PetscCall(LamRVESetMonitor(rve->bonded, rve->monitor));
+  rve->bonded->budget = rve->budget;
   PetscCall(LamRVEStateCopy(state, rve->bonded_state));
   PetscCall(LamRVESolve(rve->bonded, load, rve->bonded_state, &response));
   LamAddWork(rve, &response);
@@ -165,7 +169,7 @@ static PetscErrorCode TightThenLoose(LamRVE rve, const LamLoad *load, PetscBool 
   if (has_bonded) {
     PetscCall(Release(rve, &tight, at, out));
   } else {
-    PetscCall(LamContactStartAffine(rve, &tight, PETSC_TRUE));
+    PetscCall(LamContactStartAffine(rve, &tight));
     PetscCall(LamContactTry(rve, &tight, LAM_FAR, out));
   }
   PetscCall(LamContactSave(rve, &tight, at));
@@ -173,17 +177,60 @@ static PetscErrorCode TightThenLoose(LamRVE rve, const LamLoad *load, PetscBool 
   PetscFunctionReturn(0);
 }
 
-/* The load without its stretch: turgor, cohesion and the rotation of F. */
-static LamLoad Unstretched(const LamLoad *load)
+/* The load without its stretch: turgor, cohesion, the rotation of F, and cells so near that undeformed ones touch. */
+static LamLoad Unstretched(LamRVE rve, const LamLoad *load)
 {
-  const PetscReal angle = LamRotationAngle(load->F), c = PetscCosReal(angle), s = PetscSinReal(angle);
+  const PetscReal angle = LamRotationAngle(load->F), near = rve->micro.is_patch ? 1.0 : rve->mesh.apothem;
   LamLoad start = *load;
 
-  start.F[0] = start.F[4] = c;
-  start.F[1] = -s;
-  start.F[3] = s;
+  start.F[0] = start.F[4] = near * PetscCosReal(angle);
+  start.F[3] = near * PetscSinReal(angle);
+  start.F[1] = -start.F[3];
   start.F[8] = 1.0;
   return start;
+}
+
+/* The load with a share of its turgor and cohesion. */
+static LamLoad Slack(const LamLoad *load, PetscReal share)
+{
+  LamLoad slack = *load;
+
+  slack.turgor *= share;
+  slack.cohesion *= share;
+  return slack;
+}
+
+/*
+  Undeformed tissue, as its turgor and cohesion rise from as little as it bears: where cells differ thin walls bear next
+  to nothing before they bulge and are taut.
+*/
+static PetscErrorCode WalkInTurgor(LamRVE rve, const LamLoad *rest, LamContactSolution *at, LamContactOutcome *out)
+{
+  PetscReal share = SLACK * SLACK_FACTOR;
+
+  PetscFunctionBeginUser;
+  *out = LAM_NO_OUTCOME;
+  while (!LamContactIsStable(out) && share > LEAST_SLACK && LamMayIterate(rve)) {
+    LamLoad slack;
+
+    share /= SLACK_FACTOR;
+    slack = Slack(rest, share);
+    PetscCall(LamContactStartAffine(rve, &slack));
+    PetscCall(LamContactTry(rve, &slack, LAM_FAR, out));
+    PetscCall(LamContactSave(rve, &slack, at));
+  }
+  if (!LamContactIsStable(out)) *out = LAM_NO_OUTCOME;
+  while (LamContactIsStable(out) && share < 1.0) {
+    const PetscReal next = PetscMin(1.0, SLACK_FACTOR * share);
+    const LamLoad load = next < 1.0 ? Slack(rest, next) : *rest;
+
+    PetscCall(LamContactWalk(rve, at, &load, out));
+    for (PetscInt k = 0; k < 2; ++k) out->between[k] = share + (next - share) * out->between[k];
+    share = next;
+  }
+  if (!LamContactIsStable(out)) out->converged = PETSC_FALSE;
+  out->way = LAM_WAY_OF_TURGOR;
+  PetscFunctionReturn(0);
 }
 
 /*
@@ -192,36 +239,23 @@ static LamLoad Unstretched(const LamLoad *load)
 */
 static PetscErrorCode WalkFromRest(LamRVE rve, const LamLoad *load, LamContactSolution *at, LamContactOutcome *out)
 {
-  const LamLoad rest = Unstretched(load);
-  LamLoad tight = rest, slack = rest;
+  const LamLoad rest = Unstretched(rve, load);
+  LamLoad tight = rest;
 
   PetscFunctionBeginUser;
-  PetscCall(LamContactStartAffine(rve, &rest, PETSC_TRUE));
+  PetscCall(LamContactStartAffine(rve, &rest));
   PetscCall(LamContactTry(rve, &rest, LAM_FAR, out));
   PetscCall(LamContactSave(rve, &rest, at));
   if (!LamContactIsStable(out)) {
     tight.cohesion += TIGHT;
-    PetscCall(LamContactStartAffine(rve, &tight, PETSC_TRUE));
+    PetscCall(LamContactStartAffine(rve, &tight));
     PetscCall(LamContactTry(rve, &tight, LAM_FAR, out));
     PetscCall(LamContactSave(rve, &tight, at));
     PetscCall(Loosen(rve, &rest, at, out));
   }
   if (!LamContactIsStable(out)) {
-    slack.turgor *= SLACK;
-    slack.cohesion *= SLACK;
-    PetscCall(LamContactStartAffine(rve, &slack, PETSC_FALSE));
-    PetscCall(LamContactTry(rve, &slack, LAM_FAR, out));
-    PetscCall(LamContactSave(rve, &slack, at));
-    if (!LamContactIsStable(out)) {
-      *out = LAM_NO_OUTCOME;
-      PetscFunctionReturn(0);
-    }
-    PetscCall(LamContactWalk(rve, at, &rest, out));
-    out->way = LAM_WAY_OF_TURGOR;
-    if (!LamContactIsStable(out)) {
-      out->converged = PETSC_FALSE;
-      PetscFunctionReturn(0);
-    }
+    PetscCall(WalkInTurgor(rve, &rest, at, out));
+    if (!LamContactIsStable(out)) PetscFunctionReturn(0);
   }
   PetscCall(LamContactWalk(rve, at, load, out));
   out->way = LAM_WAY_FROM_REST;
@@ -244,11 +278,11 @@ PetscBool LamContactIsNear(const LamLoad *from, const LamLoad *load)
 static PetscErrorCode TryAffine(LamRVE rve, const LamLoad *load, LamContactSolution *at, LamContactOutcome *out)
 {
   const PetscBool bears = (PetscBool)(load->turgor <= BORNE);
-  LamLoad start = load->turgor <= MUCH_TURGOR ? *load : Unstretched(load);
+  LamLoad start = load->turgor <= MUCH_TURGOR ? *load : Unstretched(rve, load);
 
   PetscFunctionBeginUser;
   if (load->turgor <= MUCH_TURGOR) start.turgor = PetscMin(load->turgor, BORNE);
-  PetscCall(LamContactStartAffine(rve, &start, PETSC_TRUE));
+  PetscCall(LamContactStartAffine(rve, &start));
   PetscCall(LamContactTry(rve, &start, LAM_FAR, out));
   if (bears) PetscFunctionReturn(0);
   if (!LamContactIsStable(out)) {
@@ -328,6 +362,7 @@ static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state,
     PetscCall(Remember(rve, load, out, &best));
     if (k > 3 && !state->solved && IsCertain(&best.refused)) break; /* it starts nowhere else */
     *out = LAM_NO_OUTCOME;
+    rve->budget = k < 3 ? START_BUDGET : LAM_ITERATION_BUDGET;
     if (k == 0) {
       PetscCall(LamContactStartNear(rve, before, load));
       PetscCall(LamContactTry(rve, load, LAM_NEAR_REACH, out));
@@ -340,7 +375,9 @@ static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state,
     if (k == 5 && rve->strategy == LAM_ONE_STEP)
       PetscCall(TryStrategy(rve, LAM_TWO_STEP, load, state, &has_bonded, &at, out));
     if (k == 6 && rve->strategy == LAM_ONE_STEP) PetscCall(TightThenLoose(rve, load, has_bonded, &at, out));
+    LamContactSettle(out);
   }
+  rve->budget = LAM_ITERATION_BUDGET;
   if (!LamContactIsStable(out)) {
     PetscCall(Remember(rve, load, out, &best));
     PetscCall(GiveSecondBest(rve, load, &best, out));
@@ -389,6 +426,9 @@ PetscErrorCode LamContactReason(LamRVE rve, const LamContactOutcome *out, char r
     PetscCall(PetscSNPrintf(reason, length,
                             "stable states end%s: their lowest eigenvalue, %.3g (C1+C2) before, crosses zero there",
                             place, (double)out->eigenvalue));
+  else if (out->refusal == LAM_LOOSENING)
+    PetscCall(PetscSNPrintf(reason, length, "stable states end%s: as walls open there, an eigenvalue jumps below zero",
+                            place));
   else if (out->refusal == LAM_WALLS_PASSED)
     PetscCall(
         PetscSNPrintf(reason, length,

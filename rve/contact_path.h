@@ -22,9 +22,9 @@ PetscErrorCode LamContactRestore(LamRVE rve, const LamContactSolution *solution)
 PetscErrorCode LamContactTurnState(LamRVE rve, LamRVEState state, const LamLoad *load, LamContactSolution *solution);
 /* From a solution, moved affinely to the new load. */
 PetscErrorCode LamContactStartNear(LamRVE rve, const LamContactSolution *from, const LamLoad *load);
-/* rve->y := F X, stress-free walls, multipliers that balance turgor and cohesion. swollen: the cells have closed their
-   clearance. */
-PetscErrorCode LamContactStartAffine(LamRVE rve, const LamLoad *load, PetscBool swollen);
+/* rve->y := F X, the cells swollen by their clearance, stress-free walls, multipliers that balance turgor and
+   cohesion. */
+PetscErrorCode LamContactStartAffine(LamRVE rve, const LamLoad *load);
 /* rve->y: the positions last solved for by rve->bonded, which belong to the same F; contact->held: what bonding carries
    and the multipliers fitted to it do not. */
 PetscErrorCode LamContactStartBonded(LamRVE rve, const LamLoad *load, PetscBool *ok);
@@ -36,7 +36,8 @@ typedef enum {
   LAM_CELLS_OVERLAP, /* a wall has met one that it does not face: contact does not know of that */
   LAM_WALLS_PASSED,  /* walls that face each other have passed each other at once, past the end of one of them */
   LAM_SADDLE,        /* on a way: the stable states end there, ... */
-  LAM_CROSSING,      /* ... or in an eigenvalue that crosses zero */
+  LAM_CROSSING,      /* ... or in an eigenvalue that crosses zero, ... */
+  LAM_LOOSENING,     /* ... or jumps below it, as walls open */
   LAM_LUMEN_COLLAPSED
 } LamRefusal;
 typedef enum { LAM_WAY_FROM_BEFORE, LAM_WAY_FROM_REST, LAM_WAY_OF_TURGOR } LamWay;
@@ -49,6 +50,7 @@ typedef struct {
   PetscInt cell[2];     /* the cells concerned */
   PetscReal eigenvalue; /* lowest, of the last stable state of a way */
   PetscReal depth;      /* of the wall of the first inside the second */
+  PetscBool coarse;     /* it is too deep for an answer, but the mesh explains it: a way may lead over it */
   PetscReal between[2]; /* shares of a way: the last stable state, the next that is none; equal: not known */
   LamWay way;
   LamKinking kinking; /* on that way */
@@ -64,6 +66,13 @@ PetscErrorCode LamContactTryMixed(LamRVE rve, LamBorder *border, PetscReal reach
 static inline PetscBool LamContactIsStable(const LamContactOutcome *out)
 {
   return (PetscBool)(out->converged && out->negative <= 0);
+}
+/* What a way may lead over is no answer yet. */
+static inline void LamContactSettle(LamContactOutcome *out)
+{
+  if (!out->converged || !out->coarse) return;
+  out->converged = PETSC_FALSE;
+  out->refusal = LAM_WALLS_OVERLAP;
 }
 
 /* ---- contact_walk.c ---- */

@@ -14,9 +14,9 @@
 */
 #include "rve_impl.h"
 
-#define SAFE_ITERATIONS 300
-#define RESTARTS 3            /* with the junction status of a solution, where it has changed */
-#define FOLLOW_ITERATIONS 150 /* in which the junction status follows the iterate */
+#define SAFE_ITERATIONS 120
+#define RESTARTS 3           /* with the junction status of a solution, where it has changed */
+#define FOLLOW_ITERATIONS 60 /* in which the junction status follows the iterate */
 #define WATCHDOG 4
 #define STEP_LIMIT 0.05 /* apothems; smaller after a failure, down to ... */
 #define LEAST_STEP_LIMIT 1e-3

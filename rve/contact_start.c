@@ -70,7 +70,7 @@ PetscErrorCode LamContactStartNear(LamRVE rve, const LamContactSolution *from, c
 static void CloseClearance(LamRVE rve, const LamLoad *load)
 {
   const LamMesh *mesh = &rve->mesh;
-  const PetscReal swelling = 0.5 * rve->micro.clearance;
+  const PetscReal swelling = 1.0 / mesh->apothem - 1.0;
 
   if (swelling == 0.0 || rve->micro.is_patch) return;
   for (PetscInt i = 0; i < mesh->node_count; ++i) {
@@ -82,7 +82,7 @@ static void CloseClearance(LamRVE rve, const LamLoad *load)
   }
 }
 
-PetscErrorCode LamContactStartAffine(LamRVE rve, const LamLoad *load, PetscBool swollen)
+PetscErrorCode LamContactStartAffine(LamRVE rve, const LamLoad *load)
 {
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < rve->mesh.class_count; ++c) {
@@ -90,7 +90,7 @@ PetscErrorCode LamContactStartAffine(LamRVE rve, const LamLoad *load, PetscBool 
 
     for (PetscInt d = 0; d < 2; ++d) rve->y[2 * c + d] = load->F[3 * d] * X[0] + load->F[3 * d + 1] * X[1];
   }
-  if (swollen) CloseClearance(rve, load);
+  CloseClearance(rve, load);
   PetscCall(PetscArrayzero(rve->stress, rve->mesh.element_count));
   for (PetscInt c = 0; c < rve->linear.lumens; ++c) rve->y[rve->ndof + c] = load->turgor * LamTurgorFactor(rve, c);
   for (PetscInt h = 0; h < rve->contact->count; ++h)

@@ -14,6 +14,7 @@
 #define WALL_SHARE 0.25   /* ... or in wall thicknesses, ... */
 #define DEEPEST_WALL 0.05 /* ... of the latter no more than this, apothems */
 #define HALF_WALL 0.5     /* and never more than this share of the wall */
+#define OF_MESH 0.5       /* share of the depth that walls which face each other have across from each other */
 
 static PetscReal LargestDifference(PetscInt n, const PetscReal a[], const PetscReal b[])
 {
@@ -68,10 +69,10 @@ static PetscErrorCode LeaveSaddles(LamRVE rve, const LamLoad *load, LamContactOu
 
 static PetscErrorCode Refuse(LamRVE rve, const LamLoad *load, LamContactOutcome *out)
 {
-  const LamMicrostructure *micro = &rve->micro;
   const PetscReal edge = LamLongestEdge(&rve->mesh);
   const PetscReal mesh = PetscMax(EDGE_SHARE * edge, PetscMin(DEEPEST_WALL, WALL_SHARE * rve->thinnest));
   const PetscReal shallow = PetscMin(mesh, HALF_WALL * rve->thinnest);
+  PetscReal closed = 0.0;
   PetscBool facing;
 
   PetscFunctionBeginUser;
@@ -80,8 +81,16 @@ static PetscErrorCode Refuse(LamRVE rve, const LamLoad *load, LamContactOutcome 
     out->refusal = LAM_LUMEN_COLLAPSED;
   } else {
     PetscCall(LamFindOverlap(rve, load->F, rve->y, &out->depth, out->cell, &facing));
-    out->depth -= micro->clearance; /* contact acts from there */
-    if (out->depth > shallow) out->refusal = facing ? LAM_WALLS_OVERLAP : LAM_CELLS_OVERLAP;
+    if (out->depth <= shallow) PetscFunctionReturn(0);
+    if (facing) PetscCall(LamFacingDepth(rve, load->F, rve->y, &closed));
+    if (!facing)
+      out->refusal = LAM_CELLS_OVERLAP;
+    else if (closed < OF_MESH * out->depth)
+      out->refusal = LAM_WALLS_PASSED;
+    else if (out->depth <= mesh)
+      out->coarse = PETSC_TRUE;
+    else
+      out->refusal = LAM_WALLS_OVERLAP;
   }
   if (out->refusal != LAM_NOT_REFUSED) out->converged = PETSC_FALSE;
   PetscFunctionReturn(0);

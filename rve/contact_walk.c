@@ -14,6 +14,8 @@
 #define GROWTH 2.0
 #define MAX_SNAPS 4
 #define CROSSING_MARGIN 4.0 /* widths of the bracket within which an eigenvalue vanishes that ends the way */
+#define STAGES 4            /* in which a bracket that tells nothing is halved, */
+#define HALVINGS 4          /* so often each */
 #define JUMP 2.0 /* of the depth to which walls lie in each other, between neighbouring states: they have passed */
 
 /* Beyond the last step by descent. */
@@ -56,12 +58,44 @@ static PetscErrorCode LowestEigenvalue(LamRVE rve, const LamContactSolution *sol
 }
 
 /*
+  Whether the last stable state would be none without the contact that is about to open, its multipliers drawn through
+  the last two states: an eigenvalue then jumps below zero.
+*/
+static PetscErrorCode FindLoosening(LamRVE rve, const Way *way, PetscBool *found)
+{
+  const PetscReal ahead = CROSSING_MARGIN * (way->failed - way->reached) / (way->reached - way->before);
+  LamContact *contact = rve->contact;
+  PetscInt count = 0, negative;
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamContactRestore(rve, way->at));
+  for (PetscInt h = 0; h < contact->count; ++h) {
+    const PetscReal now = way->at->lambda[h];
+
+    if (!contact->active[h] || now + ahead * (now - way->earlier.lambda[h]) > 0.0) continue;
+    contact->active[h] = PETSC_FALSE;
+    contact->lambda[h] = 0.0;
+    ++count;
+  }
+  *found = PETSC_FALSE;
+  if (count == 0) PetscFunctionReturn(0);
+  PetscCall(LamFactorConsistent(rve, &way->at->load, &negative, &ok));
+  *found = (PetscBool)(ok && negative > 0);
+  if (rve->monitor)
+    PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR, "  %d hats about to open: %d negative eigenvalues without\n",
+                           (int)count, (int)negative));
+  PetscFunctionReturn(0);
+}
+
+/*
   Whether the stable states end where an eigenvalue crosses zero: near a limit load it falls as the square root of what
   is left of the load, so its square, drawn through the last two states, vanishes in the bracket or close behind it.
 */
 static PetscErrorCode FindCrossing(LamRVE rve, const Way *way, LamContactOutcome *out)
 {
   PetscReal before, fall;
+  PetscBool opens = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   if (way->reached <= way->before || rve->work.stopped) PetscFunctionReturn(0);
@@ -74,29 +108,9 @@ static PetscErrorCode FindCrossing(LamRVE rve, const Way *way, LamContactOutcome
   if (fall > 0.0 &&
       PetscSqr(out->eigenvalue) * (way->reached - way->before) <= CROSSING_MARGIN * (way->failed - way->reached) * fall)
     out->refusal = LAM_CROSSING;
-  PetscFunctionReturn(0);
-}
-
-/* What has ended the way, with its bracket. A solution at another load than the one asked for is no outcome. */
-static PetscErrorCode End(LamRVE rve, const Way *way, LamContactOutcome *out)
-{
-  const PetscBool out_of_work = (PetscBool)!LamMayIterate(rve), stable = LamContactIsStable(out);
-
-  PetscFunctionBeginUser;
-  out->between[0] = way->reached;
-  out->between[1] = way->failed;
-  if (out->refusal == LAM_WALLS_OVERLAP && out->depth > JUMP * way->depth) out->refusal = LAM_WALLS_PASSED;
-  if (out->converged && (stable || way->failed < 1.0)) {
-    if (!stable) out->refusal = LAM_SADDLE;
-    out->converged = PETSC_FALSE;
-  }
-  if (rve->monitor)
-    PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR,
-                           "  walk: %g to %g, refusal %d, negative %d, converged %d, depth %.2g after %.2g\n",
-                           (double)way->reached, (double)way->failed, (int)out->refusal, (int)out->negative,
-                           (int)out->converged, (double)out->depth, (double)way->depth));
-  if (!out->converged && out->refusal == LAM_NOT_REFUSED && !out_of_work && !LamIsKinking(&out->kinking))
-    PetscCall(FindCrossing(rve, way, out));
+  if (out->refusal == LAM_CROSSING) PetscFunctionReturn(0);
+  PetscCall(FindLoosening(rve, way, &opens));
+  if (opens) out->refusal = LAM_LOOSENING;
   PetscFunctionReturn(0);
 }
 
@@ -111,6 +125,68 @@ static PetscErrorCode Advance(LamRVE rve, const LamLoad *load, PetscReal t, Way 
   PetscCall(LamContactSave(rve, load, way->at));
   way->before = way->reached;
   way->reached = t;
+  PetscFunctionReturn(0);
+}
+
+/*
+  Halves the bracket of a way that ends in nothing known, until the states next to it tell: an eigenvalue that falls
+  steeply does so close to its end. The states compared are those from which a stage starts and in which it ends.
+*/
+static PetscErrorCode Refine(LamRVE rve, const LamLoad *start, const LamLoad *load, Way *way, LamContactOutcome *out)
+{
+  PetscBool advanced = PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  for (PetscInt stage = 0; stage <= STAGES && advanced; ++stage) {
+    PetscCall(FindCrossing(rve, way, out));
+    if (out->refusal != LAM_NOT_REFUSED) break;
+    advanced = PETSC_FALSE;
+    for (PetscInt k = 0; k < HALVINGS && out->refusal == LAM_NOT_REFUSED && LamMayIterate(rve); ++k) {
+      const PetscReal t = 0.5 * (way->reached + way->failed);
+      const LamLoad next = LamLoadBetween(start, load, t);
+      LamContactOutcome tried;
+
+      PetscCall(LamContactStartNear(rve, way->at, &next));
+      PetscCall(LamContactTry(rve, &next, LAM_NEAR_REACH, &tried));
+      if (!LamContactIsStable(&tried)) {
+        out->refusal = tried.refusal;
+        out->depth = tried.depth;
+        PetscCall(PetscArraycpy(out->cell, tried.cell, 2));
+        way->failed = t;
+      } else if (advanced) {
+        PetscCall(LamContactSave(rve, &next, way->at));
+        way->reached = t;
+      } else {
+        PetscCall(Advance(rve, &next, t, way));
+        advanced = PETSC_TRUE;
+      }
+    }
+  }
+  out->between[0] = way->reached;
+  out->between[1] = way->failed;
+  PetscFunctionReturn(0);
+}
+
+/* What has ended the way, with its bracket. A solution at another load than the one asked for is no outcome. */
+static PetscErrorCode End(LamRVE rve, const LamLoad *start, const LamLoad *load, Way *way, LamContactOutcome *out)
+{
+  const PetscBool out_of_work = (PetscBool)!LamMayIterate(rve), stable = LamContactIsStable(out);
+
+  PetscFunctionBeginUser;
+  out->between[0] = way->reached;
+  out->between[1] = way->failed;
+  if (out->refusal == LAM_WALLS_OVERLAP && out->depth > JUMP * way->depth) out->refusal = LAM_WALLS_PASSED;
+  if (out->converged && (stable || way->failed < 1.0)) {
+    if (!stable) out->refusal = LAM_SADDLE;
+    out->converged = PETSC_FALSE;
+  }
+  if (!out->converged && out->refusal == LAM_NOT_REFUSED && !out_of_work && !LamIsKinking(&out->kinking))
+    PetscCall(Refine(rve, start, load, way, out));
+  if (rve->monitor)
+    PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR,
+                           "  walk: %.10g to %.10g, refusal %d, negative %d, converged %d, depth %.2g after %.2g\n",
+                           (double)way->reached, (double)way->failed, (int)out->refusal, (int)out->negative,
+                           (int)out->converged, (double)out->depth, (double)way->depth));
   PetscFunctionReturn(0);
 }
 
@@ -153,7 +229,7 @@ PetscErrorCode LamContactWalk(LamRVE rve, LamContactSolution *at, const LamLoad 
   }
   out->branch = branch;
   out->kinking = kinking;
-  if (way.reached < 1.0) PetscCall(End(rve, &way, out));
+  if (way.reached < 1.0) PetscCall(End(rve, &start, load, &way, out));
   PetscCall(LamContactSolutionDestroy(&way.earlier));
   PetscFunctionReturn(0);
 }

@@ -134,7 +134,7 @@ static PetscReal Coarseness(LamRVE rve, const PetscReal F[9])
     const LamWall *wall = micro->cell ? &micro->cell[c].wall : &micro->wall;
     const PetscReal thickness = LamWallThickness(micro, c);
 
-    coarseness = PetscMax(coarseness, thickness / (through * (1.0 - thickness)) / DEEP);
+    coarseness = PetscMax(coarseness, thickness / (through * (rve->mesh.apothem - thickness)) / DEEP);
     coarseness = PetscMax(coarseness, PetscSqrtReal(wall->C4 / (wall->C1 + wall->C2)) / (through * STRONG));
   }
   return coarseness;

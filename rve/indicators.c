@@ -50,7 +50,7 @@ static void SampleSegment(const LamMortarChains *chains, PetscReal from, PetscRe
   for (PetscInt k = 0; k <= SAMPLES; ++k) {
     const PetscReal s = PetscMin(from + ds * (PetscReal)k, (PetscReal)edge + 1.0 - 1e-12);
     PetscReal nearest[2], X[2], Xs[2];
-    const PetscReal gap = LamMortarGap(chains, s, master, nearest) - chains->clearance;
+    const PetscReal gap = LamMortarGap(chains, s, master, nearest);
 
     sums->max_gap = PetscMax(sums->max_gap, gap);
     if (LamExceeds(gap, sums->named_gap)) {
@@ -60,7 +60,7 @@ static void SampleSegment(const LamMortarChains *chains, PetscReal from, PetscRe
     /* the gap runs on over the edge's ends, and is a little smaller there than the distance */
     if (gap < sums->min_gap)
       sums->min_gap = PetscMin(sums->min_gap, gap > 0.0 ? LamMortarDistance(chains, s, master) : gap);
-    sums->max_penetration = PetscMax(sums->max_penetration, -gap - chains->clearance);
+    sums->max_penetration = PetscMax(sums->max_penetration, -gap);
     if (k > 0) {
       const PetscReal mean = 0.5 * (PetscMax(0.0, last) + PetscMax(0.0, gap));
 

@@ -65,7 +65,7 @@ PetscErrorCode LamRVEGetInterface(LamRVE rve, LamRVEState state, PetscReal from[
       PetscReal X[2], Xs[2], nearest[2] = {NAN, NAN}, distance = NAN;
 
       LamMortarSlavePoint(&chains, s, X, Xs);
-      if (edge >= 0) distance = LamMortarGap(&chains, s, edge, nearest) - chains.clearance;
+      if (edge >= 0) distance = LamMortarGap(&chains, s, edge, nearest);
       for (PetscInt d = 0; d < 2; ++d) {
         if (from) from[2 * k + d] = X[d];
         if (to) to[2 * k + d] = nearest[d];
@@ -73,6 +73,29 @@ PetscErrorCode LamRVEGetInterface(LamRVE rve, LamRVEState state, PetscReal from[
       if (gap) gap[k] = distance;
       if (pressure)
         pressure[k] = edge < 0 ? 0.0 : PressureAt(contact, &state->lambda[f * contact->hats], s, Xs, state->load.F[8]);
+    }
+  }
+  PetscCall(PetscFree(x));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFacingDepth(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscReal *depth)
+{
+  LamContact *contact = rve->contact;
+  PetscReal(*x)[2], nearest[2];
+
+  PetscFunctionBeginUser;
+  *depth = 0.0;
+  PetscCall(PetscMalloc1(contact->chain, &x));
+  for (PetscInt f = 0; f < contact->face_count; ++f) {
+    const LamMortarChains chains = LamContactChains(rve, F, y, f, x);
+
+    LamMortarFindSegments(&chains, &contact->segments);
+    for (PetscInt i = 0; i <= POINTS_PER_EDGE * rve->mesh.along; ++i) {
+      const PetscReal s = (PetscReal)i / POINTS_PER_EDGE;
+      const PetscInt edge = FacingEdge(&contact->segments, s);
+
+      if (edge >= 0) *depth = PetscMax(*depth, -LamMortarGap(&chains, s, edge, nearest));
     }
   }
   PetscCall(PetscFree(x));

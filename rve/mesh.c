@@ -66,7 +66,8 @@ static void PlaceNodes(const LamMicrostructure *micro, LamMesh *mesh)
       HexagonCorner(micro->orientation, face, a);
       HexagonCorner(micro->orientation, face + 1, b);
       for (PetscInt r = 0; r < mesh->radial_nodes; ++r) {
-        const PetscReal apothem = 1.0 - thickness * (1.0 - (PetscReal)r / (PetscReal)(mesh->radial_nodes - 1));
+        const PetscReal apothem =
+            mesh->apothem - thickness * (1.0 - (PetscReal)r / (PetscReal)(mesh->radial_nodes - 1));
         PetscReal *X = &mesh->X[2 * NodeNumber(mesh, cell, around, r)];
 
         for (PetscInt d = 0; d < 2; ++d)
@@ -178,10 +179,10 @@ static PetscErrorCode CheckMicrostructure(const LamMicrostructure *micro)
   PetscCheck(micro->cells[0] > 0 && micro->cells[1] > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
              "a block of %d x %d cells is empty", (int)micro->cells[0], (int)micro->cells[1]);
   for (PetscInt cell = 0; cell < micro->cells[0] * micro->cells[1]; ++cell) {
-    const PetscReal t = LamWallThickness(micro, cell);
+    const PetscReal t = LamWallThickness(micro, cell), outer = LamOuterApothem(micro);
 
-    PetscCheck(t > 0.0 && t < 1.0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "wall thickness is %g apothems; it must lie between 0 and 1", (double)t);
+    PetscCheck(t > 0.0 && t < outer, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "wall thickness is %g apothems; it must lie between 0 and %g", (double)t, (double)outer);
   }
   PetscFunctionReturn(0);
 }
@@ -198,6 +199,7 @@ PetscErrorCode LamMeshCreate(const LamMicrostructure *micro, LamMesh *mesh)
   mesh->radial_nodes = 2 * micro->through + 1;
   mesh->node_count = mesh->cell_count * mesh->ring_nodes * mesh->radial_nodes;
   mesh->element_count = mesh->cell_count * LAM_FACES * micro->along * micro->through;
+  mesh->apothem = LamOuterApothem(micro);
   mesh->V0 = 2.0 * PetscSqrtReal(3.0) * (PetscReal)mesh->cell_count;
   PetscCall(PetscMalloc1(mesh->along + 1, &mesh->ends));
   PetscCall(PetscMalloc1(2 * mesh->node_count, &mesh->X));

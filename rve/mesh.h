@@ -42,6 +42,7 @@ typedef struct {
   PetscInt *neighbour;    /* [cell][6] the cell across each face; -1: none */
   PetscReal *image;       /* [cell][6][2] shift of its image that lies there */
   PetscBool *held;        /* [cell][6] outer walls that follow F */
+  PetscReal apothem;      /* of a cell's outer walls */
   PetscReal period[2][2]; /* rows; zero for a patch */
   PetscReal V0;           /* reference area of the RVE, cells and lumens */
 } LamMesh;
@@ -57,16 +58,20 @@ static inline PetscInt LamMeshNeighbour(const LamMesh *mesh, PetscInt cell, Pets
   return mesh->neighbour[LAM_FACES * cell + face];
 }
 
+static inline PetscReal LamFaceLength(const LamMesh *mesh)
+{
+  return 2.0 / PetscSqrtReal(3.0) * mesh->apothem;
+}
 /* The outer edges of the elements at a corner and in the middle of a face. */
 static inline PetscReal LamShortestEdge(const LamMesh *mesh)
 {
-  return 2.0 / PetscSqrtReal(3.0) * (mesh->ends[1] - mesh->ends[0]);
+  return LamFaceLength(mesh) * (mesh->ends[1] - mesh->ends[0]);
 }
 static inline PetscReal LamLongestEdge(const LamMesh *mesh)
 {
   const PetscInt e = (mesh->along - 1) / 2;
 
-  return 2.0 / PetscSqrtReal(3.0) * (mesh->ends[e + 1] - mesh->ends[e]);
+  return LamFaceLength(mesh) * (mesh->ends[e + 1] - mesh->ends[e]);
 }
 /* Where a point of a face lies, as a share of its length, counted in elements from its start, 0 to along; and back. */
 static inline PetscReal LamMeshShare(const LamMesh *mesh, PetscReal at)

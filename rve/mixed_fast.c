@@ -79,6 +79,7 @@ static PetscErrorCode TryContact(LamRVE rve, LamBorder *border, LamLoad *load, c
     if (LamContactIsStable(&out)) PetscCall(LamRVEStateCopy(rve->bonded_state, state->bonded));
     PetscCall(PetscArraycpy(load->F, rve->bonded_state->load.F, 9));
   }
+  LamContactSettle(&out);
   *solved = LamContactIsStable(&out);
   if (out.refusal != LAM_NOT_REFUSED)
     PetscCall(LamContactReason(rve, &out, response->reason, sizeof(response->reason)));

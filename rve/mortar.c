@@ -5,8 +5,8 @@
   N0 = n.dy_eta are rows of derivatives of the local dofs:
     first variation    int phi_A N ds + sum over moving break points of phi_A [gamma] ds_v, ends included,
     second variation   int lambda d2gamma ds + break points (AddBreak),
-    d2gamma = -(sym(N0, T) + g N0(x)N0 + (b/m) T(x)T)/H,   g = gamma - clearance, m = tau.tau, b = y_etaeta.n, H = m - g
-  b. All terms are kept: the Newton iteration and the tangent of the tissue need every one of them.
+    d2gamma = -(sym(N0, T) + gamma N0(x)N0 + (b/m) T(x)T)/H,   m = tau.tau, b = y_etaeta.n, H = m - gamma b
+  All terms are kept: the Newton iteration and the tangent of the tissue need every one of them.
 
   References. Puso & Laursen, Comput. Methods Appl. Mech. Engrg 193 (2004) 601 (segment mortar); Popp, Gee & Wall, Int.
   J. Numer. Meth. Engng 79 (2009) 1354 (linearisation); docs/theory.md for the complete second variation.
@@ -41,7 +41,7 @@ typedef struct {
   PetscReal N[3], dN[3]; /* of the slave edge */
   PetscReal M[3], dM[3]; /* of the master edge */
   PetscReal Xs[2], normal[2], tau[2];
-  PetscReal g, H, b_over_m; /* gap without clearance; H, b/m of the header comment */
+  PetscReal g, H, b_over_m; /* gap; H, b/m of the header comment */
 } Point;
 
 /* Nearest place eta on a master edge, extended a little past its ends. */
@@ -194,7 +194,7 @@ static void AddSegment(const LamMortarChains *chains, PetscReal from, PetscReal 
     RelativeRow(&p, p.normal, N);
     for (PetscInt k = 0; k < 2; ++k) {
       result->weight[piece + k] += weight * hats.phi[k];
-      result->gap[piece + k] += weight * hats.phi[k] * (p.g + chains->clearance);
+      result->gap[piece + k] += weight * hats.phi[k] * p.g;
     }
     AddGapRows(&hats, weight, POINT_DOFS, dof, N, dofs, result);
     if (!loaded) continue;
@@ -357,7 +357,7 @@ static void AddBreak(const LamMortarChains *chains, const Motion *motion, const 
 
     SetPoint(chains, motion->edge, motion->s, motion->master[k], &p);
     RelativeRow(&p, p.normal, row);
-    gamma += motion->sign[k] * (p.g + chains->clearance);
+    gamma += motion->sign[k] * p.g;
     gamma_s += motion->sign[k] * LamDot(p.normal, p.Xs);
     for (PetscInt i = 0; i < EDGE_DOFS; ++i) {
       N[i] += motion->sign[k] * row[i];
@@ -408,7 +408,7 @@ PetscReal LamMortarGap(const LamMortarChains *chains, PetscReal s, PetscInt edge
 
   SetPoint(chains, PetscMin((PetscInt)s, chains->n - 1), s, edge, &p);
   LamEdgeSum(&chains->y[2 * edge], p.M, nearest);
-  return p.g + chains->clearance;
+  return p.g;
 }
 
 PetscReal LamMortarDistance(const LamMortarChains *chains, PetscReal s, PetscInt edge)

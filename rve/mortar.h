@@ -6,7 +6,7 @@
   slave). Both loops run counter-clockwise around their own cell, so the chains run in opposite directions. Edge e
   has nodes 2e, 2e+1 (middle), 2e+2. A place on the slave is s in [0, n].
 
-    gap      gamma(s) = (X(s) - y(eta)).n + clearance, y(eta) the closest point, n the normal outward from the master
+    gap      gamma(s) = (X(s) - y(eta)).n, y(eta) the closest point, n the normal outward from the master
     hats     phi_A, A = 0..2n, piecewise linear in s with nodes at s = A/2
     weight   D_A = int phi_A J0 ds        weighted gap  G_A = int phi_A gamma J0 ds       over the overlap of the chains
   J0: reference length of a slave edge, so multipliers are nominal pressures.
@@ -24,7 +24,6 @@ typedef struct {
   PetscInt n, m;
   const PetscReal (*x)[2], (*y)[2]; /* [2n+1], [2m+1] current positions; borrowed */
   const PetscReal *J0;              /* [n]; borrowed */
-  PetscReal clearance;
 } LamMortarChains;
 
 static inline PetscInt LamMortarDofs(PetscInt n, PetscInt m)
@@ -62,7 +61,7 @@ void LamMortarEvaluate(const LamMortarChains *chains, const LamMortarSegments *s
 
 /* Gap at s over master edge `edge` and its nearest point there. */
 PetscReal LamMortarGap(const LamMortarChains *chains, PetscReal s, PetscInt edge, PetscReal nearest[2]);
-/* Distance of the slave at s from master edge `edge`, nothing beyond the edge's ends; without the clearance. */
+/* Distance of the slave at s from master edge `edge`, nothing beyond the edge's ends. */
 PetscReal LamMortarDistance(const LamMortarChains *chains, PetscReal s, PetscInt edge);
 /* Position and tangent dX/ds of the slave at s. */
 void LamMortarSlavePoint(const LamMortarChains *chains, PetscReal s, PetscReal X[2], PetscReal Xs[2]);

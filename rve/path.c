@@ -143,10 +143,14 @@ LamLoad LamLoadBetween(const LamLoad *a, const LamLoad *b, PetscReal t)
 
 PetscErrorCode LamBracketText(const PetscReal between[2], char text[], size_t length)
 {
+  const PetscReal narrowness = between[1] / PetscMax(1e-12, between[1] - between[0]);
+  const int digits = (int)PetscMax(5.0, PetscCeilReal(PetscLog10Real(PetscMax(1.0, narrowness))) + 1.0);
+
   PetscFunctionBeginUser;
   text[0] = '\0';
   if (between[1] > between[0])
-    PetscCall(PetscSNPrintf(text, length, " between %.5g and %.5g of the way", (double)between[0], (double)between[1]));
+    (void)snprintf(text, length, " between %.*g and %.*g of the way", digits, (double)between[0], digits,
+                   (double)between[1]);
   PetscFunctionReturn(0);
 }
 
@@ -196,7 +200,7 @@ static PetscErrorCode Substeps(LamRVE rve, PetscReal y_from[], const LamLoad *st
 /* What is told where the way ends before the load. */
 static PetscErrorCode EndOfWay(LamRVE rve, const Way *way, LamStatus *status, char reason[], size_t length)
 {
-  const PetscBool out_of_work = (PetscBool)(rve->work.iterations >= LAM_ITERATION_BUDGET);
+  const PetscBool out_of_work = (PetscBool)(rve->work.iterations >= rve->budget);
 
   PetscFunctionBeginUser;
   *status = LAM_NOT_CONVERGED;

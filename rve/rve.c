@@ -93,6 +93,7 @@ static PetscErrorCode SetUpArrays(LamRVE rve)
   PetscCall(LamMeshCreate(&rve->micro, &rve->mesh));
   cells = rve->mesh.cell_count;
   lumens = rve->seal.allowed ? cells : 0;
+  rve->budget = LAM_ITERATION_BUDGET;
   PetscCall(SetUpWalls(rve));
   PetscCall(LamGeometryCreate(rve));
   if (rve->micro.interface == LAM_INTERFACE_CONTACT) {

@@ -114,6 +114,7 @@ struct LamRVE_s {
   PetscInt length;                        /* ndof + linear.lumens */
   PetscReal *y, *step, *trial, *residual; /* [length] each: position, Newton step, trial position, residual */
   LamWork work;                           /* of the solve under way */
+  PetscInt budget;                        /* iterations that it may take until now */
   PetscBool (*interrupt)(void *ctx);      /* NULL: never */
   void *interrupt_ctx;                    /* borrowed */
   PetscBool consistent;                   /* residual and linear.values are those of y with its own wall stresses */
@@ -291,7 +292,7 @@ PetscErrorCode LamGiveUp(LamResponse *response);
 #define LAM_ITERATION_BUDGET 2000
 static inline PetscBool LamMayIterate(LamRVE rve)
 {
-  return (PetscBool)(rve->work.iterations < LAM_ITERATION_BUDGET && !rve->work.stopped);
+  return (PetscBool)(rve->work.iterations < rve->budget && !rve->work.stopped);
 }
 
 /* Of the thinnest wall, per square of an apothem's length of it, C1 + C2: shifts that are larger from the start hide
@@ -403,6 +404,10 @@ PetscErrorCode LamCollapseReason(PetscInt cell, const PetscReal between[2], char
    and -1, -1 where none does. */
 PetscErrorCode LamFindOverlap(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscReal *depth, PetscInt pair[2],
                               PetscBool *facing);
+
+/* ---- interface.c ---- */
+/* How deep walls lie in each other across from each other, apothems; >= 0. */
+PetscErrorCode LamFacingDepth(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscReal *depth);
 
 /* ---- homogenise.c, traction.c, failure.c ---- */
 /* L_q, L_qq and R = L_yq [LAM_F_COUNT][n] of the components of F at rve->y, after LamAssemble there; rows of R for all

@@ -205,7 +205,7 @@ void LamTakeLargestMean(const LamMesh *mesh, PetscReal thickness, PetscInt cell,
                         const PetscReal integral[], const PetscReal length[], LamLargestMean *largest)
 {
   PetscReal middle;
-  const PetscReal window = thickness / (2.0 / PetscSqrtReal(3.0));
+  const PetscReal window = thickness / LamFaceLength(mesh);
   const PetscReal mean = LargestWindowMean(mesh, count, window, integral, length, &middle);
 
   largest->value = PetscMax(largest->value, mean);

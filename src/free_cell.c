@@ -173,16 +173,15 @@ static PetscErrorCode FitSpline(PetscInt n, PetscReal step, const PetscReal a[],
 }
 
 /*
-  With Phi = Psi - g J at fixed F: along the states g is fixed and dp = ds; at fixed s dg = -dp. Walls touch where the
-  distance of the reference faces is -clearance.
+  With Phi = Psi - g J at fixed F: along the states g is fixed and dp = ds; at fixed s dg = -dp.
 */
-static void Tabulate(PetscReal clearance, LamFreeCell *cell)
+static void Tabulate(LamFreeCell *cell)
 {
   for (PetscInt j = 0; j < cell->n; j++) {
     const LamResponse *r = &cell->records[j];
     const PetscReal *F = r->load.F, J = F[0] * F[4] * F[8];
 
-    cell->strain[j] = PetscLogReal(F[0] - 0.5 * (r->min_gap + clearance));
+    cell->strain[j] = PetscLogReal(F[0] - 0.5 * r->min_gap);
     cell->energy[j] = r->energy - cell->cohesion * J;
     cell->slope[j] = r->energy_turgor;
     cell->curvature[j] = r->energy_turgor2;
@@ -213,7 +212,7 @@ PetscErrorCode LamFreeCellMake(const LamMicrostructure *micro, PetscReal cohesio
     PetscCall(LamFreeCellDestroy(cell));
     PetscFunctionReturn(0);
   }
-  Tabulate(micro->clearance, cell);
+  Tabulate(cell);
   PetscCall(FitSpline(n, KnotsOf(cell).step, cell->strain, cell->strain_curvature));
   PetscFunctionReturn(0);
 }

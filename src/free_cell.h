@@ -5,7 +5,7 @@
     Phi = Psi - g J,
   its Phi depends on s alone (and, to O(p / bulk modulus), on p at fixed s). It touches its neighbours where the spacing
   of the lattice in one of the three directions has the stretch exp(a(s)): a(s) is the logarithm of the free cell's
-  width over 2 apothems (clearance included). So all states with lattice strains above a(s) are known exactly.
+  width over 2 apothems. So all states with lattice strains above a(s) are known exactly.
 */
 #ifndef LAM_FREE_CELL_H
 #define LAM_FREE_CELL_H

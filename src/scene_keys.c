@@ -178,7 +178,9 @@ const LamKey LamKeys[] = {
     {STRESS("rve.interface.cohesion"), FROM(0), .default_value = "0 MPa", .example = "0.001 MPa",
      .help = "Normal traction that parts the cells; only with law `contact`."},
     {LENGTH("rve.interface.clearance", "um"), FROM(0), .default_value = "0 um", .example = "0.1 um",
-     .help = "Distance between facing walls at which contact begins to act; only with law `contact`."},
+     .help =
+         "Distance between facing walls at rest: each cell is smaller than its place by half of it all around; only "
+         "with law `contact`."},
     {MAP("rve.turgor"), .example = "{mode: prescribed, pressure: 0.02 MPa}", .help = "Pressure in the lumens."},
     {NAME("rve.turgor.mode", turgor_mode_names), .default_words = "`prescribed` where a pressure is given, else `none`",
      .example = "prescribed",
@@ -403,7 +405,7 @@ const LamKey LamKeys[] = {
     {STRESS("macro.regions[].interface.cohesion"), FROM(0), .default_words = AS_RVE, .example = "0.01 MPa",
      .help = "Cohesion; only with law `contact`."},
     {LENGTH("macro.regions[].interface.clearance", "um"), FROM(0), .default_words = AS_RVE, .example = "0.1 um",
-     .help = "Clearance; only with law `contact`."},
+     .help = "Distance between facing walls at rest; only with law `contact`."},
     {MAP("macro.regions[].turgor"), .example = "{pressure: 0.05 MPa}", .help = "Its turgor."},
     {STRESS("macro.regions[].turgor.pressure"), .default_words = AS_RVE, .example = "0.05 MPa", .help = "Pressure."},
     {MAP("macro.regions[].mesh"), .default_words = AS_RVE, .example = "{along: 6, through: 2}",

@@ -106,6 +106,9 @@ PetscErrorCode LamSceneDestroyRegions(LamScene *scene);
 
 /* scene_cells.c, part of the RVE: how many cells, and what differs from cell to cell. */
 PetscErrorCode LamSceneBuildCells(const LamDocument *document, LamScene *scene);
+/* Refuses a clearance, which is at the node, that leaves a cell no lumen. */
+PetscErrorCode LamSceneCheckClearance(const LamDocument *document, const LamNode *node, const LamScales *scales,
+                                      const LamMicrostructure *micro);
 /* Whether nothing but a cohesion holds cells of the tissue: those at the free sides of a patch in contact. */
 PetscBool LamSceneNeedsCohesion(const LamMicrostructure *micro);
 /* What a patch allows in the rest of a scene that is built. */

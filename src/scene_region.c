@@ -87,6 +87,7 @@ static PetscErrorCode BuildInterface(const LamDocument *document, const LamNode 
   }
   PetscCall(LamSceneScale(document, cohesion_node, cohesion, r->scales.stress, &r->cohesion));
   PetscCall(LamSceneScale(document, clearance_node, clearance, r->scales.length, &r->micro.clearance));
+  PetscCall(LamSceneCheckClearance(document, clearance_node ? clearance_node : entry, &r->scales, &r->micro));
   PetscFunctionReturn(0);
 }
 

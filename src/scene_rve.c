@@ -242,14 +242,35 @@ static PetscErrorCode BuildTurgor(const LamDocument *document, LamScene *scene)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamSceneCheckClearance(const LamDocument *document, const LamNode *node, const LamScales *scales,
+                                      const LamMicrostructure *micro)
+{
+  const PetscInt count = micro->cell ? micro->cells[0] * micro->cells[1] : 1;
+  PetscReal thickest = 0.0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < count; c++) thickest = PetscMax(thickest, LamWallThickness(micro, c));
+  if (thickest < LamOuterApothem(micro)) PetscFunctionReturn(0);
+  PetscCall(LamSceneFail(document, node,
+                         "half of it, %g um, and a wall of %g um leave no lumen in an apothem of %g um; write less",
+                         (double)(0.5e6 * micro->clearance * scales->length), (double)(1e6 * thickest * scales->length),
+                         (double)(1e6 * scales->length)));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamSceneBuildRVE(const LamDocument *document, LamScene *scene)
 {
+  const LamNode *clearance;
+  PetscReal unused;
+
   PetscFunctionBeginUser;
   PetscCall(BuildCell(document, scene));
   PetscCall(BuildWall(document, scene));
   PetscCall(BuildInterface(document, scene));
   PetscCall(BuildTurgor(document, scene));
   PetscCall(LamSceneBuildCells(document, scene));
+  PetscCall(GetReal(document, "rve.interface.clearance", &clearance, &unused));
+  PetscCall(LamSceneCheckClearance(document, clearance, &scene->scales, &scene->micro));
   PetscCall(GetReal(document, "accuracy", NULL, &scene->accuracy));
   PetscFunctionReturn(0);
 }

@@ -129,8 +129,8 @@ static inline LamMortarChains BlocksChains(Blocks *b)
 {
   for (PetscInt i = 0; i < 2 * (b->n + b->m + 1); ++i)
     for (PetscInt d = 0; d < 2; ++d) b->chain_x[i][d] = b->x[b->chain[i]][d];
-  return (LamMortarChains){
-      b->n, b->m, (const PetscReal(*)[2])b->chain_x, (const PetscReal(*)[2])(b->chain_x + 2 * b->n + 1), b->J0, 0.0};
+  return (LamMortarChains){b->n, b->m, (const PetscReal(*)[2])b->chain_x,
+                           (const PetscReal(*)[2])(b->chain_x + 2 * b->n + 1), b->J0};
 }
 
 static inline void BlocksGather(const Blocks *b, PetscInt e, PetscReal x[LAM_ELEMENT_NODES][2])

@@ -15,7 +15,7 @@
 
 typedef struct {
   double x[CHAIN_NODES][2]; /* slave, then master */
-  double J0[SLAVE_EDGES], lambda[HATS], clearance;
+  double J0[SLAVE_EDGES], lambda[HATS];
 } Chains;
 
 typedef struct {
@@ -28,7 +28,7 @@ typedef struct {
 static inline LamMortarChains MortarChains(const Chains *c)
 {
   return (LamMortarChains){SLAVE_EDGES, MASTER_EDGES, (const double(*)[2])c->x, (const double(*)[2])(c->x + HATS),
-                           c->J0,       c->clearance};
+                           c->J0};
 }
 
 static inline PetscErrorCode EvaluateChains(const Chains *c, int points, ChainValues *values)
@@ -79,7 +79,6 @@ static inline Chains RandomChains(double from, double to, uint64_t *seed)
   }
   for (int e = 0; e < SLAVE_EDGES; e++) chains.J0[e] = RandomReal(seed, 0.7, 1.3);
   for (int A = 0; A < HATS; A++) chains.lambda[A] = RandomReal(seed, -0.2, 1.0);
-  chains.clearance = RandomReal(seed, 0.0, 0.05);
   return chains;
 }
 

@@ -68,7 +68,7 @@ typedef struct {
   LamCell *cell; /* [cells[0] cells[1]], cell = i cells[1] + j; NULL: all alike. Belongs to whoever holds the original:
                     copies of the struct borrow it */
   LamInterfaceLawType interface;
-  PetscReal clearance;     /* in apothems */
+  PetscReal clearance;     /* of facing walls at rest, in apothems: cells are smaller than their places by half of it */
   PetscInt along, through; /* elements per face and through one wall; 0: not chosen yet (the planner does) */
   PetscReal grading;       /* of elements along a face towards its ends, in [0, 1); 0: all alike; negative: not chosen
                               yet */
@@ -82,6 +82,12 @@ PetscErrorCode LamMicrostructureDestroy(LamMicrostructure *micro);
 static inline PetscReal LamWallThickness(const LamMicrostructure *micro, PetscInt cell)
 {
   return micro->cell ? micro->cell[cell].wall_thickness : micro->wall_thickness;
+}
+
+/* Of a cell's outer walls: half the distance between neighbours' centres is 1. */
+static inline PetscReal LamOuterApothem(const LamMicrostructure *micro)
+{
+  return micro->interface == LAM_INTERFACE_CONTACT ? 1.0 - 0.5 * micro->clearance : 1.0;
 }
 
 /* The units of the nondimensional numbers: multiply by these to get SI. */

@@ -92,7 +92,8 @@ static void SetDefaults(const LamScene *scene, Place *place)
 static PetscErrorCode CheckValue(const LamScene *scene, LamTissueField field, const Place *place, const PetscReal X[2])
 {
   const LamScales *scales = place->region < 0 ? &scene->scales : &scene->regions[place->region].scales;
-  const PetscReal value = place->value[field];
+  const LamMicrostructure *micro = place->region < 0 ? &scene->micro : &scene->regions[place->region].micro;
+  const PetscReal value = place->value[field], outer = LamOuterApothem(micro) * scales->length;
   char text[120];
 
   PetscFunctionBeginUser;
@@ -101,9 +102,9 @@ static PetscErrorCode CheckValue(const LamScene *scene, LamTissueField field, co
     SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: macro.fields.cohesion: %s; it must not be negative",
             scene->path, text);
   }
-  if (field == LAM_TISSUE_WALL_THICKNESS && !(value > 0 && value < scales->length)) {
+  if (field == LAM_TISSUE_WALL_THICKNESS && !(value > 0 && value < outer)) {
     snprintf(text, sizeof(text), "is %g um at x = %g mm, y = %g mm; it must lie between 0 and the apothem, %g um",
-             value * 1e6, X[0], X[1], scales->length * 1e6);
+             value * 1e6, X[0], X[1], outer * 1e6);
     SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: macro.fields.wall_thickness: %s", scene->path, text);
   }
   PetscFunctionReturn(0);

@@ -118,6 +118,9 @@ void ExtremesCaseMake(PetscInt id, ExtremesCase *c)
   else
     MakeRandom(id, c);
   if (c->value[EXTREMES_VARIATION] > 0.0 && c->value[EXTREMES_CELLS] < 2.0) c->value[EXTREMES_CELLS] = 2.0;
+  if (c->contact) /* the clearance is taken from the cells, and the lumen stays */
+    c->value[EXTREMES_THICKNESS] =
+        PetscMin(c->value[EXTREMES_THICKNESS], axes[EXTREMES_THICKNESS].high - 0.5 * c->value[EXTREMES_CLEARANCE]);
 }
 
 /* ---- the scene ---- */
