@@ -33,15 +33,21 @@ PetscErrorCode LamContactSave(LamRVE rve, const LamLoad *load, LamContactSolutio
   PetscFunctionReturn(0);
 }
 
+/* The junction status of a solution, which a try that failed has changed. */
+static void SetJunctions(LamContact *contact, const LamContactSolution *solution)
+{
+  for (PetscInt f = 0; f < contact->face_count; ++f) {
+    contact->faces[f].first = solution->hats[f][0];
+    contact->faces[f].last = solution->hats[f][1];
+  }
+}
+
 PetscErrorCode LamContactRestore(LamRVE rve, const LamContactSolution *solution)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(rve->y, solution->y, rve->length));
   PetscCall(PetscArraycpy(rve->contact->lambda, solution->lambda, rve->contact->count));
-  for (PetscInt f = 0; f < rve->contact->face_count; ++f) {
-    rve->contact->faces[f].first = solution->hats[f][0];
-    rve->contact->faces[f].last = solution->hats[f][1];
-  }
+  SetJunctions(rve->contact, solution);
   PetscCall(LamContactEvaluate(rve, &solution->load, rve->y, PETSC_FALSE));
   (void)LamContactFindActive(rve->contact, 0.0);
   PetscFunctionReturn(0);
@@ -53,6 +59,7 @@ PetscErrorCode LamContactTurnState(LamRVE rve, LamRVEState state, const LamLoad 
   solution->load = state->load;
   PetscCall(PetscArraycpy(solution->y, state->y, rve->length));
   PetscCall(PetscArraycpy(solution->lambda, state->lambda, rve->contact->count));
+  PetscCall(PetscMemcpy(solution->hats, state->hats, (size_t)state->faces * sizeof(*state->hats)));
   LamRotatePositions(rve->ndof, solution->y, solution->load.F,
                      LamRotationAngle(load->F) - LamRotationAngle(solution->load.F));
   PetscFunctionReturn(0);
@@ -63,6 +70,7 @@ PetscErrorCode LamContactStartNear(LamRVE rve, const LamContactSolution *from, c
   PetscFunctionBeginUser;
   LamMoveAffinely(rve, from->y, &from->load, load);
   PetscCall(PetscArraycpy(rve->contact->lambda, from->lambda, rve->contact->count));
+  SetJunctions(rve->contact, from);
   PetscFunctionReturn(0);
 }
 

@@ -319,7 +319,7 @@ int main(int argc, char **argv)
 {
   Run run = {.first = 0, .end = ExtremesPairCount(), .jobs = 1, .routes = PETSC_TRUE};
   PetscInt count = -1;
-  PetscBool list = PETSC_FALSE;
+  PetscBool list = PETSC_FALSE, is_known = PETSC_TRUE;
 
   for (int k = 1; k < argc; k++) {
     const char *value = k + 1 < argc ? argv[k + 1] : "0";
@@ -337,13 +337,16 @@ int main(int argc, char **argv)
       run.routes = PETSC_FALSE;
     else if (!strcmp(argv[k], "--list"))
       list = PETSC_TRUE;
-    else
+    else if (argv[k][0] != '-')
       run.path = argv[k];
+    else
+      is_known = PETSC_FALSE;
   }
   if (count >= 0 || run.first >= run.end) run.end = run.first + PetscMax(1, count);
-  if (list) return PrintList(&run);
-  if (!run.path) {
-    fprintf(stderr, "extremes FILE.jsonl [--count N] [--first ID] [--jobs J] [--no-routes] | --scene ID\n");
+  if (list && is_known) return PrintList(&run);
+  if (!run.path || !is_known) {
+    fprintf(stderr, "extremes FILE.jsonl [--first ID] [--count N] [--ids LIST] [--jobs J] [--no-routes]\n"
+                    "extremes --list [--first ID] [--count N]\nextremes --scene ID\n");
     return 1;
   }
   run.done = calloc((size_t)(run.end - run.first), 1);

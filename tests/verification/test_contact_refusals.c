@@ -12,13 +12,49 @@ static LamResponse Solve(double clearance, LamLoad load)
   return SolveTissue(&micro, load);
 }
 
-/* Contact that begins at a distance: the drawn walls overlap by it, and that is no penetration. */
-static void ClearanceIsNoPenetration(void **state)
+/* Cells that are a clearance apart touch, undeformed, where F brings them that much nearer: walls then have turgor on
+   both sides, and P = -p cof F. */
+static void ClearanceIsTheDistanceOfCells(void **state)
 {
-  const LamResponse r = Solve(0.1, ContactLoad(1, 0, 0, 1, 0.02, 0.001));
+  const double clearance = 0.1, near = 1 - 0.5 * clearance;
+  const LamLoad load = ContactLoad(near, 0, 0, near, 0.02, 0);
+  const LamResponse r = Solve(clearance, load);
 
   assert_int_equal(r.status, LAM_CONVERGED);
-  assert_near(r.max_penetration, 0.0, 1e-2);
+  assert_near(r.P[0], -load.turgor * near, 1e-3 * load.turgor);
+  assert_near(r.P[4], -load.turgor * near, 1e-3 * load.turgor);
+  assert_near(r.lumen_fraction, pow(near - ContactTissue(6, 2).wall_thickness, 2), 1e-4);
+}
+
+/* Soft cells of which one has more turgor than the others: the turgor at which stable states end, as the bracket of a
+   state at `turgor` tells. */
+static void FindLargestTurgor(double turgor, double between[2])
+{
+  LamMicrostructure micro = ContactTissue(2, 1);
+  LamCell cells[4];
+  LamResponse r;
+
+  micro.cells[0] = micro.cells[1] = 2;
+  micro.wall = (LamWall){.law = micro.wall.law, .C1 = 0.9, .C2 = 0.1, .bulk_modulus = 1000.0};
+  micro.wall_thickness = 0.2;
+  for (int c = 0; c < 4; c++) cells[c] = (LamCell){micro.wall_thickness, micro.wall, c ? 1.0 : 1.3, 1.0};
+  micro.cell = cells;
+  r = SolveTissue(&micro, PlaneLoad(1, 0.3, 0, 1, turgor));
+  assert_int_equal(r.status, LAM_NO_EQUILIBRIUM);
+  assert_non_null(strstr(r.reason, "as walls open there, an eigenvalue jumps below zero; turgor at rest"));
+  assert_int_equal(sscanf(strstr(r.reason, "between"), "between %lf and %lf of the way", &between[0], &between[1]), 2);
+  between[0] *= turgor;
+  between[1] *= turgor;
+}
+
+static void StableStatesEndAtTheSameTurgorOnWhateverWay(void **state)
+{
+  double small[2], large[2];
+
+  FindLargestTurgor(1.0, small);
+  FindLargestTurgor(3.0, large);
+  assert_true(small[0] < large[1] && large[0] < small[1]);
+  assert_near(large[0], small[0], 5e-3);
 }
 
 /* Suction can turn a cell inside out: its walls have passed through each other. */
@@ -80,8 +116,11 @@ static void FailureLeavesTheState(void **state)
 static int Run(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(ClearanceIsNoPenetration), cmocka_unit_test(CellInsideOutIsNoAnswer),
-      cmocka_unit_test(LostTissueHasItsBracket),  cmocka_unit_test(CohesionMustBeANumberAndNotNegative),
+      cmocka_unit_test(ClearanceIsTheDistanceOfCells),
+      cmocka_unit_test(StableStatesEndAtTheSameTurgorOnWhateverWay),
+      cmocka_unit_test(CellInsideOutIsNoAnswer),
+      cmocka_unit_test(LostTissueHasItsBracket),
+      cmocka_unit_test(CohesionMustBeANumberAndNotNegative),
       cmocka_unit_test(FailureLeavesTheState),
   };
 
