@@ -207,7 +207,7 @@ PetscErrorCode LamFieldPaint(LamCanvas canvas, const LamView *view, const LamFie
   raster.pixels = (uint32_t *)(void *)cairo_image_surface_get_data(surface);
   raster.stride = cairo_image_surface_get_stride(surface) / (int)sizeof *raster.pixels;
   for (PetscInt k = 0; k < image_count; k++) {
-    FillColours(&raster, images[k].fade);
+    if (!k || images[k].fade != images[k - 1].fade) FillColours(&raster, images[k].fade);
     for (PetscInt e = 0; e < field->element_count; e++) PaintElement(&raster, view, field, range, e, images[k].shift);
   }
   cairo_surface_mark_dirty(surface);
