@@ -43,7 +43,7 @@ static PetscErrorCode Allocate(PetscInt n, LamFreeCell *cell)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(COLUMNS * n, &block));
   cell->n = n;
-  for (PetscInt k = 0; k < COLUMNS; k++) *ColumnOf(cell, k) = block + k * n;
+  for (PetscInt k = 0; k < COLUMNS; k++) *ColumnOf(cell, k) = n ? block + k * n : NULL;
   PetscFunctionReturn(0);
 }
 
