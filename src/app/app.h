@@ -86,7 +86,8 @@ PetscBool LamCountParse(const char command[], const char option[], const char te
 /* The JSON object of a solved state, in physical units. state < 0: no "state" member. The caller owns it. */
 PetscErrorCode LamResponseToJSON(const LamResponse *response, const LamScales *scales, PetscInt state,
                                  PetscBool tangent, json_t **object);
-json_t *LamJSONReal(PetscReal value); /* null where not finite */
+json_t *LamJSONReal(PetscReal value);   /* null where not finite */
+json_t *LamJSONText(const char text[]); /* of a damaged file: if it is no UTF-8, question marks where it is no ASCII */
 json_t *LamJSONReals(PetscInt n, const PetscReal values[], PetscReal scale);
 PetscErrorCode LamPrintJSON(json_t *object); /* one line on stdout, rank 0; takes ownership */
 /* Table of states for a person, stdout; contact tissue has columns of its own, and answers of a database. */

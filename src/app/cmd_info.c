@@ -212,7 +212,7 @@ static PetscErrorCode ReadRun(const char path[], json_t *info)
   PetscCall(LamFileReadText(path, "/macro/summary", &has_summary, &summary));
   json_object_set_new(info, "run",
                       json_pack("{s:I, s:o, s:o?}", "steps", (json_int_t)count, "load_factor", LamJSONReal(reached),
-                                "status", has_status ? json_string(status) : NULL));
+                                "status", has_status ? LamJSONText(status) : NULL));
   if (has_summary) json_object_set_new(info, "summary", json_loads(summary, 0, NULL));
   PetscCall(PetscFree(status));
   PetscCall(PetscFree(summary));
@@ -240,8 +240,8 @@ static PetscErrorCode ReadAxis(const char path[], char letter, json_t *map)
   PetscCall(LamFileReadReals(path, name, &found, &rank, dims, &values));
   PetscCheck(has_quantity && has_unit && found && rank == 1 && dims[0] > 1, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: the axis %c of the map is missing; the file is damaged", path, letter);
-  json_object_set_new(axis, "quantity", json_string(quantity));
-  json_object_set_new(axis, "unit", json_string(unit));
+  json_object_set_new(axis, "quantity", LamJSONText(quantity));
+  json_object_set_new(axis, "unit", LamJSONText(unit));
   json_object_set_new(axis, "from", LamJSONReal(values[0]));
   json_object_set_new(axis, "to", LamJSONReal(values[dims[0] - 1]));
   json_object_set_new(axis, "points", json_integer((json_int_t)dims[0]));

@@ -25,6 +25,19 @@ json_t *LamJSONReals(PetscInt n, const PetscReal values[], PetscReal scale)
   return list;
 }
 
+json_t *LamJSONText(const char text[])
+{
+  json_t *string = json_string(text);
+  char *copy = string ? NULL : strdup(text);
+
+  if (!copy) return string;
+  for (char *c = copy; *c; c++)
+    if (*c & 0x80) *c = '?';
+  string = json_string(copy);
+  free(copy);
+  return string;
+}
+
 /* One member in physical units: stresses in MPa. */
 static json_t *MemberToJSON(const LamMember *m, const LamResponse *response, PetscReal MPa)
 {
