@@ -12,6 +12,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+enum { RUNS_BETWEEN_LEAKS = 1000 };
+
 void FuzzFail(const char file[], int line, const char format[], ...)
 {
   va_list arguments;
@@ -55,7 +57,7 @@ const char *__asan_default_options(void)
   return "allocator_may_return_null=1";
 }
 
-/* libFuzzer asks for leaks, too. These libraries keep memory for later; that it does not grow the resident set shows.
+/* Where leaks are looked for. These libraries keep memory for later; that it does not grow the resident set shows.
  */
 const char *__lsan_default_suppressions(void);
 const char *__lsan_default_suppressions(void)
@@ -122,6 +124,21 @@ size_t FuzzMemoryLeft(void)
   for (const Block *block = ring.after; block != &ring; block = block->after) bytes += block->size;
   return bytes;
 }
+
+#ifdef LAMELLA_FUZZ
+int __lsan_do_recoverable_leak_check(void);
+
+/* libFuzzer asks only for the first inputs, and runs each again for it. */
+void FuzzLookForLeaks(void)
+{
+  static int runs;
+
+  if (++runs % RUNS_BETWEEN_LEAKS) return;
+  FuzzCheck(!__lsan_do_recoverable_leak_check(), "one of the last %d inputs has left memory", RUNS_BETWEEN_LEAKS);
+}
+#else
+void FuzzLookForLeaks(void) {}
+#endif
 
 void FuzzCountMemory(void)
 {

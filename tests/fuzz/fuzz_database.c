@@ -95,6 +95,7 @@ static PetscErrorCode Run(const uint8_t *data, size_t size)
   FuzzEnterFolder();
   question = EditsMakeFile(data, size, FILE_NAME, &file);
   code = Answer(question);
+  EditsReleaseFile();
   unlink(MERGED_NAME);
   FuzzLeaveFolder();
   return code;
@@ -119,5 +120,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   FuzzCheck(!code || (code == PETSC_ERR_USER_INPUT && FuzzMessage()[0]), "error %d: %s", code, FuzzMessage());
   FuzzCheck(!FuzzMemoryLeft(), "%zu bytes are left", FuzzMemoryLeft());
   FuzzCheck(EditsCountOpen() == open, "%d objects of HDF5 are left", (int)(EditsCountOpen() - open));
+  FuzzLookForLeaks();
   return 0;
 }

@@ -68,6 +68,7 @@ static PetscErrorCode Run(const uint8_t *data, size_t size)
   FuzzEnterFolder();
   question = EditsMakeFile(data, size, FILE_NAME, &file);
   code = Answer(file, question);
+  EditsReleaseFile();
   FuzzLeaveFolder();
   return code;
 }
@@ -93,5 +94,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   FuzzCheck(code || !FuzzMemoryLeft(), "%zu bytes are left", FuzzMemoryLeft());
   FuzzCheck(EditsCountOpen() == open, "%d objects of HDF5 are left", (int)(EditsCountOpen() - open));
   FuzzMemoryFree();
+  FuzzLookForLeaks();
   return 0;
 }

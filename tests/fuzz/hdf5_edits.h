@@ -15,8 +15,12 @@
 
 /* names: of tests/fuzz/files, without .h5.gz. */
 void EditsLoadFiles(int n, const char *const names[]);
-/* Writes the file that the input describes. Returns its question, and in *file which of the sound files it was. */
+/* Writes the file that the input describes. Returns its question, and in *file which of the sound files it was. Until
+   it is released the file is open for reading, where HDF5 can open it. */
 int EditsMakeFile(const uint8_t *input, size_t size, const char path[], int *file);
+void EditsReleaseFile(void);
+/* From here on HDF5 has its memory from the C library: hdf5_plain.c. */
+void EditsFreeHDF5(void);
 /* Files, types, spaces, lists and what else HDF5 has open. */
 hsize_t EditsCountOpen(void);
 
