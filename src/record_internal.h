@@ -187,7 +187,7 @@ PetscErrorCode LamFileScanRecords(const char path[], hid_t file, PetscInt count,
 typedef struct {
   hid_t dataset, type, space;
   LamRecordLayout layout;
-  unsigned char *bytes; /* [LAM_BLOCK * layout.size] owned */
+  unsigned char *bytes; /* of a block, or of all records that there are; owned */
 } LamRecordScan;
 
 #define LAM_BLOCK (8 * LAM_RECORDS_PER_CHUNK) /* 0.9 MB: checked and used while it is in the processor's cache */

@@ -107,6 +107,7 @@ static PetscErrorCode CheckType(const char path[], const LamRecordScan *s)
 static PetscErrorCode Open(const char path[], hid_t file, LamRecordScan *s)
 {
   PetscErrorCode ierr;
+  hssize_t extent;
   hid_t access;
 
   PetscFunctionBeginUser;
@@ -118,7 +119,8 @@ static PetscErrorCode Open(const char path[], hid_t file, LamRecordScan *s)
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, s->type = H5Dget_type(s->dataset));
   PetscCall(CheckType(path, s));
   PetscCall(LamRecordLayoutMake(s->type, &s->layout));
-  PetscCall(PetscMalloc(LAM_BLOCK * s->layout.size, &s->bytes));
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, extent = H5Sget_simple_extent_npoints(s->space));
+  PetscCall(PetscMalloc((size_t)PetscMin(LAM_BLOCK, extent) * s->layout.size, &s->bytes));
   PetscFunctionReturn(0);
 }
 
