@@ -9,6 +9,7 @@
 #include "hdf5_edits.h"
 #include <dlfcn.h>
 #include <link.h>
+#include <malloc.h>
 #include <string.h>
 
 #define PLAIN __attribute__((no_sanitize("address", "undefined", "coverage")))
@@ -50,6 +51,8 @@ void EditsFreeHDF5(void)
 {
   compare = (int (*)(const char *, const char *))dlsym(RTLD_NEXT, "strcmp");
   dl_iterate_phdr(FindCode, dlsym(RTLD_DEFAULT, "H5open"));
+  mallopt(M_MMAP_THRESHOLD, 16 << 20); /* pages that are there already */
+  mallopt(M_TRIM_THRESHOLD, 64 << 20);
   FuzzCheck(compare && begin, "HDF5's code is not found");
 }
 
