@@ -44,7 +44,9 @@ typedef struct LamCanvas_s *LamCanvas;
 PetscErrorCode LamCanvasCheckPath(const char path[]);
 /* A white page. The file is written by LamCanvasFinish, so a failure before it leaves none. */
 PetscErrorCode LamCanvasCreate(const char path[], double width, double height, LamCanvas *canvas);
-/* Writes the file and frees the canvas. PETSC_ERR_FILE_WRITE. */
+/* What is drawn is no picture: LamCanvasFinish then ends with this reason, which must live as long. */
+void LamCanvasRefuse(LamCanvas canvas, const char reason[]);
+/* Writes the file and frees the canvas. PETSC_ERR_FILE_WRITE; PETSC_ERR_USER_INPUT: the numbers cannot be drawn. */
 PetscErrorCode LamCanvasFinish(LamCanvas *canvas);
 cairo_t *LamCanvasCairo(LamCanvas canvas);
 /* Pixels per point that images on this page should have. */

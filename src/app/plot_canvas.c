@@ -22,6 +22,7 @@ struct LamCanvas_s {
   cairo_t *cr;              /* owned */
   cairo_t *page;            /* the page's context while `cr` draws an image, else NULL; owned */
   LamRect image;            /* where that image goes */
+  const char *refused;      /* why the numbers of the file cannot be drawn; NULL: they can */
   unsigned char *bytes;     /* the file's contents so far; owned */
   size_t size, capacity;
 };
@@ -123,13 +124,19 @@ static PetscErrorCode WriteBytes(const char path[], size_t size, const unsigned 
   PetscFunctionReturn(0);
 }
 
+void LamCanvasRefuse(LamCanvas canvas, const char reason[])
+{
+  canvas->refused = reason;
+}
+
 PetscErrorCode LamCanvasFinish(LamCanvas *canvas)
 {
   LamCanvas c = *canvas;
   cairo_status_t status = cairo_status(c->cr);
 
   PetscFunctionBeginUser;
-  if (!status && c->format == FORMAT_PNG) status = cairo_surface_write_to_png_stream(c->surface, CollectBytes, c);
+  if (!status && !c->refused && c->format == FORMAT_PNG)
+    status = cairo_surface_write_to_png_stream(c->surface, CollectBytes, c);
   cairo_destroy(c->cr);
   cairo_surface_finish(c->surface);
   if (!status) status = cairo_surface_status(c->surface);
@@ -138,6 +145,8 @@ PetscErrorCode LamCanvasFinish(LamCanvas *canvas)
              "%s: the numbers of the file cannot be drawn (cairo: %s); they are too large, or alike", c->path,
              cairo_status_to_string(status));
   PetscCheck(!status, PETSC_COMM_SELF, PETSC_ERR_MEM, "cairo: %s", cairo_status_to_string(status));
+  PetscCheck(!c->refused, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: the numbers of the file cannot be drawn: %s",
+             c->path, c->refused);
   PetscCall(WriteBytes(c->path, c->size, c->bytes));
   PetscCall(PetscFree(c->bytes));
   PetscCall(PetscFree(*canvas));

@@ -76,11 +76,14 @@ static void TriangleFunctions(PetscReal r, PetscReal s, PetscReal N[6])
 
 #define COLOUR_COUNT 1024
 #define MAX_CUTS 24
+#define MOST_COVERS 100  /* times that all pixels may be looked at; elements side by side need less than ten */
+#define LEAST_WORK 20000 /* on a small page */
 typedef struct {
   uint32_t *pixels; /* [height][stride], owned by the surface */
   int width, height, stride;
   double dots;                    /* pixels per point */
   int cuts;                       /* pieces of an element per direction */
+  double work;                    /* pixels that may still be looked at; below zero nothing more is painted */
   uint32_t colours[COLOUR_COUNT]; /* of the image being painted */
 } Raster;
 
@@ -108,11 +111,14 @@ static void FillTriangle(Raster *raster, const Vertex a, const Vertex b, const V
   const double last[2] = {PetscMax(a.x, PetscMax(b.x, c.x)), PetscMax(a.y, PetscMax(b.y, c.y))};
   int left, right, top, bottom;
 
+  raster->work -= 1;
   if (area == 0 || !isfinite(area) || !isfinite(a.value + b.value + c.value)) return;
   left = (int)PetscClipInterval(floor(first[0] - 0.5), 0.0, (double)raster->width);
   right = (int)PetscClipInterval(ceil(last[0] - 0.5), -1.0, raster->width - 1.0);
   top = (int)PetscClipInterval(floor(first[1] - 0.5), 0.0, (double)raster->height);
   bottom = (int)PetscClipInterval(ceil(last[1] - 0.5), -1.0, raster->height - 1.0);
+  if (right >= left && bottom >= top) raster->work -= (1.0 + right - left) * (1.0 + bottom - top);
+  if (raster->work < 0) return;
   for (int j = top; j <= bottom; j++) {
     for (int i = left; i <= right; i++) {
       const double x = i + 0.5, y = j + 0.5;
@@ -200,6 +206,7 @@ PetscErrorCode LamFieldPaint(LamCanvas canvas, const LamView *view, const LamFie
   raster.cuts = FieldCuts(field, view, raster.dots);
   raster.width = (int)ceil(frame.width * raster.dots);
   raster.height = (int)ceil(frame.height * raster.dots);
+  raster.work = LEAST_WORK + (double)MOST_COVERS * raster.width * raster.height;
   surface = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, raster.width, raster.height);
   PetscCheck(!cairo_surface_status(surface), PETSC_COMM_SELF, PETSC_ERR_LIB, "cairo: %s",
              cairo_status_to_string(cairo_surface_status(surface)));
@@ -208,7 +215,8 @@ PetscErrorCode LamFieldPaint(LamCanvas canvas, const LamView *view, const LamFie
   raster.stride = cairo_image_surface_get_stride(surface) / (int)sizeof *raster.pixels;
   for (PetscInt k = 0; k < image_count; k++) {
     if (!k || images[k].fade != images[k - 1].fade) FillColours(&raster, images[k].fade);
-    for (PetscInt e = 0; e < field->element_count; e++) PaintElement(&raster, view, field, range, e, images[k].shift);
+    for (PetscInt e = 0; e < field->element_count && raster.work >= 0; e++)
+      PaintElement(&raster, view, field, range, e, images[k].shift);
   }
   cairo_surface_mark_dirty(surface);
   cairo_save(cr);
@@ -219,6 +227,7 @@ PetscErrorCode LamFieldPaint(LamCanvas canvas, const LamView *view, const LamFie
   cairo_paint(cr);
   cairo_restore(cr);
   cairo_surface_destroy(surface);
+  if (raster.work < 0) LamCanvasRefuse(canvas, "elements lie on one another, many times all over it");
   PetscFunctionReturn(0);
 }
 

@@ -6,6 +6,7 @@
 #include <cmocka.h>
 #include <math.h>
 #include <stdio.h>
+#include <unistd.h>
 #include <stdlib.h>
 #include "plot.h"
 
@@ -177,6 +178,29 @@ static void a_field_leaves_the_lumen_unpainted(void **state)
   assert_int_equal(painted_pixel(0.2, 0.3), 0xffffff);
 }
 
+/* At full size a file that puts hundreds of images on one another would be painted for hours. */
+static void images_on_one_another_are_refused(void **state)
+{
+  const PetscReal box[4] = {-2, -2, 2, 2};
+  const LamColourRange range = {.low = -2, .high = 2};
+  static const LamImage images[400];
+  const PetscReal values[RING_NODES] = {0};
+  const LamField field = {RING_ELEMENTS, &RingX[0][0], &Ring[0][0], values, PETSC_FALSE};
+  const char path[] = "test_plot_field_many.png";
+  PetscErrorCode error;
+  LamCanvas canvas;
+  LamView view;
+
+  assert_int_equal(LamCanvasCreate(path, 72, 72, &canvas), 0);
+  LamViewFit((LamRect){0, 0, 72, 72}, box, &view);
+  assert_int_equal(LamFieldPaint(canvas, &view, &field, &range, PETSC_STATIC_ARRAY_LENGTH(images), images), 0);
+  PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
+  error = LamCanvasFinish(&canvas);
+  PetscPopErrorHandler();
+  assert_int_equal(error, PETSC_ERR_USER_INPUT);
+  assert_int_not_equal(access(path, F_OK), 0);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -191,6 +215,7 @@ int main(void)
       cmocka_unit_test(the_area_of_curved_edges_is_exact),
       cmocka_unit_test(a_painted_field_has_the_colours_of_its_values),
       cmocka_unit_test(a_field_leaves_the_lumen_unpainted),
+      cmocka_unit_test(images_on_one_another_are_refused),
   };
   return cmocka_run_group_tests(tests, make_ring, NULL);
 }
