@@ -100,3 +100,19 @@ expect 0 "$lamella" plot a.h5 --field max_wall_tension -o a.png
 expect 2 "$lamella" plot a.h5 --field colour
 grep -q load_factor err.txt || fail "the message names no field: $(cat err.txt)"
 expect 2 "$lamella" plot a.h5 --state 1
+
+# a unit that is no UTF-8, with a checksum that is right
+if /usr/bin/python3 -c 'import h5py' 2>/dev/null; then
+  cp a.h5 foreign.h5
+  /usr/bin/python3 - <<'PY'
+import h5py, numpy, zlib
+with h5py.File("foreign.h5", "r+") as f:
+    unit = f["map/x/unit"]
+    text = numpy.full((), b"\xff" * unit.dtype.itemsize, dtype=f"S{unit.dtype.itemsize}")
+    unit.id.write(h5py.h5s.ALL, h5py.h5s.ALL, text, mtype=unit.id.get_type())
+    unit.attrs.modify("checksum", numpy.uint32(zlib.crc32(text.tobytes())))
+PY
+  expect 0 "$lamella" info foreign.h5
+  grep -q '^x .* ?' out.txt || fail "a unit that is no UTF-8: $(cat out.txt)"
+  expect 0 "$lamella" info foreign.h5 --json
+fi
