@@ -66,6 +66,12 @@ const char *__lsan_default_suppressions(void)
          "libpetsc\n";
 }
 
+const char *__lsan_default_options(void);
+const char *__lsan_default_options(void)
+{
+  return "print_suppressions=0";
+}
+
 static Block ring = {&ring, &ring, 0, 0};
 
 static void Link(Block *block)

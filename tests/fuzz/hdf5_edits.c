@@ -371,31 +371,34 @@ static hid_t TypeOf(unsigned which, size_t size)
 /* Another type, another shape; the values are the old ones, as many as there are. */
 static void ChangeShape(Edits *e)
 {
+  static unsigned char room[MOST_BYTES];
   const char *name = Name(e);
   const unsigned which = Next(e), rank = Next(e) % 6;
   const hid_t old = H5Dopen2(e->file, name, H5P_DEFAULT), old_type = H5Dget_type(old);
-  unsigned char *values, *room = calloc(1, MOST_BYTES);
-  size_t bytes = 0, product = 1;
+  unsigned char *values;
+  size_t bytes = 0, size = 1;
   hsize_t dims[6];
   hid_t type, space, dataset;
 
   values = old >= 0 ? ReadAll(old, old_type, &bytes) : NULL;
+  if (!values) bytes = 0;
   if (values) memcpy(room, values, bytes);
   H5Tclose(old_type);
   H5Dclose(old);
-  for (unsigned k = 0; k < rank; k++) product *= dims[k] = Next(e) % 40;
+  for (unsigned k = 0; k < rank; k++) size *= dims[k] = Next(e) % 40;
   type = which < 128 ? TypeOf(which, Next(e)) : TypeOf(which, 8);
   space = rank ? H5Screate_simple((int)rank, dims, NULL) : H5Screate(H5S_SCALAR);
-  if (product * H5Tget_size(type) <= MOST_BYTES / 2 && H5Ldelete(e->file, name, H5P_DEFAULT) >= 0) {
+  size *= H5Tget_size(type);
+  if (size <= MOST_BYTES / 2 && H5Ldelete(e->file, name, H5P_DEFAULT) >= 0) {
+    if (bytes < size) memset(room + bytes, 0, size - bytes);
     dataset = H5Dcreate2(e->file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     if (which % 8 != 5 && which % 8 != 7) H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, room);
-    MendDataset(e, dataset, (PetscBool)(which % 8 == 4), room, product * H5Tget_size(type));
+    MendDataset(e, dataset, (PetscBool)(which % 8 == 4), room, size);
     H5Dclose(dataset);
   }
   H5Sclose(space);
   H5Tclose(type);
   free(values);
-  free(room);
 }
 
 /* Nothing, something else, or a way to elsewhere under the name. */

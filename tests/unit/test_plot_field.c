@@ -178,7 +178,7 @@ static void a_field_leaves_the_lumen_unpainted(void **state)
   assert_int_equal(painted_pixel(0.2, 0.3), 0xffffff);
 }
 
-/* At full size a file that puts hundreds of images on one another would be painted for hours. */
+/* They would be painted for minutes. */
 static void images_on_one_another_are_refused(void **state)
 {
   const PetscReal box[4] = {-2, -2, 2, 2};
