@@ -36,8 +36,7 @@ void FuzzMemoryKeep(void); /* what has been taken so far is for the whole run */
 /* A command that fails ends the program, which leaves its memory to the system; here the next input follows. */
 void FuzzMemoryFree(void);
 
-/* Of all libraries' memory but HDF5's, every thousand inputs; for a target whose libraries keep memory, so that
-   libFuzzer gives up asking. */
+/* Of the libraries, for a target where libFuzzer gives up asking, as something always keeps memory. Slow. */
 void FuzzLookForLeaks(void);
 
 /* What the program prints is nowhere; sanitizers write to the descriptor, and are still read. */

@@ -120,6 +120,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   FuzzCheck(!code || (code == PETSC_ERR_USER_INPUT && FuzzMessage()[0]), "error %d: %s", code, FuzzMessage());
   FuzzCheck(!FuzzMemoryLeft(), "%zu bytes are left", FuzzMemoryLeft());
   FuzzCheck(EditsCountOpen() == open, "%d objects of HDF5 are left", (int)(EditsCountOpen() - open));
-  FuzzLookForLeaks();
+  EditsEndInput();
   return 0;
 }

@@ -19,6 +19,8 @@ void EditsLoadFiles(int n, const char *const names[]);
    it is released the file is open for reading, where HDF5 can open it. */
 int EditsMakeFile(const uint8_t *input, size_t size, const char path[], int *file);
 void EditsReleaseFile(void);
+/* Behind an input. Every thousand leaks are looked for, and HDF5 begins anew. */
+void EditsEndInput(void);
 /* From here on HDF5 has its memory from the C library: hdf5_plain.c. */
 void EditsFreeHDF5(void);
 /* Files, types, spaces, lists and what else HDF5 has open. */
