@@ -129,9 +129,9 @@ void LamCanvasRefuse(LamCanvas canvas, const char reason[])
   canvas->refused = reason;
 }
 
-PetscErrorCode LamCanvasFinish(LamCanvas *canvas)
+/* The file of a page that is drawn, or why it cannot be. */
+static PetscErrorCode WritePage(LamCanvas c)
 {
-  LamCanvas c = *canvas;
   cairo_status_t status = cairo_status(c->cr);
 
   PetscFunctionBeginUser;
@@ -148,8 +148,18 @@ PetscErrorCode LamCanvasFinish(LamCanvas *canvas)
   PetscCheck(!c->refused, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: the numbers of the file cannot be drawn: %s",
              c->path, c->refused);
   PetscCall(WriteBytes(c->path, c->size, c->bytes));
-  PetscCall(PetscFree(c->bytes));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamCanvasFinish(LamCanvas *canvas)
+{
+  PetscErrorCode error;
+
+  PetscFunctionBeginUser;
+  error = WritePage(*canvas);
+  PetscCall(PetscFree((*canvas)->bytes));
   PetscCall(PetscFree(*canvas));
+  PetscCall(error);
   PetscFunctionReturn(0);
 }
 
