@@ -429,6 +429,11 @@ PetscErrorCode LamContactReason(LamRVE rve, const LamContactOutcome *out, char r
   else if (out->refusal == LAM_LOOSENING)
     PetscCall(PetscSNPrintf(reason, length, "stable states end%s: as walls open there, an eigenvalue jumps below zero",
                             place));
+  else if (out->refusal == LAM_JUMP)
+    PetscCall(PetscSNPrintf(reason, length,
+                            "stable states end%s: the end of a contact passes a node there, and an eigenvalue jumps "
+                            "below zero",
+                            place));
   else if (out->refusal == LAM_WALLS_PASSED)
     PetscCall(
         PetscSNPrintf(reason, length,

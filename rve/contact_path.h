@@ -37,7 +37,8 @@ typedef enum {
   LAM_WALLS_PASSED,  /* walls that face each other have passed each other at once, past the end of one of them */
   LAM_SADDLE,        /* on a way: the stable states end there, ... */
   LAM_CROSSING,      /* ... or in an eigenvalue that crosses zero, ... */
-  LAM_LOOSENING,     /* ... or jumps below it, as walls open */
+  LAM_LOOSENING,     /* ... or jumps below it, as walls open, ... */
+  LAM_JUMP,          /* ... or as the end of an overlap passes a node */
   LAM_LUMEN_COLLAPSED
 } LamRefusal;
 typedef enum { LAM_WAY_FROM_BEFORE, LAM_WAY_FROM_REST, LAM_WAY_OF_TURGOR } LamWay;

@@ -129,12 +129,41 @@ static PetscErrorCode Advance(LamRVE rve, const LamLoad *load, PetscReal t, Way 
 }
 
 /*
+  Whether the state that the last two point to, a few brackets ahead, has a negative eigenvalue, while theirs are
+  positive: where an end of a face's overlap passes a node, or a hat is merged, the stiffness jumps.
+*/
+static PetscErrorCode FindJump(LamRVE rve, const Way *way, PetscBool *found)
+{
+  const PetscReal ahead = CROSSING_MARGIN * (way->failed - way->reached) / (way->reached - way->before);
+  const LamLoad load = LamLoadBetween(&way->earlier.load, &way->at->load, 1.0 + ahead);
+  LamContact *contact = rve->contact;
+  PetscInt negative;
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  *found = PETSC_FALSE;
+  if (way->reached <= way->before || rve->work.stopped) PetscFunctionReturn(0);
+  PetscCall(LamContactRestore(rve, way->at));
+  for (PetscInt i = 0; i < rve->length; ++i) rve->y[i] += ahead * (way->at->y[i] - way->earlier.y[i]);
+  for (PetscInt h = 0; h < contact->count; ++h)
+    contact->lambda[h] += ahead * (way->at->lambda[h] - way->earlier.lambda[h]);
+  PetscCall(LamContactEvaluate(rve, &load, rve->y, PETSC_TRUE));
+  (void)LamContactFindActive(contact, 0.0);
+  PetscCall(LamFactorConsistent(rve, &load, &negative, &ok));
+  *found = (PetscBool)(ok && negative > 0);
+  if (rve->monitor)
+    PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR, "  ahead, at %.10g: %d negative eigenvalues\n",
+                           (double)(way->reached + ahead * (way->reached - way->before)), (int)negative));
+  PetscFunctionReturn(0);
+}
+
+/*
   Halves the bracket of a way that ends in nothing known, until the states next to it tell: an eigenvalue that falls
   steeply does so close to its end. The states compared are those from which a stage starts and in which it ends.
 */
 static PetscErrorCode Refine(LamRVE rve, const LamLoad *start, const LamLoad *load, Way *way, LamContactOutcome *out)
 {
-  PetscBool advanced = PETSC_TRUE;
+  PetscBool advanced = PETSC_TRUE, jumps = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   for (PetscInt stage = 0; stage <= STAGES && advanced; ++stage) {
@@ -162,6 +191,8 @@ static PetscErrorCode Refine(LamRVE rve, const LamLoad *start, const LamLoad *lo
       }
     }
   }
+  if (out->refusal == LAM_NOT_REFUSED) PetscCall(FindJump(rve, way, &jumps));
+  if (jumps) out->refusal = LAM_JUMP;
   out->between[0] = way->reached;
   out->between[1] = way->failed;
   PetscFunctionReturn(0);
