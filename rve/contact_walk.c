@@ -4,8 +4,9 @@
   Method. Each solution, moved affinely, starts the next; a step that fails is halved, one that succeeds is followed by
   a longer one. Where the smallest step still fails without a reason, the tissue may snap: descent looks for the stable
   state beyond, from which the way goes on. What ends it is then bracketed by the last stable state and the next, in
-  which walls meet that contact does not know or pass each other, a lumen is shut, or nothing stable is found, be it
-  that an eigenvalue crosses zero. Where walls kink on the way, no mesh resolves its end.
+  which walls meet that contact does not know or pass each other, a lumen is shut, or nothing stable is found. Of the
+  latter the bracket is halved until the states next to it tell: an eigenvalue crosses zero, or jumps below it. Where
+  walls kink on the way, no mesh resolves its end.
 */
 #include "contact_path.h"
 
@@ -14,7 +15,7 @@
 #define GROWTH 2.0
 #define MAX_SNAPS 4
 #define CROSSING_MARGIN 4.0 /* widths of the bracket within which an eigenvalue vanishes that ends the way */
-#define STAGES 4            /* in which a bracket that tells nothing is halved, */
+#define STAGES 4            /* after the first one, in which a bracket that tells nothing is halved, */
 #define HALVINGS 4          /* so often each */
 #define JUMP 2.0 /* of the depth to which walls lie in each other, between neighbouring states: they have passed */
 
