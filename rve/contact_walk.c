@@ -5,8 +5,9 @@
   a longer one. Where the smallest step still fails without a reason, the tissue may snap: descent looks for the stable
   state beyond, from which the way goes on. What ends it is then bracketed by the last stable state and the next, in
   which walls meet that contact does not know or pass each other, a lumen is shut, or nothing stable is found. Of the
-  latter the bracket is halved until the states next to it tell: an eigenvalue crosses zero, or jumps below it. Where
-  walls kink on the way, no mesh resolves its end.
+  latter the bracket is halved until the states next to it tell: an eigenvalue crosses zero, or jumps below it; where
+  all of the bracket can be gone in smaller steps, the way goes on with these. Where walls kink on the way, no mesh
+  resolves its end.
 */
 #include "contact_path.h"
 
@@ -28,17 +29,15 @@ static PetscErrorCode Snap(LamRVE rve, const LamContactSolution *at, const LamLo
   PetscFunctionReturn(0);
 }
 
-static PetscReal LeastStep(const LamKinking *kinking)
-{
-  return LamIsKinking(kinking) ? LAM_KINKED_SUBSTEP : MIN_STEP;
-}
-
 /* The last two stable states of a way. */
 typedef struct {
   LamContactSolution *at, earlier;
   PetscReal reached, before; /* their shares of the way */
   PetscReal failed;          /* of the next that is not stable */
   PetscReal depth;           /* to which walls lie in each other at the first */
+  PetscReal step, least;     /* the next one, and the smallest */
+  PetscInt snaps, branch;
+  LamKinking kinking;
 } Way;
 
 static PetscErrorCode LowestEigenvalue(LamRVE rve, const LamContactSolution *solution, PetscReal *eigenvalue)
@@ -158,39 +157,84 @@ static PetscErrorCode FindJump(LamRVE rve, const Way *way, PetscBool *found)
   PetscFunctionReturn(0);
 }
 
+/* The state a share t of the way, from the last one; *out is what became of it. */
+static PetscErrorCode TryAt(LamRVE rve, const LamLoad *start, const LamLoad *load, PetscReal t, const Way *way,
+                            LamLoad *next, LamContactOutcome *out)
+{
+  PetscFunctionBeginUser;
+  *next = t >= 1.0 ? *load : LamLoadBetween(start, load, t);
+  PetscCall(LamContactStartNear(rve, way->at, next));
+  PetscCall(LamContactTry(rve, next, LAM_NEAR_REACH, out));
+  PetscFunctionReturn(0);
+}
+
+/* Halves the bracket a few times, until what ends the way is known. */
+static PetscErrorCode Halve(LamRVE rve, const LamLoad *start, const LamLoad *load, Way *way, LamContactOutcome *out,
+                            PetscBool *advanced)
+{
+  PetscFunctionBeginUser;
+  *advanced = PETSC_FALSE;
+  for (PetscInt k = 0; k < HALVINGS && out->refusal == LAM_NOT_REFUSED && LamMayIterate(rve); ++k) {
+    const PetscReal t = 0.5 * (way->reached + way->failed);
+    LamContactOutcome tried;
+    LamLoad next;
+
+    PetscCall(TryAt(rve, start, load, t, way, &next, &tried));
+    if (!LamContactIsStable(&tried)) {
+      out->refusal = tried.refusal;
+      out->depth = tried.depth;
+      PetscCall(PetscArraycpy(out->cell, tried.cell, 2));
+      way->failed = t;
+    } else if (*advanced) {
+      PetscCall(LamContactSave(rve, &next, way->at));
+      way->reached = t;
+    } else {
+      PetscCall(Advance(rve, &next, t, way));
+      *advanced = PETSC_TRUE;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Whether the end of the bracket is reached from what is left of it: the steps were too long. */
+static PetscErrorCode CrossBracket(LamRVE rve, const LamLoad *start, const LamLoad *load, Way *way, PetscBool *crossed)
+{
+  const PetscReal t = way->failed, left = way->failed - way->reached;
+  LamContactOutcome tried;
+  LamLoad next;
+
+  PetscFunctionBeginUser;
+  *crossed = PETSC_FALSE;
+  if (!LamMayIterate(rve)) PetscFunctionReturn(0);
+  PetscCall(TryAt(rve, start, load, t, way, &next, &tried));
+  *crossed = LamContactIsStable(&tried);
+  if (!*crossed) PetscFunctionReturn(0);
+  PetscCall(Advance(rve, &next, t, way));
+  way->depth = tried.depth;
+  way->step = GROWTH * left;
+  way->least = left;
+  PetscFunctionReturn(0);
+}
+
 /*
   Halves the bracket of a way that ends in nothing known, until the states next to it tell: an eigenvalue that falls
   steeply does so close to its end. The states compared are those from which a stage starts and in which it ends.
 */
-static PetscErrorCode Refine(LamRVE rve, const LamLoad *start, const LamLoad *load, Way *way, LamContactOutcome *out)
+static PetscErrorCode Refine(LamRVE rve, const LamLoad *start, const LamLoad *load, Way *way, LamContactOutcome *out,
+                             PetscBool *crossed)
 {
   PetscBool advanced = PETSC_TRUE, jumps = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   for (PetscInt stage = 0; stage <= STAGES && advanced; ++stage) {
+    const PetscReal failed = way->failed;
+
     PetscCall(FindCrossing(rve, way, out));
     if (out->refusal != LAM_NOT_REFUSED) break;
-    advanced = PETSC_FALSE;
-    for (PetscInt k = 0; k < HALVINGS && out->refusal == LAM_NOT_REFUSED && LamMayIterate(rve); ++k) {
-      const PetscReal t = 0.5 * (way->reached + way->failed);
-      const LamLoad next = LamLoadBetween(start, load, t);
-      LamContactOutcome tried;
-
-      PetscCall(LamContactStartNear(rve, way->at, &next));
-      PetscCall(LamContactTry(rve, &next, LAM_NEAR_REACH, &tried));
-      if (!LamContactIsStable(&tried)) {
-        out->refusal = tried.refusal;
-        out->depth = tried.depth;
-        PetscCall(PetscArraycpy(out->cell, tried.cell, 2));
-        way->failed = t;
-      } else if (advanced) {
-        PetscCall(LamContactSave(rve, &next, way->at));
-        way->reached = t;
-      } else {
-        PetscCall(Advance(rve, &next, t, way));
-        advanced = PETSC_TRUE;
-      }
-    }
+    PetscCall(Halve(rve, start, load, way, out, &advanced));
+    if (out->refusal == LAM_NOT_REFUSED && way->failed == failed)
+      PetscCall(CrossBracket(rve, start, load, way, crossed));
+    if (*crossed) PetscFunctionReturn(0);
   }
   if (out->refusal == LAM_NOT_REFUSED) PetscCall(FindJump(rve, way, &jumps));
   if (jumps) out->refusal = LAM_JUMP;
@@ -199,8 +243,10 @@ static PetscErrorCode Refine(LamRVE rve, const LamLoad *start, const LamLoad *lo
   PetscFunctionReturn(0);
 }
 
-/* What has ended the way, with its bracket. A solution at another load than the one asked for is no outcome. */
-static PetscErrorCode End(LamRVE rve, const LamLoad *start, const LamLoad *load, Way *way, LamContactOutcome *out)
+/* What has ended the way, with its bracket; or it has crossed it and goes on. A solution at another load than the one
+   asked for is no outcome. */
+static PetscErrorCode End(LamRVE rve, const LamLoad *start, const LamLoad *load, Way *way, LamContactOutcome *out,
+                          PetscBool *goes_on)
 {
   const PetscBool out_of_work = (PetscBool)!LamMayIterate(rve), stable = LamContactIsStable(out);
 
@@ -212,56 +258,66 @@ static PetscErrorCode End(LamRVE rve, const LamLoad *start, const LamLoad *load,
     if (!stable) out->refusal = LAM_SADDLE;
     out->converged = PETSC_FALSE;
   }
-  if (!out->converged && out->refusal == LAM_NOT_REFUSED && !out_of_work && !LamIsKinking(&out->kinking))
-    PetscCall(Refine(rve, start, load, way, out));
+  if (!out->converged && out->refusal == LAM_NOT_REFUSED && !out_of_work && !LamIsKinking(&way->kinking))
+    PetscCall(Refine(rve, start, load, way, out, goes_on));
   if (rve->monitor)
     PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR,
-                           "  walk: %.10g to %.10g, refusal %d, negative %d, converged %d, depth %.2g after %.2g\n",
+                           "  walk: %.10g to %.10g, refusal %d, negative %d, converged %d, depth %.2g after %.2g%s\n",
                            (double)way->reached, (double)way->failed, (int)out->refusal, (int)out->negative,
-                           (int)out->converged, (double)out->depth, (double)way->depth));
+                           (int)out->converged, (double)out->depth, (double)way->depth, *goes_on ? ", goes on" : ""));
+  PetscFunctionReturn(0);
+}
+
+/* As far as steps of the smallest length lead. */
+static PetscErrorCode Go(LamRVE rve, const LamLoad *start, const LamLoad *load, Way *way, LamContactOutcome *out)
+{
+  PetscBool last = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  while (way->reached < 1.0 && LamMayIterate(rve)) {
+    const PetscReal least = LamIsKinking(&way->kinking) ? LAM_KINKED_SUBSTEP : way->least;
+    const PetscReal t = PetscMin(1.0, way->reached + PetscMax(way->step, least));
+    LamLoad next = t >= 1.0 ? *load : LamLoadBetween(start, load, t);
+
+    last = (PetscBool)(way->step < least);
+    if (last) {
+      if (out->refusal != LAM_NOT_REFUSED || way->snaps++ >= MAX_SNAPS) break;
+      PetscCall(Snap(rve, way->at, &next, out));
+    } else {
+      PetscCall(TryAt(rve, start, load, t, way, &next, out));
+    }
+    if (LamContactIsStable(out)) {
+      PetscCall(Advance(rve, &next, t, way));
+      LamWatchKinks(rve, &next, way->at->y, t, &way->kinking);
+      way->branch += out->branch + last;
+      way->depth = out->depth;
+      way->step = last ? 4.0 * least : GROWTH * way->step;
+    } else {
+      way->failed = t;
+      if (last) break;
+      way->step *= 0.5;
+    }
+  }
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamContactWalk(LamRVE rve, LamContactSolution *at, const LamLoad *load, LamContactOutcome *out)
 {
   const LamLoad start = at->load;
-  Way way = {.at = at, .failed = 1.0};
-  PetscReal step = FIRST_STEP;
-  PetscInt snaps = 0, branch = 0;
-  LamKinking kinking = LAM_NO_KINKING;
+  Way way = {.at = at, .failed = 1.0, .step = FIRST_STEP, .least = MIN_STEP, .kinking = LAM_NO_KINKING};
+  PetscBool goes_on = PETSC_TRUE;
 
   PetscFunctionBeginUser;
   *out = LAM_NO_OUTCOME;
   PetscCall(LamContactSolutionCreate(rve, &way.earlier));
-  LamWatchKinks(rve, &start, at->y, 0.0, &kinking);
-  while (way.reached < 1.0 && LamMayIterate(rve)) {
-    const PetscReal least = LeastStep(&kinking);
-    const PetscBool last = (PetscBool)(step < least);
-    const PetscReal t = PetscMin(1.0, way.reached + PetscMax(step, least));
-    const LamLoad next = t >= 1.0 ? *load : LamLoadBetween(&start, load, t);
-
-    if (last) {
-      if (out->refusal != LAM_NOT_REFUSED || snaps++ == MAX_SNAPS) break;
-      PetscCall(Snap(rve, at, &next, out));
-    } else {
-      PetscCall(LamContactStartNear(rve, at, &next));
-      PetscCall(LamContactTry(rve, &next, LAM_NEAR_REACH, out));
-    }
-    if (LamContactIsStable(out)) {
-      PetscCall(Advance(rve, &next, t, &way));
-      LamWatchKinks(rve, &next, at->y, t, &kinking);
-      branch += out->branch + last;
-      way.depth = out->depth;
-      step = last ? 4.0 * least : GROWTH * step;
-    } else {
-      way.failed = t;
-      if (last) break;
-      step *= 0.5;
-    }
+  LamWatchKinks(rve, &start, at->y, 0.0, &way.kinking);
+  while (goes_on) {
+    goes_on = PETSC_FALSE;
+    PetscCall(Go(rve, &start, load, &way, out));
+    if (way.reached < 1.0) PetscCall(End(rve, &start, load, &way, out, &goes_on));
   }
-  out->branch = branch;
-  out->kinking = kinking;
-  if (way.reached < 1.0) PetscCall(End(rve, &start, load, &way, out));
+  out->branch = way.branch;
+  out->kinking = way.kinking;
   PetscCall(LamContactSolutionDestroy(&way.earlier));
   PetscFunctionReturn(0);
 }
