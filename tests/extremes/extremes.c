@@ -25,7 +25,7 @@
 #include <unistd.h>
 
 enum { MAX_JOBS = 64 };
-#define PATIENCE 300.0 /* s of the clock after which a worker is ended */
+#define PATIENCE 300.0 /* s of processor time for a state with its routes, after which a worker is ended */
 
 typedef struct {
   pid_t process;
@@ -43,11 +43,13 @@ typedef struct {
   int file;
 } Run;
 
-static double Clock(void)
+/* Processor time of a worker, s: what else runs on the machine does not make a state slow. */
+static double Clock(pid_t process)
 {
-  struct timespec t;
+  struct timespec t = {0};
+  clockid_t clock;
 
-  clock_gettime(CLOCK_MONOTONIC, &t);
+  if (!clock_getcpuclockid(process, &clock)) clock_gettime(clock, &t);
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
@@ -185,6 +187,16 @@ static void ReadDone(Run *run)
   if (file) fclose(file);
 }
 
+/* A line that a kill has cut ends where it was cut. */
+static void EndLine(int file)
+{
+  char last = '\n';
+  const off_t size = lseek(file, 0, SEEK_END);
+
+  if (size > 0 && pread(file, &last, 1, size - 1) == 1 && last != '\n' && write(file, "\n", 1) != 1)
+    fprintf(stderr, "extremes: %s\n", strerror(errno));
+}
+
 /* All but those of the list count as done. */
 static void ReadList(Run *run)
 {
@@ -211,7 +223,8 @@ static PetscInt Next(Run *run)
 static void Bury(Run *run, Worker *worker, PetscBool late)
 {
   ExtremesCase c;
-  ExtremesResult result = {.verdict = late ? EXTREMES_SLOW : EXTREMES_CRASH, .seconds = Clock() - worker->since};
+  ExtremesResult result = {.verdict = late ? EXTREMES_SLOW : EXTREMES_CRASH,
+                           .seconds = Clock(worker->process) - worker->since};
 
   if (late) kill(worker->process, SIGKILL);
   ExtremesCaseMake(worker->id, &c);
@@ -230,7 +243,7 @@ static PetscInt Deal(Run *run, Worker workers[])
   for (PetscInt w = 0; w < run->jobs; w++) {
     if (workers[w].id < 0) {
       workers[w].id = Next(run);
-      workers[w].since = Clock();
+      workers[w].since = Clock(workers[w].process);
       if (workers[w].id >= 0 && write(workers[w].questions, &workers[w].id, sizeof(PetscInt)) < 0) exit(1);
     }
     busy += workers[w].id >= 0;
@@ -256,7 +269,7 @@ static void Supervise(Run *run)
         Bury(run, &workers[w], PETSC_FALSE);
       else if (answers[w].revents)
         workers[w].id = -1, solved++;
-      else if (Clock() - workers[w].since > PATIENCE)
+      else if (Clock(workers[w].process) - workers[w].since > PATIENCE)
         Bury(run, &workers[w], PETSC_TRUE);
     }
     if (isatty(STDERR_FILENO)) fprintf(stderr, "\r%d", (int)solved);
@@ -352,7 +365,8 @@ int main(int argc, char **argv)
   run.done = calloc((size_t)(run.end - run.first), 1);
   if (run.list) ReadList(&run);
   ReadDone(&run);
-  run.file = open(run.path, O_WRONLY | O_CREAT | O_APPEND, 0644);
+  run.file = open(run.path, O_RDWR | O_CREAT | O_APPEND, 0644);
+  EndLine(run.file);
   signal(SIGPIPE, SIG_IGN);
   Supervise(&run);
   close(run.file);
