@@ -47,7 +47,8 @@ void LamContactResidual(LamRVE rve, LamContactStep *step, PetscReal *norm)
 }
 
 /* Factors with the smallest tried shift that leaves no negative eigenvalues but those expected, from the floor upwards;
-   again: from the last one. */
+   again: from the last one. An iteration that goes on with shifts goes down with them as far as it can: a shift above
+   what is needed makes it creep. */
 static PetscErrorCode FactorStable(LamRVE rve, PetscBool again, LamContactStep *step, PetscBool *ok)
 {
   const PetscInt expected = LamExpectedNegative(rve);
@@ -63,7 +64,10 @@ static PetscErrorCode FactorStable(LamRVE rve, PetscBool again, LamContactStep *
     if (*ok && negative <= expected) break;
     *ok = PETSC_FALSE;
     if (shift > diagonal) break;
-    shift = shift < least ? PetscMax(step->shift / 8.0, least) : 8.0 * shift;
+    if (shift > LAM_CONTACT_PROXIMAL)
+      shift *= 8.0;
+    else
+      shift = step->shift > LAM_CONTACT_PROXIMAL ? PetscMax(step->shift / 8.0, 8.0 * LAM_CONTACT_PROXIMAL) : least;
   }
   step->shift = shift;
   PetscFunctionReturn(0);
