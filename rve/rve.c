@@ -290,6 +290,20 @@ static PetscErrorCode RefuseCollapsedLumen(LamRVE rve, LamResponse *response)
   PetscFunctionReturn(0);
 }
 
+void LamKeepState(LamRVE rve, const LamLoad *load, PetscInt branch, LamRVEState state)
+{
+  for (PetscInt i = 0; i < rve->ndof; ++i) state->y[i] = rve->y[i];
+  for (PetscInt c = 0; c < rve->linear.lumens; ++c) state->y[rve->ndof + c] = LamTurgor(rve, load, rve->y, c);
+  for (PetscInt h = 0; h < state->multipliers; ++h) state->lambda[h] = rve->contact->lambda[h];
+  for (PetscInt f = 0; f < state->faces; ++f) {
+    state->hats[f][0] = rve->contact->faces[f].first;
+    state->hats[f][1] = rve->contact->faces[f].last;
+  }
+  state->solved = PETSC_TRUE;
+  state->load = *load;
+  state->branch = branch;
+}
+
 PetscErrorCode LamAcceptSolution(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
 {
   PetscFunctionBeginUser;
@@ -298,16 +312,7 @@ PetscErrorCode LamAcceptSolution(LamRVE rve, const LamLoad *load, LamRVEState st
   PetscCall(FillFields(rve, load, response));
   response->stable = (PetscBool)(response->status == LAM_CONVERGED);
   if (!response->stable || response->zero_modes > 0) response->lowest_eigenvalue = rve->lowest_eigenvalue;
-  PetscCall(PetscArraycpy(state->y, rve->y, rve->ndof));
-  for (PetscInt c = 0; c < rve->linear.lumens; ++c) state->y[rve->ndof + c] = LamTurgor(rve, load, rve->y, c);
-  if (rve->contact) PetscCall(PetscArraycpy(state->lambda, rve->contact->lambda, state->multipliers));
-  for (PetscInt f = 0; f < state->faces; ++f) {
-    state->hats[f][0] = rve->contact->faces[f].first;
-    state->hats[f][1] = rve->contact->faces[f].last;
-  }
-  state->solved = PETSC_TRUE;
-  state->load = *load;
-  state->branch = response->branch;
+  LamKeepState(rve, load, response->branch, state);
   PetscFunctionReturn(0);
 }
 
@@ -335,6 +340,40 @@ PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamRVEState sta
   PetscFunctionReturn(0);
 }
 
+/* The way from a state to a load. */
+static PetscErrorCode Follow(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
+{
+  PetscFunctionBeginUser;
+  BeginFrom(rve, state);
+  if (rve->contact)
+    PetscCall(LamContactFollowPath(rve, load, state, response));
+  else
+    PetscCall(LamFollowPath(rve, load, state, &response->branch, &response->negative_eigenvalues, &response->status,
+                            response->reason, sizeof(response->reason)));
+  PetscFunctionReturn(0);
+}
+
+/* From the solution of a coarser mesh; from `state` where that leads nowhere. */
+static PetscErrorCode FollowNested(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
+{
+  LamRVEState start;
+  LamResponse coarse;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEStateCreate(rve, &start));
+  PetscCall(LamRVEStateCopy(state, start));
+  PetscCall(LamNestedStart(rve, load, start, &coarse));
+  if (start->solved) PetscCall(Follow(rve, load, start, response));
+  PetscCall(LamRVEStateDestroy(&start));
+  if (LamResponseHasFields(&coarse)) {
+    if (response->status != LAM_CONVERGED && !rve->work.stopped) PetscCall(Follow(rve, load, state, response));
+  } else {
+    response->status = coarse.status;
+    PetscCall(PetscStrncpy(response->reason, coarse.reason, sizeof(response->reason)));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
 {
   const PetscReal begin = LamClock();
@@ -346,11 +385,10 @@ PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, L
     response->status = LAM_INVALID_F;
     PetscFunctionReturn(0);
   }
-  if (rve->contact)
-    PetscCall(LamContactFollowPath(rve, load, state, response));
+  if (LamIsNested(rve, state))
+    PetscCall(FollowNested(rve, load, state, response));
   else
-    PetscCall(LamFollowPath(rve, load, state, &response->branch, &response->negative_eigenvalues, &response->status,
-                            response->reason, sizeof(response->reason)));
+    PetscCall(Follow(rve, load, state, response));
   if (rve->work.stopped) PetscCall(LamGiveUp(response));
   PetscCall(LamAcceptSolution(rve, load, state, response));
   response->newton_iterations = rve->work.iterations;

@@ -395,6 +395,12 @@ PetscErrorCode LamContactNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOu
 /* As LamFollowPath; the solution is in rve->y and contact->lambda. */
 PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
 
+/* ---- nested.c ---- */
+/* Whether a solve from `state` is to start from a coarser mesh. */
+PetscBool LamIsNested(LamRVE rve, const LamRVEState state);
+/* Solves on a coarser mesh, whose response is given; where it converged, `start` becomes its solution on this one. */
+PetscErrorCode LamNestedStart(LamRVE rve, const LamLoad *load, LamRVEState start, LamResponse *coarse_response);
+
 /* ---- lumen.c, overlap.c ---- */
 /* The first cell whose inner loop crosses itself or is inside out at positions y, -1: none. */
 PetscErrorCode LamFindCollapsedLumen(LamRVE rve, const PetscReal y[], PetscInt *cell);
@@ -478,6 +484,8 @@ PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamRVEState sta
 /* Fills the fields of a response whose status says that rve->y (and the multipliers) are a solution at `load`, with its
    consistent tangent factored, and stores it in `state`; refuses it where a lumen has collapsed. */
 PetscErrorCode LamAcceptSolution(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
+/* The solution that rve holds becomes the state. */
+void LamKeepState(LamRVE rve, const LamLoad *load, PetscInt branch, LamRVEState state);
 
 /* ---- indicators.c ---- */
 /* Fills the debonding indicators from rve->y and the multipliers; of contact tissue the tractions, too. */

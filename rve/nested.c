@@ -1,0 +1,267 @@
+/*
+  A start for large meshes: the solution of a mesh with half as many elements along the faces and through the walls.
+
+  Method. The way from the state before to the load is gone on the coarse mesh, which does the same if it is large
+  itself. Its solution starts Newton's iteration on the fine one: positions, contact pressures and wall stresses are
+  interpolated, the latter by what is bilinear in them in an element, for stresses that follow from interpolated
+  positions oscillate where walls are nearly incompressible. What the iteration ends in is the state before of a solve
+  at the same load. Where the coarse mesh has no answer the fine one is not asked: its reason is given, and on which
+  mesh that was. Sealed tissue, whose pressures are unknowns, goes its way itself.
+*/
+#include "contact_path.h"
+
+#define LARGE 2000 /* elements: below, the way itself costs a second or two */
+
+static PetscInt Half(PetscInt n)
+{
+  return (n + 1) / 2;
+}
+
+static PetscErrorCode CreateCoarse(LamRVE rve, LamRVE *coarse)
+{
+  LamMicrostructure micro = rve->micro;
+
+  PetscFunctionBeginUser;
+  micro.along = Half(micro.along);
+  micro.through = Half(micro.through);
+  PetscCall(LamRVECreate(rve->comm, coarse));
+  PetscCall(LamRVESetMicrostructure(*coarse, &micro));
+  PetscCall(LamRVESetStrategy(*coarse, rve->strategy));
+  PetscCall(LamRVESetTolerance(*coarse, rve->tolerance));
+  PetscCall(LamRVESetWanted(*coarse, LAM_WANT_STRESS));
+  PetscCall(LamRVESetInterrupt(*coarse, rve->interrupt, rve->interrupt_ctx));
+  PetscCall(LamRVESetMonitor(*coarse, rve->monitor));
+  PetscCall(LamRVESetUp(*coarse));
+  PetscFunctionReturn(0);
+}
+
+/* Quadratic shape functions at `place`, counted in elements; first: the first of their three nodes, two per element. */
+static void Quadratic(PetscReal place, PetscInt elements, PetscInt *first, PetscReal N[3])
+{
+  const PetscInt e = PetscMax(0, PetscMin((PetscInt)place, elements - 1));
+  const PetscReal xi = 2.0 * (place - (PetscReal)e) - 1.0;
+
+  *first = 2 * e;
+  N[0] = 0.5 * xi * (xi - 1.0);
+  N[1] = 1.0 - xi * xi;
+  N[2] = 0.5 * xi * (xi + 1.0);
+}
+
+/* Where node or hat `half`, two per element from the start of a face, of one mesh lies along a face of the other. */
+static PetscReal PlaceIn(const LamMesh *other, const LamMesh *mesh, PetscInt half)
+{
+  return LamMeshPlace(other, LamMeshShare(mesh, 0.5 * (PetscReal)half));
+}
+
+/* Position of a node of the fine mesh in the solution of the coarse one. */
+static void Interpolate(LamRVE coarse, const LamLoad *load, const PetscReal y[], const LamMesh *fine, PetscInt node,
+                        PetscReal x[2])
+{
+  const LamMesh *mesh = &coarse->mesh;
+  const PetscInt radial = node % fine->radial_nodes, around = node / fine->radial_nodes;
+  const PetscInt cell = around / fine->ring_nodes, half = around % fine->ring_nodes;
+  const PetscInt face = half / (2 * fine->along);
+  PetscInt first[2];
+  PetscReal N[2][3];
+
+  Quadratic(PlaceIn(mesh, fine, half % (2 * fine->along)), mesh->along, &first[0], N[0]);
+  Quadratic((PetscReal)(radial * mesh->through) / (PetscReal)(fine->radial_nodes - 1), mesh->through, &first[1], N[1]);
+  x[0] = x[1] = 0.0;
+  for (PetscInt a = 0; a < 3; ++a)
+    for (PetscInt b = 0; b < 3; ++b) {
+      const PetscInt ring = (2 * mesh->along * face + first[0] + a) % mesh->ring_nodes;
+      PetscReal at[2];
+
+      LamNodePosition(coarse, load->F, y, (cell * mesh->ring_nodes + ring) * mesh->radial_nodes + first[1] + b, at);
+      for (PetscInt d = 0; d < 2; ++d) x[d] += N[0][a] * N[1][b] * at[d];
+    }
+}
+
+static void ProlongPositions(LamRVE coarse, const LamRVEState from, LamRVE rve)
+{
+  const LamMesh *mesh = &rve->mesh;
+  const PetscReal *F = from->load.F;
+
+  for (PetscInt node = 0; node < mesh->node_count; ++node) {
+    const PetscReal *S = &mesh->shift[2 * node];
+    PetscReal x[2];
+
+    Interpolate(coarse, &from->load, from->y, mesh, node, x);
+    for (PetscInt d = 0; d < 2; ++d)
+      rve->y[2 * mesh->node_class[node] + d] = x[d] - F[3 * d] * S[0] - F[3 * d + 1] * S[1];
+  }
+}
+
+/* Contact pressures, and the hats that have one. */
+static void ProlongContact(LamRVE coarse, const LamRVEState from, LamRVE rve)
+{
+  const PetscInt hats = rve->contact->hats, coarse_hats = coarse->contact->hats;
+
+  for (PetscInt f = 0; f < rve->contact->face_count; ++f) {
+    LamContactFace *face = &rve->contact->faces[f];
+
+    for (PetscInt j = 0; j < hats; ++j) {
+      const PetscReal at = 2.0 * PlaceIn(&coarse->mesh, &rve->mesh, j);
+      const PetscInt k = PetscMin((PetscInt)at, coarse_hats - 2);
+      const PetscReal *lambda = &from->lambda[f * coarse_hats + k];
+
+      rve->contact->lambda[f * hats + j] = lambda[0] + (at - (PetscReal)k) * (lambda[1] - lambda[0]);
+    }
+    if (from->hats[f][0] > from->hats[f][1]) continue;
+    face->first = (PetscInt)(2.0 * PlaceIn(&rve->mesh, &coarse->mesh, from->hats[f][0]) + 0.5);
+    face->last = (PetscInt)(2.0 * PlaceIn(&rve->mesh, &coarse->mesh, from->hats[f][1]) + 0.5);
+  }
+}
+
+/* Coefficients of 1, xi, eta, xi eta in the least-squares fit to the values at the Gauss points of an element. */
+static void Fit(const PetscReal value[LAM_GAUSS], PetscReal fit[4])
+{
+  PetscReal squares[4] = {0.0};
+
+  for (PetscInt k = 0; k < 4; ++k) fit[k] = 0.0;
+  for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
+    PetscReal xi, eta, weight;
+
+    LamGaussPoint(g, &xi, &eta, &weight);
+    const PetscReal base[4] = {1.0, xi, eta, xi * eta};
+
+    for (PetscInt k = 0; k < 4; ++k) {
+      fit[k] += base[k] * value[g];
+      squares[k] += base[k] * base[k];
+    }
+  }
+  for (PetscInt k = 0; k < 4; ++k) fit[k] /= squares[k];
+}
+
+/* Pressure and fibre stress of an element as fits. */
+static void FitStresses(LamRVE rve, PetscInt e, PetscReal p[4], PetscReal s[4])
+{
+  const LamElementStress *stress = &rve->stress[e];
+  PetscReal pressure[LAM_GAUSS];
+
+  for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
+    pressure[g] = 0.0;
+    for (PetscInt k = 0; k < LAM_PRESSURES; ++k) pressure[g] += rve->geometry[e].psi[g][k] * stress->p[k];
+  }
+  Fit(pressure, p);
+  Fit(stress->s, s);
+}
+
+/* The coordinate in [-1, 1] of `place`, counted in elements, in the element that it is in. */
+static PetscReal Local(PetscReal place, PetscInt elements, PetscInt *element)
+{
+  *element = PetscMax(0, PetscMin((PetscInt)place, elements - 1));
+  return 2.0 * (place - (PetscReal)*element) - 1.0;
+}
+
+/* Independent stresses of the element (i, m) of a face of the fine mesh. */
+static void ProlongStress(LamRVE coarse, const PetscReal (*fits)[2][4], LamRVE rve, PetscInt cell, PetscInt face,
+                          PetscInt i, PetscInt m)
+{
+  const LamMesh *mesh = &coarse->mesh;
+  const PetscInt e = LamMeshElement(&rve->mesh, cell, face, i, m);
+  LamElementStress *stress = &rve->stress[e];
+
+  for (PetscInt k = 0; k < LAM_PRESSURES; ++k) stress->p[k] = 0.0;
+  for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
+    const PetscReal along = (PetscReal)mesh->through / (PetscReal)rve->mesh.through;
+    PetscReal xi, eta, weight, p = 0.0;
+    PetscInt i0, m0;
+
+    LamGaussPoint(g, &xi, &eta, &weight);
+    xi = Local(along * ((PetscReal)m + 0.5 * (1.0 + xi)), mesh->through, &m0);
+    eta = Local(LamMeshPlace(mesh, LamMeshShare(&rve->mesh, (PetscReal)i + 0.5 * (1.0 + eta))), mesh->along, &i0);
+
+    const PetscReal base[4] = {1.0, xi, eta, xi * eta};
+    const PetscReal(*fit)[4] = fits[LamMeshElement(mesh, cell, face, i0, m0)];
+
+    stress->s[g] = 0.0;
+    for (PetscInt k = 0; k < 4; ++k) {
+      p += base[k] * fit[0][k];
+      stress->s[g] += base[k] * fit[1][k];
+    }
+    for (PetscInt k = 0; k < LAM_PRESSURES; ++k)
+      stress->p[k] += rve->geometry[e].weight[g] * rve->geometry[e].psi[g][k] * p;
+  }
+}
+
+static PetscErrorCode ProlongStresses(LamRVE coarse, LamRVE rve)
+{
+  PetscReal(*fits)[2][4];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(coarse->mesh.element_count, &fits));
+  for (PetscInt e = 0; e < coarse->mesh.element_count; ++e) FitStresses(coarse, e, fits[e][0], fits[e][1]);
+  for (PetscInt cell = 0; cell < rve->mesh.cell_count; ++cell)
+    for (PetscInt face = 0; face < LAM_FACES; ++face)
+      for (PetscInt i = 0; i < rve->mesh.along; ++i)
+        for (PetscInt m = 0; m < rve->mesh.through; ++m) ProlongStress(coarse, fits, rve, cell, face, i, m);
+  PetscCall(PetscFree(fits));
+  PetscFunctionReturn(0);
+}
+
+/* From the solution of the coarse mesh to that of the fine one, if it is near. */
+static PetscErrorCode Prolong(LamRVE coarse, const LamRVEState from, LamRVE rve, LamRVEState to)
+{
+  const LamLoad *load = &from->load;
+  LamNewtonOutcome outcome;
+
+  PetscFunctionBeginUser;
+  ProlongPositions(coarse, from, rve);
+  PetscCall(ProlongStresses(coarse, rve));
+  rve->moved = PETSC_TRUE;
+  rve->budget = LAM_ITERATION_BUDGET;
+  if (rve->contact) {
+    ProlongContact(coarse, from, rve);
+    PetscCall(LamContactNewton(rve, load, NULL, LAM_NEAR_REACH, &outcome));
+  } else {
+    PetscCall(LamNewtonFast(rve, load, NULL, &outcome));
+    if (outcome == LAM_NEWTON_STALLED) {
+      PetscInt shut;
+
+      ProlongPositions(coarse, from, rve);
+      PetscCall(ProlongStresses(coarse, rve));
+      PetscCall(LamNewtonFlow(rve, load, &outcome, &shut));
+    }
+  }
+  if (outcome != LAM_NEWTON_CONVERGED) PetscFunctionReturn(0);
+  LamKeepState(rve, load, from->branch, to);
+  PetscFunctionReturn(0);
+}
+
+/* The mesh that a reason is of. */
+static PetscErrorCode NameMesh(LamRVE rve, LamResponse *response)
+{
+  char reason[sizeof(response->reason)];
+
+  PetscFunctionBeginUser;
+  if (!response->reason[0]) PetscFunctionReturn(0);
+  PetscCall(PetscStrncpy(reason, response->reason, sizeof(reason)));
+  PetscCall(PetscSNPrintf(response->reason, sizeof(response->reason), "on a mesh of %d x %d elements a face: %s",
+                          (int)rve->micro.along, (int)rve->micro.through, reason));
+  PetscFunctionReturn(0);
+}
+
+PetscBool LamIsNested(LamRVE rve, const LamRVEState state)
+{
+  return (PetscBool)(rve->mesh.element_count >= LARGE && rve->micro.along > 1 && !rve->seal.allowed && !state->solved);
+}
+
+PetscErrorCode LamNestedStart(LamRVE rve, const LamLoad *load, LamRVEState start, LamResponse *coarse_response)
+{
+  LamRVE coarse;
+  LamRVEState state;
+  PetscBool nested;
+
+  PetscFunctionBeginUser;
+  PetscCall(CreateCoarse(rve, &coarse));
+  PetscCall(LamRVEStateCreate(coarse, &state));
+  nested = LamIsNested(coarse, state);
+  PetscCall(LamRVESolve(coarse, load, state, coarse_response));
+  if (!nested) PetscCall(NameMesh(coarse, coarse_response));
+  if (coarse_response->status == LAM_CONVERGED) PetscCall(Prolong(coarse, state, rve, start));
+  if (LamWasStopped(coarse_response)) rve->work.stopped = PETSC_TRUE;
+  PetscCall(LamRVEStateDestroy(&state));
+  PetscCall(LamRVEDestroy(&coarse));
+  PetscFunctionReturn(0);
+}
