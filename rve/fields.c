@@ -1,4 +1,7 @@
-/* Fields for pictures: Gauss-point values carried to nodes by a bilinear fit and averaged within a cell. */
+/*
+  Fields for pictures: Gauss-point values carried to nodes by a bilinear fit and averaged within a cell; softest modes;
+  how far cells differ.
+*/
 #include "rve_impl.h"
 
 /* Values at an element's nodes of the least-squares bilinear function through the 3 x 3 Gauss values. */
@@ -54,6 +57,71 @@ PetscErrorCode LamRVEGetFields(LamRVE rve, LamRVEState state, PetscReal x[], Pet
     if (stress) stress[i] /= (PetscReal)count[i];
   }
   PetscCall(PetscFree(count));
+  PetscFunctionReturn(0);
+}
+
+/* The solution of a state is that of the RVE again. */
+static PetscErrorCode TakeState(LamRVE rve, LamRVEState state)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(rve->y, state->y, rve->length));
+  if (!rve->contact) PetscFunctionReturn(0);
+  PetscCall(PetscArraycpy(rve->contact->lambda, state->lambda, state->multipliers));
+  for (PetscInt f = 0; f < state->faces; ++f) {
+    rve->contact->faces[f].first = state->hats[f][0];
+    rve->contact->faces[f].last = state->hats[f][1];
+  }
+  PetscCall(LamContactEvaluate(rve, &state->load, rve->y, PETSC_FALSE));
+  (void)LamContactFindActive(rve->contact, 0.0);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEGetSoftestMode(LamRVE rve, LamRVEState state, PetscReal *eigenvalue, PetscReal mode[])
+{
+  const LamMesh *mesh = &rve->mesh;
+  PetscReal *free, largest;
+  PetscInt negative;
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(rve->linear.n, &free));
+  *eigenvalue = NAN;
+  rve->linear.rate = PETSC_INFINITY;
+  rve->consistent = PETSC_FALSE;
+  PetscCall(TakeState(rve, state));
+  PetscCall(LamFactorConsistent(rve, &state->load, &negative, &ok));
+  if (ok) PetscCall(LamSoftestMode(rve, eigenvalue, free));
+  largest = LamLargestEntry(rve->linear.positions, free);
+  for (PetscInt i = 0; i < mesh->node_count; ++i)
+    for (PetscInt d = 0; d < 2; ++d) {
+      const PetscInt at = 2 * (mesh->node_class[i] - 1) + d; /* the first class is held */
+
+      mode[2 * i + d] = at >= 0 && largest > 0.0 ? free[at] / largest : 0.0;
+    }
+  PetscCall(PetscFree(free));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEGetCellDifference(LamRVE rve, LamRVEState state, PetscReal *difference)
+{
+  const LamMesh *mesh = &rve->mesh;
+  const PetscInt nodes = mesh->node_count / mesh->cell_count; /* of a cell */
+  const PetscReal *F = state->load.F;
+  PetscReal first[2];
+
+  PetscFunctionBeginUser;
+  *difference = 0.0;
+  LamMeshCentre(mesh, 0, first);
+  for (PetscInt i = nodes; i < mesh->node_count; ++i) {
+    PetscReal centre[2], x[2], x0[2];
+
+    LamMeshCentre(mesh, i / nodes, centre);
+    LamNodePosition(rve, F, state->y, i, x);
+    LamNodePosition(rve, F, state->y, i % nodes, x0);
+    for (PetscInt d = 0; d < 2; ++d)
+      *difference = PetscMax(*difference, PetscAbsReal(x[d] - x0[d] - F[3 * d] * (centre[0] - first[0]) -
+                                                       F[3 * d + 1] * (centre[1] - first[1])));
+  }
   PetscFunctionReturn(0);
 }
 

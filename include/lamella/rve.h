@@ -143,6 +143,13 @@ PetscErrorCode LamRVEGetMesh(LamRVE rve, LamRVEMesh *mesh);
      fibre      [node]     fibre stretch sqrt(I4) along the wall
      stress     [node]     largest principal Cauchy stress of the wall, in C1 + C2 */
 PetscErrorCode LamRVEGetFields(LamRVE rve, LamRVEState state, PetscReal x[], PetscReal fibre[], PetscReal stress[]);
+/* The lowest eigenvalue of a state's consistent tangent at fixed F, C1 + C2 (as lowest_eigenvalue of the response), and
+   its mode, which the caller provides: mode [node][2], displacements whose largest component is 1. Of contact on
+   motions that keep closed gaps closed. NaN, and a mode of zeros: the state has no factor. */
+PetscErrorCode LamRVEGetSoftestMode(LamRVE rve, LamRVEState state, PetscReal *eigenvalue, PetscReal mode[]);
+/* Largest component of what the positions of cells differ by, apart from the motion by F from cell to cell, apothems:
+   0 where the pattern has the period of one cell. */
+PetscErrorCode LamRVEGetCellDifference(LamRVE rve, LamRVEState state, PetscReal *difference);
 
 /*
   Samples along the interfaces of a contact state, for pictures and profiles; the caller provides the arrays, any may be

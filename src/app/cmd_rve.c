@@ -41,6 +41,8 @@ static PetscErrorCode WriteState(Run *run, PetscInt number, const LamResponse *r
   PetscCall(PetscSNPrintf(group, sizeof(group), "/fields/%" PetscInt_FMT, number));
   if (LamResponseHasFields(response))
     PetscCall(LamRVEWriteFields(run->writer, group, run->meshes.rve[0], run->meshes.state[0], &run->scene->scales));
+  if (response->status == LAM_UNSTABLE)
+    PetscCall(LamRVEWriteMode(run->writer, group, run->meshes.rve[0], run->meshes.state[0]));
   PetscCall(LamRecordWriterCommit(run->writer, 1, &key, response));
   PetscFunctionReturn(0);
 }
@@ -108,6 +110,20 @@ static void SetPrescribed(json_t *object, const LamStressControl *control, Petsc
   if (any) json_object_set_new(object, "P_prescribed", LamJSONReals(9, P, MPa));
 }
 
+/* Of a period of several cells, whether the pattern has that period or the one of a single cell. */
+static PetscErrorCode SetCellDifference(json_t *object, const Run *run, const LamResponse *response)
+{
+  const LamMicrostructure *micro = &run->scene->micro;
+  PetscReal difference;
+
+  PetscFunctionBeginUser;
+  if (micro->is_patch || micro->cells[0] * micro->cells[1] == 1 || !LamResponseHasFields(response))
+    PetscFunctionReturn(0);
+  PetscCall(LamRVEGetCellDifference(run->meshes.rve[0], run->meshes.state[0], &difference));
+  json_object_set_new(object, "cell_difference", json_real(difference));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Tell(Run *run, PetscInt number, const LamResponse responses[2])
 {
   const LamScales *scales = &run->scene->scales;
@@ -117,6 +133,7 @@ static PetscErrorCode Tell(Run *run, PetscInt number, const LamResponse response
   if (run->json) {
     PetscCall(LamResponseToJSON(&responses[0], scales, number, run->tangent, &object));
     SetPrescribed(object, Control(run, number), scales->stress * 1e-6);
+    PetscCall(SetCellDifference(object, run, &responses[0]));
     if (run->second_mesh) SetSecondMesh(object, responses);
     PetscCall(LamPrintJSON(object));
     PetscFunctionReturn(0);

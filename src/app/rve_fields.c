@@ -80,6 +80,22 @@ static PetscErrorCode WriteInterface(LamRecordWriter writer, const char group[],
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamRVEWriteMode(LamRecordWriter writer, const char group[], LamRVE rve, LamRVEState state)
+{
+  PetscReal *mode, eigenvalue;
+  PetscInt dims[2] = {0, 2};
+  LamRVEMesh mesh;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEGetMesh(rve, &mesh));
+  dims[0] = mesh.node_count;
+  PetscCall(PetscMalloc1(2 * dims[0], &mode));
+  PetscCall(LamRVEGetSoftestMode(rve, state, &eigenvalue, mode));
+  PetscCall(WriteReals(writer, group, "softest_mode", 2, dims, mode, "1"));
+  PetscCall(PetscFree(mode));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamRVEWriteFields(LamRecordWriter writer, const char group[], LamRVE rve, LamRVEState state,
                                  const LamScales *scales)
 {

@@ -94,12 +94,89 @@ static void TurgorDoesNotMoveTheOnset(void **state)
   AssertOnset(1, 0.02 / TISSUE_STRESS, 0.0227, 3e-4);
 }
 
+/* Largest difference of the four cells under biaxial compression. */
+static double CellDifference(double strain)
+{
+  const LamLoad load = PlaneLoad(1 - strain, 0, 0, 1 - strain, 0);
+  LamRVE rve = CellsRVE(2);
+  LamRVEState at;
+  LamResponse r;
+  double difference;
+
+  assert_int_equal(LamRVEStateCreate(rve, &at), 0);
+  assert_int_equal(LamRVESolve(rve, &load, at, &r), 0);
+  assert_int_equal(r.status, LAM_CONVERGED);
+  assert_int_equal(LamRVEGetCellDifference(rve, at, &difference), 0);
+  assert_int_equal(LamRVEStateDestroy(&at), 0);
+  assert_int_equal(LamRVEDestroy(&rve), 0);
+  return difference;
+}
+
+static void CellsDifferOnceTheyHaveBuckledInALongerPattern(void **state)
+{
+  assert_near(CellDifference(0.01), 0.0, 1e-9);
+  assert_true(CellDifference(0.02) > 0.05);
+}
+
+static double Energy(LamRVE rve, const LamLoad *load, const double y[])
+{
+  double energy;
+  PetscBool valid;
+
+  assert_int_equal(LamAssembleEnergy(rve, load, y, &energy, &valid), 0);
+  assert_true(valid);
+  return energy;
+}
+
+/* The mode of a state as a motion of the classes of nodes. */
+static void GetMode(LamRVE rve, LamRVEState at, double *eigenvalue, double motion[])
+{
+  double *mode = calloc((size_t)(2 * rve->mesh.node_count), sizeof(*mode));
+
+  assert_int_equal(LamRVEGetSoftestMode(rve, at, eigenvalue, mode), 0);
+  for (int i = 0; i < 2 * rve->mesh.node_count; i++) motion[2 * rve->mesh.node_class[i / 2] + i % 2] = mode[i];
+  free(mode);
+}
+
+/* d2 Pi(y + s m)/ds2 = eigenvalue m.m along the mode m of an unstable state. */
+static void EnergyFallsAlongTheModeOfAnUnstableState(void **state)
+{
+  const LamLoad load = PlaneLoad(1 - BEYOND, 0, 0, 1 - BEYOND, 0);
+  const double h = 1e-4;
+  LamRVE rve = CellsRVE(1);
+  LamRVEState at;
+  double *mode = calloc((size_t)rve->ndof, sizeof(*mode)), *y = calloc((size_t)rve->ndof, sizeof(*y));
+  double eigenvalue, square = 0, second = 0;
+  PetscBool ok;
+
+  assert_int_equal(LamRVEStateCreate(rve, &at), 0);
+  assert_int_equal(SolveSymmetric(rve, &load, &ok), 0);
+  assert_true(ok);
+  LamKeepState(rve, &load, 0, at);
+  GetMode(rve, at, &eigenvalue, mode);
+  for (int i = 0; i < rve->ndof; i++) square += mode[i] * mode[i];
+  for (int side = -1; side <= 1; side++) {
+    for (int i = 0; i < rve->ndof; i++) y[i] = at->y[i] + side * h * mode[i];
+    second += (side ? 1 : -2) * Energy(rve, &load, y) / (h * h);
+  }
+  assert_true(eigenvalue < 0);
+  assert_near(second / (eigenvalue * square), 1.0, 1e-3);
+  free(mode);
+  free(y);
+  assert_int_equal(LamRVEStateDestroy(&at), 0);
+  assert_int_equal(LamRVEDestroy(&rve), 0);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(OneCellBucklesAtTwoPercent), cmocka_unit_test(FourCellsBuckleAtHalfThatStrain),
-      cmocka_unit_test(BuckledStateHasLessEnergy),  cmocka_unit_test(BuckledBranchIsFollowed),
+      cmocka_unit_test(OneCellBucklesAtTwoPercent),
+      cmocka_unit_test(FourCellsBuckleAtHalfThatStrain),
+      cmocka_unit_test(BuckledStateHasLessEnergy),
+      cmocka_unit_test(BuckledBranchIsFollowed),
       cmocka_unit_test(TurgorDoesNotMoveTheOnset),
+      cmocka_unit_test(CellsDifferOnceTheyHaveBuckledInALongerPattern),
+      cmocka_unit_test(EnergyFallsAlongTheModeOfAnUnstableState),
   };
   int failed;
 
