@@ -91,7 +91,7 @@ PetscErrorCode LamRVEWriteMode(LamRecordWriter writer, const char group[], LamRV
   dims[0] = mesh.node_count;
   PetscCall(PetscMalloc1(2 * dims[0], &mode));
   PetscCall(LamRVEGetSoftestMode(rve, state, &eigenvalue, mode));
-  PetscCall(WriteReals(writer, group, "softest_mode", 2, dims, mode, "1"));
+  if (eigenvalue < 0.0) PetscCall(WriteReals(writer, group, "softest_mode", 2, dims, mode, "1"));
   PetscCall(PetscFree(mode));
   PetscFunctionReturn(0);
 }

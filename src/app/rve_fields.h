@@ -12,7 +12,7 @@ PetscErrorCode LamRVEWriteMesh(LamRecordWriter writer, const char group[], LamRV
 /* <group>/x, fibre_stretch, wall_stress of a solved state; of contact tissue interface/from, to, gap, pressure. */
 PetscErrorCode LamRVEWriteFields(LamRecordWriter writer, const char group[], LamRVE rve, LamRVEState state,
                                  const LamScales *scales);
-/* <group>/softest_mode of a state that is not stable. */
+/* <group>/softest_mode of a state that is not stable at its F. */
 PetscErrorCode LamRVEWriteMode(LamRecordWriter writer, const char group[], LamRVE rve, LamRVEState state);
 
 #endif
