@@ -136,7 +136,8 @@ static void FindNumbers(const Front *front, LamRemains *r)
                               FindReal(front, "stress_unit_Pa", PETSC_TRUE, &r->scales.stress) &&
                               FindReal(front, "macro_length_unit_m", PETSC_FALSE, &r->scales.macro_length) &&
                               FindReal(front, "accuracy", PETSC_FALSE, &r->accuracy));
-  if (!FindNumber(front, &from, "committed", sizeof(int_type), int_type, sizeof(r->committed), &r->committed))
+  if (!FindNumber(front, &from, "committed", sizeof(int_type), int_type, sizeof(r->committed), &r->committed) ||
+      r->committed < 0 || r->committed >= PETSC_MAX_INT)
     r->committed = -1;
 }
 

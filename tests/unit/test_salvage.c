@@ -209,23 +209,42 @@ static void wherever_a_file_is_damaged_the_rest_is_found(void **state)
   free(bytes);
 }
 
-/* A commit that was interrupted before the counter was raised. */
-static void records_beyond_the_counter_are_taken(void **state)
+static void SetCounter(PetscInt64 count)
 {
-  const PetscInt64 fewer = 150;
-  hid_t file, dataset, attribute;
+  const hid_t file = H5Fopen(shard_path[0], H5F_ACC_RDWR, H5P_DEFAULT);
+  const hid_t dataset = H5Dopen2(file, "/records", H5P_DEFAULT);
+  const hid_t attribute = H5Aopen(dataset, "committed", H5P_DEFAULT);
 
-  WriteSound(0);
-  file = H5Fopen(shard_path[0], H5F_ACC_RDWR, H5P_DEFAULT);
-  dataset = H5Dopen2(file, "/records", H5P_DEFAULT);
-  attribute = H5Aopen(dataset, "committed", H5P_DEFAULT);
-  H5Awrite(attribute, H5T_NATIVE_INT64, &fewer);
+  H5Awrite(attribute, H5T_NATIVE_INT64, &count);
   H5Aclose(attribute);
   H5Dclose(dataset);
   H5Fclose(file);
+}
+
+/* A commit that was interrupted before the counter was raised. */
+static void records_beyond_the_counter_are_taken(void **state)
+{
+  WriteSound(0);
+  SetCounter(150);
   assert_int_equal(SalvageShards(1), 0);
   AssertAllSound(COUNT);
   assert_int_equal(report.left_out, 0);
+}
+
+static void a_counter_that_cannot_be_is_not_believed(void **state)
+{
+  const PetscInt64 counts[] = {INT64_MIN, -1, INT64_MAX};
+
+  for (int k = 0; k < 3; k++) {
+    WriteSound(0);
+    SetCounter(counts[k]);
+    assert_int_equal(SalvageShards(1), 0);
+    AssertAllSound(COUNT);
+    assert_int_equal(report.left_out, 0);
+    assert_non_null(strstr(told, "how many it held cannot be made out any more"));
+    unlink(path);
+    unlink(shard_path[0]);
+  }
 }
 
 /* Sound as they are, they answer other questions than their keys say. */
@@ -334,6 +353,7 @@ int main(void)
       MERGE_TEST(a_damaged_unit_is_told),
       MERGE_TEST(wherever_a_file_is_damaged_the_rest_is_found),
       MERGE_TEST(records_beyond_the_counter_are_taken),
+      MERGE_TEST(a_counter_that_cannot_be_is_not_believed),
       MERGE_TEST(nodes_of_another_grid_are_left_out),
       MERGE_TEST(a_damaged_file_of_other_tissue_is_refused),
       MERGE_TEST(a_file_that_does_not_tell_its_tissue_is_left_out),
