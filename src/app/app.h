@@ -109,6 +109,7 @@ PetscErrorCode LamProgressEnd(LamProgress *progress);
 
 /* ---- signals.c: SIGINT, SIGTERM, SIGUSR1 ask the command to commit and stop ---- */
 PetscErrorCode LamSignalsInstall(void);
+void LamFaultsTell(void); /* SIGSEGV and SIGBUS are told in words before they end the program */
 PetscBool LamStopRequested(void);
 PetscBool LamStopInterrupt(void *ctx); /* the same, for LamRVESetInterrupt */
 /* As if SIGTERM had come: another rank has got a signal. */

@@ -255,6 +255,7 @@ int main(int argc, char *argv[])
 
   FillStreams();
   UseOneThread();
+  LamFaultsTell();
   signal(SIGPIPE, SIG_IGN);                   /* a closed pipe is an error of writing, told as such */
   signal(SIGXFSZ, SIG_IGN);                   /* so is a file that may not grow */
   PetscErrorHandlingInitialized = PETSC_TRUE; /* else PETSc calls no handler before PetscInitialize */

@@ -1,15 +1,18 @@
 /*
-  Signals that ask for an orderly end. Commands look at LamStopRequested between states, solves before each
+  Signals that tell of a fault, and those that ask for an orderly end. Commands look at LamStopRequested between states, solves before each
   factorisation; what is under way is given up, what is solved is committed.
 */
 #include "app.h"
+#include <execinfo.h>
 #include <lamella/clock.h>
 #include <signal.h>
 #include <string.h>
+#include <unistd.h>
 
 /* Several may arrive for one wish to stop, as a batch system and mpirun both pass them on: those of a burst are one.
    Whoever goes on wishing gets his way. */
 #define PATIENCE 3
+#define MOST_FRAMES 64 /* of the trace of a fault */
 #define BURST 0.5 /* s */
 
 static volatile sig_atomic_t StopSignal, Count;
@@ -35,6 +38,30 @@ static void Request(int number)
   if (again || ++Count < PATIENCE) return;
   signal(number, SIG_DFL);
   raise(number);
+}
+
+/* Then the signal does what it does without: it ends the program. */
+static void Fault(int number)
+{
+  static const char words[] =
+      "lamella: a fault of memory, in Lamella or in a library that it uses; what was committed is in the file. Where a "
+      "file was being read it may be damaged in a way that HDF5 does not stand: take a copy of it that is sound. Else "
+      "please report it:\n";
+
+  void *frames[MOST_FRAMES];
+
+  if (write(STDERR_FILENO, words, sizeof(words) - 1) < 0) _exit(LAM_EXIT_FAULT);
+  backtrace_symbols_fd(frames, backtrace(frames, MOST_FRAMES), STDERR_FILENO);
+  signal(number, SIG_DFL);
+  raise(number);
+}
+
+void LamFaultsTell(void)
+{
+#ifndef __SANITIZE_ADDRESS__ /* which tells more */
+  signal(SIGSEGV, Fault);
+  signal(SIGBUS, Fault);
+#endif
 }
 
 PetscErrorCode LamSignalsInstall(void)

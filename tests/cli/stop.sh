@@ -33,3 +33,13 @@ stop() {
 stop TERM 143 '^  fast    0'
 stop INT 130 '^  contact   0'
 stop USR1 143 '^  contact   1'
+
+# a fault of memory is told in words (by the sanitizer in its own) before it ends the program
+"$lamella" rve fine.yaml --quiet >out.txt 2>err.txt &
+pid=$!
+until grep -q state out.txt || ! kill -0 $pid 2>/dev/null; do sleep 0.01; done
+kill -s SEGV $pid || fail "the run had ended: $(tail -1 err.txt)"
+status=0
+wait $pid || status=$?
+[ $status -ne 0 ] || fail "a fault of memory ends with status 0"
+grep -q -e 'lamella: a fault of memory, in Lamella or in a library' -e AddressSanitizer err.txt || fail "$(cat err.txt)"
