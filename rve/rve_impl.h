@@ -14,6 +14,7 @@
     contact.c            cell faces in contact: pairs, junctions, active set
     contact_step.c contact_update.c contact_newton.c contact_safe.c    one contact equilibrium from a start
     contact_start.c contact_try.c contact_walk.c contact_path.c           starts, judging a solution, ways to it
+    nested.c             a start from the solution of a coarser mesh
     lumen.c overlap.c    lumens whose walls have met, cells that lie in each other
     homogenise.c         stress, tangent and couplings by static condensation
     mixed.c mixed_fast.c mixed_safe.c     states of which some components of P are prescribed
