@@ -4,13 +4,14 @@
 
     extremes FILE.jsonl [--first ID] [--count N] [--jobs J] [--no-routes]     N states, by default all pairs of ends
     extremes FILE.jsonl --ids LIST [...]                                      those of a file of numbers
+    extremes FILE.jsonl --picture                                             SVG of the pairs
     extremes --scene ID                                                       the scene of a state
     extremes --list [--first ID] [--count N]                                  their quantities
 
   States are solved by worker processes, so that a crash or an endless run is an entry of the map, too. Exit status 3: a
   state is not finite, slow or has crashed; estimates that are too small are counted.
 */
-#include "extremes_judge.h"
+#include "extremes_picture.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <jansson.h>
@@ -277,6 +278,38 @@ static void Supervise(Run *run)
   for (PetscInt w = 0; w < run->jobs; w++) End(&workers[w]);
 }
 
+/* Of a line, as a number; -1: none. */
+static int Verdict(json_t *object)
+{
+  const char *verdict = json_string_value(json_object_get(object, "verdict"));
+
+  for (int v = 0; v < EXTREMES_VERDICT_COUNT && verdict; v++)
+    if (!strcmp(verdict, ExtremesVerdictNames[v])) return v;
+  return -1;
+}
+
+static int Draw(const Run *run)
+{
+  int *verdicts = malloc((size_t)ExtremesPairCount() * sizeof(*verdicts));
+  FILE *file = fopen(run->path, "r");
+  char *line = NULL;
+  size_t size = 0;
+
+  for (PetscInt id = 0; id < ExtremesPairCount(); id++) verdicts[id] = -1;
+  while (file && getline(&line, &size, file) > 0) {
+    json_t *object = json_loads(line, 0, NULL);
+    const json_int_t id = json_integer_value(json_object_get(object, "id"));
+
+    if (object && id >= 0 && id < ExtremesPairCount()) verdicts[id] = Verdict(object);
+    json_decref(object);
+  }
+  if (file) fclose(file);
+  ExtremesPicture(verdicts);
+  free(line);
+  free(verdicts);
+  return file ? 0 : 1;
+}
+
 /* Counts by verdict, bonded and in contact, of what the file holds of this run; whether nothing is worse than an
    estimate that is too small. */
 static PetscBool Summarise(const Run *run)
@@ -288,10 +321,9 @@ static PetscBool Summarise(const Run *run)
 
   while (file && getline(&line, &size, file) > 0) {
     json_t *object = json_loads(line, 0, NULL);
-    const char *verdict = json_string_value(json_object_get(object, "verdict"));
+    const int verdict = Verdict(object);
 
-    for (int v = 0; v < EXTREMES_VERDICT_COUNT && verdict; v++)
-      if (!strcmp(verdict, ExtremesVerdictNames[v])) counts[v][json_is_true(json_object_get(object, "contact"))]++;
+    if (verdict >= 0) counts[verdict][json_is_true(json_object_get(object, "contact"))]++;
     json_decref(object);
   }
   free(line);
@@ -332,7 +364,7 @@ int main(int argc, char **argv)
 {
   Run run = {.first = 0, .end = ExtremesPairCount(), .jobs = 1, .routes = PETSC_TRUE};
   PetscInt count = -1;
-  PetscBool list = PETSC_FALSE, is_known = PETSC_TRUE;
+  PetscBool list = PETSC_FALSE, picture = PETSC_FALSE, is_known = PETSC_TRUE;
 
   for (int k = 1; k < argc; k++) {
     const char *value = k + 1 < argc ? argv[k + 1] : "0";
@@ -348,6 +380,8 @@ int main(int argc, char **argv)
       run.list = value, run.end = 1000000, k++;
     else if (!strcmp(argv[k], "--no-routes"))
       run.routes = PETSC_FALSE;
+    else if (!strcmp(argv[k], "--picture"))
+      picture = PETSC_TRUE;
     else if (!strcmp(argv[k], "--list"))
       list = PETSC_TRUE;
     else if (argv[k][0] != '-')
@@ -359,9 +393,10 @@ int main(int argc, char **argv)
   if (list && is_known) return PrintList(&run);
   if (!run.path || !is_known) {
     fprintf(stderr, "extremes FILE.jsonl [--first ID] [--count N] [--ids LIST] [--jobs J] [--no-routes]\n"
-                    "extremes --list [--first ID] [--count N]\nextremes --scene ID\n");
+                    "extremes FILE.jsonl --picture\nextremes --list [--first ID] [--count N]\nextremes --scene ID\n");
     return 1;
   }
+  if (picture) return Draw(&run);
   run.done = calloc((size_t)(run.end - run.first), 1);
   if (run.list) ReadList(&run);
   ReadDone(&run);
