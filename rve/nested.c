@@ -237,8 +237,8 @@ static PetscErrorCode NameMesh(LamRVE rve, LamResponse *response)
   PetscFunctionBeginUser;
   if (!response->reason[0]) PetscFunctionReturn(0);
   PetscCall(PetscStrncpy(reason, response->reason, sizeof(reason)));
-  PetscCall(PetscSNPrintf(response->reason, sizeof(response->reason), "on a mesh of %d x %d elements a face: %s",
-                          (int)rve->micro.along, (int)rve->micro.through, reason));
+  PetscCall(PetscSNPrintf(response->reason, sizeof(response->reason), "on %d x %d elements: %s", (int)rve->micro.along,
+                          (int)rve->micro.through, reason));
   PetscFunctionReturn(0);
 }
 
