@@ -271,15 +271,13 @@ static PetscErrorCode End(LamRVE rve, const LamLoad *start, const LamLoad *load,
 /* As far as steps of the smallest length lead. */
 static PetscErrorCode Go(LamRVE rve, const LamLoad *start, const LamLoad *load, Way *way, LamContactOutcome *out)
 {
-  PetscBool last = PETSC_FALSE;
-
   PetscFunctionBeginUser;
   while (way->reached < 1.0 && LamMayIterate(rve)) {
     const PetscReal least = LamIsKinking(&way->kinking) ? LAM_KINKED_SUBSTEP : way->least;
     const PetscReal t = PetscMin(1.0, way->reached + PetscMax(way->step, least));
+    const PetscBool last = (PetscBool)(way->step < least);
     LamLoad next = t >= 1.0 ? *load : LamLoadBetween(start, load, t);
 
-    last = (PetscBool)(way->step < least);
     if (last) {
       if (out->refusal != LAM_NOT_REFUSED || way->snaps++ >= MAX_SNAPS) break;
       PetscCall(Snap(rve, way->at, &next, out));

@@ -4,14 +4,11 @@
 */
 #include "rve_impl.h"
 
-/* Values at an element's nodes of the least-squares bilinear function through the 3 x 3 Gauss values. */
-static void ExtrapolateToNodes(const PetscReal gauss[LAM_GAUSS], PetscReal node[LAM_ELEMENT_NODES])
+void LamFitBilinear(const PetscReal gauss[LAM_GAUSS], PetscReal c[4])
 {
-  static const PetscReal at[LAM_ELEMENT_NODES][2] = {{-1, -1}, {1, -1}, {1, 1},  {-1, 1}, {0, -1},
-                                                     {1, 0},   {0, 1},  {-1, 0}, {0, 0}};
   const PetscReal r2 = 0.6; /* square of the Gauss abscissa */
-  PetscReal c[4] = {0.0, 0.0, 0.0, 0.0};
 
+  for (PetscInt k = 0; k < 4; ++k) c[k] = 0.0;
   for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
     PetscReal xi, eta, weight;
 
@@ -21,6 +18,16 @@ static void ExtrapolateToNodes(const PetscReal gauss[LAM_GAUSS], PetscReal node[
     c[2] += gauss[g] * eta / (6.0 * r2);
     c[3] += gauss[g] * xi * eta / (4.0 * r2 * r2);
   }
+}
+
+/* Values at an element's nodes of the least-squares bilinear function through the 3 x 3 Gauss values. */
+static void ExtrapolateToNodes(const PetscReal gauss[LAM_GAUSS], PetscReal node[LAM_ELEMENT_NODES])
+{
+  static const PetscReal at[LAM_ELEMENT_NODES][2] = {{-1, -1}, {1, -1}, {1, 1},  {-1, 1}, {0, -1},
+                                                     {1, 0},   {0, 1},  {-1, 0}, {0, 0}};
+  PetscReal c[4];
+
+  LamFitBilinear(gauss, c);
   for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
     node[a] = c[0] + c[1] * at[a][0] + c[2] * at[a][1] + c[3] * at[a][0] * at[a][1];
 }
@@ -67,10 +74,7 @@ static PetscErrorCode TakeState(LamRVE rve, LamRVEState state)
   PetscCall(PetscArraycpy(rve->y, state->y, rve->length));
   if (!rve->contact) PetscFunctionReturn(0);
   PetscCall(PetscArraycpy(rve->contact->lambda, state->lambda, state->multipliers));
-  for (PetscInt f = 0; f < state->faces; ++f) {
-    rve->contact->faces[f].first = state->hats[f][0];
-    rve->contact->faces[f].last = state->hats[f][1];
-  }
+  LamTakeJunctions(rve, state);
   PetscCall(LamContactEvaluate(rve, &state->load, rve->y, PETSC_FALSE));
   (void)LamContactFindActive(rve->contact, 0.0);
   PetscFunctionReturn(0);
@@ -79,26 +83,26 @@ static PetscErrorCode TakeState(LamRVE rve, LamRVEState state)
 PetscErrorCode LamRVEGetSoftestMode(LamRVE rve, LamRVEState state, PetscReal *eigenvalue, PetscReal mode[])
 {
   const LamMesh *mesh = &rve->mesh;
-  PetscReal *free, largest;
+  PetscReal *unknowns, largest;
   PetscInt negative;
   PetscBool ok;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(rve->linear.n, &free));
+  PetscCall(PetscCalloc1(rve->linear.n, &unknowns));
   *eigenvalue = NAN;
   rve->linear.rate = PETSC_INFINITY;
   rve->consistent = PETSC_FALSE;
   PetscCall(TakeState(rve, state));
   PetscCall(LamFactorConsistent(rve, &state->load, &negative, &ok));
-  if (ok) PetscCall(LamSoftestMode(rve, eigenvalue, free));
-  largest = LamLargestEntry(rve->linear.positions, free);
+  if (ok) PetscCall(LamSoftestMode(rve, eigenvalue, unknowns));
+  largest = LamLargestEntry(rve->linear.positions, unknowns);
   for (PetscInt i = 0; i < mesh->node_count; ++i)
     for (PetscInt d = 0; d < 2; ++d) {
       const PetscInt at = 2 * (mesh->node_class[i] - 1) + d; /* the first class is held */
 
-      mode[2 * i + d] = at >= 0 && largest > 0.0 ? free[at] / largest : 0.0;
+      mode[2 * i + d] = at >= 0 && largest > 0.0 ? unknowns[at] / largest : 0.0;
     }
-  PetscCall(PetscFree(free));
+  PetscCall(PetscFree(unknowns));
   PetscFunctionReturn(0);
 }
 

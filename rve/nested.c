@@ -10,7 +10,7 @@
 */
 #include "contact_path.h"
 
-#define LARGE 2000 /* elements: below, the way itself costs a second or two */
+#define LARGE 2000 /* elements, from which on a coarser mesh is asked first */
 
 static PetscInt Half(PetscInt n)
 {
@@ -113,26 +113,6 @@ static void ProlongContact(LamRVE coarse, const LamRVEState from, LamRVE rve)
   }
 }
 
-/* Coefficients of 1, xi, eta, xi eta in the least-squares fit to the values at the Gauss points of an element. */
-static void Fit(const PetscReal value[LAM_GAUSS], PetscReal fit[4])
-{
-  PetscReal squares[4] = {0.0};
-
-  for (PetscInt k = 0; k < 4; ++k) fit[k] = 0.0;
-  for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
-    PetscReal xi, eta, weight;
-
-    LamGaussPoint(g, &xi, &eta, &weight);
-    const PetscReal base[4] = {1.0, xi, eta, xi * eta};
-
-    for (PetscInt k = 0; k < 4; ++k) {
-      fit[k] += base[k] * value[g];
-      squares[k] += base[k] * base[k];
-    }
-  }
-  for (PetscInt k = 0; k < 4; ++k) fit[k] /= squares[k];
-}
-
 /* Pressure and fibre stress of an element as fits. */
 static void FitStresses(LamRVE rve, PetscInt e, PetscReal p[4], PetscReal s[4])
 {
@@ -143,8 +123,8 @@ static void FitStresses(LamRVE rve, PetscInt e, PetscReal p[4], PetscReal s[4])
     pressure[g] = 0.0;
     for (PetscInt k = 0; k < LAM_PRESSURES; ++k) pressure[g] += rve->geometry[e].psi[g][k] * stress->p[k];
   }
-  Fit(pressure, p);
-  Fit(stress->s, s);
+  LamFitBilinear(pressure, p);
+  LamFitBilinear(stress->s, s);
 }
 
 /* The coordinate in [-1, 1] of `place`, counted in elements, in the element that it is in. */
@@ -164,12 +144,12 @@ static void ProlongStress(LamRVE coarse, const PetscReal (*fits)[2][4], LamRVE r
 
   for (PetscInt k = 0; k < LAM_PRESSURES; ++k) stress->p[k] = 0.0;
   for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
-    const PetscReal along = (PetscReal)mesh->through / (PetscReal)rve->mesh.through;
+    const PetscReal ratio = (PetscReal)mesh->through / (PetscReal)rve->mesh.through;
     PetscReal xi, eta, weight, p = 0.0;
     PetscInt i0, m0;
 
     LamGaussPoint(g, &xi, &eta, &weight);
-    xi = Local(along * ((PetscReal)m + 0.5 * (1.0 + xi)), mesh->through, &m0);
+    xi = Local(ratio * ((PetscReal)m + 0.5 * (1.0 + xi)), mesh->through, &m0);
     eta = Local(LamMeshPlace(mesh, LamMeshShare(&rve->mesh, (PetscReal)i + 0.5 * (1.0 + eta))), mesh->along, &i0);
 
     const PetscReal base[4] = {1.0, xi, eta, xi * eta};

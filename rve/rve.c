@@ -316,8 +316,7 @@ PetscErrorCode LamAcceptSolution(LamRVE rve, const LamLoad *load, LamRVEState st
   PetscFunctionReturn(0);
 }
 
-/* Junction statuses are those of the state, not those that the solve before has left. */
-static void BeginFrom(LamRVE rve, LamRVEState state)
+void LamTakeJunctions(LamRVE rve, LamRVEState state)
 {
   for (PetscInt f = 0; f < state->faces; ++f) {
     rve->contact->faces[f].first = state->hats[f][0];
@@ -336,7 +335,7 @@ PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamRVEState sta
   rve->lowest_eigenvalue = NAN;
   rve->linear.rate = PETSC_INFINITY;
   rve->consistent = PETSC_FALSE;
-  BeginFrom(rve, state);
+  LamTakeJunctions(rve, state);
   PetscFunctionReturn(0);
 }
 
@@ -344,7 +343,7 @@ PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamRVEState sta
 static PetscErrorCode Follow(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
 {
   PetscFunctionBeginUser;
-  BeginFrom(rve, state);
+  LamTakeJunctions(rve, state);
   if (rve->contact)
     PetscCall(LamContactFollowPath(rve, load, state, response));
   else

@@ -396,6 +396,10 @@ PetscErrorCode LamContactNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOu
 /* As LamFollowPath; the solution is in rve->y and contact->lambda. */
 PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
 
+/* ---- fields.c ---- */
+/* Coefficients of 1, xi, eta, xi eta in the least-squares fit to the values at the Gauss points of an element. */
+void LamFitBilinear(const PetscReal gauss[LAM_GAUSS], PetscReal c[4]);
+
 /* ---- nested.c ---- */
 /* Whether a solve from `state` is to start from a coarser mesh. */
 PetscBool LamIsNested(LamRVE rve, const LamRVEState state);
@@ -485,6 +489,8 @@ PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamRVEState sta
 /* Fills the fields of a response whose status says that rve->y (and the multipliers) are a solution at `load`, with its
    consistent tangent factored, and stores it in `state`; refuses it where a lumen has collapsed. */
 PetscErrorCode LamAcceptSolution(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
+/* Junction statuses become those of the state, not those that the solve before has left. */
+void LamTakeJunctions(LamRVE rve, LamRVEState state);
 /* The solution that rve holds becomes the state. */
 void LamKeepState(LamRVE rve, const LamLoad *load, PetscInt branch, LamRVEState state);
 
