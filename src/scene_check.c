@@ -61,7 +61,7 @@ static PetscErrorCode FailUnknown(const LamDocument *document, const LamNode *no
              LamKeyIsChild(nearest, map) ? LamKeyName(nearest) : nearest->path);
   }
   for (PetscInt i = 0; i < LamKeyCount && used < sizeof(known); i++) {
-    if (!LamKeyIsChild(&LamKeys[i], map) || LamKeys[i].unavailable) continue;
+    if (!LamKeyIsChild(&LamKeys[i], map)) continue;
     used += (size_t)snprintf(known + used, sizeof(known) - used, "%s%s", used ? ", " : "", LamKeyName(&LamKeys[i]));
   }
   PetscCall(LamSceneFailName(document, node, "unknown key; %sknown here: %s", meant, known));
@@ -151,21 +151,31 @@ static PetscErrorCode ReadQuantity(const LamDocument *document, const LamNode *n
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CheckBounds(const LamDocument *document, const LamNode *node, const LamKey *key, PetscReal number)
+/* A bound in SI. */
+static PetscErrorCode BoundValue(const LamKey *key, const LamBound *bound, PetscReal *value)
 {
-  PetscReal unit = 1.0;
-  PetscBool inside = PETSC_TRUE;
+  char text[LAM_REASON_LENGTH];
 
   PetscFunctionBeginUser;
-  if (key->unit) {
-    char one[40];
-    snprintf(one, sizeof(one), "1 %s", key->unit);
-    PetscCall(LamQuantityParse(one, key->dimension, &unit));
-  }
-  if (key->lower.kind == LAM_BOUND_INCLUDED && number < key->lower.value * unit) inside = PETSC_FALSE;
-  if (key->lower.kind == LAM_BOUND_EXCLUDED && number <= key->lower.value * unit) inside = PETSC_FALSE;
-  if (key->upper.kind == LAM_BOUND_INCLUDED && number > key->upper.value * unit) inside = PETSC_FALSE;
-  if (key->upper.kind == LAM_BOUND_EXCLUDED && number >= key->upper.value * unit) inside = PETSC_FALSE;
+  *value = bound->value;
+  if (bound->kind == LAM_BOUND_NONE || !key->unit) PetscFunctionReturn(0);
+  snprintf(text, sizeof(text), "%.17g %s", (double)bound->value, key->unit);
+  PetscCall(LamQuantityParse(text, key->dimension, value));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CheckBounds(const LamDocument *document, const LamNode *node, const LamKey *key, PetscReal number)
+{
+  PetscBool inside = PETSC_TRUE;
+  PetscReal lower, upper;
+
+  PetscFunctionBeginUser;
+  PetscCall(BoundValue(key, &key->lower, &lower));
+  PetscCall(BoundValue(key, &key->upper, &upper));
+  if (key->lower.kind == LAM_BOUND_INCLUDED && number < lower) inside = PETSC_FALSE;
+  if (key->lower.kind == LAM_BOUND_EXCLUDED && number <= lower) inside = PETSC_FALSE;
+  if (key->upper.kind == LAM_BOUND_INCLUDED && number > upper) inside = PETSC_FALSE;
+  if (key->upper.kind == LAM_BOUND_EXCLUDED && number >= upper) inside = PETSC_FALSE;
   if (!inside) PetscCall(FailValue(document, node, key, PETSC_TRUE, "is out of range"));
   PetscFunctionReturn(0);
 }
@@ -295,9 +305,6 @@ static PetscErrorCode ReadNode(const LamDocument *document, LamNode *node, const
 {
   PetscFunctionBeginUser;
   node->key = key;
-  if (key->unavailable) {
-    PetscCall(LamSceneFailName(document, node, "this version of Lamella does not have it yet; leave it out"));
-  }
   switch (key->type) {
   case LAM_KEY_MAP:
     PetscCall(ReadMap(document, node, key));

@@ -11,15 +11,22 @@
 #include <string.h>
 #include <udunits2.h>
 
-const char *const LamDimensionNames[] = {"length", "stress", "angle"};
-const char *const LamDimensionExamples[] = {"75 um", "0.1 MPa", "30 deg"};
+const char *const LamDimensionNames[] = {"length",      "stress", "angle",        "time",
+                                         "temperature", "rate",   "molar energy", "permeability"};
+const char *const LamDimensionExamples[] = {"75 um",   "0.1 MPa",  "30 deg",    "2 h",
+                                            "20 degC", "0.1 /day", "60 kJ/mol", "1e-7 m/s/MPa"};
 
-enum { BASE_UNITS = 4 };
-static const char *const base_symbols[BASE_UNITS] = {"m", "kg", "s", "rad"};
+enum { BASE_UNITS = 6 };
+static const char *const base_symbols[BASE_UNITS] = {"m", "kg", "s", "rad", "K", "mol"};
 static const int dimension_powers[][BASE_UNITS] = {
-    [LAM_DIMENSION_LENGTH] = {1, 0, 0, 0},
-    [LAM_DIMENSION_STRESS] = {-1, 1, -2, 0},
-    [LAM_DIMENSION_ANGLE] = {0, 0, 0, 1},
+    [LAM_DIMENSION_LENGTH] = {1, 0, 0, 0, 0, 0},
+    [LAM_DIMENSION_STRESS] = {-1, 1, -2, 0, 0, 0},
+    [LAM_DIMENSION_ANGLE] = {0, 0, 0, 1, 0, 0},
+    [LAM_DIMENSION_TIME] = {0, 0, 1, 0, 0, 0},
+    [LAM_DIMENSION_TEMPERATURE] = {0, 0, 0, 0, 1, 0},
+    [LAM_DIMENSION_RATE] = {0, 0, -1, 0, 0, 0},
+    [LAM_DIMENSION_MOLAR_ENERGY] = {2, 1, -2, 0, 0, -1},
+    [LAM_DIMENSION_PERMEABILITY] = {2, -1, 1, 0, 0, 0}, /* m/s per Pa */
 };
 
 /* The units database: read at first use (it takes some milliseconds), freed when the process ends. */
@@ -57,11 +64,11 @@ static PetscErrorCode UnitSystemGet(void)
   PetscFunctionReturn(0);
 }
 
-/* A unit taken apart: scale to SI and powers of the base units. */
+/* A unit taken apart: a number x of it is scale x + offset in SI; powers of the base units. */
 typedef struct {
-  double scale;
+  double scale, offset;
   int powers[BASE_UNITS];
-  PetscBool plain; /* PETSC_FALSE: it has an offset, a logarithm or other base units */
+  PetscBool plain; /* PETSC_FALSE: it has a logarithm or other base units */
 } UnitParts;
 
 static void AddBaseUnit(UnitParts *parts, const ut_unit *unit, int power)
@@ -109,8 +116,8 @@ static ut_status VisitGalilean(const ut_unit *unit, double scale, const ut_unit 
 {
   UnitParts *parts = (UnitParts *)arg;
 
+  parts->offset += parts->scale * scale * offset;
   parts->scale *= scale;
-  if (offset != 0.0) parts->plain = PETSC_FALSE;
   return ut_accept_visitor(underlying, &visitor, arg);
 }
 
@@ -180,27 +187,39 @@ static PetscBool HasZero(const char unit[])
   return PETSC_FALSE;
 }
 
+/* A rate may be written by its time: the length of "/" or "1/" before that. */
+static size_t ReciprocalLength(const char unit[])
+{
+  const size_t length = unit[0] == '1' && unit[1] == '/' ? 2 : unit[0] == '/' ? 1 : 0;
+
+  return length ? length + strspn(unit + length, " \t") : 0;
+}
+
 static PetscErrorCode QuantityConvert(PetscReal number, const char unit_text[], LamDimension dimension, PetscReal *si,
                                       char reason[LAM_REASON_LENGTH])
 {
+  const size_t skipped = dimension == LAM_DIMENSION_RATE ? ReciprocalLength(unit_text) : 0;
+  const LamDimension expected = skipped ? LAM_DIMENSION_TIME : dimension;
+  const char *text = unit_text + skipped;
   char unit[48];
-  size_t length = strlen(unit_text);
+  size_t length = strlen(text);
   UnitParts parts;
   PetscBool known = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  while (length && isspace((unsigned char)unit_text[length - 1])) length--;
-  snprintf(unit, sizeof(unit), "%.*s", (int)PetscMin(length, sizeof(unit)), unit_text);
+  while (length && isspace((unsigned char)text[length - 1])) length--;
+  snprintf(unit, sizeof(unit), "%.*s", (int)PetscMin(length, sizeof(unit)), text);
   /* a factor, sign or bracket in the unit is more likely a slip than meant */
   if (length < sizeof(unit) && (isalpha((unsigned char)unit[0]) || (unsigned char)unit[0] >= 0x80) && !HasZero(unit)) {
     PetscCall(UnitRead(unit, &parts, &known));
   }
   if (!known) {
     snprintf(reason, LAM_REASON_LENGTH, "the unit \"%s\" is unknown", unit);
-  } else if (!parts.plain || memcmp(parts.powers, dimension_powers[dimension], sizeof(parts.powers))) {
-    snprintf(reason, LAM_REASON_LENGTH, "\"%s\" is not a unit of %s", unit, LamDimensionNames[dimension]);
+  } else if (!parts.plain || memcmp(parts.powers, dimension_powers[expected], sizeof(parts.powers)) ||
+             (parts.offset != 0.0 && dimension != LAM_DIMENSION_TEMPERATURE)) {
+    snprintf(reason, LAM_REASON_LENGTH, "\"%s\" is not a unit of %s", unit, LamDimensionNames[expected]);
   } else {
-    *si = number * parts.scale;
+    *si = skipped ? number / parts.scale : number * parts.scale + parts.offset;
     if (!isfinite(*si)) snprintf(reason, LAM_REASON_LENGTH, "is too large");
   }
   PetscFunctionReturn(0);

@@ -8,6 +8,7 @@
 
 #include <petscsys.h>
 #include <stdio.h>
+#include <lamella/kinetics.h>
 #include <lamella/place_field.h>
 
 /* Enumerations and their names in scene files come from one list each. */
@@ -282,6 +283,59 @@ typedef struct {
 } LamResponsePolicy;
 #define LAM_WARM_START_MEMORY 2e9 /* of scenes that do not say it */
 
+/* What changes by a kinetic law, as a factor of what it is at the start. */
+#define LAM_CHANGING(X)                                                                                                \
+  X(LAM_CHANGING_LAMELLA, "lamella") /* cohesion, and the strengths of the lamella */                                  \
+  X(LAM_CHANGING_WALLS, "walls")     /* all moduli of the walls */                                                     \
+  X(LAM_CHANGING_C1, "C1")           /* one of them, beside that */                                                    \
+  X(LAM_CHANGING_C2, "C2")                                                                                             \
+  X(LAM_CHANGING_C4, "C4")                                                                                             \
+  X(LAM_CHANGING_WALL_STRENGTH, "wall_strength")                                                                       \
+  X(LAM_CHANGING_SOLUTES, "solutes") /* amount in a cell */                                                            \
+  X(LAM_CHANGING_PERMEABILITY, "permeability")                                                                         \
+  X(LAM_CHANGING_REFLECTION, "reflection")
+typedef enum { LAM_CHANGING(LAM_ENUM_ENTRY) LAM_CHANGING_COUNT } LamChanging;
+extern const char *const LamChangingNames[]; /* "lamella", ... */
+
+/* Water that passes the membranes of the cells; pressures in C1 + C2. */
+typedef struct {
+  PetscReal permeability; /* Lp (C1 + C2) / apothem, 1/s; infinite: water is in equilibrium at any time */
+  PetscReal activation;   /* of Lp, J/mol, from the temperature at the start */
+  PetscReal reflection;   /* sigma */
+  PetscReal osmotic;      /* pi of the cells at the start; NaN: in equilibrium with turgor and surroundings */
+  PetscReal non_osmotic;  /* share of the lumen at the start that is no solution */
+} LamWaterSpec;
+
+/* The surroundings at a time; straight between such, constant beyond; two at one time: a jump. */
+typedef struct {
+  PetscReal time;        /* s */
+  PetscReal temperature; /* K */
+  PetscReal outside;     /* osmotic pressure outside the cells, C1 + C2 */
+  PetscReal turgor;      /* of cells whose water is not followed, C1 + C2 */
+} LamSurroundings;
+
+/* A part of the load program of a material point: what is prescribed goes straight to these values. */
+typedef struct {
+  PetscReal duration;       /* s; 0: a jump */
+  PetscReal F[9];           /* counted from the inflated state; where P is given a first guess */
+  LamStressControl control; /* P: of the reference area before inflation */
+} LamProcessLeg;
+
+/* Tissue that changes in time. */
+typedef struct {
+  PetscReal duration, output; /* s; between outputs */
+  PetscReal tolerance;        /* relative, of the integration in time */
+  PetscBool inflate;          /* the program counts from the tissue that is free of stress under its turgor */
+  PetscBool has_water;
+  LamWaterSpec water;
+  LamKinetics kinetics[LAM_CHANGING_COUNT]; /* own their tables */
+  PetscInt surroundings_count;              /* at least 1 */
+  LamSurroundings *surroundings;            /* owned */
+  PetscInt leg_count, repeat;               /* 0: free of stress */
+  LamProcessLeg *legs;                      /* owned; gone through `repeat` times, then held */
+  PetscReal opening;                        /* event: opening volume over V0 above this */
+} LamProcessSpec;
+
 /* A scene: plain data, read-only after LamSceneRead. Blocks that the file does not hold have count 0 or PETSC_FALSE. */
 typedef struct {
   char path[PETSC_MAX_PATH_LEN];
@@ -308,6 +362,8 @@ typedef struct {
   LamRegion *regions;     /* of the body; owned */
   LamTissueFields fields; /* likewise */
   LamResponsePolicy response;
+  PetscBool has_process;
+  LamProcessSpec process;
   PetscBool has_map;
   LamMapAxis map[LAM_MAP_AXIS_COUNT]; /* at most one of them is of the load */
 } LamScene;
@@ -336,11 +392,20 @@ LamLoad LamLoadAfter(const LamLoad *load, const LamStressControl *control, const
 PetscErrorCode LamSceneReference(FILE *out);
 
 /* Physical dimensions known to scene files and the command line. */
-typedef enum { LAM_DIMENSION_LENGTH, LAM_DIMENSION_STRESS, LAM_DIMENSION_ANGLE } LamDimension;
+typedef enum {
+  LAM_DIMENSION_LENGTH,
+  LAM_DIMENSION_STRESS,
+  LAM_DIMENSION_ANGLE,
+  LAM_DIMENSION_TIME,
+  LAM_DIMENSION_TEMPERATURE,
+  LAM_DIMENSION_RATE,
+  LAM_DIMENSION_MOLAR_ENERGY,
+  LAM_DIMENSION_PERMEABILITY
+} LamDimension;
 
 /*
-  Converts text such as "0.02 MPa" to SI (m, Pa, rad). PETSC_ERR_USER_INPUT, with the reason, where the unit is
-  missing, unknown or of another dimension, or the number is not finite.
+  Converts text such as "0.02 MPa" to SI (m, Pa, rad, s, K, 1/s, J/mol, m/s/Pa). PETSC_ERR_USER_INPUT, with the reason,
+  where the unit is missing, unknown or of another dimension, or the number is not finite.
 */
 PetscErrorCode LamQuantityParse(const char text[], LamDimension dimension, PetscReal *si);
 

@@ -51,6 +51,44 @@ static void angles_become_radians(void **state)
   AssertSI("0.5 rad", LAM_DIMENSION_ANGLE, 0.5);
 }
 
+static void times_become_seconds(void **state)
+{
+  AssertSI("2 h", LAM_DIMENSION_TIME, 7200);
+  AssertSI("14 day", LAM_DIMENSION_TIME, 14 * 86400.0);
+  AssertSI("1 week", LAM_DIMENSION_TIME, 7 * 86400.0);
+}
+
+static void temperatures_become_kelvins(void **state)
+{
+  AssertSI("20 degC", LAM_DIMENSION_TEMPERATURE, 293.15);
+  AssertSI("-18 celsius", LAM_DIMENSION_TEMPERATURE, 255.15);
+  AssertSI("68 degF", LAM_DIMENSION_TEMPERATURE, 293.15);
+  AssertSI("300 K", LAM_DIMENSION_TEMPERATURE, 300);
+}
+
+static void rates_may_be_written_by_their_time(void **state)
+{
+  AssertSI("0.161 /min", LAM_DIMENSION_RATE, 0.161 / 60);
+  AssertSI("2 1/day", LAM_DIMENSION_RATE, 2 / 86400.0);
+  AssertSI("3 s-1", LAM_DIMENSION_RATE, 3);
+  AssertSI("5 Hz", LAM_DIMENSION_RATE, 5);
+}
+
+static void energies_and_permeabilities_are_converted(void **state)
+{
+  AssertSI("138 kJ/mol", LAM_DIMENSION_MOLAR_ENERGY, 138e3);
+  AssertSI("1e-7 m/s/MPa", LAM_DIMENSION_PERMEABILITY, 1e-13);
+  AssertSI("2 um s-1 bar-1", LAM_DIMENSION_PERMEABILITY, 2e-11);
+}
+
+static void an_offset_belongs_to_temperatures_alone(void **state)
+{
+  AssertRefused("1 kJ/degC", LAM_DIMENSION_MOLAR_ENERGY, "is not a unit of molar energy");
+  AssertRefused("20 degC", LAM_DIMENSION_LENGTH, "is not a unit of length");
+  AssertRefused("5 /m", LAM_DIMENSION_RATE, "is not a unit of time");
+  AssertRefused("5 //s", LAM_DIMENSION_RATE, "unknown");
+}
+
 static void missing_and_unknown_units_are_refused(void **state)
 {
   AssertRefused("0.02", LAM_DIMENSION_STRESS, "has no unit; write a stress with its unit, such as 0.1 MPa");
@@ -107,11 +145,21 @@ static void the_message_shows_the_text(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(lengths_become_metres),           cmocka_unit_test(stresses_become_pascals),
-      cmocka_unit_test(angles_become_radians),           cmocka_unit_test(missing_and_unknown_units_are_refused),
-      cmocka_unit_test(other_dimensions_are_refused),    cmocka_unit_test(lookalike_units_are_refused),
-      cmocka_unit_test(a_zero_in_a_unit_is_refused),     cmocka_unit_test(non_finite_numbers_are_refused),
-      cmocka_unit_test(hexadecimal_numbers_are_refused), cmocka_unit_test(the_message_shows_the_text),
+      cmocka_unit_test(lengths_become_metres),
+      cmocka_unit_test(stresses_become_pascals),
+      cmocka_unit_test(angles_become_radians),
+      cmocka_unit_test(times_become_seconds),
+      cmocka_unit_test(temperatures_become_kelvins),
+      cmocka_unit_test(rates_may_be_written_by_their_time),
+      cmocka_unit_test(energies_and_permeabilities_are_converted),
+      cmocka_unit_test(an_offset_belongs_to_temperatures_alone),
+      cmocka_unit_test(missing_and_unknown_units_are_refused),
+      cmocka_unit_test(other_dimensions_are_refused),
+      cmocka_unit_test(lookalike_units_are_refused),
+      cmocka_unit_test(a_zero_in_a_unit_is_refused),
+      cmocka_unit_test(non_finite_numbers_are_refused),
+      cmocka_unit_test(hexadecimal_numbers_are_refused),
+      cmocka_unit_test(the_message_shows_the_text),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
