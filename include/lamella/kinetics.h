@@ -1,0 +1,62 @@
+/*
+  How a property of tissue changes in time: named kinetic laws, and the dependence of their rates on temperature.
+
+  A law gives the factor X(t) that multiplies a property, X = 1 at the start. It has LamKineticsStates states x, which
+  follow ordinary differential equations with rates k(T); docs/theory.md, "Tissue that changes in time".
+*/
+#ifndef LAMELLA_KINETICS_H
+#define LAMELLA_KINETICS_H
+
+#include <petscsys.h>
+
+#define LAM_GAS_CONSTANT 8.31446261815324 /* J/(mol K), exact by the SI of 2019 */
+
+#define LAM_KINETIC_LAWS(X)                                                                                            \
+  X(LAM_KINETIC_CONSTANT, "constant")                /* X = 1 */                                                       \
+  X(LAM_KINETIC_FIRST_ORDER, "first_order")          /* X' = -k X */                                                   \
+  X(LAM_KINETIC_FRACTIONAL, "fractional_conversion") /* X' = -k (X - plateau) */                                       \
+  X(LAM_KINETIC_TWO_FRACTIONS, "two_fractions")      /* X = x1 + x2, x1' = -k x1, x2' = -k2 x2, x2(0) = 1 - share */   \
+  X(LAM_KINETIC_AUTOCATALYTIC, "autocatalytic")      /* E' = k2 E (1 - E), X' = -k E (X - plateau) */                  \
+  X(LAM_KINETIC_TABLE, "table")                      /* X given at times, straight in between */
+typedef enum {
+#define LAM_KINETIC_ENTRY(symbol, name) symbol,
+  LAM_KINETIC_LAWS(LAM_KINETIC_ENTRY)
+#undef LAM_KINETIC_ENTRY
+      LAM_KINETIC_LAW_COUNT
+} LamKineticLaw;
+extern const char *const LamKineticLawNames[]; /* "constant", ... */
+
+/*
+  k(T) = rate exp[-activation / R (1/T - 1/reference)] (Arrhenius), and where deactivation > 0 times
+  (1 + exp[deactivation / R (1/half_activity - 1/reference)]) / (1 + exp[deactivation / R (1/half_activity - 1/T)]):
+  the enzyme unfolds, half of it at half_activity; k(reference) = rate either way. Schoolfield, Sharpe & Magnuson,
+  J. theor. Biol. 88 (1981) 719-731, eq. 4, its high-temperature part.
+*/
+typedef struct {
+  PetscReal rate;                     /* 1/s, at the reference temperature */
+  PetscReal activation, deactivation; /* J/mol; deactivation 0: Arrhenius alone */
+  PetscReal reference, half_activity; /* K */
+} LamRate;
+PetscReal LamRateAt(const LamRate *rate, PetscReal temperature);
+
+typedef struct {
+  LamKineticLaw law;
+  LamRate rate, second;             /* k, k2 */
+  PetscReal plateau, share, enzyme; /* share of the first fraction; E(0) */
+  PetscInt count;                   /* of the table */
+  PetscReal *time, *factor;         /* [count] s, rising; owned by the scene */
+} LamKinetics;
+
+enum { LAM_KINETIC_STATES = 2 }; /* most of a law */
+PetscInt LamKineticsStates(const LamKinetics *kinetics);
+/* States at t = 0. */
+void LamKineticsStart(const LamKinetics *kinetics, PetscReal x[]);
+/* X, and dX/dx_i in slope. */
+PetscReal LamKineticsFactor(const LamKinetics *kinetics, PetscReal t, const PetscReal x[], PetscReal slope[]);
+/* dx_i/dt at temperature T, and J[i][j] its derivative by x_j. */
+void LamKineticsRates(const LamKinetics *kinetics, PetscReal temperature, const PetscReal x[], PetscReal rate[],
+                      PetscReal J[LAM_KINETIC_STATES][LAM_KINETIC_STATES]);
+/* Whether two laws give the same factor at all times. */
+PetscBool LamKineticsAgree(const LamKinetics *one, const LamKinetics *other);
+
+#endif
