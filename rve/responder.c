@@ -25,6 +25,7 @@ typedef struct {
   char *start, *first; /* [size] the state that a question starts from; that of the last question solved */
   LamRVEState end;     /* and its solution */
   LamResponse last;    /* and its answer; of no fields: there is none */
+  PetscInt changes;    /* of the moduli of the walls, then */
 } DirectResponder;
 
 static PetscBool SameLoad(const LamLoad *a, const LamLoad *b)
@@ -59,8 +60,8 @@ static PetscErrorCode Answer(DirectResponder *direct, PetscInt point, const LamL
   PetscFunctionBeginUser;
   ++direct->responder->queries;
   PetscCall(LamRVEStatePack(state, direct->start));
-  if (!direct->water && LamResponseHasFields(&direct->last) && SameLoad(load, &direct->last.load) &&
-      !memcmp(direct->start, direct->first, direct->size)) {
+  if (!direct->water && direct->changes == direct->rve->changes && LamResponseHasFields(&direct->last) &&
+      SameLoad(load, &direct->last.load) && !memcmp(direct->start, direct->first, direct->size)) {
     PetscCall(LamRVEStateCopy(direct->end, state));
     *response = direct->last;
     response->seconds = 0;
@@ -73,6 +74,7 @@ static PetscErrorCode Answer(DirectResponder *direct, PetscInt point, const LamL
   PetscCall(LamRVEStateCopy(state, direct->end));
   PetscCall(PetscMemcpy(direct->first, direct->start, direct->size));
   direct->last = *response;
+  direct->changes = direct->rve->changes;
   PetscFunctionReturn(0);
 }
 

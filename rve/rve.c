@@ -65,22 +65,55 @@ PetscErrorCode LamRVESetMonitor(LamRVE rve, PetscBool on)
   PetscFunctionReturn(0);
 }
 
+static const LamWall *CellWall(const LamMicrostructure *micro, PetscInt cell)
+{
+  return micro->cell ? &micro->cell[cell].wall : &micro->wall;
+}
+
+static void FindStiffest(LamRVE rve)
+{
+  rve->stiffest = 0.0;
+  for (PetscInt cell = 0; cell < rve->mesh.cell_count; ++cell) {
+    const LamWall *wall = CellWall(&rve->micro, cell);
+
+    rve->stiffest = PetscMax(rve->stiffest, wall->bulk_modulus + wall->C4);
+  }
+}
+
 /* Law of each cell, and the extremes over the cells. */
 static PetscErrorCode SetUpWalls(LamRVE rve)
 {
-  const LamMicrostructure *micro = &rve->micro;
-
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(rve->mesh.cell_count, &rve->law));
   rve->thinnest = 1.0;
-  rve->stiffest = 0.0;
   for (PetscInt cell = 0; cell < rve->mesh.cell_count; ++cell) {
-    const LamWall *wall = micro->cell ? &micro->cell[cell].wall : &micro->wall;
-
-    PetscCall(LamWallLawGet(wall->law, &rve->law[cell]));
-    rve->thinnest = PetscMin(rve->thinnest, LamWallThickness(micro, cell));
-    rve->stiffest = PetscMax(rve->stiffest, wall->bulk_modulus + wall->C4);
+    PetscCall(LamWallLawGet(CellWall(&rve->micro, cell)->law, &rve->law[cell]));
+    rve->thinnest = PetscMin(rve->thinnest, LamWallThickness(&rve->micro, cell));
   }
+  FindStiffest(rve);
+  PetscFunctionReturn(0);
+}
+
+static void CopyModuli(const LamWall *from, LamWall *to)
+{
+  to->C1 = from->C1;
+  to->C2 = from->C2;
+  to->C4 = from->C4;
+  to->bulk_modulus = from->bulk_modulus;
+}
+
+PetscErrorCode LamRVEChangeModuli(LamRVE rve, const LamMicrostructure *micro)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(rve->is_set_up, PETSC_COMM_SELF, PETSC_ERR_ORDER, "LamRVESetUp comes before LamRVEChangeModuli");
+  CopyModuli(&micro->wall, &rve->micro.wall);
+  for (PetscInt cell = 0; rve->micro.cell && cell < rve->mesh.cell_count; ++cell)
+    CopyModuli(CellWall(micro, cell), &rve->micro.cell[cell].wall);
+  FindStiffest(rve);
+  rve->linear.rate = PETSC_INFINITY; /* no factor serves any more */
+  rve->consistent = PETSC_FALSE;
+  rve->changes++;
+  if (rve->bonded) PetscCall(LamRVEChangeModuli(rve->bonded, micro));
   PetscFunctionReturn(0);
 }
 

@@ -102,6 +102,7 @@ struct LamRVE_s {
   PetscBool has_micro, is_set_up, monitor;
   const LamWallLaw **law; /* [cell]; owned, the laws are not */
   PetscReal stiffest;     /* bulk and fibre modulus, of the stiffest cell */
+  PetscInt changes;       /* how often the moduli were changed */
   PetscReal thinnest;     /* wall, apothems */
   LamMesh mesh;
   LamElementGeometry *geometry; /* [element] */

@@ -57,6 +57,11 @@ PetscErrorCode LamRVESetInterrupt(LamRVE rve, PetscBool (*interrupt)(void *ctx),
 PetscErrorCode LamRVESetSealable(LamRVE rve, PetscBool on);
 /* Builds the mesh and the sparsity pattern; the factorisation is analysed at the first solve. */
 PetscErrorCode LamRVESetUp(LamRVE rve);
+/*
+  Other moduli (C1, C2, C4 and bulk modulus) of the walls of an RVE that is set up, from a description that is otherwise
+  the same: what follows from walls alone. States stay what they are, as starts.
+*/
+PetscErrorCode LamRVEChangeModuli(LamRVE rve, const LamMicrostructure *micro);
 PetscErrorCode LamRVEDestroy(LamRVE *rve);
 
 /* A state at F = I without turgor: the stress-free reference. */
