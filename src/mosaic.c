@@ -74,21 +74,10 @@ static void Turn(PetscReal angle, LamResponse *r)
   for (int i = 0; i < 3; i++) TurnRows(&r->tangent[27 * i], 9, 1, 9, c, s); /* ij: j */
 }
 
-static void Scale(PetscReal stress, LamResponse *r)
-{
-  for (const LamMember *m = LamResponseMembers; m->name; m++) {
-    const PetscReal factor = m->stress_power == 1 ? stress : m->stress_power == -1 ? 1 / stress : 1;
-    PetscReal *value = (PetscReal *)((char *)r + m->offset);
-
-    if (m->type != LAM_MEMBER_REAL || factor == 1) continue;
-    for (PetscInt i = 0; i < m->count; i++) value[i] *= factor;
-  }
-}
-
 /* The answer in the axes and units of the body. */
 static void ToBody(const LamLoad *load, PetscReal angle, PetscReal stress, LamResponse *r)
 {
-  if (stress != 1) Scale(stress, r);
+  LamResponseScale(stress, r);
   if (angle != 0) Turn(angle, r);
   r->load = *load;
 }

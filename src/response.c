@@ -119,6 +119,17 @@ PetscBool LamResponseHasFields(const LamResponse *response)
   return (PetscBool)(response->status == LAM_CONVERGED || response->status == LAM_UNSTABLE);
 }
 
+void LamResponseScale(PetscReal stress, LamResponse *response)
+{
+  for (const LamMember *m = LamResponseMembers; m->name; m++) {
+    const PetscReal factor = m->stress_power == 1 ? stress : m->stress_power == -1 ? 1 / stress : 1;
+    PetscReal *value = (PetscReal *)((char *)response + m->offset);
+
+    if (m->type != LAM_MEMBER_REAL || factor == 1) continue;
+    for (PetscInt i = 0; i < m->count; i++) value[i] *= factor;
+  }
+}
+
 PetscReal LamStressError(const PetscReal P[9], const PetscReal P_ref[9])
 {
   PetscReal difference = 0, reference = 0;

@@ -19,6 +19,7 @@ PetscErrorCode LamSceneDestroy(LamScene **scene)
   PetscCall(PetscFree((*scene)->controls));
   PetscCall(LamMicrostructureDestroy(&(*scene)->micro));
   PetscCall(LamSceneDestroyRegions(*scene));
+  PetscCall(LamSceneDestroyProcess(*scene));
   PetscCall(PetscFree(*scene));
   PetscFunctionReturn(0);
 }
@@ -73,6 +74,7 @@ static PetscErrorCode SceneBuild(LamDocument *document, LamScene *scene)
   PetscCall(LamSceneBuildResponse(document, scene));
   PetscCall(LamSceneCheckPatch(document, scene));
   PetscCall(LamSceneBuildMap(document, scene));
+  PetscCall(LamSceneBuildProcess(document, scene));
   PetscFunctionReturn(0);
 }
 

@@ -2,7 +2,7 @@
   Private to scene reading: the table of keys. One row per key says everything about it; the reader, the messages and
   the scene reference (docs/scene.md) follow the table.
 
-  A new key is one row, and a line in the scene_*.c that uses it; a key or a name that becomes available loses its mark.
+  A new key is one row, and a line in the scene_*.c that uses it.
 */
 #ifndef LAM_SCENE_KEYS_H
 #define LAM_SCENE_KEYS_H
@@ -56,7 +56,6 @@ typedef struct LamKey_s {
   LamBound lower, upper; /* of each component */
   const char *const *names;
   PetscInt name_count;
-  PetscBool unavailable;     /* the key is known, but this version does not have it */
   PetscBool required;        /* wherever the map it belongs to is given */
   const char *free_word;     /* leaves a component open; NULL: none may be */
   const char *default_value; /* as one would write it; NULL: none */
@@ -102,6 +101,8 @@ PetscErrorCode LamSceneBuildProgram(const LamDocument *document, LamScene *scene
 PetscErrorCode LamSceneCheckSide(const LamDocument *document, const LamNode *on, const LamMacroSpec *spec,
                                  PetscInt *side);
 PetscErrorCode LamSceneBuildMap(const LamDocument *document, LamScene *scene);
+PetscErrorCode LamSceneBuildProcess(const LamDocument *document, LamScene *scene);
+PetscErrorCode LamSceneDestroyProcess(LamScene *scene);
 PetscErrorCode LamSceneDestroyRegions(LamScene *scene);
 
 /* scene_cells.c, part of the RVE: how many cells, and what differs from cell to cell. */
@@ -119,6 +120,8 @@ PetscErrorCode LamSceneCheckPatch(const LamDocument *document, const LamScene *s
 */
 PetscErrorCode LamSceneReadWall(const LamDocument *document, const LamNode *base, const char prefix[], PetscReal stress,
                                 const LamWall *own, LamWall *wall);
+/* Refuses an F that is no deformation gradient of plane strain, where its components are given. */
+PetscErrorCode LamSceneCheckF(const LamDocument *document, const LamNode *node);
 /* The control that the tensors of an entry say (P_node NULL: F alone), stresses over `scale`; refused where a component
    has neither or both of F and P, or the tissue can rotate. */
 PetscErrorCode LamSceneReadControl(const LamDocument *document, const LamNode *F_node, const LamNode *P_node,

@@ -17,7 +17,7 @@ static PetscBool IsInPlane(PetscInt i)
 }
 
 /* Plane strain, or generalised plane strain: out-of-plane shears would need three displacement components. */
-static PetscErrorCode CheckF(const LamDocument *document, const LamNode *node)
+PetscErrorCode LamSceneCheckF(const LamDocument *document, const LamNode *node)
 {
   const PetscReal *F = node->value.number;
   const PetscBool *is_free = node->value.is_free;
@@ -138,7 +138,7 @@ static PetscErrorCode BuildEntry(const LamDocument *document, const LamNode *ent
   PetscFunctionBeginUser;
   PetscCall(GetTarget(document, entry, &F_node, &P_node));
   PetscCall(LamSceneReadControl(document, F_node, P_node, scene->scales.stress, &target));
-  PetscCall(CheckF(document, F_node));
+  PetscCall(LamSceneCheckF(document, F_node));
   if (scene->load_count) load = scene->loads[scene->load_count - 1];
   if (scene->load_count && scene->controls) before = scene->controls[scene->load_count - 1];
   PetscCall(PetscArraycpy(start, load.F, 9));

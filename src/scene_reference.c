@@ -68,9 +68,7 @@ static void WriteRow(FILE *out, const LamKey *key)
   fprintf(out, "| `%s` | %s%s%s", key->path, TypeText(key, type), bounds[0] ? ", " : "", bounds);
   if (key->free_word) fprintf(out, ", or `%s`", key->free_word);
   fprintf(out, " | ");
-  if (key->unavailable)
-    fprintf(out, "*not in this version*");
-  else if (key->required)
+  if (key->required)
     fprintf(out, "*required*");
   else if (key->default_value)
     fprintf(out, "`%s`", key->default_value);
@@ -110,7 +108,6 @@ PetscErrorCode LamSceneReference(FILE *out)
   for (PetscInt b = 0; b < LamKeyCount; b++) {
     const LamKey *block = &LamKeys[b];
     if (!LamKeyIsChild(block, root) || (block->type != LAM_KEY_MAP && block->type != LAM_KEY_LIST)) continue;
-    if (block->unavailable) continue;
     WriteHeader(out, block->path, block->help);
     for (PetscInt i = 0; i < LamKeyCount; i++) {
       if (&LamKeys[i] != block && KeyIsIn(&LamKeys[i], block->path)) WriteRow(out, &LamKeys[i]);

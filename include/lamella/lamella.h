@@ -40,6 +40,7 @@
 #include <lamella/cache.h>
 #include <lamella/sealed.h>
 #include <lamella/macro.h>
+#include <lamella/process.h>
 #include <lamella/version.h>
 
 #endif

@@ -132,6 +132,9 @@ typedef struct {
 } LamMember;
 extern const LamMember LamResponseMembers[]; /* ends with a NULL name */
 
+/* Expresses a response in another unit of stress, of which its present one is `stress`. */
+void LamResponseScale(PetscReal stress, LamResponse *response);
+
 /*
   The responder table: all that the macroscale solver knows of the tissue. `respond` is collective over the
   communicator of the macroscale problem. Point indices are local to a rank, 0..n-1, and name a material point for

@@ -235,7 +235,7 @@ PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status)
                             "Solves the macroscale problem of a scene.", options, 1, &run.scene_path, &done,
                             exit_status));
   if (done) PetscFunctionReturn(0);
-  if (!LamFE2ChooseResponse(&run) || !CheckPaths(&run)) {
+  if (!LamFE2ChooseResponse("fe2", &run) || !CheckPaths(&run)) {
     *exit_status = LAM_EXIT_USAGE;
     PetscFunctionReturn(0);
   }

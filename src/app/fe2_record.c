@@ -34,7 +34,7 @@ static PetscErrorCode ChooseNew(LamFE2Tissue *tissue, PetscInt n, const PetscInt
 }
 
 /* Appends what the cache has solved since the last step, so that a later run finds it. */
-static PetscErrorCode RecordTissue(LamFE2Tissue *tissue)
+PetscErrorCode LamFE2RecordTissue(LamFE2Tissue *tissue)
 {
   const LamResponse *records;
   const PetscInt64 *in_memory;
@@ -57,7 +57,7 @@ static PetscErrorCode RecordTissue(LamFE2Tissue *tissue)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode OpenDatabaseFile(LamFE2Tissue *tissue)
+PetscErrorCode LamFE2OpenTissueFile(LamFE2Tissue *tissue)
 {
   const PetscInt64 *keys;
   PetscInt n;
@@ -68,7 +68,7 @@ static PetscErrorCode OpenDatabaseFile(LamFE2Tissue *tissue)
   PetscCall(LamRecordWriterGetKeys(tissue->records, &n, &keys));
   tissue->next_key = LAM_CACHE_KEY;
   for (PetscInt k = 0; k < n; k++) tissue->next_key = PetscMax(tissue->next_key, keys[k] + 1);
-  PetscCall(RecordTissue(tissue)); /* states that belong to a new grid */
+  PetscCall(LamFE2RecordTissue(tissue)); /* states that belong to a new grid */
   PetscFunctionReturn(0);
 }
 
@@ -79,7 +79,7 @@ static PetscErrorCode OpenFiles(LamFE2Run *run)
   PetscFunctionBeginUser;
   if (run->out_path) PetscCall(LamFE2FileOpen(run->out_path, mode, run->scene, &run->out));
   if (run->response != LAM_FE2_CACHE || !run->database_path) PetscFunctionReturn(0);
-  for (PetscInt t = 0; t < run->tissues.count; t++) PetscCall(OpenDatabaseFile(&run->tissues.tissues[t]));
+  for (PetscInt t = 0; t < run->tissues.count; t++) PetscCall(LamFE2OpenTissueFile(&run->tissues.tissues[t]));
   PetscFunctionReturn(0);
 }
 
@@ -97,7 +97,7 @@ PetscErrorCode LamFE2OpenFiles(LamFE2Run *run)
 PetscErrorCode LamFE2RecordStep(LamFE2Run *run, const LamMacroStep *step, const LamMacroFields *fields)
 {
   PetscFunctionBeginUser;
-  for (PetscInt t = 0; t < run->tissues.count; t++) PetscCall(RecordTissue(&run->tissues.tissues[t]));
+  for (PetscInt t = 0; t < run->tissues.count; t++) PetscCall(LamFE2RecordTissue(&run->tissues.tissues[t]));
   if (run->out) PetscCall(LamFE2FileAddStep(run->out, step, fields, &run->summary));
   PetscFunctionReturn(0);
 }
@@ -110,7 +110,7 @@ PetscErrorCode LamFE2CloseFiles(LamFE2Run *run, const char status[])
   for (PetscInt t = 0; t < run->tissues.count; t++) {
     LamFE2Tissue *tissue = &run->tissues.tissues[t];
 
-    closed = RecordTissue(tissue); /* of a step that did not converge */
+    closed = LamFE2RecordTissue(tissue); /* of a step that did not converge */
     if (!ierr) ierr = closed;
     if (tissue->records) closed = LamRecordWriterClose(&tissue->records);
     if (!ierr) ierr = closed;

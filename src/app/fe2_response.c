@@ -11,7 +11,7 @@
 
 const char *const LamFE2ResponseNames[] = {"direct", "cache", "database"};
 
-PetscBool LamFE2ChooseResponse(LamFE2Run *run)
+PetscBool LamFE2ChooseResponse(const char command[], LamFE2Run *run)
 {
   run->response = run->database_path ? LAM_FE2_CACHE : LAM_FE2_DIRECT;
   for (int k = 0; k < 3 && run->response_name; k++) {
@@ -20,11 +20,13 @@ PetscBool LamFE2ChooseResponse(LamFE2Run *run)
     run->response_name = NULL;
   }
   if (run->response_name)
-    fprintf(stderr, "lamella fe2: --response %s: unknown; there are direct, cache, database\n", run->response_name);
+    fprintf(stderr, "lamella %s: --response %s: unknown; there are direct, cache, database\n", command,
+            run->response_name);
   else if (run->response == LAM_FE2_DATABASE && !run->database_path)
-    fprintf(stderr, "lamella fe2: --response database needs a database; give -d DB.h5\n");
+    fprintf(stderr, "lamella %s: --response database needs a database; give -d DB.h5\n", command);
   else if (run->response == LAM_FE2_DIRECT && run->database_path)
-    fprintf(stderr, "lamella fe2: --response direct uses no database; leave out -d, or choose cache or database\n");
+    fprintf(stderr, "lamella %s: --response direct uses no database; leave out -d, or choose cache or database\n",
+            command);
   else
     return PETSC_TRUE;
   return PETSC_FALSE;
@@ -92,7 +94,7 @@ static PetscErrorCode CheckDatabase(LamFE2Run *run, LamFE2Tissue *tissue)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue)
+PetscErrorCode LamFE2PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue)
 {
   LamPlan plan;
 
@@ -122,7 +124,7 @@ PetscErrorCode LamFE2PrepareResponse(LamFE2Run *run)
 
   PetscFunctionBeginUser;
   PetscCall(LamFE2TissuesCreate(run->comm, run->macro, run->scene, run->database_path, tissues));
-  for (PetscInt t = 0; t < tissues->count; t++) PetscCall(PrepareTissue(run, &tissues->tissues[t]));
+  for (PetscInt t = 0; t < tissues->count; t++) PetscCall(LamFE2PrepareTissue(run, &tissues->tissues[t]));
   /* what files say of the scene's own tissue */
   PetscCall(LamPlanMake(run->scene, &plan));
   run->scene->micro = tissues->tissues[0].name[0] ? plan.micro : tissues->tissues[0].scene.micro;
@@ -220,8 +222,7 @@ static PetscReal AnswerAccuracy(const LamFE2Run *run, const LamFE2Tissue *tissue
   return run->response == LAM_FE2_CACHE && contact ? 0.1 * scene->accuracy : scene->accuracy;
 }
 
-/* run->stopped: a signal came before it was ready. */
-static PetscErrorCode CreateResponder(LamFE2Run *run, LamFE2Tissue *tissue, LamResponder **responder)
+PetscErrorCode LamFE2ConnectTissue(LamFE2Run *run, LamFE2Tissue *tissue, LamResponder **responder)
 {
   PetscFunctionBeginUser;
   *responder = run->response == LAM_FE2_DIRECT ? &tissue->solver : &tissue->cache;
@@ -250,7 +251,7 @@ PetscErrorCode LamFE2Connect(LamFE2Run *run)
   for (PetscInt t = 0; t < tissues->count && !run->stopped; t++) {
     LamFE2Tissue *tissue = &tissues->tissues[t];
 
-    PetscCall(CreateResponder(run, tissue, &responder));
+    PetscCall(LamFE2ConnectTissue(run, tissue, &responder));
     parts[t] = (LamMosaicTissue){tissue->name, tissue->stress, responder};
   }
   if (!run->stopped && !tissues->plain) {
@@ -262,7 +263,7 @@ PetscErrorCode LamFE2Connect(LamFE2Run *run)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode DestroyTissue(LamFE2Tissue *tissue)
+PetscErrorCode LamFE2DisconnectTissue(LamFE2Tissue *tissue)
 {
   PetscFunctionBeginUser;
   if (tissue->cache.destroy) PetscCall(tissue->cache.destroy(&tissue->cache.ctx));
@@ -281,7 +282,7 @@ PetscErrorCode LamFE2Disconnect(LamFE2Run *run)
 {
   PetscFunctionBeginUser;
   if (run->mosaic.destroy) PetscCall(run->mosaic.destroy(&run->mosaic.ctx));
-  for (PetscInt t = 0; t < run->tissues.count; t++) PetscCall(DestroyTissue(&run->tissues.tissues[t]));
+  for (PetscInt t = 0; t < run->tissues.count; t++) PetscCall(LamFE2DisconnectTissue(&run->tissues.tissues[t]));
   PetscCall(LamFE2TissuesDestroy(&run->tissues));
   PetscFunctionReturn(0);
 }

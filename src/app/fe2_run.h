@@ -51,12 +51,16 @@ typedef struct {
 
 /* ---- fe2_response.c ---- */
 /* Reads --response; PETSC_FALSE, with a message, where the options contradict each other. */
-PetscBool LamFE2ChooseResponse(LamFE2Run *run);
+PetscBool LamFE2ChooseResponse(const char command[], LamFE2Run *run);
 /* Finds the tissues, loads their databases, chooses the meshes of their RVEs; collective. */
 PetscErrorCode LamFE2PrepareResponse(LamFE2Run *run);
 /* Wires the responder that the options ask for to the macroscale solver; run->stopped: a signal came before. */
 PetscErrorCode LamFE2Connect(LamFE2Run *run);
 PetscErrorCode LamFE2Disconnect(LamFE2Run *run); /* after the macroscale solver's end */
+/* The same for one tissue: its database and mesh; its responder, unless a signal comes before (run->stopped). */
+PetscErrorCode LamFE2PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue);
+PetscErrorCode LamFE2ConnectTissue(LamFE2Run *run, LamFE2Tissue *tissue, LamResponder **responder);
+PetscErrorCode LamFE2DisconnectTissue(LamFE2Tissue *tissue);
 
 /* ---- fe2_report.c; on rank 0 ---- */
 /* The row, after the first step's header, or the JSON object of a step; once, that the tissue localises. peak_memory in
@@ -71,6 +75,9 @@ PetscErrorCode LamFE2ReportEnd(const LamFE2Run *run);
 PetscErrorCode LamFE2OpenFiles(LamFE2Run *run);
 /* Adds a step to the results, and to the database what the cache has solved since the last one. */
 PetscErrorCode LamFE2RecordStep(LamFE2Run *run, const LamMacroStep *step, const LamMacroFields *fields);
+/* Of one tissue: starts to append to its database's file; appends what the cache has solved since the last time. */
+PetscErrorCode LamFE2OpenTissueFile(LamFE2Tissue *tissue);
+PetscErrorCode LamFE2RecordTissue(LamFE2Tissue *tissue);
 /* What was solved is kept, whatever the end was. */
 PetscErrorCode LamFE2CloseFiles(LamFE2Run *run, const char status[]);
 /* After an error, which is the one to tell: no lock is left, and of the cache's solves what can still be written. */

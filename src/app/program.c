@@ -20,6 +20,7 @@ static const struct {
     {"verify", "solve part of a database's answers afresh and compare", LamCommandVerify, PETSC_TRUE, PETSC_TRUE},
     {"fe2", "solve the scene's macroscale problem", LamCommandFE2, PETSC_TRUE, PETSC_TRUE},
     {"tradeoff", "measure error against time over the scene's knobs", LamCommandTradeoff, PETSC_TRUE, PETSC_TRUE},
+    {"process", "follow tissue that changes in time", LamCommandProcess, PETSC_TRUE, PETSC_TRUE},
     {"map", "tell how tissue fails over two of its quantities", LamCommandMap, PETSC_TRUE, PETSC_TRUE},
     {"merge", "make one database of several", LamCommandMerge, PETSC_FALSE, PETSC_TRUE},
     {"plot", "draw what a file holds", LamCommandPlot, PETSC_FALSE, PETSC_TRUE},

@@ -1,0 +1,84 @@
+/*
+  Tissue that changes in time at one material point: kinetics of lamella, walls and membranes, exchange of water, and a
+  program of load, integrated by IDA of SUNDIALS.
+
+    LamProcessCreate(scene, &process); LamProcessSetResponder(process, &responder);
+    LamProcessSetMonitor(process, told, ctx); LamProcessSetStop(process, stop);
+    LamProcessRun(process, &reason, message); LamProcessDestroy(&process);
+
+  docs/theory.md, "Tissue that changes in time", has the equations.
+*/
+#ifndef LAMELLA_PROCESS_H
+#define LAMELLA_PROCESS_H
+
+#include <petscsys.h>
+#include <lamella/response.h>
+#include <lamella/scene.h>
+
+typedef struct LamProcess_s *LamProcess;
+
+/* What is found in time, each where it happens first; turgor may be lost and found again. */
+#define LAM_EVENTS(X)                                                                                                  \
+  X(LAM_EVENT_LAMELLA_NORMAL, "lamella_normal") /* bonded: max_traction reaches the strength of the lamella */         \
+  X(LAM_EVENT_LAMELLA_SHEAR, "lamella_shear")   /* bonded: max_lamella_shear does */                                   \
+  X(LAM_EVENT_WALL, "wall_rupture")             /* max_wall_tension reaches the strength of the walls */               \
+  X(LAM_EVENT_OPENING, "opening")               /* contact: opening_fraction exceeds process.opening */                \
+  X(LAM_EVENT_PERCOLATION, "percolation")       /* contact: cells that hang together no longer span the tissue */      \
+  X(LAM_EVENT_TURGOR_LOST, "turgor_lost")       /* turgor has fallen to 0: membranes leave the walls */                \
+  X(LAM_EVENT_TURGOR_FOUND, "turgor_found")     /* the protoplast fills the lumen again */                             \
+  X(LAM_EVENT_LIMIT, "limit_point")             /* the stiffness against what is free falls to 0 */
+#define LAM_EVENT_ENTRY(symbol, name) symbol,
+typedef enum { LAM_EVENTS(LAM_EVENT_ENTRY) LAM_EVENT_COUNT } LamEvent;
+#undef LAM_EVENT_ENTRY
+extern const char *const LamEventNames[];
+
+/* The tissue at a time. Stresses in the C1 + C2 of the start, which the scene's scales tell. */
+typedef struct {
+  PetscReal time;                       /* s */
+  PetscReal temperature;                /* K */
+  PetscReal factor[LAM_CHANGING_COUNT]; /* of what it was at the start */
+  PetscReal walls;                      /* C1 + C2 over that at the start */
+  PetscReal F[9];                       /* from the inflated state */
+  PetscReal turgor, cohesion;
+  PetscReal water;    /* volume of the protoplasts over V0; NaN where water is not followed */
+  PetscReal osmotic;  /* pressure in them; likewise */
+  PetscReal outside;  /* osmotic pressure outside */
+  PetscReal firmness; /* dP11/dF11 at constant P22, without water passing: Young's modulus of a quick test */
+  LamResponse response;
+  LamEvent event; /* LAM_EVENT_COUNT: none, a time of the output */
+} LamProcessState;
+
+typedef struct {
+  PetscInt64 steps, residuals, jacobians, restarts; /* of the integrator */
+  PetscInt64 questions;                             /* to the responder */
+} LamProcessCounts;
+
+typedef enum { LAM_PROCESS_DONE, LAM_PROCESS_STOPPED, LAM_PROCESS_ENDED } LamProcessReason;
+
+#define LAM_PROCESS_MESSAGE 400
+
+/* Called for each output time and each event, in the order of time. */
+typedef PetscErrorCode (*LamProcessMonitor)(const LamProcessState *state, void *ctx);
+
+/* Borrows the scene, which has a block `process`. */
+PetscErrorCode LamProcessCreate(const LamScene *scene, LamProcess *process);
+/* Borrows it; asked with point 0. */
+PetscErrorCode LamProcessSetResponder(LamProcess process, LamResponder *responder);
+/*
+  How the responder learns of walls whose moduli do not change alike: `set` is told each modulus over its share of the
+  common factor (C1, C2, C4; 1 at the start), before it is asked. Without it such a process is PETSC_ERR_USER_INPUT.
+*/
+PetscErrorCode LamProcessSetWalls(LamProcess process, PetscErrorCode (*set)(void *ctx, const PetscReal factor[3]),
+                                  void *ctx);
+PetscErrorCode LamProcessSetMonitor(LamProcess process, LamProcessMonitor monitor, void *ctx);
+/* Asked after each step of the integrator; NULL: never. */
+PetscErrorCode LamProcessSetStop(LamProcess process, PetscBool (*stop)(void));
+/* Follows the tissue from time 0; `message` says why it ended before the end: a true reason, or none that is known. */
+PetscErrorCode LamProcessRun(LamProcess process, LamProcessReason *reason, char message[LAM_PROCESS_MESSAGE]);
+PetscErrorCode LamProcessGetCounts(LamProcess process, LamProcessCounts *counts);
+PetscErrorCode LamProcessDestroy(LamProcess *process);
+
+/* Whether all moduli of the walls change alike, so that one database serves at all times (docs/theory.md). */
+PetscBool LamProcessWallsStayAlike(const LamScene *scene);
+
+#endif

@@ -1,0 +1,209 @@
+/*
+  The tissue in a state: what has become of its properties, its response, and the flow of water into its cells.
+
+  With V the volume of the protoplasts over V0 and v(F, p) the lumen, both per V0, turgid cells have V = v, and
+
+    dV/dt = Lp A [ sigma (pi - pi_out) - p ],    pi = pi_0 (T / T_0) (n / n_0) (V_0 - V_b) / (V - V_b),
+
+  A the area of the membranes over V0, that of the lumens of the reference; V_b the non-osmotic volume. Walls whose
+  moduli are s times those of the start have the energy s Psi(F, p / s, g / s): responses scale.
+
+  Sources: Dainty, Adv. Bot. Res. 1 (1963) 279-326 (flow through membranes); van 't Hoff.
+*/
+#include "process_impl.h"
+#include <math.h>
+#include <string.h>
+
+/* ---- properties ---- */
+
+static void FindFactors(LamProcess process, PetscReal time, const PetscReal x[], LamEvaluation *e)
+{
+  for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++)
+    e->factor[k].value =
+        LamKineticsFactor(&process->spec->kinetics[k], time, &x[LAM_KINETIC_STATES * k], e->factor[k].slope);
+}
+
+/* Moduli over those of the start, C1, C2, C4, without the factor that they share. */
+static void FindWalls(LamProcess process, LamEvaluation *e, PetscReal ratio[3])
+{
+  const LamWall *wall = &process->scene->micro.wall;
+  const PetscReal common = e->factor[LAM_CHANGING_WALLS].value, C1 = e->factor[LAM_CHANGING_C1].value,
+                  C2 = e->factor[LAM_CHANGING_C2].value, C4 = e->factor[LAM_CHANGING_C4].value;
+  const PetscReal shear = wall->C1 * C1 + wall->C2 * C2; /* C1 + C2 is 1 at the start */
+
+  e->walls = common * shear;
+  ratio[0] = C1 / shear;
+  ratio[1] = C2 / shear;
+  ratio[2] = C4 / shear;
+}
+
+/* ---- response ---- */
+
+static void Multiply(const PetscReal A[9], const PetscReal B[9], PetscReal AB[9])
+{
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) AB[3 * i + j] = A[3 * i] * B[j] + A[3 * i + 1] * B[3 + j] + A[3 * i + 2] * B[6 + j];
+}
+
+static PetscBool SameQuestion(LamProcess process, const LamEvaluation *e)
+{
+  const LamLoad *a = &process->last.load, *b = &e->load;
+
+  return (PetscBool)(process->last_known && process->last_scale == e->walls && a->turgor == b->turgor &&
+                     a->cohesion == b->cohesion && !memcmp(a->F, b->F, sizeof(a->F)));
+}
+
+/* A new ratio of the moduli makes all that was known of the response void. */
+static PetscErrorCode TellWalls(LamProcess process, const PetscReal ratio[3])
+{
+  PetscFunctionBeginUser;
+  if (process->walls_alike || !memcmp(process->told_walls, ratio, sizeof(process->told_walls))) PetscFunctionReturn(0);
+  PetscCall(process->set_walls(process->walls_ctx, ratio));
+  PetscCall(PetscArraycpy(process->told_walls, ratio, 3));
+  process->last_known = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Ask(LamProcess process, LamEvaluation *e)
+{
+  const PetscReal s = e->walls;
+  const PetscInt point = 0;
+  LamLoad own = e->load;
+
+  PetscFunctionBeginUser;
+  own.turgor /= s;
+  own.cohesion /= s;
+  PetscCall(process->responder->respond(process->responder->ctx, 1, &own, &point, &e->response));
+  process->counts.questions++;
+  e->ok = LamResponseHasFields(&e->response);
+  if (!e->ok)
+    PetscCall(PetscSNPrintf(process->trouble, sizeof(process->trouble), "%s: %.150s",
+                            LamStatusNames[e->response.status], e->response.reason));
+  LamResponseScale(s, &e->response);
+  e->response.load = e->load;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamProcessEvaluate(LamProcess process, PetscReal time, const PetscReal x[], const PetscReal F[9],
+                                  PetscReal turgor, LamEvaluation *e)
+{
+  const PetscReal elapsed = time - process->segment.start;
+  PetscReal ratio[3];
+
+  PetscFunctionBeginUser;
+  e->time = time;
+  e->temperature = LamRampAt(&process->segment.temperature, elapsed);
+  e->outside = LamRampAt(&process->segment.outside, elapsed);
+  FindFactors(process, time, x, e);
+  FindWalls(process, e, ratio);
+  e->cohesion = process->scene->cohesion * e->factor[LAM_CHANGING_LAMELLA].value;
+  e->load.turgor = turgor;
+  e->load.cohesion = e->cohesion;
+  Multiply(F, process->inflation, e->load.F);
+  e->ok = (PetscBool)(e->walls > 0 && isfinite(e->walls) && isfinite(turgor));
+  if (!e->ok) {
+    PetscCall(PetscStrncpy(process->trouble, "nothing is left of the walls", sizeof(process->trouble)));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(TellWalls(process, ratio));
+  if (SameQuestion(process, e)) {
+    e->response = process->last.response;
+    e->ok = process->last.ok;
+    PetscFunctionReturn(0);
+  }
+  PetscCall(Ask(process, e));
+  process->last = *e;
+  process->last_scale = e->walls;
+  process->last_known = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscReal LamProcessStiffness(LamProcess process, const LamEvaluation *e, PetscInt i, PetscInt k)
+{
+  PetscReal sum = 0;
+
+  for (int m = 0; m < 3; m++) { /* F = F_rel F_0 */
+    const PetscReal inflation = process->inflation[3 * (k % 3) + m];
+
+    if (inflation != 0) sum += e->response.tangent[9 * i + 3 * (k / 3) + m] * inflation;
+  }
+  return sum;
+}
+
+PetscReal LamProcessLumenSlope(LamProcess process, const LamEvaluation *e, PetscInt k)
+{
+  PetscReal sum = 0;
+
+  for (int m = 0; m < 3; m++) {
+    const PetscReal inflation = process->inflation[3 * (k % 3) + m];
+
+    if (inflation != 0) sum -= e->response.P_turgor[3 * (k / 3) + m] * inflation;
+  }
+  return sum;
+}
+
+/* ---- water ---- */
+
+void LamProcessFlow(LamProcess process, const LamEvaluation *e, PetscReal water, PetscReal turgor, LamFlow *flow)
+{
+  const LamWaterSpec *spec = &process->spec->water;
+  const PetscReal dead = spec->non_osmotic * process->water, room = water - dead;
+  const PetscReal n = e->factor[LAM_CHANGING_SOLUTES].value;
+  const PetscReal sigma = spec->reflection * e->factor[LAM_CHANGING_REFLECTION].value;
+  const PetscReal concentrated =
+      process->osmotic * (e->temperature / process->temperature) * (process->water - dead) / room;
+
+  flow->conductance = spec->permeability * process->membrane * e->factor[LAM_CHANGING_PERMEABILITY].value *
+                      exp(-spec->activation / LAM_GAS_CONSTANT * (1 / e->temperature - 1 / process->temperature));
+  flow->osmotic = n * concentrated;
+  flow->drive = sigma * (flow->osmotic - e->outside) - turgor;
+  flow->drive_turgor = -1;
+  flow->drive_water = -sigma * flow->osmotic / room;
+  flow->drive_solutes = sigma * concentrated;
+  flow->drive_reflection = spec->reflection * (flow->osmotic - e->outside);
+}
+
+/* ---- for the monitor ---- */
+
+/* dP11/dF11 where P22 is constant; where `seals`, no water passes: dP = A dF + P_p dp, dv = 0. */
+static PetscReal Firmness(const LamResponse *r, PetscBool seals)
+{
+  const int at[2] = {0, 4};
+  PetscReal A[2][2];
+
+  for (int i = 0; i < 2; i++)
+    for (int j = 0; j < 2; j++) {
+      A[i][j] = r->tangent[9 * at[i] + at[j]];
+      if (seals) A[i][j] -= r->P_turgor[at[i]] * r->P_turgor[at[j]] / r->energy_turgor2;
+    }
+  return A[0][0] - A[0][1] * A[1][0] / A[1][1];
+}
+
+PetscErrorCode LamProcessDescribe(LamProcess process, const LamTissue *tissue, LamProcessState *state)
+{
+  LamEvaluation e;
+  LamFlow flow;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamProcessEvaluate(process, tissue->time, tissue->x, tissue->F, tissue->turgor, &e));
+  *state = (LamProcessState){.time = tissue->time,
+                             .temperature = e.temperature,
+                             .walls = e.walls,
+                             .turgor = tissue->turgor,
+                             .cohesion = e.cohesion,
+                             .water = NAN,
+                             .osmotic = NAN,
+                             .outside = e.outside,
+                             .firmness = NAN,
+                             .response = e.response,
+                             .event = LAM_EVENT_COUNT};
+  for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++) state->factor[k] = e.factor[k].value;
+  PetscCall(PetscArraycpy(state->F, tissue->F, 9));
+  if (process->spec->has_water) {
+    LamProcessFlow(process, &e, tissue->water, tissue->turgor, &flow);
+    state->water = tissue->water;
+    state->osmotic = flow.osmotic;
+  }
+  if (e.ok) state->firmness = Firmness(&e.response, (PetscBool)(process->spec->has_water && !process->plasmolysed));
+  PetscFunctionReturn(0);
+}

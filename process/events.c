@@ -1,0 +1,103 @@
+/*
+  What is looked for in time: numbers that rise through 0 where it happens.
+
+  All but percolation, which is a count, are continuous and converge with the mesh: tractions and tensions are means
+  over a wall's thickness, volumes are derivatives of the potential.
+*/
+#include "process_impl.h"
+#include <math.h>
+
+#define NAME(symbol, name) name,
+const char *const LamEventNames[] = {LAM_EVENTS(NAME)};
+
+static PetscBool Applies(LamProcess process, LamEvent event)
+{
+  const PetscBool contact = (PetscBool)(process->scene->micro.interface == LAM_INTERFACE_CONTACT);
+  const LamStrength *strength = &process->scene->strength;
+
+  switch (event) {
+  case LAM_EVENT_LAMELLA_NORMAL:
+    return (PetscBool)(!contact && isfinite(strength->lamella_normal));
+  case LAM_EVENT_LAMELLA_SHEAR:
+    return (PetscBool)(!contact && isfinite(strength->lamella_shear));
+  case LAM_EVENT_WALL:
+    return (PetscBool)isfinite(strength->wall);
+  case LAM_EVENT_OPENING:
+  case LAM_EVENT_PERCOLATION:
+    return contact;
+  case LAM_EVENT_TURGOR_LOST:
+    return (PetscBool)!process->plasmolysed;
+  case LAM_EVENT_TURGOR_FOUND:
+    return process->plasmolysed;
+  default:
+    return PETSC_TRUE;
+  }
+}
+
+PetscInt LamProcessListEvents(LamProcess process, LamEvent events[LAM_EVENT_COUNT])
+{
+  PetscInt n = 0;
+
+  for (PetscInt k = 0; k < LAM_EVENT_COUNT; k++)
+    if (!process->found[k] && Applies(process, (LamEvent)k)) events[n++] = (LamEvent)k;
+  return n;
+}
+
+/*
+  Minus the stiffness against what is free, over C1 + C2: the smallest eigenvalue of the symmetric part of dP/dF of the
+  free components, with their water where it cannot pass at once. Where nothing is free: whether the state is stable.
+*/
+static PetscReal LimitExcess(LamProcess process, const LamEvaluation *e)
+{
+  const PetscBool seals =
+      (PetscBool)(process->spec->has_water && !process->plasmolysed && isfinite(process->spec->water.permeability));
+  const LamResponse *r = &e->response;
+  PetscReal A[9][9];
+  PetscInt free[9], n = 0;
+
+  for (PetscInt i = 0; i < 9; i++)
+    if (process->segment.given[i]) free[n++] = i;
+  if (!n || r->status == LAM_UNSTABLE) return r->status == LAM_UNSTABLE ? 1 : -1;
+  for (PetscInt a = 0; a < n; a++)
+    for (PetscInt b = 0; b < n; b++) {
+      A[a][b] = r->tangent[9 * free[a] + free[b]];
+      if (seals) A[a][b] -= r->P_turgor[free[a]] * r->P_turgor[free[b]] / r->energy_turgor2;
+    }
+  /* Gauss: the smallest pivot has the sign of the smallest eigenvalue while that is the only one to change it */
+  PetscReal smallest = PETSC_INFINITY;
+  for (PetscInt k = 0; k < n; k++) {
+    smallest = PetscMin(smallest, A[k][k]);
+    for (PetscInt a = k + 1; a < n; a++)
+      for (PetscInt b = k + 1; b < n; b++) A[a][b] -= A[a][k] * A[k][b] / A[k][k];
+  }
+  return -smallest / e->walls;
+}
+
+PetscReal LamProcessExcess(LamProcess process, LamEvent event, const LamEvaluation *e, PetscReal water,
+                           PetscReal turgor)
+{
+  const LamStrength *strength = &process->scene->strength;
+  const PetscReal lamella = e->factor[LAM_CHANGING_LAMELLA].value, wall = e->factor[LAM_CHANGING_WALL_STRENGTH].value;
+  const LamResponse *r = &e->response;
+
+  switch (event) {
+  case LAM_EVENT_LAMELLA_NORMAL:
+    return r->max_traction - lamella * strength->lamella_normal;
+  case LAM_EVENT_LAMELLA_SHEAR:
+    return r->max_lamella_shear - lamella * strength->lamella_shear;
+  case LAM_EVENT_WALL:
+    return r->max_wall_tension - wall * strength->wall;
+  case LAM_EVENT_OPENING:
+    return r->opening_fraction - process->spec->opening;
+  case LAM_EVENT_PERCOLATION:
+    return 1.5 - (PetscReal)r->percolating_directions;
+  case LAM_EVENT_TURGOR_LOST:
+    return -turgor;
+  case LAM_EVENT_TURGOR_FOUND:
+    return water + r->energy_turgor;
+  case LAM_EVENT_LIMIT:
+    return LimitExcess(process, e);
+  default:
+    return -1;
+  }
+}

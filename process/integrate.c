@@ -1,0 +1,471 @@
+/*
+  One segment of time, integrated by IDA (SUNDIALS): variable order and step BDF for differential-algebraic equations.
+
+  Unknowns y: states of the kinetic laws; where water is followed V and p; the free components of F. Equations
+
+    x' = f(x, T),      V' = Lp A drive(V, p, x),      V = v(F, p) or, where the membranes have left the walls, p = 0,
+    P_i(F, p, x) = given stress,
+
+  of index 1 as long as the tissue with its water is stiff against what is free. The Jacobian dG/dy + c dG/dy' is made
+  of the response's own derivatives; that by the factor s of the walls follows from P = s P(F, p/s, g/s). Where moduli
+  do not change alike it is that of the common factor alone, which costs an iteration.
+
+  Reference: Hindmarsh et al., ACM TOMS 31 (2005) 363-396; Brenan, Campbell & Petzold, Numerical Solution of
+  Initial-Value Problems in Differential-Algebraic Equations.
+*/
+#include "process_impl.h"
+#include <math.h>
+#include <ida/ida.h>
+#include <nvector/nvector_serial.h>
+#include <sundials/sundials_types.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+
+enum { MAX_STEPS = 1000000 };
+
+#define LamCallSUN(call)                                                                                               \
+  do {                                                                                                                 \
+    const int lam_sun_flag_ = (call);                                                                                  \
+    PetscCheck(lam_sun_flag_ >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "SUNDIALS: %s failed with %d", #call,               \
+               lam_sun_flag_);                                                                                         \
+  } while (0)
+
+/* Where the unknowns lie in y; -1: not there. Where nothing else is unknown a number that stays 0 is. */
+typedef struct {
+  PetscInt n, state[LAM_PROCESS_KINETIC], water, turgor, F[9], idle;
+} Layout;
+
+typedef struct {
+  LamProcess process;
+  Layout layout;
+  PetscInt event_count;
+  LamEvent events[LAM_EVENT_COUNT];
+
+  SUNContext context;
+  void *ida;
+  N_Vector y, yp, tolerance, id;
+  SUNMatrix K;
+  SUNLinearSolver solver;
+} Integration;
+
+/* ---- unknowns ---- */
+
+static Layout LayOut(LamProcess process)
+{
+  Layout l = {.water = -1, .turgor = -1, .idle = -1};
+
+  for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++)
+    for (PetscInt i = 0; i < LAM_KINETIC_STATES; i++)
+      l.state[LAM_KINETIC_STATES * k + i] = i < LamKineticsStates(&process->spec->kinetics[k]) ? l.n++ : -1;
+  if (process->spec->has_water) {
+    l.water = l.n++;
+    l.turgor = l.n++;
+  }
+  for (PetscInt i = 0; i < 9; i++) l.F[i] = process->segment.given[i] ? l.n++ : -1;
+  if (!l.n) l.idle = l.n++;
+  return l;
+}
+
+/* The tissue that y says at a time; what is prescribed follows the segment. */
+static LamTissue Unpack(LamProcess process, const Layout *l, PetscReal time, const PetscReal y[])
+{
+  const PetscReal elapsed = time - process->segment.start;
+  LamTissue tissue = {.time = time,
+                      .temperature = LamRampAt(&process->segment.temperature, elapsed),
+                      .outside = LamRampAt(&process->segment.outside, elapsed)};
+
+  for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++) tissue.x[k] = l->state[k] < 0 ? 0 : y[l->state[k]];
+  for (PetscInt i = 0; i < 9; i++) tissue.F[i] = l->F[i] < 0 ? LamRampAt(&process->segment.F[i], elapsed) : y[l->F[i]];
+  tissue.turgor = l->turgor < 0 ? LamRampAt(&process->segment.turgor, elapsed) : y[l->turgor];
+  tissue.water = l->water < 0 ? 0 : y[l->water];
+  return tissue;
+}
+
+static void Pack(const Layout *l, const LamTissue *tissue, PetscReal y[])
+{
+  for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++)
+    if (l->state[k] >= 0) y[l->state[k]] = tissue->x[k];
+  for (PetscInt i = 0; i < 9; i++)
+    if (l->F[i] >= 0) y[l->F[i]] = tissue->F[i];
+  if (l->turgor >= 0) y[l->turgor] = tissue->turgor;
+  if (l->water >= 0) y[l->water] = tissue->water;
+  if (l->idle >= 0) y[l->idle] = 0;
+}
+
+/* ---- the response at y ---- */
+
+/* 0; 1: y has no response, a shorter step may have one; -1: an error of the library, which process->error keeps. */
+static int EvaluateAt(Integration *in, PetscReal t, const PetscReal y[], LamTissue *tissue, LamEvaluation *e)
+{
+  LamProcess process = in->process;
+
+  *tissue = Unpack(process, &in->layout, t, y);
+  process->error = LamProcessEvaluate(process, t, tissue->x, tissue->F, tissue->turgor, e);
+  if (process->error) return -1;
+  if (process->stop && process->stop()) process->stopped = PETSC_TRUE;
+  if (process->stopped) return -1;
+  return e->ok ? 0 : 1;
+}
+
+/* ---- residual ---- */
+
+static void KineticResidual(const Integration *in, const LamEvaluation *e, const PetscReal x[], const PetscReal yp[],
+                            PetscReal r[])
+{
+  for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++) {
+    const LamKinetics *kinetics = &in->process->spec->kinetics[k];
+    PetscReal rate[LAM_KINETIC_STATES] = {0}, J[LAM_KINETIC_STATES][LAM_KINETIC_STATES];
+    const PetscInt *at = &in->layout.state[LAM_KINETIC_STATES * k];
+
+    if (at[0] < 0) continue;
+    LamKineticsRates(kinetics, e->temperature, &x[LAM_KINETIC_STATES * k], rate, J);
+    for (PetscInt i = 0; i < LAM_KINETIC_STATES; i++)
+      if (at[i] >= 0) r[at[i]] = yp[at[i]] - rate[i];
+  }
+}
+
+static void WaterResidual(const Integration *in, const LamEvaluation *e, const LamTissue *tissue, const PetscReal yp[],
+                          PetscReal r[])
+{
+  const Layout *l = &in->layout;
+  LamFlow flow;
+
+  LamProcessFlow(in->process, e, tissue->water, tissue->turgor, &flow);
+  r[l->water] = isfinite(flow.conductance) ? yp[l->water] - flow.conductance * flow.drive : flow.drive;
+  r[l->turgor] = in->process->plasmolysed ? tissue->turgor : tissue->water + e->response.energy_turgor;
+}
+
+/* IDAResFn */
+static int Residual(PetscReal t, N_Vector y_vector, N_Vector yp_vector, N_Vector r_vector, void *ctx)
+{
+  Integration *in = (Integration *)ctx;
+  const PetscReal *y = N_VGetArrayPointer(y_vector), *yp = N_VGetArrayPointer(yp_vector);
+  const LamSegment *segment = &in->process->segment;
+  PetscReal *r = N_VGetArrayPointer(r_vector);
+  LamTissue tissue;
+  LamEvaluation e;
+  const int flag = EvaluateAt(in, t, y, &tissue, &e);
+
+  if (flag) return flag;
+  in->process->counts.residuals++;
+  KineticResidual(in, &e, tissue.x, yp, r);
+  if (in->layout.water >= 0) WaterResidual(in, &e, &tissue, yp, r);
+  if (in->layout.idle >= 0) r[in->layout.idle] = yp[in->layout.idle];
+  for (PetscInt i = 0; i < 9; i++)
+    if (in->layout.F[i] >= 0) r[in->layout.F[i]] = e.response.P[i] - LamRampAt(&segment->P[i], t - segment->start);
+  return 0;
+}
+
+/* ---- Jacobian ---- */
+
+static void KineticJacobian(const Integration *in, const LamEvaluation *e, const PetscReal x[], PetscReal c,
+                            SUNMatrix K)
+{
+  for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++) {
+    PetscReal rate[LAM_KINETIC_STATES] = {0}, J[LAM_KINETIC_STATES][LAM_KINETIC_STATES];
+    const PetscInt *at = &in->layout.state[LAM_KINETIC_STATES * k];
+
+    if (at[0] < 0) continue;
+    LamKineticsRates(&in->process->spec->kinetics[k], e->temperature, &x[LAM_KINETIC_STATES * k], rate, J);
+    for (PetscInt i = 0; i < LAM_KINETIC_STATES && at[i] >= 0; i++)
+      for (PetscInt j = 0; j < LAM_KINETIC_STATES && at[j] >= 0; j++)
+        SM_ELEMENT_D(K, at[i], at[j]) = (i == j ? c : 0) - J[i][j];
+  }
+}
+
+/* Adds derivative * dX/dx of a changing property to a row. */
+static void AddFactor(const Integration *in, const LamEvaluation *e, LamChanging which, PetscInt row,
+                      PetscReal derivative, SUNMatrix K)
+{
+  const PetscInt *at = &in->layout.state[LAM_KINETIC_STATES * which];
+
+  for (PetscInt i = 0; i < LAM_KINETIC_STATES; i++)
+    if (at[i] >= 0) SM_ELEMENT_D(K, row, at[i]) += derivative * e->factor[which].slope[i];
+}
+
+/* Adds that of something by the cohesion and by the common factor of the walls. */
+static void AddProperties(const Integration *in, const LamEvaluation *e, PetscInt row, PetscReal by_cohesion,
+                          PetscReal by_walls, SUNMatrix K)
+{
+  const LamWall *wall = &in->process->scene->micro.wall;
+  const PetscReal common = e->factor[LAM_CHANGING_WALLS].value;
+
+  AddFactor(in, e, LAM_CHANGING_LAMELLA, row, by_cohesion * in->process->scene->cohesion, K);
+  AddFactor(in, e, LAM_CHANGING_WALLS, row, by_walls * e->walls / common, K);
+  AddFactor(in, e, LAM_CHANGING_C1, row, by_walls * common * wall->C1, K);
+  AddFactor(in, e, LAM_CHANGING_C2, row, by_walls * common * wall->C2, K);
+}
+
+static void WaterJacobian(const Integration *in, const LamEvaluation *e, const LamTissue *tissue, PetscReal c,
+                          SUNMatrix K)
+{
+  const Layout *l = &in->layout;
+  const LamResponse *r = &e->response;
+  LamFlow flow;
+
+  LamProcessFlow(in->process, e, tissue->water, tissue->turgor, &flow);
+  const PetscBool flows = (PetscBool)isfinite(flow.conductance);
+  const PetscReal scale = flows ? -flow.conductance : 1;
+
+  SM_ELEMENT_D(K, l->water, l->water) = (flows ? c : 0) + scale * flow.drive_water;
+  SM_ELEMENT_D(K, l->water, l->turgor) = scale * flow.drive_turgor;
+  AddFactor(in, e, LAM_CHANGING_SOLUTES, l->water, scale * flow.drive_solutes, K);
+  AddFactor(in, e, LAM_CHANGING_REFLECTION, l->water, scale * flow.drive_reflection, K);
+  if (flows && e->factor[LAM_CHANGING_PERMEABILITY].value > 0)
+    AddFactor(in, e, LAM_CHANGING_PERMEABILITY, l->water,
+              -flow.conductance * flow.drive / e->factor[LAM_CHANGING_PERMEABILITY].value, K);
+  if (in->process->plasmolysed) {
+    SM_ELEMENT_D(K, l->turgor, l->turgor) = 1;
+    return;
+  }
+  SM_ELEMENT_D(K, l->turgor, l->water) = 1;
+  SM_ELEMENT_D(K, l->turgor, l->turgor) = r->energy_turgor2;
+  for (PetscInt k = 0; k < 9; k++)
+    if (l->F[k] >= 0) SM_ELEMENT_D(K, l->turgor, l->F[k]) = -LamProcessLumenSlope(in->process, e, k);
+  AddProperties(in, e, l->turgor, r->energy_turgor_cohesion,
+                -(tissue->turgor * r->energy_turgor2 + e->cohesion * r->energy_turgor_cohesion) / e->walls, K);
+}
+
+static void StressJacobian(const Integration *in, const LamEvaluation *e, const LamTissue *tissue, SUNMatrix K)
+{
+  const Layout *l = &in->layout;
+  const LamResponse *r = &e->response;
+
+  for (PetscInt i = 0; i < 9; i++) {
+    if (l->F[i] < 0) continue;
+    for (PetscInt k = 0; k < 9; k++)
+      if (l->F[k] >= 0) SM_ELEMENT_D(K, l->F[i], l->F[k]) = LamProcessStiffness(in->process, e, i, k);
+    if (l->turgor >= 0) SM_ELEMENT_D(K, l->F[i], l->turgor) = r->P_turgor[i];
+    AddProperties(in, e, l->F[i], r->P_cohesion[i],
+                  (r->P[i] - tissue->turgor * r->P_turgor[i] - e->cohesion * r->P_cohesion[i]) / e->walls, K);
+  }
+}
+
+/* IDALsJacFn: dG/dy + c dG/dy' */
+static int Jacobian(PetscReal t, PetscReal c, N_Vector y, N_Vector yp, N_Vector r, SUNMatrix K, void *ctx,
+                    N_Vector work1, N_Vector work2, N_Vector work3)
+{
+  Integration *in = (Integration *)ctx;
+  LamTissue tissue;
+  LamEvaluation e;
+  const int flag = EvaluateAt(in, t, N_VGetArrayPointer(y), &tissue, &e);
+
+  if (flag) return flag;
+  in->process->counts.jacobians++;
+  KineticJacobian(in, &e, tissue.x, c, K);
+  if (in->layout.water >= 0) WaterJacobian(in, &e, &tissue, c, K);
+  if (in->layout.idle >= 0) SM_ELEMENT_D(K, in->layout.idle, in->layout.idle) = c;
+  StressJacobian(in, &e, &tissue, K);
+  return 0;
+}
+
+/* IDARootFn */
+static int Roots(PetscReal t, N_Vector y, N_Vector yp, PetscReal excess[], void *ctx)
+{
+  Integration *in = (Integration *)ctx;
+  LamTissue tissue;
+  LamEvaluation e;
+  const int flag = EvaluateAt(in, t, N_VGetArrayPointer(y), &tissue, &e);
+
+  if (flag) return -1; /* IDA cannot take this back */
+  for (PetscInt k = 0; k < in->event_count; k++) {
+    excess[k] = LamProcessExcess(in->process, in->events[k], &e, tissue.water, tissue.turgor);
+    if (!isfinite(excess[k])) excess[k] = -1;
+  }
+  return 0;
+}
+
+/* ---- life ---- */
+
+/* IDAErrHandlerFn: what went wrong is told by the process. */
+static void Silence(int code, const char *module, const char *function, char *message, void *ctx) {}
+
+/* Kinetic states and strains count against 1, water against itself, turgor against all pressures there are. */
+static void SetTolerances(Integration *in)
+{
+  LamProcess process = in->process;
+  const Layout *l = &in->layout;
+  PetscReal *a = N_VGetArrayPointer(in->tolerance), *id = N_VGetArrayPointer(in->id);
+  const PetscReal relative = process->spec->tolerance;
+  const PetscReal pressure =
+      PetscMax(1e-3, PetscMax(process->scene->turgor, process->spec->has_water ? process->osmotic : 0));
+
+  for (PetscInt k = 0; k < l->n; k++) {
+    a[k] = relative * (k == l->turgor ? pressure : k == l->water ? 1e-3 * process->water : 0.1);
+    id[k] = 0;
+  }
+  for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++) {
+    if (l->state[k] < 0) continue;
+    a[l->state[k]] = 1e-3 * relative;
+    id[l->state[k]] = 1;
+  }
+  if (l->water >= 0 && isfinite(process->spec->water.permeability)) id[l->water] = 1;
+  if (l->idle >= 0) id[l->idle] = 1;
+}
+
+/* y' of what has one: -(residual at y' = 0). */
+static PetscErrorCode StartRates(Integration *in, PetscReal t)
+{
+  const PetscReal *id = N_VGetArrayPointer(in->id);
+  PetscReal *yp = N_VGetArrayPointer(in->yp);
+  N_Vector r = N_VClone(in->y);
+
+  PetscFunctionBeginUser;
+  N_VConst(0, in->yp);
+  const int flag = Residual(t, in->y, in->yp, r, in);
+  for (PetscInt k = 0; k < in->layout.n && !flag; k++)
+    if (id[k] != 0) yp[k] = -N_VGetArrayPointer(r)[k];
+  N_VDestroy(r);
+  PetscCall(in->process->error);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Create(LamProcess process, Integration *in)
+{
+  const LamSegment *segment = &process->segment;
+
+  PetscFunctionBeginUser;
+  in->process = process;
+  in->layout = LayOut(process);
+  in->event_count = LamProcessListEvents(process, in->events);
+  LamCallSUN(SUNContext_Create(NULL, &in->context));
+  in->y = N_VNew_Serial(in->layout.n, in->context);
+  in->yp = N_VClone(in->y);
+  in->tolerance = N_VClone(in->y);
+  in->id = N_VClone(in->y);
+  N_VConst(0, in->y);
+  Pack(&in->layout, &process->tissue, N_VGetArrayPointer(in->y));
+  SetTolerances(in);
+  PetscCall(StartRates(in, segment->start));
+  in->ida = IDACreate(in->context);
+  PetscCheck(in->ida, PETSC_COMM_SELF, PETSC_ERR_MEM, "SUNDIALS: no memory for an integrator");
+  LamCallSUN(IDASetErrHandlerFn(in->ida, Silence, NULL));
+  LamCallSUN(IDAInit(in->ida, Residual, segment->start, in->y, in->yp));
+  LamCallSUN(IDASVtolerances(in->ida, process->spec->tolerance, in->tolerance));
+  LamCallSUN(IDASetUserData(in->ida, in));
+  LamCallSUN(IDASetId(in->ida, in->id));
+  LamCallSUN(IDASetMaxNumSteps(in->ida, MAX_STEPS));
+  LamCallSUN(IDASetStopTime(in->ida, segment->end));
+  in->K = SUNDenseMatrix(in->layout.n, in->layout.n, in->context);
+  in->solver = SUNLinSol_Dense(in->y, in->K, in->context);
+  LamCallSUN(IDASetLinearSolver(in->ida, in->solver, in->K));
+  LamCallSUN(IDASetJacFn(in->ida, Jacobian));
+  if (in->event_count) {
+    int rising[LAM_EVENT_COUNT];
+
+    for (PetscInt k = 0; k < in->event_count; k++) rising[k] = 1;
+    LamCallSUN(IDARootInit(in->ida, (int)in->event_count, Roots));
+    LamCallSUN(IDASetRootDirection(in->ida, rising));
+    LamCallSUN(IDASetNoInactiveRootWarn(in->ida));
+  }
+  PetscFunctionReturn(0);
+}
+
+static void Destroy(Integration *in)
+{
+  if (in->ida) IDAFree(&in->ida);
+  if (in->solver) SUNLinSolFree(in->solver);
+  if (in->K) SUNMatDestroy(in->K);
+  if (in->id) N_VDestroy(in->id);
+  if (in->tolerance) N_VDestroy(in->tolerance);
+  if (in->yp) N_VDestroy(in->yp);
+  if (in->y) N_VDestroy(in->y);
+  if (in->context) SUNContext_Free(&in->context);
+}
+
+/* ---- the way ---- */
+
+/* The time of output number k; the last one is the end. */
+static PetscReal OutputTime(LamProcess process)
+{
+  const PetscReal t = (PetscReal)process->outputs * process->spec->output, end = process->spec->duration;
+
+  return t > end * (1 - 1e-12) ? end : t;
+}
+
+/* Tells the outputs up to a time that the integrator has passed. */
+static PetscErrorCode TellUpTo(Integration *in, PetscReal time)
+{
+  LamProcess process = in->process;
+  N_Vector y = N_VClone(in->y);
+  PetscErrorCode ierr = 0;
+
+  PetscFunctionBeginUser;
+  while (!ierr && process->next_output <= time && process->next_output <= process->spec->duration) {
+    const LamTissue tissue = IDAGetDky(in->ida, process->next_output, 0, y) == IDA_SUCCESS
+                                 ? Unpack(process, &in->layout, process->next_output, N_VGetArrayPointer(y))
+                                 : process->tissue;
+
+    ierr = LamProcessTell(process, &tissue, LAM_EVENT_COUNT);
+    const PetscReal told = process->next_output;
+
+    process->outputs++;
+    process->next_output = told >= process->spec->duration ? PETSC_INFINITY : OutputTime(process);
+  }
+  N_VDestroy(y);
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode DescribeFailure(LamProcess process, int flag)
+{
+  PetscFunctionBeginUser;
+  if (flag == IDA_ERR_FAIL)
+    PetscCall(PetscStrncpy(process->trouble, "the error of a step of time cannot be brought below the tolerance",
+                           sizeof(process->trouble)));
+  else if (flag == IDA_LSETUP_FAIL || flag == IDA_LSOLVE_FAIL)
+    PetscCall(PetscStrncpy(process->trouble, "the equations of a step of time are singular", sizeof(process->trouble)));
+  else if (!process->trouble[0])
+    PetscCall(PetscSNPrintf(process->trouble, sizeof(process->trouble), "no step of time converges (IDA: %d)", flag));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode FindEvents(const Integration *in, PetscBool happened[LAM_EVENT_COUNT])
+{
+  int found[LAM_EVENT_COUNT];
+
+  PetscFunctionBeginUser;
+  LamCallSUN(IDAGetRootInfo(in->ida, found));
+  for (PetscInt k = 0; k < in->event_count; k++)
+    if (found[k]) happened[in->events[k]] = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Follow(Integration *in, PetscBool happened[LAM_EVENT_COUNT], PetscBool *ok)
+{
+  LamProcess process = in->process;
+  int flag = IDA_SUCCESS;
+  PetscReal t = process->segment.start;
+
+  PetscFunctionBeginUser;
+  while (flag == IDA_SUCCESS && !process->stopped) {
+    process->trouble[0] = '\0';
+    flag = IDASolve(in->ida, process->segment.end, &t, in->y, in->yp, IDA_ONE_STEP);
+    PetscCall(process->error);
+    if (flag < 0) break;
+    process->counts.steps++;
+    if (process->responder->accept) PetscCall(process->responder->accept(process->responder->ctx));
+    PetscCall(TellUpTo(in, t));
+    process->tissue = Unpack(process, &in->layout, t, N_VGetArrayPointer(in->y));
+    if (t >= process->segment.end) break;
+  }
+  *ok = (PetscBool)(flag >= 0 && !process->stopped);
+  if (flag == IDA_ROOT_RETURN) PetscCall(FindEvents(in, happened));
+  if (flag < 0 && !process->stopped) PetscCall(DescribeFailure(process, flag));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamProcessIntegrate(LamProcess process, PetscBool happened[LAM_EVENT_COUNT], PetscBool *ok)
+{
+  Integration in = {0};
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  *ok = PETSC_TRUE;
+  process->counts.restarts++;
+  ierr = Create(process, &in);
+  if (!ierr) ierr = Follow(&in, happened, ok);
+  Destroy(&in);
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}

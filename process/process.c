@@ -1,0 +1,368 @@
+/*
+  The way of the tissue through time: from segment to segment, over jumps and events.
+*/
+#include "process_impl.h"
+#include <math.h>
+
+#define STILL 1e-7 /* what is prescribed differs by less from where the tissue is: no jump */
+
+/* ---- life ---- */
+
+PetscBool LamProcessWallsStayAlike(const LamScene *scene)
+{
+  const LamKinetics *kinetics = scene->process.kinetics, *C1 = &kinetics[LAM_CHANGING_C1];
+  const LamWall *wall = &scene->micro.wall;
+
+  if (wall->C2 > 0 && !LamKineticsAgree(C1, &kinetics[LAM_CHANGING_C2])) return PETSC_FALSE;
+  return (PetscBool)(wall->C4 == 0 || LamKineticsAgree(C1, &kinetics[LAM_CHANGING_C4]));
+}
+
+/* Area of the membranes over V0, 1 / apothem: lumens are hexagonal prisms of infinite length. */
+static PetscReal Membrane(const LamMicrostructure *micro)
+{
+  const PetscInt cells = micro->cells[0] * micro->cells[1];
+  PetscReal area = 0;
+
+  for (PetscInt c = 0; c < cells; c++) area += 2 * (LamOuterApothem(micro) - LamWallThickness(micro, c));
+  return area / (PetscReal)cells;
+}
+
+PetscErrorCode LamProcessCreate(const LamScene *scene, LamProcess *process)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(scene->has_process, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: has no block `process`, which says how the tissue changes", scene->path);
+  PetscCall(PetscNew(process));
+  (*process)->scene = scene;
+  (*process)->spec = &scene->process;
+  (*process)->walls_alike = LamProcessWallsStayAlike(scene);
+  (*process)->membrane = Membrane(&scene->micro);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamProcessSetResponder(LamProcess process, LamResponder *responder)
+{
+  PetscFunctionBeginUser;
+  process->responder = responder;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamProcessSetWalls(LamProcess process, PetscErrorCode (*set)(void *ctx, const PetscReal factor[3]),
+                                  void *ctx)
+{
+  PetscFunctionBeginUser;
+  process->set_walls = set;
+  process->walls_ctx = ctx;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamProcessSetMonitor(LamProcess process, LamProcessMonitor monitor, void *ctx)
+{
+  PetscFunctionBeginUser;
+  process->monitor = monitor;
+  process->monitor_ctx = ctx;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamProcessSetStop(LamProcess process, PetscBool (*stop)(void))
+{
+  PetscFunctionBeginUser;
+  process->stop = stop;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamProcessGetCounts(LamProcess process, LamProcessCounts *counts)
+{
+  PetscFunctionBeginUser;
+  *counts = process->counts;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamProcessDestroy(LamProcess *process)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(*process));
+  PetscFunctionReturn(0);
+}
+
+/* ---- telling ---- */
+
+PetscErrorCode LamProcessTell(LamProcess process, const LamTissue *tissue, LamEvent event)
+{
+  LamProcessState state;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamProcessDescribe(process, tissue, &state));
+  state.event = event;
+  if (process->monitor) PetscCall(process->monitor(&state, process->monitor_ctx));
+  PetscFunctionReturn(0);
+}
+
+/* ---- where the tissue is ---- */
+
+static PetscErrorCode EvaluateTissue(LamProcess process, LamEvaluation *e)
+{
+  const LamTissue *tissue = &process->tissue;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamProcessEvaluate(process, tissue->time, tissue->x, tissue->F, tissue->turgor, e));
+  PetscFunctionReturn(0);
+}
+
+/* The conditions that the tissue is in, with the unknowns of the present segment. */
+static LamSegment Here(LamProcess process, const PetscReal P[9])
+{
+  LamSegment here = process->segment;
+
+  for (int i = 0; i < 9; i++) {
+    here.F[i] = (LamRamp){process->tissue.F[i], 0};
+    here.P[i] = (LamRamp){P[i], 0};
+  }
+  here.turgor = (LamRamp){process->tissue.turgor, 0};
+  here.temperature = (LamRamp){process->tissue.temperature, 0};
+  here.outside = (LamRamp){process->tissue.outside, 0};
+  return here;
+}
+
+/* Temperature and bath act through the flow of water, at once only where nothing resists that. */
+static PetscBool Jumps(LamProcess process, const PetscReal P[9])
+{
+  const PetscBool at_once = (PetscBool)(process->spec->has_water && !isfinite(process->spec->water.permeability));
+
+  const LamSegment *segment = &process->segment;
+
+  for (int i = 0; i < 9; i++) {
+    const PetscReal change = segment->given[i] ? segment->P[i].from - P[i] : segment->F[i].from - process->tissue.F[i];
+
+    if (PetscAbsReal(change) > STILL) return PETSC_TRUE;
+  }
+  if (at_once &&
+      (process->tissue.outside != segment->outside.from || process->tissue.temperature != segment->temperature.from))
+    return PETSC_TRUE;
+  return (PetscBool)(PetscAbsReal(segment->turgor.from - process->tissue.turgor) > STILL);
+}
+
+/* ---- what happens ---- */
+
+/* What follows from an event: membranes leave the walls or meet them, others are not looked for any more. */
+static void Note(LamProcess process, LamEvent event)
+{
+  if (event == LAM_EVENT_TURGOR_LOST && process->spec->has_water) {
+    process->plasmolysed = PETSC_TRUE;
+    process->tissue.turgor = 0;
+  } else if (event == LAM_EVENT_TURGOR_FOUND) {
+    process->plasmolysed = PETSC_FALSE;
+  } else {
+    process->found[event] = PETSC_TRUE;
+  }
+}
+
+/* Notes and tells what has happened where the tissue is; *ends: it cannot go on from there. */
+static PetscErrorCode Happen(LamProcess process, const PetscBool happened[LAM_EVENT_COUNT], PetscBool *ends)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < LAM_EVENT_COUNT; k++) {
+    if (!happened[k]) continue;
+    Note(process, (LamEvent)k);
+    PetscCall(LamProcessTell(process, &process->tissue, (LamEvent)k));
+    if (k == LAM_EVENT_LIMIT) *ends = PETSC_TRUE;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* After a jump: what has been passed in it. Turgor has its own way (Settle). */
+static PetscErrorCode CheckEvents(LamProcess process, PetscBool *ends)
+{
+  PetscBool happened[LAM_EVENT_COUNT] = {PETSC_FALSE};
+  LamEvent events[LAM_EVENT_COUNT];
+  const PetscInt n = LamProcessListEvents(process, events);
+  LamEvaluation e;
+
+  PetscFunctionBeginUser;
+  PetscCall(EvaluateTissue(process, &e));
+  for (PetscInt k = 0; k < n && e.ok; k++) {
+    if (events[k] == LAM_EVENT_TURGOR_LOST || events[k] == LAM_EVENT_TURGOR_FOUND) continue;
+    happened[events[k]] =
+        (PetscBool)(LamProcessExcess(process, events[k], &e, process->tissue.water, process->tissue.turgor) > 0);
+  }
+  PetscCall(Happen(process, happened, ends));
+  PetscFunctionReturn(0);
+}
+
+/* ---- segments ---- */
+
+/* How the tissue takes a change that leaves water no time. */
+static LamSettle Kind(LamProcess process)
+{
+  if (!process->spec->has_water || process->plasmolysed) return LAM_SETTLE_TURGOR;
+  return isfinite(process->spec->water.permeability) ? LAM_SETTLE_WATER : LAM_SETTLE_OSMOSIS;
+}
+
+/* The turgor of the segment's start where water is followed: the tissue's own. */
+static void KeepTurgor(LamProcess process)
+{
+  if (process->spec->has_water) process->segment.turgor = (LamRamp){process->tissue.turgor, 0};
+}
+
+/* Membranes come off, or meet the walls again, in a jump. */
+static PetscErrorCode ChangeMembranes(LamProcess process, PetscBool *ok)
+{
+  LamEvent event = LAM_EVENT_COUNT;
+  LamSegment here;
+  LamEvaluation e;
+
+  PetscFunctionBeginUser;
+  PetscCall(EvaluateTissue(process, &e));
+  if (!process->plasmolysed && process->tissue.turgor < 0) event = LAM_EVENT_TURGOR_LOST;
+  if (process->plasmolysed && process->tissue.water > -e.response.energy_turgor) event = LAM_EVENT_TURGOR_FOUND;
+  if (event == LAM_EVENT_COUNT) PetscFunctionReturn(0);
+  Note(process, event);
+  KeepTurgor(process);
+  here = Here(process, e.response.P);
+  PetscCall(LamProcessSettle(process, Kind(process), &here, ok));
+  if (*ok) PetscCall(LamProcessTell(process, &process->tissue, event));
+  PetscFunctionReturn(0);
+}
+
+/* Brings the tissue to the start of the segment: by a jump, or by what rounding and interpolation have left. */
+static PetscErrorCode EnterSegment(LamProcess process, PetscBool *ok)
+{
+  LamEvaluation e;
+
+  PetscFunctionBeginUser;
+  KeepTurgor(process);
+  PetscCall(EvaluateTissue(process, &e));
+  *ok = e.ok;
+  if (!*ok) PetscFunctionReturn(0);
+  const LamSegment here = Here(process, e.response.P);
+
+  if (!Jumps(process, e.response.P)) {
+    PetscCall(
+        LamProcessSettle(process, Kind(process) == LAM_SETTLE_WATER ? LAM_SETTLE_TURGOR : Kind(process), NULL, ok));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(LamProcessSettle(process, Kind(process), &here, ok));
+  if (*ok && process->spec->has_water) PetscCall(ChangeMembranes(process, ok));
+  PetscFunctionReturn(0);
+}
+
+/* One segment, or the part of it up to an event. */
+static PetscErrorCode FollowSegment(LamProcess process, PetscBool *ok, PetscBool *ends)
+{
+  PetscBool happened[LAM_EVENT_COUNT] = {PETSC_FALSE};
+  LamEvaluation e;
+
+  PetscFunctionBeginUser;
+  LamProcessNextSegment(process, &process->segment);
+  PetscCall(EnterSegment(process, ok));
+  if (*ok) PetscCall(CheckEvents(process, ends));
+  if (!*ok || *ends) PetscFunctionReturn(0);
+  if (process->segment.end > process->segment.start) PetscCall(LamProcessIntegrate(process, happened, ok));
+  if (!*ok) PetscFunctionReturn(0);
+  PetscCall(Happen(process, happened, ends));
+  PetscCall(EvaluateTissue(process, &e));
+  LamProcessEndSegment(process, e.response.P);
+  PetscFunctionReturn(0);
+}
+
+/* ---- the start ---- */
+
+/* The tissue free of stress under its turgor, from which deformation counts. */
+static PetscErrorCode Inflate(LamProcess process, PetscBool *ok)
+{
+  const PetscReal none[9] = {0};
+  const PetscInt in_plane[3] = {0, 1, 4}; /* F21 = 0 holds it against rotation */
+  LamSegment *segment = &process->segment, from;
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < 9; i++) {
+    segment->given[i] = PETSC_FALSE;
+    segment->F[i] = (LamRamp){i % 4 == 0 ? 1 : 0, 0};
+    segment->P[i] = (LamRamp){0, 0};
+  }
+  for (int k = 0; k < 3; k++) segment->given[in_plane[k]] = PETSC_TRUE;
+  from = Here(process, none);
+  from.turgor = (LamRamp){0, 0};
+  PetscCall(LamProcessSettle(process, LAM_SETTLE_TURGOR, &from, ok));
+  if (!*ok) PetscFunctionReturn(0);
+  PetscCall(PetscArraycpy(process->inflation, process->tissue.F, 9));
+  for (int i = 0; i < 9; i++) process->tissue.F[i] = i % 4 == 0 ? 1 : 0;
+  PetscFunctionReturn(0);
+}
+
+static void Clear(LamProcess process)
+{
+  LamTissue *tissue = &process->tissue;
+
+  *tissue = (LamTissue){.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+  for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++)
+    LamKineticsStart(&process->spec->kinetics[k], &tissue->x[LAM_KINETIC_STATES * k]);
+  for (int i = 0; i < 9; i++) process->inflation[i] = i % 4 == 0 ? 1 : 0;
+  process->plasmolysed = process->stopped = process->last_known = PETSC_FALSE;
+  for (PetscInt k = 0; k < LAM_EVENT_COUNT; k++) process->found[k] = PETSC_FALSE;
+  for (int k = 0; k < 3; k++) process->told_walls[k] = 1;
+  process->next_output = 0;
+  process->outputs = 0;
+  process->counts = (LamProcessCounts){0};
+}
+
+static PetscErrorCode Start(LamProcess process, PetscBool *ok)
+{
+  const LamWaterSpec *water = &process->spec->water;
+  LamEvaluation e;
+  LamFlow flow;
+
+  PetscFunctionBeginUser;
+  Clear(process);
+  LamProcessStartProgram(process, (const PetscReal[9]){0});
+  LamProcessNextSegment(process, &process->segment);
+  process->tissue.turgor = process->segment.turgor.from;
+  process->temperature = process->tissue.temperature = process->segment.temperature.from;
+  process->tissue.outside = process->segment.outside.from;
+  *ok = PETSC_TRUE;
+  if (process->spec->inflate) PetscCall(Inflate(process, ok));
+  if (!*ok) PetscFunctionReturn(0);
+  PetscCall(EvaluateTissue(process, &e));
+  *ok = e.ok;
+  if (!*ok) PetscFunctionReturn(0);
+  LamProcessStartProgram(process, e.response.P);
+  if (!process->spec->has_water) PetscFunctionReturn(0);
+  process->tissue.water = process->water = -e.response.energy_turgor;
+  process->osmotic = water->osmotic;
+  if (isnan(water->osmotic))
+    process->osmotic = e.outside + (water->reflection > 0 ? process->tissue.turgor / water->reflection : 0);
+  LamProcessFlow(process, &e, process->tissue.water, 0, &flow);
+  process->plasmolysed = (PetscBool)(process->tissue.turgor == 0 && flow.drive < 0);
+  PetscFunctionReturn(0);
+}
+
+/* ---- the way ---- */
+
+static PetscErrorCode FollowAll(LamProcess process, PetscBool *ok, PetscBool *ends)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Start(process, ok));
+  while (*ok && !*ends && !process->stopped && process->tissue.time < process->spec->duration)
+    PetscCall(FollowSegment(process, ok, ends));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamProcessRun(LamProcess process, LamProcessReason *reason, char message[LAM_PROCESS_MESSAGE])
+{
+  PetscBool ok = PETSC_TRUE, ends = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCheck(process->responder, PETSC_COMM_SELF, PETSC_ERR_ORDER, "call LamProcessSetResponder() first");
+  PetscCheck(process->walls_alike || process->set_walls, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: process.kinetics: C1, C2 and C4 do not change alike, and what answers knows only tissue whose walls "
+             "keep their proportions; solve directly",
+             process->scene->path);
+  message[0] = '\0';
+  PetscCall(FollowAll(process, &ok, &ends));
+  *reason = process->stopped ? LAM_PROCESS_STOPPED : ok && !ends ? LAM_PROCESS_DONE : LAM_PROCESS_ENDED;
+  if (*reason == LAM_PROCESS_ENDED)
+    PetscCall(
+        PetscSNPrintf(message, LAM_PROCESS_MESSAGE, "ended at %.6g s: %s", (double)process->tissue.time,
+                      ends ? "limit point: nothing is left of the stiffness against what is free" : process->trouble));
+  PetscFunctionReturn(0);
+}

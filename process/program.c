@@ -1,0 +1,107 @@
+/*
+  What is prescribed and surrounds the tissue at a time.
+
+  All of it is straight between times at which something jumps or bends: the entries of the surroundings, the points of
+  tabulated kinetics, the ends of the parts of the load program. Between two of these lies a segment.
+*/
+#include "process_impl.h"
+#include <math.h>
+
+static PetscBool IsOver(LamProcess process)
+{
+  return (PetscBool)(process->cycle >= process->spec->repeat);
+}
+
+/* The present part of the program; once it is over, the last one. */
+static const LamProcessLeg *Leg(LamProcess process)
+{
+  return &process->spec->legs[IsOver(process) ? process->spec->leg_count - 1 : process->leg];
+}
+
+static void StartLeg(LamProcess process, const PetscReal P[9])
+{
+  process->leg_start = process->tissue.time;
+  for (int i = 0; i < 9; i++) {
+    process->leg_F[i] = process->tissue.F[i];
+    process->leg_P[i] = P[i];
+  }
+}
+
+void LamProcessStartProgram(LamProcess process, const PetscReal P[9])
+{
+  process->leg = process->cycle = 0;
+  StartLeg(process, P);
+}
+
+/* ---- surroundings ---- */
+
+static void Surround(LamProcess process, LamSegment *segment)
+{
+  const LamSurroundings *at = process->spec->surroundings;
+  const PetscInt n = process->spec->surroundings_count;
+  const PetscReal t = segment->start;
+  PetscInt after = 0;
+
+  while (after < n && at[after].time <= t) after++;
+  const LamSurroundings *a = &at[PetscMax(after - 1, 0)], *b = &at[PetscMin(after, n - 1)];
+  const PetscReal span = b->time - a->time, share = span > 0 ? (t - a->time) / span : 0;
+
+#define STRAIGHT(member)                                                                                               \
+  (LamRamp){a->member + share * (b->member - a->member), span > 0 ? (b->member - a->member) / span : 0}
+  segment->temperature = STRAIGHT(temperature);
+  segment->outside = STRAIGHT(outside);
+  segment->turgor = STRAIGHT(turgor);
+  if (after < n) segment->end = PetscMin(segment->end, at[after].time);
+}
+
+static void EndAtTables(LamProcess process, LamSegment *segment)
+{
+  for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++) {
+    const LamKinetics *kinetics = &process->spec->kinetics[k];
+
+    for (PetscInt i = 0; i < kinetics->count; i++)
+      if (kinetics->time[i] > segment->start) segment->end = PetscMin(segment->end, kinetics->time[i]);
+  }
+}
+
+/* ---- load ---- */
+
+static void Load(LamProcess process, LamSegment *segment)
+{
+  const LamProcessLeg *leg = Leg(process);
+  const PetscBool moves = (PetscBool)(!IsOver(process) && leg->duration > 0);
+  const PetscReal share = moves ? (segment->start - process->leg_start) / leg->duration : 1;
+
+  for (int i = 0; i < 9; i++) {
+    const PetscReal dF = leg->F[i] - process->leg_F[i], dP = leg->control.P[i] - process->leg_P[i];
+
+    segment->given[i] = leg->control.given[i];
+    segment->F[i] = (LamRamp){process->leg_F[i] + share * dF, moves ? dF / leg->duration : 0};
+    segment->P[i] = (LamRamp){process->leg_P[i] + share * dP, moves ? dP / leg->duration : 0};
+  }
+  if (IsOver(process)) return;
+  segment->end = PetscMin(segment->end, process->leg_start + leg->duration);
+}
+
+void LamProcessNextSegment(LamProcess process, LamSegment *segment)
+{
+  segment->start = process->tissue.time;
+  segment->end = process->spec->duration;
+  Surround(process, segment);
+  EndAtTables(process, segment);
+  Load(process, segment);
+}
+
+void LamProcessEndSegment(LamProcess process, const PetscReal P[9])
+{
+  const LamProcessLeg *leg = Leg(process);
+  PetscReal stress[9];
+
+  if (IsOver(process) || process->tissue.time < process->leg_start + leg->duration) return;
+  for (int i = 0; i < 9; i++) stress[i] = leg->control.given[i] ? leg->control.P[i] : P[i];
+  if (++process->leg == process->spec->leg_count) {
+    process->leg = 0;
+    process->cycle++;
+  }
+  StartLeg(process, stress);
+}

@@ -1,0 +1,194 @@
+/*
+  Equilibrium at an instant: at the start, and where something jumps.
+
+  Newton's method for the free components of F and, unless it is given, the turgor p, of
+
+    P_i(F, p) = given stress,      and one of   v(F, p) = V,   sigma (pi(v) - pi_out) = p,
+
+  with the derivatives of the response. Conditions that are far from those before are gone to in steps along the
+  straight way between the two, which are halved where an iteration fails.
+*/
+#include "process_impl.h"
+#include <math.h>
+#include <petscblaslapack.h>
+
+enum { MAX_ITERATIONS = 12, MAX_HALVINGS = 20, MOST = 10 };
+#define EXACT 1e-10  /* of the residual: stress in C1 + C2, volume in V0 */
+#define FARTHEST 0.3 /* change of a component of F in an iteration */
+
+/* What holds at a place on the way; s = 1: the conditions of the segment. */
+typedef struct {
+  PetscReal F[9], P[9], turgor, water, temperature, outside;
+} Conditions;
+
+typedef struct {
+  LamSettle kind;
+  PetscBool given[9];
+  PetscInt n, component[9]; /* unknown components of F; with the turgor behind them */
+} Unknowns;
+
+static Unknowns ListUnknowns(const LamSegment *segment, LamSettle kind)
+{
+  Unknowns u = {.kind = kind};
+
+  for (PetscInt i = 0; i < 9; i++) {
+    u.given[i] = segment->given[i];
+    if (u.given[i]) u.component[u.n++] = i;
+  }
+  return u;
+}
+
+static PetscInt Count(const Unknowns *u)
+{
+  return u->n + (u->kind == LAM_SETTLE_TURGOR ? 0 : 1);
+}
+
+/* Residual r and its derivative K, column by column, at the tissue's F and turgor. */
+static void Linearise(LamProcess process, const Unknowns *u, const Conditions *c, const LamTissue *tissue,
+                      const LamEvaluation *e, PetscReal r[], PetscReal K[])
+{
+  const LamResponse *response = &e->response;
+  const PetscInt n = Count(u);
+
+  for (PetscInt a = 0; a < u->n; a++) {
+    const PetscInt i = u->component[a];
+
+    r[a] = response->P[i] - c->P[i];
+    for (PetscInt b = 0; b < u->n; b++) K[b * n + a] = LamProcessStiffness(process, e, i, u->component[b]);
+    if (n > u->n) K[u->n * n + a] = response->P_turgor[i];
+  }
+  if (n == u->n) return;
+  const PetscReal lumen = -response->energy_turgor;
+  PetscReal slope = 1; /* of the equation by the lumen */
+  LamFlow flow;
+
+  K[u->n * n + u->n] = -response->energy_turgor2;
+  r[u->n] = lumen - c->water;
+  if (u->kind == LAM_SETTLE_OSMOSIS) {
+    LamProcessFlow(process, e, lumen, tissue->turgor, &flow);
+    r[u->n] = flow.drive;
+    slope = flow.drive_water;
+    K[u->n * n + u->n] = -slope * response->energy_turgor2 + flow.drive_turgor;
+  }
+  for (PetscInt b = 0; b < u->n; b++) K[b * n + u->n] = slope * LamProcessLumenSlope(process, e, u->component[b]);
+}
+
+static PetscReal Norm(PetscInt n, const PetscReal r[])
+{
+  PetscReal largest = 0;
+
+  for (PetscInt a = 0; a < n; a++) largest = PetscMax(largest, PetscAbsReal(r[a]));
+  return largest;
+}
+
+/* Solves K d = r in place; *ok: K is regular and d finite. */
+static PetscErrorCode SolveDense(PetscInt n, PetscReal K[], PetscReal r[], PetscBool *ok)
+{
+  PetscBLASInt size = (PetscBLASInt)n, one = 1, pivots[MOST], info;
+
+  PetscFunctionBeginUser;
+  LAPACKgesv_(&size, &one, K, &size, pivots, r, &size, &info);
+  *ok = (PetscBool)(info == 0 && isfinite(Norm(n, r)));
+  PetscFunctionReturn(0);
+}
+
+/* A protoplast off the walls, in equilibrium with what surrounds it: pi (V - V_b) is constant. */
+static void FillOsmometer(LamProcess process, const LamEvaluation *e, LamTissue *tissue)
+{
+  const PetscReal dead = process->spec->water.non_osmotic * process->water;
+  LamFlow flow;
+
+  LamProcessFlow(process, e, tissue->water, 0, &flow);
+  tissue->water = dead + (tissue->water - dead) * flow.osmotic / e->outside;
+}
+
+/* Newton at conditions c from the tissue's state, which it replaces where it succeeds. */
+static PetscErrorCode Iterate(LamProcess process, const Unknowns *u, const Conditions *c, PetscBool *ok)
+{
+  const PetscInt n = Count(u);
+  LamTissue tissue = process->tissue;
+  PetscReal r[MOST], K[MOST * MOST], before = PETSC_INFINITY;
+  LamEvaluation e;
+
+  PetscFunctionBeginUser;
+  *ok = PETSC_FALSE;
+  for (PetscInt i = 0; i < 9; i++)
+    if (!u->given[i]) tissue.F[i] = c->F[i];
+  if (u->kind == LAM_SETTLE_TURGOR) tissue.turgor = c->turgor;
+  for (PetscInt it = 0; it < MAX_ITERATIONS; it++) {
+    PetscCall(LamProcessEvaluate(process, tissue.time, tissue.x, tissue.F, tissue.turgor, &e));
+    if (!e.ok) PetscFunctionReturn(0);
+    e.temperature = c->temperature;
+    e.outside = c->outside;
+    Linearise(process, u, c, &tissue, &e, r, K);
+    const PetscReal norm = Norm(n, r);
+    if (norm <= EXACT || (norm <= 1e3 * EXACT && norm >= 0.5 * before)) {
+      *ok = PETSC_TRUE;
+      break;
+    }
+    before = norm;
+    if (!n) break;
+    PetscCall(SolveDense(n, K, r, ok));
+    if (!*ok || Norm(u->n, r) > FARTHEST) {
+      *ok = PETSC_FALSE;
+      PetscCall(PetscStrncpy(process->trouble, "the stiffness against what is free is singular, or nearly so",
+                             sizeof(process->trouble)));
+      PetscFunctionReturn(0);
+    }
+    *ok = PETSC_FALSE;
+    for (PetscInt a = 0; a < u->n; a++) tissue.F[u->component[a]] -= r[a];
+    if (n > u->n) tissue.turgor -= r[u->n];
+  }
+  if (!*ok) {
+    PetscCall(PetscStrncpy(process->trouble, "Newton's method finds no equilibrium", sizeof(process->trouble)));
+    PetscFunctionReturn(0);
+  }
+  if (u->kind != LAM_SETTLE_WATER && !process->plasmolysed) tissue.water = -e.response.energy_turgor;
+  if (process->plasmolysed && !isfinite(process->spec->water.permeability)) FillOsmometer(process, &e, &tissue);
+  tissue.temperature = c->temperature;
+  tissue.outside = c->outside;
+  process->tissue = tissue;
+  PetscFunctionReturn(0);
+}
+
+static Conditions Between(const LamSegment *from, const LamSegment *to, PetscReal water, PetscReal s)
+{
+  Conditions c = {.water = water,
+                  .turgor = (1 - s) * from->turgor.from + s * to->turgor.from,
+                  .temperature = (1 - s) * from->temperature.from + s * to->temperature.from,
+                  .outside = (1 - s) * from->outside.from + s * to->outside.from};
+
+  for (int i = 0; i < 9; i++) {
+    c.F[i] = (1 - s) * from->F[i].from + s * to->F[i].from;
+    c.P[i] = (1 - s) * from->P[i].from + s * to->P[i].from;
+  }
+  return c;
+}
+
+PetscErrorCode LamProcessSettle(LamProcess process, LamSettle kind, const LamSegment *from, PetscBool *ok)
+{
+  const LamSegment *to = &process->segment;
+  const Unknowns u = ListUnknowns(to, kind);
+  const LamTissue start = process->tissue;
+  PetscReal done = 0, step = 1;
+
+  PetscFunctionBeginUser;
+  *ok = PETSC_TRUE;
+  while (done < 1) {
+    const PetscReal next = PetscMin(1, done + step);
+    const Conditions c = Between(from ? from : to, to, start.water, next);
+
+    PetscCall(Iterate(process, &u, &c, ok));
+    if (process->stop && process->stop()) process->stopped = PETSC_TRUE;
+    if (*ok) {
+      if (kind != LAM_SETTLE_TURGOR && process->tissue.turgor < 0) break; /* the membranes leave the walls */
+      done = next;
+      step *= 2;
+      continue;
+    }
+    step = 0.5 * (next - done);
+    if (process->stopped || step < PetscPowRealInt(0.5, MAX_HALVINGS)) break;
+  }
+  if (!*ok) process->tissue = start;
+  PetscFunctionReturn(0);
+}

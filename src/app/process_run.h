@@ -1,0 +1,44 @@
+/*
+  One run of `lamella process`: what its parts share. cmd_process.c holds its life, process_report.c what is told,
+  process_file.c the results.
+*/
+#ifndef LAM_PROCESS_RUN_H
+#define LAM_PROCESS_RUN_H
+
+#include "fe2_run.h"
+#include <lamella/process.h>
+
+/* States in the order of time; stresses in the C1 + C2 of the start. */
+typedef struct {
+  PetscInt count, capacity;
+  LamProcessState *states; /* owned */
+} LamProcessHistory;
+
+typedef struct {
+  LamFE2Run response; /* what answers the material point: command line and one tissue */
+  const char *out_path;
+  PetscBool json, quiet;
+  LamScene *scene; /* owned by response.scene */
+  LamProcess process;
+  LamProcessHistory history;
+  LamRecordWriter writer; /* NULL without -o */
+  LamProgress progress;
+  PetscReal start, last_commit;
+  PetscInt committed; /* states in the file */
+} LamProcessRunState;
+
+/* ---- process_report.c ---- */
+/* The unit of time that suits a duration, and its length in s. */
+const char *LamTimeUnit(PetscReal duration, PetscReal *seconds);
+/* Row of a table, the first with its header before it, or JSON object, of the last state of the history. */
+PetscErrorCode LamProcessReport(const LamProcessRunState *run);
+PetscErrorCode LamProcessReportEnd(const LamProcessRunState *run, LamProcessReason reason, const char message[]);
+
+/* ---- process_file.c ---- */
+PetscErrorCode LamProcessFileOpen(LamProcessRunState *run);
+/* Commits what the file does not have yet; now and then unless `now`. */
+PetscErrorCode LamProcessFileAdd(LamProcessRunState *run, PetscBool now);
+/* `status`: "done", "stopped", or why it ended. */
+PetscErrorCode LamProcessFileClose(LamProcessRunState *run, const char status[]);
+
+#endif

@@ -1,0 +1,380 @@
+/*
+  Tissue that changes in time at a material point, against closed forms, fresh solves and balances.
+*/
+#include "rve_fixture.h"
+#include "process_fixture.h"
+
+/* ---- water ---- */
+
+/* The lumen over V0 of tissue free of stress in the plane. */
+static PetscReal FreeLumen(LamRVE rve, PetscReal turgor)
+{
+  const LamStressControl control = {.given = {1, 1, 0, 0, 1}, .share = 1};
+  LamLoad load = PlaneLoad(1, 0, 0, 1, turgor);
+  LamResponse response;
+  LamRVEState state;
+
+  assert_int_equal(LamRVEStateCreate(rve, &state), 0);
+  assert_int_equal(LamRVESolveMixed(rve, &load, &control, state, &response), 0);
+  assert_int_equal(response.status, LAM_CONVERGED);
+  assert_int_equal(LamRVEStateDestroy(&state), 0);
+  return response.lumen_fraction;
+}
+
+/* ln 2 V / (A Lp (epsilon + pi)) of a free cell, epsilon = V dp/dV, by differences of fresh solves. */
+static void turgor_relaxes_with_the_half_time_of_a_free_cell(void **state)
+{
+  Followed f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.1 MPa}\n"
+                                        "process:\n"
+                                        "  duration: 5 h\n"
+                                        "  output: 50 s\n"
+                                        "  tolerance: 1e-9\n"
+                                        "  water: {permeability: 1e-7 m/s/MPa, osmotic_pressure: 0.5 MPa}\n"
+                                        "  surroundings:\n"
+                                        "    - {time: 0 s, outside: 0.4 MPa}\n"
+                                        "    - {time: 0 s, outside: 0.4001 MPa}\n");
+  const PetscReal p = f.scene->turgor, dp = 1e-3 * p, MPa = f.scene->scales.stress;
+  const PetscReal v = FreeLumen(f.rve, p), epsilon = v * 2 * dp / (FreeLumen(f.rve, p + dp) - FreeLumen(f.rve, p - dp));
+  const PetscReal pi = 0.5e6 / MPa, area = 2 * (1 - 0.15), Lp = 1e-13 * MPa / f.scene->scales.length;
+  const PetscReal half_time = log(2) * v / (area * Lp * (epsilon + pi));
+  const PetscReal end = LastState(&f)->turgor, first = f.states[2].turgor - end, second = f.states[12].turgor - end;
+  const PetscReal found = log(2) * (f.states[12].time - f.states[2].time) / log(first / second);
+
+  assert_near(found / half_time, 1, 1e-3);
+  Forget(&f);
+}
+
+static void solutes_are_conserved_and_the_flow_makes_up_the_volume(void **state)
+{
+  Followed f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.1 MPa}\n"
+                                        "process:\n"
+                                        "  duration: 20 min\n"
+                                        "  output: 2 s\n"
+                                        "  tolerance: 1e-8\n"
+                                        "  water: {permeability: 1e-7 m/s/MPa, osmotic_pressure: 0.5 MPa, "
+                                        "non_osmotic: 0.1}\n"
+                                        "  surroundings:\n"
+                                        "    - {time: 0 s, outside: 0.4 MPa, temperature: 20 degC}\n"
+                                        "    - {time: 600 s, outside: 0.2 MPa, temperature: 40 degC}\n");
+  const PetscReal start = f.states[0].water, dead = 0.1 * start, k = f.scene->process.water.permeability * 2 * 0.85;
+  PetscReal flowed = 0;
+
+  assert_int_equal(f.count, 601);
+  for (PetscInt i = 0; i < f.count; i++) {
+    const LamProcessState *s = &f.states[i];
+
+    assert_near(s->osmotic * (s->water - dead) / s->temperature / (f.states[0].osmotic * (start - dead) / 293.15), 1,
+                1e-10);
+  }
+  for (PetscInt i = 0; i + 2 < f.count; i += 2) { /* Simpson's rule */
+    const LamProcessState *s = &f.states[i];
+    PetscReal flow[3];
+
+    for (int j = 0; j < 3; j++) flow[j] = k * (s[j].osmotic - s[j].outside - s[j].turgor);
+    flowed += (s[2].time - s[0].time) / 6 * (flow[0] + 4 * flow[1] + flow[2]);
+  }
+  assert_near(LastState(&f)->water - start, flowed, 1e-6 * start);
+  assert_true(LastState(&f)->water > 1.05 * start);
+  Forget(&f);
+}
+
+#define BATH(permeability)                                                                                             \
+  PROCESS_CELL "  turgor: {pressure: 0.1 MPa}\n"                                                                       \
+               "process:\n"                                                                                            \
+               "  duration: 10 h\n"                                                                                    \
+               "  tolerance: 1e-8\n"                                                                                   \
+               "  water: {permeability: " permeability ", osmotic_pressure: 0.5 MPa, non_osmotic: 0.1}\n"              \
+               "  surroundings:\n"                                                                                     \
+               "    - {time: 0 h, outside: 0.4 MPa}\n"                                                                 \
+               "    - {time: 1 h, outside: 0.4 MPa}\n"                                                                 \
+               "    - {time: 1 h, outside: 1.5 MPa}\n"                                                                 \
+               "    - {time: 5 h, outside: 1.5 MPa}\n"                                                                 \
+               "    - {time: 5 h, outside: 0.3 MPa}\n"
+
+/* In a bath that draws more than the turgor the membranes leave the walls; the protoplast then is an osmometer. */
+static void a_plasmolysed_protoplast_follows_boyle_and_van_t_hoff(void **state)
+{
+  Followed f = FollowToEnd(BATH("4e-7 m/s/MPa"));
+  const LamProcessState *lost = FindEvent(&f, LAM_EVENT_TURGOR_LOST), *found = FindEvent(&f, LAM_EVENT_TURGOR_FOUND),
+                        *before = NULL;
+  const PetscReal v = f.states[0].water;
+
+  for (PetscInt i = 0; i < f.count; i++)
+    if (f.states[i].time <= 5 * 3600.0 * (1 + 1e-12)) before = &f.states[i];
+  assert_non_null(lost);
+  assert_non_null(found);
+  assert_near(lost->turgor, 0, 1e-6);
+  assert_near(before->turgor, 0, 0);
+  assert_near((before->water - 0.1 * v) / (0.9 * v), 0.5 / 1.5, 1e-5);
+  assert_true(found->time > 5 * 3600.0);
+  assert_near(LastState(&f)->turgor, LastState(&f)->osmotic - LastState(&f)->outside, 1e-5);
+  assert_true(LastState(&f)->turgor > f.states[0].turgor);
+  Forget(&f);
+}
+
+static void membranes_that_let_nothing_pass_keep_the_water(void **state)
+{
+  Followed f = FollowToEnd(BATH("0 m/s/MPa"));
+
+  for (PetscInt i = 0; i < f.count; i++) {
+    assert_near(f.states[i].water / f.states[0].water, 1, 1e-9);
+    assert_near(f.states[i].turgor, f.states[0].turgor, 1e-7);
+  }
+  Forget(&f);
+}
+
+static void membranes_without_resistance_are_in_equilibrium_at_any_time(void **state)
+{
+  Followed f = FollowToEnd(BATH("infinite"));
+
+  for (PetscInt i = 0; i < f.count; i++) {
+    const LamProcessState *s = &f.states[i];
+
+    if (s->event == LAM_EVENT_COUNT) assert_near(s->turgor, s->osmotic - s->outside, 1e-5);
+  }
+  assert_non_null(FindEvent(&f, LAM_EVENT_TURGOR_LOST));
+  assert_non_null(FindEvent(&f, LAM_EVENT_TURGOR_FOUND));
+  Forget(&f);
+}
+
+/* ---- kinetics ---- */
+
+#define CHANGES                                                                                                        \
+  PROCESS_CELL "  interface: {law: contact, cohesion: 0.02 MPa}\n"                                                     \
+               "  turgor: {pressure: 0.05 MPa}\n"                                                                      \
+               "process:\n"                                                                                            \
+               "  duration: 4 day\n"                                                                                   \
+               "  output: 1 day\n"                                                                                     \
+               "  tolerance: 1e-7\n"                                                                                   \
+               "  inflate: false\n"                                                                                    \
+               "  program: [{for: 0 s, F: [[1.02, 0], [0, 1.02]]}]\n"                                                  \
+               "  surroundings:\n"                                                                                     \
+               "    - {time: 0 day, temperature: 20 degC}\n"                                                           \
+               "    - {time: 2 day, temperature: 20 degC}\n"                                                           \
+               "    - {time: 2 day, temperature: 30 degC}\n"                                                           \
+               "  kinetics:\n"
+
+/* k(30 degC) / k(20 degC) of 60 kJ/mol */
+static PetscReal Speed(void)
+{
+  return exp(-60e3 / LAM_GAS_CONSTANT * (1 / 303.15 - 1 / 293.15));
+}
+
+static void laws_follow_their_closed_forms_over_a_step_of_temperature(void **state)
+{
+  Followed f = FollowToEnd(CHANGES "    - {of: lamella, law: first_order, rate: 0.3 /day, activation: 60 kJ/mol}\n"
+                                   "    - {of: walls, law: fractional_conversion, rate: 0.2 /day, plateau: 1.5, "
+                                   "activation: 60 kJ/mol}\n");
+  const PetscReal days = 2 + 2 * Speed();
+
+  assert_near(LastState(&f)->time, 4 * 86400.0, 1e-6);
+  assert_near(f.states[1].factor[LAM_CHANGING_LAMELLA], exp(-0.3), 1e-6);
+  assert_near(LastState(&f)->factor[LAM_CHANGING_LAMELLA], exp(-0.3 * days), 1e-6);
+  assert_near(LastState(&f)->factor[LAM_CHANGING_WALLS], 1.5 - 0.5 * exp(-0.2 * days), 1e-6);
+  Forget(&f);
+}
+
+static void two_fractions_and_enzymes_follow_theirs(void **state)
+{
+  Followed f = FollowToEnd(CHANGES "    - {of: lamella, law: two_fractions, rate: 2 /day, second_rate: 0.1 /day, "
+                                   "share: 0.6, activation: 60 kJ/mol, second_activation: 0 kJ/mol}\n"
+                                   "    - {of: walls, law: autocatalytic, rate: 0.5 /day, second_rate: 1 /day, "
+                                   "enzyme: 0.02, plateau: 0.3, activation: 60 kJ/mol}\n");
+  const PetscReal days = 2 + 2 * Speed();
+
+  assert_near(LastState(&f)->factor[LAM_CHANGING_LAMELLA], 0.6 * exp(-2 * days) + 0.4 * exp(-0.1 * 4), 1e-6);
+  /* int E dt = ln(1 + E0 (e^(k2 t) - 1)) / k2 */
+  assert_near(LastState(&f)->factor[LAM_CHANGING_WALLS], 0.3 + 0.7 * pow(1 + 0.02 * (exp(days) - 1), -0.5), 1e-6);
+  Forget(&f);
+}
+
+/* ---- properties and responses ---- */
+
+/* Walls whose moduli are all halved bear what half of the pressure does in those of the start, half as much. */
+static void softened_walls_respond_as_such(void **state)
+{
+  Followed f =
+      FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.05 MPa}\n"
+                               "process:\n"
+                               "  duration: 1 day\n"
+                               "  tolerance: 1e-8\n"
+                               "  kinetics: [{of: walls, law: table, time_unit: day, table: [[0, 1], [1, 0.5]]}]\n");
+  LamMicrostructure soft = f.scene->micro;
+  const LamProcessState *last = LastState(&f);
+
+  soft.wall.C1 *= 0.5;
+  soft.wall.C2 *= 0.5;
+  soft.wall.C4 *= 0.5;
+  soft.wall.bulk_modulus *= 0.5;
+  const LamResponse fresh = SolveTissue(&soft, last->response.load);
+
+  for (int i = 0; i < 9; i++) assert_near(last->response.P[i], fresh.P[i], 1e-7);
+  assert_near(fresh.P[0], 0, 1e-6);
+  assert_near(last->response.energy, fresh.energy, 1e-8);
+  Forget(&f);
+}
+
+/* Walls that lose their fibres alone are another tissue; the responder is told. */
+static void walls_may_change_in_their_proportions(void **state)
+{
+  Followed f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.05 MPa}\n"
+                                        "process:\n"
+                                        "  duration: 1 day\n"
+                                        "  tolerance: 1e-6\n"
+                                        "  kinetics:\n"
+                                        "    - {of: C4, law: first_order, rate: 1 /day}\n"
+                                        "    - {of: C1, law: first_order, rate: 0.2 /day}\n");
+  LamMicrostructure soft = f.scene->micro;
+  const LamProcessState *last = LastState(&f);
+
+  soft.wall.C4 *= exp(-1);
+  soft.wall.C1 *= exp(-0.2);
+  soft.wall.bulk_modulus *= soft.wall.C1 + soft.wall.C2;
+  const LamResponse fresh = SolveTissue(&soft, last->response.load);
+
+  for (int i = 0; i < 9; i++) assert_near(last->response.P[i], fresh.P[i], 1e-5);
+  assert_near(fresh.P[0], 0, 1e-5);
+  Forget(&f);
+}
+
+/* ---- program ---- */
+
+static void stress_relaxes_at_constant_strain_as_water_flows(void **state)
+{
+  Followed f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.1 MPa}\n"
+                                        "process:\n"
+                                        "  duration: 40 min\n"
+                                        "  output: 10 s\n"
+                                        "  water: {permeability: 4e-7 m/s/MPa, osmotic_pressure: 0.5 MPa}\n"
+                                        "  surroundings: [{time: 0 s, outside: 0.4 MPa}]\n"
+                                        "  program:\n"
+                                        "    - {for: 1 s, F: [[0.95, 0], [0, free]], P: [[x, x], [x, 0 MPa]]}\n"
+                                        "    - {for: 1 h}\n");
+  const LamProcessState *pressed = &f.states[1], *last = LastState(&f);
+
+  assert_near(pressed->F[0], 0.95, 1e-12);
+  assert_near(last->F[0], 0.95, 1e-12);
+  assert_near(last->response.P[4], 0, 1e-6);
+  assert_true(pressed->turgor > 1.02 * f.states[0].turgor);
+  assert_true(fabs(last->response.P[0]) < 0.9 * fabs(pressed->response.P[0]));
+  assert_near(last->turgor, last->osmotic - last->outside, 1e-3 * last->turgor);
+  Forget(&f);
+}
+
+static void a_load_that_is_held_creeps_as_walls_soften(void **state)
+{
+  Followed f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.02 MPa}\n"
+                                        "process:\n"
+                                        "  duration: 2 day\n"
+                                        "  output: 1 day\n"
+                                        "  program:\n"
+                                        "    - {for: 10 s, F: [[free, 0], [0, free]], P: [[0.01 MPa, x], [x, 0 MPa]]}\n"
+                                        "  kinetics: [{of: walls, law: first_order, rate: 0.5 /day}]\n");
+  const PetscReal MPa = f.scene->scales.stress * 1e-6;
+
+  assert_near(LastState(&f)->response.P[0] * MPa, 0.01, 1e-6);
+  assert_true(LastState(&f)->F[0] > f.states[1].F[0] && f.states[1].F[0] > 1.001);
+  Forget(&f);
+}
+
+static void a_program_that_repeats_comes_back(void **state)
+{
+  Followed f = FollowToEnd(PROCESS_CELL "process:\n"
+                                        "  duration: 40 s\n"
+                                        "  output: 5 s\n"
+                                        "  program:\n"
+                                        "    - {for: 5 s, F: [[1, 0.1], [0, 1]]}\n"
+                                        "    - {for: 5 s, F: [[1, 0], [0, 1]]}\n"
+                                        "  repeat: 3\n");
+
+  assert_int_equal(f.count, 9);
+  for (PetscInt i = 0; i < f.count; i++) assert_near(f.states[i].F[1], i % 2 && i < 6 ? 0.1 : 0, 1e-12);
+  Forget(&f);
+}
+
+/* ---- events ---- */
+
+#define ONSET(duration)                                                                                                \
+  PROCESS_CELL "  turgor: {pressure: 0.1 MPa}\n"                                                                       \
+               "strength: {lamella_normal: 0.3 MPa}\n"                                                                 \
+               "process:\n"                                                                                            \
+               "  duration: " duration "\n"                                                                            \
+               "  tolerance: 1e-8\n"                                                                                   \
+               "  water: {permeability: 1e-7 m/s/MPa, osmotic_pressure: 0.5 MPa}\n"                                    \
+               "  surroundings: [{time: 0 s, outside: 0.4 MPa}, {time: 2 day, outside: 0.45 MPa}]\n"                   \
+               "  kinetics: [{of: lamella, law: first_order, rate: 0.5 /day}]\n"
+
+/* Traction over strength in the last state of a process that ends at this time, of a fresh solve. */
+static PetscReal RatioAt(PetscReal time)
+{
+  char text[2000], duration[40];
+
+  snprintf(duration, sizeof(duration), "%.17g s", (double)time);
+  snprintf(text, sizeof(text), ONSET("%s"), duration);
+  Followed f = FollowToEnd(text);
+  const LamProcessState *last = LastState(&f);
+  const LamResponse fresh = SolveTissue(&f.scene->micro, last->response.load);
+  const PetscReal ratio = fresh.max_traction / (last->factor[LAM_CHANGING_LAMELLA] * f.scene->strength.lamella_normal);
+
+  Forget(&f);
+  return ratio;
+}
+
+static void an_event_is_where_bisection_with_fresh_solves_finds_it(void **state)
+{
+  Followed f = FollowToEnd(ONSET("2 day"));
+  const LamProcessState *event = FindEvent(&f, LAM_EVENT_LAMELLA_NORMAL);
+  PetscReal low = 60, high = 2 * 86400.0;
+
+  assert_non_null(event);
+  assert_true(RatioAt(low) < 1 && RatioAt(high) > 1);
+  while (high - low > 1e-5 * high) {
+    const PetscReal middle = 0.5 * (low + high);
+
+    if (RatioAt(middle) < 1)
+      low = middle;
+    else
+      high = middle;
+  }
+  assert_near(event->time / (0.5 * (low + high)), 1, 1e-4);
+  Forget(&f);
+}
+
+static void walls_that_dissolve_to_nothing_end_it_with_a_reason(void **state)
+{
+  Followed f = Follow(PROCESS_CELL "  turgor: {pressure: 0.02 MPa}\n"
+                                   "process:\n"
+                                   "  duration: 100 day\n"
+                                   "  kinetics: [{of: walls, law: first_order, rate: 1 /day}]\n");
+
+  assert_int_equal(f.reason, LAM_PROCESS_ENDED);
+  assert_true(strlen(f.message) > 20);
+  assert_true(LastState(&f)->time > 0);
+  Forget(&f);
+}
+
+static int run(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(turgor_relaxes_with_the_half_time_of_a_free_cell),
+      cmocka_unit_test(solutes_are_conserved_and_the_flow_makes_up_the_volume),
+      cmocka_unit_test(a_plasmolysed_protoplast_follows_boyle_and_van_t_hoff),
+      cmocka_unit_test(membranes_that_let_nothing_pass_keep_the_water),
+      cmocka_unit_test(membranes_without_resistance_are_in_equilibrium_at_any_time),
+      cmocka_unit_test(laws_follow_their_closed_forms_over_a_step_of_temperature),
+      cmocka_unit_test(two_fractions_and_enzymes_follow_theirs),
+      cmocka_unit_test(softened_walls_respond_as_such),
+      cmocka_unit_test(walls_may_change_in_their_proportions),
+      cmocka_unit_test(stress_relaxes_at_constant_strain_as_water_flows),
+      cmocka_unit_test(a_load_that_is_held_creeps_as_walls_soften),
+      cmocka_unit_test(a_program_that_repeats_comes_back),
+      cmocka_unit_test(an_event_is_where_bisection_with_fresh_solves_finds_it),
+      cmocka_unit_test(walls_that_dissolve_to_nothing_end_it_with_a_reason),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
+
+int main(int argc, char **argv)
+{
+  return RunWithPetsc(argc, argv, run);
+}
