@@ -64,23 +64,32 @@ static PetscErrorCode TellWalls(LamProcess process, const PetscReal ratio[3])
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Ask(LamProcess process, LamEvaluation *e)
+/* The answer of a responder, in the C1 + C2 of the start. */
+static PetscErrorCode Ask(LamProcess process, LamResponder *responder, const LamEvaluation *e, LamResponse *response)
 {
-  const PetscReal s = e->walls;
   const PetscInt point = 0;
   LamLoad own = e->load;
 
   PetscFunctionBeginUser;
-  own.turgor /= s;
-  own.cohesion /= s;
-  PetscCall(process->responder->respond(process->responder->ctx, 1, &own, &point, &e->response));
+  own.turgor /= e->walls;
+  own.cohesion /= e->walls;
+  PetscCall(responder->respond(responder->ctx, 1, &own, &point, response));
   process->counts.questions++;
-  e->ok = LamResponseHasFields(&e->response);
-  if (!e->ok)
-    PetscCall(PetscSNPrintf(process->trouble, sizeof(process->trouble), "%s: %.150s",
-                            LamStatusNames[e->response.status], e->response.reason));
-  LamResponseScale(s, &e->response);
-  e->response.load = e->load;
+  LamResponseScale(e->walls, response);
+  response->load = e->load;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamProcessAskJudge(LamProcess process, LamEvaluation *e)
+{
+  PetscFunctionBeginUser;
+  if (!process->judge || !e->ok || e->response.indicators_trusted) PetscFunctionReturn(0);
+  if (!process->judged_known || process->judged_scale != e->walls ||
+      memcmp(&process->judged.load, &e->load, sizeof(LamLoad)))
+    PetscCall(Ask(process, process->judge, e, &process->judged));
+  process->judged_scale = e->walls;
+  process->judged_known = LamResponseHasFields(&process->judged);
+  if (process->judged_known) e->response = process->judged;
   PetscFunctionReturn(0);
 }
 
@@ -111,7 +120,11 @@ PetscErrorCode LamProcessEvaluate(LamProcess process, PetscReal time, const Pets
     e->ok = process->last.ok;
     PetscFunctionReturn(0);
   }
-  PetscCall(Ask(process, e));
+  PetscCall(Ask(process, process->responder, e, &e->response));
+  e->ok = LamResponseHasFields(&e->response);
+  if (!e->ok)
+    PetscCall(PetscSNPrintf(process->trouble, sizeof(process->trouble), "%s: %.150s",
+                            LamStatusNames[e->response.status], e->response.reason));
   process->last = *e;
   process->last_scale = e->walls;
   process->last_known = PETSC_TRUE;
@@ -179,13 +192,14 @@ static PetscReal Firmness(const LamResponse *r, PetscBool seals)
   return A[0][0] - A[0][1] * A[1][0] / A[1][1];
 }
 
-PetscErrorCode LamProcessDescribe(LamProcess process, const LamTissue *tissue, LamProcessState *state)
+PetscErrorCode LamProcessDescribe(LamProcess process, const LamProcessTissue *tissue, LamProcessState *state)
 {
   LamEvaluation e;
   LamFlow flow;
 
   PetscFunctionBeginUser;
   PetscCall(LamProcessEvaluate(process, tissue->time, tissue->x, tissue->F, tissue->turgor, &e));
+  PetscCall(LamProcessAskJudge(process, &e));
   *state = (LamProcessState){.time = tissue->time,
                              .temperature = e.temperature,
                              .walls = e.walls,

@@ -9,6 +9,17 @@
 
 #define NAME(symbol, name) name,
 const char *const LamEventNames[] = {LAM_EVENTS(NAME)};
+const char *const LamRatioNames[] = {LAM_RATIOS(NAME)};
+
+void LamProcessRatios(LamProcess process, const LamEvaluation *e, PetscReal ratio[LAM_RATIO_COUNT])
+{
+  const LamStrength *strength = &process->scene->strength;
+  const PetscReal lamella = e->factor[LAM_CHANGING_LAMELLA].value, wall = e->factor[LAM_CHANGING_WALL_STRENGTH].value;
+
+  ratio[LAM_RATIO_LAMELLA_NORMAL] = e->response.max_traction / (lamella * strength->lamella_normal);
+  ratio[LAM_RATIO_LAMELLA_SHEAR] = e->response.max_lamella_shear / (lamella * strength->lamella_shear);
+  ratio[LAM_RATIO_WALL] = e->response.max_wall_tension / (wall * strength->wall);
+}
 
 static PetscBool Applies(LamProcess process, LamEvent event)
 {
@@ -88,7 +99,7 @@ PetscReal LamProcessExcess(LamProcess process, LamEvent event, const LamEvaluati
   case LAM_EVENT_WALL:
     return r->max_wall_tension - wall * strength->wall;
   case LAM_EVENT_OPENING:
-    return r->opening_fraction - process->spec->opening;
+    return r->opening_fraction - process->opening - process->spec->opening;
   case LAM_EVENT_PERCOLATION:
     return 1.5 - (PetscReal)r->percolating_directions;
   case LAM_EVENT_TURGOR_LOST:

@@ -67,12 +67,12 @@ static Layout LayOut(LamProcess process)
 }
 
 /* The tissue that y says at a time; what is prescribed follows the segment. */
-static LamTissue Unpack(LamProcess process, const Layout *l, PetscReal time, const PetscReal y[])
+static LamProcessTissue Unpack(LamProcess process, const Layout *l, PetscReal time, const PetscReal y[])
 {
   const PetscReal elapsed = time - process->segment.start;
-  LamTissue tissue = {.time = time,
-                      .temperature = LamRampAt(&process->segment.temperature, elapsed),
-                      .outside = LamRampAt(&process->segment.outside, elapsed)};
+  LamProcessTissue tissue = {.time = time,
+                             .temperature = LamRampAt(&process->segment.temperature, elapsed),
+                             .outside = LamRampAt(&process->segment.outside, elapsed)};
 
   for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++) tissue.x[k] = l->state[k] < 0 ? 0 : y[l->state[k]];
   for (PetscInt i = 0; i < 9; i++) tissue.F[i] = l->F[i] < 0 ? LamRampAt(&process->segment.F[i], elapsed) : y[l->F[i]];
@@ -81,7 +81,7 @@ static LamTissue Unpack(LamProcess process, const Layout *l, PetscReal time, con
   return tissue;
 }
 
-static void Pack(const Layout *l, const LamTissue *tissue, PetscReal y[])
+static void Pack(const Layout *l, const LamProcessTissue *tissue, PetscReal y[])
 {
   for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++)
     if (l->state[k] >= 0) y[l->state[k]] = tissue->x[k];
@@ -95,7 +95,7 @@ static void Pack(const Layout *l, const LamTissue *tissue, PetscReal y[])
 /* ---- the response at y ---- */
 
 /* 0; 1: y has no response, a shorter step may have one; -1: an error of the library, which process->error keeps. */
-static int EvaluateAt(Integration *in, PetscReal t, const PetscReal y[], LamTissue *tissue, LamEvaluation *e)
+static int EvaluateAt(Integration *in, PetscReal t, const PetscReal y[], LamProcessTissue *tissue, LamEvaluation *e)
 {
   LamProcess process = in->process;
 
@@ -124,8 +124,8 @@ static void KineticResidual(const Integration *in, const LamEvaluation *e, const
   }
 }
 
-static void WaterResidual(const Integration *in, const LamEvaluation *e, const LamTissue *tissue, const PetscReal yp[],
-                          PetscReal r[])
+static void WaterResidual(const Integration *in, const LamEvaluation *e, const LamProcessTissue *tissue,
+                          const PetscReal yp[], PetscReal r[])
 {
   const Layout *l = &in->layout;
   LamFlow flow;
@@ -142,7 +142,7 @@ static int Residual(PetscReal t, N_Vector y_vector, N_Vector yp_vector, N_Vector
   const PetscReal *y = N_VGetArrayPointer(y_vector), *yp = N_VGetArrayPointer(yp_vector);
   const LamSegment *segment = &in->process->segment;
   PetscReal *r = N_VGetArrayPointer(r_vector);
-  LamTissue tissue;
+  LamProcessTissue tissue;
   LamEvaluation e;
   const int flag = EvaluateAt(in, t, y, &tissue, &e);
 
@@ -196,7 +196,7 @@ static void AddProperties(const Integration *in, const LamEvaluation *e, PetscIn
   AddFactor(in, e, LAM_CHANGING_C2, row, by_walls * common * wall->C2, K);
 }
 
-static void WaterJacobian(const Integration *in, const LamEvaluation *e, const LamTissue *tissue, PetscReal c,
+static void WaterJacobian(const Integration *in, const LamEvaluation *e, const LamProcessTissue *tissue, PetscReal c,
                           SUNMatrix K)
 {
   const Layout *l = &in->layout;
@@ -226,7 +226,7 @@ static void WaterJacobian(const Integration *in, const LamEvaluation *e, const L
                 -(tissue->turgor * r->energy_turgor2 + e->cohesion * r->energy_turgor_cohesion) / e->walls, K);
 }
 
-static void StressJacobian(const Integration *in, const LamEvaluation *e, const LamTissue *tissue, SUNMatrix K)
+static void StressJacobian(const Integration *in, const LamEvaluation *e, const LamProcessTissue *tissue, SUNMatrix K)
 {
   const Layout *l = &in->layout;
   const LamResponse *r = &e->response;
@@ -246,7 +246,7 @@ static int Jacobian(PetscReal t, PetscReal c, N_Vector y, N_Vector yp, N_Vector 
                     N_Vector work1, N_Vector work2, N_Vector work3)
 {
   Integration *in = (Integration *)ctx;
-  LamTissue tissue;
+  LamProcessTissue tissue;
   LamEvaluation e;
   const int flag = EvaluateAt(in, t, N_VGetArrayPointer(y), &tissue, &e);
 
@@ -263,11 +263,13 @@ static int Jacobian(PetscReal t, PetscReal c, N_Vector y, N_Vector yp, N_Vector 
 static int Roots(PetscReal t, N_Vector y, N_Vector yp, PetscReal excess[], void *ctx)
 {
   Integration *in = (Integration *)ctx;
-  LamTissue tissue;
+  LamProcessTissue tissue;
   LamEvaluation e;
   const int flag = EvaluateAt(in, t, N_VGetArrayPointer(y), &tissue, &e);
 
   if (flag) return -1; /* IDA cannot take this back */
+  in->process->error = in->event_count ? LamProcessAskJudge(in->process, &e) : 0;
+  if (in->process->error) return -1;
   for (PetscInt k = 0; k < in->event_count; k++) {
     excess[k] = LamProcessExcess(in->process, in->events[k], &e, tissue.water, tissue.turgor);
     if (!isfinite(excess[k])) excess[k] = -1;
@@ -392,9 +394,9 @@ static PetscErrorCode TellUpTo(Integration *in, PetscReal time)
 
   PetscFunctionBeginUser;
   while (!ierr && process->next_output <= time && process->next_output <= process->spec->duration) {
-    const LamTissue tissue = IDAGetDky(in->ida, process->next_output, 0, y) == IDA_SUCCESS
-                                 ? Unpack(process, &in->layout, process->next_output, N_VGetArrayPointer(y))
-                                 : process->tissue;
+    const LamProcessTissue tissue = IDAGetDky(in->ida, process->next_output, 0, y) == IDA_SUCCESS
+                                        ? Unpack(process, &in->layout, process->next_output, N_VGetArrayPointer(y))
+                                        : process->tissue;
 
     ierr = LamProcessTell(process, &tissue, LAM_EVENT_COUNT);
     const PetscReal told = process->next_output;

@@ -47,6 +47,13 @@ PetscErrorCode LamProcessSetResponder(LamProcess process, LamResponder *responde
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamProcessSetJudge(LamProcess process, LamResponder *judge)
+{
+  PetscFunctionBeginUser;
+  process->judge = judge;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamProcessSetWalls(LamProcess process, PetscErrorCode (*set)(void *ctx, const PetscReal factor[3]),
                                   void *ctx)
 {
@@ -87,7 +94,7 @@ PetscErrorCode LamProcessDestroy(LamProcess *process)
 
 /* ---- telling ---- */
 
-PetscErrorCode LamProcessTell(LamProcess process, const LamTissue *tissue, LamEvent event)
+PetscErrorCode LamProcessTell(LamProcess process, const LamProcessTissue *tissue, LamEvent event)
 {
   LamProcessState state;
 
@@ -102,7 +109,7 @@ PetscErrorCode LamProcessTell(LamProcess process, const LamTissue *tissue, LamEv
 
 static PetscErrorCode EvaluateTissue(LamProcess process, LamEvaluation *e)
 {
-  const LamTissue *tissue = &process->tissue;
+  const LamProcessTissue *tissue = &process->tissue;
 
   PetscFunctionBeginUser;
   PetscCall(LamProcessEvaluate(process, tissue->time, tissue->x, tissue->F, tissue->turgor, e));
@@ -292,13 +299,13 @@ static PetscErrorCode Inflate(LamProcess process, PetscBool *ok)
 
 static void Clear(LamProcess process)
 {
-  LamTissue *tissue = &process->tissue;
+  LamProcessTissue *tissue = &process->tissue;
 
-  *tissue = (LamTissue){.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+  *tissue = (LamProcessTissue){.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++)
     LamKineticsStart(&process->spec->kinetics[k], &tissue->x[LAM_KINETIC_STATES * k]);
   for (int i = 0; i < 9; i++) process->inflation[i] = i % 4 == 0 ? 1 : 0;
-  process->plasmolysed = process->stopped = process->last_known = PETSC_FALSE;
+  process->plasmolysed = process->stopped = process->last_known = process->judged_known = PETSC_FALSE;
   for (PetscInt k = 0; k < LAM_EVENT_COUNT; k++) process->found[k] = PETSC_FALSE;
   for (int k = 0; k < 3; k++) process->told_walls[k] = 1;
   process->next_output = 0;
@@ -325,6 +332,7 @@ static PetscErrorCode Start(LamProcess process, PetscBool *ok)
   PetscCall(EvaluateTissue(process, &e));
   *ok = e.ok;
   if (!*ok) PetscFunctionReturn(0);
+  process->opening = e.response.opening_fraction;
   LamProcessStartProgram(process, e.response.P);
   if (!process->spec->has_water) PetscFunctionReturn(0);
   process->tissue.water = process->water = -e.response.energy_turgor;

@@ -38,7 +38,7 @@ typedef struct {
   PetscReal F[9];                   /* from the inflated state */
   PetscReal turgor, water;
   PetscReal temperature, outside; /* of what surrounds it then */
-} LamTissue;
+} LamProcessTissue;
 
 /* A property and its derivatives by the two states of its own law. */
 typedef struct {
@@ -66,6 +66,7 @@ struct LamProcess_s {
   const LamScene *scene; /* borrowed */
   const LamProcessSpec *spec;
   LamResponder *responder; /* borrowed */
+  LamResponder *judge;     /* borrowed; NULL: none */
   PetscErrorCode (*set_walls)(void *ctx, const PetscReal factor[3]);
   void *walls_ctx; /* borrowed */
   PetscReal told_walls[3];
@@ -74,12 +75,12 @@ struct LamProcess_s {
   PetscBool (*stop)(void);
 
   PetscBool walls_alike;
-  PetscReal membrane;                    /* area over V0, 1 / apothem */
-  PetscReal inflation[9];                /* F of the tissue that is free of stress under its turgor at the start */
-  PetscReal osmotic, water, temperature; /* of the cells at the start */
+  PetscReal membrane;     /* area over V0, 1 / apothem */
+  PetscReal inflation[9]; /* F of the tissue that is free of stress under its turgor at the start */
+  PetscReal osmotic, water, temperature, opening; /* of the cells at the start */
 
   /* on the way */
-  LamTissue tissue;
+  LamProcessTissue tissue;
   LamSegment segment;
   PetscBool plasmolysed;                   /* the membranes have left the walls */
   PetscInt leg, cycle;                     /* of the program; cycle = repeat: it is over, and its last part held */
@@ -90,6 +91,9 @@ struct LamProcess_s {
   LamEvaluation last;   /* the last one that the responder was asked for */
   PetscReal last_scale; /* wall factor of that */
   PetscBool last_known;
+  LamResponse judged; /* the judge's last answer, where it has one (judged_known) */
+  PetscBool judged_known;
+  PetscReal judged_scale;
   PetscBool stopped;
   PetscErrorCode error; /* of the library, raised inside IDA */
   char trouble[192];    /* why a state had no answer */
@@ -115,6 +119,8 @@ void LamProcessEndSegment(LamProcess process, const PetscReal P[9]);
 /* Properties and response at a time of the present segment; evaluation->ok where the response has fields. */
 PetscErrorCode LamProcessEvaluate(LamProcess process, PetscReal time, const PetscReal x[], const PetscReal F[9],
                                   PetscReal turgor, LamEvaluation *evaluation);
+/* The same by the judge, where the indicators of the response are not to be trusted and it has an answer. */
+PetscErrorCode LamProcessAskJudge(LamProcess process, LamEvaluation *evaluation);
 /* The flow at a water content and turgor. */
 void LamProcessFlow(LamProcess process, const LamEvaluation *evaluation, PetscReal water, PetscReal turgor,
                     LamFlow *flow);
@@ -123,7 +129,7 @@ PetscReal LamProcessStiffness(LamProcess process, const LamEvaluation *evaluatio
 /* dv/dF_k of the lumen, likewise. */
 PetscReal LamProcessLumenSlope(LamProcess process, const LamEvaluation *evaluation, PetscInt k);
 /* The whole state for the monitor. */
-PetscErrorCode LamProcessDescribe(LamProcess process, const LamTissue *tissue, LamProcessState *state);
+PetscErrorCode LamProcessDescribe(LamProcess process, const LamProcessTissue *tissue, LamProcessState *state);
 
 /* settle.c */
 typedef enum {
@@ -145,12 +151,13 @@ PetscErrorCode LamProcessIntegrate(LamProcess process, PetscBool happened[LAM_EV
 /* events.c */
 /* The events that are looked for in this segment. */
 PetscInt LamProcessListEvents(LamProcess process, LamEvent events[LAM_EVENT_COUNT]);
+void LamProcessRatios(LamProcess process, const LamEvaluation *evaluation, PetscReal ratio[LAM_RATIO_COUNT]);
 /* How far an event is exceeded: it happens where this rises through 0. */
 PetscReal LamProcessExcess(LamProcess process, LamEvent event, const LamEvaluation *evaluation, PetscReal water,
                            PetscReal turgor);
 
 /* process.c */
 /* Tells the monitor. */
-PetscErrorCode LamProcessTell(LamProcess process, const LamTissue *tissue, LamEvent event);
+PetscErrorCode LamProcessTell(LamProcess process, const LamProcessTissue *tissue, LamEvent event);
 
 #endif

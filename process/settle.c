@@ -44,7 +44,7 @@ static PetscInt Count(const Unknowns *u)
 }
 
 /* Residual r and its derivative K, column by column, at the tissue's F and turgor. */
-static void Linearise(LamProcess process, const Unknowns *u, const Conditions *c, const LamTissue *tissue,
+static void Linearise(LamProcess process, const Unknowns *u, const Conditions *c, const LamProcessTissue *tissue,
                       const LamEvaluation *e, PetscReal r[], PetscReal K[])
 {
   const LamResponse *response = &e->response;
@@ -93,7 +93,7 @@ static PetscErrorCode SolveDense(PetscInt n, PetscReal K[], PetscReal r[], Petsc
 }
 
 /* A protoplast off the walls, in equilibrium with what surrounds it: pi (V - V_b) is constant. */
-static void FillOsmometer(LamProcess process, const LamEvaluation *e, LamTissue *tissue)
+static void FillOsmometer(LamProcess process, const LamEvaluation *e, LamProcessTissue *tissue)
 {
   const PetscReal dead = process->spec->water.non_osmotic * process->water;
   LamFlow flow;
@@ -106,7 +106,7 @@ static void FillOsmometer(LamProcess process, const LamEvaluation *e, LamTissue 
 static PetscErrorCode Iterate(LamProcess process, const Unknowns *u, const Conditions *c, PetscBool *ok)
 {
   const PetscInt n = Count(u);
-  LamTissue tissue = process->tissue;
+  LamProcessTissue tissue = process->tissue;
   PetscReal r[MOST], K[MOST * MOST], before = PETSC_INFINITY;
   LamEvaluation e;
 
@@ -169,7 +169,7 @@ PetscErrorCode LamProcessSettle(LamProcess process, LamSettle kind, const LamSeg
 {
   const LamSegment *to = &process->segment;
   const Unknowns u = ListUnknowns(to, kind);
-  const LamTissue start = process->tissue;
+  const LamProcessTissue start = process->tissue;
   PetscReal done = 0, step = 1;
 
   PetscFunctionBeginUser;

@@ -450,8 +450,10 @@ const LamKey LamKeys[] = {
      .help = "Relative error of the integration in a step of time."},
     {BOOL("process.inflate"), .default_words = "true with turgor, else false", .example = "true",
      .help = "First find the tissue free of stress under its turgor; deformation then counts from there."},
-    {REAL("process.opening"), ABOVE(0), BELOW(1), .default_value = "0.001", .example = "0.01",
-     .help = "Opening volume over that of the tissue at which cells in contact count as coming apart."},
+    {REAL("process.opening"), ABOVE(0), BELOW(1), .default_value = "0.01", .example = "0.02",
+     .help =
+         "What the volume between cells in contact, over that of the tissue, has grown by since the start when they "
+         "count as coming apart."},
     {MAP("process.water"), .default_words = "the turgor is prescribed",
      .example = "{permeability: 1e-7 m/s/MPa, osmotic_pressure: 0.8 MPa}",
      .help = "Water passes the membranes of the cells; turgor at the start is that of `rve.turgor`."},

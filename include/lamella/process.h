@@ -22,7 +22,7 @@ typedef struct LamProcess_s *LamProcess;
   X(LAM_EVENT_LAMELLA_NORMAL, "lamella_normal") /* bonded: max_traction reaches the strength of the lamella */         \
   X(LAM_EVENT_LAMELLA_SHEAR, "lamella_shear")   /* bonded: max_lamella_shear does */                                   \
   X(LAM_EVENT_WALL, "wall_rupture")             /* max_wall_tension reaches the strength of the walls */               \
-  X(LAM_EVENT_OPENING, "opening")               /* contact: opening_fraction exceeds process.opening */                \
+  X(LAM_EVENT_OPENING, "opening")               /* contact: opening_fraction has grown by process.opening */           \
   X(LAM_EVENT_PERCOLATION, "percolation")       /* contact: cells that hang together no longer span the tissue */      \
   X(LAM_EVENT_TURGOR_LOST, "turgor_lost")       /* turgor has fallen to 0: membranes leave the walls */                \
   X(LAM_EVENT_TURGOR_FOUND, "turgor_found")     /* the protoplast fills the lumen again */                             \
@@ -31,6 +31,16 @@ typedef struct LamProcess_s *LamProcess;
 typedef enum { LAM_EVENTS(LAM_EVENT_ENTRY) LAM_EVENT_COUNT } LamEvent;
 #undef LAM_EVENT_ENTRY
 extern const char *const LamEventNames[];
+
+/* What walls and lamella bear over their strengths at the time; 1: they give way. NaN where no strength is given. */
+#define LAM_RATIOS(X)                                                                                                  \
+  X(LAM_RATIO_LAMELLA_NORMAL, "lamella_normal")                                                                        \
+  X(LAM_RATIO_LAMELLA_SHEAR, "lamella_shear")                                                                          \
+  X(LAM_RATIO_WALL, "wall")
+#define LAM_RATIO_ENTRY(symbol, name) symbol,
+typedef enum { LAM_RATIOS(LAM_RATIO_ENTRY) LAM_RATIO_COUNT } LamRatio;
+#undef LAM_RATIO_ENTRY
+extern const char *const LamRatioNames[];
 
 /* The tissue at a time. Stresses in the C1 + C2 of the start, which the scene's scales tell. */
 typedef struct {
@@ -44,6 +54,7 @@ typedef struct {
   PetscReal osmotic;  /* pressure in them; likewise */
   PetscReal outside;  /* osmotic pressure outside */
   PetscReal firmness; /* dP11/dF11 at constant P22, without water passing: Young's modulus of a quick test */
+  PetscReal ratio[LAM_RATIO_COUNT];
   LamResponse response;
   LamEvent event; /* LAM_EVENT_COUNT: none, a time of the output */
 } LamProcessState;
@@ -64,6 +75,11 @@ typedef PetscErrorCode (*LamProcessMonitor)(const LamProcessState *state, void *
 PetscErrorCode LamProcessCreate(const LamScene *scene, LamProcess *process);
 /* Borrows it; asked with point 0. */
 PetscErrorCode LamProcessSetResponder(LamProcess process, LamResponder *responder);
+/*
+  Solves where the answers of the responder have indicators that are not to be trusted (indicators_trusted), for events
+  and for what is told. Borrows it; NULL: they are taken as they are, and told so.
+*/
+PetscErrorCode LamProcessSetJudge(LamProcess process, LamResponder *judge);
 /*
   How the responder learns of walls whose moduli do not change alike: `set` is told each modulus over its share of the
   common factor (C1, C2, C4; 1 at the start), before it is asked. Without it such a process is PETSC_ERR_USER_INPUT.

@@ -333,7 +333,7 @@ typedef struct {
   LamSurroundings *surroundings;            /* owned */
   PetscInt leg_count, repeat;               /* 0: free of stress */
   LamProcessLeg *legs;                      /* owned; gone through `repeat` times, then held */
-  PetscReal opening;                        /* event: opening volume over V0 above this */
+  PetscReal opening;                        /* event: growth of the opening volume over V0 since the start */
 } LamProcessSpec;
 
 /* A scene: plain data, read-only after LamSceneRead. Blocks that the file does not hold have count 0 or PETSC_FALSE. */

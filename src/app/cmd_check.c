@@ -181,6 +181,10 @@ static PetscErrorCode PrintObject(const Check *check)
     json_object_set_new(map, "points", json_integer(plan->map_points));
     json_object_set_new(o, "map", map);
   }
+  if (scene->has_process)
+    json_object_set_new(o, "process",
+                        json_pack("{s:o, s:b}", "duration", LamJSONReal(scene->process.duration), "database",
+                                  (int)LamProcessWallsStayAlike(scene)));
   if (scene->has_macro) {
     json_t *macro = Cost(json_integer(plan->macro_states), (PetscReal)plan->macro_states * check->point);
 
@@ -323,6 +327,17 @@ static PetscErrorCode PrintMacro(const Check *check)
   PetscFunctionReturn(0);
 }
 
+static void PrintProcess(const LamScene *scene)
+{
+  PetscReal seconds;
+  const char *unit = LamTimeUnit(scene->process.duration, &seconds);
+
+  printf("%-12s %.4g %s; %s\n", "process", (double)(scene->process.duration / seconds), unit,
+         LamProcessWallsStayAlike(scene) ? "one database serves at all times"
+                                         : "moduli of the walls do not change alike: solved directly, as a database "
+                                           "would need them as an axis");
+}
+
 static PetscErrorCode PrintCost(const Check *check)
 {
   const LamPlan *plan = &check->plan;
@@ -342,6 +357,7 @@ static PetscErrorCode PrintCost(const Check *check)
            LamMapPathCount(scene));
     PrintStates("  paths", plan->map_states, MapSeconds(check));
   }
+  if (scene->has_process) PrintProcess(scene);
   if (scene->has_macro) PetscCall(PrintMacro(check));
   PetscFunctionReturn(0);
 }

@@ -11,7 +11,11 @@
 static const struct {
   const char *kind;
   PetscErrorCode (*plot)(const LamPlotRequest *request);
-} Plots[] = {{"rve", LamPlotRVE}, {"fe2", LamPlotFE2}, {"database", LamPlotDatabase}, {"map", LamPlotMap}};
+} Plots[] = {{"rve", LamPlotRVE},
+             {"fe2", LamPlotFE2},
+             {"database", LamPlotDatabase},
+             {"map", LamPlotMap},
+             {"process", LamPlotProcess}};
 
 /* FILE.h5 becomes FILE.png. */
 static PetscErrorCode DefaultOutput(const char input[], size_t size, char output[])
@@ -49,6 +53,9 @@ PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status)
       {0, "state", LAM_OPTION_TEXT, "N", "state of an RVE file, step of an fe2 file (default: the last one)", &state},
       {0, "field", LAM_OPTION_TEXT, "NAME", "field that gives the colours (docs/pictures.md lists them)",
        &request.field},
+      {0, "film", LAM_OPTION_FLAG, NULL,
+       "of a process: a page (PDF) or a numbered file for each state whose cells the file has", &request.film},
+      {0, "map", LAM_OPTION_TEXT, "MAP.h5", "of a process: its way over this map of failure", &request.map},
       {0, "angle", LAM_OPTION_TEXT, "ANGLE",
        "slice through a table: first principal axis to the normal of face 0, \"15 deg\" (default: 0)", &request.angle},
       {0, "suction", LAM_OPTION_TEXT, "PRESSURE",
@@ -64,7 +71,7 @@ PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status)
   PetscFunctionBeginUser;
   PetscCall(
       LamOptionsParse(args,
-                      "plot FILE.h5 [-o FIG.png|.svg|.pdf] [--state N] [--field NAME]\n"
+                      "plot FILE.h5 [-o FIG.png|.svg|.pdf] [--state N] [--field NAME] [--film] [--map MAP.h5]\n"
                       "                    [--angle ANGLE] [--suction PRESSURE | --turgor PRESSURE] [--accuracy SHARE]",
                       "Draws what the file holds.", options, 1, &input, &done, exit_status));
   if (done) PetscFunctionReturn(0);
@@ -78,6 +85,8 @@ PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status)
   request.output = output;
   PetscCall(LamFileReadKind(input, kind));
   if (strcmp(kind, "database")) PetscCall(LamSliceRefuse(&request));
+  PetscCheck(!strcmp(kind, "process") || (!request.film && !request.map), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: is of kind \"%s\"; --film and --map draw files of process", input, kind);
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(Plots); i++) {
     if (strcmp(kind, Plots[i].kind)) continue;
     PetscCall(Plots[i].plot(&request));
@@ -85,6 +94,6 @@ PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status)
     *exit_status = LAM_EXIT_OK;
     PetscFunctionReturn(0);
   }
-  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: is of kind \"%s\"; plot draws rve, fe2, database and map files",
-          input, kind);
+  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+          "%s: is of kind \"%s\"; plot draws rve, fe2, database, map and process files", input, kind);
 }

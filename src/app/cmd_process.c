@@ -41,8 +41,7 @@ static PetscErrorCode Disconnect(LamProcessRunState *run)
   PetscFunctionReturn(0);
 }
 
-/* Set of LamProcessSetWalls: what is solved directly takes other moduli. */
-static PetscErrorCode ChangeWalls(void *ctx, const PetscReal factor[3])
+PetscErrorCode LamProcessChangeWalls(void *ctx, const PetscReal factor[3])
 {
   LamFE2Tissue *tissue = (LamFE2Tissue *)ctx;
   LamMicrostructure changed;
@@ -108,7 +107,8 @@ static PetscErrorCode Follow(LamProcessRunState *run, LamProcessReason *reason, 
   PetscCall(LamProgressStart(&run->progress, 1000, (PetscBool)(run->quiet || !run->json)));
   ierr = LamProcessRun(run->process, reason, message);
   status = ierr ? NULL : *reason == LAM_PROCESS_DONE ? "done" : *reason == LAM_PROCESS_STOPPED ? "stopped" : message;
-  closed = LamProcessFileClose(run, status);
+  if (!ierr && *reason != LAM_PROCESS_STOPPED) ierr = LamProcessFrames(run, run->frames);
+  closed = LamProcessFileClose(run, ierr ? NULL : status);
   PetscCall(ierr ? ierr : closed);
   PetscCall(LamProgressEnd(&run->progress));
   PetscCall(LamProcessReportEnd(run, *reason, message));
@@ -130,7 +130,9 @@ static PetscErrorCode Solve(LamProcessRunState *run, int *exit_status)
   if (!run->response.stopped) {
     PetscCall(LamProcessSetResponder(run->process, responder));
     if (run->response.response == LAM_FE2_DIRECT)
-      PetscCall(LamProcessSetWalls(run->process, ChangeWalls, run->response.tissues.tissues));
+      PetscCall(LamProcessSetWalls(run->process, LamProcessChangeWalls, run->response.tissues.tissues));
+    if (run->response.response == LAM_FE2_CACHE)
+      PetscCall(LamProcessSetJudge(run->process, &run->response.tissues.tissues->solver));
     PetscCall(LamProcessSetMonitor(run->process, Told, run));
     PetscCall(LamProcessSetStop(run->process, LamStopRequested));
     PetscCall(Follow(run, &reason, message));
@@ -165,20 +167,24 @@ PetscErrorCode LamCommandProcess(LamArgs *args, int *exit_status)
        "direct: solve an RVE for each state (default); cache: query, solve what is missing (default with -d); "
        "database: query only",
        &run.response.response_name},
+      {0, "frames", LAM_OPTION_TEXT, "N",
+       "keep the cells at N states evenly spread, for a film (default: at events, start and end)", &run.frames_text},
       {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per output and event on stdout", &run.json},
       {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &run.quiet},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
   };
 
   PetscFunctionBeginUser;
-  PetscCall(LamOptionsParse(args, "process SCENE [-d DB.h5] [-o OUT.h5] [--response TYPE] [--json] [--quiet]",
-                            "Follows tissue that changes in time.", options, 1, &run.response.scene_path, &done,
-                            exit_status));
+  PetscCall(LamOptionsParse(
+      args, "process SCENE [-d DB.h5] [-o OUT.h5] [--response TYPE] [--frames N] [--json]\n               [--quiet]",
+      "Follows tissue that changes in time.", options, 1, &run.response.scene_path, &done, exit_status));
   if (done) PetscFunctionReturn(0);
   if (!LamFE2ChooseResponse("process", &run.response)) {
     *exit_status = LAM_EXIT_USAGE;
     PetscFunctionReturn(0);
   }
+  if (run.frames_text && !LamCountParse("process", "--frames", run.frames_text, 2, &run.frames, exit_status))
+    PetscFunctionReturn(0);
   PetscCall(LamAppInitialize(args));
   run.response.comm = PETSC_COMM_SELF;
   run.response.quiet = run.quiet;

@@ -10,7 +10,8 @@
     plot_outline.c   edges and closed outlines of such meshes
     plot_curves.c    stress-load curves
     plot_read.c      arrays of a file, checked
-    plot_rve.c, plot_fe2.c, plot_database.c, plot_map.c    one kind of file each (plot_map_read.c: what a map shows)
+    plot_rve.c, plot_fe2.c, plot_database.c, plot_map.c, plot_process.c    one kind of file each (plot_map_read.c,
+                     plot_process_read.c: what it shows)
     plot_table.c, plot_slice.c    a database's table: its picture, and what a slice through it holds
 
   Lengths on the page are points (1/72 inch), y downwards. Text markup: $...$ italic, _{...} subscript, ^{...}
@@ -44,6 +45,9 @@ typedef struct LamCanvas_s *LamCanvas;
 PetscErrorCode LamCanvasCheckPath(const char path[]);
 /* A white page. The file is written by LamCanvasFinish, so a failure before it leaves none. */
 PetscErrorCode LamCanvasCreate(const char path[], double width, double height, LamCanvas *canvas);
+/* Whether files of this name have several pages (PDF), and the next of them. */
+PetscBool LamCanvasHasPages(const char path[]);
+void LamCanvasNextPage(LamCanvas canvas);
 /* What is drawn is no picture: LamCanvasFinish then ends with this reason, which must live as long. */
 void LamCanvasRefuse(LamCanvas canvas, const char reason[]);
 /* Writes the file and frees the canvas. PETSC_ERR_FILE_WRITE; PETSC_ERR_USER_INPUT: the numbers cannot be drawn. */
@@ -293,11 +297,14 @@ typedef struct {
   const char *input, *output;
   PetscInt state;    /* -1: the last one */
   const char *field; /* NULL: the default of the kind */
+  PetscBool film;    /* of a process: all states whose cells the file has, a page or file each */
+  const char *map;   /* of a process: the file of a map to draw its way over; NULL: none */
   /* of a slice through a table, as the user wrote them; NULL: chosen */
   const char *angle, *suction, *turgor, *accuracy;
 } LamPlotRequest;
 PetscErrorCode LamPlotRVE(const LamPlotRequest *request);
 PetscErrorCode LamPlotFE2(const LamPlotRequest *request);
+PetscErrorCode LamPlotProcess(const LamPlotRequest *request);
 PetscErrorCode LamPlotDatabase(const LamPlotRequest *request);
 PetscErrorCode LamPlotMap(const LamPlotRequest *request);
 

@@ -293,6 +293,7 @@ void LamSeriesDraw(LamCanvas canvas, const LamAxes *axes, const LamSeries *serie
     cairo_stroke(cr);
     SetDash(cr, PETSC_FALSE);
   }
+  if (style->marker == LAM_MARKER_COUNT) return; /* the line alone */
   for (PetscInt i = 0; i < series->n; i++) {
     if (!Finite(series, i) || (i % stride && i != series->n - 1)) continue;
     LamCanvasMarker(canvas, LamAxesX(axes, series->x[i]), LamAxesY(axes, series->y[i]), size, style->marker,

@@ -151,6 +151,20 @@ static PetscErrorCode WritePage(LamCanvas c)
   PetscFunctionReturn(0);
 }
 
+PetscBool LamCanvasHasPages(const char path[])
+{
+  const size_t length = strlen(path), n = strlen(FormatExtensions[FORMAT_PDF]);
+
+  return (PetscBool)(length > n && !strcasecmp(path + length - n, FormatExtensions[FORMAT_PDF]));
+}
+
+void LamCanvasNextPage(LamCanvas canvas)
+{
+  cairo_show_page(canvas->cr);
+  cairo_set_source_rgb(canvas->cr, 1, 1, 1);
+  cairo_paint(canvas->cr);
+}
+
 PetscErrorCode LamCanvasFinish(LamCanvas *canvas)
 {
   PetscErrorCode error;

@@ -264,27 +264,37 @@ static const char *FieldLabel(const char field[])
   return field;
 }
 
+PetscErrorCode LamMapDrawModes(LamCanvas canvas, LamRect outer, const LamMapPicture *p, LamAxes *axes)
+{
+  const double legend = DrawLegend(canvas, outer, p) + 4;
+
+  PetscFunctionBeginUser;
+  outer.y += legend;
+  outer.height -= legend;
+  *axes = AxesOf(p);
+  LamAxesLayout(canvas, outer, axes);
+  LamAxesDraw(canvas, axes);
+  DrawModes(canvas, axes, p);
+  if (IsOfLoad(&p->x) || IsOfLoad(&p->y))
+    DrawOnset(canvas, axes, p);
+  else
+    PetscCall(DrawContours(canvas, axes, p));
+  LamAxesFrame(canvas, axes);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode DrawPage(LamCanvas canvas, const LamMapPicture *p)
 {
   const double bar = LamColourBarWidth(canvas, &p->range), width = 0.5 * (LAM_PLOT_WIDTH - 18 - 14 - bar), top = 6;
-  LamRect left = {9, top, width, LAM_PLOT_HEIGHT - top - 6}, right;
-  LamAxes axes = AxesOf(p);
-  double legend;
+  const LamRect left = {9, top, width, LAM_PLOT_HEIGHT - top - 6};
+  LamRect right = left;
+  LamAxes axes;
 
   PetscFunctionBeginUser;
-  legend = DrawLegend(canvas, left, p) + 4;
-  left.y += legend;
-  left.height -= legend;
-  right = left;
+  PetscCall(LamMapDrawModes(canvas, left, p, &axes));
   right.x += width + 14;
-  LamAxesLayout(canvas, left, &axes);
-  LamAxesDraw(canvas, &axes);
-  DrawModes(canvas, &axes, p);
-  if (IsOfLoad(&p->x) || IsOfLoad(&p->y))
-    DrawOnset(canvas, &axes, p);
-  else
-    PetscCall(DrawContours(canvas, &axes, p));
-  LamAxesFrame(canvas, &axes);
+  right.height -= axes.frame.y - left.y - 0.5 * LAM_TICK_SIZE;
+  right.y = axes.frame.y - 0.5 * LAM_TICK_SIZE;
   LamAxesLayout(canvas, right, &axes);
   LamAxesDraw(canvas, &axes);
   DrawField(canvas, &axes, p);

@@ -39,4 +39,8 @@ typedef struct {
 PetscErrorCode LamMapPictureRead(const LamPlotRequest *request, LamMapPicture *picture);
 PetscErrorCode LamMapPictureDestroy(LamMapPicture *picture);
 
+/* ---- plot_map.c ---- */
+/* The modes alone, with their legend, inside `outer`; *axes: where a way over the map can be drawn. */
+PetscErrorCode LamMapDrawModes(LamCanvas canvas, LamRect outer, const LamMapPicture *picture, LamAxes *axes);
+
 #endif

@@ -60,6 +60,10 @@ static PetscErrorCode WriteColumns(const LamProcessRunState *run)
     PetscCall(PetscSNPrintf(name, sizeof(name), "/process/%s", columns[c].name));
     PetscCall(WriteColumn(run, name, columns[c].offset, columns[c].factor, columns[c].unit));
   }
+  for (PetscInt k = 0; k < LAM_RATIO_COUNT; k++) {
+    PetscCall(PetscSNPrintf(name, sizeof(name), "/process/ratio/%s", LamRatioNames[k]));
+    PetscCall(WriteColumn(run, name, offsetof(LamProcessState, ratio) + (size_t)k * sizeof(PetscReal), 1, "1"));
+  }
   for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++) {
     PetscCall(PetscSNPrintf(name, sizeof(name), "/process/factor/%s", LamChangingNames[k]));
     PetscCall(WriteColumn(run, name, offsetof(LamProcessState, factor) + (size_t)k * sizeof(PetscReal), 1, "1"));

@@ -2,22 +2,10 @@
   What `lamella process` tells of each output and event.
 */
 #include "process_run.h"
+#include "plot_process.h"
 #include <lamella/clock.h>
 #include <math.h>
 #include <string.h>
-
-const char *LamTimeUnit(PetscReal duration, PetscReal *seconds)
-{
-  static const struct {
-    const char *name;
-    PetscReal seconds;
-  } units[] = {{"day", 86400}, {"h", 3600}, {"min", 60}, {"s", 1}};
-  size_t k = 0;
-
-  while (k + 1 < PETSC_STATIC_ARRAY_LENGTH(units) && duration < 2 * units[k].seconds) k++;
-  *seconds = units[k].seconds;
-  return units[k].name;
-}
 
 static const char *EventName(const LamProcessState *state)
 {
@@ -26,19 +14,15 @@ static const char *EventName(const LamProcessState *state)
 
 /* ---- JSON ---- */
 
-/* Strength that the state still has, over what is asked of it: at 1 it gives way. */
-static void SetStrengths(json_t *o, const LamProcessState *state, const LamStrength *strength)
+static void SetRatios(json_t *o, const LamProcessState *state)
 {
-  const LamResponse *r = &state->response;
-  const PetscReal lamella = state->factor[LAM_CHANGING_LAMELLA], wall = state->factor[LAM_CHANGING_WALL_STRENGTH];
+  char name[LAM_NAME_LENGTH];
 
-  if (isfinite(strength->lamella_normal))
-    json_object_set_new(o, "lamella_normal_ratio", LamJSONReal(r->max_traction / (lamella * strength->lamella_normal)));
-  if (isfinite(strength->lamella_shear))
-    json_object_set_new(o, "lamella_shear_ratio",
-                        LamJSONReal(r->max_lamella_shear / (lamella * strength->lamella_shear)));
-  if (isfinite(strength->wall))
-    json_object_set_new(o, "wall_ratio", LamJSONReal(r->max_wall_tension / (wall * strength->wall)));
+  for (PetscInt k = 0; k < LAM_RATIO_COUNT; k++) {
+    if (!isfinite(state->ratio[k])) continue;
+    snprintf(name, sizeof(name), "%s_ratio", LamRatioNames[k]);
+    json_object_set_new(o, name, LamJSONReal(state->ratio[k]));
+  }
 }
 
 static json_t *FactorsToJSON(const LamProcessState *state, const LamProcessSpec *spec)
@@ -68,7 +52,7 @@ static PetscErrorCode ReportJSON(const LamProcessRunState *run, const LamProcess
   json_object_set_new(o, "firmness", LamJSONReal(state->firmness * MPa));
   json_object_set_new(o, "walls", LamJSONReal(state->walls));
   json_object_set_new(o, "factors", FactorsToJSON(state, &run->scene->process));
-  SetStrengths(o, state, &run->scene->strength);
+  SetRatios(o, state);
   if (state->event != LAM_EVENT_COUNT) json_object_set_new(o, "event", json_string(EventName(state)));
   PetscCall(LamPrintJSON(o));
   PetscFunctionReturn(0);
@@ -133,11 +117,26 @@ PetscErrorCode LamProcessReport(const LamProcessRunState *run)
   PetscFunctionReturn(0);
 }
 
+/* Events that a database alone has found by numbers which it does not know well. */
+static void WarnOfIndicators(const LamProcessRunState *run)
+{
+  PetscInt doubtful = 0;
+
+  for (PetscInt k = 0; k < run->history.count; k++)
+    doubtful += run->history.states[k].event != LAM_EVENT_COUNT && !run->history.states[k].response.indicators_trusted;
+  if (doubtful)
+    fprintf(stderr,
+            "lamella process: events that rest on tractions or gaps of which the database's states around do not agree: "
+            "%d; --response cache solves there\n",
+            (int)doubtful);
+}
+
 PetscErrorCode LamProcessReportEnd(const LamProcessRunState *run, LamProcessReason reason, const char message[])
 {
   LamProcessCounts counts;
 
   PetscFunctionBeginUser;
+  if (!run->quiet) WarnOfIndicators(run);
   if (reason == LAM_PROCESS_ENDED) fprintf(stderr, "lamella process: %s: %s\n", run->scene->path, message);
   if (run->json) PetscFunctionReturn(0);
   PetscCall(LamProcessGetCounts(run->process, &counts));

@@ -17,6 +17,8 @@ typedef struct {
 typedef struct {
   LamFE2Run response; /* what answers the material point: command line and one tissue */
   const char *out_path;
+  const char *frames_text;
+  PetscInt frames; /* states whose microstructure is kept, beside those of events */
   PetscBool json, quiet;
   LamScene *scene; /* owned by response.scene */
   LamProcess process;
@@ -28,8 +30,6 @@ typedef struct {
 } LamProcessRunState;
 
 /* ---- process_report.c ---- */
-/* The unit of time that suits a duration, and its length in s. */
-const char *LamTimeUnit(PetscReal duration, PetscReal *seconds);
 /* Row of a table, the first with its header before it, or JSON object, of the last state of the history. */
 PetscErrorCode LamProcessReport(const LamProcessRunState *run);
 PetscErrorCode LamProcessReportEnd(const LamProcessRunState *run, LamProcessReason reason, const char message[]);
@@ -38,7 +38,13 @@ PetscErrorCode LamProcessReportEnd(const LamProcessRunState *run, LamProcessReas
 PetscErrorCode LamProcessFileOpen(LamProcessRunState *run);
 /* Commits what the file does not have yet; now and then unless `now`. */
 PetscErrorCode LamProcessFileAdd(LamProcessRunState *run, PetscBool now);
+/* Adds the microstructure at some states, before the file is closed. */
+PetscErrorCode LamProcessFrames(LamProcessRunState *run, PetscInt frames);
 /* `status`: "done", "stopped", or why it ended. */
 PetscErrorCode LamProcessFileClose(LamProcessRunState *run, const char status[]);
+
+/* ---- cmd_process.c ---- */
+/* Set of LamProcessSetWalls, with a LamFE2Tissue: what is solved directly takes other moduli. */
+PetscErrorCode LamProcessChangeWalls(void *tissue, const PetscReal factor[3]);
 
 #endif

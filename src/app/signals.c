@@ -1,6 +1,6 @@
 /*
-  Signals that tell of a fault, and those that ask for an orderly end. Commands look at LamStopRequested between states, solves before each
-  factorisation; what is under way is given up, what is solved is committed.
+  Signals that tell of a fault, and those that ask for an orderly end. Commands look at LamStopRequested between states,
+  solves before each factorisation; what is under way is given up, what is solved is committed.
 */
 #include "app.h"
 #include <execinfo.h>
@@ -13,7 +13,7 @@
    Whoever goes on wishing gets his way. */
 #define PATIENCE 3
 #define MOST_FRAMES 64 /* of the trace of a fault */
-#define BURST 0.5 /* s */
+#define BURST 0.5      /* s */
 
 static volatile sig_atomic_t StopSignal, Count;
 static volatile PetscReal LastSignal;

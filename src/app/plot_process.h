@@ -1,0 +1,41 @@
+/*
+  Private to the pictures of a process: what its file holds.
+*/
+#ifndef LAM_PLOT_PROCESS_H
+#define LAM_PLOT_PROCESS_H
+
+#include "plot_tissue.h"
+#include <lamella/process.h>
+
+/* Arrays over the states, as docs/file-format.md describes them; all owned. */
+typedef struct {
+  const char *path;     /* borrowed */
+  LamDatabase database; /* lends the records */
+  LamMicrostructure micro;
+  LamScales scales;
+  PetscInt n;
+  const LamResponse *records;
+  PetscReal *time; /* s */
+  PetscReal *turgor, *cohesion, *osmotic, *outside, *firmness, *walls;
+  PetscInt factor_count, ratio_count; /* of those that change, and that are known */
+  PetscReal *factor[16], *ratio[8];
+  char factor_name[16][LAM_NAME_LENGTH], ratio_name[8][LAM_NAME_LENGTH];
+  PetscInt *event; /* number of the name; -1: none */
+  char *event_names;
+  const char *unit;  /* of time, for people */
+  PetscReal seconds; /* in one of it */
+} LamProcessPicture;
+
+/* ---- plot_process_read.c: PETSC_ERR_USER_INPUT where the file lacks something ---- */
+PetscErrorCode LamProcessPictureRead(const char path[], LamProcessPicture *picture);
+PetscErrorCode LamProcessPictureDestroy(LamProcessPicture *picture);
+/* The unit of time that suits a duration, and its length in s. */
+const char *LamTimeUnit(PetscReal duration, PetscReal *seconds);
+/* The name of the event at a state, "" at others, with blanks for underscores. */
+void LamProcessEventName(const LamProcessPicture *picture, PetscInt state, size_t size, char name[]);
+
+/* ---- plot_process.c ---- */
+/* Firmness, pressures, what changes, and what comes apart against time, inside `outer`; `now` >= 0: a state to mark. */
+PetscErrorCode LamProcessDraw(LamCanvas canvas, LamRect outer, const LamProcessPicture *picture, PetscInt now);
+
+#endif

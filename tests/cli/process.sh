@@ -1,0 +1,65 @@
+#!/usr/bin/env bash
+# lamella process: rows, JSON, files, pictures, databases, true reasons, refusals, signals.
+. "$(dirname "$0")/common.sh"
+set -e -o pipefail
+example=$source/tests/scenes/ripening.yaml
+
+# the lamella gives way: one event, at the same time whoever answers
+expect 0 "$lamella" process "$example" -o a.h5 --frames 4 --json
+grep -q '"event": "lamella_normal"' out.txt || fail "no event"
+[ "$(grep -c '"time"' out.txt)" = 102 ] || fail "not one object per output and event"
+[ -s err.txt ] && fail "says on stderr: $(cat err.txt)"
+direct=$(grep '"event"' out.txt | sed 's/.*"time": \([0-9]*\).*/\1/')
+expect 0 "$lamella" process "$example" -d d.h5 --json
+cached=$(grep '"event"' out.txt | sed 's/.*"time": \([0-9]*\).*/\1/')
+[ $((direct > cached ? direct - cached : cached - direct)) -lt $((direct / 500)) ] ||
+  fail "the event is at $cached s from a database, at $direct s solved directly"
+expect 0 "$lamella" process "$example" -d d.h5 --response database --json
+grep -q 'events that rest on tractions' err.txt || fail "does not doubt the indicators of a coarse table: $(cat err.txt)"
+
+# a table for people
+expect 0 "$lamella" process "$example"
+grep -qE '^ +6\.7[0-9]+ .* lamella_normal$' out.txt || fail "the row of the event: $(grep lamella out.txt)"
+
+# the file, and its pictures
+expect 0 "$lamella" info a.h5 --json
+grep -q '"kind": "process"' out.txt || fail "kind: $(cat out.txt)"
+expect 0 "$lamella" info a.h5 --check
+expect 0 "$lamella" plot a.h5 -o a.svg
+grep -q svg a.svg || fail "no picture"
+expect 0 "$lamella" plot a.h5 --state 0 -o s.svg
+expect 0 "$lamella" plot a.h5 --film -o film.pdf
+expect 0 "$lamella" plot a.h5 --film -o film.svg
+[ "$(ls film-*.svg | wc -l)" -ge 5 ] || fail "numbered frames: $(ls)"
+expect 2 "$lamella" plot a.h5 --state 1 -o s.svg
+grep -q -- '--frames N keeps them' err.txt || fail "cells that the file lacks: $(cat err.txt)"
+expect 2 "$lamella" plot a.h5 --map a.h5 -o s.svg
+
+# walls that lose their fibres alone: no database serves, a solve does
+sed 's/of: walls, law: fractional_conversion, rate: 0.1/of: C4, law: fractional_conversion, rate: 0.1/; s/7 day/1 day/; s/3 day/0.5 day/' \
+  "$example" >fibres.yaml
+expect 0 "$lamella" process fibres.yaml
+expect 2 "$lamella" process fibres.yaml -d d.h5
+grep -q 'C1, C2 and C4 do not change alike' err.txt || fail "walls that change unlike: $(cat err.txt)"
+
+# nothing is left of the walls: a true reason, and what was reached is kept
+sed 's/plateau: 0.6/plateau: 0/; s/rate: 0.1/rate: 9/g; s/7 day/70 day/' "$example" >gone.yaml
+expect 3 "$lamella" process gone.yaml -o gone.h5
+grep -q 'ended at' err.txt || fail "no reason: $(cat err.txt)"
+expect 0 "$lamella" plot gone.h5 -o gone.svg
+
+expect 1 "$lamella" process "$example" --frames 1
+expect 1 "$lamella" process "$example" --response nonsense
+expect 2 "$lamella" process "$source/tests/scenes/shear-bonded.yaml"
+grep -q 'has no block `process`' err.txt || fail "a scene without the block: $(cat err.txt)"
+
+# a signal: what is there is committed
+sed 's/tolerance.*//; s/duration: 7 day/duration: 7 day\n  tolerance: 1e-10\n  output: 10 s/' "$example" >long.yaml
+"$lamella" process long.yaml -o long.h5 --json >long.txt 2>&1 &
+pid=$!
+sleep 2
+kill -TERM $pid
+status=0
+wait $pid || status=$?
+[ $status -eq 143 ] || fail "status $status after SIGTERM"
+expect 0 "$lamella" info long.h5 --check
