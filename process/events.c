@@ -36,6 +36,8 @@ static PetscBool Applies(LamProcess process, LamEvent event)
   case LAM_EVENT_OPENING:
   case LAM_EVENT_PERCOLATION:
     return contact;
+  case LAM_EVENT_SNAP:
+    return PETSC_FALSE; /* found where the integrator ends */
   case LAM_EVENT_TURGOR_LOST:
     return (PetscBool)!process->plasmolysed;
   case LAM_EVENT_TURGOR_FOUND:

@@ -4,6 +4,9 @@
 #include "process_impl.h"
 #include <math.h>
 
+enum { MAX_SNAPS = 200 };
+#define FIRST_GAP 1e-8 /* shares of the duration that a snap takes, at least and at most */
+#define LAST_GAP 1e-4
 #define STILL 1e-7 /* what is prescribed differs by less from where the tissue is: no jump */
 
 /* ---- life ---- */
@@ -253,6 +256,69 @@ static PetscErrorCode EnterSegment(LamProcess process, PetscBool *ok)
   PetscFunctionReturn(0);
 }
 
+/* ---- snaps ---- */
+
+/* Kinetics and water over a short time, by the midpoint rule and by the present flow. */
+static PetscErrorCode Pass(LamProcess process, PetscReal time)
+{
+  LamProcessTissue *tissue = &process->tissue;
+  LamEvaluation e;
+  LamFlow flow;
+
+  PetscFunctionBeginUser;
+  PetscCall(EvaluateTissue(process, &e));
+  for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++) {
+    const LamKinetics *kinetics = &process->spec->kinetics[k];
+    PetscReal *x = &tissue->x[LAM_KINETIC_STATES * k], half[LAM_KINETIC_STATES], rate[LAM_KINETIC_STATES] = {0},
+              J[LAM_KINETIC_STATES][LAM_KINETIC_STATES];
+
+    if (!LamKineticsStates(kinetics)) continue;
+    LamKineticsRates(kinetics, e.temperature, x, rate, J);
+    for (PetscInt i = 0; i < LAM_KINETIC_STATES; i++) half[i] = x[i] + 0.5 * time * rate[i];
+    LamKineticsRates(kinetics, e.temperature, half, rate, J);
+    for (PetscInt i = 0; i < LAM_KINETIC_STATES; i++) x[i] += time * rate[i];
+  }
+  if (process->spec->has_water && isfinite(process->spec->water.permeability)) {
+    LamProcessFlow(process, &e, tissue->water, tissue->turgor, &flow);
+    tissue->water += time * flow.conductance * flow.drive;
+  }
+  tissue->time += time;
+  PetscFunctionReturn(0);
+}
+
+/* Where no step of time however short leads on: the equilibrium that there is a moment later, if it is found. */
+static PetscErrorCode Snap(LamProcess process, PetscBool *ok)
+{
+  const LamProcessTissue before = process->tissue;
+  const PetscReal duration = process->spec->duration, left = process->segment.end - before.time;
+  char why[sizeof(process->trouble)];
+  LamSegment here;
+  LamEvaluation e;
+
+  PetscFunctionBeginUser;
+  *ok = PETSC_FALSE;
+  PetscCall(PetscStrncpy(why, process->trouble, sizeof(why)));
+  for (PetscReal gap = FIRST_GAP; gap <= LAST_GAP && !*ok && process->snaps < MAX_SNAPS; gap *= 10) {
+    if (gap * duration >= left) break;
+    process->tissue = before;
+    PetscCall(EvaluateTissue(process, &e));
+    if (!e.ok) break;
+    here = Here(process, e.response.P);
+    PetscCall(Pass(process, gap * duration));
+    LamProcessNextSegment(process, &process->segment);
+    KeepTurgor(process);
+    PetscCall(LamProcessSettle(process, Kind(process), &here, ok));
+  }
+  if (*ok) {
+    process->snaps++;
+    PetscCall(LamProcessTell(process, &process->tissue, LAM_EVENT_SNAP));
+  } else {
+    process->tissue = before;
+    PetscCall(PetscStrncpy(process->trouble, why, sizeof(why)));
+  }
+  PetscFunctionReturn(0);
+}
+
 /* One segment, or the part of it up to an event. */
 static PetscErrorCode FollowSegment(LamProcess process, PetscBool *ok, PetscBool *ends)
 {
@@ -265,6 +331,7 @@ static PetscErrorCode FollowSegment(LamProcess process, PetscBool *ok, PetscBool
   if (*ok) PetscCall(CheckEvents(process, ends));
   if (!*ok || *ends) PetscFunctionReturn(0);
   if (process->segment.end > process->segment.start) PetscCall(LamProcessIntegrate(process, happened, ok));
+  if (!*ok && !process->stopped) PetscCall(Snap(process, ok));
   if (!*ok) PetscFunctionReturn(0);
   PetscCall(Happen(process, happened, ends));
   PetscCall(EvaluateTissue(process, &e));
@@ -309,6 +376,7 @@ static void Clear(LamProcess process)
   for (PetscInt k = 0; k < LAM_EVENT_COUNT; k++) process->found[k] = PETSC_FALSE;
   for (int k = 0; k < 3; k++) process->told_walls[k] = 1;
   process->next_output = 0;
+  process->snaps = 0;
   process->outputs = 0;
   process->counts = (LamProcessCounts){0};
 }

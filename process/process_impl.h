@@ -97,6 +97,7 @@ struct LamProcess_s {
   PetscBool stopped;
   PetscErrorCode error; /* of the library, raised inside IDA */
   char trouble[192];    /* why a state had no answer */
+  PetscInt snaps;
   LamProcessCounts counts;
 };
 

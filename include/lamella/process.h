@@ -26,6 +26,7 @@ typedef struct LamProcess_s *LamProcess;
   X(LAM_EVENT_PERCOLATION, "percolation")       /* contact: cells that hang together no longer span the tissue */      \
   X(LAM_EVENT_TURGOR_LOST, "turgor_lost")       /* turgor has fallen to 0: membranes leave the walls */                \
   X(LAM_EVENT_TURGOR_FOUND, "turgor_found")     /* the protoplast fills the lumen again */                             \
+  X(LAM_EVENT_SNAP, "snap")                     /* the tissue jumps to another equilibrium; may recur */               \
   X(LAM_EVENT_LIMIT, "limit_point")             /* the stiffness against what is free falls to 0 */
 #define LAM_EVENT_ENTRY(symbol, name) symbol,
 typedef enum { LAM_EVENTS(LAM_EVENT_ENTRY) LAM_EVENT_COUNT } LamEvent;

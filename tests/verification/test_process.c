@@ -277,6 +277,19 @@ static void a_load_that_is_held_creeps_as_walls_soften(void **state)
   Forget(&f);
 }
 
+/* Cells without turgor take up water from where they are. */
+static void empty_cells_fill(void **state)
+{
+  Followed f = FollowToEnd(PROCESS_CELL "process:\n"
+                                        "  duration: 20 h\n"
+                                        "  water: {permeability: 1e-7 m/s/MPa, osmotic_pressure: 0.3 MPa}\n");
+
+  assert_near(f.states[0].turgor, 0, 0);
+  assert_near(LastState(&f)->turgor, LastState(&f)->osmotic, 1e-5);
+  assert_true(LastState(&f)->turgor > 0.1);
+  Forget(&f);
+}
+
 static void a_program_that_repeats_comes_back(void **state)
 {
   Followed f = FollowToEnd(PROCESS_CELL "process:\n"
@@ -340,6 +353,31 @@ static void an_event_is_where_bisection_with_fresh_solves_finds_it(void **state)
   Forget(&f);
 }
 
+/* Cells that are held by cohesion alone come apart in a snap; behind it the tissue is what a fresh solve finds. */
+static void tissue_that_snaps_goes_on_behind(void **state)
+{
+  const LamStressControl control = {.given = {1, 1, 0, 0, 1}, .share = 1};
+  Followed f = FollowToEnd(PROCESS_CELL "  interface: {law: contact, cohesion: 0.02 MPa}\n"
+                                        "  turgor: {pressure: 0.05 MPa}\n"
+                                        "process:\n"
+                                        "  duration: 2 day\n"
+                                        "  output: 1 day\n"
+                                        "  kinetics: [{of: lamella, law: first_order, rate: 1 /day}]\n");
+  const LamProcessState *snap = FindEvent(&f, LAM_EVENT_SNAP), *last = LastState(&f);
+  LamLoad load = last->response.load;
+  LamResponse fresh;
+  LamRVEState start;
+
+  assert_non_null(snap);
+  assert_near(snap->time / 86400, 0.5757, 0.002);
+  assert_int_equal(LamRVEStateCreate(f.rve, &start), 0);
+  assert_int_equal(LamRVESolveMixed(f.rve, &load, &control, start, &fresh), 0);
+  assert_int_equal(LamRVEStateDestroy(&start), 0);
+  assert_int_equal(fresh.status, LAM_CONVERGED);
+  assert_near(last->response.load.F[0], fresh.load.F[0], 1e-3);
+  Forget(&f);
+}
+
 static void walls_that_dissolve_to_nothing_end_it_with_a_reason(void **state)
 {
   Followed f = Follow(PROCESS_CELL "  turgor: {pressure: 0.02 MPa}\n"
@@ -367,8 +405,10 @@ static int run(void)
       cmocka_unit_test(walls_may_change_in_their_proportions),
       cmocka_unit_test(stress_relaxes_at_constant_strain_as_water_flows),
       cmocka_unit_test(a_load_that_is_held_creeps_as_walls_soften),
+      cmocka_unit_test(empty_cells_fill),
       cmocka_unit_test(a_program_that_repeats_comes_back),
       cmocka_unit_test(an_event_is_where_bisection_with_fresh_solves_finds_it),
+      cmocka_unit_test(tissue_that_snaps_goes_on_behind),
       cmocka_unit_test(walls_that_dissolve_to_nothing_end_it_with_a_reason),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
