@@ -2,6 +2,7 @@
   The scene reference, docs/scene.md, from the table of keys.
 */
 #include "scene_keys.h"
+#include "scene_units.h"
 #include <string.h>
 
 static const char *const introduction =
@@ -31,7 +32,7 @@ static const char *const introduction =
     "  what would be right. The first mistake ends the reading.\n"
     "* **Anchors and aliases** of YAML may be used; merge keys (`<<`), tags and several documents may not. A file has\n"
     "  at most 1 MB.\n"
-    "* *Not in this version*: the key or name is reserved, and refused with a message that says so.\n\n"
+    "\n"
     "*Required* means: wherever the block it belongs to is given. In paths, `[]` stands for each item of a list.\n";
 
 static const char *TypeText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH])
@@ -46,8 +47,7 @@ static const char *TypeText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH])
                                       "text",
                                       "2x2 or 3x3 numbers",
                                       "2x2 or 3x3 stresses"};
-  static const char *const dimensions[] = {"length", "stress", "angle"};
-  const char *type = key->type == LAM_KEY_QUANTITY ? dimensions[key->dimension] : types[key->type];
+  const char *type = key->type == LAM_KEY_QUANTITY ? LamDimensionNames[key->dimension] : types[key->type];
   size_t used = 0;
 
   if (key->type != LAM_KEY_NAME) {
