@@ -105,9 +105,9 @@ PetscReal LamProcessExcess(LamProcess process, LamEvent event, const LamEvaluati
   case LAM_EVENT_PERCOLATION:
     return 1.5 - (PetscReal)r->percolating_directions;
   case LAM_EVENT_TURGOR_LOST:
-    return -turgor;
+    return -turgor - LamSlack(process) * process->pressure;
   case LAM_EVENT_TURGOR_FOUND:
-    return water + r->energy_turgor;
+    return water + r->energy_turgor - LamSlack(process) * process->water;
   case LAM_EVENT_LIMIT:
     return LimitExcess(process, e);
   default:

@@ -289,11 +289,9 @@ static void SetTolerances(Integration *in)
   const Layout *l = &in->layout;
   PetscReal *a = N_VGetArrayPointer(in->tolerance), *id = N_VGetArrayPointer(in->id);
   const PetscReal relative = process->spec->tolerance;
-  const PetscReal pressure =
-      PetscMax(1e-3, PetscMax(process->scene->turgor, process->spec->has_water ? process->osmotic : 0));
 
   for (PetscInt k = 0; k < l->n; k++) {
-    a[k] = relative * (k == l->turgor ? pressure : k == l->water ? 1e-3 * process->water : 0.1);
+    a[k] = relative * (k == l->turgor ? process->pressure : k == l->water ? 1e-3 * process->water : 0.1);
     id[k] = 0;
   }
   for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++) {

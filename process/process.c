@@ -223,8 +223,10 @@ static PetscErrorCode ChangeMembranes(LamProcess process, PetscBool *ok)
 
   PetscFunctionBeginUser;
   PetscCall(EvaluateTissue(process, &e));
-  if (!process->plasmolysed && process->tissue.turgor < 0) event = LAM_EVENT_TURGOR_LOST;
-  if (process->plasmolysed && process->tissue.water > -e.response.energy_turgor) event = LAM_EVENT_TURGOR_FOUND;
+  if (!process->plasmolysed && process->tissue.turgor < -LamSlack(process) * process->pressure)
+    event = LAM_EVENT_TURGOR_LOST;
+  if (process->plasmolysed && process->tissue.water > -e.response.energy_turgor + LamSlack(process) * process->water)
+    event = LAM_EVENT_TURGOR_FOUND;
   if (event == LAM_EVENT_COUNT) PetscFunctionReturn(0);
   Note(process, event);
   KeepTurgor(process);
@@ -402,11 +404,13 @@ static PetscErrorCode Start(LamProcess process, PetscBool *ok)
   if (!*ok) PetscFunctionReturn(0);
   process->opening = e.response.opening_fraction;
   LamProcessStartProgram(process, e.response.P);
+  process->pressure = PetscMax(1e-3, process->tissue.turgor);
   if (!process->spec->has_water) PetscFunctionReturn(0);
   process->tissue.water = process->water = -e.response.energy_turgor;
   process->osmotic = water->osmotic;
   if (isnan(water->osmotic))
     process->osmotic = e.outside + (water->reflection > 0 ? process->tissue.turgor / water->reflection : 0);
+  process->pressure = PetscMax(process->pressure, process->osmotic);
   LamProcessFlow(process, &e, process->tissue.water, 0, &flow);
   process->plasmolysed = (PetscBool)(process->tissue.turgor == 0 && flow.drive < 0);
   PetscFunctionReturn(0);

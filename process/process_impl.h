@@ -79,6 +79,8 @@ struct LamProcess_s {
   PetscReal inflation[9]; /* F of the tissue that is free of stress under its turgor at the start */
   PetscReal osmotic, water, temperature, opening; /* of the cells at the start */
 
+  PetscReal pressure; /* the scale of pressures */
+
   /* on the way */
   LamProcessTissue tissue;
   LamSegment segment;
@@ -100,6 +102,13 @@ struct LamProcess_s {
   PetscInt snaps;
   LamProcessCounts counts;
 };
+
+/* By how much turgor falls below 0, or water exceeds the lumen, before membranes leave the walls or meet them: more than
+   what the integration leaves uncertain, so that cells without turgor do not do both for ever. As a share of the scale. */
+static inline PetscReal LamSlack(LamProcess process)
+{
+  return 3 * process->spec->tolerance;
+}
 
 static inline PetscReal LamRampAt(const LamRamp *ramp, PetscReal elapsed)
 {

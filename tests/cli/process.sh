@@ -48,6 +48,11 @@ expect 3 "$lamella" process gone.yaml -o gone.h5
 grep -q 'ended at' err.txt || fail "no reason: $(cat err.txt)"
 expect 0 "$lamella" plot gone.h5 -o gone.svg
 
+# the tissues of docs/tissues.md
+for tissue in "$source"/tests/scenes/tissues/*.yaml; do
+  expect 0 "$lamella" process "$tissue"
+done
+
 expect 1 "$lamella" process "$example" --frames 1
 expect 1 "$lamella" process "$example" --response nonsense
 expect 2 "$lamella" process "$source/tests/scenes/shear-bonded.yaml"
