@@ -111,6 +111,7 @@ PetscErrorCode LamProcessEvaluate(LamProcess process, PetscReal time, const Pets
   Multiply(F, process->inflation, e->load.F);
   e->ok = (PetscBool)(e->walls > 0 && isfinite(e->walls) && isfinite(turgor));
   if (!e->ok) {
+    PetscCall(LamResponseInit(&e->load, &e->response));
     PetscCall(PetscStrncpy(process->trouble, "nothing is left of the walls", sizeof(process->trouble)));
     PetscFunctionReturn(0);
   }
@@ -170,6 +171,8 @@ void LamProcessFlow(LamProcess process, const LamEvaluation *e, PetscReal water,
                       exp(-spec->activation / LAM_GAS_CONSTANT * (1 / e->temperature - 1 / process->temperature));
   flow->osmotic = n * concentrated;
   flow->drive = sigma * (flow->osmotic - e->outside) - turgor;
+  flow->osmotic_water = -flow->osmotic / room;
+  flow->osmotic_solutes = concentrated;
   flow->drive_turgor = -1;
   flow->drive_water = -sigma * flow->osmotic / room;
   flow->drive_solutes = sigma * concentrated;
@@ -212,12 +215,14 @@ PetscErrorCode LamProcessDescribe(LamProcess process, const LamProcessTissue *ti
                              .response = e.response,
                              .event = LAM_EVENT_COUNT};
   for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++) state->factor[k] = e.factor[k].value;
+  for (PetscInt k = 0; k < LAM_RATIO_COUNT; k++) state->ratio[k] = NAN;
   PetscCall(PetscArraycpy(state->F, tissue->F, 9));
   if (process->spec->has_water) {
     LamProcessFlow(process, &e, tissue->water, tissue->turgor, &flow);
     state->water = tissue->water;
     state->osmotic = flow.osmotic;
   }
+  if (e.ok) LamProcessRatios(process, &e, state->ratio);
   if (e.ok) state->firmness = Firmness(&e.response, (PetscBool)(process->spec->has_water && !process->plasmolysed));
   PetscFunctionReturn(0);
 }

@@ -56,15 +56,26 @@ PetscInt LamProcessListEvents(LamProcess process, LamEvent events[LAM_EVENT_COUN
   return n;
 }
 
+/* What the cells' water adds to dP/dF, over -P_p (x) P_p: no volume passes, dv = 0, or where nothing resists the flow
+   dp = d dv with d = dp/dV of equilibrium; dv = -P_p . dF - Psi_pp dp. */
+static PetscReal WaterStiffness(LamProcess process, const LamEvaluation *e)
+{
+  LamFlow flow;
+
+  if (!process->spec->has_water || process->plasmolysed) return 0;
+  if (isfinite(process->spec->water.permeability)) return 1 / e->response.energy_turgor2;
+  LamProcessFlow(process, e, -e->response.energy_turgor, e->load.turgor, &flow);
+  return flow.drive_water / (1 + flow.drive_water * e->response.energy_turgor2);
+}
+
 /*
   Minus the stiffness against what is free, over C1 + C2: the smallest eigenvalue of the symmetric part of dP/dF of the
   free components, with their water where it cannot pass at once. Where nothing is free: whether the state is stable.
 */
 static PetscReal LimitExcess(LamProcess process, const LamEvaluation *e)
 {
-  const PetscBool seals =
-      (PetscBool)(process->spec->has_water && !process->plasmolysed && isfinite(process->spec->water.permeability));
   const LamResponse *r = &e->response;
+  const PetscReal water = WaterStiffness(process, e);
   PetscReal A[9][9];
   PetscInt free[9], n = 0;
 
@@ -74,7 +85,7 @@ static PetscReal LimitExcess(LamProcess process, const LamEvaluation *e)
   for (PetscInt a = 0; a < n; a++)
     for (PetscInt b = 0; b < n; b++) {
       A[a][b] = r->tangent[9 * free[a] + free[b]];
-      if (seals) A[a][b] -= r->P_turgor[free[a]] * r->P_turgor[free[b]] / r->energy_turgor2;
+      A[a][b] -= r->P_turgor[free[a]] * r->P_turgor[free[b]] * water;
     }
   /* Gauss: the smallest pivot has the sign of the smallest eigenvalue while that is the only one to change it */
   PetscReal smallest = PETSC_INFINITY;
@@ -103,7 +114,7 @@ PetscReal LamProcessExcess(LamProcess process, LamEvent event, const LamEvaluati
   case LAM_EVENT_OPENING:
     return r->opening_fraction - process->opening - process->spec->opening;
   case LAM_EVENT_PERCOLATION:
-    return 1.5 - (PetscReal)r->percolating_directions;
+    return r->percolating_directions < 0 ? -1 : 1.5 - (PetscReal)r->percolating_directions; /* below 0: not known */
   case LAM_EVENT_TURGOR_LOST:
     return -turgor - LamSlack(process) * process->pressure;
   case LAM_EVENT_TURGOR_FOUND:

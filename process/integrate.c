@@ -131,7 +131,9 @@ static void WaterResidual(const Integration *in, const LamEvaluation *e, const L
   LamFlow flow;
 
   LamProcessFlow(in->process, e, tissue->water, tissue->turgor, &flow);
-  r[l->water] = isfinite(flow.conductance) ? yp[l->water] - flow.conductance * flow.drive : flow.drive;
+  r[l->water] = isfinite(flow.conductance) ? yp[l->water] - flow.conductance * flow.drive
+                : in->process->plasmolysed ? flow.osmotic - e->outside
+                                           : flow.drive;
   r[l->turgor] = in->process->plasmolysed ? tissue->turgor : tissue->water + e->response.energy_turgor;
 }
 
@@ -207,6 +209,12 @@ static void WaterJacobian(const Integration *in, const LamEvaluation *e, const L
   const PetscBool flows = (PetscBool)isfinite(flow.conductance);
   const PetscReal scale = flows ? -flow.conductance : 1;
 
+  if (!flows && in->process->plasmolysed) {
+    SM_ELEMENT_D(K, l->water, l->water) = flow.osmotic_water;
+    SM_ELEMENT_D(K, l->turgor, l->turgor) = 1;
+    AddFactor(in, e, LAM_CHANGING_SOLUTES, l->water, flow.osmotic_solutes, K);
+    return;
+  }
   SM_ELEMENT_D(K, l->water, l->water) = (flows ? c : 0) + scale * flow.drive_water;
   SM_ELEMENT_D(K, l->water, l->turgor) = scale * flow.drive_turgor;
   AddFactor(in, e, LAM_CHANGING_SOLUTES, l->water, scale * flow.drive_solutes, K);
@@ -375,12 +383,16 @@ static void Destroy(Integration *in)
 
 /* ---- the way ---- */
 
-/* The time of output number k; the last one is the end. */
-static PetscReal OutputTime(LamProcess process)
+void LamProcessNextOutput(LamProcess process)
 {
-  const PetscReal t = (PetscReal)process->outputs * process->spec->output, end = process->spec->duration;
+  const PetscReal end = process->spec->duration;
 
-  return t > end * (1 - 1e-12) ? end : t;
+  if (process->next_output >= end) {
+    process->next_output = PETSC_INFINITY;
+    return;
+  }
+  process->next_output = (PetscReal)++process->outputs * process->spec->output;
+  if (process->next_output > end * (1 - 1e-12)) process->next_output = end; /* the last one */
 }
 
 /* Tells the outputs up to a time that the integrator has passed. */
@@ -397,10 +409,7 @@ static PetscErrorCode TellUpTo(Integration *in, PetscReal time)
                                         : process->tissue;
 
     ierr = LamProcessTell(process, &tissue, LAM_EVENT_COUNT);
-    const PetscReal told = process->next_output;
-
-    process->outputs++;
-    process->next_output = told >= process->spec->duration ? PETSC_INFINITY : OutputTime(process);
+    LamProcessNextOutput(process);
   }
   N_VDestroy(y);
   PetscCall(ierr);

@@ -180,7 +180,7 @@ static PetscErrorCode Happen(LamProcess process, const PetscBool happened[LAM_EV
   PetscFunctionReturn(0);
 }
 
-/* After a jump: what has been passed in it. Turgor has its own way (Settle). */
+/* After a jump: what has been passed in it. Where water is followed turgor has its own way (ChangeMembranes). */
 static PetscErrorCode CheckEvents(LamProcess process, PetscBool *ends)
 {
   PetscBool happened[LAM_EVENT_COUNT] = {PETSC_FALSE};
@@ -190,8 +190,10 @@ static PetscErrorCode CheckEvents(LamProcess process, PetscBool *ends)
 
   PetscFunctionBeginUser;
   PetscCall(EvaluateTissue(process, &e));
+  PetscCall(LamProcessAskJudge(process, &e));
   for (PetscInt k = 0; k < n && e.ok; k++) {
-    if (events[k] == LAM_EVENT_TURGOR_LOST || events[k] == LAM_EVENT_TURGOR_FOUND) continue;
+    if (process->spec->has_water && (events[k] == LAM_EVENT_TURGOR_LOST || events[k] == LAM_EVENT_TURGOR_FOUND))
+      continue;
     happened[events[k]] =
         (PetscBool)(LamProcessExcess(process, events[k], &e, process->tissue.water, process->tissue.turgor) > 0);
   }
@@ -228,9 +230,9 @@ static PetscErrorCode ChangeMembranes(LamProcess process, PetscBool *ok)
   if (process->plasmolysed && process->tissue.water > -e.response.energy_turgor + LamSlack(process) * process->water)
     event = LAM_EVENT_TURGOR_FOUND;
   if (event == LAM_EVENT_COUNT) PetscFunctionReturn(0);
+  here = Here(process, e.response.P); /* with the turgor that it has */
   Note(process, event);
   KeepTurgor(process);
-  here = Here(process, e.response.P);
   PetscCall(LamProcessSettle(process, Kind(process), &here, ok));
   if (*ok) PetscCall(LamProcessTell(process, &process->tissue, event));
   PetscFunctionReturn(0);
@@ -288,6 +290,20 @@ static PetscErrorCode Pass(LamProcess process, PetscReal time)
   PetscFunctionReturn(0);
 }
 
+/* Outputs that a snap has passed: what was before it. */
+static PetscErrorCode TellBefore(LamProcess process, const LamProcessTissue *before)
+{
+  PetscFunctionBeginUser;
+  while (process->next_output < process->tissue.time) {
+    LamProcessTissue tissue = *before;
+
+    tissue.time = process->next_output;
+    PetscCall(LamProcessTell(process, &tissue, LAM_EVENT_COUNT));
+    LamProcessNextOutput(process);
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Where no step of time however short leads on: the equilibrium that there is a moment later, if it is found. */
 static PetscErrorCode Snap(LamProcess process, PetscBool *ok)
 {
@@ -310,9 +326,11 @@ static PetscErrorCode Snap(LamProcess process, PetscBool *ok)
     LamProcessNextSegment(process, &process->segment);
     KeepTurgor(process);
     PetscCall(LamProcessSettle(process, Kind(process), &here, ok));
+    if (*ok && process->spec->has_water) PetscCall(ChangeMembranes(process, ok));
   }
   if (*ok) {
     process->snaps++;
+    PetscCall(TellBefore(process, &before));
     PetscCall(LamProcessTell(process, &process->tissue, LAM_EVENT_SNAP));
   } else {
     process->tissue = before;
@@ -418,12 +436,27 @@ static PetscErrorCode Start(LamProcess process, PetscBool *ok)
 
 /* ---- the way ---- */
 
+/* Where it ends before its time: the last state that there is. */
+static PetscErrorCode TellLast(LamProcess process)
+{
+  char why[sizeof(process->trouble)];
+  LamEvaluation e;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrncpy(why, process->trouble, sizeof(why)));
+  PetscCall(EvaluateTissue(process, &e));
+  if (e.ok) PetscCall(LamProcessTell(process, &process->tissue, LAM_EVENT_COUNT));
+  PetscCall(PetscStrncpy(process->trouble, why, sizeof(why)));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode FollowAll(LamProcess process, PetscBool *ok, PetscBool *ends)
 {
   PetscFunctionBeginUser;
   PetscCall(Start(process, ok));
   while (*ok && !*ends && !process->stopped && process->tissue.time < process->spec->duration)
     PetscCall(FollowSegment(process, ok, ends));
+  if (!*ok && !process->stopped && process->tissue.time > 0) PetscCall(TellLast(process));
   PetscFunctionReturn(0);
 }
 

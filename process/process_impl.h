@@ -59,7 +59,7 @@ typedef struct {
 typedef struct {
   PetscReal conductance; /* of the membranes: flow = conductance * drive; infinite: drive = 0 */
   PetscReal drive, drive_water, drive_turgor, drive_solutes, drive_reflection;
-  PetscReal osmotic;
+  PetscReal osmotic, osmotic_water, osmotic_solutes; /* pressure in the protoplasts, and its derivatives */
 } LamFlow;
 
 struct LamProcess_s {
@@ -103,11 +103,18 @@ struct LamProcess_s {
   LamProcessCounts counts;
 };
 
-/* By how much turgor falls below 0, or water exceeds the lumen, before membranes leave the walls or meet them: more than
-   what the integration leaves uncertain, so that cells without turgor do not do both for ever. As a share of the scale. */
+/* By how much turgor falls below 0, or water exceeds the lumen, before membranes leave the walls or meet them: more
+   than what the integration leaves uncertain, so that cells without turgor do not do both for ever. As a share of the
+   scale. */
 static inline PetscReal LamSlack(LamProcess process)
 {
   return 3 * process->spec->tolerance;
+}
+
+/* Times that are nearer to each other are one: what rounding makes of sums of them. */
+static inline PetscReal LamInstant(LamProcess process)
+{
+  return 1e-12 * process->spec->duration;
 }
 
 static inline PetscReal LamRampAt(const LamRamp *ramp, PetscReal elapsed)
@@ -157,6 +164,9 @@ PetscErrorCode LamProcessSettle(LamProcess process, LamSettle kind, const LamSeg
 /* integrate.c */
 /* Follows the tissue to the end of the segment, or to the next time at which something happens. */
 PetscErrorCode LamProcessIntegrate(LamProcess process, PetscBool happened[LAM_EVENT_COUNT], PetscBool *ok);
+
+/* Goes on to the next output time; infinite behind the last one. */
+void LamProcessNextOutput(LamProcess process);
 
 /* events.c */
 /* The events that are looked for in this segment. */

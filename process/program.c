@@ -42,7 +42,7 @@ static void Surround(LamProcess process, LamSegment *segment)
   const PetscReal t = segment->start;
   PetscInt after = 0;
 
-  while (after < n && at[after].time <= t) after++;
+  while (after < n && at[after].time <= t + LamInstant(process)) after++;
   const LamSurroundings *a = &at[PetscMax(after - 1, 0)], *b = &at[PetscMin(after, n - 1)];
   const PetscReal span = b->time - a->time, share = span > 0 ? (t - a->time) / span : 0;
 
@@ -60,7 +60,8 @@ static void EndAtTables(LamProcess process, LamSegment *segment)
     const LamKinetics *kinetics = &process->spec->kinetics[k];
 
     for (PetscInt i = 0; i < kinetics->count; i++)
-      if (kinetics->time[i] > segment->start) segment->end = PetscMin(segment->end, kinetics->time[i]);
+      if (kinetics->time[i] > segment->start + LamInstant(process))
+        segment->end = PetscMin(segment->end, kinetics->time[i]);
   }
 }
 
@@ -90,6 +91,8 @@ void LamProcessNextSegment(LamProcess process, LamSegment *segment)
   Surround(process, segment);
   EndAtTables(process, segment);
   Load(process, segment);
+  if (segment->end - segment->start < LamInstant(process)) segment->end = segment->start;
+  if (process->spec->duration - segment->end < LamInstant(process)) segment->end = process->spec->duration;
 }
 
 void LamProcessEndSegment(LamProcess process, const PetscReal P[9])
@@ -97,7 +100,7 @@ void LamProcessEndSegment(LamProcess process, const PetscReal P[9])
   const LamProcessLeg *leg = Leg(process);
   PetscReal stress[9];
 
-  if (IsOver(process) || process->tissue.time < process->leg_start + leg->duration) return;
+  if (IsOver(process) || process->tissue.time < process->leg_start + leg->duration - LamInstant(process)) return;
   for (int i = 0; i < 9; i++) stress[i] = leg->control.given[i] ? leg->control.P[i] : P[i];
   if (++process->leg == process->spec->leg_count) {
     process->leg = 0;

@@ -12,7 +12,7 @@
 #include <math.h>
 #include <petscblaslapack.h>
 
-enum { MAX_ITERATIONS = 12, MAX_HALVINGS = 20, MOST = 10 };
+enum { MAX_ITERATIONS = 12, MAX_HALVINGS = 20, MAX_TRIES = 60, MOST = 10 };
 #define EXACT 1e-10  /* of the residual: stress in C1 + C2, volume in V0 */
 #define FARTHEST 0.3 /* change of a component of F in an iteration */
 
@@ -99,7 +99,8 @@ static void FillOsmometer(LamProcess process, const LamEvaluation *e, LamProcess
   LamFlow flow;
 
   LamProcessFlow(process, e, tissue->water, 0, &flow);
-  tissue->water = dead + (tissue->water - dead) * flow.osmotic / e->outside;
+  if (flow.osmotic > 0) /* in pure water without end: more than any lumen */
+    tissue->water = dead + (tissue->water - dead) * flow.osmotic / PetscMax(e->outside, 1e-9 * flow.osmotic);
 }
 
 /* Newton at conditions c from the tissue's state, which it replaces where it succeeds. */
@@ -171,6 +172,7 @@ PetscErrorCode LamProcessSettle(LamProcess process, LamSettle kind, const LamSeg
   const Unknowns u = ListUnknowns(to, kind);
   const LamProcessTissue start = process->tissue;
   PetscReal done = 0, step = 1;
+  PetscInt tries = 0;
 
   PetscFunctionBeginUser;
   *ok = PETSC_TRUE;
@@ -181,13 +183,14 @@ PetscErrorCode LamProcessSettle(LamProcess process, LamSettle kind, const LamSeg
     PetscCall(Iterate(process, &u, &c, ok));
     if (process->stop && process->stop()) process->stopped = PETSC_TRUE;
     if (*ok) {
-      if (kind != LAM_SETTLE_TURGOR && process->tissue.turgor < -LamSlack(process) * process->pressure) break; /* the membranes leave the walls */
+      if (kind != LAM_SETTLE_TURGOR && process->tissue.turgor < -LamSlack(process) * process->pressure)
+        break; /* the membranes leave the walls */
       done = next;
       step *= 2;
       continue;
     }
     step = 0.5 * (next - done);
-    if (process->stopped || step < PetscPowRealInt(0.5, MAX_HALVINGS)) break;
+    if (process->stopped || step < PetscPowRealInt(0.5, MAX_HALVINGS) || ++tries > MAX_TRIES) break;
   }
   if (!*ok) process->tissue = start;
   PetscFunctionReturn(0);

@@ -40,7 +40,12 @@ static PetscErrorCode WriteFrame(LamProcessRunState *run, LamRVE rve, LamRVEStat
   scales.stress *= state->walls;
   PetscCall(TellModuli(run, state));
   PetscCall(LamRVESolve(rve, &load, at, &response));
-  if (!LamResponseHasFields(&response)) PetscFunctionReturn(0);
+  if (!LamResponseHasFields(&response)) {
+    if (!run->quiet)
+      fprintf(stderr, "lamella process: the cells of state %d are not kept: solved once more it is %s: %s\n", (int)k,
+              LamStatusNames[response.status], response.reason);
+    PetscFunctionReturn(0);
+  }
   PetscCall(PetscSNPrintf(group, sizeof(group), "/fields/%" PetscInt_FMT, k));
   PetscCall(LamRVEWriteFields(run->writer, group, rve, at, &scales));
   PetscFunctionReturn(0);

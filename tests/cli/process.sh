@@ -8,6 +8,7 @@ example=$source/tests/scenes/ripening.yaml
 expect 0 "$lamella" process "$example" -o a.h5 --frames 4 --json
 grep -q '"event": "lamella_normal"' out.txt || fail "no event"
 [ "$(grep -c '"time"' out.txt)" = 102 ] || fail "not one object per output and event"
+grep '"event"' out.txt | grep -qE '"lamella_normal_ratio": (1\.0000|0\.9999)' || fail "stress over strength at the event"
 [ -s err.txt ] && fail "says on stderr: $(cat err.txt)"
 direct=$(grep '"event"' out.txt | sed 's/.*"time": \([0-9]*\).*/\1/')
 expect 0 "$lamella" process "$example" -d d.h5 --json

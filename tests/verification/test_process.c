@@ -305,7 +305,37 @@ static void a_program_that_repeats_comes_back(void **state)
   Forget(&f);
 }
 
+/* Ten times 0.1 s is not 1 s in binary numbers. */
+static void ends_that_rounding_keeps_apart_are_one(void **state)
+{
+  Followed f =
+      FollowToEnd(PROCESS_CELL "process:\n"
+                               "  duration: 1 s\n"
+                               "  output: 0.5 s\n"
+                               "  program: [{for: 0.1 s}]\n"
+                               "  repeat: 10\n"
+                               "  kinetics: [{of: walls, law: table, time_unit: s, table: [[0, 1], [0.3, 0.9]]}]\n");
+
+  assert_int_equal(f.count, 3);
+  assert_near(LastState(&f)->time, 1, 0);
+  Forget(&f);
+}
+
 /* ---- events ---- */
+
+static void prescribed_turgor_that_jumps_below_0_is_lost(void **state)
+{
+  Followed f = FollowToEnd(PROCESS_CELL "process:\n"
+                                        "  duration: 2 h\n"
+                                        "  surroundings:\n"
+                                        "    - {time: 0 h, turgor: 0.02 MPa}\n"
+                                        "    - {time: 1 h, turgor: 0.02 MPa}\n"
+                                        "    - {time: 1 h, turgor: -0.0005 MPa}\n");
+
+  assert_non_null(FindEvent(&f, LAM_EVENT_TURGOR_LOST));
+  assert_near(FindEvent(&f, LAM_EVENT_TURGOR_LOST)->time, 3600, 1e-6);
+  Forget(&f);
+}
 
 #define ONSET(duration)                                                                                                \
   PROCESS_CELL "  turgor: {pressure: 0.1 MPa}\n"                                                                       \
@@ -350,6 +380,16 @@ static void an_event_is_where_bisection_with_fresh_solves_finds_it(void **state)
       high = middle;
   }
   assert_near(event->time / (0.5 * (low + high)), 1, 1e-4);
+  Forget(&f);
+}
+
+static void stress_over_strength_is_1_at_the_event(void **state)
+{
+  Followed f = FollowToEnd(ONSET("2 day"));
+  const LamProcessState *event = FindEvent(&f, LAM_EVENT_LAMELLA_NORMAL);
+
+  assert_near(event->ratio[LAM_RATIO_LAMELLA_NORMAL], 1, 1e-6);
+  assert_true(isnan(event->ratio[LAM_RATIO_WALL]));
   Forget(&f);
 }
 
@@ -408,6 +448,9 @@ static int run(void)
       cmocka_unit_test(empty_cells_fill),
       cmocka_unit_test(a_program_that_repeats_comes_back),
       cmocka_unit_test(an_event_is_where_bisection_with_fresh_solves_finds_it),
+      cmocka_unit_test(ends_that_rounding_keeps_apart_are_one),
+      cmocka_unit_test(prescribed_turgor_that_jumps_below_0_is_lost),
+      cmocka_unit_test(stress_over_strength_is_1_at_the_event),
       cmocka_unit_test(tissue_that_snaps_goes_on_behind),
       cmocka_unit_test(walls_that_dissolve_to_nothing_end_it_with_a_reason),
   };
