@@ -119,15 +119,9 @@ static PetscErrorCode DrawPressures(LamCanvas canvas, LamRect outer, const LamPr
 static PetscErrorCode DrawFactors(LamCanvas canvas, LamRect outer, const LamProcessPicture *p, PetscInt now)
 {
   Chart chart = {.p = p, .axes.y = {.label = "share of the start"}};
-  char label[LAM_NAME_LENGTH];
 
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < p->factor_count; k++) {
-    snprintf(label, sizeof(label), "%s", p->factor_name[k]);
-    for (char *c = label; *c; c++)
-      if (*c == '_') *c = ' ';
-    PetscCall(Add(&chart, p->factor[k], label));
-  }
+  for (PetscInt k = 0; k < p->factor_count; k++) PetscCall(Add(&chart, p->factor[k], p->factor_name[k]));
   if (!p->factor_count)
     PetscCall(AddMember(&chart, offsetof(LamResponse, lumen_fraction), 1 / p->records[0].lumen_fraction, "lumen"));
   PetscCall(Draw(canvas, outer, &chart, PETSC_FALSE, now));
@@ -139,7 +133,6 @@ static PetscErrorCode DrawSeparation(LamCanvas canvas, LamRect outer, const LamP
   const PetscBool contact = (PetscBool)(p->micro.interface == LAM_INTERFACE_CONTACT);
   const PetscReal MPa = p->scales.stress * 1e-6;
   Chart chart = {.p = p, .axes.y = {.label = "share of the interface"}};
-  char label[LAM_NAME_LENGTH + 16];
 
   PetscFunctionBeginUser;
   if (contact) {
@@ -147,12 +140,7 @@ static PetscErrorCode DrawSeparation(LamCanvas canvas, LamRect outer, const LamP
     PetscCall(AddMember(&chart, offsetof(LamResponse, open_fraction), 1, "open"));
   } else if (p->ratio_count) {
     chart.axes.y.label = "stress over strength";
-    for (PetscInt k = 0; k < p->ratio_count; k++) {
-      snprintf(label, sizeof(label), "%s", p->ratio_name[k]);
-      for (char *c = label; *c; c++)
-        if (*c == '_') *c = ' ';
-      PetscCall(Add(&chart, p->ratio[k], label));
-    }
+    for (PetscInt k = 0; k < p->ratio_count; k++) PetscCall(Add(&chart, p->ratio[k], p->ratio_name[k]));
   } else {
     chart.axes.y = (LamAxis){.label = "stress", .unit = "MPa"};
     PetscCall(AddMember(&chart, offsetof(LamResponse, max_traction), MPa, "lamella traction"));

@@ -17,7 +17,7 @@ typedef struct {
   const LamResponse *records;
   PetscReal *time; /* s */
   PetscReal *turgor, *cohesion, *osmotic, *outside, *firmness, *walls;
-  PetscInt factor_count, ratio_count; /* of those that change, and that are known */
+  PetscInt factor_count, ratio_count; /* of those that change, and that are known; names with blanks */
   PetscReal *factor[16], *ratio[8];
   char factor_name[16][LAM_NAME_LENGTH], ratio_name[8][LAM_NAME_LENGTH];
   PetscInt *event; /* number of the name; -1: none */

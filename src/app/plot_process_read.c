@@ -36,42 +36,30 @@ static PetscBool Varies(PetscInt n, const PetscReal values[])
   return PETSC_FALSE;
 }
 
-static PetscErrorCode ReadFactors(LamProcessPicture *p)
+static PetscBool IsKnown(PetscInt n, const PetscReal values[])
 {
-  char name[LAM_NAME_LENGTH];
-
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++) {
-    PetscReal *values;
-
-    PetscCall(PetscSNPrintf(name, sizeof(name), "factor/%s", LamChangingNames[k]));
-    PetscCall(ReadColumn(p, name, &values));
-    if (!Varies(p->n, values)) {
-      PetscCall(PetscFree(values));
-      continue;
-    }
-    PetscCall(PetscStrncpy(p->factor_name[p->factor_count], LamChangingNames[k], LAM_NAME_LENGTH));
-    p->factor[p->factor_count++] = values;
-  }
-  PetscFunctionReturn(0);
+  return (PetscBool)(n > 0 && isfinite(values[0]));
 }
 
-static PetscErrorCode ReadRatios(LamProcessPicture *p)
+/* Of the arrays in a group those that are to be drawn. */
+static PetscErrorCode ReadGroup(const LamProcessPicture *p, const char group[], PetscInt n, const char *const names[],
+                                PetscBool (*shows)(PetscInt count, const PetscReal values[]), PetscInt *count,
+                                PetscReal *values[], char (*labels)[LAM_NAME_LENGTH])
 {
   char name[LAM_NAME_LENGTH];
 
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < LAM_RATIO_COUNT; k++) {
-    PetscReal *values;
-
-    PetscCall(PetscSNPrintf(name, sizeof(name), "ratio/%s", LamRatioNames[k]));
-    PetscCall(ReadColumn(p, name, &values));
-    if (!isfinite(values[0])) {
-      PetscCall(PetscFree(values));
+  for (PetscInt k = 0; k < n; k++) {
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%s/%s", group, names[k]));
+    PetscCall(ReadColumn(p, name, &values[*count]));
+    if (!shows(p->n, values[*count])) {
+      PetscCall(PetscFree(values[*count]));
       continue;
     }
-    PetscCall(PetscStrncpy(p->ratio_name[p->ratio_count], LamRatioNames[k], LAM_NAME_LENGTH));
-    p->ratio[p->ratio_count++] = values;
+    PetscCall(PetscStrncpy(labels[*count], names[k], LAM_NAME_LENGTH));
+    for (char *c = labels[*count]; *c; c++)
+      if (*c == '_') *c = ' ';
+    (*count)++;
   }
   PetscFunctionReturn(0);
 }
@@ -119,8 +107,9 @@ PetscErrorCode LamProcessPictureRead(const char path[], LamProcessPicture *p)
   PetscCall(ReadColumn(p, "outside", &p->outside));
   PetscCall(ReadColumn(p, "firmness", &p->firmness));
   PetscCall(ReadColumn(p, "walls", &p->walls));
-  PetscCall(ReadFactors(p));
-  PetscCall(ReadRatios(p));
+  PetscCall(ReadGroup(p, "factor", LAM_CHANGING_COUNT, LamChangingNames, Varies, &p->factor_count, p->factor,
+                      p->factor_name));
+  PetscCall(ReadGroup(p, "ratio", LAM_RATIO_COUNT, LamRatioNames, IsKnown, &p->ratio_count, p->ratio, p->ratio_name));
   PetscCall(ReadEvents(p));
   p->unit = LamTimeUnit(p->time[p->n - 1], &p->seconds);
   PetscFunctionReturn(0);
