@@ -390,7 +390,7 @@ static PetscErrorCode PlotWay(const LamPlotRequest *request, const LamProcessPic
 
   PetscFunctionBeginUser;
   PetscCall(LamMapPictureRead(&of_map, &map));
-  PetscCheck(AlongSide(p, &map.x) && AlongSide(p, &map.y) && map.x.quantity[0] != map.y.quantity[0], PETSC_COMM_SELF,
+  PetscCheck(AlongSide(p, &map.x) && AlongSide(p, &map.y) && strcmp(map.x.quantity, map.y.quantity), PETSC_COMM_SELF,
              PETSC_ERR_USER_INPUT, "--map %s: is of %s and %s; the way of a process is drawn over turgor and cohesion",
              request->map, map.x.quantity, map.y.quantity);
   PetscCall(LamCanvasCreate(request->output, width, LAM_PLOT_HEIGHT, &canvas));
