@@ -17,7 +17,8 @@ static LamLoad PointLoad(LamMacro macro, const LamMacroElement *element, PetscIn
 {
   const PetscInt dim = macro->dim, point = element->first + q;
   const PetscReal *dN = LamMacroGradient(macro, element, q);
-  LamLoad load = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, macro->turgor * macro->turgor_share[point], macro->cohesion[point]};
+  LamLoad load = {
+      {1, 0, 0, 0, 1, 0, 0, 0, 1}, macro->turgor * macro->turgor_share[point], macro->lamella * macro->cohesion[point]};
 
   load.turgor += LamMacroTurgorChange(macro, element, point);
   for (PetscInt a = 0; a < element->kind->nodes; a++) {
@@ -64,7 +65,10 @@ static PetscErrorCode AllKnown(LamMacro macro, PetscBool *known)
   PetscFunctionBeginUser;
   *known = PETSC_TRUE;
   for (PetscInt p = 0; p < macro->point_count && *known; p++)
-    *known = macro->now[p].known && SameLoad(&macro->now[p].load, &macro->loads[p]) ? PETSC_TRUE : PETSC_FALSE;
+    *known =
+        macro->now[p].known && macro->now[p].walls == macro->walls && SameLoad(&macro->now[p].load, &macro->loads[p])
+            ? PETSC_TRUE
+            : PETSC_FALSE;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, known, 1, MPIU_BOOL, MPI_LAND, macro->comm));
   PetscFunctionReturn(0);
 }
@@ -79,6 +83,7 @@ static void KeepResponse(PetscInt dim, const LamLoad *load, const LamResponse *r
       point->A[ij * dim * dim + kl] = response->tangent[9 * (3 * (ij / dim) + ij % dim) + 3 * (kl / dim) + kl % dim];
   }
   LamMacroKeepFields(response, point->field);
+  point->percolating = response->percolating_directions;
 }
 
 /* Writes which point has no response: of all ranks, the one in the element of the lowest number. */
@@ -164,6 +169,33 @@ static PetscErrorCode CheckChange(LamMacro macro, PetscBool *ok)
   PetscFunctionReturn(0);
 }
 
+/* Tissue whose moduli are all s times those of the responder's has the energy s Psi(F, p / s, g / s). */
+static PetscErrorCode Ask(LamMacro macro)
+{
+  LamResponder *responder = macro->responder;
+  const PetscInt n = macro->point_count;
+  LamLoad *own;
+
+  PetscFunctionBeginUser;
+  if (macro->walls == 1) {
+    PetscCall(responder->respond(responder->ctx, n, macro->loads, macro->point_index, macro->responses));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(PetscMalloc1(n, &own));
+  PetscCall(PetscArraycpy(own, macro->loads, n));
+  for (PetscInt p = 0; p < n; p++) {
+    own[p].turgor /= macro->walls;
+    own[p].cohesion /= macro->walls;
+  }
+  PetscCall(responder->respond(responder->ctx, n, own, macro->point_index, macro->responses));
+  PetscCall(PetscFree(own));
+  for (PetscInt p = 0; p < n; p++) {
+    LamResponseScale(macro->walls, &macro->responses[p]);
+    macro->responses[p].load = macro->loads[p];
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamMacroEvaluate(LamMacro macro, Vec u, PetscBool *ok)
 {
   PetscInt64 failed = 0;
@@ -178,12 +210,12 @@ PetscErrorCode LamMacroEvaluate(LamMacro macro, Vec u, PetscBool *ok)
   if (known) PetscFunctionReturn(0);
   PetscCall(CheckChange(macro, ok));
   if (!*ok) PetscFunctionReturn(0);
-  PetscCall(macro->responder->respond(macro->responder->ctx, macro->point_count, macro->loads, macro->point_index,
-                                      macro->responses));
+  PetscCall(Ask(macro));
   PetscCall(AskStop(macro));
   for (PetscInt p = 0; p < macro->point_count; p++) {
     PetscCall(LamMacroKeepSealed(macro, p));
     KeepResponse(macro->dim, &macro->loads[p], &macro->responses[p], &macro->now[p]);
+    macro->now[p].walls = macro->walls;
     if (macro->now[p].known) continue;
     /* elements are not in the order of their numbers on a rank: name the lowest */
     if (first < 0 ||

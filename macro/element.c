@@ -15,7 +15,7 @@ enum { SIMPLEX_DEGREE = 2, BUBBLE_DEGREE = 4, TENSOR_POINTS = 3 };
 /* Whether triangles have a node inside. */
 static PetscBool HasBubble(LamMacro macro, DMPolytopeType type)
 {
-  return type == DM_POLYTOPE_TRIANGLE && macro->scene->sealed ? PETSC_TRUE : PETSC_FALSE;
+  return type == DM_POLYTOPE_TRIANGLE && LamMacroHasPressures(macro) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 PetscBool LamMacroHasNode(LamMacro macro, DMPolytopeType type)

@@ -3,7 +3,7 @@
   as narrow as its elements.
 
   Of sealed cells the tangent is that with their water: each place keeps its own, so that in a band
-    A + dP/dp (x) dP/dp / (v/K_w - d2Psi/dp2)
+    A - dP/dp (x) dP/dp / (w' + d2Psi/dp2),   w' = -v/K_w (sealed.c),
   resists.
 */
 #include <lamella/ellipticity.h>
@@ -17,7 +17,7 @@ static void PointTangent(LamMacro macro, PetscInt p, PetscReal A[16])
   for (int i = 0; i < 16; i++) A[i] = macro->accepted[p].A[i];
   if (!seal || !seal->closed) return;
   const LamSealedPoint *sealed = &seal->accepted[p];
-  const PetscReal share = 1 / (seal->water[p] / macro->scene->water_bulk_modulus - sealed->curvature);
+  const PetscReal share = -1 / (LamMacroWaterSlope(macro, p) + sealed->curvature);
 
   for (int i = 0; i < 4; i++)
     for (int j = 0; j < 4; j++) A[4 * i + j] += share * sealed->P_turgor[i] * sealed->P_turgor[j];

@@ -1,6 +1,7 @@
 /*
   Life of the macroscale solver: creation, set-up, destruction.
 */
+#include <math.h>
 #include "macro_impl.h"
 
 PetscErrorCode LamMacroCreate(MPI_Comm comm, LamMacro *macro)
@@ -9,6 +10,8 @@ PetscErrorCode LamMacroCreate(MPI_Comm comm, LamMacro *macro)
   PetscCall(PetscNew(macro));
   (*macro)->comm = comm;
   (*macro)->extrapolates = PETSC_TRUE;
+  (*macro)->step.time = NAN;
+  (*macro)->lamella = (*macro)->walls = 1;
   PetscFunctionReturn(0);
 }
 
@@ -80,6 +83,13 @@ PetscErrorCode LamMacroSetUp(LamMacro macro)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamMacroGetComm(LamMacro macro, MPI_Comm *comm)
+{
+  PetscFunctionBeginUser;
+  *comm = macro->comm;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamMacroGetPointCount(LamMacro macro, PetscInt *points)
 {
   PetscFunctionBeginUser;
@@ -108,6 +118,15 @@ PetscErrorCode LamMacroSetPointTissue(LamMacro macro, const PetscReal turgor[], 
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(macro->turgor_share, turgor, macro->point_count));
   PetscCall(PetscArraycpy(macro->cohesion, cohesion, macro->point_count));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroSetWaterLaw(LamMacro macro, LamWaterLaw law, void *ctx)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(!macro->dm, macro->comm, PETSC_ERR_ORDER, "call LamMacroSetWaterLaw() before LamMacroSetUp()");
+  macro->water_law = law;
+  macro->water_ctx = ctx;
   PetscFunctionReturn(0);
 }
 

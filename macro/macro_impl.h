@@ -15,6 +15,7 @@
   sealed.c    pressures of sealed lumens
   inflation.c first guess of the inflated body
   stepping.c  Newton, load steps, cutback
+  instant.c   equilibrium at an instant, for whoever follows the body in time
   localisation.c    ellipticity at the material points
   fields.c    what is kept of a response for the results, gathering of fields on rank 0
   checkpoint.c what a run goes on from
@@ -66,11 +67,13 @@ typedef struct {
 
 /* What the solver keeps of a material point's response. */
 typedef struct {
-  PetscBool known; /* the rest belongs to `load` */
+  PetscBool known; /* the rest belongs to `load` and `walls` */
   LamLoad load;
+  PetscReal walls; /* moduli over those of the tissue that was asked */
   PetscReal P[9];
   PetscReal A[81]; /* [dim][dim][dim][dim] dP_ij/dF_kl */
   PetscReal field[LAM_POINT_FIELD_COUNT];
+  PetscInt percolating; /* percolating_directions */
 } LamMaterialPoint;
 
 /* What lumens that are sealed need besides of it; it belongs to the same load. */
@@ -199,6 +202,8 @@ struct LamMacro_s {
   LamResponse *responses;
   LamMaterialPoint *now, *accepted; /* of the last evaluation and of the last converged state */
   LamMacroSeal *seal;               /* NULL: turgor is prescribed */
+  LamWaterLaw water_law;            /* of lumens that exchange water; NULL: they keep it */
+  void *water_ctx;                  /* borrowed */
 
   /* unknowns */
   Vec u, trial, residual;    /* displacement: last converged, Newton iterate; residual of Newton */
@@ -211,6 +216,8 @@ struct LamMacro_s {
   PetscReal prediction;   /* increment of this series of iterations over `passed`, until it is used; 0: none */
   PetscBool extrapolates; /* predictions are made */
   PetscReal turgor;       /* share of the turgor that acts now */
+  PetscReal lamella;      /* what the points' cohesion is multiplied by now, ... */
+  PetscReal walls;        /* ... and the moduli of their walls */
   PetscReal force_scale;  /* largest norm of the element forces in this series of Newton iterations */
   PetscReal history[64];
   char trouble[LAM_MESSAGE_LENGTH - 64]; /* why the last evaluation failed; how far it came is said before it */
@@ -356,6 +363,8 @@ PetscErrorCode LamMacroAssembleForce(LamMacro macro, Vec force, PetscReal *scale
 PetscErrorCode LamMacroAssembleTangent(LamMacro macro, Mat tangent);
 
 /* sealed.c: does nothing, and takes no time, where turgor is prescribed (macro->seal is NULL) */
+/* Whether pressures are unknowns of the body. */
+PetscBool LamMacroHasPressures(LamMacro macro);
 PetscErrorCode LamMacroSealCreate(LamMacro macro);
 PetscErrorCode LamMacroSealDestroy(LamMacro macro);
 /*
@@ -374,6 +383,8 @@ PetscReal LamMacroTurgorChange(LamMacro macro, const LamMacroElement *element, P
 PetscErrorCode LamMacroKeepSealed(LamMacro macro, PetscInt point);
 /* Takes the pressures out of an element's forces fe and tangent Ke (NULL: not wanted), of the last evaluation. */
 PetscErrorCode LamMacroCondense(LamMacro macro, const LamMacroElement *element, PetscScalar fe[], PetscScalar Ke[]);
+/* Derivative by the turgor of what the water law lets a point hold, in the last converged state. */
+PetscReal LamMacroWaterSlope(LamMacro macro, PetscInt point);
 /* Norm of the pressures' equations in the last evaluation, over that of the water; 0 where nothing is sealed. */
 PetscErrorCode LamMacroSealedResidual(LamMacro macro, PetscReal *residual);
 PetscErrorCode LamMacroAcceptPressures(LamMacro macro);
@@ -398,5 +409,14 @@ PetscErrorCode LamMacroGuessInflated(LamMacro macro, Vec u, PetscBool *found);
 
 /* stepping.c */
 PetscErrorCode LamMacroNewtonCreate(LamMacro macro);
+/* Starts the report of a step; the work adds up over the steps. */
+PetscErrorCode LamMacroStartStep(LamMacro macro, PetscReal *start);
+/* Completes the report of a converged step. */
+PetscErrorCode LamMacroFinishStep(LamMacro macro, PetscInt number, PetscReal load_factor, PetscReal start);
+/* Brings the turgor up, with `inflate` in a body that is not loaded yet, and seals lumens; *converged else `trouble`.
+   The load program acts then from macro->origin on, once boundaries are held. */
+PetscErrorCode LamMacroBringUpTurgor(LamMacro macro, PetscReal *reached, PetscBool *converged);
+/* Newton from macro->trial, under what acts now; where it fails `trouble` says why. */
+PetscErrorCode LamMacroIterate(LamMacro macro, PetscBool *converged);
 
 #endif

@@ -14,6 +14,9 @@
     R_a    = int psi_a [ dPsi/dp + v (1 - q / K_w) ]     f_ai    = int P_ij dN_a/dX_j
     K_ab   = int psi_a psi_b [ d2Psi/dp2 - v / K_w ]     C_a,bi  = int psi_a dP_ij/dp dN_b/dX_j
 
+  Lumens that exchange water with what is around them (body.h) hold w(p0 + q) instead of v (1 - q / K_w); slopes w'
+  then stand for -v / K_w.
+
   Newton's method for u and q together has the condensed residual f - C^T K^-1 R and tangent A - C^T K^-1 C, and
   moves the pressures with the displacement,  dq = -K^-1 (R + C du), by their own linearised equation: K_w multiplies no
   error of the lumen.
@@ -25,6 +28,9 @@
 
 #include <petscblaslapack.h> /* needs what PETSc's own headers bring */
 
+/* Of V0 over C1 + C2: where neither water nor lumen gives way no pressure is beyond all bounds. */
+static const PetscReal LEAST_COMPLIANCE = 1e-12;
+
 /* The equations of an element's pressures; columns of `coupling` are those of its displacements, the last that of R. */
 typedef struct {
   PetscInt modes, dofs;
@@ -33,6 +39,11 @@ typedef struct {
 } Condensation;
 
 /* ---- creation ---- */
+
+PetscBool LamMacroHasPressures(LamMacro macro)
+{
+  return macro->scene->sealed || macro->water_law ? PETSC_TRUE : PETSC_FALSE;
+}
 
 /* psi of an element's points; h is the root of its area. */
 static void FillShape(LamMacro macro, const LamMacroElement *element)
@@ -59,7 +70,7 @@ PetscErrorCode LamMacroSealCreate(LamMacro macro)
   LamMacroSeal *seal;
 
   PetscFunctionBeginUser;
-  if (!macro->scene->sealed) PetscFunctionReturn(0);
+  if (!LamMacroHasPressures(macro)) PetscFunctionReturn(0);
   PetscCall(PetscNew(&seal));
   macro->seal = seal;
   seal->modes = 1 + macro->dim;
@@ -104,14 +115,42 @@ PetscReal LamMacroTurgorChange(LamMacro macro, const LamMacroElement *element, P
   return change;
 }
 
+/* What a point's lumens are to hold at a turgor that is `change` above that with which they were sealed. */
+static void FindWater(LamMacro macro, PetscInt point, PetscReal change, PetscReal *water, PetscReal *slope)
+{
+  const PetscReal sealed = macro->seal->water[point];
+
+  if (macro->water_law) {
+    macro->water_law(macro->water_ctx, point, macro->turgor * macro->turgor_share[point] + change, water, slope);
+    return;
+  }
+  *water = sealed * (1 - change / macro->scene->water_bulk_modulus);
+  *slope = -sealed / macro->scene->water_bulk_modulus;
+}
+
+PetscReal LamMacroWaterSlope(LamMacro macro, PetscInt point)
+{
+  PetscReal water, slope;
+
+  FindWater(macro, point, LamMacroTurgorChange(macro, &macro->elements[macro->point_element[point]], point), &water,
+            &slope);
+  return slope;
+}
+
+/* d2Psi/dp2 of a stable state is negative; an interpolated one may not be. */
+static PetscReal Compliance(PetscReal curvature, PetscReal slope)
+{
+  return PetscMin(curvature, 0) + slope - LEAST_COMPLIANCE;
+}
+
 /* R [modes] of the last evaluation. */
 static void AddResidual(LamMacro macro, const LamMacroElement *element, PetscReal R[])
 {
   const LamMacroSeal *seal = macro->seal;
 
   for (PetscInt point = element->first; point < element->first + element->kind->points; point++) {
-    const PetscReal wanted =
-        seal->water[point] * (1 - LamMacroTurgorChange(macro, element, point) / macro->scene->water_bulk_modulus);
+    PetscReal wanted, slope;
+    FindWater(macro, point, LamMacroTurgorChange(macro, element, point), &wanted, &slope);
     for (PetscInt a = 0; a < seal->modes; a++)
       R[a] += macro->weight[point] * seal->shape[seal->modes * point + a] * (wanted - seal->now[point].lumen);
   }
@@ -125,8 +164,10 @@ static void AddPoint(LamMacro macro, const LamMacroElement *element, PetscInt q,
   const PetscReal *dN = LamMacroGradient(macro, element, q), *shape = &seal->shape[modes * point],
                   w = macro->weight[point];
   const LamSealedPoint *response = &seal->now[point];
-  const PetscReal curvature = response->curvature - seal->water[point] / macro->scene->water_bulk_modulus;
+  PetscReal water, slope;
 
+  FindWater(macro, point, LamMacroTurgorChange(macro, element, point), &water, &slope);
+  const PetscReal curvature = Compliance(response->curvature, slope);
   for (PetscInt b = 0; b < element->kind->nodes; b++) {
     for (PetscInt i = 0; i < dim; i++) {
       PetscReal force = 0; /* by the pressure */
@@ -313,7 +354,7 @@ PetscErrorCode LamMacroSealLumens(LamMacro macro, PetscBool *ok)
   PetscFunctionBeginUser;
   *ok = PETSC_TRUE;
   if (!seal) PetscFunctionReturn(0);
-  if (!macro->scene->macro.inflate) PetscCall(StartUndeformed(macro, ok));
+  if (!macro->scene->macro.inflate && !macro->water_law) PetscCall(StartUndeformed(macro, ok));
   if (!*ok) PetscFunctionReturn(0);
   for (PetscInt p = 0; p < macro->point_count; p++) seal->water[p] = seal->now[p].lumen;
   PetscCall(VecCopy(macro->u, seal->u));

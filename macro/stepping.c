@@ -141,8 +141,7 @@ PetscErrorCode LamMacroNewtonCreate(LamMacro macro)
   PetscFunctionReturn(0);
 }
 
-/* The state in `trial` and its responses become the last converged ones. */
-static PetscErrorCode Accept(LamMacro macro)
+PetscErrorCode LamMacroAccept(LamMacro macro)
 {
   PetscFunctionBeginUser;
   PetscCall(VecCopy(macro->u, macro->before));
@@ -158,7 +157,7 @@ static PetscErrorCode Accept(LamMacro macro)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Reject(LamMacro macro)
+PetscErrorCode LamMacroReject(LamMacro macro)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(macro->now, macro->accepted, macro->point_count));
@@ -186,23 +185,15 @@ static PetscErrorCode KeepHistory(LamMacro macro)
   PetscFunctionReturn(0);
 }
 
-/*
-  One Newton solution at `stage`, from the last converged state, or from a guess where one is wanted and found, which
-  *guesses tells. Where it fails, `trouble` says why.
-*/
-static PetscErrorCode TryStage(LamMacro macro, Stage stage, PetscBool *guesses, PetscBool *converged)
+PetscErrorCode LamMacroIterate(LamMacro macro, PetscBool *converged)
 {
   SNESConvergedReason reason;
   PetscInt iterations;
 
   PetscFunctionBeginUser;
-  macro->turgor = stage.turgor;
   macro->force_scale = 0;
   macro->fresh = PETSC_TRUE;
   macro->trouble[0] = '\0';
-  PetscCall(LamMacroSetLoadFactor(macro, stage.load));
-  PetscCall(VecCopy(macro->u, macro->trial));
-  if (*guesses) PetscCall(LamMacroGuessInflated(macro, macro->trial, guesses));
   PetscCall(SNESSolve(macro->snes, NULL, macro->trial));
   PetscCall(SNESGetConvergedReason(macro->snes, &reason));
   PetscCall(SNESGetIterationNumber(macro->snes, &iterations));
@@ -220,6 +211,19 @@ static PetscErrorCode TryStage(LamMacro macro, Stage stage, PetscBool *guesses, 
   PetscFunctionReturn(0);
 }
 
+/* One Newton solution at `stage`, from the last converged state, or from a guess where one is wanted and found, which
+ *guesses tells. */
+static PetscErrorCode TryStage(LamMacro macro, Stage stage, PetscBool *guesses, PetscBool *converged)
+{
+  PetscFunctionBeginUser;
+  macro->turgor = stage.turgor;
+  PetscCall(LamMacroSetLoadFactor(macro, stage.load));
+  PetscCall(VecCopy(macro->u, macro->trial));
+  if (*guesses) PetscCall(LamMacroGuessInflated(macro, macro->trial, guesses));
+  PetscCall(LamMacroIterate(macro, converged));
+  PetscFunctionReturn(0);
+}
+
 /* The same with a guess of the inflated body or a prediction where the path goes on, then without. */
 static PetscErrorCode TryIncrement(LamMacro macro, Stage from, Stage to, PetscBool *converged)
 {
@@ -233,7 +237,7 @@ static PetscErrorCode TryIncrement(LamMacro macro, Stage from, Stage to, PetscBo
   macro->prediction = predicts ? ratio : 0;
   PetscCall(TryStage(macro, to, &guesses, converged));
   if (!*converged && (predicts || guesses) && !macro->stopped) {
-    PetscCall(Reject(macro));
+    PetscCall(LamMacroReject(macro));
     macro->prediction = 0;
     guesses = PETSC_FALSE;
     PetscCall(TryStage(macro, to, &guesses, converged));
@@ -256,12 +260,12 @@ static PetscErrorCode Advance(LamMacro macro, Stage from, Stage to, Stage *reach
     Stage stage = {from.turgor + next * (to.turgor - from.turgor), from.load + next * (to.load - from.load)};
     PetscCall(TryIncrement(macro, *reached, stage, converged));
     if (*converged) {
-      PetscCall(Accept(macro));
+      PetscCall(LamMacroAccept(macro));
       *reached = stage;
       done = next;
       increment *= 2;
     } else {
-      PetscCall(Reject(macro));
+      PetscCall(LamMacroReject(macro));
       if (macro->stopped) break;
       macro->step.cutbacks++;
       if (macro->cutback) PetscCall(macro->cutback(macro, macro->trouble, macro->cutback_ctx));
@@ -306,8 +310,7 @@ static PetscErrorCode MeanTimes(LamMacro macro)
   PetscFunctionReturn(0);
 }
 
-/* Completes the report of a converged step. */
-static PetscErrorCode FinishStep(LamMacro macro, PetscInt number, PetscReal load_factor, PetscReal start)
+PetscErrorCode LamMacroFinishStep(LamMacro macro, PetscInt number, PetscReal load_factor, PetscReal start)
 {
   LamMacroStep *step = &macro->step;
   LamResponder *responder = macro->responder, *before = &macro->counted;
@@ -337,8 +340,7 @@ static PetscErrorCode FinishStep(LamMacro macro, PetscInt number, PetscReal load
   PetscFunctionReturn(0);
 }
 
-/* Starts the report of a step; the work adds up over the steps. */
-static PetscErrorCode StartStep(LamMacro macro, PetscReal *start)
+PetscErrorCode LamMacroStartStep(LamMacro macro, PetscReal *start)
 {
   PetscFunctionBeginUser;
   macro->step.newton_iterations = macro->step.cutbacks = 0;
@@ -354,7 +356,7 @@ static PetscErrorCode Report(LamMacro macro, PetscInt number, PetscReal load_fac
   PetscFunctionBeginUser;
   macro->step.complete = complete;
   if (complete) macro->progress = (LamMacroProgress){PETSC_TRUE, number, load_factor};
-  PetscCall(FinishStep(macro, number, load_factor, start));
+  PetscCall(LamMacroFinishStep(macro, number, load_factor, start));
   if (macro->monitor) PetscCall(macro->monitor(macro, &macro->step, stop, macro->monitor_ctx));
   PetscFunctionReturn(0);
 }
@@ -385,30 +387,38 @@ static PetscErrorCode EndWithinStep(LamMacro macro, PetscInt number, Stage repor
   PetscFunctionReturn(0);
 }
 
-/* The turgor comes up; with `inflate` this is a step of its own, from which the displacements count. */
-static PetscErrorCode Inflate(LamMacro macro, Stage *stage, PetscReal *start, PetscBool *converged, PetscBool *stop)
+PetscErrorCode LamMacroBringUpTurgor(LamMacro macro, PetscReal *reached, PetscBool *converged)
 {
-  const Stage to = {1, 0};
   const PetscBool inflate = macro->scene->macro.inflate;
+  Stage stage = {0, 0}, to = {1, 0};
 
   PetscFunctionBeginUser;
+  *converged = PETSC_TRUE;
   if (inflate)
     PetscCall(LamMacroHoldRigidMotions(macro));
   else
     PetscCall(LamMacroHoldBoundaries(macro));
-  if (!inflate) {
+  if (!inflate && macro->scene->sealed) {
     PetscCall(LamMacroSealLumens(macro, converged));
-    if (!*converged) PetscFunctionReturn(0);
-    if (macro->seal) stage->turgor = 1;
+    if (*converged) stage.turgor = 1;
   }
-  PetscCall(Advance(macro, *stage, to, stage, converged));
-  if (!*converged || !inflate) PetscFunctionReturn(0);
-  PetscCall(LamMacroSealLumens(macro, converged));
-  PetscCall(VecCopy(macro->u, macro->origin));
+  if (*converged) PetscCall(Advance(macro, stage, to, &stage, converged));
+  if (*converged && (inflate || macro->water_law)) PetscCall(LamMacroSealLumens(macro, converged));
+  if (*converged && inflate) PetscCall(VecCopy(macro->u, macro->origin));
+  *reached = stage.turgor;
+  PetscFunctionReturn(0);
+}
+
+/* The turgor comes up; with `inflate` this is a step of its own, from which the displacements count. */
+static PetscErrorCode Inflate(LamMacro macro, Stage *stage, PetscReal *start, PetscBool *converged, PetscBool *stop)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamMacroBringUpTurgor(macro, &stage->turgor, converged));
+  if (!*converged || !macro->scene->macro.inflate) PetscFunctionReturn(0);
   PetscCall(Report(macro, 0, 0, PETSC_TRUE, *start, stop));
   PetscCall(LamMacroHoldBoundaries(macro));
   macro->passed = 0;
-  PetscCall(StartStep(macro, start));
+  PetscCall(LamMacroStartStep(macro, start));
   PetscFunctionReturn(0);
 }
 
@@ -423,7 +433,7 @@ PetscErrorCode LamMacroSolve(LamMacro macro, LamMacroReason *reason, char messag
   PetscFunctionBeginUser;
   PetscCheck(macro->responder, macro->comm, PETSC_ERR_ORDER, "call LamMacroSetResponder() first");
   message[0] = '\0';
-  PetscCall(StartStep(macro, &start));
+  PetscCall(LamMacroStartStep(macro, &start));
   if (!macro->progress.begun) PetscCall(Inflate(macro, &stage, &start, &converged, &stop));
   reported = macro->progress.begun ? stage : (Stage){0, 0};
   while (converged && !stop && number < spec->steps) {
@@ -432,7 +442,7 @@ PetscErrorCode LamMacroSolve(LamMacro macro, LamMacroReason *reason, char messag
     if (!converged) break;
     PetscCall(Report(macro, number, to.load, PETSC_TRUE, start, &stop));
     reported = stage;
-    PetscCall(StartStep(macro, &start));
+    PetscCall(LamMacroStartStep(macro, &start));
   }
   if (!converged) PetscCall(EndWithinStep(macro, number, reported, stage, start, message));
   if (converged)

@@ -37,6 +37,18 @@ static void FindWalls(LamProcess process, LamEvaluation *e, PetscReal ratio[3])
   ratio[2] = C4 / shear;
 }
 
+void LamProcessProperties(LamProcess process, PetscReal time, const PetscReal x[], LamEvaluation *e, PetscReal ratio[3])
+{
+  const PetscReal elapsed = time - process->segment.start;
+
+  e->time = time;
+  e->temperature = LamRampAt(&process->segment.temperature, elapsed);
+  e->outside = LamRampAt(&process->segment.outside, elapsed);
+  FindFactors(process, time, x, e);
+  FindWalls(process, e, ratio);
+  e->cohesion = process->scene->cohesion * e->factor[LAM_CHANGING_LAMELLA].value;
+}
+
 /* ---- response ---- */
 
 static void Multiply(const PetscReal A[9], const PetscReal B[9], PetscReal AB[9])
@@ -53,8 +65,7 @@ static PetscBool SameQuestion(LamProcess process, const LamEvaluation *e)
                      a->cohesion == b->cohesion && !memcmp(a->F, b->F, sizeof(a->F)));
 }
 
-/* A new ratio of the moduli makes all that was known of the response void. */
-static PetscErrorCode TellWalls(LamProcess process, const PetscReal ratio[3])
+PetscErrorCode LamProcessTellWalls(LamProcess process, const PetscReal ratio[3])
 {
   PetscFunctionBeginUser;
   if (process->walls_alike || !memcmp(process->told_walls, ratio, sizeof(process->told_walls))) PetscFunctionReturn(0);
@@ -96,16 +107,10 @@ PetscErrorCode LamProcessAskJudge(LamProcess process, LamEvaluation *e)
 PetscErrorCode LamProcessEvaluate(LamProcess process, PetscReal time, const PetscReal x[], const PetscReal F[9],
                                   PetscReal turgor, LamEvaluation *e)
 {
-  const PetscReal elapsed = time - process->segment.start;
   PetscReal ratio[3];
 
   PetscFunctionBeginUser;
-  e->time = time;
-  e->temperature = LamRampAt(&process->segment.temperature, elapsed);
-  e->outside = LamRampAt(&process->segment.outside, elapsed);
-  FindFactors(process, time, x, e);
-  FindWalls(process, e, ratio);
-  e->cohesion = process->scene->cohesion * e->factor[LAM_CHANGING_LAMELLA].value;
+  LamProcessProperties(process, time, x, e, ratio);
   e->load.turgor = turgor;
   e->load.cohesion = e->cohesion;
   Multiply(F, process->inflation, e->load.F);
@@ -115,7 +120,7 @@ PetscErrorCode LamProcessEvaluate(LamProcess process, PetscReal time, const Pets
     PetscCall(PetscStrncpy(process->trouble, "nothing is left of the walls", sizeof(process->trouble)));
     PetscFunctionReturn(0);
   }
-  PetscCall(TellWalls(process, ratio));
+  PetscCall(LamProcessTellWalls(process, ratio));
   if (SameQuestion(process, e)) {
     e->response = process->last.response;
     e->ok = process->last.ok;
@@ -158,16 +163,17 @@ PetscReal LamProcessLumenSlope(LamProcess process, const LamEvaluation *e, Petsc
 
 /* ---- water ---- */
 
-void LamProcessFlow(LamProcess process, const LamEvaluation *e, PetscReal water, PetscReal turgor, LamFlow *flow)
+void LamProcessFlow(LamProcess process, const LamCells *cells, const LamEvaluation *e, PetscReal water,
+                    PetscReal turgor, LamFlow *flow)
 {
   const LamWaterSpec *spec = &process->spec->water;
-  const PetscReal dead = spec->non_osmotic * process->water, room = water - dead;
+  const PetscReal dead = spec->non_osmotic * cells->water, room = water - dead;
   const PetscReal n = e->factor[LAM_CHANGING_SOLUTES].value;
   const PetscReal sigma = spec->reflection * e->factor[LAM_CHANGING_REFLECTION].value;
   const PetscReal concentrated =
-      process->osmotic * (e->temperature / process->temperature) * (process->water - dead) / room;
+      cells->osmotic * (e->temperature / process->temperature) * (cells->water - dead) / room;
 
-  flow->conductance = spec->permeability * process->membrane * e->factor[LAM_CHANGING_PERMEABILITY].value *
+  flow->conductance = spec->permeability * cells->membrane * e->factor[LAM_CHANGING_PERMEABILITY].value *
                       exp(-spec->activation / LAM_GAS_CONSTANT * (1 / e->temperature - 1 / process->temperature));
   flow->osmotic = n * concentrated;
   flow->drive = sigma * (flow->osmotic - e->outside) - turgor;
@@ -218,7 +224,7 @@ PetscErrorCode LamProcessDescribe(LamProcess process, const LamProcessTissue *ti
   for (PetscInt k = 0; k < LAM_RATIO_COUNT; k++) state->ratio[k] = NAN;
   PetscCall(PetscArraycpy(state->F, tissue->F, 9));
   if (process->spec->has_water) {
-    LamProcessFlow(process, &e, tissue->water, tissue->turgor, &flow);
+    LamProcessFlow(process, &process->cells, &e, tissue->water, tissue->turgor, &flow);
     state->water = tissue->water;
     state->osmotic = flow.osmotic;
   }

@@ -64,7 +64,7 @@ static PetscReal WaterStiffness(LamProcess process, const LamEvaluation *e)
 
   if (!process->spec->has_water || process->plasmolysed) return 0;
   if (isfinite(process->spec->water.permeability)) return 1 / e->response.energy_turgor2;
-  LamProcessFlow(process, e, -e->response.energy_turgor, e->load.turgor, &flow);
+  LamProcessFlow(process, &process->cells, e, -e->response.energy_turgor, e->load.turgor, &flow);
   return flow.drive_water / (1 + flow.drive_water * e->response.energy_turgor2);
 }
 
@@ -118,7 +118,7 @@ PetscReal LamProcessExcess(LamProcess process, LamEvent event, const LamEvaluati
   case LAM_EVENT_TURGOR_LOST:
     return -turgor - LamSlack(process) * process->pressure;
   case LAM_EVENT_TURGOR_FOUND:
-    return water + r->energy_turgor - LamSlack(process) * process->water;
+    return water + r->energy_turgor - LamSlack(process) * process->cells.water;
   case LAM_EVENT_LIMIT:
     return LimitExcess(process, e);
   default:

@@ -130,7 +130,7 @@ static void WaterResidual(const Integration *in, const LamEvaluation *e, const L
   const Layout *l = &in->layout;
   LamFlow flow;
 
-  LamProcessFlow(in->process, e, tissue->water, tissue->turgor, &flow);
+  LamProcessFlow(in->process, &in->process->cells, e, tissue->water, tissue->turgor, &flow);
   r[l->water] = isfinite(flow.conductance) ? yp[l->water] - flow.conductance * flow.drive
                 : in->process->plasmolysed ? flow.osmotic - e->outside
                                            : flow.drive;
@@ -205,7 +205,7 @@ static void WaterJacobian(const Integration *in, const LamEvaluation *e, const L
   const LamResponse *r = &e->response;
   LamFlow flow;
 
-  LamProcessFlow(in->process, e, tissue->water, tissue->turgor, &flow);
+  LamProcessFlow(in->process, &in->process->cells, e, tissue->water, tissue->turgor, &flow);
   const PetscBool flows = (PetscBool)isfinite(flow.conductance);
   const PetscReal scale = flows ? -flow.conductance : 1;
 
@@ -299,7 +299,7 @@ static void SetTolerances(Integration *in)
   const PetscReal relative = process->spec->tolerance;
 
   for (PetscInt k = 0; k < l->n; k++) {
-    a[k] = relative * (k == l->turgor ? process->pressure : k == l->water ? 1e-3 * process->water : 0.1);
+    a[k] = relative * (k == l->turgor ? process->pressure : k == l->water ? 1e-3 * process->cells.water : 0.1);
     id[k] = 0;
   }
   for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++) {

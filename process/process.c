@@ -2,6 +2,7 @@
   The way of the tissue through time: from segment to segment, over jumps and events.
 */
 #include "process_impl.h"
+#include <lamella/body.h>
 #include <math.h>
 
 enum { MAX_SNAPS = 200 };
@@ -20,8 +21,8 @@ PetscBool LamProcessWallsStayAlike(const LamScene *scene)
   return (PetscBool)(wall->C4 == 0 || LamKineticsAgree(C1, &kinetics[LAM_CHANGING_C4]));
 }
 
-/* Area of the membranes over V0, 1 / apothem: lumens are hexagonal prisms of infinite length. */
-static PetscReal Membrane(const LamMicrostructure *micro)
+/* Lumens are hexagonal prisms of infinite length. */
+PetscReal LamMembraneArea(const LamMicrostructure *micro)
 {
   const PetscInt cells = micro->cells[0] * micro->cells[1];
   PetscReal area = 0;
@@ -39,7 +40,7 @@ PetscErrorCode LamProcessCreate(const LamScene *scene, LamProcess *process)
   (*process)->scene = scene;
   (*process)->spec = &scene->process;
   (*process)->walls_alike = LamProcessWallsStayAlike(scene);
-  (*process)->membrane = Membrane(&scene->micro);
+  (*process)->cells.membrane = LamMembraneArea(&scene->micro);
   PetscFunctionReturn(0);
 }
 
@@ -227,7 +228,8 @@ static PetscErrorCode ChangeMembranes(LamProcess process, PetscBool *ok)
   PetscCall(EvaluateTissue(process, &e));
   if (!process->plasmolysed && process->tissue.turgor < -LamSlack(process) * process->pressure)
     event = LAM_EVENT_TURGOR_LOST;
-  if (process->plasmolysed && process->tissue.water > -e.response.energy_turgor + LamSlack(process) * process->water)
+  if (process->plasmolysed &&
+      process->tissue.water > -e.response.energy_turgor + LamSlack(process) * process->cells.water)
     event = LAM_EVENT_TURGOR_FOUND;
   if (event == LAM_EVENT_COUNT) PetscFunctionReturn(0);
   here = Here(process, e.response.P); /* with the turgor that it has */
@@ -283,7 +285,7 @@ static PetscErrorCode Pass(LamProcess process, PetscReal time)
     for (PetscInt i = 0; i < LAM_KINETIC_STATES; i++) x[i] += time * rate[i];
   }
   if (process->spec->has_water && isfinite(process->spec->water.permeability)) {
-    LamProcessFlow(process, &e, tissue->water, tissue->turgor, &flow);
+    LamProcessFlow(process, &process->cells, &e, tissue->water, tissue->turgor, &flow);
     tissue->water += time * flow.conductance * flow.drive;
   }
   tissue->time += time;
@@ -384,7 +386,7 @@ static PetscErrorCode Inflate(LamProcess process, PetscBool *ok)
   PetscFunctionReturn(0);
 }
 
-static void Clear(LamProcess process)
+void LamProcessClear(LamProcess process)
 {
   LamProcessTissue *tissue = &process->tissue;
 
@@ -408,7 +410,7 @@ static PetscErrorCode Start(LamProcess process, PetscBool *ok)
   LamFlow flow;
 
   PetscFunctionBeginUser;
-  Clear(process);
+  LamProcessClear(process);
   LamProcessStartProgram(process, (const PetscReal[9]){0});
   LamProcessNextSegment(process, &process->segment);
   process->tissue.turgor = process->segment.turgor.from;
@@ -424,12 +426,12 @@ static PetscErrorCode Start(LamProcess process, PetscBool *ok)
   LamProcessStartProgram(process, e.response.P);
   process->pressure = PetscMax(1e-3, process->tissue.turgor);
   if (!process->spec->has_water) PetscFunctionReturn(0);
-  process->tissue.water = process->water = -e.response.energy_turgor;
-  process->osmotic = water->osmotic;
+  process->tissue.water = process->cells.water = -e.response.energy_turgor;
+  process->cells.osmotic = water->osmotic;
   if (isnan(water->osmotic))
-    process->osmotic = e.outside + (water->reflection > 0 ? process->tissue.turgor / water->reflection : 0);
-  process->pressure = PetscMax(process->pressure, process->osmotic);
-  LamProcessFlow(process, &e, process->tissue.water, 0, &flow);
+    process->cells.osmotic = e.outside + (water->reflection > 0 ? process->tissue.turgor / water->reflection : 0);
+  process->pressure = PetscMax(process->pressure, process->cells.osmotic);
+  LamProcessFlow(process, &process->cells, &e, process->tissue.water, 0, &flow);
   process->plasmolysed = (PetscBool)(process->tissue.turgor == 0 && flow.drive < 0);
   PetscFunctionReturn(0);
 }

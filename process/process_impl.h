@@ -28,6 +28,7 @@ typedef struct {
   PetscReal start, end;
   LamRamp temperature, outside, turgor; /* turgor: where it is prescribed */
   LamRamp F[9], P[9];
+  LamRamp load;       /* of a body: its load parameter */
   PetscBool given[9]; /* P is prescribed, F free */
 } LamSegment;
 
@@ -38,6 +39,7 @@ typedef struct {
   PetscReal F[9];                   /* from the inflated state */
   PetscReal turgor, water;
   PetscReal temperature, outside; /* of what surrounds it then */
+  PetscReal load;                 /* of a body */
 } LamProcessTissue;
 
 /* A property and its derivatives by the two states of its own law. */
@@ -62,6 +64,12 @@ typedef struct {
   PetscReal osmotic, osmotic_water, osmotic_solutes; /* pressure in the protoplasts, and its derivatives */
 } LamFlow;
 
+/* What cells are at the start. */
+typedef struct {
+  PetscReal membrane;       /* area over V0, 1 / apothem */
+  PetscReal water, osmotic; /* volume of the protoplasts over V0, and pressure in them */
+} LamCells;
+
 struct LamProcess_s {
   const LamScene *scene; /* borrowed */
   const LamProcessSpec *spec;
@@ -75,19 +83,19 @@ struct LamProcess_s {
   PetscBool (*stop)(void);
 
   PetscBool walls_alike;
-  PetscReal membrane;     /* area over V0, 1 / apothem */
   PetscReal inflation[9]; /* F of the tissue that is free of stress under its turgor at the start */
-  PetscReal osmotic, water, temperature, opening; /* of the cells at the start */
+  LamCells cells;
+  PetscReal temperature, opening; /* at the start */
 
   PetscReal pressure; /* the scale of pressures */
 
   /* on the way */
   LamProcessTissue tissue;
   LamSegment segment;
-  PetscBool plasmolysed;                   /* the membranes have left the walls */
-  PetscInt leg, cycle;                     /* of the program; cycle = repeat: it is over, and its last part held */
-  PetscReal leg_start, leg_F[9], leg_P[9]; /* where the present part began */
-  PetscBool found[LAM_EVENT_COUNT];        /* no longer looked for */
+  PetscBool plasmolysed; /* the membranes have left the walls */
+  PetscInt leg, cycle;   /* of the program; cycle = repeat: it is over, and its last part held */
+  PetscReal leg_start, leg_F[9], leg_P[9], leg_load; /* where the present part began */
+  PetscBool found[LAM_EVENT_COUNT];                  /* no longer looked for */
   PetscReal next_output;
   PetscInt64 outputs;
   LamEvaluation last;   /* the last one that the responder was asked for */
@@ -133,14 +141,21 @@ void LamProcessNextSegment(LamProcess process, LamSegment *segment);
 void LamProcessEndSegment(LamProcess process, const PetscReal P[9]);
 
 /* evaluate.c */
+/* What the tissue has become at a time of the present segment: all of `evaluation` but load and response. ratio: moduli
+   C1, C2, C4 over those of the start, without the factor that they share. */
+void LamProcessProperties(LamProcess process, PetscReal time, const PetscReal x[], LamEvaluation *evaluation,
+                          PetscReal ratio[3]);
+/* Tells what solves directly where moduli do not change alike; a new ratio makes all that was known of the response
+   void. */
+PetscErrorCode LamProcessTellWalls(LamProcess process, const PetscReal ratio[3]);
 /* Properties and response at a time of the present segment; evaluation->ok where the response has fields. */
 PetscErrorCode LamProcessEvaluate(LamProcess process, PetscReal time, const PetscReal x[], const PetscReal F[9],
                                   PetscReal turgor, LamEvaluation *evaluation);
 /* The same by the judge, where the indicators of the response are not to be trusted and it has an answer. */
 PetscErrorCode LamProcessAskJudge(LamProcess process, LamEvaluation *evaluation);
-/* The flow at a water content and turgor. */
-void LamProcessFlow(LamProcess process, const LamEvaluation *evaluation, PetscReal water, PetscReal turgor,
-                    LamFlow *flow);
+/* The flow into cells at a water content and turgor. */
+void LamProcessFlow(LamProcess process, const LamCells *cells, const LamEvaluation *evaluation, PetscReal water,
+                    PetscReal turgor, LamFlow *flow);
 /* dP_i/dF_k, F counted from the inflated state. */
 PetscReal LamProcessStiffness(LamProcess process, const LamEvaluation *evaluation, PetscInt i, PetscInt k);
 /* dv/dF_k of the lumen, likewise. */
@@ -177,6 +192,8 @@ PetscReal LamProcessExcess(LamProcess process, LamEvent event, const LamEvaluati
                            PetscReal turgor);
 
 /* process.c */
+/* The tissue as it is at the start; nothing has been found or told. */
+void LamProcessClear(LamProcess process);
 /* Tells the monitor. */
 PetscErrorCode LamProcessTell(LamProcess process, const LamProcessTissue *tissue, LamEvent event);
 

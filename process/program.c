@@ -21,6 +21,7 @@ static const LamProcessLeg *Leg(LamProcess process)
 static void StartLeg(LamProcess process, const PetscReal P[9])
 {
   process->leg_start = process->tissue.time;
+  process->leg_load = process->tissue.load;
   for (int i = 0; i < 9; i++) {
     process->leg_F[i] = process->tissue.F[i];
     process->leg_P[i] = P[i];
@@ -67,6 +68,20 @@ static void EndAtTables(LamProcess process, LamSegment *segment)
 
 /* ---- load ---- */
 
+/* Where the load parameter passes a point of a history the loads of the body bend. */
+static void EndAtHistories(LamProcess process, LamSegment *segment)
+{
+  const LamMacroSpec *macro = &process->scene->macro;
+
+  if (segment->load.slope == 0) return;
+  for (PetscInt b = 0; b < macro->boundary_count; b++)
+    for (PetscInt k = 0; k < macro->boundary[b].history.count; k++) {
+      const PetscReal after = (macro->boundary[b].history.parameter[k] - segment->load.from) / segment->load.slope;
+
+      if (after > LamInstant(process)) segment->end = PetscMin(segment->end, segment->start + after);
+    }
+}
+
 static void Load(LamProcess process, LamSegment *segment)
 {
   const LamProcessLeg *leg = Leg(process);
@@ -80,8 +95,11 @@ static void Load(LamProcess process, LamSegment *segment)
     segment->F[i] = (LamRamp){process->leg_F[i] + share * dF, moves ? dF / leg->duration : 0};
     segment->P[i] = (LamRamp){process->leg_P[i] + share * dP, moves ? dP / leg->duration : 0};
   }
+  segment->load = (LamRamp){process->leg_load + share * (leg->load - process->leg_load),
+                            moves ? (leg->load - process->leg_load) / leg->duration : 0};
   if (IsOver(process)) return;
   segment->end = PetscMin(segment->end, process->leg_start + leg->duration);
+  EndAtHistories(process, segment);
 }
 
 void LamProcessNextSegment(LamProcess process, LamSegment *segment)

@@ -65,7 +65,7 @@ static void Linearise(LamProcess process, const Unknowns *u, const Conditions *c
   K[u->n * n + u->n] = -response->energy_turgor2;
   r[u->n] = lumen - c->water;
   if (u->kind == LAM_SETTLE_OSMOSIS) {
-    LamProcessFlow(process, e, lumen, tissue->turgor, &flow);
+    LamProcessFlow(process, &process->cells, e, lumen, tissue->turgor, &flow);
     r[u->n] = flow.drive;
     slope = flow.drive_water;
     K[u->n * n + u->n] = -slope * response->energy_turgor2 + flow.drive_turgor;
@@ -95,10 +95,10 @@ static PetscErrorCode SolveDense(PetscInt n, PetscReal K[], PetscReal r[], Petsc
 /* A protoplast off the walls, in equilibrium with what surrounds it: pi (V - V_b) is constant. */
 static void FillOsmometer(LamProcess process, const LamEvaluation *e, LamProcessTissue *tissue)
 {
-  const PetscReal dead = process->spec->water.non_osmotic * process->water;
+  const PetscReal dead = process->spec->water.non_osmotic * process->cells.water;
   LamFlow flow;
 
-  LamProcessFlow(process, e, tissue->water, 0, &flow);
+  LamProcessFlow(process, &process->cells, e, tissue->water, 0, &flow);
   if (flow.osmotic > 0) /* in pure water without end: more than any lumen */
     tissue->water = dead + (tissue->water - dead) * flow.osmotic / PetscMax(e->outside, 1e-9 * flow.osmotic);
 }

@@ -449,7 +449,8 @@ const LamKey LamKeys[] = {
     {REAL("process.tolerance"), FROM(1e-10), TO(0.1), .default_value = "1e-5", .example = "1e-6",
      .help = "Relative error of the integration in a step of time."},
     {BOOL("process.inflate"), .default_words = "true with turgor, else false", .example = "true",
-     .help = "First find the tissue free of stress under its turgor; deformation then counts from there."},
+     .help = "First find the tissue free of stress under its turgor; deformation then counts from there. Of a body "
+             "`macro.inflate` says it."},
     {REAL("process.opening"), ABOVE(0), BELOW(1), .default_value = "0.01", .example = "0.02",
      .help =
          "What the volume between cells in contact, over that of the tissue, has grown by since the start when they "
@@ -526,17 +527,20 @@ const LamKey LamKeys[] = {
     {REAL("process.kinetics[].table[]"), .size = 2, .example = "[7, 0.6]", .help = "Time and X."},
     {TEXT("process.kinetics[].time_unit"), .default_words = "none: required by `table`", .example = "day",
      .help = "Unit of its times."},
-    {LIST("process.program"), .default_words = "free of stress",
+    {LIST("process.program"), .default_words = "free of stress; of a body: load parameter 0",
      .example = "[{for: 10 s, F: [[1, 0.1], [0, 1]]}, {for: 1 h}]",
-     .help = "What deformation or stress is prescribed, one part after the other; after the last it is held."},
+     .help = "What deformation, stress or load is prescribed, one part after the other; after the last it is held."},
     {MAP("process.program[]"), .example = "{for: 10 s, F: [[1, 0.1], [0, 1]]}",
-     .help = "One part: straight from where the tissue is to F and P; with neither, what is prescribed is held."},
+     .help = "One part: straight from where the tissue is to F and P, or to `load`; without them what is prescribed is "
+             "held."},
     {TIME("process.program[].for"), REQUIRED, FROM(0), .example = "10 s", .help = "How long it takes; 0 s: a jump."},
     {TENSOR("process.program[].F"), FREE, .default_words = "held", .example = "[[free, 0.1], [0, free]]",
      .help = "Deformation gradient at its end, from the inflated tissue; `free` where P is given."},
     {STRESS_TENSOR("process.program[].P"), OPEN, .default_words = "F is given in full",
      .example = "[[0 MPa, x], [x, 0 MPa]]",
      .help = "First Piola-Kirchhoff stress at its end, of the reference area before inflation; `x` where F is given."},
+    {REAL("process.program[].load"), FROM(-1000), TO(1000), .default_words = "held", .example = "1",
+     .help = "Of a body (`macro`): its load parameter at the end, that of `macro.boundary`."},
     {INTEGER("process.repeat"), FROM(1), TO(100000), .default_value = "1", .example = "10",
      .help = "How often `program` is gone through."},
     {REAL("accuracy"), ABOVE(0), TO(0.5), .default_value = "0.01", .example = "0.01",

@@ -163,10 +163,6 @@ static PetscErrorCode BuildWater(const LamDocument *document, LamScene *scene)
     PetscCall(LamSceneFailName(document, block,
                                "begins with a negative turgor, but membranes leave the walls at 0; write a pressure of "
                                "at least 0 MPa in rve.turgor"));
-  if (scene->sealed)
-    PetscCall(LamSceneFailName(document, block,
-                               "contradicts turgor mode: sealed; write mode: prescribed there, and permeability: "
-                               "0 m/s/MPa here for cells that keep their water"));
   if (!osmotic_node && water->reflection == 0 && scene->turgor > 0)
     PetscCall(
         LamSceneFailMissing(document, block, "osmotic_pressure",
@@ -346,15 +342,25 @@ static PetscErrorCode BuildKinetics(const LamDocument *document, LamScene *scene
 static PetscErrorCode ReadLeg(const LamDocument *document, const LamNode *entry, const LamScene *scene,
                               const LamProcessLeg *before, LamProcessLeg *leg)
 {
-  const LamNode *F_node, *P_node;
-  LamValue duration, F, P;
+  const LamNode *F_node, *P_node, *load_node;
+  LamValue duration, F, P, load;
 
   PetscFunctionBeginUser;
   PetscCall(LamSceneGet(entry, "process.program[].for", NULL, &duration));
   PetscCall(LamSceneGet(entry, "process.program[].F", &F_node, &F));
   PetscCall(LamSceneGet(entry, "process.program[].P", &P_node, &P));
+  PetscCall(LamSceneGet(entry, "process.program[].load", &load_node, &load));
   *leg = *before;
   leg->duration = duration.number[0];
+  if (load_node) leg->load = load.number[0];
+  if (load_node && !scene->has_macro)
+    PetscCall(LamSceneFailName(document, load_node,
+                               "is the load parameter of a body, but there is no block macro; write F and P, or that "
+                               "block"));
+  if (scene->has_macro && (F_node || P_node))
+    PetscCall(LamSceneFailName(document, F_node ? F_node : P_node,
+                               "is for one material point, but the block macro describes a body; write load, or leave "
+                               "that block out"));
   if (!F_node && !P_node) PetscFunctionReturn(0);
   if (!F_node)
     PetscCall(LamSceneFailMissing(document, entry, "F",
@@ -413,6 +419,12 @@ PetscErrorCode LamSceneBuildProcess(const LamDocument *document, LamScene *scene
   spec->tolerance = tolerance.number[0];
   spec->inflate = inflate_node ? (PetscBool)(inflate.number[0] != 0) : (PetscBool)(scene->turgor != 0);
   spec->opening = opening.number[0];
+  if (scene->has_macro && inflate_node)
+    PetscCall(LamSceneFailName(document, inflate_node, "is for one material point; of a body write macro.inflate"));
+  if (scene->sealed)
+    PetscCall(LamSceneFailName(document, block,
+                               "contradicts turgor mode: sealed; write mode: prescribed there, and process.water with "
+                               "permeability: 0 m/s/MPa for cells that keep their water"));
   if (spec->duration / spec->output > MAX_OUTPUTS)
     PetscCall(LamSceneFail(document, output_node, "more than %d outputs in all; write a longer time", MAX_OUTPUTS));
   PetscCall(BuildWater(document, scene));

@@ -41,6 +41,7 @@
 #include <lamella/sealed.h>
 #include <lamella/macro.h>
 #include <lamella/process.h>
+#include <lamella/body.h>
 #include <lamella/version.h>
 
 #endif

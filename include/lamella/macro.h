@@ -18,6 +18,7 @@ typedef struct LamMacro_s *LamMacro;
 
 typedef struct {
   PetscInt step;         /* 1.. ; inflation, where asked for, is step 0; else turgor acts first in step 1 */
+  PetscReal time;        /* s; NaN: load steps take none */
   PetscReal load_factor; /* share of the boundary displacements: 0 (after inflation) to 1; the last step of a run that
                             failed or was stopped in it ends at the last converged increment */
   PetscBool complete;    /* not one that came only part of its way */
@@ -59,6 +60,7 @@ typedef PetscErrorCode (*LamMacroCutback)(LamMacro macro, const char why[], void
 PetscErrorCode LamMacroCreate(MPI_Comm comm, LamMacro *macro);
 PetscErrorCode LamMacroSetScene(LamMacro macro, const LamScene *scene); /* borrows the scene */
 PetscErrorCode LamMacroSetUp(LamMacro macro);
+PetscErrorCode LamMacroGetComm(LamMacro macro, MPI_Comm *comm);
 PetscErrorCode LamMacroGetPointCount(LamMacro macro, PetscInt *points); /* material points on this rank */
 /*
   Of this rank's material points: X [point][2] reference positions in macro lengths, group [point] the index of the
@@ -90,6 +92,63 @@ PetscErrorCode LamMacroSolve(LamMacro macro, LamMacroReason *reason, char messag
 */
 PetscErrorCode LamMacroArchive(LamMacro macro, LamArchive archive);
 PetscErrorCode LamMacroDestroy(LamMacro *macro);
+
+/* ---- a body that is followed in time, instead of LamMacroSolve (body.h) ---- */
+
+/* What the lumens of a material point are to hold at a turgor, per V0, and its derivative, which is not positive. */
+typedef void (*LamWaterLaw)(void *ctx, PetscInt point, PetscReal turgor, PetscReal *water, PetscReal *slope);
+/* The turgor is brought up by LamMacroStart and follows from the law then. To be called before LamMacroSetUp. */
+PetscErrorCode LamMacroSetWaterLaw(LamMacro macro, LamWaterLaw law, void *ctx);
+
+/* Conditions at an instant. */
+typedef struct {
+  PetscReal load;    /* the load parameter */
+  PetscReal turgor;  /* share of the points' turgor; 1 where it follows from water */
+  PetscReal lamella; /* factor of the points' cohesion */
+  PetscReal walls;   /* factor of the moduli of their walls */
+} LamMacroInstant;
+
+/* Of this rank. A state is u [displacements] and pressures [elements][modes]: turgor over that of LamMacroStart, for
+   shape functions about the element's centre, of which the first is 1. */
+typedef struct {
+  PetscInt points, elements, displacements, modes; /* modes 0: the turgor is prescribed */
+} LamMacroSizes;
+PetscErrorCode LamMacroGetSizes(LamMacro macro, LamMacroSizes *sizes);
+/* [point] the reference volume that each stands for. */
+PetscErrorCode LamMacroGetVolumes(LamMacro macro, PetscReal volume[]);
+/* Of a point's element: its number on this rank and in the undistributed mesh, and which of its points it is. */
+PetscErrorCode LamMacroGetElement(LamMacro macro, PetscInt point, PetscInt *local, PetscInt *number, PetscInt *index);
+
+/* Brings the turgor up in the unloaded body, as LamMacroSolve does; *ok: PETSC_FALSE, and `message` says why not. */
+PetscErrorCode LamMacroStart(LamMacro macro, PetscBool *ok, char message[LAM_MESSAGE_LENGTH]);
+/* Equilibrium under the conditions from a guess. *ok: found; else LamMacroTrouble says why not. Then one of the next.
+ */
+PetscErrorCode LamMacroBalance(LamMacro macro, const LamMacroInstant *instant, const PetscReal u[],
+                               const PetscReal pressures[], PetscBool *ok);
+PetscErrorCode LamMacroAccept(LamMacro macro); /* it is the last converged state */
+PetscErrorCode LamMacroReject(LamMacro macro); /* all is as before it */
+/* The state of the last LamMacroBalance or LamMacroProbe. */
+PetscErrorCode LamMacroGetState(LamMacro macro, PetscReal u[], PetscReal pressures[]);
+/* Responses at a state, which is not balanced, and not to be accepted. */
+PetscErrorCode LamMacroProbe(LamMacro macro, const LamMacroInstant *instant, const PetscReal u[],
+                             const PetscReal pressures[], PetscBool *ok);
+const char *LamMacroTrouble(LamMacro macro);
+PetscErrorCode LamMacroStopped(LamMacro macro, PetscBool *stopped); /* LamMacroSetStop said so; on all ranks */
+
+/* A material point in the last state that was evaluated. */
+typedef struct {
+  const LamLoad *load;
+  const PetscReal *field; /* [LAM_POINT_FIELD_COUNT], below */
+  PetscReal lumen;        /* -dPsi/dp, per V0; NaN where the turgor is prescribed */
+  PetscInt percolating;   /* LamResponse.percolating_directions */
+  PetscReal place[2];
+} LamMacroPoint;
+PetscErrorCode LamMacroGetPoint(LamMacro macro, PetscInt point, LamMacroPoint *p);
+/* What is kept of responses is void: the tissue has changed. */
+PetscErrorCode LamMacroForget(LamMacro macro);
+/* The report of the last converged state at a time, as of a load step that began at the clock time `start`.
+   Collective. */
+PetscErrorCode LamMacroDescribe(LamMacro macro, PetscInt number, PetscReal time, PetscReal start, LamMacroStep *step);
 
 /* What is kept of a material point's response beside stress and deformation, one number each; NaN: not known. */
 #define LAM_POINT_FIELDS(X)                                                                                            \

@@ -314,11 +314,12 @@ typedef struct {
   PetscReal turgor;      /* of cells whose water is not followed, C1 + C2 */
 } LamSurroundings;
 
-/* A part of the load program of a material point: what is prescribed goes straight to these values. */
+/* A part of the load program: what is prescribed goes straight to these values. */
 typedef struct {
   PetscReal duration;       /* s; 0: a jump */
   PetscReal F[9];           /* counted from the inflated state; where P is given a first guess */
   LamStressControl control; /* P: of the reference area before inflation */
+  PetscReal load;           /* of a body: load parameter at the end */
 } LamProcessLeg;
 
 /* Tissue that changes in time. */

@@ -26,16 +26,15 @@ static PetscBool SameFile(const char a[], const char b[])
   return (PetscBool)(!strcmp(names[0], names[1]) && s[0].st_dev == s[1].st_dev && s[0].st_ino == s[1].st_ino);
 }
 
-/* PETSC_FALSE, with a message, where a file would be written over by another. */
-static PetscBool CheckPaths(const LamFE2Run *run)
+PetscBool LamFE2CheckPaths(const char command[], const LamFE2Run *run)
 {
   const char *dot = run->out_path ? strrchr(run->out_path, '.') : NULL;
 
   if (dot && !strcmp(dot, ".xdmf"))
-    fprintf(stderr, "lamella fe2: -o %s: name the HDF5 file, %.*s.h5; the .xdmf file is written beside it\n",
+    fprintf(stderr, "lamella %s: -o %s: name the HDF5 file, %.*s.h5; the .xdmf file is written beside it\n", command,
             run->out_path, (int)(dot - run->out_path), run->out_path);
   else if (run->out_path && run->database_path && SameFile(run->out_path, run->database_path))
-    fprintf(stderr, "lamella fe2: -o %s is the database of -d; the results would replace it\n", run->out_path);
+    fprintf(stderr, "lamella %s: -o %s is the database of -d; the results would replace it\n", command, run->out_path);
   else if (run->resume && !run->out_path)
     fprintf(stderr, "lamella fe2: --resume goes on with the results of a run; give -o OUT.h5, too\n");
   else
@@ -43,8 +42,7 @@ static PetscBool CheckPaths(const LamFE2Run *run)
   return PETSC_FALSE;
 }
 
-/* The same for the databases of regions and levels, whose names follow from that of -d. */
-static PetscBool CheckTissuePaths(const LamFE2Run *run)
+PetscBool LamFE2CheckTissuePaths(const char command[], const LamFE2Run *run)
 {
   const LamFE2Tissues *tissues = &run->tissues;
 
@@ -53,7 +51,7 @@ static PetscBool CheckTissuePaths(const LamFE2Run *run)
 
     if (!tissue->database_path[0] || !SameFile(run->out_path, tissue->database_path)) continue;
     if (LamAppIsRoot())
-      fprintf(stderr, "lamella fe2: -o %s is the database of %s; the results would replace it\n", run->out_path,
+      fprintf(stderr, "lamella %s: -o %s is the database of %s; the results would replace it\n", command, run->out_path,
               tissue->name[0] ? tissue->name : "-d");
     return PETSC_FALSE;
   }
@@ -85,8 +83,7 @@ PetscErrorCode LamFE2ShareError(MPI_Comm comm, PetscErrorCode ierr)
   PetscFunctionReturn((PetscErrorCode)code);
 }
 
-/* Largest memory of a rank, MB. */
-static PetscErrorCode PeakMemory(MPI_Comm comm, PetscReal *megabytes)
+PetscErrorCode LamPeakMemory(MPI_Comm comm, PetscReal *megabytes)
 {
   struct rusage usage;
 
@@ -131,7 +128,7 @@ static PetscErrorCode StepDone(LamMacro macro, const LamMacroStep *step, PetscBo
   PetscReal peak_memory;
 
   PetscFunctionBeginUser;
-  PetscCall(PeakMemory(run->comm, &peak_memory));
+  PetscCall(LamPeakMemory(run->comm, &peak_memory));
   if (run->out_path || !run->json) PetscCall(LamMacroGetFields(macro, &fields));
   if (LamAppIsRoot()) ierr = EndStep(run, step, &fields, peak_memory);
   PetscCall(LamMacroFieldsDestroy(&fields));
@@ -176,7 +173,7 @@ static PetscErrorCode SolveAndClose(LamFE2Run *run, int *exit_status)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Destroy(LamFE2Run *run)
+PetscErrorCode LamFE2Destroy(LamFE2Run *run)
 {
   PetscFunctionBeginUser;
   PetscCall(LamMacroDestroy(&run->macro));
@@ -194,7 +191,7 @@ static PetscErrorCode Solve(LamFE2Run *run, int *exit_status)
   PetscFunctionBeginUser;
   PetscCall(Prepare(run, &finished));
   if (finished) PetscFunctionReturn(0);
-  if (!CheckTissuePaths(run)) {
+  if (!LamFE2CheckTissuePaths("fe2", run)) {
     *exit_status = LAM_EXIT_USAGE;
     PetscFunctionReturn(0);
   }
@@ -211,7 +208,7 @@ static PetscErrorCode Solve(LamFE2Run *run, int *exit_status)
 
 PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status)
 {
-  LamFE2Run run = {0};
+  LamFE2Run run = {.walls = 1};
   PetscErrorCode ierr;
   PetscBool done;
   const LamOption options[] = {
@@ -235,7 +232,7 @@ PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status)
                             "Solves the macroscale problem of a scene.", options, 1, &run.scene_path, &done,
                             exit_status));
   if (done) PetscFunctionReturn(0);
-  if (!LamFE2ChooseResponse("fe2", &run) || !CheckPaths(&run)) {
+  if (!LamFE2ChooseResponse("fe2", &run) || !LamFE2CheckPaths("fe2", &run)) {
     *exit_status = LAM_EXIT_USAGE;
     PetscFunctionReturn(0);
   }
@@ -244,6 +241,6 @@ PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status)
   ierr = Solve(&run, exit_status);
   if (ierr) PetscCall(LamFE2CloseAfterError(&run));
   PetscCall(ierr);
-  PetscCall(Destroy(&run));
+  PetscCall(LamFE2Destroy(&run));
   PetscFunctionReturn(0);
 }

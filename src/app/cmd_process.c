@@ -1,7 +1,7 @@
 /*
-  lamella process: tissue that changes in time, at one material point.
+  lamella process: tissue that changes in time, at one material point, or of a body (process_body.c).
 
-  The way through time is one chain: rank 0 follows it, further ranks wait.
+  The way of a point through time is one chain: rank 0 follows it, further ranks wait.
 */
 #include "process_run.h"
 #include <lamella/clock.h>
@@ -123,8 +123,6 @@ static PetscErrorCode Solve(LamProcessRunState *run, int *exit_status)
 
   PetscFunctionBeginUser;
   run->start = LamClock();
-  PetscCall(LamSceneRead(run->response.scene_path, &run->scene));
-  run->response.scene = run->scene;
   PetscCall(LamProcessCreate(run->scene, &run->process));
   PetscCall(Connect(run, &responder));
   if (!run->response.stopped) {
@@ -150,7 +148,6 @@ static PetscErrorCode Destroy(LamProcessRunState *run)
   PetscCall(LamProcessDestroy(&run->process));
   PetscCall(Disconnect(run));
   PetscCall(PetscFree(run->history.states));
-  PetscCall(LamSceneDestroy(&run->scene));
   PetscFunctionReturn(0);
 }
 
@@ -162,13 +159,15 @@ PetscErrorCode LamCommandProcess(LamArgs *args, int *exit_status)
   const LamOption options[] = {
       {'d', "database", LAM_OPTION_TEXT, "DB.h5", "response database; a cache adds to it what it solves",
        &run.response.database_path},
-      {'o', "output", LAM_OPTION_TEXT, "OUT.h5", "states in time, for plot and info", &run.out_path},
+      {'o', "output", LAM_OPTION_TEXT, "OUT.h5",
+       "states in time, for plot and info; of a body with OUT.xdmf and OUT.csv beside it", &run.out_path},
       {0, "response", LAM_OPTION_TEXT, "TYPE",
        "direct: solve an RVE for each state (default); cache: query, solve what is missing (default with -d); "
        "database: query only",
        &run.response.response_name},
       {0, "frames", LAM_OPTION_TEXT, "N",
-       "keep the cells at N states evenly spread, for a film (default: at events, start and end)", &run.frames_text},
+       "at a material point: keep the cells at N states evenly spread, for a film (default: at events, start and end)",
+       &run.frames_text},
       {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per output and event on stdout", &run.json},
       {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &run.quiet},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
@@ -186,8 +185,15 @@ PetscErrorCode LamCommandProcess(LamArgs *args, int *exit_status)
   if (run.frames_text && !LamCountParse("process", "--frames", run.frames_text, 2, &run.frames, exit_status))
     PetscFunctionReturn(0);
   PetscCall(LamAppInitialize(args));
-  run.response.comm = PETSC_COMM_SELF;
   run.response.quiet = run.quiet;
+  PetscCall(LamSceneRead(run.response.scene_path, &run.scene));
+  run.response.scene = run.scene;
+  run.response.walls = 1;
+  if (run.scene->has_macro && run.scene->has_process) {
+    PetscCall(LamProcessBody(&run, exit_status));
+    PetscFunctionReturn(0);
+  }
+  run.response.comm = PETSC_COMM_SELF;
   if (LamAppIsRoot()) {
     ierr = Solve(&run, exit_status);
     const PetscErrorCode freed = Destroy(&run);
@@ -195,5 +201,6 @@ PetscErrorCode LamCommandProcess(LamArgs *args, int *exit_status)
   }
   PetscCall(ierr);
   PetscCall(LamFE2ShareError(PETSC_COMM_WORLD, 0));
+  PetscCall(LamSceneDestroy(&run.scene));
   PetscFunctionReturn(0);
 }

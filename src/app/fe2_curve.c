@@ -31,6 +31,7 @@ static void FillRow(const LamMacroStep *step, const LamMacroFields *fields, cons
 
   value[LAM_CURVE_STEP] = (PetscReal)step->step;
   value[LAM_CURVE_LOAD_FACTOR] = step->load_factor;
+  value[LAM_CURVE_TIME] = step->time;
   value[LAM_CURVE_WORK] = step->work * scales->stress * PetscSqr(scales->macro_length); /* J/m, which is N mm/mm */
   value[LAM_CURVE_TURGOR] = step->turgor_mean * MPa;
   value[LAM_CURVE_DEBONDED] = step->debonded_fraction;
@@ -76,6 +77,11 @@ PetscErrorCode LamCurveDestroy(LamCurve *curve)
   PetscFunctionReturn(0);
 }
 
+PetscBool LamCurveHas(const LamCurve *curve, LamCurveColumn column)
+{
+  return (PetscBool)(column != LAM_CURVE_TIME || (curve->count && isfinite(curve->rows[0].value[LAM_CURVE_TIME])));
+}
+
 PetscErrorCode LamCurveGetColumn(const LamCurve *curve, LamCurveColumn column, PetscReal **values)
 {
   PetscFunctionBeginUser;
@@ -109,6 +115,7 @@ PetscErrorCode LamCurveWrite(const LamCurve *curve, LamRecordWriter writer)
     PetscReal *values;
     char name[96];
 
+    if (!LamCurveHas(curve, (LamCurveColumn)c)) continue;
     PetscCall(LamCurveGetColumn(curve, (LamCurveColumn)c, &values));
     PetscCall(PetscSNPrintf(name, sizeof(name), "/macro/curve/%s", Names[c]));
     PetscCall(LamRecordWriterReals(writer, name, 1, &curve->count, values, Units[c]));
@@ -128,6 +135,7 @@ static void PrintHeader(FILE *out, const LamCurve *curve)
         fprintf(out, ",%s u1 (mm),%s u2 (mm),%s R1 (N/mm),%s R2 (N/mm)", curve->side[s], curve->side[s], curve->side[s],
                 curve->side[s]);
     }
+    if (!LamCurveHas(curve, (LamCurveColumn)c)) continue;
     fprintf(out, "%s%s", c ? "," : "", Names[c]);
     if (strcmp(Units[c], "1")) fprintf(out, " (%s)", Units[c]);
   }
@@ -148,7 +156,7 @@ static void PrintRow(FILE *out, const LamCurve *curve, const LamCurveRow *row)
       for (int i = 0; i < 2; i++) PrintNumber(out, row->displacement[s][i]);
       for (int i = 0; i < 2; i++) PrintNumber(out, row->reaction[s][i]);
     }
-    PrintNumber(out, row->value[c]);
+    if (LamCurveHas(curve, (LamCurveColumn)c)) PrintNumber(out, row->value[c]);
   }
   fputc('\n', out);
 }

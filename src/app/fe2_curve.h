@@ -11,6 +11,7 @@
 #define LAM_CURVE_COLUMNS(X)                                                                                           \
   X(LAM_CURVE_STEP, "step", "1")                                                                                       \
   X(LAM_CURVE_LOAD_FACTOR, "load_factor", "1")                                                                         \
+  X(LAM_CURVE_TIME, "time", "s") /* of a process; others have no such column */                                        \
   X(LAM_CURVE_WORK, "work", "N mm/mm")                                                                                 \
   X(LAM_CURVE_TURGOR, "turgor_mean", "MPa")                                                                            \
   X(LAM_CURVE_OPENING, "opening_fraction", "1")   /* mean over the body */                                             \
@@ -53,6 +54,8 @@ typedef struct {
 PetscErrorCode LamCurveAdd(LamCurve *curve, const LamMacroStep *step, const LamMacroFields *fields,
                            const LamScales *scales);
 PetscErrorCode LamCurveDestroy(LamCurve *curve);
+/* Whether its rows have this column. */
+PetscBool LamCurveHas(const LamCurve *curve, LamCurveColumn column);
 /* A column as an array [count]; the caller frees it. */
 PetscErrorCode LamCurveGetColumn(const LamCurve *curve, LamCurveColumn column, PetscReal **values);
 /* /macro/curve/<name> [step] of every column but the first, /macro/curve/displacement and reaction [step][side][2]. */

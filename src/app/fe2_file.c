@@ -15,6 +15,8 @@ struct LamFE2File_s {
   PetscInt topology_length;
   PetscInt step_count, capacity;
   PetscInt *steps; /* numbers of the complete ones; owned */
+  PetscErrorCode (*beside)(LamRecordWriter writer, void *ctx);
+  void *beside_ctx; /* borrowed */
 };
 
 PetscErrorCode LamFE2FileOpen(const char path[], LamWriteMode mode, const LamScene *scene, LamFE2File *file)
@@ -194,12 +196,19 @@ static PetscErrorCode WriteXDMF(LamFE2File file, const LamMacroFields *fields, c
   PetscReal *times;
 
   PetscFunctionBeginUser;
-  PetscCall(LamCurveGetColumn(curve, LAM_CURVE_LOAD_FACTOR, &times));
+  PetscCall(
+      LamCurveGetColumn(curve, LamCurveHas(curve, LAM_CURVE_TIME) ? LAM_CURVE_TIME : LAM_CURVE_LOAD_FACTOR, &times));
   xdmf.times = times;
   PetscErrorCode ierr = LamXDMFWrite(file->path, &xdmf);
   PetscCall(PetscFree(times));
   PetscCall(ierr);
   PetscFunctionReturn(0);
+}
+
+void LamFE2FileSetBeside(LamFE2File file, PetscErrorCode (*write)(LamRecordWriter writer, void *ctx), void *ctx)
+{
+  file->beside = write;
+  file->beside_ctx = ctx;
 }
 
 PetscErrorCode LamFE2FileAddStep(LamFE2File file, const LamMacroStep *step, const LamMacroFields *fields,
@@ -214,6 +223,7 @@ PetscErrorCode LamFE2FileAddStep(LamFE2File file, const LamMacroStep *step, cons
   PetscCall(KeepStep(file, step->step));
   PetscCall(LamCurveWrite(&summary->curve, file->writer));
   PetscCall(WriteSummary(file, summary));
+  if (file->beside) PetscCall(file->beside(file->writer, file->beside_ctx));
   PetscCall(LamRecordWriterInts(file->writer, "/macro/steps", 1, &file->step_count, file->steps));
   PetscCall(LamRecordWriterCommit(file->writer, 0, NULL, NULL)); /* the file has the whole step now */
   PetscCall(WriteXDMF(file, fields, &summary->curve));

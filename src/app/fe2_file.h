@@ -32,6 +32,8 @@ PetscErrorCode LamFE2FileArchive(LamFE2File file, LamArchive archive);
 /* `summary` knows the step already. */
 PetscErrorCode LamFE2FileAddStep(LamFE2File file, const LamMacroStep *step, const LamMacroFields *fields,
                                  const LamSummary *summary);
+/* What else is written with each step, as one with it. */
+void LamFE2FileSetBeside(LamFE2File file, PetscErrorCode (*write)(LamRecordWriter writer, void *ctx), void *ctx);
 /* For what is written beside the steps; borrowed. */
 LamRecordWriter LamFE2FileWriter(LamFE2File file);
 /* `status`: "done", "stopped", or why the run did not converge; NULL after an error. */

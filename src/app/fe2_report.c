@@ -38,12 +38,11 @@ static void AddLocalisation(const LamFE2Run *run, const LamMacroStep *step, json
   json_object_set_new(object, "localisation_place", LamJSONReals(2, step->localisation_place, mm));
 }
 
-static PetscErrorCode PrintStepJSON(const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory)
+json_t *LamFE2StepToJSON(const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory)
 {
   const LamScales *scales = &run->scene->scales;
   json_t *reaction = json_object(), *object;
 
-  PetscFunctionBeginUser;
   for (PetscInt s = 0; s < step->boundary_count; s++)
     json_object_set_new(reaction, step->boundary[s], LamJSONReals(2, step->reaction[s], ForceUnit(run)));
   object = json_pack(
@@ -58,8 +57,7 @@ static PetscErrorCode PrintStepJSON(const LamFE2Run *run, const LamMacroStep *st
       LamJSONReals(step->residual_count, step->residuals, 1), "convergence_order", LamJSONReal(step->order));
   AddLocalisation(run, step, object);
   AddService(step, object);
-  PetscCall(LamPrintJSON(object));
-  PetscFunctionReturn(0);
+  return object;
 }
 
 /* Where there are several. */
@@ -120,7 +118,7 @@ PetscErrorCode LamFE2ReportStep(LamFE2Run *run, const LamMacroStep *step, PetscR
 {
   PetscFunctionBeginUser;
   if (run->json)
-    PetscCall(PrintStepJSON(run, step, peak_memory));
+    PetscCall(LamPrintJSON(LamFE2StepToJSON(run, step, peak_memory)));
   else {
     if (run->totals.steps == run->resumed_steps) PrintHeader(run, step);
     PrintRow(run, step);

@@ -44,6 +44,7 @@ typedef struct {
   LamSummary summary;
   LamProgress progress;
   PetscBool localised; /* has been told */
+  PetscReal walls;     /* moduli over those of the tissues: of a process; 1 */
 
   LamFE2Totals totals;
   PetscReal start;
@@ -63,8 +64,9 @@ PetscErrorCode LamFE2ConnectTissue(LamFE2Run *run, LamFE2Tissue *tissue, LamResp
 PetscErrorCode LamFE2DisconnectTissue(LamFE2Tissue *tissue);
 
 /* ---- fe2_report.c; on rank 0 ---- */
-/* The row, after the first step's header, or the JSON object of a step; once, that the tissue localises. peak_memory in
-   MB. */
+/* A step as JSON; peak_memory in MB. */
+json_t *LamFE2StepToJSON(const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory);
+/* The row, after the first step's header, or the JSON object of a step; once, that the tissue localises. */
 PetscErrorCode LamFE2ReportStep(LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory);
 /* LamMacroCutback: a line on stderr; on all ranks. */
 PetscErrorCode LamFE2ReportCutback(LamMacro macro, const char why[], void *run);
@@ -103,6 +105,13 @@ PetscErrorCode LamFE2CheckpointRemove(LamFE2Run *run);
 PetscErrorCode LamFE2Zoom(LamFE2Run *run);
 
 /* ---- cmd_fe2.c ---- */
+/* PETSC_FALSE, with a message, where a file would be written over by another; the second one, on all ranks, for the
+   databases of regions and levels, whose names follow from that of -d. */
+PetscBool LamFE2CheckPaths(const char command[], const LamFE2Run *run);
+PetscBool LamFE2CheckTissuePaths(const char command[], const LamFE2Run *run);
+/* Largest memory of a rank, MB. */
+PetscErrorCode LamPeakMemory(MPI_Comm comm, PetscReal *megabytes);
+PetscErrorCode LamFE2Destroy(LamFE2Run *run);
 /* Makes an error of rank 0 everyone's. */
 PetscErrorCode LamFE2ShareError(MPI_Comm comm, PetscErrorCode ierr);
 

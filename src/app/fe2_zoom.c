@@ -200,7 +200,8 @@ static PetscErrorCode Keep(LamFE2Run *run, const Zoom *zoom, const LamLoad *load
 static PetscErrorCode Solve(LamFE2Run *run, const Zoom *zoom, LamRVE rve, const char bytes[], LamRVEState state,
                             Found *found)
 {
-  const PetscReal mm = run->scene->scales.macro_length * 1e3, stress = run->tissues.tissues[zoom->tissue].stress;
+  const PetscReal mm = run->scene->scales.macro_length * 1e3,
+                  stress = run->walls * run->tissues.tissues[zoom->tissue].stress;
   const LamLoad load = OwnLoad(zoom, stress);
   LamResponse response;
   PetscReal P[9];

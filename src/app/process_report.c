@@ -125,10 +125,11 @@ static void WarnOfIndicators(const LamProcessRunState *run)
   for (PetscInt k = 0; k < run->history.count; k++)
     doubtful += run->history.states[k].event != LAM_EVENT_COUNT && !run->history.states[k].response.indicators_trusted;
   if (doubtful)
-    fprintf(stderr,
-            "lamella process: events that rest on tractions or gaps of which the database's states around do not agree: "
-            "%d; --response cache solves there\n",
-            (int)doubtful);
+    fprintf(
+        stderr,
+        "lamella process: events that rest on tractions or gaps of which the database's states around do not agree: "
+        "%d; --response cache solves there\n",
+        (int)doubtful);
 }
 
 PetscErrorCode LamProcessReportEnd(const LamProcessRunState *run, LamProcessReason reason, const char message[])

@@ -1,0 +1,69 @@
+/*
+  What is looked for in a body that changes in time: the material point where it is exceeded most.
+*/
+#include "body_impl.h"
+#include <math.h>
+
+PetscReal LamBodyNoTurgor(LamBody body)
+{
+  return LamSlack(body->process) * body->process->pressure;
+}
+
+PetscInt LamBodyListEvents(LamBody body, LamEvent events[LAM_EVENT_COUNT])
+{
+  const PetscInt n = LamProcessListEvents(body->process, events);
+  PetscInt kept = 0;
+
+  for (PetscInt k = 0; k < n; k++)
+    if (events[k] != LAM_EVENT_LIMIT) events[kept++] = events[k]; /* the body ends there */
+  return kept;
+}
+
+/* Rises through 0 where the event happens at a point. */
+static PetscReal Excess(LamBody body, LamEvent event, PetscInt p, const LamMacroPoint *point)
+{
+  const LamStrength *strength = &body->process->scene->strength;
+  const LamFactor *factor = body->now.factor;
+  const PetscReal lamella = factor[LAM_CHANGING_LAMELLA].value, wall = factor[LAM_CHANGING_WALL_STRENGTH].value;
+
+  switch (event) {
+  case LAM_EVENT_LAMELLA_NORMAL:
+    return point->field[LAM_POINT_NORMAL] - lamella * strength->lamella_normal;
+  case LAM_EVENT_LAMELLA_SHEAR:
+    return point->field[LAM_POINT_SHEAR] - lamella * strength->lamella_shear;
+  case LAM_EVENT_WALL:
+    return point->field[LAM_POINT_WALL] - wall * strength->wall;
+  case LAM_EVENT_OPENING:
+    return point->field[LAM_POINT_OPENING] - body->opening[p] - body->process->spec->opening;
+  case LAM_EVENT_PERCOLATION:
+    return point->percolating < 0 ? -1 : 1.5 - (PetscReal)point->percolating; /* below 0: not known */
+  case LAM_EVENT_TURGOR_LOST:
+    return LamBodyNoTurgor(body) - point->load->turgor;
+  case LAM_EVENT_TURGOR_FOUND: /* where it is found last */
+    return 2 * LamBodyNoTurgor(body) - point->load->turgor;
+  default:
+    return -1;
+  }
+}
+
+PetscErrorCode LamBodyExcess(LamBody body, PetscInt n, const LamEvent events[], PetscReal excess[], PetscInt points[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < n; k++) {
+    excess[k] = -PETSC_INFINITY;
+    points[k] = -1;
+  }
+  for (PetscInt p = 0; p < body->sizes.points; p++) {
+    LamMacroPoint point;
+
+    PetscCall(LamMacroGetPoint(body->macro, p, &point));
+    for (PetscInt k = 0; k < n; k++) {
+      const PetscReal at = Excess(body, events[k], p, &point);
+
+      if (!(at > excess[k])) continue; /* not a number: not known there */
+      excess[k] = at;
+      points[k] = p;
+    }
+  }
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,540 @@
+/*
+  One segment of time of a body, integrated by IDA (SUNDIALS).
+
+  Unknowns: states of the kinetic laws x, which all tissue shares; the water V of each material point; turgor and
+  displacement of the body, (q, u). Equations
+
+    x' = f(x, T),      V' = Lp A (sigma (pi - pi_out) - p),      equilibrium and lumens of the body for (u, q; V, x, t).
+
+  In an implicit step y' = s + c (y - a), with IDA's s, a, c, the kinetics are solved by themselves, V is a function of
+  p at each point (body_water.c), and what is left is equilibrium of a body whose lumens hold V(p): Newton's method of
+  the macroscale solver, with its condensed tangent, is IDA's nonlinear solver. Predictions, errors, steps, orders and
+  roots are IDA's.
+
+  Errors are measured as means over the body: of the water by volume, of the turgor likewise, of the displacement by
+  nodes; each kinetic state counts like one of these.
+
+  Reference: Hindmarsh et al., ACM TOMS 31 (2005) 363-396.
+*/
+#include "body_impl.h"
+#include <math.h>
+#include <ida/ida.h>
+#include <nvector/nvector_parallel.h>
+#include <sundials/sundials_nonlinearsolver.h>
+#include <sundials/sundials_types.h>
+
+enum { MAX_STEPS = 1000000, MAX_FAILURES = 25, KINETIC_ITERATIONS = 30 };
+#define KINETIC_EXACT 1e-14
+
+#define LamCallSUN(call)                                                                                               \
+  do {                                                                                                                 \
+    const int lam_sun_flag_ = (call);                                                                                  \
+    PetscCheck(lam_sun_flag_ >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "SUNDIALS: %s failed with %d", #call,               \
+               lam_sun_flag_);                                                                                         \
+  } while (0)
+
+/* Where the unknowns lie in this rank's y; -1: not there. Rank 0 has the kinetic states. */
+typedef struct {
+  PetscInt n, state[LAM_PROCESS_KINETIC], water, pressures, u, idle;
+} Layout;
+
+typedef struct {
+  LamBody body;
+  Layout layout;
+  PetscInt total, displacements; /* unknowns of all ranks */
+  PetscInt event_count;
+  LamEvent events[LAM_EVENT_COUNT];
+  PetscReal x[LAM_PROCESS_KINETIC]; /* in the last step's solution, on all ranks */
+  PetscBool pending;                /* a solution that is not accepted yet */
+  PetscErrorCode error;             /* of the library, raised inside IDA */
+
+  SUNContext context;
+  void *ida;
+  N_Vector y, yp;
+  SUNNonlinearSolver solver;
+} Integration;
+
+/* ---- unknowns ---- */
+
+static Layout LayOut(LamBody body)
+{
+  const LamProcessSpec *spec = body->process->spec;
+  const LamMacroSizes *sizes = &body->sizes;
+  Layout l = {.water = -1, .pressures = -1, .u = -1, .idle = -1};
+
+  for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++) {
+    const PetscInt law = k / LAM_KINETIC_STATES;
+
+    l.state[k] = body->rank == 0 && k % LAM_KINETIC_STATES < LamKineticsStates(&spec->kinetics[law]) ? l.n++ : -1;
+  }
+  if (body->rank == 0) l.idle = l.n++; /* IDA needs one unknown with a rate */
+  if (spec->has_water && isfinite(spec->water.permeability)) {
+    l.water = l.n;
+    l.n += sizes->points;
+  }
+  l.pressures = l.n;
+  l.n += sizes->elements * sizes->modes;
+  l.u = l.n;
+  l.n += sizes->displacements;
+  return l;
+}
+
+static void Pack(const LamBody body, const Layout *l, PetscReal y[])
+{
+  for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++)
+    if (l->state[k] >= 0) y[l->state[k]] = body->process->tissue.x[k];
+  if (l->idle >= 0) y[l->idle] = 0;
+  for (PetscInt p = 0; p < body->sizes.points && l->water >= 0; p++) y[l->water + p] = body->water[p];
+  for (PetscInt k = 0; k < body->sizes.elements * body->sizes.modes; k++) y[l->pressures + k] = body->pressures[k];
+  for (PetscInt k = 0; k < body->sizes.displacements; k++) y[l->u + k] = body->u[k];
+}
+
+/* The kinetic states in y, which rank 0 has, on all ranks. */
+static PetscErrorCode ShareStates(const Integration *in, const PetscReal y[], PetscReal x[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++) x[k] = in->layout.state[k] < 0 ? 0 : y[in->layout.state[k]];
+  PetscCallMPI(MPI_Bcast(x, LAM_PROCESS_KINETIC, MPIU_REAL, 0, in->body->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Makes y at a time the present state of the body. */
+static PetscErrorCode Unpack(Integration *in, PetscReal time, const PetscReal y[])
+{
+  LamBody body = in->body;
+  LamProcessTissue *tissue = &body->process->tissue;
+  const LamSegment *segment = &body->process->segment;
+  const Layout *l = &in->layout;
+  const PetscReal elapsed = time - segment->start;
+
+  PetscFunctionBeginUser;
+  PetscCall(ShareStates(in, y, tissue->x));
+  tissue->time = time;
+  tissue->temperature = LamRampAt(&segment->temperature, elapsed);
+  tissue->outside = LamRampAt(&segment->outside, elapsed);
+  tissue->load = LamRampAt(&segment->load, elapsed);
+  if (l->water >= 0) PetscCall(PetscArraycpy(body->water, &y[l->water], body->sizes.points));
+  PetscCall(PetscArraycpy(body->pressures, &y[l->pressures], body->sizes.elements * body->sizes.modes));
+  PetscCall(PetscArraycpy(body->u, &y[l->u], body->sizes.displacements));
+  PetscFunctionReturn(0);
+}
+
+/* ---- an implicit step ---- */
+
+/* x of one law with x' = slope + c (x - start) by Newton's method, of at most two states. */
+static PetscBool SolveLaw(const LamKinetics *law, PetscReal temperature, PetscReal c, const PetscReal start[],
+                          const PetscReal slope[], PetscReal x[])
+{
+  const PetscInt n = LamKineticsStates(law);
+
+  for (PetscInt it = 0; it < KINETIC_ITERATIONS; it++) {
+    PetscReal rate[LAM_KINETIC_STATES] = {0}, J[LAM_KINETIC_STATES][LAM_KINETIC_STATES] = {{0}}, r[2] = {0}, d[2];
+
+    LamKineticsRates(law, temperature, x, rate, J);
+    for (PetscInt i = 0; i < n; i++) r[i] = slope[i] + c * (x[i] - start[i]) - rate[i];
+    const PetscReal a = c - J[0][0], b = -J[0][1], e = -J[1][0], f = n > 1 ? c - J[1][1] : 1;
+    const PetscReal determinant = n > 1 ? a * f - b * e : a;
+
+    d[0] = n > 1 ? (f * r[0] - b * r[1]) / determinant : r[0] / a;
+    d[1] = n > 1 ? (a * r[1] - e * r[0]) / determinant : 0;
+    for (PetscInt i = 0; i < n; i++) x[i] -= d[i];
+    if (!isfinite(x[0] + d[1])) return PETSC_FALSE;
+    if (PetscAbsReal(d[0]) + PetscAbsReal(d[1]) <= KINETIC_EXACT) return PETSC_TRUE;
+  }
+  return PETSC_TRUE; /* to rounding */
+}
+
+static PetscErrorCode SolveKinetics(Integration *in, PetscReal time, PetscReal c, const PetscReal predicted[],
+                                    const PetscReal rates[], PetscBool *ok)
+{
+  const LamProcess process = in->body->process;
+  const PetscReal temperature = LamRampAt(&process->segment.temperature, time - process->segment.start);
+
+  PetscFunctionBeginUser;
+  *ok = PETSC_TRUE;
+  for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++) {
+    const PetscInt first = LAM_KINETIC_STATES * k, at = in->layout.state[first];
+
+    if (at < 0) continue; /* states of a law follow each other */
+    if (!SolveLaw(&process->spec->kinetics[k], temperature, c, &predicted[at], &rates[at], &in->x[first]))
+      *ok = PETSC_FALSE;
+  }
+  PetscCallMPI(MPI_Bcast(ok, 1, MPIU_BOOL, 0, in->body->comm));
+  PetscCallMPI(MPI_Bcast(in->x, LAM_PROCESS_KINETIC, MPIU_REAL, 0, in->body->comm));
+  PetscFunctionReturn(0);
+}
+
+/* The solution of the step less the prediction. */
+static PetscErrorCode FillCorrection(Integration *in, const PetscReal predicted[], PetscReal correction[])
+{
+  LamBody body = in->body;
+  const Layout *l = &in->layout;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++)
+    if (l->state[k] >= 0) correction[l->state[k]] = in->x[k] - predicted[l->state[k]];
+  if (l->idle >= 0) correction[l->idle] = 0;
+  PetscCall(LamMacroGetState(body->macro, &correction[l->u], &correction[l->pressures]));
+  for (PetscInt k = l->pressures; k < l->n; k++) correction[k] -= predicted[k];
+  for (PetscInt p = 0; p < body->sizes.points && l->water >= 0; p++) {
+    LamMacroPoint point;
+    PetscReal slope;
+
+    PetscCall(LamMacroGetPoint(body->macro, p, &point));
+    correction[l->water + p] =
+        LamBodyProtoplast(body, p, PetscMax(point.load->turgor, 0), &slope) - predicted[l->water + p];
+  }
+  PetscFunctionReturn(0);
+}
+
+/* *flag: 0, or positive where a shorter step may have a solution. */
+static PetscErrorCode SolveStep(Integration *in, PetscReal time, PetscReal c, PetscReal predicted[], PetscReal rates[],
+                                PetscReal correction[], int *flag)
+{
+  LamBody body = in->body;
+  const Layout *l = &in->layout;
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  *flag = SUN_NLS_CONV_RECVR;
+  if (in->pending) PetscCall(LamMacroReject(body->macro));
+  in->pending = PETSC_FALSE;
+  body->evaluated = NAN;
+  PetscCall(ShareStates(in, predicted, in->x));
+  PetscCall(SolveKinetics(in, time, c, predicted, rates, &ok));
+  if (ok) PetscCall(LamBodySetTime(body, time, in->x, &ok));
+  if (!ok) PetscFunctionReturn(0);
+  body->mode = l->water < 0 ? LAM_WATER_OSMOSIS : LAM_WATER_PASSES;
+  body->cj = c;
+  body->start = l->water < 0 ? NULL : &predicted[l->water];
+  body->slope = l->water < 0 ? NULL : &rates[l->water];
+  const LamMacroInstant instant = LamBodyInstant(body, time);
+  PetscCall(LamMacroBalance(body->macro, &instant, &predicted[l->u], &predicted[l->pressures], &ok));
+  body->process->counts.questions++;
+  in->pending = PETSC_TRUE;
+  if (ok) PetscCall(FillCorrection(in, predicted, correction));
+  if (!ok)
+    PetscCall(PetscStrncpy(body->process->trouble, LamMacroTrouble(body->macro), sizeof(body->process->trouble)));
+  PetscCall(LamMacroStopped(body->macro, &body->process->stopped));
+  if (ok) body->evaluated = time;
+  *flag = body->process->stopped ? -1 : ok ? 0 : SUN_NLS_CONV_RECVR;
+  PetscFunctionReturn(0);
+}
+
+/* Solve of a SUNNonlinearSolver. */
+static int Solve(SUNNonlinearSolver solver, N_Vector y0, N_Vector correction, N_Vector w, PetscReal tolerance,
+                 booleantype setup, void *mem)
+{
+  Integration *in = (Integration *)solver->content;
+  N_Vector predicted, rates, yn, ypn, residual;
+  PetscReal time, c;
+  void *data;
+  int flag = -1;
+
+  if (IDAGetNonlinearSystemData(in->ida, &time, &predicted, &rates, &yn, &ypn, &residual, &c, &data)) return -1;
+  in->error = SolveStep(in, time, c, N_VGetArrayPointer(predicted), N_VGetArrayPointer(rates),
+                        N_VGetArrayPointer(correction), &flag);
+  return in->error ? -1 : flag;
+}
+
+static SUNNonlinearSolver_Type SolverType(SUNNonlinearSolver solver)
+{
+  return SUNNONLINEARSOLVER_ROOTFIND;
+}
+
+/* IDA gives it the residual, which SolveStep knows. */
+static int SetSystem(SUNNonlinearSolver solver, SUNNonlinSolSysFn residual)
+{
+  return SUN_NLS_SUCCESS;
+}
+
+static int FreeSolver(SUNNonlinearSolver solver)
+{
+  SUNNonlinSolFreeEmpty(solver);
+  return SUN_NLS_SUCCESS;
+}
+
+/* IDAResFn; nothing asks it. */
+static int Residual(PetscReal t, N_Vector y, N_Vector yp, N_Vector r, void *ctx)
+{
+  return -1;
+}
+
+/* ---- errors ---- */
+
+/* IDAEwtFn: weights of the norm sqrt(1/N sum (w e)^2). */
+static int Weights(N_Vector y_vector, N_Vector weight, void *ctx)
+{
+  const Integration *in = (Integration *)ctx;
+  const LamBody body = in->body;
+  const LamProcess process = body->process;
+  const Layout *l = &in->layout;
+  const PetscReal *y = N_VGetArrayPointer(y_vector), relative = process->spec->tolerance;
+  const PetscReal all = (PetscReal)in->total;
+  PetscReal *w = N_VGetArrayPointer(weight);
+
+  for (PetscInt k = 0; k < l->n; k++) w[k] = sqrt(all / (PetscReal)in->displacements) / (0.1 * relative);
+  for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++)
+    if (l->state[k] >= 0) w[l->state[k]] = sqrt(all) / (relative * (PetscAbsReal(y[l->state[k]]) + 1e-3));
+  if (l->idle >= 0) w[l->idle] = 1;
+  for (PetscInt p = 0; p < body->sizes.points; p++) {
+    PetscInt element, number, index;
+
+    if (l->water >= 0)
+      w[l->water + p] = sqrt(all * body->share[p]) / (relative * (PetscAbsReal(y[l->water + p]) + 1e-3));
+    if (!body->sizes.modes) continue;
+    (void)LamMacroGetElement(body->macro, p, &element, &number, &index);
+    for (PetscInt a = 0; a < body->sizes.modes; a++) {
+      PetscReal *of = &w[l->pressures + body->sizes.modes * element + a];
+
+      /* the points of an element add up to its share */
+      *of = index ? hypot(*of, sqrt(all * body->share[p]) / (relative * process->pressure))
+                  : sqrt(all * body->share[p]) / (relative * process->pressure);
+    }
+  }
+  return 0;
+}
+
+/* ---- roots ---- */
+
+/* Responses at y, which is not a solution of a step. */
+static PetscErrorCode ProbeAt(Integration *in, PetscReal time, const PetscReal y[], PetscBool *ok)
+{
+  LamBody body = in->body;
+  const Layout *l = &in->layout;
+
+  PetscFunctionBeginUser;
+  *ok = PETSC_TRUE;
+  if (body->evaluated == time) PetscFunctionReturn(0);
+  body->evaluated = NAN;
+  PetscCall(ShareStates(in, y, in->x));
+  PetscCall(LamBodySetTime(body, time, in->x, ok));
+  if (!*ok) PetscFunctionReturn(0);
+  const LamMacroInstant instant = LamBodyInstant(body, time);
+  PetscCall(LamMacroProbe(body->macro, &instant, &y[l->u], &y[l->pressures], ok));
+  body->process->counts.questions++;
+  PetscCall(LamMacroStopped(body->macro, &body->process->stopped));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode FindExcess(Integration *in, PetscReal time, const PetscReal y[], PetscReal excess[],
+                                 PetscBool *ok)
+{
+  PetscInt points[LAM_EVENT_COUNT];
+
+  PetscFunctionBeginUser;
+  PetscCall(ProbeAt(in, time, y, ok));
+  if (!*ok) PetscFunctionReturn(0);
+  PetscCall(LamBodyExcess(in->body, in->event_count, in->events, excess, points));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, excess, (PetscMPIInt)in->event_count, MPIU_REAL, MPIU_MAX, in->body->comm));
+  for (PetscInt k = 0; k < in->event_count; k++) {
+    if (in->events[k] == LAM_EVENT_TURGOR_FOUND) excess[k] = -excess[k]; /* all of them */
+    if (!isfinite(excess[k])) excess[k] = -1;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* IDARootFn */
+static int Roots(PetscReal t, N_Vector y, N_Vector yp, PetscReal excess[], void *ctx)
+{
+  Integration *in = (Integration *)ctx;
+  PetscBool ok = PETSC_FALSE;
+
+  in->error = FindExcess(in, t, N_VGetArrayPointer(y), excess, &ok);
+  return in->error || !ok ? -1 : 0;
+}
+
+/* ---- life ---- */
+
+/* IDAErrHandlerFn: what went wrong is told by the process. */
+static void Silence(int code, const char *module, const char *function, char *message, void *ctx) {}
+
+/* y' of what has one. */
+static PetscErrorCode StartRates(Integration *in)
+{
+  LamBody body = in->body;
+  const LamProcess process = body->process;
+  PetscReal *yp = N_VGetArrayPointer(in->yp);
+
+  PetscFunctionBeginUser;
+  N_VConst(0, in->yp);
+  for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++) {
+    PetscReal rate[LAM_KINETIC_STATES] = {0}, J[LAM_KINETIC_STATES][LAM_KINETIC_STATES];
+    const PetscInt *at = &in->layout.state[LAM_KINETIC_STATES * k];
+
+    if (at[0] < 0) continue;
+    LamKineticsRates(&process->spec->kinetics[k], body->now.temperature, &process->tissue.x[LAM_KINETIC_STATES * k],
+                     rate, J);
+    for (PetscInt i = 0; i < LAM_KINETIC_STATES; i++)
+      if (at[i] >= 0) yp[at[i]] = rate[i];
+  }
+  for (PetscInt p = 0; p < body->sizes.points && in->layout.water >= 0; p++) {
+    LamMacroPoint point;
+
+    PetscCall(LamMacroGetPoint(body->macro, p, &point));
+    yp[in->layout.water + p] = LamBodyFlow(body, p, body->water[p], point.load->turgor);
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CreateSolver(Integration *in)
+{
+  PetscFunctionBeginUser;
+  in->solver = SUNNonlinSolNewEmpty(in->context);
+  PetscCheck(in->solver, PETSC_COMM_SELF, PETSC_ERR_MEM, "SUNDIALS: no memory for a nonlinear solver");
+  in->solver->content = in;
+  in->solver->ops->gettype = SolverType;
+  in->solver->ops->solve = Solve;
+  in->solver->ops->setsysfn = SetSystem;
+  in->solver->ops->free = FreeSolver;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Create(LamBody body, Integration *in)
+{
+  const LamSegment *segment = &body->process->segment;
+
+  PetscFunctionBeginUser;
+  in->body = body;
+  in->layout = LayOut(body);
+  in->event_count = LamBodyListEvents(body, in->events);
+  in->total = in->layout.n;
+  in->displacements = body->sizes.displacements;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &in->total, 1, MPIU_INT, MPI_SUM, body->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &in->displacements, 1, MPIU_INT, MPI_SUM, body->comm));
+  LamCallSUN(SUNContext_Create(&body->comm, &in->context));
+  in->y = N_VNew_Parallel(body->comm, in->layout.n, in->total, in->context);
+  PetscCheck(in->y, PETSC_COMM_SELF, PETSC_ERR_MEM, "SUNDIALS: no memory for a vector");
+  in->yp = N_VClone(in->y);
+  Pack(body, &in->layout, N_VGetArrayPointer(in->y));
+  PetscCall(StartRates(in));
+  in->ida = IDACreate(in->context);
+  PetscCheck(in->ida, PETSC_COMM_SELF, PETSC_ERR_MEM, "SUNDIALS: no memory for an integrator");
+  LamCallSUN(IDASetErrHandlerFn(in->ida, Silence, NULL));
+  LamCallSUN(IDAInit(in->ida, Residual, segment->start, in->y, in->yp));
+  LamCallSUN(IDASetUserData(in->ida, in));
+  LamCallSUN(IDAWFtolerances(in->ida, Weights));
+  LamCallSUN(IDASetMaxNumSteps(in->ida, MAX_STEPS));
+  LamCallSUN(IDASetMaxConvFails(in->ida, MAX_FAILURES));
+  LamCallSUN(IDASetStopTime(in->ida, segment->end));
+  PetscCall(CreateSolver(in));
+  LamCallSUN(IDASetNonlinearSolver(in->ida, in->solver));
+  if (in->event_count) {
+    int rising[LAM_EVENT_COUNT];
+
+    for (PetscInt k = 0; k < in->event_count; k++) rising[k] = 1;
+    LamCallSUN(IDARootInit(in->ida, (int)in->event_count, Roots));
+    LamCallSUN(IDASetRootDirection(in->ida, rising));
+    LamCallSUN(IDASetNoInactiveRootWarn(in->ida));
+  }
+  PetscFunctionReturn(0);
+}
+
+static void Destroy(Integration *in)
+{
+  if (in->ida) IDAFree(&in->ida);
+  if (in->solver) SUNNonlinSolFree(in->solver);
+  if (in->yp) N_VDestroy(in->yp);
+  if (in->y) N_VDestroy(in->y);
+  if (in->context) SUNContext_Free(&in->context);
+}
+
+/* ---- the way ---- */
+
+/* Tells the outputs up to a time that the integrator has passed. */
+static PetscErrorCode TellUpTo(Integration *in, PetscReal time, PetscBool *ok)
+{
+  LamBody body = in->body;
+  LamProcess process = body->process;
+  N_Vector y = N_VClone(in->y);
+  PetscErrorCode ierr = 0;
+
+  PetscFunctionBeginUser;
+  while (!ierr && *ok && process->next_output <= time && process->next_output <= process->spec->duration) {
+    const PetscReal at = process->next_output;
+
+    if (IDAGetDky(in->ida, at, 0, y) != IDA_SUCCESS) N_VScale(1, in->y, y);
+    ierr = Unpack(in, at, N_VGetArrayPointer(y));
+    if (!ierr && body->evaluated != at) ierr = LamBodySettle(body, at, ok);
+    if (!ierr && *ok) ierr = LamBodyTell(body, NULL);
+    LamProcessNextOutput(process);
+  }
+  N_VDestroy(y);
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode DescribeFailure(LamProcess process, int flag)
+{
+  PetscFunctionBeginUser;
+  if (flag == IDA_ERR_FAIL)
+    PetscCall(PetscStrncpy(process->trouble, "the error of a step of time cannot be brought below the tolerance",
+                           sizeof(process->trouble)));
+  else if (!process->trouble[0])
+    PetscCall(PetscSNPrintf(process->trouble, sizeof(process->trouble), "no step of time converges (IDA: %d)", flag));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode FindEvents(const Integration *in, PetscBool happened[LAM_EVENT_COUNT])
+{
+  int found[LAM_EVENT_COUNT];
+
+  PetscFunctionBeginUser;
+  LamCallSUN(IDAGetRootInfo(in->ida, found));
+  for (PetscInt k = 0; k < in->event_count; k++)
+    if (found[k]) happened[in->events[k]] = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+/* What a step that IDA has accepted leaves: its solution is that of the body. */
+static PetscErrorCode TakeStep(Integration *in, PetscReal time)
+{
+  PetscFunctionBeginUser;
+  if (in->pending && in->body->evaluated == time) PetscCall(LamMacroAccept(in->body->macro));
+  if (in->pending && in->body->evaluated != time)
+    PetscCall(LamMacroReject(in->body->macro)); /* roots asked elsewhere */
+  in->pending = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Follow(Integration *in, PetscBool happened[LAM_EVENT_COUNT], PetscBool *ok)
+{
+  LamBody body = in->body;
+  LamProcess process = body->process;
+  int flag = IDA_SUCCESS;
+  PetscReal t = process->segment.start;
+
+  PetscFunctionBeginUser;
+  *ok = PETSC_TRUE;
+  while (flag == IDA_SUCCESS && *ok && t < process->segment.end) {
+    process->trouble[0] = '\0';
+    flag = IDASolve(in->ida, process->segment.end, &t, in->y, in->yp, IDA_ONE_STEP);
+    PetscCall(in->error);
+    if (flag < 0) break;
+    process->counts.steps++;
+    PetscCall(TakeStep(in, t));
+    PetscCall(TellUpTo(in, t, ok));
+    if (*ok) PetscCall(Unpack(in, t, N_VGetArrayPointer(in->y)));
+    if (process->stopped) break;
+  }
+  if (flag < 0 && in->pending) PetscCall(LamMacroReject(body->macro));
+  if (flag < 0 && !process->stopped) PetscCall(DescribeFailure(process, flag));
+  if (flag < 0 || process->stopped) *ok = PETSC_FALSE;
+  if (*ok && flag == IDA_ROOT_RETURN) PetscCall(FindEvents(in, happened));
+  if (*ok && body->evaluated != t) PetscCall(LamBodySettle(body, t, ok));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamBodyIntegrate(LamBody body, PetscBool happened[LAM_EVENT_COUNT], PetscBool *ok)
+{
+  Integration in = {0};
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  body->process->counts.restarts++;
+  ierr = Create(body, &in);
+  if (!ierr) ierr = Follow(&in, happened, ok);
+  Destroy(&in);
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
