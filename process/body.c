@@ -143,8 +143,7 @@ static LamWaterMode AtOnce(LamBody body)
   return isfinite(body->process->spec->water.permeability) ? LAM_WATER_GIVEN : LAM_WATER_OSMOSIS;
 }
 
-/* Of osmosis: the water that follows from the turgor. */
-static PetscErrorCode FillWater(LamBody body)
+PetscErrorCode LamBodyFillWater(LamBody body)
 {
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < body->sizes.points && body->process->spec->has_water; p++) {
@@ -175,7 +174,7 @@ static PetscErrorCode Balance(LamBody body, const LamMacroInstant *instant, Pets
   }
   PetscCall(LamMacroAccept(body->macro));
   PetscCall(LamMacroGetState(body->macro, body->u, body->pressures));
-  PetscCall(FillWater(body));
+  PetscCall(LamBodyFillWater(body));
   PetscFunctionReturn(0);
 }
 

@@ -74,6 +74,8 @@ LamMacroInstant LamBodyInstant(LamBody body, PetscReal time);
   passing. *ok: found; it is then that of the body and of the macroscale solver.
 */
 PetscErrorCode LamBodySettle(LamBody body, PetscReal time, PetscBool *ok);
+/* The water that follows from the turgor of the present state. */
+PetscErrorCode LamBodyFillWater(LamBody body);
 PetscErrorCode LamBodyTell(LamBody body, const PetscBool happened[LAM_EVENT_COUNT]);
 
 /* ---- body_integrate.c ---- */

@@ -455,7 +455,10 @@ static PetscErrorCode TellUpTo(Integration *in, PetscReal time, PetscBool *ok)
 
     if (IDAGetDky(in->ida, at, 0, y) != IDA_SUCCESS) N_VScale(1, in->y, y);
     ierr = Unpack(in, at, N_VGetArrayPointer(y));
-    if (!ierr && body->evaluated != at) ierr = LamBodySettle(body, at, ok);
+    if (!ierr && body->evaluated != at)
+      ierr = LamBodySettle(body, at, ok);
+    else if (!ierr && in->layout.water < 0)
+      ierr = LamBodyFillWater(body);
     if (!ierr && *ok) ierr = LamBodyTell(body, NULL);
     LamProcessNextOutput(process);
   }
@@ -521,7 +524,10 @@ static PetscErrorCode Follow(Integration *in, PetscBool happened[LAM_EVENT_COUNT
   if (flag < 0 && !process->stopped) PetscCall(DescribeFailure(process, flag));
   if (flag < 0 || process->stopped) *ok = PETSC_FALSE;
   if (*ok && flag == IDA_ROOT_RETURN) PetscCall(FindEvents(in, happened));
-  if (*ok && body->evaluated != t) PetscCall(LamBodySettle(body, t, ok));
+  if (*ok && body->evaluated != t)
+    PetscCall(LamBodySettle(body, t, ok));
+  else if (*ok && in->layout.water < 0)
+    PetscCall(LamBodyFillWater(body));
   PetscFunctionReturn(0);
 }
 
