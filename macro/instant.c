@@ -37,6 +37,7 @@ PetscErrorCode LamMacroStart(LamMacro macro, PetscBool *ok, char message[LAM_MES
   PetscCheck(macro->responder, macro->comm, PETSC_ERR_ORDER, "call LamMacroSetResponder() first");
   message[0] = '\0';
   macro->extrapolates = PETSC_FALSE; /* guesses are given */
+  macro->thorough = PETSC_FALSE;
   PetscCall(LamMacroStartStep(macro, &start));
   PetscCall(LamMacroBringUpTurgor(macro, &reached, ok));
   if (*ok && macro->scene->macro.inflate) PetscCall(LamMacroHoldBoundaries(macro));
@@ -88,17 +89,8 @@ PetscErrorCode LamMacroBalance(LamMacro macro, const LamMacroInstant *instant, c
   PetscFunctionBeginUser;
   PetscCall(Enter(macro, instant, u, pressures));
   macro->prediction = 0;
+  macro->thorough = PETSC_TRUE; /* else what changes little in time would not move the body at all */
   PetscCall(LamMacroIterate(macro, ok));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamMacroProbe(LamMacro macro, const LamMacroInstant *instant, const PetscReal u[],
-                             const PetscReal pressures[], PetscBool *ok)
-{
-  PetscFunctionBeginUser;
-  macro->trouble[0] = '\0';
-  PetscCall(Enter(macro, instant, u, pressures));
-  PetscCall(LamMacroEvaluate(macro, macro->trial, ok));
   PetscFunctionReturn(0);
 }
 

@@ -232,6 +232,7 @@ struct LamMacro_s {
   LamObstacle obstacles[LAM_MAX_BOUNDARIES];
   PetscInt obstacle_node_count;
   LamObstacleNode *obstacle_nodes;
+  PetscBool thorough;  /* at least one iteration, however small the first residual */
   PetscBool fresh;     /* no residual yet in this series of iterations */
   PetscReal violation; /* largest penetration or distance of nodes that are not as they should be, last residual */
   PetscInt row_count;

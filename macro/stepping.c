@@ -76,6 +76,7 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
 
   PetscFunctionBeginUser;
   *reason = SNES_CONVERGED_ITERATING;
+  if (macro->thorough && it == 0 && !PetscIsInfOrNanReal(fnorm)) PetscFunctionReturn(0);
   for (PetscInt b = 0; b < macro->border_count; b++) fnorm = PetscMax(fnorm, PetscAbsReal(macro->borders[b].equation));
   if (PetscIsInfOrNanReal(fnorm))
     *reason = SNES_DIVERGED_FNORM_NAN;

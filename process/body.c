@@ -198,7 +198,8 @@ static PetscReal Between(PetscReal from, PetscReal to, PetscReal share)
   return from + share * (to - from);
 }
 
-/* From the conditions `from`, in temperature and bath of the tissue, to those of the segment's start. */
+/* From the conditions `from`, in temperature and bath of the tissue, to those of the segment's start; in any case to
+   an equilibrium there, as far as rounding and interpolation have left it. */
 static PetscErrorCode Jump(LamBody body, const LamMacroInstant *from, PetscBool *ok)
 {
   LamProcess process = body->process;
@@ -246,19 +247,17 @@ static PetscErrorCode EnterSegment(LamBody body, PetscBool *ok)
   from = to = LamBodyInstant(body, tissue->time);
   from.load = tissue->load;
   from.turgor = body->turgor_share;
-  PetscBool jumps = (PetscBool)(PetscAbsReal(from.load - to.load) > 1e-12 || from.turgor != to.turgor);
+  const PetscBool jumps = (PetscBool)(PetscAbsReal(from.load - to.load) > 1e-12 || from.turgor != to.turgor);
 
-  if (AtOnce(body) == LAM_WATER_OSMOSIS)
-    jumps = (PetscBool)(jumps || tissue->outside != segment->outside.from ||
-                        tissue->temperature != segment->temperature.from || tissue->time == 0);
-  if (jumps || tissue->time == 0) PetscCall(Jump(body, &from, ok));
+  PetscCall(LamMacroForget(body->macro)); /* a cache may have learnt meanwhile */
+  PetscCall(Jump(body, jumps ? &from : &to, ok));
   if (!*ok) PetscFunctionReturn(0);
   tissue->load = segment->load.from;
   body->turgor_share = to.turgor;
   tissue->temperature = segment->temperature.from;
   tissue->outside = segment->outside.from;
   PetscCall(LamBodySetTime(body, tissue->time, tissue->x, ok));
-  body->evaluated = jumps || tissue->time == 0 ? tissue->time : body->evaluated;
+  body->evaluated = tissue->time;
   PetscFunctionReturn(0);
 }
 

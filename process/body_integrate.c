@@ -11,8 +11,9 @@
   the macroscale solver, with its condensed tangent, is IDA's nonlinear solver. Predictions, errors, steps, orders and
   roots are IDA's.
 
-  Errors are measured as means over the body: of the water by volume, of the turgor likewise, of the displacement by
-  nodes; each kinetic state counts like one of these.
+  Errors are those of x and V, the latter as a mean over the body's volume: turgor and displacement follow from these,
+  and are balanced anew wherever they are told or looked at for events, so that neither their interpolation in time nor
+  what is uncertain of interpolated responses limits the steps.
 
   Reference: Hindmarsh et al., ACM TOMS 31 (2005) 363-396.
 */
@@ -23,7 +24,7 @@
 #include <sundials/sundials_nonlinearsolver.h>
 #include <sundials/sundials_types.h>
 
-enum { MAX_STEPS = 1000000, MAX_FAILURES = 25, KINETIC_ITERATIONS = 30 };
+enum { MAX_STEPS = 100000, MAX_FAILURES = 25, MAX_RESTARTS = 3, KINETIC_ITERATIONS = 30 };
 #define KINETIC_EXACT 1e-14
 
 #define LamCallSUN(call)                                                                                               \
@@ -41,7 +42,7 @@ typedef struct {
 typedef struct {
   LamBody body;
   Layout layout;
-  PetscInt total, displacements; /* unknowns of all ranks */
+  PetscInt total; /* unknowns of all ranks */
   PetscInt event_count;
   LamEvent events[LAM_EVENT_COUNT];
   PetscReal x[LAM_PROCESS_KINETIC]; /* in the last step's solution, on all ranks */
@@ -50,7 +51,7 @@ typedef struct {
 
   SUNContext context;
   void *ida;
-  N_Vector y, yp;
+  N_Vector y, yp, id;
   SUNNonlinearSolver solver;
 } Integration;
 
@@ -262,43 +263,28 @@ static int Residual(PetscReal t, N_Vector y, N_Vector yp, N_Vector r, void *ctx)
 
 /* ---- errors ---- */
 
-/* IDAEwtFn: weights of the norm sqrt(1/N sum (w e)^2). */
+/* IDAEwtFn: weights of the norm sqrt(1/N sum (w e)^2) over x and V. */
 static int Weights(N_Vector y_vector, N_Vector weight, void *ctx)
 {
   const Integration *in = (Integration *)ctx;
   const LamBody body = in->body;
-  const LamProcess process = body->process;
   const Layout *l = &in->layout;
-  const PetscReal *y = N_VGetArrayPointer(y_vector), relative = process->spec->tolerance;
+  const PetscReal *y = N_VGetArrayPointer(y_vector), relative = body->process->spec->tolerance;
   const PetscReal all = (PetscReal)in->total;
   PetscReal *w = N_VGetArrayPointer(weight);
 
-  for (PetscInt k = 0; k < l->n; k++) w[k] = sqrt(all / (PetscReal)in->displacements) / (0.1 * relative);
+  N_VConst(1, weight); /* also of what has no rate, whose errors are not looked at */
   for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++)
     if (l->state[k] >= 0) w[l->state[k]] = sqrt(all) / (relative * (PetscAbsReal(y[l->state[k]]) + 1e-3));
-  if (l->idle >= 0) w[l->idle] = 1;
-  for (PetscInt p = 0; p < body->sizes.points; p++) {
-    PetscInt element, number, index;
-
-    if (l->water >= 0)
-      w[l->water + p] = sqrt(all * body->share[p]) / (relative * (PetscAbsReal(y[l->water + p]) + 1e-3));
-    if (!body->sizes.modes) continue;
-    (void)LamMacroGetElement(body->macro, p, &element, &number, &index);
-    for (PetscInt a = 0; a < body->sizes.modes; a++) {
-      PetscReal *of = &w[l->pressures + body->sizes.modes * element + a];
-
-      /* the points of an element add up to its share */
-      *of = index ? hypot(*of, sqrt(all * body->share[p]) / (relative * process->pressure))
-                  : sqrt(all * body->share[p]) / (relative * process->pressure);
-    }
-  }
+  for (PetscInt p = 0; p < body->sizes.points && l->water >= 0; p++)
+    w[l->water + p] = sqrt(all * body->share[p]) / (relative * (PetscAbsReal(y[l->water + p]) + 1e-3));
   return 0;
 }
 
 /* ---- roots ---- */
 
-/* Responses at y, which is not a solution of a step. */
-static PetscErrorCode ProbeAt(Integration *in, PetscReal time, const PetscReal y[], PetscBool *ok)
+/* Balances the body with the water and kinetic states in y, unless it is there. */
+static PetscErrorCode BalanceAt(Integration *in, PetscReal time, const PetscReal y[], PetscBool *ok)
 {
   LamBody body = in->body;
   const Layout *l = &in->layout;
@@ -310,9 +296,13 @@ static PetscErrorCode ProbeAt(Integration *in, PetscReal time, const PetscReal y
   PetscCall(ShareStates(in, y, in->x));
   PetscCall(LamBodySetTime(body, time, in->x, ok));
   if (!*ok) PetscFunctionReturn(0);
+  if (l->water >= 0) PetscCall(PetscArraycpy(body->water, &y[l->water], body->sizes.points));
+  body->mode = l->water < 0 ? LAM_WATER_OSMOSIS : LAM_WATER_GIVEN;
   const LamMacroInstant instant = LamBodyInstant(body, time);
-  PetscCall(LamMacroProbe(body->macro, &instant, &y[l->u], &y[l->pressures], ok));
+  PetscCall(LamMacroBalance(body->macro, &instant, &y[l->u], &y[l->pressures], ok));
+  in->pending = PETSC_TRUE;
   body->process->counts.questions++;
+  if (*ok) body->evaluated = time;
   PetscCall(LamMacroStopped(body->macro, &body->process->stopped));
   PetscFunctionReturn(0);
 }
@@ -323,7 +313,7 @@ static PetscErrorCode FindExcess(Integration *in, PetscReal time, const PetscRea
   PetscInt points[LAM_EVENT_COUNT];
 
   PetscFunctionBeginUser;
-  PetscCall(ProbeAt(in, time, y, ok));
+  PetscCall(BalanceAt(in, time, y, ok));
   if (!*ok) PetscFunctionReturn(0);
   PetscCall(LamBodyExcess(in->body, in->event_count, in->events, excess, points));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, excess, (PetscMPIInt)in->event_count, MPIU_REAL, MPIU_MAX, in->body->comm));
@@ -399,9 +389,7 @@ static PetscErrorCode Create(LamBody body, Integration *in)
   in->layout = LayOut(body);
   in->event_count = LamBodyListEvents(body, in->events);
   in->total = in->layout.n;
-  in->displacements = body->sizes.displacements;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &in->total, 1, MPIU_INT, MPI_SUM, body->comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &in->displacements, 1, MPIU_INT, MPI_SUM, body->comm));
   LamCallSUN(SUNContext_Create(&body->comm, &in->context));
   in->y = N_VNew_Parallel(body->comm, in->layout.n, in->total, in->context);
   PetscCheck(in->y, PETSC_COMM_SELF, PETSC_ERR_MEM, "SUNDIALS: no memory for a vector");
@@ -411,10 +399,15 @@ static PetscErrorCode Create(LamBody body, Integration *in)
   in->ida = IDACreate(in->context);
   PetscCheck(in->ida, PETSC_COMM_SELF, PETSC_ERR_MEM, "SUNDIALS: no memory for an integrator");
   LamCallSUN(IDASetErrHandlerFn(in->ida, Silence, NULL));
-  LamCallSUN(IDAInit(in->ida, Residual, segment->start, in->y, in->yp));
+  LamCallSUN(IDAInit(in->ida, Residual, body->process->tissue.time, in->y, in->yp));
   LamCallSUN(IDASetUserData(in->ida, in));
   LamCallSUN(IDAWFtolerances(in->ida, Weights));
-  LamCallSUN(IDASetMaxNumSteps(in->ida, MAX_STEPS));
+  in->id = N_VClone(in->y);
+  N_VConst(0, in->id);
+  for (PetscInt k = 0; k < in->layout.pressures; k++) N_VGetArrayPointer(in->id)[k] = 1;
+  LamCallSUN(IDASetId(in->ida, in->id));
+  LamCallSUN(IDASetSuppressAlg(in->ida, SUNTRUE));
+  LamCallSUN(IDASetMaxStep(in->ida, body->process->spec->output)); /* events that pass are not to be missed */
   LamCallSUN(IDASetMaxConvFails(in->ida, MAX_FAILURES));
   LamCallSUN(IDASetStopTime(in->ida, segment->end));
   PetscCall(CreateSolver(in));
@@ -434,6 +427,7 @@ static void Destroy(Integration *in)
 {
   if (in->ida) IDAFree(&in->ida);
   if (in->solver) SUNNonlinSolFree(in->solver);
+  if (in->id) N_VDestroy(in->id);
   if (in->yp) N_VDestroy(in->yp);
   if (in->y) N_VDestroy(in->y);
   if (in->context) SUNContext_Free(&in->context);
@@ -489,13 +483,14 @@ static PetscErrorCode FindEvents(const Integration *in, PetscBool happened[LAM_E
   PetscFunctionReturn(0);
 }
 
-/* What a step that IDA has accepted leaves: its solution is that of the body. */
+/* After a step that IDA has accepted: its solution is that of the body, unless events were looked for elsewhere. */
 static PetscErrorCode TakeStep(Integration *in, PetscReal time)
 {
   PetscFunctionBeginUser;
-  if (in->pending && in->body->evaluated == time) PetscCall(LamMacroAccept(in->body->macro));
-  if (in->pending && in->body->evaluated != time)
-    PetscCall(LamMacroReject(in->body->macro)); /* roots asked elsewhere */
+  if (in->pending && in->body->evaluated == time)
+    PetscCall(LamMacroAccept(in->body->macro));
+  else if (in->pending)
+    PetscCall(LamMacroReject(in->body->macro));
   in->pending = PETSC_FALSE;
   PetscFunctionReturn(0);
 }
@@ -505,11 +500,17 @@ static PetscErrorCode Follow(Integration *in, PetscBool happened[LAM_EVENT_COUNT
   LamBody body = in->body;
   LamProcess process = body->process;
   int flag = IDA_SUCCESS;
-  PetscReal t = process->segment.start;
+  PetscReal t = process->tissue.time;
+  PetscInt steps = 0;
 
   PetscFunctionBeginUser;
   *ok = PETSC_TRUE;
   while (flag == IDA_SUCCESS && *ok && t < process->segment.end) {
+    if (++steps > MAX_STEPS) {
+      PetscCall(PetscStrncpy(process->trouble, "its steps of time are too short to come on", sizeof(process->trouble)));
+      *ok = PETSC_FALSE;
+      PetscFunctionReturn(0);
+    }
     process->trouble[0] = '\0';
     flag = IDASolve(in->ida, process->segment.end, &t, in->y, in->yp, IDA_ONE_STEP);
     PetscCall(in->error);
@@ -531,7 +532,8 @@ static PetscErrorCode Follow(Integration *in, PetscBool happened[LAM_EVENT_COUNT
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamBodyIntegrate(LamBody body, PetscBool happened[LAM_EVENT_COUNT], PetscBool *ok)
+/* From the present state on. */
+static PetscErrorCode IntegrateOnce(LamBody body, PetscBool happened[LAM_EVENT_COUNT], PetscBool *ok)
 {
   Integration in = {0};
   PetscErrorCode ierr;
@@ -542,5 +544,29 @@ PetscErrorCode LamBodyIntegrate(LamBody body, PetscBool happened[LAM_EVENT_COUNT
   if (!ierr) ierr = Follow(&in, happened, ok);
   Destroy(&in);
   PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+/* Answers of a cache change a little, all at once, where it learns; then the way goes on from a new equilibrium. */
+PetscErrorCode LamBodyIntegrate(LamBody body, PetscBool happened[LAM_EVENT_COUNT], PetscBool *ok)
+{
+  LamProcess process = body->process;
+  char why[sizeof(process->trouble)];
+  PetscInt tries = 0;
+
+  PetscFunctionBeginUser;
+  for (;;) {
+    const PetscReal from = process->tissue.time;
+
+    PetscCall(IntegrateOnce(body, happened, ok));
+    if (*ok || process->stopped) break;
+    tries = process->tissue.time > from ? 0 : tries + 1;
+    if (tries == MAX_RESTARTS) break;
+    PetscCall(PetscStrncpy(why, process->trouble, sizeof(why)));
+    PetscCall(LamMacroForget(body->macro));
+    PetscCall(LamBodySettle(body, process->tissue.time, ok));
+    PetscCall(PetscStrncpy(process->trouble, why, sizeof(why)));
+    if (!*ok) break;
+  }
   PetscFunctionReturn(0);
 }

@@ -127,11 +127,8 @@ PetscErrorCode LamMacroBalance(LamMacro macro, const LamMacroInstant *instant, c
                                const PetscReal pressures[], PetscBool *ok);
 PetscErrorCode LamMacroAccept(LamMacro macro); /* it is the last converged state */
 PetscErrorCode LamMacroReject(LamMacro macro); /* all is as before it */
-/* The state of the last LamMacroBalance or LamMacroProbe. */
+/* The state of the last LamMacroBalance. */
 PetscErrorCode LamMacroGetState(LamMacro macro, PetscReal u[], PetscReal pressures[]);
-/* Responses at a state, which is not balanced, and not to be accepted. */
-PetscErrorCode LamMacroProbe(LamMacro macro, const LamMacroInstant *instant, const PetscReal u[],
-                             const PetscReal pressures[], PetscBool *ok);
 const char *LamMacroTrouble(LamMacro macro);
 PetscErrorCode LamMacroStopped(LamMacro macro, PetscBool *stopped); /* LamMacroSetStop said so; on all ranks */
 

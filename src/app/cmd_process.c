@@ -189,6 +189,7 @@ PetscErrorCode LamCommandProcess(LamArgs *args, int *exit_status)
   PetscCall(LamSceneRead(run.response.scene_path, &run.scene));
   run.response.scene = run.scene;
   run.response.walls = 1;
+  run.response.follows_water = run.scene->process.has_water;
   if (run.scene->has_macro && run.scene->has_process) {
     PetscCall(LamProcessBody(&run, exit_status));
     PetscFunctionReturn(0);
