@@ -6,7 +6,7 @@
 */
 #include "rounding.h"
 #include "map.h"
-#include "plot_process.h"
+#include "plot_time.h"
 #include <math.h>
 
 /* An iteration (assembly, factorisation, solve) costs this many assemblies; of bonded tissue small enough for a

@@ -208,7 +208,7 @@ static PetscErrorCode Solve(LamFE2Run *run, int *exit_status)
 
 PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status)
 {
-  LamFE2Run run = {.walls = 1};
+  LamFE2Run run = {.walls = 1, .wall_ratio = {1, 1, 1}};
   PetscErrorCode ierr;
   PetscBool done;
   const LamOption options[] = {

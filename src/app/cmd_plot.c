@@ -54,7 +54,8 @@ PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status)
       {0, "field", LAM_OPTION_TEXT, "NAME", "field that gives the colours (docs/pictures.md lists them)",
        &request.field},
       {0, "film", LAM_OPTION_FLAG, NULL,
-       "of a process: a page (PDF) or a numbered file for each state whose cells the file has", &request.film},
+       "of a process: a page (PDF) or a numbered file for each state whose cells, or body, the file has",
+       &request.film},
       {0, "map", LAM_OPTION_TEXT, "MAP.h5", "of a process: its way over this map of failure", &request.map},
       {0, "angle", LAM_OPTION_TEXT, "ANGLE",
        "slice through a table: first principal axis to the normal of face 0, \"15 deg\" (default: 0)", &request.angle},
@@ -85,8 +86,8 @@ PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status)
   request.output = output;
   PetscCall(LamFileReadKind(input, kind));
   if (strcmp(kind, "database")) PetscCall(LamSliceRefuse(&request));
-  PetscCheck(!strcmp(kind, "process") || (!request.film && !request.map), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: is of kind \"%s\"; --film and --map draw files of process", input, kind);
+  PetscCheck(!strcmp(kind, "process") || ((!request.film || !strcmp(kind, "fe2")) && !request.map), PETSC_COMM_SELF,
+             PETSC_ERR_USER_INPUT, "%s: is of kind \"%s\"; --film and --map draw files of process", input, kind);
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(Plots); i++) {
     if (strcmp(kind, Plots[i].kind)) continue;
     PetscCall(Plots[i].plot(&request));

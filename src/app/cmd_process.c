@@ -44,22 +44,9 @@ static PetscErrorCode Disconnect(LamProcessRunState *run)
 PetscErrorCode LamProcessChangeWalls(void *ctx, const PetscReal factor[3])
 {
   LamFE2Tissue *tissue = (LamFE2Tissue *)ctx;
-  LamMicrostructure changed;
-  PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
-  PetscCall(LamMicrostructureCopy(&tissue->scene.micro, &changed));
-  const PetscInt cells = changed.cell ? changed.cells[0] * changed.cells[1] : 0;
-  for (PetscInt c = -1; c < cells; c++) {
-    LamWall *wall = c < 0 ? &changed.wall : &changed.cell[c].wall;
-
-    wall->C1 *= factor[0];
-    wall->C2 *= factor[1];
-    wall->C4 *= factor[2];
-  }
-  ierr = LamRVEChangeModuli(tissue->rve, &changed);
-  PetscCall(LamMicrostructureDestroy(&changed));
-  PetscCall(ierr);
+  PetscCall(LamFE2ChangeWalls(tissue->rve, &tissue->scene.micro, factor));
   PetscFunctionReturn(0);
 }
 
@@ -189,6 +176,7 @@ PetscErrorCode LamCommandProcess(LamArgs *args, int *exit_status)
   PetscCall(LamSceneRead(run.response.scene_path, &run.scene));
   run.response.scene = run.scene;
   run.response.walls = 1;
+  for (int k = 0; k < 3; k++) run.response.wall_ratio[k] = 1;
   run.response.follows_water = run.scene->process.has_water;
   if (run.scene->has_macro && run.scene->has_process) {
     PetscCall(LamProcessBody(&run, exit_status));

@@ -37,18 +37,18 @@ static void Add(LamFE2Fields *f, const char name[], const char ending[], PetscIn
   f->scalars[f->count++] = scalar;
 }
 
-static void AddScalar(LamFE2Fields *f, LamPointField field, const char ending[2][16], PetscReal factor,
-                      const char unit[])
+static void AddScalar(LamFE2Fields *f, LamPointField field, const char ending[2][16], PetscBool over_strength,
+                      PetscReal factor, const char unit[])
 {
   for (int largest = 0; largest < (HasLargest(field) ? 2 : 1); largest++)
     Add(f, LamPointFieldNames[field], largest && field == LAM_POINT_ELLIPTICITY ? "_min" : ending[largest], 1,
-        (LamFE2Scalar){field, (PetscBool)largest, factor, unit});
+        (LamFE2Scalar){field, (PetscBool)largest, over_strength, factor, unit});
 }
 
 void LamFE2FieldsChoose(const LamScene *scene, LamFE2Fields *fields)
 {
   static const char plain[2][16] = {"", "_max"}, ratio[2][16] = {"_ratio", "_ratio_max"};
-  const LamFE2Scalar none = {LAM_POINT_FIELD_COUNT, PETSC_FALSE, 1, NULL};
+  const LamFE2Scalar none = {LAM_POINT_FIELD_COUNT, PETSC_FALSE, PETSC_FALSE, 1, NULL};
   const PetscReal MPa = scene->scales.stress * 1e-6;
 
   fields->count = 0;
@@ -60,8 +60,11 @@ void LamFE2FieldsChoose(const LamScene *scene, LamFE2Fields *fields)
     const LamPointField field = (LamPointField)k;
     const PetscReal strength = LamFE2Strength(&scene->strength, field);
     const PetscBool stress = LamPointFieldIsStress(field);
-    AddScalar(fields, field, plain, stress ? MPa : 1, stress ? "MPa" : field == LAM_POINT_GAP ? "apothem" : "1");
-    if (isfinite(strength)) AddScalar(fields, field, ratio, 1 / strength, "1");
+    AddScalar(fields, field, plain, PETSC_FALSE, stress ? MPa : 1,
+              stress                   ? "MPa"
+              : field == LAM_POINT_GAP ? "apothem"
+                                       : "1");
+    if (isfinite(strength)) AddScalar(fields, field, ratio, PETSC_TRUE, 1, "1");
   }
 }
 

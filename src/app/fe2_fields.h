@@ -12,7 +12,8 @@
 typedef struct {
   LamPointField field;
   PetscBool largest; /* of the element's points; else their mean */
-  PetscReal factor;
+  PetscBool over_strength;
+  PetscReal factor; /* to its unit; not of what is over a strength */
   const char *unit; /* static */
 } LamFE2Scalar;
 
@@ -20,7 +21,7 @@ enum { LAM_FE2_MAX_FIELDS = 4 + 2 * (LAM_POINT_FIELD_COUNT + 3) };
 
 /*
   Of a scene: u, F, P, cauchy come first (scalars[k].unit is NULL), then the scalars. A name ends in _max where it is
-  the largest value, and in _ratio where it is over the scene's strength, which are there only where that is given.
+  the largest value, and in _ratio where it is over the strength, which are there only where the scene gives that.
 */
 typedef struct {
   PetscInt count;

@@ -127,7 +127,8 @@ static PetscErrorCode WriteTensors(LamFE2File file, PetscInt step, const LamMacr
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode WriteScalars(LamFE2File file, PetscInt step, const LamMacroFields *fields)
+static PetscErrorCode WriteScalars(LamFE2File file, PetscInt step, const LamMacroFields *fields,
+                                   const LamStrength *strength)
 {
   char name[128];
 
@@ -136,9 +137,10 @@ static PetscErrorCode WriteScalars(LamFE2File file, PetscInt step, const LamMacr
     const LamFE2Scalar *scalar = &file->fields.scalars[k];
     const PetscReal *values = scalar->largest ? fields->largest : fields->mean;
     if (!scalar->unit) continue;
+    const PetscReal factor = scalar->over_strength ? 1 / LamFE2Strength(strength, scalar->field) : scalar->factor;
     PetscCall(StepName(step, file->fields.fields[k].name, name));
-    PetscCall(WriteColumns(file, name, fields->element_count, LAM_POINT_FIELD_COUNT, 1, &values[scalar->field],
-                           scalar->factor, scalar->unit));
+    PetscCall(WriteColumns(file, name, fields->element_count, LAM_POINT_FIELD_COUNT, 1, &values[scalar->field], factor,
+                           scalar->unit));
   }
   PetscFunctionReturn(0);
 }
@@ -219,7 +221,7 @@ PetscErrorCode LamFE2FileAddStep(LamFE2File file, const LamMacroStep *step, cons
   if (!file->step_count) PetscCall(WriteMesh(file, step, fields));
   PetscCall(WriteDisplacement(file, step->step, fields));
   PetscCall(WriteTensors(file, step->step, fields));
-  PetscCall(WriteScalars(file, step->step, fields));
+  PetscCall(WriteScalars(file, step->step, fields, &summary->strength));
   PetscCall(KeepStep(file, step->step));
   PetscCall(LamCurveWrite(&summary->curve, file->writer));
   PetscCall(WriteSummary(file, summary));

@@ -174,6 +174,27 @@ static PetscErrorCode CreateNodeSolver(LamFE2Tissue *tissue)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamFE2ChangeWalls(LamRVE rve, const LamMicrostructure *micro, const PetscReal factor[3])
+{
+  LamMicrostructure changed;
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamMicrostructureCopy(micro, &changed));
+  const PetscInt cells = changed.cell ? changed.cells[0] * changed.cells[1] : 0;
+  for (PetscInt c = -1; c < cells; c++) {
+    LamWall *wall = c < 0 ? &changed.wall : &changed.cell[c].wall;
+
+    wall->C1 *= factor[0];
+    wall->C2 *= factor[1];
+    wall->C4 *= factor[2];
+  }
+  ierr = LamRVEChangeModuli(rve, &changed);
+  PetscCall(LamMicrostructureDestroy(&changed));
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
 /* How many points of the tissue find room for two states each in its share of the memory. Behind a cache none keeps a
    state: all its solves start from the reference. */
 static PetscErrorCode CountKept(const LamFE2Run *run, const LamFE2Tissue *tissue, PetscInt *kept)

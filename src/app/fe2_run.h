@@ -44,8 +44,9 @@ typedef struct {
   LamFE2File out;
   LamSummary summary;
   LamProgress progress;
-  PetscBool localised; /* has been told */
-  PetscReal walls;     /* moduli over those of the tissues: of a process; 1 */
+  PetscBool localised;     /* has been told */
+  PetscReal walls;         /* moduli over those of the tissues: of a process; else 1 */
+  PetscReal wall_ratio[3]; /* C1, C2, C4 over that, where they do not change alike */
 
   LamFE2Totals totals;
   PetscReal start;
@@ -63,6 +64,8 @@ PetscErrorCode LamFE2Disconnect(LamFE2Run *run); /* after the macroscale solver'
 PetscErrorCode LamFE2PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue);
 PetscErrorCode LamFE2ConnectTissue(LamFE2Run *run, LamFE2Tissue *tissue, LamResponder **responder);
 PetscErrorCode LamFE2DisconnectTissue(LamFE2Tissue *tissue);
+/* The RVE of this tissue with its moduli C1, C2, C4 multiplied. */
+PetscErrorCode LamFE2ChangeWalls(LamRVE rve, const LamMicrostructure *micro, const PetscReal factor[3]);
 
 /* ---- fe2_report.c; on rank 0 ---- */
 /* A step as JSON; peak_memory in MB. */

@@ -32,7 +32,7 @@ PetscErrorCode LamSummaryCreate(const LamScene *scene, LamSummary *summary)
   PetscFunctionBeginUser;
   for (PetscInt r = 0; r < scene->region_count; r++)
     if (scene->regions[r].micro.interface == LAM_INTERFACE_CONTACT) contact = PETSC_TRUE;
-  *summary = (LamSummary){.scene = scene, .side = -1, .firmest = -1};
+  *summary = (LamSummary){.scene = scene, .strength = *strength, .side = -1, .firmest = -1};
   summary->onset[LAM_SUMMARY_NORMAL].judged = (PetscBool)isfinite(strength->lamella_normal);
   summary->onset[LAM_SUMMARY_SHEAR].judged = (PetscBool)isfinite(strength->lamella_shear);
   summary->onset[LAM_SUMMARY_UNLOADED].judged = contact;
@@ -62,7 +62,7 @@ static PetscReal GapMeasure(const PetscReal field[])
 /* 1 where the criterion is reached; NaN: not known. */
 static PetscReal Measure(const LamSummary *summary, LamSummaryCriterion criterion, const PetscReal field[])
 {
-  const LamStrength *strength = &summary->scene->strength;
+  const LamStrength *strength = &summary->strength;
 
   switch (criterion) {
   case LAM_SUMMARY_NORMAL:

@@ -56,6 +56,7 @@ typedef struct {
 
 typedef struct {
   const LamScene *scene; /* borrowed */
+  LamStrength strength;  /* of the step that is added; the scene's, unless it changes in time */
   LamCurve curve;
   LamSummaryOnset onset[LAM_SUMMARY_CRITERION_COUNT];
   PetscReal *before; /* [point][criterion] measures at the last step, before_count in all; owned */

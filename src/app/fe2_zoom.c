@@ -169,7 +169,7 @@ static PetscErrorCode Keep(LamFE2Run *run, const Zoom *zoom, const LamLoad *load
                            LamRVEState state, Found *found)
 {
   const PetscReal mm = run->scene->scales.macro_length * 1e3, MPa = run->scene->scales.stress * 1e-6;
-  const LamScales *scales = &run->tissues.tissues[zoom->tissue].scene.scales;
+  LamScales scales = run->tissues.tissues[zoom->tissue].scene.scales;
   LamRecordWriter writer = LamFE2FileWriter(run->out);
   const PetscInt k = found->count++;
   char group[LAM_NAME_LENGTH];
@@ -188,11 +188,12 @@ static PetscErrorCode Keep(LamFE2Run *run, const Zoom *zoom, const LamLoad *load
   found->turgor[k] = zoom->load.turgor * MPa;
   found->cohesion[k] = zoom->load.cohesion * MPa;
   found->difference[k] = LamStressError(zoom->P, P);
-  found->apothem[k] = scales->length * 1e6;
+  found->apothem[k] = scales.length * 1e6;
   PetscCall(PetscSNPrintf(group, sizeof(group), "/zoom/%" PetscInt_FMT "/mesh", k + 1));
   PetscCall(LamRVEWriteMesh(writer, group, rve));
   PetscCall(PetscSNPrintf(group, sizeof(group), "/zoom/%" PetscInt_FMT "/fields", k + 1));
-  PetscCall(LamRVEWriteFields(writer, group, rve, state, scales));
+  scales.stress *= run->walls;
+  PetscCall(LamRVEWriteFields(writer, group, rve, state, &scales));
   PetscFunctionReturn(0);
 }
 
@@ -232,6 +233,8 @@ static PetscErrorCode ZoomOne(LamFE2Run *run, const Zoom *zoom, const char bytes
   PetscCall(LamRVESetTolerance(rve, scene->tolerance));
   PetscCall(LamRVESetUp(rve));
   PetscCall(LamRVESetInterrupt(rve, LamStopInterrupt, NULL));
+  if (run->wall_ratio[0] != 1 || run->wall_ratio[1] != 1 || run->wall_ratio[2] != 1)
+    PetscCall(LamFE2ChangeWalls(rve, &scene->micro, run->wall_ratio));
   PetscCall(LamRVEStateCreate(rve, &state));
   PetscCall(Solve(run, zoom, rve, bytes, state, found));
   PetscCall(LamRVEStateDestroy(&state));

@@ -1,5 +1,6 @@
 /*
-  Picture of an FE2 run: the deformed body at one load step with a field, and the reactions of its sides.
+  Picture of an FE2 run: the deformed body at one load step with a field, and the reactions of its sides; of a process
+  what has changed in time, and films.
 */
 #include "plot_fe2.h"
 #include <math.h>
@@ -65,6 +66,7 @@ typedef struct {
   LamOutline outline;
   LamReactions reactions;
   LamZooms zooms; /* of the last step */
+  LamBodyTimes times;
 } FE2Picture;
 
 static PetscErrorCode FindField(const LamPlotRequest *request, const FE2FieldRow **field)
@@ -126,19 +128,18 @@ static PetscErrorCode FindStep(const LamPlotRequest *request, FE2Picture *p)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode LoadFE2(const LamPlotRequest *request, FE2Picture *p)
+/* Deformation and field of the step in a row. */
+static PetscErrorCode LoadStep(const char path[], PetscInt row, FE2Picture *p)
 {
-  const char *path = request->input;
   PetscReal *u, *rows;
   PetscInt count;
   char name[96];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMemzero(p, sizeof *p));
-  PetscCall(FindField(request, &p->field));
-  PetscCall(FindStep(request, p));
-  PetscCall(LamPlotReadPoints(path, "/macro/nodes", -1, &p->node_count, &p->nodes));
-  PetscCall(LamPlotReadElements(path, "/macro/elements", p->node_count, &p->element_count, &p->elements));
+  p->row = row;
+  p->step = p->steps[row];
+  PetscCall(PetscFree(p->x));
+  PetscCall(PetscFree(p->values));
   PetscCall(PetscSNPrintf(name, sizeof name, "/macro/step/%" PetscInt_FMT "/u", p->step));
   PetscCall(LamPlotReadPoints(path, name, p->node_count, &count, &u));
   PetscCall(PetscMalloc1(2 * count, &p->x));
@@ -149,7 +150,22 @@ static PetscErrorCode LoadFE2(const LamPlotRequest *request, FE2Picture *p)
   PetscCall(PetscMalloc1(p->element_count, &p->values));
   for (PetscInt e = 0; e < p->element_count; e++) p->values[e] = Evaluate(p->field, &rows[e * p->field->columns]);
   PetscCall(PetscFree(rows));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode LoadFE2(const LamPlotRequest *request, FE2Picture *p)
+{
+  const char *path = request->input;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMemzero(p, sizeof *p));
+  PetscCall(FindField(request, &p->field));
+  PetscCall(FindStep(request, p));
+  PetscCall(LamPlotReadPoints(path, "/macro/nodes", -1, &p->node_count, &p->nodes));
+  PetscCall(LamPlotReadElements(path, "/macro/elements", p->node_count, &p->element_count, &p->elements));
+  PetscCall(LoadStep(path, p->row, p));
   PetscCall(LamReactionsRead(path, p->step_count, &p->reactions));
+  PetscCall(LamBodyTimesRead(path, p->step_count, &p->times));
   if (p->row == p->step_count - 1) PetscCall(LamZoomsRead(path, &p->zooms));
   PetscCall(LamOutlineCreate(p->element_count, p->elements, NULL, &p->outline));
   PetscFunctionReturn(0);
@@ -166,6 +182,7 @@ static PetscErrorCode UnloadFE2(FE2Picture *p)
   PetscCall(PetscFree(p->elements));
   PetscCall(LamReactionsDestroy(&p->reactions));
   PetscCall(LamZoomsDestroy(&p->zooms));
+  PetscCall(LamBodyTimesDestroy(&p->times));
   PetscFunctionReturn(0);
 }
 
@@ -232,14 +249,27 @@ static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const FE2Pictur
   PetscFunctionReturn(0);
 }
 
+/* "14 day: turgor lost" */
+static void NameMoment(const LamTimeLine *line, PetscInt row, size_t size, char title[])
+{
+  char event[LAM_NAME_LENGTH], number[32];
+
+  LamFormatNumber(line->time[row] / line->seconds, number);
+  LamTimeEventName(line, row, sizeof(event), event);
+  snprintf(title, size, "%s %s%s%s", number, line->unit, event[0] ? ": " : "", event);
+}
+
 static PetscErrorCode DrawTitle(LamCanvas canvas, double x, const FE2Picture *p)
 {
   char title[128], factor[32];
 
   PetscFunctionBeginUser;
   LamFormatRatio(p->reactions.load[p->row], factor);
-  PetscCall(PetscSNPrintf(title, sizeof title, "Step %" PetscInt_FMT "%s:  load factor %s,  element means", p->step,
-                          p->step ? "" : " (inflated)", factor));
+  if (p->times.there)
+    NameMoment(&p->times.line, p->row, sizeof title, title);
+  else
+    PetscCall(PetscSNPrintf(title, sizeof title, "Step %" PetscInt_FMT "%s:  load factor %s,  element means", p->step,
+                            p->step ? "" : " (inflated)", factor));
   LamCanvasSetColour(canvas, Ink);
   LamCanvasText(canvas, x, 12, 0, 0, LAM_TEXT_SIZE + 0.75, title);
   PetscFunctionReturn(0);
@@ -265,8 +295,108 @@ static PetscErrorCode DrawFE2(const char output[], const FE2Picture *p)
   PetscCall(DrawTitle(canvas, left.x, p));
   PetscCall(DrawPanel(canvas, left, p, &view));
   if (p->zooms.count) PetscCall(LamZoomsDraw(canvas, zooms, &view, &p->zooms));
-  PetscCall(LamReactionsDraw(canvas, right, &p->reactions));
+  if (p->times.there)
+    PetscCall(LamBodyTimesDraw(canvas, right, &p->times, &p->reactions, p->row));
+  else
+    PetscCall(LamReactionsDraw(canvas, right, &p->reactions));
   PetscCall(LamCanvasFinish(&canvas));
+  PetscFunctionReturn(0);
+}
+
+/* ---- processes ---- */
+
+/* What all frames share: the window, and the range of colours. */
+typedef struct {
+  PetscReal box[4];
+  LamColourRange range;
+} Frame;
+
+static PetscErrorCode FindFrame(const char path[], PetscInt count, const PetscInt rows[], FE2Picture *p, Frame *frame)
+{
+  const PetscReal none[2] = {0, 0};
+  PetscReal *values;
+
+  PetscFunctionBeginUser;
+  LamBoxEmpty(frame->box);
+  LamBoxExtend(frame->box, p->node_count, p->nodes, none);
+  PetscCall(PetscMalloc1(count * p->element_count, &values));
+  for (PetscInt k = 0; k < count; k++) {
+    PetscCall(LoadStep(path, rows[k], p));
+    LamBoxExtend(frame->box, p->node_count, p->x, none);
+    PetscCall(PetscArraycpy(&values[k * p->element_count], p->values, p->element_count));
+  }
+  PetscCall(LamColourRangeFind(count * p->element_count, values, &frame->range));
+  PetscCall(PetscFree(values));
+  PetscFunctionReturn(0);
+}
+
+#define BODY_WIDTH 210.0
+
+static PetscErrorCode DrawMoment(LamCanvas canvas, const FE2Picture *p, const Frame *frame)
+{
+  const LamRect charts = {BODY_WIDTH + 30, 18, LAM_PLOT_WIDTH - BODY_WIDTH - 39, LAM_TIME_HEIGHT - 24};
+  LamRect body = {9, 30, BODY_WIDTH - LamColourBarWidth(canvas, &frame->range), LAM_TIME_HEIGHT - 60};
+  char title[128];
+  LamView view;
+
+  PetscFunctionBeginUser;
+  NameMoment(&p->times.line, p->row, sizeof(title), title);
+  LamCanvasSetColour(canvas, Ink);
+  LamCanvasText(canvas, body.x, 14, 0, 0, LAM_TEXT_SIZE + 0.75, title);
+  LamViewFit(body, frame->box, &view);
+  PetscCall(DrawBody(canvas, &view, p, &frame->range));
+  LamColourBar(canvas, body, &frame->range, LamColourMap, p->field->label, p->field->unit);
+  LamScaleBar(canvas, &view, body.x, body.y + body.height + 11, 0.25 * body.width, 1, "mm");
+  PetscCall(LamBodyTimesDraw(canvas, charts, &p->times, &p->reactions, p->row));
+  PetscFunctionReturn(0);
+}
+
+/* The moments in these rows: pages, or numbered files. */
+static PetscErrorCode DrawMoments(const LamPlotRequest *request, PetscInt count, const PetscInt rows[], FE2Picture *p)
+{
+  const PetscBool pages = LamCanvasHasPages(request->output);
+  char name[PETSC_MAX_PATH_LEN];
+  LamCanvas canvas = NULL;
+  Frame frame;
+
+  PetscFunctionBeginUser;
+  PetscCall(FindFrame(request->input, count, rows, p, &frame));
+  for (PetscInt k = 0; k < count; k++) {
+    PetscCall(LoadStep(request->input, rows[k], p));
+    PetscCall(PetscStrncpy(name, request->output, sizeof(name)));
+    if (!pages && request->film) PetscCall(LamFrameName(request->output, k + 1, sizeof(name), name));
+    if (!canvas)
+      PetscCall(LamCanvasCreate(name, LAM_PLOT_WIDTH, LAM_TIME_HEIGHT, &canvas));
+    else
+      LamCanvasNextPage(canvas);
+    PetscCall(DrawMoment(canvas, p, &frame));
+    if (!pages) PetscCall(LamCanvasFinish(&canvas));
+  }
+  if (canvas) PetscCall(LamCanvasFinish(&canvas));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode DrawProcess(const LamPlotRequest *request, FE2Picture *p)
+{
+  PetscInt *rows, count = request->film ? p->step_count : 1;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(count, &rows));
+  for (PetscInt k = 0; k < count; k++) rows[k] = request->film ? k : p->row;
+  PetscCall(DrawMoments(request, count, rows, p));
+  PetscCall(PetscFree(rows));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Draw(const LamPlotRequest *request, FE2Picture *p)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(p->times.there || !request->film, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: is of load steps; --film draws files of process", request->input);
+  if (p->times.there && (!p->zooms.count || request->film || request->state >= 0))
+    PetscCall(DrawProcess(request, p));
+  else
+    PetscCall(DrawFE2(request->output, p));
   PetscFunctionReturn(0);
 }
 
@@ -276,7 +406,7 @@ PetscErrorCode LamPlotFE2(const LamPlotRequest *request)
   PetscErrorCode ierr = LoadFE2(request, &picture);
 
   PetscFunctionBeginUser;
-  if (!ierr) ierr = DrawFE2(request->output, &picture);
+  if (!ierr) ierr = Draw(request, &picture);
   PetscCall(UnloadFE2(&picture));
   PetscCall(ierr);
   PetscFunctionReturn(0);

@@ -1,11 +1,13 @@
 /*
   Pictures of FE2 runs: what their parts share. plot_fe2.c draws the body and the page, plot_fe2_curve.c the reactions,
-  plot_zoom.c the microstructure at chosen points.
+  plot_fe2_time.c what changes in time, plot_zoom.c the microstructure at chosen points.
 */
 #ifndef LAM_PLOT_FE2_H
 #define LAM_PLOT_FE2_H
 
 #include "plot_tissue.h"
+#include "plot_time.h"
+#include <lamella/process.h>
 #include <jansson.h>
 
 /* ---- plot_fe2_curve.c ---- */
@@ -22,8 +24,26 @@ typedef struct {
 /* Of the first `count` steps. */
 PetscErrorCode LamReactionsRead(const char path[], PetscInt count, LamReactions *reactions);
 PetscErrorCode LamReactionsDestroy(LamReactions *reactions);
+/* Name of a side. */
+void LamReactionsSideName(const LamReactions *reactions, PetscInt side, size_t size, char name[]);
 /* Reactions of all sides, over the displacement of the loaded one or else the load factor, and the onsets. */
 PetscErrorCode LamReactionsDraw(LamCanvas canvas, LamRect outer, const LamReactions *reactions);
+
+/* ---- plot_fe2_time.c ---- */
+/* Arrays over the steps; owned. */
+typedef struct {
+  PetscBool there; /* the run was one of `process` */
+  LamTimeLine line;
+  PetscReal *turgor[3], *water, *plasmolysed, *debonded; /* turgor: least, mean, largest */
+  PetscInt factor_count, ratio_count; /* of those that change, and that are known; names with blanks */
+  PetscReal *factor[16], *ratio[8];
+  char factor_name[16][LAM_NAME_LENGTH], ratio_name[8][LAM_NAME_LENGTH];
+} LamBodyTimes;
+PetscErrorCode LamBodyTimesRead(const char path[], PetscInt steps, LamBodyTimes *times);
+PetscErrorCode LamBodyTimesDestroy(LamBodyTimes *times);
+/* Four charts, with a mark at the step `now`. */
+PetscErrorCode LamBodyTimesDraw(LamCanvas canvas, LamRect outer, const LamBodyTimes *times,
+                                const LamReactions *reactions, PetscInt now);
 
 /* ---- plot_zoom.c ---- */
 #define LAM_PLOT_MAX_ZOOMS 3

@@ -27,8 +27,7 @@ static PetscErrorCode ReadCurve(const char path[], const char name[], PetscInt s
   PetscFunctionReturn(0);
 }
 
-/* Name of side `side`, from the list of names. */
-static void SideName(const LamReactions *p, PetscInt side, size_t size, char name[])
+void LamReactionsSideName(const LamReactions *p, PetscInt side, size_t size, char name[])
 {
   const char *start = p->sides;
   size_t length;
@@ -55,7 +54,7 @@ static PetscErrorCode ReadDisplacement(const char path[], LamReactions *p)
   PetscCall(ReadCurve(path, "/macro/curve/displacement", p->count, 2 * p->side_count, &u));
   PetscCall(PetscCalloc1(p->count, &p->x));
   for (PetscInt s = 0; s < p->side_count; s++) {
-    SideName(p, s, sizeof side, side);
+    LamReactionsSideName(p, s, sizeof side, side);
     if (strcmp(side, name)) continue;
     for (PetscInt k = 0; k < p->count; k++) {
       for (size_t i = 0; i < 2; i++) {
@@ -125,7 +124,7 @@ static PetscErrorCode ReactionSeries(const LamReactions *p, PetscInt *count, Lam
         PetscCall(LamSeriesDestroy(s));
         continue;
       }
-      SideName(p, side, sizeof name, name);
+      LamReactionsSideName(p, side, sizeof name, name);
       s->style = (LamStyle){LamColourOfLine(side), c ? LAM_MARKER_SQUARE : LAM_MARKER_CIRCLE, (PetscBool)c, PETSC_TRUE,
                             (PetscBool)c};
       snprintf(s->label, sizeof s->label, "%s $R$_{%d}", name, c + 1);

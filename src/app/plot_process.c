@@ -8,175 +8,98 @@
 #include <stdio.h>
 #include <string.h>
 
-static const LamColour Ink = {0.12, 0.12, 0.16}, Event = {0.45, 0.45, 0.5}, Now = {0.75, 0.1, 0.1};
+static const LamColour Ink = {0.12, 0.12, 0.16}, Now = {0.75, 0.1, 0.1};
 
-enum { MOST_SERIES = 12 };
-
-/* One chart: a few series over the time. */
-typedef struct {
-  const LamProcessPicture *p;
-  LamAxes axes;
-  PetscInt n;
-  LamSeries series[MOST_SERIES];
-} Chart;
-
-static PetscErrorCode Add(Chart *chart, const PetscReal values[], const char label[])
-{
-  const LamProcessPicture *p = chart->p;
-  LamSeries *s = &chart->series[chart->n];
-
-  PetscFunctionBeginUser;
-  if (chart->n == MOST_SERIES) PetscFunctionReturn(0);
-  PetscCall(LamSeriesCreate(p->n, s));
-  for (PetscInt k = 0; k < p->n; k++) {
-    s->x[k] = p->time[k] / p->seconds;
-    s->y[k] = values[k];
-  }
-  s->style =
-      (LamStyle){LamColourOfLine(chart->n), LAM_MARKER_COUNT, PETSC_FALSE, PETSC_TRUE, (PetscBool)(chart->n > 2)};
-  snprintf(s->label, sizeof(s->label), "%s", label);
-  chart->n++;
-  PetscFunctionReturn(0);
-}
+/* ---- the four charts ---- */
 
 /* Adds a number of the records. */
-static PetscErrorCode AddMember(Chart *chart, size_t offset, PetscReal factor, const char label[])
+static PetscErrorCode AddMember(LamTimeChart *chart, const LamProcessPicture *p, size_t offset, PetscReal factor,
+                                const char label[])
 {
-  const LamProcessPicture *p = chart->p;
   PetscReal *values;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(p->n, &values));
   for (PetscInt k = 0; k < p->n; k++)
     values[k] = factor * *(const PetscReal *)(const void *)((const char *)&p->records[k] + offset);
-  PetscCall(Add(chart, values, label));
+  PetscCall(LamTimeChartAdd(chart, &p->line, values, label));
   PetscCall(PetscFree(values));
   PetscFunctionReturn(0);
 }
 
-/* A line across the chart at a time. */
-static void MarkTime(LamCanvas canvas, const LamAxes *axes, PetscReal time, LamColour colour, PetscBool dashed)
+static PetscErrorCode MakeFirmness(const LamProcessPicture *p, LamTimeChart *chart)
 {
-  const double x = LamAxesX(axes, time), dash[] = {1.2, 1.8};
-  cairo_t *cr = LamCanvasCairo(canvas);
-
-  LamCanvasSetColour(canvas, colour);
-  cairo_set_dash(cr, dash, dashed ? 2 : 0, 0);
-  cairo_set_line_width(cr, 0.8);
-  cairo_move_to(cr, x, axes->frame.y + axes->frame.height);
-  cairo_line_to(cr, x, axes->frame.y);
-  cairo_stroke(cr);
-  cairo_set_dash(cr, NULL, 0, 0);
-}
-
-static PetscErrorCode Draw(LamCanvas canvas, LamRect outer, Chart *chart, PetscBool names, PetscInt now)
-{
-  const LamProcessPicture *p = chart->p;
-  char name[LAM_NAME_LENGTH];
-
   PetscFunctionBeginUser;
-  chart->axes.x = (LamAxis){.label = "time", .unit = p->unit};
-  LamChart(canvas, outer, &chart->axes, chart->n, chart->series);
-  for (PetscInt k = 0; k < p->n; k++) {
-    if (p->event[k] < 0) continue;
-    MarkTime(canvas, &chart->axes, p->time[k] / p->seconds, Event, PETSC_TRUE);
-    LamProcessEventName(p, k, sizeof(name), name);
-    if (names)
-      LamCanvasText(canvas, LamAxesX(&chart->axes, p->time[k] / p->seconds) - 5, chart->axes.frame.y + 3, 1,
-                    0.5 * PETSC_PI, LAM_TICK_SIZE, name);
-  }
-  if (now >= 0) MarkTime(canvas, &chart->axes, p->time[now] / p->seconds, Now, PETSC_FALSE);
-  LamCanvasSetColour(canvas, Ink);
-  for (PetscInt k = 0; k < chart->n; k++) PetscCall(LamSeriesDestroy(&chart->series[k]));
+  *chart = (LamTimeChart){.axes.y = {.label = "firmness $E$", .unit = "MPa"}};
+  PetscCall(LamTimeChartAdd(chart, &p->line, p->firmness, ""));
   PetscFunctionReturn(0);
 }
 
-/* ---- the four charts ---- */
-
-static PetscErrorCode DrawFirmness(LamCanvas canvas, LamRect outer, const LamProcessPicture *p, PetscInt now)
+static PetscErrorCode MakePressures(const LamProcessPicture *p, LamTimeChart *chart)
 {
-  Chart chart = {.p = p, .axes.y = {.label = "firmness $E$", .unit = "MPa"}};
-
   PetscFunctionBeginUser;
-  PetscCall(Add(&chart, p->firmness, ""));
-  PetscCall(Draw(canvas, outer, &chart, PETSC_TRUE, now));
+  *chart = (LamTimeChart){.axes.y = {.label = "pressure", .unit = "MPa"}};
+  PetscCall(LamTimeChartAdd(chart, &p->line, p->turgor, "turgor"));
+  if (isfinite(p->osmotic[0])) PetscCall(LamTimeChartAdd(chart, &p->line, p->osmotic, "osmotic, in cells"));
+  if (isfinite(p->osmotic[0])) PetscCall(LamTimeChartAdd(chart, &p->line, p->outside, "outside"));
+  if (p->micro.interface == LAM_INTERFACE_CONTACT) PetscCall(LamTimeChartAdd(chart, &p->line, p->cohesion, "cohesion"));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode DrawPressures(LamCanvas canvas, LamRect outer, const LamProcessPicture *p, PetscInt now)
+static PetscErrorCode MakeFactors(const LamProcessPicture *p, LamTimeChart *chart)
 {
-  Chart chart = {.p = p, .axes.y = {.label = "pressure", .unit = "MPa"}};
-
   PetscFunctionBeginUser;
-  PetscCall(Add(&chart, p->turgor, "turgor"));
-  if (isfinite(p->osmotic[0])) PetscCall(Add(&chart, p->osmotic, "osmotic, in cells"));
-  if (isfinite(p->osmotic[0])) PetscCall(Add(&chart, p->outside, "outside"));
-  if (p->micro.interface == LAM_INTERFACE_CONTACT) PetscCall(Add(&chart, p->cohesion, "cohesion"));
-  PetscCall(Draw(canvas, outer, &chart, PETSC_FALSE, now));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode DrawFactors(LamCanvas canvas, LamRect outer, const LamProcessPicture *p, PetscInt now)
-{
-  Chart chart = {.p = p, .axes.y = {.label = "share of the start"}};
-
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < p->factor_count; k++) PetscCall(Add(&chart, p->factor[k], p->factor_name[k]));
+  *chart = (LamTimeChart){.axes.y = {.label = "share of the start"}};
+  for (PetscInt k = 0; k < p->factor_count; k++)
+    PetscCall(LamTimeChartAdd(chart, &p->line, p->factor[k], p->factor_name[k]));
   if (!p->factor_count)
-    PetscCall(AddMember(&chart, offsetof(LamResponse, lumen_fraction), 1 / p->records[0].lumen_fraction, "lumen"));
-  PetscCall(Draw(canvas, outer, &chart, PETSC_FALSE, now));
+    PetscCall(AddMember(chart, p, offsetof(LamResponse, lumen_fraction), 1 / p->records[0].lumen_fraction, "lumen"));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode DrawSeparation(LamCanvas canvas, LamRect outer, const LamProcessPicture *p, PetscInt now)
+static PetscErrorCode MakeSeparation(const LamProcessPicture *p, LamTimeChart *chart)
 {
   const PetscBool contact = (PetscBool)(p->micro.interface == LAM_INTERFACE_CONTACT);
   const PetscReal MPa = p->scales.stress * 1e-6;
-  Chart chart = {.p = p, .axes.y = {.label = "share of the interface"}};
-
   PetscFunctionBeginUser;
+  *chart = (LamTimeChart){.axes.y = {.label = "share of the interface"}};
   if (contact) {
-    PetscCall(AddMember(&chart, offsetof(LamResponse, debonded_fraction), 1, "debonded"));
-    PetscCall(AddMember(&chart, offsetof(LamResponse, open_fraction), 1, "open"));
+    PetscCall(AddMember(chart, p, offsetof(LamResponse, debonded_fraction), 1, "debonded"));
+    PetscCall(AddMember(chart, p, offsetof(LamResponse, open_fraction), 1, "open"));
   } else if (p->ratio_count) {
-    chart.axes.y.label = "stress over strength";
-    for (PetscInt k = 0; k < p->ratio_count; k++) PetscCall(Add(&chart, p->ratio[k], p->ratio_name[k]));
+    chart->axes.y.label = "stress over strength";
+    for (PetscInt k = 0; k < p->ratio_count; k++)
+      PetscCall(LamTimeChartAdd(chart, &p->line, p->ratio[k], p->ratio_name[k]));
   } else {
-    chart.axes.y = (LamAxis){.label = "stress", .unit = "MPa"};
-    PetscCall(AddMember(&chart, offsetof(LamResponse, max_traction), MPa, "lamella traction"));
-    PetscCall(AddMember(&chart, offsetof(LamResponse, max_wall_tension), MPa, "wall tension"));
+    chart->axes.y = (LamAxis){.label = "stress", .unit = "MPa"};
+    PetscCall(AddMember(chart, p, offsetof(LamResponse, max_traction), MPa, "lamella traction"));
+    PetscCall(AddMember(chart, p, offsetof(LamResponse, max_wall_tension), MPa, "wall tension"));
   }
-  PetscCall(Draw(canvas, outer, &chart, PETSC_FALSE, now));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamProcessDraw(LamCanvas canvas, LamRect outer, const LamProcessPicture *p, PetscInt now)
 {
-  const double gap = 12, width = 0.5 * (outer.width - gap), height = 0.5 * (outer.height - gap);
-  const LamRect at[4] = {{outer.x, outer.y, width, height},
-                         {outer.x + width + gap, outer.y, width, height},
-                         {outer.x, outer.y + height + gap, width, height},
-                         {outer.x + width + gap, outer.y + height + gap, width, height}};
+  LamTimeChart charts[4];
 
   PetscFunctionBeginUser;
-  PetscCall(DrawFirmness(canvas, at[0], p, now));
-  PetscCall(DrawPressures(canvas, at[1], p, now));
-  PetscCall(DrawFactors(canvas, at[2], p, now));
-  PetscCall(DrawSeparation(canvas, at[3], p, now));
+  PetscCall(MakeFirmness(p, &charts[0]));
+  PetscCall(MakePressures(p, &charts[1]));
+  PetscCall(MakeFactors(p, &charts[2]));
+  PetscCall(MakeSeparation(p, &charts[3]));
+  PetscCall(LamTimeChartsDraw(canvas, outer, &p->line, charts, now));
   PetscFunctionReturn(0);
 }
 
 /* ---- pages ---- */
 
-#define PAGE_HEIGHT 350.0
-
 static PetscErrorCode PlotCharts(const LamPlotRequest *request, const LamProcessPicture *p)
 {
-  const LamRect outer = {9, 9, LAM_PLOT_WIDTH - 18, PAGE_HEIGHT - 15};
+  const LamRect outer = {9, 9, LAM_PLOT_WIDTH - 18, LAM_TIME_HEIGHT - 15};
   LamCanvas canvas;
 
   PetscFunctionBeginUser;
-  PetscCall(LamCanvasCreate(request->output, LAM_PLOT_WIDTH, PAGE_HEIGHT, &canvas));
+  PetscCall(LamCanvasCreate(request->output, LAM_PLOT_WIDTH, LAM_TIME_HEIGHT, &canvas));
   PetscCall(LamProcessDraw(canvas, outer, p, -1));
   PetscCall(LamCanvasFinish(&canvas));
   PetscFunctionReturn(0);
@@ -266,16 +189,16 @@ static PetscErrorCode FindRange(const LamProcessPicture *p, Film *film)
 
 static PetscErrorCode DrawFrame(LamCanvas canvas, const LamProcessPicture *p, const Film *film, PetscInt state)
 {
-  const LamRect charts = {CELLS_WIDTH + 30, 18, LAM_PLOT_WIDTH - CELLS_WIDTH - 39, PAGE_HEIGHT - 24};
-  LamRect cells = {9, 30, CELLS_WIDTH - LamColourBarWidth(canvas, &film->range), PAGE_HEIGHT - 60};
+  const LamRect charts = {CELLS_WIDTH + 30, 18, LAM_PLOT_WIDTH - CELLS_WIDTH - 39, LAM_TIME_HEIGHT - 24};
+  LamRect cells = {9, 30, CELLS_WIDTH - LamColourBarWidth(canvas, &film->range), LAM_TIME_HEIGHT - 60};
   char title[256], event[LAM_NAME_LENGTH], number[32];
   LamTissue tissue;
   LamView view;
 
   PetscFunctionBeginUser;
-  LamFormatNumber(p->time[state] / p->seconds, number);
-  LamProcessEventName(p, state, sizeof(event), event);
-  PetscCall(PetscSNPrintf(title, sizeof(title), "%s %s%s%s", number, p->unit, event[0] ? ": " : "", event));
+  LamFormatNumber(p->line.time[state] / p->line.seconds, number);
+  LamTimeEventName(&p->line, state, sizeof(event), event);
+  PetscCall(PetscSNPrintf(title, sizeof(title), "%s %s%s%s", number, p->line.unit, event[0] ? ": " : "", event));
   LamCanvasSetColour(canvas, Ink);
   LamCanvasText(canvas, cells.x, 14, 0, 0, LAM_TEXT_SIZE + 0.75, title);
   PetscCall(ReadCells(p, film, state, &tissue));
@@ -289,16 +212,6 @@ static PetscErrorCode DrawFrame(LamCanvas canvas, const LamProcessPicture *p, co
   PetscFunctionReturn(0);
 }
 
-/* "film.png" becomes "film-0001.png". */
-static PetscErrorCode FrameName(const char path[], PetscInt number, size_t size, char name[])
-{
-  const char *dot = strrchr(path, '.');
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(name, size, "%.*s-%04d%s", (int)(dot - path), path, (int)number, dot));
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode DrawFilm(const LamPlotRequest *request, const LamProcessPicture *p, const Film *film)
 {
   const PetscBool pages = LamCanvasHasPages(request->output), single = (PetscBool)(film->count == 1);
@@ -308,9 +221,9 @@ static PetscErrorCode DrawFilm(const LamPlotRequest *request, const LamProcessPi
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < film->count; k++) {
     PetscCall(PetscStrncpy(name, request->output, sizeof(name)));
-    if (!pages && !single) PetscCall(FrameName(request->output, k + 1, sizeof(name), name));
+    if (!pages && !single) PetscCall(LamFrameName(request->output, k + 1, sizeof(name), name));
     if (!canvas)
-      PetscCall(LamCanvasCreate(name, LAM_PLOT_WIDTH, PAGE_HEIGHT, &canvas));
+      PetscCall(LamCanvasCreate(name, LAM_PLOT_WIDTH, LAM_TIME_HEIGHT, &canvas));
     else
       LamCanvasNextPage(canvas);
     PetscCall(DrawFrame(canvas, p, film, film->states[k]));
@@ -370,7 +283,7 @@ static void DrawWay(LamCanvas canvas, const LamAxes *axes, const LamMapPicture *
     const double at[2] = {LamAxesX(axes, OnSide(p, &map->x, k)), LamAxesY(axes, OnSide(p, &map->y, k))};
     const PetscBool ends = (PetscBool)(k == 0 || k == p->n - 1);
 
-    LamProcessEventName(p, k, sizeof(name), name);
+    LamTimeEventName(&p->line, k, sizeof(name), name);
     if (!ends && !name[0]) continue;
     LamCanvasSetColour(canvas, Now);
     LamCanvasMarker(canvas, at[0], at[1], 4.2, name[0] ? LAM_MARKER_DIAMOND : LAM_MARKER_CIRCLE, (PetscBool)(k > 0));

@@ -5,6 +5,7 @@
 #define LAM_PLOT_PROCESS_H
 
 #include "plot_tissue.h"
+#include "plot_time.h"
 #include <lamella/process.h>
 
 /* Arrays over the states, as docs/file-format.md describes them; all owned. */
@@ -15,24 +16,16 @@ typedef struct {
   LamScales scales;
   PetscInt n;
   const LamResponse *records;
-  PetscReal *time; /* s */
+  LamTimeLine line;
   PetscReal *turgor, *cohesion, *osmotic, *outside, *firmness, *walls;
   PetscInt factor_count, ratio_count; /* of those that change, and that are known; names with blanks */
   PetscReal *factor[16], *ratio[8];
   char factor_name[16][LAM_NAME_LENGTH], ratio_name[8][LAM_NAME_LENGTH];
-  PetscInt *event; /* number of the name; -1: none */
-  char *event_names;
-  const char *unit;  /* of time, for people */
-  PetscReal seconds; /* in one of it */
 } LamProcessPicture;
 
 /* ---- plot_process_read.c: PETSC_ERR_USER_INPUT where the file lacks something ---- */
 PetscErrorCode LamProcessPictureRead(const char path[], LamProcessPicture *picture);
 PetscErrorCode LamProcessPictureDestroy(LamProcessPicture *picture);
-/* The unit of time that suits a duration, and its length in s. */
-const char *LamTimeUnit(PetscReal duration, PetscReal *seconds);
-/* The name of the event at a state, "" at others, with blanks for underscores. */
-void LamProcessEventName(const LamProcessPicture *picture, PetscInt state, size_t size, char name[]);
 
 /* ---- plot_process.c ---- */
 /* Firmness, pressures, what changes, and what comes apart against time, inside `outer`; `now` >= 0: a state to mark. */

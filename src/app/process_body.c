@@ -2,7 +2,7 @@
   lamella process with a block `macro`: a body whose tissue changes in time. Responses, files and pictures are those of
   `fe2` (fe2_run.h); a state that is told is a step there.
 */
-#include "plot_process.h"
+#include "plot_time.h"
 #include "process_run.h"
 #include <lamella/clock.h>
 #include <math.h>
@@ -92,7 +92,7 @@ static void PrintRow(const Run *run, const LamBodyState *state)
   const char *unit = LamTimeUnit(scene->process.duration, &seconds);
 
   if (run->history.count == 1) PrintHeader(run, state, unit);
-  printf("%10.5g %8.4g", (double)(state->time / seconds), (double)(state->temperature - 273.15));
+  printf("%10.6g %8.4g", (double)(state->time / seconds), (double)(state->temperature - 273.15));
   PrintNumber(8, state->turgor_min * MPa);
   PrintNumber(8, step->turgor_mean * MPa);
   PrintNumber(8, state->turgor_max * MPa);
@@ -135,6 +135,17 @@ static PetscErrorCode ReportEnd(const Run *run)
   PetscFunctionReturn(0);
 }
 
+/* In the C1 + C2 of the start, as what is compared with it. */
+static LamStrength StrengthNow(const LamScene *scene, const LamBodyState *state)
+{
+  LamStrength strength = scene->strength;
+
+  strength.lamella_normal *= state->factor[LAM_CHANGING_LAMELLA];
+  strength.lamella_shear *= state->factor[LAM_CHANGING_LAMELLA];
+  strength.wall *= state->factor[LAM_CHANGING_WALL_STRENGTH];
+  return strength;
+}
+
 /* Rank 0: files, the row or object of the state. */
 static PetscErrorCode Record(Run *run, const LamBodyState *state, const LamMacroFields *fields, PetscReal peak_memory)
 {
@@ -143,6 +154,7 @@ static PetscErrorCode Record(Run *run, const LamBodyState *state, const LamMacro
   PetscFunctionBeginUser;
   PetscCall(LamBodyHistoryAdd(&run->history, state));
   if (fields->point_count) {
+    fe2->summary.strength = StrengthNow(fe2->scene, state);
     PetscCall(LamSummaryAdd(&fe2->summary, &state->step, fields));
     LamSummaryFind(&fe2->summary);
   }
@@ -165,6 +177,7 @@ static PetscErrorCode Told(const LamBodyState *state, void *ctx)
   if (run->fe2.out_path) PetscCall(LamMacroGetFields(run->fe2.macro, &fields));
   run->fe2.totals.queries += state->step.queries;
   run->fe2.totals.solves += state->step.solves;
+  run->fe2.totals.steps++;
   run->fe2.walls = state->walls;
   if (LamAppIsRoot()) ierr = Record(run, state, &fields, peak_memory);
   PetscCall(LamMacroFieldsDestroy(&fields));
@@ -198,9 +211,10 @@ static PetscErrorCode SetMembranes(Run *run)
 /* Moduli of all tissues; set of LamBodySetWalls. */
 static PetscErrorCode ChangeWalls(void *ctx, const PetscReal factor[3])
 {
-  const Run *run = (const Run *)ctx;
+  Run *run = (Run *)ctx;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(run->fe2.wall_ratio, factor, 3));
   for (PetscInt t = 0; t < run->fe2.tissues.count; t++)
     PetscCall(LamProcessChangeWalls(&run->fe2.tissues.tissues[t], factor));
   PetscFunctionReturn(0);

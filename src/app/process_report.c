@@ -2,7 +2,7 @@
   What `lamella process` tells of each output and event.
 */
 #include "process_run.h"
-#include "plot_process.h"
+#include "plot_time.h"
 #include <lamella/clock.h>
 #include <math.h>
 #include <string.h>

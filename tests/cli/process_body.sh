@@ -1,0 +1,79 @@
+#!/usr/bin/env bash
+# lamella process of a body: rows, JSON, files, pictures, databases, regions, contact, true reasons, refusals, signals.
+. "$(dirname "$0")/common.sh"
+set -e -o pipefail
+example=$source/tests/scenes/storage.yaml
+
+# two weeks of storage and a shear test from a database: the event is where a coarse mesh solved directly has it
+expect 0 "$lamella" process "$example" -d d.h5 -o a.h5 --json
+grep -q '"event": "lamella_normal"' out.txt || fail "no event"
+[ "$(grep -c '"time"' out.txt)" = 17 ] || fail "not one object per output and event: $(grep -c '"time"' out.txt)"
+grep '"event"' out.txt | grep -qE '"lamella_normal_ratio": (1\.0000|0\.9999)' || fail "stress over strength at the event"
+grep -q '"load_factor": 1.0,' out.txt || fail "no shear test"
+expect 0 "$lamella" process "$example" -d d.h5 --response database
+grep -qE '^ +14.0001 .* 1 .*' out.txt || fail "the row of the test: $(tail -3 out.txt)"
+grep -q '0 solves' out.txt || fail "solves: $(tail -1 out.txt)"
+
+# files and pictures
+expect 0 "$lamella" info a.h5 --check
+expect 0 "$lamella" info a.h5
+grep -q 'separation .* lamella_normal' out.txt || fail "the summary does not know what the event knows: $(cat out.txt)"
+grep -q '1209600' a.xdmf || fail "times of the XDMF file"
+head -1 a.csv | grep -q 'time (s)' || fail "times of the CSV file: $(head -1 a.csv)"
+expect 0 "$lamella" plot a.h5 -o a.svg
+expect 0 "$lamella" plot a.h5 --state 3 --field turgor -o s.svg
+grep -q svg s.svg || fail "no picture"
+expect 0 "$lamella" plot a.h5 --film -o film.pdf
+expect 0 "$lamella" plot a.h5 --film -o film.svg
+[ "$(ls film-*.svg | wc -l)" = 17 ] || fail "numbered frames: $(ls)"
+expect 2 "$lamella" plot a.h5 --map a.h5 -o s.svg
+
+# the small body of the further runs
+small() { sed -e 's/elements: \[8, 8\]/elements: [1, 1]/; s/1209610 s/2 day/; s/output: 1 day/output: 1 day\n  tolerance: 1e-3/' -e '/time: 7 day/d; s/14 day/1 day/' "$@"; }
+small "$example" >small.yaml
+expect 0 "$lamella" process small.yaml
+grep -q 'response direct' out.txt || fail "does not solve: $(tail -1 out.txt)"
+
+# walls that lose their fibres alone: no database serves, solves do
+small -e 's/of: walls/of: C4/' "$example" >fibres.yaml
+expect 0 "$lamella" process fibres.yaml -o f.h5
+expect 2 "$lamella" process fibres.yaml -d d.h5
+grep -q 'C1, C2 and C4 do not change alike' err.txt || fail "walls that change unlike: $(cat err.txt)"
+
+# a skin of smaller cells, whose membranes have more area
+small -e 's/^process:/  regions: [{name: skin, where: "y > 5", cell: {apothem: 40 um}}]\nprocess:/' "$example" >skin.yaml
+expect 0 "$lamella" process skin.yaml -d k.h5
+[ -s k.skin.h5 ] || fail "no database of the region: $(ls)"
+
+# cells in contact: with prescribed turgor from a cache, with water solved directly
+small -e 's/law: bonded/law: contact, cohesion: 0.05 MPa/; s/0.1 MPa}/0.05 MPa}\n  mesh: {along: 4, through: 1}/' -e '/strength/d' \
+  -e 's/osmotic_pressure: 0.6/osmotic_pressure: 0.55/' "$example" >contact.yaml
+expect 0 "$lamella" process contact.yaml
+expect 2 "$lamella" process contact.yaml -d c.h5
+grep -q 'process.water: of cells in contact a database does not know the lumens' err.txt || fail "$(cat err.txt)"
+sed -e '/water:/d; s/, outside: 0.5 MPa/, turgor: 0.05 MPa/; s/, outside: 0.55 MPa/, turgor: 0.04 MPa/' contact.yaml >given.yaml
+expect 0 "$lamella" process given.yaml -d c.h5
+
+# nothing is left of the walls: a true reason, and what was reached is kept
+small -e 's/plateau: 0.6/plateau: 0/; s/rate: 0.1/rate: 900/g' "$example" >gone.yaml
+expect 3 "$lamella" process gone.yaml -d d.h5 -o gone.h5
+grep -q 'ended at' err.txt || fail "no reason: $(cat err.txt)"
+expect 0 "$lamella" plot gone.h5 -o gone.svg
+
+# a signal ends it between two states, and the file has what was told
+"$lamella" process "$example" -o long.h5 >long.txt 2>&1 &
+pid=$!
+for _ in $(seq 300); do
+  [ -s long.h5 ] && break
+  sleep 0.1
+done
+kill -TERM $pid
+status=0
+wait $pid || status=$?
+[ $status = 143 ] || fail "exit status $status after SIGTERM: $(cat long.txt)"
+expect 0 "$lamella" info long.h5 --check
+
+expect 1 "$lamella" process small.yaml --frames 4
+expect 1 "$lamella" process small.yaml -d d.h5 -o d.h5
+expect 2 "$lamella" process "$source/tests/scenes/tissue-block.yaml"
+grep -q 'has no block `process`' err.txt || fail "a scene without the block: $(cat err.txt)"

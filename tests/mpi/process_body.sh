@@ -1,0 +1,37 @@
+# process of a body on two ranks: the same states to 1e-6, with water and events, from a database and solved directly
+set -eu
+lamella=$1
+source=$2
+command -v mpirun >/dev/null || exit 77
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+fail() {
+  echo "$1" >&2
+  exit 1
+}
+
+sed 's/elements: \[8, 8\]/elements: [3, 2]/' "$source/tests/scenes/storage.yaml" >body.yaml
+sed 's/elements: \[3, 2\]/elements: [2, 1]/; s/1209610 s/7.5 day/; s/output: 1 day/output: 4 day\n  tolerance: 1e-3/' body.yaml >direct.yaml
+"$lamella" process body.yaml -d d.h5 --quiet >/dev/null
+for case in "body database -d d.h5" "direct direct"; do
+  set -- $case
+  scene=$1.yaml response=$2
+  shift 2
+  "$lamella" process "$scene" --json --response "$response" "$@" -o one.h5 >one.jsonl
+  mpirun -n 2 "$lamella" process "$scene" --json --response "$response" "$@" -o two.h5 >two.jsonl
+  /usr/bin/python3 - <<'PYTHON' || fail "$case: two ranks differ from one"
+import json, sys
+
+one, two = ([json.loads(line) for line in open(name)] for name in ("one.jsonl", "two.jsonl"))
+good = len(one) == len(two) > 2
+for a, b in zip(one, two):
+    for key in ("time", "water", "turgor_min", "turgor_max", "turgor_mean", "walls"):
+        good = good and abs(a[key] - b[key]) <= 1e-6 * max(abs(a[key]), 1e-3)
+    for side in a["reaction"]:
+        good = good and all(abs(x - y) < 1e-8 for x, y in zip(a["reaction"][side], b["reaction"][side]))
+    good = good and a.get("event") == b.get("event")
+sys.exit(0 if good else 1)
+PYTHON
+done
