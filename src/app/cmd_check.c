@@ -29,6 +29,17 @@
 #define UNKNOWN_MB 0.0015
 #define CONTACT_UNKNOWN_MB 0.003
 
+/* Why a process needs direct solves; NULL: a database may answer. */
+static const char *WhyNoDatabase(const LamScene *scene)
+{
+  if (!LamProcessWallsStayAlike(scene))
+    return "moduli of the walls do not change alike: solved directly, as a database would need them as an axis";
+  if (scene->process.has_water && scene->micro.interface == LAM_INTERFACE_CONTACT)
+    return "cells in contact that exchange water: solved directly, as a database does not know their lumens well "
+           "enough";
+  return NULL;
+}
+
 typedef struct {
   LamScene *scene;
   LamPlan plan;
@@ -185,7 +196,7 @@ static PetscErrorCode PrintObject(const Check *check)
   if (scene->has_process)
     json_object_set_new(o, "process",
                         json_pack("{s:o, s:b}", "duration", LamJSONReal(scene->process.duration), "database",
-                                  (int)LamProcessWallsStayAlike(scene)));
+                                  (int)!WhyNoDatabase(scene)));
   if (scene->has_macro) {
     json_t *macro = Cost(json_integer(plan->macro_states), (PetscReal)plan->macro_states * check->point);
 
@@ -333,10 +344,10 @@ static void PrintProcess(const LamScene *scene)
   PetscReal seconds;
   const char *unit = LamTimeUnit(scene->process.duration, &seconds);
 
-  printf("%-12s %.4g %s; %s\n", "process", (double)(scene->process.duration / seconds), unit,
-         LamProcessWallsStayAlike(scene) ? "one database serves at all times"
-                                         : "moduli of the walls do not change alike: solved directly, as a database "
-                                           "would need them as an axis");
+  const char *why = WhyNoDatabase(scene);
+
+  printf("%-12s %.4g %s%s; %s\n", "process", (double)(scene->process.duration / seconds), unit,
+         scene->has_macro ? ", of the body" : "", why ? why : "one database serves at all times");
 }
 
 static PetscErrorCode PrintCost(const Check *check)
