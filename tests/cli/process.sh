@@ -49,6 +49,32 @@ expect 3 "$lamella" process gone.yaml -o gone.h5
 grep -q 'ended at' err.txt || fail "no reason: $(cat err.txt)"
 expect 0 "$lamella" plot gone.h5 -o gone.svg
 
+# its way over a map of failure
+sed -e 's/steps: 8/steps: 2/; s/points: [23]/points: 2/' -e 's/law: contact}/law: contact}\n  mesh: {along: 4, through: 1}/' \
+  "$source/tests/scenes/map-turgor-cohesion.yaml" >map.yaml
+expect 0 "$lamella" map map.yaml -o map.h5
+cat >loosening.yaml <<'YAML'
+version: 1
+rve:
+  cell: {apothem: 75 um, wall_thickness: 11.25 um}
+  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
+  interface: {law: contact, cohesion: 0.05 MPa}
+  turgor: {pressure: 0.02 MPa}
+  mesh: {along: 4, through: 1}
+process:
+  duration: 20 h
+  output: 4 h
+  kinetics: [{of: lamella, law: first_order, rate: 0.05 /h}]
+YAML
+expect 0 "$lamella" process loosening.yaml -o loosening.h5
+expect 0 "$lamella" plot loosening.h5 --map map.h5 -o way.svg
+[ -s way.svg ] || fail "no picture of the way"
+
+# cells in contact that exchange water: a database is refused
+sed 's/  output: 4 h/  water: {permeability: 1e-7 m\/s\/MPa, osmotic_pressure: 0.5 MPa}/' loosening.yaml >wet.yaml
+expect 2 "$lamella" process wet.yaml -d w.h5
+grep -q 'does not know the lumens well enough' err.txt || fail "water of cells in contact: $(cat err.txt)"
+
 # the tissues of docs/tissues.md
 for tissue in "$source"/tests/scenes/tissues/*.yaml; do
   expect 0 "$lamella" process "$tissue"

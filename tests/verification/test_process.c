@@ -431,6 +431,38 @@ static void walls_that_dissolve_to_nothing_end_it_with_a_reason(void **state)
   Forget(&f);
 }
 
+/* Nothing holds turgid cells together but g: where that is gone the tissue neither spans nor resists. */
+static void a_lamella_that_dissolves_lets_the_cells_float(void **state)
+{
+  Followed f =
+      Follow(PROCESS_CELL "  interface: {law: contact, cohesion: 0.05 MPa}\n"
+                          "  turgor: {pressure: 0.02 MPa}\n"
+                          "process:\n"
+                          "  duration: 2 day\n"
+                          "  kinetics: [{of: lamella, law: table, time_unit: day, table: [[0, 1], [1, 0]]}]\n");
+
+  assert_int_equal(f.reason, LAM_PROCESS_ENDED);
+  assert_non_null(FindEvent(&f, LAM_EVENT_LIMIT));
+  assert_near(FindEvent(&f, LAM_EVENT_LIMIT)->time, 86400, 86400 * 1e-6);
+  Forget(&f);
+}
+
+static void cells_that_are_pulled_apart_no_longer_span_the_tissue(void **state)
+{
+  Followed f = Follow(PROCESS_CELL "  interface: {law: contact, cohesion: 0.01 MPa}\n"
+                                   "  turgor: {pressure: 0.02 MPa}\n"
+                                   "process:\n"
+                                   "  duration: 1 min\n"
+                                   "  program: [{for: 1 min, F: [[1.3, 0], [0, 1.3]]}]\n");
+  const LamProcessState *event = FindEvent(&f, LAM_EVENT_PERCOLATION);
+
+  assert_non_null(event);
+  assert_true(f.states[0].response.percolating_directions == 2);
+  assert_true(event->response.percolating_directions < 2);
+  assert_true(event->response.opening_fraction > f.states[0].response.opening_fraction + 0.01);
+  Forget(&f);
+}
+
 static int run(void)
 {
   const struct CMUnitTest tests[] = {
@@ -453,6 +485,8 @@ static int run(void)
       cmocka_unit_test(stress_over_strength_is_1_at_the_event),
       cmocka_unit_test(tissue_that_snaps_goes_on_behind),
       cmocka_unit_test(walls_that_dissolve_to_nothing_end_it_with_a_reason),
+      cmocka_unit_test(a_lamella_that_dissolves_lets_the_cells_float),
+      cmocka_unit_test(cells_that_are_pulled_apart_no_longer_span_the_tissue),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
