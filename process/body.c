@@ -444,7 +444,13 @@ static PetscErrorCode Start(LamBody body, PetscBool *ok, char message[LAM_PROCES
   for (PetscInt p = 0; p < body->sizes.points && process->spec->has_water; p++)
     process->pressure = PetscMax(process->pressure, body->cells[p].osmotic);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &process->pressure, 1, MPIU_REAL, MPIU_MAX, body->comm));
-  process->plasmolysed = (PetscBool)(process->spec->has_water && process->scene->turgor == 0);
+  for (PetscInt p = 0; p < body->sizes.points; p++) {
+    LamMacroPoint point;
+
+    PetscCall(LamMacroGetPoint(body->macro, p, &point));
+    if (point.load->turgor < LamBodyNoTurgor(body)) process->plasmolysed = PETSC_TRUE; /* from the start: no event */
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &process->plasmolysed, 1, MPIU_BOOL, MPI_LOR, body->comm));
   PetscFunctionReturn(0);
 }
 

@@ -40,7 +40,7 @@ struct LamBody_s {
   PetscReal *membrane;    /* [point] */
   LamCells *cells;        /* [point] */
   PetscReal *opening;     /* [point] opening volume at the start */
-  PetscReal turgor_share; /* what the points' turgor was brought up with at the start, over rve.turgor: 1 */
+  PetscReal turgor_share; /* turgor that is prescribed now, over that of the start */
   PetscReal sigma;        /* reflection now */
   LamDrive *drive;        /* [point] */
   LamWaterMode mode;
