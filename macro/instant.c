@@ -2,6 +2,7 @@
   The body at an instant, for whoever follows it in time (body.h): equilibrium under given conditions from a given
   guess, and responses at any state.
 */
+#include <math.h>
 #include "macro_impl.h"
 
 PetscErrorCode LamMacroGetVolumes(LamMacro macro, PetscReal volume[])
@@ -37,7 +38,7 @@ PetscErrorCode LamMacroStart(LamMacro macro, PetscBool *ok, char message[LAM_MES
   PetscCheck(macro->responder, macro->comm, PETSC_ERR_ORDER, "call LamMacroSetResponder() first");
   message[0] = '\0';
   macro->extrapolates = PETSC_FALSE; /* guesses are given */
-  macro->thorough = PETSC_FALSE;
+  macro->thorough = macro->lenient = PETSC_FALSE;
   PetscCall(LamMacroStartStep(macro, &start));
   PetscCall(LamMacroBringUpTurgor(macro, &reached, ok));
   if (*ok && macro->scene->macro.inflate) PetscCall(LamMacroHoldBoundaries(macro));
@@ -86,9 +87,13 @@ static PetscErrorCode Enter(LamMacro macro, const LamMacroInstant *instant, cons
 PetscErrorCode LamMacroBalance(LamMacro macro, const LamMacroInstant *instant, const PetscReal u[],
                                const PetscReal pressures[], PetscBool *ok)
 {
+  PetscBool interpolated;
+
   PetscFunctionBeginUser;
   PetscCall(Enter(macro, instant, u, pressures));
   macro->prediction = 0;
+  interpolated = (PetscBool)(macro->responder->interpolated > 0);
+  PetscCallMPI(MPI_Allreduce(&interpolated, &macro->lenient, 1, MPIU_BOOL, MPI_LOR, macro->comm));
   macro->thorough = PETSC_TRUE; /* else what changes little in time would not move the body at all */
   PetscCall(LamMacroIterate(macro, ok));
   PetscFunctionReturn(0);
@@ -97,7 +102,7 @@ PetscErrorCode LamMacroBalance(LamMacro macro, const LamMacroInstant *instant, c
 PetscErrorCode LamMacroForget(LamMacro macro)
 {
   PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < macro->point_count; p++) macro->now[p].known = macro->accepted[p].known = PETSC_FALSE;
+  for (PetscInt p = 0; p < macro->point_count; p++) macro->now[p].walls = macro->accepted[p].walls = NAN;
   PetscFunctionReturn(0);
 }
 

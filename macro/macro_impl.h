@@ -69,7 +69,7 @@ typedef struct {
 typedef struct {
   PetscBool known; /* the rest belongs to `load` and `walls` */
   LamLoad load;
-  PetscReal walls; /* moduli over those of the tissue that was asked */
+  PetscReal walls; /* moduli over those of the tissue that was asked; NaN: it may answer otherwise now */
   PetscReal P[9];
   PetscReal A[81]; /* [dim][dim][dim][dim] dP_ij/dF_kl */
   PetscReal field[LAM_POINT_FIELD_COUNT];
@@ -232,6 +232,7 @@ struct LamMacro_s {
   LamObstacle obstacles[LAM_MAX_BOUNDARIES];
   PetscInt obstacle_node_count;
   LamObstacleNode *obstacle_nodes;
+  PetscBool lenient;   /* answers that jump a little may keep a residual that is next to none */
   PetscBool thorough;  /* at least one iteration, however small the first residual */
   PetscBool fresh;     /* no residual yet in this series of iterations */
   PetscReal violation; /* largest penetration or distance of nodes that are not as they should be, last residual */

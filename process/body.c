@@ -137,8 +137,7 @@ LamMacroInstant LamBodyInstant(LamBody body, PetscReal time)
   return instant;
 }
 
-/* How water follows where nothing has time to pass. */
-static LamWaterMode AtOnce(LamBody body)
+LamWaterMode LamBodyAtOnce(LamBody body)
 {
   return isfinite(body->process->spec->water.permeability) ? LAM_WATER_GIVEN : LAM_WATER_OSMOSIS;
 }
@@ -157,28 +156,30 @@ PetscErrorCode LamBodyFillWater(LamBody body)
 }
 
 /* Equilibrium under the conditions, which becomes the present state. */
-static PetscErrorCode Balance(LamBody body, const LamMacroInstant *instant, PetscBool *ok)
+static PetscErrorCode Balance(LamBody body, LamWaterMode mode, const LamMacroInstant *instant, PetscBool *ok)
 {
   LamProcess process = body->process;
 
   PetscFunctionBeginUser;
   body->evaluated = NAN;
-  body->mode = AtOnce(body);
+  body->mode = mode;
   PetscCall(LamMacroBalance(body->macro, instant, body->u, body->pressures, ok));
   process->counts.questions++;
   if (!*ok) {
     PetscCall(PetscStrncpy(process->trouble, LamMacroTrouble(body->macro), sizeof(process->trouble)));
     PetscCall(LamMacroStopped(body->macro, &process->stopped));
     PetscCall(LamMacroReject(body->macro));
+    body->mode = LamBodyAtOnce(body);
     PetscFunctionReturn(0);
   }
   PetscCall(LamMacroAccept(body->macro));
   PetscCall(LamMacroGetState(body->macro, body->u, body->pressures));
   PetscCall(LamBodyFillWater(body));
+  body->mode = LamBodyAtOnce(body);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamBodySettle(LamBody body, PetscReal time, PetscBool *ok)
+static PetscErrorCode Settle(LamBody body, LamWaterMode mode, PetscReal time, PetscBool *ok)
 {
   const LamProcessTissue *tissue = &body->process->tissue;
 
@@ -186,8 +187,26 @@ PetscErrorCode LamBodySettle(LamBody body, PetscReal time, PetscBool *ok)
   PetscCall(LamBodySetTime(body, time, tissue->x, ok));
   if (!*ok) PetscFunctionReturn(0);
   const LamMacroInstant instant = LamBodyInstant(body, time);
-  PetscCall(Balance(body, &instant, ok));
+  PetscCall(Balance(body, mode, &instant, ok));
   if (*ok) body->evaluated = time;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamBodySettle(LamBody body, PetscReal time, PetscBool *ok)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Settle(body, LamBodyAtOnce(body), time, ok));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamBodySettleStep(LamBody body, PetscReal time, PetscReal c, PetscReal start[], PetscReal slope[],
+                                 PetscBool *ok)
+{
+  PetscFunctionBeginUser;
+  body->cj = c;
+  body->start = start;
+  body->slope = slope;
+  PetscCall(Settle(body, LAM_WATER_PASSES, time, ok));
   PetscFunctionReturn(0);
 }
 
@@ -198,31 +217,47 @@ static PetscReal Between(PetscReal from, PetscReal to, PetscReal share)
   return from + share * (to - from);
 }
 
-/* From the conditions `from`, in temperature and bath of the tissue, to those of the segment's start; in any case to
-   an equilibrium there, as far as rounding and interpolation have left it. */
-static PetscErrorCode Jump(LamBody body, const LamMacroInstant *from, PetscBool *ok)
+/* What holds on the way of a jump. */
+typedef struct {
+  LamMacroInstant instant;
+  PetscReal temperature, outside;
+} Conditions;
+
+static Conditions Mix(const Conditions *from, const Conditions *to, PetscReal share)
+{
+  Conditions mix = *to;
+
+  mix.instant.load = Between(from->instant.load, to->instant.load, share);
+  mix.instant.turgor = Between(from->instant.turgor, to->instant.turgor, share);
+  mix.temperature = Between(from->temperature, to->temperature, share);
+  mix.outside = Between(from->outside, to->outside, share);
+  return mix;
+}
+
+/* From one to the other in as many steps as it takes, which need no time; *reached: how far it came. */
+static PetscErrorCode Walk(LamBody body, const Conditions *from, const Conditions *to, Conditions *reached,
+                           PetscBool *ok)
 {
   LamProcess process = body->process;
   const LamSegment segment = process->segment;
   const LamProcessTissue *tissue = &process->tissue;
-  const LamMacroInstant to = LamBodyInstant(body, tissue->time);
   PetscReal done = 0, step = 1;
 
   PetscFunctionBeginUser;
   *ok = PETSC_TRUE;
+  *reached = *from;
   while (done < 1 && !process->stopped) {
     const PetscReal next = PetscMin(1, done + step);
-    LamMacroInstant instant = to;
+    const Conditions at = Mix(from, to, next);
 
-    process->segment.temperature.from = Between(tissue->temperature, segment.temperature.from, next);
-    process->segment.outside.from = Between(tissue->outside, segment.outside.from, next);
+    process->segment.temperature.from = at.temperature;
+    process->segment.outside.from = at.outside;
     PetscCall(LamBodySetTime(body, tissue->time, tissue->x, ok));
-    instant.load = Between(from->load, to.load, next);
-    instant.turgor = Between(from->turgor, to.turgor, next);
-    if (*ok) PetscCall(Balance(body, &instant, ok));
+    if (*ok) PetscCall(Balance(body, LamBodyAtOnce(body), &at.instant, ok));
     if (*ok) {
       done = next;
       step *= 2;
+      *reached = at;
     } else {
       step = 0.5 * (next - done);
       if (step < PetscPowRealInt(0.5, MAX_HALVINGS)) break;
@@ -233,27 +268,45 @@ static PetscErrorCode Jump(LamBody body, const LamMacroInstant *from, PetscBool 
   PetscFunctionReturn(0);
 }
 
+/* To the conditions of the segment's start, in any case to an equilibrium there, as far as rounding and interpolation
+   have left it; else, where there is none, back. */
+static PetscErrorCode Jump(LamBody body, const Conditions *from, PetscBool *ok)
+{
+  LamProcess process = body->process;
+  const LamSegment *segment = &process->segment;
+  const Conditions to = {LamBodyInstant(body, process->tissue.time), segment->temperature.from, segment->outside.from};
+  char why[sizeof(process->trouble)];
+  Conditions reached, back;
+  PetscBool returned;
+
+  PetscFunctionBeginUser;
+  PetscCall(Walk(body, from, &to, &reached, ok));
+  if (*ok || process->stopped) PetscFunctionReturn(0);
+  PetscCall(PetscStrncpy(why, process->trouble, sizeof(why)));
+  PetscCall(Walk(body, &reached, from, &back, &returned));
+  PetscCall(PetscStrncpy(process->trouble, why, sizeof(why)));
+  PetscFunctionReturn(0);
+}
+
 /* Brings the body to the start of the segment. */
 static PetscErrorCode EnterSegment(LamBody body, PetscBool *ok)
 {
   LamProcess process = body->process;
   LamProcessTissue *tissue = &process->tissue;
   const LamSegment *segment = &process->segment;
-  LamMacroInstant from, to;
+  Conditions from;
 
   PetscFunctionBeginUser;
   PetscCall(LamBodySetTime(body, tissue->time, tissue->x, ok));
   if (!*ok) PetscFunctionReturn(0);
-  from = to = LamBodyInstant(body, tissue->time);
-  from.load = tissue->load;
-  from.turgor = body->turgor_share;
-  const PetscBool jumps = (PetscBool)(PetscAbsReal(from.load - to.load) > 1e-12 || from.turgor != to.turgor);
-
+  from = (Conditions){LamBodyInstant(body, tissue->time), tissue->temperature, tissue->outside};
+  from.instant.load = tissue->load;
+  from.instant.turgor = body->turgor_share;
   PetscCall(LamMacroForget(body->macro)); /* a cache may have learnt meanwhile */
-  PetscCall(Jump(body, jumps ? &from : &to, ok));
+  PetscCall(Jump(body, &from, ok));
   if (!*ok) PetscFunctionReturn(0);
   tissue->load = segment->load.from;
-  body->turgor_share = to.turgor;
+  body->turgor_share = LamBodyInstant(body, tissue->time).turgor;
   tissue->temperature = segment->temperature.from;
   tissue->outside = segment->outside.from;
   PetscCall(LamBodySetTime(body, tissue->time, tissue->x, ok));
@@ -392,12 +445,16 @@ static PetscErrorCode FollowSegment(LamBody body, PetscBool *ok)
 {
   const PetscReal none[9] = {0};
   LamProcess process = body->process;
+  const LamSegment before = process->segment;
   PetscBool happened[LAM_EVENT_COUNT] = {PETSC_FALSE};
 
   PetscFunctionBeginUser;
   LamProcessNextSegment(process, &process->segment);
   PetscCall(EnterSegment(body, ok));
-  if (!*ok) PetscFunctionReturn(0);
+  if (!*ok) { /* the body is still where the one before ends */
+    process->segment = before;
+    PetscFunctionReturn(0);
+  }
   PetscCall(TellPassed(body));
   if (process->next_output <= process->tissue.time) {
     PetscCall(LamBodyTell(body, NULL));
@@ -441,6 +498,8 @@ static PetscErrorCode Start(LamBody body, PetscBool *ok, char message[LAM_PROCES
     body->opening[p] = point.field[LAM_POINT_OPENING];
   }
   if (process->spec->has_water) PetscCall(LamBodyWaterCreate(body));
+  if (process->spec->has_water && isfinite(process->spec->water.osmotic) && LamBodyAtOnce(body) == LAM_WATER_OSMOSIS)
+    tissue->outside = process->spec->water.osmotic - process->scene->turgor / process->spec->water.reflection;
   for (PetscInt p = 0; p < body->sizes.points && process->spec->has_water; p++)
     process->pressure = PetscMax(process->pressure, body->cells[p].osmotic);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &process->pressure, 1, MPIU_REAL, MPIU_MAX, body->comm));

@@ -4,9 +4,11 @@
 #include "body_impl.h"
 #include <math.h>
 
+static const PetscReal MOST_SLACK = 1e-4;
+
 PetscReal LamBodyNoTurgor(LamBody body)
 {
-  return LamSlack(body->process) * body->process->pressure;
+  return PetscMin(LamSlack(body->process), MOST_SLACK) * body->process->pressure;
 }
 
 PetscInt LamBodyListEvents(LamBody body, LamEvent events[LAM_EVENT_COUNT])

@@ -52,6 +52,7 @@ struct LamBody_s {
   PetscReal evaluated; /* time to which the responses of the macroscale solver belong; NaN: unknown */
   PetscReal clock;     /* when the report of the present state began */
   PetscInt told;
+  PetscInt steps; /* of time in the segment */
 };
 
 /* ---- body_water.c ---- */
@@ -74,8 +75,17 @@ LamMacroInstant LamBodyInstant(LamBody body, PetscReal time);
   passing. *ok: found; it is then that of the body and of the macroscale solver.
 */
 PetscErrorCode LamBodySettle(LamBody body, PetscReal time, PetscBool *ok);
+/*
+  The same where V and V' at the time are known as well as the integration knows them, start and slope [point]: water
+  may still pass as in an implicit step of the coefficient c, V' = slope + c (V - start). An error of V would else
+  become one of the turgor as large as cells are stiff that keep their water.
+*/
+PetscErrorCode LamBodySettleStep(LamBody body, PetscReal time, PetscReal c, PetscReal start[], PetscReal slope[],
+                                 PetscBool *ok);
 /* The water that follows from the turgor of the present state. */
 PetscErrorCode LamBodyFillWater(LamBody body);
+/* How water follows where nothing has time to pass. */
+LamWaterMode LamBodyAtOnce(LamBody body);
 PetscErrorCode LamBodyTell(LamBody body, const PetscBool happened[LAM_EVENT_COUNT]);
 
 /* ---- body_integrate.c ---- */

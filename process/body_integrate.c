@@ -24,8 +24,9 @@
 #include <sundials/sundials_nonlinearsolver.h>
 #include <sundials/sundials_types.h>
 
-enum { MAX_STEPS = 100000, MAX_FAILURES = 25, MAX_RESTARTS = 3, KINETIC_ITERATIONS = 30 };
+enum { MAX_STEPS = 100000, MAX_FAILURES = 25, MAX_RESTARTS = 3, MAX_HALVINGS = 6, KINETIC_ITERATIONS = 30 };
 #define KINETIC_EXACT 1e-14
+#define LEAST_ADVANCE 1e-9 /* of the duration, that makes a restart worth another one */
 
 #define LamCallSUN(call)                                                                                               \
   do {                                                                                                                 \
@@ -47,6 +48,7 @@ typedef struct {
   LamEvent events[LAM_EVENT_COUNT];
   PetscReal x[LAM_PROCESS_KINETIC]; /* in the last step's solution, on all ranks */
   PetscBool pending;                /* a solution that is not accepted yet */
+  PetscReal c;                      /* leading coefficient of the last step */
   PetscErrorCode error;             /* of the library, raised inside IDA */
 
   SUNContext context;
@@ -114,6 +116,7 @@ static PetscErrorCode Unpack(Integration *in, PetscReal time, const PetscReal y[
   tissue->temperature = LamRampAt(&segment->temperature, elapsed);
   tissue->outside = LamRampAt(&segment->outside, elapsed);
   tissue->load = LamRampAt(&segment->load, elapsed);
+  body->turgor_share = LamBodyInstant(body, time).turgor;
   if (l->water >= 0) PetscCall(PetscArraycpy(body->water, &y[l->water], body->sizes.points));
   PetscCall(PetscArraycpy(body->pressures, &y[l->pressures], body->sizes.elements * body->sizes.modes));
   PetscCall(PetscArraycpy(body->u, &y[l->u], body->sizes.displacements));
@@ -188,6 +191,18 @@ static PetscErrorCode FillCorrection(Integration *in, const PetscReal predicted[
   PetscFunctionReturn(0);
 }
 
+/* How water passes: V' = rates + c (V - start). */
+static void SetStep(Integration *in, PetscReal c, PetscReal start[], PetscReal rates[])
+{
+  LamBody body = in->body;
+  const PetscInt water = in->layout.water;
+
+  body->mode = water < 0 ? LAM_WATER_OSMOSIS : LAM_WATER_PASSES;
+  body->cj = c;
+  body->start = water < 0 ? NULL : &start[water];
+  body->slope = water < 0 ? NULL : &rates[water];
+}
+
 /* *flag: 0, or positive where a shorter step may have a solution. */
 static PetscErrorCode SolveStep(Integration *in, PetscReal time, PetscReal c, PetscReal predicted[], PetscReal rates[],
                                 PetscReal correction[], int *flag)
@@ -205,10 +220,8 @@ static PetscErrorCode SolveStep(Integration *in, PetscReal time, PetscReal c, Pe
   PetscCall(SolveKinetics(in, time, c, predicted, rates, &ok));
   if (ok) PetscCall(LamBodySetTime(body, time, in->x, &ok));
   if (!ok) PetscFunctionReturn(0);
-  body->mode = l->water < 0 ? LAM_WATER_OSMOSIS : LAM_WATER_PASSES;
-  body->cj = c;
-  body->start = l->water < 0 ? NULL : &predicted[l->water];
-  body->slope = l->water < 0 ? NULL : &rates[l->water];
+  in->c = c;
+  SetStep(in, c, predicted, rates);
   const LamMacroInstant instant = LamBodyInstant(body, time);
   PetscCall(LamMacroBalance(body->macro, &instant, &predicted[l->u], &predicted[l->pressures], &ok));
   body->process->counts.questions++;
@@ -283,8 +296,8 @@ static int Weights(N_Vector y_vector, N_Vector weight, void *ctx)
 
 /* ---- roots ---- */
 
-/* Balances the body with the water and kinetic states in y, unless it is there. */
-static PetscErrorCode BalanceAt(Integration *in, PetscReal time, const PetscReal y[], PetscBool *ok)
+/* Balances the body in IDA's state, unless it is there: as LamBodySettleStep does, but not to stay there. */
+static PetscErrorCode BalanceAt(Integration *in, PetscReal time, PetscReal y[], PetscReal yp[], PetscBool *ok)
 {
   LamBody body = in->body;
   const Layout *l = &in->layout;
@@ -296,24 +309,32 @@ static PetscErrorCode BalanceAt(Integration *in, PetscReal time, const PetscReal
   PetscCall(ShareStates(in, y, in->x));
   PetscCall(LamBodySetTime(body, time, in->x, ok));
   if (!*ok) PetscFunctionReturn(0);
-  if (l->water >= 0) PetscCall(PetscArraycpy(body->water, &y[l->water], body->sizes.points));
-  body->mode = l->water < 0 ? LAM_WATER_OSMOSIS : LAM_WATER_GIVEN;
+  SetStep(in, in->c, y, yp);
   const LamMacroInstant instant = LamBodyInstant(body, time);
   PetscCall(LamMacroBalance(body->macro, &instant, &y[l->u], &y[l->pressures], ok));
+  PetscCall(LamMacroStopped(body->macro, &body->process->stopped));
+  if (!*ok && !body->process->stopped) { /* from where the step began */
+    PetscCall(LamMacroReject(body->macro));
+    PetscCall(LamMacroBalance(body->macro, &instant, body->u, body->pressures, ok));
+    PetscCall(LamMacroStopped(body->macro, &body->process->stopped));
+  }
+  body->mode = LamBodyAtOnce(body); /* vectors of IDA are no longer asked */
   in->pending = PETSC_TRUE;
   body->process->counts.questions++;
-  if (*ok) body->evaluated = time;
-  PetscCall(LamMacroStopped(body->macro, &body->process->stopped));
+  if (*ok)
+    body->evaluated = time;
+  else
+    PetscCall(PetscStrncpy(body->process->trouble, LamMacroTrouble(body->macro), sizeof(body->process->trouble)));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode FindExcess(Integration *in, PetscReal time, const PetscReal y[], PetscReal excess[],
+static PetscErrorCode FindExcess(Integration *in, PetscReal time, PetscReal y[], PetscReal yp[], PetscReal excess[],
                                  PetscBool *ok)
 {
   PetscInt points[LAM_EVENT_COUNT];
 
   PetscFunctionBeginUser;
-  PetscCall(BalanceAt(in, time, y, ok));
+  PetscCall(BalanceAt(in, time, y, yp, ok));
   if (!*ok) PetscFunctionReturn(0);
   PetscCall(LamBodyExcess(in->body, in->event_count, in->events, excess, points));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, excess, (PetscMPIInt)in->event_count, MPIU_REAL, MPIU_MAX, in->body->comm));
@@ -330,7 +351,7 @@ static int Roots(PetscReal t, N_Vector y, N_Vector yp, PetscReal excess[], void 
   Integration *in = (Integration *)ctx;
   PetscBool ok = PETSC_FALSE;
 
-  in->error = FindExcess(in, t, N_VGetArrayPointer(y), excess, &ok);
+  in->error = FindExcess(in, t, N_VGetArrayPointer(y), N_VGetArrayPointer(yp), excess, &ok);
   return in->error || !ok ? -1 : 0;
 }
 
@@ -435,29 +456,83 @@ static void Destroy(Integration *in)
 
 /* ---- the way ---- */
 
+/* Settles the body in IDA's state at a time within the last step; `keeps`: turgor and displacement are those of the
+   present state, a guess, else those of the interpolation. */
+static PetscErrorCode SettleAt(Integration *in, PetscReal time, PetscBool keeps, PetscBool *ok)
+{
+  LamBody body = in->body;
+  const PetscInt n = body->sizes.displacements, m = body->sizes.elements * body->sizes.modes, water = in->layout.water;
+  N_Vector y = N_VClone(in->y), yp = N_VClone(in->y);
+  PetscReal *u, *pressures;
+  PetscErrorCode ierr = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n, &u, m, &pressures));
+  PetscCall(PetscArraycpy(u, body->u, n));
+  PetscCall(PetscArraycpy(pressures, body->pressures, m));
+  *ok = (PetscBool)(IDAGetDky(in->ida, time, 0, y) == IDA_SUCCESS && IDAGetDky(in->ida, time, 1, yp) == IDA_SUCCESS);
+  if (*ok) ierr = Unpack(in, time, N_VGetArrayPointer(y));
+  if (*ok && keeps) {
+    for (PetscInt k = 0; k < n; k++) body->u[k] = u[k];
+    for (PetscInt k = 0; k < m; k++) body->pressures[k] = pressures[k];
+  }
+  if (*ok && !ierr)
+    ierr = water < 0 ? LamBodySettle(body, time, ok)
+                     : LamBodySettleStep(body, time, in->c, &N_VGetArrayPointer(y)[water],
+                                         &N_VGetArrayPointer(yp)[water], ok);
+  PetscCall(PetscFree2(u, pressures));
+  N_VDestroy(y);
+  N_VDestroy(yp);
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+/* Settles the body at an output before the end of the step, at `end`: from the interpolation, else from that end, in
+   smaller and smaller ways back. */
+static PetscErrorCode SettleOutput(Integration *in, PetscReal end, PetscReal output, PetscBool *ok)
+{
+  LamBody body = in->body;
+  PetscReal at = end, way = output - end;
+  PetscInt halvings = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(SettleAt(in, output, PETSC_FALSE, ok));
+  if (*ok || body->process->stopped) PetscFunctionReturn(0);
+  PetscCall(Unpack(in, end, N_VGetArrayPointer(in->y)));
+  while (at > output && halvings <= MAX_HALVINGS && !body->process->stopped) {
+    const PetscReal next = PetscMax(output, at + way);
+
+    PetscCall(SettleAt(in, next, PETSC_TRUE, ok));
+    if (*ok) {
+      at = next;
+    } else {
+      way *= 0.5;
+      halvings++;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Tells the outputs up to a time that the integrator has passed. */
 static PetscErrorCode TellUpTo(Integration *in, PetscReal time, PetscBool *ok)
 {
   LamBody body = in->body;
   LamProcess process = body->process;
-  N_Vector y = N_VClone(in->y);
-  PetscErrorCode ierr = 0;
 
   PetscFunctionBeginUser;
-  while (!ierr && *ok && process->next_output <= time && process->next_output <= process->spec->duration) {
+  while (*ok && process->next_output <= time && process->next_output <= process->spec->duration) {
     const PetscReal at = process->next_output;
 
-    if (IDAGetDky(in->ida, at, 0, y) != IDA_SUCCESS) N_VScale(1, in->y, y);
-    ierr = Unpack(in, at, N_VGetArrayPointer(y));
-    if (!ierr && body->evaluated != at)
-      ierr = LamBodySettle(body, at, ok);
-    else if (!ierr && in->layout.water < 0)
-      ierr = LamBodyFillWater(body);
-    if (!ierr && *ok) ierr = LamBodyTell(body, NULL);
+    if (body->evaluated == at) {
+      PetscCall(Unpack(in, at, N_VGetArrayPointer(in->y))); /* the end of the step */
+      if (in->layout.water < 0) PetscCall(LamBodyFillWater(body));
+    } else {
+      PetscCall(SettleOutput(in, time, at, ok));
+    }
+    if (!*ok) break;
+    PetscCall(LamBodyTell(body, NULL));
     LamProcessNextOutput(process);
   }
-  N_VDestroy(y);
-  PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 
@@ -492,6 +567,7 @@ static PetscErrorCode TakeStep(Integration *in, PetscReal time)
   else if (in->pending)
     PetscCall(LamMacroReject(in->body->macro));
   in->pending = PETSC_FALSE;
+  in->body->mode = LamBodyAtOnce(in->body); /* vectors of IDA are no longer asked */
   PetscFunctionReturn(0);
 }
 
@@ -501,12 +577,11 @@ static PetscErrorCode Follow(Integration *in, PetscBool happened[LAM_EVENT_COUNT
   LamProcess process = body->process;
   int flag = IDA_SUCCESS;
   PetscReal t = process->tissue.time;
-  PetscInt steps = 0;
 
   PetscFunctionBeginUser;
   *ok = PETSC_TRUE;
   while (flag == IDA_SUCCESS && *ok && t < process->segment.end) {
-    if (++steps > MAX_STEPS) {
+    if (++body->steps > MAX_STEPS) {
       PetscCall(PetscStrncpy(process->trouble, "its steps of time are too short to come on", sizeof(process->trouble)));
       *ok = PETSC_FALSE;
       PetscFunctionReturn(0);
@@ -526,7 +601,7 @@ static PetscErrorCode Follow(Integration *in, PetscBool happened[LAM_EVENT_COUNT
   if (flag < 0 || process->stopped) *ok = PETSC_FALSE;
   if (*ok && flag == IDA_ROOT_RETURN) PetscCall(FindEvents(in, happened));
   if (*ok && body->evaluated != t)
-    PetscCall(LamBodySettle(body, t, ok));
+    PetscCall(SettleAt(in, t, PETSC_FALSE, ok));
   else if (*ok && in->layout.water < 0)
     PetscCall(LamBodyFillWater(body));
   PetscFunctionReturn(0);
@@ -555,13 +630,14 @@ PetscErrorCode LamBodyIntegrate(LamBody body, PetscBool happened[LAM_EVENT_COUNT
   PetscInt tries = 0;
 
   PetscFunctionBeginUser;
+  body->steps = 0;
   for (;;) {
     const PetscReal from = process->tissue.time;
 
     PetscCall(IntegrateOnce(body, happened, ok));
     if (*ok || process->stopped) break;
-    tries = process->tissue.time > from ? 0 : tries + 1;
-    if (tries == MAX_RESTARTS) break;
+    tries = process->tissue.time > from + LEAST_ADVANCE * process->spec->duration ? 0 : tries + 1;
+    if (tries == MAX_RESTARTS || body->steps > MAX_STEPS) break;
     PetscCall(PetscStrncpy(why, process->trouble, sizeof(why)));
     PetscCall(LamMacroForget(body->macro));
     PetscCall(LamBodySettle(body, process->tissue.time, ok));

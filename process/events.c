@@ -21,16 +21,27 @@ void LamProcessRatios(LamProcess process, const LamEvaluation *e, PetscReal rati
   ratio[LAM_RATIO_WALL] = e->response.max_wall_tension / (wall * strength->wall);
 }
 
+/* Whether any of the tissue has this interface. */
+static PetscBool Has(const LamScene *scene, LamInterfaceLawType interface)
+{
+  PetscBool has = (PetscBool)(scene->micro.interface == interface);
+
+  for (PetscInt r = 0; r < scene->region_count; r++)
+    has = (PetscBool)(has || scene->regions[r].micro.interface == interface);
+  return has;
+}
+
 static PetscBool Applies(LamProcess process, LamEvent event)
 {
-  const PetscBool contact = (PetscBool)(process->scene->micro.interface == LAM_INTERFACE_CONTACT);
+  const PetscBool contact = Has(process->scene, LAM_INTERFACE_CONTACT),
+                  bonded = Has(process->scene, LAM_INTERFACE_BONDED);
   const LamStrength *strength = &process->scene->strength;
 
   switch (event) {
   case LAM_EVENT_LAMELLA_NORMAL:
-    return (PetscBool)(!contact && isfinite(strength->lamella_normal));
+    return (PetscBool)(bonded && isfinite(strength->lamella_normal));
   case LAM_EVENT_LAMELLA_SHEAR:
-    return (PetscBool)(!contact && isfinite(strength->lamella_shear));
+    return (PetscBool)(bonded && isfinite(strength->lamella_shear));
   case LAM_EVENT_WALL:
     return (PetscBool)isfinite(strength->wall);
   case LAM_EVENT_OPENING:

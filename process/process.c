@@ -12,13 +12,33 @@ enum { MAX_SNAPS = 200 };
 
 /* ---- life ---- */
 
+/* Which moduli any wall of a tissue has. */
+static void FindModuli(const LamMicrostructure *micro, PetscBool has[3])
+{
+  const PetscInt cells = micro->cell ? micro->cells[0] * micro->cells[1] : 0;
+
+  for (PetscInt c = -1; c < cells; c++) {
+    const LamWall *wall = c < 0 ? &micro->wall : &micro->cell[c].wall;
+
+    has[0] = (PetscBool)(has[0] || wall->C1 != 0);
+    has[1] = (PetscBool)(has[1] || wall->C2 != 0);
+    has[2] = (PetscBool)(has[2] || wall->C4 != 0);
+  }
+}
+
 PetscBool LamProcessWallsStayAlike(const LamScene *scene)
 {
-  const LamKinetics *kinetics = scene->process.kinetics, *C1 = &kinetics[LAM_CHANGING_C1];
-  const LamWall *wall = &scene->micro.wall;
+  const LamChanging of[] = {LAM_CHANGING_C1, LAM_CHANGING_C2, LAM_CHANGING_C4};
+  const LamKinetics *kinetics = scene->process.kinetics;
+  PetscBool has[3] = {PETSC_FALSE};
+  PetscInt first = 0;
 
-  if (wall->C2 > 0 && !LamKineticsAgree(C1, &kinetics[LAM_CHANGING_C2])) return PETSC_FALSE;
-  return (PetscBool)(wall->C4 == 0 || LamKineticsAgree(C1, &kinetics[LAM_CHANGING_C4]));
+  FindModuli(&scene->micro, has);
+  for (PetscInt r = 0; r < scene->region_count; r++) FindModuli(&scene->regions[r].micro, has);
+  while (first < 2 && !has[first]) first++;
+  for (PetscInt k = first + 1; k < 3; k++)
+    if (has[k] && !LamKineticsAgree(&kinetics[of[first]], &kinetics[of[k]])) return PETSC_FALSE;
+  return PETSC_TRUE;
 }
 
 /* Lumens are hexagonal prisms of infinite length. */

@@ -119,10 +119,8 @@ static PetscErrorCode BuildSurroundings(const LamDocument *document, LamScene *s
 /* ---- water ---- */
 
 /* Membranes of one kind: all cells have the turgor of the load. */
-static PetscErrorCode CheckCells(const LamDocument *document, const LamNode *block, const LamScene *scene)
+static PetscErrorCode CheckCells(const LamDocument *document, const LamNode *block, const LamMicrostructure *micro)
 {
-  const LamMicrostructure *micro = &scene->micro;
-
   PetscFunctionBeginUser;
   for (PetscInt c = 0; micro->cell && c < micro->cells[0] * micro->cells[1]; c++)
     if (micro->cell[c].turgor != 1)
@@ -130,6 +128,16 @@ static PetscErrorCode CheckCells(const LamDocument *document, const LamNode *blo
           LamSceneFailName(document, block,
                            "finds one turgor for all cells, but in rve.variation their turgors differ; leave that "
                            "out there"));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CheckTurgor(const LamDocument *document, const LamNode *block, PetscReal turgor)
+{
+  PetscFunctionBeginUser;
+  if (turgor < 0)
+    PetscCall(LamSceneFailName(document, block,
+                               "begins with a negative turgor, but membranes leave the walls at 0; write a pressure of "
+                               "at least 0 MPa in rve.turgor"));
   PetscFunctionReturn(0);
 }
 
@@ -159,16 +167,20 @@ static PetscErrorCode BuildWater(const LamDocument *document, LamScene *scene)
   water->osmotic = NAN;
   if (osmotic_node)
     PetscCall(LamSceneScale(document, osmotic_node, osmotic.number[0], scene->scales.stress, &water->osmotic));
-  if (scene->turgor < 0)
-    PetscCall(LamSceneFailName(document, block,
-                               "begins with a negative turgor, but membranes leave the walls at 0; write a pressure of "
-                               "at least 0 MPa in rve.turgor"));
+  PetscCall(CheckTurgor(document, block, scene->turgor));
+  for (PetscInt r = 0; r < scene->region_count; r++) PetscCall(CheckTurgor(document, block, scene->regions[r].turgor));
   if (!osmotic_node && water->reflection == 0 && scene->turgor > 0)
     PetscCall(
         LamSceneFailMissing(document, block, "osmotic_pressure",
                             "missing: with reflection: 0 no osmotic pressure holds the turgor; write one, such as "
                             "0.8 MPa"));
-  PetscCall(CheckCells(document, block, scene));
+  PetscCall(CheckCells(document, block, &scene->micro));
+  for (PetscInt r = 0; r < scene->region_count; r++) PetscCall(CheckCells(document, block, &scene->regions[r].micro));
+  if (scene->has_macro && water->reflection == 0 && permeability.is_free[0])
+    PetscCall(
+        LamSceneFailName(document, block,
+                         "has membranes that hold back neither water nor solutes, so no cell of the body has a turgor; "
+                         "leave the block out, with rve.turgor: {pressure: 0 MPa}"));
   PetscFunctionReturn(0);
 }
 
@@ -306,8 +318,12 @@ static PetscErrorCode CheckChanging(const LamDocument *document, const LamNode *
         LamSceneFail(document, of, "belongs to process.water, which is missing; write that block, or leave it out"));
   if (changing == LAM_CHANGING_WALL_STRENGTH && isnan(scene->strength.wall))
     PetscCall(LamSceneFail(document, of, "strength.wall is not given; write it, or leave this out"));
-  if (changing == LAM_CHANGING_LAMELLA && scene->micro.interface == LAM_INTERFACE_BONDED &&
-      isnan(scene->strength.lamella_normal) && isnan(scene->strength.lamella_shear))
+  PetscBool contact = (PetscBool)(scene->micro.interface == LAM_INTERFACE_CONTACT);
+
+  for (PetscInt r = 0; r < scene->region_count; r++)
+    contact = (PetscBool)(contact || scene->regions[r].micro.interface == LAM_INTERFACE_CONTACT);
+  if (changing == LAM_CHANGING_LAMELLA && !contact && isnan(scene->strength.lamella_normal) &&
+      isnan(scene->strength.lamella_shear))
     PetscCall(
         LamSceneFail(document, of,
                      "bonded cells have no cohesion, and strength.lamella_normal and lamella_shear are not given; "
@@ -392,6 +408,10 @@ static PetscErrorCode BuildLegs(const LamDocument *document, LamScene *scene)
   for (const LamNode *entry = list ? list->first : NULL; entry; entry = entry->next) {
     PetscCall(ReadLeg(document, entry, scene, &leg, &spec->legs[spec->leg_count]));
     leg = spec->legs[spec->leg_count++];
+    if (leg.duration == 0 && fabs(cycle - spec->duration) <= 1e-9 * spec->duration)
+      PetscCall(LamSceneFail(document, entry,
+                             "is a jump at the very end, of which nothing is seen; make process.duration "
+                             "longer"));
     cycle += leg.duration;
   }
   if (repeat_node && !(cycle > 0))

@@ -41,7 +41,7 @@ typedef PetscErrorCode (*LamBodyMonitor)(const LamBodyState *state, void *ctx);
 /* Borrows both; the scene has the blocks `process` and `macro`. Before LamMacroSetUp. */
 PetscErrorCode LamBodyCreate(const LamScene *scene, LamMacro macro, LamBody *body);
 /* Area of the membranes over V0 at this rank's points, [point] in 1 over the scene's apothem; where this is not called
-   it is that of the scene's tissue. After LamMacroSetUp. */
+   it is that of the scene's tissue. After LamMacroSetUp; collective. */
 PetscErrorCode LamBodySetMembranes(LamBody body, const PetscReal membrane[]);
 /* That of a tissue, in 1 over its own apothem. */
 PetscReal LamMembraneArea(const LamMicrostructure *micro);

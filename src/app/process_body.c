@@ -187,22 +187,24 @@ static PetscErrorCode Told(const LamBodyState *state, void *ctx)
 
 /* ---- its life ---- */
 
-/* Area of the membranes at the points of regions whose cells are others. */
+/* Area of the membranes at each point, in regions of other cells another one. Collective. */
 static PetscErrorCode SetMembranes(Run *run)
 {
   const LamFE2Tissues *tissues = &run->fe2.tissues;
+  const LamScene *scene = run->fe2.scene;
   PetscReal *membrane;
 
   PetscFunctionBeginUser;
-  if (!tissues->point) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(tissues->points, &membrane));
-  for (PetscInt p = 0; p < tissues->points; p++)
-    for (PetscInt k = 0; k < tissues->point[p].count; k++) {
+  for (PetscInt p = 0; p < tissues->points; p++) {
+    if (!tissues->point) membrane[p] = LamMembraneArea(&scene->micro);
+    for (PetscInt k = 0; tissues->point && k < tissues->point[p].count; k++) {
       const LamBlendTerm *term = &tissues->point[p].term[k];
       const LamScene *own = &tissues->tissues[term->knot].scene;
 
-      membrane[p] += term->weight * LamMembraneArea(&own->micro) * run->fe2.scene->scales.length / own->scales.length;
+      membrane[p] += term->weight * LamMembraneArea(&own->micro) * scene->scales.length / own->scales.length;
     }
+  }
   PetscCall(LamBodySetMembranes(run->body, membrane));
   PetscCall(PetscFree(membrane));
   PetscFunctionReturn(0);
@@ -274,6 +276,27 @@ static PetscErrorCode Follow(Run *run, int *exit_status)
   PetscFunctionReturn(0);
 }
 
+/* Boundaries move with the load parameter alone, which stays 0 where no part of the program says otherwise. */
+static void WarnOfNoLoad(const LamFE2Run *fe2)
+{
+  const LamProcessSpec *spec = &fe2->scene->process;
+  const LamMacroSpec *macro = &fe2->scene->macro;
+  PetscBool loads = PETSC_FALSE, moves = PETSC_FALSE;
+
+  for (PetscInt k = 0; k < spec->leg_count; k++) loads = (PetscBool)(loads || spec->legs[k].load != 0);
+  for (PetscInt b = 0; b < macro->boundary_count; b++) {
+    const LamBoundary *boundary = &macro->boundary[b];
+
+    moves = (PetscBool)(moves || boundary->displacement[0] != 0 || boundary->displacement[1] != 0 ||
+                        boundary->traction[0] != 0 || boundary->traction[1] != 0);
+  }
+  if (LamAppIsRoot() && moves && !loads && !fe2->quiet)
+    fprintf(stderr,
+            "lamella process: %s: the load parameter stays 0, so what macro.boundary moves or presses does nothing; "
+            "process.program says when it does: [{for: 10 s, load: 1}]\n",
+            fe2->scene_path);
+}
+
 static PetscErrorCode Solve(Run *run, int *exit_status)
 {
   LamFE2Run *fe2 = &run->fe2;
@@ -289,6 +312,7 @@ static PetscErrorCode Solve(Run *run, int *exit_status)
     *exit_status = LamStopExitStatus();
     PetscFunctionReturn(0);
   }
+  WarnOfNoLoad(fe2);
   PetscCall(LamFE2OpenFiles(fe2));
   PetscCall(Follow(run, exit_status));
   PetscFunctionReturn(0);

@@ -40,6 +40,23 @@ expect 0 "$lamella" process fibres.yaml -o f.h5
 expect 2 "$lamella" process fibres.yaml -d d.h5
 grep -q 'C1, C2 and C4 do not change alike' err.txt || fail "walls that change unlike: $(cat err.txt)"
 
+# walls in other proportions in a region are not alike, whichever is the region
+small -e 's/law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa/law: mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa/' \
+  -e 's/pressure: 0.1 MPa}/pressure: 0.01 MPa}\n  mesh: {along: 4, through: 1}/; s/, osmotic_pressure: 0.6 MPa//; s/of: walls/of: C4/' \
+  -e 's/^process:/  regions: [{name: core, where: "y < 5", wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}}]\nprocess:/' "$example" >parts.yaml
+expect 0 "$lamella" process parts.yaml
+expect 2 "$lamella" process parts.yaml -d p.h5
+
+# nothing moves where no part of the program says so
+sed '/load: 1/d' small.yaml >still.yaml
+expect 0 "$lamella" process still.yaml
+grep -q 'the load parameter stays 0' err.txt || fail "no word of a load that does not come: $(cat err.txt)"
+
+# what a jump does not reach: what was before is told
+small -e 's/{for: 10 s, load: 1}/{for: 0 s, load: 90}/' "$example" >beyond.yaml
+expect 3 "$lamella" process beyond.yaml
+grep -qE '^ +1 .*' out.txt || fail "the state before the jump: $(cat out.txt)"
+
 # a skin of smaller cells, whose membranes have more area
 small -e 's/^process:/  regions: [{name: skin, where: "y > 5", cell: {apothem: 40 um}}]\nprocess:/' "$example" >skin.yaml
 expect 0 "$lamella" process skin.yaml -d k.h5

@@ -15,6 +15,12 @@ fail() {
 sed 's/elements: \[8, 8\]/elements: [3, 2]/' "$source/tests/scenes/storage.yaml" >body.yaml
 sed 's/elements: \[3, 2\]/elements: [2, 1]/; s/1209610 s/7.5 day/; s/output: 1 day/output: 4 day\n  tolerance: 1e-3/' body.yaml >direct.yaml
 "$lamella" process body.yaml -d d.h5 --quiet >/dev/null
+# a region, and more ranks than elements
+sed 's/elements: \[2, 1\]/elements: [1, 1]/; s/^process:/  regions: [{name: skin, where: "y > 5", cell: {apothem: 40 um}}]\nprocess:/' direct.yaml >skin.yaml
+mpirun -n 3 "$lamella" process skin.yaml --quiet >three.txt
+"$lamella" process skin.yaml --quiet >alone.txt
+[ "$(wc -l <three.txt)" = "$(wc -l <alone.txt)" ] || fail "three ranks with one element differ: $(cat three.txt)"
+
 for case in "body database -d d.h5" "direct direct"; do
   set -- $case
   scene=$1.yaml response=$2

@@ -108,6 +108,26 @@ static void a_jump_of_the_load_leaves_water_no_time(void **state)
   ForgetTold(&sudden);
 }
 
+/* The mean change of F since the start is 0.9: what goes astray is judged from the last state, not from the start. */
+static void a_body_that_is_sheared_far_goes_on_over_bends(void **state)
+{
+  Told body = FollowBodyToEnd(BODY_TISSUE "macro:\n"
+                                          "  mesh: {box: [10 mm, 10 mm], elements: [2, 2]}\n"
+                                          "  boundary:\n"
+                                          "    - {on: bottom, displacement: [0 mm, 0 mm]}\n"
+                                          "    - {on: top, displacement: [9 mm, 0 mm]}\n"
+                                          "process:\n"
+                                          "  duration: 3 h\n"
+                                          "  kinetics: [{of: walls, law: table, time_unit: h, table: [[0, 1], [2.5, "
+                                          "0.8], [3, 0.7]]}]\n"
+                                          "  program: [{for: 1 h, load: 1}, {for: 1 h}, {for: 1 h, load: 0.9}]\n",
+                              1e-4);
+
+  assert_near(LastBody(&body)->load, 0.9, 1e-12);
+  assert_near(LastBody(&body)->walls, 0.7, 1e-12);
+  ForgetTold(&body);
+}
+
 /* ---- water ---- */
 
 static void membranes_that_let_nothing_pass_keep_the_water_of_a_body(void **state)
@@ -283,6 +303,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(a_free_body_is_its_material_point),
       cmocka_unit_test(stress_that_relaxes_is_that_of_the_point),
       cmocka_unit_test(a_jump_of_the_load_leaves_water_no_time),
+      cmocka_unit_test(a_body_that_is_sheared_far_goes_on_over_bends),
       cmocka_unit_test(membranes_that_let_nothing_pass_keep_the_water_of_a_body),
       cmocka_unit_test(membranes_of_a_body_without_resistance_are_in_equilibrium),
       cmocka_unit_test(a_plasmolysed_body_follows_boyle_and_van_t_hoff),
