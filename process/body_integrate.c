@@ -18,8 +18,8 @@
   Reference: Hindmarsh et al., ACM TOMS 31 (2005) 363-396.
 */
 #include "body_impl.h"
+#include "sundials_call.h"
 #include <math.h>
-#include <ida/ida.h>
 #include <nvector/nvector_parallel.h>
 #include <sundials/sundials_nonlinearsolver.h>
 #include <sundials/sundials_types.h>
@@ -27,13 +27,6 @@
 enum { MAX_STEPS = 100000, MAX_FAILURES = 25, MAX_RESTARTS = 3, MAX_HALVINGS = 6, KINETIC_ITERATIONS = 30 };
 #define KINETIC_EXACT 1e-14
 #define LEAST_ADVANCE 1e-9 /* of the duration, that makes a restart worth another one */
-
-#define LamCallSUN(call)                                                                                               \
-  do {                                                                                                                 \
-    const int lam_sun_flag_ = (call);                                                                                  \
-    PetscCheck(lam_sun_flag_ >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "SUNDIALS: %s failed with %d", #call,               \
-               lam_sun_flag_);                                                                                         \
-  } while (0)
 
 /* Where the unknowns lie in this rank's y; -1: not there. Rank 0 has the kinetic states. */
 typedef struct {
@@ -357,9 +350,6 @@ static int Roots(PetscReal t, N_Vector y, N_Vector yp, PetscReal excess[], void 
 
 /* ---- life ---- */
 
-/* IDAErrHandlerFn: what went wrong is told by the process. */
-static void Silence(int code, const char *module, const char *function, char *message, void *ctx) {}
-
 /* y' of what has one. */
 static PetscErrorCode StartRates(Integration *in)
 {
@@ -419,7 +409,7 @@ static PetscErrorCode Create(LamBody body, Integration *in)
   PetscCall(StartRates(in));
   in->ida = IDACreate(in->context);
   PetscCheck(in->ida, PETSC_COMM_SELF, PETSC_ERR_MEM, "SUNDIALS: no memory for an integrator");
-  LamCallSUN(IDASetErrHandlerFn(in->ida, Silence, NULL));
+  LamCallSUN(IDASetErrHandlerFn(in->ida, LamSilence, NULL));
   LamCallSUN(IDAInit(in->ida, Residual, body->process->tissue.time, in->y, in->yp));
   LamCallSUN(IDASetUserData(in->ida, in));
   LamCallSUN(IDAWFtolerances(in->ida, Weights));
@@ -433,14 +423,7 @@ static PetscErrorCode Create(LamBody body, Integration *in)
   LamCallSUN(IDASetStopTime(in->ida, segment->end));
   PetscCall(CreateSolver(in));
   LamCallSUN(IDASetNonlinearSolver(in->ida, in->solver));
-  if (in->event_count) {
-    int rising[LAM_EVENT_COUNT];
-
-    for (PetscInt k = 0; k < in->event_count; k++) rising[k] = 1;
-    LamCallSUN(IDARootInit(in->ida, (int)in->event_count, Roots));
-    LamCallSUN(IDASetRootDirection(in->ida, rising));
-    LamCallSUN(IDASetNoInactiveRootWarn(in->ida));
-  }
+  PetscCall(LamFindRoots(in->ida, in->event_count, Roots));
   PetscFunctionReturn(0);
 }
 
@@ -547,17 +530,6 @@ static PetscErrorCode DescribeFailure(LamProcess process, int flag)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode FindEvents(const Integration *in, PetscBool happened[LAM_EVENT_COUNT])
-{
-  int found[LAM_EVENT_COUNT];
-
-  PetscFunctionBeginUser;
-  LamCallSUN(IDAGetRootInfo(in->ida, found));
-  for (PetscInt k = 0; k < in->event_count; k++)
-    if (found[k]) happened[in->events[k]] = PETSC_TRUE;
-  PetscFunctionReturn(0);
-}
-
 /* After a step that IDA has accepted: its solution is that of the body, unless events were looked for elsewhere. */
 static PetscErrorCode TakeStep(Integration *in, PetscReal time)
 {
@@ -599,7 +571,7 @@ static PetscErrorCode Follow(Integration *in, PetscBool happened[LAM_EVENT_COUNT
   if (flag < 0 && in->pending) PetscCall(LamMacroReject(body->macro));
   if (flag < 0 && !process->stopped) PetscCall(DescribeFailure(process, flag));
   if (flag < 0 || process->stopped) *ok = PETSC_FALSE;
-  if (*ok && flag == IDA_ROOT_RETURN) PetscCall(FindEvents(in, happened));
+  if (*ok && flag == IDA_ROOT_RETURN) PetscCall(LamRootsFound(in->ida, in->event_count, in->events, happened));
   if (*ok && body->evaluated != t)
     PetscCall(SettleAt(in, t, PETSC_FALSE, ok));
   else if (*ok && in->layout.water < 0)

@@ -14,21 +14,14 @@
   Initial-Value Problems in Differential-Algebraic Equations.
 */
 #include "process_impl.h"
+#include "sundials_call.h"
 #include <math.h>
-#include <ida/ida.h>
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_types.h>
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
 enum { MAX_STEPS = 1000000 };
-
-#define LamCallSUN(call)                                                                                               \
-  do {                                                                                                                 \
-    const int lam_sun_flag_ = (call);                                                                                  \
-    PetscCheck(lam_sun_flag_ >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "SUNDIALS: %s failed with %d", #call,               \
-               lam_sun_flag_);                                                                                         \
-  } while (0)
 
 /* Where the unknowns lie in y; -1: not there. Where nothing else is unknown a number that stays 0 is. */
 typedef struct {
@@ -287,9 +280,6 @@ static int Roots(PetscReal t, N_Vector y, N_Vector yp, PetscReal excess[], void 
 
 /* ---- life ---- */
 
-/* IDAErrHandlerFn: what went wrong is told by the process. */
-static void Silence(int code, const char *module, const char *function, char *message, void *ctx) {}
-
 /* Kinetic states and strains count against 1, water against itself, turgor against all pressures there are. */
 static void SetTolerances(Integration *in)
 {
@@ -347,7 +337,7 @@ static PetscErrorCode Create(LamProcess process, Integration *in)
   PetscCall(StartRates(in, segment->start));
   in->ida = IDACreate(in->context);
   PetscCheck(in->ida, PETSC_COMM_SELF, PETSC_ERR_MEM, "SUNDIALS: no memory for an integrator");
-  LamCallSUN(IDASetErrHandlerFn(in->ida, Silence, NULL));
+  LamCallSUN(IDASetErrHandlerFn(in->ida, LamSilence, NULL));
   LamCallSUN(IDAInit(in->ida, Residual, segment->start, in->y, in->yp));
   LamCallSUN(IDASVtolerances(in->ida, process->spec->tolerance, in->tolerance));
   LamCallSUN(IDASetUserData(in->ida, in));
@@ -358,14 +348,7 @@ static PetscErrorCode Create(LamProcess process, Integration *in)
   in->solver = SUNLinSol_Dense(in->y, in->K, in->context);
   LamCallSUN(IDASetLinearSolver(in->ida, in->solver, in->K));
   LamCallSUN(IDASetJacFn(in->ida, Jacobian));
-  if (in->event_count) {
-    int rising[LAM_EVENT_COUNT];
-
-    for (PetscInt k = 0; k < in->event_count; k++) rising[k] = 1;
-    LamCallSUN(IDARootInit(in->ida, (int)in->event_count, Roots));
-    LamCallSUN(IDASetRootDirection(in->ida, rising));
-    LamCallSUN(IDASetNoInactiveRootWarn(in->ida));
-  }
+  PetscCall(LamFindRoots(in->ida, in->event_count, Roots));
   PetscFunctionReturn(0);
 }
 
@@ -429,17 +412,6 @@ static PetscErrorCode DescribeFailure(LamProcess process, int flag)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode FindEvents(const Integration *in, PetscBool happened[LAM_EVENT_COUNT])
-{
-  int found[LAM_EVENT_COUNT];
-
-  PetscFunctionBeginUser;
-  LamCallSUN(IDAGetRootInfo(in->ida, found));
-  for (PetscInt k = 0; k < in->event_count; k++)
-    if (found[k]) happened[in->events[k]] = PETSC_TRUE;
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode Follow(Integration *in, PetscBool happened[LAM_EVENT_COUNT], PetscBool *ok)
 {
   LamProcess process = in->process;
@@ -459,7 +431,7 @@ static PetscErrorCode Follow(Integration *in, PetscBool happened[LAM_EVENT_COUNT
     if (t >= process->segment.end) break;
   }
   *ok = (PetscBool)(flag >= 0 && !process->stopped);
-  if (flag == IDA_ROOT_RETURN) PetscCall(FindEvents(in, happened));
+  if (flag == IDA_ROOT_RETURN) PetscCall(LamRootsFound(in->ida, in->event_count, in->events, happened));
   if (flag < 0 && !process->stopped) PetscCall(DescribeFailure(process, flag));
   PetscFunctionReturn(0);
 }
