@@ -268,6 +268,26 @@ PetscErrorCode LamMacroAssembleForce(LamMacro macro, Vec force, PetscReal *scale
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamMacroForceFloor(LamMacro macro, PetscReal *scale)
+{
+  PetscReal sum = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt e = 0; e < macro->element_count; e++) {
+    const LamMacroElement *element = &macro->elements[e];
+    const PetscInt dofs = element->kind->nodes * macro->dim;
+    PetscReal fe[LAM_MACRO_DOFS] = {0};
+    for (PetscInt q = 0; q < element->kind->points; q++) {
+      const PetscReal *dN = LamMacroGradient(macro, element, q), w = macro->weight[element->first + q];
+      for (PetscInt k = 0; k < dofs; k++) fe[k] += w * LAM_STRESS_FLOOR * dN[k];
+    }
+    for (PetscInt k = 0; k < dofs; k++) sum += fe[k] * fe[k];
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPIU_SUM, macro->comm));
+  *scale = PetscSqrtReal(sum);
+  PetscFunctionReturn(0);
+}
+
 /* Adds w dN_a/dX_j A_ijkl dN_b/dX_l of Gauss point q to the element tangent, Ke [nodes dim][nodes dim]. */
 static void AddPointTangent(LamMacro macro, const LamMacroElement *element, PetscInt q, PetscScalar Ke[])
 {

@@ -38,7 +38,7 @@ PetscErrorCode LamMacroStart(LamMacro macro, PetscBool *ok, char message[LAM_MES
   PetscCheck(macro->responder, macro->comm, PETSC_ERR_ORDER, "call LamMacroSetResponder() first");
   message[0] = '\0';
   macro->extrapolates = PETSC_FALSE; /* guesses are given */
-  macro->thorough = macro->lenient = PETSC_FALSE;
+  macro->thorough = PETSC_FALSE;
   PetscCall(LamMacroStartStep(macro, &start));
   PetscCall(LamMacroBringUpTurgor(macro, &reached, ok));
   if (*ok && macro->scene->macro.inflate) PetscCall(LamMacroHoldBoundaries(macro));
@@ -87,13 +87,9 @@ static PetscErrorCode Enter(LamMacro macro, const LamMacroInstant *instant, cons
 PetscErrorCode LamMacroBalance(LamMacro macro, const LamMacroInstant *instant, const PetscReal u[],
                                const PetscReal pressures[], PetscBool *ok)
 {
-  PetscBool interpolated;
-
   PetscFunctionBeginUser;
   PetscCall(Enter(macro, instant, u, pressures));
   macro->prediction = 0;
-  interpolated = (PetscBool)(macro->responder->interpolated > 0);
-  PetscCallMPI(MPI_Allreduce(&interpolated, &macro->lenient, 1, MPIU_BOOL, MPI_LOR, macro->comm));
   macro->thorough = PETSC_TRUE; /* else what changes little in time would not move the body at all */
   PetscCall(LamMacroIterate(macro, ok));
   PetscFunctionReturn(0);

@@ -219,6 +219,7 @@ struct LamMacro_s {
   PetscReal lamella;      /* what the points' cohesion is multiplied by now, ... */
   PetscReal walls;        /* ... and the moduli of their walls */
   PetscReal force_scale;  /* largest norm of the element forces in this series of Newton iterations */
+  PetscReal force_floor;  /* what counts at least as that where `lenient` */
   PetscReal history[64];
   char trouble[LAM_MESSAGE_LENGTH - 64]; /* why the last evaluation failed; how far it came is said before it */
 
@@ -362,6 +363,8 @@ static inline const PetscReal *LamMacroGradient(LamMacro macro, const LamMacroEl
 PetscErrorCode LamMacroEvaluate(LamMacro macro, Vec u, PetscBool *ok);
 /* Internal nodal forces of the evaluated state; *scale is the norm of the element forces, before they cancel. */
 PetscErrorCode LamMacroAssembleForce(LamMacro macro, Vec force, PetscReal *scale);
+/* The same norm of a body whose stress is LAM_STRESS_FLOOR everywhere, in all directions alike. */
+PetscErrorCode LamMacroForceFloor(LamMacro macro, PetscReal *scale);
 PetscErrorCode LamMacroAssembleTangent(LamMacro macro, Mat tangent);
 
 /* sealed.c: does nothing, and takes no time, where turgor is prescribed (macro->seal is NULL) */

@@ -28,9 +28,6 @@
 
 #include <petscblaslapack.h> /* needs what PETSc's own headers bring */
 
-/* Of V0 over C1 + C2: where neither water nor lumen gives way no pressure is beyond all bounds. */
-static const PetscReal LEAST_COMPLIANCE = 1e-12;
-
 /* The equations of an element's pressures; columns of `coupling` are those of its displacements, the last that of R. */
 typedef struct {
   PetscInt modes, dofs;
@@ -137,12 +134,6 @@ PetscReal LamMacroWaterSlope(LamMacro macro, PetscInt point)
   return slope;
 }
 
-/* d2Psi/dp2 of a stable state is negative; an interpolated one may not be. */
-static PetscReal Compliance(PetscReal curvature, PetscReal slope)
-{
-  return PetscMin(curvature, 0) + slope - LEAST_COMPLIANCE;
-}
-
 /* R [modes] of the last evaluation. */
 static void AddResidual(LamMacro macro, const LamMacroElement *element, PetscReal R[])
 {
@@ -167,7 +158,7 @@ static void AddPoint(LamMacro macro, const LamMacroElement *element, PetscInt q,
   PetscReal water, slope;
 
   FindWater(macro, point, LamMacroTurgorChange(macro, element, point), &water, &slope);
-  const PetscReal curvature = Compliance(response->curvature, slope);
+  const PetscReal curvature = response->curvature + slope;
   for (PetscInt b = 0; b < element->kind->nodes; b++) {
     for (PetscInt i = 0; i < dim; i++) {
       PetscReal force = 0; /* by the pressure */
@@ -279,7 +270,7 @@ PetscErrorCode LamMacroKeepSealed(LamMacro macro, PetscInt point)
     sum += sealed->P_turgor[ij];
   }
   sealed->lumen = -response->energy_turgor;
-  sealed->curvature = response->energy_turgor2;
+  sealed->curvature = LamResponseConcavity(response);
   if (!PetscIsInfOrNanReal(sum + sealed->lumen)) PetscFunctionReturn(0);
   response->status = LAM_OUT_OF_REACH;
   PetscCall(PetscStrncpy(response->reason,

@@ -25,8 +25,8 @@
 
 static const PetscReal RELATIVE_TOLERANCE = 1e-9, ABSOLUTE_TOLERANCE = 1e-10, PENETRATION = 1e-10;
 static const PetscReal ROUNDING = 1e-8; /* residuals below it show no order of convergence any more */
-/* At an instant (instant.c) of a body whose answers are interpolated: what a table's cells do not agree about where
-   they meet; after so many iterations. */
+/* Of a body whose answers are interpolated, at an instant (instant.c) or with pressures: what a table's cells do not
+   agree about where they meet, and records of their own with their neighbours; after so many iterations. */
 static const PetscReal LENIENT_TOLERANCE = 1e-6;
 enum { MAX_HALVINGS = 8, MAX_ITERATIONS = 15, PATIENCE = 6 };
 
@@ -75,7 +75,9 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
                                       SNESConvergedReason *reason, void *ctx)
 {
   LamMacro macro = (LamMacro)ctx;
-  const PetscReal tolerance = macro->lenient && it >= PATIENCE ? LENIENT_TOLERANCE : RELATIVE_TOLERANCE;
+  const PetscBool lenient = (PetscBool)(macro->lenient && it >= PATIENCE);
+  const PetscReal tolerance = lenient ? LENIENT_TOLERANCE : RELATIVE_TOLERANCE,
+                  scale = PetscMax(macro->force_scale, lenient ? macro->force_floor : 0);
   PetscReal sealed;
 
   PetscFunctionBeginUser;
@@ -88,7 +90,7 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
     PetscFunctionReturn(0);
   else if (fnorm <= ABSOLUTE_TOLERANCE)
     *reason = SNES_CONVERGED_FNORM_ABS;
-  else if (fnorm <= tolerance * macro->force_scale)
+  else if (fnorm <= tolerance * scale)
     *reason = SNES_CONVERGED_FNORM_RELATIVE;
   if (*reason <= 0) PetscFunctionReturn(0);
   PetscCall(LamMacroSealedResidual(macro, &sealed));
@@ -190,6 +192,18 @@ static PetscErrorCode KeepHistory(LamMacro macro)
   PetscFunctionReturn(0);
 }
 
+/* Whether answers may jump a little, and the body is at an instant or has pressures, to which errors of lumens add. */
+static PetscErrorCode SetLeniency(LamMacro macro)
+{
+  const PetscBool interpolated = (PetscBool)(macro->responder->interpolated > 0);
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(&interpolated, &macro->lenient, 1, MPIU_BOOL, MPI_LOR, macro->comm));
+  macro->lenient = (PetscBool)(macro->lenient && (macro->thorough || macro->seal));
+  if (macro->lenient && macro->force_floor == 0) PetscCall(LamMacroForceFloor(macro, &macro->force_floor));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamMacroIterate(LamMacro macro, PetscBool *converged)
 {
   SNESConvergedReason reason;
@@ -198,6 +212,7 @@ PetscErrorCode LamMacroIterate(LamMacro macro, PetscBool *converged)
   PetscFunctionBeginUser;
   macro->force_scale = 0;
   macro->fresh = PETSC_TRUE;
+  PetscCall(SetLeniency(macro));
   macro->trouble[0] = '\0';
   PetscCall(SNESSolve(macro->snes, NULL, macro->trial));
   PetscCall(SNESGetConvergedReason(macro->snes, &reason));

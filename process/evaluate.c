@@ -196,7 +196,7 @@ static PetscReal Firmness(const LamResponse *r, PetscBool seals)
   for (int i = 0; i < 2; i++)
     for (int j = 0; j < 2; j++) {
       A[i][j] = r->tangent[9 * at[i] + at[j]];
-      if (seals) A[i][j] -= r->P_turgor[at[i]] * r->P_turgor[at[j]] / r->energy_turgor2;
+      if (seals) A[i][j] -= r->P_turgor[at[i]] * r->P_turgor[at[j]] / LamResponseConcavity(r);
     }
   return A[0][0] - A[0][1] * A[1][0] / A[1][1];
 }

@@ -74,9 +74,9 @@ static PetscReal WaterStiffness(LamProcess process, const LamEvaluation *e)
   LamFlow flow;
 
   if (!process->spec->has_water || process->plasmolysed) return 0;
-  if (isfinite(process->spec->water.permeability)) return 1 / e->response.energy_turgor2;
+  if (isfinite(process->spec->water.permeability)) return 1 / LamResponseConcavity(&e->response);
   LamProcessFlow(process, &process->cells, e, -e->response.energy_turgor, e->load.turgor, &flow);
-  return flow.drive_water / (1 + flow.drive_water * e->response.energy_turgor2);
+  return flow.drive_water / (1 + flow.drive_water * LamResponseConcavity(&e->response));
 }
 
 /*

@@ -482,6 +482,18 @@ static PetscErrorCode FollowAll(LamProcess process, PetscBool *ok, PetscBool *en
   PetscFunctionReturn(0);
 }
 
+/* At a limit point of answers that are interpolated the tissue may go on. */
+static const char *WhyItEnds(LamProcess process, PetscBool limit)
+{
+  const PetscBool contact = (PetscBool)(process->scene->micro.interface == LAM_INTERFACE_CONTACT);
+
+  if (!limit) return process->trouble;
+  return contact && process->responder->interpolated
+             ? "limit point: nothing is left of the stiffness against what is free, as a database sees it; next to a "
+               "loss of contact its tangent may be wrong: solve directly to be sure"
+             : "limit point: nothing is left of the stiffness against what is free";
+}
+
 PetscErrorCode LamProcessRun(LamProcess process, LamProcessReason *reason, char message[LAM_PROCESS_MESSAGE])
 {
   PetscBool ok = PETSC_TRUE, ends = PETSC_FALSE;
@@ -496,8 +508,7 @@ PetscErrorCode LamProcessRun(LamProcess process, LamProcessReason *reason, char 
   PetscCall(FollowAll(process, &ok, &ends));
   *reason = process->stopped ? LAM_PROCESS_STOPPED : ok && !ends ? LAM_PROCESS_DONE : LAM_PROCESS_ENDED;
   if (*reason == LAM_PROCESS_ENDED)
-    PetscCall(
-        PetscSNPrintf(message, LAM_PROCESS_MESSAGE, "ended at %.6g s: %s", (double)process->tissue.time,
-                      ends ? "limit point: nothing is left of the stiffness against what is free" : process->trouble));
+    PetscCall(PetscSNPrintf(message, LAM_PROCESS_MESSAGE, "ended at %.6g s: %s", (double)process->tissue.time,
+                            WhyItEnds(process, ends)));
   PetscFunctionReturn(0);
 }

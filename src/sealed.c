@@ -54,12 +54,6 @@ void LamResponseSeal(PetscReal p0, PetscReal water, PetscReal bulk_modulus, LamR
   r->turgor_spread = 0;
 }
 
-/* d2Psi/dp2, which no stable state has above zero; an interpolated one may. */
-static PetscReal Concavity(const LamResponse *r)
-{
-  return PetscMin(r->energy_turgor2, 0);
-}
-
 /* Takes an answer at the pressure *p; sets the next one, or that it is the last. */
 static void Advance(const Sealed *s, PetscReal p0, PetscReal water, const LamResponse *r, Search *search, PetscReal *p)
 {
@@ -68,7 +62,7 @@ static void Advance(const Sealed *s, PetscReal p0, PetscReal water, const LamRes
   if (LamResponseHasFields(r)) {
     const PetscReal compliance = water / s->bulk_modulus;
     const PetscReal excess = r->energy_turgor + water - compliance * (*p - p0);
-    const PetscReal step = excess / (compliance - Concavity(r));
+    const PetscReal step = excess / (compliance - LamResponseConcavity(r));
 
     search->answered = *p;
     search->done = (PetscBool)(fabs(step) <= TOLERANCE * (1 + fabs(*p)));

@@ -112,6 +112,16 @@ PetscErrorCode LamResponseInit(const LamLoad *load, LamResponse *response);
 /* True where the fields (stress, tangent) of the response may be used: converged or unstable. */
 PetscBool LamResponseHasFields(const LamResponse *response);
 
+/*
+  d2Psi/dp2 as what divides by it needs it: no stable state has it at zero or above, but an answer from a database has
+  the errors of its strains in it (theory.md, Section 34).
+*/
+#define LAM_LEAST_CONCAVITY (-1e-8) /* V0 over C1 + C2, chosen; closed cells have -2.8e-4 at kappa = 1000 (C1 + C2) */
+static inline PetscReal LamResponseConcavity(const LamResponse *response)
+{
+  return PetscMin(response->energy_turgor2, LAM_LEAST_CONCAVITY);
+}
+
 /* Error of stress P against P_ref: |P - P_ref| / (|P_ref| + floor), Frobenius norms, nondimensional. The floor is
    2.5e-3 MPa of the reference wall (C1 + C2 = 0.11 MPa): below it stress counts as zero. */
 #define LAM_STRESS_FLOOR 0.0227

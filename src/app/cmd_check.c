@@ -32,16 +32,9 @@
 /* Why a process needs direct solves; NULL: a database may answer. */
 static const char *WhyNoDatabase(const LamScene *scene)
 {
-  if (!LamProcessWallsStayAlike(scene))
-    return "moduli of the walls do not change alike: solved directly, as a database would need them as an axis";
-  PetscBool contact = (PetscBool)(scene->micro.interface == LAM_INTERFACE_CONTACT);
-
-  for (PetscInt r = 0; r < scene->region_count; r++)
-    contact = (PetscBool)(contact || scene->regions[r].micro.interface == LAM_INTERFACE_CONTACT);
-  if (scene->process.has_water && contact)
-    return "cells in contact that exchange water: solved directly, as a database does not know their lumens well "
-           "enough";
-  return NULL;
+  return LamProcessWallsStayAlike(scene)
+             ? NULL
+             : "moduli of the walls do not change alike: solved directly, as a database would need them as an axis";
 }
 
 typedef struct {

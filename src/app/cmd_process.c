@@ -177,7 +177,6 @@ PetscErrorCode LamCommandProcess(LamArgs *args, int *exit_status)
   run.response.scene = run.scene;
   run.response.walls = 1;
   for (int k = 0; k < 3; k++) run.response.wall_ratio[k] = 1;
-  run.response.follows_water = run.scene->process.has_water;
   if (run.scene->has_macro && run.scene->has_process) {
     PetscCall(LamProcessBody(&run, exit_status));
     PetscFunctionReturn(0);

@@ -99,18 +99,6 @@ PetscErrorCode LamFE2PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue)
   LamPlan plan;
 
   PetscFunctionBeginUser;
-  const PetscBool contact = (PetscBool)(tissue->scene.micro.interface == LAM_INTERFACE_CONTACT);
-
-  /* an error of a lumen becomes one of its pressure some 1e3 times over */
-  PetscCheck(!run->follows_water || run->response == LAM_FE2_DIRECT || !contact, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: process.water: of cells in contact a database does not know the lumens well enough; run it with "
-             "--response direct, or prescribe the turgor in process.surroundings",
-             run->scene_path);
-  PetscCheck(!tissue->scene.sealed || run->response == LAM_FE2_DIRECT || !contact, PETSC_COMM_SELF,
-             PETSC_ERR_USER_INPUT,
-             "%s: rve.turgor.mode: sealed: of cells in contact a database does not know the lumens well enough; run it "
-             "with --response direct",
-             run->scene_path);
   if (run->response != LAM_FE2_DIRECT) PetscCall(OpenDatabase(run, tissue));
   PetscCall(LamPlanMake(&tissue->scene, &plan));
   PetscCall(LamWarnOfDigits(&plan.micro, tissue->scene.accuracy));

@@ -25,7 +25,6 @@ typedef struct {
   /* what the command line says */
   const char *scene_path, *database_path, *out_path, *response_name;
   PetscBool json, quiet, resume;
-  PetscBool follows_water; /* of cells: their lumens must be known well */
   LamFE2Response response;
 
   MPI_Comm comm;

@@ -174,13 +174,12 @@ static PetscBool OneTable(const LamScene *scene)
 
 static void AddResponses(const LamScene *scene, List *list)
 {
-  const PetscBool cache = (PetscBool)(!scene->sealed || scene->micro.interface == LAM_INTERFACE_BONDED);
   LamSetting *s = Add(scene, LAM_KNOB_MACRO, list);
 
   s->planned = PETSC_TRUE; /* and the reference of the others */
   snprintf(s->label, sizeof(s->label), "direct");
   snprintf(s->mark, sizeof(s->mark), "direct");
-  for (PetscInt k = 0; k < COUNT(Accuracies) && cache; k++) {
+  for (PetscInt k = 0; k < COUNT(Accuracies); k++) {
     s = Add(scene, LAM_KNOB_MACRO, list);
     s->response = LAM_FE2_CACHE;
     s->accuracy = Accuracies[k];
