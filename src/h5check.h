@@ -1,13 +1,25 @@
 /*
-  The one way HDF5 is called: a negative return becomes a PETSc error that names the file and HDF5's own reason.
+  The one way HDF5 is called: with a bound for its memory; a negative return becomes a PETSc error that names the file
+  and HDF5's own reason.
 */
 #ifndef LAM_H5CHECK_H
 #define LAM_H5CHECK_H
 
 #include <petscsys.h>
 #include <hdf5.h>
+#include <sys/resource.h>
 
 #define LAM_HDF5_REASON_LENGTH 256
+
+/* Between the two the process may address no more than 256 MB beyond what it has; where a batch system allows less,
+ * that. */
+typedef struct {
+  struct rlimit before;
+  PetscBool is_set;
+} LamMemoryBound;
+
+LamMemoryBound LamMemoryBoundBegin(void);
+void LamMemoryBoundEnd(const LamMemoryBound *bound);
 
 /* The innermost reason on HDF5's error stack: the system's own words ("No space left on device") where there are any.
  */
@@ -19,7 +31,11 @@ void LamHDF5Reason(char reason[LAM_HDF5_REASON_LENGTH]);
 */
 #define LamCallHDF5(path, code, ...)                                                                                   \
   do {                                                                                                                 \
-    if ((__VA_ARGS__) < 0) {                                                                                           \
+    const LamMemoryBound bound_ = LamMemoryBoundBegin();                                                               \
+    const PetscBool fails_ = (PetscBool)((__VA_ARGS__) < 0);                                                           \
+                                                                                                                       \
+    LamMemoryBoundEnd(&bound_);                                                                                        \
+    if (fails_) {                                                                                                      \
       char reason_[LAM_HDF5_REASON_LENGTH];                                                                            \
       LamHDF5Reason(reason_);                                                                                          \
       SETERRQ(PETSC_COMM_SELF, code, "%s: %s", path, reason_);                                                         \

@@ -14,29 +14,6 @@
 
 #define TABLE_BYTES 131072 /* more than the header, or the index and attributes of a commit, take */
 
-/* ---- HDF5 reasons ---- */
-
-static herr_t KeepInnermost(unsigned n, const H5E_error2_t *error, void *ctx)
-{
-  if (n == 0) snprintf(ctx, LAM_HDF5_REASON_LENGTH, "%s", error->desc ? error->desc : "");
-  return 0;
-}
-
-void LamHDF5Reason(char reason[LAM_HDF5_REASON_LENGTH])
-{
-  static const char mark[] = "error message = '";
-  char *words, *end;
-
-  snprintf(reason, LAM_HDF5_REASON_LENGTH, "HDF5 gives no reason");
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, KeepInnermost, reason);
-  words = strstr(reason, mark);
-  if (!words) return;
-  words += sizeof(mark) - 1;
-  end = strchr(words, '\'');
-  if (end) *end = '\0';
-  memmove(reason, words, strlen(words) + 1);
-}
-
 /* ---- open, close, sync ---- */
 
 static PetscErrorCode AccessList(const char path[], hid_t *access)

@@ -1,4 +1,5 @@
 /* LamFileCheck: each damaged record and part is named, also behind the first. */
+#define _GNU_SOURCE /* memmem */
 #include "record_fixture.h"
 #include <hdf5.h>
 #include <jansson.h>
@@ -75,6 +76,42 @@ static void a_sound_file_is_sound_and_wholly_checked(void **state)
   assert_int_equal(Integer(check, "sound_records"), 700);
   assert_int_equal(json_array_size(json_object_get(check, "unchecked")), 0);
   json_decref(check);
+}
+
+/* Changes where the k-th index of a group or of the records, in the order of the file, says that it goes on: nowhere in
+   sound files that are small. PETSC_FALSE: there is none. */
+static PetscBool DamageIndex(int k)
+{
+  FILE *file = fopen(path, "r+");
+  unsigned char bytes[32768];
+  const size_t n = fread(bytes, 1, sizeof(bytes), file);
+  const unsigned char *place = bytes - 1;
+
+  while (k-- >= 0 && place) place = memmem(place + 1, n - (size_t)(place + 1 - bytes), "TREE", 4);
+  if (place) {
+    fseek(file, place - bytes + 20, SEEK_SET); /* of the address of the one behind it */
+    fputc(0x7f, file);
+  }
+  fclose(file);
+  return (PetscBool)(place != NULL);
+}
+
+/* Lamella reads such a file, other programs do not. */
+static void an_index_that_leads_nowhere_is_damage(void **state)
+{
+  for (int k = 0;; k++) {
+    json_t *check;
+
+    WriteFile(3);
+    if (!DamageIndex(k)) {
+      assert_true(k >= 3); /* of /, /microstructures and what it holds */
+      return;
+    }
+    check = Check();
+    if (json_is_true(json_object_get(check, "sound"))) fail_msg("index %d", k);
+    json_decref(check);
+    unlink(path);
+  }
 }
 
 static void each_damaged_record_is_named_with_its_key(void **state)
@@ -188,6 +225,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       TEST(a_sound_file_is_sound_and_wholly_checked),
       TEST(each_damaged_record_is_named_with_its_key),
+      TEST(an_index_that_leads_nowhere_is_damage),
       TEST(damage_of_a_record_does_not_hide_that_of_a_text),
       TEST(records_are_counted_where_the_counter_is_damaged),
       TEST(parts_without_a_checksum_are_named),

@@ -1,4 +1,5 @@
 /* Record files that are damaged, foreign, full or held by another writer: refused with the reason. */
+#define _GNU_SOURCE /* memmem */
 #include "record_fixture.h"
 #include <hdf5.h>
 #include <signal.h>
@@ -56,6 +57,37 @@ static void a_changed_byte_is_found_in_any_node(void **state)
   assert_int_equal(LamRecordWriterClose(&writer), 0);
   Damage(1199);
   AssertUnreadable(PETSC_ERR_USER_INPUT, "record 1199 is damaged");
+}
+
+/* The size of the type below a truth, as HDF5 writes it behind the member's name: with one bit more it is 2 GB. */
+static void EnlargeTruth(void)
+{
+  static const unsigned char truth[] = {0x18, 2, 0, 0, 1, 0, 0, 0, 0x10, 8, 0, 0, 1, 0, 0, 0};
+  FILE *file = fopen(path, "r+");
+  unsigned char bytes[16384];
+  const size_t n = fread(bytes, 1, sizeof(bytes), file);
+  const unsigned char *place = memmem(bytes, n, truth, sizeof(truth));
+
+  assert_non_null(place);
+  fseek(file, (long)(place - bytes) + (long)sizeof(truth) - 1, SEEK_SET);
+  fputc(0x80, file);
+  fclose(file);
+}
+
+/* HDF5 would fill 8 GB, for half a minute. */
+static void a_type_of_records_that_became_vast_takes_no_memory(void **state)
+{
+#ifdef __SANITIZE_ADDRESS__ /* the bound is not set there */
+  skip();
+#endif
+  struct rusage before, after;
+
+  WriteFile(4);
+  EnlargeTruth();
+  getrusage(RUSAGE_SELF, &before);
+  AssertUnreadable(PETSC_ERR_USER_INPUT, "memory allocation failed");
+  getrusage(RUSAGE_SELF, &after);
+  assert_true(after.ru_maxrss - before.ru_maxrss < 300000); /* kB */
 }
 
 static void a_damaged_file_is_not_appended_to(void **state)
@@ -416,6 +448,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       TEST(a_changed_byte_is_found_and_the_record_named),
       TEST(a_changed_byte_is_found_in_any_node),
+      TEST(a_type_of_records_that_became_vast_takes_no_memory),
       TEST(a_damaged_file_is_not_appended_to),
       TEST(a_missing_file_is_named_with_the_reason),
       TEST(a_file_that_is_not_hdf5_is_refused),

@@ -1,0 +1,73 @@
+/*
+  What stands around each call of HDF5: a bound for the memory that it takes, and the reason where it fails.
+
+  Method
+    A damaged file can make HDF5 ask for any amount of memory, and fill it: one bit of the type of the records is 8 GB
+  and half a minute. So the room that the process may address is bounded during each call; malloc then says no, HDF5
+  gives up, and the file is told to be damaged.
+*/
+#include "h5check.h"
+#include <stdio.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#define MOST_MEMORY                                                                                                    \
+  ((rlim_t)256 << 20) /* bytes, of one call */
+
+/* ---- memory ---- */
+
+/* What the process has addressed, in bytes; 0: not known. */
+static rlim_t Addressed(void)
+{
+  FILE *file = fopen("/proc/self/statm", "r");
+  unsigned long long pages = 0;
+
+  if (!file) return 0;
+  if (fscanf(file, "%llu", &pages) != 1) pages = 0;
+  fclose(file);
+  return (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE);
+}
+
+LamMemoryBound LamMemoryBoundBegin(void)
+{
+  LamMemoryBound bound = {.is_set = PETSC_FALSE};
+#ifndef __SANITIZE_ADDRESS__ /* which has addressed nearly everything, and ends the program where malloc says no */
+  const rlim_t addressed = Addressed();
+  struct rlimit lower;
+
+  if (!addressed || getrlimit(RLIMIT_AS, &bound.before)) return bound;
+  lower = bound.before;
+  lower.rlim_cur = PetscMin(lower.rlim_cur, addressed + MOST_MEMORY);
+  bound.is_set = (PetscBool)!setrlimit(RLIMIT_AS, &lower);
+#endif
+  return bound;
+}
+
+void LamMemoryBoundEnd(const LamMemoryBound *bound)
+{
+  if (bound->is_set) setrlimit(RLIMIT_AS, &bound->before);
+}
+
+/* ---- reasons ---- */
+
+static herr_t KeepInnermost(unsigned n, const H5E_error2_t *error, void *ctx)
+{
+  if (n == 0) snprintf(ctx, LAM_HDF5_REASON_LENGTH, "%s", error->desc ? error->desc : "");
+  return 0;
+}
+
+void LamHDF5Reason(char reason[LAM_HDF5_REASON_LENGTH])
+{
+  static const char mark[] = "error message = '";
+  char *words, *end;
+
+  snprintf(reason, LAM_HDF5_REASON_LENGTH, "HDF5 gives no reason");
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, KeepInnermost, reason);
+  words = strstr(reason, mark);
+  if (!words) return;
+  words += sizeof(mark) - 1;
+  end = strchr(words, '\'');
+  if (end) *end = '\0';
+  memmove(reason, words, strlen(words) + 1);
+}
