@@ -79,7 +79,7 @@ case "${1-run}" in
   test)
     install_missing "${packages[@]}" "${test_packages[@]}"
     build ci build
-    ctest --test-dir build --output-on-failure -LE 'slow|bench'
+    ctest --test-dir build -j2 --output-on-failure -LE 'slow|bench'
     ;;
   fuzz)
     install_missing "${packages[@]}" "${test_packages[@]}" "${fuzz_packages[@]}"
