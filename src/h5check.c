@@ -12,8 +12,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#define MOST_MEMORY                                                                                                    \
-  ((rlim_t)256 << 20) /* bytes, of one call */
+#define MOST_MEMORY ((rlim_t)256 << 20) /* bytes, of one call */
 
 /* ---- memory ---- */
 
