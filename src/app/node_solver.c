@@ -98,10 +98,12 @@ static PetscErrorCode SolveFromReference(LamRVE rve, const LamLoad *load, LamRVE
   PetscFunctionReturn(0);
 }
 
-/* Largest change of F, turgor or cohesion that a solve takes at once; else steps of SUBSTEP: eight of them cost a sixth
-   of a start that contact has to search from. */
+/* Largest change of F, turgor or cohesion that a solve takes at once; else steps of SUBSTEP, the next one twice as
+   large after one of no more than EASY factorisations, up to MOST_SUBSTEPS: eight of SUBSTEP cost a sixth of a start
+   that contact has to search from. */
 #define ONE_STEP 0.04
 #define SUBSTEP 0.0075
+enum { EASY = 10, MOST_SUBSTEPS = 5 };
 
 static PetscInt StepCount(const LamLoad *from, const LamLoad *to)
 {
@@ -134,15 +136,19 @@ static PetscErrorCode SolveFrom(LamRVE rve, const LamLoad *from, const LamLoad *
                                 LamResponse *response)
 {
   const PetscInt steps = from ? StepCount(from, load) : 0;
+  PetscInt stride = 1;
   LamResponse effort = {.status = LAM_CONVERGED};
 
   PetscFunctionBeginUser;
-  for (PetscInt k = 1; k <= steps && effort.status == LAM_CONVERGED; k++) {
-    const LamLoad next = Between(from, load, (PetscReal)k / (PetscReal)steps);
+  for (PetscInt k = 0; k < steps && effort.status == LAM_CONVERGED;) {
+    LamLoad next;
 
+    k = PetscMin(k + stride, steps);
+    next = Between(from, load, (PetscReal)k / (PetscReal)steps);
     PetscCall(LamRVESolve(rve, &next, state, response));
     AddEffort(response, &effort);
     effort.status = response->status;
+    stride = response->factorisations <= EASY ? PetscMin(2 * stride, MOST_SUBSTEPS) : 1;
   }
   if (!steps || effort.status != LAM_CONVERGED) {
     PetscCall(SolveFromReference(rve, load, state, response));
