@@ -2,31 +2,45 @@
   Responders that answer from a database: alone, or with a solver for what it lacks.
 
   Method. Answers come from the table of a database, whose nodes are solved where questions fall and shared by all
-  questions around. Where no node helps, as next to a change of branch, the state asked for is solved itself.
+  questions around. Where no node helps, as next to a change of branch, the state asked for is solved itself, and the
+  second-order model of its potential answers the point, and others around, while its estimated error is small enough:
+  in situ adaptive tabulation (Pope, Combust. Theory Model. 1 (1997) 41) with a model for each point to hold.
 
   Algorithm, of one `respond`:
-  1. Ask for all questions: the table that answered the point last in this load step, else the newest, else the records
-     for the question's own state.
+  1. Ask for all questions: what answered the point last, its model or the table of this load step, then the newest
+     table, then the model, then the records for the question's own state.
   2. The keys of the nodes that the newest table lacks for what is left, from all ranks, sorted, are dealt out in turn,
      solved, gathered, and added on all ranks in that order. From 1 with what is left, MAX_ROUNDS times at most.
-  3. Where no node helps any more, what is left, turned and mirrored to the states of nodes (LamTableTurn), from all
-     ranks and sorted, is dealt out, solved, from the nearest node where there is one, and added as states of no grid,
-     which answer; or it stays without answer (LAM_OUTSIDE_STOP).
+  3. Where no node helps any more, points whose nearest model is good to ADOPTS of the accuracy take to it. Of what is
+     left, turned and mirrored to the states of nodes (LamTableTurn), from all ranks and sorted, each SHARE-th is dealt
+     out, solved, from the nearest node where there is one, and added as states of no grid, which answer. So on until
+     none is left; or it stays without answer (LAM_OUTSIDE_STOP).
 
   Rounding. In 2 and 3 questions are rounded, so that what is solved does not depend on the ranks' order of summation;
   the answer to a rounded question is led back to the one asked by its tangent.
 
-  Convergence. A point that was solved for itself in this load step SELF_STAYS times goes on so: at the edge of what the
-  table answers, iterations that step to and fro between two answers would not end.
+  Convergence. A point that took to a model, or was solved for itself, SELF_STAYS times in this load step goes on
+  without tables: at the edge of what they answer, iterations that step to and fro between two answers would not end.
 */
 #include <lamella/cache.h>
 #include <lamella/clock.h>
 #include <stdlib.h>
 #include "gather.h"
 #include "rounded_load.h"
+#include "scatter_model.h"
 
-enum { MAX_ROUNDS = 12, SELF_STAYS = 2 };
+enum { MAX_ROUNDS = 12, SELF_STAYS = 2, SHARE = 8, LEAST_SHARE = 4 };
+/* Of the accuracy: with a model whose error is estimated above that a point does not begin. */
+static const PetscReal ADOPTS = 0.25;
 static const PetscReal OWN_STATE = 1e-8; /* distance of a question from its own record, rounded twice; a strain */
+
+/* What answers a material point. */
+typedef struct {
+  LamTable table;        /* owned: the last to answer in this load step; NULL: none */
+  LamScatterModel model; /* kept from load step to load step; state -1: none */
+  PetscBool by_model;    /* the model answered last, not a table */
+  PetscInt self_solves;  /* in this load step: states solved for the point itself, and times it took to a model */
+} Point;
 
 typedef struct {
   MPI_Comm comm;
@@ -36,10 +50,9 @@ typedef struct {
   LamOutside outside;
   LamResponder *self; /* the responder's counters; borrowed */
   PetscReal accuracy;
-  PetscInt points;
-  LamTable newest;       /* owned within a `respond`; NULL: the database has no grid */
-  LamTable *table;       /* [points] owned: answered last in this load step; NULL: none */
-  PetscInt *self_solves; /* [points] states solved for the point itself in this load step */
+  LamTable newest; /* owned within a `respond`; NULL: the database has no grid */
+  Point *points;   /* [n_points] */
+  PetscInt n_points;
 } Cache;
 
 /* Questions of one `respond` that have no answer yet. */
@@ -60,33 +73,48 @@ typedef struct {
 
 /* ---- step 1: asking ---- */
 
-static PetscBool GoesOnByItself(const Cache *cache, PetscInt point)
+static PetscBool GoesOnByItself(const Point *point)
 {
-  return (PetscBool)(point >= 0 && cache->self_solves[point] >= SELF_STAYS);
+  return (PetscBool)(point && point->self_solves >= SELF_STAYS);
 }
 
-/* The newest table is the point's own from now on. */
-static PetscErrorCode Hold(Cache *cache, PetscInt point)
+/* NULL: the question is of no material point. */
+static Point *PointOf(const Cache *cache, PetscInt point)
+{
+  return point < 0 ? NULL : &cache->points[point];
+}
+
+/* Out of reach where neither the point's table nor the newest one answers; the newest is its own from then on. */
+static PetscErrorCode AskTables(Cache *cache, const LamLoad *load, Point *point, LamResponse *response)
 {
   PetscFunctionBeginUser;
-  if (point < 0) PetscFunctionReturn(0);
-  PetscCall(LamTableDestroy(&cache->table[point]));
-  PetscCall(LamDatabaseGetTable(cache->database, &cache->table[point]));
+  if (!cache->newest || GoesOnByItself(point)) PetscFunctionReturn(0);
+  if (point && point->table) {
+    PetscCall(LamTableQuery(point->table, load, cache->accuracy, response));
+    if (response->status != LAM_OUT_OF_REACH || point->table == cache->newest) PetscFunctionReturn(0);
+  }
+  PetscCall(LamTableQuery(cache->newest, load, cache->accuracy, response));
+  if (!point || response->status == LAM_OUT_OF_REACH) PetscFunctionReturn(0);
+  PetscCall(LamTableDestroy(&point->table));
+  PetscCall(LamDatabaseGetTable(cache->database, &point->table));
   PetscFunctionReturn(0);
 }
 
-/* Out of reach where neither the point's table nor the newest one answers. */
-static PetscErrorCode AskTables(Cache *cache, const LamLoad *load, PetscInt point, LamResponse *response)
+/* From now on the model answers. */
+static void TakeTo(Point *point, const LamScatterModel *model)
 {
-  LamTable own = point < 0 ? NULL : cache->table[point];
+  point->model = *model;
+  point->by_model = PETSC_TRUE;
+  point->self_solves++;
+}
 
+/* Out of reach where the point has no model, or one that is too far away. */
+static PetscErrorCode AskModel(Cache *cache, const LamLoad *load, Point *point, LamResponse *response)
+{
   PetscFunctionBeginUser;
-  if (own) {
-    PetscCall(LamTableQuery(own, load, cache->accuracy, response));
-    if (response->status != LAM_OUT_OF_REACH || own == cache->newest) PetscFunctionReturn(0);
-  }
-  PetscCall(LamTableQuery(cache->newest, load, cache->accuracy, response));
-  if (response->status != LAM_OUT_OF_REACH) PetscCall(Hold(cache, point));
+  if (!point || point->model.state < 0) PetscFunctionReturn(0);
+  PetscCall(LamScatterModelQuery(cache->database, &point->model, load, cache->accuracy, response));
+  if (response->status != LAM_OUT_OF_REACH && !point->by_model) TakeTo(point, &point->model);
   PetscFunctionReturn(0);
 }
 
@@ -106,12 +134,17 @@ static PetscErrorCode AskRecords(Cache *cache, const LamLoad *load, LamResponse 
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Ask(Cache *cache, const LamLoad *load, PetscInt point, LamResponse *response)
+/* What answered last is asked first. */
+static PetscErrorCode Ask(Cache *cache, const LamLoad *load, Point *point, LamResponse *response)
 {
   PetscFunctionBeginUser;
   PetscCall(LamResponseInit(load, response));
   response->status = LAM_OUT_OF_REACH;
-  if (cache->newest && !GoesOnByItself(cache, point)) PetscCall(AskTables(cache, load, point, response));
+  if (point && point->by_model) PetscCall(AskModel(cache, load, point, response));
+  if (response->status != LAM_OUT_OF_REACH) PetscFunctionReturn(0);
+  PetscCall(AskTables(cache, load, point, response));
+  if (point && response->status != LAM_OUT_OF_REACH) point->by_model = PETSC_FALSE;
+  if (response->status == LAM_OUT_OF_REACH) PetscCall(AskModel(cache, load, point, response));
   if (response->status == LAM_OUT_OF_REACH) PetscCall(AskRecords(cache, load, response));
   PetscFunctionReturn(0);
 }
@@ -125,7 +158,7 @@ static PetscErrorCode AskAll(Cache *cache, Missing *missing)
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < missing->n; k++) {
     const PetscInt i = missing->at[k];
-    PetscCall(Ask(cache, &missing->loads[i], missing->points[i], &missing->responses[i]));
+    PetscCall(Ask(cache, &missing->loads[i], PointOf(cache, missing->points[i]), &missing->responses[i]));
     if (missing->responses[i].status == LAM_OUT_OF_REACH) missing->at[left++] = i;
   }
   missing->n = left;
@@ -289,7 +322,7 @@ static PetscErrorCode FindMyNeeds(Cache *cache, const Missing *missing, PetscInt
   for (PetscInt k = 0; k < missing->n; k++) {
     const LamLoad question = LamLoadRound(&missing->loads[missing->at[k]]);
 
-    if (GoesOnByItself(cache, missing->points[missing->at[k]])) continue;
+    if (GoesOnByItself(PointOf(cache, missing->points[missing->at[k]]))) continue;
     if (*n + LAM_MAX_NEEDS > capacity) {
       LamSortUnique(n, *keys, sizeof(PetscInt64), CompareKeys);
       capacity = PetscMax(capacity, 2 * (*n + LAM_MAX_NEEDS));
@@ -356,28 +389,100 @@ static PetscErrorCode TakeOwnState(Cache *cache, const LamLoad *load, const LamR
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SolveThemselves(Cache *cache, Missing *missing)
+/* The point takes to the nearest model, where that is so near that it will go on to answer. */
+static PetscErrorCode Adopt(Cache *cache, const LamLoad *load, Point *point, LamResponse *response)
 {
+  LamScatterModel model;
+
+  PetscFunctionBeginUser;
+  if (!point || GoesOnByItself(point)) PetscFunctionReturn(0);
+  LamScatterModelFind(cache->database, load, &model);
+  if (model.state < 0) PetscFunctionReturn(0);
+  PetscCall(LamScatterModelQuery(cache->database, &model, load, ADOPTS * cache->accuracy, response));
+  if (response->status != LAM_OUT_OF_REACH) TakeTo(point, &model);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode AdoptAll(Cache *cache, Missing *missing)
+{
+  PetscInt left = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < missing->n; k++) {
+    const PetscInt i = missing->at[k];
+
+    PetscCall(Adopt(cache, &missing->loads[i], PointOf(cache, missing->points[i]), &missing->responses[i]));
+    if (missing->responses[i].status == LAM_OUT_OF_REACH) missing->at[left++] = i;
+  }
+  missing->n = left;
+  PetscFunctionReturn(0);
+}
+
+/* A share of what all ranks lack, spread over it. */
+static PetscErrorCode FindShare(Cache *cache, PetscInt n, const LamLoad mine[], Batch *batch)
+{
+  PetscInt share;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamGatherUnion(cache->comm, sizeof(LamLoad), LamLoadCompare, n, mine, &batch->n, (void **)&batch->loads));
+  share = PetscMin(batch->n, PetscMax(batch->n / SHARE, LEAST_SHARE));
+  for (PetscInt k = 0; k < share; k++) batch->loads[k] = batch->loads[k * batch->n / share];
+  batch->n = share;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SolveShare(Cache *cache, Missing *missing, PetscBool *stopped)
+{
+  PetscInt left = 0;
   LamLoad *mine;
   Batch batch = {0};
-  PetscBool stopped;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(missing->n, &mine));
   for (PetscInt k = 0; k < missing->n; k++) PetscCall(StateFor(cache, &missing->loads[missing->at[k]], &mine[k]));
-  PetscCall(
-      LamGatherUnion(cache->comm, sizeof(LamLoad), LamLoadCompare, missing->n, mine, &batch.n, (void **)&batch.loads));
-  PetscCall(SolveAndAdd(cache, &batch, &stopped));
+  PetscCall(FindShare(cache, missing->n, mine, &batch));
+  PetscCall(SolveAndAdd(cache, &batch, stopped));
   for (PetscInt k = 0; k < missing->n; k++) {
-    const PetscInt i = missing->at[k], point = missing->points[i];
-    const LamLoad *found =
-        (const LamLoad *)bsearch(&mine[k], batch.loads, (size_t)batch.n, sizeof(LamLoad), LamLoadCompare);
+    const PetscInt i = missing->at[k];
+    const LamLoad *load = &missing->loads[i], *found;
+    Point *point = PointOf(cache, missing->points[i]);
+    LamScatterModel model;
 
-    PetscCall(TakeOwnState(cache, &missing->loads[i], &batch.responses[found - batch.loads], &missing->responses[i]));
-    if (point >= 0) cache->self_solves[point]++;
+    found = (const LamLoad *)bsearch(&mine[k], batch.loads, (size_t)batch.n, sizeof(LamLoad), LamLoadCompare);
+    if (!found) {
+      missing->at[left++] = i;
+      continue;
+    }
+    PetscCall(TakeOwnState(cache, load, &batch.responses[found - batch.loads], &missing->responses[i]));
+    LamScatterModelFind(cache->database, load, &model);
+    if (point) TakeTo(point, &model);
   }
+  missing->n = left;
   PetscCall(PetscFree(mine));
   PetscCall(BatchDestroy(&batch));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CountMissing(Cache *cache, const Missing *missing, PetscInt *anywhere)
+{
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(&missing->n, anywhere, 1, MPIU_INT, MPI_SUM, cache->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Step 3. */
+static PetscErrorCode SolveThemselves(Cache *cache, Missing *missing)
+{
+  PetscBool stopped = PETSC_FALSE;
+  PetscInt anywhere;
+
+  PetscFunctionBeginUser;
+  while (!stopped) {
+    PetscCall(AdoptAll(cache, missing));
+    PetscCall(CountMissing(cache, missing, &anywhere));
+    if (!anywhere) break;
+    PetscCall(SolveShare(cache, missing, &stopped));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -389,7 +494,7 @@ static PetscErrorCode SolveMissing(Cache *cache, Missing *missing)
 
   PetscFunctionBeginUser;
   for (PetscInt round = 0; !stopped; round++) {
-    PetscCallMPI(MPI_Allreduce(&missing->n, &anywhere, 1, MPIU_INT, MPI_SUM, cache->comm));
+    PetscCall(CountMissing(cache, missing, &anywhere));
     if (!anywhere) break;
     if (ends || round == MAX_ROUNDS) {
       if (cache->outside == LAM_OUTSIDE_SOLVE) PetscCall(SolveThemselves(cache, missing));
@@ -412,8 +517,8 @@ static PetscErrorCode CacheRespond(void *ctx, PetscInt n, const LamLoad loads[],
   PetscCall(GetNewest(cache));
   PetscCall(PetscMalloc1(n, &missing.at));
   for (PetscInt i = 0; i < n; i++) {
-    PetscCheck(points[i] < cache->points, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
-               "material point %" PetscInt_FMT ", of %" PetscInt_FMT, points[i], cache->points);
+    PetscCheck(points[i] < cache->n_points, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "material point %" PetscInt_FMT ", of %" PetscInt_FMT, points[i], cache->n_points);
     missing.at[i] = i;
   }
   PetscCall(AskAll(cache, &missing));
@@ -435,9 +540,9 @@ static PetscErrorCode CacheRespond(void *ctx, PetscInt n, const LamLoad loads[],
 static PetscErrorCode Forget(Cache *cache)
 {
   PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < cache->points; p++) {
-    PetscCall(LamTableDestroy(&cache->table[p]));
-    cache->self_solves[p] = 0;
+  for (PetscInt p = 0; p < cache->n_points; p++) {
+    PetscCall(LamTableDestroy(&cache->points[p].table));
+    cache->points[p].self_solves = 0;
   }
   PetscFunctionReturn(0);
 }
@@ -470,8 +575,7 @@ static PetscErrorCode CacheDestroy(void **ctx)
   if (!cache) PetscFunctionReturn(0);
   PetscCall(Forget(cache));
   PetscCall(LamTableDestroy(&cache->newest)); /* of a `respond` that ended with an error */
-  PetscCall(PetscFree(cache->table));
-  PetscCall(PetscFree(cache->self_solves));
+  PetscCall(PetscFree(cache->points));
   PetscCall(PetscFree(*ctx));
   PetscFunctionReturn(0);
 }
@@ -492,9 +596,9 @@ PetscErrorCode LamCacheResponderCreate(MPI_Comm comm, LamDatabase database, LamR
   cache->self = responder;
   cache->outside = outside;
   cache->accuracy = accuracy;
-  cache->points = points;
-  PetscCall(PetscCalloc1(points, &cache->table));
-  PetscCall(PetscCalloc1(points, &cache->self_solves));
+  cache->n_points = points;
+  PetscCall(PetscCalloc1(points, &cache->points));
+  for (PetscInt p = 0; p < points; p++) cache->points[p].model.state = -1;
   *responder = (LamResponder){
       .ctx = cache, .respond = CacheRespond, .accept = CacheAccept, .reject = CacheReject, .destroy = CacheDestroy};
   PetscFunctionReturn(0);

@@ -27,6 +27,7 @@
   (1980) 1691.
 */
 #include "scatter.h"
+#include "scatter_model.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -225,32 +226,37 @@ static PetscReal RelativeError(PetscReal size, const PetscReal P[9])
   return LamStressError(other, P);
 }
 
+/* Of one model at this distance. */
+static PetscReal OneModelError(LamDatabase database, PetscReal distance2)
+{
+  return (database->header.micro.interface == LAM_INTERFACE_BONDED ? BONDED_ERROR : CONTACT_ERROR) * distance2;
+}
+
 /* From the weight of the nearest model. */
 static PetscReal LonelyError(const LamScatterSearch *search, PetscReal reach, const Sums *s)
 {
-  const PetscBool bonded = (PetscBool)(search->db->header.micro.interface == LAM_INTERFACE_BONDED);
   const PetscReal d2 = search->blends.distance2, u = 1 / d2 - 1 / (reach * reach), share = u * u * u / s->W;
 
-  return (bonded ? BONDED_ERROR : CONTACT_ERROR) * d2 * share * share;
+  return OneModelError(search->db, d2) * share * share;
 }
 
 /* ---- the answer ---- */
 
-/* The model of the state that the question is, in the question's frame. */
-static void OwnState(const LamScatterSearch *search, const LamScatterNearest *at, LamExpansion *own)
+/* The model of one record at the question, in the question's frame. */
+static void ExpandAt(const LamScatterSearch *search, const LamScatterNearest *at, LamExpansion *e)
 {
   const LamScattered *state = &search->db->scatter.states[at->state];
   LamScatterVector delta;
   Model m;
 
   EvaluateModel(search, state, at->image, delta, &m);
-  *own = state->model;
-  memcpy(own->x, search->x, sizeof(own->x));
-  own->energy = m.energy;
-  own->P33 = m.P33;
-  memcpy(own->gradient, m.gradient, sizeof(own->gradient));
-  memcpy(own->P33_gradient, m.P33_gradient, sizeof(own->P33_gradient));
-  LamImagesBackHessian(&search->db->images, at->image, own->hessian);
+  *e = state->model;
+  memcpy(e->x, search->x, sizeof(e->x));
+  e->energy = m.energy;
+  e->P33 = m.P33;
+  memcpy(e->gradient, m.gradient, sizeof(e->gradient));
+  memcpy(e->P33_gradient, m.P33_gradient, sizeof(e->P33_gradient));
+  LamImagesBackHessian(&search->db->images, at->image, e->hessian);
 }
 
 static PetscBool SameNumber(PetscReal a, PetscReal b)
@@ -298,14 +304,21 @@ static PetscBool MayBlend(const LamScatterSearch *search, PetscReal radius, LamR
   return PETSC_TRUE;
 }
 
-static void AnswerOwnState(const LamScatterSearch *search, const LamScatterNearest *at, LamResponse *r)
+static PetscBool IsOwnState(const LamScatterNearest *at)
+{
+  return (PetscBool)(at->distance2 < PetscSqr(LAM_OWN_STATE));
+}
+
+static void AnswerFromModel(const LamScatterSearch *search, const LamScatterNearest *at, PetscReal error,
+                            LamResponse *r)
 {
   LamExpansion e;
 
-  OwnState(search, at, &e);
+  ExpandAt(search, at, &e);
   r->distance = sqrt(at->distance2);
-  r->error_estimate = 0;
+  r->error_estimate = error;
   Fill(search, at, PETSC_TRUE, &e, search->db->scatter.records[at->state].tangent[80], r);
+  r->indicators_trusted = IsOwnState(at);
 }
 
 static void AnswerBlend(const LamScatterSearch *search, PetscReal reach, LamResponse *r)
@@ -354,8 +367,8 @@ PetscErrorCode LamScatterQuery(LamDatabase database, const LamLoad *load, PetscR
   PetscFunctionBeginUser;
   LamScatterFind(database, load, &search);
   own = search.alone.distance2 < search.blends.distance2 ? &search.alone : &search.blends;
-  if (own->distance2 < PetscSqr(LAM_OWN_STATE)) {
-    AnswerOwnState(&search, own, response);
+  if (IsOwnState(own)) {
+    AnswerFromModel(&search, own, 0, response);
     PetscFunctionReturn(0);
   }
   response->status = LAM_OUT_OF_REACH;
@@ -363,5 +376,39 @@ PetscErrorCode LamScatterQuery(LamDatabase database, const LamLoad *load, PetscR
   if (!MayBlend(&search, radius, response)) PetscFunctionReturn(0);
   AnswerBlend(&search, REACH * radius, response);
   if (!(response->error_estimate <= accuracy)) PetscCall(Refuse(accuracy, response));
+  PetscFunctionReturn(0);
+}
+
+/* ---- one model ---- */
+
+void LamScatterModelFind(LamDatabase database, const LamLoad *load, LamScatterModel *model)
+{
+  LamScatterSearch search;
+  const LamScatterNearest *at;
+
+  LamScatterFind(database, load, &search);
+  at = search.alone.distance2 < search.blends.distance2 ? &search.alone : &search.blends;
+  *model = (LamScatterModel){-1, 0};
+  if (at->state < 0 || database->scatter.records[at->state].floating_cells > 0) return;
+  if (search.refuses.distance2 <= DOUBT * DOUBT * at->distance2) return;
+  *model = (LamScatterModel){at->state, at->image};
+}
+
+PetscErrorCode LamScatterModelQuery(LamDatabase database, const LamScatterModel *model, const LamLoad *load,
+                                    PetscReal accuracy, LamResponse *response)
+{
+  LamScatterNearest at = {model->state, model->image, PETSC_INFINITY};
+  LamScatterSearch search;
+  PetscReal error;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamResponseInit(load, response));
+  response->source = LAM_SOURCE_DATABASE;
+  response->status = LAM_OUT_OF_REACH;
+  if (!LamQuestionIsGood(load, response)) PetscFunctionReturn(0);
+  LamScatterBegin(database, load, &search);
+  at.distance2 = LamScatterDistance2(&search, &database->scatter.states[at.state], at.image);
+  error = OneModelError(database, at.distance2);
+  if (error <= accuracy) AnswerFromModel(&search, &at, error, response);
   PetscFunctionReturn(0);
 }

@@ -130,7 +130,7 @@ PetscReal LamScatterDistance2(const LamScatterSearch *search, const LamScattered
   return LamScatterApply(&search->metric, delta, v);
 }
 
-static void Begin(LamDatabase db, const LamLoad *load, LamScatterSearch *search)
+void LamScatterBegin(LamDatabase db, const LamLoad *load, LamScatterSearch *search)
 {
   const LamScatterNearest none = {-1, 0, INFINITY};
 
@@ -145,7 +145,7 @@ void LamScatterFind(LamDatabase db, const LamLoad *load, LamScatterSearch *searc
   LamScatterNearest *const nearest[] = {&search->blends, &search->alone, &search->refuses}; /* by use */
   const LamScatter *scatter = &db->scatter;
 
-  Begin(db, load, search);
+  LamScatterBegin(db, load, search);
   for (PetscInt k = 0; k < scatter->n; k++) {
     const LamScattered *state = &scatter->states[k];
     LamScatterNearest *best = nearest[state->use];

@@ -31,6 +31,8 @@ typedef struct {
   LamScatterNearest blends, alone, refuses; /* of each use */
 } LamScatterSearch;
 
+/* A question, no record looked at yet. */
+void LamScatterBegin(LamDatabase database, const LamLoad *load, LamScatterSearch *search);
 /* The nearest records of a question. */
 void LamScatterFind(LamDatabase database, const LamLoad *load, LamScatterSearch *search);
 /* v = M delta; returns delta . M delta. */

@@ -403,6 +403,89 @@ static void StoppingCacheSolvesNodesAlone(void **state)
   TearDown(&fixture);
 }
 
+/* ---- models of states beside the table ---- */
+
+/* Where no node helps, the state solved for a point answers it in a neighbourhood, also in the next load step. */
+static void SolvedStateAnswersAround(void **state)
+{
+  Fixture fixture;
+  PetscInt64 solves;
+
+  SetUp(&fixture, PETSC_COMM_SELF, CACHE_WITH_BAD_NODES);
+  SetLoad(&fixture, 0, 0.1);
+  Respond(&fixture, 1);
+  solves = fixture.cache.solves;
+  for (PetscInt k = 1; k <= 4; k++) {
+    SetLoad(&fixture, 0, 0.1 + 2e-3 * (PetscReal)k);
+    Respond(&fixture, 1);
+    assert_int_equal(fixture.responses[0].source, LAM_SOURCE_DATABASE);
+    assert_true(Error(&fixture, 0) < ACCURACY);
+    assert_ok(fixture.cache.accept(fixture.cache.ctx));
+  }
+  assert_int_equal(fixture.cache.solves, solves);
+  SetLoad(&fixture, 0, 0.2);
+  Respond(&fixture, 1);
+  assert_int_equal(fixture.responses[0].source, LAM_SOURCE_SOLVE);
+  TearDown(&fixture);
+}
+
+/* Stress is the derivative of the energy, and the tangent that of stress, away from the state that was solved. */
+static void AnswersAroundAreOfOnePotential(void **state)
+{
+  const PetscReal h = 1e-5;
+  LamResponse at[3];
+  Fixture fixture;
+
+  SetUp(&fixture, PETSC_COMM_SELF, CACHE_WITH_BAD_NODES);
+  SetLoad(&fixture, 0, 0.1);
+  Respond(&fixture, 1);
+  for (int k = 0; k < 3; k++) {
+    SetLoad(&fixture, 0, 0.108);
+    fixture.loads[0].F[1] += h * (k - 1);
+    Respond(&fixture, 1);
+    assert_int_equal(fixture.responses[0].source, LAM_SOURCE_DATABASE);
+    at[k] = fixture.responses[0];
+  }
+  assert_float_equal((at[2].energy - at[0].energy) / (2 * h), at[1].P[1], 1e-8);
+  for (int i = 0; i < 9; i++) {
+    if (i % 3 == 2 || i / 3 == 2) continue;
+    assert_float_equal((at[2].P[i] - at[0].P[i]) / (2 * h), at[1].tangent[9 * i + 1], 1e-7);
+  }
+  TearDown(&fixture);
+}
+
+/* Points close to each other share the states of a few of them. */
+static void NeighboursShareModels(void **state)
+{
+  Fixture fixture;
+
+  SetUp(&fixture, PETSC_COMM_SELF, CACHE_WITH_BAD_NODES);
+  for (PetscInt p = 0; p < POINTS; p++) SetLoad(&fixture, p, 0.1 + 1e-3 * (PetscReal)p);
+  Respond(&fixture, POINTS);
+  assert_int_equal(fixture.cache.solves, fixture.node_calls + 4);
+  for (PetscInt p = 0; p < POINTS; p++) assert_true(Error(&fixture, p) < ACCURACY / 4);
+  TearDown(&fixture);
+}
+
+/* A state that failed may be on the other side of a loss of stability: what is not much nearer to one that answers is
+   solved. */
+static void NoModelIsTakenToBesideAFailure(void **state)
+{
+  const PetscReal stretch[] = {0.11, 0.09, 0.098};
+  Fixture fixture;
+
+  SetUp(&fixture, PETSC_COMM_SELF, CACHE_WITH_BAD_NODES);
+  fixture.material->largest_strain = 0.11;
+  for (PetscInt k = 0; k < 3; k++) {
+    SetLoad(&fixture, 0, stretch[k]);
+    fixture.points[0] = k;
+    Respond(&fixture, 1);
+    assert_int_equal(fixture.responses[0].status, k == 0 ? LAM_NOT_CONVERGED : LAM_CONVERGED);
+    assert_int_equal(fixture.responses[0].source, LAM_SOURCE_SOLVE);
+  }
+  TearDown(&fixture);
+}
+
 /* ---- within a load step ---- */
 
 /* How the answer to the first question changes when the table is refined, and then `end` is called. */
@@ -517,6 +600,10 @@ int main(int argc, char **argv)
       cmocka_unit_test(CountsAddUp),
       cmocka_unit_test(StoppedBatchKeepsWhatIsSolved),
       cmocka_unit_test(StoppingCacheSolvesNodesAlone),
+      cmocka_unit_test(SolvedStateAnswersAround),
+      cmocka_unit_test(AnswersAroundAreOfOnePotential),
+      cmocka_unit_test(NeighboursShareModels),
+      cmocka_unit_test(NoModelIsTakenToBesideAFailure),
       cmocka_unit_test(AnswerStaysUntilTheStepIsAccepted),
       cmocka_unit_test(AnswerStaysUntilTheStepIsRejected),
       cmocka_unit_test(SolvedPointStaysSolved),
