@@ -25,6 +25,7 @@
 #include <lamella/cache.h>
 #include <lamella/clock.h>
 #include <stdlib.h>
+#include <string.h>
 #include "gather.h"
 #include "rounded_load.h"
 #include "scatter_model.h"
@@ -567,6 +568,50 @@ static PetscErrorCode CacheReject(void *ctx)
   PetscFunctionReturn(0);
 }
 
+/* What outlasts a load step of a point; of its model the record's load, as another file has others before it. */
+typedef struct {
+  LamLoad record;
+  PetscInt image; /* -1: no model */
+  PetscBool by_model;
+} Kept;
+
+static PetscErrorCode CacheStateSize(void *ctx, size_t *bytes)
+{
+  PetscFunctionBeginUser;
+  *bytes = sizeof(Kept);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CacheSave(void *ctx, PetscInt point, void *bytes)
+{
+  const Cache *cache = (const Cache *)ctx;
+  const Point *p = &cache->points[point];
+  Kept kept = {.image = -1, .by_model = p->by_model};
+
+  PetscFunctionBeginUser;
+  if (p->model.state >= 0) {
+    kept.record = LamScatterModelLoad(cache->database, &p->model);
+    kept.image = p->model.image;
+  }
+  memcpy(bytes, &kept, sizeof(kept));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CacheLoad(void *ctx, PetscInt point, const void *bytes)
+{
+  Cache *cache = (Cache *)ctx;
+  Point *p = &cache->points[point];
+  Kept kept;
+
+  PetscFunctionBeginUser;
+  memcpy(&kept, bytes, sizeof(kept));
+  p->by_model = kept.by_model;
+  p->model.state = -1;
+  if (kept.image >= 0) LamScatterModelFind(cache->database, &kept.record, &p->model);
+  p->model.image = kept.image;
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode CacheDestroy(void **ctx)
 {
   Cache *cache = (Cache *)*ctx;
@@ -601,5 +646,9 @@ PetscErrorCode LamCacheResponderCreate(MPI_Comm comm, LamDatabase database, LamR
   for (PetscInt p = 0; p < points; p++) cache->points[p].model.state = -1;
   *responder = (LamResponder){
       .ctx = cache, .respond = CacheRespond, .accept = CacheAccept, .reject = CacheReject, .destroy = CacheDestroy};
+  if (!solver) PetscFunctionReturn(0);
+  responder->state_size = CacheStateSize;
+  responder->save = CacheSave;
+  responder->load = CacheLoad;
   PetscFunctionReturn(0);
 }

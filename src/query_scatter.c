@@ -394,6 +394,11 @@ void LamScatterModelFind(LamDatabase database, const LamLoad *load, LamScatterMo
   *model = (LamScatterModel){at->state, at->image};
 }
 
+LamLoad LamScatterModelLoad(LamDatabase database, const LamScatterModel *model)
+{
+  return database->scatter.records[model->state].load;
+}
+
 PetscErrorCode LamScatterModelQuery(LamDatabase database, const LamScatterModel *model, const LamLoad *load,
                                     PetscReal accuracy, LamResponse *response)
 {

@@ -16,6 +16,8 @@ typedef struct {
   another branch, is not much further away.
 */
 void LamScatterModelFind(LamDatabase database, const LamLoad *load, LamScatterModel *model);
+/* The load of a model's record, from which it is found again. */
+LamLoad LamScatterModelLoad(LamDatabase database, const LamScatterModel *model);
 /* Of a model that is not none. Out of reach where the estimate of its error is above the accuracy. */
 PetscErrorCode LamScatterModelQuery(LamDatabase database, const LamScatterModel *model, const LamLoad *load,
                                     PetscReal accuracy, LamResponse *response);

@@ -22,7 +22,9 @@ typedef struct {
   added to the database of every rank: nodes of its grid where they help, else the states asked for. What is added
   depends on the questions alone, neither on the number of ranks nor on their order.
   Within a load step a material point is answered from one table as long as that reaches: an answer does not change
-  because other points ask.
+  because other points ask. Where no node helps it holds the second-order model of a state that was solved for it or for
+  a point near by, which goes on to answer, also in later load steps, while the estimate of its error is within the
+  accuracy; of such answers indicators are those of that state, and not trusted.
   outside: LAM_OUTSIDE_STOP: no state is solved for itself; where no node helps the answer is LAM_OUT_OF_REACH.
   nodes: NULL: `solver` solves them, each from the reference state. accuracy: wanted relative error of the stress
   (LamStressError). Borrows database, solver and nodes.

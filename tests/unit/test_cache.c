@@ -454,6 +454,41 @@ static void AnswersAroundAreOfOnePotential(void **state)
   TearDown(&fixture);
 }
 
+/* A run that goes on with the bytes of another one, and its records in another order, has the same answer. */
+static void KeptModelIsFoundAgain(void **state)
+{
+  Fixture first, second;
+  const LamResponse *records;
+  LamResponse record;
+  size_t size;
+  char *bytes;
+
+  SetUp(&first, PETSC_COMM_SELF, CACHE_WITH_BAD_NODES);
+  SetUp(&second, PETSC_COMM_SELF, CACHE_WITH_BAD_NODES);
+  for (PetscInt p = 0; p < 2; p++) SetLoad(&first, p, p ? 0.1 : 0.2);
+  Respond(&first, 2);
+  assert_ok(first.cache.accept(first.cache.ctx));
+  assert_ok(LamDatabaseGetRecords(first.database, NULL, &records, NULL));
+  for (PetscInt k = RecordCount(&first) - 1; k >= RecordCount(&first) - 2; k--) {
+    record = records[k];
+    assert_ok(LamDatabaseAdd(second.database, 1, NULL, &record));
+  }
+  assert_ok(first.cache.state_size(first.cache.ctx, &size));
+  assert_ok(PetscMalloc(size, &bytes));
+  assert_ok(first.cache.save(first.cache.ctx, 1, bytes));
+  assert_ok(second.cache.load(second.cache.ctx, 1, bytes));
+  SetLoad(&first, 1, 0.13); /* too far away to take to the model anew */
+  Respond(&first, 2);
+  second.loads[0] = first.loads[1];
+  second.points[0] = 1;
+  Respond(&second, 1);
+  assert_int_equal(second.responses[0].source, LAM_SOURCE_DATABASE);
+  assert_memory_equal(second.responses[0].P, first.responses[1].P, sizeof(first.responses[1].P));
+  assert_ok(PetscFree(bytes));
+  TearDown(&first);
+  TearDown(&second);
+}
+
 /* Points close to each other share the states of a few of them. */
 static void NeighboursShareModels(void **state)
 {
@@ -602,6 +637,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(StoppingCacheSolvesNodesAlone),
       cmocka_unit_test(SolvedStateAnswersAround),
       cmocka_unit_test(AnswersAroundAreOfOnePotential),
+      cmocka_unit_test(KeptModelIsFoundAgain),
       cmocka_unit_test(NeighboursShareModels),
       cmocka_unit_test(NoModelIsTakenToBesideAFailure),
       cmocka_unit_test(AnswerStaysUntilTheStepIsAccepted),
