@@ -35,12 +35,17 @@ enum { MAX_ROUNDS = 12, SELF_STAYS = 2, SHARE = 8, LEAST_SHARE = 4 };
 static const PetscReal ADOPTS = 0.25;
 static const PetscReal OWN_STATE = 1e-8; /* distance of a question from its own record, rounded twice; a strain */
 
+/* What of a material point outlasts a load step. */
+typedef struct {
+  LamScatterModel model; /* state -1: none */
+  PetscBool answers;     /* it answered last, not a table */
+} Held;
+
 /* What answers a material point. */
 typedef struct {
-  LamTable table;        /* owned: the last to answer in this load step; NULL: none */
-  LamScatterModel model; /* kept from load step to load step; state -1: none */
-  PetscBool by_model;    /* the model answered last, not a table */
-  PetscInt self_solves;  /* in this load step: states solved for the point itself, and times it took to a model */
+  LamTable table; /* owned: the last to answer in this load step; NULL: none */
+  Held held, accepted;
+  PetscInt self_solves; /* in this load step: states solved for the point itself, and times it took to a model */
 } Point;
 
 typedef struct {
@@ -61,7 +66,8 @@ typedef struct {
   const LamLoad *loads;
   const PetscInt *points;
   LamResponse *responses;
-  PetscInt n, *at; /* places in the three */
+  PetscInt n, *at;  /* places in the three */
+  PetscBool solved; /* the database is no longer as it was */
 } Missing;
 
 /* What is to be solved, the same on all ranks: nodes, or states where keys is NULL. */
@@ -102,20 +108,31 @@ static PetscErrorCode AskTables(Cache *cache, const LamLoad *load, Point *point,
 }
 
 /* From now on the model answers. */
-static void TakeTo(Point *point, const LamScatterModel *model)
+static void TakeTo(Point *point, LamScatterModel model)
 {
-  point->model = *model;
-  point->by_model = PETSC_TRUE;
+  point->held = (Held){model, PETSC_TRUE};
   point->self_solves++;
 }
 
-/* Out of reach where the point has no model, or one that is too far away. */
+/* Answers, if the model is good to the accuracy; else the response stays as it is. */
+static PetscErrorCode TryModel(Cache *cache, const LamScatterModel *model, const LamLoad *load, PetscReal accuracy,
+                               LamResponse *response)
+{
+  LamResponse answer;
+
+  PetscFunctionBeginUser;
+  if (model->state < 0) PetscFunctionReturn(0);
+  PetscCall(LamScatterModelQuery(cache->database, model, load, accuracy, &answer));
+  if (LamResponseHasFields(&answer)) *response = answer;
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode AskModel(Cache *cache, const LamLoad *load, Point *point, LamResponse *response)
 {
   PetscFunctionBeginUser;
-  if (!point || point->model.state < 0) PetscFunctionReturn(0);
-  PetscCall(LamScatterModelQuery(cache->database, &point->model, load, cache->accuracy, response));
-  if (response->status != LAM_OUT_OF_REACH && !point->by_model) TakeTo(point, &point->model);
+  if (!point) PetscFunctionReturn(0);
+  PetscCall(TryModel(cache, &point->held.model, load, cache->accuracy, response));
+  if (LamResponseHasFields(response) && !point->held.answers) TakeTo(point, point->held.model);
   PetscFunctionReturn(0);
 }
 
@@ -129,7 +146,8 @@ static PetscErrorCode AskRecords(Cache *cache, const LamLoad *load, LamResponse 
 
   PetscFunctionBeginUser;
   PetscCall(LamDatabaseQuery(cache->database, &question, cache->accuracy, &answer));
-  if (cache->solver && !(answer.distance <= OWN_STATE)) PetscFunctionReturn(0);
+  if (answer.status == LAM_INVALID_F) *response = answer;
+  if (answer.status == LAM_INVALID_F || (cache->solver && !(answer.distance <= OWN_STATE))) PetscFunctionReturn(0);
   LamLoadLeadBack(load, &answer);
   *response = answer;
   PetscFunctionReturn(0);
@@ -141,10 +159,10 @@ static PetscErrorCode Ask(Cache *cache, const LamLoad *load, Point *point, LamRe
   PetscFunctionBeginUser;
   PetscCall(LamResponseInit(load, response));
   response->status = LAM_OUT_OF_REACH;
-  if (point && point->by_model) PetscCall(AskModel(cache, load, point, response));
+  if (point && point->held.answers) PetscCall(AskModel(cache, load, point, response));
   if (response->status != LAM_OUT_OF_REACH) PetscFunctionReturn(0);
   PetscCall(AskTables(cache, load, point, response));
-  if (point && response->status != LAM_OUT_OF_REACH) point->by_model = PETSC_FALSE;
+  if (point && LamResponseHasFields(response)) point->held.answers = PETSC_FALSE;
   if (response->status == LAM_OUT_OF_REACH) PetscCall(AskModel(cache, load, point, response));
   if (response->status == LAM_OUT_OF_REACH) PetscCall(AskRecords(cache, load, response));
   PetscFunctionReturn(0);
@@ -350,6 +368,7 @@ static PetscErrorCode Refine(Cache *cache, Missing *missing, PetscBool *ends, Pe
   *ends = (PetscBool)!batch.n;
   if (!*ends) {
     PetscCall(SolveAndAdd(cache, &batch, stopped));
+    missing->solved = PETSC_TRUE;
     PetscCall(AskAll(cache, missing));
   }
   PetscCall(BatchDestroy(&batch));
@@ -393,19 +412,23 @@ static PetscErrorCode TakeOwnState(Cache *cache, const LamLoad *load, const LamR
 /* The point takes to the nearest model, where that is so near that it will go on to answer. */
 static PetscErrorCode Adopt(Cache *cache, const LamLoad *load, Point *point, LamResponse *response)
 {
+  const LamLoad question = LamLoadRound(load);
   LamScatterModel model;
+  LamResponse answer = {.status = LAM_OUT_OF_REACH};
 
   PetscFunctionBeginUser;
   if (!point || GoesOnByItself(point)) PetscFunctionReturn(0);
-  LamScatterModelFind(cache->database, load, &model);
-  if (model.state < 0) PetscFunctionReturn(0);
-  PetscCall(LamScatterModelQuery(cache->database, &model, load, ADOPTS * cache->accuracy, response));
-  if (response->status != LAM_OUT_OF_REACH) TakeTo(point, &model);
+  LamScatterModelFind(cache->database, &question, &model);
+  PetscCall(TryModel(cache, &model, &question, ADOPTS * cache->accuracy, &answer));
+  if (!LamResponseHasFields(&answer)) PetscFunctionReturn(0);
+  PetscCall(TryModel(cache, &model, load, cache->accuracy, response));
+  TakeTo(point, model);
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode AdoptAll(Cache *cache, Missing *missing)
 {
+  const PetscReal start = LamClock();
   PetscInt left = 0;
 
   PetscFunctionBeginUser;
@@ -415,11 +438,13 @@ static PetscErrorCode AdoptAll(Cache *cache, Missing *missing)
     PetscCall(Adopt(cache, &missing->loads[i], PointOf(cache, missing->points[i]), &missing->responses[i]));
     if (missing->responses[i].status == LAM_OUT_OF_REACH) missing->at[left++] = i;
   }
+  if (!missing->solved) cache->self->hits += missing->n - left;
   missing->n = left;
+  cache->self->query_seconds += LamClock() - start;
   PetscFunctionReturn(0);
 }
 
-/* A share of what all ranks lack, spread over it. */
+/* A share of what all ranks lack, spread over it, of LEAST_SHARE where there are as many. */
 static PetscErrorCode FindShare(Cache *cache, PetscInt n, const LamLoad mine[], Batch *batch)
 {
   PetscInt share;
@@ -427,9 +452,19 @@ static PetscErrorCode FindShare(Cache *cache, PetscInt n, const LamLoad mine[], 
   PetscFunctionBeginUser;
   PetscCall(LamGatherUnion(cache->comm, sizeof(LamLoad), LamLoadCompare, n, mine, &batch->n, (void **)&batch->loads));
   share = PetscMin(batch->n, PetscMax(batch->n / SHARE, LEAST_SHARE));
-  for (PetscInt k = 0; k < share; k++) batch->loads[k] = batch->loads[k * batch->n / share];
+  for (PetscInt k = 0; k < share; k++) batch->loads[k] = batch->loads[(PetscInt64)k * batch->n / share];
   batch->n = share;
   PetscFunctionReturn(0);
+}
+
+/* The state solved for the point answers it from now on, unless it failed or is unstable. */
+static void TakeToOwnState(const Cache *cache, const LamLoad *load, Point *point)
+{
+  const LamLoad question = LamLoadRound(load);
+  LamScatterModel model;
+
+  LamScatterModelFind(cache->database, &question, &model);
+  TakeTo(point, model.state < 0 ? point->held.model : model);
 }
 
 static PetscErrorCode SolveShare(Cache *cache, Missing *missing, PetscBool *stopped)
@@ -443,11 +478,10 @@ static PetscErrorCode SolveShare(Cache *cache, Missing *missing, PetscBool *stop
   for (PetscInt k = 0; k < missing->n; k++) PetscCall(StateFor(cache, &missing->loads[missing->at[k]], &mine[k]));
   PetscCall(FindShare(cache, missing->n, mine, &batch));
   PetscCall(SolveAndAdd(cache, &batch, stopped));
+  missing->solved = PETSC_TRUE;
   for (PetscInt k = 0; k < missing->n; k++) {
     const PetscInt i = missing->at[k];
     const LamLoad *load = &missing->loads[i], *found;
-    Point *point = PointOf(cache, missing->points[i]);
-    LamScatterModel model;
 
     found = (const LamLoad *)bsearch(&mine[k], batch.loads, (size_t)batch.n, sizeof(LamLoad), LamLoadCompare);
     if (!found) {
@@ -455,8 +489,7 @@ static PetscErrorCode SolveShare(Cache *cache, Missing *missing, PetscBool *stop
       continue;
     }
     PetscCall(TakeOwnState(cache, load, &batch.responses[found - batch.loads], &missing->responses[i]));
-    LamScatterModelFind(cache->database, load, &model);
-    if (point) TakeTo(point, &model);
+    if (missing->points[i] >= 0) TakeToOwnState(cache, load, &cache->points[missing->points[i]]);
   }
   missing->n = left;
   PetscCall(PetscFree(mine));
@@ -554,6 +587,7 @@ static PetscErrorCode CacheAccept(void *ctx)
 
   PetscFunctionBeginUser;
   PetscCall(Forget(cache));
+  for (PetscInt p = 0; p < cache->n_points; p++) cache->points[p].accepted = cache->points[p].held;
   if (cache->solver && cache->solver->accept) PetscCall(cache->solver->accept(cache->solver->ctx));
   PetscFunctionReturn(0);
 }
@@ -564,15 +598,16 @@ static PetscErrorCode CacheReject(void *ctx)
 
   PetscFunctionBeginUser;
   PetscCall(Forget(cache));
+  for (PetscInt p = 0; p < cache->n_points; p++) cache->points[p].held = cache->points[p].accepted;
   if (cache->solver && cache->solver->reject) PetscCall(cache->solver->reject(cache->solver->ctx));
   PetscFunctionReturn(0);
 }
 
-/* What outlasts a load step of a point; of its model the record's load, as another file has others before it. */
+/* Held, as bytes; of the model the load of its record, as another file has others before it. */
 typedef struct {
   LamLoad record;
   PetscInt image; /* -1: no model */
-  PetscBool by_model;
+  PetscBool answers;
 } Kept;
 
 static PetscErrorCode CacheStateSize(void *ctx, size_t *bytes)
@@ -585,13 +620,16 @@ static PetscErrorCode CacheStateSize(void *ctx, size_t *bytes)
 static PetscErrorCode CacheSave(void *ctx, PetscInt point, void *bytes)
 {
   const Cache *cache = (const Cache *)ctx;
-  const Point *p = &cache->points[point];
-  Kept kept = {.image = -1, .by_model = p->by_model};
+  const Held *held = &cache->points[point].accepted;
+  Kept kept;
 
   PetscFunctionBeginUser;
-  if (p->model.state >= 0) {
-    kept.record = LamScatterModelLoad(cache->database, &p->model);
-    kept.image = p->model.image;
+  memset(&kept, 0, sizeof(kept));
+  kept.image = -1;
+  kept.answers = held->answers;
+  if (held->model.state >= 0) {
+    kept.record = LamScatterModelLoad(cache->database, &held->model);
+    kept.image = held->model.image;
   }
   memcpy(bytes, &kept, sizeof(kept));
   PetscFunctionReturn(0);
@@ -600,15 +638,15 @@ static PetscErrorCode CacheSave(void *ctx, PetscInt point, void *bytes)
 static PetscErrorCode CacheLoad(void *ctx, PetscInt point, const void *bytes)
 {
   Cache *cache = (Cache *)ctx;
-  Point *p = &cache->points[point];
+  Held held = {.model = {.state = -1}};
   Kept kept;
 
   PetscFunctionBeginUser;
   memcpy(&kept, bytes, sizeof(kept));
-  p->by_model = kept.by_model;
-  p->model.state = -1;
-  if (kept.image >= 0) LamScatterModelFind(cache->database, &kept.record, &p->model);
-  p->model.image = kept.image;
+  if (kept.image >= 0) LamScatterModelFind(cache->database, &kept.record, &held.model);
+  held.model.image = kept.image;
+  held.answers = kept.answers;
+  cache->points[point].held = cache->points[point].accepted = held;
   PetscFunctionReturn(0);
 }
 
@@ -643,7 +681,7 @@ PetscErrorCode LamCacheResponderCreate(MPI_Comm comm, LamDatabase database, LamR
   cache->accuracy = accuracy;
   cache->n_points = points;
   PetscCall(PetscCalloc1(points, &cache->points));
-  for (PetscInt p = 0; p < points; p++) cache->points[p].model.state = -1;
+  for (PetscInt p = 0; p < points; p++) cache->points[p].held.model.state = cache->points[p].accepted.model.state = -1;
   *responder = (LamResponder){
       .ctx = cache, .respond = CacheRespond, .accept = CacheAccept, .reject = CacheReject, .destroy = CacheDestroy};
   if (!solver) PetscFunctionReturn(0);

@@ -20,7 +20,8 @@
   weights. docs/performance.md has what was measured.
 
   Only records that have converged, are stable, of branch 0 and without cells that float blend. One of another branch,
-  or with cells that touch no one, answers for its own state; it and those that failed forbid a blend where they are not
+  or with cells that touch no one, answers for its own state (one of another branch also by its model alone, for who
+  holds it: scatter_model.h); it and those that failed forbid a blend where they are not
   much further away than the nearest that blends: the potential has a kink between them, which no model knows of.
 
   References: Shepard, Proc. 23rd ACM National Conference (1968) 517; Franke and Nielson, Int. J. Numer. Meth. Engng 15
@@ -264,6 +265,13 @@ static PetscBool SameNumber(PetscReal a, PetscReal b)
   return (PetscBool)(fabs(a - b) <= 1e-10);
 }
 
+/* From the derivatives of the potential, which are volumes only where all cells have the same turgor and cohesion. */
+static void TakeVolumes(const LamResponse *record, LamResponse *r)
+{
+  r->lumen_fraction = SameNumber(-record->energy_turgor, record->lumen_fraction) ? -r->energy_turgor : NAN;
+  r->opening_fraction = SameNumber(record->energy_cohesion, record->opening_fraction) ? r->energy_cohesion : NAN;
+}
+
 static void Fill(const LamScatterSearch *search, const LamScatterNearest *at, PetscBool own, const LamExpansion *e,
                  PetscReal A3333, LamResponse *r)
 {
@@ -271,9 +279,7 @@ static void Fill(const LamScatterSearch *search, const LamScatterNearest *at, Pe
   const LamResponse *record = &db->scatter.records[at->state];
 
   LamExpansionToResponse(e, A3333, r);
-  /* derivatives of the potential are volumes only where all cells have the same turgor and cohesion */
-  r->lumen_fraction = SameNumber(-record->energy_turgor, record->lumen_fraction) ? -r->energy_turgor : NAN;
-  r->opening_fraction = SameNumber(record->energy_cohesion, record->opening_fraction) ? r->energy_cohesion : NAN;
+  TakeVolumes(record, r);
   LamIndicatorsCopy(record, db->images.face[at->image], own, db->header.micro.interface, r);
   r->indicators_trusted = own;
   r->status = LAM_CONVERGED;
@@ -309,16 +315,21 @@ static PetscBool IsOwnState(const LamScatterNearest *at)
   return (PetscBool)(at->distance2 < PetscSqr(LAM_OWN_STATE));
 }
 
+/* Indicators are those of the record. */
 static void AnswerFromModel(const LamScatterSearch *search, const LamScatterNearest *at, PetscReal error,
                             LamResponse *r)
 {
+  const LamResponse *record = &search->db->scatter.records[at->state];
   LamExpansion e;
 
   ExpandAt(search, at, &e);
   r->distance = sqrt(at->distance2);
   r->error_estimate = error;
-  Fill(search, at, PETSC_TRUE, &e, search->db->scatter.records[at->state].tangent[80], r);
-  r->indicators_trusted = IsOwnState(at);
+  Fill(search, at, PETSC_TRUE, &e, record->tangent[80], r);
+  if (IsOwnState(at)) return;
+  TakeVolumes(record, r);
+  r->opening_fraction = PetscMax(r->opening_fraction, 0);
+  r->indicators_trusted = PETSC_FALSE;
 }
 
 static void AnswerBlend(const LamScatterSearch *search, PetscReal reach, LamResponse *r)

@@ -12,8 +12,8 @@ typedef struct {
 } LamScatterModel;
 
 /*
-  That of the nearest record that is stable and in which no cell floats; none where a record that cannot answer, or of
-  another branch, is not much further away.
+  That of the nearest stable record, of whatever branch; none where cells float in it, or where a record that cannot
+  answer is less than twice as far.
 */
 void LamScatterModelFind(LamDatabase database, const LamLoad *load, LamScatterModel *model);
 /* The load of a model's record, from which it is found again. */

@@ -141,14 +141,17 @@ static PetscErrorCode SolveFrom(LamRVE rve, const LamLoad *from, const LamLoad *
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < steps && effort.status == LAM_CONVERGED;) {
-    LamLoad next;
+    const PetscInt end = PetscMin(k + stride, steps);
+    const LamLoad next = Between(from, load, (PetscReal)end / (PetscReal)steps);
 
-    k = PetscMin(k + stride, steps);
-    next = Between(from, load, (PetscReal)k / (PetscReal)steps);
     PetscCall(LamRVESolve(rve, &next, state, response));
     AddEffort(response, &effort);
-    effort.status = response->status;
-    stride = response->factorisations <= EASY ? PetscMin(2 * stride, MOST_SUBSTEPS) : 1;
+    if (response->status == LAM_CONVERGED)
+      k = end;
+    else if (end == k + 1 || response->status == LAM_OUT_OF_REACH) /* no smaller step; stopped */
+      effort.status = response->status;
+    stride =
+        response->status == LAM_CONVERGED && response->factorisations <= EASY ? PetscMin(2 * stride, MOST_SUBSTEPS) : 1;
   }
   if (!steps || effort.status != LAM_CONVERGED) {
     PetscCall(SolveFromReference(rve, load, state, response));

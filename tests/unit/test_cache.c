@@ -447,10 +447,41 @@ static void AnswersAroundAreOfOnePotential(void **state)
     at[k] = fixture.responses[0];
   }
   assert_float_equal((at[2].energy - at[0].energy) / (2 * h), at[1].P[1], 1e-8);
+  assert_float_equal(at[1].lumen_fraction, -at[1].energy_turgor, 1e-14);
   for (int i = 0; i < 9; i++) {
     if (i % 3 == 2 || i / 3 == 2) continue;
     assert_float_equal((at[2].P[i] - at[0].P[i]) / (2 * h), at[1].tangent[9 * i + 1], 1e-7);
   }
+  TearDown(&fixture);
+}
+
+/* What a point took to in a step that was given up is forgotten with it. */
+static void RejectedStepGivesTheModelBack(void **state)
+{
+  Fixture fixture;
+
+  SetUp(&fixture, PETSC_COMM_SELF, CACHE_WITH_BAD_NODES);
+  SetLoad(&fixture, 0, 0.1);
+  Respond(&fixture, 1);
+  assert_ok(fixture.cache.accept(fixture.cache.ctx));
+  SetLoad(&fixture, 0, 0.2);
+  Respond(&fixture, 1);
+  assert_ok(fixture.cache.reject(fixture.cache.ctx));
+  SetLoad(&fixture, 0, 0.13); /* too far away to take to the model anew */
+  Respond(&fixture, 1);
+  assert_int_equal(fixture.responses[0].source, LAM_SOURCE_DATABASE);
+  TearDown(&fixture);
+}
+
+static void QuestionThatIsNoNumberIsInvalid(void **state)
+{
+  Fixture fixture;
+
+  SetUp(&fixture, PETSC_COMM_SELF, NO_GRID);
+  SetLoad(&fixture, 0, NAN);
+  Respond(&fixture, 1);
+  assert_int_equal(fixture.responses[0].status, LAM_INVALID_F);
+  assert_int_equal(RecordCount(&fixture), 0);
   TearDown(&fixture);
 }
 
@@ -637,6 +668,8 @@ int main(int argc, char **argv)
       cmocka_unit_test(StoppingCacheSolvesNodesAlone),
       cmocka_unit_test(SolvedStateAnswersAround),
       cmocka_unit_test(AnswersAroundAreOfOnePotential),
+      cmocka_unit_test(RejectedStepGivesTheModelBack),
+      cmocka_unit_test(QuestionThatIsNoNumberIsInvalid),
       cmocka_unit_test(KeptModelIsFoundAgain),
       cmocka_unit_test(NeighboursShareModels),
       cmocka_unit_test(NoModelIsTakenToBesideAFailure),
