@@ -22,44 +22,13 @@
   Convergence. A point that took to a model, or was solved for itself, SELF_STAYS times in this load step goes on
   without tables: at the edge of what they answer, iterations that step to and fro between two answers would not end.
 */
-#include <lamella/cache.h>
 #include <lamella/clock.h>
 #include <stdlib.h>
-#include <string.h>
+#include "cache_impl.h"
 #include "gather.h"
 #include "rounded_load.h"
-#include "scatter_model.h"
 
-enum { MAX_ROUNDS = 12, SELF_STAYS = 2, SHARE = 8, LEAST_SHARE = 4 };
-/* Of the accuracy: with a model whose error is estimated above that a point does not begin. */
-static const PetscReal ADOPTS = 0.25;
-static const PetscReal OWN_STATE = 1e-8; /* distance of a question from its own record, rounded twice; a strain */
-
-/* What of a material point outlasts a load step. */
-typedef struct {
-  LamScatterModel model; /* state -1: none */
-  PetscBool answers;     /* it answered last, not a table */
-} Held;
-
-/* What answers a material point. */
-typedef struct {
-  LamTable table; /* owned: the last to answer in this load step; NULL: none */
-  Held held, accepted;
-  PetscInt self_solves; /* in this load step: states solved for the point itself, and times it took to a model */
-} Point;
-
-typedef struct {
-  MPI_Comm comm;
-  LamDatabase database;       /* borrowed */
-  LamResponder *solver;       /* borrowed; NULL: database only */
-  const LamNodeSolver *nodes; /* borrowed; NULL: by the solver */
-  LamOutside outside;
-  LamResponder *self; /* the responder's counters; borrowed */
-  PetscReal accuracy;
-  LamTable newest; /* owned within a `respond`; NULL: the database has no grid */
-  Point *points;   /* [n_points] */
-  PetscInt n_points;
-} Cache;
+enum { MAX_ROUNDS = 12, SHARE = 8, LEAST_SHARE = 4 };
 
 /* Questions of one `respond` that have no answer yet. */
 typedef struct {
@@ -80,96 +49,8 @@ typedef struct {
 
 /* ---- step 1: asking ---- */
 
-static PetscBool GoesOnByItself(const Point *point)
-{
-  return (PetscBool)(point && point->self_solves >= SELF_STAYS);
-}
-
-/* NULL: the question is of no material point. */
-static Point *PointOf(const Cache *cache, PetscInt point)
-{
-  return point < 0 ? NULL : &cache->points[point];
-}
-
-/* Out of reach where neither the point's table nor the newest one answers; the newest is its own from then on. */
-static PetscErrorCode AskTables(Cache *cache, const LamLoad *load, Point *point, LamResponse *response)
-{
-  PetscFunctionBeginUser;
-  if (!cache->newest || GoesOnByItself(point)) PetscFunctionReturn(0);
-  if (point && point->table) {
-    PetscCall(LamTableQuery(point->table, load, cache->accuracy, response));
-    if (response->status != LAM_OUT_OF_REACH || point->table == cache->newest) PetscFunctionReturn(0);
-  }
-  PetscCall(LamTableQuery(cache->newest, load, cache->accuracy, response));
-  if (!point || response->status == LAM_OUT_OF_REACH) PetscFunctionReturn(0);
-  PetscCall(LamTableDestroy(&point->table));
-  PetscCall(LamDatabaseGetTable(cache->database, &point->table));
-  PetscFunctionReturn(0);
-}
-
-/* From now on the model answers. */
-static void TakeTo(Point *point, LamScatterModel model)
-{
-  point->held = (Held){model, PETSC_TRUE};
-  point->self_solves++;
-}
-
-/* Answers, if the model is good to the accuracy; else the response stays as it is. */
-static PetscErrorCode TryModel(Cache *cache, const LamScatterModel *model, const LamLoad *load, PetscReal accuracy,
-                               LamResponse *response)
-{
-  LamResponse answer;
-
-  PetscFunctionBeginUser;
-  if (model->state < 0) PetscFunctionReturn(0);
-  PetscCall(LamScatterModelQuery(cache->database, model, load, accuracy, &answer));
-  if (LamResponseHasFields(&answer)) *response = answer;
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode AskModel(Cache *cache, const LamLoad *load, Point *point, LamResponse *response)
-{
-  PetscFunctionBeginUser;
-  if (!point) PetscFunctionReturn(0);
-  PetscCall(TryModel(cache, &point->held.model, load, cache->accuracy, response));
-  if (LamResponseHasFields(response) && !point->held.answers) TakeTo(point, point->held.model);
-  PetscFunctionReturn(0);
-}
-
-/*
-  Records of no grid. Beside a solver the question's own state alone: blends of states around change with each record.
-*/
-static PetscErrorCode AskRecords(Cache *cache, const LamLoad *load, LamResponse *response)
-{
-  const LamLoad question = cache->solver ? LamLoadRound(load) : *load;
-  LamResponse answer;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamDatabaseQuery(cache->database, &question, cache->accuracy, &answer));
-  if (answer.status == LAM_INVALID_F) *response = answer;
-  if (answer.status == LAM_INVALID_F || (cache->solver && !(answer.distance <= OWN_STATE))) PetscFunctionReturn(0);
-  LamLoadLeadBack(load, &answer);
-  *response = answer;
-  PetscFunctionReturn(0);
-}
-
-/* What answered last is asked first. */
-static PetscErrorCode Ask(Cache *cache, const LamLoad *load, Point *point, LamResponse *response)
-{
-  PetscFunctionBeginUser;
-  PetscCall(LamResponseInit(load, response));
-  response->status = LAM_OUT_OF_REACH;
-  if (point && point->held.answers) PetscCall(AskModel(cache, load, point, response));
-  if (response->status != LAM_OUT_OF_REACH) PetscFunctionReturn(0);
-  PetscCall(AskTables(cache, load, point, response));
-  if (point && LamResponseHasFields(response)) point->held.answers = PETSC_FALSE;
-  if (response->status == LAM_OUT_OF_REACH) PetscCall(AskModel(cache, load, point, response));
-  if (response->status == LAM_OUT_OF_REACH) PetscCall(AskRecords(cache, load, response));
-  PetscFunctionReturn(0);
-}
-
 /* Asks for all that is missing; leaves what still is. */
-static PetscErrorCode AskAll(Cache *cache, Missing *missing)
+static PetscErrorCode AskAll(LamCache *cache, Missing *missing)
 {
   const PetscReal start = LamClock();
   PetscInt left = 0;
@@ -177,7 +58,7 @@ static PetscErrorCode AskAll(Cache *cache, Missing *missing)
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < missing->n; k++) {
     const PetscInt i = missing->at[k];
-    PetscCall(Ask(cache, &missing->loads[i], PointOf(cache, missing->points[i]), &missing->responses[i]));
+    PetscCall(LamCacheAsk(cache, &missing->loads[i], missing->points[i], &missing->responses[i]));
     if (missing->responses[i].status == LAM_OUT_OF_REACH) missing->at[left++] = i;
   }
   missing->n = left;
@@ -187,7 +68,7 @@ static PetscErrorCode AskAll(Cache *cache, Missing *missing)
 
 /* ---- solving ---- */
 
-static PetscErrorCode GetNewest(Cache *cache)
+static PetscErrorCode GetNewest(LamCache *cache)
 {
   PetscFunctionBeginUser;
   PetscCall(LamTableDestroy(&cache->newest));
@@ -195,7 +76,7 @@ static PetscErrorCode GetNewest(Cache *cache)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SolveNodes(Cache *cache, PetscInt n, const PetscInt64 keys[], LamResponse responses[])
+static PetscErrorCode SolveNodes(LamCache *cache, PetscInt n, const PetscInt64 keys[], LamResponse responses[])
 {
   const PetscReal start = LamClock();
 
@@ -209,7 +90,7 @@ static PetscErrorCode SolveNodes(Cache *cache, PetscInt n, const PetscInt64 keys
 }
 
 /* All from the reference state. */
-static PetscErrorCode SolveLoads(Cache *cache, PetscInt n, const LamLoad loads[], LamResponse responses[])
+static PetscErrorCode SolveLoads(LamCache *cache, PetscInt n, const LamLoad loads[], LamResponse responses[])
 {
   const LamResponder before = *cache->solver;
   PetscInt *points;
@@ -225,7 +106,7 @@ static PetscErrorCode SolveLoads(Cache *cache, PetscInt n, const LamLoad loads[]
 }
 
 /* From the nearest node, else from the reference: the answer must not depend on who solves it. */
-static PetscErrorCode SolveNearNodes(Cache *cache, PetscInt n, const LamLoad loads[], LamResponse responses[])
+static PetscErrorCode SolveNearNodes(LamCache *cache, PetscInt n, const LamLoad loads[], LamResponse responses[])
 {
   PetscInt64 node;
   LamLoad turned;
@@ -247,7 +128,7 @@ static PetscErrorCode SolveNearNodes(Cache *cache, PetscInt n, const LamLoad loa
 }
 
 /* Item k of the batch is solved by rank k mod ranks; all have all responses then. */
-static PetscErrorCode SolveBatch(Cache *cache, Batch *batch)
+static PetscErrorCode SolveBatch(LamCache *cache, Batch *batch)
 {
   PetscMPIInt rank, ranks, *starts;
   LamGrid grid;
@@ -284,7 +165,7 @@ static PetscErrorCode SolveBatch(Cache *cache, Batch *batch)
 }
 
 /* Adds what was solved, failed or not. *stopped: the solver was stopped on the way, and the rest is not there. */
-static PetscErrorCode AddBatch(Cache *cache, const Batch *batch, PetscBool *stopped)
+static PetscErrorCode AddBatch(LamCache *cache, const Batch *batch, PetscBool *stopped)
 {
   LamResponse *records;
   PetscInt64 *keys;
@@ -304,7 +185,7 @@ static PetscErrorCode AddBatch(Cache *cache, const Batch *batch, PetscBool *stop
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SolveAndAdd(Cache *cache, Batch *batch, PetscBool *stopped)
+static PetscErrorCode SolveAndAdd(LamCache *cache, Batch *batch, PetscBool *stopped)
 {
   PetscFunctionBeginUser;
   PetscCall(SolveBatch(cache, batch));
@@ -331,7 +212,7 @@ static int CompareKeys(const void *first, const void *second)
 }
 
 /* The nodes that this rank's questions need, each once. The caller frees *keys. */
-static PetscErrorCode FindMyNeeds(Cache *cache, const Missing *missing, PetscInt *n, PetscInt64 **keys)
+static PetscErrorCode FindMyNeeds(LamCache *cache, const Missing *missing, PetscInt *n, PetscInt64 **keys)
 {
   PetscInt capacity = 16 * LAM_MAX_NEEDS, more;
 
@@ -341,7 +222,7 @@ static PetscErrorCode FindMyNeeds(Cache *cache, const Missing *missing, PetscInt
   for (PetscInt k = 0; k < missing->n; k++) {
     const LamLoad question = LamLoadRound(&missing->loads[missing->at[k]]);
 
-    if (GoesOnByItself(PointOf(cache, missing->points[missing->at[k]]))) continue;
+    if (LamCacheGoesOnByItself(cache, missing->points[missing->at[k]])) continue;
     if (*n + LAM_MAX_NEEDS > capacity) {
       LamSortUnique(n, *keys, sizeof(PetscInt64), CompareKeys);
       capacity = PetscMax(capacity, 2 * (*n + LAM_MAX_NEEDS));
@@ -355,7 +236,7 @@ static PetscErrorCode FindMyNeeds(Cache *cache, const Missing *missing, PetscInt
 }
 
 /* One round; *ends: no node helps any more, or the solver was stopped. */
-static PetscErrorCode Refine(Cache *cache, Missing *missing, PetscBool *ends, PetscBool *stopped)
+static PetscErrorCode Refine(LamCache *cache, Missing *missing, PetscBool *ends, PetscBool *stopped)
 {
   PetscInt64 *mine;
   PetscInt n;
@@ -378,7 +259,7 @@ static PetscErrorCode Refine(Cache *cache, Missing *missing, PetscBool *ends, Pe
 /* ---- step 3: states ---- */
 
 /* The state to solve for a question. */
-static PetscErrorCode StateFor(Cache *cache, const LamLoad *load, LamLoad *state)
+static PetscErrorCode StateFor(LamCache *cache, const LamLoad *load, LamLoad *state)
 {
   const LamLoad rounded = LamLoadRound(load);
   PetscInt64 node;
@@ -391,14 +272,15 @@ static PetscErrorCode StateFor(Cache *cache, const LamLoad *load, LamLoad *state
 }
 
 /* Of a state that has just been solved and added. */
-static PetscErrorCode TakeOwnState(Cache *cache, const LamLoad *load, const LamResponse *solved, LamResponse *response)
+static PetscErrorCode TakeOwnState(LamCache *cache, const LamLoad *load, const LamResponse *solved,
+                                   LamResponse *response)
 {
   const LamLoad rounded = LamLoadRound(load);
   const PetscInt point = -1;
 
   PetscFunctionBeginUser;
   PetscCall(LamResponseInit(load, response));
-  if (LamResponseHasFields(solved)) PetscCall(AskRecords(cache, load, response));
+  if (LamResponseHasFields(solved)) PetscCall(LamCacheAskRecords(cache, load, response));
   if (!LamResponseHasFields(response)) { /* failed; or unstable, which is no answer of a database */
     *response = *solved;
     if (LamResponseHasFields(solved) && LamLoadCompare(&rounded, &solved->load))
@@ -409,24 +291,7 @@ static PetscErrorCode TakeOwnState(Cache *cache, const LamLoad *load, const LamR
   PetscFunctionReturn(0);
 }
 
-/* The point takes to the nearest model, where that is so near that it will go on to answer. */
-static PetscErrorCode Adopt(Cache *cache, const LamLoad *load, Point *point, LamResponse *response)
-{
-  const LamLoad question = LamLoadRound(load);
-  LamScatterModel model;
-  LamResponse answer = {.status = LAM_OUT_OF_REACH};
-
-  PetscFunctionBeginUser;
-  if (!point || GoesOnByItself(point)) PetscFunctionReturn(0);
-  LamScatterModelFind(cache->database, &question, &model);
-  PetscCall(TryModel(cache, &model, &question, ADOPTS * cache->accuracy, &answer));
-  if (!LamResponseHasFields(&answer)) PetscFunctionReturn(0);
-  PetscCall(TryModel(cache, &model, load, cache->accuracy, response));
-  TakeTo(point, model);
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode AdoptAll(Cache *cache, Missing *missing)
+static PetscErrorCode AdoptAll(LamCache *cache, Missing *missing)
 {
   const PetscReal start = LamClock();
   PetscInt left = 0;
@@ -435,7 +300,7 @@ static PetscErrorCode AdoptAll(Cache *cache, Missing *missing)
   for (PetscInt k = 0; k < missing->n; k++) {
     const PetscInt i = missing->at[k];
 
-    PetscCall(Adopt(cache, &missing->loads[i], PointOf(cache, missing->points[i]), &missing->responses[i]));
+    PetscCall(LamCacheAdopt(cache, &missing->loads[i], missing->points[i], &missing->responses[i]));
     if (missing->responses[i].status == LAM_OUT_OF_REACH) missing->at[left++] = i;
   }
   if (!missing->solved) cache->self->hits += missing->n - left;
@@ -445,7 +310,7 @@ static PetscErrorCode AdoptAll(Cache *cache, Missing *missing)
 }
 
 /* A share of what all ranks lack, spread over it, of LEAST_SHARE where there are as many. */
-static PetscErrorCode FindShare(Cache *cache, PetscInt n, const LamLoad mine[], Batch *batch)
+static PetscErrorCode FindShare(LamCache *cache, PetscInt n, const LamLoad mine[], Batch *batch)
 {
   PetscInt share;
 
@@ -457,17 +322,7 @@ static PetscErrorCode FindShare(Cache *cache, PetscInt n, const LamLoad mine[], 
   PetscFunctionReturn(0);
 }
 
-/* The state solved for the point answers it from now on, unless it failed or is unstable. */
-static void TakeToOwnState(const Cache *cache, const LamLoad *load, Point *point)
-{
-  const LamLoad question = LamLoadRound(load);
-  LamScatterModel model;
-
-  LamScatterModelFind(cache->database, &question, &model);
-  TakeTo(point, model.state < 0 ? point->held.model : model);
-}
-
-static PetscErrorCode SolveShare(Cache *cache, Missing *missing, PetscBool *stopped)
+static PetscErrorCode SolveShare(LamCache *cache, Missing *missing, PetscBool *stopped)
 {
   PetscInt left = 0;
   LamLoad *mine;
@@ -489,7 +344,7 @@ static PetscErrorCode SolveShare(Cache *cache, Missing *missing, PetscBool *stop
       continue;
     }
     PetscCall(TakeOwnState(cache, load, &batch.responses[found - batch.loads], &missing->responses[i]));
-    if (missing->points[i] >= 0) TakeToOwnState(cache, load, &cache->points[missing->points[i]]);
+    LamCacheTakeToOwnState(cache, load, missing->points[i]);
   }
   missing->n = left;
   PetscCall(PetscFree(mine));
@@ -497,7 +352,7 @@ static PetscErrorCode SolveShare(Cache *cache, Missing *missing, PetscBool *stop
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CountMissing(Cache *cache, const Missing *missing, PetscInt *anywhere)
+static PetscErrorCode CountMissing(LamCache *cache, const Missing *missing, PetscInt *anywhere)
 {
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Allreduce(&missing->n, anywhere, 1, MPIU_INT, MPI_SUM, cache->comm));
@@ -505,7 +360,7 @@ static PetscErrorCode CountMissing(Cache *cache, const Missing *missing, PetscIn
 }
 
 /* Step 3. */
-static PetscErrorCode SolveThemselves(Cache *cache, Missing *missing)
+static PetscErrorCode SolveThemselves(LamCache *cache, Missing *missing)
 {
   PetscBool stopped = PETSC_FALSE;
   PetscInt anywhere;
@@ -521,7 +376,7 @@ static PetscErrorCode SolveThemselves(Cache *cache, Missing *missing)
 }
 
 /* Steps 2 and 3. */
-static PetscErrorCode SolveMissing(Cache *cache, Missing *missing)
+static PetscErrorCode SolveMissing(LamCache *cache, Missing *missing)
 {
   PetscBool ends = (PetscBool)!cache->newest, stopped = PETSC_FALSE;
   PetscInt anywhere;
@@ -544,7 +399,7 @@ static PetscErrorCode SolveMissing(Cache *cache, Missing *missing)
 static PetscErrorCode CacheRespond(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[],
                                    LamResponse responses[])
 {
-  Cache *cache = (Cache *)ctx;
+  LamCache *cache = (LamCache *)ctx;
   Missing missing = {.loads = loads, .points = points, .responses = responses, .n = n};
 
   PetscFunctionBeginUser;
@@ -570,93 +425,33 @@ static PetscErrorCode CacheRespond(void *ctx, PetscInt n, const LamLoad loads[],
   PetscFunctionReturn(0);
 }
 
-/* A load step ends: the next one begins with the newest table. */
-static PetscErrorCode Forget(Cache *cache)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < cache->n_points; p++) {
-    PetscCall(LamTableDestroy(&cache->points[p].table));
-    cache->points[p].self_solves = 0;
-  }
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode CacheAccept(void *ctx)
 {
-  Cache *cache = (Cache *)ctx;
+  LamCache *cache = (LamCache *)ctx;
 
   PetscFunctionBeginUser;
-  PetscCall(Forget(cache));
-  for (PetscInt p = 0; p < cache->n_points; p++) cache->points[p].accepted = cache->points[p].held;
+  PetscCall(LamCacheEndStep(cache, PETSC_TRUE));
   if (cache->solver && cache->solver->accept) PetscCall(cache->solver->accept(cache->solver->ctx));
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode CacheReject(void *ctx)
 {
-  Cache *cache = (Cache *)ctx;
+  LamCache *cache = (LamCache *)ctx;
 
   PetscFunctionBeginUser;
-  PetscCall(Forget(cache));
-  for (PetscInt p = 0; p < cache->n_points; p++) cache->points[p].held = cache->points[p].accepted;
+  PetscCall(LamCacheEndStep(cache, PETSC_FALSE));
   if (cache->solver && cache->solver->reject) PetscCall(cache->solver->reject(cache->solver->ctx));
-  PetscFunctionReturn(0);
-}
-
-/* Held, as bytes; of the model the load of its record, as another file has others before it. */
-typedef struct {
-  LamLoad record;
-  PetscInt image; /* -1: no model */
-  PetscBool answers;
-} Kept;
-
-static PetscErrorCode CacheStateSize(void *ctx, size_t *bytes)
-{
-  PetscFunctionBeginUser;
-  *bytes = sizeof(Kept);
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode CacheSave(void *ctx, PetscInt point, void *bytes)
-{
-  const Cache *cache = (const Cache *)ctx;
-  const Held *held = &cache->points[point].accepted;
-  Kept kept;
-
-  PetscFunctionBeginUser;
-  memset(&kept, 0, sizeof(kept));
-  kept.image = -1;
-  kept.answers = held->answers;
-  if (held->model.state >= 0) {
-    kept.record = LamScatterModelLoad(cache->database, &held->model);
-    kept.image = held->model.image;
-  }
-  memcpy(bytes, &kept, sizeof(kept));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode CacheLoad(void *ctx, PetscInt point, const void *bytes)
-{
-  Cache *cache = (Cache *)ctx;
-  Held held = {.model = {.state = -1}};
-  Kept kept;
-
-  PetscFunctionBeginUser;
-  memcpy(&kept, bytes, sizeof(kept));
-  if (kept.image >= 0) LamScatterModelFind(cache->database, &kept.record, &held.model);
-  held.model.image = kept.image;
-  held.answers = kept.answers;
-  cache->points[point].held = cache->points[point].accepted = held;
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode CacheDestroy(void **ctx)
 {
-  Cache *cache = (Cache *)*ctx;
+  LamCache *cache = (LamCache *)*ctx;
 
   PetscFunctionBeginUser;
   if (!cache) PetscFunctionReturn(0);
-  PetscCall(Forget(cache));
+  PetscCall(LamCacheEndStep(cache, PETSC_FALSE));
   PetscCall(LamTableDestroy(&cache->newest)); /* of a `respond` that ended with an error */
   PetscCall(PetscFree(cache->points));
   PetscCall(PetscFree(*ctx));
@@ -667,7 +462,7 @@ PetscErrorCode LamCacheResponderCreate(MPI_Comm comm, LamDatabase database, LamR
                                        const LamNodeSolver *nodes, LamOutside outside, PetscReal accuracy,
                                        PetscInt points, LamResponder *responder)
 {
-  Cache *cache;
+  LamCache *cache;
 
   PetscFunctionBeginUser;
   PetscCheck(accuracy > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "accuracy %g must be positive", (double)accuracy);
@@ -685,8 +480,8 @@ PetscErrorCode LamCacheResponderCreate(MPI_Comm comm, LamDatabase database, LamR
   *responder = (LamResponder){
       .ctx = cache, .respond = CacheRespond, .accept = CacheAccept, .reject = CacheReject, .destroy = CacheDestroy};
   if (!solver) PetscFunctionReturn(0);
-  responder->state_size = CacheStateSize;
-  responder->save = CacheSave;
-  responder->load = CacheLoad;
+  responder->state_size = LamCacheStateSize;
+  responder->save = LamCacheSave;
+  responder->load = LamCacheLoad;
   PetscFunctionReturn(0);
 }

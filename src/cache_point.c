@@ -1,0 +1,197 @@
+/*
+  What answers the material points of a cache: tables, and the models that they hold (cache.c, steps 1 and 3).
+*/
+#include "cache_impl.h"
+#include <string.h>
+#include "rounded_load.h"
+
+/* Of the accuracy: with a model whose error is estimated above that a point does not begin. */
+static const PetscReal ADOPTS = 0.25;
+static const PetscReal OWN_STATE = 1e-8; /* distance of a question from its own record, rounded twice; a strain */
+enum { SELF_STAYS = 2 };
+
+static PetscBool GoesOnByItself(const LamCachePoint *point)
+{
+  return (PetscBool)(point && point->self_solves >= SELF_STAYS);
+}
+
+/* NULL: the question is of no material point. */
+static LamCachePoint *PointOf(const LamCache *cache, PetscInt point)
+{
+  return point < 0 ? NULL : &cache->points[point];
+}
+
+/* Out of reach where neither the point's table nor the newest one answers; the newest is its own from then on. */
+static PetscErrorCode AskTables(LamCache *cache, const LamLoad *load, LamCachePoint *point, LamResponse *response)
+{
+  PetscFunctionBeginUser;
+  if (!cache->newest || GoesOnByItself(point)) PetscFunctionReturn(0);
+  if (point && point->table) {
+    PetscCall(LamTableQuery(point->table, load, cache->accuracy, response));
+    if (response->status != LAM_OUT_OF_REACH || point->table == cache->newest) PetscFunctionReturn(0);
+  }
+  PetscCall(LamTableQuery(cache->newest, load, cache->accuracy, response));
+  if (!point || response->status == LAM_OUT_OF_REACH) PetscFunctionReturn(0);
+  PetscCall(LamTableDestroy(&point->table));
+  PetscCall(LamDatabaseGetTable(cache->database, &point->table));
+  PetscFunctionReturn(0);
+}
+
+/* From now on the model answers. */
+static void TakeTo(LamCachePoint *point, LamScatterModel model)
+{
+  point->held = (LamCacheHeld){model, PETSC_TRUE};
+  point->self_solves++;
+}
+
+/* Answers, if the model is good to the accuracy; else the response stays as it is. */
+static PetscErrorCode TryModel(LamCache *cache, const LamScatterModel *model, const LamLoad *load, PetscReal accuracy,
+                               LamResponse *response)
+{
+  LamResponse answer;
+
+  PetscFunctionBeginUser;
+  if (model->state < 0) PetscFunctionReturn(0);
+  PetscCall(LamScatterModelQuery(cache->database, model, load, accuracy, &answer));
+  if (LamResponseHasFields(&answer)) *response = answer;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode AskModel(LamCache *cache, const LamLoad *load, LamCachePoint *point, LamResponse *response)
+{
+  PetscFunctionBeginUser;
+  if (!point) PetscFunctionReturn(0);
+  PetscCall(TryModel(cache, &point->held.model, load, cache->accuracy, response));
+  if (LamResponseHasFields(response) && !point->held.answers) TakeTo(point, point->held.model);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamCacheAskRecords(LamCache *cache, const LamLoad *load, LamResponse *response)
+{
+  const LamLoad question = cache->solver ? LamLoadRound(load) : *load;
+  LamResponse answer;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamDatabaseQuery(cache->database, &question, cache->accuracy, &answer));
+  if (answer.status == LAM_INVALID_F) *response = answer;
+  if (answer.status == LAM_INVALID_F || (cache->solver && !(answer.distance <= OWN_STATE))) PetscFunctionReturn(0);
+  LamLoadLeadBack(load, &answer);
+  *response = answer;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamCacheAsk(LamCache *cache, const LamLoad *load, PetscInt index, LamResponse *response)
+{
+  LamCachePoint *point = PointOf(cache, index);
+
+  PetscFunctionBeginUser;
+  PetscCall(LamResponseInit(load, response));
+  response->status = LAM_OUT_OF_REACH;
+  if (point && point->held.answers) PetscCall(AskModel(cache, load, point, response));
+  if (response->status != LAM_OUT_OF_REACH) PetscFunctionReturn(0);
+  PetscCall(AskTables(cache, load, point, response));
+  if (point && LamResponseHasFields(response)) point->held.answers = PETSC_FALSE;
+  if (response->status == LAM_OUT_OF_REACH) PetscCall(AskModel(cache, load, point, response));
+  if (response->status == LAM_OUT_OF_REACH) PetscCall(LamCacheAskRecords(cache, load, response));
+  PetscFunctionReturn(0);
+}
+
+/* ---- models ---- */
+
+PetscErrorCode LamCacheAdopt(LamCache *cache, const LamLoad *load, PetscInt index, LamResponse *response)
+{
+  LamCachePoint *point = PointOf(cache, index);
+  const LamLoad question = LamLoadRound(load);
+  LamScatterModel model;
+  LamResponse answer = {.status = LAM_OUT_OF_REACH};
+
+  PetscFunctionBeginUser;
+  if (!point || GoesOnByItself(point)) PetscFunctionReturn(0);
+  LamScatterModelFind(cache->database, &question, &model);
+  PetscCall(TryModel(cache, &model, &question, ADOPTS * cache->accuracy, &answer));
+  if (!LamResponseHasFields(&answer)) PetscFunctionReturn(0);
+  PetscCall(TryModel(cache, &model, load, cache->accuracy, response));
+  TakeTo(point, model);
+  PetscFunctionReturn(0);
+}
+
+void LamCacheTakeToOwnState(LamCache *cache, const LamLoad *load, PetscInt index)
+{
+  const LamLoad question = LamLoadRound(load);
+  LamCachePoint *point = PointOf(cache, index);
+  LamScatterModel model;
+
+  if (!point) return;
+  LamScatterModelFind(cache->database, &question, &model);
+  TakeTo(point, model.state < 0 ? point->held.model : model);
+}
+
+PetscBool LamCacheGoesOnByItself(const LamCache *cache, PetscInt index)
+{
+  return GoesOnByItself(PointOf(cache, index));
+}
+
+/* ---- load steps ---- */
+
+PetscErrorCode LamCacheEndStep(LamCache *cache, PetscBool accept)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < cache->n_points; p++) {
+    LamCachePoint *point = &cache->points[p];
+
+    PetscCall(LamTableDestroy(&point->table));
+    point->self_solves = 0;
+    if (accept)
+      point->accepted = point->held;
+    else
+      point->held = point->accepted;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Held, as bytes; of the model the load of its record, as another file has others before it. */
+typedef struct {
+  LamLoad record;
+  PetscInt image; /* -1: no model */
+  PetscBool answers;
+} Kept;
+
+PetscErrorCode LamCacheStateSize(void *ctx, size_t *bytes)
+{
+  PetscFunctionBeginUser;
+  *bytes = sizeof(Kept);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamCacheSave(void *ctx, PetscInt point, void *bytes)
+{
+  const LamCache *cache = (const LamCache *)ctx;
+  const LamCacheHeld *held = &cache->points[point].accepted;
+  Kept kept;
+
+  PetscFunctionBeginUser;
+  memset(&kept, 0, sizeof(kept));
+  kept.image = -1;
+  kept.answers = held->answers;
+  if (held->model.state >= 0) {
+    kept.record = LamScatterModelLoad(cache->database, &held->model);
+    kept.image = held->model.image;
+  }
+  memcpy(bytes, &kept, sizeof(kept));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamCacheLoad(void *ctx, PetscInt point, const void *bytes)
+{
+  LamCache *cache = (LamCache *)ctx;
+  LamCacheHeld held = {.model = {.state = -1}};
+  Kept kept;
+
+  PetscFunctionBeginUser;
+  memcpy(&kept, bytes, sizeof(kept));
+  if (kept.image >= 0) LamScatterModelFind(cache->database, &kept.record, &held.model);
+  held.model.image = kept.image;
+  held.answers = kept.answers;
+  cache->points[point].held = cache->points[point].accepted = held;
+  PetscFunctionReturn(0);
+}
