@@ -4,7 +4,8 @@
   Method. Answers come from the table of a database, whose nodes are solved where questions fall and shared by all
   questions around. Where no node helps, as next to a change of branch, the state asked for is solved itself, and the
   second-order model of its potential answers the point, and others around, while its estimated error is small enough:
-  in situ adaptive tabulation (Pope, Combust. Theory Model. 1 (1997) 41) with a model for each point to hold.
+  in situ adaptive tabulation (Pope, Combust. Theory Model. 1 (1997) 41) with a model for each point to hold
+  (cache_point.c).
 
   Algorithm, of one `respond`:
   1. Ask for all questions: what answered the point last, its model or the table of this load step, then the newest

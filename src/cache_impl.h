@@ -1,5 +1,5 @@
 /*
-  Private to the cache: what its material points are answered by.
+  Private to the cache: what its material points are answered by (cache_point.c).
 */
 #ifndef LAM_CACHE_IMPL_H
 #define LAM_CACHE_IMPL_H

@@ -151,8 +151,7 @@ static PetscErrorCode ListNames(Check *c, json_t *names)
   PetscFunctionReturn(0);
 }
 
-/* With all that HDF5 can tell of an object, as other programs ask for: so the index of a group is read from end to end.
- */
+/* With all that HDF5 can tell of an object, as other programs ask for: so the index of a group is read whole. */
 static PetscErrorCode CheckObject(Check *c, const char name[])
 {
   H5O_info_t info;
