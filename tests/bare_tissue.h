@@ -7,7 +7,7 @@
 #ifndef LAM_BARE_TISSUE_H
 #define LAM_BARE_TISSUE_H
 
-#include "rve_impl.h"
+#include "solve.h"
 #include "tissue.h"
 
 #define BARE_ITERATIONS 25

@@ -3,7 +3,7 @@
 #define LAM_TEST_DIGITS_H
 
 #include "extended/extended.h"
-#include "rve_impl.h"
+#include "solve.h"
 #include "tissue.h"
 
 typedef int (*Extended)(const ExtendedCase *c, const ExtendedStart *start, int tangent, ExtendedAnswer *answer);

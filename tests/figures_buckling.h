@@ -8,7 +8,7 @@
 #define LAM_FIGURES_BUCKLING_H
 
 #include "tissue.h"
-#include "rve_impl.h"
+#include "solve.h"
 
 /* Full Newton steps, without inertia correction, from the affine state; rve->y becomes the symmetric solution. */
 static inline PetscErrorCode SolveSymmetric(LamRVE rve, const LamLoad *load, PetscBool *ok)

@@ -7,7 +7,7 @@
 #define LAM_FIGURES_CONTACT_DERIVATIVES_H
 
 #include "tissue.h"
-#include "rve_impl.h"
+#include "solve.h"
 
 #define CONTACT_STATES 6
 #define CONTACT_COLUMNS 7 /* 0..4: components of F; turgor, cohesion */

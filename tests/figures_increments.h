@@ -3,7 +3,7 @@
 #define LAM_FIGURES_INCREMENTS_H
 
 #include <math.h>
-#include "rve_impl.h"
+#include "solve.h"
 #include "tissue.h"
 
 #define INCREMENT_WATER (2200.0 / TISSUE_STRESS) /* bulk modulus of water, C1 + C2 */

@@ -17,12 +17,6 @@
 typedef struct LamDatabase_s *LamDatabase;
 typedef struct LamRecordWriter_s *LamRecordWriter;
 
-/* Hash (16 hex digits) of the canonical, nondimensional description, and the description itself (JSON text). */
-#define LAM_HASH_LENGTH 17
-PetscErrorCode LamMicrostructureDescribe(const LamMicrostructure *micro, char **json, char hash[LAM_HASH_LENGTH]);
-/* The hash of the tissue, whatever its mesh. */
-PetscErrorCode LamMicrostructureHashTissue(const LamMicrostructure *micro, char hash[LAM_HASH_LENGTH]);
-
 /*
   Keys of records in a database: nodes of its grid (LamKeyIsNode), and from LAM_CACHE_KEY on (LAM_CACHE_KEY,
   LAM_CACHE_KEY + 1, ...) states that a cache has solved directly. Small numbers: states of an rve file, and of

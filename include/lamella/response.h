@@ -106,6 +106,11 @@ typedef struct {
   char reason[192];         /* why the status is not `converged`; empty otherwise */
 } LamResponse;
 
+/* F33 = 1 without out-of-plane shears. */
+PetscBool LamPlaneStrain(const PetscReal F[9]);
+/* PETSC_FALSE, with status and reason of the response, for a load that no tissue in plane strain can have. */
+PetscBool LamLoadValidate(const LamLoad *load, LamResponse *response);
+
 /* Clears a response to "nothing known": reals NaN, counts 0, status LAM_NOT_CONVERGED; copies the load. */
 PetscErrorCode LamResponseInit(const LamLoad *load, LamResponse *response);
 
@@ -141,6 +146,9 @@ typedef struct {
   const char *help;
 } LamMember;
 extern const LamMember LamResponseMembers[]; /* ends with a NULL name */
+#define LAM_NOT_IN_FILE ((size_t)-1)         /* the place of a member that a record has not got */
+/* Index into LamResponseMembers of the member that begins at this offset of LamResponse; there must be one. */
+size_t LamResponseMemberIndex(size_t offset);
 
 /* Expresses a response in another unit of stress, of which its present one is `stress`. */
 void LamResponseScale(PetscReal stress, LamResponse *response);

@@ -78,6 +78,13 @@ typedef struct {
 /* A copy that owns its cells; it is to be destroyed. A scene destroys its own microstructure. */
 PetscErrorCode LamMicrostructureCopy(const LamMicrostructure *micro, LamMicrostructure *copy);
 PetscErrorCode LamMicrostructureDestroy(LamMicrostructure *micro);
+/* Hash (16 hex digits) of the canonical, nondimensional description, and the description itself (JSON text). */
+#define LAM_HASH_LENGTH 17
+PetscErrorCode LamMicrostructureDescribe(const LamMicrostructure *micro, char **json, char hash[LAM_HASH_LENGTH]);
+/* The hash of the tissue, whatever its mesh. */
+PetscErrorCode LamMicrostructureHashTissue(const LamMicrostructure *micro, char hash[LAM_HASH_LENGTH]);
+/* From that description; `path`, the file that it stands in, is for messages. The caller destroys *micro. */
+PetscErrorCode LamMicrostructureParse(const char path[], const char json[], LamMicrostructure *micro);
 
 /* Of a cell's wall, in apothems. */
 static inline PetscReal LamWallThickness(const LamMicrostructure *micro, PetscInt cell)

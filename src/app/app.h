@@ -47,7 +47,11 @@ PetscErrorCode LamCommandInfo(LamArgs *args, int *exit_status);
 PetscErrorCode LamProgramRun(int argc, char *argv[], int *exit_status);
 PetscBool LamProgramSolves(void); /* the command that was found runs under mpirun */
 
-/* ---- main.c ---- */
+/* ---- runtime.c ---- */
+/* Before anything else: streams, signals, the handler that keeps the words of an error. */
+PetscErrorCode LamRuntimeBegin(void);
+/* After everything else: reports the error that `code` stands for, once among all ranks; *status is the exit status. */
+void LamRuntimeEnd(PetscErrorCode code, int *status);
 /* For a command that has to do with record files; before LamAppInitialize. */
 void LamAppStartHDF5(void);
 /* Starts MPI and PETSc for a command that solves; after parsing the command line. main() finalises. */

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include "failure_criteria.h"
 #include "figures_failure.h"
-#include "rve_impl.h"
+#include "solve.h"
 
 #define MESHES 5
 #define CONTACT_MESHES 4

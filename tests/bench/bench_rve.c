@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <petsctime.h>
 #include <lamella/lamella.h>
-#include "rve_impl.h"
+#include "solve.h"
 
 #define REPEATS 41
 

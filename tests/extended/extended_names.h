@@ -65,6 +65,7 @@
 #define LamContactPredictActive EXTENDED(ContactPredictActive)
 #define LamContactSetMatrix EXTENDED(ContactSetMatrix)
 #define LamContactSetRows EXTENDED(ContactSetRows)
+#define LamTakeJunctions EXTENDED(TakeJunctions)
 #define LamContactStatusHolds EXTENDED(ContactStatusHolds)
 #define LamMortarDistance EXTENDED(MortarDistance)
 #define LamMortarEvaluate EXTENDED(MortarEvaluate)

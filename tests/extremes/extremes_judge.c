@@ -1,5 +1,5 @@
 #include "extremes_judge.h"
-#include "rve_impl.h"
+#include "solve.h"
 #include <math.h>
 #include <time.h>
 

@@ -4,6 +4,7 @@
 */
 #include "app.h"
 #include "hdf5_edits.h"
+#include "plot.h"
 #include <string.h>
 #include <unistd.h>
 
@@ -78,6 +79,7 @@ int LLVMFuzzerInitialize(int *argc, char ***argv)
   static const char *const names[] = {"rve", "contact", "fe2", "map"};
 
   FuzzStart(argc, argv);
+  LamPlotDPI = LamPlotVectorDPI = 2; /* it draws often */
   FuzzCountMemory();
   EditsLoadFiles(PETSC_STATIC_ARRAY_LENGTH(names), names);
   FuzzSilence();

@@ -29,7 +29,7 @@ static void a_node_from_bytes_is_the_node_from_the_response(void **state)
   response.floating_cells = 4;
   response.cell_clusters = 5;
   records = Packed(&response, LAM_NODE_KEY + 17, &bytes);
-  LamNodeLayoutMake(&records, &layout);
+  LamNodeLayoutMake(records.key, records.member, &layout);
   LamNodeDataFromBytes(&layout, bytes, &node);
   LamNodeDataFromResponse(&response, LAM_NODE_KEY + 17, &wanted);
   assert_memory_equal(&node, &wanted, sizeof(node));
@@ -91,7 +91,7 @@ static void what_the_bytes_lack_is_not_known(void **state)
     if (!strcmp(LamResponseMembers[k].name, "min_gap") || !strcmp(LamResponseMembers[k].name, "zero_modes") ||
         !strcmp(LamResponseMembers[k].name, "energy_turgor"))
       records.member[k] = LAM_NOT_IN_FILE;
-  LamNodeLayoutMake(&records, &layout);
+  LamNodeLayoutMake(records.key, records.member, &layout);
   LamNodeDataFromBytes(&layout, bytes, &node);
   assert_true(isnan(node.min_gap));
   assert_int_equal(node.zero_modes, LAM_UNKNOWN_COUNT);
@@ -126,12 +126,12 @@ static void nodes_and_other_records_are_kept_apart(void **state)
   assert_int_equal(LamDatabaseGetRecords(db, &n, NULL, &keys), 0);
   assert_int_equal(n, 708);
   assert_true(keys[701] == LAM_CACHE_KEY + 1 && keys[707] == LAM_NODE_KEY + 704);
-  assert_int_equal(db->node_count, 705);
+  assert_int_equal(db->nodes.count, 705);
   assert_int_equal(db->scatter.n, 3);
   for (PetscInt i = 0; i < 705; i++) {
     const LamResponse wanted = Response(i);
 
-    assert_true(db->nodes[i].key == LAM_NODE_KEY + i && db->nodes[i].energy == wanted.energy);
+    assert_true(db->nodes.data[i].key == LAM_NODE_KEY + i && db->nodes.data[i].energy == wanted.energy);
   }
   assert_null(db->records);
   LamDatabaseClose(&db);
@@ -154,7 +154,7 @@ static void whole_responses_come_in_the_order_of_the_file_and_then_of_memory(voi
 
     AssertSame(&records[i], &wanted);
   }
-  assert_int_equal(db->node_count, 707);
+  assert_int_equal(db->nodes.count, 707);
   assert_int_equal(db->scatter.n, 5);
   LamDatabaseClose(&db);
 }

@@ -4,7 +4,7 @@
 #include <stddef.h>
 #include <cmocka.h>
 #include <math.h>
-#include "app/separation.h"
+#include "separation.h"
 
 /* Both meshes alike; all face families carry the same traction, and of each this share is without contact. */
 static LamSeparation JudgeShare(PetscReal turgor, PetscReal cohesion, PetscReal max_gap, PetscReal traction,

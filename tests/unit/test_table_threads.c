@@ -146,7 +146,7 @@ static void threads_that_make_the_nodes_of_a_table_are_answered_alike(void **sta
   LamTable table;
 
   AskAlone(NULL);
-  assert_int_equal(LamTableMake(database, &table), 0);
+  assert_int_equal(LamTableMake(&database->nodes, database->grid, PETSC_TRUE, &table), 0);
   ReadInThreads(table);
   assert_int_equal(LamTableDestroy(&table), 0);
 }

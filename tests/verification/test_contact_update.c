@@ -1,6 +1,6 @@
 /* The step of an active set that differs in a few hats, from the factor of another one, is that of its own factor. */
 #include "rve_fixture.h"
-#include "rve_impl.h"
+#include "solve.h"
 
 typedef struct {
   LamRVE rve;

@@ -1,7 +1,7 @@
 /* The estimate of the error of P from half as many elements, against the error on a fine mesh. */
 #include "rve_fixture.h"
 #include "assert_near.h"
-#include "rve_impl.h"
+#include "solve.h"
 
 #define STATES 6
 

@@ -1,7 +1,7 @@
 /* Patches between grips: P, tangent and couplings are derivatives of the energy, also where cells differ; turgor is
    cohesion; a single cell. */
 #include "rve_fixture.h"
-#include "app/separation.h"
+#include "separation.h"
 #include "assert_near.h"
 #include "figures_contact_derivatives.h"
 

@@ -1,0 +1,405 @@
+#include "rve_impl.h"
+
+#define OVERHANG 0.4      /* half-edges by which a hat's centre may lie outside the overlap */
+#define LEAST_WEIGHT 1e-3 /* of a full hat: below it a hat carries nothing */
+
+/* Outer nodes of face k of a cell, counter-clockwise. */
+static void ChainNodes(const LamMesh *mesh, PetscInt cell, PetscInt k, PetscInt nodes[])
+{
+  for (PetscInt i = 0; i <= 2 * mesh->along; ++i) nodes[i] = LamMeshOuterNode(mesh, cell, 2 * mesh->along * k + i);
+}
+
+/* Where the entries of each face lie in the matrix. */
+static void FindPositions(const LamLinear *linear, LamContact *contact)
+{
+  const PetscInt dofs = contact->dofs, pairs = dofs * (dofs + 1) / 2;
+
+  for (PetscInt f = 0; f < contact->face_count; ++f) {
+    PetscInt *unknown = &contact->unknown[f * dofs], *position = &contact->position[f * pairs];
+
+    for (PetscInt i = 0; i < dofs; ++i) {
+      const PetscInt class = contact->classes[f * contact->chain + i / 2];
+
+      unknown[i] = class == 0 ? -1 : 2 * (class - 1) + i % 2;
+    }
+    for (PetscInt i = 0, pair = 0; i < dofs; ++i)
+      for (PetscInt j = i; j < dofs; ++j, ++pair) position[pair] = LamLinearEntry(linear, unknown[i], unknown[j]);
+    for (PetscInt h = f * contact->hats; h < (f + 1) * contact->hats; ++h) {
+      contact->diagonal[h] = LamLinearEntry(linear, linear->positions + h, linear->positions + h);
+      for (PetscInt i = 0; i < dofs; ++i)
+        contact->coupling[h * dofs + i] = LamLinearEntry(linear, unknown[i], linear->positions + h);
+    }
+  }
+}
+
+static PetscInt CountFaces(const LamMesh *mesh)
+{
+  PetscInt count = 0;
+
+  for (PetscInt k = 0; k < LAM_FACES * mesh->cell_count; ++k) count += k % LAM_FACES < 3 && mesh->neighbour[k] >= 0;
+  return count;
+}
+
+static LamContactFace NewFace(const LamMicrostructure *micro, const LamMesh *mesh, PetscInt cell, PetscInt k,
+                              PetscInt hats)
+{
+  const PetscReal *image;
+  const PetscInt other = LamMeshNeighbour(mesh, cell, k, &image);
+  const PetscBool *held = &mesh->held[LAM_FACES * cell], *facing = &mesh->held[LAM_FACES * other];
+  /* the outer walls that meet the face at its start and end: k - 1 and k + 1 of the cell, k + 4 and k + 2 of the other
+   */
+  const PetscInt low = held[(k + 5) % LAM_FACES] && facing[(k + 4) % LAM_FACES] ? 1 : 0;
+  const PetscInt high = hats - 1 - (held[k + 1] && facing[k + 2] ? 1 : 0);
+
+  return (LamContactFace){.cell = cell,
+                          .face = k,
+                          .other = other,
+                          .shift = {image[0], image[1]},
+                          .cohesion = LamFaceCohesion(micro, cell, other),
+                          .low = low,
+                          .high = high,
+                          .first = low,
+                          .last = high};
+}
+
+/* Faces with their nodes. */
+static void PlaceFaces(const LamMicrostructure *micro, const LamMesh *mesh, LamContact *contact)
+{
+  PetscInt f = 0;
+
+  for (PetscInt cell = 0; cell < mesh->cell_count; ++cell)
+    for (PetscInt k = 0; k < 3; ++k) {
+      const PetscReal *image;
+      const PetscInt other = LamMeshNeighbour(mesh, cell, k, &image);
+      PetscInt *nodes = &contact->nodes[f * contact->chain];
+
+      if (other < 0) continue;
+      contact->faces[f] = NewFace(micro, mesh, cell, k, contact->hats);
+      ChainNodes(mesh, cell, k, nodes);
+      ChainNodes(mesh, other, k + 3, nodes + contact->hats);
+      for (PetscInt i = 0; i < contact->chain; ++i) {
+        contact->classes[f * contact->chain + i] = mesh->node_class[nodes[i]];
+        for (PetscInt d = 0; d < 2; ++d)
+          contact->shift[2 * (f * contact->chain + i) + d] =
+              mesh->shift[2 * nodes[i] + d] + (i < contact->hats ? 0.0 : image[d]);
+      }
+      ++f;
+    }
+}
+
+PetscErrorCode LamContactCreate(const LamMicrostructure *micro, const LamMesh *mesh, LamContact **out)
+{
+  const PetscInt along = mesh->along;
+  LamContact *contact;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&contact));
+  contact->face_count = CountFaces(mesh);
+  contact->hats = 2 * along + 1;
+  contact->chain = 2 * contact->hats;
+  contact->dofs = LamMortarDofs(along, along);
+  contact->count = contact->face_count * contact->hats;
+  contact->hysteresis = LAM_HYSTERESIS;
+  PetscCheck((PetscReal)contact->face_count * contact->dofs * contact->dofs < PETSC_MAX_INT, PETSC_COMM_SELF,
+             PETSC_ERR_USER_INPUT, "%d cells with %d elements along a face are too many for one RVE",
+             (int)mesh->cell_count, (int)along);
+  PetscCall(PetscMalloc5(contact->face_count, &contact->faces, contact->face_count * contact->chain, &contact->nodes,
+                         contact->face_count * contact->chain, &contact->classes,
+                         2 * contact->face_count * contact->chain, &contact->shift, along, &contact->J0));
+  PetscCall(PetscCalloc4(contact->count, &contact->lambda, contact->count, &contact->gap, contact->count,
+                         &contact->weight, contact->count, &contact->active));
+  PetscCall(PetscCalloc3(contact->count * contact->dofs, &contact->rows,
+                         contact->face_count * contact->dofs * contact->dofs, &contact->hessian, 2 * mesh->class_count,
+                         &contact->held));
+  for (PetscInt e = 0; e < along; ++e) contact->J0[e] = LamFaceLength(mesh) * (mesh->ends[e + 1] - mesh->ends[e]);
+  PlaceFaces(micro, mesh, contact);
+  PetscCall(LamGapAreaCreate(micro, mesh, &contact->gaps));
+  PetscCall(LamMortarSegmentsCreate(along, along, &contact->segments));
+  PetscCall(LamMortarResultCreate(along, along, &contact->result));
+  *out = contact;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamContactSetMatrix(const LamLinear *linear, LamContact *contact)
+{
+  const PetscInt pairs = contact->dofs * (contact->dofs + 1) / 2;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc4(contact->face_count * pairs, &contact->position, contact->count * contact->dofs,
+                         &contact->coupling, contact->count, &contact->diagonal, contact->face_count * contact->dofs,
+                         &contact->unknown));
+  FindPositions(linear, contact);
+  LamGapAreaSetMatrix(linear, &contact->gaps);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamContactDestroy(LamContact **contact)
+{
+  PetscFunctionBeginUser;
+  if (!*contact) PetscFunctionReturn(0);
+  PetscCall(LamMortarSegmentsDestroy(&(*contact)->segments));
+  PetscCall(LamMortarResultDestroy(&(*contact)->result));
+  PetscCall(LamGapAreaDestroy(&(*contact)->gaps));
+  PetscCall(PetscFree5((*contact)->faces, (*contact)->nodes, (*contact)->classes, (*contact)->shift, (*contact)->J0));
+  PetscCall(PetscFree4((*contact)->lambda, (*contact)->gap, (*contact)->weight, (*contact)->active));
+  PetscCall(PetscFree3((*contact)->rows, (*contact)->hessian, (*contact)->held));
+  PetscCall(PetscFree4((*contact)->position, (*contact)->coupling, (*contact)->diagonal, (*contact)->unknown));
+  PetscCall(PetscFree(*contact));
+  PetscFunctionReturn(0);
+}
+
+/* Current positions of both chains of a face; x[chain][2]. */
+static void GatherChains(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt f, PetscReal x[][2])
+{
+  const LamContact *contact = rve->contact;
+
+  for (PetscInt i = 0; i < contact->chain; ++i) {
+    const PetscInt k = f * contact->chain + i;
+    const PetscReal *S = &contact->shift[2 * k], *position = &y[2 * contact->classes[k]];
+
+    x[i][0] = position[0] + F[0] * S[0] + F[1] * S[1];
+    x[i][1] = position[1] + F[3] * S[0] + F[4] * S[1];
+  }
+}
+
+LamMortarChains LamContactChains(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt f, PetscReal x[][2])
+{
+  const LamMortarChains chains = {rve->mesh.along, rve->mesh.along, (const PetscReal(*)[2])x,
+                                  (const PetscReal(*)[2])(x + rve->contact->hats), rve->contact->J0};
+
+  GatherChains(rve, F, y, f, x);
+  return chains;
+}
+
+/* Keeps an old value while `exact`, the place that decides, is not clearly beyond the range that belongs to it. */
+static PetscInt WithHysteresis(PetscReal margin, PetscInt old, PetscReal low, PetscReal high, PetscReal exact,
+                               PetscInt fresh)
+{
+  return exact > low - margin && exact <= high + margin ? old : fresh;
+}
+
+/*
+  The hats with multipliers of their own: those whose centre lies inside the overlap, or outside by no more than
+  OVERHANG. The ends of the overlap count in half-edges, u. A little hysteresis keeps the status from flickering. Where
+  both walls are held at a corner its gap is no unknown, and a multiplier of its own would find nothing to act on.
+*/
+static void Junction(const LamContact *contact, const LamContactFace *face, PetscInt *first, PetscInt *last)
+{
+  const LamMortarSegments *segments = &contact->segments;
+  const PetscInt count = segments->count, hats = contact->hats;
+  PetscReal lo, hi;
+  PetscInt low, high;
+
+  if (count == 0) {
+    *first = hats;
+    *last = -1;
+    return;
+  }
+  lo = 2.0 * segments->s[0] - OVERHANG;
+  hi = 2.0 * segments->s[count - 1] + OVERHANG;
+  low = PetscMax(0, (PetscInt)PetscCeilReal(lo));
+  high = PetscMin(hats - 1, (PetscInt)PetscFloorReal(hi));
+  *first = WithHysteresis(contact->hysteresis, *first, (PetscReal)*first - 1.0, (PetscReal)*first, lo, low);
+  *last = WithHysteresis(contact->hysteresis, *last, -(PetscReal)*last - 1.0, -(PetscReal)*last, -hi, high);
+  *first = PetscMax(*first, face->low);
+  *last = PetscMin(*last, face->high);
+}
+
+/* Gives merged hats the multiplier of the hat that they are merged into. */
+static void SpreadMultipliers(const LamContactFace *face, PetscInt hats, PetscReal lambda[])
+{
+  for (PetscInt j = 0; j < hats; ++j)
+    lambda[j] = face->first > face->last ? 0.0 : lambda[PetscMax(face->first, PetscMin(face->last, j))];
+}
+
+/* Adds weights, gaps and rows of merged hats to the hat that takes them, and stores them. */
+static void MergeHats(LamContact *contact, PetscInt f)
+{
+  const LamContactFace *face = &contact->faces[f];
+  const PetscInt dofs = contact->dofs, base = f * contact->hats;
+  const LamMortarResult *result = &contact->result;
+
+  PetscArrayzero(&contact->weight[base], contact->hats);
+  PetscArrayzero(&contact->gap[base], contact->hats);
+  PetscArrayzero(&contact->rows[base * dofs], contact->hats * dofs);
+  if (face->first > face->last) return;
+  for (PetscInt j = 0; j < contact->hats; ++j) {
+    const PetscInt to = base + PetscMax(face->first, PetscMin(face->last, j));
+
+    contact->weight[to] += result->weight[j];
+    contact->gap[to] += result->gap[j];
+    for (PetscInt i = 0; i < dofs; ++i) contact->rows[to * dofs + i] += result->dgap[j * dofs + i];
+  }
+}
+
+PetscErrorCode LamContactEvaluate(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscBool follow)
+{
+  LamContact *contact = rve->contact;
+  PetscReal(*x)[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(contact->chain, &x));
+  for (PetscInt f = 0; f < contact->face_count; ++f) {
+    const LamMortarChains chains = LamContactChains(rve, load->F, y, f, x);
+    LamContactFace *face = &contact->faces[f];
+    PetscReal *lambda = &contact->lambda[f * contact->hats];
+
+    LamMortarFindSegments(&chains, &contact->segments);
+    if (follow) Junction(contact, face, &face->first, &face->last);
+    SpreadMultipliers(face, contact->hats, lambda);
+    LamMortarEvaluate(&chains, &contact->segments, lambda, LAM_MORTAR_POINTS, &contact->result);
+    PetscCall(PetscArraycpy(&contact->hessian[f * contact->dofs * contact->dofs], contact->result.hessian,
+                            contact->dofs * contact->dofs));
+    MergeHats(contact, f);
+  }
+  for (PetscInt h = 0; h < contact->count; ++h)
+    contact->gap[h] = contact->weight[h] > 0.0 ? contact->gap[h] / contact->weight[h] : 0.0;
+  PetscCall(PetscFree(x));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamContactStatusHolds(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscBool *holds)
+{
+  LamContact *contact = rve->contact;
+  PetscReal(*x)[2];
+
+  PetscFunctionBeginUser;
+  *holds = PETSC_TRUE;
+  PetscCall(PetscMalloc1(contact->chain, &x));
+  for (PetscInt f = 0; f < contact->face_count; ++f) {
+    const LamMortarChains chains = LamContactChains(rve, load->F, y, f, x);
+    PetscInt first = contact->faces[f].first, last = contact->faces[f].last;
+
+    LamMortarFindSegments(&chains, &contact->segments);
+    Junction(contact, &contact->faces[f], &first, &last);
+    if (first != contact->faces[f].first || last != contact->faces[f].last) *holds = PETSC_FALSE;
+  }
+  PetscCall(PetscFree(x));
+  PetscFunctionReturn(0);
+}
+
+static PetscBool Carries(const LamContact *contact, PetscInt h)
+{
+  const LamContactFace *face = &contact->faces[h / contact->hats];
+  const PetscInt j = h % contact->hats;
+  const PetscReal half = 0.5 * contact->J0[PetscMin(j, contact->hats - 2) / 2];
+
+  return (PetscBool)(j >= face->first && j <= face->last && contact->weight[h] > LEAST_WEIGHT * half);
+}
+
+PetscInt LamContactFindActive(LamContact *contact, PetscReal compliance)
+{
+  PetscInt changes = 0;
+
+  for (PetscInt h = 0; h < contact->count; ++h) {
+    const PetscReal gap = contact->gap[h] + compliance * contact->lambda[h];
+    const PetscBool active = (PetscBool)(Carries(contact, h) && contact->lambda[h] - LAM_CONTACT_SCALE * gap > 0.0);
+
+    changes += active != contact->active[h];
+    contact->active[h] = active;
+  }
+  return changes;
+}
+
+PetscReal LamContactComplementarity(const LamContact *contact)
+{
+  PetscReal largest = 0.0;
+
+  for (PetscInt h = 0; h < contact->count; ++h)
+    if (Carries(contact, h)) {
+      const PetscReal r = PetscMin(contact->lambda[h], LAM_CONTACT_SCALE * contact->gap[h]);
+
+      largest = PetscMax(largest, PetscAbsReal(r));
+    }
+  return largest;
+}
+
+PetscInt LamContactCountActive(const LamContact *contact)
+{
+  PetscInt count = 0;
+
+  for (PetscInt h = 0; h < contact->count; ++h) count += contact->active[h];
+  return count;
+}
+
+void LamContactAddForce(LamRVE rve, PetscReal residual[])
+{
+  const LamContact *contact = rve->contact;
+
+  for (PetscInt h = 0; h < contact->count; ++h) {
+    const PetscInt f = h / contact->hats, j = h % contact->hats;
+    const PetscReal *row = &contact->rows[h * contact->dofs];
+
+    if (j < contact->faces[f].first || j > contact->faces[f].last || contact->lambda[h] == 0.0) continue;
+    for (PetscInt i = 0; i < contact->dofs; ++i)
+      residual[2 * contact->classes[f * contact->chain + i / 2] + i % 2] -= contact->lambda[h] * row[i];
+  }
+}
+
+void LamContactAddCurvature(LamRVE rve)
+{
+  const LamContact *contact = rve->contact;
+  const PetscInt dofs = contact->dofs;
+  PetscReal *values = rve->linear.values;
+
+  for (PetscInt f = 0; f < contact->face_count; ++f) {
+    const PetscInt *position = &contact->position[f * (dofs * (dofs + 1) / 2)];
+    const PetscReal *hessian = &contact->hessian[f * dofs * dofs];
+
+    for (PetscInt i = 0, pair = 0; i < dofs; ++i)
+      for (PetscInt j = i; j < dofs; ++j, ++pair)
+        if (position[pair] >= 0) values[position[pair]] -= hessian[i * dofs + j];
+  }
+}
+
+void LamContactSetRows(LamRVE rve, PetscReal compliance)
+{
+  const LamContact *contact = rve->contact;
+  const PetscInt dofs = contact->dofs;
+  PetscReal *values = rve->linear.values;
+
+  for (PetscInt h = 0; h < contact->count; ++h) {
+    const PetscInt *coupling = &contact->coupling[h * dofs];
+    const PetscReal *row = &contact->rows[h * dofs];
+
+    values[contact->diagonal[h]] = contact->active[h] ? -compliance * contact->weight[h] : 1.0;
+    for (PetscInt i = 0; i < dofs; ++i)
+      if (coupling[i] >= 0) values[coupling[i]] = contact->active[h] ? -row[i] : 0.0;
+  }
+}
+
+PetscErrorCode LamContactPredictActive(LamRVE rve, const PetscReal step[], const PetscReal dF[9],
+                                       const PetscReal lambda[], PetscReal compliance, PetscInt *changes)
+{
+  LamContact *contact = rve->contact;
+  PetscReal(*dx)[2];
+
+  PetscFunctionBeginUser;
+  *changes = 0;
+  PetscCall(PetscMalloc1(contact->chain, &dx));
+  for (PetscInt h = 0; h < contact->count; ++h) {
+    const PetscReal *row = &contact->rows[h * contact->dofs];
+    PetscReal gap = contact->gap[h];
+    PetscBool active;
+
+    if (h % contact->hats == 0) GatherChains(rve, dF, step, h / contact->hats, dx);
+    if (!Carries(contact, h)) continue;
+    for (PetscInt i = 0; i < contact->dofs; ++i) gap += row[i] * dx[i / 2][i % 2] / contact->weight[h];
+    gap += compliance * lambda[h];
+    active = (PetscBool)(lambda[h] - LAM_CONTACT_SCALE * gap > 0.0);
+    /* an active hat has no gap: rounding must not open it */
+    if (contact->active[h] && lambda[h] > 0.0) active = PETSC_TRUE;
+    *changes += active != contact->active[h];
+    contact->active[h] = active;
+  }
+  PetscCall(PetscFree(dx));
+  PetscFunctionReturn(0);
+}
+
+void LamTakeJunctions(LamRVE rve, LamRVEState state)
+{
+  for (PetscInt f = 0; f < state->faces; ++f) {
+    rve->contact->faces[f].first = state->hats[f][0];
+    rve->contact->faces[f].last = state->hats[f][1];
+  }
+}

@@ -1,0 +1,203 @@
+/*
+  The area between cells as a function of positions, for cohesion: the suction g pulls every wall that has a partner, so
+  its potential is g times the area that the walls enclose.
+
+  Method. The area is that of closed loops: along the two walls of each face and straight across from corner to corner
+  at its ends, and around each junction, the triangle of the corners of its three cells. Loops may differ in cohesion: a
+  face has the smaller one of its two cells, a junction the mean of its three faces. Together the loops of a periodic
+  block enclose det F V0 minus the cells. Where a patch ends there is no junction: the face's straight end closes it.
+  Area is bilinear in positions: a sum of c x_a x x_b over pairs of nodes, x x y = x_1 y_2 - x_2 y_1 and
+  x_a = y_a + F S_a; all derivatives follow from the list of pairs.
+*/
+#include "gap_area.h"
+#include "edge_area.h"
+#include "gap_area.h"
+
+/* A node, seen from the cell whose face it belongs to. */
+typedef struct {
+  PetscInt node;
+  const PetscReal *image; /* shift of its cell's image, NULL: none */
+} Corner;
+
+static void AddPair(const LamMesh *mesh, Corner a, Corner b, PetscReal c, PetscReal cohesion, LamGapArea *area)
+{
+  LamGapPair *pair = &area->pairs[area->count++];
+
+  pair->c = c;
+  pair->cohesion = cohesion;
+  pair->a = mesh->node_class[a.node];
+  pair->b = mesh->node_class[b.node];
+  for (PetscInt d = 0; d < 2; ++d) {
+    pair->Sa[d] = mesh->shift[2 * a.node + d] + (a.image ? a.image[d] : 0.0);
+    pair->Sb[d] = mesh->shift[2 * b.node + d] + (b.image ? b.image[d] : 0.0);
+  }
+}
+
+/* A wall from its start, counter-clockwise around its cell; returns its end. */
+static Corner AddWall(const LamMesh *mesh, PetscInt cell, PetscInt face, const PetscReal *image, PetscReal cohesion,
+                      LamGapArea *area)
+{
+  const PetscInt last = 2 * mesh->along;
+  Corner node[3] = {{0, image}, {0, image}, {0, image}};
+
+  for (PetscInt e = 0; e < mesh->along; ++e) {
+    for (PetscInt i = 0; i < 3; ++i) node[i].node = LamMeshOuterNode(mesh, cell, last * face + 2 * e + i);
+    for (PetscInt i = 0; i < 3; ++i)
+      for (PetscInt j = i + 1; j < 3; ++j) AddPair(mesh, node[i], node[j], -0.5 * lam_edge_area[i][j], cohesion, area);
+  }
+  return node[2];
+}
+
+static Corner StartOf(const LamMesh *mesh, PetscInt cell, PetscInt face, const PetscReal *image)
+{
+  return (Corner){LamMeshOuterNode(mesh, cell, 2 * mesh->along * face), image};
+}
+
+/* Both walls of a face, clockwise around the gap: hence the minus signs. */
+static void AddFace(const LamMicrostructure *micro, const LamMesh *mesh, PetscInt cell, PetscInt face, LamGapArea *area)
+{
+  const PetscReal *image;
+  const PetscInt other = LamMeshNeighbour(mesh, cell, face, &image);
+  PetscReal cohesion;
+  Corner end, other_end;
+
+  if (other < 0) return;
+  cohesion = LamFaceCohesion(micro, cell, other);
+  end = AddWall(mesh, cell, face, NULL, cohesion, area);
+  AddPair(mesh, end, StartOf(mesh, other, face + 3, image), -0.5, cohesion, area);
+  other_end = AddWall(mesh, other, face + 3, image, cohesion, area);
+  AddPair(mesh, other_end, StartOf(mesh, cell, face, NULL), -0.5, cohesion, area);
+}
+
+/* The junction at the start of a face, between a cell, its neighbour b across the face before and c across this one. */
+static void AddJunction(const LamMicrostructure *micro, const LamMesh *mesh, PetscInt cell, PetscInt face,
+                        LamGapArea *area)
+{
+  const PetscInt before = (face + LAM_FACES - 1) % LAM_FACES;
+  const PetscReal *image_b, *image_c;
+  const PetscInt b = LamMeshNeighbour(mesh, cell, before, &image_b), c = LamMeshNeighbour(mesh, cell, face, &image_c);
+  PetscReal cohesion;
+  Corner corner[3];
+
+  if (b < 0 || c < 0) return;
+  cohesion = (LamFaceCohesion(micro, cell, b) + LamFaceCohesion(micro, cell, c) + LamFaceCohesion(micro, b, c)) / 3.0;
+  corner[0] = StartOf(mesh, cell, face, NULL);
+  corner[1] = StartOf(mesh, b, face + 2, image_b);
+  corner[2] = StartOf(mesh, c, face + 4, image_c);
+  for (PetscInt i = 0; i < 3; ++i) AddPair(mesh, corner[i], corner[(i + 1) % 3], 0.5, cohesion, area);
+}
+
+PetscErrorCode LamGapAreaCreate(const LamMicrostructure *micro, const LamMesh *mesh, LamGapArea *area)
+{
+  const PetscInt most = mesh->cell_count * (3 * (6 * mesh->along + 2) + 2 * 3);
+
+  PetscFunctionBeginUser;
+  area->count = 0;
+  PetscCall(PetscMalloc1(most, &area->pairs));
+  for (PetscInt cell = 0; cell < mesh->cell_count; ++cell) {
+    for (PetscInt face = 0; face < 3; ++face) AddFace(micro, mesh, cell, face, area);
+    for (PetscInt face = 0; face < 2; ++face) AddJunction(micro, mesh, cell, face, area); /* each junction once */
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamGapAreaDestroy(LamGapArea *area)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(area->pairs));
+  PetscFunctionReturn(0);
+}
+
+void LamGapAreaSetMatrix(const LamLinear *linear, LamGapArea *area)
+{
+  for (PetscInt k = 0; k < area->count; ++k) {
+    LamGapPair *pair = &area->pairs[k];
+
+    for (PetscInt i = 0; i < 2; ++i)
+      pair->entry[i] =
+          pair->a == 0 || pair->b == 0 ? -1 : LamLinearEntry(linear, 2 * (pair->a - 1) + i, 2 * (pair->b - 1) + 1 - i);
+  }
+}
+
+/* Position of one end of a pair. */
+static void Place(const PetscReal F[9], const PetscReal y[], PetscInt class, const PetscReal S[2], PetscReal x[2])
+{
+  x[0] = y[2 * class] + F[0] * S[0] + F[1] * S[1];
+  x[1] = y[2 * class + 1] + F[3] * S[0] + F[4] * S[1];
+}
+
+PetscReal LamGapAreaEvaluate(const LamGapArea *area, const PetscReal F[9], const PetscReal y[], PetscReal *plain)
+{
+  PetscReal sum = 0.0, all = 0.0;
+
+  for (PetscInt k = 0; k < area->count; ++k) {
+    const LamGapPair *pair = &area->pairs[k];
+    PetscReal a[2], b[2], value;
+
+    Place(F, y, pair->a, pair->Sa, a);
+    Place(F, y, pair->b, pair->Sb, b);
+    value = pair->c * (a[0] * b[1] - a[1] * b[0]);
+    sum += pair->cohesion * value;
+    all += value;
+  }
+  if (plain) *plain = all;
+  return sum;
+}
+
+void LamGapAreaAddGradient(const LamGapArea *area, const PetscReal F[9], const PetscReal y[], PetscReal factor,
+                           PetscReal gradient[])
+{
+  for (PetscInt k = 0; k < area->count; ++k) {
+    const LamGapPair *pair = &area->pairs[k];
+    const PetscReal c = factor * pair->cohesion * pair->c;
+    PetscReal a[2], b[2];
+
+    Place(F, y, pair->a, pair->Sa, a);
+    Place(F, y, pair->b, pair->Sb, b);
+    gradient[2 * pair->a] += c * b[1];
+    gradient[2 * pair->a + 1] -= c * b[0];
+    gradient[2 * pair->b] -= c * a[1];
+    gradient[2 * pair->b + 1] += c * a[0];
+  }
+}
+
+void LamGapAreaAddHessian(const LamGapArea *area, PetscReal factor, PetscReal values[])
+{
+  for (PetscInt k = 0; k < area->count; ++k) {
+    const LamGapPair *pair = &area->pairs[k];
+    const PetscReal c = factor * pair->cohesion * pair->c;
+
+    if (pair->entry[0] < 0) continue;
+    values[pair->entry[0]] += c; /* d2/da_1 db_2 */
+    values[pair->entry[1]] -= c; /* d2/da_2 db_1 */
+  }
+}
+
+void LamGapAreaAddShifts(const LamGapArea *area, const PetscReal F[9], const PetscReal y[], PetscReal factor,
+                         PetscReal force[4], PetscReal force_force[4][4], PetscReal *force_y[4])
+{
+  static const PetscReal eps[2][2] = {{0.0, 1.0}, {-1.0, 0.0}};
+
+  for (PetscInt n = 0; n < area->count; ++n) {
+    const LamGapPair *pair = &area->pairs[n];
+    const PetscReal c = factor * pair->cohesion * pair->c;
+    PetscReal a[2], b[2];
+
+    Place(F, y, pair->a, pair->Sa, a);
+    Place(F, y, pair->b, pair->Sb, b);
+    for (PetscInt q = 0; q < 4; ++q) {
+      const PetscInt k = q / 2, l = q % 2;
+
+      for (PetscInt j = 0; j < 2; ++j) {
+        force[q] += c * (eps[k][j] * pair->Sa[l] * b[j] + eps[j][k] * a[j] * pair->Sb[l]);
+        if (force_y) {
+          force_y[q][2 * pair->b + j] += c * eps[k][j] * pair->Sa[l];
+          force_y[q][2 * pair->a + j] += c * eps[j][k] * pair->Sb[l];
+        }
+      }
+      for (PetscInt r = 0; force_force && r < 4; ++r)
+        force_force[q][r] +=
+            c * (eps[k][r / 2] * pair->Sa[l] * pair->Sb[r % 2] + eps[r / 2][k] * pair->Sa[r % 2] * pair->Sb[l]);
+    }
+  }
+}

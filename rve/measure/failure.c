@@ -1,0 +1,169 @@
+/*
+  How hard the walls are strained: what decides where they tear, and whether turgor still holds them taut.
+
+  Method. Integrals over the walls run along each face, through the whole thickness: the mitred element columns are
+  crossed by three Gauss points along the face, whose values, integrated through the thickness, are taken as a quadratic
+  function there. Means over a stretch as long as the wall is thick converge under refinement where point values at the
+  corners of the lumen do not.
+
+  The stiffness of the wall material against shear bands (wall_ellipticity.h) is averaged in the same way. At the
+  corners stresses are singular, and there the point value would tell of the mesh.
+
+  Tension is the Cauchy stress along the fibre over that of the fluid in which the wall stands, -p of its own cell.
+*/
+#include "measure.h"
+
+#define SAMPLES 8 /* per element column: sub-intervals of the running integrals */
+
+enum { REFERENCE, VOLUME, STRETCH, ENERGY, TENSION, SOFTNESS, INTEGRALS };
+
+/* Running integrals along one face, [along * SAMPLES + 1] each. */
+typedef struct {
+  PetscReal *running[INTEGRALS];
+  PetscReal kinked; /* reference volume, of all faces so far */
+} WallSums;
+
+/* Integral of the quadratic function with value 1 at Gauss point g and 0 at the other two, from -1 to xi. */
+static PetscReal QuadraticIntegral(PetscInt g, PetscReal xi)
+{
+  const PetscReal r2 = 0.6, r = PetscSqrtReal(r2), cubic = (xi * xi * xi + 1.0) / 3.0;
+  const PetscReal square = 0.5 * (xi * xi - 1.0);
+
+  if (g == 1) return xi + 1.0 - cubic / r2;
+  return (cubic + (g == 0 ? -r : r) * square) / (2.0 * r2);
+}
+
+/* Share of the whole integral of Gauss point g along the face that lies before sub-interval s ends. */
+static void SetShares(PetscReal share[SAMPLES][3])
+{
+  for (PetscInt s = 0; s < SAMPLES; ++s)
+    for (PetscInt g = 0; g < 3; ++g)
+      share[s][g] = QuadraticIntegral(g, -1.0 + 2.0 * (PetscReal)(s + 1) / SAMPLES) / QuadraticIntegral(g, 1.0);
+}
+
+/* Integrals through the wall at the three Gauss points along the face of element column i; adds the kinked volume. */
+static void SumThroughWall(LamRVE rve, const LamLoad *load, PetscInt cell, PetscInt face, PetscInt i,
+                           PetscReal column[3][INTEGRALS], PetscReal *kinked)
+{
+  const PetscReal turgor = LamTurgor(rve, load, rve->y, cell);
+
+  for (PetscInt h = 0; h < 3; ++h)
+    for (PetscInt q = 0; q < INTEGRALS; ++q) column[h][q] = 0.0;
+  for (PetscInt m = 0; m < rve->mesh.through; ++m) {
+    const PetscInt e = LamMeshElement(&rve->mesh, cell, face, i, m);
+    PetscReal u[LAM_ELEMENT_NODES][2];
+    LamWallPoint points[LAM_GAUSS];
+
+    LamGatherDisplacements(rve, load->F, rve->y, e, u);
+    LamElementWallPoints(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, load->F[8],
+                         points);
+    for (PetscInt g = 0; g < LAM_GAUSS; ++g) { /* g / 3 counts along the face, g % 3 through the wall */
+      PetscReal *sum = column[g / 3];
+
+      sum[REFERENCE] += points[g].reference;
+      sum[VOLUME] += points[g].volume;
+      sum[STRETCH] += points[g].stretch;
+      sum[ENERGY] += points[g].energy;
+      sum[TENSION] += points[g].tension + turgor * points[g].volume;
+      sum[SOFTNESS] -= points[g].ellipticity;
+      *kinked += points[g].kinked;
+    }
+  }
+}
+
+static void SumAlongFace(LamRVE rve, const LamLoad *load, const PetscReal share[SAMPLES][3], PetscInt cell,
+                         PetscInt face, WallSums *sums)
+{
+  for (PetscInt q = 0; q < INTEGRALS; ++q) sums->running[q][0] = 0.0;
+  for (PetscInt i = 0; i < rve->mesh.along; ++i) {
+    PetscReal column[3][INTEGRALS];
+
+    SumThroughWall(rve, load, cell, face, i, column, &sums->kinked);
+    for (PetscInt q = 0; q < INTEGRALS; ++q) {
+      PetscReal *running = &sums->running[q][i * SAMPLES];
+
+      for (PetscInt s = 0; s < SAMPLES; ++s)
+        running[s + 1] =
+            running[0] + share[s][0] * column[0][q] + share[s][1] * column[1][q] + share[s][2] * column[2][q];
+    }
+  }
+}
+
+PetscErrorCode LamWallMeasures(LamRVE rve, const LamLoad *load, LamResponse *response)
+{
+  const PetscInt count = rve->mesh.along * SAMPLES;
+  PetscReal share[SAMPLES][3], tension[3] = {0.0, 0.0, 0.0}, volume[3] = {0.0, 0.0, 0.0}, walls = 0.0, *work;
+  LamLargestMean stretch = LAM_NO_MEAN, energy = LAM_NO_MEAN, stress = LAM_NO_MEAN, softness = LAM_NO_MEAN;
+  WallSums sums = {.kinked = 0.0};
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(INTEGRALS * (count + 1), &work));
+  for (PetscInt q = 0; q < INTEGRALS; ++q) sums.running[q] = &work[q * (count + 1)];
+  SetShares(share);
+  for (PetscInt cell = 0; cell < rve->mesh.cell_count; ++cell)
+    for (PetscInt face = 0; face < LAM_FACES; ++face) {
+      const PetscReal *reference = sums.running[REFERENCE], *current = sums.running[VOLUME];
+      const PetscReal *pull = sums.running[TENSION], thickness = LamWallThickness(&rve->micro, cell);
+
+      SumAlongFace(rve, load, (const PetscReal(*)[3])share, cell, face, &sums);
+      LamTakeLargestMean(&rve->mesh, thickness, cell, face, count, sums.running[STRETCH], reference, &stretch);
+      LamTakeLargestMean(&rve->mesh, thickness, cell, face, count, sums.running[ENERGY], reference, &energy);
+      LamTakeLargestMean(&rve->mesh, thickness, cell, face, count, pull, current, &stress);
+      LamTakeLargestMean(&rve->mesh, thickness, cell, face, count, sums.running[SOFTNESS], reference, &softness);
+      walls += reference[count];
+      tension[face % 3] += pull[count];
+      volume[face % 3] += current[count];
+    }
+  PetscCall(PetscFree(work));
+  response->max_fibre_stretch = stretch.value;
+  response->max_wall_energy = energy.value;
+  response->max_wall_tension = stress.value;
+  PetscCall(PetscArraycpy(response->wall_place, stress.place, 3));
+  response->wall_ellipticity = -softness.value;
+  PetscCall(PetscArraycpy(response->kink_place, softness.place, 3));
+  response->kinked_fraction = sums.kinked / walls;
+  for (PetscInt k = 0; k < 3; ++k) response->mean_wall_tension[k] = tension[k] / volume[k];
+  PetscFunctionReturn(0);
+}
+
+void LamFindKinks(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *share)
+{
+  PetscReal kinked = 0.0, all = 0.0;
+
+  for (PetscInt e = 0; e < rve->mesh.element_count; ++e) {
+    PetscReal u[LAM_ELEMENT_NODES][2];
+    LamWallPoint points[LAM_GAUSS];
+
+    LamGatherDisplacements(rve, load->F, y, e, u);
+    LamElementWallPoints(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, load->F[8],
+                         points);
+    for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
+      kinked += points[g].kinked;
+      all += points[g].reference;
+    }
+  }
+  *share = kinked / all;
+}
+
+void LamWatchKinks(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal t, LamKinking *kinking)
+{
+  LamFindKinks(rve, load, y, &kinking->share);
+  if (kinking->share <= LAM_KINKED_SHARE)
+    kinking->between[0] = kinking->between[1] = t;
+  else if (!LamIsKinking(kinking))
+    kinking->between[1] = t;
+}
+
+PetscErrorCode LamKinkReason(const LamKinking *kinking, PetscReal reached, char reason[], size_t length)
+{
+  char place[80] = " already where the way starts";
+
+  PetscFunctionBeginUser;
+  if (kinking->between[0] >= 0.0) PetscCall(LamBracketText(kinking->between, place, sizeof(place)));
+  PetscCall(
+      PetscSNPrintf(reason, length,
+                    "walls lose ellipticity%s and kink ever finer: %.2g %% of them at %.4g, the last stable state "
+                    "on this mesh; `fibres: tension` would not",
+                    place, (double)(100.0 * kinking->share), (double)reached));
+  PetscFunctionReturn(0);
+}

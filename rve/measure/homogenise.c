@@ -1,0 +1,328 @@
+/*
+  Effective stress, tangent and couplings of a converged state.
+
+  Method. Psi(q) = (1/V0) min_y L(y, q) with q = (F11, F12, F21, F22, F33, p, g). F enters L through the image shifts
+  x_a = y + F S_a and through F33 in the walls and in the volumes; p through -p F33 A_lumen, g through g F33 A_gap. Then
+    dPsi/dq   = L_q / V0,
+    d2Psi/dq2 = (L_qq - L_qy K^-1 L_yq) / V0         (static condensation with the factor of the converged state),
+  where in contact y includes the active multipliers, whose rows are -dG/dF, and the pressures of sealed lumens, for
+  which p is the turgor of the load, that of the unloaded water (turgor.c).
+  So P_ij = (1/V0) sum_a f_ai S_aj over shifted nodes, f_a the nodal forces of walls or contact, and the tangent is
+  symmetric by construction. Bonded tissue does not feel g.
+
+  Rounding. Positions hold no more than 16 digits, so that r = L_y is not zero but some eps times the stiffest modulus,
+  and so is the error of L_F. To first order the solution lies at y - K^-1 r, and P is (L_F - L_Fy K^-1 r) / V0 there:
+  the work of the wall stresses on the relaxed mode of F, on which stiff walls do none (docs/theory.md, Rounding).
+*/
+#include "measure.h"
+#include <lamella/ellipticity.h>
+
+#define NQ 7
+#define Q_F33 4
+#define Q_TURGOR 5
+#define Q_COHESION 6
+
+const PetscInt LamFComponent[LAM_F_COUNT] = {0, 1, 3, 4, 8};
+
+typedef struct {
+  PetscInt nq;   /* NQ, for bonded tissue without the cohesion */
+  PetscInt size; /* of a column: the held class, the other positions, the multipliers, the pressures */
+  PetscReal Lq[NQ], Lqq[NQ][NQ];
+  PetscReal lumen, gap; /* areas */
+  PetscReal *R;         /* [nq][size]: L_yq, one column after the other */
+} Condensation;
+
+/* F couplings of one element that has shifted nodes. */
+static void AddShifted(LamRVE rve, PetscInt e, const LamElementResult *element, const PetscReal fx[LAM_ELEMENT_DOFS],
+                       Condensation *c)
+{
+  const LamMesh *mesh = &rve->mesh;
+  const PetscInt *nodes = &mesh->elements[LAM_ELEMENT_NODES * e];
+
+  for (PetscInt b = 0; b < LAM_ELEMENT_NODES; ++b) {
+    const PetscReal *Sb = &mesh->shift[2 * nodes[b]];
+
+    if (Sb[0] == 0.0 && Sb[1] == 0.0) continue;
+    for (PetscInt k = 0; k < 2; ++k)
+      for (PetscInt l = 0; l < 2; ++l) {
+        const PetscInt q = 2 * k + l;
+        PetscReal *column = c->R + q * c->size;
+
+        c->Lq[q] += element->f[2 * b + k] * Sb[l];
+        c->Lqq[q][Q_F33] += fx[2 * b + k] * Sb[l];
+        for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a) {
+          const PetscReal *Sa = &mesh->shift[2 * nodes[a]];
+
+          for (PetscInt i = 0; i < 2; ++i) {
+            const PetscReal K = element->K[2 * a + i][2 * b + k] * Sb[l];
+
+            column[2 * mesh->node_class[nodes[a]] + i] += K;
+            for (PetscInt j = 0; j < 2; ++j) c->Lqq[2 * i + j][q] += K * Sa[j];
+          }
+        }
+      }
+  }
+}
+
+static void AddElement(LamRVE rve, const LamLoad *load, PetscInt e, Condensation *c)
+{
+  const LamMesh *mesh = &rve->mesh;
+  const PetscInt *nodes = &mesh->elements[LAM_ELEMENT_NODES * e];
+  PetscReal u[LAM_ELEMENT_NODES][2], force33, ff, fx[LAM_ELEMENT_DOFS];
+
+  LamGatherDisplacements(rve, load->F, rve->y, e, u);
+  LamElementStretch33(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, load->F[8],
+                      &rve->stress[e], &force33, fx, &ff);
+  c->Lq[Q_F33] += force33;
+  c->Lqq[Q_F33][Q_F33] += ff;
+  for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
+    for (PetscInt i = 0; i < 2; ++i) c->R[Q_F33 * c->size + 2 * mesh->node_class[nodes[a]] + i] += fx[2 * a + i];
+  if (mesh->has_shift[e]) {
+    LamElementResult element;
+    PetscBool valid;
+
+    LamElementEvaluate(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, load->F[8],
+                       &rve->stress[e], &element, &valid);
+    AddShifted(rve, e, &element, fx, c);
+  }
+}
+
+/* Terms of the turgor of the load where it is that of the lumens. */
+static void AddTurgor(LamRVE rve, const LamLoad *load, Condensation *c)
+{
+  const LamSeal *seal = &rve->seal;
+
+  for (PetscInt k = 0; k < rve->mesh.cell_count; ++k) {
+    const PetscReal factor = LamTurgorFactor(rve, k);
+
+    seal->factor[k] = -load->F[8] * factor;
+    c->Lq[Q_TURGOR] -= load->F[8] * factor * seal->area[k];
+    c->Lqq[Q_F33][Q_TURGOR] -= factor * seal->area[k];
+  }
+  LamLumenAddGradient(rve, rve->y, seal->factor, c->R + Q_TURGOR * c->size);
+}
+
+/* The same where the lumens are sealed, whose pressures are unknowns: V_w (p - (p - p0)^2 / (2 K_w)). */
+static void AddSealedTurgor(LamRVE rve, const LamLoad *load, Condensation *c)
+{
+  const LamSeal *seal = &rve->seal;
+  const PetscInt pressures = c->size - rve->linear.lumens;
+
+  for (PetscInt k = 0; k < rve->linear.lumens; ++k) {
+    const PetscReal factor = LamTurgorFactor(rve, k), compliance = seal->water[k] / seal->bulk_modulus;
+
+    c->R[Q_F33 * c->size + pressures + k] -= seal->area[k];
+    c->R[Q_TURGOR * c->size + pressures + k] += factor * compliance;
+    c->Lq[Q_TURGOR] += factor * compliance * (rve->y[rve->ndof + k] - load->turgor * factor);
+    c->Lqq[Q_TURGOR][Q_TURGOR] -= factor * factor * compliance;
+  }
+}
+
+/* Terms of the lumen volume F33 A. */
+static void AddLumen(LamRVE rve, const LamLoad *load, Condensation *c)
+{
+  const LamSeal *seal = &rve->seal;
+
+  LamLumenAreas(rve, rve->y, seal->area);
+  for (PetscInt k = 0; k < rve->mesh.cell_count; ++k) {
+    const PetscReal pressure = LamTurgor(rve, load, rve->y, k);
+
+    seal->factor[k] = -pressure;
+    c->Lq[Q_F33] -= pressure * seal->area[k];
+    c->lumen += seal->area[k];
+  }
+  LamLumenAddGradient(rve, rve->y, seal->factor, c->R + Q_F33 * c->size);
+  if (seal->closed)
+    AddSealedTurgor(rve, load, c);
+  else
+    AddTurgor(rve, load, c);
+}
+
+/* Terms of the gap volume F33 A. */
+static void AddGapVolume(LamRVE rve, const LamLoad *load, Condensation *c)
+{
+  const LamGapArea *gaps = &rve->contact->gaps;
+  const PetscReal *F = load->F, *y = rve->y, g = load->cohesion, F33 = F[8];
+  const PetscReal area = LamGapAreaEvaluate(gaps, F, y, &c->gap);
+  PetscReal *R[4], second[4][4] = {{0}}, first[4] = {0};
+
+  for (PetscInt q = 0; q < 4; ++q) R[q] = c->R + q * c->size;
+  LamGapAreaAddGradient(gaps, F, y, g, c->R + Q_F33 * c->size);
+  LamGapAreaAddGradient(gaps, F, y, F33, c->R + Q_COHESION * c->size);
+  LamGapAreaAddShifts(gaps, F, y, 1.0, first, NULL, NULL);
+  LamGapAreaAddShifts(gaps, F, y, g * F33, c->Lq, second, R);
+  c->Lq[Q_COHESION] += F33 * area;
+  c->Lq[Q_F33] += g * area;
+  c->Lqq[Q_F33][Q_COHESION] += area;
+  for (PetscInt q = 0; q < 4; ++q) {
+    c->Lqq[q][Q_F33] += g * first[q];
+    c->Lqq[q][Q_COHESION] += F33 * first[q];
+    for (PetscInt r = 0; r < 4; ++r) c->Lqq[q][r] += second[q][r];
+  }
+}
+
+/* Terms of one face of whose nodes some are shifted. */
+static void AddContactFace(LamRVE rve, PetscInt f, Condensation *c)
+{
+  const LamContact *contact = rve->contact;
+  const PetscInt dofs = contact->dofs, *classes = &contact->classes[f * contact->chain];
+  const PetscReal *S = &contact->shift[2 * f * contact->chain], *hessian = &contact->hessian[f * dofs * dofs];
+
+  for (PetscInt j = 0; j < dofs; ++j)
+    for (PetscInt l = 0; l < 2; ++l) {
+      const PetscReal Sj = S[2 * (j / 2) + l];
+      const PetscInt q = 2 * (j % 2) + l;
+      PetscReal *column = c->R + q * c->size;
+
+      if (Sj == 0.0) continue;
+      for (PetscInt i = 0; i < dofs; ++i) {
+        column[2 * classes[i / 2] + i % 2] -= hessian[i * dofs + j] * Sj;
+        for (PetscInt k = 0; k < 2; ++k) c->Lqq[2 * (i % 2) + k][q] -= S[2 * (i / 2) + k] * hessian[i * dofs + j] * Sj;
+      }
+      for (PetscInt h = f * contact->hats; h < (f + 1) * contact->hats; ++h) {
+        if (contact->active[h]) c->Lq[q] -= contact->lambda[h] * contact->rows[h * dofs + j] * Sj;
+        column[rve->ndof + h] -= contact->rows[h * dofs + j] * Sj; /* counts where active */
+      }
+    }
+}
+
+void LamCopyActive(LamRVE rve, const PetscReal column[], PetscReal copy[])
+{
+  const PetscInt positions = rve->linear.positions, pressures = rve->linear.n - rve->linear.lumens;
+
+  for (PetscInt i = 0; i < rve->linear.n; ++i)
+    copy[i] = i < positions || i >= pressures || rve->contact->active[i - positions] ? column[i] : 0.0;
+}
+
+/* r = L_y [n] at rve->y, of contact with the gaps of active hats; after LamFactorConsistent there. */
+static void CopyResidual(LamRVE rve, PetscReal r[])
+{
+  const LamContact *contact = rve->contact;
+  const PetscInt positions = rve->linear.positions, pressures = rve->linear.n - rve->linear.lumens;
+
+  for (PetscInt i = 0; i < rve->ndof; ++i) rve->trial[i] = rve->residual[i];
+  if (contact) LamContactAddForce(rve, rve->trial);
+  for (PetscInt i = 0; i < positions; ++i) r[i] = rve->trial[i + 2];
+  for (PetscInt h = 0; contact && h < contact->count; ++h)
+    r[positions + h] = contact->active[h] ? -contact->gap[h] * contact->weight[h] : 0.0;
+  for (PetscInt k = 0; k < rve->linear.lumens; ++k)
+    r[pressures + k] = rve->seal.closed ? rve->residual[rve->ndof + k] : 0.0;
+}
+
+/* L_F of the solution next to the positions: -= L_Fy K^-1 r. */
+static PetscErrorCode RelaxStress(LamRVE rve, Condensation *c)
+{
+  const PetscInt n = rve->linear.n;
+  PetscReal *r, *step, *rest, *R;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc4(n, &r, n, &step, n, &rest, n, &R));
+  CopyResidual(rve, r);
+  PetscCall(LamLinearSolve(&rve->linear, 1, r, step, rest));
+  for (PetscInt q = 0; q < LAM_F_COUNT; ++q) {
+    LamCopyActive(rve, c->R + q * c->size + 2, R);
+    c->Lq[q] -= LamInnerProduct(n, R, step);
+  }
+  PetscCall(PetscFree4(r, step, rest, R));
+  PetscFunctionReturn(0);
+}
+
+/* H = (L_qq - R^T K^-1 R) / V0. With X = K^-1 (R - rest) it is (L_qq - R^T X - X^T rest -
+   rest^T K^-1 rest) / V0, of which the last term is left out: an error of the solve enters squared. */
+static PetscErrorCode Condense(LamRVE rve, Condensation *c, PetscReal H[NQ][NQ])
+{
+  const PetscInt n = rve->linear.n, nq = c->nq;
+  PetscReal *R, *X, *rest;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(nq * n, &R, nq * n, &X, nq * n, &rest));
+  for (PetscInt q = 0; q < nq; ++q) LamCopyActive(rve, c->R + q * c->size + 2, R + q * n);
+  PetscCall(LamLinearSolve(&rve->linear, nq, R, X, rest));
+  for (PetscInt q = 0; q < nq; ++q)
+    for (PetscInt r = q; r < nq; ++r) {
+      PetscReal a = 0.0, b = 0.0;
+
+      for (PetscInt i = 0; i < n; ++i) {
+        a += (R[q * n + i] + rest[q * n + i]) * X[r * n + i];
+        b += (R[r * n + i] + rest[r * n + i]) * X[q * n + i];
+      }
+      H[q][r] = H[r][q] = (c->Lqq[q][r] - 0.5 * (a + b)) / rve->mesh.V0;
+    }
+  PetscCall(PetscFree3(R, X, rest));
+  PetscFunctionReturn(0);
+}
+
+/* Sums L_q, L_qq and R, which the caller frees. */
+static PetscErrorCode Assemble(LamRVE rve, const LamLoad *load, Condensation *c)
+{
+  PetscFunctionBeginUser;
+  c->nq = rve->contact ? NQ : NQ - 1;
+  c->size = rve->linear.n + 2;
+  PetscCall(PetscCalloc1(c->nq * c->size, &c->R));
+  for (PetscInt e = 0; e < rve->mesh.element_count; ++e) AddElement(rve, load, e, c);
+  AddLumen(rve, load, c);
+  if (rve->contact) {
+    AddGapVolume(rve, load, c);
+    for (PetscInt f = 0; f < rve->contact->face_count; ++f) AddContactFace(rve, f, c);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamAssembleGradient(LamRVE rve, const LamLoad *load, PetscReal Lq[LAM_F_COUNT],
+                                   PetscReal Lqq[LAM_F_COUNT][LAM_F_COUNT], PetscReal R[])
+{
+  Condensation c = {0};
+
+  PetscFunctionBeginUser;
+  PetscCall(Assemble(rve, load, &c));
+  for (PetscInt q = 0; q < LAM_F_COUNT; ++q) {
+    Lq[q] = c.Lq[q];
+    for (PetscInt r = q; r < LAM_F_COUNT; ++r) Lqq[q][r] = Lqq[r][q] = c.Lqq[q][r];
+    PetscCall(PetscArraycpy(R + q * rve->linear.n, c.R + q * c.size + 2, rve->linear.n));
+  }
+  PetscCall(PetscFree(c.R));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode FillDerivatives(LamRVE rve, Condensation *c, LamResponse *response)
+{
+  const PetscInt *component = LamFComponent;
+  PetscReal H[NQ][NQ] = {{0}};
+
+  PetscFunctionBeginUser;
+  PetscCall(Condense(rve, c, H));
+  for (PetscInt i = 0; i < 9; ++i) response->P_turgor[i] = response->P_cohesion[i] = 0.0;
+  for (PetscInt q = 0; q < 5; ++q) {
+    response->P_turgor[component[q]] = H[q][Q_TURGOR];
+    response->P_cohesion[component[q]] = H[q][Q_COHESION];
+    for (PetscInt r = 0; r < 5; ++r) response->tangent[9 * component[q] + component[r]] = H[q][r];
+  }
+  LamResponseFindBand(response);
+  response->energy_turgor2 = H[Q_TURGOR][Q_TURGOR];
+  response->energy_cohesion2 = H[Q_COHESION][Q_COHESION];
+  response->energy_turgor_cohesion = H[Q_TURGOR][Q_COHESION];
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamHomogenise(LamRVE rve, const LamLoad *load, LamResponse *response)
+{
+  Condensation c = {0};
+  PetscReal energy;
+  PetscBool valid;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamAssembleEnergy(rve, load, rve->y, &energy, &valid));
+  PetscCall(Assemble(rve, load, &c));
+  PetscCall(RelaxStress(rve, &c));
+  if (rve->wanted & LAM_WANT_DERIVATIVES) PetscCall(FillDerivatives(rve, &c, response));
+  PetscCall(PetscFree(c.R));
+  response->energy = energy / rve->mesh.V0;
+  response->lumen_fraction = load->F[8] * c.lumen / rve->mesh.V0;
+  response->opening_fraction = load->F[8] * c.gap / rve->mesh.V0;
+  for (PetscInt i = 0; i < 9; ++i) response->P[i] = 0.0;
+  for (PetscInt q = 0; q < LAM_F_COUNT; ++q) response->P[LamFComponent[q]] = c.Lq[q] / rve->mesh.V0;
+  response->energy_turgor = c.Lq[Q_TURGOR] / rve->mesh.V0;
+  response->energy_cohesion = c.Lq[Q_COHESION] / rve->mesh.V0;
+  LamTurgorMeasures(rve, load, response);
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,94 @@
+/*
+  Lumens whose walls have met. Contact of a cell's wall with itself is not modelled, so a state in which an inner loop
+  crosses itself, or runs clockwise because the ring has turned inside out, is no answer; it occurs far in compression.
+
+  Method. The inner loop of each cell is taken as the polygon of its nodes (two per element); the loop is simple as long
+  as no two of its sides that do not follow each other cross. Boxes of sides are compared before the sides.
+*/
+#include "measure.h"
+
+static PetscReal Cross(const PetscReal a[2], const PetscReal b[2], const PetscReal c[2])
+{
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+static PetscBool BoxesOverlap(const PetscReal a[2], const PetscReal b[2], const PetscReal c[2], const PetscReal d[2])
+{
+  for (PetscInt i = 0; i < 2; ++i)
+    if (PetscMax(a[i], b[i]) < PetscMin(c[i], d[i]) || PetscMax(c[i], d[i]) < PetscMin(a[i], b[i])) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+static PetscBool SidesCross(const PetscReal a[2], const PetscReal b[2], const PetscReal c[2], const PetscReal d[2])
+{
+  return (PetscBool)(Cross(a, b, c) * Cross(a, b, d) < 0.0 && Cross(c, d, a) * Cross(c, d, b) < 0.0);
+}
+
+/* Whether the polygon x[n][2] crosses itself. */
+static PetscBool CrossesItself(PetscInt n, const PetscReal x[][2])
+{
+  for (PetscInt i = 0; i < n; ++i)
+    for (PetscInt j = i + 2; j < n; ++j) {
+      if (i == 0 && j == n - 1) continue;
+      if (BoxesOverlap(x[i], x[i + 1], x[j], x[(j + 1) % n]) && SidesCross(x[i], x[i + 1], x[j], x[(j + 1) % n]))
+        return PETSC_TRUE;
+    }
+  return PETSC_FALSE;
+}
+
+/* Twice the signed area of a polygon. */
+static PetscReal SignedArea(PetscInt n, const PetscReal x[][2])
+{
+  PetscReal area = 0.0;
+
+  for (PetscInt i = 0, j = n - 1; i < n; j = i++) area += x[j][0] * x[i][1] - x[j][1] * x[i][0];
+  return area;
+}
+
+PetscErrorCode LamBracketText(const PetscReal between[2], char text[], size_t length)
+{
+  const PetscReal narrowness = between[1] / PetscMax(1e-12, between[1] - between[0]);
+  const int digits = (int)PetscMax(5.0, PetscCeilReal(PetscLog10Real(PetscMax(1.0, narrowness))) + 1.0);
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  if (between[1] > between[0])
+    (void)snprintf(text, length, " between %.*g and %.*g of the way", digits, (double)between[0], digits,
+                   (double)between[1]);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamCollapseReason(PetscInt cell, const PetscReal between[2], char reason[], size_t length)
+{
+  char place[80];
+
+  PetscFunctionBeginUser;
+  PetscCall(LamBracketText(between, place, sizeof(place)));
+  PetscCall(PetscSNPrintf(
+      reason, length, "the lumen of cell %d collapses%s: its walls touch, and contact inside a lumen is not modelled",
+      (int)cell, place));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFindCollapsedLumen(LamRVE rve, const PetscReal y[], PetscInt *cell)
+{
+  const LamMesh *mesh = &rve->mesh;
+  PetscReal(*x)[2];
+
+  PetscFunctionBeginUser;
+  *cell = -1;
+  PetscCall(PetscMalloc1(mesh->ring_nodes, &x));
+  for (PetscInt c = 0; c < mesh->cell_count && *cell < 0; ++c) {
+    for (PetscInt i = 0; i < mesh->ring_nodes; ++i) {
+      const PetscReal *position = &y[2 * mesh->node_class[(c * mesh->ring_nodes + i) * mesh->radial_nodes]];
+
+      x[i][0] = position[0];
+      x[i][1] = position[1];
+    }
+    if (SignedArea(mesh->ring_nodes, (const PetscReal(*)[2])x) <= 0.0 ||
+        CrossesItself(mesh->ring_nodes, (const PetscReal(*)[2])x))
+      *cell = c;
+  }
+  PetscCall(PetscFree(x));
+  PetscFunctionReturn(0);
+}

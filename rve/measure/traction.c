@@ -1,0 +1,263 @@
+/*
+  Tractions on the bonded interfaces between cells.
+
+  Method. In equilibrium the internal forces of one cell at the nodes of an outer face are the loads that its neighbour
+  exerts. Where three cells meet, the forces f_A, f_B, f_C (sum zero) are shared among the three faces by the split of
+  least norm, t_AB = (f_A - f_B)/3. The traction field t = sum N_j t_j on the face solves the mass system
+  int N_i N_j ds t_j = f_i on the current quadratic edges, so it carries the nodal forces exactly, but for ends that
+  a patch holds: the reaction there is not the interface's, and the traction is extrapolated. Normal component in
+  tension positive, shear component without sign, per current length (Cauchy). Point values at the lumen corners diverge
+  under refinement; averages over a length of one wall thickness converge.
+*/
+#include "measure.h"
+#include <petscblaslapack.h>
+
+#define SAMPLES 8 /* per edge: sub-intervals of the running integrals */
+
+/* Internal forces of the walls at all mesh nodes, before nodes are tied: force[node][2]. */
+static PetscErrorCode NodeForces(LamRVE rve, const LamLoad *load, PetscReal force[])
+{
+  const LamMesh *mesh = &rve->mesh;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(force, 2 * mesh->node_count));
+  for (PetscInt e = 0; e < mesh->element_count; ++e) {
+    PetscReal u[LAM_ELEMENT_NODES][2];
+    LamElementResult element;
+    PetscBool valid;
+
+    if (!LamMeshElementIsOuter(mesh, e)) continue; /* only the outermost elements touch a face */
+    LamGatherDisplacements(rve, load->F, rve->y, e, u);
+    LamElementEvaluate(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, load->F[8],
+                       &rve->stress[e], &element, &valid);
+    for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
+      for (PetscInt d = 0; d < 2; ++d) force[2 * mesh->elements[LAM_ELEMENT_NODES * e + a] + d] += element.f[2 * a + d];
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Whether node i of a face is where three cells meet; where a patch ends there are two. */
+static PetscBool IsJunctionOfThree(const LamMesh *mesh, PetscInt cell, PetscInt face, PetscInt i)
+{
+  const PetscInt next = i == 0 ? face + LAM_FACES - 1 : face + 1;
+  const PetscReal *image;
+
+  return (PetscBool)(i % (2 * mesh->along) == 0 && LamMeshNeighbour(mesh, cell, next % LAM_FACES, &image) >= 0);
+}
+
+/* Positions x[2 along + 1][2] and loads f likewise of one face, counter-clockwise. */
+static void FaceLoads(LamRVE rve, const LamLoad *load, const PetscReal force[], PetscInt cell, PetscInt face,
+                      PetscReal x[][2], PetscReal f[][2])
+{
+  const LamMesh *mesh = &rve->mesh;
+  const PetscInt last = 2 * mesh->along;
+  const PetscReal *image;
+  const PetscInt other = LamMeshNeighbour(mesh, cell, face, &image);
+
+  for (PetscInt i = 0; i <= last; ++i) {
+    const PetscInt node = LamMeshOuterNode(mesh, cell, last * face + i);
+    const PetscInt opposite = LamMeshOuterNode(mesh, other, last * (face + 4) - i);
+    const PetscReal share = IsJunctionOfThree(mesh, cell, face, i) ? 3.0 : 2.0;
+    const PetscReal *S = &mesh->shift[2 * node], *position = &rve->y[2 * mesh->node_class[node]];
+
+    for (PetscInt d = 0; d < 2; ++d) {
+      x[i][d] = position[d] + load->F[3 * d] * S[0] + load->F[3 * d + 1] * S[1];
+      f[i][d] = (force[2 * node + d] - force[2 * opposite + d]) / share;
+    }
+  }
+}
+
+/* Quadratic edge functions at xi in [-1, 1], and the current tangent dx/dxi. */
+static void EdgePoint(const PetscReal x[][2], PetscReal xi, PetscReal N[3], PetscReal tangent[2])
+{
+  const PetscReal d[3] = {xi - 0.5, -2.0 * xi, xi + 0.5};
+
+  N[0] = 0.5 * xi * (xi - 1.0);
+  N[1] = 1.0 - xi * xi;
+  N[2] = 0.5 * xi * (xi + 1.0);
+  for (PetscInt k = 0; k < 2; ++k) tangent[k] = d[0] * x[0][k] + d[1] * x[1][k] + d[2] * x[2][k];
+}
+
+/* Whether node i of a face is held at F X: then its force contains the reaction to that, which is none of the face's.
+ */
+static PetscBool IsHeld(const LamRVE rve, PetscInt cell, PetscInt face, PetscInt i)
+{
+  const PetscInt node = LamMeshOuterNode(&rve->mesh, cell, 2 * rve->mesh.along * face + i);
+
+  return (PetscBool)(rve->micro.is_patch && rve->mesh.node_class[node] == 0);
+}
+
+/* In place of the equation of end node i: its traction goes on linearly from the two nodes inwards. On a face of one
+   element, whose ends may both be held, it equals that of the middle. */
+static void ExtrapolateEnd(PetscInt n, PetscInt i, PetscInt inwards, PetscReal M[], PetscReal b[])
+{
+  const PetscReal slope = n > 3 ? 1.0 : 0.0;
+
+  for (PetscInt j = 0; j < n; ++j) M[j * n + i] = 0.0;
+  M[i * n + i] = 1.0;
+  M[(i + inwards) * n + i] = -1.0 - slope;
+  M[(i + 2 * inwards) * n + i] = slope;
+  b[i] = b[n + i] = 0.0;
+}
+
+/* Solves the mass system of one face; f becomes the nodal tractions, M is work space of size n x n. held: its ends. */
+static PetscErrorCode FaceTraction(PetscInt along, const PetscBool held[2], const PetscReal x[][2], PetscReal f[][2],
+                                   PetscReal M[], PetscReal b[], PetscBLASInt pivots[])
+{
+  const PetscReal point[4] = {-0.861136311594053, -0.339981043584856, 0.339981043584856, 0.861136311594053};
+  const PetscReal weight[4] = {0.347854845137454, 0.652145154862546, 0.652145154862546, 0.347854845137454};
+  const PetscInt n = 2 * along + 1;
+  PetscBLASInt bn, columns = 2, info;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(n, &bn));
+  PetscCall(PetscArrayzero(M, n * n));
+  for (PetscInt e = 0; e < along; ++e)
+    for (PetscInt g = 0; g < 4; ++g) {
+      PetscReal N[3], tangent[2], ds;
+
+      EdgePoint(&x[2 * e], point[g], N, tangent);
+      ds = weight[g] * PetscSqrtReal(tangent[0] * tangent[0] + tangent[1] * tangent[1]);
+      for (PetscInt i = 0; i < 3; ++i)
+        for (PetscInt j = 0; j < 3; ++j) M[(2 * e + i) * n + 2 * e + j] += ds * N[i] * N[j];
+    }
+  for (PetscInt i = 0; i < n; ++i)
+    for (PetscInt d = 0; d < 2; ++d) b[d * n + i] = f[i][d];
+  if (held[0]) ExtrapolateEnd(n, 0, 1, M, b);
+  if (held[1]) ExtrapolateEnd(n, n - 1, -1, M, b);
+  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&bn, &columns, M, &bn, pivots, b, &bn, &info));
+  PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "face mass matrix is singular (LAPACK gesv: %d)", (int)info);
+  for (PetscInt i = 0; i < n; ++i)
+    for (PetscInt d = 0; d < 2; ++d) f[i][d] = b[d * n + i];
+  PetscFunctionReturn(0);
+}
+
+/* Running integrals along a face at sample ends [along*SAMPLES + 1]. */
+typedef struct {
+  PetscReal *normal, *shear, *back; /* forces; back = -shear */
+  PetscReal *length;                /* current */
+} FaceSums;
+
+static void Accumulate(PetscInt along, const PetscReal x[][2], const PetscReal t[][2], FaceSums *sums)
+{
+  const PetscReal half = 1.0 / SAMPLES; /* of a sub-interval */
+
+  sums->normal[0] = sums->shear[0] = sums->back[0] = sums->length[0] = 0.0;
+  for (PetscInt e = 0; e < along; ++e)
+    for (PetscInt s = 0; s < SAMPLES; ++s) {
+      const PetscInt k = e * SAMPLES + s;
+      PetscReal tn = 0.0, ts = 0.0, ds = 0.0;
+
+      for (PetscInt side = -1; side <= 1; side += 2) { /* two Gauss points: exact for t.n and t.tangent, cubics */
+        const PetscReal xi = -1.0 + half * (2.0 * (PetscReal)s + 1.0 + (PetscReal)side / PetscSqrtReal(3.0));
+        PetscReal N[3], tangent[2];
+
+        EdgePoint(&x[2 * e], xi, N, tangent);
+        /* outward normal times ds/dxi is (tangent_2, -tangent_1): the face runs counter-clockwise around its cell */
+        for (PetscInt i = 0; i < 3; ++i) {
+          tn += N[i] * (t[2 * e + i][0] * tangent[1] - t[2 * e + i][1] * tangent[0]);
+          ts += N[i] * (t[2 * e + i][0] * tangent[0] + t[2 * e + i][1] * tangent[1]);
+        }
+        ds += PetscSqrtReal(tangent[0] * tangent[0] + tangent[1] * tangent[1]);
+      }
+      sums->normal[k + 1] = sums->normal[k] + half * tn;
+      sums->shear[k + 1] = sums->shear[k] + half * ts;
+      sums->back[k + 1] = -sums->shear[k + 1];
+      sums->length[k + 1] = sums->length[k] + half * ds;
+    }
+}
+
+/* Value of a running integral at place s of the face, in sub-intervals. */
+static PetscReal RunningAt(PetscInt count, const PetscReal integral[], PetscReal s)
+{
+  const PetscInt k = PetscMin((PetscInt)s, count - 1);
+
+  return integral[k] + (s - (PetscReal)k) * (integral[k + 1] - integral[k]);
+}
+
+/* Largest mean over windows (shares of the face, at most the whole), and the window's middle. Windows begin or end at
+   the ends of sub-intervals, so those flush with either end of the face are among them. */
+static PetscReal LargestWindowMean(const LamMesh *mesh, PetscInt count, PetscReal window, const PetscReal integral[],
+                                   const PetscReal length[], PetscReal *middle)
+{
+  const PetscReal samples = (PetscReal)count / (PetscReal)mesh->along;
+  PetscReal largest = -PETSC_MAX_REAL, named = -PETSC_MAX_REAL;
+
+  *middle = 0.5;
+  if (window >= 1.0) return integral[count] / length[count];
+  for (PetscInt k = 0; k <= count; ++k)
+    for (PetscInt side = -1; side <= 1; side += 2) {
+      const PetscReal share = LamMeshShare(mesh, (PetscReal)k / samples), other = share + (PetscReal)side * window;
+      PetscReal at, mean;
+
+      if (other < 0.0 || other > 1.0) continue;
+      at = samples * LamMeshPlace(mesh, other);
+      mean = (RunningAt(count, integral, at) - integral[k]) / (RunningAt(count, length, at) - length[k]);
+      largest = PetscMax(largest, mean);
+      if (!LamExceeds(mean, named)) continue;
+      named = mean;
+      *middle = 0.5 * (share + other);
+    }
+  return largest;
+}
+
+void LamTakeLargestMean(const LamMesh *mesh, PetscReal thickness, PetscInt cell, PetscInt face, PetscInt count,
+                        const PetscReal integral[], const PetscReal length[], LamLargestMean *largest)
+{
+  PetscReal middle;
+  const PetscReal window = thickness / LamFaceLength(mesh);
+  const PetscReal mean = LargestWindowMean(mesh, count, window, integral, length, &middle);
+
+  largest->value = PetscMax(largest->value, mean);
+  if (!LamExceeds(mean, largest->named)) return;
+  largest->named = mean;
+  largest->place[0] = (PetscReal)cell;
+  largest->place[1] = (PetscReal)face;
+  largest->place[2] = middle;
+}
+
+PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, LamResponse *response)
+{
+  const PetscInt along = rve->mesh.along, n = 2 * along + 1, count = along * SAMPLES;
+  PetscReal *force, (*x)[2], (*t)[2], *M, *b;
+  PetscBLASInt *pivots;
+  LamLargestMean normal = LAM_NO_MEAN, shear = LAM_NO_MEAN;
+  FaceSums sums;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc6(2 * rve->mesh.node_count, &force, n, &x, n, &t, n * n, &M, 2 * n, &b, n, &pivots));
+  PetscCall(
+      PetscMalloc4(count + 1, &sums.normal, count + 1, &sums.shear, count + 1, &sums.back, count + 1, &sums.length));
+  PetscCall(NodeForces(rve, load, force));
+  for (PetscInt face = 0; face < 3; ++face) {
+    PetscReal total = 0.0, length = 0.0;
+
+    for (PetscInt cell = 0; cell < rve->mesh.cell_count; ++cell) {
+      const PetscReal *image;
+      const PetscInt other = LamMeshNeighbour(&rve->mesh, cell, face, &image);
+      PetscBool held[2];
+      PetscReal thickness;
+
+      if (other < 0) continue;
+      thickness = LamFaceThickness(rve, cell, other);
+      held[0] = IsHeld(rve, cell, face, 0);
+      held[1] = IsHeld(rve, cell, face, n - 1);
+      FaceLoads(rve, load, force, cell, face, x, t);
+      PetscCall(FaceTraction(along, held, (const PetscReal(*)[2])x, t, M, b, pivots));
+      Accumulate(along, (const PetscReal(*)[2])x, (const PetscReal(*)[2])t, &sums);
+      total += sums.normal[count];
+      length += sums.length[count];
+      LamTakeLargestMean(&rve->mesh, thickness, cell, face, count, sums.normal, sums.length, &normal);
+      LamTakeLargestMean(&rve->mesh, thickness, cell, face, count, sums.shear, sums.length, &shear);
+      LamTakeLargestMean(&rve->mesh, thickness, cell, face, count, sums.back, sums.length, &shear);
+    }
+    response->mean_face_traction[face] = length > 0.0 ? total / length : NAN; /* a narrow patch may lack a family */
+  }
+  response->max_traction = LamLargestMeanValue(&normal);
+  response->max_lamella_shear = LamLargestMeanValue(&shear);
+  PetscCall(PetscArraycpy(response->normal_place, normal.place, 3));
+  PetscCall(PetscArraycpy(response->shear_place, shear.place, 3));
+  PetscCall(PetscFree6(force, x, t, M, b, pivots));
+  PetscCall(PetscFree4(sums.normal, sums.shear, sums.back, sums.length));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,137 @@
+/*
+  Equilibrium of contact tissue at one load, from rve->y and contact->lambda.
+
+  Method. Primal-dual active set, which is a semi-smooth Newton method: the hats with lambda - c gap > 0 are active,
+  their weighted gaps are linearised to zero, the other multipliers are zero; multipliers of active hats are solved for,
+  not incremented. As in the bonded tiers the tangent has independent wall stresses, and a shift where it is not
+  positive definite on the free motions. With first iterates far from contact the rows get a compliance that fades:
+  G + c D lambda = 0, and steps are short. From near starts steps are full, and a step that reaches too far ends the
+  try; late steps that still change the active set are halved. The junction status follows the iterate for a while and
+  is then frozen, so that it cannot flicker; a solution whose status has changed is iterated on.
+
+    [ K - sum lambda d2G + shift   -B^T  ] [ dx         ]   [ -r0 ]      r0: residual without contact forces
+    [ -B                           -c D  ] [ lambda_new ] = [  G  ]
+
+  References. Hueber & Wohlmuth, Comput. Methods Appl. Mech. Engrg 194 (2005) 3147; Popp, Gee & Wall, Int. J. Numer.
+  Meth. Engng 79 (2009) 1354.
+*/
+#include "solve.h"
+
+#define ITERATIONS 40 /* from a start far from contact */
+#define CYCLE_AFTER 9 /* iterations: from here on steps that change the active set are halved, which ends cycles */
+#define NEAR_ITERATIONS 20
+#define FOLLOW_ITERATIONS 6 /* in which the junction status follows the iterate */
+#define FOLLOW_FAR 25       /* the same while steps are shortened */
+#define RESTARTS 3          /* with the junction status of a solution, where it has changed */
+#define COMPLIANT_ITERATIONS 4
+#define COMPLIANCE 0.033   /* apothems / (C1 + C2), in the first iteration; falls by the same factor each time */
+#define USUAL_PRESSURE 0.5 /* C1 + C2: of more turgor and cohesion compliance is less */
+#define COMPLIANCE_DECAY 0.3
+#define STEP_LIMIT 0.02       /* apothems, from a start far from contact */
+#define NEAR_LIMIT 0.2        /* else */
+#define LOOSE_TOLERANCE 1e-4  /* while the interface is being released */
+#define ROUNDING_MARGIN 100.0 /* times the tolerance: residuals below it may be rounding, ... */
+#define ROUNDING_STEP 1e-11   /* ... if steps are no longer, of the extent */
+
+/*
+  Whether a step only stirs rounding errors of stiff walls, which keep the residual above the tolerance: soft motions
+  answer to them by more than the last digits of a position.
+*/
+static PetscBool IsAtRounding(LamRVE rve, const LamContactStep *step, PetscReal norm, PetscReal tolerance)
+{
+  const PetscReal extent = PetscMax(1.0, LamLargestEntry(rve->ndof, rve->y));
+
+  return (PetscBool)(step->shift <= LAM_CONTACT_PROXIMAL && norm <= ROUNDING_MARGIN * tolerance &&
+                     rve->contact->largest_step <= ROUNDING_STEP * extent);
+}
+
+/* Step length: limited, and halved until no volume turns inside out; 0: none. */
+static PetscErrorCode StepLength(LamRVE rve, const LamLoad *load, const LamBorder *border, PetscReal limit,
+                                 PetscReal *alpha)
+{
+  PetscFunctionBeginUser;
+  for (*alpha = PetscMin(1.0, limit / PetscMax(rve->contact->largest_step, 1e-300)); *alpha > 1e-4; *alpha *= 0.5) {
+    const LamLoad moved = LamBorderMoved(border, load, *alpha);
+
+    for (PetscInt i = 0; i < rve->ndof; ++i) rve->trial[i] = rve->y[i] + *alpha * rve->step[i];
+    if (LamPositionsAreValid(rve, &moved, rve->trial)) PetscFunctionReturn(0);
+  }
+  *alpha = 0.0;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Report(LamRVE rve, PetscInt it, PetscReal norm, PetscReal gap, PetscInt changes, PetscReal step,
+                             PetscReal alpha, PetscReal shift)
+{
+  PetscFunctionBeginUser;
+  if (rve->monitor)
+    PetscCall(
+        PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR,
+                     "  contact %3d  residual %9.3e  complementarity %9.3e  active %3d (%d changed)  largest step "
+                     "%9.3e x %.3g  shift %g\n",
+                     (int)it, (double)norm, (double)gap, (int)LamContactCountActive(rve->contact), (int)changes,
+                     (double)step, (double)alpha, (double)shift));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, LamBorder *border, PetscReal reach,
+                                LamNewtonOutcome *outcome)
+{
+  const PetscBool compliant = (PetscBool)(reach == LAM_FAR);
+  const PetscBool under_way = (PetscBool)(rve->contact->share > 0.0);
+  const PetscReal tolerance = under_way ? LOOSE_TOLERANCE : LamNewtonTolerance(rve);
+  const PetscReal gap_tolerance = under_way ? LOOSE_TOLERANCE : LamGapTolerance(rve);
+  /* what it lets gaps close by does not grow with what closes them */
+  const PetscReal first = COMPLIANCE * PetscMin(1.0, USUAL_PRESSURE / PetscMax(1e-300, load->turgor + load->cohesion));
+  const PetscInt most = compliant ? ITERATIONS : NEAR_ITERATIONS;
+  PetscInt follow_until = FOLLOW_ITERATIONS, restarts = 0;
+  PetscBool at_rounding = PETSC_FALSE;
+  LamContactStep step;
+
+  PetscFunctionBeginUser;
+  *outcome = LAM_NEWTON_STALLED;
+  rve->contact->hysteresis = LAM_HYSTERESIS;
+  PetscCall(LamContactStepCreate(rve, &step));
+  step.border = border;
+  for (PetscInt it = 0; it <= most && LamMayIterate(rve); ++it) {
+    const PetscReal compliance =
+        compliant && it < COMPLIANT_ITERATIONS ? first * PetscPowReal(COMPLIANCE_DECAY, (PetscReal)it) : 0.0;
+    PetscReal energy, norm, gap, alpha;
+    PetscInt changes;
+    PetscBool valid, ok;
+
+    PetscCall(LamContactEvaluate(rve, load, rve->y, (PetscBool)(it < follow_until)));
+    PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
+    if (!valid) break;
+    changes = LamContactFindActive(rve->contact, compliance);
+    LamContactResidual(rve, &step, &norm);
+    PetscCall(LamBorderAssemble(rve, border, &norm));
+    gap = LamContactComplementarity(rve->contact);
+    if (compliance == 0.0 && (norm <= tolerance || at_rounding) && gap <= gap_tolerance) {
+      PetscBool holds;
+
+      PetscCall(Report(rve, it, norm, gap, changes, 0.0, 0.0, 0.0));
+      PetscCall(LamContactStatusHolds(rve, load, rve->y, &holds));
+      *outcome = LAM_NEWTON_CONVERGED;
+      if (holds) break;
+      *outcome = LAM_NEWTON_STALLED;
+      if (restarts++ == RESTARTS) break;
+      rve->contact->hysteresis += LAM_MORE_HYSTERESIS;
+      follow_until = it + 2;
+      continue;
+    }
+    LamContactAddCurvature(rve);
+    PetscCall(LamContactSolveStep(rve, norm, compliance, &step, &ok));
+    if (!ok) break;
+    rve->contact->largest_step = LamBorderReach(rve, border, rve->step + 2);
+    PetscCall(StepLength(rve, load, border, compliant ? STEP_LIMIT : NEAR_LIMIT, &alpha));
+    PetscCall(Report(rve, it, norm, gap, changes, rve->contact->largest_step, alpha, step.shift));
+    if (alpha == 0.0 || (!compliant && rve->contact->largest_step > reach)) break;
+    at_rounding = (PetscBool)(changes == 0 && IsAtRounding(rve, &step, norm, tolerance));
+    if (it >= CYCLE_AFTER && changes > 0) alpha *= 0.5;
+    if (alpha < 1.0 && it < FOLLOW_FAR) follow_until = PetscMax(follow_until, it + 3);
+    LamContactTakeStep(rve, load, alpha, &step);
+  }
+  PetscCall(LamContactStepDestroy(&step));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,182 @@
+/*
+  One step of an active-set iteration: residual, linear system, active set, escape from a saddle.
+
+  Method. With one linearisation of the gaps the active set is found that fits the step: hats whose multiplier would
+  pull are let go, hats whose gap would close beyond zero are taken in, and the system is solved again. The matrix gets
+  the smallest shift tried that leaves as many negative eigenvalues as active hats, and always a minute one, so that a
+  cell that nothing holds is not singular.
+*/
+#include "solve.h"
+
+#define ACTIVE_SET_SOLVES 3  /* solves with one linearisation until the active set fits the step */
+#define LEAST_SHIFT 1e-9     /* of the largest diagonal entry: cells that hardly touch move against tiny stiffness */
+#define SADDLE_RESIDUAL 1e-3 /* of an indefinite state below which Newton would only creep along a saddle */
+#define CREEPING 0.6         /* the same for small steps of more than this share of the one before */
+#define ESCAPE_STEP 0.01     /* along a direction of negative curvature, in apothems */
+
+PetscErrorCode LamContactStepCreate(LamRVE rve, LamContactStep *step)
+{
+  const PetscInt n = rve->linear.n;
+
+  PetscFunctionBeginUser;
+  step->shift = step->floor = 0.0;
+  step->before = PETSC_INFINITY;
+  step->border = NULL;
+  step->updates = PETSC_FALSE;
+  PetscCall(PetscMalloc6(n + 2, &step->rhs, n, &step->solution, rve->contact->count, &step->lambda, n, &step->image, n,
+                         &step->first, rve->contact->count, &step->factored));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamContactStepDestroy(LamContactStep *step)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree6(step->rhs, step->solution, step->lambda, step->image, step->first, step->factored));
+  PetscFunctionReturn(0);
+}
+
+void LamContactResidual(LamRVE rve, LamContactStep *step, PetscReal *norm)
+{
+  const LamContact *contact = rve->contact;
+
+  if (contact->share > 0.0)
+    for (PetscInt i = 0; i < rve->ndof; ++i) rve->residual[i] -= contact->share * contact->held[i];
+  for (PetscInt i = 0; i < rve->length; ++i) step->rhs[i] = rve->residual[i];
+  LamContactAddForce(rve, step->rhs);
+  *norm = LamResidualNorm(rve, step->rhs);
+}
+
+/* Factors with the smallest tried shift that leaves no negative eigenvalues but those expected, from the floor upwards;
+   again: from the last one. An iteration that goes on with shifts goes down with them as far as it can: a shift above
+   what is needed makes it creep. */
+static PetscErrorCode FactorStable(LamRVE rve, PetscBool again, LamContactStep *step, PetscBool *ok)
+{
+  const PetscInt expected = LamExpectedNegative(rve);
+  PetscReal diagonal = 0.0, shift = again ? step->shift : PetscMax(step->floor, LAM_CONTACT_PROXIMAL), least;
+  PetscInt negative;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < rve->linear.positions; ++i)
+    diagonal = PetscMax(diagonal, PetscAbsReal(rve->linear.values[rve->linear.row[i]]));
+  least = PetscMin(LEAST_SHIFT * diagonal, LamBendingStiffness(rve));
+  for (PetscInt attempt = 0; attempt < 60; ++attempt) {
+    PetscCall(LamRVEFactor(rve, shift, &negative, ok));
+    if (*ok && negative <= expected) break;
+    *ok = PETSC_FALSE;
+    if (shift > diagonal) break;
+    if (shift > LAM_CONTACT_PROXIMAL)
+      shift *= 8.0;
+    else
+      shift = step->shift > LAM_CONTACT_PROXIMAL ? PetscMax(step->shift / 8.0, 8.0 * LAM_CONTACT_PROXIMAL) : least;
+  }
+  step->shift = shift;
+  PetscFunctionReturn(0);
+}
+
+/* The solution with the present factor. */
+static PetscErrorCode Solve(LamRVE rve, LamContactStep *step)
+{
+  const LamContact *contact = rve->contact;
+  const PetscInt positions = rve->linear.positions, pressures = rve->linear.n - rve->linear.lumens;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < positions; ++i) step->rhs[i] = -rve->residual[i + 2];
+  for (PetscInt c = 0; c < rve->linear.lumens; ++c) step->rhs[pressures + c] = -rve->residual[rve->ndof + c];
+  for (PetscInt h = 0; h < contact->count; ++h)
+    step->rhs[positions + h] = contact->active[h] ? contact->gap[h] * contact->weight[h] : 0.0;
+  PetscCall(LamBorderSolve(rve, step->border, step->rhs, step->solution));
+  PetscFunctionReturn(0);
+}
+
+/* rve->step and the new multipliers from the solution. */
+static PetscErrorCode TakeSolution(LamRVE rve, LamContactStep *step)
+{
+  const LamContact *contact = rve->contact;
+  const PetscInt positions = rve->linear.positions, pressures = rve->linear.n - rve->linear.lumens;
+
+  PetscFunctionBeginUser;
+  rve->step[0] = rve->step[1] = 0.0;
+  PetscCall(PetscArraycpy(rve->step + 2, step->solution, positions));
+  PetscCall(PetscArraycpy(rve->step + rve->ndof, step->solution + pressures, rve->linear.lumens));
+  for (PetscInt h = 0; h < contact->count; ++h)
+    step->lambda[h] = contact->active[h] ? step->solution[positions + h] : 0.0;
+  PetscFunctionReturn(0);
+}
+
+/*
+  Near a saddle the residual has next to nothing of the unstable mode, and shifted Newton steps creep. Adds to a small
+  step a piece of that mode, downhill, or along the mode's own sign where it is level. residual: with contact forces.
+*/
+static PetscErrorCode AddNegativeCurvature(LamRVE rve, const PetscReal residual[], PetscReal mode[], PetscReal image[])
+{
+  PetscReal largest, sign;
+
+  PetscFunctionBeginUser;
+  LamStartMode(rve, mode);
+  PetscCall(LamImproveSoftestMode(rve, 12, mode));
+  if (LamModeCurvature(rve, mode, image) >= 0.0) PetscFunctionReturn(0);
+  largest = LamLargestEntry(rve->linear.positions, mode);
+  sign = LamModeSlope(rve, mode, residual) > LamNewtonTolerance(rve) ? -1.0 : 1.0;
+  LamAddMode(rve, sign * ESCAPE_STEP / largest, mode, rve->step);
+  ++rve->work.escapes;
+  PetscFunctionReturn(0);
+}
+
+/* Keeps what another active set may be solved with: not where F is free, nor where the shift may be another. */
+static PetscErrorCode FactorAndSolve(LamRVE rve, PetscReal compliance, PetscBool again, LamContactStep *step,
+                                     PetscBool *ok)
+{
+  PetscFunctionBeginUser;
+  LamContactSetRows(rve, compliance);
+  PetscCall(FactorStable(rve, again, step, ok));
+  if (!*ok) PetscFunctionReturn(0);
+  PetscCall(Solve(rve, step));
+  step->updates = (PetscBool)(!step->border && step->shift <= LAM_CONTACT_PROXIMAL);
+  PetscCall(PetscArraycpy(step->factored, rve->contact->active, rve->contact->count));
+  PetscCall(PetscArraycpy(step->first, step->solution, rve->linear.n));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamContactSolveStep(LamRVE rve, PetscReal norm, PetscReal compliance, LamContactStep *step,
+                                   PetscBool *ok)
+{
+  PetscReal largest;
+  PetscInt changes;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < ACTIVE_SET_SOLVES; ++k) {
+    PetscBool updated = PETSC_FALSE;
+
+    if (k > 0 && step->updates)
+      PetscCall(LamContactUpdateStep(rve, step->factored, step->first, compliance, step->solution, &updated));
+    if (!updated) PetscCall(FactorAndSolve(rve, compliance, (PetscBool)(k > 0), step, ok));
+    if (!*ok) PetscFunctionReturn(0);
+    PetscCall(TakeSolution(rve, step));
+    if (k + 1 == ACTIVE_SET_SOLVES) break;
+    PetscCall(LamContactPredictActive(rve, rve->step, LamBorderStep(step->border), step->lambda, compliance, &changes));
+    if (changes == 0) break;
+  }
+  largest = LamLargestEntry(rve->ndof, rve->step);
+  if (step->shift > LAM_CONTACT_PROXIMAL && largest < 0.5 * ESCAPE_STEP &&
+      (norm < SADDLE_RESIDUAL || largest > CREEPING * step->before)) {
+    PetscCall(PetscArraycpy(step->rhs, rve->residual, rve->length));
+    LamContactAddForce(rve, step->rhs);
+    PetscCall(AddNegativeCurvature(rve, step->rhs, step->solution, step->image));
+  }
+  step->before = largest;
+  PetscFunctionReturn(0);
+}
+
+void LamContactTakeStep(LamRVE rve, const LamLoad *load, PetscReal alpha, const LamContactStep *step)
+{
+  LamContact *contact = rve->contact;
+
+  LamUpdateStresses(rve, load, rve->y, rve->step, LamBorderStep(step->border), alpha);
+  for (PetscInt i = 0; i < rve->length; ++i) rve->y[i] += alpha * rve->step[i];
+  for (PetscInt h = 0; h < contact->count; ++h) contact->lambda[h] += alpha * (step->lambda[h] - contact->lambda[h]);
+  if (step->border) {
+    step->border->load = LamBorderMoved(step->border, load, alpha);
+    step->border->patience = PetscMax(0, step->border->patience - 1);
+  }
+  ++rve->work.iterations;
+}

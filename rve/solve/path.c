@@ -1,0 +1,247 @@
+/*
+  From a known state to the equilibrium at a new load.
+
+  Method. (i) The state is turned rigidly so that its stretch axes follow the new load's rotation, and moved affinely by
+  the rest of the change of F. (ii) Fast tier, flow, then safe tier, at the full load. (iii) Where all fail, the same
+  along the straight line in (F, turgor) in substeps, halved on failure and doubled on success; the safe tier, which
+  takes long where walls are stiff, only in the smallest. (iv) A converged state with negative eigenvalues is a saddle:
+  it is left along its unstable mode, downhill, to a stable branch. (v) What ends the way is bracketed: a lumen that
+  shuts, or walls that have lost ellipticity, which no mesh resolves.
+*/
+#include "solve.h"
+
+#define MIN_SUBSTEP (1.0 / 512.0)
+#define MAX_BRANCH_SWITCHES 6
+#define KICK 0.02 /* apothems: start along an unstable mode */
+
+/* Rotation angle of the polar decomposition of the in-plane part of F. */
+PetscReal LamRotationAngle(const PetscReal F[9])
+{
+  return atan2(F[3] - F[1], F[0] + F[4]);
+}
+
+void LamRotatePositions(PetscInt n, PetscReal y[], PetscReal F[9], PetscReal angle)
+{
+  const PetscReal c = PetscCosReal(angle), s = PetscSinReal(angle);
+
+  for (PetscInt i = 0; i < n; i += 2) {
+    const PetscReal y0 = y[i], y1 = y[i + 1];
+
+    y[i] = c * y0 - s * y1;
+    y[i + 1] = s * y0 + c * y1;
+  }
+  for (PetscInt J = 0; J < 2; ++J) {
+    const PetscReal F0 = F[J], F1 = F[3 + J];
+
+    F[J] = c * F0 - s * F1;
+    F[3 + J] = s * F0 + c * F1;
+  }
+}
+
+void LamMoveAffinely(LamRVE rve, const PetscReal from[], const LamLoad *load_from, const LamLoad *load_to)
+{
+  const PetscReal *A = load_from->F, *B = load_to->F;
+
+  rve->moved = PETSC_FALSE;
+  for (PetscInt i = 0; i < 9; ++i) rve->moved = (PetscBool)(rve->moved || A[i] != B[i]);
+  (void)LamSetConsistentStresses(rve, load_from, from);
+  for (PetscInt c = 0; c < rve->mesh.class_count; ++c) {
+    const PetscReal *X = &rve->mesh.class_X[2 * c];
+
+    rve->y[2 * c] = from[2 * c] + (B[0] - A[0]) * X[0] + (B[1] - A[1]) * X[1];
+    rve->y[2 * c + 1] = from[2 * c + 1] + (B[3] - A[3]) * X[0] + (B[4] - A[4]) * X[1];
+  }
+  for (PetscInt i = rve->ndof; i < rve->length; ++i) rve->y[i] = from[i];
+}
+
+/* Leaves saddles downhill until the state is stable. Ends with the consistent tangent factored. */
+static PetscErrorCode LeaveSaddle(LamRVE rve, const LamLoad *load, PetscInt *branch, PetscInt *negative, PetscBool *ok)
+{
+  PetscReal *mode, *saddle;
+  PetscInt unstable;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFactorConsistent(rve, load, negative, ok));
+  if (!*ok || *negative == 0) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc2(rve->linear.n, &mode, rve->length, &saddle));
+  for (PetscInt k = 0; k<MAX_BRANCH_SWITCHES && * ok && * negative> 0; ++k) {
+    LamNewtonOutcome outcome;
+
+    PetscCall(PetscArraycpy(saddle, rve->y, rve->length));
+    unstable = *negative;
+    PetscCall(LamSoftestMode(rve, &rve->lowest_eigenvalue, mode));
+    if (rve->monitor)
+      PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR,
+                             "  saddle: %d negative eigenvalues, lowest %.3e; leaving it\n", (int)unstable,
+                             (double)rve->lowest_eigenvalue));
+    LamAddMode(rve, KICK / LamLargestEntry(rve->linear.positions, mode), mode, rve->y);
+    PetscCall(LamNewtonSafe(rve, load, &outcome));
+    if (outcome == LAM_NEWTON_CONVERGED) {
+      ++*branch;
+      PetscCall(LamFactorConsistent(rve, load, negative, ok));
+    } else {
+      PetscCall(PetscArraycpy(rve->y, saddle, rve->length));
+      PetscCall(LamFactorConsistent(rve, load, negative, ok));
+      break;
+    }
+  }
+  PetscCall(PetscFree2(mode, saddle));
+  PetscFunctionReturn(0);
+}
+
+/* What a step ended in. */
+typedef struct {
+  PetscBool converged;
+  PetscInt negative;  /* eigenvalues; > 0: a saddle */
+  PetscInt collapsed; /* the cell whose lumen is squeezed shut, so that the solution is no answer; -1: none */
+} Outcome;
+
+static PetscBool IsStable(const Outcome *out)
+{
+  return (PetscBool)(out->converged && out->negative == 0 && out->collapsed < 0);
+}
+
+/*
+  One step from (from, load_from) to load_to, whose solution is then in rve->y; branch counts saddles left. thorough:
+  with the safe tier, which takes time where walls are stiff.
+*/
+static PetscErrorCode Step(LamRVE rve, const PetscReal from[], const LamLoad *load_from, const LamLoad *load_to,
+                           PetscBool thorough, PetscInt *branch, Outcome *out)
+{
+  const PetscInt escapes = rve->work.escapes;
+  LamNewtonOutcome outcome;
+  PetscInt shut = -1;
+
+  PetscFunctionBeginUser;
+  *out = (Outcome){.collapsed = -1};
+  LamMoveAffinely(rve, from, load_from, load_to);
+  PetscCall(LamNewtonFast(rve, load_to, NULL, &outcome));
+  if (outcome == LAM_NEWTON_STALLED) {
+    LamMoveAffinely(rve, from, load_from, load_to);
+    PetscCall(LamNewtonFlow(rve, load_to, &outcome, &shut));
+  }
+  if (outcome == LAM_NEWTON_STALLED && thorough) LamMoveAffinely(rve, from, load_from, load_to);
+  if (outcome == LAM_NEWTON_NEAR_SADDLE || (outcome == LAM_NEWTON_STALLED && thorough))
+    PetscCall(LamNewtonSafe(rve, load_to, &outcome));
+  if (rve->work.escapes > escapes) ++*branch;
+  out->collapsed = shut;
+  if (outcome != LAM_NEWTON_CONVERGED) PetscFunctionReturn(0);
+  PetscCall(LeaveSaddle(rve, load_to, branch, &out->negative, &out->converged));
+  if (out->converged) PetscCall(LamFindCollapsedLumen(rve, rve->y, &out->collapsed));
+  PetscFunctionReturn(0);
+}
+
+LamLoad LamLoadBetween(const LamLoad *a, const LamLoad *b, PetscReal t)
+{
+  LamLoad load = *b;
+
+  for (PetscInt i = 0; i < 9; ++i) load.F[i] = (1.0 - t) * a->F[i] + t * b->F[i];
+  load.turgor = (1.0 - t) * a->turgor + t * b->turgor;
+  load.cohesion = (1.0 - t) * a->cohesion + t * b->cohesion;
+  return load;
+}
+
+/* Substeps along a straight way: how far stable states were found, and why not at `failed`. */
+typedef struct {
+  PetscReal between[2]; /* shares of the way: the last stable state, the next that is none */
+  PetscInt branch;
+  Outcome end; /* at the second */
+  LamKinking kinking;
+} Way;
+
+static PetscReal LeastStep(const Way *way)
+{
+  return LamIsKinking(&way->kinking) ? LAM_KINKED_SUBSTEP : MIN_SUBSTEP;
+}
+
+/* From `start` to `load`; y_from holds the last stable positions. */
+static PetscErrorCode Substeps(LamRVE rve, PetscReal y_from[], const LamLoad *start, const LamLoad *load, Way *way)
+{
+  LamLoad at = *start;
+  PetscReal step = 0.25;
+
+  PetscFunctionBeginUser;
+  LamWatchKinks(rve, start, y_from, 0.0, &way->kinking);
+  while (way->between[0] < 1.0 && step >= LeastStep(way) && LamMayIterate(rve)) {
+    const PetscBool smallest = (PetscBool)(step < 2.0 * LeastStep(way));
+    const PetscReal t = PetscMin(1.0, way->between[0] + step);
+    const LamLoad next = t >= 1.0 ? *load : LamLoadBetween(start, load, t);
+    PetscInt branch = way->branch;
+
+    PetscCall(Step(rve, y_from, &at, &next, smallest, &branch, &way->end));
+    if (IsStable(&way->end)) {
+      PetscCall(PetscArraycpy(y_from, rve->y, rve->length));
+      at = next;
+      way->between[0] = t;
+      way->branch = branch;
+      LamWatchKinks(rve, &next, y_from, t, &way->kinking);
+      step = PetscMin(2.0 * step, 1.0);
+    } else {
+      way->between[1] = t;
+      step *= 0.5;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* What is told where the way ends before the load. */
+static PetscErrorCode EndOfWay(LamRVE rve, const Way *way, LamStatus *status, char reason[], size_t length)
+{
+  const PetscBool out_of_work = (PetscBool)(rve->work.iterations >= rve->budget);
+
+  PetscFunctionBeginUser;
+  *status = LAM_NOT_CONVERGED;
+  if (way->end.collapsed >= 0 && !out_of_work) {
+    *status = LAM_NO_EQUILIBRIUM;
+    PetscCall(LamCollapseReason(way->end.collapsed, way->between, reason, length));
+  } else if (LamIsKinking(&way->kinking)) {
+    *status = LAM_NO_EQUILIBRIUM;
+    PetscCall(LamKinkReason(&way->kinking, way->between[0], reason, length));
+  } else {
+    PetscCall(PetscSNPrintf(reason, length,
+                            "no equilibrium found beyond %.4g of the way from the state before, after %d iterations%s",
+                            (double)way->between[0], (int)rve->work.iterations,
+                            out_of_work ? ": give states in between" : " and the smallest substep"));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, PetscInt *branch, PetscInt *negative,
+                             LamStatus *status, char reason[], size_t length)
+{
+  LamLoad start = state->load;
+  PetscReal *from, *saddle;
+  Way way = {.branch = state->branch, .kinking = LAM_NO_KINKING};
+  Outcome out;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(rve->length, &from, rve->length, &saddle));
+  PetscCall(PetscArraycpy(from, state->y, rve->length));
+  LamRotatePositions(rve->ndof, from, start.F, LamRotationAngle(load->F) - LamRotationAngle(start.F));
+  *branch = state->branch;
+  PetscCall(Step(rve, from, &start, load, PETSC_TRUE, branch, &out));
+  if (!IsStable(&out)) {
+    PetscCall(PetscArraycpy(saddle, rve->y, rve->length));
+    PetscCall(Substeps(rve, from, &start, load, &way));
+    if (way.between[0] >= 1.0) {
+      out = way.end;
+      *branch = way.branch;
+    } else if (out.converged && out.collapsed < 0) { /* the unstable state is all there is: give it, and say so */
+      PetscInt again;
+
+      PetscCall(PetscArraycpy(rve->y, saddle, rve->length));
+      PetscCall(LamFactorConsistent(rve, load, &again, &out.converged));
+    }
+  }
+  PetscCall(PetscFree2(from, saddle));
+  *negative = out.negative;
+  if (!out.converged || out.collapsed >= 0) {
+    PetscCall(EndOfWay(rve, &way, status, reason, length));
+    PetscFunctionReturn(0);
+  }
+  *status = out.negative > 0 ? LAM_UNSTABLE : LAM_CONVERGED;
+  if (*status == LAM_UNSTABLE)
+    PetscCall(PetscSNPrintf(reason, length, "only a saddle was found: %d negative eigenvalues, lowest %.3g (C1+C2)",
+                            (int)out.negative, (double)rve->lowest_eigenvalue));
+  PetscFunctionReturn(0);
+}

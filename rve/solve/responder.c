@@ -1,0 +1,230 @@
+/*
+  The direct responder: one RVE solve per question, warm-started from the material point's last state.
+
+  Each point keeps two states: the accepted one of the last load step, and the latest solution, which is nearer to the
+  next question. A question starts from the latest one, unless that has left the accepted branch (buckled on the way):
+  an iterate of the macroscale Newton must not decide which branch the tissue is on. A question without a point, or of
+  one whose states are not kept, starts from the reference. Once sealed, each point keeps the water that it had in its
+  accepted state.
+
+  A body that is inflated evenly asks the same at all its points: a question that equals the last one, and starts from
+  the same state, bit for bit, gets the last answer.
+*/
+#include "solve.h"
+#include <string.h>
+
+typedef struct {
+  LamRVE rve;                     /* borrowed */
+  LamResponder *responder;        /* borrowed: its counters */
+  PetscInt points;                /* whose states are kept */
+  LamRVEState *accepted, *latest; /* [points] */
+  PetscReal *water;               /* [points][cell]; NULL: turgor is prescribed */
+  PetscReal bulk_modulus;         /* of the water */
+  LamRVEState scratch;
+  size_t size;         /* of a state as bytes */
+  char *start, *first; /* [size] the state that a question starts from; that of the last question solved */
+  LamRVEState end;     /* and its solution */
+  LamResponse last;    /* and its answer; of no fields: there is none */
+  PetscInt changes;    /* of the moduli of the walls, then */
+} DirectResponder;
+
+static PetscBool SameLoad(const LamLoad *a, const LamLoad *b)
+{
+  for (int k = 0; k < 9; ++k) {
+    if (a->F[k] != b->F[k]) return PETSC_FALSE;
+  }
+  return (PetscBool)(a->turgor == b->turgor && a->cohesion == b->cohesion);
+}
+
+/* The RVE is borrowed: it is sealed for one solve at a time. */
+static PetscErrorCode SolvePoint(DirectResponder *direct, PetscInt point, const LamLoad *load, LamRVEState state,
+                                 LamResponse *response)
+{
+  const PetscInt cells = direct->rve->mesh.cell_count;
+
+  PetscFunctionBeginUser;
+  if (direct->water) {
+    PetscCheck(point >= 0 && point < direct->points, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "a sealed answer needs a material point whose states are kept");
+    PetscCall(LamRVESeal(direct->rve, direct->bulk_modulus, &direct->water[point * cells]));
+  }
+  PetscCall(LamRVESolve(direct->rve, load, state, response));
+  if (direct->water) PetscCall(LamRVEUnseal(direct->rve));
+  PetscFunctionReturn(0);
+}
+
+/* Solves, or repeats the last answer where that is the same; counts. */
+static PetscErrorCode Answer(DirectResponder *direct, PetscInt point, const LamLoad *load, LamRVEState state,
+                             LamResponse *response)
+{
+  PetscFunctionBeginUser;
+  ++direct->responder->queries;
+  PetscCall(LamRVEStatePack(state, direct->start));
+  if (!direct->water && direct->changes == direct->rve->changes && LamResponseHasFields(&direct->last) &&
+      SameLoad(load, &direct->last.load) && !memcmp(direct->start, direct->first, direct->size)) {
+    PetscCall(LamRVEStateCopy(direct->end, state));
+    *response = direct->last;
+    response->seconds = 0;
+    PetscFunctionReturn(0);
+  }
+  PetscCall(SolvePoint(direct, point, load, state, response));
+  if (response->status != LAM_OUT_OF_REACH) ++direct->responder->solves;
+  if (!LamResponseHasFields(response)) ++direct->responder->failures;
+  direct->responder->solve_seconds += response->seconds;
+  PetscCall(LamRVEStateCopy(state, direct->end));
+  PetscCall(PetscMemcpy(direct->first, direct->start, direct->size));
+  direct->last = *response;
+  direct->changes = direct->rve->changes;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[],
+                              LamResponse responses[])
+{
+  DirectResponder *direct = (DirectResponder *)ctx;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; ++i) {
+    const PetscInt point = points ? points[i] : -1;
+    LamRVEState state = direct->scratch;
+
+    if (point >= 0 && point < direct->points) {
+      state = direct->latest[point];
+      if (state->branch != direct->accepted[point]->branch) PetscCall(LamRVEStateCopy(direct->accepted[point], state));
+    } else {
+      PetscCall(LamRVEStateReset(direct->rve, state));
+    }
+    PetscCall(Answer(direct, point, &loads[i], state, &responses[i]));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Accept(void *ctx)
+{
+  DirectResponder *direct = (DirectResponder *)ctx;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < direct->points; ++i) PetscCall(LamRVEStateCopy(direct->latest[i], direct->accepted[i]));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Reject(void *ctx)
+{
+  DirectResponder *direct = (DirectResponder *)ctx;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < direct->points; ++i) PetscCall(LamRVEStateCopy(direct->accepted[i], direct->latest[i]));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Seal(void *ctx, PetscReal bulk_modulus)
+{
+  DirectResponder *direct = (DirectResponder *)ctx;
+  const PetscInt cells = direct->rve->mesh.cell_count;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < direct->points; ++i)
+    PetscCheck(direct->accepted[i]->solved, PETSC_COMM_SELF, PETSC_ERR_ORDER,
+               "material point %d has no accepted answer whose water it could keep", (int)i);
+  PetscCall(PetscMalloc1(direct->points * cells, &direct->water));
+  for (PetscInt i = 0; i < direct->points; ++i)
+    PetscCall(LamRVEGetLumens(direct->rve, direct->accepted[i], &direct->water[i * cells]));
+  direct->bulk_modulus = bulk_modulus;
+  PetscFunctionReturn(0);
+}
+
+/* A state, and where the cells can be sealed K_w (0: they are not) and their water. */
+static PetscErrorCode StateSize(void *ctx, size_t *bytes)
+{
+  DirectResponder *direct = (DirectResponder *)ctx;
+
+  PetscFunctionBeginUser;
+  *bytes = direct->size;
+  if (direct->rve->seal.allowed) *bytes += (size_t)(1 + direct->rve->mesh.cell_count) * sizeof(PetscReal);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Save(void *ctx, PetscInt point, void *bytes)
+{
+  DirectResponder *direct = (DirectResponder *)ctx;
+  const size_t cells = (size_t)direct->rve->mesh.cell_count;
+  char *seal = (char *)bytes + direct->size;
+
+  PetscFunctionBeginUser;
+  if (point >= direct->points) PetscCall(LamRVEStateReset(direct->rve, direct->scratch));
+  PetscCall(LamRVEStatePack(point < direct->points ? direct->accepted[point] : direct->scratch, bytes));
+  if (!direct->rve->seal.allowed) PetscFunctionReturn(0);
+  memset(seal, 0, (1 + cells) * sizeof(PetscReal));
+  if (!direct->water || point >= direct->points) PetscFunctionReturn(0);
+  memcpy(seal, &direct->bulk_modulus, sizeof(PetscReal));
+  memcpy(seal + sizeof(PetscReal), &direct->water[(size_t)point * cells], cells * sizeof(PetscReal));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Load(void *ctx, PetscInt point, const void *bytes)
+{
+  DirectResponder *direct = (DirectResponder *)ctx;
+  const size_t cells = (size_t)direct->rve->mesh.cell_count;
+  const char *seal = (const char *)bytes + direct->size;
+
+  PetscFunctionBeginUser;
+  if (point >= direct->points) PetscFunctionReturn(0);
+  PetscCall(LamRVEStateUnpack(bytes, direct->accepted[point]));
+  PetscCall(LamRVEStateUnpack(bytes, direct->latest[point]));
+  if (!direct->rve->seal.allowed) PetscFunctionReturn(0);
+  memcpy(&direct->bulk_modulus, seal, sizeof(PetscReal));
+  if (direct->bulk_modulus == 0.0) PetscFunctionReturn(0);
+  if (!direct->water) PetscCall(PetscMalloc1((size_t)direct->points * cells, &direct->water));
+  memcpy(&direct->water[(size_t)point * cells], seal + sizeof(PetscReal), cells * sizeof(PetscReal));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Destroy(void **ctx)
+{
+  DirectResponder *direct = (DirectResponder *)*ctx;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < direct->points; ++i) {
+    PetscCall(LamRVEStateDestroy(&direct->accepted[i]));
+    PetscCall(LamRVEStateDestroy(&direct->latest[i]));
+  }
+  PetscCall(LamRVEStateDestroy(&direct->scratch));
+  PetscCall(LamRVEStateDestroy(&direct->end));
+  PetscCall(PetscFree2(direct->start, direct->first));
+  PetscCall(PetscFree2(direct->accepted, direct->latest));
+  PetscCall(PetscFree(direct->water));
+  PetscCall(PetscFree(*ctx));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEResponderCreate(LamRVE rve, PetscInt points, LamResponder *responder)
+{
+  DirectResponder *direct;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&direct));
+  direct->rve = rve;
+  direct->responder = responder;
+  direct->points = points;
+  PetscCall(PetscMalloc2(points, &direct->accepted, points, &direct->latest));
+  for (PetscInt i = 0; i < points; ++i) {
+    PetscCall(LamRVEStateCreate(rve, &direct->accepted[i]));
+    PetscCall(LamRVEStateCreate(rve, &direct->latest[i]));
+  }
+  PetscCall(LamRVEStateCreate(rve, &direct->scratch));
+  PetscCall(LamRVEStateCreate(rve, &direct->end));
+  PetscCall(LamRVEStateSize(direct->scratch, &direct->size));
+  PetscCall(PetscMalloc2(direct->size, &direct->start, direct->size, &direct->first));
+  direct->last.status = LAM_OUT_OF_REACH;
+  PetscCall(PetscMemzero(responder, sizeof(*responder)));
+  responder->ctx = direct;
+  responder->respond = Respond;
+  responder->accept = Accept;
+  responder->reject = Reject;
+  if (rve->seal.allowed) responder->seal = Seal;
+  responder->destroy = Destroy;
+  responder->state_size = StateSize;
+  responder->save = Save;
+  responder->load = Load;
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,449 @@
+#include "solve.h"
+#include <lamella/clock.h>
+
+PetscErrorCode LamRVECreate(MPI_Comm comm, LamRVE *rve)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(rve));
+  (*rve)->comm = comm;
+  (*rve)->wanted = LAM_WANT_ALL;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEServe(MPI_Comm comm, PetscBool (*waiting)(void *ctx), void *ctx)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamFactorServe(comm, waiting, ctx));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEDismiss(MPI_Comm comm)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamFactorDismiss(comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVESetMicrostructure(LamRVE rve, const LamMicrostructure *micro)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(!rve->is_set_up, PETSC_COMM_SELF, PETSC_ERR_ORDER, "the microstructure is set before LamRVESetUp");
+  PetscCall(LamMicrostructureDestroy(&rve->micro));
+  PetscCall(LamMicrostructureCopy(micro, &rve->micro));
+  rve->has_micro = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVESetStrategy(LamRVE rve, LamStrategy strategy)
+{
+  PetscFunctionBeginUser;
+  rve->strategy = strategy;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVESetTolerance(LamRVE rve, PetscReal tolerance)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(tolerance >= 0.0 && tolerance < 1.0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "tolerance of the solves is %g; it must lie between 0 and 1", (double)tolerance);
+  rve->tolerance = tolerance;
+  if (rve->bonded) PetscCall(LamRVESetTolerance(rve->bonded, tolerance));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVESetWanted(LamRVE rve, LamWanted wanted)
+{
+  PetscFunctionBeginUser;
+  rve->wanted = wanted;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVESetMonitor(LamRVE rve, PetscBool on)
+{
+  PetscFunctionBeginUser;
+  rve->monitor = on;
+  PetscFunctionReturn(0);
+}
+
+static const LamWall *CellWall(const LamMicrostructure *micro, PetscInt cell)
+{
+  return micro->cell ? &micro->cell[cell].wall : &micro->wall;
+}
+
+static void FindStiffest(LamRVE rve)
+{
+  rve->stiffest = 0.0;
+  for (PetscInt cell = 0; cell < rve->mesh.cell_count; ++cell) {
+    const LamWall *wall = CellWall(&rve->micro, cell);
+
+    rve->stiffest = PetscMax(rve->stiffest, wall->bulk_modulus + wall->C4);
+  }
+}
+
+/* Law of each cell, and the extremes over the cells. */
+static PetscErrorCode SetUpWalls(LamRVE rve)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(rve->mesh.cell_count, &rve->law));
+  rve->thinnest = 1.0;
+  for (PetscInt cell = 0; cell < rve->mesh.cell_count; ++cell) {
+    PetscCall(LamWallLawGet(CellWall(&rve->micro, cell)->law, &rve->law[cell]));
+    rve->thinnest = PetscMin(rve->thinnest, LamWallThickness(&rve->micro, cell));
+  }
+  FindStiffest(rve);
+  PetscFunctionReturn(0);
+}
+
+static void CopyModuli(const LamWall *from, LamWall *to)
+{
+  to->C1 = from->C1;
+  to->C2 = from->C2;
+  to->C4 = from->C4;
+  to->bulk_modulus = from->bulk_modulus;
+}
+
+PetscErrorCode LamRVEChangeModuli(LamRVE rve, const LamMicrostructure *micro)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(rve->is_set_up, PETSC_COMM_SELF, PETSC_ERR_ORDER, "LamRVESetUp comes before LamRVEChangeModuli");
+  CopyModuli(&micro->wall, &rve->micro.wall);
+  for (PetscInt cell = 0; rve->micro.cell && cell < rve->mesh.cell_count; ++cell)
+    CopyModuli(CellWall(micro, cell), &rve->micro.cell[cell].wall);
+  FindStiffest(rve);
+  rve->linear.rate = PETSC_INFINITY; /* no factor serves any more */
+  rve->consistent = PETSC_FALSE;
+  rve->changes++;
+  if (rve->bonded) PetscCall(LamRVEChangeModuli(rve->bonded, micro));
+  PetscFunctionReturn(0);
+}
+
+/* All that needs no MPI: mesh, element geometry, sparsity pattern, work arrays. */
+static PetscErrorCode SetUpArrays(LamRVE rve)
+{
+  PetscInt cells, lumens;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamMeshCreate(&rve->micro, &rve->mesh));
+  cells = rve->mesh.cell_count;
+  lumens = rve->seal.allowed ? cells : 0;
+  rve->budget = LAM_ITERATION_BUDGET;
+  PetscCall(SetUpWalls(rve));
+  PetscCall(LamGeometryCreate(rve));
+  if (rve->micro.interface == LAM_INTERFACE_CONTACT) {
+    LamCouplings couplings;
+
+    PetscCall(LamContactCreate(&rve->micro, &rve->mesh, &rve->contact));
+    couplings =
+        (LamCouplings){rve->contact->face_count, rve->contact->chain, rve->contact->hats, rve->contact->classes};
+    PetscCall(LamLinearCreate(&rve->mesh, &couplings, lumens, &rve->linear));
+    PetscCall(LamContactSetMatrix(&rve->linear, rve->contact));
+  } else {
+    PetscCall(LamLinearCreate(&rve->mesh, NULL, lumens, &rve->linear));
+  }
+  rve->ndof = 2 * rve->mesh.class_count;
+  rve->length = rve->ndof + lumens;
+  PetscCall(PetscCalloc4(rve->length, &rve->y, rve->length, &rve->step, rve->length, &rve->trial, rve->length,
+                         &rve->residual));
+  PetscCall(PetscMalloc3(lumens, &rve->seal.water, cells, &rve->seal.area, cells, &rve->seal.factor));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVESetUp(LamRVE rve)
+{
+  PetscFunctionBeginUser;
+  if (rve->is_set_up) PetscFunctionReturn(0);
+  PetscCheck(rve->has_micro, PETSC_COMM_SELF, PETSC_ERR_ORDER, "LamRVESetMicrostructure comes before LamRVESetUp");
+  PetscCall(SetUpArrays(rve));
+  PetscCall(LamLinearCreateMatrix(rve->comm, &rve->linear));
+  if (rve->contact) {
+    LamMicrostructure bonded = rve->micro;
+
+    bonded.interface = LAM_INTERFACE_BONDED;
+    PetscCall(LamRVECreate(rve->comm, &rve->bonded));
+    PetscCall(LamRVESetMicrostructure(rve->bonded, &bonded));
+    PetscCall(LamRVESetSealable(rve->bonded, rve->seal.allowed));
+    PetscCall(LamRVESetTolerance(rve->bonded, rve->tolerance));
+    PetscCall(LamRVESetWanted(rve->bonded, 0)); /* a start: its state alone */
+    PetscCall(LamRVESetMonitor(rve->bonded, rve->monitor));
+    PetscCall(LamRVESetInterrupt(rve->bonded, rve->interrupt, rve->interrupt_ctx));
+    PetscCall(LamRVESetUp(rve->bonded));
+    PetscCall(LamRVEStateCreate(rve->bonded, &rve->bonded_state));
+  }
+  rve->is_set_up = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEDestroy(LamRVE *rve)
+{
+  PetscFunctionBeginUser;
+  if (!*rve) PetscFunctionReturn(0);
+  PetscCall(LamRVEStateDestroy(&(*rve)->bonded_state));
+  PetscCall(LamRVEDestroy(&(*rve)->bonded));
+  PetscCall(LamContactDestroy(&(*rve)->contact));
+  PetscCall(LamLinearDestroy(&(*rve)->linear));
+  PetscCall(LamMeshDestroy(&(*rve)->mesh));
+  PetscCall(PetscFree((*rve)->law));
+  PetscCall(LamMicrostructureDestroy(&(*rve)->micro));
+  PetscCall(PetscFree((*rve)->geometry));
+  PetscCall(PetscFree((*rve)->stress));
+  PetscCall(PetscFree3((*rve)->seal.water, (*rve)->seal.area, (*rve)->seal.factor));
+  PetscCall(PetscFree4((*rve)->y, (*rve)->step, (*rve)->trial, (*rve)->residual));
+  PetscCall(PetscFree(*rve));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEGetUnknowns(LamRVE rve, PetscInt *unknowns)
+{
+  PetscFunctionBeginUser;
+  *unknowns = rve->linear.n;
+  PetscFunctionReturn(0);
+}
+
+static void ReferenceLoad(LamLoad *load)
+{
+  for (PetscInt i = 0; i < 9; ++i) load->F[i] = i % 4 == 0 ? 1.0 : 0.0;
+  load->turgor = load->cohesion = 0.0;
+}
+
+PetscErrorCode LamRVEStateCreate(LamRVE rve, LamRVEState *state)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(rve->is_set_up, PETSC_COMM_SELF, PETSC_ERR_ORDER, "LamRVESetUp comes before LamRVEStateCreate");
+  PetscCall(PetscNew(state));
+  (*state)->n = rve->length;
+  (*state)->multipliers = rve->contact ? rve->contact->count : 0;
+  (*state)->faces = rve->contact ? rve->contact->face_count : 0;
+  PetscCall(PetscMalloc3((*state)->n, &(*state)->y, (*state)->multipliers, &(*state)->lambda, (*state)->faces,
+                         &(*state)->hats));
+  if (rve->bonded) PetscCall(LamRVEStateCreate(rve->bonded, &(*state)->bonded));
+  PetscCall(LamRVEStateReset(rve, *state));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEStateCopy(LamRVEState from, LamRVEState to)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(from->n == to->n && from->multipliers == to->multipliers, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ,
+             "states of different RVEs");
+  PetscCall(PetscArraycpy(to->y, from->y, from->n));
+  PetscCall(PetscArraycpy(to->lambda, from->lambda, from->multipliers));
+  PetscCall(PetscArraycpy(to->hats, from->hats, from->faces));
+  to->load = from->load;
+  to->branch = from->branch;
+  to->solved = from->solved;
+  if (from->bonded) PetscCall(LamRVEStateCopy(from->bonded, to->bonded));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEStateReset(LamRVE rve, LamRVEState state)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(state->y, rve->mesh.class_X, rve->ndof));
+  PetscCall(PetscArrayzero(state->y + rve->ndof, rve->linear.lumens));
+  PetscCall(PetscArrayzero(state->lambda, state->multipliers));
+  for (PetscInt f = 0; f < state->faces; ++f) {
+    state->hats[f][0] = rve->contact->faces[f].low;
+    state->hats[f][1] = rve->contact->faces[f].high;
+  }
+  ReferenceLoad(&state->load);
+  state->branch = 0;
+  state->solved = PETSC_FALSE;
+  if (rve->bonded) PetscCall(LamRVEStateReset(rve->bonded, state->bonded));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEStateDestroy(LamRVEState *state)
+{
+  PetscFunctionBeginUser;
+  if (!*state) PetscFunctionReturn(0);
+  PetscCall(LamRVEStateDestroy(&(*state)->bonded));
+  PetscCall(PetscFree3((*state)->y, (*state)->lambda, (*state)->hats));
+  PetscCall(PetscFree(*state));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamCheckLoad(const LamLoad *load, char reason[], size_t length)
+{
+  const PetscReal *F = load->F, det = F[0] * F[4] - F[1] * F[3];
+
+  PetscFunctionBeginUser;
+  reason[0] = '\0';
+  for (PetscInt i = 0; i < 9; ++i)
+    if (PetscIsInfOrNanReal(F[i])) {
+      PetscCall(PetscSNPrintf(reason, length, "F has a component that is not finite"));
+      PetscFunctionReturn(0);
+    }
+  if (PetscIsInfOrNanReal(load->turgor))
+    PetscCall(PetscSNPrintf(reason, length, "turgor is not finite"));
+  else if (!(load->cohesion >= 0.0) || PetscIsInfOrNanReal(load->cohesion))
+    PetscCall(
+        PetscSNPrintf(reason, length, "cohesion is %g; it must be finite and not negative", (double)load->cohesion));
+  else if (F[2] != 0.0 || F[5] != 0.0 || F[6] != 0.0 || F[7] != 0.0)
+    PetscCall(PetscSNPrintf(reason, length, "F has out-of-plane shear, which plane strain does not carry"));
+  else if (!(det > 0.0) || !(F[8] > 0.0))
+    PetscCall(PetscSNPrintf(reason, length,
+                            "F turns the tissue inside out: in-plane determinant %g, F33 %g; both must be positive",
+                            (double)det, (double)F[8]));
+  PetscFunctionReturn(0);
+}
+
+/* Fields of the solution in rve->y, whose consistent tangent is factored. */
+static PetscErrorCode FillFields(LamRVE rve, const LamLoad *load, LamResponse *response)
+{
+  PetscFunctionBeginUser;
+  if (rve->wanted & (LAM_WANT_STRESS | LAM_WANT_DERIVATIVES)) PetscCall(LamHomogenise(rve, load, response));
+  if (!rve->contact && response->status == LAM_CONVERGED && rve->linear.negative > LamExpectedNegative(rve)) {
+    /* a factor that was taken to be near was not */
+    response->status = LAM_UNSTABLE;
+    PetscCall(PetscStrncpy(response->reason, "the state is a saddle", sizeof(response->reason)));
+  }
+  if (rve->wanted & LAM_WANT_WALLS) PetscCall(LamWallMeasures(rve, load, response));
+  if (!(rve->wanted & LAM_WANT_INDICATORS)) PetscFunctionReturn(0);
+  if (rve->contact) {
+    PetscCall(LamContactIndicators(rve, load, response));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(LamFaceTractions(rve, load, response));
+  PetscCall(LamBondedIndicators(rve, load, response));
+  PetscFunctionReturn(0);
+}
+
+/* A state in which walls have passed through each other is not an answer. */
+static PetscErrorCode RefuseCollapsedLumen(LamRVE rve, LamResponse *response)
+{
+  const PetscReal unknown[2] = {0.0, 0.0};
+  PetscInt cell;
+
+  PetscFunctionBeginUser;
+  if (!LamResponseHasFields(response) || rve->contact) PetscFunctionReturn(0); /* contact has looked itself */
+  PetscCall(LamFindCollapsedLumen(rve, rve->y, &cell));
+  if (cell < 0) PetscFunctionReturn(0);
+  response->status = LAM_NOT_CONVERGED;
+  PetscCall(LamCollapseReason(cell, unknown, response->reason, sizeof(response->reason)));
+  PetscFunctionReturn(0);
+}
+
+void LamKeepState(LamRVE rve, const LamLoad *load, PetscInt branch, LamRVEState state)
+{
+  for (PetscInt i = 0; i < rve->ndof; ++i) state->y[i] = rve->y[i];
+  for (PetscInt c = 0; c < rve->linear.lumens; ++c) state->y[rve->ndof + c] = LamTurgor(rve, load, rve->y, c);
+  for (PetscInt h = 0; h < state->multipliers; ++h) state->lambda[h] = rve->contact->lambda[h];
+  for (PetscInt f = 0; f < state->faces; ++f) {
+    state->hats[f][0] = rve->contact->faces[f].first;
+    state->hats[f][1] = rve->contact->faces[f].last;
+  }
+  state->solved = PETSC_TRUE;
+  state->load = *load;
+  state->branch = branch;
+}
+
+PetscErrorCode LamAcceptSolution(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
+{
+  PetscFunctionBeginUser;
+  PetscCall(RefuseCollapsedLumen(rve, response));
+  if (!LamResponseHasFields(response)) PetscFunctionReturn(0);
+  PetscCall(FillFields(rve, load, response));
+  response->stable = (PetscBool)(response->status == LAM_CONVERGED);
+  if (!response->stable || response->zero_modes > 0) response->lowest_eigenvalue = rve->lowest_eigenvalue;
+  LamKeepState(rve, load, response->branch, state);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamResponseInit(load, response));
+  response->source = LAM_SOURCE_SOLVE;
+  response->unknowns = rve->linear.n;
+  response->distance = 0.0;
+  rve->work = (LamWork){0};
+  rve->lowest_eigenvalue = NAN;
+  rve->linear.rate = PETSC_INFINITY;
+  rve->consistent = PETSC_FALSE;
+  LamTakeJunctions(rve, state);
+  PetscFunctionReturn(0);
+}
+
+/* The way from a state to a load. */
+static PetscErrorCode Follow(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
+{
+  PetscFunctionBeginUser;
+  LamTakeJunctions(rve, state);
+  if (rve->contact)
+    PetscCall(LamContactFollowPath(rve, load, state, response));
+  else
+    PetscCall(LamFollowPath(rve, load, state, &response->branch, &response->negative_eigenvalues, &response->status,
+                            response->reason, sizeof(response->reason)));
+  PetscFunctionReturn(0);
+}
+
+/* From the solution of a coarser mesh; from `state` where that leads nowhere. */
+static PetscErrorCode FollowNested(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
+{
+  LamRVEState start;
+  LamResponse coarse;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEStateCreate(rve, &start));
+  PetscCall(LamRVEStateCopy(state, start));
+  PetscCall(LamNestedStart(rve, load, start, &coarse));
+  if (start->solved) PetscCall(Follow(rve, load, start, response));
+  PetscCall(LamRVEStateDestroy(&start));
+  if (LamResponseHasFields(&coarse)) {
+    if (response->status != LAM_CONVERGED && !rve->work.stopped) PetscCall(Follow(rve, load, state, response));
+  } else {
+    response->status = coarse.status;
+    PetscCall(PetscStrncpy(response->reason, coarse.reason, sizeof(response->reason)));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
+{
+  const PetscReal begin = LamClock();
+
+  PetscFunctionBeginUser;
+  PetscCall(LamBeginResponse(rve, load, state, response));
+  PetscCall(LamCheckLoad(load, response->reason, sizeof(response->reason)));
+  if (response->reason[0]) {
+    response->status = LAM_INVALID_F;
+    PetscFunctionReturn(0);
+  }
+  if (LamIsNested(rve, state))
+    PetscCall(FollowNested(rve, load, state, response));
+  else
+    PetscCall(Follow(rve, load, state, response));
+  if (rve->work.stopped) PetscCall(LamGiveUp(response));
+  PetscCall(LamAcceptSolution(rve, load, state, response));
+  response->newton_iterations = rve->work.iterations;
+  response->factorisations = rve->work.factorisations;
+  response->seconds = LamClock() - begin;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVETimeAssembly(const LamMicrostructure *micro, PetscInt *unknowns, PetscReal *seconds)
+{
+  LamRVE rve;
+  LamLoad load;
+  PetscReal begin, now;
+  PetscInt repeats = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&rve));
+  PetscCall(LamRVESetMicrostructure(rve, micro));
+  PetscCall(SetUpArrays(rve));
+  ReferenceLoad(&load);
+  begin = LamClock();
+  do {
+    PetscReal energy;
+    PetscBool valid;
+
+    PetscCall(LamAssemble(rve, &load, rve->mesh.class_X, &energy, rve->residual, &valid));
+    ++repeats;
+    now = LamClock();
+  } while (now - begin < 0.02);
+  *seconds = (now - begin) / (PetscReal)repeats;
+  *unknowns = rve->linear.n;
+  PetscCall(LamRVEDestroy(&rve));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,260 @@
+/*
+  What every command runs in: streams, signals, MPI, PETSc; errors, told once at the end.
+
+  Errors. The library returns PETSc error codes. The handler below keeps the words of the first one and the way it came;
+  nothing is printed before the error has reached main, where it is told once: mistakes of the user and failures of
+  input and output in their own words, anything else as a fault of the program with its trace.
+  Under MPI the ranks agree at the end: an error that all have is told by the lowest rank that knows the words; a rank
+  that is alone with its error waits a moment for the others, then tells it and ends the job.
+*/
+#define _GNU_SOURCE /* RTLD_DEFAULT */
+#include "app.h"
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <hdf5.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+#include <lamella/clock.h>
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/lsan_interface.h>
+#endif
+
+/* How long a rank waits for the others to end too, s: with an error of its own, and with one it was told of. */
+#define OWN_ERROR_PATIENCE 3.0
+#define SHARED_ERROR_PATIENCE 60.0
+
+static struct {
+  PetscErrorCode code;
+  char message[2048], trace[2048];
+} Error; /* the last that arose on this rank */
+
+static MPI_Comm EndComm = MPI_COMM_NULL; /* for the agreement at the end */
+
+/* ---- errors ---- */
+
+static PetscErrorCode KeepError(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
+                                PetscErrorType type, const char *message, void *ctx)
+{
+  size_t length;
+
+  (void)comm;
+  (void)ctx;
+  if (type == PETSC_ERROR_INITIAL) {
+    /* PETSc 3.18 gives the line of the caller as the code where malloc fails, and the caller's name as the words */
+    if (!strcmp(function, "PetscMallocAlign")) code = PETSC_ERR_MEM;
+    Error.code = code;
+    Error.trace[0] = '\0';
+    snprintf(Error.message, sizeof(Error.message), "%s", message ? message : "");
+  }
+  length = strlen(Error.trace);
+  snprintf(Error.trace + length, sizeof(Error.trace) - length, "  %s, %s:%d\n", function, file, line);
+  return code;
+}
+
+static int StatusOf(PetscErrorCode code)
+{
+  switch (code) {
+  case PETSC_ERR_USER_INPUT:
+    return LAM_EXIT_INPUT;
+  case PETSC_ERR_FILE_OPEN:
+  case PETSC_ERR_FILE_READ:
+  case PETSC_ERR_FILE_WRITE:
+  case PETSC_ERR_FILE_UNEXPECTED:
+    return LAM_EXIT_IO;
+  default:
+    return LAM_EXIT_FAULT;
+  }
+}
+
+static void TellError(PetscErrorCode code)
+{
+  const char *general = NULL;
+
+  fflush(stdout);
+  if (StatusOf(code) != LAM_EXIT_FAULT) {
+    fprintf(stderr, "lamella: %s\n", Error.message);
+    return;
+  }
+  if (code == PETSC_ERR_MEM) {
+    fprintf(stderr, "lamella: out of memory (%s); lamella check tells what a scene needs\n", Error.message);
+    return;
+  }
+  (void)PetscErrorMessage(code, &general, NULL);
+  fprintf(stderr, "lamella: %s%s%s\n%sThis is a fault of Lamella, please report it.\n", general ? general : "",
+          general && Error.message[0] ? ": " : "", Error.message, Error.trace);
+}
+
+#ifdef __SANITIZE_ADDRESS__
+/* Asked by the leak checker at exit: an error returns past the clean-up, its memory is left to the system. */
+int __lsan_is_turned_off(void)
+{
+  return Error.code != 0;
+}
+#endif
+
+/* ---- MPI: start, agreement, end ---- */
+
+static PetscBool MPIRuns(void)
+{
+  int initialized = 0, finalized = 0;
+
+  MPI_Initialized(&initialized);
+  MPI_Finalized(&finalized);
+  return (PetscBool)(initialized && !finalized);
+}
+
+PetscBool LamAppIsRoot(void)
+{
+  int rank = 0;
+
+  if (MPIRuns()) {
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  } else if (LamProgramSolves()) { /* a usage error under mpirun is told once, too */
+    const char *launched = getenv("OMPI_COMM_WORLD_RANK");
+
+    rank = launched ? atoi(launched) : 0;
+  }
+  return (PetscBool)(rank == 0);
+}
+
+/*
+  HDF5 crashes when it tidies up behind a file that it could not write. It would do so at exit, and in MPI_Finalize
+  where MPI runs when HDF5 begins.
+*/
+void LamAppStartHDF5(void)
+{
+  H5dont_atexit();
+  H5open();
+}
+
+/*
+  Without a launcher there are no other ranks: Open MPI then need not start a daemon, nor look for networks, which takes
+  longer than many a solve.
+*/
+static void ExpectNoRanks(void)
+{
+  if (getenv("OMPI_COMM_WORLD_SIZE") || getenv("PMIX_RANK") || getenv("PMI_RANK")) return;
+  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+  setenv("OMPI_MCA_pml", "ob1", 0);
+}
+
+PetscErrorCode LamAppInitialize(LamArgs *args)
+{
+  PetscFunctionBeginUser;
+  ExpectNoRanks();
+  setenv("HWLOC_HIDE_ERRORS", "2", 0); /* in a container without /sys MPI's hwloc complains of that on every start */
+  PetscCall(PetscOptionsSetValue(NULL, "-no_signal_handler", "true")); /* SIGTERM is ours */
+  PetscCall(PetscInitialize(&args->petsc_argc, &args->petsc_argv, NULL, NULL));
+  PetscCallMPI(MPI_Comm_dup(MPI_COMM_WORLD, &EndComm));
+  PetscCall(LamSignalsInstall());
+  PetscCall(LamStopShare(MPI_COMM_WORLD));
+  PetscFunctionReturn(0);
+}
+
+/* Whether all ranks have come here within `patience` seconds (negative: however long it takes). */
+static PetscBool AwaitOthers(MPI_Request *request, double patience)
+{
+  const struct timespec pause = {0, 1000000}; /* ranks that have nothing to do leave the processor to the others */
+  const double start = LamClock();
+  int done = 0;
+
+  while (MPI_Test(request, &done, MPI_STATUS_IGNORE) == MPI_SUCCESS && !done) {
+    if (patience >= 0 && LamClock() - start > patience) return PETSC_FALSE;
+    nanosleep(&pause, NULL);
+  }
+  return (PetscBool)done;
+}
+
+/* The ranks end with one status, the largest; errors are told by the lowest rank that knows their words. */
+static void AgreeAtEnd(PetscErrorCode code, int *status)
+{
+  const PetscBool own = (PetscBool)(code && code == Error.code);
+  int rank, size, mine[2], all[2];
+  MPI_Request request;
+
+  MPI_Comm_rank(EndComm, &rank);
+  MPI_Comm_size(EndComm, &size);
+  mine[0] = *status;
+  mine[1] = own ? size - rank : 0;
+  MPI_Iallreduce(mine, all, 2, MPI_INT, MPI_MAX, EndComm, &request);
+  if (!AwaitOthers(&request, own ? OWN_ERROR_PATIENCE : code ? SHARED_ERROR_PATIENCE : -1)) {
+    if (own) TellError(code);
+    fprintf(stderr, "lamella: rank %d ends the job\n", rank);
+    MPI_Abort(EndComm, *status);
+  }
+  if (own && all[1] == mine[1]) TellError(code);
+  *status = all[0];
+  (void)LamStopShareEnd();
+  MPI_Comm_free(&EndComm);
+}
+
+/* A misspelt option after `--` would otherwise be ignored without a word. */
+static PetscErrorCode WarnOfUnusedOptions(void)
+{
+  PetscInt n;
+  char **names, **values;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
+  for (PetscInt i = 0; i < n && LamAppIsRoot(); i++)
+    fprintf(stderr, "lamella: PETSc option -%s was not used\n", names[i]);
+  PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
+  PetscFunctionReturn(0);
+}
+
+void LamRuntimeEnd(PetscErrorCode code, int *status)
+{
+  if (code) *status = StatusOf(code);
+  if (EndComm != MPI_COMM_NULL)
+    AgreeAtEnd(code, status);
+  else if (code)
+    TellError(code);
+  if (PetscInitializeCalled && !code) (void)WarnOfUnusedOptions();
+  if (PetscInitializeCalled && PetscFinalize()) *status = PetscMax(*status, LAM_EXIT_FAULT);
+  if (!fflush(stdout) && !ferror(stdout)) return;
+  if (*status != LAM_EXIT_IO) fprintf(stderr, "lamella: standard output: %s\n", strerror(errno));
+  *status = LAM_EXIT_IO;
+}
+
+/*
+  The matrices of an RVE are too small for threads, which cost more than they bring and crowd the ranks. The libraries
+  read OMP_NUM_THREADS and OPENBLAS_NUM_THREADS when they are loaded, before main: so they are told by their functions,
+  where they have any, unless the user has set the variable.
+*/
+static void UseOneThread(void)
+{
+  const char *const libraries[][2] = {{"OMP_NUM_THREADS", "omp_set_num_threads"},
+                                      {"OPENBLAS_NUM_THREADS", "openblas_set_num_threads"}};
+
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(libraries); i++) {
+    void (*set)(int);
+
+    *(void **)&set = dlsym(RTLD_DEFAULT, libraries[i][1]);
+    if (set && !getenv(libraries[i][0])) set(1);
+  }
+}
+
+/* Otherwise a file would get the number of a stream that the caller has closed, and what is printed. */
+static void FillStreams(void)
+{
+  int fd;
+
+  do fd = open("/dev/null", O_RDONLY); /* printing on it fails, and is told */
+  while (fd >= 0 && fd <= STDERR_FILENO);
+  if (fd >= 0) close(fd);
+}
+
+PetscErrorCode LamRuntimeBegin(void)
+{
+  FillStreams();
+  UseOneThread();
+  LamFaultsTell();
+  signal(SIGPIPE, SIG_IGN);                   /* a closed pipe is an error of writing, told as such */
+  signal(SIGXFSZ, SIG_IGN);                   /* so is a file that may not grow */
+  PetscErrorHandlingInitialized = PETSC_TRUE; /* else PETSc calls no handler before PetscInitialize */
+  return PetscPushErrorHandler(KeepError, NULL);
+}

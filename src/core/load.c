@@ -1,0 +1,35 @@
+/*
+  Which loads tissue in plane strain can have.
+*/
+#include <lamella/response.h>
+#include <math.h>
+#include <stdio.h>
+
+PetscBool LamPlaneStrain(const PetscReal F[9])
+{
+  const PetscReal tiny = 10 * PETSC_MACHINE_EPSILON;
+
+  return (PetscBool)(fabs(F[2]) <= tiny && fabs(F[5]) <= tiny && fabs(F[6]) <= tiny && fabs(F[7]) <= tiny &&
+                     fabs(F[8] - 1) <= tiny);
+}
+
+PetscBool LamLoadValidate(const LamLoad *load, LamResponse *r)
+{
+  const PetscReal *F = load->F;
+  PetscReal sum = load->turgor + load->cohesion, J;
+
+  for (int i = 0; i < 9; i++) sum += F[i];
+  J = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
+  if (!isfinite(sum) || !(J > 0)) {
+    r->status = LAM_INVALID_F;
+    snprintf(r->reason, sizeof(r->reason), "det F = %g; a deformation gradient needs det F > 0", (double)J);
+    return PETSC_FALSE;
+  }
+  if (!LamPlaneStrain(F)) {
+    r->status = LAM_OUT_OF_REACH;
+    snprintf(r->reason, sizeof(r->reason),
+             "the records are of plane strain; F33 must be 1 and the out-of-plane shears 0");
+    return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}

@@ -1,0 +1,220 @@
+/*
+  The canonical description of a microstructure: nondimensional, without what has no effect, 12 digits, so that two
+  scenes in different units that mean the same tissue have the same text, and the same hash.
+*/
+#include <lamella/scene.h>
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *const LamWallLawNames[] = {LAM_WALL_LAWS(LAM_NAME_ENTRY)};
+const char *const LamInterfaceLawNames[] = {LAM_INTERFACE_LAWS(LAM_NAME_ENTRY)};
+const char *const LamStrategyNames[] = {LAM_STRATEGIES(LAM_NAME_ENTRY)};
+const char *const LamPatchSidesNames[] = {LAM_PATCH_SIDES(LAM_NAME_ENTRY)};
+const char *const LamFibresNames[] = {LAM_FIBRES(LAM_NAME_ENTRY)};
+
+/* 64-bit FNV-1a (Fowler, Noll, Vo): a name, not a protection. */
+static uint64_t Hash(const char text[])
+{
+  uint64_t hash = 0xcbf29ce484222325u;
+
+  for (; *text; text++) hash = (hash ^ (unsigned char)*text) * 0x100000001b3u;
+  return hash;
+}
+
+/* Rounding errors of unit conversion are some 1e-16, also of a zero. */
+static double Clean(PetscReal value)
+{
+  return fabs(value) < 1e-13 ? 0.0 : (double)value;
+}
+
+/* The wall's part. Fibres have no effect in a law without them. */
+static void DescribeWall(const LamWall *wall, FILE *out)
+{
+  fprintf(out, "\"wall\": {\"law\": \"%s\", \"C1\": %.12g, \"C2\": %.12g, ", LamWallLawNames[wall->law],
+          Clean(wall->C1), Clean(wall->C2));
+  if (wall->law == LAM_WALL_FIBRE_MOONEY_RIVLIN)
+    fprintf(out, "\"C4\": %.12g, \"fibres\": \"%s\", ", Clean(wall->C4), LamFibresNames[wall->fibres]);
+  fprintf(out, "\"bulk_modulus\": %.12g}", Clean(wall->bulk_modulus));
+}
+
+/* Cells that differ, in their order. Bonded cells have no cohesion. */
+static void DescribeCells(const LamMicrostructure *micro, FILE *out)
+{
+  for (PetscInt c = 0; c < micro->cells[0] * micro->cells[1]; c++) {
+    const LamCell *cell = &micro->cell[c];
+
+    fprintf(out, "%s{\"wall_thickness\": %.12g, ", c ? ", " : "", Clean(cell->wall_thickness));
+    DescribeWall(&cell->wall, out);
+    fprintf(out, ", \"turgor\": %.12g", Clean(cell->turgor));
+    if (micro->interface == LAM_INTERFACE_CONTACT) fprintf(out, ", \"cohesion\": %.12g", Clean(cell->cohesion));
+    fprintf(out, "}");
+  }
+}
+
+static void Describe(const LamMicrostructure *micro, FILE *out)
+{
+  fprintf(out, "{\"wall_thickness\": %.12g, \"orientation\": %.12g, \"cells\": [%d, %d], ",
+          Clean(micro->wall_thickness), Clean(micro->orientation), (int)micro->cells[0], (int)micro->cells[1]);
+  if (micro->is_patch) fprintf(out, "\"patch\": {\"sides\": \"%s\"}, ", LamPatchSidesNames[micro->sides]);
+  fprintf(out, "\"mesh\": {\"along\": %d, \"through\": %d", (int)micro->along, (int)micro->through);
+  if (micro->grading != 0) fprintf(out, ", \"grading\": %.12g", Clean(micro->grading));
+  fprintf(out, "}, ");
+  DescribeWall(&micro->wall, out);
+  fprintf(out, ", \"interface\": {\"law\": \"%s\"", LamInterfaceLawNames[micro->interface]);
+  if (micro->interface == LAM_INTERFACE_CONTACT) fprintf(out, ", \"clearance\": %.12g", Clean(micro->clearance));
+  fprintf(out, "}");
+  if (micro->cell) {
+    fprintf(out, ", \"cell\": [");
+    DescribeCells(micro, out);
+    fprintf(out, "]");
+  }
+  fprintf(out, "}");
+}
+
+PetscErrorCode LamMicrostructureDescribe(const LamMicrostructure *micro, char **json, char hash[LAM_HASH_LENGTH])
+{
+  char *text = NULL;
+  size_t length;
+  FILE *out = open_memstream(&text, &length);
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the description of a microstructure");
+  Describe(micro, out);
+  PetscCheck(!fclose(out), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the description of a microstructure");
+  snprintf(hash, LAM_HASH_LENGTH, "%016llx", (unsigned long long)Hash(text));
+  ierr = PetscStrallocpy(text, json);
+  free(text);
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMicrostructureHashTissue(const LamMicrostructure *micro, char hash[LAM_HASH_LENGTH])
+{
+  LamMicrostructure tissue = *micro;
+  char *text;
+
+  PetscFunctionBeginUser;
+  tissue.along = tissue.through = 0;
+  tissue.grading = 0;
+  PetscCall(LamMicrostructureDescribe(&tissue, &text, hash));
+  PetscCall(PetscFree(text));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMicrostructureCopy(const LamMicrostructure *micro, LamMicrostructure *copy)
+{
+  const PetscInt count = micro->cells[0] * micro->cells[1];
+
+  PetscFunctionBeginUser;
+  *copy = *micro;
+  copy->cell = NULL;
+  if (!micro->cell) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(count, &copy->cell));
+  PetscCall(PetscArraycpy(copy->cell, micro->cell, count));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMicrostructureDestroy(LamMicrostructure *micro)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(micro->cell));
+  PetscFunctionReturn(0);
+}
+
+/* Index of `text` in a list of names; -1 where it is not there. */
+static int Find(int count, const char *const names[], const char text[])
+{
+  for (int i = 0; i < count; i++)
+    if (!strcmp(names[i], text)) return i;
+  return -1;
+}
+
+static PetscBool ParseWall(json_t *object, LamWall *wall)
+{
+  const char *law, *fibres = LamFibresNames[LAM_FIBRES_BOTH];
+  int found[2];
+
+  if (json_unpack(object, "{s:s, s:F, s:F, s?F, s?s, s:F}", "law", &law, "C1", &wall->C1, "C2", &wall->C2, "C4",
+                  &wall->C4, "fibres", &fibres, "bulk_modulus", &wall->bulk_modulus))
+    return PETSC_FALSE;
+  found[0] = Find(LAM_WALL_LAW_COUNT, LamWallLawNames, law);
+  found[1] = Find(LAM_FIBRES_COUNT, LamFibresNames, fibres);
+  if (found[0] < 0 || found[1] < 0) return PETSC_FALSE;
+  wall->law = (LamWallLawType)found[0];
+  wall->fibres = (LamFibres)found[1];
+  return PETSC_TRUE;
+}
+
+static PetscBool ParseCell(json_t *object, LamCell *cell)
+{
+  json_t *wall;
+
+  *cell = (LamCell){.cohesion = 1.0};
+  if (json_unpack(object, "{s:F, s:o, s:F, s?F}", "wall_thickness", &cell->wall_thickness, "wall", &wall, "turgor",
+                  &cell->turgor, "cohesion", &cell->cohesion))
+    return PETSC_FALSE;
+  return ParseWall(wall, &cell->wall);
+}
+
+/* Allocates m->cell. */
+static PetscBool ParseCells(json_t *array, LamMicrostructure *m)
+{
+  const size_t count = json_array_size(array);
+
+  if ((size_t)m->cells[0] * (size_t)m->cells[1] != count || PetscMalloc1(count, &m->cell)) return PETSC_FALSE;
+  for (size_t c = 0; c < count; c++)
+    if (!ParseCell(json_array_get(array, c), &m->cell[c])) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+static PetscBool ParsePatch(json_t *object, LamMicrostructure *m)
+{
+  const char *sides;
+  int found;
+
+  if (json_unpack(object, "{s:s}", "sides", &sides)) return PETSC_FALSE;
+  found = Find(LAM_PATCH_SIDES_COUNT, LamPatchSidesNames, sides);
+  m->is_patch = PETSC_TRUE;
+  m->sides = (LamPatchSides)found;
+  return (PetscBool)(found >= 0);
+}
+
+static PetscBool ParseObject(json_t *root, LamMicrostructure *m)
+{
+  json_t *wall, *patch = NULL, *cells_that_differ = NULL;
+  const char *interface;
+  int cells[2], along, through, found;
+
+  if (json_unpack(root, "{s:F, s:F, s:[i,i], s?o, s:{s:i, s:i, s?F}, s:o, s:{s:s, s?F}, s?o}", "wall_thickness",
+                  &m->wall_thickness, "orientation", &m->orientation, "cells", &cells[0], &cells[1], "patch", &patch,
+                  "mesh", "along", &along, "through", &through, "grading", &m->grading, "wall", &wall, "interface",
+                  "law", &interface, "clearance", &m->clearance, "cell", &cells_that_differ))
+    return PETSC_FALSE;
+  found = Find(LAM_INTERFACE_LAW_COUNT, LamInterfaceLawNames, interface);
+  if (found < 0 || cells[0] < 1 || cells[1] < 1) return PETSC_FALSE;
+  m->interface = (LamInterfaceLawType)found;
+  for (int i = 0; i < 2; i++) m->cells[i] = cells[i];
+  m->along = along;
+  m->through = through;
+  return (PetscBool)(ParseWall(wall, &m->wall) && (!patch || ParsePatch(patch, m)) &&
+                     (!cells_that_differ || ParseCells(cells_that_differ, m)));
+}
+
+PetscErrorCode LamMicrostructureParse(const char path[], const char json[], LamMicrostructure *micro)
+{
+  json_t *root = json_loads(json, 0, NULL);
+  PetscBool good;
+
+  PetscFunctionBeginUser;
+  memset(micro, 0, sizeof(*micro));
+  good = (PetscBool)(root && ParseObject(root, micro));
+  json_decref(root);
+  if (!good) PetscCall(LamMicrostructureDestroy(micro));
+  PetscCheck(good, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: the description of the microstructure is damaged: %.1000s", path, json);
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,150 @@
+/*
+  Responses: their names, their table of members, their error norm.
+*/
+#include <lamella/response.h>
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+const char *const LamStatusNames[] = {LAM_STATUSES(LAM_NAME_ENTRY) NULL};
+const char *const LamSourceNames[] = {LAM_SOURCES(LAM_NAME_ENTRY) NULL};
+
+#define AT(member) offsetof(LamResponse, member)
+#define REAL(name, count, power, help)                                                                                 \
+  {                                                                                                                    \
+#name, LAM_MEMBER_REAL, count, AT(name), power, NULL, help                                                         \
+  }
+#define LOAD(name, count, power, help)                                                                                 \
+  {                                                                                                                    \
+#name, LAM_MEMBER_REAL, count, AT(load.name), power, NULL, help                                                    \
+  }
+#define INT(name, help)                                                                                                \
+  {                                                                                                                    \
+#name, LAM_MEMBER_INT, 1, AT(name), 0, NULL, help                                                                  \
+  }
+
+const LamMember LamResponseMembers[] = {
+    LOAD(F, 9, 0, "deformation gradient"),
+    LOAD(turgor, 1, 1, "lumen pressure p"),
+    LOAD(cohesion, 1, 1, "suction g on separated outer walls"),
+    {"status", LAM_MEMBER_ENUM, 1, AT(status), 0, LamStatusNames, "how the solve ended"},
+    {"source", LAM_MEMBER_ENUM, 1, AT(source), 0, LamSourceNames, "solve or database"},
+    REAL(energy, 1, 1, "potential Psi per reference volume, turgor and cohesion included"),
+    REAL(P, 9, 1, "effective first Piola-Kirchhoff stress dPsi/dF"),
+    REAL(tangent, 81, 1, "effective tangent dP_ij/dF_kl, row ij, column kl"),
+    REAL(P_turgor, 9, 0, "dP/dp"),
+    REAL(energy_turgor, 1, 0, "dPsi/dp"),
+    REAL(energy_turgor2, 1, -1, "d2Psi/dp2"),
+    REAL(P_cohesion, 9, 0, "dP/dg"),
+    REAL(energy_cohesion, 1, 0, "dPsi/dg"),
+    REAL(energy_cohesion2, 1, -1, "d2Psi/dg2"),
+    REAL(energy_turgor_cohesion, 1, -1, "d2Psi/dpdg"),
+    REAL(turgor_mean, 1, 1, "pressure in the lumens, mean over the cells; of sealed cells that reached"),
+    REAL(turgor_spread, 1, 1, "its largest over the cells minus its smallest"),
+    REAL(lumen_fraction, 1, 0, "lumen volume over V0"),
+    REAL(opening_fraction, 1, 0, "gap volume over V0"),
+    REAL(opening_by_face, 3, 0, "area between facing walls over V0, per face family, without junction voids"),
+    REAL(debonded_fraction, 1, 0, "share of the interface length without contact"),
+    REAL(debonded_by_face, 3, 0, "the same per face family"),
+    REAL(open_fraction, 1, 0, "share of the interface length with a gap above 1e-3 apothems"),
+    REAL(open_by_face, 3, 0, "the same per face family"),
+    REAL(debonded_spread, 1, 0, "change of debonded_fraction on a second mesh"),
+    REAL(open_spread, 1, 0, "change of open_fraction on a second mesh"),
+    REAL(max_gap, 1, 0, "largest gap, in apothems"),
+    REAL(gap_place, 3, 0, "where it is: cell, face, place along the face in [0, 1]"),
+    REAL(min_gap, 1, 0, "smallest gap where no walls touch, else 0, in apothems"),
+    REAL(mean_gap, 1, 0, "mean gap over the interface length, in apothems"),
+    REAL(max_penetration, 1, 0, "largest pointwise penetration, in apothems; falls with the mesh"),
+    REAL(fabric, 3, 0, "fabric tensor of the closed faces: 11, 22, 12"),
+    REAL(opening_moment, 3, 0, "second moment of the jumps across open interfaces, apothem^2: 11, 22, 12"),
+    REAL(max_traction, 1, 1, "largest normal Cauchy traction averaged over one wall thickness"),
+    REAL(normal_place, 3, 0, "where: cell, face, place along the face in [0, 1]"),
+    REAL(max_lamella_shear, 1, 1, "largest shear traction averaged over one wall thickness, without sign"),
+    REAL(shear_place, 3, 0, "where, likewise"),
+    REAL(mean_face_traction, 3, 1, "mean normal Cauchy traction per face family"),
+    REAL(max_fibre_stretch, 1, 0, "largest fibre stretch averaged over thickness and as long a stretch of a wall"),
+    REAL(max_wall_energy, 1, 1, "largest energy density of a wall without its volumetric part, likewise averaged"),
+    REAL(max_wall_tension, 1, 1, "largest stress along a wall plus the turgor of its cell, likewise averaged"),
+    REAL(wall_place, 3, 0, "where: cell, face 0 to 5, place along the face in [0, 1]"),
+    REAL(mean_wall_tension, 3, 1, "mean stress along the walls plus the turgor of their cell, per face family"),
+    REAL(wall_ellipticity, 1, 1, "smallest stiffness of the wall material against shear bands, likewise averaged"),
+    REAL(kinked_fraction, 1, 0, "share of the walls' volume where that stiffness is negative at the point"),
+    REAL(lowest_eigenvalue, 1, 1, "softest mode, where it was computed"),
+    REAL(kink_place, 3, 0, "of wall_ellipticity: cell, face 0 to 5, place along the face in [0, 1]"),
+    REAL(ellipticity, 1, 1, "smallest stiffness of the tangent against a band; negative: the tissue localises"),
+    REAL(localisation_normal, 3, 0, "reference normal of that band, a unit vector"),
+    REAL(localisation_mode, 3, 0, "direction in which its sides move, a unit vector"),
+    INT(floating_cells, "cells without any contact"),
+    INT(zero_modes, "motions of cells that change no energy"),
+    INT(cell_clusters, "groups of cells that contact joins"),
+    INT(percolating_directions, "independent period directions that a group spans"),
+    INT(negative_eigenvalues, "of the consistent tangent"),
+    {"stable", LAM_MEMBER_BOOL, 1, AT(stable), 0, NULL, "whether the state is stable"},
+    {"indicators_trusted", LAM_MEMBER_BOOL, 1, AT(indicators_trusted), 0, NULL,
+     "whether indicators of an interpolated answer change little between the states around"},
+    INT(branch, "number of branch switches on the way"),
+    INT(newton_iterations, "all Newton iterations of the state"),
+    INT(factorisations, "all factorisations of the state"),
+    INT(unknowns, "unknowns of the solve"),
+    REAL(seconds, 1, 0, "time of the solve, s"),
+    REAL(error_estimate, 1, 0, "estimated relative error of P"),
+    REAL(distance, 1, 0, "distance in strain to the record that answered"),
+    {"reason", LAM_MEMBER_TEXT, sizeof(((LamResponse *)0)->reason), AT(reason), 0, NULL,
+     "why the status is not converged"},
+    {NULL, LAM_MEMBER_REAL, 0, 0, 0, NULL, NULL},
+};
+
+PetscErrorCode LamResponseInit(const LamLoad *load, LamResponse *response)
+{
+  const LamLoad copy = *load; /* the load may be the response's own */
+
+  PetscFunctionBeginUser;
+  memset(response, 0, sizeof(*response));
+  for (const LamMember *m = LamResponseMembers; m->name; m++) {
+    PetscReal *value = (PetscReal *)((char *)response + m->offset);
+
+    if (m->type != LAM_MEMBER_REAL) continue;
+    for (PetscInt i = 0; i < m->count; i++) value[i] = NAN;
+  }
+  response->load = copy;
+  response->status = LAM_NOT_CONVERGED;
+  response->indicators_trusted = PETSC_TRUE;
+  response->floating_cells = response->zero_modes = LAM_UNKNOWN_COUNT;
+  response->cell_clusters = response->percolating_directions = LAM_UNKNOWN_COUNT;
+  PetscFunctionReturn(0);
+}
+
+PetscBool LamResponseHasFields(const LamResponse *response)
+{
+  return (PetscBool)(response->status == LAM_CONVERGED || response->status == LAM_UNSTABLE);
+}
+
+void LamResponseScale(PetscReal stress, LamResponse *response)
+{
+  for (const LamMember *m = LamResponseMembers; m->name; m++) {
+    const PetscReal factor = m->stress_power == 1 ? stress : m->stress_power == -1 ? 1 / stress : 1;
+    PetscReal *value = (PetscReal *)((char *)response + m->offset);
+
+    if (m->type != LAM_MEMBER_REAL || factor == 1) continue;
+    for (PetscInt i = 0; i < m->count; i++) value[i] *= factor;
+  }
+}
+
+PetscReal LamStressError(const PetscReal P[9], const PetscReal P_ref[9])
+{
+  PetscReal difference = 0, reference = 0;
+
+  for (PetscInt i = 0; i < 9; i++) {
+    difference += (P[i] - P_ref[i]) * (P[i] - P_ref[i]);
+    reference += P_ref[i] * P_ref[i];
+  }
+  return sqrt(difference) / (sqrt(reference) + LAM_STRESS_FLOOR);
+}
+
+size_t LamResponseMemberIndex(size_t offset)
+{
+  size_t k = 0;
+
+  while (LamResponseMembers[k].offset != offset) k++;
+  return k;
+}

@@ -1,0 +1,370 @@
+/*
+  The database in memory: scanned once, then only read (queries) or added to (cache).
+*/
+#include "database_internal.h"
+#include <string.h>
+
+/* ---- growing ---- */
+
+/* Makes room for `n` items more behind `count`. */
+static PetscErrorCode Grow(PetscInt count, PetscInt n, size_t size, PetscInt *capacity, void *items)
+{
+  PetscFunctionBeginUser;
+  if (count + n <= *capacity) PetscFunctionReturn(0);
+  *capacity = PetscMax(2 * *capacity, count + n);
+  PetscCall(PetscRealloc((size_t)*capacity * size, (void **)items));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode GrowKeys(LamDatabase db, PetscInt n)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Grow(db->n, n, sizeof(*db->keys), &db->capacity, &db->keys));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode GrowNodes(LamDatabase db, PetscInt n)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Grow(db->nodes.count, n, sizeof(*db->nodes.data), &db->nodes.capacity, &db->nodes.data));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode AddScattered(LamDatabase db, const LamResponse *record)
+{
+  const PetscBool bonded = (PetscBool)(db->header.micro.interface == LAM_INTERFACE_BONDED);
+
+  PetscFunctionBeginUser;
+  PetscCall(LamScatterAdd(&db->scatter, &db->images, bonded, record));
+  PetscFunctionReturn(0);
+}
+
+/* ---- open, close ---- */
+
+/* Records that are not to be known yet. */
+typedef struct {
+  PetscInt first, n; /* their place in the file */
+  PetscInt64 *keys;
+  LamResponse *records;
+} Later;
+
+typedef struct {
+  LamDatabase db;
+  LamNodeLayout nodes; /* made with the first block */
+  Later *later;        /* or NULL: all are to be known */
+} Loading;
+
+static PetscErrorCode LoadBlock(void *ctx, const LamRecordLayout *layout, PetscInt first, PetscInt n,
+                                const unsigned char *bytes)
+{
+  Loading *l = ctx;
+  LamDatabase db = l->db;
+
+  PetscFunctionBeginUser;
+  if (!first) LamNodeLayoutMake(layout->key, layout->member, &l->nodes);
+  for (PetscInt i = 0; i < n; i++, bytes += layout->size) {
+    const PetscInt64 key = LamRecordInt(bytes + layout->key);
+    LamResponse record;
+
+    if (l->later && first + i >= l->later->first) {
+      l->later->keys[l->later->n] = key;
+      PetscCall(LamRecordUnpack(layout, bytes, &l->later->records[l->later->n++]));
+      continue;
+    }
+    db->keys[db->n++] = key;
+    if (LamKeyIsNode(key)) {
+      PetscCall(GrowNodes(db, db->header.committed - first - i)); /* once: memory that is not used is not touched */
+      LamNodeDataFromBytes(&l->nodes, bytes, &db->nodes.data[db->nodes.count++]);
+      continue;
+    }
+    PetscCall(LamRecordUnpack(layout, bytes, &record));
+    PetscCall(AddScattered(db, &record));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode LoadGrid(const char path[], hid_t file, LamDatabase db)
+{
+  PetscErrorCode ierr;
+  PetscBool has;
+  char *text;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileHas(path, file, LAM_GRID_NAME, &has));
+  PetscCheck(has || !db->nodes.count || strcmp(db->header.kind, "database"), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: holds nodes of a grid, but %s is missing; the file is damaged" LAM_SALVAGE, path, LAM_GRID_NAME);
+  if (!has) PetscFunctionReturn(0);
+  PetscCall(LamFileGetText(path, file, LAM_GRID_NAME, &text));
+  ierr = LamGridFromText(path, &db->header.micro, text, &db->grid);
+  PetscCall(PetscFree(text));
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MakeLater(const char path[], PetscInt committed, Later *later)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(later->first <= committed, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: has %" PetscInt_FMT " records, %" PetscInt_FMT " are wanted; it is another file than before", path,
+             committed, later->first);
+  PetscCall(PetscMalloc1(committed - later->first, &later->keys));
+  PetscCall(PetscMalloc1(committed - later->first, &later->records));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Load(const char path[], hid_t file, Later *later, LamDatabase db)
+{
+  Loading loading = {.db = db, .later = later};
+
+  PetscFunctionBeginUser;
+  PetscCall(LamHeaderRead(path, file, &db->header));
+  if (later) PetscCall(MakeLater(path, db->header.committed, later));
+  PetscCall(PetscStrallocpy(path, &db->path));
+  LamImagesMake(&db->header.micro, &db->images);
+  PetscCall(GrowKeys(db, db->header.committed));
+  PetscCall(LamFileScanRecords(path, file, db->header.committed, LoadBlock, &loading));
+  db->records_first = db->n;
+  PetscCall(LoadGrid(path, file, db));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Open(const char path[], Later *later, LamDatabase *database)
+{
+  hid_t file = H5I_INVALID_HID;
+  PetscErrorCode ierr;
+  LamDatabase db;
+  int lock;
+
+  PetscFunctionBeginUser;
+  *database = NULL;
+  PetscCall(PetscNew(&db));
+  lock = LamLockBeginRead(path);
+  ierr = LamFileOpenRead(path, &file);
+  if (!ierr) ierr = Load(path, file, later, db);
+  if (file >= 0) H5Fclose(file);
+  LamLockEndRead(lock);
+  if (ierr) (void)LamDatabaseClose(&db);
+  PetscCall(ierr);
+  *database = db;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamDatabaseOpen(const char path[], LamDatabase *database)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Open(path, NULL, database));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamDatabaseOpenFirst(const char path[], PetscInt first, LamDatabase *database, PetscInt *n,
+                                    PetscInt64 *keys[], LamResponse *records[])
+{
+  Later later = {.first = first};
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  ierr = Open(path, &later, database);
+  if (ierr) {
+    PetscCall(PetscFree(later.keys));
+    PetscCall(PetscFree(later.records));
+  }
+  PetscCall(ierr);
+  *n = later.n;
+  *keys = later.keys;
+  *records = later.records;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamDatabaseCreateEmpty(const LamScene *scene, LamDatabase *database)
+{
+  LamDatabase db;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&db));
+  db->header.format_version = LAM_FORMAT_VERSION;
+  db->header.scales = scene->scales;
+  db->header.accuracy = scene->accuracy;
+  PetscCall(LamMicrostructureCopy(&scene->micro, &db->header.micro));
+  PetscCall(PetscStrncpy(db->header.kind, "database", sizeof(db->header.kind)));
+  PetscCall(LamMicrostructureDescribe(&scene->micro, &db->header.description, db->header.hash));
+  LamImagesMake(&scene->micro, &db->images);
+  *database = db;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamDatabaseClose(LamDatabase *database)
+{
+  LamDatabase db = *database;
+
+  PetscFunctionBeginUser;
+  if (!db) PetscFunctionReturn(0);
+  PetscCall(LamHeaderDestroy(&db->header));
+  PetscCall(PetscFree(db->path));
+  PetscCall(PetscFree(db->keys));
+  PetscCall(PetscFree(db->nodes.data));
+  PetscCall(LamScatterDestroy(&db->scatter));
+  PetscCall(PetscFree(db->records));
+  PetscCall(PetscFree(db->info));
+  PetscCall(LamTableDestroy(&db->table));
+  PetscCall(LamGridDestroy(&db->grid));
+  PetscCall(PetscFree(*database));
+  PetscFunctionReturn(0);
+}
+
+/* ---- whole responses ---- */
+
+typedef struct {
+  LamDatabase db;
+  LamResponse *records;
+} Unpacking;
+
+static PetscErrorCode UnpackBlock(void *ctx, const LamRecordLayout *layout, PetscInt first, PetscInt n,
+                                  const unsigned char *bytes)
+{
+  const Unpacking *u = ctx;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = first; i < first + n; i++, bytes += layout->size) {
+    PetscCheck(LamRecordInt(bytes + layout->key) == u->db->keys[i], PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "%s: record %" PetscInt_FMT " has another key than before; the file was replaced while it was in use",
+               u->db->path, i);
+    PetscCall(LamRecordUnpack(layout, bytes, &u->records[i]));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The file may have grown since it was opened, but it must be the same. */
+static PetscErrorCode CheckSame(LamDatabase db, hid_t file)
+{
+  LamHeader header = {0};
+  PetscErrorCode ierr = LamHeaderRead(db->path, file, &header);
+  PetscBool same;
+
+  PetscFunctionBeginUser;
+  same = (PetscBool)(!ierr && !strcmp(header.hash, db->header.hash) && header.committed >= db->records_first);
+  PetscCall(LamHeaderDestroy(&header));
+  PetscCall(ierr);
+  PetscCheck(same, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: the file was replaced while it was in use", db->path);
+  PetscFunctionReturn(0);
+}
+
+/* Reads the file's records in front of those added in memory. */
+static PetscErrorCode LoadRecords(LamDatabase db)
+{
+  const PetscInt count = db->records_first;
+  Unpacking unpacking = {.db = db};
+  hid_t file = H5I_INVALID_HID;
+  PetscErrorCode ierr;
+  int lock;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(db->n, &unpacking.records));
+  lock = LamLockBeginRead(db->path);
+  ierr = LamFileOpenRead(db->path, &file);
+  if (!ierr) ierr = CheckSame(db, file);
+  if (!ierr) ierr = LamFileScanRecords(db->path, file, count, UnpackBlock, &unpacking);
+  if (file >= 0) H5Fclose(file);
+  LamLockEndRead(lock);
+  if (ierr) (void)PetscFree(unpacking.records);
+  PetscCall(ierr);
+  PetscCall(PetscArraycpy(unpacking.records + count, db->records, db->n - count));
+  PetscCall(PetscFree(db->records));
+  db->records = unpacking.records;
+  db->records_capacity = db->n;
+  db->records_first = 0;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamDatabaseGetRecords(LamDatabase database, PetscInt *n, const LamResponse *records[],
+                                     const PetscInt64 *keys[])
+{
+  PetscFunctionBeginUser;
+  if (n) *n = database->n;
+  if (records && database->records_first) PetscCall(LoadRecords(database));
+  if (records) *records = database->records;
+  if (keys) *keys = database->keys;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamDatabaseGetAdded(LamDatabase database, PetscInt from, PetscInt *n, const LamResponse *records[])
+{
+  PetscFunctionBeginUser;
+  PetscCheck(from >= database->records_first && from <= database->n, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "record %" PetscInt_FMT " is none of those added", from);
+  *n = database->n - from;
+  *records = database->records + (from - database->records_first);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamDatabaseGetMicrostructure(LamDatabase database, LamMicrostructure *micro, LamScales *scales,
+                                            const char *hash[])
+{
+  PetscFunctionBeginUser;
+  if (micro) *micro = database->header.micro;
+  if (scales) *scales = database->header.scales;
+  if (hash) *hash = database->header.hash;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamDatabaseGetInfo(LamDatabase database, const char *json[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(database->info));
+  PetscCall(LamDatabaseDescribe(database, &database->info));
+  *json = database->info;
+  PetscFunctionReturn(0);
+}
+
+/* States of no grid get keys of their own, as a cache gives them. */
+PetscErrorCode LamDatabaseAdd(LamDatabase database, PetscInt n, const PetscInt64 keys[], const LamResponse records[])
+{
+  const PetscInt held = database->n - database->records_first;
+
+  PetscFunctionBeginUser;
+  PetscCall(GrowKeys(database, n));
+  PetscCall(GrowNodes(database, n));
+  PetscCall(Grow(held, n, sizeof(*records), &database->records_capacity, &database->records));
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt at = database->n++;
+    const PetscInt64 key = keys ? keys[i] : LAM_CACHE_KEY + at;
+
+    database->keys[at] = key;
+    database->records[held + i] = records[i];
+    if (LamKeyIsNode(key))
+      LamNodeDataFromResponse(&records[i], key, &database->nodes.data[database->nodes.count++]);
+    else
+      PetscCall(AddScattered(database, &records[i]));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* ---- grid and table ---- */
+
+PetscErrorCode LamDatabaseSetGrid(LamDatabase database, LamGrid *grid)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(!database->grid, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONGSTATE, "the database has a grid");
+  database->grid = *grid;
+  *grid = NULL;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamDatabaseGetGrid(LamDatabase database, LamGrid *grid)
+{
+  PetscFunctionBeginUser;
+  *grid = database->grid;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamDatabaseGetTable(LamDatabase database, LamTable *table)
+{
+  PetscFunctionBeginUser;
+  if (database->grid && (!database->table || database->table_count != database->nodes.count)) {
+    PetscCall(LamTableDestroy(&database->table));
+    PetscCall(
+        LamTableMake(&database->nodes, database->grid, (PetscBool)!database->header.micro.cell, &database->table));
+    database->table_count = database->nodes.count;
+  }
+  *table = LamTableReference(database->table);
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,430 @@
+/*
+  Answers from records that belong to no grid.
+
+  Method
+    Partition of unity of the second-order Taylor models T_k of the records' potential (expansion.h) and of their images
+    under the symmetry of the lattice, so that stress is the exact gradient of the answered energy and the tangent its
+    exact, symmetric Hessian. With the distance d_k from the question to record k, a strain, and a reach R,
+      Phi = sum_k w_k T_k / sum_k w_k,   w_k = max(0, 1/d_k^2 - 1/R^2)^3:
+    Shepard's weights with a compact support (Franke and Little), C2 where a model comes into reach, and so steep at a
+    record that the blend has the record's value, gradient and Hessian there. R is twice the radius within which a
+    record must lie for an answer.
+
+  Algorithm
+    The nearest model T_1 is taken out, Phi = T_1 + sum w_k (T_k - T_1) / sum w_k, else the weights' steep derivatives
+    near a record would multiply rounding. With A, W the two sums and e = A / W:
+      e_a  = A_a / W - e W_a / W,   e_ab = A_ab / W - e_a W_b / W - W_a e_b / W - e W_ab / W.
+
+  Estimate of the error of P: the models' spread, (sum w_k |P_k - P|^2 / sum w_k)^1/2, and, since a model that stands
+  alone has no spread, the error of one model at this distance, times the square of the nearest one's share of the
+  weights. docs/performance.md has what was measured.
+
+  Only records that have converged, are stable, of branch 0 and without cells that float blend. One of another branch,
+  or with cells that touch no one, answers for its own state (one of another branch also by its model alone, for who
+  holds it: scatter_model.h); it and those that failed forbid a blend where they are not
+  much further away than the nearest that blends: the potential has a kink between them, which no model knows of.
+
+  References: Shepard, Proc. 23rd ACM National Conference (1968) 517; Franke and Nielson, Int. J. Numer. Meth. Engng 15
+  (1980) 1691.
+*/
+#include "scatter.h"
+#include "scatter_model.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Relative error of P of one model alone over the square of the distance, at the 99 % level in bonded tissue and at the
+   95 % level in contact tissue, whose walls come apart between two states. */
+#define BONDED_ERROR 12.8
+#define CONTACT_ERROR 100.0
+/* Times the models' spread: models on one side of a place where walls come apart agree with each other. */
+#define CONTACT_DOUBT 3.0
+/* Of the blend, in radii of trust. */
+#define REACH 2
+/* A record that refuses, or is of another branch, forbids a blend within so many distances of the nearest that blends.
+ */
+#define DOUBT 2
+
+/* ---- the blend ---- */
+
+/* A record's model at the question: the expansion's members, without the Hessian, in the question's frame. */
+typedef struct {
+  PetscReal energy, P33;
+  LamScatterVector gradient, P33_gradient;
+} Model;
+
+static void EvaluateModel(const LamScatterSearch *search, const LamScattered *state, PetscInt image,
+                          LamScatterVector delta, Model *m)
+{
+  const LamImages *images = &search->db->images;
+  const LamExpansion *e = &state->model;
+
+  for (int a = 0; a < LAM_VARIABLES; a++) delta[a] = search->turned[image][a] - e->x[a];
+  m->energy = e->energy;
+  m->P33 = e->P33;
+  for (int a = 0; a < LAM_VARIABLES; a++) {
+    PetscReal slope = 0;
+
+    for (int b = 0; b < LAM_VARIABLES; b++) slope += e->hessian[a][b] * delta[b];
+    m->energy += (e->gradient[a] + 0.5 * slope) * delta[a];
+    m->gradient[a] = e->gradient[a] + slope;
+    m->P33_gradient[a] = e->P33_gradient[a];
+    m->P33 += e->P33_gradient[a] * delta[a];
+  }
+  LamImagesBack(images, image, m->gradient);
+  LamImagesBack(images, image, m->P33_gradient);
+  LamImagesBack(images, image, delta);
+}
+
+/* w = u^3, u = 1/d^2 - 1/R^2, with its derivatives. */
+typedef struct {
+  PetscReal value;
+  LamScatterVector gradient;
+  PetscReal outer, metric; /* its Hessian is outer v v^T + metric M, v = M delta */
+  LamScatterVector v;
+} Weight;
+
+static PetscBool MakeWeight(const LamScatterMetric *metric, const LamScatterVector delta, PetscReal reach, Weight *w)
+{
+  const PetscReal d2 = LamScatterApply(metric, delta, w->v), u = 1 / d2 - 1 / (reach * reach), d4 = d2 * d2;
+
+  if (!(u > 0)) return PETSC_FALSE;
+  w->value = u * u * u;
+  for (int a = 0; a < LAM_VARIABLES; a++) w->gradient[a] = -6 * u * u / d4 * w->v[a];
+  w->outer = 24 * u / (d4 * d4) + 24 * u * u / (d4 * d2);
+  w->metric = -6 * u * u / d4;
+  return PETSC_TRUE;
+}
+
+/* Sums over the models in reach: of the weights (all models), of weights times what a model has over the first. */
+typedef struct {
+  Model first;
+  PetscReal W, W_metric, A, A_metric, P33, A3333; /* _metric: the part of the Hessian along the metric */
+  LamScatterVector W_slope, A_slope, P33_slope;
+  LamScatterMatrix W_hessian, A_hessian;
+  LamScatterMatrix own_hessian[LAM_MAX_IMAGES];    /* of the records, each image in its own frame */
+  PetscReal P33_square, P_mean[3], P_square[3][3]; /* P_: of the gradients in C */
+} Sums;
+
+static void AddModel(const Weight *w, const Model *m, Sums *s)
+{
+  const PetscReal energy = m->energy - s->first.energy, P33 = m->P33 - s->first.P33;
+  LamScatterVector slope;
+
+  for (int a = 0; a < LAM_VARIABLES; a++) slope[a] = m->gradient[a] - s->first.gradient[a];
+  s->W += w->value;
+  s->W_metric += w->metric;
+  s->A += w->value * energy;
+  s->A_metric += w->metric * energy;
+  s->P33 += w->value * P33;
+  s->P33_square += w->value * P33 * P33;
+  for (int a = 0; a < LAM_VARIABLES; a++) {
+    s->W_slope[a] += w->gradient[a];
+    s->A_slope[a] += w->value * slope[a] + w->gradient[a] * energy;
+    s->P33_slope[a] += w->value * m->P33_gradient[a] + w->gradient[a] * P33;
+    for (int b = 0; b <= a; b++) {
+      const PetscReal outer = w->outer * w->v[a] * w->v[b];
+
+      s->W_hessian[a][b] += outer;
+      s->A_hessian[a][b] += outer * energy + w->gradient[a] * slope[b] + slope[a] * w->gradient[b];
+    }
+  }
+  for (int a = 0; a < 3; a++) {
+    s->P_mean[a] += w->value * slope[a];
+    for (int b = 0; b < 3; b++) s->P_square[a][b] += w->value * slope[a] * slope[b];
+  }
+}
+
+static void AddState(const LamScatterSearch *search, PetscInt k, PetscReal reach, Sums *s)
+{
+  const LamScattered *state = &search->db->scatter.states[k];
+  const PetscReal A3333 = search->db->scatter.records[k].tangent[80];
+
+  for (PetscInt i = 0; i < search->db->images.count; i++) {
+    LamScatterVector delta;
+    Weight w;
+    Model m;
+
+    if (!(state->images >> i & 1) || LamScatterDistance2(search, state, i) >= reach * reach) continue;
+    EvaluateModel(search, state, i, delta, &m);
+    if (!MakeWeight(&search->metric, delta, reach, &w)) continue;
+    AddModel(&w, &m, s);
+    s->A3333 += w.value * A3333;
+    for (int a = 0; a < LAM_VARIABLES; a++)
+      for (int b = 0; b <= a; b++) s->own_hessian[i][a][b] += w.value * state->model.hessian[a][b];
+  }
+}
+
+static void Mirror(LamScatterMatrix H)
+{
+  for (int a = 0; a < LAM_VARIABLES; a++)
+    for (int b = 0; b < a; b++) H[b][a] = H[a][b];
+}
+
+/* The metric's part of the Hessians, and the records' own Hessians in the question's frame. */
+static void CompleteHessians(const LamScatterSearch *search, Sums *s)
+{
+  const LamScatterMetric *m = &search->metric;
+  const PetscReal diagonal[LAM_VARIABLES] = {m->strain, m->strain, m->strain, m->pp, m->gg};
+
+  for (int a = 0; a < LAM_VARIABLES; a++) {
+    s->W_hessian[a][a] += s->W_metric * diagonal[a];
+    s->A_hessian[a][a] += s->A_metric * diagonal[a];
+  }
+  s->W_hessian[4][3] += s->W_metric * m->pg;
+  s->A_hessian[4][3] += s->A_metric * m->pg;
+  for (PetscInt i = 0; i < search->db->images.count; i++) {
+    Mirror(s->own_hessian[i]);
+    LamImagesBackHessian(&search->db->images, i, s->own_hessian[i]);
+    for (int a = 0; a < LAM_VARIABLES; a++)
+      for (int b = 0; b <= a; b++) s->A_hessian[a][b] += s->own_hessian[i][a][b];
+  }
+}
+
+/* The blend's expansion at the question, in the question's frame. */
+static void Finish(const LamScatterSearch *search, Sums *s, LamExpansion *blend)
+{
+  const PetscReal energy = s->A / s->W, P33 = s->P33 / s->W;
+  LamScatterVector slope, l;
+
+  CompleteHessians(search, s);
+  memcpy(blend->x, search->x, sizeof(blend->x));
+  blend->energy = s->first.energy + energy;
+  blend->P33 = s->first.P33 + P33;
+  for (int a = 0; a < LAM_VARIABLES; a++) {
+    l[a] = s->W_slope[a] / s->W;
+    slope[a] = s->A_slope[a] / s->W - energy * l[a];
+    blend->gradient[a] = s->first.gradient[a] + slope[a];
+    blend->P33_gradient[a] = s->P33_slope[a] / s->W - P33 * l[a];
+  }
+  for (int a = 0; a < LAM_VARIABLES; a++)
+    for (int b = 0; b <= a; b++)
+      blend->hessian[a][b] =
+          (s->A_hessian[a][b] - energy * s->W_hessian[a][b]) / s->W - slope[a] * l[b] - l[a] * slope[b];
+  Mirror(blend->hessian);
+}
+
+/* Root of the weighted mean of |P_k - P|^2 over the models. */
+static PetscReal Spread(const LamScatterSearch *search, const Sums *s, const LamExpansion *blend, const PetscReal F[9])
+{
+  PetscReal B[3][3], sum = s->P33_square / s->W - PetscSqr(s->P33 / s->W), slope[3];
+
+  LamStressMetric(F, B);
+  for (int a = 0; a < 3; a++) slope[a] = blend->gradient[a] - s->first.gradient[a];
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++)
+      sum += B[a][b] * ((s->P_square[a][b] - 2 * s->P_mean[a] * slope[b]) / s->W + slope[a] * slope[b]);
+  return sqrt(PetscMax(sum, 0));
+}
+
+/* What LamStressError would say of an error of this size. */
+static PetscReal RelativeError(PetscReal size, const PetscReal P[9])
+{
+  PetscReal other[9];
+
+  memcpy(other, P, sizeof(other));
+  other[0] += size;
+  return LamStressError(other, P);
+}
+
+/* Of one model at this distance. */
+static PetscReal OneModelError(LamDatabase database, PetscReal distance2)
+{
+  return (database->header.micro.interface == LAM_INTERFACE_BONDED ? BONDED_ERROR : CONTACT_ERROR) * distance2;
+}
+
+/* From the weight of the nearest model. */
+static PetscReal LonelyError(const LamScatterSearch *search, PetscReal reach, const Sums *s)
+{
+  const PetscReal d2 = search->blends.distance2, u = 1 / d2 - 1 / (reach * reach), share = u * u * u / s->W;
+
+  return OneModelError(search->db, d2) * share * share;
+}
+
+/* ---- the answer ---- */
+
+/* The model of one record at the question, in the question's frame. */
+static void ExpandAt(const LamScatterSearch *search, const LamScatterNearest *at, LamExpansion *e)
+{
+  const LamScattered *state = &search->db->scatter.states[at->state];
+  LamScatterVector delta;
+  Model m;
+
+  EvaluateModel(search, state, at->image, delta, &m);
+  *e = state->model;
+  memcpy(e->x, search->x, sizeof(e->x));
+  e->energy = m.energy;
+  e->P33 = m.P33;
+  memcpy(e->gradient, m.gradient, sizeof(e->gradient));
+  memcpy(e->P33_gradient, m.P33_gradient, sizeof(e->P33_gradient));
+  LamImagesBackHessian(&search->db->images, at->image, e->hessian);
+}
+
+static PetscBool SameNumber(PetscReal a, PetscReal b)
+{
+  return (PetscBool)(fabs(a - b) <= 1e-10);
+}
+
+/* From the derivatives of the potential, which are volumes only where all cells have the same turgor and cohesion. */
+static void TakeVolumes(const LamResponse *record, LamResponse *r)
+{
+  r->lumen_fraction = SameNumber(-record->energy_turgor, record->lumen_fraction) ? -r->energy_turgor : NAN;
+  r->opening_fraction = SameNumber(record->energy_cohesion, record->opening_fraction) ? r->energy_cohesion : NAN;
+}
+
+static void Fill(const LamScatterSearch *search, const LamScatterNearest *at, PetscBool own, const LamExpansion *e,
+                 PetscReal A3333, LamResponse *r)
+{
+  const LamDatabase db = search->db;
+  const LamResponse *record = &db->scatter.records[at->state];
+
+  LamExpansionToResponse(e, A3333, r);
+  TakeVolumes(record, r);
+  LamIndicatorsCopy(record, db->images.face[at->image], own, db->header.micro.interface, r);
+  r->indicators_trusted = own;
+  r->status = LAM_CONVERGED;
+}
+
+/* PETSC_FALSE, with the reason, where the nearest records forbid a blend. */
+static PetscBool MayBlend(const LamScatterSearch *search, PetscReal radius, LamResponse *r)
+{
+  const PetscReal other = sqrt(PetscMin(search->alone.distance2, search->refuses.distance2));
+
+  if (search->blends.state < 0) {
+    snprintf(r->reason, sizeof(r->reason),
+             "the database has no usable record (converged, stable, branch 0, no cell floats)");
+    return PETSC_FALSE;
+  }
+  if (r->distance > radius) {
+    snprintf(r->reason, sizeof(r->reason), "the nearest record is %.3g away in strain, %.3g is trusted",
+             (double)r->distance, (double)radius);
+    return PETSC_FALSE;
+  }
+  if (other < DOUBT * r->distance) {
+    snprintf(r->reason, sizeof(r->reason),
+             "a state of another branch, with loose cells or without an answer is %.3g away in strain, the nearest "
+             "record %.3g",
+             (double)other, (double)r->distance);
+    return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+static PetscBool IsOwnState(const LamScatterNearest *at)
+{
+  return (PetscBool)(at->distance2 < PetscSqr(LAM_OWN_STATE));
+}
+
+/* Indicators are those of the record. */
+static void AnswerFromModel(const LamScatterSearch *search, const LamScatterNearest *at, PetscReal error,
+                            LamResponse *r)
+{
+  const LamResponse *record = &search->db->scatter.records[at->state];
+  LamExpansion e;
+
+  ExpandAt(search, at, &e);
+  r->distance = sqrt(at->distance2);
+  r->error_estimate = error;
+  Fill(search, at, PETSC_TRUE, &e, record->tangent[80], r);
+  if (IsOwnState(at)) return;
+  TakeVolumes(record, r);
+  r->opening_fraction = PetscMax(r->opening_fraction, 0);
+  r->indicators_trusted = PETSC_FALSE;
+}
+
+static void AnswerBlend(const LamScatterSearch *search, PetscReal reach, LamResponse *r)
+{
+  const LamScatter *scatter = &search->db->scatter;
+  LamExpansion blend;
+  Sums sums = {0};
+  PetscReal spread;
+  LamScatterVector delta;
+
+  EvaluateModel(search, &scatter->states[search->blends.state], search->blends.image, delta, &sums.first);
+  for (PetscInt k = 0; k < scatter->n; k++)
+    if (scatter->states[k].use == LAM_SCATTER_BLENDS &&
+        LamScatterLowerBound(search, &scatter->places[k]) < reach * reach)
+      AddState(search, k, reach, &sums);
+  Finish(search, &sums, &blend);
+  Fill(search, &search->blends, PETSC_FALSE, &blend, sums.A3333 / sums.W, r);
+  spread = RelativeError(Spread(search, &sums, &blend, r->load.F), r->P);
+  if (search->db->header.micro.interface == LAM_INTERFACE_CONTACT) spread *= CONTACT_DOUBT;
+  r->error_estimate = hypot(spread, LonelyError(search, reach, &sums));
+}
+
+/* Takes an answer back. */
+static PetscErrorCode Refuse(PetscReal accuracy, LamResponse *r)
+{
+  const LamResponse answer = *r;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamResponseInit(&answer.load, r));
+  r->source = answer.source;
+  r->status = LAM_OUT_OF_REACH;
+  r->distance = answer.distance;
+  r->error_estimate = answer.error_estimate;
+  snprintf(r->reason, sizeof(r->reason),
+           "the nearest record is %.3g away in strain, the estimated error of P is %.2g, asked for is %.2g",
+           (double)r->distance, (double)r->error_estimate, (double)accuracy);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamScatterQuery(LamDatabase database, const LamLoad *load, PetscReal radius, PetscReal accuracy,
+                               LamResponse *response)
+{
+  const LamScatterNearest *own;
+  LamScatterSearch search;
+
+  PetscFunctionBeginUser;
+  LamScatterFind(database, load, &search);
+  own = search.alone.distance2 < search.blends.distance2 ? &search.alone : &search.blends;
+  if (IsOwnState(own)) {
+    AnswerFromModel(&search, own, 0, response);
+    PetscFunctionReturn(0);
+  }
+  response->status = LAM_OUT_OF_REACH;
+  if (search.blends.state >= 0) response->distance = sqrt(search.blends.distance2);
+  if (!MayBlend(&search, radius, response)) PetscFunctionReturn(0);
+  AnswerBlend(&search, REACH * radius, response);
+  if (!(response->error_estimate <= accuracy)) PetscCall(Refuse(accuracy, response));
+  PetscFunctionReturn(0);
+}
+
+/* ---- one model ---- */
+
+void LamScatterModelFind(LamDatabase database, const LamLoad *load, LamScatterModel *model)
+{
+  LamScatterSearch search;
+  const LamScatterNearest *at;
+
+  LamScatterFind(database, load, &search);
+  at = search.alone.distance2 < search.blends.distance2 ? &search.alone : &search.blends;
+  *model = (LamScatterModel){-1, 0};
+  if (at->state < 0 || database->scatter.records[at->state].floating_cells > 0) return;
+  if (search.refuses.distance2 <= DOUBT * DOUBT * at->distance2) return;
+  *model = (LamScatterModel){at->state, at->image};
+}
+
+LamLoad LamScatterModelLoad(LamDatabase database, const LamScatterModel *model)
+{
+  return database->scatter.records[model->state].load;
+}
+
+PetscErrorCode LamScatterModelQuery(LamDatabase database, const LamScatterModel *model, const LamLoad *load,
+                                    PetscReal accuracy, LamResponse *response)
+{
+  LamScatterNearest at = {model->state, model->image, PETSC_INFINITY};
+  LamScatterSearch search;
+  PetscReal error;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamResponseInit(load, response));
+  response->source = LAM_SOURCE_DATABASE;
+  response->status = LAM_OUT_OF_REACH;
+  if (!LamLoadValidate(load, response)) PetscFunctionReturn(0);
+  LamScatterBegin(database, load, &search);
+  at.distance2 = LamScatterDistance2(&search, &database->scatter.states[at.state], at.image);
+  error = OneModelError(database, at.distance2);
+  if (error <= accuracy) AnswerFromModel(&search, &at, error, response);
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,258 @@
+/*
+  Private to the record files: types, lock, header. docs/file-format.md describes the layout.
+*/
+#ifndef LAM_RECORD_INTERNAL_H
+#define LAM_RECORD_INTERNAL_H
+
+#include <lamella/database.h>
+#include <stdint.h>
+#include "h5check.h"
+
+#define LAM_FORMAT_NAME "lamella"
+#define LAM_FORMAT_VERSION 1
+#define LAM_TIME_LENGTH 32
+#define LAM_RECORDS_PER_CHUNK 64 /* some 90 kB: one commit touches one or two chunks */
+
+/* What to do about a damaged file; ends a message. */
+#define LAM_SALVAGE "; \"lamella merge NEW.h5 FILE --salvage\" keeps all sound records of a database"
+
+/* ---- record_type.c ---- */
+
+/* The type of a record in the file: key, microstructure, the members of a response, checksum; packed, little-endian. */
+PetscErrorCode LamRecordTypeCreate(hid_t *type);
+/* Checks that every member we know is there, of the type we write, what was added later may be missing; and that all
+   members lie one behind the other, the checksum last. */
+PetscErrorCode LamRecordTypeCheck(const char path[], hid_t file_type);
+
+/* ---- record_bytes.c ---- */
+
+#define LAM_MAX_MEMBERS 96
+#define LAM_MAX_RECORD_BYTES 65536                   /* of any version */
+#define LAM_RECORD_BYTES (sizeof(LamResponse) + 128) /* a record in the file has less */
+
+/* Where the members lie in the bytes of a record, of a type that has passed the check above. */
+typedef struct {
+  size_t size;                    /* of a record; its last 4 bytes are the CRC-32 (zlib's) of those before them */
+  size_t key, microstructure;     /* int64 */
+  size_t status, source;          /* one byte each */
+  size_t member[LAM_MAX_MEMBERS]; /* of LamResponseMembers, in their order; LAM_NOT_IN_FILE where it is missing */
+} LamRecordLayout;
+
+PetscErrorCode LamRecordLayoutMake(hid_t file_type, LamRecordLayout *layout);
+/* Where the member lies that is at `response_offset` of LamResponse. */
+size_t LamRecordOffset(const LamRecordLayout *layout, size_t response_offset);
+/* The integer of 8 bytes that begins here. */
+PetscInt64 LamRecordInt(const unsigned char *bytes);
+/* Turns records into the bytes of the file, checksums included; `bytes` is the caller's to free. */
+PetscErrorCode LamRecordsPack(PetscInt n, const PetscInt64 keys[], const LamResponse responses[], hid_t file_type,
+                              void **bytes);
+/* The way back for one record that has been checked. */
+PetscErrorCode LamRecordUnpack(const LamRecordLayout *layout, const unsigned char *bytes, LamResponse *response);
+/* Checks checksum, status, source and microstructure of a record: what is wrong with it, or NULL. */
+const char *LamRecordDamage(const LamRecordLayout *layout, const unsigned char *bytes);
+/* The same for n records, the first of which is number `first`; names `path` and the record that is damaged. */
+PetscErrorCode LamRecordsCheck(const char path[], const LamRecordLayout *layout, PetscInt first, PetscInt n,
+                               const unsigned char *bytes);
+
+/* ---- record_attribute.c ---- */
+
+/* Attributes of one value. What is read must be of exactly `file_type`, a text of at most 64 kB: PETSC_ERR_USER_INPUT.
+ */
+PetscErrorCode LamAttributeWriteText(const char path[], hid_t object, const char name[], const char text[]);
+PetscErrorCode LamAttributeWriteNumber(const char path[], hid_t object, const char name[], hid_t file_type,
+                                       hid_t memory_type, const void *value);
+/* Writes over the value of one that is there. */
+PetscErrorCode LamAttributeUpdate(const char path[], hid_t object, const char name[], hid_t memory_type,
+                                  const void *value);
+PetscErrorCode LamAttributeHas(const char path[], hid_t object, const char name[], PetscBool *has);
+PetscErrorCode LamAttributeReadNumber(const char path[], hid_t object, const char name[], hid_t file_type,
+                                      hid_t memory_type, void *value);
+PetscErrorCode LamAttributeReadText(const char path[], hid_t object, const char name[], char **text); /* to be freed */
+PetscErrorCode LamAttributeCopyText(const char path[], hid_t object, const char name[], size_t length, char value[]);
+
+/* ---- record_sums.c ---- */
+
+/* Attributes: of the root, texts and arrays; and three of /records. Files of earlier versions lack them. */
+#define LAM_SUM "checksum"
+#define LAM_COUNTER_SUM "committed_check" /* of the 8 bytes of `committed` */
+#define LAM_RECORDS_SUM "records_check"   /* of the checksums of the committed records, in their order */
+#define LAM_TYPE_SUM "type_check"         /* of names, offsets and sizes of the members of a record */
+
+PetscErrorCode LamSumWrite(const char path[], hid_t object, const char name[], uint32_t sum);
+/* Of an array that was written over the sum is there, and says nothing. */
+#define LAM_NO_SUM 0
+PetscErrorCode LamSumHas(const char path[], hid_t object, const char name[], PetscBool *has);
+/* True also where the object has no such attribute. */
+PetscErrorCode LamSumMatches(const char path[], hid_t object, const char name[], uint32_t sum, PetscBool *matches);
+/* Of the root's attributes, as they are read. */
+PetscErrorCode LamHeaderSum(const char path[], hid_t file, uint32_t *sum);
+/* Of n more bytes behind those that have the sum `before` (0: none). */
+uint32_t LamBytesSum(uint32_t before, const void *bytes, size_t n);
+PetscErrorCode LamRecordTypeSum(hid_t file_type, uint32_t *sum);
+/* The same for records, of which only the checksums enter. */
+uint32_t LamRecordsSum(uint32_t before, const LamRecordLayout *layout, PetscInt n, const unsigned char *bytes);
+
+/* ---- record_lock.c ---- */
+
+/* The writer's lock: the file PATH.lock, which says who holds it. */
+typedef struct {
+  char path[PETSC_MAX_PATH_LEN];
+  int fd; /* -1: not held */
+} LamLock;
+
+PetscErrorCode LamLockTake(const char path[], LamLock *lock);
+PetscErrorCode LamLockRelease(LamLock *lock);
+/* Readers wait while a commit is under way, and a commit waits for readers: milliseconds each. */
+void LamLockBeginCommit(LamLock *lock);
+void LamLockEndCommit(LamLock *lock);
+int LamLockBeginRead(const char path[]); /* a descriptor for LamLockEndRead, or -1 where no writer is about */
+void LamLockEndRead(int fd);
+/* Who writes to the file. False: no one, or a process of this host that has died. */
+typedef struct {
+  char host[256], since[LAM_TIME_LENGTH];
+  long pid;
+  unsigned long long start; /* clock ticks after boot; 0 where the system does not tell */
+} LamLockHolder;
+PetscBool LamLockGetHolder(const char path[], LamLockHolder *holder);
+
+/* ---- record_target.c ---- */
+
+/* The file behind a link; otherwise the path as it was given, for messages. False: no file there, or too long a path.
+ */
+PetscBool LamPathFollow(const char path[], char target[PETSC_MAX_PATH_LEN]);
+/* The file that a writer of `path` writes: links are followed, and what CREATE must not replace is refused. */
+PetscErrorCode LamTargetFind(const char path[], const char kind[], LamWriteMode mode, char target[PETSC_MAX_PATH_LEN]);
+
+/* ---- record_file.c ---- */
+
+/* What the root group tells. Texts and the cells of `micro` are owned by the header. */
+typedef struct {
+  char kind[LAM_NAME_LENGTH];
+  char creator[LAM_NAME_LENGTH], created[LAM_TIME_LENGTH], host[256];
+  char petsc[LAM_NAME_LENGTH], hdf5[LAM_NAME_LENGTH], mpi[256];
+  char *command;
+  PetscInt format_version;
+  LamScales scales;
+  PetscReal accuracy;
+  char hash[LAM_HASH_LENGTH];
+  char *description;
+  LamMicrostructure micro;
+  PetscInt committed;
+} LamHeader;
+
+PetscErrorCode LamHeaderDestroy(LamHeader *header);
+/* Now, ISO 8601, UTC. */
+void LamTimeNow(char text[LAM_TIME_LENGTH]);
+
+/*
+  Makes sure that the disk takes `bytes` more, and some for HDF5's own tables, before HDF5 begins: HDF5 1.10 crashes at
+  exit over data that it could not write. PETSC_ERR_FILE_WRITE with the system's reason. `create`: starts an empty file.
+*/
+PetscErrorCode LamFileReserve(const char path[], PetscBool create, size_t bytes);
+/* Opens without HDF5's own locks; closing the file closes all that is open in it. */
+PetscErrorCode LamFileOpenRead(const char path[], hid_t *file);
+PetscErrorCode LamFileOpenWrite(const char path[], hid_t *file);
+/* Makes a file without records: header, microstructure, scene, empty record table. */
+PetscErrorCode LamFileCreate(const char path[], const char kind[], const LamScene *scene);
+PetscErrorCode LamFileClose(const char path[], hid_t file);
+/* Brings all that was written to the disk. */
+PetscErrorCode LamFileSync(const char path[], hid_t file);
+/* Reads and checks the header; `file` is left open. LamHeaderReadRoot: without the number of committed records. */
+PetscErrorCode LamHeaderRead(const char path[], hid_t file, LamHeader *header);
+PetscErrorCode LamHeaderReadRoot(const char path[], hid_t file, LamHeader *header);
+/* Whether `name` ("/a/b/c") is there: every part of it. PETSC_ERR_USER_INPUT where one is a link to elsewhere. */
+PetscErrorCode LamFileHas(const char path[], hid_t file, const char name[], PetscBool *has);
+/* Text dataset; groups are made. */
+PetscErrorCode LamFileWriteText(const char path[], hid_t file, const char name[], const char text[]);
+PetscErrorCode LamFileGetText(const char path[], hid_t file, const char name[], char **text);
+/* Reads a text or array, whichever it is, and tests its checksum. */
+PetscErrorCode LamFileCheckValues(const char path[], hid_t file, const char name[]);
+
+/* Refuses what lamella never writes, before any data is read: another layout, filters, data in other files. */
+PetscErrorCode LamDatasetCheck(const char path[], hid_t dataset, const char name[], H5D_layout_t wanted);
+
+/* ---- record_scan.c ---- */
+
+/* The number of committed records, checked against its checksum, the extent and the size of the file. */
+PetscErrorCode LamCommittedRead(const char path[], hid_t file, PetscInt *committed);
+/* A block of checked records: n of them, number `first` and on. The bytes are the file's own. */
+typedef PetscErrorCode (*LamRecordVisitor)(void *ctx, const LamRecordLayout *layout, PetscInt first, PetscInt n,
+                                           const unsigned char *bytes);
+/* Reads the first `count` records once, in blocks, checks them and shows them to the visitor in their order. */
+PetscErrorCode LamFileScanRecords(const char path[], hid_t file, PetscInt count, LamRecordVisitor visit, void *ctx);
+
+/* The same for those who decide themselves what to make of a damaged record: open, read blocks of at most LAM_BLOCK
+   records into scan->bytes, close. */
+typedef struct {
+  hid_t dataset, type, space;
+  LamRecordLayout layout;
+  unsigned char *bytes; /* of a block, or of all records that there are; owned */
+} LamRecordScan;
+
+#define LAM_BLOCK (8 * LAM_RECORDS_PER_CHUNK) /* 0.9 MB: checked and used while it is in the processor's cache */
+PetscErrorCode LamRecordScanOpen(const char path[], hid_t file, LamRecordScan *scan);
+PetscErrorCode LamRecordScanRead(const char path[], LamRecordScan *scan, PetscInt first, PetscInt n);
+void LamRecordScanClose(LamRecordScan *scan);
+/* Tests the sum of the checksums of all committed records, `count`; more may have been committed since. */
+PetscErrorCode LamRecordScanEnd(const char path[], const LamRecordScan *scan, PetscInt count, uint32_t sum);
+/* How many records the list has room for, committed or not. */
+PetscInt LamRecordScanRoom(const LamRecordScan *scan, hid_t file);
+
+/* ---- record_room.c ---- */
+
+/* With the permissions of the first. */
+PetscErrorCode LamFileCopy(const char from[], const char to[]);
+/* The records that there is room for, committed ones included. */
+PetscErrorCode LamFileReadRoom(const char path[], hid_t file, PetscInt *room);
+/*
+  Makes room for `records` of them or some more where there is less; *room: for how many there was, and is. The file
+  `path` is replaced by a copy, made as `temporary`; killed at any instant, it is as it was. NULL: `temporary` itself,
+  which has no name yet.
+*/
+PetscErrorCode LamFileMakeRoom(const char path[], const char temporary[], PetscInt records, PetscInt *room);
+/* Writes all of them; 0, or the reason as errno has it. */
+int LamWriteBytes(int fd, const void *bytes, size_t n);
+
+/* ---- record_write.c ---- */
+
+/* Sets the number of committed records and the sum of their checksums; syncs nothing. */
+PetscErrorCode LamCounterWrite(const char path[], hid_t dataset, PetscInt committed, uint32_t records_sum);
+/* Brings a closed file to the disk and gives it its name, for good. */
+PetscErrorCode LamFilePublish(const char temporary[], const char path[]);
+
+/* ---- record_salvage.c ---- */
+
+#define LAM_SALVAGE_NAMED 10
+typedef struct {
+  PetscInt64 sound;   /* records whose checksum is right */
+  PetscInt64 damaged; /* places where a record can be made out, but its checksum is wrong */
+  PetscInt64 offset[LAM_SALVAGE_NAMED], key[LAM_SALVAGE_NAMED]; /* of the first of these: byte in the file; key */
+} LamSalvage;
+/*
+  Shows the visitor all records of a file whose checksum is right, in the order of the file; also those beyond the
+  commit counter, and whatever state the file is in. Of other types than the present one only where HDF5 reads the type.
+  `first` counts the records shown.
+*/
+PetscErrorCode LamFileSalvage(const char path[], LamRecordVisitor visit, void *ctx, LamSalvage *found);
+
+/* ---- record_remains.c ---- */
+
+/* What a damaged file still tells, found in its bytes. Texts and the cells of `micro` are owned. */
+typedef struct {
+  char *description; /* NULL: none that is sound, and no hash nor micro either */
+  char hash[LAM_HASH_LENGTH];
+  LamMicrostructure micro;
+  char *grid; /* NULL: none */
+  PetscBool has_scales;
+  LamScales scales;
+  PetscReal accuracy;
+  PetscInt64 committed; /* -1: not known */
+  PetscBool names_hash; /* the hash that was asked for stands somewhere in it */
+} LamRemains;
+/* Opens the front of the file in memory, as if it had been cut there: its header can be read, and texts near it. */
+PetscErrorCode LamRemainsOpen(const char path[], hid_t *file);
+/* `hash`: to look for; may be empty. */
+PetscErrorCode LamRemainsFind(const char path[], const char hash[], LamRemains *remains);
+PetscErrorCode LamRemainsDestroy(LamRemains *remains);
+
+#endif

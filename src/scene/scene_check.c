@@ -1,0 +1,371 @@
+/*
+  Checks a scene document against the table of keys and reads its values.
+*/
+#include "scene_keys.h"
+#include "quantity_text.h"
+#include <math.h>
+#include <string.h>
+
+enum { PATH_LENGTH = 80, MAX_WORD = 40 };
+
+/* The distance of Damerau and Levenshtein (adjacent letters may be swapped): how many slips apart two words are. */
+static PetscInt WordDistance(const char a[], const char b[])
+{
+  const size_t m = strlen(a), n = strlen(b);
+  PetscInt d[MAX_WORD + 1][MAX_WORD + 1];
+
+  if (m > MAX_WORD || n > MAX_WORD) return MAX_WORD;
+  for (size_t i = 0; i <= m; i++) d[i][0] = (PetscInt)i;
+  for (size_t j = 0; j <= n; j++) d[0][j] = (PetscInt)j;
+  for (size_t i = 1; i <= m; i++) {
+    for (size_t j = 1; j <= n; j++) {
+      d[i][j] = PetscMin(PetscMin(d[i - 1][j], d[i][j - 1]) + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1]));
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        d[i][j] = PetscMin(d[i][j], d[i - 2][j - 2] + 1);
+      }
+    }
+  }
+  return d[m][n];
+}
+
+/* The key that was most likely meant by an unknown one in `map`: a similar one there, else one so named elsewhere. */
+static const LamKey *NearestKey(const LamKey *map, const char name[])
+{
+  PetscInt best = (PetscInt)strlen(name) / 3 + 1;
+  const LamKey *nearest = NULL;
+
+  for (PetscInt i = 0; i < LamKeyCount; i++) {
+    PetscInt distance;
+    if (!LamKeyIsChild(&LamKeys[i], map)) continue;
+    distance = WordDistance(name, LamKeyName(&LamKeys[i]));
+    if (distance <= best && distance < (PetscInt)strlen(name)) {
+      if (!nearest || distance < best) nearest = &LamKeys[i];
+      best = distance;
+    }
+  }
+  for (PetscInt i = 0; i < LamKeyCount && !nearest; i++) {
+    if (!strcmp(LamKeyName(&LamKeys[i]), name)) nearest = &LamKeys[i];
+  }
+  return nearest;
+}
+
+static PetscErrorCode FailUnknown(const LamDocument *document, const LamNode *node, const LamKey *map)
+{
+  const LamKey *nearest = NearestKey(map, node->name);
+  char meant[PATH_LENGTH + 20] = "", known[LAM_KEY_TEXT_LENGTH] = "";
+  size_t used = 0;
+
+  PetscFunctionBeginUser;
+  if (nearest) {
+    snprintf(meant, sizeof(meant), "did you mean %s? ",
+             LamKeyIsChild(nearest, map) ? LamKeyName(nearest) : nearest->path);
+  }
+  for (PetscInt i = 0; i < LamKeyCount && used < sizeof(known); i++) {
+    if (!LamKeyIsChild(&LamKeys[i], map)) continue;
+    used += (size_t)snprintf(known + used, sizeof(known) - used, "%s%s", used ? ", " : "", LamKeyName(&LamKeys[i]));
+  }
+  PetscCall(LamSceneFailName(document, node, "unknown key; %sknown here: %s", meant, known));
+  PetscFunctionReturn(0);
+}
+
+/* Raises "<reason>; write <what would be right>". */
+static PetscErrorCode FailValue(const LamDocument *document, const LamNode *node, const LamKey *key, PetscBool single,
+                                const char reason[])
+{
+  char expected[LAM_KEY_TEXT_LENGTH];
+
+  PetscFunctionBeginUser;
+  LamKeyExpectation(key, single, expected);
+  PetscCall(LamSceneFail(document, node, "%s; write %s", reason, expected));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CheckKind(const LamDocument *document, const LamNode *node, const LamKey *key, PetscBool single,
+                                LamNodeKind kind)
+{
+  static const char *const kinds[] = {"a single value", "a map", "a list"};
+  char reason[LAM_REASON_LENGTH];
+
+  PetscFunctionBeginUser;
+  if (node->is_null) PetscCall(FailValue(document, node, key, single, "has no value"));
+  if (node->kind != kind) {
+    snprintf(reason, sizeof(reason), "is %s where %s belongs", kinds[node->kind], kinds[kind]);
+    PetscCall(FailValue(document, node, key, single, reason));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* A number without a unit. */
+static PetscErrorCode ReadPlainNumber(const LamDocument *document, const LamNode *node, const LamKey *key,
+                                      PetscReal *number)
+{
+  const char *end;
+
+  PetscFunctionBeginUser;
+  *number = LamNumberScan(node->text, &end);
+  if (LamTextIsNonFinite(node->text)) PetscCall(FailValue(document, node, key, PETSC_TRUE, "is not a finite number"));
+  if (end == node->text) PetscCall(FailValue(document, node, key, PETSC_TRUE, "is not a number"));
+  if (*end) PetscCall(FailValue(document, node, key, PETSC_TRUE, "is not a plain number"));
+  if (!isfinite(*number)) PetscCall(FailValue(document, node, key, PETSC_TRUE, "is too large"));
+  if (key->type == LAM_KEY_INTEGER && strspn(node->text, "+-0123456789") != strlen(node->text)) {
+    PetscCall(FailValue(document, node, key, PETSC_TRUE, "is not a whole number"));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadName(const LamDocument *document, const LamNode *node, const LamKey *key, PetscReal *number)
+{
+  char expected[LAM_KEY_TEXT_LENGTH];
+
+  PetscFunctionBeginUser;
+  LamKeyExpectation(key, PETSC_TRUE, expected);
+  for (PetscInt i = 0; i < key->name_count; i++) {
+    if (strcmp(node->text, key->names[i]) != 0) continue;
+    *number = (PetscReal)i;
+    PetscFunctionReturn(0);
+  }
+  PetscCall(FailValue(document, node, key, PETSC_TRUE, "is none of the names known here"));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadBool(const LamDocument *document, const LamNode *node, const LamKey *key, PetscReal *number)
+{
+  PetscFunctionBeginUser;
+  if (!strcasecmp(node->text, "true"))
+    *number = 1.0;
+  else if (!strcasecmp(node->text, "false"))
+    *number = 0.0;
+  else
+    PetscCall(FailValue(document, node, key, PETSC_TRUE, "is not a truth value"));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadQuantity(const LamDocument *document, const LamNode *node, const LamKey *key,
+                                   PetscReal *number)
+{
+  char reason[LAM_REASON_LENGTH];
+
+  PetscFunctionBeginUser;
+  PetscCall(LamQuantityRead(node->text, key->dimension, number, reason));
+  if (reason[0]) PetscCall(FailValue(document, node, key, PETSC_TRUE, reason));
+  PetscFunctionReturn(0);
+}
+
+/* A bound in SI. */
+static PetscErrorCode BoundValue(const LamKey *key, const LamBound *bound, PetscReal *value)
+{
+  char text[LAM_REASON_LENGTH];
+
+  PetscFunctionBeginUser;
+  *value = bound->value;
+  if (bound->kind == LAM_BOUND_NONE || !key->unit) PetscFunctionReturn(0);
+  snprintf(text, sizeof(text), "%.17g %s", (double)bound->value, key->unit);
+  PetscCall(LamQuantityParse(text, key->dimension, value));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CheckBounds(const LamDocument *document, const LamNode *node, const LamKey *key, PetscReal number)
+{
+  PetscBool inside = PETSC_TRUE;
+  PetscReal lower, upper;
+
+  PetscFunctionBeginUser;
+  PetscCall(BoundValue(key, &key->lower, &lower));
+  PetscCall(BoundValue(key, &key->upper, &upper));
+  if (key->lower.kind == LAM_BOUND_INCLUDED && number < lower) inside = PETSC_FALSE;
+  if (key->lower.kind == LAM_BOUND_EXCLUDED && number <= lower) inside = PETSC_FALSE;
+  if (key->upper.kind == LAM_BOUND_INCLUDED && number > upper) inside = PETSC_FALSE;
+  if (key->upper.kind == LAM_BOUND_EXCLUDED && number >= upper) inside = PETSC_FALSE;
+  if (!inside) PetscCall(FailValue(document, node, key, PETSC_TRUE, "is out of range"));
+  PetscFunctionReturn(0);
+}
+
+/* Reads one component of a value from a scalar. */
+static PetscErrorCode ReadSingle(const LamDocument *document, const LamNode *node, const LamKey *key, LamValue *value)
+{
+  PetscReal number = 0.0;
+
+  PetscFunctionBeginUser;
+  PetscCall(CheckKind(document, node, key, PETSC_TRUE, LAM_NODE_SCALAR));
+  if (key->free_word && !strcmp(node->text, key->free_word)) {
+    value->is_free[value->count++] = PETSC_TRUE;
+    PetscFunctionReturn(0);
+  }
+  switch (key->type) {
+  case LAM_KEY_QUANTITY:
+  case LAM_KEY_QUANTITY_TENSOR:
+    PetscCall(ReadQuantity(document, node, key, &number));
+    break;
+  case LAM_KEY_NAME:
+    PetscCall(ReadName(document, node, key, &number));
+    break;
+  case LAM_KEY_BOOL:
+    PetscCall(ReadBool(document, node, key, &number));
+    break;
+  case LAM_KEY_TEXT:
+    break;
+  default:
+    PetscCall(ReadPlainNumber(document, node, key, &number));
+  }
+  PetscCall(CheckBounds(document, node, key, number));
+  value->number[value->count++] = number;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadVector(const LamDocument *document, LamNode *node, const LamKey *key)
+{
+  PetscFunctionBeginUser;
+  PetscCall(CheckKind(document, node, key, PETSC_FALSE, LAM_NODE_LIST));
+  if (node->count != key->size) {
+    char reason[LAM_REASON_LENGTH];
+    snprintf(reason, sizeof(reason), "has %d entries", (int)node->count);
+    PetscCall(FailValue(document, node, key, PETSC_FALSE, reason));
+  }
+  for (LamNode *item = node->first; item; item = item->next) {
+    PetscCall(ReadSingle(document, item, key, &node->value));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Two rows of two or three of three; 2x2 plain numbers are completed with F33 = 1. */
+static PetscErrorCode ReadTensor(const LamDocument *document, LamNode *node, const LamKey *key)
+{
+  LamValue read = {0};
+
+  PetscFunctionBeginUser;
+  PetscCall(CheckKind(document, node, key, PETSC_FALSE, LAM_NODE_LIST));
+  if (node->count != 2 && node->count != 3) {
+    PetscCall(FailValue(document, node, key, PETSC_FALSE, "is no square tensor"));
+  }
+  for (const LamNode *row = node->first; row; row = row->next) {
+    if (row->kind != LAM_NODE_LIST || row->count != node->count) {
+      PetscCall(FailValue(document, node, key, PETSC_FALSE, "is no square tensor"));
+    }
+    for (const LamNode *item = row->first; item; item = item->next) {
+      PetscCall(ReadSingle(document, item, key, &read));
+    }
+  }
+  node->value.count = LAM_VALUE_SIZE;
+  if (key->type == LAM_KEY_TENSOR)
+    node->value.number[8] = 1.0;
+  else
+    for (PetscInt i = 0; i < LAM_VALUE_SIZE; i++) node->value.is_free[i] = PETSC_TRUE;
+  for (PetscInt i = 0; i < read.count; i++) {
+    const PetscInt to = (PetscInt)(3 * (i / node->count) + i % node->count);
+
+    node->value.number[to] = read.number[i];
+    node->value.is_free[to] = read.is_free[i];
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadNode(const LamDocument *document, LamNode *node, const LamKey *key);
+
+static PetscErrorCode ReadList(const LamDocument *document, LamNode *node, const LamKey *key)
+{
+  char path[PATH_LENGTH];
+  const LamKey *item_key;
+
+  PetscFunctionBeginUser;
+  PetscCall(CheckKind(document, node, key, PETSC_FALSE, LAM_NODE_LIST));
+  if (!node->count) PetscCall(FailValue(document, node, key, PETSC_FALSE, "is empty"));
+  snprintf(path, sizeof(path), "%s[]", key->path);
+  item_key = LamKeyFind(path);
+  PetscCheck(item_key, PETSC_COMM_SELF, PETSC_ERR_PLIB, "the table of scene keys lacks %s", path);
+  for (LamNode *item = node->first; item; item = item->next) PetscCall(ReadNode(document, item, item_key));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadMap(const LamDocument *document, LamNode *node, const LamKey *key)
+{
+  PetscFunctionBeginUser;
+  PetscCall(CheckKind(document, node, key, PETSC_FALSE, LAM_NODE_MAP));
+  for (LamNode *entry = node->first; entry; entry = entry->next) {
+    char path[PATH_LENGTH];
+    const LamKey *entry_key = NULL;
+    const int length = snprintf(path, sizeof(path), "%s%s%s", key->path, key->path[0] ? "." : "", entry->name);
+
+    if (length < PATH_LENGTH) entry_key = LamKeyFind(path);
+    if (!entry_key || !LamKeyIsChild(entry_key, key))
+      PetscCall(FailUnknown(document, entry, key));
+    else
+      PetscCall(ReadNode(document, entry, entry_key));
+  }
+  for (PetscInt i = 0; i < LamKeyCount; i++) {
+    const char *name = LamKeyName(&LamKeys[i]);
+    char expected[LAM_KEY_TEXT_LENGTH];
+    if (!LamKeys[i].required || !LamKeyIsChild(&LamKeys[i], key) || LamNodeFind(node, name, strlen(name))) continue;
+    LamKeyExpectation(&LamKeys[i], PETSC_FALSE, expected);
+    PetscCall(LamSceneFailMissing(document, node, name, "missing; write %s", expected));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadNode(const LamDocument *document, LamNode *node, const LamKey *key)
+{
+  PetscFunctionBeginUser;
+  node->key = key;
+  switch (key->type) {
+  case LAM_KEY_MAP:
+    PetscCall(ReadMap(document, node, key));
+    break;
+  case LAM_KEY_LIST:
+    PetscCall(ReadList(document, node, key));
+    break;
+  case LAM_KEY_TENSOR:
+  case LAM_KEY_QUANTITY_TENSOR:
+    PetscCall(ReadTensor(document, node, key));
+    break;
+  default:
+    if (key->size)
+      PetscCall(ReadVector(document, node, key));
+    else
+      PetscCall(ReadSingle(document, node, key, &node->value));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSceneCheckKeys(LamDocument *document)
+{
+  const LamNode start = {.line = 1, .column = 1};
+
+  PetscFunctionBeginUser;
+  if (!document->root || document->root->is_null) {
+    PetscCall(LamSceneFail(document, &start, "the file holds no scene; a scene starts with version: 1"));
+  }
+  PetscCall(ReadNode(document, document->root, LamKeyFind("")));
+  PetscFunctionReturn(0);
+}
+
+/* Reads a default from the table as if it stood in a file. */
+static PetscErrorCode ReadDefault(const LamKey *key, LamValue *value)
+{
+  LamDocument document;
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  ierr = LamDocumentParse(key->path, key->default_value, &document);
+  if (!ierr) ierr = ReadNode(&document, document.root, key);
+  if (!ierr) *value = document.root->value;
+  PetscCall(LamDocumentDestroy(&document));
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSceneGet(const LamNode *base, const char path[], const LamNode **node, LamValue *value)
+{
+  const LamKey *key = LamKeyFind(path);
+  const size_t skip = strlen(base->key->path);
+  const LamNode *found;
+
+  PetscFunctionBeginUser;
+  PetscCheck(key, PETSC_COMM_SELF, PETSC_ERR_PLIB, "the table of scene keys lacks %s", path);
+  found = LamNodeFindPath(base, path + skip + (skip ? 1 : 0));
+  *value = (LamValue){0};
+  if (node) *node = found;
+  if (found)
+    *value = found->value;
+  else if (key->default_value)
+    PetscCall(ReadDefault(key, value));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,280 @@
+/*
+  The `map` block of a scene: two quantities that vary.
+*/
+#include "scene_keys.h"
+#include "quantity_text.h"
+#include <math.h>
+
+typedef enum { PLAIN, STRESS, LENGTH } Kind;
+
+/* What each quantity can be. Bounds in C1 + C2 and apothems. */
+static const struct {
+  Kind kind;
+  LamBound lower, upper;
+} Quantities[] = {
+    [LAM_MAP_TURGOR] = {STRESS, {0}, {0}},
+    [LAM_MAP_COHESION] = {STRESS, {LAM_BOUND_INCLUDED, 0}, {0}},
+    [LAM_MAP_SHEAR] = {PLAIN, {0}, {0}},
+    [LAM_MAP_LOAD_FACTOR] = {PLAIN, {LAM_BOUND_INCLUDED, 0}, {LAM_BOUND_INCLUDED, 1}},
+    [LAM_MAP_WALL_STRENGTH] = {STRESS, {LAM_BOUND_EXCLUDED, 0}, {0}},
+    [LAM_MAP_LAMELLA_NORMAL] = {STRESS, {LAM_BOUND_EXCLUDED, 0}, {0}},
+    [LAM_MAP_LAMELLA_SHEAR] = {STRESS, {LAM_BOUND_EXCLUDED, 0}, {0}},
+    [LAM_MAP_C4] = {STRESS, {LAM_BOUND_INCLUDED, 0}, {0}},
+    [LAM_MAP_WALL_THICKNESS] = {LENGTH, {LAM_BOUND_EXCLUDED, 0}, {LAM_BOUND_EXCLUDED, 1}},
+};
+
+PetscReal LamMapAxisValue(const LamMapAxis *axis, PetscInt i)
+{
+  const PetscReal share = (PetscReal)i / (PetscReal)(axis->points - 1);
+
+  if (i == axis->points - 1) return axis->to; /* free of rounding */
+  return axis->is_log ? axis->from * pow(axis->to / axis->from, share) : (1 - share) * axis->from + share * axis->to;
+}
+
+const char *LamMapQuantityUnit(LamMapQuantity quantity, const LamScales *scales, PetscReal *scale)
+{
+  static const char *const units[] = {"1", "MPa", "um"};
+  const PetscReal factors[] = {1.0, scales->stress * 1e-6, scales->length * 1e6};
+
+  *scale = factors[Quantities[quantity].kind];
+  return units[Quantities[quantity].kind];
+}
+
+PetscBool LamMapQuantityIsLoad(LamMapQuantity quantity)
+{
+  return (PetscBool)(quantity == LAM_MAP_SHEAR || quantity == LAM_MAP_LOAD_FACTOR);
+}
+
+/* An axis as it stands in the file. */
+typedef struct {
+  const LamNode *quantity, *from, *to;
+} AxisNodes;
+
+/* ---- values ---- */
+
+static PetscErrorCode ReadPlain(const LamDocument *document, const LamNode *node, PetscReal *number)
+{
+  const char *end;
+
+  PetscFunctionBeginUser;
+  *number = LamNumberScan(node->text, &end);
+  if (end == node->text || *end || !isfinite(*number))
+    PetscCall(LamSceneFail(document, node, "is not a plain number; write one, such as 0.1"));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadWithUnit(const LamDocument *document, const LamNode *node, Kind kind, PetscReal scale,
+                                   PetscReal *number)
+{
+  const LamDimension dimension = kind == STRESS ? LAM_DIMENSION_STRESS : LAM_DIMENSION_LENGTH;
+  char reason[LAM_REASON_LENGTH];
+  PetscReal si;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamQuantityRead(node->text, dimension, &si, reason));
+  if (reason[0])
+    PetscCall(LamSceneFail(document, node, "%s; write a %s with its unit, such as %s", reason,
+                           LamDimensionNames[dimension], LamDimensionExamples[dimension]));
+  PetscCall(LamSceneScale(document, node, si, scale, number));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CheckBounds(const LamDocument *document, const LamNode *node, LamMapQuantity quantity,
+                                  const LamScales *scales, PetscReal number)
+{
+  const LamBound *lower = &Quantities[quantity].lower, *upper = &Quantities[quantity].upper;
+  const char *name = LamMapQuantityNames[quantity], *unit;
+  PetscReal scale;
+
+  PetscFunctionBeginUser;
+  unit = LamMapQuantityUnit(quantity, scales, &scale);
+  if ((lower->kind == LAM_BOUND_INCLUDED && number < lower->value) ||
+      (lower->kind == LAM_BOUND_EXCLUDED && number <= lower->value))
+    PetscCall(LamSceneFail(document, node, "is out of range; %s is %s %g", name,
+                           lower->kind == LAM_BOUND_INCLUDED ? "at least" : "larger than", (double)lower->value));
+  if ((upper->kind == LAM_BOUND_INCLUDED && number > upper->value) ||
+      (upper->kind == LAM_BOUND_EXCLUDED && number >= upper->value))
+    PetscCall(LamSceneFail(document, node, "is out of range; %s is %s %g%s%s", name,
+                           upper->kind == LAM_BOUND_INCLUDED ? "at most" : "less than", (double)(upper->value * scale),
+                           Quantities[quantity].kind == PLAIN ? "" : " ",
+                           Quantities[quantity].kind == PLAIN ? "" : unit));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadEnd(const LamDocument *document, const LamNode *node, LamMapQuantity quantity,
+                              const LamScales *scales, PetscReal *number)
+{
+  const Kind kind = Quantities[quantity].kind;
+
+  PetscFunctionBeginUser;
+  if (kind == PLAIN)
+    PetscCall(ReadPlain(document, node, number));
+  else
+    PetscCall(ReadWithUnit(document, node, kind, kind == STRESS ? scales->stress : scales->length, number));
+  PetscCall(CheckBounds(document, node, quantity, scales, *number));
+  PetscFunctionReturn(0);
+}
+
+/* ---- what must fit the rest of the scene ---- */
+
+/* An entry of the load that has a turgor or cohesion of its own would hide the axis. */
+static PetscErrorCode CheckEntries(const LamDocument *document, const char path[], const AxisNodes *nodes)
+{
+  const LamNode *list, *own;
+  LamValue unused;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamSceneGet(document->root, "load", &list, &unused));
+  for (const LamNode *entry = list->first; entry; entry = entry->next) {
+    PetscCall(LamSceneGet(entry, path, &own, &unused));
+    if (own)
+      PetscCall(LamSceneFail(document, own, "the map varies it (line %d); leave it out here", nodes->quantity->line));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The shear that the load reaches is found again by its value, so it only grows, from 0 on. */
+static PetscErrorCode CheckShear(const LamDocument *document, const AxisNodes *nodes, const LamScene *scene,
+                                 const LamMapAxis *axis)
+{
+  PetscReal last = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < scene->load_count; i++) {
+    if (scene->controls && (scene->controls[i].given[1] || scene->controls[i].follows[1]))
+      PetscCall(LamSceneFail(document, nodes->quantity,
+                             "F12 of the load is free at state %d; write quantity: load_factor", (int)i + 1));
+    if (scene->loads[i].F[1] <= last)
+      PetscCall(LamSceneFail(document, nodes->quantity,
+                             "F12 of the load does not grow at state %d; write quantity: load_factor", (int)i + 1));
+    last = scene->loads[i].F[1];
+  }
+  if (axis->from < 0) PetscCall(LamSceneFail(document, nodes->from, "the load starts with F12 = 0; write 0 or more"));
+  if (axis->to > last)
+    PetscCall(LamSceneFail(document, nodes->to, "the load ends with F12 = %g; write at most that, or a longer load",
+                           (double)last));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CheckWalls(const LamDocument *document, const AxisNodes *nodes, const LamMicrostructure *micro,
+                                 LamMapQuantity quantity)
+{
+  PetscFunctionBeginUser;
+  if (micro->cell)
+    PetscCall(LamSceneFail(document, nodes->quantity,
+                           "the cells differ, and a map varies all alike; choose another quantity"));
+  if (quantity == LAM_MAP_C4 && micro->wall.law == LAM_WALL_MOONEY_RIVLIN)
+    PetscCall(LamSceneFail(document, nodes->quantity,
+                           "law mooney_rivlin has no fibres; write law: fibre_mooney_rivlin, or another quantity"));
+  PetscFunctionReturn(0);
+}
+
+/* As CheckHold in scene_cells.c for a cohesion that does not vary. */
+static PetscErrorCode CheckFreeSides(const LamDocument *document, const AxisNodes *nodes, const LamScene *scene,
+                                     const LamMapAxis *axis)
+{
+  PetscFunctionBeginUser;
+  if (LamSceneNeedsCohesion(&scene->micro) && axis->from <= 0.0)
+    PetscCall(LamSceneFail(document, nodes->from,
+                           "without cohesion nothing holds the outer cells of a patch whose sides are free; write more "
+                           "than 0 MPa, or sides: affine"));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CheckAxis(const LamDocument *document, const AxisNodes *nodes, const LamScene *scene,
+                                const LamMapAxis *axis)
+{
+  PetscFunctionBeginUser;
+  switch (axis->quantity) {
+  case LAM_MAP_TURGOR:
+    PetscCall(LamSceneCheckTurgor(document, nodes->to, PetscMax(fabs(axis->from), fabs(axis->to))));
+    PetscCall(CheckEntries(document, "load[].turgor", nodes));
+    break;
+  case LAM_MAP_COHESION:
+    if (scene->micro.interface == LAM_INTERFACE_BONDED)
+      PetscCall(LamSceneFail(document, nodes->quantity,
+                             "law: bonded has no cohesion; write interface: {law: contact}, or another quantity"));
+    PetscCall(CheckFreeSides(document, nodes, scene, axis));
+    PetscCall(CheckEntries(document, "load[].cohesion", nodes));
+    break;
+  case LAM_MAP_SHEAR:
+    PetscCall(CheckShear(document, nodes, scene, axis));
+    break;
+  case LAM_MAP_LAMELLA_NORMAL:
+  case LAM_MAP_LAMELLA_SHEAR:
+    if (scene->micro.interface == LAM_INTERFACE_CONTACT)
+      PetscCall(LamSceneFail(document, nodes->quantity,
+                             "law: contact has a cohesion instead; write cohesion, or interface: {law: bonded}"));
+    break;
+  case LAM_MAP_C4:
+  case LAM_MAP_WALL_THICKNESS:
+    PetscCall(CheckWalls(document, nodes, &scene->micro, axis->quantity));
+    break;
+  default:
+    break;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* ---- the block ---- */
+
+static PetscErrorCode BuildAxis(const LamDocument *document, const char *const paths[5], const LamScene *scene,
+                                AxisNodes *nodes, LamMapAxis *axis)
+{
+  LamValue quantity, points, spacing, unused;
+  const LamNode *spacing_node;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamSceneGet(document->root, paths[0], &nodes->quantity, &quantity));
+  PetscCall(LamSceneGet(document->root, paths[1], &nodes->from, &unused));
+  PetscCall(LamSceneGet(document->root, paths[2], &nodes->to, &unused));
+  PetscCall(LamSceneGet(document->root, paths[3], NULL, &points));
+  PetscCall(LamSceneGet(document->root, paths[4], &spacing_node, &spacing));
+  axis->quantity = (LamMapQuantity)quantity.number[0];
+  axis->points = (PetscInt)points.number[0];
+  axis->is_log = (PetscBool)((LamSpacing)spacing.number[0] == LAM_SPACING_LOG);
+  PetscCall(ReadEnd(document, nodes->from, axis->quantity, &scene->scales, &axis->from));
+  PetscCall(ReadEnd(document, nodes->to, axis->quantity, &scene->scales, &axis->to));
+  if (axis->from >= axis->to)
+    PetscCall(LamSceneFail(document, nodes->to, "is not larger than from (%s in line %d)", nodes->from->text,
+                           nodes->from->line));
+  if (axis->is_log && axis->from <= 0)
+    PetscCall(LamSceneFail(document, spacing_node, "needs values above 0; from is %s in line %d", nodes->from->text,
+                           nodes->from->line));
+  PetscCall(CheckAxis(document, nodes, scene, axis));
+  PetscFunctionReturn(0);
+}
+
+/* Two axes that say the same, or that both say how far one load is followed, span no map. */
+static PetscErrorCode CheckPair(const LamDocument *document, const AxisNodes *y, const LamMapAxis map[])
+{
+  PetscFunctionBeginUser;
+  if (map[LAM_MAP_X].quantity == map[LAM_MAP_Y].quantity)
+    PetscCall(LamSceneFail(document, y->quantity, "is on the axis x already; write another quantity"));
+  if (LamMapQuantityIsLoad(map[LAM_MAP_X].quantity) && LamMapQuantityIsLoad(map[LAM_MAP_Y].quantity))
+    PetscCall(LamSceneFail(document, y->quantity,
+                           "says how far the load is followed, as the axis x does; write another quantity"));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSceneBuildMap(const LamDocument *document, LamScene *scene)
+{
+  static const char *const paths[LAM_MAP_AXIS_COUNT][5] = {
+      {"map.x.quantity", "map.x.from", "map.x.to", "map.x.points", "map.x.spacing"},
+      {"map.y.quantity", "map.y.from", "map.y.to", "map.y.points", "map.y.spacing"},
+  };
+  AxisNodes nodes[LAM_MAP_AXIS_COUNT] = {{0}};
+  const LamNode *block;
+  LamValue unused;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamSceneGet(document->root, "map", &block, &unused));
+  if (!block) PetscFunctionReturn(0);
+  if (!scene->load_count)
+    PetscCall(LamSceneFailName(document, block, "needs a block load, along which the tissue is followed; add one"));
+  scene->has_map = PETSC_TRUE;
+  for (int a = 0; a < LAM_MAP_AXIS_COUNT; a++)
+    PetscCall(BuildAxis(document, paths[a], scene, &nodes[a], &scene->map[a]));
+  PetscCall(CheckPair(document, &nodes[LAM_MAP_Y], scene->map));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,43 @@
+/*
+  `macro.response` of a scene: how material points are answered.
+*/
+#include "scene_keys.h"
+#include "quantity_text.h"
+#include <string.h>
+
+/* Units of memory; udunits has none. */
+static const struct {
+  const char *name;
+  PetscReal bytes;
+} units[] = {{"kB", 1e3}, {"MB", 1e6}, {"GB", 1e9}, {"TB", 1e12}};
+
+/* "2 GB"; 0 keeps nothing. */
+static PetscErrorCode ReadMemory(const LamDocument *document, const LamNode *node, PetscReal *bytes)
+{
+  const char *end;
+  const PetscReal number = LamNumberScan(node->text, &end);
+
+  PetscFunctionBeginUser;
+  *bytes = -1;
+  for (size_t k = 0; end > node->text && k < PETSC_STATIC_ARRAY_LENGTH(units); k++)
+    if (!strcmp(end + strspn(end, " "), units[k].name)) *bytes = number * units[k].bytes;
+  if (!(*bytes >= 0 && *bytes < 1e18))
+    PetscCall(LamSceneFail(document, node, "is no size of memory; write a number with kB, MB, GB or TB, such as 2 GB"));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSceneBuildResponse(const LamDocument *document, LamScene *scene)
+{
+  const LamNode *node;
+  LamValue value;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamSceneGet(document->root, "macro.response.outside", NULL, &value));
+  scene->response.outside = (LamOutside)value.number[0];
+  PetscCall(LamSceneGet(document->root, "macro.response.accuracy", &node, &value));
+  scene->response.accuracy = node ? value.number[0] : 0;
+  scene->response.warm_start_memory = LAM_WARM_START_MEMORY;
+  PetscCall(LamSceneGet(document->root, "macro.response.warm_start_memory", &node, &value));
+  if (node) PetscCall(ReadMemory(document, node, &scene->response.warm_start_memory));
+  PetscFunctionReturn(0);
+}

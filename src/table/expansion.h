@@ -1,0 +1,38 @@
+/*
+  The potential of a record as a second-order model in invariants under rotation.
+*/
+#ifndef LAM_EXPANSION_H
+#define LAM_EXPANSION_H
+
+#include <lamella/response.h>
+
+/* x = (c0, c1, c2, p, g): c0 = (C11 + C22)/2, c1 = (C11 - C22)/2, c2 = C12, turgor, cohesion. */
+#define LAM_VARIABLES 5
+
+/*
+  Value, gradient and Hessian at x of Phi = Psi + p J: the fluid's part -p J of the potential is taken off, what remains
+  varies slowly with J, and hardly with p (effective-stress principle, docs/theory.md Section 20). P33 + p J is a scalar
+  of the same variables, known with its gradient. Bonded tissue does not feel g: derivatives with respect to it are 0.
+*/
+typedef struct {
+  PetscReal x[LAM_VARIABLES];
+  PetscReal energy, gradient[LAM_VARIABLES], hessian[LAM_VARIABLES][LAM_VARIABLES];
+  PetscReal P33, P33_gradient[LAM_VARIABLES]; /* of P33 + p J */
+} LamExpansion;
+
+/* The variables of a load in plane strain. */
+void LamVariables(const LamLoad *load, PetscReal x[LAM_VARIABLES]);
+/* From a record with fields; PETSC_FALSE where one of its derivatives is not known. */
+PetscBool LamExpansionMake(const LamResponse *record, PetscBool bonded, LamExpansion *expansion);
+/*
+  The metric of P in its derivatives with respect to C: |P|^2 in the plane = sum_ab v_a B_ab v_b for P = sum v_a K_a,
+  K_a = dc_a/dF.
+*/
+void LamStressMetric(const PetscReal F[9], PetscReal B[3][3]);
+/*
+  Energy, P, tangent and the derivatives with respect to turgor and cohesion into `response`, whose load is the state of
+  the expansion. A3333: entry 33, 33 of the tangent, which does not follow from the expansion.
+*/
+void LamExpansionToResponse(const LamExpansion *expansion, PetscReal A3333, LamResponse *response);
+
+#endif

@@ -1,0 +1,146 @@
+/*
+  From records to a table: those whose keys are nodes, sorted by level, place and suction; nodes and their columns. What
+  nodes add is made when a cell first needs them (table_surplus.c), so that a table of a million nodes is there at once.
+*/
+#include "table.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- nodes ---- */
+
+typedef struct {
+  PetscInt64 key;
+  PetscInt data;
+  int level;
+} Entry;
+
+static int CompareEntries(const void *first, const void *second)
+{
+  const Entry *a = first, *b = second;
+
+  if (a->level != b->level) return a->level - b->level;
+  if (a->key != b->key) return a->key < b->key ? -1 : 1;
+  return a->data < b->data ? -1 : a->data > b->data;
+}
+
+/* Others are left out: they come from damaged files. */
+static PetscBool IsPlace(const struct LamGrid_s *grid, const LamNodePlace *place)
+{
+  const int *i = place->i, reach = LAM_GRID_REACH - 2 * LAM_ROOT;
+
+  for (int k = 0; k < 3; k++)
+    if (i[k] < -reach || i[k] > reach) return PETSC_FALSE;
+  if (grid->symmetric && (i[0] > i[1] || i[1] > i[2])) return PETSC_FALSE;
+  return (PetscBool)(place->j <= LAM_ROOT * grid->tau_cells && !LamPlaceIsFloating(grid, i));
+}
+
+static PetscErrorCode CollectEntries(LamTable table, PetscInt *n, Entry **entries)
+{
+  const LamNodeSet *source = table->source;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(source->count + 1, entries));
+  *n = 0;
+  for (PetscInt d = 0; d < source->count; d++) {
+    const LamNodePlace place = LamNodePlaceOf(source->data[d].key);
+
+    if (!LamNodeIsFree(&place)) {
+      if (IsPlace(table->grid, &place)) (*entries)[(*n)++] = (Entry){source->data[d].key, d, LamNodeLevel(&place)};
+      continue;
+    }
+    for (PetscInt m = 0; m < table->grid->free.n; m++)
+      if (table->grid->free_keys[m] == source->data[d].key) table->free_data[m] = d;
+  }
+  qsort(*entries, (size_t)*n, sizeof(Entry), CompareEntries);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MakeNodes(LamTable table)
+{
+  LamTableNode *node = NULL;
+  Entry *entries;
+  PetscInt n;
+
+  PetscFunctionBeginUser;
+  PetscCall(CollectEntries(table, &n, &entries));
+  PetscCall(PetscMalloc1(n + 1, &table->states));
+  PetscCall(PetscMalloc1(n + 1, &table->nodes));
+  PetscCall(PetscMalloc1(n + 1, &table->data));
+  PetscCall(LamPlaceMapCreate(n, &table->node_map));
+  for (PetscInt e = 0; e < n; e++) {
+    const LamNodePlace place = LamNodePlaceOf(entries[e].key);
+
+    if (e && entries[e].key == entries[e - 1].key) continue; /* solved twice: the first counts */
+    if (!node || memcmp(node->i, place.i, sizeof(place.i)) != 0) {
+      node = &table->nodes[table->node_count];
+      memset(node, 0, sizeof(*node));
+      memcpy(node->i, place.i, sizeof(place.i));
+      node->level = entries[e].level;
+      node->first = table->state_count;
+      atomic_init(&node->stage, LAM_NODE_RAW);
+      LamPlaceMapSet(&table->node_map, LamPlaceMapKey(place.i), table->node_count++);
+    }
+    table->data[table->state_count++] = entries[e].data;
+    node->count++;
+  }
+  if (node) table->levels = node->level + 1; /* the last is of the finest */
+  PetscCall(PetscFree(entries));
+  PetscFunctionReturn(0);
+}
+
+/* ---- the table ---- */
+
+/* Recursive: to make a node is to make those of coarser levels. */
+static PetscErrorCode MakeLock(LamTable table)
+{
+  pthread_mutexattr_t attributes;
+
+  PetscFunctionBeginUser;
+  PetscCheck(!pthread_mutexattr_init(&attributes) && !pthread_mutexattr_settype(&attributes, PTHREAD_MUTEX_RECURSIVE) &&
+                 !pthread_mutex_init(&table->lock, &attributes),
+             PETSC_COMM_SELF, PETSC_ERR_SYS, "the lock of a table cannot be made");
+  pthread_mutexattr_destroy(&attributes);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamTableMake(const LamNodeSet *source, LamGrid grid, PetscBool uniform, LamTable *table)
+{
+  LamTable t;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&t));
+  t->references = 1;
+  t->source = source;
+  t->grid = grid;
+  t->uniform = uniform;
+  PetscCall(PetscMalloc1(t->grid->free.n + 1, &t->free_data));
+  for (PetscInt m = 0; m < t->grid->free.n; m++) t->free_data[m] = -1;
+  PetscCall(MakeLock(t));
+  PetscCall(MakeNodes(t));
+  *table = t;
+  PetscFunctionReturn(0);
+}
+
+/* Of one table several readers may hold references at once, in threads too. */
+LamTable LamTableReference(LamTable table)
+{
+  if (table) atomic_fetch_add(&table->references, 1);
+  return table;
+}
+
+PetscErrorCode LamTableDestroy(LamTable *table)
+{
+  LamTable t = *table;
+
+  PetscFunctionBeginUser;
+  *table = NULL;
+  if (!t || atomic_fetch_sub(&t->references, 1) > 1) PetscFunctionReturn(0);
+  PetscCall(LamPlaceMapDestroy(&t->node_map));
+  pthread_mutex_destroy(&t->lock);
+  PetscCall(PetscFree(t->states));
+  PetscCall(PetscFree(t->nodes));
+  PetscCall(PetscFree(t->data));
+  PetscCall(PetscFree(t->free_data));
+  PetscCall(PetscFree(t));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,243 @@
+/*
+  What a node adds to the coarser levels, made when a cell first needs it.
+
+  Algorithm
+    1. The states of its column: Phi and its derivatives in the grid's coordinates, less the sum of the coarser levels
+       there, whose nodes this makes. On a face of coarser cells the pure second derivatives are taken from the cells on
+       either side.
+    2. Mixed third derivatives of what the level adds, from the neighbours after their step 1; slopes along suction.
+  Neither step asks for a node of a finer level or for step 2 of its own, so it ends, and in the numbers that making all
+  nodes level by level would give.
+*/
+#include "table.h"
+#include <math.h>
+#include <string.h>
+
+static void Subtract(LamTable table, PetscInt n);
+
+/* Entry of a Hessian between two axes. */
+static int Entry3(int a, int b)
+{
+  return a == b ? a : 6 - a - b;
+}
+
+/* The sum of the coarser levels at a node and v along suction, in the cells on the given sides (bit k: below) of it. */
+static PetscBool CoarseSum(LamTable table, const LamTableNode *node, PetscReal v, int sides, LamTableSum *sum,
+                           int order[3])
+{
+  LamTablePoint point = {.tau = table->grid->tau_min + table->grid->tau_step * v / LAM_ROOT, .v = v};
+  PetscReal nudged[3];
+
+  memset(sum, 0, sizeof(*sum));
+  point.s = table->grid->contact ? table->grid->suction_scale * expm1(point.tau) : 0;
+  point.root = PetscMin((int)v / LAM_ROOT, (int)table->grid->tau_cells - 1) * LAM_ROOT;
+  /* sorted with the sides, so that the cells are found by their sorted corner */
+  for (int k = 0; k < 3; k++) nudged[k] = node->i[k] + (sides >> k & 1 ? -0.25 : 0.25);
+  for (int k = 0; k < 3; k++) {
+    order[k] = 0;
+    for (int l = 0; l < 3 && table->grid->symmetric; l++)
+      order[k] += nudged[l] < nudged[k] || (nudged[l] == nudged[k] && l < k);
+    if (!table->grid->symmetric) order[k] = k;
+  }
+  for (int level = 0; level < node->level; level++) {
+    const LamTableCell *cell;
+    LamTableCell around;
+
+    for (int k = 0; k < 3; k++) point.u[order[k]] = nudged[k];
+    cell = LamTableFindCell(table, &point, level, &around);
+    for (int k = 0; k < 3; k++) point.u[order[k]] = node->i[k];
+    if (!level && !cell) return PETSC_FALSE;
+    if (cell) LamTableAddCell(table, cell, &point, PETSC_FALSE, sum);
+  }
+  return PETSC_TRUE;
+}
+
+static void SubtractSum(const LamTableSum *sum, const int order[3], LamTableState *state)
+{
+  static const int pair[3][2] = {{1, 2}, {0, 2}, {0, 1}};
+
+  state->phi.value -= sum->phi.value;
+  state->tau1 -= sum->tau1;
+  state->tau2 -= sum->tau2;
+  state->turgor1 -= sum->turgor1.value;
+  state->turgor_tau -= sum->turgor1_tau;
+  state->turgor2 -= sum->turgor2;
+  for (int k = 0; k < 3; k++) {
+    state->phi.gradient[k] -= sum->phi.gradient[order[k]];
+    state->gradient_tau[k] -= sum->gradient_tau[order[k]];
+    state->turgor_gradient[k] -= sum->turgor1.gradient[order[k]];
+    state->phi.hessian[3 + k] -= sum->phi.hessian[Entry3(order[pair[k][0]], order[pair[k][1]])];
+  }
+}
+
+#define BESIDE 1e-6 /* units of suction */
+
+/*
+  Takes the sum of the coarser levels off a state. Value, gradient and mixed derivatives are the same in all cells that
+  meet there; a pure second derivative is that of any cell on its side, that along tau of the intervals on its side,
+  which alone need be complete.
+*/
+static void MakeSurplus(LamTable table, const LamTableNode *node, LamTableState *state)
+{
+  const int coarse = LAM_ROOT >> (node->level - 1);
+  PetscReal plus[3], minus[3];
+  PetscBool subtracted = PETSC_FALSE;
+  int faces = 0;
+
+  for (int k = 0; k < 3; k++) {
+    plus[k] = minus[k] = NAN;
+    faces |= (node->i[k] % coarse == 0) << k;
+  }
+  for (int sides = 0; sides < 8; sides++) {
+    LamTableSum sum;
+    int order[3];
+
+    if ((sides & ~faces) || !CoarseSum(table, node, state->j, sides, &sum, order)) continue;
+    for (int k = 0; k < 3; k++) {
+      const PetscReal pure = sum.phi.hessian[order[k]];
+
+      if (sides >> k & 1)
+        minus[k] = pure;
+      else
+        plus[k] = pure;
+      if (!(faces >> k & 1)) minus[k] = pure;
+    }
+    if (subtracted) continue;
+    SubtractSum(&sum, order, state);
+    if (CoarseSum(table, node, PetscMax(state->j - BESIDE, 0), sides, &sum, order)) state->tau2_minus -= sum.tau2;
+    subtracted = PETSC_TRUE;
+  }
+  for (int k = 0; k < 3; k++) {
+    state->minus[k] -= minus[k];
+    state->phi.hessian[k] -= plus[k];
+  }
+  if (!subtracted || !isfinite(state->phi.value)) /* nothing coarser to stand on */
+    *state = (LamTableState){.j = state->j, .data = state->data};
+}
+
+/* ---- mixed third derivatives ---- */
+
+/*
+  What the node at a place adds on a level at suction j; NULL: not known. Nodes of coarser levels and floating cells add
+  nothing. order: as LamTableSortAxes gives it.
+*/
+static const LamTableState *FindState(LamTable table, int level, const int at[3], int j, int *order)
+{
+  static const LamTableState nothing = {0};
+  const LamTableNode *node;
+  PetscInt n;
+  int sorted[3];
+
+  *order = LamTableSortAxes(table->grid->symmetric, at, sorted);
+  n = LamPlaceMapGet(&table->node_map, LamPlaceMapKey(sorted));
+  if (n < 0) return LamPlaceIsFloating(table->grid, at) ? &nothing : NULL;
+  node = &table->nodes[n];
+  Subtract(table, n);
+  for (PetscInt s = 0; s < node->count; s++)
+    if (table->states[node->first + s].j == j && table->states[node->first + s].has_data)
+      return node->level < level ? &nothing : &table->states[node->first + s];
+  return NULL;
+}
+
+/* Difference quotient of d2Phi/dx_a dx_b along the third axis k; *sides: 2 where it is central, 0: there is none. */
+static PetscReal MixedSlope(LamTable table, const LamTableNode *node, const LamTableState *state, int k, int *sides)
+{
+  const int size = LAM_ROOT >> node->level, a = (k + 1) % 3, b = (k + 2) % 3;
+  PetscReal mixed[2], length = 0;
+
+  *sides = 0;
+  mixed[0] = mixed[1] = state->phi.hessian[3 + k];
+  for (int side = 0; side < 2; side++) {
+    int at[3] = {node->i[0], node->i[1], node->i[2]}, order;
+    const LamTableState *next;
+
+    at[k] += side ? size : -size;
+    next = FindState(table, node->level, at, state->j, &order);
+    if (!next) continue;
+    mixed[side] = next->phi.hessian[Entry3(LamAxisOrder[order][a], LamAxisOrder[order][b])];
+    length += table->grid->step / (1 << node->level);
+    (*sides)++;
+  }
+  return *sides ? (mixed[1] - mixed[0]) / length : 0;
+}
+
+/* d3/dx_1 dx_2 dx_3 of what the level adds: mean over the axes, of central differences alone where there are any. */
+static PetscReal MixedThird(LamTable table, const LamTableNode *node, const LamTableState *state)
+{
+  PetscReal sum[3] = {0};
+  int count[3] = {0};
+
+  for (int k = 0; k < 3; k++) {
+    int sides;
+    const PetscReal slope = MixedSlope(table, node, state, k, &sides);
+
+    sum[sides] += slope;
+    count[sides]++;
+  }
+  return count[2] ? sum[2] / count[2] : count[1] ? sum[1] / count[1] : 0;
+}
+
+/* ---- slopes along suction ---- */
+
+/*
+  Slopes of the second derivatives in tau: those of the parabola through a state and its neighbours in the column, of
+  the line where there are two states.
+*/
+static void SlopesAlongSuction(LamTable table, const LamTableNode *node)
+{
+  LamTableState *states = &table->states[node->first];
+  const PetscReal unit = table->grid->tau_step / LAM_ROOT;
+  const PetscInt n = PetscMin(node->count, 3);
+
+  for (PetscInt s = 0; s < node->count; s++) {
+    const PetscInt first = PetscMax(0, PetscMin(s - 1, node->count - n));
+    PetscBool known = (PetscBool)(n > 1);
+
+    states[s].alone = (PetscBool)(n == 1);
+
+    for (PetscInt a = first; a < first + n; a++) known = (PetscBool)(known && states[a].has_data);
+    for (PetscInt a = first; a < first + n && known; a++) {
+      PetscReal rise = n == 2 ? 1 : 0, run = 1;
+
+      for (PetscInt b = first; b < first + n; b++) {
+        if (b == a) continue;
+        if (n == 3) rise += unit * (states[s].j - states[b].j);
+        run *= unit * (states[a].j - states[b].j);
+      }
+      for (int m = 0; m < 6; m++) states[s].hessian_tau[m] += rise / run * states[a].phi.hessian[m];
+      for (int k = 0; k < 3; k++) states[s].minus_tau[k] += rise / run * states[a].minus[k];
+    }
+  }
+}
+
+/* ---- nodes ---- */
+
+/* Step 1. The caller holds the table's lock. */
+static void Subtract(LamTable table, PetscInt n)
+{
+  LamTableNode *node = &table->nodes[n];
+
+  if (atomic_load_explicit(&node->stage, memory_order_relaxed) != LAM_NODE_RAW) return;
+  for (PetscInt s = node->first; s < node->first + node->count; s++) {
+    LamTableState *state = &table->states[s];
+
+    LamTableMakeState(table->grid, &table->source->data[table->data[s]], table->data[s], state);
+    if (state->has_data && node->level) MakeSurplus(table, node, state);
+  }
+  atomic_store_explicit(&node->stage, LAM_NODE_SUBTRACTED, memory_order_relaxed);
+}
+
+void LamTableMakeNode(LamTable table, PetscInt n)
+{
+  LamTableNode *node = &table->nodes[n];
+
+  pthread_mutex_lock(&table->lock);
+  if (atomic_load_explicit(&node->stage, memory_order_relaxed) != LAM_NODE_MADE) {
+    Subtract(table, n);
+    for (PetscInt s = node->first; s < node->first + node->count; s++)
+      if (table->states[s].has_data) table->states[s].phi.third = MixedThird(table, node, &table->states[s]);
+    if (table->grid->contact) SlopesAlongSuction(table, node);
+    atomic_store_explicit(&node->stage, LAM_NODE_MADE, memory_order_release);
+  }
+  pthread_mutex_unlock(&table->lock);
+}
