@@ -2,7 +2,7 @@
   Response records in HDF5, and answers from them.
 
   File: one extendible dataset of fixed-width records, a commit counter, the microstructures with their canonical
-  description and hash, provenance. docs/file-format.md describes it for readers in other languages.
+  description and hash, provenance. docs/reference/files.md describes it for readers in other languages.
   One serial writer at a time, guarded by a lock file; it opens, appends, flushes, syncs and closes at each commit, so
   a kill at any instant loses nothing that was committed. Failed samples are kept with their status.
   Readers scan the file once; queries call neither PETSc's parallel parts nor HDF5, and need no MPI.

@@ -8,7 +8,7 @@
 #include <lamella/lamella.h>
 #include <jansson.h>
 
-/* Exit statuses (docs/commands.md). */
+/* Exit statuses (docs/reference/commands.md). */
 enum {
   LAM_EXIT_OK = 0,
   LAM_EXIT_USAGE = 1,

@@ -2,7 +2,7 @@
   lamella check: what a scene will have modelled, and what that will cost. Needs no MPI.
 
   Method. One assembly is timed on this machine; everything else is a multiple of it. The multiples are measured
-  (docs/commands.md has the figures): they hold within a factor of two from 236 to 10,000 unknowns.
+  (docs/reference/commands.md has the figures): they hold within a factor of two from 236 to 10,000 unknowns.
 */
 #include "rounding.h"
 #include "map.h"

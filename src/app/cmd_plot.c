@@ -51,7 +51,7 @@ PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status)
   const LamOption options[] = {
       {'o', "output", LAM_OPTION_TEXT, "FIG.png|.svg|.pdf", "the picture (default: FILE.png)", &output},
       {0, "state", LAM_OPTION_TEXT, "N", "state of an RVE file, step of an fe2 file (default: the last one)", &state},
-      {0, "field", LAM_OPTION_TEXT, "NAME", "field that gives the colours (docs/pictures.md lists them)",
+      {0, "field", LAM_OPTION_TEXT, "NAME", "field that gives the colours (docs/reference/pictures.md lists them)",
        &request.field},
       {0, "film", LAM_OPTION_FLAG, NULL,
        "of a process: a page (PDF) or a numbered file for each state whose cells, or body, the file has",

@@ -1,5 +1,5 @@
 /*
-  Private to the record files: types, lock, header. docs/file-format.md describes the layout.
+  Private to the record files: types, lock, header. docs/reference/files.md describes the layout.
 */
 #ifndef LAM_RECORD_INTERNAL_H
 #define LAM_RECORD_INTERNAL_H

@@ -1,6 +1,6 @@
 /*
   Private to scene reading: the table of keys. One row per key says everything about it; the reader, the messages and
-  the scene reference (docs/scene.md) follow the table.
+  the scene reference (docs/reference/scene.md) follow the table.
 
   A new key is one row, and a line in the scene_*.c that uses it.
 */

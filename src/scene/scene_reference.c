@@ -1,5 +1,5 @@
 /*
-  The scene reference, docs/scene.md, from the table of keys.
+  The scene reference, docs/reference/scene.md, from the table of keys.
 */
 #include "scene_keys.h"
 #include "quantity_text.h"
@@ -7,22 +7,22 @@
 
 static const char *const introduction =
     "# Scene files\n\n"
-    "<!-- Generated from the table in src/scene_keys.c; after a change there run the test test_scene_reference with\n"
+    "<!-- Generated from the table in src/scene/scene_keys.c; after a change there run the test test_scene_reference with\n"
     "     LAMELLA_UPDATE_DOCS=1 in the environment. -->\n\n"
     "A scene is a YAML file that describes the tissue and what is to be done with it. It holds only the blocks it\n"
     "needs: `rve` always, `load` for `lamella rve`, `sample` for `lamella build`, `macro` for `lamella fe2`,\n"
     "`load` and `map` for `lamella map`.\n"
-    "Examples: [shear-bonded.yaml](../tests/scenes/shear-bonded.yaml) (a cell under turgor, sheared),\n"
-    "[shear-contact.yaml](../tests/scenes/shear-contact.yaml) (cells that come apart while their turgor falls),\n"
-    "[shear-dry.yaml](../tests/scenes/shear-dry.yaml) (dry cells, sheared until they separate),\n"
-    "[uniaxial.yaml](../tests/scenes/uniaxial.yaml) (a cell that swells, then stretched with its sides free),\n"
-    "[hexagons-dry.yaml](../tests/scenes/hexagons-dry.yaml) and\n"
-    "[hexagons-turgid.yaml](../tests/scenes/hexagons-turgid.yaml) (a patch of cells between grips, empty and under "
+    "Examples: [shear-bonded.yaml](../../tests/scenes/shear-bonded.yaml) (a cell under turgor, sheared),\n"
+    "[shear-contact.yaml](../../tests/scenes/shear-contact.yaml) (cells that come apart while their turgor falls),\n"
+    "[shear-dry.yaml](../../tests/scenes/shear-dry.yaml) (dry cells, sheared until they separate),\n"
+    "[uniaxial.yaml](../../tests/scenes/uniaxial.yaml) (a cell that swells, then stretched with its sides free),\n"
+    "[hexagons-dry.yaml](../../tests/scenes/hexagons-dry.yaml) and\n"
+    "[hexagons-turgid.yaml](../../tests/scenes/hexagons-turgid.yaml) (a patch of cells between grips, empty and under "
     "turgor),\n"
-    "[uneven-cells.yaml](../tests/scenes/uneven-cells.yaml) (cells that differ),\n"
-    "[shear-sealed.yaml](../tests/scenes/shear-sealed.yaml) (cells that keep their water),\n"
-    "[failure.yaml](../tests/scenes/failure.yaml) (bonded cells pulled until something gives way) and\n"
-    "[tissue-block.yaml](../tests/scenes/tissue-block.yaml) (a block of tissue, inflated and sheared).\n\n"
+    "[uneven-cells.yaml](../../tests/scenes/uneven-cells.yaml) (cells that differ),\n"
+    "[shear-sealed.yaml](../../tests/scenes/shear-sealed.yaml) (cells that keep their water),\n"
+    "[failure.yaml](../../tests/scenes/failure.yaml) (bonded cells pulled until something gives way) and\n"
+    "[tissue-block.yaml](../../tests/scenes/tissue-block.yaml) (a block of tissue, inflated and sheared).\n\n"
     "* **Quantities** carry a unit that udunits2 knows, such as `75 um`, `0.1 MPa`, `2 bar`, `30 deg`, `0.5 rad`.\n"
     "  A bare number is an error where a dimension is needed, and so is a unit where a plain number is.\n"
     "* **Ratios, strains and deformation gradients** are plain numbers.\n"

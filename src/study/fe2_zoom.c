@@ -6,7 +6,7 @@
   the file tells how far the stress found is from the one the run has used: the error of an interpolated or blended
   answer, or that this is another branch.
 
-  In the file, k = 1, 2, ... (docs/file-format.md): /zoom/<k>/mesh and /zoom/<k>/fields as `rve -o` writes its own;
+  In the file, k = 1, 2, ... (docs/reference/files.md): /zoom/<k>/mesh and /zoom/<k>/fields as `rve -o` writes its own;
   /zoom/place, position, F, turgor, cohesion, P, difference, apothem with a row for each; /zoom/points comes last.
 */
 #include <math.h>

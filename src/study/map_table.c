@@ -1,5 +1,5 @@
 /*
-  The verdicts of a map as arrays of its file, beside the records (docs/file-format.md).
+  The verdicts of a map as arrays of its file, beside the records (docs/reference/files.md).
 */
 #include "map.h"
 #include <math.h>

@@ -1,5 +1,5 @@
 /*
-  What the result file of a body that changes in time holds beside its steps (docs/file-format.md): /process, arrays
+  What the result file of a body that changes in time holds beside its steps (docs/reference/files.md): /process, arrays
   over the states.
 */
 #include "process_run.h"

@@ -1,6 +1,6 @@
 /*
   The result file of `lamella process`: kind "process". Records are the responses of the states, their keys count from
-  0; what else is known of them is in /process, arrays over the states (docs/file-format.md).
+  0; what else is known of them is in /process, arrays over the states (docs/reference/files.md).
 */
 #include "process_run.h"
 #include <lamella/clock.h>

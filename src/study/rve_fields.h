@@ -1,5 +1,5 @@
 /*
-  Mesh and fields of an RVE in a result file, as docs/file-format.md describes them.
+  Mesh and fields of an RVE in a result file, as docs/reference/files.md describes them.
 */
 #ifndef LAM_RVE_FIELDS_H
 #define LAM_RVE_FIELDS_H

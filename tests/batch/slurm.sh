@@ -1,4 +1,4 @@
-# slow: the job scripts of docs/batch under a real SLURM: preempted, signalled, killed, at the time limit, as an array
+# slow: the job scripts of docs/reference/batch under a real SLURM: preempted, signalled, killed, at the time limit, as an array
 . "$(dirname "$0")/../cli/common.sh"
 . "$source/tests/batch/common.sh"
 trap 'status=$?; cluster_stop; rm -rf "$work"; [ $failures -eq 0 ] || status=1; exit $status' EXIT
@@ -9,7 +9,7 @@ export TMPDIR=$work/tmp OMPI_MCA_btl_vader_backing_directory=$work/tmp
 # both nodes are this machine, which need not have a network
 export OMPI_MCA_oob_tcp_if_include=lo OMPI_MCA_btl_tcp_if_include=lo
 mkdir tmp
-build=$source/docs/batch/build.sbatch merge=$source/docs/batch/merge.sbatch
+build=$source/docs/reference/batch/build.sbatch merge=$source/docs/reference/batch/merge.sbatch
 
 # by SECONDS COMMAND...: the command succeeds by then; else the script ends
 by() {

@@ -115,7 +115,7 @@ done
 
 # the file: samples along the faces of each state
 if /usr/bin/python3 -c 'import h5py' 2>/dev/null; then
-  /usr/bin/python3 - <<'PYTHON' || fail "the file is not what docs/file-format.md says"
+  /usr/bin/python3 - <<'PYTHON' || fail "the file is not what docs/reference/files.md says"
 import h5py, numpy as np
 with h5py.File("apart.h5") as f:
     records = f["records"][: f.attrs.get("committed", f["records"].attrs["committed"])]

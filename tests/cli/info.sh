@@ -82,10 +82,10 @@ expect 2 "$lamella" info damaged.h5 --check --json
 expect 2 "$lamella" info s.yaml --check
 expect 4 "$lamella" info missing.h5 --check
 
-# the checksums as docs/file-format.md tells to test them
+# the checksums as docs/reference/files.md tells to test them
 if /usr/bin/python3 -c 'import h5py' 2>/dev/null; then
-  sed -n '/^    # check all checksums/,/^$/s/^    //p' "$source/docs/file-format.md" >check.py
-  [ -s check.py ] || fail "docs/file-format.md has no program"
+  sed -n '/^    # check all checksums/,/^$/s/^    //p' "$source/docs/reference/files.md" >check.py
+  [ -s check.py ] || fail "docs/reference/files.md has no program"
   for file in db.h5 rve.h5 fe2.h5; do
     /usr/bin/python3 check.py $file >out.txt 2>&1 && [ ! -s out.txt ] || fail "$file is not sound in Python: $(cat out.txt)"
   done

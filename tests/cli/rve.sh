@@ -37,7 +37,7 @@ grep -qiE '\b(nan|inf)' out.txt && fail "numbers that are not finite"
 
 # the file
 if /usr/bin/python3 -c 'import h5py' 2>/dev/null; then
-  /usr/bin/python3 - <<'PYTHON' || fail "the file is not what docs/file-format.md says"
+  /usr/bin/python3 - <<'PYTHON' || fail "the file is not what docs/reference/files.md says"
 import h5py, numpy as np
 with h5py.File("out.h5") as f:
     records = f["records"][: f["records"].attrs["committed"]]

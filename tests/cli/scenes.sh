@@ -6,7 +6,7 @@ scenes=$source/tests/scenes
 
 for scene in "$scenes"/*.yaml; do
   expect 0 "$lamella" check "$scene" --json
-  grep -q "tests/scenes/$(basename "$scene")" "$source"/docs/*.md || fail "no document cites $(basename "$scene")"
+  grep -rq "tests/scenes/$(basename "$scene")" "$source/docs" || fail "no document cites $(basename "$scene")"
 done
 
 # number NAME: its value in the last line

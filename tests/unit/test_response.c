@@ -1,4 +1,4 @@
-/* Responses: what is unknown is NaN, the table of members is complete, the error norm is that of docs/commands.md. */
+/* Responses: what is unknown is NaN, the table of members is complete, the error norm is that of docs/reference/commands.md. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,5 +1,5 @@
 /*
-  docs/scene.md is what the table of keys says. LAMELLA_UPDATE_DOCS=1 in the environment rewrites it instead.
+  docs/reference/scene.md is what the table of keys says. LAMELLA_UPDATE_DOCS=1 in the environment rewrites it instead.
 */
 #include <stdarg.h>
 #include <stddef.h>
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define REFERENCE LAMELLA_SOURCE_DIR "/docs/scene.md"
+#define REFERENCE LAMELLA_SOURCE_DIR "/docs/reference/scene.md"
 
 static char *Generate(size_t *length)
 {

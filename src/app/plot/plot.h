@@ -212,7 +212,7 @@ double LamScaleBar(LamCanvas canvas, const LamView *view, double x, double y, do
                    const char unit[]);
 
 /* ---- plot_interface.c ---- */
-/* Samples along the faces of contact tissue at one state, as docs/file-format.md describes them. */
+/* Samples along the faces of contact tissue at one state, as docs/reference/files.md describes them. */
 typedef struct {
   PetscInt faces, points;    /* points of each face */
   PetscReal *from, *to;      /* [face][point][2]; owned */

@@ -8,7 +8,7 @@
 #include "plot_time.h"
 #include <lamella/process.h>
 
-/* Arrays over the states, as docs/file-format.md describes them; all owned. */
+/* Arrays over the states, as docs/reference/files.md describes them; all owned. */
 typedef struct {
   const char *path;     /* borrowed */
   LamDatabase database; /* lends the records */
