@@ -65,44 +65,34 @@ static const LamMeasurement *FindTable(const Run *run, PetscReal accuracy)
   return NULL;
 }
 
-static PetscErrorCode MeasureBody(const Run *run, LamMeasurement *m)
+/* What a body needs of the table that it queries; has_table PETSC_FALSE: m has the reason. */
+static PetscErrorCode UseTable(const Run *run, LamMeasurement *m, PetscBool *has_table)
 {
-  const LamMeasurement *table = NULL;
-  char path[PETSC_MAX_PATH_LEN];
+  const LamMeasurement *table = FindTable(run, m->setting.accuracy);
 
   PetscFunctionBeginUser;
-  PetscCall(TablePath(run, &m->setting, path));
-  if (m->setting.response == LAM_FE2_DATABASE) {
-    table = FindTable(run, m->setting.accuracy);
-    if (!table) {
-      PetscCall(PetscStrncpy(m->reason, "its table was not built", sizeof(m->reason)));
-      PetscFunctionReturn(0);
-    }
+  *has_table = (PetscBool)(table != NULL);
+  if (!table) {
+    PetscCall(PetscStrncpy(m->reason, "its table was not built", sizeof(m->reason)));
+    PetscFunctionReturn(0);
   }
-  if (table) m->build_cpu = table->build_cpu;
-  if (table) m->build_wall = table->build_wall;
-  PetscCall(LamMeasureMacro(run->scene, path, m));
+  m->build_cpu = table->build_cpu;
+  m->build_wall = table->build_wall;
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode Measure(Run *run, PetscReal deadline, LamMeasurement *m)
 {
-  const PetscInt runs = m->runs;
-  char path[PETSC_MAX_PATH_LEN], reason[sizeof(m->reason)];
+  PetscBool possible = PETSC_TRUE;
+  char path[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscStrncpy(reason, m->reason, sizeof(reason)));
+  PetscCall(TablePath(run, &m->setting, path));
+  if (m->setting.knob == LAM_KNOB_MACRO && m->setting.response == LAM_FE2_DATABASE)
+    PetscCall(UseTable(run, m, &possible));
   LamStopSetDeadline(deadline);
-  if (m->setting.knob == LAM_KNOB_MACRO) {
-    PetscCall(MeasureBody(run, m));
-  } else if (m->setting.knob == LAM_KNOB_DATABASE) {
-    PetscCall(TablePath(run, &m->setting, path));
-    PetscCall(LamMeasureTable(run->scene, &run->states, path, m));
-  } else {
-    PetscCall(LamMeasureRVE(run->scene, &run->states, m));
-  }
+  if (possible) PetscCall(LamMeasure(run->scene, &run->states, path, m));
   LamStopSetDeadline(PETSC_INFINITY);
-  if (runs) PetscCall(PetscStrncpy(m->reason, reason, sizeof(reason))); /* a repeat that was cut short is none */
   run->done++;
   run->failed += !m->runs;
   PetscCall(LamProgressUpdate(&run->progress, run->done, run->failed));

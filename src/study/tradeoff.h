@@ -122,14 +122,22 @@ PetscErrorCode LamStatesMake(const LamScene *scene, LamStates *states);
 PetscInt LamStatesCount(const LamStates *states); /* without those that are skipped */
 PetscErrorCode LamStatesDestroy(LamStates *states);
 
-/* ---- tradeoff_measure.c, tradeoff_table.c, tradeoff_macro.c: answer once more ---- */
+/* ---- tradeoff_measure.c ---- */
 PetscErrorCode LamMeasurementInit(const LamSetting *setting, LamMeasurement *m);
 PetscErrorCode LamMeasurementDestroy(LamMeasurement *m);
-/* They add a run, or say why there is none; LamStopRequested (a signal, or the time that is left) ends them. */
+/*
+  Measures the setting of m once more, until LamStopRequested (a signal, or the deadline). A first run without results
+  sets m->reason; a repeat without results leaves m unchanged.
+
+  table: file of the table, of LAM_KNOB_DATABASE (written) or of a body that queries it, whose build time m has
+*/
+PetscErrorCode LamMeasure(const LamScene *scene, const LamStates *states, const char table[], LamMeasurement *m);
+/* Adds a run to m: of a repeat its times; one that was cut short is dropped. Destroys or moves `run`. */
+PetscErrorCode LamMeasurementTake(LamMeasurement *run, LamMeasurement *m);
+
+/* What LamMeasure calls, by the kind of setting, with an m that has no runs: they add one, or set the reason. */
 PetscErrorCode LamMeasureRVE(const LamScene *scene, const LamStates *states, LamMeasurement *m);
-/* `table`: the file, which is made in the first run and stays. */
 PetscErrorCode LamMeasureTable(const LamScene *scene, const LamStates *states, const char table[], LamMeasurement *m);
-/* `table`: the file that a setting asks which answers by it; the time of its building, build_cpu, is included. */
 PetscErrorCode LamMeasureMacro(const LamScene *scene, const char table[], LamMeasurement *m);
 
 /* Time of all threads of the process, and time that passes. */

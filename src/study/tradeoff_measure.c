@@ -1,5 +1,5 @@
 /*
-  One setting, answered once by an RVE: it is made, and the states are solved, as `lamella rve` does.
+  Measures a setting: repeats, and the single run of an RVE, which solves the states as `lamella rve` does.
 */
 #include "tradeoff.h"
 #include "onset.h"
@@ -17,7 +17,6 @@ void LamMeasurementAddRun(LamMeasurement *m, LamStopwatch start, PetscReal state
 {
   const LamStopwatch now = LamStopwatchRead();
 
-  if (m->runs >= LAM_MOST_REPEATS) return;
   m->cpu[m->runs] = now.cpu - start.cpu;
   m->wall[m->runs] = now.wall - start.wall;
   m->state_cpu[m->runs] = state_cpu;
@@ -87,10 +86,45 @@ PetscErrorCode LamMeasureRVE(const LamScene *scene, const LamStates *states, Lam
   PetscCall(SolveStates(states, &meshes, responses, m));
   if (!m->reason[0])
     LamMeasurementAddRun(m, start, (LamStopwatchRead().cpu - solves.cpu) / (PetscReal)LamStatesCount(states));
-  if (m->responses)
-    PetscCall(PetscFree(responses));
-  else
-    m->responses = responses;
+  m->responses = responses;
   PetscCall(LamMeshesDestroy(&meshes));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMeasurementTake(LamMeasurement *run, LamMeasurement *m)
+{
+  PetscFunctionBeginUser;
+  if (!m->runs) {
+    PetscCall(LamMeasurementDestroy(m));
+    *m = *run;
+    PetscFunctionReturn(0);
+  }
+  if (run->runs && m->runs < LAM_MOST_REPEATS) {
+    m->cpu[m->runs] = run->cpu[0];
+    m->wall[m->runs] = run->wall[0];
+    m->state_cpu[m->runs] = run->state_cpu[0];
+    m->build_cpu = run->build_cpu;
+    m->build_wall = run->build_wall;
+    m->runs++;
+  }
+  PetscCall(LamMeasurementDestroy(run));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMeasure(const LamScene *scene, const LamStates *states, const char table[], LamMeasurement *m)
+{
+  LamMeasurement run;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamMeasurementInit(&m->setting, &run));
+  run.build_cpu = m->build_cpu;
+  run.build_wall = m->build_wall;
+  if (m->setting.knob == LAM_KNOB_MACRO)
+    PetscCall(LamMeasureMacro(scene, table, &run));
+  else if (m->setting.knob == LAM_KNOB_DATABASE)
+    PetscCall(LamMeasureTable(scene, states, table, &run));
+  else
+    PetscCall(LamMeasureRVE(scene, states, &run));
+  PetscCall(LamMeasurementTake(&run, m));
   PetscFunctionReturn(0);
 }

@@ -3,6 +3,9 @@
 */
 #include "tradeoff.h"
 #include "build_run.h"
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
 #include <unistd.h>
 
 /* Serial. *nodes: what the table has in the end. */
@@ -42,17 +45,20 @@ PetscErrorCode LamMeasureTable(const LamScene *scene, const LamStates *states, c
   LamResponse *responses;
   LamStopwatch asked;
   LamDatabase database;
+  char part[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
   m->reason[0] = '\0';
-  unlink(table); /* of the run before */
-  PetscCall(Build(scene, &m->setting, table, &m->nodes));
+  PetscCall(PetscSNPrintf(part, sizeof(part), "%s.part", table));
+  PetscCall(Build(scene, &m->setting, part, &m->nodes));
   if (LamStopRequested()) {
+    unlink(part); /* a complete table of the run before stays */
     PetscCall(
         PetscSNPrintf(m->reason, sizeof(m->reason), "stopped: the time was over at %" PetscInt_FMT " nodes", m->nodes));
     m->nodes = 0;
     PetscFunctionReturn(0);
   }
+  PetscCheck(!rename(part, table), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s: %s", table, strerror(errno));
   PetscCall(PetscMalloc1(states->n, &responses));
   PetscCall(LamDatabaseOpen(table, &database));
   asked = LamStopwatchRead();
@@ -62,7 +68,7 @@ PetscErrorCode LamMeasureTable(const LamScene *scene, const LamStates *states, c
   if (!m->reason[0])
     LamMeasurementAddRun(m, start, (LamStopwatchRead().cpu - asked.cpu) / (PetscReal)LamStatesCount(states));
   PetscCall(LamDatabaseClose(&database));
-  if (m->reason[0] || m->responses)
+  if (m->reason[0])
     PetscCall(PetscFree(responses));
   else
     m->responses = responses;

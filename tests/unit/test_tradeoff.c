@@ -139,6 +139,55 @@ static void test_what_was_not_measured_has_no_error(void **state)
   assert_false(m.error[LAM_ERROR_P].optimal);
 }
 
+/* ---- repeats ---- */
+
+/* runs 0: cut short after a step. */
+static LamMeasurement Measured(PetscInt runs, PetscReal time, PetscReal work)
+{
+  LamMeasurement m;
+
+  CHECK(LamMeasurementInit(&(LamSetting){.knob = LAM_KNOB_MACRO}, &m));
+  m.runs = runs;
+  m.cpu[0] = m.wall[0] = m.state_cpu[0] = time;
+  m.outcome = (LamMacroOutcome){.boundaries = 1, .reaction = {{1, work}}, .work = work};
+  if (!runs) strcpy(m.reason, "stopped: the time was over");
+  return m;
+}
+
+/* The outcome of a body is the reference of others: what is unfinished must not replace it. */
+static void test_a_repeat_cut_short_changes_nothing(void **state)
+{
+  LamMeasurement m = Measured(1, 5, 2), repeat = Measured(0, 0, 0.5);
+  const LamMacroOutcome outcome = m.outcome;
+
+  CHECK(LamMeasurementTake(&repeat, &m));
+  assert_int_equal(m.runs, 1);
+  assert_string_equal(m.reason, "");
+  assert_memory_equal(&m.outcome, &outcome, sizeof(outcome));
+  CHECK(LamMeasurementDestroy(&m));
+}
+
+static void test_a_repeat_adds_its_times(void **state)
+{
+  LamMeasurement m = Measured(1, 5, 2), repeat = Measured(1, 4, 2);
+
+  CHECK(LamMeasurementTake(&repeat, &m));
+  assert_int_equal(m.runs, 2);
+  assert_true(m.cpu[0] == 5 && m.cpu[1] == 4);
+  CHECK(LamMeasurementDestroy(&m));
+}
+
+static void test_a_first_run_says_why_there_is_none(void **state)
+{
+  LamMeasurement m, first = Measured(0, 0, 0.5);
+
+  CHECK(LamMeasurementInit(&first.setting, &m));
+  CHECK(LamMeasurementTake(&first, &m));
+  assert_int_equal(m.runs, 0);
+  assert_string_equal(m.reason, "stopped: the time was over");
+  CHECK(LamMeasurementDestroy(&m));
+}
+
 /* ---- settings ---- */
 
 static LamScene *Scene(const char interface[], const char more[])
@@ -222,6 +271,9 @@ int main(void)
       cmocka_unit_test(test_errors_of_a_body),
       cmocka_unit_test(test_an_error_near_the_references_does_not_rank),
       cmocka_unit_test(test_what_was_not_measured_has_no_error),
+      cmocka_unit_test(test_a_repeat_cut_short_changes_nothing),
+      cmocka_unit_test(test_a_repeat_adds_its_times),
+      cmocka_unit_test(test_a_first_run_says_why_there_is_none),
       cmocka_unit_test(test_knobs_of_bonded_tissue),
       cmocka_unit_test(test_knobs_of_contact_with_a_sample_box),
       cmocka_unit_test(test_each_family_has_the_plan_once),
