@@ -1,10 +1,59 @@
 /*
   The conditions on the sides of the macroscale body: `macro.boundary`.
 */
-#include "scene_keys.h"
+#include "scene_rows.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+const char *const LamBoundaryKindNames[] = {LAM_BOUNDARY_KINDS(LAM_NAME_ENTRY)};
+
+static const LamKey boundary_keys[] = {
+    {LIST("macro.boundary"), REQUIRED, .example = "[{on: bottom, displacement: [0 mm, 0 mm]}]",
+     .help =
+         "What acts on the sides; each entry is one of `displacement`, `symmetry`, `traction`, `pressure`, `plate`, "
+         "`indenter` and `grip`. A side may have several that do not contradict each other. Displacements, "
+         "symmetry and grips together hold the body against rigid motion; obstacles do not count."},
+    {MAP("macro.boundary[]"), .example = "{on: bottom, displacement: [0 mm, 0 mm]}", .help = "One condition."},
+    {TEXT("macro.boundary[].on"), REQUIRED, .example = "bottom",
+     .help = "The name of a side of the box or disc, or of a physical group of the Gmsh file."},
+    {TEXT("macro.boundary[].name"), .default_words = "that of the side", .example = "upper plate",
+     .help = "The name under which its force is reported."},
+    {LENGTH("macro.boundary[].displacement", "mm"), .size = 2, FREE, .example = "[0 mm, free]",
+     .help = "At load parameter 1, along X1 and X2; `free` leaves a component. All displacements count from the "
+             "inflated state."},
+    {BOOL("macro.boundary[].symmetry"), .example = "true",
+     .help = "The side, which is straight, does not move along its normal, also while the body inflates."},
+    {STRESS("macro.boundary[].traction"), .size = 2, .example = "[0 MPa, 0.01 MPa]",
+     .help = "Force per reference area at load parameter 1, along X1 and X2. With `follower`: per present area, along "
+             "the present tangent (the outward normal turned by +90 deg) and the present outward normal."},
+    {BOOL("macro.boundary[].follower"), .default_value = "false", .example = "true",
+     .help = "Whether `traction` turns with the side."},
+    {STRESS("macro.boundary[].pressure"), .example = "0.01 MPa",
+     .help = "At load parameter 1, against the present outward normal, per present area."},
+    {MAP("macro.boundary[].plate"), .example = "{displacement: [0 mm, -1 mm]}",
+     .help = "A rigid, flat, frictionless plate that first touches the side and may leave it and come back."},
+    {LENGTH("macro.boundary[].plate.displacement", "mm"), .size = 2, REQUIRED, .example = "[0 mm, -1 mm]",
+     .help = "Of the plate at load parameter 1; only its part along the normal matters."},
+    {REAL("macro.boundary[].plate.normal"), .size = 2, .default_words = "that of the side, where this is straight",
+     .example = "[0, -1]", .help = "From the plate into the body."},
+    {MAP("macro.boundary[].indenter"), .example = "{radius: 2 mm, at: [5 mm, 10 mm], displacement: [0 mm, -1 mm]}",
+     .help = "A rigid, round, frictionless indenter that first touches the side and may leave it and come back."},
+    {LENGTH("macro.boundary[].indenter.radius", "mm"), REQUIRED, ABOVE(0), .example = "2 mm", .help = "Its radius."},
+    {LENGTH("macro.boundary[].indenter.at", "mm"), .size = 2, REQUIRED, .example = "[5 mm, 10 mm]",
+     .help = "A point on the line along which its centre moves, such as the point of the side that it touches first."},
+    {LENGTH("macro.boundary[].indenter.displacement", "mm"), .size = 2, REQUIRED, .example = "[0 mm, -1 mm]",
+     .help = "At load parameter 1; not zero: it is the direction from which the indenter comes."},
+    {LENGTH("macro.boundary[].grip", "mm"), .size = 2, FREE, .example = "[1 mm, free]",
+     .help = "A rigid grip: all points of the side move alike. A `free` component bears no total force."},
+    {LIST("macro.boundary[].history"), .default_words = "the load parameter itself",
+     .example = "[[0, 0], [1, 1], [2, 1]]",
+     .help =
+         "By which factor the entry's displacement, traction or pressure is multiplied: pairs of load parameter and "
+         "factor, straight in between, constant beyond."},
+    {REAL("macro.boundary[].history[]"), .size = 2, .example = "[1, 0.5]", .help = "Load parameter and factor."},
+};
+LAM_KEY_TABLE(LamBoundaryKeys, boundary_keys);
 
 /* What is known of the entries so far. */
 typedef struct {

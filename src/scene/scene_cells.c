@@ -2,10 +2,73 @@
   The cells of a scene: how many, in a period or in a patch between grips, and what differs from cell to cell.
 */
 #include <lamella/lattice.h>
-#include "scene_keys.h"
+#include "scene_rows.h"
 #include "scene_random.h"
 #include <math.h>
 #include <string.h>
+
+#define OWN "that of the scene's own cell"
+
+static const LamKey variation_keys[] = {
+    {MAP("rve.variation"), .default_words = "all cells alike",
+     .example = "{kinds: [{turgor: 0.5}], pattern: [[0, 1], [1, 0]]}",
+     .help = "Cells that differ: `kinds` with one of `list`, `pattern` and `random`, or a `field`. Cell (i, j) is the "
+             "j-th along lattice vector 1, or row of a patch, of the i-th along lattice vector 0, or column."},
+    {LIST("rve.variation.kinds"), .example = "[{wall_thickness: 8 um, turgor: 0.5}]",
+     .help = "Kinds 1, 2, ... of cells; kind 0 is the scene's own cell."},
+    {MAP("rve.variation.kinds[]"), .example = "{wall_thickness: 8 um, turgor: 0.5}",
+     .help = "One kind; what it leaves out is that of the scene's own cell."},
+    {MAP("rve.variation.kinds[].wall"), .example = "{C1: 0.05 MPa}", .help = "Its wall, as `rve.wall`."},
+    {NAME_OF("rve.variation.kinds[].wall.law", LamWallLawNames, LAM_WALL_LAW_COUNT), .default_words = OWN,
+     .example = "mooney_rivlin", .help = "Law of its wall."},
+    {STRESS("rve.variation.kinds[].wall.C1"), ABOVE(0), .default_words = OWN, .example = "0.05 MPa",
+     .help = "First Mooney-Rivlin modulus."},
+    {STRESS("rve.variation.kinds[].wall.C2"), FROM(0), .default_words = OWN, .example = "0.005 MPa",
+     .help = "Second Mooney-Rivlin modulus."},
+    {STRESS("rve.variation.kinds[].wall.C4"), FROM(0), .default_words = OWN, .example = "0.5 MPa",
+     .help = "Fibre modulus."},
+    {STRESS("rve.variation.kinds[].wall.bulk_modulus"), ABOVE(0), .default_words = OWN ", in proportion to C1 + C2",
+     .example = "55 MPa", .help = "Bulk modulus."},
+    {NAME_OF("rve.variation.kinds[].wall.fibres", LamFibresNames, LAM_FIBRES_COUNT), .default_words = OWN,
+     .example = "tension", .help = "Which fibres resist."},
+    {LENGTH("rve.variation.kinds[].wall_thickness", "um"), ABOVE(0), .default_words = OWN, .example = "8 um",
+     .help = "Thickness of its wall, less than the apothem."},
+    {REAL("rve.variation.kinds[].turgor"), FROM(0), TO(1000), .default_value = "1", .example = "0.5",
+     .help = "Its turgor over that of the load."},
+    {REAL("rve.variation.kinds[].cohesion"), FROM(0), TO(1000), .default_value = "1", .example = "0.8",
+     .help = "Its cohesion over that of the load; between two cells the smaller one holds. Only with law `contact`."},
+    {LIST("rve.variation.list"), .example = "[0, 1, 1, 0]",
+     .help = "The kind of each cell, in the order (0, 0), (0, 1), ..., (1, 0), ..."},
+    {INTEGER("rve.variation.list[]"), FROM(0), .example = "1", .help = "Kind of one cell."},
+    {LIST("rve.variation.pattern"), .example = "[[0, 1], [1, 0]]",
+     .help = "Kinds that repeat over the block: cell (i, j) has entry j of entry i, counted from 0 and repeated."},
+    {LIST("rve.variation.pattern[]"), .example = "[0, 1]", .help = "All of the same length."},
+    {INTEGER("rve.variation.pattern[][]"), FROM(0), .example = "1", .help = "Kind of one cell."},
+    {MAP("rve.variation.random"), .example = "{shares: [0.2], seed: 7}",
+     .help = "Kinds dealt out at random, the same on every machine."},
+    {LIST("rve.variation.random.shares"), REQUIRED, .example = "[0.2]",
+     .help = "The share of each kind in all cells, rounded to whole cells; the rest are the scene's own."},
+    {REAL("rve.variation.random.shares[]"), FROM(0), TO(1), .example = "0.2", .help = "Share of one kind."},
+    {INTEGER("rve.variation.random.seed"), FROM(0), TO(999999999), .default_value = "1", .example = "7",
+     .help = "Another number deals them out differently."},
+    {MAP("rve.variation.field"), .example = "{wall_thickness: 0.1, turgor: 0.3, seed: 7}",
+     .help =
+         "Every cell differs: independent lognormal factors with mean 1, given by their coefficients of variation."},
+    {REAL("rve.variation.field.wall"), FROM(0), TO(1), .default_value = "0", .example = "0.2",
+     .help = "Of all moduli of a cell's wall together."},
+    {REAL("rve.variation.field.wall_thickness"), FROM(0), TO(1), .default_value = "0", .example = "0.1",
+     .help = "Of its thickness."},
+    {REAL("rve.variation.field.turgor"), FROM(0), TO(1), .default_value = "0", .example = "0.3",
+     .help = "Of its turgor."},
+    {REAL("rve.variation.field.cohesion"), FROM(0), TO(1), .default_value = "0", .example = "0.3",
+     .help = "Of its cohesion; only with law `contact`."},
+    {REAL("rve.variation.field.correlation"), FROM(0), TO(20), .default_value = "0", .example = "2",
+     .help = "Correlation length l in distances of neighbours: the logarithms of the factors of two cells r apart have "
+             "about the correlation exp(-(r/l)^2). 0: cells independent of each other."},
+    {INTEGER("rve.variation.field.seed"), FROM(0), TO(999999999), .default_value = "1", .example = "7",
+     .help = "Another number gives other cells."},
+};
+LAM_KEY_TABLE(LamVariationKeys, variation_keys);
 
 /* What a field varies, and its keys. */
 #define FIELD_PROPERTIES(X)                                                                                            \

@@ -32,26 +32,26 @@ static PetscInt WordDistance(const char a[], const char b[])
 static const LamKey *NearestKey(const LamKey *map, const char name[])
 {
   PetscInt best = (PetscInt)strlen(name) / 3 + 1;
-  const LamKey *nearest = NULL;
+  const LamKey *nearest = NULL, *key;
 
-  for (PetscInt i = 0; i < LamKeyCount; i++) {
+  for (PetscInt i = 0; (key = LamKeyAt(i)); i++) {
     PetscInt distance;
-    if (!LamKeyIsChild(&LamKeys[i], map)) continue;
-    distance = WordDistance(name, LamKeyName(&LamKeys[i]));
+    if (!LamKeyIsChild(key, map)) continue;
+    distance = WordDistance(name, LamKeyName(key));
     if (distance <= best && distance < (PetscInt)strlen(name)) {
-      if (!nearest || distance < best) nearest = &LamKeys[i];
+      if (!nearest || distance < best) nearest = key;
       best = distance;
     }
   }
-  for (PetscInt i = 0; i < LamKeyCount && !nearest; i++) {
-    if (!strcmp(LamKeyName(&LamKeys[i]), name)) nearest = &LamKeys[i];
+  for (PetscInt i = 0; !nearest && (key = LamKeyAt(i)); i++) {
+    if (!strcmp(LamKeyName(key), name)) nearest = key;
   }
   return nearest;
 }
 
 static PetscErrorCode FailUnknown(const LamDocument *document, const LamNode *node, const LamKey *map)
 {
-  const LamKey *nearest = NearestKey(map, node->name);
+  const LamKey *nearest = NearestKey(map, node->name), *key;
   char meant[PATH_LENGTH + 20] = "", known[LAM_KEY_TEXT_LENGTH] = "";
   size_t used = 0;
 
@@ -60,9 +60,9 @@ static PetscErrorCode FailUnknown(const LamDocument *document, const LamNode *no
     snprintf(meant, sizeof(meant), "did you mean %s? ",
              LamKeyIsChild(nearest, map) ? LamKeyName(nearest) : nearest->path);
   }
-  for (PetscInt i = 0; i < LamKeyCount && used < sizeof(known); i++) {
-    if (!LamKeyIsChild(&LamKeys[i], map)) continue;
-    used += (size_t)snprintf(known + used, sizeof(known) - used, "%s%s", used ? ", " : "", LamKeyName(&LamKeys[i]));
+  for (PetscInt i = 0; used < sizeof(known) && (key = LamKeyAt(i)); i++) {
+    if (!LamKeyIsChild(key, map)) continue;
+    used += (size_t)snprintf(known + used, sizeof(known) - used, "%s%s", used ? ", " : "", LamKeyName(key));
   }
   PetscCall(LamSceneFailName(document, node, "unknown key; %sknown here: %s", meant, known));
   PetscFunctionReturn(0);
@@ -278,6 +278,8 @@ static PetscErrorCode ReadList(const LamDocument *document, LamNode *node, const
 
 static PetscErrorCode ReadMap(const LamDocument *document, LamNode *node, const LamKey *key)
 {
+  const LamKey *child;
+
   PetscFunctionBeginUser;
   PetscCall(CheckKind(document, node, key, PETSC_FALSE, LAM_NODE_MAP));
   for (LamNode *entry = node->first; entry; entry = entry->next) {
@@ -291,11 +293,11 @@ static PetscErrorCode ReadMap(const LamDocument *document, LamNode *node, const 
     else
       PetscCall(ReadNode(document, entry, entry_key));
   }
-  for (PetscInt i = 0; i < LamKeyCount; i++) {
-    const char *name = LamKeyName(&LamKeys[i]);
+  for (PetscInt i = 0; (child = LamKeyAt(i)); i++) {
+    const char *name = LamKeyName(child);
     char expected[LAM_KEY_TEXT_LENGTH];
-    if (!LamKeys[i].required || !LamKeyIsChild(&LamKeys[i], key) || LamNodeFind(node, name, strlen(name))) continue;
-    LamKeyExpectation(&LamKeys[i], PETSC_FALSE, expected);
+    if (!child->required || !LamKeyIsChild(child, key) || LamNodeFind(node, name, strlen(name))) continue;
+    LamKeyExpectation(child, PETSC_FALSE, expected);
     PetscCall(LamSceneFailMissing(document, node, name, "missing; write %s", expected));
   }
   PetscFunctionReturn(0);
@@ -367,5 +369,17 @@ PetscErrorCode LamSceneGet(const LamNode *base, const char path[], const LamNode
     *value = found->value;
   else if (key->default_value)
     PetscCall(ReadDefault(key, value));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSceneResolvePath(const LamDocument *document, const LamNode *node, char path[PETSC_MAX_PATH_LEN])
+{
+  const char *slash = strrchr(document->name, '/');
+  const int folder = node->text[0] == '/' || !slash ? 0 : (int)(slash - document->name) + 1;
+
+  PetscFunctionBeginUser;
+  if (folder + strlen(node->text) >= PETSC_MAX_PATH_LEN)
+    PetscCall(LamSceneFail(document, node, "the path is too long"));
+  snprintf(path, PETSC_MAX_PATH_LEN, "%.*s%s", folder, document->name, node->text);
   PetscFunctionReturn(0);
 }

@@ -27,8 +27,6 @@ typedef enum { LAM_TURGOR_MODES(LAM_ENUM_ENTRY) LAM_TURGOR_MODE_COUNT } LamTurgo
 typedef enum { LAM_SIDES(LAM_ENUM_ENTRY) LAM_BOX_COUNT } LamSide;
 typedef enum { LAM_SPACINGS(LAM_ENUM_ENTRY) LAM_SPACING_COUNT } LamSpacing;
 
-extern const char *const LamSideNames[];
-
 typedef enum {
   LAM_KEY_MAP,
   LAM_KEY_LIST,
@@ -64,9 +62,18 @@ typedef struct LamKey_s {
   const char *help; /* Markdown, without | */
 } LamKey;
 
-extern const LamKey LamKeys[];
-extern const PetscInt LamKeyCount;
+/* The keys of a block, or of a part of one, as its file lists them. */
+typedef struct {
+  const LamKey *key;
+  PetscInt count;
+} LamKeyTable;
 
+extern const LamKeyTable LamCellKeys, LamWallKeys, LamVariationKeys, LamTissueKeys, LamStrengthKeys, LamLoadKeys,
+    LamSampleKeys, LamMeshKeys, LamBoundaryKeys, LamProgramKeys, LamResponseKeys, LamRegionKeys, LamMapKeys,
+    LamProcessKeys;
+
+/* Key i = 0, 1, ... of all tables; NULL after the last one. */
+const LamKey *LamKeyAt(PetscInt i);
 const LamKey *LamKeyFind(const char path[]); /* NULL where there is none */
 PetscBool LamKeyIsChild(const LamKey *key, const LamKey *map);
 const char *LamKeyName(const LamKey *key); /* the last part of its path */

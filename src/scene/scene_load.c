@@ -1,7 +1,33 @@
 /*
-  The `load` and `sample` blocks of a scene.
+  The `load` block of a scene.
 */
-#include "scene_keys.h"
+#include "scene_rows.h"
+
+static const LamKey load_keys[] = {
+    {LIST("load"), .example = "[{F: [[1, 0.1], [0, 1]]}]",
+     .help = "States for `lamella rve`, numbered from 1, each starting from the one before."},
+    {MAP("load[]"), .example = "{F: [[1, 0.1], [0, 1]]}", .help = "One state (`F`) or several (`ramp`)."},
+    {TENSOR("load[].F"), FREE, FROM(-100), TO(100), .example = "[[1, 0.1], [0, 1]]",
+     .help = "Deformation gradient, rows first. 2x2: plane strain; 3x3: with F33 > 0, out-of-plane shears 0. Its "
+             "determinant is positive. `free` where `P` is given instead; F12 and F21 not both."},
+    {STRESS_TENSOR("load[].P"), OPEN, .example = "[[0 MPa, x], [x, 0 MPa]]",
+     .help = "Mixed control: the components of the first Piola-Kirchhoff stress that are given, `x` where `F` is. 2x2: "
+             "P33 is not."},
+    {MAP("load[].ramp"), .example = "{to: [[1, 0.3], [0, 1]], steps: 10}",
+     .help = "A straight path from the state before (undeformed at the start), one state per step."},
+    {TENSOR("load[].ramp.to"), REQUIRED, FREE, FROM(-100), TO(100), .example = "[[1, 0.3], [0, 1]]",
+     .help = "Deformation gradient at the end of the ramp, as `F`."},
+    {STRESS_TENSOR("load[].ramp.P"), OPEN, .example = "[[0 MPa, x], [x, 0 MPa]]",
+     .help =
+         "Stress at the end of the ramp, as `P`; it goes straight from the one prescribed before, from 0 where none "
+         "was."},
+    {INTEGER("load[].ramp.steps"), REQUIRED, FROM(1), TO(10000), .example = "10", .help = "Equal steps."},
+    {STRESS("load[].turgor"), .default_words = "`rve.turgor.pressure`", .example = "0.05 MPa",
+     .help = "Turgor of this entry's states."},
+    {STRESS("load[].cohesion"), FROM(0), .default_words = "`rve.interface.cohesion`", .example = "0.001 MPa",
+     .help = "Cohesion of this entry's states; only with law `contact`."},
+};
+LAM_KEY_TABLE(LamLoadKeys, load_keys);
 
 /* More states than anyone waits for; keeps a slip in `steps` from filling the memory. */
 enum { MAX_STATES = 1000000 };
@@ -187,73 +213,5 @@ PetscErrorCode LamSceneBuildLoad(const LamDocument *document, LamScene *scene)
     PetscCall(CheckEntry(document, entry, &states));
     PetscCall(BuildEntry(document, entry, states, scene));
   }
-  PetscFunctionReturn(0);
-}
-
-/* Reads <path>.min and <path>.max; *given is PETSC_FALSE where the file has neither. */
-static PetscErrorCode GetRange(const LamDocument *document, const char min_path[], const char max_path[],
-                               const LamNode *nodes[2], PetscReal range[2])
-{
-  LamValue value;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(document->root, min_path, &nodes[0], &value));
-  range[0] = value.number[0];
-  PetscCall(LamSceneGet(document->root, max_path, &nodes[1], &value));
-  range[1] = value.number[0];
-  if (nodes[0] && range[0] > range[1]) {
-    PetscCall(LamSceneFail(document, nodes[0], "min is larger than max (%s in line %d); exchange them", nodes[1]->text,
-                           nodes[1]->line));
-  }
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode BuildSampleTurgor(const LamDocument *document, LamScene *scene)
-{
-  const LamNode *nodes[2];
-  PetscReal range[2];
-
-  PetscFunctionBeginUser;
-  PetscCall(GetRange(document, "sample.turgor.min", "sample.turgor.max", nodes, range));
-  if (!nodes[0]) {
-    scene->sample.turgor_min = scene->sample.turgor_max = scene->turgor;
-    PetscFunctionReturn(0);
-  }
-  for (PetscInt i = 0; i < 2; i++) PetscCall(LamSceneCheckTurgor(document, nodes[i], range[i]));
-  PetscCall(LamSceneScale(document, nodes[0], range[0], scene->scales.stress, &scene->sample.turgor_min));
-  PetscCall(LamSceneScale(document, nodes[1], range[1], scene->scales.stress, &scene->sample.turgor_max));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamSceneBuildSample(const LamDocument *document, LamScene *scene)
-{
-  const LamNode *block, *count_node, *accuracy_node, *stretch_nodes[2];
-  LamValue count, accuracy, round, unused;
-  PetscReal stretch[2];
-
-  PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(document->root, "sample", &block, &unused));
-  if (!block) PetscFunctionReturn(0);
-  if (scene->sealed) {
-    PetscCall(LamSceneFailName(document, block,
-                               "contradicts turgor mode: sealed; a database holds states of prescribed turgor, from "
-                               "which those of sealed cells follow: write mode: prescribed"));
-  }
-  scene->has_sample = PETSC_TRUE;
-  PetscCall(GetRange(document, "sample.stretch.min", "sample.stretch.max", stretch_nodes, stretch));
-  scene->sample.stretch_min = stretch[0];
-  scene->sample.stretch_max = stretch[1];
-  PetscCall(BuildSampleTurgor(document, scene));
-  PetscCall(LamSceneGet(document->root, "sample.count", &count_node, &count));
-  PetscCall(LamSceneGet(document->root, "sample.accuracy", &accuracy_node, &accuracy));
-  if (count_node && accuracy_node) {
-    PetscCall(LamSceneFailName(document, accuracy_node, "given together with count; a sample has one of them"));
-  }
-  if (count_node)
-    scene->sample.count = (PetscInt)count.number[0];
-  else
-    scene->sample.accuracy = accuracy_node ? accuracy.number[0] : scene->accuracy;
-  PetscCall(LamSceneGet(document->root, "sample.round", &block, &round));
-  scene->sample.round = (PetscInt)round.number[0];
   PetscFunctionReturn(0);
 }

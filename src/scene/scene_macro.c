@@ -1,9 +1,67 @@
 /*
   The `macro` block of a scene.
 */
-#include "scene_keys.h"
+#include "scene_rows.h"
 #include <stdio.h>
 #include <string.h>
+
+enum { MAX_STEPS = 1000000 };
+
+const char *const LamDiscPartNames[] = {LAM_DISC_PARTS(LAM_NAME_ENTRY)};
+
+static const LamKey mesh_keys[] = {
+    {MAP("macro"), .example = "{mesh: {...}, boundary: [...]}", .help = "The body for `lamella fe2`, in plane strain."},
+    {MAP("macro.mesh"), REQUIRED, .example = "{box: [10 mm, 10 mm], elements: [8, 8]}", .help = "Its mesh."},
+    {LENGTH("macro.mesh.box", "mm"), .size = 2, ABOVE(0), .default_words = "none: one of `box`, `disc`, `gmsh`",
+     .example = "[10 mm, 10 mm]",
+     .help = "Edges of a rectangular block along X1 and X2; its corner is the origin. Its sides are `left`, `right`, "
+             "`bottom`, `top`."},
+    {LENGTH("macro.mesh.disc", "mm"), ABOVE(0), .default_words = "none: one of `box`, `disc`, `gmsh`",
+     .example = "5 mm",
+     .help = "Radius of a disc about the origin. Its sides are `rim` and, of a part, `bottom` (X2 = 0) and `left` "
+             "(X1 = 0)."},
+    {NAME("macro.mesh.part", LamDiscPartNames), .default_value = "whole", .example = "quarter",
+     .help = "Of a disc: `whole`, `half` (X2 >= 0) or `quarter` (X1 >= 0, too)."},
+    {INTEGER("macro.mesh.elements"), .size = 2, FROM(1), TO(1000),
+     .default_words = "none: required with `box` and `disc`", .example = "[8, 8]",
+     .help = "Quadratic elements: of a box along X1 and X2; of a disc along an eighth of the rim, and from the rim to "
+             "the square in its middle, half as wide."},
+    {TEXT("macro.mesh.gmsh"), .default_words = "none: one of `box`, `disc`, `gmsh`", .example = "fruit.msh",
+     .help =
+         "A Gmsh file, its path relative to the scene's folder: triangles and quadrilaterals in the plane, straight "
+         "or quadratic. Physical curves and points are boundaries, physical surfaces are regions, by their names."},
+    {LENGTH("macro.mesh.unit", "mm"), ABOVE(0), .default_value = "1 mm", .example = "1 cm",
+     .help = "Unit of length of the Gmsh file."},
+};
+LAM_KEY_TABLE(LamMeshKeys, mesh_keys);
+
+static const LamKey program_keys[] = {
+    {MAP("macro.control"), .default_words = "tractions follow their histories",
+     .example = "{on: top, displacement: [free, -1 mm]}",
+     .help = "Prescribes the mean displacement of a side instead of the tractions, whose common factor is found: past "
+             "the largest load, too."},
+    {TEXT("macro.control.on"), REQUIRED, .example = "top", .help = "The side."},
+    {LENGTH("macro.control.displacement", "mm"), .size = 2, REQUIRED, FREE, .example = "[free, -1 mm]",
+     .help = "Its mean displacement at load parameter 1: one component, the other one `free`."},
+    {BOOL("macro.inflate"), .default_words = "true with turgor, else false", .example = "true",
+     .help = "First bring turgor up with only rigid motions held; displacements then count from there. With law "
+             "`contact` it needs a cohesion: nothing else holds free tissue together."},
+    {INTEGER("macro.steps"), FROM(1), TO(10000), .default_words = "10; with `program`: that of its parts",
+     .example = "10", .help = "Equal steps of the load parameter from 0 to 1, after inflation."},
+    {LIST("macro.program"), .default_words = "one ramp from 0 to 1",
+     .example = "[{to: 1, steps: 10}, {to: 0, steps: 10}]",
+     .help = "Ramps of the load parameter, which begins at 0, instead of `steps`."},
+    {MAP("macro.program[]"), .example = "{to: 1, steps: 10}", .help = "One ramp."},
+    {REAL("macro.program[].to"), REQUIRED, FROM(-1000), TO(1000), .example = "1", .help = "Load parameter at its end."},
+    {INTEGER("macro.program[].steps"), REQUIRED, FROM(1), TO(10000), .example = "10", .help = "Its equal steps."},
+    {INTEGER("macro.repeat"), FROM(1), TO(1000), .default_value = "1", .example = "3",
+     .help = "How often `program` is gone through."},
+    {LIST("macro.zoom"), .default_words = "where the tissue is nearest to failure, and the middle",
+     .example = "[[5 mm, 5 mm], [9 mm, 9 mm]]",
+     .help = "Places, at most three, at whose nearest material points the microstructure is kept for pictures."},
+    {LENGTH("macro.zoom[]", "mm"), .size = 2, .example = "[5 mm, 5 mm]", .help = "Position in the undeformed body."},
+};
+LAM_KEY_TABLE(LamProgramKeys, program_keys);
 
 /* Exactly one of box, disc and gmsh says where the mesh comes from. */
 static PetscErrorCode ChooseSource(const LamDocument *document, LamMacroSpec *spec, const LamNode **node)
@@ -41,18 +99,6 @@ static PetscErrorCode CheckBelongs(const LamDocument *document, const char path[
   PetscCall(LamSceneGet(document->root, path, &node, &unused));
   if (node && spec->source != source)
     PetscCall(LamSceneFail(document, node, "belongs to %s, which this mesh is not; leave it out", owner));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamSceneResolvePath(const LamDocument *document, const LamNode *node, char path[PETSC_MAX_PATH_LEN])
-{
-  const char *slash = strrchr(document->name, '/');
-  const int folder = node->text[0] == '/' || !slash ? 0 : (int)(slash - document->name) + 1;
-
-  PetscFunctionBeginUser;
-  if (folder + strlen(node->text) >= PETSC_MAX_PATH_LEN)
-    PetscCall(LamSceneFail(document, node, "the path is too long"));
-  snprintf(path, PETSC_MAX_PATH_LEN, "%.*s%s", folder, document->name, node->text);
   PetscFunctionReturn(0);
 }
 
@@ -113,6 +159,100 @@ static PetscErrorCode CheckInflation(const LamDocument *document, const LamNode 
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode BuildLegs(const LamDocument *document, const LamNode *list, LamMacroSpec *spec)
+{
+  const LamNode *repeat_node;
+  LamValue repeat, to, steps;
+  PetscReal from = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamSceneGet(document->root, "macro.repeat", &repeat_node, &repeat));
+  if (list->count > LAM_MAX_LEGS)
+    PetscCall(LamSceneFailName(document, list, "has %d ramps; at most %d are allowed", (int)list->count, LAM_MAX_LEGS));
+  for (const LamNode *item = list->first; item; item = item->next) {
+    PetscCall(LamSceneGet(item, "macro.program[].to", NULL, &to));
+    PetscCall(LamSceneGet(item, "macro.program[].steps", NULL, &steps));
+    if (to.number[0] == from)
+      PetscCall(LamSceneFail(document, LamNodeFindPath(item, "to"),
+                             "is where the parameter is already; write another one, or leave the ramp out"));
+    from = to.number[0];
+    spec->legs[spec->leg_count++] = (LamLeg){to.number[0], (PetscInt)steps.number[0]};
+    spec->steps += (PetscInt)steps.number[0];
+  }
+  if (repeat.number[0] * spec->steps > MAX_STEPS)
+    PetscCall(LamSceneFailName(document, repeat_node ? repeat_node : list, "gives %g steps; at most %d are allowed",
+                               (double)(repeat.number[0] * spec->steps), (int)MAX_STEPS));
+  spec->steps *= (PetscInt)repeat.number[0];
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode BuildControl(const LamDocument *document, LamScene *scene)
+{
+  LamMacroSpec *spec = &scene->macro;
+  LamLoadControl *control = &spec->control;
+  const LamNode *block, *on, *node;
+  LamValue value;
+  PetscInt side, tractions = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamSceneGet(document->root, "macro.control", &block, &value));
+  if (!block) PetscFunctionReturn(0);
+  PetscCall(LamSceneGet(document->root, "macro.control.on", &on, &value));
+  PetscCall(LamSceneCheckSide(document, on, spec, &side));
+  PetscCall(PetscStrncpy(control->on, on->text, sizeof(control->on)));
+  PetscCall(LamSceneGet(document->root, "macro.control.displacement", &node, &value));
+  if (value.is_free[0] == value.is_free[1])
+    PetscCall(LamSceneFail(document, node, "gives %s; give one and write free for the other, such as [free, -1 mm]",
+                           value.is_free[0] ? "no component" : "both components"));
+  control->component = value.is_free[0] ? 1 : 0;
+  PetscCall(LamSceneScale(document, node, value.number[control->component], scene->scales.macro_length,
+                          &control->displacement));
+  for (PetscInt b = 0; b < spec->boundary_count; b++) {
+    const LamBoundary *boundary = &spec->boundary[b];
+    const PetscBool loads = boundary->traction[0] != 0 || boundary->traction[1] != 0 ? PETSC_TRUE : PETSC_FALSE;
+    if (loads) tractions++;
+    if (loads && boundary->history.count)
+      PetscCall(LamSceneFailName(document, block,
+                                 "finds the factor of the tractions, but that on %s has a history; leave one of them "
+                                 "out",
+                                 boundary->on));
+    if (boundary->kind == LAM_BOUNDARY_DISPLACEMENT && boundary->given[control->component] &&
+        !strcmp(boundary->on, control->on))
+      PetscCall(LamSceneFail(document, on, "its displacement along X%d is prescribed in macro.boundary; leave it free",
+                             (int)control->component + 1));
+  }
+  if (!tractions)
+    PetscCall(LamSceneFailName(document, block,
+                               "finds the factor of the tractions, but there is none in "
+                               "macro.boundary; give a traction or pressure, or leave control out"));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode BuildProgram(const LamDocument *document, LamScene *scene)
+{
+  const LamNode *steps_node, *list, *repeat;
+  LamValue steps, unused;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamSceneGet(document->root, "macro.steps", &steps_node, &steps));
+  PetscCall(LamSceneGet(document->root, "macro.program", &list, &unused));
+  PetscCall(LamSceneGet(document->root, "macro.repeat", &repeat, &unused));
+  if (list && steps_node)
+    PetscCall(LamSceneFailName(document, steps_node,
+                               "stands beside program, whose parts have their own steps; leave "
+                               "one of them out"));
+  if (repeat && !list)
+    PetscCall(LamSceneFailName(document, repeat,
+                               "repeats a program, but there is none; write one, such as program: "
+                               "[{to: 1, steps: 10}, {to: 0, steps: 10}]"));
+  if (list)
+    PetscCall(BuildLegs(document, list, &scene->macro));
+  else
+    scene->macro.steps = steps_node ? (PetscInt)steps.number[0] : 10;
+  PetscCall(BuildControl(document, scene));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode BuildZoom(const LamDocument *document, LamScene *scene)
 {
   const LamNode *list;
@@ -146,7 +286,7 @@ PetscErrorCode LamSceneBuildMacro(const LamDocument *document, LamScene *scene)
   if (inflate_node) scene->macro.inflate = inflate.number[0] != 0.0 ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(CheckInflation(document, block, inflate_node, scene));
   PetscCall(LamSceneBuildBoundaries(document, scene));
-  PetscCall(LamSceneBuildProgram(document, scene));
+  PetscCall(BuildProgram(document, scene));
   PetscCall(BuildZoom(document, scene));
   PetscFunctionReturn(0);
 }

@@ -1,9 +1,40 @@
 /*
   The `map` block of a scene: two quantities that vary.
 */
-#include "scene_keys.h"
+#include "scene_rows.h"
 #include "quantity_text.h"
 #include <math.h>
+
+const char *const LamMapQuantityNames[] = {LAM_MAP_QUANTITIES(LAM_NAME_ENTRY)};
+static const char *const spacing_names[] = {LAM_SPACINGS(LAM_NAME_ENTRY)};
+
+/* The axes of a map are alike. `from` and `to` have the unit of the quantity, so they are read as text. */
+#define MAP_AXIS(axis, sample)                                                                                         \
+  {MAP("map." axis), REQUIRED, .example = sample, .help = "The axis " axis "."},                                       \
+      {NAME("map." axis ".quantity", LamMapQuantityNames), REQUIRED, .example = "turgor",                              \
+       .help = "What varies. `shear` (F12) and `load_factor` (0 to 1) say how far the load is followed, the others "   \
+               "replace what the scene says."},                                                                        \
+      {TEXT("map." axis ".from"), REQUIRED, .example = "0 MPa",                                                        \
+       .help = "The first value, with the unit of the quantity; `shear` and `load_factor` are plain numbers."},        \
+      {TEXT("map." axis ".to"), REQUIRED, .example = "0.3 MPa", .help = "The last value; larger than `from`."},        \
+      {INTEGER("map." axis ".points"),                                                                                 \
+       REQUIRED,                                                                                                       \
+       FROM(2),                                                                                                        \
+       TO(1000),                                                                                                       \
+       .example = "13",                                                                                                \
+       .help = "Number of values, the ends included."},                                                                \
+  {                                                                                                                    \
+    NAME("map." axis ".spacing", spacing_names), .default_value = "linear", .example = "log",                          \
+                                                 .help = "`linear`: equal differences; `log`: equal ratios."           \
+  }
+
+static const LamKey map_keys[] = {
+    {MAP("map"), .example = "{x: {...}, y: {...}}",
+     .help = "For `lamella map`: two quantities that vary; at each point the load is followed until the tissue fails."},
+    MAP_AXIS("x", "{quantity: turgor, from: 0 MPa, to: 0.3 MPa, points: 13}"),
+    MAP_AXIS("y", "{quantity: cohesion, from: 0 MPa, to: 0.05 MPa, points: 11}"),
+};
+LAM_KEY_TABLE(LamMapKeys, map_keys);
 
 typedef enum { PLAIN, STRESS, LENGTH } Kind;
 

@@ -1,10 +1,118 @@
 /*
   The `process` block of a scene: tissue that changes in time.
 */
-#include "scene_keys.h"
+#include "scene_rows.h"
 #include "quantity_text.h"
 #include <math.h>
 #include <string.h>
+
+const char *const LamChangingNames[] = {LAM_CHANGING(LAM_NAME_ENTRY)};
+
+static const LamKey process_keys[] = {
+    {MAP("process"), .example = "{duration: 14 day, kinetics: [...]}",
+     .help = "For `lamella process`: tissue that changes in time."},
+    {TIME("process.duration"), REQUIRED, ABOVE(0), .example = "14 day", .help = "How long it is followed."},
+    {TIME("process.output"), ABOVE(0), .default_words = "a hundredth of the duration", .example = "6 h",
+     .help = "Time between the states that are told and written."},
+    {REAL("process.tolerance"), FROM(1e-10), TO(0.1), .default_value = "1e-5", .example = "1e-6",
+     .help = "Relative error of the integration in a step of time."},
+    {BOOL("process.inflate"), .default_words = "true with turgor, else false", .example = "true",
+     .help = "First find the tissue free of stress under its turgor; deformation then counts from there. Of a body "
+             "`macro.inflate` says it."},
+    {REAL("process.opening"), ABOVE(0), BELOW(1), .default_value = "0.01", .example = "0.02",
+     .help =
+         "What the volume between cells in contact, over that of the tissue, has grown by since the start when they "
+         "count as coming apart."},
+    {MAP("process.water"), .default_words = "the turgor is prescribed",
+     .example = "{permeability: 1e-7 m/s/MPa, osmotic_pressure: 0.8 MPa}",
+     .help = "Water passes the membranes of the cells; turgor at the start is that of `rve.turgor`."},
+    {PERMEABILITY("process.water.permeability"), REQUIRED, FROM(0), .free_word = "infinite", .example = "1e-7 m/s/MPa",
+     .help = "Hydraulic conductivity Lp of a membrane; `infinite`: always in equilibrium."},
+    {MOLAR_ENERGY("process.water.activation"), FROM(0), .default_value = "0 kJ/mol", .example = "40 kJ/mol",
+     .help = "Activation energy of Lp, which is that of the temperature at the start."},
+    {REAL("process.water.reflection"), FROM(0), TO(1), .default_value = "1", .example = "0.9",
+     .help = "Reflection coefficient of the membrane for the solutes."},
+    {STRESS("process.water.osmotic_pressure"), FROM(0), .default_words = "in equilibrium with turgor and surroundings",
+     .example = "0.8 MPa", .help = "Osmotic pressure in the cells at the start."},
+    {REAL("process.water.non_osmotic"), FROM(0), BELOW(1), .default_value = "0", .example = "0.1",
+     .help = "Share of the lumen at the start that is no solution."},
+    {LIST("process.surroundings"), .default_words = "20 degC and pure water",
+     .example = "[{time: 0 h, temperature: 20 degC}, {time: 1 h, temperature: 90 degC}]",
+     .help =
+         "What surrounds the tissue at times: straight in between, constant beyond; a time that is given twice is a "
+         "jump."},
+    {MAP("process.surroundings[]"), .example = "{time: 0 h, temperature: 20 degC}", .help = "At one time."},
+    {TIME("process.surroundings[].time"), REQUIRED, FROM(0), .example = "1 h", .help = "Time, from the start."},
+    {TEMPERATURE("process.surroundings[].temperature"), FROM(-270), TO(1000),
+     .default_words = "straight between the entries that give it; 20 degC where none does", .example = "90 degC",
+     .help = "Temperature of the tissue."},
+    {STRESS("process.surroundings[].outside"), FROM(0),
+     .default_words = "straight between the entries that give it; 0 MPa where none does", .example = "0.5 MPa",
+     .help = "Osmotic pressure outside the cells, such as that of a bath of mannitol."},
+    {REAL("process.surroundings[].humidity"), ABOVE(0), TO(1), .default_words = "none: `outside` instead",
+     .example = "0.995",
+     .help = "Relative humidity of air that the cells are in equilibrium with, instead of `outside`."},
+    {STRESS("process.surroundings[].turgor"),
+     .default_words = "straight between the entries that give it; that of `rve.turgor` where none does",
+     .example = "0.1 MPa", .help = "Turgor, where there is no `water`."},
+    {LIST("process.kinetics"), .default_words = "nothing changes",
+     .example = "[{of: lamella, law: first_order, rate: 0.1 /day}]", .help = "What changes, each thing once."},
+    {MAP("process.kinetics[]"), .example = "{of: lamella, law: first_order, rate: 0.1 /day}",
+     .help = "One property, as a factor X(t) of what it is at the start."},
+    {NAME("process.kinetics[].of", LamChangingNames), REQUIRED, .example = "lamella",
+     .help =
+         "`lamella`: cohesion and strengths of the lamella; `walls`: all moduli of the walls; `C1`, `C2`, `C4`: one "
+         "of them, besides; `wall_strength`; `solutes` in a cell; `permeability` and `reflection` of its membrane."},
+    {NAME_OF("process.kinetics[].law", LamKineticLawNames, LAM_KINETIC_LAW_COUNT), REQUIRED, .example = "first_order",
+     .help = "`first_order`: X' = -k X; `fractional_conversion`: X' = -k (X - plateau), above 1 it stiffens; "
+             "`two_fractions`: one decays with k, the other with k2; `autocatalytic`: an enzyme E' = k2 E (1 - E) acts "
+             "by X' = -k E (X - plateau); `table`; `constant`."},
+    {RATE("process.kinetics[].rate"), FROM(0), .default_words = "none: required by all laws with a rate",
+     .example = "0.161 /min", .help = "k at the reference temperature."},
+    {RATE("process.kinetics[].second_rate"), FROM(0),
+     .default_words = "none: required by `two_fractions` and `autocatalytic`", .example = "0.01 /min",
+     .help = "k2 at the reference temperature."},
+    {MOLAR_ENERGY("process.kinetics[].activation"), FROM(0), .default_value = "0 kJ/mol", .example = "138 kJ/mol",
+     .help = "Activation energy of k (Arrhenius)."},
+    {MOLAR_ENERGY("process.kinetics[].second_activation"), FROM(0), .default_words = "that of `activation`",
+     .example = "100 kJ/mol", .help = "Activation energy of k2."},
+    {TEMPERATURE("process.kinetics[].reference"), FROM(-200), TO(1000), .default_value = "20 degC",
+     .example = "100 degC", .help = "The temperature that the rates are given at."},
+    {MOLAR_ENERGY("process.kinetics[].deactivation"), ABOVE(0), .default_words = "rates rise with temperature for good",
+     .example = "250 kJ/mol", .help = "By it the rates fall again above `half_activity`."},
+    {TEMPERATURE("process.kinetics[].half_activity"), FROM(-200), TO(1000),
+     .default_words = "none: required with `deactivation`", .example = "35 degC",
+     .help = "Temperature at which half of the enzyme has unfolded."},
+    {REAL("process.kinetics[].plateau"), FROM(0), .default_words = "none: required by `fractional_conversion`; else 0",
+     .example = "0.2", .help = "What X goes to."},
+    {REAL("process.kinetics[].share"), ABOVE(0), BELOW(1), .default_words = "none: required by `two_fractions`",
+     .example = "0.9", .help = "Share of the fraction that decays with k."},
+    {REAL("process.kinetics[].enzyme"), ABOVE(0), TO(1), .default_words = "none: required by `autocatalytic`",
+     .example = "0.01", .help = "E at the start, 1 is where it ends."},
+    {LIST("process.kinetics[].table"), .default_words = "none: required by `table`",
+     .example = "[[0, 1], [7, 0.6], [14, 0.5]]",
+     .help = "Pairs of time and X, straight in between; the first is [0, 1]."},
+    {REAL("process.kinetics[].table[]"), .size = 2, .example = "[7, 0.6]", .help = "Time and X."},
+    {TEXT("process.kinetics[].time_unit"), .default_words = "none: required by `table`", .example = "day",
+     .help = "Unit of its times."},
+    {LIST("process.program"), .default_words = "free of stress; of a body: load parameter 0",
+     .example = "[{for: 10 s, F: [[1, 0.1], [0, 1]]}, {for: 1 h}]",
+     .help = "What deformation, stress or load is prescribed, one part after the other; after the last it is held."},
+    {MAP("process.program[]"), .example = "{for: 10 s, F: [[1, 0.1], [0, 1]]}",
+     .help = "One part: straight from where the tissue is to F and P, or to `load`; without them what is prescribed is "
+             "held."},
+    {TIME("process.program[].for"), REQUIRED, FROM(0), .example = "10 s", .help = "How long it takes; 0 s: a jump."},
+    {TENSOR("process.program[].F"), FREE, .default_words = "held", .example = "[[free, 0.1], [0, free]]",
+     .help = "Deformation gradient at its end, from the inflated tissue; `free` where P is given."},
+    {STRESS_TENSOR("process.program[].P"), OPEN, .default_words = "F is given in full",
+     .example = "[[0 MPa, x], [x, 0 MPa]]",
+     .help = "First Piola-Kirchhoff stress at its end, of the reference area before inflation; `x` where F is given."},
+    {REAL("process.program[].load"), FROM(-1000), TO(1000), .default_words = "held", .example = "1",
+     .help = "Of a body (`macro`): its load parameter at the end, that of `macro.boundary`."},
+    {INTEGER("process.repeat"), FROM(1), TO(100000), .default_value = "1", .example = "10",
+     .help = "How often `program` is gone through."},
+};
+LAM_KEY_TABLE(LamProcessKeys, process_keys);
 
 #define ROOM_TEMPERATURE 293.15 /* K */
 #define MOLAR_VOLUME 18.05e-6   /* of water at 20 degC, m3/mol */

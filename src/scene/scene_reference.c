@@ -7,7 +7,7 @@
 
 static const char *const introduction =
     "# Scene files\n\n"
-    "<!-- Generated from the table in src/scene/scene_keys.c; after a change there run the test test_scene_reference with\n"
+    "<!-- Generated from the tables of keys in src/scene; after a change there run the test test_scene_reference with\n"
     "     LAMELLA_UPDATE_DOCS=1 in the environment. -->\n\n"
     "A scene is a YAML file that describes the tissue and what is to be done with it. It holds only the blocks it\n"
     "needs: `rve` always, `load` for `lamella rve`, `sample` for `lamella build`, `macro` for `lamella fe2`,\n"
@@ -97,20 +97,19 @@ static void WriteHeader(FILE *out, const char title[], const char help[])
 
 PetscErrorCode LamSceneReference(FILE *out)
 {
-  const LamKey *root = LamKeyFind("");
+  const LamKey *root = LamKeyFind(""), *key, *block;
 
   PetscFunctionBeginUser;
   fputs(introduction, out);
   WriteHeader(out, "Top level", "");
-  for (PetscInt i = 0; i < LamKeyCount; i++) {
-    if (LamKeyIsChild(&LamKeys[i], root)) WriteRow(out, &LamKeys[i]);
+  for (PetscInt i = 0; (key = LamKeyAt(i)); i++) {
+    if (LamKeyIsChild(key, root)) WriteRow(out, key);
   }
-  for (PetscInt b = 0; b < LamKeyCount; b++) {
-    const LamKey *block = &LamKeys[b];
+  for (PetscInt b = 0; (block = LamKeyAt(b)); b++) {
     if (!LamKeyIsChild(block, root) || (block->type != LAM_KEY_MAP && block->type != LAM_KEY_LIST)) continue;
     WriteHeader(out, block->path, block->help);
-    for (PetscInt i = 0; i < LamKeyCount; i++) {
-      if (&LamKeys[i] != block && KeyIsIn(&LamKeys[i], block->path)) WriteRow(out, &LamKeys[i]);
+    for (PetscInt i = 0; (key = LamKeyAt(i)); i++) {
+      if (key != block && KeyIsIn(key, block->path)) WriteRow(out, key);
     }
   }
   PetscCheck(!ferror(out) && !fflush(out), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE,

@@ -1,9 +1,86 @@
 /*
   `macro.regions` and `macro.fields` of a scene: tissue that differs from place to place.
 */
-#include "scene_keys.h"
+#include "scene_rows.h"
 #include "quantity_text.h"
 #include <string.h>
+
+const char *const LamTissueFieldNames[] = {LAM_TISSUE_FIELDS(LAM_NAME_ENTRY)};
+
+#define AS_RVE "as in `rve`"
+
+/* A field is an expression or a table; `expression` and `table` are texts, read by muParser and as a file. */
+#define TISSUE_FIELD(field, sample, expression_sample, unit_sample, words)                                             \
+  {MAP("macro.fields." field), .default_words = "does not vary", .example = sample, .help = words},                    \
+      {TEXT("macro.fields." field ".expression"), .default_words = "none: a table instead",                            \
+       .example = expression_sample, .help = "Its number in the unit, of x and y in mm."},                             \
+      {TEXT("macro.fields." field ".table"), .default_words = "none: an expression instead", .example = field ".csv",  \
+       .help = "File beside the scene: a line of names, then lines x, y, value with the positions of a grid in mm."},  \
+  {                                                                                                                    \
+    TEXT("macro.fields." field ".unit"), REQUIRED, .example = unit_sample, .help = "Unit of its numbers."              \
+  }
+
+static const LamKey region_keys[] = {
+    {LIST("macro.regions"), .default_words = "one tissue",
+     .example = "[{name: skin, where: y > 9, cell: {wall_thickness: 20 um}}]",
+     .help =
+         "Parts of the body whose tissue is another; what an entry leaves out is as in `rve`. Where several cover a "
+         "point the last one holds."},
+    {MAP("macro.regions[]"), .example = "{name: skin, where: y > 9, cell: {wall_thickness: 20 um}}",
+     .help = "One region."},
+    {TEXT("macro.regions[].name"), REQUIRED, .example = "skin",
+     .help = "Its name, of letters, digits, - and _: also of its database, DB.skin.h5."},
+    {TEXT("macro.regions[].where"), .default_words = "the mesh's physical group of this name", .example = "y > 9",
+     .help = "Expression of x and y in mm that holds (is not 0) in the region."},
+    {MAP("macro.regions[].cell"), .example = "{wall_thickness: 20 um}", .help = "Its cell, as `rve.cell`."},
+    {LENGTH("macro.regions[].cell.apothem", "um"), ABOVE(0), .default_words = AS_RVE, .example = "40 um",
+     .help = "Apothem."},
+    {LENGTH("macro.regions[].cell.wall_thickness", "um"), ABOVE(0), .default_words = AS_RVE, .example = "20 um",
+     .help = "Thickness of one cell's wall."},
+    {ANGLE("macro.regions[].cell.orientation"), FROM(-360), TO(360), .default_words = AS_RVE, .example = "30 deg",
+     .help = "Angle of face normal 0 to the X1 axis."},
+    {MAP("macro.regions[].wall"), .example = "{C1: 0.2 MPa}", .help = "Its wall, as `rve.wall`."},
+    {NAME_OF("macro.regions[].wall.law", LamWallLawNames, LAM_WALL_LAW_COUNT), .default_words = AS_RVE,
+     .example = "mooney_rivlin", .help = "Law of its wall."},
+    {STRESS("macro.regions[].wall.C1"), ABOVE(0), .default_words = AS_RVE, .example = "0.2 MPa",
+     .help = "First Mooney-Rivlin modulus."},
+    {STRESS("macro.regions[].wall.C2"), FROM(0), .default_words = AS_RVE, .example = "0.02 MPa",
+     .help = "Second Mooney-Rivlin modulus."},
+    {STRESS("macro.regions[].wall.C4"), FROM(0), .default_words = AS_RVE, .example = "2 MPa", .help = "Fibre modulus."},
+    {STRESS("macro.regions[].wall.bulk_modulus"), ABOVE(0), .default_words = AS_RVE ", in proportion to C1 + C2",
+     .example = "220 MPa", .help = "Bulk modulus."},
+    {NAME_OF("macro.regions[].wall.fibres", LamFibresNames, LAM_FIBRES_COUNT), .default_words = AS_RVE,
+     .example = "tension", .help = "Whether fibres resist compression."},
+    {MAP("macro.regions[].interface"), .example = "{law: bonded}", .help = "Its middle lamella, as `rve.interface`."},
+    {NAME_OF("macro.regions[].interface.law", LamInterfaceLawNames, LAM_INTERFACE_LAW_COUNT), .default_words = AS_RVE,
+     .example = "bonded", .help = "`bonded` or `contact`."},
+    {STRESS("macro.regions[].interface.cohesion"), FROM(0), .default_words = AS_RVE, .example = "0.01 MPa",
+     .help = "Cohesion; only with law `contact`."},
+    {LENGTH("macro.regions[].interface.clearance", "um"), FROM(0), .default_words = AS_RVE, .example = "0.1 um",
+     .help = "Distance between facing walls at rest; only with law `contact`."},
+    {MAP("macro.regions[].turgor"), .example = "{pressure: 0.05 MPa}", .help = "Its turgor."},
+    {STRESS("macro.regions[].turgor.pressure"), .default_words = AS_RVE, .example = "0.05 MPa", .help = "Pressure."},
+    {MAP("macro.regions[].mesh"), .default_words = AS_RVE, .example = "{along: 6, through: 2}",
+     .help = "Finite elements of its cell, as `rve.mesh`."},
+    {INTEGER("macro.regions[].mesh.along"), FROM(1), TO(200), .default_words = AS_RVE, .example = "6",
+     .help = "Elements along one face."},
+    {INTEGER("macro.regions[].mesh.through"), FROM(1), TO(50), .default_words = AS_RVE, .example = "2",
+     .help = "Elements through one wall."},
+    {REAL("macro.regions[].mesh.grading"), FROM(0), BELOW(1), .default_words = AS_RVE, .example = "0.6",
+     .help = "How much smaller elements at the ends of a face are."},
+    {MAP("macro.fields"), .default_words = "nothing varies", .example = "{orientation: {expression: 3 * x, unit: deg}}",
+     .help = "Numbers that vary with the reference position, replacing those of `rve` and `macro.regions`."},
+    TISSUE_FIELD("orientation", "{expression: 3 * x, unit: deg}", "3 * x", "deg",
+                 "Angle of face normal 0 to the X1 axis."),
+    TISSUE_FIELD("turgor", "{table: turgor.csv, unit: MPa}", "0.05 * (1 - y / 10)", "MPa", "Turgor."),
+    TISSUE_FIELD("cohesion", "{expression: 0.01 + 0.001 * y, unit: MPa}", "0.01 + 0.001 * y", "MPa",
+                 "Cohesion, at least 0, of tissue with law `contact`."),
+    TISSUE_FIELD("wall_thickness", "{expression: 11 + 0.2 * y, unit: um}", "11 + 0.2 * y", "um",
+                 "Thickness of one cell's wall: a few thicknesses are solved, answers between them blended."),
+    {INTEGER("macro.fields.wall_thickness.levels"), FROM(2), TO(8), .default_words = CHOSEN, .example = "5",
+     .help = "How many thicknesses of each tissue are solved."},
+};
+LAM_KEY_TABLE(LamRegionKeys, region_keys);
 
 #define ITEM "macro.regions[]"
 

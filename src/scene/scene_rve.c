@@ -1,8 +1,81 @@
 /*
   The `rve` block of a scene, and the scales that make it nondimensional.
 */
-#include "scene_keys.h"
+#include "scene_rows.h"
 #include <math.h>
+
+static const char *const turgor_mode_names[] = {LAM_TURGOR_MODES(LAM_NAME_ENTRY)};
+
+static const LamKey cell_keys[] = {
+    {MAP("rve"), REQUIRED, .example = "{cell: {...}, wall: {...}}",
+     .help = "The representative volume element: whole hexagonal cells that repeat periodically, or a patch of them."},
+    {MAP("rve.cell"), REQUIRED, .example = "{apothem: 75 um, wall_thickness: 11.25 um}", .help = "One cell."},
+    {LENGTH("rve.cell.apothem", "um"), REQUIRED, ABOVE(0), .example = "75 um",
+     .help = "Distance a from the centre of the hexagon to the middle lamella."},
+    {LENGTH("rve.cell.wall_thickness", "um"), REQUIRED, ABOVE(0), .example = "11.25 um",
+     .help = "Thickness t of one cell's wall, less than the apothem; two lumens are 2t apart."},
+    {ANGLE("rve.cell.orientation"), FROM(-360), TO(360), .default_value = "0 deg", .example = "30 deg",
+     .help = "Angle of face normal 0 to the X1 axis; the other normals follow at 60 deg."},
+    {INTEGER("rve.cells"), .size = 2, FROM(1), TO(64), .default_value = "[1, 1]", .example = "[2, 2]",
+     .help = "Cells in one period along lattice vectors 0 and 1."},
+    {MAP("rve.patch"), .example = "{columns: 6, rows: 6, sides: affine}",
+     .help =
+         "A block of cells between grips instead of `rve.cells`: the outer walls of its bottom and top rows follow F. "
+         "It is a body, no material point: solved by `rve` and `map`, without `sample` and `macro`."},
+    {INTEGER("rve.patch.columns"), REQUIRED, FROM(1), TO(64), .example = "6", .help = "Cells in a row, along X1."},
+    {INTEGER("rve.patch.rows"), REQUIRED, FROM(1), TO(64), .example = "6", .help = "Rows of cells, along X2."},
+    {NAME_OF("rve.patch.sides", LamPatchSidesNames, LAM_PATCH_SIDES_COUNT), .default_value = "affine",
+     .example = "free",
+     .help =
+         "Whether the lateral outer walls follow F, too (`affine`), or are left `free`. Free sides need law `bonded` "
+         "or a cohesion: nothing else holds the outer cells between the grips."},
+};
+LAM_KEY_TABLE(LamCellKeys, cell_keys);
+
+static const LamKey tissue_keys[] = {
+    {MAP("rve.interface"), .example = "{law: bonded}", .help = "The middle lamella between the cells."},
+    {NAME_OF("rve.interface.law", LamInterfaceLawNames, LAM_INTERFACE_LAW_COUNT), .default_value = "bonded",
+     .example = "contact", .help = "`bonded`: cells never part; `contact`: they may part and slide without friction."},
+    {STRESS("rve.interface.cohesion"), FROM(0), .default_value = "0 MPa", .example = "0.001 MPa",
+     .help = "Normal traction that parts the cells; only with law `contact`."},
+    {LENGTH("rve.interface.clearance", "um"), FROM(0), .default_value = "0 um", .example = "0.1 um",
+     .help =
+         "Distance between facing walls at rest: each cell is smaller than its place by half of it all around; only "
+         "with law `contact`."},
+    {MAP("rve.turgor"), .example = "{mode: prescribed, pressure: 0.02 MPa}", .help = "Pressure in the lumens."},
+    {NAME("rve.turgor.mode", turgor_mode_names), .default_words = "`prescribed` where a pressure is given, else `none`",
+     .example = "prescribed",
+     .help =
+         "`prescribed`: the pressure is given; `sealed`: each cell keeps the water that it has at F = I under that "
+         "pressure (in `fe2` with `macro.inflate`: in the inflated body), and its pressure follows. `build` tabulates "
+         "prescribed turgor alone."},
+    {STRESS("rve.turgor.pressure"), .default_words = "none: required by modes `prescribed` and `sealed`",
+     .example = "0.02 MPa", .help = "Turgor of the tissue; negative is suction."},
+    {STRESS("rve.turgor.water_bulk_modulus"), ABOVE(0), .default_value = "2200 MPa", .example = "2.2 GPa",
+     .help = "How water in sealed cells resists compression; only with mode `sealed`."},
+    {MAP("rve.mesh"), .default_words = CHOSEN, .example = "{along: 6, through: 2}",
+     .help = "Finite elements of one cell."},
+    {INTEGER("rve.mesh.along"), FROM(1), TO(200), .default_words = CHOSEN, .example = "6",
+     .help = "Elements along one face."},
+    {INTEGER("rve.mesh.through"), FROM(1), TO(50), .default_words = CHOSEN, .example = "2",
+     .help = "Elements through one wall."},
+    {REAL("rve.mesh.grading"), FROM(0), BELOW(1),
+     .default_words = "chosen for the accuracy where `along` is; else 0: elements are alike", .example = "0.6",
+     .help = "How much smaller elements at the ends of a face, where stresses are singular, are than in its middle: "
+             "about 1 - grading to 1 + grading."},
+    {TEXT("rve.mesh.measured"), .default_words = "the program's own figures", .example = "tradeoff/model.json",
+     .help =
+         "File of errors that `lamella tradeoff` has measured for this tissue: what is left open of the mesh is the "
+         "cheapest of those that meets the accuracy."},
+    {REAL("rve.tolerance"), ABOVE(0), TO(0.1), .default_words = "rounding", .example = "1e-6",
+     .help =
+         "Where Newton iterations of the RVE end: residual (forces over (C1 + C2) apothem) and violation of contact. "
+         "Not below rounding."},
+    {NAME_OF("rve.strategy", LamStrategyNames, LAM_STRATEGY_COUNT), .default_value = "two_step", .example = "two_step",
+     .help = "How contact is reached: from the bonded state (`two_step`) or at once (`one_step`). No effect on bonded "
+             "tissue."},
+};
+LAM_KEY_TABLE(LamTissueKeys, tissue_keys);
 
 /* SI: within these nothing that is told over- or underflows, such as work, a stress times an area. */
 #define LARGEST_SCALE 1e100
@@ -77,81 +150,6 @@ static PetscErrorCode BuildCell(const LamDocument *document, LamScene *scene)
   if (!node) micro->grading = micro->along ? 0.0 : -1.0;
   PetscCall(LamSceneGet(document->root, "rve.mesh.measured", &node, &along));
   if (node) PetscCall(LamSceneResolvePath(document, node, scene->measured));
-  PetscFunctionReturn(0);
-}
-
-/* Reads <prefix>.<name>; *number stays as it is where the file does not give it. */
-static PetscErrorCode GetPart(const LamNode *base, const char prefix[], const char name[], const LamNode **node,
-                              PetscReal *number)
-{
-  char path[80];
-  LamValue value;
-
-  PetscFunctionBeginUser;
-  snprintf(path, sizeof(path), "%s.%s", prefix, name);
-  PetscCall(LamSceneGet(base, path, node, &value));
-  if (value.count) *number = value.number[0];
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode GetModulus(const LamDocument *document, const LamNode *base, const char prefix[],
-                                 const char name[], PetscReal stress, const LamNode **node, PetscReal *modulus)
-{
-  PetscReal si = 0.0;
-
-  PetscFunctionBeginUser;
-  PetscCall(GetPart(base, prefix, name, node, &si));
-  if (*node) PetscCall(LamSceneScale(document, *node, si, stress, modulus));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode CheckFibres(const LamDocument *document, const LamNode *map, const LamNode *C4_node,
-                                  PetscBool has_C4, LamWall *wall)
-{
-  PetscFunctionBeginUser;
-  if (wall->law == LAM_WALL_FIBRE_MOONEY_RIVLIN && !has_C4) {
-    PetscCall(LamSceneFailMissing(document, map, "C4",
-                                  "missing; write the fibre modulus, such as 1 MPa, or law: mooney_rivlin"));
-  }
-  if (wall->law == LAM_WALL_FIBRE_MOONEY_RIVLIN) PetscFunctionReturn(0);
-  if (C4_node && wall->C4 > 0.0) {
-    PetscCall(LamSceneFail(document, C4_node,
-                           "law mooney_rivlin has no fibres; leave C4 out, or write law: "
-                           "fibre_mooney_rivlin"));
-  }
-  wall->C4 = 0.0;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamSceneReadWall(const LamDocument *document, const LamNode *base, const char prefix[], PetscReal stress,
-                                const LamWall *own, LamWall *wall)
-{
-  const PetscReal bulk_ratio = own ? own->bulk_modulus / (own->C1 + own->C2) : 1000.0;
-  const LamNode *map, *node, *C4_node, *bulk_node;
-  PetscBool has_C4 = (PetscBool)(own && own->law == LAM_WALL_FIBRE_MOONEY_RIVLIN);
-  PetscReal law, fibres;
-  LamValue unused;
-
-  PetscFunctionBeginUser;
-  *wall = own ? *own : (LamWall){0};
-  law = (PetscReal)wall->law;
-  fibres = (PetscReal)wall->fibres;
-  PetscCall(LamSceneGet(base, prefix, &map, &unused));
-  PetscCall(GetPart(base, prefix, "law", &node, &law));
-  PetscCall(GetPart(base, prefix, "fibres", &node, &fibres));
-  wall->law = (LamWallLawType)law;
-  wall->fibres = (LamFibres)fibres;
-  PetscCall(GetModulus(document, base, prefix, "C1", stress, &node, &wall->C1));
-  PetscCall(GetModulus(document, base, prefix, "C2", stress, &node, &wall->C2));
-  PetscCall(GetModulus(document, base, prefix, "C4", stress, &C4_node, &wall->C4));
-  PetscCall(CheckFibres(document, map, C4_node, (PetscBool)(C4_node || has_C4), wall));
-  wall->bulk_modulus = bulk_ratio * (wall->C1 + wall->C2);
-  PetscCall(GetModulus(document, base, prefix, "bulk_modulus", stress, &bulk_node, &wall->bulk_modulus));
-  if (wall->bulk_modulus <= wall->C1 + wall->C2) {
-    PetscCall(LamSceneFail(document, bulk_node ? bulk_node : map,
-                           "cell walls are nearly incompressible; write a bulk modulus of more than C1 + C2 = %g MPa",
-                           (double)((wall->C1 + wall->C2) * stress) * 1e-6));
-  }
   PetscFunctionReturn(0);
 }
 

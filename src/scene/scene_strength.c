@@ -1,8 +1,23 @@
 /*
   The `strength` block of a scene: what walls and lamella bear.
 */
-#include "scene_keys.h"
+#include "scene_rows.h"
 #include <math.h>
+
+static const LamKey strength_keys[] = {
+    {MAP("strength"), .default_words = "not known: no verdict that needs it",
+     .example = "{wall: 0.5 MPa, lamella_normal: 0.02 MPa, lamella_shear: 0.05 MPa}",
+     .help = "What the tissue bears, for `lamella rve --failure`."},
+    {STRESS("strength.wall"), ABOVE(0), .default_words = "not known", .example = "0.5 MPa",
+     .help =
+         "Tension of a wall at which it tears: Cauchy stress along it plus the turgor of its cell, averaged over the "
+         "wall's thickness and as long a stretch."},
+    {STRESS("strength.lamella_normal"), ABOVE(0), .default_words = "not known", .example = "0.02 MPa",
+     .help = "Normal traction, averaged over one wall thickness, that parts bonded cells; contact has its cohesion."},
+    {STRESS("strength.lamella_shear"), ABOVE(0), .default_words = "not known", .example = "0.05 MPa",
+     .help = "Shear traction, likewise, that parts bonded cells."},
+};
+LAM_KEY_TABLE(LamStrengthKeys, strength_keys);
 
 static PetscErrorCode GetStrength(const LamDocument *document, const char path[], PetscReal scale, const LamNode **node,
                                   PetscReal *strength)

@@ -1,0 +1,44 @@
+/*
+  Private to scene reading: what the tables of keys are written with. {STRESS("rve.wall.C1"), REQUIRED, ABOVE(0), ...}
+*/
+#ifndef LAM_SCENE_ROWS_H
+#define LAM_SCENE_ROWS_H
+
+#include "scene_keys.h"
+
+#define LAM_KEY_TABLE(table, rows) const LamKeyTable table = {rows, PETSC_STATIC_ARRAY_LENGTH(rows)}
+
+#define MAP(key_path) .path = key_path, .type = LAM_KEY_MAP
+#define LIST(key_path) .path = key_path, .type = LAM_KEY_LIST
+#define LENGTH(key_path, key_unit)                                                                                     \
+  .path = key_path, .type = LAM_KEY_QUANTITY, .dimension = LAM_DIMENSION_LENGTH, .unit = key_unit
+#define STRESS(key_path) .path = key_path, .type = LAM_KEY_QUANTITY, .dimension = LAM_DIMENSION_STRESS, .unit = "MPa"
+#define ANGLE(key_path) .path = key_path, .type = LAM_KEY_QUANTITY, .dimension = LAM_DIMENSION_ANGLE, .unit = "deg"
+#define OF_DIMENSION(key_path, key_dimension, key_unit)                                                                \
+  .path = key_path, .type = LAM_KEY_QUANTITY, .dimension = LAM_DIMENSION_##key_dimension, .unit = key_unit
+#define TIME(key_path) OF_DIMENSION(key_path, TIME, "s")
+#define TEMPERATURE(key_path) OF_DIMENSION(key_path, TEMPERATURE, "degC")
+#define RATE(key_path) OF_DIMENSION(key_path, RATE, "/s")
+#define MOLAR_ENERGY(key_path) OF_DIMENSION(key_path, MOLAR_ENERGY, "kJ/mol")
+#define PERMEABILITY(key_path) OF_DIMENSION(key_path, PERMEABILITY, "m/s/MPa")
+#define REAL(key_path) .path = key_path, .type = LAM_KEY_REAL
+#define INTEGER(key_path) .path = key_path, .type = LAM_KEY_INTEGER
+#define BOOL(key_path) .path = key_path, .type = LAM_KEY_BOOL
+#define TEXT(key_path) .path = key_path, .type = LAM_KEY_TEXT
+#define TENSOR(key_path) .path = key_path, .type = LAM_KEY_TENSOR
+#define STRESS_TENSOR(key_path)                                                                                        \
+  .path = key_path, .type = LAM_KEY_QUANTITY_TENSOR, .dimension = LAM_DIMENSION_STRESS, .unit = "MPa"
+#define NAME(key_path, list)                                                                                           \
+  .path = key_path, .type = LAM_KEY_NAME, .names = list, .name_count = PETSC_STATIC_ARRAY_LENGTH(list)
+#define NAME_OF(key_path, list, count) .path = key_path, .type = LAM_KEY_NAME, .names = list, .name_count = count
+#define REQUIRED .required = PETSC_TRUE
+#define FREE .free_word = "free"
+#define OPEN .free_word = "x"
+#define ABOVE(x) .lower = {LAM_BOUND_EXCLUDED, x}
+#define FROM(x) .lower = {LAM_BOUND_INCLUDED, x}
+#define TO(x) .upper = {LAM_BOUND_INCLUDED, x}
+#define BELOW(x) .upper = {LAM_BOUND_EXCLUDED, x}
+
+#define CHOSEN "chosen for the wanted accuracy"
+
+#endif
