@@ -2,18 +2,23 @@
   Lamella: effective stress, tangent and debonding of fruit and plant tissue.
 
   Everything a program needs; each part has its own header, to be read in this order:
-    scene.h      what the user describes, converted to nondimensional numbers
+    scene.h        what the user describes, converted to nondimensional numbers
     place_field.h  numbers that vary with the position
-    response.h   what a material point is asked and what it answers; the responder table
-    rve.h        solves the representative volume element
-    database.h   stores responses, answers from them
-    blend.h      answers between tissues that differ in one number
-    family.h     answers for walls between databases
-    mosaic.h     answers for a body of different tissue
-    cache.h      answers from a database and solves what it lacks
-    sealed.h     answers for cells that keep their water, from those for prescribed turgor
-    macro.h      the macroscale finite element solver
-    version.h    LAMELLA_VERSION
+    lattice.h      how the cells of a microstructure lie side by side
+    response.h     load and response of a material point; the responder table
+    ellipticity.h  whether a tangent resists localisation
+    rve.h          solves the representative volume element
+    database.h     stores responses, interpolates them
+    blend.h        responses between tissues that differ in one number
+    family.h       responses for walls between databases
+    mosaic.h       responses for a body of different tissue
+    cache.h        queries a database and solves what it lacks
+    sealed.h       responses of cells that keep their water, from those for prescribed turgor
+    macro.h        the macroscale finite element solver
+    kinetics.h     how a property of tissue changes in time
+    process.h      tissue that changes in time at one material point
+    body.h         a body whose tissue changes in time
+    version.h      LAMELLA_VERSION
 
   Conventions throughout
   * Every function that can fail returns a PetscErrorCode. PETSC_ERR_USER_INPUT: the user's file or
