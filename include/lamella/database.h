@@ -113,9 +113,7 @@ PetscErrorCode LamFileReadKind(const char path[], char kind[LAM_NAME_LENGTH]);
 /* ---- merging ---- */
 
 typedef struct {
-  PetscBool salvage;                /* take all sound records of damaged files, too */
-  const LamScene *scene;            /* whose microstructure and scales the result has; NULL: those of the first file */
-  const char *grid;                 /* text of its grid where no file tells one; NULL: then it has none */
+  PetscBool salvage;                /* of damaged files the records whose checksum is right */
   PetscBool (*stop)(void);          /* asked now and then whether to give up; NULL: never */
   void (*tell)(const char words[]); /* what a user should know, a line each; NULL: nobody listens */
 } LamMergeOptions;
@@ -125,7 +123,7 @@ typedef struct {
   PetscInt64 duplicates; /* records whose question another one had answered */
   PetscInt64 differing;  /* of these: with other numbers, times aside */
   PetscReal difference;  /* largest LamStressError between two answers to a question */
-  PetscInt64 left_out;   /* records that are damaged, or of another grid (salvage) */
+  PetscInt64 left_out;   /* committed records that are damaged (salvage) */
   PetscBool stopped;     /* given up: nothing was written */
 } LamMergeReport;
 

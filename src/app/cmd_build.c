@@ -282,7 +282,6 @@ PetscErrorCode LamCommandBuild(LamArgs *args, int *exit_status)
   const LamOption options[] = {
       {'d', "database", LAM_OPTION_TEXT, "DB.h5", "the database to fill", &b.path},
       {0, "resume", LAM_OPTION_FLAG, NULL, "go on with the database where it is there", &b.resume},
-      {0, "salvage", LAM_OPTION_FLAG, NULL, "with --resume: where it is damaged, with its sound records", &b.salvage},
       {0, "shard", LAM_OPTION_TEXT, "I/N", "only part I of N of the sample box, for `lamella merge`", &shard},
       {0, "ranks-per-rve", LAM_OPTION_TEXT, "R", "ranks that factor the matrices of one RVE together; default 1",
        &team},
@@ -294,18 +293,12 @@ PetscErrorCode LamCommandBuild(LamArgs *args, int *exit_status)
 
   PetscFunctionBeginUser;
   PetscCall(LamOptionsParse(
-      args,
-      "build SCENE -d DB.h5 [--resume [--salvage]] [--shard I/N] [--ranks-per-rve R] [--group G] [--json] [--quiet]",
+      args, "build SCENE -d DB.h5 [--resume] [--shard I/N] [--ranks-per-rve R] [--group G] [--json] [--quiet]",
       "Solves nodes of a grid until a table of them answers the states of the scene's sample box.", options, 1,
       &scene_path, &done, exit_status));
   if (done) PetscFunctionReturn(0);
   if (!b.path) {
     fprintf(stderr, "lamella build: the database is missing; give -d DB.h5\n");
-    *exit_status = LAM_EXIT_USAGE;
-    PetscFunctionReturn(0);
-  }
-  if (b.salvage && !b.resume) {
-    fprintf(stderr, "lamella build: --salvage goes on with a file; give --resume, too\n");
     *exit_status = LAM_EXIT_USAGE;
     PetscFunctionReturn(0);
   }

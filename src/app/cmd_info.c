@@ -335,7 +335,7 @@ static void PrintCheck(const char path[], const json_t *check)
   PrintDamage(json_object_get(check, "damaged"));
   printf("%-20s %s\n", "state", sound ? "sound" : "damaged");
   if (sound) return;
-  printf("%-20s lamella merge NEW.h5 %s --salvage keeps all sound records of a database;\n", "remedy", path);
+  printf("%-20s lamella merge NEW.h5 %s --salvage keeps the sound records of a database;\n", "remedy", path);
   printf("%-20s lamella build SCENE -d NEW.h5 --resume solves the others again\n", "");
 }
 

@@ -70,7 +70,7 @@ PetscErrorCode LamCommandMerge(LamArgs *args, int *exit_status)
   Merge m = {0};
   PetscBool done;
   const LamOption options[] = {
-      {0, "salvage", LAM_OPTION_FLAG, NULL, "take all sound records of damaged files", &m.salvage},
+      {0, "salvage", LAM_OPTION_FLAG, NULL, "take the sound records of damaged files", &m.salvage},
       {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object on stdout", &m.json},
       {0, "quiet", LAM_OPTION_FLAG, NULL, "no messages but errors", &m.quiet},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},

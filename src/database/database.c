@@ -92,7 +92,7 @@ static PetscErrorCode LoadGrid(const char path[], hid_t file, LamDatabase db)
   PetscFunctionBeginUser;
   PetscCall(LamFileHas(path, file, LAM_GRID_NAME, &has));
   PetscCheck(has || !db->nodes.count || strcmp(db->header.kind, "database"), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: holds nodes of a grid, but %s is missing; the file is damaged" LAM_SALVAGE, path, LAM_GRID_NAME);
+             "%s: holds nodes of a grid, but %s is missing; the file is damaged", path, LAM_GRID_NAME);
   if (!has) PetscFunctionReturn(0);
   PetscCall(LamFileGetText(path, file, LAM_GRID_NAME, &text));
   ierr = LamGridFromText(path, &db->header.micro, text, &db->grid);

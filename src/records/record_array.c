@@ -159,8 +159,7 @@ static PetscErrorCode CheckSum(const char path[], const char name[], const Opene
     PetscCall(PetscFree(unit));
   }
   PetscCall(LamSumMatches(path, o->dataset, LAM_SUM, sum, &sound));
-  PetscCheck(sound, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s is damaged (its checksum differs)" LAM_SALVAGE, path,
-             name);
+  PetscCheck(sound, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s is damaged (its checksum differs)", path, name);
   PetscFunctionReturn(0);
 }
 

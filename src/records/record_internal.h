@@ -14,7 +14,7 @@
 #define LAM_RECORDS_PER_CHUNK 64 /* some 90 kB: one commit touches one or two chunks */
 
 /* What to do about a damaged file; ends a message. */
-#define LAM_SALVAGE "; \"lamella merge NEW.h5 FILE --salvage\" keeps all sound records of a database"
+#define LAM_SALVAGE "; \"lamella merge NEW.h5 FILE --salvage\" keeps the sound records of a database"
 
 /* ---- record_type.c ---- */
 
@@ -157,9 +157,10 @@ PetscErrorCode LamFileCreate(const char path[], const char kind[], const LamScen
 PetscErrorCode LamFileClose(const char path[], hid_t file);
 /* Brings all that was written to the disk. */
 PetscErrorCode LamFileSync(const char path[], hid_t file);
-/* Reads and checks the header; `file` is left open. LamHeaderReadRoot: without the number of committed records. */
+/* Reads and checks the header; `file` is left open. */
 PetscErrorCode LamHeaderRead(const char path[], hid_t file, LamHeader *header);
-PetscErrorCode LamHeaderReadRoot(const char path[], hid_t file, LamHeader *header);
+/* The same without the number of committed records. *matches: the checksum does; NULL: an error where it does not. */
+PetscErrorCode LamHeaderReadRoot(const char path[], hid_t file, PetscBool *matches, LamHeader *header);
 /* Whether `name` ("/a/b/c") is there: every part of it. PETSC_ERR_USER_INPUT where one is a link to elsewhere. */
 PetscErrorCode LamFileHas(const char path[], hid_t file, const char name[], PetscBool *has);
 /* Text dataset; groups are made. */
@@ -219,40 +220,5 @@ int LamWriteBytes(int fd, const void *bytes, size_t n);
 PetscErrorCode LamCounterWrite(const char path[], hid_t dataset, PetscInt committed, uint32_t records_sum);
 /* Brings a closed file to the disk and gives it its name, for good. */
 PetscErrorCode LamFilePublish(const char temporary[], const char path[]);
-
-/* ---- record_salvage.c ---- */
-
-#define LAM_SALVAGE_NAMED 10
-typedef struct {
-  PetscInt64 sound;   /* records whose checksum is right */
-  PetscInt64 damaged; /* places where a record can be made out, but its checksum is wrong */
-  PetscInt64 offset[LAM_SALVAGE_NAMED], key[LAM_SALVAGE_NAMED]; /* of the first of these: byte in the file; key */
-} LamSalvage;
-/*
-  Shows the visitor all records of a file whose checksum is right, in the order of the file; also those beyond the
-  commit counter, and whatever state the file is in. Of other types than the present one only where HDF5 reads the type.
-  `first` counts the records shown.
-*/
-PetscErrorCode LamFileSalvage(const char path[], LamRecordVisitor visit, void *ctx, LamSalvage *found);
-
-/* ---- record_remains.c ---- */
-
-/* What a damaged file still tells, found in its bytes. Texts and the cells of `micro` are owned. */
-typedef struct {
-  char *description; /* NULL: none that is sound, and no hash nor micro either */
-  char hash[LAM_HASH_LENGTH];
-  LamMicrostructure micro;
-  char *grid; /* NULL: none */
-  PetscBool has_scales;
-  LamScales scales;
-  PetscReal accuracy;
-  PetscInt64 committed; /* -1: not known */
-  PetscBool names_hash; /* the hash that was asked for stands somewhere in it */
-} LamRemains;
-/* Opens the front of the file in memory, as if it had been cut there: its header can be read, and texts near it. */
-PetscErrorCode LamRemainsOpen(const char path[], hid_t *file);
-/* `hash`: to look for; may be empty. */
-PetscErrorCode LamRemainsFind(const char path[], const char hash[], LamRemains *remains);
-PetscErrorCode LamRemainsDestroy(LamRemains *remains);
 
 #endif

@@ -91,7 +91,7 @@ static PetscErrorCode CheckFormat(const char path[], hid_t file, PetscInt *forma
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CheckSum(const char path[], hid_t file)
+static PetscErrorCode CheckSum(const char path[], hid_t file, PetscBool *matches)
 {
   PetscBool sound;
   uint32_t sum;
@@ -99,13 +99,14 @@ static PetscErrorCode CheckSum(const char path[], hid_t file)
   PetscFunctionBeginUser;
   PetscCall(LamHeaderSum(path, file, &sum));
   PetscCall(LamSumMatches(path, file, LAM_SUM, sum, &sound));
-  PetscCheck(sound, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+  if (matches) *matches = sound;
+  PetscCheck(sound || matches, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: the header is damaged (an attribute of the root has been changed: its checksum differs)" LAM_SALVAGE,
              path);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamHeaderReadRoot(const char path[], hid_t file, LamHeader *header)
+PetscErrorCode LamHeaderReadRoot(const char path[], hid_t file, PetscBool *matches, LamHeader *header)
 {
   PetscFunctionBeginUser;
   memset(header, 0, sizeof(*header));
@@ -113,7 +114,7 @@ PetscErrorCode LamHeaderReadRoot(const char path[], hid_t file, LamHeader *heade
   PetscCall(LamAttributeCopyText(path, file, "kind", sizeof(header->kind), header->kind));
   PetscCall(ReadProvenance(path, file, header));
   PetscCall(ReadScales(path, file, header));
-  PetscCall(CheckSum(path, file));
+  PetscCall(CheckSum(path, file, matches));
   PetscCall(ReadMicrostructure(path, file, header));
   PetscFunctionReturn(0);
 }
@@ -121,7 +122,7 @@ PetscErrorCode LamHeaderReadRoot(const char path[], hid_t file, LamHeader *heade
 PetscErrorCode LamHeaderRead(const char path[], hid_t file, LamHeader *header)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamHeaderReadRoot(path, file, header));
+  PetscCall(LamHeaderReadRoot(path, file, NULL, header));
   PetscCall(LamCommittedRead(path, file, &header->committed));
   PetscFunctionReturn(0);
 }

@@ -98,8 +98,8 @@ static PetscErrorCode CheckType(const char path[], const LamRecordScan *s)
   PetscCall(LamRecordTypeCheck(path, s->type));
   PetscCall(LamRecordTypeSum(s->type, &sum));
   PetscCall(LamSumMatches(path, s->dataset, LAM_TYPE_SUM, sum, &sound));
-  PetscCheck(sound, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: the names of the members of /records are damaged" LAM_SALVAGE, path);
+  PetscCheck(sound, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: the names of the members of /records are damaged",
+             path);
   PetscFunctionReturn(0);
 }
 

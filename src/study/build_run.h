@@ -18,7 +18,7 @@ typedef struct {
   LamScene *scene;
   const char *path;
   PetscBool json, quiet;
-  PetscBool resume, salvage;
+  PetscBool resume;
   PetscInt group;     /* ranks that one rank hands out to; 0: as many as do */
   PetscInt team_size; /* ranks that solve one RVE together */
   LamShard shard;

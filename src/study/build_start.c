@@ -2,45 +2,7 @@
   The file that a build fills, and its grid. Rank 0.
 */
 #include "build_run.h"
-#include "build_salvage.h"
 #include <unistd.h>
-
-/* Whether the file opens. Why not, the salvage will tell. */
-static PetscErrorCode IsSound(const char path[], PetscBool *sound)
-{
-  LamDatabase database;
-  PetscErrorCode ierr;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
-  ierr = LamDatabaseOpen(path, &database);
-  PetscCall(PetscPopErrorHandler());
-  *sound = (PetscBool)!ierr;
-  if (*sound) PetscCall(LamDatabaseClose(&database));
-  PetscFunctionReturn(0);
-}
-
-static void TellUser(const char words[])
-{
-  fprintf(stderr, "lamella build: %s\n", words);
-}
-
-/* A damaged file is made anew of what is sound; the grid is the scene's where the file's cannot be read. */
-static PetscErrorCode SalvageDamaged(LamBuild *b, LamResponder *solver)
-{
-  LamMergeReport report;
-  PetscBool sound;
-  LamGrid grid;
-
-  PetscFunctionBeginUser;
-  if (!b->salvage || access(b->path, F_OK)) PetscFunctionReturn(0);
-  PetscCall(IsSound(b->path, &sound));
-  if (sound) PetscFunctionReturn(0);
-  PetscCall(LamGridCreate(b->scene, solver, &grid));
-  PetscCall(LamBuildSalvage(b->scene, grid, b->path, b->quiet ? NULL : TellUser, &report));
-  PetscCall(LamGridDestroy(&grid));
-  PetscFunctionReturn(0);
-}
 
 static PetscErrorCode OpenWriter(LamBuild *b)
 {
@@ -130,7 +92,6 @@ PetscErrorCode LamBuildStart(LamBuild *b)
 
   PetscFunctionBeginUser;
   PetscCall(LamRVEResponderCreate(b->rve, 0, &solver));
-  PetscCall(SalvageDamaged(b, &solver));
   PetscCall(OpenWriter(b));
   PetscCall(b->file ? OldGrid(b, &solver, &grid) : NewGrid(b, &solver, &grid));
   PetscCall(solver.destroy(&solver.ctx));

@@ -58,14 +58,13 @@ expect 2 "$lamella" merge new.h5 s.h5 bad.h5
 grep -q 'bad.h5: record' err.txt || fail "the record is not named: $(cat err.txt)"
 expect 0 "$lamella" merge new.h5 bad.h5 --salvage --json
 grep -q '"records": 59.*"left_out": 1' out.txt || fail "salvaged: $(cat out.txt)"
-grep -q 'bad.h5: the record with key .* is damaged' err.txt || fail "what is left out is not named: $(cat err.txt)"
+grep -q 'bad.h5: record [0-9]* is damaged' err.txt || fail "what is left out is not named: $(cat err.txt)"
 expect 2 "$lamella" merge new.h5 bad.h5 --salvage
 expect 0 "$lamella" build more.yaml -d new.h5 --resume --quiet
 grep -q '60 (1 new)' out.txt || fail "a build goes on: $(cat out.txt)"
 head -c 70000 more.h5 >cut.h5
-expect 2 "$lamella" merge short.h5 cut.h5
-expect 0 "$lamella" merge short.h5 cut.h5 --salvage
-expect 0 "$lamella" info short.h5
+expect 2 "$lamella" merge short.h5 cut.h5 --salvage
+grep -q 'cut.h5: the file is damaged or cut short' err.txt || fail "the file is not named: $(cat err.txt)"
 
 # a file that is being written is merged as far as it is committed
 cp some.h5 busy.h5

@@ -118,17 +118,3 @@ alike picometres 1e-6 1e3
 write kilometres " km" " uPa"
 answer kilometres
 alike kilometres 1e9 1e-12
-
-# salvage believes small units: the header is damaged, the records are not
-{ tissue "e-9 um" "e-20 MPa" | sed '/turgor/d'; cat; } >small.yaml <<'YAML'
-sample: {stretch: {min: -0.02, max: 0.1}, count: 20}
-YAML
-expect 0 "$lamella" build small.yaml -d small.h5 --quiet
-/usr/bin/python3 - <<'PYTHON'
-with open("small.h5", "r+b") as file:
-    file.seek(96)
-    file.write(bytes(604))
-PYTHON
-expect 0 "$lamella" merge sound.h5 small.h5 --salvage
-expect 0 "$lamella" info sound.h5
-grep -q 'apothem *7.5e-08 um' out.txt || fail "salvage has lost the units: $(cat out.txt err.txt)"

@@ -4,12 +4,10 @@
   Method
     All headers first: files that do not belong together are found before anything is written. Then the records of each
     file, block by block, into OUT.tmp (record_union.c), which gets the name OUT when it is complete and on the disk.
-    In salvage the records of all files are looked for in their bytes (record_salvage.c), and a file whose header cannot
-    be read must tell its microstructure in another way: a damaged file of other tissue must not slip in.
+    Salvage reads damaged files chunk by chunk and takes the records whose checksum is right.
 */
 #include "record_merge.h"
 #include <errno.h>
-#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -50,6 +48,8 @@ static PetscErrorCode TakeBlock(void *ctx, const LamRecordLayout *layout, PetscI
   (void)first;
   if (IsStopped(m)) PetscFunctionReturn(0);
   for (PetscInt i = 0; i < n; i++, bytes += layout->size) {
+    PetscCheck(m->grid_text || !LamKeyIsNode(LamRecordInt(bytes + layout->key)), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "%s: holds nodes of a grid, but %s is missing; the file is damaged", m->grid_from, LAM_GRID_NAME);
     if (ours)
       PetscCall(LamUnionTake(m->records, bytes, m->report));
     else
@@ -58,14 +58,99 @@ static PetscErrorCode TakeBlock(void *ctx, const LamRecordLayout *layout, PetscI
   PetscFunctionReturn(0);
 }
 
+/* ---- salvage ---- */
+
+enum { MOST_NAMED = 10 }; /* damaged records of a file in messages */
+
+typedef struct {
+  LamMerge *merge;
+  const char *path;
+  LamRecordScan scan;
+  PetscBool counted; /* the commit counter is sound: each record before it should be */
+  PetscInt sound, damaged;
+} Salvage;
+
+/* A chunk that HDF5 cannot read is lost. */
+static PetscErrorCode TakeSoundOfChunk(Salvage *s, PetscInt first, PetscInt n)
+{
+  const LamRecordLayout *layout = &s->scan.layout;
+  PetscErrorCode unreadable;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
+  unreadable = LamRecordScanRead(s->path, &s->scan, first, n);
+  PetscCall(PetscPopErrorHandler());
+  for (PetscInt i = 0; i < n; i++) {
+    const unsigned char *bytes = s->scan.bytes + (size_t)i * layout->size;
+    const char *damage = unreadable ? "HDF5 cannot read it" : LamRecordDamage(layout, bytes);
+
+    if (!damage) {
+      PetscCall(TakeBlock(s->merge, layout, first + i, 1, bytes));
+      s->sound++;
+    } else if (s->damaged++ < MOST_NAMED && s->counted) {
+      LamMergeTell(s->merge, "%s: record %" PetscInt_FMT " is damaged (%s) and left out", s->path, first + i, damage);
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TakeSoundChunks(Salvage *s, PetscInt count)
+{
+  const PetscInt chunk = LAM_RECORDS_PER_CHUNK;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < count && !IsStopped(s->merge); i += chunk)
+    PetscCall(TakeSoundOfChunk(s, i, PetscMin(chunk, count - i)));
+  if (s->counted && s->damaged)
+    LamMergeTell(s->merge, "%s: %" PetscInt_FMT " records are sound, %" PetscInt_FMT " damaged", s->path, s->sound,
+                 s->damaged);
+  if (!s->counted)
+    LamMergeTell(s->merge, "%s: %" PetscInt_FMT " records are sound; its commit counter is damaged", s->path, s->sound);
+  if (s->counted) s->merge->report->left_out += s->damaged;
+  PetscFunctionReturn(0);
+}
+
+/* Without a counter all that there is room for is read; what is not sound may never have been committed. */
+static PetscErrorCode TakeSound(LamMerge *m, const char path[], hid_t file)
+{
+  Salvage s = {.merge = m, .path = path};
+  PetscErrorCode ierr;
+  PetscInt count = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
+  s.counted = (PetscBool)!LamCommittedRead(path, file, &count);
+  PetscCall(PetscPopErrorHandler());
+  PetscCall(LamRecordScanOpen(path, file, &s.scan));
+  if (!s.counted) count = LamRecordScanRoom(&s.scan, file);
+  ierr = TakeSoundChunks(&s, count);
+  LamRecordScanClose(&s.scan);
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+/* ---- files ---- */
+
+static PetscErrorCode TakeCommitted(LamMerge *m, const char path[], hid_t file)
+{
+  PetscInt committed;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamCommittedRead(path, file, &committed));
+  PetscCall(LamFileScanRecords(path, file, committed, TakeBlock, m));
+  PetscFunctionReturn(0);
+}
+
+/* The file may have been replaced since its header was read. */
 static PetscErrorCode ScanFile(LamMerge *m, const char path[], hid_t file)
 {
   LamHeader header = {0};
-  PetscErrorCode ierr = LamHeaderRead(path, file, &header);
+  PetscBool matches;
+  PetscErrorCode ierr = LamHeaderReadRoot(path, file, m->options->salvage ? &matches : NULL, &header);
 
   PetscFunctionBeginUser;
-  if (!ierr) ierr = LamMergeCheckHash(m, path, header.hash); /* it may have been replaced meanwhile */
-  if (!ierr) ierr = LamFileScanRecords(path, file, header.committed, TakeBlock, m);
+  if (!ierr) ierr = LamMergeCheckHash(m, path, header.hash);
+  if (!ierr) ierr = m->options->salvage ? TakeSound(m, path, file) : TakeCommitted(m, path, file);
   PetscCall(LamHeaderDestroy(&header));
   PetscCall(ierr);
   PetscFunctionReturn(0);
@@ -85,116 +170,6 @@ static PetscErrorCode TakeFile(LamMerge *m, const char path[])
   LamLockEndRead(lock);
   PetscCall(ierr);
   PetscFunctionReturn(0);
-}
-
-/* ---- records of damaged files ---- */
-
-/* Free cells' states stand farther apart than the place of their key says; their suction is that of it. */
-static PetscErrorCode IsOfGrid(LamGrid grid, PetscInt64 key, const LamLoad *load, PetscBool *is)
-{
-  const PetscBool free_cell = LamKeyIsFreeCell(key);
-  const PetscReal error = free_cell ? 1e-9 : 1e-12;
-  LamLoad wanted;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamGridNodeLoad(grid, key, &wanted));
-  *is = (PetscBool)(fabs(load->turgor - wanted.turgor) <= error && fabs(load->cohesion - wanted.cohesion) <= error);
-  for (int i = 0; i < 9 && !free_cell; i++)
-    if (!(fabs(load->F[i] - wanted.F[i]) <= error)) *is = PETSC_FALSE;
-  PetscFunctionReturn(0);
-}
-
-typedef struct {
-  LamMerge *merge;
-  LamGrid grid;       /* NULL: there is none, and no node of it */
-  PetscBool unknown;  /* of what tissue: nothing is taken */
-  PetscInt64 foreign; /* records of another grid, or that */
-} Salvage;
-
-/* A LamRecordVisitor */
-static PetscErrorCode TakeSound(void *ctx, const LamRecordLayout *layout, PetscInt first, PetscInt n,
-                                const unsigned char *bytes)
-{
-  Salvage *s = ctx;
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < n; i++, bytes += layout->size) {
-    const PetscInt64 key = LamRecordInt(bytes + layout->key);
-    PetscBool good = (PetscBool)!s->unknown;
-    LamResponse response;
-
-    if (good && LamKeyIsNode(key)) {
-      PetscCall(LamRecordUnpack(layout, bytes, &response));
-      good = PETSC_FALSE;
-      if (s->grid) PetscCall(IsOfGrid(s->grid, key, &response.load, &good));
-    }
-    if (good)
-      PetscCall(TakeBlock(s->merge, layout, first, 1, bytes));
-    else
-      s->foreign++;
-  }
-  PetscFunctionReturn(0);
-}
-
-/* The counter tells of records that have gone without a trace. */
-static PetscInt64 Lost(const LamSalvage *found, PetscInt64 committed)
-{
-  return PetscMax(found->damaged, committed - found->sound);
-}
-
-static void TellOfSalvage(LamMerge *m, const char path[], const LamSalvage *found, PetscInt64 committed,
-                          const Salvage *salvage)
-{
-  const PetscInt64 lost = Lost(found, committed);
-
-  for (PetscInt64 i = 0; i < PetscMin(found->damaged, LAM_SALVAGE_NAMED); i++)
-    LamMergeTell(m, "%s: the record with key %lld at byte %lld is damaged and left out", path, (long long)found->key[i],
-                 (long long)found->offset[i]);
-  if (lost)
-    LamMergeTell(m, "%s: %lld records are sound, %lld damaged or lost", path, (long long)found->sound, (long long)lost);
-  if (committed < 0)
-    LamMergeTell(m, "%s: %lld records are sound; how many it held cannot be made out any more", path,
-                 (long long)found->sound);
-  if (salvage->foreign && !salvage->unknown)
-    LamMergeTell(m, "%s: %lld records are left out, they are not of the grid %s", path, (long long)salvage->foreign,
-                 m->grid_text ? m->grid_text : "(there is none)");
-  m->report->left_out += lost + salvage->foreign;
-}
-
-static PetscErrorCode TakeRest(LamMerge *m, LamGrid grid, PetscInt i)
-{
-  Salvage salvage = {.merge = m, .grid = grid, .unknown = (PetscBool)(m->state[i] == LAM_FILE_UNKNOWN)};
-  const char *path = m->files[i];
-  LamRemains remains;
-  LamSalvage found;
-  PetscInt64 committed;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamRemainsFind(path, m->hash, &remains));
-  committed = remains.committed;
-  PetscCall(LamRemainsDestroy(&remains));
-  PetscCall(LamFileSalvage(path, TakeSound, &salvage, &found));
-  TellOfSalvage(m, path, &found, committed, &salvage);
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode SalvageFiles(LamMerge *m)
-{
-  PetscErrorCode ierr = 0;
-  LamGrid grid = NULL;
-
-  PetscFunctionBeginUser;
-  if (m->grid_text) PetscCall(LamGridFromText(m->header_from, &m->scene.micro, m->grid_text, &grid));
-  for (PetscInt i = 0; i < m->n && !ierr && !IsStopped(m); i++) ierr = TakeRest(m, grid, i);
-  PetscCall(LamGridDestroy(&grid));
-  PetscCall(ierr);
-  if (m->report->records || m->report->stopped || m->options->scene) PetscFunctionReturn(0); /* or begin afresh */
-  PetscCheck(m->grid_text, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: its grid cannot be made out any more, nor is there a sound record of no grid; merge it with a sound "
-             "database of the same build, or use build --resume --salvage with its scene",
-             m->files[0]);
-  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: not one sound record was found; build the database anew",
-          m->files[0]);
 }
 
 /* ---- the result ---- */
@@ -309,11 +284,10 @@ static PetscErrorCode MergeLocked(LamMerge *m)
   PetscCall(LamMergeReadHeaders(m));
   PetscCall(TellOfWriters(m));
   PetscCall(StartFile(m));
-  if (m->options->salvage)
-    PetscCall(SalvageFiles(m));
-  else
-    for (PetscInt i = 0; i < m->n && !IsStopped(m); i++) PetscCall(TakeFile(m, m->files[i]));
+  for (PetscInt i = 0; i < m->n && !IsStopped(m); i++) PetscCall(TakeFile(m, m->files[i]));
   if (m->report->stopped) PetscFunctionReturn(0);
+  PetscCheck(m->report->records || !m->options->salvage, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: not one record is sound; build the database anew", m->files[0]);
   PetscCall(LamUnionFinish(m->records));
   PetscCall(Publish(m));
   PetscFunctionReturn(0);
@@ -326,7 +300,6 @@ static PetscErrorCode Destroy(LamMerge *m)
   unlink(m->temporary);
   PetscCall(LamLockRelease(&m->lock));
   PetscCall(PetscFree(m->grid_text));
-  PetscCall(PetscFree(m->state));
   PetscCall(PetscFree(m->scene.text));
   PetscCall(LamMicrostructureDestroy(&m->scene.micro));
   PetscFunctionReturn(0);

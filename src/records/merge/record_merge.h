@@ -6,12 +6,6 @@
 
 #include "record_union.h"
 
-typedef enum {
-  LAM_FILE_SOUND,   /* its header, at least */
-  LAM_FILE_DAMAGED, /* of this tissue, as far as it can be made out */
-  LAM_FILE_UNKNOWN  /* of what tissue cannot be made out any more */
-} LamFileState;
-
 typedef struct {
   char out[PETSC_MAX_PATH_LEN], temporary[PETSC_MAX_PATH_LEN];
   PetscInt n;
@@ -24,8 +18,7 @@ typedef struct {
   const char *header_from, *grid_from;
   LamScene scene; /* micro, scales, accuracy and text; micro and text owned */
   char hash[LAM_HASH_LENGTH];
-  char *grid_text;     /* owned; NULL: none */
-  LamFileState *state; /* [n] owned */
+  char *grid_text; /* owned; NULL: none */
 } LamMerge;
 
 /* For the user; as printf, without a newline. */

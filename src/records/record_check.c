@@ -197,7 +197,7 @@ static void CheckParts(Check *c)
   PetscBool header;
   size_t i;
 
-  header = Sound(c, "header", LamHeaderReadRoot(c->path, c->file, &c->header));
+  header = Sound(c, "header", LamHeaderReadRoot(c->path, c->file, NULL, &c->header));
   AddUnsummed(c, c->file, LAM_SUM, "header");
   c->counted = Sound(c, "commit counter", LamCommittedRead(c->path, c->file, &c->header.committed));
   c->scanned = Sound(c, "/records", CheckRecords(c));
