@@ -25,7 +25,8 @@ static PetscReal Turgor(const LamResponse *r)
   return isfinite(r->turgor_mean) ? r->turgor_mean : r->load.turgor;
 }
 
-/* A face bears t = g - (contact pressure), and nothing but p + g presses it together (theory.md, Section 20). */
+/* A face bears t = g - (contact pressure), and nothing but p + g presses it together (docs/theory/homogenisation.md,
+ * Effective-stress principle). */
 static PetscReal FaceUnloading(const LamResponse *r)
 {
   const PetscReal pressing = Turgor(r) + r->load.cohesion;

@@ -1,6 +1,6 @@
 /*
   Two cuboids in contact under generalised shear (Mihai, Safar & Wyatt, Section 4.1): what the test asserts and the
-  bench program prints. Set-up, and what of it is ours: docs/paper-cuboids.md.
+  bench program prints. Set-up, and what of it is ours: docs/results/paper-cuboids.md.
 
   Unit squares [-1, 0] x [0, 1] and [0, 1] x [0, 1] of plane section, fibres along X2; bottoms held, tops moved by
   top[k] e1, which is a shear f(X2) with f(0) = 0, f(1) = top[k] that the free sides bend. The interface is the material

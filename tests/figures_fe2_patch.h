@@ -5,10 +5,10 @@
   outer walls are zigzags around the sides of a box of 2 n a x sqrt(3) n a, whose area is n^2 V0: that box is the body
   of FE2, with bottom and top where the zigzags of the grips have their mean. The box has the same shape for all n and
   FE2 knows no length, so that one FE2 solution stands against all n. Grips move as x = F X in both; the force on the
-  top over its width is the mean P_i2 of the box, and of the patch as theory.md, Section 26, has it.
-  Lateral sides: free (the walls of the patch bear turgor from inside and nothing from outside, so that fluid and walls
-  together carry no traction, as the free side of FE2); or affine, where F is the same everywhere and FE2 is one RVE.
-  In both the walls are meshed alike, turgor acts first, with the grips at rest, and then F grows in equal steps.
+  top over its width is the mean P_i2 of the box, and of the patch as docs/theory/walls.md, Patches between grips, has
+  it. Lateral sides: free (the walls of the patch bear turgor from inside and nothing from outside, so that fluid and
+  walls together carry no traction, as the free side of FE2); or affine, where F is the same everywhere and FE2 is one
+  RVE. In both the walls are meshed alike, turgor acts first, with the grips at rest, and then F grows in equal steps.
 
   Stresses in MPa.
 */

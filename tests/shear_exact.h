@@ -1,6 +1,6 @@
 /*
   Generalised shear x1 = X1 + f(X2), x2 = X2, x3 = X3 of the incompressible wall, in closed form; derived in
-  docs/paper.md.
+  docs/results/paper.md.
 
   With s = f'(X2), fibres M = (cos psi, sin psi, 0), e = I4 - 1 = s sin psi (2 cos psi + s sin psi):
     sigma = -p I + C1 B - C2 B^-1 + C4 e FM (x) FM,      P = sigma F^-T,      p a pressure that equilibrium fixes.

@@ -7,7 +7,7 @@
     LamMacroSetResponder(macro, &responder); LamBodySetMonitor(body, told, ctx);
     LamBodyRun(body, &reason, message); LamBodyDestroy(&body); LamMacroDestroy(&macro);
 
-  docs/theory.md, "Bodies that change in time", has the equations.
+  Equations: docs/theory/process.md, Processes of bodies.
 */
 #ifndef LAMELLA_BODY_H
 #define LAMELLA_BODY_H

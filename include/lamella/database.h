@@ -142,9 +142,9 @@ PetscErrorCode LamDatabaseMerge(const char out[], PetscInt n, const char *const 
   ---- the table: the potential interpolated on a grid of states ----
 
   States of the grid (nodes) are lattice strains, the logarithms of the stretches of the three lattice directions, and
-  for contact tissue suction s = turgor + cohesion; docs/theory.md, Section 28. A record is a node where its key says so
-  (LamKeyIsNode). The grid is coarse to begin with and refined where it is asked for: which nodes there are decides what
-  the table answers, and how well.
+  for contact tissue suction s = turgor + cohesion; docs/theory/database.md, The tabulated potential. A record is a node
+  where its key says so (LamKeyIsNode). The grid is coarse to begin with and refined where it is asked for: which nodes
+  there are decides what the table answers, and how well.
 */
 typedef struct LamGrid_s *LamGrid;
 typedef struct LamTable_s *LamTable;

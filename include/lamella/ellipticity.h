@@ -1,6 +1,6 @@
 /*
   Ellipticity of a tangent: whether bands of any direction still resist, and which band gives in first
-  (docs/theory.md, Localisation).
+  (docs/theory/macro.md, Localisation).
 */
 #ifndef LAMELLA_ELLIPTICITY_H
 #define LAMELLA_ELLIPTICITY_H

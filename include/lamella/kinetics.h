@@ -2,7 +2,7 @@
   How a property of tissue changes in time: named kinetic laws, and the dependence of their rates on temperature.
 
   A law gives the factor X(t) that multiplies a property, X = 1 at the start. It has LamKineticsStates states x, which
-  follow ordinary differential equations with rates k(T); docs/theory.md, "Tissue that changes in time".
+  follow ordinary differential equations with rates k(T); docs/theory/process.md.
 */
 #ifndef LAMELLA_KINETICS_H
 #define LAMELLA_KINETICS_H

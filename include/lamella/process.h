@@ -6,7 +6,7 @@
     LamProcessSetMonitor(process, told, ctx); LamProcessSetStop(process, stop);
     LamProcessRun(process, &reason, message); LamProcessDestroy(&process);
 
-  docs/theory.md, "Tissue that changes in time", has the equations.
+  Equations: docs/theory/process.md.
 */
 #ifndef LAMELLA_PROCESS_H
 #define LAMELLA_PROCESS_H
@@ -95,7 +95,7 @@ PetscErrorCode LamProcessRun(LamProcess process, LamProcessReason *reason, char 
 PetscErrorCode LamProcessGetCounts(LamProcess process, LamProcessCounts *counts);
 PetscErrorCode LamProcessDestroy(LamProcess *process);
 
-/* Whether all moduli of the walls change alike, so that one database serves at all times (docs/theory.md). */
+/* Whether all moduli of the walls change alike, so that one database serves at all times (docs/theory/process.md). */
 PetscBool LamProcessWallsStayAlike(const LamScene *scene);
 
 #endif

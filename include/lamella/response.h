@@ -72,7 +72,8 @@ typedef struct {
   PetscReal mean_face_traction[3]; /* mean normal Cauchy traction per face family, tension > 0 */
   /* walls, averaged over the whole thickness t of a wall and a length t along it: fibre stretch, energy density
      without U, tension; the largest such means. Tension: Cauchy stress along the fibre plus the turgor of the wall's
-     own cell, the fluid it stands in. The tractions above are absolute: a gap opens against air (theory.md, Section 23)
+     own cell, the fluid it stands in. The tractions above are absolute: a gap opens against air
+     (docs/theory/failure.md)
    */
   PetscReal max_fibre_stretch, max_wall_energy, max_wall_tension;
   PetscReal wall_place[3];        /* of max_wall_tension: cell, face 0..5, place along the face in [0, 1] */
@@ -119,7 +120,7 @@ PetscBool LamResponseHasFields(const LamResponse *response);
 
 /*
   d2Psi/dp2 as what divides by it needs it: no stable state has it at zero or above, but an answer from a database has
-  the errors of its strains in it (theory.md, Section 34).
+  the errors of its strains in it (docs/theory/database.md, Cells and nodes).
 */
 #define LAM_LEAST_CONCAVITY (-1e-8) /* V0 over C1 + C2, chosen; closed cells have -2.8e-4 at kappa = 1000 (C1 + C2) */
 static inline PetscReal LamResponseConcavity(const LamResponse *response)

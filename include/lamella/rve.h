@@ -102,7 +102,7 @@ PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStress
   which the next one starts: one estimate for states that follow each other. LamRVEEstimateError sets
   response->error_estimate of the response that belongs to `state`, and adds its time; NaN where there is none: an odd
   number of elements along a face, sealed cells, no equilibrium on the coarser mesh, or elements far too long for the
-  thinnest wall or too deep for the lumen (docs/extremes.md, "What an estimate is worth"). Borrows `rve`.
+  thinnest wall or too deep for the lumen (docs/results/extremes.md, "Worth of the error estimate"). Borrows `rve`.
 */
 typedef struct LamRVEEstimate_s *LamRVEEstimate;
 PetscErrorCode LamRVEEstimateCreate(LamRVE rve, LamRVEEstimate *estimate);
@@ -119,7 +119,7 @@ PetscErrorCode LamRVEEstimateDestroy(LamRVEEstimate *estimate);
     Psi_s(F) = stat_p [ Psi(F, p) + sum_c v_w (p_c - (p_c - p0)^2 / (2 K_w)) ],    v_w = water,
 
   all else derivatives of it, those by the turgor at fixed water; turgor_mean and turgor_spread tell the pressures
-  reached. They may be negative: water is not kept from being pulled (docs/theory.md, Sealed lumens). LamRVESeal:
+  reached. They may be negative: water is not kept from being pulled (docs/theory/walls.md, Sealed lumens). LamRVESeal:
   PETSC_ERR_ARG_OUTOFRANGE where K_w or water is not positive and finite.
 */
 PetscErrorCode LamRVEGetLumens(LamRVE rve, LamRVEState state, PetscReal lumen[]);

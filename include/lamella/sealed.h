@@ -21,8 +21,8 @@ PetscErrorCode LamSealedResponderCreate(MPI_Comm comm, LamResponder *open, Petsc
 
 /*
   The sealed response from one at prescribed turgor p = response->load.turgor, where v_lumen is that of the water
-  (water: v_w, of pressure p0): energy, stress, tangent and all couplings are derivatives of Psi_s (docs/theory.md,
-  Section 6).
+  (water: v_w, of pressure p0): energy, stress, tangent and all couplings are derivatives of Psi_s
+  (docs/theory/walls.md, Sealed lumens).
 */
 void LamResponseSeal(PetscReal p0, PetscReal water, PetscReal bulk_modulus, LamResponse *response);
 

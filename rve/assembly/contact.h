@@ -2,7 +2,7 @@
   Contact with cohesion between the outer walls of neighbouring cells.
 
   Each cell's faces 0, 1, 2 are slaves; face k is paired with face k + 3 of the cell, or of the image of the cell, that
-  lies across it. Terms of the potential (docs/theory.md, Contact):
+  lies across it. Terms of the potential (docs/theory/contact.md):
     - sum_A lambda_A G_A(x, F)     multipliers times weighted gaps, lambda >= 0, G >= 0, lambda G = 0
     + g F33 A_gap(x, F)            cohesion, in gap_area.c
   F enters through the images' shifts F S alone.

@@ -1,5 +1,5 @@
 /*
-  Turgor: areas of the lumens, and the pressures of those that are sealed (docs/theory.md, Sealed lumens).
+  Turgor: areas of the lumens, and the pressures of those that are sealed (docs/theory/walls.md, Sealed lumens).
 
   Method. A sealed cell c keeps its water: with v = V / V_w its lumen over that which holds the water at pressure p0,
     v = 1 - (p - p0) / K_w.

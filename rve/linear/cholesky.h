@@ -1,6 +1,7 @@
 /*
   Small systems that should be positive definite: PETSc's own Cholesky factorisation, which does not pivot. Without
-  MUMPS' bookkeeping it takes half the time up to some thousand unknowns, and a solve a tenth (docs/performance.md).
+  MUMPS' bookkeeping it takes half the time up to some thousand unknowns, and a solve a tenth
+  (docs/results/performance.md).
 */
 #ifndef LAM_CHOLESKY_H
 #define LAM_CHOLESKY_H

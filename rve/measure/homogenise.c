@@ -12,7 +12,8 @@
 
   Rounding. Positions hold no more than 16 digits, so that r = L_y is not zero but some eps times the stiffest modulus,
   and so is the error of L_F. To first order the solution lies at y - K^-1 r, and P is (L_F - L_Fy K^-1 r) / V0 there:
-  the work of the wall stresses on the relaxed mode of F, on which stiff walls do none (docs/theory.md, Rounding).
+  the work of the wall stresses on the relaxed mode of F, on which stiff walls do none (docs/theory/homogenisation.md,
+  Rounding).
 */
 #include "measure.h"
 #include <lamella/ellipticity.h>

@@ -1,5 +1,5 @@
 /*
-  Components of F as unknowns of a Newton iteration, for prescribed stress (docs/theory.md, Mixed control).
+  Components of F as unknowns of a Newton iteration, for prescribed stress (docs/theory/solver.md, Mixed control).
 
   Method. The iteration seeks a stationary point of L(y, q) - V0 P.q over the positions y (in contact with the active
   multipliers) and the free components q of F. Its linear system is bordered,

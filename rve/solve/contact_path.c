@@ -15,8 +15,8 @@
   Where a continuation is lost without a reason, descent goes down to whatever comes next. A saddle is the answer only
   where nothing stable is found.
 
-  Mihai, Safar & Wyatt, J. Eng. Math. (successive deformation decomposition) for (ii); docs/theory.md, turgor and
-  cohesion act through their sum, for (iii).
+  Mihai, Safar & Wyatt, J. Eng. Math. (successive deformation decomposition) for (ii); docs/theory/homogenisation.md,
+  Effective-stress principle, for (iii).
 */
 #include "contact_path.h"
 #include <string.h>

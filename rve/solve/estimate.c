@@ -3,15 +3,16 @@
 
   Method. The same load is solved on a mesh with half the elements along the faces and through the walls, whose matrix
   is a quarter of the size or less. The error of the finer mesh is a share of the difference of the two stresses; the
-  shares are measured (docs/performance.md, "The error of a mesh"). What the residual leaves is added. Where walls have
-  kinked (kinked_fraction, where it was asked for) neither mesh knows how a finer one wrinkles, and more is taken
-  (docs/verification.md, "Localisation and kinks"). Where elements are much longer than walls are thick, which bend near
-  junctions over about a thickness, deeper than the lumen is wide or than the layers that strong fibres make, or few for
-  the strain, errors fall with the first power of their size only, and up to the whole difference is taken; where they
-  are longer or deeper still, both meshes miss the same, and nothing is known (docs/extremes.md, "What an estimate is
-  worth"). Bonded tissue starts from the coarse mesh's own state before: positions of the finer mesh would be a worse
-  start, since what they leave of the volumes is as stiff as water. Contact tissue starts from the finer mesh's
-  positions and contact pressures, which say where it touches; nodes of the coarse mesh are among its nodes.
+  shares are measured (docs/results/performance.md, "The error of a mesh"). What the residual leaves is added. Where
+  walls have kinked (kinked_fraction, where it was asked for) neither mesh knows how a finer one wrinkles, and more is
+  taken (docs/results/verification.md, "Localisation and kinks"). Where elements are much longer than walls are thick,
+  which bend near junctions over about a thickness, deeper than the lumen is wide or than the layers that strong fibres
+  make, or few for the strain, errors fall with the first power of their size only, and up to the whole difference is
+  taken; where they are longer or deeper still, both meshes miss the same, and nothing is known
+  (docs/results/extremes.md, "Worth of the error estimate"). Bonded tissue starts from the coarse mesh's own state
+  before: positions of the finer mesh would be a worse start, since what they leave of the volumes is as stiff as water.
+  Contact tissue starts from the finer mesh's positions and contact pressures, which say where it touches; nodes of the
+  coarse mesh are among its nodes.
 */
 #include "solve.h"
 

@@ -28,7 +28,7 @@ PetscReal LamNewtonTolerance(LamRVE rve)
   /* Forces of the pressure and of the fibres carry a rounding error of eps times their stiffness in each of n entries.
      Gradients are differences of positions, so it grows with the size of the RVE over the depth of an element. The
      floor measured from t = 0.003 to 0.5 and up to 8 x 8 cells stays below 0.6 slenderness x size
-     (docs/verification.md). */
+     (docs/results/verification.md). */
   const LamMicrostructure *micro = &rve->micro;
   const PetscReal depth = rve->thinnest / (PetscReal)micro->through;
   const PetscReal slenderness = PetscMax(LamLongestEdge(&rve->mesh) / depth, depth / LamShortestEdge(&rve->mesh));

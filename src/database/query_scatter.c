@@ -17,7 +17,7 @@
 
   Estimate of the error of P: the models' spread, (sum w_k |P_k - P|^2 / sum w_k)^1/2, and, since a model that stands
   alone has no spread, the error of one model at this distance, times the square of the nearest one's share of the
-  weights. docs/performance.md has what was measured.
+  weights. docs/results/performance.md has what was measured.
 
   Only records that have converged, are stable, of branch 0 and without cells that float blend. One of another branch,
   or with cells that touch no one, answers for its own state (one of another branch also by its model alone, for who

@@ -1,5 +1,5 @@
 /*
-  Sealed answers from a responder for prescribed turgor (docs/theory.md, Sealed lumens).
+  Sealed answers from a responder for prescribed turgor (docs/theory/walls.md, Sealed lumens).
 
   Method. For each point Newton on the pressure p of
     c(p) = dPsi/dp + v_w (1 - (p - p0) / K_w) = 0,      dc/dp = Psi_pp - v_w / K_w < 0,

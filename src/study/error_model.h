@@ -1,6 +1,6 @@
 /*
   How large the error of P is on a mesh, before anything is solved: measured on random tissues and loads, fitted by
-  powers (docs/performance.md, "The error of a mesh").
+  powers (docs/results/performance.md, "The error of a mesh").
 */
 #ifndef LAM_ERROR_MODEL_H
 #define LAM_ERROR_MODEL_H

@@ -6,7 +6,7 @@
   Load factor: the number of a state, with a fraction for the share of the way from it to the next, along which F,
   turgor and cohesion are linear; where P is prescribed instead of F, P is, from its value in the state before. State 0
   is F = I, or P = 0 where state 1 prescribes P, at the turgor and cohesion of state 1; where it has no answer the
-  program begins with state 1. docs/theory.md has the definitions.
+  program begins with state 1. Definitions: docs/theory/failure.md, Failure criteria.
 */
 #ifndef LAM_FAILURE_H
 #define LAM_FAILURE_H

@@ -12,7 +12,7 @@
 
 /*
   Largest error of a blend of 2, 3, 4 and more levels whose logarithms are h apart, factor h^power;
-  docs/verification.md. Contact switches at thicknesses of its own, so that smooth weights help less.
+  docs/results/verification.md. Contact switches at thicknesses of its own, so that smooth weights help less.
 */
 typedef struct {
   PetscReal factor, power;

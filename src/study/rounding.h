@@ -1,7 +1,7 @@
 /*
-  Digits that rounding leaves, before anything is solved (docs/theory.md, Rounding). P keeps all but two or three
-  whatever the walls; the tangent, and with it stability and the convergence of a body, loses what the bulk modulus is
-  stiffer than the matrix, the more the thinner the elements.
+  Digits that rounding leaves, before anything is solved (docs/theory/homogenisation.md, Rounding). P keeps all but two
+  or three whatever the walls; the tangent, and with it stability and the convergence of a body, loses what the bulk
+  modulus is stiffer than the matrix, the more the thinner the elements.
 */
 #ifndef LAM_APP_ROUNDING_H
 #define LAM_APP_ROUNDING_H

@@ -11,8 +11,9 @@
 
 /*
   Value, gradient and Hessian at x of Phi = Psi + p J: the fluid's part -p J of the potential is taken off, what remains
-  varies slowly with J, and hardly with p (effective-stress principle, docs/theory.md Section 20). P33 + p J is a scalar
-  of the same variables, known with its gradient. Bonded tissue does not feel g: derivatives with respect to it are 0.
+  varies slowly with J, and hardly with p (effective-stress principle, docs/theory/homogenisation.md). P33 + p J is a
+  scalar of the same variables, known with its gradient. Bonded tissue does not feel g: derivatives with respect to it
+  are 0.
 */
 typedef struct {
   PetscReal x[LAM_VARIABLES];

@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* Root cells: with fibres ten times as stiff as the matrix they alone give 0.2 % of P at the 99th percentile (bonded),
-   and some percent in contact; docs/verification.md. */
+   and some percent in contact; docs/results/verification.md. */
 #define BONDED_STEP 0.135
 #define TURGOR_REACH 0.1 /* of the softest wall's bulk modulus: the second derivatives err by 1e-4 of P there */
 #define CONTACT_STEP 0.08

@@ -7,7 +7,7 @@
       h^2 (d0 q0(t_k) + d1 q1(t_k)) V_i(t_p) V_j(t_q),   q0 = t^2 (1-t)^3 / 2,   q1 = t^3 (1-t)^2 / 2,
     d = known second derivative less that of the cubic, V the value functions 1-3t^2+2t^3 and 3t^2-2t^3. Value and
     gradient are continuous across faces, edges and corners, with any choice of bubbles; at corners the Hessian is
-    exact. docs/theory.md, Section 28.
+    exact. docs/theory/database.md, Cells and nodes.
 */
 #ifndef LAM_HERMITE_CELL_H
 #define LAM_HERMITE_CELL_H

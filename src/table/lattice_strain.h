@@ -8,7 +8,7 @@
   degrees or mirroring it permutes them. Where all three are equal the strain is isotropic; a potential that is
   symmetric in the three has an isotropic tangent there. Derivatives, with f_k = F n_k, q_k = exp(2 x_k):
     dx_k/dF_iJ = f_i n_J / q_k,    d2x_k/dF_iJ dF_mN = n_J n_N (delta_im / q_k - 2 f_i f_m / q_k^2)
-  docs/theory.md, Section 28.
+  docs/theory/database.md, Lattice strains.
 */
 #ifndef LAM_LATTICE_STRAIN_H
 #define LAM_LATTICE_STRAIN_H

@@ -24,9 +24,10 @@ enum { KINK_LEVEL = 2 };
 enum { CONTACT_LEVEL = 3, CONTACT_INTERVAL = LAM_ROOT / 8 };
 
 /*
-  Weights of the estimate, from regression on held-out states; docs/verification.md. Below the root the surplus is rough
-  at the scale of its cells, as contact is everywhere. In root cells of bonded tissue Phi is smooth: where the bubbles
-  are small beside the turn of the slope (ROOT_TURN), higher derivatives fall off alike, and the error with them.
+  Weights of the estimate, from regression on held-out states; docs/results/verification.md. Below the root the surplus
+  is rough at the scale of its cells, as contact is everywhere. In root cells of bonded tissue Phi is smooth: where the
+  bubbles are small beside the turn of the slope (ROOT_TURN), higher derivatives fall off alike, and the error with
+  them.
 */
 #define ROOT_BEND 0.3
 #define ROOT_TURN 0.18
@@ -199,7 +200,7 @@ static void Estimates(LamTable table, const Place *place, PetscReal *along_strai
 /*
   Of cells that touch no one. Under strong shear lattice directions no longer meet the face normals, and neighbours that
   are near in two directions still touch: P was off by up to 2 % with the second strain within 0.008 of a(s) and the
-  third 0.2 above (docs/verification.md).
+  third 0.2 above (docs/results/verification.md).
 */
 static PetscReal FloatingError(const struct LamGrid_s *grid, const LamTablePoint *point)
 {

@@ -1,7 +1,7 @@
 /*
   Two cuboids in contact under generalised shear (Mihai, Safar & Wyatt, Section 4.1): gaps along the interface over
   shear, pressure and mesh, both tops moved alike or apart, with and without freedom across the plane; prints the tables
-  of docs/paper-cuboids.md, asserts nothing. Takes a minute.
+  of docs/results/paper-cuboids.md, asserts nothing. Takes a minute.
 
     bench_cuboids [N]        N x N elements a body, default 16
 */
@@ -198,7 +198,7 @@ static void PrintKinematicGap(PetscReal k)
   printf("\n");
 }
 
-/* Normal pressure on the sides in homogeneous shear of plane stress, MPa: docs/paper-cuboids.md. */
+/* Normal pressure on the sides in homogeneous shear of plane stress, MPa: docs/results/paper-cuboids.md. */
 static PetscReal SidePressure(PetscReal shear)
 {
   const PetscReal C1 = 0.1, C2 = 0.01, square = shear * shear;

@@ -1,6 +1,6 @@
 /*
   How `lamella build` scales: its own decisions (schedule.c) on simulated ranks, 2 to 100,000 of them. Prints figures,
-  asserts nothing; dispatch_model.h says what is simulated, docs/scaling.md what came out.
+  asserts nothing; dispatch_model.h says what is simulated, docs/results/scaling.md what came out.
     bench_schedule                         the small tables, half a minute
     bench_schedule --full                  all tables, up to 1e9 samples on 100,000 ranks
     bench_schedule --ranks N ...           one case; every value has its option (--help)
@@ -14,7 +14,7 @@
 #include <figures_work.h>
 #include "dispatch_simulation.h"
 
-/* docs/scaling.md, Constants. */
+/* docs/results/scaling.md, Constants. */
 static const Costs measured = {.latency = 2e-6,
                                .bandwidth = 5e9,
                                .message = 1e-6,

@@ -1,4 +1,5 @@
-/* The figures of docs/verification.md: errors against references and theory, buckling, extremes; asserts nothing. */
+/* The figures of docs/results/verification.md: errors against references and theory, buckling, extremes; asserts
+ * nothing. */
 #include <stdio.h>
 #include <sys/resource.h>
 #include <petsctime.h>

@@ -19,7 +19,7 @@
 #include "event_queue.h"
 #include "work_table.h"
 
-/* What things cost, in s and bytes; docs/scaling.md says how they were measured. */
+/* What things cost, in s and bytes; docs/results/scaling.md says how they were measured. */
 typedef struct {
   PetscReal latency, bandwidth; /* of the network, s and bytes/s */
   PetscReal message, byte;      /* processor time of one message, and of each byte of it, at one end */

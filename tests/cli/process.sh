@@ -74,7 +74,7 @@ expect 0 "$lamella" plot loosening.h5 --map map.h5 -o way.svg
 sed -e 's/cohesion: 0.05/cohesion: 0.3/; s/0.02 MPa/0.2 MPa/; s/20 h/2 h/; s/along: 4/along: 6/' -e 's/  output: 4 h/  water: {permeability: 1e-7 m\/s\/MPa, osmotic_pressure: 0.5 MPa}\n  surroundings: [{time: 0 h, outside: 0.3 MPa}, {time: 2 h, outside: 0.31 MPa}]/' loosening.yaml >wet.yaml
 expect 0 "$lamella" process wet.yaml -d w.h5
 
-# the tissues of docs/tissues.md
+# the tissues of docs/results/tissues.md
 for tissue in "$source"/tests/scenes/tissues/*.yaml; do
   expect 0 "$lamella" process "$tissue"
 done

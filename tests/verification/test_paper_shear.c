@@ -1,4 +1,5 @@
-/* Generalised shear, Section 3 of Mihai, Safar & Wyatt: kernels and element against the closed forms of docs/paper.md.
+/* Generalised shear, Section 3 of Mihai, Safar & Wyatt: kernels and element against the closed forms of
+ * docs/results/paper.md.
  */
 #include "rve_fixture.h"
 #include "assert_near.h"

@@ -1,4 +1,5 @@
-/* The cubic of generalised shear, Section 3 of Mihai, Safar & Wyatt, against a strip of wall elements (docs/paper.md).
+/* The cubic of generalised shear, Section 3 of Mihai, Safar & Wyatt, against a strip of wall elements
+ * (docs/results/paper.md).
  */
 #include "rve_fixture.h"
 #include "assert_near.h"

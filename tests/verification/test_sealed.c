@@ -116,8 +116,8 @@ static void SoftWaterKeepsThePressure(void **state)
 
 /*
   Walls and water stand in the same pressure and are stiff against their shape: under dilatation the volumes of both add
-  up, so that 1/K = v_w / K_w + w / kappa, w = 1 - (1 - t)^2 the share of the walls (theory.md, Sealed lumens). What the
-  shape of the walls adds is of the order of C1 + C2.
+  up, so that 1/K = v_w / K_w + w / kappa, w = 1 - (1 - t)^2 the share of the walls (docs/theory/walls.md, Sealed
+  lumens). What the shape of the walls adds is of the order of C1 + C2.
 */
 static void BulkModulusIsThatOfWaterAndWallsInSeries(void **state)
 {

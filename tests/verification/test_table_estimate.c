@@ -1,6 +1,6 @@
 /*
   What a table says of its own answers, against fresh solves of states that it has not seen: the error estimate, and
-  which indicators are trusted. The figures of docs/verification.md with slack: small samples.
+  which indicators are trusted. The figures of docs/results/verification.md with slack: small samples.
 */
 #include <math.h>
 #include <stdarg.h>
