@@ -15,36 +15,42 @@ static const LamKey boundary_keys[] = {
          "`indenter` and `grip`. A side may have several that do not contradict each other. Displacements, "
          "symmetry and grips together hold the body against rigid motion; obstacles do not count."},
     {MAP("macro.boundary[]"), .example = "{on: bottom, displacement: [0 mm, 0 mm]}", .help = "One condition."},
-    {TEXT("macro.boundary[].on"), REQUIRED, .example = "bottom",
+    {TEXT("macro.boundary[].on"), INTO(LamBoundary, on), REQUIRED, .example = "bottom",
      .help = "The name of a side of the box or disc, or of a physical group of the Gmsh file."},
-    {TEXT("macro.boundary[].name"), .default_words = "that of the side", .example = "upper plate",
-     .help = "The name under which its force is reported."},
-    {LENGTH("macro.boundary[].displacement", "mm"), .size = 2, FREE, .example = "[0 mm, free]",
+    {TEXT("macro.boundary[].name"), INTO(LamBoundary, name), .default_words = "that of the side",
+     .example = "upper plate", .help = "The name under which its force is reported."},
+    {LENGTH("macro.boundary[].displacement", "mm"), INTO(LamBoundary, displacement), GIVEN(LamBoundary, given),
+     .size = 2, FREE, .example = "[0 mm, free]",
      .help = "At load parameter 1, along X1 and X2; `free` leaves a component. All displacements count from the "
              "inflated state."},
     {BOOL("macro.boundary[].symmetry"), .example = "true",
      .help = "The side, which is straight, does not move along its normal, also while the body inflates."},
-    {STRESS("macro.boundary[].traction"), .size = 2, .example = "[0 MPa, 0.01 MPa]",
+    {STRESS("macro.boundary[].traction"), INTO(LamBoundary, traction), .size = 2, .example = "[0 MPa, 0.01 MPa]",
      .help = "Force per reference area at load parameter 1, along X1 and X2. With `follower`: per present area, along "
              "the present tangent (the outward normal turned by +90 deg) and the present outward normal."},
-    {BOOL("macro.boundary[].follower"), .default_value = "false", .example = "true",
+    {BOOL("macro.boundary[].follower"), INTO(LamBoundary, follower), .default_value = "false", .example = "true",
      .help = "Whether `traction` turns with the side."},
-    {STRESS("macro.boundary[].pressure"), .example = "0.01 MPa",
+    {STRESS("macro.boundary[].pressure"), INTO(LamBoundary, traction[1]), .example = "0.01 MPa",
      .help = "At load parameter 1, against the present outward normal, per present area."},
     {MAP("macro.boundary[].plate"), .example = "{displacement: [0 mm, -1 mm]}",
      .help = "A rigid, flat, frictionless plate that first touches the side and may leave it and come back."},
-    {LENGTH("macro.boundary[].plate.displacement", "mm"), .size = 2, REQUIRED, .example = "[0 mm, -1 mm]",
-     .help = "Of the plate at load parameter 1; only its part along the normal matters."},
-    {REAL("macro.boundary[].plate.normal"), .size = 2, .default_words = "that of the side, where this is straight",
-     .example = "[0, -1]", .help = "From the plate into the body."},
+    {LENGTH("macro.boundary[].plate.displacement", "mm"), INTO(LamBoundary, displacement), .size = 2, REQUIRED,
+     .example = "[0 mm, -1 mm]", .help = "Of the plate at load parameter 1; only its part along the normal matters."},
+    {REAL("macro.boundary[].plate.normal"), INTO(LamBoundary, normal), .size = 2,
+     .default_words = "that of the side, where this is straight", .example = "[0, -1]",
+     .help = "From the plate into the body."},
     {MAP("macro.boundary[].indenter"), .example = "{radius: 2 mm, at: [5 mm, 10 mm], displacement: [0 mm, -1 mm]}",
      .help = "A rigid, round, frictionless indenter that first touches the side and may leave it and come back."},
-    {LENGTH("macro.boundary[].indenter.radius", "mm"), REQUIRED, ABOVE(0), .example = "2 mm", .help = "Its radius."},
-    {LENGTH("macro.boundary[].indenter.at", "mm"), .size = 2, REQUIRED, .example = "[5 mm, 10 mm]",
+    {LENGTH("macro.boundary[].indenter.radius", "mm"), INTO(LamBoundary, radius), REQUIRED, ABOVE(0), .example = "2 mm",
+     .help = "Its radius."},
+    {LENGTH("macro.boundary[].indenter.at", "mm"), INTO(LamBoundary, at), .size = 2, REQUIRED,
+     .example = "[5 mm, 10 mm]",
      .help = "A point on the line along which its centre moves, such as the point of the side that it touches first."},
-    {LENGTH("macro.boundary[].indenter.displacement", "mm"), .size = 2, REQUIRED, .example = "[0 mm, -1 mm]",
+    {LENGTH("macro.boundary[].indenter.displacement", "mm"), INTO(LamBoundary, displacement), .size = 2, REQUIRED,
+     .example = "[0 mm, -1 mm]",
      .help = "At load parameter 1; not zero: it is the direction from which the indenter comes."},
-    {LENGTH("macro.boundary[].grip", "mm"), .size = 2, FREE, .example = "[1 mm, free]",
+    {LENGTH("macro.boundary[].grip", "mm"), INTO(LamBoundary, displacement), GIVEN(LamBoundary, given), .size = 2, FREE,
+     .example = "[1 mm, free]",
      .help = "A rigid grip: all points of the side move alike. A `free` component bears no total force."},
     {LIST("macro.boundary[].history"), .default_words = "the load parameter itself",
      .example = "[[0, 0], [1, 1], [2, 1]]",
@@ -82,14 +88,11 @@ PetscErrorCode LamSceneCheckSide(const LamDocument *document, const LamNode *on,
 
   PetscFunctionBeginUser;
   *side = -1;
-  if (strlen(on->text) >= LAM_NAME_LENGTH)
-    PetscCall(LamSceneFail(document, on, "is too long; names have less than %d letters", LAM_NAME_LENGTH));
   for (PetscInt k = 0; names && names[k]; k++) {
     if (!strcmp(names[k], on->text)) *side = k;
     snprintf(known + strlen(known), sizeof(known) - strlen(known), "%s%s", k ? ", " : "", names[k]);
   }
-  if (names && *side < 0)
-    PetscCall(LamSceneFail(document, on, "is none of the names known here; write one of %s", known));
+  LamSceneCheck(!names || *side >= 0, document, on, "is none of the names known here; write one of %s", known);
   PetscFunctionReturn(0);
 }
 
@@ -102,151 +105,97 @@ static PetscInt NormalComponent(const LamMacroSpec *spec, PetscInt side)
   return !strcmp(name, "bottom") || !strcmp(name, "top") ? 1 : -1;
 }
 
-/* ---- the kinds of conditions ---- */
-
-static PetscErrorCode ReadVector(const LamDocument *document, const LamNode *entry, const char path[], PetscReal scale,
-                                 PetscReal vector[2], PetscBool given[2])
-{
-  const LamNode *node;
-  LamValue value;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(entry, path, &node, &value));
-  for (PetscInt c = 0; c < 2; c++) {
-    if (given) given[c] = value.is_free[c] ? PETSC_FALSE : PETSC_TRUE;
-    PetscCall(LamSceneScale(document, node, value.number[c], scale, &vector[c]));
-  }
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ReadPlate(const LamDocument *document, const LamNode *entry, const LamScene *scene, PetscInt side,
-                                LamBoundary *boundary)
-{
-  const LamNode *node, *plate;
-  LamValue normal;
-
-  PetscFunctionBeginUser;
-  PetscCall(ReadVector(document, entry, "macro.boundary[].plate.displacement", scene->scales.macro_length,
-                       boundary->displacement, NULL));
-  PetscCall(LamSceneGet(entry, "macro.boundary[].plate", &plate, &normal));
-  PetscCall(LamSceneGet(entry, "macro.boundary[].plate.normal", &node, &normal));
-  if (!node) {
-    if (side >= 0 && NormalComponent(&scene->macro, side) < 0)
-      PetscCall(LamSceneFailMissing(document, plate, "normal",
-                                    "missing, and %s is curved; write from where the plate looks into the body, such "
-                                    "as normal: [0, -1]",
-                                    boundary->on));
-    PetscFunctionReturn(0);
-  }
-  const PetscReal length = PetscSqrtReal(PetscSqr(normal.number[0]) + PetscSqr(normal.number[1]));
-  if (!(length > 0) || PetscIsInfOrNanReal(length))
-    PetscCall(LamSceneFail(document, node, "is no direction; write two numbers that are not both 0, such as [0, -1]"));
-  for (PetscInt c = 0; c < 2; c++) boundary->normal[c] = normal.number[c] / length;
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ReadIndenter(const LamDocument *document, const LamNode *entry, const LamScene *scene,
-                                   LamBoundary *boundary)
-{
-  const PetscReal length = scene->scales.macro_length;
-  const LamNode *node;
-  LamValue radius;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(entry, "macro.boundary[].indenter.radius", &node, &radius));
-  PetscCall(LamSceneScale(document, node, radius.number[0], length, &boundary->radius));
-  PetscCall(ReadVector(document, entry, "macro.boundary[].indenter.at", length, boundary->at, NULL));
-  PetscCall(
-      ReadVector(document, entry, "macro.boundary[].indenter.displacement", length, boundary->displacement, NULL));
-  PetscCall(LamSceneGet(entry, "macro.boundary[].indenter.displacement", &node, &radius));
-  if (boundary->displacement[0] == 0 && boundary->displacement[1] == 0)
-    PetscCall(LamSceneFail(document, node,
-                           "is zero, so the indenter comes from nowhere; write how it moves, such as [0 mm, -1 mm]"));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ReadTraction(const LamDocument *document, const LamNode *entry, const LamScene *scene,
-                                   LamBoundary *boundary)
-{
-  const LamNode *node;
-  LamValue value;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(entry, "macro.boundary[].follower", &node, &value));
-  boundary->follower = value.number[0] != 0 ? PETSC_TRUE : PETSC_FALSE;
-  if (boundary->kind == LAM_BOUNDARY_TRACTION) {
-    PetscCall(ReadVector(document, entry, "macro.boundary[].traction", scene->scales.stress, boundary->traction, NULL));
-    PetscFunctionReturn(0);
-  }
-  boundary->follower = PETSC_TRUE;
-  PetscCall(LamSceneGet(entry, "macro.boundary[].pressure", &node, &value));
-  PetscCall(LamSceneScale(document, node, -value.number[0], scene->scales.stress, &boundary->traction[1]));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ReadSymmetry(const LamDocument *document, const LamNode *entry, const LamScene *scene,
-                                   PetscInt side, const LamBoundary *boundary)
-{
-  const LamNode *node;
-  LamValue value;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(entry, "macro.boundary[].symmetry", &node, &value));
-  if (value.number[0] == 0) PetscCall(LamSceneFail(document, node, "says nothing; write true, or leave the entry out"));
-  if (side >= 0 && NormalComponent(&scene->macro, side) < 0)
-    PetscCall(LamSceneFail(document, node, "%s is curved; only a straight side can be one of symmetry", boundary->on));
-  PetscFunctionReturn(0);
-}
-
 /* ---- one entry ---- */
 
 /* Exactly one key says what the entry is. */
 static PetscErrorCode ChooseKind(const LamDocument *document, const LamNode *entry, LamBoundary *boundary)
 {
-  const LamNode *chosen = NULL, *follower;
-  LamValue unused;
+  const LamNode *chosen = NULL, *follower = LamNodeFindPath(entry, "follower");
 
   PetscFunctionBeginUser;
   for (PetscInt kind = 0; kind < LAM_BOUNDARY_KIND_COUNT; kind++) {
     const LamNode *node = LamNodeFindPath(entry, LamBoundaryKindNames[kind]);
+
     if (!node) continue;
-    if (chosen)
-      PetscCall(LamSceneFailName(document, node, "stands beside %s; write an entry of its own for it, on the same side",
-                                 chosen->name));
+    LamSceneCheckName(!chosen, document, node, "stands beside %s; write an entry of its own for it, on the same side",
+                      chosen->name);
     chosen = node;
     boundary->kind = (LamBoundaryKind)kind;
   }
-  if (!chosen)
-    PetscCall(LamSceneFailMissing(document, entry, "displacement",
-                                  "missing; write one of displacement, symmetry, traction, pressure, plate, indenter, "
-                                  "grip, such as displacement: [0 mm, free]"));
-  PetscCall(LamSceneGet(entry, "macro.boundary[].follower", &follower, &unused));
-  if (follower && boundary->kind != LAM_BOUNDARY_TRACTION)
-    PetscCall(LamSceneFailName(document, follower, "belongs to traction; leave it out (a pressure always follows)"));
+  LamSceneRequire(chosen, document, entry, "displacement",
+                  "missing; write one of displacement, symmetry, traction, pressure, plate, indenter, grip, such as "
+                  "displacement: [0 mm, free]");
+  LamSceneCheckName(!follower || boundary->kind == LAM_BOUNDARY_TRACTION, document, follower,
+                    "belongs to traction; leave it out (a pressure always follows)");
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ReadHistory(const LamDocument *document, const LamNode *entry, LamBoundary *boundary)
+static PetscErrorCode CheckPlate(const LamDocument *document, const LamNode *plate, PetscBool curved,
+                                 LamBoundary *boundary)
 {
-  LamHistory *history = &boundary->history;
-  const LamNode *list;
-  LamValue unused;
+  const LamNode *node = LamNodeFindPath(plate, "normal");
+  PetscReal *normal = boundary->normal, length;
 
   PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(entry, "macro.boundary[].history", &list, &unused));
+  LamSceneRequire(node || !curved, document, plate, "normal",
+                  "missing, and %s is curved; write from where the plate looks into the body, such as normal: [0, -1]",
+                  boundary->on);
+  if (!node) PetscFunctionReturn(0);
+  length = PetscSqrtReal(PetscSqr(normal[0]) + PetscSqr(normal[1]));
+  LamSceneCheck(length > 0 && !PetscIsInfOrNanReal(length), document, node,
+                "is no direction; write two numbers that are not both 0, such as [0, -1]");
+  for (PetscInt c = 0; c < 2; c++) normal[c] /= length;
+  PetscFunctionReturn(0);
+}
+
+/* What the kind asks beyond the bounds of its keys; `curved`: the side is known and not straight. */
+static PetscErrorCode CheckKind(const LamDocument *document, const LamNode *entry, PetscBool curved,
+                                LamBoundary *boundary)
+{
+  const LamNode *chosen = LamNodeFindPath(entry, LamBoundaryKindNames[boundary->kind]);
+
+  PetscFunctionBeginUser;
+  switch (boundary->kind) {
+  case LAM_BOUNDARY_SYMMETRY:
+    LamSceneCheck(chosen->value.number[0] != 0, document, chosen, "says nothing; write true, or leave the entry out");
+    LamSceneCheck(!curved, document, chosen, "%s is curved; only a straight side can be one of symmetry", boundary->on);
+    break;
+  case LAM_BOUNDARY_PRESSURE:
+    boundary->follower = PETSC_TRUE;
+    boundary->traction[1] = -boundary->traction[1];
+    break;
+  case LAM_BOUNDARY_PLATE:
+    PetscCall(CheckPlate(document, chosen, curved, boundary));
+    break;
+  case LAM_BOUNDARY_INDENTER:
+    LamSceneCheck(boundary->displacement[0] != 0 || boundary->displacement[1] != 0, document,
+                  LamNodeFindPath(chosen, "displacement"),
+                  "is zero, so the indenter comes from nowhere; write how it moves, such as [0 mm, -1 mm]");
+    break;
+  default:
+    break;
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadHistory(const LamDocument *document, const LamNode *list, LamBoundary *boundary)
+{
+  LamHistory *history = &boundary->history;
+
+  PetscFunctionBeginUser;
   if (!list) PetscFunctionReturn(0);
-  if (boundary->kind == LAM_BOUNDARY_SYMMETRY)
-    PetscCall(LamSceneFailName(document, list, "a side of symmetry does not move; leave it out"));
-  if (list->count > LAM_HISTORY_POINTS)
-    PetscCall(
-        LamSceneFail(document, list, "has %d points; at most %d are allowed", (int)list->count, LAM_HISTORY_POINTS));
+  LamSceneCheckName(boundary->kind != LAM_BOUNDARY_SYMMETRY, document, list,
+                    "a side of symmetry does not move; leave it out");
+  LamSceneCheck(list->count <= LAM_HISTORY_POINTS, document, list, "has %d points; at most %d are allowed",
+                (int)list->count, LAM_HISTORY_POINTS);
   for (const LamNode *item = list->first; item; item = item->next) {
-    const PetscReal parameter = item->value.number[0];
-    if (history->count && parameter <= history->parameter[history->count - 1])
-      PetscCall(LamSceneFail(document, item, "comes after parameter %g; write the points with rising parameters",
-                             (double)history->parameter[history->count - 1]));
-    history->parameter[history->count] = parameter;
-    history->factor[history->count++] = item->value.number[1];
+    const PetscInt n = history->count++;
+
+    history->parameter[n] = item->value.number[0];
+    history->factor[n] = item->value.number[1];
+    LamSceneCheck(!n || history->parameter[n] > history->parameter[n - 1], document, item,
+                  "comes after parameter %g; write the points with rising parameters",
+                  (double)history->parameter[n - 1]);
   }
   PetscFunctionReturn(0);
 }
@@ -262,27 +211,29 @@ static void FindHeld(const LamMacroSpec *spec, PetscInt side, const LamBoundary 
 }
 
 /* Conditions on one side do not prescribe the same component, nor load or press on what is prescribed. */
-static PetscErrorCode CheckSameSide(const LamDocument *document, const LamScene *scene, PetscInt b,
+static PetscErrorCode CheckSameSide(const LamDocument *document, const LamMacroSpec *spec, PetscInt b,
                                     const Conditions *conditions)
 {
-  const LamBoundary *boundary = &scene->macro.boundary[b];
+  const LamNode *on = LamNodeFindPath(conditions->entry[b], "on");
+  const LamBoundary *boundary = &spec->boundary[b];
 
   PetscFunctionBeginUser;
   for (PetscInt a = 0; a < b; a++) {
-    const LamBoundary *other = &scene->macro.boundary[a];
+    const LamBoundary *other = &spec->boundary[a];
+
     if (strcmp(other->on, boundary->on)) continue;
     for (PetscInt c = 0; c < 2; c++) {
       const PetscBool one = conditions->held[a][c], two = conditions->held[b][c];
-      if (one && two)
-        PetscCall(LamSceneFail(document, LamNodeFindPath(conditions->entry[b], "on"),
-                               "its displacement along X%d is prescribed already, in line %d; leave it to one of them",
-                               (int)c + 1, conditions->entry[a]->line));
-      if ((one && !boundary->follower && boundary->traction[c] != 0) ||
-          (two && !other->follower && other->traction[c] != 0))
-        PetscCall(LamSceneFail(document, LamNodeFindPath(conditions->entry[b], "on"),
-                               "its displacement along X%d is prescribed, so the traction there (lines %d and %d) does "
-                               "nothing; leave one of them out",
-                               (int)c + 1, conditions->entry[a]->line, conditions->entry[b]->line));
+
+      LamSceneCheck(!one || !two, document, on,
+                    "its displacement along X%d is prescribed already, in line %d; leave it to one of them", (int)c + 1,
+                    conditions->entry[a]->line);
+      LamSceneCheck((!one || boundary->follower || boundary->traction[c] == 0) &&
+                        (!two || other->follower || other->traction[c] == 0),
+                    document, on,
+                    "its displacement along X%d is prescribed, so the traction there (lines %d and %d) does nothing; "
+                    "leave one of them out",
+                    (int)c + 1, conditions->entry[a]->line, conditions->entry[b]->line);
     }
   }
   PetscFunctionReturn(0);
@@ -293,47 +244,32 @@ static PetscErrorCode BuildBoundary(const LamDocument *document, const LamNode *
 {
   const PetscInt b = scene->macro.boundary_count++;
   LamBoundary *boundary = &scene->macro.boundary[b];
-  const PetscReal length = scene->scales.macro_length;
-  const LamNode *on, *name;
-  LamValue unused;
+  PetscInt *side = &conditions->side[b];
+  PetscBool curved;
 
   PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(entry, "macro.boundary[].on", &on, &unused));
-  PetscCall(LamSceneCheckSide(document, on, &scene->macro, &conditions->side[b]));
-  PetscCall(PetscStrncpy(boundary->on, on->text, sizeof(boundary->on)));
-  PetscCall(LamSceneGet(entry, "macro.boundary[].name", &name, &unused));
-  if (name && strlen(name->text) >= sizeof(boundary->name))
-    PetscCall(LamSceneFail(document, name, "is too long; names have less than %d letters", LAM_NAME_LENGTH));
-  if (name) PetscCall(PetscStrncpy(boundary->name, name->text, sizeof(boundary->name)));
-  PetscCall(ChooseKind(document, entry, boundary));
-  switch (boundary->kind) {
-  case LAM_BOUNDARY_SYMMETRY:
-    PetscCall(ReadSymmetry(document, entry, scene, conditions->side[b], boundary));
-    break;
-  case LAM_BOUNDARY_TRACTION:
-  case LAM_BOUNDARY_PRESSURE:
-    PetscCall(ReadTraction(document, entry, scene, boundary));
-    break;
-  case LAM_BOUNDARY_PLATE:
-    PetscCall(ReadPlate(document, entry, scene, conditions->side[b], boundary));
-    break;
-  case LAM_BOUNDARY_INDENTER:
-    PetscCall(ReadIndenter(document, entry, scene, boundary));
-    break;
-  default:
-    PetscCall(
-        ReadVector(document, entry,
-                   boundary->kind == LAM_BOUNDARY_GRIP ? "macro.boundary[].grip" : "macro.boundary[].displacement",
-                   length, boundary->displacement, boundary->given));
-  }
-  PetscCall(ReadHistory(document, entry, boundary));
   conditions->entry[b] = entry;
-  FindHeld(&scene->macro, conditions->side[b], boundary, conditions->held[b]);
-  PetscCall(CheckSameSide(document, scene, b, conditions));
+  PetscCall(LamSceneCheckSide(document, LamNodeFindPath(entry, "on"), &scene->macro, side));
+  PetscCall(ChooseKind(document, entry, boundary));
+  PetscCall(LamSceneFill(document, entry, &scene->scales, LamBoundary, boundary));
+  curved = (PetscBool)(*side >= 0 && NormalComponent(&scene->macro, *side) < 0);
+  PetscCall(CheckKind(document, entry, curved, boundary));
+  PetscCall(ReadHistory(document, LamNodeFindPath(entry, "history"), boundary));
+  FindHeld(&scene->macro, *side, boundary, conditions->held[b]);
+  PetscCall(CheckSameSide(document, &scene->macro, b, conditions));
   PetscFunctionReturn(0);
 }
 
 /* ---- boxes, whose sides are known before there is a mesh ---- */
+
+/* Whether two conditions that hold component c move a corner that they share alike. */
+static PetscBool MoveAlike(const LamBoundary *one, const LamBoundary *other, PetscInt c)
+{
+  if ((one->kind == LAM_BOUNDARY_GRIP && !one->given[c]) || (other->kind == LAM_BOUNDARY_GRIP && !other->given[c]))
+    return PETSC_FALSE;
+  return (PetscBool)(one->displacement[c] == other->displacement[c] &&
+                     (one->displacement[c] == 0 || LamHistoriesAgree(&one->history, &other->history)));
+}
 
 /* Sides that meet share a corner: both move it, so they agree. */
 static PetscErrorCode CheckCorners(const LamDocument *document, const LamMacroSpec *spec, const Conditions *conditions)
@@ -341,23 +277,15 @@ static PetscErrorCode CheckCorners(const LamDocument *document, const LamMacroSp
   PetscFunctionBeginUser;
   for (PetscInt a = 0; a < spec->boundary_count; a++) {
     for (PetscInt b = 0; b < spec->boundary_count; b++) {
-      const LamNode *node = LamNodeFindPath(conditions->entry[a], LamBoundaryKindNames[spec->boundary[a].kind]);
+      const LamBoundary *upright = &spec->boundary[a], *level = &spec->boundary[b];
+
       if (NormalComponent(spec, conditions->side[a]) != 0 || NormalComponent(spec, conditions->side[b]) != 1) continue;
-      for (PetscInt c = 0; c < 2; c++) {
-        const LamBoundary *upright = &spec->boundary[a], *level = &spec->boundary[b];
-        if (!conditions->held[a][c] || !conditions->held[b][c]) continue;
-        const PetscBool loose = (upright->kind == LAM_BOUNDARY_GRIP && !upright->given[c]) ||
-                                        (level->kind == LAM_BOUNDARY_GRIP && !level->given[c])
-                                    ? PETSC_TRUE
-                                    : PETSC_FALSE;
-        if (!loose && upright->displacement[c] == level->displacement[c] &&
-            (level->displacement[c] == 0 || LamHistoriesAgree(&upright->history, &level->history)))
-          continue;
-        PetscCall(LamSceneFail(document, node,
-                               "%s and %s (line %d) move their common corner differently along X%d; write equal "
-                               "displacements, or free in one of them",
-                               upright->on, level->on, conditions->entry[b]->line, (int)c + 1));
-      }
+      for (PetscInt c = 0; c < 2; c++)
+        LamSceneCheck(!conditions->held[a][c] || !conditions->held[b][c] || MoveAlike(upright, level, c), document,
+                      LamNodeFindPath(conditions->entry[a], LamBoundaryKindNames[upright->kind]),
+                      "%s and %s (line %d) move their common corner differently along X%d; write equal displacements, "
+                      "or free in one of them",
+                      upright->on, level->on, conditions->entry[b]->line, (int)c + 1);
     }
   }
   PetscFunctionReturn(0);
@@ -380,6 +308,7 @@ static PetscErrorCode CheckRigidMotions(const LamDocument *document, const LamNo
   PetscFunctionBeginUser;
   for (PetscInt b = 0; b < spec->boundary_count; b++) {
     const LamBoundary *boundary = &spec->boundary[b];
+
     for (PetscInt c = 0; c < 2; c++) {
       if (!conditions->held[b][c]) continue;
       if (boundary->kind == LAM_BOUNDARY_GRIP) held[2] = PETSC_TRUE;
@@ -390,23 +319,19 @@ static PetscErrorCode CheckRigidMotions(const LamDocument *document, const LamNo
   if (given[LAM_BOX_LEFT][0] || given[LAM_BOX_RIGHT][0] || given[LAM_BOX_BOTTOM][1] || given[LAM_BOX_TOP][1] ||
       (given[LAM_BOX_LEFT][1] && given[LAM_BOX_RIGHT][1]) || (given[LAM_BOX_BOTTOM][0] && given[LAM_BOX_TOP][0]))
     held[2] = PETSC_TRUE;
-  for (PetscInt i = 0; i < 3; i++) {
-    if (!held[i]) PetscCall(LamSceneFailName(document, list, "the body can still move %s; %s", names[i], remedies[i]));
-  }
+  for (PetscInt i = 0; i < 3; i++)
+    LamSceneCheckName(held[i], document, list, "the body can still move %s; %s", names[i], remedies[i]);
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamSceneBuildBoundaries(const LamDocument *document, LamScene *scene)
 {
+  const LamNode *list = LamNodeFindPath(document->root, "macro.boundary");
   Conditions conditions = {0};
-  const LamNode *list;
-  LamValue unused;
 
   PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(document->root, "macro.boundary", &list, &unused));
-  if (list->count > LAM_MAX_BOUNDARIES)
-    PetscCall(LamSceneFailName(document, list, "has %d entries; at most %d are allowed", (int)list->count,
-                               LAM_MAX_BOUNDARIES));
+  LamSceneCheckName(list->count <= LAM_MAX_BOUNDARIES, document, list, "has %d entries; at most %d are allowed",
+                    (int)list->count, LAM_MAX_BOUNDARIES);
   for (const LamNode *entry = list->first; entry; entry = entry->next)
     PetscCall(BuildBoundary(document, entry, scene, &conditions));
   if (scene->macro.source == LAM_MESH_BOX) { /* of other bodies the macroscale solver checks it */

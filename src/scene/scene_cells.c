@@ -1,5 +1,5 @@
 /*
-  The cells of a scene: how many, in a period or in a patch between grips, and what differs from cell to cell.
+  What differs from cell to cell, and what a patch of cells between grips allows.
 */
 #include <lamella/lattice.h>
 #include "scene_rows.h"
@@ -8,6 +8,14 @@
 #include <string.h>
 
 #define OWN "that of the scene's own cell"
+
+/* What a field varies. */
+enum { FIELD_WALL, FIELD_THICKNESS, FIELD_TURGOR, FIELD_COHESION, FIELD_COUNT };
+typedef struct {
+  PetscReal variation[FIELD_COUNT]; /* coefficients */
+  PetscReal correlation;
+  PetscInt seed;
+} Field;
 
 static const LamKey variation_keys[] = {
     {MAP("rve.variation"), .default_words = "all cells alike",
@@ -31,11 +39,12 @@ static const LamKey variation_keys[] = {
      .example = "55 MPa", .help = "Bulk modulus."},
     {NAME_OF("rve.variation.kinds[].wall.fibres", LamFibresNames, LAM_FIBRES_COUNT), .default_words = OWN,
      .example = "tension", .help = "Which fibres resist."},
-    {LENGTH("rve.variation.kinds[].wall_thickness", "um"), ABOVE(0), .default_words = OWN, .example = "8 um",
-     .help = "Thickness of its wall, less than the apothem."},
-    {REAL("rve.variation.kinds[].turgor"), FROM(0), TO(1000), .default_value = "1", .example = "0.5",
-     .help = "Its turgor over that of the load."},
-    {REAL("rve.variation.kinds[].cohesion"), FROM(0), TO(1000), .default_value = "1", .example = "0.8",
+    {LENGTH("rve.variation.kinds[].wall_thickness", "um"), INTO(LamCell, wall_thickness), ABOVE(0),
+     .default_words = OWN, .example = "8 um", .help = "Thickness of its wall, less than the apothem."},
+    {REAL("rve.variation.kinds[].turgor"), INTO(LamCell, turgor), FROM(0), TO(1000), .default_value = "1",
+     .example = "0.5", .help = "Its turgor over that of the load."},
+    {REAL("rve.variation.kinds[].cohesion"), INTO(LamCell, cohesion), FROM(0), TO(1000), .default_value = "1",
+     .example = "0.8",
      .help = "Its cohesion over that of the load; between two cells the smaller one holds. Only with law `contact`."},
     {LIST("rve.variation.list"), .example = "[0, 1, 1, 0]",
      .help = "The kind of each cell, in the order (0, 0), (0, 1), ..., (1, 0), ..."},
@@ -54,30 +63,22 @@ static const LamKey variation_keys[] = {
     {MAP("rve.variation.field"), .example = "{wall_thickness: 0.1, turgor: 0.3, seed: 7}",
      .help =
          "Every cell differs: independent lognormal factors with mean 1, given by their coefficients of variation."},
-    {REAL("rve.variation.field.wall"), FROM(0), TO(1), .default_value = "0", .example = "0.2",
-     .help = "Of all moduli of a cell's wall together."},
-    {REAL("rve.variation.field.wall_thickness"), FROM(0), TO(1), .default_value = "0", .example = "0.1",
-     .help = "Of its thickness."},
-    {REAL("rve.variation.field.turgor"), FROM(0), TO(1), .default_value = "0", .example = "0.3",
-     .help = "Of its turgor."},
-    {REAL("rve.variation.field.cohesion"), FROM(0), TO(1), .default_value = "0", .example = "0.3",
-     .help = "Of its cohesion; only with law `contact`."},
-    {REAL("rve.variation.field.correlation"), FROM(0), TO(20), .default_value = "0", .example = "2",
+    {REAL("rve.variation.field.wall"), INTO(Field, variation[FIELD_WALL]), FROM(0), TO(1), .default_value = "0",
+     .example = "0.2", .help = "Of all moduli of a cell's wall together."},
+    {REAL("rve.variation.field.wall_thickness"), INTO(Field, variation[FIELD_THICKNESS]), FROM(0), TO(1),
+     .default_value = "0", .example = "0.1", .help = "Of its thickness."},
+    {REAL("rve.variation.field.turgor"), INTO(Field, variation[FIELD_TURGOR]), FROM(0), TO(1), .default_value = "0",
+     .example = "0.3", .help = "Of its turgor."},
+    {REAL("rve.variation.field.cohesion"), INTO(Field, variation[FIELD_COHESION]), FROM(0), TO(1), .default_value = "0",
+     .example = "0.3", .help = "Of its cohesion; only with law `contact`."},
+    {REAL("rve.variation.field.correlation"), INTO(Field, correlation), FROM(0), TO(20), .default_value = "0",
+     .example = "2",
      .help = "Correlation length l in distances of neighbours: the logarithms of the factors of two cells r apart have "
              "about the correlation exp(-(r/l)^2). 0: cells independent of each other."},
-    {INTEGER("rve.variation.field.seed"), FROM(0), TO(999999999), .default_value = "1", .example = "7",
-     .help = "Another number gives other cells."},
+    {INTEGER("rve.variation.field.seed"), INTO(Field, seed), FROM(0), TO(999999999), .default_value = "1",
+     .example = "7", .help = "Another number gives other cells."},
 };
 LAM_KEY_TABLE(LamVariationKeys, variation_keys);
-
-/* What a field varies, and its keys. */
-#define FIELD_PROPERTIES(X)                                                                                            \
-  X(FIELD_WALL, "rve.variation.field.wall")                                                                            \
-  X(FIELD_THICKNESS, "rve.variation.field.wall_thickness")                                                             \
-  X(FIELD_TURGOR, "rve.variation.field.turgor")                                                                        \
-  X(FIELD_COHESION, "rve.variation.field.cohesion")
-enum { FIELD_PROPERTIES(LAM_ENUM_ENTRY) FIELD_COUNT };
-static const char *const field_paths[] = {FIELD_PROPERTIES(LAM_NAME_ENTRY)};
 
 typedef struct {
   const LamDocument *document;
@@ -92,71 +93,22 @@ static LamCell OwnCell(const LamMicrostructure *micro)
   return (LamCell){.wall_thickness = micro->wall_thickness, .wall = micro->wall, .turgor = 1.0, .cohesion = 1.0};
 }
 
-/* ---- the block of cells ---- */
-
-static PetscErrorCode BuildBlock(const LamDocument *document, LamMicrostructure *micro)
-{
-  const LamNode *patch, *cells_node;
-  LamValue unused, cells, columns, rows, sides;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(document->root, "rve.patch", &patch, &unused));
-  PetscCall(LamSceneGet(document->root, "rve.cells", &cells_node, &cells));
-  if (!patch) {
-    for (PetscInt i = 0; i < 2; i++) micro->cells[i] = (PetscInt)cells.number[i];
-    PetscFunctionReturn(0);
-  }
-  if (cells_node) {
-    PetscCall(LamSceneFailName(document, cells_node,
-                               "given together with patch in line %d; a block of cells is periodic or between grips",
-                               patch->name_line));
-  }
-  PetscCall(LamSceneGet(document->root, "rve.patch.columns", NULL, &columns));
-  PetscCall(LamSceneGet(document->root, "rve.patch.rows", NULL, &rows));
-  PetscCall(LamSceneGet(document->root, "rve.patch.sides", NULL, &sides));
-  micro->is_patch = PETSC_TRUE;
-  micro->sides = (LamPatchSides)sides.number[0];
-  micro->cells[0] = (PetscInt)columns.number[0];
-  micro->cells[1] = (PetscInt)rows.number[0];
-  PetscFunctionReturn(0);
-}
-
 /* ---- kinds of cells ---- */
-
-static PetscErrorCode FailBonded(const LamDocument *document, const LamNode *node)
-{
-  PetscFunctionBeginUser;
-  PetscCall(LamSceneFail(document, node, "contradicts law: bonded, whose cells never part; leave it out"));
-  PetscFunctionReturn(0);
-}
 
 static PetscErrorCode ReadKind(const LamDocument *document, const LamNode *kind, const LamScene *scene, LamCell *cell)
 {
+  const LamNode *wall = LamNodeFindPath(kind, "wall"), *cohesion = LamNodeFindPath(kind, "cohesion");
   const LamMicrostructure *micro = &scene->micro;
-  const LamNode *thickness_node, *wall_node, *cohesion_node;
-  LamValue thickness, turgor, cohesion, unused;
 
   PetscFunctionBeginUser;
   *cell = OwnCell(micro);
-  PetscCall(LamSceneGet(kind, "rve.variation.kinds[].wall_thickness", &thickness_node, &thickness));
-  PetscCall(LamSceneGet(kind, "rve.variation.kinds[].wall", &wall_node, &unused));
-  PetscCall(LamSceneGet(kind, "rve.variation.kinds[].turgor", NULL, &turgor));
-  PetscCall(LamSceneGet(kind, "rve.variation.kinds[].cohesion", &cohesion_node, &cohesion));
-  if (thickness_node) {
-    if (thickness.number[0] >= scene->scales.length) {
-      PetscCall(
-          LamSceneFail(document, thickness_node, "the wall fills the cell; write a thickness less than the apothem"));
-    }
-    PetscCall(
-        LamSceneScale(document, thickness_node, thickness.number[0], scene->scales.length, &cell->wall_thickness));
-  }
-  if (wall_node) {
+  PetscCall(LamSceneFill(document, kind, &scene->scales, LamCell, cell));
+  LamSceneCheck(cell->wall_thickness < 1.0, document, LamNodeFindPath(kind, "wall_thickness"),
+                "the wall fills the cell; write a thickness less than the apothem");
+  if (wall)
     PetscCall(LamSceneReadWall(document, kind, "rve.variation.kinds[].wall", scene->scales.stress, &micro->wall,
                                &cell->wall));
-  }
-  if (cohesion_node && micro->interface == LAM_INTERFACE_BONDED) PetscCall(FailBonded(document, cohesion_node));
-  cell->turgor = turgor.number[0];
-  cell->cohesion = cohesion.number[0];
+  LamSceneCheck(!cohesion || micro->interface != LAM_INTERFACE_BONDED, document, cohesion, LAM_BONDED_PARTS);
   PetscFunctionReturn(0);
 }
 
@@ -164,10 +116,9 @@ static PetscErrorCode KindNumber(const Variation *v, const LamNode *node, PetscI
 {
   PetscFunctionBeginUser;
   *kind = 0;
-  if (node->value.number[0] > (PetscReal)v->kind_count) {
-    PetscCall(LamSceneFail(v->document, node, "kinds has only %d; write a number from 0, the scene's own cell, to %d",
-                           (int)v->kind_count, (int)v->kind_count));
-  }
+  LamSceneCheck(node->value.number[0] <= (PetscReal)v->kind_count, v->document, node,
+                "kinds has only %d; write a number from 0, the scene's own cell, to %d", (int)v->kind_count,
+                (int)v->kind_count);
   *kind = (PetscInt)node->value.number[0];
   PetscFunctionReturn(0);
 }
@@ -177,13 +128,10 @@ static PetscErrorCode AssignList(Variation *v, const LamNode *list, const PetscI
   PetscInt cell = 0;
 
   PetscFunctionBeginUser;
-  if (list->count != cells[0] * cells[1]) {
-    PetscCall(LamSceneFail(v->document, list, "has %d entries; write one for each of the %d x %d cells",
-                           (int)list->count, (int)cells[0], (int)cells[1]));
-  }
-  for (const LamNode *item = list->first; item; item = item->next) {
-    PetscCall(KindNumber(v, item, &v->kind_of[cell++]));
-  }
+  LamSceneCheck(list->count == cells[0] * cells[1], v->document, list,
+                "has %d entries; write one for each of the %d x %d cells", (int)list->count, (int)cells[0],
+                (int)cells[1]);
+  for (const LamNode *item = list->first; item; item = item->next) PetscCall(KindNumber(v, item, &v->kind_of[cell++]));
   PetscFunctionReturn(0);
 }
 
@@ -195,10 +143,8 @@ static PetscErrorCode AssignPattern(Variation *v, const LamNode *pattern, const 
   for (const LamNode *row = pattern->first; row; row = row->next) {
     PetscInt j = 0;
 
-    if (row->count != columns) {
-      PetscCall(LamSceneFail(v->document, row, "has %d entries, the first one %d; write lists of the same length",
-                             (int)row->count, (int)columns));
-    }
+    LamSceneCheck(row->count == columns, v->document, row,
+                  "has %d entries, the first one %d; write lists of the same length", (int)row->count, (int)columns);
     for (const LamNode *item = row->first; item; item = item->next, j++) {
       PetscInt kind;
 
@@ -214,21 +160,18 @@ static PetscErrorCode AssignPattern(Variation *v, const LamNode *pattern, const 
 static PetscErrorCode AssignRandom(Variation *v, const LamNode *random, const PetscInt cells[2])
 {
   const PetscInt count = cells[0] * cells[1];
-  const LamNode *shares;
+  const LamNode *shares = LamNodeFindPath(random, "shares"), *node;
   PetscReal sum = 0.0;
   PetscInt cell = 0, kind = 1;
-  LamValue unused, seed;
+  LamValue seed;
 
   PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(v->document->root, "rve.variation.random.shares", &shares, &unused));
-  PetscCall(LamSceneGet(v->document->root, "rve.variation.random.seed", NULL, &seed));
-  if (shares->count != v->kind_count) {
-    PetscCall(LamSceneFail(v->document, shares, "has %d entries; write one for each of the %d kinds",
-                           (int)shares->count, (int)v->kind_count));
-  }
+  PetscCall(LamSceneGet(v->document->root, "rve.variation.random.seed", &node, &seed));
+  LamSceneCheck(shares->count == v->kind_count, v->document, shares,
+                "has %d entries; write one for each of the %d kinds", (int)shares->count, (int)v->kind_count);
   for (const LamNode *item = shares->first; item; item = item->next, kind++) {
     sum += item->value.number[0];
-    if (sum > 1.0 + 1e-9) PetscCall(LamSceneFail(v->document, shares, "adds up to more than 1; lower the shares"));
+    LamSceneCheck(sum <= 1.0 + 1e-9, v->document, shares, "adds up to more than 1; lower the shares");
     while (cell < PetscMin(count, (PetscInt)floor(sum * (PetscReal)count + 0.5))) v->kind_of[cell++] = kind;
   }
   LamRandomShuffle((PetscInt)seed.number[0], count, v->kind_of);
@@ -239,31 +182,24 @@ static PetscErrorCode AssignRandom(Variation *v, const LamNode *random, const Pe
 static PetscErrorCode AssignKinds(Variation *v, const PetscInt cells[2])
 {
   static const struct {
-    const char *path;
+    const char *name;
     PetscErrorCode (*assign)(Variation *, const LamNode *, const PetscInt[2]);
-  } ways[] = {{"rve.variation.list", AssignList},
-              {"rve.variation.pattern", AssignPattern},
-              {"rve.variation.random", AssignRandom}};
+  } methods[] = {{"list", AssignList}, {"pattern", AssignPattern}, {"random", AssignRandom}};
   const LamNode *found = NULL;
-  PetscInt way = 0;
+  PetscInt method = 0;
 
   PetscFunctionBeginUser;
-  for (PetscInt w = 0; w < (PetscInt)PETSC_STATIC_ARRAY_LENGTH(ways); w++) {
-    const LamNode *node = LamNodeFindPath(v->document->root, ways[w].path);
+  for (PetscInt m = 0; m < (PetscInt)PETSC_STATIC_ARRAY_LENGTH(methods); m++) {
+    const LamNode *node = LamNodeFindPath(v->block, methods[m].name);
 
-    if (node && found) {
-      PetscCall(
-          LamSceneFailName(v->document, node, "given together with %s; a variation has one of them", found->name));
-    }
     if (!node) continue;
+    LamSceneCheckName(!found, v->document, node, "given together with %s; a variation has one of them", found->name);
     found = node;
-    way = w;
+    method = m;
   }
-  if (!found) {
-    PetscCall(LamSceneFailMissing(v->document, v->block, "list",
-                                  "missing; write which cell is of which kind as a list, a pattern or random"));
-  }
-  PetscCall(ways[way].assign(v, found, cells));
+  LamSceneRequire(found, v->document, v->block, "list",
+                  "missing; write which cell is of which kind as a list, a pattern or random");
+  PetscCall(methods[method].assign(v, found, cells));
   PetscFunctionReturn(0);
 }
 
@@ -274,9 +210,8 @@ static PetscErrorCode ReadKinds(Variation *v, const LamNode *kinds, LamScene *sc
 
   PetscFunctionBeginUser;
   v->kinds[0] = OwnCell(micro);
-  for (const LamNode *kind = kinds->first; kind; kind = kind->next, k++) {
+  for (const LamNode *kind = kinds->first; kind; kind = kind->next, k++)
     PetscCall(ReadKind(v->document, kind, scene, &v->kinds[k]));
-  }
   PetscCall(AssignKinds(v, micro->cells));
   for (PetscInt c = 0; c < micro->cells[0] * micro->cells[1]; c++) micro->cell[c] = v->kinds[v->kind_of[c]];
   PetscFunctionReturn(0);
@@ -317,41 +252,31 @@ static PetscErrorCode ApplyFactors(const LamDocument *document, const LamNode *f
     cell->wall_thickness *= factors[FIELD_THICKNESS * count + c];
     cell->turgor = factors[FIELD_TURGOR * count + c];
     cell->cohesion = factors[FIELD_COHESION * count + c];
-    if (cell->wall_thickness >= 1.0) {
-      PetscCall(LamSceneFail(document, field,
-                             "the wall of cell (%d, %d) becomes %.3g apothems thick and fills it; write a smaller "
-                             "wall_thickness here, thinner walls, or another seed",
-                             (int)(c / micro->cells[1]), (int)(c % micro->cells[1]), (double)cell->wall_thickness));
-    }
+    LamSceneCheck(cell->wall_thickness < 1.0, document, field,
+                  "the wall of cell (%d, %d) becomes %.3g apothems thick and fills it; write a smaller wall_thickness "
+                  "here, thinner walls, or another seed",
+                  (int)(c / micro->cells[1]), (int)(c % micro->cells[1]), (double)cell->wall_thickness);
   }
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BuildField(const LamDocument *document, const LamNode *field, LamMicrostructure *micro)
+static PetscErrorCode BuildField(const LamDocument *document, const LamNode *node, LamScene *scene)
 {
-  PetscReal variation[FIELD_COUNT], *factors;
-  PetscBool given = PETSC_FALSE;
-  LamValue value, correlation, seed;
-  const LamNode *node;
+  const LamNode *wall = LamNodeFindPath(node, "wall"), *thickness = LamNodeFindPath(node, "wall_thickness");
+  const LamNode *turgor = LamNodeFindPath(node, "turgor"), *cohesion = LamNodeFindPath(node, "cohesion");
+  LamMicrostructure *micro = &scene->micro;
+  PetscReal *factors;
   PetscErrorCode ierr;
+  Field field;
 
   PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < FIELD_COUNT; p++) {
-    PetscCall(LamSceneGet(document->root, field_paths[p], &node, &value));
-    variation[p] = value.number[0];
-    if (node) given = PETSC_TRUE;
-    if (p == FIELD_COHESION && node && micro->interface == LAM_INTERFACE_BONDED) PetscCall(FailBonded(document, node));
-  }
-  if (!given) {
-    PetscCall(LamSceneFailName(document, field,
-                               "varies nothing; write a coefficient of variation, such as wall: 0.2, or leave out "
-                               "variation"));
-  }
-  PetscCall(LamSceneGet(document->root, "rve.variation.field.correlation", NULL, &correlation));
-  PetscCall(LamSceneGet(document->root, "rve.variation.field.seed", NULL, &seed));
+  PetscCall(LamSceneFill(document, document->root, &scene->scales, Field, &field));
+  LamSceneCheck(!cohesion || micro->interface != LAM_INTERFACE_BONDED, document, cohesion, LAM_BONDED_PARTS);
+  LamSceneCheckName(wall || thickness || turgor || cohesion, document, node,
+                    "varies nothing; write a coefficient of variation, such as wall: 0.2, or leave out variation");
   PetscCall(PetscMalloc1(FIELD_COUNT * micro->cells[0] * micro->cells[1], &factors));
-  ierr = LamRandomFactors(micro, (PetscInt)seed.number[0], correlation.number[0], FIELD_COUNT, variation, factors);
-  if (!ierr) ierr = ApplyFactors(document, field, factors, micro);
+  ierr = LamRandomFactors(micro, field.seed, field.correlation, FIELD_COUNT, field.variation, factors);
+  if (!ierr) ierr = ApplyFactors(document, node, factors, micro);
   PetscCall(PetscFree(factors));
   PetscCall(ierr);
   PetscFunctionReturn(0);
@@ -391,28 +316,21 @@ static PetscErrorCode DropVariation(LamMicrostructure *micro)
 
 PetscErrorCode LamSceneBuildCells(const LamDocument *document, LamScene *scene)
 {
+  const LamNode *block = LamNodeFindPath(document->root, "rve.variation");
+  const LamNode *kinds = LamNodeFindPath(block, "kinds"), *field = LamNodeFindPath(block, "field");
   LamMicrostructure *micro = &scene->micro;
-  const LamNode *block, *kinds = LamNodeFindPath(document->root, "rve.variation.kinds");
-  const LamNode *field = LamNodeFindPath(document->root, "rve.variation.field");
 
   PetscFunctionBeginUser;
-  PetscCall(BuildBlock(document, micro));
-  block = LamNodeFindPath(document->root, "rve.variation");
   if (!block) PetscFunctionReturn(0);
-  if (field && block->count > 1) {
-    PetscCall(LamSceneFailName(document, field,
-                               "given together with %s; a variation has a field alone, or kinds and one of list, "
-                               "pattern and random",
-                               field == block->first ? block->last->name : block->first->name));
-  }
-  if (!field && !kinds) {
-    PetscCall(LamSceneFailMissing(document, block, "kinds",
-                                  "missing; write the kinds of cells, such as [{turgor: 0.5}], or a field, such as "
-                                  "{turgor: 0.3}"));
-  }
+  LamSceneCheckName(!field || block->count == 1, document, field,
+                    "given together with %s; a variation has a field alone, or kinds and one of list, pattern and "
+                    "random",
+                    field == block->first ? block->last->name : block->first->name);
+  LamSceneRequire(field || kinds, document, block, "kinds",
+                  "missing; write the kinds of cells, such as [{turgor: 0.5}], or a field, such as {turgor: 0.3}");
   PetscCall(PetscCalloc1(micro->cells[0] * micro->cells[1], &micro->cell));
   if (field)
-    PetscCall(BuildField(document, field, micro));
+    PetscCall(BuildField(document, field, scene));
   else
     PetscCall(BuildKinds(document, block, kinds, scene));
   PetscCall(DropVariation(micro));
@@ -433,11 +351,8 @@ static PetscErrorCode CheckHold(const LamDocument *document, const LamNode *node
   PetscFunctionBeginUser;
   if (cohesion > 0.0) PetscFunctionReturn(0);
   if (!node) node = LamNodeFindPath(document->root, "rve.interface.cohesion");
-  if (node)
-    PetscCall(LamSceneFail(document, node, "%s", remedy));
-  else
-    PetscCall(
-        LamSceneFailMissing(document, LamNodeFindPath(document->root, "rve.interface"), "cohesion", "%s", remedy));
+  LamSceneCheck(!node, document, node, "%s", remedy);
+  PetscCall(LamSceneFailMissing(document, LamNodeFindPath(document->root, "rve.interface"), "cohesion", "%s", remedy));
   PetscFunctionReturn(0);
 }
 
@@ -462,12 +377,11 @@ static PetscErrorCode CheckSideCells(const LamDocument *document, const LamMicro
     for (PetscInt side = 0; side < 2; side++) {
       const PetscInt column = side ? columns - 1 : 0;
 
-      if (IsHeldByNeighbour(micro, column * rows + row)) continue;
-      PetscCall(
-          LamSceneFailName(document, LamNodeFindPath(document->root, "rve.variation"),
-                           "cell (%d, %d) at a free side has no cohesion with any neighbour, and they push it out; "
-                           "give it some, or write sides: affine",
-                           (int)column, (int)row));
+      LamSceneCheckName(IsHeldByNeighbour(micro, column * rows + row), document,
+                        LamNodeFindPath(document->root, "rve.variation"),
+                        "cell (%d, %d) at a free side has no cohesion with any neighbour, and they push it out; give "
+                        "it some, or write sides: affine",
+                        (int)column, (int)row);
     }
   PetscFunctionReturn(0);
 }
@@ -490,11 +404,10 @@ PetscErrorCode LamSceneCheckPatch(const LamDocument *document, const LamScene *s
   for (PetscInt i = 0; i < 2; i++) {
     const LamNode *node = LamNodeFindPath(document->root, others[i]);
 
-    if (!node) continue;
-    PetscCall(LamSceneFailName(document, node,
-                               "a patch (line %d) is a body between grips, no material point, and is solved by "
-                               "lamella rve and map; leave %s out, or write rve.cells instead of the patch",
-                               patch->name_line, others[i]));
+    LamSceneCheckName(!node, document, node,
+                      "a patch (line %d) is a body between grips, no material point, and is solved by lamella rve and "
+                      "map; leave %s out, or write rve.cells instead of the patch",
+                      patch->name_line, others[i]);
   }
   if (!LamSceneNeedsCohesion(micro)) PetscFunctionReturn(0);
   if (!loads) PetscCall(CheckHold(document, NULL, scene->cohesion));

@@ -203,6 +203,7 @@ static PetscErrorCode ReadSingle(const LamDocument *document, const LamNode *nod
     PetscCall(ReadBool(document, node, key, &number));
     break;
   case LAM_KEY_TEXT:
+  case LAM_KEY_PATH:
     break;
   default:
     PetscCall(ReadPlainNumber(document, node, key, &number));
@@ -259,8 +260,6 @@ static PetscErrorCode ReadTensor(const LamDocument *document, LamNode *node, con
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ReadNode(const LamDocument *document, LamNode *node, const LamKey *key);
-
 static PetscErrorCode ReadList(const LamDocument *document, LamNode *node, const LamKey *key)
 {
   char path[PATH_LENGTH];
@@ -272,7 +271,7 @@ static PetscErrorCode ReadList(const LamDocument *document, LamNode *node, const
   snprintf(path, sizeof(path), "%s[]", key->path);
   item_key = LamKeyFind(path);
   PetscCheck(item_key, PETSC_COMM_SELF, PETSC_ERR_PLIB, "the table of scene keys lacks %s", path);
-  for (LamNode *item = node->first; item; item = item->next) PetscCall(ReadNode(document, item, item_key));
+  for (LamNode *item = node->first; item; item = item->next) PetscCall(LamSceneReadNode(document, item, item_key));
   PetscFunctionReturn(0);
 }
 
@@ -291,7 +290,7 @@ static PetscErrorCode ReadMap(const LamDocument *document, LamNode *node, const 
     if (!entry_key || !LamKeyIsChild(entry_key, key))
       PetscCall(FailUnknown(document, entry, key));
     else
-      PetscCall(ReadNode(document, entry, entry_key));
+      PetscCall(LamSceneReadNode(document, entry, entry_key));
   }
   for (PetscInt i = 0; (child = LamKeyAt(i)); i++) {
     const char *name = LamKeyName(child);
@@ -303,7 +302,7 @@ static PetscErrorCode ReadMap(const LamDocument *document, LamNode *node, const 
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ReadNode(const LamDocument *document, LamNode *node, const LamKey *key)
+PetscErrorCode LamSceneReadNode(const LamDocument *document, LamNode *node, const LamKey *key)
 {
   PetscFunctionBeginUser;
   node->key = key;
@@ -335,51 +334,6 @@ PetscErrorCode LamSceneCheckKeys(LamDocument *document)
   if (!document->root || document->root->is_null) {
     PetscCall(LamSceneFail(document, &start, "the file holds no scene; a scene starts with version: 1"));
   }
-  PetscCall(ReadNode(document, document->root, LamKeyFind("")));
-  PetscFunctionReturn(0);
-}
-
-/* Reads a default from the table as if it stood in a file. */
-static PetscErrorCode ReadDefault(const LamKey *key, LamValue *value)
-{
-  LamDocument document;
-  PetscErrorCode ierr;
-
-  PetscFunctionBeginUser;
-  ierr = LamDocumentParse(key->path, key->default_value, &document);
-  if (!ierr) ierr = ReadNode(&document, document.root, key);
-  if (!ierr) *value = document.root->value;
-  PetscCall(LamDocumentDestroy(&document));
-  PetscCall(ierr);
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamSceneGet(const LamNode *base, const char path[], const LamNode **node, LamValue *value)
-{
-  const LamKey *key = LamKeyFind(path);
-  const size_t skip = strlen(base->key->path);
-  const LamNode *found;
-
-  PetscFunctionBeginUser;
-  PetscCheck(key, PETSC_COMM_SELF, PETSC_ERR_PLIB, "the table of scene keys lacks %s", path);
-  found = LamNodeFindPath(base, path + skip + (skip ? 1 : 0));
-  *value = (LamValue){0};
-  if (node) *node = found;
-  if (found)
-    *value = found->value;
-  else if (key->default_value)
-    PetscCall(ReadDefault(key, value));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamSceneResolvePath(const LamDocument *document, const LamNode *node, char path[PETSC_MAX_PATH_LEN])
-{
-  const char *slash = strrchr(document->name, '/');
-  const int folder = node->text[0] == '/' || !slash ? 0 : (int)(slash - document->name) + 1;
-
-  PetscFunctionBeginUser;
-  if (folder + strlen(node->text) >= PETSC_MAX_PATH_LEN)
-    PetscCall(LamSceneFail(document, node, "the path is too long"));
-  snprintf(path, PETSC_MAX_PATH_LEN, "%.*s%s", folder, document->name, node->text);
+  PetscCall(LamSceneReadNode(document, document->root, LamKeyFind("")));
   PetscFunctionReturn(0);
 }

@@ -23,20 +23,14 @@ static PetscErrorCode CheckComponent(const LamDocument *document, const LamNode 
   const PetscBool shear33 = (PetscBool)(i == 2 || i == 5 || i == 6 || i == 7);
 
   PetscFunctionBeginUser;
-  if (shear33 && (!F_given || P_given)) {
-    PetscCall(
-        LamSceneFail(document, Item(F_given ? P_node : F_node, i),
-                     "this version of Lamella does not have out-of-plane shear yet; write 0 for F%s and x for P%s",
-                     names[i], names[i]));
-  }
-  if (F_given && P_given) {
-    PetscCall(LamSceneFail(document, Item(P_node, i), "F%s is given, too; write x here, or free there", names[i]));
-  }
-  if (!F_given && !P_given) {
-    PetscCall(LamSceneFail(document, Item(F_node, i), "P%s is not given%s; write it into P, such as P: %s", names[i],
-                           P_node ? " either" : "",
-                           i == 8 ? "[[x, x, x], [x, x, x], [x, x, 0 MPa]]" : "[[0 MPa, x], [x, 0 MPa]]"));
-  }
+  LamSceneCheck(!shear33 || (F_given && !P_given), document, Item(F_given ? P_node : F_node, i),
+                "this version of Lamella does not have out-of-plane shear yet; write 0 for F%s and x for P%s", names[i],
+                names[i]);
+  LamSceneCheck(!F_given || !P_given, document, Item(P_node, i), "F%s is given, too; write x here, or free there",
+                names[i]);
+  LamSceneCheck(F_given || P_given, document, Item(F_node, i), "P%s is not given%s; write it into P, such as P: %s",
+                names[i], P_node ? " either" : "",
+                i == 8 ? "[[x, x, x], [x, x, x], [x, x, 0 MPa]]" : "[[0 MPa, x], [x, 0 MPa]]");
   PetscFunctionReturn(0);
 }
 
@@ -51,10 +45,8 @@ PetscErrorCode LamSceneReadControl(const LamDocument *document, const LamNode *F
     if (control->given[i])
       PetscCall(LamSceneScale(document, Item(P_node, i), P_node->value.number[i], scale, &control->P[i]));
   }
-  if (control->given[1] && control->given[3]) {
-    PetscCall(LamSceneFail(document, Item(F_node, 3),
-                           "F12 is free, too: the tissue can rotate; write a number for one of them, such as 0"));
-  }
+  LamSceneCheck(!control->given[1] || !control->given[3], document, Item(F_node, 3),
+                "F12 is free, too: the tissue can rotate; write a number for one of them, such as 0");
   PetscFunctionReturn(0);
 }
 

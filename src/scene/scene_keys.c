@@ -11,7 +11,7 @@ static const LamKey first_keys[] = {
 static LAM_KEY_TABLE(first, first_keys);
 
 static const LamKey last_keys[] = {
-    {REAL("accuracy"), ABOVE(0), TO(0.5), .default_value = "0.01", .example = "0.01",
+    {REAL("accuracy"), INTO(LamScene, accuracy), ABOVE(0), TO(0.5), .default_value = "0.01", .example = "0.01",
      .help = "Wanted relative error of the effective stress; what the scene leaves open follows from it."},
 };
 static LAM_KEY_TABLE(last, last_keys);
@@ -120,7 +120,7 @@ static void SingleText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH])
     what = "a whole number";
   } else if (key->type == LAM_KEY_BOOL) {
     what = "true or false";
-  } else if (key->type == LAM_KEY_TEXT) {
+  } else if (key->type == LAM_KEY_TEXT || key->type == LAM_KEY_PATH) {
     what = "a text";
   }
   snprintf(text, LAM_KEY_TEXT_LENGTH, "%s%s%.200s%s%s", what, bounds[0] ? ", " : "", bounds,

@@ -36,6 +36,7 @@ typedef enum {
   LAM_KEY_NAME, /* one of a few names */
   LAM_KEY_BOOL,
   LAM_KEY_TEXT,           /* the node's text is the value */
+  LAM_KEY_PATH,           /* likewise, of a file; relative to the scene's folder */
   LAM_KEY_TENSOR,         /* 2x2 or 3x3 plain numbers; kept as 3x3 */
   LAM_KEY_QUANTITY_TENSOR /* likewise, each with a unit; 2x2: the others are left open */
 } LamKeyType;
@@ -54,6 +55,9 @@ typedef struct LamKey_s {
   LamBound lower, upper; /* of each component */
   const char *const *names;
   PetscInt name_count;
+  const char *record;        /* type of the struct that the value goes to, ... */
+  size_t offset, room;       /* ... its place there; NULL: the block's own code reads the node */
+  size_t given;              /* PetscBools there, PETSC_FALSE for components that are left free; 0: none */
   PetscBool required;        /* wherever the map it belongs to is given */
   const char *free_word;     /* leaves a component open; NULL: none may be */
   const char *default_value; /* as one would write it; NULL: none */
@@ -84,13 +88,37 @@ void LamKeyBoundsText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH]);
 /* What to write: "a stress with its unit larger than 0 MPa, such as 0.1 MPa"; of one component where single is set. */
 void LamKeyExpectation(const LamKey *key, PetscBool single, char text[LAM_KEY_TEXT_LENGTH]);
 
-/* Checks the whole document against the table and sets every node's key and value. */
+/* Checks the whole document against the tables and sets every node's key and value. */
 PetscErrorCode LamSceneCheckKeys(LamDocument *document);
+/* The same of one node and all that it holds. */
+PetscErrorCode LamSceneReadNode(const LamDocument *document, LamNode *node, const LamKey *key);
 
 /*
-  The value of a key: where it is given, *node is its place in the file; else *node is NULL and the value the default
-  (count 0 where there is none). `path` as in the table; `base` is the root, or the list's item that the path is in.
+  Stores the values of all keys of a struct's type, nondimensional, in *target. `base` is the node that the keys are
+  read from: the root, or an item of a list. Where the file does not give a key its default is stored; without default
+  the member stays as it is.
 */
+#define LamSceneFill(document, base, scales, type, target)                                                             \
+  LamSceneFillRecord(document, base, scales, #type, 1 ? (target) : (type *)NULL)
+PetscErrorCode LamSceneFillRecord(const LamDocument *document, const LamNode *base, const LamScales *scales,
+                                  const char record[], void *target);
+
+/* PetscCheck for scenes: LamSceneFail, LamSceneFailName or LamSceneFailMissing unless the condition holds. */
+#define LamSceneCheck(condition, document, node, ...)                                                                  \
+  do {                                                                                                                 \
+    if (!(condition)) PetscCall(LamSceneFail(document, node, __VA_ARGS__));                                            \
+  } while (0)
+#define LamSceneCheckName(condition, document, node, ...)                                                              \
+  do {                                                                                                                 \
+    if (!(condition)) PetscCall(LamSceneFailName(document, node, __VA_ARGS__));                                        \
+  } while (0)
+#define LamSceneRequire(condition, document, node, key, ...)                                                           \
+  do {                                                                                                                 \
+    if (!(condition)) PetscCall(LamSceneFailMissing(document, node, key, __VA_ARGS__));                                \
+  } while (0)
+#define LAM_BONDED_PARTS "contradicts law: bonded, whose cells never part; leave it out"
+
+/* The value of a key: where it is given, *node is its place; else *node is NULL and the value the default. */
 PetscErrorCode LamSceneGet(const LamNode *base, const char path[], const LamNode **node, LamValue *value);
 
 /* The parts of a scene, in this order. */
@@ -101,10 +129,9 @@ PetscErrorCode LamSceneBuildSample(const LamDocument *document, LamScene *scene)
 PetscErrorCode LamSceneBuildMacro(const LamDocument *document, LamScene *scene);
 PetscErrorCode LamSceneBuildResponse(const LamDocument *document, LamScene *scene);
 PetscErrorCode LamSceneBuildRegions(const LamDocument *document, LamScene *scene);
-/* scene_boundary.c, scene_program.c: parts of the block `macro`. */
+/* scene_boundary.c, part of the block `macro`. */
 PetscErrorCode LamSceneBuildBoundaries(const LamDocument *document, LamScene *scene);
-PetscErrorCode LamSceneBuildProgram(const LamDocument *document, LamScene *scene);
-/* scene_boundary.c: refuses a name that is no side of a box or disc. `side` is its number, -1 of a Gmsh file. */
+/* Refuses a name that is no side of a box or disc. `side` is its number, -1 of a Gmsh file. */
 PetscErrorCode LamSceneCheckSide(const LamDocument *document, const LamNode *on, const LamMacroSpec *spec,
                                  PetscInt *side);
 PetscErrorCode LamSceneBuildMap(const LamDocument *document, LamScene *scene);
@@ -112,7 +139,7 @@ PetscErrorCode LamSceneBuildProcess(const LamDocument *document, LamScene *scene
 PetscErrorCode LamSceneDestroyProcess(LamScene *scene);
 PetscErrorCode LamSceneDestroyRegions(LamScene *scene);
 
-/* scene_cells.c, part of the RVE: how many cells, and what differs from cell to cell. */
+/* scene_cells.c, part of the RVE: what differs from cell to cell. */
 PetscErrorCode LamSceneBuildCells(const LamDocument *document, LamScene *scene);
 /* Refuses a clearance, which is at the node, that leaves a cell no lumen. */
 PetscErrorCode LamSceneCheckClearance(const LamDocument *document, const LamNode *node, const LamScales *scales,

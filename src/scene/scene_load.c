@@ -22,15 +22,21 @@ static const LamKey load_keys[] = {
          "Stress at the end of the ramp, as `P`; it goes straight from the one prescribed before, from 0 where none "
          "was."},
     {INTEGER("load[].ramp.steps"), REQUIRED, FROM(1), TO(10000), .example = "10", .help = "Equal steps."},
-    {STRESS("load[].turgor"), .default_words = "`rve.turgor.pressure`", .example = "0.05 MPa",
+    {STRESS("load[].turgor"), INTO(LamLoad, turgor), .default_words = "`rve.turgor.pressure`", .example = "0.05 MPa",
      .help = "Turgor of this entry's states."},
-    {STRESS("load[].cohesion"), FROM(0), .default_words = "`rve.interface.cohesion`", .example = "0.001 MPa",
-     .help = "Cohesion of this entry's states; only with law `contact`."},
+    {STRESS("load[].cohesion"), INTO(LamLoad, cohesion), FROM(0), .default_words = "`rve.interface.cohesion`",
+     .example = "0.001 MPa", .help = "Cohesion of this entry's states; only with law `contact`."},
 };
 LAM_KEY_TABLE(LamLoadKeys, load_keys);
 
 /* More states than anyone waits for; keeps a slip in `steps` from filling the memory. */
 enum { MAX_STATES = 1000000 };
+
+/* What an entry prescribes: F and P, or those at the end of its ramp. */
+typedef struct {
+  const LamNode *F, *P;
+  PetscInt states;
+} Target;
 
 static PetscReal Determinant2D(const PetscReal F[9])
 {
@@ -50,43 +56,31 @@ PetscErrorCode LamSceneCheckF(const LamDocument *document, const LamNode *node)
   PetscBool complete = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  if (F[2] != 0.0 || F[5] != 0.0 || F[6] != 0.0 || F[7] != 0.0) {
-    PetscCall(LamSceneFail(document, node,
-                           "this version of Lamella does not have out-of-plane shear yet; write 0 for "
-                           "F13, F23, F31 and F32"));
-  }
-  if (F[8] <= 0.0 && !is_free[8]) {
-    PetscCall(LamSceneFail(document, node, "F33 = %g; it must be positive", (double)F[8]));
-  }
+  LamSceneCheck(F[2] == 0.0 && F[5] == 0.0 && F[6] == 0.0 && F[7] == 0.0, document, node,
+                "this version of Lamella does not have out-of-plane shear yet; write 0 for F13, F23, F31 and F32");
+  LamSceneCheck(F[8] > 0.0 || is_free[8], document, node, "F33 = %g; it must be positive", (double)F[8]);
   for (PetscInt i = 0; i < 9; i++) complete = (PetscBool)(complete && !(IsInPlane(i) && is_free[i]));
-  if (complete && Determinant2D(F) <= 0.0) {
-    PetscCall(LamSceneFail(document, node, "F11 F22 - F12 F21 = %g; a deformation gradient has a positive determinant",
-                           (double)Determinant2D(F)));
-  }
+  LamSceneCheck(!complete || Determinant2D(F) > 0.0, document, node,
+                "F11 F22 - F12 F21 = %g; a deformation gradient has a positive determinant", (double)Determinant2D(F));
   PetscFunctionReturn(0);
 }
 
-/* Checks an entry and says how many states it holds. */
-static PetscErrorCode CheckEntry(const LamDocument *document, const LamNode *entry, PetscInt *states)
+static PetscErrorCode ReadTarget(const LamDocument *document, const LamNode *entry, Target *target)
 {
-  const LamNode *F_node, *P_node, *ramp_node;
-  LamValue F, unused, steps;
+  const LamNode *F = LamNodeFindPath(entry, "F"), *P = LamNodeFindPath(entry, "P");
+  const LamNode *ramp = LamNodeFindPath(entry, "ramp");
 
   PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(entry, "load[].F", &F_node, &F));
-  PetscCall(LamSceneGet(entry, "load[].P", &P_node, &unused));
-  PetscCall(LamSceneGet(entry, "load[].ramp", &ramp_node, &unused));
-  if (F_node && ramp_node) {
-    PetscCall(LamSceneFailName(document, ramp_node, "given together with F; an entry holds one of them"));
-  }
-  if (!F_node && !ramp_node) {
-    PetscCall(LamSceneFailMissing(document, entry, "F", "missing; write F: %s, or a ramp: {to: %s, steps: 10%s}",
-                                  P_node ? "[[free, 0.1], [0, free]] beside P" : "[[1, 0.1], [0, 1]]",
-                                  P_node ? "[[free, 0.3], [0, free]]" : "[[1, 0.3], [0, 1]]",
-                                  P_node ? ", P: [[0 MPa, x], [x, 0 MPa]]" : ""));
-  }
-  PetscCall(LamSceneGet(entry, "load[].ramp.steps", NULL, &steps));
-  *states = F_node ? 1 : (PetscInt)steps.number[0];
+  *target = (Target){F, P, 1};
+  LamSceneCheckName(!F || !ramp, document, ramp, "given together with F; an entry holds one of them");
+  LamSceneRequire(F || ramp, document, entry, "F", "missing; write F: %s, or a ramp: {to: %s, steps: 10%s}",
+                  P ? "[[free, 0.1], [0, free]] beside P" : "[[1, 0.1], [0, 1]]",
+                  P ? "[[free, 0.3], [0, free]]" : "[[1, 0.3], [0, 1]]", P ? ", P: [[0 MPa, x], [x, 0 MPa]]" : "");
+  if (F) PetscFunctionReturn(0);
+  LamSceneCheckName(!P, document, P, "stands beside a ramp; write it into the ramp, beside `to`");
+  target->F = LamNodeFindPath(ramp, "to");
+  target->P = LamNodeFindPath(ramp, "P");
+  target->states = (PetscInt)LamNodeFindPath(ramp, "steps")->value.number[0];
   PetscFunctionReturn(0);
 }
 
@@ -94,92 +88,57 @@ static PetscErrorCode CheckEntry(const LamDocument *document, const LamNode *ent
 static PetscErrorCode BuildPressures(const LamDocument *document, const LamNode *entry, const LamScene *scene,
                                      LamLoad *load)
 {
-  const LamNode *turgor_node, *cohesion_node;
-  LamValue turgor, cohesion;
+  const LamNode *turgor = LamNodeFindPath(entry, "turgor"), *cohesion = LamNodeFindPath(entry, "cohesion");
 
   PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(entry, "load[].turgor", &turgor_node, &turgor));
-  PetscCall(LamSceneGet(entry, "load[].cohesion", &cohesion_node, &cohesion));
   load->turgor = scene->turgor;
   load->cohesion = scene->cohesion;
-  if (turgor_node && scene->sealed) {
-    PetscCall(LamSceneFailName(document, turgor_node,
-                               "contradicts turgor mode: sealed, whose cells find their pressure themselves; leave it "
-                               "out, or write mode: prescribed"));
-  }
-  if (turgor_node) {
-    PetscCall(LamSceneCheckTurgor(document, turgor_node, turgor.number[0]));
-    PetscCall(LamSceneScale(document, turgor_node, turgor.number[0], scene->scales.stress, &load->turgor));
-  }
-  if (cohesion_node) {
-    if (scene->micro.interface == LAM_INTERFACE_BONDED && cohesion.number[0] > 0.0) {
-      PetscCall(LamSceneFail(document, cohesion_node, "contradicts law: bonded, whose cells never part; leave it out"));
-    }
-    PetscCall(LamSceneScale(document, cohesion_node, cohesion.number[0], scene->scales.stress, &load->cohesion));
-  }
-  PetscFunctionReturn(0);
-}
-
-/* What an entry prescribes: F and P, or those at the end of its ramp. */
-static PetscErrorCode GetTarget(const LamDocument *document, const LamNode *entry, const LamNode **F_node,
-                                const LamNode **P_node)
-{
-  const LamNode *outer_node;
-  LamValue unused;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(entry, "load[].F", F_node, &unused));
-  PetscCall(LamSceneGet(entry, "load[].P", P_node, &unused));
-  if (*F_node) PetscFunctionReturn(0);
-  outer_node = *P_node;
-  PetscCall(LamSceneGet(entry, "load[].ramp.to", F_node, &unused));
-  PetscCall(LamSceneGet(entry, "load[].ramp.P", P_node, &unused));
-  if (outer_node) {
-    PetscCall(LamSceneFailName(document, outer_node, "stands beside a ramp; write it into the ramp, beside `to`"));
-  }
+  LamSceneCheckName(!turgor || !scene->sealed, document, turgor,
+                    "contradicts turgor mode: sealed, whose cells find their pressure themselves; leave it out, or "
+                    "write mode: prescribed");
+  if (turgor) PetscCall(LamSceneCheckTurgor(document, turgor, turgor->value.number[0]));
+  LamSceneCheck(!cohesion || scene->micro.interface != LAM_INTERFACE_BONDED || !(cohesion->value.number[0] > 0.0),
+                document, cohesion, LAM_BONDED_PARTS);
+  PetscCall(LamSceneFill(document, entry, &scene->scales, LamLoad, load));
   PetscFunctionReturn(0);
 }
 
 /* F of one step of a straight path; *known is PETSC_FALSE where a component in the plane is not known yet. */
-static void StepF(const PetscReal start[9], const LamNode *F_node, const LamStressControl *control, PetscReal s,
+static void StepF(const PetscReal start[9], const PetscReal end[9], const LamStressControl *control, PetscReal s,
                   PetscReal F[9], PetscBool *known)
 {
   *known = PETSC_TRUE;
   for (PetscInt i = 0; i < 9; i++) {
-    const PetscReal to = F_node->value.number[i];
-
-    F[i] = control->given[i] ? start[i] : s == 1.0 || control->follows[i] ? to : (1.0 - s) * start[i] + s * to;
+    F[i] = control->given[i] ? start[i] : s == 1.0 || control->follows[i] ? end[i] : (1.0 - s) * start[i] + s * end[i];
     if (IsInPlane(i) && (control->given[i] || control->follows[i])) *known = PETSC_FALSE;
   }
 }
 
 /* Appends the states of an entry after scene->load_count. */
-static PetscErrorCode BuildEntry(const LamDocument *document, const LamNode *entry, PetscInt states, LamScene *scene)
+static PetscErrorCode BuildEntry(const LamDocument *document, const LamNode *entry, LamScene *scene)
 {
-  const LamNode *F_node, *P_node;
   LamLoad load = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-  LamStressControl before = {0}, target, control;
+  LamStressControl before = {0}, end, control;
   PetscReal start[9];
+  Target target;
 
   PetscFunctionBeginUser;
-  PetscCall(GetTarget(document, entry, &F_node, &P_node));
-  PetscCall(LamSceneReadControl(document, F_node, P_node, scene->scales.stress, &target));
-  PetscCall(LamSceneCheckF(document, F_node));
+  PetscCall(ReadTarget(document, entry, &target));
+  PetscCall(LamSceneReadControl(document, target.F, target.P, scene->scales.stress, &end));
+  PetscCall(LamSceneCheckF(document, target.F));
   if (scene->load_count) load = scene->loads[scene->load_count - 1];
   if (scene->load_count && scene->controls) before = scene->controls[scene->load_count - 1];
   PetscCall(PetscArraycpy(start, load.F, 9));
   PetscCall(BuildPressures(document, entry, scene, &load));
-  for (PetscInt k = 1; k <= states; k++) {
+  for (PetscInt k = 1; k <= target.states; k++) {
     PetscBool known;
 
-    LamSceneRampControl(&before, &target, k, states, &control);
-    StepF(start, F_node, &control, (PetscReal)k / (PetscReal)states, load.F, &known);
-    if (known && Determinant2D(load.F) <= 0.0) {
-      PetscCall(LamSceneFail(document, F_node,
-                             "the straight path turns the tissue inside out at step %d (determinant "
-                             "%g); go there by way of a state in between",
-                             (int)k, (double)Determinant2D(load.F)));
-    }
+    LamSceneRampControl(&before, &end, k, target.states, &control);
+    StepF(start, target.F->value.number, &control, (PetscReal)k / (PetscReal)target.states, load.F, &known);
+    LamSceneCheck(!known || Determinant2D(load.F) > 0.0, document, target.F,
+                  "the straight path turns the tissue inside out at step %d (determinant %g); go there by way of a "
+                  "state in between",
+                  (int)k, (double)Determinant2D(load.F));
     if (scene->controls) scene->controls[scene->load_count] = control;
     scene->loads[scene->load_count++] = load;
   }
@@ -188,30 +147,22 @@ static PetscErrorCode BuildEntry(const LamDocument *document, const LamNode *ent
 
 PetscErrorCode LamSceneBuildLoad(const LamDocument *document, LamScene *scene)
 {
-  const LamNode *list;
-  PetscInt total = 0, states;
+  const LamNode *list = LamNodeFindPath(document->root, "load");
   PetscBool mixed = PETSC_FALSE;
-  LamValue unused;
+  PetscInt total = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(document->root, "load", &list, &unused));
   if (!list) PetscFunctionReturn(0);
   for (const LamNode *entry = list->first; entry; entry = entry->next) {
-    const LamNode *F_node, *P_node;
+    Target target;
 
-    PetscCall(CheckEntry(document, entry, &states));
-    PetscCall(GetTarget(document, entry, &F_node, &P_node));
-    if (P_node) mixed = PETSC_TRUE;
-    total += states;
-    if (total > MAX_STATES) {
-      PetscCall(LamSceneFail(document, entry, "more than %d states in all; use fewer steps", (int)MAX_STATES));
-    }
+    PetscCall(ReadTarget(document, entry, &target));
+    if (target.P) mixed = PETSC_TRUE;
+    total += target.states;
+    LamSceneCheck(total <= MAX_STATES, document, entry, "more than %d states in all; use fewer steps", (int)MAX_STATES);
   }
   PetscCall(PetscCalloc1(total, &scene->loads));
   if (mixed) PetscCall(PetscCalloc1(total, &scene->controls));
-  for (const LamNode *entry = list->first; entry; entry = entry->next) {
-    PetscCall(CheckEntry(document, entry, &states));
-    PetscCall(BuildEntry(document, entry, states, scene));
-  }
+  for (const LamNode *entry = list->first; entry; entry = entry->next) PetscCall(BuildEntry(document, entry, scene));
   PetscFunctionReturn(0);
 }

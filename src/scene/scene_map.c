@@ -11,21 +11,22 @@ static const char *const spacing_names[] = {LAM_SPACINGS(LAM_NAME_ENTRY)};
 /* The axes of a map are alike. `from` and `to` have the unit of the quantity, so they are read as text. */
 #define MAP_AXIS(axis, sample)                                                                                         \
   {MAP("map." axis), REQUIRED, .example = sample, .help = "The axis " axis "."},                                       \
-      {NAME("map." axis ".quantity", LamMapQuantityNames), REQUIRED, .example = "turgor",                              \
+      {NAME("map." axis ".quantity", LamMapQuantityNames), INTO(LamMapAxis, quantity), REQUIRED, .example = "turgor",  \
        .help = "What varies. `shear` (F12) and `load_factor` (0 to 1) say how far the load is followed, the others "   \
                "replace what the scene says."},                                                                        \
       {TEXT("map." axis ".from"), REQUIRED, .example = "0 MPa",                                                        \
        .help = "The first value, with the unit of the quantity; `shear` and `load_factor` are plain numbers."},        \
       {TEXT("map." axis ".to"), REQUIRED, .example = "0.3 MPa", .help = "The last value; larger than `from`."},        \
       {INTEGER("map." axis ".points"),                                                                                 \
+       INTO(LamMapAxis, points),                                                                                       \
        REQUIRED,                                                                                                       \
        FROM(2),                                                                                                        \
        TO(1000),                                                                                                       \
        .example = "13",                                                                                                \
        .help = "Number of values, the ends included."},                                                                \
   {                                                                                                                    \
-    NAME("map." axis ".spacing", spacing_names), .default_value = "linear", .example = "log",                          \
-                                                 .help = "`linear`: equal differences; `log`: equal ratios."           \
+    NAME("map." axis ".spacing", spacing_names), INTO(LamMapAxis, is_log),                                             \
+        .default_value = "linear", .example = "log", .help = "`linear`: equal differences; `log`: equal ratios."       \
   }
 
 static const LamKey map_keys[] = {
@@ -89,8 +90,8 @@ static PetscErrorCode ReadPlain(const LamDocument *document, const LamNode *node
 
   PetscFunctionBeginUser;
   *number = LamNumberScan(node->text, &end);
-  if (end == node->text || *end || !isfinite(*number))
-    PetscCall(LamSceneFail(document, node, "is not a plain number; write one, such as 0.1"));
+  LamSceneCheck(end > node->text && !*end && isfinite(*number), document, node,
+                "is not a plain number; write one, such as 0.1");
   PetscFunctionReturn(0);
 }
 
@@ -103,9 +104,8 @@ static PetscErrorCode ReadWithUnit(const LamDocument *document, const LamNode *n
 
   PetscFunctionBeginUser;
   PetscCall(LamQuantityRead(node->text, dimension, &si, reason));
-  if (reason[0])
-    PetscCall(LamSceneFail(document, node, "%s; write a %s with its unit, such as %s", reason,
-                           LamDimensionNames[dimension], LamDimensionExamples[dimension]));
+  LamSceneCheck(!reason[0], document, node, "%s; write a %s with its unit, such as %s", reason,
+                LamDimensionNames[dimension], LamDimensionExamples[dimension]);
   PetscCall(LamSceneScale(document, node, si, scale, number));
   PetscFunctionReturn(0);
 }
@@ -149,17 +149,15 @@ static PetscErrorCode ReadEnd(const LamDocument *document, const LamNode *node, 
 /* ---- what must fit the rest of the scene ---- */
 
 /* An entry of the load that has a turgor or cohesion of its own would hide the axis. */
-static PetscErrorCode CheckEntries(const LamDocument *document, const char path[], const AxisNodes *nodes)
+static PetscErrorCode CheckEntries(const LamDocument *document, const char key[], const AxisNodes *nodes)
 {
-  const LamNode *list, *own;
-  LamValue unused;
+  const LamNode *list = LamNodeFindPath(document->root, "load");
 
   PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(document->root, "load", &list, &unused));
   for (const LamNode *entry = list->first; entry; entry = entry->next) {
-    PetscCall(LamSceneGet(entry, path, &own, &unused));
-    if (own)
-      PetscCall(LamSceneFail(document, own, "the map varies it (line %d); leave it out here", nodes->quantity->line));
+    const LamNode *own = LamNodeFindPath(entry, key);
+
+    LamSceneCheck(!own, document, own, "the map varies it (line %d); leave it out here", nodes->quantity->line);
   }
   PetscFunctionReturn(0);
 }
@@ -172,74 +170,51 @@ static PetscErrorCode CheckShear(const LamDocument *document, const AxisNodes *n
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < scene->load_count; i++) {
-    if (scene->controls && (scene->controls[i].given[1] || scene->controls[i].follows[1]))
-      PetscCall(LamSceneFail(document, nodes->quantity,
-                             "F12 of the load is free at state %d; write quantity: load_factor", (int)i + 1));
-    if (scene->loads[i].F[1] <= last)
-      PetscCall(LamSceneFail(document, nodes->quantity,
-                             "F12 of the load does not grow at state %d; write quantity: load_factor", (int)i + 1));
+    LamSceneCheck(!scene->controls || (!scene->controls[i].given[1] && !scene->controls[i].follows[1]), document,
+                  nodes->quantity, "F12 of the load is free at state %d; write quantity: load_factor", (int)i + 1);
+    LamSceneCheck(scene->loads[i].F[1] > last, document, nodes->quantity,
+                  "F12 of the load does not grow at state %d; write quantity: load_factor", (int)i + 1);
     last = scene->loads[i].F[1];
   }
-  if (axis->from < 0) PetscCall(LamSceneFail(document, nodes->from, "the load starts with F12 = 0; write 0 or more"));
-  if (axis->to > last)
-    PetscCall(LamSceneFail(document, nodes->to, "the load ends with F12 = %g; write at most that, or a longer load",
-                           (double)last));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode CheckWalls(const LamDocument *document, const AxisNodes *nodes, const LamMicrostructure *micro,
-                                 LamMapQuantity quantity)
-{
-  PetscFunctionBeginUser;
-  if (micro->cell)
-    PetscCall(LamSceneFail(document, nodes->quantity,
-                           "the cells differ, and a map varies all alike; choose another quantity"));
-  if (quantity == LAM_MAP_C4 && micro->wall.law == LAM_WALL_MOONEY_RIVLIN)
-    PetscCall(LamSceneFail(document, nodes->quantity,
-                           "law mooney_rivlin has no fibres; write law: fibre_mooney_rivlin, or another quantity"));
-  PetscFunctionReturn(0);
-}
-
-/* As CheckHold in scene_cells.c for a cohesion that does not vary. */
-static PetscErrorCode CheckFreeSides(const LamDocument *document, const AxisNodes *nodes, const LamScene *scene,
-                                     const LamMapAxis *axis)
-{
-  PetscFunctionBeginUser;
-  if (LamSceneNeedsCohesion(&scene->micro) && axis->from <= 0.0)
-    PetscCall(LamSceneFail(document, nodes->from,
-                           "without cohesion nothing holds the outer cells of a patch whose sides are free; write more "
-                           "than 0 MPa, or sides: affine"));
+  LamSceneCheck(axis->from >= 0, document, nodes->from, "the load starts with F12 = 0; write 0 or more");
+  LamSceneCheck(axis->to <= last, document, nodes->to,
+                "the load ends with F12 = %g; write at most that, or a longer load", (double)last);
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode CheckAxis(const LamDocument *document, const AxisNodes *nodes, const LamScene *scene,
                                 const LamMapAxis *axis)
 {
+  const LamMicrostructure *micro = &scene->micro;
+
   PetscFunctionBeginUser;
   switch (axis->quantity) {
   case LAM_MAP_TURGOR:
     PetscCall(LamSceneCheckTurgor(document, nodes->to, PetscMax(fabs(axis->from), fabs(axis->to))));
-    PetscCall(CheckEntries(document, "load[].turgor", nodes));
+    PetscCall(CheckEntries(document, "turgor", nodes));
     break;
   case LAM_MAP_COHESION:
-    if (scene->micro.interface == LAM_INTERFACE_BONDED)
-      PetscCall(LamSceneFail(document, nodes->quantity,
-                             "law: bonded has no cohesion; write interface: {law: contact}, or another quantity"));
-    PetscCall(CheckFreeSides(document, nodes, scene, axis));
-    PetscCall(CheckEntries(document, "load[].cohesion", nodes));
+    LamSceneCheck(micro->interface != LAM_INTERFACE_BONDED, document, nodes->quantity,
+                  "law: bonded has no cohesion; write interface: {law: contact}, or another quantity");
+    LamSceneCheck(!LamSceneNeedsCohesion(micro) || axis->from > 0.0, document, nodes->from,
+                  "without cohesion nothing holds the outer cells of a patch whose sides are free; write more than 0 "
+                  "MPa, or sides: affine");
+    PetscCall(CheckEntries(document, "cohesion", nodes));
     break;
   case LAM_MAP_SHEAR:
     PetscCall(CheckShear(document, nodes, scene, axis));
     break;
   case LAM_MAP_LAMELLA_NORMAL:
   case LAM_MAP_LAMELLA_SHEAR:
-    if (scene->micro.interface == LAM_INTERFACE_CONTACT)
-      PetscCall(LamSceneFail(document, nodes->quantity,
-                             "law: contact has a cohesion instead; write cohesion, or interface: {law: bonded}"));
+    LamSceneCheck(micro->interface != LAM_INTERFACE_CONTACT, document, nodes->quantity,
+                  "law: contact has a cohesion instead; write cohesion, or interface: {law: bonded}");
     break;
   case LAM_MAP_C4:
   case LAM_MAP_WALL_THICKNESS:
-    PetscCall(CheckWalls(document, nodes, &scene->micro, axis->quantity));
+    LamSceneCheck(!micro->cell, document, nodes->quantity,
+                  "the cells differ, and a map varies all alike; choose another quantity");
+    LamSceneCheck(axis->quantity != LAM_MAP_C4 || micro->wall.law != LAM_WALL_MOONEY_RIVLIN, document, nodes->quantity,
+                  "law mooney_rivlin has no fibres; write law: fibre_mooney_rivlin, or another quantity");
     break;
   default:
     break;
@@ -249,63 +224,41 @@ static PetscErrorCode CheckAxis(const LamDocument *document, const AxisNodes *no
 
 /* ---- the block ---- */
 
-static PetscErrorCode BuildAxis(const LamDocument *document, const char *const paths[5], const LamScene *scene,
+static PetscErrorCode BuildAxis(const LamDocument *document, const LamNode *block, const LamScene *scene,
                                 AxisNodes *nodes, LamMapAxis *axis)
 {
-  LamValue quantity, points, spacing, unused;
-  const LamNode *spacing_node;
-
   PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(document->root, paths[0], &nodes->quantity, &quantity));
-  PetscCall(LamSceneGet(document->root, paths[1], &nodes->from, &unused));
-  PetscCall(LamSceneGet(document->root, paths[2], &nodes->to, &unused));
-  PetscCall(LamSceneGet(document->root, paths[3], NULL, &points));
-  PetscCall(LamSceneGet(document->root, paths[4], &spacing_node, &spacing));
-  axis->quantity = (LamMapQuantity)quantity.number[0];
-  axis->points = (PetscInt)points.number[0];
-  axis->is_log = (PetscBool)((LamSpacing)spacing.number[0] == LAM_SPACING_LOG);
+  *nodes =
+      (AxisNodes){LamNodeFindPath(block, "quantity"), LamNodeFindPath(block, "from"), LamNodeFindPath(block, "to")};
+  PetscCall(LamSceneFill(document, block, &scene->scales, LamMapAxis, axis));
   PetscCall(ReadEnd(document, nodes->from, axis->quantity, &scene->scales, &axis->from));
   PetscCall(ReadEnd(document, nodes->to, axis->quantity, &scene->scales, &axis->to));
-  if (axis->from >= axis->to)
-    PetscCall(LamSceneFail(document, nodes->to, "is not larger than from (%s in line %d)", nodes->from->text,
-                           nodes->from->line));
-  if (axis->is_log && axis->from <= 0)
-    PetscCall(LamSceneFail(document, spacing_node, "needs values above 0; from is %s in line %d", nodes->from->text,
-                           nodes->from->line));
+  LamSceneCheck(axis->from < axis->to, document, nodes->to, "is not larger than from (%s in line %d)",
+                nodes->from->text, nodes->from->line);
+  LamSceneCheck(!axis->is_log || axis->from > 0, document, LamNodeFindPath(block, "spacing"),
+                "needs values above 0; from is %s in line %d", nodes->from->text, nodes->from->line);
   PetscCall(CheckAxis(document, nodes, scene, axis));
-  PetscFunctionReturn(0);
-}
-
-/* Two axes that say the same, or that both say how far one load is followed, span no map. */
-static PetscErrorCode CheckPair(const LamDocument *document, const AxisNodes *y, const LamMapAxis map[])
-{
-  PetscFunctionBeginUser;
-  if (map[LAM_MAP_X].quantity == map[LAM_MAP_Y].quantity)
-    PetscCall(LamSceneFail(document, y->quantity, "is on the axis x already; write another quantity"));
-  if (LamMapQuantityIsLoad(map[LAM_MAP_X].quantity) && LamMapQuantityIsLoad(map[LAM_MAP_Y].quantity))
-    PetscCall(LamSceneFail(document, y->quantity,
-                           "says how far the load is followed, as the axis x does; write another quantity"));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamSceneBuildMap(const LamDocument *document, LamScene *scene)
 {
-  static const char *const paths[LAM_MAP_AXIS_COUNT][5] = {
-      {"map.x.quantity", "map.x.from", "map.x.to", "map.x.points", "map.x.spacing"},
-      {"map.y.quantity", "map.y.from", "map.y.to", "map.y.points", "map.y.spacing"},
-  };
-  AxisNodes nodes[LAM_MAP_AXIS_COUNT] = {{0}};
-  const LamNode *block;
-  LamValue unused;
+  static const char *const axes[LAM_MAP_AXIS_COUNT] = {"x", "y"};
+  const LamNode *block = LamNodeFindPath(document->root, "map");
+  LamMapQuantity x, y;
+  AxisNodes nodes;
 
   PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(document->root, "map", &block, &unused));
   if (!block) PetscFunctionReturn(0);
-  if (!scene->load_count)
-    PetscCall(LamSceneFailName(document, block, "needs a block load, along which the tissue is followed; add one"));
+  LamSceneCheckName(scene->load_count, document, block,
+                    "needs a block load, along which the tissue is followed; add one");
   scene->has_map = PETSC_TRUE;
   for (int a = 0; a < LAM_MAP_AXIS_COUNT; a++)
-    PetscCall(BuildAxis(document, paths[a], scene, &nodes[a], &scene->map[a]));
-  PetscCall(CheckPair(document, &nodes[LAM_MAP_Y], scene->map));
+    PetscCall(BuildAxis(document, LamNodeFindPath(block, axes[a]), scene, &nodes, &scene->map[a]));
+  x = scene->map[LAM_MAP_X].quantity;
+  y = scene->map[LAM_MAP_Y].quantity;
+  LamSceneCheck(x != y, document, nodes.quantity, "is on the axis x already; write another quantity");
+  LamSceneCheck(!LamMapQuantityIsLoad(x) || !LamMapQuantityIsLoad(y), document, nodes.quantity,
+                "says how far the load is followed, as the axis x does; write another quantity");
   PetscFunctionReturn(0);
 }

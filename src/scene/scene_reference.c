@@ -38,6 +38,7 @@ static const char *TypeText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH])
                                       "",
                                       "true or false",
                                       "text",
+                                      "text",
                                       "2x2 or 3x3 numbers",
                                       "2x2 or 3x3 stresses"};
   const char *type = key->type == LAM_KEY_QUANTITY ? LamDimensionNames[key->dimension] : types[key->type];

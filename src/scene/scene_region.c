@@ -14,7 +14,7 @@ const char *const LamTissueFieldNames[] = {LAM_TISSUE_FIELDS(LAM_NAME_ENTRY)};
   {MAP("macro.fields." field), .default_words = "does not vary", .example = sample, .help = words},                    \
       {TEXT("macro.fields." field ".expression"), .default_words = "none: a table instead",                            \
        .example = expression_sample, .help = "Its number in the unit, of x and y in mm."},                             \
-      {TEXT("macro.fields." field ".table"), .default_words = "none: an expression instead", .example = field ".csv",  \
+      {PATH("macro.fields." field ".table"), .default_words = "none: an expression instead", .example = field ".csv",  \
        .help = "File beside the scene: a line of names, then lines x, y, value with the positions of a grid in mm."},  \
   {                                                                                                                    \
     TEXT("macro.fields." field ".unit"), REQUIRED, .example = unit_sample, .help = "Unit of its numbers."              \
@@ -28,17 +28,17 @@ static const LamKey region_keys[] = {
          "point the last one holds."},
     {MAP("macro.regions[]"), .example = "{name: skin, where: y > 9, cell: {wall_thickness: 20 um}}",
      .help = "One region."},
-    {TEXT("macro.regions[].name"), REQUIRED, .example = "skin",
+    {TEXT("macro.regions[].name"), INTO(LamRegion, name), REQUIRED, .example = "skin",
      .help = "Its name, of letters, digits, - and _: also of its database, DB.skin.h5."},
     {TEXT("macro.regions[].where"), .default_words = "the mesh's physical group of this name", .example = "y > 9",
      .help = "Expression of x and y in mm that holds (is not 0) in the region."},
     {MAP("macro.regions[].cell"), .example = "{wall_thickness: 20 um}", .help = "Its cell, as `rve.cell`."},
     {LENGTH("macro.regions[].cell.apothem", "um"), ABOVE(0), .default_words = AS_RVE, .example = "40 um",
      .help = "Apothem."},
-    {LENGTH("macro.regions[].cell.wall_thickness", "um"), ABOVE(0), .default_words = AS_RVE, .example = "20 um",
-     .help = "Thickness of one cell's wall."},
-    {ANGLE("macro.regions[].cell.orientation"), FROM(-360), TO(360), .default_words = AS_RVE, .example = "30 deg",
-     .help = "Angle of face normal 0 to the X1 axis."},
+    {LENGTH("macro.regions[].cell.wall_thickness", "um"), INTO(LamRegion, micro.wall_thickness), ABOVE(0),
+     .default_words = AS_RVE, .example = "20 um", .help = "Thickness of one cell's wall."},
+    {ANGLE("macro.regions[].cell.orientation"), INTO(LamRegion, micro.orientation), FROM(-360), TO(360),
+     .default_words = AS_RVE, .example = "30 deg", .help = "Angle of face normal 0 to the X1 axis."},
     {MAP("macro.regions[].wall"), .example = "{C1: 0.2 MPa}", .help = "Its wall, as `rve.wall`."},
     {NAME_OF("macro.regions[].wall.law", LamWallLawNames, LAM_WALL_LAW_COUNT), .default_words = AS_RVE,
      .example = "mooney_rivlin", .help = "Law of its wall."},
@@ -52,22 +52,24 @@ static const LamKey region_keys[] = {
     {NAME_OF("macro.regions[].wall.fibres", LamFibresNames, LAM_FIBRES_COUNT), .default_words = AS_RVE,
      .example = "tension", .help = "Whether fibres resist compression."},
     {MAP("macro.regions[].interface"), .example = "{law: bonded}", .help = "Its middle lamella, as `rve.interface`."},
-    {NAME_OF("macro.regions[].interface.law", LamInterfaceLawNames, LAM_INTERFACE_LAW_COUNT), .default_words = AS_RVE,
-     .example = "bonded", .help = "`bonded` or `contact`."},
-    {STRESS("macro.regions[].interface.cohesion"), FROM(0), .default_words = AS_RVE, .example = "0.01 MPa",
-     .help = "Cohesion; only with law `contact`."},
-    {LENGTH("macro.regions[].interface.clearance", "um"), FROM(0), .default_words = AS_RVE, .example = "0.1 um",
+    {NAME_OF("macro.regions[].interface.law", LamInterfaceLawNames, LAM_INTERFACE_LAW_COUNT),
+     INTO(LamRegion, micro.interface), .default_words = AS_RVE, .example = "bonded", .help = "`bonded` or `contact`."},
+    {STRESS("macro.regions[].interface.cohesion"), INTO(LamRegion, cohesion), FROM(0), .default_words = AS_RVE,
+     .example = "0.01 MPa", .help = "Cohesion; only with law `contact`."},
+    {LENGTH("macro.regions[].interface.clearance", "um"), INTO(LamRegion, micro.clearance), FROM(0),
+     .default_words = AS_RVE, .example = "0.1 um",
      .help = "Distance between facing walls at rest; only with law `contact`."},
     {MAP("macro.regions[].turgor"), .example = "{pressure: 0.05 MPa}", .help = "Its turgor."},
-    {STRESS("macro.regions[].turgor.pressure"), .default_words = AS_RVE, .example = "0.05 MPa", .help = "Pressure."},
+    {STRESS("macro.regions[].turgor.pressure"), INTO(LamRegion, turgor), .default_words = AS_RVE, .example = "0.05 MPa",
+     .help = "Pressure."},
     {MAP("macro.regions[].mesh"), .default_words = AS_RVE, .example = "{along: 6, through: 2}",
      .help = "Finite elements of its cell, as `rve.mesh`."},
-    {INTEGER("macro.regions[].mesh.along"), FROM(1), TO(200), .default_words = AS_RVE, .example = "6",
-     .help = "Elements along one face."},
-    {INTEGER("macro.regions[].mesh.through"), FROM(1), TO(50), .default_words = AS_RVE, .example = "2",
-     .help = "Elements through one wall."},
-    {REAL("macro.regions[].mesh.grading"), FROM(0), BELOW(1), .default_words = AS_RVE, .example = "0.6",
-     .help = "How much smaller elements at the ends of a face are."},
+    {INTEGER("macro.regions[].mesh.along"), INTO(LamRegion, micro.along), FROM(1), TO(200), .default_words = AS_RVE,
+     .example = "6", .help = "Elements along one face."},
+    {INTEGER("macro.regions[].mesh.through"), INTO(LamRegion, micro.through), FROM(1), TO(50), .default_words = AS_RVE,
+     .example = "2", .help = "Elements through one wall."},
+    {REAL("macro.regions[].mesh.grading"), INTO(LamRegion, micro.grading), FROM(0), BELOW(1), .default_words = AS_RVE,
+     .example = "0.6", .help = "How much smaller elements at the ends of a face are."},
     {MAP("macro.fields"), .default_words = "nothing varies", .example = "{orientation: {expression: 3 * x, unit: deg}}",
      .help = "Numbers that vary with the reference position, replacing those of `rve` and `macro.regions`."},
     TISSUE_FIELD("orientation", "{expression: 3 * x, unit: deg}", "3 * x", "deg",
@@ -77,59 +79,29 @@ static const LamKey region_keys[] = {
                  "Cohesion, at least 0, of tissue with law `contact`."),
     TISSUE_FIELD("wall_thickness", "{expression: 11 + 0.2 * y, unit: um}", "11 + 0.2 * y", "um",
                  "Thickness of one cell's wall: a few thicknesses are solved, answers between them blended."),
-    {INTEGER("macro.fields.wall_thickness.levels"), FROM(2), TO(8), .default_words = CHOSEN, .example = "5",
-     .help = "How many thicknesses of each tissue are solved."},
+    {INTEGER("macro.fields.wall_thickness.levels"), INTO(LamTissueFields, levels), FROM(2), TO(8),
+     .default_words = CHOSEN, .example = "5", .help = "How many thicknesses of each tissue are solved."},
 };
 LAM_KEY_TABLE(LamRegionKeys, region_keys);
 
-#define ITEM "macro.regions[]"
-
 /* ---- a region's tissue ---- */
 
-/* *si stays as it is where the entry does not give it. */
-static PetscErrorCode GetLength(const LamNode *entry, const char path[], const LamNode **node, PetscReal *si)
+/* The region's own apothem and C1 + C2 are its units. */
+static PetscErrorCode BuildScales(const LamDocument *document, const LamNode *entry, const LamScene *scene,
+                                  LamRegion *r)
 {
-  LamValue value;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(entry, path, node, &value));
-  if (*node) *si = value.number[0];
-  PetscFunctionReturn(0);
-}
-
-/* What is not given is as long as in the scene's own tissue. */
-static PetscErrorCode BuildCell(const LamDocument *document, const LamNode *entry, const LamScene *scene, LamRegion *r)
-{
-  PetscReal thickness = scene->micro.wall_thickness * scene->scales.length;
-  const LamNode *apothem_node, *thickness_node, *node;
-  LamValue orientation;
-
-  PetscFunctionBeginUser;
-  PetscCall(GetLength(entry, ITEM ".cell.apothem", &apothem_node, &r->scales.length));
-  PetscCall(GetLength(entry, ITEM ".cell.wall_thickness", &thickness_node, &thickness));
-  node = thickness_node ? thickness_node : apothem_node;
-  if (apothem_node) PetscCall(LamSceneCheckScale(document, apothem_node, r->scales.length));
-  if (node && thickness >= r->scales.length)
-    PetscCall(LamSceneFail(document, node, "the wall, %g um, fills the cell; write a thickness less than the apothem",
-                           (double)thickness * 1e6));
-  PetscCall(LamSceneScale(document, node, thickness, r->scales.length, &r->micro.wall_thickness));
-  PetscCall(LamSceneGet(entry, ITEM ".cell.orientation", &node, &orientation));
-  if (node) r->micro.orientation = orientation.number[0];
-  PetscFunctionReturn(0);
-}
-
-/* The region's own C1 + C2 is its unit of stress. */
-static PetscErrorCode BuildWall(const LamDocument *document, const LamNode *entry, const LamScene *scene, LamRegion *r)
-{
+  const LamNode *apothem = LamNodeFindPath(entry, "cell.apothem"), *node = LamNodeFindPath(entry, "wall");
   LamWall *wall = &r->micro.wall;
-  const LamNode *node;
-  LamValue unused;
   PetscReal unit;
 
   PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(entry, ITEM ".wall", &node, &unused));
+  r->scales = scene->scales;
+  if (apothem) {
+    r->scales.length = apothem->value.number[0];
+    PetscCall(LamSceneCheckScale(document, apothem, r->scales.length));
+  }
   if (!node) PetscFunctionReturn(0);
-  PetscCall(LamSceneReadWall(document, entry, ITEM ".wall", scene->scales.stress, &scene->micro.wall, wall));
+  PetscCall(LamSceneReadWall(document, entry, "macro.regions[].wall", scene->scales.stress, &scene->micro.wall, wall));
   unit = wall->C1 + wall->C2;
   PetscCall(LamSceneCheckScale(document, node, unit * scene->scales.stress));
   wall->C1 /= unit;
@@ -140,142 +112,113 @@ static PetscErrorCode BuildWall(const LamDocument *document, const LamNode *entr
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BuildInterface(const LamDocument *document, const LamNode *entry, const LamScene *scene,
-                                     LamRegion *r)
+static PetscErrorCode CheckCell(const LamDocument *document, const LamNode *entry, const LamRegion *r)
 {
-  const LamNode *law_node, *cohesion_node, *clearance_node;
-  PetscReal cohesion = scene->cohesion * scene->scales.stress,
-            clearance = scene->micro.clearance * scene->scales.length;
-  LamValue law, value;
+  const LamNode *thickness = LamNodeFindPath(entry, "cell.wall_thickness");
 
   PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(entry, ITEM ".interface.law", &law_node, &law));
-  PetscCall(LamSceneGet(entry, ITEM ".interface.cohesion", &cohesion_node, &value));
-  if (cohesion_node) cohesion = value.number[0];
-  PetscCall(GetLength(entry, ITEM ".interface.clearance", &clearance_node, &clearance));
-  if (law_node) r->micro.interface = (LamInterfaceLawType)law.number[0];
-  if (r->micro.interface == LAM_INTERFACE_BONDED) {
-    const LamNode *node = cohesion_node && cohesion > 0     ? cohesion_node
-                          : clearance_node && clearance > 0 ? clearance_node
-                                                            : NULL;
-
-    if (node) PetscCall(LamSceneFail(document, node, "contradicts law: bonded, whose cells never part; leave it out"));
-    cohesion = clearance = 0;
-  }
-  PetscCall(LamSceneScale(document, cohesion_node, cohesion, r->scales.stress, &r->cohesion));
-  PetscCall(LamSceneScale(document, clearance_node, clearance, r->scales.length, &r->micro.clearance));
-  PetscCall(LamSceneCheckClearance(document, clearance_node ? clearance_node : entry, &r->scales, &r->micro));
+  LamSceneCheck(r->micro.wall_thickness < 1.0, document, thickness ? thickness : LamNodeFindPath(entry, "cell.apothem"),
+                "the wall, %g um, fills the cell; write a thickness less than the apothem",
+                (double)(r->micro.wall_thickness * r->scales.length) * 1e6);
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BuildTurgor(const LamDocument *document, const LamNode *entry, const LamScene *scene,
-                                  LamRegion *r)
+static PetscErrorCode CheckInterface(const LamDocument *document, const LamNode *entry, LamRegion *r)
 {
-  PetscReal turgor = scene->turgor * scene->scales.stress;
-  const LamNode *node;
-  LamValue value;
+  const LamNode *cohesion = LamNodeFindPath(entry, "interface.cohesion");
+  const LamNode *clearance = LamNodeFindPath(entry, "interface.clearance");
 
   PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(entry, ITEM ".turgor.pressure", &node, &value));
-  if (node) {
-    turgor = value.number[0];
-    PetscCall(LamSceneCheckTurgor(document, node, turgor));
+  if (r->micro.interface == LAM_INTERFACE_BONDED) {
+    LamSceneCheck(!cohesion || !(r->cohesion > 0), document, cohesion, LAM_BONDED_PARTS);
+    LamSceneCheck(!clearance || !(r->micro.clearance > 0), document, clearance, LAM_BONDED_PARTS);
+    r->cohesion = r->micro.clearance = 0;
   }
-  PetscCall(LamSceneScale(document, node, turgor, r->scales.stress, &r->turgor));
+  PetscCall(LamSceneCheckClearance(document, clearance ? clearance : entry, &r->scales, &r->micro));
   PetscFunctionReturn(0);
 }
 
 /* Cells that differ have thicknesses and moduli of their own. */
 static PetscErrorCode CheckVariation(const LamDocument *document, const LamNode *entry, const LamScene *scene)
 {
-  static const char *const own[] = {ITEM ".cell.apothem", ITEM ".cell.wall_thickness", ITEM ".wall"};
-  LamValue unused;
+  static const char *const own[] = {"cell.apothem", "cell.wall_thickness", "wall"};
 
   PetscFunctionBeginUser;
   for (size_t i = 0; scene->micro.cell && i < PETSC_STATIC_ARRAY_LENGTH(own); i++) {
-    const LamNode *node;
+    const LamNode *node = LamNodeFindPath(entry, own[i]);
 
-    PetscCall(LamSceneGet(entry, own[i], &node, &unused));
-    if (node)
-      PetscCall(LamSceneFailName(document, node,
-                                 "rve.variation says what the cells are, and it is the same in all regions; leave out "
-                                 "one of them"));
+    LamSceneCheckName(!node, document, node,
+                      "rve.variation says what the cells are, and it is the same in all regions; leave out one of "
+                      "them");
   }
   PetscFunctionReturn(0);
 }
 
+/* What is not given is as long, and as large, as in the scene's own tissue. */
 static PetscErrorCode BuildTissue(const LamDocument *document, const LamNode *entry, const LamScene *scene,
                                   LamRegion *r)
 {
-  const LamNode *node;
-  LamValue along, through, grading;
+  const LamScales *own = &scene->scales, *scales = &r->scales;
+  const LamNode *turgor = LamNodeFindPath(entry, "turgor.pressure");
+  LamMicrostructure *micro = &r->micro;
 
   PetscFunctionBeginUser;
-  PetscCall(LamMicrostructureCopy(&scene->micro, &r->micro));
-  r->scales = scene->scales;
+  PetscCall(LamMicrostructureCopy(&scene->micro, micro));
   PetscCall(CheckVariation(document, entry, scene));
-  PetscCall(BuildCell(document, entry, scene, r));
-  PetscCall(BuildWall(document, entry, scene, r));
-  PetscCall(BuildInterface(document, entry, scene, r));
-  PetscCall(BuildTurgor(document, entry, scene, r));
-  PetscCall(LamSceneGet(entry, ITEM ".mesh.along", &node, &along));
-  if (node) r->micro.along = (PetscInt)along.number[0];
-  PetscCall(LamSceneGet(entry, ITEM ".mesh.through", &node, &through));
-  if (node) r->micro.through = (PetscInt)through.number[0];
-  PetscCall(LamSceneGet(entry, ITEM ".mesh.grading", &node, &grading));
-  if (node) r->micro.grading = grading.number[0];
-  if (r->micro.along && r->micro.grading < 0.0) r->micro.grading = 0.0;
+  PetscCall(BuildScales(document, entry, scene, r));
+  micro->wall_thickness = micro->wall_thickness * own->length / scales->length;
+  micro->clearance = micro->clearance * own->length / scales->length;
+  r->cohesion = scene->cohesion * own->stress / scales->stress;
+  r->turgor = scene->turgor * own->stress / scales->stress;
+  PetscCall(LamSceneFill(document, entry, scales, LamRegion, r));
+  PetscCall(CheckCell(document, entry, r));
+  PetscCall(CheckInterface(document, entry, r));
+  if (turgor) PetscCall(LamSceneCheckTurgor(document, turgor, turgor->value.number[0]));
+  if (micro->along && micro->grading < 0.0) micro->grading = 0.0;
   PetscFunctionReturn(0);
 }
 
 /* ---- where it lies ---- */
 
-/* What messages call a field: file, line, key. */
-static void NameField(const LamDocument *document, const LamNode *node, const char key[], char name[PETSC_MAX_PATH_LEN])
+/* An expression of x and y in mm, or the file of a table. */
+static PetscErrorCode ReadField(const LamDocument *document, const LamNode *node, LamPlaceField *field)
 {
-  snprintf(name, PETSC_MAX_PATH_LEN, "%s:%d: %s", document->name, node->line, key);
-}
-
-static PetscErrorCode ReadExpression(const LamDocument *document, const LamNode *node, const char key[],
-                                     LamPlaceField *field)
-{
-  char name[PETSC_MAX_PATH_LEN], reason[LAM_PLACE_FIELD_REASON];
+  char name[PETSC_MAX_PATH_LEN], path[PETSC_MAX_PATH_LEN], reason[LAM_PLACE_FIELD_REASON];
 
   PetscFunctionBeginUser;
-  NameField(document, node, key, name);
-  PetscCall(LamPlaceFieldFromExpression(name, node->text, field, reason));
-  if (reason[0]) PetscCall(LamSceneFail(document, node, "%s", reason));
+  snprintf(name, sizeof(name), "%s:%d: %s", document->name, node->line, node->key->path);
+  if (node->key->type == LAM_KEY_PATH) {
+    PetscCall(LamSceneResolvePath(document, node, path));
+    PetscCall(LamPlaceFieldFromTable(name, path, field, reason));
+  } else {
+    PetscCall(LamPlaceFieldFromExpression(name, node->text, field, reason));
+  }
+  LamSceneCheck(!reason[0], document, node, "%s", reason);
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode BuildPlace(const LamDocument *document, const LamNode *entry, const LamScene *scene, LamRegion *r)
 {
   static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_";
-  const LamNode *name_node, *where_node;
-  LamValue unused;
+  const LamNode *name = LamNodeFindPath(entry, "name"), *where = LamNodeFindPath(entry, "where");
 
   PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(entry, ITEM ".name", &name_node, &unused));
-  PetscCall(LamSceneGet(entry, ITEM ".where", &where_node, &unused));
-  if (!name_node->text[0] || strlen(name_node->text) >= sizeof(r->name) ||
-      strspn(name_node->text, letters) != strlen(name_node->text))
-    PetscCall(LamSceneFail(document, name_node,
-                           "is part of a file's name; write letters, digits, - and _, less than %d",
-                           (int)sizeof(r->name)));
+  LamSceneCheck(
+      name->text[0] && strlen(name->text) < sizeof(r->name) && strspn(name->text, letters) == strlen(name->text),
+      document, name, "is part of a file's name; write letters, digits, - and _, less than %d", (int)sizeof(r->name));
   for (PetscInt k = 0; k < scene->region_count; k++)
-    if (!strcmp(scene->regions[k].name, name_node->text))
-      PetscCall(LamSceneFail(document, name_node, "another region has this name; give each its own"));
-  PetscCall(PetscStrncpy(r->name, name_node->text, sizeof(r->name)));
-  if (where_node) PetscCall(ReadExpression(document, where_node, ITEM ".where", &r->where));
+    LamSceneCheck(strcmp(scene->regions[k].name, name->text), document, name,
+                  "another region has this name; give each its own");
+  PetscCall(PetscStrncpy(r->name, name->text, sizeof(r->name)));
+  if (where) PetscCall(ReadField(document, where, &r->where));
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode BuildAllRegions(const LamDocument *document, const LamNode *list, LamScene *scene)
 {
   PetscFunctionBeginUser;
-  if (list->count > LAM_MAX_REGIONS)
-    PetscCall(LamSceneFail(document, list, "has %d regions; at most %d can be told apart", (int)list->count,
-                           (int)LAM_MAX_REGIONS));
+  LamSceneCheck(list->count <= LAM_MAX_REGIONS, document, list, "has %d regions; at most %d can be told apart",
+                (int)list->count, (int)LAM_MAX_REGIONS);
   PetscCall(PetscCalloc1(LAM_MAX_REGIONS, &scene->regions));
   for (const LamNode *entry = list->first; entry; entry = entry->next) {
     LamRegion *region = &scene->regions[scene->region_count];
@@ -289,25 +232,6 @@ static PetscErrorCode BuildAllRegions(const LamDocument *document, const LamNode
 
 /* ---- fields ---- */
 
-static const LamDimension dimensions[] = {LAM_DIMENSION_ANGLE, LAM_DIMENSION_STRESS, LAM_DIMENSION_STRESS,
-                                          LAM_DIMENSION_LENGTH};
-
-/* A table lies beside the scene, unless its path is a whole one. */
-static PetscErrorCode ReadTable(const LamDocument *document, const LamNode *node, const char key[],
-                                LamPlaceField *field)
-{
-  const char *slash = strrchr(document->name, '/');
-  const int folder = slash && node->text[0] != '/' ? (int)(slash - document->name) + 1 : 0;
-  char name[PETSC_MAX_PATH_LEN], path[PETSC_MAX_PATH_LEN], reason[LAM_PLACE_FIELD_REASON];
-
-  PetscFunctionBeginUser;
-  NameField(document, node, key, name);
-  snprintf(path, sizeof(path), "%.*s%s", folder, document->name, node->text);
-  PetscCall(LamPlaceFieldFromTable(name, path, field, reason));
-  if (reason[0]) PetscCall(LamSceneFail(document, node, "%s", reason));
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode ReadUnit(const LamDocument *document, const LamNode *node, LamDimension dimension, PetscReal *si)
 {
   char one[80], reason[LAM_REASON_LENGTH];
@@ -315,53 +239,40 @@ static PetscErrorCode ReadUnit(const LamDocument *document, const LamNode *node,
   PetscFunctionBeginUser;
   snprintf(one, sizeof(one), "1 %.70s", node->text);
   PetscCall(LamQuantityRead(one, dimension, si, reason));
-  if (reason[0])
-    PetscCall(LamSceneFail(document, node, "%s; write the unit of a %s alone", reason, LamDimensionNames[dimension]));
+  LamSceneCheck(!reason[0], document, node, "%s; write the unit of a %s alone", reason, LamDimensionNames[dimension]);
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BuildField(const LamDocument *document, LamTissueField which, LamScene *scene)
+static PetscErrorCode BuildField(const LamDocument *document, const LamNode *block, LamTissueField which,
+                                 LamScene *scene)
 {
-  LamTissueFields *fields = &scene->fields;
-  const LamNode *block, *nodes[3];
-  static const char *const keys[] = {"expression", "table", "unit"};
-  char paths[3][80], path[80];
-  LamValue unused;
+  static const LamDimension dimensions[] = {LAM_DIMENSION_ANGLE, LAM_DIMENSION_STRESS, LAM_DIMENSION_STRESS,
+                                            LAM_DIMENSION_LENGTH};
+  const LamNode *expression = LamNodeFindPath(block, "expression"), *table = LamNodeFindPath(block, "table");
+  const LamNode *field = expression ? expression : table;
 
   PetscFunctionBeginUser;
-  snprintf(path, sizeof(path), "macro.fields.%s", LamTissueFieldNames[which]);
-  PetscCall(LamSceneGet(document->root, path, &block, &unused));
   if (!block) PetscFunctionReturn(0);
-  for (int i = 0; i < 3; i++) {
-    snprintf(paths[i], sizeof(paths[i]), "macro.fields.%s.%s", LamTissueFieldNames[which], keys[i]);
-    PetscCall(LamSceneGet(document->root, paths[i], &nodes[i], &unused));
-  }
-  if (nodes[0] && nodes[1])
-    PetscCall(LamSceneFailName(document, nodes[1], "given together with expression; a field is one of them"));
-  if (!nodes[0] && !nodes[1])
-    PetscCall(LamSceneFailMissing(document, block, "expression", "missing; write one of x and y in mm, or a table"));
-  PetscCall(ReadUnit(document, nodes[2], dimensions[which], &fields->unit[which]));
-  if (nodes[0])
-    PetscCall(ReadExpression(document, nodes[0], paths[0], &fields->value[which]));
-  else
-    PetscCall(ReadTable(document, nodes[1], paths[1], &fields->value[which]));
-  if (which == LAM_TISSUE_WALL_THICKNESS && scene->micro.cell)
-    PetscCall(LamSceneFailName(document, block, "rve.variation gives each cell its thickness; leave out one of them"));
+  LamSceneCheckName(!expression || !table, document, table, "given together with expression; a field is one of them");
+  LamSceneRequire(field, document, block, "expression", "missing; write one of x and y in mm, or a table");
+  PetscCall(ReadUnit(document, LamNodeFindPath(block, "unit"), dimensions[which], &scene->fields.unit[which]));
+  PetscCall(ReadField(document, field, &scene->fields.value[which]));
+  LamSceneCheckName(which != LAM_TISSUE_WALL_THICKNESS || !scene->micro.cell, document, block,
+                    "rve.variation gives each cell its thickness; leave out one of them");
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamSceneBuildRegions(const LamDocument *document, LamScene *scene)
 {
-  const LamNode *list;
-  LamValue unused, levels;
+  const LamNode *list = LamNodeFindPath(document->root, "macro.regions");
+  const LamNode *fields = LamNodeFindPath(document->root, "macro.fields");
 
   PetscFunctionBeginUser;
   if (!scene->has_macro) PetscFunctionReturn(0);
-  PetscCall(LamSceneGet(document->root, "macro.regions", &list, &unused));
   if (list) PetscCall(BuildAllRegions(document, list, scene));
-  for (LamTissueField k = 0; k < LAM_TISSUE_FIELD_COUNT; k++) PetscCall(BuildField(document, k, scene));
-  PetscCall(LamSceneGet(document->root, "macro.fields.wall_thickness.levels", NULL, &levels));
-  scene->fields.levels = (PetscInt)levels.number[0];
+  for (LamTissueField k = 0; k < LAM_TISSUE_FIELD_COUNT; k++)
+    PetscCall(BuildField(document, LamNodeFindPath(fields, LamTissueFieldNames[k]), k, scene));
+  PetscCall(LamSceneFill(document, document->root, &scene->scales, LamTissueFields, &scene->fields));
   PetscFunctionReturn(0);
 }
 

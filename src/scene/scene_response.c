@@ -10,10 +10,11 @@ const char *const LamOutsideNames[] = {LAM_OUTSIDES(LAM_NAME_ENTRY)};
 static const LamKey response_keys[] = {
     {MAP("macro.response"), .default_words = "as below", .example = "{outside: stop, accuracy: 0.003}",
      .help = "How material points are answered."},
-    {NAME("macro.response.outside", LamOutsideNames), .default_value = "solve", .example = "stop",
+    {NAME("macro.response.outside", LamOutsideNames), INTO(LamResponsePolicy, outside), .default_value = "solve",
+     .example = "stop",
      .help = "What a cache does with a state that no node of its table would answer: `solve` it, and add it to the "
              "database, or `stop` the run where smaller steps do not avoid it."},
-    {REAL("macro.response.accuracy"), ABOVE(0), TO(0.5),
+    {REAL("macro.response.accuracy"), INTO(LamResponsePolicy, accuracy), ABOVE(0), TO(0.5),
      .default_words = "the scene's `accuracy`; a tenth of it where a cache answers for cells in contact with 12 or "
                       "more elements along "
                       "a face",
@@ -40,23 +41,18 @@ static PetscErrorCode ReadMemory(const LamDocument *document, const LamNode *nod
   *bytes = -1;
   for (size_t k = 0; end > node->text && k < PETSC_STATIC_ARRAY_LENGTH(units); k++)
     if (!strcmp(end + strspn(end, " "), units[k].name)) *bytes = number * units[k].bytes;
-  if (!(*bytes >= 0 && *bytes < 1e18))
-    PetscCall(LamSceneFail(document, node, "is no size of memory; write a number with kB, MB, GB or TB, such as 2 GB"));
+  LamSceneCheck(*bytes >= 0 && *bytes < 1e18, document, node,
+                "is no size of memory; write a number with kB, MB, GB or TB, such as 2 GB");
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamSceneBuildResponse(const LamDocument *document, LamScene *scene)
 {
-  const LamNode *node;
-  LamValue value;
+  const LamNode *memory = LamNodeFindPath(document->root, "macro.response.warm_start_memory");
 
   PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(document->root, "macro.response.outside", NULL, &value));
-  scene->response.outside = (LamOutside)value.number[0];
-  PetscCall(LamSceneGet(document->root, "macro.response.accuracy", &node, &value));
-  scene->response.accuracy = node ? value.number[0] : 0;
   scene->response.warm_start_memory = LAM_WARM_START_MEMORY;
-  PetscCall(LamSceneGet(document->root, "macro.response.warm_start_memory", &node, &value));
-  if (node) PetscCall(ReadMemory(document, node, &scene->response.warm_start_memory));
+  PetscCall(LamSceneFill(document, document->root, &scene->scales, LamResponsePolicy, &scene->response));
+  if (memory) PetscCall(ReadMemory(document, memory, &scene->response.warm_start_memory));
   PetscFunctionReturn(0);
 }

@@ -25,12 +25,15 @@
 #define INTEGER(key_path) .path = key_path, .type = LAM_KEY_INTEGER
 #define BOOL(key_path) .path = key_path, .type = LAM_KEY_BOOL
 #define TEXT(key_path) .path = key_path, .type = LAM_KEY_TEXT
+#define PATH(key_path) .path = key_path, .type = LAM_KEY_PATH
 #define TENSOR(key_path) .path = key_path, .type = LAM_KEY_TENSOR
 #define STRESS_TENSOR(key_path)                                                                                        \
   .path = key_path, .type = LAM_KEY_QUANTITY_TENSOR, .dimension = LAM_DIMENSION_STRESS, .unit = "MPa"
 #define NAME(key_path, list)                                                                                           \
   .path = key_path, .type = LAM_KEY_NAME, .names = list, .name_count = PETSC_STATIC_ARRAY_LENGTH(list)
 #define NAME_OF(key_path, list, count) .path = key_path, .type = LAM_KEY_NAME, .names = list, .name_count = count
+#define INTO(type, member) .record = #type, .offset = offsetof(type, member), .room = sizeof(((type *)0)->member)
+#define GIVEN(type, member) .given = offsetof(type, member)
 #define REQUIRED .required = PETSC_TRUE
 #define FREE .free_word = "free"
 #define OPEN .free_word = "x"

@@ -1,0 +1,151 @@
+/*
+  From the nodes of a document to the members of structs, nondimensional.
+*/
+#include "scene_keys.h"
+#include <math.h>
+#include <string.h>
+
+/* SI: within these nothing over- or underflows, such as work, a stress times an area. */
+#define LARGEST_SCALE 1e100
+
+/* Ratios to the apothem and to C1 + C2 beyond which double precision holds nothing of the walls. */
+#define LARGEST_RATIO 1e9
+
+PetscErrorCode LamSceneScale(const LamDocument *document, const LamNode *node, PetscReal si, PetscReal scale,
+                             PetscReal *number)
+{
+  PetscFunctionBeginUser;
+  *number = si / scale;
+  LamSceneCheck(!node || fabs(*number) <= LARGEST_RATIO, document, node,
+                "is beyond all measure against the cell's apothem or C1 + C2; check units");
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSceneCheckScale(const LamDocument *document, const LamNode *node, PetscReal si)
+{
+  PetscFunctionBeginUser;
+  LamSceneCheck(si >= 1.0 / LARGEST_SCALE && si <= LARGEST_SCALE, document, node,
+                "is %g in SI units, beyond %g to %g, all that is reckoned with; check units", (double)si,
+                1.0 / LARGEST_SCALE, LARGEST_SCALE);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSceneResolvePath(const LamDocument *document, const LamNode *node, char path[PETSC_MAX_PATH_LEN])
+{
+  const char *slash = strrchr(document->name, '/');
+  const int folder = node->text[0] == '/' || !slash ? 0 : (int)(slash - document->name) + 1;
+
+  PetscFunctionBeginUser;
+  LamSceneCheck(folder + strlen(node->text) < PETSC_MAX_PATH_LEN, document, node, "the path is too long");
+  snprintf(path, PETSC_MAX_PATH_LEN, "%.*s%s", folder, document->name, node->text);
+  PetscFunctionReturn(0);
+}
+
+/* Reads a default from the table as if it stood in a file. */
+static PetscErrorCode ReadDefault(const LamKey *key, LamValue *value)
+{
+  LamDocument document;
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  ierr = LamDocumentParse(key->path, key->default_value, &document);
+  if (!ierr) ierr = LamSceneReadNode(&document, document.root, key);
+  if (!ierr) *value = document.root->value;
+  PetscCall(LamDocumentDestroy(&document));
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+/* A component in the units of the struct: um in apothems, mm in macro lengths, stresses in C1 + C2, the rest in SI. */
+static PetscErrorCode StoreReal(const LamDocument *document, const LamNode *node, const LamKey *key,
+                                const LamScales *scales, PetscReal si, PetscReal *number)
+{
+  PetscFunctionBeginUser;
+  *number = si;
+  if (!key->unit) PetscFunctionReturn(0);
+  if (key->dimension == LAM_DIMENSION_STRESS) PetscCall(LamSceneScale(document, node, si, scales->stress, number));
+  if (key->dimension == LAM_DIMENSION_LENGTH)
+    PetscCall(
+        LamSceneScale(document, node, si, strcmp(key->unit, "mm") ? scales->length : scales->macro_length, number));
+  if (key->dimension == LAM_DIMENSION_PERMEABILITY)
+    PetscCall(LamSceneScale(document, node, si * scales->stress, scales->length, number));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode StoreText(const LamDocument *document, const LamNode *node, const LamKey *key, char text[])
+{
+  PetscFunctionBeginUser;
+  if (key->type == LAM_KEY_PATH) {
+    PetscCall(LamSceneResolvePath(document, node, text));
+    PetscFunctionReturn(0);
+  }
+  LamSceneCheck(strlen(node->text) < key->room, document, node, "is too long; names have less than %d letters",
+                (int)key->room);
+  PetscCall(PetscStrncpy(text, node->text, key->room));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Store(const LamDocument *document, const LamNode *node, const LamKey *key, const LamValue *value,
+                            const LamScales *scales, char *target)
+{
+  void *place = target + key->offset;
+  size_t size = sizeof(int); /* of an enumeration, or of a PetscBool, which is one */
+
+  PetscFunctionBeginUser;
+  if (key->type == LAM_KEY_TEXT || key->type == LAM_KEY_PATH) {
+    PetscCall(StoreText(document, node, key, place));
+    PetscFunctionReturn(0);
+  }
+  for (PetscInt c = 0; c < value->count; c++) {
+    if (key->type == LAM_KEY_INTEGER) {
+      size = sizeof(PetscInt);
+      ((PetscInt *)place)[c] = (PetscInt)value->number[c];
+    } else if (key->type == LAM_KEY_NAME || key->type == LAM_KEY_BOOL) {
+      ((int *)place)[c] = (int)value->number[c];
+    } else {
+      size = sizeof(PetscReal);
+      PetscCall(StoreReal(document, node, key, scales, value->number[c], (PetscReal *)place + c));
+    }
+    if (key->given) ((PetscBool *)(target + key->given))[c] = (PetscBool)!value->is_free[c];
+  }
+  PetscCheck(key->room == (size_t)value->count * size, PETSC_COMM_SELF, PETSC_ERR_PLIB, "%s does not fit its member",
+             key->path);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSceneFillRecord(const LamDocument *document, const LamNode *base, const LamScales *scales,
+                                  const char record[], void *target)
+{
+  const size_t skip = strlen(base->key->path);
+  const LamKey *key;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; (key = LamKeyAt(i)); i++) {
+    const LamNode *node;
+    LamValue value = {0};
+
+    if (!key->record || strcmp(key->record, record) || strncmp(key->path, base->key->path, skip)) continue;
+    node = LamNodeFindPath(base, key->path + skip + (skip ? 1 : 0));
+    if (node)
+      value = node->value;
+    else if (key->default_value)
+      PetscCall(ReadDefault(key, &value));
+    if (value.count) PetscCall(Store(document, node, key, &value, scales, target));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSceneGet(const LamNode *base, const char path[], const LamNode **node, LamValue *value)
+{
+  const LamKey *key = LamKeyFind(path);
+  const size_t skip = strlen(base->key->path);
+
+  PetscFunctionBeginUser;
+  *value = (LamValue){0};
+  *node = LamNodeFindPath(base, path + skip + (skip ? 1 : 0));
+  if (*node)
+    *value = (*node)->value;
+  else if (key->default_value)
+    PetscCall(ReadDefault(key, value));
+  PetscFunctionReturn(0);
+}
