@@ -1,8 +1,8 @@
 /*
-  Private to scene reading: the table of keys. One row per key says everything about it; the reader, the messages and
-  the scene reference (docs/reference/scene.md) follow the table.
+  Private to scene reading: the tables of keys. One row per key says everything about it, also to which member of which
+  struct its value goes; the reader, the messages and the scene reference (docs/reference/scene.md) follow the rows.
 
-  A new key is one row, and a line in the scene_*.c that uses it.
+  A new key is one row in the file of its block.
 */
 #ifndef LAM_SCENE_KEYS_H
 #define LAM_SCENE_KEYS_H
