@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Sets Lamella up on Debian 12.
+# Sets Lamella up on Debian 12 or 13.
 #   ./setup.sh            install what is missing, build, run the main job and show its result
 #   ./setup.sh test       the same up to the build, then the tests
 #   ./setup.sh deps       only install what is missing
@@ -16,7 +16,7 @@ packages=(
   libmuparser-dev # expressions of the position
 )
 test_packages=(libcmocka-dev python3-numpy python3-h5py python3-meshio)
-fuzz_packages=(clang libclang-rt-14-dev)
+fuzz_packages=(clang libclang-rt-dev)
 
 # One thread per rank, on one machine as on a cluster; Open MPI refuses root unless it is told.
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1

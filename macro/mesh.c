@@ -389,7 +389,12 @@ static PetscErrorCode CreateMesh(MPI_Comm comm, const LamMacroSpec *spec, DM *dm
   PetscFunctionBeginUser;
   switch (spec->source) {
   case LAM_MESH_BOX:
+#if PETSC_VERSION_GE(3, 22, 0)
+    PetscCall(DMPlexCreateBoxMesh(comm, 2, PETSC_FALSE, spec->elements, lower, spec->box, NULL, PETSC_TRUE, 0,
+                                  PETSC_TRUE, dm));
+#else
     PetscCall(DMPlexCreateBoxMesh(comm, 2, PETSC_FALSE, spec->elements, lower, spec->box, NULL, PETSC_TRUE, dm));
+#endif
     break;
   case LAM_MESH_DISC:
     PetscCall(LamMacroDiscCreate(comm, spec->disc, spec->elements, dm));

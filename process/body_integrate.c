@@ -230,7 +230,7 @@ static PetscErrorCode SolveStep(Integration *in, PetscReal time, PetscReal c, Pe
 
 /* Solve of a SUNNonlinearSolver. */
 static int Solve(SUNNonlinearSolver solver, N_Vector y0, N_Vector correction, N_Vector w, PetscReal tolerance,
-                 booleantype setup, void *mem)
+                 sunbooleantype setup, void *mem)
 {
   Integration *in = (Integration *)solver->content;
   N_Vector predicted, rates, yn, ypn, residual;
@@ -252,13 +252,13 @@ static SUNNonlinearSolver_Type SolverType(SUNNonlinearSolver solver)
 /* IDA gives it the residual, which SolveStep knows. */
 static int SetSystem(SUNNonlinearSolver solver, SUNNonlinSolSysFn residual)
 {
-  return SUN_NLS_SUCCESS;
+  return SUN_SUCCESS;
 }
 
 static int FreeSolver(SUNNonlinearSolver solver)
 {
   SUNNonlinSolFreeEmpty(solver);
-  return SUN_NLS_SUCCESS;
+  return SUN_SUCCESS;
 }
 
 /* IDAResFn; nothing asks it. */
@@ -401,7 +401,7 @@ static PetscErrorCode Create(LamBody body, Integration *in)
   in->event_count = LamBodyListEvents(body, in->events);
   in->total = in->layout.n;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &in->total, 1, MPIU_INT, MPI_SUM, body->comm));
-  LamCallSUN(SUNContext_Create(&body->comm, &in->context));
+  LamCallSUN(LamContextCreate(body->comm, &in->context));
   in->y = N_VNew_Parallel(body->comm, in->layout.n, in->total, in->context);
   PetscCheck(in->y, PETSC_COMM_SELF, PETSC_ERR_MEM, "SUNDIALS: no memory for a vector");
   in->yp = N_VClone(in->y);
@@ -409,7 +409,7 @@ static PetscErrorCode Create(LamBody body, Integration *in)
   PetscCall(StartRates(in));
   in->ida = IDACreate(in->context);
   PetscCheck(in->ida, PETSC_COMM_SELF, PETSC_ERR_MEM, "SUNDIALS: no memory for an integrator");
-  LamCallSUN(IDASetErrHandlerFn(in->ida, LamSilence, NULL));
+  LamCallSUN(LamIntegratorSilence(in->ida, in->context));
   LamCallSUN(IDAInit(in->ida, Residual, body->process->tissue.time, in->y, in->yp));
   LamCallSUN(IDASetUserData(in->ida, in));
   LamCallSUN(IDAWFtolerances(in->ida, Weights));

@@ -326,7 +326,7 @@ static PetscErrorCode Create(LamProcess process, Integration *in)
   in->process = process;
   in->layout = LayOut(process);
   in->event_count = LamProcessListEvents(process, in->events);
-  LamCallSUN(SUNContext_Create(NULL, &in->context));
+  LamCallSUN(LamContextCreate(MPI_COMM_NULL, &in->context));
   in->y = N_VNew_Serial(in->layout.n, in->context);
   in->yp = N_VClone(in->y);
   in->tolerance = N_VClone(in->y);
@@ -337,7 +337,7 @@ static PetscErrorCode Create(LamProcess process, Integration *in)
   PetscCall(StartRates(in, segment->start));
   in->ida = IDACreate(in->context);
   PetscCheck(in->ida, PETSC_COMM_SELF, PETSC_ERR_MEM, "SUNDIALS: no memory for an integrator");
-  LamCallSUN(IDASetErrHandlerFn(in->ida, LamSilence, NULL));
+  LamCallSUN(LamIntegratorSilence(in->ida, in->context));
   LamCallSUN(IDAInit(in->ida, Residual, segment->start, in->y, in->yp));
   LamCallSUN(IDASVtolerances(in->ida, process->spec->tolerance, in->tolerance));
   LamCallSUN(IDASetUserData(in->ida, in));

@@ -5,6 +5,7 @@
 #include <petscsys.h>
 #include <lamella/process.h>
 #include <ida/ida.h>
+#include <sundials/sundials_version.h>
 
 #define LamCallSUN(call)                                                                                               \
   do {                                                                                                                 \
@@ -13,8 +14,32 @@
                lam_sun_flag_);                                                                                         \
   } while (0)
 
-/* IDAErrHandlerFn: what went wrong is told by the process. */
+/* SUNDIALS 6 and 7: a context of a communicator, and an integrator whose failures are reported by the process alone. */
+#if SUNDIALS_VERSION_MAJOR < 7
+#define SUN_SUCCESS 0
+
+static inline int LamContextCreate(MPI_Comm comm, SUNContext *context)
+{
+  return SUNContext_Create(comm == MPI_COMM_NULL ? NULL : &comm, context);
+}
+
 static inline void LamSilence(int code, const char *module, const char *function, char *message, void *ctx) {}
+
+static inline int LamIntegratorSilence(void *ida, SUNContext context)
+{
+  return IDASetErrHandlerFn(ida, LamSilence, NULL);
+}
+#else
+static inline int LamContextCreate(MPI_Comm comm, SUNContext *context)
+{
+  return SUNContext_Create(comm, context);
+}
+
+static inline int LamIntegratorSilence(void *ida, SUNContext context)
+{
+  return SUNContext_ClearErrHandlers(context);
+}
+#endif
 
 /* IDA looks for these events: numbers that rise through 0. */
 static inline PetscErrorCode LamFindRoots(void *ida, PetscInt count, IDARootFn roots)
