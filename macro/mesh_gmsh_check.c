@@ -2,14 +2,17 @@
   What is wrong with a Gmsh file.
 
   Method
-    PETSc believes a file: how many nodes there are, which of them an element names, how long a word is. What it says of
-    them is tested here first, by the same grammar: MeshFormat, PhysicalNames, Entities (from 4.0 on), Nodes, Elements.
-    What follows is not read.
+    PETSc refuses a file that is cut, a node given twice, parametric coordinates and unknown types of elements. It does
+    not check how many nodes, elements and tags there are, which nodes and entities an element names, nor how long a
+  word is: a wrong number makes it crash, hang or read other memory. These are checked here first, by the same grammar:
+    MeshFormat, PhysicalNames, Entities (from 4.0 on), Nodes, Elements. What follows is not read. Also refused is what
+    PETSc drops silently: a line of a side that is on no element.
 
   References
     C. Geuzaine and J.-F. Remacle, Gmsh Reference Manual, Sections "MSH file format" and "MSH file format version 2".
 */
 #include "macro_impl.h"
+#include <petsc/private/hashsetij.h>
 #include <errno.h>
 #include <limits.h>
 #include <math.h>
@@ -25,24 +28,14 @@ enum { MOST_WORD = 128, MOST_NAME = 120, MOST_TAGS = 16, MOST_NODES = 10 };
 #define SPARSE 64
 
 typedef struct {
-  int64_t a, b; /* a < b */
-} Pair;
-
-typedef struct {
-  Pair *items;
-  size_t n, room;
-} Pairs;
-
-typedef struct {
   const char *begin, *at, *end;
   int format; /* 22, 40, 41 */
   PetscBool binary, swapped;
-  int64_t first, span;   /* of the tags of nodes */
-  unsigned char *known;  /* [span] the node is there; owned */
-  Pairs entities;        /* dimension, tag; owned */
-  Pairs edges, segments; /* of elements of two dimensions, and elements of one; owned */
-  PetscInt elements[4];  /* by dimension */
-  char *why;             /* LAM_GMSH_WHY long */
+  int64_t first, span;         /* of the tags of nodes */
+  unsigned char *known;        /* [span] the node is there; owned */
+  PetscHSetIJ entities;        /* dimension, tag; owned */
+  PetscHSetIJ edges, segments; /* smaller node, larger node: of elements of two dimensions, of one; owned */
+  char *why;                   /* LAM_GMSH_WHY long */
 } Mesh;
 
 /* Always false: the words stay. */
@@ -147,38 +140,19 @@ static PetscBool Reals(Mesh *m, int64_t n)
 
 /* ---- pairs ---- */
 
-static PetscBool Add(Mesh *m, Pairs *p, int64_t a, int64_t b)
+static PetscBool Add(Mesh *m, PetscHSetIJ set, int64_t a, int64_t b)
 {
-  if (p->n == p->room) {
-    const size_t room = 2 * p->room + 64;
-    Pair *items = realloc(p->items, room * sizeof(*items));
+  const PetscHashIJKey key = {(PetscInt)a, (PetscInt)b};
 
-    if (!items) return Wrong(m, "no memory for the mesh");
-    p->items = items;
-    p->room = room;
-  }
-  p->items[p->n++] = (Pair){a, b};
-  return PETSC_TRUE;
+  return PetscHSetIJAdd(set, key) ? Wrong(m, "no memory for the mesh") : PETSC_TRUE;
 }
 
-static int Compare(const void *a, const void *b)
+static PetscBool Has(PetscHSetIJ set, int64_t a, int64_t b)
 {
-  const Pair *p = a, *q = b;
+  const PetscHashIJKey key = {(PetscInt)a, (PetscInt)b};
+  PetscBool has;
 
-  if (p->a != q->a) return p->a < q->a ? -1 : 1;
-  return (p->b > q->b) - (p->b < q->b);
-}
-
-static PetscBool Has(const Pairs *sorted, int64_t a, int64_t b)
-{
-  const Pair wanted = {a, b};
-
-  return (PetscBool)(sorted->n && bsearch(&wanted, sorted->items, sorted->n, sizeof(wanted), Compare));
-}
-
-static void Sort(Pairs *p)
-{
-  if (p->n) qsort(p->items, p->n, sizeof(*p->items), Compare);
+  return (PetscBool)(!PetscHSetIJHas(set, key, &has) && has);
 }
 
 /* ---- the front ---- */
@@ -248,7 +222,7 @@ static PetscBool Entity(Mesh *m, int dimension)
     for (int64_t i = 0; i < n; i++)
       if (!Integer(m, INT_MIN, INT_MAX, &ignored)) return PETSC_FALSE;
   }
-  return Add(m, &m->entities, dimension, tag);
+  return Add(m, m->entities, dimension, tag);
 }
 
 static PetscBool Entities(Mesh *m)
@@ -260,20 +234,19 @@ static PetscBool Entities(Mesh *m)
   for (int k = 0; k < 4; k++)
     for (int64_t i = 0; i < n[k]; i++)
       if (!Entity(m, k)) return PETSC_FALSE;
-  Sort(&m->entities);
   return Expect(m, "$EndEntities");
 }
 
 /* What a block begins with: its entity; of elements their type, too. */
 static PetscBool Block(Mesh *m, PetscBool of_elements, int64_t *third, int64_t *n)
 {
-  int64_t first, second;
   const PetscBool tag_first = (PetscBool)(m->format == 40);
+  int64_t first, second;
 
   if (!Integer(m, INT_MIN, INT_MAX, &first) || !Integer(m, INT_MIN, INT_MAX, &second) ||
       !Integer(m, 0, INT_MAX, third) || !Long(m, 1, n))
     return PETSC_FALSE;
-  if ((of_elements || m->format == 41) && !Has(&m->entities, tag_first ? second : first, tag_first ? first : second))
+  if ((of_elements || m->format == 41) && !Has(m->entities, tag_first ? second : first, tag_first ? first : second))
     return Wrong(m, "a block of an entity that is not in $Entities");
   return PETSC_TRUE;
 }
@@ -325,8 +298,7 @@ static PetscBool MarkNodes(Mesh *m, int64_t n, const int64_t tags[])
     return Wrong(m, "tags of nodes from %lld to %lld", (long long)m->first, (long long)last);
   m->known = calloc((size_t)m->span, 1);
   if (!m->known) return Wrong(m, "no memory for the mesh");
-  for (int64_t i = 0; i < n; i++)
-    if (m->known[tags[i] - m->first]++) return Wrong(m, "node %lld is given twice", (long long)tags[i]);
+  for (int64_t i = 0; i < n; i++) m->known[tags[i] - m->first] = 1; /* PETSc refuses a node that is given twice */
   return PETSC_TRUE;
 }
 
@@ -360,23 +332,24 @@ static PetscBool Nodes(Mesh *m)
 /* ---- elements ---- */
 
 static const struct {
-  int type, dimension, corners, nodes;
-} kinds[] = {{15, 0, 1, 1}, {1, 1, 2, 2},  {8, 1, 2, 3}, {2, 2, 3, 3}, {9, 2, 3, 6}, {3, 2, 4, 4},
-             {10, 2, 4, 9}, {16, 2, 4, 8}, {4, 3, 4, 4}, {5, 3, 8, 8}, {6, 3, 6, 6}, {7, 3, 5, 5}};
+  int type, corners, nodes;
+} kinds[] = {{15, 1, 1}, {1, 2, 2}, {8, 2, 3}, {2, 3, 3}, {9, 3, 6}, {3, 4, 4}, {10, 4, 9}, {16, 4, 8}};
 
 /* The kind of elements of a type; -1: not read. */
 static int FindKind(const Mesh *m, int64_t type)
 {
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(kinds); k++)
     if (kinds[k].type == type) return (int)k;
-  (void)Wrong(m, "elements of type %lld are not read; triangles and quadrilaterals are, straight or quadratic",
+  (void)Wrong(m,
+              "elements of type %lld are not read; mesh a surface in the plane X3 = 0 with triangles or "
+              "quadrilaterals, straight or quadratic",
               (long long)type);
   return -1;
 }
 
 static PetscBool ElementNodes(Mesh *m, int kind)
 {
-  const int corners = kinds[kind].corners, dimension = kinds[kind].dimension;
+  const int corners = kinds[kind].corners;
   int64_t node[MOST_NODES];
 
   for (int i = 0; i < kinds[kind].nodes; i++) {
@@ -386,13 +359,12 @@ static PetscBool ElementNodes(Mesh *m, int kind)
     for (int j = 0; j < i; j++)
       if (node[j] == node[i]) return Wrong(m, "an element has node %lld twice", (long long)node[i]);
   }
-  m->elements[dimension]++;
-  for (int i = 0; i < corners && dimension == 2; i++) {
+  for (int i = 0; i < (corners > 2 ? corners : corners - 1); i++) {
     const int64_t a = node[i], b = node[(i + 1) % corners];
 
-    if (!Add(m, &m->edges, PetscMin(a, b), PetscMax(a, b))) return PETSC_FALSE;
+    if (!Add(m, corners > 2 ? m->edges : m->segments, PetscMin(a, b), PetscMax(a, b))) return PETSC_FALSE;
   }
-  return dimension != 1 || Add(m, &m->segments, PetscMin(node[0], node[1]), PetscMax(node[0], node[1]));
+  return PETSC_TRUE;
 }
 
 /* Format 2.2: in text each element says its type and its tags, in binary numbers a block of them does. */
@@ -455,21 +427,18 @@ static PetscBool Elements(Mesh *m)
 /* A plane body, and lines on it. */
 static PetscBool Body(Mesh *m)
 {
-  const int dimension = m->elements[3] ? 3 : m->elements[2] ? 2 : m->elements[1] ? 1 : 0;
+  PetscHashIJKey *lines;
+  PetscInt edges = 0, n, first = 0, i = 0;
+  PetscBool good;
 
-  if (dimension != 2) {
-    snprintf(m->why, LAM_GMSH_WHY,
-             "its elements have %d dimensions; the body is plane: mesh a surface in the plane X3 = 0", dimension);
-    return PETSC_FALSE;
-  }
-  Sort(&m->edges);
-  for (size_t i = 0; i < m->segments.n; i++)
-    if (!Has(&m->edges, m->segments.items[i].a, m->segments.items[i].b)) {
-      snprintf(m->why, LAM_GMSH_WHY, "the line from node %lld to %lld is on no element",
-               (long long)m->segments.items[i].a, (long long)m->segments.items[i].b);
-      return PETSC_FALSE;
-    }
-  return PETSC_TRUE;
+  if (PetscHSetIJGetSize(m->edges, &edges) || !edges) return Wrong(m, "there is no element of a surface");
+  if (PetscHSetIJGetSize(m->segments, &n) || PetscMalloc1(n, &lines)) return Wrong(m, "no memory for the mesh");
+  (void)PetscHSetIJGetElems(m->segments, &first, lines);
+  while (i < n && Has(m->edges, lines[i].i, lines[i].j)) i++;
+  good =
+      i == n ? PETSC_TRUE : Wrong(m, "the line from node %d to %d is on no element", (int)lines[i].i, (int)lines[i].j);
+  (void)PetscFree(lines);
+  return good;
 }
 
 /* ---- all of it ---- */
@@ -536,12 +505,14 @@ PetscBool LamGmshCheck(const char path[], char why[LAM_GMSH_WHY])
   if (size < 11 || strncmp(bytes, "$MeshFormat", 11)) {
     snprintf(why, LAM_GMSH_WHY, "is no Gmsh mesh: it does not begin with $MeshFormat");
     good = PETSC_FALSE;
-  } else
+  } else if (PetscHSetIJCreate(&m.entities) || PetscHSetIJCreate(&m.edges) || PetscHSetIJCreate(&m.segments))
+    good = Wrong(&m, "no memory for the mesh");
+  else
     good = Read(&m);
   free(bytes);
   free(m.known);
-  free(m.entities.items);
-  free(m.edges.items);
-  free(m.segments.items);
+  (void)PetscHSetIJDestroy(&m.entities);
+  (void)PetscHSetIJDestroy(&m.edges);
+  (void)PetscHSetIJDestroy(&m.segments);
   return good;
 }

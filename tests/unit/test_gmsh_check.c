@@ -86,9 +86,8 @@ static void tags_that_are_far_apart_are_refused(void **state)
   AssertRefused(FORMAT_41 "$Nodes\n1 1 2817 4\n2 1 0 1\n1\n0 0 0\n$EndNodes\n", "said to be from 2817 to 4");
 }
 
-static void a_node_given_twice_is_refused(void **state)
+static void an_element_with_a_node_twice_is_refused(void **state)
 {
-  AssertRefused(FORMAT_22 "$Nodes\n2\n1 0 0 0\n1 1 0 0\n$EndNodes\n", "node 1 is given twice");
   AssertRefused(FORMAT_22 NODES_22 "$Elements\n1\n1 3 2 5 5 1 2 3 3\n$EndElements\n", "has node 3 twice");
 }
 
@@ -100,8 +99,8 @@ static void a_line_that_is_on_no_element_is_refused(void **state)
 
 static void what_is_no_plane_body_is_refused(void **state)
 {
-  AssertRefused(FORMAT_22 NODES_22 "$Elements\n1\n1 4 2 5 5 1 2 3 4\n$EndElements\n", "have 3 dimensions");
-  AssertRefused(FORMAT_22 NODES_22 "$Elements\n1\n1 1 2 1 1 1 2\n$EndElements\n", "have 1 dimensions");
+  AssertRefused(FORMAT_22 NODES_22 "$Elements\n1\n1 4 2 5 5 1 2 3 4\n$EndElements\n", "type 4 are not read");
+  AssertRefused(FORMAT_22 NODES_22 "$Elements\n1\n1 1 2 1 1 1 2\n$EndElements\n", "no element of a surface");
   AssertRefused(FORMAT_22 NODES_22 "$Elements\n1\n1 21 2 5 5 1 2 3 4\n$EndElements\n", "type 21 are not read");
 }
 
@@ -156,7 +155,7 @@ int main(void)
       cmocka_unit_test(an_entity_that_is_not_there_is_refused),
       cmocka_unit_test(more_than_the_file_has_room_for_is_refused),
       cmocka_unit_test(tags_that_are_far_apart_are_refused),
-      cmocka_unit_test(a_node_given_twice_is_refused),
+      cmocka_unit_test(an_element_with_a_node_twice_is_refused),
       cmocka_unit_test(a_line_that_is_on_no_element_is_refused),
       cmocka_unit_test(what_is_no_plane_body_is_refused),
       cmocka_unit_test(names_that_are_taken_are_refused),
