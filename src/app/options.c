@@ -2,41 +2,21 @@
   The command line of a command: GNU conventions by getopt_long, the help from the same table.
 */
 #include "app.h"
+#include "word_distance.h"
 #include <errno.h>
 #include <getopt.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_OPTIONS = 24, HELP_COLUMN = 28, HELP_WIDTH = 96, SUGGEST_LENGTH = 32 };
-
-/* Number of letters to change, insert or remove (Levenshtein distance; words are cut at SUGGEST_LENGTH). */
-static size_t EditDistance(const char a[], const char b[])
-{
-  const size_t n = PetscMin(strlen(a), SUGGEST_LENGTH), m = PetscMin(strlen(b), SUGGEST_LENGTH);
-  size_t row[SUGGEST_LENGTH + 1];
-
-  for (size_t j = 0; j <= m; j++) row[j] = j;
-  for (size_t i = 1; i <= n; i++) {
-    size_t diagonal = row[0];
-
-    row[0] = i;
-    for (size_t j = 1; j <= m; j++) {
-      const size_t replaced = diagonal + (a[i - 1] != b[j - 1]);
-
-      diagonal = row[j];
-      row[j] = PetscMin(replaced, 1 + PetscMin(row[j], row[j - 1]));
-    }
-  }
-  return row[m];
-}
+enum { MOST_OPTIONS = 24, HELP_COLUMN = 28, HELP_WIDTH = 96 };
 
 const char *LamSuggest(const char word[], const char *const names[])
 {
   const char *best = NULL;
-  size_t least = PetscMax(1, strlen(word) / 2) + 1;
+  PetscInt least = (PetscInt)PetscMax(1, strlen(word) / 2) + 1;
 
   for (; *names; names++) {
-    const size_t distance = EditDistance(word, *names);
+    const PetscInt distance = LamWordDistance(word, *names);
 
     if (distance >= least) continue;
     least = distance;

@@ -3,30 +3,11 @@
 */
 #include "scene_keys.h"
 #include "quantity_text.h"
+#include "word_distance.h"
 #include <math.h>
 #include <string.h>
 
-enum { PATH_LENGTH = 80, MAX_WORD = 40 };
-
-/* The distance of Damerau and Levenshtein (adjacent letters may be swapped): how many slips apart two words are. */
-static PetscInt WordDistance(const char a[], const char b[])
-{
-  const size_t m = strlen(a), n = strlen(b);
-  PetscInt d[MAX_WORD + 1][MAX_WORD + 1];
-
-  if (m > MAX_WORD || n > MAX_WORD) return MAX_WORD;
-  for (size_t i = 0; i <= m; i++) d[i][0] = (PetscInt)i;
-  for (size_t j = 0; j <= n; j++) d[0][j] = (PetscInt)j;
-  for (size_t i = 1; i <= m; i++) {
-    for (size_t j = 1; j <= n; j++) {
-      d[i][j] = PetscMin(PetscMin(d[i - 1][j], d[i][j - 1]) + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1]));
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-        d[i][j] = PetscMin(d[i][j], d[i - 2][j - 2] + 1);
-      }
-    }
-  }
-  return d[m][n];
-}
+enum { PATH_LENGTH = 80 };
 
 /* The key that was most likely meant by an unknown one in `map`: a similar one there, else one so named elsewhere. */
 static const LamKey *NearestKey(const LamKey *map, const char name[])
@@ -37,7 +18,7 @@ static const LamKey *NearestKey(const LamKey *map, const char name[])
   for (PetscInt i = 0; (key = LamKeyAt(i)); i++) {
     PetscInt distance;
     if (!LamKeyIsChild(key, map)) continue;
-    distance = WordDistance(name, LamKeyName(key));
+    distance = LamWordDistance(name, LamKeyName(key));
     if (distance <= best && distance < (PetscInt)strlen(name)) {
       if (!nearest || distance < best) nearest = key;
       best = distance;
