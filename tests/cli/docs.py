@@ -74,7 +74,7 @@ def run(command):
     return done.stdout
 
 
-MACHINE = r"[-+.\de]+(?= (?:ms|s|MB|% of the time)\b)|(?<=nodes per s).*|(?<=created).*|(?<=host).*"
+MACHINE = r"\d[-+.\de]* (?:us|ms|s|min|h|MB|% of the time)\b|(?<=nodes per s).*|(?<=created).*|(?<=host).*"
 
 
 def masked(lines):
