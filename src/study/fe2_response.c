@@ -224,7 +224,7 @@ static PetscErrorCode CreateSolver(LamFE2Run *run, LamFE2Tissue *tissue)
 /*
   Of cells in contact nearly all of P is turgor, across the plane; what moves the body is a small part of it, whose
   error is ten times as large. Coarser meshes of the walls have no such accuracy to give. docs/results/performance.md,
-  FE2.
+  FE².
 */
 #define EVEN_ALONG 12 /* elements along a face */
 static PetscReal AnswerAccuracy(const LamFE2Run *run, const LamFE2Tissue *tissue)

@@ -3,7 +3,7 @@
 
   Mesh. The cheapest one whose error of P stays below the wanted accuracy for the scene's walls and loads, by the model
   of error_model.h. A body of cells in contact moves by their tangent, which contact that passes from node to node makes
-  uneven: 4-8 % with 6 elements along a face, 2 % with 12, below 1 % with BODY_ALONG (docs/results/performance.md, FE2).
+  uneven: 4-8 % with 6 elements along a face, 2 % with 12, below 1 % with BODY_ALONG (docs/results/performance.md, FE²).
 */
 #include "error_model.h"
 #include "map.h"

@@ -1,4 +1,4 @@
-/* The figures of docs/results/paper.md, Section 3 of Mihai, Safar & Wyatt; asserts nothing. */
+/* The figures of docs/results/paper.md: Section 3 of Mihai, Safar & Wyatt; asserts nothing. */
 #include <stdio.h>
 #include "figures_gap.h"
 #include "figures_shear.h"

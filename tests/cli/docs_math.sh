@@ -1,5 +1,5 @@
 # The equations of the documents: delimiters, braces and environments balance, macros are known, nothing is in them that
-# Markdown would take for its own, and the source files that docs/theory names exist.
+# Markdown would take for its own; the source files that docs/theory names exist, and so do the titles that sources cite.
 . "$(dirname "$0")/common.sh"
 /usr/bin/python3 - "$source" <<'PYTHON'
 import re, sys
@@ -67,6 +67,18 @@ for document in (source / "docs" / "theory").glob("*.md"):
         if not list(folder.glob(Path(path).name)):
             failures.append(f"{document}: {path} is not there")
 
+citations = 0
+for folder in ("include", "src", "rve", "macro", "process", "tests", "examples"):
+    for file in (source / folder).rglob("*.[ch]"):
+        text = re.sub(r"\s*\n[ *]*", " ", file.read_text())
+        for path, title in re.findall(r"\b(docs/(?:theory|results)/[\w-]+\.md)[,;] +\"?([A-Z][^.;):\"]*)", text):
+            citations += 1
+            titles = re.findall(r"^#+ +(.*?) *$", (source / path).read_text(), re.M)
+            if not any(title.startswith(known_title) for known_title in titles):
+                failures.append(f"{file}: {path} has no section {title}")
+
+if citations < 10:
+    failures.append(f"only {citations} citations of titles found")
 if equations < 500:
     failures.append(f"only {equations} equations found")
 print("\n".join(failures), end="\n" if failures else "")
