@@ -12,6 +12,7 @@
 #include <string.h>
 #include <petsctime.h>
 #include <lamella/lamella.h>
+#include "app.h"
 #include "random_reals.h"
 
 enum { MAX_STEPS = 64 };
@@ -214,11 +215,12 @@ static PetscErrorCode Compare(const char path[], PetscInt sampled)
   Figures direct = {0}, cold = {0}, warm = {0};
   LamDatabase database;
   LamScene *scene;
+  LamPlan plan;
 
   PetscFunctionBeginUser;
   PetscCall(LamSceneRead(path, &scene));
-  if (!scene->micro.along) scene->micro.along = 6; /* as the planner chooses for 1 % */
-  if (!scene->micro.through) scene->micro.through = 2;
+  PetscCall(LamPlanMake(scene, &plan));
+  scene->micro = plan.micro;
   printf("%s, accuracy %g; the last columns: reactions against direct, %% of their norm, step by step\n", path,
          (double)scene->accuracy);
   printf("%-14s %8s %8s %8s %8s %6s %5s %5s\n", "response", "seconds", "queries", "hits", "solves", "fail", "iter.",

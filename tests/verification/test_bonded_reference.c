@@ -3,7 +3,6 @@
 #include "figures_reference.h"
 
 #define DATA LAMELLA_SOURCE_DIR "/tests/verification/data/bonded.json"
-#define SHARED LAMELLA_SOURCE_DIR "/../shared/reference/bonded.json"
 
 static ReferenceError errors[REFERENCE_CASES_MAX];
 static int count;
@@ -44,26 +43,11 @@ static void StressAgreesWithFEBio(void **state)
   assert_true(error[1] < 0.005);
 }
 
-/* The copy in the repository is the original. */
-static void CopyOfTheReferenceIsFaithful(void **state)
-{
-  json_t *original = json_load_file(SHARED, 0, NULL), *copy = json_load_file(DATA, 0, NULL);
-
-  if (!original) {
-    json_decref(copy);
-    skip();
-  }
-  assert_true(json_equal(original, copy));
-  json_decref(original);
-  json_decref(copy);
-}
-
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(EnergyAgrees),          cmocka_unit_test(StressAgrees),
-      cmocka_unit_test(TangentAgrees),         cmocka_unit_test(LumenFractionAgrees),
-      cmocka_unit_test(StressAgreesWithFEBio), cmocka_unit_test(CopyOfTheReferenceIsFaithful),
+      cmocka_unit_test(EnergyAgrees),        cmocka_unit_test(StressAgrees),          cmocka_unit_test(TangentAgrees),
+      cmocka_unit_test(LumenFractionAgrees), cmocka_unit_test(StressAgreesWithFEBio),
   };
   int failed;
 

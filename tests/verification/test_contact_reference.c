@@ -4,7 +4,6 @@
 #include "figures_contact.h"
 
 #define DATA LAMELLA_SOURCE_DIR "/tests/verification/data/contact.json"
-#define SHARED LAMELLA_SOURCE_DIR "/../shared/reference/contact.json"
 #define MESHES 2
 
 static ContactReferenceCase cases[MESHES][CONTACT_CASES_MAX];
@@ -40,25 +39,12 @@ static void DryStateIsAnswered(void **state)
     if (cases[0][k].turgor == 0.0) assert_int_equal(cases[0][k].response.status, LAM_CONVERGED);
 }
 
-/* The copy in the repository is the original. */
-static void CopyOfTheReferenceIsFaithful(void **state)
-{
-  json_t *original = json_load_file(SHARED, 0, NULL), *copy = json_load_file(DATA, 0, NULL);
-  const int equal = !original || json_equal(original, copy), absent = !original;
-
-  json_decref(original);
-  json_decref(copy);
-  if (absent) skip();
-  assert_true(equal);
-}
-
 static int Run(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(StressAgrees),
       cmocka_unit_test(LumenFractionAgrees),
       cmocka_unit_test(DryStateIsAnswered),
-      cmocka_unit_test(CopyOfTheReferenceIsFaithful),
   };
 
   return cmocka_run_group_tests(tests, SolveAll, NULL);
