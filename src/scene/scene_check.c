@@ -69,102 +69,56 @@ static PetscErrorCode CheckKind(const LamDocument *document, const LamNode *node
 
   PetscFunctionBeginUser;
   if (node->is_null) PetscCall(FailValue(document, node, key, single, "has no value"));
-  if (node->kind != kind) {
-    snprintf(reason, sizeof(reason), "is %s where %s belongs", kinds[node->kind], kinds[kind]);
-    PetscCall(FailValue(document, node, key, single, reason));
-  }
+  snprintf(reason, sizeof(reason), "is %s where %s belongs", kinds[node->kind], kinds[kind]);
+  if (node->kind != kind) PetscCall(FailValue(document, node, key, single, reason));
   PetscFunctionReturn(0);
 }
 
-/* A number without a unit. */
-static PetscErrorCode ReadPlainNumber(const LamDocument *document, const LamNode *node, const LamKey *key,
-                                      PetscReal *number)
+/* The number of a text without a unit, or the reason why it is none. */
+static const char *ScanPlain(const char text[], LamKeyType type, PetscReal *number)
 {
   const char *end;
 
-  PetscFunctionBeginUser;
-  *number = LamNumberScan(node->text, &end);
-  if (LamTextIsNonFinite(node->text)) PetscCall(FailValue(document, node, key, PETSC_TRUE, "is not a finite number"));
-  if (end == node->text) PetscCall(FailValue(document, node, key, PETSC_TRUE, "is not a number"));
-  if (*end) PetscCall(FailValue(document, node, key, PETSC_TRUE, "is not a plain number"));
-  if (!isfinite(*number)) PetscCall(FailValue(document, node, key, PETSC_TRUE, "is too large"));
-  if (key->type == LAM_KEY_INTEGER && strspn(node->text, "+-0123456789") != strlen(node->text)) {
-    PetscCall(FailValue(document, node, key, PETSC_TRUE, "is not a whole number"));
-  }
-  PetscFunctionReturn(0);
+  *number = LamNumberScan(text, &end);
+  if (LamTextIsNonFinite(text)) return "is not a finite number";
+  if (end == text) return "is not a number";
+  if (*end) return "is not a plain number";
+  if (!isfinite(*number)) return "is too large";
+  return type == LAM_KEY_INTEGER && strspn(text, "+-0123456789") != strlen(text) ? "is not a whole number" : "";
 }
 
-static PetscErrorCode ReadName(const LamDocument *document, const LamNode *node, const LamKey *key, PetscReal *number)
+static const char *ScanName(const char text[], const LamKey *key, PetscReal *number)
 {
-  char expected[LAM_KEY_TEXT_LENGTH];
-
-  PetscFunctionBeginUser;
-  LamKeyExpectation(key, PETSC_TRUE, expected);
   for (PetscInt i = 0; i < key->name_count; i++) {
-    if (strcmp(node->text, key->names[i]) != 0) continue;
     *number = (PetscReal)i;
-    PetscFunctionReturn(0);
+    if (!strcmp(text, key->names[i])) return "";
   }
-  PetscCall(FailValue(document, node, key, PETSC_TRUE, "is none of the names known here"));
-  PetscFunctionReturn(0);
+  return "is none of the names known here";
 }
 
-static PetscErrorCode ReadBool(const LamDocument *document, const LamNode *node, const LamKey *key, PetscReal *number)
-{
-  PetscFunctionBeginUser;
-  if (!strcasecmp(node->text, "true"))
-    *number = 1.0;
-  else if (!strcasecmp(node->text, "false"))
-    *number = 0.0;
-  else
-    PetscCall(FailValue(document, node, key, PETSC_TRUE, "is not a truth value"));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ReadQuantity(const LamDocument *document, const LamNode *node, const LamKey *key,
-                                   PetscReal *number)
-{
-  char reason[LAM_REASON_LENGTH];
-
-  PetscFunctionBeginUser;
-  PetscCall(LamQuantityRead(node->text, key->dimension, number, reason));
-  if (reason[0]) PetscCall(FailValue(document, node, key, PETSC_TRUE, reason));
-  PetscFunctionReturn(0);
-}
-
-/* A bound in SI. */
-static PetscErrorCode BoundValue(const LamKey *key, const LamBound *bound, PetscReal *value)
+/* The bounds of a key in SI. */
+static PetscErrorCode BoundsInSI(const LamKey *key, LamBound bounds[2])
 {
   char text[LAM_REASON_LENGTH];
 
   PetscFunctionBeginUser;
-  *value = bound->value;
-  if (bound->kind == LAM_BOUND_NONE || !key->unit) PetscFunctionReturn(0);
-  snprintf(text, sizeof(text), "%.17g %s", (double)bound->value, key->unit);
-  PetscCall(LamQuantityParse(text, key->dimension, value));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode CheckBounds(const LamDocument *document, const LamNode *node, const LamKey *key, PetscReal number)
-{
-  PetscBool inside = PETSC_TRUE;
-  PetscReal lower, upper;
-
-  PetscFunctionBeginUser;
-  PetscCall(BoundValue(key, &key->lower, &lower));
-  PetscCall(BoundValue(key, &key->upper, &upper));
-  if (key->lower.kind == LAM_BOUND_INCLUDED && number < lower) inside = PETSC_FALSE;
-  if (key->lower.kind == LAM_BOUND_EXCLUDED && number <= lower) inside = PETSC_FALSE;
-  if (key->upper.kind == LAM_BOUND_INCLUDED && number > upper) inside = PETSC_FALSE;
-  if (key->upper.kind == LAM_BOUND_EXCLUDED && number >= upper) inside = PETSC_FALSE;
-  if (!inside) PetscCall(FailValue(document, node, key, PETSC_TRUE, "is out of range"));
+  bounds[0] = key->lower;
+  bounds[1] = key->upper;
+  for (int i = 0; i < 2; i++) {
+    if (bounds[i].kind == LAM_BOUND_NONE || !key->unit) continue;
+    snprintf(text, sizeof(text), "%.17g %s", (double)bounds[i].value, key->unit);
+    PetscCall(LamQuantityParse(text, key->dimension, &bounds[i].value));
+  }
   PetscFunctionReturn(0);
 }
 
 /* Reads one component of a value from a scalar. */
 static PetscErrorCode ReadSingle(const LamDocument *document, const LamNode *node, const LamKey *key, LamValue *value)
 {
+  char quantity[LAM_REASON_LENGTH];
+  const char *reason = "";
   PetscReal number = 0.0;
+  LamBound bounds[2];
 
   PetscFunctionBeginUser;
   PetscCall(CheckKind(document, node, key, PETSC_TRUE, LAM_NODE_SCALAR));
@@ -172,40 +126,33 @@ static PetscErrorCode ReadSingle(const LamDocument *document, const LamNode *nod
     value->is_free[value->count++] = PETSC_TRUE;
     PetscFunctionReturn(0);
   }
-  switch (key->type) {
-  case LAM_KEY_QUANTITY:
-  case LAM_KEY_QUANTITY_TENSOR:
-    PetscCall(ReadQuantity(document, node, key, &number));
-    break;
-  case LAM_KEY_NAME:
-    PetscCall(ReadName(document, node, key, &number));
-    break;
-  case LAM_KEY_BOOL:
-    PetscCall(ReadBool(document, node, key, &number));
-    break;
-  case LAM_KEY_TEXT:
-  case LAM_KEY_PATH:
-    break;
-  default:
-    PetscCall(ReadPlainNumber(document, node, key, &number));
+  if (key->type == LAM_KEY_QUANTITY || key->type == LAM_KEY_QUANTITY_TENSOR) {
+    PetscCall(LamQuantityRead(node->text, key->dimension, &number, quantity));
+    reason = quantity;
+  } else if (key->type == LAM_KEY_NAME) {
+    reason = ScanName(node->text, key, &number);
+  } else if (key->type == LAM_KEY_BOOL) {
+    number = !strcasecmp(node->text, "true");
+    if (number == 0.0 && strcasecmp(node->text, "false") != 0) reason = "is not a truth value";
+  } else if (key->type != LAM_KEY_TEXT && key->type != LAM_KEY_PATH) {
+    reason = ScanPlain(node->text, key->type, &number);
   }
-  PetscCall(CheckBounds(document, node, key, number));
+  PetscCall(BoundsInSI(key, bounds));
+  if (!reason[0] && !LamBoundsHold(&bounds[0], &bounds[1], number)) reason = "is out of range";
+  if (reason[0]) PetscCall(FailValue(document, node, key, PETSC_TRUE, reason));
   value->number[value->count++] = number;
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode ReadVector(const LamDocument *document, LamNode *node, const LamKey *key)
 {
+  char reason[LAM_REASON_LENGTH];
+
   PetscFunctionBeginUser;
   PetscCall(CheckKind(document, node, key, PETSC_FALSE, LAM_NODE_LIST));
-  if (node->count != key->size) {
-    char reason[LAM_REASON_LENGTH];
-    snprintf(reason, sizeof(reason), "has %d entries", (int)node->count);
-    PetscCall(FailValue(document, node, key, PETSC_FALSE, reason));
-  }
-  for (LamNode *item = node->first; item; item = item->next) {
-    PetscCall(ReadSingle(document, item, key, &node->value));
-  }
+  snprintf(reason, sizeof(reason), "has %d entries", (int)node->count);
+  if (node->count != key->size) PetscCall(FailValue(document, node, key, PETSC_FALSE, reason));
+  for (LamNode *item = node->first; item; item = item->next) PetscCall(ReadSingle(document, item, key, &node->value));
   PetscFunctionReturn(0);
 }
 
@@ -213,20 +160,16 @@ static PetscErrorCode ReadVector(const LamDocument *document, LamNode *node, con
 static PetscErrorCode ReadTensor(const LamDocument *document, LamNode *node, const LamKey *key)
 {
   LamValue read = {0};
+  PetscBool square;
 
   PetscFunctionBeginUser;
   PetscCall(CheckKind(document, node, key, PETSC_FALSE, LAM_NODE_LIST));
-  if (node->count != 2 && node->count != 3) {
-    PetscCall(FailValue(document, node, key, PETSC_FALSE, "is no square tensor"));
-  }
-  for (const LamNode *row = node->first; row; row = row->next) {
-    if (row->kind != LAM_NODE_LIST || row->count != node->count) {
-      PetscCall(FailValue(document, node, key, PETSC_FALSE, "is no square tensor"));
-    }
-    for (const LamNode *item = row->first; item; item = item->next) {
-      PetscCall(ReadSingle(document, item, key, &read));
-    }
-  }
+  square = (PetscBool)(node->count == 2 || node->count == 3);
+  for (const LamNode *row = node->first; row; row = row->next)
+    if (row->kind != LAM_NODE_LIST || row->count != node->count) square = PETSC_FALSE;
+  if (!square) PetscCall(FailValue(document, node, key, PETSC_FALSE, "is no square tensor"));
+  for (const LamNode *row = node->first; row; row = row->next)
+    for (const LamNode *item = row->first; item; item = item->next) PetscCall(ReadSingle(document, item, key, &read));
   node->value.count = LAM_VALUE_SIZE;
   if (key->type == LAM_KEY_TENSOR)
     node->value.number[8] = 1.0;
@@ -268,10 +211,8 @@ static PetscErrorCode ReadMap(const LamDocument *document, LamNode *node, const 
     const int length = snprintf(path, sizeof(path), "%s%s%s", key->path, key->path[0] ? "." : "", entry->name);
 
     if (length < PATH_LENGTH) entry_key = LamKeyFind(path);
-    if (!entry_key || !LamKeyIsChild(entry_key, key))
-      PetscCall(FailUnknown(document, entry, key));
-    else
-      PetscCall(LamSceneReadNode(document, entry, entry_key));
+    if (!entry_key || !LamKeyIsChild(entry_key, key)) PetscCall(FailUnknown(document, entry, key));
+    PetscCall(LamSceneReadNode(document, entry, entry_key));
   }
   for (PetscInt i = 0; (child = LamKeyAt(i)); i++) {
     const char *name = LamKeyName(child);
@@ -312,9 +253,8 @@ PetscErrorCode LamSceneCheckKeys(LamDocument *document)
   const LamNode start = {.line = 1, .column = 1};
 
   PetscFunctionBeginUser;
-  if (!document->root || document->root->is_null) {
-    PetscCall(LamSceneFail(document, &start, "the file holds no scene; a scene starts with version: 1"));
-  }
+  LamSceneCheck(document->root && !document->root->is_null, document, &start,
+                "the file holds no scene; a scene starts with version: 1");
   PetscCall(LamSceneReadNode(document, document->root, LamKeyFind("")));
   PetscFunctionReturn(0);
 }

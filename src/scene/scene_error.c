@@ -34,65 +34,26 @@ static void CopyPrintable(const char text[], size_t shown, char copy[VALUE_SHOWN
   memcpy(copy + n, n < length ? "..." : "", n < length ? 4 : 1);
 }
 
-static PetscErrorCode Raise(const LamDocument *document, int line, int column, const char path[], const char value[],
-                            const char format[], va_list arguments)
+PetscErrorCode LamSceneRaise(const LamDocument *document, const LamNode *node, LamMistake mistake, const char key[],
+                             const char format[], ...)
 {
+  const PetscBool at_name = (PetscBool)(mistake == LAM_MISTAKE_NAME || (mistake == LAM_MISTAKE_MISSING && node->name));
   const size_t length = strlen(document->name);
   const char *name = document->name + (length > NAME_SHOWN ? length - NAME_SHOWN : 0);
-  char shown[VALUE_SHOWN + 4] = "", detail[DETAIL_LENGTH], message[MESSAGE_LENGTH];
-
-  PetscFunctionBeginUser;
-  if (value) CopyPrintable(value, VALUE_SHOWN, shown);
-  vsnprintf(detail, sizeof(detail), format, arguments);
-  snprintf(message, sizeof(message), "%s%s:%d:%d: %s%s%s%s%s", name == document->name ? "" : "...", name, line, column,
-           path, path[0] ? ": " : "", shown, shown[0] ? ": " : "", detail);
-  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s", message);
-}
-
-PetscErrorCode LamSceneFail(const LamDocument *document, const LamNode *node, const char format[], ...)
-{
-  char path[KEY_LENGTH];
+  char path[KEY_LENGTH], shown[VALUE_SHOWN + 4] = "", detail[DETAIL_LENGTH], message[MESSAGE_LENGTH];
   va_list arguments;
-  PetscErrorCode ierr;
-
-  PetscFunctionBeginUser;
-  NodePath(node, path);
-  va_start(arguments, format);
-  ierr = Raise(document, node->line, node->column, path, node->text, format, arguments);
-  va_end(arguments);
-  PetscFunctionReturn(ierr);
-}
-
-PetscErrorCode LamSceneFailName(const LamDocument *document, const LamNode *node, const char format[], ...)
-{
-  char path[KEY_LENGTH];
-  va_list arguments;
-  PetscErrorCode ierr;
-
-  PetscFunctionBeginUser;
-  NodePath(node, path);
-  va_start(arguments, format);
-  ierr = Raise(document, node->name_line, node->name_column, path, NULL, format, arguments);
-  va_end(arguments);
-  PetscFunctionReturn(ierr);
-}
-
-PetscErrorCode LamSceneFailMissing(const LamDocument *document, const LamNode *node, const char key[],
-                                   const char format[], ...)
-{
-  const PetscBool named = node->name ? PETSC_TRUE : PETSC_FALSE;
-  char path[KEY_LENGTH];
   size_t used;
-  va_list arguments;
-  PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
   NodePath(node, path);
   used = strlen(path);
-  snprintf(path + used, KEY_LENGTH - used, "%s%s", used ? "." : "", key);
+  if (key) snprintf(path + used, KEY_LENGTH - used, "%s%s", used ? "." : "", key);
+  if (mistake == LAM_MISTAKE_VALUE && node->text) CopyPrintable(node->text, VALUE_SHOWN, shown);
   va_start(arguments, format);
-  ierr = Raise(document, named ? node->name_line : node->line, named ? node->name_column : node->column, path, NULL,
-               format, arguments);
+  vsnprintf(detail, sizeof(detail), format, arguments);
   va_end(arguments);
-  PetscFunctionReturn(ierr);
+  snprintf(message, sizeof(message), "%s%s:%d:%d: %s%s%s%s%s", name == document->name ? "" : "...", name,
+           at_name ? node->name_line : node->line, at_name ? node->name_column : node->column, path,
+           path[0] ? ": " : "", shown, shown[0] ? ": " : "", detail);
+  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s", message);
 }

@@ -56,98 +56,85 @@ PetscBool LamKeyIsChild(const LamKey *key, const LamKey *map)
   return strpbrk(rest, ".[") ? PETSC_FALSE : PETSC_TRUE;
 }
 
-static const char *BoundWords(const LamBound *bound, PetscBool lower)
+const char *LamBoundWords(const LamBound *bound, PetscBool lower)
 {
   if (bound->kind == LAM_BOUND_EXCLUDED) return lower ? "larger than" : "less than";
   return lower ? "at least" : "at most";
 }
 
+PetscBool LamBoundsHold(const LamBound *lower, const LamBound *upper, PetscReal number)
+{
+  return (PetscBool)(!(lower->kind == LAM_BOUND_INCLUDED && number < lower->value) &&
+                     !(lower->kind == LAM_BOUND_EXCLUDED && number <= lower->value) &&
+                     !(upper->kind == LAM_BOUND_INCLUDED && number > upper->value) &&
+                     !(upper->kind == LAM_BOUND_EXCLUDED && number >= upper->value));
+}
+
 static PetscBool HasOneValue(const LamKey *key)
 {
-  return key->lower.kind == LAM_BOUND_INCLUDED && key->upper.kind == LAM_BOUND_INCLUDED &&
-                 key->lower.value == key->upper.value
-             ? PETSC_TRUE
-             : PETSC_FALSE;
+  return (PetscBool)(key->lower.kind == LAM_BOUND_INCLUDED && key->upper.kind == LAM_BOUND_INCLUDED &&
+                     key->lower.value == key->upper.value);
 }
 
 void LamKeyBoundsText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH])
 {
   const char *space = key->unit ? " " : "", *unit = key->unit ? key->unit : "";
-  char lower[80] = "", upper[80] = "";
+  int used = 0;
 
+  text[0] = '\0';
   if (HasOneValue(key)) {
     snprintf(text, LAM_KEY_TEXT_LENGTH, "exactly %g%s%s", (double)key->lower.value, space, unit);
     return;
   }
-  if (key->lower.kind != LAM_BOUND_NONE) {
-    snprintf(lower, sizeof(lower), "%s %g%s%s", BoundWords(&key->lower, PETSC_TRUE), (double)key->lower.value, space,
-             unit);
-  }
-  if (key->upper.kind != LAM_BOUND_NONE) {
-    snprintf(upper, sizeof(upper), "%s %.9g%s%s", BoundWords(&key->upper, PETSC_FALSE), (double)key->upper.value, space,
-             unit);
-  }
-  snprintf(text, LAM_KEY_TEXT_LENGTH, "%s%s%s", lower, lower[0] && upper[0] ? " and " : "", upper);
+  if (key->lower.kind != LAM_BOUND_NONE)
+    used = snprintf(text, LAM_KEY_TEXT_LENGTH, "%s %g%s%s", LamBoundWords(&key->lower, PETSC_TRUE),
+                    (double)key->lower.value, space, unit);
+  if (key->upper.kind != LAM_BOUND_NONE)
+    snprintf(text + used, (size_t)(LAM_KEY_TEXT_LENGTH - used), "%s%s %.9g%s%s", used ? " and " : "",
+             LamBoundWords(&key->upper, PETSC_FALSE), (double)key->upper.value, space, unit);
 }
 
-/* "bonded or contact" */
-static void NamesText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH])
-{
-  size_t used = 0;
-
-  text[0] = '\0';
-  for (PetscInt i = 0; i < key->name_count && used < LAM_KEY_TEXT_LENGTH; i++) {
-    used += (size_t)snprintf(text + used, LAM_KEY_TEXT_LENGTH - used, "%s%s", i ? " or " : "", key->names[i]);
-  }
-}
-
+/* One component: "bonded or contact", "a stress with its unit, larger than 0 MPa". */
 static void SingleText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH])
 {
   static const char *const articles[] = {"a length",      "a stress", "an angle",       "a time",
                                          "a temperature", "a rate",   "a molar energy", "a permeability"};
-  const char *what = "a plain number";
-  char bounds[LAM_KEY_TEXT_LENGTH], with_unit[80];
+  const char *what = key->unit                                                ? articles[key->dimension]
+                     : key->type == LAM_KEY_INTEGER                           ? "a whole number"
+                     : key->type == LAM_KEY_BOOL                              ? "true or false"
+                     : key->type == LAM_KEY_TEXT || key->type == LAM_KEY_PATH ? "a text"
+                                                                              : "a plain number";
+  char bounds[LAM_KEY_TEXT_LENGTH];
+  int used = 0;
 
-  if (key->type == LAM_KEY_NAME) {
-    NamesText(key, text);
-    return;
-  }
+  for (PetscInt i = 0; i < key->name_count && used < LAM_KEY_TEXT_LENGTH; i++)
+    used += snprintf(text + used, (size_t)(LAM_KEY_TEXT_LENGTH - used), "%s%s", i ? " or " : "", key->names[i]);
+  if (key->type == LAM_KEY_NAME) return;
   LamKeyBoundsText(key, bounds);
-  if (key->unit) {
-    snprintf(with_unit, sizeof(with_unit), "%s with its unit", articles[key->dimension]);
-    what = with_unit;
-  } else if (key->type == LAM_KEY_INTEGER) {
-    what = "a whole number";
-  } else if (key->type == LAM_KEY_BOOL) {
-    what = "true or false";
-  } else if (key->type == LAM_KEY_TEXT || key->type == LAM_KEY_PATH) {
-    what = "a text";
-  }
-  snprintf(text, LAM_KEY_TEXT_LENGTH, "%s%s%.200s%s%s", what, bounds[0] ? ", " : "", bounds,
-           key->free_word ? ", or " : "", key->free_word ? key->free_word : "");
+  snprintf(text, LAM_KEY_TEXT_LENGTH, "%s%s%s%.200s%s%s", what, key->unit ? " with its unit" : "",
+           bounds[0] ? ", " : "", bounds, key->free_word ? ", or " : "", key->free_word ? key->free_word : "");
 }
 
 void LamKeyExpectation(const LamKey *key, PetscBool single, char text[LAM_KEY_TEXT_LENGTH])
 {
-  char one[LAM_KEY_TEXT_LENGTH];
+  const PetscBool tensor = (PetscBool)(key->type == LAM_KEY_TENSOR || key->type == LAM_KEY_QUANTITY_TENSOR);
+  char what[LAM_KEY_TEXT_LENGTH];
 
-  SingleText(key, one);
-  if (HasOneValue(key)) {
-    snprintf(text, LAM_KEY_TEXT_LENGTH, "%s", key->example);
-  } else if (key->type == LAM_KEY_MAP) {
-    snprintf(text, LAM_KEY_TEXT_LENGTH, "keys and values, such as %s", key->example);
+  SingleText(key, what);
+  if (key->type == LAM_KEY_MAP) {
+    snprintf(what, sizeof(what), "keys and values");
   } else if (key->type == LAM_KEY_LIST) {
-    snprintf(text, LAM_KEY_TEXT_LENGTH, "a list, such as %s", key->example);
-  } else if (key->type == LAM_KEY_TENSOR && !single) {
-    snprintf(text, LAM_KEY_TEXT_LENGTH, "2x2 or 3x3 plain numbers, such as %s", key->example);
-  } else if (key->type == LAM_KEY_QUANTITY_TENSOR && !single) {
-    snprintf(text, LAM_KEY_TEXT_LENGTH, "2x2 or 3x3 values with units, such as %s", key->example);
+    snprintf(what, sizeof(what), "a list");
+  } else if (tensor && !single) {
+    snprintf(what, sizeof(what), "2x2 or 3x3 %s", key->unit ? "values with units" : "plain numbers");
   } else if (key->size && !single) {
-    snprintf(text, LAM_KEY_TEXT_LENGTH, "a list of %d, such as %s", (int)key->size, key->example);
-  } else if (key->type == LAM_KEY_NAME || key->type == LAM_KEY_BOOL || (key->size && single) ||
-             key->type == LAM_KEY_TENSOR || key->type == LAM_KEY_QUANTITY_TENSOR) {
-    snprintf(text, LAM_KEY_TEXT_LENGTH, "%s", one);
-  } else {
-    snprintf(text, LAM_KEY_TEXT_LENGTH, "%.300s, such as %s", one, key->example);
+    snprintf(what, sizeof(what), "a list of %d", (int)key->size);
+  } else if (key->type == LAM_KEY_NAME || key->type == LAM_KEY_BOOL || key->size || tensor) {
+    snprintf(text, LAM_KEY_TEXT_LENGTH, "%s", what); /* says it all, or the example is of the whole */
+    return;
   }
+  if (HasOneValue(key))
+    snprintf(text, LAM_KEY_TEXT_LENGTH, "%s", key->example);
+  else
+    snprintf(text, LAM_KEY_TEXT_LENGTH, "%.300s, such as %s", what, key->example);
 }

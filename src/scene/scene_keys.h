@@ -46,6 +46,10 @@ typedef struct {
   PetscReal value; /* in the key's unit */
 } LamBound;
 
+/* Whether a number, in the unit of the bounds, lies between them. */
+PetscBool LamBoundsHold(const LamBound *lower, const LamBound *upper, PetscReal number);
+const char *LamBoundWords(const LamBound *bound, PetscBool lower); /* "larger than" */
+
 typedef struct LamKey_s {
   const char *path; /* "rve.wall.C1"; an item of a list is "load[]", what it holds "load[].F" */
   LamKeyType type;
@@ -103,19 +107,6 @@ PetscErrorCode LamSceneReadNode(const LamDocument *document, LamNode *node, cons
 PetscErrorCode LamSceneFillRecord(const LamDocument *document, const LamNode *base, const LamScales *scales,
                                   const char record[], void *target);
 
-/* PetscCheck for scenes: LamSceneFail, LamSceneFailName or LamSceneFailMissing unless the condition holds. */
-#define LamSceneCheck(condition, document, node, ...)                                                                  \
-  do {                                                                                                                 \
-    if (!(condition)) PetscCall(LamSceneFail(document, node, __VA_ARGS__));                                            \
-  } while (0)
-#define LamSceneCheckName(condition, document, node, ...)                                                              \
-  do {                                                                                                                 \
-    if (!(condition)) PetscCall(LamSceneFailName(document, node, __VA_ARGS__));                                        \
-  } while (0)
-#define LamSceneRequire(condition, document, node, key, ...)                                                           \
-  do {                                                                                                                 \
-    if (!(condition)) PetscCall(LamSceneFailMissing(document, node, key, __VA_ARGS__));                                \
-  } while (0)
 #define LAM_BONDED_PARTS "contradicts law: bonded, whose cells never part; leave it out"
 
 /* The value of a key: where it is given, *node is its place; else *node is NULL and the value the default. */

@@ -82,67 +82,34 @@ typedef struct {
   const LamNode *quantity, *from, *to;
 } AxisNodes;
 
-/* ---- values ---- */
-
-static PetscErrorCode ReadPlain(const LamDocument *document, const LamNode *node, PetscReal *number)
-{
-  const char *end;
-
-  PetscFunctionBeginUser;
-  *number = LamNumberScan(node->text, &end);
-  LamSceneCheck(end > node->text && !*end && isfinite(*number), document, node,
-                "is not a plain number; write one, such as 0.1");
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ReadWithUnit(const LamDocument *document, const LamNode *node, Kind kind, PetscReal scale,
-                                   PetscReal *number)
-{
-  const LamDimension dimension = kind == STRESS ? LAM_DIMENSION_STRESS : LAM_DIMENSION_LENGTH;
-  char reason[LAM_REASON_LENGTH];
-  PetscReal si;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamQuantityRead(node->text, dimension, &si, reason));
-  LamSceneCheck(!reason[0], document, node, "%s; write a %s with its unit, such as %s", reason,
-                LamDimensionNames[dimension], LamDimensionExamples[dimension]);
-  PetscCall(LamSceneScale(document, node, si, scale, number));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode CheckBounds(const LamDocument *document, const LamNode *node, LamMapQuantity quantity,
-                                  const LamScales *scales, PetscReal number)
-{
-  const LamBound *lower = &Quantities[quantity].lower, *upper = &Quantities[quantity].upper;
-  const char *name = LamMapQuantityNames[quantity], *unit;
-  PetscReal scale;
-
-  PetscFunctionBeginUser;
-  unit = LamMapQuantityUnit(quantity, scales, &scale);
-  if ((lower->kind == LAM_BOUND_INCLUDED && number < lower->value) ||
-      (lower->kind == LAM_BOUND_EXCLUDED && number <= lower->value))
-    PetscCall(LamSceneFail(document, node, "is out of range; %s is %s %g", name,
-                           lower->kind == LAM_BOUND_INCLUDED ? "at least" : "larger than", (double)lower->value));
-  if ((upper->kind == LAM_BOUND_INCLUDED && number > upper->value) ||
-      (upper->kind == LAM_BOUND_EXCLUDED && number >= upper->value))
-    PetscCall(LamSceneFail(document, node, "is out of range; %s is %s %g%s%s", name,
-                           upper->kind == LAM_BOUND_INCLUDED ? "at most" : "less than", (double)(upper->value * scale),
-                           Quantities[quantity].kind == PLAIN ? "" : " ",
-                           Quantities[quantity].kind == PLAIN ? "" : unit));
-  PetscFunctionReturn(0);
-}
-
+/* An end of an axis, whose unit and bounds are those of its quantity. */
 static PetscErrorCode ReadEnd(const LamDocument *document, const LamNode *node, LamMapQuantity quantity,
                               const LamScales *scales, PetscReal *number)
 {
+  const LamBound *lower = &Quantities[quantity].lower, *upper = &Quantities[quantity].upper, none = {0};
   const Kind kind = Quantities[quantity].kind;
+  const LamDimension dimension = kind == STRESS ? LAM_DIMENSION_STRESS : LAM_DIMENSION_LENGTH;
+  const char *name = LamMapQuantityNames[quantity], *unit, *end;
+  char reason[LAM_REASON_LENGTH];
+  PetscReal scale, si;
 
   PetscFunctionBeginUser;
-  if (kind == PLAIN)
-    PetscCall(ReadPlain(document, node, number));
-  else
-    PetscCall(ReadWithUnit(document, node, kind, kind == STRESS ? scales->stress : scales->length, number));
-  PetscCall(CheckBounds(document, node, quantity, scales, *number));
+  unit = LamMapQuantityUnit(quantity, scales, &scale);
+  if (kind == PLAIN) {
+    *number = LamNumberScan(node->text, &end);
+    LamSceneCheck(end > node->text && !*end && isfinite(*number), document, node,
+                  "is not a plain number; write one, such as 0.1");
+  } else {
+    PetscCall(LamQuantityRead(node->text, dimension, &si, reason));
+    LamSceneCheck(!reason[0], document, node, "%s; write a %s with its unit, such as %s", reason,
+                  LamDimensionNames[dimension], LamDimensionExamples[dimension]);
+    PetscCall(LamSceneScale(document, node, si, kind == STRESS ? scales->stress : scales->length, number));
+  }
+  LamSceneCheck(LamBoundsHold(lower, &none, *number), document, node, "is out of range; %s is %s %g", name,
+                LamBoundWords(lower, PETSC_TRUE), (double)lower->value);
+  LamSceneCheck(LamBoundsHold(&none, upper, *number), document, node, "is out of range; %s is %s %g%s%s", name,
+                LamBoundWords(upper, PETSC_FALSE), (double)(upper->value * scale), kind == PLAIN ? "" : " ",
+                kind == PLAIN ? "" : unit);
   PetscFunctionReturn(0);
 }
 

@@ -10,16 +10,9 @@
 enum { MAX_DEPTH = 32, MAX_NODES = 400000, MAX_KEYS = 256, MAX_EXCERPT = 80 };
 
 typedef struct {
-  char *name;
-  LamNode *node;
-} Anchor;
-
-typedef struct {
   LamDocument *document;
   LamNode *stack[MAX_DEPTH]; /* open maps and lists */
   size_t start[MAX_DEPTH];   /* where in the text they start */
-  Anchor *anchors;
-  PetscInt anchor_count, anchor_capacity;
   int depth;
   PetscInt documents;
   char *name; /* the key that was read last and waits for its value; owned until a node takes it */
@@ -155,31 +148,27 @@ static PetscErrorCode BuilderKey(Builder *builder, struct fy_token *token)
   builder->name_column = key.name_column = key.column;
   key.name = builder->name;
   key.parent = map;
-  if (!strcmp(key.name, "<<")) {
-    PetscCall(LamSceneFailName(builder->document, &key, "merge keys are not read; write the keys out"));
-  }
+  LamSceneCheckName(strcmp(key.name, "<<"), builder->document, &key, "merge keys are not read; write the keys out");
   earlier = LamNodeFind(map, key.name, strlen(key.name));
-  if (earlier) {
-    PetscCall(
-        LamSceneFailName(builder->document, &key, "given twice, first in line %d; give it once", earlier->name_line));
-  }
-  if (map->count == MAX_KEYS) {
-    PetscCall(LamSceneFailName(builder->document, &key, "more than %d keys in one map; a scene is much smaller",
-                               (int)MAX_KEYS));
-  }
+  LamSceneCheckName(!earlier, builder->document, &key, "given twice, first in line %d; give it once",
+                    earlier->name_line);
+  LamSceneCheckName(map->count < MAX_KEYS, builder->document, &key,
+                    "more than %d keys in one map; a scene is much smaller", (int)MAX_KEYS);
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode AnchorAdd(Builder *builder, struct fy_token *token, LamNode *node)
+/* A node of the document, in its place; one with an anchor keeps its name. */
+static PetscErrorCode BuilderAdd(Builder *builder, LamNodeKind kind, LamNode place, struct fy_token *tag,
+                                 struct fy_token *anchor, LamNode **node)
 {
   PetscFunctionBeginUser;
-  if (!token) PetscFunctionReturn(0);
-  if (builder->anchor_count == builder->anchor_capacity) {
-    builder->anchor_capacity = PetscMax(8, 2 * builder->anchor_capacity);
-    PetscCall(PetscRealloc(sizeof(Anchor) * (size_t)builder->anchor_capacity, &builder->anchors));
-  }
-  PetscCall(TokenText(token, &builder->anchors[builder->anchor_count].name));
-  builder->anchors[builder->anchor_count++].node = node;
+  LamSceneCheck(!tag, builder->document, &place, "YAML tags (!...) are not read; write the value alone");
+  PetscCall(NodeCreate(builder->document, kind, place.line, place.column, node));
+  PetscCall(BuilderPut(builder, *node));
+  if (!anchor) PetscFunctionReturn(0);
+  PetscCall(TokenText(anchor, &(*node)->anchor));
+  (*node)->anchored = builder->document->anchored;
+  builder->document->anchored = *node;
   PetscFunctionReturn(0);
 }
 
@@ -190,22 +179,18 @@ static PetscErrorCode BuilderScalar(Builder *builder, const struct fy_event *eve
   LamNode place = Place(token), *node;
 
   PetscFunctionBeginUser;
-  if (event->scalar.tag) {
-    PetscCall(LamSceneFail(builder->document, &place, "YAML tags (!...) are not read; write the value alone"));
-  }
   if (BuilderAtKey(builder)) {
+    LamSceneCheck(!event->scalar.tag, builder->document, &place, "YAML tags (!...) are not read; write the key alone");
     PetscCall(BuilderKey(builder, token));
     PetscFunctionReturn(0);
   }
   /* where a value is left out its token has no place: it is missed at its key */
   if (empty && builder->name) place = (LamNode){.line = builder->name_line, .column = builder->name_column};
-  PetscCall(NodeCreate(builder->document, LAM_NODE_SCALAR, place.line, place.column, &node));
-  PetscCall(BuilderPut(builder, node));
+  PetscCall(BuilderAdd(builder, LAM_NODE_SCALAR, place, event->scalar.tag, event->scalar.anchor, &node));
   PetscCall(TokenText(token, &node->text));
   if (fy_token_scalar_style(token) == FYSS_PLAIN) {
     node->is_null = empty || !strcmp(node->text, "~") || !strcasecmp(node->text, "null") ? PETSC_TRUE : PETSC_FALSE;
   }
-  PetscCall(AnchorAdd(builder, event->scalar.anchor, node));
   PetscFunctionReturn(0);
 }
 
@@ -217,19 +202,13 @@ static PetscErrorCode BuilderOpen(Builder *builder, LamNodeKind kind, struct fy_
   LamNode *node;
 
   PetscFunctionBeginUser;
-  if (tag) PetscCall(LamSceneFail(builder->document, &place, "YAML tags (!...) are not read; write the value alone"));
-  if (BuilderAtKey(builder)) {
-    PetscCall(LamSceneFail(builder->document, &place, "a list or map stands where a key should; keys are plain words"));
-  }
-  if (builder->depth == MAX_DEPTH) {
-    PetscCall(LamSceneFail(builder->document, &place, "nested more than %d levels deep; a scene is much flatter",
-                           (int)MAX_DEPTH));
-  }
-  PetscCall(NodeCreate(builder->document, kind, place.line, place.column, &node));
-  PetscCall(BuilderPut(builder, node));
+  LamSceneCheck(!BuilderAtKey(builder), builder->document, &place,
+                "a list or map stands where a key should; keys are plain words");
+  LamSceneCheck(builder->depth < MAX_DEPTH, builder->document, &place,
+                "nested more than %d levels deep; a scene is much flatter", (int)MAX_DEPTH);
+  PetscCall(BuilderAdd(builder, kind, place, tag, anchor, &node));
   builder->start[builder->depth] = mark ? mark->input_pos : 0;
   builder->stack[builder->depth++] = node;
-  PetscCall(AnchorAdd(builder, anchor, node));
   PetscFunctionReturn(0);
 }
 
@@ -275,20 +254,17 @@ static PetscErrorCode BuilderAlias(Builder *builder, struct fy_token *token)
   LamNode *copy;
 
   PetscFunctionBeginUser;
-  if (BuilderAtKey(builder)) PetscCall(LamSceneFail(builder->document, &place, "an alias stands where a key should"));
+  LamSceneCheck(!BuilderAtKey(builder), builder->document, &place, "an alias stands where a key should");
   PetscCall(TokenText(token, &text));
   snprintf(name, sizeof(name), "%.40s", text);
-  for (PetscInt i = builder->anchor_count - 1; i >= 0 && !target; i--) {
-    if (!strcmp(builder->anchors[i].name, text)) target = builder->anchors[i].node;
-  }
+  for (LamNode *node = builder->document->anchored; node && !target; node = node->anchored)
+    if (!strcmp(node->anchor, text)) target = node;
   PetscCall(PetscFree(text));
   for (int i = 0; i < builder->depth; i++) {
     if (builder->stack[i] == target) target = NULL; /* it would contain itself */
   }
-  if (!target) {
-    PetscCall(LamSceneFail(builder->document, &place, "*%s: no finished value has the anchor &%s before this line",
-                           name, name));
-  }
+  LamSceneCheck(target, builder->document, &place, "*%s: no finished value has the anchor &%s before this line", name,
+                name);
   PetscCall(NodeCopy(builder->document, target, &place, &copy));
   PetscCall(BuilderPut(builder, copy));
   PetscFunctionReturn(0);
@@ -296,13 +272,14 @@ static PetscErrorCode BuilderAlias(Builder *builder, struct fy_token *token)
 
 static PetscErrorCode BuilderEvent(Builder *builder, const struct fy_event *event)
 {
+  LamNode place;
+
   PetscFunctionBeginUser;
   switch (event->type) {
   case FYET_DOCUMENT_START:
-    if (builder->documents++) {
-      const LamNode place = Place(event->document_start.document_start);
-      PetscCall(LamSceneFail(builder->document, &place, "a second YAML document starts here; a file holds one scene"));
-    }
+    place = Place(event->document_start.document_start);
+    LamSceneCheck(!builder->documents++, builder->document, &place,
+                  "a second YAML document starts here; a file holds one scene");
     break;
   case FYET_SCALAR:
     PetscCall(BuilderScalar(builder, event));
@@ -387,8 +364,6 @@ PetscErrorCode LamDocumentParse(const char name[], const char text[], LamDocumen
     fy_parser_destroy(parser);
   }
   fy_diag_destroy(config.diag);
-  for (PetscInt i = 0; i < builder.anchor_count; i++) PetscCall(PetscFree(builder.anchors[i].name));
-  PetscCall(PetscFree(builder.anchors));
   PetscCall(PetscFree(builder.name));
   PetscCall(ierr);
   PetscFunctionReturn(0);
@@ -401,6 +376,7 @@ PetscErrorCode LamDocumentDestroy(LamDocument *document)
     LamNode *next = node->allocated;
     PetscCall(PetscFree(node->text));
     PetscCall(PetscFree(node->name));
+    PetscCall(PetscFree(node->anchor));
     PetscCall(PetscFree(node));
     node = next;
   }

@@ -34,6 +34,8 @@ struct LamNode_s {
   PetscInt count; /* of a map's entries or a list's items */
   LamNode *parent, *first, *last, *next;
   LamNode *allocated; /* the node allocated before this one */
+  char *anchor;       /* its YAML anchor, or NULL */
+  LamNode *anchored;  /* of one with an anchor: that with an anchor before it */
   /* set by the scene reader */
   const struct LamKey_s *key;
   LamValue value;
@@ -44,6 +46,7 @@ typedef struct {
   const char *text; /* borrowed */
   LamNode *root;
   LamNode *allocated; /* the newest node; the document owns them all */
+  LamNode *anchored;  /* the newest one with an anchor */
   PetscInt node_count;
 } LamDocument;
 
@@ -56,16 +59,26 @@ LamNode *LamNodeFind(const LamNode *map, const char name[], size_t length);
 /* What stands at a path of keys below `base`, such as "cell.apothem"; NULL where there is nothing. */
 const LamNode *LamNodeFindPath(const LamNode *base, const char path[]);
 
-/*
-  Raises PETSC_ERR_USER_INPUT with the message "file:line:column: key: value: ...". LamSceneFail points at the node's
-  value and shows it; LamSceneFailName points at its key.
-*/
-PetscErrorCode LamSceneFail(const LamDocument *document, const LamNode *node, const char format[], ...)
-    PETSC_ATTRIBUTE_FORMAT(3, 4);
-PetscErrorCode LamSceneFailName(const LamDocument *document, const LamNode *node, const char format[], ...)
-    PETSC_ATTRIBUTE_FORMAT(3, 4);
-/* Likewise for what is missing from the map `node`; key is relative to it. */
-PetscErrorCode LamSceneFailMissing(const LamDocument *document, const LamNode *node, const char key[],
-                                   const char format[], ...) PETSC_ATTRIBUTE_FORMAT(4, 5);
+/* Raises PETSC_ERR_USER_INPUT with the message "file:line:column: key: value: ...". */
+typedef enum {
+  LAM_MISTAKE_VALUE,  /* points at the node's value and shows it */
+  LAM_MISTAKE_NAME,   /* points at its key */
+  LAM_MISTAKE_MISSING /* of a key that the map `node` lacks */
+} LamMistake;
+PetscErrorCode LamSceneRaise(const LamDocument *document, const LamNode *node, LamMistake mistake, const char key[],
+                             const char format[], ...) PETSC_ATTRIBUTE_FORMAT(5, 6);
+
+#define LamSceneFail(document, node, ...) LamSceneRaise(document, node, LAM_MISTAKE_VALUE, NULL, __VA_ARGS__)
+#define LamSceneFailName(document, node, ...) LamSceneRaise(document, node, LAM_MISTAKE_NAME, NULL, __VA_ARGS__)
+#define LamSceneFailMissing(document, node, ...) LamSceneRaise(document, node, LAM_MISTAKE_MISSING, __VA_ARGS__)
+
+/* PetscCheck for scenes: unless the condition holds the message points at the value, at the key, or says what lacks. */
+#define LamSceneUnless(condition, failure)                                                                             \
+  do {                                                                                                                 \
+    if (!(condition)) PetscCall(failure);                                                                              \
+  } while (0)
+#define LamSceneCheck(condition, ...) LamSceneUnless(condition, LamSceneFail(__VA_ARGS__))
+#define LamSceneCheckName(condition, ...) LamSceneUnless(condition, LamSceneFailName(__VA_ARGS__))
+#define LamSceneRequire(condition, ...) LamSceneUnless(condition, LamSceneFailMissing(__VA_ARGS__))
 
 #endif
