@@ -62,19 +62,22 @@ static PetscErrorCode CheckText(const char name[], const char text[], size_t len
 
 static PetscErrorCode SceneBuild(LamDocument *document, LamScene *scene)
 {
+  const LamNode *root;
+
   PetscFunctionBeginUser;
   PetscCall(LamDocumentParse(document->name, document->text, document));
   PetscCall(LamSceneCheckKeys(document));
-  PetscCall(LamSceneBuildRVE(document, scene));
-  PetscCall(LamSceneBuildStrength(document, scene));
-  PetscCall(LamSceneBuildLoad(document, scene));
-  PetscCall(LamSceneBuildSample(document, scene));
-  PetscCall(LamSceneBuildMacro(document, scene));
-  PetscCall(LamSceneBuildRegions(document, scene));
-  PetscCall(LamSceneBuildResponse(document, scene));
-  PetscCall(LamSceneCheckPatch(document, scene));
-  PetscCall(LamSceneBuildMap(document, scene));
-  PetscCall(LamSceneBuildProcess(document, scene));
+  root = document->root;
+  PetscCall(LamSceneBuildRVE(root, scene));
+  PetscCall(LamSceneBuildStrength(root, scene));
+  PetscCall(LamSceneBuildLoad(root, scene));
+  PetscCall(LamSceneBuildSample(root, scene));
+  PetscCall(LamSceneBuildMacro(root, scene));
+  PetscCall(LamSceneBuildRegions(root, scene));
+  PetscCall(LamSceneBuildResponse(root, scene));
+  PetscCall(LamSceneCheckPatch(root, scene));
+  PetscCall(LamSceneBuildMap(root, scene));
+  PetscCall(LamSceneBuildProcess(root, scene));
   PetscFunctionReturn(0);
 }
 

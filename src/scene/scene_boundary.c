@@ -80,8 +80,7 @@ static const char *const *SideNames(const LamMacroSpec *spec)
   return spec->source == LAM_MESH_BOX ? box_sides : disc[spec->disc];
 }
 
-PetscErrorCode LamSceneCheckSide(const LamDocument *document, const LamNode *on, const LamMacroSpec *spec,
-                                 PetscInt *side)
+PetscErrorCode LamSceneCheckSide(const LamNode *on, const LamMacroSpec *spec, PetscInt *side)
 {
   const char *const *names = SideNames(spec);
   char known[80] = "";
@@ -92,7 +91,7 @@ PetscErrorCode LamSceneCheckSide(const LamDocument *document, const LamNode *on,
     if (!strcmp(names[k], on->text)) *side = k;
     snprintf(known + strlen(known), sizeof(known) - strlen(known), "%s%s", k ? ", " : "", names[k]);
   }
-  LamSceneCheck(!names || *side >= 0, document, on, "is none of the names known here; write one of %s", known);
+  LamSceneCheck(!names || *side >= 0, on, "is none of the names known here; write one of %s", known);
   PetscFunctionReturn(0);
 }
 
@@ -108,68 +107,65 @@ static PetscInt NormalComponent(const LamMacroSpec *spec, PetscInt side)
 /* ---- one entry ---- */
 
 /* Exactly one key says what the entry is. */
-static PetscErrorCode ChooseKind(const LamDocument *document, const LamNode *entry, LamBoundary *boundary)
+static PetscErrorCode ChooseKind(const LamNode *entry, LamBoundary *boundary)
 {
-  const LamNode *chosen = NULL, *follower = LamNodeFindPath(entry, "follower");
+  const LamNode *chosen = NULL, *follower = LamNodeFind(entry, "follower");
 
   PetscFunctionBeginUser;
   for (PetscInt kind = 0; kind < LAM_BOUNDARY_KIND_COUNT; kind++) {
-    const LamNode *node = LamNodeFindPath(entry, LamBoundaryKindNames[kind]);
+    const LamNode *node = LamNodeFind(entry, LamBoundaryKindNames[kind]);
 
     if (!node) continue;
-    LamSceneCheckName(!chosen, document, node, "stands beside %s; write an entry of its own for it, on the same side",
+    LamSceneCheckName(!chosen, node, "stands beside %s; write an entry of its own for it, on the same side",
                       chosen->name);
     chosen = node;
     boundary->kind = (LamBoundaryKind)kind;
   }
-  LamSceneRequire(chosen, document, entry, "displacement",
+  LamSceneRequire(chosen, entry, "displacement",
                   "missing; write one of displacement, symmetry, traction, pressure, plate, indenter, grip, such as "
                   "displacement: [0 mm, free]");
-  LamSceneCheckName(!follower || boundary->kind == LAM_BOUNDARY_TRACTION, document, follower,
+  LamSceneCheckName(!follower || boundary->kind == LAM_BOUNDARY_TRACTION, follower,
                     "belongs to traction; leave it out (a pressure always follows)");
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CheckPlate(const LamDocument *document, const LamNode *plate, PetscBool curved,
-                                 LamBoundary *boundary)
+static PetscErrorCode CheckPlate(const LamNode *plate, PetscBool curved, LamBoundary *boundary)
 {
-  const LamNode *node = LamNodeFindPath(plate, "normal");
+  const LamNode *node = LamNodeFind(plate, "normal");
   PetscReal *normal = boundary->normal, length;
 
   PetscFunctionBeginUser;
-  LamSceneRequire(node || !curved, document, plate, "normal",
+  LamSceneRequire(node || !curved, plate, "normal",
                   "missing, and %s is curved; write from where the plate looks into the body, such as normal: [0, -1]",
                   boundary->on);
   if (!node) PetscFunctionReturn(0);
   length = PetscSqrtReal(PetscSqr(normal[0]) + PetscSqr(normal[1]));
-  LamSceneCheck(length > 0 && !PetscIsInfOrNanReal(length), document, node,
+  LamSceneCheck(length > 0 && !PetscIsInfOrNanReal(length), node,
                 "is no direction; write two numbers that are not both 0, such as [0, -1]");
   for (PetscInt c = 0; c < 2; c++) normal[c] /= length;
   PetscFunctionReturn(0);
 }
 
 /* What the kind asks beyond the bounds of its keys; `curved`: the side is known and not straight. */
-static PetscErrorCode CheckKind(const LamDocument *document, const LamNode *entry, PetscBool curved,
-                                LamBoundary *boundary)
+static PetscErrorCode CheckKind(const LamNode *entry, PetscBool curved, LamBoundary *boundary)
 {
-  const LamNode *chosen = LamNodeFindPath(entry, LamBoundaryKindNames[boundary->kind]);
+  const LamNode *chosen = LamNodeFind(entry, LamBoundaryKindNames[boundary->kind]);
 
   PetscFunctionBeginUser;
   switch (boundary->kind) {
   case LAM_BOUNDARY_SYMMETRY:
-    LamSceneCheck(chosen->value.number[0] != 0, document, chosen, "says nothing; write true, or leave the entry out");
-    LamSceneCheck(!curved, document, chosen, "%s is curved; only a straight side can be one of symmetry", boundary->on);
+    LamSceneCheck(chosen->value.number[0] != 0, chosen, "says nothing; write true, or leave the entry out");
+    LamSceneCheck(!curved, chosen, "%s is curved; only a straight side can be one of symmetry", boundary->on);
     break;
   case LAM_BOUNDARY_PRESSURE:
     boundary->follower = PETSC_TRUE;
     boundary->traction[1] = -boundary->traction[1];
     break;
   case LAM_BOUNDARY_PLATE:
-    PetscCall(CheckPlate(document, chosen, curved, boundary));
+    PetscCall(CheckPlate(chosen, curved, boundary));
     break;
   case LAM_BOUNDARY_INDENTER:
-    LamSceneCheck(boundary->displacement[0] != 0 || boundary->displacement[1] != 0, document,
-                  LamNodeFindPath(chosen, "displacement"),
+    LamSceneCheck(boundary->displacement[0] != 0 || boundary->displacement[1] != 0, LamNodeFind(chosen, "displacement"),
                   "is zero, so the indenter comes from nowhere; write how it moves, such as [0 mm, -1 mm]");
     break;
   default:
@@ -178,22 +174,21 @@ static PetscErrorCode CheckKind(const LamDocument *document, const LamNode *entr
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ReadHistory(const LamDocument *document, const LamNode *list, LamBoundary *boundary)
+static PetscErrorCode ReadHistory(const LamNode *list, LamBoundary *boundary)
 {
   LamHistory *history = &boundary->history;
 
   PetscFunctionBeginUser;
   if (!list) PetscFunctionReturn(0);
-  LamSceneCheckName(boundary->kind != LAM_BOUNDARY_SYMMETRY, document, list,
-                    "a side of symmetry does not move; leave it out");
-  LamSceneCheck(list->count <= LAM_HISTORY_POINTS, document, list, "has %d points; at most %d are allowed",
-                (int)list->count, LAM_HISTORY_POINTS);
+  LamSceneCheckName(boundary->kind != LAM_BOUNDARY_SYMMETRY, list, "a side of symmetry does not move; leave it out");
+  LamSceneCheck(list->count <= LAM_HISTORY_POINTS, list, "has %d points; at most %d are allowed", (int)list->count,
+                LAM_HISTORY_POINTS);
   for (const LamNode *item = list->first; item; item = item->next) {
     const PetscInt n = history->count++;
 
     history->parameter[n] = item->value.number[0];
     history->factor[n] = item->value.number[1];
-    LamSceneCheck(!n || history->parameter[n] > history->parameter[n - 1], document, item,
+    LamSceneCheck(!n || history->parameter[n] > history->parameter[n - 1], item,
                   "comes after parameter %g; write the points with rising parameters",
                   (double)history->parameter[n - 1]);
   }
@@ -211,10 +206,9 @@ static void FindHeld(const LamMacroSpec *spec, PetscInt side, const LamBoundary 
 }
 
 /* Conditions on one side do not prescribe the same component, nor load or press on what is prescribed. */
-static PetscErrorCode CheckSameSide(const LamDocument *document, const LamMacroSpec *spec, PetscInt b,
-                                    const Conditions *conditions)
+static PetscErrorCode CheckSameSide(const LamMacroSpec *spec, PetscInt b, const Conditions *conditions)
 {
-  const LamNode *on = LamNodeFindPath(conditions->entry[b], "on");
+  const LamNode *on = LamNodeFind(conditions->entry[b], "on");
   const LamBoundary *boundary = &spec->boundary[b];
 
   PetscFunctionBeginUser;
@@ -225,12 +219,12 @@ static PetscErrorCode CheckSameSide(const LamDocument *document, const LamMacroS
     for (PetscInt c = 0; c < 2; c++) {
       const PetscBool one = conditions->held[a][c], two = conditions->held[b][c];
 
-      LamSceneCheck(!one || !two, document, on,
+      LamSceneCheck(!one || !two, on,
                     "its displacement along X%d is prescribed already, in line %d; leave it to one of them", (int)c + 1,
                     conditions->entry[a]->line);
       LamSceneCheck((!one || boundary->follower || boundary->traction[c] == 0) &&
                         (!two || other->follower || other->traction[c] == 0),
-                    document, on,
+                    on,
                     "its displacement along X%d is prescribed, so the traction there (lines %d and %d) does nothing; "
                     "leave one of them out",
                     (int)c + 1, conditions->entry[a]->line, conditions->entry[b]->line);
@@ -239,8 +233,7 @@ static PetscErrorCode CheckSameSide(const LamDocument *document, const LamMacroS
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BuildBoundary(const LamDocument *document, const LamNode *entry, LamScene *scene,
-                                    Conditions *conditions)
+static PetscErrorCode BuildBoundary(const LamNode *entry, LamScene *scene, Conditions *conditions)
 {
   const PetscInt b = scene->macro.boundary_count++;
   LamBoundary *boundary = &scene->macro.boundary[b];
@@ -249,14 +242,14 @@ static PetscErrorCode BuildBoundary(const LamDocument *document, const LamNode *
 
   PetscFunctionBeginUser;
   conditions->entry[b] = entry;
-  PetscCall(LamSceneCheckSide(document, LamNodeFindPath(entry, "on"), &scene->macro, side));
-  PetscCall(ChooseKind(document, entry, boundary));
-  PetscCall(LamSceneFill(document, entry, &scene->scales, LamBoundary, boundary));
+  PetscCall(LamSceneCheckSide(LamNodeFind(entry, "on"), &scene->macro, side));
+  PetscCall(ChooseKind(entry, boundary));
+  PetscCall(LamSceneFill(entry, &scene->scales, LamBoundary, boundary));
   curved = (PetscBool)(*side >= 0 && NormalComponent(&scene->macro, *side) < 0);
-  PetscCall(CheckKind(document, entry, curved, boundary));
-  PetscCall(ReadHistory(document, LamNodeFindPath(entry, "history"), boundary));
+  PetscCall(CheckKind(entry, curved, boundary));
+  PetscCall(ReadHistory(LamNodeFind(entry, "history"), boundary));
   FindHeld(&scene->macro, *side, boundary, conditions->held[b]);
-  PetscCall(CheckSameSide(document, &scene->macro, b, conditions));
+  PetscCall(CheckSameSide(&scene->macro, b, conditions));
   PetscFunctionReturn(0);
 }
 
@@ -272,7 +265,7 @@ static PetscBool MoveAlike(const LamBoundary *one, const LamBoundary *other, Pet
 }
 
 /* Sides that meet share a corner: both move it, so they agree. */
-static PetscErrorCode CheckCorners(const LamDocument *document, const LamMacroSpec *spec, const Conditions *conditions)
+static PetscErrorCode CheckCorners(const LamMacroSpec *spec, const Conditions *conditions)
 {
   PetscFunctionBeginUser;
   for (PetscInt a = 0; a < spec->boundary_count; a++) {
@@ -281,8 +274,8 @@ static PetscErrorCode CheckCorners(const LamDocument *document, const LamMacroSp
 
       if (NormalComponent(spec, conditions->side[a]) != 0 || NormalComponent(spec, conditions->side[b]) != 1) continue;
       for (PetscInt c = 0; c < 2; c++)
-        LamSceneCheck(!conditions->held[a][c] || !conditions->held[b][c] || MoveAlike(upright, level, c), document,
-                      LamNodeFindPath(conditions->entry[a], LamBoundaryKindNames[upright->kind]),
+        LamSceneCheck(!conditions->held[a][c] || !conditions->held[b][c] || MoveAlike(upright, level, c),
+                      LamNodeFind(conditions->entry[a], LamBoundaryKindNames[upright->kind]),
                       "%s and %s (line %d) move their common corner differently along X%d; write equal displacements, "
                       "or free in one of them",
                       upright->on, level->on, conditions->entry[b]->line, (int)c + 1);
@@ -296,8 +289,7 @@ static PetscErrorCode CheckCorners(const LamDocument *document, const LamMacroSp
   component is given. The rotation changes u1 along the upright sides and u2 along the level ones, so one of these holds
   it; a component that is constant along its side holds it only together with the opposite side. A grip never turns.
 */
-static PetscErrorCode CheckRigidMotions(const LamDocument *document, const LamNode *list, const LamMacroSpec *spec,
-                                        const Conditions *conditions)
+static PetscErrorCode CheckRigidMotions(const LamNode *list, const LamMacroSpec *spec, const Conditions *conditions)
 {
   PetscBool given[LAM_BOX_COUNT][2] = {{PETSC_FALSE}}, held[3] = {PETSC_FALSE, PETSC_FALSE, PETSC_FALSE};
   static const char *const names[] = {"along X1", "along X2", "by a rotation"};
@@ -320,23 +312,23 @@ static PetscErrorCode CheckRigidMotions(const LamDocument *document, const LamNo
       (given[LAM_BOX_LEFT][1] && given[LAM_BOX_RIGHT][1]) || (given[LAM_BOX_BOTTOM][0] && given[LAM_BOX_TOP][0]))
     held[2] = PETSC_TRUE;
   for (PetscInt i = 0; i < 3; i++)
-    LamSceneCheckName(held[i], document, list, "the body can still move %s; %s", names[i], remedies[i]);
+    LamSceneCheckName(held[i], list, "the body can still move %s; %s", names[i], remedies[i]);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamSceneBuildBoundaries(const LamDocument *document, LamScene *scene)
+PetscErrorCode LamSceneBuildBoundaries(const LamNode *root, LamScene *scene)
 {
-  const LamNode *list = LamNodeFindPath(document->root, "macro.boundary");
+  const LamNode *list = LamNodeFind(root, "macro.boundary");
   Conditions conditions = {0};
 
   PetscFunctionBeginUser;
-  LamSceneCheckName(list->count <= LAM_MAX_BOUNDARIES, document, list, "has %d entries; at most %d are allowed",
-                    (int)list->count, LAM_MAX_BOUNDARIES);
+  LamSceneCheckName(list->count <= LAM_MAX_BOUNDARIES, list, "has %d entries; at most %d are allowed", (int)list->count,
+                    LAM_MAX_BOUNDARIES);
   for (const LamNode *entry = list->first; entry; entry = entry->next)
-    PetscCall(BuildBoundary(document, entry, scene, &conditions));
+    PetscCall(BuildBoundary(entry, scene, &conditions));
   if (scene->macro.source == LAM_MESH_BOX) { /* of other bodies the macroscale solver checks it */
-    PetscCall(CheckCorners(document, &scene->macro, &conditions));
-    PetscCall(CheckRigidMotions(document, list, &scene->macro, &conditions));
+    PetscCall(CheckCorners(&scene->macro, &conditions));
+    PetscCall(CheckRigidMotions(list, &scene->macro, &conditions));
   }
   PetscFunctionReturn(0);
 }

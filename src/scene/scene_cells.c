@@ -81,7 +81,6 @@ static const LamKey variation_keys[] = {
 LAM_KEY_TABLE(LamVariationKeys, variation_keys);
 
 typedef struct {
-  const LamDocument *document;
   const LamNode *block; /* rve.variation */
   PetscInt kind_count;
   LamCell *kinds;    /* [1 + kind_count]; kind 0 is the scene's own cell; owned */
@@ -95,20 +94,20 @@ static LamCell OwnCell(const LamMicrostructure *micro)
 
 /* ---- kinds of cells ---- */
 
-static PetscErrorCode ReadKind(const LamDocument *document, const LamNode *kind, const LamScene *scene, LamCell *cell)
+static PetscErrorCode ReadKind(const LamNode *kind, const LamScene *scene, LamCell *cell)
 {
-  const LamNode *wall = LamNodeFindPath(kind, "wall"), *cohesion = LamNodeFindPath(kind, "cohesion");
+  const LamNode *wall = LamNodeFind(kind, "wall"), *cohesion = LamNodeFind(kind, "cohesion");
   const LamMicrostructure *micro = &scene->micro;
 
   PetscFunctionBeginUser;
   *cell = OwnCell(micro);
-  PetscCall(LamSceneFill(document, kind, &scene->scales, LamCell, cell));
-  LamSceneCheck(cell->wall_thickness < 1.0, document, LamNodeFindPath(kind, "wall_thickness"),
+  PetscCall(LamSceneFill(kind, &scene->scales, LamCell, cell));
+  LamSceneCheck(cell->wall_thickness < 1.0, LamNodeFind(kind, "wall_thickness"),
                 "the wall fills the cell; write a thickness less than the apothem");
   if (wall)
-    PetscCall(LamSceneReadWall(document, kind, "rve.variation.kinds[].wall", scene->scales.stress, &micro->wall,
+    PetscCall(LamSceneReadWall(kind->document, kind, "rve.variation.kinds[].wall", scene->scales.stress, &micro->wall,
                                &cell->wall));
-  LamSceneCheck(!cohesion || micro->interface != LAM_INTERFACE_BONDED, document, cohesion, LAM_BONDED_PARTS);
+  LamSceneCheck(!cohesion || micro->interface != LAM_INTERFACE_BONDED, cohesion, LAM_BONDED_PARTS);
   PetscFunctionReturn(0);
 }
 
@@ -116,7 +115,7 @@ static PetscErrorCode KindNumber(const Variation *v, const LamNode *node, PetscI
 {
   PetscFunctionBeginUser;
   *kind = 0;
-  LamSceneCheck(node->value.number[0] <= (PetscReal)v->kind_count, v->document, node,
+  LamSceneCheck(node->value.number[0] <= (PetscReal)v->kind_count, node,
                 "kinds has only %d; write a number from 0, the scene's own cell, to %d", (int)v->kind_count,
                 (int)v->kind_count);
   *kind = (PetscInt)node->value.number[0];
@@ -128,9 +127,8 @@ static PetscErrorCode AssignList(Variation *v, const LamNode *list, const PetscI
   PetscInt cell = 0;
 
   PetscFunctionBeginUser;
-  LamSceneCheck(list->count == cells[0] * cells[1], v->document, list,
-                "has %d entries; write one for each of the %d x %d cells", (int)list->count, (int)cells[0],
-                (int)cells[1]);
+  LamSceneCheck(list->count == cells[0] * cells[1], list, "has %d entries; write one for each of the %d x %d cells",
+                (int)list->count, (int)cells[0], (int)cells[1]);
   for (const LamNode *item = list->first; item; item = item->next) PetscCall(KindNumber(v, item, &v->kind_of[cell++]));
   PetscFunctionReturn(0);
 }
@@ -143,8 +141,8 @@ static PetscErrorCode AssignPattern(Variation *v, const LamNode *pattern, const 
   for (const LamNode *row = pattern->first; row; row = row->next) {
     PetscInt j = 0;
 
-    LamSceneCheck(row->count == columns, v->document, row,
-                  "has %d entries, the first one %d; write lists of the same length", (int)row->count, (int)columns);
+    LamSceneCheck(row->count == columns, row, "has %d entries, the first one %d; write lists of the same length",
+                  (int)row->count, (int)columns);
     for (const LamNode *item = row->first; item; item = item->next, j++) {
       PetscInt kind;
 
@@ -160,18 +158,18 @@ static PetscErrorCode AssignPattern(Variation *v, const LamNode *pattern, const 
 static PetscErrorCode AssignRandom(Variation *v, const LamNode *random, const PetscInt cells[2])
 {
   const PetscInt count = cells[0] * cells[1];
-  const LamNode *shares = LamNodeFindPath(random, "shares"), *node;
+  const LamNode *shares = LamNodeFind(random, "shares"), *node;
   PetscReal sum = 0.0;
   PetscInt cell = 0, kind = 1;
   LamValue seed;
 
   PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(v->document->root, "rve.variation.random.seed", &node, &seed));
-  LamSceneCheck(shares->count == v->kind_count, v->document, shares,
-                "has %d entries; write one for each of the %d kinds", (int)shares->count, (int)v->kind_count);
+  PetscCall(LamSceneGet(v->block, "rve.variation.random.seed", &node, &seed));
+  LamSceneCheck(shares->count == v->kind_count, shares, "has %d entries; write one for each of the %d kinds",
+                (int)shares->count, (int)v->kind_count);
   for (const LamNode *item = shares->first; item; item = item->next, kind++) {
     sum += item->value.number[0];
-    LamSceneCheck(sum <= 1.0 + 1e-9, v->document, shares, "adds up to more than 1; lower the shares");
+    LamSceneCheck(sum <= 1.0 + 1e-9, shares, "adds up to more than 1; lower the shares");
     while (cell < PetscMin(count, (PetscInt)floor(sum * (PetscReal)count + 0.5))) v->kind_of[cell++] = kind;
   }
   LamRandomShuffle((PetscInt)seed.number[0], count, v->kind_of);
@@ -190,15 +188,14 @@ static PetscErrorCode AssignKinds(Variation *v, const PetscInt cells[2])
 
   PetscFunctionBeginUser;
   for (PetscInt m = 0; m < (PetscInt)PETSC_STATIC_ARRAY_LENGTH(methods); m++) {
-    const LamNode *node = LamNodeFindPath(v->block, methods[m].name);
+    const LamNode *node = LamNodeFind(v->block, methods[m].name);
 
     if (!node) continue;
-    LamSceneCheckName(!found, v->document, node, "given together with %s; a variation has one of them", found->name);
+    LamSceneCheckName(!found, node, "given together with %s; a variation has one of them", found->name);
     found = node;
     method = m;
   }
-  LamSceneRequire(found, v->document, v->block, "list",
-                  "missing; write which cell is of which kind as a list, a pattern or random");
+  LamSceneRequire(found, v->block, "list", "missing; write which cell is of which kind as a list, a pattern or random");
   PetscCall(methods[method].assign(v, found, cells));
   PetscFunctionReturn(0);
 }
@@ -210,18 +207,16 @@ static PetscErrorCode ReadKinds(Variation *v, const LamNode *kinds, LamScene *sc
 
   PetscFunctionBeginUser;
   v->kinds[0] = OwnCell(micro);
-  for (const LamNode *kind = kinds->first; kind; kind = kind->next, k++)
-    PetscCall(ReadKind(v->document, kind, scene, &v->kinds[k]));
+  for (const LamNode *kind = kinds->first; kind; kind = kind->next, k++) PetscCall(ReadKind(kind, scene, &v->kinds[k]));
   PetscCall(AssignKinds(v, micro->cells));
   for (PetscInt c = 0; c < micro->cells[0] * micro->cells[1]; c++) micro->cell[c] = v->kinds[v->kind_of[c]];
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BuildKinds(const LamDocument *document, const LamNode *block, const LamNode *kinds,
-                                 LamScene *scene)
+static PetscErrorCode BuildKinds(const LamNode *block, const LamNode *kinds, LamScene *scene)
 {
   const PetscInt *cells = scene->micro.cells;
-  Variation v = {.document = document, .block = block, .kind_count = kinds->count};
+  Variation v = {.block = block, .kind_count = kinds->count};
   PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
@@ -234,8 +229,7 @@ static PetscErrorCode BuildKinds(const LamDocument *document, const LamNode *blo
 
 /* ---- fields ---- */
 
-static PetscErrorCode ApplyFactors(const LamDocument *document, const LamNode *field, const PetscReal factors[],
-                                   LamMicrostructure *micro)
+static PetscErrorCode ApplyFactors(const LamNode *field, const PetscReal factors[], LamMicrostructure *micro)
 {
   const PetscInt count = micro->cells[0] * micro->cells[1];
 
@@ -252,7 +246,7 @@ static PetscErrorCode ApplyFactors(const LamDocument *document, const LamNode *f
     cell->wall_thickness *= factors[FIELD_THICKNESS * count + c];
     cell->turgor = factors[FIELD_TURGOR * count + c];
     cell->cohesion = factors[FIELD_COHESION * count + c];
-    LamSceneCheck(cell->wall_thickness < 1.0, document, field,
+    LamSceneCheck(cell->wall_thickness < 1.0, field,
                   "the wall of cell (%d, %d) becomes %.3g apothems thick and fills it; write a smaller wall_thickness "
                   "here, thinner walls, or another seed",
                   (int)(c / micro->cells[1]), (int)(c % micro->cells[1]), (double)cell->wall_thickness);
@@ -260,23 +254,23 @@ static PetscErrorCode ApplyFactors(const LamDocument *document, const LamNode *f
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BuildField(const LamDocument *document, const LamNode *node, LamScene *scene)
+static PetscErrorCode BuildField(const LamNode *node, LamScene *scene)
 {
-  const LamNode *wall = LamNodeFindPath(node, "wall"), *thickness = LamNodeFindPath(node, "wall_thickness");
-  const LamNode *turgor = LamNodeFindPath(node, "turgor"), *cohesion = LamNodeFindPath(node, "cohesion");
+  const LamNode *wall = LamNodeFind(node, "wall"), *thickness = LamNodeFind(node, "wall_thickness");
+  const LamNode *turgor = LamNodeFind(node, "turgor"), *cohesion = LamNodeFind(node, "cohesion");
   LamMicrostructure *micro = &scene->micro;
   PetscReal *factors;
   PetscErrorCode ierr;
   Field field;
 
   PetscFunctionBeginUser;
-  PetscCall(LamSceneFill(document, document->root, &scene->scales, Field, &field));
-  LamSceneCheck(!cohesion || micro->interface != LAM_INTERFACE_BONDED, document, cohesion, LAM_BONDED_PARTS);
-  LamSceneCheckName(wall || thickness || turgor || cohesion, document, node,
+  PetscCall(LamSceneFill(node, &scene->scales, Field, &field));
+  LamSceneCheck(!cohesion || micro->interface != LAM_INTERFACE_BONDED, cohesion, LAM_BONDED_PARTS);
+  LamSceneCheckName(wall || thickness || turgor || cohesion, node,
                     "varies nothing; write a coefficient of variation, such as wall: 0.2, or leave out variation");
   PetscCall(PetscMalloc1(FIELD_COUNT * micro->cells[0] * micro->cells[1], &factors));
   ierr = LamRandomFactors(micro, field.seed, field.correlation, FIELD_COUNT, field.variation, factors);
-  if (!ierr) ierr = ApplyFactors(document, node, factors, micro);
+  if (!ierr) ierr = ApplyFactors(node, factors, micro);
   PetscCall(PetscFree(factors));
   PetscCall(ierr);
   PetscFunctionReturn(0);
@@ -314,25 +308,25 @@ static PetscErrorCode DropVariation(LamMicrostructure *micro)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamSceneBuildCells(const LamDocument *document, LamScene *scene)
+PetscErrorCode LamSceneBuildCells(const LamNode *root, LamScene *scene)
 {
-  const LamNode *block = LamNodeFindPath(document->root, "rve.variation");
-  const LamNode *kinds = LamNodeFindPath(block, "kinds"), *field = LamNodeFindPath(block, "field");
+  const LamNode *block = LamNodeFind(root, "rve.variation");
+  const LamNode *kinds = LamNodeFind(block, "kinds"), *field = LamNodeFind(block, "field");
   LamMicrostructure *micro = &scene->micro;
 
   PetscFunctionBeginUser;
   if (!block) PetscFunctionReturn(0);
-  LamSceneCheckName(!field || block->count == 1, document, field,
+  LamSceneCheckName(!field || block->count == 1, field,
                     "given together with %s; a variation has a field alone, or kinds and one of list, pattern and "
                     "random",
                     field == block->first ? block->last->name : block->first->name);
-  LamSceneRequire(field || kinds, document, block, "kinds",
+  LamSceneRequire(field || kinds, block, "kinds",
                   "missing; write the kinds of cells, such as [{turgor: 0.5}], or a field, such as {turgor: 0.3}");
   PetscCall(PetscCalloc1(micro->cells[0] * micro->cells[1], &micro->cell));
   if (field)
-    PetscCall(BuildField(document, field, scene));
+    PetscCall(BuildField(field, scene));
   else
-    PetscCall(BuildKinds(document, block, kinds, scene));
+    PetscCall(BuildKinds(block, kinds, scene));
   PetscCall(DropVariation(micro));
   PetscFunctionReturn(0);
 }
@@ -343,16 +337,16 @@ PetscErrorCode LamSceneBuildCells(const LamDocument *document, LamScene *scene)
   In contact without cohesion a wall only pushes. A cell between the grips whose outer wall is free is pushed out by its
   neighbours, and by its own turgor, and nothing brings it back.
 */
-static PetscErrorCode CheckHold(const LamDocument *document, const LamNode *node, PetscReal cohesion)
+static PetscErrorCode CheckHold(const LamNode *root, const LamNode *node, PetscReal cohesion)
 {
   const char *remedy = "without cohesion nothing holds the outer cells of a patch whose sides are free: their "
                        "neighbours push them out; write a cohesion larger than 0 MPa, law: bonded, or sides: affine";
 
   PetscFunctionBeginUser;
   if (cohesion > 0.0) PetscFunctionReturn(0);
-  if (!node) node = LamNodeFindPath(document->root, "rve.interface.cohesion");
-  LamSceneCheck(!node, document, node, "%s", remedy);
-  PetscCall(LamSceneFailMissing(document, LamNodeFindPath(document->root, "rve.interface"), "cohesion", "%s", remedy));
+  if (!node) node = LamNodeFind(root, "rve.interface.cohesion");
+  LamSceneCheck(!node, node, "%s", remedy);
+  PetscCall(LamSceneRaise(LamNodeFind(root, "rve.interface"), LAM_MISTAKE_MISSING, "cohesion", "%s", remedy));
   PetscFunctionReturn(0);
 }
 
@@ -368,7 +362,7 @@ static PetscBool IsHeldByNeighbour(const LamMicrostructure *micro, PetscInt cell
 }
 
 /* Cells at the sides whose interfaces have no cohesion. */
-static PetscErrorCode CheckSideCells(const LamDocument *document, const LamMicrostructure *micro)
+static PetscErrorCode CheckSideCells(const LamNode *variation, const LamMicrostructure *micro)
 {
   const PetscInt columns = micro->cells[0], rows = micro->cells[1];
 
@@ -377,8 +371,7 @@ static PetscErrorCode CheckSideCells(const LamDocument *document, const LamMicro
     for (PetscInt side = 0; side < 2; side++) {
       const PetscInt column = side ? columns - 1 : 0;
 
-      LamSceneCheckName(IsHeldByNeighbour(micro, column * rows + row), document,
-                        LamNodeFindPath(document->root, "rve.variation"),
+      LamSceneCheckName(IsHeldByNeighbour(micro, column * rows + row), variation,
                         "cell (%d, %d) at a free side has no cohesion with any neighbour, and they push it out; give "
                         "it some, or write sides: affine",
                         (int)column, (int)row);
@@ -393,29 +386,29 @@ PetscBool LamSceneNeedsCohesion(const LamMicrostructure *micro)
                      micro->cells[1] > 2);
 }
 
-PetscErrorCode LamSceneCheckPatch(const LamDocument *document, const LamScene *scene)
+PetscErrorCode LamSceneCheckPatch(const LamNode *root, const LamScene *scene)
 {
   static const char *const others[] = {"sample", "macro"};
   const LamMicrostructure *micro = &scene->micro;
-  const LamNode *loads = LamNodeFindPath(document->root, "load"), *patch = LamNodeFindPath(document->root, "rve.patch");
+  const LamNode *loads = LamNodeFind(root, "load"), *patch = LamNodeFind(root, "rve.patch");
 
   PetscFunctionBeginUser;
   if (!micro->is_patch) PetscFunctionReturn(0);
   for (PetscInt i = 0; i < 2; i++) {
-    const LamNode *node = LamNodeFindPath(document->root, others[i]);
+    const LamNode *node = LamNodeFind(root, others[i]);
 
-    LamSceneCheckName(!node, document, node,
+    LamSceneCheckName(!node, node,
                       "a patch (line %d) is a body between grips, no material point, and is solved by lamella rve and "
                       "map; leave %s out, or write rve.cells instead of the patch",
                       patch->name_line, others[i]);
   }
   if (!LamSceneNeedsCohesion(micro)) PetscFunctionReturn(0);
-  if (!loads) PetscCall(CheckHold(document, NULL, scene->cohesion));
+  if (!loads) PetscCall(CheckHold(root, NULL, scene->cohesion));
   for (const LamNode *entry = loads ? loads->first : NULL; entry; entry = entry->next) {
-    const LamNode *node = LamNodeFind(entry, "cohesion", strlen("cohesion"));
+    const LamNode *node = LamNodeFind(entry, "cohesion");
 
-    PetscCall(CheckHold(document, node, node ? node->value.number[0] : scene->cohesion));
+    PetscCall(CheckHold(root, node, node ? node->value.number[0] : scene->cohesion));
   }
-  PetscCall(CheckSideCells(document, micro));
+  PetscCall(CheckSideCells(LamNodeFind(root, "rve.variation"), micro));
   PetscFunctionReturn(0);
 }

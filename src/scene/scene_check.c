@@ -30,7 +30,7 @@ static const LamKey *NearestKey(const LamKey *map, const char name[])
   return nearest;
 }
 
-static PetscErrorCode FailUnknown(const LamDocument *document, const LamNode *node, const LamKey *map)
+static PetscErrorCode FailUnknown(const LamNode *node, const LamKey *map)
 {
   const LamKey *nearest = NearestKey(map, node->name), *key;
   char meant[PATH_LENGTH + 20] = "", known[LAM_KEY_TEXT_LENGTH] = "";
@@ -45,32 +45,30 @@ static PetscErrorCode FailUnknown(const LamDocument *document, const LamNode *no
     if (!LamKeyIsChild(key, map)) continue;
     used += (size_t)snprintf(known + used, sizeof(known) - used, "%s%s", used ? ", " : "", LamKeyName(key));
   }
-  PetscCall(LamSceneFailName(document, node, "unknown key; %sknown here: %s", meant, known));
+  PetscCall(LamSceneRaise(node, LAM_MISTAKE_NAME, NULL, "unknown key; %sknown here: %s", meant, known));
   PetscFunctionReturn(0);
 }
 
 /* Raises "<reason>; write <what would be right>". */
-static PetscErrorCode FailValue(const LamDocument *document, const LamNode *node, const LamKey *key, PetscBool single,
-                                const char reason[])
+static PetscErrorCode FailValue(const LamNode *node, const LamKey *key, PetscBool single, const char reason[])
 {
   char expected[LAM_KEY_TEXT_LENGTH];
 
   PetscFunctionBeginUser;
   LamKeyExpectation(key, single, expected);
-  PetscCall(LamSceneFail(document, node, "%s; write %s", reason, expected));
+  PetscCall(LamSceneRaise(node, LAM_MISTAKE_VALUE, NULL, "%s; write %s", reason, expected));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CheckKind(const LamDocument *document, const LamNode *node, const LamKey *key, PetscBool single,
-                                LamNodeKind kind)
+static PetscErrorCode CheckKind(const LamNode *node, const LamKey *key, PetscBool single, LamNodeKind kind)
 {
   static const char *const kinds[] = {"a single value", "a map", "a list"};
   char reason[LAM_REASON_LENGTH];
 
   PetscFunctionBeginUser;
-  if (node->is_null) PetscCall(FailValue(document, node, key, single, "has no value"));
+  if (node->is_null) PetscCall(FailValue(node, key, single, "has no value"));
   snprintf(reason, sizeof(reason), "is %s where %s belongs", kinds[node->kind], kinds[kind]);
-  if (node->kind != kind) PetscCall(FailValue(document, node, key, single, reason));
+  if (node->kind != kind) PetscCall(FailValue(node, key, single, reason));
   PetscFunctionReturn(0);
 }
 
@@ -113,7 +111,7 @@ static PetscErrorCode BoundsInSI(const LamKey *key, LamBound bounds[2])
 }
 
 /* Reads one component of a value from a scalar. */
-static PetscErrorCode ReadSingle(const LamDocument *document, const LamNode *node, const LamKey *key, LamValue *value)
+static PetscErrorCode ReadSingle(const LamNode *node, const LamKey *key, LamValue *value)
 {
   char quantity[LAM_REASON_LENGTH];
   const char *reason = "";
@@ -121,7 +119,7 @@ static PetscErrorCode ReadSingle(const LamDocument *document, const LamNode *nod
   LamBound bounds[2];
 
   PetscFunctionBeginUser;
-  PetscCall(CheckKind(document, node, key, PETSC_TRUE, LAM_NODE_SCALAR));
+  PetscCall(CheckKind(node, key, PETSC_TRUE, LAM_NODE_SCALAR));
   if (key->free_word && !strcmp(node->text, key->free_word)) {
     value->is_free[value->count++] = PETSC_TRUE;
     PetscFunctionReturn(0);
@@ -139,37 +137,37 @@ static PetscErrorCode ReadSingle(const LamDocument *document, const LamNode *nod
   }
   PetscCall(BoundsInSI(key, bounds));
   if (!reason[0] && !LamBoundsHold(&bounds[0], &bounds[1], number)) reason = "is out of range";
-  if (reason[0]) PetscCall(FailValue(document, node, key, PETSC_TRUE, reason));
+  if (reason[0]) PetscCall(FailValue(node, key, PETSC_TRUE, reason));
   value->number[value->count++] = number;
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ReadVector(const LamDocument *document, LamNode *node, const LamKey *key)
+static PetscErrorCode ReadVector(LamNode *node, const LamKey *key)
 {
   char reason[LAM_REASON_LENGTH];
 
   PetscFunctionBeginUser;
-  PetscCall(CheckKind(document, node, key, PETSC_FALSE, LAM_NODE_LIST));
+  PetscCall(CheckKind(node, key, PETSC_FALSE, LAM_NODE_LIST));
   snprintf(reason, sizeof(reason), "has %d entries", (int)node->count);
-  if (node->count != key->size) PetscCall(FailValue(document, node, key, PETSC_FALSE, reason));
-  for (LamNode *item = node->first; item; item = item->next) PetscCall(ReadSingle(document, item, key, &node->value));
+  if (node->count != key->size) PetscCall(FailValue(node, key, PETSC_FALSE, reason));
+  for (LamNode *item = node->first; item; item = item->next) PetscCall(ReadSingle(item, key, &node->value));
   PetscFunctionReturn(0);
 }
 
 /* Two rows of two or three of three; 2x2 plain numbers are completed with F33 = 1. */
-static PetscErrorCode ReadTensor(const LamDocument *document, LamNode *node, const LamKey *key)
+static PetscErrorCode ReadTensor(LamNode *node, const LamKey *key)
 {
   LamValue read = {0};
   PetscBool square;
 
   PetscFunctionBeginUser;
-  PetscCall(CheckKind(document, node, key, PETSC_FALSE, LAM_NODE_LIST));
+  PetscCall(CheckKind(node, key, PETSC_FALSE, LAM_NODE_LIST));
   square = (PetscBool)(node->count == 2 || node->count == 3);
   for (const LamNode *row = node->first; row; row = row->next)
     if (row->kind != LAM_NODE_LIST || row->count != node->count) square = PETSC_FALSE;
-  if (!square) PetscCall(FailValue(document, node, key, PETSC_FALSE, "is no square tensor"));
+  if (!square) PetscCall(FailValue(node, key, PETSC_FALSE, "is no square tensor"));
   for (const LamNode *row = node->first; row; row = row->next)
-    for (const LamNode *item = row->first; item; item = item->next) PetscCall(ReadSingle(document, item, key, &read));
+    for (const LamNode *item = row->first; item; item = item->next) PetscCall(ReadSingle(item, key, &read));
   node->value.count = LAM_VALUE_SIZE;
   if (key->type == LAM_KEY_TENSOR)
     node->value.number[8] = 1.0;
@@ -184,77 +182,77 @@ static PetscErrorCode ReadTensor(const LamDocument *document, LamNode *node, con
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ReadList(const LamDocument *document, LamNode *node, const LamKey *key)
+static PetscErrorCode ReadList(LamNode *node, const LamKey *key)
 {
   char path[PATH_LENGTH];
   const LamKey *item_key;
 
   PetscFunctionBeginUser;
-  PetscCall(CheckKind(document, node, key, PETSC_FALSE, LAM_NODE_LIST));
-  if (!node->count) PetscCall(FailValue(document, node, key, PETSC_FALSE, "is empty"));
+  PetscCall(CheckKind(node, key, PETSC_FALSE, LAM_NODE_LIST));
+  if (!node->count) PetscCall(FailValue(node, key, PETSC_FALSE, "is empty"));
   snprintf(path, sizeof(path), "%s[]", key->path);
   item_key = LamKeyFind(path);
   PetscCheck(item_key, PETSC_COMM_SELF, PETSC_ERR_PLIB, "the table of scene keys lacks %s", path);
-  for (LamNode *item = node->first; item; item = item->next) PetscCall(LamSceneReadNode(document, item, item_key));
+  for (LamNode *item = node->first; item; item = item->next) PetscCall(LamSceneReadNode(item, item_key));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ReadMap(const LamDocument *document, LamNode *node, const LamKey *key)
+static PetscErrorCode ReadMap(LamNode *node, const LamKey *key)
 {
   const LamKey *child;
 
   PetscFunctionBeginUser;
-  PetscCall(CheckKind(document, node, key, PETSC_FALSE, LAM_NODE_MAP));
+  PetscCall(CheckKind(node, key, PETSC_FALSE, LAM_NODE_MAP));
   for (LamNode *entry = node->first; entry; entry = entry->next) {
     char path[PATH_LENGTH];
     const LamKey *entry_key = NULL;
     const int length = snprintf(path, sizeof(path), "%s%s%s", key->path, key->path[0] ? "." : "", entry->name);
 
     if (length < PATH_LENGTH) entry_key = LamKeyFind(path);
-    if (!entry_key || !LamKeyIsChild(entry_key, key)) PetscCall(FailUnknown(document, entry, key));
-    PetscCall(LamSceneReadNode(document, entry, entry_key));
+    if (!entry_key || !LamKeyIsChild(entry_key, key)) PetscCall(FailUnknown(entry, key));
+    PetscCall(LamSceneReadNode(entry, entry_key));
   }
   for (PetscInt i = 0; (child = LamKeyAt(i)); i++) {
     const char *name = LamKeyName(child);
     char expected[LAM_KEY_TEXT_LENGTH];
-    if (!child->required || !LamKeyIsChild(child, key) || LamNodeFind(node, name, strlen(name))) continue;
+    if (!child->required || !LamKeyIsChild(child, key)) continue;
     LamKeyExpectation(child, PETSC_FALSE, expected);
-    PetscCall(LamSceneFailMissing(document, node, name, "missing; write %s", expected));
+    LamSceneRequire(LamNodeFind(node, name), node, name, "missing; write %s", expected);
   }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamSceneReadNode(const LamDocument *document, LamNode *node, const LamKey *key)
+PetscErrorCode LamSceneReadNode(LamNode *node, const LamKey *key)
 {
   PetscFunctionBeginUser;
   node->key = key;
   switch (key->type) {
   case LAM_KEY_MAP:
-    PetscCall(ReadMap(document, node, key));
+    PetscCall(ReadMap(node, key));
     break;
   case LAM_KEY_LIST:
-    PetscCall(ReadList(document, node, key));
+    PetscCall(ReadList(node, key));
     break;
   case LAM_KEY_TENSOR:
   case LAM_KEY_QUANTITY_TENSOR:
-    PetscCall(ReadTensor(document, node, key));
+    PetscCall(ReadTensor(node, key));
     break;
   default:
     if (key->size)
-      PetscCall(ReadVector(document, node, key));
+      PetscCall(ReadVector(node, key));
     else
-      PetscCall(ReadSingle(document, node, key, &node->value));
+      PetscCall(ReadSingle(node, key, &node->value));
   }
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamSceneCheckKeys(LamDocument *document)
 {
-  const LamNode start = {.line = 1, .column = 1};
+  const LamNode start = {.document = document, .line = 1, .column = 1};
 
   PetscFunctionBeginUser;
-  LamSceneCheck(document->root && !document->root->is_null, document, &start,
+  LamSceneCheck(document->root && !document->root->is_null, &start,
                 "the file holds no scene; a scene starts with version: 1");
-  PetscCall(LamSceneReadNode(document, document->root, LamKeyFind("")));
+  PetscCall(LamSceneReadNode(document->root, LamKeyFind("")));
   PetscFunctionReturn(0);
 }

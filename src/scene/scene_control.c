@@ -17,35 +17,32 @@ static const LamNode *Item(const LamNode *tensor, PetscInt i)
   return item;
 }
 
-static PetscErrorCode CheckComponent(const LamDocument *document, const LamNode *F_node, const LamNode *P_node,
-                                     PetscInt i, PetscBool F_given, PetscBool P_given)
+static PetscErrorCode CheckComponent(const LamNode *F_node, const LamNode *P_node, PetscInt i, PetscBool F_given,
+                                     PetscBool P_given)
 {
   const PetscBool shear33 = (PetscBool)(i == 2 || i == 5 || i == 6 || i == 7);
 
   PetscFunctionBeginUser;
-  LamSceneCheck(!shear33 || (F_given && !P_given), document, Item(F_given ? P_node : F_node, i),
+  LamSceneCheck(!shear33 || (F_given && !P_given), Item(F_given ? P_node : F_node, i),
                 "this version of Lamella does not have out-of-plane shear yet; write 0 for F%s and x for P%s", names[i],
                 names[i]);
-  LamSceneCheck(!F_given || !P_given, document, Item(P_node, i), "F%s is given, too; write x here, or free there",
-                names[i]);
-  LamSceneCheck(F_given || P_given, document, Item(F_node, i), "P%s is not given%s; write it into P, such as P: %s",
-                names[i], P_node ? " either" : "",
-                i == 8 ? "[[x, x, x], [x, x, x], [x, x, 0 MPa]]" : "[[0 MPa, x], [x, 0 MPa]]");
+  LamSceneCheck(!F_given || !P_given, Item(P_node, i), "F%s is given, too; write x here, or free there", names[i]);
+  LamSceneCheck(F_given || P_given, Item(F_node, i), "P%s is not given%s; write it into P, such as P: %s", names[i],
+                P_node ? " either" : "", i == 8 ? "[[x, x, x], [x, x, x], [x, x, 0 MPa]]" : "[[0 MPa, x], [x, 0 MPa]]");
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamSceneReadControl(const LamDocument *document, const LamNode *F_node, const LamNode *P_node,
-                                   PetscReal scale, LamStressControl *control)
+PetscErrorCode LamSceneReadControl(const LamNode *F_node, const LamNode *P_node, PetscReal scale,
+                                   LamStressControl *control)
 {
   PetscFunctionBeginUser;
   *control = (LamStressControl){.share = 1.0};
   for (PetscInt i = 0; i < 9; i++) {
     control->given[i] = (PetscBool)(P_node && !P_node->value.is_free[i]);
-    PetscCall(CheckComponent(document, F_node, P_node, i, (PetscBool)!F_node->value.is_free[i], control->given[i]));
-    if (control->given[i])
-      PetscCall(LamSceneScale(document, Item(P_node, i), P_node->value.number[i], scale, &control->P[i]));
+    PetscCall(CheckComponent(F_node, P_node, i, (PetscBool)!F_node->value.is_free[i], control->given[i]));
+    if (control->given[i]) PetscCall(LamSceneDivide(Item(P_node, i), P_node->value.number[i], scale, &control->P[i]));
   }
-  LamSceneCheck(!control->given[1] || !control->given[3], document, Item(F_node, 3),
+  LamSceneCheck(!control->given[1] || !control->given[3], Item(F_node, 3),
                 "F12 is free, too: the tissue can rotate; write a number for one of them, such as 0");
   PetscFunctionReturn(0);
 }

@@ -34,12 +34,12 @@ static void CopyPrintable(const char text[], size_t shown, char copy[VALUE_SHOWN
   memcpy(copy + n, n < length ? "..." : "", n < length ? 4 : 1);
 }
 
-PetscErrorCode LamSceneRaise(const LamDocument *document, const LamNode *node, LamMistake mistake, const char key[],
-                             const char format[], ...)
+PetscErrorCode LamSceneRaise(const LamNode *node, LamMistake mistake, const char key[], const char format[], ...)
 {
   const PetscBool at_name = (PetscBool)(mistake == LAM_MISTAKE_NAME || (mistake == LAM_MISTAKE_MISSING && node->name));
-  const size_t length = strlen(document->name);
-  const char *name = document->name + (length > NAME_SHOWN ? length - NAME_SHOWN : 0);
+  const char *full = node->document->name;
+  const size_t length = strlen(full);
+  const char *name = full + (length > NAME_SHOWN ? length - NAME_SHOWN : 0);
   char path[KEY_LENGTH], shown[VALUE_SHOWN + 4] = "", detail[DETAIL_LENGTH], message[MESSAGE_LENGTH];
   va_list arguments;
   size_t used;
@@ -52,7 +52,7 @@ PetscErrorCode LamSceneRaise(const LamDocument *document, const LamNode *node, L
   va_start(arguments, format);
   vsnprintf(detail, sizeof(detail), format, arguments);
   va_end(arguments);
-  snprintf(message, sizeof(message), "%s%s:%d:%d: %s%s%s%s%s", name == document->name ? "" : "...", name,
+  snprintf(message, sizeof(message), "%s%s:%d:%d: %s%s%s%s%s", name == full ? "" : "...", name,
            at_name ? node->name_line : node->line, at_name ? node->name_column : node->column, path,
            path[0] ? ": " : "", shown, shown[0] ? ": " : "", detail);
   SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s", message);

@@ -11,33 +11,32 @@
 /* Ratios to the apothem and to C1 + C2 beyond which double precision holds nothing of the walls. */
 #define LARGEST_RATIO 1e9
 
-PetscErrorCode LamSceneScale(const LamDocument *document, const LamNode *node, PetscReal si, PetscReal scale,
-                             PetscReal *number)
+PetscErrorCode LamSceneDivide(const LamNode *node, PetscReal si, PetscReal scale, PetscReal *number)
 {
   PetscFunctionBeginUser;
   *number = si / scale;
-  LamSceneCheck(!node || fabs(*number) <= LARGEST_RATIO, document, node,
+  LamSceneCheck(!node || fabs(*number) <= LARGEST_RATIO, node,
                 "is beyond all measure against the cell's apothem or C1 + C2; check units");
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamSceneCheckScale(const LamDocument *document, const LamNode *node, PetscReal si)
+PetscErrorCode LamSceneCheckScale(const LamNode *node, PetscReal si)
 {
   PetscFunctionBeginUser;
-  LamSceneCheck(si >= 1.0 / LARGEST_SCALE && si <= LARGEST_SCALE, document, node,
+  LamSceneCheck(si >= 1.0 / LARGEST_SCALE && si <= LARGEST_SCALE, node,
                 "is %g in SI units, beyond %g to %g, all that is reckoned with; check units", (double)si,
                 1.0 / LARGEST_SCALE, LARGEST_SCALE);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamSceneResolvePath(const LamDocument *document, const LamNode *node, char path[PETSC_MAX_PATH_LEN])
+PetscErrorCode LamSceneResolvePath(const LamNode *node, char path[PETSC_MAX_PATH_LEN])
 {
-  const char *slash = strrchr(document->name, '/');
-  const int folder = node->text[0] == '/' || !slash ? 0 : (int)(slash - document->name) + 1;
+  const char *name = node->document->name, *slash = strrchr(name, '/');
+  const int folder = node->text[0] == '/' || !slash ? 0 : (int)(slash - name) + 1;
 
   PetscFunctionBeginUser;
-  LamSceneCheck(folder + strlen(node->text) < PETSC_MAX_PATH_LEN, document, node, "the path is too long");
-  snprintf(path, PETSC_MAX_PATH_LEN, "%.*s%s", folder, document->name, node->text);
+  LamSceneCheck(folder + strlen(node->text) < PETSC_MAX_PATH_LEN, node, "the path is too long");
+  snprintf(path, PETSC_MAX_PATH_LEN, "%.*s%s", folder, name, node->text);
   PetscFunctionReturn(0);
 }
 
@@ -49,7 +48,7 @@ static PetscErrorCode ReadDefault(const LamKey *key, LamValue *value)
 
   PetscFunctionBeginUser;
   ierr = LamDocumentParse(key->path, key->default_value, &document);
-  if (!ierr) ierr = LamSceneReadNode(&document, document.root, key);
+  if (!ierr) ierr = LamSceneReadNode(document.root, key);
   if (!ierr) *value = document.root->value;
   PetscCall(LamDocumentDestroy(&document));
   PetscCall(ierr);
@@ -57,43 +56,41 @@ static PetscErrorCode ReadDefault(const LamKey *key, LamValue *value)
 }
 
 /* A component in the units of the struct: um in apothems, mm in macro lengths, stresses in C1 + C2, the rest in SI. */
-static PetscErrorCode StoreReal(const LamDocument *document, const LamNode *node, const LamKey *key,
-                                const LamScales *scales, PetscReal si, PetscReal *number)
+static PetscErrorCode StoreReal(const LamNode *node, const LamKey *key, const LamScales *scales, PetscReal si,
+                                PetscReal *number)
 {
   PetscFunctionBeginUser;
   *number = si;
   if (!key->unit) PetscFunctionReturn(0);
-  if (key->dimension == LAM_DIMENSION_STRESS) PetscCall(LamSceneScale(document, node, si, scales->stress, number));
+  if (key->dimension == LAM_DIMENSION_STRESS) PetscCall(LamSceneDivide(node, si, scales->stress, number));
   if (key->dimension == LAM_DIMENSION_LENGTH)
-    PetscCall(
-        LamSceneScale(document, node, si, strcmp(key->unit, "mm") ? scales->length : scales->macro_length, number));
+    PetscCall(LamSceneDivide(node, si, strcmp(key->unit, "mm") ? scales->length : scales->macro_length, number));
   if (key->dimension == LAM_DIMENSION_PERMEABILITY)
-    PetscCall(LamSceneScale(document, node, si * scales->stress, scales->length, number));
+    PetscCall(LamSceneDivide(node, si * scales->stress, scales->length, number));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode StoreText(const LamDocument *document, const LamNode *node, const LamKey *key, char text[])
+static PetscErrorCode StoreText(const LamNode *node, const LamKey *key, char text[])
 {
   PetscFunctionBeginUser;
   if (key->type == LAM_KEY_PATH) {
-    PetscCall(LamSceneResolvePath(document, node, text));
+    PetscCall(LamSceneResolvePath(node, text));
     PetscFunctionReturn(0);
   }
-  LamSceneCheck(strlen(node->text) < key->room, document, node, "is too long; names have less than %d letters",
-                (int)key->room);
+  LamSceneCheck(strlen(node->text) < key->room, node, "is too long; names have less than %d letters", (int)key->room);
   PetscCall(PetscStrncpy(text, node->text, key->room));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Store(const LamDocument *document, const LamNode *node, const LamKey *key, const LamValue *value,
-                            const LamScales *scales, char *target)
+static PetscErrorCode Store(const LamNode *node, const LamKey *key, const LamValue *value, const LamScales *scales,
+                            char *target)
 {
   void *place = target + key->offset;
   size_t size = sizeof(int); /* of an enumeration, or of a PetscBool, which is one */
 
   PetscFunctionBeginUser;
   if (key->type == LAM_KEY_TEXT || key->type == LAM_KEY_PATH) {
-    PetscCall(StoreText(document, node, key, place));
+    PetscCall(StoreText(node, key, place));
     PetscFunctionReturn(0);
   }
   for (PetscInt c = 0; c < value->count; c++) {
@@ -104,7 +101,7 @@ static PetscErrorCode Store(const LamDocument *document, const LamNode *node, co
       ((int *)place)[c] = (int)value->number[c];
     } else {
       size = sizeof(PetscReal);
-      PetscCall(StoreReal(document, node, key, scales, value->number[c], (PetscReal *)place + c));
+      PetscCall(StoreReal(node, key, scales, value->number[c], (PetscReal *)place + c));
     }
     if (key->given) ((PetscBool *)(target + key->given))[c] = (PetscBool)!value->is_free[c];
   }
@@ -113,8 +110,7 @@ static PetscErrorCode Store(const LamDocument *document, const LamNode *node, co
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamSceneFillRecord(const LamDocument *document, const LamNode *base, const LamScales *scales,
-                                  const char record[], void *target)
+PetscErrorCode LamSceneFillRecord(const LamNode *base, const LamScales *scales, const char record[], void *target)
 {
   const size_t skip = strlen(base->key->path);
   const LamKey *key;
@@ -125,12 +121,12 @@ PetscErrorCode LamSceneFillRecord(const LamDocument *document, const LamNode *ba
     LamValue value = {0};
 
     if (!key->record || strcmp(key->record, record) || strncmp(key->path, base->key->path, skip)) continue;
-    node = LamNodeFindPath(base, key->path + skip + (skip ? 1 : 0));
+    node = LamNodeFind(base, key->path + skip + (skip ? 1 : 0));
     if (node)
       value = node->value;
     else if (key->default_value)
       PetscCall(ReadDefault(key, &value));
-    if (value.count) PetscCall(Store(document, node, key, &value, scales, target));
+    if (value.count) PetscCall(Store(node, key, &value, scales, target));
   }
   PetscFunctionReturn(0);
 }
@@ -142,7 +138,7 @@ PetscErrorCode LamSceneGet(const LamNode *base, const char path[], const LamNode
 
   PetscFunctionBeginUser;
   *value = (LamValue){0};
-  *node = LamNodeFindPath(base, path + skip + (skip ? 1 : 0));
+  *node = LamNodeFind(base, path + skip + (skip ? 1 : 0));
   if (*node)
     *value = (*node)->value;
   else if (key->default_value)

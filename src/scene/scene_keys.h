@@ -95,17 +95,15 @@ void LamKeyExpectation(const LamKey *key, PetscBool single, char text[LAM_KEY_TE
 /* Checks the whole document against the tables and sets every node's key and value. */
 PetscErrorCode LamSceneCheckKeys(LamDocument *document);
 /* The same of one node and all that it holds. */
-PetscErrorCode LamSceneReadNode(const LamDocument *document, LamNode *node, const LamKey *key);
+PetscErrorCode LamSceneReadNode(LamNode *node, const LamKey *key);
 
 /*
-  Stores the values of all keys of a struct's type, nondimensional, in *target. `base` is the node that the keys are
-  read from: the root, or an item of a list. Where the file does not give a key its default is stored; without default
-  the member stays as it is.
+  Stores the values of all keys of a struct's type, nondimensional, in *target, which the macro checks to be of that
+  type. `base` is the node that they are read from: a block or an item of a list. Where the file does not give a key its
+  default is stored; without default the member stays as it is.
 */
-#define LamSceneFill(document, base, scales, type, target)                                                             \
-  LamSceneFillRecord(document, base, scales, #type, 1 ? (target) : (type *)NULL)
-PetscErrorCode LamSceneFillRecord(const LamDocument *document, const LamNode *base, const LamScales *scales,
-                                  const char record[], void *target);
+#define LamSceneFill(base, scales, type, target) LamSceneFillRecord(base, scales, #type, 1 ? (target) : (type *)NULL)
+PetscErrorCode LamSceneFillRecord(const LamNode *base, const LamScales *scales, const char record[], void *target);
 
 #define LAM_BONDED_PARTS "contradicts law: bonded, whose cells never part; leave it out"
 
@@ -113,32 +111,30 @@ PetscErrorCode LamSceneFillRecord(const LamDocument *document, const LamNode *ba
 PetscErrorCode LamSceneGet(const LamNode *base, const char path[], const LamNode **node, LamValue *value);
 
 /* The parts of a scene, in this order. */
-PetscErrorCode LamSceneBuildRVE(const LamDocument *document, LamScene *scene);
-PetscErrorCode LamSceneBuildStrength(const LamDocument *document, LamScene *scene);
-PetscErrorCode LamSceneBuildLoad(const LamDocument *document, LamScene *scene);
-PetscErrorCode LamSceneBuildSample(const LamDocument *document, LamScene *scene);
-PetscErrorCode LamSceneBuildMacro(const LamDocument *document, LamScene *scene);
-PetscErrorCode LamSceneBuildResponse(const LamDocument *document, LamScene *scene);
-PetscErrorCode LamSceneBuildRegions(const LamDocument *document, LamScene *scene);
+PetscErrorCode LamSceneBuildRVE(const LamNode *root, LamScene *scene);
+PetscErrorCode LamSceneBuildStrength(const LamNode *root, LamScene *scene);
+PetscErrorCode LamSceneBuildLoad(const LamNode *root, LamScene *scene);
+PetscErrorCode LamSceneBuildSample(const LamNode *root, LamScene *scene);
+PetscErrorCode LamSceneBuildMacro(const LamNode *root, LamScene *scene);
+PetscErrorCode LamSceneBuildResponse(const LamNode *root, LamScene *scene);
+PetscErrorCode LamSceneBuildRegions(const LamNode *root, LamScene *scene);
 /* scene_boundary.c, part of the block `macro`. */
-PetscErrorCode LamSceneBuildBoundaries(const LamDocument *document, LamScene *scene);
+PetscErrorCode LamSceneBuildBoundaries(const LamNode *root, LamScene *scene);
 /* Refuses a name that is no side of a box or disc. `side` is its number, -1 of a Gmsh file. */
-PetscErrorCode LamSceneCheckSide(const LamDocument *document, const LamNode *on, const LamMacroSpec *spec,
-                                 PetscInt *side);
-PetscErrorCode LamSceneBuildMap(const LamDocument *document, LamScene *scene);
-PetscErrorCode LamSceneBuildProcess(const LamDocument *document, LamScene *scene);
+PetscErrorCode LamSceneCheckSide(const LamNode *on, const LamMacroSpec *spec, PetscInt *side);
+PetscErrorCode LamSceneBuildMap(const LamNode *root, LamScene *scene);
+PetscErrorCode LamSceneBuildProcess(const LamNode *root, LamScene *scene);
 PetscErrorCode LamSceneDestroyProcess(LamScene *scene);
 PetscErrorCode LamSceneDestroyRegions(LamScene *scene);
 
 /* scene_cells.c, part of the RVE: what differs from cell to cell. */
-PetscErrorCode LamSceneBuildCells(const LamDocument *document, LamScene *scene);
+PetscErrorCode LamSceneBuildCells(const LamNode *root, LamScene *scene);
 /* Refuses a clearance, which is at the node, that leaves a cell no lumen. */
-PetscErrorCode LamSceneCheckClearance(const LamDocument *document, const LamNode *node, const LamScales *scales,
-                                      const LamMicrostructure *micro);
+PetscErrorCode LamSceneCheckClearance(const LamNode *node, const LamScales *scales, const LamMicrostructure *micro);
 /* Whether nothing but a cohesion holds cells of the tissue: those at the free sides of a patch in contact. */
 PetscBool LamSceneNeedsCohesion(const LamMicrostructure *micro);
 /* What a patch allows in the rest of a scene that is built. */
-PetscErrorCode LamSceneCheckPatch(const LamDocument *document, const LamScene *scene);
+PetscErrorCode LamSceneCheckPatch(const LamNode *root, const LamScene *scene);
 /*
   The wall at <prefix>.law, <prefix>.C1, ..., moduli over `stress` (Pa). What is not given is that of `own`, its bulk
   modulus in proportion to C1 + C2; NULL: as the table of keys says.
@@ -146,25 +142,25 @@ PetscErrorCode LamSceneCheckPatch(const LamDocument *document, const LamScene *s
 PetscErrorCode LamSceneReadWall(const LamDocument *document, const LamNode *base, const char prefix[], PetscReal stress,
                                 const LamWall *own, LamWall *wall);
 /* Refuses an F that is no deformation gradient of plane strain, where its components are given. */
-PetscErrorCode LamSceneCheckF(const LamDocument *document, const LamNode *node);
+PetscErrorCode LamSceneCheckF(const LamNode *node);
 /* The control that the tensors of an entry say (P_node NULL: F alone), stresses over `scale`; refused where a component
    has neither or both of F and P, or the tissue can rotate. */
-PetscErrorCode LamSceneReadControl(const LamDocument *document, const LamNode *F_node, const LamNode *P_node,
-                                   PetscReal scale, LamStressControl *control);
+PetscErrorCode LamSceneReadControl(const LamNode *F_node, const LamNode *P_node, PetscReal scale,
+                                   LamStressControl *control);
 /* Step 1..steps of a ramp: prescribed stresses go straight from those before (0 where there was none), and F follows
    the state before where it was free there. */
 void LamSceneRampControl(const LamStressControl *from, const LamStressControl *to, PetscInt step, PetscInt steps,
                          LamStressControl *control);
 
 /* Of a text that names a file: a path in the file is relative to the scene's folder. */
-PetscErrorCode LamSceneResolvePath(const LamDocument *document, const LamNode *node, char path[PETSC_MAX_PATH_LEN]);
-/* si / scale; refused where the ratio is not finite. node may be NULL (a default: always finite). */
-PetscErrorCode LamSceneScale(const LamDocument *document, const LamNode *node, PetscReal si, PetscReal scale,
-                             PetscReal *number);
+PetscErrorCode LamSceneResolvePath(const LamNode *node, char path[PETSC_MAX_PATH_LEN]);
+/* si / scale; refused where the ratio is beyond what doubles hold beside others. node may be NULL (a default: always
+ * finite). */
+PetscErrorCode LamSceneDivide(const LamNode *node, PetscReal si, PetscReal scale, PetscReal *number);
 /* Refuses an apothem, C1 + C2 or length of a body, in SI, that is beyond what doubles hold the squares and products of.
  */
-PetscErrorCode LamSceneCheckScale(const LamDocument *document, const LamNode *node, PetscReal si);
+PetscErrorCode LamSceneCheckScale(const LamNode *node, PetscReal si);
 /* A turgor of the node's own (not the scene's) contradicts an explicit mode: none. */
-PetscErrorCode LamSceneCheckTurgor(const LamDocument *document, const LamNode *node, PetscReal turgor);
+PetscErrorCode LamSceneCheckTurgor(const LamNode *node, PetscReal turgor);
 
 #endif

@@ -49,57 +49,56 @@ static PetscBool IsInPlane(PetscInt i)
 }
 
 /* Plane strain, or generalised plane strain: out-of-plane shears would need three displacement components. */
-PetscErrorCode LamSceneCheckF(const LamDocument *document, const LamNode *node)
+PetscErrorCode LamSceneCheckF(const LamNode *node)
 {
   const PetscReal *F = node->value.number;
   const PetscBool *is_free = node->value.is_free;
   PetscBool complete = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  LamSceneCheck(F[2] == 0.0 && F[5] == 0.0 && F[6] == 0.0 && F[7] == 0.0, document, node,
+  LamSceneCheck(F[2] == 0.0 && F[5] == 0.0 && F[6] == 0.0 && F[7] == 0.0, node,
                 "this version of Lamella does not have out-of-plane shear yet; write 0 for F13, F23, F31 and F32");
-  LamSceneCheck(F[8] > 0.0 || is_free[8], document, node, "F33 = %g; it must be positive", (double)F[8]);
+  LamSceneCheck(F[8] > 0.0 || is_free[8], node, "F33 = %g; it must be positive", (double)F[8]);
   for (PetscInt i = 0; i < 9; i++) complete = (PetscBool)(complete && !(IsInPlane(i) && is_free[i]));
-  LamSceneCheck(!complete || Determinant2D(F) > 0.0, document, node,
+  LamSceneCheck(!complete || Determinant2D(F) > 0.0, node,
                 "F11 F22 - F12 F21 = %g; a deformation gradient has a positive determinant", (double)Determinant2D(F));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ReadTarget(const LamDocument *document, const LamNode *entry, Target *target)
+static PetscErrorCode ReadTarget(const LamNode *entry, Target *target)
 {
-  const LamNode *F = LamNodeFindPath(entry, "F"), *P = LamNodeFindPath(entry, "P");
-  const LamNode *ramp = LamNodeFindPath(entry, "ramp");
+  const LamNode *F = LamNodeFind(entry, "F"), *P = LamNodeFind(entry, "P");
+  const LamNode *ramp = LamNodeFind(entry, "ramp");
 
   PetscFunctionBeginUser;
   *target = (Target){F, P, 1};
-  LamSceneCheckName(!F || !ramp, document, ramp, "given together with F; an entry holds one of them");
-  LamSceneRequire(F || ramp, document, entry, "F", "missing; write F: %s, or a ramp: {to: %s, steps: 10%s}",
+  LamSceneCheckName(!F || !ramp, ramp, "given together with F; an entry holds one of them");
+  LamSceneRequire(F || ramp, entry, "F", "missing; write F: %s, or a ramp: {to: %s, steps: 10%s}",
                   P ? "[[free, 0.1], [0, free]] beside P" : "[[1, 0.1], [0, 1]]",
                   P ? "[[free, 0.3], [0, free]]" : "[[1, 0.3], [0, 1]]", P ? ", P: [[0 MPa, x], [x, 0 MPa]]" : "");
   if (F) PetscFunctionReturn(0);
-  LamSceneCheckName(!P, document, P, "stands beside a ramp; write it into the ramp, beside `to`");
-  target->F = LamNodeFindPath(ramp, "to");
-  target->P = LamNodeFindPath(ramp, "P");
-  target->states = (PetscInt)LamNodeFindPath(ramp, "steps")->value.number[0];
+  LamSceneCheckName(!P, P, "stands beside a ramp; write it into the ramp, beside `to`");
+  target->F = LamNodeFind(ramp, "to");
+  target->P = LamNodeFind(ramp, "P");
+  target->states = (PetscInt)LamNodeFind(ramp, "steps")->value.number[0];
   PetscFunctionReturn(0);
 }
 
 /* The turgor and cohesion of an entry: its own or the scene's. */
-static PetscErrorCode BuildPressures(const LamDocument *document, const LamNode *entry, const LamScene *scene,
-                                     LamLoad *load)
+static PetscErrorCode BuildPressures(const LamNode *entry, const LamScene *scene, LamLoad *load)
 {
-  const LamNode *turgor = LamNodeFindPath(entry, "turgor"), *cohesion = LamNodeFindPath(entry, "cohesion");
+  const LamNode *turgor = LamNodeFind(entry, "turgor"), *cohesion = LamNodeFind(entry, "cohesion");
 
   PetscFunctionBeginUser;
   load->turgor = scene->turgor;
   load->cohesion = scene->cohesion;
-  LamSceneCheckName(!turgor || !scene->sealed, document, turgor,
+  LamSceneCheckName(!turgor || !scene->sealed, turgor,
                     "contradicts turgor mode: sealed, whose cells find their pressure themselves; leave it out, or "
                     "write mode: prescribed");
-  if (turgor) PetscCall(LamSceneCheckTurgor(document, turgor, turgor->value.number[0]));
+  if (turgor) PetscCall(LamSceneCheckTurgor(turgor, turgor->value.number[0]));
   LamSceneCheck(!cohesion || scene->micro.interface != LAM_INTERFACE_BONDED || !(cohesion->value.number[0] > 0.0),
-                document, cohesion, LAM_BONDED_PARTS);
-  PetscCall(LamSceneFill(document, entry, &scene->scales, LamLoad, load));
+                cohesion, LAM_BONDED_PARTS);
+  PetscCall(LamSceneFill(entry, &scene->scales, LamLoad, load));
   PetscFunctionReturn(0);
 }
 
@@ -115,7 +114,7 @@ static void StepF(const PetscReal start[9], const PetscReal end[9], const LamStr
 }
 
 /* Appends the states of an entry after scene->load_count. */
-static PetscErrorCode BuildEntry(const LamDocument *document, const LamNode *entry, LamScene *scene)
+static PetscErrorCode BuildEntry(const LamNode *entry, LamScene *scene)
 {
   LamLoad load = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   LamStressControl before = {0}, end, control;
@@ -123,19 +122,19 @@ static PetscErrorCode BuildEntry(const LamDocument *document, const LamNode *ent
   Target target;
 
   PetscFunctionBeginUser;
-  PetscCall(ReadTarget(document, entry, &target));
-  PetscCall(LamSceneReadControl(document, target.F, target.P, scene->scales.stress, &end));
-  PetscCall(LamSceneCheckF(document, target.F));
+  PetscCall(ReadTarget(entry, &target));
+  PetscCall(LamSceneReadControl(target.F, target.P, scene->scales.stress, &end));
+  PetscCall(LamSceneCheckF(target.F));
   if (scene->load_count) load = scene->loads[scene->load_count - 1];
   if (scene->load_count && scene->controls) before = scene->controls[scene->load_count - 1];
   PetscCall(PetscArraycpy(start, load.F, 9));
-  PetscCall(BuildPressures(document, entry, scene, &load));
+  PetscCall(BuildPressures(entry, scene, &load));
   for (PetscInt k = 1; k <= target.states; k++) {
     PetscBool known;
 
     LamSceneRampControl(&before, &end, k, target.states, &control);
     StepF(start, target.F->value.number, &control, (PetscReal)k / (PetscReal)target.states, load.F, &known);
-    LamSceneCheck(!known || Determinant2D(load.F) > 0.0, document, target.F,
+    LamSceneCheck(!known || Determinant2D(load.F) > 0.0, target.F,
                   "the straight path turns the tissue inside out at step %d (determinant %g); go there by way of a "
                   "state in between",
                   (int)k, (double)Determinant2D(load.F));
@@ -145,9 +144,9 @@ static PetscErrorCode BuildEntry(const LamDocument *document, const LamNode *ent
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamSceneBuildLoad(const LamDocument *document, LamScene *scene)
+PetscErrorCode LamSceneBuildLoad(const LamNode *root, LamScene *scene)
 {
-  const LamNode *list = LamNodeFindPath(document->root, "load");
+  const LamNode *list = LamNodeFind(root, "load");
   PetscBool mixed = PETSC_FALSE;
   PetscInt total = 0;
 
@@ -156,13 +155,13 @@ PetscErrorCode LamSceneBuildLoad(const LamDocument *document, LamScene *scene)
   for (const LamNode *entry = list->first; entry; entry = entry->next) {
     Target target;
 
-    PetscCall(ReadTarget(document, entry, &target));
+    PetscCall(ReadTarget(entry, &target));
     if (target.P) mixed = PETSC_TRUE;
     total += target.states;
-    LamSceneCheck(total <= MAX_STATES, document, entry, "more than %d states in all; use fewer steps", (int)MAX_STATES);
+    LamSceneCheck(total <= MAX_STATES, entry, "more than %d states in all; use fewer steps", (int)MAX_STATES);
   }
   PetscCall(PetscCalloc1(total, &scene->loads));
   if (mixed) PetscCall(PetscCalloc1(total, &scene->controls));
-  for (const LamNode *entry = list->first; entry; entry = entry->next) PetscCall(BuildEntry(document, entry, scene));
+  for (const LamNode *entry = list->first; entry; entry = entry->next) PetscCall(BuildEntry(entry, scene));
   PetscFunctionReturn(0);
 }

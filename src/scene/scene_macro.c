@@ -70,90 +70,90 @@ LAM_KEY_TABLE(LamProgramKeys, program_keys);
 /* ---- mesh ---- */
 
 /* Exactly one of box, disc and gmsh says where the mesh comes from, and what the unit of length is. */
-static PetscErrorCode BuildMesh(const LamDocument *document, const LamNode *mesh, LamScene *scene)
+static PetscErrorCode BuildMesh(const LamNode *mesh, LamScene *scene)
 {
   static const char *const sources[] = {"box", "disc", "gmsh"};
-  const LamNode *elements = LamNodeFindPath(mesh, "elements"), *part = LamNodeFindPath(mesh, "part");
+  const LamNode *elements = LamNodeFind(mesh, "elements"), *part = LamNodeFind(mesh, "part");
   const LamNode *source = NULL, *unit;
   LamMacroSpec *spec = &scene->macro;
   PetscInt count = 0;
   LamValue length;
 
   PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(document->root, "macro.mesh.unit", &unit, &length));
+  PetscCall(LamSceneGet(mesh, "macro.mesh.unit", &unit, &length));
   for (int k = 0; k < 3; k++) {
-    const LamNode *given = LamNodeFindPath(mesh, sources[k]);
+    const LamNode *given = LamNodeFind(mesh, sources[k]);
 
     if (!given) continue;
     spec->source = (LamMeshSource)k;
     source = given;
     count++;
   }
-  LamSceneRequire(count, document, mesh, "box", "missing; write box: [10 mm, 10 mm], or disc: 5 mm, or gmsh: file.msh");
-  LamSceneCheck(count == 1, document, source, "the mesh is one of box, disc and gmsh; leave the others out");
-  LamSceneCheck(!part || spec->source == LAM_MESH_DISC, document, part,
+  LamSceneRequire(count, mesh, "box", "missing; write box: [10 mm, 10 mm], or disc: 5 mm, or gmsh: file.msh");
+  LamSceneCheck(count == 1, source, "the mesh is one of box, disc and gmsh; leave the others out");
+  LamSceneCheck(!part || spec->source == LAM_MESH_DISC, part,
                 "belongs to a disc, which this mesh is not; leave it out");
-  LamSceneCheck(!unit || spec->source == LAM_MESH_GMSH, document, unit,
+  LamSceneCheck(!unit || spec->source == LAM_MESH_GMSH, unit,
                 "belongs to a Gmsh file, which this mesh is not; leave it out");
   if (spec->source == LAM_MESH_GMSH) {
-    LamSceneCheck(!elements, document, elements, "a Gmsh file has its own elements; leave it out");
+    LamSceneCheck(!elements, elements, "a Gmsh file has its own elements; leave it out");
     source = unit;
   } else {
-    LamSceneRequire(elements, document, mesh, "elements", "missing; write two numbers, such as [8, 8]");
+    LamSceneRequire(elements, mesh, "elements", "missing; write two numbers, such as [8, 8]");
     length = source->value;
   }
   scene->scales.macro_length = length.number[0];
-  PetscCall(LamSceneCheckScale(document, source, length.number[0]));
+  PetscCall(LamSceneCheckScale(source, length.number[0]));
   PetscFunctionReturn(0);
 }
 
 /* ---- load program ---- */
 
-static PetscErrorCode BuildLegs(const LamDocument *document, const LamNode *list, LamMacroSpec *spec)
+static PetscErrorCode BuildLegs(const LamNode *list, LamMacroSpec *spec)
 {
   const LamNode *repeat_node;
   PetscReal from = 0;
   LamValue repeat;
 
   PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(document->root, "macro.repeat", &repeat_node, &repeat));
-  LamSceneCheckName(list->count <= LAM_MAX_LEGS, document, list, "has %d ramps; at most %d are allowed",
-                    (int)list->count, LAM_MAX_LEGS);
+  PetscCall(LamSceneGet(list->document->root, "macro.repeat", &repeat_node, &repeat));
+  LamSceneCheckName(list->count <= LAM_MAX_LEGS, list, "has %d ramps; at most %d are allowed", (int)list->count,
+                    LAM_MAX_LEGS);
   spec->steps = 0;
   for (const LamNode *item = list->first; item; item = item->next) {
     LamLeg *leg = &spec->legs[spec->leg_count++];
 
-    PetscCall(LamSceneFill(document, item, NULL, LamLeg, leg));
-    LamSceneCheck(leg->to != from, document, LamNodeFindPath(item, "to"),
+    PetscCall(LamSceneFill(item, NULL, LamLeg, leg));
+    LamSceneCheck(leg->to != from, LamNodeFind(item, "to"),
                   "is where the parameter is already; write another one, or leave the ramp out");
     from = leg->to;
     spec->steps += leg->steps;
   }
-  LamSceneCheckName(repeat.number[0] * spec->steps <= MAX_STEPS, document, repeat_node ? repeat_node : list,
+  LamSceneCheckName(repeat.number[0] * spec->steps <= MAX_STEPS, repeat_node ? repeat_node : list,
                     "gives %g steps; at most %d are allowed", (double)(repeat.number[0] * spec->steps), (int)MAX_STEPS);
   spec->steps *= (PetscInt)repeat.number[0];
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BuildProgram(const LamDocument *document, const LamNode *block, LamMacroSpec *spec)
+static PetscErrorCode BuildProgram(const LamNode *block, LamMacroSpec *spec)
 {
-  const LamNode *list = LamNodeFindPath(block, "program"), *steps = LamNodeFindPath(block, "steps");
-  const LamNode *repeat = LamNodeFindPath(block, "repeat");
+  const LamNode *list = LamNodeFind(block, "program"), *steps = LamNodeFind(block, "steps");
+  const LamNode *repeat = LamNodeFind(block, "repeat");
 
   PetscFunctionBeginUser;
-  LamSceneCheckName(!list || !steps, document, steps,
+  LamSceneCheckName(!list || !steps, steps,
                     "stands beside program, whose parts have their own steps; leave one of them out");
-  LamSceneCheckName(list || !repeat, document, repeat,
+  LamSceneCheckName(list || !repeat, repeat,
                     "repeats a program, but there is none; write one, such as program: [{to: 1, steps: 10}, {to: 0, "
                     "steps: 10}]");
-  if (list) PetscCall(BuildLegs(document, list, spec));
+  if (list) PetscCall(BuildLegs(list, spec));
   PetscFunctionReturn(0);
 }
 
 /* ---- control of a displacement ---- */
 
 /* The control finds the factor of the tractions. */
-static PetscErrorCode CheckTractions(const LamDocument *document, const LamNode *block, const LamMacroSpec *spec)
+static PetscErrorCode CheckTractions(const LamNode *block, const LamMacroSpec *spec)
 {
   const LamLoadControl *control = &spec->control;
   PetscInt tractions = 0;
@@ -164,40 +164,39 @@ static PetscErrorCode CheckTractions(const LamDocument *document, const LamNode 
     const PetscBool loads = (PetscBool)(boundary->traction[0] != 0 || boundary->traction[1] != 0);
 
     if (loads) tractions++;
-    LamSceneCheckName(!loads || !boundary->history.count, document, block,
+    LamSceneCheckName(!loads || !boundary->history.count, block,
                       "finds the factor of the tractions, but that on %s has a history; leave one of them out",
                       boundary->on);
     LamSceneCheck(boundary->kind != LAM_BOUNDARY_DISPLACEMENT || !boundary->given[control->component] ||
                       strcmp(boundary->on, control->on),
-                  document, LamNodeFindPath(block, "on"),
-                  "its displacement along X%d is prescribed in macro.boundary; leave it free",
+                  LamNodeFind(block, "on"), "its displacement along X%d is prescribed in macro.boundary; leave it free",
                   (int)control->component + 1);
   }
-  LamSceneCheckName(tractions, document, block,
+  LamSceneCheckName(tractions, block,
                     "finds the factor of the tractions, but there is none in macro.boundary; give a traction or "
                     "pressure, or leave control out");
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BuildControl(const LamDocument *document, const LamNode *block, LamScene *scene)
+static PetscErrorCode BuildControl(const LamNode *block, LamScene *scene)
 {
-  const LamNode *displacement = LamNodeFindPath(block, "displacement");
+  const LamNode *displacement = LamNodeFind(block, "displacement");
   LamLoadControl *control = &scene->macro.control;
   const PetscBool *is_free;
   PetscInt side;
 
   PetscFunctionBeginUser;
   if (!block) PetscFunctionReturn(0);
-  PetscCall(LamSceneCheckSide(document, LamNodeFindPath(block, "on"), &scene->macro, &side));
-  PetscCall(LamSceneFill(document, document->root, &scene->scales, LamLoadControl, control));
+  PetscCall(LamSceneCheckSide(LamNodeFind(block, "on"), &scene->macro, &side));
+  PetscCall(LamSceneFill(block, &scene->scales, LamLoadControl, control));
   is_free = displacement->value.is_free;
-  LamSceneCheck(is_free[0] != is_free[1], document, displacement,
+  LamSceneCheck(is_free[0] != is_free[1], displacement,
                 "gives %s; give one and write free for the other, such as [free, -1 mm]",
                 is_free[0] ? "no component" : "both components");
   control->component = is_free[0] ? 1 : 0;
-  PetscCall(LamSceneScale(document, displacement, displacement->value.number[control->component],
-                          scene->scales.macro_length, &control->displacement));
-  PetscCall(CheckTractions(document, block, &scene->macro));
+  PetscCall(LamSceneDivide(displacement, displacement->value.number[control->component], scene->scales.macro_length,
+                           &control->displacement));
+  PetscCall(CheckTractions(block, &scene->macro));
   PetscFunctionReturn(0);
 }
 
@@ -207,51 +206,51 @@ static PetscErrorCode BuildControl(const LamDocument *document, const LamNode *b
   A body that inflates freely ends at zero total stress, where every mean face traction is zero, whatever the turgor is:
   contact alone then holds no cell.
 */
-static PetscErrorCode CheckInflation(const LamDocument *document, const LamNode *block, const LamScene *scene)
+static PetscErrorCode CheckInflation(const LamNode *block, const LamScene *scene)
 {
   static const char *const remedy =
       "free tissue is held together only by the lamella; give interface.cohesion > 0, or inflate: false";
-  const LamNode *inflate = LamNodeFindPath(block, "inflate");
+  const LamNode *inflate = LamNodeFind(block, "inflate");
 
   PetscFunctionBeginUser;
   if (!scene->macro.inflate || scene->micro.interface != LAM_INTERFACE_CONTACT || scene->cohesion > 0.0)
     PetscFunctionReturn(0);
-  LamSceneCheck(!inflate, document, inflate, "law: contact has no cohesion; %s", remedy);
-  PetscCall(LamSceneFailMissing(document, block, "inflate",
-                                "missing, so true with turgor, but law: contact has no cohesion; %s", remedy));
+  LamSceneCheck(!inflate, inflate, "law: contact has no cohesion; %s", remedy);
+  PetscCall(LamSceneRaise(block, LAM_MISTAKE_MISSING, "inflate",
+                          "missing, so true with turgor, but law: contact has no cohesion; %s", remedy));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BuildZoom(const LamDocument *document, const LamNode *list, LamScene *scene)
+static PetscErrorCode BuildZoom(const LamNode *list, LamScene *scene)
 {
   PetscFunctionBeginUser;
   if (!list) PetscFunctionReturn(0);
-  LamSceneCheck(list->count <= LAM_MAX_ZOOMS, document, list, "has more than %d places; leave some out", LAM_MAX_ZOOMS);
+  LamSceneCheck(list->count <= LAM_MAX_ZOOMS, list, "has more than %d places; leave some out", LAM_MAX_ZOOMS);
   for (const LamNode *item = list->first; item; item = item->next) {
     PetscReal *place = scene->macro.zoom[scene->macro.zoom_count++];
 
     for (int i = 0; i < 2; i++)
-      PetscCall(LamSceneScale(document, item, item->value.number[i], scene->scales.macro_length, &place[i]));
+      PetscCall(LamSceneDivide(item, item->value.number[i], scene->scales.macro_length, &place[i]));
   }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamSceneBuildMacro(const LamDocument *document, LamScene *scene)
+PetscErrorCode LamSceneBuildMacro(const LamNode *root, LamScene *scene)
 {
-  const LamNode *block = LamNodeFindPath(document->root, "macro");
+  const LamNode *block = LamNodeFind(root, "macro");
   LamMacroSpec *spec = &scene->macro;
 
   PetscFunctionBeginUser;
   if (!block) PetscFunctionReturn(0);
   scene->has_macro = PETSC_TRUE;
-  PetscCall(BuildMesh(document, LamNodeFindPath(block, "mesh"), scene));
+  PetscCall(BuildMesh(LamNodeFind(block, "mesh"), scene));
   spec->inflate = (PetscBool)(scene->turgor != 0.0);
   spec->steps = DEFAULT_STEPS;
-  PetscCall(LamSceneFill(document, document->root, &scene->scales, LamMacroSpec, spec));
-  PetscCall(CheckInflation(document, block, scene));
-  PetscCall(LamSceneBuildBoundaries(document, scene));
-  PetscCall(BuildProgram(document, block, spec));
-  PetscCall(BuildControl(document, LamNodeFindPath(block, "control"), scene));
-  PetscCall(BuildZoom(document, LamNodeFindPath(block, "zoom"), scene));
+  PetscCall(LamSceneFill(block, &scene->scales, LamMacroSpec, spec));
+  PetscCall(CheckInflation(block, scene));
+  PetscCall(LamSceneBuildBoundaries(root, scene));
+  PetscCall(BuildProgram(block, spec));
+  PetscCall(BuildControl(LamNodeFind(block, "control"), scene));
+  PetscCall(BuildZoom(LamNodeFind(block, "zoom"), scene));
   PetscFunctionReturn(0);
 }

@@ -83,8 +83,7 @@ typedef struct {
 } AxisNodes;
 
 /* An end of an axis, whose unit and bounds are those of its quantity. */
-static PetscErrorCode ReadEnd(const LamDocument *document, const LamNode *node, LamMapQuantity quantity,
-                              const LamScales *scales, PetscReal *number)
+static PetscErrorCode ReadEnd(const LamNode *node, LamMapQuantity quantity, const LamScales *scales, PetscReal *number)
 {
   const LamBound *lower = &Quantities[quantity].lower, *upper = &Quantities[quantity].upper, none = {0};
   const Kind kind = Quantities[quantity].kind;
@@ -97,17 +96,17 @@ static PetscErrorCode ReadEnd(const LamDocument *document, const LamNode *node, 
   unit = LamMapQuantityUnit(quantity, scales, &scale);
   if (kind == PLAIN) {
     *number = LamNumberScan(node->text, &end);
-    LamSceneCheck(end > node->text && !*end && isfinite(*number), document, node,
+    LamSceneCheck(end > node->text && !*end && isfinite(*number), node,
                   "is not a plain number; write one, such as 0.1");
   } else {
     PetscCall(LamQuantityRead(node->text, dimension, &si, reason));
-    LamSceneCheck(!reason[0], document, node, "%s; write a %s with its unit, such as %s", reason,
-                  LamDimensionNames[dimension], LamDimensionExamples[dimension]);
-    PetscCall(LamSceneScale(document, node, si, kind == STRESS ? scales->stress : scales->length, number));
+    LamSceneCheck(!reason[0], node, "%s; write a %s with its unit, such as %s", reason, LamDimensionNames[dimension],
+                  LamDimensionExamples[dimension]);
+    PetscCall(LamSceneDivide(node, si, kind == STRESS ? scales->stress : scales->length, number));
   }
-  LamSceneCheck(LamBoundsHold(lower, &none, *number), document, node, "is out of range; %s is %s %g", name,
+  LamSceneCheck(LamBoundsHold(lower, &none, *number), node, "is out of range; %s is %s %g", name,
                 LamBoundWords(lower, PETSC_TRUE), (double)lower->value);
-  LamSceneCheck(LamBoundsHold(&none, upper, *number), document, node, "is out of range; %s is %s %g%s%s", name,
+  LamSceneCheck(LamBoundsHold(&none, upper, *number), node, "is out of range; %s is %s %g%s%s", name,
                 LamBoundWords(upper, PETSC_FALSE), (double)(upper->value * scale), kind == PLAIN ? "" : " ",
                 kind == PLAIN ? "" : unit);
   PetscFunctionReturn(0);
@@ -116,71 +115,69 @@ static PetscErrorCode ReadEnd(const LamDocument *document, const LamNode *node, 
 /* ---- what must fit the rest of the scene ---- */
 
 /* An entry of the load that has a turgor or cohesion of its own would hide the axis. */
-static PetscErrorCode CheckEntries(const LamDocument *document, const char key[], const AxisNodes *nodes)
+static PetscErrorCode CheckEntries(const char key[], const AxisNodes *nodes)
 {
-  const LamNode *list = LamNodeFindPath(document->root, "load");
+  const LamNode *list = LamNodeFind(nodes->quantity->document->root, "load");
 
   PetscFunctionBeginUser;
   for (const LamNode *entry = list->first; entry; entry = entry->next) {
-    const LamNode *own = LamNodeFindPath(entry, key);
+    const LamNode *own = LamNodeFind(entry, key);
 
-    LamSceneCheck(!own, document, own, "the map varies it (line %d); leave it out here", nodes->quantity->line);
+    LamSceneCheck(!own, own, "the map varies it (line %d); leave it out here", nodes->quantity->line);
   }
   PetscFunctionReturn(0);
 }
 
 /* The shear that the load reaches is found again by its value, so it only grows, from 0 on. */
-static PetscErrorCode CheckShear(const LamDocument *document, const AxisNodes *nodes, const LamScene *scene,
-                                 const LamMapAxis *axis)
+static PetscErrorCode CheckShear(const AxisNodes *nodes, const LamScene *scene, const LamMapAxis *axis)
 {
   PetscReal last = 0;
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < scene->load_count; i++) {
-    LamSceneCheck(!scene->controls || (!scene->controls[i].given[1] && !scene->controls[i].follows[1]), document,
-                  nodes->quantity, "F12 of the load is free at state %d; write quantity: load_factor", (int)i + 1);
-    LamSceneCheck(scene->loads[i].F[1] > last, document, nodes->quantity,
+    LamSceneCheck(!scene->controls || (!scene->controls[i].given[1] && !scene->controls[i].follows[1]), nodes->quantity,
+                  "F12 of the load is free at state %d; write quantity: load_factor", (int)i + 1);
+    LamSceneCheck(scene->loads[i].F[1] > last, nodes->quantity,
                   "F12 of the load does not grow at state %d; write quantity: load_factor", (int)i + 1);
     last = scene->loads[i].F[1];
   }
-  LamSceneCheck(axis->from >= 0, document, nodes->from, "the load starts with F12 = 0; write 0 or more");
-  LamSceneCheck(axis->to <= last, document, nodes->to,
-                "the load ends with F12 = %g; write at most that, or a longer load", (double)last);
+  LamSceneCheck(axis->from >= 0, nodes->from, "the load starts with F12 = 0; write 0 or more");
+  LamSceneCheck(axis->to <= last, nodes->to, "the load ends with F12 = %g; write at most that, or a longer load",
+                (double)last);
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CheckAxis(const LamDocument *document, const AxisNodes *nodes, const LamScene *scene,
-                                const LamMapAxis *axis)
+static PetscErrorCode CheckAxis(const AxisNodes *nodes, const LamScene *scene, const LamMapAxis *axis)
 {
   const LamMicrostructure *micro = &scene->micro;
 
   PetscFunctionBeginUser;
   switch (axis->quantity) {
   case LAM_MAP_TURGOR:
-    PetscCall(LamSceneCheckTurgor(document, nodes->to, PetscMax(fabs(axis->from), fabs(axis->to))));
-    PetscCall(CheckEntries(document, "turgor", nodes));
+    PetscCall(LamSceneCheckTurgor(nodes->to, PetscMax(fabs(axis->from), fabs(axis->to))));
+    PetscCall(CheckEntries("turgor", nodes));
     break;
   case LAM_MAP_COHESION:
-    LamSceneCheck(micro->interface != LAM_INTERFACE_BONDED, document, nodes->quantity,
+    LamSceneCheck(micro->interface != LAM_INTERFACE_BONDED, nodes->quantity,
                   "law: bonded has no cohesion; write interface: {law: contact}, or another quantity");
-    LamSceneCheck(!LamSceneNeedsCohesion(micro) || axis->from > 0.0, document, nodes->from,
+    LamSceneCheck(!LamSceneNeedsCohesion(micro) || axis->from > 0.0, nodes->from,
                   "without cohesion nothing holds the outer cells of a patch whose sides are free; write more than 0 "
                   "MPa, or sides: affine");
-    PetscCall(CheckEntries(document, "cohesion", nodes));
+    PetscCall(CheckEntries("cohesion", nodes));
     break;
   case LAM_MAP_SHEAR:
-    PetscCall(CheckShear(document, nodes, scene, axis));
+    PetscCall(CheckShear(nodes, scene, axis));
     break;
   case LAM_MAP_LAMELLA_NORMAL:
   case LAM_MAP_LAMELLA_SHEAR:
-    LamSceneCheck(micro->interface != LAM_INTERFACE_CONTACT, document, nodes->quantity,
+    LamSceneCheck(micro->interface != LAM_INTERFACE_CONTACT, nodes->quantity,
                   "law: contact has a cohesion instead; write cohesion, or interface: {law: bonded}");
     break;
   case LAM_MAP_C4:
   case LAM_MAP_WALL_THICKNESS:
-    LamSceneCheck(!micro->cell, document, nodes->quantity,
+    LamSceneCheck(!micro->cell, nodes->quantity,
                   "the cells differ, and a map varies all alike; choose another quantity");
-    LamSceneCheck(axis->quantity != LAM_MAP_C4 || micro->wall.law != LAM_WALL_MOONEY_RIVLIN, document, nodes->quantity,
+    LamSceneCheck(axis->quantity != LAM_MAP_C4 || micro->wall.law != LAM_WALL_MOONEY_RIVLIN, nodes->quantity,
                   "law mooney_rivlin has no fibres; write law: fibre_mooney_rivlin, or another quantity");
     break;
   default:
@@ -191,41 +188,38 @@ static PetscErrorCode CheckAxis(const LamDocument *document, const AxisNodes *no
 
 /* ---- the block ---- */
 
-static PetscErrorCode BuildAxis(const LamDocument *document, const LamNode *block, const LamScene *scene,
-                                AxisNodes *nodes, LamMapAxis *axis)
+static PetscErrorCode BuildAxis(const LamNode *block, const LamScene *scene, AxisNodes *nodes, LamMapAxis *axis)
 {
   PetscFunctionBeginUser;
-  *nodes =
-      (AxisNodes){LamNodeFindPath(block, "quantity"), LamNodeFindPath(block, "from"), LamNodeFindPath(block, "to")};
-  PetscCall(LamSceneFill(document, block, &scene->scales, LamMapAxis, axis));
-  PetscCall(ReadEnd(document, nodes->from, axis->quantity, &scene->scales, &axis->from));
-  PetscCall(ReadEnd(document, nodes->to, axis->quantity, &scene->scales, &axis->to));
-  LamSceneCheck(axis->from < axis->to, document, nodes->to, "is not larger than from (%s in line %d)",
-                nodes->from->text, nodes->from->line);
-  LamSceneCheck(!axis->is_log || axis->from > 0, document, LamNodeFindPath(block, "spacing"),
+  *nodes = (AxisNodes){LamNodeFind(block, "quantity"), LamNodeFind(block, "from"), LamNodeFind(block, "to")};
+  PetscCall(LamSceneFill(block, &scene->scales, LamMapAxis, axis));
+  PetscCall(ReadEnd(nodes->from, axis->quantity, &scene->scales, &axis->from));
+  PetscCall(ReadEnd(nodes->to, axis->quantity, &scene->scales, &axis->to));
+  LamSceneCheck(axis->from < axis->to, nodes->to, "is not larger than from (%s in line %d)", nodes->from->text,
+                nodes->from->line);
+  LamSceneCheck(!axis->is_log || axis->from > 0, LamNodeFind(block, "spacing"),
                 "needs values above 0; from is %s in line %d", nodes->from->text, nodes->from->line);
-  PetscCall(CheckAxis(document, nodes, scene, axis));
+  PetscCall(CheckAxis(nodes, scene, axis));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamSceneBuildMap(const LamDocument *document, LamScene *scene)
+PetscErrorCode LamSceneBuildMap(const LamNode *root, LamScene *scene)
 {
   static const char *const axes[LAM_MAP_AXIS_COUNT] = {"x", "y"};
-  const LamNode *block = LamNodeFindPath(document->root, "map");
+  const LamNode *block = LamNodeFind(root, "map");
   LamMapQuantity x, y;
   AxisNodes nodes;
 
   PetscFunctionBeginUser;
   if (!block) PetscFunctionReturn(0);
-  LamSceneCheckName(scene->load_count, document, block,
-                    "needs a block load, along which the tissue is followed; add one");
+  LamSceneCheckName(scene->load_count, block, "needs a block load, along which the tissue is followed; add one");
   scene->has_map = PETSC_TRUE;
   for (int a = 0; a < LAM_MAP_AXIS_COUNT; a++)
-    PetscCall(BuildAxis(document, LamNodeFindPath(block, axes[a]), scene, &nodes, &scene->map[a]));
+    PetscCall(BuildAxis(LamNodeFind(block, axes[a]), scene, &nodes, &scene->map[a]));
   x = scene->map[LAM_MAP_X].quantity;
   y = scene->map[LAM_MAP_Y].quantity;
-  LamSceneCheck(x != y, document, nodes.quantity, "is on the axis x already; write another quantity");
-  LamSceneCheck(!LamMapQuantityIsLoad(x) || !LamMapQuantityIsLoad(y), document, nodes.quantity,
+  LamSceneCheck(x != y, nodes.quantity, "is on the axis x already; write another quantity");
+  LamSceneCheck(!LamMapQuantityIsLoad(x) || !LamMapQuantityIsLoad(y), nodes.quantity,
                 "says how far the load is followed, as the axis x does; write another quantity");
   PetscFunctionReturn(0);
 }

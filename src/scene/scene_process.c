@@ -148,19 +148,18 @@ PetscErrorCode LamSceneDestroyProcess(LamScene *scene)
 
 /* One entry, where NaN stands for what it does not give; a humidity h is kept as `outside` = ln h, which is negative.
  */
-static PetscErrorCode ReadSurroundings(const LamDocument *document, const LamNode *entry, const LamScene *scene,
-                                       LamSurroundings *at)
+static PetscErrorCode ReadSurroundings(const LamNode *entry, const LamScene *scene, LamSurroundings *at)
 {
-  const LamNode *outside = LamNodeFindPath(entry, "outside"), *humidity = LamNodeFindPath(entry, "humidity");
-  const LamNode *turgor = LamNodeFindPath(entry, "turgor");
+  const LamNode *outside = LamNodeFind(entry, "outside"), *humidity = LamNodeFind(entry, "humidity");
+  const LamNode *turgor = LamNodeFind(entry, "turgor");
 
   PetscFunctionBeginUser;
-  LamSceneCheckName(!outside || !humidity, document, humidity, "given together with outside; leave one of them out");
-  LamSceneCheckName(!turgor || !scene->process.has_water, document, turgor,
+  LamSceneCheckName(!outside || !humidity, humidity, "given together with outside; leave one of them out");
+  LamSceneCheckName(!turgor || !scene->process.has_water, turgor,
                     "contradicts process.water, from which the turgor follows; leave one of them out");
-  if (turgor) PetscCall(LamSceneCheckTurgor(document, turgor, turgor->value.number[0]));
+  if (turgor) PetscCall(LamSceneCheckTurgor(turgor, turgor->value.number[0]));
   *at = (LamSurroundings){0, NAN, NAN, NAN};
-  PetscCall(LamSceneFill(document, entry, &scene->scales, LamSurroundings, at));
+  PetscCall(LamSceneFill(entry, &scene->scales, LamSurroundings, at));
   if (humidity) at->outside = log(at->outside);
   PetscFunctionReturn(0);
 }
@@ -195,7 +194,7 @@ static void FillSurroundings(LamProcessSpec *spec, size_t offset, PetscReal othe
 #undef MEMBER
 }
 
-static PetscErrorCode BuildSurroundings(const LamDocument *document, const LamNode *list, LamScene *scene)
+static PetscErrorCode BuildSurroundings(const LamNode *list, LamScene *scene)
 {
   LamProcessSpec *spec = &scene->process;
   PetscInt n = 0;
@@ -205,8 +204,8 @@ static PetscErrorCode BuildSurroundings(const LamDocument *document, const LamNo
   PetscCall(PetscMalloc1(spec->surroundings_count, &spec->surroundings));
   spec->surroundings[0] = (LamSurroundings){0, NAN, NAN, NAN};
   for (const LamNode *entry = list ? list->first : NULL; entry; entry = entry->next, n++) {
-    PetscCall(ReadSurroundings(document, entry, scene, &spec->surroundings[n]));
-    LamSceneCheck(!n || spec->surroundings[n].time >= spec->surroundings[n - 1].time, document, entry,
+    PetscCall(ReadSurroundings(entry, scene, &spec->surroundings[n]));
+    LamSceneCheck(!n || spec->surroundings[n].time >= spec->surroundings[n - 1].time, entry,
                   "is earlier than the entry before; order them by time");
   }
   FillSurroundings(spec, offsetof(LamSurroundings, temperature), ROOM_TEMPERATURE);
@@ -222,21 +221,20 @@ static PetscErrorCode BuildSurroundings(const LamDocument *document, const LamNo
 /* ---- water ---- */
 
 /* Membranes of one kind: all cells have the turgor of the load, which is no suction. */
-static PetscErrorCode CheckTissue(const LamDocument *document, const LamNode *block, const LamMicrostructure *micro,
-                                  PetscReal turgor)
+static PetscErrorCode CheckTissue(const LamNode *block, const LamMicrostructure *micro, PetscReal turgor)
 {
   PetscFunctionBeginUser;
-  LamSceneCheckName(turgor >= 0, document, block,
+  LamSceneCheckName(turgor >= 0, block,
                     "begins with a negative turgor, but membranes leave the walls at 0; write a pressure of at least 0 "
                     "MPa in rve.turgor");
   for (PetscInt c = 0; micro->cell && c < micro->cells[0] * micro->cells[1]; c++)
-    LamSceneCheckName(micro->cell[c].turgor == 1, document, block,
+    LamSceneCheckName(micro->cell[c].turgor == 1, block,
                       "finds one turgor for all cells, but in rve.variation their turgors differ; leave that out "
                       "there");
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BuildWater(const LamDocument *document, const LamNode *block, LamScene *scene)
+static PetscErrorCode BuildWater(const LamNode *block, LamScene *scene)
 {
   LamWaterSpec *water = &scene->process.water;
 
@@ -244,15 +242,14 @@ static PetscErrorCode BuildWater(const LamDocument *document, const LamNode *blo
   scene->process.has_water = (PetscBool)(block != NULL);
   if (!block) PetscFunctionReturn(0);
   water->osmotic = NAN;
-  PetscCall(LamSceneFill(document, document->root, &scene->scales, LamWaterSpec, water));
-  if (LamNodeFindPath(block, "permeability")->value.is_free[0]) water->permeability = INFINITY;
-  PetscCall(CheckTissue(document, block, &scene->micro, scene->turgor));
+  PetscCall(LamSceneFill(block, &scene->scales, LamWaterSpec, water));
+  if (LamNodeFind(block, "permeability")->value.is_free[0]) water->permeability = INFINITY;
+  PetscCall(CheckTissue(block, &scene->micro, scene->turgor));
   for (PetscInt r = 0; r < scene->region_count; r++)
-    PetscCall(CheckTissue(document, block, &scene->regions[r].micro, scene->regions[r].turgor));
-  LamSceneRequire(!isnan(water->osmotic) || water->reflection != 0 || !(scene->turgor > 0), document, block,
-                  "osmotic_pressure",
+    PetscCall(CheckTissue(block, &scene->regions[r].micro, scene->regions[r].turgor));
+  LamSceneRequire(!isnan(water->osmotic) || water->reflection != 0 || !(scene->turgor > 0), block, "osmotic_pressure",
                   "missing: with reflection: 0 no osmotic pressure holds the turgor; write one, such as 0.8 MPa");
-  LamSceneCheckName(!scene->has_macro || water->reflection != 0 || isfinite(water->permeability), document, block,
+  LamSceneCheckName(!scene->has_macro || water->reflection != 0 || isfinite(water->permeability), block,
                     "has membranes that hold back neither water nor solutes, so no cell of the body has a turgor; "
                     "leave the block out, with rve.turgor: {pressure: 0 MPa}");
   PetscFunctionReturn(0);
@@ -282,28 +279,28 @@ static const struct {
     {"time_unit", LAW(TABLE), LAW(TABLE)},
 };
 
-static PetscErrorCode CheckUses(const LamDocument *document, const LamNode *entry, LamKineticLaw law)
+static PetscErrorCode CheckUses(const LamNode *entry, LamKineticLaw law)
 {
-  const LamNode *deactivation = LamNodeFindPath(entry, "deactivation"), *half = LamNodeFindPath(entry, "half_activity");
+  const LamNode *deactivation = LamNodeFind(entry, "deactivation"), *half = LamNodeFind(entry, "half_activity");
 
   PetscFunctionBeginUser;
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(uses); k++)
-    LamSceneRequire(!(uses[k].need & (1u << law)) || LamNodeFindPath(entry, uses[k].key), document, entry, uses[k].key,
+    LamSceneRequire(!(uses[k].need & (1u << law)) || LamNodeFind(entry, uses[k].key), entry, uses[k].key,
                     "missing; law: %s needs it", LamKineticLawNames[law]);
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(uses); k++) {
-    const LamNode *node = LamNodeFindPath(entry, uses[k].key);
+    const LamNode *node = LamNodeFind(entry, uses[k].key);
 
-    LamSceneCheckName(!node || (uses[k].have & (1u << law)), document, node, "law: %s has no use for it; leave it out",
+    LamSceneCheckName(!node || (uses[k].have & (1u << law)), node, "law: %s has no use for it; leave it out",
                       LamKineticLawNames[law]);
   }
-  LamSceneRequire(!deactivation || half, document, entry, "half_activity", "missing; deactivation needs it");
-  LamSceneRequire(!half || deactivation, document, entry, "deactivation", "missing; half_activity needs it");
+  LamSceneRequire(!deactivation || half, entry, "half_activity", "missing; deactivation needs it");
+  LamSceneRequire(!half || deactivation, entry, "deactivation", "missing; half_activity needs it");
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ReadTable(const LamDocument *document, const LamNode *entry, LamKinetics *kinetics)
+static PetscErrorCode ReadTable(const LamNode *entry, LamKinetics *kinetics)
 {
-  const LamNode *list = LamNodeFindPath(entry, "table"), *unit_node = LamNodeFindPath(entry, "time_unit");
+  const LamNode *list = LamNodeFind(entry, "table"), *unit_node = LamNodeFind(entry, "time_unit");
   char one[60], reason[LAM_REASON_LENGTH];
   PetscReal unit;
   PetscInt n = 0;
@@ -311,41 +308,40 @@ static PetscErrorCode ReadTable(const LamDocument *document, const LamNode *entr
   PetscFunctionBeginUser;
   snprintf(one, sizeof(one), "1 %.50s", unit_node->text);
   PetscCall(LamQuantityRead(one, LAM_DIMENSION_TIME, &unit, reason));
-  LamSceneCheck(!reason[0], document, unit_node, "is not a unit of time; write one, such as day");
+  LamSceneCheck(!reason[0], unit_node, "is not a unit of time; write one, such as day");
   kinetics->count = list->count;
   PetscCall(PetscMalloc1(list->count, &kinetics->time));
   PetscCall(PetscMalloc1(list->count, &kinetics->factor));
   for (const LamNode *item = list->first; item; item = item->next, n++) {
     kinetics->time[n] = item->value.number[0] * unit;
     kinetics->factor[n] = item->value.number[1];
-    LamSceneCheck(n || (kinetics->time[0] == 0 && kinetics->factor[0] == 1), document, item,
+    LamSceneCheck(n || (kinetics->time[0] == 0 && kinetics->factor[0] == 1), item,
                   "a table begins with what the property is at the start; write [0, 1]");
-    LamSceneCheck(!n || kinetics->time[n] > kinetics->time[n - 1], document, item,
+    LamSceneCheck(!n || kinetics->time[n] > kinetics->time[n - 1], item,
                   "its time is not later than that of the pair before; order them by time");
-    LamSceneCheck(kinetics->factor[n] >= 0, document, item, "a factor cannot be negative; write at least 0");
+    LamSceneCheck(kinetics->factor[n] >= 0, item, "a factor cannot be negative; write at least 0");
   }
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ReadKinetics(const LamDocument *document, const LamNode *entry, LamKinetics *kinetics)
+static PetscErrorCode ReadKinetics(const LamNode *entry, LamKinetics *kinetics)
 {
   LamRate *rate = &kinetics->rate, *second = &kinetics->second;
 
   PetscFunctionBeginUser;
   rate->half_activity = ROOM_TEMPERATURE;
-  PetscCall(LamSceneFill(document, entry, NULL, LamKinetics, kinetics));
-  PetscCall(CheckUses(document, entry, kinetics->law));
-  if (!LamNodeFindPath(entry, "second_activation")) second->activation = rate->activation;
+  PetscCall(LamSceneFill(entry, NULL, LamKinetics, kinetics));
+  PetscCall(CheckUses(entry, kinetics->law));
+  if (!LamNodeFind(entry, "second_activation")) second->activation = rate->activation;
   second->reference = rate->reference;
   second->deactivation = rate->deactivation;
   second->half_activity = rate->half_activity;
-  if (kinetics->law == LAM_KINETIC_TABLE) PetscCall(ReadTable(document, entry, kinetics));
+  if (kinetics->law == LAM_KINETIC_TABLE) PetscCall(ReadTable(entry, kinetics));
   PetscFunctionReturn(0);
 }
 
 /* Refuses what the tissue does not have. */
-static PetscErrorCode CheckChanging(const LamDocument *document, const LamNode *of, LamChanging changing,
-                                    const LamScene *scene)
+static PetscErrorCode CheckChanging(const LamNode *of, LamChanging changing, const LamScene *scene)
 {
   const PetscBool of_water = (PetscBool)(changing == LAM_CHANGING_SOLUTES || changing == LAM_CHANGING_PERMEABILITY ||
                                          changing == LAM_CHANGING_REFLECTION);
@@ -354,64 +350,62 @@ static PetscErrorCode CheckChanging(const LamDocument *document, const LamNode *
   PetscFunctionBeginUser;
   for (PetscInt r = 0; r < scene->region_count; r++)
     if (scene->regions[r].micro.interface == LAM_INTERFACE_CONTACT) contact = PETSC_TRUE;
-  LamSceneCheck(!of_water || scene->process.has_water, document, of,
+  LamSceneCheck(!of_water || scene->process.has_water, of,
                 "belongs to process.water, which is missing; write that block, or leave it out");
-  LamSceneCheck(changing != LAM_CHANGING_WALL_STRENGTH || !isnan(scene->strength.wall), document, of,
+  LamSceneCheck(changing != LAM_CHANGING_WALL_STRENGTH || !isnan(scene->strength.wall), of,
                 "strength.wall is not given; write it, or leave this out");
   LamSceneCheck(changing != LAM_CHANGING_LAMELLA || contact || !isnan(scene->strength.lamella_normal) ||
                     !isnan(scene->strength.lamella_shear),
-                document, of,
+                of,
                 "bonded cells have no cohesion, and strength.lamella_normal and lamella_shear are not given; write one "
                 "of them, or law: contact");
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BuildKinetics(const LamDocument *document, const LamNode *list, LamScene *scene)
+static PetscErrorCode BuildKinetics(const LamNode *list, LamScene *scene)
 {
   PetscBool given[LAM_CHANGING_COUNT] = {PETSC_FALSE};
 
   PetscFunctionBeginUser;
   for (const LamNode *entry = list ? list->first : NULL; entry; entry = entry->next) {
-    const LamNode *of = LamNodeFindPath(entry, "of");
+    const LamNode *of = LamNodeFind(entry, "of");
     const LamChanging changing = (LamChanging)of->value.number[0];
 
-    LamSceneCheck(!given[changing], document, of, "has an entry already; leave one of them out");
+    LamSceneCheck(!given[changing], of, "has an entry already; leave one of them out");
     given[changing] = PETSC_TRUE;
-    PetscCall(CheckChanging(document, of, changing, scene));
-    PetscCall(ReadKinetics(document, entry, &scene->process.kinetics[changing]));
+    PetscCall(CheckChanging(of, changing, scene));
+    PetscCall(ReadKinetics(entry, &scene->process.kinetics[changing]));
   }
   PetscFunctionReturn(0);
 }
 
 /* ---- program ---- */
 
-static PetscErrorCode ReadLeg(const LamDocument *document, const LamNode *entry, const LamScene *scene,
-                              LamProcessLeg *leg)
+static PetscErrorCode ReadLeg(const LamNode *entry, const LamScene *scene, LamProcessLeg *leg)
 {
-  const LamNode *F = LamNodeFindPath(entry, "F"), *P = LamNodeFindPath(entry, "P"), *point = F ? F : P;
-  const LamNode *load = LamNodeFindPath(entry, "load");
+  const LamNode *F = LamNodeFind(entry, "F"), *P = LamNodeFind(entry, "P"), *point = F ? F : P;
+  const LamNode *load = LamNodeFind(entry, "load");
 
   PetscFunctionBeginUser;
-  LamSceneCheckName(!load || scene->has_macro, document, load,
+  LamSceneCheckName(!load || scene->has_macro, load,
                     "is the load parameter of a body, but there is no block macro; write F and P, or that block");
-  LamSceneCheckName(!point || !scene->has_macro, document, point,
+  LamSceneCheckName(!point || !scene->has_macro, point,
                     "is for one material point, but the block macro describes a body; write load, or leave that block "
                     "out");
-  LamSceneRequire(F || !P, document, entry, "F",
-                  "missing; write F: [[free, 0], [0, free]] beside P, or leave out both");
+  LamSceneRequire(F || !P, entry, "F", "missing; write F: [[free, 0], [0, free]] beside P, or leave out both");
   if (F) {
-    PetscCall(LamSceneReadControl(document, F, P, scene->scales.stress, &leg->control));
-    PetscCall(LamSceneCheckF(document, F));
+    PetscCall(LamSceneReadControl(F, P, scene->scales.stress, &leg->control));
+    PetscCall(LamSceneCheckF(F));
   }
-  PetscCall(LamSceneFill(document, entry, &scene->scales, LamProcessLeg, leg));
+  PetscCall(LamSceneFill(entry, &scene->scales, LamProcessLeg, leg));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BuildLegs(const LamDocument *document, const LamNode *block, LamScene *scene)
+static PetscErrorCode BuildLegs(const LamNode *block, LamScene *scene)
 {
   /* free of stress in the plane, held against rotation by F21 */
   LamProcessLeg leg = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .control = {.given = {1, 1, 0, 0, 1}, .share = 1}};
-  const LamNode *list = LamNodeFindPath(block, "program"), *repeat = LamNodeFindPath(block, "repeat");
+  const LamNode *list = LamNodeFind(block, "program"), *repeat = LamNodeFind(block, "repeat");
   LamProcessSpec *spec = &scene->process;
   PetscReal cycle = 0;
 
@@ -419,39 +413,37 @@ static PetscErrorCode BuildLegs(const LamDocument *document, const LamNode *bloc
   PetscCall(PetscMalloc1(list ? list->count : 1, &spec->legs));
   if (!list) spec->legs[spec->leg_count++] = leg;
   for (const LamNode *entry = list ? list->first : NULL; entry; entry = entry->next) {
-    PetscCall(ReadLeg(document, entry, scene, &leg));
+    PetscCall(ReadLeg(entry, scene, &leg));
     spec->legs[spec->leg_count++] = leg;
-    LamSceneCheck(leg.duration != 0 || fabs(cycle - spec->duration) > 1e-9 * spec->duration, document, entry,
+    LamSceneCheck(leg.duration != 0 || fabs(cycle - spec->duration) > 1e-9 * spec->duration, entry,
                   "is a jump at the very end, of which nothing is seen; make process.duration longer");
     cycle += leg.duration;
   }
-  LamSceneCheckName(!repeat || cycle > 0, document, repeat,
-                    "repeats a program that takes no time; give its parts a time");
+  LamSceneCheckName(!repeat || cycle > 0, repeat, "repeats a program that takes no time; give its parts a time");
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamSceneBuildProcess(const LamDocument *document, LamScene *scene)
+PetscErrorCode LamSceneBuildProcess(const LamNode *root, LamScene *scene)
 {
-  const LamNode *block = LamNodeFindPath(document->root, "process"), *inflate = LamNodeFindPath(block, "inflate");
-  const LamNode *output = LamNodeFindPath(block, "output");
+  const LamNode *block = LamNodeFind(root, "process"), *inflate = LamNodeFind(block, "inflate");
+  const LamNode *output = LamNodeFind(block, "output");
   LamProcessSpec *spec = &scene->process;
 
   PetscFunctionBeginUser;
   if (!block) PetscFunctionReturn(0);
   scene->has_process = PETSC_TRUE;
   spec->inflate = (PetscBool)(scene->turgor != 0);
-  PetscCall(LamSceneFill(document, document->root, &scene->scales, LamProcessSpec, spec));
+  PetscCall(LamSceneFill(block, &scene->scales, LamProcessSpec, spec));
   if (!output) spec->output = spec->duration / 100;
-  LamSceneCheckName(!scene->has_macro || !inflate, document, inflate,
-                    "is for one material point; of a body write macro.inflate");
-  LamSceneCheckName(!scene->sealed, document, block,
+  LamSceneCheckName(!scene->has_macro || !inflate, inflate, "is for one material point; of a body write macro.inflate");
+  LamSceneCheckName(!scene->sealed, block,
                     "contradicts turgor mode: sealed; write mode: prescribed there, and process.water with "
                     "permeability: 0 m/s/MPa for cells that keep their water");
-  LamSceneCheck(spec->duration / spec->output <= MAX_OUTPUTS, document, output,
+  LamSceneCheck(spec->duration / spec->output <= MAX_OUTPUTS, output,
                 "more than %d outputs in all; write a longer time", MAX_OUTPUTS);
-  PetscCall(BuildWater(document, LamNodeFindPath(block, "water"), scene));
-  PetscCall(BuildSurroundings(document, LamNodeFindPath(block, "surroundings"), scene));
-  PetscCall(BuildKinetics(document, LamNodeFindPath(block, "kinetics"), scene));
-  PetscCall(BuildLegs(document, block, scene));
+  PetscCall(BuildWater(LamNodeFind(block, "water"), scene));
+  PetscCall(BuildSurroundings(LamNodeFind(block, "surroundings"), scene));
+  PetscCall(BuildKinetics(LamNodeFind(block, "kinetics"), scene));
+  PetscCall(BuildLegs(block, scene));
   PetscFunctionReturn(0);
 }

@@ -87,10 +87,9 @@ LAM_KEY_TABLE(LamRegionKeys, region_keys);
 /* ---- a region's tissue ---- */
 
 /* The region's own apothem and C1 + C2 are its units. */
-static PetscErrorCode BuildScales(const LamDocument *document, const LamNode *entry, const LamScene *scene,
-                                  LamRegion *r)
+static PetscErrorCode BuildScales(const LamNode *entry, const LamScene *scene, LamRegion *r)
 {
-  const LamNode *apothem = LamNodeFindPath(entry, "cell.apothem"), *node = LamNodeFindPath(entry, "wall");
+  const LamNode *apothem = LamNodeFind(entry, "cell.apothem"), *node = LamNodeFind(entry, "wall");
   LamWall *wall = &r->micro.wall;
   PetscReal unit;
 
@@ -98,12 +97,13 @@ static PetscErrorCode BuildScales(const LamDocument *document, const LamNode *en
   r->scales = scene->scales;
   if (apothem) {
     r->scales.length = apothem->value.number[0];
-    PetscCall(LamSceneCheckScale(document, apothem, r->scales.length));
+    PetscCall(LamSceneCheckScale(apothem, r->scales.length));
   }
   if (!node) PetscFunctionReturn(0);
-  PetscCall(LamSceneReadWall(document, entry, "macro.regions[].wall", scene->scales.stress, &scene->micro.wall, wall));
+  PetscCall(
+      LamSceneReadWall(entry->document, entry, "macro.regions[].wall", scene->scales.stress, &scene->micro.wall, wall));
   unit = wall->C1 + wall->C2;
-  PetscCall(LamSceneCheckScale(document, node, unit * scene->scales.stress));
+  PetscCall(LamSceneCheckScale(node, unit * scene->scales.stress));
   wall->C1 /= unit;
   wall->C2 /= unit;
   wall->C4 /= unit;
@@ -112,42 +112,42 @@ static PetscErrorCode BuildScales(const LamDocument *document, const LamNode *en
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CheckCell(const LamDocument *document, const LamNode *entry, const LamRegion *r)
+static PetscErrorCode CheckCell(const LamNode *entry, const LamRegion *r)
 {
-  const LamNode *thickness = LamNodeFindPath(entry, "cell.wall_thickness");
+  const LamNode *thickness = LamNodeFind(entry, "cell.wall_thickness");
 
   PetscFunctionBeginUser;
-  LamSceneCheck(r->micro.wall_thickness < 1.0, document, thickness ? thickness : LamNodeFindPath(entry, "cell.apothem"),
+  LamSceneCheck(r->micro.wall_thickness < 1.0, thickness ? thickness : LamNodeFind(entry, "cell.apothem"),
                 "the wall, %g um, fills the cell; write a thickness less than the apothem",
                 (double)(r->micro.wall_thickness * r->scales.length) * 1e6);
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CheckInterface(const LamDocument *document, const LamNode *entry, LamRegion *r)
+static PetscErrorCode CheckInterface(const LamNode *entry, LamRegion *r)
 {
-  const LamNode *cohesion = LamNodeFindPath(entry, "interface.cohesion");
-  const LamNode *clearance = LamNodeFindPath(entry, "interface.clearance");
+  const LamNode *cohesion = LamNodeFind(entry, "interface.cohesion");
+  const LamNode *clearance = LamNodeFind(entry, "interface.clearance");
 
   PetscFunctionBeginUser;
   if (r->micro.interface == LAM_INTERFACE_BONDED) {
-    LamSceneCheck(!cohesion || !(r->cohesion > 0), document, cohesion, LAM_BONDED_PARTS);
-    LamSceneCheck(!clearance || !(r->micro.clearance > 0), document, clearance, LAM_BONDED_PARTS);
+    LamSceneCheck(!cohesion || !(r->cohesion > 0), cohesion, LAM_BONDED_PARTS);
+    LamSceneCheck(!clearance || !(r->micro.clearance > 0), clearance, LAM_BONDED_PARTS);
     r->cohesion = r->micro.clearance = 0;
   }
-  PetscCall(LamSceneCheckClearance(document, clearance ? clearance : entry, &r->scales, &r->micro));
+  PetscCall(LamSceneCheckClearance(clearance ? clearance : entry, &r->scales, &r->micro));
   PetscFunctionReturn(0);
 }
 
 /* Cells that differ have thicknesses and moduli of their own. */
-static PetscErrorCode CheckVariation(const LamDocument *document, const LamNode *entry, const LamScene *scene)
+static PetscErrorCode CheckVariation(const LamNode *entry, const LamScene *scene)
 {
   static const char *const own[] = {"cell.apothem", "cell.wall_thickness", "wall"};
 
   PetscFunctionBeginUser;
   for (size_t i = 0; scene->micro.cell && i < PETSC_STATIC_ARRAY_LENGTH(own); i++) {
-    const LamNode *node = LamNodeFindPath(entry, own[i]);
+    const LamNode *node = LamNodeFind(entry, own[i]);
 
-    LamSceneCheckName(!node, document, node,
+    LamSceneCheckName(!node, node,
                       "rve.variation says what the cells are, and it is the same in all regions; leave out one of "
                       "them");
   }
@@ -155,25 +155,24 @@ static PetscErrorCode CheckVariation(const LamDocument *document, const LamNode 
 }
 
 /* What is not given is as long, and as large, as in the scene's own tissue. */
-static PetscErrorCode BuildTissue(const LamDocument *document, const LamNode *entry, const LamScene *scene,
-                                  LamRegion *r)
+static PetscErrorCode BuildTissue(const LamNode *entry, const LamScene *scene, LamRegion *r)
 {
   const LamScales *own = &scene->scales, *scales = &r->scales;
-  const LamNode *turgor = LamNodeFindPath(entry, "turgor.pressure");
+  const LamNode *turgor = LamNodeFind(entry, "turgor.pressure");
   LamMicrostructure *micro = &r->micro;
 
   PetscFunctionBeginUser;
   PetscCall(LamMicrostructureCopy(&scene->micro, micro));
-  PetscCall(CheckVariation(document, entry, scene));
-  PetscCall(BuildScales(document, entry, scene, r));
+  PetscCall(CheckVariation(entry, scene));
+  PetscCall(BuildScales(entry, scene, r));
   micro->wall_thickness = micro->wall_thickness * own->length / scales->length;
   micro->clearance = micro->clearance * own->length / scales->length;
   r->cohesion = scene->cohesion * own->stress / scales->stress;
   r->turgor = scene->turgor * own->stress / scales->stress;
-  PetscCall(LamSceneFill(document, entry, scales, LamRegion, r));
-  PetscCall(CheckCell(document, entry, r));
-  PetscCall(CheckInterface(document, entry, r));
-  if (turgor) PetscCall(LamSceneCheckTurgor(document, turgor, turgor->value.number[0]));
+  PetscCall(LamSceneFill(entry, scales, LamRegion, r));
+  PetscCall(CheckCell(entry, r));
+  PetscCall(CheckInterface(entry, r));
+  if (turgor) PetscCall(LamSceneCheckTurgor(turgor, turgor->value.number[0]));
   if (micro->along && micro->grading < 0.0) micro->grading = 0.0;
   PetscFunctionReturn(0);
 }
@@ -181,98 +180,96 @@ static PetscErrorCode BuildTissue(const LamDocument *document, const LamNode *en
 /* ---- where it lies ---- */
 
 /* An expression of x and y in mm, or the file of a table. */
-static PetscErrorCode ReadField(const LamDocument *document, const LamNode *node, LamPlaceField *field)
+static PetscErrorCode ReadField(const LamNode *node, LamPlaceField *field)
 {
   char name[PETSC_MAX_PATH_LEN], path[PETSC_MAX_PATH_LEN], reason[LAM_PLACE_FIELD_REASON];
 
   PetscFunctionBeginUser;
-  snprintf(name, sizeof(name), "%s:%d: %s", document->name, node->line, node->key->path);
+  snprintf(name, sizeof(name), "%s:%d: %s", node->document->name, node->line, node->key->path);
   if (node->key->type == LAM_KEY_PATH) {
-    PetscCall(LamSceneResolvePath(document, node, path));
+    PetscCall(LamSceneResolvePath(node, path));
     PetscCall(LamPlaceFieldFromTable(name, path, field, reason));
   } else {
     PetscCall(LamPlaceFieldFromExpression(name, node->text, field, reason));
   }
-  LamSceneCheck(!reason[0], document, node, "%s", reason);
+  LamSceneCheck(!reason[0], node, "%s", reason);
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BuildPlace(const LamDocument *document, const LamNode *entry, const LamScene *scene, LamRegion *r)
+static PetscErrorCode BuildPlace(const LamNode *entry, const LamScene *scene, LamRegion *r)
 {
   static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_";
-  const LamNode *name = LamNodeFindPath(entry, "name"), *where = LamNodeFindPath(entry, "where");
+  const LamNode *name = LamNodeFind(entry, "name"), *where = LamNodeFind(entry, "where");
 
   PetscFunctionBeginUser;
-  LamSceneCheck(
-      name->text[0] && strlen(name->text) < sizeof(r->name) && strspn(name->text, letters) == strlen(name->text),
-      document, name, "is part of a file's name; write letters, digits, - and _, less than %d", (int)sizeof(r->name));
+  LamSceneCheck(name->text[0] && strlen(name->text) < sizeof(r->name) &&
+                    strspn(name->text, letters) == strlen(name->text),
+                name, "is part of a file's name; write letters, digits, - and _, less than %d", (int)sizeof(r->name));
   for (PetscInt k = 0; k < scene->region_count; k++)
-    LamSceneCheck(strcmp(scene->regions[k].name, name->text), document, name,
-                  "another region has this name; give each its own");
+    LamSceneCheck(strcmp(scene->regions[k].name, name->text), name, "another region has this name; give each its own");
   PetscCall(PetscStrncpy(r->name, name->text, sizeof(r->name)));
-  if (where) PetscCall(ReadField(document, where, &r->where));
+  if (where) PetscCall(ReadField(where, &r->where));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BuildAllRegions(const LamDocument *document, const LamNode *list, LamScene *scene)
+static PetscErrorCode BuildAllRegions(const LamNode *list, LamScene *scene)
 {
   PetscFunctionBeginUser;
-  LamSceneCheck(list->count <= LAM_MAX_REGIONS, document, list, "has %d regions; at most %d can be told apart",
-                (int)list->count, (int)LAM_MAX_REGIONS);
+  LamSceneCheck(list->count <= LAM_MAX_REGIONS, list, "has %d regions; at most %d can be told apart", (int)list->count,
+                (int)LAM_MAX_REGIONS);
   PetscCall(PetscCalloc1(LAM_MAX_REGIONS, &scene->regions));
   for (const LamNode *entry = list->first; entry; entry = entry->next) {
     LamRegion *region = &scene->regions[scene->region_count];
 
-    PetscCall(BuildPlace(document, entry, scene, region));
+    PetscCall(BuildPlace(entry, scene, region));
     scene->region_count++;
-    PetscCall(BuildTissue(document, entry, scene, region));
+    PetscCall(BuildTissue(entry, scene, region));
   }
   PetscFunctionReturn(0);
 }
 
 /* ---- fields ---- */
 
-static PetscErrorCode ReadUnit(const LamDocument *document, const LamNode *node, LamDimension dimension, PetscReal *si)
+static PetscErrorCode ReadUnit(const LamNode *node, LamDimension dimension, PetscReal *si)
 {
   char one[80], reason[LAM_REASON_LENGTH];
 
   PetscFunctionBeginUser;
   snprintf(one, sizeof(one), "1 %.70s", node->text);
   PetscCall(LamQuantityRead(one, dimension, si, reason));
-  LamSceneCheck(!reason[0], document, node, "%s; write the unit of a %s alone", reason, LamDimensionNames[dimension]);
+  LamSceneCheck(!reason[0], node, "%s; write the unit of a %s alone", reason, LamDimensionNames[dimension]);
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BuildField(const LamDocument *document, const LamNode *block, LamTissueField which,
-                                 LamScene *scene)
+static PetscErrorCode BuildField(const LamNode *block, LamTissueField which, LamScene *scene)
 {
   static const LamDimension dimensions[] = {LAM_DIMENSION_ANGLE, LAM_DIMENSION_STRESS, LAM_DIMENSION_STRESS,
                                             LAM_DIMENSION_LENGTH};
-  const LamNode *expression = LamNodeFindPath(block, "expression"), *table = LamNodeFindPath(block, "table");
+  const LamNode *expression = LamNodeFind(block, "expression"), *table = LamNodeFind(block, "table");
   const LamNode *field = expression ? expression : table;
 
   PetscFunctionBeginUser;
   if (!block) PetscFunctionReturn(0);
-  LamSceneCheckName(!expression || !table, document, table, "given together with expression; a field is one of them");
-  LamSceneRequire(field, document, block, "expression", "missing; write one of x and y in mm, or a table");
-  PetscCall(ReadUnit(document, LamNodeFindPath(block, "unit"), dimensions[which], &scene->fields.unit[which]));
-  PetscCall(ReadField(document, field, &scene->fields.value[which]));
-  LamSceneCheckName(which != LAM_TISSUE_WALL_THICKNESS || !scene->micro.cell, document, block,
+  LamSceneCheckName(!expression || !table, table, "given together with expression; a field is one of them");
+  LamSceneRequire(field, block, "expression", "missing; write one of x and y in mm, or a table");
+  PetscCall(ReadUnit(LamNodeFind(block, "unit"), dimensions[which], &scene->fields.unit[which]));
+  PetscCall(ReadField(field, &scene->fields.value[which]));
+  LamSceneCheckName(which != LAM_TISSUE_WALL_THICKNESS || !scene->micro.cell, block,
                     "rve.variation gives each cell its thickness; leave out one of them");
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamSceneBuildRegions(const LamDocument *document, LamScene *scene)
+PetscErrorCode LamSceneBuildRegions(const LamNode *root, LamScene *scene)
 {
-  const LamNode *list = LamNodeFindPath(document->root, "macro.regions");
-  const LamNode *fields = LamNodeFindPath(document->root, "macro.fields");
+  const LamNode *list = LamNodeFind(root, "macro.regions");
+  const LamNode *fields = LamNodeFind(root, "macro.fields");
 
   PetscFunctionBeginUser;
   if (!scene->has_macro) PetscFunctionReturn(0);
-  if (list) PetscCall(BuildAllRegions(document, list, scene));
+  if (list) PetscCall(BuildAllRegions(list, scene));
   for (LamTissueField k = 0; k < LAM_TISSUE_FIELD_COUNT; k++)
-    PetscCall(BuildField(document, LamNodeFindPath(fields, LamTissueFieldNames[k]), k, scene));
-  PetscCall(LamSceneFill(document, document->root, &scene->scales, LamTissueFields, &scene->fields));
+    PetscCall(BuildField(LamNodeFind(fields, LamTissueFieldNames[k]), k, scene));
+  PetscCall(LamSceneFill(root, &scene->scales, LamTissueFields, &scene->fields));
   PetscFunctionReturn(0);
 }
 

@@ -32,7 +32,7 @@ static const struct {
 } units[] = {{"kB", 1e3}, {"MB", 1e6}, {"GB", 1e9}, {"TB", 1e12}};
 
 /* "2 GB"; 0 keeps nothing. */
-static PetscErrorCode ReadMemory(const LamDocument *document, const LamNode *node, PetscReal *bytes)
+static PetscErrorCode ReadMemory(const LamNode *node, PetscReal *bytes)
 {
   const char *end;
   const PetscReal number = LamNumberScan(node->text, &end);
@@ -41,18 +41,18 @@ static PetscErrorCode ReadMemory(const LamDocument *document, const LamNode *nod
   *bytes = -1;
   for (size_t k = 0; end > node->text && k < PETSC_STATIC_ARRAY_LENGTH(units); k++)
     if (!strcmp(end + strspn(end, " "), units[k].name)) *bytes = number * units[k].bytes;
-  LamSceneCheck(*bytes >= 0 && *bytes < 1e18, document, node,
+  LamSceneCheck(*bytes >= 0 && *bytes < 1e18, node,
                 "is no size of memory; write a number with kB, MB, GB or TB, such as 2 GB");
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamSceneBuildResponse(const LamDocument *document, LamScene *scene)
+PetscErrorCode LamSceneBuildResponse(const LamNode *root, LamScene *scene)
 {
-  const LamNode *memory = LamNodeFindPath(document->root, "macro.response.warm_start_memory");
+  const LamNode *memory = LamNodeFind(root, "macro.response.warm_start_memory");
 
   PetscFunctionBeginUser;
   scene->response.warm_start_memory = LAM_WARM_START_MEMORY;
-  PetscCall(LamSceneFill(document, document->root, &scene->scales, LamResponsePolicy, &scene->response));
-  if (memory) PetscCall(ReadMemory(document, memory, &scene->response.warm_start_memory));
+  PetscCall(LamSceneFill(root, &scene->scales, LamResponsePolicy, &scene->response));
+  if (memory) PetscCall(ReadMemory(memory, &scene->response.warm_start_memory));
   PetscFunctionReturn(0);
 }

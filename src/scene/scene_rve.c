@@ -86,85 +86,83 @@ static const LamKey tissue_keys[] = {
 LAM_KEY_TABLE(LamTissueKeys, tissue_keys);
 
 /* The apothem is the unit of length, C1 + C2 of the wall that of stress. */
-static PetscErrorCode BuildScales(const LamDocument *document, LamScene *scene)
+static PetscErrorCode BuildScales(const LamNode *root, LamScene *scene)
 {
-  const LamNode *apothem = LamNodeFindPath(document->root, "rve.cell.apothem");
-  const LamNode *C1 = LamNodeFindPath(document->root, "rve.wall.C1");
-  const LamNode *C2 = LamNodeFindPath(document->root, "rve.wall.C2");
+  const LamNode *apothem = LamNodeFind(root, "rve.cell.apothem");
+  const LamNode *C1 = LamNodeFind(root, "rve.wall.C1");
+  const LamNode *C2 = LamNodeFind(root, "rve.wall.C2");
 
   PetscFunctionBeginUser;
   scene->scales.length = apothem->value.number[0];
-  PetscCall(LamSceneCheckScale(document, apothem, scene->scales.length));
+  PetscCall(LamSceneCheckScale(apothem, scene->scales.length));
   scene->scales.stress = C1->value.number[0] + C2->value.number[0];
-  PetscCall(LamSceneCheckScale(document, C1, scene->scales.stress));
+  PetscCall(LamSceneCheckScale(C1, scene->scales.stress));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamSceneCheckTurgor(const LamDocument *document, const LamNode *node, PetscReal turgor)
+PetscErrorCode LamSceneCheckTurgor(const LamNode *node, PetscReal turgor)
 {
-  const LamNode *mode = LamNodeFindPath(document->root, "rve.turgor.mode");
+  const LamNode *mode = LamNodeFind(node->document->root, "rve.turgor.mode");
 
   PetscFunctionBeginUser;
-  LamSceneCheck(!mode || mode->value.number[0] != LAM_TURGOR_NONE || turgor == 0.0, document, node,
+  LamSceneCheck(!mode || mode->value.number[0] != LAM_TURGOR_NONE || turgor == 0.0, node,
                 "contradicts turgor mode: none in line %d; write mode: prescribed there", mode->line);
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BuildTurgor(const LamDocument *document, LamScene *scene)
+static PetscErrorCode BuildTurgor(const LamNode *root, LamScene *scene)
 {
-  const LamNode *mode = LamNodeFindPath(document->root, "rve.turgor.mode");
-  const LamNode *pressure = LamNodeFindPath(document->root, "rve.turgor.pressure");
-  const LamNode *water = LamNodeFindPath(document->root, "rve.turgor.water_bulk_modulus");
+  const LamNode *mode = LamNodeFind(root, "rve.turgor.mode");
+  const LamNode *pressure = LamNodeFind(root, "rve.turgor.pressure");
+  const LamNode *water = LamNodeFind(root, "rve.turgor.water_bulk_modulus");
 
   PetscFunctionBeginUser;
   scene->sealed = (PetscBool)(mode && mode->value.number[0] == LAM_TURGOR_SEALED);
-  LamSceneCheckName(!water || scene->sealed, document, water,
-                    "says nothing where the cells are not sealed; write mode: sealed");
-  LamSceneRequire(pressure || !mode || mode->value.number[0] == LAM_TURGOR_NONE, document, mode->parent, "pressure",
+  LamSceneCheckName(!water || scene->sealed, water, "says nothing where the cells are not sealed; write mode: sealed");
+  LamSceneRequire(pressure || !mode || mode->value.number[0] == LAM_TURGOR_NONE, mode->parent, "pressure",
                   "missing; write a stress with its unit, such as 0.02 MPa, or mode: none");
-  if (pressure) PetscCall(LamSceneCheckTurgor(document, pressure, pressure->value.number[0]));
+  if (pressure) PetscCall(LamSceneCheckTurgor(pressure, pressure->value.number[0]));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamSceneCheckClearance(const LamDocument *document, const LamNode *node, const LamScales *scales,
-                                      const LamMicrostructure *micro)
+PetscErrorCode LamSceneCheckClearance(const LamNode *node, const LamScales *scales, const LamMicrostructure *micro)
 {
   const PetscInt count = micro->cell ? micro->cells[0] * micro->cells[1] : 1;
   PetscReal thickest = 0.0;
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < count; c++) thickest = PetscMax(thickest, LamWallThickness(micro, c));
-  LamSceneCheck(thickest < LamOuterApothem(micro), document, node,
+  LamSceneCheck(thickest < LamOuterApothem(micro), node,
                 "half of it, %g um, and a wall of %g um leave no lumen in an apothem of %g um; write less",
                 (double)(0.5e6 * micro->clearance * scales->length), (double)(1e6 * thickest * scales->length),
                 (double)(1e6 * scales->length));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamSceneBuildRVE(const LamDocument *document, LamScene *scene)
+PetscErrorCode LamSceneBuildRVE(const LamNode *root, LamScene *scene)
 {
-  const LamNode *rve = LamNodeFindPath(document->root, "rve"), *cells = LamNodeFindPath(rve, "cells");
-  const LamNode *patch = LamNodeFindPath(rve, "patch"), *clearance = LamNodeFindPath(rve, "interface.clearance");
-  const LamNode *thickness = LamNodeFindPath(rve, "cell.wall_thickness");
+  const LamNode *rve = LamNodeFind(root, "rve"), *cells = LamNodeFind(rve, "cells");
+  const LamNode *patch = LamNodeFind(rve, "patch"), *clearance = LamNodeFind(rve, "interface.clearance");
+  const LamNode *thickness = LamNodeFind(rve, "cell.wall_thickness");
   LamMicrostructure *micro = &scene->micro;
 
   PetscFunctionBeginUser;
-  PetscCall(BuildScales(document, scene));
-  LamSceneCheck(thickness->value.number[0] < scene->scales.length, document, thickness,
+  PetscCall(BuildScales(root, scene));
+  LamSceneCheck(thickness->value.number[0] < scene->scales.length, thickness,
                 "the wall fills the cell; write a thickness less than the apothem");
-  PetscCall(LamSceneReadWall(document, document->root, "rve.wall", scene->scales.stress, NULL, &micro->wall));
-  micro->grading = LamNodeFindPath(rve, "mesh.along") ? 0.0 : -1.0; /* negative: the planner chooses */
-  PetscCall(LamSceneFill(document, document->root, &scene->scales, LamScene, scene));
-  LamSceneCheckName(!patch || !cells, document, cells,
+  PetscCall(LamSceneReadWall(root->document, root, "rve.wall", scene->scales.stress, NULL, &micro->wall));
+  micro->grading = LamNodeFind(rve, "mesh.along") ? 0.0 : -1.0; /* negative: the planner chooses */
+  PetscCall(LamSceneFill(root, &scene->scales, LamScene, scene));
+  LamSceneCheckName(!patch || !cells, cells,
                     "given together with patch in line %d; a block of cells is periodic or between grips",
                     patch->name_line);
   micro->is_patch = (PetscBool)(patch != NULL);
   if (micro->interface == LAM_INTERFACE_BONDED) {
-    LamSceneCheck(!(scene->cohesion > 0.0), document, LamNodeFindPath(rve, "interface.cohesion"), LAM_BONDED_PARTS);
-    LamSceneCheck(!(micro->clearance > 0.0), document, clearance, LAM_BONDED_PARTS);
+    LamSceneCheck(!(scene->cohesion > 0.0), LamNodeFind(rve, "interface.cohesion"), LAM_BONDED_PARTS);
+    LamSceneCheck(!(micro->clearance > 0.0), clearance, LAM_BONDED_PARTS);
   }
-  PetscCall(BuildTurgor(document, scene));
-  PetscCall(LamSceneBuildCells(document, scene));
-  PetscCall(LamSceneCheckClearance(document, clearance, &scene->scales, micro));
+  PetscCall(BuildTurgor(root, scene));
+  PetscCall(LamSceneBuildCells(root, scene));
+  PetscCall(LamSceneCheckClearance(clearance, &scene->scales, micro));
   PetscFunctionReturn(0);
 }

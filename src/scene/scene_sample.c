@@ -28,35 +28,35 @@ static const LamKey sample_keys[] = {
 LAM_KEY_TABLE(LamSampleKeys, sample_keys);
 
 /* Where a range is given, its ends are both. */
-static PetscErrorCode CheckRange(const LamDocument *document, const LamNode *range)
+static PetscErrorCode CheckRange(const LamNode *range)
 {
-  const LamNode *min = LamNodeFindPath(range, "min"), *max = LamNodeFindPath(range, "max");
+  const LamNode *min = LamNodeFind(range, "min"), *max = LamNodeFind(range, "max");
 
   PetscFunctionBeginUser;
-  LamSceneCheck(!range || min->value.number[0] <= max->value.number[0], document, min,
+  LamSceneCheck(!range || min->value.number[0] <= max->value.number[0], min,
                 "min is larger than max (%s in line %d); exchange them", max->text, max->line);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamSceneBuildSample(const LamDocument *document, LamScene *scene)
+PetscErrorCode LamSceneBuildSample(const LamNode *root, LamScene *scene)
 {
-  const LamNode *block = LamNodeFindPath(document->root, "sample"), *turgor = LamNodeFindPath(block, "turgor");
-  const LamNode *count = LamNodeFindPath(block, "count"), *accuracy = LamNodeFindPath(block, "accuracy");
+  const LamNode *block = LamNodeFind(root, "sample"), *turgor = LamNodeFind(block, "turgor");
+  const LamNode *count = LamNodeFind(block, "count"), *accuracy = LamNodeFind(block, "accuracy");
   LamSample *sample = &scene->sample;
 
   PetscFunctionBeginUser;
   if (!block) PetscFunctionReturn(0);
-  LamSceneCheckName(!scene->sealed, document, block,
+  LamSceneCheckName(!scene->sealed, block,
                     "contradicts turgor mode: sealed; a database holds states of prescribed turgor, from which those "
                     "of sealed cells follow: write mode: prescribed");
-  LamSceneCheckName(!count || !accuracy, document, accuracy, "given together with count; a sample has one of them");
+  LamSceneCheckName(!count || !accuracy, accuracy, "given together with count; a sample has one of them");
   scene->has_sample = PETSC_TRUE;
   sample->turgor_min = sample->turgor_max = scene->turgor;
   sample->accuracy = count ? 0.0 : scene->accuracy;
-  PetscCall(LamSceneFill(document, document->root, &scene->scales, LamSample, sample));
-  PetscCall(CheckRange(document, LamNodeFindPath(block, "stretch")));
-  PetscCall(CheckRange(document, turgor));
+  PetscCall(LamSceneFill(block, &scene->scales, LamSample, sample));
+  PetscCall(CheckRange(LamNodeFind(block, "stretch")));
+  PetscCall(CheckRange(turgor));
   for (const LamNode *end = turgor ? turgor->first : NULL; end; end = end->next)
-    PetscCall(LamSceneCheckTurgor(document, end, end->value.number[0]));
+    PetscCall(LamSceneCheckTurgor(end, end->value.number[0]));
   PetscFunctionReturn(0);
 }

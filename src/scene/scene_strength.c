@@ -20,16 +20,16 @@ static const LamKey strength_keys[] = {
 };
 LAM_KEY_TABLE(LamStrengthKeys, strength_keys);
 
-PetscErrorCode LamSceneBuildStrength(const LamDocument *document, LamScene *scene)
+PetscErrorCode LamSceneBuildStrength(const LamNode *root, LamScene *scene)
 {
-  const LamNode *block = LamNodeFindPath(document->root, "strength"), *lamella;
+  const LamNode *block = LamNodeFind(root, "strength"), *lamella;
 
   PetscFunctionBeginUser;
   scene->strength = (LamStrength){NAN, NAN, NAN};
-  PetscCall(LamSceneFill(document, document->root, &scene->scales, LamStrength, &scene->strength));
-  lamella = LamNodeFindPath(block, "lamella_normal");
-  if (!lamella) lamella = LamNodeFindPath(block, "lamella_shear");
-  LamSceneCheck(!lamella || scene->micro.interface == LAM_INTERFACE_BONDED, document, lamella,
+  PetscCall(LamSceneFill(root, &scene->scales, LamStrength, &scene->strength));
+  lamella = LamNodeFind(block, "lamella_normal");
+  if (!lamella) lamella = LamNodeFind(block, "lamella_shear");
+  LamSceneCheck(!lamella || scene->micro.interface == LAM_INTERFACE_BONDED, lamella,
                 "contradicts law: contact, whose lamella bears the cohesion and no shear; leave it out");
   PetscFunctionReturn(0);
 }

@@ -26,6 +26,7 @@ static PetscErrorCode NodeCreate(LamDocument *document, LamNodeKind kind, int li
              "%.200s:%d:%d: more than %d values in one file; a scene is much smaller", document->name, line, column,
              (int)MAX_NODES);
   PetscCall(PetscNew(node));
+  (*node)->document = document;
   (*node)->kind = kind;
   (*node)->line = line;
   (*node)->column = column;
@@ -47,7 +48,7 @@ static void NodeAppend(LamNode *parent, LamNode *node)
   if (parent->kind == LAM_NODE_LIST) node->index = parent->count;
 }
 
-LamNode *LamNodeFind(const LamNode *map, const char name[], size_t length)
+LamNode *LamNodeEntry(const LamNode *map, const char name[], size_t length)
 {
   if (!map || map->kind != LAM_NODE_MAP) return NULL;
   for (LamNode *node = map->first; node; node = node->next) {
@@ -56,12 +57,12 @@ LamNode *LamNodeFind(const LamNode *map, const char name[], size_t length)
   return NULL;
 }
 
-const LamNode *LamNodeFindPath(const LamNode *base, const char path[])
+const LamNode *LamNodeFind(const LamNode *base, const char path[])
 {
   while (base && *path) {
     const size_t length = strcspn(path, ".");
 
-    base = LamNodeFind(base, path, length);
+    base = LamNodeEntry(base, path, length);
     path += length + (path[length] ? 1 : 0);
   }
   return base;
@@ -105,11 +106,11 @@ static PetscErrorCode TokenText(struct fy_token *token, char **text)
 }
 
 /* A place without a node yet, for messages. */
-static LamNode Place(struct fy_token *token)
+static LamNode Place(const LamDocument *document, struct fy_token *token)
 {
   const struct fy_mark *mark = token ? fy_token_start_mark(token) : NULL;
 
-  return (LamNode){.line = mark ? mark->line + 1 : 1, .column = mark ? mark->column + 1 : 1};
+  return (LamNode){.document = document, .line = mark ? mark->line + 1 : 1, .column = mark ? mark->column + 1 : 1};
 }
 
 /* Puts a node where the events have got to: the root, the next item of a list or the value of the waiting key. */
@@ -139,7 +140,7 @@ static PetscBool BuilderAtKey(const Builder *builder)
 static PetscErrorCode BuilderKey(Builder *builder, struct fy_token *token)
 {
   LamNode *map = builder->stack[builder->depth - 1];
-  LamNode key = Place(token);
+  LamNode key = Place(builder->document, token);
   const LamNode *earlier;
 
   PetscFunctionBeginUser;
@@ -148,12 +149,11 @@ static PetscErrorCode BuilderKey(Builder *builder, struct fy_token *token)
   builder->name_column = key.name_column = key.column;
   key.name = builder->name;
   key.parent = map;
-  LamSceneCheckName(strcmp(key.name, "<<"), builder->document, &key, "merge keys are not read; write the keys out");
-  earlier = LamNodeFind(map, key.name, strlen(key.name));
-  LamSceneCheckName(!earlier, builder->document, &key, "given twice, first in line %d; give it once",
-                    earlier->name_line);
-  LamSceneCheckName(map->count < MAX_KEYS, builder->document, &key,
-                    "more than %d keys in one map; a scene is much smaller", (int)MAX_KEYS);
+  LamSceneCheckName(strcmp(key.name, "<<"), &key, "merge keys are not read; write the keys out");
+  earlier = LamNodeEntry(map, key.name, strlen(key.name));
+  LamSceneCheckName(!earlier, &key, "given twice, first in line %d; give it once", earlier->name_line);
+  LamSceneCheckName(map->count < MAX_KEYS, &key, "more than %d keys in one map; a scene is much smaller",
+                    (int)MAX_KEYS);
   PetscFunctionReturn(0);
 }
 
@@ -162,7 +162,7 @@ static PetscErrorCode BuilderAdd(Builder *builder, LamNodeKind kind, LamNode pla
                                  struct fy_token *anchor, LamNode **node)
 {
   PetscFunctionBeginUser;
-  LamSceneCheck(!tag, builder->document, &place, "YAML tags (!...) are not read; write the value alone");
+  LamSceneCheck(!tag, &place, "YAML tags (!...) are not read; write the value alone");
   PetscCall(NodeCreate(builder->document, kind, place.line, place.column, node));
   PetscCall(BuilderPut(builder, *node));
   if (!anchor) PetscFunctionReturn(0);
@@ -176,16 +176,17 @@ static PetscErrorCode BuilderScalar(Builder *builder, const struct fy_event *eve
 {
   struct fy_token *token = event->scalar.value;
   const PetscBool empty = (PetscBool)(fy_token_get_text_length(token) == 0);
-  LamNode place = Place(token), *node;
+  LamNode place = Place(builder->document, token), *node;
 
   PetscFunctionBeginUser;
   if (BuilderAtKey(builder)) {
-    LamSceneCheck(!event->scalar.tag, builder->document, &place, "YAML tags (!...) are not read; write the key alone");
+    LamSceneCheck(!event->scalar.tag, &place, "YAML tags (!...) are not read; write the key alone");
     PetscCall(BuilderKey(builder, token));
     PetscFunctionReturn(0);
   }
   /* where a value is left out its token has no place: it is missed at its key */
-  if (empty && builder->name) place = (LamNode){.line = builder->name_line, .column = builder->name_column};
+  if (empty && builder->name)
+    place = (LamNode){.document = builder->document, .line = builder->name_line, .column = builder->name_column};
   PetscCall(BuilderAdd(builder, LAM_NODE_SCALAR, place, event->scalar.tag, event->scalar.anchor, &node));
   PetscCall(TokenText(token, &node->text));
   if (fy_token_scalar_style(token) == FYSS_PLAIN) {
@@ -198,14 +199,13 @@ static PetscErrorCode BuilderOpen(Builder *builder, LamNodeKind kind, struct fy_
                                   struct fy_token *anchor)
 {
   const struct fy_mark *mark = token ? fy_token_start_mark(token) : NULL;
-  const LamNode place = Place(token);
+  const LamNode place = Place(builder->document, token);
   LamNode *node;
 
   PetscFunctionBeginUser;
-  LamSceneCheck(!BuilderAtKey(builder), builder->document, &place,
-                "a list or map stands where a key should; keys are plain words");
-  LamSceneCheck(builder->depth < MAX_DEPTH, builder->document, &place,
-                "nested more than %d levels deep; a scene is much flatter", (int)MAX_DEPTH);
+  LamSceneCheck(!BuilderAtKey(builder), &place, "a list or map stands where a key should; keys are plain words");
+  LamSceneCheck(builder->depth < MAX_DEPTH, &place, "nested more than %d levels deep; a scene is much flatter",
+                (int)MAX_DEPTH);
   PetscCall(BuilderAdd(builder, kind, place, tag, anchor, &node));
   builder->start[builder->depth] = mark ? mark->input_pos : 0;
   builder->stack[builder->depth++] = node;
@@ -248,13 +248,13 @@ static PetscErrorCode NodeCopy(LamDocument *document, const LamNode *node, const
 
 static PetscErrorCode BuilderAlias(Builder *builder, struct fy_token *token)
 {
-  const LamNode place = Place(token);
+  const LamNode place = Place(builder->document, token);
   const LamNode *target = NULL;
   char name[48], *text;
   LamNode *copy;
 
   PetscFunctionBeginUser;
-  LamSceneCheck(!BuilderAtKey(builder), builder->document, &place, "an alias stands where a key should");
+  LamSceneCheck(!BuilderAtKey(builder), &place, "an alias stands where a key should");
   PetscCall(TokenText(token, &text));
   snprintf(name, sizeof(name), "%.40s", text);
   for (LamNode *node = builder->document->anchored; node && !target; node = node->anchored)
@@ -263,8 +263,7 @@ static PetscErrorCode BuilderAlias(Builder *builder, struct fy_token *token)
   for (int i = 0; i < builder->depth; i++) {
     if (builder->stack[i] == target) target = NULL; /* it would contain itself */
   }
-  LamSceneCheck(target, builder->document, &place, "*%s: no finished value has the anchor &%s before this line", name,
-                name);
+  LamSceneCheck(target, &place, "*%s: no finished value has the anchor &%s before this line", name, name);
   PetscCall(NodeCopy(builder->document, target, &place, &copy));
   PetscCall(BuilderPut(builder, copy));
   PetscFunctionReturn(0);
@@ -277,9 +276,8 @@ static PetscErrorCode BuilderEvent(Builder *builder, const struct fy_event *even
   PetscFunctionBeginUser;
   switch (event->type) {
   case FYET_DOCUMENT_START:
-    place = Place(event->document_start.document_start);
-    LamSceneCheck(!builder->documents++, builder->document, &place,
-                  "a second YAML document starts here; a file holds one scene");
+    place = Place(builder->document, event->document_start.document_start);
+    LamSceneCheck(!builder->documents++, &place, "a second YAML document starts here; a file holds one scene");
     break;
   case FYET_SCALAR:
     PetscCall(BuilderScalar(builder, event));
@@ -312,12 +310,14 @@ static PetscErrorCode RaiseSyntaxError(const LamDocument *document, struct fy_di
 {
   void *previous = NULL;
   const struct fy_diag_error *error = fy_diag_errors_iterate(diagnostics, &previous);
-  const LamNode place = {.line = error ? PetscMax(error->line, 1) : 1,
+  const LamNode place = {.document = document,
+                         .line = error ? PetscMax(error->line, 1) : 1,
                          .column = error ? PetscMax(error->column, 1) : 1};
 
   PetscFunctionBeginUser;
-  PetscCall(LamSceneFail(document, &place, "not YAML: %.200s; check brackets, quotes and indentation in this line",
-                         error && error->msg ? error->msg : "it cannot be read"));
+  PetscCall(LamSceneRaise(&place, LAM_MISTAKE_VALUE, NULL,
+                          "not YAML: %.200s; check brackets, quotes and indentation in this line",
+                          error && error->msg ? error->msg : "it cannot be read"));
   PetscFunctionReturn(0);
 }
 

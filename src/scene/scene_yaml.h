@@ -23,7 +23,9 @@ typedef struct {
 struct LamKey_s;
 
 typedef struct LamNode_s LamNode;
+typedef struct LamDocument_s LamDocument;
 struct LamNode_s {
+  const LamDocument *document;
   LamNodeKind kind;
   int line, column;  /* of the value, from 1 */
   char *text;        /* a scalar's text; else how the value looks in the file, shortened, or NULL */
@@ -41,23 +43,23 @@ struct LamNode_s {
   LamValue value;
 };
 
-typedef struct {
+struct LamDocument_s {
   const char *name; /* borrowed: what messages call the file */
   const char *text; /* borrowed */
   LamNode *root;
   LamNode *allocated; /* the newest node; the document owns them all */
   LamNode *anchored;  /* the newest one with an anchor */
   PetscInt node_count;
-} LamDocument;
+};
 
 /* Parses text. The document must be destroyed also after an error. */
 PetscErrorCode LamDocumentParse(const char name[], const char text[], LamDocument *document);
 PetscErrorCode LamDocumentDestroy(LamDocument *document);
 
 /* A map's entry or NULL; `map` may be NULL. */
-LamNode *LamNodeFind(const LamNode *map, const char name[], size_t length);
+LamNode *LamNodeEntry(const LamNode *map, const char name[], size_t length);
 /* What stands at a path of keys below `base`, such as "cell.apothem"; NULL where there is nothing. */
-const LamNode *LamNodeFindPath(const LamNode *base, const char path[]);
+const LamNode *LamNodeFind(const LamNode *base, const char path[]);
 
 /* Raises PETSC_ERR_USER_INPUT with the message "file:line:column: key: value: ...". */
 typedef enum {
@@ -65,20 +67,21 @@ typedef enum {
   LAM_MISTAKE_NAME,   /* points at its key */
   LAM_MISTAKE_MISSING /* of a key that the map `node` lacks */
 } LamMistake;
-PetscErrorCode LamSceneRaise(const LamDocument *document, const LamNode *node, LamMistake mistake, const char key[],
-                             const char format[], ...) PETSC_ATTRIBUTE_FORMAT(5, 6);
-
-#define LamSceneFail(document, node, ...) LamSceneRaise(document, node, LAM_MISTAKE_VALUE, NULL, __VA_ARGS__)
-#define LamSceneFailName(document, node, ...) LamSceneRaise(document, node, LAM_MISTAKE_NAME, NULL, __VA_ARGS__)
-#define LamSceneFailMissing(document, node, ...) LamSceneRaise(document, node, LAM_MISTAKE_MISSING, __VA_ARGS__)
+PetscErrorCode LamSceneRaise(const LamNode *node, LamMistake mistake, const char key[], const char format[], ...)
+    PETSC_ATTRIBUTE_FORMAT(4, 5);
 
 /* PetscCheck for scenes: unless the condition holds the message points at the value, at the key, or says what lacks. */
-#define LamSceneUnless(condition, failure)                                                                             \
+#define LamSceneUnless(condition, ...)                                                                                 \
   do {                                                                                                                 \
-    if (!(condition)) PetscCall(failure);                                                                              \
+    if (!(condition)) PetscCall(LamSceneRaise(__VA_ARGS__));                                                           \
   } while (0)
-#define LamSceneCheck(condition, ...) LamSceneUnless(condition, LamSceneFail(__VA_ARGS__))
-#define LamSceneCheckName(condition, ...) LamSceneUnless(condition, LamSceneFailName(__VA_ARGS__))
-#define LamSceneRequire(condition, ...) LamSceneUnless(condition, LamSceneFailMissing(__VA_ARGS__))
+#define LamSceneCheck(condition, node, ...) LamSceneUnless(condition, node, LAM_MISTAKE_VALUE, NULL, __VA_ARGS__)
+#define LamSceneCheckName(condition, node, ...) LamSceneUnless(condition, node, LAM_MISTAKE_NAME, NULL, __VA_ARGS__)
+#define LamSceneRequire(condition, node, ...) LamSceneUnless(condition, node, LAM_MISTAKE_MISSING, __VA_ARGS__)
+
+/* for scene_wall.c */
+#define LamSceneFail(document, node, ...) LamSceneRaise(node, LAM_MISTAKE_VALUE, NULL, __VA_ARGS__)
+#define LamSceneFailMissing(document, node, ...) LamSceneRaise(node, LAM_MISTAKE_MISSING, __VA_ARGS__)
+#define LamSceneScale(document, node, si, scale, number) LamSceneDivide(node, si, scale, number)
 
 #endif
