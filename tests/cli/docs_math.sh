@@ -1,5 +1,6 @@
 # The equations of the documents: delimiters, braces and environments balance, macros are known, nothing is in them that
-# Markdown would take for its own; the source files that docs/theory names exist, and so do the titles that sources cite.
+# Markdown would take for its own; the source files and programs that documents name exist, and so do the titles that
+# sources cite.
 . "$(dirname "$0")/common.sh"
 /usr/bin/python3 - "$source" <<'PYTHON'
 import re, sys
@@ -60,12 +61,16 @@ for document in [*source.glob("*.md"), *(source / "docs").rglob("*.md")]:
                 if re.search(r"\w\Z", parts[i - 1]) or re.match(r"\w", parts[i + 1]):
                     failures.append(f"{document}: a letter touches the dollar of {math}")
 
-for document in (source / "docs" / "theory").glob("*.md"):
-    folder = source
-    for path in re.findall(r"`([\w/]+[\w*]+\.[ch])`", document.read_text()):
+programs = {file.stem for file in (source / "tests").rglob("*") if file.suffix in (".c", ".sh", ".py")}
+for document in (source / "docs").rglob("*.md"):
+    text, folder = document.read_text(), source
+    for path in re.findall(r"`([\w/]+[\w*]+\.[ch])`", text):
         folder = (source / path).parent if "/" in path else folder
         if not list(folder.glob(Path(path).name)):
             failures.append(f"{document}: {path} is not there")
+    for program in re.findall(r"\b((?:bench|test|fuzz)_\w+)\b(?!\*)", text):
+        if not any(name.startswith(program) for name in programs):
+            failures.append(f"{document}: {program} is not there")
 
 citations = 0
 for folder in ("include", "src", "rve", "macro", "process", "tests", "examples"):
