@@ -1,5 +1,5 @@
 /*
-  Arrays and texts in record files: reading, and the texts that the header itself uses.
+  Arrays and texts in open record files.
 */
 #include "record_internal.h"
 #include <stdio.h>
@@ -209,17 +209,7 @@ PetscErrorCode LamFileGetText(const char path[], hid_t file, const char name[], 
   PetscFunctionReturn(0);
 }
 
-typedef struct {
-  const char *name;
-  hid_t type; /* in the file, 8 bytes a value */
-  PetscBool found;
-  PetscInt rank, *dims;
-  void *values;
-  PetscInt count;
-  char kind[LAM_NAME_LENGTH];
-} Question;
-
-static PetscErrorCode Dims(const char path[], const Opened *o, Question *q)
+static PetscErrorCode Dims(const char path[], const char name[], const Opened *o, LamFileArray *array)
 {
   hsize_t dims[H5S_MAX_RANK];
   int rank;
@@ -227,24 +217,25 @@ static PetscErrorCode Dims(const char path[], const Opened *o, Question *q)
   PetscFunctionBeginUser;
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, rank = H5Sget_simple_extent_dims(o->space, dims, NULL));
   PetscCheck(rank <= 4, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s has rank %d; lamella writes rank 4 at most",
-             path, q->name, rank);
-  q->rank = rank;
-  for (int i = 0; i < rank; i++) q->dims[i] = (PetscInt)dims[i];
-  q->count = (PetscInt)o->count;
+             path, name, rank);
+  array->rank = rank;
+  for (int i = 0; i < rank; i++) array->dims[i] = (PetscInt)dims[i];
+  array->count = (PetscInt)o->count;
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ReadArray(const char path[], hid_t file, Question *q)
+PetscErrorCode LamFileGetArray(const char path[], hid_t file, const char name[], hid_t type, LamFileArray *array)
 {
   PetscErrorCode ierr;
   Opened o;
 
   PetscFunctionBeginUser;
-  PetscCall(LamFileHas(path, file, q->name, &q->found));
-  if (!q->found) PetscFunctionReturn(0);
-  PetscCall(Open(path, file, q->name, q->type, &o));
-  ierr = Dims(path, &o, q);
-  if (!ierr) ierr = Read(path, q->name, &o, &q->values);
+  *array = (LamFileArray){0};
+  PetscCall(LamFileHas(path, file, name, &array->found));
+  if (!array->found) PetscFunctionReturn(0);
+  PetscCall(Open(path, file, name, type, &o));
+  ierr = Dims(path, name, &o, array);
+  if (!ierr) ierr = Read(path, name, &o, &array->values);
   Close(&o);
   PetscCall(ierr);
   PetscFunctionReturn(0);
@@ -252,8 +243,7 @@ static PetscErrorCode ReadArray(const char path[], hid_t file, Question *q)
 
 PetscErrorCode LamFileCheckValues(const char path[], hid_t file, const char name[])
 {
-  PetscInt dims[4];
-  Question q = {.name = name, .dims = dims};
+  LamFileArray array = {0};
   H5T_class_t class;
   hid_t dataset, type;
 
@@ -263,97 +253,10 @@ PetscErrorCode LamFileCheckValues(const char path[], hid_t file, const char name
   class = H5Tget_class(type);
   LamCallHDF5(path, PETSC_ERR_LIB, H5Tclose(type));
   LamCallHDF5(path, PETSC_ERR_LIB, H5Dclose(dataset));
-  q.type = class == H5T_FLOAT ? H5T_IEEE_F64LE : H5T_STD_I64LE;
   if (class == H5T_STRING)
-    PetscCall(LamFileGetText(path, file, name, (char **)&q.values));
+    PetscCall(LamFileGetText(path, file, name, (char **)&array.values));
   else
-    PetscCall(ReadArray(path, file, &q));
-  PetscCall(PetscFree(q.values));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ReadText(const char path[], hid_t file, Question *q)
-{
-  PetscFunctionBeginUser;
-  PetscCall(LamFileHas(path, file, q->name, &q->found));
-  if (q->found) PetscCall(LamFileGetText(path, file, q->name, (char **)&q->values));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ReadKind(const char path[], hid_t file, Question *q)
-{
-  LamHeader header;
-  PetscErrorCode ierr;
-
-  PetscFunctionBeginUser;
-  ierr = LamHeaderRead(path, file, &header);
-  if (!ierr) ierr = PetscStrncpy(q->kind, header.kind, sizeof(q->kind));
-  PetscCall(LamHeaderDestroy(&header));
-  PetscCall(ierr);
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Ask(const char path[], PetscErrorCode (*read)(const char[], hid_t, Question *), Question *q)
-{
-  hid_t file = H5I_INVALID_HID;
-  const int lock = LamLockBeginRead(path);
-  PetscErrorCode ierr = LamFileOpenRead(path, &file);
-
-  PetscFunctionBeginUser;
-  if (!ierr) ierr = read(path, file, q);
-  if (file >= 0) H5Fclose(file);
-  LamLockEndRead(lock);
-  PetscCall(ierr);
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamFileReadReals(const char path[], const char name[], PetscBool *found, PetscInt *rank,
-                                PetscInt dims[4], PetscReal **values)
-{
-  Question q = {.name = name, .type = H5T_IEEE_F64LE, .dims = dims};
-
-  PetscFunctionBeginUser;
-  PetscCall(Ask(path, ReadArray, &q));
-  *found = q.found;
-  *rank = q.rank;
-  *values = q.values;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamFileReadInts(const char path[], const char name[], PetscBool *found, PetscInt *rank, PetscInt dims[4],
-                               PetscInt **values)
-{
-  Question q = {.name = name, .type = H5T_STD_I64LE, .dims = dims};
-
-  PetscFunctionBeginUser;
-  PetscCall(Ask(path, ReadArray, &q));
-  *found = q.found;
-  *rank = q.rank;
-  *values = NULL;
-  if (!q.found) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1(q.count + 1, values));
-  for (PetscInt i = 0; i < q.count; i++) (*values)[i] = (PetscInt)((const PetscInt64 *)q.values)[i];
-  PetscCall(PetscFree(q.values));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamFileReadText(const char path[], const char name[], PetscBool *found, char **text)
-{
-  Question q = {.name = name};
-
-  PetscFunctionBeginUser;
-  PetscCall(Ask(path, ReadText, &q));
-  *found = q.found;
-  *text = q.values;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamFileReadKind(const char path[], char kind[LAM_NAME_LENGTH])
-{
-  Question q = {0};
-
-  PetscFunctionBeginUser;
-  PetscCall(Ask(path, ReadKind, &q));
-  PetscCall(PetscStrncpy(kind, q.kind, LAM_NAME_LENGTH));
+    PetscCall(LamFileGetArray(path, file, name, class == H5T_FLOAT ? H5T_IEEE_F64LE : H5T_STD_I64LE, &array));
+  PetscCall(PetscFree(array.values));
   PetscFunctionReturn(0);
 }

@@ -122,7 +122,7 @@ static PetscErrorCode CheckRecords(Check *c)
 
   PetscFunctionBeginUser;
   PetscCall(LamRecordScanOpen(c->path, c->file, &scan));
-  count = c->counted ? c->header.committed : LamRecordScanRoom(&scan, c->file);
+  count = c->counted ? c->header.committed : LamRecordScanExtent(&scan, c->file);
   for (PetscInt first = 0; first < count; first += LAM_BLOCK)
     CheckBlock(c, &scan, first, PetscMin(LAM_BLOCK, count - first), &sum);
   if (c->counted && c->sound_records == count)

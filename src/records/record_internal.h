@@ -6,11 +6,11 @@
 
 #include <lamella/database.h>
 #include <stdint.h>
+#include "disk.h"
 #include "h5check.h"
 
 #define LAM_FORMAT_NAME "lamella"
 #define LAM_FORMAT_VERSION 1
-#define LAM_TIME_LENGTH 32
 #define LAM_RECORDS_PER_CHUNK 64 /* some 90 kB: one commit touches one or two chunks */
 
 /* What to do about a damaged file; ends a message. */
@@ -92,75 +92,18 @@ PetscErrorCode LamRecordTypeSum(hid_t file_type, uint32_t *sum);
 /* The same for records, of which only the checksums enter. */
 uint32_t LamRecordsSum(uint32_t before, const LamRecordLayout *layout, PetscInt n, const unsigned char *bytes);
 
-/* ---- record_lock.c ---- */
-
-/* The writer's lock: the file PATH.lock, which says who holds it. */
-typedef struct {
-  char path[PETSC_MAX_PATH_LEN];
-  int fd; /* -1: not held */
-} LamLock;
-
-PetscErrorCode LamLockTake(const char path[], LamLock *lock);
-PetscErrorCode LamLockRelease(LamLock *lock);
-/* Readers wait while a commit is under way, and a commit waits for readers: milliseconds each. */
-void LamLockBeginCommit(LamLock *lock);
-void LamLockEndCommit(LamLock *lock);
-int LamLockBeginRead(const char path[]); /* a descriptor for LamLockEndRead, or -1 where no writer is about */
-void LamLockEndRead(int fd);
-/* Who writes to the file. False: no one, or a process of this host that has died. */
-typedef struct {
-  char host[256], since[LAM_TIME_LENGTH];
-  long pid;
-  unsigned long long start; /* clock ticks after boot; 0 where the system does not tell */
-} LamLockHolder;
-PetscBool LamLockGetHolder(const char path[], LamLockHolder *holder);
-
-/* ---- record_target.c ---- */
-
-/* The file behind a link; otherwise the path as it was given, for messages. False: no file there, or too long a path.
- */
-PetscBool LamPathFollow(const char path[], char target[PETSC_MAX_PATH_LEN]);
-/* The file that a writer of `path` writes: links are followed, and what CREATE must not replace is refused. */
-PetscErrorCode LamTargetFind(const char path[], const char kind[], LamWriteMode mode, char target[PETSC_MAX_PATH_LEN]);
-
 /* ---- record_file.c ---- */
 
-/* What the root group tells. Texts and the cells of `micro` are owned by the header. */
-typedef struct {
-  char kind[LAM_NAME_LENGTH];
-  char creator[LAM_NAME_LENGTH], created[LAM_TIME_LENGTH], host[256];
-  char petsc[LAM_NAME_LENGTH], hdf5[LAM_NAME_LENGTH], mpi[256];
-  char *command;
-  PetscInt format_version;
-  LamScales scales;
-  PetscReal accuracy;
-  char hash[LAM_HASH_LENGTH];
-  char *description;
-  LamMicrostructure micro;
-  PetscInt committed;
-} LamHeader;
-
-PetscErrorCode LamHeaderDestroy(LamHeader *header);
-/* Now, ISO 8601, UTC. */
-void LamTimeNow(char text[LAM_TIME_LENGTH]);
-
-/*
-  Makes sure that the disk takes `bytes` more, and some for HDF5's own tables, before HDF5 begins: HDF5 1.10 crashes at
-  exit over data that it could not write. PETSC_ERR_FILE_WRITE with the system's reason. `create`: starts an empty file.
-*/
-PetscErrorCode LamFileReserve(const char path[], PetscBool create, size_t bytes);
 /* Opens without HDF5's own locks; closing the file closes all that is open in it. */
 PetscErrorCode LamFileOpenRead(const char path[], hid_t *file);
 PetscErrorCode LamFileOpenWrite(const char path[], hid_t *file);
-/* Makes a file without records: header, microstructure, scene, empty record table. */
-PetscErrorCode LamFileCreate(const char path[], const char kind[], const LamScene *scene);
+PetscErrorCode LamFileOpenNew(const char path[], hid_t *file);
 PetscErrorCode LamFileClose(const char path[], hid_t file);
 /* Brings all that was written to the disk. */
 PetscErrorCode LamFileSync(const char path[], hid_t file);
-/* Reads and checks the header; `file` is left open. */
-PetscErrorCode LamHeaderRead(const char path[], hid_t file, LamHeader *header);
-/* The same without the number of committed records. *matches: the checksum does; NULL: an error where it does not. */
-PetscErrorCode LamHeaderReadRoot(const char path[], hid_t file, PetscBool *matches, LamHeader *header);
+
+/* ---- record_array.c ---- */
+
 /* Whether `name` ("/a/b/c") is there: every part of it. PETSC_ERR_USER_INPUT where one is a link to elsewhere. */
 PetscErrorCode LamFileHas(const char path[], hid_t file, const char name[], PetscBool *has);
 /* Text dataset; groups are made. */
@@ -171,6 +114,15 @@ PetscErrorCode LamFileCheckValues(const char path[], hid_t file, const char name
 
 /* Refuses what lamella never writes, before any data is read: another layout, filters, data in other files. */
 PetscErrorCode LamDatasetCheck(const char path[], hid_t dataset, const char name[], H5D_layout_t wanted);
+
+/* An array in the file. */
+typedef struct {
+  PetscBool found;
+  PetscInt rank, dims[4], count;
+  void *values; /* of 8 bytes each; NULL: not found. The caller's to free */
+} LamFileArray;
+/* `type`: of the values in the file, which have 8 bytes each. */
+PetscErrorCode LamFileGetArray(const char path[], hid_t file, const char name[], hid_t type, LamFileArray *array);
 
 /* ---- record_scan.c ---- */
 
@@ -196,29 +148,50 @@ PetscErrorCode LamRecordScanRead(const char path[], LamRecordScan *scan, PetscIn
 void LamRecordScanClose(LamRecordScan *scan);
 /* Tests the sum of the checksums of all committed records, `count`; more may have been committed since. */
 PetscErrorCode LamRecordScanEnd(const char path[], const LamRecordScan *scan, PetscInt count, uint32_t sum);
-/* How many records the list has room for, committed or not. */
-PetscInt LamRecordScanRoom(const LamRecordScan *scan, hid_t file);
+/* The number of records that space is allocated for, committed or not. */
+PetscInt LamRecordScanExtent(const LamRecordScan *scan, hid_t file);
 
-/* ---- record_room.c ---- */
+/* ---- record_header.c ---- */
 
-/* With the permissions of the first. */
-PetscErrorCode LamFileCopy(const char from[], const char to[]);
-/* The records that there is room for, committed ones included. */
-PetscErrorCode LamFileReadRoom(const char path[], hid_t file, PetscInt *room);
-/*
-  Makes room for `records` of them or some more where there is less; *room: for how many there was, and is. The file
-  `path` is replaced by a copy, made as `temporary`; killed at any instant, it is as it was. NULL: `temporary` itself,
-  which has no name yet.
-*/
-PetscErrorCode LamFileMakeRoom(const char path[], const char temporary[], PetscInt records, PetscInt *room);
-/* Writes all of them; 0, or the reason as errno has it. */
-int LamWriteBytes(int fd, const void *bytes, size_t n);
+/* Attributes of the root group. Texts and the cells of `micro` are owned by the header. */
+typedef struct {
+  char kind[LAM_NAME_LENGTH];
+  char creator[LAM_NAME_LENGTH], created[LAM_TIME_LENGTH], host[256];
+  char petsc[LAM_NAME_LENGTH], hdf5[LAM_NAME_LENGTH], mpi[256];
+  char *command;
+  PetscInt format_version;
+  LamScales scales;
+  PetscReal accuracy;
+  char hash[LAM_HASH_LENGTH];
+  char *description;
+  LamMicrostructure micro;
+  PetscInt committed;
+} LamHeader;
 
-/* ---- record_write.c ---- */
-
+PetscErrorCode LamHeaderDestroy(LamHeader *header);
+/* Makes a file without records: header, microstructure, scene, empty record table. */
+PetscErrorCode LamFileCreate(const char path[], const char kind[], const LamScene *scene);
+/* Reads and checks the header; `file` is left open. */
+PetscErrorCode LamHeaderRead(const char path[], hid_t file, LamHeader *header);
+/* The same without the number of committed records. *matches: the checksum does; NULL: an error where it does not. */
+PetscErrorCode LamHeaderReadRoot(const char path[], hid_t file, PetscBool *matches, LamHeader *header);
 /* Sets the number of committed records and the sum of their checksums; syncs nothing. */
 PetscErrorCode LamCounterWrite(const char path[], hid_t dataset, PetscInt committed, uint32_t records_sum);
-/* Brings a closed file to the disk and gives it its name, for good. */
-PetscErrorCode LamFilePublish(const char temporary[], const char path[]);
+
+/* ---- record_target.c ---- */
+
+/* The file that a writer of `path` writes: links are followed, and what CREATE must not replace is refused. */
+PetscErrorCode LamTargetFind(const char path[], const char kind[], LamWriteMode mode, char target[PETSC_MAX_PATH_LEN]);
+
+/* ---- record_preallocate.c ---- */
+
+/* The number of records that space is allocated for, committed ones included. */
+PetscErrorCode LamFileReadExtent(const char path[], hid_t file, PetscInt *extent);
+/*
+  Allocates space for `records` of them or some more where there is less; *extent: before and after. The file `path` is
+  replaced by a copy, made as `temporary`; killed at any instant, it is as it was. NULL: `temporary` itself, which has
+  no name yet.
+*/
+PetscErrorCode LamFilePreallocate(const char path[], const char temporary[], PetscInt records, PetscInt *extent);
 
 #endif

@@ -7,8 +7,7 @@
   has lost the lock. HDF5's own locks are off: they would shut readers out for as long as a writer lives. Instead a
   commit takes the lock file exclusively (flock) and a reader shares it while it loads.
 */
-#include "record_internal.h"
-#include "whole.h"
+#include "disk.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -106,7 +105,7 @@ static PetscErrorCode RemoveStale(const char path[], const char data_path[], Pet
   *removed = PETSC_TRUE;
   if (fd < 0) PetscFunctionReturn(0); /* released meanwhile */
   unwritten = StaysUnwritten(fd);
-  LamWholeLock(fd, LOCK_EX); /* of two that find it stale, the second sees below that it has gone */
+  LamFlock(fd, LOCK_EX); /* of two that find it stale, the second sees below that it has gone */
   known = HolderRead(fd, &holder);
   if (!IsNamed(fd, path)) {
     close(fd);
@@ -135,7 +134,7 @@ static PetscErrorCode WriteHolder(const char path[], LamLock *lock)
   HolderSelf(&self);
   length = snprintf(text, sizeof(text), "%s %ld %llu %s\n", self.host, self.pid, self.start, self.since);
   error = LamWriteBytes(lock->fd, text, (size_t)length);
-  if (!error && LamWholeSync(lock->fd)) error = errno;
+  if (!error && LamFsync(lock->fd)) error = errno;
   if (error) PetscCall(LamLockRelease(lock));
   PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s.lock: %s", path, strerror(error));
   PetscFunctionReturn(0);
@@ -177,12 +176,12 @@ PetscErrorCode LamLockRelease(LamLock *lock)
 /* Where the file system has no flock the calls fail and a reader may, rarely, meet a half-made commit and say so. */
 void LamLockBeginCommit(LamLock *lock)
 {
-  LamWholeLock(lock->fd, LOCK_EX);
+  LamFlock(lock->fd, LOCK_EX);
 }
 
 void LamLockEndCommit(LamLock *lock)
 {
-  LamWholeLock(lock->fd, LOCK_UN);
+  LamFlock(lock->fd, LOCK_UN);
 }
 
 /* The writer's lock is beside the file, not beside a link to it. */
@@ -199,7 +198,7 @@ int LamLockBeginRead(const char path[])
 {
   const int fd = OpenLock(path);
 
-  if (fd >= 0) LamWholeLock(fd, LOCK_SH);
+  if (fd >= 0) LamFlock(fd, LOCK_SH);
   return fd;
 }
 

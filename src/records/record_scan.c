@@ -17,8 +17,8 @@ static PetscErrorCode CheckCounter(const char path[], hid_t dataset, PetscInt64 
   PetscFunctionReturn(0);
 }
 
-/* Records are stored as they are, so there cannot be more than the file has room for; nor longer chunks. */
-static PetscErrorCode CheckRoom(const char path[], hid_t file, hid_t dataset, PetscInt64 count)
+/* Records are not compressed, so the file is at least as large as they are; nor are chunks longer than it. */
+static PetscErrorCode CheckExtent(const char path[], hid_t file, hid_t dataset, PetscInt64 count)
 {
   hsize_t size, chunk = 0;
   hid_t type, list;
@@ -68,7 +68,7 @@ static PetscErrorCode ReadCommitted(const char path[], hid_t file, hid_t dataset
              "%s: %lld records are said to be committed, %lld are there; the file is damaged" LAM_SALVAGE, path,
              (long long)count, (long long)extent);
   PetscCall(CheckCounter(path, dataset, count));
-  PetscCall(CheckRoom(path, file, dataset, count));
+  PetscCall(CheckExtent(path, file, dataset, count));
   *committed = (PetscInt)count;
   PetscFunctionReturn(0);
 }
@@ -159,7 +159,7 @@ PetscErrorCode LamRecordScanRead(const char path[], LamRecordScan *scan, PetscIn
   PetscFunctionReturn(0);
 }
 
-PetscInt LamRecordScanRoom(const LamRecordScan *scan, hid_t file)
+PetscInt LamRecordScanExtent(const LamRecordScan *scan, hid_t file)
 {
   const hssize_t extent = H5Sget_simple_extent_npoints(scan->space);
   hsize_t size;

@@ -3,26 +3,8 @@
   lost at the first commit.
 */
 #include "record_internal.h"
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-
-PetscBool LamPathFollow(const char path[], char target[PETSC_MAX_PATH_LEN])
-{
-  struct stat status;
-  char *real;
-  int length;
-
-  if (lstat(path, &status) || !S_ISLNK(status.st_mode)) {
-    length = snprintf(target, PETSC_MAX_PATH_LEN, "%s", path);
-    return (PetscBool)(length < PETSC_MAX_PATH_LEN);
-  }
-  real = realpath(path, NULL);
-  length = real ? snprintf(target, PETSC_MAX_PATH_LEN, "%s", real) : PETSC_MAX_PATH_LEN;
-  free(real);
-  return (PetscBool)(length < PETSC_MAX_PATH_LEN);
-}
 
 /* The reason why a file cannot be read does not matter here: it is not ours to replace. */
 static PetscErrorCode CheckReplaceable(const char path[], const char kind[])

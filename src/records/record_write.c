@@ -2,16 +2,13 @@
   The writer of record files.
 
   Method
-    Each commit opens the file, writes its records into the room behind those that are there, syncs, raises the counter,
-    syncs and closes. A kill at any instant leaves the records below the counter as they were; what lies beyond it is
-    overwritten by the next commit. A new file is made under another name and takes its place at the first commit; room
-    is made likewise (record_room.c).
+    Each commit opens the file, writes its records into the preallocated space behind those that are there, syncs,
+  raises the counter, syncs and closes. A kill at any instant leaves the records below the counter as they were; the
+  next commit writes over what lies beyond it. A new file is made under another name and renamed at the first commit.
 */
 #include "record_internal.h"
-#include "whole.h"
 #include <errno.h>
 #include <fcntl.h>
-#include <libgen.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -23,7 +20,7 @@ struct LamRecordWriter_s {
   PetscBool written;   /* something besides the header */
   PetscBool begun;     /* LamRecordWriterBegin: what is written is no one's before the commit */
   LamLock lock;
-  PetscInt room; /* of the file, in records */
+  PetscInt extent; /* records that space is allocated for */
   PetscInt n, capacity;
   PetscInt64 *keys; /* owned */
   uint32_t sum;     /* of the checksums of all records */
@@ -91,7 +88,7 @@ static PetscErrorCode ReadExisting(LamRecordWriter w, hid_t file, const char kin
   PetscFunctionBeginUser;
   ierr = CheckSame(w->path, file, kind, scene, &header);
   if (!ierr) ierr = CheckType(w->path, file);
-  if (!ierr) ierr = LamFileReadRoom(w->path, file, &w->room);
+  if (!ierr) ierr = LamFileReadExtent(w->path, file, &w->extent);
   w->n = w->capacity = header.committed;
   if (!ierr) ierr = PetscMalloc1(w->n + 1, &w->keys);
   if (!ierr) ierr = LamFileScanRecords(w->path, file, w->n, KeepBlockKeys, w);
@@ -194,22 +191,6 @@ static PetscErrorCode Append(const char path[], hid_t dataset, hsize_t before, P
   PetscFunctionReturn(0);
 }
 
-/* Files of earlier versions have no checksums of the counter, and get none: it has to be written by one call. */
-PetscErrorCode LamCounterWrite(const char path[], hid_t dataset, PetscInt committed, uint32_t records_sum)
-{
-  const PetscInt64 count = committed;
-  const uint32_t sum = LamBytesSum(0, &count, sizeof(count));
-  PetscBool has;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamAttributeUpdate(path, dataset, "committed", H5T_NATIVE_INT64, &count));
-  PetscCall(LamAttributeHas(path, dataset, LAM_COUNTER_SUM, &has));
-  if (has) PetscCall(LamAttributeUpdate(path, dataset, LAM_COUNTER_SUM, H5T_NATIVE_UINT32, &sum));
-  PetscCall(LamAttributeHas(path, dataset, LAM_RECORDS_SUM, &has));
-  if (has) PetscCall(LamAttributeUpdate(path, dataset, LAM_RECORDS_SUM, H5T_NATIVE_UINT32, &records_sum));
-  PetscFunctionReturn(0);
-}
-
 /* Someone may have put another file in the place of ours. */
 static PetscErrorCode CheckCounter(LamRecordWriter w, const char path[], hid_t dataset)
 {
@@ -242,26 +223,6 @@ static PetscErrorCode AppendAndCount(LamRecordWriter w, const char path[], hid_t
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dclose(dataset));
   PetscCall(LamFileSync(path, file));
   w->sum = sum;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamFilePublish(const char temporary[], const char path[])
-{
-  const int fd = open(temporary, O_RDONLY | O_CLOEXEC);
-  const PetscBool synced = (PetscBool)(fd >= 0 && !LamWholeSync(fd));
-  char copy[PETSC_MAX_PATH_LEN];
-  int error = errno, directory;
-
-  PetscFunctionBeginUser;
-  if (fd >= 0) close(fd);
-  PetscCheck(synced, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s: %s", temporary, strerror(error));
-  PetscCheck(!rename(temporary, path), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s: %s", path, strerror(errno));
-  PetscCall(PetscStrncpy(copy, path, sizeof(copy)));
-  directory = open(dirname(copy), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (directory >= 0) {
-    LamWholeSync(directory); /* some file systems cannot; the file itself is on the disk */
-    close(directory);
-  }
   PetscFunctionReturn(0);
 }
 
@@ -319,7 +280,8 @@ PetscErrorCode LamRecordWriterCommit(LamRecordWriter writer, PetscInt n, const P
   PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
-  PetscCall(LamFileMakeRoom(writer->published ? writer->path : NULL, writer->temporary, writer->n + n, &writer->room));
+  PetscCall(
+      LamFilePreallocate(writer->published ? writer->path : NULL, writer->temporary, writer->n + n, &writer->extent));
   LamLockBeginCommit(&writer->lock);
   ierr = CommitLocked(writer, n, keys, responses);
   LamLockEndCommit(&writer->lock);

@@ -8,7 +8,6 @@
 */
 #include "record_merge.h"
 #include <errno.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,18 +15,6 @@
 #include <unistd.h>
 
 #define SHARDS_NAME "/merged" /* the files, one a line */
-
-void LamMergeTell(const LamMerge *m, const char format[], ...)
-{
-  char words[1024];
-  va_list arguments;
-
-  if (!m->options->tell) return;
-  va_start(arguments, format);
-  vsnprintf(words, sizeof(words), format, arguments);
-  va_end(arguments);
-  m->options->tell(words);
-}
 
 static PetscBool IsStopped(const LamMerge *m)
 {
@@ -110,7 +97,7 @@ static PetscErrorCode TakeSoundChunks(Salvage *s, PetscInt count)
   PetscFunctionReturn(0);
 }
 
-/* Without a counter all that there is room for is read; what is not sound may never have been committed. */
+/* Without a counter all that space is allocated for is read; what is not sound may never have been committed. */
 static PetscErrorCode TakeSound(LamMerge *m, const char path[], hid_t file)
 {
   Salvage s = {.merge = m, .path = path};
@@ -122,7 +109,7 @@ static PetscErrorCode TakeSound(LamMerge *m, const char path[], hid_t file)
   s.counted = (PetscBool)!LamCommittedRead(path, file, &count);
   PetscCall(PetscPopErrorHandler());
   PetscCall(LamRecordScanOpen(path, file, &s.scan));
-  if (!s.counted) count = LamRecordScanRoom(&s.scan, file);
+  if (!s.counted) count = LamRecordScanExtent(&s.scan, file);
   ierr = TakeSoundChunks(&s, count);
   LamRecordScanClose(&s.scan);
   PetscCall(ierr);

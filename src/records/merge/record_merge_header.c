@@ -2,8 +2,21 @@
   What a merged database is of: the headers of its sources.
 */
 #include "record_merge.h"
-#include <string.h>
+#include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
+
+void LamMergeTell(const LamMerge *m, const char format[], ...)
+{
+  char words[1024];
+  va_list arguments;
+
+  if (!m->options->tell) return;
+  va_start(arguments, format);
+  vsnprintf(words, sizeof(words), format, arguments);
+  va_end(arguments);
+  m->options->tell(words);
+}
 
 PetscErrorCode LamMergeCheckHash(const LamMerge *m, const char path[], const char hash[])
 {

@@ -1,34 +1,27 @@
 /*
-  Room for records.
+  Preallocation of records.
 
   Method
     HDF5 changes its index of chunks and the end of the file in several writes, between which the file cannot be read.
-  So no file that has its name is ever extended: a copy gets the room, is brought to the disk and takes the name. What
-  is left for a commit are writes over bytes that are there, none of which can harm what was committed. Half as much
-    again at a time: all copies of a file that grows amount to some three times its size.
+  So a file that has its name is never extended: a copy is, and is synced and renamed. A commit then only writes over
+    bytes that are allocated already, which cannot harm what is committed. Each time the space grows by half: all copies
+    of a file that grows amount to three times its size.
 */
 #include "record_internal.h"
-#include <errno.h>
-#include <fcntl.h>
-#include <stdio.h>
-#include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
-enum { COPY_BYTES = 1 << 20 };
-
-PetscErrorCode LamFileReadRoom(const char path[], hid_t file, PetscInt *room)
+PetscErrorCode LamFileReadExtent(const char path[], hid_t file, PetscInt *extent)
 {
   hid_t dataset, space;
-  hssize_t extent;
+  hssize_t n;
 
   PetscFunctionBeginUser;
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, dataset = H5Dopen2(file, "/records", H5P_DEFAULT));
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, space = H5Dget_space(dataset));
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, extent = H5Sget_simple_extent_npoints(space));
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, n = H5Sget_simple_extent_npoints(space));
   LamCallHDF5(path, PETSC_ERR_LIB, H5Sclose(space));
   LamCallHDF5(path, PETSC_ERR_LIB, H5Dclose(dataset));
-  *room = (PetscInt)extent;
+  *extent = (PetscInt)n;
   PetscFunctionReturn(0);
 }
 
@@ -56,9 +49,9 @@ static PetscErrorCode TouchChunks(const char path[], hid_t dataset, hsize_t befo
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Extend(const char path[], hid_t file, PetscInt before, PetscInt room)
+static PetscErrorCode Extend(const char path[], hid_t file, PetscInt before, PetscInt wanted)
 {
-  const hsize_t extent = (hsize_t)room, chunk = LAM_RECORDS_PER_CHUNK;
+  const hsize_t extent = (hsize_t)wanted, chunk = LAM_RECORDS_PER_CHUNK;
   const hsize_t first = ((hsize_t)before + chunk - 1) / chunk * chunk; /* before it is a chunk that is there */
   hid_t dataset;
 
@@ -71,15 +64,15 @@ static PetscErrorCode Extend(const char path[], hid_t file, PetscInt before, Pet
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ExtendFile(const char path[], PetscInt before, PetscInt room)
+static PetscErrorCode ExtendFile(const char path[], PetscInt before, PetscInt wanted)
 {
   PetscErrorCode ierr;
   hid_t file;
 
   PetscFunctionBeginUser;
-  PetscCall(LamFileReserve(path, PETSC_FALSE, (size_t)(room - before + LAM_RECORDS_PER_CHUNK) * LAM_RECORD_BYTES));
+  PetscCall(LamFileReserve(path, PETSC_FALSE, (size_t)(wanted - before + LAM_RECORDS_PER_CHUNK) * LAM_RECORD_BYTES));
   PetscCall(LamFileOpenWrite(path, &file));
-  ierr = Extend(path, file, before, room);
+  ierr = Extend(path, file, before, wanted);
   if (ierr) H5Fclose(file);
   PetscCall(ierr);
   PetscCall(LamFileClose(path, file));
@@ -88,63 +81,22 @@ static PetscErrorCode ExtendFile(const char path[], PetscInt before, PetscInt ro
 
 /* ---- in a copy ---- */
 
-int LamWriteBytes(int fd, const void *bytes, size_t n)
-{
-  ssize_t part;
-
-  for (size_t done = 0; done < n; done += (size_t)part) {
-    part = write(fd, (const char *)bytes + done, n - done);
-    if (part < 0 && errno != EINTR) return errno;
-    part = PetscMax(part, 0);
-  }
-  return 0;
-}
-
-/* 0, or the reason as errno has it. */
-static int CopyBytes(int in, int out, char bytes[COPY_BYTES])
-{
-  int error = 0;
-  ssize_t n;
-
-  while (!error && (n = read(in, bytes, COPY_BYTES)) > 0) error = LamWriteBytes(out, bytes, (size_t)n);
-  return error || !n ? error : errno;
-}
-
-PetscErrorCode LamFileCopy(const char from[], const char to[])
-{
-  const int in = open(from, O_RDONLY | O_CLOEXEC);
-  int out, error;
-  struct stat info;
-  char *bytes;
-
-  PetscFunctionBeginUser;
-  PetscCheck(in >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: %s", from, strerror(errno));
-  PetscCall(PetscMalloc1(COPY_BYTES, &bytes));
-  out = open(to, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  error = out < 0 || fstat(in, &info) || fchmod(out, info.st_mode & 07777) ? errno : CopyBytes(in, out, bytes);
-  close(in);
-  if (out >= 0) close(out);
-  PetscCall(PetscFree(bytes));
-  PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s: %s", to, strerror(error));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ExtendCopy(const char path[], const char temporary[], PetscInt before, PetscInt room)
+static PetscErrorCode ExtendCopy(const char path[], const char temporary[], PetscInt before, PetscInt wanted)
 {
   PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
   ierr = LamFileCopy(path, temporary);
-  if (!ierr) ierr = ExtendFile(temporary, before, room);
+  if (!ierr) ierr = ExtendFile(temporary, before, wanted);
   if (!ierr) ierr = LamFilePublish(temporary, path);
   if (ierr) unlink(temporary);
   PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamFileMakeRoom(const char path[], const char temporary[], PetscInt records, PetscInt *room)
+PetscErrorCode LamFilePreallocate(const char path[], const char temporary[], PetscInt records, PetscInt *extent)
 {
-  const PetscInt chunk = LAM_RECORDS_PER_CHUNK, before = *room;
+  const PetscInt chunk = LAM_RECORDS_PER_CHUNK, before = *extent;
   PetscInt wanted;
 
   PetscFunctionBeginUser;
@@ -154,6 +106,6 @@ PetscErrorCode LamFileMakeRoom(const char path[], const char temporary[], PetscI
     PetscCall(ExtendCopy(path, temporary, before, wanted));
   else
     PetscCall(ExtendFile(temporary, before, wanted));
-  *room = wanted;
+  *extent = wanted;
   PetscFunctionReturn(0);
 }
