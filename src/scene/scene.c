@@ -24,60 +24,42 @@ PetscErrorCode LamSceneDestroy(LamScene **scene)
   PetscFunctionReturn(0);
 }
 
-/* libfyaml 0.7 never returns from a directive that is no UTF-8. */
-static PetscErrorCode CheckCharacters(const char name[], const char text[])
-{
-  int line = 1, column = 1;
-
-  PetscFunctionBeginUser;
-  for (const unsigned char *c = (const unsigned char *)text; *c;) {
-    const size_t length = LamCharacterLength(c);
-
-    PetscCheck(length, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "%.200s:%d:%d: byte 0x%02x is no UTF-8; save the scene in that encoding", name, line, column, *c);
-    column++;
-    if (*c == '\n') {
-      line++;
-      column = 1;
-    }
-    c += length;
-  }
-  PetscFunctionReturn(0);
-}
-
-/* Bytes that text has not; libfyaml would complain about them less clearly. */
+/* Bytes that text has not: libfyaml complains about them less clearly, and never returns from a directive that is no
+   UTF-8. */
 static PetscErrorCode CheckText(const char name[], const char text[], size_t length)
 {
+  int line = 1, column = 1;
+  size_t step;
+
   PetscFunctionBeginUser;
   PetscCheck(length <= MAX_FILE_SIZE, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%.200s: larger than %d kB; a scene is a short YAML file", name, (int)MAX_FILE_SIZE / 1024);
   for (size_t i = 0; i < length; i++) {
     const unsigned char c = (unsigned char)text[i];
+
     PetscCheck((c >= 0x20 && c != 0x7F) || c == '\t' || c == '\n' || c == '\r', PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                "%.200s: byte %d is 0x%02x, which no text has; a scene is a YAML file", name, (int)i, c);
   }
-  PetscCall(CheckCharacters(name, text));
+  for (const unsigned char *c = (const unsigned char *)text; *c; c += step) {
+    step = LamCharacterLength(c);
+    PetscCheck(step, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "%.200s:%d:%d: byte 0x%02x is no UTF-8; save the scene in that encoding", name, line, column, *c);
+    line += *c == '\n';
+    column = *c == '\n' ? 1 : column + 1;
+  }
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode SceneBuild(LamDocument *document, LamScene *scene)
 {
-  const LamNode *root;
+  static PetscErrorCode (*const parts[])(const LamNode *, LamScene *) = {
+      LamSceneBuildRVE,     LamSceneBuildStrength, LamSceneBuildLoad,  LamSceneBuildSample, LamSceneBuildMacro,
+      LamSceneBuildRegions, LamSceneBuildResponse, LamSceneCheckPatch, LamSceneBuildMap,    LamSceneBuildProcess};
 
   PetscFunctionBeginUser;
   PetscCall(LamDocumentParse(document->name, document->text, document));
   PetscCall(LamSceneCheckKeys(document));
-  root = document->root;
-  PetscCall(LamSceneBuildRVE(root, scene));
-  PetscCall(LamSceneBuildStrength(root, scene));
-  PetscCall(LamSceneBuildLoad(root, scene));
-  PetscCall(LamSceneBuildSample(root, scene));
-  PetscCall(LamSceneBuildMacro(root, scene));
-  PetscCall(LamSceneBuildRegions(root, scene));
-  PetscCall(LamSceneBuildResponse(root, scene));
-  PetscCall(LamSceneCheckPatch(root, scene));
-  PetscCall(LamSceneBuildMap(root, scene));
-  PetscCall(LamSceneBuildProcess(root, scene));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(parts); i++) PetscCall(parts[i](document->root, scene));
   PetscFunctionReturn(0);
 }
 
@@ -103,45 +85,37 @@ PetscErrorCode LamSceneReadText(const char name[], const char text[], LamScene *
   PetscFunctionReturn(0);
 }
 
-/* Reads a stream that may be a pipe; at most one byte more than a scene may have. *error is an errno. */
-static size_t ReadStream(FILE *stream, char buffer[MAX_FILE_SIZE + 2], int *error)
-{
-  size_t length;
-
-  errno = 0;
-  length = fread(buffer, 1, MAX_FILE_SIZE + 1, stream);
-  *error = ferror(stream) ? (errno ? errno : EIO) : 0;
-  buffer[length] = '\0';
-  return length;
-}
-
-static PetscErrorCode ReadBuffer(const char path[], char buffer[MAX_FILE_SIZE + 2], LamScene **scene)
+/* Reads a stream, which may be a pipe; at most one byte more than a scene may have. */
+static PetscErrorCode ReadStream(const char path[], char buffer[MAX_FILE_SIZE + 2], size_t *length)
 {
   FILE *stream = fopen(path, "rb");
-  size_t length;
   int error;
 
   PetscFunctionBeginUser;
   PetscCheck(stream, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%.200s: the scene cannot be opened: %s", path,
              strerror(errno));
-  length = ReadStream(stream, buffer, &error);
+  errno = 0;
+  *length = fread(buffer, 1, MAX_FILE_SIZE + 1, stream);
+  error = ferror(stream) ? (errno ? errno : EIO) : 0;
+  buffer[*length] = '\0';
   fclose(stream);
   PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%.200s: the scene cannot be read: %s", path,
              strerror(error));
-  PetscCall(CheckText(path, buffer, length));
-  PetscCall(LamSceneReadText(path, buffer, scene));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamSceneRead(const char path[], LamScene **scene)
 {
+  size_t length;
   char *buffer;
   PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
   *scene = NULL;
   PetscCall(PetscMalloc1(MAX_FILE_SIZE + 2, &buffer));
-  ierr = ReadBuffer(path, buffer, scene);
+  ierr = ReadStream(path, buffer, &length);
+  if (!ierr) ierr = CheckText(path, buffer, length);
+  if (!ierr) ierr = LamSceneReadText(path, buffer, scene);
   PetscCall(PetscFree(buffer));
   PetscCall(ierr);
   PetscFunctionReturn(0);

@@ -361,24 +361,6 @@ static PetscBool IsHeldByNeighbour(const LamMicrostructure *micro, PetscInt cell
   return PETSC_FALSE;
 }
 
-/* Cells at the sides whose interfaces have no cohesion. */
-static PetscErrorCode CheckSideCells(const LamNode *variation, const LamMicrostructure *micro)
-{
-  const PetscInt columns = micro->cells[0], rows = micro->cells[1];
-
-  PetscFunctionBeginUser;
-  for (PetscInt row = 1; micro->cell && row < rows - 1; row++)
-    for (PetscInt side = 0; side < 2; side++) {
-      const PetscInt column = side ? columns - 1 : 0;
-
-      LamSceneCheckName(IsHeldByNeighbour(micro, column * rows + row), variation,
-                        "cell (%d, %d) at a free side has no cohesion with any neighbour, and they push it out; give "
-                        "it some, or write sides: affine",
-                        (int)column, (int)row);
-    }
-  PetscFunctionReturn(0);
-}
-
 PetscBool LamSceneNeedsCohesion(const LamMicrostructure *micro)
 {
   /* of two rows every cell is held by a grip */
@@ -386,11 +368,12 @@ PetscBool LamSceneNeedsCohesion(const LamMicrostructure *micro)
                      micro->cells[1] > 2);
 }
 
-PetscErrorCode LamSceneCheckPatch(const LamNode *root, const LamScene *scene)
+PetscErrorCode LamSceneCheckPatch(const LamNode *root, LamScene *scene)
 {
   static const char *const others[] = {"sample", "macro"};
   const LamMicrostructure *micro = &scene->micro;
   const LamNode *loads = LamNodeFind(root, "load"), *patch = LamNodeFind(root, "rve.patch");
+  const PetscInt columns = micro->cells[0], rows = micro->cells[1];
 
   PetscFunctionBeginUser;
   if (!micro->is_patch) PetscFunctionReturn(0);
@@ -409,6 +392,11 @@ PetscErrorCode LamSceneCheckPatch(const LamNode *root, const LamScene *scene)
 
     PetscCall(CheckHold(root, node, node ? node->value.number[0] : scene->cohesion));
   }
-  PetscCall(CheckSideCells(LamNodeFind(root, "rve.variation"), micro));
+  for (PetscInt row = 1; micro->cell && row < rows - 1; row++)
+    for (PetscInt column = 0; column < columns; column += PetscMax(columns - 1, 1))
+      LamSceneCheckName(IsHeldByNeighbour(micro, column * rows + row), LamNodeFind(root, "rve.variation"),
+                        "cell (%d, %d) at a free side has no cohesion with any neighbour, and they push it out; give "
+                        "it some, or write sides: affine",
+                        (int)column, (int)row);
   PetscFunctionReturn(0);
 }

@@ -73,75 +73,75 @@ static PetscErrorCode StoreReal(const LamNode *node, const LamKey *key, const La
 static PetscErrorCode StoreText(const LamNode *node, const LamKey *key, char text[])
 {
   PetscFunctionBeginUser;
-  if (key->type == LAM_KEY_PATH) {
-    PetscCall(LamSceneResolvePath(node, text));
-    PetscFunctionReturn(0);
-  }
   LamSceneCheck(strlen(node->text) < key->room, node, "is too long; names have less than %d letters", (int)key->room);
-  PetscCall(PetscStrncpy(text, node->text, key->room));
+  if (key->type == LAM_KEY_PATH)
+    PetscCall(LamSceneResolvePath(node, text));
+  else
+    PetscCall(PetscStrncpy(text, node->text, key->room));
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode Store(const LamNode *node, const LamKey *key, const LamValue *value, const LamScales *scales,
                             char *target)
 {
+  const PetscBool is_enum =
+      (PetscBool)(key->type == LAM_KEY_NAME || key->type == LAM_KEY_BOOL); /* a PetscBool is one */
+  const size_t size = is_enum ? sizeof(int) : key->type == LAM_KEY_INTEGER ? sizeof(PetscInt) : sizeof(PetscReal);
   void *place = target + key->offset;
-  size_t size = sizeof(int); /* of an enumeration, or of a PetscBool, which is one */
 
   PetscFunctionBeginUser;
   if (key->type == LAM_KEY_TEXT || key->type == LAM_KEY_PATH) {
     PetscCall(StoreText(node, key, place));
     PetscFunctionReturn(0);
   }
-  for (PetscInt c = 0; c < value->count; c++) {
-    if (key->type == LAM_KEY_INTEGER) {
-      size = sizeof(PetscInt);
-      ((PetscInt *)place)[c] = (PetscInt)value->number[c];
-    } else if (key->type == LAM_KEY_NAME || key->type == LAM_KEY_BOOL) {
-      ((int *)place)[c] = (int)value->number[c];
-    } else {
-      size = sizeof(PetscReal);
-      PetscCall(StoreReal(node, key, scales, value->number[c], (PetscReal *)place + c));
-    }
-    if (key->given) ((PetscBool *)(target + key->given))[c] = (PetscBool)!value->is_free[c];
-  }
   PetscCheck(key->room == (size_t)value->count * size, PETSC_COMM_SELF, PETSC_ERR_PLIB, "%s does not fit its member",
              key->path);
+  for (PetscInt c = 0; c < value->count; c++) {
+    if (is_enum)
+      ((int *)place)[c] = (int)value->number[c];
+    else if (key->type == LAM_KEY_INTEGER)
+      ((PetscInt *)place)[c] = (PetscInt)value->number[c];
+    else
+      PetscCall(StoreReal(node, key, scales, value->number[c], (PetscReal *)place + c));
+    if (key->given) ((PetscBool *)(target + key->given))[c] = (PetscBool)!value->is_free[c];
+  }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamSceneFillRecord(const LamNode *base, const LamScales *scales, const char record[], void *target)
+static PetscErrorCode GetValue(const LamNode *base, const LamKey *key, const LamNode **node, LamValue *value)
 {
   const size_t skip = strlen(base->key->path);
-  const LamKey *key;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; (key = LamKeyAt(i)); i++) {
-    const LamNode *node;
-    LamValue value = {0};
-
-    if (!key->record || strcmp(key->record, record) || strncmp(key->path, base->key->path, skip)) continue;
-    node = LamNodeFind(base, key->path + skip + (skip ? 1 : 0));
-    if (node)
-      value = node->value;
-    else if (key->default_value)
-      PetscCall(ReadDefault(key, &value));
-    if (value.count) PetscCall(Store(node, key, &value, scales, target));
-  }
+  *value = (LamValue){0};
+  *node = LamNodeFind(base, key->path + skip + (skip ? 1 : 0));
+  if (*node)
+    *value = (*node)->value;
+  else if (key->default_value)
+    PetscCall(ReadDefault(key, value));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamSceneGet(const LamNode *base, const char path[], const LamNode **node, LamValue *value)
 {
-  const LamKey *key = LamKeyFind(path);
-  const size_t skip = strlen(base->key->path);
+  PetscFunctionBeginUser;
+  PetscCall(GetValue(base, LamKeyFind(path), node, value));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSceneFillRecord(const LamNode *base, const LamScales *scales, const char record[], void *target)
+{
+  const char *path = base->key->path;
+  const LamKey *key;
 
   PetscFunctionBeginUser;
-  *value = (LamValue){0};
-  *node = LamNodeFind(base, path + skip + (skip ? 1 : 0));
-  if (*node)
-    *value = (*node)->value;
-  else if (key->default_value)
-    PetscCall(ReadDefault(key, value));
+  for (PetscInt i = 0; (key = LamKeyAt(i)); i++) {
+    const LamNode *node;
+    LamValue value;
+
+    if (!key->record || strcmp(key->record, record) || strncmp(key->path, path, strlen(path))) continue;
+    PetscCall(GetValue(base, key, &node, &value));
+    if (value.count) PetscCall(Store(node, key, &value, scales, target));
+  }
   PetscFunctionReturn(0);
 }

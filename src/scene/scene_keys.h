@@ -134,7 +134,7 @@ PetscErrorCode LamSceneCheckClearance(const LamNode *node, const LamScales *scal
 /* Whether nothing but a cohesion holds cells of the tissue: those at the free sides of a patch in contact. */
 PetscBool LamSceneNeedsCohesion(const LamMicrostructure *micro);
 /* What a patch allows in the rest of a scene that is built. */
-PetscErrorCode LamSceneCheckPatch(const LamNode *root, const LamScene *scene);
+PetscErrorCode LamSceneCheckPatch(const LamNode *root, LamScene *scene);
 /*
   The wall at <prefix>.law, <prefix>.C1, ..., moduli over `stress` (Pa). What is not given is that of `own`, its bulk
   modulus in proportion to C1 + C2; NULL: as the table of keys says.

@@ -109,17 +109,22 @@ static PetscErrorCode BuildMesh(const LamNode *mesh, LamScene *scene)
 
 /* ---- load program ---- */
 
-static PetscErrorCode BuildLegs(const LamNode *list, LamMacroSpec *spec)
+static PetscErrorCode BuildProgram(const LamNode *block, LamMacroSpec *spec)
 {
-  const LamNode *repeat_node;
-  PetscReal from = 0;
-  LamValue repeat;
+  const LamNode *list = LamNodeFind(block, "program"), *steps = LamNodeFind(block, "steps"), *repeat;
+  PetscReal from = 0, total = 0;
+  LamValue times;
 
   PetscFunctionBeginUser;
-  PetscCall(LamSceneGet(list->document->root, "macro.repeat", &repeat_node, &repeat));
+  PetscCall(LamSceneGet(block, "macro.repeat", &repeat, &times));
+  LamSceneCheckName(!list || !steps, steps,
+                    "stands beside program, whose parts have their own steps; leave one of them out");
+  LamSceneCheckName(list || !repeat, repeat,
+                    "repeats a program, but there is none; write one, such as program: [{to: 1, steps: 10}, {to: 0, "
+                    "steps: 10}]");
+  if (!list) PetscFunctionReturn(0);
   LamSceneCheckName(list->count <= LAM_MAX_LEGS, list, "has %d ramps; at most %d are allowed", (int)list->count,
                     LAM_MAX_LEGS);
-  spec->steps = 0;
   for (const LamNode *item = list->first; item; item = item->next) {
     LamLeg *leg = &spec->legs[spec->leg_count++];
 
@@ -127,26 +132,11 @@ static PetscErrorCode BuildLegs(const LamNode *list, LamMacroSpec *spec)
     LamSceneCheck(leg->to != from, LamNodeFind(item, "to"),
                   "is where the parameter is already; write another one, or leave the ramp out");
     from = leg->to;
-    spec->steps += leg->steps;
+    total += times.number[0] * leg->steps;
   }
-  LamSceneCheckName(repeat.number[0] * spec->steps <= MAX_STEPS, repeat_node ? repeat_node : list,
-                    "gives %g steps; at most %d are allowed", (double)(repeat.number[0] * spec->steps), (int)MAX_STEPS);
-  spec->steps *= (PetscInt)repeat.number[0];
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode BuildProgram(const LamNode *block, LamMacroSpec *spec)
-{
-  const LamNode *list = LamNodeFind(block, "program"), *steps = LamNodeFind(block, "steps");
-  const LamNode *repeat = LamNodeFind(block, "repeat");
-
-  PetscFunctionBeginUser;
-  LamSceneCheckName(!list || !steps, steps,
-                    "stands beside program, whose parts have their own steps; leave one of them out");
-  LamSceneCheckName(list || !repeat, repeat,
-                    "repeats a program, but there is none; write one, such as program: [{to: 1, steps: 10}, {to: 0, "
-                    "steps: 10}]");
-  if (list) PetscCall(BuildLegs(list, spec));
+  LamSceneCheckName(total <= MAX_STEPS, repeat ? repeat : list, "gives %g steps; at most %d are allowed", (double)total,
+                    (int)MAX_STEPS);
+  spec->steps = (PetscInt)total;
   PetscFunctionReturn(0);
 }
 
@@ -221,23 +211,9 @@ static PetscErrorCode CheckInflation(const LamNode *block, const LamScene *scene
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BuildZoom(const LamNode *list, LamScene *scene)
-{
-  PetscFunctionBeginUser;
-  if (!list) PetscFunctionReturn(0);
-  LamSceneCheck(list->count <= LAM_MAX_ZOOMS, list, "has more than %d places; leave some out", LAM_MAX_ZOOMS);
-  for (const LamNode *item = list->first; item; item = item->next) {
-    PetscReal *place = scene->macro.zoom[scene->macro.zoom_count++];
-
-    for (int i = 0; i < 2; i++)
-      PetscCall(LamSceneDivide(item, item->value.number[i], scene->scales.macro_length, &place[i]));
-  }
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode LamSceneBuildMacro(const LamNode *root, LamScene *scene)
 {
-  const LamNode *block = LamNodeFind(root, "macro");
+  const LamNode *block = LamNodeFind(root, "macro"), *zoom = LamNodeFind(block, "zoom");
   LamMacroSpec *spec = &scene->macro;
 
   PetscFunctionBeginUser;
@@ -251,6 +227,10 @@ PetscErrorCode LamSceneBuildMacro(const LamNode *root, LamScene *scene)
   PetscCall(LamSceneBuildBoundaries(root, scene));
   PetscCall(BuildProgram(block, spec));
   PetscCall(BuildControl(LamNodeFind(block, "control"), scene));
-  PetscCall(BuildZoom(LamNodeFind(block, "zoom"), scene));
+  LamSceneCheck(!zoom || zoom->count <= LAM_MAX_ZOOMS, zoom, "has more than %d places; leave some out", LAM_MAX_ZOOMS);
+  for (const LamNode *item = zoom ? zoom->first : NULL; item; item = item->next, spec->zoom_count++)
+    for (int i = 0; i < 2; i++)
+      PetscCall(
+          LamSceneDivide(item, item->value.number[i], scene->scales.macro_length, &spec->zoom[spec->zoom_count][i]));
   PetscFunctionReturn(0);
 }

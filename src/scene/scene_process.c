@@ -281,20 +281,15 @@ static const struct {
 
 static PetscErrorCode CheckUses(const LamNode *entry, LamKineticLaw law)
 {
-  const LamNode *deactivation = LamNodeFind(entry, "deactivation"), *half = LamNodeFind(entry, "half_activity");
+  const char *name = LamKineticLawNames[law];
 
   PetscFunctionBeginUser;
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(uses); k++)
     LamSceneRequire(!(uses[k].need & (1u << law)) || LamNodeFind(entry, uses[k].key), entry, uses[k].key,
-                    "missing; law: %s needs it", LamKineticLawNames[law]);
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(uses); k++) {
-    const LamNode *node = LamNodeFind(entry, uses[k].key);
-
-    LamSceneCheckName(!node || (uses[k].have & (1u << law)), node, "law: %s has no use for it; leave it out",
-                      LamKineticLawNames[law]);
-  }
-  LamSceneRequire(!deactivation || half, entry, "half_activity", "missing; deactivation needs it");
-  LamSceneRequire(!half || deactivation, entry, "deactivation", "missing; half_activity needs it");
+                    "missing; law: %s needs it", name);
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(uses); k++)
+    LamSceneCheckName(!LamNodeFind(entry, uses[k].key) || (uses[k].have & (1u << law)), LamNodeFind(entry, uses[k].key),
+                      "law: %s has no use for it; leave it out", name);
   PetscFunctionReturn(0);
 }
 
@@ -326,12 +321,15 @@ static PetscErrorCode ReadTable(const LamNode *entry, LamKinetics *kinetics)
 
 static PetscErrorCode ReadKinetics(const LamNode *entry, LamKinetics *kinetics)
 {
+  const LamNode *deactivation = LamNodeFind(entry, "deactivation"), *half = LamNodeFind(entry, "half_activity");
   LamRate *rate = &kinetics->rate, *second = &kinetics->second;
 
   PetscFunctionBeginUser;
   rate->half_activity = ROOM_TEMPERATURE;
   PetscCall(LamSceneFill(entry, NULL, LamKinetics, kinetics));
   PetscCall(CheckUses(entry, kinetics->law));
+  LamSceneRequire(!deactivation || half, entry, "half_activity", "missing; deactivation needs it");
+  LamSceneRequire(!half || deactivation, entry, "deactivation", "missing; half_activity needs it");
   if (!LamNodeFind(entry, "second_activation")) second->activation = rate->activation;
   second->reference = rate->reference;
   second->deactivation = rate->deactivation;

@@ -112,29 +112,23 @@ static PetscErrorCode BuildScales(const LamNode *entry, const LamScene *scene, L
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CheckCell(const LamNode *entry, const LamRegion *r)
+static PetscErrorCode CheckTissue(const LamNode *entry, LamRegion *r)
 {
-  const LamNode *thickness = LamNodeFind(entry, "cell.wall_thickness");
+  const LamNode *apothem = LamNodeFind(entry, "cell.apothem"), *thickness = LamNodeFind(entry, "cell.wall_thickness");
+  const LamNode *cohesion = LamNodeFind(entry, "interface.cohesion");
+  const LamNode *clearance = LamNodeFind(entry, "interface.clearance"), *turgor = LamNodeFind(entry, "turgor.pressure");
 
   PetscFunctionBeginUser;
-  LamSceneCheck(r->micro.wall_thickness < 1.0, thickness ? thickness : LamNodeFind(entry, "cell.apothem"),
+  LamSceneCheck(r->micro.wall_thickness < 1.0, thickness ? thickness : apothem,
                 "the wall, %g um, fills the cell; write a thickness less than the apothem",
                 (double)(r->micro.wall_thickness * r->scales.length) * 1e6);
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode CheckInterface(const LamNode *entry, LamRegion *r)
-{
-  const LamNode *cohesion = LamNodeFind(entry, "interface.cohesion");
-  const LamNode *clearance = LamNodeFind(entry, "interface.clearance");
-
-  PetscFunctionBeginUser;
   if (r->micro.interface == LAM_INTERFACE_BONDED) {
     LamSceneCheck(!cohesion || !(r->cohesion > 0), cohesion, LAM_BONDED_PARTS);
     LamSceneCheck(!clearance || !(r->micro.clearance > 0), clearance, LAM_BONDED_PARTS);
     r->cohesion = r->micro.clearance = 0;
   }
   PetscCall(LamSceneCheckClearance(clearance ? clearance : entry, &r->scales, &r->micro));
+  if (turgor) PetscCall(LamSceneCheckTurgor(turgor, turgor->value.number[0]));
   PetscFunctionReturn(0);
 }
 
@@ -158,7 +152,6 @@ static PetscErrorCode CheckVariation(const LamNode *entry, const LamScene *scene
 static PetscErrorCode BuildTissue(const LamNode *entry, const LamScene *scene, LamRegion *r)
 {
   const LamScales *own = &scene->scales, *scales = &r->scales;
-  const LamNode *turgor = LamNodeFind(entry, "turgor.pressure");
   LamMicrostructure *micro = &r->micro;
 
   PetscFunctionBeginUser;
@@ -170,9 +163,7 @@ static PetscErrorCode BuildTissue(const LamNode *entry, const LamScene *scene, L
   r->cohesion = scene->cohesion * own->stress / scales->stress;
   r->turgor = scene->turgor * own->stress / scales->stress;
   PetscCall(LamSceneFill(entry, scales, LamRegion, r));
-  PetscCall(CheckCell(entry, r));
-  PetscCall(CheckInterface(entry, r));
-  if (turgor) PetscCall(LamSceneCheckTurgor(turgor, turgor->value.number[0]));
+  PetscCall(CheckTissue(entry, r));
   if (micro->along && micro->grading < 0.0) micro->grading = 0.0;
   PetscFunctionReturn(0);
 }
@@ -212,47 +203,22 @@ static PetscErrorCode BuildPlace(const LamNode *entry, const LamScene *scene, La
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BuildAllRegions(const LamNode *list, LamScene *scene)
-{
-  PetscFunctionBeginUser;
-  LamSceneCheck(list->count <= LAM_MAX_REGIONS, list, "has %d regions; at most %d can be told apart", (int)list->count,
-                (int)LAM_MAX_REGIONS);
-  PetscCall(PetscCalloc1(LAM_MAX_REGIONS, &scene->regions));
-  for (const LamNode *entry = list->first; entry; entry = entry->next) {
-    LamRegion *region = &scene->regions[scene->region_count];
-
-    PetscCall(BuildPlace(entry, scene, region));
-    scene->region_count++;
-    PetscCall(BuildTissue(entry, scene, region));
-  }
-  PetscFunctionReturn(0);
-}
-
 /* ---- fields ---- */
-
-static PetscErrorCode ReadUnit(const LamNode *node, LamDimension dimension, PetscReal *si)
-{
-  char one[80], reason[LAM_REASON_LENGTH];
-
-  PetscFunctionBeginUser;
-  snprintf(one, sizeof(one), "1 %.70s", node->text);
-  PetscCall(LamQuantityRead(one, dimension, si, reason));
-  LamSceneCheck(!reason[0], node, "%s; write the unit of a %s alone", reason, LamDimensionNames[dimension]);
-  PetscFunctionReturn(0);
-}
 
 static PetscErrorCode BuildField(const LamNode *block, LamTissueField which, LamScene *scene)
 {
   static const LamDimension dimensions[] = {LAM_DIMENSION_ANGLE, LAM_DIMENSION_STRESS, LAM_DIMENSION_STRESS,
                                             LAM_DIMENSION_LENGTH};
   const LamNode *expression = LamNodeFind(block, "expression"), *table = LamNodeFind(block, "table");
-  const LamNode *field = expression ? expression : table;
+  const LamNode *field = expression ? expression : table, *unit = LamNodeFind(block, "unit");
+  char one[80], reason[LAM_REASON_LENGTH];
 
   PetscFunctionBeginUser;
-  if (!block) PetscFunctionReturn(0);
   LamSceneCheckName(!expression || !table, table, "given together with expression; a field is one of them");
   LamSceneRequire(field, block, "expression", "missing; write one of x and y in mm, or a table");
-  PetscCall(ReadUnit(LamNodeFind(block, "unit"), dimensions[which], &scene->fields.unit[which]));
+  snprintf(one, sizeof(one), "1 %.70s", unit->text);
+  PetscCall(LamQuantityRead(one, dimensions[which], &scene->fields.unit[which], reason));
+  LamSceneCheck(!reason[0], unit, "%s; write the unit of a %s alone", reason, LamDimensionNames[dimensions[which]]);
   PetscCall(ReadField(field, &scene->fields.value[which]));
   LamSceneCheckName(which != LAM_TISSUE_WALL_THICKNESS || !scene->micro.cell, block,
                     "rve.variation gives each cell its thickness; leave out one of them");
@@ -262,13 +228,24 @@ static PetscErrorCode BuildField(const LamNode *block, LamTissueField which, Lam
 PetscErrorCode LamSceneBuildRegions(const LamNode *root, LamScene *scene)
 {
   const LamNode *list = LamNodeFind(root, "macro.regions");
-  const LamNode *fields = LamNodeFind(root, "macro.fields");
 
   PetscFunctionBeginUser;
   if (!scene->has_macro) PetscFunctionReturn(0);
-  if (list) PetscCall(BuildAllRegions(list, scene));
-  for (LamTissueField k = 0; k < LAM_TISSUE_FIELD_COUNT; k++)
-    PetscCall(BuildField(LamNodeFind(fields, LamTissueFieldNames[k]), k, scene));
+  if (list) PetscCall(PetscCalloc1(LAM_MAX_REGIONS, &scene->regions));
+  LamSceneCheck(!list || list->count <= LAM_MAX_REGIONS, list, "has %d regions; at most %d can be told apart",
+                (int)list->count, (int)LAM_MAX_REGIONS);
+  for (const LamNode *entry = list ? list->first : NULL; entry; entry = entry->next) {
+    LamRegion *region = &scene->regions[scene->region_count];
+
+    PetscCall(BuildPlace(entry, scene, region));
+    scene->region_count++;
+    PetscCall(BuildTissue(entry, scene, region));
+  }
+  for (LamTissueField k = 0; k < LAM_TISSUE_FIELD_COUNT; k++) {
+    const LamNode *field = LamNodeFind(LamNodeFind(root, "macro.fields"), LamTissueFieldNames[k]);
+
+    if (field) PetscCall(BuildField(field, k, scene));
+  }
   PetscCall(LamSceneFill(root, &scene->scales, LamTissueFields, &scene->fields));
   PetscFunctionReturn(0);
 }

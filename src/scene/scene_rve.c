@@ -85,21 +85,6 @@ static const LamKey tissue_keys[] = {
 };
 LAM_KEY_TABLE(LamTissueKeys, tissue_keys);
 
-/* The apothem is the unit of length, C1 + C2 of the wall that of stress. */
-static PetscErrorCode BuildScales(const LamNode *root, LamScene *scene)
-{
-  const LamNode *apothem = LamNodeFind(root, "rve.cell.apothem");
-  const LamNode *C1 = LamNodeFind(root, "rve.wall.C1");
-  const LamNode *C2 = LamNodeFind(root, "rve.wall.C2");
-
-  PetscFunctionBeginUser;
-  scene->scales.length = apothem->value.number[0];
-  PetscCall(LamSceneCheckScale(apothem, scene->scales.length));
-  scene->scales.stress = C1->value.number[0] + C2->value.number[0];
-  PetscCall(LamSceneCheckScale(C1, scene->scales.stress));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode LamSceneCheckTurgor(const LamNode *node, PetscReal turgor)
 {
   const LamNode *mode = LamNodeFind(node->document->root, "rve.turgor.mode");
@@ -143,16 +128,21 @@ PetscErrorCode LamSceneBuildRVE(const LamNode *root, LamScene *scene)
 {
   const LamNode *rve = LamNodeFind(root, "rve"), *cells = LamNodeFind(rve, "cells");
   const LamNode *patch = LamNodeFind(rve, "patch"), *clearance = LamNodeFind(rve, "interface.clearance");
-  const LamNode *thickness = LamNodeFind(rve, "cell.wall_thickness");
+  const LamNode *apothem = LamNodeFind(rve, "cell.apothem"), *thickness = LamNodeFind(rve, "cell.wall_thickness");
+  const LamNode *C1 = LamNodeFind(rve, "wall.C1"), *C2 = LamNodeFind(rve, "wall.C2");
   LamMicrostructure *micro = &scene->micro;
+  LamScales *scales = &scene->scales;
 
   PetscFunctionBeginUser;
-  PetscCall(BuildScales(root, scene));
-  LamSceneCheck(thickness->value.number[0] < scene->scales.length, thickness,
+  scales->length = apothem->value.number[0];
+  PetscCall(LamSceneCheckScale(apothem, scales->length));
+  scales->stress = C1->value.number[0] + C2->value.number[0];
+  PetscCall(LamSceneCheckScale(C1, scales->stress));
+  LamSceneCheck(thickness->value.number[0] < scales->length, thickness,
                 "the wall fills the cell; write a thickness less than the apothem");
-  PetscCall(LamSceneReadWall(root->document, root, "rve.wall", scene->scales.stress, NULL, &micro->wall));
+  PetscCall(LamSceneReadWall(root->document, root, "rve.wall", scales->stress, NULL, &micro->wall));
   micro->grading = LamNodeFind(rve, "mesh.along") ? 0.0 : -1.0; /* negative: the planner chooses */
-  PetscCall(LamSceneFill(root, &scene->scales, LamScene, scene));
+  PetscCall(LamSceneFill(root, scales, LamScene, scene));
   LamSceneCheckName(!patch || !cells, cells,
                     "given together with patch in line %d; a block of cells is periodic or between grips",
                     patch->name_line);
@@ -163,6 +153,6 @@ PetscErrorCode LamSceneBuildRVE(const LamNode *root, LamScene *scene)
   }
   PetscCall(BuildTurgor(root, scene));
   PetscCall(LamSceneBuildCells(root, scene));
-  PetscCall(LamSceneCheckClearance(clearance, &scene->scales, micro));
+  PetscCall(LamSceneCheckClearance(clearance, scales, micro));
   PetscFunctionReturn(0);
 }
