@@ -47,6 +47,14 @@ def check_citations():
                         fail(file, f"cites {path}, which is not there")
 
 
+# lamella.h: its comment names every header that it includes.
+def check_reading_list():
+    comment, code = (source / "include/lamella/lamella.h").read_text().split("*/", 1)
+    for header in re.findall(r"#include [<\"](?:lamella/)?(\w+\.h)", code):
+        if header not in comment:
+            fail("lamella.h", f"its reading list lacks {header}")
+
+
 # Options: the synopsis of each command is that of --help, and its section has every option.
 def check_options():
     reference = (source / "docs/reference/commands.md").read_text()
@@ -153,6 +161,7 @@ def check_examples(document):
 for document in [*source.glob("*.md"), *(source / "docs").rglob("*.md")]:
     check_links(document)
 check_citations()
+check_reading_list()
 check_options()
 for document in ("README.md", "docs/tutorial.md"):
     folder = Path(document).stem
