@@ -78,26 +78,25 @@ static PetscErrorCode TextCopy(const char text[], size_t length, char **copy)
 }
 
 /*
-  The text of a token; the caller frees it. fy_token_get_text of libfyaml 0.7 loses memory where a text has many
-  escapes, of which its iterator gives the pieces.
+  The text of a token; the caller frees it. Of libfyaml 0.7 fy_token_get_text loses memory where a text has many escapes,
+  and fy_token_iter_read writes the pieces of a text, such as its lines, over each other.
 */
 static PetscErrorCode TokenText(struct fy_token *token, char **text)
 {
+  const size_t room = fy_token_get_text_length(token);
   struct fy_token_iter *pieces = fy_token_iter_create(token);
-  size_t length = 0, room = 64;
+  const struct fy_iter_chunk *piece = NULL;
+  size_t length = 0;
   PetscErrorCode ierr;
-  ssize_t n = 1;
 
   PetscFunctionBeginUser;
   PetscCheck(pieces, PETSC_COMM_SELF, PETSC_ERR_MEM, "libfyaml gives no text");
-  *text = NULL;
-  ierr = PetscMalloc1(room, text);
-  while (!ierr && n > 0) {
-    n = fy_token_iter_read(pieces, *text + length, room - length - 1);
-    if (n > 0) length += (size_t)n;
-    if (length + 1 < room) continue;
-    room *= 2;
-    ierr = PetscRealloc(room, text);
+  ierr = PetscMalloc1(room + 1, text);
+  while (!ierr && (piece = fy_token_iter_chunk_next(pieces, piece, NULL))) {
+    const size_t n = PetscMin(piece->len, room - length);
+
+    memcpy(*text + length, piece->str, n);
+    length += n;
   }
   fy_token_iter_destroy(pieces);
   PetscCall(ierr);
