@@ -113,9 +113,11 @@ PetscErrorCode LamFileReadKind(const char path[], char kind[LAM_NAME_LENGTH]);
 /* ---- merging ---- */
 
 typedef struct {
-  PetscBool salvage;                /* of damaged files the records whose checksum is right */
-  PetscBool (*stop)(void);          /* asked now and then whether to give up; NULL: never */
-  void (*tell)(const char words[]); /* what a user should know, a line each; NULL: nobody listens */
+  PetscBool salvage;       /* of damaged files the records whose checksum is right */
+  PetscBool (*stop)(void); /* called now and then: whether to give up; NULL: never */
+  /* Sentences for a person, one a call; may be NULL. */
+  void (*tell)(void *ctx, const char words[]);
+  void *ctx; /* of tell; borrowed */
 } LamMergeOptions;
 
 typedef struct {

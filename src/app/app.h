@@ -5,8 +5,8 @@
 #ifndef LAM_APP_H
 #define LAM_APP_H
 
-#include <lamella/lamella.h>
-#include <jansson.h>
+#include "plan.h"
+#include "study.h"
 
 /* Exit statuses (docs/reference/commands.md). */
 enum {
@@ -19,11 +19,13 @@ enum {
 };
 
 /* The command line of one command: argv[0] is the command's name; what followed `--` is kept for PETSc. */
-typedef struct {
+typedef struct LamArgs_s {
   int argc;
   char **argv;
   int petsc_argc; /* petsc_argv[0] is the program's name */
   char **petsc_argv;
+  /* Starts MPI and PETSc: a command that solves calls it once its command line is parsed. */
+  PetscErrorCode (*start)(struct LamArgs_s *args);
 } LamArgs;
 
 /* A command: returns an error of the library, or sets the exit status. */
@@ -43,8 +45,8 @@ PetscErrorCode LamCommandInfo(LamArgs *args, int *exit_status);
 
 /* ---- program.c ---- */
 /* Finds the command and runs it. argv[0] is the program's name; what follows `--`, whose place that takes, is for PETSc
-   alone. */
-PetscErrorCode LamProgramRun(int argc, char *argv[], int *exit_status);
+   alone. `start`: of LamArgs. */
+PetscErrorCode LamProgramRun(int argc, char *argv[], PetscErrorCode (*start)(LamArgs *args), int *exit_status);
 PetscBool LamProgramSolves(void); /* the command that was found runs under mpirun */
 
 /* ---- runtime.c ---- */
@@ -52,10 +54,10 @@ PetscBool LamProgramSolves(void); /* the command that was found runs under mpiru
 PetscErrorCode LamRuntimeBegin(void);
 /* After everything else: reports the error that `code` stands for, once among all ranks; *status is the exit status. */
 void LamRuntimeEnd(PetscErrorCode code, int *status);
-/* For a command that has to do with record files; before LamAppInitialize. */
+/* For a command that has to do with record files; before LamRuntimeStart. */
 void LamAppStartHDF5(void);
-/* Starts MPI and PETSc for a command that solves; after parsing the command line. main() finalises. */
-PetscErrorCode LamAppInitialize(LamArgs *args);
+/* The `start` of LamArgs; LamRuntimeEnd finalises. */
+PetscErrorCode LamRuntimeStart(LamArgs *args);
 PetscBool LamAppIsRoot(void); /* rank 0, or no MPI */
 /* The name nearest to a misspelt one, NULL where none is near; names end with NULL. */
 const char *LamSuggest(const char word[], const char *const names[]);
@@ -91,15 +93,17 @@ PetscBool LamCountParse(const char command[], const char option[], const char te
 /* The JSON object of a solved state, in physical units. state < 0: no "state" member. The caller owns it. */
 PetscErrorCode LamResponseToJSON(const LamResponse *response, const LamScales *scales, PetscInt state,
                                  PetscBool tangent, json_t **object);
-json_t *LamJSONReal(PetscReal value);   /* null where not finite */
-json_t *LamJSONText(const char text[]); /* of a damaged file: if it is no UTF-8, question marks where it is no ASCII */
-json_t *LamJSONReals(PetscInt n, const PetscReal values[], PetscReal scale);
 PetscErrorCode LamPrintJSON(json_t *object); /* one line on stdout, rank 0; takes ownership */
+extern const LamReporter LamConsole;         /* warnings and notes on stderr */
 /* Table of states for a person, stdout; contact tissue has columns of its own, and answers of a database. */
 PetscErrorCode LamPrintResponseHeader(LamInterfaceLawType interface);
 PetscErrorCode LamPrintAnswerHeader(LamInterfaceLawType interface);
 PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales *scales, LamInterfaceLawType interface,
                                    PetscInt state);
+
+/* ---- fe2_summary_print.c ---- */
+/* For a person, on `out`, from the JSON object that a file holds. */
+void LamSummaryPrint(FILE *out, const json_t *summary);
 
 /* ---- progress.c: a bar on stderr where it is a terminal, else nothing ---- */
 typedef struct {
@@ -112,45 +116,9 @@ void LamProgressSetTotal(LamProgress *progress, PetscInt64 total);
 PetscErrorCode LamProgressUpdate(LamProgress *progress, PetscInt64 done, PetscInt64 failed);
 PetscErrorCode LamProgressEnd(LamProgress *progress);
 
-/* ---- signals.c: SIGINT, SIGTERM, SIGUSR1 ask the command to commit and stop ---- */
+/* ---- signals.c: SIGINT, SIGTERM, SIGUSR1 ask the study to commit and stop (stop.h) ---- */
 PetscErrorCode LamSignalsInstall(void);
-void LamFaultsTell(void); /* SIGSEGV and SIGBUS are told in words before they end the program */
-PetscBool LamStopRequested(void);
-PetscBool LamStopInterrupt(void *ctx); /* the same, for LamRVESetInterrupt */
-/* As if SIGTERM had come: another rank has got a signal. */
-void LamStopRequest(void);
-/* From that time of LamClock on LamStopRequested says yes, without a signal, until it is set anew; PETSC_INFINITY:
-   never. For what is given a limited time on one rank. */
-void LamStopSetDeadline(PetscReal clock);
-/*
-  Between the two, which are collective, a signal that reaches one rank of `comm` is a request on all: a rank tells it
-  when it asks LamStopRequested, and the others learn it when they do.
-*/
-PetscErrorCode LamStopShare(MPI_Comm comm);
-PetscErrorCode LamStopShareEnd(void);
+void LamFaultsTell(void);    /* SIGSEGV and SIGBUS are reported in words before they end the program */
 int LamStopExitStatus(void); /* 130 after SIGINT, 143 after SIGTERM and SIGUSR1, else 0 */
-
-/* ---- plan.c: what a scene requires ---- */
-/* Cells that differ: smallest and largest. */
-typedef struct {
-  PetscInt kinds; /* different cells; 0: all alike, and nothing below is set */
-  PetscReal wall_thickness[2];
-  PetscReal shear_modulus[2]; /* C1 + C2, over that of the scene's own wall */
-  PetscReal turgor[2], cohesion[2];
-} LamCellSpread;
-
-typedef struct {
-  LamMicrostructure micro; /* with along and through chosen; borrows the scene's cells */
-  LamCellSpread spread;
-  PetscInt unknowns;       /* of one RVE */
-  PetscInt load_states;    /* RVE solves of `rve`, `build` and `fe2` with direct response; 0: no such block */
-  PetscInt sample_states;  /* 0 also where an accuracy decides how many */
-  PetscInt64 macro_states; /* predicted */
-  PetscInt macro_elements, macro_points; /* 0 also where a file has them */
-  PetscInt map_points, map_states;       /* of `map`, without the states that bracket the failure; 0: no such block */
-} LamPlan;
-#define LAM_PARALLEL_UNKNOWNS 20000 /* of one RVE: from here on several ranks factor its matrix together */
-/* Chooses what the scene leaves open; changes nothing the scene says. */
-PetscErrorCode LamPlanMake(const LamScene *scene, LamPlan *plan);
 
 #endif

@@ -4,6 +4,7 @@
   Method. One assembly is timed on this machine; everything else is a multiple of it. The multiples are measured
   (docs/reference/commands.md has the figures): they hold within a factor of two from 236 to 10,000 unknowns.
 */
+#include "app.h"
 #include "rounding.h"
 #include "map.h"
 #include "plot_time.h"

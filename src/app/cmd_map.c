@@ -7,8 +7,10 @@
     points are there. A file that was killed between the two holds verdicts without records; they are not believed, and
     --resume solves these points anew.
 */
+#include "app.h"
 #include "rounding.h"
 #include "dispatch.h"
+#include "failure_print.h"
 #include "map.h"
 #include <lamella/clock.h>
 #include <string.h>
@@ -250,7 +252,7 @@ static PetscErrorCode OpenWriter(Map *m)
 
   PetscFunctionBeginUser;
   PetscCall(LamPlanMake(m->scene, &plan));
-  PetscCall(LamWarnOfDigits(&plan.micro, m->scene->accuracy));
+  PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &LamConsole, &plan.micro, m->scene->accuracy));
   described.micro = plan.micro;
   PetscCall(LamMapTableCreate(m->scene, &m->table));
   PetscCall(PetscMalloc1(LamMapPointCount(m->scene), &m->waiting));
@@ -357,7 +359,7 @@ PetscErrorCode LamCommandMap(LamArgs *args, int *exit_status)
     *exit_status = LAM_EXIT_USAGE;
     PetscFunctionReturn(0);
   }
-  PetscCall(LamAppInitialize(args));
+  PetscCall(args->start(args));
   PetscCall(Prepare(&m));
   PetscCall(RunAll(&m));
   PetscCall(ExitStatus(&m, exit_status));

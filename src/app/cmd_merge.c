@@ -11,8 +11,9 @@ typedef struct {
   PetscInt n;
 } Merge;
 
-static void TellUser(const char words[])
+static void TellUser(void *ctx, const char words[])
 {
+  (void)ctx;
   fprintf(stderr, "lamella merge: %s\n", words);
 }
 

@@ -1,194 +1,155 @@
 /*
-  lamella process: tissue that changes in time, at one material point, or of a body (process_body.c).
+  lamella process: tissue that changes in time, at one material point, or of a body.
 
-  The way of a point through time is one chain: rank 0 follows it, further ranks wait.
+  The history of a point is one chain: rank 0 follows it, further ranks wait.
 */
-#include "process_run.h"
-#include <lamella/clock.h>
-#include <string.h>
+#include "app.h"
+#include "process_report.h"
+#include <stdio.h>
 #include <unistd.h>
 
-/* ---- what answers ---- */
-
-static PetscErrorCode Connect(LamProcessRunState *run, LamResponder **responder)
+static PetscErrorCode UpdateProgress(void *ctx, PetscInt64 done, PetscInt64 total, PetscInt64 failed)
 {
-  LamFE2Run *response = &run->response;
-  LamFE2Tissue *tissue;
+  LamFE2Report *report = (LamFE2Report *)ctx;
 
   PetscFunctionBeginUser;
-  response->tissues.count = 1;
-  PetscCall(PetscCalloc1(1, &response->tissues.tissues));
-  tissue = response->tissues.tissues;
-  tissue->scene = *run->scene;
-  tissue->stress = 1;
-  tissue->points = tissue->body_points = 1;
-  if (response->database_path)
-    PetscCall(PetscStrncpy(tissue->database_path, response->database_path, sizeof(tissue->database_path)));
-  PetscCall(LamFE2PrepareTissue(response, tissue));
-  run->scene->micro = tissue->scene.micro;
-  PetscCall(LamFE2ConnectTissue(response, tissue, responder));
-  if (!response->stopped && response->response == LAM_FE2_CACHE) PetscCall(LamFE2OpenTissueFile(tissue));
+  LamProgressSetTotal(&report->progress, total);
+  PetscCall(LamProgressUpdate(&report->progress, done, failed));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Disconnect(LamProcessRunState *run)
+static int StatusOf(LamProcessReason reason)
 {
-  LamFE2Run *response = &run->response;
+  return reason == LAM_PROCESS_STOPPED ? LamStopExitStatus()
+         : reason == LAM_PROCESS_ENDED ? LAM_EXIT_UNSOLVED
+                                       : LAM_EXIT_OK;
+}
+
+/* ---- at a material point ---- */
+
+static PetscErrorCode SolvePoint(LamProcessStudy *study, LamFE2Report *report, int *exit_status)
+{
+  char message[LAM_PROCESS_MESSAGE] = "";
+  LamProcessReason reason;
 
   PetscFunctionBeginUser;
-  if (response->tissues.count) PetscCall(LamFE2DisconnectTissue(response->tissues.tissues));
-  PetscCall(PetscFree(response->tissues.tissues));
+  PetscCall(LamProgressStart(&report->progress, 0, (PetscBool)(report->quiet || !report->json)));
+  PetscCall(LamProcessSolvePoint(study, &reason, message));
+  PetscCall(LamProgressEnd(&report->progress));
+  if (!study->response.stopped) PetscCall(LamProcessReportEnd(report, study, reason, message));
+  *exit_status = StatusOf(reason);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamProcessChangeWalls(void *ctx, const PetscReal factor[3])
+static PetscErrorCode RunPoint(const LamFE2Run *run, PetscInt frames, LamFE2Report *report, int *exit_status)
 {
-  LamFE2Tissue *tissue = (LamFE2Tissue *)ctx;
+  LamProcessStudy study = {
+      .response = *run, .out_path = run->out_path, .frames = frames, .scene = run->scene, .state = LamProcessReport};
+  PetscErrorCode ierr = 0, freed;
 
   PetscFunctionBeginUser;
-  PetscCall(LamFE2ChangeWalls(tissue->rve, &tissue->scene.micro, factor));
-  PetscFunctionReturn(0);
-}
-
-/* What the cache has solved goes to its database's file, whatever the end was. */
-static PetscErrorCode CloseDatabase(LamProcessRunState *run)
-{
-  LamFE2Tissue *tissue = run->response.tissues.tissues;
-  PetscErrorCode ierr, closed;
-
-  PetscFunctionBeginUser;
-  if (!tissue || !tissue->records) PetscFunctionReturn(0);
-  ierr = LamFE2RecordTissue(tissue);
-  closed = LamRecordWriterClose(&tissue->records);
-  PetscCall(ierr ? ierr : closed);
-  PetscFunctionReturn(0);
-}
-
-/* ---- the way ---- */
-
-/* LamProcessMonitor */
-static PetscErrorCode Told(const LamProcessState *state, void *ctx)
-{
-  LamProcessRunState *run = (LamProcessRunState *)ctx;
-  LamProcessHistory *h = &run->history;
-
-  PetscFunctionBeginUser;
-  if (h->count == h->capacity) {
-    h->capacity = PetscMax(128, 2 * h->capacity);
-    PetscCall(PetscRealloc((size_t)h->capacity * sizeof(LamProcessState), &h->states));
+  study.response.comm = PETSC_COMM_SELF;
+  if (LamAppIsRoot()) {
+    ierr = SolvePoint(&study, report, exit_status);
+    freed = LamProcessStudyDestroy(&study);
+    if (!ierr) ierr = freed;
   }
-  h->states[h->count++] = *state;
-  PetscCall(LamProcessReport(run));
-  PetscCall(LamProcessFileAdd(run, PETSC_FALSE));
-  PetscCall(LamProgressUpdate(&run->progress, (PetscInt64)(1000 * state->time / run->scene->process.duration), 0));
+  PetscCall(ierr);
+  PetscCall(LamShareError(PETSC_COMM_WORLD, 0));
+  PetscCall(LamSceneDestroy(&study.response.scene));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Follow(LamProcessRunState *run, LamProcessReason *reason, char message[LAM_PROCESS_MESSAGE])
+/* ---- of a body ---- */
+
+static PetscErrorCode SolveBody(LamBodyStudy *study, LamFE2Report *report, int *exit_status)
 {
-  PetscErrorCode ierr, closed;
-  const char *status;
+  LamFE2Run *fe2 = &study->fe2;
+  char message[LAM_PROCESS_MESSAGE] = "";
+  LamProcessReason reason;
 
   PetscFunctionBeginUser;
-  PetscCall(LamProcessFileOpen(run));
-  PetscCall(LamProgressStart(&run->progress, 1000, (PetscBool)(run->quiet || !run->json)));
-  ierr = LamProcessRun(run->process, reason, message);
-  status = ierr ? NULL : *reason == LAM_PROCESS_DONE ? "done" : *reason == LAM_PROCESS_STOPPED ? "stopped" : message;
-  if (!ierr && *reason != LAM_PROCESS_STOPPED) ierr = LamProcessFrames(run, run->frames);
-  closed = LamProcessFileClose(run, ierr ? NULL : status);
-  PetscCall(ierr ? ierr : closed);
-  PetscCall(LamProgressEnd(&run->progress));
-  PetscCall(LamProcessReportEnd(run, *reason, message));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Solve(LamProcessRunState *run, int *exit_status)
-{
-  char message[LAM_PROCESS_MESSAGE];
-  LamProcessReason reason = LAM_PROCESS_STOPPED;
-  LamResponder *responder;
-
-  PetscFunctionBeginUser;
-  run->start = LamClock();
-  PetscCall(LamProcessCreate(run->scene, &run->process));
-  PetscCall(Connect(run, &responder));
-  if (!run->response.stopped) {
-    PetscCall(LamProcessSetResponder(run->process, responder));
-    if (run->response.response == LAM_FE2_DIRECT)
-      PetscCall(LamProcessSetWalls(run->process, LamProcessChangeWalls, run->response.tissues.tissues));
-    if (run->response.response == LAM_FE2_CACHE)
-      PetscCall(LamProcessSetJudge(run->process, &run->response.tissues.tissues->solver));
-    PetscCall(LamProcessSetMonitor(run->process, Told, run));
-    PetscCall(LamProcessSetStop(run->process, LamStopRequested));
-    PetscCall(Follow(run, &reason, message));
+  if (!LamFE2CheckPaths("process", fe2)) {
+    *exit_status = LAM_EXIT_USAGE;
+    PetscFunctionReturn(0);
   }
-  *exit_status = reason == LAM_PROCESS_STOPPED ? LamStopExitStatus()
-                 : reason == LAM_PROCESS_ENDED ? LAM_EXIT_UNSOLVED
-                                               : LAM_EXIT_OK;
+  PetscCall(LamBodyStudyPrepare(study));
+  if (!LamFE2CheckTissuePaths("process", fe2)) {
+    *exit_status = LAM_EXIT_USAGE;
+    PetscFunctionReturn(0);
+  }
+  PetscCall(
+      LamProgressStart(&report->progress, 0, (PetscBool)(report->quiet || (!report->json && isatty(STDOUT_FILENO)))));
+  PetscCall(LamBodyStudySolve(study, &reason, message));
+  PetscCall(LamProgressEnd(&report->progress));
+  *exit_status = StatusOf(reason);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, exit_status, 1, MPI_INT, MPI_MAX, fe2->comm));
+  if (!LamAppIsRoot() || fe2->stopped) PetscFunctionReturn(0);
+  if (!report->json) PetscCall(LamBodyReportEnd(study));
+  if (reason == LAM_PROCESS_ENDED) fprintf(stderr, "lamella process: %s: %s\n", fe2->scene_path, message);
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Destroy(LamProcessRunState *run)
+static PetscErrorCode RunBody(const LamFE2Run *run, const char frames_text[], LamFE2Report *report, int *exit_status)
 {
+  LamBodyStudy study = {.fe2 = *run, .state = LamBodyReport};
+
   PetscFunctionBeginUser;
-  PetscCall(CloseDatabase(run));
-  PetscCall(LamProcessDestroy(&run->process));
-  PetscCall(Disconnect(run));
-  PetscCall(PetscFree(run->history.states));
+  if (!frames_text) {
+    PetscCall(SolveBody(&study, report, exit_status));
+  } else {
+    if (LamAppIsRoot())
+      fprintf(stderr, "lamella process: --frames: keeps cells of one material point; of a body `macro.zoom` does\n");
+    *exit_status = LAM_EXIT_USAGE;
+  }
+  PetscCall(LamBodyStudyDestroy(&study));
   PetscFunctionReturn(0);
 }
+
+/* ---- the command ---- */
 
 PetscErrorCode LamCommandProcess(LamArgs *args, int *exit_status)
 {
-  LamProcessRunState run = {0};
-  PetscErrorCode ierr = 0;
+  LamFE2Run run = LAM_FE2_RUN;
+  LamFE2Report report = {.command = "process"};
+  const char *response = NULL, *frames_text = NULL;
+  PetscInt frames = 0;
   PetscBool done;
   const LamOption options[] = {
       {'d', "database", LAM_OPTION_TEXT, "DB.h5", "response database; a cache adds to it what it solves",
-       &run.response.database_path},
+       &run.database_path},
       {'o', "output", LAM_OPTION_TEXT, "OUT.h5",
        "states in time, for plot and info; of a body with OUT.xdmf and OUT.csv beside it", &run.out_path},
       {0, "response", LAM_OPTION_TEXT, "TYPE",
        "direct: solve an RVE for each state (default); cache: query, solve what is missing (default with -d); "
        "database: query only",
-       &run.response.response_name},
+       &response},
       {0, "frames", LAM_OPTION_TEXT, "N",
        "at a material point: keep the cells at N states evenly spread, for a film (default: at events, start and end)",
-       &run.frames_text},
-      {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per output and event on stdout", &run.json},
-      {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &run.quiet},
+       &frames_text},
+      {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per output and event on stdout", &report.json},
+      {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &report.quiet},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
   };
 
   PetscFunctionBeginUser;
   PetscCall(LamOptionsParse(
       args, "process SCENE [-d DB.h5] [-o OUT.h5] [--response TYPE] [--frames N] [--json]\n               [--quiet]",
-      "Follows tissue that changes in time.", options, 1, &run.response.scene_path, &done, exit_status));
+      "Follows tissue that changes in time.", options, 1, &run.scene_path, &done, exit_status));
   if (done) PetscFunctionReturn(0);
-  if (!LamFE2ChooseResponse("process", &run.response)) {
+  if (!LamFE2ChooseResponse("process", response, &run)) {
     *exit_status = LAM_EXIT_USAGE;
     PetscFunctionReturn(0);
   }
-  if (run.frames_text && !LamCountParse("process", "--frames", run.frames_text, 2, &run.frames, exit_status))
+  if (frames_text && !LamCountParse("process", "--frames", frames_text, 2, &frames, exit_status))
     PetscFunctionReturn(0);
-  PetscCall(LamAppInitialize(args));
-  run.response.quiet = run.quiet;
-  PetscCall(LamSceneRead(run.response.scene_path, &run.scene));
-  run.response.scene = run.scene;
-  run.response.walls = 1;
-  for (int k = 0; k < 3; k++) run.response.wall_ratio[k] = 1;
-  if (run.scene->has_macro && run.scene->has_process) {
-    PetscCall(LamProcessBody(&run, exit_status));
-    PetscFunctionReturn(0);
-  }
-  run.response.comm = PETSC_COMM_SELF;
-  if (LamAppIsRoot()) {
-    ierr = Solve(&run, exit_status);
-    const PetscErrorCode freed = Destroy(&run);
-    if (!ierr) ierr = freed;
-  }
-  PetscCall(ierr);
-  PetscCall(LamFE2ShareError(PETSC_COMM_WORLD, 0));
-  PetscCall(LamSceneDestroy(&run.scene));
+  PetscCall(args->start(args));
+  run.comm = PETSC_COMM_WORLD;
+  run.reporter = (LamReporter){&report, LamFE2ReportMessage, UpdateProgress};
+  PetscCall(LamSceneRead(run.scene_path, &run.scene));
+  if (run.scene->has_macro && run.scene->has_process)
+    PetscCall(RunBody(&run, frames_text, &report, exit_status));
+  else
+    PetscCall(RunPoint(&run, frames, &report, exit_status));
   PetscFunctionReturn(0);
 }

@@ -1,6 +1,7 @@
 /*
   lamella query: answers from a database. Never solves, needs no MPI.
 */
+#include "app.h"
 #include "answers.h"
 #include <lamella/ellipticity.h>
 #include <errno.h>

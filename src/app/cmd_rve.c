@@ -4,8 +4,9 @@
   The states depend on one another: each starts from the last one that has an answer. So rank 0 solves the chain;
   further ranks help it to factor the matrices of large RVEs, else they wait.
 */
+#include "app.h"
 #include "rounding.h"
-#include "failure.h"
+#include "failure_print.h"
 #include "rve_fields.h"
 #include <lamella/clock.h>
 #include <math.h>
@@ -187,7 +188,7 @@ static PetscErrorCode Prepare(Run *run)
   PetscCheck(run->scene->load_count, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: has no block `load`, which says what states to solve", run->scene_path);
   PetscCall(LamPlanMake(run->scene, &plan));
-  PetscCall(LamWarnOfDigits(&plan.micro, run->scene->accuracy));
+  PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &LamConsole, &plan.micro, run->scene->accuracy));
   run->scene->micro = plan.micro;
   if (run->find_failure && contact) run->second_mesh = PETSC_TRUE; /* separation is judged on two */
   PetscCall(LamMeshesCreate(plan.unknowns < LAM_PARALLEL_UNKNOWNS ? PETSC_COMM_SELF : PETSC_COMM_WORLD, run->scene,
@@ -361,7 +362,7 @@ PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
   if (done) PetscFunctionReturn(0);
   if (run.find_onset) run.second_mesh = PETSC_TRUE;
   if (run.out_path) LamAppStartHDF5();
-  PetscCall(LamAppInitialize(args));
+  PetscCall(args->start(args));
   if (LamAppIsRoot()) {
     const PetscErrorCode ierr = RunOnRoot(&run, exit_status);
 

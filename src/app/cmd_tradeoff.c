@@ -8,6 +8,7 @@
     setting alone; then tables and bodies. A setting that takes more than half of what is left to its part is given up,
     and told.
 */
+#include "app.h"
 #include "rounding.h"
 #include "tradeoff.h"
 #include <errno.h>
@@ -260,7 +261,7 @@ static PetscErrorCode Prepare(Run *run)
   PetscCall(LamSceneRead(run->scene_path, &run->scene));
   PetscCall(CheckDirectory(run));
   PetscCall(LamPlanMake(run->scene, &plan));
-  PetscCall(LamWarnOfDigits(&plan.micro, run->scene->accuracy));
+  PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &LamConsole, &plan.micro, run->scene->accuracy));
   run->scene->micro = plan.micro;
   PetscCall(LamStatesMake(run->scene, &run->states));
   PetscCheck(run->states.n || Signalled(), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
@@ -407,7 +408,7 @@ PetscErrorCode LamCommandTradeoff(LamArgs *args, int *exit_status)
       "Measures error against time over the knobs of a scene that trade them.", options, 1, &run.scene_path, &done,
       exit_status));
   if (done || !ReadValues(&run, exit_status)) PetscFunctionReturn(0);
-  PetscCall(LamAppInitialize(args));
+  PetscCall(args->start(args));
   if (IsSerial(exit_status)) PetscCall(Solve(&run, exit_status));
   PetscFunctionReturn(0);
 }

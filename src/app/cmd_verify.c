@@ -3,6 +3,7 @@
 
   Rank 0 holds the database, asks and compares; all ranks solve.
 */
+#include "app.h"
 #include "audit.h"
 #include "dispatch.h"
 #include <lamella/clock.h>
@@ -210,7 +211,7 @@ PetscErrorCode LamCommandVerify(LamArgs *args, int *exit_status)
                             "Asks a database at random, solves what it answers afresh, and compares.", options, 1,
                             &v.path, &done, exit_status));
   if (done || !ReadValues(&v, exit_status)) PetscFunctionReturn(0);
-  PetscCall(LamAppInitialize(args));
+  PetscCall(args->start(args));
   v.start = LamClock();
   PetscCall(LamDispatchCreate(
       PETSC_COMM_WORLD, &(LamDispatchJob){&v, .result_size = sizeof(LamResponse), .work = Solve, .worked = Arrive}, 0,

@@ -1,7 +1,9 @@
 /*
-  What is told of failure: what a state bears, and the verdict on a program of loads.
+  Failure for a person and as JSON: what a state bears, and the verdict on a program of loads.
 */
+#include "app.h"
 #include "failure_criteria.h"
+#include "failure_print.h"
 
 #define NO_SHEAR 1e-9 /* C1 + C2: rounding */
 

@@ -1,7 +1,8 @@
 /*
-  What a macroscale run tells of its steps: JSON objects, or a table with totals.
+  Reports of the steps of an FE2 run: JSON objects, or a table with totals.
 */
-#include "fe2_run.h"
+#include "app.h"
+#include "fe2_report.h"
 #include <stdio.h>
 #include <lamella/clock.h>
 #include <lamella/ellipticity.h>
@@ -101,37 +102,40 @@ static void PrintRow(const LamFE2Run *run, const LamMacroStep *step)
 }
 
 /* Once, in the first step that has lost it. */
-static void WarnOfLocalisation(LamFE2Run *run, const LamMacroStep *step)
+static void WarnOfLocalisation(LamFE2Report *report, const LamFE2Run *run, const LamMacroStep *step)
 {
   const PetscReal mm = run->scene->scales.macro_length * 1e3;
 
-  if (run->quiet || run->localised || !step->localised_points) return;
-  run->localised = PETSC_TRUE;
-  fprintf(stderr,
-          "lamella fe2: %s: step %d: at %d material points the tissue has lost ellipticity, most at (%.4g, %.4g) mm "
-          "in a band whose normal is at %.1f degrees: it localises, and results then depend on the mesh of the body\n",
-          run->scene_path, (int)step->step, (int)step->localised_points, (double)(step->localisation_place[0] * mm),
-          (double)(step->localisation_place[1] * mm), (double)LamBandAngle(step->localisation_normal));
+  if (report->localised || !step->localised_points) return;
+  report->localised = PETSC_TRUE;
+  LamReportNote(
+      &run->reporter,
+      "%s: step %d: at %d material points the tissue has lost ellipticity, most at (%.4g, %.4g) mm "
+      "in a band whose normal is at %.1f degrees: it localises, and results then depend on the mesh of the body",
+      run->scene_path, (int)step->step, (int)step->localised_points, (double)(step->localisation_place[0] * mm),
+      (double)(step->localisation_place[1] * mm), (double)LamBandAngle(step->localisation_normal));
 }
 
-PetscErrorCode LamFE2ReportStep(LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory)
+PetscErrorCode LamFE2ReportStep(void *ctx, const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory)
 {
+  LamFE2Report *report = (LamFE2Report *)ctx;
+
   PetscFunctionBeginUser;
-  if (run->json)
+  if (report->json)
     PetscCall(LamPrintJSON(LamFE2StepToJSON(run, step, peak_memory)));
   else {
     if (run->totals.steps == run->resumed_steps) PrintHeader(run, step);
     PrintRow(run, step);
   }
-  WarnOfLocalisation(run, step);
+  WarnOfLocalisation(report, run, step);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamFE2ReportCutback(LamMacro macro, const char why[], void *run)
+void LamFE2ReportMessage(void *ctx, PetscBool warning, const char text[])
 {
-  PetscFunctionBeginUser;
-  if (LamAppIsRoot()) fprintf(stderr, "lamella fe2: %s: cut back: %s\n", ((LamFE2Run *)run)->scene_path, why);
-  PetscFunctionReturn(0);
+  const LamFE2Report *report = (const LamFE2Report *)ctx;
+
+  if (warning || !report->quiet) fprintf(stderr, "lamella %s: %s\n", report->command, text);
 }
 
 PetscErrorCode LamFE2ReportEnd(const LamFE2Run *run)

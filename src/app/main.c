@@ -8,7 +8,7 @@ int main(int argc, char *argv[])
   int status = LAM_EXIT_OK;
   PetscErrorCode code = LamRuntimeBegin();
 
-  if (!code) code = LamProgramRun(argc, argv, &status);
+  if (!code) code = LamProgramRun(argc, argv, LamRuntimeStart, &status);
   LamRuntimeEnd(code, &status);
   return status;
 }

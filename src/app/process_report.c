@@ -1,8 +1,9 @@
 /*
-  What `lamella process` tells of each output and event.
+  Reports of a process at a material point: each output and event.
 */
-#include "process_run.h"
+#include "app.h"
 #include "plot_time.h"
+#include "process_report.h"
 #include <lamella/clock.h>
 #include <math.h>
 #include <string.h>
@@ -35,14 +36,14 @@ static json_t *FactorsToJSON(const LamProcessState *state, const LamProcessSpec 
   return o;
 }
 
-static PetscErrorCode ReportJSON(const LamProcessRunState *run, const LamProcessState *state)
+static PetscErrorCode ReportJSON(const LamProcessStudy *study, const LamProcessState *state)
 {
-  const LamScales *scales = &run->scene->scales;
+  const LamScales *scales = &study->scene->scales;
   const PetscReal MPa = scales->stress * 1e-6;
   json_t *o;
 
   PetscFunctionBeginUser;
-  PetscCall(LamResponseToJSON(&state->response, scales, run->history.count, PETSC_FALSE, &o));
+  PetscCall(LamResponseToJSON(&state->response, scales, study->history.count, PETSC_FALSE, &o));
   json_object_set_new(o, "time", LamJSONReal(state->time));
   json_object_set_new(o, "temperature", LamJSONReal(state->temperature));
   json_object_set_new(o, "F_inflated", LamJSONReals(9, state->F, 1));
@@ -51,7 +52,7 @@ static PetscErrorCode ReportJSON(const LamProcessRunState *run, const LamProcess
   json_object_set_new(o, "outside", LamJSONReal(state->outside * MPa));
   json_object_set_new(o, "firmness", LamJSONReal(state->firmness * MPa));
   json_object_set_new(o, "walls", LamJSONReal(state->walls));
-  json_object_set_new(o, "factors", FactorsToJSON(state, &run->scene->process));
+  json_object_set_new(o, "factors", FactorsToJSON(state, &study->scene->process));
   SetRatios(o, state);
   if (state->event != LAM_EVENT_COUNT) json_object_set_new(o, "event", json_string(EventName(state)));
   PetscCall(LamPrintJSON(o));
@@ -60,9 +61,9 @@ static PetscErrorCode ReportJSON(const LamProcessRunState *run, const LamProcess
 
 /* ---- table ---- */
 
-static void PrintHeader(const LamProcessRunState *run, const char unit[])
+static void PrintHeader(const LamProcessStudy *study, const char unit[])
 {
-  const PetscBool contact = (PetscBool)(run->scene->micro.interface == LAM_INTERFACE_CONTACT);
+  const PetscBool contact = (PetscBool)(study->scene->micro.interface == LAM_INTERFACE_CONTACT);
 
   printf("%10s %8s %9s %9s %9s %9s %9s %9s %9s", "time", "temp.", "turgor", "osmotic", "lamella", "walls", "firmness",
          "F11", "F22");
@@ -81,16 +82,16 @@ static void PrintNumber(int width, PetscReal number)
     printf(" %*s", width, "-");
 }
 
-static PetscErrorCode PrintRow(const LamProcessRunState *run, const LamProcessState *state)
+static PetscErrorCode PrintRow(const LamProcessStudy *study, const LamProcessState *state)
 {
-  const PetscReal MPa = run->scene->scales.stress * 1e-6;
-  const PetscBool contact = (PetscBool)(run->scene->micro.interface == LAM_INTERFACE_CONTACT);
+  const PetscReal MPa = study->scene->scales.stress * 1e-6;
+  const PetscBool contact = (PetscBool)(study->scene->micro.interface == LAM_INTERFACE_CONTACT);
   const LamResponse *r = &state->response;
   PetscReal seconds;
-  const char *unit = LamTimeUnit(run->scene->process.duration, &seconds);
+  const char *unit = LamTimeUnit(study->scene->process.duration, &seconds);
 
   PetscFunctionBeginUser;
-  if (run->history.count == 1) PrintHeader(run, unit);
+  if (study->history.count == 1) PrintHeader(study, unit);
   printf("%10.5g %8.4g", (double)(state->time / seconds), (double)(state->temperature - 273.15));
   PrintNumber(9, state->turgor * MPa);
   PrintNumber(9, state->osmotic * MPa);
@@ -105,25 +106,27 @@ static PetscErrorCode PrintRow(const LamProcessRunState *run, const LamProcessSt
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamProcessReport(const LamProcessRunState *run)
+PetscErrorCode LamProcessReport(void *ctx, const LamProcessStudy *study)
 {
-  const LamProcessState *state = &run->history.states[run->history.count - 1];
+  const LamFE2Report *report = (const LamFE2Report *)ctx;
+  const LamProcessState *state = &study->history.states[study->history.count - 1];
 
   PetscFunctionBeginUser;
-  if (run->json)
-    PetscCall(ReportJSON(run, state));
+  if (report->json)
+    PetscCall(ReportJSON(study, state));
   else
-    PetscCall(PrintRow(run, state));
+    PetscCall(PrintRow(study, state));
   PetscFunctionReturn(0);
 }
 
 /* Events that a database alone has found by numbers which it does not know well. */
-static void WarnOfIndicators(const LamProcessRunState *run)
+static void WarnOfIndicators(const LamProcessStudy *study)
 {
   PetscInt doubtful = 0;
 
-  for (PetscInt k = 0; k < run->history.count; k++)
-    doubtful += run->history.states[k].event != LAM_EVENT_COUNT && !run->history.states[k].response.indicators_trusted;
+  for (PetscInt k = 0; k < study->history.count; k++)
+    doubtful +=
+        study->history.states[k].event != LAM_EVENT_COUNT && !study->history.states[k].response.indicators_trusted;
   if (doubtful)
     fprintf(
         stderr,
@@ -132,17 +135,18 @@ static void WarnOfIndicators(const LamProcessRunState *run)
         (int)doubtful);
 }
 
-PetscErrorCode LamProcessReportEnd(const LamProcessRunState *run, LamProcessReason reason, const char message[])
+PetscErrorCode LamProcessReportEnd(const LamFE2Report *report, const LamProcessStudy *study, LamProcessReason reason,
+                                   const char message[])
 {
   LamProcessCounts counts;
 
   PetscFunctionBeginUser;
-  if (!run->quiet) WarnOfIndicators(run);
-  if (reason == LAM_PROCESS_ENDED) fprintf(stderr, "lamella process: %s: %s\n", run->scene->path, message);
-  if (run->json) PetscFunctionReturn(0);
-  PetscCall(LamProcessGetCounts(run->process, &counts));
+  if (!report->quiet) WarnOfIndicators(study);
+  if (reason == LAM_PROCESS_ENDED) fprintf(stderr, "lamella process: %s: %s\n", study->scene->path, message);
+  if (report->json) PetscFunctionReturn(0);
+  PetscCall(LamProcessGetCounts(study->process, &counts));
   printf("%d steps of time, %d questions, %.3g s\n", (int)counts.steps, (int)counts.questions,
-         (double)(LamClock() - run->start));
-  if (run->out_path) printf("wrote %s\n", run->out_path);
+         (double)(LamClock() - study->start));
+  if (study->out_path) printf("wrote %s\n", study->out_path);
   PetscFunctionReturn(0);
 }

@@ -98,10 +98,10 @@ static PetscErrorCode RunCommand(LamArgs *args, int *status)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamProgramRun(int argc, char *argv[], int *status)
+PetscErrorCode LamProgramRun(int argc, char *argv[], PetscErrorCode (*start)(LamArgs *args), int *status)
 {
   static char *program_only[2]; /* PETSc keeps the address */
-  LamArgs args = {.argv = argv + 1, .petsc_argc = 1, .petsc_argv = program_only};
+  LamArgs args = {.argv = argv + 1, .petsc_argc = 1, .petsc_argv = program_only, .start = start};
 
   PetscFunctionBeginUser;
   program_only[0] = argv[0];

@@ -142,7 +142,7 @@ static void ExpectNoRanks(void)
   setenv("OMPI_MCA_pml", "ob1", 0);
 }
 
-PetscErrorCode LamAppInitialize(LamArgs *args)
+PetscErrorCode LamRuntimeStart(LamArgs *args)
 {
   PetscFunctionBeginUser;
   ExpectNoRanks();

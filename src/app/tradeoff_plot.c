@@ -5,6 +5,7 @@
   where there is room: first beside the best, then beside the planned one. Grey below: errors of the size of the
   reference's.
 */
+#include "app.h"
 #include "tradeoff.h"
 #include "plot.h"
 #include <math.h>

@@ -1,6 +1,7 @@
 /*
   What is told of the settings: a table, JSON, and the files of -o.
 */
+#include "app.h"
 #include "tradeoff.h"
 #include "beside.h"
 #include <math.h>

@@ -1,10 +1,10 @@
 /*
-  Private to `lamella build`: which states the table is asked, and which nodes it lacks.
+  Which states the table is asked, and which nodes it lacks.
 */
 #ifndef LAM_BUILD_H
 #define LAM_BUILD_H
 
-#include "app.h"
+#include "study.h"
 #include "node_costs.h"
 
 /*
@@ -24,8 +24,8 @@ typedef struct {
   PetscInt index, count; /* 1 .. count */
 } LamShard;
 
-/* From "I/N"; tells what is wrong. */
-PetscBool LamShardParse(const char text[], LamShard *shard, int *exit_status);
+/* From "I/N"; PETSC_FALSE where the text is something else. */
+PetscBool LamShardParse(const char text[], LamShard *shard);
 /* The states among the first `asked` that belong to the shard: *n numbers, for the caller to free. */
 PetscErrorCode LamShardStates(const LamScene *scene, const LamShard *shard, PetscInt asked, PetscInt *n,
                               PetscInt **states);

@@ -20,16 +20,6 @@ PetscInt64 LamBuildFailed(const LamBuild *build)
   return build->rounds.known_failed + build->failed;
 }
 
-PetscErrorCode LamBuildReport(LamBuild *b)
-{
-  PetscFunctionBeginUser;
-  PetscCall(LamPrintJSON(json_pack("{s:I, s:I, s:o, s:o, s:o}", "records", (json_int_t)LamBuildRecords(b), "failed",
-                                   (json_int_t)LamBuildFailed(b), "seconds", LamJSONReal(LamClock() - b->start),
-                                   "answered", LamJSONReal(LamRoundsAnswered(&b->rounds)), "error_95",
-                                   LamJSONReal(b->rounds.poll.error))));
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode Commit(LamBuild *b)
 {
   const PetscReal begin = LamClock();
@@ -43,7 +33,7 @@ static PetscErrorCode Commit(LamBuild *b)
   b->last_commit = LamClock();
   b->commit_seconds = b->last_commit - begin;
   b->all_commits += b->commit_seconds;
-  if (b->json) PetscCall(LamBuildReport(b));
+  if (b->committed) PetscCall(b->committed(b->reporter.ctx, b));
   PetscFunctionReturn(0);
 }
 

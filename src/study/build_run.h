@@ -1,5 +1,8 @@
 /*
-  Private to `lamella build`: a run of it.
+  A build: fills a response database over the sample box of a scene.
+
+    LamBuild build = {.path = ..., .team_size = 1, .shard = {1, 1}};
+    LamBuildPrepare(&build, scene_path);  LamBuildTable(&build);  LamBuildDestroy(&build);
 */
 #ifndef LAM_BUILD_RUN_H
 #define LAM_BUILD_RUN_H
@@ -14,10 +17,12 @@ typedef struct {
   LamResponse *responses; /* [n]; owned */
 } LamPending;
 
-typedef struct {
+typedef struct LamBuild_s {
   LamScene *scene;
   const char *path;
-  PetscBool json, quiet;
+  LamReporter reporter;
+  /* After each commit, on rank 0; ctx: the reporter's. May be NULL. */
+  PetscErrorCode (*committed)(void *ctx, const struct LamBuild_s *build);
   PetscBool resume;
   PetscInt group;     /* ranks that one rank hands out to; 0: as many as do */
   PetscInt team_size; /* ranks that solve one RVE together */
@@ -31,7 +36,6 @@ typedef struct {
 
   /* on rank 0 */
   LamRecordWriter writer;
-  LamProgress progress;
   LamDatabase file; /* what was there before; NULL: nothing */
   LamRounds rounds;
   LamPending pending;
@@ -46,9 +50,12 @@ typedef struct {
 PetscInt64 LamBuildRecords(const LamBuild *build);
 PetscInt64 LamBuildFailed(const LamBuild *build);
 
-/* ---- cmd_build.c; collective ---- */
+/* ---- build_table.c; collective ---- */
 
-/* Fills the file at build->path from build->scene, whose mesh is chosen. Tells nothing but progress and commits. */
+/* Reads the scene and chooses its mesh. PETSC_ERR_USER_INPUT where it has no sample box. */
+PetscErrorCode LamBuildPrepare(LamBuild *build, const char scene_path[]);
+
+/* Fills the file at build->path from build->scene, whose mesh is chosen.  */
 PetscErrorCode LamBuildTable(LamBuild *build);
 PetscErrorCode LamBuildDestroy(LamBuild *build); /* with its scene; NULL: it has none */
 
@@ -59,8 +66,6 @@ PetscErrorCode LamBuildStart(LamBuild *build);
 
 /* ---- build_commit.c: rank 0 ---- */
 
-/* One JSON object of how far the build is. */
-PetscErrorCode LamBuildReport(LamBuild *build);
 /* This record comes next in the file. */
 PetscErrorCode LamBuildTake(LamBuild *build, PetscInt64 key, const LamResponse *response);
 /* Takes what follows in the order of the rounds, up to the first node that is not solved. */

@@ -95,16 +95,12 @@ PetscErrorCode LamShardStates(const LamScene *scene, const LamShard *shard, Pets
   PetscFunctionReturn(0);
 }
 
-PetscBool LamShardParse(const char text[], LamShard *shard, int *exit_status)
+PetscBool LamShardParse(const char text[], LamShard *shard)
 {
   char rest;
   int index, count;
 
-  if (sscanf(text, "%d/%d%c", &index, &count, &rest) == 2 && index >= 1 && index <= count) {
-    *shard = (LamShard){index, count};
-    return PETSC_TRUE;
-  }
-  fprintf(stderr, "lamella build: --shard %s: which part of how many is wanted, such as 1/4 to 4/4\n", text);
-  *exit_status = LAM_EXIT_USAGE;
-  return PETSC_FALSE;
+  if (sscanf(text, "%d/%d%c", &index, &count, &rest) != 2 || index < 1 || index > count) return PETSC_FALSE;
+  *shard = (LamShard){index, count};
+  return PETSC_TRUE;
 }

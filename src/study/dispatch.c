@@ -9,6 +9,7 @@
     rank 0: `stop` goes down the tree, `home` comes up behind the last results, so that no message is left over.
 */
 #include "dispatch.h"
+#include <signal.h>
 #include <lamella/clock.h>
 #include "mail.h"
 #include "schedule.h"
@@ -315,7 +316,7 @@ static PetscErrorCode Take(LamDispatch d, PetscMPIInt rank, PetscMPIInt tag)
     PetscCall(TakeDrop(d));
     break;
   case TAG_SIGNAL:
-    LamStopRequest();
+    if (!LamStopSignal()) LamStopRequest(SIGTERM);
     break;
   case TAG_STOP:
     PetscCall(Stop(d));

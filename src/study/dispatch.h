@@ -7,7 +7,7 @@
 #ifndef LAM_DISPATCH_H
 #define LAM_DISPATCH_H
 
-#include "app.h"
+#include "study.h"
 
 typedef struct LamDispatch_s *LamDispatch;
 

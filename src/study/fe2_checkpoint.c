@@ -50,7 +50,7 @@ static PetscErrorCode CompareScenes(const char path[], const char before[], cons
 /* The scene and what answers; on reading an error where they are others. */
 static PetscErrorCode ArchiveIdentity(LamFE2Run *run, LamArchive archive, const char path[])
 {
-  PetscInt length = LamAppIsRoot() ? (PetscInt)strlen(run->scene->text) + 1 : 0;
+  PetscInt length = LamIsFirst(run->comm) ? (PetscInt)strlen(run->scene->text) + 1 : 0;
   char *text = run->scene->text;
   PetscErrorCode ierr = 0;
   int response = run->response;
@@ -59,11 +59,11 @@ static PetscErrorCode ArchiveIdentity(LamFE2Run *run, LamArchive archive, const 
   PetscCall(LamArchiveList(archive, "scene", 1, &length, (void **)&text));
   PetscCall(LamArchiveShared(archive, "response", sizeof(response), &response));
   if (!LamArchiveIsReading(archive)) PetscFunctionReturn(0);
-  if (LamAppIsRoot()) {
+  if (LamIsFirst(run->comm)) {
     ierr = CompareScenes(path, text, run->scene->text);
     PetscCall(PetscFree(text));
   }
-  PetscCall(LamFE2ShareError(run->comm, ierr));
+  PetscCall(LamShareError(run->comm, ierr));
   PetscCheck(response == (int)run->response, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: goes on with --response %s; this run has %s", path, LamFE2ResponseNames[response],
              LamFE2ResponseNames[run->response]);
@@ -83,7 +83,7 @@ PetscErrorCode LamFE2CheckpointRows(LamFE2Run *run, LamArchive archive, LamFE2Ti
   if (!LamArchiveIsReading(archive)) PetscFunctionReturn(0);
   PetscCall(PetscMPIIntCast(tissue->row_count, &count));
   PetscCallMPI(MPI_Bcast(&count, 1, MPI_INT, 0, run->comm));
-  if (!LamAppIsRoot()) PetscCall(PetscMalloc1(count, &tissue->rows));
+  if (!LamIsFirst(run->comm)) PetscCall(PetscMalloc1(count, &tissue->rows));
   tissue->row_count = tissue->row_capacity = count;
   PetscCallMPI(MPI_Bcast(tissue->rows, count, MPIU_INT, 0, run->comm));
   PetscFunctionReturn(0);
@@ -105,7 +105,7 @@ static PetscErrorCode IsFinished(const LamFE2Run *run, PetscBool *finished)
   if (has_status && has_scene && !strcmp(status, "done")) {
     PetscCall(CompareScenes(run->out_path, scene, run->scene->text));
     *finished = PETSC_TRUE;
-    if (!run->quiet) fprintf(stderr, "lamella fe2: %s: has all steps; there is nothing left to do\n", run->out_path);
+    LamReportNote(&run->reporter, "%s: has all steps; there is nothing left to do", run->out_path);
   }
   PetscCall(PetscFree(status));
   PetscCall(PetscFree(scene));
@@ -123,8 +123,8 @@ PetscErrorCode LamFE2CheckpointFind(LamFE2Run *run, PetscBool *finished)
   exists = !access(path, F_OK);
   PetscCallMPI(MPI_Bcast(&exists, 1, MPI_INT, 0, run->comm));
   if (!exists) {
-    if (LamAppIsRoot()) ierr = IsFinished(run, finished);
-    PetscCall(LamFE2ShareError(run->comm, ierr));
+    if (LamIsFirst(run->comm)) ierr = IsFinished(run, finished);
+    PetscCall(LamShareError(run->comm, ierr));
     PetscCallMPI(MPI_Bcast(finished, 1, MPIU_BOOL, 0, run->comm));
     PetscFunctionReturn(0);
   }
@@ -206,9 +206,9 @@ PetscErrorCode LamFE2CheckpointStart(LamFE2Run *run)
   }
   PetscCall(ArchiveSteps(run, run->archive));
   PetscCall(LamArchiveClose(&run->archive, PETSC_FALSE));
-  if (LamAppIsRoot() && !run->quiet)
-    fprintf(stderr, "lamella fe2: %s: goes on behind %" PetscInt_FMT " complete steps\n", run->out_path,
-            run->resumed_steps);
+  if (LamIsFirst(run->comm))
+    LamReportNote(&run->reporter, "%s: goes on behind %" PetscInt_FMT " complete steps", run->out_path,
+                  run->resumed_steps);
   PetscFunctionReturn(0);
 }
 
@@ -217,7 +217,7 @@ PetscErrorCode LamFE2CheckpointRemove(LamFE2Run *run)
   char path[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
-  if (!run->out_path || !LamAppIsRoot()) PetscFunctionReturn(0);
+  if (!run->out_path || !LamIsFirst(run->comm)) PetscFunctionReturn(0);
   PetscCall(CheckpointPath(run, path));
   unlink(path);
   PetscFunctionReturn(0);

@@ -89,8 +89,8 @@ PetscErrorCode LamFE2OpenFiles(LamFE2Run *run)
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Barrier(run->comm)); /* all ranks have read the database: rank 0 may write to it */
-  if (LamAppIsRoot()) ierr = OpenFiles(run);
-  PetscCall(LamFE2ShareError(run->comm, ierr));
+  if (LamIsFirst(run->comm)) ierr = OpenFiles(run);
+  PetscCall(LamShareError(run->comm, ierr));
   PetscFunctionReturn(0);
 }
 
@@ -124,7 +124,7 @@ PetscErrorCode LamFE2CloseFiles(LamFE2Run *run, const char status[])
 PetscErrorCode LamFE2CloseAfterError(LamFE2Run *run)
 {
   PetscFunctionBeginUser;
-  if (!LamAppIsRoot()) PetscFunctionReturn(0);
+  if (!LamIsFirst(run->comm)) PetscFunctionReturn(0);
   PetscCall(PetscPushErrorHandler(PetscIgnoreErrorHandler, NULL));
   (void)LamFE2CloseFiles(run, NULL);
   PetscCall(PetscPopErrorHandler());

@@ -1,8 +1,9 @@
 /*
-  What answers the material points of a macroscale run: RVE solves, a database, or both.
+  Responders of the material points of an FE2 run: RVE solves, a database, or both.
 */
-#include "rounding.h"
 #include "fe2_run.h"
+#include "plan.h"
+#include "rounding.h"
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -10,27 +11,6 @@
 #include "shared_grid.h"
 
 const char *const LamFE2ResponseNames[] = {"direct", "cache", "database"};
-
-PetscBool LamFE2ChooseResponse(const char command[], LamFE2Run *run)
-{
-  run->response = run->database_path ? LAM_FE2_CACHE : LAM_FE2_DIRECT;
-  for (int k = 0; k < 3 && run->response_name; k++) {
-    if (strcmp(run->response_name, LamFE2ResponseNames[k])) continue;
-    run->response = (LamFE2Response)k;
-    run->response_name = NULL;
-  }
-  if (run->response_name)
-    fprintf(stderr, "lamella %s: --response %s: unknown; there are direct, cache, database\n", command,
-            run->response_name);
-  else if (run->response == LAM_FE2_DATABASE && !run->database_path)
-    fprintf(stderr, "lamella %s: --response database needs a database; give -d DB.h5\n", command);
-  else if (run->response == LAM_FE2_DIRECT && run->database_path)
-    fprintf(stderr, "lamella %s: --response direct uses no database; leave out -d, or choose cache or database\n",
-            command);
-  else
-    return PETSC_TRUE;
-  return PETSC_FALSE;
-}
 
 /* ---- databases ---- */
 
@@ -101,7 +81,7 @@ PetscErrorCode LamFE2PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue)
   PetscFunctionBeginUser;
   if (run->response != LAM_FE2_DIRECT) PetscCall(OpenDatabase(run, tissue));
   PetscCall(LamPlanMake(&tissue->scene, &plan));
-  PetscCall(LamWarnOfDigits(&plan.micro, tissue->scene.accuracy));
+  PetscCall(LamWarnOfDigits(run->comm, &run->reporter, &plan.micro, tissue->scene.accuracy));
   tissue->scene.micro = plan.micro;
   if (tissue->database)
     PetscCall(CheckDatabase(run, tissue));
@@ -136,11 +116,10 @@ static PetscErrorCode GiveGrid(LamFE2Run *run, LamFE2Tissue *tissue)
   PetscFunctionBeginUser;
   PetscCall(LamDatabaseGetGrid(tissue->database, &grid));
   if (grid) PetscFunctionReturn(0);
-  if (LamAppIsRoot() && tissue->recorded && !run->quiet)
-    fprintf(stderr,
-            "lamella fe2: %s: its %" PetscInt_FMT
-            " records belong to no grid; a grid is added, on which new ones lie\n",
-            tissue->database_path, tissue->recorded);
+  if (LamIsFirst(run->comm) && tissue->recorded)
+    LamReportNote(&run->reporter,
+                  "%s: its %" PetscInt_FMT " records belong to no grid; a grid is added, on which new ones lie",
+                  tissue->database_path, tissue->recorded);
   PetscCall(
       LamSharedGridMake(run->comm, &tissue->scene, &tissue->solver, tissue->database, &tissue->grid_text, &complete));
   run->stopped = (PetscBool)!complete;

@@ -1,16 +1,26 @@
 /*
-  One run of `lamella fe2`: what its parts share. cmd_fe2.c holds its life, fe2_response.c what answers its material
-  points, fe2_tissue.c of which tissue these are, fe2_report.c what is told of each step, fe2_record.c the files of rank
-  0, fe2_zoom.c the microstructure at chosen points.
+  An FE2 run: the macroscale problem of a scene, its material points answered by RVE solves, a database or both.
 
-  Rank 0 writes the files. Where it cannot, it says so and the other ranks return the same error in silence.
+    fe2_run.c         its life
+    fe2_response.c    responders of the material points
+    fe2_tissue.c      which tissue each point has
+    fe2_record.c      the files of rank 0
+    fe2_checkpoint.c  what an interrupted run goes on from
+    fe2_zoom.c        the microstructure at chosen points
+
+    LamFE2Run run = LAM_FE2_RUN;
+    run.comm = ..., run.scene_path = ..., run.out_path = ...;   options below
+    LamFE2Prepare(&run, &finished);  LamFE2Solve(&run, &reason, message);  LamFE2Destroy(&run);
+
+  Rank 0 writes the files. Where it cannot, the error is raised there, and the other ranks return the same code.
 */
 #ifndef LAM_FE2_RUN_H
 #define LAM_FE2_RUN_H
 
-#include "app.h"
 #include "fe2_file.h"
+#include "fe2_summary.h"
 #include "fe2_tissue.h"
+#include "study.h"
 
 typedef enum { LAM_FE2_DIRECT, LAM_FE2_CACHE, LAM_FE2_DATABASE } LamFE2Response;
 extern const char *const LamFE2ResponseNames[];
@@ -21,18 +31,24 @@ typedef struct {
   PetscInt steps, newton_iterations;
 } LamFE2Totals;
 
-typedef struct {
-  /* what the command line says */
-  const char *scene_path, *database_path, *out_path, *response_name;
-  PetscBool json, quiet, resume;
-  LamFE2Response response;
-
+typedef struct LamFE2Run_s {
+  /* options; all borrowed */
   MPI_Comm comm;
+  const char *scene_path;    /* read, unless `scene` is given */
+  const char *database_path; /* NULL: none */
+  const char *out_path;      /* results; NULL: none */
+  PetscBool resume;          /* goes on behind the last complete step of out_path, where there is one */
+  LamFE2Response response;
+  LamReporter reporter;
+  /* After each step, on rank 0, once files and totals before it are written; ctx: the reporter's. May be NULL. */
+  PetscErrorCode (*step)(void *ctx, const struct LamFE2Run_s *run, const LamMacroStep *step, PetscReal peak_memory);
+  PetscBool all_fields; /* the summary is wanted although nothing is written */
+
   LamScene *scene;
   LamMacro macro;
-  PetscBool stopped;      /* before it began: nothing is written */
+  PetscBool stopped;      /* before the first step: nothing is written */
   PetscBool resumed;      /* goes on from a complete step: OUT.h5 has it */
-  PetscInt resumed_steps; /* that earlier runs have told */
+  PetscInt resumed_steps; /* that earlier runs have reported */
   PetscReal saved, save_seconds,
       all_save_seconds; /* when the checkpoint was written last, how long that took, and all */
   LamArchive archive;   /* what it goes on from, until that is read; NULL: it begins anew */
@@ -42,8 +58,6 @@ typedef struct {
   /* rank 0 only */
   LamFE2File out;
   LamSummary summary;
-  LamProgress progress;
-  PetscBool localised;     /* has been told */
   PetscReal walls;         /* moduli over those of the tissues: of a process; else 1 */
   PetscReal wall_ratio[3]; /* C1, C2, C4 over that, where they do not change alike */
 
@@ -51,30 +65,29 @@ typedef struct {
   PetscReal start;
 } LamFE2Run;
 
+#define LAM_FE2_RUN ((LamFE2Run){.walls = 1, .wall_ratio = {1, 1, 1}})
+
+/* ---- fe2_run.c; collective ---- */
+/* Reads and checks everything; nothing is written. *finished: with `resume`, out_path has all steps already. */
+PetscErrorCode LamFE2Prepare(LamFE2Run *run, PetscBool *finished);
+/* message [LAM_MESSAGE_LENGTH]: why it did not converge. LAM_MACRO_STOPPED: by LamStopRequest. */
+PetscErrorCode LamFE2Solve(LamFE2Run *run, LamMacroReason *reason, char message[]);
+PetscErrorCode LamFE2Destroy(LamFE2Run *run);
+
 /* ---- fe2_response.c ---- */
-/* Reads --response; PETSC_FALSE, with a message, where the options contradict each other. */
-PetscBool LamFE2ChooseResponse(const char command[], LamFE2Run *run);
 /* Finds the tissues, loads their databases, chooses the meshes of their RVEs; collective. */
 PetscErrorCode LamFE2PrepareResponse(LamFE2Run *run);
-/* Wires the responder that the options ask for to the macroscale solver; run->stopped: a signal came before. */
+/* Wires the responder that the options ask for to the macroscale solver; run->stopped: a request to stop came before.
+ */
 PetscErrorCode LamFE2Connect(LamFE2Run *run);
 PetscErrorCode LamFE2Disconnect(LamFE2Run *run); /* after the macroscale solver's end */
-/* The same for one tissue: its database and mesh; its responder, unless a signal comes before (run->stopped). */
+/* The same for one tissue: its database and mesh; its responder, unless a request to stop comes before (run->stopped).
+ */
 PetscErrorCode LamFE2PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue);
 PetscErrorCode LamFE2ConnectTissue(LamFE2Run *run, LamFE2Tissue *tissue, LamResponder **responder);
 PetscErrorCode LamFE2DisconnectTissue(LamFE2Tissue *tissue);
 /* The RVE of this tissue with its moduli C1, C2, C4 multiplied. */
 PetscErrorCode LamFE2ChangeWalls(LamRVE rve, const LamMicrostructure *micro, const PetscReal factor[3]);
-
-/* ---- fe2_report.c; on rank 0 ---- */
-/* A step as JSON; peak_memory in MB. */
-json_t *LamFE2StepToJSON(const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory);
-/* The row, after the first step's header, or the JSON object of a step; once, that the tissue localises. */
-PetscErrorCode LamFE2ReportStep(LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory);
-/* LamMacroCutback: a line on stderr; on all ranks. */
-PetscErrorCode LamFE2ReportCutback(LamMacro macro, const char why[], void *run);
-/* Summary and totals. */
-PetscErrorCode LamFE2ReportEnd(const LamFE2Run *run);
 
 /* ---- fe2_record.c; on rank 0 but for the first, which is collective ---- */
 PetscErrorCode LamFE2OpenFiles(LamFE2Run *run);
@@ -106,16 +119,5 @@ PetscErrorCode LamFE2CheckpointRemove(LamFE2Run *run);
 /* ---- fe2_zoom.c ---- */
 /* Adds to the results, after the last step, the microstructure at some material points (`macro.zoom`). Collective. */
 PetscErrorCode LamFE2Zoom(LamFE2Run *run);
-
-/* ---- cmd_fe2.c ---- */
-/* PETSC_FALSE, with a message, where a file would be written over by another; the second one, on all ranks, for the
-   databases of regions and levels, whose names follow from that of -d. */
-PetscBool LamFE2CheckPaths(const char command[], const LamFE2Run *run);
-PetscBool LamFE2CheckTissuePaths(const char command[], const LamFE2Run *run);
-/* Largest memory of a rank, MB. */
-PetscErrorCode LamPeakMemory(MPI_Comm comm, PetscReal *megabytes);
-PetscErrorCode LamFE2Destroy(LamFE2Run *run);
-/* Makes an error of rank 0 everyone's. */
-PetscErrorCode LamFE2ShareError(MPI_Comm comm, PetscErrorCode ierr);
 
 #endif

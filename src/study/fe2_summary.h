@@ -22,6 +22,7 @@
 
 #include <jansson.h>
 #include "fe2_curve.h"
+#include "json.h"
 
 #define LAM_SUMMARY_CRITERIA(X)                                                                                        \
   X(LAM_SUMMARY_NORMAL, "lamella_normal")   /* separation: lamella_normal over its strength */                         \
@@ -92,9 +93,7 @@ PetscReal LamSummaryDanger(const LamSummary *summary, const PetscReal field[]);
 PetscReal LamSummaryDisplacement(const LamSummary *summary, PetscInt row);
 PetscReal LamSummaryReaction(const LamSummary *summary, PetscInt row);
 
-/* fe2_summary_print.c */
+/* ---- fe2_summary_json.c ---- */
 json_t *LamSummaryToJSON(const LamSummary *summary);
-/* For a person, on `out`, from the JSON object that a file holds. */
-void LamSummaryPrint(FILE *out, const json_t *summary);
 
 #endif

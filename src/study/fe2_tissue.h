@@ -4,7 +4,7 @@
 #ifndef LAM_FE2_TISSUE_H
 #define LAM_FE2_TISSUE_H
 
-#include "app.h"
+#include "study.h"
 #include "known_answers.h"
 #include "node_solver.h"
 

@@ -213,9 +213,9 @@ static PetscErrorCode Solve(LamFE2Run *run, const Zoom *zoom, LamRVE rve, const 
   if (LamResponseHasFields(&response)) {
     BodyStress(response.P, zoom->angle, stress, P);
     PetscCall(Keep(run, zoom, &load, P, rve, state, found));
-  } else if (!run->quiet) {
-    fprintf(stderr, "lamella fe2: no zoom at (%.4g, %.4g) mm: %s: %s\n", (double)(zoom->place[0] * mm),
-            (double)(zoom->place[1] * mm), LamStatusNames[response.status], response.reason);
+  } else {
+    LamReportNote(&run->reporter, "no zoom at (%.4g, %.4g) mm: %s: %s", (double)(zoom->place[0] * mm),
+                  (double)(zoom->place[1] * mm), LamStatusNames[response.status], response.reason);
   }
   PetscFunctionReturn(0);
 }
@@ -268,16 +268,16 @@ static PetscErrorCode ZoomAll(LamFE2Run *run, PetscInt count, Zoom zooms[])
   Found found = {0};
 
   PetscFunctionBeginUser;
-  if (LamAppIsRoot()) ierr = LamRecordWriterBegin(LamFE2FileWriter(run->out));
+  if (LamIsFirst(run->comm)) ierr = LamRecordWriterBegin(LamFE2FileWriter(run->out));
   for (PetscInt k = 0; k < count; k++) {
     char *bytes;
 
     PetscCall(Fetch(run, &zooms[k], &bytes));
-    if (LamAppIsRoot() && !ierr) ierr = ZoomOne(run, &zooms[k], bytes, &found);
+    if (LamIsFirst(run->comm) && !ierr) ierr = ZoomOne(run, &zooms[k], bytes, &found);
     PetscCall(PetscFree(bytes));
   }
-  if (LamAppIsRoot() && !ierr) ierr = WriteRows(run, &found);
-  if (LamAppIsRoot() && !ierr) ierr = LamRecordWriterCommit(LamFE2FileWriter(run->out), 0, NULL, NULL);
+  if (LamIsFirst(run->comm) && !ierr) ierr = WriteRows(run, &found);
+  if (LamIsFirst(run->comm) && !ierr) ierr = LamRecordWriterCommit(LamFE2FileWriter(run->out), 0, NULL, NULL);
   PetscCall(ierr);
   PetscFunctionReturn(0);
 }
@@ -291,7 +291,7 @@ PetscErrorCode LamFE2Zoom(LamFE2Run *run)
   PetscFunctionBeginUser;
   if (!run->out_path) PetscFunctionReturn(0);
   PetscCall(LamMacroGetFields(run->macro, &fields));
-  if (LamAppIsRoot() && run->totals.steps) Choose(run, &fields, &count, zooms);
+  if (LamIsFirst(run->comm) && run->totals.steps) Choose(run, &fields, &count, zooms);
   PetscCall(LamMacroFieldsDestroy(&fields));
   PetscCallMPI(MPI_Bcast(&count, 1, MPIU_INT, 0, run->comm));
   PetscCallMPI(MPI_Bcast(zooms, sizeof(zooms), MPI_BYTE, 0, run->comm));

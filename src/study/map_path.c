@@ -9,6 +9,7 @@
   are not asked for.
 */
 #include "map.h"
+#include "plan.h"
 #include <math.h>
 #include <string.h>
 

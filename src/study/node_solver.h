@@ -7,7 +7,7 @@
 #ifndef LAM_NODE_SOLVER_H
 #define LAM_NODE_SOLVER_H
 
-#include "app.h"
+#include "study.h"
 
 /*
   Solves one node. State of contact tissue in: that of its parent (`from_parent`: the parent leads), else anything, for

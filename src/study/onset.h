@@ -4,7 +4,7 @@
 #ifndef LAM_ONSET_H
 #define LAM_ONSET_H
 
-#include "app.h"
+#include "study.h"
 #include "separation.h"
 
 /* The tissue of a scene on its own mesh and, where count is 2, on one with twice the elements along a face. */
@@ -70,7 +70,5 @@ PetscErrorCode LamOnsetWatch(LamOnset *onset, const LamMeshes *meshes, PetscInt 
 PetscErrorCode LamOnsetFind(LamOnset *onset, LamMeshes *meshes, PetscInt count);
 /* Whether a load without an answer keeps the onset from being known, or known better. */
 PetscBool LamOnsetIsUnsolved(const LamOnset *onset);
-/* One JSON object {"onset": {...}} or a few lines for a person, on stdout. */
-PetscErrorCode LamOnsetPrint(const LamOnset *onset, const LamScales *scales, PetscBool json);
 
 #endif

@@ -7,6 +7,7 @@
 */
 #include "error_model.h"
 #include "map.h"
+#include "plan.h"
 #include <lamella/database.h>
 #include <stdlib.h>
 #include <string.h>

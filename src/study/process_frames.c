@@ -5,31 +5,31 @@
 #include "rve_fields.h"
 
 /* The first and the last state, all events, and `frames` states evenly spread. */
-static PetscBool IsChosen(const LamProcessRunState *run, PetscInt k, PetscInt frames)
+static PetscBool IsChosen(const LamProcessStudy *study, PetscInt k, PetscInt frames)
 {
-  const PetscInt n = run->history.count;
+  const PetscInt n = study->history.count;
 
-  if (k == 0 || k == n - 1 || run->history.states[k].event != LAM_EVENT_COUNT) return PETSC_TRUE;
+  if (k == 0 || k == n - 1 || study->history.states[k].event != LAM_EVENT_COUNT) return PETSC_TRUE;
   return (PetscBool)(frames > 1 && k * (frames - 1) / (n - 1) != (k - 1) * (frames - 1) / (n - 1));
 }
 
-static PetscErrorCode TellModuli(LamProcessRunState *run, const LamProcessState *state)
+static PetscErrorCode TellModuli(LamProcessStudy *study, const LamProcessState *state)
 {
-  const LamWall *wall = &run->scene->micro.wall;
+  const LamWall *wall = &study->scene->micro.wall;
   const PetscReal C1 = state->factor[LAM_CHANGING_C1], C2 = state->factor[LAM_CHANGING_C2];
   const PetscReal shear = wall->C1 * C1 + wall->C2 * C2;
   const PetscReal ratio[3] = {C1 / shear, C2 / shear, state->factor[LAM_CHANGING_C4] / shear};
 
   PetscFunctionBeginUser;
-  if (LamProcessWallsStayAlike(run->scene)) PetscFunctionReturn(0);
-  PetscCall(LamProcessChangeWalls(run->response.tissues.tissues, ratio));
+  if (LamProcessWallsStayAlike(study->scene)) PetscFunctionReturn(0);
+  PetscCall(LamProcessChangeWalls(study->response.tissues.tissues, ratio));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode WriteFrame(LamProcessRunState *run, LamRVE rve, LamRVEState at, PetscInt k)
+static PetscErrorCode WriteFrame(LamProcessStudy *study, LamRVE rve, LamRVEState at, PetscInt k)
 {
-  const LamProcessState *state = &run->history.states[k];
-  LamScales scales = run->scene->scales;
+  const LamProcessState *state = &study->history.states[k];
+  LamScales scales = study->scene->scales;
   LamLoad load = state->response.load;
   char group[LAM_NAME_LENGTH];
   LamResponse response;
@@ -38,39 +38,38 @@ static PetscErrorCode WriteFrame(LamProcessRunState *run, LamRVE rve, LamRVEStat
   load.turgor /= state->walls;
   load.cohesion /= state->walls;
   scales.stress *= state->walls;
-  PetscCall(TellModuli(run, state));
+  PetscCall(TellModuli(study, state));
   PetscCall(LamRVESolve(rve, &load, at, &response));
   if (!LamResponseHasFields(&response)) {
-    if (!run->quiet)
-      fprintf(stderr, "lamella process: the cells of state %d are not kept: solved once more it is %s: %s\n", (int)k,
-              LamStatusNames[response.status], response.reason);
+    LamReportNote(&study->response.reporter, "the cells of state %d are not kept: solved once more it is %s: %s",
+                  (int)k, LamStatusNames[response.status], response.reason);
     PetscFunctionReturn(0);
   }
   PetscCall(PetscSNPrintf(group, sizeof(group), "/fields/%" PetscInt_FMT, k));
-  PetscCall(LamRVEWriteFields(run->writer, group, rve, at, &scales));
+  PetscCall(LamRVEWriteFields(study->writer, group, rve, at, &scales));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamProcessFrames(LamProcessRunState *run, PetscInt frames)
+PetscErrorCode LamProcessFrames(LamProcessStudy *study, PetscInt frames)
 {
-  LamRVE own = NULL, rve = run->response.tissues.tissues->rve;
+  LamRVE own = NULL, rve = study->response.tissues.tissues->rve;
   LamRVEState state;
   PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
-  if (!run->writer || !run->history.count) PetscFunctionReturn(0);
+  if (!study->writer || !study->history.count) PetscFunctionReturn(0);
   if (!rve) {
     PetscCall(LamRVECreate(PETSC_COMM_SELF, &own));
-    PetscCall(LamRVESetMicrostructure(own, &run->scene->micro));
+    PetscCall(LamRVESetMicrostructure(own, &study->scene->micro));
     PetscCall(LamRVESetUp(own));
     PetscCall(LamRVESetInterrupt(own, LamStopInterrupt, NULL));
     rve = own;
   }
   PetscCall(LamRVESetWanted(rve, LAM_WANT_STRESS));
   PetscCall(LamRVEStateCreate(rve, &state));
-  ierr = LamRVEWriteMesh(run->writer, "/mesh", rve);
-  for (PetscInt k = 0; k < run->history.count && !ierr && !LamStopRequested(); k++)
-    if (IsChosen(run, k, frames)) ierr = WriteFrame(run, rve, state, k);
+  ierr = LamRVEWriteMesh(study->writer, "/mesh", rve);
+  for (PetscInt k = 0; k < study->history.count && !ierr && !LamStopRequested(); k++)
+    if (IsChosen(study, k, frames)) ierr = WriteFrame(study, rve, state, k);
   PetscCall(LamRVEStateDestroy(&state));
   PetscCall(LamRVEDestroy(&own));
   PetscCall(ierr);

@@ -1,6 +1,8 @@
 /*
-  One run of `lamella process`: what its parts share. cmd_process.c holds its life at a material point,
-  process_report.c what is told, process_file.c the results; process_body.c and process_body_file.c are for a body.
+  Studies of tissue that changes in time.
+
+    process_point.c process_file.c process_frames.c    at a material point
+    process_body.c process_body_file.c                 of a body
 */
 #ifndef LAM_PROCESS_RUN_H
 #define LAM_PROCESS_RUN_H
@@ -15,38 +17,39 @@ typedef struct {
   LamProcessState *states; /* owned */
 } LamProcessHistory;
 
-typedef struct {
-  LamFE2Run response; /* what answers the material point: command line and one tissue */
-  const char *out_path;
-  const char *frames_text;
-  PetscInt frames; /* states whose microstructure is kept, beside those of events */
-  PetscBool json, quiet;
-  LamScene *scene; /* owned by response.scene */
+/* At a material point. */
+typedef struct LamProcessStudy_s {
+  LamFE2Run response;   /* options and one tissue: the responder of the material point */
+  const char *out_path; /* NULL: none */
+  PetscInt frames;      /* states whose microstructure is kept, beside those of events */
+  LamScene *scene;      /* owned by response.scene */
+  /* After each state, the last of the history; ctx: that of the response's reporter. May be NULL. */
+  PetscErrorCode (*state)(void *ctx, const struct LamProcessStudy_s *study);
+
   LamProcess process;
   LamProcessHistory history;
-  LamRecordWriter writer; /* NULL without -o */
-  LamProgress progress;
+  LamRecordWriter writer; /* NULL without a file */
   PetscReal start, last_commit;
   PetscInt committed; /* states in the file */
-} LamProcessRunState;
+} LamProcessStudy;
 
-/* ---- process_report.c ---- */
-/* Row of a table, the first with its header before it, or JSON object, of the last state of the history. */
-PetscErrorCode LamProcessReport(const LamProcessRunState *run);
-PetscErrorCode LamProcessReportEnd(const LamProcessRunState *run, LamProcessReason reason, const char message[]);
+#define LAM_PROCESS_PARTS 1000 /* of its duration, for reports of progress */
+
+/* ---- process_point.c; on one rank ---- */
+/* message [LAM_PROCESS_MESSAGE]: why it ended before its duration. */
+PetscErrorCode LamProcessSolvePoint(LamProcessStudy *study, LamProcessReason *reason, char message[]);
+PetscErrorCode LamProcessStudyDestroy(LamProcessStudy *study);
+/* Set of LamProcessSetWalls, with a LamFE2Tissue: what is solved directly takes other moduli. */
+PetscErrorCode LamProcessChangeWalls(void *tissue, const PetscReal factor[3]);
 
 /* ---- process_file.c ---- */
-PetscErrorCode LamProcessFileOpen(LamProcessRunState *run);
+PetscErrorCode LamProcessFileOpen(LamProcessStudy *study);
 /* Commits what the file does not have yet; now and then unless `now`. */
-PetscErrorCode LamProcessFileAdd(LamProcessRunState *run, PetscBool now);
+PetscErrorCode LamProcessFileAdd(LamProcessStudy *study, PetscBool now);
 /* Adds the microstructure at some states, before the file is closed. */
-PetscErrorCode LamProcessFrames(LamProcessRunState *run, PetscInt frames);
+PetscErrorCode LamProcessFrames(LamProcessStudy *study, PetscInt frames);
 /* `status`: "done", "stopped", or why it ended. */
-PetscErrorCode LamProcessFileClose(LamProcessRunState *run, const char status[]);
-
-/* ---- process_body.c ---- */
-/* A body: the scene has a block `macro`. Takes over what the command line said; collective. */
-PetscErrorCode LamProcessBody(LamProcessRunState *command, int *exit_status);
+PetscErrorCode LamProcessFileClose(LamProcessStudy *study, const char status[]);
 
 /* ---- process_body_file.c; rank 0 ---- */
 /* Bodies in the order of time; in the C1 + C2 of the start. */
@@ -59,8 +62,18 @@ PetscErrorCode LamBodyHistoryAdd(LamBodyHistory *history, const LamBodyState *st
 /* Writes /process of a file of steps; a LamBodyHistory. */
 PetscErrorCode LamBodyHistoryWrite(LamRecordWriter writer, void *history);
 
-/* ---- cmd_process.c ---- */
-/* Set of LamProcessSetWalls, with a LamFE2Tissue: what is solved directly takes other moduli. */
-PetscErrorCode LamProcessChangeWalls(void *tissue, const PetscReal factor[3]);
+/* ---- process_body.c; collective ---- */
+typedef struct LamBodyStudy_s {
+  LamFE2Run fe2; /* options, body and tissues */
+  /* After each state, on rank 0; ctx: that of the reporter. May be NULL. */
+  PetscErrorCode (*state)(void *ctx, const struct LamBodyStudy_s *study, const LamBodyState *state,
+                          PetscReal peak_memory);
+  LamBody body;
+  LamBodyHistory history; /* rank 0 */
+} LamBodyStudy;
+/* Reads and checks everything; nothing is written. */
+PetscErrorCode LamBodyStudyPrepare(LamBodyStudy *study);
+PetscErrorCode LamBodyStudySolve(LamBodyStudy *study, LamProcessReason *reason, char message[]);
+PetscErrorCode LamBodyStudyDestroy(LamBodyStudy *study);
 
 #endif

@@ -53,12 +53,13 @@ PetscErrorCode LamDigitsWarning(const LamMicrostructure *micro, PetscReal accura
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamWarnOfDigits(const LamMicrostructure *micro, PetscReal accuracy)
+PetscErrorCode LamWarnOfDigits(MPI_Comm comm, const LamReporter *reporter, const LamMicrostructure *micro,
+                               PetscReal accuracy)
 {
   char text[256];
 
   PetscFunctionBeginUser;
   PetscCall(LamDigitsWarning(micro, accuracy, text, sizeof(text)));
-  if (text[0]) PetscCall(PetscFPrintf(PETSC_COMM_WORLD, PETSC_STDERR, "lamella: %s\n", text));
+  if (text[0] && LamIsFirst(comm)) LamReportWarning(reporter, "%s", text);
   PetscFunctionReturn(0);
 }

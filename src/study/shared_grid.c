@@ -2,7 +2,7 @@
   The grid of a new database on all ranks: rank 0 makes it, the others read what it would write to the file.
 */
 #include "shared_grid.h"
-#include "app.h"
+#include "study.h"
 #include <string.h>
 
 /* What rank 0 sends. */

@@ -51,7 +51,6 @@ PetscErrorCode LamMeasureMacro(const LamScene *scene, const char table[], LamMea
   LamFE2Run run = {.scene_path = scene->path,
                    .scene = &own,
                    .comm = PETSC_COMM_WORLD,
-                   .quiet = PETSC_TRUE,
                    .response = m->setting.response,
                    .database_path = m->setting.response == LAM_FE2_DATABASE ? table : NULL};
 

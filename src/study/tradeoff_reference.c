@@ -121,7 +121,7 @@ static PetscInt CountAnswers(PetscInt n, const LamResponse responses[])
 static PetscErrorCode ClimbAll(const LamScene *scene, LamStates *states, PetscReal deadline, LamReference *reference)
 {
   PetscFunctionBeginUser;
-  for (int rung = 0; rung < RUNGS && !LamStopExitStatus(); rung++) {
+  for (int rung = 0; rung < RUNGS && !LamStopSignal(); rung++) {
     const LamStopwatch start = LamStopwatchRead();
     PetscBool knows_less;
     LamMeasurement m;

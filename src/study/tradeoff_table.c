@@ -12,7 +12,7 @@
 static PetscErrorCode Build(const LamScene *scene, const LamSetting *setting, const char path[], PetscInt *nodes)
 {
   LamScene own = *scene;
-  LamBuild build = {.scene = &own, .path = path, .team_size = 1, .shard = {1, 1}, .quiet = PETSC_TRUE};
+  LamBuild build = {.scene = &own, .path = path, .team_size = 1, .shard = {1, 1}};
 
   PetscFunctionBeginUser;
   own.micro = setting->micro;

@@ -2,57 +2,34 @@
   Command lines, and what `query -F -` reads: each is told to be wrong, or understood, and where a command then would
   solve it stops. Lines up to the first empty one are the arguments, the rest is standard input.
 
-  main.c and answers.c are replaced here: a command that starts MPI ends there, and questions go to a database in
-  memory. Commands that read files find a scene in an empty folder.
+  A command that would start MPI ends there. Commands that read files find a scene and a database, db.h5, in the folder.
 */
-#include "answers.h"
+#include "app.h"
 #include "fuzz.h"
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { MOST_ARGUMENTS = 32 };
 
-static LamAnswers answers;
-
-/* ---- in the place of main.c ---- */
-
-PetscBool LamAppIsRoot(void)
-{
-  return PETSC_TRUE;
-}
-
-void LamAppStartHDF5(void) {}
-
-PetscErrorCode LamAppInitialize(LamArgs *args)
+/* In the place of LamRuntimeStart. */
+static PetscErrorCode RefuseToStart(LamArgs *args)
 {
   PetscFunctionBeginUser;
+  (void)args;
   SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "the command line is understood");
 }
 
-/* ---- in the place of answers.c ---- */
-
-PetscErrorCode LamAnswersOpen(const char path[], LamAnswers *a)
-{
-  PetscFunctionBeginUser;
-  *a = answers;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamAnswersClose(LamAnswers *a)
-{
-  PetscFunctionBeginUser;
-  PetscFunctionReturn(0);
-}
-
-/* Simple shear of bonded tissue, a state on either side of the questions that are most likely. */
-static void MakeAnswers(void)
+/* Simple shear of bonded tissue, a state on either side of the queries that are most likely. */
+static void MakeDatabase(void)
 {
   LamScene *scene;
   LamResponse responses[3];
+  LamRecordWriter writer = NULL;
+  const PetscInt64 keys[3] = {0, 1, 2};
   PetscErrorCode ierr = LamSceneRead(LAMELLA_SOURCE_DIR "/tests/scenes/shear-bonded.yaml", &scene);
 
-  if (!ierr) ierr = LamDatabaseCreateEmpty(scene, &answers.database);
   for (int i = 0; !ierr && i < 3; i++) {
     const LamLoad load = {{1, 0.1 * i, 0, 0, 1, 0, 0, 0, 1}, scene->turgor, 0};
 
@@ -62,15 +39,13 @@ static void MakeAnswers(void)
     responses[i].energy = 0;
     responses[i].status = LAM_CONVERGED;
   }
-  if (!ierr) ierr = LamDatabaseAdd(answers.database, 3, NULL, responses);
-  if (!ierr) ierr = LamDatabaseQuery(answers.database, &responses[1].load, 1, &responses[0]); /* makes what it needs */
+  unlink("db.h5"); /* of an earlier run */
+  if (!ierr) ierr = LamRecordWriterOpen("db.h5", "database", LAM_WRITE_CREATE, scene, &writer);
+  if (!ierr) ierr = LamRecordWriterCommit(writer, 3, keys, responses);
+  if (!ierr) ierr = LamRecordWriterClose(&writer);
   FuzzCheck(!ierr, "%s", FuzzMessage());
-  answers.scene = scene;
-  answers.micro = scene->micro;
-  answers.scales = scene->scales;
-  answers.accuracy = scene->accuracy;
-  answers.turgor_origin = answers.cohesion_origin = "the scene's";
   FuzzWriteFile("scene.yaml", scene->text, strlen(scene->text));
+  LamSceneDestroy(&scene);
 }
 
 /* ---- a run ---- */
@@ -80,7 +55,7 @@ int LLVMFuzzerInitialize(int *argc, char ***argv)
   FuzzStart(argc, argv);
   FuzzCountMemory();
   FuzzEnterFolder();
-  MakeAnswers();
+  MakeDatabase();
   FuzzLeaveFolder();
   FuzzMemoryKeep();
   FuzzSilence();
@@ -124,7 +99,7 @@ static void Run(int argc, char *argv[], char input[], size_t size)
   stdin = fmemopen(input, size, "r");
   FuzzCheck(stdin, "standard input cannot be made");
   FuzzEnterFolder();
-  code = LamProgramRun(argc, argv, &status);
+  code = LamProgramRun(argc, argv, RefuseToStart, &status);
   FuzzLeaveFolder();
   fclose(stdin);
   FuzzCheck(!code || code == PETSC_ERR_USER_INPUT || code == PETSC_ERR_FILE_OPEN || code == PETSC_ERR_FILE_READ,

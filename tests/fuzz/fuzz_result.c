@@ -11,13 +11,6 @@
 #define FILE_NAME "result.h5"
 #define PICTURE_NAME "picture.png"
 
-/* ---- in the place of main.c ---- */
-
-PetscBool LamAppIsRoot(void)
-{
-  return PETSC_TRUE;
-}
-
 /* ---- a run ---- */
 
 static PetscErrorCode Command(LamCommandFunction command, int argc, const char *const words[])

@@ -8,7 +8,7 @@ enum { COUNT = 200 }; /* more than three chunks */
 static PetscInt64 keys[COUNT];
 static char told[8192]; /* what the merges of a test have told */
 
-static void Listen(const char words[])
+static void Listen(void *ctx, const char words[])
 {
   const size_t length = strlen(told);
 

@@ -15,7 +15,7 @@ void LamMergeTell(const LamMerge *m, const char format[], ...)
   va_start(arguments, format);
   vsnprintf(words, sizeof(words), format, arguments);
   va_end(arguments);
-  m->options->tell(words);
+  m->options->tell(m->options->ctx, words);
 }
 
 PetscErrorCode LamMergeCheckHash(const LamMerge *m, const char path[], const char hash[])

@@ -4,7 +4,7 @@
 #ifndef LAM_ANSWERS_H
 #define LAM_ANSWERS_H
 
-#include "app.h"
+#include "study.h"
 
 typedef struct {
   LamDatabase database;    /* owned */

@@ -1,0 +1,20 @@
+/*
+  What the program prints of processes.
+*/
+#ifndef LAM_PROCESS_REPORT_H
+#define LAM_PROCESS_REPORT_H
+
+#include "fe2_report.h"
+#include "process_run.h"
+
+/* ---- process_report.c; ctx: a LamFE2Report ---- */
+/* Row of a table, the first with its header before it, or JSON object, of the last state of the history. */
+PetscErrorCode LamProcessReport(void *ctx, const LamProcessStudy *study);
+PetscErrorCode LamProcessReportEnd(const LamFE2Report *report, const LamProcessStudy *study, LamProcessReason reason,
+                                   const char message[]);
+
+/* ---- process_body_report.c; rank 0 ---- */
+PetscErrorCode LamBodyReport(void *ctx, const LamBodyStudy *study, const LamBodyState *state, PetscReal peak_memory);
+PetscErrorCode LamBodyReportEnd(const LamBodyStudy *study);
+
+#endif

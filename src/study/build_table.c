@@ -1,0 +1,214 @@
+/*
+  Filling the table of a response database.
+
+  Method
+    In rounds (build.h): rank 0 asks the table of complete rounds before the states of the sample box, and has the nodes
+    that it lacks solved by all ranks, each from its parent (node_work.h), those that will take longest first. They are
+    committed in that order, so the file does not depend on the number of ranks (except times, and checksums, which
+    cover them). A node that is late holds up those behind it for half a minute at most.
+*/
+#include "build_run.h"
+#include "plan.h"
+#include "rounding.h"
+#include <lamella/clock.h>
+#include <string.h>
+
+/* ---- rounds ---- */
+
+static PetscErrorCode WantRound(LamBuild *b, const LamRound *round)
+{
+  PetscFunctionBeginUser;
+  b->there += round->n - round->missing;
+  for (PetscInt m = 0; m < round->missing; m++)
+    PetscCall(LamNodeWorkWant(b->work, round->keys[round->order[m]], round->cost[m]));
+  PetscFunctionReturn(0);
+}
+
+/* Closes complete rounds and opens the next. */
+static PetscErrorCode OpenRounds(LamBuild *b)
+{
+  LamRound *round;
+
+  PetscFunctionBeginUser;
+  if (b->opening || LamStopRequested()) PetscFunctionReturn(0);
+  b->opening = PETSC_TRUE;
+  for (;;) {
+    PetscCall(LamBuildTakeInTurn(b));
+    PetscCall(LamRoundsNext(&b->rounds, &round));
+    if (!round) break;
+    PetscCall(WantRound(b, round));
+  }
+  b->opening = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* A LamNodeArrived */
+static PetscErrorCode Arrive(void *ctx, PetscInt64 key, const LamResponse *response)
+{
+  LamBuild *b = ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRoundsArrive(&b->rounds, key, response));
+  PetscCall(OpenRounds(b));
+  PetscCall(LamBuildCommitInTime(b));
+  PetscCall(LamReportProgress(&b->reporter, LamRoundsThere(&b->rounds),
+                              b->scene->sample.count ? b->rounds.most : LamRoundsAsked(&b->rounds), LamBuildFailed(b)));
+  PetscFunctionReturn(0);
+}
+
+/* A LamNodeKnown */
+static const LamResponse *Known(void *ctx, PetscInt64 key)
+{
+  const LamBuild *b = ctx;
+
+  return LamRoundsKnown(&b->rounds, key);
+}
+
+static PetscErrorCode SolveRounds(LamBuild *b)
+{
+  PetscBool complete;
+
+  PetscFunctionBeginUser;
+  b->last_commit = b->last_taken = LamClock();
+  PetscCall(OpenRounds(b));
+  PetscCall(LamNodeWorkRun(b->work, LamBuildCommitAll, &complete));
+  PetscCall(LamBuildCommitAll(b));
+  PetscFunctionReturn(0);
+}
+
+/* The grid, from rank 0 to all: the others, and a later run, have it from its text. */
+static PetscErrorCode ShareGrid(LamBuild *b)
+{
+  char *text = NULL;
+  PetscInt length;
+  LamGrid grid;
+
+  PetscFunctionBeginUser;
+  if (!b->rank) {
+    PetscCall(LamDatabaseGetGrid(b->rounds.table, &grid));
+    PetscCall(LamGridGetText(grid, &text));
+    length = (PetscInt)strlen(text) + 1;
+  }
+  PetscCallMPI(MPI_Bcast(&length, 1, MPIU_INT, 0, b->leaders));
+  if (!text) PetscCall(PetscMalloc1(length, &text));
+  PetscCallMPI(MPI_Bcast(text, (PetscMPIInt)length, MPI_CHAR, 0, b->leaders));
+  PetscCall(LamGridFromText(b->path, &b->scene->micro, text, &b->grid));
+  PetscCall(PetscFree(text));
+  PetscFunctionReturn(0);
+}
+
+/* ---- ranks ---- */
+
+static PetscErrorCode CreateRVE(LamBuild *b)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamRVECreate(b->team, &b->rve));
+  PetscCall(LamRVESetMicrostructure(b->rve, &b->scene->micro));
+  PetscCall(LamRVESetStrategy(b->rve, b->scene->strategy));
+  PetscCall(LamRVESetTolerance(b->rve, b->scene->tolerance));
+  PetscCall(LamRVESetUp(b->rve));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CreateWork(LamBuild *b)
+{
+  const LamNodeCustomer customer = {.ctx = b, .arrived = Arrive, .known = Known};
+
+  PetscFunctionBeginUser;
+  PetscCall(LamNodeWorkCreate(b->leaders, b->rve, b->scene->micro.interface, b->grid, LAM_NODE_WORK_MEMORY, b->group,
+                              &customer, &b->work));
+  PetscFunctionReturn(0);
+}
+
+/* Of those that solve an RVE each, or lead a team that does; rank 0 keeps the file. */
+static PetscErrorCode RunLeader(LamBuild *b)
+{
+  const PetscBool root = (PetscBool)(b->rank == 0);
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  PetscCall(CreateRVE(b));
+  ierr = root ? LamBuildStart(b) : 0;
+  if (ierr) (void)LamRecordWriterClose(&b->writer);
+  PetscCall(LamShareError(b->leaders, ierr));
+  PetscCall(ShareGrid(b));
+  PetscCall(CreateWork(b));
+  ierr = root ? SolveRounds(b) : LamNodeWorkServe(b->work);
+  if (ierr)
+    (void)LamRecordWriterClose(&b->writer);
+  else
+    ierr = LamRecordWriterClose(&b->writer);
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+/*
+  The first rank of each team makes all decisions; the others take part in its factorisations until it dismisses them.
+  A rank that fails alone goes straight to main, which ends the job.
+*/
+static PetscErrorCode RunAll(LamBuild *b)
+{
+  PetscErrorCode ierr = 0;
+
+  PetscFunctionBeginUser;
+  if (b->leaders == MPI_COMM_NULL) {
+    PetscCall(LamRVEServe(b->team, LamStopInterrupt, NULL));
+  } else {
+    ierr = RunLeader(b);
+    PetscCall(LamNodeWorkDestroy(&b->work));
+    PetscCall(LamRVEDestroy(&b->rve)); /* the team has a part in its factors */
+    if (b->team_size > 1) PetscCall(LamRVEDismiss(b->team));
+  }
+  PetscCall(LamShareError(PETSC_COMM_WORLD, ierr));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CreateTeams(LamBuild *b)
+{
+  PetscMPIInt place;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &b->rank));
+  PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &b->size));
+  PetscCallMPI(MPI_Comm_split(PETSC_COMM_WORLD, (int)(b->rank / b->team_size), b->rank, &b->team));
+  PetscCallMPI(MPI_Comm_rank(b->team, &place));
+  PetscCallMPI(MPI_Comm_split(PETSC_COMM_WORLD, place ? MPI_UNDEFINED : 0, b->rank, &b->leaders));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamBuildPrepare(LamBuild *b, const char scene_path[])
+{
+  LamPlan plan;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamSceneRead(scene_path, &b->scene));
+  PetscCheck(b->scene->has_sample, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: has no block `sample`, which says what states to build from", scene_path);
+  PetscCall(LamPlanMake(b->scene, &plan));
+  PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &b->reporter, &plan.micro, b->scene->accuracy));
+  b->scene->micro = plan.micro;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamBuildTable(LamBuild *b)
+{
+  PetscFunctionBeginUser;
+  b->start = LamClock();
+  PetscCall(CreateTeams(b));
+  PetscCall(RunAll(b));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamBuildDestroy(LamBuild *b)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(b->pending.keys));
+  PetscCall(PetscFree(b->pending.responses));
+  PetscCall(LamRoundsDestroy(&b->rounds));
+  PetscCall(LamDatabaseClose(&b->file));
+  PetscCall(LamGridDestroy(&b->grid));
+  PetscCallMPI(MPI_Comm_free(&b->team));
+  if (b->leaders != MPI_COMM_NULL) PetscCallMPI(MPI_Comm_free(&b->leaders));
+  PetscCall(LamSceneDestroy(&b->scene));
+  PetscFunctionReturn(0);
+}
