@@ -112,17 +112,18 @@ static PetscErrorCode MakeLater(const char path[], PetscInt committed, Later *la
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Load(const char path[], hid_t file, Later *later, LamDatabase db)
+static PetscErrorCode Load(const char path[], hid_t file, void *ctx)
 {
-  Loading loading = {.db = db, .later = later};
+  const Loading *loading = ctx;
+  LamDatabase db = loading->db;
 
   PetscFunctionBeginUser;
   PetscCall(LamHeaderRead(path, file, &db->header));
-  if (later) PetscCall(MakeLater(path, db->header.committed, later));
+  if (loading->later) PetscCall(MakeLater(path, db->header.committed, loading->later));
   PetscCall(PetscStrallocpy(path, &db->path));
   LamImagesMake(&db->header.micro, &db->images);
   PetscCall(GrowKeys(db, db->header.committed));
-  PetscCall(LamFileScanRecords(path, file, db->header.committed, LoadBlock, &loading));
+  PetscCall(LamFileScanRecords(path, file, db->header.committed, LoadBlock, ctx));
   db->records_first = db->n;
   PetscCall(LoadGrid(path, file, db));
   PetscFunctionReturn(0);
@@ -130,19 +131,15 @@ static PetscErrorCode Load(const char path[], hid_t file, Later *later, LamDatab
 
 static PetscErrorCode Open(const char path[], Later *later, LamDatabase *database)
 {
-  hid_t file = H5I_INVALID_HID;
+  Loading loading = {.later = later};
   PetscErrorCode ierr;
   LamDatabase db;
-  int lock;
 
   PetscFunctionBeginUser;
   *database = NULL;
   PetscCall(PetscNew(&db));
-  lock = LamLockBeginRead(path);
-  ierr = LamFileOpenRead(path, &file);
-  if (!ierr) ierr = Load(path, file, later, db);
-  if (file >= 0) H5Fclose(file);
-  LamLockEndRead(lock);
+  loading.db = db;
+  ierr = LamFileRead(path, Load, &loading);
   if (ierr) (void)LamDatabaseClose(&db);
   PetscCall(ierr);
   *database = db;
@@ -248,23 +245,26 @@ static PetscErrorCode CheckSame(LamDatabase db, hid_t file)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Unpack(const char path[], hid_t file, void *ctx)
+{
+  const Unpacking *u = ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(CheckSame(u->db, file));
+  PetscCall(LamFileScanRecords(path, file, u->db->records_first, UnpackBlock, ctx));
+  PetscFunctionReturn(0);
+}
+
 /* Reads the file's records in front of those added in memory. */
 static PetscErrorCode LoadRecords(LamDatabase db)
 {
   const PetscInt count = db->records_first;
   Unpacking unpacking = {.db = db};
-  hid_t file = H5I_INVALID_HID;
   PetscErrorCode ierr;
-  int lock;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(db->n, &unpacking.records));
-  lock = LamLockBeginRead(db->path);
-  ierr = LamFileOpenRead(db->path, &file);
-  if (!ierr) ierr = CheckSame(db, file);
-  if (!ierr) ierr = LamFileScanRecords(db->path, file, count, UnpackBlock, &unpacking);
-  if (file >= 0) H5Fclose(file);
-  LamLockEndRead(lock);
+  ierr = LamFileRead(db->path, Unpack, &unpacking);
   if (ierr) (void)PetscFree(unpacking.records);
   PetscCall(ierr);
   PetscCall(PetscArraycpy(unpacking.records + count, db->records, db->n - count));
@@ -303,15 +303,6 @@ PetscErrorCode LamDatabaseGetMicrostructure(LamDatabase database, LamMicrostruct
   if (micro) *micro = database->header.micro;
   if (scales) *scales = database->header.scales;
   if (hash) *hash = database->header.hash;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamDatabaseGetInfo(LamDatabase database, const char *json[])
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree(database->info));
-  PetscCall(LamDatabaseDescribe(database, &database->info));
-  *json = database->info;
   PetscFunctionReturn(0);
 }
 

@@ -96,7 +96,7 @@ static PetscErrorCode AddTable(LamDatabase db, json_t *object)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamDatabaseDescribe(LamDatabase db, char **json)
+static PetscErrorCode Describe(LamDatabase db, char **json)
 {
   const LamHeader *h = &db->header;
   Summary summary;
@@ -124,5 +124,14 @@ PetscErrorCode LamDatabaseDescribe(LamDatabase db, char **json)
   PetscCheck(text, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "the file's header is damaged: a text in it is not UTF-8");
   PetscCall(PetscStrallocpy(text, json));
   free(text);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamDatabaseGetInfo(LamDatabase database, const char *json[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(database->info));
+  PetscCall(Describe(database, &database->info));
+  *json = database->info;
   PetscFunctionReturn(0);
 }

@@ -96,7 +96,4 @@ PetscErrorCode LamScatterQuery(LamDatabase database, const LamLoad *load, PetscR
 void LamIndicatorsCopy(const LamResponse *record, const PetscInt face[3], PetscBool own, LamInterfaceLawType interface,
                        LamResponse *r);
 
-/* ---- database_info.c ---- */
-PetscErrorCode LamDatabaseDescribe(LamDatabase database, char **json);
-
 #endif

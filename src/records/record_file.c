@@ -103,3 +103,32 @@ PetscErrorCode LamFileSync(const char path[], hid_t file)
   PetscCheck(!LamFsync(*fd), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s: %s", path, strerror(errno));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode LamFileRead(const char path[], LamFileFunction read, void *ctx)
+{
+  hid_t file = H5I_INVALID_HID;
+  const int lock = LamLockBeginRead(path);
+  PetscErrorCode ierr = LamFileOpenRead(path, &file);
+
+  PetscFunctionBeginUser;
+  if (!ierr) ierr = read(path, file, ctx);
+  if (file >= 0) H5Fclose(file);
+  LamLockEndRead(lock);
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFileWrite(const char path[], LamFileFunction write, void *ctx)
+{
+  PetscErrorCode ierr;
+  hid_t file;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileOpenWrite(path, &file));
+  ierr = write(path, file, ctx);
+  if (!ierr) ierr = LamFileSync(path, file);
+  if (ierr) H5Fclose(file);
+  PetscCall(ierr);
+  PetscCall(LamFileClose(path, file));
+  PetscFunctionReturn(0);
+}

@@ -101,6 +101,10 @@ PetscErrorCode LamFileOpenNew(const char path[], hid_t *file);
 PetscErrorCode LamFileClose(const char path[], hid_t file);
 /* Brings all that was written to the disk. */
 PetscErrorCode LamFileSync(const char path[], hid_t file);
+/* Call a function with the file open: for reading, while no commit is under way; for writing, synced afterwards. */
+typedef PetscErrorCode (*LamFileFunction)(const char path[], hid_t file, void *ctx);
+PetscErrorCode LamFileRead(const char path[], LamFileFunction read, void *ctx);
+PetscErrorCode LamFileWrite(const char path[], LamFileFunction write, void *ctx);
 
 /* ---- record_array.c ---- */
 

@@ -49,10 +49,15 @@ static PetscErrorCode TouchChunks(const char path[], hid_t dataset, hsize_t befo
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Extend(const char path[], hid_t file, PetscInt before, PetscInt wanted)
+typedef struct {
+  PetscInt before, wanted;
+} Range;
+
+static PetscErrorCode Extend(const char path[], hid_t file, void *ctx)
 {
-  const hsize_t extent = (hsize_t)wanted, chunk = LAM_RECORDS_PER_CHUNK;
-  const hsize_t first = ((hsize_t)before + chunk - 1) / chunk * chunk; /* before it is a chunk that is there */
+  const Range *r = ctx;
+  const hsize_t extent = (hsize_t)r->wanted, chunk = LAM_RECORDS_PER_CHUNK;
+  const hsize_t first = ((hsize_t)r->before + chunk - 1) / chunk * chunk; /* before it is a chunk that is there */
   hid_t dataset;
 
   PetscFunctionBeginUser;
@@ -60,22 +65,16 @@ static PetscErrorCode Extend(const char path[], hid_t file, PetscInt before, Pet
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dset_extent(dataset, &extent));
   if (first < extent) PetscCall(TouchChunks(path, dataset, first, (extent - first + chunk - 1) / chunk));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dclose(dataset));
-  PetscCall(LamFileSync(path, file));
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode ExtendFile(const char path[], PetscInt before, PetscInt wanted)
 {
-  PetscErrorCode ierr;
-  hid_t file;
+  Range range = {before, wanted};
 
   PetscFunctionBeginUser;
   PetscCall(LamFileReserve(path, PETSC_FALSE, (size_t)(wanted - before + LAM_RECORDS_PER_CHUNK) * LAM_RECORD_BYTES));
-  PetscCall(LamFileOpenWrite(path, &file));
-  ierr = Extend(path, file, before, wanted);
-  if (ierr) H5Fclose(file);
-  PetscCall(ierr);
-  PetscCall(LamFileClose(path, file));
+  PetscCall(LamFileWrite(path, Extend, &range));
   PetscFunctionReturn(0);
 }
 

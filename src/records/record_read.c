@@ -25,27 +25,15 @@ static PetscErrorCode GetKind(const char path[], hid_t file, char kind[LAM_NAME_
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Get(const char path[], hid_t file, Request *r)
+static PetscErrorCode Get(const char path[], hid_t file, void *ctx)
 {
+  Request *r = ctx;
+
   PetscFunctionBeginUser;
   if (r->kind) PetscCall(GetKind(path, file, r->kind));
   if (r->array) PetscCall(LamFileGetArray(path, file, r->array, r->type, &r->values));
   if (r->text) PetscCall(LamFileHas(path, file, r->text, &r->values.found));
   if (r->text && r->values.found) PetscCall(LamFileGetText(path, file, r->text, (char **)&r->values.values));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Read(const char path[], Request *r)
-{
-  hid_t file = H5I_INVALID_HID;
-  const int lock = LamLockBeginRead(path);
-  PetscErrorCode ierr = LamFileOpenRead(path, &file);
-
-  PetscFunctionBeginUser;
-  if (!ierr) ierr = Get(path, file, r);
-  if (file >= 0) H5Fclose(file);
-  LamLockEndRead(lock);
-  PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 
@@ -55,7 +43,7 @@ PetscErrorCode LamFileReadReals(const char path[], const char name[], PetscBool 
   Request r = {.array = name, .type = H5T_IEEE_F64LE};
 
   PetscFunctionBeginUser;
-  PetscCall(Read(path, &r));
+  PetscCall(LamFileRead(path, Get, &r));
   *found = r.values.found;
   *rank = r.values.rank;
   *values = r.values.values;
@@ -69,7 +57,7 @@ PetscErrorCode LamFileReadInts(const char path[], const char name[], PetscBool *
   Request r = {.array = name, .type = H5T_STD_I64LE};
 
   PetscFunctionBeginUser;
-  PetscCall(Read(path, &r));
+  PetscCall(LamFileRead(path, Get, &r));
   *found = r.values.found;
   *rank = r.values.rank;
   *values = NULL;
@@ -86,7 +74,7 @@ PetscErrorCode LamFileReadText(const char path[], const char name[], PetscBool *
   Request r = {.text = name};
 
   PetscFunctionBeginUser;
-  PetscCall(Read(path, &r));
+  PetscCall(LamFileRead(path, Get, &r));
   *found = r.values.found;
   *text = r.values.values;
   PetscFunctionReturn(0);
@@ -97,6 +85,6 @@ PetscErrorCode LamFileReadKind(const char path[], char kind[LAM_NAME_LENGTH])
   Request r = {.kind = kind};
 
   PetscFunctionBeginUser;
-  PetscCall(Read(path, &r));
+  PetscCall(LamFileRead(path, Get, &r));
   PetscFunctionReturn(0);
 }

@@ -208,21 +208,27 @@ static PetscErrorCode CheckCounter(LamRecordWriter w, const char path[], hid_t d
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode AppendAndCount(LamRecordWriter w, const char path[], hid_t file, PetscInt n,
-                                     const PetscInt64 keys[], const LamResponse responses[])
+typedef struct {
+  LamRecordWriter writer;
+  PetscInt n;
+  const PetscInt64 *keys;
+  const LamResponse *responses;
+  uint32_t sum; /* of the checksums of all records, with these */
+} Batch;
+
+static PetscErrorCode AppendAndCount(const char path[], hid_t file, void *ctx)
 {
-  uint32_t sum = w->sum;
+  Batch *b = ctx;
+  LamRecordWriter w = b->writer;
   hid_t dataset;
 
   PetscFunctionBeginUser;
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, dataset = H5Dopen2(file, "/records", H5P_DEFAULT));
   PetscCall(CheckCounter(w, path, dataset));
-  PetscCall(Append(path, dataset, (hsize_t)w->n, n, keys, responses, &sum));
+  PetscCall(Append(path, dataset, (hsize_t)w->n, b->n, b->keys, b->responses, &b->sum));
   PetscCall(LamFileSync(path, file));
-  PetscCall(LamCounterWrite(path, dataset, w->n + n, sum));
+  PetscCall(LamCounterWrite(path, dataset, w->n + b->n, b->sum));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dclose(dataset));
-  PetscCall(LamFileSync(path, file));
-  w->sum = sum;
   PetscFunctionReturn(0);
 }
 
@@ -244,24 +250,6 @@ PetscErrorCode LamRecordWriterBegin(LamRecordWriter writer)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CommitLocked(LamRecordWriter w, PetscInt n, const PetscInt64 keys[],
-                                   const LamResponse responses[])
-{
-  PetscErrorCode ierr;
-  hid_t file;
-
-  PetscFunctionBeginUser;
-  if (n) {
-    PetscCall(LamFileOpenWrite(CurrentPath(w), &file));
-    ierr = AppendAndCount(w, CurrentPath(w), file, n, keys, responses);
-    if (ierr) H5Fclose(file);
-    PetscCall(ierr);
-    PetscCall(LamFileClose(CurrentPath(w), file));
-  }
-  PetscCall(Publish(w));
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode KeepKeys(LamRecordWriter w, PetscInt n, const PetscInt64 keys[])
 {
   PetscFunctionBeginUser;
@@ -277,15 +265,18 @@ static PetscErrorCode KeepKeys(LamRecordWriter w, PetscInt n, const PetscInt64 k
 PetscErrorCode LamRecordWriterCommit(LamRecordWriter writer, PetscInt n, const PetscInt64 keys[],
                                      const LamResponse responses[])
 {
-  PetscErrorCode ierr;
+  Batch batch = {writer, n, keys, responses, writer->sum};
+  PetscErrorCode ierr = 0;
 
   PetscFunctionBeginUser;
   PetscCall(
       LamFilePreallocate(writer->published ? writer->path : NULL, writer->temporary, writer->n + n, &writer->extent));
   LamLockBeginCommit(&writer->lock);
-  ierr = CommitLocked(writer, n, keys, responses);
+  if (n) ierr = LamFileWrite(CurrentPath(writer), AppendAndCount, &batch);
+  if (!ierr) ierr = Publish(writer);
   LamLockEndCommit(&writer->lock);
   PetscCall(ierr);
+  writer->sum = batch.sum;
   writer->written = PETSC_TRUE;
   writer->begun = PETSC_FALSE;
   PetscCall(KeepKeys(writer, n, keys));
@@ -315,31 +306,14 @@ PetscErrorCode LamRecordWriterClose(LamRecordWriter *writer)
 
 /* ---- arrays and texts beside the records ---- */
 
-typedef PetscErrorCode (*WriteFunction)(const char path[], hid_t file, void *ctx);
-
-static PetscErrorCode WriteSynced(const char path[], hid_t file, WriteFunction write, void *ctx)
+static PetscErrorCode WriteBeside(LamRecordWriter w, size_t bytes, LamFileFunction write, void *ctx)
 {
-  PetscFunctionBeginUser;
-  PetscCall(write(path, file, ctx));
-  PetscCall(LamFileSync(path, file));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode WithFile(LamRecordWriter w, size_t bytes, WriteFunction write, void *ctx)
-{
-  const char *path = CurrentPath(w);
   PetscErrorCode ierr;
-  hid_t file = H5I_INVALID_HID;
 
   PetscFunctionBeginUser;
   LamLockBeginCommit(&w->lock);
-  ierr = LamFileReserve(path, PETSC_FALSE, bytes);
-  if (!ierr) ierr = LamFileOpenWrite(path, &file);
-  if (!ierr) ierr = WriteSynced(path, file, write, ctx);
-  if (!ierr)
-    ierr = LamFileClose(path, file);
-  else if (file >= 0)
-    H5Fclose(file);
+  ierr = LamFileReserve(CurrentPath(w), PETSC_FALSE, bytes);
+  if (!ierr) ierr = LamFileWrite(CurrentPath(w), write, ctx);
   LamLockEndCommit(&w->lock);
   PetscCall(ierr);
   w->written = PETSC_TRUE;
@@ -455,7 +429,7 @@ PetscErrorCode LamRecordWriterReals(LamRecordWriter writer, const char name[], P
 
   PetscFunctionBeginUser;
   PetscCheck(rank >= 0 && rank <= 4, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "rank %" PetscInt_FMT, rank);
-  PetscCall(WithFile(writer, ArrayBytes(&array), WriteArray, &array));
+  PetscCall(WriteBeside(writer, ArrayBytes(&array), WriteArray, &array));
   PetscFunctionReturn(0);
 }
 
@@ -467,7 +441,7 @@ PetscErrorCode LamRecordWriterInts(LamRecordWriter writer, const char name[], Pe
 
   PetscFunctionBeginUser;
   PetscCheck(rank >= 0 && rank <= 4, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "rank %" PetscInt_FMT, rank);
-  PetscCall(WithFile(writer, ArrayBytes(&array), WriteArray, &array));
+  PetscCall(WriteBeside(writer, ArrayBytes(&array), WriteArray, &array));
   PetscFunctionReturn(0);
 }
 
@@ -489,6 +463,6 @@ PetscErrorCode LamRecordWriterText(LamRecordWriter writer, const char name[], co
   Text t = {name, text};
 
   PetscFunctionBeginUser;
-  PetscCall(WithFile(writer, strlen(text), WriteText, &t));
+  PetscCall(WriteBeside(writer, strlen(text), WriteText, &t));
   PetscFunctionReturn(0);
 }

@@ -129,8 +129,9 @@ static PetscErrorCode TakeCommitted(LamMerge *m, const char path[], hid_t file)
 }
 
 /* The file may have been replaced since its header was read. */
-static PetscErrorCode ScanFile(LamMerge *m, const char path[], hid_t file)
+static PetscErrorCode TakeFile(const char path[], hid_t file, void *ctx)
 {
+  LamMerge *m = ctx;
   LamHeader header = {0};
   PetscBool matches;
   PetscErrorCode ierr = LamHeaderReadRoot(path, file, m->options->salvage ? &matches : NULL, &header);
@@ -139,22 +140,6 @@ static PetscErrorCode ScanFile(LamMerge *m, const char path[], hid_t file)
   if (!ierr) ierr = LamMergeCheckHash(m, path, header.hash);
   if (!ierr) ierr = m->options->salvage ? TakeSound(m, path, file) : TakeCommitted(m, path, file);
   PetscCall(LamHeaderDestroy(&header));
-  PetscCall(ierr);
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode TakeFile(LamMerge *m, const char path[])
-{
-  hid_t file = H5I_INVALID_HID;
-  PetscErrorCode ierr;
-  int lock;
-
-  PetscFunctionBeginUser;
-  lock = LamLockBeginRead(path);
-  ierr = LamFileOpenRead(path, &file);
-  if (!ierr) ierr = ScanFile(m, path, file);
-  if (file >= 0) H5Fclose(file);
-  LamLockEndRead(lock);
   PetscCall(ierr);
   PetscFunctionReturn(0);
 }
@@ -210,44 +195,31 @@ static PetscErrorCode ListFiles(const LamMerge *m, char **text)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode WriteTexts(const LamMerge *m, const char list[])
+static PetscErrorCode WriteTexts(const char path[], hid_t file, void *ctx)
 {
-  PetscErrorCode ierr;
-  hid_t file;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamFileOpenWrite(m->temporary, &file));
-  ierr = LamFileWriteText(m->temporary, file, SHARDS_NAME, list);
-  if (!ierr && m->grid_text) ierr = LamFileWriteText(m->temporary, file, LAM_GRID_NAME, m->grid_text);
-  if (ierr) H5Fclose(file);
-  PetscCall(ierr);
-  PetscCall(LamFileClose(m->temporary, file));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode MakeFile(const LamMerge *m, const char list[])
-{
-  const size_t bytes =
-      strlen(list) + (m->grid_text ? strlen(m->grid_text) : 0) + (m->scene.text ? strlen(m->scene.text) : 0);
-
-  PetscFunctionBeginUser;
-  PetscCall(LamFileReserve(m->temporary, PETSC_TRUE, bytes));
-  PetscCall(LamFileCreate(m->temporary, "database", &m->scene));
-  PetscCall(LamFileReserve(m->temporary, PETSC_FALSE, bytes));
-  PetscCall(WriteTexts(m, list));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode StartFile(LamMerge *m)
-{
+  const LamMerge *m = ctx;
   PetscErrorCode ierr;
   char *list;
 
   PetscFunctionBeginUser;
   PetscCall(ListFiles(m, &list));
-  ierr = MakeFile(m, list);
+  ierr = LamFileWriteText(path, file, SHARDS_NAME, list);
   PetscCall(PetscFree(list));
   PetscCall(ierr);
+  if (m->grid_text) PetscCall(LamFileWriteText(path, file, LAM_GRID_NAME, m->grid_text));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode StartFile(LamMerge *m)
+{
+  size_t bytes = (m->grid_text ? strlen(m->grid_text) : 0) + (m->scene.text ? strlen(m->scene.text) : 0);
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < m->n; i++) bytes += strlen(m->files[i]) + 1;
+  PetscCall(LamFileReserve(m->temporary, PETSC_TRUE, bytes));
+  PetscCall(LamFileCreate(m->temporary, "database", &m->scene));
+  PetscCall(LamFileReserve(m->temporary, PETSC_FALSE, bytes));
+  PetscCall(LamFileWrite(m->temporary, WriteTexts, m));
   PetscCall(LamUnionCreate(m->temporary, &m->records));
   PetscFunctionReturn(0);
 }
@@ -271,7 +243,7 @@ static PetscErrorCode MergeLocked(LamMerge *m)
   PetscCall(LamMergeReadHeaders(m));
   PetscCall(TellOfWriters(m));
   PetscCall(StartFile(m));
-  for (PetscInt i = 0; i < m->n && !IsStopped(m); i++) PetscCall(TakeFile(m, m->files[i]));
+  for (PetscInt i = 0; i < m->n && !IsStopped(m); i++) PetscCall(LamFileRead(m->files[i], TakeFile, m));
   if (m->report->stopped) PetscFunctionReturn(0);
   PetscCheck(m->report->records || !m->options->salvage, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: not one record is sound; build the database anew", m->files[0]);

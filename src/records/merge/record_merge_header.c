@@ -86,24 +86,26 @@ static PetscErrorCode CheckMembers(const char path[], hid_t file)
 
 typedef struct {
   LamHeader header;
+  PetscBool salvage;
   PetscBool matches;  /* the header's checksum does */
   char *grid, *scene; /* NULL: none */
 } Source;
 
 /* The header's checksum and the scene's text may be damaged in salvage: the description of the tissue has its hash. */
-static PetscErrorCode ReadSource(const char path[], hid_t file, PetscBool salvage, Source *s)
+static PetscErrorCode ReadSource(const char path[], hid_t file, void *ctx)
 {
+  Source *s = ctx;
   PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
   s->matches = PETSC_TRUE;
-  PetscCall(LamHeaderReadRoot(path, file, salvage ? &s->matches : NULL, &s->header));
+  PetscCall(LamHeaderReadRoot(path, file, s->salvage ? &s->matches : NULL, &s->header));
   PetscCall(CheckMembers(path, file));
   PetscCall(ReadText(path, file, LAM_GRID_NAME, &s->grid));
-  if (salvage) PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
+  if (s->salvage) PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
   ierr = ReadText(path, file, "/scene", &s->scene);
-  if (salvage) PetscCall(PetscPopErrorHandler());
-  if (!salvage) PetscCall(ierr);
+  if (s->salvage) PetscCall(PetscPopErrorHandler());
+  if (!s->salvage) PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 
@@ -149,15 +151,11 @@ static PetscErrorCode TakeSource(LamMerge *m, const char path[], Source *s)
 
 static PetscErrorCode ReadHeader(LamMerge *m, const char path[])
 {
-  const int lock = LamLockBeginRead(path);
-  hid_t file = H5I_INVALID_HID;
-  Source source = {0};
-  PetscErrorCode ierr = LamFileOpenRead(path, &file);
+  Source source = {.salvage = m->options->salvage};
+  PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
-  if (!ierr) ierr = ReadSource(path, file, m->options->salvage, &source);
-  if (file >= 0) H5Fclose(file);
-  LamLockEndRead(lock);
+  ierr = LamFileRead(path, ReadSource, &source);
   if (!ierr) ierr = TakeSource(m, path, &source);
   PetscCall(LamHeaderDestroy(&source.header));
   PetscCall(PetscFree(source.grid));
