@@ -2,13 +2,8 @@
 #ifndef LAM_BODY_FIXTURE_H
 #define LAM_BODY_FIXTURE_H
 
+#include "support/test.h"
 #include <lamella/lamella.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <setjmp.h>
-#include <cmocka.h>
-#include "assert_near.h"
 #include "synthetic_responder.h"
 #include <string.h>
 

@@ -4,11 +4,7 @@
 #ifndef LAM_MACRO_FIXTURE_H
 #define LAM_MACRO_FIXTURE_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include <lamella/macro.h>
 #include "synthetic_responder.h"
 

@@ -2,13 +2,8 @@
 #ifndef LAM_PROCESS_FIXTURE_H
 #define LAM_PROCESS_FIXTURE_H
 
+#include "support/test.h"
 #include <lamella/lamella.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <setjmp.h>
-#include <cmocka.h>
-#include "assert_near.h"
 #include <string.h>
 
 /* The default tissue of one cell; what follows stands in the same file. */

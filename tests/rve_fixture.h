@@ -2,12 +2,7 @@
 #ifndef LAM_RVE_FIXTURE_H
 #define LAM_RVE_FIXTURE_H
 
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <math.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include "tissue.h"
 
 static inline LamRVE NewRVE(const LamMicrostructure *micro)
@@ -39,16 +34,6 @@ static inline LamResponse SolveTissue(const LamMicrostructure *micro, LamLoad lo
 
   assert_int_equal(LamRVEDestroy(&rve), 0);
   return response;
-}
-
-static inline int RunWithPetsc(int argc, char **argv, int (*run)(void))
-{
-  int failed;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  failed = run();
-  if (PetscFinalize()) return 1;
-  return failed;
 }
 
 #endif

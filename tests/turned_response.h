@@ -3,7 +3,7 @@
 #ifndef LAM_TURNED_RESPONSE_H
 #define LAM_TURNED_RESPONSE_H
 
-#include "assert_near.h"
+#include "support/test.h"
 #include "tissue.h"
 
 static const double turned_identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};

@@ -4,6 +4,7 @@
   before, unchanged, and go on. Between two syncs the system may bring writes to the disk in any order, sector by
   sector: any part of them must do, too, which stands for a loss of power.
 */
+#include "support/test.h"
 #include "../unit/record_fixture.h"
 #include <signal.h>
 #include <sys/wait.h>
@@ -117,6 +118,27 @@ static void PlayPowerLoss(PetscInt before, PetscInt after)
   }
 }
 
+/* ---- a folder for each ---- */
+
+static int EnterCommits(void **state)
+{
+  if (Enter(state)) return -1;
+  snprintf(copy, sizeof(copy), "%s/copy.h5", directory);
+  snprintf(base, sizeof(base), "%s/base.h5", directory);
+  srand(1);
+  return 0;
+}
+
+static int LeaveCommits(void **state)
+{
+  LogClear();
+  unlink(copy);
+  unlink(base);
+  return Leave(state);
+}
+
+#define COMMITS_TEST(name) TEST_WITH(name, EnterCommits, LeaveCommits)
+
 /* ---- tests ---- */
 
 typedef void (*Play)(PetscInt before, PetscInt after);
@@ -144,26 +166,26 @@ static void PlayCommits(PetscInt start, PetscInt n, int commits, Play play)
   assert_int_equal(LamRecordWriterClose(&writer), 0);
 }
 
-static void a_kill_at_any_instant_of_a_commit_loses_nothing(void **state)
+COMMITS_TEST(a_kill_at_any_instant_of_a_commit_loses_nothing)
 {
   PlayCommits(100, 7, 4, PlayAll);
   PlayCommits(70, 64, 2, PlayAll);
 }
 
 /* HDF5 has a node of its index for 64 chunks. */
-static void a_kill_loses_nothing_where_the_index_grows(void **state)
+COMMITS_TEST(a_kill_loses_nothing_where_the_index_grows)
 {
   PlayCommits(64 * 63, 64, 2, PlayAll);
 }
 
-static void a_loss_of_power_within_a_commit_loses_nothing(void **state)
+COMMITS_TEST(a_loss_of_power_within_a_commit_loses_nothing)
 {
   PlayCommits(100, 7, 4, PlayPowerLoss);
   PlayCommits(70, 64, 2, PlayPowerLoss);
 }
 
 /* Room is made in a copy: what has a name is written over, never made longer or shorter. */
-static void a_file_that_has_its_name_keeps_its_length(void **state)
+COMMITS_TEST(a_file_that_has_its_name_keeps_its_length)
 {
   LamRecordWriter writer;
   struct stat info;
@@ -184,7 +206,7 @@ static void a_file_that_has_its_name_keeps_its_length(void **state)
 }
 
 /* A run that is killed while it makes room leaves any part of a copy. */
-static void a_copy_that_was_left_is_removed(void **state)
+COMMITS_TEST(a_copy_that_was_left_is_removed)
 {
   char temporary[160];
   LamRecordWriter writer;
@@ -202,7 +224,7 @@ static void a_copy_that_was_left_is_removed(void **state)
   assert_int_equal(CountRecords(), 203);
 }
 
-static void another_file_in_its_place_is_not_written_to(void **state)
+COMMITS_TEST(another_file_in_its_place_is_not_written_to)
 {
   LamScene scene = Scene();
   LamRecordWriter writer, other;
@@ -222,7 +244,7 @@ static void another_file_in_its_place_is_not_written_to(void **state)
 }
 
 /* A writer that is killed before its lock says whose it is. */
-static void a_lock_without_its_line_is_taken_over(void **state)
+COMMITS_TEST(a_lock_without_its_line_is_taken_over)
 {
   LamRecordWriter writer;
 
@@ -234,7 +256,7 @@ static void a_lock_without_its_line_is_taken_over(void **state)
 }
 
 /* As in a container whose first process waits for no one. */
-static void the_lock_of_a_process_that_no_one_has_waited_for_is_taken_over(void **state)
+COMMITS_TEST(the_lock_of_a_process_that_no_one_has_waited_for_is_taken_over)
 {
   const pid_t child = fork();
   LamRecordWriter writer;
@@ -250,41 +272,4 @@ static void the_lock_of_a_process_that_no_one_has_waited_for_is_taken_over(void 
   Commit(writer, 0, 1);
   assert_int_equal(LamRecordWriterClose(&writer), 0);
   waitpid(child, NULL, 0);
-}
-
-/* ---- a folder for each ---- */
-
-static int EnterCommits(void **state)
-{
-  if (Enter(state)) return -1;
-  snprintf(copy, sizeof(copy), "%s/copy.h5", directory);
-  snprintf(base, sizeof(base), "%s/base.h5", directory);
-  srand(1);
-  return 0;
-}
-
-static int LeaveCommits(void **state)
-{
-  LogClear();
-  unlink(copy);
-  unlink(base);
-  return Leave(state);
-}
-
-#define COMMITS_TEST(f) cmocka_unit_test_setup_teardown(f, EnterCommits, LeaveCommits)
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      COMMITS_TEST(a_kill_at_any_instant_of_a_commit_loses_nothing),
-      COMMITS_TEST(a_kill_loses_nothing_where_the_index_grows),
-      COMMITS_TEST(a_loss_of_power_within_a_commit_loses_nothing),
-      COMMITS_TEST(a_file_that_has_its_name_keeps_its_length),
-      COMMITS_TEST(a_copy_that_was_left_is_removed),
-      COMMITS_TEST(another_file_in_its_place_is_not_written_to),
-      COMMITS_TEST(a_lock_without_its_line_is_taken_over),
-      COMMITS_TEST(the_lock_of_a_process_that_no_one_has_waited_for_is_taken_over),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,7 +3,7 @@
 #ifndef LAM_QUERY_FIXTURE_H
 #define LAM_QUERY_FIXTURE_H
 
-#include "assert_near.h"
+#include "support/test.h"
 #include <lamella/database.h>
 #include <math.h>
 #include <string.h>

@@ -4,12 +4,8 @@
 #ifndef LAM_RECORD_FIXTURE_H
 #define LAM_RECORD_FIXTURE_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include <lamella/database.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -144,6 +140,6 @@ static inline void AssertSame(const LamResponse *a, const LamResponse *b)
   }
 }
 
-#define TEST(name) cmocka_unit_test_setup_teardown(name, Enter, Leave)
+#define FILE_TEST(name) TEST_WITH(name, Enter, Leave)
 
 #endif

@@ -1,9 +1,5 @@
 /* Parts of a sample box: each state is in one of them, they are of like size, and they are boxes. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,7 +18,7 @@ static LamScene Scene(void)
   return scene;
 }
 
-static void every_state_is_in_one_part_of_like_size(void **state)
+TEST(every_state_is_in_one_part_of_like_size)
 {
   const LamScene scene = Scene();
   const int counts[] = {1, 2, 3, 7, 100};
@@ -48,7 +44,7 @@ static void every_state_is_in_one_part_of_like_size(void **state)
 }
 
 /* The parts share nodes along their sides only: together they spread little more than the box does. */
-static void a_part_is_a_small_box(void **state)
+TEST(a_part_is_a_small_box)
 {
   const LamScene scene = Scene();
   const LamShard shard = {3, 16};
@@ -67,7 +63,7 @@ static void a_part_is_a_small_box(void **state)
   PetscFree(states);
 }
 
-static void words_that_say_no_part_are_refused(void **state)
+TEST(words_that_say_no_part_are_refused)
 {
   const char *const words[] = {"", "1", "0/4", "5/4", "-1/4", "1/0", "1/4x", "a/b", "1/4/2"};
   LamShard shard;
@@ -80,14 +76,9 @@ static void words_that_say_no_part_are_refused(void **state)
   assert_int_equal(shard.count, 4);
 }
 
-int main(void)
+static int Silence(void **state)
 {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_state_is_in_one_part_of_like_size),
-      cmocka_unit_test(a_part_is_a_small_box),
-      cmocka_unit_test(words_that_say_no_part_are_refused),
-  };
-
-  if (!freopen("/dev/null", "w", stderr)) return 1; /* a test says nothing */
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return !freopen("/dev/null", "w", stderr);
 }
+
+TEST_GROUP(.setup = Silence);

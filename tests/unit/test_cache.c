@@ -1,11 +1,7 @@
 /*
   Claims about answers from a database with a solver behind it. Runs on any number of ranks.
 */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include <lamella/cache.h>
 #include "synthetic_responder.h"
 
@@ -173,7 +169,7 @@ static void RefineAround(Fixture *fixture, const LamLoad *load)
 /* ---- what is solved ---- */
 
 /* What is asked the first time is solved for, the second time it is found. */
-static void SecondQuestionIsAHit(void **state)
+TEST(SecondQuestionIsAHit)
 {
   Fixture fixture;
   PetscInt64 solves;
@@ -191,7 +187,7 @@ static void SecondQuestionIsAHit(void **state)
   TearDown(&fixture);
 }
 
-static void AnswersAreAccurate(void **state)
+TEST(AnswersAreAccurate)
 {
   Fixture fixture;
 
@@ -206,7 +202,7 @@ static void AnswersAreAccurate(void **state)
 }
 
 /* Questions around share the nodes: of many questions most cost nothing. */
-static void QuestionsShareNodes(void **state)
+TEST(QuestionsShareNodes)
 {
   Fixture fixture;
   PetscInt64 solves;
@@ -221,7 +217,7 @@ static void QuestionsShareNodes(void **state)
   TearDown(&fixture);
 }
 
-static void NodesAreTheNodeSolvers(void **state)
+TEST(NodesAreTheNodeSolvers)
 {
   Fixture fixture;
 
@@ -237,7 +233,7 @@ static void NodesAreTheNodeSolvers(void **state)
 
 /* With more accuracy than nodes can give; a question and its mirror image share a solve, and both get their own answer.
  */
-static void StatesBesideTheTableStartFromANode(void **state)
+TEST(StatesBesideTheTableStartFromANode)
 {
   const PetscReal c = cos(0.3), s = sin(0.3);
   Fixture fixture;
@@ -266,7 +262,7 @@ static void StatesBesideTheTableStartFromANode(void **state)
 }
 
 /* Where no node helps the state is solved as it was asked for, and is found when it is asked for again. */
-static void WithoutNodesTheStateIsSolved(void **state)
+TEST(WithoutNodesTheStateIsSolved)
 {
   Fixture fixture;
   PetscInt64 solves;
@@ -287,7 +283,7 @@ static void WithoutNodesTheStateIsSolved(void **state)
 }
 
 /* A database without a grid: equal questions, and they alone, share a solve. */
-static void WithoutAGridStatesAreSolved(void **state)
+TEST(WithoutAGridStatesAreSolved)
 {
   Fixture fixture;
 
@@ -299,7 +295,7 @@ static void WithoutAGridStatesAreSolved(void **state)
   TearDown(&fixture);
 }
 
-static void DatabaseAloneNeverSolves(void **state)
+TEST(DatabaseAloneNeverSolves)
 {
   Fixture fixture;
   LamResponse answer;
@@ -322,7 +318,7 @@ static void DatabaseAloneNeverSolves(void **state)
 /* ---- what fails ---- */
 
 /* A failed solve is the answer to its question, with its status and reason. */
-static void FailedSolveIsTheAnswer(void **state)
+TEST(FailedSolveIsTheAnswer)
 {
   Fixture fixture;
 
@@ -341,7 +337,7 @@ static void FailedSolveIsTheAnswer(void **state)
 }
 
 /* queries = hits + solved for + failures: close questions are solved for by the same nodes, a new answer is no hit. */
-static void CountsAddUp(void **state)
+TEST(CountsAddUp)
 {
   Fixture fixture;
 
@@ -366,7 +362,7 @@ static void CountsAddUp(void **state)
 }
 
 /* Of a batch that the solver left unfinished the solved part is kept, and nothing else; nothing is asked again. */
-static void StoppedBatchKeepsWhatIsSolved(void **state)
+TEST(StoppedBatchKeepsWhatIsSolved)
 {
   Fixture fixture;
 
@@ -381,7 +377,7 @@ static void StoppedBatchKeepsWhatIsSolved(void **state)
 }
 
 /* It refines its table, but solves no state for itself. */
-static void StoppingCacheSolvesNodesAlone(void **state)
+TEST(StoppingCacheSolvesNodesAlone)
 {
   Fixture fixture;
 
@@ -406,7 +402,7 @@ static void StoppingCacheSolvesNodesAlone(void **state)
 /* ---- models of states beside the table ---- */
 
 /* Where no node helps, the state solved for a point answers it in a neighbourhood, also in the next load step. */
-static void SolvedStateAnswersAround(void **state)
+TEST(SolvedStateAnswersAround)
 {
   Fixture fixture;
   PetscInt64 solves;
@@ -430,7 +426,7 @@ static void SolvedStateAnswersAround(void **state)
 }
 
 /* Stress is the derivative of the energy, and the tangent that of stress, away from the state that was solved. */
-static void AnswersAroundAreOfOnePotential(void **state)
+TEST(AnswersAroundAreOfOnePotential)
 {
   const PetscReal h = 1e-5;
   LamResponse at[3];
@@ -456,7 +452,7 @@ static void AnswersAroundAreOfOnePotential(void **state)
 }
 
 /* What a point took to in a step that was given up is forgotten with it. */
-static void RejectedStepGivesTheModelBack(void **state)
+TEST(RejectedStepGivesTheModelBack)
 {
   Fixture fixture;
 
@@ -473,7 +469,7 @@ static void RejectedStepGivesTheModelBack(void **state)
   TearDown(&fixture);
 }
 
-static void QuestionThatIsNoNumberIsInvalid(void **state)
+TEST(QuestionThatIsNoNumberIsInvalid)
 {
   Fixture fixture;
 
@@ -486,7 +482,7 @@ static void QuestionThatIsNoNumberIsInvalid(void **state)
 }
 
 /* A run that goes on with the bytes of another one, and its records in another order, has the same answer. */
-static void KeptModelIsFoundAgain(void **state)
+TEST(KeptModelIsFoundAgain)
 {
   Fixture first, second;
   const LamResponse *records;
@@ -521,7 +517,7 @@ static void KeptModelIsFoundAgain(void **state)
 }
 
 /* Points close to each other share the states of a few of them. */
-static void NeighboursShareModels(void **state)
+TEST(NeighboursShareModels)
 {
   Fixture fixture;
 
@@ -535,7 +531,7 @@ static void NeighboursShareModels(void **state)
 
 /* A state that failed may be on the other side of a loss of stability: what is not much nearer to one that answers is
    solved. */
-static void NoModelIsTakenToBesideAFailure(void **state)
+TEST(NoModelIsTakenToBesideAFailure)
 {
   const PetscReal stretch[] = {0.11, 0.09, 0.098};
   Fixture fixture;
@@ -585,18 +581,18 @@ static PetscErrorCode CallReject(Fixture *fixture)
   return fixture->cache.reject(fixture->cache.ctx);
 }
 
-static void AnswerStaysUntilTheStepIsAccepted(void **state)
+TEST(AnswerStaysUntilTheStepIsAccepted)
 {
   CheckThatAnswerStays(CallAccept);
 }
 
-static void AnswerStaysUntilTheStepIsRejected(void **state)
+TEST(AnswerStaysUntilTheStepIsRejected)
 {
   CheckThatAnswerStays(CallReject);
 }
 
 /* A point whose states are solved for themselves goes on so within the step: here out of the plane, then in it. */
-static void SolvedPointStaysSolved(void **state)
+TEST(SolvedPointStaysSolved)
 {
   Fixture fixture;
 
@@ -618,7 +614,7 @@ static void SolvedPointStaysSolved(void **state)
 /* ---- ranks ---- */
 
 /* The same questions spread over the ranks leave the same records, in the same order, as on one rank. */
-static void RecordsDoNotDependOnRanks(void **state)
+TEST(RecordsDoNotDependOnRanks)
 {
   const PetscReal rounding = 1e-14; /* of another order of summation */
   PetscMPIInt rank, ranks;
@@ -651,37 +647,4 @@ static void RecordsDoNotDependOnRanks(void **state)
   TearDown(&all);
 }
 
-int main(int argc, char **argv)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(SecondQuestionIsAHit),
-      cmocka_unit_test(AnswersAreAccurate),
-      cmocka_unit_test(QuestionsShareNodes),
-      cmocka_unit_test(NodesAreTheNodeSolvers),
-      cmocka_unit_test(StatesBesideTheTableStartFromANode),
-      cmocka_unit_test(WithoutNodesTheStateIsSolved),
-      cmocka_unit_test(WithoutAGridStatesAreSolved),
-      cmocka_unit_test(DatabaseAloneNeverSolves),
-      cmocka_unit_test(FailedSolveIsTheAnswer),
-      cmocka_unit_test(CountsAddUp),
-      cmocka_unit_test(StoppedBatchKeepsWhatIsSolved),
-      cmocka_unit_test(StoppingCacheSolvesNodesAlone),
-      cmocka_unit_test(SolvedStateAnswersAround),
-      cmocka_unit_test(AnswersAroundAreOfOnePotential),
-      cmocka_unit_test(RejectedStepGivesTheModelBack),
-      cmocka_unit_test(QuestionThatIsNoNumberIsInvalid),
-      cmocka_unit_test(KeptModelIsFoundAgain),
-      cmocka_unit_test(NeighboursShareModels),
-      cmocka_unit_test(NoModelIsTakenToBesideAFailure),
-      cmocka_unit_test(AnswerStaysUntilTheStepIsAccepted),
-      cmocka_unit_test(AnswerStaysUntilTheStepIsRejected),
-      cmocka_unit_test(SolvedPointStaysSolved),
-      cmocka_unit_test(RecordsDoNotDependOnRanks),
-  };
-  int failed;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  cmocka_set_message_output(CM_OUTPUT_STDOUT);
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() || failed;
-}
+TEST_GROUP(.petsc = 1);

@@ -1,6 +1,6 @@
 /* Small definite systems without pivots, and what is not definite. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "cholesky.h"
 
 #define N 5
@@ -13,7 +13,7 @@ static void SetValues(double diagonal, double values[9])
   for (int k = 0; k < 9; k++) values[k] = k % 2 ? -1 : diagonal;
 }
 
-static void SolvesADefiniteSystem(void **state)
+TEST(SolvesADefiniteSystem)
 {
   const double x[2 * N] = {1, -2, 3, 0.5, 4, 0, 1, 0, -1, 2};
   double values[9], b[2 * N], found[2 * N];
@@ -33,7 +33,7 @@ static void SolvesADefiniteSystem(void **state)
 }
 
 /* The values change in place: an indefinite and a singular matrix are told, and a definite one after them is solved. */
-static void TellsWhatIsNotDefinite(void **state)
+TEST(TellsWhatIsNotDefinite)
 {
   static const double diagonal[4] = {1.0, 0.0, -3.0, 2.5};
   double values[9] = {0};
@@ -49,17 +49,4 @@ static void TellsWhatIsNotDefinite(void **state)
   assert_int_equal(LamCholeskyDestroy(&c), 0);
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(SolvesADefiniteSystem),
-      cmocka_unit_test(TellsWhatIsNotDefinite),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1);

@@ -1,5 +1,6 @@
 /* What a database keeps of its records: compact nodes, whole responses of the others and of those that are asked for.
  */
+#include "support/test.h"
 #include "record_fixture.h"
 #include "database_internal.h"
 
@@ -17,7 +18,7 @@ static LamRecordLayout Packed(const LamResponse *response, PetscInt64 key, unsig
   return layout;
 }
 
-static void a_node_from_bytes_is_the_node_from_the_response(void **state)
+TEST(a_node_from_bytes_is_the_node_from_the_response)
 {
   LamResponse response = Response(3);
   LamNodeData wanted = {0}, node = {0};
@@ -37,7 +38,7 @@ static void a_node_from_bytes_is_the_node_from_the_response(void **state)
   PetscFree(bytes);
 }
 
-static void a_node_holds_the_in_plane_parts_and_33(void **state)
+TEST(a_node_holds_the_in_plane_parts_and_33)
 {
   const LamResponse r = Response(3);
   LamNodeData node;
@@ -63,7 +64,7 @@ static void a_node_holds_the_in_plane_parts_and_33(void **state)
 }
 
 /* From lumen_fraction to kinked_fraction, so that the block may be gone through with the table of members. */
-static void indicators_are_in_the_order_of_the_members(void **state)
+TEST(indicators_are_in_the_order_of_the_members)
 {
   const LamResponse r = Response(3);
   const LamMember *m = LamResponseMembers;
@@ -79,7 +80,7 @@ static void indicators_are_in_the_order_of_the_members(void **state)
   assert_ptr_equal(got, &node.lumen_fraction + LAM_NODE_FLOATS);
 }
 
-static void what_the_bytes_lack_is_not_known(void **state)
+TEST(what_the_bytes_lack_is_not_known)
 {
   const LamResponse response = Response(3);
   LamNodeLayout layout;
@@ -117,7 +118,7 @@ static LamDatabase OpenMixed(void)
   return db;
 }
 
-static void nodes_and_other_records_are_kept_apart(void **state)
+FILE_TEST(nodes_and_other_records_are_kept_apart)
 {
   LamDatabase db = OpenMixed();
   const PetscInt64 *keys;
@@ -137,7 +138,7 @@ static void nodes_and_other_records_are_kept_apart(void **state)
   LamDatabaseClose(&db);
 }
 
-static void whole_responses_come_in_the_order_of_the_file_and_then_of_memory(void **state)
+FILE_TEST(whole_responses_come_in_the_order_of_the_file_and_then_of_memory)
 {
   const LamResponse added[2] = {Response(11), Response(12)}, *records;
   const PetscInt64 more[2] = {LAM_NODE_KEY + 1000, LAM_NODE_KEY + 1001}, *keys;
@@ -159,7 +160,7 @@ static void whole_responses_come_in_the_order_of_the_file_and_then_of_memory(voi
   LamDatabaseClose(&db);
 }
 
-static void added_records_are_given_without_the_file(void **state)
+FILE_TEST(added_records_are_given_without_the_file)
 {
   const LamResponse added[2] = {Response(11), Response(12)}, *records;
   LamDatabase db = OpenMixed();
@@ -173,7 +174,7 @@ static void added_records_are_given_without_the_file(void **state)
   LamDatabaseClose(&db);
 }
 
-static void a_file_that_was_replaced_is_noticed(void **state)
+FILE_TEST(a_file_that_was_replaced_is_noticed)
 {
   const LamResponse *records;
   LamDatabase db = OpenMixed();
@@ -187,7 +188,7 @@ static void a_file_that_was_replaced_is_noticed(void **state)
 }
 
 /* The same keys, but of another tissue. */
-static void a_file_of_another_tissue_is_noticed(void **state)
+FILE_TEST(a_file_of_another_tissue_is_noticed)
 {
   const LamResponse *records, one = Response(0);
   const PetscInt64 key = LAM_NODE_KEY;
@@ -208,7 +209,7 @@ static void a_file_of_another_tissue_is_noticed(void **state)
   LamDatabaseClose(&db);
 }
 
-static void a_file_that_has_shrunk_is_noticed(void **state)
+FILE_TEST(a_file_that_has_shrunk_is_noticed)
 {
   const LamResponse *records;
   LamDatabase db = OpenMixed();
@@ -221,7 +222,7 @@ static void a_file_that_has_shrunk_is_noticed(void **state)
   LamDatabaseClose(&db);
 }
 
-static void info_counts_nodes_too(void **state)
+FILE_TEST(info_counts_nodes_too)
 {
   LamDatabase db = OpenMixed();
   const char *json;
@@ -229,23 +230,4 @@ static void info_counts_nodes_too(void **state)
   assert_int_equal(LamDatabaseGetInfo(db, &json), 0);
   assert_non_null(strstr(json, "\"records\":708,\"failed\":589")); /* one in six has converged: 118 nodes, one other */
   LamDatabaseClose(&db);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_node_from_bytes_is_the_node_from_the_response),
-      cmocka_unit_test(a_node_holds_the_in_plane_parts_and_33),
-      cmocka_unit_test(indicators_are_in_the_order_of_the_members),
-      cmocka_unit_test(what_the_bytes_lack_is_not_known),
-      TEST(nodes_and_other_records_are_kept_apart),
-      TEST(whole_responses_come_in_the_order_of_the_file_and_then_of_memory),
-      TEST(added_records_are_given_without_the_file),
-      TEST(a_file_that_was_replaced_is_noticed),
-      TEST(a_file_of_another_tissue_is_noticed),
-      TEST(a_file_that_has_shrunk_is_noticed),
-      TEST(info_counts_nodes_too),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

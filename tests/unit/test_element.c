@@ -1,6 +1,6 @@
 /* The wall element: patch test, derivatives, projection, invariance. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "displaced.h"
 #include "random_reals.h"
 
@@ -103,7 +103,7 @@ static double Area(const Element *element)
 }
 
 /* Affine field in a distorted element: energy W(F) area, and nodal forces with sum f (x) X = P area. */
-static void AffineFieldIsExact(void **state)
+TEST(AffineFieldIsExact)
 {
   const double F[4] = {1.2, 0.3, -0.1, 0.9};
   uint64_t seed = 5;
@@ -124,7 +124,7 @@ static void AffineFieldIsExact(void **state)
 #define PATCH 5 /* nodes a side: 2 x 2 elements */
 
 /* An affine field balances the inner nodes of a patch of distorted elements. */
-static void PatchOfDistortedElementsIsInEquilibrium(void **state)
+TEST(PatchOfDistortedElementsIsInEquilibrium)
 {
   const double F[4] = {1.2, 0.3, -0.1, 0.9};
   uint64_t seed = 6;
@@ -175,7 +175,7 @@ static double Difference(const Element *at, int dof, int component)
   return sum / (12.0 * h);
 }
 
-static void ResidualIsDerivativeOfEnergy(void **state)
+TEST(ResidualIsDerivativeOfEnergy)
 {
   uint64_t seed = 7;
   Element element = RandomElement(&seed);
@@ -185,7 +185,7 @@ static void ResidualIsDerivativeOfEnergy(void **state)
   for (int i = 0; i < 18; i++) assert_near(result.f[i], Difference(&element, i, -1), 1e-7);
 }
 
-static void ConsistentTangentIsDerivativeOfResidual(void **state)
+TEST(ConsistentTangentIsDerivativeOfResidual)
 {
   uint64_t seed = 8;
   Element element = RandomElement(&seed);
@@ -197,7 +197,7 @@ static void ConsistentTangentIsDerivativeOfResidual(void **state)
     for (int j = 0; j < 18; j++) assert_near(result.K[i][j], Difference(&element, j, i), 1e-8 * largest);
 }
 
-static void TangentIsSymmetric(void **state)
+TEST(TangentIsSymmetric)
 {
   uint64_t seed = 9;
   Element element = RandomElement(&seed);
@@ -210,7 +210,7 @@ static void TangentIsSymmetric(void **state)
     for (int j = 0; j < i; j++) assert_true(fabs(result.K[i][j] - result.K[j][i]) < 1e-11 * result.K[i][i]);
 }
 
-static void ResidualDoesNotDependOnIndependentStresses(void **state)
+TEST(ResidualDoesNotDependOnIndependentStresses)
 {
   uint64_t seed = 10;
   Element element = RandomElement(&seed);
@@ -223,7 +223,7 @@ static void ResidualDoesNotDependOnIndependentStresses(void **state)
   assert_memory_equal(before.f, after.f, sizeof(before.f));
 }
 
-static void Stretch33DerivativesFollowFromEnergy(void **state)
+TEST(Stretch33DerivativesFollowFromEnergy)
 {
   uint64_t seed = 13;
   Element element = RandomElement(&seed), moved;
@@ -247,7 +247,7 @@ static void Stretch33DerivativesFollowFromEnergy(void **state)
 }
 
 /* A rigid rotation keeps the energy and turns the forces. */
-static void RotationTurnsTheForces(void **state)
+TEST(RotationTurnsTheForces)
 {
   const double c = cos(0.9), s = sin(0.9);
   uint64_t seed = 14;
@@ -285,7 +285,7 @@ static Element Parallelogram(double c)
 }
 
 /* A dilatation that is linear in X is its own projection: the volumetric energy is that of J = 1 + c X1. */
-static void LinearDilatationIsProjectedOntoItself(void **state)
+TEST(LinearDilatationIsProjectedOntoItself)
 {
   const LamWall fluid = {.bulk_modulus = 1000.0};
   const double c = 0.3;
@@ -310,7 +310,7 @@ static void LinearDilatationIsProjectedOntoItself(void **state)
 }
 
 /* The pressure functions are orthonormal over the element. */
-static void PressureBasisIsOrthonormal(void **state)
+TEST(PressureBasisIsOrthonormal)
 {
   uint64_t seed = 15;
   Element element;
@@ -327,7 +327,7 @@ static void PressureBasisIsOrthonormal(void **state)
 }
 
 /* A full update along dx and dF33 leads the independent stresses to those of x + dx, F33 + dF33, up to the square. */
-static void StressUpdateIsTheLinearisation(void **state)
+TEST(StressUpdateIsTheLinearisation)
 {
   double error[2];
 
@@ -355,7 +355,7 @@ static void StressUpdateIsTheLinearisation(void **state)
   assert_true(fabs(error[0] / error[1] - 4.0) < 0.1);
 }
 
-static void InsideOutElementIsInvalid(void **state)
+TEST(InsideOutElementIsInvalid)
 {
   const double mirror[4] = {-1, 0, 0, 1};
   uint64_t seed = 18;
@@ -372,7 +372,7 @@ static void InsideOutElementIsInvalid(void **state)
 }
 
 /* Fields of a homogeneous stretch along the fibres: sqrt(I4) and the principal stress of the kernels. */
-static void FieldsOfAffineStretchAreExact(void **state)
+TEST(FieldsOfAffineStretchAreExact)
 {
   const double F[4] = {1.2, 0.3, -0.1, 0.9}, J = F[0] * F[3] - F[1] * F[2];
   uint64_t seed = 19;
@@ -391,25 +391,4 @@ static void FieldsOfAffineStretchAreExact(void **state)
     assert_near(stretch[g], hypot(F[0] * fibre[0] + F[1] * fibre[1], F[2] * fibre[0] + F[3] * fibre[1]), 1e-12);
     assert_near(stress[g], 0.5 * (s11 + s22) + hypot(0.5 * (s11 - s22), s12), 1e-10);
   }
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(AffineFieldIsExact),
-      cmocka_unit_test(PatchOfDistortedElementsIsInEquilibrium),
-      cmocka_unit_test(ResidualIsDerivativeOfEnergy),
-      cmocka_unit_test(ConsistentTangentIsDerivativeOfResidual),
-      cmocka_unit_test(TangentIsSymmetric),
-      cmocka_unit_test(ResidualDoesNotDependOnIndependentStresses),
-      cmocka_unit_test(Stretch33DerivativesFollowFromEnergy),
-      cmocka_unit_test(RotationTurnsTheForces),
-      cmocka_unit_test(LinearDilatationIsProjectedOntoItself),
-      cmocka_unit_test(PressureBasisIsOrthonormal),
-      cmocka_unit_test(StressUpdateIsTheLinearisation),
-      cmocka_unit_test(InsideOutElementIsInvalid),
-      cmocka_unit_test(FieldsOfAffineStretchAreExact),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,8 @@
 /* The weakest band of a tangent and the weakest shear band of a wall: exact cases, and searches over all directions. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
+#include "support/test.h"
 #include <math.h>
 #include <string.h>
-#include <cmocka.h>
 #include <lamella/ellipticity.h>
-#include "assert_near.h"
 #include "random_reals.h"
 #include "wall_law.h"
 #include "wall_ellipticity.h"
@@ -59,7 +54,7 @@ static void AssertDirection(const double direction[2], double x, double y)
   assert_near(direction[1], y, 1e-9);
 }
 
-static void IsotropicSolidHasItsShearModulus(void **state)
+TEST(IsotropicSolidHasItsShearModulus)
 {
   double A[16];
   LamBand band;
@@ -77,7 +72,7 @@ static void IsotropicSolidHasItsShearModulus(void **state)
 }
 
 /* Layers across X2, half and half: in series they shear as their harmonic mean, and nothing is weaker. */
-static void LaminateShearsAlongItsLayers(void **state)
+TEST(LaminateShearsAlongItsLayers)
 {
   const double mu[2] = {1.0, 10.0}, lambda[2] = {1.0, 4.0};
   const double series = 2 / (1 / mu[0] + 1 / mu[1]);
@@ -110,7 +105,7 @@ static void LaminateShearsAlongItsLayers(void **state)
   AssertDirection(band.mode, 1, 0);
 }
 
-static void NoDirectionIsWeaker(void **state)
+TEST(NoDirectionIsWeaker)
 {
   uint64_t seed = 3;
 
@@ -130,7 +125,7 @@ static void NoDirectionIsWeaker(void **state)
 }
 
 /* -p J adds nothing: its second derivative vanishes along m (x) N. */
-static void TurgorAtFixedWallsAddsNothing(void **state)
+TEST(TurgorAtFixedWallsAddsNothing)
 {
   uint64_t seed = 4;
   double A[16];
@@ -149,7 +144,7 @@ static void TurgorAtFixedWallsAddsNothing(void **state)
 }
 
 /* F -> R F turns the mode and leaves normal and value. */
-static void ModeTurnsWithTheBody(void **state)
+TEST(ModeTurnsWithTheBody)
 {
   const double c = cos(0.3), s = sin(0.3), R[2][2] = {{c, -s}, {s, c}};
   uint64_t seed = 5;
@@ -171,7 +166,7 @@ static void ModeTurnsWithTheBody(void **state)
               1, 1e-12);
 }
 
-static void UnknownTangentHasNoBand(void **state)
+TEST(UnknownTangentHasNoBand)
 {
   double A[16] = {1, [7] = NAN};
   LamBand band;
@@ -186,7 +181,7 @@ static void UnknownTangentHasNoBand(void **state)
 }
 
 /* Out-of-plane entries do not count: in plane strain they are not known. */
-static void BandOfAResponseIsThatOfItsPlane(void **state)
+TEST(BandOfAResponseIsThatOfItsPlane)
 {
   const LamLoad load = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   LamResponse response;
@@ -243,7 +238,7 @@ static void RandomState(uint64_t *seed, double F[4])
 }
 
 /* Compressed along its fibres the wall kinks at C4 (1 - I4) = C1 + C2, in bands whose normal is along the fibre. */
-static void FibresKinkAcrossThemselves(void **state)
+TEST(FibresKinkAcrossThemselves)
 {
   const LamWall wall = Wall();
   const double critical = sqrt(1 - (wall.C1 + wall.C2) / wall.C4);
@@ -269,7 +264,7 @@ static void FibresKinkAcrossThemselves(void **state)
   }
 }
 
-static void NoShearBandOfAWallIsWeaker(void **state)
+TEST(NoShearBandOfAWallIsWeaker)
 {
   const LamWall wall = Wall();
   uint64_t seed = 8;
@@ -292,7 +287,7 @@ static void NoShearBandOfAWallIsWeaker(void **state)
 }
 
 /* With all jumps allowed, not only those that keep the volume, the weakest is weaker by a share of 1/kappa. */
-static void FiniteBulkModulusDiffersByItsInverse(void **state)
+TEST(FiniteBulkModulusDiffersByItsInverse)
 {
   const LamWall wall = Wall();
   uint64_t seed = 9;
@@ -322,7 +317,7 @@ static void FiniteBulkModulusDiffersByItsInverse(void **state)
   }
 }
 
-static void FibresInTensionAloneNeverKink(void **state)
+TEST(FibresInTensionAloneNeverKink)
 {
   LamWall wall = Wall();
   uint64_t seed = 10;
@@ -335,23 +330,4 @@ static void FibresInTensionAloneNeverKink(void **state)
     WallTangent(&wall, F, RandomReal(&seed, 0, M_PI), A);
     assert_true(LamShearBandStiffness((const PetscReal(*)[4])A, F) > 0);
   }
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(IsotropicSolidHasItsShearModulus),
-      cmocka_unit_test(LaminateShearsAlongItsLayers),
-      cmocka_unit_test(NoDirectionIsWeaker),
-      cmocka_unit_test(TurgorAtFixedWallsAddsNothing),
-      cmocka_unit_test(ModeTurnsWithTheBody),
-      cmocka_unit_test(UnknownTangentHasNoBand),
-      cmocka_unit_test(BandOfAResponseIsThatOfItsPlane),
-      cmocka_unit_test(FibresKinkAcrossThemselves),
-      cmocka_unit_test(NoShearBandOfAWallIsWeaker),
-      cmocka_unit_test(FiniteBulkModulusDiffersByItsInverse),
-      cmocka_unit_test(FibresInTensionAloneNeverKink),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

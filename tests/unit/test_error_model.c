@@ -1,11 +1,11 @@
 /* The planner's error of a mesh, and the mesh that it takes for an accuracy. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "error_model.h"
 
 static const LamErrorCase usual = {LAM_INTERFACE_BONDED, 0.15, 10, 0.2};
 
-static void StrainIsThatOfTheStretchAlone(void **state)
+TEST(StrainIsThatOfTheStretchAlone)
 {
   const double c = cos(0.7), s = sin(0.7), e = 0.1;
   const PetscReal turned[9] = {c, -s, 0, s, c, 0, 0, 0, 1}, stretched[9] = {exp(e), 0, 0, 0, exp(-2 * e), 0, 0, 0, 1};
@@ -16,7 +16,7 @@ static void StrainIsThatOfTheStretchAlone(void **state)
   assert_near(LamStrainSize(sheared), sqrt(2.0) * asinh(0.1), 1e-14);
 }
 
-static void FinerMeshesHaveSmallerErrors(void **state)
+TEST(FinerMeshesHaveSmallerErrors)
 {
   for (int i = 0; i < 2; i++) {
     LamErrorCase c = usual;
@@ -27,7 +27,7 @@ static void FinerMeshesHaveSmallerErrors(void **state)
   }
 }
 
-static void ChosenMeshMeetsTheAccuracyAndIsEven(void **state)
+TEST(ChosenMeshMeetsTheAccuracyAndIsEven)
 {
   static const double accuracy[4] = {0.1, 0.01, 0.005, 0.002};
 
@@ -45,23 +45,11 @@ static void ChosenMeshMeetsTheAccuracyAndIsEven(void **state)
 }
 
 /* What nothing meets gets the finest mesh, not an endless search. */
-static void ImpossibleAccuracyGetsTheFinest(void **state)
+TEST(ImpossibleAccuracyGetsTheFinest)
 {
   PetscInt along, through;
   PetscReal grading;
 
   LamCheapestMesh(&usual, 1e-12, &along, &through, &grading);
   assert_int_equal(along, 28);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(StrainIsThatOfTheStretchAlone),
-      cmocka_unit_test(FinerMeshesHaveSmallerErrors),
-      cmocka_unit_test(ChosenMeshMeetsTheAccuracyAndIsEven),
-      cmocka_unit_test(ImpossibleAccuracyGetsTheFinest),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,9 +1,5 @@
 /* The verdict from what a load program gave: which criterion decides, when, and when there is none. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
-#include "assert_near.h"
+#include "support/test.h"
 #include "failure_criteria.h"
 
 static const LamStrength strength = {.wall = 5, .lamella_normal = 1, .lamella_shear = 0.5};
@@ -57,7 +53,7 @@ static LamFailureMode Conclude(LamFailure *failure)
   return failure->mode;
 }
 
-static void measures_are_held_against_their_strengths(void **state)
+TEST(measures_are_held_against_their_strengths)
 {
   const LamFailure failure = Begun(LAM_INTERFACE_BONDED, &strength);
   const LamResponse r = Response(0);
@@ -68,7 +64,7 @@ static void measures_are_held_against_their_strengths(void **state)
   assert_near(Excess(LAM_CRITERION_WALL, &failure, r, r), -0.95, 1e-15);
 }
 
-static void a_branch_that_is_left_is_an_instability(void **state)
+TEST(a_branch_that_is_left_is_an_instability)
 {
   const LamFailure failure = Begun(LAM_INTERFACE_BONDED, &strength);
   LamResponse before = Response(0), now = Response(0);
@@ -84,7 +80,7 @@ static void a_branch_that_is_left_is_an_instability(void **state)
 }
 
 /* Dry tissue has no turgor to lose, however its walls are pressed. */
-static void only_turgor_that_was_there_is_lost(void **state)
+TEST(only_turgor_that_was_there_is_lost)
 {
   LamFailure failure = Begun(LAM_INTERFACE_BONDED, &strength);
   const LamResponse taut = Response(0.1), slack = WithTension(0.1, -0.01), dry = Response(0);
@@ -100,7 +96,7 @@ static void only_turgor_that_was_there_is_lost(void **state)
 }
 
 /* At F = I turgor gives walls the little tension of their compressibility: that is not taut. */
-static void walls_are_taut_from_a_share_of_the_turgor_on(void **state)
+TEST(walls_are_taut_from_a_share_of_the_turgor_on)
 {
   const LamResponse slack = WithTension(0.1, 0.9 * LAM_TAUT * 0.1);
   LamResponse r = WithTension(0.1, 1.1 * LAM_TAUT * 0.1);
@@ -112,7 +108,7 @@ static void walls_are_taut_from_a_share_of_the_turgor_on(void **state)
   assert_false(LamIsTaut(&r));
 }
 
-static void without_strengths_only_what_needs_none_is_judged(void **state)
+TEST(without_strengths_only_what_needs_none_is_judged)
 {
   static const LamStrength none = {NAN, NAN, NAN};
 
@@ -128,7 +124,7 @@ static void without_strengths_only_what_needs_none_is_judged(void **state)
   }
 }
 
-static void the_first_criterion_decides(void **state)
+TEST(the_first_criterion_decides)
 {
   LamFailure failure = Begun(LAM_INTERFACE_BONDED, &strength);
 
@@ -141,7 +137,7 @@ static void the_first_criterion_decides(void **state)
   assert_near(failure.factor, 2.25, 0);
 }
 
-static void of_two_at_once_the_first_in_the_list_decides(void **state)
+TEST(of_two_at_once_the_first_in_the_list_decides)
 {
   LamFailure failure = Begun(LAM_INTERFACE_BONDED, &strength);
 
@@ -150,7 +146,7 @@ static void of_two_at_once_the_first_in_the_list_decides(void **state)
   assert_int_equal(Conclude(&failure), LAM_FAILURE_SEPARATION);
 }
 
-static void a_program_without_an_answer_is_unknown_unless_something_came_before(void **state)
+TEST(a_program_without_an_answer_is_unknown_unless_something_came_before)
 {
   LamFailure failure = Begun(LAM_INTERFACE_BONDED, &strength);
 
@@ -161,20 +157,4 @@ static void a_program_without_an_answer_is_unknown_unless_something_came_before(
   assert_true(isnan(failure.factor));
   failure.onset[LAM_CRITERION_STABILITY].factor = 1;
   assert_int_equal(Conclude(&failure), LAM_FAILURE_BUCKLING);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(measures_are_held_against_their_strengths),
-      cmocka_unit_test(a_branch_that_is_left_is_an_instability),
-      cmocka_unit_test(only_turgor_that_was_there_is_lost),
-      cmocka_unit_test(walls_are_taut_from_a_share_of_the_turgor_on),
-      cmocka_unit_test(without_strengths_only_what_needs_none_is_judged),
-      cmocka_unit_test(the_first_criterion_decides),
-      cmocka_unit_test(of_two_at_once_the_first_in_the_list_decides),
-      cmocka_unit_test(a_program_without_an_answer_is_unknown_unless_something_came_before),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,6 @@
 /* The summary of a macroscale run: where tissue fails first, slopes of the curve, the largest force. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
+#include "support/test.h"
 #include <string.h>
-#include <cmocka.h>
-#include "assert_near.h"
 #include "fe2_summary.h"
 
 enum { POINTS = 4 }; /* two elements of two points each */
@@ -68,7 +64,7 @@ static void End(Run *run)
 static const LamStrength none = {NAN, NAN, NAN}, walls = {.wall = 2, .lamella_normal = NAN, .lamella_shear = NAN};
 
 /* Of two points that tear between the same two steps the one that does so first, at the interpolated share. */
-static void the_first_point_is_found_between_steps(void **state)
+TEST(the_first_point_is_found_between_steps)
 {
   const PetscReal before[POINTS] = {0, 1, 1.2, 0}, after[POINTS] = {1, 3, 4.2, 1}; /* strength 2: at 1/2, at 4/15 */
   Run *run = Begin(LAM_INTERFACE_BONDED, walls);
@@ -92,7 +88,7 @@ static void the_first_point_is_found_between_steps(void **state)
 }
 
 /* Points 1 and 2 are torn: volumes 2 and 3 of 10. Nothing is judged without a strength. */
-static void shares_are_of_the_volume(void **state)
+TEST(shares_are_of_the_volume)
 {
   Run *run = Begin(LAM_INTERFACE_BONDED, walls);
 
@@ -104,7 +100,7 @@ static void shares_are_of_the_volume(void **state)
 }
 
 /* A gap that opens between two steps is told with the step that has it; what is there at the first step, with that. */
-static void what_cannot_be_interpolated_is_not(void **state)
+TEST(what_cannot_be_interpolated_is_not)
 {
   Run *run = Begin(LAM_INTERFACE_CONTACT, walls);
   const LamSummaryOnset *onset = run->summary.onset;
@@ -121,7 +117,7 @@ static void what_cannot_be_interpolated_is_not(void **state)
 }
 
 /* Cells that are pressed together have separated when a face has lost that, not when they open at a junction. */
-static void an_opening_is_no_separation(void **state)
+TEST(an_opening_is_no_separation)
 {
   Run *run = Begin(LAM_INTERFACE_CONTACT, none);
   LamSummaryCriterion criterion = LAM_SUMMARY_CRITERION_COUNT;
@@ -140,7 +136,7 @@ static void an_opening_is_no_separation(void **state)
 }
 
 /* Where nothing presses cells together a gap separates them. */
-static void dry_cells_separate_by_a_gap(void **state)
+TEST(dry_cells_separate_by_a_gap)
 {
   Run *run = Begin(LAM_INTERFACE_CONTACT, none);
   LamSummaryCriterion criterion;
@@ -157,7 +153,7 @@ static void dry_cells_separate_by_a_gap(void **state)
 
 /* Of R = 3 u + u^2 the tangents are exact, whatever the steps are; moduli are over 10 mm across and 20 mm along the
  * top. */
-static void tangents_of_a_parabola_are_exact(void **state)
+TEST(tangents_of_a_parabola_are_exact)
 {
   const PetscReal u[] = {0, 0.5, 0.8, 1.7, 2};
   Run *run = Begin(LAM_INTERFACE_BONDED, none);
@@ -172,7 +168,7 @@ static void tangents_of_a_parabola_are_exact(void **state)
 }
 
 /* Loading and unloading: the secant goes to the turning point, the final tangent is that of the way back. */
-static void a_cycle_has_its_turning_point(void **state)
+TEST(a_cycle_has_its_turning_point)
 {
   const PetscReal u[] = {0, 1, 2, 1}, R[] = {0, 3, 4, 2};
   Run *run = Begin(LAM_INTERFACE_BONDED, none);
@@ -182,19 +178,4 @@ static void a_cycle_has_its_turning_point(void **state)
   assert_near(run->summary.stiffness.final, 2, 1e-12);
   assert_int_equal(run->summary.firmest, 2);
   End(run);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_first_point_is_found_between_steps),
-      cmocka_unit_test(shares_are_of_the_volume),
-      cmocka_unit_test(what_cannot_be_interpolated_is_not),
-      cmocka_unit_test(an_opening_is_no_separation),
-      cmocka_unit_test(dry_cells_separate_by_a_gap),
-      cmocka_unit_test(tangents_of_a_parabola_are_exact),
-      cmocka_unit_test(a_cycle_has_its_turning_point),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

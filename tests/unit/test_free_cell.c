@@ -1,15 +1,10 @@
 /* Cells that touch no one, of a tissue with known answers: what lies between the knots, and the text of them. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
+#include "support/test.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 #include "free_cell.h"
-#include "assert_near.h"
 #include "random_reals.h"
 #include "test_scene_message.h"
 
@@ -111,7 +106,7 @@ static double RandomSuction(uint64_t *seed)
 
 /* ---- the states ---- */
 
-static void states_are_moved_apart_until_they_float(void **state)
+TEST(states_are_moved_apart_until_they_float)
 {
   Tissue known = {.failing = INFINITY, .touching = INFINITY};
   LamFreeCell cell = MakeOf(&tissue, &known);
@@ -131,7 +126,7 @@ static void states_are_moved_apart_until_they_float(void **state)
   LamFreeCellDestroy(&cell);
 }
 
-static void knots_are_even_between_the_ends(void **state)
+TEST(knots_are_even_between_the_ends)
 {
   LamFreeCell cell = Make();
 
@@ -151,17 +146,17 @@ static void AssertNone(Tissue known)
   LamFreeCellDestroy(&cell);
 }
 
-static void a_state_that_fails_leaves_none(void **state)
+TEST(a_state_that_fails_leaves_none)
 {
   AssertNone((Tissue){.failing = 0.5, .touching = INFINITY});
 }
 
-static void a_cell_that_stays_in_touch_leaves_none(void **state)
+TEST(a_cell_that_stays_in_touch_leaves_none)
 {
   AssertNone((Tissue){.failing = INFINITY, .touching = 0.5});
 }
 
-static void tissue_without_free_cells_is_not_solved(void **state)
+TEST(tissue_without_free_cells_is_not_solved)
 {
   LamMicrostructure none[4] = {tissue, tissue, tissue, tissue};
   LamCell differing = {.turgor = 0.5};
@@ -183,7 +178,7 @@ static void tissue_without_free_cells_is_not_solved(void **state)
 /* ---- between the knots ---- */
 
 /* With the chain rule from tau to s. */
-static void the_spline_is_exact_for_a_cubic_in_tau(void **state)
+TEST(the_spline_is_exact_for_a_cubic_in_tau)
 {
   LamFreeCell cell = Make();
   uint64_t seed = 1;
@@ -201,7 +196,7 @@ static void the_spline_is_exact_for_a_cubic_in_tau(void **state)
   LamFreeCellDestroy(&cell);
 }
 
-static void the_energy_is_exact_for_a_quintic(void **state)
+TEST(the_energy_is_exact_for_a_quintic)
 {
   LamFreeCell cell = Make();
   uint64_t seed = 2;
@@ -219,7 +214,7 @@ static void the_energy_is_exact_for_a_quintic(void **state)
   LamFreeCellDestroy(&cell);
 }
 
-static void the_step_in_turgor_is_exact_for_a_cubic_in_tau(void **state)
+TEST(the_step_in_turgor_is_exact_for_a_cubic_in_tau)
 {
   LamFreeCell cell = Make();
   uint64_t seed = 3;
@@ -264,7 +259,7 @@ static void All(const LamFreeCell *cell, double s, double y[8])
   y[7] = turgor[1][0];
 }
 
-static void derivatives_are_those_of_the_values(void **state)
+TEST(derivatives_are_those_of_the_values)
 {
   LamFreeCell cell = Make();
   uint64_t seed = 5;
@@ -284,7 +279,7 @@ static void derivatives_are_those_of_the_values(void **state)
   LamFreeCellDestroy(&cell);
 }
 
-static void nothing_jumps_at_a_knot(void **state)
+TEST(nothing_jumps_at_a_knot)
 {
   LamFreeCell cell = Make();
 
@@ -305,7 +300,7 @@ static void nothing_jumps_at_a_knot(void **state)
   LamFreeCellDestroy(&cell);
 }
 
-static void the_step_in_turgor_has_a_continuous_slope(void **state)
+TEST(the_step_in_turgor_has_a_continuous_slope)
 {
   LamFreeCell cell = Make();
 
@@ -344,7 +339,7 @@ static void AssertSameNumbers(const PetscReal a[], const PetscReal b[])
   assert_memory_equal(a, b, KNOTS * sizeof(PetscReal));
 }
 
-static void the_text_keeps_every_bit(void **state)
+TEST(the_text_keeps_every_bit)
 {
   LamFreeCell cell = Make(), copy;
   json_t *object = TextAndBack(&cell);
@@ -366,7 +361,7 @@ static void the_text_keeps_every_bit(void **state)
   LamFreeCellDestroy(&cell);
 }
 
-static void no_free_cell_has_a_text_too(void **state)
+TEST(no_free_cell_has_a_text_too)
 {
   const LamFreeCell none = {.n = 0};
   json_t *object = TextAndBack(&none);
@@ -392,7 +387,7 @@ static void AssertRefused(json_t *object, const char what[])
   LamFreeCellDestroy(&copy);
 }
 
-static void damage_is_refused(void **state)
+TEST(damage_is_refused)
 {
   LamFreeCell cell = Make();
   json_t *object;
@@ -418,26 +413,4 @@ static void damage_is_refused(void **state)
   json_object_set_new(object, "suction", json_pack("[f, f]", 0.1, 0.2));
   AssertRefused(object, "2 knots");
   LamFreeCellDestroy(&cell);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(states_are_moved_apart_until_they_float),
-      cmocka_unit_test(knots_are_even_between_the_ends),
-      cmocka_unit_test(a_state_that_fails_leaves_none),
-      cmocka_unit_test(a_cell_that_stays_in_touch_leaves_none),
-      cmocka_unit_test(tissue_without_free_cells_is_not_solved),
-      cmocka_unit_test(the_spline_is_exact_for_a_cubic_in_tau),
-      cmocka_unit_test(the_energy_is_exact_for_a_quintic),
-      cmocka_unit_test(the_step_in_turgor_is_exact_for_a_cubic_in_tau),
-      cmocka_unit_test(derivatives_are_those_of_the_values),
-      cmocka_unit_test(nothing_jumps_at_a_knot),
-      cmocka_unit_test(the_step_in_turgor_has_a_continuous_slope),
-      cmocka_unit_test(the_text_keeps_every_bit),
-      cmocka_unit_test(no_free_cell_has_a_text_too),
-      cmocka_unit_test(damage_is_refused),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

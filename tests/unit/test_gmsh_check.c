@@ -1,9 +1,5 @@
 /* Gmsh files: sound ones of each format pass, and what PETSc would believe without looking is refused with the line. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <setjmp.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -52,27 +48,27 @@ static void AssertRefused(const char text[], const char part[])
   if (!strstr(why, part)) fail_msg("\"%s\" lacks \"%s\"", why, part);
 }
 
-static void sound_files_pass(void **state)
+TEST(sound_files_pass)
 {
   AssertSound(FORMAT_22 NAMES NODES_22 ELEMENTS_22);
   AssertSound(FORMAT_40 NODES_40 ELEMENTS_40);
   AssertSound(FORMAT_41 NODES_41 ELEMENTS_41);
 }
 
-static void a_node_that_is_not_there_is_refused(void **state)
+TEST(a_node_that_is_not_there_is_refused)
 {
   AssertRefused(FORMAT_22 NODES_22 "$Elements\n1\n1 3 2 5 5 1 2 3 5\n$EndElements\n",
                 "line 13: an element has node 5, which is not in $Nodes");
   AssertRefused(FORMAT_41 NODES_41 "$Elements\n1 1 1 1\n2 1 3 1\n2 1 2 3 999999999\n$EndElements\n", "node 999999999");
 }
 
-static void an_entity_that_is_not_there_is_refused(void **state)
+TEST(an_entity_that_is_not_there_is_refused)
 {
   AssertRefused(FORMAT_41 "$Nodes\n1 1 1 1\n2 7 0 1\n1\n0 0 0\n$EndNodes\n", "not in $Entities");
   AssertRefused(FORMAT_40 NODES_40 "$Elements\n1 1\n7 2 3 1\n2 1 2 3 4\n$EndElements\n", "not in $Entities");
 }
 
-static void more_than_the_file_has_room_for_is_refused(void **state)
+TEST(more_than_the_file_has_room_for_is_refused)
 {
   AssertRefused(FORMAT_22 "$Nodes\n1000000000\n1 0 0 0\n", "1000000000 is not the whole number wanted");
   AssertRefused(FORMAT_41 "$Nodes\n1 900000000 1 4\n", "900000000 is not");
@@ -80,24 +76,24 @@ static void more_than_the_file_has_room_for_is_refused(void **state)
 }
 
 /* PETSc takes memory from the least to the largest. */
-static void tags_that_are_far_apart_are_refused(void **state)
+TEST(tags_that_are_far_apart_are_refused)
 {
   AssertRefused(FORMAT_22 "$Nodes\n2\n1 0 0 0\n2000000000 1 0 0\n$EndNodes\n" ELEMENTS_22, "from 1 to 2000000000");
   AssertRefused(FORMAT_41 "$Nodes\n1 1 2817 4\n2 1 0 1\n1\n0 0 0\n$EndNodes\n", "said to be from 2817 to 4");
 }
 
-static void an_element_with_a_node_twice_is_refused(void **state)
+TEST(an_element_with_a_node_twice_is_refused)
 {
   AssertRefused(FORMAT_22 NODES_22 "$Elements\n1\n1 3 2 5 5 1 2 3 3\n$EndElements\n", "has node 3 twice");
 }
 
-static void a_line_that_is_on_no_element_is_refused(void **state)
+TEST(a_line_that_is_on_no_element_is_refused)
 {
   AssertRefused(FORMAT_22 NODES_22 "$Elements\n2\n1 1 2 1 1 1 3\n2 3 2 5 5 1 2 3 4\n$EndElements\n",
                 "the line from node 1 to 3 is on no element");
 }
 
-static void what_is_no_plane_body_is_refused(void **state)
+TEST(what_is_no_plane_body_is_refused)
 {
   AssertRefused(FORMAT_22 NODES_22 "$Elements\n1\n1 4 2 5 5 1 2 3 4\n$EndElements\n", "type 4 are not read");
   AssertRefused(FORMAT_22 NODES_22 "$Elements\n1\n1 1 2 1 1 1 2\n$EndElements\n", "no element of a surface");
@@ -105,19 +101,19 @@ static void what_is_no_plane_body_is_refused(void **state)
 }
 
 /* These are labels of PETSc's own. */
-static void names_that_are_taken_are_refused(void **state)
+TEST(names_that_are_taken_are_refused)
 {
   AssertRefused(FORMAT_22 "$PhysicalNames\n1\n1 1 \"depth\"\n$EndPhysicalNames\n", "cannot have the name depth");
   AssertRefused(FORMAT_22 "$PhysicalNames\n1\n1 1 \"celltype\"\n$EndPhysicalNames\n", "cannot have the name celltype");
 }
 
-static void names_that_PETSc_misreads_are_refused(void **state)
+TEST(names_that_PETSc_misreads_are_refused)
 {
   AssertRefused(FORMAT_22 "$PhysicalNames\n1\n1 1  \"base\"\n$EndPhysicalNames\n", "behind one blank");
   AssertRefused(FORMAT_22 "$PhysicalNames\n1\n1 1 \"a:b\"\n$EndPhysicalNames\n", "holds a colon");
 }
 
-static void long_words_are_refused(void **state)
+TEST(long_words_are_refused)
 {
   char *text = calloc(1, 20000);
 
@@ -131,12 +127,12 @@ static void long_words_are_refused(void **state)
   free(text);
 }
 
-static void a_place_that_is_no_number_is_refused(void **state)
+TEST(a_place_that_is_no_number_is_refused)
 {
   AssertRefused(FORMAT_22 "$Nodes\n1\n1 nan 0 0\n$EndNodes\n", "line 6: a coordinate is no finite number");
 }
 
-static void a_file_cut_anywhere_is_refused(void **state)
+TEST(a_file_cut_anywhere_is_refused)
 {
   const char whole[] = FORMAT_41 NODES_41 ELEMENTS_41;
   char text[sizeof(whole)];
@@ -145,25 +141,4 @@ static void a_file_cut_anywhere_is_refused(void **state)
     snprintf(text, n + 1, "%s", whole);
     AssertRefused(text, "");
   }
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(sound_files_pass),
-      cmocka_unit_test(a_node_that_is_not_there_is_refused),
-      cmocka_unit_test(an_entity_that_is_not_there_is_refused),
-      cmocka_unit_test(more_than_the_file_has_room_for_is_refused),
-      cmocka_unit_test(tags_that_are_far_apart_are_refused),
-      cmocka_unit_test(an_element_with_a_node_twice_is_refused),
-      cmocka_unit_test(a_line_that_is_on_no_element_is_refused),
-      cmocka_unit_test(what_is_no_plane_body_is_refused),
-      cmocka_unit_test(names_that_are_taken_are_refused),
-      cmocka_unit_test(names_that_PETSc_misreads_are_refused),
-      cmocka_unit_test(long_words_are_refused),
-      cmocka_unit_test(a_place_that_is_no_number_is_refused),
-      cmocka_unit_test(a_file_cut_anywhere_is_refused),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

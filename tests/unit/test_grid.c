@@ -1,13 +1,7 @@
 /* Where nodes lie, their keys, and the text of a grid. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
+#include "support/test.h"
 #include <stdlib.h>
-#include <cmocka.h>
 #include <jansson.h>
-#include "assert_near.h"
-#define CHECK(call) assert_int_equal(call, 0)
 #include "analytic_table.h"
 #include "test_scene_message.h"
 
@@ -24,7 +18,7 @@ static LamGrid Make(PetscBool contact)
 
 /* ---- keys ---- */
 
-static void keys_and_places_are_one_to_one(void **state)
+TEST(keys_and_places_are_one_to_one)
 {
   const int far = LAM_GRID_REACH;
   const LamNodePlace places[] = {
@@ -39,14 +33,14 @@ static void keys_and_places_are_one_to_one(void **state)
   }
 }
 
-static void keys_rise_with_places(void **state)
+TEST(keys_rise_with_places)
 {
   const LamNodePlace places[] = {{{-5, 9, 9}, 9}, {{-4, -9, 0}, 0}, {{-4, 3, 0}, 0}, {{-4, 3, 1}, 7}, {{-4, 3, 1}, 8}};
 
   for (int n = 1; n < 5; n++) assert_true(LamNodeKeyOf(&places[n - 1]) < LamNodeKeyOf(&places[n]));
 }
 
-static void other_keys_are_of_no_node(void **state)
+TEST(other_keys_are_of_no_node)
 {
   const LamNodePlace last = {{LAM_GRID_REACH - 1, LAM_GRID_REACH - 1, LAM_GRID_REACH - 1}, 4095};
 
@@ -57,7 +51,7 @@ static void other_keys_are_of_no_node(void **state)
   assert_false(LamKeyIsNode(LAM_CACHE_KEY));
 }
 
-static void the_level_is_that_of_the_finest_coordinate(void **state)
+TEST(the_level_is_that_of_the_finest_coordinate)
 {
   assert_int_equal(LamNodeLevel(&(LamNodePlace){{0, -LAM_ROOT, 3 * LAM_ROOT}, 5}), 0);
   assert_int_equal(LamNodeLevel(&(LamNodePlace){{0, -LAM_ROOT / 2, LAM_ROOT}, 0}), 1);
@@ -87,7 +81,7 @@ static void AssertStrains(LamGrid grid, const int i[3], int j)
   for (int k = 0; k < 3; k++) assert_near(at.x[k], shift[0] + grid->step * i[k] / LAM_ROOT, 1e-13);
 }
 
-static void a_node_has_the_strains_of_its_place(void **state)
+TEST(a_node_has_the_strains_of_its_place)
 {
   for (int contact = 0; contact < 2; contact++) {
     LamGrid grid = Make((PetscBool)contact);
@@ -98,7 +92,7 @@ static void a_node_has_the_strains_of_its_place(void **state)
   }
 }
 
-static void strains_that_no_state_has_give_no_F(void **state)
+TEST(strains_that_no_state_has_give_no_F)
 {
   LamGrid grid = Make(PETSC_FALSE);
   const LamNodePlace place = {{-6000, -6000, 6000}, 0};
@@ -109,7 +103,7 @@ static void strains_that_no_state_has_give_no_F(void **state)
   CHECK(LamGridDestroy(&grid));
 }
 
-static void the_box_of_the_sample_is_covered(void **state)
+TEST(the_box_of_the_sample_is_covered)
 {
   LamGrid grid = Make(PETSC_FALSE);
   const double cells = 0.30 / grid->step;
@@ -124,7 +118,7 @@ static void the_box_of_the_sample_is_covered(void **state)
 }
 
 /* Of sorted places sorted ones; a root node has none. */
-static void parents_are_coarser_until_there_is_none(void **state)
+TEST(parents_are_coarser_until_there_is_none)
 {
   LamGrid grid = Make(PETSC_TRUE);
   uint64_t seed = 1;
@@ -163,7 +157,7 @@ static void AssertNoGrid(const LamScene *scene, const char what[])
   CHECK(LamGridDestroy(&grid));
 }
 
-static void a_patch_has_no_grid(void **state)
+TEST(a_patch_has_no_grid)
 {
   const AnalyticTissue tissue = {PETSC_FALSE, 0};
   LamScene scene = AnalyticScene(&tissue);
@@ -172,7 +166,7 @@ static void a_patch_has_no_grid(void **state)
   AssertNoGrid(&scene, "rve.patch");
 }
 
-static void contact_without_suction_has_no_grid(void **state)
+TEST(contact_without_suction_has_no_grid)
 {
   const AnalyticTissue tissue = {PETSC_TRUE, 0};
   LamScene scene = AnalyticScene(&tissue);
@@ -191,7 +185,7 @@ static LamMicrostructure MicroOf(PetscBool contact)
   return AnalyticScene(&tissue).micro;
 }
 
-static void the_text_keeps_every_bit(void **state)
+TEST(the_text_keeps_every_bit)
 {
   for (int contact = 0; contact < 2; contact++) {
     const LamMicrostructure micro = MicroOf((PetscBool)contact);
@@ -245,7 +239,7 @@ static void AssertMemberRefused(PetscBool contact, const char name[], json_t *va
   CHECK(LamGridDestroy(&grid));
 }
 
-static void a_text_without_a_member_is_refused(void **state)
+TEST(a_text_without_a_member_is_refused)
 {
   static const char *const names[] = {"origin",  "step",     "turgor",    "cohesion", "suction_scale",
                                       "tau_min", "tau_step", "tau_cells", "free_cell"};
@@ -258,7 +252,7 @@ static void a_text_without_a_member_is_refused(void **state)
   }
 }
 
-static void numbers_that_no_grid_has_are_refused(void **state)
+TEST(numbers_that_no_grid_has_are_refused)
 {
   AssertMemberRefused(PETSC_FALSE, "step", json_real(0));
   AssertMemberRefused(PETSC_TRUE, "suction_scale", json_real(-1));
@@ -270,41 +264,18 @@ static void numbers_that_no_grid_has_are_refused(void **state)
   AssertMemberRefused(PETSC_TRUE, "tau_cells", json_real(3));
 }
 
-static void free_cells_of_another_grid_are_refused(void **state)
+TEST(free_cells_of_another_grid_are_refused)
 {
   AssertMemberRefused(PETSC_TRUE, "tau_min", json_real(1.5));
   AssertMemberRefused(PETSC_TRUE, "tau_cells", json_integer(2));
   AssertMemberRefused(PETSC_TRUE, "cohesion", json_real(0.2));
 }
 
-static void what_is_no_object_is_refused(void **state)
+TEST(what_is_no_object_is_refused)
 {
   AssertRefused(PETSC_FALSE, "");
   AssertRefused(PETSC_FALSE, "[1, 2]");
   AssertRefused(PETSC_FALSE, "{\"origin\": 0, \"step\": 0.1, \"turgor\": ");
   AssertRefused(PETSC_FALSE, "{\"origin\": NaN, \"step\": 0.1, \"turgor\": 0}");
   AssertRefused(PETSC_FALSE, "{\"origin\": 1e999, \"step\": 0.1, \"turgor\": 0}");
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(keys_and_places_are_one_to_one),
-      cmocka_unit_test(keys_rise_with_places),
-      cmocka_unit_test(other_keys_are_of_no_node),
-      cmocka_unit_test(the_level_is_that_of_the_finest_coordinate),
-      cmocka_unit_test(a_node_has_the_strains_of_its_place),
-      cmocka_unit_test(strains_that_no_state_has_give_no_F),
-      cmocka_unit_test(the_box_of_the_sample_is_covered),
-      cmocka_unit_test(parents_are_coarser_until_there_is_none),
-      cmocka_unit_test(a_patch_has_no_grid),
-      cmocka_unit_test(contact_without_suction_has_no_grid),
-      cmocka_unit_test(the_text_keeps_every_bit),
-      cmocka_unit_test(a_text_without_a_member_is_refused),
-      cmocka_unit_test(numbers_that_no_grid_has_are_refused),
-      cmocka_unit_test(free_cells_of_another_grid_are_refused),
-      cmocka_unit_test(what_is_no_object_is_refused),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

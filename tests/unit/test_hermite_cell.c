@@ -1,9 +1,5 @@
 /* Functions on a cube from what is known at its corners: exact there, C1 across faces, derivatives of each other. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <cmocka.h>
-#include <assert_near.h>
+#include "support/test.h"
 #include <random_reals.h>
 #include <hermite_cell.h>
 
@@ -73,7 +69,7 @@ static void assert_same(const LamJet *jet, const LamJet *expected, double tolera
   for (int i = 0; i < 6; i++) assert_near(jet->hessian[i], expected->hessian[i], tolerance);
 }
 
-static void the_quintic_returns_the_data_at_corners(void **state)
+TEST(the_quintic_returns_the_data_at_corners)
 {
   uint64_t seed = 1;
   LamJet corner[8];
@@ -88,7 +84,7 @@ static void the_quintic_returns_the_data_at_corners(void **state)
 }
 
 /* Known: the data. Not known: that of the cubic along the edge, and the other end keeps its own. */
-static void an_unknown_second_derivative_is_that_of_the_cubic(void **state)
+TEST(an_unknown_second_derivative_is_that_of_the_cubic)
 {
   uint64_t seed = 2;
   LamJet corner[8];
@@ -105,7 +101,7 @@ static void an_unknown_second_derivative_is_that_of_the_cubic(void **state)
   }
 }
 
-static void the_cubic_knows_no_pure_second_derivatives(void **state)
+TEST(the_cubic_knows_no_pure_second_derivatives)
 {
   uint64_t seed = 3;
   LamJet corner[8], other[8];
@@ -162,7 +158,7 @@ static void check_derivatives(LamJet (*at)(const LamJet corner[8], const double 
   }
 }
 
-static void derivatives_are_those_of_the_function(void **state)
+TEST(derivatives_are_those_of_the_function)
 {
   check_derivatives(Quintic, 0, 1);
   check_derivatives(Quintic, 0.3, 1);
@@ -297,7 +293,7 @@ static void check_reproduces(LamJet (*at)(const LamJet corner[8], const double t
 }
 
 /* Cubics in each variable: x y z among them, of which the third derivative alone knows. */
-static void functions_of_the_space_are_reproduced(void **state)
+TEST(functions_of_the_space_are_reproduced)
 {
   check_reproduces(Cubic, PairsOfCubics, 1);
   check_reproduces(Cubic, TensorCubics, 1);
@@ -305,7 +301,7 @@ static void functions_of_the_space_are_reproduced(void **state)
   check_reproduces(Quintic, PairsOfCubicsAndQuintics, 1);
 }
 
-static void edges_reproduce_complete_cubics(void **state)
+TEST(edges_reproduce_complete_cubics)
 {
   check_reproduces(Edges, CompleteCubic, 0);
 }
@@ -338,14 +334,14 @@ static void check_faces(double unknown)
     }
 }
 
-static void neighbours_agree_in_value_and_gradient(void **state)
+TEST(neighbours_agree_in_value_and_gradient)
 {
   check_faces(0);
   check_faces(0.3);
   check_faces(1);
 }
 
-static void edges_are_continuous(void **state)
+TEST(edges_are_continuous)
 {
   uint64_t seed = 9;
 
@@ -374,7 +370,7 @@ static LamJet QuarticAndCubic(const double x[3])
   return jet;
 }
 
-static void sizes_tell_fourth_and_third_derivatives(void **state)
+TEST(sizes_tell_fourth_and_third_derivatives)
 {
   LamJet corner[8];
   double bend[3], turn[3];
@@ -388,7 +384,7 @@ static void sizes_tell_fourth_and_third_derivatives(void **state)
   assert_near(turn[2], 30 * H * H, 1e-12);
 }
 
-static void results_are_added_to_the_sum(void **state)
+TEST(results_are_added_to_the_sum)
 {
   const double t[3] = {0.2, 0.5, 0.9};
   uint64_t seed = 11;
@@ -405,21 +401,4 @@ static void results_are_added_to_the_sum(void **state)
   for (int i = 0; i < 3; i++) sum.gradient[i] -= quintic.gradient[i] + cubic.gradient[i];
   for (int i = 0; i < 6; i++) sum.hessian[i] -= quintic.hessian[i] + cubic.hessian[i];
   assert_same(&sum, &start, 1e-13);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_quintic_returns_the_data_at_corners),
-      cmocka_unit_test(an_unknown_second_derivative_is_that_of_the_cubic),
-      cmocka_unit_test(the_cubic_knows_no_pure_second_derivatives),
-      cmocka_unit_test(derivatives_are_those_of_the_function),
-      cmocka_unit_test(functions_of_the_space_are_reproduced),
-      cmocka_unit_test(edges_reproduce_complete_cubics),
-      cmocka_unit_test(neighbours_agree_in_value_and_gradient),
-      cmocka_unit_test(edges_are_continuous),
-      cmocka_unit_test(sizes_tell_fourth_and_third_derivatives),
-      cmocka_unit_test(results_are_added_to_the_sum),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,9 @@
 /*
   Kinetic laws: rates at a temperature, and their derivatives.
 */
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <setjmp.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include <lamella/kinetics.h>
 #include <math.h>
-#include "assert_near.h"
 
 #define ZERO_CELSIUS 273.15
 
@@ -20,7 +15,7 @@ static LamKinetics Law(LamKineticLaw law)
 }
 
 /* Lee 2017 gives 0.161 /min at 100 degC with 138 kJ/mol; at 90 degC that is by hand 0.0473. */
-static void a_rate_follows_arrhenius(void **state)
+TEST(a_rate_follows_arrhenius)
 {
   const LamRate rate = {.rate = 0.161, .activation = 138e3, .reference = ZERO_CELSIUS + 100};
   const PetscReal T = ZERO_CELSIUS + 90;
@@ -29,7 +24,7 @@ static void a_rate_follows_arrhenius(void **state)
   assert_near(LamRateAt(&rate, T), 0.0473, 0.0001);
 }
 
-static void a_deactivated_rate_is_given_at_its_reference_and_falls_beyond(void **state)
+TEST(a_deactivated_rate_is_given_at_its_reference_and_falls_beyond)
 {
   const LamRate rate = {.rate = 0.5,
                         .activation = 60e3,
@@ -42,7 +37,7 @@ static void a_deactivated_rate_is_given_at_its_reference_and_falls_beyond(void *
   assert_true(LamRateAt(&rate, ZERO_CELSIUS + 50) < LamRateAt(&rate, ZERO_CELSIUS + 35));
 }
 
-static void half_of_the_enzyme_is_active_at_its_temperature(void **state)
+TEST(half_of_the_enzyme_is_active_at_its_temperature)
 {
   LamRate rate = {.rate = 0.5,
                   .activation = 0,
@@ -53,7 +48,7 @@ static void half_of_the_enzyme_is_active_at_its_temperature(void **state)
   assert_near(LamRateAt(&rate, rate.half_activity), 0.25, 1e-9);
 }
 
-static void rates_stay_finite_at_any_temperature(void **state)
+TEST(rates_stay_finite_at_any_temperature)
 {
   const LamRate rate = {.rate = 0.5,
                         .activation = 60e3,
@@ -65,7 +60,7 @@ static void rates_stay_finite_at_any_temperature(void **state)
   assert_true(isfinite(LamRateAt(&rate, 2000)));
 }
 
-static void every_factor_begins_at_1(void **state)
+TEST(every_factor_begins_at_1)
 {
   PetscReal time[2] = {0, 10}, factor[2] = {1, 0.5};
 
@@ -82,7 +77,7 @@ static void every_factor_begins_at_1(void **state)
 }
 
 /* At random states, by central differences. */
-static void derivatives_of_rates_are_consistent(void **state)
+TEST(derivatives_of_rates_are_consistent)
 {
   const PetscReal T = 300, x[2] = {0.63, 0.41}, h = 1e-6;
 
@@ -104,7 +99,7 @@ static void derivatives_of_rates_are_consistent(void **state)
   }
 }
 
-static void a_table_is_straight_between_its_points_and_constant_beyond(void **state)
+TEST(a_table_is_straight_between_its_points_and_constant_beyond)
 {
   PetscReal time[3] = {0, 10, 30}, factor[3] = {1, 0.5, 0.7}, slope[2];
   const LamKinetics table = {.law = LAM_KINETIC_TABLE, .count = 3, .time = time, .factor = factor};
@@ -113,18 +108,4 @@ static void a_table_is_straight_between_its_points_and_constant_beyond(void **st
   assert_near(LamKineticsFactor(&table, 10, NULL, slope), 0.5, 1e-15);
   assert_near(LamKineticsFactor(&table, 20, NULL, slope), 0.6, 1e-15);
   assert_near(LamKineticsFactor(&table, 99, NULL, slope), 0.7, 1e-15);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_rate_follows_arrhenius),
-      cmocka_unit_test(a_deactivated_rate_is_given_at_its_reference_and_falls_beyond),
-      cmocka_unit_test(half_of_the_enzyme_is_active_at_its_temperature),
-      cmocka_unit_test(rates_stay_finite_at_any_temperature),
-      cmocka_unit_test(every_factor_begins_at_1),
-      cmocka_unit_test(derivatives_of_rates_are_consistent),
-      cmocka_unit_test(a_table_is_straight_between_its_points_and_constant_beyond),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,9 +1,5 @@
 /* Which cells lie side by side, and which outer walls follow F, is what the mesh has. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <cmocka.h>
-#include <assert_near.h>
+#include "support/test.h"
 #include <lamella/lattice.h>
 #include <mesh.h>
 
@@ -26,7 +22,7 @@ static LamMicrostructure Block(int i, double degrees)
   return micro;
 }
 
-static void neighbours_and_held_walls_are_those_of_the_mesh(void **state)
+TEST(neighbours_and_held_walls_are_those_of_the_mesh)
 {
   for (int i = 0; i < BLOCKS; i++)
     for (int degrees = -360; degrees <= 360; degrees += 10) {
@@ -58,7 +54,7 @@ static void Centre(const LamMicrostructure *micro, PetscInt cell, double X[2])
 }
 
 /* The neighbour's centre, or that of its image, is one lattice vector away. */
-static void a_neighbour_lies_across_its_face(void **state)
+TEST(a_neighbour_lies_across_its_face)
 {
   for (int i = 0; i < BLOCKS; i++)
     for (int degrees = -180; degrees <= 180; degrees += 15) {
@@ -85,20 +81,10 @@ static void a_neighbour_lies_across_its_face(void **state)
     }
 }
 
-static void distances_are_those_of_the_plane(void **state)
+TEST(distances_are_those_of_the_plane)
 {
   assert_near(LamLatticeDistance(1, 0), 1.0, 0.0);
   assert_near(LamLatticeDistance(-1, 1), 1.0, 0.0);
   assert_near(LamLatticeDistance(1, 1), sqrt(3.0), 1e-15);
   assert_near(LamLatticeDistance(3, -1), sqrt(7.0), 1e-15);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(neighbours_and_held_walls_are_those_of_the_mesh),
-      cmocka_unit_test(a_neighbour_lies_across_its_face),
-      cmocka_unit_test(distances_are_those_of_the_plane),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,7 @@
 /* Lattice strains: kinematics, and stress and tangent from a potential of them and back. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
+#include "support/test.h"
 #include <math.h>
 #include <string.h>
-#include <cmocka.h>
-#include "assert_near.h"
 #include "lattice_strain.h"
 #include "random_reals.h"
 
@@ -21,7 +16,7 @@ static void RandomF(uint64_t *seed, double F[4])
 }
 
 /* F11 = 1.1, F12 = 0.2, F22 = 0.9, a lattice direction along X1: n_1 at 60, n_2 at 120 degrees, by hand. */
-static void strains_are_those_of_the_recipe(void **state)
+TEST(strains_are_those_of_the_recipe)
 {
   const LamLatticeAxes axes = LamLatticeAxesOf(0);
   const double F[4] = {1.1, 0.2, 0, 0.9}, h = sqrt(0.75);
@@ -32,7 +27,7 @@ static void strains_are_those_of_the_recipe(void **state)
   assert_near(at.x[2], 0.5 * log(pow(-0.55 + 0.2 * h, 2) + pow(0.9 * h, 2)), 1e-15);
 }
 
-static void a_turned_lattice_sees_a_turned_strain(void **state)
+TEST(a_turned_lattice_sees_a_turned_strain)
 {
   const double angle = 0.4, c = cos(angle), s = sin(angle), F[4] = {1.1, 0.05, -0.1, 0.95};
   const LamLatticeAxes straight = LamLatticeAxesOf(0), turned = LamLatticeAxesOf(angle);
@@ -42,7 +37,7 @@ static void a_turned_lattice_sees_a_turned_strain(void **state)
   for (int k = 0; k < 3; k++) assert_near(a.x[k], b.x[k], 1e-15);
 }
 
-static void strains_do_not_see_the_frame(void **state)
+TEST(strains_do_not_see_the_frame)
 {
   const LamLatticeAxes axes = LamLatticeAxesOf(0.3);
   const double F[4] = {1.1, 0.05, -0.1, 0.95}, c = cos(0.8), s = sin(0.8);
@@ -52,7 +47,7 @@ static void strains_do_not_see_the_frame(void **state)
   for (int k = 0; k < 3; k++) assert_near(a.x[k], b.x[k], 1e-15);
 }
 
-static void strains_make_a_stretch_and_the_stretch_them(void **state)
+TEST(strains_make_a_stretch_and_the_stretch_them)
 {
   const LamLatticeAxes axes = LamLatticeAxesOf(0.3);
   uint64_t seed = 1;
@@ -72,7 +67,7 @@ static void strains_make_a_stretch_and_the_stretch_them(void **state)
 }
 
 /* Two directions cannot shrink to nothing while the third grows. */
-static void some_strains_have_no_stretch(void **state)
+TEST(some_strains_have_no_stretch)
 {
   const LamLatticeAxes axes = LamLatticeAxesOf(0);
   const double x[3] = {1, -1, -1};
@@ -110,7 +105,7 @@ static double StressAt(const LamLatticeAxes *axes, const double F[4], double P[4
   return energy;
 }
 
-static void stress_and_tangent_are_derivatives(void **state)
+TEST(stress_and_tangent_are_derivatives)
 {
   const LamLatticeAxes axes = LamLatticeAxesOf(0.3);
   const double step = 1e-5;
@@ -141,7 +136,7 @@ static void stress_and_tangent_are_derivatives(void **state)
   }
 }
 
-static void the_volume_is_the_determinant(void **state)
+TEST(the_volume_is_the_determinant)
 {
   const LamLatticeAxes axes = LamLatticeAxesOf(0.3);
   uint64_t seed = 3;
@@ -164,7 +159,7 @@ static void the_volume_is_the_determinant(void **state)
 }
 
 /* Each changes its own strain alone, and gives back the potential's derivatives from stress and tangent. */
-static void variations_go_back_to_the_potential(void **state)
+TEST(variations_go_back_to_the_potential)
 {
   static const int entry[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
   const LamLatticeAxes axes = LamLatticeAxesOf(0.3);
@@ -200,16 +195,4 @@ static void variations_go_back_to_the_potential(void **state)
       assert_near(P[0] * dF[k][0] + P[1] * dF[k][1] + P[2] * dF[k][2] + P[3] * dF[k][3], g[k], 1e-13);
     }
   }
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(strains_are_those_of_the_recipe), cmocka_unit_test(a_turned_lattice_sees_a_turned_strain),
-      cmocka_unit_test(strains_do_not_see_the_frame),    cmocka_unit_test(strains_make_a_stretch_and_the_stretch_them),
-      cmocka_unit_test(some_strains_have_no_stretch),    cmocka_unit_test(stress_and_tangent_are_derivatives),
-      cmocka_unit_test(the_volume_is_the_determinant),   cmocka_unit_test(variations_go_back_to_the_potential),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 /*
   Claims about the macroscale solver, with a material of known answers. Runs on any number of ranks.
 */
+#include "support/test.h"
 #include "macro_fixture.h"
 #include "macro_impl.h"
 
@@ -13,7 +14,7 @@ static PetscInt SideNumber(const LamMacroStep *step, const char name[])
 }
 
 /* The tangent of Newton's method is the derivative of its residual, prescribed components included. */
-static void TangentIsDerivative(void **state)
+TEST(TangentIsDerivative)
 {
   const PetscReal h = 1e-6;
   Fixture fixture;
@@ -57,7 +58,7 @@ static void TangentIsDerivative(void **state)
 }
 
 /* Each residual is at most a constant times the square of the one before, down to rounding. */
-static void NewtonIsQuadratic(void **state)
+TEST(NewtonIsQuadratic)
 {
   Fixture fixture;
 
@@ -72,7 +73,7 @@ static void NewtonIsQuadratic(void **state)
   FixtureDestroy(&fixture);
 }
 
-static void InflationIsFreeOfStress(void **state)
+TEST(InflationIsFreeOfStress)
 {
   Fixture fixture;
   LamMacroFields fields;
@@ -96,7 +97,7 @@ static void InflationIsFreeOfStress(void **state)
 }
 
 /* A body that swells freely keeps its directions, and its corner; its state is guessed from one point's. */
-static void InflatedBodyDoesNotTurn(void **state)
+TEST(InflatedBodyDoesNotTurn)
 {
   Fixture fixture;
   LamMacroFields fields;
@@ -119,7 +120,7 @@ static void InflatedBodyDoesNotTurn(void **state)
 }
 
 /* After inflation the sides count from where they are: without displacement nothing happens. */
-static void DisplacementsCountFromInflated(void **state)
+TEST(DisplacementsCountFromInflated)
 {
   Fixture fixture;
 
@@ -135,7 +136,7 @@ static void DisplacementsCountFromInflated(void **state)
 }
 
 /* Without `inflate` the turgor presses against the held sides: they pull the body together. */
-static void TurgorPressesOnHeldSides(void **state)
+TEST(TurgorPressesOnHeldSides)
 {
   Fixture fixture;
 
@@ -150,7 +151,7 @@ static void TurgorPressesOnHeldSides(void **state)
   FixtureDestroy(&fixture);
 }
 
-static void ReactionsBalance(void **state)
+TEST(ReactionsBalance)
 {
   Fixture fixture;
 
@@ -171,7 +172,7 @@ static void ReactionsBalance(void **state)
 }
 
 /* A step that the material cannot follow is cut, and the end is the same as without that limit. */
-static void CutbackReachesTheSameEnd(void **state)
+TEST(CutbackReachesTheSameEnd)
 {
   Fixture cut, whole;
 
@@ -192,7 +193,7 @@ static void CutbackReachesTheSameEnd(void **state)
 }
 
 /* An increment that would change a point's deformation by more than 0.75 is cut before the material is asked. */
-static void StrayIterationsAreNotAskedFor(void **state)
+TEST(StrayIterationsAreNotAskedFor)
 {
   Fixture fixture;
 
@@ -207,7 +208,7 @@ static void StrayIterationsAreNotAskedFor(void **state)
 }
 
 /* Where the material has no answer any more, the run ends, keeps its steps and names a point that failed. */
-static void FailureNamesThePoint(void **state)
+TEST(FailureNamesThePoint)
 {
   Fixture fixture;
 
@@ -224,7 +225,7 @@ static void FailureNamesThePoint(void **state)
 }
 
 /* The increments of a step that fails later are reported, as a step that came part of its way. */
-static void PartOfAStepIsReported(void **state)
+TEST(PartOfAStepIsReported)
 {
   LamMacroFields fields;
   Fixture fixture;
@@ -247,7 +248,7 @@ static void PartOfAStepIsReported(void **state)
 }
 
 /* A step of which nothing converged is not reported. */
-static void NothingReachedIsNotReported(void **state)
+TEST(NothingReachedIsNotReported)
 {
   Fixture fixture;
 
@@ -261,7 +262,7 @@ static void NothingReachedIsNotReported(void **state)
 }
 
 /* The longest reason that a solver can give is told whole, and the point behind it. */
-static void ReasonIsNotCutOff(void **state)
+TEST(ReasonIsNotCutOff)
 {
   char reason[sizeof(((LamResponse *)NULL)->reason)];
   Fixture fixture;
@@ -287,7 +288,7 @@ static PetscBool CountedStop(void)
 }
 
 /* A stop ends the run in the middle of a load step, on the word of one rank, at the last converged increment. */
-static void StopEndsWithinAStep(void **state)
+TEST(StopEndsWithinAStep)
 {
   PetscMPIInt rank;
   PetscInt calls;
@@ -314,7 +315,7 @@ static void StopEndsWithinAStep(void **state)
 
 /* An element's Cauchy stress is the mean over its present volume: with its volume, it adds up to the virial sum P F^T.
  */
-static void CauchyIsTheMeanOverThePresentVolume(void **state)
+TEST(CauchyIsTheMeanOverThePresentVolume)
 {
   PetscReal error = 0, of_means = 0;
   LamMacroFields fields;
@@ -349,7 +350,7 @@ static void CauchyIsTheMeanOverThePresentVolume(void **state)
 }
 
 /* The last converged state serves the next step's first iteration: the material is asked once per iteration. */
-static void NothingIsAskedTwice(void **state)
+TEST(NothingIsAskedTwice)
 {
   Fixture fixture;
   PetscInt iterations = 0;
@@ -363,7 +364,7 @@ static void NothingIsAskedTwice(void **state)
 }
 
 /* Points, and their numbers, are summed over the ranks. */
-static void CountsAreOfAllRanks(void **state)
+TEST(CountsAreOfAllRanks)
 {
   Fixture fixture;
 
@@ -374,7 +375,7 @@ static void CountsAreOfAllRanks(void **state)
   FixtureDestroy(&fixture);
 }
 
-static void MonitorStopsTheRun(void **state)
+TEST(MonitorStopsTheRun)
 {
   Fixture fixture;
 
@@ -388,7 +389,7 @@ static void MonitorStopsTheRun(void **state)
 }
 
 /* Reactions, work and fields are those of one rank. */
-static void RanksDoNotMatter(void **state)
+TEST(RanksDoNotMatter)
 {
   Fixture one, all;
   LamMacroFields fields_one, fields_all;
@@ -419,7 +420,7 @@ static void RanksDoNotMatter(void **state)
 }
 
 /* Elements are listed as VTK wants them: corners counter-clockwise, mid-edges, centre. */
-static void ElementsAreInOrder(void **state)
+TEST(ElementsAreInOrder)
 {
   Fixture fixture;
   LamMacroFields fields;
@@ -445,7 +446,7 @@ static void ElementsAreInOrder(void **state)
   FixtureDestroy(&fixture);
 }
 
-static void ContradictingSidesAreRefused(void **state)
+TEST(ContradictingSidesAreRefused)
 {
   Fixture fixture;
 
@@ -459,7 +460,7 @@ static void ContradictingSidesAreRefused(void **state)
   assert_ok(LamMacroDestroy(&fixture.macro));
 }
 
-static void LooseBodyIsRefused(void **state)
+TEST(LooseBodyIsRefused)
 {
   Fixture fixture;
 
@@ -474,36 +475,4 @@ static void LooseBodyIsRefused(void **state)
   assert_ok(LamMacroDestroy(&fixture.macro));
 }
 
-int main(int argc, char **argv)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(TangentIsDerivative),
-      cmocka_unit_test(NewtonIsQuadratic),
-      cmocka_unit_test(InflationIsFreeOfStress),
-      cmocka_unit_test(InflatedBodyDoesNotTurn),
-      cmocka_unit_test(DisplacementsCountFromInflated),
-      cmocka_unit_test(TurgorPressesOnHeldSides),
-      cmocka_unit_test(ReactionsBalance),
-      cmocka_unit_test(CutbackReachesTheSameEnd),
-      cmocka_unit_test(StrayIterationsAreNotAskedFor),
-      cmocka_unit_test(FailureNamesThePoint),
-      cmocka_unit_test(NothingIsAskedTwice),
-      cmocka_unit_test(CountsAreOfAllRanks),
-      cmocka_unit_test(MonitorStopsTheRun),
-      cmocka_unit_test(RanksDoNotMatter),
-      cmocka_unit_test(ElementsAreInOrder),
-      cmocka_unit_test(ContradictingSidesAreRefused),
-      cmocka_unit_test(LooseBodyIsRefused),
-      cmocka_unit_test(PartOfAStepIsReported),
-      cmocka_unit_test(ReasonIsNotCutOff),
-      cmocka_unit_test(NothingReachedIsNotReported),
-      cmocka_unit_test(StopEndsWithinAStep),
-      cmocka_unit_test(CauchyIsTheMeanOverThePresentVolume),
-  };
-  int failed;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  cmocka_set_message_output(CM_OUTPUT_STDOUT);
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() || failed;
-}
+TEST_GROUP(.petsc = 1);

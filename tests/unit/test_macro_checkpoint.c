@@ -1,6 +1,7 @@
 /*
   A macroscale run that goes on from an archive of an earlier one; archives themselves.
 */
+#include "support/test.h"
 #include "macro_fixture.h"
 #include <stdio.h>
 #include <unistd.h>
@@ -35,7 +36,7 @@ static void WriteArchive(Contents *contents, PetscBool keep)
   assert_ok(LamArchiveClose(&archive, keep));
 }
 
-static void WhatIsWrittenIsRead(void **state)
+TEST(WhatIsWrittenIsRead)
 {
   PetscReal list[2] = {5, 6};
   Contents written = {7, 2, {{1, 2}, {3, 4}, {5, 6}}, list}, read = {0};
@@ -54,7 +55,7 @@ static void WhatIsWrittenIsRead(void **state)
   unlink(Path);
 }
 
-static void WhatIsNotKeptLeavesTheFileBefore(void **state)
+TEST(WhatIsNotKeptLeavesTheFileBefore)
 {
   Contents first = {.shared = 1}, second = {.shared = 2}, read = {0};
   LamArchive archive;
@@ -68,7 +69,7 @@ static void WhatIsNotKeptLeavesTheFileBefore(void **state)
   unlink(Path);
 }
 
-static void AnotherCountIsRefused(void **state)
+TEST(AnotherCountIsRefused)
 {
   const PetscInt numbers[2] = {0, 1};
   Contents contents = {.shared = 1};
@@ -162,22 +163,22 @@ static void CheckGoesOn(PetscBool inflate, PetscBool sealed, PetscInt stop_after
   FixtureDestroy(&second);
 }
 
-static void GoesOnBehindAStep(void **state)
+TEST(GoesOnBehindAStep)
 {
   CheckGoesOn(PETSC_FALSE, PETSC_FALSE, 2);
 }
 
-static void GoesOnBehindInflation(void **state)
+TEST(GoesOnBehindInflation)
 {
   CheckGoesOn(PETSC_TRUE, PETSC_FALSE, 0);
 }
 
-static void GoesOnBehindAStepOfAnInflatedBody(void **state)
+TEST(GoesOnBehindAStepOfAnInflatedBody)
 {
   CheckGoesOn(PETSC_TRUE, PETSC_FALSE, 3);
 }
 
-static void SealedBodyGoesOn(void **state)
+TEST(SealedBodyGoesOn)
 {
   CheckGoesOn(PETSC_FALSE, PETSC_TRUE, 1);
   CheckGoesOn(PETSC_TRUE, PETSC_TRUE, 0);
@@ -185,26 +186,11 @@ static void SealedBodyGoesOn(void **state)
 }
 
 /* With unknowns beside the displacements, and nodes that touch. */
-static void GoesOnWithLoads(void **state)
+TEST(GoesOnWithLoads)
 {
   AllLoads = PETSC_TRUE;
   CheckGoesOn(PETSC_FALSE, PETSC_FALSE, 2);
   AllLoads = PETSC_FALSE;
 }
 
-int main(int argc, char **argv)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(WhatIsWrittenIsRead),   cmocka_unit_test(WhatIsNotKeptLeavesTheFileBefore),
-      cmocka_unit_test(AnotherCountIsRefused), cmocka_unit_test(GoesOnBehindAStep),
-      cmocka_unit_test(GoesOnBehindInflation), cmocka_unit_test(GoesOnBehindAStepOfAnInflatedBody),
-      cmocka_unit_test(SealedBodyGoesOn),      cmocka_unit_test(GoesOnWithLoads),
-  };
-
-  int failed;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  cmocka_set_message_output(CM_OUTPUT_STDOUT);
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() || failed;
-}
+TEST_GROUP(.petsc = 1);

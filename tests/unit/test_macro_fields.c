@@ -1,11 +1,11 @@
 /* Fields of the macroscale solver: what is kept of material points, their places and means. */
+#include "support/test.h"
 #include "macro_fixture.h"
 #include <math.h>
-#include "assert_near.h"
 #include "macro_impl.h"
 
 /* Points stand for the area of the body, at places inside their elements. */
-static void PointsHaveTheirPlaces(void **state)
+TEST(PointsHaveTheirPlaces)
 {
   PetscReal moments[3] = {0, 0, 0};
   LamMacroFields fields;
@@ -35,7 +35,7 @@ static void PointsHaveTheirPlaces(void **state)
 }
 
 /* The lumen fraction of the synthetic material is J: over the body it adds up to the present area of the body. */
-static void MeansAreByVolume(void **state)
+TEST(MeansAreByVolume)
 {
   PetscReal area = 0, from_means = 0;
   LamMacroFields fields;
@@ -64,7 +64,7 @@ static void MeansAreByVolume(void **state)
 }
 
 /* Faces are held closed by p + g; the family that is pressed least decides. Bonded tissue has no such measure. */
-static void UnloadingIsOfTheLeastPressedFaces(void **state)
+TEST(UnloadingIsOfTheLeastPressedFaces)
 {
   const LamLoad load = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, 0.3, 0.1};
   PetscReal field[LAM_POINT_FIELD_COUNT];
@@ -83,16 +83,4 @@ static void UnloadingIsOfTheLeastPressedFaces(void **state)
   assert_true(isnan(field[LAM_POINT_UNLOADING]));
 }
 
-int main(int argc, char **argv)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(PointsHaveTheirPlaces),
-      cmocka_unit_test(MeansAreByVolume),
-      cmocka_unit_test(UnloadingIsOfTheLeastPressedFaces),
-  };
-  int failed;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() || failed;
-}
+TEST_GROUP(.petsc = 1);

@@ -1,6 +1,7 @@
 /*
   Claims about the loads of the macroscale solver, with a material of known answers. Runs on any number of ranks.
 */
+#include "support/test.h"
 #include "macro_fixture.h"
 #include "macro_impl.h"
 
@@ -91,7 +92,7 @@ static void CheckTangent(Fixture *fixture, PetscReal size)
   assert_ok(VecDestroy(&minus));
 }
 
-static void TangentWithAllLoads(void **state)
+TEST(TangentWithAllLoads)
 {
   Fixture fixture;
   LamBoundary *boundary;
@@ -114,7 +115,7 @@ static void TangentWithAllLoads(void **state)
 }
 
 /* With the factor of the tractions as an unknown, a grip that moves freely sideways, and a plate. */
-static void TangentWithBorders(void **state)
+TEST(TangentWithBorders)
 {
   Fixture fixture;
   LamBoundary *boundary;
@@ -138,7 +139,7 @@ static void TangentWithBorders(void **state)
 }
 
 /* Dead tractions on two sides: P is the traction everywhere, exactly. */
-static void DeadTractionIsUniform(void **state)
+TEST(DeadTractionIsUniform)
 {
   Fixture fixture;
   LamMacroFields fields;
@@ -169,7 +170,7 @@ static void DeadTractionIsUniform(void **state)
 }
 
 /* A pressure on a disc's rim: the Cauchy stress is -p everywhere, in the same F. */
-static void PressureOnADiscIsUniform(void **state)
+TEST(PressureOnADiscIsUniform)
 {
   const PetscReal p = 0.4;
   PetscReal F[9];
@@ -220,7 +221,7 @@ static void Deform(LamMacro macro, const PetscReal F[4])
 
 /* The right side of a square becomes F e2: tangent F e2, outward normal that turned by -90 degrees, per present length.
  */
-static void FollowerTractionTurns(void **state)
+TEST(FollowerTractionTurns)
 {
   const PetscReal F[4] = {1.1, -0.8, 0.3, 0.7}, t[2] = {0.3, -0.2};
   PetscReal sum[2];
@@ -241,7 +242,7 @@ static void FollowerTractionTurns(void **state)
 }
 
 /* A plate on a whole side moves it as rollers do. */
-static void PlateIsRollers(void **state)
+TEST(PlateIsRollers)
 {
   PetscReal F[9];
   LamResponse exact;
@@ -265,7 +266,7 @@ static void PlateIsRollers(void **state)
 }
 
 /* A quarter disc under a plate: the force is that of the mirrored problem, and the contact grows from a point. */
-static void DiscUnderAPlateIsSymmetric(void **state)
+TEST(DiscUnderAPlateIsSymmetric)
 {
   PetscReal force[2];
 
@@ -296,7 +297,7 @@ static void DiscUnderAPlateIsSymmetric(void **state)
 }
 
 /* An indenter that goes back leaves the body free of stress. */
-static void UnloadingLeaves(void **state)
+TEST(UnloadingLeaves)
 {
   Fixture fixture;
   LamBoundary *boundary;
@@ -322,7 +323,7 @@ static void UnloadingLeaves(void **state)
 }
 
 /* Soft tissue under a plate that goes back in one step follows it as far as it was pressed, and no farther. */
-static void OneStepBackIsEnough(void **state)
+TEST(OneStepBackIsEnough)
 {
   Fixture fixture;
   LamBoundary *plate;
@@ -350,7 +351,7 @@ static void OneStepBackIsEnough(void **state)
 }
 
 /* A grip that may move sideways bears no force there, and none of its nodes moves otherwise. */
-static void FreeGripBearsNoForce(void **state)
+TEST(FreeGripBearsNoForce)
 {
   Fixture fixture;
   LamBoundary *grip;
@@ -381,7 +382,7 @@ static void FreeGripBearsNoForce(void **state)
 }
 
 /* Histories: first pressed, then sheared; the same end as both at once. */
-static void HistoriesGoOneAfterTheOther(void **state)
+TEST(HistoriesGoOneAfterTheOther)
 {
   PetscReal force[2][2];
 
@@ -408,7 +409,7 @@ static void HistoriesGoOneAfterTheOther(void **state)
 }
 
 /* There and back again, twice: no force is left, and the work of an elastic body is none. */
-static void CyclesReturn(void **state)
+TEST(CyclesReturn)
 {
   Fixture fixture;
 
@@ -438,7 +439,7 @@ static PetscInt Iterations(Fixture *fixture)
 }
 
 /* Predictions end at the same state, with fewer iterations. */
-static void PredictionsSaveIterations(void **state)
+TEST(PredictionsSaveIterations)
 {
   PetscInt iterations[2];
   PetscReal force[2];
@@ -457,7 +458,7 @@ static void PredictionsSaveIterations(void **state)
 }
 
 /* An indenter that nodes touch one after the other takes Newton's method few iterations. */
-static void IndentationIsFast(void **state)
+TEST(IndentationIsFast)
 {
   Fixture fixture;
   LamBoundary *boundary;
@@ -475,7 +476,7 @@ static void IndentationIsFast(void **state)
 }
 
 /* Symmetry is held during inflation: its sides stay, and the body is free of stress. */
-static void InflationKeepsSymmetry(void **state)
+TEST(InflationKeepsSymmetry)
 {
   Fixture fixture;
   LamMacroFields fields;
@@ -500,7 +501,7 @@ static void InflationKeepsSymmetry(void **state)
 }
 
 /* Obstacles hold no body. */
-static void ObstaclesDoNotHold(void **state)
+TEST(ObstaclesDoNotHold)
 {
   Fixture fixture;
 
@@ -515,22 +516,4 @@ static void ObstaclesDoNotHold(void **state)
   assert_ok(LamMacroDestroy(&fixture.macro));
 }
 
-int main(int argc, char **argv)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(TangentWithAllLoads),         cmocka_unit_test(TangentWithBorders),
-      cmocka_unit_test(DeadTractionIsUniform),       cmocka_unit_test(PressureOnADiscIsUniform),
-      cmocka_unit_test(FollowerTractionTurns),       cmocka_unit_test(PlateIsRollers),
-      cmocka_unit_test(DiscUnderAPlateIsSymmetric),  cmocka_unit_test(UnloadingLeaves),
-      cmocka_unit_test(OneStepBackIsEnough),         cmocka_unit_test(FreeGripBearsNoForce),
-      cmocka_unit_test(HistoriesGoOneAfterTheOther), cmocka_unit_test(CyclesReturn),
-      cmocka_unit_test(PredictionsSaveIterations),   cmocka_unit_test(IndentationIsFast),
-      cmocka_unit_test(InflationKeepsSymmetry),      cmocka_unit_test(ObstaclesDoNotHold),
-  };
-  int failed;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  cmocka_set_message_output(CM_OUTPUT_STDOUT);
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() || failed;
-}
+TEST_GROUP(.petsc = 1);

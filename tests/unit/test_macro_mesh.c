@@ -1,6 +1,7 @@
 /*
   Claims about the meshes of the macroscale solver: discs, Gmsh files, and what holds bodies that are no box.
 */
+#include "support/test.h"
 #include "gmsh_fixture.h"
 #include "macro_fixture.h"
 #include "macro_impl.h"
@@ -40,7 +41,7 @@ static PetscReal DiscError(LamDiscPart part, PetscInt along)
 }
 
 /* Quadratic edges miss a circle's area by O(h^4). */
-static void DiscsHaveTheirArea(void **state)
+TEST(DiscsHaveTheirArea)
 {
   for (LamDiscPart part = LAM_DISC_WHOLE; part < LAM_DISC_PART_COUNT; part++) {
     const PetscReal coarse = DiscError(part, 2), fine = DiscError(part, 4);
@@ -49,7 +50,7 @@ static void DiscsHaveTheirArea(void **state)
   }
 }
 
-static void RimNodesAreOnTheCircle(void **state)
+TEST(RimNodesAreOnTheCircle)
 {
   PetscInt nodes = 0;
   Fixture fixture;
@@ -70,7 +71,7 @@ static void RimNodesAreOnTheCircle(void **state)
 }
 
 /* Distorted triangles and quadrilaterals of two regions: homogeneous deformation is exact, as in a box. */
-static void GmshIsAsGoodAsABox(void **state)
+TEST(GmshIsAsGoodAsABox)
 {
   const LamLoad load = {{1.2, 0, 0, 0, 0.9, 0, 0, 0, 1}, 0, 0};
   const char(*groups)[LAM_NAME_LENGTH];
@@ -112,7 +113,7 @@ static void Turned(PetscReal s, PetscReal t, PetscReal X[2])
 }
 
 /* Oblique sides of symmetry: a turned square under pressure is the upright one turned. */
-static void ObliqueSymmetryIsUprightTurned(void **state)
+TEST(ObliqueSymmetryIsUprightTurned)
 {
   static const char *const sides[] = {"right", "top"};
   char path[PETSC_MAX_PATH_LEN];
@@ -156,7 +157,7 @@ static void ObliqueSymmetryIsUprightTurned(void **state)
 }
 
 /* Two points of a body hold it, one does not: a disc whose rim is free along X2 can still move. */
-static void LooseDiscIsRefused(void **state)
+TEST(LooseDiscIsRefused)
 {
   Fixture fixture;
 
@@ -171,17 +172,4 @@ static void LooseDiscIsRefused(void **state)
   assert_ok(LamMacroDestroy(&fixture.macro));
 }
 
-int main(int argc, char **argv)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(DiscsHaveTheirArea), cmocka_unit_test(RimNodesAreOnTheCircle),
-      cmocka_unit_test(GmshIsAsGoodAsABox), cmocka_unit_test(ObliqueSymmetryIsUprightTurned),
-      cmocka_unit_test(LooseDiscIsRefused),
-  };
-  int failed;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  cmocka_set_message_output(CM_OUTPUT_STDOUT);
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() || failed;
-}
+TEST_GROUP(.petsc = 1);

@@ -1,6 +1,6 @@
 /* The mesh of the RVE: counts, areas, and how nodes are tied across faces and periods. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "element.h"
 
 static LamMicrostructure Cells(int n0, int n1, double orientation)
@@ -22,7 +22,7 @@ static LamMesh NewMesh(const LamMicrostructure *micro)
 }
 
 /* One ring of 6 x 2 elements a face: 72 around, 5 through; half of the outer ring is tied to the other half. */
-static void OneCellHas644Unknowns(void **state)
+TEST(OneCellHas644Unknowns)
 {
   const LamMicrostructure micro = Cells(1, 1, 0.0);
   LamMesh mesh = NewMesh(&micro);
@@ -34,7 +34,7 @@ static void OneCellHas644Unknowns(void **state)
 }
 
 /* n cells share n times the classes of one cell: every class is counted once per period. */
-static void ClassesGrowWithTheNumberOfCells(void **state)
+TEST(ClassesGrowWithTheNumberOfCells)
 {
   static const int cells[][2] = {{1, 2}, {2, 1}, {2, 2}, {3, 2}};
 
@@ -48,7 +48,7 @@ static void ClassesGrowWithTheNumberOfCells(void **state)
 }
 
 /* V0 is the area of the period parallelogram and of the hexagons. */
-static void VolumeIsThatOfThePeriod(void **state)
+TEST(VolumeIsThatOfThePeriod)
 {
   const LamMicrostructure micro = Cells(2, 3, 0.4);
   LamMesh mesh = NewMesh(&micro);
@@ -72,7 +72,7 @@ static LamElementGeometry Geometry(const LamMesh *mesh, int e)
 }
 
 /* The elements fill the ring between the hexagons of apothem 1 - t and 1 exactly: 2 sqrt(3) (1 - (1 - t)^2). */
-static void ElementsFillTheRing(void **state)
+TEST(ElementsFillTheRing)
 {
   LamMicrostructure micro = Cells(1, 1, 0.2);
   LamMesh mesh;
@@ -90,7 +90,7 @@ static void ElementsFillTheRing(void **state)
 }
 
 /* A shift is a whole number of periods along each period vector, and moves the class's node onto the node. */
-static void ShiftsArePeriodVectors(void **state)
+TEST(ShiftsArePeriodVectors)
 {
   static const int cells[][2] = {{1, 1}, {2, 1}, {2, 2}};
 
@@ -113,7 +113,7 @@ static void ShiftsArePeriodVectors(void **state)
 }
 
 /* Nodes inside a face are shared by two cells, corners by three, all others by none. */
-static void OuterNodesAreSharedByTwoOrThreeCells(void **state)
+TEST(OuterNodesAreSharedByTwoOrThreeCells)
 {
   const LamMicrostructure micro = Cells(2, 2, 0.0);
   LamMesh mesh = NewMesh(&micro);
@@ -131,7 +131,7 @@ static void OuterNodesAreSharedByTwoOrThreeCells(void **state)
   assert_int_equal(LamMeshDestroy(&mesh), 0);
 }
 
-static void LumenNodesHaveNoShift(void **state)
+TEST(LumenNodesHaveNoShift)
 {
   const LamMicrostructure micro = Cells(1, 1, 0.0);
   LamMesh mesh = NewMesh(&micro);
@@ -143,7 +143,7 @@ static void LumenNodesHaveNoShift(void **state)
 
 /* Elements at the ends of a face are 1 - grading as long as those of an even mesh, to first order; the mesh is
    symmetric about the middle of the face, so that facing walls have the same nodes. */
-static void GradedElementsAreSmallAtTheCorners(void **state)
+TEST(GradedElementsAreSmallAtTheCorners)
 {
   LamMicrostructure micro = Cells(1, 1, 0.0);
   LamMesh mesh;
@@ -159,7 +159,7 @@ static void GradedElementsAreSmallAtTheCorners(void **state)
   assert_int_equal(LamMeshDestroy(&mesh), 0);
 }
 
-static void PlacesAndSharesOfAFaceAreInverse(void **state)
+TEST(PlacesAndSharesOfAFaceAreInverse)
 {
   LamMicrostructure micro = Cells(1, 1, 0.0);
   LamMesh mesh;
@@ -173,7 +173,7 @@ static void PlacesAndSharesOfAFaceAreInverse(void **state)
   assert_int_equal(LamMeshDestroy(&mesh), 0);
 }
 
-static void ImpossibleWallThicknessIsRefused(void **state)
+TEST(ImpossibleWallThicknessIsRefused)
 {
   LamMicrostructure micro = DefaultTissue();
   LamMesh mesh;
@@ -182,22 +182,4 @@ static void ImpossibleWallThicknessIsRefused(void **state)
   assert_int_equal(PetscPushErrorHandler(PetscReturnErrorHandler, NULL), 0);
   assert_int_equal(LamMeshCreate(&micro, &mesh), PETSC_ERR_USER_INPUT);
   assert_int_equal(PetscPopErrorHandler(), 0);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(OneCellHas644Unknowns),
-      cmocka_unit_test(ClassesGrowWithTheNumberOfCells),
-      cmocka_unit_test(VolumeIsThatOfThePeriod),
-      cmocka_unit_test(ElementsFillTheRing),
-      cmocka_unit_test(ShiftsArePeriodVectors),
-      cmocka_unit_test(OuterNodesAreSharedByTwoOrThreeCells),
-      cmocka_unit_test(GradedElementsAreSmallAtTheCorners),
-      cmocka_unit_test(PlacesAndSharesOfAFaceAreInverse),
-      cmocka_unit_test(LumenNodesHaveNoShift),
-      cmocka_unit_test(ImpossibleWallThicknessIsRefused),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

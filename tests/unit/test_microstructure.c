@@ -1,8 +1,9 @@
 /* The canonical description of a microstructure and its hash. */
+#include "support/test.h"
 #include "record_fixture.h"
 #include <database_internal.h>
 
-static void rounding_of_units_does_not_change_the_hash(void **state)
+FILE_TEST(rounding_of_units_does_not_change_the_hash)
 {
   LamScene scene = Scene();
   char hash[2][LAM_HASH_LENGTH], *json[2];
@@ -17,7 +18,7 @@ static void rounding_of_units_does_not_change_the_hash(void **state)
   for (int i = 0; i < 2; i++) PetscFree(json[i]);
 }
 
-static void another_thickness_changes_the_hash(void **state)
+FILE_TEST(another_thickness_changes_the_hash)
 {
   LamScene scene = Scene();
   char hash[2][LAM_HASH_LENGTH], *json;
@@ -60,7 +61,7 @@ static void AssertSameCells(const LamMicrostructure *a, const LamMicrostructure 
   }
 }
 
-static void a_description_tells_all_and_has_the_same_hash_again(void **state)
+FILE_TEST(a_description_tells_all_and_has_the_same_hash_again)
 {
   for (int law = 0; law < LAM_INTERFACE_LAW_COUNT; law++) {
     LamCell cell[6];
@@ -82,7 +83,7 @@ static void a_description_tells_all_and_has_the_same_hash_again(void **state)
 }
 
 /* Databases of earlier versions keep their name. */
-static void tissue_of_equal_cells_keeps_its_hash(void **state)
+FILE_TEST(tissue_of_equal_cells_keeps_its_hash)
 {
   const LamScene scene = Scene();
   char hash[LAM_HASH_LENGTH], *json;
@@ -92,7 +93,7 @@ static void tissue_of_equal_cells_keeps_its_hash(void **state)
   PetscFree(json);
 }
 
-static void a_description_with_a_cell_too_few_is_refused(void **state)
+FILE_TEST(a_description_with_a_cell_too_few_is_refused)
 {
   LamCell cell[6];
   LamMicrostructure micro = Uneven(cell, LAM_INTERFACE_BONDED), parsed;
@@ -108,7 +109,7 @@ static void a_description_with_a_cell_too_few_is_refused(void **state)
   PetscFree(json);
 }
 
-static void a_copy_owns_its_cells(void **state)
+FILE_TEST(a_copy_owns_its_cells)
 {
   LamCell cell[6];
   const LamMicrostructure micro = Uneven(cell, LAM_INTERFACE_CONTACT);
@@ -121,7 +122,7 @@ static void a_copy_owns_its_cells(void **state)
 }
 
 /* A record answers for its images under the lattice's symmetry: one cell that differs breaks it. */
-static void cells_that_differ_leave_no_symmetry(void **state)
+FILE_TEST(cells_that_differ_leave_no_symmetry)
 {
   LamCell cell[6];
   LamMicrostructure micro = Uneven(cell, LAM_INTERFACE_BONDED);
@@ -136,7 +137,7 @@ static void cells_that_differ_leave_no_symmetry(void **state)
 }
 
 /* Files, and databases in memory, own what they hold of the scene. */
-static void a_file_keeps_the_cells(void **state)
+FILE_TEST(a_file_keeps_the_cells)
 {
   LamScene scene = Scene();
   LamRecordWriter writer;
@@ -155,16 +156,4 @@ static void a_file_keeps_the_cells(void **state)
   assert_int_equal(LamDatabaseCreateEmpty(&scene, &database), 0);
   assert_int_equal(LamDatabaseClose(&database), 0);
   AssertSameCells(&scene.micro, &scene.micro);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      TEST(rounding_of_units_does_not_change_the_hash),   TEST(another_thickness_changes_the_hash),
-      TEST(tissue_of_equal_cells_keeps_its_hash),         TEST(a_description_tells_all_and_has_the_same_hash_again),
-      TEST(a_description_with_a_cell_too_few_is_refused), TEST(a_copy_owns_its_cells),
-      TEST(cells_that_differ_leave_no_symmetry),          TEST(a_file_keeps_the_cells),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

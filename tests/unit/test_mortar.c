@@ -1,6 +1,6 @@
 /* The mortar kernel: its derivatives against finite differences at random states, and rigid motions. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "mortar_fixture.h"
 
 #define STATES 12
@@ -75,7 +75,7 @@ static ChainValues Difference(const Chains *at, int i)
   return sum;
 }
 
-static void GapRowsAreDerivativesOfWeightedGaps(void **state)
+TEST(GapRowsAreDerivativesOfWeightedGaps)
 {
   for (int k = 0; k < STATES; k++) {
     const double largest = Largest(HATS * CHAIN_DOFS, &values[k].dgap[0][0]);
@@ -88,7 +88,7 @@ static void GapRowsAreDerivativesOfWeightedGaps(void **state)
   }
 }
 
-static void HessianIsDerivativeOfGradient(void **state)
+TEST(HessianIsDerivativeOfGradient)
 {
   for (int k = 0; k < STATES; k++) {
     const double largest = Largest(CHAIN_DOFS * CHAIN_DOFS, &values[k].hessian[0][0]);
@@ -102,7 +102,7 @@ static void HessianIsDerivativeOfGradient(void **state)
 }
 
 /* The states meant for it do end on the ramp, so that the differences test it. */
-static void RampStatesEndOnTheRamp(void **state)
+TEST(RampStatesEndOnTheRamp)
 {
   for (int k = STATES - RAMP_STATES; k < STATES; k++) {
     const double low = values[k].breaks[0], high = SLAVE_EDGES - values[k].breaks[values[k].break_count - 1];
@@ -111,7 +111,7 @@ static void RampStatesEndOnTheRamp(void **state)
   }
 }
 
-static void WeightsFillTheOverlap(void **state)
+TEST(WeightsFillTheOverlap)
 {
   for (int k = 0; k < STATES; k++) {
     const double *s = values[k].breaks, from = s[0], to = s[values[k].break_count - 1];
@@ -122,7 +122,7 @@ static void WeightsFillTheOverlap(void **state)
   }
 }
 
-static void ForcesSumToZero(void **state)
+TEST(ForcesSumToZero)
 {
   for (int k = 0; k < STATES; k++)
     for (int A = 0; A < HATS; A++)
@@ -143,7 +143,7 @@ static void RotationField(const Chains *c, double v[CHAIN_DOFS])
   }
 }
 
-static void RotationChangesNoGap(void **state)
+TEST(RotationChangesNoGap)
 {
   for (int k = 0; k < STATES; k++) {
     double v[CHAIN_DOFS];
@@ -159,7 +159,7 @@ static void RotationChangesNoGap(void **state)
 }
 
 /* The forces turn with the nodes: H v = (-f_y, f_x). */
-static void RotationTurnsTheForces(void **state)
+TEST(RotationTurnsTheForces)
 {
   for (int k = 0; k < STATES; k++) {
     const double *f = values[k].gradient;
@@ -175,17 +175,4 @@ static void RotationTurnsTheForces(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(GapRowsAreDerivativesOfWeightedGaps),
-      cmocka_unit_test(HessianIsDerivativeOfGradient),
-      cmocka_unit_test(RampStatesEndOnTheRamp),
-      cmocka_unit_test(WeightsFillTheOverlap),
-      cmocka_unit_test(ForcesSumToZero),
-      cmocka_unit_test(RotationChangesNoGap),
-      cmocka_unit_test(RotationTurnsTheForces),
-  };
-
-  return cmocka_run_group_tests(tests, DrawStates, NULL);
-}
+TEST_GROUP(.setup = DrawStates);

@@ -1,7 +1,7 @@
 /* The mortar kernel against the states of an independent prototype. */
+#include "support/test.h"
 #include <jansson.h>
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "mortar_fixture.h"
 
 #define DATA LAMELLA_SOURCE_DIR "/tests/verification/data/mortar.json"
@@ -130,37 +130,29 @@ static double RelativeError(size_t offset, int n)
   return error;
 }
 
-static void WeightsAgree(void **state)
+TEST(WeightsAgree)
 {
   assert_near(RelativeError(offsetof(Values, weight), HATS), 0.0, TOLERANCE);
 }
 
-static void WeightedGapsAgree(void **state)
+TEST(WeightedGapsAgree)
 {
   assert_near(RelativeError(offsetof(Values, gap), HATS), 0.0, TOLERANCE);
 }
 
-static void EnergyAgrees(void **state)
+TEST(EnergyAgrees)
 {
   assert_near(RelativeError(offsetof(Values, energy), 1), 0.0, TOLERANCE);
 }
 
-static void GradientAgrees(void **state)
+TEST(GradientAgrees)
 {
   assert_near(RelativeError(offsetof(Values, gradient), UNKNOWNS), 0.0, TOLERANCE);
 }
 
-static void HessianAgrees(void **state)
+TEST(HessianAgrees)
 {
   assert_near(RelativeError(offsetof(Values, hessian), UNKNOWNS * UNKNOWNS), 0.0, TOLERANCE);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(WeightsAgree),   cmocka_unit_test(WeightedGapsAgree), cmocka_unit_test(EnergyAgrees),
-      cmocka_unit_test(GradientAgrees), cmocka_unit_test(HessianAgrees),
-  };
-
-  return cmocka_run_group_tests(tests, ReadStates, NULL);
-}
+TEST_GROUP(.setup = ReadStates);

@@ -1,13 +1,8 @@
 /*
   Claims about bodies of different tissue: turned, scaled and blended answers are those of one potential.
 */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include <lamella/mosaic.h>
-#include "assert_near.h"
 #include "random_reals.h"
 #include "synthetic_responder.h"
 
@@ -86,7 +81,7 @@ static LamLoad RandomLoad(uint64_t *seed)
   return load;
 }
 
-static void stress_and_tangent_are_derivatives_of_the_energy(void **state)
+TEST(stress_and_tangent_are_derivatives_of_the_energy)
 {
   const PetscReal h = 1e-5;
   uint64_t seed = 7;
@@ -112,7 +107,7 @@ static void stress_and_tangent_are_derivatives_of_the_energy(void **state)
   TearDown(&fixture);
 }
 
-static void turgor_is_in_the_units_of_the_body(void **state)
+TEST(turgor_is_in_the_units_of_the_body)
 {
   const PetscReal h = 1e-5;
   uint64_t seed = 8;
@@ -135,7 +130,7 @@ static void turgor_is_in_the_units_of_the_body(void **state)
   TearDown(&fixture);
 }
 
-static void the_angle_turns_the_stiff_direction(void **state)
+TEST(the_angle_turns_the_stiff_direction)
 {
   const PetscReal stretch = 1.1, angle = points[3].angle, c = cos(angle), s = sin(angle);
   const LamLoad own = {{stretch, 0, 0, 0, 1, 0, 0, 0, 1}, 0, 0};
@@ -154,7 +149,7 @@ static void the_angle_turns_the_stiff_direction(void **state)
   TearDown(&fixture);
 }
 
-static void each_tissue_is_asked_once_and_told_of_the_end(void **state)
+TEST(each_tissue_is_asked_once_and_told_of_the_end)
 {
   const PetscInt all[POINTS] = {0, 1, 2, 3};
   LamResponse responses[POINTS];
@@ -178,7 +173,7 @@ static void each_tissue_is_asked_once_and_told_of_the_end(void **state)
   TearDown(&fixture);
 }
 
-static void a_term_without_answer_is_named(void **state)
+TEST(a_term_without_answer_is_named)
 {
   const LamLoad load = {{1, 0.5, 0, 0, 1, 0, 0, 0, 1}, 0.1, 0};
   const PetscInt blended = 2;
@@ -192,18 +187,4 @@ static void a_term_without_answer_is_named(void **state)
   assert_string_equal(response.reason, "skin: too far");
   for (int k = 0; k < 9; k++) assert_true(response.load.F[k] == load.F[k]);
   TearDown(&fixture);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(stress_and_tangent_are_derivatives_of_the_energy),
-      cmocka_unit_test(turgor_is_in_the_units_of_the_body),
-      cmocka_unit_test(the_angle_turns_the_stiff_direction),
-      cmocka_unit_test(each_tissue_is_asked_once_and_told_of_the_end),
-      cmocka_unit_test(a_term_without_answer_is_named),
-  };
-
-  cmocka_set_message_output(CM_OUTPUT_STDOUT);
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,5 @@
 /* Costs of nodes as told from those around. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
-#include "assert_near.h"
+#include "support/test.h"
 #include "grid.h"
 #include "node_costs.h"
 
@@ -32,7 +27,7 @@ static LamNodeCosts New(void)
   return costs;
 }
 
-static void one_that_is_known_is_what_all_cost(void **state)
+TEST(one_that_is_known_is_what_all_cost)
 {
   LamNodeCosts costs = New();
 
@@ -41,7 +36,7 @@ static void one_that_is_known_is_what_all_cost(void **state)
   LamNodeCostsDestroy(&costs);
 }
 
-static void the_four_nearest_count(void **state)
+TEST(the_four_nearest_count)
 {
   LamNodeCosts costs = New();
 
@@ -53,7 +48,7 @@ static void the_four_nearest_count(void **state)
   LamNodeCostsDestroy(&costs);
 }
 
-static void the_oldest_are_forgotten(void **state)
+TEST(the_oldest_are_forgotten)
 {
   LamNodeCosts costs = New();
 
@@ -61,15 +56,4 @@ static void the_oldest_are_forgotten(void **state)
   for (int i = 0; i < 1024; i++) Learn(costs, Key(9, i), 5);
   assert_near(LamNodeCostsPredict(costs, Key(0, 0)), 5, 1e-9);
   LamNodeCostsDestroy(&costs);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(one_that_is_known_is_what_all_cost),
-      cmocka_unit_test(the_four_nearest_count),
-      cmocka_unit_test(the_oldest_are_forgotten),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
 /* Nodes solved from their parents: where they start, and that their responses depend on nothing else. */
+#include "support/test.h"
 #include "rve_fixture.h"
 #include "figures_contact_derivatives.h"
 #include "grid.h"
@@ -54,24 +55,24 @@ static LamResponse SolveAlone(PetscInt64 key)
 
 /* ---- contact ---- */
 
-static void ChildStartsFromItsParent(void **unused)
+TEST(ChildStartsFromItsParent)
 {
   const PetscInt64 child = Key(0, HALF, LAM_ROOT, 0), parent = LamGridNodeParent(&grid, child);
   LamResponse first, second;
-  LamRVEState state;
+  LamRVEState before;
   LamLoad load;
 
   assert_int_equal(parent, Key(0, 0, LAM_ROOT, 0));
-  assert_int_equal(LamRVEStateCreate(rve, &state), 0);
+  assert_int_equal(LamRVEStateCreate(rve, &before), 0);
   assert_int_equal(LamGridNodeLoad(&grid, parent, &load), 0);
-  assert_int_equal(LamRVESolve(rve, &load, state, &first), 0);
+  assert_int_equal(LamRVESolve(rve, &load, before, &first), 0);
   assert_int_equal(LamGridNodeLoad(&grid, child, &load), 0);
-  assert_int_equal(LamRVESolve(rve, &load, state, &second), 0);
+  assert_int_equal(LamRVESolve(rve, &load, before, &second), 0);
   assert_int_equal(second.status, LAM_CONVERGED);
   AssertSame(SolveAlone(parent), first);
   AssertSame(SolveAlone(child), second);
   assert_true(memcmp(SolveFromReference(rve, load).P, second.P, sizeof(second.P))); /* another start, other bits */
-  assert_int_equal(LamRVEStateDestroy(&state), 0);
+  assert_int_equal(LamRVEStateDestroy(&before), 0);
 }
 
 static const int family[][4] = {
@@ -91,7 +92,7 @@ static PetscInt64 FamilyKey(int n)
 }
 
 /* Whatever was solved before, and remembered or forgotten: memory 0 leaves room for one node. */
-static void OrderAndMemoryDoNotMatter(void **unused)
+TEST(OrderAndMemoryDoNotMatter)
 {
   LamResponse alone[FAMILY];
 
@@ -108,7 +109,7 @@ static void OrderAndMemoryDoNotMatter(void **unused)
 }
 
 /* A parent without an answer is no start: the strains of this one are those of no F. */
-static void FailedParentIsPassedOver(void **unused)
+TEST(FailedParentIsPassedOver)
 {
   const PetscInt64 child = Key(HALF, HALF, LAM_ROOT, 0), parent = LamGridNodeParent(&grid, child);
   const struct LamGrid_s usual = grid;
@@ -128,7 +129,7 @@ static PetscBool Stop(void)
   return PETSC_TRUE;
 }
 
-static void StoppedNodesAreLeftOut(void **unused)
+TEST(StoppedNodesAreLeftOut)
 {
   const PetscInt64 key = Key(0, 0, LAM_ROOT, 0);
   LamNodeChain chain;
@@ -140,7 +141,7 @@ static void StoppedNodesAreLeftOut(void **unused)
 
 /* ---- bonded ---- */
 
-static void BondedNodesStartFromTheReference(void **unused)
+TEST(BondedNodesStartFromTheReference)
 {
   const PetscInt64 child = Key(0, HALF, LAM_ROOT, 0);
   LamNodeChain chain = NewChain(LAM_INTERFACE_BONDED, ROOM);
@@ -174,18 +175,4 @@ static int TearDown(void **state)
   return LamRVEDestroy(&rve);
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(ChildStartsFromItsParent),         cmocka_unit_test(OrderAndMemoryDoNotMatter),
-      cmocka_unit_test(FailedParentIsPassedOver),         cmocka_unit_test(StoppedNodesAreLeftOut),
-      cmocka_unit_test(BondedNodesStartFromTheReference),
-  };
-
-  return cmocka_run_group_tests(tests, SetUp, TearDown);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1, .setup = SetUp, .teardown = TearDown);

@@ -1,15 +1,10 @@
 /*
   Numbers that vary with the position: expressions, tables, and what is wrong with them.
 */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include <lamella/place_field.h>
 #include <stdio.h>
 #include <unistd.h>
-#include "assert_near.h"
 #include "unit/test_scene_message.h"
 
 #define NAME "scene.yaml:7: macro.fields.turgor"
@@ -47,7 +42,7 @@ static PetscReal At(LamPlaceField field, PetscReal x, PetscReal y)
   return value;
 }
 
-static void expressions_are_of_x_and_y(void **state)
+TEST(expressions_are_of_x_and_y)
 {
   LamPlaceField field = Expression("30 * x / 10 + sqrt(y) * cos(pi)");
 
@@ -56,7 +51,7 @@ static void expressions_are_of_x_and_y(void **state)
   assert_int_equal(LamPlaceFieldDestroy(&field), 0);
 }
 
-static void comparisons_are_one_or_zero(void **state)
+TEST(comparisons_are_one_or_zero)
 {
   LamPlaceField field = Expression("y > 9 && x <= 1");
 
@@ -65,7 +60,7 @@ static void comparisons_are_one_or_zero(void **state)
   assert_int_equal(LamPlaceFieldDestroy(&field), 0);
 }
 
-static void what_is_no_expression_is_refused(void **state)
+TEST(what_is_no_expression_is_refused)
 {
   static const char *const bad[] = {"", "3 +", "z", "x y", "sin(x", "x, y", "\"x\""};
 
@@ -78,7 +73,7 @@ static void what_is_no_expression_is_refused(void **state)
   }
 }
 
-static void a_place_without_value_is_named(void **state)
+TEST(a_place_without_value_is_named)
 {
   static const char *const bad[] = {"1 / x", "sqrt(-1 - y)", "ln(x)"};
   const PetscReal X[2] = {0, 2.5};
@@ -96,7 +91,7 @@ static void a_place_without_value_is_named(void **state)
   }
 }
 
-static void tables_are_bilinear_between_their_rows(void **state)
+TEST(tables_are_bilinear_between_their_rows)
 {
   char reason[LAM_PLACE_FIELD_REASON];
   LamPlaceField field = Table("x_mm,y_mm,MPa\n10, 0, 3\n0,0,1\n0,4,2\r\n4,0,1\n\n10,4,8\n4,4,6\n", reason);
@@ -109,7 +104,7 @@ static void tables_are_bilinear_between_their_rows(void **state)
   assert_int_equal(LamPlaceFieldDestroy(&field), 0);
 }
 
-static void a_place_outside_the_table_is_named(void **state)
+TEST(a_place_outside_the_table_is_named)
 {
   char reason[LAM_PLACE_FIELD_REASON];
   LamPlaceField field = Table("x,y,v\n0,0,1\n0,1,1\n1,0,1\n1,1,1\n", reason);
@@ -123,7 +118,7 @@ static void a_place_outside_the_table_is_named(void **state)
   assert_int_equal(LamPlaceFieldDestroy(&field), 0);
 }
 
-static void tables_that_are_no_grids_are_refused(void **state)
+TEST(tables_that_are_no_grids_are_refused)
 {
   static const struct {
     const char *text, *fragment;
@@ -142,20 +137,4 @@ static void tables_that_are_no_grids_are_refused(void **state)
     assert_null(Table(bad[i].text, reason));
     if (!strstr(reason, bad[i].fragment)) fail_msg("\"%s\" lacks \"%s\"", reason, bad[i].fragment);
   }
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(expressions_are_of_x_and_y),
-      cmocka_unit_test(comparisons_are_one_or_zero),
-      cmocka_unit_test(what_is_no_expression_is_refused),
-      cmocka_unit_test(a_place_without_value_is_named),
-      cmocka_unit_test(tables_are_bilinear_between_their_rows),
-      cmocka_unit_test(a_place_outside_the_table_is_named),
-      cmocka_unit_test(tables_that_are_no_grids_are_refused),
-  };
-
-  cmocka_set_message_output(CM_OUTPUT_STDOUT);
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,9 +1,5 @@
 /* Ticks, numbers, axes and the load axis of the pictures. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <setjmp.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include <math.h>
 #include <string.h>
 #include "plot.h"
@@ -12,7 +8,7 @@ static const PetscReal Ranges[][2] = {{0, 1},        {-0.012, 0.0671}, {0.92, 1.
                                       {-3e-5, 8e-5}, {1e6, 7.3e6},     {-1, -0.98}};
 static const size_t RangeCount = sizeof Ranges / sizeof Ranges[0];
 
-static void ticks_lie_inside_the_limits(void **state)
+TEST(ticks_lie_inside_the_limits)
 {
   for (size_t i = 0; i < RangeCount; i++) {
     const PetscReal slack = 1e-6 * (Ranges[i][1] - Ranges[i][0]);
@@ -23,7 +19,7 @@ static void ticks_lie_inside_the_limits(void **state)
   }
 }
 
-static void ticks_are_about_as_many_as_wanted(void **state)
+TEST(ticks_are_about_as_many_as_wanted)
 {
   for (size_t i = 0; i < RangeCount; i++) {
     const LamTicks t = LamTicksChoose(Ranges[i][0], Ranges[i][1], 6, PETSC_FALSE);
@@ -32,7 +28,7 @@ static void ticks_are_about_as_many_as_wanted(void **state)
   }
 }
 
-static void tick_steps_are_1_2_or_5(void **state)
+TEST(tick_steps_are_1_2_or_5)
 {
   for (size_t i = 0; i < RangeCount; i++) {
     const LamTicks t = LamTicksChoose(Ranges[i][0], Ranges[i][1], 6, PETSC_FALSE);
@@ -42,21 +38,21 @@ static void tick_steps_are_1_2_or_5(void **state)
   }
 }
 
-static void a_limit_that_is_a_tick_is_kept(void **state)
+TEST(a_limit_that_is_a_tick_is_kept)
 {
   const LamTicks t = LamTicksChoose(0, 0.3, 3, PETSC_FALSE);
 
   assert_int_equal(t.count, 4);
 }
 
-static void whole_axes_have_whole_ticks(void **state)
+TEST(whole_axes_have_whole_ticks)
 {
   const LamTicks t = LamTicksChoose(0.9, 3.1, 10, PETSC_TRUE);
 
   assert_true(t.step == 1);
 }
 
-static void tick_labels_have_the_decimals_they_need(void **state)
+TEST(tick_labels_have_the_decimals_they_need)
 {
   const LamTicks t = LamTicksChoose(-0.05, 0.05, 4, PETSC_FALSE);
   char text[32];
@@ -65,7 +61,7 @@ static void tick_labels_have_the_decimals_they_need(void **state)
   assert_string_equal(text, "\u22120.04");
 }
 
-static void tiny_values_get_a_power_of_ten(void **state)
+TEST(tiny_values_get_a_power_of_ten)
 {
   const LamTicks t = LamTicksChoose(0, 8e-5, 4, PETSC_FALSE);
   const LamAxis axis = {.label = "P", .unit = "MPa", .ticks = t};
@@ -75,7 +71,7 @@ static void tiny_values_get_a_power_of_ten(void **state)
   assert_string_equal(text, "P (10^{\u22126} MPa)");
 }
 
-static void the_label_of_a_tiny_value_is_its_mantissa(void **state)
+TEST(the_label_of_a_tiny_value_is_its_mantissa)
 {
   const LamTicks t = LamTicksChoose(0, 8e-5, 4, PETSC_FALSE);
   char text[32];
@@ -84,7 +80,7 @@ static void the_label_of_a_tiny_value_is_its_mantissa(void **state)
   assert_string_equal(text, "20");
 }
 
-static void ticks_of_logarithms_show_the_number(void **state)
+TEST(ticks_of_logarithms_show_the_number)
 {
   LamTicks t = LamTicksChoose(-2, 1, 6, PETSC_TRUE);
   char text[32];
@@ -94,7 +90,7 @@ static void ticks_of_logarithms_show_the_number(void **state)
   assert_string_equal(text, "0.01");
 }
 
-static void a_constant_gets_an_axis_around_it(void **state)
+TEST(a_constant_gets_an_axis_around_it)
 {
   LamAxis axis = {.low = 0.2, .high = 0.2};
 
@@ -102,7 +98,7 @@ static void a_constant_gets_an_axis_around_it(void **state)
   assert_true(axis.low < 0.2 && axis.high > 0.2);
 }
 
-static void numbers_have_a_true_minus_sign(void **state)
+TEST(numbers_have_a_true_minus_sign)
 {
   char text[32];
 
@@ -129,7 +125,7 @@ static void identity(LamResponse records[3])
     for (int i = 0; i < 9; i += 4) records[k].load.F[i] = 1;
 }
 
-static void shear_is_drawn_over_its_component(void **state)
+TEST(shear_is_drawn_over_its_component)
 {
   LamResponse records[3];
   LamLoadAxis axis;
@@ -142,7 +138,7 @@ static void shear_is_drawn_over_its_component(void **state)
   assert_true(values[2] == records[2].load.F[1]);
 }
 
-static void a_proportional_path_is_drawn_over_its_norm(void **state)
+TEST(a_proportional_path_is_drawn_over_its_norm)
 {
   LamResponse records[3];
   LamLoadAxis axis;
@@ -157,7 +153,7 @@ static void a_proportional_path_is_drawn_over_its_norm(void **state)
   assert_true(fabs(values[1] - 0.1) < 1e-12);
 }
 
-static void turgor_is_drawn_in_megapascal(void **state)
+TEST(turgor_is_drawn_in_megapascal)
 {
   LamResponse records[3];
   LamLoadAxis axis;
@@ -170,7 +166,7 @@ static void turgor_is_drawn_in_megapascal(void **state)
   assert_true(fabs(values[2] - 0.022) < 1e-12);
 }
 
-static void loading_and_unloading_is_drawn_over_the_state(void **state)
+TEST(loading_and_unloading_is_drawn_over_the_state)
 {
   LamResponse records[3];
   LamLoadAxis axis;
@@ -183,7 +179,7 @@ static void loading_and_unloading_is_drawn_over_the_state(void **state)
   assert_true(values[2] == 3);
 }
 
-static void a_load_that_varies_in_two_ways_is_drawn_over_the_state(void **state)
+TEST(a_load_that_varies_in_two_ways_is_drawn_over_the_state)
 {
   LamResponse records[3];
   LamLoadAxis axis;
@@ -193,27 +189,4 @@ static void a_load_that_varies_in_two_ways_is_drawn_over_the_state(void **state)
   for (int k = 0; k < 3; k++) records[k].load.F[1] = records[k].load.turgor = 0.1 * k;
   choose(3, records, &axis, values);
   assert_string_equal(axis.label, "state");
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(ticks_lie_inside_the_limits),
-      cmocka_unit_test(ticks_are_about_as_many_as_wanted),
-      cmocka_unit_test(tick_steps_are_1_2_or_5),
-      cmocka_unit_test(a_limit_that_is_a_tick_is_kept),
-      cmocka_unit_test(whole_axes_have_whole_ticks),
-      cmocka_unit_test(tick_labels_have_the_decimals_they_need),
-      cmocka_unit_test(tiny_values_get_a_power_of_ten),
-      cmocka_unit_test(the_label_of_a_tiny_value_is_its_mantissa),
-      cmocka_unit_test(ticks_of_logarithms_show_the_number),
-      cmocka_unit_test(a_constant_gets_an_axis_around_it),
-      cmocka_unit_test(numbers_have_a_true_minus_sign),
-      cmocka_unit_test(shear_is_drawn_over_its_component),
-      cmocka_unit_test(a_proportional_path_is_drawn_over_its_norm),
-      cmocka_unit_test(turgor_is_drawn_in_megapascal),
-      cmocka_unit_test(loading_and_unloading_is_drawn_over_the_state),
-      cmocka_unit_test(a_load_that_varies_in_two_ways_is_drawn_over_the_state),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

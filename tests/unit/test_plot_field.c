@@ -1,9 +1,5 @@
 /* Colours, views, outlines and painted fields of the pictures. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <setjmp.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include <math.h>
 #include <stdio.h>
 #include <unistd.h>
@@ -33,7 +29,7 @@ static int make_ring(void **state)
   return 0;
 }
 
-static void brightness_grows_along_the_colour_map(void **state)
+TEST(brightness_grows_along_the_colour_map)
 {
   PetscReal last = 0;
 
@@ -46,14 +42,14 @@ static void brightness_grows_along_the_colour_map(void **state)
   }
 }
 
-static void colours_beyond_the_ends_are_those_of_the_ends(void **state)
+TEST(colours_beyond_the_ends_are_those_of_the_ends)
 {
   const LamColour end = LamColourMap(1), beyond = LamColourMap(7);
 
   assert_true(end.r == beyond.r && end.g == beyond.g && end.b == beyond.b);
 }
 
-static void a_stress_peak_does_not_stretch_the_colour_scale(void **state)
+TEST(a_stress_peak_does_not_stretch_the_colour_scale)
 {
   PetscReal values[500];
   LamColourRange range;
@@ -64,7 +60,7 @@ static void a_stress_peak_does_not_stretch_the_colour_scale(void **state)
   assert_true(range.high < 1 && range.clipped[1] && !range.clipped[0]);
 }
 
-static void a_smooth_field_uses_all_of_the_colour_scale(void **state)
+TEST(a_smooth_field_uses_all_of_the_colour_scale)
 {
   PetscReal values[500];
   LamColourRange range;
@@ -74,7 +70,7 @@ static void a_smooth_field_uses_all_of_the_colour_scale(void **state)
   assert_true(range.low == 0 && range.high == 499 && !range.clipped[0] && !range.clipped[1]);
 }
 
-static void a_constant_field_has_a_colour_scale(void **state)
+TEST(a_constant_field_has_a_colour_scale)
 {
   const PetscReal values[3] = {0.7, 0.7, 0.7};
   LamColourRange range;
@@ -83,7 +79,7 @@ static void a_constant_field_has_a_colour_scale(void **state)
   assert_true(range.low < 0.7 && range.high > 0.7);
 }
 
-static void a_view_shows_its_box_in_the_middle(void **state)
+TEST(a_view_shows_its_box_in_the_middle)
 {
   const LamRect frame = {10, 20, 200, 100};
   const PetscReal box[4] = {-1, -1, 1, 1};
@@ -95,7 +91,7 @@ static void a_view_shows_its_box_in_the_middle(void **state)
   assert_true(fabs(point[0] - 110) < 1e-9 && fabs(point[1] - 20) < 1e-9);
 }
 
-static void a_ring_has_an_outer_loop_and_a_lumen(void **state)
+TEST(a_ring_has_an_outer_loop_and_a_lumen)
 {
   LamOutline outline;
   PetscReal areas[2];
@@ -107,7 +103,7 @@ static void a_ring_has_an_outer_loop_and_a_lumen(void **state)
   assert_int_equal(LamOutlineDestroy(&outline), 0);
 }
 
-static void each_group_has_an_outline_of_its_own(void **state)
+TEST(each_group_has_an_outline_of_its_own)
 {
   const PetscInt cells[RING_ELEMENTS] = {0, 0, 1, 1};
   LamOutline outline;
@@ -118,7 +114,7 @@ static void each_group_has_an_outline_of_its_own(void **state)
   assert_int_equal(LamOutlineDestroy(&outline), 0);
 }
 
-static void the_area_of_curved_edges_is_exact(void **state)
+TEST(the_area_of_curved_edges_is_exact)
 {
   LamOutline outline;
   PetscReal x[RING_NODES][2], area = 0;
@@ -163,7 +159,7 @@ static uint32_t painted_pixel(PetscReal x, PetscReal y)
   return pixel & 0xffffff;
 }
 
-static void a_painted_field_has_the_colours_of_its_values(void **state)
+TEST(a_painted_field_has_the_colours_of_its_values)
 {
   const uint32_t pixel = painted_pixel(1.5, 0.3);
   const LamColour wanted = LamColourMap((1.5 + 2) / 4);
@@ -173,13 +169,13 @@ static void a_painted_field_has_the_colours_of_its_values(void **state)
   assert_true(abs((int)(pixel & 0xff) - (int)lround(255 * wanted.b)) <= 2);
 }
 
-static void a_field_leaves_the_lumen_unpainted(void **state)
+TEST(a_field_leaves_the_lumen_unpainted)
 {
   assert_int_equal(painted_pixel(0.2, 0.3), 0xffffff);
 }
 
 /* They would be painted for minutes. */
-static void images_on_one_another_are_refused(void **state)
+TEST(images_on_one_another_are_refused)
 {
   const PetscReal box[4] = {-2, -2, 2, 2};
   const LamColourRange range = {.low = -2, .high = 2};
@@ -201,21 +197,4 @@ static void images_on_one_another_are_refused(void **state)
   assert_int_not_equal(access(path, F_OK), 0);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(brightness_grows_along_the_colour_map),
-      cmocka_unit_test(colours_beyond_the_ends_are_those_of_the_ends),
-      cmocka_unit_test(a_stress_peak_does_not_stretch_the_colour_scale),
-      cmocka_unit_test(a_smooth_field_uses_all_of_the_colour_scale),
-      cmocka_unit_test(a_constant_field_has_a_colour_scale),
-      cmocka_unit_test(a_view_shows_its_box_in_the_middle),
-      cmocka_unit_test(a_ring_has_an_outer_loop_and_a_lumen),
-      cmocka_unit_test(each_group_has_an_outline_of_its_own),
-      cmocka_unit_test(the_area_of_curved_edges_is_exact),
-      cmocka_unit_test(a_painted_field_has_the_colours_of_its_values),
-      cmocka_unit_test(a_field_leaves_the_lumen_unpainted),
-      cmocka_unit_test(images_on_one_another_are_refused),
-  };
-  return cmocka_run_group_tests(tests, make_ring, NULL);
-}
+TEST_GROUP(.setup = make_ring);

@@ -1,9 +1,5 @@
 /* Pictures of whole files: each kind is drawn in each format, and what cannot be drawn is refused with the reason. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <setjmp.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -230,27 +226,27 @@ static void draws(PetscErrorCode (*plot)(const LamPlotRequest *), const char inp
   assert_memory_equal(bytes, start, strlen(start));
 }
 
-static void rve_states_are_drawn_as_png(void **state)
+TEST(rve_states_are_drawn_as_png)
 {
   draws(LamPlotRVE, RVE_FILE, "test_plot_rve.png", "\x89PNG");
 }
-static void rve_states_are_drawn_as_svg(void **state)
+TEST(rve_states_are_drawn_as_svg)
 {
   draws(LamPlotRVE, RVE_FILE, "test_plot_rve.svg", "<?xml");
 }
-static void rve_states_are_drawn_as_pdf(void **state)
+TEST(rve_states_are_drawn_as_pdf)
 {
   draws(LamPlotRVE, RVE_FILE, "test_plot_rve.PDF", "%PDF");
 }
-static void fe2_runs_are_drawn(void **state)
+TEST(fe2_runs_are_drawn)
 {
   draws(LamPlotFE2, FE2_FILE, "test_plot_fe2.pdf", "%PDF");
 }
-static void databases_are_drawn(void **state)
+TEST(databases_are_drawn)
 {
   draws(LamPlotDatabase, DATABASE_FILE, "test_plot_db.pdf", "%PDF");
 }
-static void maps_are_drawn(void **state)
+TEST(maps_are_drawn)
 {
   draws(LamPlotMap, MAP_FILE, "test_plot_map.pdf", "%PDF");
 }
@@ -264,86 +260,66 @@ static void refuses(PetscErrorCode (*plot)(const LamPlotRequest *), const LamPlo
   assert_int_not_equal(access(request->output, F_OK), 0);
 }
 
-static void a_state_that_is_not_there_is_refused(void **state)
+TEST(a_state_that_is_not_there_is_refused)
 {
   const LamPlotRequest request = {.input = RVE_FILE, .output = "test_plot_none.pdf", .state = 7};
 
   refuses(LamPlotRVE, &request, PETSC_ERR_USER_INPUT, "states 1 to 3");
 }
 
-static void a_state_without_an_answer_is_refused_with_its_reason(void **state)
+TEST(a_state_without_an_answer_is_refused_with_its_reason)
 {
   const LamPlotRequest request = {.input = RVE_FILE, .output = "test_plot_none.pdf", .state = 3};
 
   refuses(LamPlotRVE, &request, PETSC_ERR_USER_INPUT, "limit load");
 }
 
-static void an_unknown_field_is_refused_with_the_known_ones(void **state)
+TEST(an_unknown_field_is_refused_with_the_known_ones)
 {
   const LamPlotRequest request = {.input = FE2_FILE, .output = "test_plot_none.pdf", .state = -1, .field = "colour"};
 
   refuses(LamPlotFE2, &request, PETSC_ERR_USER_INPUT, "von_mises, ");
 }
 
-static void a_step_that_is_not_there_is_refused(void **state)
+TEST(a_step_that_is_not_there_is_refused)
 {
   const LamPlotRequest request = {.input = FE2_FILE, .output = "test_plot_none.pdf", .state = 9};
 
   refuses(LamPlotFE2, &request, PETSC_ERR_USER_INPUT, "steps 0 to 2");
 }
 
-static void a_field_that_the_file_lacks_is_refused(void **state)
+TEST(a_field_that_the_file_lacks_is_refused)
 {
   const LamPlotRequest request = {.input = FE2_FILE, .output = "test_plot_none.pdf", .state = -1, .field = "P_12"};
 
   refuses(LamPlotFE2, &request, PETSC_ERR_USER_INPUT, "/macro/step/2/P");
 }
 
-static void a_field_that_no_record_has_is_refused(void **state)
+TEST(a_field_that_no_record_has_is_refused)
 {
   const LamPlotRequest request = {.input = MAP_FILE, .output = "test_plot_none.pdf", .state = -1, .field = "colour"};
 
   refuses(LamPlotMap, &request, PETSC_ERR_USER_INPUT, "load_factor");
 }
 
-static void a_state_of_a_database_is_refused(void **state)
+TEST(a_state_of_a_database_is_refused)
 {
   const LamPlotRequest request = {.input = DATABASE_FILE, .output = "test_plot_none.pdf", .state = 1};
 
   refuses(LamPlotDatabase, &request, PETSC_ERR_USER_INPUT, "--state");
 }
 
-static void an_output_that_cannot_be_written_is_an_error_of_output(void **state)
+TEST(an_output_that_cannot_be_written_is_an_error_of_output)
 {
   const LamPlotRequest request = {.input = DATABASE_FILE, .output = "no-such-folder/a.pdf", .state = -1};
 
   refuses(LamPlotDatabase, &request, PETSC_ERR_FILE_WRITE, "no-such-folder/a.pdf");
 }
 
-static void only_three_formats_are_accepted(void **state)
+TEST(only_three_formats_are_accepted)
 {
   assert_int_equal(LamCanvasCheckPath("a.gif"), PETSC_ERR_USER_INPUT);
   assert_non_null(strstr(Message, ".png, .svg or .pdf"));
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(rve_states_are_drawn_as_png),
-      cmocka_unit_test(rve_states_are_drawn_as_svg),
-      cmocka_unit_test(rve_states_are_drawn_as_pdf),
-      cmocka_unit_test(fe2_runs_are_drawn),
-      cmocka_unit_test(databases_are_drawn),
-      cmocka_unit_test(maps_are_drawn),
-      cmocka_unit_test(a_field_that_no_record_has_is_refused),
-      cmocka_unit_test(a_state_that_is_not_there_is_refused),
-      cmocka_unit_test(a_state_without_an_answer_is_refused_with_its_reason),
-      cmocka_unit_test(an_unknown_field_is_refused_with_the_known_ones),
-      cmocka_unit_test(a_step_that_is_not_there_is_refused),
-      cmocka_unit_test(a_field_that_the_file_lacks_is_refused),
-      cmocka_unit_test(a_state_of_a_database_is_refused),
-      cmocka_unit_test(an_output_that_cannot_be_written_is_an_error_of_output),
-      cmocka_unit_test(only_three_formats_are_accepted),
-  };
-  return cmocka_run_group_tests(tests, write_files, remove_files);
-}
+TEST_GROUP(.setup = write_files, .teardown = remove_files);

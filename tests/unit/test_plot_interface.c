@@ -1,9 +1,5 @@
 /* Gaps and contact pressure in pictures: where they are drawn, and in which colour. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <setjmp.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -67,7 +63,7 @@ static uint32_t Pixel(Samples *s, PetscReal x, PetscReal y)
 
 static const uint32_t white = 0xffffff;
 
-static void an_open_face_is_filled_with_the_colour_of_its_gap(void **state)
+TEST(an_open_face_is_filled_with_the_colour_of_its_gap)
 {
   Samples s = HalfOpen();
   const uint32_t pixel = Pixel(&s, -1, 0.25);
@@ -78,14 +74,14 @@ static void an_open_face_is_filled_with_the_colour_of_its_gap(void **state)
   assert_true(abs((int)(pixel & 0xff) - (int)lround(255 * wanted.b)) <= 2);
 }
 
-static void a_closed_face_shows_no_gap(void **state)
+TEST(a_closed_face_shows_no_gap)
 {
   Samples s = HalfOpen();
 
   assert_int_equal(Pixel(&s, 1, 0.25), white);
 }
 
-static void a_gap_thinner_than_a_line_is_seen(void **state)
+TEST(a_gap_thinner_than_a_line_is_seen)
 {
   Samples s = HalfOpen();
 
@@ -93,7 +89,7 @@ static void a_gap_thinner_than_a_line_is_seen(void **state)
   assert_int_not_equal(Pixel(&s, -1, 0.02), white);
 }
 
-static void a_gap_too_small_to_count_is_not_drawn(void **state)
+TEST(a_gap_too_small_to_count_is_not_drawn)
 {
   Samples s = HalfOpen();
 
@@ -101,7 +97,7 @@ static void a_gap_too_small_to_count_is_not_drawn(void **state)
   assert_int_equal(Pixel(&s, -1, 0.005), white);
 }
 
-static void samples_that_face_no_wall_show_no_gap(void **state)
+TEST(samples_that_face_no_wall_show_no_gap)
 {
   Samples s = HalfOpen();
 
@@ -109,7 +105,7 @@ static void samples_that_face_no_wall_show_no_gap(void **state)
   assert_int_equal(Pixel(&s, -1, 0.25), white);
 }
 
-static void the_ribbon_is_as_wide_as_the_pressure(void **state)
+TEST(the_ribbon_is_as_wide_as_the_pressure)
 {
   Samples s = HalfOpen();
 
@@ -119,7 +115,7 @@ static void the_ribbon_is_as_wide_as_the_pressure(void **state)
   assert_int_not_equal(Pixel(&s, 0.5, 0.03), white);
 }
 
-static void brightness_falls_along_the_colours_of_gaps(void **state)
+TEST(brightness_falls_along_the_colours_of_gaps)
 {
   PetscReal last = 1;
 
@@ -141,7 +137,7 @@ static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function,
   return code;
 }
 
-static void a_file_without_samples_is_refused(void **state)
+TEST(a_file_without_samples_is_refused)
 {
   LamScene scene = {.text = "version: 1\n",
                     .micro = {.wall_thickness = 0.5,
@@ -165,19 +161,4 @@ static void a_file_without_samples_is_refused(void **state)
   PetscPopErrorHandler();
   remove(path);
   assert_non_null(strstr(message, "/fields/1/interface/from is missing"));
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(an_open_face_is_filled_with_the_colour_of_its_gap),
-      cmocka_unit_test(a_closed_face_shows_no_gap),
-      cmocka_unit_test(a_gap_thinner_than_a_line_is_seen),
-      cmocka_unit_test(a_gap_too_small_to_count_is_not_drawn),
-      cmocka_unit_test(samples_that_face_no_wall_show_no_gap),
-      cmocka_unit_test(the_ribbon_is_as_wide_as_the_pressure),
-      cmocka_unit_test(brightness_falls_along_the_colours_of_gaps),
-      cmocka_unit_test(a_file_without_samples_is_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

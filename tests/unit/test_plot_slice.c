@@ -1,14 +1,9 @@
 /* Slices through a table: what they hold is what the table answers, and nodes lie where their strains are. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <setjmp.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
-#include "assert_near.h"
 #include "plot_slice.h"
 #include "table_fixture.h"
 
@@ -79,7 +74,7 @@ static void read_slice(const LamPlotRequest *request, LamSlice *slice)
 
 static const LamPlotRequest Default = {.input = FILE_NAME, .output = "test_plot_slice.png", .state = -1};
 
-static void strains_and_their_axis_come_from_F(void **state)
+TEST(strains_and_their_axis_come_from_F)
 {
   const LamLoad load = load_of(0.2, -0.05, 0.7);
   PetscReal strain[2], angle;
@@ -92,7 +87,7 @@ static void strains_and_their_axis_come_from_F(void **state)
 
 /* Wherever the table answers to its accuracy: the stress and potential of the tissue at the deformation of the sample.
  */
-static void a_slice_holds_the_answers_of_the_tissue(void **state)
+TEST(a_slice_holds_the_answers_of_the_tissue)
 {
   const LamPlotRequest request = {.input = FILE_NAME, .state = -1, .angle = "15 deg"};
   PetscInt compared = 0;
@@ -121,7 +116,7 @@ static void a_slice_holds_the_answers_of_the_tissue(void **state)
 
 /* What is above the diagonal at 0 degrees is what is below it at 30: one square shows both ways of stretching a cell.
  */
-static void thirty_degrees_are_zero_across(void **state)
+TEST(thirty_degrees_are_zero_across)
 {
   const LamPlotRequest request = {.input = FILE_NAME, .state = -1, .angle = "30 deg"};
   const PetscInt n = LAM_SLICE_SAMPLES;
@@ -140,7 +135,7 @@ static void thirty_degrees_are_zero_across(void **state)
   OK(LamSliceDestroy(&thirty));
 }
 
-static void the_edges_of_a_slice_lie_outside_the_table(void **state)
+TEST(the_edges_of_a_slice_lie_outside_the_table)
 {
   LamSlice slice;
 
@@ -150,7 +145,7 @@ static void the_edges_of_a_slice_lie_outside_the_table(void **state)
   OK(LamSliceDestroy(&slice));
 }
 
-static void more_accuracy_is_refused_in_more_places(void **state)
+TEST(more_accuracy_is_refused_in_more_places)
 {
   const LamPlotRequest strict = {.input = FILE_NAME, .state = -1, .accuracy = "1e-6"};
   LamSlice loose, tight;
@@ -174,7 +169,7 @@ static void lattice_strains(const PetscReal F[9], PetscReal x[3])
   OK(PetscSortReal(3, x));
 }
 
-static void nodes_are_drawn_where_their_strains_are(void **state)
+TEST(nodes_are_drawn_where_their_strains_are)
 {
   const LamResponse *records;
   LamDatabase database;
@@ -206,28 +201,28 @@ static void refuses(const LamPlotRequest *request, const char words[])
   assert_non_null(strstr(Message, words));
 }
 
-static void bonded_tissue_has_no_suction(void **state)
+TEST(bonded_tissue_has_no_suction)
 {
   const LamPlotRequest request = {.input = FILE_NAME, .output = "none.png", .state = -1, .suction = "0.02 MPa"};
 
   refuses(&request, "--suction 0.02 MPa");
 }
 
-static void an_angle_needs_its_unit(void **state)
+TEST(an_angle_needs_its_unit)
 {
   const LamPlotRequest request = {.input = FILE_NAME, .output = "none.png", .state = -1, .angle = "15"};
 
   refuses(&request, "unit");
 }
 
-static void an_accuracy_is_a_number_above_zero(void **state)
+TEST(an_accuracy_is_a_number_above_zero)
 {
   const LamPlotRequest request = {.input = FILE_NAME, .output = "none.png", .state = -1, .accuracy = "-1"};
 
   refuses(&request, "--accuracy -1");
 }
 
-static void the_records_of_a_table_have_no_slice(void **state)
+TEST(the_records_of_a_table_have_no_slice)
 {
   const LamPlotRequest request = {
       .input = FILE_NAME, .output = "none.png", .state = -1, .field = "stress", .angle = "15 deg"};
@@ -235,27 +230,11 @@ static void the_records_of_a_table_have_no_slice(void **state)
   refuses(&request, "--angle 15 deg");
 }
 
-static void a_table_is_drawn(void **state)
+TEST(a_table_is_drawn)
 {
   OK(LamPlotDatabase(&Default));
   assert_int_equal(access(Default.output, F_OK), 0);
   remove(Default.output);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(strains_and_their_axis_come_from_F),
-      cmocka_unit_test(a_slice_holds_the_answers_of_the_tissue),
-      cmocka_unit_test(thirty_degrees_are_zero_across),
-      cmocka_unit_test(the_edges_of_a_slice_lie_outside_the_table),
-      cmocka_unit_test(more_accuracy_is_refused_in_more_places),
-      cmocka_unit_test(nodes_are_drawn_where_their_strains_are),
-      cmocka_unit_test(bonded_tissue_has_no_suction),
-      cmocka_unit_test(an_angle_needs_its_unit),
-      cmocka_unit_test(an_accuracy_is_a_number_above_zero),
-      cmocka_unit_test(the_records_of_a_table_have_no_slice),
-      cmocka_unit_test(a_table_is_drawn),
-  };
-  return cmocka_run_group_tests(tests, write_file, remove_file);
-}
+TEST_GROUP(.setup = write_file, .teardown = remove_file);

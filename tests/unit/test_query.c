@@ -1,11 +1,8 @@
 /* Answers from scattered records: derivatives and symmetry. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include "query_fixture.h"
 
-static void a_record_answers_for_itself(void **state)
+TEST(a_record_answers_for_itself)
 {
   LamDatabase db = MakeFilled();
   const LamLoad load = Load(1.08, 0.09, 0.02, 1.05, 0.3);
@@ -43,7 +40,7 @@ static void AssertDerivatives(LamDatabase db, LamLoad load, PetscReal tolerance)
   }
 }
 
-static void stress_and_tangent_are_derivatives_of_the_answered_energy(void **state)
+TEST(stress_and_tangent_are_derivatives_of_the_answered_energy)
 {
   LamDatabase db = MakeFilled();
 
@@ -52,7 +49,7 @@ static void stress_and_tangent_are_derivatives_of_the_answered_energy(void **sta
 }
 
 /* All images of the record fall on each other, and those of the question lie around it. */
-static void derivatives_are_exact_beside_an_isotropic_record(void **state)
+TEST(derivatives_are_exact_beside_an_isotropic_record)
 {
   LamDatabase db = MakeFilled();
 
@@ -62,7 +59,7 @@ static void derivatives_are_exact_beside_an_isotropic_record(void **state)
 }
 
 /* The weights are steep there: what they multiply must vanish without rounding. */
-static void next_to_a_record_the_answer_is_the_record_s(void **state)
+TEST(next_to_a_record_the_answer_is_the_record_s)
 {
   LamDatabase db = MakeFilled();
 
@@ -77,7 +74,7 @@ static void next_to_a_record_the_answer_is_the_record_s(void **state)
 }
 
 /* Around a circle that brings records into reach and out of it again. */
-static void a_closed_cycle_does_no_net_work(void **state)
+TEST(a_closed_cycle_does_no_net_work)
 {
   enum { STEPS = 2000 };
   LamDatabase db = MakeFilled();
@@ -95,7 +92,7 @@ static void a_closed_cycle_does_no_net_work(void **state)
   LamDatabaseClose(&db);
 }
 
-static void turgor_derivatives_belong_to_the_answered_energy(void **state)
+TEST(turgor_derivatives_belong_to_the_answered_energy)
 {
   LamDatabase db = MakeFilled();
   const LamResponse r = Ask(db, probe);
@@ -112,7 +109,7 @@ static void turgor_derivatives_belong_to_the_answered_energy(void **state)
   LamDatabaseClose(&db);
 }
 
-static void the_tangent_has_major_symmetry(void **state)
+TEST(the_tangent_has_major_symmetry)
 {
   LamDatabase db = MakeFilled();
   const LamResponse r = Ask(db, probe);
@@ -123,7 +120,7 @@ static void the_tangent_has_major_symmetry(void **state)
   LamDatabaseClose(&db);
 }
 
-static void tangent_entries_of_the_out_of_plane_shear_are_unknown(void **state)
+TEST(tangent_entries_of_the_out_of_plane_shear_are_unknown)
 {
   LamDatabase db = MakeFilled();
   const LamResponse r = Ask(db, probe);
@@ -132,7 +129,7 @@ static void tangent_entries_of_the_out_of_plane_shear_are_unknown(void **state)
   LamDatabaseClose(&db);
 }
 
-static void a_rotation_of_space_rotates_the_stress(void **state)
+TEST(a_rotation_of_space_rotates_the_stress)
 {
   LamDatabase db = MakeFilled();
   const LamResponse r = Ask(db, probe);
@@ -159,7 +156,7 @@ static void a_rotation_of_space_rotates_the_stress(void **state)
   LamDatabaseClose(&db);
 }
 
-static void images_of_the_lattice_have_the_same_answer(void **state)
+TEST(images_of_the_lattice_have_the_same_answer)
 {
   LamDatabase db = MakeFilled();
   const LamResponse r = Ask(db, probe);
@@ -184,7 +181,7 @@ static void images_of_the_lattice_have_the_same_answer(void **state)
   LamDatabaseClose(&db);
 }
 
-static void faces_are_renamed_with_the_image(void **state)
+TEST(faces_are_renamed_with_the_image)
 {
   for (int image = 0; image < 12; image++) {
     const PetscReal mirror = image < 6 ? 1 : -1;
@@ -205,7 +202,7 @@ static void faces_are_renamed_with_the_image(void **state)
   }
 }
 
-static void unequal_cell_counts_have_no_sixfold_symmetry(void **state)
+TEST(unequal_cell_counts_have_no_sixfold_symmetry)
 {
   LamDatabase db = Make(2, 1);
   LamLoad turned = probe;
@@ -216,24 +213,4 @@ static void unequal_cell_counts_have_no_sixfold_symmetry(void **state)
   assert_int_equal(LamDatabaseQuery(db, &turned, PETSC_INFINITY, &r), 0);
   assert_int_equal(r.status, LAM_OUT_OF_REACH);
   LamDatabaseClose(&db);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_record_answers_for_itself),
-      cmocka_unit_test(stress_and_tangent_are_derivatives_of_the_answered_energy),
-      cmocka_unit_test(derivatives_are_exact_beside_an_isotropic_record),
-      cmocka_unit_test(next_to_a_record_the_answer_is_the_record_s),
-      cmocka_unit_test(a_closed_cycle_does_no_net_work),
-      cmocka_unit_test(turgor_derivatives_belong_to_the_answered_energy),
-      cmocka_unit_test(the_tangent_has_major_symmetry),
-      cmocka_unit_test(tangent_entries_of_the_out_of_plane_shear_are_unknown),
-      cmocka_unit_test(a_rotation_of_space_rotates_the_stress),
-      cmocka_unit_test(images_of_the_lattice_have_the_same_answer),
-      cmocka_unit_test(faces_are_renamed_with_the_image),
-      cmocka_unit_test(unequal_cell_counts_have_no_sixfold_symmetry),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

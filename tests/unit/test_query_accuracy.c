@@ -1,8 +1,5 @@
 /* Answers from scattered records: how good they are, and when there is none. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include "query_fixture.h"
 
 static void AssertRefused(LamDatabase db, LamLoad load, PetscReal accuracy)
@@ -15,7 +12,7 @@ static void AssertRefused(LamDatabase db, LamLoad load, PetscReal accuracy)
 }
 
 /* Without terms of third order nothing is left out, however far the records: the fluid term is exact. */
-static void a_quadratic_potential_is_answered_exactly(void **state)
+TEST(a_quadratic_potential_is_answered_exactly)
 {
   LamDatabase db = Make(1, 1);
   LamResponse exact, r;
@@ -43,14 +40,14 @@ static PetscReal StressErrorAt(PetscReal step)
   return LamStressError(r.P, exact.P);
 }
 
-static void the_stress_error_falls_with_the_square_of_the_distance(void **state)
+TEST(the_stress_error_falls_with_the_square_of_the_distance)
 {
   const PetscReal ratio = StressErrorAt(0.02) / StressErrorAt(0.01);
 
   assert_true(ratio > 3.5 && ratio < 4.5);
 }
 
-static void what_is_too_far_is_out_of_reach(void **state)
+TEST(what_is_too_far_is_out_of_reach)
 {
   LamDatabase db = MakeFilled();
   LamLoad load = Load(1.5, 0, 0, 1.5, 0.1);
@@ -62,7 +59,7 @@ static void what_is_too_far_is_out_of_reach(void **state)
   LamDatabaseClose(&db);
 }
 
-static void an_inverted_state_is_invalid(void **state)
+TEST(an_inverted_state_is_invalid)
 {
   LamDatabase db = MakeFilled();
   const LamLoad bad[2] = {Load(-1, 0, 0, 1, 0), Load(NAN, 0, 0, 1, 0)};
@@ -76,7 +73,7 @@ static void an_inverted_state_is_invalid(void **state)
   LamDatabaseClose(&db);
 }
 
-static void a_stretch_of_the_thickness_is_out_of_reach(void **state)
+TEST(a_stretch_of_the_thickness_is_out_of_reach)
 {
   LamDatabase db = MakeFilled();
   LamLoad load = probe;
@@ -88,7 +85,7 @@ static void a_stretch_of_the_thickness_is_out_of_reach(void **state)
   LamDatabaseClose(&db);
 }
 
-static void unstable_and_failed_records_do_not_answer(void **state)
+TEST(unstable_and_failed_records_do_not_answer)
 {
   LamDatabase db = Make(1, 1);
   LamResponse records[2] = {Exact(&probe), Exact(&probe)}, r;
@@ -101,7 +98,7 @@ static void unstable_and_failed_records_do_not_answer(void **state)
   LamDatabaseClose(&db);
 }
 
-static void another_branch_answers_its_own_state_alone(void **state)
+TEST(another_branch_answers_its_own_state_alone)
 {
   LamDatabase db = Make(1, 1);
   LamResponse record = Exact(&probe), r;
@@ -118,7 +115,7 @@ static void another_branch_answers_its_own_state_alone(void **state)
 }
 
 /* What lies behind a state of another branch, or one that failed, is not answered from this side of it. */
-static void a_record_of_another_branch_or_that_failed_forbids_a_blend(void **state)
+TEST(a_record_of_another_branch_or_that_failed_forbids_a_blend)
 {
   for (int failed = 0; failed < 2; failed++) {
     LamDatabase db = MakeFilled();
@@ -136,7 +133,7 @@ static void a_record_of_another_branch_or_that_failed_forbids_a_blend(void **sta
   }
 }
 
-static void an_answer_is_given_where_its_estimate_is_within_the_accuracy(void **state)
+TEST(an_answer_is_given_where_its_estimate_is_within_the_accuracy)
 {
   LamDatabase db = MakeFilled();
   const PetscReal estimate = Ask(db, probe).error_estimate;
@@ -150,7 +147,7 @@ static void an_answer_is_given_where_its_estimate_is_within_the_accuracy(void **
 }
 
 /* One model has no spread; its distance speaks for it. */
-static void the_error_of_a_record_alone_is_estimated_by_its_distance(void **state)
+TEST(the_error_of_a_record_alone_is_estimated_by_its_distance)
 {
   LamDatabase db = Make(1, 1);
   LamResponse r, exact = Exact(&probe);
@@ -159,22 +156,4 @@ static void the_error_of_a_record_alone_is_estimated_by_its_distance(void **stat
   r = Ask(db, probe);
   assert_true(r.error_estimate > LamStressError(r.P, exact.P));
   LamDatabaseClose(&db);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_quadratic_potential_is_answered_exactly),
-      cmocka_unit_test(the_stress_error_falls_with_the_square_of_the_distance),
-      cmocka_unit_test(what_is_too_far_is_out_of_reach),
-      cmocka_unit_test(an_inverted_state_is_invalid),
-      cmocka_unit_test(a_stretch_of_the_thickness_is_out_of_reach),
-      cmocka_unit_test(unstable_and_failed_records_do_not_answer),
-      cmocka_unit_test(another_branch_answers_its_own_state_alone),
-      cmocka_unit_test(a_record_of_another_branch_or_that_failed_forbids_a_blend),
-      cmocka_unit_test(an_answer_is_given_where_its_estimate_is_within_the_accuracy),
-      cmocka_unit_test(the_error_of_a_record_alone_is_estimated_by_its_distance),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

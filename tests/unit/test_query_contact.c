@@ -1,8 +1,5 @@
 /* Answers from scattered records of contact tissue. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include "query_fixture.h"
 
 static const PetscReal g = 0.2; /* cohesion of the records */
@@ -80,7 +77,7 @@ static LamDatabase MakeContacts(void)
 
 static const LamLoad contact_probe = {{1.06, 0.06, 0, 0.01, 1.02, 0, 0, 0, 1}, 0.15, 0.2};
 
-static void turgor_and_cohesion_derivatives_belong_to_the_answered_energy(void **state)
+TEST(turgor_and_cohesion_derivatives_belong_to_the_answered_energy)
 {
   const PetscReal h = 1e-4;
 
@@ -100,7 +97,7 @@ static void turgor_and_cohesion_derivatives_belong_to_the_answered_energy(void *
 }
 
 /* Without terms of third order the models of the record and of its images agree. */
-static void the_opening_follows_its_derivatives(void **state)
+TEST(the_opening_follows_its_derivatives)
 {
   LamDatabase db;
   LamResponse exact, r;
@@ -116,7 +113,7 @@ static void the_opening_follows_its_derivatives(void **state)
   LamDatabaseClose(&db);
 }
 
-static void gaps_are_known_in_the_state_of_a_record_alone(void **state)
+TEST(gaps_are_known_in_the_state_of_a_record_alone)
 {
   LamDatabase db = MakeContact(contact_probe);
   LamLoad near = contact_probe, turned = contact_probe;
@@ -140,7 +137,7 @@ static void gaps_are_known_in_the_state_of_a_record_alone(void **state)
 }
 
 /* Turgor for cohesion: the walls feel their sum. */
-static void the_distance_is_one_of_suction(void **state)
+TEST(the_distance_is_one_of_suction)
 {
   LamDatabase db = MakeContact(contact_probe);
   LamResponse r;
@@ -152,7 +149,7 @@ static void the_distance_is_one_of_suction(void **state)
   LamDatabaseClose(&db);
 }
 
-static void a_record_without_a_tangent_does_not_answer(void **state)
+TEST(a_record_without_a_tangent_does_not_answer)
 {
   LamResponse floating = ExactContact(contact_probe), r;
   LamDatabase db = MakeContact(At(Load(1.05, 0.03, -0.02, 1.01, 0), 0.17, g));
@@ -165,7 +162,7 @@ static void a_record_without_a_tangent_does_not_answer(void **state)
 }
 
 /* P vanishes with the last contact, or nearly so: a kink, on one side of which all records agree. */
-static void cells_that_float_answer_their_own_state_alone(void **state)
+TEST(cells_that_float_answer_their_own_state_alone)
 {
   LamDatabase db = MakeContacts();
   LamResponse floating = ExactContact(contact_probe), r;
@@ -178,18 +175,4 @@ static void cells_that_float_answer_their_own_state_alone(void **state)
   assert_int_equal(LamDatabaseQuery(db, &near, PETSC_INFINITY, &r), 0);
   assert_int_equal(r.status, LAM_OUT_OF_REACH);
   LamDatabaseClose(&db);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(turgor_and_cohesion_derivatives_belong_to_the_answered_energy),
-      cmocka_unit_test(the_opening_follows_its_derivatives),
-      cmocka_unit_test(gaps_are_known_in_the_state_of_a_record_alone),
-      cmocka_unit_test(the_distance_is_one_of_suction),
-      cmocka_unit_test(a_record_without_a_tangent_does_not_answer),
-      cmocka_unit_test(cells_that_float_answer_their_own_state_alone),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* LamFileCheck: each damaged record and part is named, also behind the first. */
 #define _GNU_SOURCE /* memmem */
+#include "support/test.h"
 #include "record_fixture.h"
 #include <hdf5.h>
 #include <jansson.h>
@@ -65,7 +66,7 @@ static void Replace(const char name[], const char by[])
   H5Fclose(file);
 }
 
-static void a_sound_file_is_sound_and_wholly_checked(void **state)
+FILE_TEST(a_sound_file_is_sound_and_wholly_checked)
 {
   json_t *check;
 
@@ -97,7 +98,7 @@ static PetscBool DamageIndex(int k)
 }
 
 /* Lamella reads such a file, other programs do not. */
-static void an_index_that_leads_nowhere_is_damage(void **state)
+FILE_TEST(an_index_that_leads_nowhere_is_damage)
 {
   for (int k = 0;; k++) {
     json_t *check;
@@ -114,7 +115,7 @@ static void an_index_that_leads_nowhere_is_damage(void **state)
   }
 }
 
-static void each_damaged_record_is_named_with_its_key(void **state)
+FILE_TEST(each_damaged_record_is_named_with_its_key)
 {
   LamRecordWriter writer = Open(LAM_WRITE_CREATE);
   const hsize_t numbers[3] = {3, 63, 699};
@@ -133,7 +134,7 @@ static void each_damaged_record_is_named_with_its_key(void **state)
   json_decref(check);
 }
 
-static void damage_of_a_record_does_not_hide_that_of_a_text(void **state)
+FILE_TEST(damage_of_a_record_does_not_hide_that_of_a_text)
 {
   json_t *check;
 
@@ -148,7 +149,7 @@ static void damage_of_a_record_does_not_hide_that_of_a_text(void **state)
 }
 
 /* What is sound can be told without it. */
-static void records_are_counted_where_the_counter_is_damaged(void **state)
+FILE_TEST(records_are_counted_where_the_counter_is_damaged)
 {
   const PetscInt64 wrong = 1;
   json_t *check;
@@ -166,7 +167,7 @@ static void records_are_counted_where_the_counter_is_damaged(void **state)
   json_decref(check);
 }
 
-static void parts_without_a_checksum_are_named(void **state)
+FILE_TEST(parts_without_a_checksum_are_named)
 {
   json_t *check;
   hid_t file;
@@ -181,7 +182,7 @@ static void parts_without_a_checksum_are_named(void **state)
   json_decref(check);
 }
 
-static void a_file_that_is_being_written_is_checked_and_its_writer_named(void **state)
+FILE_TEST(a_file_that_is_being_written_is_checked_and_its_writer_named)
 {
   LamRecordWriter writer = Open(LAM_WRITE_CREATE);
   json_t *check;
@@ -199,7 +200,7 @@ static void a_file_that_is_being_written_is_checked_and_its_writer_named(void **
   json_decref(check);
 }
 
-static void what_is_no_file_of_lamella_is_damaged(void **state)
+FILE_TEST(what_is_no_file_of_lamella_is_damaged)
 {
   FILE *file = fopen(path, "w");
   json_t *check;
@@ -211,28 +212,11 @@ static void what_is_no_file_of_lamella_is_damaged(void **state)
   json_decref(check);
 }
 
-static void a_missing_file_is_an_error(void **state)
+FILE_TEST(a_missing_file_is_an_error)
 {
   PetscBool sound;
   char *text;
 
   assert_int_equal(LamFileCheck(path, &sound, &text), PETSC_ERR_FILE_OPEN);
   assert_non_null(strstr(message, "No such file"));
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      TEST(a_sound_file_is_sound_and_wholly_checked),
-      TEST(each_damaged_record_is_named_with_its_key),
-      TEST(an_index_that_leads_nowhere_is_damage),
-      TEST(damage_of_a_record_does_not_hide_that_of_a_text),
-      TEST(records_are_counted_where_the_counter_is_damaged),
-      TEST(parts_without_a_checksum_are_named),
-      TEST(a_file_that_is_being_written_is_checked_and_its_writer_named),
-      TEST(what_is_no_file_of_lamella_is_damaged),
-      TEST(a_missing_file_is_an_error),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* Record files that are damaged, foreign, full or held by another writer: refused with the reason. */
 #define _GNU_SOURCE /* memmem */
+#include "support/test.h"
 #include "record_fixture.h"
 #include <hdf5.h>
 #include <signal.h>
@@ -41,7 +42,7 @@ static void Damage(size_t record)
   H5Dclose(dataset);
 }
 
-static void a_changed_byte_is_found_and_the_record_named(void **state)
+FILE_TEST(a_changed_byte_is_found_and_the_record_named)
 {
   WriteFile(4);
   Damage(2);
@@ -49,7 +50,7 @@ static void a_changed_byte_is_found_and_the_record_named(void **state)
 }
 
 /* Whole responses of nodes are not loaded, and the file is read in blocks; all of it is checked. */
-static void a_changed_byte_is_found_in_any_node(void **state)
+FILE_TEST(a_changed_byte_is_found_in_any_node)
 {
   LamRecordWriter writer = Open(LAM_WRITE_CREATE);
 
@@ -75,7 +76,7 @@ static void EnlargeTruth(void)
 }
 
 /* HDF5 would fill 8 GB, for half a minute. */
-static void a_type_of_records_that_became_vast_takes_no_memory(void **state)
+FILE_TEST(a_type_of_records_that_became_vast_takes_no_memory)
 {
 #ifdef __SANITIZE_ADDRESS__ /* the bound is not set there */
   skip();
@@ -90,7 +91,7 @@ static void a_type_of_records_that_became_vast_takes_no_memory(void **state)
   assert_true(after.ru_maxrss - before.ru_maxrss < 300000); /* kB */
 }
 
-static void a_damaged_file_is_not_appended_to(void **state)
+FILE_TEST(a_damaged_file_is_not_appended_to)
 {
   LamScene scene = Scene();
   LamRecordWriter writer;
@@ -101,12 +102,12 @@ static void a_damaged_file_is_not_appended_to(void **state)
   assert_non_null(strstr(message, "record 3 is damaged"));
 }
 
-static void a_missing_file_is_named_with_the_reason(void **state)
+FILE_TEST(a_missing_file_is_named_with_the_reason)
 {
   AssertUnreadable(PETSC_ERR_FILE_OPEN, "No such file or directory");
 }
 
-static void a_file_that_is_not_hdf5_is_refused(void **state)
+FILE_TEST(a_file_that_is_not_hdf5_is_refused)
 {
   FILE *file = fopen(path, "w");
 
@@ -115,14 +116,14 @@ static void a_file_that_is_not_hdf5_is_refused(void **state)
   AssertUnreadable(PETSC_ERR_USER_INPUT, "not an HDF5 file");
 }
 
-static void a_foreign_hdf5_file_is_refused(void **state)
+FILE_TEST(a_foreign_hdf5_file_is_refused)
 {
   H5Fclose(H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
   AssertUnreadable(PETSC_ERR_USER_INPUT, "not written by lamella");
 }
 
 /* Cut anywhere, a file is refused; it never crashes the reader and never passes. */
-static void a_cut_file_is_refused(void **state)
+FILE_TEST(a_cut_file_is_refused)
 {
   struct stat info;
 
@@ -135,7 +136,7 @@ static void a_cut_file_is_refused(void **state)
   }
 }
 
-static void another_format_version_is_refused(void **state)
+FILE_TEST(another_format_version_is_refused)
 {
   const int version = 99;
   hid_t file, attribute;
@@ -212,7 +213,7 @@ static void WriteTyped(hid_t type, const LamResponse records[2])
   PetscFree(bytes);
 }
 
-static void members_added_by_later_versions_are_passed_over(void **state)
+FILE_TEST(members_added_by_later_versions_are_passed_over)
 {
   const LamResponse wanted[2] = {Response(0), Response(1)}, *records;
   const char *const none[] = {NULL};
@@ -291,7 +292,7 @@ static void AssertSameNumbers(LamResponse a, LamResponse b)
   assert_string_equal(a.reason, b.reason);
 }
 
-static void members_that_an_older_file_lacks_are_not_known(void **state)
+FILE_TEST(members_that_an_older_file_lacks_are_not_known)
 {
   LamResponse written[2] = {Response(0), Response(1)};
   const LamResponse *records;
@@ -305,7 +306,7 @@ static void members_that_an_older_file_lacks_are_not_known(void **state)
   LamDatabaseClose(&db);
 }
 
-static void an_older_file_is_not_appended_to(void **state)
+FILE_TEST(an_older_file_is_not_appended_to)
 {
   const LamResponse written[2] = {Response(0), Response(1)};
   LamScene scene = Scene();
@@ -316,7 +317,7 @@ static void an_older_file_is_not_appended_to(void **state)
   assert_non_null(strstr(message, "go on with the version that wrote it"));
 }
 
-static void a_member_that_every_file_has_may_not_be_missing(void **state)
+FILE_TEST(a_member_that_every_file_has_may_not_be_missing)
 {
   const LamResponse written[2] = {Response(0), Response(1)};
   const char *const stress[] = {"P", NULL};
@@ -326,7 +327,7 @@ static void a_member_that_every_file_has_may_not_be_missing(void **state)
 }
 
 /* The bytes of a record could then be read twice, or behind its end. */
-static void members_that_do_not_lie_one_behind_the_other_are_refused(void **state)
+FILE_TEST(members_that_do_not_lie_one_behind_the_other_are_refused)
 {
   const LamResponse written[2] = {Response(0), Response(1)};
   const char *const none[] = {NULL};
@@ -347,7 +348,7 @@ static void members_that_do_not_lie_one_behind_the_other_are_refused(void **stat
   AssertUnreadable(PETSC_ERR_USER_INPUT, "member 6 of /records does not lie behind the one before it");
 }
 
-static void a_counter_beyond_the_extent_is_refused(void **state)
+FILE_TEST(a_counter_beyond_the_extent_is_refused)
 {
   const long long count = 1000;
   hid_t file, dataset, attribute;
@@ -363,7 +364,7 @@ static void a_counter_beyond_the_extent_is_refused(void **state)
   AssertUnreadable(PETSC_ERR_USER_INPUT, "1000 records");
 }
 
-static void another_microstructure_is_not_appended_to(void **state)
+FILE_TEST(another_microstructure_is_not_appended_to)
 {
   LamScene scene = Scene();
   LamRecordWriter writer;
@@ -376,7 +377,7 @@ static void another_microstructure_is_not_appended_to(void **state)
 }
 
 /* The limit on the file's size stands for a full disk. */
-static void a_full_disk_is_reported_and_spares_the_records(void **state)
+FILE_TEST(a_full_disk_is_reported_and_spares_the_records)
 {
   struct rlimit old, small;
   LamResponse *r = calloc(2000, sizeof(*r));
@@ -402,7 +403,7 @@ static void a_full_disk_is_reported_and_spares_the_records(void **state)
 
 /* ---- lock ---- */
 
-static void a_second_writer_is_told_who_holds_the_lock(void **state)
+FILE_TEST(a_second_writer_is_told_who_holds_the_lock)
 {
   LamScene scene = Scene();
   LamRecordWriter writer = Open(LAM_WRITE_CREATE), second;
@@ -414,7 +415,7 @@ static void a_second_writer_is_told_who_holds_the_lock(void **state)
   LamRecordWriterClose(&writer);
 }
 
-static void the_lock_of_a_dead_process_is_taken_over(void **state)
+FILE_TEST(the_lock_of_a_dead_process_is_taken_over)
 {
   const pid_t child = fork();
   LamRecordWriter writer;
@@ -431,7 +432,7 @@ static void the_lock_of_a_dead_process_is_taken_over(void **state)
   assert_int_equal(access(lock_path, F_OK), -1);
 }
 
-static void the_lock_of_another_host_is_respected(void **state)
+FILE_TEST(the_lock_of_another_host_is_respected)
 {
   LamScene scene = Scene();
   LamRecordWriter writer;
@@ -441,32 +442,4 @@ static void the_lock_of_another_host_is_respected(void **state)
   fclose(file);
   assert_int_equal(LamRecordWriterOpen(path, "database", LAM_WRITE_CREATE, &scene, &writer), PETSC_ERR_FILE_OPEN);
   assert_non_null(strstr(message, "elsewhere"));
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      TEST(a_changed_byte_is_found_and_the_record_named),
-      TEST(a_changed_byte_is_found_in_any_node),
-      TEST(a_type_of_records_that_became_vast_takes_no_memory),
-      TEST(a_damaged_file_is_not_appended_to),
-      TEST(a_missing_file_is_named_with_the_reason),
-      TEST(a_file_that_is_not_hdf5_is_refused),
-      TEST(a_foreign_hdf5_file_is_refused),
-      TEST(a_cut_file_is_refused),
-      TEST(another_format_version_is_refused),
-      TEST(members_added_by_later_versions_are_passed_over),
-      TEST(members_that_an_older_file_lacks_are_not_known),
-      TEST(an_older_file_is_not_appended_to),
-      TEST(a_member_that_every_file_has_may_not_be_missing),
-      TEST(members_that_do_not_lie_one_behind_the_other_are_refused),
-      TEST(a_counter_beyond_the_extent_is_refused),
-      TEST(another_microstructure_is_not_appended_to),
-      TEST(a_full_disk_is_reported_and_spares_the_records),
-      TEST(a_second_writer_is_told_who_holds_the_lock),
-      TEST(the_lock_of_a_dead_process_is_taken_over),
-      TEST(the_lock_of_another_host_is_respected),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
 /* Files that hold what lamella never writes: refused by name before memory is taken or another file is opened. */
+#include "support/test.h"
 #include "record_fixture.h"
 #include <hdf5.h>
 #include "record_internal.h"
@@ -51,13 +52,13 @@ static void AssertTextUnreadable(const char part[])
 
 /* ---- sizes ---- */
 
-static void a_text_longer_than_the_file_is_refused(void **state)
+FILE_TEST(a_text_longer_than_the_file_is_refused)
 {
   Replace(OpenFile(), "/scene", TextType((size_t)1 << 31), H5Screate(H5S_SCALAR), H5P_DEFAULT);
   AssertTextUnreadable("is said to have");
 }
 
-static void an_array_longer_than_the_file_is_refused(void **state)
+FILE_TEST(an_array_longer_than_the_file_is_refused)
 {
   const hsize_t dims[4] = {1 << 20, 1 << 20, 1 << 10, 2};
   PetscInt rank, read[4];
@@ -69,7 +70,7 @@ static void an_array_longer_than_the_file_is_refused(void **state)
   assert_non_null(strstr(message, "is said to have"));
 }
 
-static void an_array_of_many_dimensions_is_refused(void **state)
+FILE_TEST(an_array_of_many_dimensions_is_refused)
 {
   const hsize_t dims[9] = {1, 1, 1, 1, 1, 1, 1, 1, 1};
   PetscInt rank, read[4];
@@ -82,7 +83,7 @@ static void an_array_of_many_dimensions_is_refused(void **state)
 }
 
 /* The counter's checksum is right: whoever makes such a file can make that too. */
-static void more_records_than_the_file_has_room_for_are_refused(void **state)
+FILE_TEST(more_records_than_the_file_has_room_for_are_refused)
 {
   const hsize_t extent = (hsize_t)1 << 60;
   const PetscInt64 count = 1 << 30;
@@ -96,7 +97,7 @@ static void more_records_than_the_file_has_room_for_are_refused(void **state)
   AssertUnreadable("1073741824 records of");
 }
 
-static void a_long_attribute_is_refused(void **state)
+FILE_TEST(a_long_attribute_is_refused)
 {
   const hid_t file = OpenFile();
   char *text = calloc(60001, 1);
@@ -111,7 +112,7 @@ static void a_long_attribute_is_refused(void **state)
 
 /* ---- types ---- */
 
-static void a_number_of_another_type_is_refused(void **state)
+FILE_TEST(a_number_of_another_type_is_refused)
 {
   const hid_t file = OpenFile();
   const float one = 1;
@@ -122,13 +123,13 @@ static void a_number_of_another_type_is_refused(void **state)
   AssertUnreadable("\"accuracy\" is of another type");
 }
 
-static void a_text_of_variable_length_is_refused(void **state)
+FILE_TEST(a_text_of_variable_length_is_refused)
 {
   Replace(OpenFile(), "/scene", TextType(H5T_VARIABLE), H5Screate(H5S_SCALAR), H5P_DEFAULT);
   AssertTextUnreadable("/scene is of another type");
 }
 
-static void a_list_of_texts_is_refused(void **state)
+FILE_TEST(a_list_of_texts_is_refused)
 {
   const hsize_t three = 3;
 
@@ -136,7 +137,7 @@ static void a_list_of_texts_is_refused(void **state)
   AssertTextUnreadable("is not one text");
 }
 
-static void a_folder_in_the_place_of_records_is_refused(void **state)
+FILE_TEST(a_folder_in_the_place_of_records_is_refused)
 {
   const hid_t file = OpenFile();
 
@@ -148,7 +149,7 @@ static void a_folder_in_the_place_of_records_is_refused(void **state)
 
 /* ---- data that are elsewhere ---- */
 
-static void a_soft_link_is_refused(void **state)
+FILE_TEST(a_soft_link_is_refused)
 {
   const hid_t file = OpenFile();
 
@@ -158,7 +159,7 @@ static void a_soft_link_is_refused(void **state)
   AssertTextUnreadable("/scene is a link to elsewhere");
 }
 
-static void records_behind_a_link_to_another_file_are_refused(void **state)
+FILE_TEST(records_behind_a_link_to_another_file_are_refused)
 {
   const hid_t file = OpenFile();
 
@@ -168,7 +169,7 @@ static void records_behind_a_link_to_another_file_are_refused(void **state)
   AssertUnreadable("/records is a link to elsewhere");
 }
 
-static void a_text_in_another_file_is_refused(void **state)
+FILE_TEST(a_text_in_another_file_is_refused)
 {
   const hid_t list = H5Pcreate(H5P_DATASET_CREATE);
 
@@ -177,7 +178,7 @@ static void a_text_in_another_file_is_refused(void **state)
   AssertTextUnreadable("in another file");
 }
 
-static void virtual_records_are_refused(void **state)
+FILE_TEST(virtual_records_are_refused)
 {
   const hsize_t count = 4;
   const hid_t list = H5Pcreate(H5P_DATASET_CREATE), space = H5Screate_simple(1, &count, NULL);
@@ -189,7 +190,7 @@ static void virtual_records_are_refused(void **state)
   AssertUnreadable("/records is compressed, in another file");
 }
 
-static void compressed_records_are_refused(void **state)
+FILE_TEST(compressed_records_are_refused)
 {
   const hsize_t count = 4, chunk = 4;
   const hid_t list = H5Pcreate(H5P_DATASET_CREATE), space = H5Screate_simple(1, &count, NULL);
@@ -200,26 +201,4 @@ static void compressed_records_are_refused(void **state)
   H5Pset_shuffle(list);
   Replace(OpenFile(), "/records", type, space, list);
   AssertUnreadable("/records is compressed");
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      TEST(a_text_longer_than_the_file_is_refused),
-      TEST(an_array_longer_than_the_file_is_refused),
-      TEST(an_array_of_many_dimensions_is_refused),
-      TEST(more_records_than_the_file_has_room_for_are_refused),
-      TEST(a_long_attribute_is_refused),
-      TEST(a_number_of_another_type_is_refused),
-      TEST(a_text_of_variable_length_is_refused),
-      TEST(a_list_of_texts_is_refused),
-      TEST(a_folder_in_the_place_of_records_is_refused),
-      TEST(a_soft_link_is_refused),
-      TEST(records_behind_a_link_to_another_file_are_refused),
-      TEST(a_text_in_another_file_is_refused),
-      TEST(virtual_records_are_refused),
-      TEST(compressed_records_are_refused),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* A signal that comes while a file is written, and in the middle of a system call, breaks nothing off. */
 #define _GNU_SOURCE
+#include "support/test.h"
 #include "record_fixture.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -38,7 +39,7 @@ int posix_fallocate(int fd, off_t at, off_t bytes)
   return syscall(SYS_fallocate, fd, 0, at, bytes) ? errno : 0;
 }
 
-static void CommitsAreWhole(void **state)
+TEST_WITH(CommitsAreWhole, Enter, Leave)
 {
   LamRecordWriter writer = Open(LAM_WRITE_CREATE);
 
@@ -46,11 +47,4 @@ static void CommitsAreWhole(void **state)
   assert_int_equal(LamRecordWriterClose(&writer), 0);
   assert_true(interrupted > 10);
   assert_int_equal(CountRecords(), 500);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test_setup_teardown(CommitsAreWhole, Enter, Leave)};
-
-  return cmocka_run_group_tests_name("record_signals", tests, NULL, NULL);
 }

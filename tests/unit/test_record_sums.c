@@ -1,6 +1,7 @@
 /* Checksums beside the records: whatever is changed is noticed; files of earlier versions, which lack them, are read.
  */
 #define _GNU_SOURCE /* memmem */
+#include "support/test.h"
 #include "record_fixture.h"
 #include <hdf5.h>
 #include <fcntl.h>
@@ -73,7 +74,7 @@ static void Overwrite(size_t place, const void *bytes, size_t n)
 
 /* ---- header ---- */
 
-static void a_changed_number_of_the_header_is_found(void **state)
+FILE_TEST(a_changed_number_of_the_header_is_found)
 {
   const double other = 0.12e6;
 
@@ -82,7 +83,7 @@ static void a_changed_number_of_the_header_is_found(void **state)
   AssertUnreadable("header is damaged");
 }
 
-static void a_changed_text_of_the_header_is_found(void **state)
+FILE_TEST(a_changed_text_of_the_header_is_found)
 {
   WriteFile(2);
   Overwrite(Find("row-major, 11 12 13 21 22 23 31 32 33; tangent[i][j][k][l] = dP_ij/dF_kl"), "c", 1);
@@ -92,7 +93,7 @@ static void a_changed_text_of_the_header_is_found(void **state)
 /* ---- records ---- */
 
 /* Fewer records than there are would be lost without a word. */
-static void a_lowered_counter_is_found(void **state)
+FILE_TEST(a_lowered_counter_is_found)
 {
   const long long count = 3;
 
@@ -102,7 +103,7 @@ static void a_lowered_counter_is_found(void **state)
 }
 
 /* A member that files may lack, under a name that nobody looks for. */
-static void a_renamed_member_is_found(void **state)
+FILE_TEST(a_renamed_member_is_found)
 {
   WriteFile(2);
   Overwrite(Find("mean_gap"), "n", 1);
@@ -110,7 +111,7 @@ static void a_renamed_member_is_found(void **state)
 }
 
 /* What a wrong index of HDF5 would do: the second chunk is read in the place of the first. */
-static void records_in_the_place_of_others_are_found(void **state)
+FILE_TEST(records_in_the_place_of_others_are_found)
 {
   hsize_t chunks, offset, bytes;
   haddr_t address[2];
@@ -134,7 +135,7 @@ static void records_in_the_place_of_others_are_found(void **state)
 }
 
 /* One write carries them all, and no kill or lost power comes between the bytes of a sector. */
-static void the_counter_and_its_checksums_lie_in_one_sector(void **state)
+FILE_TEST(the_counter_and_its_checksums_lie_in_one_sector)
 {
   size_t first, last;
 
@@ -145,7 +146,7 @@ static void the_counter_and_its_checksums_lie_in_one_sector(void **state)
   assert_true(Find("committed_check") > first && Find("committed_check") < last);
 }
 
-static void nodes_without_their_grid_are_refused(void **state)
+FILE_TEST(nodes_without_their_grid_are_refused)
 {
   LamRecordWriter writer = Open(LAM_WRITE_CREATE);
 
@@ -166,7 +167,7 @@ static void DeleteSums(void)
   H5Fclose(file);
 }
 
-static void a_file_without_checksums_is_read_and_appended_to(void **state)
+FILE_TEST(a_file_without_checksums_is_read_and_appended_to)
 {
   LamRecordWriter writer;
 
@@ -180,7 +181,7 @@ static void a_file_without_checksums_is_read_and_appended_to(void **state)
 
 /* ---- texts and arrays ---- */
 
-static void a_changed_text_is_found(void **state)
+FILE_TEST(a_changed_text_is_found)
 {
   PetscBool found;
   char *text;
@@ -215,7 +216,7 @@ static PetscErrorCode ReadArray(void)
   return ierr;
 }
 
-static void a_changed_unit_of_an_array_is_found(void **state)
+FILE_TEST(a_changed_unit_of_an_array_is_found)
 {
   WriteArray(1);
   assert_int_equal(ReadArray(), 0);
@@ -224,7 +225,7 @@ static void a_changed_unit_of_an_array_is_found(void **state)
   assert_non_null(strstr(message, "/fields/gap is damaged"));
 }
 
-static void an_array_that_was_written_over_has_no_checksum(void **state)
+FILE_TEST(an_array_that_was_written_over_has_no_checksum)
 {
   WriteArray(3);
   assert_int_equal(ReadArray(), 0);
@@ -270,7 +271,7 @@ static int Outcome(uint64_t wanted)
 }
 
 /* Every 1009th bit of what is not records, which come last in the file; bench_damage takes all of them. */
-static void a_flipped_bit_is_found_or_has_no_effect(void **state)
+FILE_TEST(a_flipped_bit_is_found_or_has_no_effect)
 {
   uint64_t wanted;
   unsigned char *bytes;
@@ -290,24 +291,4 @@ static void a_flipped_bit_is_found_or_has_no_effect(void **state)
     if (outcome > 1) fail_msg("byte %zu bit %zu: %s", bit / 8, bit % 8, outcome > 2 ? "no end" : "read otherwise");
   }
   free(bytes);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      TEST(a_changed_number_of_the_header_is_found),
-      TEST(a_changed_text_of_the_header_is_found),
-      TEST(a_lowered_counter_is_found),
-      TEST(a_renamed_member_is_found),
-      TEST(records_in_the_place_of_others_are_found),
-      TEST(the_counter_and_its_checksums_lie_in_one_sector),
-      TEST(nodes_without_their_grid_are_refused),
-      TEST(a_file_without_checksums_is_read_and_appended_to),
-      TEST(a_changed_text_is_found),
-      TEST(a_changed_unit_of_an_array_is_found),
-      TEST(an_array_that_was_written_over_has_no_checksum),
-      TEST(a_flipped_bit_is_found_or_has_no_effect),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
 /* What a new file may replace: an empty file, or one of the same kind. Links are followed. */
+#include "support/test.h"
 #include "record_fixture.h"
 #include <hdf5.h>
 #include <sys/stat.h>
@@ -23,7 +24,7 @@ static void AssertRefused(const char kind[], const char part[])
   assert_int_not_equal(stat(lock_path, &status), 0);
 }
 
-static void a_text_is_not_replaced(void **state)
+FILE_TEST(a_text_is_not_replaced)
 {
   struct stat status;
 
@@ -33,34 +34,34 @@ static void a_text_is_not_replaced(void **state)
   assert_int_equal(status.st_size, 11);
 }
 
-static void a_foreign_hdf5_file_is_not_replaced(void **state)
+FILE_TEST(a_foreign_hdf5_file_is_not_replaced)
 {
   H5Fclose(H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
   AssertRefused("database", "exists and is not a file of lamella");
 }
 
-static void a_damaged_file_is_not_replaced(void **state)
+FILE_TEST(a_damaged_file_is_not_replaced)
 {
   WriteFile(3);
   assert_int_equal(truncate(path, 3000), 0);
   AssertRefused("database", "or a damaged one");
 }
 
-static void a_file_of_another_kind_is_not_replaced(void **state)
+FILE_TEST(a_file_of_another_kind_is_not_replaced)
 {
   WriteFile(3);
   AssertRefused("rve", "exists and is of kind \"database\"");
   assert_int_equal(CountRecords(), 3);
 }
 
-static void a_folder_is_not_replaced(void **state)
+FILE_TEST(a_folder_is_not_replaced)
 {
   assert_int_equal(mkdir(path, 0777), 0);
   AssertRefused("database", "exists and is a folder");
   assert_int_equal(rmdir(path), 0);
 }
 
-static void a_pipe_is_not_replaced(void **state)
+FILE_TEST(a_pipe_is_not_replaced)
 {
   struct stat status;
 
@@ -69,13 +70,13 @@ static void a_pipe_is_not_replaced(void **state)
   assert_true(!lstat(path, &status) && S_ISFIFO(status.st_mode));
 }
 
-static void a_link_to_nothing_is_refused(void **state)
+FILE_TEST(a_link_to_nothing_is_refused)
 {
   assert_int_equal(symlink("nowhere.h5", path), 0);
   AssertRefused("database", "a link that leads to no file");
 }
 
-static void an_empty_file_is_replaced(void **state)
+FILE_TEST(an_empty_file_is_replaced)
 {
   LamRecordWriter writer;
 
@@ -87,7 +88,7 @@ static void an_empty_file_is_replaced(void **state)
 }
 
 /* The second writer meets the lock of the first under the file's other name. */
-static void a_link_stays_and_its_file_is_written(void **state)
+FILE_TEST(a_link_stays_and_its_file_is_written)
 {
   char real[160];
   LamScene scene = Scene();
@@ -105,21 +106,4 @@ static void a_link_stays_and_its_file_is_written(void **state)
   assert_true(!lstat(path, &status) && S_ISLNK(status.st_mode));
   assert_int_equal(CountRecords(), 2);
   assert_int_equal(unlink(real), 0);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      TEST(a_text_is_not_replaced),
-      TEST(a_foreign_hdf5_file_is_not_replaced),
-      TEST(a_damaged_file_is_not_replaced),
-      TEST(a_file_of_another_kind_is_not_replaced),
-      TEST(a_folder_is_not_replaced),
-      TEST(a_pipe_is_not_replaced),
-      TEST(a_link_to_nothing_is_refused),
-      TEST(an_empty_file_is_replaced),
-      TEST(a_link_stays_and_its_file_is_written),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,12 @@
 /* Record files: what is committed stays and comes back; arrays and texts beside the records. */
+#include "support/test.h"
 #include "record_fixture.h"
-#include "assert_near.h"
 #include <hdf5.h>
 #include <signal.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 
-static void records_come_back_bit_for_bit(void **state)
+FILE_TEST(records_come_back_bit_for_bit)
 {
   const LamResponse *records;
   const PetscInt64 *keys;
@@ -26,7 +26,7 @@ static void records_come_back_bit_for_bit(void **state)
   LamDatabaseClose(&db);
 }
 
-static void appending_goes_on_behind_the_records(void **state)
+FILE_TEST(appending_goes_on_behind_the_records)
 {
   LamRecordWriter writer;
   const PetscInt64 *keys;
@@ -42,7 +42,7 @@ static void appending_goes_on_behind_the_records(void **state)
   assert_int_equal(CountRecords(), 75);
 }
 
-static void appending_to_nothing_starts_a_file(void **state)
+FILE_TEST(appending_to_nothing_starts_a_file)
 {
   LamRecordWriter writer = Open(LAM_WRITE_APPEND);
 
@@ -51,7 +51,7 @@ static void appending_to_nothing_starts_a_file(void **state)
   assert_int_equal(CountRecords(), 1);
 }
 
-static void the_microstructure_and_the_scales_come_back(void **state)
+FILE_TEST(the_microstructure_and_the_scales_come_back)
 {
   const LamScene scene = Scene();
   LamMicrostructure micro;
@@ -69,7 +69,7 @@ static void the_microstructure_and_the_scales_come_back(void **state)
 }
 
 /* The extent is raised by hand, as by a commit that was killed before it raised the counter. */
-static void what_is_not_committed_is_ignored_and_overwritten(void **state)
+FILE_TEST(what_is_not_committed_is_ignored_and_overwritten)
 {
   const hsize_t more = 20;
   LamRecordWriter writer;
@@ -88,7 +88,7 @@ static void what_is_not_committed_is_ignored_and_overwritten(void **state)
   assert_int_equal(CountRecords(), 4);
 }
 
-static void the_old_file_stays_until_the_first_commit(void **state)
+FILE_TEST(the_old_file_stays_until_the_first_commit)
 {
   LamRecordWriter writer;
 
@@ -100,7 +100,7 @@ static void the_old_file_stays_until_the_first_commit(void **state)
   LamRecordWriterClose(&writer);
 }
 
-static void a_reader_is_not_shut_out_by_a_writer(void **state)
+FILE_TEST(a_reader_is_not_shut_out_by_a_writer)
 {
   LamRecordWriter writer = Open(LAM_WRITE_CREATE);
 
@@ -111,7 +111,7 @@ static void a_reader_is_not_shut_out_by_a_writer(void **state)
   LamRecordWriterClose(&writer);
 }
 
-static void a_killed_writer_loses_nothing_it_has_committed(void **state)
+FILE_TEST(a_killed_writer_loses_nothing_it_has_committed)
 {
   int status, pipes[2], acknowledged = 0, count;
   pid_t child;
@@ -137,7 +137,7 @@ static void a_killed_writer_loses_nothing_it_has_committed(void **state)
 
 /* ---- beside the records ---- */
 
-static void arrays_and_texts_come_back(void **state)
+FILE_TEST(arrays_and_texts_come_back)
 {
   const PetscInt dims[2] = {2, 3}, numbers[6] = {1, 2, 3, 4, 5, 6};
   const PetscReal values[6] = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6};
@@ -165,7 +165,7 @@ static void arrays_and_texts_come_back(void **state)
 }
 
 /* A table that is written again and again must not make the file grow. */
-static void an_array_of_the_same_shape_is_written_over_in_place(void **state)
+FILE_TEST(an_array_of_the_same_shape_is_written_over_in_place)
 {
   const PetscInt dims[1] = {1000};
   PetscReal *values, *read;
@@ -192,7 +192,7 @@ static void an_array_of_the_same_shape_is_written_over_in_place(void **state)
   PetscFree(values);
 }
 
-static void what_is_not_there_is_not_found(void **state)
+FILE_TEST(what_is_not_there_is_not_found)
 {
   PetscInt rank, dims[4];
   PetscReal *values;
@@ -203,7 +203,7 @@ static void what_is_not_there_is_not_found(void **state)
   assert_false(found);
 }
 
-static void info_counts_records_and_failures(void **state)
+FILE_TEST(info_counts_records_and_failures)
 {
   const char *json;
   LamDatabase db;
@@ -213,24 +213,4 @@ static void info_counts_records_and_failures(void **state)
   assert_int_equal(LamDatabaseGetInfo(db, &json), 0);
   assert_non_null(strstr(json, "\"records\":12,\"failed\":10,\"format_version\":1"));
   LamDatabaseClose(&db);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      TEST(records_come_back_bit_for_bit),
-      TEST(appending_goes_on_behind_the_records),
-      TEST(appending_to_nothing_starts_a_file),
-      TEST(the_microstructure_and_the_scales_come_back),
-      TEST(what_is_not_committed_is_ignored_and_overwritten),
-      TEST(the_old_file_stays_until_the_first_commit),
-      TEST(a_reader_is_not_shut_out_by_a_writer),
-      TEST(a_killed_writer_loses_nothing_it_has_committed),
-      TEST(arrays_and_texts_come_back),
-      TEST(an_array_of_the_same_shape_is_written_over_in_place),
-      TEST(what_is_not_there_is_not_found),
-      TEST(info_counts_records_and_failures),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

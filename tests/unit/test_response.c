@@ -1,16 +1,13 @@
-/* Responses: what is unknown is NaN, the table of members is complete, the error norm is that of docs/reference/commands.md. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
-#include "assert_near.h"
+/* Responses: what is unknown is NaN, the table of members is complete, the error norm is that of
+ * docs/reference/commands.md. */
+#include "support/test.h"
 #include <lamella/response.h>
 #include <math.h>
 #include <string.h>
 
 static const LamLoad shear = {{1, 0.1, 0, 0, 1, 0, 0, 0, 1}, 0.2, 0};
 
-static void a_new_response_knows_nothing_but_its_load(void **state)
+TEST(a_new_response_knows_nothing_but_its_load)
 {
   LamResponse r;
 
@@ -23,7 +20,7 @@ static void a_new_response_knows_nothing_but_its_load(void **state)
   assert_int_equal(r.newton_iterations, 0);
 }
 
-static void a_response_may_be_cleared_with_its_own_load(void **state)
+TEST(a_response_may_be_cleared_with_its_own_load)
 {
   LamResponse r = {.load = shear};
 
@@ -32,7 +29,7 @@ static void a_response_may_be_cleared_with_its_own_load(void **state)
 }
 
 /* Every byte of a response belongs to one member of the table, up to padding. */
-static void the_table_covers_the_whole_response(void **state)
+TEST(the_table_covers_the_whole_response)
 {
   size_t covered = 0;
 
@@ -48,13 +45,13 @@ static void the_table_covers_the_whole_response(void **state)
   assert_in_range(sizeof(LamResponse) - covered, 0, 2 * sizeof(PetscReal));
 }
 
-static void members_have_different_names(void **state)
+TEST(members_have_different_names)
 {
   for (const LamMember *a = LamResponseMembers; a->name; a++)
     for (const LamMember *b = a + 1; b->name; b++) assert_string_not_equal(a->name, b->name);
 }
 
-static void the_stress_error_is_relative_with_a_floor(void **state)
+TEST(the_stress_error_is_relative_with_a_floor)
 {
   const PetscReal zero[9] = {0}, P[9] = {3, 0, 0, 0, 4, 0, 0, 0, 0};
 
@@ -62,7 +59,7 @@ static void the_stress_error_is_relative_with_a_floor(void **state)
   assert_near(LamStressError(P, zero), 5 / 0.0227, 1e-12);
 }
 
-static void only_converged_and_unstable_states_have_fields(void **state)
+TEST(only_converged_and_unstable_states_have_fields)
 {
   LamResponse r = {0};
   const LamStatus with[] = {LAM_CONVERGED, LAM_UNSTABLE};
@@ -77,18 +74,4 @@ static void only_converged_and_unstable_states_have_fields(void **state)
     r.status = with[i];
     assert_true(LamResponseHasFields(&r));
   }
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_new_response_knows_nothing_but_its_load),
-      cmocka_unit_test(a_response_may_be_cleared_with_its_own_load),
-      cmocka_unit_test(the_table_covers_the_whole_response),
-      cmocka_unit_test(members_have_different_names),
-      cmocka_unit_test(the_stress_error_is_relative_with_a_floor),
-      cmocka_unit_test(only_converged_and_unstable_states_have_fields),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

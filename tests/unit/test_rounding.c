@@ -1,9 +1,10 @@
 /* The planner's model of rounding errors, and when it speaks. */
+#include "support/test.h"
 #include "rve_fixture.h"
 #include <string.h>
 #include "rounding.h"
 
-static void DefaultTissueHasDigitsToSpare(void **state)
+TEST(DefaultTissueHasDigitsToSpare)
 {
   const LamMicrostructure micro = DefaultTissue();
   char text[256];
@@ -14,7 +15,7 @@ static void DefaultTissueHasDigitsToSpare(void **state)
 }
 
 /* Twice as stiff, or half as thick, costs twice as much; the worst of uneven cells counts. */
-static void RoundingGrowsWithStiffnessAndSlenderness(void **state)
+TEST(RoundingGrowsWithStiffnessAndSlenderness)
 {
   LamMicrostructure stiff = DefaultTissue(), thin = DefaultTissue(), uneven = DefaultTissue();
   const PetscReal usual = LamTangentRounding(&uneven);
@@ -32,7 +33,7 @@ static void RoundingGrowsWithStiffnessAndSlenderness(void **state)
 }
 
 /* The bulk modulus that it names is one at which it is silent. */
-static void WarningNamesWhatWouldDo(void **state)
+TEST(WarningNamesWhatWouldDo)
 {
   LamMicrostructure micro = DefaultTissue();
   const PetscReal limit = micro.wall.bulk_modulus * 0.01 / LamTangentRounding(&micro);
@@ -47,15 +48,4 @@ static void WarningNamesWhatWouldDo(void **state)
   assert_non_null(strstr(text, "about 0 digits"));
   assert_int_equal(sscanf(strstr(text, "below "), "below %lf", &named), 1);
   assert_true(fabs(named / limit - 1) < 0.5); /* one digit */
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(DefaultTissueHasDigitsToSpare),
-      cmocka_unit_test(RoundingGrowsWithStiffnessAndSlenderness),
-      cmocka_unit_test(WarningNamesWhatWouldDo),
-  };
-
-  return cmocka_run_group_tests_name("rounding", tests, NULL, NULL);
 }

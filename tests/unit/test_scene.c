@@ -1,10 +1,7 @@
 /*
   What a scene becomes: nondimensional data, defaults, ramps.
 */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include <lamella/scene.h>
 #include <math.h>
 #include <string.h>
@@ -39,7 +36,7 @@ static void AssertF(const PetscReal F[9], PetscReal F11, PetscReal F12, PetscRea
   for (int i = 0; i < 9; i++) AssertNear(F[i], expected[i]);
 }
 
-static void the_cell_is_measured_in_apothems_and_moduli(void **state)
+TEST(the_cell_is_measured_in_apothems_and_moduli)
 {
   LamScene *scene;
 
@@ -55,7 +52,7 @@ static void the_cell_is_measured_in_apothems_and_moduli(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void the_mesh_and_the_states_are_as_written(void **state)
+TEST(the_mesh_and_the_states_are_as_written)
 {
   LamScene *scene;
 
@@ -70,7 +67,7 @@ static void the_mesh_and_the_states_are_as_written(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void the_file_and_its_text_are_kept(void **state)
+TEST(the_file_and_its_text_are_kept)
 {
   LamScene *scene;
 
@@ -81,7 +78,7 @@ static void the_file_and_its_text_are_kept(void **state)
   assert_null(scene);
 }
 
-static void the_macro_block_is_measured_in_its_first_edge(void **state)
+TEST(the_macro_block_is_measured_in_its_first_edge)
 {
   LamScene *scene;
 
@@ -98,7 +95,7 @@ static void the_macro_block_is_measured_in_its_first_edge(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void the_sample_is_as_written(void **state)
+TEST(the_sample_is_as_written)
 {
   LamScene *scene;
 
@@ -112,7 +109,7 @@ static void the_sample_is_as_written(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void what_is_left_out_has_its_default(void **state)
+TEST(what_is_left_out_has_its_default)
 {
   LamScene *scene = Read(RVE);
 
@@ -131,7 +128,7 @@ static void what_is_left_out_has_its_default(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void cells_that_come_apart_have_cohesion_clearance_and_a_strategy(void **state)
+TEST(cells_that_come_apart_have_cohesion_clearance_and_a_strategy)
 {
   LamScene *scene = Read(RVE "  interface: {law: contact, cohesion: 0.011 MPa, clearance: 0.75 um}\n"
                              "  strategy: one_step\n"
@@ -146,7 +143,7 @@ static void cells_that_come_apart_have_cohesion_clearance_and_a_strategy(void **
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void one_number_of_the_mesh_may_be_given_alone(void **state)
+TEST(one_number_of_the_mesh_may_be_given_alone)
 {
   LamScene *scene = Read(RVE "  mesh: {through: 3}\n");
 
@@ -155,7 +152,7 @@ static void one_number_of_the_mesh_may_be_given_alone(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void a_sample_without_turgor_takes_that_of_the_scene(void **state)
+TEST(a_sample_without_turgor_takes_that_of_the_scene)
 {
   LamScene *scene = Read(TURGID "sample: {stretch: {min: 0, max: 0.1}}\naccuracy: 0.02\n");
 
@@ -165,7 +162,7 @@ static void a_sample_without_turgor_takes_that_of_the_scene(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void a_sample_with_a_count_has_no_accuracy(void **state)
+TEST(a_sample_with_a_count_has_no_accuracy)
 {
   LamScene *scene = Read(TURGID "sample: {stretch: {min: 0, max: 0.1}, count: 7}\n");
 
@@ -174,7 +171,7 @@ static void a_sample_with_a_count_has_no_accuracy(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void a_ramp_starts_undeformed_and_then_from_the_state_before(void **state)
+TEST(a_ramp_starts_undeformed_and_then_from_the_state_before)
 {
   LamScene *scene = Read(RVE "load:\n  - {ramp: {to: [[1.2, 0.4], [0, 1]], steps: 4}}\n"
                              "  - {ramp: {to: [[1, 0], [0, 1]], steps: 2}}\n");
@@ -187,7 +184,7 @@ static void a_ramp_starts_undeformed_and_then_from_the_state_before(void **state
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void the_turgor_of_an_entry_holds_for_it_alone(void **state)
+TEST(the_turgor_of_an_entry_holds_for_it_alone)
 {
   LamScene *scene = Read(TURGID "load:\n  - {ramp: {to: [[1, 0.1], [0, 1]], steps: 2}, turgor: 0.11 MPa}\n"
                                 "  - {F: [[1, 0.2], [0, 1]]}\n");
@@ -198,7 +195,7 @@ static void the_turgor_of_an_entry_holds_for_it_alone(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void turgor_may_be_suction(void **state)
+TEST(turgor_may_be_suction)
 {
   LamScene *scene = Read(RVE "load: [{F: [[1, 0], [0, 1]], turgor: -0.011 MPa}]\n");
 
@@ -206,7 +203,7 @@ static void turgor_may_be_suction(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void a_3x3_gradient_may_stretch_out_of_plane(void **state)
+TEST(a_3x3_gradient_may_stretch_out_of_plane)
 {
   LamScene *scene = Read(RVE "load: [{F: [[1, 0.1, 0], [0.2, 1, 0], [0, 0, 1.5]]}]\n");
 
@@ -214,7 +211,7 @@ static void a_3x3_gradient_may_stretch_out_of_plane(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void the_plain_law_needs_no_fibres(void **state)
+TEST(the_plain_law_needs_no_fibres)
 {
   LamScene *scene = Read("version: 1\nrve: {cell: {apothem: 75 um, wall_thickness: 1 um, orientation: 30 deg}, "
                          "wall: {law: mooney_rivlin, C1: 1 MPa, C2: 0 MPa}}\n");
@@ -226,7 +223,7 @@ static void the_plain_law_needs_no_fibres(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void units_do_not_change_the_microstructure(void **state)
+TEST(units_do_not_change_the_microstructure)
 {
   LamScene *a = Read(TURGID);
   LamScene *b = Read("version: 1\nrve:\n  cell: {apothem: 0.075 mm, wall_thickness: 1.125e-5 m}\n  wall: {law: "
@@ -240,7 +237,7 @@ static void units_do_not_change_the_microstructure(void **state)
   assert_int_equal(LamSceneDestroy(&b), 0);
 }
 
-static void anchors_aliases_quotes_and_CRLF_are_read(void **state)
+TEST(anchors_aliases_quotes_and_CRLF_are_read)
 {
   LamScene *scene =
       Read("\xef\xbb\xbfversion: 1\r\nrve:\r\n  cell: {apothem: &a \"75 um\", wall_thickness: '15 um'}\r\n"
@@ -254,7 +251,7 @@ static void anchors_aliases_quotes_and_CRLF_are_read(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void inflation_is_asked_for_by_turgor(void **state)
+TEST(inflation_is_asked_for_by_turgor)
 {
   LamScene *turgid = Read(TURGID CLAMPED), *dry = Read(RVE CLAMPED), *told = Read(TURGID CLAMPED "  inflate: false\n");
 
@@ -270,7 +267,7 @@ static void inflation_is_asked_for_by_turgor(void **state)
 /* A body of contact tissue that is held, or whose lamella has cohesion, may carry turgor; tests/scenes/bad has the
  * rest.
  */
-static void contact_tissue_inflates_with_cohesion(void **state)
+TEST(contact_tissue_inflates_with_cohesion)
 {
   LamScene *cohesive = Read(TURGID "  interface: {law: contact, cohesion: 0.001 MPa}\n" CLAMPED);
   LamScene *held = Read(TURGID "  interface: {law: contact}\n" CLAMPED "  inflate: false\n");
@@ -281,7 +278,7 @@ static void contact_tissue_inflates_with_cohesion(void **state)
   assert_int_equal(LamSceneDestroy(&held), 0);
 }
 
-static void rollers_leave_a_component_free(void **state)
+TEST(rollers_leave_a_component_free)
 {
   LamScene *scene = Read(RVE MACRO "    - {on: bottom, displacement: [free, 0 mm]}\n"
                                    "    - {on: left, displacement: [0 mm, free]}\n"
@@ -295,7 +292,7 @@ static void rollers_leave_a_component_free(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void opposite_sides_hold_the_rotation(void **state)
+TEST(opposite_sides_hold_the_rotation)
 {
   LamScene *scene = Read(RVE MACRO "    - {on: bottom, displacement: [0 mm, free]}\n"
                                    "    - {on: top, displacement: [1 mm, free]}\n"
@@ -305,7 +302,7 @@ static void opposite_sides_hold_the_rotation(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void strengths_are_measured_in_moduli_and_may_be_left_out(void **state)
+TEST(strengths_are_measured_in_moduli_and_may_be_left_out)
 {
   LamScene *scene = Read(RVE "strength: {wall: 0.55 MPa, lamella_shear: 11 kPa}\n");
 
@@ -316,33 +313,4 @@ static void strengths_are_measured_in_moduli_and_may_be_left_out(void **state)
   scene = Read(RVE);
   assert_true(isnan(scene->strength.wall));
   assert_int_equal(LamSceneDestroy(&scene), 0);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_cell_is_measured_in_apothems_and_moduli),
-      cmocka_unit_test(the_mesh_and_the_states_are_as_written),
-      cmocka_unit_test(the_file_and_its_text_are_kept),
-      cmocka_unit_test(the_macro_block_is_measured_in_its_first_edge),
-      cmocka_unit_test(the_sample_is_as_written),
-      cmocka_unit_test(what_is_left_out_has_its_default),
-      cmocka_unit_test(cells_that_come_apart_have_cohesion_clearance_and_a_strategy),
-      cmocka_unit_test(one_number_of_the_mesh_may_be_given_alone),
-      cmocka_unit_test(a_sample_without_turgor_takes_that_of_the_scene),
-      cmocka_unit_test(a_sample_with_a_count_has_no_accuracy),
-      cmocka_unit_test(a_ramp_starts_undeformed_and_then_from_the_state_before),
-      cmocka_unit_test(the_turgor_of_an_entry_holds_for_it_alone),
-      cmocka_unit_test(turgor_may_be_suction),
-      cmocka_unit_test(a_3x3_gradient_may_stretch_out_of_plane),
-      cmocka_unit_test(the_plain_law_needs_no_fibres),
-      cmocka_unit_test(units_do_not_change_the_microstructure),
-      cmocka_unit_test(anchors_aliases_quotes_and_CRLF_are_read),
-      cmocka_unit_test(inflation_is_asked_for_by_turgor),
-      cmocka_unit_test(contact_tissue_inflates_with_cohesion),
-      cmocka_unit_test(rollers_leave_a_component_free),
-      cmocka_unit_test(opposite_sides_hold_the_rotation),
-      cmocka_unit_test(strengths_are_measured_in_moduli_and_may_be_left_out),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

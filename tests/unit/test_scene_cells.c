@@ -1,11 +1,7 @@
 /*
   Patches and cells that differ, as a scene becomes them. tests/scenes/bad has what is refused.
 */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <cmocka.h>
-#include <assert_near.h>
+#include "support/test.h"
 #include <lamella/scene.h>
 
 #define CELL "version: 1\nrve:\n  cell: {apothem: 75 um, wall_thickness: 11.25 um}\n"
@@ -30,7 +26,7 @@ static void AssertTurgor(const LamScene *scene, int n, const double turgor[])
   for (int c = 0; c < n; c++) assert_near(scene->micro.cell[c].turgor, turgor[c], 1e-15);
 }
 
-static void a_patch_has_columns_rows_and_affine_sides(void **state)
+TEST(a_patch_has_columns_rows_and_affine_sides)
 {
   LamScene *scene = Read(RVE "  patch: {columns: 4, rows: 3}\n");
 
@@ -44,7 +40,7 @@ static void a_patch_has_columns_rows_and_affine_sides(void **state)
 
 /* Bonded cells, cells with cohesion, and cells that a grip holds each stay where they are; tests/scenes/bad has the
  * rest. */
-static void free_sides_are_accepted_where_something_holds_the_cells(void **state)
+TEST(free_sides_are_accepted_where_something_holds_the_cells)
 {
   const char *const scenes[] = {
       RVE "  patch: {columns: 4, rows: 3, sides: free}\n",
@@ -62,7 +58,7 @@ static void free_sides_are_accepted_where_something_holds_the_cells(void **state
   }
 }
 
-static void a_list_gives_each_cell_its_kind(void **state)
+TEST(a_list_gives_each_cell_its_kind)
 {
   LamScene *scene = Read(TWO_BY_THREE KINDS "    list: [0, 1, 2, 2, 1, 0]\n");
 
@@ -70,7 +66,7 @@ static void a_list_gives_each_cell_its_kind(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void a_pattern_repeats_over_the_block(void **state)
+TEST(a_pattern_repeats_over_the_block)
 {
   LamScene *scene = Read(TWO_BY_THREE KINDS "    pattern: [[0, 1], [2, 0]]\n");
 
@@ -79,7 +75,7 @@ static void a_pattern_repeats_over_the_block(void **state)
 }
 
 /* Of ten cells three and two; where they lie is that of an independent program. */
-static void random_kinds_have_their_shares_and_fall_the_same_everywhere(void **state)
+TEST(random_kinds_have_their_shares_and_fall_the_same_everywhere)
 {
   LamScene *scene = Read(RVE "  cells: [2, 5]\n" KINDS "    random: {shares: [0.3, 0.2], seed: 7}\n");
 
@@ -87,7 +83,7 @@ static void random_kinds_have_their_shares_and_fall_the_same_everywhere(void **s
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void a_kind_leaves_what_it_does_not_say(void **state)
+TEST(a_kind_leaves_what_it_does_not_say)
 {
   LamScene *scene = Read(CELL WALL CONTACT "  variation:\n    kinds:\n      - wall: {C1: 0.2 MPa, C2: 0.02 MPa}\n"
                                            "        wall_thickness: 7.5 um\n        cohesion: 0.8\n    list: [1]\n");
@@ -102,7 +98,7 @@ static void a_kind_leaves_what_it_does_not_say(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void a_kind_may_have_a_law_of_its_own(void **state)
+TEST(a_kind_may_have_a_law_of_its_own)
 {
   LamScene *scene = Read(RVE "  variation: {kinds: [{wall: {law: mooney_rivlin}}], list: [1]}\n");
 
@@ -112,7 +108,7 @@ static void a_kind_may_have_a_law_of_its_own(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void cells_that_are_all_the_scenes_own_are_no_variation(void **state)
+TEST(cells_that_are_all_the_scenes_own_are_no_variation)
 {
   LamScene *zeros = Read(TWO_BY_THREE KINDS "    pattern: [[0]]\n");
   LamScene *same = Read(RVE "  variation: {kinds: [{wall_thickness: 0.01125 mm, turgor: 1}], list: [1]}\n");
@@ -126,7 +122,7 @@ static void cells_that_are_all_the_scenes_own_are_no_variation(void **state)
   assert_int_equal(LamSceneDestroy(&still), 0);
 }
 
-static void a_field_multiplies_all_moduli_of_a_wall_together(void **state)
+TEST(a_field_multiplies_all_moduli_of_a_wall_together)
 {
   LamScene *scene = Read(TWO_BY_THREE "  variation: {field: {wall: 0.3, wall_thickness: 0.1, seed: 5}}\n");
   const LamWall *own = &scene->micro.wall;
@@ -145,7 +141,7 @@ static void a_field_multiplies_all_moduli_of_a_wall_together(void **state)
 }
 
 /* The walls of a seed stay what they are when turgor begins to vary, too. */
-static void one_property_of_a_field_leaves_the_others(void **state)
+TEST(one_property_of_a_field_leaves_the_others)
 {
   LamScene *one = Read(TWO_BY_THREE "  variation: {field: {wall: 0.3, correlation: 1}}\n");
   LamScene *two = Read(TWO_BY_THREE "  variation: {field: {wall: 0.3, turgor: 0.2, correlation: 1}}\n");
@@ -156,21 +152,4 @@ static void one_property_of_a_field_leaves_the_others(void **state)
   }
   assert_int_equal(LamSceneDestroy(&one), 0);
   assert_int_equal(LamSceneDestroy(&two), 0);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_patch_has_columns_rows_and_affine_sides),
-      cmocka_unit_test(free_sides_are_accepted_where_something_holds_the_cells),
-      cmocka_unit_test(a_list_gives_each_cell_its_kind),
-      cmocka_unit_test(a_pattern_repeats_over_the_block),
-      cmocka_unit_test(random_kinds_have_their_shares_and_fall_the_same_everywhere),
-      cmocka_unit_test(a_kind_leaves_what_it_does_not_say),
-      cmocka_unit_test(a_kind_may_have_a_law_of_its_own),
-      cmocka_unit_test(cells_that_are_all_the_scenes_own_are_no_variation),
-      cmocka_unit_test(a_field_multiplies_all_moduli_of_a_wall_together),
-      cmocka_unit_test(one_property_of_a_field_leaves_the_others),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,12 +2,8 @@
   Mixed control in scenes: which components are prescribed, ramps of stress, ramps that go on from a state whose F is
   not known when the scene is read.
 */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include <lamella/scene.h>
-#include "assert_near.h"
 
 #define RVE                                                                                                            \
   "version: 1\n"                                                                                                       \
@@ -29,7 +25,7 @@ static void AssertGiven(const LamStressControl *control, const int given[9])
   for (int i = 0; i < 9; i++) assert_int_equal(control->given[i], given[i]);
 }
 
-static void free_components_have_a_stress(void **state)
+TEST(free_components_have_a_stress)
 {
   const int given[9] = {1, 0, 0, 0, 1, 0, 0, 0, 0};
   LamScene *scene = Read(RVE "  - {F: [[free, 0.1], [0, free]], P: [[0 MPa, x], [x, 22 kPa]]}\n");
@@ -41,7 +37,7 @@ static void free_components_have_a_stress(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void F33_may_be_free(void **state)
+TEST(F33_may_be_free)
 {
   const int given[9] = {0, 0, 0, 0, 0, 0, 0, 0, 1};
   LamScene *scene =
@@ -51,7 +47,7 @@ static void F33_may_be_free(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void plain_scenes_have_no_controls(void **state)
+TEST(plain_scenes_have_no_controls)
 {
   LamScene *scene = Read(RVE "  - {F: [[1, 0.1], [0, 1]]}\n");
 
@@ -60,7 +56,7 @@ static void plain_scenes_have_no_controls(void **state)
 }
 
 /* Stress from 0, then from what was prescribed; a given F straight. */
-static void stress_ramps_straight(void **state)
+TEST(stress_ramps_straight)
 {
   LamScene *scene = Read(RVE "  - {ramp: {to: [[free, 0.1], [0, 1]], P: [[0.11 MPa, x], [x, x]], steps: 2}}\n"
                              "  - {ramp: {to: [[free, 0.3], [0, 1]], P: [[0.33 MPa, x], [x, x]], steps: 2}}\n");
@@ -75,7 +71,7 @@ static void stress_ramps_straight(void **state)
 }
 
 /* F22 was free: its ramp goes straight from what it turned out to be, here 1.06. */
-static void a_ramp_goes_on_from_the_F_found(void **state)
+TEST(a_ramp_goes_on_from_the_F_found)
 {
   LamScene *scene = Read(RVE "  - {F: [[free, 0], [0, free]], P: [[0 MPa, x], [x, 0 MPa]]}\n"
                              "  - {ramp: {to: [[free, 0], [0, 1.3]], P: [[0 MPa, x], [x, x]], steps: 3}}\n");
@@ -93,7 +89,7 @@ static void a_ramp_goes_on_from_the_F_found(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void prescribed_F_is_what_it_says_after_free_F(void **state)
+TEST(prescribed_F_is_what_it_says_after_free_F)
 {
   const double before[9] = {1.05, 0, 0, 0, 1.06, 0, 0, 0, 1};
   LamScene *scene = Read(RVE "  - {F: [[free, 0], [0, free]], P: [[0 MPa, x], [x, 0 MPa]]}\n"
@@ -102,14 +98,4 @@ static void prescribed_F_is_what_it_says_after_free_F(void **state)
 
   for (int i = 0; i < 9; i++) assert_near(load.F[i], ((double[9]){1.2, 0.1, 0, 0, 0.9, 0, 0, 0, 1})[i], 0);
   assert_int_equal(LamSceneDestroy(&scene), 0);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(free_components_have_a_stress),   cmocka_unit_test(F33_may_be_free),
-      cmocka_unit_test(plain_scenes_have_no_controls),   cmocka_unit_test(stress_ramps_straight),
-      cmocka_unit_test(a_ramp_goes_on_from_the_F_found), cmocka_unit_test(prescribed_F_is_what_it_says_after_free_F),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,7 @@
 /*
   Files that are no scenes, by accident or on purpose: each is refused with a message, none crashes the reader.
 */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include "test_scene_message.h"
 #include <stdlib.h>
 #include <unistd.h>
@@ -56,27 +53,27 @@ static void AssertRefusedRepeat(const char start[], const char part[], size_t ti
   free(text);
 }
 
-static void a_missing_file_is_named(void **state)
+TEST(a_missing_file_is_named)
 {
   AssertRefusedFile("no/such/scene.yaml", "no/such/scene.yaml: the scene cannot be opened: No such file");
 }
 
-static void a_directory_is_refused(void **state)
+TEST(a_directory_is_refused)
 {
   AssertRefusedFile(LAMELLA_SOURCE_DIR "/tests", "Is a directory");
 }
 
-static void an_endless_file_is_refused(void **state)
+TEST(an_endless_file_is_refused)
 {
   AssertRefusedFile("/dev/zero", "larger than 1024 kB");
 }
 
-static void a_text_beyond_1_MB_is_refused(void **state)
+TEST(a_text_beyond_1_MB_is_refused)
 {
   AssertRefusedRepeat("", "# comment\n", 110000, "version: 1\n", "larger than 1024 kB");
 }
 
-static void a_file_with_null_bytes_is_refused(void **state)
+TEST(a_file_with_null_bytes_is_refused)
 {
   char path[] = "lamella-scene-XXXXXX";
   const int file = mkstemp(path);
@@ -88,14 +85,14 @@ static void a_file_with_null_bytes_is_refused(void **state)
   unlink(path);
 }
 
-static void empty_files_are_refused(void **state)
+TEST(empty_files_are_refused)
 {
   AssertRefusedText("", "1:1: the file holds no scene");
   AssertRefusedText("# only a comment\n", "the file holds no scene");
   AssertRefusedText("---\n", "the file holds no scene");
 }
 
-static void invalid_UTF8_is_refused(void **state)
+TEST(invalid_UTF8_is_refused)
 {
   AssertRefusedText("version: \xff\xfe\xc0\n", "scene.yaml:1:10: byte 0xff is no UTF-8");
   AssertRefusedText("# \xc3\xa4\n\xc3\xa4\xe0\x80\xaf",
@@ -105,18 +102,18 @@ static void invalid_UTF8_is_refused(void **state)
 }
 
 /* libfyaml never returned. */
-static void a_directive_that_is_no_UTF8_is_refused(void **state)
+TEST(a_directive_that_is_no_UTF8_is_refused)
 {
   AssertRefusedText("%a\xd0\n", "scene.yaml:1:3: byte 0xd0 is no UTF-8");
 }
 
-static void deep_nesting_is_refused(void **state)
+TEST(deep_nesting_is_refused)
 {
   AssertRefusedRepeat("rve: ", "[", 100000, "", "nested more than 32 levels");
   AssertRefusedRepeat("", "{a: ", 100000, "", "nested more than 32 levels");
 }
 
-static void a_map_of_many_keys_is_refused(void **state)
+TEST(a_map_of_many_keys_is_refused)
 {
   char *text = malloc(1 << 20), *p = text;
 
@@ -125,7 +122,7 @@ static void a_map_of_many_keys_is_refused(void **state)
   free(text);
 }
 
-static void multiplying_aliases_are_refused(void **state)
+TEST(multiplying_aliases_are_refused)
 {
   AssertRefusedText("a: &a [x, x, x, x, x, x, x, x, x, x]\n"
                     "b: &b [*a, *a, *a, *a, *a, *a, *a, *a, *a, *a]\n"
@@ -137,18 +134,18 @@ static void multiplying_aliases_are_refused(void **state)
                     "values in one file");
 }
 
-static void an_alias_to_what_contains_it_is_refused(void **state)
+TEST(an_alias_to_what_contains_it_is_refused)
 {
   AssertRefusedText("rve: &a {cell: *a}\n", "no finished value has the anchor &a");
 }
 
-static void long_values_and_keys_are_shortened(void **state)
+TEST(long_values_and_keys_are_shortened)
 {
   AssertRefusedRepeat("version: ", "long", 10000, "\n", "longlong...: is not a number");
   AssertRefusedRepeat("", "key", 10000, ": 1\n", "unknown key");
 }
 
-static void a_long_name_is_shortened(void **state)
+TEST(a_long_name_is_shortened)
 {
   char *name = Repeat("", "directory/", 300, "scene.yaml");
   LamScene *scene;
@@ -160,7 +157,7 @@ static void a_long_name_is_shortened(void **state)
   assert_non_null(strstr(scene_message, "directory/scene.yaml:1:10: version: 2: is out of range; write 1"));
 }
 
-static void percent_signs_are_shown_as_they_are(void **state)
+TEST(percent_signs_are_shown_as_they_are)
 {
   AssertRefusedText("version: 100%s%n\n", "version: 100%s%n: is not a plain number");
 }
@@ -189,7 +186,7 @@ static void AssertAnswered(const char text[])
     fail_msg("error %d for\n%s", error, text);
 }
 
-static void a_scene_cut_anywhere_is_answered(void **state)
+TEST(a_scene_cut_anywhere_is_answered)
 {
   char *text = ReadScene();
 
@@ -200,7 +197,7 @@ static void a_scene_cut_anywhere_is_answered(void **state)
   free(text);
 }
 
-static void a_scene_with_any_byte_changed_is_answered(void **state)
+TEST(a_scene_with_any_byte_changed_is_answered)
 {
   static const char bytes[] = "{}[]:,&*-? \n\"'#%|>x0\xc3\t";
   char *text = ReadScene();
@@ -214,28 +211,4 @@ static void a_scene_with_any_byte_changed_is_answered(void **state)
     text[i] = kept;
   }
   free(text);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_missing_file_is_named),
-      cmocka_unit_test(a_directory_is_refused),
-      cmocka_unit_test(an_endless_file_is_refused),
-      cmocka_unit_test(a_text_beyond_1_MB_is_refused),
-      cmocka_unit_test(a_file_with_null_bytes_is_refused),
-      cmocka_unit_test(empty_files_are_refused),
-      cmocka_unit_test(invalid_UTF8_is_refused),
-      cmocka_unit_test(a_directive_that_is_no_UTF8_is_refused),
-      cmocka_unit_test(deep_nesting_is_refused),
-      cmocka_unit_test(a_map_of_many_keys_is_refused),
-      cmocka_unit_test(multiplying_aliases_are_refused),
-      cmocka_unit_test(an_alias_to_what_contains_it_is_refused),
-      cmocka_unit_test(long_values_and_keys_are_shortened),
-      cmocka_unit_test(a_long_name_is_shortened),
-      cmocka_unit_test(percent_signs_are_shown_as_they_are),
-      cmocka_unit_test(a_scene_cut_anywhere_is_answered),
-      cmocka_unit_test(a_scene_with_any_byte_changed_is_answered),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

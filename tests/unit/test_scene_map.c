@@ -1,15 +1,10 @@
 /*
   The axes of a map: what a scene's block becomes.
 */
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <setjmp.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include <lamella/scene.h>
 #include <math.h>
 #include <string.h>
-#include "assert_near.h"
 
 #define SCENE                                                                                                          \
   "version: 1\n"                                                                                                       \
@@ -30,7 +25,7 @@ static LamScene *read_scene(const char text[])
   return scene;
 }
 
-static void a_scene_without_the_block_has_no_map(void **state)
+TEST(a_scene_without_the_block_has_no_map)
 {
   LamScene *scene = read_scene(SCENE);
 
@@ -38,7 +33,7 @@ static void a_scene_without_the_block_has_no_map(void **state)
   LamSceneDestroy(&scene);
 }
 
-static void stresses_become_multiples_of_C1_and_C2(void **state)
+TEST(stresses_become_multiples_of_C1_and_C2)
 {
   LamScene *scene = read_scene(SCENE "map:\n" TURGOR SHEAR);
 
@@ -50,7 +45,7 @@ static void stresses_become_multiples_of_C1_and_C2(void **state)
   LamSceneDestroy(&scene);
 }
 
-static void linear_points_have_equal_differences(void **state)
+TEST(linear_points_have_equal_differences)
 {
   LamScene *scene = read_scene(SCENE "map:\n" TURGOR SHEAR);
   const LamMapAxis *y = &scene->map[LAM_MAP_Y];
@@ -59,7 +54,7 @@ static void linear_points_have_equal_differences(void **state)
   LamSceneDestroy(&scene);
 }
 
-static void log_points_have_equal_ratios(void **state)
+TEST(log_points_have_equal_ratios)
 {
   LamScene *scene =
       read_scene(SCENE "map:\n" TURGOR "  y: {quantity: C4, from: 0.11 MPa, to: 11 MPa, points: 3, spacing: log}\n");
@@ -69,7 +64,7 @@ static void log_points_have_equal_ratios(void **state)
   LamSceneDestroy(&scene);
 }
 
-static void units_bring_the_numbers_back(void **state)
+TEST(units_bring_the_numbers_back)
 {
   LamScene *scene =
       read_scene(SCENE "map:\n" TURGOR "  y: {quantity: wall_thickness, from: 7.5 um, to: 15 um, points: 2}\n");
@@ -81,14 +76,4 @@ static void units_bring_the_numbers_back(void **state)
   assert_near(scale * scene->map[LAM_MAP_Y].to, 15, 1e-13);
   assert_string_equal(LamMapQuantityUnit(LAM_MAP_SHEAR, &scene->scales, &scale), "1");
   LamSceneDestroy(&scene);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_scene_without_the_block_has_no_map), cmocka_unit_test(stresses_become_multiples_of_C1_and_C2),
-      cmocka_unit_test(linear_points_have_equal_differences), cmocka_unit_test(log_points_have_equal_ratios),
-      cmocka_unit_test(units_bring_the_numbers_back),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,11 +3,7 @@
   fails by chance; the bounds are four standard errors of 64 x 64 cells, where cells are correlated of the areas that
   one value stands for.
 */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <cmocka.h>
-#include <assert_near.h>
+#include "support/test.h"
 #include <lamella/lattice.h>
 #include <scene_random.h>
 
@@ -31,7 +27,7 @@ static void TakeLogarithms(PetscReal variation, PetscReal factors[])
 }
 
 /* From an independent program (splitmix64 starts with 0xE220A8397B1DCDAF for seed 0 there). */
-static void factors_are_the_same_on_every_machine(void **state)
+TEST(factors_are_the_same_on_every_machine)
 {
   const LamMicrostructure micro = {.cells = {2, 2}};
   const double expected[] = {1.284945, 0.906523, 0.981455, 0.874069, 0.398237, 2.369333, 1.023638, 0.70095};
@@ -42,7 +38,7 @@ static void factors_are_the_same_on_every_machine(void **state)
   for (int k = 0; k < 8; k++) assert_near(factors[k], expected[k], 1e-12);
 }
 
-static void factors_have_mean_one_and_the_variation_asked_for(void **state)
+TEST(factors_have_mean_one_and_the_variation_asked_for)
 {
   const PetscReal variation = 0.3;
   static PetscReal factors[COUNT];
@@ -67,7 +63,7 @@ static double Correlation(const PetscReal z[], int step)
   return sum / COUNT;
 }
 
-static void neighbours_are_correlated_as_far_as_asked_for(void **state)
+TEST(neighbours_are_correlated_as_far_as_asked_for)
 {
   static PetscReal z[COUNT];
   const double bound = 4 * LENGTH * sqrt(PETSC_PI / 2) / SIDE;
@@ -79,7 +75,7 @@ static void neighbours_are_correlated_as_far_as_asked_for(void **state)
   }
 }
 
-static void without_correlation_neighbours_are_independent(void **state)
+TEST(without_correlation_neighbours_are_independent)
 {
   static PetscReal z[COUNT];
 
@@ -89,7 +85,7 @@ static void without_correlation_neighbours_are_independent(void **state)
 }
 
 /* At the edges of a patch, where part of the noise is missing, as inside. */
-static void a_patch_has_unit_variance_everywhere(void **state)
+TEST(a_patch_has_unit_variance_everywhere)
 {
   static PetscReal z[COUNT];
   double edge = 0, square = 0;
@@ -103,7 +99,7 @@ static void a_patch_has_unit_variance_everywhere(void **state)
 }
 
 /* Cells of a period that is much shorter than the correlation are the same. */
-static void a_short_period_varies_as_a_whole(void **state)
+TEST(a_short_period_varies_as_a_whole)
 {
   const LamMicrostructure micro = {.cells = {2, 2}};
   const PetscReal variation = 0.5;
@@ -112,17 +108,4 @@ static void a_short_period_varies_as_a_whole(void **state)
   assert_int_equal(LamRandomFactors(&micro, 3, 10.0, 1, &variation, factors), 0);
   for (int c = 1; c < 4; c++) assert_near(factors[c], factors[0], 1e-5);
   assert_true(fabs(factors[0] - 1) > 1e-3);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(factors_are_the_same_on_every_machine),
-      cmocka_unit_test(factors_have_mean_one_and_the_variation_asked_for),
-      cmocka_unit_test(neighbours_are_correlated_as_far_as_asked_for),
-      cmocka_unit_test(without_correlation_neighbours_are_independent),
-      cmocka_unit_test(a_patch_has_unit_variance_everywhere),
-      cmocka_unit_test(a_short_period_varies_as_a_whole),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

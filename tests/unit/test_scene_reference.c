@@ -1,10 +1,7 @@
 /*
   docs/reference/scene.md is what the table of keys says. LAMELLA_UPDATE_DOCS=1 in the environment rewrites it instead.
 */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include <lamella/scene.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +19,7 @@ static char *Generate(size_t *length)
   return text;
 }
 
-static void the_reference_in_docs_is_up_to_date(void **state)
+TEST(the_reference_in_docs_is_up_to_date)
 {
   size_t length, read;
   char *text = Generate(&length), *stored = malloc(length + 2);
@@ -44,7 +41,7 @@ static void the_reference_in_docs_is_up_to_date(void **state)
   free(stored);
 }
 
-static void an_unwritable_file_is_an_error(void **state)
+TEST(an_unwritable_file_is_an_error)
 {
   FILE *full = fopen("/dev/full", "w");
 
@@ -53,13 +50,4 @@ static void an_unwritable_file_is_an_error(void **state)
   assert_int_equal(LamSceneReference(full), PETSC_ERR_FILE_WRITE);
   assert_int_equal(PetscPopErrorHandler(), 0);
   fclose(full);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_reference_in_docs_is_up_to_date),
-      cmocka_unit_test(an_unwritable_file_is_an_error),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

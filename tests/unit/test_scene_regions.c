@@ -1,13 +1,8 @@
 /*
   What the regions and fields of a scene become.
 */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include <lamella/scene.h>
-#include "assert_near.h"
 #include "unit/test_scene_message.h"
 
 #define SCENE                                                                                                          \
@@ -30,7 +25,7 @@ static LamScene *Read(const char text[])
   return scene;
 }
 
-static void what_a_region_leaves_out_is_the_scene_s(void **state)
+TEST(what_a_region_leaves_out_is_the_scene_s)
 {
   LamScene *scene = Read(SCENE "  regions: [{name: core}]\n");
   const LamRegion *region = scene->regions;
@@ -45,7 +40,7 @@ static void what_a_region_leaves_out_is_the_scene_s(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void a_region_is_measured_in_its_own_units(void **state)
+TEST(a_region_is_measured_in_its_own_units)
 {
   LamScene *scene =
       Read(SCENE "  regions: [{name: skin, where: y > 9, cell: {apothem: 30 um}, wall: {C1: 0.2 MPa, C2: 0.02 MPa}, "
@@ -67,7 +62,7 @@ static void a_region_is_measured_in_its_own_units(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void a_bonded_region_has_no_cohesion(void **state)
+TEST(a_bonded_region_has_no_cohesion)
 {
   LamScene *scene = Read(SCENE "  regions: [{name: skin, interface: {law: bonded}}]\n");
 
@@ -77,7 +72,7 @@ static void a_bonded_region_has_no_cohesion(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void fields_have_units(void **state)
+TEST(fields_have_units)
 {
   const PetscReal X[2] = {4, 5};
   LamScene *scene = Read(SCENE "  fields:\n"
@@ -97,7 +92,7 @@ static void fields_have_units(void **state)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void mistakes_are_named(void **state)
+TEST(mistakes_are_named)
 {
   static const struct {
     const char *text, *fragment;
@@ -128,18 +123,4 @@ static void mistakes_are_named(void **state)
     assert_null(scene);
     if (!strstr(scene_message, bad[i].fragment)) fail_msg("\"%s\" lacks \"%s\"", scene_message, bad[i].fragment);
   }
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(what_a_region_leaves_out_is_the_scene_s),
-      cmocka_unit_test(a_region_is_measured_in_its_own_units),
-      cmocka_unit_test(a_bonded_region_has_no_cohesion),
-      cmocka_unit_test(fields_have_units),
-      cmocka_unit_test(mistakes_are_named),
-  };
-
-  cmocka_set_message_output(CM_OUTPUT_STDOUT);
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

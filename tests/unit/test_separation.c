@@ -1,8 +1,5 @@
 /* When cells count as separated, from what two meshes say. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include <math.h>
 #include "separation.h"
 
@@ -31,7 +28,7 @@ static LamSeparation Judge(PetscReal turgor, PetscReal cohesion, PetscReal max_g
   return JudgeShare(turgor, cohesion, max_gap, traction, 1);
 }
 
-static void faces_that_carry_no_contact_are_separated(void **state)
+TEST(faces_that_carry_no_contact_are_separated)
 {
   (void)state;
   assert_int_equal(Judge(0.02, 0.01, 0, 0.01 - 0.9e-3 * 0.03), LAM_SEPARATION_TRACTION);
@@ -39,14 +36,14 @@ static void faces_that_carry_no_contact_are_separated(void **state)
 }
 
 /* Cells may have more cohesion than the load says. */
-static void closed_faces_are_not_separated_whatever_they_bear(void **state)
+TEST(closed_faces_are_not_separated_whatever_they_bear)
 {
   (void)state;
   assert_int_equal(JudgeShare(0.02, 0.01, 0, 0.02, 0), LAM_SEPARATION_NONE);
 }
 
 /* The traction is then that of rounding, or the margin has the wrong sign. */
-static void where_nothing_presses_the_gap_alone_decides(void **state)
+TEST(where_nothing_presses_the_gap_alone_decides)
 {
   (void)state;
   assert_int_equal(Judge(0, 0, 0, 0), LAM_SEPARATION_NONE);
@@ -55,14 +52,14 @@ static void where_nothing_presses_the_gap_alone_decides(void **state)
   assert_int_equal(Judge(-0.02, 0.01, 2 * LAM_VISIBLE_GAP, 0.01), LAM_SEPARATION_GAP);
 }
 
-static void cells_of_which_no_walls_face_each_other_are_separated(void **state)
+TEST(cells_of_which_no_walls_face_each_other_are_separated)
 {
   (void)state;
   assert_int_equal(Judge(0, 0, NAN, 0), LAM_SEPARATION_GAP);
 }
 
 /* A criterion that one mesh alone fulfils does not count, nor do two that differ. */
-static void both_meshes_must_agree(void **state)
+TEST(both_meshes_must_agree)
 {
   const LamLoad load = {.turgor = 0.02};
   LamResponse responses[2];
@@ -77,17 +74,4 @@ static void both_meshes_must_agree(void **state)
   assert_int_equal(LamSeparationOf(responses), LAM_SEPARATION_NONE);
   responses[1].status = LAM_NOT_CONVERGED;
   assert_int_equal(LamSeparationOf(responses), LAM_SEPARATION_UNKNOWN);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(faces_that_carry_no_contact_are_separated),
-      cmocka_unit_test(closed_faces_are_not_separated_whatever_they_bear),
-      cmocka_unit_test(where_nothing_presses_the_gap_alone_decides),
-      cmocka_unit_test(cells_of_which_no_walls_face_each_other_are_separated),
-      cmocka_unit_test(both_meshes_must_agree),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,8 @@
 /* Answers of the table from records of a known potential: exact at the nodes, derivatives of one potential between
  * them. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
+#include "support/test.h"
 #include <stdlib.h>
 #include <unistd.h>
-#include <cmocka.h>
-#include "assert_near.h"
-#define CHECK(call) assert_int_equal(call, 0)
 #include "analytic_table.h"
 
 static const int in_plane[4] = {0, 1, 3, 4};
@@ -85,21 +79,21 @@ static void AssertNodes(AnalyticTable *t)
   AnalyticTableClose(t);
 }
 
-static void bonded_nodes_answer_as_their_records(void **state)
+TEST(bonded_nodes_answer_as_their_records)
 {
   AnalyticTable t = Rough(PETSC_FALSE, 0);
 
   AssertNodes(&t);
 }
 
-static void contact_nodes_answer_as_their_records(void **state)
+TEST(contact_nodes_answer_as_their_records)
 {
   AnalyticTable t = Rough(PETSC_TRUE, 0);
 
   AssertNodes(&t);
 }
 
-static void nodes_of_a_turned_cell_answer_as_their_records(void **state)
+TEST(nodes_of_a_turned_cell_answer_as_their_records)
 {
   AnalyticTable t = Rough(PETSC_TRUE, 17 * acos(-1) / 180);
 
@@ -107,7 +101,7 @@ static void nodes_of_a_turned_cell_answer_as_their_records(void **state)
 }
 
 /* Two cells a period along one lattice direction: the three are not alike. */
-static void without_symmetry_nodes_answer_as_their_records(void **state)
+TEST(without_symmetry_nodes_answer_as_their_records)
 {
   const AnalyticTissue tissue = {PETSC_FALSE, 0.1};
   LamScene scene = AnalyticScene(&tissue);
@@ -122,7 +116,7 @@ static void without_symmetry_nodes_answer_as_their_records(void **state)
 }
 
 /* Off the corners of the finest complete cell second derivatives along suction jump, and P33 is interpolated. */
-static void at_corners_all_numbers_are_the_records(void **state)
+TEST(at_corners_all_numbers_are_the_records)
 {
   for (int kind = 0; kind < 2; kind++) {
     AnalyticTable t = AnalyticTableOpen((PetscBool)kind, 0.1);
@@ -155,7 +149,7 @@ static void at_corners_all_numbers_are_the_records(void **state)
 }
 
 /* On demand one interval of suction is solved, and nothing beyond it. */
-static void finer_nodes_of_one_interval_bring_the_answer_nearer(void **state)
+TEST(finer_nodes_of_one_interval_bring_the_answer_nearer)
 {
   AnalyticTable t = AnalyticTableOpen(PETSC_TRUE, 0.2);
   const int corner = -2 * LAM_ROOT;
@@ -182,7 +176,7 @@ static void finer_nodes_of_one_interval_bring_the_answer_nearer(void **state)
 }
 
 /* Tissue of one turgor needs no nodes of another. */
-static void at_the_suction_of_its_states_a_cell_needs_no_others(void **state)
+TEST(at_the_suction_of_its_states_a_cell_needs_no_others)
 {
   AnalyticTable t = AnalyticTableOpen(PETSC_TRUE, 0.2);
   const int corner = -2 * LAM_ROOT;
@@ -204,7 +198,7 @@ static void at_the_suction_of_its_states_a_cell_needs_no_others(void **state)
 }
 
 /* The state to solve in a question's stead: not turned, in the order of the nodes, near one of them. */
-static void a_turned_question_has_the_same_answer(void **state)
+TEST(a_turned_question_has_the_same_answer)
 {
   AnalyticTable t = Rough(PETSC_TRUE, 0.2);
   uint64_t seed = 11;
@@ -231,7 +225,7 @@ static void a_turned_question_has_the_same_answer(void **state)
 }
 
 /* Solves are symmetric to their mesh's accuracy alone: what swaps two strains must not swap what is solved. */
-static void strains_that_are_alike_keep_their_order(void **state)
+TEST(strains_that_are_alike_keep_their_order)
 {
   AnalyticTable t = Rough(PETSC_TRUE, 0.2);
   LamTable table;
@@ -265,7 +259,7 @@ static void Image(const AnalyticTable *t, int image, const PetscReal A[9], Petsc
     for (int j = 0; j < 2; j++) AQ[3 * i + j] = (i ? m : 1) * (A[3 * i] * Q[j] + A[3 * i + 1] * Q[2 + j]);
 }
 
-static void images_answer_alike(void **state)
+TEST(images_answer_alike)
 {
   for (int kind = 0; kind < 2; kind++) {
     AnalyticTable t = Rough((PetscBool)kind, 0.3);
@@ -289,7 +283,7 @@ static void images_answer_alike(void **state)
   }
 }
 
-static void stress_turns_with_the_frame(void **state)
+TEST(stress_turns_with_the_frame)
 {
   AnalyticTable t = Rough(PETSC_FALSE, 0);
   const double u[3] = {30, 70, 90}, c = cos(0.7), s = sin(0.7);
@@ -320,7 +314,7 @@ static void TurnTangent(const PetscReal A[81], double angle, double turned[4][4]
     }
 }
 
-static void the_tangent_is_isotropic_without_isochoric_strain(void **state)
+TEST(the_tangent_is_isotropic_without_isochoric_strain)
 {
   for (int kind = 0; kind < 2; kind++) {
     AnalyticTable t = Rough((PetscBool)kind, 0.3);
@@ -343,7 +337,7 @@ static void the_tangent_is_isotropic_without_isochoric_strain(void **state)
 }
 
 /* A solver's records are symmetric to its tolerance only. */
-static void records_that_are_a_little_asymmetric_make_a_symmetric_answer(void **state)
+TEST(records_that_are_a_little_asymmetric_make_a_symmetric_answer)
 {
   AnalyticTable t = AnalyticTableOpen(PETSC_FALSE, 0);
   const double u[3] = {20, 20, 20};
@@ -434,7 +428,7 @@ static void CompareStress(const AnalyticTable *t, const LamLoad *load)
   }
 }
 
-static void stress_is_the_slope_of_the_energy(void **state)
+TEST(stress_is_the_slope_of_the_energy)
 {
   AtRandomStates(CompareStress);
 }
@@ -456,7 +450,7 @@ static void CompareTangent(const AnalyticTable *t, const LamLoad *load)
   }
 }
 
-static void the_tangent_is_symmetric_and_the_slope_of_the_stress(void **state)
+TEST(the_tangent_is_symmetric_and_the_slope_of_the_stress)
 {
   AtRandomStates(CompareTangent);
 }
@@ -473,7 +467,7 @@ static void CompareTurgor(const AnalyticTable *t, const LamLoad *load)
   for (int i = 0; i < 4; i++) assert_near(SLOPE(pair, P[in_plane[i]]), r.P_turgor[in_plane[i]], 1e-6);
 }
 
-static void derivatives_in_turgor_are_slopes(void **state)
+TEST(derivatives_in_turgor_are_slopes)
 {
   AtRandomStates(CompareTurgor);
 }
@@ -491,7 +485,7 @@ static void CompareCohesion(const AnalyticTable *t, const LamLoad *load)
   for (int i = 0; i < 4; i++) assert_near(SLOPE(pair, P[in_plane[i]]), r.P_cohesion[in_plane[i]], 1e-6);
 }
 
-static void derivatives_in_cohesion_are_slopes(void **state)
+TEST(derivatives_in_cohesion_are_slopes)
 {
   AtRandomStates(CompareCohesion);
 }
@@ -522,7 +516,7 @@ static void AssertIdentical(const LamResponse *a, LamResponse *b)
   assert_memory_equal(a, b, sizeof(*a));
 }
 
-static void a_file_answers_bit_for_bit_as_memory(void **state)
+TEST(a_file_answers_bit_for_bit_as_memory)
 {
   for (int kind = 0; kind < 2; kind++) {
     AnalyticTable t = Rough((PetscBool)kind, 0.1), read;
@@ -544,30 +538,4 @@ static void a_file_answers_bit_for_bit_as_memory(void **state)
     AnalyticTableClose(&read);
     AnalyticTableClose(&t);
   }
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(bonded_nodes_answer_as_their_records),
-      cmocka_unit_test(contact_nodes_answer_as_their_records),
-      cmocka_unit_test(nodes_of_a_turned_cell_answer_as_their_records),
-      cmocka_unit_test(without_symmetry_nodes_answer_as_their_records),
-      cmocka_unit_test(at_corners_all_numbers_are_the_records),
-      cmocka_unit_test(finer_nodes_of_one_interval_bring_the_answer_nearer),
-      cmocka_unit_test(at_the_suction_of_its_states_a_cell_needs_no_others),
-      cmocka_unit_test(a_turned_question_has_the_same_answer),
-      cmocka_unit_test(strains_that_are_alike_keep_their_order),
-      cmocka_unit_test(images_answer_alike),
-      cmocka_unit_test(stress_turns_with_the_frame),
-      cmocka_unit_test(the_tangent_is_isotropic_without_isochoric_strain),
-      cmocka_unit_test(records_that_are_a_little_asymmetric_make_a_symmetric_answer),
-      cmocka_unit_test(stress_is_the_slope_of_the_energy),
-      cmocka_unit_test(the_tangent_is_symmetric_and_the_slope_of_the_stress),
-      cmocka_unit_test(derivatives_in_turgor_are_slopes),
-      cmocka_unit_test(derivatives_in_cohesion_are_slopes),
-      cmocka_unit_test(a_file_answers_bit_for_bit_as_memory),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

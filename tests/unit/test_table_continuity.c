@@ -1,12 +1,6 @@
 /* What does not jump in the table's answers, whatever nodes there are, and the work of closed cycles. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
+#include "support/test.h"
 #include <stdlib.h>
-#include <cmocka.h>
-#include "assert_near.h"
-#define CHECK(call) assert_int_equal(call, 0)
 #include "strain_cycle.h"
 
 static const int in_plane[4] = {0, 1, 3, 4};
@@ -78,34 +72,34 @@ static void AssertNoJump(PetscBool contact, int kind)
   }
 }
 
-static void bonded_stress_does_not_jump_at_faces(void **state)
+TEST(bonded_stress_does_not_jump_at_faces)
 {
   AssertNoJump(PETSC_FALSE, ON_FACE);
 }
 
-static void bonded_stress_does_not_jump_at_planes_of_symmetry(void **state)
+TEST(bonded_stress_does_not_jump_at_planes_of_symmetry)
 {
   AssertNoJump(PETSC_FALSE, ON_SYMMETRY);
 }
 
 /* Among them those where cells lose touch. */
-static void contact_stress_does_not_jump_at_faces(void **state)
+TEST(contact_stress_does_not_jump_at_faces)
 {
   AssertNoJump(PETSC_TRUE, ON_FACE);
 }
 
-static void contact_stress_does_not_jump_at_planes_of_symmetry(void **state)
+TEST(contact_stress_does_not_jump_at_planes_of_symmetry)
 {
   AssertNoJump(PETSC_TRUE, ON_SYMMETRY);
 }
 
 /* Many of which belong to some of the columns only. */
-static void contact_stress_does_not_jump_at_knots_of_suction(void **state)
+TEST(contact_stress_does_not_jump_at_knots_of_suction)
 {
   AssertNoJump(PETSC_TRUE, ON_KNOT);
 }
 
-static void stress_does_not_jump_where_cells_lose_touch(void **state)
+TEST(stress_does_not_jump_where_cells_lose_touch)
 {
   AnalyticTable t = Rough(PETSC_TRUE, 0, 5);
   uint64_t seed = 5;
@@ -137,7 +131,7 @@ static double TangentJump(const LamResponse side[2])
 }
 
 /* Nodes everywhere: what is left is the error of the interpolation. */
-static void the_tangent_jumps_little(void **state)
+TEST(the_tangent_jumps_little)
 {
   AnalyticTable t = AnalyticTableOpen(PETSC_FALSE, 0.2);
   const int first[3] = {0, 0, 0};
@@ -170,29 +164,12 @@ static void AssertNoWork(PetscBool contact)
   }
 }
 
-static void closed_cycles_of_bonded_tissue_cost_no_work(void **state)
+TEST(closed_cycles_of_bonded_tissue_cost_no_work)
 {
   AssertNoWork(PETSC_FALSE);
 }
 
-static void closed_cycles_of_tissue_in_contact_cost_no_work(void **state)
+TEST(closed_cycles_of_tissue_in_contact_cost_no_work)
 {
   AssertNoWork(PETSC_TRUE);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(bonded_stress_does_not_jump_at_faces),
-      cmocka_unit_test(bonded_stress_does_not_jump_at_planes_of_symmetry),
-      cmocka_unit_test(contact_stress_does_not_jump_at_faces),
-      cmocka_unit_test(contact_stress_does_not_jump_at_planes_of_symmetry),
-      cmocka_unit_test(contact_stress_does_not_jump_at_knots_of_suction),
-      cmocka_unit_test(stress_does_not_jump_where_cells_lose_touch),
-      cmocka_unit_test(the_tangent_jumps_little),
-      cmocka_unit_test(closed_cycles_of_bonded_tissue_cost_no_work),
-      cmocka_unit_test(closed_cycles_of_tissue_in_contact_cost_no_work),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

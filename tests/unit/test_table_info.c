@@ -1,9 +1,5 @@
 /* What `info` tells of a table: its nodes, cells, extent, and what cannot be used. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
-#include "assert_near.h"
+#include "support/test.h"
 #include "synthetic_responder.h"
 #include <jansson.h>
 #include <lamella/database.h>
@@ -74,7 +70,7 @@ static json_int_t At(const json_t *table, const char name[], size_t level)
   return json_integer_value(json_array_get(json_object_get(table, name), level));
 }
 
-static void nodes_and_cells_are_counted_by_level(void **state)
+TEST(nodes_and_cells_are_counted_by_level)
 {
   LamDatabase database = Make();
   const PetscInt coarse = Fill(database, 1e-3, LAM_CONVERGED), fine = Fill(database, 1e-12, LAM_CONVERGED);
@@ -92,7 +88,7 @@ static void nodes_and_cells_are_counted_by_level(void **state)
   LamDatabaseClose(&database);
 }
 
-static void the_extent_is_that_of_the_nodes(void **state)
+TEST(the_extent_is_that_of_the_nodes)
 {
   LamDatabase database = Make();
   json_t *info, *table, *strain;
@@ -108,7 +104,7 @@ static void the_extent_is_that_of_the_nodes(void **state)
   LamDatabaseClose(&database);
 }
 
-static void a_node_that_cannot_be_used_is_told(void **state)
+TEST(a_node_that_cannot_be_used_is_told)
 {
   static const struct {
     LamStatus status;
@@ -131,7 +127,7 @@ static void a_node_that_cannot_be_used_is_told(void **state)
   }
 }
 
-static void records_of_no_grid_are_counted_apart(void **state)
+TEST(records_of_no_grid_are_counted_apart)
 {
   const LamLoad load = {.F = {1.05, 0, 0, 0, 1.04, 0, 0, 0, 1}, .turgor = 0.1};
   const Synthetic material = {.mu = 0.5, .lambda = 2};
@@ -147,16 +143,4 @@ static void records_of_no_grid_are_counted_apart(void **state)
   assert_int_equal(json_integer_value(json_object_get(json_object_get(info, "table"), "nodes")), 0);
   json_decref(info);
   LamDatabaseClose(&database);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(nodes_and_cells_are_counted_by_level),
-      cmocka_unit_test(the_extent_is_that_of_the_nodes),
-      cmocka_unit_test(a_node_that_cannot_be_used_is_told),
-      cmocka_unit_test(records_of_no_grid_are_counted_apart),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

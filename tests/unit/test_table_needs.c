@@ -1,13 +1,7 @@
 /* What the table refuses, which nodes it asks for then, and that it survives records that are none of its own. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
+#include "support/test.h"
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
-#include "assert_near.h"
-#define CHECK(call) assert_int_equal(call, 0)
 #include "analytic_table.h"
 
 static const int in_plane[4] = {0, 1, 3, 4};
@@ -72,7 +66,7 @@ static void AddMarked(AnalyticTable *t, const int i[3], int j, LamStatus status,
 
 /* ---- needs ---- */
 
-static void an_empty_table_needs_the_corners_of_the_root_cell(void **state)
+TEST(an_empty_table_needs_the_corners_of_the_root_cell)
 {
   for (int contact = 0; contact < 2; contact++) {
     AnalyticTable t = AnalyticTableOpen((PetscBool)contact, 0.2);
@@ -91,7 +85,7 @@ static void an_empty_table_needs_the_corners_of_the_root_cell(void **state)
 }
 
 /* On the diagonal the eight corners of a cell are four nodes. */
-static void alike_corners_are_needed_once(void **state)
+TEST(alike_corners_are_needed_once)
 {
   AnalyticTable t = AnalyticTableOpen(PETSC_FALSE, 0.2);
   const LamLoad load = Inside(&t);
@@ -101,7 +95,7 @@ static void alike_corners_are_needed_once(void **state)
   AnalyticTableClose(&t);
 }
 
-static void what_is_needed_makes_the_answer(void **state)
+TEST(what_is_needed_makes_the_answer)
 {
   for (int contact = 0; contact < 2; contact++) {
     AnalyticTable t = AnalyticTableOpen((PetscBool)contact, 0.2);
@@ -119,7 +113,7 @@ static void what_is_needed_makes_the_answer(void **state)
   }
 }
 
-static void an_answer_that_is_not_accurate_says_so(void **state)
+TEST(an_answer_that_is_not_accurate_says_so)
 {
   AnalyticTable t = AnalyticTableOpen(PETSC_TRUE, 0.2);
   const LamLoad load = Inside(&t);
@@ -133,7 +127,7 @@ static void an_answer_that_is_not_accurate_says_so(void **state)
 }
 
 /* Rounding puts about half of the rotations below the edge. */
-static void the_edge_of_the_box_is_part_of_it_in_any_rotation(void **state)
+TEST(the_edge_of_the_box_is_part_of_it_in_any_rotation)
 {
   static const int corner[3] = {0, 0, 0};
   static const double edge[3] = {0, 0, 20};
@@ -148,7 +142,7 @@ static void the_edge_of_the_box_is_part_of_it_in_any_rotation(void **state)
   AnalyticTableClose(&t);
 }
 
-static void beyond_the_suctions_no_node_helps(void **state)
+TEST(beyond_the_suctions_no_node_helps)
 {
   AnalyticTable t = AnalyticTableOpen(PETSC_TRUE, 0.2);
   LamLoad load = Inside(&t);
@@ -163,7 +157,7 @@ static void beyond_the_suctions_no_node_helps(void **state)
   AnalyticTableClose(&t);
 }
 
-static void far_out_no_node_helps(void **state)
+TEST(far_out_no_node_helps)
 {
   AnalyticTable t = AnalyticTableOpen(PETSC_FALSE, 0.2);
   const double u[3] = {LAM_GRID_REACH - 40, LAM_GRID_REACH - 40, LAM_GRID_REACH - 40};
@@ -198,17 +192,17 @@ static void AssertRefusedWith(LamStatus status, PetscBool stable, PetscInt branc
   AnalyticTableClose(&t);
 }
 
-static void a_cell_with_an_unstable_corner_is_refused_its_children_are_not(void **state)
+TEST(a_cell_with_an_unstable_corner_is_refused_its_children_are_not)
 {
   AssertRefusedWith(LAM_UNSTABLE, PETSC_FALSE, 0);
 }
 
-static void a_cell_with_a_corner_on_another_branch_is_refused_its_children_are_not(void **state)
+TEST(a_cell_with_a_corner_on_another_branch_is_refused_its_children_are_not)
 {
   AssertRefusedWith(LAM_CONVERGED, PETSC_TRUE, 1);
 }
 
-static void a_root_cell_with_a_failed_corner_cannot_be_helped(void **state)
+TEST(a_root_cell_with_a_failed_corner_cannot_be_helped)
 {
   AnalyticTable t = AnalyticTableOpen(PETSC_FALSE, 0.2);
   const LamLoad load = Inside(&t);
@@ -222,7 +216,7 @@ static void a_root_cell_with_a_failed_corner_cannot_be_helped(void **state)
 }
 
 /* Cells that barely touch leave saddles of another kind. */
-static void another_branch_of_cells_that_barely_touch_is_none(void **state)
+TEST(another_branch_of_cells_that_barely_touch_is_none)
 {
   AnalyticTable t = AnalyticTableOpen(PETSC_TRUE, 0.2);
   const LamLoad load = Inside(&t);
@@ -241,7 +235,7 @@ static void another_branch_of_cells_that_barely_touch_is_none(void **state)
 }
 
 /* A failed node of a finer level spoils the cells it is a corner of, and only these. */
-static void a_failed_finer_node_spoils_its_own_cells(void **state)
+TEST(a_failed_finer_node_spoils_its_own_cells)
 {
   AnalyticTable t = AnalyticTableOpen(PETSC_FALSE, 0.2);
   const int first[3] = {0, 0, 0}, half = LAM_ROOT / 2;
@@ -256,7 +250,7 @@ static void a_failed_finer_node_spoils_its_own_cells(void **state)
 }
 
 /* A change of branch in the middle: refined as far as the level allows, then left to the solver. */
-static void a_change_of_branch_is_refined_so_far_and_no_further(void **state)
+TEST(a_change_of_branch_is_refined_so_far_and_no_further)
 {
   AnalyticTable t = AnalyticTableOpen(PETSC_FALSE, 0.2);
   const double u[3] = {30, 31, 33};
@@ -280,7 +274,7 @@ static void a_change_of_branch_is_refined_so_far_and_no_further(void **state)
 
 /* ---- cells that touch no one ---- */
 
-static void floating_cells_need_no_node_and_are_exact(void **state)
+TEST(floating_cells_need_no_node_and_are_exact)
 {
   AnalyticTable t = AnalyticTableOpen(PETSC_TRUE, 0.2);
   uint64_t seed = 1;
@@ -314,7 +308,7 @@ static void floating_cells_need_no_node_and_are_exact(void **state)
 /* ---- damage ---- */
 
 /* Keys of nodes with any bits, records of any state: as many as a file could hold. */
-static void keys_of_places_that_are_none_are_left_out(void **state)
+TEST(keys_of_places_that_are_none_are_left_out)
 {
   for (int contact = 0; contact < 2; contact++) {
     AnalyticTable t = AnalyticTableOpen((PetscBool)contact, 0.2);
@@ -345,7 +339,7 @@ static void keys_of_places_that_are_none_are_left_out(void **state)
   }
 }
 
-static void a_bonded_node_off_its_turgor_is_none(void **state)
+TEST(a_bonded_node_off_its_turgor_is_none)
 {
   AnalyticTable t = AnalyticTableOpen(PETSC_FALSE, 0.2);
   const LamLoad load = Inside(&t);
@@ -357,7 +351,7 @@ static void a_bonded_node_off_its_turgor_is_none(void **state)
   AnalyticTableClose(&t);
 }
 
-static void a_record_where_cells_touch_no_one_changes_nothing(void **state)
+TEST(a_record_where_cells_touch_no_one_changes_nothing)
 {
   AnalyticTable t = AnalyticTableOpen(PETSC_TRUE, 0.2);
   const double u[3] = {-10, 10, 20};
@@ -379,7 +373,7 @@ static void a_record_where_cells_touch_no_one_changes_nothing(void **state)
   AnalyticTableClose(&t);
 }
 
-static void any_key_of_a_node_can_be_in_a_file(void **state)
+TEST(any_key_of_a_node_can_be_in_a_file)
 {
   for (int kind = 0; kind < 4; kind++) {
     const AnalyticTissue tissue = {(PetscBool)(kind % 2), 0.2};
@@ -404,7 +398,7 @@ static void any_key_of_a_node_can_be_in_a_file(void **state)
   }
 }
 
-static void a_record_that_is_not_finite_is_as_good_as_failed(void **state)
+TEST(a_record_that_is_not_finite_is_as_good_as_failed)
 {
   AnalyticTable t = AnalyticTableOpen(PETSC_FALSE, 0.2);
   const LamLoad load = Inside(&t);
@@ -416,31 +410,4 @@ static void a_record_that_is_not_finite_is_as_good_as_failed(void **state)
   SolveNeeds(&t, &load, PETSC_INFINITY, 2);
   assert_int_equal(AskFor(&t, &load, PETSC_INFINITY).status, LAM_OUT_OF_REACH);
   AnalyticTableClose(&t);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(an_empty_table_needs_the_corners_of_the_root_cell),
-      cmocka_unit_test(alike_corners_are_needed_once),
-      cmocka_unit_test(what_is_needed_makes_the_answer),
-      cmocka_unit_test(an_answer_that_is_not_accurate_says_so),
-      cmocka_unit_test(beyond_the_suctions_no_node_helps),
-      cmocka_unit_test(the_edge_of_the_box_is_part_of_it_in_any_rotation),
-      cmocka_unit_test(far_out_no_node_helps),
-      cmocka_unit_test(a_cell_with_an_unstable_corner_is_refused_its_children_are_not),
-      cmocka_unit_test(a_cell_with_a_corner_on_another_branch_is_refused_its_children_are_not),
-      cmocka_unit_test(a_root_cell_with_a_failed_corner_cannot_be_helped),
-      cmocka_unit_test(another_branch_of_cells_that_barely_touch_is_none),
-      cmocka_unit_test(a_failed_finer_node_spoils_its_own_cells),
-      cmocka_unit_test(a_change_of_branch_is_refined_so_far_and_no_further),
-      cmocka_unit_test(floating_cells_need_no_node_and_are_exact),
-      cmocka_unit_test(keys_of_places_that_are_none_are_left_out),
-      cmocka_unit_test(a_bonded_node_off_its_turgor_is_none),
-      cmocka_unit_test(a_record_where_cells_touch_no_one_changes_nothing),
-      cmocka_unit_test(any_key_of_a_node_can_be_in_a_file),
-      cmocka_unit_test(a_record_that_is_not_finite_is_as_good_as_failed),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

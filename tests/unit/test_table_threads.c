@@ -1,8 +1,5 @@
 /* Threads that ask one table at the same time are answered as one that asks alone. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include "table_fixture.h"
 #include "database_internal.h"
 #include <pthread.h>
@@ -123,7 +120,7 @@ static void ReadInThreads(LamTable table)
   }
 }
 
-static void threads_that_ask_a_table_are_answered_alike(void **state)
+TEST(threads_that_ask_a_table_are_answered_alike)
 {
   LamTable table;
 
@@ -134,14 +131,14 @@ static void threads_that_ask_a_table_are_answered_alike(void **state)
 }
 
 /* The first question, asked by one thread alone, makes the table. */
-static void threads_that_ask_a_database_are_answered_alike(void **state)
+TEST(threads_that_ask_a_database_are_answered_alike)
 {
   AskAlone(NULL);
   ReadInThreads(NULL);
 }
 
 /* No node of this table has been made before the threads ask. */
-static void threads_that_make_the_nodes_of_a_table_are_answered_alike(void **state)
+TEST(threads_that_make_the_nodes_of_a_table_are_answered_alike)
 {
   LamTable table;
 
@@ -151,13 +148,4 @@ static void threads_that_make_the_nodes_of_a_table_are_answered_alike(void **sta
   assert_int_equal(LamTableDestroy(&table), 0);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(threads_that_ask_a_table_are_answered_alike),
-      cmocka_unit_test(threads_that_ask_a_database_are_answered_alike),
-      cmocka_unit_test(threads_that_make_the_nodes_of_a_table_are_answered_alike),
-  };
-
-  return cmocka_run_group_tests(tests, Setup, Teardown);
-}
+TEST_GROUP(.setup = Setup, .teardown = Teardown);

@@ -1,19 +1,14 @@
 /*
   lamella tradeoff: spread of times, which settings are the best, errors, and which settings a scene has.
 */
+#include "support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
 #include <string.h>
 #include "tradeoff.h"
 
-#define CHECK(call) assert_int_equal((call), 0)
-
 /* ---- times ---- */
 
-static void test_spread_of_one_run(void **state)
+TEST(test_spread_of_one_run)
 {
   const PetscReal times[] = {2};
   const LamSpread spread = LamSpreadOf(1, times);
@@ -21,7 +16,7 @@ static void test_spread_of_one_run(void **state)
   assert_true(spread.median == 2 && spread.low == 2 && spread.high == 2);
 }
 
-static void test_spread_is_median_and_range(void **state)
+TEST(test_spread_is_median_and_range)
 {
   const PetscReal times[] = {3, 1, 10, 2};
   LamSpread spread = LamSpreadOf(4, times);
@@ -31,14 +26,14 @@ static void test_spread_is_median_and_range(void **state)
   assert_true(spread.median == 3);
 }
 
-static void test_no_run_has_no_spread(void **state)
+TEST(test_no_run_has_no_spread)
 {
   assert_true(isnan(LamSpreadOf(0, NULL).median));
 }
 
 /* ---- the best ---- */
 
-static void test_pareto_front(void **state)
+TEST(test_pareto_front)
 {
   const PetscReal cost[] = {1, 2, 3, 3, 4}, error[] = {5, 6, 2, 2, 1};
   const PetscBool expected[] = {PETSC_TRUE, PETSC_FALSE, PETSC_TRUE, PETSC_TRUE, PETSC_TRUE};
@@ -48,7 +43,7 @@ static void test_pareto_front(void **state)
   for (int i = 0; i < 5; i++) assert_int_equal(optimal[i], expected[i]);
 }
 
-static void test_what_failed_is_never_the_best(void **state)
+TEST(test_what_failed_is_never_the_best)
 {
   const PetscReal cost[] = {NAN, 2, 3}, error[] = {0, NAN, 7};
   PetscBool optimal[3];
@@ -75,7 +70,7 @@ static LamResponse Response(PetscReal stress, PetscReal tangent, PetscReal openi
   return r;
 }
 
-static void test_errors_of_an_answer(void **state)
+TEST(test_errors_of_an_answer)
 {
   const LamResponse one = Response(1.1, 9, 0.2, 0.6), reference = Response(1, 10, 0.5, 0.5);
 
@@ -85,7 +80,7 @@ static void test_errors_of_an_answer(void **state)
   assert_true(fabs(LamErrorOf(LAM_ERROR_OPENING, LAM_INTERFACE_BONDED, &one, &reference) - 0.1) < 1e-12);
 }
 
-static void test_errors_of_a_body(void **state)
+TEST(test_errors_of_a_body)
 {
   const LamMacroOutcome reference = {.boundaries = 2, .reaction = {{3, 0}, {0, 4}}, .work = 2};
   LamMacroOutcome one = reference;
@@ -99,7 +94,7 @@ static void test_errors_of_a_body(void **state)
 }
 
 /* Two meshes, of which one is as good as the reference. */
-static void test_an_error_near_the_references_does_not_rank(void **state)
+TEST(test_an_error_near_the_references_does_not_rank)
 {
   LamResponse exact = Response(1, 10, 0, 0.5), good = Response(1.001, 10, 0, 0.5), bad = Response(1.1, 10, 0, 0.5);
   PetscBool used = PETSC_TRUE, skip = PETSC_FALSE;
@@ -128,7 +123,7 @@ static void test_an_error_near_the_references_does_not_rank(void **state)
   assert_false(m[1].error[LAM_ERROR_P].resolved);
 }
 
-static void test_what_was_not_measured_has_no_error(void **state)
+TEST(test_what_was_not_measured_has_no_error)
 {
   LamReference reference = {0};
   const LamStates states = {0};
@@ -155,7 +150,7 @@ static LamMeasurement Measured(PetscInt runs, PetscReal time, PetscReal work)
 }
 
 /* The outcome of a body is the reference of others: what is unfinished must not replace it. */
-static void test_a_repeat_cut_short_changes_nothing(void **state)
+TEST(test_a_repeat_cut_short_changes_nothing)
 {
   LamMeasurement m = Measured(1, 5, 2), repeat = Measured(0, 0, 0.5);
   const LamMacroOutcome outcome = m.outcome;
@@ -167,7 +162,7 @@ static void test_a_repeat_cut_short_changes_nothing(void **state)
   CHECK(LamMeasurementDestroy(&m));
 }
 
-static void test_a_repeat_adds_its_times(void **state)
+TEST(test_a_repeat_adds_its_times)
 {
   LamMeasurement m = Measured(1, 5, 2), repeat = Measured(1, 4, 2);
 
@@ -177,7 +172,7 @@ static void test_a_repeat_adds_its_times(void **state)
   CHECK(LamMeasurementDestroy(&m));
 }
 
-static void test_a_first_run_says_why_there_is_none(void **state)
+TEST(test_a_first_run_says_why_there_is_none)
 {
   LamMeasurement m, first = Measured(0, 0, 0.5);
 
@@ -216,7 +211,7 @@ static PetscBool Applies(const LamScene *scene, LamKnob knob)
   return applies;
 }
 
-static void test_knobs_of_bonded_tissue(void **state)
+TEST(test_knobs_of_bonded_tissue)
 {
   LamScene *scene = Scene("bonded", "");
 
@@ -229,7 +224,7 @@ static void test_knobs_of_bonded_tissue(void **state)
   CHECK(LamSceneDestroy(&scene));
 }
 
-static void test_knobs_of_contact_with_a_sample_box(void **state)
+TEST(test_knobs_of_contact_with_a_sample_box)
 {
   LamScene *scene = Scene("contact", "sample: {stretch: {min: 0, max: 0.1}}\n");
 
@@ -239,7 +234,7 @@ static void test_knobs_of_contact_with_a_sample_box(void **state)
 }
 
 /* Every family has the planned setting once, whatever it is; settings of one family differ in name. */
-static void test_each_family_has_the_plan_once(void **state)
+TEST(test_each_family_has_the_plan_once)
 {
   const LamKnob knobs[] = {LAM_KNOB_MESH, LAM_KNOB_STRATEGY, LAM_KNOB_CELLS, LAM_KNOB_TOLERANCE};
   LamScene *scene = Scene("contact", "  cells: [3, 1]\n  tolerance: 0.001\n");
@@ -257,27 +252,4 @@ static void test_each_family_has_the_plan_once(void **state)
     CHECK(PetscFree(settings));
   }
   CHECK(LamSceneDestroy(&scene));
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_spread_of_one_run),
-      cmocka_unit_test(test_spread_is_median_and_range),
-      cmocka_unit_test(test_no_run_has_no_spread),
-      cmocka_unit_test(test_pareto_front),
-      cmocka_unit_test(test_what_failed_is_never_the_best),
-      cmocka_unit_test(test_errors_of_an_answer),
-      cmocka_unit_test(test_errors_of_a_body),
-      cmocka_unit_test(test_an_error_near_the_references_does_not_rank),
-      cmocka_unit_test(test_what_was_not_measured_has_no_error),
-      cmocka_unit_test(test_a_repeat_cut_short_changes_nothing),
-      cmocka_unit_test(test_a_repeat_adds_its_times),
-      cmocka_unit_test(test_a_first_run_says_why_there_is_none),
-      cmocka_unit_test(test_knobs_of_bonded_tissue),
-      cmocka_unit_test(test_knobs_of_contact_with_a_sample_box),
-      cmocka_unit_test(test_each_family_has_the_plan_once),
-  };
-  cmocka_set_message_output(CM_OUTPUT_STDOUT);
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

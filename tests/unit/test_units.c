@@ -1,10 +1,7 @@
 /*
   Quantities with units.
 */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include "test_scene_message.h"
 #include <math.h>
 
@@ -26,7 +23,7 @@ static void AssertRefused(const char text[], LamDimension dimension, const char 
   if (!strstr(scene_message, fragment)) fail_msg("%s: \"%s\" lacks \"%s\"", text, scene_message, fragment);
 }
 
-static void lengths_become_metres(void **state)
+TEST(lengths_become_metres)
 {
   AssertSI("75 um", LAM_DIMENSION_LENGTH, 75e-6);
   AssertSI("11.25um", LAM_DIMENSION_LENGTH, 11.25e-6);
@@ -35,7 +32,7 @@ static void lengths_become_metres(void **state)
   AssertSI("2 inches", LAM_DIMENSION_LENGTH, 0.0508);
 }
 
-static void stresses_become_pascals(void **state)
+TEST(stresses_become_pascals)
 {
   AssertSI("0.02 MPa", LAM_DIMENSION_STRESS, 0.02e6);
   AssertSI("+2 bar", LAM_DIMENSION_STRESS, 2e5);
@@ -44,21 +41,21 @@ static void stresses_become_pascals(void **state)
   AssertSI("0 MPa", LAM_DIMENSION_STRESS, 0.0);
 }
 
-static void angles_become_radians(void **state)
+TEST(angles_become_radians)
 {
   AssertSI("30 deg", LAM_DIMENSION_ANGLE, PETSC_PI / 6);
   AssertSI("180 degrees", LAM_DIMENSION_ANGLE, PETSC_PI);
   AssertSI("0.5 rad", LAM_DIMENSION_ANGLE, 0.5);
 }
 
-static void times_become_seconds(void **state)
+TEST(times_become_seconds)
 {
   AssertSI("2 h", LAM_DIMENSION_TIME, 7200);
   AssertSI("14 day", LAM_DIMENSION_TIME, 14 * 86400.0);
   AssertSI("1 week", LAM_DIMENSION_TIME, 7 * 86400.0);
 }
 
-static void temperatures_become_kelvins(void **state)
+TEST(temperatures_become_kelvins)
 {
   AssertSI("20 degC", LAM_DIMENSION_TEMPERATURE, 293.15);
   AssertSI("-18 celsius", LAM_DIMENSION_TEMPERATURE, 255.15);
@@ -66,7 +63,7 @@ static void temperatures_become_kelvins(void **state)
   AssertSI("300 K", LAM_DIMENSION_TEMPERATURE, 300);
 }
 
-static void rates_may_be_written_by_their_time(void **state)
+TEST(rates_may_be_written_by_their_time)
 {
   AssertSI("0.161 /min", LAM_DIMENSION_RATE, 0.161 / 60);
   AssertSI("2 1/day", LAM_DIMENSION_RATE, 2 / 86400.0);
@@ -74,14 +71,14 @@ static void rates_may_be_written_by_their_time(void **state)
   AssertSI("5 Hz", LAM_DIMENSION_RATE, 5);
 }
 
-static void energies_and_permeabilities_are_converted(void **state)
+TEST(energies_and_permeabilities_are_converted)
 {
   AssertSI("138 kJ/mol", LAM_DIMENSION_MOLAR_ENERGY, 138e3);
   AssertSI("1e-7 m/s/MPa", LAM_DIMENSION_PERMEABILITY, 1e-13);
   AssertSI("2 um s-1 bar-1", LAM_DIMENSION_PERMEABILITY, 2e-11);
 }
 
-static void an_offset_belongs_to_temperatures_alone(void **state)
+TEST(an_offset_belongs_to_temperatures_alone)
 {
   AssertRefused("1 kJ/degC", LAM_DIMENSION_MOLAR_ENERGY, "is not a unit of molar energy");
   AssertRefused("20 degC", LAM_DIMENSION_LENGTH, "is not a unit of length");
@@ -89,7 +86,7 @@ static void an_offset_belongs_to_temperatures_alone(void **state)
   AssertRefused("5 //s", LAM_DIMENSION_RATE, "unknown");
 }
 
-static void missing_and_unknown_units_are_refused(void **state)
+TEST(missing_and_unknown_units_are_refused)
 {
   AssertRefused("0.02", LAM_DIMENSION_STRESS, "has no unit; write a stress with its unit, such as 0.1 MPa");
   AssertRefused("0.02 MPx", LAM_DIMENSION_STRESS, "unknown");
@@ -99,21 +96,21 @@ static void missing_and_unknown_units_are_refused(void **state)
   AssertRefused("- 1 MPa", LAM_DIMENSION_STRESS, "is not a number with a unit");
 }
 
-static void other_dimensions_are_refused(void **state)
+TEST(other_dimensions_are_refused)
 {
   AssertRefused("1 mm", LAM_DIMENSION_STRESS, "is not a unit of stress");
   AssertRefused("1 MPa", LAM_DIMENSION_LENGTH, "is not a unit of length");
   AssertRefused("1 N", LAM_DIMENSION_STRESS, "is not a unit of stress");
 }
 
-static void a_zero_in_a_unit_is_refused(void **state)
+TEST(a_zero_in_a_unit_is_refused)
 {
   AssertRefused("1 a.0MPa", LAM_DIMENSION_STRESS, "the unit \"a.0MPa\" is unknown");
   AssertRefused("1 MPa/0 m", LAM_DIMENSION_STRESS, "the unit \"MPa/0 m\" is unknown");
 }
 
 /* udunits2 itself converts all of these */
-static void lookalike_units_are_refused(void **state)
+TEST(lookalike_units_are_refused)
 {
   AssertRefused("1 m-1", LAM_DIMENSION_LENGTH, "is not a unit of length");
   AssertRefused("1 percent", LAM_DIMENSION_ANGLE, "is not a unit of angle");
@@ -122,7 +119,7 @@ static void lookalike_units_are_refused(void **state)
   AssertRefused("1 lg(re 1 MPa)", LAM_DIMENSION_STRESS, "is not a unit of stress");
 }
 
-static void non_finite_numbers_are_refused(void **state)
+TEST(non_finite_numbers_are_refused)
 {
   AssertRefused("nan MPa", LAM_DIMENSION_STRESS, "is not a finite number");
   AssertRefused(".inf", LAM_DIMENSION_STRESS, "is not a finite number");
@@ -131,35 +128,13 @@ static void non_finite_numbers_are_refused(void **state)
   AssertRefused("1e305 MPa", LAM_DIMENSION_STRESS, "is too large");
 }
 
-static void hexadecimal_numbers_are_refused(void **state)
+TEST(hexadecimal_numbers_are_refused)
 {
   AssertRefused("0x10 MPa", LAM_DIMENSION_STRESS, "unknown");
   AssertRefused("0x10", LAM_DIMENSION_STRESS, "unknown");
 }
 
-static void the_message_shows_the_text(void **state)
+TEST(the_message_shows_the_text)
 {
   AssertRefused("7 furlongs%n%s", LAM_DIMENSION_STRESS, "7 furlongs%n%s: ");
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(lengths_become_metres),
-      cmocka_unit_test(stresses_become_pascals),
-      cmocka_unit_test(angles_become_radians),
-      cmocka_unit_test(times_become_seconds),
-      cmocka_unit_test(temperatures_become_kelvins),
-      cmocka_unit_test(rates_may_be_written_by_their_time),
-      cmocka_unit_test(energies_and_permeabilities_are_converted),
-      cmocka_unit_test(an_offset_belongs_to_temperatures_alone),
-      cmocka_unit_test(missing_and_unknown_units_are_refused),
-      cmocka_unit_test(other_dimensions_are_refused),
-      cmocka_unit_test(lookalike_units_are_refused),
-      cmocka_unit_test(a_zero_in_a_unit_is_refused),
-      cmocka_unit_test(non_finite_numbers_are_refused),
-      cmocka_unit_test(hexadecimal_numbers_are_refused),
-      cmocka_unit_test(the_message_shows_the_text),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

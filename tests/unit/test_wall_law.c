@@ -1,11 +1,6 @@
 /* Wall law kernels against closed forms and against finite differences at random states. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
+#include "support/test.h"
 #include <math.h>
-#include <cmocka.h>
-#include "assert_near.h"
 #include "wall_law.h"
 #include "random_reals.h"
 
@@ -47,7 +42,7 @@ static LamKernel1 Fibre(const LamWall *of, double I4)
 }
 
 /* Uniaxial tension of an incompressible body: W and s1 - s2 = C1 (l^2 - 1/l) + C2 (l - 1/l^2) (Mooney). */
-static void MatrixUniaxialIsExact(void **state)
+TEST(MatrixUniaxialIsExact)
 {
   for (double l = 0.6; l < 2.1; l += 0.3) {
     const double r = 1.0 / sqrt(l), F[4] = {l, 0, 0, r};
@@ -60,7 +55,7 @@ static void MatrixUniaxialIsExact(void **state)
 }
 
 /* Simple shear: s12 = (C1 + C2) g, s11 - s33 = C1 g^2, s22 - s33 = -C2 g^2 (Rivlin). */
-static void MatrixSimpleShearIsExact(void **state)
+TEST(MatrixSimpleShearIsExact)
 {
   for (double g = -1.0; g < 1.1; g += 0.4) {
     const double F[4] = {1, g, 0, 1};
@@ -75,7 +70,7 @@ static void MatrixSimpleShearIsExact(void **state)
 }
 
 /* A change of volume neither stores energy in the matrix nor gives it a pressure. */
-static void MatrixIsIsochoric(void **state)
+TEST(MatrixIsIsochoric)
 {
   uint64_t seed = 3;
 
@@ -94,7 +89,7 @@ static void MatrixIsIsochoric(void **state)
 }
 
 /* Uniaxial tension along the fibres adds the Cauchy stress 2 I4 dW/dI4 = C4 l^2 (l^2 - 1) to the matrix's. */
-static void FibreUniaxialIsExact(void **state)
+TEST(FibreUniaxialIsExact)
 {
   for (double l = 0.6; l < 2.1; l += 0.3) {
     const LamKernel1 k = Fibre(&wall, l * l);
@@ -105,7 +100,7 @@ static void FibreUniaxialIsExact(void **state)
 }
 
 /* Shear across the fibres, M = e2, Fm = (g, 1): the fibres add C4 g^3, the cubic of Mihai, Safar & Wyatt, eq. 3.26. */
-static void FibreSimpleShearIsExact(void **state)
+TEST(FibreSimpleShearIsExact)
 {
   for (double g = -1.0; g < 1.1; g += 0.4) {
     const LamKernel1 k = Fibre(&wall, 1.0 + g * g);
@@ -115,7 +110,7 @@ static void FibreSimpleShearIsExact(void **state)
 }
 
 /* `fibres: tension` leaves shortened fibres slack and changes nothing for stretched ones. */
-static void SlackFibresCarryNothing(void **state)
+TEST(SlackFibresCarryNothing)
 {
   LamWall tension = wall;
   LamKernel1 slack, taut, both;
@@ -128,7 +123,7 @@ static void SlackFibresCarryNothing(void **state)
   assert_true(taut.W == both.W && taut.d == both.d && taut.dd == both.dd);
 }
 
-static void PlainLawHasNoFibres(void **state)
+TEST(PlainLawHasNoFibres)
 {
   const LamWallLaw *law;
 
@@ -154,7 +149,7 @@ static double MatrixDifference(const double F[4], double F33, int c, int value)
   return sum / (12.0 * h);
 }
 
-static void MatrixStressIsDerivativeOfEnergy(void **state)
+TEST(MatrixStressIsDerivativeOfEnergy)
 {
   uint64_t seed = 11;
 
@@ -167,7 +162,7 @@ static void MatrixStressIsDerivativeOfEnergy(void **state)
   }
 }
 
-static void MatrixTangentIsDerivativeOfStress(void **state)
+TEST(MatrixTangentIsDerivativeOfStress)
 {
   uint64_t seed = 12;
 
@@ -181,7 +176,7 @@ static void MatrixTangentIsDerivativeOfStress(void **state)
   }
 }
 
-static void FibreDerivativesFollowFromEnergy(void **state)
+TEST(FibreDerivativesFollowFromEnergy)
 {
   const double h = 1e-3;
 
@@ -191,7 +186,7 @@ static void FibreDerivativesFollowFromEnergy(void **state)
   }
 }
 
-static void VolumetricDerivativesFollowFromEnergy(void **state)
+TEST(VolumetricDerivativesFollowFromEnergy)
 {
   const double h = 1e-5;
 
@@ -208,7 +203,7 @@ static void VolumetricDerivativesFollowFromEnergy(void **state)
 }
 
 /* Small strains: shear modulus C1 + C2, bulk modulus kappa. */
-static void SmallStrainModuliAreThoseOfTheLaw(void **state)
+TEST(SmallStrainModuliAreThoseOfTheLaw)
 {
   const double unit[4] = {1, 0, 0, 1};
   const LamKernel k = Matrix(unit, 1.0);
@@ -218,24 +213,4 @@ static void SmallStrainModuliAreThoseOfTheLaw(void **state)
   AssertClose(k.A[1][1], wall.C1 + wall.C2, 1e-13);
   AssertClose(k.A[0][0] - k.A[0][3], 2.0 * (wall.C1 + wall.C2), 1e-13);
   AssertClose(u.dd, wall.bulk_modulus, 1e-13);
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(MatrixUniaxialIsExact),
-      cmocka_unit_test(MatrixSimpleShearIsExact),
-      cmocka_unit_test(MatrixIsIsochoric),
-      cmocka_unit_test(FibreUniaxialIsExact),
-      cmocka_unit_test(FibreSimpleShearIsExact),
-      cmocka_unit_test(SlackFibresCarryNothing),
-      cmocka_unit_test(PlainLawHasNoFibres),
-      cmocka_unit_test(MatrixStressIsDerivativeOfEnergy),
-      cmocka_unit_test(MatrixTangentIsDerivativeOfStress),
-      cmocka_unit_test(FibreDerivativesFollowFromEnergy),
-      cmocka_unit_test(VolumetricDerivativesFollowFromEnergy),
-      cmocka_unit_test(SmallStrainModuliAreThoseOfTheLaw),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

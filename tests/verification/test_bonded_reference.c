@@ -1,4 +1,5 @@
 /* The bonded cell against values of independent programs, same mesh and law (data/bonded.json). */
+#include "support/test.h"
 #include "rve_fixture.h"
 #include "figures_reference.h"
 
@@ -12,29 +13,29 @@ static int SolveAll(void **state)
   return CompareWithReference(DATA, &count, errors) ? 1 : 0;
 }
 
-static void EnergyAgrees(void **state)
+TEST(EnergyAgrees)
 {
   for (int k = 0; k < count; k++) assert_true(errors[k].energy < 1e-9);
 }
 
-static void StressAgrees(void **state)
+TEST(StressAgrees)
 {
   for (int k = 0; k < count; k++) assert_true(errors[k].stress < 1e-9);
 }
 
-static void TangentAgrees(void **state)
+TEST(TangentAgrees)
 {
   for (int k = 0; k < count; k++) assert_true(errors[k].tangent < 1e-8);
 }
 
-static void LumenFractionAgrees(void **state)
+TEST(LumenFractionAgrees)
 {
   for (int k = 0; k < count; k++) assert_true(errors[k].lumen < 1e-9);
 }
 
 /* FEBio 4, another element and a finer mesh: within 1.5 % in simple shear, where its own mesh error is 1 %, and within
    0.5 % in stretch. */
-static void StressAgreesWithFEBio(void **state)
+TEST(StressAgreesWithFEBio)
 {
   double error[OTHERS_CASES];
 
@@ -43,15 +44,4 @@ static void StressAgreesWithFEBio(void **state)
   assert_true(error[1] < 0.005);
 }
 
-int main(int argc, char **argv)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(EnergyAgrees),        cmocka_unit_test(StressAgrees),          cmocka_unit_test(TangentAgrees),
-      cmocka_unit_test(LumenFractionAgrees), cmocka_unit_test(StressAgreesWithFEBio),
-  };
-  int failed;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  failed = cmocka_run_group_tests(tests, SolveAll, NULL);
-  return PetscFinalize() || failed;
-}
+TEST_GROUP(.petsc = 1, .setup = SolveAll);

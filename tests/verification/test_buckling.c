@@ -1,6 +1,6 @@
 /* Tissue buckles under biaxial compression; the buckled state is found and followed. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_buckling.h"
 
 #define BEYOND 0.03 /* strain past the onset */
@@ -28,19 +28,19 @@ static void AssertOnset(int cells, double turgor, double expected, double tolera
   assert_int_equal(LamRVEDestroy(&rve), 0);
 }
 
-static void OneCellBucklesAtTwoPercent(void **state)
+TEST(OneCellBucklesAtTwoPercent)
 {
   AssertOnset(1, 0.0, 0.0227, 2e-4);
 }
 
 /* A pattern of two cells needs half the strain. */
-static void FourCellsBuckleAtHalfThatStrain(void **state)
+TEST(FourCellsBuckleAtHalfThatStrain)
 {
   AssertOnset(2, 0.0, 0.0114, 2e-4);
 }
 
 /* Past the onset the answer is stable and has less energy than the symmetric solution. */
-static void BuckledStateHasLessEnergy(void **state)
+TEST(BuckledStateHasLessEnergy)
 {
   for (int cells = 1; cells < 3; cells++) {
     LamRVE rve = CellsRVE(cells);
@@ -60,7 +60,7 @@ static void BuckledStateHasLessEnergy(void **state)
 
 /* Loaded step by step past the onset the stress hardly grows (before: by 0.0078 a step), and the energy gained is the
    work of the stress. */
-static void BuckledBranchIsFollowed(void **state)
+TEST(BuckledBranchIsFollowed)
 {
   const double step = 0.002;
   LamRVE rve = CellsRVE(1);
@@ -89,7 +89,7 @@ static void BuckledBranchIsFollowed(void **state)
 }
 
 /* At prescribed F turgor does not hold buckling back: in bonded tissue it only adds -p J F^-T (effective stress). */
-static void TurgorDoesNotMoveTheOnset(void **state)
+TEST(TurgorDoesNotMoveTheOnset)
 {
   AssertOnset(1, 0.02 / TISSUE_STRESS, 0.0227, 3e-4);
 }
@@ -112,7 +112,7 @@ static double CellDifference(double strain)
   return difference;
 }
 
-static void CellsDifferOnceTheyHaveBuckledInALongerPattern(void **state)
+TEST(CellsDifferOnceTheyHaveBuckledInALongerPattern)
 {
   assert_near(CellDifference(0.01), 0.0, 1e-9);
   assert_true(CellDifference(0.02) > 0.05);
@@ -139,7 +139,7 @@ static void GetMode(LamRVE rve, LamRVEState at, double *eigenvalue, double motio
 }
 
 /* d2 Pi(y + s m)/ds2 = eigenvalue m.m along the mode m of an unstable state. */
-static void EnergyFallsAlongTheModeOfAnUnstableState(void **state)
+TEST(EnergyFallsAlongTheModeOfAnUnstableState)
 {
   const LamLoad load = PlaneLoad(1 - BEYOND, 0, 0, 1 - BEYOND, 0);
   const double h = 1e-4;
@@ -167,20 +167,4 @@ static void EnergyFallsAlongTheModeOfAnUnstableState(void **state)
   assert_int_equal(LamRVEDestroy(&rve), 0);
 }
 
-int main(int argc, char **argv)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(OneCellBucklesAtTwoPercent),
-      cmocka_unit_test(FourCellsBuckleAtHalfThatStrain),
-      cmocka_unit_test(BuckledStateHasLessEnergy),
-      cmocka_unit_test(BuckledBranchIsFollowed),
-      cmocka_unit_test(TurgorDoesNotMoveTheOnset),
-      cmocka_unit_test(CellsDifferOnceTheyHaveBuckledInALongerPattern),
-      cmocka_unit_test(EnergyFallsAlongTheModeOfAnUnstableState),
-  };
-  int failed;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() || failed;
-}
+TEST_GROUP(.petsc = 1);

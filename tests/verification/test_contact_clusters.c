@@ -1,6 +1,6 @@
 /* Which cells still touch: clusters, percolation and fabric of states whose answer is known. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_contact.h"
 
 static LamResponse SolveCells(int n0, int n1, double orientation, LamLoad load)
@@ -22,7 +22,7 @@ static LamLoad Columns(void)
   return ContactLoad(0.97, 0, 0, 1.1, 0, 0);
 }
 
-static void OnlyTheSqueezedFamilyStaysClosed(void **state)
+TEST(OnlyTheSqueezedFamilyStaysClosed)
 {
   const LamResponse r = SolveCells(1, 1, 0.0, Columns());
 
@@ -32,7 +32,7 @@ static void OnlyTheSqueezedFamilyStaysClosed(void **state)
   assert_true(r.open_by_face[1] > 0.8 && r.open_by_face[2] > 0.8);
 }
 
-static void ColumnsSpanOneDirection(void **state)
+TEST(ColumnsSpanOneDirection)
 {
   const LamResponse r = SolveCells(1, 1, 0.0, Columns());
 
@@ -40,7 +40,7 @@ static void ColumnsSpanOneDirection(void **state)
   assert_int_equal(r.floating_cells, 0);
 }
 
-static void EveryColumnIsACluster(void **state)
+TEST(EveryColumnIsACluster)
 {
   const LamResponse r = SolveCells(1, 2, 0.0, Columns());
 
@@ -49,7 +49,7 @@ static void EveryColumnIsACluster(void **state)
 }
 
 /* A column carries nothing across. */
-static void ColumnsCarryStressAlongThemselvesOnly(void **state)
+TEST(ColumnsCarryStressAlongThemselvesOnly)
 {
   const LamResponse r = SolveCells(1, 1, 0.0, Columns());
 
@@ -58,7 +58,7 @@ static void ColumnsCarryStressAlongThemselvesOnly(void **state)
 }
 
 /* Its direction is that of the squeezed faces' normal, also where the cell is turned. */
-static void FabricPointsAlongTheColumns(void **state)
+TEST(FabricPointsAlongTheColumns)
 {
   const LamLoad turned = ContactLoad(1.1, 0, 0, 0.97, 0, 0);
   const LamResponse r = SolveCells(1, 1, 0.0, Columns()), t = SolveCells(1, 1, PETSC_PI / 2.0, turned);
@@ -70,7 +70,7 @@ static void FabricPointsAlongTheColumns(void **state)
   assert_near(t.fabric[0], r.fabric[1], 1e-6);
 }
 
-static void ClosedTissueIsOneClusterThatSpansThePeriod(void **state)
+TEST(ClosedTissueIsOneClusterThatSpansThePeriod)
 {
   const LamResponse r = SolveCells(2, 2, 0.2, ContactLoad(1, 0, 0, 1, 0.02, 0));
 
@@ -80,7 +80,7 @@ static void ClosedTissueIsOneClusterThatSpansThePeriod(void **state)
 }
 
 /* All three families alike: sum of n (x) n / 3 is half the identity. */
-static void FabricOfClosedTissueIsIsotropic(void **state)
+TEST(FabricOfClosedTissueIsIsotropic)
 {
   const LamResponse r = SolveCells(1, 1, 0.2, ContactLoad(1, 0, 0, 1, 0.02, 0));
 
@@ -89,7 +89,7 @@ static void FabricOfClosedTissueIsIsotropic(void **state)
   assert_near(r.fabric[2], 0.0, 0.02 * r.fabric[0]);
 }
 
-static void TraceOfTheFabricIsTheClosedShare(void **state)
+TEST(TraceOfTheFabricIsTheClosedShare)
 {
   const LamLoad loads[] = {Columns(), ContactLoad(1, 0.2, 0, 1, 0.01, 0), ContactLoad(1.06, 0.05, 0, 1, 0.01, 0.005),
                            ContactLoad(1.1, 0, 0, 1.1, 0, 0)};
@@ -102,7 +102,7 @@ static void TraceOfTheFabricIsTheClosedShare(void **state)
 }
 
 /* Faces 0 stand across the stretch, the others lie along it. */
-static void StretchOpensTheFamilyAcrossItAlone(void **state)
+TEST(StretchOpensTheFamilyAcrossItAlone)
 {
   const LamResponse r = SolveCells(1, 1, 0.0, ContactLoad(1.05, 0, 0, 0.96, 0.01, 0));
 
@@ -112,7 +112,7 @@ static void StretchOpensTheFamilyAcrossItAlone(void **state)
 }
 
 /* The faces whose normals are stretched come apart. */
-static void ShearDebondsTheStretchedFamilyMost(void **state)
+TEST(ShearDebondsTheStretchedFamilyMost)
 {
   const LamResponse r = SolveCells(1, 1, 0.0, ContactLoad(1, 0.15, 0, 1, 0.01, 0));
 
@@ -120,7 +120,7 @@ static void ShearDebondsTheStretchedFamilyMost(void **state)
   assert_true(r.debonded_by_face[1] > 1.5 * r.debonded_by_face[0]);
 }
 
-static void ApartCellsAreClustersOfTheirOwn(void **state)
+TEST(ApartCellsAreClustersOfTheirOwn)
 {
   const LamResponse r = SolveCells(2, 1, 0.0, ContactLoad(1.1, 0, 0, 1.1, 0, 0));
 
@@ -129,26 +129,4 @@ static void ApartCellsAreClustersOfTheirOwn(void **state)
   assert_near(r.fabric[0] + r.fabric[1], 0.0, 1e-12);
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(OnlyTheSqueezedFamilyStaysClosed),
-      cmocka_unit_test(ColumnsSpanOneDirection),
-      cmocka_unit_test(EveryColumnIsACluster),
-      cmocka_unit_test(ColumnsCarryStressAlongThemselvesOnly),
-      cmocka_unit_test(FabricPointsAlongTheColumns),
-      cmocka_unit_test(ClosedTissueIsOneClusterThatSpansThePeriod),
-      cmocka_unit_test(FabricOfClosedTissueIsIsotropic),
-      cmocka_unit_test(TraceOfTheFabricIsTheClosedShare),
-      cmocka_unit_test(StretchOpensTheFamilyAcrossItAlone),
-      cmocka_unit_test(ShearDebondsTheStretchedFamilyMost),
-      cmocka_unit_test(ApartCellsAreClustersOfTheirOwn),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1);

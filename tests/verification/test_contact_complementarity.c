@@ -1,6 +1,6 @@
 /* Pressure only where cells touch, no tension, no overlap on average, and equilibrium. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_contact.h"
 
 #define MESHES 3
@@ -22,25 +22,25 @@ static int SolveAll(void **state)
   return 0;
 }
 
-static void PressureTimesGapVanishes(void **state)
+TEST(PressureTimesGapVanishes)
 {
   for (int k = 0; k < PENETRATION_LOADS; k++)
     for (int m = 0; m < MESHES; m++) assert_near(results[k][m].product, 0.0, 1e-9);
 }
 
-static void NoHatPulls(void **state)
+TEST(NoHatPulls)
 {
   for (int k = 0; k < PENETRATION_LOADS; k++)
     for (int m = 0; m < MESHES; m++) assert_near(results[k][m].tension, 0.0, 1e-9);
 }
 
-static void NoHatOverlaps(void **state)
+TEST(NoHatOverlaps)
 {
   for (int k = 0; k < PENETRATION_LOADS; k++)
     for (int m = 0; m < MESHES; m++) assert_near(results[k][m].overlap, 0.0, 1e-9);
 }
 
-static void PointwisePenetrationFallsWithTheMesh(void **state)
+TEST(PointwisePenetrationFallsWithTheMesh)
 {
   for (int k = 0; k < MODERATE_LOADS; k++)
     for (int m = 1; m < MESHES; m++)
@@ -48,14 +48,14 @@ static void PointwisePenetrationFallsWithTheMesh(void **state)
 }
 
 /* Where a sharp corner presses into a wall, pressure and penetration are singular: they stay small. */
-static void PenetrationAtPressingCornersStaysSmall(void **state)
+TEST(PenetrationAtPressingCornersStaysSmall)
 {
   for (int k = MODERATE_LOADS; k < PENETRATION_LOADS; k++)
     for (int m = 0; m < MESHES; m++) assert_true(results[k][m].response.max_penetration < 5e-3);
 }
 
 /* Where fields are given, also those of an unstable state, they are of an equilibrium at the load that was asked. */
-static void AnswersAreEquilibria(void **state)
+TEST(AnswersAreEquilibria)
 {
   const LamLoad loads[] = {ContactLoad(1.1, 0, 0, 1.1, 0, 0.005), ContactLoad(1.07, 0, 0, 1.07, 0, 0.005),
                            ContactLoad(1, 0.1, 0, 1, 0, 0), ContactLoad(0.97, 0, 0, 1.1, 0, 0)};
@@ -70,21 +70,4 @@ static void AnswersAreEquilibria(void **state)
   }
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(PressureTimesGapVanishes),
-      cmocka_unit_test(NoHatPulls),
-      cmocka_unit_test(NoHatOverlaps),
-      cmocka_unit_test(PointwisePenetrationFallsWithTheMesh),
-      cmocka_unit_test(PenetrationAtPressingCornersStaysSmall),
-      cmocka_unit_test(AnswersAreEquilibria),
-  };
-
-  return cmocka_run_group_tests(tests, SolveAll, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1, .setup = SolveAll);

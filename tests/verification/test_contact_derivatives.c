@@ -1,4 +1,5 @@
 /* Everything a contact response holds is a derivative of its energy: finite differences inside one contact set. */
+#include "support/test.h"
 #include "rve_fixture.h"
 #include "figures_contact_derivatives.h"
 
@@ -17,7 +18,7 @@ static int SweepAll(void **state)
   return 0;
 }
 
-static void StatesConvergeInsideOneContactSet(void **state)
+TEST(StatesConvergeInsideOneContactSet)
 {
   for (int s = 0; s < CONTACT_STATES; s++) {
     assert_int_equal(sweeps[s].response.status, LAM_CONVERGED);
@@ -25,64 +26,44 @@ static void StatesConvergeInsideOneContactSet(void **state)
   }
 }
 
-static void StressIsDerivativeOfEnergy(void **state)
+TEST(StressIsDerivativeOfEnergy)
 {
   for (int s = 0; s < CONTACT_STATES; s++) assert_true(errors[s].stress < 1e-8);
 }
 
-static void LumenIsDerivativeOfEnergy(void **state)
+TEST(LumenIsDerivativeOfEnergy)
 {
   for (int s = 0; s < CONTACT_STATES; s++) assert_true(errors[s].lumen < 1e-8);
 }
 
-static void OpeningIsDerivativeOfEnergy(void **state)
+TEST(OpeningIsDerivativeOfEnergy)
 {
   for (int s = 0; s < CONTACT_STATES; s++) assert_true(errors[s].opening < 1e-8);
 }
 
-static void TangentIsDerivativeOfStress(void **state)
+TEST(TangentIsDerivativeOfStress)
 {
   for (int s = 0; s < CONTACT_STATES; s++) assert_true(errors[s].tangent < 1e-7);
 }
 
-static void DifferencesOfTheStressHaveMajorSymmetry(void **state)
+TEST(DifferencesOfTheStressHaveMajorSymmetry)
 {
   for (int s = 0; s < CONTACT_STATES; s++) assert_true(errors[s].symmetry < 1e-8);
 }
 
-static void TurgorCouplingIsDerivativeOfStressAndLumen(void **state)
+TEST(TurgorCouplingIsDerivativeOfStressAndLumen)
 {
   for (int s = 0; s < CONTACT_STATES; s++) assert_true(errors[s].turgor_coupling < 1e-7);
 }
 
-static void CohesionCouplingIsDerivativeOfStressAndOpening(void **state)
+TEST(CohesionCouplingIsDerivativeOfStressAndOpening)
 {
   for (int s = 0; s < CONTACT_STATES; s++) assert_true(errors[s].cohesion_coupling < 1e-7);
 }
 
-static void SecondDerivativesInTurgorAndCohesionAreThoseOfVolumes(void **state)
+TEST(SecondDerivativesInTurgorAndCohesionAreThoseOfVolumes)
 {
   for (int s = 0; s < CONTACT_STATES; s++) assert_true(errors[s].volumes < 1e-7);
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(StatesConvergeInsideOneContactSet),
-      cmocka_unit_test(StressIsDerivativeOfEnergy),
-      cmocka_unit_test(LumenIsDerivativeOfEnergy),
-      cmocka_unit_test(OpeningIsDerivativeOfEnergy),
-      cmocka_unit_test(TangentIsDerivativeOfStress),
-      cmocka_unit_test(DifferencesOfTheStressHaveMajorSymmetry),
-      cmocka_unit_test(TurgorCouplingIsDerivativeOfStressAndLumen),
-      cmocka_unit_test(CohesionCouplingIsDerivativeOfStressAndOpening),
-      cmocka_unit_test(SecondDerivativesInTurgorAndCohesionAreThoseOfVolumes),
-  };
-
-  return cmocka_run_group_tests(tests, SweepAll, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1, .setup = SweepAll);

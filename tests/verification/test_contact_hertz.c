@@ -1,6 +1,6 @@
 /* Hertz contact of a cylinder with a flat and with an equal cylinder, plane strain. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_contact_blocks.h"
 
 #define TOLERANCE 5e-3
@@ -26,27 +26,27 @@ static double HalfWidthError(const Hertz *hertz)
   return fabs(hertz->half_width / hertz->half_width_theory - 1.0);
 }
 
-static void PeakPressureOnAFlat(void **state)
+TEST(PeakPressureOnAFlat)
 {
   assert_near(PeakError(&fine[0]), 0.0, TOLERANCE);
 }
 
-static void HalfWidthOnAFlat(void **state)
+TEST(HalfWidthOnAFlat)
 {
   assert_near(HalfWidthError(&fine[0]), 0.0, TOLERANCE);
 }
 
-static void PeakPressureOnACylinder(void **state)
+TEST(PeakPressureOnACylinder)
 {
   assert_near(PeakError(&fine[1]), 0.0, TOLERANCE);
 }
 
-static void HalfWidthOnACylinder(void **state)
+TEST(HalfWidthOnACylinder)
 {
   assert_near(HalfWidthError(&fine[1]), 0.0, TOLERANCE);
 }
 
-static void ErrorsFallWithTheMesh(void **state)
+TEST(ErrorsFallWithTheMesh)
 {
   for (int k = 0; k < 2; k++) {
     assert_true(PeakError(&fine[k]) < 0.5 * PeakError(&coarse[k]));
@@ -54,18 +54,4 @@ static void ErrorsFallWithTheMesh(void **state)
   }
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(PeakPressureOnAFlat),     cmocka_unit_test(HalfWidthOnAFlat),
-      cmocka_unit_test(PeakPressureOnACylinder), cmocka_unit_test(HalfWidthOnACylinder),
-      cmocka_unit_test(ErrorsFallWithTheMesh),
-  };
-
-  return cmocka_run_group_tests(tests, Solve, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1, .setup = Solve);

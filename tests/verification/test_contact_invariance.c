@@ -1,4 +1,5 @@
 /* What the answer of contact tissue must not depend on, in a pressurised state whose faces have partly come apart. */
+#include "support/test.h"
 #include "rve_fixture.h"
 #include "figures_contact.h"
 #include "turned_response.h"
@@ -17,7 +18,7 @@ static LamLoad LoadOf(const double F[9])
   return load;
 }
 
-static void RotationOfTheObserver(void **state)
+TEST(RotationOfTheObserver)
 {
   const LamMicrostructure micro = ContactTissue(6, 2);
   const LamResponse a = SolveTissue(&micro, LoadOf(F0));
@@ -34,7 +35,7 @@ static void RotationOfTheObserver(void **state)
 }
 
 /* `orientation` turns the cell: P = R P0(R^T F R) R^T. */
-static void OrientationTurnsTheCell(void **state)
+TEST(OrientationTurnsTheCell)
 {
   LamMicrostructure micro = ContactTissue(6, 2);
   const LamResponse a = SolveTissue(&micro, LoadOf(F0));
@@ -48,7 +49,7 @@ static void OrientationTurnsTheCell(void **state)
   AssertTurnedResponse(&a, &b, R, R, TOLERANCE);
 }
 
-static void NumberOfCells(void **state)
+TEST(NumberOfCells)
 {
   static const int cells[][2] = {{1, 2}, {2, 1}, {2, 2}};
   LamMicrostructure micro = ContactTissue(6, 2);
@@ -65,7 +66,7 @@ static void NumberOfCells(void **state)
 }
 
 /* A two-fold axis makes every slave a master and keeps all pairs. */
-static void RotationOfTheLatticeByAHalfTurn(void **state)
+TEST(RotationOfTheLatticeByAHalfTurn)
 {
   const LamMicrostructure micro = ContactTissue(6, 2);
   const LamResponse a = SolveTissue(&micro, LoadOf(F0));
@@ -101,12 +102,12 @@ static double SymmetryError(int along, int through)
   return error;
 }
 
-static void SymmetriesOfTheLattice(void **state)
+TEST(SymmetriesOfTheLattice)
 {
   assert_near(SymmetryError(6, 2), 0.0, SCATTER);
 }
 
-static void SymmetriesOfTheLatticeOnAFinerMesh(void **state)
+TEST(SymmetriesOfTheLatticeOnAFinerMesh)
 {
   assert_near(SymmetryError(24, 2), 0.0, OTHER_HATS);
 }
@@ -135,7 +136,7 @@ static void SolveScene(const char text[], double P[9])
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-static void SystemOfUnits(void **state)
+TEST(SystemOfUnits)
 {
   static const char *const scenes[3] = {
       SCENE("{apothem: 75 um, wall_thickness: 11.25 um, orientation: 30 deg}",
@@ -156,19 +157,4 @@ static void SystemOfUnits(void **state)
   }
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(RotationOfTheObserver),  cmocka_unit_test(OrientationTurnsTheCell),
-      cmocka_unit_test(NumberOfCells),          cmocka_unit_test(RotationOfTheLatticeByAHalfTurn),
-      cmocka_unit_test(SymmetriesOfTheLattice), cmocka_unit_test(SymmetriesOfTheLatticeOnAFinerMesh),
-      cmocka_unit_test(SystemOfUnits),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1);

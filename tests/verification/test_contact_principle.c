@@ -1,7 +1,7 @@
 /* Effective-stress principle of contact tissue: turgor and cohesion act through their sum s; P + p J F^-T depends on it
    alone as the walls become incompressible. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_contact.h"
 
 static double differences[3][PRINCIPLE_LOADS]; /* over s, at kappa / C1 = 1e3, 1e4, 1e5 */
@@ -18,34 +18,20 @@ static int SolveAll(void **state)
   return 0;
 }
 
-static void AllStatesConverge(void **state)
+TEST(AllStatesConverge)
 {
   assert_int_equal(converged, 3 * PRINCIPLE_LOADS * PRINCIPLE_PAIRS);
 }
 
-static void DifferencesAreSmall(void **state)
+TEST(DifferencesAreSmall)
 {
   for (int i = 0; i < PRINCIPLE_LOADS; i++) assert_near(differences[1][i], 0.0, 2e-3);
 }
 
-static void DifferencesFallAsOneOverBulkModulus(void **state)
+TEST(DifferencesFallAsOneOverBulkModulus)
 {
   for (int k = 1; k < 3; k++)
     for (int i = 0; i < PRINCIPLE_LOADS; i++) assert_near(differences[k - 1][i] / differences[k][i], 10.0, 0.5);
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(AllStatesConverge),
-      cmocka_unit_test(DifferencesAreSmall),
-      cmocka_unit_test(DifferencesFallAsOneOverBulkModulus),
-  };
-
-  return cmocka_run_group_tests(tests, SolveAll, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1, .setup = SolveAll);

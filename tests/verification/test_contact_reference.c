@@ -1,6 +1,6 @@
 /* Contact tissue against values of an independent mortar program (data/contact.json). */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_contact.h"
 
 #define DATA LAMELLA_SOURCE_DIR "/tests/verification/data/contact.json"
@@ -19,38 +19,24 @@ static int SolveAll(void **state)
 }
 
 /* Without turgor there are several discrete solutions: those values are not asserted. */
-static void StressAgrees(void **state)
+TEST(StressAgrees)
 {
   for (int m = 0; m < MESHES; m++)
     for (int k = 0; k < count; k++)
       if (cases[m][k].turgor > 0.0) assert_near(cases[m][k].error, 0.0, cases[m][k].allowed);
 }
 
-static void LumenFractionAgrees(void **state)
+TEST(LumenFractionAgrees)
 {
   for (int m = 0; m < MESHES; m++)
     for (int k = 0; k < count; k++)
       if (cases[m][k].turgor > 0.0) assert_near(cases[m][k].lumen, 0.0, 1e-4);
 }
 
-static void DryStateIsAnswered(void **state)
+TEST(DryStateIsAnswered)
 {
   for (int k = 0; k < count; k++)
     if (cases[0][k].turgor == 0.0) assert_int_equal(cases[0][k].response.status, LAM_CONVERGED);
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(StressAgrees),
-      cmocka_unit_test(LumenFractionAgrees),
-      cmocka_unit_test(DryStateIsAnswered),
-  };
-
-  return cmocka_run_group_tests(tests, SolveAll, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1, .setup = SolveAll);

@@ -1,6 +1,6 @@
 /* What is no answer is refused with its reason, and what is one is not. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_contact.h"
 #include <string.h>
 
@@ -14,7 +14,7 @@ static LamResponse Solve(double clearance, LamLoad load)
 
 /* Cells that are a clearance apart touch, undeformed, where F brings them that much nearer: walls then have turgor on
    both sides, and P = -p cof F. */
-static void ClearanceIsTheDistanceOfCells(void **state)
+TEST(ClearanceIsTheDistanceOfCells)
 {
   const double clearance = 0.1, near = 1 - 0.5 * clearance;
   const LamLoad load = ContactLoad(near, 0, 0, near, 0.02, 0);
@@ -47,7 +47,7 @@ static void FindLargestTurgor(double turgor, double between[2])
   between[1] *= turgor;
 }
 
-static void StableStatesEndAtTheSameTurgorOnWhateverWay(void **state)
+TEST(StableStatesEndAtTheSameTurgorOnWhateverWay)
 {
   double small[2], large[2];
 
@@ -58,7 +58,7 @@ static void StableStatesEndAtTheSameTurgorOnWhateverWay(void **state)
 }
 
 /* Suction can turn a cell inside out: its walls have passed through each other. */
-static void CellInsideOutIsNoAnswer(void **state)
+TEST(CellInsideOutIsNoAnswer)
 {
   const LamResponse r = Solve(0.0, ContactLoad(1.1, 0.1, 0, 1, -0.02, 0.001));
 
@@ -66,7 +66,7 @@ static void CellInsideOutIsNoAnswer(void **state)
 }
 
 /* Thick walls have no room for a compression: they are followed from rest to where their lumens shut. */
-static void LostTissueHasItsBracket(void **state)
+TEST(LostTissueHasItsBracket)
 {
   LamMicrostructure micro = ContactTissue(4, 2);
   LamResponse r;
@@ -78,7 +78,7 @@ static void LostTissueHasItsBracket(void **state)
   assert_non_null(strstr(r.reason, "; from rest"));
 }
 
-static void CohesionMustBeANumberAndNotNegative(void **state)
+TEST(CohesionMustBeANumberAndNotNegative)
 {
   const double values[] = {-0.001, NAN, INFINITY};
 
@@ -91,7 +91,7 @@ static void CohesionMustBeANumberAndNotNegative(void **state)
 }
 
 /* A failed solve leaves the state as it was, also its bonded part: the next answer does not depend on it. */
-static void FailureLeavesTheState(void **state)
+TEST(FailureLeavesTheState)
 {
   LamMicrostructure micro = ContactTissue(6, 2);
   const LamLoad hopeless = ContactLoad(0.3, 0, 0, 0.3, 0, 0), load = ContactLoad(1, 0.1, 0, 1, 0.02, 0);
@@ -113,21 +113,4 @@ static void FailureLeavesTheState(void **state)
   assert_int_equal(LamRVEDestroy(&rve), 0);
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(ClearanceIsTheDistanceOfCells),
-      cmocka_unit_test(StableStatesEndAtTheSameTurgorOnWhateverWay),
-      cmocka_unit_test(CellInsideOutIsNoAnswer),
-      cmocka_unit_test(LostTissueHasItsBracket),
-      cmocka_unit_test(CohesionMustBeANumberAndNotNegative),
-      cmocka_unit_test(FailureLeavesTheState),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1);

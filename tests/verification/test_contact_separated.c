@@ -1,6 +1,6 @@
 /* Cells that nothing holds together: no stress, no stiffness, and a state that says so. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_contact.h"
 
 #define C1 (0.1 / TISSUE_STRESS)
@@ -19,7 +19,7 @@ static LamResponse SolveApart(int k, double cohesion)
   return SolveTissue(&micro, ContactLoad(apart[k][0], apart[k][1], apart[k][2], apart[k][3], 0, cohesion));
 }
 
-static void StateIsConvergedAndFloats(void **state)
+TEST(StateIsConvergedAndFloats)
 {
   for (int k = 0; k < APART; k++) {
     const LamResponse r = SolveApart(k, 0.0);
@@ -30,7 +30,7 @@ static void StateIsConvergedAndFloats(void **state)
   }
 }
 
-static void StressVanishes(void **state)
+TEST(StressVanishes)
 {
   for (int k = 0; k < APART; k++) {
     const LamResponse r = SolveApart(k, 0.0);
@@ -39,7 +39,7 @@ static void StressVanishes(void **state)
   }
 }
 
-static void StiffnessVanishes(void **state)
+TEST(StiffnessVanishes)
 {
   for (int k = 0; k < APART; k++) {
     const LamResponse r = SolveApart(k, 0.0);
@@ -51,7 +51,7 @@ static void StiffnessVanishes(void **state)
 }
 
 /* Two separate rings too, each of which can move and spin on its own. */
-static void EveryCellFloats(void **state)
+TEST(EveryCellFloats)
 {
   LamMicrostructure micro = ContactTissue(6, 2);
   LamResponse r;
@@ -64,7 +64,7 @@ static void EveryCellFloats(void **state)
   for (int i = 0; i < 9; i++) assert_near(r.P[i], 0.0, 1e-8 * C1);
 }
 
-static void OpeningIsTheGrowthOfTheTissue(void **state)
+TEST(OpeningIsTheGrowthOfTheTissue)
 {
   for (int k = 0; k < APART; k++) {
     const LamResponse r = SolveApart(k, 0.0);
@@ -74,14 +74,14 @@ static void OpeningIsTheGrowthOfTheTissue(void **state)
 }
 
 /* Parallel faces: twice the apothem's growth, where cells keep their orientation. */
-static void GapIsThatOfTheFaces(void **state)
+TEST(GapIsThatOfTheFaces)
 {
   assert_near(SolveApart(0, 0.0).max_gap, 2.0 * (apart[0][0] - 1.0), 1e-3);
   assert_near(SolveApart(2, 0.0).max_gap, 2.0 * (apart[2][0] - 1.0), 1e-3);
 }
 
 /* Walls of a cell that bulges face each other at their middles, wherever the next cell is. */
-static void SmallestGapGivesTheWidthOfTheCell(void **state)
+TEST(SmallestGapGivesTheWidthOfTheCell)
 {
   const LamMicrostructure micro = ContactTissue(6, 2);
   double width[3];
@@ -97,7 +97,7 @@ static void SmallestGapGivesTheWidthOfTheCell(void **state)
   assert_true(width[0] > 2.2 && width[0] < 2.5);
 }
 
-static void SmallestGapIsZeroWhereWallsTouch(void **state)
+TEST(SmallestGapIsZeroWhereWallsTouch)
 {
   const LamMicrostructure micro = ContactTissue(6, 2);
   const LamResponse r = SolveTissue(&micro, ContactLoad(1.0, 0.3, 0, 1.0, 0, 0.0025));
@@ -106,7 +106,7 @@ static void SmallestGapIsZeroWhereWallsTouch(void **state)
   assert_true(r.min_gap == 0.0);
 }
 
-static void BondedTissueHasNoSmallestGap(void **state)
+TEST(BondedTissueHasNoSmallestGap)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamResponse r = SolveTissue(&micro, PlaneLoad(1.0, 0.1, 0, 1.0, 0.1));
@@ -116,7 +116,7 @@ static void BondedTissueHasNoSmallestGap(void **state)
 }
 
 /* The middle lamella pulls with g on everything: P = g cof F in the plane. */
-static void CohesionAloneIsAHydrostaticStress(void **state)
+TEST(CohesionAloneIsAHydrostaticStress)
 {
   for (int k = FAR; k < APART; k++) {
     const LamResponse r = SolveApart(k, 0.005);
@@ -129,7 +129,7 @@ static void CohesionAloneIsAHydrostaticStress(void **state)
 }
 
 /* Free rings under suction are the same wherever they are. */
-static void RingsApartDoNotFeelTheDistance(void **state)
+TEST(RingsApartDoNotFeelTheDistance)
 {
   double ring[APART];
 
@@ -143,7 +143,7 @@ static void RingsApartDoNotFeelTheDistance(void **state)
 }
 
 /* What is not known is NaN by its meaning only: out-of-plane shear, the second mesh, the softest mode, the estimate. */
-static void EverythingElseIsANumber(void **state)
+TEST(EverythingElseIsANumber)
 {
   for (int k = 0; k < 2 * APART; k++) {
     const LamResponse r = SolveApart(k / 2, k % 2 ? 0.005 : 0.0);
@@ -163,27 +163,4 @@ static void EverythingElseIsANumber(void **state)
   }
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(StateIsConvergedAndFloats),
-      cmocka_unit_test(StressVanishes),
-      cmocka_unit_test(StiffnessVanishes),
-      cmocka_unit_test(EveryCellFloats),
-      cmocka_unit_test(OpeningIsTheGrowthOfTheTissue),
-      cmocka_unit_test(GapIsThatOfTheFaces),
-      cmocka_unit_test(SmallestGapGivesTheWidthOfTheCell),
-      cmocka_unit_test(SmallestGapIsZeroWhereWallsTouch),
-      cmocka_unit_test(BondedTissueHasNoSmallestGap),
-      cmocka_unit_test(CohesionAloneIsAHydrostaticStress),
-      cmocka_unit_test(RingsApartDoNotFeelTheDistance),
-      cmocka_unit_test(EverythingElseIsANumber),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1);

@@ -4,8 +4,8 @@
   angles of the order of the strain, and pressure times angle compares with the differences between the tractions. With
   the current directions of the contact forces it holds under turgor, too. Errors are over the spread between the faces.
 */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_contact.h"
 
 #define STRAINS 3
@@ -29,41 +29,26 @@ static int SolveAll(void **state)
   return 0;
 }
 
-static void FormulaOfSmallStrainsHolds(void **state)
+TEST(FormulaOfSmallStrainsHolds)
 {
   for (int k = 0; k < WEAK_LOADS; k++) assert_near(weak[k][STRAINS - 1].reference, 0.0, 0.01);
 }
 
-static void ItsErrorFallsWithTheStrain(void **state)
+TEST(ItsErrorFallsWithTheStrain)
 {
   for (int k = 0; k < WEAK_LOADS; k++)
     for (int s = 1; s < STRAINS; s++) assert_true(weak[k][s].reference < 0.6 * weak[k][s - 1].reference);
 }
 
-static void StaticsOfTheCurrentFacesHoldsUnderTurgor(void **state)
+TEST(StaticsOfTheCurrentFacesHoldsUnderTurgor)
 {
   for (int k = 0; k < LOADS; k++) assert_near(turgid[k][STRAINS - 1].current, 0.0, 0.01);
 }
 
-static void ItsErrorFallsWithTheStrainToo(void **state)
+TEST(ItsErrorFallsWithTheStrainToo)
 {
   for (int k = 0; k < LOADS; k++)
     for (int s = 1; s < STRAINS; s++) assert_true(turgid[k][s].current < 0.6 * turgid[k][s - 1].current);
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(FormulaOfSmallStrainsHolds),
-      cmocka_unit_test(ItsErrorFallsWithTheStrain),
-      cmocka_unit_test(StaticsOfTheCurrentFacesHoldsUnderTurgor),
-      cmocka_unit_test(ItsErrorFallsWithTheStrainToo),
-  };
-
-  return cmocka_run_group_tests(tests, SolveAll, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1, .setup = SolveAll);

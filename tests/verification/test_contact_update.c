@@ -1,4 +1,5 @@
 /* The step of an active set that differs in a few hats, from the factor of another one, is that of its own factor. */
+#include "support/test.h"
 #include "rve_fixture.h"
 #include "solve.h"
 
@@ -96,24 +97,24 @@ static void AssertUpdates(int dropped, int taken, PetscReal compliance)
   Destroy(&s);
 }
 
-static void HatsLetGo(void **state)
+TEST(HatsLetGo)
 {
   AssertUpdates(1, 0, 0.0);
   AssertUpdates(4, 0, 0.0);
 }
 
-static void HatsTakenIn(void **state)
+TEST(HatsTakenIn)
 {
   AssertUpdates(0, 1, 0.0);
   AssertUpdates(0, 2, 0.0);
 }
 
-static void BothWithCompliance(void **state)
+TEST(BothWithCompliance)
 {
   AssertUpdates(2, 1, 0.01);
 }
 
-static void TooManyChangesAreRefused(void **state)
+TEST(TooManyChangesAreRefused)
 {
   System s = NewSystem();
   PetscBool ok;
@@ -126,19 +127,4 @@ static void TooManyChangesAreRefused(void **state)
   Destroy(&s);
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(HatsLetGo),
-      cmocka_unit_test(HatsTakenIn),
-      cmocka_unit_test(BothWithCompliance),
-      cmocka_unit_test(TooManyChangesAreRefused),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1);

@@ -2,8 +2,8 @@
   Cells in contact that hold or exchange their water: what a cache is worth where errors of its lumens become pressures,
   against direct solves of the same.
 */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include <lamella/cache.h>
 #include <lamella/lamella.h>
 #include <string.h>
@@ -88,7 +88,7 @@ static LamProcessState FollowPoint(const char text[], PetscBool cached)
   return last;
 }
 
-static void a_point_has_the_turgor_of_direct_solves(void **state)
+TEST(a_point_has_the_turgor_of_direct_solves)
 {
   const char *text = CELLS "  interface: {law: contact, cohesion: 0.3 MPa}\n  turgor: {pressure: 0.2 MPa}\n" STORAGE;
   const LamProcessState solved = FollowPoint(text, PETSC_FALSE), answered = FollowPoint(text, PETSC_TRUE);
@@ -138,7 +138,7 @@ static LamBodyState FollowBody(const char text[], PetscBool cached, PetscReal *f
   "  boundary: [{on: bottom, displacement: [0 mm, 0 mm]}, {on: top, grip: [1 mm, free]}]\n"
 
 /* The table is good for 1 % of |P|, of which shear is a small part: 4.5 % of the force also at prescribed turgor. */
-static void a_body_has_the_turgor_and_the_force_of_direct_solves(void **state)
+TEST(a_body_has_the_turgor_and_the_force_of_direct_solves)
 {
   const char *text =
       CELLS "  interface: {law: contact, cohesion: 0.3 MPa}\n  turgor: {pressure: 0.2 MPa}\n" BLOCK STORAGE
@@ -178,7 +178,7 @@ static LamMacroStep SolveSealedBody(const char text[], PetscBool cached)
   return last;
 }
 
-static void a_sealed_body_has_the_force_of_direct_solves(void **state)
+TEST(a_sealed_body_has_the_force_of_direct_solves)
 {
   const char *text = CELLS "  interface: {law: contact, cohesion: 0.1 MPa}\n"
                            "  turgor: {pressure: 0.1 MPa, mode: sealed}\n" BLOCK "  steps: 4\n";
@@ -187,18 +187,4 @@ static void a_sealed_body_has_the_force_of_direct_solves(void **state)
   assert_near(answered.reaction[1][0] / solved.reaction[1][0], 1, 0.02);
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_point_has_the_turgor_of_direct_solves),
-      cmocka_unit_test(a_body_has_the_turgor_and_the_force_of_direct_solves),
-      cmocka_unit_test(a_sealed_body_has_the_force_of_direct_solves),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1);

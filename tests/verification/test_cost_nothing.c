@@ -1,5 +1,6 @@
 /* Features that a scene leaves off take no unknowns, no entries of the matrix, no factorisations, and change no digit.
  */
+#include "support/test.h"
 #include "rve_fixture.h"
 #include "bare_tissue.h"
 #include "figures_contact_derivatives.h"
@@ -70,7 +71,7 @@ static PetscInt CountPairs(const LamMesh *mesh)
 
 /* Contact, cohesion, sealed lumens: off, they leave the matrix to the positions of the walls, 2 x 2 for a pair of
    nodes, of which a diagonal block has 3. */
-static void BondedTissueHasTheMatrixOfItsWalls(void **state)
+TEST(BondedTissueHasTheMatrixOfItsWalls)
 {
   static const PetscInt cells[][2] = {{1, 1}, {2, 1}, {3, 2}};
 
@@ -90,7 +91,7 @@ static void BondedTissueHasTheMatrixOfItsWalls(void **state)
   }
 }
 
-static void SolvesAsWallsAloneDo(void **state)
+TEST(SolvesAsWallsAloneDo)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamLoad load = PlaneLoad(1.02, 0.1, 0, 1, 0);
@@ -111,7 +112,7 @@ static void SolvesAsWallsAloneDo(void **state)
   Destroy(&s);
 }
 
-static void BondedTissueDoesNotFeelCohesion(void **state)
+TEST(BondedTissueDoesNotFeelCohesion)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamLoad without = PlaneLoad(1, 0.1, 0, 1, 0.1);
@@ -127,7 +128,7 @@ static void BondedTissueDoesNotFeelCohesion(void **state)
 }
 
 /* Also in contact. */
-static void ListedCellsThatAreAlikeAreNoOtherProblem(void **state)
+TEST(ListedCellsThatAreAlikeAreNoOtherProblem)
 {
   const LamLoad load = ContactLoad(1, 0.1, 0, 1, 0.02, 0.005);
 
@@ -150,7 +151,7 @@ static void ListedCellsThatAreAlikeAreNoOtherProblem(void **state)
 }
 
 /* Room for one pressure in each lumen, and only where it is asked for. */
-static void OnlySealableLumensHaveUnknowns(void **state)
+TEST(OnlySealableLumensHaveUnknowns)
 {
   LamMicrostructure micro = DefaultTissue();
   LamRVE open, sealable;
@@ -168,7 +169,7 @@ static void OnlySealableLumensHaveUnknowns(void **state)
 }
 
 /* Also of contact tissue, whose bonded start is asked for nothing in any case. */
-static void WhatIsNotAskedForChangesNoAnswer(void **state)
+TEST(WhatIsNotAskedForChangesNoAnswer)
 {
   const LamLoad load = ContactLoad(1, 0.1, 0, 1, 0.02, 0.005);
 
@@ -187,7 +188,7 @@ static void WhatIsNotAskedForChangesNoAnswer(void **state)
 }
 
 /* The tangent is then needed to judge the state. */
-static void PrescribedStressDerivesInAnyCase(void **state)
+TEST(PrescribedStressDerivesInAnyCase)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamLoad load = PlaneLoad(1.1, 0, 0, 1, 0.1);
@@ -209,19 +210,4 @@ static void PrescribedStressDerivesInAnyCase(void **state)
   assert_memory_equal(responses[0].P, responses[1].P, sizeof(responses[0].P));
 }
 
-static int RunTests(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(BondedTissueHasTheMatrixOfItsWalls), cmocka_unit_test(SolvesAsWallsAloneDo),
-      cmocka_unit_test(BondedTissueDoesNotFeelCohesion),    cmocka_unit_test(ListedCellsThatAreAlikeAreNoOtherProblem),
-      cmocka_unit_test(OnlySealableLumensHaveUnknowns),     cmocka_unit_test(WhatIsNotAskedForChangesNoAnswer),
-      cmocka_unit_test(PrescribedStressDerivesInAnyCase),
-  };
-
-  return cmocka_run_group_tests_name("cost nothing", tests, NULL, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, RunTests);
-}
+TEST_GROUP(.petsc = 1);

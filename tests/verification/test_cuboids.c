@@ -1,6 +1,6 @@
 /* Two cuboids in contact under generalised shear (Mihai, Safar & Wyatt, Section 4.1). */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_cuboids.h"
 
 #define SHEAR 0.5
@@ -27,14 +27,14 @@ static int Solve(void **state)
   return 0;
 }
 
-static void LargestGapIsConvergedTo2PerCent(void **state)
+TEST(LargestGapIsConvergedTo2PerCent)
 {
   const CuboidsProfile fine = Profile(CuboidsUnequal(FINE, SHEAR, pressures[1]));
 
   assert_near(unequal[1].largest / fine.largest, 1.0, 0.02);
 }
 
-static void GapOpensWhereFibresAreOfUnequalStiffness(void **state)
+TEST(GapOpensWhereFibresAreOfUnequalStiffness)
 {
   const CuboidsProfile equal = Profile(CuboidsDefault(N, SHEAR, 0.0));
 
@@ -42,14 +42,14 @@ static void GapOpensWhereFibresAreOfUnequalStiffness(void **state)
   assert_true(unequal[0].apart > 0.3);
 }
 
-static void PressureClosesTheGap(void **state)
+TEST(PressureClosesTheGap)
 {
   for (int k = 1; k < PRESSURES; k++) assert_true(unequal[k].area < unequal[k - 1].area);
   assert_true(unequal[PRESSURES - 1].largest < 0.02 * unequal[0].largest);
 }
 
 /* Turning the blocks upside down turns the sign of the shear. */
-static void OppositeShearTurnsTheGapUpsideDown(void **state)
+TEST(OppositeShearTurnsTheGapUpsideDown)
 {
   const CuboidsProfile opposite = Profile(CuboidsUnequal(N, -SHEAR, pressures[1]));
 
@@ -57,7 +57,7 @@ static void OppositeShearTurnsTheGapUpsideDown(void **state)
 }
 
 /* Mirrored from left to right, the other body is the slave. */
-static void ChoiceOfTheSlaveDoesNotMatter(void **state)
+TEST(ChoiceOfTheSlaveDoesNotMatter)
 {
   CuboidsSetup setup = CuboidsUnequal(N, -SHEAR, 0.0);
   const LamWall left = setup.wall[0];
@@ -71,7 +71,7 @@ static void ChoiceOfTheSlaveDoesNotMatter(void **state)
 }
 
 /* Grips, pressure on the outer side and the pressure that the contact gives to the left body. */
-static void ForcesBalanceAcrossTheInterface(void **state)
+TEST(ForcesBalanceAcrossTheInterface)
 {
   CuboidsSetup setup = CuboidsUnequal(N, SHEAR, 0.02);
   CuboidsProfile profile;
@@ -89,7 +89,7 @@ static void ForcesBalanceAcrossTheInterface(void **state)
 }
 
 /* Up to pressure over bulk modulus, here a tenth of the default. */
-static void CohesionActsAsPressure(void **state)
+TEST(CohesionActsAsPressure)
 {
   CuboidsSetup setup = CuboidsUnequal(N, SHEAR, pressures[2]);
   CuboidsProfile pressed, held;
@@ -103,7 +103,7 @@ static void CohesionActsAsPressure(void **state)
 }
 
 /* Faces without traction let the blocks thin along X3 and press on each other. */
-static void FreedomAlongX3ClosesTheGap(void **state)
+TEST(FreedomAlongX3ClosesTheGap)
 {
   CuboidsSetup setup = CuboidsUnequal(N, 0.2, 0.0);
   CuboidsProfile strain = Profile(setup), stress;
@@ -113,23 +113,4 @@ static void FreedomAlongX3ClosesTheGap(void **state)
   assert_true(stress.largest < 0.1 * strain.largest);
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(LargestGapIsConvergedTo2PerCent),
-      cmocka_unit_test(GapOpensWhereFibresAreOfUnequalStiffness),
-      cmocka_unit_test(PressureClosesTheGap),
-      cmocka_unit_test(OppositeShearTurnsTheGapUpsideDown),
-      cmocka_unit_test(ChoiceOfTheSlaveDoesNotMatter),
-      cmocka_unit_test(ForcesBalanceAcrossTheInterface),
-      cmocka_unit_test(CohesionActsAsPressure),
-      cmocka_unit_test(FreedomAlongX3ClosesTheGap),
-  };
-
-  return cmocka_run_group_tests(tests, Solve, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1, .setup = Solve);

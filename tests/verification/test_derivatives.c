@@ -1,7 +1,7 @@
 /* Everything a response holds is a derivative of its energy: finite differences at random states, F33 != 1 among them.
  */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_derivatives.h"
 
 #define STATES 6
@@ -23,20 +23,20 @@ static int SolveAll(void **state)
   return 0;
 }
 
-static void StressIsDerivativeOfEnergy(void **state)
+TEST(StressIsDerivativeOfEnergy)
 {
   for (int s = 0; s < STATES; s++)
     for (int c = 0; c < 5; c++)
       assert_near(sweeps[s].response.P[sweep_columns[c]], sweeps[s].energy[sweep_columns[c]], 1e-8);
 }
 
-static void LumenIsDerivativeOfEnergy(void **state)
+TEST(LumenIsDerivativeOfEnergy)
 {
   for (int s = 0; s < STATES; s++)
     assert_near(-sweeps[s].response.lumen_fraction, sweeps[s].energy[SWEEP_TURGOR], 1e-8);
 }
 
-static void TangentIsDerivativeOfStress(void **state)
+TEST(TangentIsDerivativeOfStress)
 {
   for (int s = 0; s < STATES; s++) {
     const LamResponse *r = &sweeps[s].response;
@@ -52,7 +52,7 @@ static void TangentIsDerivativeOfStress(void **state)
   }
 }
 
-static void TangentHasMajorSymmetry(void **state)
+TEST(TangentHasMajorSymmetry)
 {
   for (int s = 0; s < STATES; s++)
     for (int i = 0; i < 5; i++)
@@ -63,27 +63,27 @@ static void TangentHasMajorSymmetry(void **state)
       }
 }
 
-static void TurgorCouplingIsDerivativeOfStress(void **state)
+TEST(TurgorCouplingIsDerivativeOfStress)
 {
   for (int s = 0; s < STATES; s++)
     for (int i = 0; i < 5; i++)
       assert_near(sweeps[s].response.P_turgor[sweep_columns[i]], sweeps[s].P[SWEEP_TURGOR][sweep_columns[i]], 1e-7);
 }
 
-static void TurgorCouplingIsDerivativeOfLumen(void **state)
+TEST(TurgorCouplingIsDerivativeOfLumen)
 {
   for (int s = 0; s < STATES; s++)
     for (int i = 0; i < 5; i++)
       assert_near(sweeps[s].response.P_turgor[sweep_columns[i]], -sweeps[s].lumen[sweep_columns[i]], 1e-7);
 }
 
-static void SecondTurgorDerivativeIsThatOfLumen(void **state)
+TEST(SecondTurgorDerivativeIsThatOfLumen)
 {
   for (int s = 0; s < STATES; s++) assert_near(sweeps[s].response.energy_turgor2, -sweeps[s].lumen[SWEEP_TURGOR], 1e-7);
 }
 
 /* What plane strain cannot know is not a number, never zero. */
-static void OutOfPlaneShearTangentIsUnknown(void **state)
+TEST(OutOfPlaneShearTangentIsUnknown)
 {
   static const int unknown[4] = {2, 5, 6, 7};
 
@@ -95,7 +95,7 @@ static void OutOfPlaneShearTangentIsUnknown(void **state)
 }
 
 /* At F = I under turgor walls and fluid carry the same pressure: P = -p 1 up to the walls' compressibility p/kappa. */
-static void PressureFillsTheTissueAsBulkModulusGrows(void **state)
+TEST(PressureFillsTheTissueAsBulkModulusGrows)
 {
   const double p = 0.02 / TISSUE_STRESS;
   double previous = 1.0;
@@ -114,22 +114,4 @@ static void PressureFillsTheTissueAsBulkModulusGrows(void **state)
   }
 }
 
-int main(int argc, char **argv)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(StressIsDerivativeOfEnergy),
-      cmocka_unit_test(LumenIsDerivativeOfEnergy),
-      cmocka_unit_test(TangentIsDerivativeOfStress),
-      cmocka_unit_test(TangentHasMajorSymmetry),
-      cmocka_unit_test(TurgorCouplingIsDerivativeOfStress),
-      cmocka_unit_test(TurgorCouplingIsDerivativeOfLumen),
-      cmocka_unit_test(SecondTurgorDerivativeIsThatOfLumen),
-      cmocka_unit_test(OutOfPlaneShearTangentIsUnknown),
-      cmocka_unit_test(PressureFillsTheTissueAsBulkModulusGrows),
-  };
-  int failed;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  failed = cmocka_run_group_tests(tests, SolveAll, NULL);
-  return PetscFinalize() || failed;
-}
+TEST_GROUP(.petsc = 1, .setup = SolveAll);

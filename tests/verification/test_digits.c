@@ -1,4 +1,5 @@
 /* Rounding errors of shipped responses against the same discrete problem in extended precision. */
+#include "support/test.h"
 #include "rve_fixture.h"
 #include "digits.h"
 #include "rounding.h"
@@ -37,7 +38,7 @@ static void AssertWithinModel(const LamMicrostructure *micro, LamLoad load)
   assert_true(d.tangent < LamTangentRounding(micro));
 }
 
-static void RandomStatesStayWithinTheModel(void **state)
+TEST(RandomStatesStayWithinTheModel)
 {
   uint64_t seed = 41;
 
@@ -51,7 +52,7 @@ static void RandomStatesStayWithinTheModel(void **state)
   }
 }
 
-static void ExtremesStayWithinTheModel(void **state)
+TEST(ExtremesStayWithinTheModel)
 {
   const LamMicrostructure stiff = Tissue(1e7, 0.15, 10), thin = Tissue(1e3, 0.005, 10), thick = Tissue(1e3, 0.8, 10);
 
@@ -60,7 +61,7 @@ static void ExtremesStayWithinTheModel(void **state)
   AssertWithinModel(&thick, PlaneLoad(1.1, 0, 0, 1.05, 0.2));
 }
 
-static void ContactLosesNoMore(void **state)
+TEST(ContactLosesNoMore)
 {
   LamMicrostructure micro = Tissue(1e6, 0.15, 10);
   LamLoad load = PlaneLoad(1, 0.1, 0, 1, 0.2);
@@ -71,7 +72,7 @@ static void ContactLosesNoMore(void **state)
 }
 
 /* Dry tissue at F = I has no stress at all. */
-static void SmallStrainsKeepTheirDigits(void **state)
+TEST(SmallStrainsKeepTheirDigits)
 {
   const LamMicrostructure micro = Tissue(1e3, 0.15, 10);
 
@@ -82,7 +83,7 @@ static void SmallStrainsKeepTheirDigits(void **state)
 }
 
 /* The reference does not depend on its own precision. */
-static void LongAndQuadAgree(void **state)
+TEST(LongAndQuadAgree)
 {
   const LamMicrostructure micro = Tissue(1e5, 0.05, 10);
   const LamLoad load = PlaneLoad(1, 0.2, 0, 1, 0.2);
@@ -93,20 +94,4 @@ static void LongAndQuadAgree(void **state)
   assert_true(fabs(quad.tangent - longer.tangent) < 0.01 * quad.tangent);
 }
 
-static int RunTests(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(RandomStatesStayWithinTheModel),
-      cmocka_unit_test(ExtremesStayWithinTheModel),
-      cmocka_unit_test(ContactLosesNoMore),
-      cmocka_unit_test(SmallStrainsKeepTheirDigits),
-      cmocka_unit_test(LongAndQuadAgree),
-  };
-
-  return cmocka_run_group_tests_name("digits", tests, NULL, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, RunTests);
-}
+TEST_GROUP(.petsc = 1);

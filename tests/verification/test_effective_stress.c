@@ -1,4 +1,5 @@
 /* Effective-stress principle of bonded tissue: P + p J F^-T does not depend on p as the walls become incompressible. */
+#include "support/test.h"
 #include "rve_fixture.h"
 #include "figures_effective_stress.h"
 
@@ -11,25 +12,14 @@ static int SolveAll(void **state)
   return 0;
 }
 
-static void RemainderIsSmall(void **state)
+TEST(RemainderIsSmall)
 {
   assert_true(remainders[1] < 0.02);
 }
 
-static void RemainderFallsAsOneOverBulkModulus(void **state)
+TEST(RemainderFallsAsOneOverBulkModulus)
 {
   for (int k = 1; k < 3; k++) assert_in_range((int)(100.0 * remainders[k - 1] / remainders[k]), 900, 1100);
 }
 
-int main(int argc, char **argv)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(RemainderIsSmall),
-      cmocka_unit_test(RemainderFallsAsOneOverBulkModulus),
-  };
-  int failed;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  failed = cmocka_run_group_tests(tests, SolveAll, NULL);
-  return PetscFinalize() || failed;
-}
+TEST_GROUP(.petsc = 1, .setup = SolveAll);

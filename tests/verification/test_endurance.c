@@ -68,9 +68,13 @@ static int Run(void)
 /* What free() keeps for its own thread counts as in use; so it must keep nothing, which it is told before it starts. */
 int main(int argc, char **argv)
 {
+  int failed;
+
   if (!getenv("GLIBC_TUNABLES")) {
     setenv("GLIBC_TUNABLES", "glibc.malloc.tcache_count=0", 1);
     execv("/proc/self/exe", argv);
   }
-  return RunWithPetsc(argc, argv, Run);
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  failed = Run();
+  return PetscFinalize() || failed;
 }

@@ -1,6 +1,6 @@
 /* The estimate of the error of P from half as many elements, against the error on a fine mesh. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "solve.h"
 
 #define STATES 6
@@ -60,7 +60,7 @@ static int CountWithin(double factor, LamInterfaceLawType interface, double grad
 }
 
 /* Finer meshes wrinkle where these cannot: sheared by 0.5, P is 3 % off where half as many elements tell 0.4 %. */
-static void IsLargerWhereWallsKink(void **state)
+TEST(IsLargerWhereWallsKink)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamLoad load = PlaneLoad(1, 0.5, 0, 1, 0);
@@ -70,19 +70,19 @@ static void IsLargerWhereWallsKink(void **state)
   assert_true(known.error_estimate > 3.0 * unknown.error_estimate);
 }
 
-static void IsNearTheErrorOfBondedTissue(void **state)
+TEST(IsNearTheErrorOfBondedTissue)
 {
   assert_int_equal(CountWithin(5, LAM_INTERFACE_BONDED, 0.7, 6), STATES);
   assert_true(CountWithin(3, LAM_INTERFACE_BONDED, 0.0, 6) >= STATES - 1);
 }
 
-static void IsNearTheErrorOfContactTissue(void **state)
+TEST(IsNearTheErrorOfContactTissue)
 {
   assert_true(CountWithin(5, LAM_INTERFACE_CONTACT, 0.0, 6) >= STATES - 1);
 }
 
 /* An odd number of elements along a face cannot be halved. */
-static void IsNotKnownForOddMeshes(void **state)
+TEST(IsNotKnownForOddMeshes)
 {
   LamMicrostructure micro = DefaultTissue();
 
@@ -91,7 +91,7 @@ static void IsNotKnownForOddMeshes(void **state)
 }
 
 /* Both meshes are far too coarse for walls of 0.005 apothems, which bend next to junctions. */
-static void IsNotKnownForMeshesThatTellNothing(void **state)
+TEST(IsNotKnownForMeshesThatTellNothing)
 {
   LamMicrostructure micro = DefaultTissue();
 
@@ -100,7 +100,7 @@ static void IsNotKnownForMeshesThatTellNothing(void **state)
 }
 
 /* Edges of ten times the thickness: errors fall with the first power of their length, by half for half the length. */
-static void IsTheWholeDifferenceWhereErrorsFallSlowly(void **state)
+TEST(IsTheWholeDifferenceWhereErrorsFallSlowly)
 {
   LamMicrostructure micro = DefaultTissue(), coarse;
   LamResponse estimated, half;
@@ -115,7 +115,7 @@ static void IsTheWholeDifferenceWhereErrorsFallSlowly(void **state)
   assert_near(estimated.error_estimate, LamStressError(half.P, estimated.P), 1e-6);
 }
 
-static void ChangesNothingOfTheState(void **state)
+TEST(ChangesNothingOfTheState)
 {
   LamMicrostructure micro = DefaultTissue();
   LamRVE rve = NewRVE(&micro);
@@ -126,22 +126,4 @@ static void ChangesNothingOfTheState(void **state)
   assert_int_equal(LamRVEDestroy(&rve), 0);
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(IsLargerWhereWallsKink),
-      cmocka_unit_test(IsNearTheErrorOfBondedTissue),
-      cmocka_unit_test(IsNearTheErrorOfContactTissue),
-      cmocka_unit_test(IsNotKnownForOddMeshes),
-      cmocka_unit_test(IsNotKnownForMeshesThatTellNothing),
-      cmocka_unit_test(IsTheWholeDifferenceWhereErrorsFallSlowly),
-      cmocka_unit_test(ChangesNothingOfTheState),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1);

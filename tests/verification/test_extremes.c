@@ -1,8 +1,9 @@
 /* Large deformations are answered with stable states; impossible ones with a true reason. */
+#include "support/test.h"
 #include "rve_fixture.h"
 #include "figures_extremes.h"
 
-static void LargeDeformationsAreAnswered(void **state)
+TEST(LargeDeformationsAreAnswered)
 {
   const LamMicrostructure micro = DefaultTissue();
   Extreme list[EXTREMES];
@@ -20,7 +21,7 @@ static void LargeDeformationsAreAnswered(void **state)
 }
 
 /* Asked in small steps, the tissue reaches the state that it reaches at one go. */
-static void OneGoAndSmallStepsAgree(void **state)
+TEST(OneGoAndSmallStepsAgree)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamResponse once = SolveTissue(&micro, PlaneLoad(1, 0.8, 0, 1, 0.02 / TISSUE_STRESS));
@@ -50,13 +51,13 @@ static void AssertInvalid(LamLoad load, const char fragment[])
   assert_true(isnan(r.P[0]));
 }
 
-static void InsideOutIsInvalid(void **state)
+TEST(InsideOutIsInvalid)
 {
   AssertInvalid(PlaneLoad(-1, 0, 0, 1, 0), "inside out");
   AssertInvalid(PlaneLoad(1, 1, 1, 1, 0), "inside out");
 }
 
-static void NegativeThicknessIsInvalid(void **state)
+TEST(NegativeThicknessIsInvalid)
 {
   LamLoad load = PlaneLoad(1, 0, 0, 1, 0);
 
@@ -64,14 +65,14 @@ static void NegativeThicknessIsInvalid(void **state)
   AssertInvalid(load, "F33");
 }
 
-static void NotANumberIsInvalid(void **state)
+TEST(NotANumberIsInvalid)
 {
   AssertInvalid(PlaneLoad(NAN, 0, 0, 1, 0), "not finite");
   AssertInvalid(PlaneLoad(1, INFINITY, 0, 1, 0), "not finite");
   AssertInvalid(PlaneLoad(1, 0, 0, 1, NAN), "not finite");
 }
 
-static void OutOfPlaneShearIsInvalid(void **state)
+TEST(OutOfPlaneShearIsInvalid)
 {
   LamLoad load = PlaneLoad(1, 0, 0, 1, 0);
 
@@ -80,7 +81,7 @@ static void OutOfPlaneShearIsInvalid(void **state)
 }
 
 /* Walls that have passed through each other are not an answer. */
-static void CollapsedLumenIsRefused(void **state)
+TEST(CollapsedLumenIsRefused)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamResponse open = SolveTissue(&micro, PlaneLoad(0.7, 0, 0, 1, 0));
@@ -92,7 +93,7 @@ static void CollapsedLumenIsRefused(void **state)
 }
 
 /* A failed solve leaves the state as it was: the next load is answered as if nothing had happened. */
-static void FailureLeavesTheStateAsItWas(void **state)
+TEST(FailureLeavesTheStateAsItWas)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamLoad first = PlaneLoad(1, 0.1, 0, 1, 0.1), bad = PlaneLoad(0, 0, 0, 0, 0.1);
@@ -110,17 +111,4 @@ static void FailureLeavesTheStateAsItWas(void **state)
   assert_int_equal(LamRVEDestroy(&rve), 0);
 }
 
-int main(int argc, char **argv)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(LargeDeformationsAreAnswered), cmocka_unit_test(OneGoAndSmallStepsAgree),
-      cmocka_unit_test(InsideOutIsInvalid),           cmocka_unit_test(NegativeThicknessIsInvalid),
-      cmocka_unit_test(NotANumberIsInvalid),          cmocka_unit_test(OutOfPlaneShearIsInvalid),
-      cmocka_unit_test(CollapsedLumenIsRefused),      cmocka_unit_test(FailureLeavesTheStateAsItWas),
-  };
-  int failed;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() || failed;
-}
+TEST_GROUP(.petsc = 1);

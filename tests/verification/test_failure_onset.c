@@ -2,8 +2,8 @@
   Where tissue fails along a load: on finer meshes the same, in step with what is known of buckling and of turgor, and
   independent of the steps in which the load is given.
 */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_failure.h"
 
 static LamFailure Follow(const LamMicrostructure *micro, LamFailureProgram program)
@@ -25,7 +25,7 @@ static LamFailure Pull(PetscInt along, PetscInt through)
   return Follow(&micro, (LamFailureProgram){.strength = &figures_strength, .count = PULL_STATES, .loads = loads});
 }
 
-static void OnsetsConvergeWithTheMesh(void **state)
+TEST(OnsetsConvergeWithTheMesh)
 {
   static const LamCriterion criteria[3] = {LAM_CRITERION_LAMELLA_NORMAL, LAM_CRITERION_LAMELLA_SHEAR,
                                            LAM_CRITERION_WALL};
@@ -39,7 +39,7 @@ static void OnsetsConvergeWithTheMesh(void **state)
 }
 
 /* At the load that is given, and a resolution below it not yet. */
-static void OnsetIsWhereTheStrengthIsReached(void **state)
+TEST(OnsetIsWhereTheStrengthIsReached)
 {
   const LamFailure failure = Pull(6, 2);
   const LamCriterionOnset *wall = &failure.onset[LAM_CRITERION_WALL];
@@ -52,7 +52,7 @@ static void OnsetIsWhereTheStrengthIsReached(void **state)
 }
 
 /* Biaxial compression of dry tissue: 2.27 % (test_buckling). */
-static void BucklingIsFoundWhereTheTangentLosesStability(void **state)
+TEST(BucklingIsFoundWhereTheTangentLosesStability)
 {
   const LamMicrostructure micro = DefaultTissue();
   LamLoad loads[2];
@@ -67,7 +67,7 @@ static void BucklingIsFoundWhereTheTangentLosesStability(void **state)
 }
 
 /* Turgor adds -p J F^-T to bonded tissue and nothing to its shape: its walls are slack at the same F whatever p. */
-static void WallsGetSlackAtADeformationThatTurgorDoesNotMove(void **state)
+TEST(WallsGetSlackAtADeformationThatTurgorDoesNotMove)
 {
   const LamMicrostructure micro = DefaultTissue();
   double F[2];
@@ -83,7 +83,7 @@ static void WallsGetSlackAtADeformationThatTurgorDoesNotMove(void **state)
   assert_near(F[0], F[1], 2e-4);
 }
 
-static void TurgorThatIsTakenAwayIsLost(void **state)
+TEST(TurgorThatIsTakenAwayIsLost)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamLoad loads[2] = {PlaneLoad(1.02, 0, 0, 1.02, 0.1), PlaneLoad(1.02, 0, 0, 1.02, -0.1)};
@@ -94,7 +94,7 @@ static void TurgorThatIsTakenAwayIsLost(void **state)
 }
 
 /* Stopped at the first, the verdict is the same, and what comes later is not sought. */
-static void StoppingAtTheFirstGivesTheSameVerdict(void **state)
+TEST(StoppingAtTheFirstGivesTheSameVerdict)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamFailure all = Pull(6, 2);
@@ -110,7 +110,7 @@ static void StoppingAtTheFirstGivesTheSameVerdict(void **state)
 }
 
 /* One long step that ends without an answer, collapsed: what lies on the way is still found. */
-static void FailureBeforeALoadWithoutAnswerIsFound(void **state)
+TEST(FailureBeforeALoadWithoutAnswerIsFound)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamLoad load = PlaneLoad(0.6, 0, 0, 0.6, 0);
@@ -121,20 +121,4 @@ static void FailureBeforeALoadWithoutAnswerIsFound(void **state)
   assert_true(failure.reason[0] != '\0' && failure.followed < 1);
 }
 
-int main(int argc, char **argv)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(OnsetsConvergeWithTheMesh),
-      cmocka_unit_test(OnsetIsWhereTheStrengthIsReached),
-      cmocka_unit_test(BucklingIsFoundWhereTheTangentLosesStability),
-      cmocka_unit_test(WallsGetSlackAtADeformationThatTurgorDoesNotMove),
-      cmocka_unit_test(TurgorThatIsTakenAwayIsLost),
-      cmocka_unit_test(StoppingAtTheFirstGivesTheSameVerdict),
-      cmocka_unit_test(FailureBeforeALoadWithoutAnswerIsFound),
-  };
-  int failed;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() || failed;
-}
+TEST_GROUP(.petsc = 1);

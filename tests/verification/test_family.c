@@ -1,13 +1,9 @@
 /*
   Answers for walls between databases, against solves of those walls.
 */
+#include "support/test.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
-#include <cmocka.h>
-#include "assert_near.h"
 #include "tissue.h"
 
 enum { KNOTS = 4, STATES = 6 };
@@ -96,28 +92,28 @@ static void CheckAxis(LamFamilyAxis axis, const PetscReal values[KNOTS], PetscRe
   for (int i = 0; i < KNOTS; i++) assert_int_equal(LamDatabaseClose(&databases[i]), 0);
 }
 
-static void walls_of_any_thickness(void **state)
+TEST(walls_of_any_thickness)
 {
   static const PetscReal values[KNOTS] = {0.1, 0.13, 0.17, 0.22};
 
   CheckAxis(LAM_FAMILY_WALL_THICKNESS, values, 0.15);
 }
 
-static void fibres_of_any_stiffness(void **state)
+TEST(fibres_of_any_stiffness)
 {
   static const PetscReal values[KNOTS] = {4, 7, 12, 20};
 
   CheckAxis(LAM_FAMILY_FIBRES, values, 9);
 }
 
-static void matrices_of_any_kind(void **state)
+TEST(matrices_of_any_kind)
 {
   static const PetscReal values[KNOTS] = {0.05, 0.15, 0.4, 1};
 
   CheckAxis(LAM_FAMILY_MATRIX, values, 0.25);
 }
 
-static void at_a_knot_the_answer_is_its_database_s(void **state)
+TEST(at_a_knot_the_answer_is_its_database_s)
 {
   LamDatabase databases[2];
   LamFamily family;
@@ -139,7 +135,7 @@ static void at_a_knot_the_answer_is_its_database_s(void **state)
   for (int i = 0; i < 2; i++) assert_int_equal(LamDatabaseClose(&databases[i]), 0);
 }
 
-static void beyond_the_knots_is_refused(void **state)
+TEST(beyond_the_knots_is_refused)
 {
   LamDatabase databases[2];
   LamFamily family;
@@ -158,16 +154,4 @@ static void beyond_the_knots_is_refused(void **state)
   for (int i = 0; i < 2; i++) assert_int_equal(LamDatabaseClose(&databases[i]), 0);
 }
 
-int main(int argc, char **argv)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(walls_of_any_thickness),      cmocka_unit_test(fibres_of_any_stiffness),
-      cmocka_unit_test(matrices_of_any_kind),        cmocka_unit_test(at_a_knot_the_answer_is_its_database_s),
-      cmocka_unit_test(beyond_the_knots_is_refused),
-  };
-  int failed;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() || failed;
-}
+TEST_GROUP(.petsc = 1);

@@ -1,4 +1,5 @@
 /* FE2 with the real RVE: a homogeneous macroscale deformation gives the response of one RVE. */
+#include "support/test.h"
 #include <string.h>
 #include "rve_fixture.h"
 
@@ -47,7 +48,7 @@ static void TearDown(Body *body)
   assert_int_equal(LamSceneDestroy(&body->scene), 0);
 }
 
-static void StressIsThatOfOneRVE(void **unused)
+TEST(StressIsThatOfOneRVE)
 {
   Body body;
   LamMacroReason reason;
@@ -65,14 +66,4 @@ static void StressIsThatOfOneRVE(void **unused)
   TearDown(&body);
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test(StressIsThatOfOneRVE)};
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1);

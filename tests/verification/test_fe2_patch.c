@@ -1,4 +1,5 @@
 /* FE2 against a direct patch of n x n cells: the difference falls with n. Larger blocks: test_fe2_patch_sizes. */
+#include "support/test.h"
 #include "rve_fixture.h"
 #include "figures_fe2_patch.h"
 
@@ -20,33 +21,19 @@ static void CheckFalls(int which, int elements)
                 0.8 * ScalesDifference(1, two.opening, limit.opening));
 }
 
-static void BondedFreeSidesSheared(void **state)
+TEST(BondedFreeSidesSheared)
 {
   CheckFalls(SCALES_BONDED_FREE_SHEARED, 2);
 }
 
-static void ContactFreeSidesPulled(void **state)
+TEST(ContactFreeSidesPulled)
 {
   CheckFalls(SCALES_CONTACT_FREE_PULLED, 1);
 }
 
-static void ContactAffineSidesSheared(void **state)
+TEST(ContactAffineSidesSheared)
 {
   CheckFalls(SCALES_CONTACT_AFFINE_SHEARED, 0);
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(BondedFreeSidesSheared),
-      cmocka_unit_test(ContactFreeSidesPulled),
-      cmocka_unit_test(ContactAffineSidesSheared),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1);

@@ -1,6 +1,6 @@
 /* slow: the difference between FE2 and a direct patch of n x n cells halves as n doubles, and nothing is left of it. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_fe2_patch.h"
 
 /* Blocks of 2 x 2, 4 x 4 and 8 x 8 cells in one step, against FE2 on meshes of `elements` and twice as many; `opening`:
@@ -26,23 +26,23 @@ static void CheckHalves(int which, int elements, double opening)
     assert_near(ScalesDifference(1, extrapolated.opening, limit.opening), 0.0, opening);
 }
 
-static void BondedFreeSidesSheared(void **state)
+TEST(BondedFreeSidesSheared)
 {
   CheckHalves(SCALES_BONDED_FREE_SHEARED, 4, 0);
 }
 
-static void ContactFreeSidesPulled(void **state)
+TEST(ContactFreeSidesPulled)
 {
   CheckHalves(SCALES_CONTACT_FREE_PULLED, 2, 0.12);
 }
 
-static void ContactAffineSidesSheared(void **state)
+TEST(ContactAffineSidesSheared)
 {
   CheckHalves(SCALES_CONTACT_AFFINE_SHEARED, 0, 0.1);
 }
 
 /* Its cells buckle, two to a period: that is what blocks tend to, not tissue of one cell a period. */
-static void ContactAffineSidesPressed(void **state)
+TEST(ContactAffineSidesPressed)
 {
   const ScalesCase *c = &scales_cases[SCALES_CONTACT_AFFINE_PRESSED];
   ScalesCurve cell = {0}, pair = {0};
@@ -53,19 +53,4 @@ static void ContactAffineSidesPressed(void **state)
   assert_true(ScalesDifference(1, cell.stress, pair.stress) > 0.1);
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(BondedFreeSidesSheared),
-      cmocka_unit_test(ContactFreeSidesPulled),
-      cmocka_unit_test(ContactAffineSidesSheared),
-      cmocka_unit_test(ContactAffineSidesPressed),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1);

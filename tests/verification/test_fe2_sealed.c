@@ -2,6 +2,7 @@
   FE2 with the real RVE, turgor prescribed and sealed: patch test, Cook's membrane, and the mixed element against one
   sealed RVE.
 */
+#include "support/test.h"
 #include "rve_fixture.h"
 #include "figures_mixed_element.h"
 
@@ -74,7 +75,7 @@ static LamResponse SolveSealed(const LamScene *scene)
 }
 
 /* Relative to their own sizes: in water a rounding error of J is 1e4 times as large in the pressure. */
-static void StressIsThatOfOneSealedRVE(void **unused)
+TEST(StressIsThatOfOneSealedRVE)
 {
   LamScene *scene;
   LamMacroFields fields;
@@ -91,7 +92,7 @@ static void StressIsThatOfOneSealedRVE(void **unused)
 }
 
 /* In a distorted mesh of quadrilaterals, and of triangles, a homogeneous deformation has one F and one turgor. */
-static void PatchTest(void **unused)
+TEST(PatchTest)
 {
   const GmshElements kinds[2] = {GMSH_QUADRILATERALS, GMSH_TRIANGLES};
   const PetscReal F[9] = {stretch[0], 0, 0, 0, stretch[1], 0, 0, 0, 1};
@@ -116,7 +117,7 @@ static void PatchTest(void **unused)
 }
 
 /* On coarse meshes, where its corners do not count yet, the force on Cook's membrane of dry tissue has order 2. */
-static void CookHasTheOrderOfTheElement(void **unused)
+TEST(CookHasTheOrderOfTheElement)
 {
   LamMicrostructure micro = DefaultTissue();
 
@@ -138,15 +139,4 @@ static void CookHasTheOrderOfTheElement(void **unused)
   assert_int_equal(LamRVEDestroy(&rve), 0);
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test(StressIsThatOfOneSealedRVE), cmocka_unit_test(PatchTest),
-                                     cmocka_unit_test(CookHasTheOrderOfTheElement)};
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1);

@@ -1,6 +1,6 @@
 /* Cells that touch no one: states of the tissue itself against what is known of them. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_contact_derivatives.h"
 #include "free_cell.h"
 #include "random_reals.h"
@@ -70,7 +70,7 @@ static double SolveEnergy(double turgor, double cohesion)
 }
 
 /* States between the knots, at another spacing than the knots' own. */
-static void WidthIsThatOfStatesBetweenTheKnots(void **state)
+TEST(WidthIsThatOfStatesBetweenTheKnots)
 {
   for (int j = 0; j < KNOTS - 1; j += 5) {
     const double s = 0.5 * (cell.suction[j] + cell.suction[j + 1]);
@@ -81,7 +81,7 @@ static void WidthIsThatOfStatesBetweenTheKnots(void **state)
   }
 }
 
-static void EnergyIsThatOfStatesBetweenTheKnots(void **state)
+TEST(EnergyIsThatOfStatesBetweenTheKnots)
 {
   for (int j = 0; j < KNOTS - 1; j += 5) {
     const double s = 0.5 * (cell.suction[j] + cell.suction[j + 1]), J = exp(0.7);
@@ -97,7 +97,7 @@ static void EnergyIsThatOfStatesBetweenTheKnots(void **state)
   }
 }
 
-static void SlopesAreDifferencesOfSolves(void **state)
+TEST(SlopesAreDifferencesOfSolves)
 {
   for (int j = 0; j < KNOTS; j += 8) {
     const double p = cell.suction[j] - COHESION, h = 1e-3;
@@ -110,7 +110,7 @@ static void SlopesAreDifferencesOfSolves(void **state)
 }
 
 /* At fixed suction: what cohesion gives turgor takes. The second derivative is small; so is what differences tell. */
-static void TurgorSlopesAreDifferencesAtFixedSuction(void **state)
+TEST(TurgorSlopesAreDifferencesAtFixedSuction)
 {
   for (int j = 0; j < KNOTS; j += 8) {
     const double g = COHESION, p = cell.suction[j] - g, h = 0.02;
@@ -132,7 +132,7 @@ static LamLoad RandomShape(uint64_t *seed, const LamFreeCell *free, int k, doubl
   return LatticeLoad(x, s - COHESION, COHESION);
 }
 
-static void CellsFloatAboveTheirWidthInEveryDirection(void **state)
+TEST(CellsFloatAboveTheirWidthInEveryDirection)
 {
   uint64_t seed = 1;
 
@@ -144,7 +144,7 @@ static void CellsFloatAboveTheirWidthInEveryDirection(void **state)
   }
 }
 
-static void CellsTouchBelowTheirWidthInEveryDirection(void **state)
+TEST(CellsTouchBelowTheirWidthInEveryDirection)
 {
   uint64_t seed = 2;
 
@@ -158,7 +158,7 @@ static void CellsTouchBelowTheirWidthInEveryDirection(void **state)
 }
 
 /* P = g J F^-T. */
-static void StressOfFloatingCellsIsThatOfTheCohesion(void **state)
+TEST(StressOfFloatingCellsIsThatOfTheCohesion)
 {
   uint64_t seed = 3;
 
@@ -173,7 +173,7 @@ static void StressOfFloatingCellsIsThatOfTheCohesion(void **state)
 }
 
 /* Cells that lie apart are smaller: such a cell is that of the same shape that fills its place, scaled. */
-static void CellsThatLieApartAreSmaller(void **state)
+TEST(CellsThatLieApartAreSmaller)
 {
   LamMicrostructure apart = ContactTissue(6, 2), same = apart;
   LamFreeCell with, without;
@@ -204,23 +204,4 @@ static void CellsThatLieApartAreSmaller(void **state)
   assert_int_equal(LamRVEDestroy(&scaled), 0);
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(WidthIsThatOfStatesBetweenTheKnots),
-      cmocka_unit_test(EnergyIsThatOfStatesBetweenTheKnots),
-      cmocka_unit_test(SlopesAreDifferencesOfSolves),
-      cmocka_unit_test(TurgorSlopesAreDifferencesAtFixedSuction),
-      cmocka_unit_test(CellsFloatAboveTheirWidthInEveryDirection),
-      cmocka_unit_test(CellsTouchBelowTheirWidthInEveryDirection),
-      cmocka_unit_test(StressOfFloatingCellsIsThatOfTheCohesion),
-      cmocka_unit_test(CellsThatLieApartAreSmaller),
-  };
-
-  return cmocka_run_group_tests(tests, SetUp, TearDown);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1, .setup = SetUp, .teardown = TearDown);

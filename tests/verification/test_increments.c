@@ -1,6 +1,6 @@
 /* States that follow each other by increments of 1e-13 to 1e-4, and steps that are too large. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_increments.h"
 
 #define ROUNDING 2e-11 /* C1 + C2: of P, largest of the states here; measured 1.2e-11 */
@@ -33,7 +33,7 @@ static void CheckStress(double h, const IncrementWalk *walk)
   assert_near(walk->stress, 0.0, ROUNDING);
 }
 
-static void StressFollowsTheTangent(void **state)
+TEST(StressFollowsTheTangent)
 {
   ForAllKinds(CheckStress);
 }
@@ -46,13 +46,13 @@ static void CheckWork(double h, const IncrementWalk *walk)
   assert_in_range(walk->factorisations, 1, walk->iterations + 2);
 }
 
-static void NoIterationIsWasted(void **state)
+TEST(NoIterationIsWasted)
 {
   ForAllKinds(CheckWork);
 }
 
 /* Turgid bonded tissue at one go and in fifty steps: the same state. */
-static void LargeStepsEndWhereSmallOnesDo(void **state)
+TEST(LargeStepsEndWhereSmallOnesDo)
 {
   const LamMicrostructure micro = DefaultTissue();
   LamRVE rve = NewRVE(&micro);
@@ -70,15 +70,4 @@ static void LargeStepsEndWhereSmallOnesDo(void **state)
   assert_int_equal(LamRVEDestroy(&rve), 0);
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test(StressFollowsTheTangent), cmocka_unit_test(NoIterationIsWasted),
-                                     cmocka_unit_test(LargeStepsEndWhereSmallOnesDo)};
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1);

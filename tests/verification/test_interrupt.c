@@ -1,4 +1,5 @@
 /* A solve that is interrupted, wherever that is, is given up and leaves nothing behind. */
+#include "support/test.h"
 #include "rve_fixture.h"
 #include "figures_mixed.h"
 #include <string.h>
@@ -109,7 +110,7 @@ static void StopEverywhere(Case *c)
   AssertSame(SolveCase(c, 0), fresh);
 }
 
-static void StopsBonded(void **state)
+TEST(StopsBonded)
 {
   const LamMicrostructure micro = DefaultTissue();
   Case c = NewCase(&micro, PlaneLoad(1.1, 0.3, 0, 1, 0.1));
@@ -119,7 +120,7 @@ static void StopsBonded(void **state)
 }
 
 /* Biaxial compression leaves a saddle: safe tier, softest mode. */
-static void StopsBuckling(void **state)
+TEST(StopsBuckling)
 {
   const LamMicrostructure micro = CoarseTissue(DefaultTissue());
   Case c = NewCase(&micro, PlaneLoad(0.9, 0, 0, 0.9, 0));
@@ -129,7 +130,7 @@ static void StopsBuckling(void **state)
   Destroy(&c);
 }
 
-static void StopsContact(void **state)
+TEST(StopsContact)
 {
   const LamMicrostructure micro = ContactTissue(6, 2);
   LamLoad load = PlaneLoad(1.05, 0.2, 0, 1, 0.02 / TISSUE_STRESS);
@@ -145,7 +146,7 @@ static void StopsContact(void **state)
 }
 
 /* Contact that compression makes buckle, and that is hard to find. */
-static void StopsContactBuckling(void **state)
+TEST(StopsContactBuckling)
 {
   const LamMicrostructure micro = CoarseTissue(ContactTissue(6, 2));
   Case c = NewCase(&micro, PlaneLoad(0.9, 0, 0, 0.9, 0.02 / TISSUE_STRESS));
@@ -164,7 +165,7 @@ static void StopMixed(const LamMicrostructure *micro, MixedCase mixed)
   Destroy(&c);
 }
 
-static void StopsMixed(void **state)
+TEST(StopsMixed)
 {
   const LamMicrostructure bonded = DefaultTissue(), contact = ContactTissue(6, 2);
 
@@ -173,7 +174,7 @@ static void StopsMixed(void **state)
 }
 
 /* Beyond a limit load: continuation, then descent. */
-static void StopsMixedSearch(void **state)
+TEST(StopsMixedSearch)
 {
   const LamMicrostructure bonded = CoarseTissue(DefaultTissue()), contact = CoarseTissue(ContactTissue(6, 2));
 
@@ -181,17 +182,4 @@ static void StopsMixedSearch(void **state)
   StopMixed(&contact, (MixedCase){.turgor = 0.02, .F = {FREE, 0.1, 0, FREE}, .F33 = 1});
 }
 
-static int RunTests(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(StopsBonded),          cmocka_unit_test(StopsBuckling), cmocka_unit_test(StopsContact),
-      cmocka_unit_test(StopsContactBuckling), cmocka_unit_test(StopsMixed),    cmocka_unit_test(StopsMixedSearch),
-  };
-
-  return cmocka_run_group_tests_name("interrupt", tests, NULL, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, RunTests);
-}
+TEST_GROUP(.petsc = 1);

@@ -1,4 +1,5 @@
 /* What the answer must not depend on: the observer, the lattice's symmetry, the number of cells, the user's units. */
+#include "support/test.h"
 #include "rve_fixture.h"
 #include "turned_response.h"
 
@@ -26,7 +27,7 @@ static void AssertTurned(const LamResponse *a, const LamResponse *b, const doubl
   assert_near(b->max_traction, a->max_traction, TOLERANCE * (1.0 + fabs(a->max_traction)));
 }
 
-static void RotationOfTheObserver(void **state)
+TEST(RotationOfTheObserver)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamResponse a = SolveTissue(&micro, LoadOf(F0, TURGOR));
@@ -43,7 +44,7 @@ static void RotationOfTheObserver(void **state)
 }
 
 /* A solution that is turned is a solution: the start for a turned load is turned with it. */
-static void RotationOfASolutionCostsNothing(void **state)
+TEST(RotationOfASolutionCostsNothing)
 {
   const LamMicrostructure micro = DefaultTissue();
   LamRVE rve = NewRVE(&micro);
@@ -75,7 +76,7 @@ static void AssertSymmetry(const double R[9])
   AssertTurned(&a, &b, R, R);
 }
 
-static void RotationOfTheLatticeBySixtyDegrees(void **state)
+TEST(RotationOfTheLatticeBySixtyDegrees)
 {
   double R[9];
 
@@ -83,7 +84,7 @@ static void RotationOfTheLatticeBySixtyDegrees(void **state)
   AssertSymmetry(R);
 }
 
-static void MirrorOfTheLattice(void **state)
+TEST(MirrorOfTheLattice)
 {
   static const double along[9] = {1, 0, 0, 0, -1, 0, 0, 0, 1}, across[9] = {-1, 0, 0, 0, 1, 0, 0, 0, 1};
 
@@ -92,7 +93,7 @@ static void MirrorOfTheLattice(void **state)
 }
 
 /* `orientation` turns the cell: P = R P0(R^T F R) R^T. */
-static void OrientationTurnsTheCell(void **state)
+TEST(OrientationTurnsTheCell)
 {
   const double angle = 0.37;
   LamMicrostructure micro = DefaultTissue();
@@ -108,7 +109,7 @@ static void OrientationTurnsTheCell(void **state)
 }
 
 /* Before a pattern longer than a cell appears, more cells answer like one. */
-static void NumberOfCells(void **state)
+TEST(NumberOfCells)
 {
   static const int cells[][2] = {{1, 2}, {2, 1}, {2, 2}};
   LamMicrostructure micro = DefaultTissue();
@@ -126,7 +127,7 @@ static void NumberOfCells(void **state)
 }
 
 /* A path does not matter where there is one stable state: in steps by another way, with another turgor. */
-static void PathToTheLoad(void **state)
+TEST(PathToTheLoad)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamResponse a = SolveTissue(&micro, LoadOf(F0, TURGOR));
@@ -166,7 +167,7 @@ static void SolveScene(const char text[], double P[9])
   "load:\n"                                                                                                            \
   "  - {F: [[1.02, 0.1], [0, 1]]}\n"
 
-static void SystemOfUnits(void **state)
+TEST(SystemOfUnits)
 {
   static const char *const scenes[3] = {
       SCENE("{apothem: 75 um, wall_thickness: 11.25 um, orientation: 30 deg}",
@@ -184,21 +185,4 @@ static void SystemOfUnits(void **state)
   }
 }
 
-int main(int argc, char **argv)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(RotationOfTheObserver),
-      cmocka_unit_test(RotationOfASolutionCostsNothing),
-      cmocka_unit_test(RotationOfTheLatticeBySixtyDegrees),
-      cmocka_unit_test(MirrorOfTheLattice),
-      cmocka_unit_test(OrientationTurnsTheCell),
-      cmocka_unit_test(NumberOfCells),
-      cmocka_unit_test(PathToTheLoad),
-      cmocka_unit_test(SystemOfUnits),
-  };
-  int failed;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() || failed;
-}
+TEST_GROUP(.petsc = 1);

@@ -1,10 +1,10 @@
 /* Localisation of tissue and kinks of walls, against long waves of rows of cells, exact cases and finer meshes. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_localisation.h"
 
 /* The hexagonal cell is isotropic at F = I: every band resists with its shear modulus. */
-static void UndeformedTissueHasItsShearModulus(void **state)
+TEST(UndeformedTissueHasItsShearModulus)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamResponse r = SolveTissue(&micro, PlaneLoad(1, 0, 0, 1, 0));
@@ -17,7 +17,7 @@ static void UndeformedTissueHasItsShearModulus(void **state)
 }
 
 /* Psi and Phi = Psi + p J: at fixed walls turgor adds -p J, which no band feels. */
-static void TurgorMovesNoBand(void **state)
+TEST(TurgorMovesNoBand)
 {
   LamMicrostructure micro = DefaultTissue();
   LamResponse dry, turgid;
@@ -31,7 +31,7 @@ static void TurgorMovesNoBand(void **state)
   assert_near(turgid.kinked_fraction, dry.kinked_fraction, 0);
 }
 
-static void TurningTheTissueTurnsTheMode(void **state)
+TEST(TurningTheTissueTurnsTheMode)
 {
   const double c = cos(0.4), s = sin(0.4);
   const LamMicrostructure micro = DefaultTissue();
@@ -48,7 +48,7 @@ static void TurningTheTissueTurnsTheMode(void **state)
 
 /* Waves of n cells lose stability at a strain that rises with n to that at which the tangent loses ellipticity, with an
    error of 1/n^2; the waves run along the normal of the band. */
-static void LongWavesAreLostWhereTheTangentIs(void **state)
+TEST(LongWavesAreLostWhereTheTangentIs)
 {
   static const int n[] = {3, 4, 6};
   LamMicrostructure micro = DefaultTissue();
@@ -65,7 +65,7 @@ static void LongWavesAreLostWhereTheTangentIs(void **state)
 }
 
 /* Biaxially, patterns of two cells come first (0.0114), then the tangent, then one cell (0.0227). */
-static void LocalisationIsBetweenTheBucklingOfTwoCellsAndOfOne(void **state)
+TEST(LocalisationIsBetweenTheBucklingOfTwoCellsAndOfOne)
 {
   const LamMicrostructure micro = DefaultTissue();
 
@@ -73,7 +73,7 @@ static void LocalisationIsBetweenTheBucklingOfTwoCellsAndOfOne(void **state)
   assert_true(SolveTissue(&micro, PlaneLoad(1 - 0.0226, 0, 0, 1 - 0.0226, 0)).ellipticity < 0);
 }
 
-static void LossOfEllipticityIsNoInstabilityOfTheCell(void **state)
+TEST(LossOfEllipticityIsNoInstabilityOfTheCell)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamResponse r = SolveTissue(&micro, PlaneLoad(0.98, 0, 0, 0.98, 0));
@@ -85,7 +85,7 @@ static void LossOfEllipticityIsNoInstabilityOfTheCell(void **state)
 
 /* Short of kinks the smallest mean stiffness of the walls hardly depends on the mesh, and next to nothing has kinked.
  */
-static void StiffnessOfWallsConverges(void **state)
+TEST(StiffnessOfWallsConverges)
 {
   LamMicrostructure micro = DefaultTissue();
   const LamResponse coarse = SolveTissue(&micro, PlaneLoad(1, 0.3, 0, 1, 0));
@@ -100,7 +100,7 @@ static void StiffnessOfWallsConverges(void **state)
 
 /* Sheared by 0.5 the walls kink, and their stress differs from mesh to mesh; with fibres in tension alone nothing does.
  */
-static void ShearedWallsKinkUnlessTheirFibresGoSlack(void **state)
+TEST(ShearedWallsKinkUnlessTheirFibresGoSlack)
 {
   LamMicrostructure micro = DefaultTissue();
 
@@ -109,23 +109,4 @@ static void ShearedWallsKinkUnlessTheirFibresGoSlack(void **state)
   assert_near(SolveTissue(&micro, PlaneLoad(1, 0.5, 0, 1, 0)).kinked_fraction, 0, 0);
 }
 
-static int RunTests(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(UndeformedTissueHasItsShearModulus),
-      cmocka_unit_test(TurgorMovesNoBand),
-      cmocka_unit_test(TurningTheTissueTurnsTheMode),
-      cmocka_unit_test(LongWavesAreLostWhereTheTangentIs),
-      cmocka_unit_test(LocalisationIsBetweenTheBucklingOfTwoCellsAndOfOne),
-      cmocka_unit_test(LossOfEllipticityIsNoInstabilityOfTheCell),
-      cmocka_unit_test(StiffnessOfWallsConverges),
-      cmocka_unit_test(ShearedWallsKinkUnlessTheirFibresGoSlack),
-  };
-
-  return cmocka_run_group_tests_name("localisation", tests, NULL, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, RunTests);
-}
+TEST_GROUP(.petsc = 1);

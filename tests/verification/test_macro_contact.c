@@ -5,6 +5,7 @@
   The pressure is half an ellipse: its second moment over x is F a^2 / 4. Nodal forces of quadratic elements keep second
   moments, so a is measured by them, much finer than the elements are.
 */
+#include "support/test.h"
 #include "macro_fixture.h"
 #include "macro_impl.h"
 
@@ -29,7 +30,7 @@ static PetscReal Moment(LamMacro macro, PetscInt power)
 }
 
 /* a / R = 0.16 and a block 6 times as wide: the half width is 1.8 % below that of the half-space. */
-static void ContactWidthIsHertz(void **state)
+TEST(ContactWidthIsHertz)
 {
   const PetscReal radius = 0.5;
   Fixture fixture;
@@ -53,7 +54,7 @@ static void ContactWidthIsHertz(void **state)
 }
 
 /* No node is in the indenter, none is pulled, and all that are pressed touch it. */
-static void ComplementarityHolds(void **state)
+TEST(ComplementarityHolds)
 {
   Fixture fixture;
   LamBoundary *indenter;
@@ -91,16 +92,4 @@ static void ComplementarityHolds(void **state)
   FixtureDestroy(&fixture);
 }
 
-int main(int argc, char **argv)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(ContactWidthIsHertz),
-      cmocka_unit_test(ComplementarityHolds),
-  };
-  int failed;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  cmocka_set_message_output(CM_OUTPUT_STDOUT);
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() || failed;
-}
+TEST_GROUP(.petsc = 1);

@@ -1,10 +1,11 @@
 /*
   The macroscale solver against exact results: homogeneous deformation, and the balance of work and energy.
 */
+#include "support/test.h"
 #include "macro_fixture.h"
 
 /* Between rollers F = diag(1 + ux, 1 + uy) everywhere, and P is the material's there. */
-static void HomogeneousDeformationIsExact(void **state)
+TEST(HomogeneousDeformationIsExact)
 {
   const LamLoad load = {{1.2, 0, 0, 0, 0.9, 0, 0, 0, 1}, 0.1, 0};
   Fixture fixture;
@@ -28,7 +29,7 @@ static void HomogeneousDeformationIsExact(void **state)
 }
 
 /* Reactions are stress times length of the side. */
-static void ReactionsAreStressTimesLength(void **state)
+TEST(ReactionsAreStressTimesLength)
 {
   const LamLoad load = {{1.2, 0, 0, 0, 0.9, 0, 0, 0, 1}, 0, 0};
   Fixture fixture;
@@ -67,7 +68,7 @@ static PetscReal WorkError(PetscInt steps)
 }
 
 /* The work of the sides becomes stored energy; the trapezoidal rule's error falls with the square of the step. */
-static void WorkBecomesEnergy(void **state)
+TEST(WorkBecomesEnergy)
 {
   PetscReal coarse = WorkError(2), fine = WorkError(8);
 
@@ -76,7 +77,7 @@ static void WorkBecomesEnergy(void **state)
 }
 
 /* A clamped block in shear: quadratic elements, the reaction converges as the mesh is refined. */
-static void ShearConverges(void **state)
+TEST(ShearConverges)
 {
   PetscReal force[3];
 
@@ -93,18 +94,4 @@ static void ShearConverges(void **state)
   assert_true((force[1] - force[2]) < 0.01 * force[2]);
 }
 
-int main(int argc, char **argv)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(HomogeneousDeformationIsExact),
-      cmocka_unit_test(ReactionsAreStressTimesLength),
-      cmocka_unit_test(WorkBecomesEnergy),
-      cmocka_unit_test(ShearConverges),
-  };
-  int failed;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  cmocka_set_message_output(CM_OUTPUT_STDOUT);
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() || failed;
-}
+TEST_GROUP(.petsc = 1);

@@ -1,6 +1,7 @@
 /*
   Load control past limit points: a clamped shallow arch under dead load snaps through.
 */
+#include "support/test.h"
 #include "gmsh_fixture.h"
 #include "macro_fixture.h"
 #include "macro_impl.h"
@@ -44,7 +45,7 @@ static PetscReal Sag(const Fixture *fixture)
 }
 
 /* The load rises to 4.9e-5, falls to 1.3e-5 beyond the limit point, and rises again on the other side. */
-static void TheForceFallsAndTheRunGoesOn(void **state)
+TEST(TheForceFallsAndTheRunGoesOn)
 {
   const PetscInt steps = 30;
   Fixture fixture;
@@ -68,7 +69,7 @@ static void TheForceFallsAndTheRunGoesOn(void **state)
 }
 
 /* Before the limit, the load that control finds gives the same state where it is prescribed. */
-static void ControlAndLoadAgree(void **state)
+TEST(ControlAndLoadAgree)
 {
   PetscReal factor, sag;
   Fixture fixture;
@@ -92,19 +93,16 @@ static void ControlAndLoadAgree(void **state)
   FixtureDestroy(&fixture);
 }
 
-int main(int argc, char **argv)
+static int WriteArch(void **state)
 {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(TheForceFallsAndTheRunGoesOn),
-      cmocka_unit_test(ControlAndLoadAgree),
-  };
-  int failed;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   snprintf(Path, sizeof(Path), "/tmp/lamella-arch-%d.msh", (int)getpid());
   GmshWrite(Path, 12, 1, Arch);
-  cmocka_set_message_output(CM_OUTPUT_STDOUT);
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  remove(Path);
-  return PetscFinalize() || failed;
+  return 0;
 }
+
+static int RemoveArch(void **state)
+{
+  return remove(Path);
+}
+
+TEST_GROUP(.petsc = 1, .setup = WriteArch, .teardown = RemoveArch);

@@ -1,6 +1,7 @@
 /*
   Sealed lumens of the macroscale body, with a material of known answers: the mixed element and its Newton iteration.
 */
+#include "support/test.h"
 #include "macro_fixture.h"
 #include "figures_mixed_element.h"
 
@@ -39,7 +40,7 @@ static PetscReal SealedTurgor(const Fixture *fixture, PetscReal p0, PetscReal J)
 }
 
 /* The patch test: in a distorted mesh a homogeneous deformation has one F and one turgor. */
-static void PatchTest(void **state)
+TEST(PatchTest)
 {
   for (int k = 0; k < 2; k++) {
     Fixture fixture;
@@ -93,7 +94,7 @@ static void EvaluateAt(LamMacro macro, Vec u)
 }
 
 /* No force acts on a node inside the body where the deformation is affine, shear included. */
-static void AffineFieldIsInBalance(void **state)
+TEST(AffineFieldIsInBalance)
 {
   const PetscReal H[4] = {0.05, 0.2, -0.1, -0.08};
 
@@ -165,14 +166,14 @@ static PetscReal TangentError(GmshElements elements, PetscInt seed)
   return error / norm;
 }
 
-static void TangentIsDerivative(void **state)
+TEST(TangentIsDerivative)
 {
   for (PetscInt seed = 1; seed <= 3; seed++)
     for (int k = 0; k < 2; k++) assert_true(TangentError(element_kinds[k], seed) < 1e-8);
 }
 
 /* Each residual is at most a constant times the square of the one before, down to rounding, however stiff the water. */
-static void NewtonIsQuadratic(void **state)
+TEST(NewtonIsQuadratic)
 {
   const PetscReal moduli[] = {1, 1e3, 1e6};
 
@@ -193,7 +194,7 @@ static void NewtonIsQuadratic(void **state)
 }
 
 /* The lumen shrinks by what the water is compressed: v (1 - (p - p0) / K). */
-static void LumenFollowsWater(void **state)
+TEST(LumenFollowsWater)
 {
   const PetscReal moduli[] = {2, 2e4};
 
@@ -214,7 +215,7 @@ static void LumenFollowsWater(void **state)
 }
 
 /* Water that is next to nothing keeps nothing: the turgor stays as prescribed, and so does the reaction. */
-static void SoftWaterIsPrescribedTurgor(void **state)
+TEST(SoftWaterIsPrescribedTurgor)
 {
   PetscReal reaction[2];
 
@@ -234,7 +235,7 @@ static void SoftWaterIsPrescribedTurgor(void **state)
 }
 
 /* Sealing changes nothing, whatever the turgor is from point to point: without load the body stays as it inflated. */
-static void SealingKeepsTheInflatedState(void **state)
+TEST(SealingKeepsTheInflatedState)
 {
   Fixture fixture;
 
@@ -253,7 +254,7 @@ static void SealingKeepsTheInflatedState(void **state)
 }
 
 /* A step that is cut goes on from the pressures of the last converged state. */
-static void CutbackReachesTheSameEnd(void **state)
+TEST(CutbackReachesTheSameEnd)
 {
   PetscReal reaction[2], turgor[2];
 
@@ -294,7 +295,7 @@ static PetscReal CookForce(PetscInt n, GmshElements elements, PetscReal bulk_mod
 }
 
 /* The error of a mesh is not larger with stiffer water: neither element locks. */
-static void StiffWaterDoesNotLock(void **state)
+TEST(StiffWaterDoesNotLock)
 {
   const PetscReal moduli[] = {1, 1e2, 1e4, 1e6};
 
@@ -308,7 +309,7 @@ static void StiffWaterDoesNotLock(void **state)
 }
 
 /* Deformation gradient and turgor of next to incompressible tissue are met with order 2, on uneven meshes. */
-static void ErrorsFallWithTheSquare(void **state)
+TEST(ErrorsFallWithTheSquare)
 {
   const LamScene scene = {.turgor = 0.2, .sealed = PETSC_TRUE, .water_bulk_modulus = 1e5};
 
@@ -323,24 +324,4 @@ static void ErrorsFallWithTheSquare(void **state)
   }
 }
 
-int main(int argc, char **argv)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(PatchTest),
-      cmocka_unit_test(AffineFieldIsInBalance),
-      cmocka_unit_test(TangentIsDerivative),
-      cmocka_unit_test(NewtonIsQuadratic),
-      cmocka_unit_test(LumenFollowsWater),
-      cmocka_unit_test(SoftWaterIsPrescribedTurgor),
-      cmocka_unit_test(SealingKeepsTheInflatedState),
-      cmocka_unit_test(CutbackReachesTheSameEnd),
-      cmocka_unit_test(StiffWaterDoesNotLock),
-      cmocka_unit_test(ErrorsFallWithTheSquare),
-  };
-  int failed;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  cmocka_set_message_output(CM_OUTPUT_STDOUT);
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() || failed;
-}
+TEST_GROUP(.petsc = 1);

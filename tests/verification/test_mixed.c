@@ -1,6 +1,6 @@
 /* Mixed control: the prescribed stress is reached, by the state that F alone would give, and what has none is told. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_mixed.h"
 #include <string.h>
 
@@ -38,7 +38,7 @@ static LamResponse SolveDefault(MixedCase c)
   return Solve(&micro, &c);
 }
 
-static void StressIsReached(void **state)
+TEST(StressIsReached)
 {
   for (int k = 0; k < MIXED_CASES; k++) {
     assert_int_equal(results[k].mixed.status, LAM_CONVERGED);
@@ -46,7 +46,7 @@ static void StressIsReached(void **state)
   }
 }
 
-static void StateIsThatOfItsF(void **state)
+TEST(StateIsThatOfItsF)
 {
   for (int k = 0; k < MIXED_CASES; k++) {
     assert_near(results[k].apart, 0.0, 1e-8);
@@ -56,7 +56,7 @@ static void StateIsThatOfItsF(void **state)
 
 /* In contact the count scatters by some with the rounding of the machine, and other active sets are factored anew where
    F is free (rve/contact_update.c). */
-static void FactorisationsAreFewMore(void **state)
+TEST(FactorisationsAreFewMore)
 {
   for (int k = 0; k < MIXED_CASES; k++) {
     const int most = mixed_cases[k].contact ? 10 : 3;
@@ -66,7 +66,7 @@ static void FactorisationsAreFewMore(void **state)
 }
 
 /* Bisection on F11 of states with prescribed F finds the same. */
-static void BisectionAgrees(void **state)
+TEST(BisectionAgrees)
 {
   const MixedCase c = {.turgor = 0.02, .F = {FREE, 0, 0, 1.1}, .F33 = 1};
   const LamResponse mixed = SolveDefault(c);
@@ -87,7 +87,7 @@ static void BisectionAgrees(void **state)
 }
 
 /* Where stress is prescribed, Psi - P.F is stationary: its differences in F22 have their minimum there. */
-static void SwollenTissueHasTheLeastEnergy(void **state)
+TEST(SwollenTissueHasTheLeastEnergy)
 {
   const MixedCase c = {.turgor = 0.02, .F = {FREE, FREE, 0, FREE}, .F33 = 1};
   const LamResponse swollen = SolveDefault(c);
@@ -105,7 +105,7 @@ static void SwollenTissueHasTheLeastEnergy(void **state)
 }
 
 /* Free swelling with F21 prescribed is the same swelling, turned. */
-static void PrescribedF21TurnsTheTissue(void **state)
+TEST(PrescribedF21TurnsTheTissue)
 {
   const double angle = 0.2;
   const MixedCase c = {.turgor = 0.02, .F = {FREE, FREE, 0, FREE}, .F33 = 1};
@@ -121,7 +121,7 @@ static void PrescribedF21TurnsTheTissue(void **state)
 }
 
 /* Cells whose axes are turned by 60 deg are the same tissue. */
-static void LatticeSymmetryHolds(void **state)
+TEST(LatticeSymmetryHolds)
 {
   const MixedCase c = {.turgor = 0.02, .F = {FREE, 0.2, 0, FREE}, .F33 = FREE, .P = {0.01, 0, 0, 0}};
   LamMicrostructure micro = DefaultTissue();
@@ -133,7 +133,7 @@ static void LatticeSymmetryHolds(void **state)
   for (int i = 0; i < 9; i++) assert_near(after.load.F[i], before.load.F[i], 1e-8);
 }
 
-static void RotationMustNotBeFree(void **state)
+TEST(RotationMustNotBeFree)
 {
   const LamResponse r = SolveDefault((MixedCase){.F = {1, FREE, FREE, 1}, .F33 = 1});
 
@@ -141,7 +141,7 @@ static void RotationMustNotBeFree(void **state)
   assert_non_null(strstr(r.reason, "rotate"));
 }
 
-static void StressMustBeFinite(void **state)
+TEST(StressMustBeFinite)
 {
   const LamResponse r = SolveDefault((MixedCase){.F = {1, 0, 0, FREE}, .F33 = 1, .P = {0, 0, 0, INFINITY}});
 
@@ -149,7 +149,7 @@ static void StressMustBeFinite(void **state)
 }
 
 /* Dry cells under too much compression: a state that shears away unless F12 is held. */
-static void UnstableStateNamesTheStableControl(void **state)
+TEST(UnstableStateNamesTheStableControl)
 {
   const MixedCase free_shear = {.F = {FREE, FREE, 0, FREE}, .F33 = 1, .P = {0, 0, 0, -0.01}};
   const MixedCase held_shear = {.F = {FREE, 0, 0, FREE}, .F33 = 1, .P = {0, 0, 0, -0.01}};
@@ -164,7 +164,7 @@ static void UnstableStateNamesTheStableControl(void **state)
 }
 
 /* A stress that nothing carries: the reason brackets where stable states end, and F is not given. */
-static void UnreachableStressIsBracketed(void **state)
+TEST(UnreachableStressIsBracketed)
 {
   const LamResponse r = SolveDefault((MixedCase){.F = {FREE, FREE, 0, FREE}, .F33 = 1, .P = {0, 0, 0, -0.05}});
   double reached = -1, failed = -1;
@@ -177,7 +177,7 @@ static void UnreachableStressIsBracketed(void **state)
 }
 
 /* Pulled tissue stiffens without end: where no answer is found that is no end of stable states. */
-static void StressTooFarAwayIsNotCalledALimit(void **state)
+TEST(StressTooFarAwayIsNotCalledALimit)
 {
   const LamResponse r = SolveDefault((MixedCase){.F = {FREE, FREE, 0, FREE}, .F33 = 1, .P = {1000, 0, 0, 1000}});
 
@@ -186,7 +186,7 @@ static void StressTooFarAwayIsNotCalledALimit(void **state)
 }
 
 /* Walls without fibres thin as they are blown up: beyond a turgor there is no equilibrium. */
-static void FreeTissueWithoutFibresHasALimitTurgor(void **state)
+TEST(FreeTissueWithoutFibresHasALimitTurgor)
 {
   const MixedCase blown = {.F = {FREE, 0, 0, FREE}, .F33 = 1, .P = {0, 0, 0, 0}, .turgor = 0.05};
   LamMicrostructure micro = DefaultTissue();
@@ -198,28 +198,4 @@ static void FreeTissueWithoutFibresHasALimitTurgor(void **state)
   assert_non_null(strstr(r.reason, "a limit load lies between"));
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(StressIsReached),
-      cmocka_unit_test(StateIsThatOfItsF),
-      cmocka_unit_test(FactorisationsAreFewMore),
-      cmocka_unit_test(BisectionAgrees),
-      cmocka_unit_test(SwollenTissueHasTheLeastEnergy),
-      cmocka_unit_test(PrescribedF21TurnsTheTissue),
-      cmocka_unit_test(LatticeSymmetryHolds),
-      cmocka_unit_test(RotationMustNotBeFree),
-      cmocka_unit_test(StressMustBeFinite),
-      cmocka_unit_test(UnstableStateNamesTheStableControl),
-      cmocka_unit_test(UnreachableStressIsBracketed),
-      cmocka_unit_test(StressTooFarAwayIsNotCalledALimit),
-      cmocka_unit_test(FreeTissueWithoutFibresHasALimitTurgor),
-  };
-
-  return cmocka_run_group_tests(tests, SolveAll, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1, .setup = SolveAll);

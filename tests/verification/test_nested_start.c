@@ -1,6 +1,6 @@
 /* Large meshes start from the solution of a coarser one, and give what they give from elsewhere. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_contact.h"
 #include <string.h>
 
@@ -43,25 +43,25 @@ static void AssertSameAnswer(LamInterfaceLawType interface, double tolerance)
   assert_near(nested.energy, other.energy, tolerance);
 }
 
-static void BondedTissueHasTheSameAnswer(void **state)
+TEST(BondedTissueHasTheSameAnswer)
 {
   AssertSameAnswer(LAM_INTERFACE_BONDED, 1e-9);
 }
 
 /* To what the hysteresis of the junction status leaves open. */
-static void ContactTissueHasTheSameAnswer(void **state)
+TEST(ContactTissueHasTheSameAnswer)
 {
   AssertSameAnswer(LAM_INTERFACE_CONTACT, 1e-4);
 }
 
-static void FewIterationsAreLeftForTheFineMesh(void **state)
+TEST(FewIterationsAreLeftForTheFineMesh)
 {
   const LamMicrostructure micro = Tissue(LAM_INTERFACE_BONDED);
 
   assert_in_range(SolveTissue(&micro, PlaneLoad(1, 0.1, 0, 1, 0.02)).newton_iterations, 1, 5);
 }
 
-static void ReasonNamesTheMeshThatItIsOf(void **state)
+TEST(ReasonNamesTheMeshThatItIsOf)
 {
   const LamMicrostructure micro = Tissue(LAM_INTERFACE_BONDED);
   const LamResponse r = SolveTissue(&micro, PlaneLoad(0.7, 0, 0, 1.4, -0.2));
@@ -70,19 +70,4 @@ static void ReasonNamesTheMeshThatItIsOf(void **state)
   assert_non_null(strstr(r.reason, "on 18 x 5 elements: the lumen of cell 0 collapses between"));
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(BondedTissueHasTheSameAnswer),
-      cmocka_unit_test(ContactTissueHasTheSameAnswer),
-      cmocka_unit_test(FewIterationsAreLeftForTheFineMesh),
-      cmocka_unit_test(ReasonNamesTheMeshThatItIsOf),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1);

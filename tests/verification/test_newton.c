@@ -1,4 +1,5 @@
 /* Newton iterations from F = I in one go under turgor; bench_newton prints the whole table. */
+#include "support/test.h"
 #include "rve_fixture.h"
 
 #define TURGOR (0.02 / TISSUE_STRESS)
@@ -20,7 +21,7 @@ static void AssertIterations(LamMicrostructure micro, double shear, int most)
   }
 }
 
-static void ShearUpToThirtyPercentTakesAtMostEight(void **state)
+TEST(ShearUpToThirtyPercentTakesAtMostEight)
 {
   static const double thickness[] = {0.05, 0.1, 0.15, 0.2, 0.3}, shear[] = {0.1, 0.2, 0.3};
 
@@ -33,7 +34,7 @@ static void ShearUpToThirtyPercentTakesAtMostEight(void **state)
     }
 }
 
-static void ShearOfFiftyPercentTakesAtMostTwelve(void **state)
+TEST(ShearOfFiftyPercentTakesAtMostTwelve)
 {
   static const double thickness[] = {0.05, 0.1, 0.15, 0.2};
 
@@ -46,7 +47,7 @@ static void ShearOfFiftyPercentTakesAtMostTwelve(void **state)
 }
 
 /* Incompressibility costs no iterations: the pressure is an unknown of its own. */
-static void BulkModulusDoesNotMatter(void **state)
+TEST(BulkModulusDoesNotMatter)
 {
   LamResponse r[2];
 
@@ -61,7 +62,7 @@ static void BulkModulusDoesNotMatter(void **state)
 }
 
 /* Fibres a hundred times stiffer, at moderate shear: the fibre stress, too, is an unknown of its own. */
-static void StiffFibresTakeAtMostEight(void **state)
+TEST(StiffFibresTakeAtMostEight)
 {
   LamMicrostructure micro = DefaultTissue();
 
@@ -70,7 +71,7 @@ static void StiffFibresTakeAtMostEight(void **state)
 }
 
 /* A start at the solution needs no iteration. */
-static void SolutionIsItsOwnStart(void **state)
+TEST(SolutionIsItsOwnStart)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamLoad load = PlaneLoad(1.02, 0.1, 0, 1, TURGOR);
@@ -88,7 +89,7 @@ static void SolutionIsItsOwnStart(void **state)
 }
 
 /* Rounding grows with the size of the RVE and with the slenderness of the elements; the tolerance must follow it. */
-static void ManyCellsWithThinWallsConverge(void **state)
+TEST(ManyCellsWithThinWallsConverge)
 {
   LamMicrostructure micro = DefaultTissue();
   LamResponse r;
@@ -101,19 +102,4 @@ static void ManyCellsWithThinWallsConverge(void **state)
   assert_in_range(r.newton_iterations, 1, 8);
 }
 
-int main(int argc, char **argv)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(ShearUpToThirtyPercentTakesAtMostEight),
-      cmocka_unit_test(ShearOfFiftyPercentTakesAtMostTwelve),
-      cmocka_unit_test(BulkModulusDoesNotMatter),
-      cmocka_unit_test(StiffFibresTakeAtMostEight),
-      cmocka_unit_test(SolutionIsItsOwnStart),
-      cmocka_unit_test(ManyCellsWithThinWallsConverge),
-  };
-  int failed;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() || failed;
-}
+TEST_GROUP(.petsc = 1);

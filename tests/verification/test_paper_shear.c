@@ -1,8 +1,8 @@
 /* Generalised shear, Section 3 of Mihai, Safar & Wyatt: kernels and element against the closed forms of
  * docs/results/paper.md.
  */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_gap.h"
 #include "figures_shear.h"
 
@@ -15,34 +15,34 @@ static int Compare(void **state)
   return ComputeShearErrors(&errors) ? 1 : 0;
 }
 
-static void NominalStressOfTheKernelsIsExact(void **state)
+TEST(NominalStressOfTheKernelsIsExact)
 {
   assert_near(errors.nominal, 0.0, TOLERANCE);
 }
 
-static void CauchyStressOfTheKernelsIsExact(void **state)
+TEST(CauchyStressOfTheKernelsIsExact)
 {
   assert_near(errors.cauchy, 0.0, TOLERANCE);
 }
 
-static void TractionsOnMaterialPlanesAreExact(void **state)
+TEST(TractionsOnMaterialPlanesAreExact)
 {
   assert_near(errors.traction, 0.0, TOLERANCE);
 }
 
-static void NodalForcesOfTheElementAreExact(void **state)
+TEST(NodalForcesOfTheElementAreExact)
 {
   assert_near(errors.force, 0.0, TOLERANCE);
 }
 
-static void FieldsOfTheElementAreExact(void **state)
+TEST(FieldsOfTheElementAreExact)
 {
   assert_near(errors.stretch, 0.0, TOLERANCE);
   assert_near(errors.principal, 0.0, TOLERANCE);
 }
 
 /* Fibres at random angles, where sigma12 rises with the shear: C4 <= 3 (C1 + C2). */
-static void CubicIsSolvedByItsRoot(void **state)
+TEST(CubicIsSolvedByItsRoot)
 {
   uint64_t seed = 43;
 
@@ -55,7 +55,7 @@ static void CubicIsSolvedByItsRoot(void **state)
   }
 }
 
-static void ProfileHasTheShearOfTheCubic(void **state)
+TEST(ProfileHasTheShearOfTheCubic)
 {
   const LamWall wall = {.C1 = 0.9, .C2 = 0.1, .C4 = 9.0};
   const double a = 1.5, b = 0.2, h = 1e-4;
@@ -80,7 +80,7 @@ static double ShearTangent(const LamWall *wall, double psi, double s)
 }
 
 /* Its least value, C1 + C2 - C4 (sin psi cos psi)^2, is where the fibres are shortest, s = -cot psi. */
-static void ObliqueFibresMakeTheShearStressFall(void **state)
+TEST(ObliqueFibresMakeTheShearStressFall)
 {
   const LamWall wall = {.C1 = 0.9, .C2 = 0.1, .C4 = 9.0};
 
@@ -94,7 +94,7 @@ static void ObliqueFibresMakeTheShearStressFall(void **state)
 }
 
 /* Whatever their stiffness, fibres in the plane of the interface do not relieve it of its shear traction. */
-static void ShearedInterfaceAlongFibresHasFriction(void **state)
+TEST(ShearedInterfaceAlongFibresHasFriction)
 {
   for (double s = -1.0; s < 1.1; s += 0.25)
     for (double C4 = 0.0; C4 < 1e4; C4 = 10.0 * C4 + 1.0) {
@@ -115,14 +115,14 @@ static Gap GapOf(double C4, double k)
 }
 
 /* 1/4 at X2 = 1 where fibres carry all, and 1/2 where they carry nothing, as at small k. */
-static void GapHasThePowerOfStiffFibresOnly(void **state)
+TEST(GapHasThePowerOfStiffFibresOnly)
 {
   assert_near(GapOf(1e9, 0.5).gap, 0.25, 1e-5);
   assert_near(GapOf(9.0, 1e-4).gap, 0.5, 1e-6);
 }
 
 /* Over k and k^2, the tractions that the faces should not carry tend to C1 + C2 and to 3/2 (C1 + C2) + C4. */
-static void UnwantedTractionsVanishOnlyWithTheShear(void **state)
+TEST(UnwantedTractionsVanishOnlyWithTheShear)
 {
   for (double k = 0.1; k > 1e-3; k *= 0.1) {
     assert_near(GapOf(9.0, k).shear / k, 1.0, 2.0 * k * k);
@@ -130,26 +130,4 @@ static void UnwantedTractionsVanishOnlyWithTheShear(void **state)
   }
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(NominalStressOfTheKernelsIsExact),
-      cmocka_unit_test(CauchyStressOfTheKernelsIsExact),
-      cmocka_unit_test(TractionsOnMaterialPlanesAreExact),
-      cmocka_unit_test(NodalForcesOfTheElementAreExact),
-      cmocka_unit_test(FieldsOfTheElementAreExact),
-      cmocka_unit_test(CubicIsSolvedByItsRoot),
-      cmocka_unit_test(ProfileHasTheShearOfTheCubic),
-      cmocka_unit_test(ObliqueFibresMakeTheShearStressFall),
-      cmocka_unit_test(ShearedInterfaceAlongFibresHasFriction),
-      cmocka_unit_test(GapHasThePowerOfStiffFibresOnly),
-      cmocka_unit_test(UnwantedTractionsVanishOnlyWithTheShear),
-  };
-
-  return cmocka_run_group_tests(tests, Compare, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1, .setup = Compare);

@@ -1,8 +1,8 @@
 /* The cubic of generalised shear, Section 3 of Mihai, Safar & Wyatt, against a strip of wall elements
  * (docs/results/paper.md).
  */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_gap.h"
 
 #define INCOMPRESSIBLE 1e8 /* bulk modulus over C1 + C2: no part in the errors of these meshes */
@@ -15,31 +15,31 @@ static int Solve(void **state)
          ComputeStrip(DefaultStrip(16, INCOMPRESSIBLE), &fine);
 }
 
-static void DisplacementConvergesWithOrderThree(void **state)
+TEST(DisplacementConvergesWithOrderThree)
 {
   assert_true(fine.displacement < 2e-6);
   assert_near(log2(coarse.displacement / fine.displacement), 3.0, 0.15);
 }
 
-static void ShearConvergesWithOrderTwo(void **state)
+TEST(ShearConvergesWithOrderTwo)
 {
   assert_true(fine.gradient < 2e-4);
   assert_near(log2(coarse.gradient / fine.gradient), 2.0, 0.15);
 }
 
-static void StressesConvergeWithOrderTwo(void **state)
+TEST(StressesConvergeWithOrderTwo)
 {
   assert_near(log2(coarse.shear / fine.shear), 2.0, 0.15);
   assert_near(log2(coarse.normal / fine.normal), 2.0, 0.2);
 }
 
-static void HeightsStay(void **state)
+TEST(HeightsStay)
 {
   assert_near(fine.lateral, 0.0, 1e-8);
 }
 
 /* A traction at the top gives the displacement that was prescribed. */
-static void TractionMovesTheTopAsTheCubicSays(void **state)
+TEST(TractionMovesTheTopAsTheCubicSays)
 {
   StripProblem pulled = DefaultStrip(16, INCOMPRESSIBLE);
   StripErrors errors;
@@ -50,7 +50,7 @@ static void TractionMovesTheTopAsTheCubicSays(void **state)
 }
 
 /* Fibres at 75 degrees: the cubic of any angle. */
-static void ObliqueFibresFollowTheirCubic(void **state)
+TEST(ObliqueFibresFollowTheirCubic)
 {
   StripProblem oblique = DefaultStrip(16, INCOMPRESSIBLE);
   StripErrors errors;
@@ -61,7 +61,7 @@ static void ObliqueFibresFollowTheirCubic(void **state)
 }
 
 /* Walls that can be compressed miss the incompressible solution by about 0.3 / kappa. */
-static void CompressibilityCostsItsInverse(void **state)
+TEST(CompressibilityCostsItsInverse)
 {
   StripErrors soft, stiff;
 
@@ -73,7 +73,7 @@ static void CompressibilityCostsItsInverse(void **state)
 
 /* Two walls sheared as the paper has it, with faces free of traction: a gap opens everywhere, nearly that of the cubic
    and, at small shear, nearly twice that of the power 4/3. */
-static void FreeFacesPartAsTheCubicSays(void **state)
+TEST(FreeFacesPartAsTheCubicSays)
 {
   const LamWall wall = DefaultStrip(1, 1e3).wall;
   const int middle = FACE_NODES / 2;
@@ -85,19 +85,4 @@ static void FreeFacesPartAsTheCubicSays(void **state)
   assert_true(faces.computed[middle] > 1.7 * faces.power[middle]);
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(DisplacementConvergesWithOrderThree), cmocka_unit_test(ShearConvergesWithOrderTwo),
-      cmocka_unit_test(StressesConvergeWithOrderTwo),        cmocka_unit_test(HeightsStay),
-      cmocka_unit_test(TractionMovesTheTopAsTheCubicSays),   cmocka_unit_test(ObliqueFibresFollowTheirCubic),
-      cmocka_unit_test(CompressibilityCostsItsInverse),      cmocka_unit_test(FreeFacesPartAsTheCubicSays),
-  };
-
-  return cmocka_run_group_tests(tests, Solve, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1, .setup = Solve);

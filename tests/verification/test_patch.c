@@ -1,4 +1,5 @@
 /* What the answer of a patch must not depend on, its limit of many cells, and the smallest patches. */
+#include "support/test.h"
 #include "rve_fixture.h"
 #include "figures_patch.h"
 #include "turned_response.h"
@@ -18,7 +19,7 @@ static LamResponse SolvePatch(const LamMicrostructure *micro, const double F[9])
   return SolveTissue(micro, load);
 }
 
-static void RotationOfTheObserver(void **state)
+TEST(RotationOfTheObserver)
 {
   for (int interface = 0; interface < LAM_INTERFACE_LAW_COUNT; interface++)
     for (int sides = 0; sides < LAM_PATCH_SIDES_COUNT; sides++) {
@@ -36,7 +37,7 @@ static void RotationOfTheObserver(void **state)
 }
 
 /* Cells turned by 60 degrees lie in the same places; only the numbers of their faces change. */
-static void CellsTurnedBySixtyDegrees(void **state)
+TEST(CellsTurnedBySixtyDegrees)
 {
   for (int orientation = 0; orientation <= 30; orientation += 30) {
     LamMicrostructure micro = PatchTissue(3, 2, orientation, LAM_INTERFACE_BONDED), turned = micro;
@@ -54,7 +55,7 @@ static void CellsTurnedBySixtyDegrees(void **state)
 }
 
 /* Three columns of cells on an edge, turned by a right angle, are three rows of cells on a corner. */
-static void CellsOnAnEdgeAreTurnedCellsOnACorner(void **state)
+TEST(CellsOnAnEdgeAreTurnedCellsOnACorner)
 {
   LamMicrostructure micro = PatchTissue(3, 2, 30, LAM_INTERFACE_BONDED),
                     turned = PatchTissue(2, 3, 0, LAM_INTERFACE_BONDED);
@@ -73,7 +74,7 @@ static void CellsOnAnEdgeAreTurnedCellsOnACorner(void **state)
 }
 
 /* The boundary holds a layer of cells: the stress of n x n cells differs from the periodic one by a term in 1/n. */
-static void BondedPatchTendsToThePeriodicTissue(void **state)
+TEST(BondedPatchTendsToThePeriodicTissue)
 {
   double error[PATCH_SIZES], limit;
 
@@ -108,7 +109,7 @@ static double AreaOfCells(LamRVE rve, LamRVEState state)
 }
 
 /* Sides that follow F keep the area of the block: what is not cell is gap. */
-static void CellsAndGapsFillThePatch(void **state)
+TEST(CellsAndGapsFillThePatch)
 {
   for (int orientation = 0; orientation <= 30; orientation += 30) {
     const LamMicrostructure micro = PatchTissue(3, 3, orientation, LAM_INTERFACE_CONTACT);
@@ -128,7 +129,7 @@ static void CellsAndGapsFillThePatch(void **state)
   }
 }
 
-static void SmallestPatches(void **state)
+TEST(SmallestPatches)
 {
   static const int cells[][2] = {{1, 1}, {1, 4}, {4, 1}};
 
@@ -145,7 +146,7 @@ static void SmallestPatches(void **state)
 }
 
 /* One cell has no interface: contact does not change it, and of what would be open nothing is known. */
-static void OneCellHasNoInterface(void **state)
+TEST(OneCellHasNoInterface)
 {
   const LamMicrostructure bonded = PatchTissue(1, 1, 30, LAM_INTERFACE_BONDED),
                           contact = PatchTissue(1, 1, 30, LAM_INTERFACE_CONTACT);
@@ -160,22 +161,4 @@ static void OneCellHasNoInterface(void **state)
   assert_true(isnan(b.max_traction));
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(RotationOfTheObserver),
-      cmocka_unit_test(CellsTurnedBySixtyDegrees),
-      cmocka_unit_test(CellsOnAnEdgeAreTurnedCellsOnACorner),
-      cmocka_unit_test(BondedPatchTendsToThePeriodicTissue),
-      cmocka_unit_test(CellsAndGapsFillThePatch),
-      cmocka_unit_test(SmallestPatches),
-      cmocka_unit_test(OneCellHasNoInterface),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1);

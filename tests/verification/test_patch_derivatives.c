@@ -1,6 +1,6 @@
 /* Everything that a patch answers is a derivative of its energy: finite differences at a general F. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_patch.h"
 
 static ContactSweep sweeps[PATCH_STATES];
@@ -18,7 +18,7 @@ static int SweepAll(void **state)
   return 0;
 }
 
-static void StatesConvergeInsideOneContactSet(void **state)
+TEST(StatesConvergeInsideOneContactSet)
 {
   for (int s = 0; s < PATCH_STATES; s++) {
     assert_int_equal(sweeps[s].response.status, LAM_CONVERGED);
@@ -26,12 +26,12 @@ static void StatesConvergeInsideOneContactSet(void **state)
   }
 }
 
-static void StressIsDerivativeOfEnergy(void **state)
+TEST(StressIsDerivativeOfEnergy)
 {
   for (int s = 0; s < PATCH_STATES; s++) assert_near(errors[s].stress, 0.0, 1e-8);
 }
 
-static void LumenIsDerivativeOfEnergy(void **state)
+TEST(LumenIsDerivativeOfEnergy)
 {
   for (int s = 0; s < PATCH_STATES; s++) {
     assert_near(errors[s].turgor, 0.0, 1e-8);
@@ -39,7 +39,7 @@ static void LumenIsDerivativeOfEnergy(void **state)
   }
 }
 
-static void OpeningIsDerivativeOfEnergy(void **state)
+TEST(OpeningIsDerivativeOfEnergy)
 {
   for (int s = 0; s < PATCH_STATES; s++) {
     assert_near(errors[s].cohesion, 0.0, 1e-8);
@@ -47,12 +47,12 @@ static void OpeningIsDerivativeOfEnergy(void **state)
   }
 }
 
-static void TangentIsDerivativeOfStress(void **state)
+TEST(TangentIsDerivativeOfStress)
 {
   for (int s = 0; s < PATCH_STATES; s++) assert_near(errors[s].tangent, 0.0, 1e-6);
 }
 
-static void CouplingsAreDerivativesOfStress(void **state)
+TEST(CouplingsAreDerivativesOfStress)
 {
   for (int s = 0; s < PATCH_STATES; s++) {
     assert_near(errors[s].turgor_coupling, 0.0, 1e-6);
@@ -60,13 +60,13 @@ static void CouplingsAreDerivativesOfStress(void **state)
   }
 }
 
-static void SecondDerivativesInTurgorAndCohesionAreThoseOfVolumes(void **state)
+TEST(SecondDerivativesInTurgorAndCohesionAreThoseOfVolumes)
 {
   for (int s = 0; s < PATCH_STATES; s++) assert_near(errors[s].volumes, 0.0, 1e-6);
 }
 
 /* The moments of the forces on the held walls, x = F X, balance: P F^T is symmetric. */
-static void MomentsOfTheBoundaryForcesBalance(void **state)
+TEST(MomentsOfTheBoundaryForcesBalance)
 {
   for (int s = 0; s < PATCH_STATES; s++) {
     const double *P = sweeps[s].response.P, *F = sweeps[s].response.load.F;
@@ -75,23 +75,4 @@ static void MomentsOfTheBoundaryForcesBalance(void **state)
   }
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(StatesConvergeInsideOneContactSet),
-      cmocka_unit_test(StressIsDerivativeOfEnergy),
-      cmocka_unit_test(LumenIsDerivativeOfEnergy),
-      cmocka_unit_test(OpeningIsDerivativeOfEnergy),
-      cmocka_unit_test(TangentIsDerivativeOfStress),
-      cmocka_unit_test(CouplingsAreDerivativesOfStress),
-      cmocka_unit_test(SecondDerivativesInTurgorAndCohesionAreThoseOfVolumes),
-      cmocka_unit_test(MomentsOfTheBoundaryForcesBalance),
-  };
-
-  return cmocka_run_group_tests(tests, SweepAll, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1, .setup = SweepAll);

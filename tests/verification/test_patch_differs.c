@@ -1,8 +1,8 @@
 /* Patches between grips: P, tangent and couplings are derivatives of the energy, also where cells differ; turgor is
    cohesion; a single cell. */
+#include "support/test.h"
 #include "rve_fixture.h"
 #include "separation.h"
-#include "assert_near.h"
 #include "figures_contact_derivatives.h"
 
 #define COLUMNS 3
@@ -111,7 +111,7 @@ static void CheckDerivatives(const LamMicrostructure *micro)
   assert_int_equal(LamRVEDestroy(&rve), 0);
 }
 
-static void DerivativesOfBondedPatches(void **state)
+TEST(DerivativesOfBondedPatches)
 {
   LamCell cells[COLUMNS * ROWS];
   LamMicrostructure micro = UnevenPatch(LAM_INTERFACE_BONDED, cells);
@@ -121,7 +121,7 @@ static void DerivativesOfBondedPatches(void **state)
   CheckDerivatives(&micro);
 }
 
-static void DerivativesOfPatchesInContact(void **state)
+TEST(DerivativesOfPatchesInContact)
 {
   LamCell cells[COLUMNS * ROWS];
   LamMicrostructure micro = UnevenPatch(LAM_INTERFACE_CONTACT, cells);
@@ -131,7 +131,7 @@ static void DerivativesOfPatchesInContact(void **state)
 
 /* Turgor p and cohesion g act through p + g but for -p J F^-T, where the outer walls follow F: the gaps that cohesion
    works on are all that lumens and walls leave. Exact as the walls become incompressible. */
-static void TurgorIsCohesion(void **state)
+TEST(TurgorIsCohesion)
 {
   LamMicrostructure micro = Patch(LAM_INTERFACE_CONTACT, 2, 2);
   LamResponse p, g;
@@ -164,7 +164,7 @@ static LamResponse SolveMesh(PetscInt along, PetscInt through)
 
 /* Both ends of the only face are held: what holds them is no load on the lamella, and would grow as meshes get finer.
  */
-static void ReactionsDoNotLoadTheLamella(void **state)
+TEST(ReactionsDoNotLoadTheLamella)
 {
   const LamResponse coarse = SolveMesh(6, 2), fine = SolveMesh(12, 4), coarsest = SolveMesh(1, 1);
 
@@ -173,7 +173,7 @@ static void ReactionsDoNotLoadTheLamella(void **state)
 }
 
 /* A single cell has nothing that could come apart, whatever the interface law, and no traction to tell. */
-static void ASingleCellIsNotSeparated(void **state)
+TEST(ASingleCellIsNotSeparated)
 {
   for (int law = 0; law < LAM_INTERFACE_LAW_COUNT; law++) {
     const LamMicrostructure micro = Patch((LamInterfaceLawType)law, 1, 1);
@@ -186,18 +186,4 @@ static void ASingleCellIsNotSeparated(void **state)
   }
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(DerivativesOfBondedPatches), cmocka_unit_test(DerivativesOfPatchesInContact),
-      cmocka_unit_test(TurgorIsCohesion),           cmocka_unit_test(ReactionsDoNotLoadTheLamella),
-      cmocka_unit_test(ASingleCellIsNotSeparated),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1);

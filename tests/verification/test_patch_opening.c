@@ -1,9 +1,9 @@
 /* slow: Fig. 9 of the source paper: empty cells come apart along the direction of the larger principal stretch. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_patch.h"
 
-static void CellsComeApartAlongTheFirstPrincipalStretch(void **state)
+TEST(CellsComeApartAlongTheFirstPrincipalStretch)
 {
   const LamMicrostructure micro = PaperPatch(6);
   const LamResponse r = SolveTissue(&micro, ContactLoad(1, PATCH_SHEAR, 0, 1, 0, 0));
@@ -12,16 +12,4 @@ static void CellsComeApartAlongTheFirstPrincipalStretch(void **state)
   assert_near(AngleBetweenAxes(FirstAxis(r.opening_moment), StretchAxis(PATCH_SHEAR)), 0.0, 15.0);
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(CellsComeApartAlongTheFirstPrincipalStretch),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1);

@@ -1,6 +1,6 @@
 /* Section 4.2 of the source paper on 3 x 3 cells: sheared between grips, empty and under turgor, by both strategies. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_patch.h"
 
 static LamResponse states[PATCH_TURGORS][LAM_STRATEGY_COUNT];
@@ -10,7 +10,7 @@ static int SolveAll(void **state)
   return SolvePatchStates(states) ? 1 : 0;
 }
 
-static void BothStrategiesConverge(void **state)
+TEST(BothStrategiesConverge)
 {
   for (int p = 0; p < PATCH_TURGORS; p++)
     for (int strategy = 0; strategy < LAM_STRATEGY_COUNT; strategy++) {
@@ -19,19 +19,19 @@ static void BothStrategiesConverge(void **state)
     }
 }
 
-static void BothStrategiesFindTheSameStressUnderTurgor(void **state)
+TEST(BothStrategiesFindTheSameStressUnderTurgor)
 {
   for (int p = 1; p < PATCH_TURGORS; p++)
     assert_near(LamStressError(states[p][LAM_ONE_STEP].P, states[p][LAM_TWO_STEP].P), 0.0, 1e-6);
 }
 
 /* Empty tissue has several discrete solutions, which differ in hats at junctions. */
-static void BothStrategiesFindCloseStressesInEmptyTissue(void **state)
+TEST(BothStrategiesFindCloseStressesInEmptyTissue)
 {
   assert_near(LamStressError(states[0][LAM_ONE_STEP].P, states[0][LAM_TWO_STEP].P), 0.0, 5e-3);
 }
 
-static void TurgorClosesTheInterfaces(void **state)
+TEST(TurgorClosesTheInterfaces)
 {
   for (int p = 1; p < PATCH_TURGORS; p++) {
     assert_true(states[p][LAM_TWO_STEP].open_fraction < states[p - 1][LAM_TWO_STEP].open_fraction);
@@ -41,19 +41,4 @@ static void TurgorClosesTheInterfaces(void **state)
   assert_true(states[PATCH_TURGORS - 1][LAM_TWO_STEP].open_fraction < 0.1);
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(BothStrategiesConverge),
-      cmocka_unit_test(BothStrategiesFindTheSameStressUnderTurgor),
-      cmocka_unit_test(BothStrategiesFindCloseStressesInEmptyTissue),
-      cmocka_unit_test(TurgorClosesTheInterfaces),
-  };
-
-  return cmocka_run_group_tests(tests, SolveAll, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1, .setup = SolveAll);

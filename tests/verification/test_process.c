@@ -1,6 +1,7 @@
 /*
   Tissue that changes in time at a material point, against closed forms, fresh solves and balances.
 */
+#include "support/test.h"
 #include "rve_fixture.h"
 #include "process_fixture.h"
 
@@ -22,7 +23,7 @@ static PetscReal FreeLumen(LamRVE rve, PetscReal turgor)
 }
 
 /* ln 2 V / (A Lp (epsilon + pi)) of a free cell, epsilon = V dp/dV, by differences of fresh solves. */
-static void turgor_relaxes_with_the_half_time_of_a_free_cell(void **state)
+TEST(turgor_relaxes_with_the_half_time_of_a_free_cell)
 {
   Followed f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.1 MPa}\n"
                                         "process:\n"
@@ -44,7 +45,7 @@ static void turgor_relaxes_with_the_half_time_of_a_free_cell(void **state)
   Forget(&f);
 }
 
-static void solutes_are_conserved_and_the_flow_makes_up_the_volume(void **state)
+TEST(solutes_are_conserved_and_the_flow_makes_up_the_volume)
 {
   Followed f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.1 MPa}\n"
                                         "process:\n"
@@ -92,7 +93,7 @@ static void solutes_are_conserved_and_the_flow_makes_up_the_volume(void **state)
                "    - {time: 5 h, outside: 0.3 MPa}\n"
 
 /* In a bath that draws more than the turgor the membranes leave the walls; the protoplast then is an osmometer. */
-static void a_plasmolysed_protoplast_follows_boyle_and_van_t_hoff(void **state)
+TEST(a_plasmolysed_protoplast_follows_boyle_and_van_t_hoff)
 {
   Followed f = FollowToEnd(BATH("4e-7 m/s/MPa"));
   const LamProcessState *lost = FindEvent(&f, LAM_EVENT_TURGOR_LOST), *found = FindEvent(&f, LAM_EVENT_TURGOR_FOUND),
@@ -112,7 +113,7 @@ static void a_plasmolysed_protoplast_follows_boyle_and_van_t_hoff(void **state)
   Forget(&f);
 }
 
-static void membranes_that_let_nothing_pass_keep_the_water(void **state)
+TEST(membranes_that_let_nothing_pass_keep_the_water)
 {
   Followed f = FollowToEnd(BATH("0 m/s/MPa"));
 
@@ -123,7 +124,7 @@ static void membranes_that_let_nothing_pass_keep_the_water(void **state)
   Forget(&f);
 }
 
-static void membranes_without_resistance_are_in_equilibrium_at_any_time(void **state)
+TEST(membranes_without_resistance_are_in_equilibrium_at_any_time)
 {
   Followed f = FollowToEnd(BATH("infinite"));
 
@@ -160,7 +161,7 @@ static PetscReal Speed(void)
   return exp(-60e3 / LAM_GAS_CONSTANT * (1 / 303.15 - 1 / 293.15));
 }
 
-static void laws_follow_their_closed_forms_over_a_step_of_temperature(void **state)
+TEST(laws_follow_their_closed_forms_over_a_step_of_temperature)
 {
   Followed f = FollowToEnd(CHANGES "    - {of: lamella, law: first_order, rate: 0.3 /day, activation: 60 kJ/mol}\n"
                                    "    - {of: walls, law: fractional_conversion, rate: 0.2 /day, plateau: 1.5, "
@@ -174,7 +175,7 @@ static void laws_follow_their_closed_forms_over_a_step_of_temperature(void **sta
   Forget(&f);
 }
 
-static void two_fractions_and_enzymes_follow_theirs(void **state)
+TEST(two_fractions_and_enzymes_follow_theirs)
 {
   Followed f = FollowToEnd(CHANGES "    - {of: lamella, law: two_fractions, rate: 2 /day, second_rate: 0.1 /day, "
                                    "share: 0.6, activation: 60 kJ/mol, second_activation: 0 kJ/mol}\n"
@@ -191,7 +192,7 @@ static void two_fractions_and_enzymes_follow_theirs(void **state)
 /* ---- properties and responses ---- */
 
 /* Walls whose moduli are all halved bear what half of the pressure does in those of the start, half as much. */
-static void softened_walls_respond_as_such(void **state)
+TEST(softened_walls_respond_as_such)
 {
   Followed f =
       FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.05 MPa}\n"
@@ -215,7 +216,7 @@ static void softened_walls_respond_as_such(void **state)
 }
 
 /* Walls that lose their fibres alone are another tissue; the responder is told. */
-static void walls_may_change_in_their_proportions(void **state)
+TEST(walls_may_change_in_their_proportions)
 {
   Followed f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.05 MPa}\n"
                                         "process:\n"
@@ -239,7 +240,7 @@ static void walls_may_change_in_their_proportions(void **state)
 
 /* ---- program ---- */
 
-static void stress_relaxes_at_constant_strain_as_water_flows(void **state)
+TEST(stress_relaxes_at_constant_strain_as_water_flows)
 {
   Followed f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.1 MPa}\n"
                                         "process:\n"
@@ -261,7 +262,7 @@ static void stress_relaxes_at_constant_strain_as_water_flows(void **state)
   Forget(&f);
 }
 
-static void a_load_that_is_held_creeps_as_walls_soften(void **state)
+TEST(a_load_that_is_held_creeps_as_walls_soften)
 {
   Followed f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.02 MPa}\n"
                                         "process:\n"
@@ -278,7 +279,7 @@ static void a_load_that_is_held_creeps_as_walls_soften(void **state)
 }
 
 /* Cells without turgor take up water from where they are. */
-static void empty_cells_fill(void **state)
+TEST(empty_cells_fill)
 {
   Followed f = FollowToEnd(PROCESS_CELL "process:\n"
                                         "  duration: 20 h\n"
@@ -290,7 +291,7 @@ static void empty_cells_fill(void **state)
   Forget(&f);
 }
 
-static void a_program_that_repeats_comes_back(void **state)
+TEST(a_program_that_repeats_comes_back)
 {
   Followed f = FollowToEnd(PROCESS_CELL "process:\n"
                                         "  duration: 40 s\n"
@@ -306,7 +307,7 @@ static void a_program_that_repeats_comes_back(void **state)
 }
 
 /* Ten times 0.1 s is not 1 s in binary numbers. */
-static void ends_that_rounding_keeps_apart_are_one(void **state)
+TEST(ends_that_rounding_keeps_apart_are_one)
 {
   Followed f =
       FollowToEnd(PROCESS_CELL "process:\n"
@@ -323,7 +324,7 @@ static void ends_that_rounding_keeps_apart_are_one(void **state)
 
 /* ---- events ---- */
 
-static void prescribed_turgor_that_jumps_below_0_is_lost(void **state)
+TEST(prescribed_turgor_that_jumps_below_0_is_lost)
 {
   Followed f = FollowToEnd(PROCESS_CELL "process:\n"
                                         "  duration: 2 h\n"
@@ -363,7 +364,7 @@ static PetscReal RatioAt(PetscReal time)
   return ratio;
 }
 
-static void an_event_is_where_bisection_with_fresh_solves_finds_it(void **state)
+TEST(an_event_is_where_bisection_with_fresh_solves_finds_it)
 {
   Followed f = FollowToEnd(ONSET("2 day"));
   const LamProcessState *event = FindEvent(&f, LAM_EVENT_LAMELLA_NORMAL);
@@ -383,7 +384,7 @@ static void an_event_is_where_bisection_with_fresh_solves_finds_it(void **state)
   Forget(&f);
 }
 
-static void stress_over_strength_is_1_at_the_event(void **state)
+TEST(stress_over_strength_is_1_at_the_event)
 {
   Followed f = FollowToEnd(ONSET("2 day"));
   const LamProcessState *event = FindEvent(&f, LAM_EVENT_LAMELLA_NORMAL);
@@ -394,7 +395,7 @@ static void stress_over_strength_is_1_at_the_event(void **state)
 }
 
 /* Cells that are held by cohesion alone come apart in a snap; behind it the tissue is what a fresh solve finds. */
-static void tissue_that_snaps_goes_on_behind(void **state)
+TEST(tissue_that_snaps_goes_on_behind)
 {
   const LamStressControl control = {.given = {1, 1, 0, 0, 1}, .share = 1};
   Followed f = FollowToEnd(PROCESS_CELL "  interface: {law: contact, cohesion: 0.02 MPa}\n"
@@ -418,7 +419,7 @@ static void tissue_that_snaps_goes_on_behind(void **state)
   Forget(&f);
 }
 
-static void walls_that_dissolve_to_nothing_end_it_with_a_reason(void **state)
+TEST(walls_that_dissolve_to_nothing_end_it_with_a_reason)
 {
   Followed f = Follow(PROCESS_CELL "  turgor: {pressure: 0.02 MPa}\n"
                                    "process:\n"
@@ -432,7 +433,7 @@ static void walls_that_dissolve_to_nothing_end_it_with_a_reason(void **state)
 }
 
 /* Nothing holds turgid cells together but g: where that is gone the tissue neither spans nor resists. */
-static void a_lamella_that_dissolves_lets_the_cells_float(void **state)
+TEST(a_lamella_that_dissolves_lets_the_cells_float)
 {
   Followed f =
       Follow(PROCESS_CELL "  interface: {law: contact, cohesion: 0.05 MPa}\n"
@@ -447,7 +448,7 @@ static void a_lamella_that_dissolves_lets_the_cells_float(void **state)
   Forget(&f);
 }
 
-static void cells_that_are_pulled_apart_no_longer_span_the_tissue(void **state)
+TEST(cells_that_are_pulled_apart_no_longer_span_the_tissue)
 {
   Followed f = Follow(PROCESS_CELL "  interface: {law: contact, cohesion: 0.01 MPa}\n"
                                    "  turgor: {pressure: 0.02 MPa}\n"
@@ -463,35 +464,4 @@ static void cells_that_are_pulled_apart_no_longer_span_the_tissue(void **state)
   Forget(&f);
 }
 
-static int run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(turgor_relaxes_with_the_half_time_of_a_free_cell),
-      cmocka_unit_test(solutes_are_conserved_and_the_flow_makes_up_the_volume),
-      cmocka_unit_test(a_plasmolysed_protoplast_follows_boyle_and_van_t_hoff),
-      cmocka_unit_test(membranes_that_let_nothing_pass_keep_the_water),
-      cmocka_unit_test(membranes_without_resistance_are_in_equilibrium_at_any_time),
-      cmocka_unit_test(laws_follow_their_closed_forms_over_a_step_of_temperature),
-      cmocka_unit_test(two_fractions_and_enzymes_follow_theirs),
-      cmocka_unit_test(softened_walls_respond_as_such),
-      cmocka_unit_test(walls_may_change_in_their_proportions),
-      cmocka_unit_test(stress_relaxes_at_constant_strain_as_water_flows),
-      cmocka_unit_test(a_load_that_is_held_creeps_as_walls_soften),
-      cmocka_unit_test(empty_cells_fill),
-      cmocka_unit_test(a_program_that_repeats_comes_back),
-      cmocka_unit_test(an_event_is_where_bisection_with_fresh_solves_finds_it),
-      cmocka_unit_test(ends_that_rounding_keeps_apart_are_one),
-      cmocka_unit_test(prescribed_turgor_that_jumps_below_0_is_lost),
-      cmocka_unit_test(stress_over_strength_is_1_at_the_event),
-      cmocka_unit_test(tissue_that_snaps_goes_on_behind),
-      cmocka_unit_test(walls_that_dissolve_to_nothing_end_it_with_a_reason),
-      cmocka_unit_test(a_lamella_that_dissolves_lets_the_cells_float),
-      cmocka_unit_test(cells_that_are_pulled_apart_no_longer_span_the_tissue),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, run);
-}
+TEST_GROUP(.petsc = 1);

@@ -2,6 +2,7 @@
   Bodies that change in time: uniform ones against one material point of the same tissue, and others against closed
   forms, balances and fresh runs.
 */
+#include "support/test.h"
 #include "body_fixture.h"
 #include <math.h>
 
@@ -47,7 +48,7 @@ static void AssertAlike(const Told *body, const Told *point, PetscReal accuracy)
 
 /* ---- uniform bodies ---- */
 
-static void a_free_body_is_its_material_point(void **state)
+TEST(a_free_body_is_its_material_point)
 {
 #define CHANGES                                                                                                        \
   "process:\n"                                                                                                         \
@@ -73,7 +74,7 @@ static void a_free_body_is_its_material_point(void **state)
 
 /* The square is stretched by 0.1 of its edge before inflation; at the point deformation counts from the inflated one.
  */
-static void stress_that_relaxes_is_that_of_the_point(void **state)
+TEST(stress_that_relaxes_is_that_of_the_point)
 {
   Told free = FollowPoint(BODY_TISSUE RELAXATION, 1e-7);
   const PetscReal inflated = free.points[0].response.load.F[4];
@@ -91,7 +92,7 @@ static void stress_that_relaxes_is_that_of_the_point(void **state)
   ForgetTold(&body);
 }
 
-static void a_jump_of_the_load_leaves_water_no_time(void **state)
+TEST(a_jump_of_the_load_leaves_water_no_time)
 {
   Told body =
       FollowBodyToEnd(BODY_TISSUE STRETCHED RELAXATION "  program: [{for: 10 min}, {for: 0 s, load: 1}]\n", 1e-6);
@@ -109,7 +110,7 @@ static void a_jump_of_the_load_leaves_water_no_time(void **state)
 }
 
 /* The mean change of F since the start is 0.9: what goes astray is judged from the last state, not from the start. */
-static void a_body_that_is_sheared_far_goes_on_over_bends(void **state)
+TEST(a_body_that_is_sheared_far_goes_on_over_bends)
 {
   Told body = FollowBodyToEnd(BODY_TISSUE "macro:\n"
                                           "  mesh: {box: [10 mm, 10 mm], elements: [2, 2]}\n"
@@ -130,7 +131,7 @@ static void a_body_that_is_sheared_far_goes_on_over_bends(void **state)
 
 /* ---- water ---- */
 
-static void membranes_that_let_nothing_pass_keep_the_water_of_a_body(void **state)
+TEST(membranes_that_let_nothing_pass_keep_the_water_of_a_body)
 {
   Told body = FollowBodyToEnd(BODY_TISSUE SHEARED "process:\n"
                                                   "  duration: 1 h\n"
@@ -143,7 +144,7 @@ static void membranes_that_let_nothing_pass_keep_the_water_of_a_body(void **stat
   ForgetTold(&body);
 }
 
-static void membranes_of_a_body_without_resistance_are_in_equilibrium(void **state)
+TEST(membranes_of_a_body_without_resistance_are_in_equilibrium)
 {
   Told body = FollowBodyToEnd(BODY_TISSUE SQUARE("") "process:\n"
                                                      "  duration: 1 h\n"
@@ -165,7 +166,7 @@ static void membranes_of_a_body_without_resistance_are_in_equilibrium(void **sta
 }
 
 /* In the end V - V_b = N / pi_out; back in the first bath the walls are met again. */
-static void a_plasmolysed_body_follows_boyle_and_van_t_hoff(void **state)
+TEST(a_plasmolysed_body_follows_boyle_and_van_t_hoff)
 {
   Told body = FollowBodyToEnd(BODY_TISSUE SHEARED "process:\n"
                                                   "  duration: 4 h\n" WATER "  surroundings:\n"
@@ -194,7 +195,7 @@ static void a_plasmolysed_body_follows_boyle_and_van_t_hoff(void **state)
 /* ---- walls ---- */
 
 /* Free of load s Psi(F, p / s) is stationary at the same F where p / s is as before. */
-static void turgor_that_falls_with_the_walls_leaves_the_shape(void **state)
+TEST(turgor_that_falls_with_the_walls_leaves_the_shape)
 {
   Told body = FollowBodyToEnd(BODY_TISSUE STRETCHED "process:\n"
                                                     "  duration: 1 h\n"
@@ -213,7 +214,7 @@ static void turgor_that_falls_with_the_walls_leaves_the_shape(void **state)
   ForgetTold(&body);
 }
 
-static void a_body_whose_walls_dissolve_ends_with_a_reason(void **state)
+TEST(a_body_whose_walls_dissolve_ends_with_a_reason)
 {
   Told body = FollowBody(BODY_TISSUE SHEARED "process:\n"
                                              "  duration: 1 h\n"
@@ -238,7 +239,7 @@ static void a_body_whose_walls_dissolve_ends_with_a_reason(void **state)
   "    - {of: lamella, law: first_order, rate: 0.3 /day}\n"                                                            \
   "  program: [{for: 3 day, load: 0.5}, {for: 10 s, load: 1}]\n"
 
-static void errors_of_a_body_follow_the_tolerance(void **state)
+TEST(errors_of_a_body_follow_the_tolerance)
 {
   Told exact = FollowBodyToEnd(BODY_TISSUE SHEARED STORAGE, 1e-9);
 
@@ -277,7 +278,7 @@ static PetscReal Excess(PetscReal time)
   return ratio - 1;
 }
 
-static void an_event_of_a_body_is_where_bisection_with_fresh_runs_finds_it(void **state)
+TEST(an_event_of_a_body_is_where_bisection_with_fresh_runs_finds_it)
 {
   Told body = FollowBodyToEnd(BODY_TISSUE SHEARED STORAGE, 1e-7);
   const LamBodyState *event = FindBodyEvent(&body, LAM_EVENT_LAMELLA_NORMAL);
@@ -297,23 +298,4 @@ static void an_event_of_a_body_is_where_bisection_with_fresh_runs_finds_it(void 
   ForgetTold(&body);
 }
 
-int main(int argc, char **argv)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_free_body_is_its_material_point),
-      cmocka_unit_test(stress_that_relaxes_is_that_of_the_point),
-      cmocka_unit_test(a_jump_of_the_load_leaves_water_no_time),
-      cmocka_unit_test(a_body_that_is_sheared_far_goes_on_over_bends),
-      cmocka_unit_test(membranes_that_let_nothing_pass_keep_the_water_of_a_body),
-      cmocka_unit_test(membranes_of_a_body_without_resistance_are_in_equilibrium),
-      cmocka_unit_test(a_plasmolysed_body_follows_boyle_and_van_t_hoff),
-      cmocka_unit_test(turgor_that_falls_with_the_walls_leaves_the_shape),
-      cmocka_unit_test(a_body_whose_walls_dissolve_ends_with_a_reason),
-      cmocka_unit_test(errors_of_a_body_follow_the_tolerance),
-      cmocka_unit_test(an_event_of_a_body_is_where_bisection_with_fresh_runs_finds_it),
-  };
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  const int failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() ? 1 : failed;
-}
+TEST_GROUP(.petsc = 1);

@@ -1,7 +1,7 @@
 /* Sealed lumens: each keeps its water, all that a response holds is a derivative of one energy, and limits are those of
    prescribed turgor and of a full cell. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_sealed.h"
 
 static SealedState states[SEALED_STATES];
@@ -29,12 +29,12 @@ static LamResponse Solve(const LamMicrostructure *micro, const LamLoad *load, do
   return response;
 }
 
-static void LumensFollowTheirPressures(void **state)
+TEST(LumensFollowTheirPressures)
 {
   for (int k = 0; k < SEALED_STATES; k++) assert_near(figures[k].law_error, 0.0, 1e-13);
 }
 
-static void EverythingIsADerivativeOfTheEnergy(void **state)
+TEST(EverythingIsADerivativeOfTheEnergy)
 {
   for (int k = 0; k < SEALED_STATES; k++) {
     const ContactDerivativeError e = DerivativeError(&figures[k].sweep);
@@ -52,7 +52,7 @@ static void EverythingIsADerivativeOfTheEnergy(void **state)
 }
 
 /* Cells that are not alike reach pressures of their own; alike they have one. */
-static void PressuresDifferOnlyWhereCellsDo(void **state)
+TEST(PressuresDifferOnlyWhereCellsDo)
 {
   for (int k = 0; k < SEALED_STATES; k++) {
     const double spread = figures[k].sweep.response.turgor_spread;
@@ -65,7 +65,7 @@ static void PressuresDifferOnlyWhereCellsDo(void **state)
 }
 
 /* The state is that of the pressure reached, and A_sealed = Psi_FF + Psi_Fp (x) Psi_pF / (v_w / K_w - Psi_pp) of it. */
-static void TangentFollowsFromThatAtThePressureReached(void **state)
+TEST(TangentFollowsFromThatAtThePressureReached)
 {
   for (int k = 0; k < 5; k++) { /* one cell each */
     const LamResponse *sealed = &figures[k].sweep.response;
@@ -92,7 +92,7 @@ static void TangentFollowsFromThatAtThePressureReached(void **state)
   }
 }
 
-static void HardWaterKeepsTheLumen(void **state)
+TEST(HardWaterKeepsTheLumen)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamLoad load = PlaneLoad(1, 0.3, 0, 1, 0.2);
@@ -104,7 +104,7 @@ static void HardWaterKeepsTheLumen(void **state)
   assert_near(lumen[1], lumen[0], 1e-12);
 }
 
-static void SoftWaterKeepsThePressure(void **state)
+TEST(SoftWaterKeepsThePressure)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamLoad load = PlaneLoad(1.1, 0.2, 0, 1.05, 0.2);
@@ -119,7 +119,7 @@ static void SoftWaterKeepsThePressure(void **state)
   up, so that 1/K = v_w / K_w + w / kappa, w = 1 - (1 - t)^2 the share of the walls (docs/theory/walls.md, Sealed
   lumens). What the shape of the walls adds is of the order of C1 + C2.
 */
-static void BulkModulusIsThatOfWaterAndWallsInSeries(void **state)
+TEST(BulkModulusIsThatOfWaterAndWallsInSeries)
 {
   for (double factor = 1.0; factor < 200.0; factor *= 10.0) {
     LamMicrostructure micro = DefaultTissue();
@@ -135,7 +135,7 @@ static void BulkModulusIsThatOfWaterAndWallsInSeries(void **state)
   }
 }
 
-static void OneCellIsFourCells(void **state)
+TEST(OneCellIsFourCells)
 {
   for (int contact = 0; contact < 2; contact++) {
     LamMicrostructure micro = contact ? ContactTissue(6, 2) : DefaultTissue();
@@ -151,7 +151,7 @@ static void OneCellIsFourCells(void **state)
   }
 }
 
-static void StressTurnsWithTheTissue(void **state)
+TEST(StressTurnsWithTheTissue)
 {
   const LamMicrostructure micro = DefaultTissue();
   const double c = cos(0.7), s = sin(0.7);
@@ -168,7 +168,7 @@ static void StressTurnsWithTheTissue(void **state)
 }
 
 /* Without a state before, from the stress-free reference. */
-static void AnswerDoesNotNeedTheStateThatWasSealed(void **state)
+TEST(AnswerDoesNotNeedTheStateThatWasSealed)
 {
   for (int contact = 0; contact < 2; contact++) {
     const LamMicrostructure micro = contact ? ContactTissue(6, 2) : DefaultTissue();
@@ -186,7 +186,7 @@ static void AnswerDoesNotNeedTheStateThatWasSealed(void **state)
 }
 
 /* Bonded tissue that is pulled apart pulls at its water; in contact it opens instead, as its cohesion lets it. */
-static void WaterIsPulled(void **state)
+TEST(WaterIsPulled)
 {
   const LamLoad load = ContactLoad(1.001, 0, 0, 1, 0.02, 0.002), bonded_load = PlaneLoad(1.001, 0, 0, 1, load.turgor);
   const LamMicrostructure bonded = DefaultTissue(), contact = ContactTissue(6, 2);
@@ -196,7 +196,7 @@ static void WaterIsPulled(void **state)
 }
 
 /* Newton takes no more steps than with prescribed turgor. */
-static void NewtonIsAsFastAsWithPrescribedTurgor(void **state)
+TEST(NewtonIsAsFastAsWithPrescribedTurgor)
 {
   for (double shear = 0.1; shear < 0.55; shear += 0.1) {
     const LamMicrostructure micro = DefaultTissue();
@@ -207,7 +207,7 @@ static void NewtonIsAsFastAsWithPrescribedTurgor(void **state)
 }
 
 /* One negative eigenvalue for each pressure, which a stable state does not count. */
-static void EachPressureHasItsNegativeEigenvalue(void **state)
+TEST(EachPressureHasItsNegativeEigenvalue)
 {
   LamMicrostructure micro = DefaultTissue();
   const LamLoad load = PlaneLoad(1, 0.1, 0, 1, 0.2);
@@ -237,7 +237,7 @@ static LamResponse SolveFree(SealedTissue *s, LamLoad load)
 }
 
 /* Under prescribed stress: the state of its F, and the stress is reached. */
-static void StressMayBePrescribed(void **state)
+TEST(StressMayBePrescribed)
 {
   for (int contact = 0; contact < 2; contact++) {
     const LamMicrostructure micro = contact ? ContactTissue(6, 2) : DefaultTissue();
@@ -257,7 +257,7 @@ static void StressMayBePrescribed(void **state)
 }
 
 /* Free cells without fibres have no equilibrium beyond a turgor that is prescribed; sealed ones cannot blow up. */
-static void SealedTissueHasNoLimitTurgor(void **state)
+TEST(SealedTissueHasNoLimitTurgor)
 {
   const LamLoad load = PlaneLoad(1, 0, 0, 1, 0.05 / TISSUE_STRESS);
   LamMicrostructure micro = DefaultTissue();
@@ -275,7 +275,7 @@ static void SealedTissueHasNoLimitTurgor(void **state)
 }
 
 /* An RVE that could be sealed and is not is like any other. */
-static void UnsealedIsPrescribed(void **state)
+TEST(UnsealedIsPrescribed)
 {
   const LamMicrostructure micro = ContactTissue(6, 2);
   const LamLoad load = ContactLoad(1, 0.1, 0, 1, 0.02, 0.002);
@@ -291,31 +291,4 @@ static void UnsealedIsPrescribed(void **state)
   assert_int_equal(SealedDestroy(&s), 0);
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(LumensFollowTheirPressures),
-      cmocka_unit_test(EverythingIsADerivativeOfTheEnergy),
-      cmocka_unit_test(PressuresDifferOnlyWhereCellsDo),
-      cmocka_unit_test(TangentFollowsFromThatAtThePressureReached),
-      cmocka_unit_test(HardWaterKeepsTheLumen),
-      cmocka_unit_test(SoftWaterKeepsThePressure),
-      cmocka_unit_test(BulkModulusIsThatOfWaterAndWallsInSeries),
-      cmocka_unit_test(OneCellIsFourCells),
-      cmocka_unit_test(StressTurnsWithTheTissue),
-      cmocka_unit_test(AnswerDoesNotNeedTheStateThatWasSealed),
-      cmocka_unit_test(WaterIsPulled),
-      cmocka_unit_test(NewtonIsAsFastAsWithPrescribedTurgor),
-      cmocka_unit_test(EachPressureHasItsNegativeEigenvalue),
-      cmocka_unit_test(StressMayBePrescribed),
-      cmocka_unit_test(SealedTissueHasNoLimitTurgor),
-      cmocka_unit_test(UnsealedIsPrescribed),
-  };
-
-  return cmocka_run_group_tests(tests, SolveAll, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1, .setup = SolveAll);

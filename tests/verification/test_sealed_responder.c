@@ -1,7 +1,7 @@
 /* Sealed answers from prescribed turgor: those of the solve with sealed lumens, from whatever responder, and
    derivatives of one energy. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_sealed.h"
 #include "synthetic_responder.h"
 #include <lamella/mosaic.h>
@@ -66,7 +66,7 @@ static void AssertSameAnswer(const LamResponse *a, const LamResponse *b, double 
 }
 
 /* The pressure found outside of the solve, and inside. */
-static void BothWaysAgree(void **state)
+TEST(BothWaysAgree)
 {
   for (int contact = 0; contact < 2; contact++) {
     const LamMicrostructure micro = contact ? ContactTissue(6, 2) : DefaultTissue();
@@ -100,7 +100,7 @@ static void BothWaysAgree(void **state)
 }
 
 /* A run that goes on from the bytes of its points has their water, too. */
-static void BytesKeepTheWater(void **state)
+TEST(BytesKeepTheWater)
 {
   for (int outside = 0; outside < 2; outside++) {
     const LamMicrostructure micro = DefaultTissue();
@@ -146,7 +146,7 @@ static LamResponse AskOne(LamResponder *responder, const LamLoad *load)
 }
 
 /* Of a material with known answers, whose whole volume is lumen: p = p0 + K_w (1 - J / J0) exactly. */
-static void PressureAndDerivativesAreExact(void **state)
+TEST(PressureAndDerivativesAreExact)
 {
   const double h = 1e-4, water_modulus = 50;
   LamLoad load = {.F = {1.05, 0.1, 0, -0.02, 0.98, 0, 0, 0, 1.01}, .turgor = 0.3};
@@ -178,7 +178,7 @@ static void PressureAndDerivativesAreExact(void **state)
 }
 
 /* Tissues of other units have the same water: the pressure is as exact as of one. */
-static void WaterIsTheSameInAllTissues(void **state)
+TEST(WaterIsTheSameInAllTissues)
 {
   static const LamMosaicPoint mosaic_points[2] = {{1, {{0, 1, 1, 1}}, 0}, {1, {{1, 1, 1, 1}}, 0.5}};
   const LamLoad load = PlaneLoad(1.01, 0.1, 0, 1, 0.3), start = PlaneLoad(1, 0, 0, 1, 0.3);
@@ -207,7 +207,7 @@ static void WaterIsTheSameInAllTissues(void **state)
 }
 
 /* A rejected step leaves no trace in the pressures that questions start from. */
-static void RejectedStepIsForgotten(void **state)
+TEST(RejectedStepIsForgotten)
 {
   const LamLoad load = PlaneLoad(1.01, 0, 0, 1, 0.3), far = PlaneLoad(1.2, 0, 0, 1, 0.3);
   LamResponder open, sealed;
@@ -230,7 +230,7 @@ static void RejectedStepIsForgotten(void **state)
 }
 
 /* Where the tissue has no answer, that is the answer, with its reason and the pressure. */
-static void WhatHasNoAnswerIsTold(void **state)
+TEST(WhatHasNoAnswerIsTold)
 {
   const LamLoad load = PlaneLoad(1.2, 0, 0, 1, 0.3);
   LamResponder open, sealed;
@@ -293,7 +293,7 @@ static void CloseTable(Tabulated *t)
 }
 
 /* Volumes that hardly change: a table made for stress to 1 % gives the pressure, too. */
-static void TableOfBondedCellsGivesThePressure(void **state)
+TEST(TableOfBondedCellsGivesThePressure)
 {
   LamResponse solved[POINTS], answered[POINTS];
   LamLoad loads[POINTS];
@@ -318,7 +318,7 @@ static void TableOfBondedCellsGivesThePressure(void **state)
 }
 
 /* Where cells part a table does not know their lumens well enough. */
-static void TableOfCellsThatPartIsRefused(void **state)
+TEST(TableOfCellsThatPartIsRefused)
 {
   LamLoad load = PlaneLoad(1, 0, 0, 1, 0.02 / TISSUE_STRESS);
   LamResponse r;
@@ -335,23 +335,4 @@ static void TableOfCellsThatPartIsRefused(void **state)
   CloseTable(&t);
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(BothWaysAgree),
-      cmocka_unit_test(BytesKeepTheWater),
-      cmocka_unit_test(PressureAndDerivativesAreExact),
-      cmocka_unit_test(WaterIsTheSameInAllTissues),
-      cmocka_unit_test(RejectedStepIsForgotten),
-      cmocka_unit_test(WhatHasNoAnswerIsTold),
-      cmocka_unit_test(TableOfBondedCellsGivesThePressure),
-      cmocka_unit_test(TableOfCellsThatPartIsRefused),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1);

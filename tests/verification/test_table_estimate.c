@@ -2,13 +2,9 @@
   What a table says of its own answers, against fresh solves of states that it has not seen: the error estimate, and
   which indicators are trusted. The figures of docs/results/verification.md with slack: small samples.
 */
+#include "support/test.h"
 #include <math.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <cmocka.h>
 #include <lamella/lamella.h>
-#include "assert_near.h"
 #include "random_reals.h"
 
 #define BONDED_STATES 60
@@ -199,7 +195,7 @@ static void check_bounds(const Pair pairs[], int n)
   }
 }
 
-static void bonded_answers_know_their_error(void **state)
+TEST(bonded_answers_know_their_error)
 {
   Pair pairs[BONDED_STATES];
   Tissue t;
@@ -214,7 +210,7 @@ static void bonded_answers_know_their_error(void **state)
   Finish(&t);
 }
 
-static void contact_answers_know_their_error(void **state)
+TEST(contact_answers_know_their_error)
 {
   Pair pairs[CONTACT_STATES];
   Tissue t;
@@ -271,7 +267,7 @@ static void check_shift(const char scene[], LamLoad near, PetscReal d)
   Finish(&t);
 }
 
-static void turgor_at_fixed_walls_shifts_tractions_alone(void **state)
+TEST(turgor_at_fixed_walls_shifts_tractions_alone)
 {
   const LamLoad bonded = {.F = {1.1, 0, 0, 0, 1.05, 0, 0, 0, 1}, .turgor = 0.2},
                 contact = {.F = {1.02, 0, 0, 0, 1.01, 0, 0, 0, 1}, .turgor = 0.3};
@@ -280,16 +276,4 @@ static void turgor_at_fixed_walls_shifts_tractions_alone(void **state)
   check_shift(contact_scene, contact, -0.1);
 }
 
-int main(int argc, char **argv)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(bonded_answers_know_their_error),
-      cmocka_unit_test(contact_answers_know_their_error),
-      cmocka_unit_test(turgor_at_fixed_walls_shifts_tractions_alone),
-  };
-  int failures;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  failures = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() ? 1 : failures;
-}
+TEST_GROUP(.petsc = 1);

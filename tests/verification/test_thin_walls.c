@@ -1,6 +1,6 @@
 /* Thin-walled honeycombs against beam theory. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include "figures_honeycomb.h"
 
 #define ALONG 80 /* elements per wall: the theory's error is about 1 %, the mesh's must be smaller */
@@ -22,23 +22,23 @@ static void ApproachesTheory(int modulus)
   for (int k = 1; k < 3; k++) assert_true(fabs(ratios[k][modulus] - 1.0) < fabs(ratios[k - 1][modulus] - 1.0));
 }
 
-static void YoungsModulusApproachesTheory(void **state)
+TEST(YoungsModulusApproachesTheory)
 {
   ApproachesTheory(0);
 }
 
-static void ShearModulusApproachesTheory(void **state)
+TEST(ShearModulusApproachesTheory)
 {
   ApproachesTheory(1);
 }
 
-static void BulkModulusApproachesTheory(void **state)
+TEST(BulkModulusApproachesTheory)
 {
   ApproachesTheory(2);
 }
 
 /* Hexagonal symmetry: A1111 - A1122 = 2 A1212 at F = I, as far as rounding of kappa >> G* lets it. */
-static void UnloadedHoneycombIsIsotropic(void **state)
+TEST(UnloadedHoneycombIsIsotropic)
 {
   const LamMicrostructure micro = Honeycomb(0.035, 12, 1);
   const LamResponse r = SolveTissue(&micro, PlaneLoad(1, 0, 0, 1, 0));
@@ -48,7 +48,7 @@ static void UnloadedHoneycombIsIsotropic(void **state)
 }
 
 /* Weak and strong pressure, mu = 1 and 4: the walls stiffen as beams under tension. */
-static void PressurisedShearModulusFollowsTheory(void **state)
+TEST(PressurisedShearModulusFollowsTheory)
 {
   static const double mu[3] = {1.0, 2.0, 4.0};
 
@@ -62,16 +62,4 @@ static void PressurisedShearModulusFollowsTheory(void **state)
   }
 }
 
-int main(int argc, char **argv)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(YoungsModulusApproachesTheory),        cmocka_unit_test(ShearModulusApproachesTheory),
-      cmocka_unit_test(BulkModulusApproachesTheory),          cmocka_unit_test(UnloadedHoneycombIsIsotropic),
-      cmocka_unit_test(PressurisedShearModulusFollowsTheory),
-  };
-  int failed;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  failed = cmocka_run_group_tests(tests, SolveAll, NULL);
-  return PetscFinalize() || failed;
-}
+TEST_GROUP(.petsc = 1, .setup = SolveAll);

@@ -3,10 +3,10 @@
   F = lambda 1 symmetry makes T_k normal and equal, sum_k n_k (x) n_k = 3/2 1, and the mean normal traction per current
   length is then the macroscopic Cauchy stress P11/lambda (F33 = 1).
 */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 
-static void EqualBiaxialTractionIsTheCauchyStress(void **state)
+TEST(EqualBiaxialTractionIsTheCauchyStress)
 {
   static const double stretch[4] = {0.99, 1.0, 1.03, 1.1}, turgor[4] = {0.0, 0.2, 0.2, 0.0};
 
@@ -21,7 +21,7 @@ static void EqualBiaxialTractionIsTheCauchyStress(void **state)
 }
 
 /* Symmetry about the face normal: with F = diag the two oblique families share one value. */
-static void ObliqueFacesShareOneValue(void **state)
+TEST(ObliqueFacesShareOneValue)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamResponse r = SolveTissue(&micro, PlaneLoad(1.08, 0, 0, 0.99, 0.1));
@@ -30,7 +30,7 @@ static void ObliqueFacesShareOneValue(void **state)
 }
 
 /* Without load there is no traction. */
-static void UnloadedTissueHasNoTraction(void **state)
+TEST(UnloadedTissueHasNoTraction)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamResponse r = SolveTissue(&micro, PlaneLoad(1, 0, 0, 1, 0));
@@ -40,7 +40,7 @@ static void UnloadedTissueHasNoTraction(void **state)
 }
 
 /* Averaged over a wall thickness the largest traction converges, though it diverges pointwise at the lumen corners. */
-static void LargestTractionConverges(void **state)
+TEST(LargestTractionConverges)
 {
   static const int mesh[3][2] = {{6, 2}, {12, 4}, {20, 6}};
   double largest[3];
@@ -57,7 +57,7 @@ static void LargestTractionConverges(void **state)
 }
 
 /* The largest local average is at least the mean of each face. */
-static void LargestTractionBoundsTheMeans(void **state)
+TEST(LargestTractionBoundsTheMeans)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamResponse r = SolveTissue(&micro, PlaneLoad(1.05, 0.1, 0, 1, 0.1));
@@ -65,16 +65,4 @@ static void LargestTractionBoundsTheMeans(void **state)
   for (int f = 0; f < 3; f++) assert_true(r.max_traction >= r.mean_face_traction[f]);
 }
 
-int main(int argc, char **argv)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(EqualBiaxialTractionIsTheCauchyStress), cmocka_unit_test(ObliqueFacesShareOneValue),
-      cmocka_unit_test(UnloadedTissueHasNoTraction),           cmocka_unit_test(LargestTractionConverges),
-      cmocka_unit_test(LargestTractionBoundsTheMeans),
-  };
-  int failed;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() || failed;
-}
+TEST_GROUP(.petsc = 1);

@@ -1,4 +1,5 @@
 /* Cells that differ: derivatives, repeated and shifted patterns, balance of forces, and the weakest lamella. */
+#include "support/test.h"
 #include "rve_fixture.h"
 #include "figures_uneven.h"
 #include "turned_response.h"
@@ -19,7 +20,7 @@ static int SweepAll(void **state)
   return 0;
 }
 
-static void StatesConvergeInsideOneContactSet(void **state)
+TEST(StatesConvergeInsideOneContactSet)
 {
   for (int s = 0; s < UNEVEN_STATES; s++) {
     assert_int_equal(sweeps[s].response.status, LAM_CONVERGED);
@@ -27,7 +28,7 @@ static void StatesConvergeInsideOneContactSet(void **state)
   }
 }
 
-static void ResponsesAreDerivativesOfTheEnergy(void **state)
+TEST(ResponsesAreDerivativesOfTheEnergy)
 {
   for (int s = 0; s < UNEVEN_STATES; s++) {
     assert_near(errors[s].stress, 0.0, 1e-8);
@@ -36,7 +37,7 @@ static void ResponsesAreDerivativesOfTheEnergy(void **state)
   }
 }
 
-static void TangentAndCouplingsAreDerivativesOfStress(void **state)
+TEST(TangentAndCouplingsAreDerivativesOfStress)
 {
   for (int s = 0; s < UNEVEN_STATES; s++) {
     assert_near(errors[s].tangent, 0.0, 1e-6);
@@ -47,7 +48,7 @@ static void TangentAndCouplingsAreDerivativesOfStress(void **state)
 }
 
 /* dPsi/dp weighs lumens with the turgor factors of their cells, dPsi/dg gaps: neither is a volume any more. */
-static void EnergyDerivativesAreNotVolumes(void **state)
+TEST(EnergyDerivativesAreNotVolumes)
 {
   for (int s = 0; s < UNEVEN_STATES; s++) {
     assert_true(errors[s].lumen > 1e-3);
@@ -55,7 +56,7 @@ static void EnergyDerivativesAreNotVolumes(void **state)
   }
 }
 
-static void EqualCellsAreTheTissue(void **state)
+TEST(EqualCellsAreTheTissue)
 {
   for (int interface = 0; interface < LAM_INTERFACE_LAW_COUNT; interface++)
     for (int is_patch = 0; is_patch < 2; is_patch++) {
@@ -75,7 +76,7 @@ static void EqualCellsAreTheTissue(void **state)
 }
 
 /* Cells [n0][n1] of a block: cell (i, j) is that of a 2 x 1 pattern, by the parity of i. */
-static void RepeatedPatternGivesTheSameStress(void **state)
+TEST(RepeatedPatternGivesTheSameStress)
 {
   static const int blocks[][2] = {{2, 1}, {4, 1}, {2, 2}};
 
@@ -97,7 +98,7 @@ static void RepeatedPatternGivesTheSameStress(void **state)
 }
 
 /* The pattern of 2 x 2 cells moved by a lattice vector. */
-static void ShiftedPatternGivesTheSameResponse(void **state)
+TEST(ShiftedPatternGivesTheSameResponse)
 {
   for (int interface = 0; interface < LAM_INTERFACE_LAW_COUNT; interface++) {
     LamMicrostructure micro = UnevenTissue(PETSC_FALSE, (LamInterfaceLawType)interface, cells);
@@ -135,7 +136,7 @@ static void AddForcesOnCells(LamRVE rve, const LamLoad *load, double sums[UNEVEN
   assert_int_equal(PetscFree(force), 0);
 }
 
-static void ForcesOnEveryCellBalance(void **state)
+TEST(ForcesOnEveryCellBalance)
 {
   const LamMicrostructure micro = UnevenTissue(PETSC_FALSE, LAM_INTERFACE_CONTACT, cells);
   const LamLoad load = UnevenLoad(&micro);
@@ -194,7 +195,7 @@ static void StretchWithWeakCell(PetscInt weak, double cohesion, double largest[2
 }
 
 /* Where the lamella of one cell holds half of what the others hold, tissue opens around that cell. */
-static void WeakLamellaOpensFirst(void **state)
+TEST(WeakLamellaOpensFirst)
 {
   for (PetscInt weak = 0; weak < UNEVEN_CELLS; weak++) {
     double largest[2];
@@ -207,24 +208,4 @@ static void WeakLamellaOpensFirst(void **state)
   }
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(StatesConvergeInsideOneContactSet),
-      cmocka_unit_test(ResponsesAreDerivativesOfTheEnergy),
-      cmocka_unit_test(TangentAndCouplingsAreDerivativesOfStress),
-      cmocka_unit_test(EnergyDerivativesAreNotVolumes),
-      cmocka_unit_test(EqualCellsAreTheTissue),
-      cmocka_unit_test(RepeatedPatternGivesTheSameStress),
-      cmocka_unit_test(ShiftedPatternGivesTheSameResponse),
-      cmocka_unit_test(ForcesOnEveryCellBalance),
-      cmocka_unit_test(WeakLamellaOpensFirst),
-  };
-
-  return cmocka_run_group_tests(tests, SweepAll, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1, .setup = SweepAll);

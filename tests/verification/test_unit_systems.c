@@ -1,7 +1,7 @@
 /* Answers do not depend on the units in which a scene is written, nor, but for a factor, on the size and stiffness of
    the tissue, from picometres and gigapascals to kilometres and micropascals. */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 #include <stdio.h>
 
 #define SAME 1e-9      /* relative, of results */
@@ -118,7 +118,7 @@ static void CheckSystem(const System *s, Tissue tissue)
 }
 
 /* The tissue itself, written in each pair of units; and one that has as many of them as it has um and MPa. */
-static void AllUnitsAreRead(void **state)
+TEST(AllUnitsAreRead)
 {
   for (size_t l = 0; l < COUNT(lengths); l++)
     for (size_t p = 0; p < COUNT(stresses); p++)
@@ -190,7 +190,7 @@ static void CheckAnswers(const System *s, int count)
   }
 }
 
-static void EndsOfTheUnitsAnswerAlike(void **state)
+TEST(EndsOfTheUnitsAnswerAlike)
 {
   const System ends[] = {{lengths[0], stresses[4], 1, 1},
                          {lengths[0], stresses[0], 1, 1},
@@ -200,7 +200,7 @@ static void EndsOfTheUnitsAnswerAlike(void **state)
   CheckAnswers(ends, COUNT(ends));
 }
 
-static void EndsOfSizeAndStiffnessAnswerAlike(void **state)
+TEST(EndsOfSizeAndStiffnessAnswerAlike)
 {
   const System ends[] = {{lengths[2], stresses[3], 1e-6, 1e3},
                          {lengths[2], stresses[3], 1e9, 1e-12},
@@ -223,7 +223,7 @@ static void AssertRefused(double size, double stiffness)
   PetscPopErrorHandler();
 }
 
-static void BeyondAllMeasureIsRefused(void **state)
+TEST(BeyondAllMeasureIsRefused)
 {
   AssertRefused(1e110, 1);
   AssertRefused(1e-110, 1);
@@ -232,16 +232,4 @@ static void BeyondAllMeasureIsRefused(void **state)
   AssertRefused(1, 1e-310);
 }
 
-static int Run(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test(AllUnitsAreRead), cmocka_unit_test(EndsOfTheUnitsAnswerAlike),
-                                     cmocka_unit_test(EndsOfSizeAndStiffnessAnswerAlike),
-                                     cmocka_unit_test(BeyondAllMeasureIsRefused)};
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(int argc, char **argv)
-{
-  return RunWithPetsc(argc, argv, Run);
-}
+TEST_GROUP(.petsc = 1);

@@ -6,8 +6,8 @@
   sigma the mean stress along the wall there, where it is largest, but for the corners, and uniform; T is the tension.
   At Sigma = 0 the double wall's 2 T h is sqrt(3) p l, l = 2 lambda/sqrt(3) the length of a face.
 */
+#include "support/test.h"
 #include "rve_fixture.h"
-#include "assert_near.h"
 
 #define ALONG 16 /* even: the middle of a face is a node */
 
@@ -58,7 +58,7 @@ static double OverStatics(double thickness, double stretch, double turgor)
   return r.max_wall_tension * h / (stretch * (r.P[0] / stretch + turgor));
 }
 
-static void LargestTensionIsThatOfTheCut(void **state)
+TEST(LargestTensionIsThatOfTheCut)
 {
   static const double thickness[3] = {0.15, 0.08, 0.04}, stretch[2] = {1.03, 1.1}, turgor[2] = {0.0, 0.2};
 
@@ -68,7 +68,7 @@ static void LargestTensionIsThatOfTheCut(void **state)
 }
 
 /* The turgor that leaves no total stress at this stretch: P = P0 - p J F^-T but for the walls' compressibility. */
-static void FreeTissueHasTheTensionOfTheHexagon(void **state)
+TEST(FreeTissueHasTheTensionOfTheHexagon)
 {
   const double stretch = 1.04;
   const LamMicrostructure micro = Thin(0.05);
@@ -91,7 +91,7 @@ static void FreeTissueHasTheTensionOfTheHexagon(void **state)
 }
 
 /* Bonded walls do not feel turgor at a given F, but for the pressure that they stand in, to O(p/kappa). */
-static void TurgorLeavesTheTensionAsItIs(void **state)
+TEST(TurgorLeavesTheTensionAsItIs)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamResponse dry = SolveTissue(&micro, PlaneLoad(1.05, 0.1, 0, 1, 0));
@@ -104,7 +104,7 @@ static void TurgorLeavesTheTensionAsItIs(void **state)
 
 /* At F = I the walls, held along themselves, are pressed thinner by p/kappa; a uniaxial strain e, with the shear
    modulus 2 (C1 + C2), leaves stresses that differ by 4 (C1 + C2) e: T = 4 p/kappa, but for the corners. */
-static void ConfinedTissueHasNoTension(void **state)
+TEST(ConfinedTissueHasNoTension)
 {
   const double turgor = 0.5;
 
@@ -117,7 +117,7 @@ static void ConfinedTissueHasNoTension(void **state)
 }
 
 /* The fluid that a wall stands in is that of its own cell. */
-static void TensionIsAgainstTheFluidOfTheCell(void **state)
+TEST(TensionIsAgainstTheFluidOfTheCell)
 {
   LamMicrostructure micro = DefaultTissue();
   const LamResponse alike = SolveTissue(&micro, PlaneLoad(1.05, 0.1, 0, 1, 0.2));
@@ -131,7 +131,7 @@ static void TensionIsAgainstTheFluidOfTheCell(void **state)
 }
 
 /* Means over windows: not those at points, which diverge at the corners. */
-static void MeasuresConverge(void **state)
+TEST(MeasuresConverge)
 {
   static const int mesh[2][2] = {{12, 2}, {24, 4}};
   LamResponse r[2];
@@ -151,7 +151,7 @@ static void MeasuresConverge(void **state)
 
 /* F = diag: the lamella of face 0 bears no shear by symmetry; that of a bonded honeycomb under equal stretch none at
    all. */
-static void NoShearWhereSymmetryForbidsIt(void **state)
+TEST(NoShearWhereSymmetryForbidsIt)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamResponse equal = SolveTissue(&micro, PlaneLoad(1.05, 0, 0, 1.05, 0.2));
@@ -162,7 +162,7 @@ static void NoShearWhereSymmetryForbidsIt(void **state)
 }
 
 /* Another sign of shear is a mirror image: faces 1 and 2 change places, and run the other way. */
-static void PlacesFollowTheMirror(void **state)
+TEST(PlacesFollowTheMirror)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamResponse a = SolveTissue(&micro, PlaneLoad(1.05, 0.1, 0, 1, 0.2));
@@ -175,7 +175,7 @@ static void PlacesFollowTheMirror(void **state)
 }
 
 /* Contact bears no more than the cohesion, and no shear. */
-static void ContactBearsTheCohesionAtMost(void **state)
+TEST(ContactBearsTheCohesionAtMost)
 {
   LamMicrostructure micro = DefaultTissue();
   LamLoad load = PlaneLoad(1.06, 0, 0, 1, 0.2);
@@ -189,18 +189,4 @@ static void ContactBearsTheCohesionAtMost(void **state)
   assert_near(r.max_lamella_shear, 0.0, 0);
 }
 
-int main(int argc, char **argv)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(LargestTensionIsThatOfTheCut),      cmocka_unit_test(FreeTissueHasTheTensionOfTheHexagon),
-      cmocka_unit_test(TurgorLeavesTheTensionAsItIs),      cmocka_unit_test(ConfinedTissueHasNoTension),
-      cmocka_unit_test(TensionIsAgainstTheFluidOfTheCell), cmocka_unit_test(MeasuresConverge),
-      cmocka_unit_test(NoShearWhereSymmetryForbidsIt),     cmocka_unit_test(PlacesFollowTheMirror),
-      cmocka_unit_test(ContactBearsTheCohesionAtMost),
-  };
-  int failed;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() || failed;
-}
+TEST_GROUP(.petsc = 1);

@@ -1,0 +1,56 @@
+/*
+  Tests of a program, on cmocka: those that TEST defines run in the order of the file, without a list of them; main is
+  in test.c.
+
+    TEST(name) { ... }
+    TEST_WITH(name, enter, leave) { ... }                 its own set-up and tear-down, or NULL
+    TEST_GROUP(.petsc = 1, .setup = s, .teardown = t);    once, where the program needs PETSc or has a set-up of all
+*/
+#ifndef LAM_SUPPORT_TEST_H
+#define LAM_SUPPORT_TEST_H
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+typedef struct TestEntry {
+  struct CMUnitTest test;
+  struct TestEntry *next;
+} TestEntry;
+
+typedef struct {
+  int petsc; /* PetscInitialize before the tests, PetscFinalize behind them */
+  CMFixtureFunction setup, teardown;
+} TestGroup;
+
+void TestRegister(TestEntry *entry);
+extern const TestGroup TestProgram;
+
+#define TEST_WITH(name, enter, leave)                                                                                  \
+  static void name(void **state);                                                                                      \
+  static __attribute__((constructor)) void name##_register(void)                                                       \
+  {                                                                                                                    \
+    static TestEntry entry = {{#name, name, enter, leave, NULL}, NULL};                                                \
+                                                                                                                       \
+    TestRegister(&entry);                                                                                              \
+  }                                                                                                                    \
+  static void name(void **state)
+#define TEST(name) TEST_WITH(name, NULL, NULL)
+#define TEST_GROUP(...) const TestGroup TestProgram = {__VA_ARGS__}
+
+#define CHECK(call) assert_int_equal((call), 0)
+
+/* cmocka's assert_float_equal rounds to single precision. */
+#define assert_near(value, expected, tolerance)                                                                        \
+  do {                                                                                                                 \
+    const double near_value_ = (value), near_expected_ = (expected), near_tolerance_ = (tolerance);                    \
+                                                                                                                       \
+    if (!(fabs(near_value_ - near_expected_) <= near_tolerance_))                                                      \
+      fail_msg("%s is %.17g, expected %.17g: off by %.3g, more than %.3g", #value, near_value_, near_expected_,        \
+               fabs(near_value_ - near_expected_), near_tolerance_);                                                   \
+  } while (0)
+
+#endif
