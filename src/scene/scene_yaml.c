@@ -9,32 +9,14 @@
 /* A scene is a few levels deep and aliases may multiply: a file beyond these limits is an accident or an attack. */
 enum { MAX_DEPTH = 32, MAX_NODES = 400000, MAX_KEYS = 256, MAX_EXCERPT = 80 };
 
+/* The parser with its current event. */
 typedef struct {
   LamDocument *document;
-  LamNode *stack[MAX_DEPTH]; /* open maps and lists */
-  size_t start[MAX_DEPTH];   /* where in the text they start */
-  int depth;
-  PetscInt documents;
-  char *name; /* the key that was read last and waits for its value; owned until a node takes it */
-  int name_line, name_column;
-} Builder;
-
-static PetscErrorCode NodeCreate(LamDocument *document, LamNodeKind kind, int line, int column, LamNode **node)
-{
-  PetscFunctionBeginUser;
-  PetscCheck(document->node_count < MAX_NODES, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%.200s:%d:%d: more than %d values in one file; a scene is much smaller", document->name, line, column,
-             (int)MAX_NODES);
-  PetscCall(PetscNew(node));
-  (*node)->document = document;
-  (*node)->kind = kind;
-  (*node)->line = line;
-  (*node)->column = column;
-  (*node)->allocated = document->allocated;
-  document->allocated = *node;
-  document->node_count++;
-  PetscFunctionReturn(0);
-}
+  struct fy_parser *parser;
+  struct fy_diag *diagnostics;
+  struct fy_event *event; /* owned */
+  int depth;              /* of open maps and lists */
+} Reader;
 
 static void NodeAppend(LamNode *parent, LamNode *node)
 {
@@ -46,6 +28,26 @@ static void NodeAppend(LamNode *parent, LamNode *node)
   parent->last = node;
   parent->count++;
   if (parent->kind == LAM_NODE_LIST) node->index = parent->count;
+}
+
+/* A scalar without text at a place; the last one below its parent, where that is not NULL. */
+static PetscErrorCode NodeCreate(LamDocument *document, LamNode *parent, int line, int column, LamNode **node)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(document->node_count < MAX_NODES, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%.200s:%d:%d: more than %d values in one file; a scene is much smaller", document->name, line, column,
+             (int)MAX_NODES);
+  PetscCall(PetscNew(node));
+  **node = (LamNode){.document = document,
+                     .line = line,
+                     .column = column,
+                     .name_line = line,
+                     .name_column = column,
+                     .allocated = document->allocated};
+  document->allocated = *node;
+  document->node_count++;
+  if (parent) NodeAppend(parent, *node);
+  PetscFunctionReturn(0);
 }
 
 LamNode *LamNodeEntry(const LamNode *map, const char name[], size_t length)
@@ -78,8 +80,8 @@ static PetscErrorCode TextCopy(const char text[], size_t length, char **copy)
 }
 
 /*
-  The text of a token; the caller frees it. Of libfyaml 0.7 fy_token_get_text loses memory where a text has many escapes,
-  and fy_token_iter_read writes the pieces of a text, such as its lines, over each other.
+  The text of a token; the caller frees it. Of libfyaml 0.7 fy_token_get_text loses memory where a text has many
+  escapes, and fy_token_iter_read writes the pieces of a text, such as its lines, over each other.
 */
 static PetscErrorCode TokenText(struct fy_token *token, char **text)
 {
@@ -112,229 +114,199 @@ static LamNode Place(const LamDocument *document, struct fy_token *token)
   return (LamNode){.document = document, .line = mark ? mark->line + 1 : 1, .column = mark ? mark->column + 1 : 1};
 }
 
-/* Puts a node where the events have got to: the root, the next item of a list or the value of the waiting key. */
-static PetscErrorCode BuilderPut(Builder *builder, LamNode *node)
+/* Goes on to the next event, or raises what libfyaml found wrong with the text. */
+static PetscErrorCode Next(Reader *reader)
 {
+  const struct fy_diag_error *error;
+  void *previous = NULL;
+  LamNode place = {.document = reader->document};
+
   PetscFunctionBeginUser;
-  if (builder->name) {
-    node->name = builder->name;
-    node->name_line = builder->name_line;
-    node->name_column = builder->name_column;
-    builder->name = NULL;
-  }
-  if (builder->depth)
-    NodeAppend(builder->stack[builder->depth - 1], node);
-  else
-    builder->document->root = node;
+  if (reader->event) fy_parser_event_free(reader->parser, reader->event);
+  reader->event = fy_parser_parse(reader->parser);
+  if (reader->event && !fy_diag_got_error(reader->diagnostics)) PetscFunctionReturn(0);
+  error = fy_diag_errors_iterate(reader->diagnostics, &previous);
+  place.line = error ? PetscMax(error->line, 1) : 1;
+  place.column = error ? PetscMax(error->column, 1) : 1;
+  LamSceneCheck(PETSC_FALSE, &place, "not YAML: %.200s; check brackets, quotes and indentation in this line",
+                error && error->msg ? error->msg : "it cannot be read");
   PetscFunctionReturn(0);
 }
 
-/* Is a key expected now? */
-static PetscBool BuilderAtKey(const Builder *builder)
+/* Where a value starts, its tag and its anchor, whose name the node keeps. */
+static PetscErrorCode Start(Reader *reader, LamNode *node, struct fy_token *token, struct fy_token *tag,
+                            struct fy_token *anchor)
 {
-  return builder->depth && builder->stack[builder->depth - 1]->kind == LAM_NODE_MAP && !builder->name ? PETSC_TRUE
-                                                                                                      : PETSC_FALSE;
+  const LamNode place = Place(reader->document, token);
+
+  PetscFunctionBeginUser;
+  LamSceneCheck(!tag, &place, "YAML tags (!...) are not read; write the value alone");
+  node->line = place.line;
+  node->column = place.column;
+  if (!anchor) PetscFunctionReturn(0);
+  PetscCall(TokenText(anchor, &node->anchor));
+  node->anchored = reader->document->anchored;
+  reader->document->anchored = node;
+  PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BuilderKey(Builder *builder, struct fy_token *token)
+static PetscErrorCode ReadScalar(Reader *reader, LamNode *node)
 {
-  LamNode *map = builder->stack[builder->depth - 1];
-  LamNode key = Place(builder->document, token);
+  struct fy_token *token = reader->event->scalar.value;
+  const PetscBool empty = (PetscBool)(fy_token_get_text_length(token) == 0);
+
+  PetscFunctionBeginUser;
+  PetscCall(Start(reader, node, token, reader->event->scalar.tag, reader->event->scalar.anchor));
+  if (empty && node->name) { /* where a value is left out its token has no place: it is missed at its key */
+    node->line = node->name_line;
+    node->column = node->name_column;
+  }
+  PetscCall(TokenText(token, &node->text));
+  node->is_null = (PetscBool)(fy_token_scalar_style(token) == FYSS_PLAIN &&
+                              (empty || !strcmp(node->text, "~") || !strcasecmp(node->text, "null")));
+  PetscFunctionReturn(0);
+}
+
+/* Makes `copy` like node and what is below it; all of it stands where the alias does. */
+static PetscErrorCode NodeCopy(LamDocument *document, const LamNode *node, LamNode *copy)
+{
+  PetscFunctionBeginUser;
+  copy->kind = node->kind;
+  copy->is_null = node->is_null;
+  if (node->text) PetscCall(PetscStrallocpy(node->text, &copy->text));
+  for (const LamNode *child = node->first; child; child = child->next) {
+    LamNode *child_copy;
+
+    PetscCall(NodeCreate(document, copy, copy->line, copy->column, &child_copy));
+    if (child->name) PetscCall(PetscStrallocpy(child->name, &child_copy->name));
+    PetscCall(NodeCopy(document, child, child_copy));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadAlias(Reader *reader, LamNode *node)
+{
+  const LamNode place = Place(reader->document, reader->event->alias.anchor), *target = reader->document->anchored;
+  char name[48], *text;
+
+  PetscFunctionBeginUser;
+  node->line = place.line;
+  node->column = place.column;
+  PetscCall(TokenText(reader->event->alias.anchor, &text));
+  snprintf(name, sizeof(name), "%.40s", text);
+  while (target && strcmp(target->anchor, text) != 0) target = target->anchored;
+  PetscCall(PetscFree(text));
+  for (const LamNode *outer = node->parent; outer; outer = outer->parent)
+    if (outer == target) target = NULL; /* it would contain itself */
+  LamSceneCheck(target, &place, "*%s: no finished value has the anchor &%s before this line", name, name);
+  PetscCall(NodeCopy(reader->document, target, node));
+  PetscFunctionReturn(0);
+}
+
+/* A key of a map: the node of its value, yet without it. */
+static PetscErrorCode ReadKey(Reader *reader, LamNode *map, LamNode **entry)
+{
+  const struct fy_event *event = reader->event;
+  struct fy_token *token = event->type == FYET_SCALAR           ? event->scalar.value
+                           : event->type == FYET_ALIAS          ? event->alias.anchor
+                           : event->type == FYET_MAPPING_START  ? event->mapping_start.mapping_start
+                           : event->type == FYET_SEQUENCE_START ? event->sequence_start.sequence_start
+                                                                : NULL;
+  LamNode key = Place(reader->document, token);
   const LamNode *earlier;
 
   PetscFunctionBeginUser;
-  PetscCall(TokenText(token, &builder->name));
-  builder->name_line = key.name_line = key.line;
-  builder->name_column = key.name_column = key.column;
-  key.name = builder->name;
-  key.parent = map;
-  LamSceneCheckName(strcmp(key.name, "<<"), &key, "merge keys are not read; write the keys out");
-  earlier = LamNodeEntry(map, key.name, strlen(key.name));
-  LamSceneCheckName(!earlier, &key, "given twice, first in line %d; give it once", earlier->name_line);
-  LamSceneCheckName(map->count < MAX_KEYS, &key, "more than %d keys in one map; a scene is much smaller",
+  LamSceneCheck(event->type != FYET_ALIAS, &key, "an alias stands where a key should");
+  LamSceneCheck(event->type == FYET_SCALAR, &key, "a list or map stands where a key should; keys are plain words");
+  LamSceneCheck(!event->scalar.tag, &key, "YAML tags (!...) are not read; write the key alone");
+  PetscCall(NodeCreate(reader->document, NULL, key.line, key.column, entry));
+  PetscCall(TokenText(token, &(*entry)->name));
+  (*entry)->parent = map; /* for messages */
+  LamSceneCheckName(strcmp((*entry)->name, "<<"), *entry, "merge keys are not read; write the keys out");
+  earlier = LamNodeEntry(map, (*entry)->name, strlen((*entry)->name));
+  LamSceneCheckName(!earlier, *entry, "given twice, first in line %d; give it once", earlier->name_line);
+  LamSceneCheckName(map->count < MAX_KEYS, *entry, "more than %d keys in one map; a scene is much smaller",
                     (int)MAX_KEYS);
+  NodeAppend(map, *entry);
   PetscFunctionReturn(0);
 }
 
-/* A node of the document, in its place; one with an anchor keeps its name. */
-static PetscErrorCode BuilderAdd(Builder *builder, LamNodeKind kind, LamNode place, struct fy_token *tag,
-                                 struct fy_token *anchor, LamNode **node)
-{
-  PetscFunctionBeginUser;
-  LamSceneCheck(!tag, &place, "YAML tags (!...) are not read; write the value alone");
-  PetscCall(NodeCreate(builder->document, kind, place.line, place.column, node));
-  PetscCall(BuilderPut(builder, *node));
-  if (!anchor) PetscFunctionReturn(0);
-  PetscCall(TokenText(anchor, &(*node)->anchor));
-  (*node)->anchored = builder->document->anchored;
-  builder->document->anchored = *node;
-  PetscFunctionReturn(0);
-}
+static PetscErrorCode ReadValue(Reader *reader, LamNode *node);
 
-static PetscErrorCode BuilderScalar(Builder *builder, const struct fy_event *event)
+/* A map or list; one written in brackets keeps its text for messages. */
+static PetscErrorCode ReadCollection(Reader *reader, LamNode *node, struct fy_token *token, struct fy_token *tag,
+                                     struct fy_token *anchor)
 {
-  struct fy_token *token = event->scalar.value;
-  const PetscBool empty = (PetscBool)(fy_token_get_text_length(token) == 0);
-  LamNode place = Place(builder->document, token), *node;
-
-  PetscFunctionBeginUser;
-  if (BuilderAtKey(builder)) {
-    LamSceneCheck(!event->scalar.tag, &place, "YAML tags (!...) are not read; write the key alone");
-    PetscCall(BuilderKey(builder, token));
-    PetscFunctionReturn(0);
-  }
-  /* where a value is left out its token has no place: it is missed at its key */
-  if (empty && builder->name)
-    place = (LamNode){.document = builder->document, .line = builder->name_line, .column = builder->name_column};
-  PetscCall(BuilderAdd(builder, LAM_NODE_SCALAR, place, event->scalar.tag, event->scalar.anchor, &node));
-  PetscCall(TokenText(token, &node->text));
-  if (fy_token_scalar_style(token) == FYSS_PLAIN) {
-    node->is_null = empty || !strcmp(node->text, "~") || !strcasecmp(node->text, "null") ? PETSC_TRUE : PETSC_FALSE;
-  }
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode BuilderOpen(Builder *builder, LamNodeKind kind, struct fy_token *token, struct fy_token *tag,
-                                  struct fy_token *anchor)
-{
+  const enum fy_event_type end = node->kind == LAM_NODE_MAP ? FYET_MAPPING_END : FYET_SEQUENCE_END;
   const struct fy_mark *mark = token ? fy_token_start_mark(token) : NULL;
-  const LamNode place = Place(builder->document, token);
-  LamNode *node;
+  const size_t start = mark ? mark->input_pos : 0;
+  const char *text = reader->document->text + start;
+  const LamNode place = Place(reader->document, token);
 
   PetscFunctionBeginUser;
-  LamSceneCheck(!BuilderAtKey(builder), &place, "a list or map stands where a key should; keys are plain words");
-  LamSceneCheck(builder->depth < MAX_DEPTH, &place, "nested more than %d levels deep; a scene is much flatter",
+  LamSceneCheck(reader->depth++ < MAX_DEPTH, &place, "nested more than %d levels deep; a scene is much flatter",
                 (int)MAX_DEPTH);
-  PetscCall(BuilderAdd(builder, kind, place, tag, anchor, &node));
-  builder->start[builder->depth] = mark ? mark->input_pos : 0;
-  builder->stack[builder->depth++] = node;
+  PetscCall(Start(reader, node, token, tag, anchor));
+  PetscCall(Next(reader));
+  while (reader->event->type != end) {
+    LamNode *entry;
+
+    if (node->kind == LAM_NODE_MAP) {
+      PetscCall(ReadKey(reader, node, &entry));
+      PetscCall(Next(reader));
+    } else {
+      PetscCall(NodeCreate(reader->document, node, 0, 0, &entry));
+    }
+    PetscCall(ReadValue(reader, entry));
+    PetscCall(Next(reader));
+  }
+  reader->depth--;
+  token = end == FYET_MAPPING_END ? reader->event->mapping_end.mapping_end : reader->event->sequence_end.sequence_end;
+  mark = token ? fy_token_end_mark(token) : NULL;
+  if (mark && mark->input_pos > start && strchr("[{", *text))
+    PetscCall(
+        TextCopy(text, PetscMin(PetscMin(mark->input_pos - start, strlen(text)), (size_t)MAX_EXCERPT), &node->text));
   PetscFunctionReturn(0);
 }
 
-/* Closes a map or list; one written in brackets keeps its text for messages. */
-static PetscErrorCode BuilderClose(Builder *builder, struct fy_token *token)
+/* The value that the current event begins. */
+static PetscErrorCode ReadValue(Reader *reader, LamNode *node)
 {
-  const struct fy_mark *mark = token ? fy_token_end_mark(token) : NULL;
-  const size_t start = builder->start[--builder->depth];
-  LamNode *node = builder->stack[builder->depth];
+  const struct fy_event *event = reader->event;
 
   PetscFunctionBeginUser;
-  if (mark && mark->input_pos > start && strchr("[{", builder->document->text[start])) {
-    const char *text = builder->document->text + start;
-    size_t length = PetscMin(PetscMin(mark->input_pos - start, strlen(text)), (size_t)MAX_EXCERPT);
-    PetscCall(TextCopy(text, length, &node->text));
+  if (event->type == FYET_SCALAR) PetscCall(ReadScalar(reader, node));
+  if (event->type == FYET_ALIAS) PetscCall(ReadAlias(reader, node));
+  if (event->type == FYET_MAPPING_START) {
+    node->kind = LAM_NODE_MAP;
+    PetscCall(ReadCollection(reader, node, event->mapping_start.mapping_start, event->mapping_start.tag,
+                             event->mapping_start.anchor));
+  } else if (event->type == FYET_SEQUENCE_START) {
+    node->kind = LAM_NODE_LIST;
+    PetscCall(ReadCollection(reader, node, event->sequence_start.sequence_start, event->sequence_start.tag,
+                             event->sequence_start.anchor));
   }
   PetscFunctionReturn(0);
 }
 
-/* A copy of node and what is below it; all of it stands where the alias does. */
-static PetscErrorCode NodeCopy(LamDocument *document, const LamNode *node, const LamNode *place, LamNode **copy)
+static PetscErrorCode ReadDocument(Reader *reader)
 {
-  PetscFunctionBeginUser;
-  PetscCall(NodeCreate(document, node->kind, place->line, place->column, copy));
-  (*copy)->is_null = node->is_null;
-  if (node->text) PetscCall(TextCopy(node->text, strlen(node->text), &(*copy)->text));
-  for (const LamNode *child = node->first; child; child = child->next) {
-    LamNode *child_copy;
-    PetscCall(NodeCopy(document, child, place, &child_copy));
-    if (child->name) PetscCall(TextCopy(child->name, strlen(child->name), &child_copy->name));
-    child_copy->name_line = place->line;
-    child_copy->name_column = place->column;
-    NodeAppend(*copy, child_copy);
-  }
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode BuilderAlias(Builder *builder, struct fy_token *token)
-{
-  const LamNode place = Place(builder->document, token);
-  const LamNode *target = NULL;
-  char name[48], *text;
-  LamNode *copy;
+  LamDocument *document = reader->document;
 
   PetscFunctionBeginUser;
-  LamSceneCheck(!BuilderAtKey(builder), &place, "an alias stands where a key should");
-  PetscCall(TokenText(token, &text));
-  snprintf(name, sizeof(name), "%.40s", text);
-  for (LamNode *node = builder->document->anchored; node && !target; node = node->anchored)
-    if (!strcmp(node->anchor, text)) target = node;
-  PetscCall(PetscFree(text));
-  for (int i = 0; i < builder->depth; i++) {
-    if (builder->stack[i] == target) target = NULL; /* it would contain itself */
-  }
-  LamSceneCheck(target, &place, "*%s: no finished value has the anchor &%s before this line", name, name);
-  PetscCall(NodeCopy(builder->document, target, &place, &copy));
-  PetscCall(BuilderPut(builder, copy));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode BuilderEvent(Builder *builder, const struct fy_event *event)
-{
-  LamNode place;
-
-  PetscFunctionBeginUser;
-  switch (event->type) {
-  case FYET_DOCUMENT_START:
-    place = Place(builder->document, event->document_start.document_start);
-    LamSceneCheck(!builder->documents++, &place, "a second YAML document starts here; a file holds one scene");
-    break;
-  case FYET_SCALAR:
-    PetscCall(BuilderScalar(builder, event));
-    break;
-  case FYET_ALIAS:
-    PetscCall(BuilderAlias(builder, event->alias.anchor));
-    break;
-  case FYET_MAPPING_START:
-    PetscCall(BuilderOpen(builder, LAM_NODE_MAP, event->mapping_start.mapping_start, event->mapping_start.tag,
-                          event->mapping_start.anchor));
-    break;
-  case FYET_SEQUENCE_START:
-    PetscCall(BuilderOpen(builder, LAM_NODE_LIST, event->sequence_start.sequence_start, event->sequence_start.tag,
-                          event->sequence_start.anchor));
-    break;
-  case FYET_MAPPING_END:
-    PetscCall(BuilderClose(builder, event->mapping_end.mapping_end));
-    break;
-  case FYET_SEQUENCE_END:
-    PetscCall(BuilderClose(builder, event->sequence_end.sequence_end));
-    break;
-  default:
-    break;
-  }
-  PetscFunctionReturn(0);
-}
-
-/* Raises what libfyaml found wrong with the text. */
-static PetscErrorCode RaiseSyntaxError(const LamDocument *document, struct fy_diag *diagnostics)
-{
-  void *previous = NULL;
-  const struct fy_diag_error *error = fy_diag_errors_iterate(diagnostics, &previous);
-  const LamNode place = {.document = document,
-                         .line = error ? PetscMax(error->line, 1) : 1,
-                         .column = error ? PetscMax(error->column, 1) : 1};
-
-  PetscFunctionBeginUser;
-  PetscCall(LamSceneRaise(&place, LAM_MISTAKE_VALUE, NULL,
-                          "not YAML: %.200s; check brackets, quotes and indentation in this line",
-                          error && error->msg ? error->msg : "it cannot be read"));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ParseEvents(Builder *builder, struct fy_parser *parser, struct fy_diag *diagnostics)
-{
-  PetscBool ended = PETSC_FALSE;
-  struct fy_event *event;
-
-  PetscFunctionBeginUser;
-  PetscCheck(!fy_parser_set_string(parser, builder->document->text, FY_NT), PETSC_COMM_SELF, PETSC_ERR_LIB,
+  PetscCheck(!fy_parser_set_string(reader->parser, document->text, FY_NT), PETSC_COMM_SELF, PETSC_ERR_LIB,
              "libfyaml does not take the text");
-  while ((event = fy_parser_parse(parser))) {
-    PetscErrorCode ierr = BuilderEvent(builder, event);
-    ended = event->type == FYET_STREAM_END ? PETSC_TRUE : PETSC_FALSE;
-    fy_parser_event_free(parser, event);
-    PetscCall(ierr);
-  }
-  if (!ended || fy_diag_got_error(diagnostics)) PetscCall(RaiseSyntaxError(builder->document, diagnostics));
+  do {
+    PetscCall(Next(reader));
+    if (reader->event->type == FYET_DOCUMENT_START) {
+      const LamNode place = Place(document, reader->event->document_start.document_start);
+
+      LamSceneCheck(!document->root, &place, "a second YAML document starts here; a file holds one scene");
+      PetscCall(NodeCreate(document, NULL, 1, 1, &document->root));
+      PetscCall(Next(reader));
+      PetscCall(ReadValue(reader, document->root));
+    }
+  } while (reader->event->type != FYET_STREAM_END);
   PetscFunctionReturn(0);
 }
 
@@ -343,10 +315,9 @@ static void DiscardOutput(struct fy_diag *diagnostics, void *user, const char *t
 
 PetscErrorCode LamDocumentParse(const char name[], const char text[], LamDocument *document)
 {
-  Builder builder = {.document = document};
+  Reader reader = {.document = document};
   struct fy_diag_cfg diagnostics_config;
   struct fy_parse_cfg config = {.flags = FYPCF_QUIET | FYPCF_COLLECT_DIAG | FYPCF_JSON_NONE};
-  struct fy_parser *parser;
   PetscErrorCode ierr = PETSC_ERR_MEM;
 
   PetscFunctionBeginUser;
@@ -357,13 +328,12 @@ PetscErrorCode LamDocumentParse(const char name[], const char text[], LamDocumen
   config.diag = fy_diag_create(&diagnostics_config);
   PetscCheck(config.diag, PETSC_COMM_SELF, PETSC_ERR_MEM, "libfyaml: out of memory");
   fy_diag_set_collect_errors(config.diag, true);
-  parser = fy_parser_create(&config);
-  if (parser) {
-    ierr = ParseEvents(&builder, parser, config.diag);
-    fy_parser_destroy(parser);
-  }
+  reader.diagnostics = config.diag;
+  reader.parser = fy_parser_create(&config);
+  if (reader.parser) ierr = ReadDocument(&reader);
+  if (reader.event) fy_parser_event_free(reader.parser, reader.event);
+  fy_parser_destroy(reader.parser);
   fy_diag_destroy(config.diag);
-  PetscCall(PetscFree(builder.name));
   PetscCall(ierr);
   PetscFunctionReturn(0);
 }
