@@ -1,4 +1,5 @@
 """Checks of the documents, for docs.sh: python3 docs.py LAMELLA SOURCE_DIR, in an empty folder. Prints what is wrong."""
+import json
 import os
 import re
 import subprocess
@@ -7,6 +8,8 @@ import unicodedata
 from pathlib import Path
 
 lamella, source = Path(sys.argv[1]), Path(sys.argv[2])
+reference = (source / "docs/reference/commands.md").read_text().split("\n## ")
+sections = {part.split("\n")[0]: part for part in reference[1:]}  # by command
 failures = []
 
 
@@ -57,9 +60,7 @@ def check_reading_list():
 
 # Options: the synopsis of each command is that of --help, and its section has every option.
 def check_options():
-    reference = (source / "docs/reference/commands.md").read_text()
-    synopses = " ".join(reference.split("\n## ")[0].split())
-    sections = {part.split("\n")[0]: part for part in reference.split("\n## ")[1:]}
+    synopses = " ".join(reference[0].split())
     commands = re.findall(r"^  (\w+) +\w", run(f"{lamella} --help"), re.M)
     if len(commands) < 12:
         fail("lamella --help", f"lists {len(commands)} commands")
@@ -72,6 +73,28 @@ def check_options():
         for short, option in re.findall(r"^ +(?:(-\w), +)?(--[\w-]+)", text, re.M):
             if not re.search(rf"(?<![\w-])({option}{short and '|' + short})\b", section):
                 fail("docs/reference/commands.md", f"{command}: {option} is missing")
+
+
+# JSON: the section of a command names the members of what it prints; map prints members of rve, too.
+def members(value):
+    for item in value.values() if isinstance(value, dict) else value if isinstance(value, list) else []:
+        yield from members(item)
+    yield from value if isinstance(value, dict) else []
+
+
+def check_members():
+    for command in ("rve tests/scenes/shear-contact.yaml --tangent --second-mesh", "rve tests/scenes/uniaxial.yaml",
+                    "rve tests/scenes/shear-dry.yaml --onset", "rve tests/scenes/failure.yaml --failure",
+                    "check tests/scenes/tissue-block.yaml", "check tests/scenes/uneven-cells.yaml",
+                    "check tests/scenes/hexagons-dry.yaml", "check tests/scenes/ripening.yaml",
+                    "query tissue.h5 -F '1.05 0.02 0 1.03' --tangent", "verify tissue.h5 --samples 2",
+                    "map tests/scenes/map-shear-turgor.yaml -o members.h5"):
+        name = command.split()[0]
+        text = sections[name] + (sections["rve"] if name in ("query", "verify", "map") else "")
+        objects = [json.loads(line) for line in run(f"build/lamella {command} --json 2>err.txt").split("\n") if line]
+        for member in sorted(set(members(objects))):
+            if not re.search(rf'[`"]{re.escape(member)}[`"]', text):
+                fail("docs/reference/commands.md", f"{command}: the member {member} is missing")
 
 
 # Examples: commands in blocks begin with "$ "; what follows is what they print. A line "..." stands for any number of lines.
@@ -170,6 +193,8 @@ for document in ("README.md", "docs/tutorial.md"):
     os.symlink(source / "tests", f"{folder}/tests")
     os.chdir(folder)
     check_examples(document)
+    if document == "README.md":
+        check_members()  # it has built tissue.h5
     os.chdir("..")
 print("\n".join(failures), end="\n" if failures else "")
 sys.exit(1 if failures else 0)
