@@ -19,13 +19,8 @@
   X(LAM_BOX_BOTTOM, "bottom")                                                                                          \
   X(LAM_BOX_TOP, "top")
 
-#define LAM_SPACINGS(X)                                                                                                \
-  X(LAM_SPACING_LINEAR, "linear")                                                                                      \
-  X(LAM_SPACING_LOG, "log")
-
 typedef enum { LAM_TURGOR_MODES(LAM_ENUM_ENTRY) LAM_TURGOR_MODE_COUNT } LamTurgorMode;
 typedef enum { LAM_SIDES(LAM_ENUM_ENTRY) LAM_BOX_COUNT } LamSide;
-typedef enum { LAM_SPACINGS(LAM_ENUM_ENTRY) LAM_SPACING_COUNT } LamSpacing;
 
 typedef enum {
   LAM_KEY_MAP,

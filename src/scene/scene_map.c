@@ -6,7 +6,7 @@
 #include <math.h>
 
 const char *const LamMapQuantityNames[] = {LAM_MAP_QUANTITIES(LAM_NAME_ENTRY)};
-static const char *const spacing_names[] = {LAM_SPACINGS(LAM_NAME_ENTRY)};
+static const char *const spacing_names[] = {"linear", "log"}; /* LamMapAxis.is_log 0 and 1 */
 
 /* The axes of a map are alike. `from` and `to` have the unit of the quantity, so they are read as text. */
 #define MAP_AXIS(axis, sample)                                                                                         \

@@ -14,7 +14,7 @@ static const LamKey process_keys[] = {
     {TIME("process.duration"), INTO(LamProcessSpec, duration), REQUIRED, ABOVE(0), .example = "14 day",
      .help = "How long it is followed."},
     {TIME("process.output"), INTO(LamProcessSpec, output), ABOVE(0), .default_words = "a hundredth of the duration",
-     .example = "6 h", .help = "Time between the states that are told and written."},
+     .example = "6 h", .help = "Time between the states that are reported and written."},
     {REAL("process.tolerance"), INTO(LamProcessSpec, tolerance), FROM(1e-10), TO(0.1), .default_value = "1e-5",
      .example = "1e-6", .help = "Relative error of the integration in a step of time."},
     {BOOL("process.inflate"), INTO(LamProcessSpec, inflate), .default_words = "true with turgor, else false",

@@ -78,7 +78,7 @@ static const LamKey region_keys[] = {
     TISSUE_FIELD("cohesion", "{expression: 0.01 + 0.001 * y, unit: MPa}", "0.01 + 0.001 * y", "MPa",
                  "Cohesion, at least 0, of tissue with law `contact`."),
     TISSUE_FIELD("wall_thickness", "{expression: 11 + 0.2 * y, unit: um}", "11 + 0.2 * y", "um",
-                 "Thickness of one cell's wall: a few thicknesses are solved, answers between them blended."),
+                 "Thickness of one cell's wall: a few thicknesses are solved, responses between them blended."),
     {INTEGER("macro.fields.wall_thickness.levels"), INTO(LamTissueFields, levels), FROM(2), TO(8),
      .default_words = CHOSEN, .example = "5", .help = "How many thicknesses of each tissue are solved."},
 };

@@ -1,5 +1,5 @@
 /*
-  `macro.response` of a scene: how material points are answered.
+  `macro.response` of a scene: where the responses of material points come from.
 */
 #include "scene_rows.h"
 #include "quantity_text.h"
@@ -9,16 +9,15 @@ const char *const LamOutsideNames[] = {LAM_OUTSIDES(LAM_NAME_ENTRY)};
 
 static const LamKey response_keys[] = {
     {MAP("macro.response"), .default_words = "as below", .example = "{outside: stop, accuracy: 0.003}",
-     .help = "How material points are answered."},
+     .help = "Where the responses of material points come from."},
     {NAME("macro.response.outside", LamOutsideNames), INTO(LamResponsePolicy, outside), .default_value = "solve",
      .example = "stop",
-     .help = "What a cache does with a state that no node of its table would answer: `solve` it, and add it to the "
-             "database, or `stop` the run where smaller steps do not avoid it."},
+     .help = "What a cache does with a state outside its table: `solve` it, and add it to the database, or `stop` the "
+             "run where smaller steps do not avoid it."},
     {REAL("macro.response.accuracy"), INTO(LamResponsePolicy, accuracy), ABOVE(0), TO(0.5),
-     .default_words = "the scene's `accuracy`; a tenth of it where a cache answers for cells in contact with 12 or "
-                      "more elements along "
-                      "a face",
-     .example = "0.001", .help = "Relative error of P that an answer from a database may have by its estimate."},
+     .default_words = "the scene's `accuracy`; a tenth of it where a cache serves cells in contact with 12 or more "
+                      "elements along a face",
+     .example = "0.001", .help = "Relative error of P, by its estimate, that a response from a database may have."},
     {TEXT("macro.response.warm_start_memory"), .default_words = "2 GB", .example = "500 MB",
      .help = "Memory of a rank for the states from which direct solves start; material points that find no room start "
              "from the reference."},

@@ -5,7 +5,7 @@
 
 static const LamKey sample_keys[] = {
     {MAP("sample"), .example = "{stretch: {min: -0.05, max: 0.25}}",
-     .help = "States for `lamella build`: a box of deformations and turgor, to be answered by a table."},
+     .help = "States for `lamella build`: a box of deformations and turgor that a table covers."},
     {MAP("sample.stretch"), REQUIRED, .example = "{min: -0.05, max: 0.25}",
      .help = "Principal logarithmic strains in the plane."},
     {REAL("sample.stretch.min"), INTO(LamSample, stretch_min), REQUIRED, FROM(-2), TO(2), .example = "-0.05",
