@@ -18,6 +18,9 @@
     kinetics.h     how a property of tissue changes in time
     process.h      tissue that changes in time at one material point
     body.h         a body whose tissue changes in time
+    study.h        whole studies: a database built, a body solved
+    material.h     a material law for other programs, in SI units
+    error.h        the last error in words
     version.h      LAMELLA_VERSION
 
   Conventions throughout
@@ -47,6 +50,9 @@
 #include <lamella/macro.h>
 #include <lamella/process.h>
 #include <lamella/body.h>
+#include <lamella/study.h>
+#include <lamella/material.h>
+#include <lamella/error.h>
 #include <lamella/version.h>
 
 #endif

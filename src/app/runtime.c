@@ -27,33 +27,9 @@
 #define OWN_ERROR_PATIENCE 3.0
 #define SHARED_ERROR_PATIENCE 60.0
 
-static struct {
-  PetscErrorCode code;
-  char message[2048], trace[2048];
-} Error; /* the last that arose on this rank */
-
 static MPI_Comm EndComm = MPI_COMM_NULL; /* for the agreement at the end */
 
 /* ---- errors ---- */
-
-static PetscErrorCode KeepError(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
-                                PetscErrorType type, const char *message, void *ctx)
-{
-  size_t length;
-
-  (void)comm;
-  (void)ctx;
-  if (type == PETSC_ERROR_INITIAL) {
-    /* PETSc 3.18 gives the line of the caller as the code where malloc fails, and the caller's name as the words */
-    if (!strcmp(function, "PetscMallocAlign")) code = PETSC_ERR_MEM;
-    Error.code = code;
-    Error.trace[0] = '\0';
-    snprintf(Error.message, sizeof(Error.message), "%s", message ? message : "");
-  }
-  length = strlen(Error.trace);
-  snprintf(Error.trace + length, sizeof(Error.trace) - length, "  %s, %s:%d\n", function, file, line);
-  return code;
-}
 
 static int StatusOf(PetscErrorCode code)
 {
@@ -76,23 +52,23 @@ static void TellError(PetscErrorCode code)
 
   fflush(stdout);
   if (StatusOf(code) != LAM_EXIT_FAULT) {
-    fprintf(stderr, "lamella: %s\n", Error.message);
+    fprintf(stderr, "lamella: %s\n", LamErrorMessage());
     return;
   }
   if (code == PETSC_ERR_MEM) {
-    fprintf(stderr, "lamella: out of memory (%s); lamella check tells what a scene needs\n", Error.message);
+    fprintf(stderr, "lamella: out of memory (%s); lamella check tells what a scene needs\n", LamErrorMessage());
     return;
   }
   (void)PetscErrorMessage(code, &general, NULL);
   fprintf(stderr, "lamella: %s%s%s\n%sThis is a fault of Lamella, please report it.\n", general ? general : "",
-          general && Error.message[0] ? ": " : "", Error.message, Error.trace);
+          general && LamErrorMessage()[0] ? ": " : "", LamErrorMessage(), LamErrorTrace());
 }
 
 #ifdef __SANITIZE_ADDRESS__
 /* Asked by the leak checker at exit: an error returns past the clean-up, its memory is left to the system. */
 int __lsan_is_turned_off(void)
 {
-  return Error.code != 0;
+  return LamErrorCode() != 0;
 }
 #endif
 
@@ -172,7 +148,7 @@ static PetscBool AwaitOthers(MPI_Request *request, double patience)
 /* The ranks end with one status, the largest; errors are told by the lowest rank that knows their words. */
 static void AgreeAtEnd(PetscErrorCode code, int *status)
 {
-  const PetscBool own = (PetscBool)(code && code == Error.code);
+  const PetscBool own = (PetscBool)(code && code == LamErrorCode());
   int rank, size, mine[2], all[2];
   MPI_Request request;
 
@@ -255,6 +231,5 @@ PetscErrorCode LamRuntimeBegin(void)
   LamFaultsTell();
   signal(SIGPIPE, SIG_IGN);                   /* a closed pipe is an error of writing, told as such */
   signal(SIGXFSZ, SIG_IGN);                   /* so is a file that may not grow */
-  PetscErrorHandlingInitialized = PETSC_TRUE; /* else PETSc calls no handler before PetscInitialize */
-  return PetscPushErrorHandler(KeepError, NULL);
+  return LamErrorsKeep();
 }

@@ -22,9 +22,6 @@
 #include "fe2_tissue.h"
 #include "study.h"
 
-typedef enum { LAM_FE2_DIRECT, LAM_FE2_CACHE, LAM_FE2_DATABASE } LamFE2Response;
-extern const char *const LamFE2ResponseNames[];
-
 /* Of the reported steps. */
 typedef struct {
   PetscInt64 queries, hits, solves, failures;

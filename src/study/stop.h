@@ -5,10 +5,8 @@
 #ifndef LAM_STOP_H
 #define LAM_STOP_H
 
-#include <petscsys.h>
+#include <lamella/study.h>
 
-/* Asks the study under way to stop; `number`: the signal that is the reason. May be called in a signal handler. */
-void LamStopRequest(int number);
 int LamStopSignal(void); /* the last one requested; 0: none */
 PetscBool LamStopRequested(void);
 PetscBool LamStopInterrupt(void *ctx); /* the same, for LamRVESetInterrupt */

@@ -5,17 +5,9 @@
 #define LAM_STUDY_H
 
 #include <lamella/lamella.h>
+#include <lamella/study.h>
 #include "json.h"
 #include "stop.h"
-
-/* What a study reports while it runs, on rank 0. It, or its members, may be NULL. */
-typedef struct {
-  void *ctx; /* of both; borrowed */
-  /* A sentence for a person. A warning says that results may not be what they seem; else it is a note. */
-  void (*message)(void *ctx, PetscBool warning, const char text[]);
-  /* `failed` of those done; total 0: not known yet. */
-  PetscErrorCode (*progress)(void *ctx, PetscInt64 done, PetscInt64 total, PetscInt64 failed);
-} LamReporter;
 
 void LamReportNote(const LamReporter *reporter, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
 void LamReportWarning(const LamReporter *reporter, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);

@@ -1,0 +1,166 @@
+/* The material law for other programs: SI units, states, threads, words of errors. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+#include <math.h>
+#include <pthread.h>
+#include <string.h>
+#include <unistd.h>
+#include <lamella/lamella.h>
+
+static const char scene_path[] = LAMELLA_SOURCE_DIR "/tests/scenes/shear-contact.yaml";
+static const double sheared[9] = {1, 0.05, 0, 0, 1, 0, 0, 0, 1};
+
+static void stress_and_tangent_are_those_of_the_rve_in_pascal(void **state)
+{
+  double P[9], tangent[81], turgor, cohesion;
+  LamMaterialInfo info;
+  LamMaterial material;
+  LamResponse wanted;
+  LamRVEState at;
+  LamScene *scene;
+  LamLoad load;
+  LamRVE rve;
+
+  assert_int_equal(LamSceneRead(scene_path, &scene), 0);
+  load = (LamLoad){.turgor = scene->turgor, .cohesion = scene->cohesion};
+  memcpy(load.F, sheared, sizeof(sheared));
+  assert_int_equal(LamRVECreate(PETSC_COMM_SELF, &rve), 0);
+  assert_int_equal(LamRVESetMicrostructure(rve, &scene->micro), 0);
+  assert_int_equal(LamRVESetStrategy(rve, scene->strategy), 0);
+  assert_int_equal(LamRVESetTolerance(rve, scene->tolerance), 0);
+  assert_int_equal(LamRVESetUp(rve), 0);
+  assert_int_equal(LamRVEStateCreate(rve, &at), 0);
+  assert_int_equal(LamRVESolve(rve, &load, at, &wanted), 0);
+
+  assert_int_equal(LamMaterialCreateFromScene(scene_path, 0, &material), 0);
+  assert_int_equal(LamMaterialGetLoads(material, &turgor, &cohesion), 0);
+  assert_true(fabs(turgor - 0.05e6) < 1e-6 && fabs(cohesion - 1e3) < 1e-6);
+  assert_int_equal(LamMaterialEvaluate(material, 1, NULL, sheared, NULL, NULL, P, tangent, &info), 0);
+  assert_int_equal(info.status, LAM_CONVERGED);
+  for (int i = 0; i < 9; i++) assert_true(P[i] == wanted.P[i] * scene->scales.stress);
+  for (int i = 0; i < 81; i++) /* of out-of-plane shears it is not known */
+    assert_true(
+        tangent[i] == wanted.tangent[i] * scene->scales.stress ||
+        (isnan(tangent[i]) && isnan(wanted.tangent[i]) && (i % 9 == 2 || i % 9 > 4 || i / 9 == 2 || i / 9 > 4)));
+  assert_true(info.max_gap == wanted.max_gap * scene->scales.length);
+
+  LamMaterialDestroy(&material);
+  LamRVEStateDestroy(&at);
+  LamRVEDestroy(&rve);
+  LamSceneDestroy(&scene);
+}
+
+/* The load step after the one that was saved ends in the same numbers. */
+static void a_restored_state_goes_on_as_the_one_saved(void **state)
+{
+  const int points[1] = {0};
+  const double further[9] = {1, 0.12, 0, 0, 1, 0, 0, 0, 1};
+  double P[2][9];
+  LamMaterial material;
+  size_t size;
+  char *bytes;
+
+  for (int k = 0; k < 2; k++) {
+    assert_int_equal(LamMaterialCreateFromScene(scene_path, 1, &material), 0);
+    assert_int_equal(LamMaterialGetStateSize(material, &size), 0);
+    if (!k) {
+      assert_int_equal(LamMaterialEvaluate(material, 1, points, sheared, NULL, NULL, P[0], NULL, NULL), 0);
+      assert_int_equal(LamMaterialAccept(material), 0);
+      assert_int_equal(PetscMalloc(size, &bytes), 0);
+      assert_int_equal(LamMaterialSaveState(material, 0, bytes), 0);
+    } else {
+      assert_int_equal(LamMaterialRestoreState(material, 0, bytes), 0);
+    }
+    assert_int_equal(LamMaterialEvaluate(material, 1, points, further, NULL, NULL, P[k], NULL, NULL), 0);
+    LamMaterialDestroy(&material);
+  }
+  assert_memory_equal(P[0], P[1], sizeof(P[0]));
+  PetscFree(bytes);
+}
+
+static void a_state_without_a_response_has_no_numbers_but_a_reason(void **state)
+{
+  const double inverted[9] = {-1, 0, 0, 0, 1, 0, 0, 0, 1};
+  double P[9];
+  LamMaterialInfo info;
+  LamMaterial material;
+
+  assert_int_equal(LamMaterialCreateFromScene(scene_path, 0, &material), 0);
+  assert_int_equal(LamMaterialEvaluate(material, 1, NULL, inverted, NULL, NULL, P, NULL, &info), 0);
+  assert_int_equal(info.status, LAM_INVALID_F);
+  assert_non_null(strstr(info.reason, "det"));
+  assert_true(isnan(P[0]));
+  LamMaterialDestroy(&material);
+}
+
+static void errors_are_kept_in_words(void **state)
+{
+  LamMaterial material;
+
+  assert_int_equal(LamMaterialCreateFromScene("no such scene.yaml", 0, &material), PETSC_ERR_USER_INPUT);
+  assert_null(material);
+  assert_int_equal(LamErrorCode(), PETSC_ERR_USER_INPUT);
+  assert_non_null(strstr(LamErrorMessage(), "no such scene.yaml"));
+  assert_null(strchr(LamErrorMessage(), '\n'));
+}
+
+/* ---- threads on a database ---- */
+
+enum { THREADS = 4, STATES = 500 };
+static LamMaterial shared;
+static double F[STATES][9], alone[STATES][9];
+
+static void *Evaluate(void *different)
+{
+  double P[STATES][9];
+
+  *(int *)different =
+      LamMaterialEvaluate(shared, STATES, NULL, F[0], NULL, NULL, P[0], NULL, NULL) || memcmp(P, alone, sizeof(P));
+  return NULL;
+}
+
+static void threads_get_what_one_gets_alone(void **state)
+{
+  const LamBuildOptions options = {0};
+  LamBuildResult result;
+  pthread_t thread[THREADS];
+  int different[THREADS];
+  char path[] = "/tmp/test_material_XXXXXX";
+  const int file = mkstemp(path);
+
+  assert_true(file >= 0);
+  close(file);
+  unlink(path);
+  assert_int_equal(LamStudyBuild(LAMELLA_SOURCE_DIR "/tests/scenes/tissue-block.yaml", path, &options, &result), 0);
+  assert_true(result.records > 0 && result.answered > 0.9);
+  assert_int_equal(LamMaterialCreateFromDatabase(path, &shared), 0);
+  for (int i = 0; i < STATES; i++)
+    memcpy(F[i], (double[9]){1 + 1e-4 * i, 1e-5 * i, 0, 0, 1.01, 0, 0, 0, 1}, sizeof(F[i]));
+  assert_int_equal(LamMaterialEvaluate(shared, STATES, NULL, F[0], NULL, NULL, alone[0], NULL, NULL), 0);
+  assert_false(isnan(alone[0][0]));
+  for (int t = 0; t < THREADS; t++) pthread_create(&thread[t], NULL, Evaluate, &different[t]);
+  for (int t = 0; t < THREADS; t++) {
+    pthread_join(thread[t], NULL);
+    assert_false(different[t]);
+  }
+  LamMaterialDestroy(&shared);
+  unlink(path);
+}
+
+int main(int argc, char *argv[])
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(stress_and_tangent_are_those_of_the_rve_in_pascal),
+      cmocka_unit_test(a_restored_state_goes_on_as_the_one_saved),
+      cmocka_unit_test(a_state_without_a_response_has_no_numbers_but_a_reason),
+      cmocka_unit_test(errors_are_kept_in_words),
+      cmocka_unit_test(threads_get_what_one_gets_alone),
+  };
+  int failed;
+
+  if (LamErrorsKeep() || PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  failed = cmocka_run_group_tests(tests, NULL, NULL);
+  return PetscFinalize() ? 1 : failed;
+}
