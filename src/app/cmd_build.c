@@ -110,7 +110,7 @@ PetscErrorCode LamCommandBuild(LamArgs *args, int *exit_status)
 {
   LamBuild b = {.team_size = 1, .shard = {1, 1}};
   Report report = {0};
-  const char *scene_path, *group = NULL, *team = NULL, *shard = NULL;
+  const char *scene_path, *team = NULL, *shard = NULL;
   PetscBool done;
   const LamOption options[] = {
       {'d', "database", LAM_OPTION_TEXT, "DB.h5", "the database to fill", &b.path},
@@ -118,25 +118,23 @@ PetscErrorCode LamCommandBuild(LamArgs *args, int *exit_status)
       {0, "shard", LAM_OPTION_TEXT, "I/N", "only part I of N of the sample box, for `lamella merge`", &shard},
       {0, "ranks-per-rve", LAM_OPTION_TEXT, "R", "ranks that factor the matrices of one RVE together; default 1",
        &team},
-      {0, "group", LAM_OPTION_TEXT, "G", "ranks that one rank hands out work to; default 128", &group},
       {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per commit on stdout", &report.json},
       {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &report.quiet},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
   };
 
   PetscFunctionBeginUser;
-  PetscCall(LamOptionsParse(
-      args, "build SCENE -d DB.h5 [--resume] [--shard I/N] [--ranks-per-rve R] [--group G] [--json] [--quiet]",
-      "Solves nodes of a grid until a table of them answers the states of the scene's sample box.", options, 1,
-      &scene_path, &done, exit_status));
+  PetscCall(
+      LamOptionsParse(args, "build SCENE -d DB.h5 [--resume] [--shard I/N] [--ranks-per-rve R] [--json] [--quiet]",
+                      "Solves nodes of a grid until a table of them answers the states of the scene's sample box.",
+                      options, 1, &scene_path, &done, exit_status));
   if (done) PetscFunctionReturn(0);
   if (!b.path) {
     fprintf(stderr, "lamella build: the database is missing; give -d DB.h5\n");
     *exit_status = LAM_EXIT_USAGE;
     PetscFunctionReturn(0);
   }
-  if ((group && !LamCountParse("build", "--group", group, 1, &b.group, exit_status)) ||
-      (team && !LamCountParse("build", "--ranks-per-rve", team, 1, &b.team_size, exit_status)) ||
+  if ((team && !LamCountParse("build", "--ranks-per-rve", team, 1, &b.team_size, exit_status)) ||
       (shard && !ParseShard(shard, &b.shard, exit_status)))
     PetscFunctionReturn(0);
   PetscCall(args->start(args));

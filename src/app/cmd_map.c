@@ -115,7 +115,7 @@ static PetscInt CountMode(const Map *m, PetscInt mode)
   return count;
 }
 
-/* A LamWorked */
+/* LamDispatchJob.worked */
 static PetscErrorCode Arrive(void *ctx, PetscInt64 index, const void *result)
 {
   const PathResult *path = result;
@@ -133,14 +133,14 @@ static PetscErrorCode Arrive(void *ctx, PetscInt64 index, const void *result)
 }
 
 /* Follows the path number `index` of those to do. */
-static PetscErrorCode Follow(void *ctx, PetscInt64 index, const void *input, void *result, size_t *size)
+static PetscErrorCode Follow(void *ctx, PetscInt64 index, const void *input, size_t input_size, void *result,
+                             size_t *size)
 {
   const Map *m = ctx;
   PathResult *path = result;
 
   PetscFunctionBeginUser;
-  PetscCall(
-      LamMapFollow(m->scene, m->todo[index], LamDispatchServeWaiting, m->dispatch, path->points, &path->complete));
+  PetscCall(LamMapFollow(m->scene, m->todo[index], LamDispatchInterrupt, m->dispatch, path->points, &path->complete));
   PetscFunctionReturn(0);
 }
 
@@ -294,14 +294,14 @@ static PetscErrorCode RunAll(Map *m)
 
   PetscFunctionBeginUser;
   if (ierr) (void)LamRecordWriterClose(&m->writer);
-  PetscCall(LamDispatchShare(m->dispatch, ierr));
+  PetscCall(LamShareError(PETSC_COMM_WORLD, ierr));
   PetscCallMPI(MPI_Bcast(m->todo, (PetscMPIInt)m->paths, MPIU_INT, 0, PETSC_COMM_WORLD));
   if (root) {
     ierr = CloseAfter(m, RunRoot(m));
   } else {
     PetscCall(LamDispatchServe(m->dispatch));
   }
-  PetscCall(LamDispatchShare(m->dispatch, ierr));
+  PetscCall(LamShareError(PETSC_COMM_WORLD, ierr));
   if (root) PetscCall(Summary(m));
   PetscFunctionReturn(0);
 }
@@ -321,8 +321,9 @@ static PetscErrorCode Prepare(Map *m)
       LamDispatchCreate(PETSC_COMM_WORLD,
                         &(LamDispatchJob){m, .result_size = sizeof(PathResult) + (size_t)m->cuts * sizeof(LamMapPoint),
                                           .work = Follow, .worked = Arrive},
-                        0, &m->dispatch));
-  PetscCall(LamDispatchGetRank(m->dispatch, &m->rank, &m->ranks));
+                        &m->dispatch));
+  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &m->rank));
+  PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &m->ranks));
   PetscFunctionReturn(0);
 }
 

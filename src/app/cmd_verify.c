@@ -67,13 +67,14 @@ static PetscErrorCode CreateRVE(Verify *v)
   PetscCall(LamRVESetMicrostructure(v->rve, &v->micro));
   PetscCall(LamRVESetStrategy(v->rve, v->strategy));
   PetscCall(LamRVESetUp(v->rve));
-  PetscCall(LamRVESetInterrupt(v->rve, LamDispatchServeWaiting, v->dispatch));
+  PetscCall(LamRVESetInterrupt(v->rve, LamDispatchInterrupt, v->dispatch));
   PetscCall(LamRVEStateCreate(v->rve, &v->state));
   PetscFunctionReturn(0);
 }
 
 /* From the stress-free reference, as if nothing else were known. */
-static PetscErrorCode Solve(void *ctx, PetscInt64 index, const void *input, void *result, size_t *size)
+static PetscErrorCode Solve(void *ctx, PetscInt64 index, const void *input, size_t input_size, void *result,
+                            size_t *size)
 {
   Verify *v = ctx;
 
@@ -156,14 +157,14 @@ static PetscErrorCode RunAll(Verify *v)
   PetscErrorCode ierr = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(LamDispatchShare(v->dispatch, root ? Begin(v) : 0));
+  PetscCall(LamShareError(PETSC_COMM_WORLD, root ? Begin(v) : 0));
   PetscCall(Share(v));
   PetscCall(CreateRVE(v));
   if (root)
     ierr = RunRoot(v);
   else
     PetscCall(LamDispatchServe(v->dispatch));
-  PetscCall(LamDispatchShare(v->dispatch, ierr));
+  PetscCall(LamShareError(PETSC_COMM_WORLD, ierr));
   if (root) PetscCall(Report(v));
   PetscFunctionReturn(0);
 }
@@ -214,9 +215,10 @@ PetscErrorCode LamCommandVerify(LamArgs *args, int *exit_status)
   PetscCall(args->start(args));
   v.start = LamClock();
   PetscCall(LamDispatchCreate(
-      PETSC_COMM_WORLD, &(LamDispatchJob){&v, .result_size = sizeof(LamResponse), .work = Solve, .worked = Arrive}, 0,
+      PETSC_COMM_WORLD, &(LamDispatchJob){&v, .result_size = sizeof(LamResponse), .work = Solve, .worked = Arrive},
       &v.dispatch));
-  PetscCall(LamDispatchGetRank(v.dispatch, &v.rank, &v.ranks));
+  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &v.rank));
+  PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &v.ranks));
   PetscCall(RunAll(&v));
   PetscCall(ExitStatus(&v, exit_status));
   PetscCall(Destroy(&v));

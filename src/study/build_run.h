@@ -24,7 +24,6 @@ typedef struct LamBuild_s {
   /* After each commit, on rank 0; ctx: the reporter's. May be NULL. */
   PetscErrorCode (*committed)(void *ctx, const struct LamBuild_s *build);
   PetscBool resume;
-  PetscInt group;     /* ranks that one rank hands out to; 0: as many as do */
   PetscInt team_size; /* ranks that solve one RVE together */
   LamShard shard;
   PetscMPIInt rank, size;

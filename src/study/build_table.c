@@ -15,12 +15,12 @@
 
 /* ---- rounds ---- */
 
-static PetscErrorCode WantRound(LamBuild *b, const LamRound *round)
+static PetscErrorCode RequestRound(LamBuild *b, const LamRound *round)
 {
   PetscFunctionBeginUser;
   b->there += round->n - round->missing;
   for (PetscInt m = 0; m < round->missing; m++)
-    PetscCall(LamNodeWorkWant(b->work, round->keys[round->order[m]], round->cost[m]));
+    PetscCall(LamNodeWorkRequest(b->work, round->keys[round->order[m]], round->cost[m]));
   PetscFunctionReturn(0);
 }
 
@@ -36,13 +36,13 @@ static PetscErrorCode OpenRounds(LamBuild *b)
     PetscCall(LamBuildTakeInTurn(b));
     PetscCall(LamRoundsNext(&b->rounds, &round));
     if (!round) break;
-    PetscCall(WantRound(b, round));
+    PetscCall(RequestRound(b, round));
   }
   b->opening = PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 
-/* A LamNodeArrived */
+/* LamNodeCallbacks.arrived */
 static PetscErrorCode Arrive(void *ctx, PetscInt64 key, const LamResponse *response)
 {
   LamBuild *b = ctx;
@@ -56,7 +56,7 @@ static PetscErrorCode Arrive(void *ctx, PetscInt64 key, const LamResponse *respo
   PetscFunctionReturn(0);
 }
 
-/* A LamNodeKnown */
+/* LamNodeCallbacks.known */
 static const LamResponse *Known(void *ctx, PetscInt64 key)
 {
   const LamBuild *b = ctx;
@@ -110,19 +110,10 @@ static PetscErrorCode CreateRVE(LamBuild *b)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CreateWork(LamBuild *b)
-{
-  const LamNodeCustomer customer = {.ctx = b, .arrived = Arrive, .known = Known};
-
-  PetscFunctionBeginUser;
-  PetscCall(LamNodeWorkCreate(b->leaders, b->rve, b->scene->micro.interface, b->grid, LAM_NODE_WORK_MEMORY, b->group,
-                              &customer, &b->work));
-  PetscFunctionReturn(0);
-}
-
 /* Of those that solve an RVE each, or lead a team that does; rank 0 keeps the file. */
 static PetscErrorCode RunLeader(LamBuild *b)
 {
+  const LamNodeCallbacks callbacks = {.ctx = b, .arrived = Arrive, .known = Known};
   const PetscBool root = (PetscBool)(b->rank == 0);
   PetscErrorCode ierr;
 
@@ -132,7 +123,8 @@ static PetscErrorCode RunLeader(LamBuild *b)
   if (ierr) (void)LamRecordWriterClose(&b->writer);
   PetscCall(LamShareError(b->leaders, ierr));
   PetscCall(ShareGrid(b));
-  PetscCall(CreateWork(b));
+  PetscCall(LamNodeWorkCreate(b->leaders, b->rve, b->scene->micro.interface, b->grid, LAM_NODE_WORK_MEMORY, &callbacks,
+                              &b->work));
   ierr = root ? SolveRounds(b) : LamNodeWorkServe(b->work);
   if (ierr)
     (void)LamRecordWriterClose(&b->writer);

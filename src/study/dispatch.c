@@ -1,365 +1,237 @@
 /*
-  The tree of ranks that hand out work, and work.
-
   Method
-    Every rank runs one loop: it takes what has come in, hands out, and else does a piece itself, the messages being
-    answered between its factorisations too. No rank waits for another with a message of its own: sends are not
-    blocking, so two that write to each other at once do not hold each other up.
-    A leader has what it was given wait in a schedule of its own and sends results up in bundles. The end comes from
-    rank 0: `stop` goes down the tree, `home` comes up behind the last results, so that no message is left over.
+    Waiting tasks are a heap; the task of the largest predicted cost is handed out first. A worker that does a task has
+    the next one already, so that it does not wait for rank 0, which handles messages between two factorisations of its
+    own task. No rank holds more than that ahead: tasks whose costs are mispredicted would wait behind each other.
+    Sends do not block. The input of a task is kept until its result has arrived; a worker has one result under way.
+    At the end rank 0 sends TAG_STOP, and a worker TAG_LEFT behind its last result: no message is left over.
+
+  References
+    R. L. Graham, Bounds on multiprocessing timing anomalies, SIAM J. Appl. Math. 17 (1969) 416-429 (longest first).
 */
 #include "dispatch.h"
-#include <signal.h>
 #include <lamella/clock.h>
-#include "mail.h"
-#include "schedule.h"
-#include <math.h>
+#include <signal.h>
 #include <string.h>
 #include <time.h>
 
-enum { TAG_WORK = 1, TAG_RESULT, TAG_DROP, TAG_SIGNAL, TAG_STOP, TAG_HOME };
-enum { SELF = 0, MOST_AT_ONCE = 64 };
-/* A rank that works looks for messages so often at most, s: looking takes some time, too. */
-#define LOOK_TIME 2e-3
-/* From a result to the next piece, s: rank 0 may be deciding on a round or committing. */
-#define ANSWER_TIME 0.05
-/* A leader's bundle of results goes up when it is so large, or its first result so old, bytes and s. */
-#define BUNDLE_BYTES 65536
-#define BUNDLE_AGE 0.02
-/* A rank that has nothing to do sleeps for so long, s: others may want the processor. */
+enum { TAG_TASK = 1, TAG_RESULT, TAG_STOP, TAG_LEFT };
+enum { LOOK_AHEAD = 1 }; /* tasks that a worker has beside the one under way; its buffers are for one */
+/* An idle rank sleeps for so long, s: other processes may want its processor. */
 #define LEAST_PAUSE 2e-5
 #define LONGEST_PAUSE 1e-3
 
-/* A piece that came from above and has not been done. */
 typedef struct {
-  LamBundleItem item;
-  char *bytes;       /* owned */
-  PetscBool dropped; /* another rank has done it */
-} Received;
+  PetscInt64 number;
+  PetscReal cost;
+} Task;
+
+/* The number of a task, and its input or result behind it. */
+typedef struct {
+  PetscInt64 task;
+  char bytes[];
+} Message;
+
+/* A task that was sent to a worker. */
+typedef struct {
+  Message *message; /* owned */
+  MPI_Request request;
+} Sent;
+
+typedef struct {
+  PetscInt n;
+  Sent sent[1 + LOOK_AHEAD]; /* [n], in the order in which the worker does them */
+} Worker;
 
 struct LamDispatch_s {
+  MPI_Comm comm; /* used for nothing else */
   PetscMPIInt rank, size;
   LamDispatchJob job;
-  LamMail mail;
-  LamSchedule schedule;
-  PetscMPIInt parent;          /* -1: rank 0 */
-  PetscInt children;           /* of the schedule; number SELF is this rank, where it computes */
-  PetscMPIInt *child;          /* [children]: ranks; owned */
-  PetscBool computes;          /* rank 0 of many does not */
-  PetscBool news;              /* pieces were added: all children may take some */
-  PetscInt received, room;     /* pieces from above */
-  Received *inputs;            /* [received]; owned */
-  PetscInt64 unfinished;       /* on rank 0: pieces without a result */
-  LamBundle results, incoming; /* for the parent; work space */
-  PetscReal results_since;
-  void *input;         /* work space */
-  void *desk, *result; /* of the piece under way; owned */
-  PetscBool stopping, signalled, working;
-  PetscInt64 current;               /* the piece under way */
-  PetscBool dropped;                /* it has been done by another rank */
-  PetscBool failed;                 /* rank 0 wants no more results */
-  PetscInt at_home;                 /* children that have gone home */
-  PetscReal pause, service, looked; /* looked: when it last took messages while it worked */
-  PetscErrorCode ierr;              /* of a call from LamDispatchServeWaiting */
+  Message *current, *result;      /* of the task under way; owned */
+  Message *next;                  /* received; owned */
+  size_t current_size, next_size; /* of inputs */
+  PetscBool has_next;             /* workers: `next` is a task */
+  PetscBool stopping;
+  PetscErrorCode ierr; /* of LamDispatchInterrupt */
+  PetscReal pause, service;
+  Message *sending;        /* workers: the result under way; owned */
+  MPI_Request result_sent; /* workers */
+
+  /* on rank 0 */
+  PetscInt64 waiting, room;
+  Task *heap;            /* [waiting]; owned */
+  PetscInt64 unfinished; /* tasks without a result */
+  Worker *worker;        /* [size]; owned */
+  PetscMPIInt left;      /* workers */
+  PetscBool failed;      /* results are no longer wanted */
 };
 
-/* ---- pieces from above ---- */
+/* ---- waiting tasks ---- */
 
-static Received *FindInput(LamDispatch d, PetscInt64 piece)
+static PetscBool ComesBefore(const Task *a, const Task *b)
 {
-  for (PetscInt i = 0; i < d->received; i++)
-    if (d->inputs[i].item.piece == piece) return &d->inputs[i];
-  return NULL;
+  return (PetscBool)(a->cost != b->cost ? a->cost > b->cost : a->number < b->number);
 }
 
-static PetscErrorCode KeepInput(LamDispatch d, const LamBundleItem *item, const void *bytes)
+static PetscErrorCode Push(LamDispatch d, Task task)
 {
-  Received *input;
+  PetscInt64 i = d->waiting++;
 
   PetscFunctionBeginUser;
-  if (d->received == d->room) {
-    d->room = PetscMax(16, 2 * d->room);
-    PetscCall(PetscRealloc((size_t)d->room * sizeof(*d->inputs), &d->inputs));
+  if (i == d->room) {
+    d->room = PetscMax(1024, 2 * d->room);
+    PetscCall(PetscRealloc((size_t)d->room * sizeof(*d->heap), &d->heap));
   }
-  input = &d->inputs[d->received++];
-  *input = (Received){.item = *item};
-  PetscCall(PetscMalloc(item->size, &input->bytes));
-  if (item->size) memcpy(input->bytes, bytes, item->size);
+  for (; i && ComesBefore(&task, &d->heap[(i - 1) / 2]); i = (i - 1) / 2) d->heap[i] = d->heap[(i - 1) / 2];
+  d->heap[i] = task;
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ForgetInput(LamDispatch d, PetscInt64 piece)
+static PetscInt64 Pop(LamDispatch d)
 {
-  Received *input = FindInput(d, piece);
+  const PetscInt64 first = d->heap[0].number;
+  const Task last = d->heap[--d->waiting];
+  PetscInt64 i = 0;
 
-  PetscFunctionBeginUser;
-  if (!input) PetscFunctionReturn(0);
-  PetscCall(PetscFree(input->bytes));
-  *input = d->inputs[--d->received];
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode TakeWork(LamDispatch d)
-{
-  LamBundleItem item;
-  const void *bytes;
-  size_t at = 0;
-
-  PetscFunctionBeginUser;
-  while (LamBundleNext(&d->incoming, &at, &item, &bytes)) {
-    PetscCall(KeepInput(d, &item, bytes));
-    PetscCall(LamScheduleAdd(d->schedule, item.piece, 1, item.cost));
-    d->news = PETSC_TRUE;
+  for (PetscInt64 child = 1; child < d->waiting; child = 2 * i + 1) {
+    if (child + 1 < d->waiting && ComesBefore(&d->heap[child + 1], &d->heap[child])) child++;
+    if (!ComesBefore(&d->heap[child], &last)) break;
+    d->heap[i] = d->heap[child];
+    i = child;
   }
-  PetscFunctionReturn(0);
+  d->heap[i] = last;
+  return first;
 }
 
-/* What a rank needs for the piece: on rank 0 it is described now, elsewhere it has come from above. */
-static PetscErrorCode FindOut(LamDispatch d, PetscInt child, PetscInt64 piece, LamBundleItem *item, const void **bytes)
+PetscErrorCode LamDispatchAdd(LamDispatch dispatch, PetscInt64 first, PetscInt64 count, PetscReal cost)
 {
   PetscFunctionBeginUser;
-  if (d->parent < 0) {
-    *item = (LamBundleItem){.piece = piece, .cost = LamScheduleCost(d->schedule, child, piece)};
-    *bytes = d->input;
-    if (d->job.describe) PetscCall(d->job.describe(d->job.ctx, piece, d->input, &item->size));
-  } else {
-    const Received *input = FindInput(d, piece);
-
-    PetscCheck(input, PETSC_COMM_SELF, PETSC_ERR_PLIB, "piece %lld has no input", (long long)piece);
-    *item = input->item;
-    *bytes = input->bytes;
-  }
+  for (PetscInt64 i = 0; i < count; i++) PetscCall(Push(dispatch, (Task){first + i, cost}));
+  dispatch->unfinished += count;
   PetscFunctionReturn(0);
 }
 
-/* ---- results ---- */
+/* ---- rank 0: handing out, and results ---- */
 
-static PetscErrorCode SendResults(LamDispatch d)
+/* The first of the waiting tasks; *size: of its input. */
+static PetscErrorCode TakeTask(LamDispatch d, Message *message, size_t *size)
 {
   PetscFunctionBeginUser;
-  if (d->results.n) PetscCall(LamMailSend(&d->mail, d->parent, TAG_RESULT, &d->results));
+  message->task = Pop(d);
+  *size = 0;
+  if (d->job.describe) PetscCall(d->job.describe(d->job.ctx, message->task, message->bytes, size));
   PetscFunctionReturn(0);
 }
 
-/* Those of a rank that hands out to nobody go at once. */
-static PetscErrorCode SendResultsInTime(LamDispatch d)
+static PetscErrorCode Send(LamDispatch d, const Message *message, size_t size, PetscMPIInt rank, PetscMPIInt tag,
+                           MPI_Request *request)
 {
-  const PetscBool leads = (PetscBool)(d->children > 1);
+  PetscMPIInt count;
 
   PetscFunctionBeginUser;
-  if (d->parent < 0 || !d->results.n) PetscFunctionReturn(0);
-  if (!leads || d->results.n >= BUNDLE_BYTES || !LamScheduleWaiting(d->schedule) ||
-      LamClock() - d->results_since > BUNDLE_AGE)
-    PetscCall(SendResults(d));
+  PetscCall(PetscMPIIntCast((PetscInt)(sizeof(*message) + size), &count));
+  PetscCallMPI(MPI_Isend(message, count, MPI_BYTE, rank, tag, d->comm, request));
   PetscFunctionReturn(0);
 }
 
-/* Another rank was faster: what is not done yet need not be. A result without bytes comes back. */
-static PetscErrorCode Drop(LamDispatch d, PetscInt child, PetscInt64 piece)
-{
-  const LamBundleItem item = {.piece = piece};
-  LamBundle bundle = {0};
-
-  PetscFunctionBeginUser;
-  if (d->computes && child == SELF) {
-    if (d->working && d->current == piece) d->dropped = PETSC_TRUE;
-    PetscFunctionReturn(0);
-  }
-  PetscCall(LamBundleAppend(&bundle, &item, NULL));
-  PetscCall(LamMailSend(&d->mail, d->child[child], TAG_DROP, &bundle));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode TakeDrop(LamDispatch d)
-{
-  LamBundleItem item;
-  const void *bytes;
-  size_t at = 0;
-
-  PetscFunctionBeginUser;
-  while (LamBundleNext(&d->incoming, &at, &item, &bytes)) {
-    Received *input = FindInput(d, item.piece);
-    const PetscInt child = LamScheduleHolder(d->schedule, item.piece);
-
-    if (!input) continue; /* the result is on its way */
-    input->dropped = PETSC_TRUE;
-    if (child >= 0) PetscCall(Drop(d, child, item.piece));
-  }
-  PetscFunctionReturn(0);
-}
-
-/* A result from `child`: to the caller on rank 0, up the tree elsewhere. */
-static PetscErrorCode Deliver(LamDispatch d, PetscInt child, const LamBundleItem *item, const void *bytes)
-{
-  PetscBool first;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamScheduleDone(d->schedule, child, LamClock(), item->piece, &first));
-  if (!first || d->failed) PetscFunctionReturn(0);
-  if (LamScheduleStale(d->schedule)) {
-    const PetscInt other = LamScheduleHolder(d->schedule, item->piece);
-
-    if (other >= 0) PetscCall(Drop(d, other, item->piece));
-  }
-  if (d->parent < 0) {
-    d->unfinished--;
-    PetscCall(d->job.worked(d->job.ctx, item->piece, bytes));
-  } else {
-    if (!d->results.n) d->results_since = LamClock();
-    PetscCall(LamBundleAppend(&d->results, item, bytes));
-    PetscCall(ForgetInput(d, item->piece));
-  }
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode TakeResults(LamDispatch d, PetscInt child)
-{
-  LamBundle bundle = d->incoming; /* `worked` may lead to other messages */
-  LamBundleItem item;
-  PetscErrorCode ierr = 0;
-  const void *bytes;
-  size_t at = 0;
-
-  PetscFunctionBeginUser;
-  d->incoming = (LamBundle){0};
-  while (!ierr && LamBundleNext(&bundle, &at, &item, &bytes)) ierr = Deliver(d, child, &item, bytes);
-  PetscCall(LamBundleDestroy(&bundle));
-  PetscCall(ierr);
-  PetscFunctionReturn(0);
-}
-
-/* ---- handing out ---- */
-
-static PetscErrorCode HandOutTo(LamDispatch d, PetscInt child)
-{
-  PetscInt64 pieces[MOST_AT_ONCE];
-  PetscInt n = MOST_AT_ONCE;
-
-  PetscFunctionBeginUser;
-  while (n == MOST_AT_ONCE && !d->stopping && !LamStopRequested()) {
-    LamBundle bundle = {0};
-
-    PetscCall(LamScheduleTake(d->schedule, child, LamClock(), MOST_AT_ONCE, &n, pieces));
-    for (PetscInt i = 0; i < n; i++) {
-      LamBundleItem item;
-      const void *bytes;
-
-      PetscCall(FindOut(d, child, pieces[i], &item, &bytes));
-      PetscCall(LamBundleAppend(&bundle, &item, bytes));
-    }
-    if (n) PetscCall(LamMailSend(&d->mail, d->child[child], TAG_WORK, &bundle));
-  }
-  PetscFunctionReturn(0);
-}
-
+/* Workers without a task come first; tasks ahead are of those that are left when every rank has one. */
 static PetscErrorCode HandOut(LamDispatch d)
 {
   PetscFunctionBeginUser;
-  if (!d->news) PetscFunctionReturn(0);
-  d->news = PETSC_FALSE;
-  for (PetscInt c = d->computes ? SELF + 1 : SELF; c < d->children; c++) PetscCall(HandOutTo(d, c));
+  if (d->stopping || LamStopRequested()) PetscFunctionReturn(0);
+  for (PetscInt ahead = 0; ahead <= LOOK_AHEAD; ahead++) {
+    for (PetscMPIInt rank = 1; rank < d->size && d->waiting > ahead * d->size; rank++) {
+      Worker *worker = &d->worker[rank];
+      Sent *sent = &worker->sent[worker->n];
+      size_t size;
+
+      if (worker->n != ahead) continue;
+      PetscCall(PetscMalloc(sizeof(Message) + d->job.input_size, &sent->message));
+      PetscCall(TakeTask(d, sent->message, &size));
+      PetscCall(Send(d, sent->message, size, rank, TAG_TASK, &sent->request));
+      worker->n++;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Finish(LamDispatch d, const Message *result)
+{
+  PetscFunctionBeginUser;
+  d->unfinished--;
+  if (!d->failed) PetscCall(d->job.worked(d->job.ctx, result->task, result->bytes));
+  PetscFunctionReturn(0);
+}
+
+/* Frees the message of the worker's first task. */
+static PetscErrorCode ForgetFirst(Worker *worker)
+{
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Wait(&worker->sent[0].request, MPI_STATUS_IGNORE));
+  PetscCall(PetscFree(worker->sent[0].message));
+  worker->n--;
+  for (PetscInt i = 0; i < worker->n; i++) worker->sent[i] = worker->sent[i + 1];
   PetscFunctionReturn(0);
 }
 
 /* ---- messages ---- */
 
-static PetscErrorCode SendEmpty(LamDispatch d, PetscMPIInt rank, PetscMPIInt tag)
+static PetscErrorCode Receive(LamDispatch d, PetscBool *found)
 {
-  LamBundle nothing = {0};
+  MPI_Status status;
+  PetscMPIInt count;
+  int arrived;
 
   PetscFunctionBeginUser;
-  PetscCall(LamMailSend(&d->mail, rank, tag, &nothing));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Stop(LamDispatch d)
-{
-  PetscFunctionBeginUser;
-  if (d->stopping) PetscFunctionReturn(0);
-  d->stopping = PETSC_TRUE;
-  for (PetscInt c = d->computes ? SELF + 1 : SELF; c < d->children; c++) PetscCall(SendEmpty(d, d->child[c], TAG_STOP));
-  PetscFunctionReturn(0);
-}
-
-/* A signal that has reached this rank or one below it, to rank 0. */
-static PetscErrorCode PassSignalOn(LamDispatch d)
-{
-  PetscFunctionBeginUser;
-  if (d->signalled || !LamStopRequested() || d->parent < 0) PetscFunctionReturn(0);
-  d->signalled = PETSC_TRUE;
-  PetscCall(SendEmpty(d, d->parent, TAG_SIGNAL));
-  PetscFunctionReturn(0);
-}
-
-static PetscInt FindChild(LamDispatch d, PetscMPIInt rank)
-{
-  PetscInt c = d->computes ? SELF + 1 : SELF;
-
-  while (c < d->children && d->child[c] != rank) c++;
-  return c;
-}
-
-static PetscErrorCode Take(LamDispatch d, PetscMPIInt rank, PetscMPIInt tag)
-{
-  const PetscInt child = rank == d->parent ? -1 : FindChild(d, rank);
-
-  PetscFunctionBeginUser;
-  switch (tag) {
-  case TAG_WORK:
-    PetscCall(TakeWork(d));
+  PetscCallMPI(MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, d->comm, &arrived, &status));
+  *found = (PetscBool)arrived;
+  if (!arrived) PetscFunctionReturn(0);
+  PetscCallMPI(MPI_Get_count(&status, MPI_BYTE, &count));
+  PetscCallMPI(MPI_Recv(d->next, count, MPI_BYTE, status.MPI_SOURCE, status.MPI_TAG, d->comm, MPI_STATUS_IGNORE));
+  switch (status.MPI_TAG) {
+  case TAG_TASK:
+    d->next_size = (size_t)count - sizeof(Message);
+    d->has_next = PETSC_TRUE;
     break;
   case TAG_RESULT:
-    PetscCall(TakeResults(d, child));
-    PetscCall(HandOutTo(d, child));
-    break;
-  case TAG_DROP:
-    PetscCall(TakeDrop(d));
-    break;
-  case TAG_SIGNAL:
-    if (!LamStopSignal()) LamStopRequest(SIGTERM);
+    PetscCall(ForgetFirst(&d->worker[status.MPI_SOURCE]));
+    PetscCall(Finish(d, d->next));
     break;
   case TAG_STOP:
-    PetscCall(Stop(d));
+    d->stopping = PETSC_TRUE;
     break;
-  case TAG_HOME:
-    d->at_home++;
+  case TAG_LEFT:
+    d->left++;
+    if (!d->stopping) LamStopRequest(SIGTERM); /* a signal has reached the worker first */
     break;
   }
   PetscFunctionReturn(0);
 }
 
-/* Takes all messages that have come in, and answers them. */
-static PetscErrorCode Serve(LamDispatch d, PetscBool *any)
+/* All messages that have arrived; behind the task `next` nothing but the stop can have. */
+static PetscErrorCode Handle(LamDispatch d)
 {
-  PetscFunctionBeginUser;
-  *any = PETSC_FALSE;
-  for (;;) {
-    PetscMPIInt rank, tag;
-    PetscBool found;
+  PetscBool found;
 
-    PetscCall(LamMailReceive(&d->mail, &found, &rank, &tag, &d->incoming));
-    if (!found) break;
-    *any = PETSC_TRUE;
-    PetscCall(Take(d, rank, tag));
-  }
-  PetscCall(PassSignalOn(d));
-  PetscCall(HandOut(d));
-  PetscCall(SendResultsInTime(d));
+  PetscFunctionBeginUser;
+  do {
+    PetscCall(Receive(d, &found));
+    if (found) d->pause = 0;
+    if (!d->rank) PetscCall(HandOut(d));
+  } while (found && !d->has_next);
   PetscFunctionReturn(0);
 }
 
-PetscBool LamDispatchServeWaiting(void *dispatch)
+PetscBool LamDispatchInterrupt(void *dispatch)
 {
   LamDispatch d = dispatch;
   const PetscReal begin = LamClock();
-  PetscBool any;
 
-  if (d->size > 1 && d->working && !d->ierr && begin - d->looked >= LOOK_TIME) {
-    d->ierr = Serve(d, &any);
-    d->looked = LamClock();
-    d->service += d->looked - begin;
+  if (d->size > 1 && !d->ierr) {
+    d->ierr = Handle(d);
+    d->service += LamClock() - begin;
   }
-  return (PetscBool)(d->ierr || d->stopping || d->dropped || LamStopRequested());
+  return (PetscBool)(d->ierr || d->stopping || LamStopRequested());
 }
 
 PetscReal LamDispatchServiceTime(LamDispatch dispatch)
@@ -367,192 +239,150 @@ PetscReal LamDispatchServiceTime(LamDispatch dispatch)
   return dispatch->service;
 }
 
-/* ---- own work ---- */
-
-/* One that another rank has done leaves a result without bytes, one that is given up at a stop leaves none. */
-static PetscErrorCode DoPiece(LamDispatch d, PetscInt64 piece)
-{
-  const Received *input = FindInput(d, piece);
-  LamBundleItem item;
-  const void *bytes;
-  size_t size = d->job.result_size;
-
-  PetscFunctionBeginUser;
-  PetscCall(FindOut(d, SELF, piece, &item, &bytes));
-  if (item.size) memcpy(d->desk, bytes, item.size); /* messages come in while it is worked on */
-  memset(d->result, 0, d->job.result_size);
-  d->dropped = (PetscBool)(input && input->dropped);
-  d->current = piece;
-  d->working = PETSC_TRUE;
-  if (!d->dropped) PetscCall(d->job.work(d->job.ctx, piece, d->desk, d->result, &size));
-  d->working = PETSC_FALSE;
-  PetscCall(d->ierr);
-  if (d->stopping || LamStopRequested()) PetscFunctionReturn(0);
-  item.size = d->dropped ? 0 : size;
-  d->dropped = PETSC_FALSE;
-  PetscCall(Deliver(d, SELF, &item, d->result));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode WorkOnce(LamDispatch d, PetscBool *any)
-{
-  PetscInt64 piece;
-  PetscInt n = 0;
-
-  PetscFunctionBeginUser;
-  if (d->computes && !d->stopping && !LamStopRequested())
-    PetscCall(LamScheduleTake(d->schedule, SELF, LamClock(), 1, &n, &piece));
-  if (n) PetscCall(DoPiece(d, piece));
-  *any = (PetscBool)(n > 0);
-  PetscFunctionReturn(0);
-}
-
+/* At first it only looks again. */
 static void Pause(LamDispatch d)
 {
   const struct timespec pause = {0, (long)(1e9 * d->pause)};
 
   if (d->pause >= LEAST_PAUSE) nanosleep(&pause, NULL);
-  d->pause = PetscMin(LONGEST_PAUSE, d->pause ? 2 * d->pause : LEAST_PAUSE / 8); /* at first it only looks again */
+  d->pause = PetscMin(LONGEST_PAUSE, d->pause ? 2 * d->pause : LEAST_PAUSE / 8);
 }
 
-/* Once around: messages, a piece, or a rest. */
-static PetscErrorCode Turn(LamDispatch d)
+/* ---- tasks ---- */
+
+/* Does the task `current`. *done: it was not given up. */
+static PetscErrorCode DoTask(LamDispatch d, size_t *size, PetscBool *done)
 {
-  PetscBool came = PETSC_FALSE, worked = PETSC_FALSE;
+  PetscFunctionBeginUser;
+  *size = d->job.result_size;
+  memset(d->result->bytes, 0, *size); /* no byte of a message is left unset */
+  d->result->task = d->current->task;
+  PetscCall(d->job.work(d->job.ctx, d->current->task, d->current->bytes, d->current_size, d->result->bytes, size));
+  PetscCall(d->ierr);
+  d->pause = 0;
+  *done = (PetscBool)(!d->stopping && !LamStopRequested());
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode RunRoot(LamDispatch d)
+{
+  PetscBool done;
+  size_t size;
 
   PetscFunctionBeginUser;
-  PetscCall(Serve(d, &came));
-  PetscCall(WorkOnce(d, &worked));
-  if (worked) d->news = PETSC_TRUE; /* `worked` may have added pieces */
-  if (came || worked)
-    d->pause = 0;
-  else
+  while (d->unfinished && !LamStopRequested()) {
+    PetscCall(Handle(d));
+    if (!d->waiting) {
+      Pause(d);
+      continue;
+    }
+    PetscCall(TakeTask(d, d->current, &d->current_size));
+    PetscCall(DoTask(d, &size, &done));
+    if (done) PetscCall(Finish(d, d->result));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Until all workers have left. */
+static PetscErrorCode StopWorkers(LamDispatch d)
+{
+  PetscFunctionBeginUser;
+  d->stopping = PETSC_TRUE;
+  for (PetscMPIInt rank = 1; rank < d->size; rank++) PetscCallMPI(MPI_Send(NULL, 0, MPI_BYTE, rank, TAG_STOP, d->comm));
+  while (d->left < d->size - 1) {
+    PetscCall(Handle(d));
     Pause(d);
-  PetscFunctionReturn(0);
-}
-
-/* ---- beginning and end ---- */
-
-/* Behind the last results, when all below have gone. */
-static PetscErrorCode GoHome(LamDispatch d)
-{
-  const PetscInt below = d->children - (d->computes ? 1 : 0);
-
-  PetscFunctionBeginUser;
-  PetscCall(Stop(d));
-  while (d->at_home < below) PetscCall(Turn(d));
-  if (d->parent < 0) PetscFunctionReturn(0);
-  PetscCall(SendResults(d));
-  PetscCall(SendEmpty(d, d->parent, TAG_HOME));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamDispatchAdd(LamDispatch dispatch, PetscInt64 first, PetscInt64 count, PetscReal cost)
-{
-  PetscFunctionBeginUser;
-  PetscCall(LamScheduleAdd(dispatch->schedule, first, count, cost));
-  dispatch->unfinished += count;
-  dispatch->news = PETSC_TRUE;
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode RunAll(LamDispatch d, PetscErrorCode (*stopped)(void *ctx), void *ctx)
-{
-  PetscFunctionBeginUser;
-  while (d->unfinished && !LamStopRequested()) PetscCall(Turn(d));
-  if (LamStopRequested() && stopped) PetscCall(stopped(ctx));
+  }
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamDispatchRun(LamDispatch dispatch, PetscErrorCode (*stopped)(void *ctx), void *ctx,
                               PetscBool *complete)
 {
-  PetscErrorCode ierr = RunAll(dispatch, stopped, ctx);
+  PetscErrorCode ierr = RunRoot(dispatch), stop;
 
   PetscFunctionBeginUser;
-  dispatch->failed = (PetscBool)(ierr != 0); /* the others are sent home all the same */
-  if (!ierr)
-    ierr = GoHome(dispatch);
-  else
-    (void)GoHome(dispatch);
-  PetscCall(ierr);
+  if (!ierr && LamStopRequested() && stopped) ierr = stopped(ctx);
+  dispatch->failed = (PetscBool)(ierr != 0);
+  stop = StopWorkers(dispatch);
+  PetscCall(ierr ? ierr : stop);
   *complete = (PetscBool)!dispatch->unfinished;
+  PetscFunctionReturn(0);
+}
+
+/* Waits for the next task, or for the end. */
+static PetscErrorCode Await(LamDispatch d)
+{
+  PetscFunctionBeginUser;
+  while (!d->has_next && !d->stopping && !LamStopRequested()) {
+    PetscCall(Handle(d));
+    if (!d->has_next) Pause(d);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The one before has left by then, as rank 0 handles messages more often than a task ends. */
+static PetscErrorCode SendResult(LamDispatch d, size_t size)
+{
+  Message *const sent = d->sending;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Wait(&d->result_sent, MPI_STATUS_IGNORE));
+  d->sending = d->result;
+  d->result = sent;
+  PetscCall(Send(d, d->sending, size, 0, TAG_RESULT, &d->result_sent));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamDispatchServe(LamDispatch dispatch)
 {
-  PetscFunctionBeginUser;
-  while (!dispatch->stopping) PetscCall(Turn(dispatch));
-  PetscCall(GoHome(dispatch));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamDispatchShare(LamDispatch dispatch, PetscErrorCode ierr)
-{
-  int code = (int)ierr;
+  LamDispatch d = dispatch;
+  PetscBool done = PETSC_TRUE;
+  size_t size;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Bcast(&code, 1, MPI_INT, 0, dispatch->mail.comm));
-  if (code) return (PetscErrorCode)code;
-  PetscFunctionReturn(0);
-}
+  while (done) {
+    Message *const free = d->current;
 
-/* ---- the tree ---- */
-
-/*
-  Up to `group` ranks take pieces from rank 0. Of more, ranks 1 .. size - 1 form groups of like size, about as many as a
-  group has ranks; the first of each leads it.
-*/
-static PetscErrorCode FindFamily(LamDispatch d, PetscInt group, PetscInt **capacity)
-{
-  const PetscInt others = d->size - 1;
-  const PetscInt members = others <= group ? 1 : PetscMin(group, (PetscInt)ceil(sqrt((double)others)));
-  const PetscInt leader = d->rank ? 1 + (d->rank - 1) / members * members : 0;
-  const PetscInt last = PetscMin(d->size, leader + members);
-  const PetscBool leads = (PetscBool)(d->rank == leader);
-
-  PetscFunctionBeginUser;
-  d->parent = (PetscMPIInt)(!d->rank ? -1 : leads ? 0 : leader);
-  d->computes = (PetscBool)(d->rank || members == 1);
-  d->children = d->rank ? (leads ? last - leader : 1) : (others + members - 1) / members + (d->computes ? 1 : 0);
-  PetscCall(PetscMalloc1(d->children, &d->child));
-  PetscCall(PetscMalloc1(d->children, capacity));
-  for (PetscInt c = 0; c < d->children; c++) {
-    const PetscInt below = d->rank ? d->rank + c : d->computes && !c ? 0 : 1 + (c - (d->computes ? 1 : 0)) * members;
-
-    d->child[c] = (PetscMPIInt)below;
-    (*capacity)[c] = d->rank || !below ? 1 : PetscMin(members, d->size - below);
+    PetscCall(Await(d));
+    if (!d->has_next || d->stopping || LamStopRequested()) break;
+    d->current = d->next;
+    d->current_size = d->next_size;
+    d->next = free;
+    d->has_next = PETSC_FALSE;
+    PetscCall(DoTask(d, &size, &done));
+    if (done) PetscCall(SendResult(d, size));
+  }
+  PetscCallMPI(MPI_Wait(&d->result_sent, MPI_STATUS_IGNORE));
+  PetscCallMPI(MPI_Send(NULL, 0, MPI_BYTE, 0, TAG_LEFT, d->comm));
+  while (!d->stopping) { /* tasks that were on the way */
+    d->has_next = PETSC_FALSE;
+    PetscCall(Handle(d));
+    Pause(d);
   }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamDispatchCreate(MPI_Comm comm, const LamDispatchJob *job, PetscInt group, LamDispatch *dispatch)
+/* ---- lifecycle ---- */
+
+PetscErrorCode LamDispatchCreate(MPI_Comm comm, const LamDispatchJob *job, LamDispatch *dispatch)
 {
-  PetscInt *capacity;
+  const size_t size = sizeof(Message) + PetscMax(job->input_size, job->result_size);
   LamDispatch d;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&d));
   d->job = *job;
-  PetscCallMPI(MPI_Comm_dup(comm, &d->mail.comm));
+  d->result_sent = MPI_REQUEST_NULL;
+  PetscCallMPI(MPI_Comm_dup(comm, &d->comm));
   PetscCallMPI(MPI_Comm_rank(comm, &d->rank));
   PetscCallMPI(MPI_Comm_size(comm, &d->size));
-  PetscCall(FindFamily(d, group ? group : LAM_DISPATCH_GROUP, &capacity));
-  PetscCall(LamScheduleCreate(d->children, capacity, ANSWER_TIME, &d->schedule));
-  PetscCall(PetscFree(capacity));
-  PetscCall(PetscMalloc(job->input_size + 1, &d->input));
-  PetscCall(PetscMalloc(job->input_size + 1, &d->desk));
-  PetscCall(PetscMalloc(job->result_size + 1, &d->result));
+  PetscCall(PetscCalloc1(d->size, &d->worker));
+  PetscCall(PetscMalloc(size, &d->current));
+  PetscCall(PetscMalloc(size, &d->next));
+  PetscCall(PetscMalloc(size, &d->result));
+  PetscCall(PetscMalloc(size, &d->sending));
   *dispatch = d;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamDispatchGetRank(LamDispatch dispatch, PetscMPIInt *rank, PetscMPIInt *size)
-{
-  PetscFunctionBeginUser;
-  *rank = dispatch->rank;
-  *size = dispatch->size;
   PetscFunctionReturn(0);
 }
 
@@ -562,17 +392,15 @@ PetscErrorCode LamDispatchDestroy(LamDispatch *dispatch)
 
   PetscFunctionBeginUser;
   if (!d) PetscFunctionReturn(0);
-  PetscCall(LamMailDestroy(&d->mail));
-  PetscCallMPI(MPI_Comm_free(&d->mail.comm));
-  PetscCall(LamScheduleDestroy(&d->schedule));
-  for (PetscInt i = 0; i < d->received; i++) PetscCall(PetscFree(d->inputs[i].bytes));
-  PetscCall(PetscFree(d->inputs));
-  PetscCall(LamBundleDestroy(&d->results));
-  PetscCall(LamBundleDestroy(&d->incoming));
-  PetscCall(PetscFree(d->child));
-  PetscCall(PetscFree(d->input));
-  PetscCall(PetscFree(d->desk));
+  for (PetscMPIInt rank = 1; rank < d->size; rank++)
+    while (d->worker[rank].n) PetscCall(ForgetFirst(&d->worker[rank])); /* tasks that a stop has left */
+  PetscCallMPI(MPI_Comm_free(&d->comm));
+  PetscCall(PetscFree(d->worker));
+  PetscCall(PetscFree(d->heap));
+  PetscCall(PetscFree(d->current));
   PetscCall(PetscFree(d->result));
+  PetscCall(PetscFree(d->sending));
+  PetscCall(PetscFree(d->next));
   PetscCall(PetscFree(*dispatch));
   PetscFunctionReturn(0);
 }

@@ -1,8 +1,7 @@
 /*
-  Numbered pieces of work that do not depend on each other, handed out by rank 0 of a communicator.
+  Independent tasks, handed out by rank 0 of a communicator to the other ranks (workers); rank 0 does tasks as well.
 
-  Few ranks take pieces from rank 0, which works as well. Of many, rank 0 hands out to leaders only, and they to the
-  ranks of their group. Who is given what: schedule.h.
+  For up to some hundred ranks (docs/results/scaling.md). Beyond that: several jobs with a shard each.
 */
 #ifndef LAM_DISPATCH_H
 #define LAM_DISPATCH_H
@@ -11,45 +10,40 @@
 
 typedef struct LamDispatch_s *LamDispatch;
 
-/* What the work is. Inputs and results are plain data; the sizes are the largest, the calls say what a piece has. */
+/* Inputs and results are plain data of at most these sizes. */
 typedef struct {
   void *ctx; /* of all calls; borrowed */
   size_t input_size, result_size;
-  /* Rank 0: what a rank needs to do the piece, told when it is handed out. NULL: its number is enough. */
-  PetscErrorCode (*describe)(void *ctx, PetscInt64 piece, void *input, size_t *size);
-  /* Any rank: does the piece. It asks LamDispatchServeWaiting often, and where that says so returns with anything. */
-  PetscErrorCode (*work)(void *ctx, PetscInt64 piece, const void *input, void *result, size_t *size);
-  /* Rank 0: takes a result, in any order, and may add pieces. Also called while rank 0 works on a piece. */
-  PetscErrorCode (*worked)(void *ctx, PetscInt64 piece, const void *result);
+  /* Rank 0, when it hands the task out: writes its input. NULL: the number of the task is enough. */
+  PetscErrorCode (*describe)(void *ctx, PetscInt64 task, void *input, size_t *size);
+  /* Any rank: does the task. It calls LamDispatchInterrupt often; where that is true it returns any result. */
+  PetscErrorCode (*work)(void *ctx, PetscInt64 task, const void *input, size_t input_size, void *result, size_t *size);
+  /* Rank 0: takes a result, in any order, and may add tasks. Also called while rank 0 does a task. */
+  PetscErrorCode (*worked)(void *ctx, PetscInt64 task, const void *result);
 } LamDispatchJob;
 
-/* Collective. `group`: ranks that one rank hands out to; of more, leaders are made. 0: LAM_DISPATCH_GROUP. */
-#define LAM_DISPATCH_GROUP 128
-PetscErrorCode LamDispatchCreate(MPI_Comm comm, const LamDispatchJob *job, PetscInt group, LamDispatch *dispatch);
+/* Collective. */
+PetscErrorCode LamDispatchCreate(MPI_Comm comm, const LamDispatchJob *job, LamDispatch *dispatch);
 PetscErrorCode LamDispatchDestroy(LamDispatch *dispatch);
-PetscErrorCode LamDispatchGetRank(LamDispatch dispatch, PetscMPIInt *rank, PetscMPIInt *size);
 
-/* Rank 0: pieces first .. first + count - 1, each of about this predicted cost (in any unit). */
+/* Rank 0: tasks first .. first + count - 1, each of this predicted cost (any unit). */
 PetscErrorCode LamDispatchAdd(LamDispatch dispatch, PetscInt64 first, PetscInt64 count, PetscReal cost);
 /*
-  Rank 0: has the pieces done, with those that `worked` adds, and sends the others home. Where a signal has reached any
-  rank no piece is finished that is under way, and `stopped` (or NULL) is called with `ctx` at once, before the others
-  are home; the results that they bring come to `worked` all the same. *complete tells whether all are done.
+  Rank 0: has all tasks done, with those that `worked` adds. A signal on any rank ends it: no task under way is
+  finished, and `stopped` (or NULL) is called with `ctx` at once, before the workers have left; results that they have
+  sent by then still come to `worked`. *complete: all tasks are done.
 */
 PetscErrorCode LamDispatchRun(LamDispatch dispatch, PetscErrorCode (*stopped)(void *ctx), void *ctx,
                               PetscBool *complete);
-/* Other ranks: do what they are given until they are sent home. */
+/* Workers: do tasks until rank 0 ends it. */
 PetscErrorCode LamDispatchServe(LamDispatch dispatch);
 
 /*
-  A PetscBool (*)(void *) for LamRVESetInterrupt: answers the messages that have come in, and tells whether the piece
-  under way is to be given up. `dispatch`: a LamDispatch.
+  A PetscBool (*)(void *) for LamRVESetInterrupt: handles the messages that have arrived; true: the task under way is to
+  be given up. `dispatch`: a LamDispatch.
 */
-PetscBool LamDispatchServeWaiting(void *dispatch);
-/* The time that this rank has spent so within pieces, s. */
+PetscBool LamDispatchInterrupt(void *dispatch);
+/* Time of this rank in LamDispatchInterrupt, s. */
 PetscReal LamDispatchServiceTime(LamDispatch dispatch);
-
-/* An error of rank 0 ends every rank; it has been told once. Collective; returns rank 0's. */
-PetscErrorCode LamDispatchShare(LamDispatch dispatch, PetscErrorCode ierr);
 
 #endif

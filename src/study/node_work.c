@@ -7,41 +7,28 @@
 typedef struct Node_s {
   PetscInt64 key;
   PetscReal cost;
-  PetscBool wanted, queued, solved, leads;
-  LamResponse *response;   /* until somebody wants it; owned */
-  void *state;             /* NULL: none is kept; owned */
-  PetscInt pins;           /* children that are to start from the state */
-  struct Node_s *parent;   /* whose state it starts from; NULL: from the reference */
+  PetscBool requested, queued, solved, leads;
+  LamResponse *response;   /* kept until it is requested; owned */
+  void *state;             /* NULL: not kept; owned */
+  PetscInt pins;           /* tasks that start from the state */
+  struct Node_s *parent;   /* of its task: where it starts; NULL: the reference */
   struct Node_s *children; /* that wait for this one to be solved */
   struct Node_s *sibling;
   TAILQ_ENTRY(Node_s) entry; /* in the list of states */
 } Node;
-
-/* The message to the rank that solves a node; the parent's state follows. */
-typedef struct {
-  PetscInt64 key;
-  PetscInt64 from_parent;
-} Question;
-
-/* Its answer; the node's state follows, where children may start from it. */
-typedef struct {
-  LamResponse response;
-} Answer;
 
 struct LamNodeWork_s {
   LamRVE rve;   /* borrowed */
   LamGrid grid; /* borrowed */
   PetscBool warm;
   LamRVEState state; /* of the solve under way; owned */
-  size_t state_size;
+  size_t state_size; /* 0: nodes do not start from others */
   LamDispatch dispatch;
-  LamNodeCustomer customer;
+  LamNodeCallbacks callbacks;
 
   /* on rank 0 */
-  void *nodes; /* of tsearch, by key */
-  PetscInt64 pieces, room;
-  Node **piece;                      /* [pieces]; owned, the nodes are not */
-  TAILQ_HEAD(States, Node_s) states; /* those used last at the end */
+  void *nodes;                       /* of tsearch, by key */
+  TAILQ_HEAD(States, Node_s) states; /* least recently used first */
   PetscInt64 kept, most;             /* states */
 };
 
@@ -63,7 +50,7 @@ static void FreeNode(void *pointer)
   (void)PetscFree(node);
 }
 
-/* The node of this key, made where it is new: then the file may know it. */
+/* The node of this key; a new one may have a record in the file. */
 static PetscErrorCode GetNode(LamNodeWork w, PetscInt64 key, Node **node)
 {
   const Node wanted = {.key = key};
@@ -78,18 +65,26 @@ static PetscErrorCode GetNode(LamNodeWork w, PetscInt64 key, Node **node)
   PetscCall(PetscNew(node));
   (*node)->key = key;
   PetscCheck(tsearch(*node, &w->nodes, CompareNodes), PETSC_COMM_SELF, PETSC_ERR_MEM, "node");
-  known = w->customer.known ? w->customer.known(w->customer.ctx, key) : NULL;
-  if (known) {
-    (*node)->solved = PETSC_TRUE;
-    (*node)->leads = LamNodeLeads(known);
-  }
+  known = w->callbacks.known ? w->callbacks.known(w->callbacks.ctx, key) : NULL;
+  (*node)->solved = (PetscBool)(known != NULL);
+  (*node)->leads = (PetscBool)(known && LamNodeLeads(known));
   PetscFunctionReturn(0);
 }
 
 /* ---- states ---- */
 
-/* Forgets those that were used least lately, but none that a child is about to start from. */
-static PetscErrorCode MakeRoom(LamNodeWork w)
+static PetscErrorCode KeepState(LamNodeWork w, Node *node, const void *bytes)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc(w->state_size, &node->state));
+  memcpy(node->state, bytes, w->state_size);
+  TAILQ_INSERT_TAIL(&w->states, node, entry);
+  w->kept++;
+  PetscFunctionReturn(0);
+}
+
+/* Frees states beyond the limit, but none that a task is about to start from. */
+static PetscErrorCode LimitStates(LamNodeWork w)
 {
   Node *node = TAILQ_FIRST(&w->states);
 
@@ -107,20 +102,10 @@ static PetscErrorCode MakeRoom(LamNodeWork w)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode KeepState(LamNodeWork w, Node *node, const void *bytes)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc(w->state_size, &node->state));
-  memcpy(node->state, bytes, w->state_size);
-  TAILQ_INSERT_TAIL(&w->states, node, entry);
-  w->kept++;
-  PetscFunctionReturn(0);
-}
+/* ---- requests ---- */
 
-/* ---- what waits for what ---- */
-
-/* Nothing keeps the node from being solved any more. */
-static PetscErrorCode Release(LamNodeWork w, Node *node, Node *parent)
+/* The node's task, which starts from the state of `parent`; NULL: from the reference. */
+static PetscErrorCode AddTask(LamNodeWork w, Node *node, Node *parent)
 {
   PetscFunctionBeginUser;
   node->parent = parent;
@@ -129,15 +114,11 @@ static PetscErrorCode Release(LamNodeWork w, Node *node, Node *parent)
     TAILQ_REMOVE(&w->states, parent, entry);
     TAILQ_INSERT_TAIL(&w->states, parent, entry);
   }
-  if (w->pieces == w->room) {
-    w->room = PetscMax(1024, 2 * w->room);
-    PetscCall(PetscRealloc((size_t)w->room * sizeof(*w->piece), &w->piece));
-  }
-  w->piece[w->pieces] = node;
-  PetscCall(LamDispatchAdd(w->dispatch, w->pieces++, 1, node->cost));
+  PetscCall(LamDispatchAdd(w->dispatch, node->key, 1, node->cost));
   PetscFunctionReturn(0);
 }
 
+/* Adds the task of the node, or has it wait for its parent. */
 static PetscErrorCode Queue(LamNodeWork w, Node *node, PetscReal cost)
 {
   const PetscInt64 key = w->warm ? LamGridNodeParent(w->grid, node->key) : -1;
@@ -147,12 +128,9 @@ static PetscErrorCode Queue(LamNodeWork w, Node *node, PetscReal cost)
   node->queued = PETSC_TRUE;
   node->cost = cost;
   if (key >= 0) PetscCall(GetNode(w, key, &parent));
-  if (!parent || (parent->solved && !parent->leads)) {
-    PetscCall(Release(w, node, NULL));
-    PetscFunctionReturn(0);
-  }
-  if (parent->state) {
-    PetscCall(Release(w, node, parent));
+  if (parent && parent->solved && !parent->leads) parent = NULL;
+  if (!parent || parent->state) {
+    PetscCall(AddTask(w, node, parent));
     PetscFunctionReturn(0);
   }
   node->sibling = parent->children;
@@ -161,7 +139,7 @@ static PetscErrorCode Queue(LamNodeWork w, Node *node, PetscReal cost)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ReleaseChildren(LamNodeWork w, Node *node)
+static PetscErrorCode QueueChildren(LamNodeWork w, Node *node)
 {
   Node *child = node->children;
 
@@ -170,104 +148,89 @@ static PetscErrorCode ReleaseChildren(LamNodeWork w, Node *node)
   while (child) {
     Node *next = child->sibling;
 
-    PetscCall(Release(w, child, node->leads ? node : NULL));
+    PetscCall(AddTask(w, child, node->leads ? node : NULL));
     child = next;
   }
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode HandOver(LamNodeWork w, Node *node, const LamResponse *response)
-{
-  PetscFunctionBeginUser;
-  node->wanted = PETSC_FALSE;
-  PetscCall(w->customer.arrived(w->customer.ctx, node->key, response));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamNodeWorkWant(LamNodeWork work, PetscInt64 key, PetscReal cost)
+PetscErrorCode LamNodeWorkRequest(LamNodeWork work, PetscInt64 key, PetscReal cost)
 {
   Node *node;
 
   PetscFunctionBeginUser;
   PetscCall(GetNode(work, key, &node));
-  node->wanted = PETSC_TRUE;
   if (node->response) {
-    PetscCall(HandOver(work, node, node->response));
+    PetscCall(work->callbacks.arrived(work->callbacks.ctx, key, node->response));
     PetscCall(PetscFree(node->response));
-  } else if (!node->queued) {
-    PetscCall(Queue(work, node, cost));
+    PetscFunctionReturn(0);
   }
+  node->requested = PETSC_TRUE;
+  if (!node->queued) PetscCall(Queue(work, node, cost));
   PetscFunctionReturn(0);
 }
 
-/* ---- the pieces of the dispatch ---- */
+/* ---- tasks: their number is the key; the input is the parent's state, the result a response and a state ---- */
 
-static PetscErrorCode Describe(void *ctx, PetscInt64 piece, void *input, size_t *size)
+static PetscErrorCode Describe(void *ctx, PetscInt64 key, void *input, size_t *size)
 {
   LamNodeWork w = ctx;
-  const Node *node = w->piece[piece];
-  const Question question = {.key = node->key, .from_parent = node->parent != NULL};
+  Node *node;
 
   PetscFunctionBeginUser;
-  memcpy(input, &question, sizeof(question));
-  *size = sizeof(question);
+  PetscCall(GetNode(w, key, &node));
   if (!node->parent) PetscFunctionReturn(0);
-  memcpy((char *)input + sizeof(question), node->parent->state, w->state_size);
-  *size += w->state_size;
+  *size = w->state_size;
+  memcpy(input, node->parent->state, *size);
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Solve(void *ctx, PetscInt64 piece, const void *input, void *result, size_t *size)
+static PetscErrorCode Solve(void *ctx, PetscInt64 key, const void *input, size_t input_size, void *result, size_t *size)
 {
   LamNodeWork w = ctx;
   const PetscReal service = LamDispatchServiceTime(w->dispatch);
-  Question question;
-  Answer answer;
+  LamResponse *response = result;
 
   PetscFunctionBeginUser;
-  memset(&answer, 0, sizeof(answer));
-  memcpy(&question, input, sizeof(question));
-  if (question.from_parent) PetscCall(LamRVEStateUnpack((const char *)input + sizeof(question), w->state));
-  PetscCall(LamNodeSolve(w->rve, w->grid, question.key, (PetscBool)question.from_parent, w->state, &answer.response));
-  answer.response.seconds -= LamDispatchServiceTime(w->dispatch) - service; /* messages are no part of the solve */
-  memcpy(result, &answer, sizeof(answer));
-  *size = sizeof(answer);
-  if (!w->warm || !LamNodeLeads(&answer.response)) PetscFunctionReturn(0);
-  PetscCall(LamRVEStatePack(w->state, (char *)result + sizeof(answer)));
+  if (input_size) PetscCall(LamRVEStateUnpack(input, w->state));
+  PetscCall(LamNodeSolve(w->rve, w->grid, key, (PetscBool)(input_size > 0), w->state, response));
+  response->seconds -= LamDispatchServiceTime(w->dispatch) - service; /* messages are no part of the solve */
+  *size = sizeof(*response);
+  if (!w->warm || !LamNodeLeads(response)) PetscFunctionReturn(0);
+  PetscCall(LamRVEStatePack(w->state, response + 1));
   *size += w->state_size;
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Solved(void *ctx, PetscInt64 piece, const void *result)
+static PetscErrorCode Solved(void *ctx, PetscInt64 key, const void *result)
 {
+  const LamResponse *response = result;
   LamNodeWork w = ctx;
-  Node *node = w->piece[piece];
-  Answer answer;
+  PetscBool requested;
+  Node *node;
 
   PetscFunctionBeginUser;
-  memcpy(&answer, result, sizeof(answer));
+  PetscCall(GetNode(w, key, &node));
+  requested = node->requested;
   if (node->parent) node->parent->pins--;
-  node->queued = PETSC_FALSE;
-  node->leads = LamNodeLeads(&answer.response);
-  if (w->warm && node->leads) PetscCall(KeepState(w, node, (const char *)result + sizeof(answer)));
-  PetscCall(ReleaseChildren(w, node));
-  PetscCall(MakeRoom(w));
-  if (node->wanted) {
-    PetscCall(HandOver(w, node, &answer.response));
-  } else if (!node->solved) {
+  if (!requested && !node->solved) {
     PetscCall(PetscNew(&node->response));
-    *node->response = answer.response;
+    *node->response = *response;
   }
+  node->requested = node->queued = PETSC_FALSE;
   node->solved = PETSC_TRUE;
+  node->leads = LamNodeLeads(response);
+  if (w->warm && node->leads) PetscCall(KeepState(w, node, response + 1));
+  PetscCall(QueueChildren(w, node));
+  PetscCall(LimitStates(w));
+  if (requested) PetscCall(w->callbacks.arrived(w->callbacks.ctx, key, response));
   PetscFunctionReturn(0);
 }
-
-/* ---- all of it ---- */
 
 PetscErrorCode LamNodeWorkRun(LamNodeWork work, PetscErrorCode (*stopped)(void *ctx), PetscBool *complete)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamDispatchRun(work->dispatch, stopped, work->customer.ctx, complete));
+  PetscCall(LamDispatchRun(work->dispatch, stopped, work->callbacks.ctx, complete));
   PetscFunctionReturn(0);
 }
 
@@ -278,8 +241,10 @@ PetscErrorCode LamNodeWorkServe(LamNodeWork work)
   PetscFunctionReturn(0);
 }
 
+/* ---- lifecycle ---- */
+
 PetscErrorCode LamNodeWorkCreate(MPI_Comm comm, LamRVE rve, LamInterfaceLawType interface, LamGrid grid, size_t memory,
-                                 PetscInt group, const LamNodeCustomer *customer, LamNodeWork *work)
+                                 const LamNodeCallbacks *callbacks, LamNodeWork *work)
 {
   LamDispatchJob job = {.describe = Describe, .work = Solve, .worked = Solved};
   LamNodeWork w;
@@ -289,16 +254,16 @@ PetscErrorCode LamNodeWorkCreate(MPI_Comm comm, LamRVE rve, LamInterfaceLawType 
   w->rve = rve;
   w->grid = grid;
   w->warm = (PetscBool)(interface == LAM_INTERFACE_CONTACT);
-  if (customer) w->customer = *customer;
+  if (callbacks) w->callbacks = *callbacks;
   TAILQ_INIT(&w->states);
   PetscCall(LamRVEStateCreate(rve, &w->state));
   if (w->warm) PetscCall(LamRVEStateSize(w->state, &w->state_size));
   w->most = w->warm ? (PetscInt64)(memory / w->state_size) : 0;
   job.ctx = w;
-  job.input_size = sizeof(Question) + w->state_size;
-  job.result_size = sizeof(Answer) + w->state_size;
-  PetscCall(LamDispatchCreate(comm, &job, group, &w->dispatch));
-  PetscCall(LamRVESetInterrupt(rve, LamDispatchServeWaiting, w->dispatch));
+  job.input_size = w->state_size;
+  job.result_size = sizeof(LamResponse) + w->state_size;
+  PetscCall(LamDispatchCreate(comm, &job, &w->dispatch));
+  PetscCall(LamRVESetInterrupt(rve, LamDispatchInterrupt, w->dispatch));
   *work = w;
   PetscFunctionReturn(0);
 }
@@ -313,7 +278,6 @@ PetscErrorCode LamNodeWorkDestroy(LamNodeWork *work)
   PetscCall(LamDispatchDestroy(&w->dispatch));
   PetscCall(LamRVEStateDestroy(&w->state));
   tdestroy(w->nodes, FreeNode);
-  PetscCall(PetscFree(w->piece));
   PetscCall(PetscFree(*work));
   PetscFunctionReturn(0);
 }

@@ -1,203 +1,126 @@
 /*
-  What a piece costs the ranks that hand out (dispatch.c): pieces without work, and results of the size of a bonded
-  node's record and of a contact node's with its state. Prints figures, asserts nothing.
-    mpirun -n 2 bench_dispatch         rank 0 hands out and works
-    mpirun -n 5 bench_dispatch         the same, and groups of 2: rank 0, two leaders, one more rank each
-    mpirun -n 40 bench_dispatch --sleep [SCALE] [GROUP]
-                                       pieces that sleep as long as contact nodes take, 100 a rank, on more ranks than
-                                       there are processors: the figure that bench_schedule is held against
-  Processor time, as the machine may be busy; looking for messages that are not there is in it.
+  What a task costs rank 0, and how busy it keeps the ranks (dispatch.c). Prints figures, asserts nothing.
+    mpirun -n 2 bench_dispatch             tasks without work: processor time of rank 0, with messages of the size of a
+                                           number, a bonded node's record, and a contact node's record and state
+    mpirun -n N bench_dispatch MS PARTS    100 tasks a rank that sleep MS ms on average (from a quarter to four times
+                                           the median), each in so many parts: messages are handled between two
+  Tasks that sleep show the idle time of more ranks than there are processors.
 */
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 #include <dispatch.h>
-#include <figures_work.h>
-#include "work_table.h"
 
-enum { PIECES = 100000, DESCRIPTION = 64, RECORD = 2000, SLEEPS_A_RANK = 100, CLASS_SHIFT = 56, SEED = 1 };
+enum { TASKS = 100000, SLEEPS_A_RANK = 100, STATE = 13000, RECORD = 2000 };
 
 typedef struct {
   LamDispatch dispatch;
-  size_t bytes; /* of a result */
-  PetscInt64 done, own;
-  WorkTable table; /* for pieces that sleep */
-  PetscReal scale, asleep;
+  size_t bytes; /* of an input or result */
+  PetscReal median, parts, asleep;
+  PetscInt64 done;
 } Work;
 
-static double Processor(void)
+static double Seconds(clockid_t which)
 {
   struct timespec t;
 
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  clock_gettime(which, &t);
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static double Wall(void)
+static PetscErrorCode Describe(void *ctx, PetscInt64 task, void *input, size_t *size)
 {
-  struct timespec t;
+  const Work *w = ctx;
 
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static PetscErrorCode Describe(void *ctx, PetscInt64 piece, void *input, size_t *size)
-{
   PetscFunctionBeginUser;
-  memset(input, (int)(piece & 127), DESCRIPTION);
-  *size = DESCRIPTION;
+  memset(input, (int)(task & 127), w->bytes);
+  *size = w->bytes;
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Nothing(void *ctx, PetscInt64 piece, const void *input, void *result, size_t *size)
+/* Spread evenly on a logarithmic scale, each time by the number of the task. */
+static PetscReal TimeOf(const Work *w, PetscInt64 task)
+{
+  return w->median * pow(4, 2 * fmod(0.6180339887498949 * (PetscReal)task, 1) - 1);
+}
+
+static PetscErrorCode Sleep(void *ctx, PetscInt64 task, const void *input, size_t input_size, void *result,
+                            size_t *size)
+{
+  const Work *w = ctx;
+  const PetscReal seconds = TimeOf(w, task), end = Seconds(CLOCK_MONOTONIC) + seconds;
+  PetscReal rest = seconds;
+
+  PetscFunctionBeginUser;
+  for (; rest > 0 && !LamDispatchInterrupt(w->dispatch); rest = end - Seconds(CLOCK_MONOTONIC)) {
+    const long ns = (long)(1e9 * PetscMin(rest, seconds / w->parts));
+    const struct timespec time = {ns / 1000000000, ns % 1000000000};
+
+    nanosleep(&time, NULL);
+  }
+  if (!w->median) (void)LamDispatchInterrupt(w->dispatch);
+  memcpy(result, input, input_size);
+  *size = input_size;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Worked(void *ctx, PetscInt64 task, const void *result)
 {
   Work *w = ctx;
 
   PetscFunctionBeginUser;
-  w->own++;
-  memset(result, *(const char *)input, w->bytes);
-  *size = w->bytes;
-  (void)LamDispatchServeWaiting(w->dispatch);
+  w->asleep += TimeOf(w, task);
+  w->done++;
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Worked(void *ctx, PetscInt64 piece, const void *result)
+static PetscErrorCode Run(Work w, PetscInt64 tasks)
 {
-  PetscFunctionBeginUser;
-  ((Work *)ctx)->done++;
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Run(size_t bytes, PetscInt group, PetscInt64 pieces)
-{
-  Work w = {.bytes = bytes};
-  const LamDispatchJob job = {.ctx = &w,
-                              .input_size = DESCRIPTION,
-                              .result_size = bytes,
-                              .describe = Describe,
-                              .work = Nothing,
-                              .worked = Worked};
+  const LamDispatchJob job = {&w, w.bytes, w.bytes, Describe, Sleep, Worked};
   PetscMPIInt rank, size;
-  double wall, processor;
   PetscBool complete;
+  double wall, processor;
 
   PetscFunctionBeginUser;
-  PetscCall(LamDispatchCreate(PETSC_COMM_WORLD, &job, group, &w.dispatch));
-  PetscCall(LamDispatchGetRank(w.dispatch, &rank, &size));
-  wall = Wall();
-  processor = Processor();
+  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
+  PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &size));
+  PetscCall(LamDispatchCreate(PETSC_COMM_WORLD, &job, &w.dispatch));
+  PetscCallMPI(MPI_Barrier(PETSC_COMM_WORLD));
+  wall = Seconds(CLOCK_MONOTONIC);
+  processor = Seconds(CLOCK_PROCESS_CPUTIME_ID);
   if (rank) {
     PetscCall(LamDispatchServe(w.dispatch));
   } else {
-    PetscCall(LamDispatchAdd(w.dispatch, 0, pieces, 1));
+    for (PetscInt64 i = 0; i < tasks; i++) PetscCall(LamDispatchAdd(w.dispatch, i, 1, 1 + TimeOf(&w, i)));
     PetscCall(LamDispatchRun(w.dispatch, NULL, NULL, &complete));
-    wall = Wall() - wall;
-    processor = Processor() - processor;
-    printf("%5d %5s %7zu %9lld %9lld %9.1f %9.2f\n", (int)size, size - 1 > group ? "tree" : "flat", bytes,
-           (long long)w.done, (long long)w.own, 1e-3 * (double)w.done / wall, 1e6 * processor / (double)w.done);
+    wall = Seconds(CLOCK_MONOTONIC) - wall;
+    processor = Seconds(CLOCK_PROCESS_CPUTIME_ID) - processor;
+    printf("%5d %7zu %8lld %10.3g %9.4g %9.2f %9.1f\n", (int)size, w.bytes, (long long)w.done,
+           1e3 * w.asleep / (double)w.done, wall, 1e6 * processor / (double)w.done, 100 * w.asleep / (wall * size));
     fflush(stdout);
   }
   PetscCall(LamDispatchDestroy(&w.dispatch));
   PetscFunctionReturn(0);
 }
 
-/* ---- pieces that sleep ---- */
-
-/* In as many parts as a solve has factorisations; messages are answered between them. */
-static PetscErrorCode Sleep(void *ctx, PetscInt64 piece, const void *input, void *result, size_t *size)
+static PetscErrorCode RunAll(int argc, char **argv)
 {
-  Work *w = ctx;
-  const double begin = Wall();
-  const PetscReal seconds =
-      w->scale * DrawWork(&w->table, (int)(piece >> CLASS_SHIFT), MixBits((uint64_t)piece + SEED));
-  const PetscReal part = w->scale * w->table.factorisation;
-  double rest = seconds;
+  const PetscReal mean = (4 - 0.25) / log(16); /* over the median */
+  PetscMPIInt size;
 
   PetscFunctionBeginUser;
-  for (; rest > 0 && !LamDispatchServeWaiting(w->dispatch); rest = begin + seconds - Wall()) {
-    const long ns = (long)(1e9 * PetscMin(rest, part));
-    const struct timespec time = {ns / 1000000000, ns % 1000000000};
-
-    nanosleep(&time, NULL);
-  }
-  memset(result, 0, w->bytes);
-  memcpy(result, &seconds, sizeof(seconds));
-  *size = w->bytes;
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Slept(void *ctx, PetscInt64 piece, const void *result)
-{
-  Work *w = ctx;
-  PetscReal seconds;
-
-  PetscFunctionBeginUser;
-  memcpy(&seconds, result, sizeof(seconds));
-  w->asleep += seconds;
-  w->done++;
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode AddSleeps(Work *w, PetscInt64 pieces)
-{
-  PetscFunctionBeginUser;
-  for (int c = 0; c < WORK_CLASSES; c++) {
-    PetscCall(LamDispatchAdd(w->dispatch, (PetscInt64)c << CLASS_SHIFT, ShareOfClass(&w->table, pieces, c),
-                             w->table.classes[c].predicted));
-  }
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode RunAsleep(PetscReal scale, PetscInt group)
-{
-  Work w = {.bytes = RECORD, .scale = scale};
-  const LamDispatchJob job = {.ctx = &w,
-                              .input_size = DESCRIPTION,
-                              .result_size = RECORD,
-                              .describe = Describe,
-                              .work = Sleep,
-                              .worked = Slept};
-  PetscMPIInt rank, size;
-  PetscBool complete;
-  double wall;
-
-  PetscFunctionBeginUser;
-  PetscCall(
-      FiguresWorkTable(sizeof(contact_work) / sizeof(*contact_work), contact_work, CONTACT_FACTORISATION, &w.table));
-  PetscCall(LamDispatchCreate(PETSC_COMM_WORLD, &job, group, &w.dispatch));
-  PetscCall(LamDispatchGetRank(w.dispatch, &rank, &size));
-  PetscCallMPI(MPI_Barrier(PETSC_COMM_WORLD));
-  wall = Wall();
-  if (rank) {
-    PetscCall(LamDispatchServe(w.dispatch));
-  } else {
-    PetscCall(AddSleeps(&w, SLEEPS_A_RANK * (PetscInt64)size));
-    PetscCall(LamDispatchRun(w.dispatch, NULL, NULL, &complete));
-    wall = Wall() - wall;
-    printf("%d ranks, %s, %lld pieces of %.3g ms: %.4g s, busy %.1f %%\n", (int)size,
-           size - 1 > group ? "tree" : "flat", (long long)w.done, 1e3 * w.asleep / (double)w.done, wall,
-           100 * w.asleep / (wall * size));
-  }
-  PetscCall(LamDispatchDestroy(&w.dispatch));
-  DestroyWorkTable(&w.table);
-  PetscFunctionReturn(0);
-}
-
-/* ---- */
-
-static PetscErrorCode RunAll(void)
-{
-  static const size_t bytes[] = {64, 2000, 15000};
-  PetscMPIInt rank, size;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
   PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &size));
-  if (!rank) printf("ranks  tree   bytes    pieces  by rank 0  1000/s wall  us of rank 0's processor per piece\n");
-  for (int k = 0; k < 3; k++) {
-    PetscCall(Run(bytes[k], LAM_DISPATCH_GROUP, PIECES));
-    if (size > 3) PetscCall(Run(bytes[k], 2, PIECES));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "ranks   bytes    tasks    ms each    s wall  us rank 0  busy %%\n"));
+  if (argc > 2) {
+    PetscCall(Run((Work){.bytes = STATE, .median = 1e-3 * atof(argv[1]) / mean, .parts = atof(argv[2])},
+                  SLEEPS_A_RANK * (PetscInt64)size));
+    PetscFunctionReturn(0);
   }
+  PetscCall(Run((Work){.bytes = 8}, TASKS));
+  PetscCall(Run((Work){.bytes = RECORD}, TASKS));
+  PetscCall(Run((Work){.bytes = RECORD + STATE}, TASKS));
   PetscFunctionReturn(0);
 }
 
@@ -205,10 +128,7 @@ int main(int argc, char **argv)
 {
   PetscErrorCode ierr = PetscInitialize(&argc, &argv, NULL, NULL);
 
-  if (!ierr && argc > 1 && !strcmp(argv[1], "--sleep"))
-    ierr = RunAsleep(argc > 2 ? atof(argv[2]) : 1, argc > 3 ? atoi(argv[3]) : LAM_DISPATCH_GROUP);
-  else if (!ierr)
-    ierr = RunAll();
+  if (!ierr) ierr = RunAll(argc, argv);
   if (ierr) MPI_Abort(MPI_COMM_WORLD, 1);
   return PetscFinalize() ? 1 : 0;
 }
