@@ -1,10 +1,13 @@
 /*
   What a task costs rank 0, and how busy it keeps the ranks (dispatch.c). Prints figures, asserts nothing.
-    mpirun -n 2 bench_dispatch             tasks without work: processor time of rank 0, with messages of the size of a
-                                           number, a bonded node's record, and a contact node's record and state
-    mpirun -n N bench_dispatch MS PARTS    100 tasks a rank that sleep MS ms on average (from a quarter to four times
-                                           the median), each in so many parts: messages are handled between two
-  Tasks that sleep show the idle time of more ranks than there are processors.
+    mpirun -n 8 bench_dispatch             tasks without work: processor time of rank 0 for each task of a worker, with
+                                           messages as large as a number, a bonded node's record, a contact node's state
+    mpirun -n N bench_dispatch MS PARTS [NODES]
+                                           100 tasks a rank that sleep MS ms on average (from a quarter to four times
+                                           the median), each in so many parts: messages are handled between two.
+                                           Or so many nodes in rounds, as `build` has them: two are open, of a twelfth
+  of the nodes that are done, at least 32; the costs are predicted exactly Tasks that sleep show the idle time of more
+  ranks than there are processors.
 */
 #include <math.h>
 #include <stdio.h>
@@ -13,13 +16,16 @@
 #include <time.h>
 #include <dispatch.h>
 
-enum { TASKS = 100000, SLEEPS_A_RANK = 100, STATE = 13000, RECORD = 2000 };
+enum { TASKS = 100000, SLEEPS_A_RANK = 100, STATE = 13000, RECORD = 2000, LEAST_ROUND = 32, ROUND_SHARE = 12 };
 
 typedef struct {
   LamDispatch dispatch;
   size_t bytes; /* of an input or result */
   PetscReal median, parts, asleep;
-  PetscInt64 done;
+  PetscInt64 done, own; /* own: by this rank */
+  PetscInt64 tasks, added;
+  PetscBool in_rounds;
+  PetscInt64 second, missing[2]; /* the younger round's first task; results that are missing of the two rounds */
 } Work;
 
 static double Seconds(clockid_t which)
@@ -49,7 +55,7 @@ static PetscReal TimeOf(const Work *w, PetscInt64 task)
 static PetscErrorCode Sleep(void *ctx, PetscInt64 task, const void *input, size_t input_size, void *result,
                             size_t *size)
 {
-  const Work *w = ctx;
+  Work *w = ctx;
   const PetscReal seconds = TimeOf(w, task), end = Seconds(CLOCK_MONOTONIC) + seconds;
   PetscReal rest = seconds;
 
@@ -61,8 +67,24 @@ static PetscErrorCode Sleep(void *ctx, PetscInt64 task, const void *input, size_
     nanosleep(&time, NULL);
   }
   if (!w->median) (void)LamDispatchInterrupt(w->dispatch);
+  w->own++;
   memcpy(result, input, input_size);
   *size = input_size;
+  PetscFunctionReturn(0);
+}
+
+/* The younger round becomes the older one. */
+static PetscErrorCode OpenRound(Work *w)
+{
+  const PetscInt64 round = w->in_rounds ? PetscMax(LEAST_ROUND, w->done / ROUND_SHARE) : w->tasks;
+  const PetscInt64 n = PetscMin(round, w->tasks - w->added);
+
+  PetscFunctionBeginUser;
+  w->missing[0] = w->missing[1];
+  w->missing[1] = n;
+  w->second = w->added;
+  for (PetscInt64 i = 0; i < n; i++, w->added++)
+    PetscCall(LamDispatchAdd(w->dispatch, w->added, 1, 1 + TimeOf(w, w->added)));
   PetscFunctionReturn(0);
 }
 
@@ -73,10 +95,12 @@ static PetscErrorCode Worked(void *ctx, PetscInt64 task, const void *result)
   PetscFunctionBeginUser;
   w->asleep += TimeOf(w, task);
   w->done++;
+  w->missing[task >= w->second]--;
+  while (!w->missing[0] && w->added < w->tasks) PetscCall(OpenRound(w));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Run(Work w, PetscInt64 tasks)
+static PetscErrorCode Run(Work w)
 {
   const LamDispatchJob job = {&w, w.bytes, w.bytes, Describe, Sleep, Worked};
   PetscMPIInt rank, size;
@@ -93,12 +117,14 @@ static PetscErrorCode Run(Work w, PetscInt64 tasks)
   if (rank) {
     PetscCall(LamDispatchServe(w.dispatch));
   } else {
-    for (PetscInt64 i = 0; i < tasks; i++) PetscCall(LamDispatchAdd(w.dispatch, i, 1, 1 + TimeOf(&w, i)));
+    PetscCall(OpenRound(&w));
+    PetscCall(OpenRound(&w));
     PetscCall(LamDispatchRun(w.dispatch, NULL, NULL, &complete));
     wall = Seconds(CLOCK_MONOTONIC) - wall;
     processor = Seconds(CLOCK_PROCESS_CPUTIME_ID) - processor;
     printf("%5d %7zu %8lld %10.3g %9.4g %9.2f %9.1f\n", (int)size, w.bytes, (long long)w.done,
-           1e3 * w.asleep / (double)w.done, wall, 1e6 * processor / (double)w.done, 100 * w.asleep / (wall * size));
+           1e3 * w.asleep / (double)w.done, wall, 1e6 * processor / (double)(w.done - w.own),
+           100 * w.asleep / (wall * size));
     fflush(stdout);
   }
   PetscCall(LamDispatchDestroy(&w.dispatch));
@@ -112,15 +138,18 @@ static PetscErrorCode RunAll(int argc, char **argv)
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &size));
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "ranks   bytes    tasks    ms each    s wall  us rank 0  busy %%\n"));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "ranks   bytes    tasks    ms each    s wall  us/task  busy %%\n"));
   if (argc > 2) {
-    PetscCall(Run((Work){.bytes = STATE, .median = 1e-3 * atof(argv[1]) / mean, .parts = atof(argv[2])},
-                  SLEEPS_A_RANK * (PetscInt64)size));
+    PetscCall(Run((Work){.bytes = STATE,
+                         .median = 1e-3 * atof(argv[1]) / mean,
+                         .parts = atof(argv[2]),
+                         .in_rounds = (PetscBool)(argc > 3),
+                         .tasks = argc > 3 ? atoi(argv[3]) : SLEEPS_A_RANK * (PetscInt64)size}));
     PetscFunctionReturn(0);
   }
-  PetscCall(Run((Work){.bytes = 8}, TASKS));
-  PetscCall(Run((Work){.bytes = RECORD}, TASKS));
-  PetscCall(Run((Work){.bytes = RECORD + STATE}, TASKS));
+  PetscCall(Run((Work){.bytes = 8, .tasks = TASKS}));
+  PetscCall(Run((Work){.bytes = RECORD, .tasks = TASKS}));
+  PetscCall(Run((Work){.bytes = RECORD + STATE, .tasks = TASKS}));
   PetscFunctionReturn(0);
 }
 
