@@ -39,6 +39,9 @@ def check_links(document):
             fail(document, f"link to {target}: no such file")
         elif anchor and anchor not in anchors(path.read_text()):
             fail(document, f"link to {target}: no such heading")
+    for scene in re.findall(r"\btests/scenes/[\w./-]+\.yaml", text):
+        if not (source / scene).exists():
+            fail(document, f"names {scene}, which is not there")
 
 
 def check_citations():
