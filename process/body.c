@@ -69,7 +69,9 @@ PetscErrorCode LamBodySetMembranes(LamBody body, const PetscReal membrane[])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamBodySetWalls(LamBody body, PetscErrorCode (*set)(void *ctx, const PetscReal factor[3]), void *ctx)
+PetscErrorCode LamBodySetWalls(LamBody body,
+                               PetscErrorCode (*set)(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT]),
+                               void *ctx)
 {
   PetscFunctionBeginUser;
   PetscCall(LamProcessSetWalls(body->process, set, ctx));
@@ -108,7 +110,7 @@ PetscErrorCode LamBodySetTime(LamBody body, PetscReal time, const PetscReal x[],
 {
   LamProcess process = body->process;
   LamEvaluation *now = &body->now;
-  PetscReal ratio[3];
+  PetscReal ratio[LAM_WALL_PARAMETER_COUNT];
 
   PetscFunctionBeginUser;
   LamProcessProperties(process, time, x, now, ratio);
@@ -543,10 +545,11 @@ PetscErrorCode LamBodyRun(LamBody body, LamProcessReason *reason, char message[L
   PetscBool ok = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  PetscCheck(process->walls_alike || process->set_walls, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: process.kinetics: C1, C2 and C4 do not change alike, and what answers knows only tissue whose walls "
-             "keep their proportions; solve directly",
-             process->scene->path);
+  PetscCheck(
+      process->walls_alike || process->set_walls, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+      "%s: process.kinetics: the parameters of the walls do not change alike, and what answers knows only tissue "
+      "whose walls keep their proportions; solve directly",
+      process->scene->path);
   message[0] = '\0';
   PetscCall(FollowAll(body, &ok, message));
   *reason = process->stopped ? LAM_PROCESS_STOPPED : ok ? LAM_PROCESS_DONE : LAM_PROCESS_ENDED;

@@ -23,21 +23,17 @@ static void FindFactors(LamProcess process, PetscReal time, const PetscReal x[],
         LamKineticsFactor(&process->spec->kinetics[k], time, &x[LAM_KINETIC_STATES * k], e->factor[k].slope);
 }
 
-/* Moduli over those of the start, C1, C2, C4, without the factor that they share. */
-static void FindWalls(LamProcess process, LamEvaluation *e, PetscReal ratio[3])
+/* Parameters over those of the start, of moduli without the factor that they share. */
+static void FindWalls(LamProcess process, LamEvaluation *e, PetscReal ratio[LAM_WALL_PARAMETER_COUNT])
 {
-  const LamWall *wall = &process->scene->micro.wall;
-  const PetscReal common = e->factor[LAM_CHANGING_WALLS].value, C1 = e->factor[LAM_CHANGING_C1].value,
-                  C2 = e->factor[LAM_CHANGING_C2].value, C4 = e->factor[LAM_CHANGING_C4].value;
-  const PetscReal shear = wall->C1 * C1 + wall->C2 * C2; /* C1 + C2 is 1 at the start */
+  PetscReal factor[LAM_WALL_PARAMETER_COUNT];
 
-  e->walls = common * shear;
-  ratio[0] = C1 / shear;
-  ratio[1] = C2 / shear;
-  ratio[2] = C4 / shear;
+  for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++) factor[k] = e->factor[LAM_CHANGING_OF_PARAMETER(k)].value;
+  e->walls = e->factor[LAM_CHANGING_WALLS].value * LamWallRatios(&process->scene->micro.wall, factor, ratio);
 }
 
-void LamProcessProperties(LamProcess process, PetscReal time, const PetscReal x[], LamEvaluation *e, PetscReal ratio[3])
+void LamProcessProperties(LamProcess process, PetscReal time, const PetscReal x[], LamEvaluation *e,
+                          PetscReal ratio[LAM_WALL_PARAMETER_COUNT])
 {
   const PetscReal elapsed = time - process->segment.start;
 
@@ -65,12 +61,12 @@ static PetscBool SameQuestion(LamProcess process, const LamEvaluation *e)
                      a->cohesion == b->cohesion && !memcmp(a->F, b->F, sizeof(a->F)));
 }
 
-PetscErrorCode LamProcessTellWalls(LamProcess process, const PetscReal ratio[3])
+PetscErrorCode LamProcessTellWalls(LamProcess process, const PetscReal ratio[LAM_WALL_PARAMETER_COUNT])
 {
   PetscFunctionBeginUser;
   if (process->walls_alike || !memcmp(process->told_walls, ratio, sizeof(process->told_walls))) PetscFunctionReturn(0);
   PetscCall(process->set_walls(process->walls_ctx, ratio));
-  PetscCall(PetscArraycpy(process->told_walls, ratio, 3));
+  PetscCall(PetscArraycpy(process->told_walls, ratio, LAM_WALL_PARAMETER_COUNT));
   process->last_known = PETSC_FALSE;
   PetscFunctionReturn(0);
 }
@@ -107,7 +103,7 @@ PetscErrorCode LamProcessAskJudge(LamProcess process, LamEvaluation *e)
 PetscErrorCode LamProcessEvaluate(LamProcess process, PetscReal time, const PetscReal x[], const PetscReal F[9],
                                   PetscReal turgor, LamEvaluation *e)
 {
-  PetscReal ratio[3];
+  PetscReal ratio[LAM_WALL_PARAMETER_COUNT];
 
   PetscFunctionBeginUser;
   LamProcessProperties(process, time, x, e, ratio);

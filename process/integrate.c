@@ -182,7 +182,7 @@ static void AddFactor(const Integration *in, const LamEvaluation *e, LamChanging
 static void AddProperties(const Integration *in, const LamEvaluation *e, PetscInt row, PetscReal by_cohesion,
                           PetscReal by_walls, SUNMatrix K)
 {
-  const LamWall *wall = &in->process->scene->micro.wall;
+  const LamWall *wall = &in->process->scene->micro.wall; /* C1 + C2 is the common factor */
   const PetscReal common = e->factor[LAM_CHANGING_WALLS].value;
 
   AddFactor(in, e, LAM_CHANGING_LAMELLA, row, by_cohesion * in->process->scene->cohesion, K);

@@ -12,32 +12,32 @@ enum { MAX_SNAPS = 200 };
 
 /* ---- life ---- */
 
-/* Which moduli any wall of a tissue has. */
-static void FindModuli(const LamMicrostructure *micro, PetscBool has[3])
+/* Which parameters any wall of a tissue has. */
+static void FindParameters(const LamMicrostructure *micro, PetscBool has[LAM_WALL_PARAMETER_COUNT])
 {
   const PetscInt cells = micro->cell ? micro->cells[0] * micro->cells[1] : 0;
 
   for (PetscInt c = -1; c < cells; c++) {
     const LamWall *wall = c < 0 ? &micro->wall : &micro->cell[c].wall;
 
-    has[0] = (PetscBool)(has[0] || wall->C1 != 0);
-    has[1] = (PetscBool)(has[1] || wall->C2 != 0);
-    has[2] = (PetscBool)(has[2] || wall->C4 != 0);
+    for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++) has[k] = (PetscBool)(has[k] || LamWallGet(wall, k) != 0);
   }
 }
 
 PetscBool LamProcessWallsStayAlike(const LamScene *scene)
 {
-  const LamChanging of[] = {LAM_CHANGING_C1, LAM_CHANGING_C2, LAM_CHANGING_C4};
-  const LamKinetics *kinetics = scene->process.kinetics;
-  PetscBool has[3] = {PETSC_FALSE};
-  PetscInt first = 0;
+  const LamKinetics *kinetics =
+      &scene->process.kinetics[LAM_CHANGING_OF_PARAMETER(0)]; /* of C1, which all walls have */
+  PetscBool has[LAM_WALL_PARAMETER_COUNT] = {PETSC_FALSE};
 
-  FindModuli(&scene->micro, has);
-  for (PetscInt r = 0; r < scene->region_count; r++) FindModuli(&scene->regions[r].micro, has);
-  while (first < 2 && !has[first]) first++;
-  for (PetscInt k = first + 1; k < 3; k++)
-    if (has[k] && !LamKineticsAgree(&kinetics[of[first]], &kinetics[of[k]])) return PETSC_FALSE;
+  FindParameters(&scene->micro, has);
+  for (PetscInt r = 0; r < scene->region_count; r++) FindParameters(&scene->regions[r].micro, has);
+  for (PetscInt k = 1; k < LAM_WALL_PARAMETER_COUNT; k++) {
+    if (!has[k]) continue;
+    if (LamWallParameterIsModulus(k) ? !LamKineticsAgree(&kinetics[0], &kinetics[k])
+                                     : kinetics[k].law != LAM_KINETIC_CONSTANT)
+      return PETSC_FALSE;
+  }
   return PETSC_TRUE;
 }
 
@@ -78,7 +78,8 @@ PetscErrorCode LamProcessSetJudge(LamProcess process, LamResponder *judge)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamProcessSetWalls(LamProcess process, PetscErrorCode (*set)(void *ctx, const PetscReal factor[3]),
+PetscErrorCode LamProcessSetWalls(LamProcess process,
+                                  PetscErrorCode (*set)(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT]),
                                   void *ctx)
 {
   PetscFunctionBeginUser;
@@ -416,7 +417,7 @@ void LamProcessClear(LamProcess process)
   for (int i = 0; i < 9; i++) process->inflation[i] = i % 4 == 0 ? 1 : 0;
   process->plasmolysed = process->stopped = process->last_known = process->judged_known = PETSC_FALSE;
   for (PetscInt k = 0; k < LAM_EVENT_COUNT; k++) process->found[k] = PETSC_FALSE;
-  for (int k = 0; k < 3; k++) process->told_walls[k] = 1;
+  for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++) process->told_walls[k] = 1;
   process->next_output = 0;
   process->snaps = 0;
   process->outputs = 0;
@@ -500,10 +501,11 @@ PetscErrorCode LamProcessRun(LamProcess process, LamProcessReason *reason, char 
 
   PetscFunctionBeginUser;
   PetscCheck(process->responder, PETSC_COMM_SELF, PETSC_ERR_ORDER, "call LamProcessSetResponder() first");
-  PetscCheck(process->walls_alike || process->set_walls, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: process.kinetics: C1, C2 and C4 do not change alike, and what answers knows only tissue whose walls "
-             "keep their proportions; solve directly",
-             process->scene->path);
+  PetscCheck(
+      process->walls_alike || process->set_walls, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+      "%s: process.kinetics: the parameters of the walls do not change alike, and what answers knows only tissue "
+      "whose walls keep their proportions; solve directly",
+      process->scene->path);
   message[0] = '\0';
   PetscCall(FollowAll(process, &ok, &ends));
   *reason = process->stopped ? LAM_PROCESS_STOPPED : ok && !ends ? LAM_PROCESS_DONE : LAM_PROCESS_ENDED;

@@ -75,9 +75,9 @@ struct LamProcess_s {
   const LamProcessSpec *spec;
   LamResponder *responder; /* borrowed */
   LamResponder *judge;     /* borrowed; NULL: none */
-  PetscErrorCode (*set_walls)(void *ctx, const PetscReal factor[3]);
+  PetscErrorCode (*set_walls)(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT]);
   void *walls_ctx; /* borrowed */
-  PetscReal told_walls[3];
+  PetscReal told_walls[LAM_WALL_PARAMETER_COUNT];
   LamProcessMonitor monitor;
   void *monitor_ctx; /* borrowed */
   PetscBool (*stop)(void);
@@ -144,10 +144,10 @@ void LamProcessEndSegment(LamProcess process, const PetscReal P[9]);
 /* What the tissue has become at a time of the present segment: all of `evaluation` but load and response. ratio: moduli
    C1, C2, C4 over those of the start, without the factor that they share. */
 void LamProcessProperties(LamProcess process, PetscReal time, const PetscReal x[], LamEvaluation *evaluation,
-                          PetscReal ratio[3]);
+                          PetscReal ratio[LAM_WALL_PARAMETER_COUNT]);
 /* Tells what solves directly where moduli do not change alike; a new ratio makes all that was known of the response
    void. */
-PetscErrorCode LamProcessTellWalls(LamProcess process, const PetscReal ratio[3]);
+PetscErrorCode LamProcessTellWalls(LamProcess process, const PetscReal ratio[LAM_WALL_PARAMETER_COUNT]);
 /* Properties and response at a time of the present segment; evaluation->ok where the response has fields. */
 PetscErrorCode LamProcessEvaluate(LamProcess process, PetscReal time, const PetscReal x[], const PetscReal F[9],
                                   PetscReal turgor, LamEvaluation *evaluation);

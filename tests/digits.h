@@ -38,13 +38,11 @@ static inline ExtendedCase DigitsCase(const LamMicrostructure *micro, const LamL
                     .law = (int)micro->wall.law,
                     .fibres = (int)micro->wall.fibres,
                     .contact = micro->interface == LAM_INTERFACE_CONTACT,
-                    .C1 = micro->wall.C1,
-                    .C2 = micro->wall.C2,
-                    .C4 = micro->wall.C4,
                     .bulk_modulus = micro->wall.bulk_modulus,
                     .turgor = load->turgor,
                     .cohesion = load->cohesion};
 
+  for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; ++k) c.parameter[k] = LamWallGet(&micro->wall, k);
   for (PetscInt i = 0; i < 9; ++i) c.F[i] = load->F[i];
   return c;
 }

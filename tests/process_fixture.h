@@ -36,14 +36,12 @@ static inline PetscErrorCode KeepState(const LamProcessState *state, void *ctx)
   return 0;
 }
 
-static inline PetscErrorCode ChangeModuli(void *ctx, const PetscReal factor[3])
+static inline PetscErrorCode ChangeModuli(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT])
 {
   Followed *f = (Followed *)ctx;
   LamMicrostructure micro = f->scene->micro;
 
-  micro.wall.C1 *= factor[0];
-  micro.wall.C2 *= factor[1];
-  micro.wall.C4 *= factor[2];
+  LamWallMultiply(&micro.wall, factor);
   return LamRVEChangeModuli(f->rve, &micro);
 }
 

@@ -46,7 +46,9 @@ PetscErrorCode LamBodySetMembranes(LamBody body, const PetscReal membrane[]);
 /* That of a tissue, in 1 over its own apothem. */
 PetscReal LamMembraneArea(const LamMicrostructure *micro);
 /* As LamProcessSetWalls. */
-PetscErrorCode LamBodySetWalls(LamBody body, PetscErrorCode (*set)(void *ctx, const PetscReal factor[3]), void *ctx);
+PetscErrorCode LamBodySetWalls(LamBody body,
+                               PetscErrorCode (*set)(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT]),
+                               void *ctx);
 PetscErrorCode LamBodySetMonitor(LamBody body, LamBodyMonitor monitor, void *ctx);
 /* Follows the body from time 0; a stop is that of LamMacroSetStop. `message` says why it ended before the end.
    Collective. */

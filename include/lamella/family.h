@@ -1,18 +1,21 @@
 /*
   Tissue between databases: one more axis, along which walls vary in space or time.
 
-  Databases of microstructures that differ in one number, wall thickness t/a, C4/C1 or C2/C1, are the knots of the axis.
-  Between them the potentials are combined with fixed weights (blend.h), so that stress and tangent are still the exact
-  derivatives of one potential.
+  Databases of microstructures that differ in one number, wall thickness t/a or a parameter of the wall, are the knots
+  of the axis. Between them the potentials are combined with fixed weights (blend.h), so that stress and tangent are
+  still the exact derivatives of one potential.
 */
 #ifndef LAMELLA_FAMILY_H
 #define LAMELLA_FAMILY_H
 
 #include <lamella/database.h>
 
+#define LAM_FAMILY_MODULUS(name) #name "/C1"
+#define LAM_FAMILY_NUMBER(name) #name
+#define LAM_FAMILY_OF_WALL(X, name, law, kind, ...) X(LAM_FAMILY_##name, LAM_FAMILY_##kind(name))
 #define LAM_FAMILY_AXES(X)                                                                                             \
   X(LAM_FAMILY_WALL_THICKNESS, "wall_thickness") /* t/a */                                                             \
-  X(LAM_FAMILY_FIBRES, "C4/C1")                                                                                        \
+  LAM_WALL_OWN_PARAMETERS(LAM_FAMILY_OF_WALL, X)                                                                       \
   X(LAM_FAMILY_MATRIX, "C2/C1")
 typedef enum { LAM_FAMILY_AXES(LAM_ENUM_ENTRY) LAM_FAMILY_AXIS_COUNT } LamFamilyAxis;
 extern const char *const LamFamilyAxisNames[];
@@ -21,7 +24,7 @@ typedef struct LamFamily_s *LamFamily;
 
 /*
   n >= 2 databases, in any order; borrowed, and not to be added to while the family is asked. PETSC_ERR_USER_INPUT where
-  they differ in more than one of the three numbers (in units of C1 + C2 and apothems), in none, or two are alike.
+  they differ in more than one of these numbers (in units of C1 + C2 and apothems), in none, or two are alike.
 */
 PetscErrorCode LamFamilyCreate(PetscInt n, const LamDatabase databases[], LamFamily *family);
 PetscErrorCode LamFamilyDestroy(LamFamily *family);

@@ -82,10 +82,11 @@ PetscErrorCode LamProcessSetResponder(LamProcess process, LamResponder *responde
 */
 PetscErrorCode LamProcessSetJudge(LamProcess process, LamResponder *judge);
 /*
-  How the responder learns of walls whose moduli do not change alike: `set` is told each modulus over its share of the
-  common factor (C1, C2, C4; 1 at the start), before it is asked. Without it such a process is PETSC_ERR_USER_INPUT.
+  How the responder learns of walls whose moduli do not change alike: `set` is told each parameter over that at the
+  start, moduli without the common factor, before it is asked. Without it such a process is PETSC_ERR_USER_INPUT.
 */
-PetscErrorCode LamProcessSetWalls(LamProcess process, PetscErrorCode (*set)(void *ctx, const PetscReal factor[3]),
+PetscErrorCode LamProcessSetWalls(LamProcess process,
+                                  PetscErrorCode (*set)(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT]),
                                   void *ctx);
 PetscErrorCode LamProcessSetMonitor(LamProcess process, LamProcessMonitor monitor, void *ctx);
 /* Asked after each step of the integrator; NULL: never. */

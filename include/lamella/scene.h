@@ -10,14 +10,12 @@
 #include <stdio.h>
 #include <lamella/kinetics.h>
 #include <lamella/place_field.h>
+#include <lamella/wall.h>
 
 /* Enumerations and their names in scene files come from one list each. */
 #define LAM_ENUM_ENTRY(symbol, name) symbol,
 #define LAM_NAME_ENTRY(symbol, name) name,
 
-#define LAM_WALL_LAWS(X)                                                                                               \
-  X(LAM_WALL_FIBRE_MOONEY_RIVLIN, "fibre_mooney_rivlin")                                                               \
-  X(LAM_WALL_MOONEY_RIVLIN, "mooney_rivlin")
 #define LAM_INTERFACE_LAWS(X)                                                                                          \
   X(LAM_INTERFACE_BONDED, "bonded")                                                                                    \
   X(LAM_INTERFACE_CONTACT, "contact")
@@ -27,29 +25,14 @@
 #define LAM_PATCH_SIDES(X)                                                                                             \
   X(LAM_SIDES_AFFINE, "affine") /* the lateral outer walls follow F, as those in the grips do */                       \
   X(LAM_SIDES_FREE, "free")
-#define LAM_FIBRES(X)                                                                                                  \
-  X(LAM_FIBRES_BOTH, "both")                                                                                           \
-  X(LAM_FIBRES_TENSION, "tension")
 
-typedef enum { LAM_WALL_LAWS(LAM_ENUM_ENTRY) LAM_WALL_LAW_COUNT } LamWallLawType;
 typedef enum { LAM_INTERFACE_LAWS(LAM_ENUM_ENTRY) LAM_INTERFACE_LAW_COUNT } LamInterfaceLawType;
 typedef enum { LAM_STRATEGIES(LAM_ENUM_ENTRY) LAM_STRATEGY_COUNT } LamStrategy;
 typedef enum { LAM_PATCH_SIDES(LAM_ENUM_ENTRY) LAM_PATCH_SIDES_COUNT } LamPatchSides;
-typedef enum { LAM_FIBRES(LAM_ENUM_ENTRY) LAM_FIBRES_COUNT } LamFibres;
 
-extern const char *const LamWallLawNames[];      /* "fibre_mooney_rivlin", ... */
 extern const char *const LamInterfaceLawNames[]; /* "bonded", "contact" */
 extern const char *const LamStrategyNames[];     /* "two_step", "one_step" */
 extern const char *const LamPatchSidesNames[];   /* "affine", "free" */
-extern const char *const LamFibresNames[];       /* "both", "tension" */
-
-/* Wall material, moduli in units of C1 + C2 (so C1 + C2 = 1). */
-typedef struct {
-  LamWallLawType law;
-  LamFibres fibres;
-  PetscReal C1, C2, C4;
-  PetscReal bulk_modulus;
-} LamWall;
 
 /* What may differ from cell to cell. */
 typedef struct {
@@ -141,6 +124,7 @@ typedef struct {
   PetscInt round;     /* nodes that are begun together, at least */
 } LamSample;
 
+#define LAM_MAP_OF_WALL(X, name, ...) X(LAM_MAP_##name, #name)
 #define LAM_MAP_QUANTITIES(X)                                                                                          \
   X(LAM_MAP_TURGOR, "turgor")                                                                                          \
   X(LAM_MAP_COHESION, "cohesion")                                                                                      \
@@ -149,7 +133,7 @@ typedef struct {
   X(LAM_MAP_WALL_STRENGTH, "wall_strength")                                                                            \
   X(LAM_MAP_LAMELLA_NORMAL, "lamella_normal")                                                                          \
   X(LAM_MAP_LAMELLA_SHEAR, "lamella_shear")                                                                            \
-  X(LAM_MAP_C4, "C4")                                                                                                  \
+  LAM_WALL_OWN_PARAMETERS(LAM_MAP_OF_WALL, X)                                                                          \
   X(LAM_MAP_WALL_THICKNESS, "wall_thickness")
 typedef enum { LAM_MAP_QUANTITIES(LAM_ENUM_ENTRY) LAM_MAP_QUANTITY_COUNT } LamMapQuantity;
 extern const char *const LamMapQuantityNames[]; /* "turgor", "cohesion", ... */
@@ -167,6 +151,8 @@ typedef enum { LAM_MAP_X, LAM_MAP_Y, LAM_MAP_AXIS_COUNT } LamMapDirection;
 PetscReal LamMapAxisValue(const LamMapAxis *axis, PetscInt i);
 /* "MPa", "um" or "1", and *scale the factor to it. */
 const char *LamMapQuantityUnit(LamMapQuantity quantity, const LamScales *scales, PetscReal *scale);
+/* The parameter of the wall that it is; -1: none. */
+PetscInt LamMapQuantityParameter(LamMapQuantity quantity);
 /* Whether it says how far the load is followed, not what tissue is loaded. */
 PetscBool LamMapQuantityIsLoad(LamMapQuantity quantity);
 
@@ -291,18 +277,18 @@ typedef struct {
 #define LAM_WARM_START_MEMORY 2e9 /* of scenes that do not say it */
 
 /* What changes by a kinetic law, as a factor of what it is at the start. */
+#define LAM_CHANGING_OF_WALL(X, name, ...) X(LAM_CHANGING_##name, #name)
 #define LAM_CHANGING(X)                                                                                                \
-  X(LAM_CHANGING_LAMELLA, "lamella") /* cohesion, and the strengths of the lamella */                                  \
-  X(LAM_CHANGING_WALLS, "walls")     /* all moduli of the walls */                                                     \
-  X(LAM_CHANGING_C1, "C1")           /* one of them, beside that */                                                    \
-  X(LAM_CHANGING_C2, "C2")                                                                                             \
-  X(LAM_CHANGING_C4, "C4")                                                                                             \
+  X(LAM_CHANGING_LAMELLA, "lamella")           /* cohesion, and the strengths of the lamella */                        \
+  X(LAM_CHANGING_WALLS, "walls")               /* all moduli of the walls */                                           \
+  LAM_WALL_PARAMETERS(LAM_CHANGING_OF_WALL, X) /* one parameter, beside that */                                        \
   X(LAM_CHANGING_WALL_STRENGTH, "wall_strength")                                                                       \
   X(LAM_CHANGING_SOLUTES, "solutes") /* amount in a cell */                                                            \
   X(LAM_CHANGING_PERMEABILITY, "permeability")                                                                         \
   X(LAM_CHANGING_REFLECTION, "reflection")
 typedef enum { LAM_CHANGING(LAM_ENUM_ENTRY) LAM_CHANGING_COUNT } LamChanging;
 extern const char *const LamChangingNames[]; /* "lamella", ... */
+#define LAM_CHANGING_OF_PARAMETER(k) ((LamChanging)(LAM_CHANGING_WALLS + 1 + (k)))
 
 /* Water that passes the membranes of the cells; pressures in C1 + C2. */
 typedef struct {
@@ -376,6 +362,10 @@ typedef struct {
   LamMapAxis map[LAM_MAP_AXIS_COUNT]; /* at most one of them is of the load */
 } LamScene;
 
+/* Whether the law of any wall of the scene has a parameter. */
+PetscBool LamSceneHasParameter(const LamScene *scene, PetscInt parameter);
+/* Whether what changes is that of a wall that the scene does not have. */
+PetscBool LamSceneLacksChanging(const LamScene *scene, LamChanging changing);
 /* The factor of a history at a load parameter. */
 PetscReal LamHistoryFactor(const LamHistory *history, PetscReal parameter);
 /* Whether two histories have equal factors at all parameters. */

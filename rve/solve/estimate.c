@@ -136,7 +136,8 @@ static PetscReal Coarseness(LamRVE rve, const PetscReal F[9])
     const PetscReal thickness = LamWallThickness(micro, c);
 
     coarseness = PetscMax(coarseness, thickness / (through * (rve->mesh.apothem - thickness)) / DEEP);
-    coarseness = PetscMax(coarseness, PetscSqrtReal(wall->C4 / (wall->C1 + wall->C2)) / (through * STRONG));
+    coarseness =
+        PetscMax(coarseness, PetscSqrtReal(LamWallFibreModulus(wall) / (wall->C1 + wall->C2)) / (through * STRONG));
   }
   return coarseness;
 }

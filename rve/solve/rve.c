@@ -76,7 +76,7 @@ static void FindStiffest(LamRVE rve)
   for (PetscInt cell = 0; cell < rve->mesh.cell_count; ++cell) {
     const LamWall *wall = CellWall(&rve->micro, cell);
 
-    rve->stiffest = PetscMax(rve->stiffest, wall->bulk_modulus + wall->C4);
+    rve->stiffest = PetscMax(rve->stiffest, wall->bulk_modulus + LamWallFibreModulus(wall));
   }
 }
 
@@ -96,9 +96,7 @@ static PetscErrorCode SetUpWalls(LamRVE rve)
 
 static void CopyModuli(const LamWall *from, LamWall *to)
 {
-  to->C1 = from->C1;
-  to->C2 = from->C2;
-  to->C4 = from->C4;
+  for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; ++k) *LamWallAt(to, k) = LamWallGet(from, k);
   to->bulk_modulus = from->bulk_modulus;
 }
 

@@ -5,6 +5,17 @@ static const LamWallLaw laws[] = {
     {LAM_WALL_MOONEY_RIVLIN, LamMatrixMooneyRivlin, NULL},
 };
 
+PetscReal LamWallFibreModulus(const LamWall *wall)
+{
+  LamWall both = *wall;
+  LamKernel1 fibre = {0};
+
+  both.fibres = LAM_FIBRES_BOTH;
+  for (size_t i = 0; i < sizeof(laws) / sizeof(laws[0]); ++i)
+    if (laws[i].type == wall->law && laws[i].fibre) laws[i].fibre(&both, 0.0, &fibre);
+  return 2.0 * fibre.dd;
+}
+
 PetscErrorCode LamWallLawGet(LamWallLawType type, const LamWallLaw **law)
 {
   PetscFunctionBeginUser;

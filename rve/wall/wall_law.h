@@ -36,6 +36,8 @@ typedef struct {
 } LamWallLaw;
 
 PetscErrorCode LamWallLawGet(LamWallLawType type, const LamWallLaw **law);
+/* C4 of the quadratic fibres that are as stiff at rest; 0 without fibres. */
+PetscReal LamWallFibreModulus(const LamWall *wall);
 
 /* Kernels, one file each. */
 void LamMatrixMooneyRivlin(const LamWall *wall, const PetscReal H[4], PetscReal H33, LamKernel *out);

@@ -234,11 +234,22 @@ static void PrintSpread(const LamCellSpread *spread, PetscReal MPa)
          (double)spread->turgor[1], (double)spread->cohesion[0], (double)spread->cohesion[1]);
 }
 
+static void PrintWall(const LamWall *wall, PetscReal MPa)
+{
+  printf("%-12s %s:", "wall", LamWallLawNames[wall->law]);
+  for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++)
+    if (LamWallLawHas(wall->law, k))
+      printf("%s %s %.4g%s", k ? "," : "", LamWallParameterNames[k],
+             (double)(LamWallGet(wall, k) * (LamWallParameterIsModulus(k) ? MPa : 1.0)),
+             LamWallParameterIsModulus(k) ? "" : " (a number)");
+  if (LamWallLawHasFibres(wall->law)) printf(" (fibres: %s)", LamFibresNames[wall->fibres]);
+  printf(", bulk modulus %.4g MPa\n", (double)(wall->bulk_modulus * MPa));
+}
+
 static void PrintModel(const Check *check)
 {
   const LamScene *scene = check->scene;
   const LamMicrostructure *given = &scene->micro, *micro = &check->plan.micro;
-  const LamWall *wall = &micro->wall;
   const PetscReal MPa = scene->scales.stress * 1e-6;
 
   printf("%-12s %s\n", "scene", scene->path);
@@ -250,11 +261,7 @@ static void PrintModel(const Check *check)
     printf("%" PetscInt_FMT " x %" PetscInt_FMT " cells per period", micro->cells[0], micro->cells[1]);
   printf(", wall %.4g of the apothem (%.4g um), face normal 0 at %.4g deg\n", (double)micro->wall_thickness,
          (double)(1e6 * scene->scales.length), (double)(micro->orientation * 180 / PETSC_PI));
-  printf("%-12s %s: C1 %.4g, C2 %.4g", "wall", LamWallLawNames[wall->law], (double)(wall->C1 * MPa),
-         (double)(wall->C2 * MPa));
-  if (wall->law == LAM_WALL_FIBRE_MOONEY_RIVLIN)
-    printf(", C4 %.4g (fibres: %s)", (double)(wall->C4 * MPa), LamFibresNames[wall->fibres]);
-  printf(", bulk modulus %.4g MPa\n", (double)(wall->bulk_modulus * MPa));
+  PrintWall(&micro->wall, MPa);
   if (check->plan.spread.kinds) PrintSpread(&check->plan.spread, MPa);
   if (micro->interface == LAM_INTERFACE_BONDED)
     printf("%-12s bonded: no unknowns of its own\n", "interface");

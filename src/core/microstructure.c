@@ -9,11 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const LamWallLawNames[] = {LAM_WALL_LAWS(LAM_NAME_ENTRY)};
 const char *const LamInterfaceLawNames[] = {LAM_INTERFACE_LAWS(LAM_NAME_ENTRY)};
 const char *const LamStrategyNames[] = {LAM_STRATEGIES(LAM_NAME_ENTRY)};
 const char *const LamPatchSidesNames[] = {LAM_PATCH_SIDES(LAM_NAME_ENTRY)};
-const char *const LamFibresNames[] = {LAM_FIBRES(LAM_NAME_ENTRY)};
 
 /* 64-bit FNV-1a (Fowler, Noll, Vo): a name, not a protection. */
 static uint64_t Hash(const char text[])
@@ -30,13 +28,14 @@ static double Clean(PetscReal value)
   return fabs(value) < 1e-13 ? 0.0 : (double)value;
 }
 
-/* The wall's part. Fibres have no effect in a law without them. */
+/* The wall's part. What its law does not have has no effect. */
 static void DescribeWall(const LamWall *wall, FILE *out)
 {
-  fprintf(out, "\"wall\": {\"law\": \"%s\", \"C1\": %.12g, \"C2\": %.12g, ", LamWallLawNames[wall->law],
-          Clean(wall->C1), Clean(wall->C2));
-  if (wall->law == LAM_WALL_FIBRE_MOONEY_RIVLIN)
-    fprintf(out, "\"C4\": %.12g, \"fibres\": \"%s\", ", Clean(wall->C4), LamFibresNames[wall->fibres]);
+  fprintf(out, "\"wall\": {\"law\": \"%s\", ", LamWallLawNames[wall->law]);
+  for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++)
+    if (LamWallLawHas(wall->law, k))
+      fprintf(out, "\"%s\": %.12g, ", LamWallParameterNames[k], Clean(LamWallGet(wall, k)));
+  if (LamWallLawHasFibres(wall->law)) fprintf(out, "\"fibres\": \"%s\", ", LamFibresNames[wall->fibres]);
   fprintf(out, "\"bulk_modulus\": %.12g}", Clean(wall->bulk_modulus));
 }
 
@@ -138,14 +137,17 @@ static PetscBool ParseWall(json_t *object, LamWall *wall)
   const char *law, *fibres = LamFibresNames[LAM_FIBRES_BOTH];
   int found[2];
 
-  if (json_unpack(object, "{s:s, s:F, s:F, s?F, s?s, s:F}", "law", &law, "C1", &wall->C1, "C2", &wall->C2, "C4",
-                  &wall->C4, "fibres", &fibres, "bulk_modulus", &wall->bulk_modulus))
+  if (json_unpack(object, "{s:s, s?s, s:F}", "law", &law, "fibres", &fibres, "bulk_modulus", &wall->bulk_modulus))
     return PETSC_FALSE;
   found[0] = Find(LAM_WALL_LAW_COUNT, LamWallLawNames, law);
   found[1] = Find(LAM_FIBRES_COUNT, LamFibresNames, fibres);
   if (found[0] < 0 || found[1] < 0) return PETSC_FALSE;
   wall->law = (LamWallLawType)found[0];
   wall->fibres = (LamFibres)found[1];
+  for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++) {
+    if (!LamWallLawHas(wall->law, k)) continue;
+    if (json_unpack(object, "{s:F}", LamWallParameterNames[k], LamWallAt(wall, k))) return PETSC_FALSE;
+  }
   return PETSC_TRUE;
 }
 

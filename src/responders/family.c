@@ -22,15 +22,22 @@ struct LamFamily_s {
 
 /* ---- the axis ---- */
 
+/* The parameter of an axis after that of the thickness. */
+static PetscInt OwnParameter(LamFamilyAxis axis)
+{
+  return LAM_WALL_C2 + (PetscInt)(axis - LAM_FAMILY_WALL_THICKNESS);
+}
+
 static PetscReal AxisValue(const LamMicrostructure *micro, LamFamilyAxis axis)
 {
   switch (axis) {
   case LAM_FAMILY_WALL_THICKNESS:
     return micro->wall_thickness;
-  case LAM_FAMILY_FIBRES:
-    return micro->wall.C4 / micro->wall.C1;
-  default:
+  case LAM_FAMILY_MATRIX:
     return micro->wall.C2 / micro->wall.C1;
+  default:
+    return LamWallGet(&micro->wall, OwnParameter(axis)) /
+           (LamWallParameterIsModulus(OwnParameter(axis)) ? micro->wall.C1 : 1);
   }
 }
 
@@ -51,27 +58,30 @@ static PetscBool SameOtherwise(const LamMicrostructure *a, const LamMicrostructu
 static PetscErrorCode FindAxis(PetscInt n, const LamDatabase databases[], LamFamilyAxis *axis)
 {
   LamMicrostructure first, other;
-  PetscBool differs[LAM_FAMILY_AXIS_COUNT] = {PETSC_FALSE, PETSC_FALSE, PETSC_FALSE};
+  PetscBool differs[LAM_FAMILY_AXIS_COUNT] = {PETSC_FALSE};
   int count = 0;
 
   PetscFunctionBeginUser;
   PetscCall(LamDatabaseGetMicrostructure(databases[0], &first, NULL, NULL));
   for (PetscInt i = 1; i < n; i++) {
     PetscCall(LamDatabaseGetMicrostructure(databases[i], &other, NULL, NULL));
-    PetscCheck(SameOtherwise(&first, &other), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "database %d is of other tissue than the first; they may differ in t/a, C4/C1 or C2/C1 alone (moduli in "
-               "units of C1 + C2)",
-               (int)i + 1);
+    PetscCheck(
+        SameOtherwise(&first, &other), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+        "database %d is of other tissue than the first; they may differ in t/a or one parameter of the wall alone "
+        "(moduli in units of C1 + C2)",
+        (int)i + 1);
     differs[LAM_FAMILY_WALL_THICKNESS] |= !Same(first.wall_thickness, other.wall_thickness);
     differs[LAM_FAMILY_MATRIX] |= !Same(first.wall.C1, other.wall.C1);
-    differs[LAM_FAMILY_FIBRES] |= !Same(first.wall.C4, other.wall.C4);
+    for (PetscInt k = LAM_FAMILY_WALL_THICKNESS + 1; k < LAM_FAMILY_MATRIX; k++)
+      differs[k] |= !Same(LamWallGet(&first.wall, OwnParameter((LamFamilyAxis)k)),
+                          LamWallGet(&other.wall, OwnParameter((LamFamilyAxis)k)));
   }
   for (int k = 0; k < LAM_FAMILY_AXIS_COUNT; k++) {
     if (differs[k]) *axis = (LamFamilyAxis)k;
     count += differs[k];
   }
   PetscCheck(count == 1, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "the databases differ in %d of t/a, C4/(C1 + C2) and C2/C1; one is wanted", count);
+             "the databases differ in %d of t/a and the parameters of the wall; one is wanted", count);
   PetscFunctionReturn(0);
 }
 

@@ -27,18 +27,7 @@ static const LamKey variation_keys[] = {
     {MAP("rve.variation.kinds[]"), .example = "{wall_thickness: 8 um, turgor: 0.5}",
      .help = "One kind; what it leaves out is that of the scene's own cell."},
     {MAP("rve.variation.kinds[].wall"), .example = "{C1: 0.05 MPa}", .help = "Its wall, as `rve.wall`."},
-    {NAME_OF("rve.variation.kinds[].wall.law", LamWallLawNames, LAM_WALL_LAW_COUNT), .default_words = OWN,
-     .example = "mooney_rivlin", .help = "Law of its wall."},
-    {STRESS("rve.variation.kinds[].wall.C1"), ABOVE(0), .default_words = OWN, .example = "0.05 MPa",
-     .help = "First Mooney-Rivlin modulus."},
-    {STRESS("rve.variation.kinds[].wall.C2"), FROM(0), .default_words = OWN, .example = "0.005 MPa",
-     .help = "Second Mooney-Rivlin modulus."},
-    {STRESS("rve.variation.kinds[].wall.C4"), FROM(0), .default_words = OWN, .example = "0.5 MPa",
-     .help = "Fibre modulus."},
-    {STRESS("rve.variation.kinds[].wall.bulk_modulus"), ABOVE(0), .default_words = OWN ", in proportion to C1 + C2",
-     .example = "55 MPa", .help = "Bulk modulus."},
-    {NAME_OF("rve.variation.kinds[].wall.fibres", LamFibresNames, LAM_FIBRES_COUNT), .default_words = OWN,
-     .example = "tension", .help = "Which fibres resist."},
+    LAM_OTHER_WALL("rve.variation.kinds[].wall", OWN),
     {LENGTH("rve.variation.kinds[].wall_thickness", "um"), INTO(LamCell, wall_thickness), ABOVE(0),
      .default_words = OWN, .example = "8 um", .help = "Thickness of its wall, less than the apothem."},
     {REAL("rve.variation.kinds[].turgor"), INTO(LamCell, turgor), FROM(0), TO(1000), .default_value = "1",
@@ -104,9 +93,7 @@ static PetscErrorCode ReadKind(const LamNode *kind, const LamScene *scene, LamCe
   PetscCall(LamSceneFill(kind, &scene->scales, LamCell, cell));
   LamSceneCheck(cell->wall_thickness < 1.0, LamNodeFind(kind, "wall_thickness"),
                 "the wall fills the cell; write a thickness less than the apothem");
-  if (wall)
-    PetscCall(LamSceneReadWall(kind->document, kind, "rve.variation.kinds[].wall", scene->scales.stress, &micro->wall,
-                               &cell->wall));
+  if (wall) PetscCall(LamSceneReadWall(wall, &scene->scales, &micro->wall, &cell->wall));
   LamSceneCheck(!cohesion || micro->interface != LAM_INTERFACE_BONDED, cohesion, LAM_BONDED_PARTS);
   PetscFunctionReturn(0);
 }
@@ -235,14 +222,10 @@ static PetscErrorCode ApplyFactors(const LamNode *field, const PetscReal factors
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < count; c++) {
-    const PetscReal stiffness = factors[FIELD_WALL * count + c];
     LamCell *cell = &micro->cell[c];
 
     *cell = OwnCell(micro);
-    cell->wall.C1 *= stiffness;
-    cell->wall.C2 *= stiffness;
-    cell->wall.C4 *= stiffness;
-    cell->wall.bulk_modulus *= stiffness;
+    LamWallScale(&cell->wall, factors[FIELD_WALL * count + c], 1.0);
     cell->wall_thickness *= factors[FIELD_THICKNESS * count + c];
     cell->turgor = factors[FIELD_TURGOR * count + c];
     cell->cohesion = factors[FIELD_COHESION * count + c];
@@ -284,15 +267,18 @@ static PetscBool AreEqual(PetscReal a, PetscReal b)
   return (PetscBool)(fabs(a - b) <= 1e-12 * fabs(b));
 }
 
+static PetscBool AreSameWalls(const LamWall *a, const LamWall *b)
+{
+  if (a->law != b->law || !AreEqual(a->bulk_modulus, b->bulk_modulus)) return PETSC_FALSE;
+  for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++)
+    if (!AreEqual(LamWallGet(a, k), LamWallGet(b, k))) return PETSC_FALSE;
+  return (PetscBool)(!LamWallLawHasFibres(a->law) || a->fibres == b->fibres);
+}
+
 static PetscBool AreSame(const LamCell *a, const LamCell *b)
 {
-  const LamWall *v = &a->wall, *w = &b->wall;
-  const PetscBool has_fibres = (PetscBool)(w->law == LAM_WALL_FIBRE_MOONEY_RIVLIN);
-
   return (PetscBool)(AreEqual(a->wall_thickness, b->wall_thickness) && AreEqual(a->turgor, b->turgor) &&
-                     AreEqual(a->cohesion, b->cohesion) && v->law == w->law && AreEqual(v->C1, w->C1) &&
-                     AreEqual(v->C2, w->C2) && AreEqual(v->bulk_modulus, w->bulk_modulus) &&
-                     (!has_fibres || (v->fibres == w->fibres && AreEqual(v->C4, w->C4))));
+                     AreEqual(a->cohesion, b->cohesion) && AreSameWalls(&a->wall, &b->wall));
 }
 
 /* Cells that are all the scene's own are no variation, and cost nothing. */

@@ -131,11 +131,10 @@ PetscBool LamSceneNeedsCohesion(const LamMicrostructure *micro);
 /* What a patch allows in the rest of a scene that is built. */
 PetscErrorCode LamSceneCheckPatch(const LamNode *root, LamScene *scene);
 /*
-  The wall at <prefix>.law, <prefix>.C1, ..., moduli over `stress` (Pa). What is not given is that of `own`, its bulk
-  modulus in proportion to C1 + C2; NULL: as the table of keys says.
+  The wall of a map. What is not given is that of `own`, its bulk modulus in proportion to C1 + C2; NULL: as the table
+  of keys says.
 */
-PetscErrorCode LamSceneReadWall(const LamDocument *document, const LamNode *base, const char prefix[], PetscReal stress,
-                                const LamWall *own, LamWall *wall);
+PetscErrorCode LamSceneReadWall(const LamNode *map, const LamScales *scales, const LamWall *own, LamWall *wall);
 /* Refuses an F that is no deformation gradient of plane strain, where its components are given. */
 PetscErrorCode LamSceneCheckF(const LamNode *node);
 /* The control that the tensors of an entry say (P_node NULL: F alone), stresses over `scale`; refused where a component

@@ -4,6 +4,7 @@
 #include "scene_rows.h"
 #include "quantity_text.h"
 #include <math.h>
+#include <string.h>
 
 const char *const LamMapQuantityNames[] = {LAM_MAP_QUANTITIES(LAM_NAME_ENTRY)};
 static const char *const spacing_names[] = {"linear", "log"}; /* LamMapAxis.is_log 0 and 1 */
@@ -38,6 +39,9 @@ static const LamKey map_keys[] = {
 LAM_KEY_TABLE(LamMapKeys, map_keys);
 
 typedef enum { PLAIN, STRESS, LENGTH } Kind;
+#define MAP_MODULUS STRESS
+#define MAP_NUMBER PLAIN
+#define MAP_ROW(X, name, law, kind, need, symbol, example, help, ...) [LAM_MAP_##name] = {MAP_##kind, __VA_ARGS__},
 
 /* What each quantity can be. Bounds in C1 + C2 and apothems. */
 static const struct {
@@ -51,8 +55,8 @@ static const struct {
     [LAM_MAP_WALL_STRENGTH] = {STRESS, {LAM_BOUND_EXCLUDED, 0}, {0}},
     [LAM_MAP_LAMELLA_NORMAL] = {STRESS, {LAM_BOUND_EXCLUDED, 0}, {0}},
     [LAM_MAP_LAMELLA_SHEAR] = {STRESS, {LAM_BOUND_EXCLUDED, 0}, {0}},
-    [LAM_MAP_C4] = {STRESS, {LAM_BOUND_INCLUDED, 0}, {0}},
-    [LAM_MAP_WALL_THICKNESS] = {LENGTH, {LAM_BOUND_EXCLUDED, 0}, {LAM_BOUND_EXCLUDED, 1}},
+    LAM_WALL_OWN_PARAMETERS(MAP_ROW, ) /* of wall.h */
+        [LAM_MAP_WALL_THICKNESS] = {LENGTH, {LAM_BOUND_EXCLUDED, 0}, {LAM_BOUND_EXCLUDED, 1}},
 };
 
 PetscReal LamMapAxisValue(const LamMapAxis *axis, PetscInt i)
@@ -70,6 +74,13 @@ const char *LamMapQuantityUnit(LamMapQuantity quantity, const LamScales *scales,
 
   *scale = factors[Quantities[quantity].kind];
   return units[Quantities[quantity].kind];
+}
+
+PetscInt LamMapQuantityParameter(LamMapQuantity quantity)
+{
+  for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++)
+    if (!strcmp(LamMapQuantityNames[quantity], LamWallParameterNames[k])) return k;
+  return -1;
 }
 
 PetscBool LamMapQuantityIsLoad(LamMapQuantity quantity)
@@ -150,6 +161,7 @@ static PetscErrorCode CheckShear(const AxisNodes *nodes, const LamScene *scene, 
 static PetscErrorCode CheckAxis(const AxisNodes *nodes, const LamScene *scene, const LamMapAxis *axis)
 {
   const LamMicrostructure *micro = &scene->micro;
+  const PetscInt k = LamMapQuantityParameter(axis->quantity);
 
   PetscFunctionBeginUser;
   switch (axis->quantity) {
@@ -173,14 +185,12 @@ static PetscErrorCode CheckAxis(const AxisNodes *nodes, const LamScene *scene, c
     LamSceneCheck(micro->interface != LAM_INTERFACE_CONTACT, nodes->quantity,
                   "law: contact has a cohesion instead; write cohesion, or interface: {law: bonded}");
     break;
-  case LAM_MAP_C4:
-  case LAM_MAP_WALL_THICKNESS:
-    LamSceneCheck(!micro->cell, nodes->quantity,
+  default: /* of the walls, or without conditions */
+    LamSceneCheck(!micro->cell || (axis->quantity != LAM_MAP_WALL_THICKNESS && k < 0), nodes->quantity,
                   "the cells differ, and a map varies all alike; choose another quantity");
-    LamSceneCheck(axis->quantity != LAM_MAP_C4 || micro->wall.law != LAM_WALL_MOONEY_RIVLIN, nodes->quantity,
-                  "law mooney_rivlin has no fibres; write law: fibre_mooney_rivlin, or another quantity");
-    break;
-  default:
+    LamSceneCheck(k < 0 || LamWallLawHas(micro->wall.law, k), nodes->quantity,
+                  "law %s has no %s; write law: %s, or another quantity", LamWallLawNames[micro->wall.law],
+                  LamWallLacking(micro->wall.law, k), LamWallLawNames[LamWallOwner(k)]);
     break;
   }
   PetscFunctionReturn(0);

@@ -350,6 +350,8 @@ static PetscErrorCode CheckChanging(const LamNode *of, LamChanging changing, con
     if (scene->regions[r].micro.interface == LAM_INTERFACE_CONTACT) contact = PETSC_TRUE;
   LamSceneCheck(!of_water || scene->process.has_water, of,
                 "belongs to process.water, which is missing; write that block, or leave it out");
+  LamSceneCheck(!LamSceneLacksChanging(scene, changing), of,
+                "no wall of the scene has it; leave it out, or choose another law");
   LamSceneCheck(changing != LAM_CHANGING_WALL_STRENGTH || !isnan(scene->strength.wall), of,
                 "strength.wall is not given; write it, or leave this out");
   LamSceneCheck(changing != LAM_CHANGING_LAMELLA || contact || !isnan(scene->strength.lamella_normal) ||

@@ -40,17 +40,7 @@ static const LamKey region_keys[] = {
     {ANGLE("macro.regions[].cell.orientation"), INTO(LamRegion, micro.orientation), FROM(-360), TO(360),
      .default_words = AS_RVE, .example = "30 deg", .help = "Angle of face normal 0 to the X1 axis."},
     {MAP("macro.regions[].wall"), .example = "{C1: 0.2 MPa}", .help = "Its wall, as `rve.wall`."},
-    {NAME_OF("macro.regions[].wall.law", LamWallLawNames, LAM_WALL_LAW_COUNT), .default_words = AS_RVE,
-     .example = "mooney_rivlin", .help = "Law of its wall."},
-    {STRESS("macro.regions[].wall.C1"), ABOVE(0), .default_words = AS_RVE, .example = "0.2 MPa",
-     .help = "First Mooney-Rivlin modulus."},
-    {STRESS("macro.regions[].wall.C2"), FROM(0), .default_words = AS_RVE, .example = "0.02 MPa",
-     .help = "Second Mooney-Rivlin modulus."},
-    {STRESS("macro.regions[].wall.C4"), FROM(0), .default_words = AS_RVE, .example = "2 MPa", .help = "Fibre modulus."},
-    {STRESS("macro.regions[].wall.bulk_modulus"), ABOVE(0), .default_words = AS_RVE ", in proportion to C1 + C2",
-     .example = "220 MPa", .help = "Bulk modulus."},
-    {NAME_OF("macro.regions[].wall.fibres", LamFibresNames, LAM_FIBRES_COUNT), .default_words = AS_RVE,
-     .example = "tension", .help = "Whether fibres resist compression."},
+    LAM_OTHER_WALL("macro.regions[].wall", AS_RVE),
     {MAP("macro.regions[].interface"), .example = "{law: bonded}", .help = "Its middle lamella, as `rve.interface`."},
     {NAME_OF("macro.regions[].interface.law", LamInterfaceLawNames, LAM_INTERFACE_LAW_COUNT),
      INTO(LamRegion, micro.interface), .default_words = AS_RVE, .example = "bonded", .help = "`bonded` or `contact`."},
@@ -100,14 +90,10 @@ static PetscErrorCode BuildScales(const LamNode *entry, const LamScene *scene, L
     PetscCall(LamSceneCheckScale(apothem, r->scales.length));
   }
   if (!node) PetscFunctionReturn(0);
-  PetscCall(
-      LamSceneReadWall(entry->document, entry, "macro.regions[].wall", scene->scales.stress, &scene->micro.wall, wall));
+  PetscCall(LamSceneReadWall(node, &scene->scales, &scene->micro.wall, wall));
   unit = wall->C1 + wall->C2;
   PetscCall(LamSceneCheckScale(node, unit * scene->scales.stress));
-  wall->C1 /= unit;
-  wall->C2 /= unit;
-  wall->C4 /= unit;
-  wall->bulk_modulus /= unit;
+  LamWallScale(wall, 1.0, unit);
   r->scales.stress *= unit;
   PetscFunctionReturn(0);
 }

@@ -42,6 +42,33 @@
 #define TO(x) .upper = {LAM_BOUND_INCLUDED, x}
 #define BELOW(x) .upper = {LAM_BOUND_EXCLUDED, x}
 
+/* Rows of a wall's keys, from the lists of wall.h. */
+#define WALL_MODULUS(key_path) STRESS(key_path)
+#define WALL_NUMBER(key_path) REAL(key_path)
+#define LAM_FIRST(a, b) a
+#define LAM_SECOND(a, b) b
+#define LAM_OTHER_WALL_KEY(X, name, law, kind, need, symbol, sample, about, ...)                                       \
+  {WALL_##kind(LAM_FIRST X "." #name),                                                                                 \
+   INTO(LamWall, name),                                                                                                \
+   .default_words = LAM_SECOND X,                                                                                      \
+   .example = sample,                                                                                                  \
+   .help = about ".",                                                                                                  \
+   __VA_ARGS__},
+/* Of a wall that is that of `rve`, or as the words `own` say, in all that it leaves out. */
+#define LAM_OTHER_WALL(prefix, own)                                                                                    \
+  {NAME_OF(prefix ".law", LamWallLawNames, LAM_WALL_LAW_COUNT), INTO(LamWall, law), .default_words = own,              \
+   .example = "mooney_rivlin", .help = "Law of its wall."},                                                            \
+      LAM_WALL_PARAMETERS(LAM_OTHER_WALL_KEY, (prefix, own)){STRESS(prefix ".bulk_modulus"),                           \
+                                                             INTO(LamWall, bulk_modulus),                              \
+                                                             ABOVE(0),                                                 \
+                                                             .default_words = own ", in proportion to C1 + C2",        \
+                                                             .example = "110 MPa",                                     \
+                                                             .help = "Bulk modulus."},                                 \
+  {                                                                                                                    \
+    NAME_OF(prefix ".fibres", LamFibresNames, LAM_FIBRES_COUNT), INTO(LamWall, fibres),                                \
+        .default_words = own, .example = "tension", .help = "Whether fibres resist compression."                       \
+  }
+
 #define CHOSEN "chosen for the wanted accuracy"
 
 #endif

@@ -140,7 +140,7 @@ PetscErrorCode LamSceneBuildRVE(const LamNode *root, LamScene *scene)
   PetscCall(LamSceneCheckScale(C1, scales->stress));
   LamSceneCheck(thickness->value.number[0] < scales->length, thickness,
                 "the wall fills the cell; write a thickness less than the apothem");
-  PetscCall(LamSceneReadWall(root->document, root, "rve.wall", scales->stress, NULL, &micro->wall));
+  PetscCall(LamSceneReadWall(LamNodeFind(root, "rve.wall"), scales, NULL, &micro->wall));
   micro->grading = LamNodeFind(rve, "mesh.along") ? 0.0 : -1.0; /* negative: the planner chooses */
   PetscCall(LamSceneFill(root, scales, LamScene, scene));
   LamSceneCheckName(!patch || !cells, cells,

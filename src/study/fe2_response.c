@@ -141,7 +141,8 @@ static PetscErrorCode CreateNodeSolver(LamFE2Tissue *tissue)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamFE2ChangeWalls(LamRVE rve, const LamMicrostructure *micro, const PetscReal factor[3])
+PetscErrorCode LamFE2ChangeWalls(LamRVE rve, const LamMicrostructure *micro,
+                                 const PetscReal factor[LAM_WALL_PARAMETER_COUNT])
 {
   LamMicrostructure changed;
   PetscErrorCode ierr;
@@ -149,13 +150,7 @@ PetscErrorCode LamFE2ChangeWalls(LamRVE rve, const LamMicrostructure *micro, con
   PetscFunctionBeginUser;
   PetscCall(LamMicrostructureCopy(micro, &changed));
   const PetscInt cells = changed.cell ? changed.cells[0] * changed.cells[1] : 0;
-  for (PetscInt c = -1; c < cells; c++) {
-    LamWall *wall = c < 0 ? &changed.wall : &changed.cell[c].wall;
-
-    wall->C1 *= factor[0];
-    wall->C2 *= factor[1];
-    wall->C4 *= factor[2];
-  }
+  for (PetscInt c = -1; c < cells; c++) LamWallMultiply(c < 0 ? &changed.wall : &changed.cell[c].wall, factor);
   ierr = LamRVEChangeModuli(rve, &changed);
   PetscCall(LamMicrostructureDestroy(&changed));
   PetscCall(ierr);

@@ -55,14 +55,15 @@ typedef struct LamFE2Run_s {
   /* rank 0 only */
   LamFE2File out;
   LamSummary summary;
-  PetscReal walls;         /* moduli over those of the tissues: of a process; else 1 */
-  PetscReal wall_ratio[3]; /* C1, C2, C4 over that, where they do not change alike */
+  PetscReal walls;        /* moduli over those of the tissues: of a process; else 1 */
+  PetscBool walls_differ; /* their parameters do not change alike: each over that is */
+  PetscReal wall_ratio[LAM_WALL_PARAMETER_COUNT];
 
   LamFE2Totals totals;
   PetscReal start;
 } LamFE2Run;
 
-#define LAM_FE2_RUN ((LamFE2Run){.walls = 1, .wall_ratio = {1, 1, 1}})
+#define LAM_FE2_RUN ((LamFE2Run){.walls = 1})
 
 /* ---- fe2_run.c; collective ---- */
 /* Reads and checks everything; nothing is written. *finished: with `resume`, out_path has all steps already. */
@@ -83,8 +84,9 @@ PetscErrorCode LamFE2Disconnect(LamFE2Run *run); /* after the macroscale solver'
 PetscErrorCode LamFE2PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue);
 PetscErrorCode LamFE2ConnectTissue(LamFE2Run *run, LamFE2Tissue *tissue, LamResponder **responder);
 PetscErrorCode LamFE2DisconnectTissue(LamFE2Tissue *tissue);
-/* The RVE of this tissue with its moduli C1, C2, C4 multiplied. */
-PetscErrorCode LamFE2ChangeWalls(LamRVE rve, const LamMicrostructure *micro, const PetscReal factor[3]);
+/* The RVE of this tissue with each parameter of its walls multiplied. */
+PetscErrorCode LamFE2ChangeWalls(LamRVE rve, const LamMicrostructure *micro,
+                                 const PetscReal factor[LAM_WALL_PARAMETER_COUNT]);
 
 /* ---- fe2_record.c; on rank 0 but for the first, which is collective ---- */
 PetscErrorCode LamFE2OpenFiles(LamFE2Run *run);

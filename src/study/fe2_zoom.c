@@ -233,8 +233,7 @@ static PetscErrorCode ZoomOne(LamFE2Run *run, const Zoom *zoom, const char bytes
   PetscCall(LamRVESetTolerance(rve, scene->tolerance));
   PetscCall(LamRVESetUp(rve));
   PetscCall(LamRVESetInterrupt(rve, LamStopInterrupt, NULL));
-  if (run->wall_ratio[0] != 1 || run->wall_ratio[1] != 1 || run->wall_ratio[2] != 1)
-    PetscCall(LamFE2ChangeWalls(rve, &scene->micro, run->wall_ratio));
+  if (run->walls_differ) PetscCall(LamFE2ChangeWalls(rve, &scene->micro, run->wall_ratio));
   PetscCall(LamRVEStateCreate(rve, &state));
   PetscCall(Solve(run, zoom, rve, bytes, state, found));
   PetscCall(LamRVEStateDestroy(&state));

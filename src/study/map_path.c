@@ -93,13 +93,12 @@ static void SetQuantity(LamScene *scene, LamMapQuantity quantity, PetscReal valu
   case LAM_MAP_LAMELLA_SHEAR:
     scene->strength.lamella_shear = value;
     break;
-  case LAM_MAP_C4:
-    scene->micro.wall.C4 = value;
-    break;
   case LAM_MAP_WALL_THICKNESS:
     scene->micro.wall_thickness = value;
     break;
   default: /* of the load: cuts */
+    if (LamMapQuantityParameter(quantity) >= 0)
+      *LamWallAt(&scene->micro.wall, LamMapQuantityParameter(quantity)) = value;
     break;
   }
 }

@@ -5,6 +5,7 @@
   of error_model.h. A body of cells in contact moves by their tangent, which contact that passes from node to node makes
   uneven: 4-8 % with 6 elements along a face, 2 % with 12, below 1 % with BODY_ALONG (docs/results/performance.md, FE²).
 */
+#include "wall_law.h"
 #include "error_model.h"
 #include "map.h"
 #include "plan.h"
@@ -35,7 +36,8 @@ static PetscReal LargestStrain(const LamScene *scene)
 static PetscErrorCode ChooseMesh(const LamScene *scene, LamMicrostructure *micro)
 {
   const PetscBool uneven = (PetscBool)(scene->has_macro && micro->interface == LAM_INTERFACE_CONTACT);
-  LamErrorCase c = {micro->interface, micro->wall_thickness, micro->wall.C4 / micro->wall.C1, LargestStrain(scene)};
+  LamErrorCase c = {micro->interface, micro->wall_thickness, LamWallFibreModulus(&micro->wall) / micro->wall.C1,
+                    LargestStrain(scene)};
   PetscInt along, through;
   PetscReal grading;
 

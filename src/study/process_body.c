@@ -87,12 +87,13 @@ static PetscErrorCode SetMembranes(LamBodyStudy *study)
 }
 
 /* Moduli of all tissues; set of LamBodySetWalls. */
-static PetscErrorCode ChangeWalls(void *ctx, const PetscReal factor[3])
+static PetscErrorCode ChangeWalls(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT])
 {
   LamBodyStudy *study = (LamBodyStudy *)ctx;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(study->fe2.wall_ratio, factor, 3));
+  study->fe2.walls_differ = PETSC_TRUE;
+  PetscCall(PetscArraycpy(study->fe2.wall_ratio, factor, LAM_WALL_PARAMETER_COUNT));
   for (PetscInt t = 0; t < study->fe2.tissues.count; t++)
     PetscCall(LamProcessChangeWalls(&study->fe2.tissues.tissues[t], factor));
   PetscFunctionReturn(0);

@@ -94,6 +94,7 @@ PetscErrorCode LamBodyHistoryWrite(LamRecordWriter writer, void *ctx)
     PetscCall(WriteColumns(h, writer, name, offsetof(LamBodyState, ratio) + (size_t)k * sizeof(PetscReal), 1, 1, "1"));
   }
   for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++) {
+    if (LamSceneLacksChanging(h->scene, (LamChanging)k)) continue;
     PetscCall(PetscSNPrintf(name, sizeof(name), "factor/%s", LamChangingNames[k]));
     PetscCall(WriteColumns(h, writer, name, offsetof(LamBodyState, factor) + (size_t)k * sizeof(PetscReal), 1, 1, "1"));
   }

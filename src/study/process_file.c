@@ -65,6 +65,7 @@ static PetscErrorCode WriteColumns(const LamProcessStudy *study)
     PetscCall(WriteColumn(study, name, offsetof(LamProcessState, ratio) + (size_t)k * sizeof(PetscReal), 1, "1"));
   }
   for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++) {
+    if (LamSceneLacksChanging(study->scene, (LamChanging)k)) continue;
     PetscCall(PetscSNPrintf(name, sizeof(name), "/process/factor/%s", LamChangingNames[k]));
     PetscCall(WriteColumn(study, name, offsetof(LamProcessState, factor) + (size_t)k * sizeof(PetscReal), 1, "1"));
   }

@@ -15,13 +15,11 @@ static PetscBool IsChosen(const LamProcessStudy *study, PetscInt k, PetscInt fra
 
 static PetscErrorCode TellModuli(LamProcessStudy *study, const LamProcessState *state)
 {
-  const LamWall *wall = &study->scene->micro.wall;
-  const PetscReal C1 = state->factor[LAM_CHANGING_C1], C2 = state->factor[LAM_CHANGING_C2];
-  const PetscReal shear = wall->C1 * C1 + wall->C2 * C2;
-  const PetscReal ratio[3] = {C1 / shear, C2 / shear, state->factor[LAM_CHANGING_C4] / shear};
+  PetscReal ratio[LAM_WALL_PARAMETER_COUNT];
 
   PetscFunctionBeginUser;
   if (LamProcessWallsStayAlike(study->scene)) PetscFunctionReturn(0);
+  (void)LamWallRatios(&study->scene->micro.wall, &state->factor[LAM_CHANGING_OF_PARAMETER(0)], ratio);
   PetscCall(LamProcessChangeWalls(study->response.tissues.tissues, ratio));
   PetscFunctionReturn(0);
 }

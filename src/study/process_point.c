@@ -37,7 +37,7 @@ static PetscErrorCode Disconnect(LamProcessStudy *study)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamProcessChangeWalls(void *ctx, const PetscReal factor[3])
+PetscErrorCode LamProcessChangeWalls(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT])
 {
   LamFE2Tissue *tissue = (LamFE2Tissue *)ctx;
 

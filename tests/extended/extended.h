@@ -10,12 +10,14 @@
 #ifndef LAM_TEST_EXTENDED_H
 #define LAM_TEST_EXTENDED_H
 
+#define EXTENDED_PARAMETERS 16 /* at most, of a wall */
+
 /* As LamMicrostructure and LamLoad, in double precision; all cells alike, periodic. Everything is taken as exact. */
 typedef struct {
   double thickness, orientation, grading, clearance;
   int cells[2], along, through;
   int law, fibres, contact;
-  double C1, C2, C4, bulk_modulus;
+  double parameter[EXTENDED_PARAMETERS], bulk_modulus; /* of the wall, as in lamella/wall.h */
   double F[9], turgor, cohesion;
 } ExtendedCase;
 

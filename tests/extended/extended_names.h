@@ -17,6 +17,7 @@
 #define LamGaussPoint EXTENDED(GaussPoint)
 #define LamShape EXTENDED(Shape)
 #define LamWallLawGet EXTENDED(WallLawGet)
+#define LamWallFibreModulus EXTENDED(WallFibreModulus)
 #define LamMatrixMooneyRivlin EXTENDED(MatrixMooneyRivlin)
 #define LamFibreQuadratic EXTENDED(FibreQuadratic)
 #define LamAddPressure EXTENDED(AddPressure)

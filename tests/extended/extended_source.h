@@ -130,6 +130,9 @@ PetscErrorCode LamFactorSolve(LamFactor factor, PetscInt count, const PetscReal 
   PetscFunctionReturn(0);
 }
 
+_Static_assert(LAM_WALL_PARAMETER_COUNT <= EXTENDED_PARAMETERS, "room for all parameters of a wall");
+#define PARAMETER_OF_CASE(X, name, ...) .name = c->parameter[LAM_WALL_##name],
+
 static LamMicrostructure Microstructure(const ExtendedCase *c)
 {
   LamMicrostructure micro = {.wall_thickness = c->thickness,
@@ -143,10 +146,7 @@ static LamMicrostructure Microstructure(const ExtendedCase *c)
 
   micro.wall = (LamWall){.law = (LamWallLawType)c->law,
                          .fibres = (LamFibres)c->fibres,
-                         .C1 = c->C1,
-                         .C2 = c->C2,
-                         .C4 = c->C4,
-                         .bulk_modulus = c->bulk_modulus};
+                         LAM_WALL_PARAMETERS(PARAMETER_OF_CASE, ).bulk_modulus = c->bulk_modulus};
   return micro;
 }
 

@@ -32,7 +32,8 @@ static void fill_scene(void)
   snprintf(Scene.path, sizeof Scene.path, "test.yaml");
   Scene.scales = (LamScales){75e-6, 0.11e6, 0.01};
   Scene.micro = (LamMicrostructure){.wall_thickness = 0.5, .cells = {1, 1}, .along = 1, .through = 1};
-  Scene.micro.wall = (LamWall){LAM_WALL_FIBRE_MOONEY_RIVLIN, LAM_FIBRES_BOTH, 10. / 11, 1. / 11, 100. / 11, 1000};
+  Scene.micro.wall = (LamWall){
+      .law = LAM_WALL_FIBRE_MOONEY_RIVLIN, .C1 = 10. / 11, .C2 = 1. / 11, .C4 = 100. / 11, .bulk_modulus = 1000};
   Scene.accuracy = 0.01;
 }
 

@@ -51,7 +51,7 @@ static LamMicrostructure Tissue(LamFamilyAxis axis, PetscReal value)
   LamMicrostructure micro = DefaultTissue();
 
   if (axis == LAM_FAMILY_WALL_THICKNESS) micro.wall_thickness = value;
-  if (axis == LAM_FAMILY_FIBRES) micro.wall.C4 = value * micro.wall.C1;
+  if (axis == LAM_FAMILY_C4) micro.wall.C4 = value * micro.wall.C1;
   if (axis == LAM_FAMILY_MATRIX) {
     micro.wall.C1 = 1 / (1 + value);
     micro.wall.C2 = value / (1 + value);
@@ -103,7 +103,7 @@ TEST(fibres_of_any_stiffness)
 {
   static const PetscReal values[KNOTS] = {4, 7, 12, 20};
 
-  CheckAxis(LAM_FAMILY_FIBRES, values, 9);
+  CheckAxis(LAM_FAMILY_C4, values, 9);
 }
 
 TEST(matrices_of_any_kind)
@@ -119,7 +119,7 @@ TEST(at_a_knot_the_answer_is_its_database_s)
   LamFamily family;
 
   for (int i = 0; i < 2; i++) {
-    const LamMicrostructure micro = Tissue(LAM_FAMILY_FIBRES, i ? 10 : 8);
+    const LamMicrostructure micro = Tissue(LAM_FAMILY_C4, i ? 10 : 8);
 
     Build(&micro, &databases[i]);
   }
@@ -142,7 +142,7 @@ TEST(beyond_the_knots_is_refused)
   LamResponse answer;
 
   for (int i = 0; i < 2; i++) {
-    const LamMicrostructure micro = Tissue(LAM_FAMILY_FIBRES, i ? 10 : 8);
+    const LamMicrostructure micro = Tissue(LAM_FAMILY_C4, i ? 10 : 8);
 
     Build(&micro, &databases[i]);
   }

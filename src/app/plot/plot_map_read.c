@@ -32,10 +32,16 @@ static void LabelSide(LamMapSide *side)
                 {"wall_strength", "strength of the wall"},
                 {"lamella_normal", "normal strength of the lamella"},
                 {"lamella_shear", "shear strength of the lamella"},
-                {"C4", "fibre modulus $C$_{4}"},
                 {"wall_thickness", "wall thickness $t$"}};
   const char *label = side->quantity;
+  char words[40], parameter[LAM_NAME_LENGTH];
 
+  for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++) {
+    if (strcmp(side->quantity, LamWallParameterNames[k])) continue;
+    snprintf(parameter, sizeof parameter, "%s %.16s", LamWallParameterWords(k, sizeof words, words),
+             LamWallParameterSymbol(k));
+    label = parameter;
+  }
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(labels); i++)
     if (!strcmp(side->quantity, labels[i].quantity)) label = labels[i].label;
   if (side->is_log && strcmp(side->unit, "1"))

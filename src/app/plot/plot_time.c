@@ -53,8 +53,14 @@ PetscErrorCode LamTimeReadGroup(const LamTimeLine *line, const char group[], Pet
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < n; k++) {
-    PetscCall(PetscSNPrintf(name, sizeof(name), "%s/%s", group, names[k]));
-    PetscCall(LamTimeReadColumn(line, name, &values[*count]));
+    PetscInt rank, dims[4];
+    PetscBool found;
+
+    PetscCall(PetscSNPrintf(name, sizeof(name), "/process/%s/%s", group, names[k]));
+    PetscCall(LamFileReadReals(line->path, name, &found, &rank, dims, &values[*count]));
+    if (!found) continue; /* a parameter that the walls do not have */
+    PetscCall(PetscFree(values[*count]));
+    PetscCall(LamPlotReadReals(line->path, name, line->n, 1, &values[*count]));
     if (!shows(line->n, values[*count])) {
       PetscCall(PetscFree(values[*count]));
       continue;

@@ -1,0 +1,77 @@
+/*
+  Wall laws and their parameters, each listed once. The struct, scene files and their reference, descriptions and
+  hashes, `check`, `map`, kinetics and families of databases follow these lists.
+
+  A new law is one row of LAM_WALL_LAWS with the rows of its own parameters here, one kernel file in rve/wall and its
+  row in wall_law.c.
+*/
+#ifndef LAMELLA_WALL_H
+#define LAMELLA_WALL_H
+
+#include <petscsys.h>
+
+/* L(symbol, name, PETSC_TRUE with fibres, help in a list of all laws) */
+#define LAM_WALL_LAWS(L)                                                                                               \
+  L(LAM_WALL_FIBRE_MOONEY_RIVLIN, "fibre_mooney_rivlin", PETSC_TRUE, "Mooney-Rivlin with fibres along the wall; ")     \
+  L(LAM_WALL_MOONEY_RIVLIN, "mooney_rivlin", PETSC_FALSE, "without fibres.")
+
+/*
+  M(X, name, law, kind, need, symbol in pictures, example, help, bounds...); X is handed on. law: `all`, or the name of
+  the one law that has it. kind: MODULUS (a stress, kept in C1 + C2; "walls" of kinetics and of fields of cells scale
+  it) or NUMBER. need: ALWAYS; BY_LAW (required by its law); OPTIONAL (0 where it is not given).
+*/
+#define LAM_WALL_MATRIX_PARAMETERS(M, X)                                                                               \
+  M(X, C1, all, MODULUS, ALWAYS, "$C$_{1}", "0.1 MPa", "First Mooney-Rivlin modulus", ABOVE(0))                        \
+  M(X, C2, all, MODULUS, ALWAYS, "$C$_{2}", "0.01 MPa", "Second Mooney-Rivlin modulus", FROM(0))
+#define LAM_WALL_OWN_PARAMETERS(M, X)                                                                                  \
+  M(X, C4, fibre_mooney_rivlin, MODULUS, BY_LAW, "$C$_{4}", "1 MPa", "Fibre modulus", FROM(0))
+#define LAM_WALL_PARAMETERS(M, X) LAM_WALL_MATRIX_PARAMETERS(M, X) LAM_WALL_OWN_PARAMETERS(M, X)
+
+#define LAM_WALL_LAW_ENUM(symbol, name, fibres, help) symbol,
+#define LAM_WALL_ENUM(prefix, name, ...) prefix##name,
+#define LAM_WALL_MEMBER(X, name, ...) PetscReal name;
+
+#define LAM_FIBRES(X)                                                                                                  \
+  X(LAM_FIBRES_BOTH, "both")                                                                                           \
+  X(LAM_FIBRES_TENSION, "tension")
+typedef enum { LAM_WALL_LAWS(LAM_WALL_LAW_ENUM) LAM_WALL_LAW_COUNT } LamWallLawType;
+typedef enum { LAM_FIBRES_BOTH, LAM_FIBRES_TENSION, LAM_FIBRES_COUNT } LamFibres;
+typedef enum {
+  LAM_WALL_PARAMETERS(LAM_WALL_ENUM, LAM_WALL_) /* LAM_WALL_C1, ... */
+  LAM_WALL_PARAMETER_COUNT
+} LamWallParameter;
+extern const char *const LamWallLawNames[];       /* "fibre_mooney_rivlin", ... */
+extern const char *const LamFibresNames[];        /* "both", "tension" */
+extern const char *const LamWallParameterNames[]; /* "C1", ... */
+
+/* Wall material, moduli in units of C1 + C2 (so C1 + C2 = 1); parameters of other laws are 0. */
+typedef struct {
+  LamWallLawType law;
+  LamFibres fibres;
+  LAM_WALL_PARAMETERS(LAM_WALL_MEMBER, )
+  PetscReal bulk_modulus;
+} LamWall;
+
+PetscReal *LamWallAt(LamWall *wall, PetscInt parameter);
+PetscReal LamWallGet(const LamWall *wall, PetscInt parameter);
+PetscBool LamWallLawHas(LamWallLawType law, PetscInt parameter);
+PetscBool LamWallLawHasFibres(LamWallLawType law);
+LamWallLawType LamWallOwner(PetscInt parameter);                    /* a law that has it */
+const char *LamWallLacking(LamWallLawType law, PetscInt parameter); /* "fibres" or "C4", of a law without C4 */
+PetscBool LamWallParameterIsModulus(PetscInt parameter);
+const char *LamWallParameterSymbol(PetscInt parameter); /* in pictures: "$C$_{4}" */
+/* "fibre modulus", in `text`. */
+const char *LamWallParameterWords(PetscInt parameter, size_t size, char text[]);
+
+/* All moduli times `by / over`, one of which is 1, without a rounding more. */
+void LamWallScale(LamWall *wall, PetscReal by, PetscReal over);
+/* Each parameter by its factor; not the bulk modulus. */
+void LamWallMultiply(LamWall *wall, const PetscReal factor[LAM_WALL_PARAMETER_COUNT]);
+/*
+  Of a wall whose parameters change by these factors: returns the new C1 + C2; ratio: the factors of moduli over that,
+  those of numbers themselves.
+*/
+PetscReal LamWallRatios(const LamWall *wall, const PetscReal factor[LAM_WALL_PARAMETER_COUNT],
+                        PetscReal ratio[LAM_WALL_PARAMETER_COUNT]);
+
+#endif
