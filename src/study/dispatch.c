@@ -26,10 +26,11 @@ typedef struct {
   PetscReal cost;
 } Task;
 
-/* The number of a task, and its input or result behind it. */
+/* A task with its input, or its result. */
 typedef struct {
   PetscInt64 task;
-  char bytes[];
+  size_t size;
+  char bytes[]; /* [size] */
 } Message;
 
 /* A task that was sent to a worker. */
@@ -47,10 +48,9 @@ struct LamDispatch_s {
   MPI_Comm comm; /* used for nothing else */
   PetscMPIInt rank, size;
   LamDispatchJob job;
-  Message *current, *result;      /* of the task under way; owned */
-  Message *next;                  /* received; owned */
-  size_t current_size, next_size; /* of inputs */
-  PetscBool has_next;             /* workers: `next` is a task */
+  Message *current, *result; /* of the task under way; owned */
+  Message *next;             /* received; owned */
+  PetscBool has_next;        /* workers: `next` is a task */
   PetscBool stopping;
   PetscErrorCode ierr; /* of LamDispatchInterrupt */
   PetscReal pause, service;
@@ -113,23 +113,23 @@ PetscErrorCode LamDispatchAdd(LamDispatch dispatch, PetscInt64 first, PetscInt64
 
 /* ---- rank 0: handing out, and results ---- */
 
-/* The first of the waiting tasks; *size: of its input. */
-static PetscErrorCode TakeTask(LamDispatch d, Message *message, size_t *size)
+/* The first of the waiting tasks. */
+static PetscErrorCode TakeTask(LamDispatch d, Message *message)
 {
   PetscFunctionBeginUser;
   message->task = Pop(d);
-  *size = 0;
-  if (d->job.describe) PetscCall(d->job.describe(d->job.ctx, message->task, message->bytes, size));
+  message->size = 0;
+  if (d->job.describe) PetscCall(d->job.describe(d->job.ctx, message->task, message->bytes, &message->size));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Send(LamDispatch d, const Message *message, size_t size, PetscMPIInt rank, PetscMPIInt tag,
+static PetscErrorCode Send(LamDispatch d, const Message *message, PetscMPIInt rank, PetscMPIInt tag,
                            MPI_Request *request)
 {
   PetscMPIInt count;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMPIIntCast((PetscInt)(sizeof(*message) + size), &count));
+  PetscCall(PetscMPIIntCast((PetscInt)(sizeof(*message) + message->size), &count));
   PetscCallMPI(MPI_Isend(message, count, MPI_BYTE, rank, tag, d->comm, request));
   PetscFunctionReturn(0);
 }
@@ -143,12 +143,11 @@ static PetscErrorCode HandOut(LamDispatch d)
     for (PetscMPIInt rank = 1; rank < d->size && d->waiting > ahead * d->size; rank++) {
       Worker *worker = &d->worker[rank];
       Sent *sent = &worker->sent[worker->n];
-      size_t size;
 
       if (worker->n != ahead) continue;
       PetscCall(PetscMalloc(sizeof(Message) + d->job.input_size, &sent->message));
-      PetscCall(TakeTask(d, sent->message, &size));
-      PetscCall(Send(d, sent->message, size, rank, TAG_TASK, &sent->request));
+      PetscCall(TakeTask(d, sent->message));
+      PetscCall(Send(d, sent->message, rank, TAG_TASK, &sent->request));
       worker->n++;
     }
   }
@@ -190,7 +189,6 @@ static PetscErrorCode Receive(LamDispatch d, PetscBool *found)
   PetscCallMPI(MPI_Recv(d->next, count, MPI_BYTE, status.MPI_SOURCE, status.MPI_TAG, d->comm, MPI_STATUS_IGNORE));
   switch (status.MPI_TAG) {
   case TAG_TASK:
-    d->next_size = (size_t)count - sizeof(Message);
     d->has_next = PETSC_TRUE;
     break;
   case TAG_RESULT:
@@ -251,13 +249,16 @@ static void Pause(LamDispatch d)
 /* ---- tasks ---- */
 
 /* Does the task `current`. *done: it was not given up. */
-static PetscErrorCode DoTask(LamDispatch d, size_t *size, PetscBool *done)
+static PetscErrorCode DoTask(LamDispatch d, PetscBool *done)
 {
+  const Message *task = d->current;
+  Message *result = d->result;
+
   PetscFunctionBeginUser;
-  *size = d->job.result_size;
-  memset(d->result->bytes, 0, *size); /* no byte of a message is left unset */
-  d->result->task = d->current->task;
-  PetscCall(d->job.work(d->job.ctx, d->current->task, d->current->bytes, d->current_size, d->result->bytes, size));
+  result->task = task->task;
+  result->size = d->job.result_size;
+  memset(result->bytes, 0, result->size); /* no byte of a message is left unset */
+  PetscCall(d->job.work(d->job.ctx, task->task, task->bytes, task->size, result->bytes, &result->size));
   PetscCall(d->ierr);
   d->pause = 0;
   *done = (PetscBool)(!d->stopping && !LamStopRequested());
@@ -267,7 +268,6 @@ static PetscErrorCode DoTask(LamDispatch d, size_t *size, PetscBool *done)
 static PetscErrorCode RunRoot(LamDispatch d)
 {
   PetscBool done;
-  size_t size;
 
   PetscFunctionBeginUser;
   while (d->unfinished && !LamStopRequested()) {
@@ -276,8 +276,8 @@ static PetscErrorCode RunRoot(LamDispatch d)
       Pause(d);
       continue;
     }
-    PetscCall(TakeTask(d, d->current, &d->current_size));
-    PetscCall(DoTask(d, &size, &done));
+    PetscCall(TakeTask(d, d->current));
+    PetscCall(DoTask(d, &done));
     if (done) PetscCall(Finish(d, d->result));
   }
   PetscFunctionReturn(0);
@@ -321,8 +321,8 @@ static PetscErrorCode Await(LamDispatch d)
   PetscFunctionReturn(0);
 }
 
-/* The one before has left by then, as rank 0 handles messages more often than a task ends. */
-static PetscErrorCode SendResult(LamDispatch d, size_t size)
+/* Waits for the result before, which rank 0 has taken unless it was busy for a whole task. */
+static PetscErrorCode SendResult(LamDispatch d)
 {
   Message *const sent = d->sending;
 
@@ -330,7 +330,7 @@ static PetscErrorCode SendResult(LamDispatch d, size_t size)
   PetscCallMPI(MPI_Wait(&d->result_sent, MPI_STATUS_IGNORE));
   d->sending = d->result;
   d->result = sent;
-  PetscCall(Send(d, d->sending, size, 0, TAG_RESULT, &d->result_sent));
+  PetscCall(Send(d, d->sending, 0, TAG_RESULT, &d->result_sent));
   PetscFunctionReturn(0);
 }
 
@@ -338,7 +338,6 @@ PetscErrorCode LamDispatchServe(LamDispatch dispatch)
 {
   LamDispatch d = dispatch;
   PetscBool done = PETSC_TRUE;
-  size_t size;
 
   PetscFunctionBeginUser;
   while (done) {
@@ -347,11 +346,10 @@ PetscErrorCode LamDispatchServe(LamDispatch dispatch)
     PetscCall(Await(d));
     if (!d->has_next || d->stopping || LamStopRequested()) break;
     d->current = d->next;
-    d->current_size = d->next_size;
     d->next = free;
     d->has_next = PETSC_FALSE;
-    PetscCall(DoTask(d, &size, &done));
-    if (done) PetscCall(SendResult(d, size));
+    PetscCall(DoTask(d, &done));
+    if (done) PetscCall(SendResult(d));
   }
   PetscCallMPI(MPI_Wait(&d->result_sent, MPI_STATUS_IGNORE));
   PetscCallMPI(MPI_Send(NULL, 0, MPI_BYTE, 0, TAG_LEFT, d->comm));

@@ -1,14 +1,13 @@
 /*
   Tasks that rank 0 hands out: on one rank, and on several by tests/mpi/dispatch.sh.
 */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
 #include <signal.h>
 #include <string.h>
 #include <time.h>
 #include <dispatch.h>
+#include <support/test.h>
+
+TEST_GROUP(.petsc = 1);
 
 #define CHECK(call) assert_int_equal((call), 0)
 enum { TASKS = 300, MOST = 2 * TASKS, FAIL_AFTER = 20 };
@@ -84,7 +83,7 @@ static void Begin(Run *run)
 }
 
 /* Results of all tasks, with those that were added meanwhile, once each. */
-static void test_all_once(void **state)
+TEST(test_all_once)
 {
   static Run run = {.more = TASKS / 2};
   PetscBool complete;
@@ -104,7 +103,7 @@ static void test_all_once(void **state)
 }
 
 /* By predicted cost, whatever the order in which they were added. */
-static void test_longest_first(void **state)
+TEST(test_longest_first)
 {
   static Run run;
   PetscBool complete;
@@ -123,7 +122,7 @@ static void test_longest_first(void **state)
 }
 
 /* An error of `worked` ends all ranks, which have rank 0's code. */
-static void test_error(void **state)
+TEST(test_error)
 {
   static Run run = {.fail_after = FAIL_AFTER};
   PetscErrorCode ierr = 0;
@@ -143,13 +142,14 @@ static void test_error(void **state)
   CHECK(PetscPopErrorHandler());
 }
 
-/* A signal on the last rank alone ends all. */
-static void test_signal(void **state)
+/* A signal on the last rank alone ends all. The last test: the request stays. */
+TEST(test_signal)
 {
   static Run run;
   PetscBool complete;
 
   Begin(&run);
+  signal(SIGTERM, LamStopRequest);
   if (run.rank == run.size - 1) raise(SIGTERM);
   if (run.rank) {
     CHECK(LamDispatchServe(run.dispatch));
@@ -161,19 +161,4 @@ static void test_signal(void **state)
     assert_in_range(run.count, 0, TASKS - 1);
   }
   CHECK(LamDispatchDestroy(&run.dispatch));
-}
-
-int main(int argc, char **argv)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_all_once), cmocka_unit_test(test_longest_first), cmocka_unit_test(test_error),
-      cmocka_unit_test(test_signal), /* the last: the wish to stop stays */
-  };
-  int failed;
-
-  cmocka_set_message_output(CM_OUTPUT_STDOUT);
-  signal(SIGTERM, LamStopRequest);
-  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() || failed;
 }
