@@ -5,8 +5,7 @@
   where there is room: first beside the best, then beside the planned one. Grey below: errors of the size of the
   reference's.
 */
-#include "app.h"
-#include "tradeoff.h"
+#include "tradeoff_report.h"
 #include "plot.h"
 #include <math.h>
 #include <string.h>
@@ -125,7 +124,7 @@ static void SetFloor(Panel *p)
 
     if (e > 0) smallest = PetscMin(smallest, e);
   }
-  p->floor = p->scale * PetscMax(smallest, p->kind == LAM_ERROR_MACRO ? 0 : p->t->reference->error[p->kind]);
+  p->floor = p->scale * PetscMax(smallest, p->kind == LAM_ERROR_MACRO ? 0 : p->t->reference.error[p->kind]);
 }
 
 /* Direct answers of a body, which have no error in its panel; NULL: there are none, or it is another panel. */
@@ -189,7 +188,7 @@ static void DrawBand(LamCanvas canvas, const Panel *p)
 {
   const LamRect f = p->axes.frame;
   const PetscReal limit =
-      p->kind == LAM_ERROR_MACRO ? NAN : PetscLog10Real(10 * p->scale * p->t->reference->error[p->kind]);
+      p->kind == LAM_ERROR_MACRO ? NAN : PetscLog10Real(10 * p->scale * p->t->reference.error[p->kind]);
   double top;
 
   if (!(limit > p->axes.y.low)) return;

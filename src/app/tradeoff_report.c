@@ -1,8 +1,7 @@
 /*
   What is told of the settings: a table, JSON, and the files of -o.
 */
-#include "app.h"
-#include "tradeoff.h"
+#include "tradeoff_report.h"
 #include "beside.h"
 #include <math.h>
 #include <string.h>
@@ -31,10 +30,10 @@ static PetscBool ComparesStates(const LamTradeoff *t)
 
 static void PrintUnused(const LamTradeoff *t)
 {
-  for (PetscInt s = 0; s < t->states->n; s++) {
-    const PetscReal difference = t->reference->difference[s];
+  for (PetscInt s = 0; s < t->states.n; s++) {
+    const PetscReal difference = t->reference.difference[s];
 
-    if (t->reference->used[s]) continue;
+    if (t->reference.used[s]) continue;
     printf("%-10s state %" PetscInt_FMT " is not compared: ", "", s + 1);
     if (isfinite(difference))
       printf("the two finest meshes differ by %.2g %%, more than a tenth of the accuracy\n",
@@ -46,7 +45,7 @@ static void PrintUnused(const LamTradeoff *t)
 
 static void PrintReference(const LamTradeoff *t)
 {
-  const LamReference *r = t->reference;
+  const LamReference *r = &t->reference;
   char text[64];
 
   if (!ComparesStates(t)) return;
@@ -111,11 +110,11 @@ void LamTradeoffPrint(const LamTradeoff *t)
   LamKnob last = LAM_KNOB_COUNT;
   char text[64];
 
-  printf("%-10s %s: %" PetscInt_FMT " states (%s), planned mesh %s\n", "scene", t->scene->path, t->states->n,
-         t->states->origin, MeshWords(&t->scene->micro, text));
-  if (t->states->dropped)
+  printf("%-10s %s: %" PetscInt_FMT " states (%s), planned mesh %s\n", "scene", t->scene->path, t->states.n,
+         t->states.origin, MeshWords(&t->scene->micro, text));
+  if (t->states.dropped)
     printf("%-10s %" PetscInt_FMT " states of the load have no answer on the planned mesh and are left out\n", "",
-           t->states->dropped);
+           t->states.dropped);
   PrintReference(t);
   for (PetscInt i = 0; i < t->n; i++) {
     const LamKnob knob = t->measured[i].setting.knob;
@@ -208,21 +207,21 @@ static json_t *States(const LamTradeoff *t)
   const PetscReal MPa = t->scene->scales.stress * 1e-6;
   json_t *list = json_array();
 
-  for (PetscInt s = 0; s < t->states->n; s++) {
-    const LamLoad *load = &t->states->loads[s];
+  for (PetscInt s = 0; s < t->states.n; s++) {
+    const LamLoad *load = &t->states.loads[s];
 
     json_array_append_new(list, json_pack("{s:o, s:o, s:o, s:o, s:b}", "F", LamJSONReals(9, load->F, 1), "turgor",
                                           LamJSONReal(load->turgor * MPa), "cohesion",
                                           LamJSONReal(load->cohesion * MPa), "reference_difference",
-                                          LamJSONReal(t->reference->difference ? t->reference->difference[s] : NAN),
-                                          "used", t->reference->used && t->reference->used[s]));
+                                          LamJSONReal(t->reference.difference ? t->reference.difference[s] : NAN),
+                                          "used", t->reference.used && t->reference.used[s]));
   }
   return list;
 }
 
 static json_t *Reference(const LamTradeoff *t)
 {
-  const LamReference *r = t->reference;
+  const LamReference *r = &t->reference;
   json_t *error = json_object();
 
   if (!r->used_count) return json_null();
@@ -268,7 +267,7 @@ static PetscErrorCode WriteData(const LamTradeoff *t, const char directory[], co
                       json_pack("{s:s, s:s, s:s, s:o, s:I, s:o, s:b, s:s, s:o, s:o, s:o, s:o}", "version",
                                 LAMELLA_VERSION, "scene", t->scene->path, "tissue", hash, "budget",
                                 LamJSONReal(t->budget), "repeats", (json_int_t)t->repeats, "seconds",
-                                LamJSONReal(t->seconds), "stopped", t->stopped, "origin", t->states->origin, "states",
+                                LamJSONReal(t->seconds), "stopped", t->stopped, "origin", t->states.origin, "states",
                                 States(t), "reference", Reference(t), "left_out", LeftOut(t), "settings", settings)));
   PetscFunctionReturn(0);
 }

@@ -172,23 +172,31 @@ void LamParetoMark(PetscInt n, const PetscReal cost[], const PetscReal error[], 
 /* Fills in what is judged of all measurements. */
 PetscErrorCode LamJudge(const LamReference *reference, const LamStates *states, PetscInt n, LamMeasurement measured[]);
 
-/* ---- tradeoff_report.c, tradeoff_plot.c ---- */
+/* ---- tradeoff_run.c ---- */
+enum { LAM_TRADEOFF_PARTS = 5 };
 typedef struct {
-  const LamScene *scene; /* mesh chosen */
-  const LamStates *states;
-  const LamReference *reference;
-  PetscInt n;
-  const LamMeasurement *measured;
-  const char *why[LAM_KNOB_COUNT]; /* a knob is not there; NULL: it is */
+  const char *scene_path;
+  PetscBool chosen[LAM_KNOB_COUNT]; /* which knobs are turned */
   PetscInt repeats;
-  PetscReal budget, seconds;
+  PetscReal budget; /* s */
+  LamReporter reporter;
+
+  LamScene *scene; /* mesh chosen; owned */
+  LamStates states;
+  LamReference reference;
+  PetscInt n;
+  LamMeasurement *measured;        /* [n]; owned */
+  const char *why[LAM_KNOB_COUNT]; /* a knob is not there; NULL: it is */
+  char folder[PETSC_MAX_PATH_LEN]; /* of tables; removed at the end */
+  PetscReal start, ends[LAM_TRADEOFF_PARTS];
+  PetscInt done, failed;
+  PetscReal seconds;
   PetscBool stopped;
 } LamTradeoff;
-void LamTradeoffPrint(const LamTradeoff *t);
-PetscErrorCode LamTradeoffPrintJSON(const LamTradeoff *t);
-/* DIR/tradeoff.json, DIR/model.json; the folder is there. */
-PetscErrorCode LamTradeoffWrite(const LamTradeoff *t, const char directory[]);
-/* The diagram; the ending of `path` says the format. */
-PetscErrorCode LamTradeoffPlot(const LamTradeoff *t, const char path[]);
+/* Measures and judges all settings, on one rank. */
+PetscErrorCode LamTradeoffRun(LamTradeoff *tradeoff);
+/* Whether the planned setting has a result, and there is something to compare with. */
+PetscBool LamTradeoffIsSolved(const LamTradeoff *tradeoff);
+PetscErrorCode LamTradeoffDestroy(LamTradeoff *tradeoff);
 
 #endif
