@@ -2,7 +2,7 @@
   Archives: HDF5 files with one dataset of bytes, [items][size], for each name, and its checksum.
 
   Rank 0 reads and writes, block by block, so that its memory is bounded by BLOCK_BYTES whatever the ranks hold. An
-  error of its own is everyone's: it has told it.
+  error of its own, which it has printed, is everyone's.
 */
 #include <lamella/archive.h>
 #include <string.h>

@@ -50,7 +50,7 @@ void LamLockEndRead(int fd);
 typedef struct {
   char host[256], since[LAM_TIME_LENGTH];
   long pid;
-  unsigned long long start; /* clock ticks after boot; 0 where the system does not tell */
+  unsigned long long start; /* clock ticks after boot; 0: not known */
 } LamLockHolder;
 PetscBool LamLockGetHolder(const char path[], LamLockHolder *holder);
 

@@ -1,6 +1,6 @@
 /*
   Attributes of record files: texts and numbers of exactly the types that lamella writes. Anything else is refused
-  before HDF5 is asked for a value.
+  before HDF5 reads a value.
 */
 #include "record_internal.h"
 #include <string.h>

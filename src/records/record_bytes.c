@@ -2,7 +2,7 @@
   Records between memory and file.
 
   The writer turns records into the bytes of the file itself and passes them through HDF5 unchanged, so the checksum
-  covers what is on the disk and a reader in any language can test it. The reader takes them the same way. HDF5's own
+  covers what is on the disk and a reader in any language can test it. The reader does the same. HDF5's own
   conversion of a record takes 4 us, the copy of its members with the checksum 0.6 us.
 */
 #include "record_internal.h"

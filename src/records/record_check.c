@@ -1,10 +1,10 @@
 /*
-  What of a file is sound.
+  Check of a file.
 
   Method
     The functions that read a file stop at the first damage. Here each part is read on its own, its error is kept as the
-    part's damage, and the next part is read. Where the number of committed records is not known, all that the list has
-    room for are looked at: what is sound is told then, what is not may never have been committed.
+    part's damage, and the next part is read. Where the number of committed records is not known, all allocated records
+    are read and the sound ones counted; the others may never have been committed.
 */
 #include "record_json.h"
 #include <stdio.h>
@@ -23,7 +23,7 @@ typedef struct {
   char words[1024]; /* of the last error */
 } Check;
 
-/* ---- errors are what is looked for ---- */
+/* ---- damage ---- */
 
 static PetscErrorCode KeepWords(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
                                 PetscErrorType type, const char *text, void *ctx)
@@ -39,7 +39,7 @@ static PetscErrorCode KeepWords(MPI_Comm comm, int line, const char *function, c
   return code;
 }
 
-/* Names and words of a damaged file may hold anything; what is not ASCII is shown as a question mark then. */
+/* Names and texts of a damaged file may not be UTF-8: then other characters than ASCII become question marks. */
 static json_t *Text(const char text[])
 {
   json_t *string = json_string(text);
@@ -151,7 +151,7 @@ static PetscErrorCode ListNames(Check *c, json_t *names)
   PetscFunctionReturn(0);
 }
 
-/* With all that HDF5 can tell of an object, as other programs ask for: so the index of a group is read whole. */
+/* H5O_INFO_ALL, as other programs use it: HDF5 then reads the whole index of a group. */
 static PetscErrorCode CheckObject(Check *c, const char name[])
 {
   H5O_info_t info;

@@ -48,7 +48,7 @@ PetscErrorCode LamRecordsPack(PetscInt n, const PetscInt64 keys[], const LamResp
                               void **bytes);
 /* The way back for one record that has been checked. */
 PetscErrorCode LamRecordUnpack(const LamRecordLayout *layout, const unsigned char *bytes, LamResponse *response);
-/* Checks checksum, status, source and microstructure of a record: what is wrong with it, or NULL. */
+/* Checks checksum, status, source and microstructure of a record: the damage in words, or NULL. */
 const char *LamRecordDamage(const LamRecordLayout *layout, const unsigned char *bytes);
 /* The same for n records, the first of which is number `first`; names `path` and the record that is damaged. */
 PetscErrorCode LamRecordsCheck(const char path[], const LamRecordLayout *layout, PetscInt first, PetscInt n,
@@ -56,7 +56,7 @@ PetscErrorCode LamRecordsCheck(const char path[], const LamRecordLayout *layout,
 
 /* ---- record_attribute.c ---- */
 
-/* Attributes of one value. What is read must be of exactly `file_type`, a text of at most 64 kB: PETSC_ERR_USER_INPUT.
+/* Attributes of one value. It must be of exactly `file_type`, a text of at most 64 kB: PETSC_ERR_USER_INPUT.
  */
 PetscErrorCode LamAttributeWriteText(const char path[], hid_t object, const char name[], const char text[]);
 PetscErrorCode LamAttributeWriteNumber(const char path[], hid_t object, const char name[], hid_t file_type,

@@ -1,6 +1,6 @@
 /*
   Checksums of what lies beside the records: CRC-32, zlib's. Each is an attribute of its own; files of earlier versions
-  lack them. docs/reference/files.md tells how a reader in another language tests them.
+  lack them. docs/reference/files.md describes them for readers in other languages.
 */
 #include "record_internal.h"
 #include <string.h>

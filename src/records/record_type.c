@@ -156,7 +156,7 @@ static PetscErrorCode CheckPacked(const char path[], hid_t file_type)
   PetscFunctionReturn(0);
 }
 
-/* Member i of our type; *problem tells what the file's is, NULL: the same. */
+/* Member i of our type; *problem: how the file's differs, NULL: not at all. */
 static PetscErrorCode CompareMember(const char path[], hid_t ours, int i, hid_t file_type, char name[LAM_NAME_LENGTH],
                                     const char **problem)
 {

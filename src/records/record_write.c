@@ -18,7 +18,7 @@ struct LamRecordWriter_s {
   char temporary[PETSC_MAX_PATH_LEN];
   PetscBool published; /* the file has its own name */
   PetscBool written;   /* something besides the header */
-  PetscBool begun;     /* LamRecordWriterBegin: what is written is no one's before the commit */
+  PetscBool begun;     /* LamRecordWriterBegin: no reader sees what is written before the commit */
   LamLock lock;
   PetscInt extent; /* records that space is allocated for */
   PetscInt n, capacity;

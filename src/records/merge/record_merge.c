@@ -29,7 +29,6 @@ static PetscErrorCode TakeBlock(void *ctx, const LamRecordLayout *layout, PetscI
                                 const unsigned char *bytes)
 {
   LamMerge *m = ctx;
-  const PetscBool ours = (PetscBool)(layout->size == LamUnionLayout(m->records)->size);
 
   PetscFunctionBeginUser;
   (void)first;
@@ -37,10 +36,7 @@ static PetscErrorCode TakeBlock(void *ctx, const LamRecordLayout *layout, PetscI
   for (PetscInt i = 0; i < n; i++, bytes += layout->size) {
     PetscCheck(m->grid_text || !LamKeyIsNode(LamRecordInt(bytes + layout->key)), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                "%s: holds nodes of a grid, but %s is missing; the file is damaged", m->grid_from, LAM_GRID_NAME);
-    if (ours)
-      PetscCall(LamUnionTake(m->records, bytes, m->report));
-    else
-      PetscCall(LamUnionConvert(m->records, layout, bytes, m->report));
+    PetscCall(LamUnionTake(m->records, layout, bytes, m->report));
   }
   PetscFunctionReturn(0);
 }
@@ -97,7 +93,7 @@ static PetscErrorCode TakeSoundChunks(Salvage *s, PetscInt count)
   PetscFunctionReturn(0);
 }
 
-/* Without a counter all that space is allocated for is read; what is not sound may never have been committed. */
+/* Without a counter all allocated records are read; those that are not sound may never have been committed. */
 static PetscErrorCode TakeSound(LamMerge *m, const char path[], hid_t file)
 {
   Salvage s = {.merge = m, .path = path};

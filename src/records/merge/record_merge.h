@@ -14,7 +14,7 @@ typedef struct {
   LamMergeReport *report;         /* borrowed */
   LamLock lock;
   LamUnion records;
-  /* of the result, and the files that told it */
+  /* of the result, and the files it is taken from */
   const char *header_from, *grid_from;
   LamScene scene; /* micro, scales, accuracy and text; micro and text owned */
   char hash[LAM_HASH_LENGTH];

@@ -2,9 +2,9 @@
   A file that grows by records of other files.
 
   Method
-    Of each record two numbers of 64 bits stay in memory: a digest of its question, by which a second answer to it is
+    Of each record two numbers of 64 bits stay in memory: a digest of its state, by which a second record of it is
     found, and one of all that two solves of it must agree in. Records are copied as bytes, in blocks of whole chunks.
-    Only where the two answers differ the first is read back from the file.
+    Only where two records of a state differ the first is read back from the file.
 
   References
     G. L. Steele, D. Lea, C. H. Flood, Fast splittable pseudorandom number generators, OOPSLA 2014 (the finaliser of
@@ -21,7 +21,7 @@
 enum { BLOCK = 8 * LAM_RECORDS_PER_CHUNK, WRITE_BLOCKS = 16, LOAD_BYTES = 11 * sizeof(PetscReal) };
 
 typedef struct {
-  uint64_t question, content;
+  uint64_t state, content;
   PetscInt at; /* number of the record in the file; -1: a free place of the table */
 } Entry;
 
@@ -86,11 +86,6 @@ PetscErrorCode LamUnionCreate(const char path[], LamUnion *records)
   PetscFunctionReturn(0);
 }
 
-const LamRecordLayout *LamUnionLayout(LamUnion records)
-{
-  return &records->layout;
-}
-
 PetscErrorCode LamUnionDestroy(LamUnion *records)
 {
   LamUnion u = *records;
@@ -140,7 +135,7 @@ static PetscErrorCode BeginWriting(LamUnion u)
 
   PetscFunctionBeginUser;
   LamCallHDF5(u->path, PETSC_ERR_LIB, H5Fget_vfd_handle(u->file, H5P_DEFAULT, (void **)&fd));
-  (void)sync_file_range(*fd, 0, 0, SYNC_FILE_RANGE_WRITE); /* what fails is told by the sync */
+  (void)sync_file_range(*fd, 0, 0, SYNC_FILE_RANGE_WRITE); /* an error shows at the sync */
   PetscFunctionReturn(0);
 #else
   (void)u;
@@ -202,7 +197,7 @@ static uint64_t Digest(uint64_t digest, const unsigned char *bytes, size_t n)
   return digest;
 }
 
-static uint64_t QuestionOf(LamUnion u, const unsigned char *bytes)
+static uint64_t StateDigest(LamUnion u, const unsigned char *bytes)
 {
   const PetscInt64 key = LamRecordInt(bytes + u->layout.key);
   const uint64_t begin = Mix((uint64_t)(key >= LAM_CACHE_KEY ? LAM_CACHE_KEY : key));
@@ -219,7 +214,7 @@ static uint64_t ContentOf(LamUnion u, const unsigned char *bytes)
   return Digest(digest, bytes + behind, end - behind);
 }
 
-static PetscBool AskTheSame(LamUnion u, const unsigned char *a, const unsigned char *b)
+static PetscBool IsSameState(LamUnion u, const unsigned char *a, const unsigned char *b)
 {
   const PetscInt64 key_a = LamRecordInt(a + u->layout.key), key_b = LamRecordInt(b + u->layout.key);
   const PetscBool cached = (PetscBool)(key_a >= LAM_CACHE_KEY && key_b >= LAM_CACHE_KEY);
@@ -228,14 +223,14 @@ static PetscBool AskTheSame(LamUnion u, const unsigned char *a, const unsigned c
   return (PetscBool)(LamKeyIsNode(key_a) || !memcmp(a + u->load, b + u->load, LOAD_BYTES));
 }
 
-/* ---- the table of questions ---- */
+/* ---- the table of states ---- */
 
-/* The entry of the question, or the free place for it. */
-static Entry *Find(const LamUnion u, uint64_t question)
+/* The entry of the state, or the free place for it. */
+static Entry *Find(const LamUnion u, uint64_t state)
 {
-  size_t i = question & (u->capacity - 1);
+  size_t i = state & (u->capacity - 1);
 
-  while (u->entries[i].at >= 0 && u->entries[i].question != question) i = (i + 1) & (u->capacity - 1);
+  while (u->entries[i].at >= 0 && u->entries[i].state != state) i = (i + 1) & (u->capacity - 1);
   return &u->entries[i];
 }
 
@@ -249,7 +244,7 @@ static PetscErrorCode GrowTable(LamUnion u)
   PetscCall(ClearTable(2 * before, &u->entries));
   u->capacity = 2 * before;
   for (size_t i = 0; i < before; i++)
-    if (old[i].at >= 0) *Find(u, old[i].question) = old[i];
+    if (old[i].at >= 0) *Find(u, old[i].state) = old[i];
   PetscCall(PetscFree(old));
   PetscFunctionReturn(0);
 }
@@ -315,7 +310,7 @@ static PetscErrorCode Replace(LamUnion u, PetscInt at, const unsigned char *byte
   PetscFunctionReturn(0);
 }
 
-/* The answer that is kept is another one; or, once in 2^64 pairs of loads, that to another question. */
+/* The record that is kept has other numbers; or, once in 2^64 pairs of loads, it is of another state. */
 static PetscErrorCode Decide(LamUnion u, Entry *entry, uint64_t content, const unsigned char *bytes,
                              LamMergeReport *report)
 {
@@ -323,7 +318,7 @@ static PetscErrorCode Decide(LamUnion u, Entry *entry, uint64_t content, const u
 
   PetscFunctionBeginUser;
   PetscCall(ReadBack(u, entry->at));
-  if (!AskTheSame(u, u->kept, bytes)) {
+  if (!IsSameState(u, u->kept, bytes)) {
     PetscCall(Append(u, bytes));
     PetscFunctionReturn(0);
   }
@@ -339,14 +334,14 @@ static PetscErrorCode Decide(LamUnion u, Entry *entry, uint64_t content, const u
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamUnionTake(LamUnion u, const unsigned char *bytes, LamMergeReport *report)
+static PetscErrorCode Take(LamUnion u, const unsigned char *bytes, LamMergeReport *report)
 {
-  const uint64_t question = QuestionOf(u, bytes), content = ContentOf(u, bytes);
-  Entry *entry = Find(u, question);
+  const uint64_t state = StateDigest(u, bytes), content = ContentOf(u, bytes);
+  Entry *entry = Find(u, state);
 
   PetscFunctionBeginUser;
   if (entry->at < 0) {
-    *entry = (Entry){question, content, u->n};
+    *entry = (Entry){state, content, u->n};
     u->used++;
     PetscCall(Append(u, bytes));
     PetscCall(GrowTable(u));
@@ -359,17 +354,21 @@ PetscErrorCode LamUnionTake(LamUnion u, const unsigned char *bytes, LamMergeRepo
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamUnionConvert(LamUnion u, const LamRecordLayout *layout, const unsigned char *bytes,
-                               LamMergeReport *report)
+PetscErrorCode LamUnionTake(LamUnion u, const LamRecordLayout *layout, const unsigned char *bytes,
+                            LamMergeReport *report)
 {
   const PetscInt64 key = LamRecordInt(bytes + layout->key);
   LamResponse response;
   void *converted;
 
   PetscFunctionBeginUser;
+  if (layout->size == u->layout.size) {
+    PetscCall(Take(u, bytes, report));
+    PetscFunctionReturn(0);
+  }
   PetscCall(LamRecordUnpack(layout, bytes, &response));
   PetscCall(LamRecordsPack(1, &key, &response, u->type, &converted));
-  PetscCall(LamUnionTake(u, converted, report));
+  PetscCall(Take(u, converted, report));
   PetscCall(PetscFree(converted));
   PetscFunctionReturn(0);
 }
