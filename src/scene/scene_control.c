@@ -40,7 +40,7 @@ PetscErrorCode LamSceneReadControl(const LamNode *F_node, const LamNode *P_node,
   for (PetscInt i = 0; i < 9; i++) {
     control->given[i] = (PetscBool)(P_node && !P_node->value.is_free[i]);
     PetscCall(CheckComponent(F_node, P_node, i, (PetscBool)!F_node->value.is_free[i], control->given[i]));
-    if (control->given[i]) PetscCall(LamSceneDivide(Item(P_node, i), P_node->value.number[i], scale, &control->P[i]));
+    if (control->given[i]) PetscCall(LamSceneScale(Item(P_node, i), P_node->value.number[i], scale, &control->P[i]));
   }
   LamSceneCheck(!control->given[1] || !control->given[3], Item(F_node, 3),
                 "F12 is free, too: the tissue can rotate; write a number for one of them, such as 0");

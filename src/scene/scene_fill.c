@@ -11,7 +11,7 @@
 /* Ratios to the apothem and to C1 + C2 beyond which double precision holds nothing of the walls. */
 #define LARGEST_RATIO 1e9
 
-PetscErrorCode LamSceneDivide(const LamNode *node, PetscReal si, PetscReal scale, PetscReal *number)
+PetscErrorCode LamSceneScale(const LamNode *node, PetscReal si, PetscReal scale, PetscReal *number)
 {
   PetscFunctionBeginUser;
   *number = si / scale;
@@ -62,11 +62,11 @@ static PetscErrorCode StoreReal(const LamNode *node, const LamKey *key, const La
   PetscFunctionBeginUser;
   *number = si;
   if (!key->unit) PetscFunctionReturn(0);
-  if (key->dimension == LAM_DIMENSION_STRESS) PetscCall(LamSceneDivide(node, si, scales->stress, number));
+  if (key->dimension == LAM_DIMENSION_STRESS) PetscCall(LamSceneScale(node, si, scales->stress, number));
   if (key->dimension == LAM_DIMENSION_LENGTH)
-    PetscCall(LamSceneDivide(node, si, strcmp(key->unit, "mm") ? scales->length : scales->macro_length, number));
+    PetscCall(LamSceneScale(node, si, strcmp(key->unit, "mm") ? scales->length : scales->macro_length, number));
   if (key->dimension == LAM_DIMENSION_PERMEABILITY)
-    PetscCall(LamSceneDivide(node, si * scales->stress, scales->length, number));
+    PetscCall(LamSceneScale(node, si * scales->stress, scales->length, number));
   PetscFunctionReturn(0);
 }
 

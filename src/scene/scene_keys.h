@@ -150,7 +150,7 @@ void LamSceneRampControl(const LamStressControl *from, const LamStressControl *t
 PetscErrorCode LamSceneResolvePath(const LamNode *node, char path[PETSC_MAX_PATH_LEN]);
 /* si / scale; refused where the ratio is beyond what doubles hold beside others. node may be NULL (a default: always
  * finite). */
-PetscErrorCode LamSceneDivide(const LamNode *node, PetscReal si, PetscReal scale, PetscReal *number);
+PetscErrorCode LamSceneScale(const LamNode *node, PetscReal si, PetscReal scale, PetscReal *number);
 /* Refuses an apothem, C1 + C2 or length of a body, in SI, that is beyond what doubles hold the squares and products of.
  */
 PetscErrorCode LamSceneCheckScale(const LamNode *node, PetscReal si);

@@ -184,8 +184,8 @@ static PetscErrorCode BuildControl(const LamNode *block, LamScene *scene)
                 "gives %s; give one and write free for the other, such as [free, -1 mm]",
                 is_free[0] ? "no component" : "both components");
   control->component = is_free[0] ? 1 : 0;
-  PetscCall(LamSceneDivide(displacement, displacement->value.number[control->component], scene->scales.macro_length,
-                           &control->displacement));
+  PetscCall(LamSceneScale(displacement, displacement->value.number[control->component], scene->scales.macro_length,
+                          &control->displacement));
   PetscCall(CheckTractions(block, &scene->macro));
   PetscFunctionReturn(0);
 }
@@ -231,6 +231,6 @@ PetscErrorCode LamSceneBuildMacro(const LamNode *root, LamScene *scene)
   for (const LamNode *item = zoom ? zoom->first : NULL; item; item = item->next, spec->zoom_count++)
     for (int i = 0; i < 2; i++)
       PetscCall(
-          LamSceneDivide(item, item->value.number[i], scene->scales.macro_length, &spec->zoom[spec->zoom_count][i]));
+          LamSceneScale(item, item->value.number[i], scene->scales.macro_length, &spec->zoom[spec->zoom_count][i]));
   PetscFunctionReturn(0);
 }

@@ -113,7 +113,7 @@ static PetscErrorCode ReadEnd(const LamNode *node, LamMapQuantity quantity, cons
     PetscCall(LamQuantityRead(node->text, dimension, &si, reason));
     LamSceneCheck(!reason[0], node, "%s; write a %s with its unit, such as %s", reason, LamDimensionNames[dimension],
                   LamDimensionExamples[dimension]);
-    PetscCall(LamSceneDivide(node, si, kind == STRESS ? scales->stress : scales->length, number));
+    PetscCall(LamSceneScale(node, si, kind == STRESS ? scales->stress : scales->length, number));
   }
   LamSceneCheck(LamBoundsHold(lower, &none, *number), node, "is out of range; %s is %s %g", name,
                 LamBoundWords(lower, PETSC_TRUE), (double)lower->value);

@@ -79,9 +79,4 @@ PetscErrorCode LamSceneRaise(const LamNode *node, LamMistake mistake, const char
 #define LamSceneCheckName(condition, node, ...) LamSceneUnless(condition, node, LAM_MISTAKE_NAME, NULL, __VA_ARGS__)
 #define LamSceneRequire(condition, node, ...) LamSceneUnless(condition, node, LAM_MISTAKE_MISSING, __VA_ARGS__)
 
-/* for scene_wall.c */
-#define LamSceneFail(document, node, ...) LamSceneRaise(node, LAM_MISTAKE_VALUE, NULL, __VA_ARGS__)
-#define LamSceneFailMissing(document, node, ...) LamSceneRaise(node, LAM_MISTAKE_MISSING, __VA_ARGS__)
-#define LamSceneScale(document, node, si, scale, number) LamSceneDivide(node, si, scale, number)
-
 #endif
