@@ -10,12 +10,11 @@
 
 #define MAP(key_path) .path = key_path, .type = LAM_KEY_MAP
 #define LIST(key_path) .path = key_path, .type = LAM_KEY_LIST
-#define LENGTH(key_path, key_unit)                                                                                     \
-  .path = key_path, .type = LAM_KEY_QUANTITY, .dimension = LAM_DIMENSION_LENGTH, .unit = key_unit
-#define STRESS(key_path) .path = key_path, .type = LAM_KEY_QUANTITY, .dimension = LAM_DIMENSION_STRESS, .unit = "MPa"
-#define ANGLE(key_path) .path = key_path, .type = LAM_KEY_QUANTITY, .dimension = LAM_DIMENSION_ANGLE, .unit = "deg"
 #define OF_DIMENSION(key_path, key_dimension, key_unit)                                                                \
   .path = key_path, .type = LAM_KEY_QUANTITY, .dimension = LAM_DIMENSION_##key_dimension, .unit = key_unit
+#define LENGTH(key_path, key_unit) OF_DIMENSION(key_path, LENGTH, key_unit) /* um in apothems, mm in macro lengths */
+#define STRESS(key_path) OF_DIMENSION(key_path, STRESS, "MPa")
+#define ANGLE(key_path) OF_DIMENSION(key_path, ANGLE, "deg")
 #define TIME(key_path) OF_DIMENSION(key_path, TIME, "s")
 #define TEMPERATURE(key_path) OF_DIMENSION(key_path, TEMPERATURE, "degC")
 #define RATE(key_path) OF_DIMENSION(key_path, RATE, "/s")
@@ -32,8 +31,10 @@
 #define NAME(key_path, list)                                                                                           \
   .path = key_path, .type = LAM_KEY_NAME, .names = list, .name_count = PETSC_STATIC_ARRAY_LENGTH(list)
 #define NAME_OF(key_path, list, count) .path = key_path, .type = LAM_KEY_NAME, .names = list, .name_count = count
+/* The member that LamSceneFill stores the value in, and the PetscBools that say which of its components are given. */
 #define INTO(type, member) .record = #type, .offset = offsetof(type, member), .room = sizeof(((type *)0)->member)
 #define GIVEN(type, member) .given = offsetof(type, member)
+
 #define REQUIRED .required = PETSC_TRUE
 #define FREE .free_word = "free"
 #define OPEN .free_word = "x"
