@@ -105,7 +105,10 @@ static PetscErrorCode CheckTissue(const LamNode *entry, LamRegion *r)
   const LamNode *clearance = LamNodeFind(entry, "interface.clearance"), *turgor = LamNodeFind(entry, "turgor.pressure");
 
   PetscFunctionBeginUser;
-  LamSceneCheck(r->micro.wall_thickness < 1.0, thickness ? thickness : apothem,
+  LamSceneCheck(r->micro.wall_thickness < 1.0,
+                thickness ? thickness
+                : apothem ? apothem
+                          : entry,
                 "the wall, %g um, fills the cell; write a thickness less than the apothem",
                 (double)(r->micro.wall_thickness * r->scales.length) * 1e6);
   if (r->micro.interface == LAM_INTERFACE_BONDED) {
