@@ -15,26 +15,26 @@ typedef struct {
 
 static void PrintTable(const LamBuild *b, PetscReal seconds)
 {
-  const LamPoll *poll = &b->rounds.poll;
+  const LamCoverage *coverage = &b->rounds.coverage;
   const PetscReal accuracy = b->scene->sample.accuracy;
 
   printf("%-16s %s\n", "database", b->path);
   printf("%-16s %lld (%lld new)\n", "records", (long long)LamBuildRecords(b), (long long)b->added);
   printf("%-16s %lld\n", "failed", (long long)LamBuildFailed(b));
-  printf("%-16s %.1f %% of the box\n", "answered", 100 * LamRoundsAnswered(&b->rounds));
-  if (poll->refused)
+  printf("%-16s %.1f %% of the box\n", "answered", 100 * LamRoundsCovered(&b->rounds));
+  if (coverage->refused)
     printf("%-16s %.1f %% of the box, such as: %s\n", "never answered",
-           100 * (PetscReal)poll->refused / (PetscReal)poll->asked, poll->reason);
-  if (poll->reached)
-    printf("%-16s estimated below %.2g %% at 95 %% of the box that is reached\n", "error of P", 100 * poll->error);
+           100 * (PetscReal)coverage->refused / (PetscReal)coverage->states, coverage->reason);
+  if (coverage->reached)
+    printf("%-16s estimated below %.2g %% at 95 %% of the box that is reached\n", "error of P", 100 * coverage->error);
   printf("%-16s %.3g s on %d rank%s\n", "time", seconds, (int)b->size, b->size > 1 ? "s" : "");
   if (b->added) printf("%-16s %.3g\n", "nodes per s", (PetscReal)b->added / seconds);
   if (b->added) printf("%-16s %.2g %% of the time\n", "commits", 100 * b->all_commits / seconds);
   if (LamStopRequested())
     printf("%-16s %s\n", "ended", "stopped by a signal");
-  else if (LamRoundsAreIdle(&b->rounds) && !LamPollIsDone(poll))
+  else if (LamRoundsAreIdle(&b->rounds) && !LamCoverageIsDone(coverage))
     printf("%-16s %s\n", "ended", "where two rounds answered less than 1 % of the box more");
-  else if (accuracy && !LamPollIsDone(poll))
+  else if (accuracy && !LamCoverageIsDone(coverage))
     printf("%-16s %s\n", "ended", "at the largest number of records");
 }
 
@@ -63,8 +63,8 @@ static PetscErrorCode ReportCommit(void *ctx, const LamBuild *b)
   (void)ctx;
   PetscCall(LamPrintJSON(json_pack("{s:I, s:I, s:o, s:o, s:o}", "records", (json_int_t)LamBuildRecords(b), "failed",
                                    (json_int_t)LamBuildFailed(b), "seconds", LamJSONReal(LamClock() - b->start),
-                                   "answered", LamJSONReal(LamRoundsAnswered(&b->rounds)), "error_95",
-                                   LamJSONReal(b->rounds.poll.error))));
+                                   "answered", LamJSONReal(LamRoundsCovered(&b->rounds)), "error_95",
+                                   LamJSONReal(b->rounds.coverage.error))));
   PetscFunctionReturn(0);
 }
 

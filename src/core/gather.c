@@ -19,6 +19,20 @@ void LamSortUnique(PetscInt *n, void *items, size_t size, LamCompare compare)
   *n = kept;
 }
 
+int LamCompareKeys(const void *a, const void *b)
+{
+  const PetscInt64 x = *(const PetscInt64 *)a, y = *(const PetscInt64 *)b;
+
+  return (x > y) - (x < y);
+}
+
+PetscInt LamFindKey(PetscInt n, const PetscInt64 keys[], PetscInt64 key)
+{
+  const PetscInt64 *found = n ? bsearch(&key, keys, (size_t)n, sizeof(key), LamCompareKeys) : NULL;
+
+  return found ? (PetscInt)(found - keys) : -1;
+}
+
 PetscErrorCode LamGather(MPI_Comm comm, size_t size, PetscInt n, const void *items, PetscMPIInt **starts, void **all)
 {
   PetscMPIInt ranks, bytes, count, *counts;

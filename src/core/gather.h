@@ -11,6 +11,9 @@ typedef int (*LamCompare)(const void *, const void *);
 
 /* Sorts items of `size` bytes and leaves out what comes twice; *n becomes their number. Of one rank. */
 void LamSortUnique(PetscInt *n, void *items, size_t size, LamCompare compare);
+int LamCompareKeys(const void *a, const void *b); /* of PetscInt64 */
+/* The place of a key in keys[n], which are sorted; -1: it is not there. */
+PetscInt LamFindKey(PetscInt n, const PetscInt64 keys[], PetscInt64 key);
 /* Items of `size` bytes from all ranks on all ranks; starts[ranks + 1] counts items. The caller frees both. */
 PetscErrorCode LamGather(MPI_Comm comm, size_t size, PetscInt n, const void *items, PetscMPIInt **starts, void **all);
 /* The items of all ranks, sorted, each once. The caller frees *all. */

@@ -205,13 +205,6 @@ static PetscErrorCode BatchDestroy(Batch *batch)
 
 /* ---- step 2: nodes ---- */
 
-static int CompareKeys(const void *first, const void *second)
-{
-  const PetscInt64 a = *(const PetscInt64 *)first, b = *(const PetscInt64 *)second;
-
-  return (a > b) - (a < b);
-}
-
 /* The nodes that this rank's questions need, each once. The caller frees *keys. */
 static PetscErrorCode FindMyNeeds(LamCache *cache, const Missing *missing, PetscInt *n, PetscInt64 **keys)
 {
@@ -225,14 +218,14 @@ static PetscErrorCode FindMyNeeds(LamCache *cache, const Missing *missing, Petsc
 
     if (LamCacheGoesOnByItself(cache, missing->points[missing->at[k]])) continue;
     if (*n + LAM_MAX_NEEDS > capacity) {
-      LamSortUnique(n, *keys, sizeof(PetscInt64), CompareKeys);
+      LamSortUnique(n, *keys, sizeof(PetscInt64), LamCompareKeys);
       capacity = PetscMax(capacity, 2 * (*n + LAM_MAX_NEEDS));
       PetscCall(PetscRealloc(sizeof(PetscInt64) * (size_t)capacity, keys));
     }
     PetscCall(LamTableNeeds(cache->newest, &question, cache->accuracy, &more, *keys + *n));
     *n += more;
   }
-  LamSortUnique(n, *keys, sizeof(PetscInt64), CompareKeys);
+  LamSortUnique(n, *keys, sizeof(PetscInt64), LamCompareKeys);
   PetscFunctionReturn(0);
 }
 
@@ -245,7 +238,7 @@ static PetscErrorCode Refine(LamCache *cache, Missing *missing, PetscBool *ends,
 
   PetscFunctionBeginUser;
   PetscCall(FindMyNeeds(cache, missing, &n, &mine));
-  PetscCall(LamGatherUnion(cache->comm, sizeof(PetscInt64), CompareKeys, n, mine, &batch.n, (void **)&batch.keys));
+  PetscCall(LamGatherUnion(cache->comm, sizeof(PetscInt64), LamCompareKeys, n, mine, &batch.n, (void **)&batch.keys));
   PetscCall(PetscFree(mine));
   *ends = (PetscBool)!batch.n;
   if (!*ends) {

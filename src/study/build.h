@@ -31,8 +31,8 @@ PetscErrorCode LamShardStates(const LamScene *scene, const LamShard *shard, Pets
                               PetscInt **states);
 
 /*
-  A round of nodes that are asked for together. Those that the file has not got are solved, in the order of `order`,
-  which is that of the file, too: what takes longest comes first, but parents before their children.
+  Nodes that are requested together. Those that the file lacks are solved in the order of `order`, which is that of the
+  file: longest first, but parents before their children.
 */
 typedef struct {
   PetscInt n;
@@ -47,36 +47,36 @@ typedef struct {
   PetscInt next;          /* those before it are taken */
 } LamRound;
 
-/* What a table says to the first states of the box: each is answered, refused, or waits for nodes. */
+/* States of the sample box against a table: each is covered, refused, or lacks nodes. */
 typedef struct {
-  PetscInt asked;
-  PetscInt answered; /* with an estimated error of at most the accuracy */
-  PetscInt refused;  /* where no node helps */
-  PetscInt reached;  /* with any estimate */
-  PetscReal error;   /* estimated error that 95 % of those reached stay below; NaN: none is */
-  char reason[192];  /* of the first that is refused */
+  PetscInt states;
+  PetscInt covered; /* with an estimated error within the accuracy */
+  PetscInt refused; /* no node would help */
+  PetscInt reached; /* with any estimate */
+  PetscReal error;  /* 95 % quantile of the estimates of those reached; NaN: none is */
+  char reason[192]; /* of the first that is refused */
   PetscInt lacking;
-  PetscInt64 *keys; /* [lacking] nodes that it lacks for those that wait, sorted; owned */
-} LamPoll;
+  PetscInt64 *keys; /* [lacking] nodes to be solved, sorted; owned */
+} LamCoverage;
 
-/* `enough`: of what is lacking, so many nodes are listed, of the cells that most states wait for; none of `under_way`
-   (or NULL). */
-PetscErrorCode LamPollMake(const LamScene *scene, const LamShard *shard, LamDatabase database, PetscReal accuracy,
-                           PetscInt enough, const LamRound *under_way, LamPoll *poll);
-/* Whether enough of the box is answered: the last states of 200 are not chased. */
-PetscBool LamPollIsDone(const LamPoll *poll);
-PetscErrorCode LamPollDestroy(LamPoll *poll);
+/* Lists at least `enough` lacking nodes where there are so many, those of the cells that most states need first; none
+   of the round `under_way` (or NULL). */
+PetscErrorCode LamCoverageCompute(const LamScene *scene, const LamShard *shard, LamDatabase database,
+                                  PetscReal accuracy, PetscInt enough, const LamRound *under_way,
+                                  LamCoverage *coverage);
+/* Whether 99.5 % of the states that are not refused are covered. */
+PetscBool LamCoverageIsDone(const LamCoverage *coverage);
+PetscErrorCode LamCoverageDestroy(LamCoverage *coverage);
 
 /*
   ---- rounds: rank 0 decides which nodes are solved ----
 
-  A round is nodes that the table of complete rounds lacks. While one is being solved the next is decided from the table
-  without it, so that no rank waits for the last nodes of a round: at most two are open. With an accuracy, rounds go on
-  until enough of the box is answered to it; with a count, to any accuracy, then to 1/8, 1/16, ..., until there are so
-  many nodes. With an accuracy they also end where some one after another have hardly answered more of the box, and half
-  of it is answered. What a round asks for depends on the scene, the grid and the rounds before it only: records that
-  the file has got already are used in place of solves in the round that asks for their keys, and in no other. So a
-  build that was interrupted comes to the same nodes as one that was not, whatever else the file holds.
+  A round: nodes that the table of the complete rounds lacks. The next is decided while one is being solved, from the
+  table without it, so that no rank waits for the last nodes of a round: at most two are open. With `sample.accuracy`
+  rounds end where the box is covered to it, or where MOST_IDLE of them in a row hardly cover more; with `sample.count`
+  at so many nodes, the accuracy being any, then 1/8, 1/16, ... The nodes of a round depend on the scene, the grid and
+  the rounds before only: a record in the file takes the place of a solve in the round that lacks its node, and in no
+  other. So an interrupted build comes to the nodes of an undisturbed one, whatever else the file holds.
 */
 typedef struct {
   PetscInt64 key;
@@ -95,16 +95,16 @@ typedef struct {
   LamKnownNode *known;     /* [known_count], sorted; owned */
   PetscInt64 most;         /* nodes at most */
   PetscInt64 nodes;        /* in the table */
-  PetscInt64 known_failed; /* without an answer, of those that were known */
-  PetscReal accuracy;      /* that is asked for now */
-  LamPoll poll;            /* of the table */
-  PetscInt best, idle;     /* most states that a table has answered; rounds one after another that hardly added to it */
+  PetscInt64 known_failed; /* records of the file without a solution */
+  PetscReal accuracy;      /* of this round */
+  LamCoverage coverage;    /* of the table */
+  PetscInt best, idle;     /* most states covered so far; rounds in a row that hardly added to it */
   PetscInt open;           /* rounds under way, the older first */
   LamRound round[LAM_OPEN_ROUNDS];
-  PetscBool dry; /* the table asks for nothing but what is under way */
+  PetscBool dry; /* the table lacks nothing but what is under way */
 } LamRounds;
 
-/* `file`: what was there before, NULL: nothing; it must outlive the rounds. Takes the grid over. */
+/* `file`: the database to be continued, or NULL; borrowed. Takes the grid over. */
 PetscErrorCode LamRoundsCreate(const LamScene *scene, const LamShard *shard, LamDatabase file, LamGrid *grid,
                                LamRounds *rounds);
 /*
@@ -119,10 +119,10 @@ const LamResponse *LamRoundsKnown(const LamRounds *rounds, PetscInt64 key);
 /* Whether the rounds ended because they hardly added anything. */
 PetscBool LamRoundsAreIdle(const LamRounds *rounds);
 /* Nodes of the table and of open rounds, and those of them that are there already. */
-PetscInt64 LamRoundsAsked(const LamRounds *rounds);
-PetscInt64 LamRoundsThere(const LamRounds *rounds);
-/* Share of the box that is answered: to the accuracy, or with a count at all. */
-PetscReal LamRoundsAnswered(const LamRounds *rounds);
+PetscInt64 LamRoundsRequested(const LamRounds *rounds);
+PetscInt64 LamRoundsAvailable(const LamRounds *rounds);
+/* Share of the box that is covered: to the accuracy, or with a count at all. */
+PetscReal LamRoundsCovered(const LamRounds *rounds);
 PetscErrorCode LamRoundsDestroy(LamRounds *rounds);
 
 #endif

@@ -2,16 +2,17 @@
   Which nodes are solved, round by round.
 */
 #include "build.h"
+#include "gather.h"
 #include <math.h>
 #include <stdlib.h>
 
 enum { MOST_NODES = 200000 }; /* with an accuracy */
-/* A round is so large a share of what is there, where that is more than the scene's `round`: few nodes, so that the
-   next round asks a better table. */
-enum { ROUND_SHARE = 12 };
-/* With an accuracy: what a round is to add to the answered share, once that is large, and how often it may add less. */
+enum {
+  ROUND_SHARE = 12
+}; /* a round has 1/12 of the table's nodes, or `sample.round`; larger ones see an older table */
+/* With an accuracy: a round is to add so much to the covered share, once that is large, but for so many in a row. */
 #define LEAST_GAIN 0.003
-#define WELL_ANSWERED 0.5
+#define WELL_COVERED 0.5
 enum { MOST_IDLE = 6 };
 /* With a count: the first accuracy after any, and the last. */
 #define FIRST_ACCURACY 0.125
@@ -80,15 +81,16 @@ const LamResponse *LamRoundsKnown(const LamRounds *rounds, PetscInt64 key)
   return found ? found->record : NULL;
 }
 
-/* ---- what is asked for ---- */
+/* ---- nodes that the table lacks ---- */
 
-static PetscErrorCode Poll(LamRounds *rounds)
+static PetscErrorCode Cover(LamRounds *rounds)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamPollDestroy(&rounds->poll));
-  PetscCall(LamPollMake(rounds->scene, rounds->shard, rounds->table, rounds->accuracy,
-                        PetscMax(rounds->scene->sample.round / rounds->shard->count + 1, rounds->nodes / ROUND_SHARE),
-                        rounds->open ? rounds->round : NULL, &rounds->poll));
+  PetscCall(LamCoverageDestroy(&rounds->coverage));
+  PetscCall(
+      LamCoverageCompute(rounds->scene, rounds->shard, rounds->table, rounds->accuracy,
+                         PetscMax(rounds->scene->sample.round / rounds->shard->count + 1, rounds->nodes / ROUND_SHARE),
+                         rounds->open ? rounds->round : NULL, &rounds->coverage));
   PetscFunctionReturn(0);
 }
 
@@ -97,31 +99,31 @@ PetscBool LamRoundsAreIdle(const LamRounds *rounds)
   return (PetscBool)(!rounds->scene->sample.count && rounds->idle >= MOST_IDLE);
 }
 
-/* What the last round has brought. */
+/* Counts rounds that hardly cover more. */
 static void Compare(LamRounds *rounds)
 {
-  const LamPoll *poll = &rounds->poll;
-  const PetscBool gained = (PetscBool)(poll->answered >= rounds->best + LEAST_GAIN * poll->asked);
+  const LamCoverage *coverage = &rounds->coverage;
+  const PetscBool gained = (PetscBool)(coverage->covered >= rounds->best + LEAST_GAIN * coverage->states);
 
-  rounds->idle = gained || poll->answered < WELL_ANSWERED * poll->asked ? 0 : rounds->idle + 1;
-  rounds->best = PetscMax(rounds->best, poll->answered);
+  rounds->idle = gained || coverage->covered < WELL_COVERED * coverage->states ? 0 : rounds->idle + 1;
+  rounds->best = PetscMax(rounds->best, coverage->covered);
 }
 
-/* Asks the table; with a count for more and more, until it lacks something. *n: nodes for the next round. */
-static PetscErrorCode PollUntilLacking(LamRounds *rounds, PetscInt *n)
+/* *n: nodes of the next round. With a count the accuracy is raised until the table lacks some. */
+static PetscErrorCode FindLacking(LamRounds *rounds, PetscInt *n)
 {
   const PetscInt under_way = rounds->open ? rounds->round[0].n : 0;
 
   PetscFunctionBeginUser;
-  PetscCall(Poll(rounds));
-  while (rounds->scene->sample.count && LamPollIsDone(&rounds->poll) && rounds->accuracy > LAST_ACCURACY) {
+  PetscCall(Cover(rounds));
+  while (rounds->scene->sample.count && LamCoverageIsDone(&rounds->coverage) && rounds->accuracy > LAST_ACCURACY) {
     rounds->accuracy = PetscMin(FIRST_ACCURACY, rounds->accuracy / 2);
-    PetscCall(Poll(rounds));
+    PetscCall(Cover(rounds));
   }
   Compare(rounds);
   *n = 0;
-  if (!LamPollIsDone(&rounds->poll) && !LamRoundsAreIdle(rounds))
-    *n = (PetscInt)PetscMax(0, PetscMin(rounds->poll.lacking, rounds->most - rounds->nodes - under_way));
+  if (!LamCoverageIsDone(&rounds->coverage) && !LamRoundsAreIdle(rounds))
+    *n = (PetscInt)PetscMax(0, PetscMin(rounds->coverage.lacking, rounds->most - rounds->nodes - under_way));
   PetscFunctionReturn(0);
 }
 
@@ -130,32 +132,12 @@ static PetscErrorCode PollUntilLacking(LamRounds *rounds, PetscInt *n)
 static PetscErrorCode RoundDestroy(LamRound *round)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree(round->keys));
-  PetscCall(PetscFree(round->responses));
-  PetscCall(PetscFree(round->order));
-  PetscCall(PetscFree(round->cost));
-  PetscCall(PetscFree(round->solved));
-  PetscCall(PetscFree(round->taken));
+  PetscCall(PetscFree6(round->keys, round->responses, round->order, round->cost, round->solved, round->taken));
   *round = (LamRound){0};
   PetscFunctionReturn(0);
 }
 
-static int CompareKeys(const void *a, const void *b)
-{
-  const PetscInt64 x = *(const PetscInt64 *)a, y = *(const PetscInt64 *)b;
-
-  return (x > y) - (x < y);
-}
-
-/* The place of a key in the round, or -1. */
-static PetscInt FindKey(const LamRound *round, PetscInt64 key)
-{
-  const PetscInt64 *found = bsearch(&key, round->keys, (size_t)round->n, sizeof(key), CompareKeys);
-
-  return found ? (PetscInt)(found - round->keys) : -1;
-}
-
-/* Fills in what is known, and lists what is not. */
+/* Fills in the records of the file, and lists the nodes that it lacks. */
 static PetscErrorCode LookUp(LamRounds *rounds, LamRound *round)
 {
   PetscFunctionBeginUser;
@@ -175,63 +157,60 @@ static PetscErrorCode LookUp(LamRounds *rounds, LamRound *round)
 
 typedef struct {
   PetscInt place;
-  PetscReal cost, chain; /* its own, and that of the longest chain of nodes that begins with it */
+  PetscReal cost;
 } Ranked;
 
 static int CompareRanked(const void *a, const void *b)
 {
   const Ranked *x = a, *y = b;
 
-  if (x->chain != y->chain) return x->chain > y->chain ? -1 : 1;
+  if (x->cost != y->cost) return x->cost > y->cost ? -1 : 1;
   return (x->place > y->place) - (x->place < y->place);
 }
 
-/* Costs of the missing nodes, and of the chains of the round that each begins; `chain` [n], 0 for those known. */
-static PetscErrorCode RankChains(LamRounds *rounds, const LamRound *round, PetscReal cost[], PetscReal chain[])
+/* chain[n]: cost of the longest chain of missing nodes that begins with the node; bonded nodes have no chains. */
+static PetscErrorCode PredictChains(LamRounds *rounds, const LamRound *round, PetscReal chain[])
 {
+  const PetscBool chained = (PetscBool)(rounds->scene->micro.interface == LAM_INTERFACE_CONTACT);
+  PetscReal *cost;
+
   PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(round->n, &cost));
+  for (PetscInt m = 0; m < round->missing; m++)
+    cost[round->order[m]] = LamNodeCostsPredict(rounds->costs, round->keys[round->order[m]]);
   for (PetscInt m = 0; m < round->missing; m++) {
-    const PetscInt i = round->order[m];
-
-    cost[i] = LamNodeCostsPredict(rounds->costs, round->keys[i]);
-  }
-  for (PetscInt m = 0; m < round->missing; m++) {
-    PetscReal length = 0;
     PetscInt64 key = round->keys[round->order[m]];
+    PetscReal length = 0;
 
-    for (; key >= 0; key = LamGridNodeParent(rounds->grid, key)) {
-      const PetscInt i = FindKey(round, key);
+    for (; key >= 0; key = chained ? LamGridNodeParent(rounds->grid, key) : -1) {
+      const PetscInt i = LamFindKey(round->n, round->keys, key);
 
       if (i < 0 || round->solved[i]) continue;
       length += cost[i];
       chain[i] = PetscMax(chain[i], length);
     }
   }
+  PetscCall(PetscFree(cost));
   PetscFunctionReturn(0);
 }
 
 /* The longest chains first: so a parent, whose chain holds its children's, comes before them. */
 static PetscErrorCode Sort(LamRounds *rounds, LamRound *round)
 {
-  const PetscBool chained = (PetscBool)(rounds->scene->micro.interface == LAM_INTERFACE_CONTACT);
-  PetscReal *cost, *chain;
+  PetscReal *chain;
   Ranked *ranked;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(round->n, &cost, round->n, &chain));
+  PetscCall(PetscCalloc1(round->n, &chain));
   PetscCall(PetscMalloc1(round->missing + 1, &ranked));
-  PetscCall(RankChains(rounds, round, cost, chain));
-  for (PetscInt m = 0; m < round->missing; m++) {
-    const PetscInt i = round->order[m];
-
-    ranked[m] = (Ranked){i, cost[i], chained ? chain[i] : cost[i]};
-  }
+  PetscCall(PredictChains(rounds, round, chain));
+  for (PetscInt m = 0; m < round->missing; m++) ranked[m] = (Ranked){round->order[m], chain[round->order[m]]};
   qsort(ranked, (size_t)round->missing, sizeof(*ranked), CompareRanked);
   for (PetscInt m = 0; m < round->missing; m++) {
     round->order[m] = ranked[m].place;
-    round->cost[m] = ranked[m].chain;
+    round->cost[m] = ranked[m].cost;
   }
-  PetscCall(PetscFree2(cost, chain));
+  PetscCall(PetscFree(chain));
   PetscCall(PetscFree(ranked));
   PetscFunctionReturn(0);
 }
@@ -240,14 +219,10 @@ static PetscErrorCode RoundCreate(LamRounds *rounds, PetscInt n, LamRound *round
 {
   PetscFunctionBeginUser;
   *round = (LamRound){.n = n};
-  PetscCall(PetscMalloc1(n, &round->keys));
-  PetscCall(PetscArraycpy(round->keys, rounds->poll.keys, n));
-  PetscCall(PetscMalloc1(n, &round->responses));
-  PetscCall(PetscMalloc1(n, &round->solved));
-  PetscCall(PetscMalloc1(n, &round->order));
+  PetscCall(PetscCalloc6(n, &round->keys, n, &round->responses, n, &round->order, n, &round->cost, n, &round->solved, n,
+                         &round->taken));
+  PetscCall(PetscArraycpy(round->keys, rounds->coverage.keys, n));
   PetscCall(LookUp(rounds, round));
-  PetscCall(PetscMalloc1(round->missing, &round->cost));
-  PetscCall(PetscCalloc1(round->missing, &round->taken));
   PetscCall(Sort(rounds, round));
   PetscFunctionReturn(0);
 }
@@ -275,7 +250,7 @@ static PetscErrorCode Close(LamRounds *rounds)
   PetscFunctionReturn(0);
 }
 
-/* A round is opened before one that is complete is closed: what it asks for must not depend on which came first. */
+/* A round is opened before a complete one is closed: its nodes must not depend on which comes first. */
 PetscErrorCode LamRoundsNext(LamRounds *rounds, LamRound **round)
 {
   PetscFunctionBeginUser;
@@ -284,7 +259,7 @@ PetscErrorCode LamRoundsNext(LamRounds *rounds, LamRound **round)
     if (rounds->open < LAM_OPEN_ROUNDS && !rounds->dry) {
       PetscInt n = 0;
 
-      PetscCall(PollUntilLacking(rounds, &n));
+      PetscCall(FindLacking(rounds, &n));
       rounds->dry = (PetscBool)(n == 0);
       if (rounds->dry) continue;
       *round = &rounds->round[rounds->open];
@@ -303,7 +278,7 @@ PetscErrorCode LamRoundsArrive(LamRounds *rounds, PetscInt64 key, const LamRespo
   PetscFunctionBeginUser;
   for (PetscInt r = 0; r < rounds->open; r++) {
     LamRound *round = &rounds->round[r];
-    const PetscInt i = FindKey(round, key);
+    const PetscInt i = LamFindKey(round->n, round->keys, key);
 
     if (i < 0) continue;
     round->responses[i] = *response;
@@ -314,7 +289,7 @@ PetscErrorCode LamRoundsArrive(LamRounds *rounds, PetscInt64 key, const LamRespo
   SETERRQ(PETSC_COMM_SELF, PETSC_ERR_PLIB, "node %lld belongs to no open round", (long long)key);
 }
 
-PetscInt64 LamRoundsAsked(const LamRounds *rounds)
+PetscInt64 LamRoundsRequested(const LamRounds *rounds)
 {
   PetscInt64 n = rounds->nodes;
 
@@ -322,26 +297,26 @@ PetscInt64 LamRoundsAsked(const LamRounds *rounds)
   return n;
 }
 
-PetscInt64 LamRoundsThere(const LamRounds *rounds)
+PetscInt64 LamRoundsAvailable(const LamRounds *rounds)
 {
-  PetscInt64 n = LamRoundsAsked(rounds);
+  PetscInt64 n = LamRoundsRequested(rounds);
 
   for (PetscInt r = 0; r < rounds->open; r++) n -= rounds->round[r].missing - rounds->round[r].arrived;
   return n;
 }
 
-PetscReal LamRoundsAnswered(const LamRounds *rounds)
+PetscReal LamRoundsCovered(const LamRounds *rounds)
 {
-  const PetscInt n = rounds->scene->sample.count ? rounds->poll.reached : rounds->poll.answered;
+  const PetscInt n = rounds->scene->sample.count ? rounds->coverage.reached : rounds->coverage.covered;
 
-  return rounds->poll.asked ? (PetscReal)n / (PetscReal)rounds->poll.asked : 0;
+  return rounds->coverage.states ? (PetscReal)n / (PetscReal)rounds->coverage.states : 0;
 }
 
 PetscErrorCode LamRoundsDestroy(LamRounds *rounds)
 {
   PetscFunctionBeginUser;
   for (PetscInt r = 0; r < LAM_OPEN_ROUNDS; r++) PetscCall(RoundDestroy(&rounds->round[r]));
-  PetscCall(LamPollDestroy(&rounds->poll));
+  PetscCall(LamCoverageDestroy(&rounds->coverage));
   PetscCall(LamNodeCostsDestroy(&rounds->costs));
   PetscCall(LamDatabaseClose(&rounds->table));
   PetscCall(PetscFree(rounds->known));

@@ -51,8 +51,9 @@ static PetscErrorCode Arrive(void *ctx, PetscInt64 key, const LamResponse *respo
   PetscCall(LamRoundsArrive(&b->rounds, key, response));
   PetscCall(OpenRounds(b));
   PetscCall(LamBuildCommitInTime(b));
-  PetscCall(LamReportProgress(&b->reporter, LamRoundsThere(&b->rounds),
-                              b->scene->sample.count ? b->rounds.most : LamRoundsAsked(&b->rounds), LamBuildFailed(b)));
+  PetscCall(LamReportProgress(&b->reporter, LamRoundsAvailable(&b->rounds),
+                              b->scene->sample.count ? b->rounds.most : LamRoundsRequested(&b->rounds),
+                              LamBuildFailed(b)));
   PetscFunctionReturn(0);
 }
 

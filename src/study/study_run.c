@@ -12,8 +12,8 @@ static void FillResult(const LamBuild *build, LamBuildResult *result)
   *result = (LamBuildResult){.records = LamBuildRecords(build),
                              .added = build->added,
                              .failed = LamBuildFailed(build),
-                             .answered = LamRoundsAnswered(&build->rounds),
-                             .error = build->rounds.poll.error,
+                             .answered = LamRoundsCovered(&build->rounds),
+                             .error = build->rounds.coverage.error,
                              .seconds = LamClock() - build->start,
                              .stopped = LamStopRequested()};
 }

@@ -1,7 +1,6 @@
 /*
-  How long `lamella build` takes to decide on a round: LamPollMake on the first nodes of a database, and on all of
-  them; the prediction of what a node will cost. Prints figures, asserts nothing.
-    bench_poll [DATABASE.h5 ...]
+  How long `lamella build` takes to decide on a round: LamCoverageCompute on the first nodes of a database, and on all
+  of them; the prediction of what a node will cost. Prints figures, asserts nothing. bench_coverage [DATABASE.h5 ...]
 */
 #include <stdio.h>
 #include <time.h>
@@ -12,14 +11,14 @@ static double Processor(void)
   return (double)clock() / CLOCKS_PER_SEC;
 }
 
-static PetscErrorCode Poll(const LamScene *scene, LamDatabase file, PetscInt n)
+static PetscErrorCode Cover(const LamScene *scene, LamDatabase file, PetscInt n)
 {
   const LamShard whole = {1, 1};
   const LamResponse *records;
   const PetscInt64 *keys;
   LamDatabase table;
   LamGrid grid;
-  LamPoll poll;
+  LamCoverage coverage;
   double begin;
   char *text;
 
@@ -32,10 +31,10 @@ static PetscErrorCode Poll(const LamScene *scene, LamDatabase file, PetscInt n)
   PetscCall(LamDatabaseAdd(table, n, keys, records));
   PetscCall(LamDatabaseSetGrid(table, &grid));
   begin = Processor();
-  PetscCall(LamPollMake(scene, &whole, table, scene->accuracy, n, NULL, &poll));
+  PetscCall(LamCoverageCompute(scene, &whole, table, scene->accuracy, n, NULL, &coverage));
   printf("%8" PetscInt_FMT " nodes: %5.0f ms for %" PetscInt_FMT " states, %" PetscInt_FMT " nodes lacking\n", n,
-         1e3 * (Processor() - begin), poll.asked, poll.lacking);
-  PetscCall(LamPollDestroy(&poll));
+         1e3 * (Processor() - begin), coverage.states, coverage.lacking);
+  PetscCall(LamCoverageDestroy(&coverage));
   PetscCall(LamDatabaseClose(&table));
   PetscCall(PetscFree(text));
   PetscFunctionReturn(0);
@@ -79,7 +78,7 @@ static PetscErrorCode Run(const char path[])
   PetscCall(LamSceneReadText(path, text, &scene));
   PetscCall(LamDatabaseOpen(path, &file));
   PetscCall(LamDatabaseGetRecords(file, &n, NULL, NULL));
-  for (PetscInt part = 8; part >= 1; part /= 2) PetscCall(Poll(scene, file, n / part));
+  for (PetscInt part = 8; part >= 1; part /= 2) PetscCall(Cover(scene, file, n / part));
   PetscCall(Predict(file, n));
   PetscCall(LamDatabaseClose(&file));
   PetscCall(LamSceneDestroy(&scene));
@@ -89,7 +88,7 @@ static PetscErrorCode Run(const char path[])
 
 int main(int argc, char **argv)
 {
-  if (argc < 2) fprintf(stderr, "usage: bench_poll DATABASE.h5 ...\n");
+  if (argc < 2) fprintf(stderr, "usage: bench_coverage DATABASE.h5 ...\n");
   for (int i = 1; i < argc; i++)
     if (Run(argv[i])) return 1;
   return 0; /* tables need neither PetscInitialize nor MPI */
