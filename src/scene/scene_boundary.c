@@ -23,12 +23,12 @@ static const LamKey boundary_keys[] = {
      .size = 2, FREE, .example = "[0 mm, free]",
      .help = "At load parameter 1, along X1 and X2; `free` leaves a component. All displacements count from the "
              "inflated state."},
-    {BOOL("macro.boundary[].symmetry"), .example = "true",
+    {BOOL("macro.boundary[].symmetry"),
      .help = "The side, which is straight, does not move along its normal, also while the body inflates."},
     {STRESS("macro.boundary[].traction"), INTO(LamBoundary, traction), .size = 2, .example = "[0 MPa, 0.01 MPa]",
      .help = "Force per reference area at load parameter 1, along X1 and X2. With `follower`: per present area, along "
              "the present tangent (the outward normal turned by +90 deg) and the present outward normal."},
-    {BOOL("macro.boundary[].follower"), INTO(LamBoundary, follower), .default_value = "false", .example = "true",
+    {BOOL("macro.boundary[].follower"), INTO(LamBoundary, follower), .default_value = "false",
      .help = "Whether `traction` turns with the side."},
     {STRESS("macro.boundary[].pressure"), INTO(LamBoundary, traction[1]), .example = "0.01 MPa",
      .help = "At load parameter 1, against the present outward normal, per present area."},

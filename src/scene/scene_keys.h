@@ -61,8 +61,8 @@ typedef struct LamKey_s {
   const char *free_word;     /* leaves a component open; NULL: none may be */
   const char *default_value; /* as one would write it; NULL: none */
   const char *default_words; /* a default that depends on other keys, in words */
-  const char *example;
-  const char *help; /* Markdown, without | */
+  const char *example;       /* of what is no name or truth value: messages list those */
+  const char *help;          /* Markdown, without | */
 } LamKey;
 
 /* The keys of a block, or of a part of one, as its file lists them. */

@@ -20,7 +20,7 @@ static const LamKey mesh_keys[] = {
      .help = "Radius of a disc about the origin. Its sides are `rim` and, of a part, `bottom` (X2 = 0) and `left` "
              "(X1 = 0)."},
     {NAME("macro.mesh.part", LamDiscPartNames), INTO(LamMacroSpec, disc), .default_value = "whole",
-     .example = "quarter", .help = "Of a disc: `whole`, `half` (X2 >= 0) or `quarter` (X1 >= 0, too)."},
+     .help = "Of a disc: `whole`, `half` (X2 >= 0) or `quarter` (X1 >= 0, too)."},
     {INTEGER("macro.mesh.elements"), INTO(LamMacroSpec, elements), .size = 2, FROM(1), TO(1000),
      .default_words = "none: required with `box` and `disc`", .example = "[8, 8]",
      .help = "Quadratic elements: of a box along X1 and X2; of a disc along an eighth of the rim, and from the rim to "
@@ -44,7 +44,6 @@ static const LamKey program_keys[] = {
     {LENGTH("macro.control.displacement", "mm"), .size = 2, REQUIRED, FREE, .example = "[free, -1 mm]",
      .help = "Its mean displacement at load parameter 1: one component, the other one `free`."},
     {BOOL("macro.inflate"), INTO(LamMacroSpec, inflate), .default_words = "true with turgor, else false",
-     .example = "true",
      .help = "First bring turgor up with only rigid motions held; displacements then count from there. With law "
              "`contact` it needs a cohesion: nothing else holds free tissue together."},
     {INTEGER("macro.steps"), INTO(LamMacroSpec, steps), FROM(1), TO(10000),

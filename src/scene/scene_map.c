@@ -12,7 +12,7 @@ static const char *const spacing_names[] = {"linear", "log"}; /* LamMapAxis.is_l
 /* The axes of a map are alike. `from` and `to` have the unit of the quantity, so they are read as text. */
 #define MAP_AXIS(axis, sample)                                                                                         \
   {MAP("map." axis), REQUIRED, .example = sample, .help = "The axis " axis "."},                                       \
-      {NAME("map." axis ".quantity", LamMapQuantityNames), INTO(LamMapAxis, quantity), REQUIRED, .example = "turgor",  \
+      {NAME("map." axis ".quantity", LamMapQuantityNames), INTO(LamMapAxis, quantity), REQUIRED,                       \
        .help = "What varies. `shear` (F12) and `load_factor` (0 to 1) say how far the load is followed, the others "   \
                "replace what the scene says."},                                                                        \
       {TEXT("map." axis ".from"), REQUIRED, .example = "0 MPa",                                                        \
@@ -27,7 +27,7 @@ static const char *const spacing_names[] = {"linear", "log"}; /* LamMapAxis.is_l
        .help = "Number of values, the ends included."},                                                                \
   {                                                                                                                    \
     NAME("map." axis ".spacing", spacing_names), INTO(LamMapAxis, is_log),                                             \
-        .default_value = "linear", .example = "log", .help = "`linear`: equal differences; `log`: equal ratios."       \
+        .default_value = "linear", .help = "`linear`: equal differences; `log`: equal ratios."                         \
   }
 
 static const LamKey map_keys[] = {

@@ -18,7 +18,6 @@ static const LamKey process_keys[] = {
     {REAL("process.tolerance"), INTO(LamProcessSpec, tolerance), FROM(1e-10), TO(0.1), .default_value = "1e-5",
      .example = "1e-6", .help = "Relative error of the integration in a step of time."},
     {BOOL("process.inflate"), INTO(LamProcessSpec, inflate), .default_words = "true with turgor, else false",
-     .example = "true",
      .help = "First find the tissue free of stress under its turgor; deformation then counts from there. Of a body "
              "`macro.inflate` says it."},
     {REAL("process.opening"), INTO(LamProcessSpec, opening), ABOVE(0), BELOW(1), .default_value = "0.01",
@@ -65,12 +64,11 @@ static const LamKey process_keys[] = {
      .example = "[{of: lamella, law: first_order, rate: 0.1 /day}]", .help = "What changes, each thing once."},
     {MAP("process.kinetics[]"), .example = "{of: lamella, law: first_order, rate: 0.1 /day}",
      .help = "One property, as a factor X(t) of what it is at the start."},
-    {NAME("process.kinetics[].of", LamChangingNames), REQUIRED, .example = "lamella",
+    {NAME("process.kinetics[].of", LamChangingNames), REQUIRED,
      .help =
          "`lamella`: cohesion and strengths of the lamella; `walls`: all moduli of the walls; `C1`, `C2`, `C4`: one "
          "of them, besides; `wall_strength`; `solutes` in a cell; `permeability` and `reflection` of its membrane."},
     {NAME_OF("process.kinetics[].law", LamKineticLawNames, LAM_KINETIC_LAW_COUNT), INTO(LamKinetics, law), REQUIRED,
-     .example = "first_order",
      .help = "`first_order`: X' = -k X; `fractional_conversion`: X' = -k (X - plateau), above 1 it stiffens; "
              "`two_fractions`: one decays with k, the other with k2; `autocatalytic`: an enzyme E' = k2 E (1 - E) acts "
              "by X' = -k E (X - plateau); `table`; `constant`."},

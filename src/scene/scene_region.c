@@ -43,7 +43,7 @@ static const LamKey region_keys[] = {
     LAM_OTHER_WALL("macro.regions[].wall", AS_RVE),
     {MAP("macro.regions[].interface"), .example = "{law: bonded}", .help = "Its middle lamella, as `rve.interface`."},
     {NAME_OF("macro.regions[].interface.law", LamInterfaceLawNames, LAM_INTERFACE_LAW_COUNT),
-     INTO(LamRegion, micro.interface), .default_words = AS_RVE, .example = "bonded", .help = "`bonded` or `contact`."},
+     INTO(LamRegion, micro.interface), .default_words = AS_RVE, .help = "`bonded` or `contact`."},
     {STRESS("macro.regions[].interface.cohesion"), INTO(LamRegion, cohesion), FROM(0), .default_words = AS_RVE,
      .example = "0.01 MPa", .help = "Cohesion; only with law `contact`."},
     {LENGTH("macro.regions[].interface.clearance", "um"), INTO(LamRegion, micro.clearance), FROM(0),

@@ -11,7 +11,6 @@ static const LamKey response_keys[] = {
     {MAP("macro.response"), .default_words = "as below", .example = "{outside: stop, accuracy: 0.003}",
      .help = "Where the responses of material points come from."},
     {NAME("macro.response.outside", LamOutsideNames), INTO(LamResponsePolicy, outside), .default_value = "solve",
-     .example = "stop",
      .help = "What a cache does with a state outside its table: `solve` it, and add it to the database, or `stop` the "
              "run where smaller steps do not avoid it."},
     {REAL("macro.response.accuracy"), INTO(LamResponsePolicy, accuracy), ABOVE(0), TO(0.5),

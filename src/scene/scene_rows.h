@@ -58,7 +58,7 @@
 /* Of a wall that is that of `rve`, or as the words `own` say, in all that it leaves out. */
 #define LAM_OTHER_WALL(prefix, own)                                                                                    \
   {NAME_OF(prefix ".law", LamWallLawNames, LAM_WALL_LAW_COUNT), INTO(LamWall, law), .default_words = own,              \
-   .example = "mooney_rivlin", .help = "Law of its wall."},                                                            \
+   .help = "Law of its wall."},                                                                                        \
       LAM_WALL_PARAMETERS(LAM_OTHER_WALL_KEY, (prefix, own)){STRESS(prefix ".bulk_modulus"),                           \
                                                              INTO(LamWall, bulk_modulus),                              \
                                                              ABOVE(0),                                                 \
@@ -67,7 +67,7 @@
                                                              .help = "Bulk modulus."},                                 \
   {                                                                                                                    \
     NAME_OF(prefix ".fibres", LamFibresNames, LAM_FIBRES_COUNT), INTO(LamWall, fibres),                                \
-        .default_words = own, .example = "tension", .help = "Whether fibres resist compression."                       \
+        .default_words = own, .help = "Whether fibres resist compression."                                             \
   }
 
 #define CHOSEN "chosen for the wanted accuracy"

@@ -27,7 +27,7 @@ static const LamKey cell_keys[] = {
     {INTEGER("rve.patch.rows"), INTO(LamScene, micro.cells[1]), REQUIRED, FROM(1), TO(64), .example = "6",
      .help = "Rows of cells, along X2."},
     {NAME_OF("rve.patch.sides", LamPatchSidesNames, LAM_PATCH_SIDES_COUNT), INTO(LamScene, micro.sides),
-     .default_value = "affine", .example = "free",
+     .default_value = "affine",
      .help =
          "Whether the lateral outer walls follow F, too (`affine`), or are left `free`. Free sides need law `bonded` "
          "or a cohesion: nothing else holds the outer cells between the grips."},
@@ -37,7 +37,7 @@ LAM_KEY_TABLE(LamCellKeys, cell_keys);
 static const LamKey tissue_keys[] = {
     {MAP("rve.interface"), .example = "{law: bonded}", .help = "The middle lamella between the cells."},
     {NAME_OF("rve.interface.law", LamInterfaceLawNames, LAM_INTERFACE_LAW_COUNT), INTO(LamScene, micro.interface),
-     .default_value = "bonded", .example = "contact",
+     .default_value = "bonded",
      .help = "`bonded`: cells never part; `contact`: they may part and slide without friction."},
     {STRESS("rve.interface.cohesion"), INTO(LamScene, cohesion), FROM(0), .default_value = "0 MPa",
      .example = "0.001 MPa", .help = "Normal traction that parts the cells; only with law `contact`."},
@@ -48,7 +48,6 @@ static const LamKey tissue_keys[] = {
          "with law `contact`."},
     {MAP("rve.turgor"), .example = "{mode: prescribed, pressure: 0.02 MPa}", .help = "Pressure in the lumens."},
     {NAME("rve.turgor.mode", turgor_mode_names), .default_words = "`prescribed` where a pressure is given, else `none`",
-     .example = "prescribed",
      .help =
          "`prescribed`: the pressure is given; `sealed`: each cell keeps the water that it has at F = I under that "
          "pressure (in `fe2` with `macro.inflate`: in the inflated body), and its pressure follows. `build` tabulates "
@@ -79,7 +78,7 @@ static const LamKey tissue_keys[] = {
          "Where Newton iterations of the RVE end: residual (forces over (C1 + C2) apothem) and violation of contact. "
          "Not below rounding."},
     {NAME_OF("rve.strategy", LamStrategyNames, LAM_STRATEGY_COUNT), INTO(LamScene, strategy),
-     .default_value = "two_step", .example = "two_step",
+     .default_value = "two_step",
      .help = "How contact is reached: from the bonded state (`two_step`) or at once (`one_step`). No effect on bonded "
              "tissue."},
 };

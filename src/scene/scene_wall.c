@@ -18,12 +18,11 @@ static const LamKey wall_keys[] = {
     {MAP("rve.wall"), REQUIRED, .example = "{law: mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa}",
      .help = "Material of the cell walls. The small-strain shear modulus without fibres is C1 + C2."},
     {NAME_OF("rve.wall.law", LamWallLawNames, LAM_WALL_LAW_COUNT), INTO(LamWall, law), REQUIRED,
-     .example = "fibre_mooney_rivlin", .help = LAM_WALL_LAWS(LAW_HELP)},
+     .help = LAM_WALL_LAWS(LAW_HELP)},
     LAM_WALL_PARAMETERS(WALL_KEY, ) /* the parameters of wall.h */
     {STRESS("rve.wall.bulk_modulus"), INTO(LamWall, bulk_modulus), ABOVE(0), .default_words = "1000 (C1 + C2)",
      .example = "110 MPa", .help = "Bulk modulus, larger than C1 + C2: walls are nearly incompressible."},
     {NAME_OF("rve.wall.fibres", LamFibresNames, LAM_FIBRES_COUNT), INTO(LamWall, fibres), .default_value = "both",
-     .example = "tension",
      .help = "Whether fibres also resist compression along the wall (`both`) or stretch alone (`tension`)."},
 };
 LAM_KEY_TABLE(LamWallKeys, wall_keys);
