@@ -1,8 +1,7 @@
 /*
   What an audit says: quantiles of errors, measured and estimated, and a verdict.
 */
-#include "app.h"
-#include "audit.h"
+#include "audit_report.h"
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>

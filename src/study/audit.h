@@ -1,10 +1,11 @@
 /*
-  Private to `lamella verify`: which states are asked, what is compared, what it says of the database.
+  A database compared with fresh solves: which states it is queried at, what is compared.
 */
 #ifndef LAM_AUDIT_H
 #define LAM_AUDIT_H
 
 #include "answers.h"
+#include "dispatch.h"
 
 /* The states that questions are drawn from; [0] the smallest, [1] the largest. */
 typedef struct {
@@ -43,8 +44,32 @@ PetscErrorCode LamAuditDestroy(LamAudit *audit);
 /* Compares answer i with the solve of its load. */
 PetscErrorCode LamAuditCompare(LamAudit *audit, PetscInt i, const LamResponse *fresh);
 
-/* ---- audit_report.c ---- */
-PetscErrorCode LamAuditPrint(const LamAudit *audit, const char path[], PetscReal seconds, PetscMPIInt ranks);
-PetscErrorCode LamAuditToJSON(const LamAudit *audit, const char path[], PetscReal seconds, json_t **object);
+/* ---- audit_run.c; collective ---- */
+
+typedef struct {
+  const char *path;
+  PetscInt samples, seed;
+  PetscReal accuracy; /* 0: that of the database */
+  LamReporter reporter;
+
+  LamDispatch dispatch;
+  PetscMPIInt rank, ranks;
+  PetscReal start;
+
+  /* every rank */
+  LamMicrostructure micro;
+  LamStrategy strategy;
+  PetscInt count;
+  LamLoad *loads; /* [count] */
+  LamRVE rve;
+  LamRVEState state;
+
+  /* rank 0 */
+  LamAnswers from;
+  LamAudit audit;
+} LamVerification;
+
+PetscErrorCode LamVerificationRun(LamVerification *verification);
+PetscErrorCode LamVerificationDestroy(LamVerification *verification);
 
 #endif

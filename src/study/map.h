@@ -1,9 +1,9 @@
 /*
-  Private to `lamella map`: how tissue fails over two of its quantities.
+  How tissue fails over two of its quantities.
 
     map_path.c     follows the load at the values of one point, or of a row of points
     map_table.c    the verdicts as arrays of the result file
-    cmd_map.c      hands paths out, commits, tells
+    map_run.c      hands paths out, commits
 
   Points are numbered y * points_x + x, from 0; that is the key of their record. Where an axis is of the load (shear,
   load_factor), one path along the load answers all points along that axis: they are cuts of it. Else every point has a
@@ -12,6 +12,7 @@
 #ifndef LAM_MAP_H
 #define LAM_MAP_H
 
+#include "dispatch.h"
 #include "failure.h"
 
 /* What one point is answered. Plain data, sent between ranks. */
@@ -56,5 +57,34 @@ PetscErrorCode LamMapTableRead(const char path[], const PetscBool known[], LamMa
 PetscErrorCode LamMapTableWrite(LamRecordWriter writer, const LamMapTable *table);
 /* What the axes are, and the names of modes and criteria; once, before the table. */
 PetscErrorCode LamMapAxesWrite(LamRecordWriter writer, const LamScene *scene);
+
+/* ---- map_run.c; collective ---- */
+
+typedef struct LamMap_s {
+  const char *scene_path, *path;
+  PetscBool resume; /* goes on with a file that is there */
+  LamReporter reporter;
+  /* Of each point once it is in the file, on rank 0; ctx: the reporter's. May be NULL. */
+  PetscErrorCode (*point)(void *ctx, const struct LamMap_s *map, const LamMapPoint *point);
+
+  LamScene *scene;
+  PetscInt paths, cuts;
+  LamDispatch dispatch;
+  PetscMPIInt rank, ranks;
+  PetscInt *todo; /* paths that the file lacks; owned, all ranks */
+  PetscInt todo_count;
+
+  /* on rank 0 */
+  LamRecordWriter writer;
+  LamMapTable table;
+  LamMapPoint *waiting; /* [paths cuts], of them `waiting_count` not committed yet; owned */
+  PetscInt waiting_count, solved, old;
+  PetscReal start, last_commit;
+} LamMap;
+
+/* PETSC_ERR_USER_INPUT for a scene without a block `map`, and where the file is of another scene. */
+PetscErrorCode LamMapRun(LamMap *map);
+PetscInt LamMapCountMode(const LamMap *map, PetscInt mode); /* rank 0: points with that failure mode */
+PetscErrorCode LamMapDestroy(LamMap *map);
 
 #endif

@@ -1,0 +1,229 @@
+/*
+  A map of how tissue fails over two of its quantities.
+
+  Method
+    Paths (map.h) do not depend on each other and are handed out to all ranks. What has come in is committed every
+    COMMIT_SECONDS: first the table of verdicts, which is written over in place, then the records, whose keys say which
+    points are there. A file that was killed between the two holds verdicts without records; they are not believed, and
+    these points are solved anew on resuming.
+*/
+#include "rounding.h"
+#include "dispatch.h"
+#include "map.h"
+#include "plan.h"
+#include <lamella/clock.h>
+#include <string.h>
+#include <unistd.h>
+
+#define COMMIT_SECONDS 0.5
+
+/* What a rank sends: the points of a path, unless it was stopped before the end. */
+typedef struct {
+  PetscBool complete;
+  LamMapPoint points[];
+} PathResult;
+
+/* ---- commits ---- */
+
+static PetscErrorCode Commit(LamMap *m)
+{
+  LamResponse *responses;
+  PetscInt64 *keys;
+
+  PetscFunctionBeginUser;
+  m->last_commit = LamClock();
+  if (!m->waiting_count) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc2(m->waiting_count, &keys, m->waiting_count, &responses));
+  for (PetscInt i = 0; i < m->waiting_count; i++) {
+    keys[i] = m->waiting[i].number;
+    responses[i] = m->waiting[i].response;
+    LamMapTableSet(&m->table, &m->waiting[i]);
+  }
+  if (m->old + m->solved == m->waiting_count) PetscCall(LamMapAxesWrite(m->writer, m->scene)); /* the first commit */
+  PetscCall(LamMapTableWrite(m->writer, &m->table));
+  PetscCall(LamRecordWriterCommit(m->writer, m->waiting_count, keys, responses));
+  PetscCall(PetscFree2(keys, responses));
+  for (PetscInt i = 0; i < m->waiting_count && m->point; i++) PetscCall(m->point(m->reporter.ctx, m, &m->waiting[i]));
+  m->waiting_count = 0;
+  PetscFunctionReturn(0);
+}
+
+PetscInt LamMapCountMode(const LamMap *m, PetscInt mode)
+{
+  PetscInt count = 0;
+
+  for (PetscInt i = 0; i < LamMapPointCount(m->scene); i++) count += m->table.mode[i] == mode;
+  return count;
+}
+
+/* LamDispatchJob.worked */
+static PetscErrorCode Arrive(void *ctx, PetscInt64 index, const void *result)
+{
+  const PathResult *path = result;
+  LamMap *m = ctx;
+
+  PetscFunctionBeginUser;
+  (void)index;
+  if (!path->complete) PetscFunctionReturn(0);
+  PetscCall(PetscArraycpy(m->waiting + m->waiting_count, path->points, m->cuts));
+  m->waiting_count += m->cuts;
+  m->solved += m->cuts;
+  if (LamClock() - m->last_commit >= COMMIT_SECONDS) PetscCall(Commit(m));
+  PetscCall(LamReportProgress(&m->reporter, m->old + m->solved, LamMapPointCount(m->scene),
+                              LamMapCountMode(m, LAM_FAILURE_UNKNOWN)));
+  PetscFunctionReturn(0);
+}
+
+/* Follows the path number `index` of those to do. */
+static PetscErrorCode Follow(void *ctx, PetscInt64 index, const void *input, size_t input_size, void *result,
+                             size_t *size)
+{
+  const LamMap *m = ctx;
+  PathResult *path = result;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamMapFollow(m->scene, m->todo[index], LamDispatchInterrupt, m->dispatch, path->points, &path->complete));
+  PetscFunctionReturn(0);
+}
+
+/* ---- going on with a file ---- */
+
+/* Another scene would give another map. */
+static PetscErrorCode CheckScene(const LamMap *m)
+{
+  PetscBool found, same;
+  char *text;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileReadText(m->path, "/scene", &found, &text));
+  same = (PetscBool)(found && !strcmp(text, m->scene->text));
+  PetscCall(PetscFree(text));
+  PetscCheck(same, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: was begun with another scene than %s; --resume needs the same, to the letter", m->path,
+             m->scene_path);
+  PetscFunctionReturn(0);
+}
+
+/* The points of a path are committed together: the first stands for all. */
+static PetscErrorCode FindTodo(LamMap *m)
+{
+  const PetscInt64 *keys;
+  PetscBool *known;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(LamMapPointCount(m->scene), &known));
+  PetscCall(LamRecordWriterGetKeys(m->writer, &m->old, &keys));
+  for (PetscInt i = 0; i < m->old; i++) {
+    PetscCheck(keys[i] >= 0 && keys[i] < LamMapPointCount(m->scene), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "%s: record %" PetscInt_FMT " is of no point of the map; the file is damaged, begin it anew", m->path,
+               i);
+    known[keys[i]] = PETSC_TRUE;
+  }
+  if (m->old) PetscCall(LamMapTableRead(m->path, known, &m->table));
+  for (PetscInt p = 0; p < m->paths; p++)
+    if (!known[LamMapPointNumber(m->scene, p, 0)]) m->todo[m->todo_count++] = p;
+  PetscCall(PetscFree(known));
+  PetscFunctionReturn(0);
+}
+
+/* ---- ranks ---- */
+
+/* The file describes the tissue of the scene, with the mesh that the planner gives it. */
+static PetscErrorCode OpenWriter(LamMap *m)
+{
+  const PetscBool goes_on = (PetscBool)(m->resume && !access(m->path, F_OK));
+  LamScene described = *m->scene;
+  LamPlan plan;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamPlanMake(m->scene, &plan));
+  PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &m->reporter, &plan.micro, m->scene->accuracy));
+  described.micro = plan.micro;
+  PetscCall(LamMapTableCreate(m->scene, &m->table));
+  PetscCall(PetscMalloc1(LamMapPointCount(m->scene), &m->waiting));
+  PetscCall(
+      LamRecordWriterOpen(m->path, "map", m->resume ? LAM_WRITE_APPEND : LAM_WRITE_CREATE, &described, &m->writer));
+  if (goes_on) PetscCall(CheckScene(m));
+  PetscCall(FindTodo(m));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode RunRoot(LamMap *m)
+{
+  PetscBool complete;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamDispatchAdd(m->dispatch, 0, m->todo_count, 1));
+  PetscCall(LamDispatchRun(m->dispatch, NULL, NULL, &complete));
+  PetscCall(Commit(m));
+  PetscFunctionReturn(0);
+}
+
+/* Closes the file, whatever has happened. */
+static PetscErrorCode CloseAfter(LamMap *m, PetscErrorCode ierr)
+{
+  const PetscErrorCode closed = LamRecordWriterClose(&m->writer);
+
+  PetscFunctionBeginUser;
+  PetscCall(ierr ? ierr : closed);
+  PetscFunctionReturn(0);
+}
+
+/* Rank 0 keeps the file. A worker that fails cannot tell rank 0, which waits for its result: it ends the job. */
+static PetscErrorCode RunAll(LamMap *m)
+{
+  const PetscBool root = (PetscBool)(m->rank == 0);
+  PetscErrorCode ierr = root ? OpenWriter(m) : 0;
+
+  PetscFunctionBeginUser;
+  if (ierr) (void)LamRecordWriterClose(&m->writer);
+  PetscCall(LamShareError(PETSC_COMM_WORLD, ierr));
+  PetscCallMPI(MPI_Bcast(m->todo, (PetscMPIInt)m->paths, MPIU_INT, 0, PETSC_COMM_WORLD));
+  if (root) {
+    ierr = CloseAfter(m, RunRoot(m));
+  } else {
+    PetscCall(LamDispatchServe(m->dispatch));
+  }
+  PetscCall(LamShareError(PETSC_COMM_WORLD, ierr));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Prepare(LamMap *m)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamSceneRead(m->scene_path, &m->scene));
+  PetscCheck(m->scene->has_map, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: has no block `map`, which says what quantities to vary", m->scene_path);
+  m->paths = LamMapPathCount(m->scene);
+  m->cuts = LamMapCutCount(m->scene);
+  PetscCall(PetscCalloc1(m->paths, &m->todo));
+  m->start = LamClock();
+  m->last_commit = m->start;
+  PetscCall(
+      LamDispatchCreate(PETSC_COMM_WORLD,
+                        &(LamDispatchJob){m, .result_size = sizeof(PathResult) + (size_t)m->cuts * sizeof(LamMapPoint),
+                                          .work = Follow, .worked = Arrive},
+                        &m->dispatch));
+  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &m->rank));
+  PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &m->ranks));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMapRun(LamMap *m)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Prepare(m));
+  PetscCall(RunAll(m));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMapDestroy(LamMap *m)
+{
+  PetscFunctionBeginUser;
+  if (m->rank == 0) PetscCall(LamMapTableDestroy(&m->table));
+  PetscCall(PetscFree(m->waiting));
+  PetscCall(PetscFree(m->todo));
+  PetscCall(LamDispatchDestroy(&m->dispatch));
+  PetscCall(LamSceneDestroy(&m->scene));
+  PetscFunctionReturn(0);
+}
