@@ -8,7 +8,7 @@
 #define COMMIT_SECONDS 0.1
 #define COMMIT_SHARE 50.0
 enum { COMMIT_RECORDS = 65536 }; /* more are not kept back */
-#define LATE 30.0                /* s */
+#define LATE 30.0                /* s that a node may hold up those behind it in the file */
 
 PetscInt64 LamBuildRecords(const LamBuild *build)
 {
@@ -52,43 +52,23 @@ PetscErrorCode LamBuildTake(LamBuild *b, PetscInt64 key, const LamResponse *resp
   PetscFunctionReturn(0);
 }
 
-/* The node that comes as number m in its round. */
-static PetscErrorCode TakeNode(LamBuild *b, LamRound *round, PetscInt m)
-{
-  const PetscInt i = round->order[m];
-
-  PetscFunctionBeginUser;
-  PetscCall(LamBuildTake(b, round->keys[i], &round->responses[i]));
-  round->taken[m] = PETSC_TRUE;
-  PetscFunctionReturn(0);
-}
-
-/* What follows without a gap in the order of the file. */
-PetscErrorCode LamBuildTakeInTurn(LamBuild *b)
+PetscErrorCode LamBuildTakeSolved(LamBuild *b, PetscBool in_turn)
 {
   PetscFunctionBeginUser;
   for (PetscInt r = 0; r < b->rounds.open; r++) {
     LamRound *round = &b->rounds.round[r];
 
-    for (; round->next < round->missing; round->next++) {
-      if (round->taken[round->next]) continue;
-      if (!round->solved[round->order[round->next]]) PetscFunctionReturn(0);
-      PetscCall(TakeNode(b, round, round->next));
-      b->last_taken = LamClock();
+    for (PetscInt m = round->next; m < round->missing; m++) {
+      const PetscInt i = round->order[m];
+
+      if (!round->solved[i] && in_turn) PetscFunctionReturn(0);
+      if (round->solved[i] && !round->taken[m]) {
+        PetscCall(LamBuildTake(b, round->keys[i], &round->responses[i]));
+        round->taken[m] = PETSC_TRUE;
+        if (in_turn) b->last_taken = LamClock();
+      }
+      if (in_turn) round->next = m + 1;
     }
-  }
-  PetscFunctionReturn(0);
-}
-
-/* All that is there, whatever is missing before it. */
-static PetscErrorCode TakeAll(LamBuild *b)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt r = 0; r < b->rounds.open; r++) {
-    LamRound *round = &b->rounds.round[r];
-
-    for (PetscInt m = round->next; m < round->missing; m++)
-      if (!round->taken[m] && round->solved[round->order[m]]) PetscCall(TakeNode(b, round, m));
   }
   PetscFunctionReturn(0);
 }
@@ -98,7 +78,7 @@ PetscErrorCode LamBuildCommitInTime(LamBuild *b)
   const PetscReal waited = LamClock() - b->last_commit;
 
   PetscFunctionBeginUser;
-  if (LamClock() - b->last_taken > LATE) PetscCall(TakeAll(b));
+  if (LamClock() - b->last_taken > LATE) PetscCall(LamBuildTakeSolved(b, PETSC_FALSE));
   if (b->pending.n >= COMMIT_RECORDS ||
       (b->pending.n && waited >= PetscMax(COMMIT_SECONDS, COMMIT_SHARE * b->commit_seconds)))
     PetscCall(Commit(b));
@@ -111,7 +91,7 @@ PetscErrorCode LamBuildCommitAll(void *ctx)
   LamBuild *b = ctx;
 
   PetscFunctionBeginUser;
-  PetscCall(TakeAll(b));
+  PetscCall(LamBuildTakeSolved(b, PETSC_FALSE));
   if (b->pending.n) PetscCall(Commit(b));
   PetscFunctionReturn(0);
 }

@@ -38,14 +38,14 @@ typedef struct LamBuild_s {
   LamDatabase file; /* what was there before; NULL: nothing */
   LamRounds rounds;
   LamPending pending;
-  PetscBool opening;       /* rounds are being opened: what arrives meanwhile opens none */
+  PetscBool opening;       /* rounds are being opened: nodes that arrive meanwhile open none */
   PetscInt64 added, there; /* committed by this run; nodes that rounds have found in the file */
-  PetscInt64 failed;       /* without an answer, of those committed */
+  PetscInt64 failed;       /* without a solution, of those committed */
   PetscReal last_commit, commit_seconds, all_commits; /* when it ended; what it took, and all of them, s */
   PetscReal last_taken;                               /* when a record was last taken for the file in its turn */
 } LamBuild;
 
-/* Nodes in the file that this build has asked for, and those of them without an answer. */
+/* Nodes in the file that this build has requested, and those of them without a solution. */
 PetscInt64 LamBuildRecords(const LamBuild *build);
 PetscInt64 LamBuildFailed(const LamBuild *build);
 
@@ -67,8 +67,8 @@ PetscErrorCode LamBuildStart(LamBuild *build);
 
 /* This record comes next in the file. */
 PetscErrorCode LamBuildTake(LamBuild *build, PetscInt64 key, const LamResponse *response);
-/* Takes what follows in the order of the rounds, up to the first node that is not solved. */
-PetscErrorCode LamBuildTakeInTurn(LamBuild *build);
+/* Takes solved nodes in the order of the rounds; `in_turn`: up to the first node that is not solved. */
+PetscErrorCode LamBuildTakeSolved(LamBuild *build, PetscBool in_turn);
 /* Commits what was taken where it is time. */
 PetscErrorCode LamBuildCommitInTime(LamBuild *build);
 /* At a stop, and at the end: takes all that is solved, and commits it. `build`: a LamBuild. */

@@ -2,10 +2,10 @@
   Filling the table of a response database.
 
   Method
-    In rounds (build.h): rank 0 asks the table of complete rounds before the states of the sample box, and has the nodes
-    that it lacks solved by all ranks, each from its parent (node_work.h), those that will take longest first. They are
-    committed in that order, so the file does not depend on the number of ranks (except times, and checksums, which
-    cover them). A node that is late holds up those behind it for half a minute at most.
+    In rounds (build.h): rank 0 queries the table of the complete rounds at the states of the sample box, and has the
+    nodes that it lacks solved by all ranks, each from its parent (node_work.h), the longest first. They are committed
+    in that order, so the file does not depend on the number of ranks (except times, and checksums, which cover them).
+    A node that is late holds up those behind it for half a minute at most.
 */
 #include "build_run.h"
 #include "plan.h"
@@ -33,7 +33,7 @@ static PetscErrorCode OpenRounds(LamBuild *b)
   if (b->opening || LamStopRequested()) PetscFunctionReturn(0);
   b->opening = PETSC_TRUE;
   for (;;) {
-    PetscCall(LamBuildTakeInTurn(b));
+    PetscCall(LamBuildTakeSolved(b, PETSC_TRUE));
     PetscCall(LamRoundsNext(&b->rounds, &round));
     if (!round) break;
     PetscCall(RequestRound(b, round));
