@@ -11,8 +11,8 @@
 #include <lamella/lamella.h>
 #include "error_model.h"
 #include "quantile.h"
-#include "random_reals.h"
-#include "tissue.h"
+#include "support/random_reals.h"
+#include "support/tissue.h"
 
 #define MOST_STATES 1000
 #define ACCURACIES 3

@@ -8,7 +8,7 @@
 */
 #include <getopt.h>
 #include <stdio.h>
-#include "figures_contact_derivatives.h"
+#include "support/contact_tissue.h"
 #include "quantile.h"
 
 #define COUNT(list) ((int)(sizeof(list) / sizeof((list)[0])))

@@ -7,7 +7,7 @@
 */
 #include <getopt.h>
 #include <stdio.h>
-#include "figures_contact.h"
+#include "support/contact_checks.h"
 
 #define DATA LAMELLA_SOURCE_DIR "/tests/verification/data/contact.json"
 #define MESHES 4

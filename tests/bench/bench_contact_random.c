@@ -19,9 +19,9 @@
 #include <stdio.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include "figures_contact_derivatives.h"
+#include "support/contact_tissue.h"
 #include "quantile.h"
-#include "random_reals.h"
+#include "support/random_reals.h"
 
 #define APOTHEM 75.0 /* um, in scenes */
 #define DRY_SHARE 0.1

@@ -9,8 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
-#include "bare_tissue.h"
-#include "figures_contact_derivatives.h"
+#include "support/bare_tissue.h"
+#include "support/contact_tissue.h"
 #include "quantile.h"
 
 #define PAIRS 60

@@ -6,7 +6,7 @@
     bench_cuboids [N]        N x N elements a body, default 16
 */
 #include <stdio.h>
-#include "figures_cuboids.h"
+#include "support/cuboids.h"
 
 #define PRESSURES 6
 #define MESHES 4

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "digits.h"
+#include "support/digits.h"
 
 #define LOADS 3
 

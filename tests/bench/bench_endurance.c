@@ -14,7 +14,7 @@
 #include <getopt.h>
 #include <string.h>
 #include <time.h>
-#include "figures_endurance.h"
+#include "support/endurance.h"
 #include "quantile.h"
 
 #define PARTS 10

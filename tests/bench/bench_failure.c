@@ -5,7 +5,7 @@
 #include <petsctime.h>
 #include <stdio.h>
 #include "failure_criteria.h"
-#include "figures_failure.h"
+#include "support/failing_tissue.h"
 #include "solve.h"
 
 #define MESHES 5
@@ -130,8 +130,8 @@ static PetscErrorCode Onsets(void)
 {
   LamLoad pull[PULL_STATES], shear[SHEAR_STATES], slip[SHEAR_STATES], shrink[3];
   const LamStrength wall = {.wall = 0.02 / TISSUE_STRESS, .lamella_normal = NAN, .lamella_shear = NAN};
-  const LamFailureProgram pulled = {.strength = &figures_strength, .count = PULL_STATES, .loads = pull};
-  const LamFailureProgram sheared = {.strength = &figures_strength, .count = SHEAR_STATES, .loads = shear};
+  const LamFailureProgram pulled = {.strength = &failing_strength, .count = PULL_STATES, .loads = pull};
+  const LamFailureProgram sheared = {.strength = &failing_strength, .count = SHEAR_STATES, .loads = shear};
   const LamFailureProgram slipped = {.strength = &wall, .count = 3, .loads = slip};
   const LamFailureProgram shrunk = {.count = 3, .loads = shrink};
 

@@ -13,7 +13,7 @@
 #include <petsctime.h>
 #include <lamella/lamella.h>
 #include "app.h"
-#include "random_reals.h"
+#include "support/random_reals.h"
 
 enum { MAX_STEPS = 64 };
 

@@ -1,5 +1,5 @@
 /*
-  FE2 against a direct patch of n x n cells between grips (figures_fe2_patch.h): curves of stress and opening as n
+  FE2 against a direct patch of n x n cells between grips (fe2_patch.h): curves of stress and opening as n
   grows, and of FE2 as its mesh gets finer; prints figures, asserts nothing.
 
     bench_fe2_patch [--full] [--plot FIGURE]
@@ -8,7 +8,7 @@
       --plot   draws the curves: .png, .svg or .pdf
 */
 #include <getopt.h>
-#include "figures_fe2_patch.h"
+#include "support/fe2_patch.h"
 #include "plot.h"
 
 #define STEPS SCALES_STEPS_MAX

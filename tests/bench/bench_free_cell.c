@@ -13,10 +13,10 @@
 #include <stdlib.h>
 #include <string.h>
 #include <petsctime.h>
-#include "figures_contact_derivatives.h"
+#include "support/contact_tissue.h"
 #include "free_cell.h"
 #include "lattice_strain.h"
-#include "random_reals.h"
+#include "support/random_reals.h"
 
 #define KNOTS 17
 #define PLACES 3 /* between two knots */

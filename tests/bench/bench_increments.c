@@ -4,7 +4,7 @@
   small ones. Prints figures, asserts nothing.
 */
 #include <stdio.h>
-#include "figures_increments.h"
+#include "support/load_increments.h"
 
 static const double increments[] = {1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-6, 1e-4, 1e-3, 1e-2};
 

@@ -12,8 +12,8 @@
 #include <string.h>
 #include <lamella/lamella.h>
 #include "quantile.h"
-#include "random_reals.h"
-#include "tissue.h"
+#include "support/random_reals.h"
+#include "support/tissue.h"
 
 typedef struct {
   PetscInt along, through;

@@ -1,6 +1,6 @@
 /* Prints where waves of n cells lose stability under uniaxial compression, and where the tangent loses ellipticity. */
 #include <stdio.h>
-#include "figures_localisation.h"
+#include "support/localisation.h"
 
 static PetscErrorCode Run(PetscInt along, PetscInt through)
 {

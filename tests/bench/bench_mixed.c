@@ -8,8 +8,8 @@
 #include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include "figures_mixed.h"
-#include "random_reals.h"
+#include "support/mixed_control.h"
+#include "support/random_reals.h"
 
 #define CLASSES 6 /* of additional factorisations */
 static const int most[CLASSES] = {0, 3, 10, 30, 100, 1 << 30};

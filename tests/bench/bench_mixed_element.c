@@ -5,8 +5,8 @@
 */
 #include <stdio.h>
 #include <string.h>
-#include "figures_mixed_element.h"
-#include "tissue.h"
+#include "support/mixed_element.h"
+#include "support/tissue.h"
 
 static const char *const element_names[] = {"quadrilaterals", "triangles"};
 

@@ -1,7 +1,7 @@
 /* Newton iterations and factorisations of one solve from F = I, over walls, meshes, moduli and shears; prints figures.
  */
 #include <stdio.h>
-#include "tissue.h"
+#include "support/tissue.h"
 
 #define TURGOR (0.02 / TISSUE_STRESS)
 

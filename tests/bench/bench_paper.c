@@ -1,8 +1,8 @@
 /* The figures of docs/results/paper.md: Section 3 of Mihai, Safar & Wyatt; asserts nothing. */
 #include <stdio.h>
-#include "figures_gap.h"
-#include "figures_shear.h"
-#include "figures_strip.h"
+#include "support/gap_between_walls.h"
+#include "support/paper_shear.h"
+#include "support/strip_problems.h"
 
 static PetscErrorCode Stresses(void)
 {

@@ -10,7 +10,7 @@
 #include <getopt.h>
 #include <stdio.h>
 #include <sys/resource.h>
-#include "figures_uneven.h"
+#include "support/uneven_cells.h"
 
 #define COUNT(list) ((int)(sizeof(list) / sizeof((list)[0])))
 #define LARGEST_BLOCK 8 /* without --full */

@@ -9,7 +9,7 @@
 */
 #include <lamella/lamella.h>
 #include <lamella/clock.h>
-#include "synthetic_responder.h"
+#include "support/synthetic_responder.h"
 #include <math.h>
 #include <stdio.h>
 

@@ -1,7 +1,7 @@
 /* Sealed cells: errors of the derivatives, pressures along simple loads, cost against prescribed turgor. Prints
  * figures. */
 #include <stdio.h>
-#include "figures_sealed.h"
+#include "support/sealed_cells.h"
 
 static PetscErrorCode PrintDerivatives(void)
 {

@@ -14,7 +14,7 @@
 #include <fcntl.h>
 #include <lamella/clock.h>
 #include "quantile.h"
-#include "tissue.h"
+#include "support/tissue.h"
 
 #define ROUNDS 21
 #define SCENE LAMELLA_SOURCE_DIR "/tests/scenes/shear-bonded.yaml"

@@ -6,12 +6,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <petsctime.h>
-#include <random_reals.h>
+#include "support/random_reals.h"
 #include <hermite_cell.h>
 #include "quantile.h"
 
-#define CHECK(call) PetscCallAbort(PETSC_COMM_SELF, call)
-#include <strain_cycle.h>
+#include "support/strain_cycle.h"
 
 #define CELLS 32 /* they stay in the nearest cache: the arithmetic alone is timed */
 #define CALLS 200000

@@ -3,14 +3,14 @@
 #include <stdio.h>
 #include <sys/resource.h>
 #include <petsctime.h>
-#include "figures_buckling.h"
-#include "figures_contact.h"
-#include "figures_contact_blocks.h"
-#include "figures_derivatives.h"
-#include "figures_effective_stress.h"
-#include "figures_extremes.h"
-#include "figures_honeycomb.h"
-#include "figures_reference.h"
+#include "support/buckling.h"
+#include "support/contact_checks.h"
+#include "support/contact_blocks.h"
+#include "support/derivative_checks.h"
+#include "support/effective_stress.h"
+#include "support/extreme_tissue.h"
+#include "support/honeycomb.h"
+#include "support/reference_values.h"
 
 #define DATA LAMELLA_SOURCE_DIR "/tests/verification/data/bonded.json"
 #define CONTACT_DATA LAMELLA_SOURCE_DIR "/tests/verification/data/contact.json"

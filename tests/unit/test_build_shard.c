@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include "build.h"
-#include "tissue.h"
+#include "support/tissue.h"
 
 enum { ASKED = 4096 };
 

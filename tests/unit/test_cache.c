@@ -3,7 +3,7 @@
 */
 #include "support/test.h"
 #include <lamella/cache.h>
-#include "synthetic_responder.h"
+#include "support/synthetic_responder.h"
 
 #define assert_ok(call) assert_int_equal((call), 0)
 

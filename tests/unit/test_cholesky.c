@@ -1,6 +1,6 @@
 /* Small definite systems without pivots, and what is not definite. */
 #include "support/test.h"
-#include "rve_fixture.h"
+#include "support/rve_fixture.h"
 #include "cholesky.h"
 
 #define N 5

@@ -1,8 +1,8 @@
 /* The wall element: patch test, derivatives, projection, invariance. */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "displaced.h"
-#include "random_reals.h"
+#include "support/rve_fixture.h"
+#include "support/displaced.h"
+#include "support/random_reals.h"
 
 static const LamWall wall = {.C1 = 0.7, .C2 = 0.3, .C4 = 12.0, .bulk_modulus = 1000.0};
 static const double fibre[2] = {0.8, 0.6};

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 #include <lamella/ellipticity.h>
-#include "random_reals.h"
+#include "support/random_reals.h"
 #include "wall_law.h"
 #include "wall_ellipticity.h"
 

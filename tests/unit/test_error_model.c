@@ -1,6 +1,6 @@
 /* The planner's error of a mesh, and the mesh that it takes for an accuracy. */
 #include "support/test.h"
-#include "rve_fixture.h"
+#include "support/rve_fixture.h"
 #include "error_model.h"
 
 static const LamErrorCase usual = {LAM_INTERFACE_BONDED, 0.15, 10, 0.2};

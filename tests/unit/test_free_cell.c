@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "free_cell.h"
-#include "random_reals.h"
+#include "support/random_reals.h"
 #include "test_scene_message.h"
 
 #define KNOTS 17

@@ -2,7 +2,7 @@
 #include "support/test.h"
 #include <stdlib.h>
 #include <jansson.h>
-#include "analytic_table.h"
+#include "support/analytic_table.h"
 #include "test_scene_message.h"
 
 static LamGrid Make(PetscBool contact)

@@ -1,6 +1,6 @@
 /* Functions on a cube from what is known at its corners: exact there, C1 across faces, derivatives of each other. */
 #include "support/test.h"
-#include <random_reals.h>
+#include "support/random_reals.h"
 #include <hermite_cell.h>
 
 #define H 0.7

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 #include "lattice_strain.h"
-#include "random_reals.h"
+#include "support/random_reals.h"
 
 enum { STATES = 50 };
 

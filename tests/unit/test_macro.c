@@ -2,7 +2,7 @@
   Claims about the macroscale solver, with a material of known answers. Runs on any number of ranks.
 */
 #include "support/test.h"
-#include "macro_fixture.h"
+#include "support/macro_fixture.h"
 #include "macro_impl.h"
 
 static PetscInt SideNumber(const LamMacroStep *step, const char name[])

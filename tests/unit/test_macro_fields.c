@@ -1,6 +1,6 @@
 /* Fields of the macroscale solver: what is kept of material points, their places and means. */
 #include "support/test.h"
-#include "macro_fixture.h"
+#include "support/macro_fixture.h"
 #include <math.h>
 #include "macro_impl.h"
 

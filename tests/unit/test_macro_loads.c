@@ -2,7 +2,7 @@
   Claims about the loads of the macroscale solver, with a material of known answers. Runs on any number of ranks.
 */
 #include "support/test.h"
-#include "macro_fixture.h"
+#include "support/macro_fixture.h"
 #include "macro_impl.h"
 
 static void Set(PetscReal vector[2], PetscReal x, PetscReal y)

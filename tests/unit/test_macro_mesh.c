@@ -2,8 +2,8 @@
   Claims about the meshes of the macroscale solver: discs, Gmsh files, and what holds bodies that are no box.
 */
 #include "support/test.h"
-#include "gmsh_fixture.h"
-#include "macro_fixture.h"
+#include "support/gmsh_writer.h"
+#include "support/macro_fixture.h"
 #include "macro_impl.h"
 #include <unistd.h>
 
@@ -106,8 +106,10 @@ TEST(GmshIsAsGoodAsABox)
 
 static const PetscReal ANGLE = 0.4;
 
-static void Turned(PetscReal s, PetscReal t, PetscReal X[2])
+static void Turned(double X[2])
 {
+  const double s = X[0], t = X[1];
+
   X[0] = cos(ANGLE) * s - sin(ANGLE) * t;
   X[1] = sin(ANGLE) * s + cos(ANGLE) * t;
 }
@@ -119,8 +121,7 @@ TEST(ObliqueSymmetryIsUprightTurned)
   char path[PETSC_MAX_PATH_LEN];
   PetscReal P[2][4], force[2];
 
-  snprintf(path, sizeof(path), "/tmp/lamella-turned-%d.msh", (int)getpid());
-  GmshWrite(path, 3, 3, Turned);
+  GmshWrite(path, 3, 3, GMSH_QUADRILATERALS, Turned);
   for (int turned = 0; turned < 2; turned++) {
     Fixture fixture;
     LamMacroFields fields;

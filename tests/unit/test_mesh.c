@@ -1,6 +1,6 @@
 /* The mesh of the RVE: counts, areas, and how nodes are tied across faces and periods. */
 #include "support/test.h"
-#include "rve_fixture.h"
+#include "support/rve_fixture.h"
 #include "element.h"
 
 static LamMicrostructure Cells(int n0, int n1, double orientation)

@@ -1,7 +1,7 @@
 /* The mortar kernel: its derivatives against finite differences at random states, and rigid motions. */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "mortar_fixture.h"
+#include "support/rve_fixture.h"
+#include "support/mortar_fixture.h"
 
 #define STATES 12
 #define POINTS 8      /* with them the quadrature error of the variation is below the tolerances */

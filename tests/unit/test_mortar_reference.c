@@ -1,8 +1,8 @@
 /* The mortar kernel against the states of an independent prototype. */
 #include "support/test.h"
 #include <jansson.h>
-#include "rve_fixture.h"
-#include "mortar_fixture.h"
+#include "support/rve_fixture.h"
+#include "support/mortar_fixture.h"
 
 #define DATA LAMELLA_SOURCE_DIR "/tests/verification/data/mortar.json"
 #define TOLERANCE 1e-10

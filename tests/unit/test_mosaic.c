@@ -3,8 +3,8 @@
 */
 #include "support/test.h"
 #include <lamella/mosaic.h>
-#include "random_reals.h"
-#include "synthetic_responder.h"
+#include "support/random_reals.h"
+#include "support/synthetic_responder.h"
 
 enum { TISSUES = 3, POINTS = 4 };
 

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 #include "plot_slice.h"
-#include "table_fixture.h"
+#include "support/table_fixture.h"
 
 #define FILE_NAME "test_plot_slice.h5"
 #define OK(call) assert_int_equal((call), 0)

@@ -1,6 +1,6 @@
 /* The planner's model of rounding errors, and when it speaks. */
 #include "support/test.h"
-#include "rve_fixture.h"
+#include "support/rve_fixture.h"
 #include <string.h>
 #include "rounding.h"
 

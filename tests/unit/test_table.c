@@ -3,7 +3,7 @@
 #include "support/test.h"
 #include <stdlib.h>
 #include <unistd.h>
-#include "analytic_table.h"
+#include "support/analytic_table.h"
 
 static const int in_plane[4] = {0, 1, 3, 4};
 

@@ -1,7 +1,7 @@
 /* What does not jump in the table's answers, whatever nodes there are, and the work of closed cycles. */
 #include "support/test.h"
 #include <stdlib.h>
-#include "strain_cycle.h"
+#include "support/strain_cycle.h"
 
 static const int in_plane[4] = {0, 1, 3, 4};
 

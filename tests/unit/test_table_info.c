@@ -1,6 +1,6 @@
 /* What `info` tells of a table: its nodes, cells, extent, and what cannot be used. */
 #include "support/test.h"
-#include "synthetic_responder.h"
+#include "support/synthetic_responder.h"
 #include <jansson.h>
 #include <lamella/database.h>
 

@@ -1,6 +1,6 @@
 /* Threads that ask one table at the same time are answered as one that asks alone. */
 #include "support/test.h"
-#include "table_fixture.h"
+#include "support/table_fixture.h"
 #include "database_internal.h"
 #include <pthread.h>
 #include <unistd.h>

@@ -2,7 +2,7 @@
 #include "support/test.h"
 #include <math.h>
 #include "wall_law.h"
-#include "random_reals.h"
+#include "support/random_reals.h"
 
 #define STATES 40
 

@@ -1,7 +1,7 @@
 /* The bonded cell against values of independent programs, same mesh and law (data/bonded.json). */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_reference.h"
+#include "support/rve_fixture.h"
+#include "support/reference_values.h"
 
 #define DATA LAMELLA_SOURCE_DIR "/tests/verification/data/bonded.json"
 

@@ -1,7 +1,7 @@
 /* Tissue buckles under biaxial compression; the buckled state is found and followed. */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_buckling.h"
+#include "support/rve_fixture.h"
+#include "support/buckling.h"
 
 #define BEYOND 0.03 /* strain past the onset */
 

@@ -1,7 +1,7 @@
 /* Which cells still touch: clusters, percolation and fabric of states whose answer is known. */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_contact.h"
+#include "support/rve_fixture.h"
+#include "support/contact_checks.h"
 
 static LamResponse SolveCells(int n0, int n1, double orientation, LamLoad load)
 {

@@ -1,7 +1,7 @@
 /* Pressure only where cells touch, no tension, no overlap on average, and equilibrium. */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_contact.h"
+#include "support/rve_fixture.h"
+#include "support/contact_checks.h"
 
 #define MESHES 3
 

@@ -1,7 +1,7 @@
 /* Everything a contact response holds is a derivative of its energy: finite differences inside one contact set. */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_contact_derivatives.h"
+#include "support/rve_fixture.h"
+#include "support/contact_tissue.h"
 
 static ContactSweep sweeps[CONTACT_STATES];
 static ContactDerivativeError errors[CONTACT_STATES];

@@ -1,7 +1,7 @@
 /* Hertz contact of a cylinder with a flat and with an equal cylinder, plane strain. */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_contact_blocks.h"
+#include "support/rve_fixture.h"
+#include "support/contact_blocks.h"
 
 #define TOLERANCE 5e-3
 

@@ -1,8 +1,8 @@
 /* What the answer of contact tissue must not depend on, in a pressurised state whose faces have partly come apart. */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_contact.h"
-#include "turned_response.h"
+#include "support/rve_fixture.h"
+#include "support/contact_checks.h"
+#include "support/turned_response.h"
 
 #define TOLERANCE 1e-8
 #define SCATTER 1e-4    /* C1 + C2: of slaves that become masters, with 6 elements a face */

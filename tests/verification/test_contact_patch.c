@@ -1,8 +1,8 @@
 /* Contact patch test: two blocks with non-matching distorted meshes, pressed together, deform as one homogeneous body.
  */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_contact_blocks.h"
+#include "support/rve_fixture.h"
+#include "support/contact_blocks.h"
 
 static PatchError error;
 

@@ -1,8 +1,8 @@
 /* Effective-stress principle of contact tissue: turgor and cohesion act through their sum s; P + p J F^-T depends on it
    alone as the walls become incompressible. */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_contact.h"
+#include "support/rve_fixture.h"
+#include "support/contact_checks.h"
 
 static double differences[3][PRINCIPLE_LOADS]; /* over s, at kappa / C1 = 1e3, 1e4, 1e5 */
 static int converged;

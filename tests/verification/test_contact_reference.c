@@ -1,7 +1,7 @@
 /* Contact tissue against values of an independent mortar program (data/contact.json). */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_contact.h"
+#include "support/rve_fixture.h"
+#include "support/contact_checks.h"
 
 #define DATA LAMELLA_SOURCE_DIR "/tests/verification/data/contact.json"
 #define MESHES 2

@@ -1,7 +1,7 @@
 /* What is no answer is refused with its reason, and what is one is not. */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_contact.h"
+#include "support/rve_fixture.h"
+#include "support/contact_checks.h"
 #include <string.h>
 
 static LamResponse Solve(double clearance, LamLoad load)

@@ -1,7 +1,7 @@
 /* Cells that nothing holds together: no stress, no stiffness, and a state that says so. */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_contact.h"
+#include "support/rve_fixture.h"
+#include "support/contact_checks.h"
 
 #define C1 (0.1 / TISSUE_STRESS)
 #define APART 4

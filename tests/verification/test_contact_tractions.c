@@ -1,12 +1,12 @@
 /*
-  Mean face tractions of one frictionless cell follow from the macroscopic stress by statics alone (figures_contact.h).
+  Mean face tractions of one frictionless cell follow from the macroscopic stress by statics alone (contact_checks.h).
   The formula of small strains holds where turgor and cohesion are small against the moduli of the tissue: faces turn by
   angles of the order of the strain, and pressure times angle compares with the differences between the tractions. With
   the current directions of the contact forces it holds under turgor, too. Errors are over the spread between the faces.
 */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_contact.h"
+#include "support/rve_fixture.h"
+#include "support/contact_checks.h"
 
 #define STRAINS 3
 #define WEAK_LOADS 2 /* without and with cohesion */

@@ -3,7 +3,7 @@
   against direct solves of the same.
 */
 #include "support/test.h"
-#include "rve_fixture.h"
+#include "support/rve_fixture.h"
 #include <lamella/cache.h>
 #include <lamella/lamella.h>
 #include <string.h>

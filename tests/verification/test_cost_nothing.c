@@ -1,9 +1,9 @@
 /* Features that a scene leaves off take no unknowns, no entries of the matrix, no factorisations, and change no digit.
  */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "bare_tissue.h"
-#include "figures_contact_derivatives.h"
+#include "support/rve_fixture.h"
+#include "support/bare_tissue.h"
+#include "support/contact_tissue.h"
 
 /* One solve with what it needs; the state is the solution. */
 typedef struct {

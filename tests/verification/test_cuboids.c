@@ -1,7 +1,7 @@
 /* Two cuboids in contact under generalised shear (Mihai, Safar & Wyatt, Section 4.1). */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_cuboids.h"
+#include "support/rve_fixture.h"
+#include "support/cuboids.h"
 
 #define SHEAR 0.5
 #define N 12

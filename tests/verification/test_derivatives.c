@@ -1,8 +1,8 @@
 /* Everything a response holds is a derivative of its energy: finite differences at random states, F33 != 1 among them.
  */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_derivatives.h"
+#include "support/rve_fixture.h"
+#include "support/derivative_checks.h"
 
 #define STATES 6
 

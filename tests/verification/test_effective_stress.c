@@ -1,7 +1,7 @@
 /* Effective-stress principle of bonded tissue: P + p J F^-T does not depend on p as the walls become incompressible. */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_effective_stress.h"
+#include "support/rve_fixture.h"
+#include "support/effective_stress.h"
 
 static double remainders[3]; /* at kappa = 1e2, 1e3, 1e4 */
 

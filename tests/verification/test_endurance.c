@@ -1,6 +1,6 @@
 /* Many states of every kind in one process, failures among them, leave nothing behind. */
-#include "rve_fixture.h"
-#include "figures_endurance.h"
+#include "support/rve_fixture.h"
+#include "support/endurance.h"
 
 #define ROUND 60 /* states between two looks at the memory: six failures of each of the cheap kinds in all */
 #define ROUNDS 5

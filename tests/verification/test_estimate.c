@@ -1,6 +1,6 @@
 /* The estimate of the error of P from half as many elements, against the error on a fine mesh. */
 #include "support/test.h"
-#include "rve_fixture.h"
+#include "support/rve_fixture.h"
 #include "solve.h"
 
 #define STATES 6

@@ -1,7 +1,7 @@
 /* Large deformations are answered with stable states; impossible ones with a true reason. */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_extremes.h"
+#include "support/rve_fixture.h"
+#include "support/extreme_tissue.h"
 
 TEST(LargeDeformationsAreAnswered)
 {

@@ -3,8 +3,8 @@
   independent of the steps in which the load is given.
 */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_failure.h"
+#include "support/rve_fixture.h"
+#include "support/failing_tissue.h"
 
 static LamFailure Follow(const LamMicrostructure *micro, LamFailureProgram program)
 {
@@ -22,7 +22,7 @@ static LamFailure Pull(PetscInt along, PetscInt through)
   micro.along = along;
   micro.through = through;
   PullLoads(loads);
-  return Follow(&micro, (LamFailureProgram){.strength = &figures_strength, .count = PULL_STATES, .loads = loads});
+  return Follow(&micro, (LamFailureProgram){.strength = &failing_strength, .count = PULL_STATES, .loads = loads});
 }
 
 TEST(OnsetsConvergeWithTheMesh)
@@ -45,9 +45,9 @@ TEST(OnsetIsWhereTheStrengthIsReached)
   const LamCriterionOnset *wall = &failure.onset[LAM_CRITERION_WALL];
 
   assert_int_equal(failure.mode, LAM_FAILURE_SEPARATION);
-  assert_near(failure.response.max_traction, figures_strength.lamella_normal, 2e-3 * figures_strength.lamella_normal);
-  assert_true(failure.response.max_traction >= figures_strength.lamella_normal);
-  assert_near(wall->response.max_wall_tension, figures_strength.wall, 2e-3 * figures_strength.wall);
+  assert_near(failure.response.max_traction, failing_strength.lamella_normal, 2e-3 * failing_strength.lamella_normal);
+  assert_true(failure.response.max_traction >= failing_strength.lamella_normal);
+  assert_near(wall->response.max_wall_tension, failing_strength.wall, 2e-3 * failing_strength.wall);
   assert_true(wall->bracket[1] - wall->bracket[0] <= 1e-3);
 }
 
@@ -103,7 +103,7 @@ TEST(StoppingAtTheFirstGivesTheSameVerdict)
 
   PullLoads(loads);
   first = Follow(&micro, (LamFailureProgram){
-                             .strength = &figures_strength, .count = PULL_STATES, .loads = loads, .stop_at_first = 1});
+                             .strength = &failing_strength, .count = PULL_STATES, .loads = loads, .stop_at_first = 1});
   assert_int_equal(first.mode, all.mode);
   assert_near(first.factor, all.factor, 0);
   assert_true(first.followed < all.followed && isnan(first.onset[LAM_CRITERION_WALL].factor));

@@ -4,7 +4,7 @@
 #include "support/test.h"
 #include <math.h>
 #include <string.h>
-#include "tissue.h"
+#include "support/tissue.h"
 
 enum { KNOTS = 4, STATES = 6 };
 #define ASKED 0.005

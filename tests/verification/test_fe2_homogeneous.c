@@ -1,7 +1,7 @@
 /* FE2 with the real RVE: a homogeneous macroscale deformation gives the response of one RVE. */
 #include "support/test.h"
 #include <string.h>
-#include "rve_fixture.h"
+#include "support/rve_fixture.h"
 
 static const char scene_text[] = "version: 1\n"
                                  "rve:\n"

@@ -1,7 +1,7 @@
 /* FE2 against a direct patch of n x n cells: the difference falls with n. Larger blocks: test_fe2_patch_sizes. */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_fe2_patch.h"
+#include "support/rve_fixture.h"
+#include "support/fe2_patch.h"
 
 /* From 2 x 2 to 4 x 4 cells, in one step; FE2 on coarse meshes. */
 static void CheckFalls(int which, int elements)

@@ -1,7 +1,7 @@
 /* slow: the difference between FE2 and a direct patch of n x n cells halves as n doubles, and nothing is left of it. */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_fe2_patch.h"
+#include "support/rve_fixture.h"
+#include "support/fe2_patch.h"
 
 /* Blocks of 2 x 2, 4 x 4 and 8 x 8 cells in one step, against FE2 on meshes of `elements` and twice as many; `opening`:
    what may be left of the difference of the gaps. */

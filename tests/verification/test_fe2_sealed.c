@@ -3,8 +3,8 @@
   sealed RVE.
 */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_mixed_element.h"
+#include "support/rve_fixture.h"
+#include "support/mixed_element.h"
 
 static const char scene_text[] = "version: 1\n"
                                  "rve:\n"

@@ -1,7 +1,7 @@
 /* States that follow each other by increments of 1e-13 to 1e-4, and steps that are too large. */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_increments.h"
+#include "support/rve_fixture.h"
+#include "support/load_increments.h"
 
 #define ROUNDING 2e-11 /* C1 + C2: of P, largest of the states here; measured 1.2e-11 */
 

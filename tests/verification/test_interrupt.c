@@ -1,7 +1,7 @@
 /* A solve that is interrupted, wherever that is, is given up and leaves nothing behind. */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_mixed.h"
+#include "support/rve_fixture.h"
+#include "support/mixed_control.h"
 #include <string.h>
 
 #define LIMIT 12      /* calls that are tried one by one; of more, every so many */

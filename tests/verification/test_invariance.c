@@ -1,7 +1,7 @@
 /* What the answer must not depend on: the observer, the lattice's symmetry, the number of cells, the user's units. */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "turned_response.h"
+#include "support/rve_fixture.h"
+#include "support/turned_response.h"
 
 #define TOLERANCE 1e-8
 #define TURGOR (0.02 / TISSUE_STRESS)

@@ -1,7 +1,7 @@
 /* Localisation of tissue and kinks of walls, against long waves of rows of cells, exact cases and finer meshes. */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_localisation.h"
+#include "support/rve_fixture.h"
+#include "support/localisation.h"
 
 /* The hexagonal cell is isotropic at F = I: every band resists with its shear modulus. */
 TEST(UndeformedTissueHasItsShearModulus)

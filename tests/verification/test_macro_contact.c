@@ -6,7 +6,7 @@
   moments, so a is measured by them, much finer than the elements are.
 */
 #include "support/test.h"
-#include "macro_fixture.h"
+#include "support/macro_fixture.h"
 #include "macro_impl.h"
 
 static const PetscReal E_STAR = 3; /* of the synthetic material, mu = 1, lambda = 2: nu = 1/3, E = 8/3 */

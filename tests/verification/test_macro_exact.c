@@ -2,7 +2,7 @@
   The macroscale solver against exact results: homogeneous deformation, and the balance of work and energy.
 */
 #include "support/test.h"
-#include "macro_fixture.h"
+#include "support/macro_fixture.h"
 
 /* Between rollers F = diag(1 + ux, 1 + uy) everywhere, and P is the material's there. */
 TEST(HomogeneousDeformationIsExact)

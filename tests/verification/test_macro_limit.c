@@ -2,8 +2,8 @@
   Load control past limit points: a clamped shallow arch under dead load snaps through.
 */
 #include "support/test.h"
-#include "gmsh_fixture.h"
-#include "macro_fixture.h"
+#include "support/gmsh_writer.h"
+#include "support/macro_fixture.h"
 #include "macro_impl.h"
 #include <unistd.h>
 
@@ -11,12 +11,12 @@ static const PetscReal OPENING = 0.35, THICKNESS = 0.015, LOAD = 0.01;
 static char Path[PETSC_MAX_PATH_LEN];
 
 /* Half an arch of radius 1 about (0, -1): s = 0 is its middle, s = 1 its end. */
-static void Arch(PetscReal s, PetscReal t, PetscReal X[2])
+static void Arch(double X[2])
 {
-  const PetscReal radius = 1 + THICKNESS * (t - 0.5);
+  const double radius = 1 + THICKNESS * (X[1] - 0.5), angle = OPENING * X[0];
 
-  X[0] = radius * sin(OPENING * s);
-  X[1] = radius * cos(OPENING * s) - 1;
+  X[0] = radius * sin(angle);
+  X[1] = radius * cos(angle) - 1;
 }
 
 static void ArchScene(Fixture *fixture, PetscInt steps)
@@ -95,8 +95,7 @@ TEST(ControlAndLoadAgree)
 
 static int WriteArch(void **state)
 {
-  snprintf(Path, sizeof(Path), "/tmp/lamella-arch-%d.msh", (int)getpid());
-  GmshWrite(Path, 12, 1, Arch);
+  GmshWrite(Path, 12, 1, GMSH_QUADRILATERALS, Arch);
   return 0;
 }
 

@@ -2,8 +2,8 @@
   Sealed lumens of the macroscale body, with a material of known answers: the mixed element and its Newton iteration.
 */
 #include "support/test.h"
-#include "macro_fixture.h"
-#include "figures_mixed_element.h"
+#include "support/macro_fixture.h"
+#include "support/mixed_element.h"
 
 static const GmshElements element_kinds[2] = {GMSH_QUADRILATERALS, GMSH_TRIANGLES};
 

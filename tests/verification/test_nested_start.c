@@ -1,7 +1,7 @@
 /* Large meshes start from the solution of a coarser one, and give what they give from elsewhere. */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_contact.h"
+#include "support/rve_fixture.h"
+#include "support/contact_checks.h"
 #include <string.h>
 
 enum { ALONG = 36, THROUGH = 10 }; /* 2,160 elements: large enough */

@@ -1,6 +1,6 @@
 /* Newton iterations from F = I in one go under turgor; bench_newton prints the whole table. */
 #include "support/test.h"
-#include "rve_fixture.h"
+#include "support/rve_fixture.h"
 
 #define TURGOR (0.02 / TISSUE_STRESS)
 

@@ -2,9 +2,9 @@
  * docs/results/paper.md.
  */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_gap.h"
-#include "figures_shear.h"
+#include "support/rve_fixture.h"
+#include "support/gap_between_walls.h"
+#include "support/paper_shear.h"
 
 #define TOLERANCE 1e-11
 

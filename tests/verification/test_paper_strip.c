@@ -2,8 +2,8 @@
  * (docs/results/paper.md).
  */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_gap.h"
+#include "support/rve_fixture.h"
+#include "support/gap_between_walls.h"
 
 #define INCOMPRESSIBLE 1e8 /* bulk modulus over C1 + C2: no part in the errors of these meshes */
 

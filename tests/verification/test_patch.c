@@ -1,8 +1,8 @@
 /* What the answer of a patch must not depend on, its limit of many cells, and the smallest patches. */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_patch.h"
-#include "turned_response.h"
+#include "support/rve_fixture.h"
+#include "support/cell_patch.h"
+#include "support/turned_response.h"
 
 #define TOLERANCE 1e-8
 #define SCATTER 1e-4 /* C1 + C2: of slaves that become masters, with 6 elements a face */

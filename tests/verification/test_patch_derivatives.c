@@ -1,7 +1,7 @@
 /* Everything that a patch answers is a derivative of its energy: finite differences at a general F. */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_patch.h"
+#include "support/rve_fixture.h"
+#include "support/cell_patch.h"
 
 static ContactSweep sweeps[PATCH_STATES];
 static ContactDerivativeError errors[PATCH_STATES];

@@ -2,8 +2,8 @@
   Tissue that changes in time at a material point, against closed forms, fresh solves and balances.
 */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "process_fixture.h"
+#include "support/rve_fixture.h"
+#include "support/process_fixture.h"
 
 /* ---- water ---- */
 

@@ -3,7 +3,7 @@
   forms, balances and fresh runs.
 */
 #include "support/test.h"
-#include "body_fixture.h"
+#include "support/body_fixture.h"
 #include <math.h>
 
 /* A square that may only stretch: uniform. `load`: on its top; `changes`: the block process without its program. */

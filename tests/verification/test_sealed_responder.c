@@ -1,9 +1,9 @@
 /* Sealed answers from prescribed turgor: those of the solve with sealed lumens, from whatever responder, and
    derivatives of one energy. */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_sealed.h"
-#include "synthetic_responder.h"
+#include "support/rve_fixture.h"
+#include "support/sealed_cells.h"
+#include "support/synthetic_responder.h"
 #include <lamella/mosaic.h>
 #include <lamella/sealed.h>
 

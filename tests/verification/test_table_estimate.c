@@ -5,7 +5,7 @@
 #include "support/test.h"
 #include <math.h>
 #include <lamella/lamella.h>
-#include "random_reals.h"
+#include "support/random_reals.h"
 
 #define BONDED_STATES 60
 #define CONTACT_STATES 40

@@ -1,7 +1,7 @@
 /* Thin-walled honeycombs against beam theory. */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_honeycomb.h"
+#include "support/rve_fixture.h"
+#include "support/honeycomb.h"
 
 #define ALONG 80 /* elements per wall: the theory's error is about 1 %, the mesh's must be smaller */
 

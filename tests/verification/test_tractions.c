@@ -4,7 +4,7 @@
   length is then the macroscopic Cauchy stress P11/lambda (F33 = 1).
 */
 #include "support/test.h"
-#include "rve_fixture.h"
+#include "support/rve_fixture.h"
 
 TEST(EqualBiaxialTractionIsTheCauchyStress)
 {

@@ -1,8 +1,8 @@
 /* Cells that differ: derivatives, repeated and shifted patterns, balance of forces, and the weakest lamella. */
 #include "support/test.h"
-#include "rve_fixture.h"
-#include "figures_uneven.h"
-#include "turned_response.h"
+#include "support/rve_fixture.h"
+#include "support/uneven_cells.h"
+#include "support/turned_response.h"
 
 static LamCell cells[UNEVEN_CELLS];
 static ContactSweep sweeps[UNEVEN_STATES];

@@ -1,7 +1,7 @@
 /* Answers do not depend on the units in which a scene is written, nor, but for a factor, on the size and stiffness of
    the tissue, from picometres and gigapascals to kilometres and micropascals. */
 #include "support/test.h"
-#include "rve_fixture.h"
+#include "support/rve_fixture.h"
 #include <stdio.h>
 
 #define SAME 1e-9      /* relative, of results */

@@ -7,7 +7,7 @@
   At Sigma = 0 the double wall's 2 T h is sqrt(3) p l, l = 2 lambda/sqrt(3) the length of a face.
 */
 #include "support/test.h"
-#include "rve_fixture.h"
+#include "support/rve_fixture.h"
 
 #define ALONG 16 /* even: the middle of a face is a node */
 

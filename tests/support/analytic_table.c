@@ -1,0 +1,183 @@
+#include "analytic_table.h"
+#include "test.h"
+
+LamScene AnalyticScene(const AnalyticTissue *tissue)
+{
+  LamScene scene = {.path = "analytic", .has_sample = PETSC_TRUE, .scales = {1, 1}};
+
+  scene.micro = (LamMicrostructure){.wall_thickness = 0.15, .cells = {1, 1}, .along = 6, .through = 2};
+  scene.micro.wall.bulk_modulus = 1000;
+  scene.micro.orientation = tissue->orientation;
+  scene.micro.interface = tissue->contact ? LAM_INTERFACE_CONTACT : LAM_INTERFACE_BONDED;
+  scene.cohesion = tissue->contact ? TISSUE_G0 : 0;
+  scene.sample = (LamSample){.stretch_min = -0.05, .stretch_max = 0.25, .turgor_min = 0, .turgor_max = 2 * TISSUE_P0};
+  if (tissue->contact) {
+    scene.sample.turgor_min = 0.1 * TISSUE_SUCTION - TISSUE_G0;
+    scene.sample.turgor_max = TISSUE_SUCTION - TISSUE_G0;
+  }
+  return scene;
+}
+
+AnalyticTable AnalyticTableOpenScene(AnalyticTissue tissue, LamScene scene)
+{
+  AnalyticTable t = {.tissue = tissue, .scene = scene};
+  LamResponder solver = {.ctx = &t.tissue, .respond = TissueRespond};
+  const LamResponse *records;
+  const PetscInt64 *keys;
+  LamGrid grid;
+  PetscInt n;
+
+  CHECK(LamGridCreate(&t.scene, &solver, &grid));
+  CHECK(LamDatabaseCreateEmpty(&t.scene, &t.database));
+  CHECK(LamGridGetRecords(grid, &n, &keys, &records));
+  CHECK(LamDatabaseAdd(t.database, n, keys, records));
+  t.grid = grid;
+  CHECK(LamDatabaseSetGrid(t.database, &grid));
+  return t;
+}
+
+AnalyticTable AnalyticTableOpen(PetscBool contact, double orientation)
+{
+  const AnalyticTissue tissue = {contact, orientation};
+
+  return AnalyticTableOpenScene(tissue, AnalyticScene(&tissue));
+}
+
+void AnalyticTableClose(AnalyticTable *t)
+{
+  CHECK(LamDatabaseClose(&t->database));
+}
+
+PetscInt64 KeyOf(const AnalyticTable *t, const int i[3], int j)
+{
+  LamNodePlace place = {{i[0], i[1], i[2]}, j};
+
+  for (int pass = 0; pass < 2 && t->grid->symmetric; pass++)
+    for (int k = 0; k < 2; k++)
+      if (place.i[k] > place.i[k + 1]) {
+        const int larger = place.i[k];
+
+        place.i[k] = place.i[k + 1];
+        place.i[k + 1] = larger;
+      }
+  return LamNodeKeyOf(&place);
+}
+
+LamResponse AnswerOf(const AnalyticTable *t, PetscInt64 key)
+{
+  LamLoad load;
+
+  CHECK(LamGridNodeLoad(t->grid, key, &load));
+  return TissueAnswer(&t->tissue, &load);
+}
+
+PetscBool HasKey(const AnalyticTable *t, PetscInt64 key)
+{
+  const PetscInt64 *keys;
+  PetscInt n;
+
+  CHECK(LamDatabaseGetRecords(t->database, &n, NULL, &keys));
+  for (PetscInt k = 0; k < n; k++)
+    if (keys[k] == key) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+void AddKey(AnalyticTable *t, PetscInt64 key)
+{
+  const LamResponse r = AnswerOf(t, key);
+
+  if (!HasKey(t, key)) CHECK(LamDatabaseAdd(t->database, 1, &key, &r));
+}
+
+void AddPlace(AnalyticTable *t, const int i[3], int j)
+{
+  if (!LamPlaceIsFloating(t->grid, i)) AddKey(t, KeyOf(t, i, j));
+}
+
+void AddFailed(AnalyticTable *t, const int i[3], int j)
+{
+  const PetscInt64 key = KeyOf(t, i, j);
+  LamResponse r;
+  LamLoad load;
+
+  if (LamPlaceIsFloating(t->grid, i) || HasKey(t, key)) return;
+  CHECK(LamGridNodeLoad(t->grid, key, &load));
+  CHECK(LamResponseInit(&load, &r));
+  CHECK(LamDatabaseAdd(t->database, 1, &key, &r));
+}
+
+void AddBlock(AnalyticTable *t, int level, const int first[3], int cells, int along)
+{
+  const int size = LAM_ROOT >> level, n = cells + 1;
+
+  for (int at = 0; at < n * n * n; at++) {
+    const int i[3] = {first[0] + size * (at % n), first[1] + size * (at / n % n), first[2] + size * (at / n / n)};
+
+    for (int j = 0; j <= LAM_ROOT * t->grid->tau_cells; j += along) AddPlace(t, i, j);
+  }
+}
+
+LamLoad LoadAt(const AnalyticTable *t, const double u[3], double v, double angle)
+{
+  const double c = cos(angle), s = sin(angle);
+  LamLoad load = {.turgor = t->grid->turgor};
+  double shift = t->grid->origin, a[3] = {0}, U[4], x[3];
+
+  if (t->grid->contact) {
+    const double suction = t->grid->suction_scale * expm1(t->grid->tau_min + t->grid->tau_step * v / LAM_ROOT);
+
+    if (t->grid->free.n) LamFreeCellStrain(&t->grid->free, suction, a);
+    load.cohesion = t->grid->cohesion;
+    load.turgor = suction - load.cohesion;
+    shift += a[0];
+  }
+  for (int k = 0; k < 3; k++) x[k] = shift + t->grid->step * u[k] / LAM_ROOT;
+  if (!LamLatticeStretch(&t->grid->axes, x, U)) memset(U, 0, sizeof(U));
+  load.F[0] = c * U[0] - s * U[2];
+  load.F[1] = c * U[1] - s * U[3];
+  load.F[3] = s * U[0] + c * U[2];
+  load.F[4] = s * U[1] + c * U[3];
+  load.F[8] = 1;
+  return load;
+}
+
+LamResponse Ask(const AnalyticTable *t, const LamLoad *load)
+{
+  LamResponse r;
+  LamTable table;
+
+  CHECK(LamDatabaseGetTable(t->database, &table));
+  CHECK(LamTableQuery(table, load, PETSC_INFINITY, &r));
+  CHECK(LamTableDestroy(&table));
+  return r;
+}
+
+void AddRough(AnalyticTable *t, int cells, double failing, uint64_t *seed)
+{
+  const int first[3] = {t->grid->contact ? -LAM_ROOT * cells : 0, t->grid->contact ? -LAM_ROOT * cells : 0,
+                        t->grid->contact ? -LAM_ROOT * cells : 0};
+
+  AddBlock(t, 0, first, t->grid->contact ? cells + 1 : cells, LAM_ROOT);
+  for (int level = 1; level <= 2; level++) {
+    const int size = LAM_ROOT >> level, n = cells * (1 << level) + 1;
+
+    for (int at = 0; at < n * n * n; at++) {
+      const int i[3] = {first[0] + size * (at % n), first[1] + size * (at / n % n), first[2] + size * (at / n / n)};
+
+      if (RandomReal(seed, 0, 1) > 0.25) continue;
+      for (int j = 0; j <= LAM_ROOT * t->grid->tau_cells; j += LAM_ROOT / 4)
+        if (RandomReal(seed, 0, 1) < (j % LAM_ROOT ? 0.3 : 0.9)) {
+          if (RandomReal(seed, 0, 1) < failing)
+            AddFailed(t, i, j);
+          else
+            AddPlace(t, i, j);
+        }
+    }
+  }
+  /* columns of root cells with more states than their neighbours' */
+  for (int at = 0; at < 27 && t->grid->contact; at++) {
+    const int i[3] = {-LAM_ROOT * (at % 3), -LAM_ROOT * (at / 3 % 3), -LAM_ROOT * (at / 9)};
+
+    if (at % 2) AddPlace(t, i, LAM_ROOT / 2);
+  }
+}

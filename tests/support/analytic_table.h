@@ -1,0 +1,38 @@
+/* Databases of the analytic tissue, node by node; every call is checked with CHECK, which the includer defines. */
+#ifndef LAM_SUPPORT_ANALYTIC_TABLE_H
+#define LAM_SUPPORT_ANALYTIC_TABLE_H
+
+#include <grid.h>
+#include "analytic_tissue.h"
+#include "random_reals.h"
+
+typedef struct {
+  AnalyticTissue tissue;
+  LamScene scene;
+  LamGrid grid; /* the database's */
+  LamDatabase database;
+} AnalyticTable;
+
+LamScene AnalyticScene(const AnalyticTissue *tissue);
+/* With the free cells' states, without any other node. */
+AnalyticTable AnalyticTableOpenScene(AnalyticTissue tissue, LamScene scene);
+AnalyticTable AnalyticTableOpen(PetscBool contact, double orientation);
+void AnalyticTableClose(AnalyticTable *t);
+/* The key of a place, whichever way its axes lie. */
+PetscInt64 KeyOf(const AnalyticTable *t, const int i[3], int j);
+LamResponse AnswerOf(const AnalyticTable *t, PetscInt64 key);
+PetscBool HasKey(const AnalyticTable *t, PetscInt64 key);
+void AddKey(AnalyticTable *t, PetscInt64 key);
+void AddPlace(AnalyticTable *t, const int i[3], int j);
+/* A node whose solve failed. */
+void AddFailed(AnalyticTable *t, const int i[3], int j);
+/* All nodes of a block of cells of a level, corner `first`; j: every `along` units of suction. */
+void AddBlock(AnalyticTable *t, int level, const int first[3], int cells, int along);
+/* The state at a place, turned by an angle. v: along suction; bonded: none. */
+LamLoad LoadAt(const AnalyticTable *t, const double u[3], double v, double angle);
+LamResponse Ask(const AnalyticTable *t, const LamLoad *load);
+/* Root cells of a block, and of the finer nodes of two levels some; also some halves and quarters of suction.
+   Of the finer nodes the share `failing` has no solution. */
+void AddRough(AnalyticTable *t, int cells, double failing, uint64_t *seed);
+
+#endif

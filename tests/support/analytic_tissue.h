@@ -1,0 +1,48 @@
+/*
+  A tissue with known answers: records of a grid from a closed formula, differentiated twice by forward-mode
+  differentiation in F11 F12 F21 F22 p g. With the symmetry of the hexagon, bonded or in contact.
+
+    x_k = ln |F n_k|, n_k at orientation + 60 k degrees;   d = p - p0 (bonded), p - (s - g0) (contact), s = p + g
+    bonded   Psi = Phi(x) + d T(x) + d^2 W(x) / 2 - p J
+    contact  Psi = Phi(x - a(s), s) + d T + d^2 W / 2 + g J; nothing but E(s) + d T(s) + .. where all x_k >= a(s)
+*/
+#ifndef LAM_SUPPORT_ANALYTIC_TISSUE_H
+#define LAM_SUPPORT_ANALYTIC_TISSUE_H
+
+#include <math.h>
+#include <string.h>
+#include <lamella/database.h>
+
+#define TISSUE_P0 0.3      /* turgor of bonded nodes: middle of the sample box */
+#define TISSUE_G0 0.1      /* cohesion of contact nodes */
+#define TISSUE_SUCTION 0.8 /* the largest */
+typedef struct {
+  PetscBool contact;
+  double orientation;
+} AnalyticTissue;
+
+/* ---- numbers with their first and second derivatives ---- */
+
+enum { VARIABLES = 6 };
+
+typedef struct {
+  double v, g[VARIABLES], h[VARIABLES][VARIABLES];
+} Number;
+
+/* a + factor b */
+Number Sum(Number a, double factor, Number b);
+Number Times(Number a, Number b);
+Number Polynomial(int degree, const double c[], Number x);
+
+/* ---- the potential ---- */
+
+Number Tau(Number s);
+
+/* ---- the answer ---- */
+
+LamResponse TissueAnswer(const AnalyticTissue *tissue, const LamLoad *load);
+/* A responder's. Cells that are drawn apart alike in all directions float where they do not touch. */
+PetscErrorCode TissueRespond(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[],
+                             LamResponse responses[]);
+
+#endif

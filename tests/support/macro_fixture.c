@@ -1,0 +1,122 @@
+#include "macro_fixture.h"
+
+PetscErrorCode FixtureMonitor(LamMacro macro, const LamMacroStep *step, PetscBool *stop, void *ctx)
+{
+  Fixture *fixture = (Fixture *)ctx;
+
+  PetscFunctionBeginUser;
+  fixture->steps[fixture->step_count++] = *step;
+  *stop = fixture->stop_after == step->step ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+void FixtureScene(Fixture *fixture, PetscInt nx, PetscInt ny, PetscReal height, PetscInt steps)
+{
+  memset(fixture, 0, sizeof(*fixture));
+  fixture->stop_after = -1;
+  fixture->scene.scales = (LamScales){.length = 75e-6, .stress = 0.11e6, .macro_length = 0.01};
+  fixture->scene.accuracy = 0.01;
+  fixture->scene.has_macro = PETSC_TRUE;
+  fixture->scene.macro = (LamMacroSpec){.box = {1, height}, .elements = {nx, ny}, .steps = steps};
+}
+
+void FixtureSeal(Fixture *fixture, PetscReal turgor, PetscReal bulk_modulus)
+{
+  fixture->scene.turgor = turgor;
+  fixture->scene.sealed = PETSC_TRUE;
+  fixture->scene.water_bulk_modulus = bulk_modulus;
+}
+
+void FixtureBoundary(Fixture *fixture, const char on[], PetscReal ux, PetscReal uy)
+{
+  LamMacroSpec *spec = &fixture->scene.macro;
+  LamBoundary *boundary = &spec->boundary[spec->boundary_count++];
+
+  strcpy(boundary->on, on);
+  boundary->given[0] = (PetscBool)!isnan(ux);
+  boundary->given[1] = (PetscBool)!isnan(uy);
+  boundary->displacement[0] = isnan(ux) ? 0 : ux;
+  boundary->displacement[1] = isnan(uy) ? 0 : uy;
+}
+
+LamBoundary *FixtureAdd(Fixture *fixture, const char on[], LamBoundaryKind kind)
+{
+  LamMacroSpec *spec = &fixture->scene.macro;
+  LamBoundary *boundary = &spec->boundary[spec->boundary_count++];
+
+  *boundary = (LamBoundary){.kind = kind};
+  strcpy(boundary->on, on);
+  return boundary;
+}
+
+void FixtureDisc(Fixture *fixture, LamDiscPart part, PetscInt along, PetscInt across)
+{
+  fixture->scene.macro.source = LAM_MESH_DISC;
+  fixture->scene.macro.disc = part;
+  fixture->scene.macro.elements[0] = along;
+  fixture->scene.macro.elements[1] = across;
+}
+
+const PetscReal *FixtureReaction(const Fixture *fixture, const char name[])
+{
+  const LamMacroStep *step = &fixture->steps[fixture->step_count - 1];
+
+  for (PetscInt s = 0; s < step->boundary_count; s++) {
+    if (!strcmp(step->boundary[s], name)) return step->reaction[s];
+  }
+  fail_msg("no side %s", name);
+  return NULL;
+}
+
+void FixtureSetUp(Fixture *fixture, MPI_Comm comm)
+{
+  PetscInt points;
+
+  assert_ok(LamMacroCreate(comm, &fixture->macro));
+  assert_ok(LamMacroSetScene(fixture->macro, &fixture->scene));
+  assert_ok(LamMacroSetUp(fixture->macro));
+  assert_ok(LamMacroGetPointCount(fixture->macro, &points));
+  assert_ok(SyntheticCreate(points, &fixture->responder, &fixture->material));
+  assert_ok(LamMacroSetResponder(fixture->macro, &fixture->responder));
+  assert_ok(LamMacroSetMonitor(fixture->macro, FixtureMonitor, fixture));
+}
+
+void FixtureSolve(Fixture *fixture)
+{
+  assert_ok(LamMacroSolve(fixture->macro, &fixture->reason, fixture->message));
+}
+
+const LamMacroStep *FixtureLast(const Fixture *fixture)
+{
+  assert_true(fixture->step_count > 0);
+  return &fixture->steps[fixture->step_count - 1];
+}
+
+void FixtureDestroy(Fixture *fixture)
+{
+  assert_ok(LamMacroDestroy(&fixture->macro));
+  assert_ok(fixture->responder.destroy(&fixture->responder.ctx));
+}
+
+void FixtureShear(Fixture *fixture, PetscInt elements, PetscReal shear, PetscInt steps)
+{
+  FixtureScene(fixture, elements, elements, 1, steps);
+  FixtureBoundary(fixture, "bottom", 0, 0);
+  FixtureBoundary(fixture, "top", shear, 0);
+}
+
+void FixtureRollers(Fixture *fixture, PetscReal ux, PetscReal uy)
+{
+  FixtureBoundary(fixture, "left", 0, NAN);
+  FixtureBoundary(fixture, "right", ux, NAN);
+  FixtureBoundary(fixture, "bottom", NAN, 0);
+  FixtureBoundary(fixture, "top", NAN, uy);
+}
+
+void FixtureBiaxial(Fixture *fixture, PetscReal ux, PetscReal uy, PetscInt steps)
+{
+  const PetscReal height = 0.6;
+
+  FixtureScene(fixture, 3, 2, height, steps);
+  FixtureRollers(fixture, ux, uy * height);
+}

@@ -1,0 +1,35 @@
+#include "tissue.h"
+
+LamMicrostructure DefaultTissue(void)
+{
+  LamMicrostructure micro = {.wall_thickness = 0.15, .cells = {1, 1}, .along = 6, .through = 2};
+
+  micro.wall.C1 = 0.1 / TISSUE_STRESS;
+  micro.wall.C2 = 0.01 / TISSUE_STRESS;
+  micro.wall.C4 = 1.0 / TISSUE_STRESS;
+  micro.wall.bulk_modulus = 1000.0;
+  return micro;
+}
+
+LamLoad PlaneLoad(double F11, double F12, double F21, double F22, double turgor)
+{
+  LamLoad load = {.F = {F11, F12, 0, F21, F22, 0, 0, 0, 1}, .turgor = turgor};
+
+  return load;
+}
+
+PetscErrorCode SolveOnce(const LamMicrostructure *micro, const LamLoad *load, LamResponse *response)
+{
+  LamRVE rve;
+  LamRVEState state;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
+  PetscCall(LamRVESetMicrostructure(rve, micro));
+  PetscCall(LamRVESetUp(rve));
+  PetscCall(LamRVEStateCreate(rve, &state));
+  PetscCall(LamRVESolve(rve, load, state, response));
+  PetscCall(LamRVEStateDestroy(&state));
+  PetscCall(LamRVEDestroy(&rve));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,14 @@
+/* The tissue that tests and bench programs share, loads, and one solve from the reference state. */
+#ifndef LAM_SUPPORT_TISSUE_H
+#define LAM_SUPPORT_TISSUE_H
+
+#include <lamella/lamella.h>
+
+#define TISSUE_STRESS 0.11 /* C1 + C2 of the default tissue, MPa */
+/* The default tissue (C1 = 0.1, C2 = 0.01, C4 = 1 MPa) with one cell and the coarse mesh. */
+LamMicrostructure DefaultTissue(void);
+LamLoad PlaneLoad(double F11, double F12, double F21, double F22, double turgor);
+/* Solves one load with a new RVE, from F = I in one go. */
+PetscErrorCode SolveOnce(const LamMicrostructure *micro, const LamLoad *load, LamResponse *response);
+
+#endif
