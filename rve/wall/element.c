@@ -196,6 +196,7 @@ void LamElementEnergy(const LamElementGeometry *geometry, const LamWallLaw *law,
     if (law->fibre) law->fibre(wall, Extension(geometry, H[g]), &fibre);
     *energy += geometry->weight[g] * (matrix.W + volume.W + fibre.W);
   }
+  *valid = (PetscBool)isfinite(*energy);
 }
 
 /* q = sum w psi U'(theta), H = sum w psi psi U''(theta); returns the volumetric energy. */
@@ -347,6 +348,8 @@ void LamElementEvaluate(const LamElementGeometry *geometry, const LamWallLaw *la
       }
     }
   }
+  *valid = (PetscBool)isfinite(out->energy);
+  if (!*valid) return;
   for (PetscInt block = 0; block < 3; ++block) AddProduct(2 * LAM_GAUSS, geometry->dN, T[block], K[block]);
   AddProjection(stress->H, D, K);
   for (PetscInt a = 0; a < 9; ++a) {
@@ -398,6 +401,7 @@ PetscBool LamElementSetConsistentStress(const LamElementGeometry *geometry, cons
     LamKernel1 fibre = {0};
 
     if (law->fibre) law->fibre(wall, Extension(geometry, H[g]), &fibre);
+    if (!isfinite(fibre.W)) return PETSC_FALSE;
     stress->s[g] = stress->sx[g] = fibre.d;
     stress->dds[g] = fibre.dd;
   }

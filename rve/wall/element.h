@@ -50,7 +50,7 @@ typedef struct {
 /* PETSC_FALSE where det F or theta is not positive at a Gauss point. */
 PetscBool LamElementIsValid(const LamElementGeometry *geometry, const PetscReal u[][2], PetscReal F33);
 
-/* Energy alone. *valid is PETSC_FALSE, and nothing else is set, where det F or theta is not positive. */
+/* Energy alone. *valid is PETSC_FALSE where det F or theta is not positive, or the energy overflows. */
 void LamElementEnergy(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
                       const PetscReal u[][2], PetscReal F33, PetscReal *energy, PetscBool *valid);
 
