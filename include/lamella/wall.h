@@ -13,6 +13,7 @@
 /* L(symbol, name, PETSC_TRUE with fibres, help in a list of all laws) */
 #define LAM_WALL_LAWS(L)                                                                                               \
   L(LAM_WALL_FIBRE_MOONEY_RIVLIN, "fibre_mooney_rivlin", PETSC_TRUE, "Mooney-Rivlin with fibres along the wall; ")     \
+  L(LAM_WALL_FIBRE_EXPONENTIAL, "fibre_exponential", PETSC_TRUE, "with fibres that stiffen exponentially; ")           \
   L(LAM_WALL_MOONEY_RIVLIN, "mooney_rivlin", PETSC_FALSE, "without fibres.")
 
 /*
@@ -24,7 +25,9 @@
   M(X, C1, all, MODULUS, ALWAYS, "$C$_{1}", "0.1 MPa", "First Mooney-Rivlin modulus", ABOVE(0))                        \
   M(X, C2, all, MODULUS, ALWAYS, "$C$_{2}", "0.01 MPa", "Second Mooney-Rivlin modulus", FROM(0))
 #define LAM_WALL_OWN_PARAMETERS(M, X)                                                                                  \
-  M(X, C4, fibre_mooney_rivlin, MODULUS, BY_LAW, "$C$_{4}", "1 MPa", "Fibre modulus", FROM(0))
+  M(X, C4, fibre_mooney_rivlin, MODULUS, BY_LAW, "$C$_{4}", "1 MPa", "Fibre modulus", FROM(0))                         \
+  M(X, k1, fibre_exponential, MODULUS, BY_LAW, "$k$_{1}", "0.5 MPa", "Modulus of exponential fibres", FROM(0))         \
+  M(X, k2, fibre_exponential, NUMBER, BY_LAW, "$k$_{2}", "5", "Exponent of the fibres", FROM(0))
 #define LAM_WALL_PARAMETERS(M, X) LAM_WALL_MATRIX_PARAMETERS(M, X) LAM_WALL_OWN_PARAMETERS(M, X)
 
 #define LAM_WALL_LAW_ENUM(symbol, name, fibres, help) symbol,

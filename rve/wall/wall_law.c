@@ -2,6 +2,7 @@
 
 static const LamWallLaw laws[] = {
     {LAM_WALL_FIBRE_MOONEY_RIVLIN, LamMatrixMooneyRivlin, LamFibreQuadratic},
+    {LAM_WALL_FIBRE_EXPONENTIAL, LamMatrixMooneyRivlin, LamFibreExponential},
     {LAM_WALL_MOONEY_RIVLIN, LamMatrixMooneyRivlin, NULL},
 };
 

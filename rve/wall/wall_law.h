@@ -42,6 +42,7 @@ PetscReal LamWallFibreModulus(const LamWall *wall);
 /* Kernels, one file each. */
 void LamMatrixMooneyRivlin(const LamWall *wall, const PetscReal H[4], PetscReal H33, LamKernel *out);
 void LamFibreQuadratic(const LamWall *wall, PetscReal extension, LamKernel1 *out);
+void LamFibreExponential(const LamWall *wall, PetscReal extension, LamKernel1 *out);
 
 /* The matrix kernel for who has F. */
 static inline void LamMatrixAt(const LamWallLaw *law, const LamWall *wall, const PetscReal F[4], PetscReal F33,

@@ -20,6 +20,7 @@
 #define LamWallFibreModulus EXTENDED(WallFibreModulus)
 #define LamMatrixMooneyRivlin EXTENDED(MatrixMooneyRivlin)
 #define LamFibreQuadratic EXTENDED(FibreQuadratic)
+#define LamFibreExponential EXTENDED(FibreExponential)
 #define LamAddPressure EXTENDED(AddPressure)
 #define LamLumenAddGradient EXTENDED(LumenAddGradient)
 #define LamLumenAreas EXTENDED(LumenAreas)

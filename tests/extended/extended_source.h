@@ -24,6 +24,7 @@
 #define PetscCosReal EXTENDED_FUNCTION(cos)
 #define PetscFloorReal EXTENDED_FUNCTION(floor)
 #define cbrt EXTENDED_FUNCTION(cbrt)
+#define expm1 EXTENDED_FUNCTION(expm1)
 #define hypot EXTENDED_FUNCTION(hypot)
 #define PETSC_PI EXTENDED_PI
 #define PETSC_MACHINE_EPSILON EXTENDED_EPSILON
@@ -35,6 +36,7 @@
 #include "../../rve/wall/wall_law.c"
 #include "../../rve/wall/matrix_mooney_rivlin.c"
 #include "../../rve/wall/fibre_quadratic.c"
+#include "../../rve/wall/fibre_exponential.c"
 #include "../../rve/assembly/turgor.c"
 #include "../../rve/assembly/assembly.c"
 #include "../../rve/contact/gap_area.c"

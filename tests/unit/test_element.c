@@ -392,3 +392,29 @@ TEST(FieldsOfAffineStretchAreExact)
     assert_near(stress[g], 0.5 * (s11 + s22) + hypot(0.5 * (s11 - s22), s12), 1e-10);
   }
 }
+
+/* A state whose energy overflows is refused by all that evaluates it. */
+TEST(OverflowIsInvalid)
+{
+  const LamWall steep = {
+      .law = LAM_WALL_FIBRE_EXPONENTIAL, .C1 = 0.7, .C2 = 0.3, .k1 = 1.0, .k2 = 1e6, .bulk_modulus = 1000.0};
+  const double F[4] = {1.5, 0, 0, 1.0};
+  uint64_t seed = 5;
+  LamElementResult result;
+  PetscBool valid;
+  Element element;
+  double energy;
+
+  NewElement(&element, &seed);
+  assert_int_equal(LamWallLawGet(steep.law, &element.law), 0);
+  MoveAffinely(&element, F);
+  const NodeVectors u = Displacements(&element);
+
+  LamElementEnergy(&element.geometry, element.law, &steep, (const double(*)[2])u.u, 1.0, &energy, &valid);
+  assert_false(valid);
+  LamElementEvaluate(&element.geometry, element.law, &steep, (const double(*)[2])u.u, 1.0, &element.stress, &result,
+                     &valid);
+  assert_false(valid);
+  assert_false(LamElementSetConsistentStress(&element.geometry, element.law, &steep, (const double(*)[2])u.u, 1.0,
+                                             &element.stress));
+}

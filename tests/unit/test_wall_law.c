@@ -21,6 +21,12 @@ static void RandomState(uint64_t *seed, double F[4], double *F33)
   *F33 = RandomReal(seed, 0.8, 1.3);
 }
 
+/* Exponential fibres as stiff at rest as those of `wall`. */
+static LamWall Stiffening(double k2)
+{
+  return (LamWall){.law = LAM_WALL_FIBRE_EXPONENTIAL, .C1 = 0.7, .C2 = 0.3, .k1 = 6.0, .k2 = k2, .bulk_modulus = 1000};
+}
+
 static LamKernel Matrix(const double F[4], double F33)
 {
   const LamWallLaw *law;
@@ -36,7 +42,7 @@ static LamKernel1 Fibre(const LamWall *of, double I4)
   const LamWallLaw *law;
   LamKernel1 kernel;
 
-  assert_int_equal(LamWallLawGet(LAM_WALL_FIBRE_MOONEY_RIVLIN, &law), 0);
+  assert_int_equal(LamWallLawGet(of->law, &law), 0);
   law->fibre(of, I4 - 1.0, &kernel);
   return kernel;
 }
@@ -213,4 +219,67 @@ TEST(SmallStrainModuliAreThoseOfTheLaw)
   AssertClose(k.A[1][1], wall.C1 + wall.C2, 1e-13);
   AssertClose(k.A[0][0] - k.A[0][3], 2.0 * (wall.C1 + wall.C2), 1e-13);
   AssertClose(u.dd, wall.bulk_modulus, 1e-13);
+}
+
+/* Uniaxial tension along the fibres, and shear across them: 2 k1 l^2 e exp(k2 e^2) with e = l^2 - 1, and 2 k1 g^3
+   exp(k2 g^4) beside the matrix's (Holzapfel, Gasser & Ogden 2000, eq. 65 with 2 d/dI4). */
+TEST(ExponentialFibresAreExact)
+{
+  const LamWall of = Stiffening(1.5);
+
+  for (double l = 0.6; l < 1.6; l += 0.1) {
+    const double e = l * l - 1.0;
+    const LamKernel1 k = Fibre(&of, l * l);
+
+    AssertClose(k.W, of.k1 / (2.0 * of.k2) * (exp(of.k2 * e * e) - 1.0), 1e-13);
+    AssertClose(2.0 * l * l * k.d, 2.0 * of.k1 * l * l * e * exp(of.k2 * e * e), 1e-12);
+  }
+  for (double g = -1.0; g < 1.1; g += 0.4)
+    AssertClose(2.0 * Fibre(&of, 1.0 + g * g).d * g, 2.0 * of.k1 * pow(g, 3) * exp(of.k2 * pow(g, 4)), 1e-12);
+}
+
+TEST(ExponentialFibresFollowFromTheirEnergy)
+{
+  const double h = 1e-5;
+  uint64_t seed = 11;
+
+  for (int n = 0; n < STATES; n++) {
+    const LamWall of = Stiffening(RandomReal(&seed, 0.0, 4.0));
+    const double I4 = RandomReal(&seed, 0.4, 1.9);
+    const LamKernel1 k = Fibre(&of, I4), plus = Fibre(&of, I4 + h), minus = Fibre(&of, I4 - h);
+
+    AssertClose(k.d, (plus.W - minus.W) / (2.0 * h), 1e-6);
+    AssertClose(k.dd, (plus.d - minus.d) / (2.0 * h), 1e-6);
+  }
+}
+
+/* As k2 goes to 0 they are quadratic fibres with C4 = 2 k1; also where k2 is next to nothing. */
+TEST(ExponentialFibresBecomeQuadratic)
+{
+  const double small[] = {0.0, 1e-300, 1e-15};
+
+  assert_near(LamWallFibreModulus(&(LamWall){.law = LAM_WALL_FIBRE_EXPONENTIAL, .k1 = 6.0, .k2 = 3.0}), wall.C4, 0.0);
+  for (size_t s = 0; s < PETSC_STATIC_ARRAY_LENGTH(small); s++)
+    for (double I4 = 0.5; I4 < 2.0; I4 += 0.1) {
+      const LamWall of = Stiffening(small[s]);
+      const LamKernel1 k = Fibre(&of, I4), quadratic = Fibre(&wall, I4);
+
+      AssertClose(k.W, quadratic.W, 1e-13);
+      AssertClose(k.d, quadratic.d, 1e-13);
+      AssertClose(k.dd, quadratic.dd, 1e-13);
+    }
+}
+
+/* Slack under compression with `fibres: tension`, and infinite, never a NaN, where the exponential overflows. */
+TEST(ExponentialFibresGoSlackAndOverflow)
+{
+  LamWall of = Stiffening(1e6);
+
+  assert_true(isinf(Fibre(&of, 3.0).W) && Fibre(&of, 3.0).W > 0.0);
+  assert_true(isinf(Fibre(&of, 0.1).W));
+  assert_true(isfinite(Fibre(&of, 1.01).dd));
+  of.fibres = LAM_FIBRES_TENSION;
+  assert_near(Fibre(&of, 0.1).W, 0.0, 0.0);
+  assert_near(Fibre(&of, 0.1).d, 0.0, 0.0);
+  assert_near(Fibre(&of, 0.1).dd, 0.0, 0.0);
 }
