@@ -47,7 +47,6 @@ PetscErrorCode LamCommandInfo(LamArgs *args, int *exit_status);
 /* Finds the command and runs it. argv[0] is the program's name; what follows `--`, whose place that takes, is for PETSc
    alone. `start`: of LamArgs. */
 PetscErrorCode LamProgramRun(int argc, char *argv[], PetscErrorCode (*start)(LamArgs *args), int *exit_status);
-PetscBool LamProgramSolves(void); /* the command that was found runs under mpirun */
 
 /* ---- runtime.c ---- */
 /* Before anything else: streams, signals, the handler that keeps the words of an error. */
@@ -56,6 +55,8 @@ PetscErrorCode LamRuntimeBegin(void);
 void LamRuntimeEnd(PetscErrorCode code, int *status);
 /* For a command that has to do with record files; before LamRuntimeStart. */
 void LamAppStartHDF5(void);
+/* Whether the command that was found may run under mpirun, before it starts MPI: ranks are those of the launcher. */
+void LamRuntimeExpectRanks(PetscBool expect);
 /* The `start` of LamArgs; LamRuntimeEnd finalises. */
 PetscErrorCode LamRuntimeStart(LamArgs *args);
 PetscBool LamAppIsRoot(void); /* rank 0, or no MPI */

@@ -28,8 +28,6 @@ static const struct {
 };
 enum { COMMAND_COUNT = PETSC_STATIC_ARRAY_LENGTH(Commands) };
 
-static PetscBool CommandSolves; /* the one that was found */
-
 /* ---- help and versions ---- */
 
 static void PrintHelp(FILE *out)
@@ -78,17 +76,12 @@ static PetscBool Is(const char word[], const char short_name[], const char long_
   return (PetscBool)(!strcmp(word, short_name) || !strcmp(word, long_name));
 }
 
-PetscBool LamProgramSolves(void)
-{
-  return CommandSolves;
-}
-
 static PetscErrorCode RunCommand(LamArgs *args, int *status)
 {
   PetscFunctionBeginUser;
   for (int i = 0; i < COMMAND_COUNT; i++) {
     if (strcmp(args->argv[0], Commands[i].name)) continue;
-    CommandSolves = Commands[i].solves;
+    LamRuntimeExpectRanks(Commands[i].solves);
     if (Commands[i].files) LamAppStartHDF5();
     PetscCall(Commands[i].run(args, status));
     PetscFunctionReturn(0);

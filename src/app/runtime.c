@@ -27,6 +27,7 @@
 #define OWN_ERROR_PATIENCE 3.0
 #define SHARED_ERROR_PATIENCE 60.0
 
+static PetscBool ExpectRanks;
 static MPI_Comm EndComm = MPI_COMM_NULL; /* for the agreement at the end */
 
 /* ---- errors ---- */
@@ -83,13 +84,18 @@ static PetscBool MPIRuns(void)
   return (PetscBool)(initialized && !finalized);
 }
 
+void LamRuntimeExpectRanks(PetscBool expect)
+{
+  ExpectRanks = expect;
+}
+
 PetscBool LamAppIsRoot(void)
 {
   int rank = 0;
 
   if (MPIRuns()) {
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  } else if (LamProgramSolves()) { /* a usage error under mpirun is told once, too */
+  } else if (ExpectRanks) { /* a usage error under mpirun is told once, too */
     const char *launched = getenv("OMPI_COMM_WORLD_RANK");
 
     rank = launched ? atoi(launched) : 0;
@@ -229,7 +235,7 @@ PetscErrorCode LamRuntimeBegin(void)
   FillStreams();
   UseOneThread();
   LamFaultsTell();
-  signal(SIGPIPE, SIG_IGN);                   /* a closed pipe is an error of writing, told as such */
-  signal(SIGXFSZ, SIG_IGN);                   /* so is a file that may not grow */
+  signal(SIGPIPE, SIG_IGN); /* a closed pipe is an error of writing, told as such */
+  signal(SIGXFSZ, SIG_IGN); /* so is a file that may not grow */
   return LamErrorsKeep();
 }

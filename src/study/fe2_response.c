@@ -157,6 +157,15 @@ PetscErrorCode LamFE2ChangeWalls(LamRVE rve, const LamMicrostructure *micro,
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamFE2ChangeTissueWalls(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT])
+{
+  LamFE2Tissue *tissue = (LamFE2Tissue *)ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFE2ChangeWalls(tissue->rve, &tissue->scene.micro, factor));
+  PetscFunctionReturn(0);
+}
+
 /* How many points of the tissue find room for two states each in its share of the memory. Behind a cache none keeps a
    state: all its solves start from the reference. */
 static PetscErrorCode CountKept(const LamFE2Run *run, const LamFE2Tissue *tissue, PetscInt *kept)

@@ -87,6 +87,8 @@ PetscErrorCode LamFE2DisconnectTissue(LamFE2Tissue *tissue);
 /* The RVE of this tissue with each parameter of its walls multiplied. */
 PetscErrorCode LamFE2ChangeWalls(LamRVE rve, const LamMicrostructure *micro,
                                  const PetscReal factor[LAM_WALL_PARAMETER_COUNT]);
+/* The same of a LamFE2Tissue; a set of LamProcessSetWalls. */
+PetscErrorCode LamFE2ChangeTissueWalls(void *tissue, const PetscReal factor[LAM_WALL_PARAMETER_COUNT]);
 
 /* ---- fe2_record.c; on rank 0 but for the first, which is collective ---- */
 PetscErrorCode LamFE2OpenFiles(LamFE2Run *run);

@@ -95,7 +95,7 @@ static PetscErrorCode ChangeWalls(void *ctx, const PetscReal factor[LAM_WALL_PAR
   study->fe2.walls_differ = PETSC_TRUE;
   PetscCall(PetscArraycpy(study->fe2.wall_ratio, factor, LAM_WALL_PARAMETER_COUNT));
   for (PetscInt t = 0; t < study->fe2.tissues.count; t++)
-    PetscCall(LamProcessChangeWalls(&study->fe2.tissues.tissues[t], factor));
+    PetscCall(LamFE2ChangeTissueWalls(&study->fe2.tissues.tissues[t], factor));
   PetscFunctionReturn(0);
 }
 

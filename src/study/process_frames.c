@@ -20,7 +20,7 @@ static PetscErrorCode TellModuli(LamProcessStudy *study, const LamProcessState *
   PetscFunctionBeginUser;
   if (LamProcessWallsStayAlike(study->scene)) PetscFunctionReturn(0);
   (void)LamWallRatios(&study->scene->micro.wall, &state->factor[LAM_CHANGING_OF_PARAMETER(0)], ratio);
-  PetscCall(LamProcessChangeWalls(study->response.tissues.tissues, ratio));
+  PetscCall(LamFE2ChangeTissueWalls(study->response.tissues.tissues, ratio));
   PetscFunctionReturn(0);
 }
 

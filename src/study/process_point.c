@@ -37,15 +37,6 @@ static PetscErrorCode Disconnect(LamProcessStudy *study)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamProcessChangeWalls(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT])
-{
-  LamFE2Tissue *tissue = (LamFE2Tissue *)ctx;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamFE2ChangeWalls(tissue->rve, &tissue->scene.micro, factor));
-  PetscFunctionReturn(0);
-}
-
 /* What the cache has solved goes to its database's file, whatever the end was. */
 static PetscErrorCode CloseDatabase(LamProcessStudy *study)
 {
@@ -109,7 +100,7 @@ PetscErrorCode LamProcessSolvePoint(LamProcessStudy *study, LamProcessReason *re
   if (study->response.stopped) PetscFunctionReturn(0);
   PetscCall(LamProcessSetResponder(study->process, responder));
   if (study->response.response == LAM_FE2_DIRECT)
-    PetscCall(LamProcessSetWalls(study->process, LamProcessChangeWalls, study->response.tissues.tissues));
+    PetscCall(LamProcessSetWalls(study->process, LamFE2ChangeTissueWalls, study->response.tissues.tissues));
   if (study->response.response == LAM_FE2_CACHE)
     PetscCall(LamProcessSetJudge(study->process, &study->response.tissues.tissues->solver));
   PetscCall(LamProcessSetMonitor(study->process, AddState, study));

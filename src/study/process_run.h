@@ -39,8 +39,6 @@ typedef struct LamProcessStudy_s {
 /* message [LAM_PROCESS_MESSAGE]: why it ended before its duration. */
 PetscErrorCode LamProcessSolvePoint(LamProcessStudy *study, LamProcessReason *reason, char message[]);
 PetscErrorCode LamProcessStudyDestroy(LamProcessStudy *study);
-/* Set of LamProcessSetWalls, with a LamFE2Tissue: what is solved directly takes other moduli. */
-PetscErrorCode LamProcessChangeWalls(void *tissue, const PetscReal factor[LAM_WALL_PARAMETER_COUNT]);
 
 /* ---- process_file.c ---- */
 PetscErrorCode LamProcessFileOpen(LamProcessStudy *study);
