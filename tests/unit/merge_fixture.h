@@ -198,6 +198,6 @@ static inline void RemoveMember(int shard, const char removed[], const PetscInt6
   PetscFree(bytes);
 }
 
-#define MERGE_TEST(name) cmocka_unit_test_setup_teardown(name, EnterMerge, LeaveMerge)
+#define MERGE_TEST(name) TEST_WITH(name, EnterMerge, LeaveMerge)
 
 #endif

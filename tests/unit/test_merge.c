@@ -1,4 +1,5 @@
 /* Merging databases: each question once, in the order of the files, and all of it or nothing. */
+#include "support/test.h"
 #include "merge_fixture.h"
 #include <signal.h>
 #include <sys/resource.h>
@@ -6,7 +7,7 @@
 
 /* ---- what is kept ---- */
 
-static void records_come_in_the_order_of_the_files(void **state)
+MERGE_TEST(records_come_in_the_order_of_the_files)
 {
   const PetscInt64 keys[] = {Node(3), Node(4), Node(1), Node(2)}, *found;
   const LamResponse *records;
@@ -28,7 +29,7 @@ static void records_come_in_the_order_of_the_files(void **state)
   LamDatabaseClose(&db);
 }
 
-static void a_node_comes_once_whatever_its_time(void **state)
+MERGE_TEST(a_node_comes_once_whatever_its_time)
 {
   const PetscInt64 keys[] = {Node(1), Node(2), Node(3)};
   LamResponse r = NodeResponse(keys[0]);
@@ -42,7 +43,7 @@ static void a_node_comes_once_whatever_its_time(void **state)
   assert_int_equal(report.differing, 0);
 }
 
-static void of_two_answers_the_first_is_kept_and_their_difference_told(void **state)
+MERGE_TEST(of_two_answers_the_first_is_kept_and_their_difference_told)
 {
   const PetscInt64 key = Node(1);
   LamResponse r = NodeResponse(key), first = r, kept;
@@ -58,7 +59,7 @@ static void of_two_answers_the_first_is_kept_and_their_difference_told(void **st
   AssertSame(&kept, &first);
 }
 
-static void iterations_that_differ_are_a_difference(void **state)
+MERGE_TEST(iterations_that_differ_are_a_difference)
 {
   const PetscInt64 key = Node(1);
   LamResponse r = NodeResponse(key);
@@ -72,7 +73,7 @@ static void iterations_that_differ_are_a_difference(void **state)
 }
 
 /* Also where the first one has been written to the file long ago. */
-static void an_answer_goes_before_a_failure(void **state)
+MERGE_TEST(an_answer_goes_before_a_failure)
 {
   const PetscInt count = 1100;
   PetscInt64 *keys = calloc((size_t)count, sizeof(*keys));
@@ -93,7 +94,7 @@ static void an_answer_goes_before_a_failure(void **state)
   free(keys);
 }
 
-static void states_of_a_cache_get_new_keys_and_come_once(void **state)
+MERGE_TEST(states_of_a_cache_get_new_keys_and_come_once)
 {
   const PetscInt64 keys[] = {LAM_CACHE_KEY, LAM_CACHE_KEY + 1};
   LamResponse r[3];
@@ -110,7 +111,7 @@ static void states_of_a_cache_get_new_keys_and_come_once(void **state)
   for (int i = 0; i < 3; i++) AssertRecord(i, LAM_CACHE_KEY + i, &r[i]);
 }
 
-static void samples_with_one_number_and_two_loads_are_two(void **state)
+MERGE_TEST(samples_with_one_number_and_two_loads_are_two)
 {
   const PetscInt64 keys[] = {0, 1};
   LamResponse r[2] = {Response(0), Response(6)}, other = r[0];
@@ -131,7 +132,7 @@ static int CompareKeys(const void *a, const void *b)
 }
 
 /* All members but times and checksums, by key. */
-static void the_content_does_not_depend_on_the_order(void **state)
+MERGE_TEST(the_content_does_not_depend_on_the_order)
 {
   PetscInt64 keys[30], *sorted[2];
 
@@ -162,7 +163,7 @@ static void the_content_does_not_depend_on_the_order(void **state)
   free(sorted[1]);
 }
 
-static void the_header_is_of_the_first_file_with_the_smallest_accuracy(void **state)
+MERGE_TEST(the_header_is_of_the_first_file_with_the_smallest_accuracy)
 {
   const PetscInt64 keys[] = {Node(1), Node(2)};
   LamMicrostructure micro;
@@ -184,7 +185,7 @@ static void the_header_is_of_the_first_file_with_the_smallest_accuracy(void **st
   LamDatabaseClose(&db);
 }
 
-static void records_of_an_earlier_type_get_the_present_one(void **state)
+MERGE_TEST(records_of_an_earlier_type_get_the_present_one)
 {
   const PetscInt64 key = Node(1), later = Node(2);
   LamResponse wanted = NodeResponse(key);
@@ -210,7 +211,7 @@ static void AssertRefused(PetscInt n, const char part[])
   AssertNothingLeft();
 }
 
-static void other_tissue_is_refused_and_both_files_named(void **state)
+MERGE_TEST(other_tissue_is_refused_and_both_files_named)
 {
   const PetscInt64 key = Node(1);
   LamScene scene = ShardScene();
@@ -223,7 +224,7 @@ static void other_tissue_is_refused_and_both_files_named(void **state)
   AssertRefused(2, "microstructure");
 }
 
-static void another_grid_is_refused_and_both_files_named(void **state)
+MERGE_TEST(another_grid_is_refused_and_both_files_named)
 {
   const PetscInt64 key = Node(1);
   LamScene scene = ShardScene();
@@ -236,7 +237,7 @@ static void another_grid_is_refused_and_both_files_named(void **state)
   AssertRefused(2, LAM_GRID_NAME);
 }
 
-static void a_file_of_another_kind_is_refused(void **state)
+MERGE_TEST(a_file_of_another_kind_is_refused)
 {
   const PetscInt64 key = 1;
   const LamResponse r = Response(0);
@@ -249,7 +250,7 @@ static void a_file_of_another_kind_is_refused(void **state)
   AssertRefused(1, "only databases");
 }
 
-static void a_file_that_is_there_is_not_replaced(void **state)
+MERGE_TEST(a_file_that_is_there_is_not_replaced)
 {
   const PetscInt64 keys[] = {Node(1), Node(2)};
 
@@ -261,7 +262,7 @@ static void a_file_that_is_there_is_not_replaced(void **state)
   assert_int_equal(CountRecords(), 1);
 }
 
-static void the_result_may_be_one_of_the_files(void **state)
+MERGE_TEST(the_result_may_be_one_of_the_files)
 {
   const PetscInt64 keys[] = {Node(1), Node(2)};
   const LamMergeOptions options = {0};
@@ -274,7 +275,7 @@ static void the_result_may_be_one_of_the_files(void **state)
   assert_int_equal(CountRecords(), 2);
 }
 
-static void a_file_that_is_written_is_not_replaced(void **state)
+MERGE_TEST(a_file_that_is_written_is_not_replaced)
 {
   const PetscInt64 key = Node(1);
   LamRecordWriter writer = Open(LAM_WRITE_CREATE);
@@ -288,7 +289,7 @@ static void a_file_that_is_written_is_not_replaced(void **state)
 /* ---- all or nothing ---- */
 
 /* The limit on the file's size stands for a full disk. */
-static void a_full_disk_changes_nothing(void **state)
+MERGE_TEST(a_full_disk_changes_nothing)
 {
   const PetscInt count = 600;
   PetscInt64 *keys = calloc((size_t)count, sizeof(*keys));
@@ -316,7 +317,7 @@ static PetscBool Stop(void)
   return PETSC_TRUE;
 }
 
-static void a_merge_that_is_stopped_leaves_nothing(void **state)
+MERGE_TEST(a_merge_that_is_stopped_leaves_nothing)
 {
   const PetscInt64 key = Node(1);
   const LamMergeOptions options = {.stop = Stop};
@@ -326,30 +327,4 @@ static void a_merge_that_is_stopped_leaves_nothing(void **state)
   assert_int_equal(LamDatabaseMerge(path, 1, files, &options, &report), 0);
   assert_true(report.stopped);
   AssertNothingLeft();
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      MERGE_TEST(records_come_in_the_order_of_the_files),
-      MERGE_TEST(a_node_comes_once_whatever_its_time),
-      MERGE_TEST(of_two_answers_the_first_is_kept_and_their_difference_told),
-      MERGE_TEST(iterations_that_differ_are_a_difference),
-      MERGE_TEST(an_answer_goes_before_a_failure),
-      MERGE_TEST(states_of_a_cache_get_new_keys_and_come_once),
-      MERGE_TEST(samples_with_one_number_and_two_loads_are_two),
-      MERGE_TEST(the_content_does_not_depend_on_the_order),
-      MERGE_TEST(the_header_is_of_the_first_file_with_the_smallest_accuracy),
-      MERGE_TEST(records_of_an_earlier_type_get_the_present_one),
-      MERGE_TEST(other_tissue_is_refused_and_both_files_named),
-      MERGE_TEST(another_grid_is_refused_and_both_files_named),
-      MERGE_TEST(a_file_of_another_kind_is_refused),
-      MERGE_TEST(a_file_that_is_there_is_not_replaced),
-      MERGE_TEST(the_result_may_be_one_of_the_files),
-      MERGE_TEST(a_file_that_is_written_is_not_replaced),
-      MERGE_TEST(a_full_disk_changes_nothing),
-      MERGE_TEST(a_merge_that_is_stopped_leaves_nothing),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

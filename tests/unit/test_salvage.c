@@ -1,5 +1,6 @@
 /* Of damaged files whose header HDF5 reads, the sound records are kept, and nothing else. */
 #define _GNU_SOURCE /* memmem */
+#include "support/test.h"
 #include "merge_fixture.h"
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -95,7 +96,7 @@ static void AssertAllSound(PetscInt wanted)
   LamDatabaseClose(&db);
 }
 
-static void a_damaged_record_is_refused_and_by_salvage_left_out_and_named(void **state)
+MERGE_TEST(a_damaged_record_is_refused_and_by_salvage_left_out_and_named)
 {
   WriteSound(0);
   Overwrite(PlaceOf(keys[70]) + 500, 8, "damaged.");
@@ -108,7 +109,7 @@ static void a_damaged_record_is_refused_and_by_salvage_left_out_and_named(void *
   if (!strstr(told, "record 70 is damaged")) fail_msg("told: %s", told);
 }
 
-static void records_damaged_one_behind_the_other_are_counted(void **state)
+MERGE_TEST(records_damaged_one_behind_the_other_are_counted)
 {
   WriteSound(0);
   for (int i = 63; i < 67; i++) Overwrite(PlaceOf(keys[i]) + 500, 8, "damaged.");
@@ -117,7 +118,7 @@ static void records_damaged_one_behind_the_other_are_counted(void **state)
   assert_int_equal(report.left_out, 4);
 }
 
-static void another_file_has_what_one_has_lost(void **state)
+MERGE_TEST(another_file_has_what_one_has_lost)
 {
   WriteSound(0);
   Overwrite(PlaceOf(keys[5]) + 500, 8, "damaged.");
@@ -127,7 +128,7 @@ static void another_file_has_what_one_has_lost(void **state)
 }
 
 /* HDF5's index of the chunks is gone, so are the records. */
-static void records_that_hdf5_cannot_read_are_left_out(void **state)
+MERGE_TEST(records_that_hdf5_cannot_read_are_left_out)
 {
   WriteSound(0);
   Overwrite(PlaceOfText("TREE\1"), 4, "EERT");
@@ -141,7 +142,7 @@ static void records_that_hdf5_cannot_read_are_left_out(void **state)
   assert_non_null(strstr(told, "HDF5 cannot read it"));
 }
 
-static void a_file_that_is_cut_is_refused_by_name(void **state)
+MERGE_TEST(a_file_that_is_cut_is_refused_by_name)
 {
   size_t size;
 
@@ -154,7 +155,7 @@ static void a_file_that_is_cut_is_refused_by_name(void **state)
   AssertNothingLeft();
 }
 
-static void a_damaged_unit_is_told(void **state)
+MERGE_TEST(a_damaged_unit_is_told)
 {
   static const char name[] = "stress_unit_Pa\0\0\x11";
   size_t size, place;
@@ -171,7 +172,7 @@ static void a_damaged_unit_is_told(void **state)
   assert_non_null(strstr(told, "check them"));
 }
 
-static void a_damaged_scene_costs_no_record(void **state)
+MERGE_TEST(a_damaged_scene_costs_no_record)
 {
   WriteSound(0);
   Overwrite(PlaceOfText("version: 1"), 7, "damaged");
@@ -192,7 +193,7 @@ static void SetCounter(PetscInt64 count)
   H5Fclose(file);
 }
 
-static void a_counter_that_cannot_be_is_not_believed(void **state)
+MERGE_TEST(a_counter_that_cannot_be_is_not_believed)
 {
   const PetscInt64 counts[] = {INT64_MIN, -1, INT64_MAX};
 
@@ -208,7 +209,7 @@ static void a_counter_that_cannot_be_is_not_believed(void **state)
   }
 }
 
-static void a_changed_description_is_not_believed(void **state)
+MERGE_TEST(a_changed_description_is_not_believed)
 {
   WriteSound(0);
   Overwrite(PlaceOfText("{\"wall_thickness\": 0.15"), 23, "{\"wall_thickness\": 0.16");
@@ -216,7 +217,7 @@ static void a_changed_description_is_not_believed(void **state)
   AssertNothingLeft();
 }
 
-static void a_damaged_grid_is_not_believed(void **state)
+MERGE_TEST(a_damaged_grid_is_not_believed)
 {
   WriteSound(0);
   Overwrite(PlaceOfText("\"turgor\":0.2"), 12, "\"turgor\":0.3");
@@ -225,7 +226,7 @@ static void a_damaged_grid_is_not_believed(void **state)
   AssertNothingLeft();
 }
 
-static void nodes_without_a_grid_are_refused(void **state)
+MERGE_TEST(nodes_without_a_grid_are_refused)
 {
   hid_t file;
 
@@ -240,7 +241,7 @@ static void nodes_without_a_grid_are_refused(void **state)
   }
 }
 
-static void a_damaged_record_of_an_earlier_type_is_left_out(void **state)
+MERGE_TEST(a_damaged_record_of_an_earlier_type_is_left_out)
 {
   const PetscInt64 key = Node(1);
   LamResponse wanted = NodeResponse(key);
@@ -255,24 +256,4 @@ static void a_damaged_record_of_an_earlier_type_is_left_out(void **state)
   Overwrite(PlaceOf(key) + 500, 8, "damaged.");
   assert_int_equal(SalvageShards(1), PETSC_ERR_USER_INPUT);
   assert_non_null(strstr(message, "not one record is sound"));
-}
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      MERGE_TEST(a_damaged_record_is_refused_and_by_salvage_left_out_and_named),
-      MERGE_TEST(records_damaged_one_behind_the_other_are_counted),
-      MERGE_TEST(another_file_has_what_one_has_lost),
-      MERGE_TEST(records_that_hdf5_cannot_read_are_left_out),
-      MERGE_TEST(a_file_that_is_cut_is_refused_by_name),
-      MERGE_TEST(a_damaged_unit_is_told),
-      MERGE_TEST(a_damaged_scene_costs_no_record),
-      MERGE_TEST(a_counter_that_cannot_be_is_not_believed),
-      MERGE_TEST(a_changed_description_is_not_believed),
-      MERGE_TEST(a_damaged_grid_is_not_believed),
-      MERGE_TEST(nodes_without_a_grid_are_refused),
-      MERGE_TEST(a_damaged_record_of_an_earlier_type_is_left_out),
-  };
-
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }
