@@ -1,12 +1,7 @@
-#!/usr/bin/env bash
 # lamella build under mpirun: the records do not depend on the number of ranks, except times, and checksums over them.
-set -euo pipefail
-lamella=$1
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
-cd "$dir"
-
-fail() { echo "FAILED: $*" >&2; exit 1; }
+. "$(dirname "$0")/../cli/common.sh"
+command -v mpirun >/dev/null || exit 77
+set -e -o pipefail
 
 cat >bonded.yaml <<'YAML'
 version: 1

@@ -1,15 +1,7 @@
 # fe2 on two ranks: the same reactions, summary and zooms to 1e-8, direct and from a cache, also of sealed tissue
-set -eu
-lamella=$1
+. "$(dirname "$0")/../cli/common.sh"
 command -v mpirun >/dev/null || exit 77
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-
-fail() {
-  echo "$1" >&2
-  exit 1
-}
+set -e
 
 cat >block.yaml <<'YAML'
 version: 1

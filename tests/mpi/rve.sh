@@ -1,16 +1,6 @@
 # rve on two ranks: rank 0 solves the chain; output, mistakes and exit status as in serial.
-set -u
-lamella=$1 source=$2
+. "$(dirname "$0")/../cli/common.sh"
 command -v mpirun >/dev/null || exit 77
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failures=0
-
-fail() {
-  echo "mpi rve: $1" >&2
-  failures=$((failures + 1))
-}
 
 scene=$source/tests/scenes/shear-bonded.yaml
 "$lamella" rve "$scene" --json >one.txt || fail "serial: exit status $?"
@@ -35,4 +25,3 @@ mpirun -n 1 "$lamella" build "$source/tests/scenes/tissue-block.yaml" -d alone.h
   -n 1 "$lamella" build missing.yaml -d alone.h5 >out.txt 2>err.txt
 [ $? -eq 2 ] || fail "a lone error does not end with its status: $(cat err.txt)"
 grep -q 'lamella: missing.yaml' err.txt || fail "a lone error is not seen: $(cat err.txt)"
-exit $((failures > 0))

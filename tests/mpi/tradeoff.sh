@@ -1,13 +1,7 @@
-#!/usr/bin/env bash
 # lamella tradeoff under mpirun: on one rank as without it, on several it refuses, for they would share the processor.
-set -euo pipefail
-lamella=$1
-source=$2
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
-cd "$dir"
-
-fail() { echo "FAILED: $*" >&2; exit 1; }
+. "$(dirname "$0")/../cli/common.sh"
+command -v mpirun >/dev/null || exit 77
+set -e -o pipefail
 
 mpirun -n 1 "$lamella" tradeoff "$source/tests/scenes/uneven-cells.yaml" --budget 3 --repeats 1 --only tolerance --quiet >out.txt ||
   [ $? = 3 ] || fail "one rank: $(cat out.txt)" # 3: no reference in so short a time
