@@ -61,19 +61,19 @@ for document in [*source.glob("*.md"), *(source / "docs").rglob("*.md")]:
                 if re.search(r"\w\Z", parts[i - 1]) or re.match(r"\w", parts[i + 1]):
                     failures.append(f"{document}: a letter touches the dollar of {math}")
 
+rooms = ("include", "src", "rve", "macro", "process", "tests", "examples")
 programs = {file.stem for file in (source / "tests").rglob("*") if file.suffix in (".c", ".sh", ".py")}
 for document in (source / "docs").rglob("*.md"):
-    text, folder = document.read_text(), source
+    text = document.read_text()
     for path in re.findall(r"`([\w/]+[\w*]+\.[ch])`", text):
-        folder = (source / path).parent if "/" in path else folder
-        if not list(folder.glob(Path(path).name)):
+        if not any(list(source.glob(f"{room}/**/{path}") if "/" not in path else source.glob(path)) for room in rooms):
             failures.append(f"{document}: {path} is not there")
     for program in re.findall(r"\b((?:bench|test|fuzz)_\w+)\b(?!\*)", text):
         if not any(name.startswith(program) for name in programs):
             failures.append(f"{document}: {program} is not there")
 
 citations = 0
-for folder in ("include", "src", "rve", "macro", "process", "tests", "examples"):
+for folder in rooms:
     for file in (source / folder).rglob("*.[ch]"):
         text = re.sub(r"\s*\n[ *]*", " ", file.read_text())
         for path, title in re.findall(r"\b(docs/(?:theory|results)/[\w-]+\.md)[,;] +\"?([A-Z][^.;):\"]*)", text):
