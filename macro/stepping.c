@@ -20,7 +20,7 @@
   Reference: Wriggers, Nonlinear Finite Element Methods, ch. 5.
 */
 #include <math.h>
-#include <lamella/clock.h>
+#include "clock.h"
 #include "macro_impl.h"
 
 static const PetscReal RELATIVE_TOLERANCE = 1e-9, ABSOLUTE_TOLERANCE = 1e-10, PENETRATION = 1e-10;

@@ -2,7 +2,7 @@
   The way of a body through time: from segment to segment, over jumps and events.
 */
 #include "body_impl.h"
-#include <lamella/clock.h>
+#include "clock.h"
 #include <math.h>
 #include <string.h>
 

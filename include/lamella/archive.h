@@ -12,28 +12,33 @@
 #define LAMELLA_ARCHIVE_H
 
 #include <petscsys.h>
+#include <lamella/export.h>
+
+LAM_C_BEGIN
 
 typedef struct LamArchive_s *LamArchive;
 
 /* Starts a file that takes its name at LamArchiveClose, complete and on the disk: a kill leaves the one before. */
-PetscErrorCode LamArchiveCreate(MPI_Comm comm, const char path[], LamArchive *archive);
+LAM_EXPORT PetscErrorCode LamArchiveCreate(MPI_Comm comm, const char path[], LamArchive *archive);
 /* Reads a file, also when another one takes its place meanwhile. PETSC_ERR_USER_INPUT: no such file, or a damaged one.
  */
-PetscErrorCode LamArchiveOpen(MPI_Comm comm, const char path[], LamArchive *archive);
-PetscBool LamArchiveIsReading(LamArchive archive);
+LAM_EXPORT PetscErrorCode LamArchiveOpen(MPI_Comm comm, const char path[], LamArchive *archive);
+LAM_EXPORT PetscBool LamArchiveIsReading(LamArchive archive);
 /*
   `n` items of `size` bytes each, items[n][size], with their numbers in the whole of all ranks: 0, 1, ... without much
   between that no one has. Written, each number is one rank's; read, a rank gets those it names. PETSC_ERR_USER_INPUT
   where the file has another count, or size, than what is to be read.
 */
-PetscErrorCode LamArchiveItems(LamArchive archive, const char name[], size_t size, PetscInt n, const PetscInt numbers[],
-                               void *items);
+LAM_EXPORT PetscErrorCode LamArchiveItems(LamArchive archive, const char name[], size_t size, PetscInt n,
+                                          const PetscInt numbers[], void *items);
 /* A value that is the same on all ranks; rank 0's is written. */
-PetscErrorCode LamArchiveShared(LamArchive archive, const char name[], size_t size, void *value);
+LAM_EXPORT PetscErrorCode LamArchiveShared(LamArchive archive, const char name[], size_t size, void *value);
 /* A list of *n items of rank 0 alone; read, it is made there, and the caller's to PetscFree; others: n 0, items NULL.
  */
-PetscErrorCode LamArchiveList(LamArchive archive, const char name[], size_t size, PetscInt *n, void **items);
+LAM_EXPORT PetscErrorCode LamArchiveList(LamArchive archive, const char name[], size_t size, PetscInt *n, void **items);
 /* `keep` PETSC_FALSE: what was written vanishes. */
-PetscErrorCode LamArchiveClose(LamArchive *archive, PetscBool keep);
+LAM_EXPORT PetscErrorCode LamArchiveClose(LamArchive *archive, PetscBool keep);
+
+LAM_C_END
 
 #endif

@@ -10,6 +10,9 @@
 #define LAMELLA_BLEND_H
 
 #include <lamella/response.h>
+#include <lamella/export.h>
+
+LAM_C_BEGIN
 
 enum { LAM_BLEND_TERMS = 4 };
 
@@ -22,13 +25,16 @@ typedef struct {
 } LamBlendTerm;
 
 /* The terms at `value`, which lies between the first and the last of n ascending knots; how many they are. */
-PetscInt LamBlendAt(PetscInt n, const PetscReal knots[], PetscReal value, LamBlendTerm terms[LAM_BLEND_TERMS]);
+LAM_EXPORT PetscInt LamBlendAt(PetscInt n, const PetscReal knots[], PetscReal value,
+                               LamBlendTerm terms[LAM_BLEND_TERMS]);
 
 /*
   The answer of n terms; at[i], which has fields, belongs to terms[i]. All in the same units, for the load that
   *response was initialised with (LamResponseInit). error_estimate: the terms' own, and the change of P with the coarse
   weights. Converged, or unstable where a term is so.
 */
-void LamBlend(PetscInt n, const LamBlendTerm terms[], const LamResponse at[], LamResponse *response);
+LAM_EXPORT void LamBlend(PetscInt n, const LamBlendTerm terms[], const LamResponse at[], LamResponse *response);
+
+LAM_C_END
 
 #endif

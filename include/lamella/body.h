@@ -14,6 +14,9 @@
 
 #include <lamella/macro.h>
 #include <lamella/process.h>
+#include <lamella/export.h>
+
+LAM_C_BEGIN
 
 typedef struct LamBody_s *LamBody;
 
@@ -39,22 +42,23 @@ typedef struct {
 typedef PetscErrorCode (*LamBodyMonitor)(const LamBodyState *state, void *ctx);
 
 /* Borrows both; the scene has the blocks `process` and `macro`. Before LamMacroSetUp. */
-PetscErrorCode LamBodyCreate(const LamScene *scene, LamMacro macro, LamBody *body);
+LAM_EXPORT PetscErrorCode LamBodyCreate(const LamScene *scene, LamMacro macro, LamBody *body);
 /* Area of the membranes over V0 at this rank's points, [point] in 1 over the scene's apothem; where this is not called
    it is that of the scene's tissue. After LamMacroSetUp; collective. */
-PetscErrorCode LamBodySetMembranes(LamBody body, const PetscReal membrane[]);
+LAM_EXPORT PetscErrorCode LamBodySetMembranes(LamBody body, const PetscReal membrane[]);
 /* That of a tissue, in 1 over its own apothem. */
-PetscReal LamMembraneArea(const LamMicrostructure *micro);
+LAM_EXPORT PetscReal LamMembraneArea(const LamMicrostructure *micro);
 /* As LamProcessSetWalls. */
-PetscErrorCode LamBodySetWalls(LamBody body,
-                               PetscErrorCode (*set)(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT]),
-                               void *ctx);
-PetscErrorCode LamBodySetMonitor(LamBody body, LamBodyMonitor monitor, void *ctx);
+LAM_EXPORT PetscErrorCode LamBodySetWalls(
+    LamBody body, PetscErrorCode (*set)(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT]), void *ctx);
+LAM_EXPORT PetscErrorCode LamBodySetMonitor(LamBody body, LamBodyMonitor monitor, void *ctx);
 /* Follows the body from time 0; a stop is that of LamMacroSetStop. `message` says why it ended before the end.
    Collective. */
-PetscErrorCode LamBodyRun(LamBody body, LamProcessReason *reason, char message[LAM_PROCESS_MESSAGE]);
+LAM_EXPORT PetscErrorCode LamBodyRun(LamBody body, LamProcessReason *reason, char message[LAM_PROCESS_MESSAGE]);
 /* `questions`: evaluations of all material points together. */
-PetscErrorCode LamBodyGetCounts(LamBody body, LamProcessCounts *counts);
-PetscErrorCode LamBodyDestroy(LamBody *body);
+LAM_EXPORT PetscErrorCode LamBodyGetCounts(LamBody body, LamProcessCounts *counts);
+LAM_EXPORT PetscErrorCode LamBodyDestroy(LamBody *body);
+
+LAM_C_END
 
 #endif

@@ -6,6 +6,9 @@
 
 #include <lamella/database.h>
 #include <lamella/response.h>
+#include <lamella/export.h>
+
+LAM_C_BEGIN
 
 /* Solves a node of the database's grid: the same response whoever solves it, and when. Stopped: LAM_OUT_OF_REACH. */
 typedef struct {
@@ -29,8 +32,10 @@ typedef struct {
   nodes: NULL: `solver` solves them, each from the reference state. accuracy: wanted relative error of the stress
   (LamStressError). Borrows database, solver and nodes.
 */
-PetscErrorCode LamCacheResponderCreate(MPI_Comm comm, LamDatabase database, LamResponder *solver,
-                                       const LamNodeSolver *nodes, LamOutside outside, PetscReal accuracy,
-                                       PetscInt points, LamResponder *responder);
+LAM_EXPORT PetscErrorCode LamCacheResponderCreate(MPI_Comm comm, LamDatabase database, LamResponder *solver,
+                                                  const LamNodeSolver *nodes, LamOutside outside, PetscReal accuracy,
+                                                  PetscInt points, LamResponder *responder);
+
+LAM_C_END
 
 #endif

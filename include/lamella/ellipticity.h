@@ -7,6 +7,9 @@
 
 #include <petscsys.h>
 #include <lamella/response.h>
+#include <lamella/export.h>
+
+LAM_C_BEGIN
 
 /*
   In the plane: the smallest of m_i N_j A_ijkl m_k N_l over unit vectors N, the reference normal of a band, and m, the
@@ -18,10 +21,10 @@ typedef struct {
 } LamBand;
 
 /* A [2][2][2][2]: dP_ij/dF_kl with major symmetry. Not known (NaN) where a number of A is not. */
-void LamBandFind(const PetscReal A[16], LamBand *band);
+LAM_EXPORT void LamBandFind(const PetscReal A[16], LamBand *band);
 
 /* Fills ellipticity, localisation_normal and localisation_mode from the tangent of the response. */
-void LamResponseFindBand(LamResponse *response);
+LAM_EXPORT void LamResponseFindBand(LamResponse *response);
 
 /* Whether it is lost for certain: cells that float or spin free have 0, but for rounding. */
 #define LAM_ELLIPTICITY_ROUNDING 1e-7 /* C1 + C2 */
@@ -31,6 +34,8 @@ static inline PetscBool LamEllipticityIsLost(PetscReal ellipticity)
 }
 
 /* Angle of a direction in the plane from X1, degrees. */
-PetscReal LamBandAngle(const PetscReal direction[]);
+LAM_EXPORT PetscReal LamBandAngle(const PetscReal direction[]);
+
+LAM_C_END
 
 #endif

@@ -8,21 +8,18 @@
 #define LAMELLA_ERROR_H
 
 #include <petscsys.h>
+#include <lamella/export.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+LAM_C_BEGIN
 
 /* From here on errors are kept, per thread, in place of being printed; also before PetscInitialize. */
 PetscErrorCode LamErrorsKeep(void);
 /* Of this thread's last error: its code (0: none yet), what was wrong, and the calls that it came through, a line each.
    Valid until the next error. */
-PetscErrorCode LamErrorCode(void);
-const char *LamErrorMessage(void);
-const char *LamErrorTrace(void);
+LAM_EXPORT PetscErrorCode LamErrorCode(void);
+LAM_EXPORT const char *LamErrorMessage(void);
+LAM_EXPORT const char *LamErrorTrace(void);
 
-#ifdef __cplusplus
-}
-#endif
+LAM_C_END
 
 #endif

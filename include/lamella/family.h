@@ -9,6 +9,9 @@
 #define LAMELLA_FAMILY_H
 
 #include <lamella/database.h>
+#include <lamella/export.h>
+
+LAM_C_BEGIN
 
 #define LAM_FAMILY_MODULUS(name) #name "/C1"
 #define LAM_FAMILY_NUMBER(name) #name
@@ -18,7 +21,7 @@
   LAM_WALL_OWN_PARAMETERS(LAM_FAMILY_OF_WALL, X)                                                                       \
   X(LAM_FAMILY_MATRIX, "C2/C1")
 typedef enum { LAM_FAMILY_AXES(LAM_ENUM_ENTRY) LAM_FAMILY_AXIS_COUNT } LamFamilyAxis;
-extern const char *const LamFamilyAxisNames[];
+LAM_EXPORT extern const char *const LamFamilyAxisNames[];
 
 typedef struct LamFamily_s *LamFamily;
 
@@ -26,17 +29,19 @@ typedef struct LamFamily_s *LamFamily;
   n >= 2 databases, in any order; borrowed, and not to be added to while the family is asked. PETSC_ERR_USER_INPUT where
   they differ in more than one of these numbers (in units of C1 + C2 and apothems), in none, or two are alike.
 */
-PetscErrorCode LamFamilyCreate(PetscInt n, const LamDatabase databases[], LamFamily *family);
-PetscErrorCode LamFamilyDestroy(LamFamily *family);
+LAM_EXPORT PetscErrorCode LamFamilyCreate(PetscInt n, const LamDatabase databases[], LamFamily *family);
+LAM_EXPORT PetscErrorCode LamFamilyDestroy(LamFamily *family);
 /* The axis and the range of its knots. */
-PetscErrorCode LamFamilyGetAxis(LamFamily family, LamFamilyAxis *axis, PetscReal *least, PetscReal *most);
+LAM_EXPORT PetscErrorCode LamFamilyGetAxis(LamFamily family, LamFamilyAxis *axis, PetscReal *least, PetscReal *most);
 /*
   The answer at `value` of the axis; load and response in units of C1 + C2. Out of reach where one of the databases is,
   or the value lies outside the knots. error_estimate adds to the databases' own the change of P when the knot farthest
   from the value is left out (with two knots: a quarter of the change between them). Safe for threads, as
   LamDatabaseQuery is.
 */
-PetscErrorCode LamFamilyQuery(LamFamily family, PetscReal value, const LamLoad *load, PetscReal accuracy,
-                              LamResponse *response);
+LAM_EXPORT PetscErrorCode LamFamilyQuery(LamFamily family, PetscReal value, const LamLoad *load, PetscReal accuracy,
+                                         LamResponse *response);
+
+LAM_C_END
 
 #endif

@@ -8,6 +8,9 @@
 #define LAMELLA_KINETICS_H
 
 #include <petscsys.h>
+#include <lamella/export.h>
+
+LAM_C_BEGIN
 
 #define LAM_GAS_CONSTANT 8.31446261815324 /* J/(mol K), exact by the SI of 2019 */
 
@@ -24,7 +27,7 @@ typedef enum {
 #undef LAM_KINETIC_ENTRY
       LAM_KINETIC_LAW_COUNT
 } LamKineticLaw;
-extern const char *const LamKineticLawNames[]; /* "constant", ... */
+LAM_EXPORT extern const char *const LamKineticLawNames[]; /* "constant", ... */
 
 /*
   k(T) = rate exp[-activation / R (1/T - 1/reference)] (Arrhenius), and where deactivation > 0 times
@@ -37,7 +40,7 @@ typedef struct {
   PetscReal activation, deactivation; /* J/mol; deactivation 0: Arrhenius alone */
   PetscReal reference, half_activity; /* K */
 } LamRate;
-PetscReal LamRateAt(const LamRate *rate, PetscReal temperature);
+LAM_EXPORT PetscReal LamRateAt(const LamRate *rate, PetscReal temperature);
 
 typedef struct {
   LamKineticLaw law;
@@ -48,15 +51,18 @@ typedef struct {
 } LamKinetics;
 
 enum { LAM_KINETIC_STATES = 2 }; /* most of a law */
-PetscInt LamKineticsStates(const LamKinetics *kinetics);
+LAM_EXPORT PetscInt LamKineticsStates(const LamKinetics *kinetics);
 /* States at t = 0. */
-void LamKineticsStart(const LamKinetics *kinetics, PetscReal x[]);
+LAM_EXPORT void LamKineticsStart(const LamKinetics *kinetics, PetscReal x[]);
 /* X, and dX/dx_i in slope. */
-PetscReal LamKineticsFactor(const LamKinetics *kinetics, PetscReal t, const PetscReal x[], PetscReal slope[]);
+LAM_EXPORT PetscReal LamKineticsFactor(const LamKinetics *kinetics, PetscReal t, const PetscReal x[],
+                                       PetscReal slope[]);
 /* dx_i/dt at temperature T, and J[i][j] its derivative by x_j. */
-void LamKineticsRates(const LamKinetics *kinetics, PetscReal temperature, const PetscReal x[], PetscReal rate[],
-                      PetscReal J[LAM_KINETIC_STATES][LAM_KINETIC_STATES]);
+LAM_EXPORT void LamKineticsRates(const LamKinetics *kinetics, PetscReal temperature, const PetscReal x[],
+                                 PetscReal rate[], PetscReal J[LAM_KINETIC_STATES][LAM_KINETIC_STATES]);
 /* Whether two laws give the same factor at all times. */
-PetscBool LamKineticsAgree(const LamKinetics *one, const LamKinetics *other);
+LAM_EXPORT PetscBool LamKineticsAgree(const LamKinetics *one, const LamKinetics *other);
+
+LAM_C_END
 
 #endif

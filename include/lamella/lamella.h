@@ -21,7 +21,9 @@
     study.h        whole studies: a database built, a body solved
     material.h     a material law for other programs, in SI units
     error.h        the last error in words
-    version.h      LAMELLA_VERSION
+    archive.h      the state of a run, to go on from
+    version.h      LAMELLA_VERSION and its numbers
+    export.h       what the library shows
 
   Conventions throughout
   * Every function that can fail returns a PetscErrorCode. PETSC_ERR_USER_INPUT: the user's file or
@@ -53,6 +55,7 @@
 #include <lamella/study.h>
 #include <lamella/material.h>
 #include <lamella/error.h>
+#include <lamella/archive.h>
 #include <lamella/version.h>
 
 #endif

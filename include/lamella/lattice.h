@@ -14,18 +14,23 @@
 #define LAMELLA_LATTICE_H
 
 #include <lamella/scene.h>
+#include <lamella/export.h>
+
+LAM_C_BEGIN
 
 #define LAM_FACES 6
 
 /* Coordinates of a cell along L_0 and L_1. */
-void LamLatticeIndex(const LamMicrostructure *micro, PetscInt cell, PetscInt index[2]);
+LAM_EXPORT void LamLatticeIndex(const LamMicrostructure *micro, PetscInt cell, PetscInt index[2]);
 /*
   The cell across a face. In a period there always is one; wraps [2]: its image lies that many periods away. In a patch
   -1 where there is none; *held tells whether the outer wall there follows F. Both outputs may be NULL.
 */
-PetscInt LamLatticeNeighbour(const LamMicrostructure *micro, PetscInt cell, PetscInt face, PetscInt wraps[2],
-                             PetscBool *held);
+LAM_EXPORT PetscInt LamLatticeNeighbour(const LamMicrostructure *micro, PetscInt cell, PetscInt face, PetscInt wraps[2],
+                                        PetscBool *held);
 /* Between two lattice points, given the difference of their coordinates; in distances of neighbours (two apothems). */
-PetscReal LamLatticeDistance(PetscInt d0, PetscInt d1);
+LAM_EXPORT PetscReal LamLatticeDistance(PetscInt d0, PetscInt d1);
+
+LAM_C_END
 
 #endif

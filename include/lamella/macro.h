@@ -13,6 +13,9 @@
 #include <lamella/archive.h>
 #include <lamella/scene.h>
 #include <lamella/response.h>
+#include <lamella/export.h>
+
+LAM_C_BEGIN
 
 typedef struct LamMacro_s *LamMacro;
 
@@ -57,48 +60,48 @@ typedef PetscErrorCode (*LamMacroMonitor)(LamMacro macro, const LamMacroStep *st
 /* Called on all ranks after each attempt at an increment that failed; `why` is the reason, with the material point. */
 typedef PetscErrorCode (*LamMacroCutback)(LamMacro macro, const char why[], void *ctx);
 
-PetscErrorCode LamMacroCreate(MPI_Comm comm, LamMacro *macro);
-PetscErrorCode LamMacroSetScene(LamMacro macro, const LamScene *scene); /* borrows the scene */
-PetscErrorCode LamMacroSetUp(LamMacro macro);
-PetscErrorCode LamMacroGetComm(LamMacro macro, MPI_Comm *comm);
-PetscErrorCode LamMacroGetPointCount(LamMacro macro, PetscInt *points); /* material points on this rank */
+LAM_EXPORT PetscErrorCode LamMacroCreate(MPI_Comm comm, LamMacro *macro);
+LAM_EXPORT PetscErrorCode LamMacroSetScene(LamMacro macro, const LamScene *scene); /* borrows the scene */
+LAM_EXPORT PetscErrorCode LamMacroSetUp(LamMacro macro);
+LAM_EXPORT PetscErrorCode LamMacroGetComm(LamMacro macro, MPI_Comm *comm);
+LAM_EXPORT PetscErrorCode LamMacroGetPointCount(LamMacro macro, PetscInt *points); /* material points on this rank */
 /*
   Of this rank's material points: X [point][2] reference positions in macro lengths, group [point] the index of the
   mesh's named region it lies in, -1: none. Names of these regions: of a Gmsh file's physical groups of elements.
 */
-PetscErrorCode LamMacroGetPlaces(LamMacro macro, PetscReal X[], PetscInt group[]);
-PetscErrorCode LamMacroGetGroups(LamMacro macro, PetscInt *count, const char (**names)[LAM_NAME_LENGTH]);
+LAM_EXPORT PetscErrorCode LamMacroGetPlaces(LamMacro macro, PetscReal X[], PetscInt group[]);
+LAM_EXPORT PetscErrorCode LamMacroGetGroups(LamMacro macro, PetscInt *count, const char (**names)[LAM_NAME_LENGTH]);
 /* Tissue that differs from point to point, [point] each: the turgor at full inflation, and the cohesion; where this is
    not called they are the scene's. */
-PetscErrorCode LamMacroSetPointTissue(LamMacro macro, const PetscReal turgor[], const PetscReal cohesion[]);
-PetscErrorCode LamMacroSetResponder(LamMacro macro, LamResponder *responder); /* borrows it */
-PetscErrorCode LamMacroSetMonitor(LamMacro macro, LamMacroMonitor monitor, void *ctx);
-PetscErrorCode LamMacroSetCutback(LamMacro macro, LamMacroCutback cutback, void *ctx);
+LAM_EXPORT PetscErrorCode LamMacroSetPointTissue(LamMacro macro, const PetscReal turgor[], const PetscReal cohesion[]);
+LAM_EXPORT PetscErrorCode LamMacroSetResponder(LamMacro macro, LamResponder *responder); /* borrows it */
+LAM_EXPORT PetscErrorCode LamMacroSetMonitor(LamMacro macro, LamMacroMonitor monitor, void *ctx);
+LAM_EXPORT PetscErrorCode LamMacroSetCutback(LamMacro macro, LamMacroCutback cutback, void *ctx);
 /*
   `stop` is asked after each batch of responses, and while other ranks are still at theirs; true on any rank, the
   increment under way is given up and the run ends with LAM_MACRO_STOPPED. Once true it must stay so. A responder may
   then leave its batch unfinished (LAM_OUT_OF_REACH).
 */
-PetscErrorCode LamMacroSetStop(LamMacro macro, PetscBool (*stop)(void));
+LAM_EXPORT PetscErrorCode LamMacroSetStop(LamMacro macro, PetscBool (*stop)(void));
 /*
   Runs inflation and load steps with cutback. What was reached when it ends early is reported to the monitor as a step;
   `message` says why it failed.
 */
-PetscErrorCode LamMacroSolve(LamMacro macro, LamMacroReason *reason, char message[LAM_MESSAGE_LENGTH]);
+LAM_EXPORT PetscErrorCode LamMacroSolve(LamMacro macro, LamMacroReason *reason, char message[LAM_MESSAGE_LENGTH]);
 /*
   Writes what a run needs to go on from the last complete step, or reads it, before LamMacroSolve: that goes on then
   with the next step, as if it had done all before. To be called from the monitor of a complete step, after which
   nothing else is to be kept. The archive may come from another number of ranks.
 */
-PetscErrorCode LamMacroArchive(LamMacro macro, LamArchive archive);
-PetscErrorCode LamMacroDestroy(LamMacro *macro);
+LAM_EXPORT PetscErrorCode LamMacroArchive(LamMacro macro, LamArchive archive);
+LAM_EXPORT PetscErrorCode LamMacroDestroy(LamMacro *macro);
 
 /* ---- a body that is followed in time, instead of LamMacroSolve (body.h) ---- */
 
 /* What the lumens of a material point are to hold at a turgor, per V0, and its derivative, which is not positive. */
 typedef void (*LamWaterLaw)(void *ctx, PetscInt point, PetscReal turgor, PetscReal *water, PetscReal *slope);
 /* The turgor is brought up by LamMacroStart and follows from the law then. To be called before LamMacroSetUp. */
-PetscErrorCode LamMacroSetWaterLaw(LamMacro macro, LamWaterLaw law, void *ctx);
+LAM_EXPORT PetscErrorCode LamMacroSetWaterLaw(LamMacro macro, LamWaterLaw law, void *ctx);
 
 /* Conditions at an instant. */
 typedef struct {
@@ -113,24 +116,26 @@ typedef struct {
 typedef struct {
   PetscInt points, elements, displacements, modes; /* modes 0: the turgor is prescribed */
 } LamMacroSizes;
-PetscErrorCode LamMacroGetSizes(LamMacro macro, LamMacroSizes *sizes);
+LAM_EXPORT PetscErrorCode LamMacroGetSizes(LamMacro macro, LamMacroSizes *sizes);
 /* [point] the reference volume that each stands for. */
-PetscErrorCode LamMacroGetVolumes(LamMacro macro, PetscReal volume[]);
+LAM_EXPORT PetscErrorCode LamMacroGetVolumes(LamMacro macro, PetscReal volume[]);
 /* Of a point's element: its number on this rank and in the undistributed mesh, and which of its points it is. */
-PetscErrorCode LamMacroGetElement(LamMacro macro, PetscInt point, PetscInt *local, PetscInt *number, PetscInt *index);
+LAM_EXPORT PetscErrorCode LamMacroGetElement(LamMacro macro, PetscInt point, PetscInt *local, PetscInt *number,
+                                             PetscInt *index);
 
 /* Brings the turgor up in the unloaded body, as LamMacroSolve does; *ok: PETSC_FALSE, and `message` says why not. */
-PetscErrorCode LamMacroStart(LamMacro macro, PetscBool *ok, char message[LAM_MESSAGE_LENGTH]);
+LAM_EXPORT PetscErrorCode LamMacroStart(LamMacro macro, PetscBool *ok, char message[LAM_MESSAGE_LENGTH]);
 /* Equilibrium under the conditions from a guess. *ok: found; else LamMacroTrouble says why not. Then one of the next.
  */
-PetscErrorCode LamMacroBalance(LamMacro macro, const LamMacroInstant *instant, const PetscReal u[],
-                               const PetscReal pressures[], PetscBool *ok);
-PetscErrorCode LamMacroAccept(LamMacro macro); /* it is the last converged state */
-PetscErrorCode LamMacroReject(LamMacro macro); /* all is as before it */
+LAM_EXPORT PetscErrorCode LamMacroBalance(LamMacro macro, const LamMacroInstant *instant, const PetscReal u[],
+                                          const PetscReal pressures[], PetscBool *ok);
+LAM_EXPORT PetscErrorCode LamMacroAccept(LamMacro macro); /* it is the last converged state */
+LAM_EXPORT PetscErrorCode LamMacroReject(LamMacro macro); /* all is as before it */
 /* The state of the last LamMacroBalance. */
-PetscErrorCode LamMacroGetState(LamMacro macro, PetscReal u[], PetscReal pressures[]);
-const char *LamMacroTrouble(LamMacro macro);
-PetscErrorCode LamMacroStopped(LamMacro macro, PetscBool *stopped); /* LamMacroSetStop said so; on all ranks */
+LAM_EXPORT PetscErrorCode LamMacroGetState(LamMacro macro, PetscReal u[], PetscReal pressures[]);
+LAM_EXPORT const char *LamMacroTrouble(LamMacro macro);
+LAM_EXPORT PetscErrorCode LamMacroStopped(LamMacro macro,
+                                          PetscBool *stopped); /* LamMacroSetStop said so; on all ranks */
 
 /* A material point in the last state that was evaluated. */
 typedef struct {
@@ -140,12 +145,13 @@ typedef struct {
   PetscInt percolating;   /* LamResponse.percolating_directions */
   PetscReal place[2];
 } LamMacroPoint;
-PetscErrorCode LamMacroGetPoint(LamMacro macro, PetscInt point, LamMacroPoint *p);
+LAM_EXPORT PetscErrorCode LamMacroGetPoint(LamMacro macro, PetscInt point, LamMacroPoint *p);
 /* What is kept of responses is void: the tissue has changed. */
-PetscErrorCode LamMacroForget(LamMacro macro);
+LAM_EXPORT PetscErrorCode LamMacroForget(LamMacro macro);
 /* The report of the last converged state at a time, as of a load step that began at the clock time `start`.
    Collective. */
-PetscErrorCode LamMacroDescribe(LamMacro macro, PetscInt number, PetscReal time, PetscReal start, LamMacroStep *step);
+LAM_EXPORT PetscErrorCode LamMacroDescribe(LamMacro macro, PetscInt number, PetscReal time, PetscReal start,
+                                           LamMacroStep *step);
 
 /* What is kept of a material point's response beside stress and deformation, one number each; NaN: not known. */
 #define LAM_POINT_FIELDS(X)                                                                                            \
@@ -167,11 +173,11 @@ PetscErrorCode LamMacroDescribe(LamMacro macro, PetscInt number, PetscReal time,
   X(LAM_POINT_INTERPOLATED, "interpolated") /* 1: answered by a database; 0: solved */                                 \
   X(LAM_POINT_DOUBTFUL, "doubtful")         /* 1: indicators that are not to be trusted; else 0 */
 typedef enum { LAM_POINT_FIELDS(LAM_ENUM_ENTRY) LAM_POINT_FIELD_COUNT } LamPointField;
-extern const char *const LamPointFieldNames[];
-PetscBool LamPointFieldIsStress(LamPointField field); /* in C1 + C2; else a bare number */
+LAM_EXPORT extern const char *const LamPointFieldNames[];
+LAM_EXPORT PetscBool LamPointFieldIsStress(LamPointField field); /* in C1 + C2; else a bare number */
 /* Which of two values counts where one stands for several points: the larger; of what is lost as it falls, the smaller.
    A NaN is passed on. */
-PetscReal LamPointFieldWorse(LamPointField field, PetscReal a, PetscReal b);
+LAM_EXPORT PetscReal LamPointFieldWorse(LamPointField field, PetscReal a, PetscReal b);
 
 /*
   Fields of the last converged step, gathered on rank 0 of the communicator (others get NULL), in the numbering of the
@@ -199,9 +205,11 @@ typedef struct {
   LamLoad *load;
   PetscInt *elements, *first_point;
 } LamMacroFields;
-PetscErrorCode LamMacroGetFields(LamMacro macro, LamMacroFields *fields);
-PetscErrorCode LamMacroFieldsDestroy(LamMacroFields *fields);
+LAM_EXPORT PetscErrorCode LamMacroGetFields(LamMacro macro, LamMacroFields *fields);
+LAM_EXPORT PetscErrorCode LamMacroFieldsDestroy(LamMacroFields *fields);
 /* The number on this rank of point `index` of an element of the undistributed mesh; -1: another rank has it. */
-PetscErrorCode LamMacroFindPoint(LamMacro macro, PetscInt element, PetscInt index, PetscInt *point);
+LAM_EXPORT PetscErrorCode LamMacroFindPoint(LamMacro macro, PetscInt element, PetscInt index, PetscInt *point);
+
+LAM_C_END
 
 #endif

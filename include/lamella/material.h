@@ -18,10 +18,9 @@
 #define LAMELLA_MATERIAL_H
 
 #include <petscsys.h>
+#include <lamella/export.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+LAM_C_BEGIN
 
 typedef struct LamMaterial_s *LamMaterial;
 
@@ -38,34 +37,32 @@ typedef struct {
 
 /* `points`: material points that keep a state, numbered from 0. PETSC_ERR_USER_INPUT for a scene that is no material
    point: a patch. */
-PetscErrorCode LamMaterialCreateFromScene(const char path[], int points, LamMaterial *material);
-PetscErrorCode LamMaterialCreateFromDatabase(const char path[], LamMaterial *material);
-PetscErrorCode LamMaterialDestroy(LamMaterial *material);
+LAM_EXPORT PetscErrorCode LamMaterialCreateFromScene(const char path[], int points, LamMaterial *material);
+LAM_EXPORT PetscErrorCode LamMaterialCreateFromDatabase(const char path[], LamMaterial *material);
+LAM_EXPORT PetscErrorCode LamMaterialDestroy(LamMaterial *material);
 
 /* Turgor and cohesion of the scene, Pa: what holds where an evaluation gives none. */
-PetscErrorCode LamMaterialGetLoads(LamMaterial material, double *turgor, double *cohesion);
+LAM_EXPORT PetscErrorCode LamMaterialGetLoads(LamMaterial material, double *turgor, double *cohesion);
 /* Error of P up to which a database responds, relative; the scene's to begin with. */
-PetscErrorCode LamMaterialSetAccuracy(LamMaterial material, double accuracy);
+LAM_EXPORT PetscErrorCode LamMaterialSetAccuracy(LamMaterial material, double accuracy);
 
 /*
   Evaluates n states. points [n]: number of the material point, -1: none, from the reference state; NULL: none has any.
   F [n][9]; turgor, cohesion [n] in Pa, NULL: those of the scene. P [n][9]; tangent [n][81] and info [n], or NULL.
   A state without a response is no error: its info says why.
 */
-PetscErrorCode LamMaterialEvaluate(LamMaterial material, int n, const int points[], const double F[],
-                                   const double turgor[], const double cohesion[], double P[], double tangent[],
-                                   LamMaterialInfo info[]);
+LAM_EXPORT PetscErrorCode LamMaterialEvaluate(LamMaterial material, int n, const int points[], const double F[],
+                                              const double turgor[], const double cohesion[], double P[],
+                                              double tangent[], LamMaterialInfo info[]);
 /* The last states become those that a load step starts from; or are given up for the ones that it started from. */
-PetscErrorCode LamMaterialAccept(LamMaterial material);
-PetscErrorCode LamMaterialReject(LamMaterial material);
+LAM_EXPORT PetscErrorCode LamMaterialAccept(LamMaterial material);
+LAM_EXPORT PetscErrorCode LamMaterialReject(LamMaterial material);
 
 /* The accepted state of a point as bytes, to be kept beside a restart file; 0 bytes from a database. */
-PetscErrorCode LamMaterialGetStateSize(LamMaterial material, size_t *bytes);
-PetscErrorCode LamMaterialSaveState(LamMaterial material, int point, void *bytes);
-PetscErrorCode LamMaterialRestoreState(LamMaterial material, int point, const void *bytes);
+LAM_EXPORT PetscErrorCode LamMaterialGetStateSize(LamMaterial material, size_t *bytes);
+LAM_EXPORT PetscErrorCode LamMaterialSaveState(LamMaterial material, int point, void *bytes);
+LAM_EXPORT PetscErrorCode LamMaterialRestoreState(LamMaterial material, int point, const void *bytes);
 
-#ifdef __cplusplus
-}
-#endif
+LAM_C_END
 
 #endif

@@ -13,6 +13,9 @@
 #define LAMELLA_MOSAIC_H
 
 #include <lamella/blend.h>
+#include <lamella/export.h>
+
+LAM_C_BEGIN
 
 /* A material point; `knot` of its terms is the number of a tissue. */
 typedef struct {
@@ -28,14 +31,16 @@ typedef struct {
 } LamMosaicTissue;
 
 /* How many of the n points of this rank have the tissue. */
-PetscInt LamMosaicPointCount(PetscInt n, const LamMosaicPoint points[], PetscInt tissue);
+LAM_EXPORT PetscInt LamMosaicPointCount(PetscInt n, const LamMosaicPoint points[], PetscInt tissue);
 
 /*
   Copies the points and tissues, borrows names and responders. Each `respond` asks the responder of every tissue once,
   also without questions, for it may be collective. Counters are the sums of the tissues': of a blended point every term
   is a query. A term without answer is the answer's status and reason. It can be sealed where all tissues can.
 */
-PetscErrorCode LamMosaicCreate(PetscInt tissue_count, const LamMosaicTissue tissues[], PetscInt n,
-                               const LamMosaicPoint points[], LamResponder *responder);
+LAM_EXPORT PetscErrorCode LamMosaicCreate(PetscInt tissue_count, const LamMosaicTissue tissues[], PetscInt n,
+                                          const LamMosaicPoint points[], LamResponder *responder);
+
+LAM_C_END
 
 #endif

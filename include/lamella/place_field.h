@@ -5,6 +5,9 @@
 #define LAMELLA_PLACE_FIELD_H
 
 #include <petscsys.h>
+#include <lamella/export.h>
+
+LAM_C_BEGIN
 
 #define LAM_PLACE_FIELD_REASON 200
 
@@ -17,13 +20,15 @@ typedef struct LamPlaceField_s *LamPlaceField;
   line of names, then lines x, y, value separated by commas, positions in mm; every pair of an x and a y of the file
   once, two of each at least. Bilinear between.
 */
-PetscErrorCode LamPlaceFieldFromExpression(const char name[], const char text[], LamPlaceField *field,
-                                           char reason[LAM_PLACE_FIELD_REASON]);
-PetscErrorCode LamPlaceFieldFromTable(const char name[], const char path[], LamPlaceField *field,
-                                      char reason[LAM_PLACE_FIELD_REASON]);
+LAM_EXPORT PetscErrorCode LamPlaceFieldFromExpression(const char name[], const char text[], LamPlaceField *field,
+                                                      char reason[LAM_PLACE_FIELD_REASON]);
+LAM_EXPORT PetscErrorCode LamPlaceFieldFromTable(const char name[], const char path[], LamPlaceField *field,
+                                                 char reason[LAM_PLACE_FIELD_REASON]);
 /* At (X[0], X[1]) in mm. PETSC_ERR_USER_INPUT where the expression is not finite, or the table ends. Not for several
    threads at once. */
-PetscErrorCode LamPlaceFieldEvaluate(LamPlaceField field, const PetscReal X[2], PetscReal *value);
-PetscErrorCode LamPlaceFieldDestroy(LamPlaceField *field);
+LAM_EXPORT PetscErrorCode LamPlaceFieldEvaluate(LamPlaceField field, const PetscReal X[2], PetscReal *value);
+LAM_EXPORT PetscErrorCode LamPlaceFieldDestroy(LamPlaceField *field);
+
+LAM_C_END
 
 #endif

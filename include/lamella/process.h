@@ -14,6 +14,9 @@
 #include <petscsys.h>
 #include <lamella/response.h>
 #include <lamella/scene.h>
+#include <lamella/export.h>
+
+LAM_C_BEGIN
 
 typedef struct LamProcess_s *LamProcess;
 
@@ -31,7 +34,7 @@ typedef struct LamProcess_s *LamProcess;
 #define LAM_EVENT_ENTRY(symbol, name) symbol,
 typedef enum { LAM_EVENTS(LAM_EVENT_ENTRY) LAM_EVENT_COUNT } LamEvent;
 #undef LAM_EVENT_ENTRY
-extern const char *const LamEventNames[];
+LAM_EXPORT extern const char *const LamEventNames[];
 
 /* What walls and lamella bear over their strengths at the time; 1: they give way. NaN where no strength is given. */
 #define LAM_RATIOS(X)                                                                                                  \
@@ -41,7 +44,7 @@ extern const char *const LamEventNames[];
 #define LAM_RATIO_ENTRY(symbol, name) symbol,
 typedef enum { LAM_RATIOS(LAM_RATIO_ENTRY) LAM_RATIO_COUNT } LamRatio;
 #undef LAM_RATIO_ENTRY
-extern const char *const LamRatioNames[];
+LAM_EXPORT extern const char *const LamRatioNames[];
 
 /* The tissue at a time. Stresses in the C1 + C2 of the start, which the scene's scales tell. */
 typedef struct {
@@ -73,30 +76,32 @@ typedef enum { LAM_PROCESS_DONE, LAM_PROCESS_STOPPED, LAM_PROCESS_ENDED } LamPro
 typedef PetscErrorCode (*LamProcessMonitor)(const LamProcessState *state, void *ctx);
 
 /* Borrows the scene, which has a block `process`. */
-PetscErrorCode LamProcessCreate(const LamScene *scene, LamProcess *process);
+LAM_EXPORT PetscErrorCode LamProcessCreate(const LamScene *scene, LamProcess *process);
 /* Borrows it; asked with point 0. */
-PetscErrorCode LamProcessSetResponder(LamProcess process, LamResponder *responder);
+LAM_EXPORT PetscErrorCode LamProcessSetResponder(LamProcess process, LamResponder *responder);
 /*
   Solves where the answers of the responder have indicators that are not to be trusted (indicators_trusted), for events
   and for what is told. Borrows it; NULL: they are taken as they are, and told so.
 */
-PetscErrorCode LamProcessSetJudge(LamProcess process, LamResponder *judge);
+LAM_EXPORT PetscErrorCode LamProcessSetJudge(LamProcess process, LamResponder *judge);
 /*
   How the responder learns of walls whose moduli do not change alike: `set` is told each parameter over that at the
   start, moduli without the common factor, before it is asked. Without it such a process is PETSC_ERR_USER_INPUT.
 */
-PetscErrorCode LamProcessSetWalls(LamProcess process,
-                                  PetscErrorCode (*set)(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT]),
-                                  void *ctx);
-PetscErrorCode LamProcessSetMonitor(LamProcess process, LamProcessMonitor monitor, void *ctx);
+LAM_EXPORT PetscErrorCode LamProcessSetWalls(
+    LamProcess process, PetscErrorCode (*set)(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT]), void *ctx);
+LAM_EXPORT PetscErrorCode LamProcessSetMonitor(LamProcess process, LamProcessMonitor monitor, void *ctx);
 /* Asked after each step of the integrator; NULL: never. */
-PetscErrorCode LamProcessSetStop(LamProcess process, PetscBool (*stop)(void));
+LAM_EXPORT PetscErrorCode LamProcessSetStop(LamProcess process, PetscBool (*stop)(void));
 /* Follows the tissue from time 0; `message` says why it ended before the end: a true reason, or none that is known. */
-PetscErrorCode LamProcessRun(LamProcess process, LamProcessReason *reason, char message[LAM_PROCESS_MESSAGE]);
-PetscErrorCode LamProcessGetCounts(LamProcess process, LamProcessCounts *counts);
-PetscErrorCode LamProcessDestroy(LamProcess *process);
+LAM_EXPORT PetscErrorCode LamProcessRun(LamProcess process, LamProcessReason *reason,
+                                        char message[LAM_PROCESS_MESSAGE]);
+LAM_EXPORT PetscErrorCode LamProcessGetCounts(LamProcess process, LamProcessCounts *counts);
+LAM_EXPORT PetscErrorCode LamProcessDestroy(LamProcess *process);
 
 /* Whether all moduli of the walls change alike, so that one database serves at all times (docs/theory/process.md). */
-PetscBool LamProcessWallsStayAlike(const LamScene *scene);
+LAM_EXPORT PetscBool LamProcessWallsStayAlike(const LamScene *scene);
+
+LAM_C_END
 
 #endif

@@ -6,6 +6,9 @@
 
 #include <petscsys.h>
 #include <lamella/scene.h>
+#include <lamella/export.h>
+
+LAM_C_BEGIN
 
 #define LAM_STATUSES(X)                                                                                                \
   X(LAM_CONVERGED, "converged")           /* residual met, stable */                                                   \
@@ -15,13 +18,13 @@
   X(LAM_INVALID_F, "invalid_F")                                                                                        \
   X(LAM_OUT_OF_REACH, "out_of_reach") /* a database cannot answer here, or a stop came before the end of the solve */
 typedef enum { LAM_STATUSES(LAM_ENUM_ENTRY) LAM_STATUS_COUNT } LamStatus;
-extern const char *const LamStatusNames[];
+LAM_EXPORT extern const char *const LamStatusNames[];
 
 #define LAM_SOURCES(X)                                                                                                 \
   X(LAM_SOURCE_SOLVE, "solve")                                                                                         \
   X(LAM_SOURCE_DATABASE, "database")
 typedef enum { LAM_SOURCES(LAM_ENUM_ENTRY) LAM_SOURCE_COUNT } LamSource;
-extern const char *const LamSourceNames[];
+LAM_EXPORT extern const char *const LamSourceNames[];
 
 #define LAM_VISIBLE_GAP 1e-3 /* apothems: a gap above it counts as open */
 #define LAM_UNKNOWN_COUNT -1 /* a count that is not known; null in JSON */
@@ -108,15 +111,15 @@ typedef struct {
 } LamResponse;
 
 /* F33 = 1 without out-of-plane shears. */
-PetscBool LamPlaneStrain(const PetscReal F[9]);
+LAM_EXPORT PetscBool LamPlaneStrain(const PetscReal F[9]);
 /* PETSC_FALSE, with status and reason of the response, for a load that no tissue in plane strain can have. */
-PetscBool LamLoadValidate(const LamLoad *load, LamResponse *response);
+LAM_EXPORT PetscBool LamLoadValidate(const LamLoad *load, LamResponse *response);
 
 /* Clears a response to "nothing known": reals NaN, counts 0, status LAM_NOT_CONVERGED; copies the load. */
-PetscErrorCode LamResponseInit(const LamLoad *load, LamResponse *response);
+LAM_EXPORT PetscErrorCode LamResponseInit(const LamLoad *load, LamResponse *response);
 
 /* True where the fields (stress, tangent) of the response may be used: converged or unstable. */
-PetscBool LamResponseHasFields(const LamResponse *response);
+LAM_EXPORT PetscBool LamResponseHasFields(const LamResponse *response);
 
 /*
   d2Psi/dp2 as what divides by it needs it: no stable state has it at zero or above, but an answer from a database has
@@ -131,7 +134,7 @@ static inline PetscReal LamResponseConcavity(const LamResponse *response)
 /* Error of stress P against P_ref: |P - P_ref| / (|P_ref| + floor), Frobenius norms, nondimensional. The floor is
    2.5e-3 MPa of the reference wall (C1 + C2 = 0.11 MPa): below it stress counts as zero. */
 #define LAM_STRESS_FLOOR 0.0227
-PetscReal LamStressError(const PetscReal P[9], const PetscReal P_ref[9]);
+LAM_EXPORT PetscReal LamStressError(const PetscReal P[9], const PetscReal P_ref[9]);
 
 /*
   One named number (or array) of a response: the single list from which HDF5 records, JSON and the docs are made.
@@ -146,13 +149,13 @@ typedef struct {
   const char *const *names; /* of an enumeration, else NULL */
   const char *help;
 } LamMember;
-extern const LamMember LamResponseMembers[]; /* ends with a NULL name */
-#define LAM_NOT_IN_FILE ((size_t)-1)         /* the place of a member that a record has not got */
+LAM_EXPORT extern const LamMember LamResponseMembers[]; /* ends with a NULL name */
+#define LAM_NOT_IN_FILE ((size_t)-1)                    /* the place of a member that a record has not got */
 /* Index into LamResponseMembers of the member that begins at this offset of LamResponse; there must be one. */
-size_t LamResponseMemberIndex(size_t offset);
+LAM_EXPORT size_t LamResponseMemberIndex(size_t offset);
 
 /* Expresses a response in another unit of stress, of which its present one is `stress`. */
-void LamResponseScale(PetscReal stress, LamResponse *response);
+LAM_EXPORT void LamResponseScale(PetscReal stress, LamResponse *response);
 
 /*
   The responder table: all that the macroscale solver knows of the tissue. `respond` is collective over the
@@ -190,5 +193,7 @@ typedef struct LamResponder_s {
   PetscInt64 queries, hits, interpolated, solves, failures;
   PetscReal query_seconds, solve_seconds; /* in questions to a database, and in solves */
 } LamResponder;
+
+LAM_C_END
 
 #endif

@@ -11,6 +11,9 @@
 
 #include <petscsys.h>
 #include <lamella/response.h>
+#include <lamella/export.h>
+
+LAM_C_BEGIN
 
 typedef struct LamRVE_s *LamRVE;           /* mesh, matrix, factor: one per rank and microstructure */
 typedef struct LamRVEState_s *LamRVEState; /* positions of one material point and the load they belong to */
@@ -22,16 +25,16 @@ typedef struct LamRVEState_s *LamRVEState; /* positions of one material point an
   communicators; what it returns has no effect.
   That pays from some 20,000 unknowns.
 */
-PetscErrorCode LamRVECreate(MPI_Comm comm, LamRVE *rve);
-PetscErrorCode LamRVEServe(MPI_Comm comm, PetscBool (*waiting)(void *ctx), void *ctx);
-PetscErrorCode LamRVEDismiss(MPI_Comm comm);
+LAM_EXPORT PetscErrorCode LamRVECreate(MPI_Comm comm, LamRVE *rve);
+LAM_EXPORT PetscErrorCode LamRVEServe(MPI_Comm comm, PetscBool (*waiting)(void *ctx), void *ctx);
+LAM_EXPORT PetscErrorCode LamRVEDismiss(MPI_Comm comm);
 /* Copies the description. along and through must be chosen. PETSC_ERR_USER_INPUT where it cannot be solved. */
-PetscErrorCode LamRVESetMicrostructure(LamRVE rve, const LamMicrostructure *micro);
+LAM_EXPORT PetscErrorCode LamRVESetMicrostructure(LamRVE rve, const LamMicrostructure *micro);
 /* How contact is reached: LAM_TWO_STEP (default) or LAM_ONE_STEP. No effect on bonded tissue. */
-PetscErrorCode LamRVESetStrategy(LamRVE rve, LamStrategy strategy);
+LAM_EXPORT PetscErrorCode LamRVESetStrategy(LamRVE rve, LamStrategy strategy);
 /* Ends solves once the residual, forces per thickness over (C1 + C2) apothem, and the complementarity of contact, are
    below `tolerance`; never below what rounding allows, which is the default, 0. */
-PetscErrorCode LamRVESetTolerance(LamRVE rve, PetscReal tolerance);
+LAM_EXPORT PetscErrorCode LamRVESetTolerance(LamRVE rve, PetscReal tolerance);
 /*
   What responses are asked for; the rest of their numbers is not computed, and not known. Status and stability, counts
   of work and the state are always there. Everything by default. Solves under prescribed stress derive in any case.
@@ -44,44 +47,44 @@ typedef enum {
   LAM_WANT_WALLS = 8,       /* stretch, energy and tension of the walls: what strengths are held against; kinks */
   LAM_WANT_ALL = LAM_WANT_STRESS | LAM_WANT_DERIVATIVES | LAM_WANT_INDICATORS | LAM_WANT_WALLS
 } LamWanted;
-PetscErrorCode LamRVESetWanted(LamRVE rve, LamWanted wanted);
+LAM_EXPORT PetscErrorCode LamRVESetWanted(LamRVE rve, LamWanted wanted);
 /* Prints each Newton iteration to stderr (residual, step, negative eigenvalues). Off by default. */
-PetscErrorCode LamRVESetMonitor(LamRVE rve, PetscBool on);
+LAM_EXPORT PetscErrorCode LamRVESetMonitor(LamRVE rve, PetscBool on);
 /*
   Gives solves up on demand: `interrupt` is asked before every factorisation of a solve, of whatever stage, and where it
   says PETSC_TRUE the solve ends at once: status LAM_OUT_OF_REACH, reason "stopped before it was solved", the state as
   it was, no error. It may use MPI on other communicators than the RVE's, but not the RVE. NULL: never (default).
 */
-PetscErrorCode LamRVESetInterrupt(LamRVE rve, PetscBool (*interrupt)(void *ctx), void *ctx);
+LAM_EXPORT PetscErrorCode LamRVESetInterrupt(LamRVE rve, PetscBool (*interrupt)(void *ctx), void *ctx);
 /* Whether the lumens can be sealed: room for their pressures in the matrix. Before LamRVESetUp. Off by default. */
-PetscErrorCode LamRVESetSealable(LamRVE rve, PetscBool on);
+LAM_EXPORT PetscErrorCode LamRVESetSealable(LamRVE rve, PetscBool on);
 /* Builds the mesh and the sparsity pattern; the factorisation is analysed at the first solve. */
-PetscErrorCode LamRVESetUp(LamRVE rve);
+LAM_EXPORT PetscErrorCode LamRVESetUp(LamRVE rve);
 /*
   Other moduli (C1, C2, C4 and bulk modulus) of the walls of an RVE that is set up, from a description that is otherwise
   the same: what follows from walls alone. States stay what they are, as starts.
 */
-PetscErrorCode LamRVEChangeModuli(LamRVE rve, const LamMicrostructure *micro);
-PetscErrorCode LamRVEDestroy(LamRVE *rve);
+LAM_EXPORT PetscErrorCode LamRVEChangeModuli(LamRVE rve, const LamMicrostructure *micro);
+LAM_EXPORT PetscErrorCode LamRVEDestroy(LamRVE *rve);
 
 /* A state at F = I without turgor: the stress-free reference. */
-PetscErrorCode LamRVEStateCreate(LamRVE rve, LamRVEState *state);
-PetscErrorCode LamRVEStateCopy(LamRVEState from, LamRVEState to);
-PetscErrorCode LamRVEStateReset(LamRVE rve, LamRVEState state);
-PetscErrorCode LamRVEStateDestroy(LamRVEState *state);
+LAM_EXPORT PetscErrorCode LamRVEStateCreate(LamRVE rve, LamRVEState *state);
+LAM_EXPORT PetscErrorCode LamRVEStateCopy(LamRVEState from, LamRVEState to);
+LAM_EXPORT PetscErrorCode LamRVEStateReset(LamRVE rve, LamRVEState state);
+LAM_EXPORT PetscErrorCode LamRVEStateDestroy(LamRVEState *state);
 /*
   A state as plain bytes, for a rank that has the same RVE: a solve from the bytes is one from the state, bit for bit.
   LamRVEStatePack fills LamRVEStateSize bytes.
 */
-PetscErrorCode LamRVEStateSize(LamRVEState state, size_t *bytes);
-PetscErrorCode LamRVEStatePack(LamRVEState state, void *bytes);
-PetscErrorCode LamRVEStateUnpack(const void *bytes, LamRVEState state);
+LAM_EXPORT PetscErrorCode LamRVEStateSize(LamRVEState state, size_t *bytes);
+LAM_EXPORT PetscErrorCode LamRVEStatePack(LamRVEState state, void *bytes);
+LAM_EXPORT PetscErrorCode LamRVEStateUnpack(const void *bytes, LamRVEState state);
 
 /*
   Finds the equilibrium at `load`, starting from `state`, which it replaces by the solution. Where none is found the
   state is left as it was, and the response says why. Errors only for faults of the program or of memory.
 */
-PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
+LAM_EXPORT PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
 
 /*
   The same with stress prescribed in place of components of F: load->F holds the given components and a first guess of
@@ -89,8 +92,8 @@ PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, L
   cannot both be free. A state is stable where it is so at its F and dP/dF of the free components is positive definite;
   an equilibrium that is not is LAM_UNSTABLE, with the reason.
 */
-PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStressControl *control, LamRVEState state,
-                                LamResponse *response);
+LAM_EXPORT PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStressControl *control,
+                                           LamRVEState state, LamResponse *response);
 
 /* Share of the walls' volume: where more of them has kinked (kinked_fraction, of responses with LAM_WANT_WALLS) the
    estimate of bonded tissue is taken larger, and is a guess. */
@@ -105,9 +108,9 @@ PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStress
   thinnest wall or too deep for the lumen (docs/results/extremes.md, "Worth of the error estimate"). Borrows `rve`.
 */
 typedef struct LamRVEEstimate_s *LamRVEEstimate;
-PetscErrorCode LamRVEEstimateCreate(LamRVE rve, LamRVEEstimate *estimate);
-PetscErrorCode LamRVEEstimateError(LamRVEEstimate estimate, LamRVEState state, LamResponse *response);
-PetscErrorCode LamRVEEstimateDestroy(LamRVEEstimate *estimate);
+LAM_EXPORT PetscErrorCode LamRVEEstimateCreate(LamRVE rve, LamRVEEstimate *estimate);
+LAM_EXPORT PetscErrorCode LamRVEEstimateError(LamRVEEstimate estimate, LamRVEState state, LamResponse *response);
+LAM_EXPORT PetscErrorCode LamRVEEstimateDestroy(LamRVEEstimate *estimate);
 
 /*
   Sealed lumens: in all solves from LamRVESeal to LamRVEUnseal each cell keeps its water of bulk modulus K_w (C1 + C2),
@@ -122,12 +125,12 @@ PetscErrorCode LamRVEEstimateDestroy(LamRVEEstimate *estimate);
   reached. They may be negative: water is not kept from being pulled (docs/theory/walls.md, Sealed lumens). LamRVESeal:
   PETSC_ERR_ARG_OUTOFRANGE where K_w or water is not positive and finite.
 */
-PetscErrorCode LamRVEGetLumens(LamRVE rve, LamRVEState state, PetscReal lumen[]);
-PetscErrorCode LamRVESeal(LamRVE rve, PetscReal bulk_modulus, const PetscReal water[]);
-PetscErrorCode LamRVEUnseal(LamRVE rve);
+LAM_EXPORT PetscErrorCode LamRVEGetLumens(LamRVE rve, LamRVEState state, PetscReal lumen[]);
+LAM_EXPORT PetscErrorCode LamRVESeal(LamRVE rve, PetscReal bulk_modulus, const PetscReal water[]);
+LAM_EXPORT PetscErrorCode LamRVEUnseal(LamRVE rve);
 
 /* Number of unknowns of one solve (displacement components that are free). */
-PetscErrorCode LamRVEGetUnknowns(LamRVE rve, PetscInt *unknowns);
+LAM_EXPORT PetscErrorCode LamRVEGetUnknowns(LamRVE rve, PetscInt *unknowns);
 
 /*
   What a picture needs. Arrays are owned by the rve and valid until it is destroyed, except where said.
@@ -142,19 +145,20 @@ typedef struct {
   const PetscInt *cell_of;  /* [element_count]: the cell of an element */
   PetscReal period[2][2];   /* period vectors (rows), reference, in apothems */
 } LamRVEMesh;
-PetscErrorCode LamRVEGetMesh(LamRVE rve, LamRVEMesh *mesh);
+LAM_EXPORT PetscErrorCode LamRVEGetMesh(LamRVE rve, LamRVEMesh *mesh);
 /* Fields of a state, at mesh nodes; the caller provides the arrays. Any may be NULL.
      x          [node][2]  current positions
      fibre      [node]     fibre stretch sqrt(I4) along the wall
      stress     [node]     largest principal Cauchy stress of the wall, in C1 + C2 */
-PetscErrorCode LamRVEGetFields(LamRVE rve, LamRVEState state, PetscReal x[], PetscReal fibre[], PetscReal stress[]);
+LAM_EXPORT PetscErrorCode LamRVEGetFields(LamRVE rve, LamRVEState state, PetscReal x[], PetscReal fibre[],
+                                          PetscReal stress[]);
 /* The lowest eigenvalue of a state's consistent tangent at fixed F, C1 + C2 (as lowest_eigenvalue of the response), and
    its mode, which the caller provides: mode [node][2], displacements whose largest component is 1. Of contact on
    motions that keep closed gaps closed. NaN, and a mode of zeros: the state has no factor. */
-PetscErrorCode LamRVEGetSoftestMode(LamRVE rve, LamRVEState state, PetscReal *eigenvalue, PetscReal mode[]);
+LAM_EXPORT PetscErrorCode LamRVEGetSoftestMode(LamRVE rve, LamRVEState state, PetscReal *eigenvalue, PetscReal mode[]);
 /* Largest component of what the positions of cells differ by, apart from the motion by F from cell to cell, apothems:
    0 where the pattern has the period of one cell. */
-PetscErrorCode LamRVEGetCellDifference(LamRVE rve, LamRVEState state, PetscReal *difference);
+LAM_EXPORT PetscErrorCode LamRVEGetCellDifference(LamRVE rve, LamRVEState state, PetscReal *difference);
 
 /*
   Samples along the interfaces of a contact state, for pictures and profiles; the caller provides the arrays, any may be
@@ -168,18 +172,20 @@ PetscErrorCode LamRVEGetCellDifference(LamRVE rve, LamRVEState state, PetscReal 
     gap       [face][point]     distance, in apothems (< 0: penetration); NaN: it faces none
     pressure  [face][point]     contact pressure (Cauchy, >= 0), in C1 + C2; the traction is cohesion - pressure
 */
-PetscErrorCode LamRVEGetInterfaceSize(LamRVE rve, PetscInt *faces, PetscInt *points);
-PetscErrorCode LamRVEGetInterfaceFaces(LamRVE rve, PetscInt owner[]);
-PetscErrorCode LamRVEGetInterface(LamRVE rve, LamRVEState state, PetscReal from[], PetscReal to[], PetscReal gap[],
-                                  PetscReal pressure[]);
+LAM_EXPORT PetscErrorCode LamRVEGetInterfaceSize(LamRVE rve, PetscInt *faces, PetscInt *points);
+LAM_EXPORT PetscErrorCode LamRVEGetInterfaceFaces(LamRVE rve, PetscInt owner[]);
+LAM_EXPORT PetscErrorCode LamRVEGetInterface(LamRVE rve, LamRVEState state, PetscReal from[], PetscReal to[],
+                                             PetscReal gap[], PetscReal pressure[]);
 
 /*
   A responder that solves one RVE per question. Borrows `rve`, which must outlive it. Of material points 0..points-1 it
   keeps two states each (LamRVEStateSize), from which their next solves start; those of others start from the
   reference. It can be sealed where `rve` can, and then answers for the points that it keeps alone.
 */
-PetscErrorCode LamRVEResponderCreate(LamRVE rve, PetscInt points, LamResponder *responder);
+LAM_EXPORT PetscErrorCode LamRVEResponderCreate(LamRVE rve, PetscInt points, LamResponder *responder);
 /* Time of one assembly of residual and tangent on this machine, s; needs no MPI (used to predict cost). */
-PetscErrorCode LamRVETimeAssembly(const LamMicrostructure *micro, PetscInt *unknowns, PetscReal *seconds);
+LAM_EXPORT PetscErrorCode LamRVETimeAssembly(const LamMicrostructure *micro, PetscInt *unknowns, PetscReal *seconds);
+
+LAM_C_END
 
 #endif

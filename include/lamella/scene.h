@@ -11,6 +11,9 @@
 #include <lamella/kinetics.h>
 #include <lamella/place_field.h>
 #include <lamella/wall.h>
+#include <lamella/export.h>
+
+LAM_C_BEGIN
 
 /* Enumerations and their names in scene files come from one list each. */
 #define LAM_ENUM_ENTRY(symbol, name) symbol,
@@ -30,9 +33,9 @@ typedef enum { LAM_INTERFACE_LAWS(LAM_ENUM_ENTRY) LAM_INTERFACE_LAW_COUNT } LamI
 typedef enum { LAM_STRATEGIES(LAM_ENUM_ENTRY) LAM_STRATEGY_COUNT } LamStrategy;
 typedef enum { LAM_PATCH_SIDES(LAM_ENUM_ENTRY) LAM_PATCH_SIDES_COUNT } LamPatchSides;
 
-extern const char *const LamInterfaceLawNames[]; /* "bonded", "contact" */
-extern const char *const LamStrategyNames[];     /* "two_step", "one_step" */
-extern const char *const LamPatchSidesNames[];   /* "affine", "free" */
+LAM_EXPORT extern const char *const LamInterfaceLawNames[]; /* "bonded", "contact" */
+LAM_EXPORT extern const char *const LamStrategyNames[];     /* "two_step", "one_step" */
+LAM_EXPORT extern const char *const LamPatchSidesNames[];   /* "affine", "free" */
 
 /* What may differ from cell to cell. */
 typedef struct {
@@ -59,15 +62,16 @@ typedef struct {
 } LamMicrostructure;
 
 /* A copy that owns its cells; it is to be destroyed. A scene destroys its own microstructure. */
-PetscErrorCode LamMicrostructureCopy(const LamMicrostructure *micro, LamMicrostructure *copy);
-PetscErrorCode LamMicrostructureDestroy(LamMicrostructure *micro);
+LAM_EXPORT PetscErrorCode LamMicrostructureCopy(const LamMicrostructure *micro, LamMicrostructure *copy);
+LAM_EXPORT PetscErrorCode LamMicrostructureDestroy(LamMicrostructure *micro);
 /* Hash (16 hex digits) of the canonical, nondimensional description, and the description itself (JSON text). */
 #define LAM_HASH_LENGTH 17
-PetscErrorCode LamMicrostructureDescribe(const LamMicrostructure *micro, char **json, char hash[LAM_HASH_LENGTH]);
+LAM_EXPORT PetscErrorCode LamMicrostructureDescribe(const LamMicrostructure *micro, char **json,
+                                                    char hash[LAM_HASH_LENGTH]);
 /* The hash of the tissue, whatever its mesh. */
-PetscErrorCode LamMicrostructureHashTissue(const LamMicrostructure *micro, char hash[LAM_HASH_LENGTH]);
+LAM_EXPORT PetscErrorCode LamMicrostructureHashTissue(const LamMicrostructure *micro, char hash[LAM_HASH_LENGTH]);
 /* From that description; `path`, the file that it stands in, is for messages. The caller destroys *micro. */
-PetscErrorCode LamMicrostructureParse(const char path[], const char json[], LamMicrostructure *micro);
+LAM_EXPORT PetscErrorCode LamMicrostructureParse(const char path[], const char json[], LamMicrostructure *micro);
 
 /* Of a cell's wall, in apothems. */
 static inline PetscReal LamWallThickness(const LamMicrostructure *micro, PetscInt cell)
@@ -136,7 +140,7 @@ typedef struct {
   LAM_WALL_OWN_PARAMETERS(LAM_MAP_OF_WALL, X)                                                                          \
   X(LAM_MAP_WALL_THICKNESS, "wall_thickness")
 typedef enum { LAM_MAP_QUANTITIES(LAM_ENUM_ENTRY) LAM_MAP_QUANTITY_COUNT } LamMapQuantity;
-extern const char *const LamMapQuantityNames[]; /* "turgor", "cohesion", ... */
+LAM_EXPORT extern const char *const LamMapQuantityNames[]; /* "turgor", "cohesion", ... */
 
 /* One axis of a map, in C1 + C2 and apothems. */
 typedef struct {
@@ -148,13 +152,13 @@ typedef struct {
 typedef enum { LAM_MAP_X, LAM_MAP_Y, LAM_MAP_AXIS_COUNT } LamMapDirection;
 
 /* The value of point i = 0..points-1. */
-PetscReal LamMapAxisValue(const LamMapAxis *axis, PetscInt i);
+LAM_EXPORT PetscReal LamMapAxisValue(const LamMapAxis *axis, PetscInt i);
 /* "MPa", "um" or "1", and *scale the factor to it. */
-const char *LamMapQuantityUnit(LamMapQuantity quantity, const LamScales *scales, PetscReal *scale);
+LAM_EXPORT const char *LamMapQuantityUnit(LamMapQuantity quantity, const LamScales *scales, PetscReal *scale);
 /* The parameter of the wall that it is; -1: none. */
-PetscInt LamMapQuantityParameter(LamMapQuantity quantity);
+LAM_EXPORT PetscInt LamMapQuantityParameter(LamMapQuantity quantity);
 /* Whether it says how far the load is followed, not what tissue is loaded. */
-PetscBool LamMapQuantityIsLoad(LamMapQuantity quantity);
+LAM_EXPORT PetscBool LamMapQuantityIsLoad(LamMapQuantity quantity);
 
 /* Where the mesh of the macroscale body comes from. */
 #define LAM_DISC_PARTS(X)                                                                                              \
@@ -162,7 +166,7 @@ PetscBool LamMapQuantityIsLoad(LamMapQuantity quantity);
   X(LAM_DISC_HALF, "half")       /* X2 >= 0 */                                                                         \
   X(LAM_DISC_QUARTER, "quarter") /* X1, X2 >= 0 */
 typedef enum { LAM_DISC_PARTS(LAM_ENUM_ENTRY) LAM_DISC_PART_COUNT } LamDiscPart;
-extern const char *const LamDiscPartNames[];
+LAM_EXPORT extern const char *const LamDiscPartNames[];
 typedef enum { LAM_MESH_BOX, LAM_MESH_DISC, LAM_MESH_GMSH } LamMeshSource;
 
 #define LAM_MAX_BOUNDARIES 16
@@ -179,7 +183,7 @@ typedef enum { LAM_MESH_BOX, LAM_MESH_DISC, LAM_MESH_GMSH } LamMeshSource;
   X(LAM_BOUNDARY_INDENTER, "indenter")                                                                                 \
   X(LAM_BOUNDARY_GRIP, "grip") /* all nodes move alike; components that are not given bear no total force */
 typedef enum { LAM_BOUNDARY_KINDS(LAM_ENUM_ENTRY) LAM_BOUNDARY_KIND_COUNT } LamBoundaryKind;
-extern const char *const LamBoundaryKindNames[];
+LAM_EXPORT extern const char *const LamBoundaryKindNames[];
 
 #define LAM_HISTORY_POINTS 32
 /* The factor of a load over the load parameter: straight between points, constant beyond. count 0: the parameter. */
@@ -252,7 +256,7 @@ typedef struct {
   X(LAM_TISSUE_COHESION, "cohesion")                                                                                   \
   X(LAM_TISSUE_WALL_THICKNESS, "wall_thickness")
 typedef enum { LAM_TISSUE_FIELDS(LAM_ENUM_ENTRY) LAM_TISSUE_FIELD_COUNT } LamTissueField;
-extern const char *const LamTissueFieldNames[]; /* "orientation", ... */
+LAM_EXPORT extern const char *const LamTissueFieldNames[]; /* "orientation", ... */
 
 /* What varies from point to point: replaces what the tissue and the regions say. */
 typedef struct {
@@ -266,7 +270,7 @@ typedef struct {
   X(LAM_OUTSIDE_SOLVE, "solve")                                                                                        \
   X(LAM_OUTSIDE_STOP, "stop")
 typedef enum { LAM_OUTSIDES(LAM_ENUM_ENTRY) LAM_OUTSIDE_COUNT } LamOutside;
-extern const char *const LamOutsideNames[]; /* "solve", "stop" */
+LAM_EXPORT extern const char *const LamOutsideNames[]; /* "solve", "stop" */
 
 /* How the material points of the body are answered. */
 typedef struct {
@@ -287,7 +291,7 @@ typedef struct {
   X(LAM_CHANGING_PERMEABILITY, "permeability")                                                                         \
   X(LAM_CHANGING_REFLECTION, "reflection")
 typedef enum { LAM_CHANGING(LAM_ENUM_ENTRY) LAM_CHANGING_COUNT } LamChanging;
-extern const char *const LamChangingNames[]; /* "lamella", ... */
+LAM_EXPORT extern const char *const LamChangingNames[]; /* "lamella", ... */
 #define LAM_CHANGING_OF_PARAMETER(k) ((LamChanging)(LAM_CHANGING_WALLS + 1 + (k)))
 
 /* Water that passes the membranes of the cells; pressures in C1 + C2. */
@@ -363,31 +367,31 @@ typedef struct {
 } LamScene;
 
 /* Whether the law of any wall of the scene has a parameter. */
-PetscBool LamSceneHasParameter(const LamScene *scene, PetscInt parameter);
+LAM_EXPORT PetscBool LamSceneHasParameter(const LamScene *scene, PetscInt parameter);
 /* Whether what changes is that of a wall that the scene does not have. */
-PetscBool LamSceneLacksChanging(const LamScene *scene, LamChanging changing);
+LAM_EXPORT PetscBool LamSceneLacksChanging(const LamScene *scene, LamChanging changing);
 /* The factor of a history at a load parameter. */
-PetscReal LamHistoryFactor(const LamHistory *history, PetscReal parameter);
+LAM_EXPORT PetscReal LamHistoryFactor(const LamHistory *history, PetscReal parameter);
 /* Whether two histories have equal factors at all parameters. */
-PetscBool LamHistoriesAgree(const LamHistory *one, const LamHistory *other);
+LAM_EXPORT PetscBool LamHistoriesAgree(const LamHistory *one, const LamHistory *other);
 /* The load parameter at the end of load step 0 (the start) to spec->steps. */
-PetscReal LamMacroParameter(const LamMacroSpec *spec, PetscInt step);
+LAM_EXPORT PetscReal LamMacroParameter(const LamMacroSpec *spec, PetscInt step);
 
 /*
   Reads and checks a scene file. Any mistake is PETSC_ERR_USER_INPUT with a message
   "file:line:column: key: value: what is wrong; what would be right".
 */
-PetscErrorCode LamSceneRead(const char path[], LamScene **scene);
+LAM_EXPORT PetscErrorCode LamSceneRead(const char path[], LamScene **scene);
 /* The same from text; `name` stands for the file in messages. */
-PetscErrorCode LamSceneReadText(const char name[], const char text[], LamScene **scene);
-PetscErrorCode LamSceneDestroy(LamScene **scene);
+LAM_EXPORT PetscErrorCode LamSceneReadText(const char name[], const char text[], LamScene **scene);
+LAM_EXPORT PetscErrorCode LamSceneDestroy(LamScene **scene);
 
 /* A load after a state at F = before: free components have that for their guess, others follow it. control may be NULL.
  */
-LamLoad LamLoadAfter(const LamLoad *load, const LamStressControl *control, const PetscReal before[9]);
+LAM_EXPORT LamLoad LamLoadAfter(const LamLoad *load, const LamStressControl *control, const PetscReal before[9]);
 
 /* Writes the scene reference (Markdown), generated from the same table of keys that the reader uses. */
-PetscErrorCode LamSceneReference(FILE *out);
+LAM_EXPORT PetscErrorCode LamSceneReference(FILE *out);
 
 /* Physical dimensions known to scene files and the command line. */
 typedef enum {
@@ -405,6 +409,8 @@ typedef enum {
   Converts text such as "0.02 MPa" to SI (m, Pa, rad, s, K, 1/s, J/mol, m/s/Pa). PETSC_ERR_USER_INPUT, with the reason,
   where the unit is missing, unknown or of another dimension, or the number is not finite.
 */
-PetscErrorCode LamQuantityParse(const char text[], LamDimension dimension, PetscReal *si);
+LAM_EXPORT PetscErrorCode LamQuantityParse(const char text[], LamDimension dimension, PetscReal *si);
+
+LAM_C_END
 
 #endif

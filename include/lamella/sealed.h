@@ -10,6 +10,9 @@
 #define LAMELLA_SEALED_H
 
 #include <lamella/response.h>
+#include <lamella/export.h>
+
+LAM_C_BEGIN
 
 /*
   Of tissue whose cells are alike, with one pressure. Borrows `open`, whose counters it shows, and asks it for all
@@ -17,13 +20,16 @@
   `open` answers. accept and reject go to `open`, too. Answers are those of LamRVESeal; where `open` is a database it
   must be of bonded cells: of cells that part its lumens are not known well enough, and the answer is LAM_OUT_OF_REACH.
 */
-PetscErrorCode LamSealedResponderCreate(MPI_Comm comm, LamResponder *open, PetscInt points, LamResponder *responder);
+LAM_EXPORT PetscErrorCode LamSealedResponderCreate(MPI_Comm comm, LamResponder *open, PetscInt points,
+                                                   LamResponder *responder);
 
 /*
   The sealed response from one at prescribed turgor p = response->load.turgor, where v_lumen is that of the water
   (water: v_w, of pressure p0): energy, stress, tangent and all couplings are derivatives of Psi_s
   (docs/theory/walls.md, Sealed lumens).
 */
-void LamResponseSeal(PetscReal p0, PetscReal water, PetscReal bulk_modulus, LamResponse *response);
+LAM_EXPORT void LamResponseSeal(PetscReal p0, PetscReal water, PetscReal bulk_modulus, LamResponse *response);
+
+LAM_C_END
 
 #endif

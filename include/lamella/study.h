@@ -8,10 +8,9 @@
 #define LAMELLA_STUDY_H
 
 #include <lamella/macro.h>
+#include <lamella/export.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+LAM_C_BEGIN
 
 /* What a study reports while it runs, on rank 0. It, or its members, may be NULL. */
 typedef struct {
@@ -24,7 +23,7 @@ typedef struct {
 
 /* Asks the study under way to commit what it has and to return; `number`: the signal that is the reason, SIGTERM for
    want of one. May be called in a signal handler. */
-void LamStopRequest(int number);
+LAM_EXPORT void LamStopRequest(int number);
 
 /* ---- a response database ---- */
 
@@ -44,13 +43,13 @@ typedef struct {
 } LamBuildResult;
 
 /* Fills the database at database_path over the sample box of a scene (`sample`). result: on rank 0. */
-PetscErrorCode LamStudyBuild(const char scene_path[], const char database_path[], const LamBuildOptions *options,
-                             LamBuildResult *result);
+LAM_EXPORT PetscErrorCode LamStudyBuild(const char scene_path[], const char database_path[],
+                                        const LamBuildOptions *options, LamBuildResult *result);
 
 /* ---- a body ---- */
 
 typedef enum { LAM_FE2_DIRECT, LAM_FE2_CACHE, LAM_FE2_DATABASE } LamFE2Response;
-extern const char *const LamFE2ResponseNames[]; /* "direct", ... */
+LAM_EXPORT extern const char *const LamFE2ResponseNames[]; /* "direct", ... */
 
 typedef struct {
   LamFE2Response response;   /* solves an RVE per material point; queries and solves what is missing; queries only */
@@ -63,11 +62,9 @@ typedef struct {
 } LamFE2Options;
 
 /* Solves the macroscale problem of a scene (`macro`). message [LAM_MESSAGE_LENGTH]: why it did not converge. */
-PetscErrorCode LamStudyFE2(const char scene_path[], const LamFE2Options *options, LamMacroReason *reason,
-                           char message[]);
+LAM_EXPORT PetscErrorCode LamStudyFE2(const char scene_path[], const LamFE2Options *options, LamMacroReason *reason,
+                                      char message[]);
 
-#ifdef __cplusplus
-}
-#endif
+LAM_C_END
 
 #endif

@@ -9,6 +9,9 @@
 #define LAMELLA_WALL_H
 
 #include <petscsys.h>
+#include <lamella/export.h>
+
+LAM_C_BEGIN
 
 /* L(symbol, name, PETSC_TRUE with fibres, help in a list of all laws) */
 #define LAM_WALL_LAWS(L)                                                                                               \
@@ -43,9 +46,9 @@ typedef enum {
   LAM_WALL_PARAMETERS(LAM_WALL_ENUM, LAM_WALL_) /* LAM_WALL_C1, ... */
   LAM_WALL_PARAMETER_COUNT
 } LamWallParameter;
-extern const char *const LamWallLawNames[];       /* "fibre_mooney_rivlin", ... */
-extern const char *const LamFibresNames[];        /* "both", "tension" */
-extern const char *const LamWallParameterNames[]; /* "C1", ... */
+LAM_EXPORT extern const char *const LamWallLawNames[];       /* "fibre_mooney_rivlin", ... */
+LAM_EXPORT extern const char *const LamFibresNames[];        /* "both", "tension" */
+LAM_EXPORT extern const char *const LamWallParameterNames[]; /* "C1", ... */
 
 /* Wall material, moduli in units of C1 + C2 (so C1 + C2 = 1); parameters of other laws are 0. */
 typedef struct {
@@ -55,26 +58,29 @@ typedef struct {
   PetscReal bulk_modulus;
 } LamWall;
 
-PetscReal *LamWallAt(LamWall *wall, PetscInt parameter);
-PetscReal LamWallGet(const LamWall *wall, PetscInt parameter);
-PetscBool LamWallLawHas(LamWallLawType law, PetscInt parameter);
-PetscBool LamWallLawHasFibres(LamWallLawType law);
-LamWallLawType LamWallOwner(PetscInt parameter);                    /* a law that has it */
-const char *LamWallLacking(LamWallLawType law, PetscInt parameter); /* "fibres" or "C4", of a law without C4 */
-PetscBool LamWallParameterIsModulus(PetscInt parameter);
-const char *LamWallParameterSymbol(PetscInt parameter); /* in pictures: "$C$_{4}" */
+LAM_EXPORT PetscReal *LamWallAt(LamWall *wall, PetscInt parameter);
+LAM_EXPORT PetscReal LamWallGet(const LamWall *wall, PetscInt parameter);
+LAM_EXPORT PetscBool LamWallLawHas(LamWallLawType law, PetscInt parameter);
+LAM_EXPORT PetscBool LamWallLawHasFibres(LamWallLawType law);
+LAM_EXPORT LamWallLawType LamWallOwner(PetscInt parameter); /* a law that has it */
+LAM_EXPORT const char *LamWallLacking(LamWallLawType law,
+                                      PetscInt parameter); /* "fibres" or "C4", of a law without C4 */
+LAM_EXPORT PetscBool LamWallParameterIsModulus(PetscInt parameter);
+LAM_EXPORT const char *LamWallParameterSymbol(PetscInt parameter); /* in pictures: "$C$_{4}" */
 /* "fibre modulus", in `text`. */
-const char *LamWallParameterWords(PetscInt parameter, size_t size, char text[]);
+LAM_EXPORT const char *LamWallParameterWords(PetscInt parameter, size_t size, char text[]);
 
 /* All moduli times `by / over`, one of which is 1, without a rounding more. */
-void LamWallScale(LamWall *wall, PetscReal by, PetscReal over);
+LAM_EXPORT void LamWallScale(LamWall *wall, PetscReal by, PetscReal over);
 /* Each parameter by its factor; not the bulk modulus. */
-void LamWallMultiply(LamWall *wall, const PetscReal factor[LAM_WALL_PARAMETER_COUNT]);
+LAM_EXPORT void LamWallMultiply(LamWall *wall, const PetscReal factor[LAM_WALL_PARAMETER_COUNT]);
 /*
   Of a wall whose parameters change by these factors: returns the new C1 + C2; ratio: the factors of moduli over that,
   those of numbers themselves.
 */
-PetscReal LamWallRatios(const LamWall *wall, const PetscReal factor[LAM_WALL_PARAMETER_COUNT],
-                        PetscReal ratio[LAM_WALL_PARAMETER_COUNT]);
+LAM_EXPORT PetscReal LamWallRatios(const LamWall *wall, const PetscReal factor[LAM_WALL_PARAMETER_COUNT],
+                                   PetscReal ratio[LAM_WALL_PARAMETER_COUNT]);
+
+LAM_C_END
 
 #endif

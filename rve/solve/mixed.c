@@ -9,7 +9,7 @@
   nothing stable is found.
 */
 #include "mixed.h"
-#include <lamella/clock.h>
+#include "clock.h"
 
 static const char *const component_names[9] = {"11", "12", "13", "21", "22", "23", "31", "32", "33"};
 

@@ -1,5 +1,5 @@
 #include "solve.h"
-#include <lamella/clock.h>
+#include "clock.h"
 
 PetscErrorCode LamRVECreate(MPI_Comm comm, LamRVE *rve)
 {

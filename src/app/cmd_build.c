@@ -3,7 +3,7 @@
 */
 #include "app.h"
 #include "build_run.h"
-#include <lamella/clock.h>
+#include "clock.h"
 #include <stdio.h>
 
 typedef struct {

@@ -3,7 +3,7 @@
 */
 #include "failure_print.h"
 #include "map.h"
-#include <lamella/clock.h>
+#include "clock.h"
 #include <string.h>
 
 typedef struct {

@@ -3,7 +3,7 @@
 */
 #include "app.h"
 #include <unistd.h>
-#include <lamella/clock.h>
+#include "clock.h"
 
 typedef struct {
   PetscBool json, salvage, quiet;

@@ -8,7 +8,7 @@
 #include "rounding.h"
 #include "failure_print.h"
 #include "rve_fields.h"
-#include <lamella/clock.h>
+#include "clock.h"
 #include <math.h>
 #include <string.h>
 

@@ -2,7 +2,7 @@
   lamella verify: queries a database at random and solves the states that it responds in afresh.
 */
 #include "audit_report.h"
-#include <lamella/clock.h>
+#include "clock.h"
 
 enum { DEFAULT_SAMPLES = 200 };
 

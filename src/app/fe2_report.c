@@ -4,7 +4,7 @@
 #include "app.h"
 #include "fe2_report.h"
 #include <stdio.h>
-#include <lamella/clock.h>
+#include "clock.h"
 #include <lamella/ellipticity.h>
 
 /* Factors from nondimensional to N per mm of thickness, and MPa. */

@@ -4,7 +4,7 @@
 #include "app.h"
 #include "plot_time.h"
 #include "process_report.h"
-#include <lamella/clock.h>
+#include "clock.h"
 #include <math.h>
 #include <string.h>
 

@@ -2,7 +2,7 @@
   Progress for a person who waits: a bar, the rate and the time left, on a terminal only.
 */
 #include "app.h"
-#include <lamella/clock.h>
+#include "clock.h"
 #include <unistd.h>
 
 enum { BAR_WIDTH = 24 };

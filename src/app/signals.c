@@ -4,7 +4,7 @@
 */
 #include "app.h"
 #include <execinfo.h>
-#include <lamella/clock.h>
+#include "clock.h"
 #include <signal.h>
 #include <string.h>
 #include <unistd.h>

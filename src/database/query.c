@@ -3,7 +3,7 @@
 */
 #include "database_internal.h"
 #include <math.h>
-#include <lamella/clock.h>
+#include "clock.h"
 #include <stdio.h>
 
 static PetscErrorCode AskScattered(LamDatabase database, const LamLoad *load, PetscReal radius, PetscReal accuracy,

@@ -23,7 +23,7 @@
   Convergence. A point that took to a model, or was solved for itself, SELF_STAYS times in this load step goes on
   without tables: at the edge of what they answer, iterations that step to and fro between two answers would not end.
 */
-#include <lamella/clock.h>
+#include "clock.h"
 #include <stdlib.h>
 #include "cache_impl.h"
 #include "gather.h"

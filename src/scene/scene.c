@@ -5,7 +5,7 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <lamella/utf8.h>
+#include "utf8.h"
 
 /* A scene is some kilobytes; more is the wrong file. */
 enum { MAX_FILE_SIZE = 1 << 20 };

@@ -4,7 +4,7 @@
 */
 #include "audit.h"
 #include "dispatch.h"
-#include <lamella/clock.h>
+#include "clock.h"
 
 /* ---- what is solved ---- */
 

@@ -2,7 +2,7 @@
   What a build writes, and when. Rank 0.
 */
 #include "build_run.h"
-#include <lamella/clock.h>
+#include "clock.h"
 
 /* A commit follows the last one after so many seconds, and so many times what that one took: it may cost 2 %. */
 #define COMMIT_SECONDS 0.1

@@ -10,7 +10,7 @@
 #include "build_run.h"
 #include "plan.h"
 #include "rounding.h"
-#include <lamella/clock.h>
+#include "clock.h"
 #include <string.h>
 
 /* ---- rounds ---- */

@@ -10,7 +10,7 @@
     R. L. Graham, Bounds on multiprocessing timing anomalies, SIAM J. Appl. Math. 17 (1969) 416-429 (longest first).
 */
 #include "dispatch.h"
-#include <lamella/clock.h>
+#include "clock.h"
 #include <signal.h>
 #include <string.h>
 #include <time.h>

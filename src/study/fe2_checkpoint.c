@@ -10,7 +10,7 @@
 #include "fe2_run.h"
 #include <stdio.h>
 #include <string.h>
-#include <lamella/clock.h>
+#include "clock.h"
 #include <unistd.h>
 
 static const PetscReal LARGEST_SHARE = 0.02; /* of the run's time for checkpoints */

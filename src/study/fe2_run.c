@@ -2,7 +2,7 @@
   The life of an FE2 run.
 */
 #include "fe2_run.h"
-#include <lamella/clock.h>
+#include "clock.h"
 
 PetscErrorCode LamFE2Prepare(LamFE2Run *run, PetscBool *finished)
 {

@@ -11,7 +11,7 @@
 #include "dispatch.h"
 #include "map.h"
 #include "plan.h"
-#include <lamella/clock.h>
+#include "clock.h"
 #include <string.h>
 #include <unistd.h>
 

@@ -3,7 +3,7 @@
   is reported is a step there.
 */
 #include "process_run.h"
-#include <lamella/clock.h>
+#include "clock.h"
 
 /* ---- states ---- */
 

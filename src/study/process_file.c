@@ -3,7 +3,7 @@
   0; what else is known of them is in /process, arrays over the states (docs/reference/files.md).
 */
 #include "process_run.h"
-#include <lamella/clock.h>
+#include "clock.h"
 #include <stddef.h>
 
 #define COMMIT_SECONDS 5.0

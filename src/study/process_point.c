@@ -2,7 +2,7 @@
   A process at one material point: the history of its state is one chain, followed on one rank.
 */
 #include "process_run.h"
-#include <lamella/clock.h>
+#include "clock.h"
 
 /* ---- responses ---- */
 

@@ -2,7 +2,7 @@
   Requests to end in order.
 */
 #include "stop.h"
-#include <lamella/clock.h>
+#include "clock.h"
 #include <signal.h>
 
 static volatile sig_atomic_t StopSignal;

@@ -3,7 +3,7 @@
 */
 #include "build_run.h"
 #include "fe2_run.h"
-#include <lamella/clock.h>
+#include "clock.h"
 
 /* ---- a response database ---- */
 

@@ -3,7 +3,7 @@
 */
 #include "tradeoff.h"
 #include "onset.h"
-#include <lamella/clock.h>
+#include "clock.h"
 
 LamStopwatch LamStopwatchRead(void)
 {

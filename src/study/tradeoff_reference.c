@@ -10,7 +10,7 @@
   left: walls that wrinkle on the scale of the mesh do so on every one.
 */
 #include "tradeoff.h"
-#include <lamella/clock.h>
+#include "clock.h"
 #include <math.h>
 
 static const struct {

@@ -11,7 +11,7 @@
 #include "rounding.h"
 #include "tradeoff.h"
 #include <errno.h>
-#include <lamella/clock.h>
+#include "clock.h"
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>

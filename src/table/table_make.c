@@ -59,7 +59,7 @@ static PetscErrorCode MakeNodes(LamTable table)
 {
   LamTableNode *node = NULL;
   Entry *entries;
-  PetscInt n;
+  PetscInt n = 0;
 
   PetscFunctionBeginUser;
   PetscCall(CollectEntries(table, &n, &entries));

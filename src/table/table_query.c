@@ -10,7 +10,7 @@
 #include "table.h"
 #include "rounded_load.h"
 #include <math.h>
-#include <lamella/clock.h>
+#include "clock.h"
 #include <stdio.h>
 #include <string.h>
 

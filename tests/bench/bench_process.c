@@ -4,7 +4,7 @@
   database that `lamella process -d DB.h5` has filled, warm.
 */
 #include <lamella/lamella.h>
-#include <lamella/clock.h>
+#include "clock.h"
 #include <math.h>
 #include <stdio.h>
 

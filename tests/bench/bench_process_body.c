@@ -8,7 +8,7 @@
   Errors are those of turgor (largest and smallest, over that of the start) and of the force on the grip at the end.
 */
 #include <lamella/lamella.h>
-#include <lamella/clock.h>
+#include "clock.h"
 #include "support/synthetic_responder.h"
 #include <math.h>
 #include <stdio.h>

@@ -12,7 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 #include <fcntl.h>
-#include <lamella/clock.h>
+#include "clock.h"
 #include "quantile.h"
 #include "support/tissue.h"
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# An installed Lamella is found by pkg-config and by CMake, and a program that reads a scene links and runs with both.
+# An installed Lamella is found by pkg-config and by CMake; a program that reads a scene links and runs with both, and with a
+# shared library. Its version is one everywhere.
 set -eu
 lamella=$1
 build=$(dirname "$lamella")
@@ -18,6 +19,7 @@ int main(int argc, char **argv)
 {
   LamScene *scene;
 
+  if (argc == 1) return printf("%s %d.%d.%d\n", LAMELLA_VERSION, LAMELLA_VERSION_MAJOR, LAMELLA_VERSION_MINOR, LAMELLA_VERSION_PATCH) < 0;
   if (argc != 2 || LamSceneRead(argv[1], &scene)) return 1;
   printf("%d loads\n", (int)scene->load_count);
   return LamSceneDestroy(&scene) ? 1 : 0;
@@ -33,9 +35,18 @@ C
 pc=$(dirname "$(find "$dir/usr" -name lamella.pc)")
 export PKG_CONFIG_PATH=$pc
 cc "$dir/user/main.c" -o "$dir/by-pkg-config" $(pkg-config --cflags --libs lamella)
+library=$(find "$dir/usr" -name 'liblamella.a' -o -name 'liblamella.so')
+if [ "${library%.a}" != "$library" ]; then # the same objects
+  cc -shared -o "$dir/liblamella.so" -Wl,-soname,liblamella.so -Wl,--whole-archive "$library" -Wl,--no-whole-archive $(pkg-config --libs lamella)
+  library=$dir/liblamella.so
+fi
+cc "$dir/user/main.c" -o "$dir/shared" $(pkg-config --cflags lamella) "$library" -Wl,-rpath,"$(dirname "$library")" $(pkg-config --libs PETSc)
+export LD_LIBRARY_PATH=$(dirname "$library")
 cmake -S "$dir/user" -B "$dir/user/build" -DCMAKE_PREFIX_PATH="$dir/usr" >"$dir/cmake.log" 2>&1 || { cat "$dir/cmake.log"; exit 1; }
 cmake --build "$dir/user/build" >"$dir/cmake.log" 2>&1 || { cat "$dir/cmake.log"; exit 1; }
-for program in "$dir/by-pkg-config" "$dir/user/build/user" ; do
+for program in "$dir/by-pkg-config" "$dir/user/build/user" "$dir/shared"; do
   [ "$("$program" "$2/tests/scenes/shear-bonded.yaml")" = "3 loads" ] || { echo "FAILED: $program does not read a scene"; exit 1; }
 done
-"$dir/usr/bin/lamella" --version | grep -q '^lamella ' || { echo "FAILED: the installed program does not run"; exit 1; }
+version=$(pkg-config --modversion lamella)
+[ "$("$dir/shared")" = "$version $version" ] || { echo "FAILED: $("$dir/shared"), but pkg-config says $version"; exit 1; }
+"$dir/usr/bin/lamella" --version | grep -q "^lamella $version" || { echo "FAILED: the installed program does not run"; exit 1; }

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <lamella/utf8.h>
+#include "utf8.h"
 
 double LamPlotDPI = 400, LamPlotVectorDPI = 300;
 
