@@ -13,7 +13,7 @@
 LAM_C_BEGIN
 
 /* From here on errors are kept, per thread, in place of being printed; also before PetscInitialize. */
-PetscErrorCode LamErrorsKeep(void);
+LAM_EXPORT PetscErrorCode LamErrorsKeep(void);
 /* Of this thread's last error: its code (0: none yet), what was wrong, and the calls that it came through, a line each.
    Valid until the next error. */
 LAM_EXPORT PetscErrorCode LamErrorCode(void);
