@@ -24,7 +24,7 @@ if [ "${library%.a}" != "$library" ]; then
   cc -shared -o "$dir/liblamella.so" -Wl,--whole-archive "$library" -Wl,--no-whole-archive
   library=$dir/liblamella.so
 fi
-nm -D --defined-only "$library" | awk '{print $3}' | sort >"$dir/shown"
+nm -D --defined-only "$library" | awk '$3 !~ /^(__bss_start|_edata|_end)$/ {print $3}' | sort >"$dir/shown"
 # what the preprocessor leaves of the headers: a name after each mark
 cc -E -P -x c -DLAM_EXPORT=LAM_EXPORT -DLAMELLA_EXPORT_H -DLAM_C_BEGIN= -DLAM_C_END= $(pkg-config --cflags lamella) - \
   <<<'#include <lamella/lamella.h>' | tr '\n' ' ' | sed 's/LAM_EXPORT/\n&/g' | sed -n 's/^LAM_EXPORT [^([;]*\b\(Lam[A-Za-z0-9]*\) *[[(;].*/\1/p' | sort >"$dir/declared"
