@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include "macro_impl.h"
+#include "names.h"
 #include <petscblaslapack.h>
 
 /* ---- names ---- */
@@ -23,10 +24,7 @@ static PetscErrorCode CheckName(LamMacro macro, const char key[], const char on[
 
   PetscFunctionBeginUser;
   if (LamMacroFindSet(macro, on) >= 0) PetscFunctionReturn(0);
-  for (PetscInt s = 0; s < macro->set_count; s++) {
-    PetscCall(PetscStrlcat(names, s ? ", " : "", sizeof(names)));
-    PetscCall(PetscStrlcat(names, macro->set_name[s], sizeof(names)));
-  }
+  for (PetscInt s = 0; s < macro->set_count; s++) LamNamesAppend(sizeof(names), names, ", ", macro->set_name[s]);
   SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: on: %s: no such boundary of the mesh; there %s %s", key, on,
           macro->set_count == 1 ? "is" : "are", macro->set_count ? names : "none");
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 #include "fe2_fields.h"
 #include "fe2_file.h"
+#include "names.h"
 
 struct LamFE2File_s {
   char path[PETSC_MAX_PATH_LEN];
@@ -97,10 +98,7 @@ static PetscErrorCode WriteMesh(LamFE2File file, const LamMacroStep *step, const
   PetscCall(WriteColumns(file, "/macro/nodes", fields->node_count, 2, 2, fields->nodes, file->scales.macro_length * 1e3,
                          "mm"));
   PetscCall(WriteElements(file, fields));
-  for (PetscInt s = 0; s < step->boundary_count; s++) {
-    if (s) PetscCall(PetscStrlcat(names, "\n", sizeof(names)));
-    PetscCall(PetscStrlcat(names, step->boundary[s], sizeof(names)));
-  }
+  for (PetscInt s = 0; s < step->boundary_count; s++) LamNamesAppend(sizeof(names), names, "\n", step->boundary[s]);
   PetscCall(LamRecordWriterText(file->writer, "/macro/boundaries", names));
   PetscFunctionReturn(0);
 }

@@ -3,6 +3,7 @@
   over the states.
 */
 #include "process_run.h"
+#include "names.h"
 #include <stddef.h>
 
 PetscErrorCode LamBodyHistoryAdd(LamBodyHistory *h, const LamBodyState *state)
@@ -45,10 +46,7 @@ static PetscErrorCode WriteEvents(const LamBodyHistory *h, LamRecordWriter write
   PetscInt *events, *at;
 
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < LAM_EVENT_COUNT; k++) {
-    if (k) PetscCall(PetscStrlcat(names, "\n", sizeof(names)));
-    PetscCall(PetscStrlcat(names, LamEventNames[k], sizeof(names)));
-  }
+  for (PetscInt k = 0; k < LAM_EVENT_COUNT; k++) LamNamesAppend(sizeof(names), names, "\n", LamEventNames[k]);
   PetscCall(PetscMalloc2(h->count, &events, 2 * h->count, &at));
   for (PetscInt k = 0; k < h->count; k++) {
     events[k] = h->states[k].event == LAM_EVENT_COUNT ? -1 : (PetscInt)h->states[k].event;

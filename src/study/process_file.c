@@ -4,6 +4,7 @@
 */
 #include "process_run.h"
 #include "clock.h"
+#include "names.h"
 #include <stddef.h>
 
 #define COMMIT_SECONDS 5.0
@@ -81,10 +82,7 @@ static PetscErrorCode WriteEvents(const LamProcessStudy *study)
   PetscInt *events;
 
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < LAM_EVENT_COUNT; k++) {
-    if (k) PetscCall(PetscStrlcat(names, "\n", sizeof(names)));
-    PetscCall(PetscStrlcat(names, LamEventNames[k], sizeof(names)));
-  }
+  for (PetscInt k = 0; k < LAM_EVENT_COUNT; k++) LamNamesAppend(sizeof(names), names, "\n", LamEventNames[k]);
   PetscCall(PetscMalloc1(h->count, &events));
   for (PetscInt k = 0; k < h->count; k++)
     events[k] = h->states[k].event == LAM_EVENT_COUNT ? -1 : (PetscInt)h->states[k].event;

@@ -48,7 +48,7 @@ static PetscErrorCode Profiles(PetscInt n)
     PrintHead("p, MPa", "  largest at X2  apart open  area, 1e-3  contact from bottom to top");
     for (int k = 0; k < PRESSURES; k++) {
       const CuboidsSetup setup = Pair(unequal, n, 0.5, pressures[k]);
-      CuboidsProfile profile;
+      CuboidsProfile profile = {0};
       Cuboids cuboids;
 
       PetscCall(CuboidsCompute(&setup, &cuboids, &profile));

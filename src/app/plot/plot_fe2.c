@@ -3,6 +3,7 @@
   what has changed in time, and films.
 */
 #include "plot_fe2.h"
+#include "names.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -81,8 +82,7 @@ static PetscErrorCode FindField(const LamPlotRequest *request, const FE2FieldRow
       *field = &FE2Fields[i];
       PetscFunctionReturn(0);
     }
-    PetscCall(PetscStrlcat(names, i ? ", " : "", sizeof names));
-    PetscCall(PetscStrlcat(names, FE2Fields[i].name, sizeof names));
+    LamNamesAppend(sizeof(names), names, ", ", FE2Fields[i].name);
   }
   SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "--field %s: an fe2 file has %s", request->field, names);
 }
