@@ -1,20 +1,22 @@
 #!/usr/bin/env bash
 # No room calls a room that it does not stand on (CMakeLists.txt). Prints the circles of calls between files, which do not fail.
-exec python3 - "$(dirname "$1")" <<'P'
+exec python3 - "$(dirname "$1")" "$2" <<'P'
 import subprocess, sys
 from pathlib import Path
 
 build = Path(sys.argv[1])
+files = {}  # room -> its sources
 stands_on = {}  # room -> rooms, those that it stands on by others too
 for line in (build / "rooms.txt").read_text().splitlines():
-    room, on, calls = (part.split() for part in line.split("|"))
+    room, on, calls, files[line.split()[0]] = (part.split() for part in line.split("|"))
     assert stands_on.keys() >= {*on, *calls}, f"{room[0]} stands on a room below it"
     stands_on[room[0]] = {*on, *calls}.union(*(stands_on[other] for other in on))
 
 room_of, defines, needs = {}, {}, {}
 for room in stands_on:
-    for file in sorted((build / f"CMakeFiles/room_{room}.dir").rglob("*.o")):
-        name = str(file.relative_to(build / f"CMakeFiles/room_{room}.dir")).removesuffix(".o")
+    for source in files[room]:
+        name = str(Path(source).relative_to(sys.argv[2]))
+        file = build / f"CMakeFiles/room_{room}.dir" / (name + ".o")
         room_of[name], needs[name] = room, set()
         for line in subprocess.run(["nm", "-P", file], check=True, capture_output=True, text=True).stdout.splitlines():
             symbol, kind = line.split()[:2]
