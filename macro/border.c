@@ -24,7 +24,7 @@
 PetscInt LamMacroFindBorder(LamMacro macro, PetscInt entry, PetscInt component)
 {
   for (PetscInt k = 0; k < macro->border_count; k++) {
-    const LamBorder *border = &macro->borders[k];
+    const LamMacroBorder *border = &macro->borders[k];
     if (border->entry == entry && (entry < 0 || border->component == component)) return k;
   }
   return -1;
@@ -37,10 +37,10 @@ static PetscBool IsFreeGrip(const LamBoundary *boundary, PetscInt component)
 
 static PetscErrorCode AddBorder(LamMacro macro, PetscInt entry, PetscInt component)
 {
-  LamBorder *border = &macro->borders[macro->border_count++];
+  LamMacroBorder *border = &macro->borders[macro->border_count++];
 
   PetscFunctionBeginUser;
-  *border = (LamBorder){.entry = entry, .component = component};
+  *border = (LamMacroBorder){.entry = entry, .component = component};
   PetscCall(VecDuplicate(macro->u, &border->weight));
   PetscCall(VecDuplicate(macro->u, &border->column));
   PetscCall(VecDuplicate(macro->u, &border->row));
@@ -101,7 +101,7 @@ static PetscErrorCode AddMean(LamMacro macro, const LamMacroFacet *facet, PetscI
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode MeanWeights(LamMacro macro, LamBorder *border)
+static PetscErrorCode MeanWeights(LamMacro macro, LamMacroBorder *border)
 {
   const PetscInt set = LamMacroFindSet(macro, macro->scene->macro.control.on);
   PetscReal length = 0;
@@ -130,7 +130,7 @@ PetscErrorCode LamMacroBordersStart(LamMacro macro)
 {
   PetscFunctionBeginUser;
   for (PetscInt b = 0; b < macro->border_count; b++) {
-    LamBorder *border = &macro->borders[b];
+    LamMacroBorder *border = &macro->borders[b];
     PetscScalar *weight;
     if (border->entry < 0) {
       PetscCall(MeanWeights(macro, border));
@@ -151,7 +151,7 @@ PetscErrorCode LamMacroBorderEquations(LamMacro macro, Vec u, Vec unbalanced)
 {
   PetscFunctionBeginUser;
   for (PetscInt b = 0; b < macro->border_count; b++) {
-    LamBorder *border = &macro->borders[b];
+    LamMacroBorder *border = &macro->borders[b];
     PetscCall(VecDot(border->weight, border->entry < 0 ? u : unbalanced, &border->equation));
     if (border->entry < 0) border->equation -= border->target;
   }
@@ -162,7 +162,7 @@ PetscErrorCode LamMacroBorderColumns(LamMacro macro)
 {
   PetscFunctionBeginUser;
   for (PetscInt b = 0; b < macro->border_count; b++) {
-    LamBorder *border = &macro->borders[b];
+    LamMacroBorder *border = &macro->borders[b];
     if (border->entry >= 0) continue;
     PetscCall(VecCopy(macro->external, border->column));
     PetscCall(VecScale(border->column, -1));
@@ -175,7 +175,7 @@ PetscErrorCode LamMacroBorderRows(LamMacro macro, Mat tangent)
 {
   PetscFunctionBeginUser;
   for (PetscInt b = 0; b < macro->border_count; b++) {
-    LamBorder *border = &macro->borders[b];
+    LamMacroBorder *border = &macro->borders[b];
     if (border->entry >= 0) PetscCall(MatMultTranspose(tangent, border->weight, border->row));
   }
   PetscFunctionReturn(0);

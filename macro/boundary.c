@@ -384,7 +384,7 @@ PetscErrorCode LamMacroSetLoadFactor(LamMacro macro, PetscReal load_factor)
         constraint->base + LamHistoryFactor(&boundary[constraint->entry].history, load_factor) * constraint->end;
   }
   for (PetscInt k = 0; k < macro->border_count; k++) {
-    LamBorder *border = &macro->borders[k];
+    LamMacroBorder *border = &macro->borders[k];
     if (border->entry < 0) border->target = border->base + load_factor * macro->scene->macro.control.displacement;
   }
   LamMacroObstaclesMove(macro);

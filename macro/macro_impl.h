@@ -158,7 +158,7 @@ typedef struct {
   Vec column, row, solved;   /* dr'/dq; derivative of the equation by the displacements; K'^-1 column */
   PetscReal now, accepted;   /* q */
   PetscReal equation, base, target;
-} LamBorder;
+} LamMacroBorder;
 
 struct LamMacro_s {
   MPI_Comm comm;
@@ -240,7 +240,7 @@ struct LamMacro_s {
   PetscInt row_count;
   LamNodeRows *rows; /* of the last residual */
   PetscInt border_count;
-  LamBorder borders[2 * LAM_MAX_BOUNDARIES + 1];
+  LamMacroBorder borders[2 * LAM_MAX_BOUNDARIES + 1];
   KSP solver; /* of the unbordered tangent; NULL where the scene needs no border */
 
   LamMacroProgress progress;

@@ -8,7 +8,7 @@ static const PetscReal MOST_SLACK = 1e-4;
 
 PetscReal LamBodyNoTurgor(LamBody body)
 {
-  return PetscMin(LamSlack(body->process), MOST_SLACK) * body->process->pressure;
+  return PetscMin(LamPlasmolysisTolerance(body->process), MOST_SLACK) * body->process->pressure;
 }
 
 PetscInt LamBodyListEvents(LamBody body, LamEvent events[LAM_EVENT_COUNT])
@@ -25,7 +25,7 @@ PetscInt LamBodyListEvents(LamBody body, LamEvent events[LAM_EVENT_COUNT])
 static PetscReal Excess(LamBody body, LamEvent event, PetscInt p, const LamMacroPoint *point)
 {
   const LamStrength *strength = &body->process->scene->strength;
-  const LamFactor *factor = body->now.factor;
+  const LamProcessFactor *factor = body->now.factor;
   const PetscReal lamella = factor[LAM_CHANGING_LAMELLA].value, wall = factor[LAM_CHANGING_WALL_STRENGTH].value;
 
   switch (event) {

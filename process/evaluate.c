@@ -87,7 +87,7 @@ static PetscErrorCode Ask(LamProcess process, LamResponder *responder, const Lam
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamProcessAskJudge(LamProcess process, LamEvaluation *e)
+PetscErrorCode LamProcessQueryReference(LamProcess process, LamEvaluation *e)
 {
   PetscFunctionBeginUser;
   if (!process->judge || !e->ok || e->response.indicators_trusted) PetscFunctionReturn(0);
@@ -204,7 +204,7 @@ PetscErrorCode LamProcessDescribe(LamProcess process, const LamProcessTissue *ti
 
   PetscFunctionBeginUser;
   PetscCall(LamProcessEvaluate(process, tissue->time, tissue->x, tissue->F, tissue->turgor, &e));
-  PetscCall(LamProcessAskJudge(process, &e));
+  PetscCall(LamProcessQueryReference(process, &e));
   *state = (LamProcessState){.time = tissue->time,
                              .temperature = e.temperature,
                              .walls = e.walls,

@@ -127,9 +127,9 @@ PetscReal LamProcessExcess(LamProcess process, LamEvent event, const LamEvaluati
   case LAM_EVENT_PERCOLATION:
     return r->percolating_directions < 0 ? -1 : 1.5 - (PetscReal)r->percolating_directions; /* below 0: not known */
   case LAM_EVENT_TURGOR_LOST:
-    return -turgor - LamSlack(process) * process->pressure;
+    return -turgor - LamPlasmolysisTolerance(process) * process->pressure;
   case LAM_EVENT_TURGOR_FOUND:
-    return water + r->energy_turgor - LamSlack(process) * process->cells.water;
+    return water + r->energy_turgor - LamPlasmolysisTolerance(process) * process->cells.water;
   case LAM_EVENT_LIMIT:
     return LimitExcess(process, e);
   default:

@@ -269,7 +269,7 @@ static int Roots(PetscReal t, N_Vector y, N_Vector yp, PetscReal excess[], void 
   const int flag = EvaluateAt(in, t, N_VGetArrayPointer(y), &tissue, &e);
 
   if (flag) return -1; /* IDA cannot take this back */
-  in->process->error = in->event_count ? LamProcessAskJudge(in->process, &e) : 0;
+  in->process->error = in->event_count ? LamProcessQueryReference(in->process, &e) : 0;
   if (in->process->error) return -1;
   for (PetscInt k = 0; k < in->event_count; k++) {
     excess[k] = LamProcessExcess(in->process, in->events[k], &e, tissue.water, tissue.turgor);

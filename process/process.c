@@ -71,7 +71,7 @@ PetscErrorCode LamProcessSetResponder(LamProcess process, LamResponder *responde
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamProcessSetJudge(LamProcess process, LamResponder *judge)
+PetscErrorCode LamProcessSetReferenceResponder(LamProcess process, LamResponder *judge)
 {
   PetscFunctionBeginUser;
   process->judge = judge;
@@ -212,7 +212,7 @@ static PetscErrorCode CheckEvents(LamProcess process, PetscBool *ends)
 
   PetscFunctionBeginUser;
   PetscCall(EvaluateTissue(process, &e));
-  PetscCall(LamProcessAskJudge(process, &e));
+  PetscCall(LamProcessQueryReference(process, &e));
   for (PetscInt k = 0; k < n && e.ok; k++) {
     if (process->spec->has_water && (events[k] == LAM_EVENT_TURGOR_LOST || events[k] == LAM_EVENT_TURGOR_FOUND))
       continue;
@@ -247,10 +247,10 @@ static PetscErrorCode ChangeMembranes(LamProcess process, PetscBool *ok)
 
   PetscFunctionBeginUser;
   PetscCall(EvaluateTissue(process, &e));
-  if (!process->plasmolysed && process->tissue.turgor < -LamSlack(process) * process->pressure)
+  if (!process->plasmolysed && process->tissue.turgor < -LamPlasmolysisTolerance(process) * process->pressure)
     event = LAM_EVENT_TURGOR_LOST;
   if (process->plasmolysed &&
-      process->tissue.water > -e.response.energy_turgor + LamSlack(process) * process->cells.water)
+      process->tissue.water > -e.response.energy_turgor + LamPlasmolysisTolerance(process) * process->cells.water)
     event = LAM_EVENT_TURGOR_FOUND;
   if (event == LAM_EVENT_COUNT) PetscFunctionReturn(0);
   here = Here(process, e.response.P); /* with the turgor that it has */

@@ -45,12 +45,12 @@ typedef struct {
 /* A property and its derivatives by the two states of its own law. */
 typedef struct {
   PetscReal value, slope[LAM_KINETIC_STATES];
-} LamFactor;
+} LamProcessFactor;
 
 /* All of a state that the equations need. */
 typedef struct {
   PetscReal time, temperature, outside;
-  LamFactor factor[LAM_CHANGING_COUNT];
+  LamProcessFactor factor[LAM_CHANGING_COUNT];
   PetscReal walls, cohesion;
   LamLoad load;         /* F in full, turgor, cohesion */
   LamResponse response; /* in C1 + C2 of the start */
@@ -114,13 +114,13 @@ struct LamProcess_s {
 /* By how much turgor falls below 0, or water exceeds the lumen, before membranes leave the walls or meet them: more
    than what the integration leaves uncertain, so that cells without turgor do not do both for ever. As a share of the
    scale. */
-static inline PetscReal LamSlack(LamProcess process)
+static inline PetscReal LamPlasmolysisTolerance(LamProcess process)
 {
   return 3 * process->spec->tolerance;
 }
 
 /* Times that are nearer to each other are one: what rounding makes of sums of them. */
-static inline PetscReal LamInstant(LamProcess process)
+static inline PetscReal LamTimeTolerance(LamProcess process)
 {
   return 1e-12 * process->spec->duration;
 }
@@ -152,7 +152,7 @@ PetscErrorCode LamProcessTellWalls(LamProcess process, const PetscReal ratio[LAM
 PetscErrorCode LamProcessEvaluate(LamProcess process, PetscReal time, const PetscReal x[], const PetscReal F[9],
                                   PetscReal turgor, LamEvaluation *evaluation);
 /* The same by the judge, where the indicators of the response are not to be trusted and it has an answer. */
-PetscErrorCode LamProcessAskJudge(LamProcess process, LamEvaluation *evaluation);
+PetscErrorCode LamProcessQueryReference(LamProcess process, LamEvaluation *evaluation);
 /* The flow into cells at a water content and turgor. */
 void LamProcessFlow(LamProcess process, const LamCells *cells, const LamEvaluation *evaluation, PetscReal water,
                     PetscReal turgor, LamFlow *flow);

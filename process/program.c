@@ -43,7 +43,7 @@ static void Surround(LamProcess process, LamSegment *segment)
   const PetscReal t = segment->start;
   PetscInt after = 0;
 
-  while (after < n && at[after].time <= t + LamInstant(process)) after++;
+  while (after < n && at[after].time <= t + LamTimeTolerance(process)) after++;
   const LamSurroundings *a = &at[PetscMax(after - 1, 0)], *b = &at[PetscMin(after, n - 1)];
   const PetscReal span = b->time - a->time, share = span > 0 ? (t - a->time) / span : 0;
 
@@ -61,7 +61,7 @@ static void EndAtTables(LamProcess process, LamSegment *segment)
     const LamKinetics *kinetics = &process->spec->kinetics[k];
 
     for (PetscInt i = 0; i < kinetics->count; i++)
-      if (kinetics->time[i] > segment->start + LamInstant(process))
+      if (kinetics->time[i] > segment->start + LamTimeTolerance(process))
         segment->end = PetscMin(segment->end, kinetics->time[i]);
   }
 }
@@ -78,7 +78,7 @@ static void EndAtHistories(LamProcess process, LamSegment *segment)
     for (PetscInt k = 0; k < macro->boundary[b].history.count; k++) {
       const PetscReal after = (macro->boundary[b].history.parameter[k] - segment->load.from) / segment->load.slope;
 
-      if (after > LamInstant(process)) segment->end = PetscMin(segment->end, segment->start + after);
+      if (after > LamTimeTolerance(process)) segment->end = PetscMin(segment->end, segment->start + after);
     }
 }
 
@@ -109,8 +109,8 @@ void LamProcessNextSegment(LamProcess process, LamSegment *segment)
   Surround(process, segment);
   EndAtTables(process, segment);
   Load(process, segment);
-  if (segment->end - segment->start < LamInstant(process)) segment->end = segment->start;
-  if (process->spec->duration - segment->end < LamInstant(process)) segment->end = process->spec->duration;
+  if (segment->end - segment->start < LamTimeTolerance(process)) segment->end = segment->start;
+  if (process->spec->duration - segment->end < LamTimeTolerance(process)) segment->end = process->spec->duration;
 }
 
 void LamProcessEndSegment(LamProcess process, const PetscReal P[9])
@@ -118,7 +118,7 @@ void LamProcessEndSegment(LamProcess process, const PetscReal P[9])
   const LamProcessLeg *leg = Leg(process);
   PetscReal stress[9];
 
-  if (IsOver(process) || process->tissue.time < process->leg_start + leg->duration - LamInstant(process)) return;
+  if (IsOver(process) || process->tissue.time < process->leg_start + leg->duration - LamTimeTolerance(process)) return;
   for (int i = 0; i < 9; i++) stress[i] = leg->control.given[i] ? leg->control.P[i] : P[i];
   if (++process->leg == process->spec->leg_count) {
     process->leg = 0;

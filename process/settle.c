@@ -183,7 +183,7 @@ PetscErrorCode LamProcessSettle(LamProcess process, LamSettle kind, const LamSeg
     PetscCall(Iterate(process, &u, &c, ok));
     if (process->stop && process->stop()) process->stopped = PETSC_TRUE;
     if (*ok) {
-      if (kind != LAM_SETTLE_TURGOR && process->tissue.turgor < -LamSlack(process) * process->pressure)
+      if (kind != LAM_SETTLE_TURGOR && process->tissue.turgor < -LamPlasmolysisTolerance(process) * process->pressure)
         break; /* the membranes leave the walls */
       done = next;
       step *= 2;

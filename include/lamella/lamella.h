@@ -10,8 +10,8 @@
     rve.h          solves the representative volume element
     database.h     stores responses, interpolates them
     blend.h        responses between tissues that differ in one number
-    family.h       responses for walls between databases
-    mosaic.h       responses for a body of different tissue
+    parametric_database.h       responses for walls between databases
+    heterogeneous.h       responses for a body of different tissue
     cache.h        queries a database and solves what it lacks
     sealed.h       responses of cells that keep their water, from those for prescribed turgor
     macro.h        the macroscale finite element solver
@@ -45,8 +45,8 @@
 #include <lamella/rve.h>
 #include <lamella/database.h>
 #include <lamella/blend.h>
-#include <lamella/family.h>
-#include <lamella/mosaic.h>
+#include <lamella/parametric_database.h>
+#include <lamella/heterogeneous.h>
 #include <lamella/cache.h>
 #include <lamella/sealed.h>
 #include <lamella/macro.h>

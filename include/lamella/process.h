@@ -83,7 +83,7 @@ LAM_EXPORT PetscErrorCode LamProcessSetResponder(LamProcess process, LamResponde
   Solves where the answers of the responder have indicators that are not to be trusted (indicators_trusted), for events
   and for what is told. Borrows it; NULL: they are taken as they are, and told so.
 */
-LAM_EXPORT PetscErrorCode LamProcessSetJudge(LamProcess process, LamResponder *judge);
+LAM_EXPORT PetscErrorCode LamProcessSetReferenceResponder(LamProcess process, LamResponder *judge);
 /*
   How the responder learns of walls whose moduli do not change alike: `set` is told each parameter over that at the
   start, moduli without the common factor, before it is asked. Without it such a process is PETSC_ERR_USER_INPUT.

@@ -41,7 +41,7 @@ PetscErrorCode LamBorderAssemble(LamRVE rve, LamBorder *border, PetscReal *norm)
   PetscFunctionBeginUser;
   if (!border) PetscFunctionReturn(0);
   sum = *norm * *norm;
-  border->waits = PETSC_FALSE;
+  border->freeze_F = PETSC_FALSE;
   PetscCall(LamAssembleGradient(rve, &border->load, Lq, border->Lqq, border->R));
   for (PetscInt k = 0; k < border->count; ++k) {
     const PetscReal *R = border->R + border->q[k] * n + rve->linear.positions;
@@ -97,8 +97,8 @@ PetscErrorCode LamBorderSolve(LamRVE rve, LamBorder *border, const PetscReal rhs
     for (PetscInt l = 0; l < border->count; ++l) dq[l] += share * V[k][l];
   }
   SetStep(rve, border, dq, solution);
-  if (border->patience > 0 && LamBorderReach(rve, border, solution) > LONG_STEP) border->waits = PETSC_TRUE;
-  if (border->waits) {
+  if (border->patience > 0 && LamBorderReach(rve, border, solution) > LONG_STEP) border->freeze_F = PETSC_TRUE;
+  if (border->freeze_F) {
     PetscCall(PetscArrayzero(dq, LAM_F_COUNT));
     SetStep(rve, border, dq, solution);
   }

@@ -25,7 +25,7 @@ typedef struct {
   PetscReal *R;              /* [LAM_F_COUNT][n] */
   PetscReal *rhs, *solution; /* [count + 1][n] */
   PetscReal dF[9];           /* the step */
-  PetscBool waits;           /* F does in this iteration */
+  PetscBool freeze_F;        /* F does in this iteration */
   PetscInt patience;         /* iterations left in which F waits for contact to settle where the step would be long */
 } LamBorder;
 

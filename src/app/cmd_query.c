@@ -2,7 +2,7 @@
   lamella query: answers from a database. Never solves, needs no MPI.
 */
 #include "app.h"
-#include "answers.h"
+#include "query_source.h"
 #include <lamella/ellipticity.h>
 #include <errno.h>
 #include <stdlib.h>
@@ -11,7 +11,7 @@
 typedef struct {
   const char *deformation, *turgor, *cohesion, *accuracy_text;
   PetscBool json, tangent;
-  LamAnswers from;
+  LamQuerySource from;
   PetscReal accuracy;
   LamLoad defaults; /* turgor and cohesion of questions that do not say theirs */
   PetscInt answered, refused;
@@ -48,7 +48,7 @@ static PetscErrorCode AnswerLine(Query *q, PetscInt number, char line[])
 
   PetscFunctionBeginUser;
   if (!*text || *text == '#') PetscFunctionReturn(0);
-  PetscCheck(LamQuestionParse(text, &q->from.scales, &load, problem), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+  PetscCheck(LamQueryParse(text, &q->from.scales, &load, problem), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "standard input, line %" PetscInt_FMT ": %s", number, problem);
   PetscCall(Answer(q, &load));
   PetscFunctionReturn(0);
@@ -93,8 +93,7 @@ static PetscBool ReadValues(Query *q, LamLoad *load, int *exit_status)
   if (!ReadStress(q, "-g", q->cohesion, &q->defaults.cohesion, exit_status)) return PETSC_FALSE;
   if (!LamAccuracyParse("query", q->accuracy_text, &q->accuracy, exit_status)) return PETSC_FALSE;
   *load = q->defaults;
-  if (!strcmp(q->deformation, "-") || LamQuestionParse(q->deformation, &q->from.scales, load, problem))
-    return PETSC_TRUE;
+  if (!strcmp(q->deformation, "-") || LamQueryParse(q->deformation, &q->from.scales, load, problem)) return PETSC_TRUE;
   return LamUsageError("query", "-F", q->deformation, problem, exit_status);
 }
 
@@ -162,8 +161,8 @@ PetscErrorCode LamCommandQuery(LamArgs *args, int *exit_status)
     *exit_status = LAM_EXIT_USAGE;
     PetscFunctionReturn(0);
   }
-  PetscCall(LamAnswersOpen(path, &q.from));
+  PetscCall(LamQuerySourceOpen(path, &q.from));
   PetscCall(Run(&q, exit_status));
-  PetscCall(LamAnswersClose(&q.from));
+  PetscCall(LamQuerySourceClose(&q.from));
   PetscFunctionReturn(0);
 }

@@ -216,7 +216,7 @@ static PetscErrorCode FindMyNeeds(LamCache *cache, const Missing *missing, Petsc
   for (PetscInt k = 0; k < missing->n; k++) {
     const LamLoad question = LamLoadRound(&missing->loads[missing->at[k]]);
 
-    if (LamCacheGoesOnByItself(cache, missing->points[missing->at[k]])) continue;
+    if (LamCacheUsesDirectSolve(cache, missing->points[missing->at[k]])) continue;
     if (*n + LAM_MAX_NEEDS > capacity) {
       LamSortUnique(n, *keys, sizeof(PetscInt64), LamCompareKeys);
       capacity = PetscMax(capacity, 2 * (*n + LAM_MAX_NEEDS));
@@ -279,7 +279,7 @@ static PetscErrorCode TakeOwnState(LamCache *cache, const LamLoad *load, const L
     *response = *solved;
     if (LamResponseHasFields(solved) && LamLoadCompare(&rounded, &solved->load))
       PetscCall(cache->solver->respond(cache->solver->ctx, 1, &rounded, &point, response));
-    LamLoadLeadBack(load, response);
+    LamResponseCorrectToLoad(load, response);
   }
   response->source = LAM_SOURCE_SOLVE;
   PetscFunctionReturn(0);
@@ -338,7 +338,7 @@ static PetscErrorCode SolveShare(LamCache *cache, Missing *missing, PetscBool *s
       continue;
     }
     PetscCall(TakeOwnState(cache, load, &batch.responses[found - batch.loads], &missing->responses[i]));
-    LamCacheTakeToOwnState(cache, load, missing->points[i]);
+    LamCacheAssignLocalModel(cache, load, missing->points[i]);
   }
   missing->n = left;
   PetscCall(PetscFree(mine));

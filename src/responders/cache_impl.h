@@ -44,9 +44,9 @@ PetscErrorCode LamCacheAskRecords(LamCache *cache, const LamLoad *load, LamRespo
 /* The point takes to the nearest model, where that is so near that it will go on to answer; else nothing changes. */
 PetscErrorCode LamCacheAdopt(LamCache *cache, const LamLoad *load, PetscInt point, LamResponse *response);
 /* The state solved for the point answers it from now on, unless it failed or is unstable. */
-void LamCacheTakeToOwnState(LamCache *cache, const LamLoad *load, PetscInt point);
+void LamCacheAssignLocalModel(LamCache *cache, const LamLoad *load, PetscInt point);
 /* No table is asked for it in this load step. */
-PetscBool LamCacheGoesOnByItself(const LamCache *cache, PetscInt point);
+PetscBool LamCacheUsesDirectSolve(const LamCache *cache, PetscInt point);
 /* A load step ends, by `accept` or not: the next one begins with the newest table. */
 PetscErrorCode LamCacheEndStep(LamCache *cache, PetscBool accept);
 /* The responder's. */

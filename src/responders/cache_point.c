@@ -75,7 +75,7 @@ PetscErrorCode LamCacheAskRecords(LamCache *cache, const LamLoad *load, LamRespo
   PetscCall(LamDatabaseQuery(cache->database, &question, cache->accuracy, &answer));
   if (answer.status == LAM_INVALID_F) *response = answer;
   if (answer.status == LAM_INVALID_F || (cache->solver && !(answer.distance <= OWN_STATE))) PetscFunctionReturn(0);
-  LamLoadLeadBack(load, &answer);
+  LamResponseCorrectToLoad(load, &answer);
   *response = answer;
   PetscFunctionReturn(0);
 }
@@ -115,7 +115,7 @@ PetscErrorCode LamCacheAdopt(LamCache *cache, const LamLoad *load, PetscInt inde
   PetscFunctionReturn(0);
 }
 
-void LamCacheTakeToOwnState(LamCache *cache, const LamLoad *load, PetscInt index)
+void LamCacheAssignLocalModel(LamCache *cache, const LamLoad *load, PetscInt index)
 {
   const LamLoad question = LamLoadRound(load);
   LamCachePoint *point = PointOf(cache, index);
@@ -126,7 +126,7 @@ void LamCacheTakeToOwnState(LamCache *cache, const LamLoad *load, PetscInt index
   TakeTo(point, model.state < 0 ? point->held.model : model);
 }
 
-PetscBool LamCacheGoesOnByItself(const LamCache *cache, PetscInt index)
+PetscBool LamCacheUsesDirectSolve(const LamCache *cache, PetscInt index)
 {
   return GoesOnByItself(PointOf(cache, index));
 }

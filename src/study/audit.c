@@ -27,7 +27,7 @@ static PetscBool ReadRange(const json_t *coverage, const char name[], PetscReal 
   return (PetscBool)json_is_array(pair);
 }
 
-static PetscErrorCode FindCoverage(const LamAnswers *from, LamAuditBox *box)
+static PetscErrorCode FindCoverage(const LamQuerySource *from, LamAuditBox *box)
 {
   const char *text;
   PetscBool found;
@@ -46,7 +46,7 @@ static PetscErrorCode FindCoverage(const LamAnswers *from, LamAuditBox *box)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode FindBox(const LamAnswers *from, LamAuditBox *box)
+static PetscErrorCode FindBox(const LamQuerySource *from, LamAuditBox *box)
 {
   const LamSample *sample = &from->scene->sample;
 
@@ -128,7 +128,7 @@ static PetscErrorCode Ask(LamAudit *a)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamAuditCreate(const LamAnswers *from, PetscReal accuracy, PetscInt samples, PetscInt seed,
+PetscErrorCode LamAuditCreate(const LamQuerySource *from, PetscReal accuracy, PetscInt samples, PetscInt seed,
                               LamAudit *audit)
 {
   PetscFunctionBeginUser;

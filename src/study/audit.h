@@ -4,7 +4,7 @@
 #ifndef LAM_AUDIT_H
 #define LAM_AUDIT_H
 
-#include "answers.h"
+#include "query_source.h"
 #include "dispatch.h"
 
 /* The states that questions are drawn from; [0] the smallest, [1] the largest. */
@@ -24,7 +24,7 @@ typedef struct {
 } LamAudited;
 
 typedef struct {
-  const LamAnswers *from; /* borrowed */
+  const LamQuerySource *from; /* borrowed */
   LamAuditBox box;
   PetscReal accuracy;
   PetscInt seed, wanted;
@@ -38,7 +38,7 @@ typedef struct {
 
 /* ---- audit.c ---- */
 /* Draws and asks. */
-PetscErrorCode LamAuditCreate(const LamAnswers *from, PetscReal accuracy, PetscInt samples, PetscInt seed,
+PetscErrorCode LamAuditCreate(const LamQuerySource *from, PetscReal accuracy, PetscInt samples, PetscInt seed,
                               LamAudit *audit);
 PetscErrorCode LamAuditDestroy(LamAudit *audit);
 /* Compares answer i with the solve of its load. */
@@ -65,7 +65,7 @@ typedef struct {
   LamRVEState state;
 
   /* rank 0 */
-  LamAnswers from;
+  LamQuerySource from;
   LamAudit audit;
 } LamVerification;
 

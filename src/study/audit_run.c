@@ -75,7 +75,7 @@ static PetscErrorCode Arrive(void *ctx, PetscInt64 index, const void *result)
 static PetscErrorCode Begin(LamVerification *v)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamAnswersOpen(v->path, &v->from));
+  PetscCall(LamQuerySourceOpen(v->path, &v->from));
   PetscCall(LamAuditCreate(&v->from, v->accuracy ? v->accuracy : v->from.accuracy, v->samples, v->seed, &v->audit));
   v->micro = v->from.micro;
   v->strategy = v->from.scene->strategy;
@@ -131,7 +131,7 @@ PetscErrorCode LamVerificationDestroy(LamVerification *v)
   PetscFunctionBeginUser;
   if (v->rank == 0) {
     PetscCall(LamAuditDestroy(&v->audit));
-    PetscCall(LamAnswersClose(&v->from));
+    PetscCall(LamQuerySourceClose(&v->from));
   }
   PetscCall(LamRVEStateDestroy(&v->state));
   PetscCall(LamRVEDestroy(&v->rve));

@@ -24,7 +24,7 @@ static PetscErrorCode ChooseNew(LamFE2Tissue *tissue, PetscInt n, const PetscInt
   PetscFunctionBeginUser;
   PetscCall(LamRecordWriterGetKeys(tissue->records, &row, &in_file));
   for (PetscInt k = 0; k < n; k++) {
-    const PetscInt known = LamKnownAnswersFind(&tissue->known, in_memory[k], &records[k].load);
+    const PetscInt known = LamKnownRecordsFind(&tissue->known, in_memory[k], &records[k].load);
     PetscCall(AddRow(tissue, known >= 0 ? known : row++));
     if (known >= 0) continue;
     keys[*count] = LamKeyIsNode(in_memory[k]) ? in_memory[k] : tissue->next_key++;

@@ -17,14 +17,14 @@ const char *const LamFE2ResponseNames[] = {"direct", "cache", "database"};
 /* Loads the database as the run that goes on knew it: the records of its file that are named, in that order. */
 static PetscErrorCode OpenAsItWas(LamFE2Tissue *tissue)
 {
-  LamKnownAnswers *known = &tissue->known;
+  LamKnownRecords *known = &tissue->known;
   PetscInt64 *keys;
   LamResponse *records;
   PetscInt n;
 
   PetscFunctionBeginUser;
   PetscCall(LamDatabaseOpenFirst(tissue->database_path, known->first, &tissue->database, &n, &keys, &records));
-  PetscCall(LamKnownAnswersSet(known, known->first, n, keys, records));
+  PetscCall(LamKnownRecordsSet(known, known->first, n, keys, records));
   for (PetscInt k = 0; k < tissue->row_count; k++) {
     const PetscInt at = tissue->rows[k] - known->first;
     PetscCheck(at < n, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
@@ -137,7 +137,7 @@ static PetscErrorCode CreateNodeSolver(LamFE2Tissue *tissue)
                                &tissue->chain));
   tissue->solved = (LamNodeSolver){tissue->chain, LamNodeChainSolve, LamNodeChainSolveNear};
   tissue->known.solver = &tissue->solved;
-  tissue->nodes = (LamNodeSolver){&tissue->known, LamKnownAnswersSolve, LamKnownAnswersSolveNear};
+  tissue->nodes = (LamNodeSolver){&tissue->known, LamKnownRecordsSolve, LamKnownRecordsSolveNear};
   PetscFunctionReturn(0);
 }
 
@@ -240,7 +240,7 @@ PetscErrorCode LamFE2ConnectTissue(LamFE2Run *run, LamFE2Tissue *tissue, LamResp
 PetscErrorCode LamFE2Connect(LamFE2Run *run)
 {
   LamFE2Tissues *tissues = &run->tissues;
-  LamMosaicTissue *parts;
+  LamHeterogeneousTissue *parts;
   LamResponder *responder = NULL;
 
   PetscFunctionBeginUser;
@@ -250,10 +250,10 @@ PetscErrorCode LamFE2Connect(LamFE2Run *run)
     LamFE2Tissue *tissue = &tissues->tissues[t];
 
     PetscCall(LamFE2ConnectTissue(run, tissue, &responder));
-    parts[t] = (LamMosaicTissue){tissue->name, tissue->stress, responder};
+    parts[t] = (LamHeterogeneousTissue){tissue->name, tissue->stress, responder};
   }
   if (!run->stopped && !tissues->plain) {
-    PetscCall(LamMosaicCreate(tissues->count, parts, tissues->points, tissues->point, &run->mosaic));
+    PetscCall(LamHeterogeneousCreate(tissues->count, parts, tissues->points, tissues->point, &run->mosaic));
     responder = &run->mosaic;
   }
   PetscCall(PetscFree(parts));
@@ -270,7 +270,7 @@ PetscErrorCode LamFE2DisconnectTissue(LamFE2Tissue *tissue)
   if (tissue->direct.destroy) PetscCall(tissue->direct.destroy(&tissue->direct.ctx));
   PetscCall(LamRVEDestroy(&tissue->rve));
   PetscCall(LamDatabaseClose(&tissue->database));
-  PetscCall(LamKnownAnswersDestroy(&tissue->known));
+  PetscCall(LamKnownRecordsDestroy(&tissue->known));
   PetscCall(PetscFree(tissue->rows));
   PetscCall(PetscFree(tissue->grid_text));
   PetscFunctionReturn(0);

@@ -311,7 +311,7 @@ static PetscErrorCode AddTissues(MPI_Comm comm, const LamScene *scene, const Pla
 
 /* ---- points ---- */
 
-static void PlacePoint(const LamScene *scene, const Place *place, const Levels *levels, LamMosaicPoint *point)
+static void PlacePoint(const LamScene *scene, const Place *place, const Levels *levels, LamHeterogeneousPoint *point)
 {
   const LamScales *scales = place->region < 0 ? &scene->scales : &scene->regions[place->region].scales;
 
@@ -346,7 +346,7 @@ static PetscErrorCode SetLoads(MPI_Comm comm, LamFE2Tissues *tissues)
      */
     tissue->scene.turgor = (contact ? most[t][0] : 0.5 * (most[t][0] - most[t][2])) / tissue->stress;
     tissue->scene.cohesion = most[t][1] / tissue->stress;
-    tissue->body_points = tissue->points = LamMosaicPointCount(tissues->points, tissues->point, t);
+    tissue->body_points = tissue->points = LamHeterogeneousPointCount(tissues->points, tissues->point, t);
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &tissue->body_points, 1, MPIU_INT64, MPI_SUM, comm));
   }
   PetscCall(PetscFree(most));

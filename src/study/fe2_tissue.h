@@ -5,7 +5,7 @@
 #define LAM_FE2_TISSUE_H
 
 #include "study.h"
-#include "known_answers.h"
+#include "known_records.h"
 #include "node_solver.h"
 
 /* One tissue, and what answers for it. */
@@ -19,7 +19,7 @@ typedef struct {
 
   LamRVE rve;
   LamDatabase database;
-  LamKnownAnswers
+  LamKnownRecords
       known;          /* records of the database's file that a run which goes on finds again, and does not know yet */
   LamNodeChain chain; /* of the cache's nodes */
   LamNodeSolver solved, nodes;        /* by the chain; by what is known, too */
@@ -38,7 +38,7 @@ typedef struct {
   PetscInt count;
   LamFE2Tissue *tissues;
   PetscInt points;              /* material points of this rank */
-  LamMosaicPoint *point;        /* [points]; NULL, as the next two, where nothing differs from the scene */
+  LamHeterogeneousPoint *point; /* [points]; NULL, as the next two, where nothing differs from the scene */
   PetscReal *turgor, *cohesion; /* [points] in the C1 + C2 of the run's scene */
   PetscBool plain;              /* one tissue as the scene has it, everywhere: no need of a mosaic */
 } LamFE2Tissues;

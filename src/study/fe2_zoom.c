@@ -118,7 +118,7 @@ static PetscErrorCode Fetch(LamFE2Run *run, Zoom *zoom, char **bytes)
   owner = point >= 0 ? rank : -1;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &owner, 1, MPI_INT, MPI_MAX, run->comm));
   if (rank == owner && tissues->point) {
-    const LamMosaicPoint *of = &tissues->point[point];
+    const LamHeterogeneousPoint *of = &tissues->point[point];
     PetscInt largest = 0;
     for (PetscInt k = 1; k < of->count; k++) largest = of->term[k].weight > of->term[largest].weight ? k : largest;
     zoom->tissue = of->term[largest].knot;

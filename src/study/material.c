@@ -2,7 +2,7 @@
   A material law for other programs: a responder, or a database, in SI units.
 */
 #include <lamella/material.h>
-#include "answers.h"
+#include "query_source.h"
 #include "plan.h"
 #include "rounding.h"
 #include <math.h>
@@ -17,7 +17,7 @@ struct LamMaterial_s {
   LamRVE rve;
   LamResponder responder;
 
-  LamAnswers database; /* owned; database.database NULL: of a scene */
+  LamQuerySource database; /* owned; database.database NULL: of a scene */
   PetscReal accuracy;
 };
 
@@ -53,7 +53,7 @@ static PetscErrorCode ConnectDatabase(const char path[], LamMaterial m)
   LamTable table;
 
   PetscFunctionBeginUser;
-  PetscCall(LamAnswersOpen(path, &m->database));
+  PetscCall(LamQuerySourceOpen(path, &m->database));
   m->scales = m->database.scales;
   m->interface = m->database.micro.interface;
   m->turgor = m->database.turgor;
@@ -100,7 +100,7 @@ PetscErrorCode LamMaterialDestroy(LamMaterial *material)
   if (m->responder.destroy) PetscCall(m->responder.destroy(&m->responder.ctx));
   PetscCall(LamRVEDestroy(&m->rve));
   PetscCall(LamSceneDestroy(&m->scene));
-  PetscCall(LamAnswersClose(&m->database));
+  PetscCall(LamQuerySourceClose(&m->database));
   PetscCall(PetscFree(m));
   PetscFunctionReturn(0);
 }

@@ -102,7 +102,7 @@ PetscErrorCode LamProcessSolvePoint(LamProcessStudy *study, LamProcessReason *re
   if (study->response.response == LAM_FE2_DIRECT)
     PetscCall(LamProcessSetWalls(study->process, LamFE2ChangeTissueWalls, study->response.tissues.tissues));
   if (study->response.response == LAM_FE2_CACHE)
-    PetscCall(LamProcessSetJudge(study->process, &study->response.tissues.tissues->solver));
+    PetscCall(LamProcessSetReferenceResponder(study->process, &study->response.tissues.tissues->solver));
   PetscCall(LamProcessSetMonitor(study->process, AddState, study));
   PetscCall(LamProcessSetStop(study->process, LamStopRequested));
   PetscCall(Follow(study, reason, message));

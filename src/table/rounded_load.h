@@ -42,7 +42,7 @@ static inline void LamAddSlope(PetscReal slope, PetscReal change, PetscReal *val
 }
 
 /* From the rounded question to the one asked, to first order: exact to rounding. Slopes that are not known stay out. */
-static inline void LamLoadLeadBack(const LamLoad *load, LamResponse *r)
+static inline void LamResponseCorrectToLoad(const LamLoad *load, LamResponse *r)
 {
   const PetscReal turgor = load->turgor - r->load.turgor, cohesion = load->cohesion - r->load.cohesion;
 

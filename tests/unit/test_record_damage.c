@@ -9,6 +9,13 @@
 #include <sys/wait.h>
 #include "record_internal.h"
 
+/* HDF5 1.14 refuses a type that no value can fill before it asks for memory. */
+#if H5_VERSION_GE(1, 14, 0)
+#define REFUSED "unusually large"
+#else
+#define REFUSED "memory allocation failed"
+#endif
+
 static void AssertUnreadable(PetscErrorCode code, const char part[])
 {
   LamDatabase db;
@@ -86,7 +93,7 @@ FILE_TEST(a_type_of_records_that_became_vast_takes_no_memory)
   WriteFile(4);
   EnlargeTruth();
   getrusage(RUSAGE_SELF, &before);
-  AssertUnreadable(PETSC_ERR_USER_INPUT, "memory allocation failed");
+  AssertUnreadable(PETSC_ERR_USER_INPUT, REFUSED);
   getrusage(RUSAGE_SELF, &after);
   assert_true(after.ru_maxrss - before.ru_maxrss < 300000); /* kB */
 }

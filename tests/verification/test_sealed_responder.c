@@ -4,7 +4,7 @@
 #include "support/rve_fixture.h"
 #include "support/sealed_cells.h"
 #include "support/synthetic_responder.h"
-#include <lamella/mosaic.h>
+#include <lamella/heterogeneous.h>
 #include <lamella/sealed.h>
 
 #define POINTS 3
@@ -180,20 +180,20 @@ TEST(PressureAndDerivativesAreExact)
 /* Tissues of other units have the same water: the pressure is as exact as of one. */
 TEST(WaterIsTheSameInAllTissues)
 {
-  static const LamMosaicPoint mosaic_points[2] = {{1, {{0, 1, 1, 1}}, 0}, {1, {{1, 1, 1, 1}}, 0.5}};
+  static const LamHeterogeneousPoint mosaic_points[2] = {{1, {{0, 1, 1, 1}}, 0}, {1, {{1, 1, 1, 1}}, 0.5}};
   const LamLoad load = PlaneLoad(1.01, 0.1, 0, 1, 0.3), start = PlaneLoad(1, 0, 0, 1, 0.3);
   const LamLoad loads[2] = {load, load}, starts[2] = {start, start};
   LamResponder open[2], sealed[2], mosaic;
-  LamMosaicTissue tissues[2];
+  LamHeterogeneousTissue tissues[2];
   Synthetic *material;
   LamResponse r[2];
 
   for (int t = 0; t < 2; t++) {
     assert_int_equal(SyntheticCreate(1, &open[t], &material), 0);
     assert_int_equal(LamSealedResponderCreate(PETSC_COMM_SELF, &open[t], 1, &sealed[t]), 0);
-    tissues[t] = (LamMosaicTissue){"", 1 + 1.5 * t, &sealed[t]};
+    tissues[t] = (LamHeterogeneousTissue){"", 1 + 1.5 * t, &sealed[t]};
   }
-  assert_int_equal(LamMosaicCreate(2, tissues, 2, mosaic_points, &mosaic), 0);
+  assert_int_equal(LamHeterogeneousCreate(2, tissues, 2, mosaic_points, &mosaic), 0);
   assert_int_equal(mosaic.respond(mosaic.ctx, 2, starts, points, r), 0);
   assert_int_equal(mosaic.accept(mosaic.ctx), 0);
   assert_int_equal(mosaic.seal(mosaic.ctx, 50), 0);

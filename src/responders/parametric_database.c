@@ -1,4 +1,4 @@
-#include <lamella/family.h>
+#include <lamella/parametric_database.h>
 #include <lamella/blend.h>
 #include <math.h>
 #include <stdio.h>
@@ -6,15 +6,15 @@
 
 #define SAME 1e-9 /* relative */
 
-const char *const LamFamilyAxisNames[] = {LAM_FAMILY_AXES(LAM_NAME_ENTRY) NULL};
+const char *const LamParametricAxisNames[] = {LAM_FAMILY_AXES(LAM_NAME_ENTRY) NULL};
 
 typedef struct {
   LamDatabase database; /* borrowed */
   PetscReal value;
 } Knot;
 
-struct LamFamily_s {
-  LamFamilyAxis axis;
+struct LamParametricDatabase_s {
+  LamParametricAxis axis;
   PetscInt n;
   Knot *knots;       /* ascending */
   PetscReal *values; /* of the knots */
@@ -23,12 +23,12 @@ struct LamFamily_s {
 /* ---- the axis ---- */
 
 /* The parameter of an axis after that of the thickness. */
-static PetscInt OwnParameter(LamFamilyAxis axis)
+static PetscInt OwnParameter(LamParametricAxis axis)
 {
   return LAM_WALL_C2 + (PetscInt)(axis - LAM_FAMILY_WALL_THICKNESS);
 }
 
-static PetscReal AxisValue(const LamMicrostructure *micro, LamFamilyAxis axis)
+static PetscReal AxisValue(const LamMicrostructure *micro, LamParametricAxis axis)
 {
   switch (axis) {
   case LAM_FAMILY_WALL_THICKNESS:
@@ -55,7 +55,7 @@ static PetscBool SameOtherwise(const LamMicrostructure *a, const LamMicrostructu
                      Same(a->clearance, b->clearance) && Same(1 + a->orientation, 1 + b->orientation));
 }
 
-static PetscErrorCode FindAxis(PetscInt n, const LamDatabase databases[], LamFamilyAxis *axis)
+static PetscErrorCode FindAxis(PetscInt n, const LamDatabase databases[], LamParametricAxis *axis)
 {
   LamMicrostructure first, other;
   PetscBool differs[LAM_FAMILY_AXIS_COUNT] = {PETSC_FALSE};
@@ -73,11 +73,11 @@ static PetscErrorCode FindAxis(PetscInt n, const LamDatabase databases[], LamFam
     differs[LAM_FAMILY_WALL_THICKNESS] |= !Same(first.wall_thickness, other.wall_thickness);
     differs[LAM_FAMILY_MATRIX] |= !Same(first.wall.C1, other.wall.C1);
     for (PetscInt k = LAM_FAMILY_WALL_THICKNESS + 1; k < LAM_FAMILY_MATRIX; k++)
-      differs[k] |= !Same(LamWallGet(&first.wall, OwnParameter((LamFamilyAxis)k)),
-                          LamWallGet(&other.wall, OwnParameter((LamFamilyAxis)k)));
+      differs[k] |= !Same(LamWallGet(&first.wall, OwnParameter((LamParametricAxis)k)),
+                          LamWallGet(&other.wall, OwnParameter((LamParametricAxis)k)));
   }
   for (int k = 0; k < LAM_FAMILY_AXIS_COUNT; k++) {
-    if (differs[k]) *axis = (LamFamilyAxis)k;
+    if (differs[k]) *axis = (LamParametricAxis)k;
     count += differs[k];
   }
   PetscCheck(count == 1, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
@@ -92,10 +92,10 @@ static int CompareKnots(const void *first, const void *second)
   return (a > b) - (a < b);
 }
 
-PetscErrorCode LamFamilyCreate(PetscInt n, const LamDatabase databases[], LamFamily *family)
+PetscErrorCode LamParametricDatabaseCreate(PetscInt n, const LamDatabase databases[], LamParametricDatabase *family)
 {
-  LamFamilyAxis axis = LAM_FAMILY_WALL_THICKNESS;
-  LamFamily f;
+  LamParametricAxis axis = LAM_FAMILY_WALL_THICKNESS;
+  LamParametricDatabase f;
 
   PetscFunctionBeginUser;
   PetscCheck(n >= 2, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "a family needs at least two databases");
@@ -116,11 +116,11 @@ PetscErrorCode LamFamilyCreate(PetscInt n, const LamDatabase databases[], LamFam
   for (PetscInt i = 0; i < n; i++) f->values[i] = f->knots[i].value;
   for (PetscInt i = 1; i < n; i++)
     PetscCheck(!Same(f->knots[i - 1].value, f->knots[i].value), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "two of the databases have %s = %g", LamFamilyAxisNames[axis], (double)f->knots[i].value);
+               "two of the databases have %s = %g", LamParametricAxisNames[axis], (double)f->knots[i].value);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamFamilyDestroy(LamFamily *family)
+PetscErrorCode LamParametricDatabaseDestroy(LamParametricDatabase *family)
 {
   PetscFunctionBeginUser;
   if (!*family) PetscFunctionReturn(0);
@@ -130,7 +130,8 @@ PetscErrorCode LamFamilyDestroy(LamFamily *family)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamFamilyGetAxis(LamFamily family, LamFamilyAxis *axis, PetscReal *least, PetscReal *most)
+PetscErrorCode LamParametricDatabaseGetAxis(LamParametricDatabase family, LamParametricAxis *axis, PetscReal *least,
+                                            PetscReal *most)
 {
   PetscFunctionBeginUser;
   *axis = family->axis;
@@ -141,8 +142,8 @@ PetscErrorCode LamFamilyGetAxis(LamFamily family, LamFamilyAxis *axis, PetscReal
 
 /* ---- answers ---- */
 
-PetscErrorCode LamFamilyQuery(LamFamily f, PetscReal value, const LamLoad *load, PetscReal accuracy,
-                              LamResponse *response)
+PetscErrorCode LamParametricDatabaseQuery(LamParametricDatabase f, PetscReal value, const LamLoad *load,
+                                          PetscReal accuracy, LamResponse *response)
 {
   LamResponse at[LAM_BLEND_TERMS];
   LamBlendTerm terms[LAM_BLEND_TERMS];
@@ -154,7 +155,8 @@ PetscErrorCode LamFamilyQuery(LamFamily f, PetscReal value, const LamLoad *load,
   response->status = LAM_OUT_OF_REACH;
   if (!(value >= f->knots[0].value * (1 - SAME) && value <= f->knots[f->n - 1].value * (1 + SAME))) {
     snprintf(response->reason, sizeof(response->reason), "%s = %g is outside the databases, %g to %g",
-             LamFamilyAxisNames[f->axis], (double)value, (double)f->knots[0].value, (double)f->knots[f->n - 1].value);
+             LamParametricAxisNames[f->axis], (double)value, (double)f->knots[0].value,
+             (double)f->knots[f->n - 1].value);
     PetscFunctionReturn(0);
   }
   n = LamBlendAt(f->n, f->values, value, terms);
@@ -164,7 +166,7 @@ PetscErrorCode LamFamilyQuery(LamFamily f, PetscReal value, const LamLoad *load,
     PetscCall(LamDatabaseQuery(knot->database, load, accuracy, &at[i]));
     if (at[i].status == LAM_CONVERGED) continue;
     response->status = at[i].status;
-    snprintf(response->reason, sizeof(response->reason), "at %s = %g: %.150s", LamFamilyAxisNames[f->axis],
+    snprintf(response->reason, sizeof(response->reason), "at %s = %g: %.150s", LamParametricAxisNames[f->axis],
              (double)knot->value, at[i].reason);
     PetscFunctionReturn(0);
   }

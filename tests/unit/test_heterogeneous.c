@@ -2,7 +2,7 @@
   Claims about bodies of different tissue: turned, scaled and blended answers are those of one potential.
 */
 #include "support/test.h"
-#include <lamella/mosaic.h>
+#include <lamella/heterogeneous.h>
 #include "support/random_reals.h"
 #include "support/synthetic_responder.h"
 
@@ -11,10 +11,10 @@ enum { TISSUES = 3, POINTS = 4 };
 typedef struct {
   LamResponder responder[TISSUES], mosaic;
   Synthetic *material[TISSUES];
-  LamMosaicTissue tissues[TISSUES];
+  LamHeterogeneousTissue tissues[TISSUES];
 } Fixture;
 
-static const LamMosaicPoint points[POINTS] = {
+static const LamHeterogeneousPoint points[POINTS] = {
     {1, {{0, 1, 1, 1}}, 0},
     {1, {{1, 1, 1, 1}}, 0.4},
     {3, {{0, -0.1, 0.3, 0}, {1, 0.8, 0.7, 0.75}, {2, 0.3, 0, 0.25}}, -0.7},
@@ -47,15 +47,15 @@ static void SetUp(Fixture *fixture)
   static const PetscReal stress[TISSUES] = {1, 2.5, 0.4};
 
   for (int t = 0; t < TISSUES; t++) {
-    const PetscInt count = LamMosaicPointCount(POINTS, points, t);
+    const PetscInt count = LamHeterogeneousPointCount(POINTS, points, t);
 
     assert_int_equal(count, 2);
     assert_int_equal(SyntheticCreate(count, &fixture->responder[t], &fixture->material[t]), 0);
     fixture->responder[t].respond = StiffRespond;
     fixture->material[t]->mu = 1 + t;
-    fixture->tissues[t] = (LamMosaicTissue){names[t], stress[t], &fixture->responder[t]};
+    fixture->tissues[t] = (LamHeterogeneousTissue){names[t], stress[t], &fixture->responder[t]};
   }
-  assert_int_equal(LamMosaicCreate(TISSUES, fixture->tissues, POINTS, points, &fixture->mosaic), 0);
+  assert_int_equal(LamHeterogeneousCreate(TISSUES, fixture->tissues, POINTS, points, &fixture->mosaic), 0);
 }
 
 static void TearDown(Fixture *fixture)

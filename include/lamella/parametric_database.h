@@ -5,8 +5,8 @@
   of the axis. Between them the potentials are combined with fixed weights (blend.h), so that stress and tangent are
   still the exact derivatives of one potential.
 */
-#ifndef LAMELLA_FAMILY_H
-#define LAMELLA_FAMILY_H
+#ifndef LAMELLA_PARAMETRIC_DATABASE_H
+#define LAMELLA_PARAMETRIC_DATABASE_H
 
 #include <lamella/database.h>
 #include <lamella/export.h>
@@ -20,27 +20,29 @@ LAM_C_BEGIN
   X(LAM_FAMILY_WALL_THICKNESS, "wall_thickness") /* t/a */                                                             \
   LAM_WALL_OWN_PARAMETERS(LAM_FAMILY_OF_WALL, X)                                                                       \
   X(LAM_FAMILY_MATRIX, "C2/C1")
-typedef enum { LAM_FAMILY_AXES(LAM_ENUM_ENTRY) LAM_FAMILY_AXIS_COUNT } LamFamilyAxis;
-LAM_EXPORT extern const char *const LamFamilyAxisNames[];
+typedef enum { LAM_FAMILY_AXES(LAM_ENUM_ENTRY) LAM_FAMILY_AXIS_COUNT } LamParametricAxis;
+LAM_EXPORT extern const char *const LamParametricAxisNames[];
 
-typedef struct LamFamily_s *LamFamily;
+typedef struct LamParametricDatabase_s *LamParametricDatabase;
 
 /*
   n >= 2 databases, in any order; borrowed, and not to be added to while the family is asked. PETSC_ERR_USER_INPUT where
   they differ in more than one of these numbers (in units of C1 + C2 and apothems), in none, or two are alike.
 */
-LAM_EXPORT PetscErrorCode LamFamilyCreate(PetscInt n, const LamDatabase databases[], LamFamily *family);
-LAM_EXPORT PetscErrorCode LamFamilyDestroy(LamFamily *family);
+LAM_EXPORT PetscErrorCode LamParametricDatabaseCreate(PetscInt n, const LamDatabase databases[],
+                                                      LamParametricDatabase *family);
+LAM_EXPORT PetscErrorCode LamParametricDatabaseDestroy(LamParametricDatabase *family);
 /* The axis and the range of its knots. */
-LAM_EXPORT PetscErrorCode LamFamilyGetAxis(LamFamily family, LamFamilyAxis *axis, PetscReal *least, PetscReal *most);
+LAM_EXPORT PetscErrorCode LamParametricDatabaseGetAxis(LamParametricDatabase family, LamParametricAxis *axis,
+                                                       PetscReal *least, PetscReal *most);
 /*
   The answer at `value` of the axis; load and response in units of C1 + C2. Out of reach where one of the databases is,
   or the value lies outside the knots. error_estimate adds to the databases' own the change of P when the knot farthest
   from the value is left out (with two knots: a quarter of the change between them). Safe for threads, as
   LamDatabaseQuery is.
 */
-LAM_EXPORT PetscErrorCode LamFamilyQuery(LamFamily family, PetscReal value, const LamLoad *load, PetscReal accuracy,
-                                         LamResponse *response);
+LAM_EXPORT PetscErrorCode LamParametricDatabaseQuery(LamParametricDatabase family, PetscReal value, const LamLoad *load,
+                                                     PetscReal accuracy, LamResponse *response);
 
 LAM_C_END
 

@@ -46,7 +46,7 @@ static void Build(const LamMicrostructure *micro, LamDatabase *db)
     }
 }
 
-static LamMicrostructure Tissue(LamFamilyAxis axis, PetscReal value)
+static LamMicrostructure Tissue(LamParametricAxis axis, PetscReal value)
 {
   LamMicrostructure micro = DefaultTissue();
 
@@ -60,12 +60,12 @@ static LamMicrostructure Tissue(LamFamilyAxis axis, PetscReal value)
 }
 
 /* Knots in an order that is not ascending; errors at a value between them. */
-static void CheckAxis(LamFamilyAxis axis, const PetscReal values[KNOTS], PetscReal between)
+static void CheckAxis(LamParametricAxis axis, const PetscReal values[KNOTS], PetscReal between)
 {
   LamDatabase databases[KNOTS];
   LamMicrostructure micro = Tissue(axis, between);
-  LamFamily family;
-  LamFamilyAxis found;
+  LamParametricDatabase family;
+  LamParametricAxis found;
   PetscReal least, most;
 
   for (int i = 0; i < KNOTS; i++) {
@@ -73,8 +73,8 @@ static void CheckAxis(LamFamilyAxis axis, const PetscReal values[KNOTS], PetscRe
 
     Build(&knot, &databases[i]);
   }
-  assert_int_equal(LamFamilyCreate(KNOTS, databases, &family), 0);
-  assert_int_equal(LamFamilyGetAxis(family, &found, &least, &most), 0);
+  assert_int_equal(LamParametricDatabaseCreate(KNOTS, databases, &family), 0);
+  assert_int_equal(LamParametricDatabaseGetAxis(family, &found, &least, &most), 0);
   assert_int_equal(found, axis);
   assert_near(least, values[0], 1e-12);
   assert_near(most, values[KNOTS - 1], 1e-12);
@@ -82,13 +82,13 @@ static void CheckAxis(LamFamilyAxis axis, const PetscReal values[KNOTS], PetscRe
     LamResponse truth, answer;
 
     assert_int_equal(SolveOnce(&micro, &loads[s], &truth), 0);
-    assert_int_equal(LamFamilyQuery(family, between, &loads[s], INFINITY, &answer), 0);
+    assert_int_equal(LamParametricDatabaseQuery(family, between, &loads[s], INFINITY, &answer), 0);
     assert_int_equal(answer.status, LAM_CONVERGED);
     assert_true(LamStressError(answer.P, truth.P) < ASKED);
     assert_true(LamStressError(answer.P, truth.P) < 2 * answer.error_estimate + ASKED / 10);
     assert_near(answer.lumen_fraction, truth.lumen_fraction, 1e-3);
   }
-  assert_int_equal(LamFamilyDestroy(&family), 0);
+  assert_int_equal(LamParametricDatabaseDestroy(&family), 0);
   for (int i = 0; i < KNOTS; i++) assert_int_equal(LamDatabaseClose(&databases[i]), 0);
 }
 
@@ -116,29 +116,29 @@ TEST(matrices_of_any_kind)
 TEST(at_a_knot_the_answer_is_its_database_s)
 {
   LamDatabase databases[2];
-  LamFamily family;
+  LamParametricDatabase family;
 
   for (int i = 0; i < 2; i++) {
     const LamMicrostructure micro = Tissue(LAM_FAMILY_C4, i ? 10 : 8);
 
     Build(&micro, &databases[i]);
   }
-  assert_int_equal(LamFamilyCreate(2, databases, &family), 0);
+  assert_int_equal(LamParametricDatabaseCreate(2, databases, &family), 0);
   for (int s = 0; s < STATES; s++) {
     LamResponse own, answer;
 
     assert_int_equal(LamDatabaseQuery(databases[0], &loads[s], INFINITY, &own), 0);
-    assert_int_equal(LamFamilyQuery(family, 8, &loads[s], INFINITY, &answer), 0);
+    assert_int_equal(LamParametricDatabaseQuery(family, 8, &loads[s], INFINITY, &answer), 0);
     for (int i = 0; i < 9; i++) assert_near(answer.P[i], own.P[i], 1e-12);
   }
-  assert_int_equal(LamFamilyDestroy(&family), 0);
+  assert_int_equal(LamParametricDatabaseDestroy(&family), 0);
   for (int i = 0; i < 2; i++) assert_int_equal(LamDatabaseClose(&databases[i]), 0);
 }
 
 TEST(beyond_the_knots_is_refused)
 {
   LamDatabase databases[2];
-  LamFamily family;
+  LamParametricDatabase family;
   LamResponse answer;
 
   for (int i = 0; i < 2; i++) {
@@ -146,11 +146,11 @@ TEST(beyond_the_knots_is_refused)
 
     Build(&micro, &databases[i]);
   }
-  assert_int_equal(LamFamilyCreate(2, databases, &family), 0);
-  assert_int_equal(LamFamilyQuery(family, 11, &loads[0], INFINITY, &answer), 0);
+  assert_int_equal(LamParametricDatabaseCreate(2, databases, &family), 0);
+  assert_int_equal(LamParametricDatabaseQuery(family, 11, &loads[0], INFINITY, &answer), 0);
   assert_int_equal(answer.status, LAM_OUT_OF_REACH);
   assert_non_null(strstr(answer.reason, "C4/C1 = 11"));
-  assert_int_equal(LamFamilyDestroy(&family), 0);
+  assert_int_equal(LamParametricDatabaseDestroy(&family), 0);
   for (int i = 0; i < 2; i++) assert_int_equal(LamDatabaseClose(&databases[i]), 0);
 }
 

@@ -1,7 +1,7 @@
 /*
   Files that answer questions.
 */
-#include "answers.h"
+#include "query_source.h"
 #include <string.h>
 
 static PetscErrorCode CheckKind(const char path[])
@@ -31,7 +31,7 @@ static PetscErrorCode ReadScene(const char path[], LamScene **scene)
 }
 
 /* Turgor and cohesion of the records, where all have the same. */
-static PetscErrorCode UseCommonLoads(LamAnswers *a)
+static PetscErrorCode UseCommonLoads(LamQuerySource *a)
 {
   const LamResponse *records;
   PetscBool same_turgor, same_cohesion;
@@ -55,7 +55,7 @@ static PetscErrorCode UseCommonLoads(LamAnswers *a)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Open(const char path[], LamAnswers *a)
+static PetscErrorCode Open(const char path[], LamQuerySource *a)
 {
   LamGrid grid;
 
@@ -80,20 +80,20 @@ static PetscErrorCode Open(const char path[], LamAnswers *a)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamAnswersOpen(const char path[], LamAnswers *answers)
+PetscErrorCode LamQuerySourceOpen(const char path[], LamQuerySource *answers)
 {
   PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
-  *answers = (LamAnswers){0};
+  *answers = (LamQuerySource){0};
   PetscCall(CheckKind(path));
   ierr = Open(path, answers);
-  if (ierr) (void)LamAnswersClose(answers);
+  if (ierr) (void)LamQuerySourceClose(answers);
   PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamAnswersClose(LamAnswers *answers)
+PetscErrorCode LamQuerySourceClose(LamQuerySource *answers)
 {
   PetscFunctionBeginUser;
   PetscCall(LamDatabaseClose(&answers->database));

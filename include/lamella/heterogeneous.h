@@ -9,8 +9,8 @@
   or names cells and faces, speaks of the cell's own. Lengths are in the apothem of the tissue itself, of blended tissue
   in that of any of them, for these are alike.
 */
-#ifndef LAMELLA_MOSAIC_H
-#define LAMELLA_MOSAIC_H
+#ifndef LAMELLA_HETEROGENEOUS_H
+#define LAMELLA_HETEROGENEOUS_H
 
 #include <lamella/blend.h>
 #include <lamella/export.h>
@@ -22,24 +22,25 @@ typedef struct {
   PetscInt count;
   LamBlendTerm term[LAM_BLEND_TERMS];
   PetscReal angle; /* radian */
-} LamMosaicPoint;
+} LamHeterogeneousPoint;
 
 typedef struct {
   const char *name;        /* said before the reason where it has no answer; "": nothing */
   PetscReal stress;        /* C1 + C2, in units of the body's */
   LamResponder *responder; /* its points 0, 1, ... are those of the body that have it, in their order */
-} LamMosaicTissue;
+} LamHeterogeneousTissue;
 
 /* How many of the n points of this rank have the tissue. */
-LAM_EXPORT PetscInt LamMosaicPointCount(PetscInt n, const LamMosaicPoint points[], PetscInt tissue);
+LAM_EXPORT PetscInt LamHeterogeneousPointCount(PetscInt n, const LamHeterogeneousPoint points[], PetscInt tissue);
 
 /*
   Copies the points and tissues, borrows names and responders. Each `respond` asks the responder of every tissue once,
   also without questions, for it may be collective. Counters are the sums of the tissues': of a blended point every term
   is a query. A term without answer is the answer's status and reason. It can be sealed where all tissues can.
 */
-LAM_EXPORT PetscErrorCode LamMosaicCreate(PetscInt tissue_count, const LamMosaicTissue tissues[], PetscInt n,
-                                          const LamMosaicPoint points[], LamResponder *responder);
+LAM_EXPORT PetscErrorCode LamHeterogeneousCreate(PetscInt tissue_count, const LamHeterogeneousTissue tissues[],
+                                                 PetscInt n, const LamHeterogeneousPoint points[],
+                                                 LamResponder *responder);
 
 LAM_C_END
 

@@ -1,7 +1,7 @@
 /*
   Questions in words, from the command line and from standard input.
 */
-#include "answers.h"
+#include "query_source.h"
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
@@ -94,7 +94,7 @@ static PetscBool ReadStress(const char text[], int length, const LamScales *scal
   return PETSC_TRUE;
 }
 
-PetscBool LamQuestionParse(const char text[], const LamScales *scales, LamLoad *load, char problem[LAM_PROBLEM_LENGTH])
+PetscBool LamQueryParse(const char text[], const LamScales *scales, LamLoad *load, char problem[LAM_PROBLEM_LENGTH])
 {
   PetscReal *const stresses[] = {&load->turgor, &load->cohesion};
   const char *at, *end;

@@ -1,12 +1,12 @@
-#include <lamella/mosaic.h>
+#include <lamella/heterogeneous.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 typedef struct {
   PetscInt tissue_count, n;
-  LamMosaicTissue *tissues;
-  LamMosaicPoint *points;
+  LamHeterogeneousTissue *tissues;
+  LamHeterogeneousPoint *points;
   PetscInt (*number)[LAM_BLEND_TERMS]; /* [point] its number in the tissue of each term */
   LamResponder *self;                  /* the responder's counters; borrowed */
 } Mosaic;
@@ -88,12 +88,12 @@ static void ToBody(const LamLoad *load, PetscReal angle, PetscReal stress, LamRe
 static PetscErrorCode AskTissue(const Mosaic *mosaic, PetscInt tissue, PetscInt n, const LamLoad loads[],
                                 const PetscInt points[], Batch *batch)
 {
-  const LamMosaicTissue *t = &mosaic->tissues[tissue];
+  const LamHeterogeneousTissue *t = &mosaic->tissues[tissue];
 
   PetscFunctionBeginUser;
   batch->n = 0;
   for (PetscInt i = 0; i < n; i++) {
-    const LamMosaicPoint *point = &mosaic->points[points[i]];
+    const LamHeterogeneousPoint *point = &mosaic->points[points[i]];
 
     for (PetscInt k = 0; k < point->count; k++) {
       if (point->term[k].knot != tissue) continue;
@@ -113,7 +113,7 @@ static PetscErrorCode AskTissue(const Mosaic *mosaic, PetscInt tissue, PetscInt 
 }
 
 /* The first term without fields is the answer's fate. */
-static PetscErrorCode Refuse(const LamMosaicTissue *tissue, const LamResponse *term, LamResponse *response)
+static PetscErrorCode Refuse(const LamHeterogeneousTissue *tissue, const LamResponse *term, LamResponse *response)
 {
   PetscFunctionBeginUser;
   PetscCall(LamResponseInit(&term->load, response));
@@ -125,7 +125,7 @@ static PetscErrorCode Refuse(const LamMosaicTissue *tissue, const LamResponse *t
 }
 
 /* at[k] answers term k. */
-static PetscErrorCode Combine(const Mosaic *mosaic, const LamMosaicPoint *point, const LamResponse at[],
+static PetscErrorCode Combine(const Mosaic *mosaic, const LamHeterogeneousPoint *point, const LamResponse at[],
                               LamResponse *response)
 {
   PetscFunctionBeginUser;
@@ -239,7 +239,7 @@ static PetscErrorCode MosaicSeal(void *ctx, PetscReal bulk_modulus)
 
   PetscFunctionBeginUser;
   for (PetscInt t = 0; t < mosaic->tissue_count; t++) {
-    const LamMosaicTissue *tissue = &mosaic->tissues[t];
+    const LamHeterogeneousTissue *tissue = &mosaic->tissues[t];
 
     PetscCall(tissue->responder->seal(tissue->responder->ctx, bulk_modulus / tissue->stress));
   }
@@ -314,7 +314,7 @@ static PetscErrorCode MosaicDestroy(void **ctx)
   PetscFunctionReturn(0);
 }
 
-PetscInt LamMosaicPointCount(PetscInt n, const LamMosaicPoint points[], PetscInt tissue)
+PetscInt LamHeterogeneousPointCount(PetscInt n, const LamHeterogeneousPoint points[], PetscInt tissue)
 {
   PetscInt count = 0;
 
@@ -337,8 +337,8 @@ static PetscErrorCode NumberPoints(Mosaic *mosaic)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamMosaicCreate(PetscInt tissue_count, const LamMosaicTissue tissues[], PetscInt n,
-                               const LamMosaicPoint points[], LamResponder *responder)
+PetscErrorCode LamHeterogeneousCreate(PetscInt tissue_count, const LamHeterogeneousTissue tissues[], PetscInt n,
+                                      const LamHeterogeneousPoint points[], LamResponder *responder)
 {
   PetscBool can_seal = PETSC_TRUE;
   Mosaic *mosaic;

@@ -1,7 +1,7 @@
 /*
   Answers that the file of a database has, for a run that would solve them otherwise.
 */
-#include "known_answers.h"
+#include "known_records.h"
 #include <stdlib.h>
 
 static int CompareKeys(const void *first, const void *second)
@@ -11,7 +11,7 @@ static int CompareKeys(const void *first, const void *second)
   return (a->key > b->key) - (a->key < b->key);
 }
 
-PetscErrorCode LamKnownAnswersSet(LamKnownAnswers *known, PetscInt first, PetscInt n, PetscInt64 keys[],
+PetscErrorCode LamKnownRecordsSet(LamKnownRecords *known, PetscInt first, PetscInt n, PetscInt64 keys[],
                                   LamResponse records[])
 {
   PetscFunctionBeginUser;
@@ -25,7 +25,7 @@ PetscErrorCode LamKnownAnswersSet(LamKnownAnswers *known, PetscInt first, PetscI
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamKnownAnswersDestroy(LamKnownAnswers *known)
+PetscErrorCode LamKnownRecordsDestroy(LamKnownRecords *known)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(known->keys));
@@ -42,7 +42,7 @@ static PetscBool SameLoad(const LamLoad *a, const LamLoad *b)
   return (PetscBool)(a->turgor == b->turgor && a->cohesion == b->cohesion);
 }
 
-PetscInt LamKnownAnswersFind(const LamKnownAnswers *known, PetscInt64 key, const LamLoad *load)
+PetscInt LamKnownRecordsFind(const LamKnownRecords *known, PetscInt64 key, const LamLoad *load)
 {
   const LamKnownKey wanted = {.key = key};
   const LamKnownKey *found;
@@ -58,10 +58,10 @@ PetscInt LamKnownAnswersFind(const LamKnownAnswers *known, PetscInt64 key, const
   return -1;
 }
 
-PetscErrorCode LamKnownAnswersSolve(void *ctx, PetscInt64 key, LamResponse *response)
+PetscErrorCode LamKnownRecordsSolve(void *ctx, PetscInt64 key, LamResponse *response)
 {
-  const LamKnownAnswers *known = ctx;
-  const PetscInt row = LamKnownAnswersFind(known, key, NULL);
+  const LamKnownRecords *known = ctx;
+  const PetscInt row = LamKnownRecordsFind(known, key, NULL);
 
   PetscFunctionBeginUser;
   if (row >= 0)
@@ -71,10 +71,10 @@ PetscErrorCode LamKnownAnswersSolve(void *ctx, PetscInt64 key, LamResponse *resp
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamKnownAnswersSolveNear(void *ctx, PetscInt64 key, const LamLoad *load, LamResponse *response)
+PetscErrorCode LamKnownRecordsSolveNear(void *ctx, PetscInt64 key, const LamLoad *load, LamResponse *response)
 {
-  const LamKnownAnswers *known = ctx;
-  const PetscInt row = LamKnownAnswersFind(known, LAM_CACHE_KEY, load);
+  const LamKnownRecords *known = ctx;
+  const PetscInt row = LamKnownRecordsFind(known, LAM_CACHE_KEY, load);
 
   PetscFunctionBeginUser;
   if (row >= 0)
