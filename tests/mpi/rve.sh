@@ -21,7 +21,11 @@ mpirun -n 2 "$lamella" rve --no-such-option 2>err.txt
 [ "$(grep -c 'is unknown' err.txt)" -eq 1 ] || fail "a mistake of usage is not told once: $(cat err.txt)"
 
 # a rank that is alone with its error ends the job, and its words are seen
-mpirun -n 1 "$lamella" build "$source/tests/scenes/tissue-block.yaml" -d alone.h5 : \
-  -n 1 "$lamella" build missing.yaml -d alone.h5 >out.txt 2>err.txt
+# (a script, since mpirun of Open MPI 5.0.7 crashes on two programs with a colon between them)
+cat >alone.sh <<'SH'
+if [ "$OMPI_COMM_WORLD_RANK" = 0 ]; then scene=$2; else scene=missing.yaml; fi
+exec "$1" build "$scene" -d alone.h5
+SH
+mpirun -n 2 sh alone.sh "$lamella" "$source/tests/scenes/tissue-block.yaml" >out.txt 2>err.txt
 [ $? -eq 2 ] || fail "a lone error does not end with its status: $(cat err.txt)"
 grep -q 'lamella: missing.yaml' err.txt || fail "a lone error is not seen: $(cat err.txt)"
