@@ -4,13 +4,13 @@
 
 /* ---- weights ---- */
 
-/* Knots of value 0 (no fibres, no C2) are on a linear axis. */
+/* The axis is linear where a knot is 0 (no fibres, no C2), else logarithmic. */
 static PetscReal Position(PetscReal value, PetscBool is_log)
 {
   return is_log ? log(value) : value;
 }
 
-/* Of the polynomial through n knots, one left out where `without` is not -1. */
+/* Lagrange weights of n knots at value; knot `without` is left out (-1: none). */
 static void Weights(const PetscReal knots[], PetscInt n, PetscReal value, PetscInt without, PetscReal w[])
 {
   const PetscBool is_log = (PetscBool)(knots[0] > 0);
@@ -28,7 +28,7 @@ static void Weights(const PetscReal knots[], PetscInt n, PetscReal value, PetscI
   }
 }
 
-/* The knots around a value: *first of them, and how many. */
+/* The knots around a value: index of the first, and their number. */
 static void Nearest(PetscInt n, const PetscReal knots[], PetscReal value, PetscInt *first, PetscInt *count)
 {
   PetscInt above = 1;
@@ -38,7 +38,7 @@ static void Nearest(PetscInt n, const PetscReal knots[], PetscReal value, PetscI
   *first = PetscMin(PetscMax(above - *count / 2, 0), n - *count);
 }
 
-/* Without the knot farthest away. */
+/* Weights without the farthest knot. */
 static void CoarseWeights(const PetscReal knots[], PetscInt n, PetscReal value, const PetscReal w[], PetscReal coarse[])
 {
   const PetscReal low = fabs(log1p(value) - log1p(knots[0])), high = fabs(log1p(value) - log1p(knots[n - 1]));
@@ -72,9 +72,9 @@ PetscInt LamBlendAt(PetscInt n, const PetscReal knots[], PetscReal value, LamBle
   return count;
 }
 
-/* ---- answers ---- */
+/* ---- responses ---- */
 
-/* All numbers that are linear in the potential; 33 ones are interpolated likewise. */
+/* Adds all quantities that are linear in the potential; 33 components are interpolated in the same way. */
 static void AddPotential(PetscReal w, const LamResponse *r, LamResponse *sum)
 {
   sum->energy += w * r->energy;
@@ -91,7 +91,7 @@ static void AddPotential(PetscReal w, const LamResponse *r, LamResponse *sum)
   for (int i = 0; i < 81; i++) sum->tangent[i] += w * r->tangent[i];
 }
 
-/* Starts from zero where AddPotential adds. */
+/* Zeroes the members that AddPotential adds to. */
 static void ClearPotential(LamResponse *r)
 {
   r->energy = r->energy_turgor = r->energy_turgor2 = 0;
@@ -100,7 +100,7 @@ static void ClearPotential(LamResponse *r)
   for (int i = 0; i < 81; i++) r->tangent[i] = 0;
 }
 
-/* Pressures and indicators of the two terms with shares; counts where both agree. */
+/* Interpolates pressures and indicators between the two terms with shares; counts are set where both agree. */
 static void MixIndicators(const LamResponse *a, const LamResponse *b, PetscReal t, LamResponse *r)
 {
   for (const LamMember *m = LamResponseMembers; m->name; m++) {
@@ -118,7 +118,7 @@ static void MixIndicators(const LamResponse *a, const LamResponse *b, PetscReal 
   if (a->cell_clusters == b->cell_clusters) r->cell_clusters = a->cell_clusters;
   if (a->percolating_directions == b->percolating_directions) r->percolating_directions = a->percolating_directions;
   r->indicators_trusted = (PetscBool)(a->indicators_trusted && b->indicators_trusted);
-  /* volumes are derivatives of the potential where they are so at the knots */
+  /* as at the knots, the lumen fraction is a derivative of the potential */
   if (a->lumen_fraction == -a->energy_turgor) r->lumen_fraction = -r->energy_turgor;
   r->opening_fraction = PetscMax(r->energy_cohesion, 0);
 }
@@ -134,7 +134,7 @@ static void MixShares(PetscInt n, const LamBlendTerm terms[], const LamResponse 
     MixIndicators(&at[first], &at[first + 1], terms[first + 1].share, r);
 }
 
-/* How the terms were found. */
+/* Status and effort of the terms. */
 static void AddEffort(const LamResponse *term, LamResponse *r)
 {
   if (term->status == LAM_UNSTABLE) r->status = LAM_UNSTABLE;

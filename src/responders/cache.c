@@ -1,27 +1,28 @@
 /*
-  Responders that answer from a database: alone, or with a solver for what it lacks.
+  Responders backed by a database: alone, or with a solver for states that it does not cover.
 
-  Method. Answers come from the table of a database, whose nodes are solved where questions fall and shared by all
-  questions around. Where no node helps, as next to a change of branch, the state asked for is solved itself, and the
-  second-order model of its potential answers the point, and others around, while its estimated error is small enough:
-  in situ adaptive tabulation (Pope, Combust. Theory Model. 1 (1997) 41) with a model for each point to hold
+  Method. Responses are interpolated from the table of a database. Its nodes are solved where queries fall and shared by
+  all queries nearby. Where no node helps, as next to a change of branch, the queried state is solved directly. The
+  second-order model of its potential then serves this point and nearby ones while its estimated error is small enough:
+  in situ adaptive tabulation (Pope, Combust. Theory Model. 1 (1997) 41), with one model held per point
   (cache_point.c).
 
-  Algorithm, of one `respond`:
-  1. Ask for all questions: what answered the point last, its model or the table of this load step, then the newest
-     table, then the model, then the records for the question's own state.
-  2. The keys of the nodes that the newest table lacks for what is left, from all ranks, sorted, are dealt out in turn,
-     solved, gathered, and added on all ranks in that order. From 1 with what is left, MAX_ROUNDS times at most.
-  3. Where no node helps any more, points whose nearest model is good to ADOPTS of the accuracy take to it. Of what is
-     left, turned and mirrored to the states of nodes (LamTableTurn), from all ranks and sorted, each SHARE-th is dealt
-     out, solved, from the nearest node where there is one, and added as states of no grid, which answer. So on until
-     none is left; or it stays without answer (LAM_OUTSIDE_STOP).
+  Algorithm of one `respond`:
+  1. Query all loads. Order of sources: the last source of the point (its model or its table of this load step), the
+     newest table, the model, the records of the queried state itself.
+  2. For the remaining queries, gather the keys of the nodes that the newest table lacks from all ranks and sort them.
+     Distribute them in turn, solve, gather, and add them on all ranks in that order. Repeat from 1 with the remaining
+     queries, at most MAX_ROUNDS times.
+  3. Where no node helps any more, assign the nearest model to points where its error is within ADOPTS of the accuracy.
+     Map the remaining loads by the symmetry to the states of nodes (LamTableTurn), gather them from all ranks and sort
+     them. Distribute every SHARE-th, solve it (from the nearest node if there is one) and add it outside the grid.
+     Repeat until no query remains. With LAM_OUTSIDE_STOP the remaining queries get no response.
 
-  Rounding. In 2 and 3 questions are rounded, so that what is solved does not depend on the ranks' order of summation;
-  the answer to a rounded question is led back to the one asked by its tangent.
+  Rounding. Steps 2 and 3 round the loads, so that the set of solved states does not depend on the ranks' order of
+  summation. The response is corrected from the rounded to the queried load by its tangent.
 
-  Convergence. A point that took to a model, or was solved for itself, SELF_STAYS times in this load step goes on
-  without tables: at the edge of what they answer, iterations that step to and fro between two answers would not end.
+  Convergence. A point that switched to a model or was solved directly SELF_STAYS times in this load step skips tables
+  from then on: at the edge of a table, iterations that alternate between two responses would not converge.
 */
 #include "clock.h"
 #include <stdlib.h>
@@ -31,16 +32,16 @@
 
 enum { MAX_ROUNDS = 12, SHARE = 8, LEAST_SHARE = 4 };
 
-/* Questions of one `respond` that have no answer yet. */
+/* Queries of one `respond` without a response yet. */
 typedef struct {
   const LamLoad *loads;
   const PetscInt *points;
   LamResponse *responses;
-  PetscInt n, *at;  /* places in the three */
-  PetscBool solved; /* the database is no longer as it was */
+  PetscInt n, *at;  /* [n] indices into the three */
+  PetscBool solved; /* states were added to the database */
 } Missing;
 
-/* What is to be solved, the same on all ranks: nodes, or states where keys is NULL. */
+/* The states to solve, the same on all ranks: nodes, or other states where keys is NULL. */
 typedef struct {
   PetscInt n;
   PetscInt64 *keys;
@@ -48,9 +49,9 @@ typedef struct {
   LamResponse *responses;
 } Batch;
 
-/* ---- step 1: asking ---- */
+/* ---- step 1: query ---- */
 
-/* Asks for all that is missing; leaves what still is. */
+/* Queries all missing loads; keeps those still without a response. */
 static PetscErrorCode AskAll(LamCache *cache, Missing *missing)
 {
   const PetscReal start = LamClock();
@@ -90,7 +91,7 @@ static PetscErrorCode SolveNodes(LamCache *cache, PetscInt n, const PetscInt64 k
   PetscFunctionReturn(0);
 }
 
-/* All from the reference state. */
+/* Solves all from the reference state. */
 static PetscErrorCode SolveLoads(LamCache *cache, PetscInt n, const LamLoad loads[], LamResponse responses[])
 {
   const LamResponder before = *cache->solver;
@@ -106,7 +107,7 @@ static PetscErrorCode SolveLoads(LamCache *cache, PetscInt n, const LamLoad load
   PetscFunctionReturn(0);
 }
 
-/* From the nearest node, else from the reference: the answer must not depend on who solves it. */
+/* Starts at the nearest node, else at the reference state: the response must not depend on the rank that solves. */
 static PetscErrorCode SolveNearNodes(LamCache *cache, PetscInt n, const LamLoad loads[], LamResponse responses[])
 {
   PetscInt64 node;
@@ -128,7 +129,7 @@ static PetscErrorCode SolveNearNodes(LamCache *cache, PetscInt n, const LamLoad 
   PetscFunctionReturn(0);
 }
 
-/* Item k of the batch is solved by rank k mod ranks; all have all responses then. */
+/* Rank k mod ranks solves item k of the batch; then all ranks hold all responses. */
 static PetscErrorCode SolveBatch(LamCache *cache, Batch *batch)
 {
   PetscMPIInt rank, ranks, *starts;
@@ -165,7 +166,7 @@ static PetscErrorCode SolveBatch(LamCache *cache, Batch *batch)
   PetscFunctionReturn(0);
 }
 
-/* Adds what was solved, failed or not. *stopped: the solver was stopped on the way, and the rest is not there. */
+/* Adds all solved states, failed ones too. *stopped: the solver was stopped before it finished the batch. */
 static PetscErrorCode AddBatch(LamCache *cache, const Batch *batch, PetscBool *stopped)
 {
   LamResponse *records;
@@ -205,7 +206,7 @@ static PetscErrorCode BatchDestroy(Batch *batch)
 
 /* ---- step 2: nodes ---- */
 
-/* The nodes that this rank's questions need, each once. The caller frees *keys. */
+/* The nodes that this rank's queries need, each once. The caller frees *keys. */
 static PetscErrorCode FindMyNeeds(LamCache *cache, const Missing *missing, PetscInt *n, PetscInt64 **keys)
 {
   PetscInt capacity = 16 * LAM_MAX_NEEDS, more;
@@ -229,7 +230,7 @@ static PetscErrorCode FindMyNeeds(LamCache *cache, const Missing *missing, Petsc
   PetscFunctionReturn(0);
 }
 
-/* One round; *ends: no node helps any more, or the solver was stopped. */
+/* One round of step 2. *ends: no further node helps. *stopped: the solver was stopped. */
 static PetscErrorCode Refine(LamCache *cache, Missing *missing, PetscBool *ends, PetscBool *stopped)
 {
   PetscInt64 *mine;
@@ -252,7 +253,7 @@ static PetscErrorCode Refine(LamCache *cache, Missing *missing, PetscBool *ends,
 
 /* ---- step 3: states ---- */
 
-/* The state to solve for a question. */
+/* The state to solve for a query. */
 static PetscErrorCode StateFor(LamCache *cache, const LamLoad *load, LamLoad *state)
 {
   const LamLoad rounded = LamLoadRound(load);
@@ -265,7 +266,7 @@ static PetscErrorCode StateFor(LamCache *cache, const LamLoad *load, LamLoad *st
   PetscFunctionReturn(0);
 }
 
-/* Of a state that has just been solved and added. */
+/* The response of a state that has just been solved and added. */
 static PetscErrorCode TakeOwnState(LamCache *cache, const LamLoad *load, const LamResponse *solved,
                                    LamResponse *response)
 {
@@ -275,7 +276,7 @@ static PetscErrorCode TakeOwnState(LamCache *cache, const LamLoad *load, const L
   PetscFunctionBeginUser;
   PetscCall(LamResponseInit(load, response));
   if (LamResponseHasFields(solved)) PetscCall(LamCacheAskRecords(cache, load, response));
-  if (!LamResponseHasFields(response)) { /* failed; or unstable, which is no answer of a database */
+  if (!LamResponseHasFields(response)) { /* failed, or unstable: a database does not return unstable states */
     *response = *solved;
     if (LamResponseHasFields(solved) && LamLoadCompare(&rounded, &solved->load))
       PetscCall(cache->solver->respond(cache->solver->ctx, 1, &rounded, &point, response));
@@ -303,7 +304,7 @@ static PetscErrorCode AdoptAll(LamCache *cache, Missing *missing)
   PetscFunctionReturn(0);
 }
 
-/* A share of what all ranks lack, spread over it, of LEAST_SHARE where there are as many. */
+/* An evenly spread subset of the states that all ranks lack: one in SHARE, but at least LEAST_SHARE (or all). */
 static PetscErrorCode FindShare(LamCache *cache, PetscInt n, const LamLoad mine[], Batch *batch)
 {
   PetscInt share;
@@ -446,7 +447,7 @@ static PetscErrorCode CacheDestroy(void **ctx)
   PetscFunctionBeginUser;
   if (!cache) PetscFunctionReturn(0);
   PetscCall(LamCacheEndStep(cache, PETSC_FALSE));
-  PetscCall(LamTableDestroy(&cache->newest)); /* of a `respond` that ended with an error */
+  PetscCall(LamTableDestroy(&cache->newest)); /* left by a `respond` that returned an error */
   PetscCall(PetscFree(cache->points));
   PetscCall(PetscFree(*ctx));
   PetscFunctionReturn(0);

@@ -1,5 +1,5 @@
 /*
-  Private to the cache: what its material points are answered by (cache_point.c).
+  Private to the cache: the source of the response at each material point (cache_point.c).
 */
 #ifndef LAM_CACHE_IMPL_H
 #define LAM_CACHE_IMPL_H
@@ -7,24 +7,24 @@
 #include <lamella/cache.h>
 #include "scatter_model.h"
 
-/* What of a material point outlasts a load step. */
+/* State of a material point that is kept beyond a load step. */
 typedef struct {
   LamScatterModel model; /* state -1: none */
-  PetscBool answers;     /* it answered last, not a table */
+  PetscBool answers;     /* the last response came from the model, not from a table */
 } LamCacheHeld;
 
-/* What answers a material point. */
+/* Sources of the response at a material point. */
 typedef struct {
-  LamTable table; /* owned: the last to answer in this load step; NULL: none */
+  LamTable table; /* owned: the table last used in this load step; NULL: none */
   LamCacheHeld held, accepted;
-  PetscInt self_solves; /* in this load step: states solved for the point itself, and times it took to a model */
+  PetscInt self_solves; /* in this load step: direct solves for the point, plus switches to a model */
 } LamCachePoint;
 
 typedef struct {
   MPI_Comm comm;
   LamDatabase database;       /* borrowed */
   LamResponder *solver;       /* borrowed; NULL: database only */
-  const LamNodeSolver *nodes; /* borrowed; NULL: by the solver */
+  const LamNodeSolver *nodes; /* borrowed; NULL: `solver` solves nodes */
   LamOutside outside;
   LamResponder *self; /* the responder's counters; borrowed */
   PetscReal accuracy;
@@ -33,23 +33,24 @@ typedef struct {
   PetscInt n_points;
 } LamCache;
 
-/* point: -1: of no material point. */
+/* Argument `point`: index of the material point; -1: none. */
 
-/* What answered the point last is asked first; LAM_OUT_OF_REACH where nothing answers. */
+/* Queries the point's last source first. LAM_OUT_OF_REACH where no source responds. */
 PetscErrorCode LamCacheAsk(LamCache *cache, const LamLoad *load, PetscInt point, LamResponse *response);
 /*
-  Records of no grid. Beside a solver the question's own state alone: blends of states around change with each record.
+  Queries the records outside the grid. With a solver only a record of the queried state itself is used: blends of
+  surrounding states would change with each added record.
 */
 PetscErrorCode LamCacheAskRecords(LamCache *cache, const LamLoad *load, LamResponse *response);
-/* The point takes to the nearest model, where that is so near that it will go on to answer; else nothing changes. */
+/* Assigns the nearest model to the point if its error estimate leaves a margin; else changes nothing. */
 PetscErrorCode LamCacheAdopt(LamCache *cache, const LamLoad *load, PetscInt point, LamResponse *response);
-/* The state solved for the point answers it from now on, unless it failed or is unstable. */
+/* From now on the model of the state solved for the point is used there, unless the solve failed or is unstable. */
 void LamCacheAssignLocalModel(LamCache *cache, const LamLoad *load, PetscInt point);
-/* No table is asked for it in this load step. */
+/* Whether the point skips tables in this load step. */
 PetscBool LamCacheUsesDirectSolve(const LamCache *cache, PetscInt point);
-/* A load step ends, by `accept` or not: the next one begins with the newest table. */
+/* Ends a load step, accepted or rejected. The next one starts with the newest table. */
 PetscErrorCode LamCacheEndStep(LamCache *cache, PetscBool accept);
-/* The responder's. */
+/* Callbacks of the responder. */
 PetscErrorCode LamCacheStateSize(void *ctx, size_t *bytes);
 PetscErrorCode LamCacheSave(void *ctx, PetscInt point, void *bytes);
 PetscErrorCode LamCacheLoad(void *ctx, PetscInt point, const void *bytes);

@@ -1,13 +1,13 @@
 /*
-  What answers the material points of a cache: tables, and the models that they hold (cache.c, steps 1 and 3).
+  Responses at the material points of a cache: from tables, and from the models they hold (cache.c, steps 1 and 3).
 */
 #include "cache_impl.h"
 #include <string.h>
 #include "rounded_load.h"
 
-/* Of the accuracy: with a model whose error is estimated above that a point does not begin. */
+/* Times the accuracy: largest error estimate at which a point switches to a model. */
 static const PetscReal ADOPTS = 0.25;
-static const PetscReal OWN_STATE = 1e-8; /* distance of a question from its own record, rounded twice; a strain */
+static const PetscReal OWN_STATE = 1e-8; /* strain: distance of a query from its own record, which is rounded twice */
 enum { SELF_STAYS = 2 };
 
 static PetscBool GoesOnByItself(const LamCachePoint *point)
@@ -15,13 +15,13 @@ static PetscBool GoesOnByItself(const LamCachePoint *point)
   return (PetscBool)(point && point->self_solves >= SELF_STAYS);
 }
 
-/* NULL: the question is of no material point. */
+/* NULL: no material point. */
 static LamCachePoint *PointOf(const LamCache *cache, PetscInt point)
 {
   return point < 0 ? NULL : &cache->points[point];
 }
 
-/* Out of reach where neither the point's table nor the newest one answers; the newest is its own from then on. */
+/* Queries the point's table, then the newest, which becomes the point's if it responds. Else LAM_OUT_OF_REACH. */
 static PetscErrorCode AskTables(LamCache *cache, const LamLoad *load, LamCachePoint *point, LamResponse *response)
 {
   PetscFunctionBeginUser;
@@ -37,14 +37,14 @@ static PetscErrorCode AskTables(LamCache *cache, const LamLoad *load, LamCachePo
   PetscFunctionReturn(0);
 }
 
-/* From now on the model answers. */
+/* From now on the model is the point's source. */
 static void TakeTo(LamCachePoint *point, LamScatterModel model)
 {
   point->held = (LamCacheHeld){model, PETSC_TRUE};
   point->self_solves++;
 }
 
-/* Answers, if the model is good to the accuracy; else the response stays as it is. */
+/* Writes the model's response if its error estimate is within the accuracy; else leaves the response unchanged. */
 static PetscErrorCode TryModel(LamCache *cache, const LamScatterModel *model, const LamLoad *load, PetscReal accuracy,
                                LamResponse *response)
 {
@@ -149,7 +149,7 @@ PetscErrorCode LamCacheEndStep(LamCache *cache, PetscBool accept)
   PetscFunctionReturn(0);
 }
 
-/* Held, as bytes; of the model the load of its record, as another file has others before it. */
+/* LamCacheHeld as bytes. The model is stored as the load of its record, since indices differ between files. */
 typedef struct {
   LamLoad record;
   PetscInt image; /* -1: no model */

@@ -7,15 +7,15 @@ typedef struct {
   PetscInt tissue_count, n;
   LamHeterogeneousTissue *tissues;
   LamHeterogeneousPoint *points;
-  PetscInt (*number)[LAM_BLEND_TERMS]; /* [point] its number in the tissue of each term */
+  PetscInt (*number)[LAM_BLEND_TERMS]; /* [point] its index in the tissue of each term */
   LamResponder *self;                  /* the responder's counters; borrowed */
 } Mosaic;
 
-/* The questions of one `respond` to one tissue. */
+/* The queries of one `respond` to one tissue. */
 typedef struct {
   PetscInt n;
   LamLoad *loads;
-  PetscInt *points, (*from)[2]; /* [n] the question and the term that each is for */
+  PetscInt *points, (*from)[2]; /* from: [n] the query and the term of each */
   LamResponse *responses;
 } Batch;
 
@@ -35,9 +35,9 @@ static PetscErrorCode BatchDestroy(Batch *batch)
   PetscFunctionReturn(0);
 }
 
-/* ---- turning and scaling ---- */
+/* ---- rotation and scaling ---- */
 
-/* The question in the tissue's own axes and units: F Q. */
+/* The load in the axes and units of the tissue: F Q. */
 static LamLoad ToTissue(const LamLoad *load, PetscReal angle, PetscReal stress)
 {
   LamLoad own = {.turgor = load->turgor / stress, .cohesion = load->cohesion / stress};
@@ -51,7 +51,7 @@ static LamLoad ToTissue(const LamLoad *load, PetscReal angle, PetscReal stress)
   return own;
 }
 
-/* A Q^T of the n rows of three that are `stride` apart; entries of a row are `step` apart. */
+/* Multiplies n rows of three by Q^T: rows are `stride` apart, the entries of a row `step` apart. */
 static void TurnRows(PetscReal A[], PetscInt n, PetscInt stride, PetscInt step, PetscReal c, PetscReal s)
 {
   for (PetscInt i = 0; i < n; i++) {
@@ -74,7 +74,7 @@ static void Turn(PetscReal angle, LamResponse *r)
   for (int i = 0; i < 3; i++) TurnRows(&r->tangent[27 * i], 9, 1, 9, c, s); /* ij: j */
 }
 
-/* The answer in the axes and units of the body. */
+/* Converts the response to the axes and units of the body. */
 static void ToBody(const LamLoad *load, PetscReal angle, PetscReal stress, LamResponse *r)
 {
   LamResponseScale(stress, r);
@@ -82,9 +82,9 @@ static void ToBody(const LamLoad *load, PetscReal angle, PetscReal stress, LamRe
   r->load = *load;
 }
 
-/* ---- asking ---- */
+/* ---- queries ---- */
 
-/* Asks the tissue for all that is its own; answers in the axes and units of the body. */
+/* Queries the tissue for all its terms. Responses are in the axes and units of the body. */
 static PetscErrorCode AskTissue(const Mosaic *mosaic, PetscInt tissue, PetscInt n, const LamLoad loads[],
                                 const PetscInt points[], Batch *batch)
 {
@@ -112,7 +112,7 @@ static PetscErrorCode AskTissue(const Mosaic *mosaic, PetscInt tissue, PetscInt 
   PetscFunctionReturn(0);
 }
 
-/* The first term without fields is the answer's fate. */
+/* Without fields in one term the response has none: copies that term's status and reason. */
 static PetscErrorCode Refuse(const LamHeterogeneousTissue *tissue, const LamResponse *term, LamResponse *response)
 {
   PetscFunctionBeginUser;
@@ -124,7 +124,7 @@ static PetscErrorCode Refuse(const LamHeterogeneousTissue *tissue, const LamResp
   PetscFunctionReturn(0);
 }
 
-/* at[k] answers term k. */
+/* at[k]: response of term k. */
 static PetscErrorCode Combine(const Mosaic *mosaic, const LamHeterogeneousPoint *point, const LamResponse at[],
                               LamResponse *response)
 {
@@ -143,7 +143,7 @@ static PetscErrorCode Combine(const Mosaic *mosaic, const LamHeterogeneousPoint 
   PetscFunctionReturn(0);
 }
 
-/* What the tissues have counted so far. */
+/* Sums the tissues' counters. */
 static void SumCounters(Mosaic *mosaic)
 {
   LamResponder *sum = mosaic->self;
@@ -163,7 +163,7 @@ static void SumCounters(Mosaic *mosaic)
   }
 }
 
-/* parts: of question i from start[i] on, one for each term. */
+/* parts: responses of query i from start[i] on, one per term. */
 static PetscErrorCode AskTissues(const Mosaic *mosaic, PetscInt n, const LamLoad loads[], const PetscInt points[],
                                  const PetscInt start[], LamResponse parts[])
 {
@@ -232,7 +232,7 @@ static PetscErrorCode MosaicReject(void *ctx)
   PetscFunctionReturn(0);
 }
 
-/* Water is as stiff in all tissues; each term of a blend keeps its own. */
+/* All tissues have the same bulk modulus of water; each term of a blend keeps its own water. */
 static PetscErrorCode MosaicSeal(void *ctx, PetscReal bulk_modulus)
 {
   Mosaic *mosaic = (Mosaic *)ctx;
@@ -246,7 +246,7 @@ static PetscErrorCode MosaicSeal(void *ctx, PetscReal bulk_modulus)
   PetscFunctionReturn(0);
 }
 
-/* ---- states: those of a point's terms, one behind the other ---- */
+/* ---- saved state: those of a point's terms, concatenated ---- */
 
 static PetscErrorCode StateSize(void *ctx, size_t *bytes)
 {
@@ -323,7 +323,7 @@ PetscInt LamHeterogeneousPointCount(PetscInt n, const LamHeterogeneousPoint poin
   return count;
 }
 
-/* The points of a tissue are numbered in the order of the body's. */
+/* Numbers the points of each tissue in the order of the body's points. */
 static PetscErrorCode NumberPoints(Mosaic *mosaic)
 {
   PetscInt *next;

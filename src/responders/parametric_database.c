@@ -22,7 +22,7 @@ struct LamParametricDatabase_s {
 
 /* ---- the axis ---- */
 
-/* The parameter of an axis after that of the thickness. */
+/* The wall parameter of an axis other than the wall thickness. */
 static PetscInt OwnParameter(LamParametricAxis axis)
 {
   return LAM_WALL_C2 + (PetscInt)(axis - LAM_FAMILY_WALL_THICKNESS);
@@ -46,7 +46,7 @@ static PetscBool Same(PetscReal a, PetscReal b)
   return (PetscBool)(fabs(a - b) <= SAME * (fabs(a) + fabs(b)));
 }
 
-/* All that no axis stands for. Fibres count in C1 + C2, so that C2/C1 may vary alone. */
+/* Compares everything but the axes. Fibre moduli are in units of C1 + C2, so that C2/C1 can vary alone. */
 static PetscBool SameOtherwise(const LamMicrostructure *a, const LamMicrostructure *b)
 {
   return (PetscBool)(!a->cell && !b->cell && a->is_patch == b->is_patch && a->cells[0] == b->cells[0] &&
@@ -140,7 +140,7 @@ PetscErrorCode LamParametricDatabaseGetAxis(LamParametricDatabase family, LamPar
   PetscFunctionReturn(0);
 }
 
-/* ---- answers ---- */
+/* ---- responses ---- */
 
 PetscErrorCode LamParametricDatabaseQuery(LamParametricDatabase f, PetscReal value, const LamLoad *load,
                                           PetscReal accuracy, LamResponse *response)

@@ -1,18 +1,18 @@
 /*
-  Sealed answers from a responder for prescribed turgor (docs/theory/walls.md, Sealed lumens).
+  Response of sealed lumens from a responder for prescribed turgor (docs/theory/walls.md, Sealed lumens).
 
-  Method. For each point Newton on the pressure p of
+  Method. At each point a Newton iteration finds the pressure p with
     c(p) = dPsi/dp + v_w (1 - (p - p0) / K_w) = 0,      dc/dp = Psi_pp - v_w / K_w < 0,
-  from the pressure of the answer before. c falls with p, so every answer bounds the root on one side, and a pressure
-  without an answer bounds how far one can go; a step beyond a bound goes half-way to it.
+  starting at the pressure of the last response. c decreases with p, so each response bounds the root on one side, and a
+  pressure without a response bounds the search. A step beyond a bound is replaced by bisection of the interval.
 */
 #include <lamella/sealed.h>
 #include <math.h>
 #include <string.h>
 
 #define MOST_QUESTIONS 40
-#define MOST_FAILURES 8 /* pressures without an answer */
-#define TOLERANCE 1e-10 /* of p, relative and C1 + C2 */
+#define MOST_FAILURES 8 /* pressures without a response */
+#define TOLERANCE 1e-10 /* of p, relative and in units of C1 + C2 */
 
 typedef struct {
   MPI_Comm comm;
@@ -21,16 +21,16 @@ typedef struct {
   PetscBool sealed;
   PetscReal bulk_modulus;
   PetscReal *water;                        /* [points] */
-  PetscReal *lumen, *accepted_lumen;       /* [points] of the last open answers; 0: none */
+  PetscReal *lumen, *accepted_lumen;       /* [points] of the last open response; 0: none */
   PetscReal *pressure, *accepted_pressure; /* [points] */
 } Sealed;
 
 /* The search for one pressure. */
 typedef struct {
-  PetscReal low, high; /* the root is between, as far as is known */
-  PetscReal answered;  /* the last pressure with an answer; NaN: none yet */
+  PetscReal low, high; /* bounds of the root */
+  PetscReal answered;  /* the last pressure with a response; NaN: none yet */
   PetscInt failures;
-  PetscBool done; /* where the last answer has fields it is at the root */
+  PetscBool done; /* converged if the last response has fields, else failed */
 } Search;
 
 void LamResponseSeal(PetscReal p0, PetscReal water, PetscReal bulk_modulus, LamResponse *r)
@@ -54,7 +54,7 @@ void LamResponseSeal(PetscReal p0, PetscReal water, PetscReal bulk_modulus, LamR
   r->turgor_spread = 0;
 }
 
-/* Takes an answer at the pressure *p; sets the next one, or that it is the last. */
+/* Processes the response at pressure *p: sets the next pressure, or `done`. */
 static void Advance(const Sealed *s, PetscReal p0, PetscReal water, const LamResponse *r, Search *search, PetscReal *p)
 {
   PetscReal next = *p;
@@ -77,7 +77,7 @@ static void Advance(const Sealed *s, PetscReal p0, PetscReal water, const LamRes
   *p = next;
 }
 
-/* The questions of a round: those that are not done. */
+/* The queries of a round: searches that are not done. */
 static PetscInt Gather(PetscInt n, const LamLoad loads[], const PetscInt points[], const PetscReal p[],
                        const Search search[], LamLoad asked[], PetscInt asked_points[], PetscInt from[])
 {
@@ -94,9 +94,9 @@ static PetscInt Gather(PetscInt n, const LamLoad loads[], const PetscInt points[
 }
 
 /*
-  An error of the lumen is divided by v_w / K_w - Psi_pp, some 1e-3, before it is one of the pressure. A table of bonded
-  cells has lumens to O(p/kappa) from F alone; where cells part it would have to know their gaps far better than stress
-  needs it.
+  The error of the pressure is the error of the lumen divided by v_w / K_w - Psi_pp, about 1e-3. A table of bonded cells
+  gives lumens to O(p/kappa) from F alone. Where cells separate, the gaps would have to be known far more accurately
+  than for the stress.
 */
 static PetscErrorCode Refuse(LamResponse *r)
 {
@@ -247,7 +247,7 @@ static PetscErrorCode Seal(void *ctx, PetscReal bulk_modulus)
   PetscFunctionReturn(0);
 }
 
-/* What a point keeps, before the bytes of `open`. */
+/* Saved state of a point, in front of the bytes of `open`. */
 typedef struct {
   PetscReal bulk_modulus; /* 0: not sealed */
   PetscReal water, lumen, pressure;
