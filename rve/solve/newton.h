@@ -1,24 +1,26 @@
 /*
-  What the tiers of the Newton iteration share.
+  Shared parts of the Newton tiers.
 */
 #ifndef LAM_NEWTON_H
 #define LAM_NEWTON_H
 
 #include "solve.h"
 
-/* Factors K + shift 1 with the smallest tried shift that leaves no negative eigenvalue but those expected; least: the
-   first shift tried, if below 1e-7 of the diagonal; last_shift: of the factorisation before. */
+/* Factors K + shift 1 with the first shift of an increasing sequence, from 0, that leaves no more negative eigenvalues
+   than expected. least: first nonzero shift tried, if below 1e-7 of the largest diagonal entry; last_shift: in, of the
+   previous factorisation, an eighth of which is tried first if larger; out, of this one. */
 PetscErrorCode LamFactorPositive(LamRVE rve, PetscReal least, PetscReal *last_shift, PetscBool *ok);
-/* rve->step := -K^-1 residual with the present factor, or that of the bordered system; the held class does not move. */
+/* rve->step := -K^-1 residual with the current factorisation, or the step of the bordered system; zero for the held
+   class. */
 PetscErrorCode LamSolveStep(LamRVE rve, LamBorder *border);
-/* Largest of 1, 1/2, ... 1/64 for which no volume along rve->step turns inside out; 0: none. */
+/* alpha: the largest of 1, 1/2, ... 1/64 for which rve->y + alpha rve->step inverts no element volume; 0: none. */
 PetscErrorCode LamValidStep(LamRVE rve, const LamLoad *load, const LamBorder *border, PetscReal *alpha);
-/* Positions, independent stresses and the free components of F move by alpha steps. */
+/* Updates positions, independent stresses and free components of F by alpha times the step. */
 void LamTakeStep(LamRVE rve, const LamLoad *load, LamBorder *border, PetscReal alpha);
-/* A step that moves nothing by more than rounding ends the iteration, also where the residual cannot come down to the
-   tolerance because large stresses cancel in it. */
+/* Whether a step is at rounding level, so that the iteration ends although the residual, in which large stresses
+   cancel, may stay above the tolerance. largest: of the step's entries. */
 PetscBool LamAtRounding(LamRVE rve, PetscReal norm, PetscReal tolerance, PetscReal largest);
-/* For the monitor. */
+/* Prints one line if the monitor is on. */
 PetscErrorCode LamReportIteration(LamRVE rve, const char tier[], PetscInt iteration, PetscReal residual, PetscReal step,
                                   PetscReal shift);
 

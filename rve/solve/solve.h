@@ -1,14 +1,14 @@
 /*
-  Ways to a state.
+  Solvers for equilibrium states of the RVE.
 
-    newton.c newton_flow.c newton.h       one equilibrium from a start: fast, flow and safe tier
-    border.c border.h                     components of F that join the unknowns where stress is prescribed
-    path.c                                start, substeps, leaving a saddle, what ends a path
-    contact_step.c contact_update.c contact_newton.c contact_safe.c     one contact equilibrium from a start
-    contact_start.c contact_try.c contact_walk.c contact_path.c         starts, judging a solution, paths to it
-    nested.c                              a start from the solution of a coarser mesh
-    mixed.c mixed_fast.c mixed_safe.c     states of which some components of P are prescribed
-    estimate.c                            error of P from half as many elements
+    newton.c newton_flow.c newton.h       one equilibrium from an initial guess: fast, flow and safe tiers
+    border.c border.h                     components of F as unknowns, for prescribed stress
+    path.c                                initial guess, load substeps, escape from saddles, failure reasons
+    contact_step.c contact_update.c contact_newton.c contact_safe.c     one contact equilibrium from an initial guess
+    contact_start.c contact_try.c contact_walk.c contact_path.c         initial guesses, acceptance, load paths
+    nested.c                              initial guess from the solution on a coarser mesh
+    mixed.c mixed_fast.c mixed_safe.c     states with some components of P prescribed
+    estimate.c                            error estimate of P from a mesh with half as many elements
     rve.c state_bytes.c responder.c       the public interface
 */
 #ifndef LAM_RVE_SOLVE_H
@@ -19,32 +19,34 @@
 
 /* ---- newton.c ---- */
 typedef enum { LAM_NEWTON_CONVERGED, LAM_NEWTON_NEAR_SADDLE, LAM_NEWTON_STALLED } LamNewtonOutcome;
-/* From rve->y to equilibrium at `load`. Fast: full steps. Safe: inertia-corrected steps that lower the energy and leave
-   saddles; never ends NEAR_SADDLE. border: NULL, or the free components of F; the load is then border->load. */
+/* Solves for equilibrium at `load`, starting from rve->y. Fast: full Newton steps. Safe: inertia-corrected steps that
+   lower the energy and leave saddles; never returns NEAR_SADDLE. border: NULL, or the free components of F; the load is
+   then border->load. */
 PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border, LamNewtonOutcome *outcome);
 PetscErrorCode LamNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome);
-/* The same by patience, from unstable starts; shut: the cell whose lumen it came down to shut, -1: none. */
+/* The same for unstable initial guesses: the residual may grow. shut: the cell whose lumen closed during the iteration,
+   which ends it; -1: none. */
 PetscErrorCode LamNewtonFlow(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome, PetscInt *shut);
-/* Tolerance of the residual norm: the rounding error of the stiff forces, but at least 1e-11. */
+/* Tolerance on the residual norm: the larger of 1e-11, rve->tolerance and the rounding error of the stiff forces. */
 PetscReal LamNewtonTolerance(LamRVE rve);
 
 /* ---- path.c ---- */
 /* Rotation angle of the polar decomposition of the in-plane part of F. */
 PetscReal LamRotationAngle(const PetscReal F[9]);
-/* Rotates positions y[n] and the deformation gradient they belong to about the origin. */
+/* Rotates positions y[n] and their deformation gradient F by `angle` about the origin. */
 void LamRotatePositions(PetscInt n, PetscReal y[], PetscReal F[9], PetscReal angle);
-/* rve->y := from [length] + (F_to - F_from) X, with the independent stresses and pressures of `from`. */
+/* rve->y := from [length] + (F_to - F_from) X, with the independent wall stresses and the pressures of `from`. */
 void LamMoveAffinely(LamRVE rve, const PetscReal from[], const LamLoad *load_from, const LamLoad *load_to);
-/* The load at the share t of the straight way from a to b. */
+/* Load at parameter t in [0, 1] of the straight load path from a to b. */
 LamLoad LamLoadBetween(const LamLoad *a, const LamLoad *b, PetscReal t);
-/* Finds a stable equilibrium at `load` from `state`; leaves it in rve->y with the consistent tangent factored. */
+/* Finds a stable equilibrium at `load` by continuation from `state`; returns it in rve->y with the consistent tangent
+   factored. */
 PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, PetscInt *branch, PetscInt *negative,
                              LamStatus *status, char reason[], size_t length);
 
-
 /* ---- contact_step.c ---- */
-#define LAM_CONTACT_PROXIMAL 1e-8 /* shift of every contact step: a cell that nothing holds must not be singular */
-/* Of max |min(lambda, c gap)|. */
+#define LAM_CONTACT_PROXIMAL 1e-8 /* shift of every contact step; keeps the matrix regular if a cell has no contact */
+/* Tolerance on max |min(lambda, c gap)|. */
 static inline PetscReal LamGapTolerance(LamRVE rve)
 {
   return PetscMax(1e-10, rve->tolerance);
@@ -52,56 +54,60 @@ static inline PetscReal LamGapTolerance(LamRVE rve)
 typedef struct {
   PetscReal *rhs, *solution, *image; /* work space */
   PetscReal *lambda;                 /* [multipliers] after the step */
-  PetscReal *first;                  /* the solution with the last factor, ... */
-  PetscBool *factored;               /* ... and its active set, [multipliers] */
-  PetscBool updates;                 /* other sets may be solved with that factor */
-  PetscReal shift;                   /* of the last factor */
-  PetscReal floor;                   /* least shift: the larger, the shorter the step */
-  PetscReal before;                  /* largest entry of the step before */
+  PetscReal *first;                  /* solution computed with the last factorisation */
+  PetscBool *factored;               /* [multipliers] active set of the last factorisation */
+  PetscBool updates;                 /* systems of other active sets may be solved by updating that factorisation */
+  PetscReal shift;                   /* of the last factorisation */
+  PetscReal floor;                   /* minimum shift; a larger one gives shorter steps */
+  PetscReal before;                  /* largest entry of the previous step */
   LamBorder *border;                 /* borrowed; NULL: F is prescribed */
 } LamContactStep;
 PetscErrorCode LamContactStepCreate(LamRVE rve, LamContactStep *step);
 PetscErrorCode LamContactStepDestroy(LamContactStep *step);
-/* After LamAssemble: takes the held forces off rve->residual; norm: of the residual with contact forces. */
+/* Call after LamAssemble. Subtracts the held forces from rve->residual; norm: of the residual including contact
+   forces. */
 void LamContactResidual(LamRVE rve, LamContactStep *step, PetscReal *norm);
-/* solution [n] of the present active set from `first`, that of the set `before`, whose matrix is factored. *ok is
-   PETSC_FALSE where the sets differ in too many hats, or the new matrix has too many negative eigenvalues. */
+/* Computes solution [n] for the current active set from `first`, the solution for the active set `before`, whose matrix
+   is factored. *ok is PETSC_FALSE if the sets differ in too many hats or the new matrix has too many negative
+   eigenvalues. */
 PetscErrorCode LamContactUpdateStep(LamRVE rve, const PetscBool before[], const PetscReal first[], PetscReal compliance,
                                     PetscReal solution[], PetscBool *ok);
-/* rve->step and step->lambda from the assembled state with its contact curvature; norm: of its residual. *ok is
-   PETSC_FALSE where no shift helps. */
+/* Computes rve->step and step->lambda at the assembled state, after LamContactAddCurvature; norm: of its residual. *ok
+   is PETSC_FALSE if no shift gives a matrix with the expected inertia. */
 PetscErrorCode LamContactSolveStep(LamRVE rve, PetscReal norm, PetscReal compliance, LamContactStep *step,
                                    PetscBool *ok);
-/* Moves positions, wall stresses, multipliers and a free F by alpha. */
+/* Updates positions, wall stresses, multipliers and free components of F by alpha times the step. */
 void LamContactTakeStep(LamRVE rve, const LamLoad *load, PetscReal alpha, const LamContactStep *step);
 
 /* ---- contact_newton.c, contact_safe.c, contact_path.c ---- */
-/* From rve->y, contact->lambda and the independent stresses to equilibrium at `load`. Fast: full steps; one larger than
-   `reach` (apothems) ends it as stalled; LAM_FAR: the start may be far from contact, steps are shortened. Safe: descent
-   on the energy, from consistent stresses. border: as in LamNewtonFast. */
+/* Solves for contact equilibrium at `load`, starting from rve->y, contact->lambda and the independent stresses. Fast:
+   full steps; a step larger than `reach` (apothems) returns STALLED; reach = LAM_FAR: the initial guess may be far from
+   contact, and steps are shortened. Safe: descent on the energy, starting from consistent stresses. border: as in
+   LamNewtonFast. */
 #define LAM_FAR 0.0
 PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, LamBorder *border, PetscReal reach,
                                 LamNewtonOutcome *outcome);
 PetscErrorCode LamContactNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome);
-/* As LamFollowPath; the solution is in rve->y and contact->lambda. */
+/* As LamFollowPath, for contact tissue; returns the solution in rve->y and contact->lambda. */
 PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
 
 /* ---- nested.c ---- */
-/* Whether a solve from `state` is to start from a coarser mesh. */
+/* Whether a solve from `state` should start from the solution on a coarser mesh. */
 PetscBool LamIsNested(LamRVE rve, const LamRVEState state);
-/* Solves on a coarser mesh, whose response is given; where it converged, `start` becomes its solution on this one. */
+/* Solves on a coarser mesh and returns its response. If it and Newton from its interpolated solution converge, `start`
+   becomes the solution on this mesh. */
 PetscErrorCode LamNestedStart(LamRVE rve, const LamLoad *load, LamRVEState start, LamResponse *coarse_response);
 
 /* ---- rve.c ---- */
-/* Empty where the load can be asked of plane-strain tissue, else why not. */
+/* Checks a load for plane-strain tissue. reason: empty if it is valid. */
 PetscErrorCode LamCheckLoad(const LamLoad *load, char reason[], size_t length);
-/* A response without answer, no work yet, and nothing left of the solve before: a solve depends on load and state
- * alone. */
+/* Initialises the response and the solver's work data. Resets everything left by the previous solve, so that a result
+   depends on load and state alone. */
 PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
-/* Fills the fields of a response whose status says that rve->y (and the multipliers) are a solution at `load`, with its
-   consistent tangent factored, and stores it in `state`; refuses it where a lumen has collapsed. */
+/* Completes a response whose status says that rve->y (and the multipliers) solve `load`, with the consistent tangent
+   factored: fills its fields and stores the solution in `state`. Rejects the solution if a lumen has collapsed. */
 PetscErrorCode LamAcceptSolution(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
-/* The solution that rve holds becomes the state. */
+/* Stores the solution held by rve in `state`. */
 void LamKeepState(LamRVE rve, const LamLoad *load, PetscInt branch, LamRVEState state);
 
 #endif
