@@ -1,12 +1,12 @@
 /*
-  The database in memory: scanned once, then only read (queries) or added to (cache).
+  The database in memory: loaded once, then read by queries or extended by a cache.
 */
 #include "database_internal.h"
 #include <string.h>
 
-/* ---- growing ---- */
+/* ---- capacity ---- */
 
-/* Makes room for `n` items more behind `count`. */
+/* Ensures a capacity of count + n items. */
 static PetscErrorCode Grow(PetscInt count, PetscInt n, size_t size, PetscInt *capacity, void *items)
 {
   PetscFunctionBeginUser;
@@ -41,9 +41,9 @@ static PetscErrorCode AddScattered(LamDatabase db, const LamResponse *record)
 
 /* ---- open, close ---- */
 
-/* Records that are not to be known yet. */
+/* Records left out of the database. */
 typedef struct {
-  PetscInt first, n; /* their place in the file */
+  PetscInt first, n; /* first: index in the file */
   PetscInt64 *keys;
   LamResponse *records;
 } Later;
@@ -51,7 +51,7 @@ typedef struct {
 typedef struct {
   LamDatabase db;
   LamNodeLayout nodes; /* made with the first block */
-  Later *later;        /* or NULL: all are to be known */
+  Later *later;        /* NULL: load all records */
 } Loading;
 
 static PetscErrorCode LoadBlock(void *ctx, const LamRecordLayout *layout, PetscInt first, PetscInt n,
@@ -73,7 +73,8 @@ static PetscErrorCode LoadBlock(void *ctx, const LamRecordLayout *layout, PetscI
     }
     db->keys[db->n++] = key;
     if (LamKeyIsNode(key)) {
-      PetscCall(GrowNodes(db, db->header.committed - first - i)); /* once: memory that is not used is not touched */
+      PetscCall(GrowNodes(db, db->header.committed - first -
+                                  i)); /* upper bound, allocated once: unused pages stay untouched */
       LamNodeDataFromBytes(&l->nodes, bytes, &db->nodes.data[db->nodes.count++]);
       continue;
     }
@@ -230,7 +231,7 @@ static PetscErrorCode UnpackBlock(void *ctx, const LamRecordLayout *layout, Pets
   PetscFunctionReturn(0);
 }
 
-/* The file may have grown since it was opened, but it must be the same. */
+/* The file may have grown since it was opened, but must not have been replaced. */
 static PetscErrorCode CheckSame(LamDatabase db, hid_t file)
 {
   LamHeader header = {0};
@@ -255,7 +256,7 @@ static PetscErrorCode Unpack(const char path[], hid_t file, void *ctx)
   PetscFunctionReturn(0);
 }
 
-/* Reads the file's records in front of those added in memory. */
+/* Loads the file's records and puts them in front of those added in memory. */
 static PetscErrorCode LoadRecords(LamDatabase db)
 {
   const PetscInt count = db->records_first;
@@ -306,7 +307,7 @@ PetscErrorCode LamDatabaseGetMicrostructure(LamDatabase database, LamMicrostruct
   PetscFunctionReturn(0);
 }
 
-/* States of no grid get keys of their own, as a cache gives them. */
+/* Without keys the records are states outside the grid, numbered from LAM_CACHE_KEY on. */
 PetscErrorCode LamDatabaseAdd(LamDatabase database, PetscInt n, const PetscInt64 keys[], const LamResponse records[])
 {
   const PetscInt held = database->n - database->records_first;

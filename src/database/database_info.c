@@ -1,5 +1,5 @@
 /*
-  What `info` tells of a file, as JSON.
+  The output of `info` on a file, as JSON.
 */
 #include "database_internal.h"
 #include "range.h"
@@ -20,7 +20,7 @@ static void PrincipalStrains(const PetscReal F[4], PetscReal strain[2])
   strain[1] = 0.5 * log(mean + radius);
 }
 
-/* What the usable records span, and how many there are of each status. */
+/* Ranges of the converged records, and the number of records of each status. */
 typedef struct {
   LamRange strain, turgor, cohesion;
   PetscInt counts[LAM_STATUS_COUNT];

@@ -1,5 +1,5 @@
 /*
-  Private to the database: what is in memory of the records, and what answers are made from.
+  Private to the database: the records in memory and the data that queries use.
 */
 #ifndef LAM_DATABASE_INTERNAL_H
 #define LAM_DATABASE_INTERNAL_H
@@ -14,28 +14,28 @@
 typedef struct {
   PetscInt count;
   PetscReal map[LAM_MAX_IMAGES][2][2];
-  PetscInt face[LAM_MAX_IMAGES][3]; /* face family k of the question is family face[k] of the record */
+  PetscInt face[LAM_MAX_IMAGES][3]; /* face family k of the query is family face[k] of the record */
 } LamImages;
 
-/* What a record may say of the states around it. */
+/* How a record is used for nearby queries. */
 typedef enum {
   LAM_SCATTER_BLENDS,  /* converged, stable, branch 0, all cells held */
-  LAM_SCATTER_ALONE,   /* another branch, or cells that touch no one: its own state only */
-  LAM_SCATTER_REFUSES, /* failed, unstable or without a tangent: nothing, but that something changes here */
+  LAM_SCATTER_ALONE,   /* another branch, or floating cells: its own state only */
+  LAM_SCATTER_REFUSES, /* failed, unstable or without a tangent: only blocks blends nearby */
 } LamScatterUse;
 
 typedef struct {
   LamScatterUse use;
-  PetscInt images;    /* bit i: image i is there; those that fall on an earlier one are left out */
-  LamExpansion model; /* x alone where `use` is LAM_SCATTER_REFUSES */
+  PetscInt images;    /* bit i: image i is distinct; images that coincide with an earlier one are left out */
+  LamExpansion model; /* only x where `use` is LAM_SCATTER_REFUSES */
 } LamScattered;
 
-/* What all images of a state have in common: a scan over these is all that most states cost a query. */
+/* Quantities common to all images of a state. A query scans these and evaluates the images of few states. */
 typedef struct {
-  PetscReal mean, deviator, turgor, cohesion; /* c0, |c1 + i c2|, p, g; mean infinite: not of plane strain */
+  PetscReal mean, deviator, turgor, cohesion; /* c0, |c1 + i c2|, p, g; mean infinite: not plane strain */
 } LamScatterPlace;
 
-/* Records that are no nodes of a grid, in their order. */
+/* Records outside the grid, in their order. */
 typedef struct {
   PetscInt n, capacity;
   LamResponse *records;    /* [n] owned */
@@ -44,13 +44,13 @@ typedef struct {
 } LamScatter;
 
 /*
-  Records 0 .. n-1 are those of the file and, behind them, those added in memory. Of nodes of the grid the database
-  keeps what the table needs, of all others the whole response; the whole responses of nodes in the file are loaded when
-  LamDatabaseGetRecords first asks for them.
+  Records 0 .. n-1: those of the file, then those added in memory. For nodes of the grid the database keeps the data
+  that the table needs, for other records the full response. The full responses of nodes in the file are loaded on the
+  first LamDatabaseGetRecords.
 */
 struct LamDatabase_s {
-  LamHeader header; /* owned; its `committed` is that of the file, not n */
-  char *path;       /* owned; NULL: there is no file */
+  LamHeader header; /* owned; `committed` counts the file's records, not n */
+  char *path;       /* owned; NULL: no file */
   LamImages images;
   PetscInt n, capacity;
   PetscInt64 *keys; /* [n] owned */
@@ -58,22 +58,22 @@ struct LamDatabase_s {
   LamNodeSet nodes;   /* records with the key of a node, in their order */
   LamScatter scatter; /* all other records */
 
-  PetscInt records_first; /* the number of records in the file, until LamDatabaseGetRecords loads them; then 0 */
+  PetscInt records_first; /* number of records in the file until LamDatabaseGetRecords loads them, then 0 */
   PetscInt records_capacity;
-  LamResponse *records; /* [n - records_first] owned: number records_first and on */
+  LamResponse *records; /* [n - records_first] owned: records from records_first on */
   char *info;           /* owned */
 
-  LamGrid grid;   /* owned; NULL: records of no grid only */
-  LamTable table; /* the newest, of table_count records; NULL: none yet */
+  LamGrid grid;   /* owned; NULL: no grid */
+  LamTable table; /* the newest, of table_count nodes; NULL: none yet */
   PetscInt table_count;
 };
 
 /* ---- images.c ---- */
 void LamImagesMake(const LamMicrostructure *micro, LamImages *images);
-/* y = M x: the question in the frame of the records. */
+/* y = M x: the query in the records' frame. */
 void LamImagesForward(const LamImages *images, PetscInt image, const PetscReal x[LAM_VARIABLES],
                       PetscReal y[LAM_VARIABLES]);
-/* g <- M^T g, H <- M^T H M: derivatives in the records' frame, in the question's. */
+/* g <- M^T g, H <- M^T H M: derivatives from the records' frame to the query's. */
 void LamImagesBack(const LamImages *images, PetscInt image, PetscReal g[LAM_VARIABLES]);
 void LamImagesBackHessian(const LamImages *images, PetscInt image, PetscReal H[LAM_VARIABLES][LAM_VARIABLES]);
 
@@ -82,17 +82,17 @@ PetscErrorCode LamScatterAdd(LamScatter *scatter, const LamImages *images, Petsc
 PetscErrorCode LamScatterDestroy(LamScatter *scatter);
 
 /* ---- query_scatter.c ---- */
-#define LAM_TRUST_RADIUS 0.04 /* strain: how far from the nearest record a blend is trusted */
-#define LAM_OWN_STATE 1e-6    /* strain: a question so near to a record asks for the record's own state */
+#define LAM_TRUST_RADIUS 0.04 /* strain: largest distance from the nearest record at which a blend is trusted */
+#define LAM_OWN_STATE 1e-6    /* strain: within this distance a query is a record's own state */
 /*
-  The answer to a good question from the scattered records, within `radius` (strain) of the nearest, into a response
-  that LamResponseInit has cleared. Safe from several threads while nobody adds.
+  Response from the scattered records within `radius` (strain) of the nearest. The load must be valid
+  (LamLoadValidate), the response initialised by LamResponseInit. Thread-safe while no records are added.
 */
 PetscErrorCode LamScatterQuery(LamDatabase database, const LamLoad *load, PetscReal radius, PetscReal accuracy,
                                LamResponse *response);
 
 /* ---- query_indicators.c ---- */
-/* `face`: the record's name of each face family of the question; `own`: the question is the record's own state. */
+/* face[k]: the record's face family for family k of the query; `own`: the query is the record's own state. */
 void LamIndicatorsCopy(const LamResponse *record, const PetscInt face[3], PetscBool own, LamInterfaceLawType interface,
                        LamResponse *r);
 

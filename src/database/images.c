@@ -1,5 +1,5 @@
 /*
-  The symmetry of the lattice: questions that have the same answer, turned or mirrored.
+  The symmetry of the lattice: rotated and mirrored loads with equivalent responses.
 */
 #include "database_internal.h"
 #include <math.h>
@@ -8,12 +8,12 @@ void LamImagesMake(const LamMicrostructure *micro, LamImages *images)
 {
   const PetscBool hexagonal = (PetscBool)(micro->cells[0] == micro->cells[1] && !micro->is_patch && !micro->cell);
 
-  /* unequal counts leave the half turn, which C does not see; cells that differ leave nothing */
+  /* unequal counts leave only the half turn, which does not change C; differing cells leave no symmetry */
   images->count = hexagonal ? LAM_MAX_IMAGES : 1;
   for (PetscInt i = 0; i < images->count; i++) {
     const PetscInt turn = i % 3;
     const PetscBool mirror = (PetscBool)(i >= 3);
-    /* mirror at face normal 0 first, then turn by 60 degrees * turn; doubled angles act on c1 + i c2 */
+    /* mirror at face normal 0, then rotate by 60 degrees * turn; c1 + i c2 rotates by the doubled angle */
     const PetscReal angle = 2 * PETSC_PI / 3 * turn + (mirror ? 4 * micro->orientation : 0);
     const PetscReal c = cos(angle), s = sin(angle), sign = mirror ? -1 : 1;
 

@@ -1,5 +1,5 @@
 /*
-  Answers of a database: from its table, else from the records that belong to no grid.
+  Queries to a database: to its table, else to the records outside the grid.
 */
 #include "database_internal.h"
 #include <math.h>
@@ -33,8 +33,8 @@ PetscErrorCode LamDatabaseQuery(LamDatabase database, const LamLoad *load, Petsc
   PetscCall(LamTableQuery(table, load, accuracy, response));
   PetscCall(LamTableDestroy(&table));
   if (response->status != LAM_OUT_OF_REACH || !database->scatter.n) PetscFunctionReturn(0);
-  /* beside a table they are states that it could not answer: each is trusted for itself alone */
+  /* with a table, scattered records are states that it did not cover: each is used for its own state only */
   PetscCall(AskScattered(database, load, 0, accuracy, &scattered));
-  if (LamResponseHasFields(&scattered)) *response = scattered; /* else the table's reason stands */
+  if (LamResponseHasFields(&scattered)) *response = scattered; /* else keep the table's reason */
   PetscFunctionReturn(0);
 }

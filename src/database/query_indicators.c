@@ -1,14 +1,13 @@
 /*
-  What an answer takes from its record as it is: all that the potential does not give.
+  Quantities that a response copies from its record: those that do not follow from the potential.
 
   Tractions and gaps are not interpolated: contact switches between two states, and a mean of "open" and "closed" is
-  neither. They are the record's where the question is the record's own state, and unknown (NaN, LAM_UNKNOWN_COUNT)
-  elsewhere.
+  neither. They are copied where the query is the record's own state, and unknown (NaN, LAM_UNKNOWN_COUNT) elsewhere.
 */
 #include "database_internal.h"
 #include <math.h>
 
-/* Whether both ask for the same F: a rotated state has the record's strain, but another orientation in space. */
+/* Whether F is equal: a rotated state has the record's strain, but another orientation in space. */
 static PetscBool SameF(const LamLoad *a, const LamLoad *b)
 {
   for (int i = 0; i < 9; i++)
@@ -16,7 +15,7 @@ static PetscBool SameF(const LamLoad *a, const LamLoad *b)
   return PETSC_TRUE;
 }
 
-/* Bonded tissue has no gaps and hangs together, wherever it is asked. */
+/* Bonded tissue has no gaps and stays connected at every load. */
 static void CopyBonded(const LamResponse *record, LamResponse *r)
 {
   for (int i = 0; i < 9; i++) r->P_cohesion[i] = 0;
@@ -58,8 +57,8 @@ static void CopyContact(const LamResponse *record, const PetscInt face[3], LamRe
 }
 
 /*
-  Volumes, and what walls and lamella bear, at the record's own state; places and the fabric hold only in its own
-  orientation.
+  Volumes, and loads of walls and lamella, at the record's own state. Places and the fabric are valid only in the
+  record's orientation.
 */
 static void CopyLoads(const LamResponse *record, const PetscInt face[3], LamResponse *r)
 {

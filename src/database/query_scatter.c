@@ -1,28 +1,28 @@
 /*
-  Answers from records that belong to no grid.
+  Queries to the records outside the grid.
 
   Method
     Partition of unity of the second-order Taylor models T_k of the records' potential (expansion.h) and of their images
-    under the symmetry of the lattice, so that stress is the exact gradient of the answered energy and the tangent its
-    exact, symmetric Hessian. With the distance d_k from the question to record k, a strain, and a reach R,
+    under the symmetry of the lattice. The stress is the exact gradient of the returned energy and the tangent its
+    exact, symmetric Hessian. With the distance d_k (a strain) from the query to record k, and a reach R,
       Phi = sum_k w_k T_k / sum_k w_k,   w_k = max(0, 1/d_k^2 - 1/R^2)^3:
-    Shepard's weights with a compact support (Franke and Little), C2 where a model comes into reach, and so steep at a
-    record that the blend has the record's value, gradient and Hessian there. R is twice the radius within which a
-    record must lie for an answer.
+    Shepard's weights with a compact support (Franke and Little). They are C2 where a model comes into reach, and so
+    steep at a record that the blend has the record's value, gradient and Hessian there. R is twice the radius within
+    which a record must lie for a response.
 
   Algorithm
-    The nearest model T_1 is taken out, Phi = T_1 + sum w_k (T_k - T_1) / sum w_k, else the weights' steep derivatives
-    near a record would multiply rounding. With A, W the two sums and e = A / W:
+    Phi = T_1 + sum w_k (T_k - T_1) / sum w_k, with T_1 the nearest model. Otherwise the weights' steep derivatives near
+    a record would amplify rounding errors. With A, W the two sums and e = A / W:
       e_a  = A_a / W - e W_a / W,   e_ab = A_ab / W - e_a W_b / W - W_a e_b / W - e W_ab / W.
 
-  Estimate of the error of P: the models' spread, (sum w_k |P_k - P|^2 / sum w_k)^1/2, and, since a model that stands
-  alone has no spread, the error of one model at this distance, times the square of the nearest one's share of the
-  weights. docs/results/performance.md has what was measured.
+  Estimate of the error of P, root of the sum of two squares: the models' spread, (sum w_k |P_k - P|^2 / sum w_k)^1/2,
+  and, since a single model has no spread, the error of one model at this distance times the square of the nearest
+  model's share of the weights. Measurements: docs/results/performance.md.
 
-  Only records that have converged, are stable, of branch 0 and without cells that float blend. One of another branch,
-  or with cells that touch no one, answers for its own state (one of another branch also by its model alone, for who
-  holds it: scatter_model.h); it and those that failed forbid a blend where they are not
-  much further away than the nearest that blends: the potential has a kink between them, which no model knows of.
+  Only records that are converged, stable, of branch 0 and without floating cells are blended. A record of another
+  branch or with floating cells serves its own state only; the model of one of another branch also serves the material
+  points that hold it (scatter_model.h). Such records and failed ones forbid a blend unless they are much farther away
+  than the nearest record that blends: between them the potential has a kink that no model contains.
 
   References: Shepard, Proc. 23rd ACM National Conference (1968) 517; Franke and Nielson, Int. J. Numer. Meth. Engng 15
   (1980) 1691.
@@ -33,21 +33,20 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Relative error of P of one model alone over the square of the distance, at the 99 % level in bonded tissue and at the
-   95 % level in contact tissue, whose walls come apart between two states. */
+/* Relative error of P of a single model, divided by the square of the distance: the 99 % level in bonded tissue, the
+   95 % level in contact tissue, whose walls separate between two states. */
 #define BONDED_ERROR 12.8
 #define CONTACT_ERROR 100.0
-/* Times the models' spread: models on one side of a place where walls come apart agree with each other. */
+/* Factor on the models' spread: models on one side of a state where walls separate agree with each other. */
 #define CONTACT_DOUBT 3.0
-/* Of the blend, in radii of trust. */
+/* Reach of the blend, in trust radii. */
 #define REACH 2
-/* A record that refuses, or is of another branch, forbids a blend within so many distances of the nearest that blends.
- */
+/* A record that does not blend forbids blends within this many times the distance of the nearest record that does. */
 #define DOUBT 2
 
 /* ---- the blend ---- */
 
-/* A record's model at the question: the expansion's members, without the Hessian, in the question's frame. */
+/* A record's model at the query: the expansion's members without the Hessian, in the query's frame. */
 typedef struct {
   PetscReal energy, P33;
   LamScatterVector gradient, P33_gradient;
@@ -96,13 +95,13 @@ static PetscBool MakeWeight(const LamScatterMetric *metric, const LamScatterVect
   return PETSC_TRUE;
 }
 
-/* Sums over the models in reach: of the weights (all models), of weights times what a model has over the first. */
+/* Sums over the models in reach: of the weights, and of the weights times a model's difference from the first. */
 typedef struct {
   Model first;
   PetscReal W, W_metric, A, A_metric, P33, A3333; /* _metric: the part of the Hessian along the metric */
   LamScatterVector W_slope, A_slope, P33_slope;
   LamScatterMatrix W_hessian, A_hessian;
-  LamScatterMatrix own_hessian[LAM_MAX_IMAGES];    /* of the records, each image in its own frame */
+  LamScatterMatrix own_hessian[LAM_MAX_IMAGES];    /* of the records' Hessians, each image in its own frame */
   PetscReal P33_square, P_mean[3], P_square[3][3]; /* P_: of the gradients in C */
 } Sums;
 
@@ -161,7 +160,7 @@ static void Mirror(LamScatterMatrix H)
     for (int b = 0; b < a; b++) H[b][a] = H[a][b];
 }
 
-/* The metric's part of the Hessians, and the records' own Hessians in the question's frame. */
+/* Adds the metric's part of the Hessians, and the records' own Hessians in the query's frame. */
 static void CompleteHessians(const LamScatterSearch *search, Sums *s)
 {
   const LamScatterMetric *m = &search->metric;
@@ -181,7 +180,7 @@ static void CompleteHessians(const LamScatterSearch *search, Sums *s)
   }
 }
 
-/* The blend's expansion at the question, in the question's frame. */
+/* The blend's expansion at the query, in the query's frame. */
 static void Finish(const LamScatterSearch *search, Sums *s, LamExpansion *blend)
 {
   const PetscReal energy = s->A / s->W, P33 = s->P33 / s->W;
@@ -217,7 +216,7 @@ static PetscReal Spread(const LamScatterSearch *search, const Sums *s, const Lam
   return sqrt(PetscMax(sum, 0));
 }
 
-/* What LamStressError would say of an error of this size. */
+/* LamStressError for an error of this size. */
 static PetscReal RelativeError(PetscReal size, const PetscReal P[9])
 {
   PetscReal other[9];
@@ -227,13 +226,13 @@ static PetscReal RelativeError(PetscReal size, const PetscReal P[9])
   return LamStressError(other, P);
 }
 
-/* Of one model at this distance. */
+/* Error of a single model at this distance. */
 static PetscReal OneModelError(LamDatabase database, PetscReal distance2)
 {
   return (database->header.micro.interface == LAM_INTERFACE_BONDED ? BONDED_ERROR : CONTACT_ERROR) * distance2;
 }
 
-/* From the weight of the nearest model. */
+/* Error of the nearest model alone, times the square of its share of the weights. */
 static PetscReal LonelyError(const LamScatterSearch *search, PetscReal reach, const Sums *s)
 {
   const PetscReal d2 = search->blends.distance2, u = 1 / d2 - 1 / (reach * reach), share = u * u * u / s->W;
@@ -241,9 +240,9 @@ static PetscReal LonelyError(const LamScatterSearch *search, PetscReal reach, co
   return OneModelError(search->db, d2) * share * share;
 }
 
-/* ---- the answer ---- */
+/* ---- the response ---- */
 
-/* The model of one record at the question, in the question's frame. */
+/* The expansion of one record's model at the query, in the query's frame. */
 static void ExpandAt(const LamScatterSearch *search, const LamScatterNearest *at, LamExpansion *e)
 {
   const LamScattered *state = &search->db->scatter.states[at->state];
@@ -265,7 +264,7 @@ static PetscBool SameNumber(PetscReal a, PetscReal b)
   return (PetscBool)(fabs(a - b) <= 1e-10);
 }
 
-/* From the derivatives of the potential, which are volumes only where all cells have the same turgor and cohesion. */
+/* Volumes are derivatives of the potential only where all cells have the same turgor and cohesion; else NaN. */
 static void TakeVolumes(const LamResponse *record, LamResponse *r)
 {
   r->lumen_fraction = SameNumber(-record->energy_turgor, record->lumen_fraction) ? -r->energy_turgor : NAN;
@@ -315,7 +314,7 @@ static PetscBool IsOwnState(const LamScatterNearest *at)
   return (PetscBool)(at->distance2 < PetscSqr(LAM_OWN_STATE));
 }
 
-/* Indicators are those of the record. */
+/* Indicators are copied from the record. */
 static void AnswerFromModel(const LamScatterSearch *search, const LamScatterNearest *at, PetscReal error,
                             LamResponse *r)
 {
@@ -352,7 +351,7 @@ static void AnswerBlend(const LamScatterSearch *search, PetscReal reach, LamResp
   r->error_estimate = hypot(spread, LonelyError(search, reach, &sums));
 }
 
-/* Takes an answer back. */
+/* Replaces the response by LAM_OUT_OF_REACH with the reason. */
 static PetscErrorCode Refuse(PetscReal accuracy, LamResponse *r)
 {
   const LamResponse answer = *r;

@@ -1,15 +1,15 @@
 /*
-  Records that belong to no grid: what each may answer, its model of the potential, and which are near a question.
+  Records outside the grid: their use, their models of the potential, and the search for the nearest.
 */
 #include "scatter.h"
 #include <math.h>
 #include <string.h>
 
-#define TURGOR_WEIGHT 0.011 /* of pressures in C1 + C2 */
+#define TURGOR_WEIGHT 0.011 /* strain per pressure in units of C1 + C2, as is SUCTION_WEIGHT */
 #define SUCTION_WEIGHT 0.5
-#define TIE 1e-14 /* distances (strain) closer than this are equal: the record or image that comes first counts */
+#define TIE 1e-14 /* strain: distances that differ by less are equal, and the first record or image is used */
 
-/* Bits of the images of a state that fall on no earlier one: on a mirror plane of the lattice they come in pairs. */
+/* Bits of the images that coincide with no earlier one; on a mirror plane of the lattice they coincide in pairs. */
 static PetscInt DistinctImages(const LamImages *images, const PetscReal x[LAM_VARIABLES])
 {
   PetscReal at[LAM_MAX_IMAGES][LAM_VARIABLES];
@@ -32,7 +32,7 @@ static LamScatterPlace PlaceOf(const PetscReal x[LAM_VARIABLES])
   return (LamScatterPlace){x[0], hypot(x[1], x[2]), x[3], x[4]};
 }
 
-/* PETSC_FALSE: a record without a place among the states of plane strain. */
+/* Whether the load is finite, plane strain, and has J > 0. */
 static PetscBool HasPlace(const LamLoad *load)
 {
   PetscReal sum = load->turgor + load->cohesion;

@@ -1,5 +1,5 @@
 /*
-  Private to the answers from scattered records: their distances from a question.
+  Private to queries of scattered records: distances from the query.
 
     d^2 = |dc|^2 / 4 + (TURGOR_WEIGHT dp)^2, in contact tissue + (SUCTION_WEIGHT (dp + dg))^2
   dC/2 is the Green strain, so the distance is a strain.
@@ -25,20 +25,20 @@ typedef struct {
 typedef struct {
   LamDatabase db;
   LamScatterMetric metric;
-  LamScatterVector x; /* of the question */
+  LamScatterVector x; /* of the query */
   LamScatterPlace place;
   LamScatterVector turned[LAM_MAX_IMAGES];  /* x in the frame of each image */
-  LamScatterNearest blends, alone, refuses; /* of each use */
+  LamScatterNearest blends, alone, refuses; /* the nearest of each use */
 } LamScatterSearch;
 
-/* A question, no record looked at yet. */
+/* Initialises the search at a load, without looking at records. */
 void LamScatterBegin(LamDatabase database, const LamLoad *load, LamScatterSearch *search);
-/* The nearest records of a question. */
+/* Finds the nearest records of each use. */
 void LamScatterFind(LamDatabase database, const LamLoad *load, LamScatterSearch *search);
 /* v = M delta; returns delta . M delta. */
 PetscReal LamScatterApply(const LamScatterMetric *metric, const LamScatterVector delta, LamScatterVector v);
 PetscReal LamScatterDistance2(const LamScatterSearch *search, const LamScattered *state, PetscInt image);
-/* No image of a state at `place` is nearer. */
+/* Lower bound of the squared distance of all images of a state at `place`. */
 PetscReal LamScatterLowerBound(const LamScatterSearch *search, const LamScatterPlace *place);
 
 #endif

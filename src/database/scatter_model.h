@@ -1,5 +1,5 @@
 /*
-  Private to the cache: answers from the second-order model of one record that belongs to no grid.
+  Private to the cache: responses from the second-order model of one record outside the grid.
 */
 #ifndef LAM_SCATTER_MODEL_H
 #define LAM_SCATTER_MODEL_H
@@ -12,13 +12,13 @@ typedef struct {
 } LamScatterModel;
 
 /*
-  That of the nearest stable record, of whatever branch; none where cells float in it, or where a record that cannot
-  answer is less than twice as far.
+  Finds the model of the nearest stable record of any branch. None where cells float in it, or where a record without
+  a model is at most twice as far away.
 */
 void LamScatterModelFind(LamDatabase database, const LamLoad *load, LamScatterModel *model);
-/* The load of a model's record, from which it is found again. */
+/* The load of a model's record; LamScatterModelFind at this load finds the model again. */
 LamLoad LamScatterModelLoad(LamDatabase database, const LamScatterModel *model);
-/* Of a model that is not none. Out of reach where the estimate of its error is above the accuracy. */
+/* Evaluates a model (not none). LAM_OUT_OF_REACH where its error estimate exceeds the accuracy. */
 PetscErrorCode LamScatterModelQuery(LamDatabase database, const LamScatterModel *model, const LamLoad *load,
                                     PetscReal accuracy, LamResponse *response);
 
