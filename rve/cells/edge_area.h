@@ -1,7 +1,7 @@
 /*
-  Area under one quadratic edge with nodes 0 (start), 1 (middle), 2 (end): 1/2 sum_{a<b} D_ab x_a x x_b, and the
-  area inside a closed loop is the sum over its edges. Positions x enter quadratically, so the Hessian is constant.
-  Edges are given as three nodes of an element, counter-clockwise around the area.
+  Area between one quadratic edge and the origin, nodes 0 (start), 1 (middle), 2 (end): 1/2 sum_{a<b} D_ab x_a x x_b.
+  The sum over the edges of a closed loop is the enclosed area. Positions x enter quadratically, so the Hessian is
+  constant. edge: three local nodes of an element, counter-clockwise around the area.
 */
 #ifndef LAM_RVE_EDGE_AREA_H
 #define LAM_RVE_EDGE_AREA_H
@@ -24,7 +24,7 @@ static inline PetscReal LamEdgeArea(const PetscInt edge[3], const PetscReal x[LA
   return area;
 }
 
-/* Adds factor * d(area)/dx and, where K is not NULL, factor * d2(area)/dxdx. */
+/* Adds factor * d(area)/dx and, if K is not NULL, factor * d2(area)/dxdx. */
 static inline void LamAddEdgeArea(const PetscInt edge[3], const PetscReal x[LAM_ELEMENT_NODES][2], PetscReal factor,
                                   PetscReal f[LAM_ELEMENT_DOFS], PetscReal K[LAM_ELEMENT_DOFS][LAM_ELEMENT_DOFS])
 {

@@ -28,7 +28,7 @@ static void FindNeighbours(const LamMicrostructure *micro, LamMesh *mesh)
   }
 }
 
-#define ORIGIN -1 /* representative of nodes that are held at F X */
+#define ORIGIN -1 /* representative of nodes prescribed at F X */
 
 static PetscInt NodeNumber(const LamMesh *mesh, PetscInt cell, PetscInt around, PetscInt radial)
 {
@@ -80,7 +80,7 @@ static void PlaceNodes(const LamMicrostructure *micro, LamMesh *mesh)
 
 static void ConnectElements(LamMesh *mesh)
 {
-  /* (radial, around) offsets of the nine nodes: radial first makes the element counter-clockwise */
+  /* (radial, around) offsets of the nine nodes; radial first makes the element counter-clockwise */
   static const PetscInt offset[LAM_ELEMENT_NODES][2] = {{0, 0}, {2, 0}, {2, 2}, {0, 2}, {1, 0},
                                                         {2, 1}, {1, 2}, {0, 1}, {1, 1}};
 
@@ -97,14 +97,15 @@ static void ConnectElements(LamMesh *mesh)
         }
 }
 
-/* The first of the nodes that a node is tied to. */
+/* Representative of a node: the root of its class. */
 static PetscInt FirstOf(const PetscInt tied[], PetscInt node)
 {
   while (tied[node] != node) node = tied[node];
   return node;
 }
 
-/* Nodes of facing walls coincide, also across the period: they get the same representative, the first of them. */
+/* Puts coincident nodes of facing walls, also across the period, into one class. The representative is the lowest node
+   number. */
 static void TieOuterNodes(LamMesh *mesh)
 {
   const PetscInt last = 2 * mesh->along;
@@ -124,7 +125,7 @@ static void TieOuterNodes(LamMesh *mesh)
   for (PetscInt i = 0; i < mesh->node_count; ++i) mesh->node_class[i] = FirstOf(mesh->node_class, i);
 }
 
-/* Nodes of outer walls that follow F have the origin for representative. */
+/* Assigns the nodes of outer walls that follow F to the origin. */
 static void HoldNodes(LamMesh *mesh)
 {
   for (PetscInt k = 0; k < LAM_FACES * mesh->cell_count; ++k)
@@ -132,7 +133,7 @@ static void HoldNodes(LamMesh *mesh)
       mesh->node_class[LamMeshOuterNode(mesh, k / LAM_FACES, 2 * mesh->along * (k % LAM_FACES) + i)] = ORIGIN;
 }
 
-/* Numbers the classes in node order, after the origin where there is one, and sets the shifts. */
+/* Numbers the classes in node order, after the origin if there is one, and sets the shifts. */
 static PetscErrorCode NumberClasses(PetscBool has_origin, LamMesh *mesh)
 {
   PetscInt *number;
@@ -214,7 +215,8 @@ PetscErrorCode LamMeshCreate(const LamMicrostructure *micro, LamMesh *mesh)
   PlaceNodes(micro, mesh);
   FindNeighbours(micro, mesh);
   ConnectElements(mesh);
-  for (PetscInt i = 0; i < mesh->node_count; ++i) mesh->node_class[i] = i; /* representative node, for now */
+  for (PetscInt i = 0; i < mesh->node_count; ++i)
+    mesh->node_class[i] = i; /* the representative node until NumberClasses */
   if (micro->interface == LAM_INTERFACE_BONDED) TieOuterNodes(mesh);
   HoldNodes(mesh);
   PetscCall(NumberClasses(micro->is_patch, mesh));

@@ -1,22 +1,22 @@
 /*
-  Mesh of the RVE: whole hexagonal rings of nine-node quadrilaterals, and how their nodes are tied together.
+  Mesh of the RVE: hexagonal rings of nine-node quadrilaterals, and the classes of coupled nodes.
 
-  Method. A ring lies between the hexagons of apothem 1 - t and 1 (lengths in apothems). Each of its six faces has
-  `along` x `through` elements with straight radial mitres at the corners. Element i ends at the shares e(i / along) and
-  e((i + 1) / along) of the face's length,
+  Method. A ring fills the space between the hexagons of apothem 1 - t and 1 (lengths in apothems). Each of its six
+  faces has `along` x `through` elements with straight radial mitres at the corners. Element i spans the fractions
+  e(i / along) to e((i + 1) / along) of the face's length,
     e(s) = s - grading sin(2 pi s) / (2 pi),
-  so that with grading > 0 elements at the corners, where stresses are singular, are smaller. Face k has the outward
-  normal at orientation + 60 deg k; lattice vector L_k = 2 n_k. Cell (i, j) is centred at i L_0 + j L_1.
+  so grading > 0 makes elements smaller at the corners, where stresses are singular. Face k has the outward normal at
+  orientation + 60 deg k; lattice vector L_k = 2 n_k. Cell (i, j) is centred at i L_0 + j L_1.
 
-  Contact leaves every cell its own nodes: each node is a class, without shift. Bonded cells share unknowns: coincident
-  outer nodes form one class, also across the period, where a node is the image of its class's position y at a shift S:
+  With contact every cell has its own nodes: each node is a class without shift. Bonded cells share unknowns: coincident
+  outer nodes form one class, also across the period. A node is then an image of its class's position y with a shift S:
   x_node = y_class + F S,  S = X_node - X_class.
 
-  A patch is a finite block of cells between grips (lattice.h). Outer walls without a neighbour that follow F - those in
-  the grips, and with affine sides all of them - belong to class 0, the origin: x_node = F X_node. So F enters a patch
-  as it enters a period, through shifts, and P is the mean of the boundary forces.
+  A patch is a finite block of cells between grips (lattice.h). Outer walls that follow F (those in the grips; with
+  affine sides all outer walls without a neighbour) belong to class 0, the origin: x_node = F X_node. F thus enters a
+  patch through shifts, as it does a period, and P is the mean of the boundary forces.
 
-  Class 0 is held at y = F X: it takes out translations, and in a patch it carries the boundary.
+  Class 0 is prescribed, y = F X. This removes translations; in a patch it prescribes the boundary.
 */
 #ifndef LAM_RVE_MESH_H
 #define LAM_RVE_MESH_H
@@ -31,16 +31,16 @@ typedef struct {
   PetscInt ring_nodes;   /* nodes around one ring: 12 along */
   PetscInt radial_nodes; /* nodes through the wall: 2 through + 1 */
   PetscInt node_count, element_count, class_count;
-  PetscReal *ends;        /* [along + 1] of elements along a face, as shares of its length: 0 to 1 */
+  PetscReal *ends;        /* [along + 1] element ends along a face, as fractions of its length, 0 to 1 */
   PetscReal *X;           /* [node][2] reference positions */
   PetscInt *elements;     /* [element][9]: corners counter-clockwise from the inner edge, mid-edges, centre */
   PetscInt *cell_of;      /* [element] */
   PetscInt *node_class;   /* [node] */
   PetscReal *shift;       /* [node][2] S */
-  PetscBool *has_shift;   /* [element]: one of its nodes has a shift */
+  PetscBool *has_shift;   /* [element] whether one of its nodes has a shift */
   PetscReal *class_X;     /* [class][2] */
-  PetscInt *neighbour;    /* [cell][6] the cell across each face; -1: none */
-  PetscReal *image;       /* [cell][6][2] shift of its image that lies there */
+  PetscInt *neighbour;    /* [cell][6] cell across each face; -1: none */
+  PetscReal *image;       /* [cell][6][2] shift of the neighbour's image */
   PetscBool *held;        /* [cell][6] outer walls that follow F */
   PetscReal apothem;      /* of a cell's outer walls */
   PetscReal period[2][2]; /* rows; zero for a patch */
@@ -51,7 +51,7 @@ PetscErrorCode LamMeshCreate(const LamMicrostructure *micro, LamMesh *mesh);
 PetscErrorCode LamMeshDestroy(LamMesh *mesh);
 /* Reference centre of a cell, from opposite nodes of its outer loop. */
 void LamMeshCentre(const LamMesh *mesh, PetscInt cell, PetscReal centre[2]);
-/* The cell across a face, -1: none; shift [2] of its image that lies there. */
+/* Returns the cell across a face, or -1 if there is none; image: [2] shift of that cell's image. */
 static inline PetscInt LamMeshNeighbour(const LamMesh *mesh, PetscInt cell, PetscInt face, const PetscReal **image)
 {
   *image = &mesh->image[2 * (LAM_FACES * cell + face)];
@@ -62,7 +62,7 @@ static inline PetscReal LamFaceLength(const LamMesh *mesh)
 {
   return 2.0 / PetscSqrtReal(3.0) * mesh->apothem;
 }
-/* The outer edges of the elements at a corner and in the middle of a face. */
+/* Lengths of the outer element edges at a corner and in the middle of a face. */
 static inline PetscReal LamShortestEdge(const LamMesh *mesh)
 {
   return LamFaceLength(mesh) * (mesh->ends[1] - mesh->ends[0]);
@@ -73,7 +73,8 @@ static inline PetscReal LamLongestEdge(const LamMesh *mesh)
 
   return LamFaceLength(mesh) * (mesh->ends[e + 1] - mesh->ends[e]);
 }
-/* Where a point of a face lies, as a share of its length, counted in elements from its start, 0 to along; and back. */
+/* LamMeshShare: fraction of a face's length at a point given in elements from the face's start (0 to along).
+   LamMeshPlace is the inverse. */
 static inline PetscReal LamMeshShare(const LamMesh *mesh, PetscReal at)
 {
   const PetscInt e = PetscMax(0, PetscMin((PetscInt)at, mesh->along - 1));

@@ -1,20 +1,20 @@
 /*
-  Method. The unknowns are numbered anew once, by approximate minimum degree, so that the factorisation finds its rows
-  in order; values are copied to their new places before each factorisation. A pivot that is not positive ends it: where
-  all are positive the factor is as accurate as one with pivots could be.
+  Method. The unknowns are renumbered once by approximate minimum degree, so that the matrix is stored in elimination
+  order; values are copied to the new order before each factorisation. The factorisation fails at a pivot that is not
+  positive. If all pivots are positive, pivoting would not improve the accuracy.
 */
 #include "cholesky.h"
 #include <stdlib.h>
 #include <petscmat.h>
 
-#define FILL 8.0 /* entries of the factor over those of the matrix, first guess */
+#define FILL 8.0 /* estimated ratio of the nonzeros of the factor to those of the matrix */
 
 struct LamCholesky_s {
   PetscInt n, nonzeros;
   PetscReal *values;      /* borrowed */
   PetscInt *place;        /* [n]: new number of an unknown */
-  PetscInt *from;         /* [nonzeros]: where an entry of the renumbered matrix comes from */
-  PetscInt *row, *column; /* of the renumbered matrix, upper triangle; like `entries` used by `matrix` */
+  PetscInt *from;         /* [nonzeros]: source index of each entry of the renumbered matrix */
+  PetscInt *row, *column; /* renumbered matrix, upper triangle; borrowed by `matrix`, as `entries` is */
   PetscReal *entries;
   Mat matrix, factor;
   Vec rhs, solution;
@@ -52,7 +52,7 @@ static int CompareEntries(const void *a, const void *b)
   return x->row != y->row ? (x->row > y->row) - (x->row < y->row) : (x->column > y->column) - (x->column < y->column);
 }
 
-/* The pattern of the renumbered matrix: rows in order, columns in order in each, the diagonal first. */
+/* Pattern of the renumbered matrix: rows in order, columns sorted within a row, diagonal first. */
 static PetscErrorCode Renumber(LamCholesky c, const PetscInt row[], const PetscInt column[])
 {
   Entry *entry;
@@ -122,7 +122,7 @@ PetscErrorCode LamCholeskyNumeric(LamCholesky c, PetscBool *definite)
 {
   MatFactorInfo info;
   MatFactorError error;
-  PetscScalar *entries; /* c->entries, taken through PETSc so that it knows of the change */
+  PetscScalar *entries; /* c->entries, accessed through PETSc so that the change is registered */
   PetscInt negative = 1;
 
   PetscFunctionBeginUser;

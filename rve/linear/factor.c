@@ -1,31 +1,31 @@
 /*
-  One symbolic analysis for life, values changed in place, MUMPS LDL^T, which pivots safely on indefinite matrices and
-  counts negative eigenvalues (Sylvester's law of inertia).
+  MUMPS LDL^T with one symbolic analysis for the lifetime of the object; values change in place. MUMPS pivots, so
+  indefinite matrices are safe, and it counts negative eigenvalues (Sylvester's law of inertia).
 
-  Small systems that should be positive definite are tried without pivots first (cholesky.h).
+  Small systems expected to be positive definite are first tried without pivoting (cholesky.h).
 
-  With several ranks every collective call is announced by rank 0: an order (what, which matrix, its size) is broadcast,
-  and all ranks make the same calls. The matrix is distributed so that rank 0 has all of its rows; MUMPS distributes the
-  fronts itself. Ranks that wait leave the processor to others.
+  With several ranks, rank 0 announces every collective call: it broadcasts an order (operation, matrix number, size),
+  and all ranks make the same calls. In the distributed matrix rank 0 owns all rows; MUMPS distributes the fronts
+  itself. Waiting ranks sleep between polls.
 */
 #include "factor.h"
 #include "cholesky.h"
 #include <time.h>
 
-#define MOST_FACTORS 8        /* of several ranks, at a time */
-#define WORKSPACE 50          /* per cent beyond what the analysis expects; more where pivots are put off, ... */
-#define MOST_WORKSPACE 100000 /* ... to four times this at most */
+#define MOST_FACTORS 8 /* distributed over several ranks, at a time */
+#define WORKSPACE 50   /* per cent above the estimate of the analysis; increased when delayed pivots need more, ... */
+#define MOST_WORKSPACE 100000 /* ... up to four times this */
 
 struct LamFactor_s {
   MPI_Comm comm;
   PetscMPIInt size;
-  PetscInt number; /* among those of several ranks */
+  PetscInt number; /* index in Team */
   PetscInt n, nonzeros;
-  PetscInt *row, *column; /* borrowed, by rank 0 */
+  PetscInt *row, *column; /* borrowed, on rank 0 */
   PetscReal *values;
-  PetscInt margin;      /* of MUMPS's workspace, per cent; the same on all ranks */
-  LamCholesky cholesky; /* tried first; NULL: not small, or not definite */
-  PetscBool definite;   /* it holds the factor */
+  PetscInt margin;      /* workspace margin of MUMPS, per cent; the same on all ranks */
+  LamCholesky cholesky; /* tried first; NULL: not small, or not expected to be definite */
+  PetscBool definite;   /* `cholesky` holds the present factor */
   Mat matrix, factor;
   Vec rhs, solution; /* placeholders for the callers' arrays */
 };
@@ -35,9 +35,9 @@ typedef struct {
   PetscInt type, number, n;
 } Order;
 
-static LamFactor Team[MOST_FACTORS]; /* of several ranks, by number; the same on all of them */
+static LamFactor Team[MOST_FACTORS]; /* distributed systems by number; the same on all ranks */
 
-/* Not a blocking one: those who wait for it poll. */
+/* Nonblocking, as the receivers poll (Await). */
 static PetscErrorCode Broadcast(MPI_Comm comm, Order order)
 {
   MPI_Request request;
@@ -57,9 +57,9 @@ static PetscErrorCode Announce(LamFactor factor, OrderType type)
   PetscFunctionReturn(0);
 }
 
-/* ---- what every rank does ---- */
+/* ---- all ranks ---- */
 
-/* Of several ranks: rank 0 has all rows. */
+/* Distributed matrix; rank 0 owns all rows. */
 static PetscErrorCode CreateDistributed(LamFactor f)
 {
   const PetscInt local = f->row ? f->n : 0;
@@ -102,9 +102,10 @@ static PetscErrorCode Analyse(LamFactor f)
   PetscCall(MatGetFactor(f->matrix, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, &f->factor));
   PetscCall(MatMumpsSetIcntl(f->factor, 14, f->margin));
   PetscCall(MatMumpsSetIcntl(f->factor, 10, 0)); /* no iterative refinement: Newton refines */
-  PetscCall(MatMumpsSetIcntl(f->factor, 8, 0));  /* no scaling: the unknowns are alike; saves a fifth of the time */
-  /* MUMPS takes the ordering PORD itself, the best of its own from 600 to 200,000 unknowns */
-  if (f->size > 1) PetscCall(MatMumpsSetIcntl(f->factor, 13, 1)); /* the inertia of the whole matrix */
+  PetscCall(
+      MatMumpsSetIcntl(f->factor, 8, 0)); /* no scaling: the unknowns are of similar size; saves a fifth of the time */
+  /* default ordering of MUMPS: PORD, the best of its own from 600 to 200,000 unknowns */
+  if (f->size > 1) PetscCall(MatMumpsSetIcntl(f->factor, 13, 1)); /* inertia of the whole matrix */
   PetscCall(MatCholeskyFactorSymbolic(f->factor, f->matrix, NULL, &info));
   PetscFunctionReturn(0);
 }
@@ -121,8 +122,8 @@ static PetscErrorCode Numeric(LamFactor f, PetscInt *negative, PetscBool *ok)
     PetscCall(MatCholeskyFactorNumeric(f->factor, f->matrix, &info));
     PetscCall(MatFactorGetError(f->factor, &error));
     if (error != MAT_FACTOR_OUTMEMORY || f->margin > MOST_WORKSPACE) break;
-    f->margin *= 4;                    /* pivots that were put off need more room */
-    PetscCall(MatDestroy(&f->factor)); /* MUMPS would not take it without another analysis */
+    f->margin *= 4;                    /* delayed pivots need more workspace */
+    PetscCall(MatDestroy(&f->factor)); /* MUMPS applies the new margin only after another analysis */
   }
   *ok = (PetscBool)(error == MAT_FACTOR_NOERROR);
   *negative = 0;
@@ -188,7 +189,7 @@ PetscErrorCode LamFactorCreate(MPI_Comm comm, PetscInt n, PetscInt row[], PetscI
 PetscErrorCode LamFactorNumeric(LamFactor factor, PetscInt *negative, PetscBool *ok)
 {
   Mat rows = factor->matrix;
-  PetscScalar *array; /* of one rank it is factor->values; taken through PETSc so that it knows of the change */
+  PetscScalar *array; /* on one rank this is factor->values; accessed through PETSc so that the change is registered */
 
   PetscFunctionBeginUser;
   *negative = 0;

@@ -1,12 +1,12 @@
 /*
-  The linear systems of the RVE: one sparsity pattern for life, values written in place. factor.c factors them.
+  The linear systems of the RVE: one fixed sparsity pattern; values are written in place. factor.c factors the matrix.
 */
 #include "linear.h"
 
-#define RESTS 1e-9      /* of the largest right-hand side that solves with a nearby factor may leave */
-#define LEFT_OUT 1e-10  /* C1 + C2: of rest.K^-1 rest, which the tangent leaves out */
-#define LEAST_FALL 1e-3 /* of that work in a refinement that is counted on */
-#define POOR 0.1        /* share of a rest that a refinement leaves where the factor is not near */
+#define RESTS 1e-9      /* largest residual of a solve with a nearby factor, over the largest right-hand side entry */
+#define LEFT_OUT 1e-10  /* largest rest.K^-1 rest, in C1 + C2: an error of the tangent */
+#define LEAST_FALL 1e-3 /* lower bound of the assumed reduction of that work per refinement */
+#define POOR 0.1        /* largest residual reduction of a useful refinement; above it the matrix is factored again */
 
 static int CompareKeys(const void *a, const void *b)
 {
@@ -27,8 +27,8 @@ static PetscInt SortUnique(PetscInt n, PetscInt64 keys[])
   return unique;
 }
 
-/* Appends the keys row * classes + column, row <= column, of all pairs of a set of classes (class 0, held, left out).
- */
+/* Appends the keys row * classes + column, row <= column, of all pairs of a set of classes. Class 0 is prescribed: no
+   keys. */
 static void AddClique(PetscInt classes, PetscInt size, const PetscInt members[], PetscInt *n, PetscInt64 keys[])
 {
   for (PetscInt a = 0; a < size; ++a)
@@ -39,7 +39,7 @@ static void AddClique(PetscInt classes, PetscInt size, const PetscInt members[],
     }
 }
 
-/* Sorted unique keys of coupled classes: those of an element, and those of a coupling. */
+/* Sorted unique keys of coupled classes, from elements and from couplings. */
 static PetscErrorCode CollectBlocks(const LamMesh *mesh, const LamCouplings *couplings, PetscInt *count,
                                     PetscInt64 **blocks)
 {
@@ -57,7 +57,7 @@ static PetscErrorCode CollectBlocks(const LamMesh *mesh, const LamCouplings *cou
     AddClique(mesh->class_count, LAM_ELEMENT_NODES, members, &n, keys);
   }
   unique = SortUnique(n, keys);
-  n = unique; /* couplings are appended to what elements gave */
+  n = unique;
   for (PetscInt g = 0; g < couplings->count; ++g)
     AddClique(mesh->class_count, size, &couplings->classes[g * size], &n, keys);
   *count = n > unique ? SortUnique(n, keys) : unique;
@@ -79,9 +79,9 @@ static PetscErrorCode CollectMembers(const LamCouplings *couplings, PetscInt *co
 }
 
 /*
-  Rows of unknowns: 2 x 2 class blocks, the diagonal block first, then the multipliers of the couplings of the class,
-  then the pressure of the lumen that it bounds; a multiplier's or pressure's row holds its diagonal. Counts only where
-  linear->row is NULL.
+  Fills the rows: 2 x 2 class blocks, the diagonal block first, then the multipliers of the couplings of the class,
+  then the pressure of the lumen that the class bounds. Rows of multipliers and pressures hold only their diagonal.
+  Returns the number of entries; only counts if linear->row is NULL.
 */
 static PetscInt FillRows(const LamMesh *mesh, const LamCouplings *couplings, PetscInt count, const PetscInt64 blocks[],
                          PetscInt member_count, const PetscInt64 members[], const PetscInt lumen_of[],
@@ -244,9 +244,9 @@ static PetscReal LargestWork(PetscInt count, PetscInt n, const PetscReal rest[],
   return largest;
 }
 
-/* What is small against a right-hand side of stiff forces may yet move soft walls: the work of the rest counts, too. It
-   is known of the rest before, and taken to fall as it did last, but not to vanish: of soft modes that work falls more
-   slowly. */
+/* A residual that is small relative to stiff forces may still move soft walls, so its work is limited, too. The work is
+   known for the previous residual. The present one is estimated by the last reduction factor, but not below LEAST_FALL,
+   since the work in soft modes decreases more slowly. */
 PetscErrorCode LamLinearSolve(LamLinear *linear, PetscInt count, const PetscReal rhs[], PetscReal solution[],
                               PetscReal rest[])
 {

@@ -48,7 +48,7 @@ static void PressureBasis(const PetscReal point[LAM_GAUSS][2], LamElementGeometr
   for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
     const PetscReal dX = point[g][0] - centre[0] / area, dY = point[g][1] - centre[1] / area;
 
-    /* along and across the wall, so that thin elements do not make the two nearly parallel */
+    /* axes along and across the wall: in thin elements X and Y could be nearly parallel functions */
     geometry->psi[g][0] = 1.0;
     geometry->psi[g][1] = dX * geometry->fibre[0] + dY * geometry->fibre[1];
     geometry->psi[g][2] = -dX * geometry->fibre[1] + dY * geometry->fibre[0];
@@ -133,8 +133,7 @@ static inline PetscReal Dilation(const PetscReal H[4], PetscReal F33)
   return F33 * (H[0] + H[3] + (H[0] * H[3] - H[1] * H[2])) + (F33 - 1.0);
 }
 
-/* Gradients H at all points and the projected dilatation theta - 1 there; PETSC_FALSE where a volume is not positive.
- */
+/* H and the projected dilatation theta - 1 at all Gauss points. Returns PETSC_FALSE if a volume is not positive. */
 static inline PetscBool Kinematics(const LamElementGeometry *geometry, const PetscReal u[][2], PetscReal F33,
                                    PetscReal H[LAM_GAUSS][4], PetscReal dilation[LAM_GAUSS])
 {
@@ -199,7 +198,7 @@ void LamElementEnergy(const LamElementGeometry *geometry, const LamWallLaw *law,
   *valid = (PetscBool)isfinite(*energy);
 }
 
-/* q = sum w psi U'(theta), H = sum w psi psi U''(theta); returns the volumetric energy. */
+/* px = q = sum w psi U'(theta), stress->H = sum w psi psi U''(theta). Returns the volumetric energy. */
 static inline PetscReal Pressures(const LamElementGeometry *geometry, const LamWall *wall,
                                   const PetscReal dilation[LAM_GAUSS], LamElementStress *stress)
 {
@@ -229,8 +228,8 @@ static inline PetscReal AtPoint(const LamElementGeometry *geometry, PetscInt g, 
 }
 
 /*
-  Stress w P and tangent w A at point g: the residual with the stresses of u, the tangent with the independent ones.
-  The projection term of the pressure is added in LamElementEvaluate. Returns the energy without U.
+  Stress w P and tangent w A at point g. The stress uses px and sx (of u), the tangent uses the independent p* and s*.
+  LamElementEvaluate adds the projection term of the pressure. Returns the energy without U.
 */
 static inline PetscReal PointStress(const LamElementGeometry *geometry, PetscInt g, const LamWallLaw *law,
                                     const LamWall *wall, const PetscReal H[4], PetscReal F33, LamElementStress *stress,
@@ -294,7 +293,7 @@ static inline void Cholesky3(const PetscReal H[3][3], PetscReal L[3][3])
     }
 }
 
-/* Adds D^T H D, the stiffness of the projected pressure, D = d c / d x, as a product of Cholesky rows. */
+/* Adds D^T H D, D = dc/dx: the stiffness of the projected pressure. With H = L L^T it is E^T E, E = L^T D. */
 static inline void AddProjection(const PetscReal H[3][3], const PetscReal D[2][LAM_PRESSURES][LAM_PADDED_NODES],
                                  PetscReal K[3][9][LAM_PADDED_NODES])
 {
@@ -428,7 +427,7 @@ void LamElementStretch33(const LamElementGeometry *geometry, const LamWallLaw *l
   }
   for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
     const PetscReal w = geometry->weight[g], cof[4] = {F[g][3], -F[g][2], -F[g][1], F[g][0]};
-    /* dp of the pressure field that F33 changes directly, plus the geometric part p* dcof */
+    /* the pressure field changes by dp with F33; p* dcof is the geometric part */
     const PetscReal p = AtPoint(geometry, g, stress->px), p_star = AtPoint(geometry, g, stress->p);
     const PetscReal dp = AtPoint(geometry, g, HDf);
     LamKernel k;
@@ -465,7 +464,7 @@ void LamElementFields(const LamElementGeometry *geometry, const LamWallLaw *law,
   }
 }
 
-/* d2I4/dFdF times the fibre stress, here a factor: what PointStress takes of the independent stress. */
+/* Adds factor/2 times d2I4/dFdF. PointStress multiplies this term by the independent fibre stress. */
 static inline void AddFibreCurvature(const LamElementGeometry *geometry, PetscReal factor, PetscReal A[4][4])
 {
   for (PetscInt i = 0; i < 2; ++i)

@@ -1,16 +1,17 @@
 /*
   The wall element: nine-node quadrilateral, discontinuous linear pressure (Q2/P1disc), 3 x 3 Gauss points.
 
-  Energy of one element. It is given the displacements u of its nodes, whose gradient H = F - 1 keeps its digits where
-  strains are small:
+  Energy of one element. The input is the nodal displacement u; its gradient H = F - 1 avoids cancellation at small
+  strains.
     Pi_e = sum_g w_g [ W_matrix(F_g) + W_fibre(I4_g) + U(theta_g) ],
-    theta = projection of J = F33 det F onto span(psi_0, psi_1, psi_2) = linear functions of the reference coordinates,
-  orthonormal on the element, so theta = psi.c with c = sum w psi J. Everything below is a derivative of Pi_e.
-  The pressure is p = psi.q, q = sum w psi U'(theta).
+    theta = projection of J = F33 det F onto span(psi_0, psi_1, psi_2),
+  where the psi_k span the linear functions of the reference coordinates and are orthonormal on the element, so
+  theta = psi.c with c = sum w psi J. Everything below is a derivative of Pi_e. The pressure is p = psi.q,
+  q = sum w psi U'(theta).
 
   Independent stresses (Magisano, Leonetti & Garcea, IJNME 2017; Haggblad & Sundberg, Comput. Struct. 1983): the tangent
-  is built with p* and s* = dW_fibre/dI4, which follow their own linearised equations, while the residual is the one
-  of the energy. That is what makes Newton converge in few full steps for kappa, C4 >> C1.
+  uses p* and s* = dW_fibre/dI4, which are updated by their own linearised equations; the residual is the gradient of
+  the energy. Newton then converges in few full steps for kappa, C4 >> C1.
 */
 #ifndef LAM_RVE_ELEMENT_H
 #define LAM_RVE_ELEMENT_H
@@ -30,10 +31,10 @@ typedef struct {
   PetscReal fibre[2]; /* M */
 } LamElementGeometry;
 
-/* Independent stresses, and the stresses of the last evaluated positions. */
+/* Independent stresses, and the stresses at the last evaluated displacements. */
 typedef struct {
   PetscReal p[LAM_PRESSURES], s[LAM_GAUSS];   /* p*, s* */
-  PetscReal px[LAM_PRESSURES], sx[LAM_GAUSS]; /* of the positions */
+  PetscReal px[LAM_PRESSURES], sx[LAM_GAUSS]; /* at the last evaluated u */
   PetscReal dds[LAM_GAUSS];                   /* d2W_fibre/dI4^2 there */
   PetscReal H[LAM_PRESSURES][LAM_PRESSURES];  /* dq/dc = sum w psi psi U'' */
 } LamElementStress;
@@ -47,29 +48,30 @@ typedef struct {
   PetscReal K[LAM_ELEMENT_DOFS][LAM_ELEMENT_DOFS]; /* tangent, symmetric */
 } LamElementResult;
 
-/* PETSC_FALSE where det F or theta is not positive at a Gauss point. */
+/* Returns PETSC_FALSE if det F or theta is not positive at a Gauss point. */
 PetscBool LamElementIsValid(const LamElementGeometry *geometry, const PetscReal u[][2], PetscReal F33);
 
-/* Energy alone. *valid is PETSC_FALSE where det F or theta is not positive, or the energy overflows. */
+/* Energy only. *valid is PETSC_FALSE if det F or theta is not positive, or if the energy overflows. */
 void LamElementEnergy(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
                       const PetscReal u[][2], PetscReal F33, PetscReal *energy, PetscBool *valid);
 
-/* Energy, residual of the energy, tangent with the independent stresses; updates px, sx, dds, H of `stress`. */
+/* Energy, residual dPi_e/dx, and tangent with the independent stresses. Updates px, sx, dds and H of `stress`; *valid
+   as for LamElementEnergy. */
 void LamElementEvaluate(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
                         const PetscReal u[][2], PetscReal F33, LamElementStress *stress, LamElementResult *out,
                         PetscBool *valid);
 
-/* Moves the independent stresses: stress* += alpha (stress(u) + d stress(u).(du, dF33) - stress*), at the u of the last
-   evaluation. */
+/* Updates the independent stresses: stress* += alpha (stress(u) + d stress(u).(du, dF33) - stress*), at the u of the
+   last evaluation. */
 void LamElementUpdateStress(const LamElementGeometry *geometry, const PetscReal u[][2], const PetscReal du[][2],
                             PetscReal F33, PetscReal dF33, PetscReal alpha, LamElementStress *stress);
 
-/* Sets the independent stresses to those of u; PETSC_FALSE where u is not valid. */
+/* Sets the independent stresses to the stresses at u. Returns PETSC_FALSE if u is not valid. */
 PetscBool LamElementSetConsistentStress(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
                                         const PetscReal u[][2], PetscReal F33, LamElementStress *stress);
 
-/* Derivatives with respect to F33 at fixed positions: force = dPi_e/dF33 with the stresses of the last evaluation, and
-   as in the tangent with the independent ones fx = d2Pi_e/dx dF33, ff = d2Pi_e/dF33^2. */
+/* Derivatives with respect to F33 at fixed u. force = dPi_e/dF33 uses the stresses of the last evaluation. fx =
+   d2Pi_e/dx dF33 and ff = d2Pi_e/dF33^2 use the independent stresses, as the tangent does. */
 void LamElementStretch33(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
                          const PetscReal u[][2], PetscReal F33, const LamElementStress *stress, PetscReal *force,
                          PetscReal fx[LAM_ELEMENT_DOFS], PetscReal *ff);
@@ -78,14 +80,14 @@ void LamElementStretch33(const LamElementGeometry *geometry, const LamWallLaw *l
 void LamElementFields(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
                       const PetscReal u[][2], PetscReal F33, PetscReal fibre[LAM_GAUSS], PetscReal stress[LAM_GAUSS]);
 
-/* What a Gauss point adds to integrals over the wall, per reference thickness. */
+/* Contribution of one Gauss point to integrals over the wall, per reference thickness. */
 typedef struct {
   PetscReal reference, volume; /* reference and current volume */
   PetscReal stretch;           /* int sqrt(I4) dV, reference */
   PetscReal energy;            /* int W_matrix + W_fibre dV, reference */
-  PetscReal tension;           /* int m.sigma m dv, current, m the current direction of the fibre, sigma Cauchy */
+  PetscReal tension;           /* int m.sigma m dv, current; m: current fibre direction, sigma: Cauchy stress */
   PetscReal ellipticity;       /* int of the smallest stiffness against isochoric shear bands dV (wall_ellipticity.h) */
-  PetscReal kinked;            /* reference volume where that is negative */
+  PetscReal kinked;            /* reference volume where ellipticity is negative */
 } LamWallPoint;
 void LamElementWallPoints(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
                           const PetscReal u[][2], PetscReal F33, LamWallPoint points[LAM_GAUSS]);

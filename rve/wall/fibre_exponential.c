@@ -7,7 +7,7 @@
 #include "wall_law.h"
 #include <math.h>
 
-/* Of the exponential function; beyond it sums of squares of stresses would overflow (e^300 is 1e130). */
+/* Exponents beyond this are rejected: sums of squares of stresses would overflow (e^300 is 1e130). */
 #define LARGEST_EXPONENT 300.0
 
 void LamFibreExponential(const LamWall *wall, PetscReal extension, LamKernel1 *out)
@@ -18,7 +18,7 @@ void LamFibreExponential(const LamWall *wall, PetscReal extension, LamKernel1 *o
   *out = (LamKernel1){0};
   if (wall->fibres == LAM_FIBRES_TENSION && extension <= 0.0) return;
   if (!(x <= LARGEST_EXPONENT)) {
-    out->W = (PetscReal)INFINITY; /* of a state that the element refuses */
+    out->W = (PetscReal)INFINITY; /* the element rejects this state */
     return;
   }
   growth = expm1(x);

@@ -1,15 +1,15 @@
 /*
   Isochoric Mooney-Rivlin matrix, W = C1/2 (I1bar - 3) + C2/2 (I2bar - 3)  (Mihai, Safar & Wyatt, eq. 4.1).
 
-  Method. In plane strain with stretch f = F33 the isotropic invariants are functions of a = |F|^2 (in-plane),
-  j = det F (in-plane) and f:  I1 = a + f^2,  I2 = j^2 + f^2 a,  J = j f. With C = J^2/3, K1 = C1/C and K2 = C2 f^2/C^2
+  Method. In plane strain with stretch f = F33 the isotropic invariants are functions of a = |F|^2 (in-plane), j = det
+  F (in-plane) and f:  I1 = a + f^2,  I2 = j^2 + f^2 a,  J = j f. With C = J^(2/3), K1 = C1/C and K2 = C2 f^2/C^2
     W = K1/2 (I1 - 3 C) + K2/(2 f^2) (I2 - 3 C^2),
   and derivatives in F follow from da/dF = 2F, dj/dF = cof F.
 
-  Rounding. Near F = 1 everything is a difference of numbers near 1. With H = F - 1, H33 = f - 1 let
-    delta = j - 1 = tr H + det H,  phi = f^2 - 1,  s2 = a - 2j = (H11 - H22)^2 + (H12 + H21)^2,  C - 1 = (J^2 - 1)/(C^2
-  + C + 1) which hold all digits of H; stress and energy are written in these, the terms of first order taken out by
-  hand.
+  Rounding. Near F = 1 every term is a difference of numbers near 1. With H = F - 1, H33 = f - 1 the quantities
+    delta = j - 1 = tr H + det H,   phi = f^2 - 1,   s2 = a - 2j = (H11 - H22)^2 + (H12 + H21)^2,
+    C - 1 = (J^2 - 1)/(C^2 + C + 1)
+  keep all digits of H. Energy and stress are written in these, with the first-order terms cancelled by hand.
 */
 #include "wall_law.h"
 

@@ -4,9 +4,9 @@
   W = W_matrix(F, F33) + W_fibre(I4) + U(J),  plane strain with a prescribed stretch F33 along the prism axis.
   The matrix part is isochoric. U is the same for every law: U(J) = kappa/4 (J^2 - 1 - 2 ln J), applied to the
   projected dilatation (element.h). I4 = M.CM with the full C and M along the wall (Mihai, Safar & Wyatt, eq. 4.1).
-  Kernels take what is left of F, I4 and J where the wall is undeformed, H = F - 1, I4 - 1, J - 1, and give energy and
-  stress with all digits of it, however small it is.
-  Energies and stresses in C1 + C2. A new law is one kernel file and one row in wall_law.c.
+  Kernels take the deviations from the undeformed wall, H = F - 1, I4 - 1 and J - 1, so that energy and stress keep full
+  relative accuracy at small strains. Unit of energies and stresses: C1 + C2.
+  A new law is one kernel file and one row in wall_law.c.
 */
 #ifndef LAM_RVE_WALL_LAW_H
 #define LAM_RVE_WALL_LAW_H
@@ -29,14 +29,14 @@ typedef struct {
 
 typedef struct {
   LamWallLawType type;
-  /* Isochoric matrix at F = 1 + H, F33 = 1 + H33; needs det F > 0 and F33 > 0. */
+  /* Isochoric matrix at F = 1 + H, F33 = 1 + H33; requires det F > 0 and F33 > 0. */
   void (*matrix)(const LamWall *wall, const PetscReal H[4], PetscReal H33, LamKernel *out);
-  /* Fibres as a function of I4 = 1 + extension; NULL where the law has none. */
+  /* Fibres as a function of I4 = 1 + extension; NULL if the law has no fibres. */
   void (*fibre)(const LamWall *wall, PetscReal extension, LamKernel1 *out);
 } LamWallLaw;
 
 PetscErrorCode LamWallLawGet(LamWallLawType type, const LamWallLaw **law);
-/* C4 of the quadratic fibres that are as stiff at rest; 0 without fibres. */
+/* C4 of quadratic fibres with the same stiffness at zero strain; 0 without fibres. */
 PetscReal LamWallFibreModulus(const LamWall *wall);
 
 /* Kernels, one file each. */
@@ -44,7 +44,7 @@ void LamMatrixMooneyRivlin(const LamWall *wall, const PetscReal H[4], PetscReal 
 void LamFibreQuadratic(const LamWall *wall, PetscReal extension, LamKernel1 *out);
 void LamFibreExponential(const LamWall *wall, PetscReal extension, LamKernel1 *out);
 
-/* The matrix kernel for who has F. */
+/* Matrix kernel evaluated at F instead of H = F - 1. */
 static inline void LamMatrixAt(const LamWallLaw *law, const LamWall *wall, const PetscReal F[4], PetscReal F33,
                                LamKernel *out)
 {
@@ -53,7 +53,7 @@ static inline void LamMatrixAt(const LamWallLaw *law, const LamWall *wall, const
   law->matrix(wall, H, F33 - 1.0, out);
 }
 
-/* e - ln(1 + e), e > -1, to all digits also where the two cancel: with s = e/(2 + e) it is 2 s/(1 - s) - 2 artanh s. */
+/* e - ln(1 + e) for e > -1, without cancellation near 0: with s = e/(2 + e) it is 2 s/(1 - s) - 2 artanh s. */
 static inline PetscReal LamLogRest(PetscReal e)
 {
   const PetscReal s = e / (2.0 + e), s2 = s * s;
