@@ -1,10 +1,10 @@
 /*
-  Questions at random to a database, and its answers beside fresh solves.
+  Random queries to a database; its responses compared with fresh solves.
 
   Method
-    Principal logarithmic strains, turgor and the angle of the first principal direction are uniform over the box, all
-    directions of the plane, so that the symmetry that the database uses is audited too. Chance, not the sequence by
-    which `build` looks for states that have no answer: its states are those that the database knows best.
+    Principal logarithmic strains, turgor and the angle of the first principal direction are uniform over the box. The
+    angle covers all in-plane directions, so that the symmetry used by the database is tested too. The states are
+    random, not from the sequence of `build`: at the states of that sequence the database is most accurate.
     Source of the random numbers: splitmix64 (Steele, Lea & Flood, OOPSLA 2014, Figure 12).
 */
 #include "audit.h"
@@ -18,7 +18,7 @@ static const PetscReal FLOOR = 0.0227; /* as in LamStressError */
 
 /* ---- the box ---- */
 
-/* [least, most] of a member of the coverage that `info` tells; false where no record is usable. */
+/* [least, most] of a member of `coverage` in the database's `info`; false if no record is usable. */
 static PetscBool ReadRange(const json_t *coverage, const char name[], PetscReal unit, PetscReal range[2])
 {
   const json_t *pair = json_object_get(coverage, name);
@@ -59,7 +59,7 @@ static PetscErrorCode FindBox(const LamQuerySource *from, LamAuditBox *box)
   PetscFunctionReturn(0);
 }
 
-/* ---- questions ---- */
+/* ---- queries ---- */
 
 static PetscReal Uniform(uint64_t *state, PetscReal least, PetscReal most)
 {
@@ -89,7 +89,7 @@ static void Count(json_t *counts, const char key[])
   json_object_set_new(counts, key, json_integer(1 + json_integer_value(json_object_get(counts, key))));
 }
 
-/* A reason without its numbers, which differ from state to state. */
+/* Counts a reason with its numbers replaced by '#', since they differ from state to state. */
 static void CountReason(json_t *counts, const char reason[])
 {
   char key[sizeof(((LamResponse *)0)->reason)];
@@ -152,7 +152,7 @@ PetscErrorCode LamAuditDestroy(LamAudit *audit)
   PetscFunctionReturn(0);
 }
 
-/* ---- answers beside solves ---- */
+/* ---- comparison with solves ---- */
 
 static PetscReal TangentError(const PetscReal A[81], const PetscReal A_ref[81])
 {
@@ -170,7 +170,7 @@ static PetscReal TangentError(const PetscReal A[81], const PetscReal A_ref[81])
   return sqrt(difference) / (sqrt(reference) + FLOOR);
 }
 
-/* The question is asked once more: its answer, two kilobytes, has not been kept. */
+/* Repeats the query: its response (two kilobytes) is not stored. */
 PetscErrorCode LamAuditCompare(LamAudit *audit, PetscInt i, const LamResponse *fresh)
 {
   LamAudited *result = &audit->results[i];

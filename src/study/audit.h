@@ -1,5 +1,5 @@
 /*
-  A database compared with fresh solves: which states it is queried at, what is compared.
+  Comparison of a database with fresh solves at random states.
 */
 #ifndef LAM_AUDIT_H
 #define LAM_AUDIT_H
@@ -7,19 +7,19 @@
 #include "query_source.h"
 #include "dispatch.h"
 
-/* The states that questions are drawn from; [0] the smallest, [1] the largest. */
+/* The box from which states are drawn; [0] smallest, [1] largest value. */
 typedef struct {
   PetscReal strain[2]; /* principal logarithmic strains */
   PetscReal turgor[2], cohesion;
   const char *origin; /* "sample box of its scene", "what its records span" */
 } LamAuditBox;
 
-/* One answer beside a fresh solve. What is not known of both is NaN. */
+/* One response compared with a fresh solve. A quantity that either of them lacks is NaN. */
 typedef struct {
   PetscBool compared;
-  PetscReal estimate, error; /* of P: the answer's, and LamStressError of the answer against the solve */
+  PetscReal estimate, error; /* of P: error estimate of the response; LamStressError between response and solve */
   PetscReal tangent;         /* |A - A_ref| / (|A_ref| + 0.0227 (C1 + C2)), in-plane entries, Frobenius */
-  PetscReal opening, lumen;  /* differences of the two fractions, without sign */
+  PetscReal opening, lumen;  /* absolute differences of opening_fraction and lumen_fraction */
   PetscReal query_seconds, solve_seconds;
 } LamAudited;
 
@@ -28,20 +28,20 @@ typedef struct {
   LamAuditBox box;
   PetscReal accuracy;
   PetscInt seed, wanted;
-  PetscInt asked, answered; /* asked until `wanted` have been answered, or MOST_ASKED times as many */
+  PetscInt asked, answered; /* queries; those with a response. At most MOST_ASKED * wanted queries */
   LamLoad *loads;           /* [answered]; owned */
   LamAudited *results;      /* [answered]; owned */
-  PetscInt solved;          /* solves made, failed ones included */
-  json_t *refused;          /* how often by reason, numbers in it left out; owned */
-  json_t *unsolved;         /* fresh solves that failed, by status; owned */
+  PetscInt solved;          /* completed solves, including failed ones */
+  json_t *refused;          /* queries without a response, counted by reason (numbers removed); owned */
+  json_t *unsolved;         /* failed solves, counted by status; owned */
 } LamAudit;
 
 /* ---- audit.c ---- */
-/* Draws and asks. */
+/* Draws states and queries the database at them, until `samples` queries have a response. */
 PetscErrorCode LamAuditCreate(const LamQuerySource *from, PetscReal accuracy, PetscInt samples, PetscInt seed,
                               LamAudit *audit);
 PetscErrorCode LamAuditDestroy(LamAudit *audit);
-/* Compares answer i with the solve of its load. */
+/* Compares response i with the fresh solve of its load. */
 PetscErrorCode LamAuditCompare(LamAudit *audit, PetscInt i, const LamResponse *fresh);
 
 /* ---- audit_run.c; collective ---- */
@@ -49,7 +49,7 @@ PetscErrorCode LamAuditCompare(LamAudit *audit, PetscInt i, const LamResponse *f
 typedef struct {
   const char *path;
   PetscInt samples, seed;
-  PetscReal accuracy; /* 0: that of the database */
+  PetscReal accuracy; /* 0: accuracy of the database */
   LamReporter reporter;
 
   LamDispatch dispatch;

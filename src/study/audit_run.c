@@ -1,19 +1,19 @@
 /*
-  Queries a database at random, and solves the states that it responds in afresh. Rank 0 holds the database, queries and
-  compares; all ranks solve.
+  Queries a database at random states and solves the states with a response afresh. Rank 0 holds the database, queries
+  it and compares; all ranks solve.
 */
 #include "audit.h"
 #include "dispatch.h"
 #include "clock.h"
 
-/* ---- what is solved ---- */
+/* ---- solves ---- */
 
-/* What rank 0 has drawn, and the tissue, to all. */
+/* Broadcasts the tissue and the states drawn by rank 0. */
 static PetscErrorCode Share(LamVerification *v)
 {
   const MPI_Comm comm = PETSC_COMM_WORLD;
   LamMicrostructure *micro = &v->micro;
-  LamCell *cells = micro->cell; /* of rank 0: the database's */
+  LamCell *cells = micro->cell; /* on rank 0: the database's */
   int has_cells = cells != NULL;
   PetscInt n;
 
@@ -45,7 +45,7 @@ static PetscErrorCode CreateRVE(LamVerification *v)
   PetscFunctionReturn(0);
 }
 
-/* From the stress-free reference, as if nothing else were known. */
+/* Starts from the stress-free reference, independent of the database and of earlier solves. */
 static PetscErrorCode Solve(void *ctx, PetscInt64 index, const void *input, size_t input_size, void *result,
                             size_t *size)
 {
@@ -95,7 +95,7 @@ static PetscErrorCode RunRoot(LamVerification *v)
 
 /* ---- ranks ---- */
 
-/* A worker that fails cannot tell rank 0, which waits for its result: it ends the job. */
+/* An error on a worker must abort the job: rank 0 waits for its result. */
 static PetscErrorCode RunAll(LamVerification *v)
 {
   const PetscBool root = (PetscBool)(v->rank == 0);

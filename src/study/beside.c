@@ -1,5 +1,5 @@
 /*
-  Text files beside an HDF5 file, replaced as a whole: a reader never sees half a file.
+  Text files beside an HDF5 file, replaced atomically: a reader never sees a partial file.
 */
 #include "beside.h"
 #include <errno.h>

@@ -1,14 +1,15 @@
 /*
-  What a build writes, and when. Rank 0.
+  Writing the records of a build. Rank 0.
 */
 #include "build_run.h"
 #include "clock.h"
 
-/* A commit follows the last one after so many seconds, and so many times what that one took: it may cost 2 %. */
+/* Interval between commits: at least COMMIT_SECONDS s, and COMMIT_SHARE times the duration of the last commit, so that
+   commits take at most 2 % of the time. */
 #define COMMIT_SECONDS 0.1
 #define COMMIT_SHARE 50.0
-enum { COMMIT_RECORDS = 65536 }; /* more are not kept back */
-#define LATE 30.0                /* s that a node may hold up those behind it in the file */
+enum { COMMIT_RECORDS = 65536 }; /* so many pending records are committed at once */
+#define LATE 30.0                /* s for which an unsolved node may delay the records that follow it in the file */
 
 PetscInt64 LamBuildRecords(const LamBuild *build)
 {
@@ -85,7 +86,6 @@ PetscErrorCode LamBuildCommitInTime(LamBuild *b)
   PetscFunctionReturn(0);
 }
 
-/* At a stop, and at the end: everything. */
 PetscErrorCode LamBuildCommitAll(void *ctx)
 {
   LamBuild *b = ctx;

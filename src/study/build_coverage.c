@@ -1,17 +1,17 @@
 /*
-  How much of the sample box a table covers, and which nodes it lacks.
+  Coverage of the sample box by a table, and the nodes that the table lacks.
 */
 #include "build.h"
 #include "gather.h"
 #include <math.h>
 #include <stdlib.h>
 
-/* States of the box; suction is one dimension more. */
+/* Number of states in the box; contact tissue has suction as a further dimension. */
 enum { BONDED_STATES = 2048, CONTACT_STATES = 4096 };
 #define QUANTILE 0.95
 #define ENOUGH 0.995
 
-/* The nodes that a cell lacks, and the states that need it. */
+/* The nodes that a grid cell lacks, and the number of states that need them. */
 typedef struct {
   PetscInt n, states;
   PetscInt64 keys[LAM_MAX_NEEDS];
@@ -26,7 +26,7 @@ static int CompareNeeds(const void *a, const void *b)
   return (x->n > y->n) - (x->n < y->n);
 }
 
-/* Most states for a node first. */
+/* Descending by states per lacking node. */
 static int CompareDemand(const void *a, const void *b)
 {
   const Need *x = a, *y = b;
@@ -35,7 +35,7 @@ static int CompareDemand(const void *a, const void *b)
   return first != second ? (first > second ? -1 : 1) : CompareNeeds(a, b);
 }
 
-/* One for each cell; returns their number. */
+/* Merges equal needs, leaving one per cell; returns their number. */
 static PetscInt MergeNeeds(PetscInt n, Need needs[])
 {
   PetscInt merged = 0;
@@ -61,7 +61,7 @@ static void LeaveOut(const LamRound *under_way, Need *need)
   need->n = n;
 }
 
-/* The nodes of the cells that most states wait for, at least `enough` of them where so many are lacking. */
+/* Collects nodes of the cells with the largest demand until there are at least `enough`. */
 static PetscErrorCode ChooseNodes(PetscInt n, Need needs[], PetscInt enough, LamCoverage *coverage)
 {
   const PetscInt cells = MergeNeeds(n, needs);
@@ -78,7 +78,7 @@ static PetscErrorCode ChooseNodes(PetscInt n, Need needs[], PetscInt enough, Lam
   PetscFunctionReturn(0);
 }
 
-/* One state; *error is infinite where the table does not reach it. */
+/* Queries one state; *error is infinite if the table has no response. */
 static PetscErrorCode QueryState(LamTable table, const LamLoad *load, PetscReal accuracy, LamCoverage *coverage,
                                  Need *need, PetscReal *error)
 {

@@ -1,20 +1,21 @@
 /*
-  Which nodes are solved, round by round.
+  Selection of the nodes to solve, in rounds.
 */
 #include "build.h"
 #include "gather.h"
 #include <math.h>
 #include <stdlib.h>
 
-enum { MOST_NODES = 200000 }; /* with an accuracy */
+enum { MOST_NODES = 200000 }; /* with `sample.accuracy` */
 enum {
   ROUND_SHARE = 12
-}; /* a round has 1/12 of the table's nodes, or `sample.round`; larger ones see an older table */
-/* With an accuracy: a round is to add so much to the covered share, once that is large, but for so many in a row. */
+}; /* a round has 1/12 of the table's nodes, or `sample.round`; larger rounds are selected from an older table */
+/* With `sample.accuracy`: a round is idle if it adds less than LEAST_GAIN to the covered fraction once that exceeds
+   WELL_COVERED. The build ends after MOST_IDLE idle rounds in a row. */
 #define LEAST_GAIN 0.003
 #define WELL_COVERED 0.5
 enum { MOST_IDLE = 6 };
-/* With a count: the first accuracy after any, and the last. */
+/* With `sample.count`: the first finite accuracy, and the last. */
 #define FIRST_ACCURACY 0.125
 #define LAST_ACCURACY 1e-6
 
@@ -25,7 +26,7 @@ static int CompareKnown(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-/* The nodes of the file; those of free cells belong to the grid and are in the table from the start. */
+/* Lists the nodes of the file. Those of free cells belong to the grid and are in the table from the start. */
 static PetscErrorCode FindKnown(LamDatabase file, LamRounds *rounds)
 {
   const PetscBool from_grid = (PetscBool)(rounds->nodes > 0);
@@ -99,7 +100,7 @@ PetscBool LamRoundsAreIdle(const LamRounds *rounds)
   return (PetscBool)(!rounds->scene->sample.count && rounds->idle >= MOST_IDLE);
 }
 
-/* Counts rounds that hardly cover more. */
+/* Counts idle rounds in a row. */
 static void Compare(LamRounds *rounds)
 {
   const LamCoverage *coverage = &rounds->coverage;
@@ -109,7 +110,7 @@ static void Compare(LamRounds *rounds)
   rounds->best = PetscMax(rounds->best, coverage->covered);
 }
 
-/* *n: nodes of the next round. With a count the accuracy is raised until the table lacks some. */
+/* *n: number of nodes of the next round. With `sample.count` the tolerance is halved until the table lacks nodes. */
 static PetscErrorCode FindLacking(LamRounds *rounds, PetscInt *n)
 {
   const PetscInt under_way = rounds->open ? rounds->round[0].n : 0;
@@ -137,7 +138,7 @@ static PetscErrorCode RoundDestroy(LamRound *round)
   PetscFunctionReturn(0);
 }
 
-/* Fills in the records of the file, and lists the nodes that it lacks. */
+/* Copies records of the file into the round and lists the nodes that the file lacks. */
 static PetscErrorCode LookUp(LamRounds *rounds, LamRound *round)
 {
   PetscFunctionBeginUser;
@@ -168,7 +169,7 @@ static int CompareRanked(const void *a, const void *b)
   return (x->place > y->place) - (x->place < y->place);
 }
 
-/* chain[n]: cost of the longest chain of missing nodes that begins with the node; bonded nodes have no chains. */
+/* chain[n]: cost of the longest chain of missing nodes that starts at the node. Bonded nodes have no chains. */
 static PetscErrorCode PredictChains(LamRounds *rounds, const LamRound *round, PetscReal chain[])
 {
   const PetscBool chained = (PetscBool)(rounds->scene->micro.interface == LAM_INTERFACE_CONTACT);
@@ -194,7 +195,7 @@ static PetscErrorCode PredictChains(LamRounds *rounds, const LamRound *round, Pe
   PetscFunctionReturn(0);
 }
 
-/* The longest chains first: so a parent, whose chain holds its children's, comes before them. */
+/* Longest chains first. A parent precedes its children, because its chain contains theirs. */
 static PetscErrorCode Sort(LamRounds *rounds, LamRound *round)
 {
   PetscReal *chain;
@@ -232,7 +233,7 @@ static PetscBool IsComplete(const LamRound *round)
   return (PetscBool)(round->arrived == round->missing && round->next == round->missing);
 }
 
-/* All responses are there and on the way to the file: the older round goes into the table. */
+/* Adds the older round to the table; all its responses have arrived and are queued for the file. */
 static PetscErrorCode Close(LamRounds *rounds)
 {
   LamRound *round = &rounds->round[0];
@@ -250,7 +251,7 @@ static PetscErrorCode Close(LamRounds *rounds)
   PetscFunctionReturn(0);
 }
 
-/* A round is opened before a complete one is closed: its nodes must not depend on which comes first. */
+/* Opens a round before closing a complete one, so that its nodes do not depend on the order of arrival. */
 PetscErrorCode LamRoundsNext(LamRounds *rounds, LamRound **round)
 {
   PetscFunctionBeginUser;

@@ -10,7 +10,7 @@
 #include "build.h"
 #include "node_work.h"
 
-/* What is to be committed next: records in the order of the file. */
+/* Records to be committed next, in the order of the file. */
 typedef struct {
   PetscInt n, room;
   PetscInt64 *keys;       /* [n]; owned */
@@ -21,7 +21,7 @@ typedef struct LamBuild_s {
   LamScene *scene;
   const char *path;
   LamReporter reporter;
-  /* After each commit, on rank 0; ctx: the reporter's. May be NULL. */
+  /* Called after each commit, on rank 0, with the reporter's ctx. May be NULL. */
   PetscErrorCode (*committed)(void *ctx, const struct LamBuild_s *build);
   PetscBool resume;
   PetscInt team_size; /* ranks that solve one RVE together */
@@ -35,43 +35,43 @@ typedef struct LamBuild_s {
 
   /* on rank 0 */
   LamRecordWriter writer;
-  LamDatabase file; /* what was there before; NULL: nothing */
+  LamDatabase file; /* the existing database; NULL: none */
   LamRounds rounds;
   LamPending pending;
-  PetscBool opening;       /* rounds are being opened: nodes that arrive meanwhile open none */
-  PetscInt64 added, there; /* committed by this run; nodes that rounds have found in the file */
-  PetscInt64 failed;       /* without a solution, of those committed */
-  PetscReal last_commit, commit_seconds, all_commits; /* when it ended; what it took, and all of them, s */
-  PetscReal last_taken;                               /* when a record was last taken for the file in its turn */
+  PetscBool opening;                                  /* rounds are being opened: prevents recursion */
+  PetscInt64 added, there;                            /* committed by this run; found in the file by rounds */
+  PetscInt64 failed;                                  /* committed records that did not converge */
+  PetscReal last_commit, commit_seconds, all_commits; /* end of the last commit; its duration; total duration, s */
+  PetscReal last_taken;                               /* time when a record was last queued in order */
 } LamBuild;
 
-/* Nodes in the file that this build has requested, and those of them without a solution. */
+/* Number of requested nodes that are in the file; number of those that did not converge. */
 PetscInt64 LamBuildRecords(const LamBuild *build);
 PetscInt64 LamBuildFailed(const LamBuild *build);
 
 /* ---- build_table.c; collective ---- */
 
-/* Reads the scene and chooses its mesh. PETSC_ERR_USER_INPUT where it has no sample box. */
+/* Reads the scene and chooses its mesh. PETSC_ERR_USER_INPUT if it has no sample box. */
 PetscErrorCode LamBuildPrepare(LamBuild *build, const char scene_path[]);
 
-/* Fills the file at build->path from build->scene, whose mesh is chosen.  */
+/* Fills the file at build->path from build->scene, whose mesh must be chosen. */
 PetscErrorCode LamBuildTable(LamBuild *build);
-PetscErrorCode LamBuildDestroy(LamBuild *build); /* with its scene; NULL: it has none */
+PetscErrorCode LamBuildDestroy(LamBuild *build); /* also destroys its scene, if any */
 
 /* ---- build_start.c ---- */
 
-/* Rank 0: opens or makes the file, its grid and what comes with it; the rounds begin. Needs the RVE. */
+/* Rank 0: opens or creates the file and its grid with the records of free cells; creates the rounds. Needs the RVE. */
 PetscErrorCode LamBuildStart(LamBuild *build);
 
 /* ---- build_commit.c: rank 0 ---- */
 
-/* This record comes next in the file. */
+/* Appends a record to those pending. */
 PetscErrorCode LamBuildTake(LamBuild *build, PetscInt64 key, const LamResponse *response);
-/* Takes solved nodes in the order of the rounds; `in_turn`: up to the first node that is not solved. */
+/* Queues solved nodes in the order of the rounds; `in_turn`: up to the first unsolved node only. */
 PetscErrorCode LamBuildTakeSolved(LamBuild *build, PetscBool in_turn);
-/* Commits what was taken where it is time. */
+/* Commits pending records if a commit is due. */
 PetscErrorCode LamBuildCommitInTime(LamBuild *build);
-/* At a stop, and at the end: takes all that is solved, and commits it. `build`: a LamBuild. */
+/* At a stop and at the end: queues and commits all solved nodes. `build`: a LamBuild. */
 PetscErrorCode LamBuildCommitAll(void *build);
 
 #endif

@@ -1,10 +1,10 @@
 /*
-  The states of a sample box, by a low-discrepancy sequence: number i never depends on how many there are.
+  The states of a sample box: a low-discrepancy sequence. State i does not depend on the number of states.
 */
 #include "build.h"
 #include <math.h>
 
-/* The digits of i in base b mirrored at the point. */
+/* Radical inverse: the digits of i in the given base, mirrored at the radix point. */
 static PetscReal RadicalInverse(PetscInt64 i, PetscInt64 base)
 {
   PetscReal place = 1, sum = 0;

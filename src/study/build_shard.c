@@ -1,9 +1,9 @@
 /*
-  Parts of a sample box.
+  Shards of a sample box.
 
   Method
-    The states are halved where they spread farthest, and the halves likewise, in proportion to the parts that each is
-    to have, until every part is one: boxes, as nodes are shared by states that are near.
+    Recursive coordinate bisection: the states are split along the coordinate of largest range, in proportion to the
+    number of shards on either side, until each part is one shard. Shards are boxes because nearby states share nodes.
 */
 #include "build.h"
 #include <stdio.h>
@@ -14,7 +14,7 @@ enum { COORDINATES = 4 }; /* U11, U22, U12, turgor */
 typedef struct {
   PetscInt number;
   PetscReal at[COORDINATES];
-  int along; /* the coordinate that is compared */
+  int along; /* coordinate to compare */
 } State;
 
 static int CompareStates(const void *a, const void *b)
@@ -37,7 +37,7 @@ static PetscReal Spread(PetscInt n, const State states[], int along)
   return most - least;
 }
 
-/* Leaves in states[0 .. *n - 1] those of the part. */
+/* Reduces states[0 .. *n - 1] to those of the shard. */
 static void Cut(LamShard shard, PetscInt *n, State states[])
 {
   while (shard.count > 1 && *n > 1) {
@@ -66,7 +66,7 @@ static int CompareNumbers(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-/* Turgor counts as much as a strain of the whole box. */
+/* Turgor is scaled so that its range equals the strain range of the box. */
 static State StateOf(const LamScene *scene, PetscInt number)
 {
   const LamSample *box = &scene->sample;
@@ -90,7 +90,7 @@ PetscErrorCode LamShardStates(const LamScene *scene, const LamShard *shard, Pets
   Cut(*shard, n, all);
   PetscCall(PetscMalloc1(*n, states));
   for (PetscInt i = 0; i < *n; i++) (*states)[i] = all[i].number;
-  qsort(*states, (size_t)*n, sizeof(**states), CompareNumbers); /* the order of the whole box */
+  qsort(*states, (size_t)*n, sizeof(**states), CompareNumbers); /* order of the sequence */
   PetscCall(PetscFree(all));
   PetscFunctionReturn(0);
 }

@@ -1,5 +1,5 @@
 /*
-  The file that a build fills, and its grid. Rank 0.
+  Opening the file of a build and its grid. Rank 0.
 */
 #include "build_run.h"
 #include <unistd.h>
@@ -16,7 +16,7 @@ static PetscErrorCode OpenWriter(LamBuild *b)
   PetscFunctionReturn(0);
 }
 
-/* Free cells' states that come with a grid, those of them that the file has not got. */
+/* Commits the grid's free-cell records that the file lacks. */
 static PetscErrorCode CommitFreeCells(LamBuild *b, LamGrid grid)
 {
   const LamResponse *records;
@@ -34,7 +34,8 @@ static PetscErrorCode CommitFreeCells(LamBuild *b, LamGrid grid)
     PetscCall(LamBuildTake(b, keys[i], &records[i]));
     missing++;
   }
-  PetscCall(LamRecordWriterCommit(b->writer, b->pending.n, b->pending.keys, b->pending.responses)); /* or 0: its name */
+  PetscCall(LamRecordWriterCommit(b->writer, b->pending.n, b->pending.keys,
+                                  b->pending.responses)); /* 0 records: only gives a new file its name */
   b->added = missing;
   b->pending.n = 0;
   PetscFunctionReturn(0);
@@ -53,7 +54,7 @@ static PetscErrorCode NewGrid(LamBuild *b, LamResponder *solver, LamGrid *grid)
   PetscFunctionReturn(0);
 }
 
-/* How many of the grid's free cells the file has. */
+/* Number of free-cell records among the keys. */
 static PetscInt CountFreeCells(PetscInt n, const PetscInt64 keys[])
 {
   PetscInt count = 0;
@@ -80,7 +81,7 @@ static PetscErrorCode OldGrid(LamBuild *b, LamResponder *solver, LamGrid *grid)
   PetscCall(LamGridGetFreeKeys(*grid, &wanted, &keys));
   PetscCall(LamRecordWriterGetKeys(b->writer, &n, &keys));
   if (CountFreeCells(n, keys) >= wanted) PetscFunctionReturn(0);
-  PetscCall(LamGridSolveRecords(*grid, &b->scene->micro, solver)); /* a damaged file may have lost some */
+  PetscCall(LamGridSolveRecords(*grid, &b->scene->micro, solver)); /* some were lost from a damaged file */
   PetscCall(CommitFreeCells(b, *grid));
   PetscFunctionReturn(0);
 }

@@ -2,10 +2,10 @@
   Filling the table of a response database.
 
   Method
-    In rounds (build.h): rank 0 queries the table of the complete rounds at the states of the sample box, and has the
-    nodes that it lacks solved by all ranks, each from its parent (node_work.h), the longest first. They are committed
-    in that order, so the file does not depend on the number of ranks (except times, and checksums, which cover them).
-    A node that is late holds up those behind it for half a minute at most.
+    In rounds (build.h): rank 0 queries the table of the complete rounds at the states of the sample box. All ranks
+    solve the nodes that it lacks, each from its parent (node_work.h), longest chain first. Nodes are committed in this
+    order, so the file does not depend on the number of ranks (except times, and checksums, which cover them). An
+    exception: an unsolved node delays the nodes after it for half a minute at most.
 */
 #include "build_run.h"
 #include "plan.h"
@@ -77,7 +77,7 @@ static PetscErrorCode SolveRounds(LamBuild *b)
   PetscFunctionReturn(0);
 }
 
-/* The grid, from rank 0 to all: the others, and a later run, have it from its text. */
+/* Broadcasts the grid of rank 0 as text. All ranks construct it from this text, as a later run does. */
 static PetscErrorCode ShareGrid(LamBuild *b)
 {
   char *text = NULL;
@@ -111,7 +111,7 @@ static PetscErrorCode CreateRVE(LamBuild *b)
   PetscFunctionReturn(0);
 }
 
-/* Of those that solve an RVE each, or lead a team that does; rank 0 keeps the file. */
+/* On ranks that solve an RVE alone or lead a team that does; rank 0 writes the file. */
 static PetscErrorCode RunLeader(LamBuild *b)
 {
   const LamNodeCallbacks callbacks = {.ctx = b, .arrived = Arrive, .known = Known};
@@ -136,8 +136,8 @@ static PetscErrorCode RunLeader(LamBuild *b)
 }
 
 /*
-  The first rank of each team makes all decisions; the others take part in its factorisations until it dismisses them.
-  A rank that fails alone goes straight to main, which ends the job.
+  The first rank of each team controls the solves; the others take part in its factorisations until it dismisses them.
+  An error on one rank alone returns to main, which aborts the job.
 */
 static PetscErrorCode RunAll(LamBuild *b)
 {
@@ -149,7 +149,7 @@ static PetscErrorCode RunAll(LamBuild *b)
   } else {
     ierr = RunLeader(b);
     PetscCall(LamNodeWorkDestroy(&b->work));
-    PetscCall(LamRVEDestroy(&b->rve)); /* the team has a part in its factors */
+    PetscCall(LamRVEDestroy(&b->rve)); /* its factors are distributed over the team */
     if (b->team_size > 1) PetscCall(LamRVEDismiss(b->team));
   }
   PetscCall(LamShareError(PETSC_COMM_WORLD, ierr));
