@@ -1,5 +1,5 @@
 /*
-  Responder that hands a batch on question by question, until it is asked to stop.
+  Responder that passes a batch on query by query until a stop is requested.
 */
 #include "interruptible.h"
 

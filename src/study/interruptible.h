@@ -1,5 +1,5 @@
 /*
-  A solver that can be stopped between two solves.
+  A responder that can be stopped between two solves.
 */
 #ifndef LAM_INTERRUPTIBLE_H
 #define LAM_INTERRUPTIBLE_H
@@ -7,8 +7,8 @@
 #include <lamella/response.h>
 
 /*
-  Passes questions on to `solver` (borrowed; not collective) one by one. Once `stop` is true the rest of a batch is
-  answered with LAM_OUT_OF_REACH: a batch may take hours, and a signal is to be honoured at once.
+  Passes queries on to `solver` (borrowed; not collective) one by one. Once `stop` is true, the rest of a batch gets
+  LAM_OUT_OF_REACH: a batch may take hours, and a signal must take effect at once.
 */
 PetscErrorCode LamInterruptibleResponderCreate(LamResponder *solver, PetscBool (*stop)(void), LamResponder *responder);
 

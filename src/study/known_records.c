@@ -1,5 +1,5 @@
 /*
-  Answers that the file of a database has, for a run that would solve them otherwise.
+  Responses that the file of a database already contains, used instead of a solve.
 */
 #include "known_records.h"
 #include <stdlib.h>

@@ -1,12 +1,13 @@
 /*
-  One path of a map: the load at one value of what is not of the load, followed state by state.
+  One path of a map: follows the load at one value of the quantity that is not a load quantity.
 
   Method
-    The states of the path are F = I at the turgor and cohesion of the load's first state, the load's own states, and
-    the cuts between them. Where stress is prescribed, turgor alone can break the tissue, and is brought up first, in
-    INFLATION steps; at prescribed F = I it only presses the cells together. They are solved in order until the tissue
-  fails (failure.h) or a state has no answer; the walls and the interface know no damage, so the states behind a failure
-  are not asked for.
+
+  The states of the path are F = I at the turgor and cohesion of the load's first state, the load's own states, and the
+  cuts between them. Where stress is prescribed, turgor alone can break the tissue and is raised first, in INFLATION
+  steps; at prescribed F = I it only presses the cells together. The states are solved in order until the tissue fails
+  (failure.h) or a state does not converge. Walls and interface have no damage, so states after a failure are not
+  computed.
 */
 #include "map.h"
 #include "plan.h"
@@ -18,12 +19,12 @@ enum { INFLATION = 4 };
 typedef struct {
   PetscInt count;
   LamLoad *loads;             /* [count]; owned */
-  LamStressControl *controls; /* [count]; owned; NULL where F is given in all loads */
-  PetscReal *place;           /* [count] state of the scene's load, with fraction; owned */
-  PetscInt *cut;              /* [cuts] state of the path; owned */
+  LamStressControl *controls; /* [count]; owned; NULL if all loads prescribe F */
+  PetscReal *place;           /* [count] position along the scene's load: state number with fraction; owned */
+  PetscInt *cut;              /* [cuts] index of the state of the path; owned */
 } Path;
 
-/* The axis of the load, or NULL. */
+/* The axis that is a load quantity, or NULL. */
 static const LamMapAxis *LoadAxis(const LamScene *scene)
 {
   for (int a = 0; a < LAM_MAP_AXIS_COUNT; a++)
@@ -96,14 +97,14 @@ static void SetQuantity(LamScene *scene, LamMapQuantity quantity, PetscReal valu
   case LAM_MAP_WALL_THICKNESS:
     scene->micro.wall_thickness = value;
     break;
-  default: /* of the load: cuts */
+  default: /* load quantities: cuts */
     if (LamMapQuantityParameter(quantity) >= 0)
       *LamWallAt(&scene->micro.wall, LamMapQuantityParameter(quantity)) = value;
     break;
   }
 }
 
-/* A copy with the values of the path and loads of its own; everything else is borrowed. */
+/* Copy with the quantities of the path and its own loads; everything else is borrowed. */
 static PetscErrorCode CopyScene(const LamScene *scene, PetscInt path, LamScene *copy)
 {
   PetscInt at[LAM_MAP_AXIS_COUNT];
@@ -123,7 +124,7 @@ static PetscErrorCode CopyScene(const LamScene *scene, PetscInt path, LamScene *
 
 /* ---- the states ---- */
 
-/* Where along the scene's load a cut lies: a state with the share of the way to the next. */
+/* Position of a cut along the scene's load: state number plus the fraction of the step to the next state. */
 static PetscReal CutPlace(const LamScene *scene, PetscInt cut)
 {
   const LamMapAxis *axis = LoadAxis(scene);
@@ -136,13 +137,13 @@ static PetscReal CutPlace(const LamScene *scene, PetscInt cut)
   return (PetscReal)i + (value - before) / (scene->loads[i].F[1] - before);
 }
 
-/* The scene's state that ends the way on which a place lies, from 0. */
+/* The scene's state at the end of the step that contains `place`, from 0. */
 static PetscInt WayOf(PetscReal place)
 {
   return PetscMax((PetscInt)ceil(place) - 1, 0);
 }
 
-/* State `place` of the scene's load; state 0 is F = I at the turgor and cohesion of state 1. */
+/* State at `place` of the scene's load; state 0 is F = I at the turgor and cohesion of state 1. */
 static LamLoad LoadAt(const LamScene *scene, PetscReal place)
 {
   const PetscInt k = WayOf(place);
@@ -158,9 +159,9 @@ static LamLoad LoadAt(const LamScene *scene, PetscReal place)
 }
 
 /*
-  What is prescribed there beside the load: P goes straight from that of the state before, or 0. Components of F that
-  follow go `control.share` of the way from their value in the scene's state before to that of the load; from `before`,
-  which lies on this way too, it is the rest of it.
+  Prescribed stress at `place`. P is interpolated linearly from that of the previous state, or from 0. The free
+  components of F move by the fraction `control.share` from their value in the scene's previous state to that of the
+  load; from `before`, which lies in the same step, by the remaining fraction.
 */
 static LamStressControl ControlAt(const LamScene *scene, PetscReal before, PetscReal place)
 {
@@ -175,7 +176,7 @@ static LamStressControl ControlAt(const LamScene *scene, PetscReal before, Petsc
   return control;
 }
 
-/* The state whose place is set. */
+/* Adds the state whose place is set. */
 static void AddState(const LamScene *scene, Path *path)
 {
   const PetscInt n = path->count++;
@@ -188,13 +189,13 @@ static void AddState(const LamScene *scene, Path *path)
     if (path->controls[n].follows[i]) path->loads[n].F[i] = scene->loads[WayOf(place)].F[i];
 }
 
-/* Without turgor there is nothing to bring up, and sealed cells begin with all of theirs. */
+/* Zero without turgor, and for sealed cells, which start with their full turgor. */
 static PetscInt InflationOf(const LamScene *scene)
 {
   return scene->controls && scene->loads[0].turgor != 0 && !scene->sealed ? INFLATION : 0;
 }
 
-/* States at F = I, or at the prescribed stress of 0, with less turgor than the load's first state. */
+/* States at F = I, or at prescribed stress 0, with less turgor than the load's first state. */
 static void AddInflation(const LamScene *scene, Path *path)
 {
   const PetscInt steps = InflationOf(scene);
@@ -209,7 +210,7 @@ static void AddInflation(const LamScene *scene, Path *path)
 static PetscErrorCode PathCreate(const LamScene *scene, Path *path)
 {
   const PetscInt cuts = LamMapCutCount(scene), most = INFLATION + scene->load_count + 1 + cuts;
-  const PetscReal same = 1e-9; /* a cut at a state is that state */
+  const PetscReal same = 1e-9; /* tolerance: a cut this close to a state coincides with it */
   PetscInt whole = 0;
 
   PetscFunctionBeginUser;
@@ -244,9 +245,9 @@ PetscInt LamMapPathStates(const LamScene *scene)
          (LoadAxis(scene) ? LamMapCutCount(scene) - 1 : 0);
 }
 
-/* ---- following ---- */
+/* ---- path following ---- */
 
-/* Nothing more is to be learnt of the failure: one is found, or a state has no answer. */
+/* The failure is decided: one is found, or a state did not converge. */
 static PetscBool IsDecided(const LamFailure *failure)
 {
   for (int c = 0; c < LAM_CRITERION_COUNT; c++)
@@ -254,12 +255,12 @@ static PetscBool IsDecided(const LamFailure *failure)
   return (PetscBool)(failure->reason[0] != '\0');
 }
 
-/* Solves the states, as far as there is something to learn; `responses` [solved] on the first mesh. */
+/* Solves the states until the failure is decided; `responses` [solved] on the first mesh. */
 static PetscErrorCode Solve(LamMeshes *meshes, const Path *path, LamFailure *failure, LamResponse responses[],
                             PetscInt *solved)
 {
   PetscFunctionBeginUser;
-  /* the first state also where the failure search has found no answer there: the record says why */
+  /* the first state is solved even if the failure search did not converge there: the record gives the reason */
   for (*solved = 0; *solved < path->count && !(*solved && IsDecided(failure)); (*solved)++) {
     const PetscInt k = *solved;
     LamResponse both[2];
@@ -273,19 +274,19 @@ static PetscErrorCode Solve(LamMeshes *meshes, const Path *path, LamFailure *fai
   PetscFunctionReturn(0);
 }
 
-/* A load factor of the path as a share of the scene's load. */
+/* Converts a load factor of the path to a fraction of the scene's load. */
 static PetscReal ShareOfLoad(const LamScene *scene, const Path *path, PetscReal factor)
 {
   const PetscInt k = factor >= 1 ? PetscMin((PetscInt)factor, path->count) : 0;
   PetscReal place;
 
-  if (!k) return 0; /* at the first state of all, or not even there (NaN) */
+  if (!k) return 0; /* at the first state, or before it (NaN) */
   place = path->place[k - 1];
   if (k < path->count) place += (factor - (PetscReal)k) * (path->place[k] - place);
   return place / (PetscReal)scene->load_count;
 }
 
-/* The failure's reason, whose load factor counts the states of the path, told in shares of the load. */
+/* The failure's reason, with its load factor converted from states of the path to fractions of the load. */
 static PetscErrorCode SetReason(const LamScene *scene, const Path *path, const LamFailure *failure, LamMapPoint *point)
 {
   const char *why = strstr(failure->reason, ": ");
@@ -296,7 +297,7 @@ static PetscErrorCode SetReason(const LamScene *scene, const Path *path, const L
   PetscFunctionReturn(0);
 }
 
-/* What the failure means for a point that the path passes at its state `state` (from 1), `last` the last one solved. */
+/* Result at a point that is state `state` (from 1) of the path; `last`: the last state solved. */
 static PetscErrorCode Judge(const LamScene *scene, const Path *path, const LamFailure *failure, PetscInt state,
                             const LamResponse *own, const LamResponse *last, LamMapPoint *point)
 {
@@ -323,7 +324,7 @@ static PetscErrorCode Judge(const LamScene *scene, const Path *path, const LamFa
   PetscFunctionReturn(0);
 }
 
-/* The scene of the path has its loads, mesh and strengths. */
+/* `own`: scene of the path, with its loads, mesh and strengths. */
 static PetscErrorCode FollowOwn(const LamScene *own, PetscInt number, PetscBool (*interrupt)(void *ctx), void *ctx,
                                 LamMapPoint points[], PetscBool *complete)
 {

@@ -1,11 +1,12 @@
 /*
-  A map of how tissue fails over two of its quantities.
+  A map of how tissue fails as a function of two of its quantities.
 
   Method
-    Paths (map.h) do not depend on each other and are handed out to all ranks. What has come in is committed every
-    COMMIT_SECONDS: first the table of verdicts, which is written over in place, then the records, whose keys say which
-    points are there. A file that was killed between the two holds verdicts without records; they are not believed, and
-    these points are solved anew on resuming.
+
+  Paths (map.h) are independent and are distributed over all ranks. Every COMMIT_SECONDS the results received are
+  committed: first the table of failure modes, overwritten in place, then the records, whose keys mark the points that
+  are complete. A file whose run was killed between the two contains table entries without records; these are ignored,
+  and their points are solved again on resuming.
 */
 #include "rounding.h"
 #include "dispatch.h"
@@ -17,7 +18,7 @@
 
 #define COMMIT_SECONDS 0.5
 
-/* What a rank sends: the points of a path, unless it was stopped before the end. */
+/* Message from a rank: the points of a path, unless it was stopped before its end. */
 typedef struct {
   PetscBool complete;
   LamMapPoint points[];
@@ -39,7 +40,7 @@ static PetscErrorCode Commit(LamMap *m)
     responses[i] = m->waiting[i].response;
     LamMapTableSet(&m->table, &m->waiting[i]);
   }
-  if (m->old + m->solved == m->waiting_count) PetscCall(LamMapAxesWrite(m->writer, m->scene)); /* the first commit */
+  if (m->old + m->solved == m->waiting_count) PetscCall(LamMapAxesWrite(m->writer, m->scene)); /* first commit */
   PetscCall(LamMapTableWrite(m->writer, &m->table));
   PetscCall(LamRecordWriterCommit(m->writer, m->waiting_count, keys, responses));
   PetscCall(PetscFree2(keys, responses));
@@ -74,7 +75,7 @@ static PetscErrorCode Arrive(void *ctx, PetscInt64 index, const void *result)
   PetscFunctionReturn(0);
 }
 
-/* Follows the path number `index` of those to do. */
+/* Follows path number `index` of the todo list. */
 static PetscErrorCode Follow(void *ctx, PetscInt64 index, const void *input, size_t input_size, void *result,
                              size_t *size)
 {
@@ -86,9 +87,9 @@ static PetscErrorCode Follow(void *ctx, PetscInt64 index, const void *input, siz
   PetscFunctionReturn(0);
 }
 
-/* ---- going on with a file ---- */
+/* ---- resuming ---- */
 
-/* Another scene would give another map. */
+/* The file must belong to the same scene: another scene gives another map. */
 static PetscErrorCode CheckScene(const LamMap *m)
 {
   PetscBool found, same;
@@ -104,7 +105,7 @@ static PetscErrorCode CheckScene(const LamMap *m)
   PetscFunctionReturn(0);
 }
 
-/* The points of a path are committed together: the first stands for all. */
+/* The points of a path are committed together, so the first one represents all. */
 static PetscErrorCode FindTodo(LamMap *m)
 {
   const PetscInt64 *keys;
@@ -128,7 +129,7 @@ static PetscErrorCode FindTodo(LamMap *m)
 
 /* ---- ranks ---- */
 
-/* The file describes the tissue of the scene, with the mesh that the planner gives it. */
+/* The file describes the tissue of the scene, on the mesh chosen by the planner. */
 static PetscErrorCode OpenWriter(LamMap *m)
 {
   const PetscBool goes_on = (PetscBool)(m->resume && !access(m->path, F_OK));
@@ -159,7 +160,7 @@ static PetscErrorCode RunRoot(LamMap *m)
   PetscFunctionReturn(0);
 }
 
-/* Closes the file, whatever has happened. */
+/* Closes the file in all cases, also after an error. */
 static PetscErrorCode CloseAfter(LamMap *m, PetscErrorCode ierr)
 {
   const PetscErrorCode closed = LamRecordWriterClose(&m->writer);
@@ -169,7 +170,7 @@ static PetscErrorCode CloseAfter(LamMap *m, PetscErrorCode ierr)
   PetscFunctionReturn(0);
 }
 
-/* Rank 0 keeps the file. A worker that fails cannot tell rank 0, which waits for its result: it ends the job. */
+/* Rank 0 owns the file. A worker that fails cannot notify rank 0, which waits for its result, so it aborts the job. */
 static PetscErrorCode RunAll(LamMap *m)
 {
   const PetscBool root = (PetscBool)(m->rank == 0);

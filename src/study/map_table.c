@@ -1,5 +1,5 @@
 /*
-  The verdicts of a map as arrays of its file, beside the records (docs/reference/files.md).
+  Failure modes of a map as arrays of its file, beside the records (docs/reference/files.md).
 */
 #include "map.h"
 #include <math.h>
@@ -106,7 +106,7 @@ PetscErrorCode LamMapTableWrite(LamRecordWriter writer, const LamMapTable *table
 
 /* ---- reading ---- */
 
-/* Whether an array is there, with `width` numbers for each point. */
+/* Checks that an array exists and has `width` numbers for each point. */
 static PetscErrorCode CheckArray(const char path[], const char name[], PetscBool found, PetscInt rank,
                                  const PetscInt dims[4], PetscInt wanted)
 {

@@ -1,5 +1,5 @@
 /*
-  A material law for other programs: a responder, or a database, in SI units.
+  A material law for other programs: a scene's responder, or a database, in SI units.
 */
 #include <lamella/material.h>
 #include "query_source.h"
@@ -10,18 +10,18 @@
 struct LamMaterial_s {
   LamScales scales;
   LamInterfaceLawType interface;
-  PetscReal turgor, cohesion; /* of the scene, C1 + C2 */
+  PetscReal turgor, cohesion; /* of the scene, in C1 + C2 */
   int points;
 
-  LamScene *scene; /* owned; of a scene */
+  LamScene *scene; /* owned; for a scene */
   LamRVE rve;
   LamResponder responder;
 
-  LamQuerySource database; /* owned; database.database NULL: of a scene */
+  LamQuerySource database; /* owned; database.database NULL: for a scene */
   PetscReal accuracy;
 };
 
-/* ---- life ---- */
+/* ---- lifecycle ---- */
 
 static PetscErrorCode ConnectScene(const char path[], LamMaterial m)
 {
@@ -59,7 +59,7 @@ static PetscErrorCode ConnectDatabase(const char path[], LamMaterial m)
   m->turgor = m->database.turgor;
   m->cohesion = m->database.cohesion;
   m->accuracy = m->database.accuracy;
-  PetscCall(LamDatabaseGetTable(m->database.database, &table)); /* made now: threads then only read it */
+  PetscCall(LamDatabaseGetTable(m->database.database, &table)); /* built now, so that threads only read it */
   PetscCall(LamTableDestroy(&table));
   PetscFunctionReturn(0);
 }
@@ -146,7 +146,7 @@ static void FillInfo(const LamMaterial m, const LamResponse *r, LamMaterialInfo 
   (void)PetscStrncpy(info->reason, r->reason, sizeof(info->reason));
 }
 
-/* `factor` times the numbers, or NaN where the response has no fields. */
+/* Scales the numbers by `factor`; NaN if the response has no fields. */
 static void Scale(PetscInt n, const PetscReal from[], PetscReal factor, PetscBool known, double to[])
 {
   for (PetscInt i = 0; i < n; i++) to[i] = known ? factor * from[i] : NAN;

@@ -1,5 +1,5 @@
 /*
-  One tissue on two meshes: what the second says of the first.
+  One tissue on two meshes; the second gives the error estimate of the first.
 */
 #include "onset.h"
 #include <math.h>
@@ -87,7 +87,7 @@ PetscErrorCode LamMeshesDestroy(LamMeshes *meshes)
   PetscFunctionReturn(0);
 }
 
-/* Without water that they have kept the cells have no pressure. */
+/* Response if the cells could not be sealed: without enclosed water they have no pressure. */
 static PetscErrorCode GiveUnsealed(LamMeshes *meshes, const LamLoad *load, LamResponse responses[2])
 {
   const LamResponse *why = &meshes->unsealed;

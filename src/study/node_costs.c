@@ -2,7 +2,7 @@
 #include <math.h>
 
 enum { LATEST = 1024, NEAREST = 4 };
-#define UNKNOWN_COST 10.0 /* factorisations, before anything is learnt */
+#define UNKNOWN_COST 10.0 /* factorisations, before any node is known */
 
 typedef struct {
   PetscReal place[4];
@@ -11,7 +11,7 @@ typedef struct {
 
 struct LamNodeCosts_s {
   LamGrid grid; /* borrowed */
-  PetscInt n;   /* learnt so far; the latest are kept */
+  PetscInt n;   /* recorded so far; the latest are kept */
   Learnt learnt[LATEST];
 };
 
@@ -48,7 +48,7 @@ static PetscReal SquaredDistance(const PetscReal a[4], const PetscReal b[4])
   return sum;
 }
 
-/* Keeps the nearest, the farthest of them last. */
+/* Keeps the nearest nodes, sorted by distance. */
 static void Insert(PetscReal distance, PetscReal log_cost, PetscInt *n, PetscReal nearest[NEAREST][2])
 {
   PetscInt i = *n < NEAREST ? (*n)++ : NEAREST - 1;

@@ -1,5 +1,5 @@
 /*
-  What a node will cost, told from the nodes around it that have been solved.
+  Predicts the cost of a node from solved nodes around it.
 */
 #ifndef LAM_NODE_COSTS_H
 #define LAM_NODE_COSTS_H
@@ -10,9 +10,9 @@ typedef struct LamNodeCosts_s *LamNodeCosts;
 
 PetscErrorCode LamNodeCostsCreate(LamGrid grid, LamNodeCosts *costs); /* borrows the grid */
 PetscErrorCode LamNodeCostsDestroy(LamNodeCosts *costs);
-/* Factorisations are counted: unlike seconds they are the same on every machine. */
+/* Records the cost of a node in factorisations, which unlike seconds are the same on every machine. */
 PetscErrorCode LamNodeCostsLearn(LamNodeCosts costs, PetscInt64 key, const LamResponse *response);
-/* Geometric mean of the nearest of the latest; the same for nodes learnt in the same order. */
+/* Geometric mean over the nearest of the latest nodes; depends on the order in which they were recorded. */
 PetscReal LamNodeCostsPredict(LamNodeCosts costs, PetscInt64 key);
 
 #endif

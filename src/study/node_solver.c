@@ -2,13 +2,14 @@
   Chains of nodes, from the reference state down to the finest level.
 
   Method
-    A child starts from its parent's own solution, bit for bit, whether that is remembered or found again: a chain is
-    followed from its last remembered node on, and what is remembered only saves time. Where there is no room left the
-    node that was not needed for longest is forgotten.
+
+  A child starts from its parent's own solution, bit for bit, whether that is cached or computed again: a chain is
+  followed from its last cached node on, and the cache only saves time. When the cache is full, the least recently used
+  node is evicted.
 */
 #include "node_solver.h"
 
-/* What is remembered of a node. */
+/* A cached node. */
 typedef struct {
   LamResponse response;
   LamRVEState state; /* owned; NULL: bonded tissue */
@@ -19,14 +20,14 @@ struct LamNodeChain_s {
   LamGrid grid; /* borrowed */
   PetscBool warm;
   PetscBool (*stop)(void); /* or NULL */
-  LamRVEState state;       /* of the solve under way; owned */
+  LamRVEState state;       /* of the solve in progress; owned */
   PetscInt n, most, capacity;
-  PetscInt64 *keys, *used; /* [capacity]; used: when it was last */
+  PetscInt64 *keys, *used; /* [capacity]; used: time of last use */
   Node *nodes;             /* [capacity] */
   PetscInt64 time;
 };
 
-/* ---- what is remembered ---- */
+/* ---- cache of solved nodes ---- */
 
 static PetscInt Find(LamNodeChain chain, PetscInt64 key)
 {
@@ -49,7 +50,7 @@ static PetscErrorCode Grow(LamNodeChain chain)
   PetscFunctionReturn(0);
 }
 
-/* A place for one more node: a new one, or that of the node that was not needed for longest. */
+/* Returns a slot for one more node: a new one, or that of the least recently used node. */
 static PetscErrorCode TakePlace(LamNodeChain chain, PetscInt *place)
 {
   PetscInt oldest = 0;
@@ -98,9 +99,9 @@ static PetscErrorCode SolveFromReference(LamRVE rve, const LamLoad *load, LamRVE
   PetscFunctionReturn(0);
 }
 
-/* Largest change of F, turgor or cohesion that a solve takes at once; else steps of SUBSTEP, the next one twice as
-   large after one of no more than EASY factorisations, up to MOST_SUBSTEPS: eight of SUBSTEP cost a sixth of a start
-   that contact has to search from. */
+/* Largest change of F, turgor or cohesion taken in one step. Larger changes take steps of SUBSTEP; after a step of
+   no more than EASY factorisations the next is twice as large, up to MOST_SUBSTEPS. Eight steps of SUBSTEP cost a
+   sixth of a start for which the contact set must be searched from scratch. */
 #define ONE_STEP 0.04
 #define SUBSTEP 0.0075
 enum { EASY = 10, MOST_SUBSTEPS = 5 };
@@ -131,7 +132,7 @@ static void AddEffort(const LamResponse *step, LamResponse *sum)
   sum->seconds += step->seconds;
 }
 
-/* From `state`, the solution at `from`; NULL, or where that does not lead there: from the reference. */
+/* Starts from `state`, the solution at `from`; from the reference if `from` is NULL or continuation from it fails. */
 static PetscErrorCode SolveFrom(LamRVE rve, const LamLoad *from, const LamLoad *load, LamRVEState state,
                                 LamResponse *response)
 {
@@ -175,7 +176,7 @@ PetscErrorCode LamNodeSolve(LamRVE rve, LamGrid grid, PetscInt64 key, PetscBool 
   PetscFunctionReturn(0);
 }
 
-/* Solves the node, its parents first, unless it is remembered. */
+/* Solves the node, its parents first, unless it is cached. */
 static PetscErrorCode Reach(LamNodeChain chain, PetscInt64 key, PetscInt *place)
 {
   const PetscInt64 parent = chain->warm ? LamGridNodeParent(chain->grid, key) : -1;
@@ -257,7 +258,7 @@ PetscErrorCode LamNodeChainCreate(LamRVE rve, LamInterfaceLawType interface, Lam
   c->stop = stop;
   c->warm = (PetscBool)(interface == LAM_INTERFACE_CONTACT);
   PetscCall(LamRVEGetUnknowns(rve, &unknowns));
-  /* positions of the tissue and of the bonded tissue that it starts from */
+  /* positions of the tissue and of the bonded tissue from which it starts */
   c->most = (PetscInt)(memory / (sizeof(Node) + 2 * sizeof(PetscReal) * (size_t)unknowns)) + 1;
   PetscCall(LamRVEStateCreate(rve, &c->state));
   *chain = c;

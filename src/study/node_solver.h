@@ -1,8 +1,9 @@
 /*
   Solves nodes of a database's grid, each from the state of its parent: the nearest node of the next coarser level.
 
-  So a node is on the branch of its neighbours, and its response depends on its key alone: not on who solves it, what
-  was solved before, or what a file holds. Its parent is solved likewise, and so on up to the reference state.
+  So a node is on the same branch as its neighbours, and its response depends on its key alone: not on the rank, on
+  earlier solves, or on the contents of a file. Its parent is solved in the same way, and so on up to the reference
+  state.
 */
 #ifndef LAM_NODE_SOLVER_H
 #define LAM_NODE_SOLVER_H
@@ -10,30 +11,31 @@
 #include "study.h"
 
 /*
-  Solves one node. State of contact tissue in: that of its parent (`from_parent`: the parent leads), else anything, for
-  it is reached from the reference then, and also where no answer is found from the parent; the counts of both attempts
-  are summed. State out: the solution, where there is one.
+  Solves one node. State of contact tissue, in: the state of its parent if `from_parent` (the parent satisfies
+  LamNodeLeads), else ignored: the solve starts from the reference, as it also does if it does not converge from the
+  parent; the counts of both attempts are summed. State out: the solution, if converged.
 */
 PetscErrorCode LamNodeSolve(LamRVE rve, LamGrid grid, PetscInt64 key, PetscBool from_parent, LamRVEState state,
                             LamResponse *response);
-/* Whether children may start from it: it is stable, on the first branch and without floating cells. */
+/* Whether children may start from this response: it is stable, on the first branch and without floating cells. */
 PetscBool LamNodeLeads(const LamResponse *response);
 
 typedef struct LamNodeChain_s *LamNodeChain;
 
 /*
-  One per rank and RVE; borrows rve and grid. Of the nodes that it has solved it remembers the latest, of no more than
-  `memory` bytes, for those that follow. Once `stop` (NULL: never) is true nodes are LAM_OUT_OF_REACH.
+  One per rank and RVE; borrows rve and grid. Caches the latest solved nodes, using at most `memory` bytes. Once `stop`
+  (NULL: never) is true, nodes are LAM_OUT_OF_REACH.
 */
 #define LAM_NODE_MEMORY ((size_t)256 << 20)
 PetscErrorCode LamNodeChainCreate(LamRVE rve, LamInterfaceLawType interface, LamGrid grid, size_t memory,
                                   PetscBool (*stop)(void), LamNodeChain *chain);
 /*
-  `chain`: a LamNodeChain; with this function it is a LamNodeSolver (cache.h). The state of bonded tissue is reached
-  from the reference; that of contact tissue from its parent where that leads, whose own is reached likewise.
+  `chain`: a LamNodeChain; with this function it is a LamNodeSolver (cache.h). Bonded tissue is solved from the
+  reference; contact tissue from its parent if LamNodeLeads holds for that, which is solved in the same way.
 */
 PetscErrorCode LamNodeChainSolve(void *chain, PetscInt64 key, LamResponse *response);
-/* Its solve_near; bonded tissue, and what is not found from the node, from the reference. */
+/* The solve_near of a LamNodeSolver. Bonded tissue, and loads that do not converge from the node, start from the
+   reference. */
 PetscErrorCode LamNodeChainSolveNear(void *chain, PetscInt64 key, const LamLoad *load, LamResponse *response);
 PetscErrorCode LamNodeChainDestroy(LamNodeChain *chain);
 

@@ -10,26 +10,26 @@ typedef struct Node_s {
   PetscBool requested, queued, solved, leads;
   LamResponse *response;   /* kept until it is requested; owned */
   void *state;             /* NULL: not kept; owned */
-  PetscInt pins;           /* tasks that start from the state */
-  struct Node_s *parent;   /* of its task: where it starts; NULL: the reference */
-  struct Node_s *children; /* that wait for this one to be solved */
+  PetscInt pins;           /* number of tasks that start from the state */
+  struct Node_s *parent;   /* start of its task; NULL: the reference */
+  struct Node_s *children; /* nodes that wait for this one to be solved */
   struct Node_s *sibling;
-  TAILQ_ENTRY(Node_s) entry; /* in the list of states */
+  TAILQ_ENTRY(Node_s) entry; /* in the LRU list of states */
 } Node;
 
 struct LamNodeWork_s {
   LamRVE rve;   /* borrowed */
   LamGrid grid; /* borrowed */
   PetscBool warm;
-  LamRVEState state; /* of the solve under way; owned */
+  LamRVEState state; /* of the solve in progress; owned */
   size_t state_size; /* 0: nodes do not start from others */
   LamDispatch dispatch;
   LamNodeCallbacks callbacks;
 
   /* on rank 0 */
-  void *nodes;                       /* of tsearch, by key */
+  void *nodes;                       /* root for tsearch, ordered by key */
   TAILQ_HEAD(States, Node_s) states; /* least recently used first */
-  PetscInt64 kept, most;             /* states */
+  PetscInt64 kept, most;             /* number of states */
 };
 
 /* ---- nodes ---- */
@@ -50,7 +50,7 @@ static void FreeNode(void *pointer)
   (void)PetscFree(node);
 }
 
-/* The node of this key; a new one may have a record in the file. */
+/* Returns the node of this key; a new one may have a record in the file. */
 static PetscErrorCode GetNode(LamNodeWork w, PetscInt64 key, Node **node)
 {
   const Node wanted = {.key = key};
@@ -83,7 +83,7 @@ static PetscErrorCode KeepState(LamNodeWork w, Node *node, const void *bytes)
   PetscFunctionReturn(0);
 }
 
-/* Frees states beyond the limit, but none that a task is about to start from. */
+/* Frees states above the limit, except those from which a task is about to start. */
 static PetscErrorCode LimitStates(LamNodeWork w)
 {
   Node *node = TAILQ_FIRST(&w->states);
@@ -104,7 +104,7 @@ static PetscErrorCode LimitStates(LamNodeWork w)
 
 /* ---- requests ---- */
 
-/* The node's task, which starts from the state of `parent`; NULL: from the reference. */
+/* Adds the node's task, which starts from the state of `parent`; NULL: from the reference. */
 static PetscErrorCode AddTask(LamNodeWork w, Node *node, Node *parent)
 {
   PetscFunctionBeginUser;
@@ -118,7 +118,7 @@ static PetscErrorCode AddTask(LamNodeWork w, Node *node, Node *parent)
   PetscFunctionReturn(0);
 }
 
-/* Adds the task of the node, or has it wait for its parent. */
+/* Adds the task of the node, or defers it until its parent is solved. */
 static PetscErrorCode Queue(LamNodeWork w, Node *node, PetscReal cost)
 {
   const PetscInt64 key = w->warm ? LamGridNodeParent(w->grid, node->key) : -1;
@@ -194,7 +194,7 @@ static PetscErrorCode Solve(void *ctx, PetscInt64 key, const void *input, size_t
   PetscFunctionBeginUser;
   if (input_size) PetscCall(LamRVEStateUnpack(input, w->state));
   PetscCall(LamNodeSolve(w->rve, w->grid, key, (PetscBool)(input_size > 0), w->state, response));
-  response->seconds -= LamDispatchServiceTime(w->dispatch) - service; /* messages are no part of the solve */
+  response->seconds -= LamDispatchServiceTime(w->dispatch) - service; /* excludes time spent on messages */
   *size = sizeof(*response);
   if (!w->warm || !LamNodeLeads(response)) PetscFunctionReturn(0);
   PetscCall(LamRVEStatePack(w->state, response + 1));

@@ -1,8 +1,8 @@
 /*
-  Nodes solved by all ranks of a dispatch, each from the state of its parent and each once.
+  Nodes solved by all ranks of a dispatch, each once and from the state of its parent.
 
-  Rank 0 keeps the states of solved nodes and sends them along with their children. A node waits until its parent is
-  solved; a parent of which no state is kept, or whose record is in the file only, is solved again for its state.
+  Rank 0 keeps the states of solved nodes and sends them with the tasks of their children. A node waits until its parent
+  is solved. A parent whose state is not kept, or whose record is only in the file, is solved again for its state.
 */
 #ifndef LAM_NODE_WORK_H
 #define LAM_NODE_WORK_H
@@ -12,12 +12,12 @@
 
 typedef struct LamNodeWork_s *LamNodeWork;
 
-/* Of rank 0. */
+/* Callbacks on rank 0. */
 typedef struct {
   void *ctx; /* borrowed */
-  /* Takes the response of a node that was requested. */
+  /* Receives the response of a requested node. */
   PetscErrorCode (*arrived)(void *ctx, PetscInt64 key, const LamResponse *response);
-  /* The record of a node in the file, or NULL. */
+  /* Returns the record of a node in the file, or NULL. */
   const LamResponse *(*known)(void *ctx, PetscInt64 key);
 } LamNodeCallbacks;
 
@@ -27,9 +27,9 @@ PetscErrorCode LamNodeWorkCreate(MPI_Comm comm, LamRVE rve, LamInterfaceLawType 
                                  const LamNodeCallbacks *callbacks, LamNodeWork *work);
 PetscErrorCode LamNodeWorkDestroy(LamNodeWork *work);
 
-/* Rank 0: requests a node of this predicted cost. `arrived` may be called before this returns. */
+/* Rank 0: requests a node with this predicted cost. `arrived` may be called before this returns. */
 PetscErrorCode LamNodeWorkRequest(LamNodeWork work, PetscInt64 key, PetscReal cost);
-/* Rank 0: returns when all requests have arrived, or after a signal; `stopped` as in LamDispatchRun. */
+/* Rank 0: returns when all requested nodes have arrived, or after a signal; `stopped` as in LamDispatchRun. */
 PetscErrorCode LamNodeWorkRun(LamNodeWork work, PetscErrorCode (*stopped)(void *ctx), PetscBool *complete);
 PetscErrorCode LamNodeWorkServe(LamNodeWork work); /* workers */
 

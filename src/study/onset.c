@@ -1,15 +1,15 @@
 /*
   The onset of separation along the states of a scene.
 
-  Method. While the states are solved, the last one that is not separated is kept, on both meshes, until one is. The
-  load between the two, linear in F, turgor and cohesion, is then bisected: each load in between is solved from the
-  nearest one below that is not separated, because contact is easier lost than found again.
+  Method. While the states are solved, the last one that is not separated is kept, on both meshes, until one is
+  separated. The load between the two, linear in F, turgor and cohesion, is then bisected. Each intermediate load is
+  solved from the nearest lower state that is not separated, because contact is lost more easily than it is found again.
 */
 #include "onset.h"
 
 const char *const LamOnsetStatusNames[] = {LAM_ONSET_STATUSES(LAM_NAME_ENTRY)};
 
-/* Width of the bracket, as a share of the way between two states. */
+/* Width of the bracket, as a fraction of the step between two states. */
 #define RESOLUTION 1e-3
 
 PetscErrorCode LamOnsetCreate(const LamMeshes *meshes, LamOnset *onset)
@@ -27,7 +27,7 @@ PetscErrorCode LamOnsetDestroy(LamOnset *onset)
   PetscFunctionReturn(0);
 }
 
-/* The present states are not separated: the onset lies behind them. */
+/* The present states are not separated: the onset lies after them. */
 static PetscErrorCode KeepClosed(LamOnset *onset, const LamMeshes *meshes)
 {
   PetscFunctionBeginUser;
@@ -42,7 +42,7 @@ static void KeepSeparated(LamOnset *onset, const LamResponse responses[2], LamSe
   for (PetscInt m = 0; m < 2; m++) onset->responses[m] = responses[m];
 }
 
-/* `where`: the load that has no answer. */
+/* `where`: the load that did not converge. */
 static PetscErrorCode KeepReason(LamOnset *onset, const char where[], const LamResponse responses[2])
 {
   const PetscInt m = LamResponseHasFields(&responses[0]) ? 1 : 0;
@@ -53,7 +53,7 @@ static PetscErrorCode KeepReason(LamOnset *onset, const char where[], const LamR
   PetscFunctionReturn(0);
 }
 
-/* The first state without an answer is the one to look at. */
+/* Keeps the first state that did not converge. */
 static PetscErrorCode KeepUnknown(LamOnset *onset, PetscInt number, const LamResponse responses[2])
 {
   char where[LAM_NAME_LENGTH];
@@ -86,7 +86,7 @@ PetscErrorCode LamOnsetWatch(LamOnset *onset, const LamMeshes *meshes, PetscInt 
   onset->states[1] = number;
   onset->ends[1] = responses[0].load;
   onset->status = onset->states[0] ? LAM_ONSET_FOUND : LAM_ONSET_BEFORE_FIRST;
-  if (onset->status == LAM_ONSET_FOUND) onset->reason[0] = '\0'; /* states without an answer are passed over */
+  if (onset->status == LAM_ONSET_FOUND) onset->reason[0] = '\0'; /* states that did not converge are ignored */
   KeepSeparated(onset, responses, separation);
   PetscFunctionReturn(0);
 }
@@ -101,7 +101,7 @@ static LamLoad Between(const LamLoad ends[2], PetscReal share)
   return load;
 }
 
-/* Solves in the middle of the bracket and halves it; a load without an answer ends the search. */
+/* Solves in the middle of the bracket and halves it; a load that does not converge ends the search. */
 static PetscErrorCode Halve(LamOnset *onset, LamMeshes *meshes)
 {
   const PetscReal middle = 0.5 * (onset->bracket[0] + onset->bracket[1]);

@@ -1,9 +1,10 @@
 /*
   What a scene requires: mesh, unknowns, number of solves.
 
-  Mesh. The cheapest one whose error of P stays below the wanted accuracy for the scene's walls and loads, by the model
-  of error_model.h. A body of cells in contact moves by their tangent, which contact that passes from node to node makes
-  uneven: 4-8 % with 6 elements along a face, 2 % with 12, below 1 % with BODY_ALONG (docs/results/performance.md, FE²).
+  Mesh. The cheapest one whose error of P stays below the prescribed accuracy for the scene's walls and loads, by the
+  model of error_model.h. A body of cells in contact depends on their tangent, which is uneven because contact moves
+  from node to node: 4-8 % with 6 elements along a face, 2 % with 12, below 1 % with BODY_ALONG
+  (docs/results/performance.md, FE²).
 */
 #include "wall_law.h"
 #include "error_model.h"
@@ -14,14 +15,14 @@
 #include <string.h>
 
 #define BODY_ALONG 16
-#define BODY_ACCURACY 0.01 /* where less is wanted it is not needed */
-#define USUAL_STRAIN 0.2   /* where the loads are not known before they are met: bodies */
+#define BODY_ACCURACY 0.01 /* not applied if the prescribed accuracy is coarser */
+#define USUAL_STRAIN 0.2   /* for bodies, whose strains are not known in advance */
 
-/* How often a load step asks every material point: 3 to 4 Newton iterations. */
+/* Queries per material point and load step: 3 to 4 Newton iterations. */
 #define ANSWERS_PER_STEP 3.5
 #define POINTS_PER_ELEMENT 9 /* 3 x 3 Gauss points of a quadratic element */
 
-/* The largest of what the scene asks of an RVE. */
+/* The largest strain for which the scene queries an RVE. */
 static PetscReal LargestStrain(const LamScene *scene)
 {
   PetscReal strain = scene->has_macro || (!scene->load_count && !scene->has_sample) ? USUAL_STRAIN : 0.0;
@@ -59,12 +60,12 @@ static PetscErrorCode ChooseMesh(const LamScene *scene, LamMicrostructure *micro
   PetscFunctionReturn(0);
 }
 
-/* Faces and corners of the outer loops whose nodes are unknowns of their own, and pairs of facing walls. */
+/* Numbers of faces and corners of the outer loops whose nodes are separate unknowns, and of pairs of facing walls. */
 typedef struct {
   PetscInt faces, corners, pairs;
 } Outer;
 
-/* A face, and the corner at its end, which belongs to the next face too, of one cell. */
+/* Counts a face of one cell, and the corner at its end, which also belongs to the next face. */
 static void CountFace(const LamMicrostructure *micro, PetscInt cell, PetscInt face, Outer *outer)
 {
   const PetscBool bonded = (PetscBool)(micro->interface == LAM_INTERFACE_BONDED);
@@ -73,7 +74,7 @@ static void CountFace(const LamMicrostructure *micro, PetscInt cell, PetscInt fa
 
   for (PetscInt k = 0; k < 2; k++) other[k] = LamLatticeNeighbour(micro, cell, (face + k) % LAM_FACES, NULL, &held[k]);
   outer->pairs += other[0] > cell;
-  /* bonded cells share what they have in common: it is counted for the first of them */
+  /* bonded cells share faces and corners: each is counted for its first cell */
   if (!held[0] && !(bonded && other[0] >= 0 && other[0] < cell)) outer->faces++;
   for (PetscInt k = 0; k < 2; k++)
     if (held[k] || (bonded && other[k] >= 0 && other[k] < cell)) return;
@@ -93,8 +94,8 @@ static Outer CountOuter(const LamMicrostructure *micro)
   return outer;
 }
 
-/* Two for each node that is not held: of a period one node, of a patch the outer walls that follow F. Cells in contact
-   have a multiplier for each end and middle of the elements along a face that has a partner. */
+/* Two for each free node: of a period one node is fixed, of a patch the outer walls that follow F. Cells in contact
+   have a multiplier for each end and midpoint of the elements along a face that has a partner. */
 static PetscInt CountUnknowns(const LamMicrostructure *micro)
 {
   const PetscInt along = micro->along, cells = micro->cells[0] * micro->cells[1];
@@ -105,7 +106,7 @@ static PetscInt CountUnknowns(const LamMicrostructure *micro)
   return 2 * (nodes - (micro->is_patch ? 0 : 1)) + multipliers;
 }
 
-/* Any order that brings equal cells together. */
+/* An arbitrary order in which equal cells are adjacent. */
 static int CompareCells(const void *a, const void *b)
 {
   return memcmp(a, b, sizeof(LamCell));
@@ -149,7 +150,7 @@ static PetscErrorCode MeasureSpread(const LamMicrostructure *micro, LamCellSprea
   PetscFunctionReturn(0);
 }
 
-/* Elements of the body; 0 where they are in a file that nobody has read yet. */
+/* Number of elements of the body; 0 if they are in a file that is not read yet. */
 static PetscInt CountElements(const LamMacroSpec *macro)
 {
   static const PetscInt quadrants[] = {[LAM_DISC_WHOLE] = 4, [LAM_DISC_HALF] = 2, [LAM_DISC_QUARTER] = 1};

@@ -6,11 +6,11 @@
 
 #include <lamella/scene.h>
 
-/* Cells that differ: smallest and largest. */
+/* Range of cells that differ: smallest and largest. */
 typedef struct {
-  PetscInt kinds; /* different cells; 0: all alike, and nothing below is set */
+  PetscInt kinds; /* number of different cells; 0: all equal, and no range below is set */
   PetscReal wall_thickness[2];
-  PetscReal shear_modulus[2]; /* C1 + C2, over that of the scene's own wall */
+  PetscReal shear_modulus[2]; /* C1 + C2, relative to that of the scene's own wall */
   PetscReal turgor[2], cohesion[2];
 } LamCellSpread;
 
@@ -19,13 +19,13 @@ typedef struct {
   LamCellSpread spread;
   PetscInt unknowns;       /* of one RVE */
   PetscInt load_states;    /* RVE solves of `rve`, `build` and `fe2` with direct response; 0: no such block */
-  PetscInt sample_states;  /* 0 also where an accuracy decides how many */
+  PetscInt sample_states;  /* 0 also if an accuracy determines the number */
   PetscInt64 macro_states; /* predicted */
-  PetscInt macro_elements, macro_points; /* 0 also where a file has them */
+  PetscInt macro_elements, macro_points; /* 0 also if they are in a file */
   PetscInt map_points, map_states;       /* of `map`, without the states that bracket the failure; 0: no such block */
 } LamPlan;
-#define LAM_PARALLEL_UNKNOWNS 20000 /* of one RVE: from here on several ranks factor its matrix together */
-/* Chooses what the scene leaves open; changes nothing the scene says. */
+#define LAM_PARALLEL_UNKNOWNS 20000 /* of one RVE: from this size on several ranks factor its matrix together */
+/* Chooses what the scene leaves open; does not override the scene. */
 PetscErrorCode LamPlanMake(const LamScene *scene, LamPlan *plan);
 
 #endif

@@ -1,13 +1,13 @@
 /*
-  A body whose tissue changes in time. Responses, files and pictures are those of an FE2 run (fe2_run.h); a state that
-  is reported is a step there.
+  A body whose tissue changes in time. Responses, files and figures are those of an FE2 run (fe2_run.h), in which a
+  reported state is a step.
 */
 #include "process_run.h"
 #include "clock.h"
 
 /* ---- states ---- */
 
-/* In the C1 + C2 of the start, as what is compared with it. */
+/* In units of the initial C1 + C2, as the quantities compared with it. */
 static LamStrength StrengthNow(const LamScene *scene, const LamBodyState *state)
 {
   LamStrength strength = scene->strength;
@@ -18,7 +18,7 @@ static LamStrength StrengthNow(const LamScene *scene, const LamBodyState *state)
   return strength;
 }
 
-/* Rank 0: files and report of the state. */
+/* Rank 0: writes and reports the state. */
 static PetscErrorCode Record(LamBodyStudy *study, const LamBodyState *state, const LamMacroFields *fields,
                              PetscReal peak_memory)
 {
@@ -61,9 +61,9 @@ static PetscErrorCode StateDone(const LamBodyState *state, void *ctx)
   PetscFunctionReturn(0);
 }
 
-/* ---- its life ---- */
+/* ---- time evolution ---- */
 
-/* Area of the membranes at each point, in regions of other cells another one. Collective. */
+/* Area of the membranes at each point; it differs in regions of other cells. Collective. */
 static PetscErrorCode SetMembranes(LamBodyStudy *study)
 {
   const LamFE2Tissues *tissues = &study->fe2.tissues;
@@ -86,7 +86,7 @@ static PetscErrorCode SetMembranes(LamBodyStudy *study)
   PetscFunctionReturn(0);
 }
 
-/* Moduli of all tissues; set of LamBodySetWalls. */
+/* Sets the moduli of all tissues; `set` of LamBodySetWalls. */
 static PetscErrorCode ChangeWalls(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT])
 {
   LamBodyStudy *study = (LamBodyStudy *)ctx;
@@ -118,7 +118,7 @@ PetscErrorCode LamBodyStudyPrepare(LamBodyStudy *study)
   PetscFunctionReturn(0);
 }
 
-/* Boundaries move with the load parameter alone, which stays 0 where no part of the program says otherwise. */
+/* Boundaries move with the load parameter alone, which stays 0 unless the program prescribes it. */
 static void WarnOfNoLoad(const LamFE2Run *fe2)
 {
   const LamProcessSpec *spec = &fe2->scene->process;

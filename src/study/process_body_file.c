@@ -1,6 +1,6 @@
 /*
-  What the result file of a body that changes in time holds beside its steps (docs/reference/files.md): /process, arrays
-  over the states.
+  Data of a body that changes in time that its result file holds beside the steps (docs/reference/files.md): /process,
+  arrays over the states.
 */
 #include "process_run.h"
 #include "names.h"
@@ -17,7 +17,7 @@ PetscErrorCode LamBodyHistoryAdd(LamBodyHistory *h, const LamBodyState *state)
   PetscFunctionReturn(0);
 }
 
-/* `columns` numbers of each state, at `offset`, times `factor`. */
+/* Writes `columns` numbers of each state, at `offset`, times `factor`. */
 static PetscErrorCode WriteColumns(const LamBodyHistory *h, LamRecordWriter writer, const char name[], size_t offset,
                                    PetscInt columns, PetscReal factor, const char unit[])
 {
@@ -38,7 +38,7 @@ static PetscErrorCode WriteColumns(const LamBodyHistory *h, LamRecordWriter writ
   PetscFunctionReturn(0);
 }
 
-/* Of each state the number of its event, -1 at times of the output; of its element, and of the point in it. */
+/* Writes for each state the number of its event (-1 at output times), of its element, and of the point in that. */
 static PetscErrorCode WriteEvents(const LamBodyHistory *h, LamRecordWriter writer)
 {
   const PetscInt dims[2] = {h->count, 2};

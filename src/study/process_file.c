@@ -1,6 +1,6 @@
 /*
-  The result file of `lamella process`: kind "process". Records are the responses of the states, their keys count from
-  0; what else is known of them is in /process, arrays over the states (docs/reference/files.md).
+  The result file of `lamella process`: kind "process". Records are the responses of the states, with keys from 0; the
+  other quantities are in /process, arrays over the states (docs/reference/files.md).
 */
 #include "process_run.h"
 #include "clock.h"
@@ -18,7 +18,7 @@ PetscErrorCode LamProcessFileOpen(LamProcessStudy *study)
   PetscFunctionReturn(0);
 }
 
-/* One number of each state, at `offset`, times `factor`. */
+/* Writes one number of each state, at `offset`, times `factor`. */
 static PetscErrorCode WriteColumn(const LamProcessStudy *study, const char name[], size_t offset, PetscReal factor,
                                   const char unit[])
 {
@@ -73,7 +73,7 @@ static PetscErrorCode WriteColumns(const LamProcessStudy *study)
   PetscFunctionReturn(0);
 }
 
-/* The number of the event at each state, -1 at times of the output; names in /process/events. */
+/* Writes the number of the event at each state, -1 at output times; names in /process/events. */
 static PetscErrorCode WriteEvents(const LamProcessStudy *study)
 {
   const LamProcessHistory *h = &study->history;

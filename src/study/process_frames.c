@@ -1,10 +1,10 @@
 /*
-  The microstructure at chosen states of a process, for pictures: solved once more, each from the one before.
+  The microstructure at selected states of a process, for figures: solved again, each from the previous one.
 */
 #include "process_run.h"
 #include "rve_fields.h"
 
-/* The first and the last state, all events, and `frames` states evenly spread. */
+/* The first and the last state, all events, and `frames` evenly spaced states. */
 static PetscBool IsChosen(const LamProcessStudy *study, PetscInt k, PetscInt frames)
 {
   const PetscInt n = study->history.count;

@@ -1,5 +1,5 @@
 /*
-  A process at one material point: the history of its state is one chain, followed on one rank.
+  A process at one material point: its history is sequential and is computed on one rank.
 */
 #include "process_run.h"
 #include "clock.h"
@@ -37,7 +37,7 @@ static PetscErrorCode Disconnect(LamProcessStudy *study)
   PetscFunctionReturn(0);
 }
 
-/* What the cache has solved goes to its database's file, whatever the end was. */
+/* Writes the states solved by the cache to its database's file, also after an error. */
 static PetscErrorCode CloseDatabase(LamProcessStudy *study)
 {
   LamFE2Tissue *tissue = study->response.tissues.tissues;
@@ -114,7 +114,7 @@ PetscErrorCode LamProcessStudyDestroy(LamProcessStudy *study)
   PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
-  ierr = CloseDatabase(study); /* what the cache has solved is kept, whatever the end was */
+  ierr = CloseDatabase(study); /* solved states are kept, also after an error */
   PetscCall(LamProcessDestroy(&study->process));
   PetscCall(Disconnect(study));
   PetscCall(PetscFree(study->history.states));

@@ -11,7 +11,7 @@
 #include <lamella/body.h>
 #include <lamella/process.h>
 
-/* States in the order of time; stresses in the C1 + C2 of the start. */
+/* States ordered by time; stresses in units of the initial C1 + C2. */
 typedef struct {
   PetscInt count, capacity;
   LamProcessState *states; /* owned */
@@ -21,9 +21,9 @@ typedef struct {
 typedef struct LamProcessStudy_s {
   LamFE2Run response;   /* options and one tissue: the responder of the material point */
   const char *out_path; /* NULL: none */
-  PetscInt frames;      /* states whose microstructure is kept, beside those of events */
+  PetscInt frames;      /* number of states whose microstructure is stored, in addition to those of events */
   LamScene *scene;      /* owned by response.scene */
-  /* After each state, the last of the history; ctx: that of the response's reporter. May be NULL. */
+  /* Called after each state, the last one of the history; ctx: that of the response's reporter. May be NULL. */
   PetscErrorCode (*state)(void *ctx, const struct LamProcessStudy_s *study);
 
   LamProcess process;
@@ -33,7 +33,7 @@ typedef struct LamProcessStudy_s {
   PetscInt committed; /* states in the file */
 } LamProcessStudy;
 
-#define LAM_PROCESS_PARTS 1000 /* of its duration, for reports of progress */
+#define LAM_PROCESS_PARTS 1000 /* parts of the duration, for progress reports */
 
 /* ---- process_point.c; on one rank ---- */
 /* message [LAM_PROCESS_MESSAGE]: why it ended before its duration. */
@@ -42,7 +42,7 @@ PetscErrorCode LamProcessStudyDestroy(LamProcessStudy *study);
 
 /* ---- process_file.c ---- */
 PetscErrorCode LamProcessFileOpen(LamProcessStudy *study);
-/* Commits what the file does not have yet; now and then unless `now`. */
+/* Commits the states that are not in the file yet; only at intervals unless `now`. */
 PetscErrorCode LamProcessFileAdd(LamProcessStudy *study, PetscBool now);
 /* Adds the microstructure at some states, before the file is closed. */
 PetscErrorCode LamProcessFrames(LamProcessStudy *study, PetscInt frames);
@@ -50,26 +50,26 @@ PetscErrorCode LamProcessFrames(LamProcessStudy *study, PetscInt frames);
 PetscErrorCode LamProcessFileClose(LamProcessStudy *study, const char status[]);
 
 /* ---- process_body_file.c; rank 0 ---- */
-/* Bodies in the order of time; in the C1 + C2 of the start. */
+/* Bodies ordered by time; in units of the initial C1 + C2. */
 typedef struct {
   const LamScene *scene; /* borrowed */
   PetscInt count, capacity;
   LamBodyState *states; /* owned */
 } LamBodyHistory;
 PetscErrorCode LamBodyHistoryAdd(LamBodyHistory *history, const LamBodyState *state);
-/* Writes /process of a file of steps; a LamBodyHistory. */
+/* Writes /process of a file of steps; `history`: a LamBodyHistory. */
 PetscErrorCode LamBodyHistoryWrite(LamRecordWriter writer, void *history);
 
 /* ---- process_body.c; collective ---- */
 typedef struct LamBodyStudy_s {
   LamFE2Run fe2; /* options, body and tissues */
-  /* After each state, on rank 0; ctx: that of the reporter. May be NULL. */
+  /* Called after each state, on rank 0; ctx: that of the reporter. May be NULL. */
   PetscErrorCode (*state)(void *ctx, const struct LamBodyStudy_s *study, const LamBodyState *state,
                           PetscReal peak_memory);
   LamBody body;
   LamBodyHistory history; /* rank 0 */
 } LamBodyStudy;
-/* Reads and checks everything; nothing is written. */
+/* Reads and checks all input; writes nothing. */
 PetscErrorCode LamBodyStudyPrepare(LamBodyStudy *study);
 PetscErrorCode LamBodyStudySolve(LamBodyStudy *study, LamProcessReason *reason, char message[]);
 PetscErrorCode LamBodyStudyDestroy(LamBodyStudy *study);

@@ -1,5 +1,5 @@
 /*
-  Questions in words, from the command line and from standard input.
+  Parses queries from the command line and from standard input.
 */
 #include "query_source.h"
 #include <ctype.h>
@@ -19,7 +19,7 @@ static PetscBool BeginsNumber(char c)
   return (PetscBool)(isdigit((unsigned char)c) || c == '+' || c == '-' || c == '.');
 }
 
-/* Whether the number at `at` has a unit: in its own word or in the next. */
+/* Whether the number at `at` has a unit: in the same word or in the next. */
 static PetscBool HasUnit(const char at[])
 {
   char *end;
@@ -31,7 +31,7 @@ static PetscBool HasUnit(const char at[])
   return (PetscBool)(*end && *end != ';' && !BeginsNumber(*end));
 }
 
-/* Reads numbers up to a semicolon or the first quantity with a unit, where *rest is left. */
+/* Reads numbers up to a semicolon or the first quantity with a unit; *rest points there. */
 static PetscBool ReadNumbers(const char text[], PetscReal numbers[9], int *n, const char **rest,
                              char problem[LAM_PROBLEM_LENGTH])
 {
@@ -69,7 +69,7 @@ static PetscBool ReadDeformation(const char text[], PetscReal F[9], const char *
   return PETSC_TRUE;
 }
 
-/* Behind the quantity at `at`: a semicolon, the next number, or the end. */
+/* Position after the quantity at `at`: a semicolon, the next number, or the end. */
 static const char *QuantityEnd(const char at[])
 {
   for (;;) {

@@ -1,5 +1,5 @@
 /*
-  Files that answer questions.
+  Files that can be queried.
 */
 #include "query_source.h"
 #include <string.h>
@@ -30,7 +30,7 @@ static PetscErrorCode ReadScene(const char path[], LamScene **scene)
   PetscFunctionReturn(0);
 }
 
-/* Turgor and cohesion of the records, where all have the same. */
+/* Uses turgor and cohesion of the records if all have the same. */
 static PetscErrorCode UseCommonLoads(LamQuerySource *a)
 {
   const LamResponse *records;

@@ -1,5 +1,5 @@
 /*
-  Files that answer questions: what `query` and `verify` need to know of one.
+  Files that can be queried, as `query` and `verify` need them.
 */
 #ifndef LAM_QUERY_SOURCE_H
 #define LAM_QUERY_SOURCE_H
@@ -8,25 +8,25 @@
 
 typedef struct {
   LamDatabase database;    /* owned */
-  LamScene *scene;         /* that the file was begun with; owned */
-  LamMicrostructure micro; /* that the records are of; its cells are the database's */
+  LamScene *scene;         /* scene with which the file was created; owned */
+  LamMicrostructure micro; /* of the records; its cells are the database's */
   LamScales scales;
-  PetscReal accuracy;                          /* the scene's */
-  PetscReal turgor, cohesion;                  /* where a question does not say */
+  PetscReal accuracy;                          /* of the scene */
+  PetscReal turgor, cohesion;                  /* defaults for queries that do not give them */
   const char *turgor_origin, *cohesion_origin; /* "the scene's", "that of all records" */
 } LamQuerySource;
 
 /*
-  PETSC_ERR_USER_INPUT for files of other kinds, and of patches, which are no material points. Turgor and cohesion are
-  those of the scene; of a file without a grid those of its records, where all have the same.
+  PETSC_ERR_USER_INPUT for files of other kinds, and of patches, which are not material points. Turgor and cohesion are
+  those of the scene; for a file without a grid, those of its records if all have the same.
 */
 PetscErrorCode LamQuerySourceOpen(const char path[], LamQuerySource *answers);
 PetscErrorCode LamQuerySourceClose(LamQuerySource *answers);
 
 /*
-  A question in words: 4 numbers (plane strain) or 9, row-major, separated by blanks or commas; then, where it says so,
-  a turgor and a cohesion with their units, "1 0.1 0 1 0.02 MPa 0.001 MPa", before each of which may stand a semicolon.
-  What it does not say stays in *load. PETSC_FALSE where it is none; `problem` then tells why and what would be right.
+  Parses a query: 4 numbers (plane strain) or 9, row-major, separated by blanks or commas; then optionally a turgor and
+  a cohesion with units, "1 0.1 0 1 0.02 MPa 0.001 MPa", each of which may be preceded by a semicolon. Omitted values
+  stay as they are in *load. PETSC_FALSE if it is not a query; `problem` then gives the reason and the expected form.
 */
 #define LAM_PROBLEM_LENGTH 256
 PetscBool LamQueryParse(const char text[], const LamScales *scales, LamLoad *load, char problem[LAM_PROBLEM_LENGTH]);

@@ -3,7 +3,7 @@
 /* Measured with bench_digits: the largest errors of the tangent over eps kappa/C1 size / depth are at most 85, kappa/C1
    from 1e2 to 1e7, t from 0.005 to 0.95 apothems, meshes from 6 x 2 to 40 x 40 elements, up to 8 x 8 cells. */
 #define ROUNDING 100.0
-#define FEW_ELEMENTS 6.0 /* along a face: with fewer the elements are slender, and more is lost */
+#define FEW_ELEMENTS 6.0 /* along a face: with fewer the elements are slender, and more digits are lost */
 
 /* Largest (kappa / C1) / t of the cells; worst: the cell. */
 static PetscReal Slenderness(const LamMicrostructure *micro, PetscInt *worst)

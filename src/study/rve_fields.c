@@ -25,7 +25,7 @@ static PetscErrorCode WriteInts(LamRecordWriter writer, const char group[], cons
   PetscFunctionReturn(0);
 }
 
-/* Which faces the samples of interfaces are of; bonded tissue has none. */
+/* Writes the faces to which the interface samples belong; bonded tissue has none. */
 static PetscErrorCode WriteInterfaceFaces(LamRecordWriter writer, const char group[], LamRVE rve)
 {
   PetscInt dims[2] = {0, 3}, points, *owner;
@@ -58,7 +58,7 @@ PetscErrorCode LamRVEWriteMesh(LamRecordWriter writer, const char group[], LamRV
   PetscFunctionReturn(0);
 }
 
-/* Samples along the faces of contact tissue; bonded tissue has none. */
+/* Writes samples along the faces of contact tissue; bonded tissue has none. */
 static PetscErrorCode WriteInterface(LamRecordWriter writer, const char group[], LamRVE rve, LamRVEState state,
                                      PetscReal MPa)
 {

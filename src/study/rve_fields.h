@@ -7,12 +7,13 @@
 #include <lamella/database.h>
 #include <lamella/rve.h>
 
-/* <group>/nodes, elements, cell_of, period; of contact tissue interface_faces. */
+/* Writes <group>/nodes, elements, cell_of, period; for contact tissue interface_faces. */
 PetscErrorCode LamRVEWriteMesh(LamRecordWriter writer, const char group[], LamRVE rve);
-/* <group>/x, fibre_stretch, wall_stress of a solved state; of contact tissue interface/from, to, gap, pressure. */
+/* Writes <group>/x, fibre_stretch, wall_stress of a solved state; for contact tissue interface/from, to, gap,
+   pressure. */
 PetscErrorCode LamRVEWriteFields(LamRecordWriter writer, const char group[], LamRVE rve, LamRVEState state,
                                  const LamScales *scales);
-/* <group>/softest_mode of a state that is not stable at its F. */
+/* Writes <group>/softest_mode of a state that is not stable at its F. */
 PetscErrorCode LamRVEWriteMode(LamRecordWriter writer, const char group[], LamRVE rve, LamRVEState state);
 
 #endif

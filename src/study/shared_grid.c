@@ -1,11 +1,11 @@
 /*
-  The grid of a new database on all ranks: rank 0 makes it, the others read what it would write to the file.
+  The grid of a new database on all ranks: rank 0 builds it, the others read the text that it would write to the file.
 */
 #include "shared_grid.h"
 #include "study.h"
 #include <string.h>
 
-/* What rank 0 sends. */
+/* Message from rank 0. */
 typedef struct {
   PetscMPIInt code, stopped, length, n; /* error code of rank 0; ...; bytes of the text; records */
   char *text;
@@ -59,7 +59,7 @@ static PetscErrorCode MakeOnRoot(const LamScene *scene, LamResponder *solver, Ma
   PetscFunctionReturn(0);
 }
 
-/* An error of rank 0, which has told it, is everyone's. */
+/* Raises an error of rank 0, which has already reported it, on all ranks. */
 static PetscErrorCode Share(MPI_Comm comm, PetscMPIInt rank, Made *made)
 {
   PetscMPIInt head[4] = {made->code, made->stopped, made->length, made->n}, bytes;

@@ -7,10 +7,10 @@
 #include <lamella/database.h>
 
 /*
-  Gives a database without a grid the one for its scene: made on rank 0, whose `solver` (not collective) solves for it,
-  the same on all ranks, with the records that came of it. *text: on rank 0 the layout, to be written to the database's
-  file as LAM_GRID_NAME before the records; the caller frees it. NULL elsewhere. *complete is PETSC_FALSE where a stop
-  was requested on rank 0: nothing is given then, for a grid is made from all its states or not at all. Collective.
+  Gives a database without a grid the one for its scene. Rank 0 builds it with `solver` (not collective); all ranks get
+  the same grid and the records solved for it. *text: on rank 0 the layout, to be written to the database's file as
+  LAM_GRID_NAME before the records; the caller frees it. NULL elsewhere. *complete is PETSC_FALSE if a stop was
+  requested on rank 0: then no grid is set, since it is built from all of its states or not at all. Collective.
 */
 PetscErrorCode LamSharedGridMake(MPI_Comm comm, const LamScene *scene, LamResponder *solver, LamDatabase database,
                                  char **text, PetscBool *complete);

@@ -1,20 +1,20 @@
 /*
-  Requests to end in order.
+  Stop requests.
 */
 #include "stop.h"
 #include "clock.h"
 #include <signal.h>
 
 static volatile sig_atomic_t StopSignal;
-static PetscReal Deadline = PETSC_INFINITY; /* on the clock */
+static PetscReal Deadline = PETSC_INFINITY; /* in LamClock time */
 
-#define NEIGHBOURS 16 /* below a rank, in the tree along which requests go */
+#define NEIGHBOURS 16 /* degree of the tree along which requests are sent */
 
 static struct {
-  MPI_Comm comm; /* used for nothing else; MPI_COMM_NULL: the rank is alone */
+  MPI_Comm comm; /* used for nothing else; MPI_COMM_NULL: no sharing with other ranks */
   PetscMPIInt neighbour[NEIGHBOURS + 1];
-  PetscInt n, heard; /* neighbours, and how many of them have sent a request */
-  int number;        /* what this rank has sent them; 0: nothing yet */
+  PetscInt n, heard; /* number of neighbours, and of those that have sent a request */
+  int number;        /* signal that this rank has sent them; 0: none yet */
 } Team = {.comm = MPI_COMM_NULL};
 
 void LamStopRequest(int number)
@@ -27,7 +27,7 @@ int LamStopSignal(void)
   return StopSignal;
 }
 
-/* ---- ranks that pass requests on ---- */
+/* ---- sharing between ranks ---- */
 
 PetscErrorCode LamStopShare(MPI_Comm comm)
 {
@@ -43,7 +43,7 @@ PetscErrorCode LamStopShare(MPI_Comm comm)
   PetscFunctionReturn(0);
 }
 
-/* Sends without waiting. */
+/* Sends without blocking. */
 static PetscErrorCode Send(int number)
 {
   PetscFunctionBeginUser;
@@ -57,7 +57,7 @@ static PetscErrorCode Send(int number)
   PetscFunctionReturn(0);
 }
 
-/* Receives the request of another rank, and passes on the first that has come. */
+/* Receives requests of other ranks, and forwards the first one received. */
 static PetscErrorCode Exchange(void)
 {
   int number, waiting;
@@ -74,7 +74,7 @@ static PetscErrorCode Exchange(void)
   PetscFunctionReturn(0);
 }
 
-/* Where one rank has sent, all do, so that each knows how many messages are to come. */
+/* If one rank has sent, all do, so each rank knows how many messages to expect. */
 PetscErrorCode LamStopShareEnd(void)
 {
   int sent = Team.number, number;

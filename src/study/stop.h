@@ -1,20 +1,20 @@
 /*
-  Requests to end in order: a signal, a batch system's limit, a deadline. Studies look at LamStopRequested between
-  states, solves before each factorisation; what is under way is given up, what is solved is committed.
+  Requests for an orderly stop: a signal, a batch system's limit, a deadline. Studies check LamStopRequested between
+  states, solves before each factorisation. The current solve is abandoned; solved states are committed.
 */
 #ifndef LAM_STOP_H
 #define LAM_STOP_H
 
 #include <lamella/study.h>
 
-int LamStopSignal(void); /* the last one requested; 0: none */
+int LamStopSignal(void); /* the last one received; 0: none */
 PetscBool LamStopRequested(void);
-PetscBool LamStopInterrupt(void *ctx); /* the same, for LamRVESetInterrupt */
-/* From that time of LamClock on LamStopRequested is true, without a signal; PETSC_INFINITY: never. For work that has a
-   limited time on one rank. */
+PetscBool LamStopInterrupt(void *ctx); /* LamStopRequested, for LamRVESetInterrupt */
+/* From this LamClock time on LamStopRequested is true, without a signal; PETSC_INFINITY: never. For work with a time
+   limit on one rank. */
 void LamStopSetDeadline(PetscReal clock);
 /*
-  Between the two, which are collective, a request on one rank of `comm` is one on all: a rank sends it when it calls
+  Between these two collective calls, a request on one rank of `comm` applies to all: a rank sends it when it calls
   LamStopRequested, and the others receive it when they do.
 */
 PetscErrorCode LamStopShare(MPI_Comm comm);

@@ -1,5 +1,5 @@
 /*
-  What all studies share.
+  Functions shared by all studies.
 */
 #include "study.h"
 #include <stdarg.h>
@@ -56,7 +56,7 @@ PetscErrorCode LamShareError(MPI_Comm comm, PetscErrorCode ierr)
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Bcast(&code, 1, MPI_INT, 0, comm));
-  /* no SETERRQ: the message has been kept where the error arose */
+  /* no SETERRQ: the message was stored where the error was raised */
   PetscFunctionReturn((PetscErrorCode)code);
 }
 
@@ -66,7 +66,7 @@ PetscErrorCode LamPeakMemory(MPI_Comm comm, PetscReal *megabytes)
 
   PetscFunctionBeginUser;
   getrusage(RUSAGE_SELF, &usage);
-  *megabytes = (PetscReal)usage.ru_maxrss / 1024; /* Linux counts kilobytes */
+  *megabytes = (PetscReal)usage.ru_maxrss / 1024; /* Linux reports kilobytes */
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, megabytes, 1, MPIU_REAL, MPIU_MAX, comm));
   PetscFunctionReturn(0);
 }

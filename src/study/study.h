@@ -1,5 +1,5 @@
 /*
-  What all studies share: requests to stop, reports, errors of rank 0.
+  Functions shared by all studies: stop requests, reports, errors of rank 0.
 */
 #ifndef LAM_STUDY_H
 #define LAM_STUDY_H
@@ -14,9 +14,9 @@ void LamReportWarning(const LamReporter *reporter, const char format[], ...) PET
 PetscErrorCode LamReportProgress(const LamReporter *reporter, PetscInt64 done, PetscInt64 total, PetscInt64 failed);
 
 PetscBool LamIsFirst(MPI_Comm comm); /* rank 0 */
-/* Makes an error of rank 0 everyone's; it has been raised where it arose. Collective. */
+/* Raises an error of rank 0 on all ranks; rank 0 has already reported it. Collective. */
 PetscErrorCode LamShareError(MPI_Comm comm, PetscErrorCode ierr);
-/* Largest memory of a rank, MB. Collective. */
+/* Largest memory of any rank, MB. Collective. */
 PetscErrorCode LamPeakMemory(MPI_Comm comm, PetscReal *megabytes);
 
 #endif

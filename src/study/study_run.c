@@ -1,5 +1,5 @@
 /*
-  Whole studies for other programs.
+  Complete studies for other programs.
 */
 #include "build_run.h"
 #include "fe2_run.h"

@@ -1,20 +1,20 @@
 /*
-  lamella tradeoff: error against time over the knobs that trade them.
+  lamella tradeoff: error against time for every parameter that trades one for the other.
 
-    tradeoff_settings.c   which settings a scene has
-    tradeoff_states.c     which states they are to answer
-    tradeoff_measure.c    one setting, answered once, by an RVE
-    tradeoff_table.c      likewise by a table, its building included
-    tradeoff_macro.c      likewise the macroscale problem
-    tradeoff_reference.c  answers that are finer than all of them
-    tradeoff_judge.c      errors, spread of times, which settings are the best
-    tradeoff_report.c     what is told of that, and written
+    tradeoff_settings.c   settings of a scene
+    tradeoff_states.c     states to solve with each setting
+    tradeoff_measure.c    one run of a setting, by an RVE
+    tradeoff_table.c      one run of a setting, by a table, including its construction
+    tradeoff_macro.c      one run of a setting, by the macroscale problem
+    tradeoff_reference.c  reference responses, finer than all settings
+    tradeoff_judge.c      errors, spread of times, the best settings
+    tradeoff_report.c     report and output
     tradeoff_plot.c       the work-precision diagram
-    cmd_tradeoff.c        in which order, and for how long
+    cmd_tradeoff.c        order of the runs and time budget
 
   Errors and settings follow the work-precision diagrams of SciML (C. Rackauckas and Q. Nie, J. Open Res. Softw. 5
-  (2017) 15): all settings answer the same questions, from nothing, in interleaved rounds on one machine; what fails is
-  left out and told; the reference is finer than what is ranked.
+  (2017) 15): all settings get the same queries, start from scratch, in interleaved rounds on one machine; failed runs
+  are left out and reported; the reference is finer than the settings that are ranked.
 */
 #ifndef LAM_TRADEOFF_H
 #define LAM_TRADEOFF_H
@@ -27,39 +27,40 @@
   X(LAM_KNOB_CELLS, "cells")         /* per period */                                                                  \
   X(LAM_KNOB_TOLERANCE, "tolerance") /* of the Newton iterations */                                                    \
   X(LAM_KNOB_DATABASE, "database")   /* accuracy of a table */                                                         \
-  X(LAM_KNOB_MACRO, "macro")         /* what answers the material points of a body */
+  X(LAM_KNOB_MACRO, "macro")         /* responder of a body's material points */
 typedef enum { LAM_KNOBS(LAM_ENUM_ENTRY) LAM_KNOB_COUNT } LamKnob;
 extern const char *const LamKnobNames[];
 
 #define LAM_ERROR_KINDS(X)                                                                                             \
   X(LAM_ERROR_P, "P")             /* LamStressError */                                                                 \
   X(LAM_ERROR_TANGENT, "tangent") /* relative, Frobenius norm */                                                       \
-  X(LAM_ERROR_OPENING, "opening") /* difference of the opening fraction; of bonded tissue of the lumen fraction */     \
+  X(LAM_ERROR_OPENING, "opening") /* difference of the opening fraction; for bonded tissue of the lumen fraction */    \
   X(LAM_ERROR_MACRO, "macro")     /* of reactions and work at the last step, relative */
 typedef enum { LAM_ERROR_KINDS(LAM_ENUM_ENTRY) LAM_ERROR_KIND_COUNT } LamErrorKind;
 extern const char *const LamErrorNames[];
 
-/* One way to answer. */
+/* A setting of one parameter. */
 typedef struct {
   LamKnob knob;
   char label[48];          /* "12 x 4, graded 0.6" */
-  char mark[16];           /* beside its point in the diagram: "12" */
+  char mark[16];           /* label of its point in the diagram: "12" */
   LamMicrostructure micro; /* its mesh and cells; borrows the cells of the scene */
   LamStrategy strategy;
   PetscReal tolerance;
   PetscReal accuracy;      /* of a table or a cache; 0: neither */
-  LamFE2Response response; /* of a body's points */
-  PetscBool planned;       /* this is what the scene and the planner say */
+  LamFE2Response response; /* of a body's material points */
+  PetscBool planned;       /* the values of the scene and the planner */
 } LamSetting;
 
-/* The states that are to be answered. */
+/* The states to be solved. */
 typedef struct {
   PetscInt n;
   LamLoad *loads;     /* owned */
-  PetscBool chained;  /* each starts from the one before, else from the undeformed tissue */
-  PetscInt dropped;   /* of the scene's load, which prescribes stress that the planned mesh cannot reach */
+  PetscBool chained;  /* each starts from the previous one, else from the undeformed tissue */
+  PetscInt dropped;   /* number of states of the scene's load omitted because the planned mesh cannot reach their
+                         prescribed stress */
   const char *origin; /* "load", "sample", "default" */
-  PetscBool *skip;    /* [n]: is not solved; owned */
+  PetscBool *skip;    /* [n]: state is not solved; owned */
 } LamStates;
 
 /* The last step of a body. */
@@ -74,7 +75,7 @@ typedef struct {
 
 typedef struct {
   PetscReal largest, mean; /* over the states; NaN: not known */
-  PetscBool resolved;      /* at least ten times the error of the reference */
+  PetscBool resolved;      /* error at least ten times that of the reference */
   PetscBool optimal;       /* no other resolved setting has a smaller error in less time */
 } LamMeasuredError;
 
@@ -83,43 +84,42 @@ typedef struct {
   LamSetting setting;
   PetscInt unknowns;               /* of one RVE */
   PetscInt nodes;                  /* of a table; 0: none */
-  PetscInt runs;                   /* how often it was measured; 0: left out */
-  PetscReal *cpu, *wall;           /* [runs] seconds, all included; owned, room for LAM_MOST_REPEATS */
-  PetscReal *state_cpu;            /* [runs] of it, in solves or queries of one state on average; owned, likewise */
-  PetscReal build_cpu, build_wall; /* of a table, or of the one that a body asks: of the last building */
-  PetscBool stopped;               /* by the time, or a signal */
-  LamResponse *responses; /* [states], where runs > 0 all converged; those that were not solved LAM_OUT_OF_REACH; NULL:
-                             none; owned */
+  PetscInt runs;                   /* number of runs; 0: left out */
+  PetscReal *cpu, *wall;           /* [runs] seconds, everything included; owned, room for LAM_MOST_REPEATS */
+  PetscReal *state_cpu;            /* [runs] CPU seconds per state for solves or queries, on average; owned, likewise */
+  PetscReal build_cpu, build_wall; /* last construction of the table, or of the table that a body queries */
+  PetscBool stopped;               /* by the time limit, or a signal */
+  LamResponse *responses; /* [states], if runs > 0 all converged or, not solved, LAM_OUT_OF_REACH; NULL: none; owned */
   LamMacroOutcome outcome;
   char reason[192]; /* why it is left out; empty: it is not */
 
-  /* LamJudge */
+  /* set by LamJudge */
   LamSpread cpu_spread, wall_spread;
   LamMeasuredError error[LAM_ERROR_KIND_COUNT];
-  PetscReal from_plan; /* largest difference of P to the planned setting, or of a body to direct answers */
+  PetscReal from_plan; /* largest difference of P to the planned setting, or for a body to the direct response */
 } LamMeasurement;
 
-/* Answers on a fine mesh, and how far they are from those of the next coarser one. */
+/* Responses on a fine mesh, and their difference to those of the next coarser one. */
 typedef struct {
-  LamMicrostructure micro, other;        /* the finest mesh, and the one that its error is told from; borrow cells */
+  LamMicrostructure micro, other;        /* the finest mesh, and the one used for its error estimate; borrow cells */
   LamResponse *responses;                /* [states]; owned */
-  PetscBool *used;                       /* [states]: errors are taken there; owned */
+  PetscBool *used;                       /* [states]: included in the errors; owned */
   PetscInt used_count;                   /* 0: there is no reference */
-  PetscInt known_count;                  /* states that have an answer on both meshes */
-  PetscReal *difference;                 /* [states] of P between the two meshes; NaN: one has no answer; owned */
+  PetscInt known_count;                  /* states that converged on both meshes */
+  PetscReal *difference;                 /* [states] of P between the two meshes; NaN: one did not converge; owned */
   PetscReal error[LAM_ERROR_KIND_COUNT]; /* largest difference between the two over the states used; NaN: not known */
-  PetscReal cpu;                         /* seconds of the finest */
+  PetscReal cpu;                         /* seconds on the finest mesh */
 } LamReference;
 
 /* ---- tradeoff_settings.c ---- */
-/* Whether a knob of the scene, whose mesh is chosen, trades anything; *why not, otherwise. */
+/* Whether a parameter trades error for time in the scene (with mesh chosen); *why gives the reason if not. */
 PetscBool LamKnobApplies(const LamScene *scene, LamKnob knob, const char **why);
-/* All settings of a knob; the caller frees. */
+/* All settings of a parameter; the caller frees. */
 PetscErrorCode LamSettingsMake(const LamScene *scene, LamKnob knob, PetscInt *n, LamSetting **settings);
 
 /* ---- tradeoff_states.c ---- */
 PetscErrorCode LamStatesMake(const LamScene *scene, LamStates *states);
-PetscInt LamStatesCount(const LamStates *states); /* without those that are skipped */
+PetscInt LamStatesCount(const LamStates *states); /* without those skipped */
 PetscErrorCode LamStatesDestroy(LamStates *states);
 
 /* ---- tradeoff_measure.c ---- */
@@ -129,54 +129,54 @@ PetscErrorCode LamMeasurementDestroy(LamMeasurement *m);
   Measures the setting of m once more, until LamStopRequested (a signal, or the deadline). A first run without results
   sets m->reason; a repeat without results leaves m unchanged.
 
-  table: file of the table, of LAM_KNOB_DATABASE (written) or of a body that queries it, whose build time m has
+  table: file of the table, for LAM_KNOB_DATABASE (written) or for a body that queries it, whose build time m has
 */
 PetscErrorCode LamMeasure(const LamScene *scene, const LamStates *states, const char table[], LamMeasurement *m);
-/* Adds a run to m: of a repeat its times; one that was cut short is dropped. Destroys or moves `run`. */
+/* Adds a run to m: for a repeat its times; an interrupted one is dropped. Destroys or moves `run`. */
 PetscErrorCode LamMeasurementTake(LamMeasurement *run, LamMeasurement *m);
 
-/* What LamMeasure calls, by the kind of setting, with an m that has no runs: they add one, or set the reason. */
+/* Called by LamMeasure according to the setting, with an m that has no runs: they add one, or set the reason. */
 PetscErrorCode LamMeasureRVE(const LamScene *scene, const LamStates *states, LamMeasurement *m);
 PetscErrorCode LamMeasureTable(const LamScene *scene, const LamStates *states, const char table[], LamMeasurement *m);
 PetscErrorCode LamMeasureMacro(const LamScene *scene, const char table[], LamMeasurement *m);
 
-/* Time of all threads of the process, and time that passes. */
+/* CPU time of all threads of the process, and wall time. */
 typedef struct {
   PetscReal cpu, wall;
 } LamStopwatch;
 LamStopwatch LamStopwatchRead(void);
-/* Keeps the times since `start`; state_share: of it in the states, each. */
+/* Stores the times since `start`; state_cpu: average CPU seconds per state. */
 void LamMeasurementAddRun(LamMeasurement *m, LamStopwatch start, PetscReal state_cpu);
 
 /* ---- tradeoff_reference.c ---- */
 /*
-  Finer and finer meshes, until the last two differ by a hundredth of the scene's accuracy in P, or the time is over:
-  errors from a tenth of the accuracy on can then be told. States that take too long are given up on the way. States at
-  which the two differ by more than a tenth of the scene's accuracy are not used, unless all are such.
+  Refines the mesh until the last two differ by a hundredth of the scene's accuracy in P, or the time is over: errors
+  from a tenth of the accuracy on are then resolved. States that take too long are dropped. States at which the two
+  meshes differ by more than a tenth of the scene's accuracy are not used, unless all do.
 */
 PetscErrorCode LamReferenceMake(const LamScene *scene, const LamStates *states, PetscReal deadline,
                                 LamReference *reference);
-/* The states that it does not use are answered by no setting. */
+/* Skips the states that the reference does not use, for all settings. */
 PetscErrorCode LamReferenceSkipUnused(const LamReference *reference, LamStates *states);
 PetscErrorCode LamReferenceDestroy(LamReference *reference);
 
 /* ---- tradeoff_judge.c ---- */
 LamSpread LamSpreadOf(PetscInt n, const PetscReal values[]);
-/* Of an answer; NaN where it is not known. Not of LAM_ERROR_MACRO. */
+/* Error of a response; NaN if not known. Not for LAM_ERROR_MACRO. */
 PetscReal LamErrorOf(LamErrorKind kind, LamInterfaceLawType interface, const LamResponse *answer,
                      const LamResponse *reference);
 /* Errors of the reactions of all sides together, and of the work. */
 void LamMacroErrors(const LamMacroOutcome *answer, const LamMacroOutcome *reference, PetscReal errors[2]);
-/* Which points have no other that is at least as good in both, and better in one; NaN: never. */
+/* Marks the points for which no other is at least as good in both and better in one; NaN: never. */
 void LamParetoMark(PetscInt n, const PetscReal cost[], const PetscReal error[], PetscBool optimal[]);
-/* Fills in what is judged of all measurements. */
+/* Computes the errors and spreads of all measurements, and the best settings. */
 PetscErrorCode LamJudge(const LamReference *reference, const LamStates *states, PetscInt n, LamMeasurement measured[]);
 
 /* ---- tradeoff_run.c ---- */
 enum { LAM_TRADEOFF_PARTS = 5 };
 typedef struct {
   const char *scene_path;
-  PetscBool chosen[LAM_KNOB_COUNT]; /* which knobs are turned */
+  PetscBool chosen[LAM_KNOB_COUNT]; /* parameters that are varied */
   PetscInt repeats;
   PetscReal budget; /* s */
   LamReporter reporter;
@@ -186,8 +186,8 @@ typedef struct {
   LamReference reference;
   PetscInt n;
   LamMeasurement *measured;        /* [n]; owned */
-  const char *why[LAM_KNOB_COUNT]; /* a knob is not there; NULL: it is */
-  char folder[PETSC_MAX_PATH_LEN]; /* of tables; removed at the end */
+  const char *why[LAM_KNOB_COUNT]; /* why a parameter is not varied; NULL: it is */
+  char folder[PETSC_MAX_PATH_LEN]; /* for tables; removed at the end */
   PetscReal start, ends[LAM_TRADEOFF_PARTS];
   PetscInt done, failed;
   PetscReal seconds;
@@ -195,7 +195,7 @@ typedef struct {
 } LamTradeoff;
 /* Measures and judges all settings, on one rank. */
 PetscErrorCode LamTradeoffRun(LamTradeoff *tradeoff);
-/* Whether the planned setting has a result, and there is something to compare with. */
+/* Whether the planned setting has a result, and a reference or another result to compare with. */
 PetscBool LamTradeoffIsSolved(const LamTradeoff *tradeoff);
 PetscErrorCode LamTradeoffDestroy(LamTradeoff *tradeoff);
 

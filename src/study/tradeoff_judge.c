@@ -1,8 +1,8 @@
 /*
-  Errors, spread of times, and which settings are the best.
+  Errors, spread of times, and the best settings.
 
-  An error below ten times that of the reference is not resolved: it may come from either, and does not rank. Nor does
-  that of a mesh which is no coarser than the reference, where there was no time for a finer one.
+  An error below ten times that of the reference is not resolved: it may stem from either, and is not ranked. Neither is
+  that of a mesh which is no coarser than the reference, which occurs if there was no time for a finer one.
 */
 #include "tradeoff.h"
 #include <math.h>
@@ -30,7 +30,7 @@ LamSpread LamSpreadOf(PetscInt n, const PetscReal values[])
   return (LamSpread){0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]), sorted[0], sorted[n - 1]};
 }
 
-/* |a - b| / |b| over the numbers that both have. */
+/* |a - b| / |b| over the numbers that are known in both. */
 static PetscReal RelativeDifference(PetscInt n, const PetscReal a[], const PetscReal b[])
 {
   PetscReal difference = 0, size = 0;
@@ -112,7 +112,7 @@ static PetscReal FromPlan(const LamStates *states, const LamMeasurement *m, cons
   return largest;
 }
 
-/* Direct answers on the same mesh are the reference of all others. */
+/* Direct responses on the same mesh are the reference of all others. */
 static void JudgeMacro(const LamMeasurement *direct, LamMeasurement *m)
 {
   LamMeasuredError *error = &m->error[LAM_ERROR_MACRO];

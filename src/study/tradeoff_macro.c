@@ -1,10 +1,10 @@
 /*
-  One setting, answered once by the macroscale problem of the scene: as `lamella fe2` does, without its files.
+  One run of a setting by the macroscale problem of the scene: as `lamella fe2`, without its files.
 */
 #include "tradeoff.h"
 #include <math.h>
 
-/* A LamMacroMonitor: keeps the last step. */
+/* A LamMacroMonitor: stores the last step. */
 static PetscErrorCode KeepStep(LamMacro macro, const LamMacroStep *step, PetscBool *stop, void *ctx)
 {
   LamMacroOutcome *outcome = ctx;

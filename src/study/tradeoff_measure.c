@@ -39,7 +39,8 @@ PetscErrorCode LamMeasurementDestroy(LamMeasurement *m)
   PetscFunctionReturn(0);
 }
 
-/* Goes on behind a state without answer, as `lamella rve` does: the first says why the setting is left out. */
+/* Continues after a state that did not converge, as `lamella rve` does; the first one gives the reason why the
+   setting is left out. */
 static PetscErrorCode SolveStates(const LamStates *states, LamMeshes *meshes, LamResponse responses[],
                                   LamMeasurement *m)
 {

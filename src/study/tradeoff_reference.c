@@ -1,13 +1,14 @@
 /*
-  The reference: answers on a mesh that is finer than all settings.
+  The reference: responses on a mesh that is finer than all settings.
 
   Method
-    Meshes of a ladder, solved to rounding, now uniform, now a little graded (strong gradings have elements in the
-    middle of a face that are too long). The error of each is told from the one before, whose own error is mostly the
-    larger: so it is rather too large than too small. Cells in contact may be on another
-    branch on the next mesh; a state at which the meshes do not agree well enough to judge the scene's accuracy says
-    nothing of the settings, and is left out. So is one on which a mesh would spend more than half of the time that is
-  left: walls that wrinkle on the scale of the mesh do so on every one.
+
+  A sequence of refined meshes, solved to rounding, alternately uniform and slightly graded (strong gradings have
+  elements in the middle of a face that are too long). The error of each is estimated from the previous one, whose own
+  error is usually larger, so the estimate tends to be too large rather than too small. Cells in contact may be on
+  another branch on the next mesh. A state at which the meshes do not agree well enough to resolve the scene's accuracy
+  is left out. So is one on which a mesh would spend more than half of the remaining time: walls that wrinkle on the
+  scale of the mesh do so on every mesh.
 */
 #include "tradeoff.h"
 #include "clock.h"
@@ -18,11 +19,11 @@ static const struct {
   PetscReal grading;
 } Ladder[] = {{10, 2, 0}, {14, 3, 0.3},  {20, 4, 0},  {28, 6, 0.3},
               {40, 8, 0}, {56, 10, 0.3}, {80, 14, 0}, {112, 20, 0.3}};
-enum { RUNGS = PETSC_STATIC_ARRAY_LENGTH(Ladder), FINE_RUNG = 3 }; /* from it on finer than all settings */
+enum { RUNGS = PETSC_STATIC_ARRAY_LENGTH(Ladder), FINE_RUNG = 3 }; /* from this rung on finer than all settings */
 
 #define GOAL 0.01      /* of the scene's accuracy: fine enough */
-#define COST_POWER 1.5 /* of the time, in unknowns */
-#define SETTLED 0.1    /* of the scene's accuracy */
+#define COST_POWER 1.5 /* exponent of the time in the number of unknowns */
+#define SETTLED 0.1    /* of the scene's accuracy: largest difference of a state that is used */
 
 static PetscErrorCode Climb(const LamScene *scene, const LamStates *states, int rung, LamMeasurement *m)
 {
@@ -37,7 +38,7 @@ static PetscErrorCode Climb(const LamScene *scene, const LamStates *states, int 
   PetscFunctionReturn(0);
 }
 
-/* Which states the errors are taken at. */
+/* Selects the states included in the errors. */
 static void Use(PetscReal accuracy, PetscInt n, LamReference *reference)
 {
   PetscInt settled = 0;
@@ -73,7 +74,7 @@ static void Compare(const LamScene *scene, PetscInt n, const LamResponse coarser
   }
 }
 
-/* The mesh becomes the reference, and gives its answers away. */
+/* Makes the mesh the reference and moves its responses there. */
 static PetscErrorCode Take(const LamScene *scene, PetscInt n, LamMeasurement *m, LamReference *reference)
 {
   LamResponse *coarser = reference->responses;
@@ -88,7 +89,7 @@ static PetscErrorCode Take(const LamScene *scene, PetscInt n, LamMeasurement *m,
   PetscFunctionReturn(0);
 }
 
-/* Of the next rung, by the last one, in which the times of the states are. */
+/* Predicted time of the next rung, from the last one, whose times of the states are known. */
 static PetscReal PredictSeconds(int rung, const LamStates *states, const LamReference *reference)
 {
   const PetscReal before = (PetscReal)(Ladder[rung - 1].along * Ladder[rung - 1].through);
@@ -100,7 +101,7 @@ static PetscReal PredictSeconds(int rung, const LamStates *states, const LamRefe
   return seconds * PetscPowReal(ratio, COST_POWER);
 }
 
-/* The first state that was stopped takes too long for what comes. */
+/* Skips the first state that was stopped: it takes too long for finer meshes. */
 static void SkipStopped(const LamResponse responses[], LamStates *states)
 {
   for (PetscInt s = 0; s < states->n; s++) {

@@ -1,11 +1,13 @@
 /*
-  Error against time over every knob of a scene that trades them.
+  Error against time for every parameter of a scene that trades one for the other.
 
   Method
-    Each part of the work has its share of the budget; what one leaves the next may use. First the reference is made,
-    which says at what states errors can be told. Then every setting of an RVE is measured once, the planned ones first,
-    then from small to large, and again in interleaved rounds, so that a busy moment of the machine does not meet one
-    setting alone; then tables and bodies. A setting that takes more than half of what is left to its part is given up.
+
+  Each part of the work has its share of the budget; unused time passes to the next part. First the reference is
+  computed, which determines the states at which errors are resolved. Then every setting of an RVE is measured once, the
+  planned ones first, then from small to large, and again in interleaved rounds, so that a busy moment of the machine
+  does not affect one setting alone; then tables and bodies. A setting that takes more than half of the remaining time
+  of its part is abandoned.
 */
 #include "plan.h"
 #include "rounding.h"
@@ -21,7 +23,7 @@ typedef enum { PART_REFERENCE, PART_RVE, PART_REPEATS, PART_TABLES, PART_MACRO }
 #define PART_COUNT LAM_TRADEOFF_PARTS
 static const PetscReal Shares[PART_COUNT] = {4, 3, 2, 4, 6};
 
-/* By a signal: LamStopRequested is true at the deadline of a measurement, too. */
+/* Stopped by a signal: LamStopRequested is also true at the deadline of a measurement. */
 static PetscBool IsStopped(void)
 {
   return (PetscBool)(LamStopSignal() != 0);
@@ -36,7 +38,7 @@ static PetscErrorCode TablePath(const LamTradeoff *t, const LamSetting *setting,
   PetscFunctionReturn(0);
 }
 
-/* The table of that accuracy; NULL: it was not built, or could not answer. */
+/* The table of that accuracy; NULL: it was not built, or its queries failed. */
 static const LamMeasurement *FindTable(const LamTradeoff *t, PetscReal accuracy)
 {
   for (PetscInt i = 0; i < t->n; i++) {
@@ -47,7 +49,7 @@ static const LamMeasurement *FindTable(const LamTradeoff *t, PetscReal accuracy)
   return NULL;
 }
 
-/* What a body needs of the table that it queries; has_table PETSC_FALSE: m has the reason. */
+/* Provides the table that a body queries; has_table PETSC_FALSE: m has the reason. */
 static PetscErrorCode UseTable(const LamTradeoff *t, LamMeasurement *m, PetscBool *has_table)
 {
   const LamMeasurement *table = FindTable(t, m->setting.accuracy);
@@ -81,14 +83,14 @@ static PetscErrorCode Measure(LamTradeoff *t, PetscReal deadline, LamMeasurement
   PetscFunctionReturn(0);
 }
 
-/* ---- all of them ---- */
+/* ---- all measurements ---- */
 
 static Part PartOf(LamKnob knob)
 {
   return knob == LAM_KNOB_MACRO ? PART_MACRO : knob == LAM_KNOB_DATABASE ? PART_TABLES : PART_RVE;
 }
 
-/* Which comes first: what is planned, then what is small. */
+/* Order of the settings: planned first, then by size. */
 static PetscReal Rank(const LamSetting *s)
 {
   const LamMicrostructure *m = &s->micro;
@@ -98,7 +100,7 @@ static PetscReal Rank(const LamSetting *s)
   return (PetscReal)(m->along * m->through) * (PetscReal)(m->cells[0] * m->cells[1]);
 }
 
-/* The first time for each setting of a part. */
+/* First run of each setting of a part. */
 static PetscErrorCode MeasureOnce(LamTradeoff *t, Part part)
 {
   PetscFunctionBeginUser;
@@ -121,13 +123,13 @@ static PetscErrorCode MeasureOnce(LamTradeoff *t, Part part)
   }
 }
 
-/* Seconds that a repeat takes: a body does not build its table again. */
+/* Seconds of a repeat: a body does not build its table again. */
 static PetscReal MeasuredAnew(const LamMeasurement *m)
 {
   return m->wall[0] - (m->setting.knob == LAM_KNOB_MACRO ? m->build_wall : 0);
 }
 
-/* Rounds over all that was measured, from `first` to `last`, while there is time. */
+/* Repeats the settings measured, parts `first` to `last`, in rounds while there is time. */
 static PetscErrorCode Repeat(LamTradeoff *t, PetscReal end, Part first, Part last)
 {
   PetscFunctionBeginUser;
@@ -143,7 +145,7 @@ static PetscErrorCode Repeat(LamTradeoff *t, PetscReal end, Part first, Part las
   PetscFunctionReturn(0);
 }
 
-/* Bodies have one of their own. */
+/* Bodies have their own reference. */
 static PetscBool NeedsReference(const LamTradeoff *t)
 {
   for (PetscInt i = 0; i < t->n; i++)
@@ -166,7 +168,7 @@ static PetscErrorCode MeasureAll(LamTradeoff *t)
   PetscFunctionReturn(0);
 }
 
-/* ---- before and after ---- */
+/* ---- setup and cleanup ---- */
 
 static PetscErrorCode AddSettings(LamTradeoff *t, LamKnob knob)
 {
@@ -181,7 +183,7 @@ static PetscErrorCode AddSettings(LamTradeoff *t, LamKnob knob)
   PetscFunctionReturn(0);
 }
 
-/* Parts that have nothing to do leave their share to the others. */
+/* Parts without work leave their share to the others. */
 static void ShareBudget(LamTradeoff *t)
 {
   PetscReal share[PART_COUNT], sum = 0, end = 0;

@@ -1,5 +1,5 @@
 /*
-  Which settings a scene has: one knob is turned at a time, the others stay as the scene and the planner say.
+  Settings of a scene: one parameter is varied at a time, the others are those of the scene and the planner.
 */
 #include "tradeoff.h"
 #include <stdio.h>
@@ -16,7 +16,7 @@ static const PetscInt Cells[][2] = {{1, 1}, {2, 1}, {2, 2}};
 static const PetscReal Accuracies[] = {0.1, 0.03, 0.01, 0.003, 0.001};
 #define COUNT(array) ((PetscInt)PETSC_STATIC_ARRAY_LENGTH(array))
 
-/* ---- what applies ---- */
+/* ---- applicability ---- */
 
 static const char *WhyNotCells(const LamMicrostructure *micro)
 {
@@ -25,7 +25,7 @@ static const char *WhyNotCells(const LamMicrostructure *micro)
   return NULL;
 }
 
-/* A table knows the tissue under a prescribed turgor. */
+/* A table is for tissue at a prescribed turgor. */
 static const char *WhyNotTable(const LamScene *scene)
 {
   if (!scene->has_sample) return "the scene has no block sample";
@@ -166,7 +166,7 @@ static void AddTables(const LamScene *scene, List *list)
   }
 }
 
-/* A body of several tissues would need a table of each. */
+/* A body of several tissues would need one table for each. */
 static PetscBool OneTable(const LamScene *scene)
 {
   return (PetscBool)(!WhyNotTable(scene) && !scene->region_count && !scene->fields.value[LAM_TISSUE_WALL_THICKNESS]);

@@ -1,15 +1,15 @@
 /*
-  Which states the settings are to answer: those of the scene's load; where it has none, states of its sample box; else
+  States solved with each setting: those of the scene's load; without a load, states of its sample box; without either,
   shears and stretches.
 
-  All settings answer at the same F. Where the load prescribes stress in place of components of F, these are found
-  first, on the planned mesh.
+  All settings are solved at the same F. Where the load prescribes stress in place of components of F, these components
+  are found first, on the planned mesh.
 */
 #include "tradeoff.h"
 #include "build.h"
 #include "onset.h"
 
-enum { SAMPLED = 8 }; /* states of the sample box */
+enum { SAMPLED = 8 }; /* number of states of the sample box */
 
 static const PetscReal Shears[] = {0.05, 0.1, 0.15, 0.2};
 static const PetscReal Stretches[][2] = {{1.05, 1}, {1, 1.05}, {1.03, 1.03}};
@@ -33,7 +33,7 @@ static void Default(const LamScene *scene, LamStates *states)
   states->origin = "default";
 }
 
-/* Finds what the load leaves free; states without an answer are dropped. */
+/* Finds the free components of F; states that do not converge are dropped. */
 static PetscErrorCode FindFree(const LamScene *scene, LamStates *states)
 {
   LamResponse responses[2];

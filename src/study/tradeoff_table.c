@@ -1,5 +1,5 @@
 /*
-  One setting, answered once by a table: it is built over the scene's sample box, then asked for the states.
+  One run of a setting by a table: built over the scene's sample box, then queried at the states.
 */
 #include "tradeoff.h"
 #include "build_run.h"
@@ -8,7 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Serial. *nodes: what the table has in the end. */
+/* Serial. *nodes: final number of nodes of the table. */
 static PetscErrorCode Build(const LamScene *scene, const LamSetting *setting, const char path[], PetscInt *nodes)
 {
   LamScene own = *scene;
@@ -21,7 +21,7 @@ static PetscErrorCode Build(const LamScene *scene, const LamSetting *setting, co
   own.sample.accuracy = setting->accuracy;
   PetscCall(LamBuildTable(&build));
   *nodes = (PetscInt)LamBuildRecords(&build);
-  build.scene = NULL; /* not its own */
+  build.scene = NULL; /* borrowed */
   PetscCall(LamBuildDestroy(&build));
   PetscFunctionReturn(0);
 }
@@ -52,7 +52,7 @@ PetscErrorCode LamMeasureTable(const LamScene *scene, const LamStates *states, c
   PetscCall(PetscSNPrintf(part, sizeof(part), "%s.part", table));
   PetscCall(Build(scene, &m->setting, part, &m->nodes));
   if (LamStopRequested()) {
-    unlink(part); /* a complete table of the run before stays */
+    unlink(part); /* a complete table of the previous run stays */
     PetscCall(
         PetscSNPrintf(m->reason, sizeof(m->reason), "stopped: the time was over at %" PetscInt_FMT " nodes", m->nodes));
     m->nodes = 0;

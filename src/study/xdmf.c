@@ -8,7 +8,7 @@
 #include "beside.h"
 #include "xdmf.h"
 
-/* File name without its folder, as XML text. */
+/* Prints the file name without its folder, as XML text. */
 static void PrintName(FILE *out, const char path[])
 {
   const char *slash = strrchr(path, '/');

@@ -1,5 +1,5 @@
 /*
-  XDMF beside the HDF5 file of a macroscale run, so that ParaView and meshio read it.
+  XDMF beside the HDF5 file of a macroscale run, readable by ParaView and meshio.
 */
 #ifndef LAM_XDMF_H
 #define LAM_XDMF_H
@@ -13,11 +13,11 @@ typedef struct {
   PetscBool on_nodes; /* else on elements */
 } LamXDMFField;
 
-/* What /macro/elements holds. */
+/* Layout of /macro/elements. */
 typedef enum {
   LAM_XDMF_QUADRILATERALS, /* [element][9] */
   LAM_XDMF_TRIANGLES,      /* [element][6] */
-  LAM_XDMF_MIXED /* [element][9], -1 beyond a triangle's nodes; XDMF reads /macro/topology: of each element its type
+  LAM_XDMF_MIXED /* [element][9], -1 after a triangle's nodes; XDMF reads /macro/topology: for each element its type
                     (LAM_XDMF_TRIANGLE_6, LAM_XDMF_QUADRILATERAL_9) and its nodes */
 } LamXDMFTopology;
 enum { LAM_XDMF_QUADRILATERAL_9 = 0x23, LAM_XDMF_TRIANGLE_6 = 0x24 };
@@ -29,14 +29,14 @@ typedef struct {
   PetscInt field_count;
   const LamXDMFField *fields; /* borrowed */
   PetscInt step_count;
-  const PetscInt *steps;  /* their numbers; borrowed */
+  const PetscInt *steps;  /* step numbers; borrowed */
   const PetscReal *times; /* borrowed */
 } LamXDMF;
 
 /*
-  Writes (or replaces) the XDMF file that describes the load steps of `hdf5`: the same name with the ending .xdmf, and a
-  reference to the file by its name alone, so that both can be moved together. PETSC_ERR_FILE_OPEN,
-  PETSC_ERR_FILE_WRITE where it cannot be written.
+  Writes (or replaces) the XDMF file that describes the load steps of `hdf5`: same name with the ending .xdmf. It refers
+  to `hdf5` by file name without folder, so that both can be moved together. PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_WRITE
+  if it cannot be written.
 */
 PetscErrorCode LamXDMFWrite(const char hdf5[], const LamXDMF *xdmf);
 
