@@ -1,10 +1,10 @@
 /*
   Method
-    Waiting tasks are a heap; the task of the largest predicted cost is handed out first. A worker that does a task has
-    the next one already, so that it does not wait for rank 0, which handles messages between two factorisations of its
-    own task. No rank holds more than that ahead: tasks whose costs are mispredicted would wait behind each other.
-    Sends do not block. The input of a task is kept until its result has arrived; a worker has one result under way.
-    At the end rank 0 sends TAG_STOP, and a worker TAG_LEFT behind its last result: no message is left over.
+    Waiting tasks are kept in a heap; the task of the largest predicted cost is sent first. A worker holds one task
+    beside the current one, so that it does not wait for rank 0, which handles messages between factorisations of its
+    own task. It holds no more: tasks with mispredicted costs would wait behind each other. Sends do not block. The
+    input of a task is kept until its result has arrived; a worker has one pending result. At the end rank 0 sends
+    TAG_STOP, and each worker sends TAG_LEFT after its last result, so that no message is left unreceived.
 
   References
     R. L. Graham, Bounds on multiprocessing timing anomalies, SIAM J. Appl. Math. 17 (1969) 416-429 (longest first).
@@ -16,8 +16,8 @@
 #include <time.h>
 
 enum { TAG_TASK = 1, TAG_RESULT, TAG_STOP, TAG_LEFT };
-enum { LOOK_AHEAD = 1 }; /* tasks that a worker has beside the one under way; its buffers are for one */
-/* An idle rank sleeps for so long, s: other processes may want its processor. */
+enum { LOOK_AHEAD = 1 }; /* tasks that a worker holds beside the current one; its buffers are for one */
+/* An idle rank sleeps between polls, s, to leave the processor to other processes. */
 #define LEAST_PAUSE 2e-5
 #define LONGEST_PAUSE 1e-3
 
@@ -48,13 +48,13 @@ struct LamDispatch_s {
   MPI_Comm comm; /* used for nothing else */
   PetscMPIInt rank, size;
   LamDispatchJob job;
-  Message *current, *result; /* of the task under way; owned */
+  Message *current, *result; /* of the current task; owned */
   Message *next;             /* received; owned */
   PetscBool has_next;        /* workers: `next` is a task */
   PetscBool stopping;
-  PetscErrorCode ierr; /* of LamDispatchInterrupt */
+  PetscErrorCode ierr; /* error in LamDispatchInterrupt */
   PetscReal pause, service;
-  Message *sending;        /* workers: the result under way; owned */
+  Message *sending;        /* workers: the pending result; owned */
   MPI_Request result_sent; /* workers */
 
   /* on rank 0 */
@@ -62,8 +62,8 @@ struct LamDispatch_s {
   Task *heap;            /* [waiting]; owned */
   PetscInt64 unfinished; /* tasks without a result */
   Worker *worker;        /* [size]; owned */
-  PetscMPIInt left;      /* workers */
-  PetscBool failed;      /* results are no longer wanted */
+  PetscMPIInt left;      /* number of workers that have left */
+  PetscBool failed;      /* results are discarded */
 };
 
 /* ---- waiting tasks ---- */
@@ -111,9 +111,9 @@ PetscErrorCode LamDispatchAdd(LamDispatch dispatch, PetscInt64 first, PetscInt64
   PetscFunctionReturn(0);
 }
 
-/* ---- rank 0: handing out, and results ---- */
+/* ---- rank 0: sending tasks, receiving results ---- */
 
-/* The first of the waiting tasks. */
+/* Removes the first waiting task and writes its input. */
 static PetscErrorCode TakeTask(LamDispatch d, Message *message)
 {
   PetscFunctionBeginUser;
@@ -134,7 +134,7 @@ static PetscErrorCode Send(LamDispatch d, const Message *message, PetscMPIInt ra
   PetscFunctionReturn(0);
 }
 
-/* Workers without a task come first; tasks ahead are of those that are left when every rank has one. */
+/* Sends tasks to workers without one first, then one ahead to each while more tasks wait than there are ranks. */
 static PetscErrorCode HandOut(LamDispatch d)
 {
   PetscFunctionBeginUser;
@@ -200,13 +200,13 @@ static PetscErrorCode Receive(LamDispatch d, PetscBool *found)
     break;
   case TAG_LEFT:
     d->left++;
-    if (!d->stopping) LamStopRequest(SIGTERM); /* a signal has reached the worker first */
+    if (!d->stopping) LamStopRequest(SIGTERM); /* the worker left because of a signal */
     break;
   }
   PetscFunctionReturn(0);
 }
 
-/* All messages that have arrived; behind the task `next` nothing but the stop can have. */
+/* Handles all messages that have arrived; a worker stops at a task, which only TAG_STOP can follow. */
 static PetscErrorCode Handle(LamDispatch d)
 {
   PetscBool found;
@@ -237,7 +237,7 @@ PetscReal LamDispatchServiceTime(LamDispatch dispatch)
   return dispatch->service;
 }
 
-/* At first it only looks again. */
+/* Exponential backoff; the first calls do not sleep. */
 static void Pause(LamDispatch d)
 {
   const struct timespec pause = {0, (long)(1e9 * d->pause)};
@@ -248,7 +248,7 @@ static void Pause(LamDispatch d)
 
 /* ---- tasks ---- */
 
-/* Does the task `current`. *done: it was not given up. */
+/* Does the task `current`. *done: it was not interrupted. */
 static PetscErrorCode DoTask(LamDispatch d, PetscBool *done)
 {
   const Message *task = d->current;
@@ -257,7 +257,7 @@ static PetscErrorCode DoTask(LamDispatch d, PetscBool *done)
   PetscFunctionBeginUser;
   result->task = task->task;
   result->size = d->job.result_size;
-  memset(result->bytes, 0, result->size); /* no byte of a message is left unset */
+  memset(result->bytes, 0, result->size); /* messages have no uninitialised bytes */
   PetscCall(d->job.work(d->job.ctx, task->task, task->bytes, task->size, result->bytes, &result->size));
   PetscCall(d->ierr);
   d->pause = 0;
@@ -283,7 +283,7 @@ static PetscErrorCode RunRoot(LamDispatch d)
   PetscFunctionReturn(0);
 }
 
-/* Until all workers have left. */
+/* Sends TAG_STOP and handles messages until all workers have left. */
 static PetscErrorCode StopWorkers(LamDispatch d)
 {
   PetscFunctionBeginUser;
@@ -310,7 +310,7 @@ PetscErrorCode LamDispatchRun(LamDispatch dispatch, PetscErrorCode (*stopped)(vo
   PetscFunctionReturn(0);
 }
 
-/* Waits for the next task, or for the end. */
+/* Waits for the next task or for TAG_STOP. */
 static PetscErrorCode Await(LamDispatch d)
 {
   PetscFunctionBeginUser;
@@ -321,7 +321,7 @@ static PetscErrorCode Await(LamDispatch d)
   PetscFunctionReturn(0);
 }
 
-/* Waits for the result before, which rank 0 has taken unless it was busy for a whole task. */
+/* Waits for the previous send first. Rank 0 has usually received that result during this task. */
 static PetscErrorCode SendResult(LamDispatch d)
 {
   Message *const sent = d->sending;
@@ -353,7 +353,7 @@ PetscErrorCode LamDispatchServe(LamDispatch dispatch)
   }
   PetscCallMPI(MPI_Wait(&d->result_sent, MPI_STATUS_IGNORE));
   PetscCallMPI(MPI_Send(NULL, 0, MPI_BYTE, 0, TAG_LEFT, d->comm));
-  while (!d->stopping) { /* tasks that were on the way */
+  while (!d->stopping) { /* discards tasks sent before the end */
     d->has_next = PETSC_FALSE;
     PetscCall(Handle(d));
     Pause(d);
@@ -391,7 +391,7 @@ PetscErrorCode LamDispatchDestroy(LamDispatch *dispatch)
   PetscFunctionBeginUser;
   if (!d) PetscFunctionReturn(0);
   for (PetscMPIInt rank = 1; rank < d->size; rank++)
-    while (d->worker[rank].n) PetscCall(ForgetFirst(&d->worker[rank])); /* tasks that a stop has left */
+    while (d->worker[rank].n) PetscCall(ForgetFirst(&d->worker[rank])); /* tasks left at a stop */
   PetscCallMPI(MPI_Comm_free(&d->comm));
   PetscCall(PetscFree(d->worker));
   PetscCall(PetscFree(d->heap));

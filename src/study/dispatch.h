@@ -1,7 +1,8 @@
 /*
-  Independent tasks, handed out by rank 0 of a communicator to the other ranks (workers); rank 0 does tasks as well.
+  Distribution of independent tasks: rank 0 of a communicator sends them to the other ranks (workers) and does tasks
+  itself.
 
-  For up to some hundred ranks (docs/results/scaling.md). Beyond that: several jobs with a shard each.
+  For up to some hundred ranks (docs/results/scaling.md). For more, run several jobs with a shard each.
 */
 #ifndef LAM_DISPATCH_H
 #define LAM_DISPATCH_H
@@ -14,11 +15,11 @@ typedef struct LamDispatch_s *LamDispatch;
 typedef struct {
   void *ctx; /* of all calls; borrowed */
   size_t input_size, result_size;
-  /* Rank 0, when it hands the task out: writes its input. NULL: the number of the task is enough. */
+  /* Rank 0, when a task is sent: writes its input. NULL: tasks have no input but their number. */
   PetscErrorCode (*describe)(void *ctx, PetscInt64 task, void *input, size_t *size);
-  /* Any rank: does the task. It calls LamDispatchInterrupt often; where that is true it returns any result. */
+  /* Any rank: does the task. It must call LamDispatchInterrupt often; when that is true it may return any result. */
   PetscErrorCode (*work)(void *ctx, PetscInt64 task, const void *input, size_t input_size, void *result, size_t *size);
-  /* Rank 0: takes a result, in any order, and may add tasks. Also called while rank 0 does a task. */
+  /* Rank 0: receives a result; may add tasks. Results come in any order, also while rank 0 does a task. */
   PetscErrorCode (*worked)(void *ctx, PetscInt64 task, const void *result);
 } LamDispatchJob;
 
@@ -26,24 +27,24 @@ typedef struct {
 PetscErrorCode LamDispatchCreate(MPI_Comm comm, const LamDispatchJob *job, LamDispatch *dispatch);
 PetscErrorCode LamDispatchDestroy(LamDispatch *dispatch);
 
-/* Rank 0: tasks first .. first + count - 1, each of this predicted cost (any unit). */
+/* Rank 0: adds tasks first .. first + count - 1, each with this predicted cost (any unit). */
 PetscErrorCode LamDispatchAdd(LamDispatch dispatch, PetscInt64 first, PetscInt64 count, PetscReal cost);
 /*
-  Rank 0: has all tasks done, with those that `worked` adds. A signal on any rank ends it: no task under way is
-  finished, and `stopped` (or NULL) is called with `ctx` at once, before the workers have left; results that they have
-  sent by then still come to `worked`. *complete: all tasks are done.
+  Rank 0: runs all tasks, including those that `worked` adds. A signal on any rank ends the run: current tasks are
+  interrupted, and `stopped` (or NULL) is called with `ctx` at once, before the workers have left. Results that they
+  have sent by then are still passed to `worked`. *complete: all tasks are done.
 */
 PetscErrorCode LamDispatchRun(LamDispatch dispatch, PetscErrorCode (*stopped)(void *ctx), void *ctx,
                               PetscBool *complete);
-/* Workers: do tasks until rank 0 ends it. */
+/* Workers: does tasks until rank 0 ends the run. */
 PetscErrorCode LamDispatchServe(LamDispatch dispatch);
 
 /*
-  A PetscBool (*)(void *) for LamRVESetInterrupt: handles the messages that have arrived; true: the task under way is to
-  be given up. `dispatch`: a LamDispatch.
+  Callback for LamRVESetInterrupt, PetscBool (*)(void *): handles messages that have arrived; true: the current task is
+  to be abandoned. `dispatch`: a LamDispatch.
 */
 PetscBool LamDispatchInterrupt(void *dispatch);
-/* Time of this rank in LamDispatchInterrupt, s. */
+/* Time that this rank has spent in LamDispatchInterrupt, s. */
 PetscReal LamDispatchServiceTime(LamDispatch dispatch);
 
 #endif

@@ -3,11 +3,10 @@
 #include <math.h>
 #include <string.h>
 
-/* error = 10^constant along^a through^b thickness^c fibres^d strain^e; 90 of 100 states are below 10^margin times that.
- */
+/* error = 10^constant along^a through^b thickness^c fibres^d strain^e; 90 % of the states are below 10^margin error. */
 typedef struct {
   double constant, along, through, thickness, fibres, strain, margin;
-  PetscReal grading; /* of the meshes it is for */
+  PetscReal grading; /* of the meshes of the fit */
 } Fit;
 
 static const Fit Fits[] = {
@@ -15,13 +14,13 @@ static const Fit Fits[] = {
     [LAM_INTERFACE_CONTACT] = {-0.85, -0.96, -0.69, 0.57, 0.16, 0.51, 0.45, 0.0},
 };
 
-/* From cheap to dear. Elements along a face are even in number, so that half as many tell the error. */
+/* By increasing cost. `along` is even, so that a mesh of half as many elements gives an error estimate. */
 static const struct {
   PetscInt along, through;
 } Meshes[] = {{4, 1}, {4, 2}, {6, 2}, {8, 2}, {10, 2}, {12, 2}, {8, 4}, {12, 4}, {16, 4}, {20, 6}, {28, 8}};
 enum { MESH_COUNT = PETSC_STATIC_ARRAY_LENGTH(Meshes) };
 
-#define LEAST_STRAIN 0.02 /* the fit was made for larger ones */
+#define LEAST_STRAIN 0.02 /* smallest strain of the fit */
 #define LEAST_FIBRES 1.0
 
 PetscReal LamStrainSize(const PetscReal F[9])
@@ -52,7 +51,7 @@ void LamCheapestMesh(const LamErrorCase *c, PetscReal accuracy, PetscInt *along,
   *grading = Fits[c->interface].grading;
 }
 
-/* ---- what has been measured ---- */
+/* ---- measured errors ---- */
 
 static PetscErrorCode CheckModel(const char path[], json_t *root, const json_error_t *error, const char hash[],
                                  json_t **list)

@@ -1,40 +1,42 @@
 /*
   Failure along a program of loads.
 
-  Method. The states are watched in order. Between the last one and a new one, each criterion that is reached at the new
-  one alone is bracketed to RESOLUTION of the way: the load in between, linear in F, turgor and cohesion, is solved from
-  the nearest known one below at which the criterion is not reached, because contact and stable branches are easier lost
-  than found again. Next points come from the secant of the excess, a little to that side of it where the bracket is
-  wide, and every third from halving, which is all that criteria without a continuous excess have. The end of a stable
-  branch is solved once more from the near side: a long step alone may leave a branch that goes on.
+  Method. The states are evaluated in order. A criterion that is reached at a new state, but not at the previous one, is
+  bracketed on the load path between them (linear in F, turgor and cohesion) to RESOLUTION of its length. Each trial
+  load is solved from the lower end of the bracket, where the criterion is not reached: contact and stable branches are
+  lost more easily than they are recovered. Trial points come from the secant of the excess, shifted slightly into the
+  wider part of the bracket, and every third from bisection. Criteria without a continuous excess use bisection only.
+  The end of a stable branch is solved once more from the lower end of the bracket, because a long step may leave a
+  branch that continues.
 
-  A state without an answer ends it; before, the way to it is halved APPROACHES times, for what is reached on it.
+  A state without a solution ends the evaluation. Before that, the path to it is bisected APPROACHES times, so that
+  criteria reached on its solvable part are found.
 */
 #include "failure_criteria.h"
 
 const char *const LamFailureModeNames[] = {LAM_FAILURE_MODES(LAM_NAME_ENTRY)};
 const char *const LamCriterionNames[] = {LAM_CRITERIA(LAM_NAME_ENTRY)};
 
-#define RESOLUTION 1e-3 /* of the way between two states */
+#define RESOLUTION 1e-3 /* fraction of the load path between two states */
 #define APPROACHES 3
 #define ATTEMPTS 3 /* at an instability */
 
 static const LamStrength not_given = {NAN, NAN, NAN};
 
-/* A place on the way between two states at which everything is known. */
+/* A solved point on the load path between two states. */
 typedef struct {
-  PetscReal share; /* of the way */
+  PetscReal share; /* fraction of the load path */
   LamResponse responses[2];
   LamRVEState states[2]; /* owned */
 } Point;
 
-/* The way from one state to the next. */
+/* The load path from one state to the next. */
 typedef struct {
   LamMeshes *meshes;
-  PetscReal from;  /* load factor at share 0 and ... */
-  PetscReal reach; /* ... the difference to it at share 1 */
+  PetscReal from;  /* load factor at share 0 */
+  PetscReal reach; /* load factor at share 1 minus `from` */
   LamLoad ends[2];
-  LamStressControl control; /* at share 1: what is given; components of F that follow are in the loads already */
+  LamStressControl control; /* at share 1; components of F that follow are already in the loads */
   PetscReal P[9];           /* at share 0 */
 } Way;
 
@@ -103,7 +105,7 @@ static LamStressControl ControlAt(const Way *way, PetscReal share)
   return control;
 }
 
-/* The way to a load, from a state with F and P. `control` may be NULL. */
+/* The load path to a load, from a state with load `before` and stress P. `control` may be NULL. */
 static Way MakeWay(LamMeshes *meshes, PetscReal from, PetscReal reach, const LamLoad *before, const PetscReal P[9],
                    const LamLoad *load, const LamStressControl *control)
 {
@@ -117,13 +119,13 @@ static Way MakeWay(LamMeshes *meshes, PetscReal from, PetscReal reach, const Lam
   return way;
 }
 
-/* One mesh speaks for both. */
+/* With one mesh, its response is used for both. */
 static void Complete(const LamMeshes *meshes, LamResponse responses[2])
 {
   if (meshes->count < 2) responses[1] = responses[0];
 }
 
-/* Solves at a share of the way from the states of `start`; known: it has an answer. */
+/* Solves at a fraction of the load path, starting from the states of `start`. *known: a solution was found. */
 static PetscErrorCode SolveAt(const Way *way, const Point *start, PetscReal share, Point *point, PetscBool *known)
 {
   LamMeshes *meshes = way->meshes;
@@ -141,7 +143,7 @@ static PetscErrorCode SolveAt(const Way *way, const Point *start, PetscReal shar
   PetscFunctionReturn(0);
 }
 
-/* ---- one criterion on the way between two states ---- */
+/* ---- one criterion between two states ---- */
 
 /* Bracket of one criterion. */
 typedef struct {
@@ -157,7 +159,7 @@ static PetscReal ExcessOf(const LamFailure *failure, const Search *search, const
   return LamCriterionExcess(search->criterion, failure, search->low->responses, point->responses);
 }
 
-/* Where to look next. The secant converges from one side; half a resolution beyond it, the bracket closes. */
+/* Next trial point. The secant converges from one side; a point half a resolution beyond it closes the bracket. */
 static PetscReal NextShare(const Search *search)
 {
   const PetscReal low = search->low->share, high = search->high->share, middle = 0.5 * (low + high);
@@ -170,7 +172,7 @@ static PetscReal NextShare(const Search *search)
   return PetscMin(PetscMax(secant + beyond, low + 0.1 * RESOLUTION), high - 0.1 * RESOLUTION);
 }
 
-/* Narrows the bracket; *known is PETSC_FALSE where a load in it has no answer. */
+/* Narrows the bracket to RESOLUTION; *known is PETSC_FALSE if a load in it has no solution. */
 static PetscErrorCode Narrow(LamFailure *failure, const Way *way, Search *search, Point *point, PetscBool *known)
 {
   PetscFunctionBeginUser;
@@ -188,7 +190,7 @@ static PetscErrorCode Narrow(LamFailure *failure, const Way *way, Search *search
   PetscFunctionReturn(0);
 }
 
-/* What names the place at which a criterion is reached; NULL: it has none. */
+/* The place [3] at which a criterion is reached; NULL: it has none. */
 static const PetscReal *PlaceOf(const LamResponse *r, LamCriterion criterion)
 {
   switch (criterion) {
@@ -216,7 +218,7 @@ static void KeepOnset(LamFailure *failure, const Way *way, const Search *search)
   for (PetscInt i = 0; i < 3; i++) onset->place[i] = place ? place[i] : NAN;
 }
 
-/* Finds the criterion between two points; not kept where it proves to be reached by a long step alone. */
+/* Finds the onset of the criterion between two points. It is discarded if only a long step reaches the criterion. */
 static PetscErrorCode Seek(LamFailure *failure, const Way *way, LamCriterion criterion, const Point *from,
                            const Point *to)
 {
@@ -238,7 +240,7 @@ static PetscErrorCode Seek(LamFailure *failure, const Way *way, LamCriterion cri
     PetscCall(SolveAt(way, &low, high.share, &point, &known));
     confirmed = (PetscBool)(!known || ExcessOf(failure, &search, &point) >= 0);
     if (confirmed) break;
-    PetscCall(PointCopy(way->meshes, &point, &low)); /* it is on the stable branch: the end of that lies further on */
+    PetscCall(PointCopy(way->meshes, &point, &low)); /* still on the stable branch: its end lies further along */
     PetscCall(PointCopy(way->meshes, to, &high));
   }
   if (confirmed) KeepOnset(failure, way, &search);
@@ -250,7 +252,7 @@ static PetscErrorCode Seek(LamFailure *failure, const Way *way, LamCriterion cri
 
 /* ---- from state to state ---- */
 
-/* Seeks all criteria that are reached at `to` and have not been before. */
+/* Finds the onsets of all criteria that are reached at `to` and were not reached before. */
 static PetscErrorCode Judge(LamFailure *failure, const Way *way, const Point *from, const Point *to)
 {
   PetscFunctionBeginUser;
@@ -258,13 +260,13 @@ static PetscErrorCode Judge(LamFailure *failure, const Way *way, const Point *fr
     const LamCriterion criterion = (LamCriterion)c;
 
     if (!failure->onset[c].judged || !isnan(failure->onset[c].factor)) continue;
-    if (!(LamCriterionExcess(criterion, failure, from->responses, to->responses) >= 0)) continue; /* NaN: not there */
+    if (!(LamCriterionExcess(criterion, failure, from->responses, to->responses) >= 0)) continue; /* NaN: not reached */
     PetscCall(Seek(failure, way, criterion, from, to));
   }
   PetscFunctionReturn(0);
 }
 
-/* `point` is the last that is known. */
+/* Makes `point` the last solved one. */
 static PetscErrorCode Accept(LamFailure *failure, const Way *way, const Point *point)
 {
   PetscFunctionBeginUser;
@@ -286,7 +288,7 @@ static PetscErrorCode KeepReason(LamFailure *failure, PetscReal factor, const La
   PetscFunctionReturn(0);
 }
 
-/* `to` has no answer: comes near to it from `from`, and judges as far as there are answers. */
+/* `to` has no solution: bisects the path from `from` to it and evaluates the criteria at the solved points. */
 static PetscErrorCode Approach(LamFailure *failure, const Way *way, Point *from, Point *to)
 {
   PetscReal unknown = 1;
@@ -320,7 +322,8 @@ static PetscBool IsReached(const LamFailure *failure)
   return PETSC_FALSE;
 }
 
-/* The first load that is known, at `way->from`, is judged by itself: what it reaches lies there or before. */
+/* Evaluates the first solved load, at `way->from`, by itself: criteria reached there have their onset there or before.
+ */
 static PetscErrorCode JudgeFirst(LamFailure *failure, const Way *way, const Point *point)
 {
   Point start;
@@ -335,7 +338,7 @@ static PetscErrorCode JudgeFirst(LamFailure *failure, const Way *way, const Poin
   PetscFunctionReturn(0);
 }
 
-/* Judges a new state, and the way to it. */
+/* Evaluates a new state and the load path to it. */
 static PetscErrorCode Take(LamFailure *failure, LamMeshes *meshes, PetscInt number, Point *to)
 {
   const PetscBool known = LamHaveFields(to->responses), first = (PetscBool)isnan(failure->followed);
@@ -385,7 +388,7 @@ PetscErrorCode LamFailureWatch(LamFailure *failure, LamMeshes *meshes, PetscInt 
 
 /* ---- begin and end ---- */
 
-/* State 0; where it has no answer the program begins with state 1. */
+/* Solves and evaluates state 0; if it has no solution, the program begins with state 1. */
 static PetscErrorCode Begin(LamFailure *failure, LamMeshes *meshes)
 {
   const LamFailureProgram *program = &failure->program;
@@ -442,7 +445,7 @@ PetscErrorCode LamFailureConclude(LamFailure *failure)
   for (int c = 0; c < LAM_CRITERION_COUNT; c++) {
     const PetscReal factor = failure->onset[c].factor;
 
-    if (!isnan(factor) && !(factor >= failure->factor)) { /* also where none is known yet */
+    if (!isnan(factor) && !(factor >= failure->factor)) { /* also if failure->factor is NaN */
       failure->factor = factor;
       failure->criterion = (LamCriterion)c;
     }

@@ -1,5 +1,5 @@
 /*
-  When a criterion of failure is reached, from the responses of one load on both meshes.
+  Evaluation of the failure criteria from the responses to one load on both meshes.
 */
 #ifndef LAM_FAILURE_CRITERIA_H
 #define LAM_FAILURE_CRITERIA_H
@@ -7,11 +7,11 @@
 #include "failure.h"
 #include <math.h>
 
-/* Walls count as taut from a mean tension of this share of the turgor on. Turgor alone gives them more than p where the
-   tissue is free; where it is held at F = I it gives them some p^2/kappa, by their compressibility. */
+/* Walls are taut if their mean tension exceeds this fraction of the turgor p. In free tissue turgor alone causes a
+   tension above p; in tissue held at F = I about p^2/kappa, because walls are compressible. */
 #define LAM_TAUT 0.1
 
-/* Whether a criterion can be judged: it belongs to this interface, and its strength is known where it needs one. */
+/* Whether a criterion is evaluated: it applies to this interface, and its strength is given where it needs one. */
 static inline PetscBool LamCriterionIsJudged(LamCriterion criterion, LamInterfaceLawType interface,
                                              const LamStrength *strength)
 {
@@ -31,13 +31,13 @@ static inline PetscBool LamCriterionIsJudged(LamCriterion criterion, LamInterfac
   }
 }
 
-/* Both meshes, or the one twice. */
+/* Whether the responses on both meshes have fields. */
 static inline PetscBool LamHaveFields(const LamResponse responses[2])
 {
   return (PetscBool)(LamResponseHasFields(&responses[0]) && LamResponseHasFields(&responses[1]));
 }
 
-/* What the lumens bear, which sealed ones find themselves; that of the load where the response does not say. */
+/* Turgor of the lumens, which is computed if they are sealed; that of the load if the response has none. */
 static inline PetscReal LamTurgorReached(const LamResponse *r)
 {
   return isfinite(r->turgor_mean) ? r->turgor_mean : r->load.turgor;
@@ -48,7 +48,7 @@ static inline PetscBool LamIsTurgid(const LamResponse *r)
   return (PetscBool)(LamTurgorReached(r) > 0);
 }
 
-/* Over all walls: of each face family every cell has the same share. */
+/* Mean over all walls. The three face families have equal weight. */
 static inline PetscReal LamMeanTension(const LamResponse *r)
 {
   return (r->mean_wall_tension[0] + r->mean_wall_tension[1] + r->mean_wall_tension[2]) / 3;
@@ -60,9 +60,9 @@ static inline PetscBool LamIsTaut(const LamResponse *r)
 }
 
 /*
-  How far a judged criterion is exceeded at responses with fields: >= 0 where it is reached. Continuous along a load but
-  for contact and stability, which are -1 or 1. `before` are responses of a load at which it is not reached; what turgor
-  has once held counts by failure->turgid and taut.
+  Excess of an evaluated criterion at responses with fields; >= 0 if it is reached. Continuous along a load path, except
+  contact and stability, which are -1 or 1. `before`: responses at a load where the criterion is not reached. Loss of
+  turgor or tension counts only if failure->turgid or failure->taut is set.
 */
 static inline PetscReal LamCriterionExcess(LamCriterion criterion, const LamFailure *failure,
                                            const LamResponse before[2], const LamResponse responses[2])
