@@ -1,7 +1,7 @@
 #include "solve.h"
 #include <petscblaslapack.h>
 
-#define LONG_STEP 0.1 /* apothems */
+#define LONG_STEP 0.1 /* apothems: longer steps freeze F during patience */
 
 PetscErrorCode LamBorderCreate(LamRVE rve, const LamLoad *load, const LamStressControl *control, LamBorder **out)
 {
@@ -55,7 +55,7 @@ PetscErrorCode LamBorderAssemble(LamRVE rve, LamBorder *border, PetscReal *norm)
   PetscFunctionReturn(0);
 }
 
-/* The step for a change dq of the free components. */
+/* Step of positions and F for a change dq of the free components. */
 static void SetStep(LamRVE rve, LamBorder *border, const PetscReal dq[], PetscReal solution[])
 {
   const PetscInt n = rve->linear.n;
@@ -145,6 +145,6 @@ PetscErrorCode LamSmallEigenvectors(PetscInt n, const PetscReal A[LAM_F_COUNT][L
   PetscCall(PetscArraycpy(&V[0][0], &A[0][0], LAM_F_COUNT * LAM_F_COUNT));
   LAPACKsyev_("V", "U", &size, &V[0][0], &stride, w, work, &length, &info);
   PetscCheck(info >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK syev: argument %d", (int)-info);
-  if (info > 0) w[0] = NAN; /* entries that are not finite: no step comes of it */
+  if (info > 0) w[0] = NAN; /* A is not finite: marks the result as invalid */
   PetscFunctionReturn(0);
 }

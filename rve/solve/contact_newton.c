@@ -1,13 +1,14 @@
 /*
-  Equilibrium of contact tissue at one load, from rve->y and contact->lambda.
+  Contact equilibrium at one load, starting from rve->y and contact->lambda.
 
-  Method. Primal-dual active set, which is a semi-smooth Newton method: the hats with lambda - c gap > 0 are active,
-  their weighted gaps are linearised to zero, the other multipliers are zero; multipliers of active hats are solved for,
-  not incremented. As in the bonded tiers the tangent has independent wall stresses, and a shift where it is not
-  positive definite on the free motions. With first iterates far from contact the rows get a compliance that fades:
-  G + c D lambda = 0, and steps are short. From near starts steps are full, and a step that reaches too far ends the
-  try; late steps that still change the active set are halved. The junction status follows the iterate for a while and
-  is then frozen, so that it cannot flicker; a solution whose status has changed is iterated on.
+  Method. Primal-dual active set, which is a semi-smooth Newton method. The hats with lambda - c gap > 0 are active:
+  their linearised weighted gaps are set to zero, and their multipliers are solved for, not incremented. All other
+  multipliers are zero. As in the bonded tiers, the tangent has independent wall stresses, and a shift if it is not
+  positive definite on the free motions. If the initial guess is far from contact, the rows of the first iterations have
+  a decreasing compliance, G + c D lambda = 0, and steps are short. If it is near, steps are full, and a step that is
+  too long ends the iteration. Late steps that still change the active set are halved, to break cycles. The junction
+  status is updated in the first iterations and then frozen, so that it cannot alternate. If a solution changes the
+  status, the iteration continues with the new one.
 
     [ K - sum lambda d2G + shift   -B^T  ] [ dx         ]   [ -r0 ]      r0: residual without contact forces
     [ -B                           -c D  ] [ lambda_new ] = [  G  ]
@@ -17,25 +18,25 @@
 */
 #include "solve.h"
 
-#define ITERATIONS 40 /* from a start far from contact */
-#define CYCLE_AFTER 9 /* iterations: from here on steps that change the active set are halved, which ends cycles */
+#define ITERATIONS 40 /* initial guess far from contact */
+#define CYCLE_AFTER 9 /* iterations, after which steps that change the active set are halved to break cycles */
 #define NEAR_ITERATIONS 20
-#define FOLLOW_ITERATIONS 6 /* in which the junction status follows the iterate */
-#define FOLLOW_FAR 25       /* the same while steps are shortened */
-#define RESTARTS 3          /* with the junction status of a solution, where it has changed */
+#define FOLLOW_ITERATIONS 6 /* first iterations, in which the junction status is updated */
+#define FOLLOW_FAR 25       /* the same, while steps are shortened */
+#define RESTARTS 3          /* after a solution has changed the junction status */
 #define COMPLIANT_ITERATIONS 4
-#define COMPLIANCE 0.033   /* apothems / (C1 + C2), in the first iteration; falls by the same factor each time */
-#define USUAL_PRESSURE 0.5 /* C1 + C2: of more turgor and cohesion compliance is less */
-#define COMPLIANCE_DECAY 0.3
-#define STEP_LIMIT 0.02       /* apothems, from a start far from contact */
-#define NEAR_LIMIT 0.2        /* else */
-#define LOOSE_TOLERANCE 1e-4  /* while the interface is being released */
-#define ROUNDING_MARGIN 100.0 /* times the tolerance: residuals below it may be rounding, ... */
-#define ROUNDING_STEP 1e-11   /* ... if steps are no longer, of the extent */
+#define COMPLIANCE 0.033      /* apothems / (C1 + C2), in the first iteration */
+#define USUAL_PRESSURE 0.5    /* C1 + C2: larger turgor + cohesion reduces the compliance */
+#define COMPLIANCE_DECAY 0.3  /* factor per iteration */
+#define STEP_LIMIT 0.02       /* apothems, initial guess far from contact */
+#define NEAR_LIMIT 0.2        /* apothems, otherwise */
+#define LOOSE_TOLERANCE 1e-4  /* during release of the interface */
+#define ROUNDING_MARGIN 100.0 /* times the tolerance: smaller residuals may be rounding errors, ... */
+#define ROUNDING_STEP 1e-11   /* ... if the step is at most this share of the extent */
 
 /*
-  Whether a step only stirs rounding errors of stiff walls, which keep the residual above the tolerance: soft motions
-  answer to them by more than the last digits of a position.
+  Whether the residual is at rounding level. Rounding errors of stiff walls can keep it above the tolerance, and soft
+  modes amplify them to steps longer than the last digits of a position.
 */
 static PetscBool IsAtRounding(LamRVE rve, const LamContactStep *step, PetscReal norm, PetscReal tolerance)
 {
@@ -45,7 +46,7 @@ static PetscBool IsAtRounding(LamRVE rve, const LamContactStep *step, PetscReal 
                      rve->contact->largest_step <= ROUNDING_STEP * extent);
 }
 
-/* Step length: limited, and halved until no volume turns inside out; 0: none. */
+/* Step length: limited, then halved until no element volume is inverted; 0: none. */
 static PetscErrorCode StepLength(LamRVE rve, const LamLoad *load, const LamBorder *border, PetscReal limit,
                                  PetscReal *alpha)
 {
@@ -81,7 +82,7 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, LamBorder *bord
   const PetscBool under_way = (PetscBool)(rve->contact->share > 0.0);
   const PetscReal tolerance = under_way ? LOOSE_TOLERANCE : LamNewtonTolerance(rve);
   const PetscReal gap_tolerance = under_way ? LOOSE_TOLERANCE : LamGapTolerance(rve);
-  /* what it lets gaps close by does not grow with what closes them */
+  /* overlap = compliance x pressure must not grow with the pressure */
   const PetscReal first = COMPLIANCE * PetscMin(1.0, USUAL_PRESSURE / PetscMax(1e-300, load->turgor + load->cohesion));
   const PetscInt most = compliant ? ITERATIONS : NEAR_ITERATIONS;
   PetscInt follow_until = FOLLOW_ITERATIONS, restarts = 0;

@@ -1,19 +1,19 @@
 /*
-  From a known state to contact equilibrium at a new load.
+  Contact equilibrium at a new load, starting from a known state.
 
-  Method. Starts are tried in this order until one ends in a stable equilibrium:
-    (i)   a near state: the contact state before, turned and moved affinely, with its multipliers; from it in one step,
-          else in substeps, which stay on the branch as long as it goes on;
-    (ii)  the strategy's start: two_step solves the bonded tissue at the load and releases it, with the tractions that
-          bonding carried as first multipliers; one_step starts from the affine state;
-    (iii) coming down: contact that a larger cohesion holds tight is easy to reach; from there the cohesion is lowered
-          to the asked one, each solution starting the next;
-    (iv)  walking from rest: the undeformed (turned) tissue under the load's turgor and cohesion, held tight first where
-          need be, then F in substeps (contact_walk.c);
-    (v)   substeps in load from a contact state before that is not near;
-    (vi)  where one_step has found nothing, two_step after all.
-  Where a continuation is lost without a reason, descent goes down to whatever comes next. A saddle is the answer only
-  where nothing stable is found.
+  Method. Initial guesses are tried in this order until one leads to a stable equilibrium:
+    (i)   near state: the previous contact state with its multipliers, rotated and moved affinely; in one step or, if
+          that fails, in substeps, which stay on the branch while it exists;
+    (ii)  the strategy's initial guess: two_step solves the bonded tissue at the load and releases it, the tractions of
+          bonding being the initial multipliers; one_step starts from the affine state;
+    (iii) continuation in cohesion: contact with a larger cohesion is easy to find; the cohesion is then lowered to the
+          prescribed one, each solution being the initial guess of the next;
+    (iv)  continuation from rest: the undeformed (rotated) tissue under the load's turgor and cohesion, with added
+          cohesion first if needed, then F in substeps (contact_walk.c);
+    (v)   substeps in load from a previous contact state that is not near;
+    (vi)  two_step, if one_step has failed.
+  If a continuation fails without a known reason, descent from its last solution follows. A saddle is returned only if
+  no stable state is found.
 
   Mihai, Safar & Wyatt, J. Eng. Math. (successive deformation decomposition) for (ii); docs/theory/homogenisation.md,
   Effective-stress principle, for (iii).
@@ -21,21 +21,21 @@
 #include "contact_path.h"
 #include <string.h>
 
-#define NEAR 0.04          /* largest change of F (and of turgor and cohesion) that counts as near */
-#define TIGHT 0.5          /* cohesion that is added first, C1 + C2 */
-#define SLACK 1e-3         /* of turgor and cohesion, where the tissue does not bear them from the start; ... */
-#define LEAST_SLACK 1e-7   /* ... down to this where it does not bear that, ... */
-#define SLACK_FACTOR 10.0  /* ... each this much less than the one before */
-#define LOOSE 1e-3         /* of it: from here the rest is taken away at once */
-#define LEAST_EASE 0.85    /* nearer to 1 it is given up */
-#define EASE 0.25          /* first factor by which it is lowered */
-#define BORNE 0.5          /* turgor, C1 + C2, that the affine state bears */
-#define MUCH_TURGOR 1.5    /* the same; beyond it the stretch is what is raised in steps */
-#define START_BUDGET 800   /* iterations: the rest is for the way from rest, which tells what ends it */
-#define RELEASE_REACH 0.1  /* apothems: a larger first step shows that less must be released */
-#define LEAST_RELEASE 0.06 /* smaller shares: descent takes over */
+#define NEAR 0.04          /* largest change of F, turgor (C1 + C2) and cohesion (C1 + C2) that counts as near */
+#define TIGHT 0.5          /* added cohesion in (iii) and (iv), C1 + C2 */
+#define SLACK 1e-3         /* first share of turgor and cohesion if the full load fails at rest, ... */
+#define LEAST_SLACK 1e-7   /* ... the smallest share tried, ... */
+#define SLACK_FACTOR 10.0  /* ... and the factor between shares */
+#define LOOSE 1e-3         /* of TIGHT: an added cohesion below this is removed at once */
+#define LEAST_EASE 0.85    /* largest factor; beyond it, descent */
+#define EASE 0.25          /* first factor on the added cohesion; its square root after a failure */
+#define BORNE 0.5          /* turgor, C1 + C2, up to which the affine state is a good initial guess */
+#define MUCH_TURGOR 1.5    /* turgor, C1 + C2, above which continuation goes from unstretched tissue instead */
+#define START_BUDGET 800   /* iterations until (iv) begins; the rest is kept for it, as it tells why a path ends */
+#define RELEASE_REACH 0.1  /* apothems: a larger step ends a release, and a smaller share is tried */
+#define LEAST_RELEASE 0.06 /* smallest share released in one step; below it, descent */
 
-/* Step one of two: the bonded tissue at `load`, from a copy of `state`; *ok where it has an equilibrium. */
+/* Step one of two_step: solves the bonded tissue at `load` from a copy of `state`. *ok: an equilibrium was found. */
 static PetscErrorCode SolveBonded(LamRVE rve, const LamLoad *load, LamRVEState state, PetscBool *ok)
 {
   LamResponse response;
@@ -50,7 +50,7 @@ static PetscErrorCode SolveBonded(LamRVE rve, const LamLoad *load, LamRVEState s
   PetscFunctionReturn(0);
 }
 
-/* One release to rve->contact->share, the last one to equilibrium at the load. */
+/* One release step to rve->contact->share; share 0 is equilibrium at the load. */
 static PetscErrorCode ReleaseTo(LamRVE rve, const LamLoad *load, LamContactOutcome *out, PetscBool *reached)
 {
   LamNewtonOutcome outcome;
@@ -67,9 +67,9 @@ static PetscErrorCode ReleaseTo(LamRVE rve, const LamLoad *load, LamContactOutco
 }
 
 /*
-  Step two of two: releases the interface. The forces that bonding carried and contact does not are taken away at once
-  where that moves little, else in shares, so that every Newton iteration starts near its solution and takes full steps.
-  Where small shares fail, too, descent takes over.
+  Step two of two_step: releases the interface. The bonding forces that contact does not carry are removed at once if
+  the step is short, otherwise in shares, so that each Newton iteration starts near its solution and takes full steps.
+  If small shares fail too, descent follows.
 */
 static PetscErrorCode Release(LamRVE rve, const LamLoad *load, LamContactSolution *at, LamContactOutcome *out)
 {
@@ -93,7 +93,7 @@ static PetscErrorCode Release(LamRVE rve, const LamLoad *load, LamContactSolutio
       step *= 2.0;
       continue;
     }
-    /* the first linear step tells how much of it is near */
+    /* stopped at its first step: scale the release by the length of that step */
     step *= rve->work.iterations == iterations
                 ? PetscMax(0.1, PetscMin(0.5, 0.6 * RELEASE_REACH / rve->contact->largest_step))
                 : 0.5;
@@ -105,7 +105,7 @@ static PetscErrorCode Release(LamRVE rve, const LamLoad *load, LamContactSolutio
   PetscFunctionReturn(0);
 }
 
-/* From a solution at another load, by descent. */
+/* Descent to `load`, starting from a solution at another load. */
 static PetscErrorCode DescendFrom(LamRVE rve, const LamContactSolution *at, const LamLoad *load, LamContactOutcome *out)
 {
   PetscFunctionBeginUser;
@@ -114,7 +114,7 @@ static PetscErrorCode DescendFrom(LamRVE rve, const LamContactSolution *at, cons
   PetscFunctionReturn(0);
 }
 
-/* Continuation from a solution to `load`; where it is lost without a reason, descent. */
+/* Continuation from a solution to `load`; if it fails without a known reason, descent. */
 static PetscErrorCode Substeps(LamRVE rve, LamContactSolution *at, const LamLoad *load, LamContactOutcome *out)
 {
   PetscFunctionBeginUser;
@@ -123,7 +123,7 @@ static PetscErrorCode Substeps(LamRVE rve, LamContactSolution *at, const LamLoad
   PetscFunctionReturn(0);
 }
 
-/* From a solution at a larger cohesion down to `load`. */
+/* Continuation in cohesion, from a solution with a larger one down to `load`. */
 static PetscErrorCode ComeDown(LamRVE rve, const LamLoad *load, LamContactSolution *at, LamContactOutcome *out)
 {
   PetscReal added = at->load.cohesion - load->cohesion, factor = EASE;
@@ -147,7 +147,7 @@ static PetscErrorCode ComeDown(LamRVE rve, const LamLoad *load, LamContactSoluti
   PetscFunctionReturn(0);
 }
 
-/* From a stable tight state, if there is one, down to the load; otherwise there is nothing. */
+/* Lowers the cohesion to that of `load`, if the state with added cohesion is stable; otherwise no outcome. */
 static PetscErrorCode Loosen(LamRVE rve, const LamLoad *load, LamContactSolution *at, LamContactOutcome *out)
 {
   PetscFunctionBeginUser;
@@ -158,7 +158,7 @@ static PetscErrorCode Loosen(LamRVE rve, const LamLoad *load, LamContactSolution
   PetscFunctionReturn(0);
 }
 
-/* Contact held tight by an added cohesion, at the asked F from the bonded or affine start, then let loose. */
+/* (iii): solves with an added cohesion at the prescribed F, from the bonded or affine state, then lowers it. */
 static PetscErrorCode TightThenLoose(LamRVE rve, const LamLoad *load, PetscBool has_bonded, LamContactSolution *at,
                                      LamContactOutcome *out)
 {
@@ -177,7 +177,7 @@ static PetscErrorCode TightThenLoose(LamRVE rve, const LamLoad *load, PetscBool 
   PetscFunctionReturn(0);
 }
 
-/* The load without its stretch: turgor, cohesion, the rotation of F, and cells so near that undeformed ones touch. */
+/* The load with only the rotation of F, scaled so that undeformed cells with a clearance touch. */
 static LamLoad Unstretched(LamRVE rve, const LamLoad *load)
 {
   const PetscReal angle = LamRotationAngle(load->F), near = rve->micro.is_patch ? 1.0 : rve->mesh.apothem;
@@ -190,7 +190,7 @@ static LamLoad Unstretched(LamRVE rve, const LamLoad *load)
   return start;
 }
 
-/* The load with a share of its turgor and cohesion. */
+/* The load with turgor and cohesion multiplied by `share`. */
 static LamLoad Slack(const LamLoad *load, PetscReal share)
 {
   LamLoad slack = *load;
@@ -201,8 +201,8 @@ static LamLoad Slack(const LamLoad *load, PetscReal share)
 }
 
 /*
-  Undeformed tissue, as its turgor and cohesion rise from as little as it bears: where cells differ thin walls bear next
-  to nothing before they bulge and are taut.
+  Continuation of undeformed tissue in turgor and cohesion, from the largest share of them that can be solved. If cells
+  differ, thin walls carry almost no load until they bulge and are taut.
 */
 static PetscErrorCode WalkInTurgor(LamRVE rve, const LamLoad *rest, LamContactSolution *at, LamContactOutcome *out)
 {
@@ -234,8 +234,9 @@ static PetscErrorCode WalkInTurgor(LamRVE rve, const LamLoad *rest, LamContactSo
 }
 
 /*
-  From the undeformed (turned) tissue under the load's turgor and cohesion, in substeps to the asked F. These are held
-  tight first where they do not hold it together, and where they are more than it bears from the start, they rise.
+  (iv): continuation to the prescribed F from the undeformed (rotated) tissue under the load's turgor and cohesion. If
+  that state is not found, it is solved with an added cohesion first; if that fails too, turgor and cohesion rise in
+  steps.
 */
 static PetscErrorCode WalkFromRest(LamRVE rve, const LamLoad *load, LamContactSolution *at, LamContactOutcome *out)
 {
@@ -272,8 +273,8 @@ PetscBool LamContactIsNear(const LamLoad *from, const LamLoad *load)
 }
 
 /*
-  From the affine state. Its unstressed walls do not bear much turgor once they are sheared: of more, a part comes first
-  and rises from there; of much more, the unstretched tissue comes first.
+  Solves from the affine state. Its unstressed walls carry little turgor once they are sheared. A turgor above BORNE is
+  therefore raised by continuation from BORNE; above MUCH_TURGOR, continuation starts from unstretched tissue.
 */
 static PetscErrorCode TryAffine(LamRVE rve, const LamLoad *load, LamContactSolution *at, LamContactOutcome *out)
 {
@@ -286,7 +287,7 @@ static PetscErrorCode TryAffine(LamRVE rve, const LamLoad *load, LamContactSolut
   PetscCall(LamContactTry(rve, &start, LAM_FAR, out));
   if (bears) PetscFunctionReturn(0);
   if (!LamContactIsStable(out)) {
-    *out = LAM_NO_OUTCOME; /* whatever it is, it is of another load */
+    *out = LAM_NO_OUTCOME; /* this outcome is of another load */
     PetscFunctionReturn(0);
   }
   PetscCall(LamContactSave(rve, &start, at));
@@ -294,7 +295,7 @@ static PetscErrorCode TryAffine(LamRVE rve, const LamLoad *load, LamContactSolut
   PetscFunctionReturn(0);
 }
 
-/* A strategy's start. */
+/* (ii): the strategy's initial guess. */
 static PetscErrorCode TryStrategy(LamRVE rve, LamStrategy strategy, const LamLoad *load, LamRVEState state,
                                   PetscBool *has_bonded, LamContactSolution *at, LamContactOutcome *out)
 {
@@ -307,14 +308,15 @@ static PetscErrorCode TryStrategy(LamRVE rve, LamStrategy strategy, const LamLoa
   PetscFunctionReturn(0);
 }
 
-/* What ends a way between two of its states is a reason of the tissue; other refusals may be of the way tried. */
+/* Whether an outcome is a property of the tissue: its reason is bracketed by two states of a path. Other rejections may
+   be due to the path. */
 static PetscBool IsCertain(const LamContactOutcome *out)
 {
   return (PetscBool)(out->between[1] > out->between[0] &&
                      (out->refusal >= LAM_CELLS_OVERLAP || LamIsKinking(&out->kinking)));
 }
 
-/* What is worth remembering of tries that gave nothing stable: the first saddle, the last refusal. */
+/* Kept from attempts without a stable state: the first saddle, the last rejection (or the first certain one). */
 typedef struct {
   LamContactOutcome saddle, refused;
   LamContactSolution at;
@@ -360,7 +362,7 @@ static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state,
   *out = LAM_NO_OUTCOME;
   for (PetscInt k = near ? 0 : 1; k < 7 && !LamContactIsStable(out) && !rve->work.stopped; ++k) {
     PetscCall(Remember(rve, load, out, &best));
-    if (k > 3 && !state->solved && IsCertain(&best.refused)) break; /* it starts nowhere else */
+    if (k > 3 && !state->solved && IsCertain(&best.refused)) break; /* the path from rest has a certain end */
     *out = LAM_NO_OUTCOME;
     rve->budget = k < 3 ? START_BUDGET : LAM_ITERATION_BUDGET;
     if (k == 0) {
@@ -388,7 +390,7 @@ static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state,
   PetscFunctionReturn(0);
 }
 
-/* Which way a bracket is of. */
+/* Names the path that a bracket belongs to. */
 static const char *WayText(const LamContactOutcome *out)
 {
   if (!(out->between[1] > out->between[0]) || out->converged) return "";

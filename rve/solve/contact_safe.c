@@ -1,13 +1,14 @@
 /*
-  Contact equilibrium by descent, for starts from which the fast iteration does not come home.
+  Contact equilibrium by descent, for initial guesses from which the fast iteration fails.
 
-  Method. Sequential quadratic programming on the energy Pi of walls, turgor and cohesion under G >= 0: each step solves
-  the fast iteration's linear system with the active set that fits the step and a matrix made positive definite on the
-  free motions, so it points downhill for the merit
+  Method. Sequential quadratic programming on the energy Pi of walls, turgor and cohesion subject to G >= 0. Each step
+  solves the linear system of the fast iteration with the active set consistent with the step and a matrix shifted to be
+  positive definite on the free motions. It is therefore a descent direction of the merit function
       phi = Pi + mu sum_A D_A max(0, -gap_A),      mu > largest multiplier.
-  Steps are limited in length by the shift; a watchdog allows a few steps without decrease (a large step first violates
-  the stiff walls and is then restored) before it goes back to the best point and searches along the line. Small steps
-  of an indefinite matrix get a piece of the unstable mode, so saddles are left.
+  The shift limits the step length. A watchdog allows a few steps without decrease, as a large step first violates the
+  constraints of the stiff walls and the next ones restore them; then the iteration returns to the best point and makes
+  a line search. If the matrix is indefinite and the step small, part of the unstable mode is added, so that saddles are
+  left.
 
   References. Nocedal & Wright, Numerical Optimization, chapters 15 and 18; Chamberlain et al., Math. Prog. Study 16
   (1982) 1 (watchdog).
@@ -15,24 +16,24 @@
 #include "solve.h"
 
 #define SAFE_ITERATIONS 120
-#define RESTARTS 3           /* with the junction status of a solution, where it has changed */
-#define FOLLOW_ITERATIONS 60 /* in which the junction status follows the iterate */
-#define WATCHDOG 4
-#define STEP_LIMIT 0.05 /* apothems; smaller after a failure, down to ... */
+#define RESTARTS 3           /* after a solution has changed the junction status */
+#define FOLLOW_ITERATIONS 60 /* first iterations, in which the junction status is updated */
+#define WATCHDOG 4           /* steps without decrease before returning to the best point */
+#define STEP_LIMIT 0.05      /* apothems; smaller after a failure, down to ... */
 #define LEAST_STEP_LIMIT 1e-3
-#define LEAST_WEIGHT 0.01 /* of the violation in the merit, C1 + C2 */
+#define LEAST_WEIGHT 0.01 /* minimum mu, C1 + C2 */
 #define SHORTENINGS 6
-#define LEAST_FLOOR 1e-4 /* of the shift that shortens steps */
+#define LEAST_FLOOR 1e-4 /* floors of the shift start from at least this and are dropped below it */
 #define ARMIJO 1e-4
 
 typedef struct {
-  PetscReal energy, violation; /* of the merit: Pi, and sum D max(0, -gap) */
+  PetscReal energy, violation; /* Pi, and sum D max(0, -gap) */
 } Merit;
 
 typedef struct {
   PetscReal *y, *lambda; /* the best point so far */
   Merit merit;
-  PetscReal mu, limit; /* weight of the violation; of the step length */
+  PetscReal mu, limit; /* weight of the violation; limit of the step length, apothems */
   PetscInt without_decrease;
   PetscBool monotone, known;
 } Best;
@@ -42,7 +43,7 @@ static PetscReal Value(Merit merit, PetscReal mu)
   return merit.energy + mu * merit.violation;
 }
 
-/* Merit at the evaluated contact. */
+/* Merit of the contact state last evaluated. */
 static Merit MeritOf(LamRVE rve, PetscReal energy)
 {
   const LamContact *contact = rve->contact;
@@ -52,7 +53,7 @@ static Merit MeritOf(LamRVE rve, PetscReal energy)
   return merit;
 }
 
-/* Halves the step until the merit falls enough; *alpha = 0 where it does not. Ends with contact evaluated at rve->y. */
+/* Halves the step until the merit decreases sufficiently; *alpha = 0 if it does not. */
 static PetscErrorCode LineSearch(LamRVE rve, const LamLoad *load, Merit now, PetscReal mu, PetscReal slope,
                                  PetscReal rounding, PetscReal *alpha)
 {
@@ -72,7 +73,7 @@ static PetscErrorCode LineSearch(LamRVE rve, const LamLoad *load, Merit now, Pet
   PetscFunctionReturn(0);
 }
 
-/* Keeps the point of least merit; goes back to it after too many steps without decrease. */
+/* Stores the point of least merit; returns to it after too many steps without decrease. *moved: rve->y was reset. */
 static PetscErrorCode Watch(LamRVE rve, const LamLoad *load, Merit now, PetscBool valid, PetscReal rounding, Best *best,
                             PetscBool *moved)
 {
@@ -94,14 +95,14 @@ static PetscErrorCode Watch(LamRVE rve, const LamLoad *load, Merit now, PetscBoo
   (void)LamSetConsistentStresses(rve, load, rve->y);
   LamSealSetConsistent(rve, load, rve->y);
   best->without_decrease = 0;
-  best->known = PETSC_FALSE; /* its merit changes with the junction status */
+  best->known = PETSC_FALSE; /* its merit depends on the junction status */
   best->monotone = PETSC_TRUE;
   best->limit = PetscMax(LEAST_STEP_LIMIT, 0.25 * best->limit);
   *moved = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
-/* mu stays above the multipliers, but not far: a heavy weight on the violation makes the steps along it tiny. */
+/* Keeps mu above the multipliers but of their order: a larger weight on the violation makes steps tiny. */
 static void SetWeight(LamRVE rve, const PetscReal lambda[], Best *best)
 {
   PetscReal largest = LEAST_WEIGHT;
@@ -111,8 +112,8 @@ static void SetWeight(LamRVE rve, const PetscReal lambda[], Best *best)
 }
 
 /*
-  A step no longer than `limit`, by a larger shift rather than by scaling: it still corrects the whole violation of gaps
-  and of the stiff walls, and only the soft motions are held back.
+  Computes a step no longer than `limit` by increasing the shift, not by scaling: the step still corrects the whole
+  violation of gaps and stiff walls, and only soft motions are shortened.
 */
 static PetscErrorCode ShortStep(LamRVE rve, PetscReal norm, PetscReal limit, LamContactStep *step, PetscBool *ok)
 {

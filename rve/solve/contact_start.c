@@ -1,7 +1,7 @@
 /*
-  Starts for contact equilibrium.
+  Initial guesses for contact equilibrium.
 
-  Mihai, Safar & Wyatt, J. Eng. Math. (successive deformation decomposition) for the bonded start.
+  Mihai, Safar & Wyatt, J. Eng. Math. (successive deformation decomposition) for the bonded initial guess.
 */
 #include "contact_path.h"
 
@@ -33,7 +33,7 @@ PetscErrorCode LamContactSave(LamRVE rve, const LamLoad *load, LamContactSolutio
   PetscFunctionReturn(0);
 }
 
-/* The junction status of a solution, which a try that failed has changed. */
+/* Restores the junction status of a solution, which a failed solve may have changed. */
 static void SetJunctions(LamContact *contact, const LamContactSolution *solution)
 {
   for (PetscInt f = 0; f < contact->face_count; ++f) {
@@ -74,7 +74,7 @@ PetscErrorCode LamContactStartNear(LamRVE rve, const LamContactSolution *from, c
   PetscFunctionReturn(0);
 }
 
-/* Cells swell until facing walls are as far in each other as contact lets them be. */
+/* Swells cells with a clearance until facing walls touch. */
 static void CloseClearance(LamRVE rve, const LamLoad *load)
 {
   const LamMesh *mesh = &rve->mesh;
@@ -106,7 +106,7 @@ PetscErrorCode LamContactStartAffine(LamRVE rve, const LamLoad *load)
   PetscFunctionReturn(0);
 }
 
-/* Positions of the bonded solution, its wall stresses and pressures. */
+/* Copies positions and pressures of the bonded solution and sets consistent wall stresses. */
 static void TakeBondedPositions(LamRVE rve, const LamLoad *load)
 {
   const LamMesh *mesh = &rve->mesh, *bonded = &rve->bonded->mesh;
@@ -123,8 +123,8 @@ static void TakeBondedPositions(LamRVE rve, const LamLoad *load)
 }
 
 /*
-  Multipliers that fit the forces r that bonding carried, B^T lambda = r, in least squares: the solution of
-  [1 -B^T; -B 0] [v; lambda] = [-r; 0]. Those in tension become zero.
+  Least-squares fit of multipliers to the bonding forces r, B^T lambda = r, from the system
+  [1 -B^T; -B 0] [v; lambda] = [-r; 0]. Multipliers in tension are set to zero.
 */
 static PetscErrorCode FitMultipliers(LamRVE rve, const LamLoad *load, PetscBool *ok)
 {

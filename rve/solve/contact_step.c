@@ -1,17 +1,18 @@
 /*
   One step of an active-set iteration: residual, linear system, active set, escape from a saddle.
 
-  Method. With one linearisation of the gaps the active set is found that fits the step: hats whose multiplier would
-  pull are let go, hats whose gap would close beyond zero are taken in, and the system is solved again. The matrix gets
-  the smallest shift tried that leaves as many negative eigenvalues as active hats, and always a minute one, so that a
-  cell that nothing holds is not singular.
+  Method. For one linearisation of the gaps, the active set is made consistent with the step: hats whose multiplier
+  becomes tensile are removed, hats whose gap becomes negative are added, and the system is solved again. The matrix
+  gets the smallest shift tried that leaves no more negative eigenvalues than expected (one per active hat and sealed
+  lumen). The shift is never below LAM_CONTACT_PROXIMAL, so that a cell without contact does not make the matrix
+  singular.
 */
 #include "solve.h"
 
-#define ACTIVE_SET_SOLVES 3  /* solves with one linearisation until the active set fits the step */
-#define LEAST_SHIFT 1e-9     /* of the largest diagonal entry: cells that hardly touch move against tiny stiffness */
-#define SADDLE_RESIDUAL 1e-3 /* of an indefinite state below which Newton would only creep along a saddle */
-#define CREEPING 0.6         /* the same for small steps of more than this share of the one before */
+#define ACTIVE_SET_SOLVES 3 /* solves per linearisation until the active set is consistent with the step */
+#define LEAST_SHIFT 1e-9    /* of the largest diagonal entry; small, as cells that hardly touch have little stiffness */
+#define SADDLE_RESIDUAL 1e-3 /* norm below which a small step of an indefinite state is taken to be near a saddle */
+#define CREEPING 0.6         /* the same for small steps longer than this share of the previous one */
 #define ESCAPE_STEP 0.01     /* along a direction of negative curvature, in apothems */
 
 PetscErrorCode LamContactStepCreate(LamRVE rve, LamContactStep *step)
@@ -46,9 +47,9 @@ void LamContactResidual(LamRVE rve, LamContactStep *step, PetscReal *norm)
   *norm = LamResidualNorm(rve, step->rhs);
 }
 
-/* Factors with the smallest tried shift that leaves no negative eigenvalues but those expected, from the floor upwards;
-   again: from the last one. An iteration that goes on with shifts goes down with them as far as it can: a shift above
-   what is needed makes it creep. */
+/* Factors with the first of increasing shifts, from the floor, that leaves no more negative eigenvalues than expected;
+   again: from the last shift. After a shifted iteration the next one tries smaller shifts again, as shifts larger than
+   needed slow down convergence. */
 static PetscErrorCode FactorStable(LamRVE rve, PetscBool again, LamContactStep *step, PetscBool *ok)
 {
   const PetscInt expected = LamExpectedNegative(rve);
@@ -73,7 +74,7 @@ static PetscErrorCode FactorStable(LamRVE rve, PetscBool again, LamContactStep *
   PetscFunctionReturn(0);
 }
 
-/* The solution with the present factor. */
+/* Solves with the current factorisation. */
 static PetscErrorCode Solve(LamRVE rve, LamContactStep *step)
 {
   const LamContact *contact = rve->contact;
@@ -88,7 +89,7 @@ static PetscErrorCode Solve(LamRVE rve, LamContactStep *step)
   PetscFunctionReturn(0);
 }
 
-/* rve->step and the new multipliers from the solution. */
+/* Copies the solution to rve->step and the new multipliers. */
 static PetscErrorCode TakeSolution(LamRVE rve, LamContactStep *step)
 {
   const LamContact *contact = rve->contact;
@@ -104,8 +105,9 @@ static PetscErrorCode TakeSolution(LamRVE rve, LamContactStep *step)
 }
 
 /*
-  Near a saddle the residual has next to nothing of the unstable mode, and shifted Newton steps creep. Adds to a small
-  step a piece of that mode, downhill, or along the mode's own sign where it is level. residual: with contact forces.
+  Near a saddle the residual has almost no component along the unstable mode, and shifted Newton steps are slow. Adds to
+  a small step a multiple of that mode, downhill, or with the mode's own sign if the slope is zero. residual: with
+  contact forces.
 */
 static PetscErrorCode AddNegativeCurvature(LamRVE rve, const PetscReal residual[], PetscReal mode[], PetscReal image[])
 {
@@ -122,7 +124,8 @@ static PetscErrorCode AddNegativeCurvature(LamRVE rve, const PetscReal residual[
   PetscFunctionReturn(0);
 }
 
-/* Keeps what another active set may be solved with: not where F is free, nor where the shift may be another. */
+/* Factors, solves and stores the solution for LamContactUpdateStep, which requires a prescribed F and the minimum
+   shift. */
 static PetscErrorCode FactorAndSolve(LamRVE rve, PetscReal compliance, PetscBool again, LamContactStep *step,
                                      PetscBool *ok)
 {

@@ -1,20 +1,20 @@
 /*
-  One try for contact equilibrium at one load, from the present start.
+  One attempt to find contact equilibrium at one load, from the current initial guess.
 
-  Method. Newton by full steps, or descent. A converged state with a negative eigenvalue on its active set is a saddle;
-  it is left along its unstable mode, and kept where that leads nowhere. A state in which cells lie in each other deeper
-  than the mesh explains, or a lumen has collapsed or turned inside out, is no answer: the walls that meet there do not
-  feel each other in the model.
+  Method. Newton with full steps, or descent. A converged state with a negative eigenvalue on its active set is a
+  saddle; it is left along its unstable mode, and kept if no other equilibrium is found. States are rejected if cells
+  overlap by more than the mesh error, or if a lumen has collapsed or is inverted: the model has no contact between the
+  walls that meet there.
 */
 #include "contact_path.h"
 
 #define MAX_BRANCH_SWITCHES 4
-#define KICK 0.01         /* apothems: start along an unstable mode */
-#define EDGE_SHARE 0.2    /* penetration that the mesh explains, in edge lengths, ... */
+#define KICK 0.01         /* apothems: perturbation along an unstable mode */
+#define EDGE_SHARE 0.2    /* penetration attributed to the mesh, in edge lengths, ... */
 #define WALL_SHARE 0.25   /* ... or in wall thicknesses, ... */
-#define DEEPEST_WALL 0.05 /* ... of the latter no more than this, apothems */
-#define HALF_WALL 0.5     /* and never more than this share of the wall */
-#define OF_MESH 0.5       /* share of the depth that walls which face each other have across from each other */
+#define DEEPEST_WALL 0.05 /* ... but the latter at most this, apothems; ... */
+#define HALF_WALL 0.5     /* ... accepted up to this share of the wall thickness */
+#define OF_MESH 0.5       /* share of the depth to be found across from each other; less: walls have slid past */
 
 static PetscReal LargestDifference(PetscInt n, const PetscReal a[], const PetscReal b[])
 {
@@ -24,7 +24,7 @@ static PetscReal LargestDifference(PetscInt n, const PetscReal a[], const PetscR
   return largest;
 }
 
-/* One kick along the softest mode of the present factor; *left where it ends in another equilibrium. */
+/* Perturbs along the softest mode of the current factorisation and solves; *left: another equilibrium was found. */
 static PetscErrorCode Kick(LamRVE rve, const LamLoad *load, const LamContactSolution *saddle, PetscReal mode[],
                            PetscBool *left)
 {
@@ -41,7 +41,7 @@ static PetscErrorCode Kick(LamRVE rve, const LamLoad *load, const LamContactSolu
   PetscFunctionReturn(0);
 }
 
-/* Leaves saddles; ends at the last one where its mode leads nowhere. */
+/* Leaves saddles; returns the last one if its mode leads to no other equilibrium. */
 static PetscErrorCode LeaveSaddles(LamRVE rve, const LamLoad *load, LamContactOutcome *out)
 {
   LamContactSolution saddle;

@@ -1,14 +1,14 @@
 /*
-  The step of an active set that differs in a few hats from the one whose matrix is factored.
+  Step for an active set that differs in a few hats from the one whose matrix is factored.
 
-  Method. A0 is the factored matrix, x0 = A0^-1 b its step. Hats that are let go keep their row and get a force mu that
-  holds their multiplier at zero; hats that are taken in get their row of gap gradients as a border, mu is their
-  multiplier:
-    [ A0  B ] [ x  ]   [ b ]        column of B: unit vector of a hat let go,  -dG of one taken in
+  Method. A0 is the factored matrix, x0 = A0^-1 b its solution. Removed hats keep their row and get an unknown force mu
+  that makes their multiplier zero. Added hats get their row of gap gradients as a border, with mu as their multiplier:
+    [ A0  B ] [ x  ]   [ b ]        column of B: unit vector of a removed hat,  -dG of an added one
     [ B^T D ] [ mu ] = [ d ],       D, d: 0, 0 and -compliance weight, gap weight
   so with Y = A0^-1 B and S = B^T Y - D:  mu = S^-1 (B^T x0 - d),  x = x0 - Y mu.
-  By Sylvester's law the whole has as many negative eigenvalues as A0 and -S together; each hat let go accounts for one
-  that the matrix of the new set has not. A few right-hand sides cost a quarter of a factorisation.
+  By Sylvester's law the bordered matrix has as many negative eigenvalues as A0 and -S together; each removed hat
+  accounts for one that the matrix of the new set does not have. A few right-hand sides cost a quarter of a
+  factorisation.
 */
 #include "solve.h"
 #include <petscblaslapack.h>
@@ -18,10 +18,10 @@
 
 typedef struct {
   PetscInt count, hat[MOST_CHANGES];
-  PetscBool taken[MOST_CHANGES]; /* taken in, else let go */
+  PetscBool taken[MOST_CHANGES]; /* added, else removed */
 } Changes;
 
-/* PETSC_FALSE where there are too many. */
+/* Returns PETSC_FALSE if there are more than MOST_CHANGES. */
 static PetscBool FindChanges(const LamContact *contact, const PetscBool before[], Changes *c)
 {
   c->count = 0;
@@ -45,7 +45,7 @@ static void SetColumn(LamRVE rve, PetscInt hat, PetscBool taken, PetscReal colum
     if (classes[i / 2] > 0) column[2 * (classes[i / 2] - 1) + i % 2] -= row[i];
 }
 
-/* mu = S^-1 r by the eigenvectors of S; positive: number of positive eigenvalues. *ok where S is not singular. */
+/* mu = S^-1 r by the eigenvectors of S; positive: number of positive eigenvalues. *ok: S is not singular. */
 static PetscErrorCode SolveSmall(PetscInt m, PetscReal S[], const PetscReal r[], PetscReal mu[], PetscInt *positive,
                                  PetscBool *ok)
 {
@@ -80,7 +80,7 @@ PetscErrorCode LamContactUpdateStep(LamRVE rve, const PetscBool before[], const 
   PetscFunctionBeginUser;
   *ok = FindChanges(contact, before, &c);
   PetscCall(PetscArraycpy(solution, first, n));
-  if (!*ok || c.count == 0) PetscFunctionReturn(0); /* none: the set is that of the factor again */
+  if (!*ok || c.count == 0) PetscFunctionReturn(0); /* no changes: `first` is the solution */
   PetscCall(PetscMalloc2(c.count * n, &B, c.count * n, &Y));
   PetscCall(PetscArrayzero(B, c.count * n));
   for (PetscInt k = 0; k < c.count; ++k) SetColumn(rve, c.hat[k], c.taken[k], &B[k * n]);

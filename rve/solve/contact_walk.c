@@ -1,13 +1,13 @@
 /*
-  How far contact states go on along a straight way of loads.
+  Continuation of contact states along a straight load path.
 
-  Method. Each solution, moved affinely, starts the next; a step that fails is halved, one that succeeds is followed by
-  a longer one. Where the smallest step still fails without a reason, the tissue may snap: descent looks for the stable
-  state beyond, from which the way goes on. What ends it is then bracketed by the last stable state and the next, in
-  which walls meet that contact does not know or pass each other, a lumen is shut, or nothing stable is found. Of the
-  latter the bracket is halved until the states next to it tell: an eigenvalue crosses zero, or jumps below it; where
-  all of the bracket can be gone in smaller steps, the way goes on with these. Where walls kink on the way, no mesh
-  resolves its end.
+  Method. Each solution, moved affinely, is the initial guess of the next. A failed step is halved; after a success the
+  next step is longer. If the smallest step fails without a known reason, the tissue may snap: descent searches for the
+  stable state beyond, from which continuation resumes. The end of the path is bracketed by the last stable state and
+  the next one, in which walls meet without contact in the model, facing walls have slid past each other, a lumen is
+  closed, or nothing stable is found. In the last case the bracket is halved until the states at its edge give the
+  reason: an eigenvalue crosses zero, or jumps below it. If the whole bracket can be traversed in smaller steps,
+  continuation resumes with these. If walls kink on the path, no mesh resolves its end.
 */
 #include "contact_path.h"
 
@@ -15,12 +15,12 @@
 #define MIN_STEP (1.0 / 512.0)
 #define GROWTH 2.0
 #define MAX_SNAPS 4
-#define CROSSING_MARGIN 4.0 /* widths of the bracket within which an eigenvalue vanishes that ends the way */
-#define STAGES 4            /* after the first one, in which a bracket that tells nothing is halved, */
-#define HALVINGS 4          /* so often each */
-#define JUMP 2.0 /* of the depth to which walls lie in each other, between neighbouring states: they have passed */
+#define CROSSING_MARGIN 4.0 /* bracket widths by which states are extrapolated to find why a path ends */
+#define STAGES 4            /* after the first, in which a bracket without a known reason is halved ... */
+#define HALVINGS 4          /* ... this many times each */
+#define JUMP 2.0 /* ratio of overlap depths of successive states above which walls have slid past each other */
 
-/* Beyond the last step by descent. */
+/* Descent to `next`, one smallest step ahead. */
 static PetscErrorCode Snap(LamRVE rve, const LamContactSolution *at, const LamLoad *next, LamContactOutcome *out)
 {
   PetscFunctionBeginUser;
@@ -29,13 +29,13 @@ static PetscErrorCode Snap(LamRVE rve, const LamContactSolution *at, const LamLo
   PetscFunctionReturn(0);
 }
 
-/* The last two stable states of a way. */
+/* Load path with its last two stable states. */
 typedef struct {
   LamContactSolution *at, earlier;
-  PetscReal reached, before; /* their shares of the way */
-  PetscReal failed;          /* of the next that is not stable */
-  PetscReal depth;           /* to which walls lie in each other at the first */
-  PetscReal step, least;     /* the next one, and the smallest */
+  PetscReal reached, before; /* path parameters of at and earlier */
+  PetscReal failed;          /* path parameter of the next state that is not stable */
+  PetscReal depth;           /* overlap of walls at `at`, apothems */
+  PetscReal step, least;     /* next step, smallest step */
   PetscInt snaps, branch;
   LamKinking kinking;
 } Way;
@@ -58,8 +58,8 @@ static PetscErrorCode LowestEigenvalue(LamRVE rve, const LamContactSolution *sol
 }
 
 /*
-  Whether the last stable state would be none without the contact that is about to open, its multipliers drawn through
-  the last two states: an eigenvalue then jumps below zero.
+  Whether the last stable state is unstable without the contact about to open, in which case an eigenvalue jumps below
+  zero. Contact is about to open if its multiplier, extrapolated from the last two states, vanishes.
 */
 static PetscErrorCode FindLoosening(LamRVE rve, const Way *way, PetscBool *found)
 {
@@ -89,8 +89,9 @@ static PetscErrorCode FindLoosening(LamRVE rve, const Way *way, PetscBool *found
 }
 
 /*
-  Whether the stable states end where an eigenvalue crosses zero: near a limit load it falls as the square root of what
-  is left of the load, so its square, drawn through the last two states, vanishes in the bracket or close behind it.
+  Whether the stable states end where an eigenvalue crosses zero. Near a limit load it falls as the square root of the
+  remaining load, so its square, extrapolated linearly from the last two states, vanishes in the bracket or soon
+  after it.
 */
 static PetscErrorCode FindCrossing(LamRVE rve, const Way *way, LamContactOutcome *out)
 {
@@ -114,7 +115,7 @@ static PetscErrorCode FindCrossing(LamRVE rve, const Way *way, LamContactOutcome
   PetscFunctionReturn(0);
 }
 
-/* The state just found, a share t of the way, is its last one. */
+/* Makes the state just found, at path parameter t, the last stable one. */
 static PetscErrorCode Advance(LamRVE rve, const LamLoad *load, PetscReal t, Way *way)
 {
   const LamContactSolution at = *way->at;
@@ -129,8 +130,8 @@ static PetscErrorCode Advance(LamRVE rve, const LamLoad *load, PetscReal t, Way 
 }
 
 /*
-  Whether the state that the last two point to, a few brackets ahead, has a negative eigenvalue, while theirs are
-  positive: where an end of a face's overlap passes a node, or a hat is merged, the stiffness jumps.
+  Whether the state extrapolated from the last two, CROSSING_MARGIN brackets ahead, has a negative eigenvalue although
+  theirs are positive. The stiffness jumps if an end of a face's overlap passes a node or a hat is merged.
 */
 static PetscErrorCode FindJump(LamRVE rve, const Way *way, PetscBool *found)
 {
@@ -157,7 +158,7 @@ static PetscErrorCode FindJump(LamRVE rve, const Way *way, PetscBool *found)
   PetscFunctionReturn(0);
 }
 
-/* The state a share t of the way, from the last one; *out is what became of it. */
+/* Solves at path parameter t, starting from the last stable state. */
 static PetscErrorCode TryAt(LamRVE rve, const LamLoad *start, const LamLoad *load, PetscReal t, const Way *way,
                             LamLoad *next, LamContactOutcome *out)
 {
@@ -168,7 +169,7 @@ static PetscErrorCode TryAt(LamRVE rve, const LamLoad *start, const LamLoad *loa
   PetscFunctionReturn(0);
 }
 
-/* Halves the bracket a few times, until what ends the way is known. */
+/* Halves the bracket up to HALVINGS times, until the reason for the path's end is known. */
 static PetscErrorCode Halve(LamRVE rve, const LamLoad *start, const LamLoad *load, Way *way, LamContactOutcome *out,
                             PetscBool *advanced)
 {
@@ -196,7 +197,7 @@ static PetscErrorCode Halve(LamRVE rve, const LamLoad *start, const LamLoad *loa
   PetscFunctionReturn(0);
 }
 
-/* Whether the end of the bracket is reached from what is left of it: the steps were too long. */
+/* Whether the end of the bracket is reached in one step from its start: previous steps were then too long. */
 static PetscErrorCode CrossBracket(LamRVE rve, const LamLoad *start, const LamLoad *load, Way *way, PetscBool *crossed)
 {
   const PetscReal t = way->failed, left = way->failed - way->reached;
@@ -217,8 +218,8 @@ static PetscErrorCode CrossBracket(LamRVE rve, const LamLoad *start, const LamLo
 }
 
 /*
-  Halves the bracket of a way that ends in nothing known, until the states next to it tell: an eigenvalue that falls
-  steeply does so close to its end. The states compared are those from which a stage starts and in which it ends.
+  Halves the bracket of a path that ends without a known reason, until the states at its edge give it: an eigenvalue may
+  fall steeply only close to the end. The states compared are those at the start and the end of a stage.
 */
 static PetscErrorCode Refine(LamRVE rve, const LamLoad *start, const LamLoad *load, Way *way, LamContactOutcome *out,
                              PetscBool *crossed)
@@ -243,8 +244,8 @@ static PetscErrorCode Refine(LamRVE rve, const LamLoad *start, const LamLoad *lo
   PetscFunctionReturn(0);
 }
 
-/* What has ended the way, with its bracket; or it has crossed it and goes on. A solution at another load than the one
-   asked for is no outcome. */
+/* Determines the reason and the bracket of the path's end, or *goes_on: the bracket has been crossed. A solution at a
+   load other than the prescribed one is no outcome. */
 static PetscErrorCode End(LamRVE rve, const LamLoad *start, const LamLoad *load, Way *way, LamContactOutcome *out,
                           PetscBool *goes_on)
 {
@@ -268,7 +269,7 @@ static PetscErrorCode End(LamRVE rve, const LamLoad *start, const LamLoad *load,
   PetscFunctionReturn(0);
 }
 
-/* As far as steps of the smallest length lead. */
+/* Continuation until the load is reached or the smallest step fails. */
 static PetscErrorCode Go(LamRVE rve, const LamLoad *start, const LamLoad *load, Way *way, LamContactOutcome *out)
 {
   PetscFunctionBeginUser;
