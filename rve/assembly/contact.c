@@ -1,7 +1,7 @@
 #include "rve_impl.h"
 
 #define OVERHANG 0.4      /* half-edges by which a hat's centre may lie outside the overlap */
-#define LEAST_WEIGHT 1e-3 /* of a full hat: below it a hat carries nothing */
+#define LEAST_WEIGHT 1e-3 /* fraction of a full hat; hats of smaller weight have no multiplier */
 
 /* Outer nodes of face k of a cell, counter-clockwise. */
 static void ChainNodes(const LamMesh *mesh, PetscInt cell, PetscInt k, PetscInt nodes[])
@@ -9,7 +9,7 @@ static void ChainNodes(const LamMesh *mesh, PetscInt cell, PetscInt k, PetscInt 
   for (PetscInt i = 0; i <= 2 * mesh->along; ++i) nodes[i] = LamMeshOuterNode(mesh, cell, 2 * mesh->along * k + i);
 }
 
-/* Where the entries of each face lie in the matrix. */
+/* Finds the matrix indices of the entries of each face. */
 static void FindPositions(const LamLinear *linear, LamContact *contact)
 {
   const PetscInt dofs = contact->dofs, pairs = dofs * (dofs + 1) / 2;
@@ -46,8 +46,7 @@ static LamContactFace NewFace(const LamMicrostructure *micro, const LamMesh *mes
   const PetscReal *image;
   const PetscInt other = LamMeshNeighbour(mesh, cell, k, &image);
   const PetscBool *held = &mesh->held[LAM_FACES * cell], *facing = &mesh->held[LAM_FACES * other];
-  /* the outer walls that meet the face at its start and end: k - 1 and k + 1 of the cell, k + 4 and k + 2 of the other
-   */
+  /* outer walls that meet the face at its start and end: k - 1 and k + 1 of the cell, k + 4 and k + 2 of the other */
   const PetscInt low = held[(k + 5) % LAM_FACES] && facing[(k + 4) % LAM_FACES] ? 1 : 0;
   const PetscInt high = hats - 1 - (held[k + 1] && facing[k + 2] ? 1 : 0);
 
@@ -62,7 +61,6 @@ static LamContactFace NewFace(const LamMicrostructure *micro, const LamMesh *mes
                           .last = high};
 }
 
-/* Faces with their nodes. */
 static void PlaceFaces(const LamMicrostructure *micro, const LamMesh *mesh, LamContact *contact)
 {
   PetscInt f = 0;
@@ -171,7 +169,7 @@ LamMortarChains LamContactChains(LamRVE rve, const PetscReal F[9], const PetscRe
   return chains;
 }
 
-/* Keeps an old value while `exact`, the place that decides, is not clearly beyond the range that belongs to it. */
+/* Returns `old` while `exact` is within (low, high], widened by the margin on both sides; else `fresh`. */
 static PetscInt WithHysteresis(PetscReal margin, PetscInt old, PetscReal low, PetscReal high, PetscReal exact,
                                PetscInt fresh)
 {
@@ -179,9 +177,9 @@ static PetscInt WithHysteresis(PetscReal margin, PetscInt old, PetscReal low, Pe
 }
 
 /*
-  The hats with multipliers of their own: those whose centre lies inside the overlap, or outside by no more than
-  OVERHANG. The ends of the overlap count in half-edges, u. A little hysteresis keeps the status from flickering. Where
-  both walls are held at a corner its gap is no unknown, and a multiplier of its own would find nothing to act on.
+  Finds the hats with multipliers of their own: those whose centre lies inside the overlap, or outside by at most
+  OVERHANG. The ends of the overlap are measured in half-edges. Hysteresis prevents oscillation of the status. If both
+  walls are prescribed at a corner, the gap there is not an unknown, so the corner hat has no multiplier of its own.
 */
 static void Junction(const LamContact *contact, const LamContactFace *face, PetscInt *first, PetscInt *last)
 {
@@ -205,14 +203,14 @@ static void Junction(const LamContact *contact, const LamContactFace *face, Pets
   *last = PetscMin(*last, face->high);
 }
 
-/* Gives merged hats the multiplier of the hat that they are merged into. */
+/* Sets the multipliers of merged hats to that of the hat they are merged into. */
 static void SpreadMultipliers(const LamContactFace *face, PetscInt hats, PetscReal lambda[])
 {
   for (PetscInt j = 0; j < hats; ++j)
     lambda[j] = face->first > face->last ? 0.0 : lambda[PetscMax(face->first, PetscMin(face->last, j))];
 }
 
-/* Adds weights, gaps and rows of merged hats to the hat that takes them, and stores them. */
+/* Stores weights, gaps and rows, those of merged hats added to the hat they are merged into. */
 static void MergeHats(LamContact *contact, PetscInt f)
 {
   const LamContactFace *face = &contact->faces[f];
@@ -387,7 +385,7 @@ PetscErrorCode LamContactPredictActive(LamRVE rve, const PetscReal step[], const
     for (PetscInt i = 0; i < contact->dofs; ++i) gap += row[i] * dx[i / 2][i % 2] / contact->weight[h];
     gap += compliance * lambda[h];
     active = (PetscBool)(lambda[h] - LAM_CONTACT_SCALE * gap > 0.0);
-    /* an active hat has no gap: rounding must not open it */
+    /* the gap of an active hat is zero: rounding must not open it */
     if (contact->active[h] && lambda[h] > 0.0) active = PETSC_TRUE;
     *changes += active != contact->active[h];
     contact->active[h] = active;

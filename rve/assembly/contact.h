@@ -1,15 +1,15 @@
 /*
   Contact with cohesion between the outer walls of neighbouring cells.
 
-  Each cell's faces 0, 1, 2 are slaves; face k is paired with face k + 3 of the cell, or of the image of the cell, that
-  lies across it. Terms of the potential (docs/theory/contact.md):
+  Faces 0, 1, 2 of each cell are slaves; the master of face k is face k + 3 of the neighbouring cell or of its image.
+  Terms of the potential (docs/theory/contact.md):
     - sum_A lambda_A G_A(x, F)     multipliers times weighted gaps, lambda >= 0, G >= 0, lambda G = 0
     + g F33 A_gap(x, F)            cohesion, in gap_area.c
-  F enters through the images' shifts F S alone.
+  F enters only through the images' shifts F S.
 
-  Junction rule. A hat whose centre lies too far outside the overlap is merged into the next inner one: hat j takes the
-  multiplier of hat clamp(j, first, last), and its weight, gap and rows are added there. This status follows the iterate
-  for some iterations, with a little hysteresis, and is then frozen.
+  Junction rule. A hat whose centre lies too far outside the overlap is merged into the next inner hat: hat j has the
+  multiplier of hat clamp(j, first, last), and its weight, gap and rows are added to that hat. This status is updated
+  in the first iterations, with hysteresis, and then frozen.
 */
 #ifndef LAM_RVE_CONTACT_H
 #define LAM_RVE_CONTACT_H
@@ -19,16 +19,17 @@
 #include "mortar.h"
 
 typedef struct {
-  PetscInt cell, face;  /* the slave */
-  PetscInt other;       /* cell of the master, face + 3 */
-  PetscReal shift[2];   /* of the master's image */
-  PetscReal cohesion;   /* times the load's */
-  PetscInt low, high;   /* hats that may have one: all but those of corners where both walls are held */
+  PetscInt cell, face; /* the slave */
+  PetscInt other;      /* cell of the master, face + 3 */
+  PetscReal shift[2];  /* of the master's image */
+  PetscReal cohesion;  /* factor on the load's cohesion */
+  PetscInt low,
+      high; /* range of hats that may have a multiplier: all except at corners where both walls are prescribed */
   PetscInt first, last; /* hats with a multiplier of their own; first > last: none */
 } LamContactFace;
 
 typedef struct {
-  PetscInt face_count; /* 3 per cell, without those of a patch that have no partner */
+  PetscInt face_count; /* 3 per cell, less those without a neighbour in a patch */
   PetscInt hats;       /* per face: 2 along + 1 */
   PetscInt chain;      /* nodes of both chains of a face: slave 0.., then master */
   PetscInt dofs;       /* 2 chain */
@@ -40,17 +41,17 @@ typedef struct {
   LamGapArea gaps;
   PetscReal *J0;              /* [along] reference lengths of the edges of a face */
   PetscReal *lambda;          /* [count]; merged hats carry the value of the hat that they are merged into */
-  PetscReal *gap;             /* [count] weighted gap over weight of the positions last evaluated; 0 where merged */
+  PetscReal *gap;             /* [count] weighted gap / weight at the last evaluated positions; 0 where merged */
   PetscReal *weight;          /* [count] */
   PetscReal *rows;            /* [count][dofs] dG of unmerged hats */
   PetscReal *hessian;         /* [face][dofs][dofs] second derivative of sum lambda G */
   PetscBool *active;          /* [count]: in contact; false where merged */
-  PetscReal *held;            /* [2 classes] forces that bonding carried and contact does not, ... */
-  PetscReal share;            /* ... and the share of them that still acts; 0 but during release */
-  PetscReal largest_step;     /* of the Newton iteration last made */
-  PetscReal hysteresis;       /* of the junction status, in half-edges */
-  PetscInt *position;         /* [face][dofs (dofs + 1)/2]: index into the matrix of pairs of dofs, row by row */
-  PetscInt *coupling;         /* [count][dofs]: of dof and multiplier */
+  PetscReal *held;            /* [2 classes] forces transmitted by bonding but not by contact, ... */
+  PetscReal share;            /* ... and the fraction of them that still acts; nonzero only during release */
+  PetscReal largest_step;     /* of the last Newton iteration */
+  PetscReal hysteresis;       /* hysteresis of the junction status, in half-edges */
+  PetscInt *position;         /* [face][dofs (dofs + 1)/2]: matrix index of pairs of dofs, row by row */
+  PetscInt *coupling;         /* [count][dofs]: matrix index of dof and multiplier */
   PetscInt *diagonal;         /* [count] */
   PetscInt *unknown;          /* [face][dofs] */
   LamMortarSegments segments; /* work space */

@@ -25,7 +25,7 @@ PetscErrorCode LamRVEGetInterfaceFaces(LamRVE rve, PetscInt owner[])
   PetscFunctionReturn(0);
 }
 
-/* The master edge that faces place s, -1: none. */
+/* The master edge facing slave coordinate s; -1: none. */
 static PetscInt FacingEdge(const LamMortarSegments *segments, PetscReal s)
 {
   for (PetscInt k = 0; k + 1 < segments->count; ++k)

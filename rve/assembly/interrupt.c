@@ -1,9 +1,9 @@
 /*
-  Solves that are given up on demand.
+  Interrupting a solve.
 
-  Method. The one who asked for the solve is asked before each factorisation whether to go on. Once he says no, all
-  factorisations of the solve are refused, and nothing is iterated any more, so that whatever is under way fails; what
-  it failed in is then not told, and no other way is tried.
+  Method. The interrupt callback is called before each factorisation. Once it returns true, all further factorisations
+  of the solve are refused and iterations end, so every algorithm under way fails. The response then reports the
+  interrupt instead of that failure, and no other load path is tried.
 */
 #include "rve_impl.h"
 

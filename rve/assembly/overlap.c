@@ -1,9 +1,10 @@
 /*
-  Cells that lie in each other. Contact is between facing faces; a wall that slides round a junction may reach a cell
-  that it does not face, and a solution may have a wall on its neighbour's far side. Such states are no answers.
+  Overlapping cells. Contact is enforced only between facing faces. A wall that slides past a junction may penetrate a
+  cell that it does not face, and a solution may have a wall on the far side of its neighbour. Such states are
+  rejected.
 
-  Method. The outer loop of each cell is the polygon of its nodes. A node inside the polygon of another cell or image,
-  up to two cells away, counts with its distance to that polygon. Boxes are compared first.
+  Method. The outer loop of each cell is the polygon of its nodes. The depth of a node inside the polygon of another
+  cell or image, up to two cells away, is its distance to that polygon. Bounding boxes are compared first.
 */
 #include "rve_impl.h"
 #include <lamella/lattice.h>
@@ -51,7 +52,8 @@ static PetscReal DistanceTo(const PetscReal p[2], PetscInt n, const PetscReal x[
   return PetscSqrtReal(least);
 }
 
-/* Largest depth of nodes x of one cell, moved by `shift`, inside the polygon of another; node: which. */
+/* Largest depth of the nodes x of one cell, moved by `shift`, inside the polygon of another; node: index of that node.
+ */
 static PetscReal Depth(PetscInt n, const PetscReal x[][2], const PetscReal shift[2], const PetscReal other[][2],
                        const Box *box, PetscInt *node)
 {
@@ -77,12 +79,12 @@ static PetscBool AreNear(const PetscReal a[2], const PetscReal S[2], const Petsc
   return (PetscBool)(PetscSqr(a[0] + S[0] - b[0]) + PetscSqr(a[1] + S[1] - b[1]) <= REACH * REACH);
 }
 
-/* Whether the wall of cell a at an outer node faces cell b, where a's image i, j periods away meets b itself. */
+/* Whether the wall of cell a at an outer node faces cell b, where the image of a shifted by periods i, j overlaps b. */
 static PetscBool Faces(LamRVE rve, PetscInt a, PetscInt node, PetscInt b, PetscInt i, PetscInt j)
 {
   const PetscInt per_face = rve->mesh.ring_nodes / LAM_FACES, face = node / per_face;
 
-  for (PetscInt k = 0; k < (node % per_face ? 1 : 2); ++k) { /* a corner belongs to the face before, too */
+  for (PetscInt k = 0; k < (node % per_face ? 1 : 2); ++k) { /* a corner also belongs to the previous face */
     PetscInt wraps[2];
 
     if (LamLatticeNeighbour(&rve->micro, a, (face + LAM_FACES - k) % LAM_FACES, wraps, NULL) != b) continue;

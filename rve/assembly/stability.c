@@ -1,15 +1,15 @@
 /*
   Stability of a converged state: inertia of the consistent tangent, and its softest mode.
 
-  Method. A state is stable where the consistent tangent has no negative eigenvalue (prescribed turgor, bonded walls);
-  in contact, where it has none on motions that keep the active gaps closed, and of sealed lumens where it has none
-  once their pressures are eliminated: as many as active multipliers and sealed lumens in all.
-  The lowest eigenvalue and its mode come from inverse iteration on K + shift 1 with a shift just large enough to make
-  it positive definite, bracketed by the inertia: the lowest mode then dominates the inverse.
+  Method. A state is stable if the consistent tangent has no negative eigenvalue (prescribed turgor, bonded walls). In
+  contact only motions that keep the active gaps closed count, and for sealed lumens the pressures are eliminated: the
+  tangent of a stable state then has as many negative eigenvalues as there are active multipliers and sealed lumens.
+  The lowest eigenvalue and its mode come from inverse iteration on K + shift 1. The shift is just large enough to
+  make it positive definite, bracketed by the inertia, so that the lowest mode dominates the inverse.
 */
 #include "rve_impl.h"
 
-#define ZERO_MODE 1e-9 /* eigenvalues below it in size, for modes of unit length, count as zero; C1 + C2 */
+#define ZERO_MODE 1e-9 /* eigenvalues (of modes of unit length) up to this absolute value count as zero; C1 + C2 */
 
 PetscInt LamExpectedNegative(LamRVE rve)
 {
@@ -26,9 +26,10 @@ static PetscErrorCode FactorShifted(LamRVE rve, PetscReal shift, PetscInt *negat
 }
 
 /*
-  Contact tissue may have motions that change no energy: cells that slide or spin free. Where inverse iteration finds an
-  eigenvalue below ZERO_MODE in size, they are counted by the inertia on both sides of zero, do not count as negative,
-  and the factor is left with the shift, in which they are harmless: no force acts along them.
+  Contact tissue may have motions that do not change the energy: cells that slide or rotate freely. If inverse
+  iteration finds an eigenvalue of absolute value at most ZERO_MODE, the inertia on both sides of zero counts these
+  modes. They do not count as negative. The factor keeps the shift, which is harmless: no force acts along these
+  modes.
 */
 static PetscErrorCode CountZeroModes(LamRVE rve, PetscInt *negative, PetscBool *ok)
 {
@@ -71,7 +72,7 @@ PetscErrorCode LamFactorConsistent(LamRVE rve, const LamLoad *load, PetscInt *ne
     LamContactSetRows(rve, 0.0);
   }
   if (rve->linear.rate <= LAM_NEAR_RATE) {
-    /* eigenvalues of K0^-1 K lie within the rate of 1: K has the inertia of the matrix K0 that is factored */
+    /* eigenvalues of K0^-1 K are within `rate` of 1, so K has the inertia of the factored matrix K0 */
     rve->linear.nearby = PETSC_TRUE;
     rve->linear.rate = PETSC_INFINITY;
     PetscFunctionReturn(0);
@@ -81,7 +82,8 @@ PetscErrorCode LamFactorConsistent(LamRVE rve, const LamLoad *load, PetscInt *ne
   PetscFunctionReturn(0);
 }
 
-/* 0, or the smallest shift, within a factor of 1.2, for which K + shift 1 is positive definite; leaves that factor. */
+/* Finds the smallest shift, within a factor of 1.2, for which K + shift 1 is positive definite, or 0. Leaves the factor
+   with that shift. */
 static PetscErrorCode BracketLowest(LamRVE rve, PetscReal *shift)
 {
   PetscReal low = 0.0, high = 0.0, diagonal = 0.0;
@@ -125,7 +127,7 @@ static PetscReal Normalise(PetscInt n, PetscReal v[])
 
 void LamStartMode(LamRVE rve, PetscReal mode[])
 {
-  for (PetscInt i = 0; i < rve->linear.n; ++i) mode[i] = 0.0; /* multipliers have no part in a mode */
+  for (PetscInt i = 0; i < rve->linear.n; ++i) mode[i] = 0.0; /* modes have no multiplier components */
   for (PetscInt i = 0; i < rve->linear.positions; ++i) mode[i] = PetscSinReal(1.0 + 2.399963 * (PetscReal)i);
 }
 
@@ -139,8 +141,8 @@ PetscErrorCode LamImproveSoftestMode(LamRVE rve, PetscInt iterations, PetscReal 
   for (PetscInt it = 0; it < iterations; ++it) {
     PetscReal norm;
 
-    PetscCall(
-        PetscArrayzero(mode + pressures, rve->linear.lumens)); /* those of the solution follow from its positions */
+    PetscCall(PetscArrayzero(mode + pressures,
+                             rve->linear.lumens)); /* the pressures of the solution follow from its positions */
     PetscCall(LamLinearSolveOnce(&rve->linear, 1, mode, next));
     PetscCall(PetscArraycpy(mode, next, positions));
     norm = Normalise(positions, mode);

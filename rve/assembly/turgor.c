@@ -1,15 +1,16 @@
 /*
   Turgor: areas of the lumens, and the pressures of those that are sealed (docs/theory/walls.md, Sealed lumens).
 
-  Method. A sealed cell c keeps its water: with v = V / V_w its lumen over that which holds the water at pressure p0,
+  Method. The water in a sealed cell c is constant. With v = V / V_w the volume of its lumen relative to that at
+  pressure p0,
     v = 1 - (p - p0) / K_w.
-  The pressures p join the unknowns, as multipliers with a compliance do: they enter the Lagrangian by
+  The pressures p are additional unknowns, like multipliers with a compliance. Their term in the Lagrangian is
     sum_c -p V(y) + V_w (p - (p - p0)^2 / (2 K_w)),
-  whose stationary point in p is that equation. It is linear in p, so that a Newton iteration moves p by its own
-  linearised equation, and K_w never multiplies an error of the volume in the residual of the positions. Eliminated, the
-  pressures leave the energy of the water, V_w ((1 - v) p0 + K_w (1 - v)^2 / 2), which descent looks at.
+  whose stationarity in p is that equation. It is linear in p, so K_w never multiplies a volume error in the residual
+  of the positions. Elimination of the pressures gives the energy of the water, V_w ((1 - v) p0 + K_w (1 - v)^2 / 2),
+  which descent uses.
 
-  Each pressure brings one negative eigenvalue. In lumens that are not sealed its row is that of the unit matrix.
+  Each pressure adds one negative eigenvalue. For lumens that are not sealed its row is that of the unit matrix.
 */
 #include "edge_area.h"
 #include "rve_impl.h"
@@ -80,7 +81,7 @@ PetscReal LamTurgorEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[])
   return energy;
 }
 
-/* Matrix entries of the lumens' areas: of position and pressure, the last of a position's row. */
+/* Adds the position-pressure entries of the lumens' areas: the last entry of a position's row. */
 static void AddAreaRows(LamRVE rve, const PetscReal y[], PetscReal factor)
 {
   const LamMesh *mesh = &rve->mesh;

@@ -1,19 +1,19 @@
 /*
-  The area between cells as a function of positions, for cohesion: the suction g pulls every wall that has a partner, so
-  its potential is g times the area that the walls enclose.
+  The area between cells as a function of positions, for cohesion: the suction g acts on every wall with a facing
+  wall, so its potential is g times the area enclosed between the walls.
 
-  Method. The area is that of closed loops: along the two walls of each face and straight across from corner to corner
-  at its ends, and around each junction, the triangle of the corners of its three cells. Loops may differ in cohesion: a
-  face has the smaller one of its two cells, a junction the mean of its three faces. Together the loops of a periodic
-  block enclose det F V0 minus the cells. Where a patch ends there is no junction: the face's straight end closes it.
-  Area is bilinear in positions: a sum of c x_a x x_b over pairs of nodes, x x y = x_1 y_2 - x_2 y_1 and
-  x_a = y_a + F S_a; all derivatives follow from the list of pairs.
+  Method. The area is a sum over closed loops: one per face, along its two walls and straight from corner to corner at
+  its ends; and one per junction, the triangle of the corners of its three cells. Loops may differ in cohesion: a face
+  has the smaller one of its two cells, a junction the mean of its three faces. Together the loops of a periodic block
+  enclose det F V0 minus the cells. At the boundary of a patch there is no junction; the straight end of the face
+  closes the gap. Area is bilinear in positions: a sum of c x_a x x_b over pairs of nodes, x x y = x_1 y_2 - x_2 y_1
+  and x_a = y_a + F S_a; all derivatives follow from the list of pairs.
 */
 #include "gap_area.h"
 #include "edge_area.h"
 #include "gap_area.h"
 
-/* A node, seen from the cell whose face it belongs to. */
+/* A node of a face of a cell or of its image. */
 typedef struct {
   PetscInt node;
   const PetscReal *image; /* shift of its cell's image, NULL: none */
@@ -33,7 +33,7 @@ static void AddPair(const LamMesh *mesh, Corner a, Corner b, PetscReal c, PetscR
   }
 }
 
-/* A wall from its start, counter-clockwise around its cell; returns its end. */
+/* Adds a wall from its start, counter-clockwise around its cell; returns its end. */
 static Corner AddWall(const LamMesh *mesh, PetscInt cell, PetscInt face, const PetscReal *image, PetscReal cohesion,
                       LamGapArea *area)
 {
@@ -69,7 +69,8 @@ static void AddFace(const LamMicrostructure *micro, const LamMesh *mesh, PetscIn
   AddPair(mesh, other_end, StartOf(mesh, cell, face, NULL), -0.5, cohesion, area);
 }
 
-/* The junction at the start of a face, between a cell, its neighbour b across the face before and c across this one. */
+/* Adds the junction at the start of a face: between a cell, its neighbour b across the previous face and c across this
+   one. */
 static void AddJunction(const LamMicrostructure *micro, const LamMesh *mesh, PetscInt cell, PetscInt face,
                         LamGapArea *area)
 {

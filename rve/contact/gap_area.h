@@ -11,8 +11,8 @@ typedef struct {
   PetscInt a, b; /* classes */
   PetscReal Sa[2], Sb[2];
   PetscReal c;
-  PetscReal cohesion; /* of its loop, times the load's */
-  PetscInt entry[2];  /* in the matrix, of (a_1, b_2) and (a_2, b_1); -1: held */
+  PetscReal cohesion; /* factor of its loop on the load's cohesion */
+  PetscInt entry[2];  /* in the matrix, of (a_1, b_2) and (a_2, b_1); -1: prescribed */
 } LamGapPair;
 
 typedef struct {
@@ -20,19 +20,19 @@ typedef struct {
   LamGapPair *pairs; /* owned */
 } LamGapArea;
 
-/* Of the interface of two cells, times the load's. */
+/* Factor of the interface of two cells on the load's cohesion. */
 static inline PetscReal LamFaceCohesion(const LamMicrostructure *micro, PetscInt a, PetscInt b)
 {
   return micro->cell ? PetscMin(micro->cell[a].cohesion, micro->cell[b].cohesion) : 1.0;
 }
 
-/* The area weighted with the cohesion of its loops (and, if asked, the plain one). */
+/* Area weighted with the cohesion factors of its loops; plain (may be NULL): unweighted. */
 PetscReal LamGapAreaEvaluate(const LamGapArea *area, const PetscReal F[9], const PetscReal y[], PetscReal *plain);
-/* The derivatives below are of factor times the weighted area, and are added. */
+/* The functions below add derivatives of factor times the weighted area. */
 void LamGapAreaAddGradient(const LamGapArea *area, const PetscReal F[9], const PetscReal y[], PetscReal factor,
                            PetscReal gradient[]);
 void LamGapAreaAddHessian(const LamGapArea *area, PetscReal factor, PetscReal values[]);
-/* With respect to F11, F12, F21, F22, once and twice, and to each of them and y; the last two may be NULL. */
+/* First and second derivatives in F11, F12, F21, F22, and mixed derivatives in F and y; the last two may be NULL. */
 void LamGapAreaAddShifts(const LamGapArea *area, const PetscReal F[9], const PetscReal y[], PetscReal factor,
                          PetscReal force[4], PetscReal force_force[4][4], PetscReal *force_y[4]);
 

@@ -6,7 +6,7 @@
     first variation    int phi_A N ds + sum over moving break points of phi_A [gamma] ds_v, ends included,
     second variation   int lambda d2gamma ds + break points (AddBreak),
     d2gamma = -(sym(N0, T) + gamma N0(x)N0 + (b/m) T(x)T)/H,   m = tau.tau, b = y_etaeta.n, H = m - gamma b
-  All terms are kept: the Newton iteration and the tangent of the tissue need every one of them.
+  All terms are kept: the Newton iteration and the effective tangent need them.
 
   References. Puso & Laursen, Comput. Methods Appl. Mech. Engrg 193 (2004) 601 (segment mortar); Popp, Gee & Wall, Int.
   J. Numer. Meth. Engng 79 (2009) 1354 (linearisation); docs/theory/contact.md, First and second variation.
@@ -34,7 +34,7 @@ PetscErrorCode LamMortarResultDestroy(LamMortarResult *result)
   PetscFunctionReturn(0);
 }
 
-/* A place on the slave and its projection on one master edge. Rows hold the dofs of the slave edge, then the master's.
+/* A point of the slave and its projection on one master edge. Rows hold the dofs of the slave edge, then the master's.
  */
 typedef struct {
   PetscInt edge, master;
@@ -44,7 +44,7 @@ typedef struct {
   PetscReal g, H, b_over_m; /* gap; H, b/m of the header comment */
 } Point;
 
-/* Nearest place eta on a master edge, extended a little past its ends. */
+/* Closest-point projection: eta on a master edge, which is extended a little past its ends. */
 static PetscReal Project(const PetscReal y[][2], const PetscReal X[2])
 {
   PetscReal eta = 0.0, curvature[2];
@@ -99,7 +99,7 @@ static void SetPoint(const LamMortarChains *chains, PetscInt edge, PetscReal s, 
   p->g = (X[0] - at[0]) * p->normal[0] + (X[1] - at[1]) * p->normal[1];
   b = LamDot(curvature, p->normal);
   p->H = m - p->g * b;
-  if (p->H < 0.2 * m) p->H = 0.2 * m; /* beyond the centre of curvature: only far-open gaps */
+  if (p->H < 0.2 * m) p->H = 0.2 * m; /* beyond the centre of curvature: only in wide open gaps */
   p->b_over_m = b / m;
 }
 
@@ -113,7 +113,7 @@ static void RelativeRow(const Point *p, const PetscReal z[2], PetscReal row[POIN
     }
 }
 
-/* Global dof of each local one: a slave edge, then `nodes` master nodes from the start of edge `master`. */
+/* Global dofs of a slave edge, then of `nodes` master nodes from the start of edge `master`. */
 static void LocalDofs(const LamMortarChains *chains, PetscInt edge, PetscInt master, PetscInt nodes, PetscInt dof[])
 {
   const PetscInt first = 2 * (2 * chains->n + 1);
@@ -212,7 +212,8 @@ static void AddSegment(const LamMortarChains *chains, PetscReal from, PetscReal 
   if (loaded) ScatterHessian(POINT_DOFS, dof, (const PetscReal(*)[BREAK_DOFS])M, dofs, result->hessian);
 }
 
-/* A moving break point: place on the slave, plane t, and rows of its variations; local dofs of BREAK_DOFS. */
+/* A moving break point: position on the slave, plane direction t, and rows of their variations; local dofs of
+   BREAK_DOFS. */
 typedef struct {
   PetscInt n; /* local dofs */
   PetscInt dof[BREAK_DOFS];
@@ -223,7 +224,7 @@ typedef struct {
   PetscReal ds[BREAK_DOFS];
 } Break;
 
-/* Adds one side's unit tangent, times `share`, to the plane of a vertex: t, dt and z.d2t. */
+/* Adds the unit tangent of one side, times `share`, to the plane direction of a vertex: t, dt and z.d2t. */
 static void AddUnitTangent(const PetscReal y[][2], PetscReal eta, PetscReal share, PetscInt offset, Break *b)
 {
   PetscReal N[3], dN[3], tau[2], unit[2], length, zu, rows[2][BREAK_DOFS] = {{0}}, ut[BREAK_DOFS], zt[BREAK_DOFS];
@@ -248,7 +249,8 @@ static void AddUnitTangent(const PetscReal y[][2], PetscReal eta, PetscReal shar
   AddSymmetric(b->n, 1.5 * share * zu / (length * length), ut, ut, b->zd2t);
 }
 
-/* The plane of vertex v met by the slave at s on `edge`; at the chain's ends the unnormalised tangent serves. */
+/* Cut of the plane of vertex v with the slave at s on `edge`. At the chain's ends the plane uses the unnormalised
+   tangent. */
 static void SetBreak(const LamMortarChains *chains, PetscInt v, PetscInt edge, PetscReal s, Break *b)
 {
   const PetscBool end = (PetscBool)(v == 0 || v == chains->m);
@@ -304,7 +306,7 @@ static void AddSecondMotion(const Break *b, PetscReal c, PetscReal M[][BREAK_DOF
     for (PetscInt j = i; j < b->n; ++j) M[i][j] += f * b->zd2t[i][j];
 }
 
-/* What moves a break point: the cut of a master vertex, through the ramp where the overlap ends. */
+/* Motion of a break point: the cut of a master vertex, composed with the ramp at an end of the overlap. */
 typedef struct {
   PetscInt vertex, edge, piece;
   PetscReal s, cut;
@@ -316,7 +318,7 @@ typedef struct {
 
 static Motion FindMotion(const LamMortarChains *chains, const LamMortarSegments *segments, PetscInt k)
 {
-  /* a place on the same half-edge, inside the overlap */
+  /* a point on the same half-edge, inside the overlap */
   const PetscReal inside = 0.5 * (segments->s[k] + segments->s[k + 1 < segments->count ? k + 1 : k - 1]);
   const PetscInt v = segments->vertex[k];
   Motion motion = {

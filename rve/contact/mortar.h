@@ -1,10 +1,10 @@
 /*
   Segment mortar contact of two chains of quadratic edges: geometry, weighted gaps and their first and second variation.
-  It knows nothing of cells; all formulas are derived in docs/theory/contact.md.
+  Independent of cells; all formulas are derived in docs/theory/contact.md.
 
   The slave chain has n edges and nodes x[2n+1], the master chain m edges and nodes y[2m+1] (of the image that faces the
   slave). Both loops run counter-clockwise around their own cell, so the chains run in opposite directions. Edge e
-  has nodes 2e, 2e+1 (middle), 2e+2. A place on the slave is s in [0, n].
+  has nodes 2e, 2e+1 (middle), 2e+2. The slave coordinate is s in [0, n].
 
     gap      gamma(s) = (X(s) - y(eta)).n, y(eta) the closest point, n the normal outward from the master
     hats     phi_A, A = 0..2n, piecewise linear in s with nodes at s = A/2
@@ -31,13 +31,14 @@ static inline PetscInt LamMortarDofs(PetscInt n, PetscInt m)
   return 2 * (2 * n + 1) + 2 * (2 * m + 1);
 }
 
-/* Where integration is broken: half-edges of the slave, planes through master vertices, ends of the overlap. */
+/* Break points of the integration: half-edges of the slave, planes through master vertices, ends of the overlap. */
 typedef struct {
-  PetscReal *cut;       /* [m+1]: where the plane of a master vertex meets the slave; n or 0 where it lies beyond */
-  PetscBool *is_cut;    /* [m+1]: it does meet the slave, so that place moves */
+  PetscReal
+      *cut; /* [m+1]: s where the plane of a master vertex cuts the slave; n or 0 if the cut lies beyond the end */
+  PetscBool *is_cut;    /* [m+1]: the plane cuts the slave, so the break point moves */
   PetscInt count;       /* break points; 0: no overlap */
   PetscReal *s;         /* [count] ascending */
-  PetscInt *vertex;     /* [count]: the master vertex whose plane is here, so that it moves; -1: fixed */
+  PetscInt *vertex;     /* [count]: master vertex of a moving break point; -1: fixed */
   PetscInt *master;     /* [count-1]: master edge of each segment */
   PetscReal ramp[2][2]; /* lower, upper end of the overlap: first and second derivative of its ramp */
 } LamMortarSegments;
@@ -59,9 +60,9 @@ PetscErrorCode LamMortarResultDestroy(LamMortarResult *result);
 void LamMortarEvaluate(const LamMortarChains *chains, const LamMortarSegments *segments, const PetscReal lambda[],
                        PetscInt points, LamMortarResult *result);
 
-/* Gap at s over master edge `edge` and its nearest point there. */
+/* Gap at s from master edge `edge`, and the closest point there. */
 PetscReal LamMortarGap(const LamMortarChains *chains, PetscReal s, PetscInt edge, PetscReal nearest[2]);
-/* Distance of the slave at s from master edge `edge`, nothing beyond the edge's ends. */
+/* Distance of the slave point s from master edge `edge`, without extension past the edge's ends. */
 PetscReal LamMortarDistance(const LamMortarChains *chains, PetscReal s, PetscInt edge);
 /* Position and tangent dX/ds of the slave at s. */
 void LamMortarSlavePoint(const LamMortarChains *chains, PetscReal s, PetscReal X[2], PetscReal Xs[2]);

@@ -4,7 +4,7 @@
 
 #include "mortar.h"
 
-#define LAM_SHORT_SEGMENT 1e-11 /* of an edge: dropped */
+#define LAM_SHORT_SEGMENT 1e-11 /* fraction of an edge; shorter segments are dropped */
 
 static inline PetscReal LamDot(const PetscReal a[2], const PetscReal b[2])
 {

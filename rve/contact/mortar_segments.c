@@ -3,9 +3,9 @@
 
   Method. A plane through each master vertex, along the mean of the unit tangents that meet there (at the chain's ends
   the one-sided tangent), cuts the slave chain at the root of a quadratic. The planes of the end vertices bound the
-  overlap. Where such a cut passes the slave's own end, at distance u, the overlap's end follows the ramp h(u) instead
-  of max(u, 0): h = 0 for u <= 0, u^2 (2 w - u)/w^2 up to the width w, u beyond. The potential then has a continuous
-  gradient there; with the kink, Newton's method cycles between a moving and a fixed end.
+  overlap. When such a cut passes the slave's own end, at distance u, the end of the overlap follows the ramp h(u)
+  instead of max(u, 0): h = 0 for u <= 0, u^2 (2 w - u)/w^2 up to the width w, u beyond. The potential then has a
+  continuous gradient there; with the kink of max(u, 0), Newton's method cycles between a moving and a fixed end.
 */
 #include "mortar_impl.h"
 
@@ -52,7 +52,7 @@ static PetscReal FallingRoot(PetscReal c0, PetscReal c, PetscReal c1)
   return -2.0 * c / (B - PetscSqrtReal(PetscMax(0.0, B * B - 4.0 * A * c)));
 }
 
-/* Where the plane of vertex v cuts the slave. */
+/* Finds the cut of the plane of vertex v with the slave. */
 static void FindCut(const LamMortarChains *chains, PetscInt v, LamMortarSegments *segments)
 {
   const PetscReal expected = (PetscReal)chains->n * (1.0 - (PetscReal)v / (PetscReal)chains->m);
@@ -93,7 +93,7 @@ static void Insert(LamMortarSegments *segments, PetscReal s, PetscInt vertex)
   segments->vertex[at] = vertex;
 }
 
-/* Distance of the overlap's end from the slave's end, where the cut is at distance u; slope[2]: h', h''. */
+/* Distance of the overlap's end from the slave's end if the cut is at distance u; slope[2]: h', h''. */
 static PetscReal Ramp(PetscReal u, PetscReal slope[2])
 {
   slope[0] = 1.0;
@@ -112,7 +112,7 @@ void LamMortarFindSegments(const LamMortarChains *chains, LamMortarSegments *seg
 
   for (PetscInt v = 0; v <= m; ++v) FindCut(chains, v, segments);
   for (PetscInt v = 1; v <= m; ++v)
-    if (segments->cut[v] > segments->cut[v - 1]) { /* planes that cross before they reach a far slave */
+    if (segments->cut[v] > segments->cut[v - 1]) { /* planes that cross before they reach a distant slave */
       segments->cut[v] = segments->cut[v - 1];
       segments->is_cut[v] = PETSC_FALSE;
     }
