@@ -1,8 +1,8 @@
 /*
-  The last error in words.
+  The last error as text.
 
-  Functions of the library return a PetscErrorCode; PETSc's own handlers print a trace as well. A program that wants the
-  words only, to show them or to raise them in its own language, calls LamErrorsKeep once.
+  Functions of the library return a PetscErrorCode; PETSc's default handlers also print a trace. A program that needs
+  only the message, to show it or to raise it in its own language, calls LamErrorsKeep once.
 */
 #ifndef LAMELLA_ERROR_H
 #define LAMELLA_ERROR_H
@@ -12,10 +12,10 @@
 
 LAM_C_BEGIN
 
-/* From here on errors are kept, per thread, in place of being printed; also before PetscInitialize. */
+/* From this call on errors are stored per thread instead of printed. May be called before PetscInitialize. */
 LAM_EXPORT PetscErrorCode LamErrorsKeep(void);
-/* Of this thread's last error: its code (0: none yet), what was wrong, and the calls that it came through, a line each.
-   Valid until the next error. */
+/* The last error of this thread: code (0: no error so far), message, and call trace, one call per line. Valid until
+   the next error. */
 LAM_EXPORT PetscErrorCode LamErrorCode(void);
 LAM_EXPORT const char *LamErrorMessage(void);
 LAM_EXPORT const char *LamErrorTrace(void);

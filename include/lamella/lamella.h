@@ -1,36 +1,36 @@
 /*
   Lamella: effective stress, tangent and debonding of fruit and plant tissue.
 
-  Everything a program needs; each part has its own header, to be read in this order:
-    scene.h        what the user describes, converted to nondimensional numbers
-    place_field.h  numbers that vary with the position
-    lattice.h      how the cells of a microstructure lie side by side
-    response.h     load and response of a material point; the responder table
-    ellipticity.h  whether a tangent resists localisation
-    rve.h          solves the representative volume element
-    database.h     stores responses, interpolates them
-    blend.h        responses between tissues that differ in one number
-    parametric_database.h       responses for walls between databases
-    heterogeneous.h       responses for a body of different tissue
-    cache.h        queries a database and solves what it lacks
-    sealed.h       responses of cells that keep their water, from those for prescribed turgor
-    macro.h        the macroscale finite element solver
-    kinetics.h     how a property of tissue changes in time
-    process.h      tissue that changes in time at one material point
-    body.h         a body whose tissue changes in time
-    study.h        whole studies: a database built, a body solved
-    material.h     a material law for other programs, in SI units
-    error.h        the last error in words
-    archive.h      the state of a run, to go on from
-    version.h      LAMELLA_VERSION and its numbers
-    export.h       what the library shows
+  This header includes all others; the order for reading:
+    scene.h                the user's input, converted to nondimensional numbers
+    place_field.h          fields of the reference position
+    lattice.h              arrangement of the cells of a microstructure
+    response.h             load and response of a material point; responders
+    ellipticity.h          strong ellipticity of a tangent
+    rve.h                  solves the representative volume element
+    database.h             stores and interpolates responses
+    blend.h                responses between tissues that differ in one number
+    parametric_database.h  responses for walls between databases
+    heterogeneous.h        responses for a body of heterogeneous tissue
+    cache.h                queries a database and solves the states that it lacks
+    sealed.h               responses of sealed cells, from those for prescribed turgor
+    macro.h                the macroscale finite element solver
+    kinetics.h             kinetic laws
+    process.h              tissue that changes in time at one material point
+    body.h                 a body whose tissue changes in time
+    study.h                whole studies: build a database, solve a body
+    material.h             a material law for other programs, in SI units
+    error.h                the last error as text
+    archive.h              checkpoints
+    version.h              LAMELLA_VERSION and its numbers
+    export.h               symbol visibility
 
-  Conventions throughout
+  Conventions
   * Every function that can fail returns a PetscErrorCode. PETSC_ERR_USER_INPUT: the user's file or
-    argument is wrong and the message says where and what would be right. PETSC_ERR_FILE_OPEN, _READ,
-    _WRITE, _UNEXPECTED: input or output failed. A solve that does not converge is no error: see LamStatus.
+    argument is invalid, and the message says where and what would be right. PETSC_ERR_FILE_OPEN, _READ,
+    _WRITE, _UNEXPECTED: input or output failed. A solve that does not converge is not an error: see LamStatus.
   * Inside the library everything is nondimensional: lengths in apothems a of the cell, stresses in
-    C1 + C2 of the wall. LamScales converts at the edge.
+    C1 + C2 of the wall. LamScales converts to SI.
   * Tensors are row-major, 3x3 as 9 numbers (11 12 13 21 22 23 31 32 33); the tangent is dP_ij/dF_kl,
     81 numbers, row ij, column kl.
 */

@@ -1,8 +1,8 @@
 /*
-  The macroscale solver: total Lagrangian finite elements in plane strain whose material is a responder.
+  The macroscale solver: total Lagrangian finite elements in plane strain. The material is a responder.
 
     LamMacroCreate(comm, &macro); LamMacroSetScene(macro, scene); LamMacroSetUp(macro);
-    LamMacroGetPointCount(macro, &points);             to make the responder
+    LamMacroGetPointCount(macro, &points);             to create the responder
     LamMacroSetResponder(macro, &responder); LamMacroSetMonitor(macro, step_done, ctx); LamMacroSetStop(macro, stop);
     LamMacroSolve(macro, &reason, message); LamMacroDestroy(&macro);
 */
@@ -20,44 +20,44 @@ LAM_C_BEGIN
 typedef struct LamMacro_s *LamMacro;
 
 typedef struct {
-  PetscInt step;         /* 1.. ; inflation, where asked for, is step 0; else turgor acts first in step 1 */
-  PetscReal time;        /* s; NaN: load steps take none */
-  PetscReal load_factor; /* share of the boundary displacements: 0 (after inflation) to 1; the last step of a run that
-                            failed or was stopped in it ends at the last converged increment */
-  PetscBool complete;    /* not one that came only part of its way */
+  PetscInt step;         /* 1.. ; inflation, if requested, is step 0; otherwise turgor acts first in step 1 */
+  PetscReal time;        /* s; NaN: quasi-static load steps */
+  PetscReal load_factor; /* fraction of the boundary displacements: 0 (after inflation) to 1; the last step of a run
+                            that failed or was stopped ends at the last converged increment */
+  PetscBool complete;    /* PETSC_FALSE: ended at an increment before the end of the step */
   PetscInt boundary_count;
   char boundary[LAM_MAX_BOUNDARIES][LAM_NAME_LENGTH]; /* each named side once */
-  PetscReal reaction[LAM_MAX_BOUNDARIES][2];          /* force on the body, stress * macro length, per thickness;
-                                                         a corner's is shared among the sides that prescribe it */
-  PetscReal displacement[LAM_MAX_BOUNDARIES][2];      /* prescribed, from where the conditions count; NaN: free */
-  PetscReal work;                                     /* of the boundary forces since the start, stress * length^2 */
-  PetscReal debonded_fraction, max_gap;               /* not finite where the responder does not know them */
+  PetscReal reaction[LAM_MAX_BOUNDARIES][2];     /* force on the body, stress * macro length, per thickness; a corner's
+                                                    force is shared by the sides that prescribe it */
+  PetscReal displacement[LAM_MAX_BOUNDARIES][2]; /* prescribed, relative to the start of the conditions; NaN: free */
+  PetscReal work;                                /* of the boundary forces since the start, stress * length^2 */
+  PetscReal debonded_fraction, max_gap;          /* not finite if unknown to the responder */
   PetscReal turgor_mean;
-  PetscReal ellipticity;            /* smallest of the material points (ellipticity.h); NaN: not known */
-  PetscReal localisation_normal[2]; /* of the band that gives in first, there: its reference normal, */
+  PetscReal ellipticity;            /* minimum over the material points (ellipticity.h); NaN: unknown */
+  PetscReal localisation_normal[2]; /* reference normal of the critical band there, */
   PetscReal localisation_place[2];  /* and the reference position of the point, macro lengths */
-  PetscInt localised_points;        /* how many have lost it */
-  PetscInt newton_iterations;       /* all of the step, cutbacks included */
+  PetscInt localised_points;        /* number of points that have lost ellipticity */
+  PetscInt newton_iterations;       /* total of the step, cutbacks included */
   PetscInt cutbacks;
   PetscInt64 queries, hits, solves, failures; /* of this step, all ranks */
-  PetscInt64 interpolated;                    /* answers from a database, likewise; some needed solves of nodes */
+  PetscInt64 interpolated;                    /* responses from a database, likewise; some needed solves of nodes */
   PetscReal seconds;                          /* wall time */
-  PetscReal query_seconds, solve_seconds;     /* of it in questions to databases and in solves, mean of the ranks */
-  PetscReal residuals[64];                    /* of the last Newton iteration series, over the norm of the
-                                                 element forces; residual_count entries */
+  PetscReal query_seconds, solve_seconds;     /* part of it in database queries and in solves, mean over the ranks */
+  PetscReal residuals[64]; /* of the last series of Newton iterations, over the norm of the element forces;
+                              residual_count entries */
   PetscInt residual_count;
-  PetscReal order; /* log(r2 / r1) / log(r1 / r0) of its last three above 1e-8; NaN where there are fewer */
+  PetscReal order; /* log(r2 / r1) / log(r1 / r0) of the last three residuals above 1e-8; NaN: fewer */
 } LamMacroStep;
 
 typedef enum { LAM_MACRO_DONE, LAM_MACRO_STOPPED, LAM_MACRO_NOT_CONVERGED } LamMacroReason;
 
 enum { LAM_MESSAGE_LENGTH = 512 };
 
-/* Called on all ranks after each converged step, and after one that came only part of its way; sets *stop to end the
-   run after it. */
+/* Called on all ranks after each converged step, and after an incomplete last one; sets *stop to end the run after
+   it. */
 typedef PetscErrorCode (*LamMacroMonitor)(LamMacro macro, const LamMacroStep *step, PetscBool *stop, void *ctx);
 
-/* Called on all ranks after each attempt at an increment that failed; `why` is the reason, with the material point. */
+/* Called on all ranks after each failed increment; `why` is the reason, with the material point. */
 typedef PetscErrorCode (*LamMacroCutback)(LamMacro macro, const char why[], void *ctx);
 
 LAM_EXPORT PetscErrorCode LamMacroCreate(MPI_Comm comm, LamMacro *macro);
@@ -66,94 +66,93 @@ LAM_EXPORT PetscErrorCode LamMacroSetUp(LamMacro macro);
 LAM_EXPORT PetscErrorCode LamMacroGetComm(LamMacro macro, MPI_Comm *comm);
 LAM_EXPORT PetscErrorCode LamMacroGetPointCount(LamMacro macro, PetscInt *points); /* material points on this rank */
 /*
-  Of this rank's material points: X [point][2] reference positions in macro lengths, group [point] the index of the
-  mesh's named region it lies in, -1: none. Names of these regions: of a Gmsh file's physical groups of elements.
+  Material points of this rank: X [point][2] reference positions in macro lengths; group [point] index of the mesh's
+  named region, -1: none. LamMacroGetGroups: names of these regions, the physical groups of elements of a Gmsh file.
 */
 LAM_EXPORT PetscErrorCode LamMacroGetPlaces(LamMacro macro, PetscReal X[], PetscInt group[]);
 LAM_EXPORT PetscErrorCode LamMacroGetGroups(LamMacro macro, PetscInt *count, const char (**names)[LAM_NAME_LENGTH]);
-/* Tissue that differs from point to point, [point] each: the turgor at full inflation, and the cohesion; where this is
-   not called they are the scene's. */
+/* Sets turgor at full inflation and cohesion per point, [point] each. Default: the scene's values. */
 LAM_EXPORT PetscErrorCode LamMacroSetPointTissue(LamMacro macro, const PetscReal turgor[], const PetscReal cohesion[]);
 LAM_EXPORT PetscErrorCode LamMacroSetResponder(LamMacro macro, LamResponder *responder); /* borrows it */
 LAM_EXPORT PetscErrorCode LamMacroSetMonitor(LamMacro macro, LamMacroMonitor monitor, void *ctx);
 LAM_EXPORT PetscErrorCode LamMacroSetCutback(LamMacro macro, LamMacroCutback cutback, void *ctx);
 /*
-  `stop` is asked after each batch of responses, and while other ranks are still at theirs; true on any rank, the
-  increment under way is given up and the run ends with LAM_MACRO_STOPPED. Once true it must stay so. A responder may
+  `stop` is called after each batch of responses, and while waiting for other ranks. If it is true on any rank, the
+  current increment is abandoned and the run ends with LAM_MACRO_STOPPED. Once true it must stay true. A responder may
   then leave its batch unfinished (LAM_OUT_OF_REACH).
 */
 LAM_EXPORT PetscErrorCode LamMacroSetStop(LamMacro macro, PetscBool (*stop)(void));
 /*
-  Runs inflation and load steps with cutback. What was reached when it ends early is reported to the monitor as a step;
-  `message` says why it failed.
+  Runs inflation and load steps with cutback. If it ends early, the part of the step that converged is reported to the
+  monitor; `message`: why it failed.
 */
 LAM_EXPORT PetscErrorCode LamMacroSolve(LamMacro macro, LamMacroReason *reason, char message[LAM_MESSAGE_LENGTH]);
 /*
-  Writes what a run needs to go on from the last complete step, or reads it, before LamMacroSolve: that goes on then
-  with the next step, as if it had done all before. To be called from the monitor of a complete step, after which
-  nothing else is to be kept. The archive may come from another number of ranks.
+  Writes or reads a checkpoint of the last complete step. Reading precedes LamMacroSolve, which then continues with
+  the next step as in an uninterrupted run. Writing: call it from the monitor of a complete step. The number of ranks
+  may differ.
 */
 LAM_EXPORT PetscErrorCode LamMacroArchive(LamMacro macro, LamArchive archive);
 LAM_EXPORT PetscErrorCode LamMacroDestroy(LamMacro *macro);
 
-/* ---- a body that is followed in time, instead of LamMacroSolve (body.h) ---- */
+/* ---- a body that changes in time, instead of LamMacroSolve (body.h) ---- */
 
-/* What the lumens of a material point are to hold at a turgor, per V0, and its derivative, which is not positive. */
+/* Water volume of the lumens of a material point at a turgor, per V0, and its derivative, which is not positive. */
 typedef void (*LamWaterLaw)(void *ctx, PetscInt point, PetscReal turgor, PetscReal *water, PetscReal *slope);
-/* The turgor is brought up by LamMacroStart and follows from the law then. To be called before LamMacroSetUp. */
+/* LamMacroStart raises the turgor; afterwards it follows from the law. Call before LamMacroSetUp. */
 LAM_EXPORT PetscErrorCode LamMacroSetWaterLaw(LamMacro macro, LamWaterLaw law, void *ctx);
 
 /* Conditions at an instant. */
 typedef struct {
   PetscReal load;    /* the load parameter */
-  PetscReal turgor;  /* share of the points' turgor; 1 where it follows from water */
+  PetscReal turgor;  /* fraction of the points' turgor; 1 if turgor follows from water */
   PetscReal lamella; /* factor of the points' cohesion */
   PetscReal walls;   /* factor of the moduli of their walls */
 } LamMacroInstant;
 
-/* Of this rank. A state is u [displacements] and pressures [elements][modes]: turgor over that of LamMacroStart, for
-   shape functions about the element's centre, of which the first is 1. */
+/* Sizes on this rank. A state is u [displacements] and pressures [elements][modes]: turgor over that of
+   LamMacroStart, for shape functions about the element's centre, of which the first is 1. */
 typedef struct {
-  PetscInt points, elements, displacements, modes; /* modes 0: the turgor is prescribed */
+  PetscInt points, elements, displacements, modes; /* modes 0: turgor is prescribed */
 } LamMacroSizes;
 LAM_EXPORT PetscErrorCode LamMacroGetSizes(LamMacro macro, LamMacroSizes *sizes);
-/* [point] the reference volume that each stands for. */
+/* Reference volume of each point, [point]. */
 LAM_EXPORT PetscErrorCode LamMacroGetVolumes(LamMacro macro, PetscReal volume[]);
-/* Of a point's element: its number on this rank and in the undistributed mesh, and which of its points it is. */
+/* Element of a point: its number on this rank and in the undistributed mesh; index: of the point in the element. */
 LAM_EXPORT PetscErrorCode LamMacroGetElement(LamMacro macro, PetscInt point, PetscInt *local, PetscInt *number,
                                              PetscInt *index);
 
-/* Brings the turgor up in the unloaded body, as LamMacroSolve does; *ok: PETSC_FALSE, and `message` says why not. */
+/* Raises the turgor in the unloaded body, as LamMacroSolve does; *ok PETSC_FALSE: it failed, with the reason in
+   `message`. */
 LAM_EXPORT PetscErrorCode LamMacroStart(LamMacro macro, PetscBool *ok, char message[LAM_MESSAGE_LENGTH]);
-/* Equilibrium under the conditions from a guess. *ok: found; else LamMacroTrouble says why not. Then one of the next.
- */
+/* Solves for the equilibrium under the conditions from an initial guess. *ok: converged; else LamMacroTrouble
+   returns the reason. Call LamMacroAccept or LamMacroReject afterwards. */
 LAM_EXPORT PetscErrorCode LamMacroBalance(LamMacro macro, const LamMacroInstant *instant, const PetscReal u[],
                                           const PetscReal pressures[], PetscBool *ok);
-LAM_EXPORT PetscErrorCode LamMacroAccept(LamMacro macro); /* it is the last converged state */
-LAM_EXPORT PetscErrorCode LamMacroReject(LamMacro macro); /* all is as before it */
+LAM_EXPORT PetscErrorCode LamMacroAccept(LamMacro macro); /* the solution becomes the last converged state */
+LAM_EXPORT PetscErrorCode LamMacroReject(LamMacro macro); /* restores the state before LamMacroBalance */
 /* The state of the last LamMacroBalance. */
 LAM_EXPORT PetscErrorCode LamMacroGetState(LamMacro macro, PetscReal u[], PetscReal pressures[]);
 LAM_EXPORT const char *LamMacroTrouble(LamMacro macro);
 LAM_EXPORT PetscErrorCode LamMacroStopped(LamMacro macro,
-                                          PetscBool *stopped); /* LamMacroSetStop said so; on all ranks */
+                                          PetscBool *stopped); /* by LamMacroSetStop; equal on all ranks */
 
-/* A material point in the last state that was evaluated. */
+/* A material point in the state evaluated last. */
 typedef struct {
   const LamLoad *load;
   const PetscReal *field; /* [LAM_POINT_FIELD_COUNT], below */
-  PetscReal lumen;        /* -dPsi/dp, per V0; NaN where the turgor is prescribed */
+  PetscReal lumen;        /* -dPsi/dp, per V0; NaN if turgor is prescribed */
   PetscInt percolating;   /* LamResponse.percolating_directions */
   PetscReal place[2];
 } LamMacroPoint;
 LAM_EXPORT PetscErrorCode LamMacroGetPoint(LamMacro macro, PetscInt point, LamMacroPoint *p);
-/* What is kept of responses is void: the tissue has changed. */
+/* Discards stored responses, after the tissue has changed. */
 LAM_EXPORT PetscErrorCode LamMacroForget(LamMacro macro);
-/* The report of the last converged state at a time, as of a load step that began at the clock time `start`.
-   Collective. */
+/* The report of the last converged state at a time, as for a load step that began at clock time `start`. Collective. */
 LAM_EXPORT PetscErrorCode LamMacroDescribe(LamMacro macro, PetscInt number, PetscReal time, PetscReal start,
                                            LamMacroStep *step);
 
-/* What is kept of a material point's response beside stress and deformation, one number each; NaN: not known. */
+/* Numbers stored for each material point beside stress and deformation; NaN: unknown. */
 #define LAM_POINT_FIELDS(X)                                                                                            \
   X(LAM_POINT_TURGOR, "turgor")                                                                                        \
   X(LAM_POINT_LUMEN, "lumen_fraction")                                                                                 \
@@ -169,34 +168,34 @@ LAM_EXPORT PetscErrorCode LamMacroDescribe(LamMacro macro, PetscInt number, Pets
   X(LAM_POINT_SHEAR, "lamella_shear")       /* max_lamella_shear */                                                    \
   X(LAM_POINT_ELLIPTICITY, "ellipticity")   /* of the tangent (ellipticity.h); sealed cells: with their water. Of an   \
                                                element's points the smallest counts */                                 \
-  X(LAM_POINT_ERROR, "error_estimate")      /* of an interpolated answer; 0: solved */                                 \
-  X(LAM_POINT_INTERPOLATED, "interpolated") /* 1: answered by a database; 0: solved */                                 \
-  X(LAM_POINT_DOUBTFUL, "doubtful")         /* 1: indicators that are not to be trusted; else 0 */
+  X(LAM_POINT_ERROR, "error_estimate")      /* of an interpolated response; 0: solved */                               \
+  X(LAM_POINT_INTERPOLATED, "interpolated") /* 1: from a database; 0: solved */                                        \
+  X(LAM_POINT_DOUBTFUL, "doubtful")         /* 1: indicators are not trusted; else 0 */
 typedef enum { LAM_POINT_FIELDS(LAM_ENUM_ENTRY) LAM_POINT_FIELD_COUNT } LamPointField;
 LAM_EXPORT extern const char *const LamPointFieldNames[];
-LAM_EXPORT PetscBool LamPointFieldIsStress(LamPointField field); /* in C1 + C2; else a bare number */
-/* Which of two values counts where one stands for several points: the larger; of what is lost as it falls, the smaller.
-   A NaN is passed on. */
+LAM_EXPORT PetscBool LamPointFieldIsStress(LamPointField field); /* in C1 + C2; otherwise a number without unit */
+/* The more critical of two values, when one stands for several points: the larger, or the smaller for quantities
+   whose decrease is critical. NaN is propagated. */
 LAM_EXPORT PetscReal LamPointFieldWorse(LamPointField field, PetscReal a, PetscReal b);
 
 /*
   Fields of the last converged step, gathered on rank 0 of the communicator (others get NULL), in the numbering of the
-  undistributed mesh; the caller frees them with LamMacroFieldsDestroy. All nondimensional. n: LAM_POINT_FIELD_COUNT.
+  undistributed mesh; free them with LamMacroFieldsDestroy. All nondimensional. n: LAM_POINT_FIELD_COUNT.
     nodes       [node_count][2]       reference positions
     u           [node_count][2]       displacement
     elements    [element_count][LAM_FIELD_NODES]  VTK's order: corners, mid-edges, centre; of a triangle six, then -1
     F, P        [element_count][9]    mean over the element's points, row-major 3x3
-    cauchy      [element_count][9]    mean of P F^T / J over the element's present volume
+    cauchy      [element_count][9]    mean of P F^T / J over the element's current volume
     mean        [element_count][n]    mean over the element's points, by their reference volume
-    largest     [element_count][n]    largest of the element's points, of the ellipticity the smallest; NaN where one of
-                                      them is
+    largest     [element_count][n]    maximum over the element's points, minimum for the ellipticity; NaN if one of them
+                                      is NaN
     first_point [element_count + 1]   material points of element e: first_point[e] <= p < first_point[e + 1]
-    point       [point_count][n]      of each point
+    point       [point_count][n]      fields of each point
     load        [point_count]         its deformation gradient, turgor and cohesion
     point_P     [point_count][9]      its first Piola-Kirchhoff stress
     place       [point_count][2]      its reference position
-    position    [point_count][2]      its present position
-    volume      [point_count]         the reference volume it stands for
+    position    [point_count][2]      its current position
+    volume      [point_count]         its reference volume
 */
 enum { LAM_FIELD_NODES = 9 };
 typedef struct {
@@ -207,7 +206,7 @@ typedef struct {
 } LamMacroFields;
 LAM_EXPORT PetscErrorCode LamMacroGetFields(LamMacro macro, LamMacroFields *fields);
 LAM_EXPORT PetscErrorCode LamMacroFieldsDestroy(LamMacroFields *fields);
-/* The number on this rank of point `index` of an element of the undistributed mesh; -1: another rank has it. */
+/* Number on this rank of point `index` of an element of the undistributed mesh; -1: it is on another rank. */
 LAM_EXPORT PetscErrorCode LamMacroFindPoint(LamMacro macro, PetscInt element, PetscInt index, PetscInt *point);
 
 LAM_C_END

@@ -1,9 +1,9 @@
 /*
-  Tissue between databases: one more axis, along which walls vary in space or time.
+  Interpolation between databases: one more axis, along which walls vary in space or time.
 
-  Databases of microstructures that differ in one number, wall thickness t/a or a parameter of the wall, are the knots
-  of the axis. Between them the potentials are combined with fixed weights (blend.h), so that stress and tangent are
-  still the exact derivatives of one potential.
+  Databases of microstructures that differ in one number, wall thickness t/a or a wall parameter, are the knots of the
+  axis. Between them the potentials are combined with fixed weights (blend.h), so that stress and tangent are the
+  exact derivatives of one potential.
 */
 #ifndef LAMELLA_PARAMETRIC_DATABASE_H
 #define LAMELLA_PARAMETRIC_DATABASE_H
@@ -26,8 +26,8 @@ LAM_EXPORT extern const char *const LamParametricAxisNames[];
 typedef struct LamParametricDatabase_s *LamParametricDatabase;
 
 /*
-  n >= 2 databases, in any order; borrowed, and not to be added to while the family is asked. PETSC_ERR_USER_INPUT where
-  they differ in more than one of these numbers (in units of C1 + C2 and apothems), in none, or two are alike.
+  n >= 2 databases, in any order; borrowed; do not add to them during queries. PETSC_ERR_USER_INPUT if they differ in
+  more than one of these numbers (in units of C1 + C2 and apothems), in none, or two are equal.
 */
 LAM_EXPORT PetscErrorCode LamParametricDatabaseCreate(PetscInt n, const LamDatabase databases[],
                                                       LamParametricDatabase *family);
@@ -36,10 +36,10 @@ LAM_EXPORT PetscErrorCode LamParametricDatabaseDestroy(LamParametricDatabase *fa
 LAM_EXPORT PetscErrorCode LamParametricDatabaseGetAxis(LamParametricDatabase family, LamParametricAxis *axis,
                                                        PetscReal *least, PetscReal *most);
 /*
-  The answer at `value` of the axis; load and response in units of C1 + C2. Out of reach where one of the databases is,
-  or the value lies outside the knots. error_estimate adds to the databases' own the change of P when the knot farthest
-  from the value is left out (with two knots: a quarter of the change between them). Safe for threads, as
-  LamDatabaseQuery is.
+  The response at `value` of the axis; load and response in units of C1 + C2. LAM_OUT_OF_REACH if one of the databases
+  is, or the value is outside the knots. error_estimate: the databases' estimates plus the change of P when the knot
+  farthest from the value is left out (with two knots: a quarter of the change between them). Thread-safe as
+  LamDatabaseQuery.
 */
 LAM_EXPORT PetscErrorCode LamParametricDatabaseQuery(LamParametricDatabase family, PetscReal value, const LamLoad *load,
                                                      PetscReal accuracy, LamResponse *response);

@@ -1,5 +1,5 @@
 /*
-  A number that varies with the reference position: an expression of x and y, or a table on a grid.
+  A scalar field of the reference position: an expression of x and y, or a table on a grid.
 */
 #ifndef LAMELLA_PLACE_FIELD_H
 #define LAMELLA_PLACE_FIELD_H
@@ -14,18 +14,19 @@ LAM_C_BEGIN
 typedef struct LamPlaceField_s *LamPlaceField;
 
 /*
-  `name` is what messages call it. What is wrong with the text, or the file's, goes to `reason`, which is empty where
-  all is well; *field is NULL then. expression  of x and y in mm and the constant pi, in the language of muParser: + - *
-  / ^, comparisons and && || (1 or 0), c ? a : b, sin, sqrt, exp, ln, abs, min, max ... table       text file: a first
-  line of names, then lines x, y, value separated by commas, positions in mm; every pair of an x and a y of the file
-  once, two of each at least. Bilinear between.
+  `name` identifies the field in messages. For invalid text, or an invalid file, `reason` says why and *field is NULL;
+  otherwise `reason` is empty.
+    expression  of x and y in mm and the constant pi, in the language of muParser: + - * / ^, comparisons and && ||
+                (1 or 0), c ? a : b, sin, sqrt, exp, ln, abs, min, max ...
+    table       text file: a first line of names, then lines x, y, value separated by commas, positions in mm; every
+                pair of an x and a y of the file once, at least two of each. Bilinear interpolation.
 */
 LAM_EXPORT PetscErrorCode LamPlaceFieldFromExpression(const char name[], const char text[], LamPlaceField *field,
                                                       char reason[LAM_PLACE_FIELD_REASON]);
 LAM_EXPORT PetscErrorCode LamPlaceFieldFromTable(const char name[], const char path[], LamPlaceField *field,
                                                  char reason[LAM_PLACE_FIELD_REASON]);
-/* At (X[0], X[1]) in mm. PETSC_ERR_USER_INPUT where the expression is not finite, or the table ends. Not for several
-   threads at once. */
+/* Evaluates at (X[0], X[1]) in mm. PETSC_ERR_USER_INPUT if the expression is not finite, or the point is outside the
+   table. Not thread-safe. */
 LAM_EXPORT PetscErrorCode LamPlaceFieldEvaluate(LamPlaceField field, const PetscReal X[2], PetscReal *value);
 LAM_EXPORT PetscErrorCode LamPlaceFieldDestroy(LamPlaceField *field);
 

@@ -1,9 +1,9 @@
 /*
-  The representative volume element: whole hexagonal cells with hyperelastic walls, periodic or a patch between grips.
+  The representative volume element: hexagonal cells with hyperelastic walls, periodic or a patch between grips.
 
     LamRVECreate(comm, &rve); LamRVESetMicrostructure(rve, &micro); LamRVESetUp(rve);
     LamRVEStateCreate(rve, &state);
-    LamRVESolve(rve, &load, state, &response);       state: in the start, out the solution
+    LamRVESolve(rve, &load, state, &response);       state: initial guess on entry, solution on return
     LamRVEStateDestroy(&state); LamRVEDestroy(&rve);
 */
 #ifndef LAMELLA_RVE_H
@@ -16,96 +16,96 @@
 LAM_C_BEGIN
 
 typedef struct LamRVE_s *LamRVE;           /* mesh, matrix, factor: one per rank and microstructure */
-typedef struct LamRVEState_s *LamRVEState; /* positions of one material point and the load they belong to */
+typedef struct LamRVEState_s *LamRVEState; /* positions of one material point and the corresponding load */
 
 /*
-  `comm`: the ranks that solve the RVE together. Of several, rank 0 makes all calls below; the others call LamRVEServe,
-  which takes part in the factorisations of all RVEs of this communicator, and returns when rank 0 calls LamRVEDismiss.
-  `waiting` (or NULL) is called now and then while there is nothing to do, so that the rank can talk to others on other
-  communicators; what it returns has no effect.
-  That pays from some 20,000 unknowns.
+  `comm`: the ranks that solve the RVE together. If there are several, rank 0 makes all calls below. The others call
+  LamRVEServe, which takes part in the factorisations of all RVEs of this communicator and returns when rank 0 calls
+  LamRVEDismiss. `waiting` (or NULL) is called periodically while the rank is idle, so that it can communicate on
+  other communicators; its return value has no effect. Several ranks are faster from about 20,000 unknowns.
 */
 LAM_EXPORT PetscErrorCode LamRVECreate(MPI_Comm comm, LamRVE *rve);
 LAM_EXPORT PetscErrorCode LamRVEServe(MPI_Comm comm, PetscBool (*waiting)(void *ctx), void *ctx);
 LAM_EXPORT PetscErrorCode LamRVEDismiss(MPI_Comm comm);
-/* Copies the description. along and through must be chosen. PETSC_ERR_USER_INPUT where it cannot be solved. */
+/* Copies the description; along and through must be set. PETSC_ERR_USER_INPUT if it cannot be solved. */
 LAM_EXPORT PetscErrorCode LamRVESetMicrostructure(LamRVE rve, const LamMicrostructure *micro);
-/* How contact is reached: LAM_TWO_STEP (default) or LAM_ONE_STEP. No effect on bonded tissue. */
+/* Strategy for contact: LAM_TWO_STEP (default) or LAM_ONE_STEP. No effect on bonded tissue. */
 LAM_EXPORT PetscErrorCode LamRVESetStrategy(LamRVE rve, LamStrategy strategy);
-/* Ends solves once the residual, forces per thickness over (C1 + C2) apothem, and the complementarity of contact, are
-   below `tolerance`; never below what rounding allows, which is the default, 0. */
+/* Convergence tolerance for the residual, forces per thickness over (C1 + C2) apothem, and for the complementarity
+   of contact. The limit of rounding is used if it is larger. Default 0: the limit of rounding. */
 LAM_EXPORT PetscErrorCode LamRVESetTolerance(LamRVE rve, PetscReal tolerance);
 /*
-  What responses are asked for; the rest of their numbers is not computed, and not known. Status and stability, counts
-  of work and the state are always there. Everything by default. Solves under prescribed stress derive in any case.
+  Selects what responses contain; other numbers are not computed, and are unknown. Status, stability, work counts and
+  the state are always computed. Default: everything. Solves under prescribed stress always compute derivatives.
 */
 typedef enum {
   LAM_WANT_STRESS = 1,      /* energy and its first derivatives, lumen and opening, turgor reached */
   LAM_WANT_DERIVATIVES = 2, /* with stress: tangent and its ellipticity, P_turgor, P_cohesion, second derivatives of
                                the energy */
-  LAM_WANT_INDICATORS = 4,  /* tractions, what has come apart */
-  LAM_WANT_WALLS = 8,       /* stretch, energy and tension of the walls: what strengths are held against; kinks */
+  LAM_WANT_INDICATORS = 4,  /* tractions, debonding */
+  LAM_WANT_WALLS = 8,       /* stretch, energy and tension of the walls, for comparison with strengths; kinks */
   LAM_WANT_ALL = LAM_WANT_STRESS | LAM_WANT_DERIVATIVES | LAM_WANT_INDICATORS | LAM_WANT_WALLS
 } LamWanted;
 LAM_EXPORT PetscErrorCode LamRVESetWanted(LamRVE rve, LamWanted wanted);
 /* Prints each Newton iteration to stderr (residual, step, negative eigenvalues). Off by default. */
 LAM_EXPORT PetscErrorCode LamRVESetMonitor(LamRVE rve, PetscBool on);
 /*
-  Gives solves up on demand: `interrupt` is asked before every factorisation of a solve, of whatever stage, and where it
-  says PETSC_TRUE the solve ends at once: status LAM_OUT_OF_REACH, reason "stopped before it was solved", the state as
-  it was, no error. It may use MPI on other communicators than the RVE's, but not the RVE. NULL: never (default).
+  Interrupts solves: `interrupt` is called before every factorisation. If it returns PETSC_TRUE the solve returns with
+  status LAM_OUT_OF_REACH, reason "stopped before it was solved", the state unchanged, and no error. It may use MPI on
+  communicators other than the RVE's, but not the RVE. NULL: never (default).
 */
 LAM_EXPORT PetscErrorCode LamRVESetInterrupt(LamRVE rve, PetscBool (*interrupt)(void *ctx), void *ctx);
-/* Whether the lumens can be sealed: room for their pressures in the matrix. Before LamRVESetUp. Off by default. */
+/* Allows the lumens to be sealed, by reserving rows for their pressures in the matrix. Call before LamRVESetUp.
+   Default: off. */
 LAM_EXPORT PetscErrorCode LamRVESetSealable(LamRVE rve, PetscBool on);
-/* Builds the mesh and the sparsity pattern; the factorisation is analysed at the first solve. */
+/* Builds the mesh and the sparsity pattern; symbolic factorisation takes place in the first solve. */
 LAM_EXPORT PetscErrorCode LamRVESetUp(LamRVE rve);
 /*
-  Other moduli (C1, C2, C4 and bulk modulus) of the walls of an RVE that is set up, from a description that is otherwise
-  the same: what follows from walls alone. States stay what they are, as starts.
+  Changes the moduli (C1, C2, C4 and bulk modulus) of the walls of an RVE that is set up; `micro` is otherwise
+  unchanged. Existing states remain valid as initial guesses.
 */
 LAM_EXPORT PetscErrorCode LamRVEChangeModuli(LamRVE rve, const LamMicrostructure *micro);
 LAM_EXPORT PetscErrorCode LamRVEDestroy(LamRVE *rve);
 
-/* A state at F = I without turgor: the stress-free reference. */
+/* Creates a state at F = I without turgor: the stress-free reference. */
 LAM_EXPORT PetscErrorCode LamRVEStateCreate(LamRVE rve, LamRVEState *state);
 LAM_EXPORT PetscErrorCode LamRVEStateCopy(LamRVEState from, LamRVEState to);
 LAM_EXPORT PetscErrorCode LamRVEStateReset(LamRVE rve, LamRVEState state);
 LAM_EXPORT PetscErrorCode LamRVEStateDestroy(LamRVEState *state);
 /*
-  A state as plain bytes, for a rank that has the same RVE: a solve from the bytes is one from the state, bit for bit.
-  LamRVEStatePack fills LamRVEStateSize bytes.
+  Serialises a state for a rank with the same RVE: a solve from the bytes gives the same result bit for bit as one
+  from the state. LamRVEStatePack fills LamRVEStateSize bytes.
 */
 LAM_EXPORT PetscErrorCode LamRVEStateSize(LamRVEState state, size_t *bytes);
 LAM_EXPORT PetscErrorCode LamRVEStatePack(LamRVEState state, void *bytes);
 LAM_EXPORT PetscErrorCode LamRVEStateUnpack(const void *bytes, LamRVEState state);
 
 /*
-  Finds the equilibrium at `load`, starting from `state`, which it replaces by the solution. Where none is found the
-  state is left as it was, and the response says why. Errors only for faults of the program or of memory.
+  Solves for the equilibrium at `load`, starting from `state`, which is replaced by the solution. If none is found the
+  state is unchanged, and the response contains the reason. Errors only for program or memory faults.
 */
 LAM_EXPORT PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
 
 /*
-  The same with stress prescribed in place of components of F: load->F holds the given components and a first guess of
-  the free ones, such as those of `state`; response->load.F is the solution (NaN where there is none). F12 and F21
-  cannot both be free. A state is stable where it is so at its F and dP/dF of the free components is positive definite;
-  an equilibrium that is not is LAM_UNSTABLE, with the reason.
+  As LamRVESolve, with stress prescribed instead of components of F. load->F holds the prescribed components and an
+  initial guess of the free ones, such as those of `state`; response->load.F is the solution (NaN if there is none).
+  F12 and F21 cannot both be free. A state is stable if it is stable at its F and dP/dF of the free components is
+  positive definite; other equilibria are LAM_UNSTABLE, with the reason.
 */
 LAM_EXPORT PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStressControl *control,
                                            LamRVEState state, LamResponse *response);
 
-/* Share of the walls' volume: where more of them has kinked (kinked_fraction, of responses with LAM_WANT_WALLS) the
-   estimate of bonded tissue is taken larger, and is a guess. */
+/* Fraction of the walls' volume: if kinked_fraction of a response with LAM_WANT_WALLS exceeds it, the error estimate
+   of bonded tissue is increased, and is a guess. */
 #define LAM_KINKED_SHARE 0.005
 
 /*
-  An estimate of the error of a state's P, as LamStressError, from the same load on half as many elements: a sixth of
-  the time of a bonded state, a tenth to four tenths of a contact one. It keeps the coarse state that it has found, from
-  which the next one starts: one estimate for states that follow each other. LamRVEEstimateError sets
-  response->error_estimate of the response that belongs to `state`, and adds its time; NaN where there is none: an odd
-  number of elements along a face, sealed cells, no equilibrium on the coarser mesh, or elements far too long for the
-  thinnest wall or too deep for the lumen (docs/results/extremes.md, "Worth of the error estimate"). Borrows `rve`.
+  Estimates the error of a state's P, as LamStressError, from the same load on half as many elements. It costs a sixth
+  of the time of a bonded state, a tenth to four tenths of a contact state. The coarse solution is kept as the start
+  of the next estimate: use one object for consecutive states. LamRVEEstimateError sets response->error_estimate of
+  the response that belongs to `state`, and adds its time. The estimate is NaN for an odd number of elements along a
+  face, sealed cells, no equilibrium on the coarser mesh, or elements far too long for the thinnest wall or too deep
+  for the lumen (docs/results/extremes.md, "Worth of the error estimate"). Borrows `rve`.
 */
 typedef struct LamRVEEstimate_s *LamRVEEstimate;
 LAM_EXPORT PetscErrorCode LamRVEEstimateCreate(LamRVE rve, LamRVEEstimate *estimate);
@@ -113,30 +113,30 @@ LAM_EXPORT PetscErrorCode LamRVEEstimateError(LamRVEEstimate estimate, LamRVESta
 LAM_EXPORT PetscErrorCode LamRVEEstimateDestroy(LamRVEEstimate *estimate);
 
 /*
-  Sealed lumens: in all solves from LamRVESeal to LamRVEUnseal each cell keeps its water of bulk modulus K_w (C1 + C2),
+  Sealed lumens: in all solves between LamRVESeal and LamRVEUnseal each cell keeps its water. With its bulk modulus
+  K_w, in C1 + C2,
     V_lumen = V_w (1 - (p - p0) / K_w),    p0 = load->turgor times the turgor of the cell over that of the load,
-  and finds its own pressure p. water[cell]: V_w over the V0 of the RVE, the lumen in which the water has the pressure
-  p0; LamRVEGetLumens gives that of a state solved with prescribed p0. Who has many material points seals anew for each
-  of them; that costs nothing. The energy of the response is then
+  and its pressure p is an unknown. water[cell]: V_w over the V0 of the RVE, the lumen volume at which the water has
+  the pressure p0; LamRVEGetLumens returns it for a state solved with prescribed p0. With many material points, seal
+  again for each of them; the cost is negligible. The energy of the response is then
 
     Psi_s(F) = stat_p [ Psi(F, p) + sum_c v_w (p_c - (p_c - p0)^2 / (2 K_w)) ],    v_w = water,
 
-  all else derivatives of it, those by the turgor at fixed water; turgor_mean and turgor_spread tell the pressures
-  reached. They may be negative: water is not kept from being pulled (docs/theory/walls.md, Sealed lumens). LamRVESeal:
-  PETSC_ERR_ARG_OUTOFRANGE where K_w or water is not positive and finite.
+  and all else its derivatives; those with respect to turgor are at fixed water. turgor_mean and turgor_spread
+  describe the pressures reached. They may be negative: water can be under tension (docs/theory/walls.md, Sealed
+  lumens). LamRVESeal: PETSC_ERR_ARG_OUTOFRANGE unless K_w and water are positive and finite.
 */
 LAM_EXPORT PetscErrorCode LamRVEGetLumens(LamRVE rve, LamRVEState state, PetscReal lumen[]);
 LAM_EXPORT PetscErrorCode LamRVESeal(LamRVE rve, PetscReal bulk_modulus, const PetscReal water[]);
 LAM_EXPORT PetscErrorCode LamRVEUnseal(LamRVE rve);
 
-/* Number of unknowns of one solve (displacement components that are free). */
+/* Number of unknowns of a solve (free displacement components). */
 LAM_EXPORT PetscErrorCode LamRVEGetUnknowns(LamRVE rve, PetscInt *unknowns);
 
 /*
-  What a picture needs. Arrays are owned by the rve and valid until it is destroyed, except where said.
+  Mesh data for output. Arrays are owned by the rve and valid until it is destroyed.
     nodes:     reference positions, [node][2], in apothems
     elements:  [element][9], node numbers: corners counter-clockwise, mid-edges, centre
-    x (state): current positions, [node][2]
 */
 typedef struct {
   PetscInt node_count, element_count, cell_count;
@@ -152,24 +152,24 @@ LAM_EXPORT PetscErrorCode LamRVEGetMesh(LamRVE rve, LamRVEMesh *mesh);
      stress     [node]     largest principal Cauchy stress of the wall, in C1 + C2 */
 LAM_EXPORT PetscErrorCode LamRVEGetFields(LamRVE rve, LamRVEState state, PetscReal x[], PetscReal fibre[],
                                           PetscReal stress[]);
-/* The lowest eigenvalue of a state's consistent tangent at fixed F, C1 + C2 (as lowest_eigenvalue of the response), and
-   its mode, which the caller provides: mode [node][2], displacements whose largest component is 1. Of contact on
-   motions that keep closed gaps closed. NaN, and a mode of zeros: the state has no factor. */
+/* Lowest eigenvalue of a state's consistent tangent at fixed F, C1 + C2 (as lowest_eigenvalue of the response), and
+   its mode, in an array of the caller: mode [node][2], displacements whose largest component is 1. In contact,
+   restricted to motions that keep closed gaps closed. NaN and a mode of zeros: the state has no factor. */
 LAM_EXPORT PetscErrorCode LamRVEGetSoftestMode(LamRVE rve, LamRVEState state, PetscReal *eigenvalue, PetscReal mode[]);
-/* Largest component of what the positions of cells differ by, apart from the motion by F from cell to cell, apothems:
-   0 where the pattern has the period of one cell. */
+/* Largest component of the differences between the positions of cells, apart from the motion by F from cell to cell,
+   in apothems: 0 if the pattern has the period of one cell. */
 LAM_EXPORT PetscErrorCode LamRVEGetCellDifference(LamRVE rve, LamRVEState state, PetscReal *difference);
 
 /*
-  Samples along the interfaces of a contact state, for pictures and profiles; the caller provides the arrays, any may be
-  NULL. LamRVEGetInterfaceSize: `faces` = 3 per cell (face families 0, 1, 2 of cell 0, then of cell 1, ...; of a patch
-  those that have a neighbour), `points` per face, evenly spaced in the reference along the slave wall,
-  counter-clockwise around its cell; bonded tissue has none.
-  LamRVEGetInterfaceFaces: owner [face][3], the cell, its face (0, 1 or 2) and the cell across it.
+  Samples along the interfaces of a contact state, for output; arrays are the caller's, and any may be NULL.
+  LamRVEGetInterfaceSize: `faces` = 3 per cell (face families 0, 1, 2 of cell 0, then of cell 1, ...; in a patch those
+  with a neighbour), `points` per face, equidistant in the reference along the slave wall, counter-clockwise around
+  its cell. Bonded tissue has none. LamRVEGetInterfaceFaces: owner [face][3], the cell, its face (0, 1 or 2) and the
+  cell across it.
 
     from      [face][point][2]  current position on the wall of the face's cell
-    to        [face][point][2]  nearest point of the facing wall (in the image that faces it); NaN: it faces none
-    gap       [face][point]     distance, in apothems (< 0: penetration); NaN: it faces none
+    to        [face][point][2]  nearest point of the facing wall (in the facing image); NaN: no facing wall
+    gap       [face][point]     distance, in apothems (< 0: penetration); NaN: no facing wall
     pressure  [face][point]     contact pressure (Cauchy, >= 0), in C1 + C2; the traction is cohesion - pressure
 */
 LAM_EXPORT PetscErrorCode LamRVEGetInterfaceSize(LamRVE rve, PetscInt *faces, PetscInt *points);
@@ -178,9 +178,9 @@ LAM_EXPORT PetscErrorCode LamRVEGetInterface(LamRVE rve, LamRVEState state, Pets
                                              PetscReal gap[], PetscReal pressure[]);
 
 /*
-  A responder that solves one RVE per question. Borrows `rve`, which must outlive it. Of material points 0..points-1 it
-  keeps two states each (LamRVEStateSize), from which their next solves start; those of others start from the
-  reference. It can be sealed where `rve` can, and then answers for the points that it keeps alone.
+  A responder that solves one RVE per query. Borrows `rve`, which must outlive it. It keeps two states
+  (LamRVEStateSize) for each of the material points 0..points-1, from which their next solves start; other points
+  start from the reference. It can be sealed if `rve` can, and then only responds for the points that it keeps.
 */
 LAM_EXPORT PetscErrorCode LamRVEResponderCreate(LamRVE rve, PetscInt points, LamResponder *responder);
 /* Time of one assembly of residual and tangent on this machine, s; needs no MPI (used to predict cost). */

@@ -1,9 +1,9 @@
 /*
-  Wall laws and their parameters, each listed once. The struct, scene files and their reference, descriptions and
-  hashes, `check`, `map`, kinetics and families of databases follow these lists.
+  Wall laws and their parameters. The wall struct, scene files and their reference, descriptions and hashes, `check`,
+  `map`, kinetics and parametric databases are generated from these lists.
 
-  A new law is one row of LAM_WALL_LAWS with the rows of its own parameters here, one kernel file in rve/wall and its
-  row in wall_law.c.
+  A new law needs one row in LAM_WALL_LAWS, rows for its own parameters, one kernel file in rve/wall, and a row in
+  wall_law.c.
 */
 #ifndef LAMELLA_WALL_H
 #define LAMELLA_WALL_H
@@ -13,16 +13,16 @@
 
 LAM_C_BEGIN
 
-/* L(symbol, name, PETSC_TRUE with fibres, help in a list of all laws) */
+/* L(symbol, name, PETSC_TRUE if it has fibres, help in a list of all laws) */
 #define LAM_WALL_LAWS(L)                                                                                               \
   L(LAM_WALL_FIBRE_MOONEY_RIVLIN, "fibre_mooney_rivlin", PETSC_TRUE, "Mooney-Rivlin with fibres along the wall; ")     \
   L(LAM_WALL_FIBRE_EXPONENTIAL, "fibre_exponential", PETSC_TRUE, "with fibres that stiffen exponentially; ")           \
   L(LAM_WALL_MOONEY_RIVLIN, "mooney_rivlin", PETSC_FALSE, "without fibres.")
 
 /*
-  M(X, name, law, kind, need, symbol in pictures, example, help, bounds...); X is handed on. law: `all`, or the name of
-  the one law that has it. kind: MODULUS (a stress, kept in C1 + C2; "walls" of kinetics and of fields of cells scale
-  it) or NUMBER. need: ALWAYS; BY_LAW (required by its law); OPTIONAL (0 where it is not given).
+  M(X, name, law, kind, need, symbol in pictures, example, help, bounds...); X is passed through. law: `all`, or the
+  name of the only law with this parameter. kind: MODULUS (a stress in C1 + C2; scaled by "walls" of kinetics and by
+  fields of cells) or NUMBER. need: ALWAYS; BY_LAW (required by its law); OPTIONAL (default 0).
 */
 #define LAM_WALL_MATRIX_PARAMETERS(M, X)                                                                               \
   M(X, C1, all, MODULUS, ALWAYS, "$C$_{1}", "0.1 MPa", "First Mooney-Rivlin modulus", ABOVE(0))                        \
@@ -50,7 +50,7 @@ LAM_EXPORT extern const char *const LamWallLawNames[];       /* "fibre_mooney_ri
 LAM_EXPORT extern const char *const LamFibresNames[];        /* "both", "tension" */
 LAM_EXPORT extern const char *const LamWallParameterNames[]; /* "C1", ... */
 
-/* Wall material, moduli in units of C1 + C2 (so C1 + C2 = 1); parameters of other laws are 0. */
+/* Wall material. Moduli are in C1 + C2 (so C1 + C2 = 1); parameters that the law does not have are 0. */
 typedef struct {
   LamWallLawType law;
   LamFibres fibres;
@@ -62,21 +62,21 @@ LAM_EXPORT PetscReal *LamWallAt(LamWall *wall, PetscInt parameter);
 LAM_EXPORT PetscReal LamWallGet(const LamWall *wall, PetscInt parameter);
 LAM_EXPORT PetscBool LamWallLawHas(LamWallLawType law, PetscInt parameter);
 LAM_EXPORT PetscBool LamWallLawHasFibres(LamWallLawType law);
-LAM_EXPORT LamWallLawType LamWallOwner(PetscInt parameter); /* a law that has it */
+LAM_EXPORT LamWallLawType LamWallOwner(PetscInt parameter); /* a law with this parameter */
 LAM_EXPORT const char *LamWallLacking(LamWallLawType law,
-                                      PetscInt parameter); /* "fibres" or "C4", of a law without C4 */
+                                      PetscInt parameter); /* "fibres" or "C4", for a law without C4 */
 LAM_EXPORT PetscBool LamWallParameterIsModulus(PetscInt parameter);
-LAM_EXPORT const char *LamWallParameterSymbol(PetscInt parameter); /* in pictures: "$C$_{4}" */
-/* "fibre modulus", in `text`. */
+LAM_EXPORT const char *LamWallParameterSymbol(PetscInt parameter); /* for pictures: "$C$_{4}" */
+/* Writes "fibre modulus" to `text`, and returns it. */
 LAM_EXPORT const char *LamWallParameterWords(PetscInt parameter, size_t size, char text[]);
 
-/* All moduli times `by / over`, one of which is 1, without a rounding more. */
+/* Multiplies all moduli by `by / over`, of which one is 1, so that only one rounding occurs. */
 LAM_EXPORT void LamWallScale(LamWall *wall, PetscReal by, PetscReal over);
-/* Each parameter by its factor; not the bulk modulus. */
+/* Multiplies each parameter by its factor; the bulk modulus is unchanged. */
 LAM_EXPORT void LamWallMultiply(LamWall *wall, const PetscReal factor[LAM_WALL_PARAMETER_COUNT]);
 /*
-  Of a wall whose parameters change by these factors: returns the new C1 + C2; ratio: the factors of moduli over that,
-  those of numbers themselves.
+  For a wall whose parameters are multiplied by `factor`: returns the new C1 + C2. ratio: for moduli, the factor over
+  the new C1 + C2; for numbers, the factor.
 */
 LAM_EXPORT PetscReal LamWallRatios(const LamWall *wall, const PetscReal factor[LAM_WALL_PARAMETER_COUNT],
                                    PetscReal ratio[LAM_WALL_PARAMETER_COUNT]);
