@@ -1,7 +1,7 @@
 /*
   Record to expansion: with dF_a = 1/2 F^-T D_a, D = I, diag(1,-1), offdiag(1,1), a change dF_a changes c_a alone;
     E_a  = P : dF_a,   E_ab = dF_a : A : dF_b - S : sym(dF_a^T dF_b),   S = F^-1 P
-  (the second term because C is held on a straight line: F^T d2F + d2F^T F = -2 sym(dF_a^T dF_b)).
+  (the second term because C varies along a straight line: F^T d2F + d2F^T F = -2 sym(dF_a^T dF_b)).
   Expansion to response: with K_a = F D_a, S = sum E_a D_a
     P = F S,   A_iJkL = delta_ik S_JL + sum E_ab (K_a)_iJ (K_b)_kL.
 */
@@ -115,7 +115,7 @@ static PetscReal Bilinear(const PetscReal A[81], Tensor a, Tensor b)
   return sum;
 }
 
-/* S : (a^T b), with S = sum S_a D_a given by its three numbers. */
+/* S : (a^T b), with S = sum S_a D_a given by its three coefficients. */
 static PetscReal Curvature(const PetscReal S[3], Tensor a, Tensor b)
 {
   const PetscReal t00 = a[0][0] * b[0][0] + a[1][0] * b[1][0], t11 = a[0][1] * b[0][1] + a[1][1] * b[1][1];
@@ -145,7 +145,7 @@ static void ExpandStrain(const LamResponse *r, Tensor dF[3], LamExpansion *e)
     }
 }
 
-/* Derivatives with respect to turgor or cohesion: first, second, of P. */
+/* Derivatives with respect to turgor or cohesion: first, second, and that of P. */
 static void ExpandPressure(int at, PetscReal first, PetscReal second, const PetscReal P_slope[9], Tensor dF[3],
                            LamExpansion *e)
 {
@@ -158,7 +158,7 @@ static void ExpandPressure(int at, PetscReal first, PetscReal second, const Pets
   for (int a = 0; a < 3; a++) e->hessian[a][at] = e->hessian[at][a] = Contract(slope, dF[a]);
 }
 
-/* Cells that float have a stress, but may have no tangent. */
+/* Floating cells have a stress, but may have no tangent. */
 static PetscBool IsFinite(const LamExpansion *e)
 {
   PetscReal sum = e->energy + e->P33;

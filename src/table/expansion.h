@@ -1,5 +1,5 @@
 /*
-  The potential of a record as a second-order model in invariants under rotation.
+  Second-order model of a record's potential, in variables that are invariant under rotation.
 */
 #ifndef LAM_EXPANSION_H
 #define LAM_EXPANSION_H
@@ -10,10 +10,9 @@
 #define LAM_VARIABLES 5
 
 /*
-  Value, gradient and Hessian at x of Phi = Psi + p J: the fluid's part -p J of the potential is taken off, what remains
-  varies slowly with J, and hardly with p (effective-stress principle, docs/theory/homogenisation.md). P33 + p J is a
-  scalar of the same variables, known with its gradient. Bonded tissue does not feel g: derivatives with respect to it
-  are 0.
+  Value, gradient and Hessian at x of Phi = Psi + p J. Without the fluid's part -p J the potential varies slowly with J
+  and hardly with p (effective-stress principle, docs/theory/homogenisation.md). P33 + p J is a scalar function of the
+  same variables, with its gradient. Bonded tissue does not depend on g: derivatives with respect to g are 0.
 */
 typedef struct {
   PetscReal x[LAM_VARIABLES];
@@ -23,7 +22,7 @@ typedef struct {
 
 /* The variables of a load in plane strain. */
 void LamVariables(const LamLoad *load, PetscReal x[LAM_VARIABLES]);
-/* From a record with fields; PETSC_FALSE where one of its derivatives is not known. */
+/* From a record with fields; PETSC_FALSE if one of its derivatives is unknown. */
 PetscBool LamExpansionMake(const LamResponse *record, PetscBool bonded, LamExpansion *expansion);
 /*
   The metric of P in its derivatives with respect to C: |P|^2 in the plane = sum_ab v_a B_ab v_b for P = sum v_a K_a,
@@ -31,8 +30,8 @@ PetscBool LamExpansionMake(const LamResponse *record, PetscBool bonded, LamExpan
 */
 void LamStressMetric(const PetscReal F[9], PetscReal B[3][3]);
 /*
-  Energy, P, tangent and the derivatives with respect to turgor and cohesion into `response`, whose load is the state of
-  the expansion. A3333: entry 33, 33 of the tangent, which does not follow from the expansion.
+  Writes energy, P, tangent and the derivatives with respect to turgor and cohesion into `response`, whose load must be
+  the state of the expansion. A3333: entry 33, 33 of the tangent, which does not follow from the expansion.
 */
 void LamExpansionToResponse(const LamExpansion *expansion, PetscReal A3333, LamResponse *response);
 

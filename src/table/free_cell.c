@@ -1,22 +1,22 @@
 /*
   Method
-    A state is a cell among its own images, so far apart that it touches none of them: F = e^x I with x as large as it
-    takes. By symmetry the walls face each other at their middles, so that 2 e^x - (smallest gap) is the cell's width.
-    a and its derivatives are those of the cubic spline in tau; the energy is the quintic Hermite polynomial in s of
-    exact first and second derivatives; what the Taylor step in p needs is cubic Hermite in tau with derivatives of
-    five-point differences.
+    A state is a cell that touches none of its periodic images: F = e^x I with x large enough. By symmetry the walls
+    face each other at their middles, so that 2 e^x - (smallest gap) is the cell's width. a and its derivatives are
+    those of a cubic spline in tau. The energy is the quintic Hermite polynomial in s of the exact first and second
+    derivatives. The Taylor step in p uses cubic Hermite polynomials in tau, with derivatives from five-point
+    differences.
 */
 #include "free_cell.h"
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
 
-#define FIRST_STRAIN 0.15 /* of the states; as many steps more as it takes */
+#define FIRST_STRAIN 0.15 /* of the states; increased by STRAIN_STEP up to MAX_STRAIN until all cells float */
 #define STRAIN_STEP 0.1
 #define MAX_STRAIN 0.8
 #define MIN_KNOTS 5 /* of the five-point differences */
 
-/* The columns of numbers, one per knot. */
+/* The arrays of LamFreeCell with one number per knot. */
 #define COLUMNS 8
 static const struct {
   const char *name;
@@ -35,7 +35,7 @@ static PetscReal **ColumnOf(LamFreeCell *cell, PetscInt k)
   return (PetscReal **)(void *)((char *)cell + columns[k].offset);
 }
 
-/* All columns in one block, which belongs to the first. */
+/* Allocates all columns in one block, owned by the first. */
 static PetscErrorCode Allocate(PetscInt n, LamFreeCell *cell)
 {
   PetscReal *block;
@@ -70,15 +70,15 @@ static PetscBool Floats(const LamResponse *r)
   return (PetscBool)(r->status == LAM_CONVERGED && r->floating_cells == 1 && r->min_gap > 0);
 }
 
-/* Cells that differ, or that a grip holds, are not free at one suction. Several in a period drift apart as they like,
-   and no gap tells their width. */
+/* Cells that differ, or that are held by a grip, do not all float at one suction. Several cells in a period drift apart
+   arbitrarily, and no gap determines their width. */
 static PetscBool HasOneCell(const LamMicrostructure *micro)
 {
   return (PetscBool)(micro->interface == LAM_INTERFACE_CONTACT && !micro->is_patch && !micro->cell &&
                      micro->cells[0] * micro->cells[1] == 1);
 }
 
-/* Asks for all states, then again, farther apart, for those that do not float. *left: those that never did. */
+/* Solves all states, then those that do not float again at larger stretch. *left: number that never floated. */
 static PetscErrorCode SolveStates(const LamFreeCell *cell, LamResponder *solver, PetscInt *left)
 {
   PetscInt *missing, *points;
@@ -136,7 +136,7 @@ static void PlaceKnots(PetscReal suction_min, PetscReal suction_max, LamFreeCell
     cell->suction[j] = cell->scale * expm1(knots.first + knots.step * (PetscReal)j);
 }
 
-/* The knot left of s and where s is between that one and the next, in tau. */
+/* Returns the knot left of s; t in [0, 1]: position of s between this knot and the next, in tau. */
 static PetscInt Locate(const LamFreeCell *cell, PetscReal s, PetscReal *step, PetscReal *t)
 {
   const Knots knots = KnotsOf(cell);
@@ -159,7 +159,7 @@ static PetscErrorCode FitSpline(PetscInt n, PetscReal step, const PetscReal a[],
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(n, &c));
   for (PetscInt j = 1; j < n - 1; j++) m[j] = (a[j - 1] - 2.0 * a[j] + a[j + 1]) / (step * step);
-  for (PetscInt j = 2; j < n - 2; j++) { /* m[j] = (what stands here) - c[j] m[j + 1], c[1] = 0 */
+  for (PetscInt j = 2; j < n - 2; j++) { /* m[j] = (stored value) - c[j] m[j + 1], c[1] = 0 */
     const PetscReal pivot = 4.0 - c[j - 1];
 
     m[j] = (6.0 * m[j] - m[j - 1]) / pivot;
@@ -173,7 +173,7 @@ static PetscErrorCode FitSpline(PetscInt n, PetscReal step, const PetscReal a[],
 }
 
 /*
-  With Phi = Psi - g J at fixed F: along the states g is fixed and dp = ds; at fixed s dg = -dp.
+  Phi = Psi - g J at fixed F: along the states g is fixed and dp = ds; at fixed s dg = -dp.
 */
 static void Tabulate(LamFreeCell *cell)
 {
@@ -217,7 +217,7 @@ PetscErrorCode LamFreeCellMake(const LamMicrostructure *micro, PetscReal cohesio
   PetscFunctionReturn(0);
 }
 
-/* ---- between the knots ---- */
+/* ---- interpolation ---- */
 
 void LamFreeCellStrain(const LamFreeCell *cell, PetscReal s, PetscReal strain[3])
 {
@@ -233,8 +233,8 @@ void LamFreeCellStrain(const LamFreeCell *cell, PetscReal s, PetscReal strain[3]
   strain[2] = (second - first) * rate * rate;
 }
 
-/* Values, first and second derivatives with respect to t of the quintic Hermite functions: of value, slope and
-   curvature at t = 0. Those at t = 1 are the same at 1 - t, with the sign of the slope's changed. */
+/* f[i][k]: k-th derivative in t of the quintic Hermite function of value, slope, curvature (i = 0, 1, 2) at t = 0. The
+   functions of the end t = 1 are these at 1 - t, that of the slope with opposite sign. */
 static void Quintic(PetscReal t, PetscReal f[3][3])
 {
   const PetscReal t2 = t * t, t3 = t2 * t, t4 = t3 * t, t5 = t4 * t;
@@ -250,7 +250,7 @@ static void Quintic(PetscReal t, PetscReal f[3][3])
   f[2][2] = 1.0 - 9.0 * t + 18.0 * t2 - 10.0 * t3;
 }
 
-/* d/dtau of what the knots carry times the step, exact for polynomials of degree 4. */
+/* Step times d/dtau of the values y at knot j, exact for polynomials of degree 4. */
 static PetscReal Difference(PetscInt n, const PetscReal y[], PetscInt j)
 {
   static const PetscReal weight[MIN_KNOTS][MIN_KNOTS] = {
@@ -334,7 +334,7 @@ static PetscErrorCode ReadColumn(const char path[], const json_t *object, PetscI
   PetscFunctionReturn(0);
 }
 
-/* Knots are where Locate looks for them. */
+/* Checks that the knots are evenly spaced in tau, as Locate assumes. */
 static PetscErrorCode CheckKnots(const char path[], const LamFreeCell *cell)
 {
   Knots knots;

@@ -1,23 +1,23 @@
 /*
-  The layout of a grid: made from a scene, kept as JSON text in the file, and its nodes' states.
+  The layout of a grid: creation from a scene, JSON text in the file, states of its nodes.
 */
 #include "grid.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Root cells: with fibres ten times as stiff as the matrix they alone give 0.2 % of P at the 99th percentile (bonded),
-   and some percent in contact; docs/results/verification.md. */
+/* Edges of root cells. With fibres ten times as stiff as the matrix, root cells alone give P to 0.2 % at the 99th
+   percentile (bonded), and to some percent in contact; docs/results/verification.md. */
 #define BONDED_STEP 0.135
-#define TURGOR_REACH 0.1 /* of the softest wall's bulk modulus: the second derivatives err by 1e-4 of P there */
+#define TURGOR_REACH 0.1 /* times the softest wall's bulk modulus: error of the second derivatives 1e-4 of P */
 #define CONTACT_STEP 0.08
 #define TAU_STEP 0.75
-#define SUCTION_SCALE (1.0 / 32) /* of the largest suction */
+#define SUCTION_SCALE (1.0 / 32) /* times the largest suction */
 enum { FREE_KNOTS = 17 };
 
-/* What is taken where a scene has no sample box. */
+/* Defaults for scenes without a sample box. */
 static const LamSample default_box = {.stretch_min = -0.02, .stretch_max = 0.25};
-#define LEAST_SUCTION 0.125 /* of the scene's */
+#define LEAST_SUCTION 0.125 /* times the scene's suction */
 
 /* ---- keys ---- */
 
@@ -99,7 +99,7 @@ PetscErrorCode LamGridNodeLoad(LamGrid grid, PetscInt64 key, LamLoad *load)
     load->turgor = s - grid->cohesion;
   }
   for (int k = 0; k < 3; k++) x[k] = shift + grid->step * (PetscReal)place.i[k] / LAM_ROOT;
-  /* strains that no F has: an F that a solver refuses */
+  /* no F has these strains: return an F that a solver rejects */
   if (!LamLatticeStretch(&grid->axes, x, U)) U[0] = U[1] = U[2] = U[3] = 0;
   for (int i = 0; i < 4; i++) load->F[3 * (i / 2) + i % 2] = U[i];
   load->F[8] = 1;
@@ -136,14 +136,14 @@ PetscInt64 LamGridNodeParent(LamGrid grid, PetscInt64 key)
   if (!level && !suction_level) return -1;
   if (level >= suction_level)
     for (int k = 0; k < 3; k++) place.i[k] = Floor(place.i[k], LAM_FINEST - level + 1);
-  else /* the higher suction: its cells hold together more firmly */
+  else /* the higher suction, where cells hold together more firmly */
     place.j = Floor(place.j + (1 << (LAM_FINEST - suction_level)), LAM_FINEST - suction_level + 1);
   return LamNodeKeyOf(&place);
 }
 
-/* ---- making ---- */
+/* ---- creation ---- */
 
-/* All three lattice directions are alike where the period is as long along both and cells do not differ. */
+/* All three lattice directions are equivalent if the period has equal cell counts and cells do not differ. */
 static PetscBool IsSymmetric(const LamMicrostructure *micro)
 {
   return (PetscBool)(micro->cells[0] == micro->cells[1] && !micro->cell);
@@ -191,7 +191,7 @@ static PetscErrorCode LayOutSuction(const LamScene *scene, const LamSample *box,
   PetscFunctionReturn(0);
 }
 
-/* Knot m of the free cell lies at j = m 64 cells / (knots - 1), a whole number. */
+/* Knot m of the free cell lies at j = m 64 cells / (knots - 1), an integer. */
 static PetscErrorCode MakeFreeKeys(LamGrid g)
 {
   const int reach = LAM_GRID_REACH - 1;
@@ -206,7 +206,7 @@ static PetscErrorCode MakeFreeKeys(LamGrid g)
   PetscFunctionReturn(0);
 }
 
-/* What of the grid follows from the tissue alone. */
+/* Sets the members that follow from the tissue alone. */
 static void SetTissue(const LamMicrostructure *micro, LamGrid g)
 {
   PetscReal softest = micro->wall.bulk_modulus;
@@ -325,7 +325,7 @@ static PetscBool ReadSuction(const json_t *object, LamGrid g)
                      g->tau_step > 0 && g->tau_cells > 0 && g->tau_cells < 4096 / LAM_ROOT);
 }
 
-/* The free cells are those of this grid. */
+/* Whether the free cell's suctions and cohesion are those of the grid. */
 static PetscBool FreeCellFits(const struct LamGrid_s *g)
 {
   const LamFreeCell *free_cell = &g->free;

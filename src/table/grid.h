@@ -1,11 +1,11 @@
 /*
-  Private to the table: where the nodes of a grid lie.
+  Private to the table: positions of the nodes of a grid.
 
   A node has integer coordinates i[0..2] on the finest level and, for contact tissue, j along suction:
     bonded   x_k = origin + unit i_k
     contact  x_k = a(s) + unit i_k,  s = scale (exp(tau) - 1),  tau = tau_min + tau_unit j
   with a(s) the strain at which free cells touch (free_cell.h). One unit is 2^-LAM_FINEST of a root cell. The level of a
-  node is the coarsest on which all its i lie. Where the three directions are alike i is sorted, ascending.
+  node is the coarsest that contains all its i. Where the three directions are equivalent, i is sorted, ascending.
 */
 #ifndef LAM_GRID_H
 #define LAM_GRID_H
@@ -21,7 +21,7 @@ struct LamGrid_s {
   LamLatticeAxes axes;
   PetscReal origin, step; /* step: edge of a root cell */
   PetscReal turgor;       /* of bonded nodes */
-  PetscReal turgor_reach; /* how far turgor may be from that of the nodes: their derivatives give the change */
+  PetscReal turgor_reach; /* largest difference in turgor from the nodes, covered by their derivatives */
   PetscReal cohesion;     /* of contact nodes; their turgor is s - cohesion */
   PetscReal suction_scale, tau_min, tau_step;
   PetscInt tau_cells; /* root intervals along tau; 0: bonded */
@@ -35,11 +35,11 @@ typedef struct {
 
 PetscInt64 LamNodeKeyOf(const LamNodePlace *place);
 LamNodePlace LamNodePlaceOf(PetscInt64 key);
-/* Of the strains alone; 0 is coarsest. */
+/* Level of the strains alone; 0: coarsest. */
 int LamNodeLevel(const LamNodePlace *place);
-/* Free cells' states have keys too: PETSC_TRUE and the knot. */
+/* Whether the place is that of a free cell's state. */
 PetscBool LamNodeIsFree(const LamNodePlace *place);
-/* A place that needs no solve: its cells touch no one. */
+/* Whether cells float at this place, so that it needs no solve. */
 PetscBool LamPlaceIsFloating(const struct LamGrid_s *grid, const int i[3]);
 static inline PetscReal LamGridTau(const struct LamGrid_s *grid, PetscReal s)
 {

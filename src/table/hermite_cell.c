@@ -1,9 +1,9 @@
 /*
   Method
-    Each part of the function is a sum over an n x n x n array of data with tensor products of functions of one
-    direction: n = 4 for the cubic (value functions of the two ends, then slope functions), n = 2 for the bubbles along
-    one direction (an edge's two bubbles there, value functions in the others). All derivatives up to the second come
-    from contracting one direction after another.
+    Each part of the function is a sum over an n x n x n array of data times tensor products of functions of one
+    variable. Cubic: n = 4 (value functions of the two ends, then slope functions). Bubbles along one direction: n = 2
+    (the edge's two bubbles in this direction, value functions in the others). Contracting one direction after another
+    gives all derivatives up to the second.
 */
 #include <math.h>
 #include "hermite_cell.h"
@@ -30,7 +30,7 @@ static inline void HermiteFunctions(PetscReal t, PetscReal h, Functions u)
   u[2][3] = (6 * t - 2) / h;
 }
 
-/* h^2 q_0, h^2 q_1: second derivative 1 at their own end, else none of value, slope and second derivative at the ends.
+/* h^2 q_0, h^2 q_1: second derivative 1 at their own end; value, slope and other second derivative at the ends are 0.
  */
 static inline void BubbleFunctions(PetscReal t, PetscReal h, Functions u)
 {
@@ -105,7 +105,7 @@ static inline void AddCubic(const LamJet corner[8], const Functions u[3], LamJet
   Contract(4, 2, u[0], u[1], u[2], &data[0][0][0], sum);
 }
 
-/* d_0, d_1 of the edges along direction k: known second derivatives at their ends less those of the cubic. */
+/* d_0, d_1 of the edges along direction k: known second derivatives at the ends minus those of the cubic. */
 static inline void CurvatureSurplus(const LamJet corner[8], PetscInt k, PetscReal h, PetscReal surplus[8])
 {
   const PetscInt end = 1 << k;
@@ -169,7 +169,7 @@ void LamHermiteSizes(const LamJet corner[8], PetscReal h, PetscReal bend[3], Pet
 }
 
 /*
-  The trilinear function of the values, and for each edge what its cubic adds to the line between its ends:
+  The trilinear function of the values, plus for each edge the difference between its cubic and its line:
   D_0 (g_0 - slope) + D_1 (g_1 - slope), g the gradient along the edge, slope that of the line.
 */
 void LamHermiteEdges(const LamJet corner[8], PetscReal h, const PetscReal t[3], PetscReal *value, PetscReal gradient[3])

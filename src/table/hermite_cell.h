@@ -1,13 +1,13 @@
 /*
-  A function of three variables on a cube, from what is known at its eight corners.
+  Interpolation of a function of three variables on a cube from data at its eight corners.
 
   Method
-    Cubic Hermite polynomials along each edge, tensor product. Along an edge
-    at whose ends the pure second derivative is known too, bubbles raise the cubic to a quintic:
+    Tensor product of cubic Hermite polynomials. Where the pure second derivative at an end of an edge is known too,
+    bubbles raise the cubic along the edge to a quintic:
       h^2 (d0 q0(t_k) + d1 q1(t_k)) V_i(t_p) V_j(t_q),   q0 = t^2 (1-t)^3 / 2,   q1 = t^3 (1-t)^2 / 2,
-    d = known second derivative less that of the cubic, V the value functions 1-3t^2+2t^3 and 3t^2-2t^3. Value and
-    gradient are continuous across faces, edges and corners, with any choice of bubbles; at corners the Hessian is
-    exact. docs/theory/database.md, Cells and nodes.
+    d = known second derivative minus that of the cubic, V the value functions 1-3t^2+2t^3 and 3t^2-2t^3. Value and
+    gradient are continuous across faces, edges and corners for any choice of bubbles. At corners the Hessian is exact.
+    docs/theory/database.md, Cells and nodes.
 */
 #ifndef LAM_HERMITE_CELL_H
 #define LAM_HERMITE_CELL_H
@@ -21,21 +21,21 @@ typedef struct {
 
 /*
   Adds to *sum the function (without its third derivative) at t in [0, 1]^3. corner[c]: bit k of c is the end of
-  direction k (0: t_k = 0). A pure second derivative of a corner that is NaN is not known: that end has no bubble. h:
-  edge of the cube.
+  direction k (0: t_k = 0). NaN as a corner's pure second derivative: unknown, no bubble at that end. h: edge of the
+  cube.
 */
 void LamHermiteQuintic(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum);
-/* The same without any bubbles. */
+/* The same without bubbles. */
 void LamHermiteCubic(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum);
 /*
-  Root mean squares over the edges of each direction k, of differences of slopes along them: bend[k] = h d, d what the
-  known second derivatives at the ends differ by from those of the cubic; turn[k] = h times the difference of the
-  cubic's second derivatives at the two ends.
+  Root mean squares over the edges of each direction k, in units of a slope. bend[k]: h times the known second
+  derivative at an end minus that of the cubic. turn[k]: h times the difference of the cubic's second derivatives at the
+  two ends.
 */
 void LamHermiteSizes(const LamJet corner[8], PetscReal h, PetscReal bend[3], PetscReal turn[3]);
 /*
-  From value and gradient alone, to third order: cubic along the edges, linear between them (transfinite), so that no
-  mixed derivatives are needed. Continuous, not C1. Writes value and gradient.
+  Interpolates from values and gradients alone, to third order: cubic along the edges, linear between them
+  (transfinite), so that no mixed derivatives are needed. Continuous, not C1. Writes value and gradient.
 */
 void LamHermiteEdges(const LamJet corner[8], PetscReal h, const PetscReal t[3], PetscReal *value,
                      PetscReal gradient[3]);

@@ -1,14 +1,13 @@
 /*
-  Lattice strains: the logarithms of the stretches of the three lattice directions, and how stress and tangent follow
-  from a potential of them.
+  Lattice strains: the logarithmic stretches of the three lattice directions; stress and tangent from a potential of
+  them.
 
     x_k = ln |F n_k|,  k = 0, 1, 2,   n_k: unit vector at the angle orientation + 60 k degrees (normal of face family k)
     c0 = (C11 + C22)/2, c1 = (C11 - C22)/2, c2 = C12:   exp(2 x_k) = c0 + c1 cos 2 theta_k + c2 sin 2 theta_k
-  so the three x are one to one with C, and invariant under rotation of the frame of F. Turning the hexagon by 60
-  degrees or mirroring it permutes them. Where all three are equal the strain is isotropic; a potential that is
-  symmetric in the three has an isotropic tangent there. Derivatives, with f_k = F n_k, q_k = exp(2 x_k):
-    dx_k/dF_iJ = f_i n_J / q_k,    d2x_k/dF_iJ dF_mN = n_J n_N (delta_im / q_k - 2 f_i f_m / q_k^2)
-  docs/theory/database.md, Lattice strains.
+  The three x are one-to-one with C, and invariant under rotation of the frame of F. Rotation of the hexagon by 60
+  degrees and mirroring permute them. Where all three are equal the strain is isotropic, and a potential symmetric in
+  the three has an isotropic tangent. Derivatives, with f_k = F n_k, q_k = exp(2 x_k): dx_k/dF_iJ = f_i n_J / q_k,
+  d2x_k/dF_iJ dF_mN = n_J n_N (delta_im / q_k - 2 f_i f_m / q_k^2) docs/theory/database.md, Lattice strains.
 */
 #ifndef LAM_LATTICE_STRAIN_H
 #define LAM_LATTICE_STRAIN_H
@@ -21,7 +20,7 @@ typedef struct {
   PetscReal c[3][3]; /* c_a = sum_k c[a][k] exp(2 x_k) */
 } LamLatticeAxes;
 
-/* F in the plane, and what follows from it. */
+/* Quantities of F in the plane. */
 typedef struct {
   PetscReal f[3][2]; /* F n_k */
   PetscReal q[3];    /* |F n_k|^2 */
@@ -44,7 +43,7 @@ static inline LamLatticeAxes LamLatticeAxesOf(PetscReal orientation)
   return axes;
 }
 
-/* F: in-plane part, row-major. Without the logarithms: x is left out. */
+/* F: in-plane part, row-major. Skips the logarithms: x is NaN. */
 static inline LamLatticeState LamLatticeSquaresOf(const LamLatticeAxes *axes, const PetscReal F[4])
 {
   LamLatticeState s;
@@ -66,7 +65,7 @@ static inline LamLatticeState LamLatticeStateOf(const LamLatticeAxes *axes, cons
   return s;
 }
 
-/* The symmetric F with these strains (U); PETSC_FALSE where there is none. */
+/* The symmetric F (U) with these strains; PETSC_FALSE if there is none. */
 static inline PetscBool LamLatticeStretch(const LamLatticeAxes *axes, const PetscReal x[3], PetscReal U[4])
 {
   PetscReal c[3], J2, J, trace;
@@ -116,7 +115,8 @@ static inline void LamLatticeTangent(const LamLatticeAxes *axes, const LamLattic
 }
 
 /*
-  The way back: dF[k] changes x_k alone, on a way on which C is exp(2 x) (any rotation will do):
+  From derivatives in F to derivatives in x: dF[k] changes x_k alone, with C following from exp(2 x); the rotation is
+  arbitrary.
     g_k = P : dF_k,   h_kl = dF_k : A : dF_l - S : sym(dF_k^T dF_l) + 2 delta_kl g_k,   S = F^-1 P.
 */
 static inline void LamLatticeVariations(const LamLatticeAxes *axes, const LamLatticeState *s, const PetscReal F[4],

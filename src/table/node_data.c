@@ -1,12 +1,12 @@
 /*
-  Nodes gathered from responses and from the bytes of files.
+  Node data from responses and from the bytes of files.
 */
 #include "node_data.h"
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
 
-/* Which numbers of a member of a response a node keeps. */
+/* The entries of a response's member that a node keeps. */
 typedef struct {
   size_t member; /* offset in LamResponse */
   PetscInt count;
@@ -95,7 +95,7 @@ void LamNodeDataFromResponse(const LamResponse *response, PetscInt64 key, LamNod
 
 /* ---- from bytes ---- */
 
-/* Where the numbers of the rows lie in a record. */
+/* Byte offsets of the rows' numbers in a record. */
 static void Places(const size_t member[], size_t count, const Row rows[], size_t place[])
 {
   for (size_t r = 0; r < count; r++) {

@@ -1,14 +1,13 @@
 /*
-  What the table needs of a record that is a node of its grid: a third of a response, so that a million of them fit in
-  memory. Gathered from a response, or straight from the bytes of the file. The database's full responses stay in the
-  file until somebody asks for them.
+  The part of a node's record that the table needs: a third of a response, so that a million fit in memory. Extracted
+  from a response or from the bytes of the file. The full responses stay in the file until they are requested.
 */
 #ifndef LAM_NODE_DATA_H
 #define LAM_NODE_DATA_H
 
 #include <lamella/response.h>
 
-/* The indicators of a node, in the order of LamResponseMembers: single numbers ONE and one per face, axis or place. */
+/* The indicators of a node, in the order of LamResponseMembers. ONE: scalars; THREE: per face, axis or place. */
 #define LAM_NODE_INDICATORS(ONE, THREE)                                                                                \
   ONE(lumen_fraction)                                                                                                  \
   ONE(opening_fraction)                                                                                                \
@@ -71,19 +70,19 @@ typedef struct {
 #define LAM_NODE_REALS 48
 #define LAM_NODE_FLOATS 50
 
-/* Where the numbers of a node lie in the bytes of a record. */
+/* Byte offsets of a node's numbers in a record. */
 typedef struct {
   size_t real[LAM_NODE_REALS], indicator[LAM_NODE_FLOATS]; /* LAM_NOT_IN_FILE: unknown */
   size_t key, status, stable, branch, floating_cells, zero_modes, cell_clusters, percolating_directions;
 } LamNodeLayout;
 
-/* Nodes in memory; owned by whoever fills the set. */
+/* Nodes in memory; owned by the code that fills the set. */
 typedef struct {
   PetscInt count, capacity;
   LamNodeData *data; /* [count] */
 } LamNodeSet;
 
-/* key: where the key lies in a record; member: where LamResponseMembers do, in their order. */
+/* key: byte offset of the key in a record; member: those of LamResponseMembers, in their order. */
 void LamNodeLayoutMake(size_t key, const size_t member[], LamNodeLayout *layout);
 void LamNodeDataFromBytes(const LamNodeLayout *layout, const unsigned char *bytes, LamNodeData *node);
 void LamNodeDataFromResponse(const LamResponse *response, PetscInt64 key, LamNodeData *node);

@@ -1,5 +1,5 @@
 /*
-  Questions rounded to a binary grid, so that sums in another order end on the same one.
+  Loads rounded to a binary grid, so that the result does not depend on the order of summation.
 */
 #ifndef LAM_ROUNDED_LOAD_H
 #define LAM_ROUNDED_LOAD_H
@@ -23,7 +23,7 @@ static inline LamLoad LamLoadRound(const LamLoad *load)
   return rounded;
 }
 
-/* Order of the states: F, then turgor, then cohesion. */
+/* Compares F, then turgor, then cohesion. */
 static inline int LamLoadCompare(const void *first, const void *second)
 {
   const LamLoad *a = (const LamLoad *)first, *b = (const LamLoad *)second;
@@ -41,7 +41,8 @@ static inline void LamAddSlope(PetscReal slope, PetscReal change, PetscReal *val
   if (change != 0 && !PetscIsNanReal(slope)) *value += slope * change;
 }
 
-/* From the rounded question to the one asked, to first order: exact to rounding. Slopes that are not known stay out. */
+/* First-order correction of a response to `load`, for loads that differ by rounding. Unknown (NaN) slopes are skipped.
+ */
 static inline void LamResponseCorrectToLoad(const LamLoad *load, LamResponse *r)
 {
   const PetscReal turgor = load->turgor - r->load.turgor, cohesion = load->cohesion - r->load.cohesion;

@@ -1,5 +1,5 @@
 /*
-  The cells of a table: their corners, found among the nodes.
+  The cells of a table: lookup of their corners among the nodes.
 */
 #include "table.h"
 #include <math.h>
@@ -12,12 +12,12 @@ int LamTableSortAxes(PetscBool symmetric, const int i[3], int sorted[3])
   const int rank[3] = {a + b, 1 - a + c, 2 - b - c};
 
   for (int k = 0; k < 3; k++) sorted[rank[k]] = i[k];
-  return 2 * rank[0] + (rank[1] > rank[2]); /* LamAxisOrder ascends */
+  return 2 * rank[0] + (rank[1] > rank[2]); /* LamAxisOrder is in ascending order */
 }
 
 /*
-  The node at each corner, whose axes lie in the cell's order where the cell's coordinates differ: then the keys of
-  the corners differ by those of the steps. Returns whether one of them is of the cell's own level.
+  Finds the node at each corner. Where the cell's coordinates differ, the nodes' axes are in the cell's order, and the
+  keys of the corners differ by those of the steps. Returns whether one of the nodes is of the cell's own level.
 */
 static PetscBool FindCorners(LamTable table, LamTableCell *cell)
 {
