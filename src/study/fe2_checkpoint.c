@@ -1,11 +1,11 @@
 /*
-  OUT.h5.ckpt: what a macroscale run that is killed or stopped goes on from.
+  OUT.h5.ckpt: the checkpoint from which a killed or stopped macroscale run resumes.
 
-  Method. The file is written anew after each complete step, when the results and the database have it, and takes its
-  name when it is on the disk; where that would take more than LARGEST_SHARE of the time, after some of them. So a kill
-  leaves a complete step, and results that have this step or more, which are written over. A database may have grown,
-  too: the records that the run knew are those that are named, in their order; others count as not solved yet, and are
-  found where they would be solved.
+  Method. The file is rewritten after a complete step, when results and database have the step, and is renamed to its
+  final name when it is on the disk. It is written after every step, or less often where that would take more than
+  LARGEST_SHARE of the time. So a kill leaves a checkpoint of a complete step, and results with at least this step;
+  later steps are overwritten. The database may have grown since: the checkpoint lists the records that the run had
+  used, in their order. Other records are treated as not solved; when one would be solved, it is read from the file.
 */
 #include "fe2_run.h"
 #include <stdio.h>
@@ -13,7 +13,7 @@
 #include "clock.h"
 #include <unistd.h>
 
-static const PetscReal LARGEST_SHARE = 0.02; /* of the run's time for checkpoints */
+static const PetscReal LARGEST_SHARE = 0.02; /* of the run time spent on checkpoints */
 
 static PetscErrorCode CheckpointPath(const LamFE2Run *run, char path[PETSC_MAX_PATH_LEN])
 {
@@ -22,14 +22,14 @@ static PetscErrorCode CheckpointPath(const LamFE2Run *run, char path[PETSC_MAX_P
   PetscFunctionReturn(0);
 }
 
-/* ---- whose it is ---- */
+/* ---- identity of the run ---- */
 
 static size_t LineLength(const char text[])
 {
   return strcspn(text, "\n");
 }
 
-/* An error that names the first line in which two texts differ; `before` is the text that the file holds. */
+/* PETSC_ERR_USER_INPUT, with the first line that differs, unless the texts are equal; `before` is the file's text. */
 static PetscErrorCode CompareScenes(const char path[], const char before[], const char now[])
 {
   int line = 1;
@@ -47,7 +47,7 @@ static PetscErrorCode CompareScenes(const char path[], const char before[], cons
           line, (int)LineLength(before), before, (int)LineLength(now), now);
 }
 
-/* The scene and what answers; on reading an error where they are others. */
+/* Writes scene and type of response, or reads them and raises an error if they differ from this run's. */
 static PetscErrorCode ArchiveIdentity(LamFE2Run *run, LamArchive archive, const char path[])
 {
   PetscInt length = LamIsFirst(run->comm) ? (PetscInt)strlen(run->scene->text) + 1 : 0;
@@ -91,7 +91,7 @@ PetscErrorCode LamFE2CheckpointRows(LamFE2Run *run, LamArchive archive, LamFE2Ti
 
 /* ---- finding ---- */
 
-/* Rank 0: whether the results are complete, and of this scene. */
+/* Rank 0: whether the results are complete. An error if they are of another scene. */
 static PetscErrorCode IsFinished(const LamFE2Run *run, PetscBool *finished)
 {
   PetscBool has_status, has_scene;
@@ -136,9 +136,9 @@ PetscErrorCode LamFE2CheckpointFind(LamFE2Run *run, PetscBool *finished)
   PetscFunctionReturn(0);
 }
 
-/* ---- saving, going on ---- */
+/* ---- saving, resuming ---- */
 
-/* What is there once a step is complete. */
+/* The data that exist once a step is complete. */
 static PetscErrorCode ArchiveSteps(LamFE2Run *run, LamArchive archive)
 {
   PetscFunctionBeginUser;
@@ -160,7 +160,7 @@ static PetscErrorCode Write(LamFE2Run *run, LamArchive archive)
   PetscFunctionReturn(0);
 }
 
-/* A cache that has no file forgets what it has solved: there is nothing to go on from. */
+/* A cache without a file does not keep its records, so a run with it cannot be resumed. */
 static PetscBool CanGoOn(const LamFE2Run *run)
 {
   return (PetscBool)(run->response == LAM_FE2_DIRECT || run->database_path);

@@ -1,5 +1,5 @@
 /*
-  Curves of a macroscale run, kept in memory and written as a whole after each step: they are small.
+  Curves of a macroscale run. They are small: kept in memory and rewritten as a whole after each step.
 */
 #include "fe2_curve.h"
 #include "beside.h"
@@ -126,7 +126,7 @@ PetscErrorCode LamCurveWrite(const LamCurve *curve, LamRecordWriter writer)
   PetscFunctionReturn(0);
 }
 
-/* "work (N mm/mm)"; bare numbers have no unit. */
+/* "work (N mm/mm)"; columns of unit 1 have no unit in the header. */
 static void PrintHeader(FILE *out, const LamCurve *curve)
 {
   for (int c = 0; c < LAM_CURVE_COLUMN_COUNT; c++) {

@@ -1,5 +1,5 @@
 /*
-  The curves of a macroscale run: one row per reported step, for the HDF5 file, the CSV file beside it and the summary.
+  The curves of a macroscale run: one row per reported step, for the HDF5 file, its CSV file and the summary.
 */
 #ifndef LAM_FE2_CURVE_H
 #define LAM_FE2_CURVE_H
@@ -7,24 +7,24 @@
 #include <lamella/database.h>
 #include <lamella/macro.h>
 
-/* Numbers of a row beside displacements and reactions: the name in both files, and the unit there. */
+/* Columns of a row other than displacements and reactions: name and unit in both files. */
 #define LAM_CURVE_COLUMNS(X)                                                                                           \
   X(LAM_CURVE_STEP, "step", "1")                                                                                       \
   X(LAM_CURVE_LOAD_FACTOR, "load_factor", "1")                                                                         \
-  X(LAM_CURVE_TIME, "time", "s") /* of a process; others have no such column */                                        \
+  X(LAM_CURVE_TIME, "time", "s") /* only for processes */                                                              \
   X(LAM_CURVE_WORK, "work", "N mm/mm")                                                                                 \
   X(LAM_CURVE_TURGOR, "turgor_mean", "MPa")                                                                            \
   X(LAM_CURVE_OPENING, "opening_fraction", "1")   /* mean over the body */                                             \
   X(LAM_CURVE_DEBONDED, "debonded_fraction", "1") /* likewise */                                                       \
   X(LAM_CURVE_OPEN, "open_fraction", "1")         /* likewise */                                                       \
-  X(LAM_CURVE_GAP, "max_gap", "apothem")          /* largest of all points, as what follows */                         \
+  X(LAM_CURVE_GAP, "max_gap", "apothem")          /* this and the next four: largest over all points */                \
   X(LAM_CURVE_UNLOADING, "face_unloading_max", "1")                                                                    \
   X(LAM_CURVE_WALL, "wall_tension_max", "MPa")                                                                         \
   X(LAM_CURVE_NORMAL, "lamella_normal_max", "MPa")                                                                     \
   X(LAM_CURVE_SHEAR, "lamella_shear_max", "MPa")                                                                       \
-  X(LAM_CURVE_ELLIPTICITY, "ellipticity_min", "MPa") /* smallest of all points */                                      \
-  X(LAM_CURVE_LOCALISED, "localised_points", "1")    /* how many have lost it */                                       \
-  X(LAM_CURVE_SEPARATED, "separated_share", "1")     /* of the body's volume: fe2_summary.h; NaN: not judged */        \
+  X(LAM_CURVE_ELLIPTICITY, "ellipticity_min", "MPa") /* smallest over all points */                                    \
+  X(LAM_CURVE_LOCALISED, "localised_points", "1")    /* points that have lost ellipticity */                           \
+  X(LAM_CURVE_SEPARATED, "separated_share", "1")     /* volume fraction: fe2_summary.h; NaN: not evaluated */          \
   X(LAM_CURVE_RUPTURED, "ruptured_share", "1")       /* likewise */                                                    \
   X(LAM_CURVE_ERROR, "error_estimate_max", "1")                                                                        \
   X(LAM_CURVE_NEWTON, "newton_iterations", "1")                                                                        \
@@ -37,11 +37,11 @@
 #define LAM_CURVE_ENTRY(symbol, name, unit) symbol,
 typedef enum { LAM_CURVE_COLUMNS(LAM_CURVE_ENTRY) LAM_CURVE_COLUMN_COUNT } LamCurveColumn;
 
-/* All in physical units; NaN: not known, or free. */
+/* All in physical units; NaN: not known, or (displacement) free. */
 typedef struct {
   PetscReal value[LAM_CURVE_COLUMN_COUNT];
   PetscReal displacement[LAM_MAX_BOUNDARIES][2]; /* mm */
-  PetscReal reaction[LAM_MAX_BOUNDARIES][2];     /* on the body, N per mm of thickness */
+  PetscReal reaction[LAM_MAX_BOUNDARIES][2];     /* force on the body, N per mm of thickness */
 } LamCurveRow;
 
 typedef struct {
@@ -54,13 +54,14 @@ typedef struct {
 PetscErrorCode LamCurveAdd(LamCurve *curve, const LamMacroStep *step, const LamMacroFields *fields,
                            const LamScales *scales);
 PetscErrorCode LamCurveDestroy(LamCurve *curve);
-/* Whether its rows have this column. */
+/* Whether the curve has this column. */
 PetscBool LamCurveHas(const LamCurve *curve, LamCurveColumn column);
-/* A column as an array [count]; the caller frees it. */
+/* Returns a column as an array [count]; the caller frees it. */
 PetscErrorCode LamCurveGetColumn(const LamCurve *curve, LamCurveColumn column, PetscReal **values);
-/* /macro/curve/<name> [step] of every column but the first, /macro/curve/displacement and reaction [step][side][2]. */
+/* Writes /macro/curve/<name> [step] for every column but `step`, and /macro/curve/displacement and reaction
+   [step][side][2]. */
 PetscErrorCode LamCurveWrite(const LamCurve *curve, LamRecordWriter writer);
-/* Beside the HDF5 file, .csv: names with their units in the first line, then a line per step; unknown: empty. */
+/* Writes the .csv file beside the HDF5 file: a header line of names with units, then a line per step; NaN is empty. */
 PetscErrorCode LamCurveWriteCSV(const LamCurve *curve, const char hdf5[]);
 
 #endif

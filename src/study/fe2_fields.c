@@ -1,5 +1,5 @@
 /*
-  Which fields a result file of a macroscale run has.
+  Selection of the fields in a result file of a macroscale run.
 */
 #include "fe2_fields.h"
 #include <math.h>
@@ -19,8 +19,8 @@ PetscReal LamFE2Strength(const LamStrength *strength, LamPointField field)
   }
 }
 
-/* Of damage and of what may fail the largest value counts, of ellipticity the smallest; the others hardly vary within
- * an element. */
+/* Whether a field also has its largest (ellipticity: smallest) value in an element. The others hardly vary within an
+   element. */
 static PetscBool HasLargest(LamPointField field)
 {
   return (PetscBool)(field != LAM_POINT_TURGOR && field != LAM_POINT_LUMEN && field != LAM_POINT_INTERPOLATED &&

@@ -1,6 +1,6 @@
 /*
-  Fields of a step as a result file names them: what the material points keep, means and largest values, and what of
-  the scene's strengths they reach. Physical units.
+  Fields of a step in a result file: element means and largest values of the quantities stored at material points, and
+  their ratios to the scene's strengths. Physical units.
 */
 #ifndef LAM_FE2_FIELDS_H
 #define LAM_FE2_FIELDS_H
@@ -8,20 +8,20 @@
 #include <lamella/macro.h>
 #include "xdmf.h"
 
-/* A scalar field: a number that points keep, over its unit or over a strength. */
+/* A scalar field: a quantity of the material points, in its unit or as a ratio to a strength. */
 typedef struct {
   LamPointField field;
-  PetscBool largest; /* of the element's points; else their mean */
+  PetscBool largest; /* largest value of the element's points (ellipticity: smallest); else their mean */
   PetscBool over_strength;
-  PetscReal factor; /* to its unit; not of what is over a strength */
+  PetscReal factor; /* conversion to its unit; unused with over_strength */
   const char *unit; /* static */
 } LamFE2Scalar;
 
 enum { LAM_FE2_MAX_FIELDS = 4 + 2 * (LAM_POINT_FIELD_COUNT + 3) };
 
 /*
-  Of a scene: u, F, P, cauchy come first (scalars[k].unit is NULL), then the scalars. A name ends in _max where it is
-  the largest value, and in _ratio where it is over the strength, which are there only where the scene gives that.
+  The fields for a scene: first u, F, P, cauchy (scalars[k].unit is NULL), then the scalars. Suffix _max: largest value
+  (_min for ellipticity: smallest). Suffix _ratio: ratio to the strength, only if the scene gives that strength.
 */
 typedef struct {
   PetscInt count;
@@ -30,11 +30,11 @@ typedef struct {
 } LamFE2Fields;
 
 void LamFE2FieldsChoose(const LamScene *scene, LamFE2Fields *fields);
-/* The strength that a field is measured by, in C1 + C2; NaN: none is given, or it has none. */
+/* The strength for a field, in C1 + C2; NaN: not given, or the field has none. */
 PetscReal LamFE2Strength(const LamStrength *strength, LamPointField field);
-/* Mean over the body, by reference volume; NaN where a point does not know it. */
+/* Mean over the body, weighted by reference volume; NaN if it is NaN at any point. */
 PetscReal LamFE2Mean(const LamMacroFields *fields, LamPointField field);
-/* Largest of all points, likewise. */
+/* Largest value over all points; NaN if it is NaN at any point. */
 PetscReal LamFE2Largest(const LamMacroFields *fields, LamPointField field);
 
 #endif

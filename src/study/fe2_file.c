@@ -55,7 +55,7 @@ static PetscBool IsTriangle(const LamMacroFields *fields, PetscInt e)
   return (PetscBool)(fields->elements[LAM_FIELD_NODES * e + 6] < 0);
 }
 
-/* Of each element its type in XDMF and its nodes, one after the other. */
+/* Writes the XDMF type and the nodes of each element, concatenated. */
 static PetscErrorCode WriteTopology(LamFE2File file, const LamMacroFields *fields)
 {
   PetscInt *topology, n = 0;
@@ -225,7 +225,7 @@ PetscErrorCode LamFE2FileAddStep(LamFE2File file, const LamMacroStep *step, cons
   PetscCall(WriteSummary(file, summary));
   if (file->beside) PetscCall(file->beside(file->writer, file->beside_ctx));
   PetscCall(LamRecordWriterInts(file->writer, "/macro/steps", 1, &file->step_count, file->steps));
-  PetscCall(LamRecordWriterCommit(file->writer, 0, NULL, NULL)); /* the file has the whole step now */
+  PetscCall(LamRecordWriterCommit(file->writer, 0, NULL, NULL)); /* the step is complete on disk */
   PetscCall(WriteXDMF(file, fields, &summary->curve));
   PetscCall(LamCurveWriteCSV(&summary->curve, file->path));
   PetscFunctionReturn(0);

@@ -3,17 +3,18 @@
 
   Kind "fe2", physical units, each array with its unit as attribute "unit":
     /macro/nodes            [node][2]      reference positions, mm
-    /macro/elements, topology              node numbers, VTK's order of quadratic elements: xdmf.h
+    /macro/elements, topology              node numbers in VTK's order for quadratic elements: xdmf.h
     /macro/boundaries                      names of the sides, one per line
     /macro/step/<k>/u       [node][3]      displacement, mm; the third component is 0
     /macro/step/<k>/F, P, cauchy [element][9]   means over the element, row-major; P and cauchy in MPa;
-                                                cauchy over its present volume
-    /macro/step/<k>/<name>  [element]      means (<name>) and largest values (<name>_max) of what points keep, and both
-                                           over the scene's strengths (<name>_ratio, <name>_ratio_max): fe2_fields.h
+                                                cauchy over the deformed volume
+    /macro/step/<k>/<name>  [element]      means (<name>) and largest values (<name>_max) over the material points, and
+                                           their ratios to the scene's strengths (<name>_ratio, <name>_ratio_max):
+                                           fe2_fields.h
     /macro/curve/<name>     [step]; /macro/curve/displacement, reaction [step][side][2], mm and N/mm: fe2_curve.h
-    /macro/summary                         JSON, of the steps so far: fe2_summary.h
+    /macro/summary                         JSON, for the steps so far: fe2_summary.h
     /macro/steps            [step]         numbers of the complete steps; written last
-    /macro/status                          how the run ended; absent where a kill or an error ended it
+    /macro/status                          how the run ended; absent after a kill or an error
 */
 #ifndef LAM_FE2_FILE_H
 #define LAM_FE2_FILE_H
@@ -23,18 +24,18 @@
 typedef struct LamFE2File_s *LamFE2File;
 
 /*
-  Borrows the scene. CREATE: nothing is visible under `path` before the first step is complete; APPEND: goes on with a
-  file of the same scene, whose steps LamFE2FileArchive tells. A kill leaves the file with complete steps.
+  Borrows the scene. CREATE: nothing is visible under `path` before the first step is complete. APPEND: extends a file
+  of the same scene; LamFE2FileArchive restores the list of its steps. After a kill the file holds complete steps only.
 */
 PetscErrorCode LamFE2FileOpen(const char path[], LamWriteMode mode, const LamScene *scene, LamFE2File *file);
-/* Writes or reads what later steps need to know of the earlier ones; collective, `file` NULL but on rank 0. */
+/* Writes or reads the data of earlier steps that later steps need. Collective; `file` is NULL except on rank 0. */
 PetscErrorCode LamFE2FileArchive(LamFE2File file, LamArchive archive);
-/* `summary` knows the step already. */
+/* `summary` must already contain the step. */
 PetscErrorCode LamFE2FileAddStep(LamFE2File file, const LamMacroStep *step, const LamMacroFields *fields,
                                  const LamSummary *summary);
-/* What else is written with each step, as one with it. */
+/* Sets a function that writes further data with each step, in the same commit. `ctx` is borrowed. */
 void LamFE2FileSetBeside(LamFE2File file, PetscErrorCode (*write)(LamRecordWriter writer, void *ctx), void *ctx);
-/* For what is written beside the steps; borrowed. */
+/* The writer, for data other than the steps; borrowed. */
 LamRecordWriter LamFE2FileWriter(LamFE2File file);
 /* `status`: "done", "stopped", or why the run did not converge; NULL after an error. */
 PetscErrorCode LamFE2FileClose(LamFE2File *file, const char status[]);

@@ -1,5 +1,5 @@
 /*
-  The files of a macroscale run, on rank 0: its results, and the database to which a cache adds what it solves.
+  The files of a macroscale run, on rank 0: its results, and the database files to which caches add records.
 */
 #include "fe2_run.h"
 
@@ -14,7 +14,7 @@ static PetscErrorCode AddRow(LamFE2Tissue *tissue, PetscInt row)
   PetscFunctionReturn(0);
 }
 
-/* Of n new records of the database those that its file does not have; *count of them, with the keys they get there. */
+/* Selects those of n new records of the database that its file lacks, with their keys there; *count of them. */
 static PetscErrorCode ChooseNew(LamFE2Tissue *tissue, PetscInt n, const PetscInt64 in_memory[],
                                 const LamResponse records[], PetscInt *count, PetscInt64 keys[], LamResponse chosen[])
 {
@@ -33,7 +33,7 @@ static PetscErrorCode ChooseNew(LamFE2Tissue *tissue, PetscInt n, const PetscInt
   PetscFunctionReturn(0);
 }
 
-/* Appends what the cache has solved since the last step, so that a later run finds it. */
+/* Appends the records that the cache has solved since the last call, for later runs. */
 PetscErrorCode LamFE2RecordTissue(LamFE2Tissue *tissue)
 {
   const LamResponse *records;
@@ -68,7 +68,7 @@ PetscErrorCode LamFE2OpenTissueFile(LamFE2Tissue *tissue)
   PetscCall(LamRecordWriterGetKeys(tissue->records, &n, &keys));
   tissue->next_key = LAM_CACHE_KEY;
   for (PetscInt k = 0; k < n; k++) tissue->next_key = PetscMax(tissue->next_key, keys[k] + 1);
-  PetscCall(LamFE2RecordTissue(tissue)); /* states that belong to a new grid */
+  PetscCall(LamFE2RecordTissue(tissue)); /* records of the free cells of a new grid */
   PetscFunctionReturn(0);
 }
 
@@ -110,7 +110,7 @@ PetscErrorCode LamFE2CloseFiles(LamFE2Run *run, const char status[])
   for (PetscInt t = 0; t < run->tissues.count; t++) {
     LamFE2Tissue *tissue = &run->tissues.tissues[t];
 
-    closed = LamFE2RecordTissue(tissue); /* of a step that did not converge */
+    closed = LamFE2RecordTissue(tissue); /* records of a step that did not converge */
     if (!ierr) ierr = closed;
     if (tissue->records) closed = LamRecordWriterClose(&tissue->records);
     if (!ierr) ierr = closed;

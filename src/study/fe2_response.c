@@ -14,7 +14,7 @@ const char *const LamFE2ResponseNames[] = {"direct", "cache", "database"};
 
 /* ---- databases ---- */
 
-/* Loads the database as the run that goes on knew it: the records of its file that are named, in that order. */
+/* Loads the database as the resumed run had it: the records listed in the checkpoint, in that order. */
 static PetscErrorCode OpenAsItWas(LamFE2Tissue *tissue)
 {
   LamKnownRecords *known = &tissue->known;
@@ -35,7 +35,7 @@ static PetscErrorCode OpenAsItWas(LamFE2Tissue *tissue)
   PetscFunctionReturn(0);
 }
 
-/* Loads the database, on all ranks; the mesh of the RVE, where the scene leaves it open, is the database's. */
+/* Loads the database, on all ranks. Mesh parameters of the RVE that the scene leaves open are set to the database's. */
 static PetscErrorCode OpenDatabase(LamFE2Run *run, LamFE2Tissue *tissue)
 {
   LamMicrostructure *micro = &tissue->scene.micro, stored;
@@ -98,7 +98,7 @@ PetscErrorCode LamFE2PrepareResponse(LamFE2Run *run)
   PetscFunctionBeginUser;
   PetscCall(LamFE2TissuesCreate(run->comm, run->macro, run->scene, run->database_path, tissues));
   for (PetscInt t = 0; t < tissues->count; t++) PetscCall(LamFE2PrepareTissue(run, &tissues->tissues[t]));
-  /* what files say of the scene's own tissue */
+  /* for the scene's own tissue, as written to the files */
   PetscCall(LamPlanMake(run->scene, &plan));
   run->scene->micro = tissues->tissues[0].name[0] ? plan.micro : tissues->tissues[0].scene.micro;
   if (tissues->turgor) PetscCall(LamMacroSetPointTissue(run->macro, tissues->turgor, tissues->cohesion));
@@ -107,7 +107,7 @@ PetscErrorCode LamFE2PrepareResponse(LamFE2Run *run)
 
 /* ---- responders ---- */
 
-/* A new database has no grid yet, nor has one that is older than the grid. */
+/* Creates a grid for a database without one: a new database, or one written before grids existed. */
 static PetscErrorCode GiveGrid(LamFE2Run *run, LamFE2Tissue *tissue)
 {
   PetscBool complete;
@@ -126,7 +126,7 @@ static PetscErrorCode GiveGrid(LamFE2Run *run, LamFE2Tissue *tissue)
   PetscFunctionReturn(0);
 }
 
-/* Nodes in the file are equal to those of `build`. */
+/* Nodes are solved as `build` solves them, so the file's nodes are equal to those of `build`. */
 static PetscErrorCode CreateNodeSolver(LamFE2Tissue *tissue)
 {
   LamGrid grid;
@@ -166,8 +166,8 @@ PetscErrorCode LamFE2ChangeTissueWalls(void *ctx, const PetscReal factor[LAM_WAL
   PetscFunctionReturn(0);
 }
 
-/* How many points of the tissue find room for two states each in its share of the memory. Behind a cache none keeps a
-   state: all its solves start from the reference. */
+/* *kept: number of points for which two states fit in this tissue's share of warm_start_memory. With a cache no point
+   keeps a state, because all solves start from the reference. */
 static PetscErrorCode CountKept(const LamFE2Run *run, const LamFE2Tissue *tissue, PetscInt *kept)
 {
   const PetscReal memory = run->scene->response.warm_start_memory;
@@ -205,8 +205,8 @@ static PetscErrorCode CreateSolver(LamFE2Run *run, LamFE2Tissue *tissue)
 }
 
 /*
-  Of cells in contact nearly all of P is turgor, across the plane; what moves the body is a small part of it, whose
-  error is ten times as large. Coarser meshes of the walls have no such accuracy to give. docs/results/performance.md,
+  In contact tissue nearly all of abs(P) is P33, from turgor; the part that deforms the body is small, and its relative
+  error is ten times as large. Wall meshes coarser than EVEN_ALONG are not that accurate. docs/results/performance.md,
   FE².
 */
 #define EVEN_ALONG 12 /* elements along a face */

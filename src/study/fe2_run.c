@@ -1,5 +1,5 @@
 /*
-  The life of an FE2 run.
+  Lifecycle of an FE2 run.
 */
 #include "fe2_run.h"
 #include "clock.h"
@@ -19,7 +19,7 @@ PetscErrorCode LamFE2Prepare(LamFE2Run *run, PetscBool *finished)
   PetscFunctionReturn(0);
 }
 
-/* Rank 0: files and report of the step. */
+/* Rank 0: writes and reports the step. */
 static PetscErrorCode EndStep(LamFE2Run *run, const LamMacroStep *step, const LamMacroFields *fields,
                               PetscReal peak_memory)
 {
@@ -61,7 +61,7 @@ static PetscErrorCode StepDone(LamMacro macro, const LamMacroStep *step, PetscBo
   PetscCall(LamMacroFieldsDestroy(&fields));
   PetscCall(LamShareError(run->comm, ierr));
   Count(step, &run->totals);
-  *stop = LamStopRequested(); /* of any rank: a signal may reach only one of them */
+  *stop = LamStopRequested(); /* on any rank: a signal may reach only one */
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, stop, 1, MPIU_BOOL, MPI_LOR, run->comm));
   if (step->complete) PetscCall(LamFE2CheckpointSave(run, *stop));
   PetscFunctionReturn(0);

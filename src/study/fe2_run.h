@@ -1,18 +1,18 @@
 /*
-  An FE2 run: the macroscale problem of a scene, its material points answered by RVE solves, a database or both.
+  An FE2 run: the macroscale problem of a scene, with material points evaluated by RVE solves, a database or both.
 
-    fe2_run.c         its life
+    fe2_run.c         lifecycle
     fe2_response.c    responders of the material points
-    fe2_tissue.c      which tissue each point has
-    fe2_record.c      the files of rank 0
-    fe2_checkpoint.c  what an interrupted run goes on from
-    fe2_zoom.c        the microstructure at chosen points
+    fe2_tissue.c      tissue of each point
+    fe2_record.c      files of rank 0
+    fe2_checkpoint.c  checkpoints of an interrupted run
+    fe2_zoom.c        microstructure at chosen points
 
     LamFE2Run run = LAM_FE2_RUN;
     run.comm = ..., run.scene_path = ..., run.out_path = ...;   options below
     LamFE2Prepare(&run, &finished);  LamFE2Solve(&run, &reason, message);  LamFE2Destroy(&run);
 
-  Rank 0 writes the files. Where it cannot, the error is raised there, and the other ranks return the same code.
+  Rank 0 writes the files. If it fails, it raises the error, and the other ranks return the same code.
 */
 #ifndef LAM_FE2_RUN_H
 #define LAM_FE2_RUN_H
@@ -22,7 +22,7 @@
 #include "fe2_tissue.h"
 #include "study.h"
 
-/* Of the reported steps. */
+/* Totals over the reported steps. */
 typedef struct {
   PetscInt64 queries, hits, solves, failures;
   PetscInt steps, newton_iterations;
@@ -34,29 +34,30 @@ typedef struct LamFE2Run_s {
   const char *scene_path;    /* read, unless `scene` is given */
   const char *database_path; /* NULL: none */
   const char *out_path;      /* results; NULL: none */
-  PetscBool resume;          /* goes on behind the last complete step of out_path, where there is one */
+  PetscBool resume;          /* resume after the last complete step of out_path, if there is one */
   LamFE2Response response;
   LamReporter reporter;
-  /* After each step, on rank 0, once files and totals before it are written; ctx: the reporter's. May be NULL. */
+  /* Called after each step, on rank 0, with the reporter's ctx: the files have the step, `totals` do not yet include
+     it. May be NULL. */
   PetscErrorCode (*step)(void *ctx, const struct LamFE2Run_s *run, const LamMacroStep *step, PetscReal peak_memory);
-  PetscBool all_fields; /* the summary is wanted although nothing is written */
+  PetscBool all_fields; /* compute the summary even if nothing is written */
 
   LamScene *scene;
   LamMacro macro;
-  PetscBool stopped;      /* before the first step: nothing is written */
-  PetscBool resumed;      /* goes on from a complete step: OUT.h5 has it */
-  PetscInt resumed_steps; /* that earlier runs have reported */
-  PetscReal saved, save_seconds,
-      all_save_seconds; /* when the checkpoint was written last, how long that took, and all */
-  LamArchive archive;   /* what it goes on from, until that is read; NULL: it begins anew */
+  PetscBool stopped;                               /* stopped before the first step: nothing is written */
+  PetscBool resumed;                               /* resumed from a complete step, which OUT.h5 has */
+  PetscInt resumed_steps;                          /* steps reported by earlier runs */
+  PetscReal saved, save_seconds, all_save_seconds; /* time of the last checkpoint; its duration; duration of all, s */
+  LamArchive archive;                              /* the checkpoint to resume from, until it is read; NULL: none */
   LamFE2Tissues tissues;
-  LamResponder mosaic; /* of several tissues; destroy NULL: not in use */
+  LamResponder mosaic; /* responder for several tissues; destroy NULL: not in use */
 
   /* rank 0 only */
   LamFE2File out;
   LamSummary summary;
-  PetscReal walls;        /* moduli over those of the tissues: of a process; else 1 */
-  PetscBool walls_differ; /* their parameters do not change alike: each over that is */
+  PetscReal walls; /* common factor of the wall moduli over those of the tissues, in a process; else 1 */
+  PetscBool
+      walls_differ; /* parameters also change by wall_ratio, over those of the tissues and without the common factor */
   PetscReal wall_ratio[LAM_WALL_PARAMETER_COUNT];
 
   LamFE2Totals totals;
@@ -66,59 +67,59 @@ typedef struct LamFE2Run_s {
 #define LAM_FE2_RUN ((LamFE2Run){.walls = 1})
 
 /* ---- fe2_run.c; collective ---- */
-/* Reads and checks everything; nothing is written. *finished: with `resume`, out_path has all steps already. */
+/* Reads and checks all input; writes nothing. *finished: with `resume`, out_path already has all steps. */
 PetscErrorCode LamFE2Prepare(LamFE2Run *run, PetscBool *finished);
-/* message [LAM_MESSAGE_LENGTH]: why it did not converge. LAM_MACRO_STOPPED: by LamStopRequest. */
+/* message [LAM_MESSAGE_LENGTH]: why it did not converge. *reason LAM_MACRO_STOPPED: by LamStopRequest. */
 PetscErrorCode LamFE2Solve(LamFE2Run *run, LamMacroReason *reason, char message[]);
 PetscErrorCode LamFE2Destroy(LamFE2Run *run);
 
 /* ---- fe2_response.c ---- */
-/* Finds the tissues, loads their databases, chooses the meshes of their RVEs; collective. */
+/* Determines the tissues, loads their databases, chooses the meshes of their RVEs; collective. */
 PetscErrorCode LamFE2PrepareResponse(LamFE2Run *run);
-/* Wires the responder that the options ask for to the macroscale solver; run->stopped: a request to stop came before.
- */
+/* Creates the responder selected by run->response and sets it on the macroscale solver. run->stopped: a stop was
+   requested before that was done. */
 PetscErrorCode LamFE2Connect(LamFE2Run *run);
 PetscErrorCode LamFE2Disconnect(LamFE2Run *run); /* after the macroscale solver's end */
-/* The same for one tissue: its database and mesh; its responder, unless a request to stop comes before (run->stopped).
- */
+/* The same for one tissue: its database and mesh; its responder, unless a stop is requested first (run->stopped). */
 PetscErrorCode LamFE2PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue);
 PetscErrorCode LamFE2ConnectTissue(LamFE2Run *run, LamFE2Tissue *tissue, LamResponder **responder);
 PetscErrorCode LamFE2DisconnectTissue(LamFE2Tissue *tissue);
-/* The RVE of this tissue with each parameter of its walls multiplied. */
+/* Multiplies each wall parameter of the RVE, relative to those in `micro`, by its factor. */
 PetscErrorCode LamFE2ChangeWalls(LamRVE rve, const LamMicrostructure *micro,
                                  const PetscReal factor[LAM_WALL_PARAMETER_COUNT]);
-/* The same of a LamFE2Tissue; a set of LamProcessSetWalls. */
+/* The same for a LamFE2Tissue; callback for LamProcessSetWalls. */
 PetscErrorCode LamFE2ChangeTissueWalls(void *tissue, const PetscReal factor[LAM_WALL_PARAMETER_COUNT]);
 
-/* ---- fe2_record.c; on rank 0 but for the first, which is collective ---- */
+/* ---- fe2_record.c; on rank 0, except LamFE2OpenFiles, which is collective ---- */
 PetscErrorCode LamFE2OpenFiles(LamFE2Run *run);
-/* Adds a step to the results, and to the database what the cache has solved since the last one. */
+/* Adds a step to the results, and the cache's new records to the database file. */
 PetscErrorCode LamFE2RecordStep(LamFE2Run *run, const LamMacroStep *step, const LamMacroFields *fields);
-/* Of one tissue: starts to append to its database's file; appends what the cache has solved since the last time. */
+/* For one tissue: opens its database file for appending; appends the cache's records since the last call. */
 PetscErrorCode LamFE2OpenTissueFile(LamFE2Tissue *tissue);
 PetscErrorCode LamFE2RecordTissue(LamFE2Tissue *tissue);
-/* What was solved is kept, whatever the end was. */
+/* Records not yet written are written first, however the run ended. */
 PetscErrorCode LamFE2CloseFiles(LamFE2Run *run, const char status[]);
-/* After an error, which is the one to tell: no lock is left, and of the cache's solves what can still be written. */
+/* After an error: writes what records it can and releases the locks; further errors are ignored. */
 PetscErrorCode LamFE2CloseAfterError(LamFE2Run *run);
 
 /* ---- fe2_checkpoint.c; collective ---- */
 /*
-  With --resume: looks for OUT.h5.ckpt and checks that it is of this run; *finished: OUT.h5 has all steps of this scene
-  already. Before databases are opened: LamFE2CheckpointRows says which records of a tissue's were known.
+  With --resume: looks for OUT.h5.ckpt and checks that it is of this run; *finished: OUT.h5 already has all steps of
+  this scene. LamFE2CheckpointRows, called before databases are opened, reads which records of a tissue's database the
+  run had used.
 */
 PetscErrorCode LamFE2CheckpointFind(LamFE2Run *run, PetscBool *finished);
 PetscErrorCode LamFE2CheckpointRows(LamFE2Run *run, LamArchive archive, LamFE2Tissue *tissue);
-/* Takes over what was found, once responder and files stand; else starts OUT.h5.ckpt, so that a database that grows
-   meanwhile does not change what the run would have answered. */
+/* Restores the checkpoint that was found, once responder and files exist; else writes a first OUT.h5.ckpt, so that
+   responses after a resume do not depend on records that other runs add to the database meanwhile. */
 PetscErrorCode LamFE2CheckpointStart(LamFE2Run *run);
-/* After a complete step, and after the files have it: where it is due, so that all of them take 2 % of the time at
-   most, or where the run is to end. */
+/* Called after a complete step is in the files. Writes a checkpoint if the run ends, or if one is due: checkpoints take
+   at most 2 % of the time. */
 PetscErrorCode LamFE2CheckpointSave(LamFE2Run *run, PetscBool ends);
 PetscErrorCode LamFE2CheckpointRemove(LamFE2Run *run);
 
 /* ---- fe2_zoom.c ---- */
-/* Adds to the results, after the last step, the microstructure at some material points (`macro.zoom`). Collective. */
+/* Adds the microstructure at some material points (`macro.zoom`) to the results, after the last step. Collective. */
 PetscErrorCode LamFE2Zoom(LamFE2Run *run);
 
 #endif

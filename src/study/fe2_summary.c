@@ -51,7 +51,7 @@ PetscErrorCode LamSummaryDestroy(LamSummary *summary)
 
 /* ---- onsets ---- */
 
-/* Where no wall faces its partner any more the gap is not known, and there is one. */
+/* If no wall faces its partner any more, the gap has no value but exists: infinity. */
 static PetscReal GapMeasure(const PetscReal field[])
 {
   const PetscBool faces_none = (PetscBool)(isnan(field[LAM_POINT_GAP]) && field[LAM_POINT_DEBONDED] > 0);
@@ -59,7 +59,7 @@ static PetscReal GapMeasure(const PetscReal field[])
   return faces_none ? PETSC_INFINITY : field[LAM_POINT_GAP] / LAM_VISIBLE_GAP;
 }
 
-/* 1 where the criterion is reached; NaN: not known. */
+/* Measure of a criterion: >= 1 if it is reached; NaN: not known. */
 static PetscReal Measure(const LamSummary *summary, LamSummaryCriterion criterion, const PetscReal field[])
 {
   const LamStrength *strength = &summary->strength;
@@ -88,12 +88,12 @@ PetscReal LamSummaryDanger(const LamSummary *summary, const PetscReal field[])
   for (int c = 0; c < LAM_SUMMARY_CRITERION_COUNT; c++) {
     if (!summary->onset[c].judged || c == LAM_SUMMARY_GAP) continue;
     const PetscReal measure = Measure(summary, (LamSummaryCriterion)c, field);
-    if (measure > largest) largest = measure; /* NaN: not known, others are */
+    if (measure > largest) largest = measure; /* false for NaN */
   }
   return PetscIsInfReal(largest) && largest < 0 ? field[LAM_POINT_WALL] : largest;
 }
 
-/* Share of the way between two steps at which a measure reaches 1; 2: it does not. */
+/* Fraction of the interval between two steps at which a measure reaches 1; 2: it does not. */
 static PetscReal Crossing(LamSummaryCriterion criterion, PetscReal before, PetscReal now)
 {
   if (!(now >= 1)) return 2;
@@ -117,9 +117,9 @@ static void Keep(const LamSummary *summary, const LamMacroFields *fields, PetscI
 }
 
 /*
-  The point that reaches the criterion first on the way to this step; of several at once the one that is furthest
-  beyond. Differences of rounding do not count: of points that a symmetry makes equal the first is told, on any number
-  of ranks.
+  Finds the point that reaches the criterion first in the interval before this step; of several at the same load, the
+  one with the largest measure at the step. Differences of the size of rounding errors are ignored, so that among points
+  that are equal by symmetry the first is reported, for any number of ranks.
 */
 static void Seek(const LamSummary *summary, const LamMacroFields *fields, LamSummaryCriterion criterion,
                  LamSummaryOnset *onset)
@@ -140,7 +140,7 @@ static void Seek(const LamSummary *summary, const LamMacroFields *fields, LamSum
   if (which >= 0) Keep(summary, fields, which, first, onset);
 }
 
-/* Share of the body at whose points a criterion of the mode is reached; NaN: none is judged. */
+/* Volume fraction of the points at which any criterion of the mode is reached; NaN: none is evaluated. */
 static PetscReal ReachedShare(const LamSummary *summary, const LamMacroFields *fields, LamSummaryMode mode)
 {
   PetscReal volume = 0, reached = 0;
@@ -214,7 +214,7 @@ const LamSummaryOnset *LamSummaryFirst(const LamSummary *summary, LamSummaryMode
 
 /* ---- the loaded side ---- */
 
-/* What is free counts as not moved. */
+/* Component along the direction of loading; NaN (free) counts as 0. */
 static PetscReal Along(const LamSummary *summary, const PetscReal vector[2])
 {
   PetscReal sum = 0;
@@ -238,7 +238,7 @@ static PetscReal Length(const PetscReal vector[2])
   return hypot(isfinite(vector[0]) ? vector[0] : 0, isfinite(vector[1]) ? vector[1] : 0);
 }
 
-/* The side, and the row in which it is moved furthest. */
+/* Sets the loaded side and its direction; returns the row of its largest displacement, -1: none. */
 static PetscInt FindLoadedSide(LamSummary *summary)
 {
   const LamCurve *curve = &summary->curve;
@@ -259,7 +259,8 @@ static PetscInt FindLoadedSide(LamSummary *summary)
   return row;
 }
 
-/* Slope at row a of the parabola through rows a, b, c; of the line through the first two where the motion turns. */
+/* Slope at row a of the parabola through rows a, b, c; of the line through a and b if the motion reverses, or there is
+   no row c. */
 static PetscReal Tangent(const LamSummary *summary, PetscInt a, PetscInt b, PetscInt c)
 {
   const PetscInt rows[3] = {a, b, c}, count = summary->curve.count;
@@ -279,7 +280,7 @@ static PetscReal Tangent(const LamSummary *summary, PetscInt a, PetscInt b, Pets
   return chord + (next - chord) / (u[2] - u[0]) * (u[0] - u[1]);
 }
 
-/* Of a box whose side is moved: edges across and along it. */
+/* Sets height and length if the loaded side is an edge of a box. */
 static void MeasureBox(LamSummary *summary)
 {
   static const char *const upright[] = {"left", "right"}, *const level[] = {"bottom", "top"};

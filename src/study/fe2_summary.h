@@ -1,21 +1,22 @@
 /*
-  What a macroscale run comes to: where the tissue first separates and tears, stiffness, work, firmness. Rank 0.
+  The summary of a macroscale run: onsets of separation and rupture, stiffness, work, firmness. Rank 0.
 
-    LamSummaryAdd(&summary, step, fields) after every step; LamSummaryFind(&summary) gives all the rest.
+    LamSummaryAdd(&summary, step, fields) after every step; LamSummaryFind(&summary) computes the rest.
 
-  Onset. Every material point has measures that reach 1 where its tissue fails: what its lamella and walls bear over
-  their strengths, and in contact tissue what its faces have lost of the pressure that closes them. Where nothing closes
-  them (p + g = 0) cells that have a gap are separated; else a gap is an opening: cells that swell freely round off and
-  open at their junctions long before they come apart. (`rve --failure` counts gaps as separation, too: states that are
-  held there.) Between two reported steps the measure of a point is taken as linear in what the curves are linear in;
-  the point and place that reach 1 first are the onset. A gap is not measured while it is closed, so that its onset is
-  the step at which it is found. An onset that is there at the first step has nothing to interpolate from, either.
+  Onset. Every material point has measures that reach 1 where its tissue fails: tractions of the lamella and tension of
+  the walls over their strengths, and in contact tissue the fraction that its faces have lost of the closing pressure.
+  If nothing closes the faces (p + g = 0), cells with a gap are separated; else a gap is an opening: freely swelling
+  cells round off and open at their junctions long before they separate. (`rve --failure`, whose states are prescribed,
+  counts gaps as separation, too.) Between two reported steps the measure of a point is interpolated linearly, as the
+  curves are; the point and load at which 1 is reached first are the onset. A closed gap has no measure, so the onset of
+  a gap is the step at which it is found. An onset at the first step is not interpolated, either.
 
-  The shares of the body that are separated or torn at a step (in its curves) are those of the points at which any of
-  these criteria is reached. They depend less on the mesh than onsets do, which sit at clamped corners where stress has
-  no bound.
+  The separated and ruptured fractions of the body at a step (in the curves) are the volume fractions of the points at
+  which any of these criteria is reached. They depend less on the mesh than onsets do, which occur at clamped corners
+  where stress is unbounded.
 
-  The loaded side is the one that is moved furthest; displacement and reaction are the components along its direction.
+  The loaded side is the side with the largest displacement; displacement and reaction are components along its
+  direction.
 */
 #ifndef LAM_FE2_SUMMARY_H
 #define LAM_FE2_SUMMARY_H
@@ -27,7 +28,7 @@
 #define LAM_SUMMARY_CRITERIA(X)                                                                                        \
   X(LAM_SUMMARY_NORMAL, "lamella_normal")   /* separation: lamella_normal over its strength */                         \
   X(LAM_SUMMARY_SHEAR, "lamella_shear")     /* separation: likewise */                                                 \
-  X(LAM_SUMMARY_UNLOADED, "face_unloading") /* separation, contact: a face family carries nothing any more */          \
+  X(LAM_SUMMARY_UNLOADED, "face_unloading") /* separation, contact: a face family carries no load */                   \
   X(LAM_SUMMARY_GAP, "gap")                 /* opening, contact: a gap above LAM_VISIBLE_GAP, on the RVE's mesh */     \
   X(LAM_SUMMARY_WALL, "wall")               /* rupture: wall_tension over its strength */
 typedef enum { LAM_SUMMARY_CRITERIA(LAM_ENUM_ENTRY) LAM_SUMMARY_CRITERION_COUNT } LamSummaryCriterion;
@@ -40,53 +41,53 @@ typedef enum { LAM_SUMMARY_MODES(LAM_ENUM_ENTRY) LAM_SUMMARY_MODE_COUNT } LamSum
 extern const char *const LamSummaryModeNames[];
 LamSummaryMode LamSummaryModeOf(LamSummaryCriterion criterion);
 
-/* Where a criterion is first reached. */
+/* Onset of a criterion. */
 typedef struct {
   PetscBool judged, reached;
-  PetscInt row;            /* of the curve, at which it is found reached */
-  PetscReal share;         /* of the way to it from the row before; 1: not interpolated */
+  PetscInt row;    /* of the curve: first step at which it is reached */
+  PetscReal share; /* onset as a fraction of the interval from the previous row to this one; 1: not interpolated */
   PetscInt element, point; /* number of the element, and which of its points */
   PetscReal place[2];      /* reference position, mm */
 } LamSummaryOnset;
 
-/* Slopes of the reaction over the displacement, N/mm over mm and mm of thickness, which is MPa; NaN: too few steps. */
+/* Slopes of reaction (N/mm) over displacement (mm): N/mm per mm, that is MPa; NaN: too few steps. */
 typedef struct {
-  PetscReal initial, final; /* tangents: of the parabola through the first, and the last, three steps */
+  PetscReal initial, final; /* tangents of the parabolas through the first and the last three steps */
   PetscReal secant;         /* from the first step to that of the largest displacement */
 } LamSummaryStiffness;
 
 typedef struct {
   const LamScene *scene; /* borrowed */
-  LamStrength strength;  /* of the step that is added; the scene's, unless it changes in time */
+  LamStrength strength;  /* at the step to be added; the scene's, unless it changes in time */
   LamCurve curve;
   LamSummaryOnset onset[LAM_SUMMARY_CRITERION_COUNT];
-  PetscReal *before; /* [point][criterion] measures at the last step, before_count in all; owned */
+  PetscReal *before; /* [point][criterion] measures at the last step, before_count values; owned */
   PetscInt before_count;
 
-  /* LamSummaryFind */
-  PetscInt side;          /* the loaded one; -1: none is moved */
+  /* set by LamSummaryFind */
+  PetscInt side;          /* the loaded side; -1: none is moved */
   PetscReal direction[2]; /* of its displacement */
   LamSummaryStiffness stiffness;
-  PetscReal height, length; /* mm, of a box: across and along the loaded side; moduli are stiffness * height / length;
-                               NaN: the side has none */
-  PetscInt firmest;         /* row of the largest force against the motion; -1: there is none */
+  PetscReal height, length; /* of a box, perpendicular to and along the loaded side, mm; moduli are stiffness * height /
+                               length; NaN: not a box, or not one of its sides */
+  PetscInt firmest;         /* row of the largest reaction along the displacement; -1: none is positive */
 } LamSummary;
 
 /* Borrows the scene. */
 PetscErrorCode LamSummaryCreate(const LamScene *scene, LamSummary *summary);
 PetscErrorCode LamSummaryAdd(LamSummary *summary, const LamMacroStep *step, const LamMacroFields *fields);
-/* May be called after any step, and again after others; nothing is found before the first. */
+/* May be called after every step. Before the first it finds nothing. */
 void LamSummaryFind(LamSummary *summary);
 PetscErrorCode LamSummaryDestroy(LamSummary *summary);
-/* Writes or reads all steps so far; collective, what is found is on rank 0. */
+/* Writes or reads all steps so far. Collective; results are on rank 0. */
 PetscErrorCode LamSummaryArchive(LamSummary *summary, LamArchive archive);
-/* The first of a mode's criteria that is reached; NULL: none. */
+/* The earliest onset among the criteria of a mode, and its criterion; NULL: none is reached. */
 const LamSummaryOnset *LamSummaryFirst(const LamSummary *summary, LamSummaryMode mode, LamSummaryCriterion *criterion);
-/* Whether any of its criteria is judged: they apply to this tissue, and the strength is given. */
+/* Whether any criterion of the mode is evaluated: it applies to this tissue, and its strength is given if needed. */
 PetscBool LamSummaryIsJudged(const LamSummary *summary, LamSummaryMode mode);
 
-/* How near a point is to separation or rupture: the largest of what is judged, 1 where it fails; what its walls bear
-   where nothing is. `field` by LamPointField. */
+/* Proximity of a point to separation or rupture: the largest measure of the evaluated criteria, 1 at failure; its wall
+   tension if there is none. `field`: values by LamPointField. */
 PetscReal LamSummaryDanger(const LamSummary *summary, const PetscReal field[]);
 
 /* Displacement (mm) or reaction (N/mm) of the loaded side along its direction, at a row. */

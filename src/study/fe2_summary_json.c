@@ -4,7 +4,7 @@
 #include "fe2_summary.h"
 #include <math.h>
 
-/* Linear between the rows around an onset. */
+/* Linear interpolation between the rows around an onset. */
 static PetscReal At(PetscReal before, PetscReal now, PetscReal share)
 {
   return share < 1 ? before + share * (now - before) : now;
@@ -35,8 +35,8 @@ static json_t *OnsetToJSON(const LamSummary *summary, LamSummaryCriterion criter
   return o;
 }
 
-/* The first onset of a mode, "opening", "separation", "rupture": null where it is not reached, absent where it is not
-   judged; and those of all criteria that are judged. */
+/* Sets the first onset of each mode ("opening", "separation", "rupture"): null if not reached, absent if not evaluated;
+   and the onsets of all evaluated criteria. */
 static void SetOnsets(json_t *o, const LamSummary *summary)
 {
   json_t *criteria = json_object();

@@ -1,9 +1,9 @@
 /*
   The tissues of a macroscale run.
 
-  Algorithm. Each material point gets the region that covers it, and what the fields say there. A wall thickness that
-  varies gives its region levels: thicknesses at equal ratios from the least to the largest one of its points, rounded
-  outwards, whose answers are blended (blend.h). Then tissues that are alike become one.
+  Algorithm. Each material point is assigned the region that covers it and the values of the fields there. If the wall
+  thickness varies, its region gets levels: thicknesses at equal ratios from the smallest to the largest at its points,
+  rounded outwards. Responses of the levels are blended (blend.h). Equal tissues are merged.
 */
 #include "fe2_tissue.h"
 #include <math.h>
@@ -11,8 +11,9 @@
 #include <string.h>
 
 /*
-  Largest error of a blend of 2, 3, 4 and more levels whose logarithms are h apart, factor h^power;
-  docs/results/verification.md. Contact switches at thicknesses of its own, so that smooth weights help less.
+  Largest error of a blend of 2, 3, and 4 or more levels, factor h^power, h the difference of the logarithms of adjacent
+  levels; docs/results/verification.md. Contact opens or closes at particular thicknesses, so that smooth weights help
+  less.
 */
 typedef struct {
   PetscReal factor, power;
@@ -21,10 +22,10 @@ static const BlendError BondedErrors[] = {{0.5, 2}, {0.8, 3}, {1.2, 4}};
 static const BlendError ContactErrors[] = {{0.3, 2}, {0.1, 1}, {0.1, 1}};
 enum { MOST_LEVELS = 8 };
 
-/* What a point is, before tissues are told apart. */
+/* Region and field values of a point, before tissues are determined. */
 typedef struct {
   PetscInt region;                         /* -1: none */
-  PetscReal value[LAM_TISSUE_FIELD_COUNT]; /* SI; of the region or the field */
+  PetscReal value[LAM_TISSUE_FIELD_COUNT]; /* SI; from the field, or else from the region */
 } Place;
 
 /* The tissues of one region. */
@@ -36,7 +37,7 @@ typedef struct {
 
 /* ---- regions ---- */
 
-/* The mesh's group of the region's name. */
+/* Finds the element group of the mesh with the region's name. PETSC_ERR_USER_INPUT if there is none. */
 static PetscErrorCode FindGroup(LamMacro macro, const LamScene *scene, const LamRegion *region, PetscInt *group)
 {
   const char(*names)[LAM_NAME_LENGTH];
@@ -52,7 +53,7 @@ static PetscErrorCode FindGroup(LamMacro macro, const LamScene *scene, const Lam
           scene->path, region->name, count ? ", but " : "", count ? names[0] : "");
 }
 
-/* The last region that covers each point. */
+/* Finds the last region that covers each point. X: [n][2] in mm. */
 static PetscErrorCode FindRegions(LamMacro macro, const LamScene *scene, PetscInt n, const PetscReal X[],
                                   const PetscInt groups[], Place places[])
 {
@@ -73,7 +74,7 @@ static PetscErrorCode FindRegions(LamMacro macro, const LamScene *scene, PetscIn
   PetscFunctionReturn(0);
 }
 
-/* What the region, or the scene's own tissue, says of a point; SI. */
+/* Sets a point's values to those of its region, or of the scene's own tissue; SI. */
 static void SetDefaults(const LamScene *scene, Place *place)
 {
   const LamRegion *region = place->region < 0 ? NULL : &scene->regions[place->region];
@@ -88,7 +89,7 @@ static void SetDefaults(const LamScene *scene, Place *place)
 
 /* ---- fields ---- */
 
-/* What a field says must be possible there. X in mm. */
+/* Checks the range of a field value. X in mm. */
 static PetscErrorCode CheckValue(const LamScene *scene, LamTissueField field, const Place *place, const PetscReal X[2])
 {
   const LamScales *scales = place->region < 0 ? &scene->scales : &scene->regions[place->region].scales;
@@ -153,7 +154,7 @@ static PetscErrorCode FindPlaces(LamMacro macro, const LamScene *scene, PetscInt
 
 /* ---- levels of wall thickness ---- */
 
-/* To two digits, so that another mesh of the body has the same levels. */
+/* Rounds to two digits, so that the levels do not depend on the mesh of the body. */
 static PetscReal RoundOutwards(PetscReal value, PetscBool up)
 {
   const PetscReal digit = pow(10, floor(log10(value)) - 1);
@@ -163,7 +164,7 @@ static PetscReal RoundOutwards(PetscReal value, PetscBool up)
   return (up ? ceil(count) : floor(count)) * digit;
 }
 
-/* As few as keep the error of the blend below a quarter of the wanted one. */
+/* Smallest number of levels with an error of the blend of at most a quarter of `accuracy`. */
 static PetscInt LevelCount(PetscReal least, PetscReal most, LamInterfaceLawType interface, PetscReal accuracy)
 {
   const BlendError *errors = interface == LAM_INTERFACE_CONTACT ? ContactErrors : BondedErrors;
@@ -178,7 +179,7 @@ static PetscInt LevelCount(PetscReal least, PetscReal most, LamInterfaceLawType 
   return count;
 }
 
-/* range: thickness in m of the region's points on all ranks; the second less than the first: it has none. */
+/* range: smallest and largest thickness (m) at the region's points on all ranks; range[1] < range[0]: no points. */
 static void ChooseLevels(const LamScene *scene, PetscInt region, const PetscReal range[2], Levels *levels)
 {
   const LamMicrostructure *micro = region < 0 ? &scene->micro : &scene->regions[region].micro;
@@ -199,12 +200,13 @@ static void ChooseLevels(const LamScene *scene, PetscInt region, const PetscReal
         least / apothem * (levels->count > 1 ? pow(most / least, (PetscReal)k / (PetscReal)(levels->count - 1)) : 1);
 }
 
-/* The range of wall thicknesses of each region on all ranks; ranges[0] is of the scene's own tissue. */
+/* The range of wall thicknesses of each region over all ranks; ranges[0] is for the scene's own tissue. */
 static PetscErrorCode FindRanges(MPI_Comm comm, PetscInt regions, PetscInt n, const Place places[],
                                  PetscReal ranges[][2])
 {
   PetscFunctionBeginUser;
-  for (PetscInt r = 0; r <= regions; r++) ranges[r][0] = ranges[r][1] = -PETSC_INFINITY; /* [0] is the negative */
+  for (PetscInt r = 0; r <= regions; r++)
+    ranges[r][0] = ranges[r][1] = -PETSC_INFINITY; /* [0]: negative of the minimum */
   for (PetscInt p = 0; p < n; p++) {
     const PetscReal thickness = places[p].value[LAM_TISSUE_WALL_THICKNESS];
     PetscReal *range = ranges[places[p].region + 1];
@@ -219,7 +221,7 @@ static PetscErrorCode FindRanges(MPI_Comm comm, PetscInt regions, PetscInt n, co
 
 /* ---- tissues ---- */
 
-/* The scene of one tissue alone. Orientations are angles of the points against the scene's own. */
+/* The scene of one tissue alone. It keeps the scene's orientation; points have angles relative to that. */
 static LamScene SceneOf(const LamScene *scene, PetscInt region, PetscReal thickness)
 {
   LamScene own = *scene;
@@ -264,7 +266,7 @@ static void NameDatabase(const char database_path[], LamFE2Tissue *tissue)
            tissue->name[0] ? "." : "", tissue->name, database_path + stem);
 }
 
-/* The number of the tissue of a region at one of its levels, which is added where it is new. */
+/* Finds the number of the tissue of a region at one of its levels; adds the tissue if it is new. */
 static PetscErrorCode AddTissue(const LamScene *scene, PetscInt region, const Levels *levels, PetscInt level,
                                 const char database_path[], LamFE2Tissues *tissues, PetscInt *number)
 {
@@ -301,7 +303,7 @@ static PetscErrorCode AddTissues(MPI_Comm comm, const LamScene *scene, const Pla
     Levels *own = &levels[r + 1];
 
     ChooseLevels(scene, r, ranges[r + 1], own);
-    if (!scene->fields.value[LAM_TISSUE_WALL_THICKNESS]) /* as it stands in the scene, to the last digit */
+    if (!scene->fields.value[LAM_TISSUE_WALL_THICKNESS]) /* exactly the scene's value */
       own->thickness[0] = r < 0 ? scene->micro.wall_thickness : scene->regions[r].micro.wall_thickness;
     for (PetscInt k = 0; k < own->count; k++)
       PetscCall(AddTissue(scene, r, own, k, database_path, tissues, &own->tissue[k]));
@@ -321,10 +323,10 @@ static void PlacePoint(const LamScene *scene, const Place *place, const Levels *
   point->angle = place->value[LAM_TISSUE_ORIENTATION] - scene->micro.orientation;
 }
 
-/* Turgor and cohesion of the points that have a tissue are those that its table is for. */
+/* Sets the turgor and cohesion for which each tissue's table is built, from those of its points. */
 static PetscErrorCode SetLoads(MPI_Comm comm, LamFE2Tissues *tissues)
 {
-  PetscReal(*most)[3]; /* turgor, cohesion, and turgor with the other sign */
+  PetscReal(*most)[3]; /* maxima of turgor, cohesion and -turgor */
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(tissues->count, &most));
@@ -342,7 +344,7 @@ static PetscErrorCode SetLoads(MPI_Comm comm, LamFE2Tissues *tissues)
     LamFE2Tissue *tissue = &tissues->tissues[t];
     const PetscBool contact = (PetscBool)(tissue->scene.micro.interface == LAM_INTERFACE_CONTACT);
 
-    /* tables of contact tissue reach from the largest suction downwards; those of bonded tissue hold turgor by a slope
+    /* tables of contact tissue extend downwards from the largest suction; those of bonded tissue are linear in turgor
      */
     tissue->scene.turgor = (contact ? most[t][0] : 0.5 * (most[t][0] - most[t][2])) / tissue->stress;
     tissue->scene.cohesion = most[t][1] / tissue->stress;
@@ -353,7 +355,7 @@ static PetscErrorCode SetLoads(MPI_Comm comm, LamFE2Tissues *tissues)
   PetscFunctionReturn(0);
 }
 
-/* Whether questions may go to the one tissue as they are, on all ranks. */
+/* Sets tissues->plain: queries need no rotation or scaling, on all ranks. */
 static PetscErrorCode FindPlain(MPI_Comm comm, LamFE2Tissues *tissues)
 {
   PetscBool plain = (PetscBool)(tissues->count == 1 && tissues->tissues[0].stress == 1);
@@ -365,7 +367,7 @@ static PetscErrorCode FindPlain(MPI_Comm comm, LamFE2Tissues *tissues)
   PetscFunctionReturn(0);
 }
 
-/* Whether a point can be another than the scene's own tissue under its own turgor. */
+/* Whether the scene has regions or fields, so that points may differ from the scene's own tissue and turgor. */
 static PetscBool Varies(const LamScene *scene)
 {
   PetscBool varies = (PetscBool)(scene->region_count > 0);
@@ -374,7 +376,7 @@ static PetscBool Varies(const LamScene *scene)
   return varies;
 }
 
-/* The scene's own tissue everywhere. */
+/* Creates the scene's own tissue, for all points. */
 static PetscErrorCode CreateOne(MPI_Comm comm, const LamScene *scene, const char database_path[],
                                 LamFE2Tissues *tissues)
 {

@@ -1,13 +1,13 @@
 /*
-  A zoom into the microstructure: the RVE at chosen material points of the last converged state, kept in the results.
+  Zoom into the microstructure: the RVE at chosen material points of the last converged state, written to the results.
 
-  The RVE is that of the point's tissue, of several that of the largest weight. With direct response and one tissue it
-  starts from the state that the run has kept there, else from the reference, as the cache's solves do. `difference` in
-  the file tells how far the stress found is from the one the run has used: the error of an interpolated or blended
-  answer, or that this is another branch.
+  The RVE is that of the point's tissue; if several are blended, that of the largest weight. With direct response and
+  one tissue it starts from the point's stored state, else from the reference, as the cache's solves do. `difference` in
+  the file is the LamStressError between the stress used by the run and the one found: the error of an interpolated or
+  blended response, or a sign of another branch.
 
-  In the file, k = 1, 2, ... (docs/reference/files.md): /zoom/<k>/mesh and /zoom/<k>/fields as `rve -o` writes its own;
-  /zoom/place, position, F, turgor, cohesion, P, difference, apothem with a row for each; /zoom/points comes last.
+  In the file, k = 1, 2, ... (docs/reference/files.md): /zoom/<k>/mesh and /zoom/<k>/fields as written by `rve -o`;
+  /zoom/place, position, F, turgor, cohesion, P, difference, apothem with a row for each; /zoom/points is written last.
 */
 #include <math.h>
 #include <stdio.h>
@@ -16,14 +16,14 @@
 
 /* A chosen point; the same on all ranks. */
 typedef struct {
-  PetscInt element, index; /* number of the element, and which of its points */
+  PetscInt element, index; /* number of the element; index of the point in it */
   LamLoad load;
-  PetscReal P[9], place[2], position[2]; /* in the run; reference and present position, macro lengths */
+  PetscReal P[9], place[2], position[2]; /* stress in the run; reference and deformed position, macro lengths */
   PetscInt tissue;
-  PetscReal angle; /* of its cells, radian */
+  PetscReal angle; /* orientation of its cells relative to the scene's, radian */
 } Zoom;
 
-/* What a zoom found, row by row. */
+/* Results of the zooms, a row for each. */
 typedef struct {
   PetscInt count;
   PetscInt point[LAM_MAX_ZOOMS][2];
@@ -31,7 +31,7 @@ typedef struct {
   PetscReal turgor[LAM_MAX_ZOOMS], cohesion[LAM_MAX_ZOOMS], difference[LAM_MAX_ZOOMS], apothem[LAM_MAX_ZOOMS];
 } Found;
 
-/* ---- which points; rank 0 ---- */
+/* ---- choice of points; rank 0 ---- */
 
 static PetscInt Nearest(const LamMacroFields *fields, const PetscReal place[2])
 {
@@ -47,7 +47,7 @@ static PetscInt Nearest(const LamMacroFields *fields, const PetscReal place[2])
   return nearest;
 }
 
-/* Middle of the undeformed body's bounding box. */
+/* The point nearest to the centre of the undeformed body's bounding box. */
 static PetscInt Middle(const LamMacroFields *fields)
 {
   PetscReal low[2] = {PETSC_INFINITY, PETSC_INFINITY}, high[2] = {-PETSC_INFINITY, -PETSC_INFINITY};
@@ -67,7 +67,7 @@ static PetscInt MostEndangered(const LamSummary *summary, const LamMacroFields *
   for (PetscInt p = 0; p < fields->point_count; p++) {
     const PetscReal danger = LamSummaryDanger(summary, &fields->point[p * LAM_POINT_FIELD_COUNT]);
     if (isnan(danger) || (which >= 0 && danger <= most + 1e-6 * PetscAbsReal(most)))
-      continue; /* of equal ones the first */
+      continue; /* the first of equal ones */
     most = danger;
     which = p;
   }
@@ -90,8 +90,7 @@ static void Choose(const LamFE2Run *run, const LamMacroFields *fields, PetscInt 
     while (fields->first_point[zoom->element + 1] <= p) zoom->element++;
     zoom->index = p - fields->first_point[zoom->element];
     zoom->load = fields->load[p];
-    zoom->load.turgor =
-        fields->point[p * LAM_POINT_FIELD_COUNT + LAM_POINT_TURGOR]; /* that sealed cells have reached */
+    zoom->load.turgor = fields->point[p * LAM_POINT_FIELD_COUNT + LAM_POINT_TURGOR]; /* computed if cells are sealed */
     for (int i = 0; i < 9; i++) zoom->P[i] = fields->point_P[9 * p + i];
     for (int i = 0; i < 2; i++) {
       zoom->place[i] = fields->place[2 * p + i];
@@ -100,10 +99,10 @@ static void Choose(const LamFE2Run *run, const LamMacroFields *fields, PetscInt 
   }
 }
 
-/* ---- their cells ---- */
+/* ---- tissue and state of a point ---- */
 
-/* Tells all ranks of which tissue the point is; *bytes, where the run has kept its state: that, on rank 0. Collective.
- */
+/* Broadcasts tissue and angle of the point. *bytes: its packed state, with direct response and one tissue; else NULL.
+   The caller frees it. Collective. */
 static PetscErrorCode Fetch(LamFE2Run *run, Zoom *zoom, char **bytes)
 {
   const LamFE2Tissues *tissues = &run->tissues;
@@ -135,7 +134,7 @@ static PetscErrorCode Fetch(LamFE2Run *run, Zoom *zoom, char **bytes)
   PetscFunctionReturn(0);
 }
 
-/* The load in the axes of the tissue's cells and in its own units: F Q, Q the rotation by its angle. */
+/* The load in the axes and units of the tissue: F Q, Q the rotation by the point's angle. */
 static LamLoad OwnLoad(const Zoom *zoom, PetscReal stress)
 {
   const PetscReal c = cos(zoom->angle), s = sin(zoom->angle), *F = zoom->load.F;
@@ -150,7 +149,7 @@ static LamLoad OwnLoad(const Zoom *zoom, PetscReal stress)
   return own;
 }
 
-/* P Q^T, in the units of the body. */
+/* Inverse of OwnLoad for the stress: P Q^T, in the units of the body. */
 static void BodyStress(const PetscReal own[9], PetscReal angle, PetscReal stress, PetscReal P[9])
 {
   const PetscReal c = cos(angle), s = sin(angle);
@@ -164,7 +163,7 @@ static void BodyStress(const PetscReal own[9], PetscReal angle, PetscReal stress
 
 /* ---- the file; rank 0 ---- */
 
-/* `load`: in the axes of the cells, which the picture's periodic images need. */
+/* `load`: in the axes of the cells, as needed to plot periodic images. */
 static PetscErrorCode Keep(LamFE2Run *run, const Zoom *zoom, const LamLoad *load, const PetscReal P[9], LamRVE rve,
                            LamRVEState state, Found *found)
 {
@@ -197,7 +196,7 @@ static PetscErrorCode Keep(LamFE2Run *run, const Zoom *zoom, const LamLoad *load
   PetscFunctionReturn(0);
 }
 
-/* Of sealed cells the load holds the turgor that they have reached. */
+/* For sealed cells the load has the turgor that they have reached. */
 static PetscErrorCode Solve(LamFE2Run *run, const Zoom *zoom, LamRVE rve, const char bytes[], LamRVEState state,
                             Found *found)
 {
@@ -260,7 +259,7 @@ static PetscErrorCode WriteRows(LamFE2Run *run, const Found *found)
   PetscFunctionReturn(0);
 }
 
-/* Solves and writes one zoom after the other, rank 0; all appears in the file at once. Collective. */
+/* Solves and writes the zooms on rank 0, in one commit. Collective. */
 static PetscErrorCode ZoomAll(LamFE2Run *run, PetscInt count, Zoom zooms[])
 {
   PetscErrorCode ierr = 0;
