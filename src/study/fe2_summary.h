@@ -27,7 +27,7 @@
 
 #define LAM_SUMMARY_CRITERIA(X)                                                                                        \
   X(LAM_SUMMARY_NORMAL, "lamella_normal")   /* separation: lamella_normal over its strength */                         \
-  X(LAM_SUMMARY_SHEAR, "lamella_shear")     /* separation: likewise */                                                 \
+  X(LAM_SUMMARY_SHEAR, "lamella_shear")     /* separation: lamella_shear over its strength */                          \
   X(LAM_SUMMARY_UNLOADED, "face_unloading") /* separation, contact: a face family carries no load */                   \
   X(LAM_SUMMARY_GAP, "gap")                 /* opening, contact: a gap above LAM_VISIBLE_GAP, on the RVE's mesh */     \
   X(LAM_SUMMARY_WALL, "wall")               /* rupture: wall_tension over its strength */

@@ -344,8 +344,8 @@ static PetscErrorCode SetLoads(MPI_Comm comm, LamFE2Tissues *tissues)
     LamFE2Tissue *tissue = &tissues->tissues[t];
     const PetscBool contact = (PetscBool)(tissue->scene.micro.interface == LAM_INTERFACE_CONTACT);
 
-    /* tables of contact tissue extend downwards from the largest suction; those of bonded tissue are linear in turgor
-     */
+    /* tables of contact tissue extend downwards from the largest suction; nodes of bonded tissue have one turgor, and
+       derivatives in it */
     tissue->scene.turgor = (contact ? most[t][0] : 0.5 * (most[t][0] - most[t][2])) / tissue->stress;
     tissue->scene.cohesion = most[t][1] / tissue->stress;
     tissue->body_points = tissue->points = LamHeterogeneousPointCount(tissues->points, tissues->point, t);
