@@ -30,8 +30,7 @@ static inline void HermiteFunctions(PetscReal t, PetscReal h, Functions u)
   u[2][3] = (6 * t - 2) / h;
 }
 
-/* h^2 q_0, h^2 q_1: second derivative 1 at their own end; value, slope and other second derivative at the ends are 0.
- */
+/* h^2 q_0, h^2 q_1: second derivative 1 at their own end, 0 at the other; value and slope 0 at both ends. */
 static inline void BubbleFunctions(PetscReal t, PetscReal h, Functions u)
 {
   const PetscReal s = 1 - t, ts = t * s;

@@ -41,8 +41,7 @@ static inline void LamAddSlope(PetscReal slope, PetscReal change, PetscReal *val
   if (change != 0 && !PetscIsNanReal(slope)) *value += slope * change;
 }
 
-/* First-order correction of a response to `load`, for loads that differ by rounding. Unknown (NaN) slopes are skipped.
- */
+/* First-order correction of a response to `load`, which differs by rounding. Unknown (NaN) slopes are skipped. */
 static inline void LamResponseCorrectToLoad(const LamLoad *load, LamResponse *r)
 {
   const PetscReal turgor = load->turgor - r->load.turgor, cohesion = load->cohesion - r->load.cohesion;

@@ -1,15 +1,15 @@
 /*
-  Private to the table: nodes with what they add to the coarser levels, cells, and the sum at a point.
+  Private to the table: nodes with their surpluses over the coarser levels, cells, and the sum at a point.
 
   Method
-    Phi is a sum over levels. On level l the nodes whose own level is l carry their data less the sum of the coarser
-  levels there (surplus), all other corners of a cell nothing, so each level's part, and with it the sum, is
-  continuously differentiable whatever nodes there are (hermite_cell.h), and at nodes value, gradient and Hessian are
-  those of the solve. A pure second derivative of the coarser sum jumps across the faces of coarse cells: a node has its
-  surplus on either side. Along suction each node is a column: between two of its states the value is a quintic in tau,
-  the gradient a cubic, second derivatives a blend, so all of them are continuously differentiable in tau, whatever
-  states other columns have. A state that is missing at the end of a root interval adds nothing on finer levels. A cell
-  answers where all its eight columns have states on both sides; the finest such cell gives the error estimate.
+    Phi is a sum over levels. On level l the nodes whose own level is l carry their surplus: their data minus the sum of
+  the coarser levels there. All other corners of a cell carry 0. So each level's part, and the sum, is continuously
+  differentiable for any set of nodes (hermite_cell.h), and at nodes value, gradient and Hessian are those of the solve.
+  A pure second derivative of the coarser sum jumps across the faces of coarse cells: a node stores its surplus on both
+  sides. Along suction each node is a column of states. Between two states the value is a quintic in tau, the gradient a
+  cubic, the second derivatives a blend. All are continuously differentiable in tau, independently of the states of
+  other columns. A missing state at the end of a root interval counts as 0 on finer levels. A cell is complete where all
+  eight columns have states on both sides; the finest complete cell gives the error estimate.
 */
 #ifndef LAM_TABLE_H
 #define LAM_TABLE_H
@@ -22,23 +22,23 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
-/* One solved state: what it adds. */
+/* The surplus of one solved state. */
 typedef struct {
   int j;
   PetscBool good;     /* converged, stable, branch 0 */
-  PetscBool has_data; /* else the rest is nothing */
-  PetscInt data;      /* in source->data */
-  LamJet phi;         /* pure second derivatives: on the side of larger strain; NaN: not known */
-  PetscReal minus[3]; /* the same on the other side */
+  PetscBool has_data; /* else all numbers below but `data` are 0 */
+  PetscInt data;      /* index in source->data */
+  LamJet phi;         /* pure second derivatives: on the side of larger strain; NaN: unknown */
+  PetscReal minus[3]; /* pure second derivatives on the other side */
   PetscReal tau1, tau2, gradient_tau[3];
   PetscReal tau2_minus;                     /* on the side of smaller suction */
-  PetscReal hessian_tau[6], minus_tau[3];   /* of differences along the column, 0 where there is no other state */
-  PetscBool alone;                          /* there is none */
+  PetscReal hessian_tau[6], minus_tau[3];   /* from differences along the column; 0 if it has no other state */
+  PetscBool alone;                          /* the column has no other state */
   PetscReal turgor1, turgor2;               /* dPhi/dp at fixed s, d2Phi/dp2 */
-  PetscReal turgor_gradient[3], turgor_tau; /* of the first */
+  PetscReal turgor_gradient[3], turgor_tau; /* derivatives of turgor1 */
 } LamTableState;
 
-/* What is there of a node's states: nothing; all but mixed third derivatives and slopes along suction; all. */
+/* Computed so far of a node's states: nothing; all but mixed third derivatives and slopes along suction; all. */
 enum { LAM_NODE_RAW, LAM_NODE_SUBTRACTED, LAM_NODE_MADE };
 
 typedef struct {
@@ -50,16 +50,16 @@ typedef struct {
 
 enum { LAM_NODE_MISSING = -1, LAM_NODE_FLOATING = -2 };
 
-/* Of cells there are no lists: whoever needs one finds its corners among the nodes. */
+/* Cells are not stored: their corners are looked up among the nodes when needed. */
 typedef struct {
-  int level, i[3]; /* corner of least strains */
+  int level, i[3]; /* i: corner of least strains */
   PetscInt node[8];
-  unsigned char order[8]; /* how the axes of the corner's node lie: axis k is axis LamAxisOrder[order][k] of the node */
+  unsigned char order[8]; /* axis k of the cell is axis LamAxisOrder[order][k] of the corner's node */
 } LamTableCell;
 
 extern const int LamAxisOrder[6][3];
 
-/* Open addressing: place of an item in its array, by its coordinates. */
+/* Hash map with open addressing: index of an item by the key of its place. */
 typedef struct {
   PetscInt64 *keys;
   PetscInt *items;
@@ -68,17 +68,17 @@ typedef struct {
 
 struct LamTable_s {
   atomic_int references;
-  const LamNodeSet *source; /* borrowed; its array may move while no query is under way */
+  const LamNodeSet *source; /* borrowed; its array may be reallocated between queries */
   struct LamGrid_s *grid;   /* borrowed */
-  PetscBool uniform;        /* all cells are alike */
+  PetscBool uniform;        /* all cells of the tissue are identical */
   PetscInt state_count, node_count;
-  PetscInt *data;        /* [state_count] in source->data */
-  LamTableState *states; /* written under the lock; read where the stage of their node is LAM_NODE_MADE */
+  PetscInt *data;        /* [state_count] indices in source->data */
+  LamTableState *states; /* written under the lock; valid to read when their node's stage is LAM_NODE_MADE */
   LamTableNode *nodes;   /* ascending in level */
   LamPlaceMap node_map;
   pthread_mutex_t lock;
-  int levels;          /* one more than the finest of the nodes */
-  PetscInt *free_data; /* [grid->free.n] in source->data, -1: not there */
+  int levels;          /* finest level of the nodes, plus 1 */
+  PetscInt *free_data; /* [grid->free.n] indices in source->data; -1: missing */
 };
 
 /* A point in the grid's coordinates, with its axes sorted where the grid is symmetric. */
@@ -87,7 +87,7 @@ typedef struct {
   int axis[3];      /* axis k here is lattice direction axis[k] */
   PetscReal tau, v; /* v: along tau, in units */
   int root;         /* first j of its root interval */
-  PetscReal step;   /* d: turgor beyond that of the grid at this suction */
+  PetscReal step;   /* d: turgor minus the grid's turgor at this suction */
   PetscReal s;
 } LamTablePoint;
 
@@ -95,20 +95,20 @@ typedef struct {
 typedef struct {
   LamJet phi; /* Phi + d Phi_p + d^2 Phi_pp / 2 */
   PetscReal tau1, tau2, gradient_tau[3];
-  LamJet turgor1; /* its derivative in d: value and gradient */
+  LamJet turgor1; /* derivative of phi in d: value and gradient */
   PetscReal turgor1_tau, turgor2;
   /*
-    What the estimate is made of, components of the gradient: sizes over the finest complete cell of what bubbles add
-    and of how much the slopes turn (LamHermiteSizes, of what its level adds), and over the cells of all levels, between
-    two states of their columns, of the cubic along tau less the line.
+    Input of the error estimate, components of the gradient. bend, turn: LamHermiteSizes of the level's part on the
+    finest complete cell. bump: difference between the cubic and the line along tau, between two states of a column;
+    root of the sum of squares over the cells of all levels.
   */
   PetscReal bend[3], turn[3], bump[3];
 } LamTableSum;
 
 /* ---- table_make.c ---- */
-/* A table of the nodes that `source` has now; source and grid must outlive it. */
+/* Creates a table of the nodes now in `source`; source and grid must outlive it. */
 PetscErrorCode LamTableMake(const LamNodeSet *source, LamGrid grid, PetscBool uniform, LamTable *table);
-LamTable LamTableReference(LamTable table); /* one more reference */
+LamTable LamTableReference(LamTable table); /* adds a reference */
 
 /* ---- table_map.c ---- */
 PetscErrorCode LamPlaceMapCreate(PetscInt n, LamPlaceMap *map);
@@ -122,7 +122,7 @@ static inline size_t LamPlaceMapSlot(const LamPlaceMap *map, PetscInt64 key)
   return (size_t)(h >> 20) & (map->size - 1);
 }
 
-/* -1: not there. */
+/* -1: not found. */
 static inline PetscInt LamPlaceMapGet(const LamPlaceMap *map, PetscInt64 key)
 {
   for (size_t k = LamPlaceMapSlot(map, key);; k = (k + 1) & (map->size - 1))
@@ -138,14 +138,14 @@ static inline PetscInt64 LamPlaceMapKey(const int i[3])
 }
 
 /* ---- table_state.c ---- */
-/* Phi and its derivatives of a record; `data`: its number in database->nodes. */
+/* Phi and its derivatives from a record; `data`: its index in the node set. */
 void LamTableMakeState(const struct LamGrid_s *grid, const LamNodeData *r, PetscInt data, LamTableState *state);
 
 /* ---- table_surplus.c ---- */
-/* Brings node n to LAM_NODE_MADE. From any thread. */
+/* Computes node n up to stage LAM_NODE_MADE. Thread-safe. */
 void LamTableMakeNode(LamTable table, PetscInt n);
 
-/* The states of a node, ascending in j, made where they are not yet. */
+/* The states of a node, ascending in j; computed on first use. */
 static inline const LamTableState *LamTableStates(LamTable table, const LamTableNode *node)
 {
   if (atomic_load_explicit(&node->stage, memory_order_acquire) != LAM_NODE_MADE)
@@ -154,43 +154,43 @@ static inline const LamTableState *LamTableStates(LamTable table, const LamTable
 }
 
 /* ---- table_cell.c ---- */
-/* Sorts i ascending where directions are alike. Returns the entry of LamAxisOrder that says where each axis went. */
+/* Sorts i ascending if the grid is symmetric. Returns the entry of LamAxisOrder that maps each axis to its rank. */
 int LamTableSortAxes(PetscBool symmetric, const int i[3], int sorted[3]);
-/* Fills the cell with its corner of least strains at i (sorted). NULL where no node of its own level touches it. */
+/* Fills the cell whose corner of least strains is i (sorted). NULL if no corner is a node of the cell's level. */
 const LamTableCell *LamTableCellAt(LamTable table, int level, const int i[3], LamTableCell *cell);
-/* The same for the cell of a level that holds the point. */
+/* The same for the cell of a level that contains the point. */
 const LamTableCell *LamTableFindCell(LamTable table, const LamTablePoint *point, int level, LamTableCell *cell);
 
 /* ---- table_sum.c ---- */
-/* Whether all corners have states on both sides of the point, or are known to float. *good: all of them are. */
+/* Whether all corners have states on both sides of the point, or float. *good: all these states are good. */
 PetscBool LamTableCellIsComplete(LamTable table, const LamTableCell *cell, const LamTablePoint *point, PetscBool *good);
-/* The states of a node's column on either side of the point; NULL: missing. */
+/* The states of a node's column on both sides of the point; NULL: missing. */
 void LamTableBracket(LamTable table, const LamTableNode *node, const LamTablePoint *point,
                      const LamTableState *ends[2]);
-/* Whether what a column is at the point rests on an end of its bracket: not where the other end has its suction. */
+/* Whether a column's value at the point depends on end e of its bracket: not if the other end is at its suction. */
 static inline PetscBool LamTableRestsOn(const LamTableState *const ends[2], int e, const LamTablePoint *point)
 {
   const LamTableState *other = ends[1 - e];
 
   return (PetscBool)(!other || other == ends[e] || other->j != point->v);
 }
-/* Of the corners whose own level is the cell's: those without states, weighed as by linear interpolation, 0 to 1. */
+/* Share of corners without states among those of the cell's own level, weighted by linear interpolation, 0 to 1. */
 PetscReal LamTableMissingShare(LamTable table, const LamTableCell *cell, const LamTablePoint *point);
-/* Adds a cell's part; `estimate`: writes bend and turn. */
+/* Adds a cell's part to the sum; `estimate`: also writes bend and turn. */
 void LamTableAddCell(LamTable table, const LamTableCell *cell, const LamTablePoint *point, PetscBool estimate,
                      LamTableSum *sum);
 
-/* Adds what cells are that touch no one. */
+/* Adds the free cell's part: the point's cells float. */
 void LamTableAddFloating(LamTable table, const LamTablePoint *point, LamTableSum *sum);
 
 /* ---- table_indicators.c ---- */
-/* P33, its row and column of the tangent and its pressure derivatives. cell NULL: the cells float. */
+/* P33, its row and column of the tangent and its derivatives in the pressures. cell NULL: the cells float. */
 void LamTableThickness(LamTable table, const LamTablePoint *point, const LamTableCell *cell,
                        const LamLatticeState *lattice, LamResponse *r);
 void LamTableIndicators(LamTable table, const LamTablePoint *point, const LamTableCell *cell, LamResponse *r);
 
 /* ---- table_info.c ---- */
-/* The member `table` of what `info` tells; MPa: C1 + C2 in MPa. The caller owns it. */
+/* The member `table` of the output of `info`; MPa: C1 + C2 in MPa. The caller owns it. */
 PetscErrorCode LamTableDescribe(LamTable table, PetscReal MPa, json_t **object);
 
 #endif

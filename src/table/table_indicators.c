@@ -1,17 +1,17 @@
 /*
-  What the potential does not give: the stress across the plane, and indicators.
+  Quantities that do not follow from the potential: out-of-plane stress and indicators.
 
   P33 + p J (contact: P33 - g J) is interpolated from its value and gradient at the corners of the finest complete cell.
-  Indicators are means of the corners, with the weights of linear interpolation, so that they keep their bounds: a share
-  stays between 0 and 1. Those that are stresses are taken relative to the walls' stress, which the potential gives.
-  Faces are renamed as the corner's axes lie. Counts are given where all corners agree.
+  Indicators are interpolated linearly between the corners, so that they keep their bounds: a share stays between 0 and
+  1. Stresses among them are interpolated relative to the walls' stress, which follows from the potential. Faces are
+  permuted as the corner's axes. Counts are set where all corners agree.
 */
 #include "table.h"
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
 
-/* A state around the point and its part in the answer. */
+/* A state around the point and its weight in the response. */
 typedef struct {
   const LamNodeData *data;
   const int *order;       /* axis k of the point is axis order[k] of the node */
@@ -31,7 +31,7 @@ static void AddAround(Surroundings *around, const LamNodeData *data, const int *
   around->at[around->n++] = (Around){data, order, weight * side, side, corner, end};
 }
 
-/* The two knots of the free cell around the point; PETSC_FALSE where the file lacks one of them. */
+/* Adds the two knots of the free cell around the point; PETSC_FALSE if the file lacks one of them. */
 static PetscBool AddFree(LamTable table, const LamTablePoint *point, PetscReal weight, int corner, Surroundings *around)
 {
   const struct LamGrid_s *grid = table->grid;
@@ -68,7 +68,7 @@ static void AddNode(LamTable table, const LamTableCell *cell, int corner, const 
     if (ends[e]) AddAround(around, &table->source->data[ends[e]->data], order, weight, e ? t : 1 - t, corner, e);
 }
 
-/* The corners of the cell; without one, cells that touch no one. */
+/* Adds the states at the corners of the cell; cell NULL: floating cells. */
 static PetscBool Surround(LamTable table, const LamTableCell *cell, const LamTablePoint *point, Surroundings *around)
 {
   around->n = 0;
@@ -89,9 +89,9 @@ static PetscBool Surround(LamTable table, const LamTableCell *cell, const LamTab
   return PETSC_TRUE;
 }
 
-/* ---- across the plane ---- */
+/* ---- out-of-plane stress ---- */
 
-/* P33 of the walls, its gradient in x and its slope along the states of the grid at fixed grid coordinates. */
+/* P33 of the walls, its gradient in x, and its slope in suction at fixed grid coordinates. */
 static PetscReal WallThickness(LamTable table, const LamNodeData *r, const PetscReal a[3], PetscReal gradient[3],
                                PetscReal *slope)
 {
@@ -111,7 +111,7 @@ static PetscReal WallThickness(LamTable table, const LamNodeData *r, const Petsc
   return r->P33 + factor * J;
 }
 
-/* Most states around a point have the same few suctions. */
+/* Cache of a(s): most states around a point share a few suctions. */
 typedef struct {
   PetscReal suction[2], strain[2][3];
   int next;
@@ -131,7 +131,7 @@ static const PetscReal *RecallFreeStrain(const struct LamGrid_s *grid, const Lam
   return memory->strain[at];
 }
 
-/* A corner at the point's suction: cubic along tau in the value, linear in the gradient. */
+/* Interpolates a corner to the point's suction: the value cubic in tau, the gradient linear. */
 static void AddThickness(LamTable table, const Around *around, PetscReal tau_step, PetscBool is_free,
                          FreeStrain *memory, LamJet *jet)
 {
@@ -151,7 +151,7 @@ static void AddThickness(LamTable table, const Around *around, PetscReal tau_ste
   for (int k = 0; k < 3 && !is_free; k++) jet->gradient[k] += r * gradient[around->order[k]];
 }
 
-/* factor times the gradient in t of the trilinear function of the corners' values. */
+/* Adds factor times the gradient in t of the trilinear function of the corners' values. */
 static void AddLinearGradient(const PetscReal value[8], PetscReal factor, const PetscReal t[3], PetscReal gradient[3])
 {
   for (int c = 0; c < 8; c++) {
@@ -162,7 +162,6 @@ static void AddLinearGradient(const PetscReal value[8], PetscReal factor, const 
   }
 }
 
-/* P33 and its row and column of the tangent, and its derivatives with respect to turgor and cohesion. */
 void LamTableThickness(LamTable table, const LamTablePoint *point, const LamTableCell *cell,
                        const LamLatticeState *lattice, LamResponse *r)
 {
@@ -196,7 +195,7 @@ void LamTableThickness(LamTable table, const LamTablePoint *point, const LamTabl
     LamHermiteEdges(corner, grid->step / (1 << cell->level), t, &value, gradient);
     AddLinearGradient(rate, d / (grid->step / (1 << cell->level)), t, gradient);
   }
-  /* contact: P33' depends on g at fixed s through dP33'/dp - dP33'/dg, as the potential does */
+  /* contact: at fixed s, P33' depends on g through dP33'/dp - dP33'/dg, as the potential does */
   r->P[8] = value + factor * J + d * (turgor - cohesion);
   r->P_turgor[8] = turgor - (grid->contact ? 0 : J);
   r->P_cohesion[8] = grid->contact ? cohesion + J : 0;
@@ -214,19 +213,22 @@ void LamTableThickness(LamTable table, const LamTablePoint *point, const LamTabl
 /* ---- indicators ---- */
 
 /*
-  How a number follows from the corners' numbers v: sum of weight (v - base)/size, times the point's size, plus its
-  base. MEAN          size 1, base 0 TENSION       size of the walls' stress P + p J F^-T (and a floor), which the
-  potential gives TRACTION      the same; base: normal traction of the walls' stress on the face family, less turgor
-    MAX_TRACTION  base: the largest of the three; with contact the cohesion, which open places bear and none exceeds,
-                  and size: how far the largest of the three stays below it
-  So turgor at fixed walls adds nothing to a tension and takes p off a traction (with contact: at the cost of cohesion,
-  which falls alike): the effective-stress principle.
+  Interpolation from the corners' values v: sum of weight (v - base) / size over the corners, times the point's size,
+  plus the point's base.
+    MEAN          size 1, base 0
+    TENSION       size: norm of the walls' stress P + p J F^-T, plus a floor; base 0
+    TRACTION      size as TENSION; base: normal traction of the walls' stress on the face family, minus turgor
+    MAX_TRACTION  size as TENSION; base: the largest of the three tractions.
+                  Contact: base: cohesion, the traction of open places and the upper bound; size: the distance of the
+                  largest of the three below it
+  So turgor at fixed walls leaves a tension unchanged and lowers a traction by p (with contact: where cohesion decreases
+  by as much): the effective-stress principle.
 */
 typedef enum { MEAN, TENSION, TRACTION, MAX_TRACTION } Rule;
 
 #define ONE(name, rule) {offsetof(LamResponse, name), offsetof(LamNodeData, name), 1, rule},
 #define THREE(name, rule) {offsetof(LamResponse, name), offsetof(LamNodeData, name), 3, rule},
-/* Places, and tensors in the frame of the cell, are not among them. */
+/* Without places and tensors in the frame of the cell. */
 static const struct {
   size_t response, node;
   int count; /* 3: per face family */
@@ -241,13 +243,13 @@ static const struct {
 #undef ONE
 #undef THREE
 
-/* Of a state: size of the walls' stress, bases of tractions per lattice direction, base and size of the largest. */
+/* Of a state: norm of the walls' stress; bases of tractions per lattice direction; base and size of MAX_TRACTION. */
 typedef struct {
   PetscReal size, traction[3], most, room;
 } WallStress;
 
-/* F, P: in the plane; cohesion: NULL for bonded tissue. Normal of face k: F^-T n_k; its traction: P n_k over the face's
- * stretch. */
+/* F, P: in the plane; cohesion: NULL for bonded tissue. Face k has the normal F^-T n_k and the traction P n_k over the
+   face's stretch. */
 static WallStress WallStressOf(const LamLatticeAxes *axes, const PetscReal F[4], const PetscReal P[4], PetscReal turgor,
                                const PetscReal *cohesion)
 {
@@ -287,13 +289,13 @@ static PetscReal BaseFor(const WallStress *stress, Rule rule, int k)
   return rule == TRACTION ? stress->traction[k] : rule == MAX_TRACTION ? stress->most : 0;
 }
 
-/* The states around with their stresses. */
+/* The surrounding states and their wall stresses. */
 typedef struct {
   Surroundings around;
   WallStress stress[16], here;
 } Neighbours;
 
-/* Of the n-th state, k-th of three in the point's axes: number less base, over the size. */
+/* (value - base) / size of indicator i of the n-th state; k: component in the point's axes. */
 static PetscReal Number(const Neighbours *near, int n, size_t i, int k)
 {
   const Around *at = &near->around.at[n];
@@ -313,7 +315,7 @@ static PetscReal Mean(const Neighbours *near, size_t i, int k)
   return sum;
 }
 
-/* Weighted standard deviation of the corners in units of the indicator: 0 at a node. */
+/* Weighted standard deviation over the corners, in the indicator's units: 0 at a node. */
 static PetscReal Spread(const Neighbours *near, size_t i)
 {
   const PetscReal mean = Mean(near, i, 0);
@@ -338,8 +340,8 @@ static PetscInt Agreed(const Surroundings *around, size_t offset)
   return agreed;
 }
 
-#define TRUSTED_SHARE 0.1   /* spread of a share of the interface */
-#define TRUSTED_STRESS 0.08 /* spread of a stress, relative */
+#define TRUSTED_SHARE 0.1   /* largest spread of a share of the interface */
+#define TRUSTED_STRESS 0.08 /* largest relative spread of a stress */
 
 static PetscBool IsTrusted(const Neighbours *near, const LamResponse *r)
 {
@@ -357,7 +359,7 @@ static PetscBool IsTrusted(const Neighbours *near, const LamResponse *r)
   return PETSC_TRUE;
 }
 
-/* Derivatives of Psi are volumes where all cells have the same turgor and cohesion. */
+/* Volumes are derivatives of Psi where all cells have the same turgor and cohesion. */
 static void FillVolumes(LamTable table, LamResponse *r)
 {
   if (!table->uniform) return;

@@ -1,16 +1,16 @@
 /*
-  What `info` tells of a table: how many nodes and cells of each level, what they span, what cannot be used.
+  The output of `info` on a table: nodes and cells per level, their ranges, unusable states.
 */
 #include "table.h"
 #include "range.h"
 
-enum { TRIED = 16 }; /* suctions of a root interval */
+enum { TRIED = 16 }; /* suctions tested in a root interval */
 
 typedef struct {
-  PetscInt nodes[LAM_FINEST + 1];                               /* states, by the level of their place */
-  PetscInt complete[LAM_FINEST + 1], mixed[LAM_FINEST + 1];     /* cells; over an interval of suction each */
+  PetscInt nodes[LAM_FINEST + 1];                               /* states by the level of their place */
+  PetscInt complete[LAM_FINEST + 1], mixed[LAM_FINEST + 1];     /* cells, counted per root interval of suction */
   PetscInt unstable, other_branch, failed, floating, free_cell; /* states */
-  LamRange strain, suction;                                     /* of states that are used */
+  LamRange strain, suction;                                     /* of good states */
 } Census;
 
 /* ---- nodes ---- */
@@ -42,7 +42,7 @@ static void CountNodes(LamTable table, Census *c)
 
 /* ---- cells ---- */
 
-/* Whether a cell has states on both sides of some suction of a root interval; *mixed: not all of one kind there. */
+/* Whether a cell is complete at some suction of a root interval; *mixed: not all of these states are good. */
 static PetscBool IsComplete(LamTable table, const LamTableCell *cell, int root, PetscBool *mixed)
 {
   PetscBool complete = PETSC_FALSE, good;
@@ -71,7 +71,7 @@ static void CountCell(LamTable table, const LamTableCell *cell, Census *c)
   }
 }
 
-/* Each cell once: at the first of its corners whose own level is the cell's. */
+/* Counts each cell once: at its first corner whose own level is the cell's. */
 static PetscBool IsFirstCorner(LamTable table, const LamTableCell *cell, int corner)
 {
   for (int c = 0; c < corner; c++)
@@ -85,7 +85,7 @@ static PetscBool IsBefore(const int order[3], int a, int b)
   return (PetscBool)(order[0] == a || (order[0] != b && order[1] == a));
 }
 
-/* The cells on a node's own level around one of the places that its sorted coordinates stand for. */
+/* Counts the cells of a node's level around `at`, one of the places that its sorted coordinates represent. */
 static void CountCellsAround(LamTable table, int level, const int at[3], Census *c)
 {
   const int size = LAM_ROOT >> level;
@@ -109,7 +109,7 @@ static void CountCells(LamTable table, Census *c)
       const int *order = LamAxisOrder[o];
       const int at[3] = {i[order[0]], i[order[1]], i[order[2]]};
 
-      /* of equal coordinates in one order alone: other ones give the same place */
+      /* equal coordinates in one order only: the other gives the same place */
       if ((i[0] == i[1] && IsBefore(order, 1, 0)) || (i[1] == i[2] && IsBefore(order, 2, 1))) continue;
       CountCellsAround(table, table->nodes[n].level, at, c);
     }

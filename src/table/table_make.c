@@ -1,6 +1,6 @@
 /*
-  From records to a table: those whose keys are nodes, sorted by level, place and suction; nodes and their columns. What
-  nodes add is made when a cell first needs them (table_surplus.c), so that a table of a million nodes is there at once.
+  Creation of a table from the records whose keys are nodes, sorted by level, place and suction. The surplus of a node
+  is computed when a cell first needs it (table_surplus.c), so that a table of a million nodes is available at once.
 */
 #include "table.h"
 #include <stdlib.h>
@@ -23,7 +23,7 @@ static int CompareEntries(const void *first, const void *second)
   return a->data < b->data ? -1 : a->data > b->data;
 }
 
-/* Others are left out: they come from damaged files. */
+/* Other places are skipped: they come from damaged files. */
 static PetscBool IsPlace(const struct LamGrid_s *grid, const LamNodePlace *place)
 {
   const int *i = place->i, reach = LAM_GRID_REACH - 2 * LAM_ROOT;
@@ -70,7 +70,7 @@ static PetscErrorCode MakeNodes(LamTable table)
   for (PetscInt e = 0; e < n; e++) {
     const LamNodePlace place = LamNodePlaceOf(entries[e].key);
 
-    if (e && entries[e].key == entries[e - 1].key) continue; /* solved twice: the first counts */
+    if (e && entries[e].key == entries[e - 1].key) continue; /* solved twice: keep the first */
     if (!node || memcmp(node->i, place.i, sizeof(place.i)) != 0) {
       node = &table->nodes[table->node_count];
       memset(node, 0, sizeof(*node));
@@ -83,14 +83,14 @@ static PetscErrorCode MakeNodes(LamTable table)
     table->data[table->state_count++] = entries[e].data;
     node->count++;
   }
-  if (node) table->levels = node->level + 1; /* the last is of the finest */
+  if (node) table->levels = node->level + 1; /* the last node is of the finest level */
   PetscCall(PetscFree(entries));
   PetscFunctionReturn(0);
 }
 
 /* ---- the table ---- */
 
-/* Recursive: to make a node is to make those of coarser levels. */
+/* Recursive, because computing a node computes nodes of coarser levels. */
 static PetscErrorCode MakeLock(LamTable table)
 {
   pthread_mutexattr_t attributes;
@@ -121,7 +121,7 @@ PetscErrorCode LamTableMake(const LamNodeSet *source, LamGrid grid, PetscBool un
   PetscFunctionReturn(0);
 }
 
-/* Of one table several readers may hold references at once, in threads too. */
+/* Thread-safe. */
 LamTable LamTableReference(LamTable table)
 {
   if (table) atomic_fetch_add(&table->references, 1);

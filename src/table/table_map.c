@@ -1,5 +1,5 @@
 /*
-  A hash map from places to items, by open addressing with linear probing; at most half full.
+  Hash map from places to items: open addressing, linear probing, at most half full.
 */
 #include "table.h"
 

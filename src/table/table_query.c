@@ -1,9 +1,9 @@
 /*
-  Answers from a table.
+  Queries to a table.
 
   Algorithm
-    F and suction to a point of the grid; sum of the levels; the finest complete cell decides whether the answer counts
-    and gives the estimate. Then back from (y, tau) to (x, s), and to stress and tangent:
+    Map F and suction to a point of the grid; sum the levels. The finest complete cell gives the error estimate, which
+    decides whether the response is accepted. Then map back from (y, tau) to (x, s), and to stress and tangent:
       Psi(F, p, g) = Phi(x, s) + d Phi_p(x, s) + d^2 Phi_pp / 2 + c J,   d = p - p0
       bonded   p0 the grid's turgor, c = -p;    contact   p0 = s - g0, g0 the grid's cohesion, c = g.
 */
@@ -14,20 +14,20 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Cells that a change of branch runs through are halved so often, not more: what is left is solved directly. */
+/* Finest level of cells crossed by a change of branch; the states that remain are solved directly. */
 enum { KINK_LEVEL = 2 };
 
 /*
-  Contact switches between any two states, and a mesh has several solutions some tenths of a percent apart, so there is
-  no end of halving: what these leave is solved directly.
+  Finest level and interval of suction in contact tissue. Contact switches between any two states, and a mesh has
+  several solutions some tenths of a percent apart, so refinement would not end. States that remain are solved directly.
 */
 enum { CONTACT_LEVEL = 3, CONTACT_INTERVAL = LAM_ROOT / 8 };
 
 /*
-  Weights of the estimate, from regression on held-out states; docs/results/verification.md. Below the root the surplus
-  is rough at the scale of its cells, as contact is everywhere. In root cells of bonded tissue Phi is smooth: where the
-  bubbles are small beside the turn of the slope (ROOT_TURN), higher derivatives fall off alike, and the error with
-  them.
+  Weights of the error estimate, from regression on held-out states; docs/results/verification.md. Below the root the
+  surplus is rough at the scale of its cells; with contact this holds on all levels. In root cells of bonded tissue Phi
+  is smooth: where the bubbles are small compared with the turn of the slope (ROOT_TURN), higher derivatives and the
+  error decrease likewise.
 */
 #define ROOT_BEND 0.3
 #define ROOT_TURN 0.18
@@ -37,21 +37,21 @@ enum { CONTACT_LEVEL = 3, CONTACT_INTERVAL = LAM_ROOT / 8 };
 #define CONTACT_BEND 0.25
 #define CONTACT_BUMP 0.5
 
-/* Where a question lies and what is known there. */
+/* The position of a query in the table, and the table's data there. */
 typedef struct {
   LamLatticeState lattice;
   LamTablePoint point;
   PetscReal free_strain[3]; /* a, a', a'' */
   PetscBool floating;
   const LamTableCell *leaf; /* finest complete cell; NULL: none */
-  PetscBool good;           /* its nodes are of one kind */
+  PetscBool good;           /* all its states are good */
   LamTableSum sum;
   PetscReal leaf_gradient[3]; /* of the sum up to the leaf */
   const LamTableCell *child;  /* cell of the next finer level, incomplete; NULL: none */
   LamTableCell cells[LAM_FINEST + 1];
 } Place;
 
-/* ---- finding the place ---- */
+/* ---- position ---- */
 
 static PetscBool Refuse(LamResponse *r, const char text[])
 {
@@ -61,8 +61,9 @@ static PetscBool Refuse(LamResponse *r, const char text[])
 }
 
 /*
-  A strain on a face of cells, but for rounding, lies on it: the edge of a box is part of it, in any rotation. So does a
-  suction on that of a node, with the rounding of questions (rounded_load.h): tissue of one turgor needs one node of it.
+  Moves a strain that lies on a face of cells up to rounding onto the face: the edge of a box belongs to it, in any
+  rotation. Likewise a suction to that of a node, with the rounding of loads (rounded_load.h): tissue of a single turgor
+  then needs one node along suction.
 */
 static const PetscReal ROUNDED_STRAIN = 1e-11, ROUNDED_SUCTION = 1e-6;
 static PetscReal OnFace(PetscReal u, PetscReal rounding)
@@ -145,9 +146,9 @@ static void SumLevels(LamTable table, Place *place)
   }
 }
 
-/* ---- the estimate ---- */
+/* ---- error estimate ---- */
 
-/* |v_k dx_k/dF|, squared and summed: the components' signs are not known. */
+/* Root of the sum of the squares of |v_k dx_k/dF|: the components' signs are unknown. */
 static PetscReal StressSize(const Place *place, const PetscReal v[3])
 {
   PetscReal square = 0;
@@ -170,11 +171,12 @@ static PetscReal Distance(const LamTablePoint *point, const LamTableCell *cell)
 }
 
 /*
-  Errors of P from the cell and from the interval of suction. Sizes are of the whole cell: pointwise ones pass through
-  zero where the error does not. B: bubbles, T: turn, S: bump.
+  Errors of P from the cell and from the interval of suction. Sizes are those of the whole cell: pointwise values pass
+  through zero where the error does not. B: bubbles, T: turn, S: bump.
     bonded   Distance times, root cell: ROOT_BEND B min(1, (B / (ROOT_TURN T))^2), else |(FINE_BEND B, FINE_TURN T)|
-    contact  CONTACT_BEND B and CONTACT_BUMP S: kinks that contact leaves in P may be next to a node
-  At least what nodes of finer, incomplete cells change: where one of them is of another kind, that is its jump.
+    contact  CONTACT_BEND B and CONTACT_BUMP S: contact can leave kinks of P next to a node
+  The error is at least the change made by nodes of finer, incomplete cells: where one of them is of another kind, this
+  is the jump to it.
 */
 static void Estimates(LamTable table, const Place *place, PetscReal *along_strain, PetscReal *along_suction)
 {
@@ -198,9 +200,9 @@ static void Estimates(LamTable table, const Place *place, PetscReal *along_strai
 }
 
 /*
-  Of cells that touch no one. Under strong shear lattice directions no longer meet the face normals, and neighbours that
-  are near in two directions still touch: P was off by up to 2 % with the second strain within 0.008 of a(s) and the
-  third 0.2 above (docs/results/verification.md).
+  Error estimate for floating cells. Under strong shear lattice directions deviate from the face normals, and neighbours
+  that are close in two directions still touch: P had errors up to 2 % with the second strain within 0.008 of a(s) and
+  the third 0.2 above (docs/results/verification.md).
 */
 static PetscReal FloatingError(const struct LamGrid_s *grid, const LamTablePoint *point)
 {
@@ -282,7 +284,7 @@ static void FillPressures(LamTable table, const Place *place, const Potential *p
   const PetscReal p1 = p->turgor.value, p2 = place->sum.turgor2;
   PetscReal g[3], P[4];
 
-  /* contact: s = p + g and d = g0 - g: p enters through s, g through both */
+  /* contact: s = p + g, d = g0 - g; Psi depends on p through s, on g through both */
   r->energy_turgor = contact ? p->s1 : p1 - J;
   r->energy_turgor2 = contact ? p->s2 : p2;
   r->energy_cohesion = contact ? p->s1 - p1 + J : 0;
@@ -315,7 +317,7 @@ static void FillPotential(LamTable table, const Place *place, Potential *p, LamR
     for (int b = 0; b < 4; b++) r->tangent[9 * (3 * (a / 2) + a % 2) + 3 * (b / 2) + b % 2] = A[a][b];
 }
 
-/* ---- the answer ---- */
+/* ---- the response ---- */
 
 static PetscBool Locate(LamTable table, const LamLoad *load, Place *place, LamResponse *r)
 {
@@ -346,7 +348,7 @@ static void Answer(LamTable table, Place *place, PetscReal accuracy, LamResponse
   PetscReal along_strain = 0, along_suction = 0;
   Potential potential;
 
-  if (place->floating) /* P = g J F^-T, exact but for the free cell's own numbers */
+  if (place->floating) /* P = g J F^-T, exact except for the free cell's data */
     LamTableAddFloating(table, &place->point, &place->sum);
   else if (place->leaf && place->good)
     Estimates(table, place, &along_strain, &along_suction);
@@ -379,13 +381,13 @@ PetscErrorCode LamTableQuery(LamTable table, const LamLoad *load, PetscReal accu
   PetscFunctionReturn(0);
 }
 
-/* ---- what is missing ---- */
+/* ---- missing nodes ---- */
 
 typedef struct {
   LamTable table;
   PetscInt *n;
   PetscInt64 *keys;
-  PetscBool hopeless; /* a node was solved in vain */
+  PetscBool hopeless; /* a needed node has no usable solution */
 } Needs;
 
 static void Need(Needs *needs, const int at[3], int j)
@@ -416,7 +418,7 @@ static void Need(Needs *needs, const int at[3], int j)
   if (*needs->n < LAM_MAX_NEEDS) needs->keys[(*needs->n)++] = key;
 }
 
-/* All corners of the point's cell of a level, at both ends of an interval of suction. */
+/* Adds all corners of the point's cell of a level, at both ends of an interval of suction. */
 static void NeedCell(Needs *needs, const LamTablePoint *point, int level, const int ends[2])
 {
   const int size = LAM_ROOT >> level;
@@ -429,8 +431,8 @@ static void NeedCell(Needs *needs, const LamTablePoint *point, int level, const 
   }
 }
 
-/* The interval of suction that all columns of the cell have in common around the point; that end alone which the point
-   lies on. */
+/* The interval of suction around the point common to all columns of the cell. If the point lies on an end, both ends
+   are set to it. */
 static void CommonInterval(LamTable table, const LamTableCell *cell, const LamTablePoint *point, int ends[2])
 {
   ends[0] = point->root;
@@ -447,7 +449,7 @@ static void CommonInterval(LamTable table, const LamTableCell *cell, const LamTa
     if (ends[e] == point->v) ends[1 - e] = ends[e];
 }
 
-/* Beyond the node's places, or with strains that no F has. */
+/* Outside the range of node places, or strains that are not finite. */
 static PetscBool IsOutside(LamTable table, const Place *place)
 {
   for (int k = 0; k < 3; k++)
@@ -487,9 +489,9 @@ PetscErrorCode LamTableNeeds(LamTable table, const LamLoad *load, PetscReal accu
   PetscFunctionReturn(0);
 }
 
-/* ---- states of their own ---- */
+/* ---- states outside the grid ---- */
 
-/* Of the states at the corners of a cell, if one of them is nearer than *least, its key. */
+/* Finds the good state at the corners of a cell that is nearest to the point, if nearer than *least. */
 static void FindNearest(LamTable table, const LamTableCell *cell, const LamTablePoint *point, PetscReal *least,
                         PetscInt64 *key)
 {
@@ -511,11 +513,11 @@ static void FindNearest(LamTable table, const LamTableCell *cell, const LamTable
 }
 
 /*
-  The order in which a state of its own is solved: that of its strains, but of strains that are alike that of the axes.
-  A solve has the symmetry of its state to the mesh's accuracy alone, and sorted by strains that swap from one iteration
-  to the next its stress would jump by as much.
+  The order of axes in which a state outside the grid is solved: by strain, but by axis where strains are nearly equal.
+  A solve has the symmetry of its state only to the mesh's accuracy. If nearly equal strains swapped between two
+  iterations, its stress would jump by that much.
 */
-static const PetscReal ALIKE = 1e-3; /* chosen: some 40 times the swaps of strain that were seen */
+static const PetscReal ALIKE = 1e-3; /* chosen: some 40 times the strain differences of observed swaps */
 static void OrderAxes(const Place *place, int axis[3])
 {
   for (int k = 0; k < 3; k++) axis[k] = place->point.axis[k];

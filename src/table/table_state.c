@@ -1,5 +1,5 @@
 /*
-  One solved state as the table needs it: Phi and its derivatives in the grid's coordinates, from the data of a record.
+  One solved state: Phi and its derivatives in the grid's coordinates, from the data of a record.
 */
 #include "table.h"
 #include <math.h>
@@ -51,7 +51,7 @@ static void StrainJet(const struct LamGrid_s *grid, const LamNodeData *r, PetscR
   }
 }
 
-/* (y, s) instead of (x, s): x = y + a(s); then tau instead of s. */
+/* Change of variables from (x, s) to (y, s), x = y + a(s), then from s to tau. */
 static void MoveAlong(const struct LamGrid_s *grid, PetscReal s, PetscReal phi_s, PetscReal phi_ss,
                       const PetscReal gradient_s[3], LamTableState *state)
 {
@@ -86,7 +86,7 @@ static void FillState(const struct LamGrid_s *grid, const LamNodeData *r, LamTab
 
   StrainJet(grid, r, factor, &state->phi, dF, J_x);
   for (int k = 0; k < 3; k++) state->minus[k] = state->phi.hessian[k];
-  /* dPhi/dp at fixed s, with contact at the cost of cohesion */
+  /* dPhi/dp at fixed s: with contact, cohesion decreases by as much */
   for (int i = 0; i < 4; i++) at_rest[i] = r->P_turgor[i] - (grid->contact ? r->P_cohesion[i] : 0);
   state->turgor1 = r->energy_turgor + J - (grid->contact ? r->energy_cohesion : 0);
   state->turgor2 = r->energy_turgor2;
@@ -95,7 +95,7 @@ static void FillState(const struct LamGrid_s *grid, const LamNodeData *r, LamTab
     state->turgor_gradient[k] = Contract(at_rest, dF[k]) + J_x[k];
     along[k] = Contract(r->P_turgor, dF[k]);
   }
-  if (!grid->contact) return; /* bonded tissue does not feel cohesion, whose derivatives need not be known */
+  if (!grid->contact) return; /* bonded: no dependence on cohesion, whose derivatives may be unknown */
   state->turgor_tau = r->energy_turgor2 - r->energy_turgor_cohesion; /* in s, at fixed x */
   MoveAlong(grid, r->turgor + r->cohesion, r->energy_turgor, r->energy_turgor2, along, state);
 }
@@ -110,8 +110,8 @@ static PetscBool IsFinite(const LamTableState *s)
 }
 
 /*
-  Whether the walls are on another branch than their neighbours in strain. Cells that barely touch leave saddles of
-  another kind, of the motions in which they roll off each other, and end on the one branch that there is.
+  Whether the walls are on another branch than at neighbouring strains. Cells that barely touch pass saddles of another
+  kind, by rolling off each other, and end on the only branch that exists.
 */
 #define BARELY_TOUCHING 0.75 /* share of the interface without contact */
 static PetscBool HasBuckled(const LamNodeData *r)
@@ -119,7 +119,7 @@ static PetscBool HasBuckled(const LamNodeData *r)
   return (PetscBool)(r->branch > 0 && !(r->debonded_fraction > BARELY_TOUCHING));
 }
 
-/* A solve knows the symmetry of its state only to its own tolerance: means over the axes whose places are equal. */
+/* A solve has the symmetry of its state only to its tolerance: averages over the axes with equal coordinates. */
 static void Symmetrise(const int i[3], LamTableState *state)
 {
   PetscReal *const triples[] = {state->phi.gradient, state->phi.hessian,  state->phi.hessian + 3,

@@ -1,5 +1,5 @@
 /*
-  The table at a point: columns at its suction, cells of all levels, their sum.
+  Evaluation of the table at a point: columns at its suction, cells of all levels, their sum.
 */
 #include "table.h"
 #include <math.h>
@@ -7,9 +7,9 @@
 
 /* ---- columns ---- */
 
-/* Where a point lies between two states: t in [0, 1], h the step in tau. */
+/* Position of a point between two states of a column: t in [0, 1], h: step in tau. */
 typedef struct {
-  const LamTableState *end[2]; /* NULL: nothing there */
+  const LamTableState *end[2]; /* NULL: missing */
   PetscReal t, h;
   PetscReal V[2][3], D[2][3], q[2][3]; /* Hermite functions of the ends, their first and second derivatives in tau */
 } Interval;
@@ -70,7 +70,7 @@ typedef struct {
   PetscReal turgor2[3], bump[3];
 } Column;
 
-/* Second derivatives in tau of the cubic at the ends: the quintic's bubbles make up for the rest. */
+/* Given second derivatives in tau at the ends minus those of the cubic: coefficients of the quintic's bubbles. */
 static void Defects(const Interval *a, const PetscReal value[2], const PetscReal slope[2], const PetscReal curvature[2],
                     PetscReal d[2])
 {
@@ -83,7 +83,8 @@ static void Defects(const Interval *a, const PetscReal value[2], const PetscReal
 static void AddState(const Interval *a, int e, const int order[3], int corner, Column *c)
 {
   const LamTableState *state = a->end[e];
-  const PetscBool alone = (PetscBool)(state->alone && a->t == e); /* how its second derivatives go on is not known */
+  const PetscBool alone =
+      (PetscBool)(state->alone && a->t == e); /* its second derivatives at other suctions are unknown */
 
   for (int d = 0; d < 3; d++) {
     const PetscReal V = a->V[e][d], D = a->D[e][d];
@@ -107,7 +108,7 @@ static void AddState(const Interval *a, int e, const int order[3], int corner, C
   }
 }
 
-/* What the quintic and the cubic add beyond the next lower order. */
+/* The quintic's bubbles in the value; `bump`: contribution of the gradient's cubic beyond the next lower order. */
 static void AddHigherOrder(const Interval *a, const int order[3], Column *c)
 {
   PetscReal value[2], slope[2], curvature[2], d[2];
@@ -130,7 +131,7 @@ static void AddHigherOrder(const Interval *a, const int order[3], Column *c)
   }
 }
 
-/* At a fixed suction there is one state. */
+/* Bonded tissue: the column is a single state. */
 static void TakeState(const LamTableState *state, const int order[3], int corner, Column *c)
 {
   c->phi[0].value = state->phi.value;
@@ -147,7 +148,7 @@ static void TakeState(const LamTableState *state, const int order[3], int corner
   }
 }
 
-/* Cells that touch no one: Phi of the suction alone, its pure second derivatives not known on the side of contact. */
+/* Floating cells: Phi depends on suction alone; pure second derivatives are unknown on the side of contact. */
 static void FloatingColumn(LamTable table, int level, const LamTablePoint *point, Column *c)
 {
   const PetscReal rate = point->s + table->grid->suction_scale; /* ds/dtau = d2s/dtau2 */
@@ -207,7 +208,7 @@ PetscBool LamTableCellIsComplete(LamTable table, const LamTableCell *cell, const
   return PETSC_TRUE;
 }
 
-/* t dPhi/dp + w d2Phi/dp2 of a column and of its derivatives in tau. */
+/* t dPhi/dp + w d2Phi/dp2 of a column, derivative of order order_tau in tau. */
 static LamJet TurgorJet(const Column *column, int order_tau, PetscReal t, PetscReal w)
 {
   const LamJet *turgor1 = &column->turgor1[order_tau];
@@ -217,7 +218,7 @@ static LamJet TurgorJet(const Column *column, int order_tau, PetscReal t, PetscR
   return jet;
 }
 
-/* The step in turgor, without bubbles: its own derivative in d, and what it adds to Phi where d is not 0. */
+/* The step d in turgor, without bubbles: adds the derivative in d, and the change of Phi where d is not 0. */
 static void AddTurgor(LamTable table, const Column columns[8], PetscReal h, const PetscReal t[3], PetscReal d,
                       LamTableSum *sum)
 {

@@ -1,13 +1,13 @@
 /*
-  What a node adds to the coarser levels, made when a cell first needs it.
+  The surplus of a node over the coarser levels, computed when a cell first needs it.
 
   Algorithm
-    1. The states of its column: Phi and its derivatives in the grid's coordinates, less the sum of the coarser levels
-       there, whose nodes this makes. On a face of coarser cells the pure second derivatives are taken from the cells on
-       either side.
-    2. Mixed third derivatives of what the level adds, from the neighbours after their step 1; slopes along suction.
-  Neither step asks for a node of a finer level or for step 2 of its own, so it ends, and in the numbers that making all
-  nodes level by level would give.
+    1. For each state of the column: Phi and its derivatives in the grid's coordinates, minus the sum of the coarser
+       levels there; computes their nodes. On a face of coarser cells the pure second derivatives are taken from the
+       cells on both sides.
+    2. Mixed third derivatives of the level's part, from the neighbours after their step 1; slopes along suction.
+  Neither step needs a node of a finer level, or step 2 of a node of its own level. So the recursion ends, with the same
+  numbers as a level-by-level computation of all nodes.
 */
 #include "table.h"
 #include <math.h>
@@ -21,7 +21,7 @@ static int Entry3(int a, int b)
   return a == b ? a : 6 - a - b;
 }
 
-/* The sum of the coarser levels at a node and v along suction, in the cells on the given sides (bit k: below) of it. */
+/* The sum of the coarser levels at a node and v along suction, in the cells on the given sides (bit k: below). */
 static PetscBool CoarseSum(LamTable table, const LamTableNode *node, PetscReal v, int sides, LamTableSum *sum,
                            int order[3])
 {
@@ -31,7 +31,7 @@ static PetscBool CoarseSum(LamTable table, const LamTableNode *node, PetscReal v
   memset(sum, 0, sizeof(*sum));
   point.s = table->grid->contact ? table->grid->suction_scale * expm1(point.tau) : 0;
   point.root = PetscMin((int)v / LAM_ROOT, (int)table->grid->tau_cells - 1) * LAM_ROOT;
-  /* sorted with the sides, so that the cells are found by their sorted corner */
+  /* sorted after a shift to the sides, since cells are found by their sorted corner */
   for (int k = 0; k < 3; k++) nudged[k] = node->i[k] + (sides >> k & 1 ? -0.25 : 0.25);
   for (int k = 0; k < 3; k++) {
     order[k] = 0;
@@ -73,9 +73,9 @@ static void SubtractSum(const LamTableSum *sum, const int order[3], LamTableStat
 #define BESIDE 1e-6 /* units of suction */
 
 /*
-  Takes the sum of the coarser levels off a state. Value, gradient and mixed derivatives are the same in all cells that
-  meet there; a pure second derivative is that of any cell on its side, that along tau of the intervals on its side,
-  which alone need be complete.
+  Subtracts the sum of the coarser levels from a state. Value, gradient and mixed derivatives are equal in all cells
+  that meet there. A pure second derivative is taken from any cell on its side, that along tau from the intervals on its
+  side; only these need to be complete.
 */
 static void MakeSurplus(LamTable table, const LamTableNode *node, LamTableState *state)
 {
@@ -111,15 +111,15 @@ static void MakeSurplus(LamTable table, const LamTableNode *node, LamTableState 
     state->minus[k] -= minus[k];
     state->phi.hessian[k] -= plus[k];
   }
-  if (!subtracted || !isfinite(state->phi.value)) /* nothing coarser to stand on */
+  if (!subtracted || !isfinite(state->phi.value)) /* no coarser level covers the state */
     *state = (LamTableState){.j = state->j, .data = state->data};
 }
 
 /* ---- mixed third derivatives ---- */
 
 /*
-  What the node at a place adds on a level at suction j; NULL: not known. Nodes of coarser levels and floating cells add
-  nothing. order: as LamTableSortAxes gives it.
+  The surplus of the node at a place on a level at suction j; NULL: unknown. It is 0 for nodes of coarser levels and
+  floating cells. order: as returned by LamTableSortAxes.
 */
 static const LamTableState *FindState(LamTable table, int level, const int at[3], int j, int *order)
 {
@@ -139,7 +139,7 @@ static const LamTableState *FindState(LamTable table, int level, const int at[3]
   return NULL;
 }
 
-/* Difference quotient of d2Phi/dx_a dx_b along the third axis k; *sides: 2 where it is central, 0: there is none. */
+/* Difference quotient of d2Phi/dx_a dx_b along the third axis k. *sides: 2 central, 1 one-sided, 0 none. */
 static PetscReal MixedSlope(LamTable table, const LamTableNode *node, const LamTableState *state, int k, int *sides)
 {
   const int size = LAM_ROOT >> node->level, a = (k + 1) % 3, b = (k + 2) % 3;
@@ -161,7 +161,7 @@ static PetscReal MixedSlope(LamTable table, const LamTableNode *node, const LamT
   return *sides ? (mixed[1] - mixed[0]) / length : 0;
 }
 
-/* d3/dx_1 dx_2 dx_3 of what the level adds: mean over the axes, of central differences alone where there are any. */
+/* d3/dx_1 dx_2 dx_3 of the level's part: mean over the axes; only central differences if there are any. */
 static PetscReal MixedThird(LamTable table, const LamTableNode *node, const LamTableState *state)
 {
   PetscReal sum[3] = {0};
@@ -180,8 +180,8 @@ static PetscReal MixedThird(LamTable table, const LamTableNode *node, const LamT
 /* ---- slopes along suction ---- */
 
 /*
-  Slopes of the second derivatives in tau: those of the parabola through a state and its neighbours in the column, of
-  the line where there are two states.
+  Slopes of the second derivatives in tau: of the parabola through three neighbouring states of the column, or of the
+  line through two.
 */
 static void SlopesAlongSuction(LamTable table, const LamTableNode *node)
 {
