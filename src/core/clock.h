@@ -1,5 +1,5 @@
 /*
-  The clock for durations: it does not jump when somebody sets the time of day.
+  Monotonic clock for durations, independent of changes to the time of day.
 */
 #ifndef LAM_CLOCK_H
 #define LAM_CLOCK_H
@@ -7,7 +7,7 @@
 #include <petscsys.h>
 #include <time.h>
 
-/* Seconds since some moment before the program began. */
+/* Seconds since an arbitrary time before the program start. */
 static inline PetscReal LamClock(void)
 {
   struct timespec now;

@@ -1,22 +1,22 @@
 /*
   Smallest eigenvalue of the acoustic tensor over all directions.
 
-  Method. With N = (cos, sin)(phi/2) the acoustic tensor Q_ik = A_ijkl N_j N_l is linear in (1, cos phi, sin phi). Of
-  its half trace T and the deviator d = ((Q11 - Q22)/2, Q12) the smallest eigenvalue is
+  Method. With N = (cos, sin)(phi/2) the acoustic tensor Q_ik = A_ijkl N_j N_l is linear in (1, cos phi, sin phi).
+  With its half trace T and the deviator d = ((Q11 - Q22)/2, Q12) the smallest eigenvalue is
     f(phi) = T - |d|,     f' = T' - d.d'/|d|.
-  Where d passes through 0, f has a kink upwards, a maximum: its minima are smooth. f' = 0 squared is a trigonometric
-  polynomial of degree 4, so that f has at most four minima, which samples bracket, and Newton steps on f', which a
-  bisection keeps within the bracket, find to rounding.
+  Where d vanishes f has a kink, which is a maximum: its minima are smooth. The condition f' = 0, squared, is a
+  trigonometric polynomial of degree 4, so that f has at most four minima. Samples bracket them, and Newton's method
+  on f', safeguarded by bisection, converges to rounding.
 
   Reference: Ogden, Non-linear Elastic Deformations (1984), Section 6.2.7 (strong ellipticity).
 */
 #include <lamella/ellipticity.h>
 #include <math.h>
 
-#define SAMPLES 48 /* of a whole turn of phi */
+#define SAMPLES 48 /* over a full turn of phi */
 #define STEPS 40
-#define TIE 1e-9       /* of the size of A: what is nearer counts as equal */
-#define HALF_TURN 1e-7 /* an angle as near to a half turn is 0, but for rounding */
+#define TIE 1e-9       /* relative to the size of A: smaller differences count as ties */
+#define HALF_TURN 1e-7 /* angles this close to a half turn are 0 up to rounding */
 
 /* Half trace and deviator, coefficients of 1, cos phi, sin phi. */
 typedef struct {
@@ -77,7 +77,7 @@ static void Slopes(const Acoustic *q, PetscReal phi, PetscReal slope[2])
   slope[1] -= (first2 + bend - along * along / size2) / PetscSqrtReal(size2);
 }
 
-/* The minimum in [low, high], where f' goes from below zero to above. */
+/* The minimum in [low, high], where f' changes from negative to positive. */
 static PetscReal Refine(const Acoustic *q, PetscReal low, PetscReal high)
 {
   PetscReal phi = 0.5 * (low + high);
@@ -96,7 +96,7 @@ static PetscReal Refine(const Acoustic *q, PetscReal low, PetscReal high)
   return phi;
 }
 
-/* Of the two that point along the same line, the one with an angle in [0, pi). */
+/* Of the two unit vectors on a line, the one with an angle in [0, pi). */
 static void SetDirection(PetscReal angle, PetscReal direction[2])
 {
   while (angle < -HALF_TURN) angle += PETSC_PI;
@@ -105,7 +105,7 @@ static void SetDirection(PetscReal angle, PetscReal direction[2])
   direction[1] = sin(angle);
 }
 
-/* Unit vector of the smallest eigenvalue; of equal ones the direction across N. */
+/* Unit eigenvector of the smallest eigenvalue; if the eigenvalues are equal, the direction perpendicular to N. */
 static void SetMode(const Acoustic *q, PetscReal phi, LamBand *band)
 {
   const PetscReal c = cos(phi), s = sin(phi), d0 = At(q->deviator[0], c, s), d1 = At(q->deviator[1], c, s);
@@ -117,7 +117,7 @@ static void SetMode(const Acoustic *q, PetscReal phi, LamBand *band)
   SetDirection(angle, band->mode);
 }
 
-/* Samples of f around the turn. */
+/* Samples f over a full turn. */
 static void Sample(const Acoustic *q, PetscReal f[SAMPLES])
 {
   const PetscReal c1 = cos(2 * PETSC_PI / SAMPLES), s1 = sin(2 * PETSC_PI / SAMPLES);

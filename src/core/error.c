@@ -19,7 +19,7 @@ static PetscErrorCode Keep(MPI_Comm comm, int line, const char *function, const 
   (void)comm;
   (void)ctx;
   if (type == PETSC_ERROR_INITIAL) {
-    /* PETSc 3.18 gives the line of the caller as the code where malloc fails, and the caller's name as the words */
+    /* if malloc fails PETSc 3.18 passes the caller's line as the code, and the caller's name as the message */
     if (!strcmp(function, "PetscMallocAlign")) code = PETSC_ERR_MEM;
     Error.code = code;
     Error.trace[0] = '\0';
@@ -32,7 +32,7 @@ static PetscErrorCode Keep(MPI_Comm comm, int line, const char *function, const 
 
 PetscErrorCode LamErrorsKeep(void)
 {
-  PetscErrorHandlingInitialized = PETSC_TRUE; /* else PETSc calls no handler before PetscInitialize */
+  PetscErrorHandlingInitialized = PETSC_TRUE; /* otherwise PETSc calls no handler before PetscInitialize */
   return PetscPushErrorHandler(Keep, NULL);
 }
 

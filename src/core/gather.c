@@ -1,5 +1,5 @@
 /*
-  Lists that all ranks share.
+  Lists shared by all ranks.
 */
 #include "gather.h"
 #include <stdlib.h>
@@ -10,7 +10,7 @@ void LamSortUnique(PetscInt *n, void *items, size_t size, LamCompare compare)
   char *item = (char *)items;
   PetscInt kept = 0;
 
-  if (!*n) return; /* no items at all, perhaps */
+  if (!*n) return; /* `items` may be NULL */
   qsort(items, (size_t)*n, size, compare);
   for (PetscInt k = 0; k < *n; k++) {
     if (kept && !compare(item + (kept - 1) * size, item + k * size)) continue;

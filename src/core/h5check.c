@@ -1,10 +1,10 @@
 /*
-  What stands around each call of HDF5: a bound for the memory that it takes, and the reason where it fails.
+  Memory limit for each call of HDF5, and the reason if it fails.
 
   Method
-    A damaged file can make HDF5 ask for any amount of memory, and fill it: one bit of the type of the records is 8 GB
-  and half a minute. So the room that the process may address is bounded during each call; malloc then says no, HDF5
-  gives up, and the file is told to be damaged.
+    A damaged file can make HDF5 allocate and fill any amount of memory: one wrong bit in the record type costs 8 GB
+    and half a minute. The address space of the process is therefore limited during each call; malloc then fails, HDF5
+    returns an error, and the file is reported as damaged.
 */
 #include "h5check.h"
 #include <stdio.h>
@@ -12,11 +12,11 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#define MOST_MEMORY ((rlim_t)256 << 20) /* bytes, of one call */
+#define MOST_MEMORY ((rlim_t)256 << 20) /* bytes per call */
 
 /* ---- memory ---- */
 
-/* What the process has addressed, in bytes; 0: not known. */
+/* Address space in use, in bytes; 0: unknown. */
 static rlim_t Addressed(void)
 {
   FILE *file = fopen("/proc/self/statm", "r");
@@ -31,7 +31,7 @@ static rlim_t Addressed(void)
 LamMemoryBound LamMemoryBoundBegin(void)
 {
   LamMemoryBound bound = {.is_set = PETSC_FALSE};
-#ifndef __SANITIZE_ADDRESS__ /* which has addressed nearly everything, and ends the program where malloc says no */
+#ifndef __SANITIZE_ADDRESS__ /* AddressSanitizer reserves most of the address space, and aborts if malloc fails */
   const rlim_t addressed = Addressed();
   struct rlimit lower;
 

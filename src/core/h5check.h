@@ -1,6 +1,6 @@
 /*
-  The one way HDF5 is called: with a bound for its memory; a negative return becomes a PETSc error that names the file
-  and HDF5's own reason.
+  Every call of HDF5 goes through LamCallHDF5: memory is limited, and a negative return becomes a PETSc error that names
+  the file and HDF5's own reason.
 */
 #ifndef LAM_H5CHECK_H
 #define LAM_H5CHECK_H
@@ -11,8 +11,7 @@
 
 #define LAM_HDF5_REASON_LENGTH 256
 
-/* Between the two the process may address no more than 256 MB beyond what it has; where a batch system allows less,
- * that. */
+/* Between Begin and End the address space may grow by at most 256 MB, or less if a batch system's limit is lower. */
 typedef struct {
   struct rlimit before;
   PetscBool is_set;
@@ -21,8 +20,7 @@ typedef struct {
 LamMemoryBound LamMemoryBoundBegin(void);
 void LamMemoryBoundEnd(const LamMemoryBound *bound);
 
-/* The innermost reason on HDF5's error stack: the system's own words ("No space left on device") where there are any.
- */
+/* The innermost reason on HDF5's error stack: the system's message ("No space left on device") if there is one. */
 void LamHDF5Reason(char reason[LAM_HDF5_REASON_LENGTH]);
 
 /*

@@ -1,5 +1,5 @@
 /*
-  Numbers and text of files as JSON.
+  Conversion of numbers and text to JSON.
 */
 #include "json.h"
 #include <math.h>

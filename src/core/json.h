@@ -1,5 +1,5 @@
 /*
-  Numbers and text of files as JSON. The caller owns what is returned.
+  Conversion of numbers and text to JSON. The caller owns the result.
 */
 #ifndef LAM_JSON_H
 #define LAM_JSON_H
@@ -7,9 +7,9 @@
 #include <petscsys.h>
 #include <jansson.h>
 
-json_t *LamJSONReal(PetscReal value);                                        /* null where not finite */
+json_t *LamJSONReal(PetscReal value);                                        /* null if not finite */
 json_t *LamJSONReals(PetscInt n, const PetscReal values[], PetscReal scale); /* each times `scale` */
-/* Text of a file that may be damaged: where it is no UTF-8, question marks in place of what is no ASCII. */
+/* Text of a file that may be damaged: if it is not valid UTF-8, non-ASCII bytes become question marks. */
 json_t *LamJSONText(const char text[]);
 
 #endif

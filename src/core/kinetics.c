@@ -56,7 +56,7 @@ void LamKineticsStart(const LamKinetics *kinetics, PetscReal x[])
   }
 }
 
-/* Straight between the points, constant beyond. */
+/* Piecewise linear, constant outside the table. */
 static PetscReal TableFactor(const LamKinetics *kinetics, PetscReal t)
 {
   const PetscReal *time = kinetics->time, *factor = kinetics->factor;

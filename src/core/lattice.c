@@ -3,33 +3,33 @@
 /* L_0 ... L_5 in terms of L_0 and L_1. */
 static const PetscInt lattice[LAM_FACES][2] = {{1, 0}, {0, 1}, {-1, 1}, {-1, 0}, {0, -1}, {1, -1}};
 
-/* Rounded down, also below zero. */
+/* n / 2 rounded down, also for negative n. */
 static PetscInt HalfOf(PetscInt n)
 {
   return n >= 0 ? n / 2 : -((1 - n) / 2);
 }
 
 /*
-  How a patch lies in its lattice. Cells that stand on a corner have L_m along the rows; those that stand on an edge
-  have L_m 30 degrees above them. Either way L_{m+1} leads to the row above.
+  Orientation of a patch in its lattice. For cells standing on a corner L_m is along the rows; for cells standing on
+  an edge L_m is 30 degrees above them. In both cases L_{m+1} points to the row above.
 */
 static PetscBool StandsOnEdge(const LamMicrostructure *micro, PetscInt *m)
 {
-  const PetscInt turns = (PetscInt)PetscFloorReal(micro->orientation / (PETSC_PI / 6.0) + 0.5); /* by 30 degrees */
+  const PetscInt turns = (PetscInt)PetscFloorReal(micro->orientation / (PETSC_PI / 6.0) + 0.5); /* of 30 degrees */
   const PetscBool on_edge = (PetscBool)(turns % 2 != 0);
 
   *m = (((on_edge ? 1 - turns : -turns) / 2) % LAM_FACES + LAM_FACES) % LAM_FACES;
   return on_edge;
 }
 
-/* Column and row of lattice coordinates in a patch, also beyond it. */
+/* Column and row in a patch of lattice coordinates, which may lie outside the patch. */
 static void PatchPlace(const LamMicrostructure *micro, const PetscInt index[2], PetscInt *column, PetscInt *row)
 {
   PetscInt m, along, up;
   const PetscBool on_edge = StandsOnEdge(micro, &m);
   const PetscInt *a = lattice[m], *b = lattice[(m + 1) % LAM_FACES];
 
-  along = index[0] * b[1] - index[1] * b[0]; /* a and b are turned L_0 and L_1: their determinant is 1 */
+  along = index[0] * b[1] - index[1] * b[0]; /* a and b are L_0 and L_1 rotated: their determinant is 1 */
   up = a[0] * index[1] - a[1] * index[0];
   *column = on_edge ? along : along + HalfOf(up);
   *row = on_edge ? up + HalfOf(along) : up;

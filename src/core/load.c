@@ -1,5 +1,5 @@
 /*
-  Which loads tissue in plane strain can have.
+  Admissible loads in plane strain.
 */
 #include <lamella/response.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 /*
-  The canonical description of a microstructure: nondimensional, without what has no effect, 12 digits, so that two
-  scenes in different units that mean the same tissue have the same text, and the same hash.
+  The canonical description of a microstructure: nondimensional, with 12 digits, without parameters that have no
+  effect. Scenes in different units that describe the same tissue have the same text and the same hash.
 */
 #include <lamella/scene.h>
 #include <jansson.h>
@@ -13,7 +13,7 @@ const char *const LamInterfaceLawNames[] = {LAM_INTERFACE_LAWS(LAM_NAME_ENTRY)};
 const char *const LamStrategyNames[] = {LAM_STRATEGIES(LAM_NAME_ENTRY)};
 const char *const LamPatchSidesNames[] = {LAM_PATCH_SIDES(LAM_NAME_ENTRY)};
 
-/* 64-bit FNV-1a (Fowler, Noll, Vo): a name, not a protection. */
+/* 64-bit FNV-1a (Fowler, Noll, Vo): an identifier, not cryptographic. */
 static uint64_t Hash(const char text[])
 {
   uint64_t hash = 0xcbf29ce484222325u;
@@ -22,13 +22,13 @@ static uint64_t Hash(const char text[])
   return hash;
 }
 
-/* Rounding errors of unit conversion are some 1e-16, also of a zero. */
+/* Unit conversion has rounding errors of about 1e-16, also around zero. */
 static double Clean(PetscReal value)
 {
   return fabs(value) < 1e-13 ? 0.0 : (double)value;
 }
 
-/* The wall's part. What its law does not have has no effect. */
+/* The wall. Parameters that its law does not have are left out. */
 static void DescribeWall(const LamWall *wall, FILE *out)
 {
   fprintf(out, "\"wall\": {\"law\": \"%s\", ", LamWallLawNames[wall->law]);
@@ -124,7 +124,7 @@ PetscErrorCode LamMicrostructureDestroy(LamMicrostructure *micro)
   PetscFunctionReturn(0);
 }
 
-/* Index of `text` in a list of names; -1 where it is not there. */
+/* Index of `text` in a list of names; -1: not found. */
 static int Find(int count, const char *const names[], const char text[])
 {
   for (int i = 0; i < count; i++)

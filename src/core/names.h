@@ -1,5 +1,5 @@
 /*
-  Lists of names in one text.
+  Lists of names as one text.
 */
 #ifndef LAM_NAMES_H
 #define LAM_NAMES_H
@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Appends a name, after a separator unless it is the first; what does not fit into size bytes is cut off. */
+/* Appends a name, preceded by a separator unless it is the first; truncates at size bytes. */
 static inline void LamNamesAppend(size_t size, char names[], const char separator[], const char name[])
 {
   const size_t n = strlen(names);

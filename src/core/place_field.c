@@ -14,7 +14,7 @@ typedef struct {
 } Row;
 
 struct LamPlaceField_s {
-  char *name, *text;       /* text: the expression, or the table's path */
+  char *name, *text;       /* text: the expression, or the path of the table */
   muParserHandle_t parser; /* NULL: a table */
   PetscReal x[2];          /* the parser's variables */
 
@@ -25,7 +25,7 @@ struct LamPlaceField_s {
 
 /* ---- expressions ---- */
 
-/* Errors are asked for after each call. */
+/* An empty handler: errors are queried after each call. */
 static void KeepQuiet(muParserHandle_t parser) {}
 
 static PetscReal Evaluate(LamPlaceField field, int *count)
@@ -81,7 +81,7 @@ static PetscErrorCode EvaluateExpression(LamPlaceField field, const PetscReal X[
 
 /* ---- tables ---- */
 
-/* Three numbers, and nothing else. */
+/* Exactly three numbers. */
 static PetscBool ReadRow(const char line[], Row *row)
 {
   PetscReal *const numbers[] = {&row->x[0], &row->x[1], &row->value};
@@ -98,7 +98,7 @@ static PetscBool ReadRow(const char line[], Row *row)
   return (PetscBool) !*line;
 }
 
-/* All lines but the first. */
+/* Reads all lines except the first. */
 static PetscErrorCode ReadRows(FILE *stream, PetscInt *n, Row **rows, char reason[])
 {
   PetscInt capacity = 64, number = 0;
@@ -128,7 +128,7 @@ static int CompareReals(const void *first, const void *second)
   return (a > b) - (a < b);
 }
 
-/* The different numbers, ascending. */
+/* The distinct values, ascending. */
 static PetscErrorCode FindKnots(PetscInt n, const Row rows[], PetscInt axis, PetscInt *count, PetscReal **knots)
 {
   PetscFunctionBeginUser;
@@ -141,7 +141,7 @@ static PetscErrorCode FindKnots(PetscInt n, const Row rows[], PetscInt axis, Pet
   PetscFunctionReturn(0);
 }
 
-/* The knot at or before x, so that there is one behind it. */
+/* Index of the knot at or before x; it is never the last knot. */
 static PetscInt FindKnot(PetscInt n, const PetscReal knots[], PetscReal x)
 {
   PetscInt low = 0, high = n - 1;

@@ -1,5 +1,5 @@
 /*
-  The span of numbers that `info` tells.
+  Ranges of numbers for `info`.
 */
 #ifndef LAM_RANGE_H
 #define LAM_RANGE_H
@@ -17,7 +17,7 @@ static inline void LamRangeWiden(LamRange *range, PetscReal value)
   range->most = PetscMax(range->most, value);
 }
 
-/* An empty range is null: min > max would not be finite. */
+/* An empty range, min > max, is null in JSON. */
 static inline json_t *LamRangeToJSON(const LamRange *range, PetscReal scale)
 {
   return range->least <= range->most ? json_pack("[f, f]", range->least * scale, range->most * scale) : json_null();

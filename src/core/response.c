@@ -1,5 +1,5 @@
 /*
-  Responses: their names, their table of members, their error norm.
+  Responses: names, table of members, error norm.
 */
 #include <lamella/response.h>
 #include <math.h>
@@ -96,7 +96,7 @@ const LamMember LamResponseMembers[] = {
 
 PetscErrorCode LamResponseInit(const LamLoad *load, LamResponse *response)
 {
-  const LamLoad copy = *load; /* the load may be the response's own */
+  const LamLoad copy = *load; /* `load` may point into the response */
 
   PetscFunctionBeginUser;
   memset(response, 0, sizeof(*response));

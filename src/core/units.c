@@ -1,8 +1,8 @@
 /*
   Physical quantities: a number and a unit, converted to SI with udunits2.
 
-  udunits2 counts reciprocals as convertible (metre and 1/metre) and radian as dimensionless, so a unit's dimension is
-  compared here by its base units and their powers instead.
+  udunits2 treats reciprocals as convertible (metre and 1/metre) and radian as dimensionless. Dimensions are therefore
+  compared by base units and their powers.
 */
 #include "quantity_text.h"
 #include <ctype.h>
@@ -29,7 +29,7 @@ static const int dimension_powers[][BASE_UNITS] = {
     [LAM_DIMENSION_PERMEABILITY] = {2, -1, 1, 0, 0, 0}, /* m/s per Pa */
 };
 
-/* The units database: read at first use (it takes some milliseconds), freed when the process ends. */
+/* The units database: read at first use (which takes some milliseconds), freed at exit. */
 static ut_system *unit_system = NULL;
 
 static void UnitSystemFree(void)
@@ -64,11 +64,11 @@ static PetscErrorCode UnitSystemGet(void)
   PetscFunctionReturn(0);
 }
 
-/* A unit taken apart: a number x of it is scale x + offset in SI; powers of the base units. */
+/* A decomposed unit: x units are scale x + offset in SI; powers of the base units. */
 typedef struct {
   double scale, offset;
   int powers[BASE_UNITS];
-  PetscBool plain; /* PETSC_FALSE: it has a logarithm or other base units */
+  PetscBool plain; /* PETSC_FALSE: it contains a logarithm or other base units */
 } UnitParts;
 
 static void AddBaseUnit(UnitParts *parts, const ut_unit *unit, int power)
@@ -138,7 +138,7 @@ PetscReal LamNumberScan(const char text[], const char **end)
   const char *s = text;
   size_t digits;
 
-  /* strtod alone would take hexadecimal numbers and the names of non-finite ones: here *end then points to the x */
+  /* strtod also accepts hexadecimal numbers and non-finite names; here *end then points to the x */
   *end = text;
   if (*s == '+' || *s == '-') s++;
   digits = strspn(s, "0123456789");
@@ -157,7 +157,7 @@ PetscReal LamNumberScan(const char text[], const char **end)
   return strtod(text, NULL);
 }
 
-/* Takes the unit apart; *known says whether udunits2 knows it at all. */
+/* Decomposes the unit; *known: whether udunits2 recognises it. */
 static PetscErrorCode UnitRead(const char text[], UnitParts *parts, PetscBool *known)
 {
   ut_unit *unit;
@@ -175,7 +175,7 @@ static PetscErrorCode UnitRead(const char text[], UnitParts *parts, PetscBool *k
   PetscFunctionReturn(0);
 }
 
-/* Whether zero is a factor inside the unit: udunits2 refuses that, and loses the memory of the name behind it. */
+/* True if zero is a factor in the unit: udunits2 rejects that, and leaks the memory of the name after it. */
 static PetscBool HasZero(const char unit[])
 {
   for (const char *c = unit; *c; c++) {
@@ -187,7 +187,7 @@ static PetscBool HasZero(const char unit[])
   return PETSC_FALSE;
 }
 
-/* A rate may be written by its time: the length of "/" or "1/" before that. */
+/* A rate may be written as the reciprocal of a time; returns the length of the prefix "/" or "1/". */
 static size_t ReciprocalLength(const char unit[])
 {
   const size_t length = unit[0] == '1' && unit[1] == '/' ? 2 : unit[0] == '/' ? 1 : 0;
@@ -209,7 +209,7 @@ static PetscErrorCode QuantityConvert(PetscReal number, const char unit_text[], 
   PetscFunctionBeginUser;
   while (length && isspace((unsigned char)text[length - 1])) length--;
   snprintf(unit, sizeof(unit), "%.*s", (int)PetscMin(length, sizeof(unit)), text);
-  /* a factor, sign or bracket in the unit is more likely a slip than meant */
+  /* a factor, sign or bracket in the unit is probably a mistake */
   if (length < sizeof(unit) && (isalpha((unsigned char)unit[0]) || (unsigned char)unit[0] >= 0x80) && !HasZero(unit)) {
     PetscCall(UnitRead(unit, &parts, &known));
   }

@@ -1,5 +1,5 @@
 /*
-  What the lists of wall laws and their parameters say at run time.
+  Run-time queries of the lists of wall laws and their parameters.
 */
 #include <lamella/wall.h>
 #include <ctype.h>

@@ -1,5 +1,5 @@
 /*
-  Distance of words by the table of distances of their beginnings.
+  Edit distance by dynamic programming over prefixes.
 */
 #include "word_distance.h"
 #include <string.h>

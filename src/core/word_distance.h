@@ -1,13 +1,13 @@
 /*
-  How far apart two words are, for "did you mean".
+  Edit distance of two words, for "did you mean".
 */
 #ifndef LAM_WORD_DISTANCE_H
 #define LAM_WORD_DISTANCE_H
 
 #include <petscsys.h>
 
-/* The distance of Damerau and Levenshtein: letters changed, inserted, removed, neighbours swapped. Words of more than
-   40 letters are 40 apart. */
+/* Damerau-Levenshtein distance: substitutions, insertions, deletions, transpositions of neighbours. The distance of
+   words of more than 40 letters is 40. */
 PetscInt LamWordDistance(const char a[], const char b[]);
 
 #endif
