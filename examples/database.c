@@ -1,5 +1,5 @@
 /*
-  A database built over the sample box of a scene, then queried: interpolated states cost microseconds.
+  Builds a database over the sample box of a scene, then queries it: interpolation takes microseconds.
 
     example_database tests/scenes/tissue-block.yaml DB.h5
 */

@@ -1,6 +1,6 @@
 /*
-  FE2 of a block of tissue: the force that shears it, step by step. Material points query a database; what it lacks is
-  solved and added to it.
+  FE2 simulation of a block of tissue under shear: the force at each step. Material points query a database; missing
+  states are solved and added to it.
 
     example_fe2_block tests/scenes/tissue-block.yaml DB.h5
 */

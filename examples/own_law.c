@@ -1,7 +1,7 @@
 /*
-  A responder of one's own law in the macroscale solver: compressible neo-Hookean material,
-  W = mu/2 (F:F - 3 - 2 ln J) + lambda/2 (ln J)^2 (Bonet & Wood, Nonlinear Continuum Mechanics, Section 6.4.3), in the
-  body and under the boundary conditions of a scene.
+  A responder with a user-defined law in the macroscale solver, with the body and boundary conditions of a scene:
+  compressible neo-Hookean material (Bonet & Wood, Nonlinear Continuum Mechanics, Section 6.4.3),
+    W = mu/2 (F:F - 3 - 2 ln J) + lambda/2 (ln J)^2.
 
     example_own_law tests/scenes/tissue-block.yaml
 */
@@ -39,7 +39,7 @@ static void Evaluate(const PetscReal F[9], PetscReal P[9], PetscReal A[81])
   }
 }
 
-/* The responder's batch of queries. */
+/* Responds to a batch of queries. */
 static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[],
                               LamResponse responses[])
 {
@@ -48,14 +48,14 @@ static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], cons
   (void)points;
   for (PetscInt i = 0; i < n; i++) {
     PetscCall(LamResponseInit(&loads[i], &responses[i]));
-    if (!LamLoadValidate(&loads[i], &responses[i])) continue; /* det F <= 0: the step is cut back */
+    if (!LamLoadValidate(&loads[i], &responses[i])) continue; /* det F <= 0: the macroscale step is cut back */
     Evaluate(loads[i].F, responses[i].P, responses[i].tangent);
     responses[i].status = LAM_CONVERGED;
   }
   PetscFunctionReturn(0);
 }
 
-/* There is no state to keep. */
+/* The law has no state. */
 static PetscErrorCode KeepNothing(void *ctx)
 {
   PetscFunctionBeginUser;
@@ -63,7 +63,7 @@ static PetscErrorCode KeepNothing(void *ctx)
   PetscFunctionReturn(0);
 }
 
-/* A LamMacroMonitor */
+/* A LamMacroMonitor. */
 static PetscErrorCode PrintStep(LamMacro macro, const LamMacroStep *step, PetscBool *stop, void *ctx)
 {
   PetscFunctionBeginUser;

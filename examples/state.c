@@ -1,12 +1,12 @@
 /*
-  One state and its tangent: cells in contact under simple shear, checked against a finite difference of the stress.
+  One state and its tangent: cells in contact under simple shear, compared with a finite difference of the stress.
 
     example_state tests/scenes/shear-contact.yaml
 */
 #include <lamella/lamella.h>
 #include <stdio.h>
 
-enum { F12 = 1, SHEAR = 9 * F12 + F12 }; /* places of F12, P12 and dP12/dF12 */
+enum { F12 = 1, SHEAR = 9 * F12 + F12 }; /* indices of F12, P12 and dP12/dF12 */
 
 static PetscErrorCode Run(const char scene[])
 {
