@@ -1,15 +1,15 @@
 /*
-  How hard the walls are strained: what decides where they tear, and whether turgor still holds them taut.
+  Loading of the walls: measures of tearing, and of whether turgor still keeps the walls in tension.
 
-  Method. Integrals over the walls run along each face, through the whole thickness: the mitred element columns are
-  crossed by three Gauss points along the face, whose values, integrated through the thickness, are taken as a quadratic
-  function there. Means over a stretch as long as the wall is thick converge under refinement where point values at the
-  corners of the lumen do not.
+  Method. Integrals over the walls run along each face, through the whole thickness: each mitred element column has
+  three Gauss points along the face; their values, integrated through the thickness, define a quadratic function.
+  Means over a length of one wall thickness converge under refinement; point values at the corners of the lumen do
+  not.
 
   The stiffness of the wall material against shear bands (wall_ellipticity.h) is averaged in the same way. At the
-  corners stresses are singular, and there the point value would tell of the mesh.
+  corners stresses are singular, so point values there would depend on the mesh.
 
-  Tension is the Cauchy stress along the fibre over that of the fluid in which the wall stands, -p of its own cell.
+  Tension is the Cauchy stress along the fibre relative to that of the surrounding fluid, -p of its own cell.
 */
 #include "measure.h"
 
@@ -33,7 +33,7 @@ static PetscReal QuadraticIntegral(PetscInt g, PetscReal xi)
   return (cubic + (g == 0 ? -r : r) * square) / (2.0 * r2);
 }
 
-/* Share of the whole integral of Gauss point g along the face that lies before sub-interval s ends. */
+/* Fraction of the integral of Gauss point g along the face up to the end of sub-interval s. */
 static void SetShares(PetscReal share[SAMPLES][3])
 {
   for (PetscInt s = 0; s < SAMPLES; ++s)

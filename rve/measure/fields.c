@@ -1,6 +1,6 @@
 /*
-  Fields for pictures: Gauss-point values carried to nodes by a bilinear fit and averaged within a cell; softest modes;
-  how far cells differ.
+  Fields for pictures: Gauss-point values extrapolated to nodes by a bilinear fit and averaged within a cell; softest
+  modes; differences between cells.
 */
 #include "measure.h"
 
@@ -67,7 +67,7 @@ PetscErrorCode LamRVEGetFields(LamRVE rve, LamRVEState state, PetscReal x[], Pet
   PetscFunctionReturn(0);
 }
 
-/* The solution of a state is that of the RVE again. */
+/* Restores the solution of a state in the RVE. */
 static PetscErrorCode TakeState(LamRVE rve, LamRVEState state)
 {
   PetscFunctionBeginUser;
@@ -98,7 +98,7 @@ PetscErrorCode LamRVEGetSoftestMode(LamRVE rve, LamRVEState state, PetscReal *ei
   largest = LamLargestEntry(rve->linear.positions, unknowns);
   for (PetscInt i = 0; i < mesh->node_count; ++i)
     for (PetscInt d = 0; d < 2; ++d) {
-      const PetscInt at = 2 * (mesh->node_class[i] - 1) + d; /* the first class is held */
+      const PetscInt at = 2 * (mesh->node_class[i] - 1) + d; /* the first class is prescribed */
 
       mode[2 * i + d] = at >= 0 && largest > 0.0 ? unknowns[at] / largest : 0.0;
     }

@@ -5,15 +5,15 @@
   x_a = y + F S_a and through F33 in the walls and in the volumes; p through -p F33 A_lumen, g through g F33 A_gap. Then
     dPsi/dq   = L_q / V0,
     d2Psi/dq2 = (L_qq - L_qy K^-1 L_yq) / V0         (static condensation with the factor of the converged state),
-  where in contact y includes the active multipliers, whose rows are -dG/dF, and the pressures of sealed lumens, for
-  which p is the turgor of the load, that of the unloaded water (turgor.c).
-  So P_ij = (1/V0) sum_a f_ai S_aj over shifted nodes, f_a the nodal forces of walls or contact, and the tangent is
-  symmetric by construction. Bonded tissue does not feel g.
+  where y includes the active multipliers of contact, whose rows are -dG/dF, and the pressures of sealed lumens; for
+  these p is the turgor of the load, i.e. the pressure p0 of the water in turgor.c. So P_ij = (1/V0) sum_a f_ai S_aj
+  over shifted nodes, f_a the nodal forces of walls or contact, and the tangent is symmetric by construction. Bonded
+  tissue does not depend on g.
 
-  Rounding. Positions hold no more than 16 digits, so that r = L_y is not zero but some eps times the stiffest modulus,
-  and so is the error of L_F. To first order the solution lies at y - K^-1 r, and P is (L_F - L_Fy K^-1 r) / V0 there:
-  the work of the wall stresses on the relaxed mode of F, on which stiff walls do none (docs/theory/homogenisation.md,
-  Rounding).
+  Rounding. Positions have at most 16 digits, so r = L_y is not zero but a few eps times the stiffest modulus, and the
+  error of L_F is of the same size. To first order the solution is y - K^-1 r, and there P = (L_F - L_Fy K^-1 r) / V0:
+  the work of the wall stresses on the relaxed mode of F, on which stiff walls do no work
+  (docs/theory/homogenisation.md, Rounding).
 */
 #include "measure.h"
 #include <lamella/ellipticity.h>
@@ -26,14 +26,14 @@
 const PetscInt LamFComponent[LAM_F_COUNT] = {0, 1, 3, 4, 8};
 
 typedef struct {
-  PetscInt nq;   /* NQ, for bonded tissue without the cohesion */
-  PetscInt size; /* of a column: the held class, the other positions, the multipliers, the pressures */
+  PetscInt nq;   /* NQ; for bonded tissue NQ - 1: no cohesion */
+  PetscInt size; /* of a column: the prescribed class, the other positions, the multipliers, the pressures */
   PetscReal Lq[NQ], Lqq[NQ][NQ];
   PetscReal lumen, gap; /* areas */
   PetscReal *R;         /* [nq][size]: L_yq, one column after the other */
 } Condensation;
 
-/* F couplings of one element that has shifted nodes. */
+/* Adds the F couplings of an element with shifted nodes. */
 static void AddShifted(LamRVE rve, PetscInt e, const LamElementResult *element, const PetscReal fx[LAM_ELEMENT_DOFS],
                        Condensation *c)
 {
@@ -88,7 +88,7 @@ static void AddElement(LamRVE rve, const LamLoad *load, PetscInt e, Condensation
   }
 }
 
-/* Terms of the turgor of the load where it is that of the lumens. */
+/* Adds the turgor terms of lumens that are not sealed. */
 static void AddTurgor(LamRVE rve, const LamLoad *load, Condensation *c)
 {
   const LamSeal *seal = &rve->seal;
@@ -103,7 +103,7 @@ static void AddTurgor(LamRVE rve, const LamLoad *load, Condensation *c)
   LamLumenAddGradient(rve, rve->y, seal->factor, c->R + Q_TURGOR * c->size);
 }
 
-/* The same where the lumens are sealed, whose pressures are unknowns: V_w (p - (p - p0)^2 / (2 K_w)). */
+/* Adds the turgor terms of sealed lumens, whose pressures are unknowns: V_w (p - (p - p0)^2 / (2 K_w)). */
 static void AddSealedTurgor(LamRVE rve, const LamLoad *load, Condensation *c)
 {
   const LamSeal *seal = &rve->seal;
@@ -162,7 +162,7 @@ static void AddGapVolume(LamRVE rve, const LamLoad *load, Condensation *c)
   }
 }
 
-/* Terms of one face of whose nodes some are shifted. */
+/* Adds the terms of a contact face with shifted nodes. */
 static void AddContactFace(LamRVE rve, PetscInt f, Condensation *c)
 {
   const LamContact *contact = rve->contact;
@@ -182,7 +182,7 @@ static void AddContactFace(LamRVE rve, PetscInt f, Condensation *c)
       }
       for (PetscInt h = f * contact->hats; h < (f + 1) * contact->hats; ++h) {
         if (contact->active[h]) c->Lq[q] -= contact->lambda[h] * contact->rows[h * dofs + j] * Sj;
-        column[rve->ndof + h] -= contact->rows[h * dofs + j] * Sj; /* counts where active */
+        column[rve->ndof + h] -= contact->rows[h * dofs + j] * Sj; /* used only if active (LamCopyActive) */
       }
     }
 }
@@ -195,7 +195,7 @@ void LamCopyActive(LamRVE rve, const PetscReal column[], PetscReal copy[])
     copy[i] = i < positions || i >= pressures || rve->contact->active[i - positions] ? column[i] : 0.0;
 }
 
-/* r = L_y [n] at rve->y, of contact with the gaps of active hats; after LamFactorConsistent there. */
+/* r = L_y [n] at rve->y, with the gaps of active hats; call after LamFactorConsistent at rve->y. */
 static void CopyResidual(LamRVE rve, PetscReal r[])
 {
   const LamContact *contact = rve->contact;
@@ -210,7 +210,7 @@ static void CopyResidual(LamRVE rve, PetscReal r[])
     r[pressures + k] = rve->seal.closed ? rve->residual[rve->ndof + k] : 0.0;
 }
 
-/* L_F of the solution next to the positions: -= L_Fy K^-1 r. */
+/* Corrects L_F to first order to the solution near the positions: -= L_Fy K^-1 r. */
 static PetscErrorCode RelaxStress(LamRVE rve, Condensation *c)
 {
   const PetscInt n = rve->linear.n;
@@ -229,7 +229,7 @@ static PetscErrorCode RelaxStress(LamRVE rve, Condensation *c)
 }
 
 /* H = (L_qq - R^T K^-1 R) / V0. With X = K^-1 (R - rest) it is (L_qq - R^T X - X^T rest -
-   rest^T K^-1 rest) / V0, of which the last term is left out: an error of the solve enters squared. */
+   rest^T K^-1 rest) / V0, whose last term is neglected: it is of second order in the error of the solve. */
 static PetscErrorCode Condense(LamRVE rve, Condensation *c, PetscReal H[NQ][NQ])
 {
   const PetscInt n = rve->linear.n, nq = c->nq;

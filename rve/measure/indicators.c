@@ -1,10 +1,10 @@
 /*
-  Debonding indicators of a state: how far cells have come apart, where, and what still joins them.
+  Debonding indicators of a state: how far cells have separated, where, and which cells are still connected.
 
-  Method. The slave side of every face is sampled along the segments of the overlap. Shares of the interface length are
-  by reference length of the slave walls. A wall outside the overlap faces a junction void: it carries no contact, but
-  its distance is nobody's gap; a face without any overlap is open as a whole. Mean tractions are Cauchy: the force over
-  the current length of the whole face, tension positive.
+  Method. The slave side of every face is sampled along the segments of the overlap. Fractions of the interface refer
+  to the reference length of the slave walls. A wall outside the overlap faces a junction void: it has no contact and
+  does not count as a gap. A face without any overlap is entirely open. Mean tractions are Cauchy: the force over the
+  current length of the whole face, tension positive.
 */
 #include "measure.h"
 #include "mortar_impl.h"
@@ -24,14 +24,14 @@ typedef struct {
 typedef struct {
   FamilySums family[3];
   PetscReal max_gap, min_gap, max_penetration;
-  PetscReal named_gap;    /* of the place that is named for max_gap */
-  PetscReal gap_at;       /* which is, in edges of its face */
-  PetscReal gap_place[3]; /* the same as cell, face, share of the face */
+  PetscReal named_gap;    /* gap at the location reported for max_gap */
+  PetscReal gap_at;       /* that location, in edges of its face */
+  PetscReal gap_place[3]; /* that location as cell, face, fraction of the face */
   LamLargestMean traction;
   PetscReal fabric[3], jumps[3];
 } Sums;
 
-/* Share of an interval with linear values a, b that lies above a threshold. */
+/* Fraction of an interval with linear values a, b that lies above a threshold. */
 static PetscReal ShareAbove(PetscReal a, PetscReal b, PetscReal threshold)
 {
   const PetscReal high = PetscMax(a, b), low = PetscMin(a, b);
@@ -57,7 +57,7 @@ static void SampleSegment(const LamMortarChains *chains, PetscReal from, PetscRe
       sums->named_gap = gap;
       sums->gap_at = s;
     }
-    /* the gap runs on over the edge's ends, and is a little smaller there than the distance */
+    /* the gap extends past the edge's ends, where it is a little smaller than the distance */
     if (gap < sums->min_gap)
       sums->min_gap = PetscMin(sums->min_gap, gap > 0.0 ? LamMortarDistance(chains, s, master) : gap);
     sums->max_penetration = PetscMax(sums->max_penetration, -gap);
@@ -120,8 +120,8 @@ static void AddFabric(const LamMortarChains *chains, PetscInt j, PetscReal weigh
   fabric[2] -= weight * Xs[0] * Xs[1] / m;
 }
 
-/* Second moment of the jumps between points of the two walls that were one, where these have come apart. x[2 hats]:
-   nodes of the slave, then of the master, which runs the other way. */
+/* Second moment of the jumps between coincident reference points of the two walls, where the walls have separated. x[2
+   hats]: nodes of the slave, then of the master in opposite direction. */
 static void AddJumps(const LamMortarChains *chains, PetscInt hats, const PetscReal x[][2], PetscReal jumps[3])
 {
   static const PetscReal simpson[3] = {1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0};
@@ -194,7 +194,7 @@ static PetscBool FaceIsClosed(const LamContact *contact, PetscInt f)
   return PETSC_FALSE;
 }
 
-/* Rank of the lattice that cycles span: adds vector v to a basis of `rank` vectors. */
+/* Adds vector v to a basis of `rank` vectors: rank of the lattice that the cycles span. */
 static void AddCycle(const PetscReal v[2], PetscReal basis[2][2], PetscInt *rank)
 {
   const PetscReal size = LamDot(v, v);
@@ -207,13 +207,13 @@ static void AddCycle(const PetscReal v[2], PetscReal basis[2][2], PetscInt *rank
   }
 }
 
-/* Groups of cells that closed faces join. */
+/* Groups of cells connected by closed faces. */
 typedef struct {
   PetscInt *group;       /* [cell], -1: none yet */
   PetscReal (*place)[2]; /* [cell]: shift of the image that belongs to the same connected piece as its root */
 } Clusters;
 
-/* Takes all cells into the group of `root` that closed faces join to it. */
+/* Adds all cells that closed faces connect to `root` to its group. */
 static void Grow(const LamContact *contact, PetscInt root, Clusters *clusters)
 {
   PetscInt *group = clusters->group;
@@ -239,7 +239,8 @@ static void Grow(const LamContact *contact, PetscInt root, Clusters *clusters)
   }
 }
 
-/* A face that joins two cells of one group again gives a cycle, a period vector that the piece spans: their rank. */
+/* Rank of the period vectors that the group of `root` spans. A closed face between two cells of one group gives a
+   cycle, i.e. a period vector. */
 static PetscInt Rank(const LamContact *contact, PetscInt root, const Clusters *clusters)
 {
   PetscReal basis[2][2];
@@ -292,13 +293,13 @@ static PetscErrorCode CountClusters(LamRVE rve, LamResponse *response)
   PetscFunctionReturn(0);
 }
 
-/* A narrow patch lacks a family of faces, one cell all of them: nothing is known of what is not there. */
+/* A narrow patch has no faces of one family, a single cell has none: NaN if there is no interface. */
 static PetscReal ShareOf(PetscReal whole, PetscReal part)
 {
   return whole > 0.0 ? PetscMax(0.0, part / whole) : NAN;
 }
 
-/* closed: length of the interface that touches. Without any overlap no wall faces another: not known. */
+/* closed: length of the interface in contact. NaN without any overlap: no walls face each other. */
 static PetscReal MinGap(PetscReal closed, const Sums *sums)
 {
   if (sums->max_gap == -PETSC_MAX_REAL) return NAN;
@@ -344,7 +345,7 @@ PetscErrorCode LamContactIndicators(LamRVE rve, const LamLoad *load, LamResponse
   PetscFunctionReturn(0);
 }
 
-/* Everything is joined; the fabric is that of all faces, by their current chords. */
+/* All faces are closed; the fabric is that of all faces, from their current chords. */
 PetscErrorCode LamBondedIndicators(LamRVE rve, const LamLoad *load, LamResponse *response)
 {
   const LamMesh *mesh = &rve->mesh;

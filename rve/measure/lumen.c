@@ -1,9 +1,9 @@
 /*
-  Lumens whose walls have met. Contact of a cell's wall with itself is not modelled, so a state in which an inner loop
-  crosses itself, or runs clockwise because the ring has turned inside out, is no answer; it occurs far in compression.
+  Collapsed lumens. Self-contact of a cell's wall is not modelled. A state in which an inner loop intersects itself,
+  or is clockwise because the ring is inverted, is therefore rejected. This occurs at large compression.
 
-  Method. The inner loop of each cell is taken as the polygon of its nodes (two per element); the loop is simple as long
-  as no two of its sides that do not follow each other cross. Boxes of sides are compared before the sides.
+  Method. The inner loop of each cell is the polygon of its nodes (two per element). The loop is simple if no two
+  non-adjacent sides intersect. Bounding boxes are compared first.
 */
 #include "measure.h"
 

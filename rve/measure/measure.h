@@ -1,11 +1,11 @@
 /*
-  What is measured of a state.
+  Measures of a state.
 
     homogenise.c   stress, tangent and couplings by static condensation
     traction.c     largest means along faces; interface tractions of bonded faces
     failure.c      stretch, energy and tension of the walls, and whether they kink (wall_ellipticity.h)
-    indicators.c   how far cells have come apart
-    lumen.c        lumens whose walls have met
+    indicators.c   debonding: separation of cells
+    lumen.c        collapsed lumens
     fields.c       fields for pictures
 */
 #ifndef LAM_RVE_MEASURE_H
@@ -14,80 +14,85 @@
 #include "rve_impl.h"
 
 #define LAM_F_COUNT 5                             /* components of F in plane strain: F11 F12 F21 F22 F33 */
-extern const PetscInt LamFComponent[LAM_F_COUNT]; /* their places in a row-major 3 x 3 */
+extern const PetscInt LamFComponent[LAM_F_COUNT]; /* their indices in a row-major 3 x 3 */
 
-/* " between 0.25 and 0.26 of the way"; empty where the second share is not above the first: not known. */
+/* Writes " between 0.25 and 0.26 of the way"; empty if the second fraction is not above the first, i.e. unknown. */
 PetscErrorCode LamBracketText(const PetscReal between[2], char text[], size_t length);
 
 /* ---- homogenise.c, traction.c, failure.c ---- */
-/* L_q, L_qq and R = L_yq [LAM_F_COUNT][n] of the components of F at rve->y, after LamAssemble there; rows of R for all
-   multipliers, as if they were active. */
+/* L_q, L_qq and R = L_yq [LAM_F_COUNT][n] for the components of F at rve->y, after LamAssemble there. R has rows for
+   all multipliers, as if all were active. */
 PetscErrorCode LamAssembleGradient(LamRVE rve, const LamLoad *load, PetscReal Lq[LAM_F_COUNT],
                                    PetscReal Lqq[LAM_F_COUNT][LAM_F_COUNT], PetscReal R[]);
-/* Copies a column [n] with zeros for multipliers that are not active. */
+/* Copies a column [n], with zeros for multipliers that are not active. */
 void LamCopyActive(LamRVE rve, const PetscReal column[], PetscReal copy[]);
-/* Fills energy, P and lumen fraction from rve->y and, where they are wanted, tangent and couplings with the factored
-   consistent tangent. */
+/* Sets energy, P and lumen fraction from rve->y and, if requested, tangent and couplings with the factored consistent
+   tangent. */
 PetscErrorCode LamHomogenise(LamRVE rve, const LamLoad *load, LamResponse *response);
-/* Whether a value is larger than that of the place named so far by more than rounding (C1 + C2 or apothems): of places
-   that symmetry makes alike the first one is named, whatever the last digits. Anything exceeds -PETSC_MAX_REAL. */
+/* Whether a value exceeds that of the location reported so far by more than rounding (C1 + C2 or apothems). Among
+   locations that are equal by symmetry the first one is reported, regardless of the last digits. Every value exceeds
+   -PETSC_MAX_REAL. */
 static inline PetscBool LamExceeds(PetscReal value, PetscReal named)
 {
   return (PetscBool)(value > named + 1e-8 * PetscAbsReal(named) + 1e-10);
 }
-/* The largest mean over a stretch of a face that is as long as the wall of its cell is thick, and where it is. */
+/* Largest mean over a segment of a face whose length is the wall thickness of its cell, and the location of that
+   segment. */
 typedef struct {
-  PetscReal value, named; /* named: at the place */
-  PetscReal place[3]; /* cell, face, middle of the stretch as a share of the face, counter-clockwise around the cell */
+  PetscReal value, named; /* named: value at `place` */
+  PetscReal
+      place[3]; /* cell, face, middle of the segment as a fraction of the face, counter-clockwise around the cell */
 } LamLargestMean;
 #define LAM_NO_MEAN                                                                                                    \
   {                                                                                                                    \
     .value = -PETSC_MAX_REAL, .named = -PETSC_MAX_REAL, .place = { NAN, NAN, NAN }                                     \
   }
-/* A patch of one cell has no face between cells: its largest mean is unknown. */
+/* Value of the largest mean; NaN in a patch of one cell, which has no face between cells. */
 static inline PetscReal LamLargestMeanValue(const LamLargestMean *largest)
 {
   return largest->value > -PETSC_MAX_REAL ? largest->value : NAN;
 }
-/* Takes a face into account, with windows of length `thickness`: running integrals [count + 1] over sub-intervals, of
-   which all elements along the face have as many. */
+/* Updates the largest mean with one face, for windows of length `thickness`. integral, length: running integrals [count
+   + 1] over sub-intervals; all elements along the face have equally many. */
 void LamTakeLargestMean(const LamMesh *mesh, PetscReal thickness, PetscInt cell, PetscInt face, PetscInt count,
                         const PetscReal integral[], const PetscReal length[], LamLargestMean *largest);
-/* Bonded tissue: mean normal traction per face family, largest normal and shear traction (Cauchy) and their places. */
+/* Bonded tissue: mean normal traction per face family, largest normal and shear traction (Cauchy) and their locations.
+ */
 PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, LamResponse *response);
-/* Fills the measures of the walls from rve->y. */
+/* Sets the wall measures of the response from rve->y. */
 PetscErrorCode LamWallMeasures(LamRVE rve, const LamLoad *load, LamResponse *response);
-/* Share of the walls' volume that has lost ellipticity at positions y (wall_ellipticity.h). */
+/* Volume fraction of the walls that has lost ellipticity at positions y (wall_ellipticity.h). */
 void LamFindKinks(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *share);
-/* Walls along a way of loads: between which shares of it they lose their ellipticity, and how many have at the last
-   stable state. Walls that kink answer for the end of a way, wherever the mesh lets it be. */
+/* Loss of ellipticity of the walls along a load path: the path fractions between which it first occurs, and the volume
+   fraction affected at the last stable state. If walls kink, the end of the path is attributed to that: where it ends
+   then depends on the mesh. */
 typedef struct {
-  PetscReal between[2]; /* equal: they do not; the first below 0: they had lost it before */
-  PetscReal share;      /* of the walls' volume */
+  PetscReal between[2]; /* equal: no loss; the first below 0: lost before the path starts */
+  PetscReal share;      /* volume fraction of the walls */
 } LamKinking;
 #define LAM_NO_KINKING                                                                                                 \
   {                                                                                                                    \
     .between = { -1.0, -1.0 }                                                                                          \
   }
-#define LAM_KINKED_SUBSTEP (1.0 / 64.0) /* then this is the smallest substep */
+#define LAM_KINKED_SUBSTEP (1.0 / 64.0) /* smallest substep if walls kink */
 static inline PetscBool LamIsKinking(const LamKinking *kinking)
 {
   return (PetscBool)(kinking->between[1] > kinking->between[0]);
 }
-/* Takes note of a stable state y, a share t of the way. */
+/* Records a stable state y at fraction t of the path. */
 void LamWatchKinks(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal t, LamKinking *kinking);
-/* reached: the share of the last stable state. */
+/* reached: path fraction of the last stable state. */
 PetscErrorCode LamKinkReason(const LamKinking *kinking, PetscReal reached, char reason[], size_t length);
 
 /* ---- indicators.c ---- */
-/* Fills the debonding indicators from rve->y and the multipliers; of contact tissue the tractions, too. */
+/* Sets the debonding indicators from rve->y and the multipliers; for contact tissue also the tractions. */
 PetscErrorCode LamContactIndicators(LamRVE rve, const LamLoad *load, LamResponse *response);
 PetscErrorCode LamBondedIndicators(LamRVE rve, const LamLoad *load, LamResponse *response);
 
 /* ---- lumen.c ---- */
-/* The first cell whose inner loop crosses itself or is inside out at positions y, -1: none. */
+/* The first cell whose inner loop at positions y intersects itself or is inverted; -1: none. */
 PetscErrorCode LamFindCollapsedLumen(LamRVE rve, const PetscReal y[], PetscInt *cell);
-/* between: shares of the way to the load between which its walls first touch, as LamBracketText. */
+/* between: path fractions between which the lumen's walls first touch, as in LamBracketText. */
 PetscErrorCode LamCollapseReason(PetscInt cell, const PetscReal between[2], char reason[], size_t length);
 /* ---- fields.c ---- */
 /* Coefficients of 1, xi, eta, xi eta in the least-squares fit to the values at the Gauss points of an element. */

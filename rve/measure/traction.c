@@ -1,20 +1,20 @@
 /*
   Tractions on the bonded interfaces between cells.
 
-  Method. In equilibrium the internal forces of one cell at the nodes of an outer face are the loads that its neighbour
-  exerts. Where three cells meet, the forces f_A, f_B, f_C (sum zero) are shared among the three faces by the split of
-  least norm, t_AB = (f_A - f_B)/3. The traction field t = sum N_j t_j on the face solves the mass system
-  int N_i N_j ds t_j = f_i on the current quadratic edges, so it carries the nodal forces exactly, but for ends that
-  a patch holds: the reaction there is not the interface's, and the traction is extrapolated. Normal component in
-  tension positive, shear component without sign, per current length (Cauchy). Point values at the lumen corners diverge
-  under refinement; averages over a length of one wall thickness converge.
+  Method. In equilibrium the internal forces of a cell at the nodes of an outer face equal the loads exerted by its
+  neighbour. Where three cells meet, the forces f_A, f_B, f_C (sum zero) are shared among the three faces by the split
+  of least norm, t_AB = (f_A - f_B)/3. The traction field t = sum N_j t_j on the face solves the mass system int N_i
+  N_j ds t_j = f_i on the current quadratic edges, so it is exactly equivalent to the nodal forces. Exceptions are
+  face ends that a patch prescribes: their forces contain the reaction, so the traction there is extrapolated. Normal
+  component in tension positive, shear component without sign, per current length (Cauchy). Point values at the lumen
+  corners diverge under refinement; averages over a length of one wall thickness converge.
 */
 #include "measure.h"
 #include <petscblaslapack.h>
 
 #define SAMPLES 8 /* per edge: sub-intervals of the running integrals */
 
-/* Internal forces of the walls at all mesh nodes, before nodes are tied: force[node][2]. */
+/* Internal forces of the walls at all mesh nodes, not summed over classes: force[node][2]. */
 static PetscErrorCode NodeForces(LamRVE rve, const LamLoad *load, PetscReal force[])
 {
   const LamMesh *mesh = &rve->mesh;
@@ -36,7 +36,7 @@ static PetscErrorCode NodeForces(LamRVE rve, const LamLoad *load, PetscReal forc
   PetscFunctionReturn(0);
 }
 
-/* Whether node i of a face is where three cells meet; where a patch ends there are two. */
+/* Whether three cells meet at node i of a face; at the boundary of a patch there are two. */
 static PetscBool IsJunctionOfThree(const LamMesh *mesh, PetscInt cell, PetscInt face, PetscInt i)
 {
   const PetscInt next = i == 0 ? face + LAM_FACES - 1 : face + 1;
@@ -78,8 +78,8 @@ static void EdgePoint(const PetscReal x[][2], PetscReal xi, PetscReal N[3], Pets
   for (PetscInt k = 0; k < 2; ++k) tangent[k] = d[0] * x[0][k] + d[1] * x[1][k] + d[2] * x[2][k];
 }
 
-/* Whether node i of a face is held at F X: then its force contains the reaction to that, which is none of the face's.
- */
+/* Whether node i of a face is prescribed at F X: its force then contains the reaction, which does not belong to the
+   face. */
 static PetscBool IsHeld(const LamRVE rve, PetscInt cell, PetscInt face, PetscInt i)
 {
   const PetscInt node = LamMeshOuterNode(&rve->mesh, cell, 2 * rve->mesh.along * face + i);
@@ -87,8 +87,8 @@ static PetscBool IsHeld(const LamRVE rve, PetscInt cell, PetscInt face, PetscInt
   return (PetscBool)(rve->micro.is_patch && rve->mesh.node_class[node] == 0);
 }
 
-/* In place of the equation of end node i: its traction goes on linearly from the two nodes inwards. On a face of one
-   element, whose ends may both be held, it equals that of the middle. */
+/* Replaces the equation of end node i: its traction is extrapolated linearly from the next two nodes. On a face of one
+   element, whose ends may both be prescribed, it equals that of the middle node. */
 static void ExtrapolateEnd(PetscInt n, PetscInt i, PetscInt inwards, PetscReal M[], PetscReal b[])
 {
   const PetscReal slope = n > 3 ? 1.0 : 0.0;
@@ -100,7 +100,8 @@ static void ExtrapolateEnd(PetscInt n, PetscInt i, PetscInt inwards, PetscReal M
   b[i] = b[n + i] = 0.0;
 }
 
-/* Solves the mass system of one face; f becomes the nodal tractions, M is work space of size n x n. held: its ends. */
+/* Solves the mass system of one face. f becomes the nodal tractions; M is work space of size n x n; held: whether the
+   ends are prescribed. */
 static PetscErrorCode FaceTraction(PetscInt along, const PetscBool held[2], const PetscReal x[][2], PetscReal f[][2],
                                    PetscReal M[], PetscReal b[], PetscBLASInt pivots[])
 {
@@ -167,7 +168,7 @@ static void Accumulate(PetscInt along, const PetscReal x[][2], const PetscReal t
     }
 }
 
-/* Value of a running integral at place s of the face, in sub-intervals. */
+/* Value of a running integral at coordinate s of the face, in sub-intervals. */
 static PetscReal RunningAt(PetscInt count, const PetscReal integral[], PetscReal s)
 {
   const PetscInt k = PetscMin((PetscInt)s, count - 1);
@@ -175,8 +176,8 @@ static PetscReal RunningAt(PetscInt count, const PetscReal integral[], PetscReal
   return integral[k] + (s - (PetscReal)k) * (integral[k + 1] - integral[k]);
 }
 
-/* Largest mean over windows (shares of the face, at most the whole), and the window's middle. Windows begin or end at
-   the ends of sub-intervals, so those flush with either end of the face are among them. */
+/* Largest mean over windows, and the window's middle. window: fraction of the face, at most the whole. Each window
+   begins or ends at an end of a sub-interval, so those flush with either end of the face are included. */
 static PetscReal LargestWindowMean(const LamMesh *mesh, PetscInt count, PetscReal window, const PetscReal integral[],
                                    const PetscReal length[], PetscReal *middle)
 {
