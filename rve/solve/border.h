@@ -29,7 +29,7 @@ typedef struct {
   PetscInt patience;         /* iterations left in which F is frozen if the step is long, while contact settles */
 } LamBorder;
 
-/* NULL borders, where allowed, stand for a fully prescribed F. */
+/* A border that may be NULL then stands for a fully prescribed F. */
 PetscErrorCode LamBorderCreate(LamRVE rve, const LamLoad *load, const LamStressControl *control, LamBorder **border);
 PetscErrorCode LamBorderDestroy(LamBorder **border);
 /* Call after LamAssemble at the iterate. Computes L_q, L_qq and R; norm: in, of the residual; out, of both

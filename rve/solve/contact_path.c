@@ -31,7 +31,7 @@
 #define EASE 0.25          /* first factor on the added cohesion; its square root after a failure */
 #define BORNE 0.5          /* turgor, C1 + C2, up to which the affine state is a good initial guess */
 #define MUCH_TURGOR 1.5    /* turgor, C1 + C2, above which continuation goes from unstretched tissue instead */
-#define START_BUDGET 800   /* iterations until (iv) begins; the rest is kept for it, as it tells why a path ends */
+#define START_BUDGET 800   /* iterations until (iv) begins; the rest is reserved for it, as it finds why a path ends */
 #define RELEASE_REACH 0.1  /* apothems: a larger step ends a release, and a smaller share is tried */
 #define LEAST_RELEASE 0.06 /* smallest share released in one step; below it, descent */
 

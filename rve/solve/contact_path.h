@@ -77,7 +77,7 @@ static inline void LamContactSettle(LamContactOutcome *out)
 
 /* ---- contact_walk.c ---- */
 /* Continuation along the straight load path from *at to `load`. On return *at is the last stable solution; if the path
-   ends before `load`, *out tells why. */
+   ends before `load`, *out gives the reason. */
 PetscErrorCode LamContactWalk(LamRVE rve, LamContactSolution *at, const LamLoad *load, LamContactOutcome *out);
 
 /* ---- contact_path.c ---- */

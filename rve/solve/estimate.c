@@ -1,36 +1,38 @@
 /*
-  The error of P of a mesh, from half as many elements.
+  Error estimate of P from a mesh with half as many elements.
 
   Method. The same load is solved on a mesh with half the elements along the faces and through the walls, whose matrix
-  is a quarter of the size or less. The error of the finer mesh is a share of the difference of the two stresses; the
-  shares are measured (docs/results/performance.md, "The error of a mesh"). What the residual leaves is added. Where
-  walls have kinked (kinked_fraction, where it was asked for) neither mesh knows how a finer one wrinkles, and more is
-  taken (docs/results/verification.md, "Localisation and kinks"). Where elements are much longer than walls are thick,
-  which bend near junctions over about a thickness, deeper than the lumen is wide or than the layers that strong fibres
-  make, or few for the strain, errors fall with the first power of their size only, and up to the whole difference is
-  taken; where they are longer or deeper still, both meshes miss the same, and nothing is known
-  (docs/results/extremes.md, "Worth of the error estimate"). Bonded tissue starts from the coarse mesh's own state
-  before: positions of the finer mesh would be a worse start, since what they leave of the volumes is as stiff as water.
-  Contact tissue starts from the finer mesh's positions and contact pressures, which say where it touches; nodes of the
-  coarse mesh are among its nodes.
+  is a quarter of the size or less. The estimate is a share of the difference of the two stresses, with measured shares
+  (docs/results/performance.md, "The error of a mesh"), plus the effect of the residual tolerance.
+
+  The share is larger if walls have kinked (kinked_fraction, if requested), as neither mesh resolves the finer wrinkles
+  (docs/results/verification.md, "Localisation and kinks"). Errors decrease only with the first power of the element
+  size if elements are much longer than the wall thickness, over which walls bend near junctions; deeper than the lumen
+  is wide or than the boundary layers of strong fibres; or too few for the strain. The share then grows, up to 1. If
+  elements are longer or deeper still, both meshes miss the same features, and the estimate is unknown
+  (docs/results/extremes.md, "Worth of the error estimate").
+
+  Bonded tissue starts from the previous state of the coarse mesh. Positions of the finer mesh are a worse initial
+  guess, as restricting them leaves volume errors, which are stiff. Contact tissue starts from the positions and contact
+  pressures of the finer mesh, which give the contact zones; the nodes of the coarse mesh are among its nodes.
 */
 #include "solve.h"
 
-#define GRADED_SHARE 0.08 /* bonded tissue, graded mesh of 6 elements along a face; more with more */
-#define GRADED_POWER 0.8
-#define UNIFORM_SHARE 0.2     /* the same of uniform meshes, and of one element through the wall, on both meshes */
-#define KINKED_FACTOR 4.0     /* bonded tissue, where walls kink: finer meshes wrinkle more, coarse ones alike */
-#define CONTACT_SHARE 0.4     /* contact jumps from node to node: a finer mesh gains less */
-#define CONTACT_SCATTER 0.006 /* by which it scatters, over the number of elements along a face */
-#define LONG 4.0              /* edges in wall thicknesses, ... */
-#define DEEP 1.0              /* elements through the wall in half-widths of the lumen, ... */
-#define STRONG 10.0           /* and in the depths of layers that strong fibres make, t sqrt((C1 + C2)/C4): ... */
-#define STRAINED 30.0 /* elements along a face for a logarithmic strain of 1: fewer do not follow walls that buckle */
-#define UNKNOWN 6.0   /* errors fall slowly above; above these times as much nothing is known of them */
+#define GRADED_SHARE 0.08     /* bonded tissue, graded mesh with 6 elements along a face; ... */
+#define GRADED_POWER 0.8      /* ... grows with this power of their number */
+#define UNIFORM_SHARE 0.2     /* bonded tissue, uniform mesh or one element through the wall (on both meshes) */
+#define KINKED_FACTOR 4.0     /* bonded tissue with kinked walls, which wrinkle more on still finer meshes */
+#define CONTACT_SHARE 0.4     /* contact tissue: contact advances node by node, so a finer mesh gains less */
+#define CONTACT_SCATTER 0.006 /* scatter of contact tissue, divided by the number of elements along a face */
+#define LONG 4.0              /* coarseness is 1 at this edge length in wall thicknesses, ... */
+#define DEEP 1.0              /* ... element depth in half-widths of the lumen, ... */
+#define STRONG 10.0           /* ... in depths of the boundary layers of strong fibres, t sqrt((C1 + C2)/C4), ... */
+#define STRAINED 30.0 /* ... or with this many elements along a face per unit logarithmic strain (buckled walls) */
+#define UNKNOWN 6.0   /* coarseness above which the error is unknown */
 
 struct LamRVEEstimate_s {
   LamRVE rve;        /* borrowed */
-  LamRVE coarse;     /* owned; NULL where the mesh cannot be halved */
+  LamRVE coarse;     /* owned; NULL if the mesh cannot be halved */
   LamRVEState state; /* on `coarse`; owned */
 };
 
@@ -65,7 +67,7 @@ PetscErrorCode LamRVEEstimateDestroy(LamRVEEstimate *estimate)
   PetscFunctionReturn(0);
 }
 
-/* Positions of the nodes that both meshes have. */
+/* Copies the positions of the nodes common to both meshes. */
 static void RestrictPositions(LamRVE fine, LamRVEState from, LamRVE coarse, LamRVEState to)
 {
   const LamMesh *f = &fine->mesh, *c = &coarse->mesh;
@@ -83,7 +85,7 @@ static void RestrictPositions(LamRVE fine, LamRVEState from, LamRVE coarse, LamR
     }
 }
 
-/* Contact pressures of the hats that both have, and the junction status that is nearest. */
+/* Copies the contact pressures of the common hats and the nearest junction status. */
 static void RestrictContact(LamRVE fine, LamRVEState from, LamRVE coarse, LamRVEState to)
 {
   const PetscInt hats = coarse->contact->hats;
@@ -113,7 +115,7 @@ static PetscReal SmoothShare(const LamMicrostructure *micro)
              : UNIFORM_SHARE;
 }
 
-/* Largest logarithmic principal strain of the in-plane part of F, by size. */
+/* Largest absolute value of the logarithmic principal strains of the in-plane part of F. */
 static PetscReal LargestStrain(const PetscReal F[9])
 {
   const PetscReal det = F[0] * F[4] - F[1] * F[3];
@@ -123,7 +125,7 @@ static PetscReal LargestStrain(const PetscReal F[9])
   return 0.5 * PetscMax(PetscLogReal(square), -PetscLogReal(det * det / square));
 }
 
-/* How far the mesh is from where errors fall fast: above 1 they fall slowly, above UNKNOWN nothing is known. */
+/* Coarseness of the mesh for the load. Above 1 errors decrease slowly; above UNKNOWN they are unknown. */
 static PetscReal Coarseness(LamRVE rve, const PetscReal F[9])
 {
   const LamMicrostructure *micro = &rve->micro;
@@ -142,7 +144,7 @@ static PetscReal Coarseness(LamRVE rve, const PetscReal F[9])
   return coarseness;
 }
 
-/* Of the difference of two meshes that is left to the finer one's error; NaN: unknown. */
+/* Error of the finer mesh over the difference of the two meshes; NaN: unknown. */
 static PetscReal Share(LamRVE rve, const LamResponse *response)
 {
   const PetscReal coarseness = Coarseness(rve, response->load.F);

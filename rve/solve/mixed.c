@@ -1,12 +1,11 @@
 /*
-  States of which some components of P are prescribed and those of F free.
+  States with some components of P prescribed and the same components of F free.
 
-  Method. Fast tier: the free components join the unknowns of the Newton iteration (border.h), which costs right-hand
-  sides but no factorisation of its own. Where it fails, or ends in a state that is not stable under the prescribed
-  stress: safe tier, continuation from the state before,
-  and descent on Psi(F) - P.F over the free components. A state is stable under the control where it is
-  at its F and dP/dF of the free components is positive definite. An equilibrium that is not is given as unstable where
-  nothing stable is found.
+  Method. Fast tier: the free components of F are unknowns of the Newton iteration (border.h), which adds right-hand
+  sides but no factorisations. If it fails or its solution is not stable under the prescribed stress, the safe tier
+  follows: continuation from the previous state, then descent on Psi(F) - P.F over the free components. A state is
+  stable under the control if it is stable at its F and dP/dF of the free components is positive definite. An
+  equilibrium that is not is returned as unstable if no stable state is found.
 */
 #include "mixed.h"
 #include "clock.h"
@@ -33,7 +32,7 @@ PetscErrorCode LamMixedLook(const LamStressControl *control, const LamResponse *
   PetscFunctionReturn(0);
 }
 
-/* Empty where the control can be asked of plane-strain tissue, else why not. */
+/* Checks a control for plane-strain tissue. reason: empty if it is valid. */
 static PetscErrorCode CheckControl(const LamStressControl *control, char reason[], size_t length)
 {
   static const PetscBool in_plane[9] = {1, 1, 0, 1, 1, 0, 0, 0, 1};
@@ -53,7 +52,7 @@ static PetscErrorCode CheckControl(const LamStressControl *control, char reason[
   PetscFunctionReturn(0);
 }
 
-/* The free component to prescribe instead so that the state is stable, -1: none alone does it. */
+/* remedy: the free component whose prescription would make the state stable; -1: no single one does. */
 static PetscErrorCode FindRemedy(const LamMixedView *view, PetscInt *remedy)
 {
   PetscReal highest = LAM_MIXED_SOFTEST;
@@ -74,7 +73,7 @@ static PetscErrorCode FindRemedy(const LamMixedView *view, PetscInt *remedy)
   PetscFunctionReturn(0);
 }
 
-/* An equilibrium at the prescribed stress that does not stay there. */
+/* Sets status and reason of an equilibrium that is unstable under the prescribed stress. */
 static PetscErrorCode CallUnstable(const LamMixedView *view, LamResponse *response)
 {
   char remedy[32] = "all of F";
@@ -93,7 +92,7 @@ static PetscErrorCode CallUnstable(const LamMixedView *view, LamResponse *respon
   PetscFunctionReturn(0);
 }
 
-/* Both tiers; `state` is replaced by a solution. */
+/* Fast tier, then safe tier; a solution replaces `state`. */
 static PetscErrorCode SolveTiers(LamRVE rve, const LamLoad *load, const LamStressControl *control, LamRVEState state,
                                  LamResponse *response)
 {
@@ -143,7 +142,7 @@ PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStress
     PetscCall(LamRVESolve(rve, load, state, response));
     PetscFunctionReturn(0);
   }
-  rve->wanted |= LAM_WANT_DERIVATIVES; /* which the stability under the prescribed stress is judged by */
+  rve->wanted |= LAM_WANT_DERIVATIVES; /* needed to assess stability under the prescribed stress */
   PetscCall(LamBeginResponse(rve, load, state, response));
   PetscCall(LamCheckLoad(load, response->reason, sizeof(response->reason)));
   if (!response->reason[0]) PetscCall(CheckControl(control, response->reason, sizeof(response->reason)));
@@ -151,7 +150,7 @@ PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStress
     response->status = LAM_INVALID_F;
   else
     PetscCall(SolveTiers(rve, load, control, state, response));
-  if (!LamResponseHasFields(response)) /* not known */
+  if (!LamResponseHasFields(response)) /* free components of F are unknown */
     for (PetscInt i = 0; i < 9; ++i)
       if (control->given[i]) response->load.F[i] = NAN;
   rve->wanted = wanted;

@@ -1,14 +1,14 @@
 /*
   Fast tier of prescribed stress: the Newton iterations of newton.c and contact_newton.c with free components of F.
 
-  Method. The start is the state before, turned and moved affinely to the guess of F. Contact tissue that has no near
-  state takes the two steps of its strategy: the bonded tissue under the same control, then release to contact with F
-  still free.
+  Method. The initial guess is the previous state, rotated and moved affinely to the guess of F. Contact tissue without
+  a near state, or for which that fails, uses the two_step strategy if it is selected: the bonded tissue is solved under
+  the same control, then released to contact with F still free.
 */
 #include "mixed.h"
 #include "contact_path.h"
 
-#define PATIENCE 3 /* iterations after release */
+#define PATIENCE 3 /* iterations after release in which long steps freeze F */
 
 static PetscErrorCode TryBonded(LamRVE rve, LamBorder *border, LamRVEState state, PetscBool *solved)
 {
@@ -31,7 +31,7 @@ static PetscErrorCode TryBonded(LamRVE rve, LamBorder *border, LamRVEState state
   PetscFunctionReturn(0);
 }
 
-/* Contact from the state before. */
+/* Solves contact from the previous state. */
 static PetscErrorCode TryNear(LamRVE rve, LamBorder *border, LamRVEState state, LamContactOutcome *out)
 {
   LamContactSolution before;
@@ -45,7 +45,7 @@ static PetscErrorCode TryNear(LamRVE rve, LamBorder *border, LamRVEState state, 
   PetscFunctionReturn(0);
 }
 
-/* Contact from the bonded tissue under the same control, which gives the F to start from also where contact fails. */
+/* Solves contact from the bonded tissue under the same control, whose F is a better guess even if contact fails. */
 static PetscErrorCode TryRelease(LamRVE rve, LamBorder *border, const LamStressControl *control, LamRVEState state,
                                  LamContactOutcome *out)
 {

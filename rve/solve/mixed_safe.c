@@ -1,13 +1,14 @@
 /*
   Safe tier of prescribed stress: continuation, then descent.
 
-  Method. (i) Continuation: stress, given components of F, turgor and cohesion go straight from the state before in
-  steps of the fast tier, halved where it fails or ends in a state that is not stable under the prescribed stress.
-  (ii) Descent on Psi(F) - P.F over the free components from the last state reached, with one full solve per F: Newton
-  steps with the absolute values of the eigenvalues of dP/dF lead downhill also where the tissue is not stable under the
-  prescribed stress; they are limited in length and halved until the potential falls enough. A saddle is left along its
-  softest mode. Where a step is short the fast tier is tried from there. So the tissue snaps to another stable state
-  where there is one. Beyond a limit load there is none, and F runs away: then the bracket of (i) is the answer.
+  Method. (i) Continuation: stress, prescribed components of F, turgor and cohesion follow a straight path from the
+  previous state, in steps of the fast tier. A step is halved if it fails or its solution is not stable under the
+  prescribed stress.
+  (ii) Descent on Psi(F) - P.F over the free components from the last state reached, with one full solve per F. Newton
+  steps with the absolute values of the eigenvalues of dP/dF are descent directions even if the tissue is not stable
+  under the prescribed stress. They are limited in length and halved until the potential decreases sufficiently. A
+  saddle is left along its softest mode. If a step is short, the fast tier is tried. So the tissue snaps to another
+  stable state if there is one. Beyond a limit load there is none, and F diverges; the bracket of (i) is then reported.
 
   Reference. Nocedal & Wright, Numerical Optimization, 3.4.
 */
@@ -15,19 +16,19 @@
 
 #define BUDGET 400 /* iterations of continuation, and of each descent */
 #define LEAST_SHARE (1.0 / 512.0)
-#define FOLD_MARGIN 4.0 /* widths of the bracket within which the stiffness of a limit load vanishes */
+#define FOLD_MARGIN 4.0 /* bracket widths within which the extrapolated stiffness vanishes at a limit load */
 #define DESCENTS 30
-#define LOST 5 /* steps in a row without stability: F runs away */
+#define LOST 5 /* successive unstable steps after which F is taken to diverge */
 #define HALVINGS 6
 #define STEP_LIMIT 0.25      /* of a component of F */
-#define NEAR_STEP 0.2        /* from here on the fast tier has a chance */
+#define NEAR_STEP 0.2        /* of a component of F: at shorter steps the fast tier is tried */
 #define KICK 0.01            /* of F along an unstable mode */
-#define LEAST_STIFFNESS 1e-3 /* C1 + C2: bounds the steps of tissue that has next to none */
+#define LEAST_STIFFNESS 1e-3 /* C1 + C2: lower bound of stiffness, which bounds the steps of very soft tissue */
 #define STRESS_TOLERANCE 1e-9
 #define ARMIJO 1e-4
 #define ROUNDING 1e-13 /* of the potential, times the bulk modulus */
 
-/* A state with the response that it has and what the control sees of it. */
+/* A state with its response and its view under the control. */
 typedef struct {
   LamRVEState state;
   LamResponse response;
@@ -39,13 +40,13 @@ typedef struct {
   const LamStressControl *control;
   const LamLoad *load;
   Iterate now, next;
-  PetscReal step[LAM_F_COUNT], slope, longest; /* of descent */
-  PetscReal reached, failed;                   /* shares of the way from the state before */
-  PetscReal first_stiffness, stiffness;        /* at the state before and at the share reached */
-  PetscReal earlier, earlier_stiffness;        /* the share reached before that one, and the stiffness there */
-  char refusal[192];                           /* of the last try */
-  PetscInt iterations, factorisations, most;   /* most: iterations until the present part gives up */
-  PetscBool stopped;                           /* by the interrupt: nothing more is tried */
+  PetscReal step[LAM_F_COUNT], slope, longest; /* descent step, its slope, its largest component before limiting */
+  PetscReal reached, failed;                   /* path parameters of the last stable state and of the next failure */
+  PetscReal first_stiffness, stiffness;        /* at the previous state and at `reached` */
+  PetscReal earlier, earlier_stiffness;        /* path parameter before `reached`, and the stiffness there */
+  char refusal[192];                           /* reason of the last failed solve */
+  PetscInt iterations, factorisations, most;   /* most: iteration limit of the current phase */
+  PetscBool stopped;                           /* by the interrupt; no further solves */
 } Search;
 
 static void Count(Search *s, const LamResponse *response)
@@ -68,7 +69,7 @@ static void Swap(Search *s)
   s->next = before;
 }
 
-/* next := the full solve at `load` from `from`; after a stop it stays the one that was stopped. */
+/* next := the full solve at `load` from `from`; unchanged after a stop. */
 static PetscErrorCode SolveAt(Search *s, const LamLoad *load, LamRVEState from)
 {
   PetscFunctionBeginUser;
@@ -80,7 +81,7 @@ static PetscErrorCode SolveAt(Search *s, const LamLoad *load, LamRVEState from)
   PetscFunctionReturn(0);
 }
 
-/* next := the fast tier from `now`; *solved where it is stable under the control. */
+/* next := the fast tier from `now`; *solved: it is stable under the control. */
 static PetscErrorCode TryFast(Search *s, const LamLoad *guess, const LamStressControl *control, PetscBool *solved)
 {
   LamLoad load = *guess;
@@ -97,7 +98,7 @@ static PetscErrorCode TryFast(Search *s, const LamLoad *guess, const LamStressCo
   PetscFunctionReturn(0);
 }
 
-/* What is asked at the share t of the way from `start`, with the free components of `now` for a guess. */
+/* Load and control at path parameter t from `start`; the free components of F are guessed from `now`. */
 static void AskBetween(const Search *s, const LamResponse *start, PetscReal t, LamLoad *load, LamStressControl *control)
 {
   *load = LamLoadBetween(&start->load, s->load, t);
@@ -109,7 +110,7 @@ static void AskBetween(const Search *s, const LamResponse *start, PetscReal t, L
   }
 }
 
-/* From `now`, the state before, as far towards the asked one as stable states lead. */
+/* Continuation of stable states from `now`, the previous state, towards the prescribed load. */
 static PetscErrorCode Continue(Search *s)
 {
   const LamResponse start = s->now.response;
@@ -146,11 +147,11 @@ static PetscReal Tolerance(LamRVE rve)
   return PetscMax(STRESS_TOLERANCE, 10.0 * LamNewtonTolerance(rve));
 }
 
-/* The step from `now`, downhill. */
+/* Computes a descent step from `now`. */
 static void FindStep(Search *s)
 {
   const LamMixedView *view = &s->now.view;
-  const PetscBool kick = (PetscBool)(view->largest <= Tolerance(s->rve)); /* then at a saddle */
+  const PetscBool kick = (PetscBool)(view->largest <= Tolerance(s->rve)); /* balanced but not stable: a saddle */
 
   s->longest = s->slope = 0.0;
   for (PetscInt k = 0; k < view->count; ++k) s->step[k] = kick ? KICK * view->V[0][k] : 0.0;
@@ -168,8 +169,8 @@ static void FindStep(Search *s)
   }
 }
 
-/* Whether `next` is better: a lower potential, or near the solution, where its differences drown in rounding, less
-   stress that is not balanced. */
+/* Whether `next` is better: a sufficiently lower potential or, if the difference is at rounding level, a smaller stress
+   residual. */
 static PetscBool IsBetter(const Search *s, PetscReal alpha)
 {
   const PetscReal rounding = ROUNDING * s->rve->micro.wall.bulk_modulus;
@@ -180,7 +181,7 @@ static PetscBool IsBetter(const Search *s, PetscReal alpha)
   return (PetscBool)(fall >= -rounding && s->next.view.largest <= 0.5 * s->now.view.largest);
 }
 
-/* One step of descent; *moved is PETSC_FALSE where none leads down. */
+/* One descent step; *moved: `next` was better and is now `now`. */
 static PetscErrorCode TakeStep(Search *s, PetscBool *moved)
 {
   PetscReal alpha = 1.0;
@@ -198,7 +199,7 @@ static PetscErrorCode TakeStep(Search *s, PetscBool *moved)
   PetscFunctionReturn(0);
 }
 
-/* Descends from `now`; *found: an equilibrium at the prescribed stress, stable or the last saddle. */
+/* Descent from `now`; *found: an equilibrium at the prescribed stress, stable or the last saddle. */
 static PetscErrorCode Descend(Search *s, PetscBool *found)
 {
   PetscInt lost = 0;
@@ -226,7 +227,7 @@ static PetscErrorCode Descend(Search *s, PetscBool *found)
   PetscFunctionReturn(0);
 }
 
-/* Descent from the full solve at `load`, from `from`. */
+/* Full solve at `load` from `from`, then descent. */
 static PetscErrorCode DescendFrom(Search *s, const LamLoad *load, LamRVEState from, PetscBool *found)
 {
   PetscFunctionBeginUser;
@@ -242,7 +243,8 @@ static PetscErrorCode DescendFrom(Search *s, const LamLoad *load, LamRVEState fr
   PetscFunctionReturn(0);
 }
 
-/* Contact tissue that has no state before starts from the guess of F; else continuation, and descent from its end. */
+/* Continuation from the previous state, then descent from its end. Contact tissue without a previous solution first
+   tries descent from the guess of F. */
 static PetscErrorCode Find(Search *s, LamRVEState state, PetscBool *found)
 {
   const LamLoad start = state->load;
@@ -269,8 +271,8 @@ static PetscErrorCode Find(Search *s, LamRVEState state, PetscBool *found)
 }
 
 /*
-  Whether states end in a fold, a limit load: near it the stiffness falls as the square root of the load that is left,
-  so its square, drawn through the last two states, vanishes in the bracket or close behind it.
+  Whether the stable states end in a fold (limit load). Near it the stiffness falls as the square root of the remaining
+  load, so its square, extrapolated linearly from the last two states, vanishes in the bracket or soon after it.
 */
 static PetscBool EndsInFold(const Search *s)
 {
@@ -281,7 +283,7 @@ static PetscBool EndsInFold(const Search *s)
   return (PetscBool)(PetscSqr(s->stiffness) * (s->reached - s->earlier) / fall <= FOLD_MARGIN * bracket);
 }
 
-/* Why there is no answer. */
+/* Sets status and reason of a failed search. */
 static PetscErrorCode GiveReason(const Search *s, LamResponse *response)
 {
   const PetscBool limit = EndsInFold(s);

@@ -1,16 +1,17 @@
 /*
-  A start for large meshes: the solution of a mesh with half as many elements along the faces and through the walls.
+  Initial guess for large meshes: the solution on a mesh with half as many elements along the faces and through the
+  walls.
 
-  Method. The way from the state before to the load is gone on the coarse mesh, which does the same if it is large
-  itself. Its solution starts Newton's iteration on the fine one: positions, contact pressures and wall stresses are
-  interpolated, the latter by what is bilinear in them in an element, for stresses that follow from interpolated
-  positions oscillate where walls are nearly incompressible. What the iteration ends in is the state before of a solve
-  at the same load. Where the coarse mesh has no answer the fine one is not asked: its reason is given, and on which
-  mesh that was. Sealed tissue, whose pressures are unknowns, goes its way itself.
+  Method. Continuation to the load is done on the coarse mesh, recursively if that is large itself. Its solution is the
+  initial guess of Newton's method on the fine mesh: positions, contact pressures and wall stresses are interpolated,
+  the latter from a bilinear fit per element, as stresses computed from interpolated positions oscillate if walls are
+  nearly incompressible. The result is the initial state of a solve at the same load. If the coarse solve fails, the
+  fine mesh is not solved, and the response gives the reason and the mesh. Sealed tissue, whose pressures are unknowns,
+  does not use this method.
 */
 #include "contact_path.h"
 
-#define LARGE 2000 /* elements, from which on a coarser mesh is asked first */
+#define LARGE 2000 /* elements, from which a coarser mesh is solved first */
 
 static PetscInt Half(PetscInt n)
 {
@@ -35,7 +36,7 @@ static PetscErrorCode CreateCoarse(LamRVE rve, LamRVE *coarse)
   PetscFunctionReturn(0);
 }
 
-/* Quadratic shape functions at `place`, counted in elements; first: the first of their three nodes, two per element. */
+/* Quadratic shape functions at `place`, in elements; first: index of the first of their three nodes. */
 static void Quadratic(PetscReal place, PetscInt elements, PetscInt *first, PetscReal N[3])
 {
   const PetscInt e = PetscMax(0, PetscMin((PetscInt)place, elements - 1));
@@ -47,13 +48,13 @@ static void Quadratic(PetscReal place, PetscInt elements, PetscInt *first, Petsc
   N[2] = 0.5 * xi * (xi + 1.0);
 }
 
-/* Where node or hat `half`, two per element from the start of a face, of one mesh lies along a face of the other. */
+/* Position on `other`, in elements along a face, of node or hat `half` of a face of `mesh`, two per element. */
 static PetscReal PlaceIn(const LamMesh *other, const LamMesh *mesh, PetscInt half)
 {
   return LamMeshPlace(other, LamMeshShare(mesh, 0.5 * (PetscReal)half));
 }
 
-/* Position of a node of the fine mesh in the solution of the coarse one. */
+/* Interpolates the coarse solution at a node of the fine mesh. */
 static void Interpolate(LamRVE coarse, const LamLoad *load, const PetscReal y[], const LamMesh *fine, PetscInt node,
                         PetscReal x[2])
 {
@@ -92,7 +93,7 @@ static void ProlongPositions(LamRVE coarse, const LamRVEState from, LamRVE rve)
   }
 }
 
-/* Contact pressures, and the hats that have one. */
+/* Interpolates contact pressures and junction status. */
 static void ProlongContact(LamRVE coarse, const LamRVEState from, LamRVE rve)
 {
   const PetscInt hats = rve->contact->hats, coarse_hats = coarse->contact->hats;
@@ -113,7 +114,7 @@ static void ProlongContact(LamRVE coarse, const LamRVEState from, LamRVE rve)
   }
 }
 
-/* Pressure and fibre stress of an element as fits. */
+/* Bilinear fits to pressure and fibre stress of an element. */
 static void FitStresses(LamRVE rve, PetscInt e, PetscReal p[4], PetscReal s[4])
 {
   const LamElementStress *stress = &rve->stress[e];
@@ -127,14 +128,14 @@ static void FitStresses(LamRVE rve, PetscInt e, PetscReal p[4], PetscReal s[4])
   LamFitBilinear(stress->s, s);
 }
 
-/* The coordinate in [-1, 1] of `place`, counted in elements, in the element that it is in. */
+/* Element that contains `place` (in elements) and local coordinate in [-1, 1]. */
 static PetscReal Local(PetscReal place, PetscInt elements, PetscInt *element)
 {
   *element = PetscMax(0, PetscMin((PetscInt)place, elements - 1));
   return 2.0 * (place - (PetscReal)*element) - 1.0;
 }
 
-/* Independent stresses of the element (i, m) of a face of the fine mesh. */
+/* Interpolates the independent stresses of element (i, m) of a face of the fine mesh. */
 static void ProlongStress(LamRVE coarse, const PetscReal (*fits)[2][4], LamRVE rve, PetscInt cell, PetscInt face,
                           PetscInt i, PetscInt m)
 {
@@ -180,7 +181,7 @@ static PetscErrorCode ProlongStresses(LamRVE coarse, LamRVE rve)
   PetscFunctionReturn(0);
 }
 
-/* From the solution of the coarse mesh to that of the fine one, if it is near. */
+/* Solves on the fine mesh from the interpolated coarse solution; `to` is set if that converges. */
 static PetscErrorCode Prolong(LamRVE coarse, const LamRVEState from, LamRVE rve, LamRVEState to)
 {
   const LamLoad *load = &from->load;
@@ -209,7 +210,7 @@ static PetscErrorCode Prolong(LamRVE coarse, const LamRVEState from, LamRVE rve,
   PetscFunctionReturn(0);
 }
 
-/* The mesh that a reason is of. */
+/* Prepends the mesh to a reason. */
 static PetscErrorCode NameMesh(LamRVE rve, LamResponse *response)
 {
   char reason[sizeof(response->reason)];

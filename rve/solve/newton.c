@@ -1,12 +1,13 @@
 /*
   Equilibrium of the RVE at one load.
 
-  Method. Both tiers solve (K(x, p*, s*) + shift 1) dx = -r(x) with the residual of the energy and the tangent of the
-  independent stresses (element.h); the shift is zero where K is positive definite, else just large enough (inertia
-  correction). Sealed lumens add their pressures to x, and a negative eigenvalue each (turgor.c). The fast tier takes
-  full steps, shortened only where a volume would turn inside out. The safe tier seeks a minimum of the energy: steps
-  are limited in length, and a watchdog allows a few steps without decrease (a large step first violates the stiff
-  constraints and is then restored) before it falls back to the best point and a monotone line search.
+  Method. Both tiers solve (K(x, p*, s*) + shift 1) dx = -r(x) with the residual of the energy and the tangent with
+  independent stresses (element.h). The shift is zero if K is positive definite, otherwise just large enough (inertia
+  correction). Sealed lumens add their pressures to x, and one negative eigenvalue each (turgor.c). The fast tier takes
+  full steps, shortened only if an element volume would be inverted. The safe tier minimises the energy: steps are
+  limited in length, and a watchdog allows a few steps without decrease, as a large step first violates the stiff
+  constraints and the next ones restore them; then the iteration returns to the best point and makes a monotone line
+  search.
 
   References. Magisano, Leonetti & Garcea, Int. J. Numer. Meth. Engng 109 (2017) 1237 (mixed integration points);
   Chamberlain et al., Math. Prog. Study 16 (1982) 1 (watchdog); Nocedal & Wright, Numerical Optimization, 3.4.
@@ -15,20 +16,19 @@
 
 #define FAST_ITERATIONS 25
 #define SAFE_ITERATIONS 400
-#define ROUNDING_MARGIN 1e3 /* residual over the tolerance that rounding of large stresses may leave */
-#define WATCHDOG 4          /* steps without decrease before the safe tier goes back */
+#define ROUNDING_MARGIN 1e3 /* times the tolerance: residual that rounding of large stresses may leave */
+#define WATCHDOG 4          /* steps without decrease before the safe tier returns to the best point */
 #define LEAST_SHIFT 1e-7    /* of the largest diagonal entry */
 #define STEP_LIMIT 0.05     /* of the safe tier, in apothems */
 #define ARMIJO 1e-4
-#define SADDLE_RESIDUAL 1e-4 /* of an indefinite state below which Newton would only creep along a saddle */
+#define SADDLE_RESIDUAL 1e-4 /* residual norm below which an indefinite state is taken to be near a saddle */
 #define ESCAPE_STEP 0.01     /* along a direction of negative curvature, in apothems */
 
 PetscReal LamNewtonTolerance(LamRVE rve)
 {
-  /* Forces of the pressure and of the fibres carry a rounding error of eps times their stiffness in each of n entries.
-     Gradients are differences of positions, so it grows with the size of the RVE over the depth of an element. The
-     floor measured from t = 0.003 to 0.5 and up to 8 x 8 cells stays below 0.6 slenderness x size
-     (docs/results/verification.md). */
+  /* Pressure and fibre forces have a rounding error of eps times their stiffness in each of n entries. Gradients are
+     differences of positions, so it grows with RVE size over element depth. The floor measured for t = 0.003 to 0.5 and
+     up to 8 x 8 cells stays below 0.6 slenderness x size (docs/results/verification.md). */
   const LamMicrostructure *micro = &rve->micro;
   const PetscReal depth = rve->thinnest / (PetscReal)micro->through;
   const PetscReal slenderness = PetscMax(LamLongestEdge(&rve->mesh) / depth, depth / LamShortestEdge(&rve->mesh));
@@ -49,8 +49,8 @@ PetscErrorCode LamReportIteration(LamRVE rve, const char tier[], PetscInt iterat
 }
 
 /*
-  Whether a step with the factor of the iteration before reaches the tolerance: the residual has fallen by a share that
-  is half of what is quadratic in the step, and a step with the old factor leaves about twice that share.
+  Whether a step with the previous factorisation is expected to reach the tolerance. A Newton step leaves half the
+  second-order term of the residual; another step with the same factor leaves about twice that share (linear.rate).
 */
 static PetscBool FactorServes(LamRVE rve, PetscReal norm, PetscReal tolerance)
 {
@@ -118,8 +118,8 @@ void LamTakeStep(LamRVE rve, const LamLoad *load, LamBorder *border, PetscReal a
   ++rve->work.iterations;
 }
 
-/* How far the factor is from the matrix now, after full steps with it; unknown where it is shifted, or of a system with
-   a border. */
+/* Updates linear.rate, the distance of the factor from the current matrix, after full steps with it; infinite (unknown)
+   if the step was shortened, the matrix shifted or the system bordered. */
 static void WatchFactor(LamRVE rve, const LamBorder *border, PetscReal shift, PetscReal alpha, PetscReal norm,
                         PetscReal previous, PetscBool fresh)
 {
@@ -135,8 +135,8 @@ PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border,
 {
   const PetscReal tolerance = LamNewtonTolerance(rve);
   PetscReal first = 0.0, previous = PETSC_INFINITY, shift = 0.0, alpha = 0.0, largest = PETSC_INFINITY;
-  PetscBool fresh = PETSC_FALSE; /* the last step was the first with its factor */
-  PetscBool last = PETSC_FALSE;  /* it should have been the last one */
+  PetscBool fresh = PETSC_FALSE; /* the last step used a new factorisation */
+  PetscBool last = PETSC_FALSE;  /* the last step is expected to have converged */
   PetscInt growth = 0;
 
   PetscFunctionBeginUser;
@@ -154,7 +154,7 @@ PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border,
     PetscCall(LamBorderAssemble(rve, border, &norm));
     if (it == 0) first = norm;
     if (it > 0) WatchFactor(rve, border, shift, alpha, norm, previous, fresh);
-    /* an affine move is no solution, however small; else the next step would be that share of the last one, or less */
+    /* an affinely moved initial guess does not count as converged; rate * largest estimates the next step */
     if ((norm <= tolerance && (it > 0 || !rve->moved)) ||
         LamAtRounding(rve, norm, tolerance, rve->linear.rate * largest)) {
       PetscCall(LamReportIteration(rve, "fast", it, norm, 0.0, 0.0));
@@ -164,9 +164,9 @@ PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border,
     }
     growth = norm > previous ? growth + 1 : 0;
     last = (PetscBool)(norm * PetscSqr(norm / previous) <=
-                       ROUNDING_MARGIN * tolerance); /* as quadratic convergence goes on */
+                       ROUNDING_MARGIN * tolerance); /* assuming quadratic convergence */
     previous = norm;
-    /* the residual of the energy may grow at first while the stiff constraints are violated, but not for long */
+    /* the residual may grow for a few steps while the stiff constraints are violated */
     if (it == FAST_ITERATIONS || growth >= 4 || !(norm < 1e8 * (1.0 + first))) break;
     fresh = (PetscBool)!FactorServes(rve, norm, tolerance);
     if (it == 0 || border) last = PETSC_FALSE;
@@ -194,14 +194,14 @@ PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border,
 
 /* State of the safe tier. */
 typedef struct {
-  PetscReal *best; /* [length] y of lowest energy so far */
+  PetscReal *best; /* [length] y of the lowest energy so far */
   PetscReal *mode; /* [n] softest mode of the last indefinite matrix */
   PetscReal best_energy, shift, rounding;
   PetscInt without_decrease;
   PetscBool monotone; /* line search on the next step */
 } Descent;
 
-/* Halves the step until the energy falls enough; *alpha = 0 where it does not. */
+/* Halves the step until the energy decreases sufficiently; *alpha = 0 if it does not. */
 static PetscErrorCode LineSearch(LamRVE rve, const LamLoad *load, PetscReal energy, PetscReal slope, PetscReal rounding,
                                  PetscReal *alpha)
 {
@@ -218,7 +218,7 @@ static PetscErrorCode LineSearch(LamRVE rve, const LamLoad *load, PetscReal ener
   PetscFunctionReturn(0);
 }
 
-/* Keeps the lowest point; goes back to it after too many steps without decrease. *moved tells whether y changed. */
+/* Stores the point of lowest energy; returns to it after too many steps without decrease. *moved: rve->y was reset. */
 static PetscErrorCode Watch(LamRVE rve, const LamLoad *load, PetscReal energy, PetscBool valid, Descent *descent,
                             PetscBool *moved)
 {
@@ -242,8 +242,9 @@ static PetscErrorCode Watch(LamRVE rve, const LamLoad *load, PetscReal energy, P
 }
 
 /*
-  Adds to the step a piece of the softest mode, downhill, where the matrix is indefinite and the Newton step is small:
-  near a saddle the residual has next to nothing of that mode, and Newton alone would creep.
+  Adds a downhill multiple of the softest mode to the step, if the mode has negative curvature. Used for small Newton
+  steps of an indefinite matrix: near a saddle the residual has almost no component along that mode, and Newton alone is
+  slow.
 */
 static PetscErrorCode AddNegativeCurvature(LamRVE rve, Descent *descent)
 {
@@ -254,13 +255,13 @@ static PetscErrorCode AddNegativeCurvature(LamRVE rve, Descent *descent)
   if (LamModeCurvature(rve, descent->mode, rve->trial + 2) >= 0.0) PetscFunctionReturn(0);
   slope = LamModeSlope(rve, descent->mode, rve->residual);
   largest = LamLargestEntry(rve->linear.positions, descent->mode);
-  sign = slope > LamNewtonTolerance(rve) ? -1.0 : 1.0; /* the mode has a sign of its own where the slope has none */
+  sign = slope > LamNewtonTolerance(rve) ? -1.0 : 1.0; /* if the slope is zero, the mode's own sign */
   LamAddMode(rve, sign * ESCAPE_STEP / largest, descent->mode, rve->step);
   ++rve->work.escapes;
   PetscFunctionReturn(0);
 }
 
-/* One step of the safe tier from an assembled state; *alpha = 0 where no step lowers the energy. */
+/* One step of the safe tier from an assembled state; *alpha = 0: no step found. */
 static PetscErrorCode SafeStep(LamRVE rve, const LamLoad *load, PetscInt it, PetscReal energy, PetscReal norm,
                                Descent *descent, PetscReal *alpha)
 {

@@ -1,31 +1,30 @@
 /*
-  Equilibrium from an unstable start, by a flow.
+  Equilibrium from an unstable initial guess, by a flow.
 
   Method. Steps of K + shift 1, as in the fast tier, but the shift starts at the bending stiffness of the thinnest wall
-  and the residual may grow as long as it likes: the state comes down from where it is unstable, and the stiff
-  constraints, violated by each step and restored by the next, say nothing of how far it is. Steps that become long are
-  shortened by a larger shift, which still restores the constraints, where shortening them would not. What comes down to
-  a lumen that is shut is not followed further: contact inside a lumen is not modelled.
+  and the residual may grow while the matrix is shifted: each step violates the stiff constraints and the next restores
+  them, so the residual does not measure progress. Long steps are shortened by a larger shift, which, unlike scaling,
+  still restores the constraints. The iteration ends if a lumen closes, as contact inside a lumen is not modelled.
 */
 #include "newton.h"
 
 #define ITERATIONS 120
-#define BENDING 1.0       /* first shift, in cubes of the thinnest wall */
-#define BOLD_ITERATIONS 8 /* unstable steps of any length below ... */
-#define BOLD_LIMIT 10.0   /* apothems; then below ... */
-#define STEP_LIMIT 0.05
+#define BENDING 1.0       /* first shift, in units of LamBendingStiffness */
+#define BOLD_ITERATIONS 8 /* first shifted steps, limited to ... */
+#define BOLD_LIMIT 10.0   /* ... this length, apothems; ... */
+#define STEP_LIMIT 0.05   /* ... later ones to this */
 #define SHORTENINGS 12
-#define LOOK_EVERY 4    /* unstable steps: for lumens that are shut */
-#define MOST_GROWTH 1e8 /* of the residual */
-#define DIVERGING 6     /* stable steps in a row by which the residual may grow */
+#define LOOK_EVERY 4    /* shifted steps between checks for closed lumens */
+#define MOST_GROWTH 1e8 /* of the residual, times 1 + the first one */
+#define DIVERGING 6     /* successive unshifted steps with a growing residual that end the iteration */
 #define SADDLE_RESIDUAL 1e-4
 
 typedef struct {
   PetscReal first, previous; /* residuals */
   PetscReal shift, largest;  /* of the last step */
-  PetscInt unstable;         /* steps with a shift so far */
-  PetscInt growth;           /* steps in a row without one by which the residual grew */
-  PetscInt shut;             /* cell whose lumen was found shut; -1: none */
+  PetscInt unstable;         /* number of shifted steps */
+  PetscInt growth;           /* successive unshifted steps with a growing residual */
+  PetscInt shut;             /* cell whose lumen was closed at the last check; -1: none */
 } Flow;
 
 static PetscErrorCode FindStep(LamRVE rve, Flow *flow, PetscBool *ok)
@@ -46,7 +45,7 @@ static PetscErrorCode FindStep(LamRVE rve, Flow *flow, PetscBool *ok)
   PetscFunctionReturn(0);
 }
 
-/* Whether the lumen of a cell was shut twice when looked for. */
+/* Whether a lumen was closed at two successive checks. */
 static PetscErrorCode IsShut(LamRVE rve, Flow *flow, PetscBool *shut)
 {
   const PetscInt before = flow->shut;
@@ -59,7 +58,7 @@ static PetscErrorCode IsShut(LamRVE rve, Flow *flow, PetscBool *shut)
   PetscFunctionReturn(0);
 }
 
-/* Whether the iteration is lost. */
+/* Whether the iteration diverges. */
 static PetscBool IsLost(const Flow *flow, PetscReal norm)
 {
   return (PetscBool)(flow->growth >= DIVERGING || !(norm < MOST_GROWTH * (1.0 + flow->first)));
@@ -105,6 +104,6 @@ PetscErrorCode LamNewtonFlow(LamRVE rve, const LamLoad *load, LamNewtonOutcome *
     *shut = flow.shut;
     break;
   }
-  if (*outcome == LAM_NEWTON_CONVERGED && flow.unstable) ++rve->work.escapes; /* it has left unstable states */
+  if (*outcome == LAM_NEWTON_CONVERGED && flow.unstable) ++rve->work.escapes; /* unstable states were left */
   PetscFunctionReturn(0);
 }

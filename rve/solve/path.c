@@ -1,20 +1,19 @@
 /*
-  From a known state to the equilibrium at a new load.
+  Equilibrium at a new load, by continuation from a known state.
 
-  Method. (i) The state is turned rigidly so that its stretch axes follow the new load's rotation, and moved affinely by
-  the rest of the change of F. (ii) Fast tier, flow, then safe tier, at the full load. (iii) Where all fail, the same
-  along the straight line in (F, turgor) in substeps, halved on failure and doubled on success; the safe tier, which
-  takes long where walls are stiff, only in the smallest. (iv) A converged state with negative eigenvalues is a saddle:
-  it is left along its unstable mode, downhill, to a stable branch. (v) What ends the way is bracketed: a lumen that
-  shuts, or walls that have lost ellipticity, which no mesh resolves.
+  Method. (i) The state is rotated rigidly to the rotation of the new F and moved affinely by the rest of the change of
+  F. (ii) Fast tier, flow, then safe tier, at the full load. (iii) If all fail, the same in substeps along the straight
+  line in (F, turgor), halved on failure and doubled on success; the safe tier, which is slow if walls are stiff, is
+  used only in the smallest. (iv) A converged state with negative eigenvalues is a saddle: it is left along its unstable
+  mode, downhill, to a stable branch. (v) The reason for the end of a path is bracketed: a lumen that closes, or walls
+  that lose ellipticity, which no mesh resolves.
 */
 #include "solve.h"
 
 #define MIN_SUBSTEP (1.0 / 512.0)
 #define MAX_BRANCH_SWITCHES 6
-#define KICK 0.02 /* apothems: start along an unstable mode */
+#define KICK 0.02 /* apothems: perturbation along an unstable mode */
 
-/* Rotation angle of the polar decomposition of the in-plane part of F. */
 PetscReal LamRotationAngle(const PetscReal F[9])
 {
   return atan2(F[3] - F[1], F[0] + F[4]);
@@ -54,7 +53,7 @@ void LamMoveAffinely(LamRVE rve, const PetscReal from[], const LamLoad *load_fro
   for (PetscInt i = rve->ndof; i < rve->length; ++i) rve->y[i] = from[i];
 }
 
-/* Leaves saddles downhill until the state is stable. Ends with the consistent tangent factored. */
+/* Leaves saddles downhill until the state is stable. On return the consistent tangent is factored. */
 static PetscErrorCode LeaveSaddle(LamRVE rve, const LamLoad *load, PetscInt *branch, PetscInt *negative, PetscBool *ok)
 {
   PetscReal *mode, *saddle;
@@ -89,11 +88,11 @@ static PetscErrorCode LeaveSaddle(LamRVE rve, const LamLoad *load, PetscInt *bra
   PetscFunctionReturn(0);
 }
 
-/* What a step ended in. */
+/* Result of a step. */
 typedef struct {
   PetscBool converged;
   PetscInt negative;  /* eigenvalues; > 0: a saddle */
-  PetscInt collapsed; /* the cell whose lumen is squeezed shut, so that the solution is no answer; -1: none */
+  PetscInt collapsed; /* cell whose lumen has closed, so that the solution is rejected; -1: none */
 } Outcome;
 
 static PetscBool IsStable(const Outcome *out)
@@ -102,8 +101,8 @@ static PetscBool IsStable(const Outcome *out)
 }
 
 /*
-  One step from (from, load_from) to load_to, whose solution is then in rve->y; branch counts saddles left. thorough:
-  with the safe tier, which takes time where walls are stiff.
+  One step from (from, load_from) to load_to; the solution is in rve->y. branch counts saddles left. thorough: try the
+  safe tier, which is slow if walls are stiff.
 */
 static PetscErrorCode Step(LamRVE rve, const PetscReal from[], const LamLoad *load_from, const LamLoad *load_to,
                            PetscBool thorough, PetscInt *branch, Outcome *out)
@@ -141,11 +140,11 @@ LamLoad LamLoadBetween(const LamLoad *a, const LamLoad *b, PetscReal t)
   return load;
 }
 
-/* Substeps along a straight way: how far stable states were found, and why not at `failed`. */
+/* Substeps along a straight load path. */
 typedef struct {
-  PetscReal between[2]; /* shares of the way: the last stable state, the next that is none */
+  PetscReal between[2]; /* path parameters of the last stable state and of the next failure */
   PetscInt branch;
-  Outcome end; /* at the second */
+  Outcome end; /* of the last step tried */
   LamKinking kinking;
 } Way;
 
@@ -154,7 +153,7 @@ static PetscReal LeastStep(const Way *way)
   return LamIsKinking(&way->kinking) ? LAM_KINKED_SUBSTEP : MIN_SUBSTEP;
 }
 
-/* From `start` to `load`; y_from holds the last stable positions. */
+/* Continuation from `start` to `load`; y_from: in, positions at `start`; out, the last stable ones. */
 static PetscErrorCode Substeps(LamRVE rve, PetscReal y_from[], const LamLoad *start, const LamLoad *load, Way *way)
 {
   LamLoad at = *start;
@@ -184,7 +183,7 @@ static PetscErrorCode Substeps(LamRVE rve, PetscReal y_from[], const LamLoad *st
   PetscFunctionReturn(0);
 }
 
-/* What is told where the way ends before the load. */
+/* Status and reason if the path ends before the load. */
 static PetscErrorCode EndOfWay(LamRVE rve, const Way *way, LamStatus *status, char reason[], size_t length)
 {
   const PetscBool out_of_work = (PetscBool)(rve->work.iterations >= rve->budget);
@@ -226,7 +225,7 @@ PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state,
     if (way.between[0] >= 1.0) {
       out = way.end;
       *branch = way.branch;
-    } else if (out.converged && out.collapsed < 0) { /* the unstable state is all there is: give it, and say so */
+    } else if (out.converged && out.collapsed < 0) { /* no stable state: return the unstable one */
       PetscInt again;
 
       PetscCall(PetscArraycpy(rve->y, saddle, rve->length));

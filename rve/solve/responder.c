@@ -1,31 +1,30 @@
 /*
-  The direct responder: one RVE solve per question, warm-started from the material point's last state.
+  The direct responder: one RVE solve per query, warm-started from the last state of the material point.
 
-  Each point keeps two states: the accepted one of the last load step, and the latest solution, which is nearer to the
-  next question. A question starts from the latest one, unless that has left the accepted branch (buckled on the way):
-  an iterate of the macroscale Newton must not decide which branch the tissue is on. A question without a point, or of
-  one whose states are not kept, starts from the reference. Once sealed, each point keeps the water that it had in its
-  accepted state.
+  Each point has two states: the accepted one of the last load step, and the latest solution, which is nearer to the
+  next query. A query starts from the latest one, unless that has left the accepted branch (by buckling): an iterate of
+  the macroscale Newton must not select the branch. A query without a point, or of one without stored states, starts
+  from the reference state. After sealing, each point keeps the water of its accepted state.
 
-  A body that is inflated evenly asks the same at all its points: a question that equals the last one, and starts from
-  the same state, bit for bit, gets the last answer.
+  A uniformly inflated body queries the same load at all its points. A query with the same load and initial state as the
+  last one, bit for bit, therefore returns the last response.
 */
 #include "solve.h"
 #include <string.h>
 
 typedef struct {
   LamRVE rve;                     /* borrowed */
-  LamResponder *responder;        /* borrowed: its counters */
-  PetscInt points;                /* whose states are kept */
+  LamResponder *responder;        /* borrowed, for its counters */
+  PetscInt points;                /* number of points with stored states */
   LamRVEState *accepted, *latest; /* [points] */
-  PetscReal *water;               /* [points][cell]; NULL: turgor is prescribed */
+  PetscReal *water;               /* [points][cell] V_w over V0; NULL: turgor is prescribed */
   PetscReal bulk_modulus;         /* of the water */
   LamRVEState scratch;
-  size_t size;         /* of a state as bytes */
-  char *start, *first; /* [size] the state that a question starts from; that of the last question solved */
-  LamRVEState end;     /* and its solution */
-  LamResponse last;    /* and its answer; of no fields: there is none */
-  PetscInt changes;    /* of the moduli of the walls, then */
+  size_t size;         /* of a packed state, bytes */
+  char *start, *first; /* [size] packed initial states of this query and of the last one solved */
+  LamRVEState end;     /* solution of the last query solved */
+  LamResponse last;    /* response of the last query solved; without fields: none to repeat */
+  PetscInt changes;    /* rve->changes at that solve */
 } DirectResponder;
 
 static PetscBool SameLoad(const LamLoad *a, const LamLoad *b)
@@ -36,7 +35,7 @@ static PetscBool SameLoad(const LamLoad *a, const LamLoad *b)
   return (PetscBool)(a->turgor == b->turgor && a->cohesion == b->cohesion);
 }
 
-/* The RVE is borrowed: it is sealed for one solve at a time. */
+/* Solves with the RVE, which is borrowed and therefore sealed only during the solve. */
 static PetscErrorCode SolvePoint(DirectResponder *direct, PetscInt point, const LamLoad *load, LamRVEState state,
                                  LamResponse *response)
 {
@@ -53,7 +52,7 @@ static PetscErrorCode SolvePoint(DirectResponder *direct, PetscInt point, const 
   PetscFunctionReturn(0);
 }
 
-/* Solves, or repeats the last answer where that is the same; counts. */
+/* Solves, or returns the last response for an identical query; updates the counters. */
 static PetscErrorCode Answer(DirectResponder *direct, PetscInt point, const LamLoad *load, LamRVEState state,
                              LamResponse *response)
 {
@@ -133,7 +132,7 @@ static PetscErrorCode Seal(void *ctx, PetscReal bulk_modulus)
   PetscFunctionReturn(0);
 }
 
-/* A state, and where the cells can be sealed K_w (0: they are not) and their water. */
+/* Layout: packed state, then, if the cells can be sealed, K_w (0: not sealed) and [cell] water. */
 static PetscErrorCode StateSize(void *ctx, size_t *bytes)
 {
   DirectResponder *direct = (DirectResponder *)ctx;

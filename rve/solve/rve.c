@@ -80,7 +80,7 @@ static void FindStiffest(LamRVE rve)
   }
 }
 
-/* Law of each cell, and the extremes over the cells. */
+/* Sets the wall law of each cell and the extremes over the cells. */
 static PetscErrorCode SetUpWalls(LamRVE rve)
 {
   PetscFunctionBeginUser;
@@ -108,14 +108,14 @@ PetscErrorCode LamRVEChangeModuli(LamRVE rve, const LamMicrostructure *micro)
   for (PetscInt cell = 0; rve->micro.cell && cell < rve->mesh.cell_count; ++cell)
     CopyModuli(CellWall(micro, cell), &rve->micro.cell[cell].wall);
   FindStiffest(rve);
-  rve->linear.rate = PETSC_INFINITY; /* no factor serves any more */
+  rve->linear.rate = PETSC_INFINITY; /* the factorisation is outdated */
   rve->consistent = PETSC_FALSE;
   rve->changes++;
   if (rve->bonded) PetscCall(LamRVEChangeModuli(rve->bonded, micro));
   PetscFunctionReturn(0);
 }
 
-/* All that needs no MPI: mesh, element geometry, sparsity pattern, work arrays. */
+/* Set-up that needs no MPI: mesh, element geometry, sparsity pattern, work arrays. */
 static PetscErrorCode SetUpArrays(LamRVE rve)
 {
   PetscInt cells, lumens;
@@ -161,7 +161,7 @@ PetscErrorCode LamRVESetUp(LamRVE rve)
     PetscCall(LamRVESetMicrostructure(rve->bonded, &bonded));
     PetscCall(LamRVESetSealable(rve->bonded, rve->seal.allowed));
     PetscCall(LamRVESetTolerance(rve->bonded, rve->tolerance));
-    PetscCall(LamRVESetWanted(rve->bonded, 0)); /* a start: its state alone */
+    PetscCall(LamRVESetWanted(rve->bonded, 0)); /* an initial guess: only its state is used */
     PetscCall(LamRVESetMonitor(rve->bonded, rve->monitor));
     PetscCall(LamRVESetInterrupt(rve->bonded, rve->interrupt, rve->interrupt_ctx));
     PetscCall(LamRVESetUp(rve->bonded));
@@ -285,13 +285,13 @@ PetscErrorCode LamCheckLoad(const LamLoad *load, char reason[], size_t length)
   PetscFunctionReturn(0);
 }
 
-/* Fields of the solution in rve->y, whose consistent tangent is factored. */
+/* Fills the fields of the solution in rve->y, whose consistent tangent is factored. */
 static PetscErrorCode FillFields(LamRVE rve, const LamLoad *load, LamResponse *response)
 {
   PetscFunctionBeginUser;
   if (rve->wanted & (LAM_WANT_STRESS | LAM_WANT_DERIVATIVES)) PetscCall(LamHomogenise(rve, load, response));
   if (!rve->contact && response->status == LAM_CONVERGED && rve->linear.negative > LamExpectedNegative(rve)) {
-    /* a factor that was taken to be near was not */
+    /* the factorisation assumed to be of a nearby matrix was not */
     response->status = LAM_UNSTABLE;
     PetscCall(PetscStrncpy(response->reason, "the state is a saddle", sizeof(response->reason)));
   }
@@ -306,14 +306,14 @@ static PetscErrorCode FillFields(LamRVE rve, const LamLoad *load, LamResponse *r
   PetscFunctionReturn(0);
 }
 
-/* A state in which walls have passed through each other is not an answer. */
+/* Rejects a bonded state in which walls have passed through each other. */
 static PetscErrorCode RefuseCollapsedLumen(LamRVE rve, LamResponse *response)
 {
   const PetscReal unknown[2] = {0.0, 0.0};
   PetscInt cell;
 
   PetscFunctionBeginUser;
-  if (!LamResponseHasFields(response) || rve->contact) PetscFunctionReturn(0); /* contact has looked itself */
+  if (!LamResponseHasFields(response) || rve->contact) PetscFunctionReturn(0); /* contact solves have checked */
   PetscCall(LamFindCollapsedLumen(rve, rve->y, &cell));
   if (cell < 0) PetscFunctionReturn(0);
   response->status = LAM_NOT_CONVERGED;
@@ -362,7 +362,7 @@ PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamRVEState sta
   PetscFunctionReturn(0);
 }
 
-/* The way from a state to a load. */
+/* Continuation from a state to a load. */
 static PetscErrorCode Follow(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
 {
   PetscFunctionBeginUser;
@@ -375,7 +375,7 @@ static PetscErrorCode Follow(LamRVE rve, const LamLoad *load, LamRVEState state,
   PetscFunctionReturn(0);
 }
 
-/* From the solution of a coarser mesh; from `state` where that leads nowhere. */
+/* Continuation from the solution on a coarser mesh; from `state` if that fails. */
 static PetscErrorCode FollowNested(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
 {
   LamRVEState start;

@@ -1,10 +1,10 @@
 /*
-  States as bytes: what LamRVEStateCopy copies, one after another.
+  Packed states: the data copied by LamRVEStateCopy, one after another.
 */
 #include "solve.h"
 #include <string.h>
 
-/* Counts where `to` is NULL, else writes; *at goes on. */
+/* Writes `bytes` at *at, or only counts if `to` is NULL; advances *at. */
 static void Put(const void *from, size_t bytes, char *to, size_t *at)
 {
   if (to && bytes) memcpy(to + *at, from, bytes);
