@@ -19,7 +19,7 @@ typedef struct {
 
 /* How a record is used for nearby queries. */
 typedef enum {
-  LAM_SCATTER_BLENDS,  /* converged, stable, branch 0, all cells held */
+  LAM_SCATTER_BLENDS,  /* converged, stable, branch 0, no floating cells */
   LAM_SCATTER_ALONE,   /* another branch, or floating cells: its own state only */
   LAM_SCATTER_REFUSES, /* failed, unstable or without a tangent: only blocks blends nearby */
 } LamScatterUse;

@@ -110,7 +110,7 @@ static PetscBool IsFinite(const LamTableState *s)
 }
 
 /*
-  Whether the walls are on another branch than at neighbouring strains. Cells that barely touch pass saddles of another
+  Whether the walls are on another branch than at neighbouring strains. Cells that barely touch leave saddles of another
   kind, by rolling off each other, and end on the only branch that exists.
 */
 #define BARELY_TOUCHING 0.75 /* share of the interface without contact */

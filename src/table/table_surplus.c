@@ -70,7 +70,7 @@ static void SubtractSum(const LamTableSum *sum, const int order[3], LamTableStat
   }
 }
 
-#define BESIDE 1e-6 /* units of suction */
+#define BESIDE 1e-6 /* in units of j */
 
 /*
   Subtracts the sum of the coarser levels from a state. Value, gradient and mixed derivatives are equal in all cells
