@@ -1,5 +1,5 @@
 /*
-  The program `lamella`: what its commands share. The only part that knows the RVE solver, the database and the
+  The program `lamella`: what its commands share. The only part that depends on the RVE solver, the database and the
   macroscale solver at once.
 */
 #ifndef LAM_APP_H
@@ -15,16 +15,16 @@ enum {
   LAM_EXIT_INPUT = 2,
   LAM_EXIT_UNSOLVED = 3,
   LAM_EXIT_IO = 4,
-  LAM_EXIT_FAULT = 70 /* of the program, or no memory left */
+  LAM_EXIT_FAULT = 70 /* of the program, or out of memory */
 };
 
-/* The command line of one command: argv[0] is the command's name; what followed `--` is kept for PETSc. */
+/* The command line of one command: argv[0] is the command's name; arguments after `--` are passed to PETSc. */
 typedef struct LamArgs_s {
   int argc;
   char **argv;
   int petsc_argc; /* petsc_argv[0] is the program's name */
   char **petsc_argv;
-  /* Starts MPI and PETSc: a command that solves calls it once its command line is parsed. */
+  /* Starts MPI and PETSc. A command that solves calls it after parsing its command line. */
   PetscErrorCode (*start)(struct LamArgs_s *args);
 } LamArgs;
 
@@ -44,23 +44,23 @@ PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandInfo(LamArgs *args, int *exit_status);
 
 /* ---- program.c ---- */
-/* Finds the command and runs it. argv[0] is the program's name; what follows `--`, whose place that takes, is for PETSc
-   alone. `start`: of LamArgs. */
+/* Finds the command and runs it. argv[0] is the program's name; arguments after `--`, which replaces the program's
+   name there, are for PETSc alone. `start`: of LamArgs. */
 PetscErrorCode LamProgramRun(int argc, char *argv[], PetscErrorCode (*start)(LamArgs *args), int *exit_status);
 
 /* ---- runtime.c ---- */
-/* Before anything else: streams, signals, the handler that keeps the words of an error. */
+/* Call first: sets up streams, signals and the handler that stores the message of an error. */
 PetscErrorCode LamRuntimeBegin(void);
-/* After everything else: reports the error that `code` stands for, once among all ranks; *status is the exit status. */
+/* Call last: reports the error `code`, once among all ranks; *status is the exit status. */
 void LamRuntimeEnd(PetscErrorCode code, int *status);
-/* For a command that has to do with record files; before LamRuntimeStart. */
+/* For a command that uses record files; before LamRuntimeStart. */
 void LamAppStartHDF5(void);
-/* Whether the command that was found may run under mpirun, before it starts MPI: ranks are those of the launcher. */
+/* Whether the command may run under mpirun; before it starts MPI. The launcher provides the ranks. */
 void LamRuntimeExpectRanks(PetscBool expect);
-/* The `start` of LamArgs; LamRuntimeEnd finalises. */
+/* `start` of LamArgs; LamRuntimeEnd finalises. */
 PetscErrorCode LamRuntimeStart(LamArgs *args);
 PetscBool LamAppIsRoot(void); /* rank 0, or no MPI */
-/* The name nearest to a misspelt one, NULL where none is near; names end with NULL. */
+/* The name closest to a misspelt one, NULL if none is close; names end with NULL. */
 const char *LamSuggest(const char word[], const char *const names[]);
 
 /* ---- options.c: GNU-style options from a table ---- */
@@ -74,19 +74,20 @@ typedef struct {
   void *value; /* PetscBool * or const char ** */
 } LamOption;
 /*
-  Parses options (table ends with long_name NULL) and the positional arguments, of which there must be exactly
-  `positional_count`, or at least -positional_count where that is negative: `positional` then has room for args->argc of
-  them. `usage` is the line after "Usage: lamella ", `summary` what the command does. *done is set where
-  --help was answered or the usage was wrong (*exit_status says which): the command then returns at once.
+  Parses options (table ends with long_name NULL) and positional arguments. Their number must be exactly
+  `positional_count`, or at least -positional_count if that is negative: `positional` then has room for args->argc of
+  them. `usage` is the line after "Usage: lamella ", `summary` describes the command. *done is set if --help was printed
+  or the usage was wrong (*exit_status differs): the command then returns at once.
 */
 PetscErrorCode LamOptionsParse(LamArgs *args, const char usage[], const char summary[], const LamOption options[],
                                int positional_count, const char *positional[], PetscBool *done, int *exit_status);
-/* Tells, on rank 0, what is wrong with the value of an option; returns PETSC_FALSE. */
+/* Prints, on rank 0, what is wrong with the value of an option; returns PETSC_FALSE. */
 PetscBool LamUsageError(const char command[], const char option[], const char value[], const char problem[],
                         int *exit_status);
-/* The value of --accuracy: above 0, or inf. NULL leaves *accuracy as it is; PETSC_FALSE: told as above. */
+/* Parses the value of --accuracy: above 0, or inf. NULL leaves *accuracy unchanged; PETSC_FALSE: error printed as
+   above. */
 PetscBool LamAccuracyParse(const char command[], const char text[], PetscReal *accuracy, int *exit_status);
-/* A whole number from `least` on, likewise. */
+/* Parses an integer not below `least`, likewise. */
 PetscBool LamCountParse(const char command[], const char option[], const char text[], PetscInt least, PetscInt *count,
                         int *exit_status);
 
@@ -96,17 +97,17 @@ PetscErrorCode LamResponseToJSON(const LamResponse *response, const LamScales *s
                                  PetscBool tangent, json_t **object);
 PetscErrorCode LamPrintJSON(json_t *object); /* one line on stdout, rank 0; takes ownership */
 extern const LamReporter LamConsole;         /* warnings and notes on stderr */
-/* Table of states for a person, stdout; contact tissue has columns of its own, and answers of a database. */
+/* Human-readable table of states on stdout, with additional columns for contact tissue and for database responses. */
 PetscErrorCode LamPrintResponseHeader(LamInterfaceLawType interface);
 PetscErrorCode LamPrintAnswerHeader(LamInterfaceLawType interface);
 PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales *scales, LamInterfaceLawType interface,
                                    PetscInt state);
 
 /* ---- fe2_summary_print.c ---- */
-/* For a person, on `out`, from the JSON object that a file holds. */
+/* Human-readable summary on `out`, from the JSON object that a file holds. */
 void LamSummaryPrint(FILE *out, const json_t *summary);
 
-/* ---- progress.c: a bar on stderr where it is a terminal, else nothing ---- */
+/* ---- progress.c: a bar on stderr if it is a terminal, else nothing ---- */
 typedef struct {
   PetscBool on;
   PetscInt64 total, first; /* first: done at the first update */
@@ -117,9 +118,9 @@ void LamProgressSetTotal(LamProgress *progress, PetscInt64 total);
 PetscErrorCode LamProgressUpdate(LamProgress *progress, PetscInt64 done, PetscInt64 failed);
 PetscErrorCode LamProgressEnd(LamProgress *progress);
 
-/* ---- signals.c: SIGINT, SIGTERM, SIGUSR1 ask the study to commit and stop (stop.h) ---- */
+/* ---- signals.c: SIGINT, SIGTERM, SIGUSR1 request the study to commit and stop (stop.h) ---- */
 PetscErrorCode LamSignalsInstall(void);
-void LamFaultsTell(void);    /* SIGSEGV and SIGBUS are reported in words before they end the program */
+void LamFaultsTell(void);    /* SIGSEGV and SIGBUS print a message before they end the program */
 int LamStopExitStatus(void); /* 130 after SIGINT, 143 after SIGTERM and SIGUSR1, else 0 */
 
 #endif

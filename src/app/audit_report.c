@@ -1,30 +1,31 @@
 /*
-  What an audit says: quantiles of errors, measured and estimated, and a verdict.
+  Report of an audit: quantiles of errors, measured and estimated, and a verdict.
 */
 #include "audit_report.h"
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 
-/* An audit holds where at most this share of the answers is beyond the accuracy, and none beyond FAR times it. */
+/* An audit passes if at most this fraction of the responses exceeds the accuracy, and none exceeds FAR times it. */
 #define SHARE_BEYOND 0.005
 #define FAR 3
 
-/* An estimate is good within this factor, and too small where the error is more than the other times as large. */
+/* An estimate is good if it is within this factor of the error, and too small if the error is more than SMALL_FACTOR
+   times as large. */
 #define GOOD_FACTOR 5
 #define SMALL_FACTOR 2
-#define JUDGED_FROM 0.01 /* of the accuracy: where error and estimate are smaller, nothing is judged */
+#define JUDGED_FROM 0.01 /* of the accuracy: pairs of error and estimate below this are not judged */
 
 static const PetscReal Shares[] = {0.5, 0.9, 0.95, 0.99, 1};
 static const char *const ShareNames[] = {"median", "q90", "q95", "q99", "max"};
 enum { SHARE_COUNT = PETSC_STATIC_ARRAY_LENGTH(Shares) };
 
-/* What is told of: a member of LamAudited. */
+/* A reported quantity: a member of LamAudited. */
 typedef struct {
   const char *group, *name; /* in JSON */
   const char *words;
   size_t offset;
-  PetscReal scale; /* for a person: 100, percent */
+  PetscReal scale; /* for human-readable output: 100, percent */
 } Figure;
 
 static const Figure Figures[] = {
@@ -37,10 +38,10 @@ static const Figure Figures[] = {
 enum { FIGURE_COUNT = PETSC_STATIC_ARRAY_LENGTH(Figures) };
 
 typedef struct {
-  PetscReal quantiles[FIGURE_COUNT][SHARE_COUNT]; /* NaN: nothing is known */
+  PetscReal quantiles[FIGURE_COUNT][SHARE_COUNT]; /* NaN: not known */
   PetscInt compared, beyond, far;
   PetscInt judged, good, small; /* estimates */
-  PetscInt worst;               /* the answer with the largest error; -1: none */
+  PetscInt worst;               /* response with the largest error; -1: none */
   PetscReal query_seconds;      /* median */
   PetscBool holds;
 } Summary;
@@ -54,7 +55,7 @@ static int Ascending(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-/* The member at `offset` of all answers where it is known, in order. */
+/* The member at `offset` of all responses in which it is known, sorted. */
 static PetscInt Collect(const LamAudit *a, size_t offset, PetscReal values[])
 {
   PetscInt n = 0;
@@ -118,7 +119,7 @@ static PetscReal Share(PetscInt part, PetscInt whole)
   return whole ? (PetscReal)part / (PetscReal)whole : NAN;
 }
 
-/* ---- for programs ---- */
+/* ---- JSON output ---- */
 
 static json_t *BoxToJSON(const LamAudit *a)
 {
@@ -182,7 +183,7 @@ PetscErrorCode LamAuditToJSON(const LamAudit *a, const char path[], PetscReal se
   PetscFunctionReturn(0);
 }
 
-/* ---- for a person ---- */
+/* ---- human-readable output ---- */
 
 static void PrintCounts(const json_t *counts)
 {

@@ -38,7 +38,7 @@ static void PrintTable(const LamBuild *b, PetscReal seconds)
     printf("%-16s %s\n", "ended", "at the largest number of records");
 }
 
-/* A LamReporter's */
+/* Message function of a LamReporter. */
 static void PrintMessage(void *ctx, PetscBool warning, const char text[])
 {
   const Report *report = (const Report *)ctx;
@@ -56,7 +56,7 @@ static PetscErrorCode UpdateProgress(void *ctx, PetscInt64 done, PetscInt64 tota
   PetscFunctionReturn(0);
 }
 
-/* One JSON object for programs. */
+/* One JSON object. */
 static PetscErrorCode ReportCommit(void *ctx, const LamBuild *b)
 {
   PetscFunctionBeginUser;
@@ -78,7 +78,7 @@ static PetscBool ParseShard(const char text[], LamShard *shard, int *exit_status
   return PETSC_FALSE;
 }
 
-/* Rank 0's outcome is everyone's: mpirun reports the largest. */
+/* The outcome of rank 0 applies to all ranks: mpirun reports the largest status. */
 static PetscErrorCode ExitStatus(LamBuild *b, int *exit_status)
 {
   int status = LamBuildFailed(b) ? LAM_EXIT_UNSOLVED : LAM_EXIT_OK;
@@ -100,7 +100,7 @@ static PetscErrorCode Run(LamBuild *b, Report *report, const char scene_path[], 
   PetscCall(LamProgressStart(&report->progress, 0, report->quiet));
   PetscCall(LamBuildTable(b));
   PetscCall(LamProgressEnd(&report->progress));
-  if (!b->rank && report->json) PetscCall(ReportCommit(NULL, b)); /* of the table at the end */
+  if (!b->rank && report->json) PetscCall(ReportCommit(NULL, b)); /* the table at the end */
   if (!b->rank && !report->json) PrintTable(b, LamClock() - b->start);
   PetscCall(ExitStatus(b, exit_status));
   PetscFunctionReturn(0);

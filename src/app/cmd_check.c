@@ -1,7 +1,7 @@
 /*
-  lamella check: what a scene will have modelled, and what that will cost. Needs no MPI.
+  lamella check: the model that a scene describes, and its predicted cost. Needs no MPI.
 
-  Method. One assembly is timed on this machine; everything else is a multiple of it. The multiples are measured
+  Method. One assembly is timed on this machine; all other costs are multiples of it. The multiples are measured
   (docs/reference/commands.md has the figures): they hold within a factor of two from 236 to 10,000 unknowns.
 */
 #include "app.h"
@@ -10,27 +10,28 @@
 #include "plot_time.h"
 #include <math.h>
 
-/* An iteration (assembly, factorisation, solve) costs this many assemblies; of bonded tissue small enough for a
-   factorisation without pivots (rve/cholesky.h) the second. */
+/* Cost of an iteration (assembly, factorisation, solve) in assemblies; the second value is for bonded tissue small
+   enough for a factorisation without pivoting (rve/cholesky.h). */
 #define ITERATION_ASSEMBLIES 7.0
 #define SMALL_ITERATION_ASSEMBLIES 4.0
 #define SMALL_UNKNOWNS 3000
-/* Factorisations of a state on its own, and of a material point in a load step under way; tangent included. */
+/* Factorisations of a single state, and of a material point during a load step; including the tangent. */
 #define STATE_FACTORISATIONS 6.0
 #define POINT_FACTORISATIONS 5.0
-/* A state of contact tissue against a bonded one: more iterations, and a matrix that faces fill. */
+/* Cost of a state of contact tissue relative to a bonded one: more iterations, and a denser matrix because of the
+   faces. */
 #define CONTACT_FACTOR 4.0
-/* A map: states that bracket the failure of one path; a state of contact tissue on two meshes against one on the first.
- */
+/* For a map: states that bracket the failure of one path; cost of a state of contact tissue on two meshes relative
+   to the first mesh alone. */
 #define BRACKET_STATES 10
 #define TWO_MESHES 5.0
-/* Resident memory, MB: the program with its libraries; matrix, factor and mesh per unknown, of contact tissue with the
-   bonded one that it starts from. */
+/* Resident memory, MB: the program with its libraries; matrix, factor and mesh per unknown; for contact tissue
+   including the bonded RVE from which it starts. */
 #define PROGRAM_MB 50.0
 #define UNKNOWN_MB 0.0015
 #define CONTACT_UNKNOWN_MB 0.003
 
-/* Why a process needs direct solves; NULL: a database may answer. */
+/* Why a process needs direct solves; NULL: a database can be used. */
 static const char *WhyNoDatabase(const LamScene *scene)
 {
   return LamProcessWallsStayAlike(scene)
@@ -41,12 +42,12 @@ static const char *WhyNoDatabase(const LamScene *scene)
 typedef struct {
   LamScene *scene;
   LamPlan plan;
-  PetscReal assembly, state, point; /* seconds: one assembly, one state, one answer during a macroscale step */
+  PetscReal assembly, state, point; /* seconds: one assembly, one state, one query during a macroscale step */
   PetscReal memory;                 /* MB, one rank */
 } Check;
 
-/* One cell is timed, whatever the period: its cost is proportional to the cells, and a large scene must not be built.
- */
+/* One cell is timed, whatever the period: its cost is proportional to the number of cells, and a large scene must
+   not be built. */
 static PetscErrorCode Predict(Check *check)
 {
   const PetscReal n = (PetscReal)check->plan.unknowns;
@@ -66,7 +67,7 @@ static PetscErrorCode Predict(Check *check)
   iteration *= check->assembly * (contact ? CONTACT_FACTOR : 1);
   check->state = STATE_FACTORISATIONS * iteration;
   check->point = POINT_FACTORISATIONS * iteration;
-  /* each material point keeps its positions, accepted and tried */
+  /* each material point stores its positions, accepted and trial */
   check->memory = PROGRAM_MB + (contact ? CONTACT_UNKNOWN_MB : UNKNOWN_MB) * n +
                   (PetscReal)check->plan.macro_points * 2 * sizeof(PetscReal) * n / 1e6;
   PetscFunctionReturn(0);
@@ -81,7 +82,7 @@ static PetscReal MapSeconds(const Check *check)
   return (PetscReal)(check->plan.map_states + bracket) * meshes * check->state;
 }
 
-/* ---- for a program ---- */
+/* ---- JSON output ---- */
 
 static json_t *Cost(json_t *states, PetscReal seconds)
 {
@@ -137,7 +138,7 @@ static PetscErrorCode Regions(const LamScene *scene, json_t **list)
   PetscFunctionReturn(0);
 }
 
-/* {tangent: relative error that rounding stays below, warning: null where it leaves the accuracy} */
+/* {tangent: bound of the relative rounding error, warning: null if the error is within the accuracy} */
 static PetscErrorCode SetDigits(const LamMicrostructure *micro, PetscReal accuracy, json_t *o)
 {
   char text[256];
@@ -209,11 +210,11 @@ static PetscErrorCode PrintObject(const Check *check)
   PetscFunctionReturn(0);
 }
 
-/* ---- for a person ---- */
+/* ---- human-readable output ---- */
 
 static void PrintSeconds(PetscReal seconds)
 {
-  /* each unit below 99.5 of it, where two digits need no exponent */
+  /* switch units at 99.5, so that two digits need no exponent */
   if (seconds < 0.0995)
     printf("%.2g ms", (double)(1e3 * seconds));
   else if (seconds < 99.5)

@@ -1,5 +1,5 @@
 /*
-  lamella fe2: the macroscale problem of a scene, its material answered by RVE solves, a database or both.
+  lamella fe2: the macroscale problem of a scene, with material response from RVE solves, a database or both.
 */
 #include "app.h"
 #include "fe2_report.h"
@@ -16,7 +16,7 @@ static PetscErrorCode UpdateProgress(void *ctx, PetscInt64 done, PetscInt64 tota
   PetscFunctionReturn(0);
 }
 
-/* Rank 0's outcome is everyone's: a signal may have reached one rank only. */
+/* The outcome of rank 0 applies to all ranks: a signal may have reached one rank only. */
 static PetscErrorCode Report(const LamFE2Run *run, const LamFE2Report *report, LamMacroReason reason,
                              const char message[], int *exit_status)
 {

@@ -1,5 +1,5 @@
 /*
-  lamella info: what a file holds, who wrote it, with what. Needs no MPI.
+  lamella info: contents and provenance of a file. Needs no MPI.
 */
 #include "app.h"
 #include "fe2_summary.h"
@@ -69,7 +69,7 @@ static void PrintMicrostructures(const json_t *list)
   }
 }
 
-/* A run that is under way, or was killed, has no status. */
+/* A run in progress, or one that was killed, has no status. */
 static void PrintRun(const json_t *run)
 {
   const json_t *load_factor = json_object_get(run, "load_factor"), *status = json_object_get(run, "status");
@@ -105,7 +105,7 @@ static void PrintMap(const json_t *map)
   }
 }
 
-/* Integers in a row: of the levels, the coarsest first. */
+/* Prints integers on one line: one per level, coarsest first. */
 static void PrintLevels(const char label[], const json_t *list)
 {
   size_t i;
@@ -134,7 +134,7 @@ static void PrintGrid(const json_t *grid)
   PrintRange("  grid of suction", json_object_get(grid, "suction"), " MPa");
 }
 
-/* What interpolation stands on. */
+/* Prints the nodes used for interpolation. */
 static void PrintNodes(const json_t *table)
 {
   const json_t *flags = json_object_get(table, "flags");
@@ -251,7 +251,7 @@ static PetscErrorCode ReadAxis(const char path[], char letter, json_t *map)
   PetscFunctionReturn(0);
 }
 
-/* How many points each mode has. */
+/* Number of points of each mode. */
 static PetscErrorCode ReadModes(const char path[], json_t *map)
 {
   PetscInt rank, dims[4] = {0}, *mode = NULL, number = 0;
@@ -288,9 +288,9 @@ static PetscErrorCode ReadMap(const char path[], json_t *info)
   PetscFunctionReturn(0);
 }
 
-/* ---- what of it is sound ---- */
+/* ---- intact and damaged parts ---- */
 
-#define MAX_LINES 20 /* of damage, for a person */
+#define MAX_LINES 20 /* of damage, in human-readable output */
 
 static void PrintDamage(const json_t *damaged)
 {
@@ -362,7 +362,7 @@ static PetscErrorCode CheckFile(const char path[], PetscBool as_json, int *exit_
 
 /* ---- the command ---- */
 
-/* What the kind of file has beside records. */
+/* Reads the data other than records, by kind of file. */
 static PetscErrorCode ReadKind(const char path[], json_t *info)
 {
   const char *kind = json_string_value(json_object_get(info, "kind"));

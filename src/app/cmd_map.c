@@ -1,5 +1,5 @@
 /*
-  lamella map: how tissue fails over two of its quantities.
+  lamella map: how tissue fails as a function of two of its quantities.
 */
 #include "failure_print.h"
 #include "map.h"
@@ -102,7 +102,7 @@ static void PrintSummary(const LamMap *m)
   if (m->old + m->solved) printf("wrote %s\n", m->path);
 }
 
-/* Rank 0's outcome is everyone's: mpirun reports the largest. */
+/* The outcome of rank 0 applies to all ranks: mpirun reports the largest status. */
 static PetscErrorCode ExitStatus(LamMap *m, int *exit_status)
 {
   int status = LAM_EXIT_OK;

@@ -1,5 +1,5 @@
 /*
-  lamella merge: one database of several. Needs no MPI.
+  lamella merge: merges several databases into one. Needs no MPI.
 */
 #include "app.h"
 #include <unistd.h>

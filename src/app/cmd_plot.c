@@ -1,5 +1,5 @@
 /*
-  lamella plot: a picture of what a file holds.
+  lamella plot: a picture of a file's contents.
 */
 #include "app.h"
 #include "plot_slice.h"
@@ -17,7 +17,7 @@ static const struct {
              {"map", LamPlotMap},
              {"process", LamPlotProcess}};
 
-/* FILE.h5 becomes FILE.png. */
+/* Replaces FILE.h5 by FILE.png. */
 static PetscErrorCode DefaultOutput(const char input[], size_t size, char output[])
 {
   size_t length = strlen(input);

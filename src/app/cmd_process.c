@@ -1,7 +1,7 @@
 /*
   lamella process: tissue that changes in time, at one material point, or of a body.
 
-  The history of a point is one chain: rank 0 follows it, further ranks wait.
+  The history of a point is sequential: rank 0 computes it, further ranks wait.
 */
 #include "app.h"
 #include "process_report.h"

@@ -1,5 +1,5 @@
 /*
-  lamella query: answers from a database. Never solves, needs no MPI.
+  lamella query: responses from a database. Never solves, needs no MPI.
 */
 #include "app.h"
 #include "query_source.h"
@@ -13,7 +13,7 @@ typedef struct {
   PetscBool json, tangent;
   LamQuerySource from;
   PetscReal accuracy;
-  LamLoad defaults; /* turgor and cohesion of questions that do not say theirs */
+  LamLoad defaults; /* turgor and cohesion of queries that do not give them */
   PetscInt answered, refused;
 } Query;
 
@@ -39,7 +39,7 @@ static PetscErrorCode Answer(Query *q, const LamLoad *load)
   PetscFunctionReturn(0);
 }
 
-/* One line of standard input; passed over where it is empty or begins with #. */
+/* Answers one line of standard input; skips empty lines and those that begin with #. */
 static PetscErrorCode AnswerLine(Query *q, PetscInt number, char line[])
 {
   char problem[LAM_PROBLEM_LENGTH];
@@ -69,7 +69,7 @@ static PetscErrorCode AnswerInput(Query *q)
   PetscFunctionReturn(0);
 }
 
-/* ---- the command line's values: mistakes there are mistakes of usage ---- */
+/* ---- command-line values: errors there are usage errors ---- */
 
 static PetscBool ReadStress(const Query *q, const char option[], const char text[], PetscReal *stress, int *exit_status)
 {
@@ -82,7 +82,7 @@ static PetscBool ReadStress(const Query *q, const char option[], const char text
   return PETSC_TRUE;
 }
 
-/* *load: the question, where it is none of standard input. */
+/* *load: the query, unless queries come from standard input. */
 static PetscBool ReadValues(Query *q, LamLoad *load, int *exit_status)
 {
   char problem[LAM_PROBLEM_LENGTH];
@@ -97,9 +97,9 @@ static PetscBool ReadValues(Query *q, LamLoad *load, int *exit_status)
   return LamUsageError("query", "-F", q->deformation, problem, exit_status);
 }
 
-/* ---- for a person ---- */
+/* ---- human-readable output ---- */
 
-/* What was not said, and so is the file's. */
+/* Prints values that the query did not give and that were taken from the file. */
 static void PrintDefaults(const Query *q)
 {
   const PetscReal MPa = 1e-6 * q->from.scales.stress;

@@ -1,8 +1,8 @@
 /*
   lamella rve: solves the RVE along the scene's load.
 
-  The states depend on one another: each starts from the last one that has an answer. So rank 0 solves the chain;
-  further ranks help it to factor the matrices of large RVEs, else they wait.
+  Each state starts from the last converged one, so the states are sequential and rank 0 solves them; further ranks help
+  to factor the matrices of large RVEs, otherwise they wait.
 */
 #include "app.h"
 #include "rounding.h"
@@ -18,21 +18,21 @@ typedef struct {
 
   LamScene *scene;
   LamMeshes meshes;        /* the scene's, and with --second-mesh a finer one */
-  LamRVEEstimate estimate; /* NULL: none is made */
+  LamRVEEstimate estimate; /* NULL: no estimate */
   LamOnset onset;
   LamFailure failure;
   LamRecordWriter writer; /* NULL without -o */
   LamProgress progress;
   PetscInt solved, failed;
-  PetscInt inaccurate; /* states whose estimated error exceeds the wanted one */
-  PetscInt kinked;     /* states in which too much of the walls has kinked for an estimate */
+  PetscInt inaccurate; /* number of states whose estimated error exceeds the prescribed accuracy */
+  PetscInt kinked;     /* number of states in which too much of the walls has kinked for an estimate */
   PetscReal most_kinked;
   PetscReal start;
 } Run;
 
 /* ---- the file ---- */
 
-/* The fields come first, so that a record that is committed always has them. */
+/* Fields are written first, so that a committed record always has them. */
 static PetscErrorCode WriteState(Run *run, PetscInt number, const LamResponse *response)
 {
   const PetscInt64 key = number;
@@ -48,7 +48,7 @@ static PetscErrorCode WriteState(Run *run, PetscInt number, const LamResponse *r
   PetscFunctionReturn(0);
 }
 
-/* ---- what is told ---- */
+/* ---- reports ---- */
 
 /* In-plane entries; rows and columns 11, 12, 21, 22. */
 static void PrintTangent(const LamResponse *response, PetscReal MPa)
@@ -62,7 +62,7 @@ static void PrintTangent(const LamResponse *response, PetscReal MPa)
   }
 }
 
-/* What the second mesh says of the state. */
+/* Prints separation and error estimate from the second mesh. */
 static void PrintSecondMesh(const LamResponse responses[2])
 {
   const LamSeparation separation = LamSeparationOf(responses);
@@ -92,13 +92,13 @@ static void SetSecondMesh(json_t *object, const LamResponse responses[2])
     json_object_set_new(object, "second_mesh_reason", json_string(responses[1].reason));
 }
 
-/* What a state prescribes beside its load; NULL: nothing. */
+/* The prescribed stress of a state; NULL: none. */
 static const LamStressControl *Control(const Run *run, PetscInt number)
 {
   return run->scene->controls ? &run->scene->controls[number - 1] : NULL;
 }
 
-/* The components of P that were prescribed; null where F was. */
+/* The prescribed components of P; null where F is prescribed. */
 static void SetPrescribed(json_t *object, const LamStressControl *control, PetscReal MPa)
 {
   PetscReal P[9];
@@ -111,7 +111,7 @@ static void SetPrescribed(json_t *object, const LamStressControl *control, Petsc
   if (any) json_object_set_new(object, "P_prescribed", LamJSONReals(9, P, MPa));
 }
 
-/* Of a period of several cells, whether the pattern has that period or the one of a single cell. */
+/* For a period of several cells: whether the pattern has that period or the one of a single cell. */
 static PetscErrorCode SetCellDifference(json_t *object, const Run *run, const LamResponse *response)
 {
   const LamMicrostructure *micro = &run->scene->micro;
@@ -158,7 +158,7 @@ static PetscErrorCode TellEnd(const Run *run)
 
 /* ---- the command ---- */
 
-/* PETSC_FALSE, with a message, where an option asks for what bonded tissue does not have. */
+/* PETSC_FALSE, with a message, if an option requests something that bonded tissue does not have. */
 static PetscBool OptionsFit(const Run *run)
 {
   if (!run->second_mesh || run->scene->micro.interface == LAM_INTERFACE_CONTACT) return PETSC_TRUE;
@@ -168,8 +168,8 @@ static PetscBool OptionsFit(const Run *run)
   return PETSC_FALSE;
 }
 
-/* A file holds all; rows of the table tell no tangents, and of the walls, but for --failure, only whether they leave
-   the estimate what it says. */
+/* A file holds all members. Rows of the table show no tangents; wall quantities are needed for --failure and to
+   decide whether the error estimate is valid. */
 static LamWanted Wanted(const Run *run)
 {
   LamWanted wanted = LAM_WANT_STRESS | LAM_WANT_INDICATORS;
@@ -190,7 +190,7 @@ static PetscErrorCode Prepare(Run *run)
   PetscCall(LamPlanMake(run->scene, &plan));
   PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &LamConsole, &plan.micro, run->scene->accuracy));
   run->scene->micro = plan.micro;
-  if (run->find_failure && contact) run->second_mesh = PETSC_TRUE; /* separation is judged on two */
+  if (run->find_failure && contact) run->second_mesh = PETSC_TRUE; /* separation is determined on two meshes */
   PetscCall(LamMeshesCreate(plan.unknowns < LAM_PARALLEL_UNKNOWNS ? PETSC_COMM_SELF : PETSC_COMM_WORLD, run->scene,
                             run->second_mesh ? 2 : 1, &run->meshes));
   PetscCall(LamMeshesSetInterrupt(&run->meshes, LamStopInterrupt, NULL));
@@ -237,7 +237,7 @@ static void TellDoubts(const Run *run)
 
 static PetscErrorCode SolveStates(Run *run)
 {
-  /* rows of a table on the terminal are progress enough */
+  /* table rows on the terminal already show progress */
   const PetscBool quiet = (PetscBool)(run->quiet || run->monitor || !run->json);
 
   PetscFunctionBeginUser;
@@ -315,7 +315,7 @@ static PetscErrorCode RunOnRoot(Run *run, int *exit_status)
     ierr = LamRVEWriteMesh(run->writer, "/mesh", run->meshes.rve[0]);
   }
   if (!ierr) ierr = SolveStates(run);
-  if (run->writer) { /* whatever happened: the lock is given up */
+  if (run->writer) { /* also after an error, to release the lock */
     const PetscErrorCode closed = LamRecordWriterClose(&run->writer);
 
     if (!ierr) ierr = closed;

@@ -1,5 +1,5 @@
 /*
-  lamella tradeoff: error against time over every knob of a scene that trades them.
+  lamella tradeoff: error against time for every parameter of a scene that trades one for the other.
 */
 #include "tradeoff_report.h"
 #include <errno.h>
@@ -15,7 +15,7 @@ typedef struct {
   LamProgress progress;
 } Command;
 
-/* The folder of the results is made before anything is measured. */
+/* Creates the output folder before anything is measured. */
 static PetscErrorCode CheckDirectory(const Command *run)
 {
   struct stat status;
@@ -30,7 +30,7 @@ static PetscErrorCode CheckDirectory(const Command *run)
   PetscFunctionReturn(0);
 }
 
-/* 3 where the planned setting has no result, or there is nothing to compare with. */
+/* 3 if the planned setting has no result, or nothing to compare with. */
 static int ExitStatus(const LamTradeoff *t)
 {
   if (t->stopped) return LamStopExitStatus();
@@ -104,7 +104,7 @@ static PetscBool ReadValues(Command *run, int *exit_status)
   return ReadFamilies(run, exit_status);
 }
 
-/* Other ranks would share the processor, and the times would tell nothing. */
+/* Other ranks would share the processor and distort the times. */
 static PetscBool IsSerial(int *exit_status)
 {
   PetscMPIInt size;

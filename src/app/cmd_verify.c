@@ -1,5 +1,5 @@
 /*
-  lamella verify: queries a database at random and solves the states that it responds in afresh.
+  lamella verify: queries a database at random states and solves the states for which it has a response.
 */
 #include "audit_report.h"
 #include "clock.h"
@@ -39,7 +39,8 @@ static PetscErrorCode PrintReport(const LamVerification *v, PetscBool json)
   PetscFunctionReturn(0);
 }
 
-/* Unsolved where an answer has no solution beside it, or nothing was answered. Rank 0's outcome is everyone's. */
+/* Unsolved if a response has no solution to compare with, or there was no response. The outcome of rank 0 applies to
+   all ranks. */
 static PetscErrorCode ExitStatus(LamVerification *v, int *exit_status)
 {
   int status = LAM_EXIT_OK;

@@ -1,5 +1,5 @@
 /*
-  Failure for a person and as JSON: what a state bears, and the verdict on a program of loads.
+  Failure, human-readable and as JSON: wall and lamella stresses of a state, and the failure mode of a load path.
 */
 #include "app.h"
 #include "failure_criteria.h"
@@ -9,7 +9,7 @@
 
 /* ---- a state ---- */
 
-/* Cell, face, share of the face. */
+/* Prints cell, face, fraction of the face. */
 static void PrintPlace(const PetscReal place[3])
 {
   if (isfinite(place[0])) printf(" at %.0f/%.0f/%.2f", (double)place[0], (double)place[1], (double)place[2]);
@@ -42,7 +42,7 @@ PetscErrorCode LamFailurePrintState(const LamResponse *response, const LamStreng
   PetscFunctionReturn(0);
 }
 
-/* ---- the verdict, for programs ---- */
+/* ---- failure mode, JSON output ---- */
 
 json_t *LamPlaceToJSON(const PetscReal place[3])
 {
@@ -64,8 +64,8 @@ static json_t *OnsetToJSON(const LamCriterionOnset *onset)
   return o;
 }
 
-/* A wall that is less than so many times as strong as the lamella gives way first; NaN where one of them is not pulled.
- */
+/* Strength of the wall relative to the lamella below which the wall fails first; NaN if one of them is not in
+   tension. */
 static PetscReal Ratio(PetscReal wall, PetscReal lamella)
 {
   return wall > 0 && lamella > NO_SHEAR ? wall / lamella : NAN;
@@ -109,7 +109,7 @@ static json_t *FailureToJSON(const LamFailure *failure, PetscReal MPa)
   return o;
 }
 
-/* ---- the verdict, for a person ---- */
+/* ---- failure mode, human-readable output ---- */
 
 static void PrintVerdict(const LamFailure *failure)
 {
@@ -126,7 +126,7 @@ static void PrintVerdict(const LamFailure *failure)
   if (failure->reason[0]) printf("  %s\n", failure->reason);
 }
 
-/* Why a criterion is not judged: the other interface, or a strength that the scene does not give. */
+/* Why a criterion is not evaluated: the other interface, or a strength that the scene does not give. */
 static const char *WhyNotJudged(LamCriterion criterion, LamInterfaceLawType interface)
 {
   if (criterion == LAM_CRITERION_CONTACT) return "the cells are bonded";

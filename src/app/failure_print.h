@@ -1,5 +1,5 @@
 /*
-  What the program prints of failure and of the onset of separation.
+  Output of failure and of the onset of separation.
 */
 #ifndef LAM_FAILURE_PRINT_H
 #define LAM_FAILURE_PRINT_H
@@ -7,13 +7,13 @@
 #include "app.h"
 #include "failure.h"
 
-/* A line for a person on what walls and lamella bear in a state, over their strengths where these are given. */
+/* Prints one line: stresses of walls and lamella in a state, relative to their strengths if these are given. */
 PetscErrorCode LamFailurePrintState(const LamResponse *response, const LamStrength *strength, const LamScales *scales);
-/* {"cell": 0, "face": 0, "along": 0.06}; null where there is no place. */
+/* {"cell": 0, "face": 0, "along": 0.06}; null if there is no place. */
 json_t *LamPlaceToJSON(const PetscReal place[3]);
-/* One JSON object {"failure": {...}} or a few lines for a person, on stdout. */
+/* Prints one JSON object {"failure": {...}} or a few human-readable lines on stdout. */
 PetscErrorCode LamFailurePrint(const LamFailure *failure, const LamScales *scales, PetscBool json);
-/* One JSON object {"onset": {...}} or a few lines for a person, on stdout. */
+/* Prints one JSON object {"onset": {...}} or a few human-readable lines on stdout. */
 PetscErrorCode LamOnsetPrint(const LamOnset *onset, const LamScales *scales, PetscBool json);
 
 #endif

@@ -1,5 +1,5 @@
 /*
-  Options of `fe2` and `process`, and which of them contradict each other.
+  Options of `fe2` and `process`, and conflicts between them.
 */
 #include "app.h"
 #include "fe2_report.h"
@@ -27,7 +27,7 @@ PetscBool LamFE2ChooseResponse(const char command[], const char name[], LamFE2Ru
   return PETSC_FALSE;
 }
 
-/* Whether two paths name one file, which need not exist yet: then its folder counts. */
+/* Whether two paths name the same file. The file need not exist: then its folder is compared. */
 static PetscBool SameFile(const char a[], const char b[])
 {
   const char *const paths[2] = {a, b}, *names[2];

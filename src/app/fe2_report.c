@@ -18,7 +18,7 @@ static PetscReal MPa(const LamFE2Run *run)
   return run->scene->scales.stress * 1e-6;
 }
 
-/* Who answered, and where the time went that was not in solves. */
+/* Adds the sources of the responses, and the time spent outside of solves. */
 static void AddService(const LamMacroStep *step, json_t *object)
 {
   const PetscReal other = PetscMax(0, step->seconds - step->query_seconds - step->solve_seconds);
@@ -28,7 +28,7 @@ static void AddService(const LamMacroStep *step, json_t *object)
   json_object_set_new(object, "other_seconds", LamJSONReal(other));
 }
 
-/* Of the point that resists bands least. */
+/* For the material point closest to localisation. */
 static void AddLocalisation(const LamFE2Run *run, const LamMacroStep *step, json_t *object)
 {
   const PetscReal mm = run->scene->scales.macro_length * 1e3;
@@ -61,7 +61,7 @@ json_t *LamFE2StepToJSON(const LamFE2Run *run, const LamMacroStep *step, PetscRe
   return object;
 }
 
-/* Where there are several. */
+/* If there are several. */
 static void PrintTissues(const LamFE2Tissues *tissues)
 {
   if (tissues->count == 1) return;
@@ -101,7 +101,7 @@ static void PrintRow(const LamFE2Run *run, const LamMacroStep *step)
   fflush(stdout);
 }
 
-/* Once, in the first step that has lost it. */
+/* Once, in the first step in which ellipticity is lost. */
 static void WarnOfLocalisation(LamFE2Report *report, const LamFE2Run *run, const LamMacroStep *step)
 {
   const PetscReal mm = run->scene->scales.macro_length * 1e3;

@@ -1,5 +1,5 @@
 /*
-  What the program prints of FE2 runs, and the options of the commands that make them.
+  Output of FE2 runs, and the options of the commands that start them.
 */
 #ifndef LAM_FE2_REPORT_H
 #define LAM_FE2_REPORT_H
@@ -15,21 +15,22 @@ typedef struct {
 } LamFE2Report;
 
 /* ---- fe2_options.c ---- */
-/* Sets run->response from the text of --response, NULL: not given. PETSC_FALSE, with a message, where the options
-   contradict each other. */
+/* Sets run->response from the text of --response, NULL: not given. PETSC_FALSE, with a message, if the options
+   conflict. */
 PetscBool LamFE2ChooseResponse(const char command[], const char name[], LamFE2Run *run);
-/* PETSC_FALSE, with a message, where a file would be overwritten by another; the second one, on all ranks, for the
-   databases of regions and levels, whose names follow from that of -d. */
+/* PETSC_FALSE, with a message, if one file would overwrite another. The second function checks, on all ranks, the
+   databases of regions and levels, whose names are derived from that of -d. */
 PetscBool LamFE2CheckPaths(const char command[], const LamFE2Run *run);
 PetscBool LamFE2CheckTissuePaths(const char command[], const LamFE2Run *run);
 
 /* ---- fe2_report.c; on rank 0. ctx: a LamFE2Report ---- */
 /* A step as JSON; peak_memory in MB. */
 json_t *LamFE2StepToJSON(const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory);
-/* The row, after the first step's header, or the JSON object of a step; once, that the tissue localises. */
+/* Prints the row (for the first step with the header) or the JSON object of a step; once, a warning that the tissue
+   localises. */
 PetscErrorCode LamFE2ReportStep(void *ctx, const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory);
 void LamFE2ReportMessage(void *ctx, PetscBool warning, const char text[]);
-/* Summary and totals. */
+/* Prints summary and totals. */
 PetscErrorCode LamFE2ReportEnd(const LamFE2Run *run);
 
 #endif

@@ -1,11 +1,9 @@
 /*
-  The summary of an FE2 run in a few lines for a person, from the JSON of its file.
+  Human-readable summary of an FE2 run, from the JSON of its file.
 */
 #include "app.h"
 #include "fe2_summary.h"
 #include <math.h>
-
-/* ---- for a person ---- */
 
 static double Number(const json_t *object, const char key[])
 {
@@ -49,7 +47,7 @@ static void PrintSlopes(FILE *out, const char name[], const json_t *slopes)
   fputc('\n', out);
 }
 
-/* The first onset of a mode. What is not judged (it is not in the object) has its reason said. */
+/* Prints the first onset of a mode, or the reason if it was not evaluated (not in the object). */
 static void PrintMode(FILE *out, const json_t *summary, const char mode[], const char unjudged[])
 {
   const json_t *onset = json_object_get(summary, mode);
@@ -75,7 +73,7 @@ void LamSummaryPrint(FILE *out, const json_t *summary)
     fprintf(out, "  %-18s %s, along (%.3g, %.3g)\n", "loaded side",
             json_string_value(json_object_get(loaded, "boundary")), json_number_value(json_array_get(direction, 0)),
             json_number_value(json_array_get(direction, 1)));
-  if (json_object_get(summary, "opening")) PrintMode(out, summary, "opening", ""); /* of contact tissue alone */
+  if (json_object_get(summary, "opening")) PrintMode(out, summary, "opening", ""); /* contact tissue only */
   PrintMode(out, summary, "separation", "the scene has no strength.lamella_normal or lamella_shear");
   PrintMode(out, summary, "rupture", "the scene has no strength.wall");
   if (loaded) PrintSlopes(out, "stiffness", json_object_get(summary, "stiffness"));

@@ -1,5 +1,5 @@
 /*
-  lamella: the program. Runs the command, reports errors, ends with the documented exit status.
+  lamella: the program. Runs the command, reports errors, exits with the documented status.
 */
 #include "app.h"
 

@@ -1,10 +1,10 @@
 /*
-  The onset of separation, as JSON and for a person.
+  The onset of separation, as JSON and human-readable.
 */
 #include "app.h"
 #include "failure_print.h"
 
-/* The family with the largest mean traction, of those that a patch has. */
+/* The face family with the largest mean traction, of those present in a patch. */
 static PetscInt LoosestFace(const LamResponse *r)
 {
   PetscInt face = 0;

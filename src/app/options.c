@@ -1,5 +1,5 @@
 /*
-  The command line of a command: GNU conventions by getopt_long, the help from the same table.
+  Command line of a command: GNU conventions by getopt_long; the help is generated from the same table.
 */
 #include "app.h"
 #include "word_distance.h"
@@ -27,7 +27,7 @@ const char *LamSuggest(const char word[], const char *const names[])
 
 /* ---- help ---- */
 
-/* Words from column HELP_COLUMN on; the cursor stands at `column`. */
+/* Prints text wrapped from column HELP_COLUMN; the cursor is at `column`. */
 static void PrintWrapped(int column, const char text[])
 {
   if (column >= HELP_COLUMN) {
@@ -68,7 +68,7 @@ static void PrintHelp(const char usage[], const char summary[], const LamOption 
 
 /* ---- parsing ---- */
 
-/* What getopt wants to know; the value that it returns for a long option is its number in the table plus 256. */
+/* Input of getopt_long; the value returned for a long option is its number in the table plus 256. */
 typedef struct {
   char letters[3 * MOST_OPTIONS + 4];
   struct option names[MOST_OPTIONS + 2];
@@ -80,7 +80,7 @@ static PetscErrorCode Translate(const LamOption options[], Getopt *g)
   int n = 0;
 
   PetscFunctionBeginUser;
-  *letter++ = ':'; /* a missing value is told apart from an unknown option */
+  *letter++ = ':'; /* distinguishes a missing value from an unknown option */
   for (; options[n].long_name; n++) {
     const int takes = options[n].type == LAM_OPTION_TEXT ? required_argument : no_argument;
 
@@ -102,7 +102,7 @@ static void UsageHint(const char command[])
   if (LamAppIsRoot()) fprintf(stderr, "Try 'lamella %s --help'.\n", command);
 }
 
-/* The option that getopt does not know or that lacks its value. */
+/* Reports an option that is unknown or lacks its value. */
 static void TellWrongOption(const LamArgs *args, int code, const Getopt *g)
 {
   const char *command = args->argv[0], *text = args->argv[optind - 1], *names[MOST_OPTIONS + 2], *near;
@@ -132,12 +132,12 @@ static int IndexOf(const LamOption options[], int code)
   return n;
 }
 
-/* PETSC_FALSE where the usage is wrong. */
+/* PETSC_FALSE if the usage is wrong. */
 static PetscBool ReadOptions(LamArgs *args, const LamOption options[], const Getopt *g, PetscBool *help)
 {
   int code;
 
-  optind = 0; /* GNU: start afresh */
+  optind = 0; /* GNU: restart scanning */
   opterr = 0;
   while ((code = getopt_long(args->argc, args->argv, g->letters, g->names, NULL)) != -1) {
     const LamOption *option;

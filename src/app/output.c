@@ -1,5 +1,5 @@
 /*
-  Solved states for programs (JSON Lines) and for persons (a table), in physical units.
+  Output of solved states, as JSON Lines and as a human-readable table, in physical units.
 */
 #include "app.h"
 #include <lamella/ellipticity.h>
@@ -46,8 +46,8 @@ static json_t *MemberToJSON(const LamMember *m, const LamResponse *response, Pet
   return NULL;
 }
 
-/* Derivatives are for programs that asked for the tangent, as is what follows from it, which an answer of a database
-   has in any case; a reason and a distance are not of every state. */
+/* Whether a member is printed. Derivatives are printed with --tangent, as are quantities that follow from the
+   tangent, which a database response always has; reason and distance are printed only for some states. */
 static PetscBool IsTold(const LamMember *m, const LamResponse *response, PetscBool tangent)
 {
   static const char *const derivatives[] = {
@@ -100,7 +100,7 @@ PetscErrorCode LamPrintJSON(json_t *object)
   PetscFunctionReturn(0);
 }
 
-/* ---- table ---- */
+/* Names and units of the columns; `tail`, `tail_units`: of the last columns. */
 
 /* Names and units of the columns; `tail`, `tail_units`: of those at the end. */
 static PetscErrorCode PrintHeader(LamInterfaceLawType interface, const char tail[], const char tail_units[])
@@ -135,7 +135,7 @@ PetscErrorCode LamPrintAnswerHeader(LamInterfaceLawType interface)
   PetscFunctionReturn(0);
 }
 
-/* A number in a column, fixed ('f') or with exponent ('e'); "-" where it is not known. */
+/* A number in a column, fixed ('f') or with exponent ('e'); "-" if not known. */
 static void PrintColumn(int width, int decimals, char notation, PetscReal value)
 {
   if (!isfinite(value))
@@ -160,7 +160,7 @@ static void PrintContact(const LamResponse *response, PetscReal MPa)
     printf(" %8" PetscInt_FMT, response->floating_cells);
 }
 
-/* What is at the end of a row: the cost of a solve, or how far an answer is to be trusted. */
+/* Last columns of a row: the cost of a solve, or the reliability of a database response. */
 static void PrintTail(const LamResponse *response)
 {
   if (response->source == LAM_SOURCE_SOLVE) {
@@ -174,7 +174,7 @@ static void PrintTail(const LamResponse *response)
   }
 }
 
-/* Sealed cells and cells that differ have other pressures than the load says. */
+/* False for sealed cells and cells that differ, whose pressures are not the prescribed turgor. */
 static PetscBool HasTurgorOfLoad(const LamResponse *r)
 {
   const PetscReal rounding = 1e-12 * fabs(r->load.turgor);
@@ -183,7 +183,7 @@ static PetscBool HasTurgorOfLoad(const LamResponse *r)
                      (fabs(r->turgor_mean - r->load.turgor) <= rounding && r->turgor_spread <= rounding));
 }
 
-/* Of tissue that localises over lengths beyond the RVE. */
+/* For tissue that localises over lengths beyond the RVE. */
 static void PrintLocalisation(const LamResponse *r, PetscReal MPa)
 {
   if (!LamResponseHasFields(r) || !LamEllipticityIsLost(r->ellipticity)) return;

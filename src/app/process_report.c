@@ -119,7 +119,7 @@ PetscErrorCode LamProcessReport(void *ctx, const LamProcessStudy *study)
   PetscFunctionReturn(0);
 }
 
-/* Events that a database alone has found by numbers which it does not know well. */
+/* Warns of events that were found by a database alone from indicators of low accuracy. */
 static void WarnOfIndicators(const LamProcessStudy *study)
 {
   PetscInt doubtful = 0;

@@ -1,5 +1,5 @@
 /*
-  What the program prints of processes.
+  Output of processes.
 */
 #ifndef LAM_PROCESS_REPORT_H
 #define LAM_PROCESS_REPORT_H
@@ -8,7 +8,7 @@
 #include "process_run.h"
 
 /* ---- process_report.c; ctx: a LamFE2Report ---- */
-/* Row of a table, the first with its header before it, or JSON object, of the last state of the history. */
+/* Prints the last state of the history: a row of a table (the first with its header) or a JSON object. */
 PetscErrorCode LamProcessReport(void *ctx, const LamProcessStudy *study);
 PetscErrorCode LamProcessReportEnd(const LamFE2Report *report, const LamProcessStudy *study, LamProcessReason reason,
                                    const char message[]);

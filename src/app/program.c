@@ -1,5 +1,5 @@
 /*
-  The command line as a whole: finds the command, or tells of all.
+  The command line as a whole: finds the command, or lists all.
 */
 #include "app.h"
 #include <hdf5.h>
@@ -10,7 +10,7 @@ static const struct {
   const char *name, *summary;
   LamCommandFunction run;
   PetscBool solves; /* runs under mpirun; the others need no MPI */
-  PetscBool files;  /* reads or writes records in any case */
+  PetscBool files;  /* always reads or writes records */
 } Commands[] = {
     {"check", "read and check a scene; print the plan and its predicted cost", LamCommandCheck, PETSC_FALSE,
      PETSC_FALSE},
@@ -70,7 +70,7 @@ static void TellUnknown(const char word[])
   fprintf(stderr, "\nTry 'lamella --help'.\n");
 }
 
-/* Whether the word is the option, under either name. */
+/* Whether the word is the option, short or long. */
 static PetscBool Is(const char word[], const char short_name[], const char long_name[])
 {
   return (PetscBool)(!strcmp(word, short_name) || !strcmp(word, long_name));
@@ -93,7 +93,7 @@ static PetscErrorCode RunCommand(LamArgs *args, int *status)
 
 PetscErrorCode LamProgramRun(int argc, char *argv[], PetscErrorCode (*start)(LamArgs *args), int *status)
 {
-  static char *program_only[2]; /* PETSc keeps the address */
+  static char *program_only[2]; /* PETSc stores the address */
   LamArgs args = {.argv = argv + 1, .petsc_argc = 1, .petsc_argv = program_only, .start = start};
 
   PetscFunctionBeginUser;

@@ -1,5 +1,5 @@
 /*
-  Progress for a person who waits: a bar, the rate and the time left, on a terminal only.
+  Interactive progress: a bar, the rate and the remaining time, on a terminal only.
 */
 #include "app.h"
 #include "clock.h"
@@ -40,7 +40,7 @@ PetscErrorCode LamProgressUpdate(LamProgress *progress, PetscInt64 done, PetscIn
   if (!progress->on) PetscFunctionReturn(0);
   now = LamClock();
   if (done < progress->total && now - progress->drawn < REDRAW_SECONDS) PetscFunctionReturn(0);
-  if (!progress->drawn) progress->first = done; /* what an earlier run has done says nothing of the rate */
+  if (!progress->drawn) progress->first = done; /* work done by an earlier run does not count for the rate */
   progress->drawn = now;
   filled = progress->total > 0 ? (int)(BAR_WIDTH * PetscMin(done, progress->total) / progress->total) : BAR_WIDTH;
   fputs("\r\033[K[", stderr);

@@ -1,11 +1,12 @@
 /*
-  What every command runs in: streams, signals, MPI, PETSc; errors, told once at the end.
+  Runtime of every command: streams, signals, MPI, PETSc; errors, reported once at the end.
 
-  Errors. The library returns PETSc error codes. The handler below keeps the words of the first one and the way it came;
-  nothing is printed before the error has reached main, where it is told once: mistakes of the user and failures of
-  input and output in their own words, anything else as a fault of the program with its trace.
-  Under MPI the ranks agree at the end: an error that all have is told by the lowest rank that knows the words; a rank
-  that is alone with its error waits a moment for the others, then tells it and ends the job.
+  Errors. The library returns PETSc error codes. The handler below stores the message and the traceback of the first
+  one. Nothing is printed before the error has reached main, where it is reported once: user errors and input/output
+  failures with their own message, anything else as a program fault with its traceback.
+
+  Under MPI the ranks agree at the end: an error common to all is reported by the lowest rank that has the message. A
+  rank that alone has an error waits briefly for the others, then reports it and aborts the job.
 */
 #define _GNU_SOURCE /* RTLD_DEFAULT */
 #include "app.h"
@@ -23,7 +24,7 @@
 #include <sanitizer/lsan_interface.h>
 #endif
 
-/* How long a rank waits for the others to end too, s: with an error of its own, and with one it was told of. */
+/* How long a rank waits for the others to end, s: with its own error, and with one shared from another rank. */
 #define OWN_ERROR_PATIENCE 3.0
 #define SHARED_ERROR_PATIENCE 60.0
 
@@ -66,7 +67,7 @@ static void TellError(PetscErrorCode code)
 }
 
 #ifdef __SANITIZE_ADDRESS__
-/* Asked by the leak checker at exit: an error returns past the clean-up, its memory is left to the system. */
+/* Called by the leak checker at exit: an error returns without cleaning up, so its memory is left to the system. */
 int __lsan_is_turned_off(void)
 {
   return LamErrorCode() != 0;
@@ -95,7 +96,7 @@ PetscBool LamAppIsRoot(void)
 
   if (MPIRuns()) {
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  } else if (ExpectRanks) { /* a usage error under mpirun is told once, too */
+  } else if (ExpectRanks) { /* a usage error under mpirun is reported once, too */
     const char *launched = getenv("OMPI_COMM_WORLD_RANK");
 
     rank = launched ? atoi(launched) : 0;
@@ -104,8 +105,8 @@ PetscBool LamAppIsRoot(void)
 }
 
 /*
-  HDF5 crashes when it tidies up behind a file that it could not write. It would do so at exit, and in MPI_Finalize
-  where MPI runs when HDF5 begins.
+  HDF5 crashes in its cleanup after a file that could not be written. The cleanup would run at exit, and in MPI_Finalize
+  if MPI is running when HDF5 is initialised.
 */
 void LamAppStartHDF5(void)
 {
@@ -114,8 +115,8 @@ void LamAppStartHDF5(void)
 }
 
 /*
-  Without a launcher there are no other ranks: Open MPI then need not start a daemon, nor look for networks, which takes
-  longer than many a solve.
+  Without a launcher there are no other ranks. Open MPI then need not start a daemon or search for networks, which takes
+  longer than many solves.
 */
 static void ExpectNoRanks(void)
 {
@@ -128,8 +129,8 @@ PetscErrorCode LamRuntimeStart(LamArgs *args)
 {
   PetscFunctionBeginUser;
   ExpectNoRanks();
-  setenv("HWLOC_HIDE_ERRORS", "2", 0); /* in a container without /sys MPI's hwloc complains of that on every start */
-  PetscCall(PetscOptionsSetValue(NULL, "-no_signal_handler", "true")); /* SIGTERM is ours */
+  setenv("HWLOC_HIDE_ERRORS", "2", 0); /* without /sys (containers) MPI's hwloc prints errors on every start */
+  PetscCall(PetscOptionsSetValue(NULL, "-no_signal_handler", "true")); /* SIGTERM is handled by signals.c */
   PetscCall(PetscInitialize(&args->petsc_argc, &args->petsc_argv, NULL, NULL));
   PetscCallMPI(MPI_Comm_dup(MPI_COMM_WORLD, &EndComm));
   PetscCall(LamSignalsInstall());
@@ -137,10 +138,10 @@ PetscErrorCode LamRuntimeStart(LamArgs *args)
   PetscFunctionReturn(0);
 }
 
-/* Whether all ranks have come here within `patience` seconds (negative: however long it takes). */
+/* Whether all ranks have arrived here within `patience` seconds (negative: no limit). */
 static PetscBool AwaitOthers(MPI_Request *request, double patience)
 {
-  const struct timespec pause = {0, 1000000}; /* ranks that have nothing to do leave the processor to the others */
+  const struct timespec pause = {0, 1000000}; /* idle ranks yield the processor to the others */
   const double start = LamClock();
   int done = 0;
 
@@ -151,7 +152,7 @@ static PetscBool AwaitOthers(MPI_Request *request, double patience)
   return (PetscBool)done;
 }
 
-/* The ranks end with one status, the largest; errors are told by the lowest rank that knows their words. */
+/* All ranks exit with the same status, the largest; errors are reported by the lowest rank that has the message. */
 static void AgreeAtEnd(PetscErrorCode code, int *status)
 {
   const PetscBool own = (PetscBool)(code && code == LamErrorCode());
@@ -174,7 +175,7 @@ static void AgreeAtEnd(PetscErrorCode code, int *status)
   MPI_Comm_free(&EndComm);
 }
 
-/* A misspelt option after `--` would otherwise be ignored without a word. */
+/* A misspelt option after `--` would otherwise be ignored silently. */
 static PetscErrorCode WarnOfUnusedOptions(void)
 {
   PetscInt n;
@@ -203,9 +204,9 @@ void LamRuntimeEnd(PetscErrorCode code, int *status)
 }
 
 /*
-  The matrices of an RVE are too small for threads, which cost more than they bring and crowd the ranks. The libraries
-  read OMP_NUM_THREADS and OPENBLAS_NUM_THREADS when they are loaded, before main: so they are told by their functions,
-  where they have any, unless the user has set the variable.
+  The matrices of an RVE are too small for threads, which cost more than they save and compete with the ranks. The
+  libraries read OMP_NUM_THREADS and OPENBLAS_NUM_THREADS when they are loaded, before main. So their number of threads
+  is set by their functions, if they have any, unless the user has set the variable.
 */
 static void UseOneThread(void)
 {
@@ -220,12 +221,12 @@ static void UseOneThread(void)
   }
 }
 
-/* Otherwise a file would get the number of a stream that the caller has closed, and what is printed. */
+/* Otherwise a file could get the descriptor of a stream that the caller has closed, and receive printed output. */
 static void FillStreams(void)
 {
   int fd;
 
-  do fd = open("/dev/null", O_RDONLY); /* printing on it fails, and is told */
+  do fd = open("/dev/null", O_RDONLY); /* printing to it fails, and the failure is reported */
   while (fd >= 0 && fd <= STDERR_FILENO);
   if (fd >= 0) close(fd);
 }
@@ -235,7 +236,7 @@ PetscErrorCode LamRuntimeBegin(void)
   FillStreams();
   UseOneThread();
   LamFaultsTell();
-  signal(SIGPIPE, SIG_IGN); /* a closed pipe is an error of writing, told as such */
-  signal(SIGXFSZ, SIG_IGN); /* so is a file that may not grow */
+  signal(SIGPIPE, SIG_IGN); /* a closed pipe is reported as a write error */
+  signal(SIGXFSZ, SIG_IGN); /* so is a file that exceeds the size limit */
   return LamErrorsKeep();
 }

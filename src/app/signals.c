@@ -1,6 +1,6 @@
 /*
-  Signals that tell of a fault, and those that ask for an orderly end. Studies look at LamStopRequested
-  between states, solves before each factorisation; what is under way is given up, what is solved is committed.
+  Signals of faults, and those that request an orderly stop. Studies check LamStopRequested between states, solves
+  before each factorisation. The current solve is abandoned; solved states are committed.
 */
 #include "app.h"
 #include <execinfo.h>
@@ -9,10 +9,10 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Several may arrive for one wish to stop, as a batch system and mpirun both pass them on: those of a burst are one.
-   Whoever goes on wishing gets his way. */
+/* One stop request may deliver several signals, since a batch system and mpirun both forward them: those within
+   BURST seconds count as one. The program ends at once after PATIENCE requests. */
 #define PATIENCE 3
-#define MOST_FRAMES 64 /* of the trace of a fault */
+#define MOST_FRAMES 64 /* of the traceback of a fault */
 #define BURST 0.5      /* s */
 
 static volatile sig_atomic_t Count;
@@ -29,7 +29,7 @@ static void Request(int number)
   raise(number);
 }
 
-/* Then the signal does what it does without: it ends the program. */
+/* Afterwards the signal has its default effect: it ends the program. */
 static void Fault(int number)
 {
   static const char words[] =
@@ -47,7 +47,7 @@ static void Fault(int number)
 
 void LamFaultsTell(void)
 {
-#ifndef __SANITIZE_ADDRESS__ /* which tells more */
+#ifndef __SANITIZE_ADDRESS__ /* AddressSanitizer reports more */
   signal(SIGSEGV, Fault);
   signal(SIGBUS, Fault);
 #endif
@@ -61,7 +61,7 @@ PetscErrorCode LamSignalsInstall(void)
   PetscFunctionBeginUser;
   memset(&action, 0, sizeof(action));
   action.sa_handler = Request;
-  action.sa_flags = SA_RESTART; /* a write under way is finished */
+  action.sa_flags = SA_RESTART; /* a write in progress is completed */
   sigemptyset(&action.sa_mask);
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(numbers); i++) {
     PetscCheck(!sigaction(numbers[i], &action, NULL), PETSC_COMM_SELF, PETSC_ERR_SYS, "signal %d cannot be caught",

@@ -1,8 +1,8 @@
 /*
   The work-precision diagram: error against core-seconds, both logarithmic, a panel for each kind of error.
 
-  A line joins the settings of one way to answer; what was left out is not there. Beside a point stands its setting,
-  where there is room: first beside the best, then beside the planned one. Grey below: errors of the size of the
+  A line joins the settings of one method; settings without result are omitted. A point is labelled with its setting if
+  there is room: the best settings first, then the planned one. Grey band at the bottom: errors of the size of the
   reference's.
 */
 #include "tradeoff_report.h"
@@ -98,13 +98,13 @@ typedef struct {
   const LamTradeoff *t;
   const Groups *groups;
   LamErrorKind kind;
-  PetscReal scale, floor; /* of the error; what is below the floor stands on it */
+  PetscReal scale, floor; /* of the error; errors below the floor are drawn on it */
   LamAxes axes;
   PetscInt boxes;
-  LamRect box[MOST_BOXES]; /* taken by markers and labels */
+  LamRect box[MOST_BOXES]; /* occupied by markers and labels */
 } Panel;
 
-/* Where a measurement stands, in logarithms; PETSC_FALSE: nowhere. */
+/* Position of a measurement, in logarithms; PETSC_FALSE: not drawn. */
 static PetscBool Place(const Panel *p, const LamMeasurement *m, PetscReal at[2])
 {
   const LamMeasuredError *e = &m->error[p->kind];
@@ -127,7 +127,7 @@ static void SetFloor(Panel *p)
   p->floor = p->scale * PetscMax(smallest, p->kind == LAM_ERROR_MACRO ? 0 : p->t->reference.error[p->kind]);
 }
 
-/* Direct answers of a body, which have no error in its panel; NULL: there are none, or it is another panel. */
+/* The direct response of a body, which has no error in its panel; NULL: there is none, or it is another panel. */
 static const LamMeasurement *FindDirect(const Panel *p)
 {
   for (PetscInt i = 0; i < p->t->n && p->kind == LAM_ERROR_MACRO; i++) {
@@ -198,7 +198,7 @@ static void DrawBand(LamCanvas canvas, const Panel *p)
   cairo_fill(LamCanvasCairo(canvas));
 }
 
-/* The best settings joined: no error above the steps needs so much time. */
+/* Joins the best settings by steps: for each point above the steps a setting has no larger error in no more time. */
 static void DrawFront(LamCanvas canvas, const Panel *p)
 {
   cairo_t *cr = LamCanvasCairo(canvas);
@@ -263,7 +263,7 @@ static void DrawPoint(LamCanvas canvas, Panel *p, const LamStyle *style, const L
   cairo_line_to(cr, high, y);
   cairo_stroke(cr);
   LamCanvasMarker(canvas, x, y, MARKER_SIZE, style->marker, style->hollow);
-  if (m->setting.planned && m->setting.knob == LAM_KNOB_MESH) { /* other families have it at the same place */
+  if (m->setting.planned && m->setting.knob == LAM_KNOB_MESH) { /* other groups have it at the same position */
     LamCanvasSetColour(canvas, Ink);
     LamCanvasMarker(canvas, x, y, MARKER_SIZE, LAM_MARKER_RING, PETSC_FALSE);
   }
@@ -283,7 +283,7 @@ static void DrawGroup(LamCanvas canvas, Panel *p, PetscInt g)
   }
 }
 
-/* Beside its point, in the first direction in which there is room. */
+/* Labels a point in the first direction in which there is room. */
 static void DrawLabel(LamCanvas canvas, Panel *p, LamColour colour, const LamMeasurement *m, const PetscReal at[2])
 {
   static const double ways[][2] = {{1, 0}, {-1, 0}, {0, -1}, {0, 1}, {1, -1}, {-1, -1}, {1, 1}, {-1, 1}};
@@ -305,7 +305,7 @@ static void DrawLabel(LamCanvas canvas, Panel *p, LamColour colour, const LamMea
   }
 }
 
-/* What matters most is labelled first: 0 best, 1 planned, 2 the others. */
+/* Order of labelling: 0 best, 1 planned, 2 the others. */
 static int Priority(const Panel *p, const LamMeasurement *m)
 {
   return m->error[p->kind].optimal ? 0 : m->setting.planned ? 1 : 2;
@@ -325,7 +325,7 @@ static void DrawLabels(LamCanvas canvas, Panel *p)
       }
 }
 
-/* How long direct answers took. */
+/* Draws the time of the direct response. */
 static void DrawDirect(LamCanvas canvas, Panel *p)
 {
   const LamMeasurement *direct = FindDirect(p);
@@ -404,7 +404,7 @@ static void DrawNotes(LamCanvas canvas, LamRect outer)
     LamCanvasText(canvas, outer.x, outer.y + 1.6 * LAM_TICK_SIZE * ((double)i + 0.5), 0, 0, LAM_TICK_SIZE, notes[i]);
 }
 
-/* The notes stand in the cell that three panels, or one, leave; else below. */
+/* The notes are in the cell left free by three panels or one; else below. */
 static PetscErrorCode DrawPage(const char path[], const Groups *groups, PetscInt n, Panel panels[])
 {
   const PetscInt rows = PetscMax((n + 1) / 2, 1);

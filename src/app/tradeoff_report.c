@@ -1,12 +1,12 @@
 /*
-  What is told of the settings: a table, JSON, and the files of -o.
+  Report of the settings: a table, JSON, and the files of -o.
 */
 #include "tradeoff_report.h"
 #include "beside.h"
 #include <math.h>
 #include <string.h>
 
-/* ---- for a person ---- */
+/* ---- human-readable output ---- */
 
 /* "12 x 4, graded 0.6" */
 static const char *MeshWords(const LamMicrostructure *micro, char text[64])
@@ -130,7 +130,7 @@ void LamTradeoffPrint(const LamTradeoff *t)
   printf("%.3g s%s\n", (double)t->seconds, t->stopped ? ", stopped by a signal" : "");
 }
 
-/* ---- for a program ---- */
+/* ---- JSON output ---- */
 
 static json_t *Spread(const LamSpread *spread)
 {
@@ -172,7 +172,7 @@ static json_t *Setting(const LamMeasurement *m)
   return o;
 }
 
-/* A setting and what was measured of it. */
+/* A setting and its measurements. */
 static json_t *Measured(const LamMeasurement *m)
 {
   json_t *o = Setting(m);
@@ -230,7 +230,7 @@ static json_t *Reference(const LamTradeoff *t)
                    "core_seconds", LamJSONReal(r->cpu), "states_used", (json_int_t)r->used_count);
 }
 
-/* Whole or not at all. DIR/NAME.json; takes ownership. */
+/* Writes DIR/NAME.json atomically; takes ownership. */
 static PetscErrorCode WriteJSON(const char directory[], const char name[], json_t *object)
 {
   char path[PETSC_MAX_PATH_LEN];
@@ -238,7 +238,7 @@ static PetscErrorCode WriteJSON(const char directory[], const char name[], json_
   int failed;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s.h5", directory, name)); /* there is none: the name is replaced */
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s.h5", directory, name)); /* only its name is used */
   PetscCall(LamBesideOpen(path, ".json", &file));
   failed = json_dumpf(object, file.out, JSON_INDENT(1) | JSON_REAL_PRECISION(9));
   json_decref(object);
@@ -272,7 +272,7 @@ static PetscErrorCode WriteData(const LamTradeoff *t, const char directory[], co
   PetscFunctionReturn(0);
 }
 
-/* What a planner may take from it: errors of P of the meshes that were measured. */
+/* Data for a planner: errors of P of the meshes measured. */
 static PetscErrorCode WriteModel(const LamTradeoff *t, const char directory[], const char hash[])
 {
   json_t *meshes = json_array();

@@ -1,5 +1,5 @@
 /*
-  What the program prints, writes and draws of tradeoff.
+  Terminal output, files and diagram of tradeoff.
 */
 #ifndef LAM_TRADEOFF_REPORT_H
 #define LAM_TRADEOFF_REPORT_H
@@ -9,9 +9,9 @@
 
 void LamTradeoffPrint(const LamTradeoff *t);
 PetscErrorCode LamTradeoffPrintJSON(const LamTradeoff *t);
-/* DIR/tradeoff.json, DIR/model.json; the folder is there. */
+/* Writes DIR/tradeoff.json, DIR/model.json; the folder must exist. */
 PetscErrorCode LamTradeoffWrite(const LamTradeoff *t, const char directory[]);
-/* The diagram; the ending of `path` says the format. */
+/* Draws the diagram; the ending of `path` selects the format. */
 PetscErrorCode LamTradeoffPlot(const LamTradeoff *t, const char path[]);
 
 #endif

@@ -1,5 +1,5 @@
 /*
-  Pictures: what the parts of `lamella plot` share. Only src/app/ knows this header.
+  Pictures: what the parts of `lamella plot` share. Only src/app/ uses this header.
 
     plot_canvas.c    the page: output formats, text, markers
     plot_axes.c      ticks, axes, curves, legends
@@ -11,8 +11,8 @@
     plot_curves.c    stress-load curves
     plot_read.c      arrays of a file, checked
     plot_rve.c, plot_fe2.c, plot_database.c, plot_map.c, plot_process.c    one kind of file each (plot_map_read.c,
-                     plot_process_read.c: what it shows)
-    plot_table.c, plot_slice.c    a database's table: its picture, and what a slice through it holds
+                     plot_process_read.c: read its data)
+    plot_table.c, plot_slice.c    a database's table: its picture, and the data of a slice through it
 
   Lengths on the page are points (1/72 inch), y downwards. Text markup: $...$ italic, _{...} subscript, ^{...}
   superscript.
@@ -23,8 +23,8 @@
 #include <lamella/database.h>
 #include <cairo.h>
 
-/* Resolution of PNG files, and of images (fields) inside PDF and SVG files, dots per inch: 400 and 300. Tests that draw
-   often ask for less. */
+/* Resolution of PNG files, and of images (fields) inside PDF and SVG files, dots per inch: 400 and 300. Tests that
+   draw often use less. */
 extern double LamPlotDPI, LamPlotVectorDPI;
 
 typedef struct {
@@ -40,25 +40,26 @@ typedef struct LamCanvas_s *LamCanvas;
 
 /* PETSC_ERR_USER_INPUT unless `path` ends in .png, .svg or .pdf. */
 PetscErrorCode LamCanvasCheckPath(const char path[]);
-/* A white page. The file is written by LamCanvasFinish, so a failure before it leaves none. */
+/* A white page. LamCanvasFinish writes the file, so no file is left after an earlier error. */
 PetscErrorCode LamCanvasCreate(const char path[], double width, double height, LamCanvas *canvas);
-/* Whether files of this name have several pages (PDF), and the next of them. */
+/* Whether files of this name have several pages (PDF); starts the next page. */
 PetscBool LamCanvasHasPages(const char path[]);
 void LamCanvasNextPage(LamCanvas canvas);
-/* What is drawn is no picture: LamCanvasFinish then ends with this reason, which must live as long. */
+/* Rejects the picture: LamCanvasFinish then fails with this reason. `reason` is borrowed and must outlive the
+   canvas. */
 void LamCanvasRefuse(LamCanvas canvas, const char reason[]);
 /* Writes the file and frees the canvas. PETSC_ERR_FILE_WRITE; PETSC_ERR_USER_INPUT: the numbers cannot be drawn. */
 PetscErrorCode LamCanvasFinish(LamCanvas *canvas);
 cairo_t *LamCanvasCairo(LamCanvas canvas);
-/* Pixels per point that images on this page should have. */
+/* Resolution of images on this page, pixels per point. */
 double LamCanvasDots(LamCanvas canvas);
-/* What is drawn between these two becomes one image, so that a thousand small things do not bloat vector files. */
+/* Everything drawn between these two calls becomes one image, to keep vector files small. */
 PetscErrorCode LamCanvasBeginImage(LamCanvas canvas, LamRect rect);
 void LamCanvasEndImage(LamCanvas canvas);
 
 void LamCanvasSetColour(LamCanvas canvas, LamColour colour);
-/* Text with its reference point at the share `align` (0 left, 0.5 centre, 1 right) of its width and at the middle of
-   its capitals; `angle` in radian, counter-clockwise. */
+/* Text with its reference point at the fraction `align` (0 left, 0.5 centre, 1 right) of its width and at the middle
+   of its capitals; `angle` in radian, counter-clockwise. */
 void LamCanvasText(LamCanvas canvas, double x, double y, double align, double angle, double size, const char text[]);
 double LamCanvasTextWidth(LamCanvas canvas, double size, const char text[]);
 
@@ -72,55 +73,55 @@ typedef enum {
   LAM_MARKER_RING, /* around another marker */
   LAM_MARKER_COUNT
 } LamMarker;
-/* Drawn in the current colour; hollow ones are filled with white. */
+/* Drawn in the current colour; hollow markers are filled with white. */
 void LamCanvasMarker(LamCanvas canvas, double x, double y, double size, LamMarker marker, PetscBool hollow);
 
-/* Okabe and Ito's colours that people with any colour vision tell apart; `index` wraps around. */
+/* Okabe and Ito's colours, which remain distinct with any colour vision; `index` wraps around. */
 LamColour LamColourOfLine(PetscInt index);
-/* "-0.0125" with four digits and a true minus sign; `text` has at least 32 bytes. */
+/* Four digits and a true minus sign, "-0.0125"; `text` has at least 32 bytes. */
 void LamFormatNumber(PetscReal value, char text[32]);
-/* The same of a number of order one, such as a component of F: what rounding leaves of zero is zero. */
+/* As LamFormatNumber for a number of order one, such as a component of F: rounding errors around zero become zero. */
 void LamFormatRatio(PetscReal value, char text[32]);
 
 /* ---- plot_axes.c ---- */
 #define LAM_TEXT_SIZE 7.5  /* labels */
 #define LAM_TICK_SIZE 6.75 /* numbers at ticks, legends */
 
-/* Round numbers first + i*step, i = 0..count-1; labels show value / 10^exponent with `decimals`, or 10^value where the
-   axis is of logarithms. */
+/* Round numbers first + i*step, i = 0..count-1; labels show value / 10^exponent with `decimals`, or 10^value if the
+   axis is logarithmic. */
 typedef struct {
   PetscReal first, step;
   PetscInt count, decimals, exponent;
   PetscBool is_log;
 } LamTicks;
-/* At most about `wanted` ticks in [low, high], steps of 1, 2 or 5 times a power of ten (whole numbers: at least 1). */
+/* At most about `wanted` ticks in [low, high], steps of 1, 2 or 5 times a power of ten (integers: at least 1). */
 LamTicks LamTicksChoose(PetscReal low, PetscReal high, PetscInt wanted, PetscBool whole);
 void LamTicksFormat(const LamTicks *ticks, PetscInt i, char text[32]);
-/* Width of the widest number at the ticks. */
+/* Width of the widest tick label. */
 double LamTicksWidth(LamCanvas canvas, const LamTicks *ticks);
 
 typedef struct {
   PetscReal low, high;
   const char *label; /* borrowed */
   const char *unit;  /* borrowed; NULL: none */
-  PetscBool whole;   /* only whole numbers */
+  PetscBool whole;   /* integers only */
   LamTicks ticks;
-  PetscBool is_log; /* what is drawn are decadic logarithms; the numbers are not */
+  PetscBool is_log; /* values are decadic logarithms; labels show the numbers themselves */
 } LamAxis;
 typedef struct {
   LamRect frame;
   LamAxis x, y;
 } LamAxes;
-/* Widens [low, high] by a share of 0.06 at both ends, or to something drawable where it is empty. */
+/* Widens [low, high] by 0.06 of its length at both ends, or to a drawable interval if it is empty. */
 void LamAxisPad(LamAxis *axis);
-/* Widens the limits of logarithms to whole powers of ten. */
+/* Widens the limits of a logarithmic axis to powers of ten. */
 void LamAxisPadLog(LamAxis *axis);
 /* "label (10^{-3} MPa)" */
 void LamAxisLabel(const LamAxis *axis, size_t size, char text[]);
-/* Chooses ticks and the frame inside `outer` that leaves room for numbers and labels. */
+/* Chooses ticks, and the frame inside `outer` that leaves room for tick labels and axis labels. */
 void LamAxesLayout(LamCanvas canvas, LamRect outer, LamAxes *axes);
 void LamAxesDraw(LamCanvas canvas, const LamAxes *axes);
-/* The frame alone: over cells whose colours hide its lines and ticks. */
+/* Draws the frame alone: over cells whose colours hide its lines and ticks. */
 void LamAxesFrame(LamCanvas canvas, const LamAxes *axes);
 double LamAxesX(const LamAxes *axes, PetscReal x);
 double LamAxesY(const LamAxes *axes, PetscReal y);
@@ -144,30 +145,30 @@ PetscErrorCode LamSeriesDestroy(LamSeries *series);
 /* Extends [low, high] of both axes to the finite points of the series. */
 void LamSeriesExtend(const LamSeries *series, LamAxes *axes);
 void LamSeriesDraw(LamCanvas canvas, const LamAxes *axes, const LamSeries *series);
-/* A legend in rows inside `outer`, its top left corner; series without a label are left out. Returns its height;
-   draws only where `draw`. */
+/* A legend in rows, from the top left corner of `outer`; series without a label are left out. Returns its height;
+   draws only if `draw`. */
 double LamLegend(LamCanvas canvas, LamRect outer, PetscInt n, const LamSeries series[], PetscBool draw);
 /*
-  Legend, axes and curves, one above the other, inside `outer`. `axes` holds labels and units; limits are found from
+  Legend, axes and curves, one above the other, inside `outer`. `axes` holds labels and units; limits are computed from
   the series.
 */
 void LamChart(LamCanvas canvas, LamRect outer, LamAxes *axes, PetscInt n, const LamSeries series[]);
 
 /* ---- plot_colour.c ---- */
-/* Colour map: perceptually uniform (viridis), share 0..1 (clamped). */
+/* Colour map: perceptually uniform (viridis), `share` in 0..1 (clamped). */
 LamColour LamColourMap(PetscReal share);
 
 /* Limits of a colour scale; clipped: values beyond the lower or upper limit exist; is_log: values are decadic
-   logarithms of what the bar shows. */
+   logarithms of the numbers on the bar. */
 typedef struct {
   PetscReal low, high;
   PetscBool clipped[2];
   PetscBool is_log;
 } LamColourRange;
-/* The middle 98 % of the finite values where the rest is far out (stress concentrations), else all of them. */
+/* The middle 98 % of the finite values if the rest are outliers (stress concentrations), else all of them. */
 PetscErrorCode LamColourRangeFind(PetscInt n, const PetscReal values[], LamColourRange *range);
 PetscReal LamColourShare(const LamColourRange *range, PetscReal value);
-/* Width that a colour bar needs to the right of its picture, and the bar itself, as high as `frame`. */
+/* Width that a colour bar needs to the right of its picture; draws the bar, as high as `frame`. */
 double LamColourBarWidth(LamCanvas canvas, const LamColourRange *range);
 void LamColourBar(LamCanvas canvas, LamRect frame, const LamColourRange *range, LamColour (*map)(PetscReal share),
                   const char label[], const char unit[]);
@@ -183,7 +184,7 @@ void LamViewFit(LamRect frame, const PetscReal box[4], LamView *view);
 void LamViewPoint(const LamView *view, PetscReal x, PetscReal y, double point[2]);
 void LamBoxEmpty(PetscReal box[4]);
 void LamBoxExtend(PetscReal box[4], PetscInt n, const PetscReal points[], const PetscReal shift[2]);
-/* Whether the box, moved by `shift`, shows in the view. */
+/* Whether the box, moved by `shift`, is visible in the view. */
 PetscBool LamViewShows(const LamView *view, const PetscReal box[4], const PetscReal shift[2]);
 
 /* A translated copy of a mesh, its colours mixed with white by `fade` (0: none). */
@@ -197,17 +198,17 @@ static inline int LamElementNodes(const PetscInt nodes[9])
 }
 typedef struct {
   PetscInt element_count;
-  const PetscReal *x;       /* [node][2], borrowed */
-  const PetscInt *elements; /* [element][9]: corners counter-clockwise, mid-edges, centre; of a triangle six, then -1;
-                               borrowed */
-  const PetscReal *values;  /* [node], or [element] where per_element; borrowed */
+  const PetscReal *x; /* [node][2], borrowed */
+  const PetscInt
+      *elements; /* [element][9]: corners counter-clockwise, mid-edges, centre; triangle: 6, then -1; borrowed */
+  const PetscReal *values; /* [node], or [element] if per_element; borrowed */
   PetscBool per_element;
 } LamField;
-/* Paints the field, interpolated by the elements' quadratic functions, through the clip of the canvas. */
+/* Paints the field, interpolated by the elements' quadratic shape functions, inside the clip of the canvas. */
 PetscErrorCode LamFieldPaint(LamCanvas canvas, const LamView *view, const LamField *field, const LamColourRange *range,
                              PetscInt image_count, const LamImage images[]);
-/* A scale bar of a round length, at most `width` wide, from (x, y) to the right; `unit_length` is that of one `unit` in
-   the view's world. Returns the width used, label included. */
+/* A scale bar of a round length, at most `width` wide, from (x, y) to the right; `unit_length` is the length of one
+   `unit` in world coordinates. Returns the width used, including the label. */
 double LamScaleBar(LamCanvas canvas, const LamView *view, double x, double y, double width, PetscReal unit_length,
                    const char unit[]);
 
@@ -218,19 +219,19 @@ typedef struct {
   PetscReal *from, *to;      /* [face][point][2]; owned */
   PetscReal *gap, *pressure; /* [face][point], apothems and MPa; owned */
   PetscReal largest_pressure;
-  PetscBool is_open;   /* a gap is above LAM_VISIBLE_GAP */
-  LamColourRange gaps; /* from 0 to the widest one */
+  PetscBool is_open;   /* a gap exceeds LAM_VISIBLE_GAP */
+  LamColourRange gaps; /* from 0 to the largest gap */
 } LamInterface;
-/* Of the state whose fields are in `group` ("/fields/3"). PETSC_ERR_USER_INPUT where the file lacks them. */
+/* Reads the state whose fields are in `group` ("/fields/3"). PETSC_ERR_USER_INPUT if the file lacks them. */
 PetscErrorCode LamInterfaceRead(const char path[], const char group[], LamInterface *interface);
 PetscErrorCode LamInterfaceDestroy(LamInterface *interface);
 LamColour LamGapColour(PetscReal share);
-/* Of one periodic image. */
+/* Draws one periodic image. */
 void LamInterfaceDrawGaps(LamCanvas canvas, const LamView *view, const LamInterface *interface,
                           const PetscReal shift[2]);
 void LamInterfaceDrawPressure(LamCanvas canvas, const LamView *view, const LamInterface *interface,
                               const PetscReal shift[2]);
-/* What the ribbons mean, from (x, y) to the right. */
+/* Legend of the ribbons, from (x, y) to the right. */
 void LamInterfaceDrawKey(LamCanvas canvas, double x, double y, const LamInterface *interface);
 
 /* ---- plot_outline.c ---- */
@@ -241,7 +242,7 @@ typedef struct {
 } LamEdge;
 typedef struct {
   PetscInt edge_count;
-  LamEdge *edges; /* each once, those of the boundary first; owned */
+  LamEdge *edges; /* each edge once, boundary edges first; owned */
   PetscInt loop_count;
   PetscInt *loop_start; /* [loop_count + 1], into loop_edges; owned */
   PetscInt *loop_edges; /* closed loops of boundary edges, in order; owned */
@@ -252,34 +253,34 @@ PetscErrorCode LamOutlineCreate(PetscInt element_count, const PetscInt elements[
 PetscErrorCode LamOutlineDestroy(LamOutline *outline);
 /* Signed area inside loop `loop` at positions x: negative for holes (lumens). */
 PetscReal LamOutlineLoopArea(const LamOutline *outline, PetscInt loop, const PetscReal x[]);
-/* Adds one curved edge (joined: going on from the current point), a loop, or the edges between elements to the current
-   path; x: positions of the nodes. */
+/* Adds one curved edge (joined: continues from the current point), a loop, or the edges between elements to the
+   current path; x: positions of the nodes. */
 void LamOutlineEdgePath(LamCanvas canvas, const LamView *view, const LamEdge *edge, const PetscReal x[],
                         const PetscReal shift[2], PetscBool joined);
 void LamOutlineLoopPath(LamCanvas canvas, const LamView *view, const LamOutline *outline, PetscInt loop,
                         const PetscReal x[], const PetscReal shift[2]);
 void LamOutlineInnerPath(LamCanvas canvas, const LamView *view, const LamOutline *outline, const PetscReal x[]);
 
-/* ---- plot_read.c: PETSC_ERR_USER_INPUT where the dataset is missing or its shape wrong; caller frees ---- */
-/* rows x columns numbers. */
+/* ---- plot_read.c: PETSC_ERR_USER_INPUT if the dataset is missing or has the wrong shape; caller frees ---- */
+/* Reads rows x columns numbers. */
 PetscErrorCode LamPlotReadReals(const char path[], const char name[], PetscInt rows, PetscInt columns,
                                 PetscReal **values);
-/* Points of the plane [count][2] from two or three coordinates each; rows: their number, -1: any. */
+/* Reads points of the plane [count][2] from two or three coordinates each; rows: their number, -1: any. */
 PetscErrorCode LamPlotReadPoints(const char path[], const char name[], PetscInt rows, PetscInt *count,
                                  PetscReal **points);
-/* Elements [count][9] with node numbers below node_count; of a triangle six, then -1 (of triangles alone the file has
-   six columns). */
+/* Reads elements [count][9] with node numbers below node_count; a triangle has six, then -1 (in a file of triangles
+   alone the dataset has six columns). */
 PetscErrorCode LamPlotReadElements(const char path[], const char name[], PetscInt node_count, PetscInt *count,
                                    PetscInt **elements);
 
 /* ---- plot_curves.c ---- */
-/* The load axis of a curve over states: what varies along them, or their number. */
+/* The load axis of a curve over states: the varying quantity, or the state number. */
 typedef struct {
   char label[32];
   const char *unit; /* NULL: none */
   PetscBool whole;
 } LamLoadAxis;
-/* values [n]: the load parameter of each state; keys are the states' numbers. */
+/* values [n]: the load parameter of each state; keys are the state numbers. */
 PetscErrorCode LamLoadAxisChoose(PetscInt n, const LamResponse records[], const PetscInt64 keys[],
                                  const LamScales *scales, LamLoadAxis *axis, PetscReal values[]);
 /* Effective stresses P11, P12, P21, P22 over the states, inside `outer`. */
@@ -287,16 +288,16 @@ PetscErrorCode LamStressChart(LamCanvas canvas, LamRect outer, PetscInt n, const
                               const PetscInt64 keys[], const LamScales *scales);
 
 /* ---- one picture per kind of file ---- */
-/* Every picture is as wide as a page of a journal. */
+/* Every picture is as wide as a journal page. */
 #define LAM_PLOT_WIDTH 504.0
 #define LAM_PLOT_HEIGHT 252.0
 typedef struct {
   const char *input, *output;
   PetscInt state;    /* -1: the last one */
-  const char *field; /* NULL: the default of the kind */
-  PetscBool film;    /* of a process: all states whose cells the file has, a page or file each */
-  const char *map;   /* of a process: the file of a map to draw its way over; NULL: none */
-  /* of a slice through a table, as the user wrote them; NULL: chosen */
+  const char *field; /* NULL: the default for the kind of file */
+  PetscBool film;  /* for a process: all states whose cells are in the file, each on its own page or in its own file */
+  const char *map; /* for a process: the file of a map on which its path is drawn; NULL: none */
+  /* of a slice through a table, as given by the user; NULL: chosen */
   const char *angle, *suction, *turgor, *accuracy;
 } LamPlotRequest;
 PetscErrorCode LamPlotRVE(const LamPlotRequest *request);

@@ -16,12 +16,12 @@ LamTicks LamTicksChoose(PetscReal low, PetscReal high, PetscInt wanted, PetscBoo
   const PetscReal largest = PetscMax(PetscAbsReal(low), PetscAbsReal(high));
   PetscReal power, share;
 
-  if (!(raw > 1e-290) || PetscIsInfOrNanReal(raw)) return ticks; /* powers of ten have an end */
+  if (!(raw > 1e-290) || PetscIsInfOrNanReal(raw)) return ticks; /* powers of ten would underflow */
   power = PetscPowReal(10, PetscFloorReal(PetscLog10Real(raw)));
   share = raw / power;
   ticks.step = power * (share < 1.5 ? 1 : share < 3 ? 2 : share < 7 ? 5 : 10);
   if (whole) ticks.step = PetscMax(ticks.step, 1);
-  /* A tick on the limit itself must not fall victim to rounding. */
+  /* Rounding must not remove a tick at the limit itself. */
   ticks.first = ticks.step * PetscCeilReal(low / ticks.step - 1e-9);
   ticks.count = 1 + (PetscInt)PetscFloorReal((high - ticks.first) / ticks.step + 1e-9);
   if (!whole && (largest < 2e-3 || largest >= 1e4))
@@ -116,7 +116,7 @@ void LamAxesLayout(LamCanvas canvas, LamRect outer, LamAxes *axes)
   axes->y.ticks = ChooseTicks(&axes->y, (PetscInt)PetscMax(2, axes->frame.height / 26));
   left = LAM_TEXT_SIZE + Gap + 1 + LamTicksWidth(canvas, &axes->y.ticks) + Gap + TickLength;
   wanted = (PetscInt)PetscMax(2, (outer.width - left) / 28);
-  do { /* labels need half a label of air between them */
+  do { /* labels need a gap of half a label between them */
     axes->x.ticks = ChooseTicks(&axes->x, wanted);
     right = 0.5 * LamTicksWidth(canvas, &axes->x.ticks);
   } while (--wanted > 1 && 3.0 * right * axes->x.ticks.count > outer.width - left - right);
@@ -140,7 +140,7 @@ static void Line(cairo_t *cr, double x0, double y0, double x1, double y1)
   cairo_line_to(cr, x1, y1);
 }
 
-/* Ticks and numbers of the x axis (horizontal) or the y axis, and light lines across the frame. */
+/* Ticks and labels of the x axis (horizontal) or the y axis, and light grid lines across the frame. */
 static void DrawTicks(LamCanvas canvas, const LamAxes *axes, PetscBool horizontal)
 {
   cairo_t *cr = LamCanvasCairo(canvas);
@@ -154,7 +154,7 @@ static void DrawTicks(LamCanvas canvas, const LamAxes *axes, PetscBool horizonta
     char text[32];
 
     LamCanvasSetColour(canvas, Faint);
-    /* zero stands out */
+    /* zero is emphasised */
     cairo_set_line_width(cr, !ticks->is_log && PetscAbsReal(value) < 1e-9 * ticks->step ? 1.0 : 0.4);
     if (horizontal)
       Line(cr, at, f.y, at, bottom);
@@ -176,7 +176,7 @@ static void DrawTicks(LamCanvas canvas, const LamAxes *axes, PetscBool horizonta
   }
 }
 
-/* Short ticks at 2, 3, ..., 9 times each power of ten, where powers are ticks themselves. */
+/* Short ticks at 2, 3, ..., 9 times each power of ten, if ticks are at powers of ten. */
 static void DrawMinorTicks(LamCanvas canvas, const LamAxes *axes, PetscBool horizontal)
 {
   const LamAxis *axis = horizontal ? &axes->x : &axes->y;
@@ -293,7 +293,7 @@ void LamSeriesDraw(LamCanvas canvas, const LamAxes *axes, const LamSeries *serie
     cairo_stroke(cr);
     SetDash(cr, PETSC_FALSE);
   }
-  if (style->marker == LAM_MARKER_COUNT) return; /* the line alone */
+  if (style->marker == LAM_MARKER_COUNT) return; /* line only */
   for (PetscInt i = 0; i < series->n; i++) {
     if (!Finite(series, i) || (i % stride && i != series->n - 1)) continue;
     LamCanvasMarker(canvas, LamAxesX(axes, series->x[i]), LamAxesY(axes, series->y[i]), size, style->marker,

@@ -23,7 +23,7 @@ struct LamCanvas_s {
   cairo_surface_t *surface; /* owned */
   cairo_t *cr;              /* owned */
   cairo_t *page;            /* the page's context while `cr` draws an image, else NULL; owned */
-  LamRect image;            /* where that image goes */
+  LamRect image;            /* frame of that image */
   const char *refused;      /* why the numbers of the file cannot be drawn; NULL: they can */
   unsigned char *bytes;     /* the file's contents so far; owned */
   size_t size, capacity;
@@ -57,7 +57,7 @@ PetscErrorCode LamCanvasCheckPath(const char path[])
   PetscFunctionReturn(0);
 }
 
-/* Cairo hands over the file in pieces. */
+/* Cairo delivers the file in pieces. */
 static cairo_status_t CollectBytes(void *ctx, const unsigned char *data, unsigned int length)
 {
   LamCanvas canvas = (LamCanvas)ctx;
@@ -120,7 +120,7 @@ static PetscErrorCode WriteBytes(const char path[], size_t size, const unsigned 
   if (!written) {
     const char *why = strerror(errno);
 
-    remove(path); /* half a picture is of no use */
+    remove(path); /* delete a partial file */
     SETERRQ(PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s: cannot write the picture: %s", path, why);
   }
   PetscFunctionReturn(0);
@@ -131,7 +131,7 @@ void LamCanvasRefuse(LamCanvas canvas, const char reason[])
   canvas->refused = reason;
 }
 
-/* The file of a page that is drawn, or why it cannot be. */
+/* Writes the file of the page, or fails with the reason why it cannot be drawn. */
 static PetscErrorCode WritePage(LamCanvas c)
 {
   cairo_status_t status = cairo_status(c->cr);
@@ -199,7 +199,7 @@ PetscErrorCode LamCanvasBeginImage(LamCanvas canvas, LamRect rect)
   canvas->page = canvas->cr;
   canvas->image = rect;
   canvas->cr = cairo_create(surface);
-  cairo_surface_destroy(surface); /* its context keeps it */
+  cairo_surface_destroy(surface); /* its context holds a reference */
   PetscCheck(!cairo_status(canvas->cr), PETSC_COMM_SELF, PETSC_ERR_LIB, "cairo: %s",
              cairo_status_to_string(cairo_status(canvas->cr)));
   cairo_scale(canvas->cr, dots, dots);
@@ -228,7 +228,7 @@ void LamCanvasSetColour(LamCanvas canvas, LamColour colour)
   cairo_set_source_rgb(canvas->cr, colour.r, colour.g, colour.b);
 }
 
-/* Names come from files, and cairo gives up at bytes that are no UTF-8, as half a character at the end is. */
+/* Names come from files, and cairo fails on bytes that are not UTF-8, such as a truncated last character. */
 static void MendText(char text[])
 {
   for (char *c = text; *c;) {
@@ -239,7 +239,7 @@ static void MendText(char text[])
   }
 }
 
-/* Draws or measures one run of text in one style; the current point moves on. Returns its advance. */
+/* Draws or measures one run of text in one style and advances the current point. Returns the advance. */
 static double TextRun(cairo_t *cr, double size, PetscBool italic, int script, size_t n, const char text[],
                       PetscBool show)
 {

@@ -55,14 +55,14 @@ PetscErrorCode LamColourRangeFind(PetscInt n, const PetscReal values[], LamColou
   }
   PetscCall(PetscFree(sorted));
   width = PetscMax(PetscAbsReal(range->low), PetscAbsReal(range->high));
-  if (range->high - range->low <= 1e-6 * width || width == 0) { /* a constant, up to rounding */
+  if (range->high - range->low <= 1e-6 * width || width == 0) { /* constant, up to rounding */
     range->low -= width > 0 ? 0.05 * width : 1;
     range->high += width > 0 ? 0.05 * width : 1;
   }
   PetscFunctionReturn(0);
 }
 
-/* The bar is an axis of its own beside the picture. */
+/* The bar is a separate axis beside the picture. */
 static LamAxes BarAxes(LamRect frame, const LamColourRange *range, const char label[], const char unit[])
 {
   LamAxes axes = {.frame = frame,
@@ -78,14 +78,14 @@ static const double BarGap = 6, BarThickness = 7, TickLength = 2.5, TextGap = 2.
 
 double LamColourBarWidth(LamCanvas canvas, const LamColourRange *range)
 {
-  const LamRect tall = {0, 0, 1, 200}; /* a bar of usual height; shorter ones have fewer, not longer numbers */
+  const LamRect tall = {0, 0, 1, 200}; /* a bar of usual height; shorter ones have fewer labels, not longer ones */
   const LamAxes axes = BarAxes(tall, range, "", NULL);
 
   return BarGap + BarThickness + TickLength + TextGap + LamTicksWidth(canvas, &axes.y.ticks) + TextGap +
          1.1 * LAM_TEXT_SIZE;
 }
 
-/* The colours, with a pointed end where values lie beyond the limit. */
+/* Draws the colours, with a pointed end if values lie beyond the limit. */
 static void DrawBar(LamCanvas canvas, LamRect bar, const LamColourRange *range, LamColour (*map)(PetscReal share))
 {
   cairo_t *cr = LamCanvasCairo(canvas);

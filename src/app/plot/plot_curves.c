@@ -7,7 +7,7 @@
 
 static PetscBool Differs(PetscReal a, PetscReal b)
 {
-  return (PetscBool)(!(PetscAbsReal(a - b) <= 1e-12)); /* also where one is not a number */
+  return (PetscBool)(!(PetscAbsReal(a - b) <= 1e-12)); /* also if one is NaN */
 }
 
 static PetscReal Norm9(const PetscReal a[9])
@@ -102,7 +102,7 @@ PetscErrorCode LamLoadAxisChoose(PetscInt n, const LamResponse records[], const 
   PetscFunctionReturn(0);
 }
 
-/* Curves of P11, P12, P21, P22 in MPa, with gaps where there is no answer. */
+/* Curves of P11, P12, P21, P22 in MPa, with gaps at states that did not converge. */
 static PetscErrorCode StressSeries(PetscInt n, const LamResponse records[], const PetscReal load[], PetscReal stress,
                                    LamSeries series[4])
 {
@@ -123,7 +123,7 @@ static PetscErrorCode StressSeries(PetscInt n, const LamResponse records[], cons
   PetscFunctionReturn(0);
 }
 
-/* Crosses for the states of the given kind, below all curves (they have no stress to stand at). */
+/* Crosses for the states of the given kind, below all curves (these states have no stress). */
 static PetscErrorCode FailureSeries(PetscInt n, const LamResponse records[], const PetscReal load[],
                                     const LamSeries stresses[4], LamSeries *series)
 {

@@ -1,8 +1,8 @@
 /*
-  Picture of a response database: where in strain its records lie, and what they answered.
+  Picture of a response database: its records in strain space, and their responses.
 
-  Coordinates: with principal logarithmic strains e1 >= e2 of the plane, m = (e1 + e2)/2 = half ln J and
-  r = (e1 - e2)/2, the size of the isochoric strain.
+  Coordinates: with principal logarithmic strains e1 >= e2 of the plane, m = (e1 + e2)/2 = half ln J and r = (e1 -
+  e2)/2, the size of the isochoric strain.
 */
 #include "plot_slice.h"
 #include <math.h>
@@ -14,9 +14,9 @@ static const LamColour Ink = {0.12, 0.12, 0.16}, Failure = {0.80, 0.15, 0.05};
 typedef enum { COLOUR_STRESS, COLOUR_TURGOR } ColourBy;
 
 typedef struct {
-  PetscInt n, failed, outside; /* records, of them without an answer, of them without a finite strain */
+  PetscInt n, failed, outside; /* number of records, of those not converged, of those without a finite strain */
   PetscReal (*strain)[2];      /* e1 >= e2; owned */
-  PetscReal *value;            /* NaN: no answer; owned */
+  PetscReal *value;            /* NaN: not converged; owned */
   LamColourRange range;
 } DatabasePicture;
 

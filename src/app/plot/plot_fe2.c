@@ -1,6 +1,6 @@
 /*
-  Picture of an FE2 run: the deformed body at one load step with a field, and the reactions of its sides; of a process
-  what has changed in time, and films.
+  Picture of an FE2 run: the deformed body at one load step with a field, and the reactions of its sides; for a process
+  its time histories, and films.
 */
 #include "plot_fe2.h"
 #include "names.h"
@@ -59,7 +59,7 @@ static const double ZoomHeight = 236, CurveHeight = 150; /* of a page with zooms
 typedef struct {
   const FE2FieldRow *field;
   PetscInt step_count, *steps; /* numbers of the complete steps; owned */
-  PetscInt row, step;          /* the one drawn: its place in `steps`, its number */
+  PetscInt row, step;          /* the step drawn: its index in `steps`, its number */
   PetscInt node_count, element_count;
   PetscReal *nodes, *x; /* [node][2], mm: reference and current; owned */
   PetscReal *values;    /* [element]; owned */
@@ -87,7 +87,7 @@ static PetscErrorCode FindField(const LamPlotRequest *request, const FE2FieldRow
   SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "--field %s: an fe2 file has %s", request->field, names);
 }
 
-/* One number per element from the columns of its row. */
+/* Evaluates a field for one element from the columns of its row. */
 static PetscReal Evaluate(const FE2FieldRow *field, const PetscReal t[])
 {
   switch (field->measure) {
@@ -107,7 +107,7 @@ static PetscReal Evaluate(const FE2FieldRow *field, const PetscReal t[])
   }
 }
 
-/* The last complete step, or the asked one. */
+/* The last complete step, or the requested one. */
 static PetscErrorCode FindStep(const LamPlotRequest *request, FE2Picture *p)
 {
   const char *path = request->input;
@@ -128,7 +128,7 @@ static PetscErrorCode FindStep(const LamPlotRequest *request, FE2Picture *p)
   PetscFunctionReturn(0);
 }
 
-/* Deformation and field of the step in a row. */
+/* Reads deformation and field of the step in a row. */
 static PetscErrorCode LoadStep(const char path[], PetscInt row, FE2Picture *p)
 {
   PetscReal *u, *rows;
@@ -197,7 +197,7 @@ static PetscErrorCode DrawBody(LamCanvas canvas, const LamView *view, const FE2P
   PetscFunctionBeginUser;
   PetscCall(LamFieldPaint(canvas, view, &field, range, 1, &image));
   LamCanvasSetColour(canvas, Ink);
-  if (per_element > 4) { /* lines of a finer mesh would hide the field */
+  if (per_element > 4) { /* grid lines of a finer mesh would hide the field */
     LamOutlineInnerPath(canvas, view, &p->outline, p->x);
     cairo_set_line_width(cr, 0.3);
     cairo_stroke(cr);
@@ -210,8 +210,8 @@ static PetscErrorCode DrawBody(LamCanvas canvas, const LamView *view, const FE2P
   PetscFunctionReturn(0);
 }
 
-/* The body with its colour bar and key, inside `outer`; *view is where it is. With zooms the bar is on the left, out of
-   the way of the lines that lead to them. */
+/* Draws the body with its colour bar and legend inside `outer`; *view is its view. With zooms the bar is on the
+   left, so that it does not cross the lines to them. */
 static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const FE2Picture *p, LamView *view)
 {
   cairo_t *cr = LamCanvasCairo(canvas);
@@ -275,7 +275,7 @@ static PetscErrorCode DrawTitle(LamCanvas canvas, double x, const FE2Picture *p)
   PetscFunctionReturn(0);
 }
 
-/* Body and reactions side by side; with zooms the body and these, and the reactions below. */
+/* Body and reactions side by side; with zooms the body and the zooms, and the reactions below. */
 static PetscErrorCode DrawFE2(const char output[], const FE2Picture *p)
 {
   const double row = LAM_PLOT_HEIGHT - 51;
@@ -305,7 +305,7 @@ static PetscErrorCode DrawFE2(const char output[], const FE2Picture *p)
 
 /* ---- processes ---- */
 
-/* What all frames share: the window, and the range of colours. */
+/* Shared by all frames: the window, and the colour range. */
 typedef struct {
   PetscReal box[4];
   LamColourRange range;
@@ -351,7 +351,7 @@ static PetscErrorCode DrawMoment(LamCanvas canvas, const FE2Picture *p, const Fr
   PetscFunctionReturn(0);
 }
 
-/* The moments in these rows: pages, or numbered files. */
+/* Draws the states in these rows: pages, or numbered files. */
 static PetscErrorCode DrawMoments(const LamPlotRequest *request, PetscInt count, const PetscInt rows[], FE2Picture *p)
 {
   const PetscBool pages = LamCanvasHasPages(request->output);

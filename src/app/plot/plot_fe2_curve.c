@@ -1,5 +1,5 @@
 /*
-  Reactions of an FE2 run over the displacement of its loaded side.
+  Reactions of an FE2 run against the displacement of its loaded side.
 */
 #include "plot_fe2.h"
 #include <math.h>
@@ -10,7 +10,7 @@ static const LamColour Ink = {0.12, 0.12, 0.16}, Onset = {0.45, 0.45, 0.5};
 
 /* ---- reading ---- */
 
-/* A quantity per step; a run that was stopped may have written a row more than complete steps. */
+/* Reads a quantity per step; a run that was stopped may have written one row more than complete steps. */
 static PetscErrorCode ReadCurve(const char path[], const char name[], PetscInt steps, PetscInt columns,
                                 PetscReal **values)
 {
@@ -41,7 +41,7 @@ void LamReactionsSideName(const LamReactions *p, PetscInt side, size_t size, cha
   snprintf(name, size, "%.*s", (int)PetscMin(length, size - 1), start);
 }
 
-/* Components of the loaded side's displacement along its direction; nothing where the summary names none. */
+/* Components of the loaded side's displacement along its direction; nothing if the summary names no loaded side. */
 static PetscErrorCode ReadDisplacement(const char path[], LamReactions *p)
 {
   const json_t *loaded = json_object_get(p->summary, "loaded"), *direction = json_object_get(loaded, "direction");
@@ -134,7 +134,7 @@ static PetscErrorCode ReactionSeries(const LamReactions *p, PetscInt *count, Lam
   PetscFunctionReturn(0);
 }
 
-/* A dashed line where separation or rupture begins, with its name along it, to the left or right. */
+/* A dashed line at the onset of separation or rupture, with its name along it, to the left or right. */
 static void DrawOnset(LamCanvas canvas, const LamAxes *axes, const LamReactions *p, const char name[])
 {
   const json_t *onset = json_object_get(p->summary, name);

@@ -1,5 +1,5 @@
 /*
-  What changes in time in a body, beside its picture.
+  Time histories of a body, beside its picture.
 */
 #include "plot_fe2.h"
 #include <math.h>
@@ -44,7 +44,7 @@ PetscErrorCode LamBodyTimesDestroy(LamBodyTimes *t)
   PetscFunctionReturn(0);
 }
 
-/* Reactions that are more than rounding. */
+/* Reactions above rounding. */
 static PetscErrorCode MakeForces(const LamBodyTimes *t, const LamReactions *reactions, LamTimeChart *chart)
 {
   const PetscInt columns = 2 * reactions->side_count;

@@ -1,8 +1,8 @@
 /*
-  Fields on meshes of nine-node quadrilaterals and six-node triangles, and the view they are drawn in.
+  Fields on meshes of nine-node quadrilaterals and six-node triangles, and the view in which they are drawn.
 
-  Method. Each element is cut into small quadrilaterals whose corners lie on its quadratic surface; each of these is
-  filled as two triangles with the value interpolated linearly and coloured pixel by pixel, so colours change smoothly.
+  Method. Each element is cut into small quadrilaterals whose corners lie on its quadratic surface. Each of these is
+  filled as two triangles, with the value interpolated linearly and coloured pixel by pixel, so colours change smoothly.
   The result is one image of fixed size in every output format; edges drawn over it remain vectors.
 */
 #include "plot.h"
@@ -52,7 +52,7 @@ PetscBool LamViewShows(const LamView *view, const PetscReal box[4], const PetscR
   return PETSC_TRUE;
 }
 
-/* Biquadratic functions at (r, s) in [-1, 1]^2: corners, mid-edges, centre. */
+/* Biquadratic shape functions at (r, s) in [-1, 1]^2: corners, mid-edges, centre. */
 static void ShapeFunctions(PetscReal r, PetscReal s, PetscReal N[9])
 {
   const PetscReal a[3] = {0.5 * r * (r - 1), 0.5 * r * (r + 1), 1 - r * r};
@@ -62,8 +62,8 @@ static void ShapeFunctions(PetscReal r, PetscReal s, PetscReal N[9])
   for (int i = 0; i < 9; i++) N[i] = a[at[i][0]] * b[at[i][1]];
 }
 
-/* Quadratic functions of a triangle, the square's side s = 1 shrunk to its third corner: neighbours meet in the same
-   points of an edge, as those of squares do. */
+/* Quadratic shape functions of a triangle, whose third corner is the collapsed side s = 1 of the square: neighbours
+   share the same points of an edge, as squares do. */
 static void TriangleFunctions(PetscReal r, PetscReal s, PetscReal N[6])
 {
   const PetscReal u = 0.5 * (1 + r), v = 0.5 * (1 + s), L[3] = {(1 - u) * (1 - v), u * (1 - v), v};
@@ -76,19 +76,19 @@ static void TriangleFunctions(PetscReal r, PetscReal s, PetscReal N[6])
 
 #define COLOUR_COUNT 1024
 #define MAX_CUTS 24
-#define MOST_COVERS 100  /* times that all pixels may be looked at; elements side by side need less than ten */
-#define LEAST_WORK 20000 /* on a small page */
+#define MOST_COVERS 100  /* limit of the visits per pixel, on average; elements side by side need less than ten */
+#define LEAST_WORK 20000 /* pixels added to the limit, for a small page */
 typedef struct {
   uint32_t *pixels; /* [height][stride], owned by the surface */
   int width, height, stride;
   double dots;                    /* pixels per point */
   int cuts;                       /* pieces of an element per direction */
-  double work;                    /* pixels that may still be looked at; below zero nothing more is painted */
+  double work;                    /* remaining pixel visits; below zero nothing more is painted */
   uint32_t colours[COLOUR_COUNT]; /* of the image being painted */
 } Raster;
 
 typedef struct {
-  double x, y, value; /* pixels; share of the colour range */
+  double x, y, value; /* pixels; fraction of the colour range */
 } Vertex;
 
 static void FillColours(Raster *raster, PetscReal fade)
@@ -103,7 +103,7 @@ static void FillColours(Raster *raster, PetscReal fade)
   }
 }
 
-/* Fills the pixels whose centres lie inside or on the edges, so that neighbours leave no seam. */
+/* Fills the pixels whose centres lie inside or on the edges, so that no seam is left between neighbours. */
 static void FillTriangle(Raster *raster, const Vertex a, const Vertex b, const Vertex c)
 {
   const double area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
@@ -156,8 +156,8 @@ static Vertex ElementVertex(const LamField *field, const LamColourRange *range, 
   return (Vertex){(point[0] - view->frame.x) * dots, (point[1] - view->frame.y) * dots, LamColourShare(range, value)};
 }
 
-/* Cuts per direction, for pieces of about four pixels, so that curved edges and quadratic fields look it; the same for
-   all elements, so that neighbours meet in the same points. */
+/* Cuts per direction, for pieces of about four pixels, so that curved edges and quadratic fields look smooth; equal
+   for all elements, so that neighbours share the same points. */
 static int FieldCuts(const LamField *field, const LamView *view, double dots)
 {
   const PetscReal zero[2] = {0, 0};

@@ -1,9 +1,9 @@
 /*
   Interfaces of contact tissue in a picture: gaps between facing walls, and the pressure where they touch.
 
-  Gaps are strips between the two walls, coloured by their width; where they are thinner than a line they have a line's
-  width, so that an open face never looks closed. The pressure is a ribbon along the face, as wide as the pressure is
-  large: widest where it has its largest value of the state, nothing where the faces do not touch.
+  Gaps are strips between the two walls, coloured by their width; strips thinner than a line are drawn with a line's
+  width, so that an open face never looks closed. The pressure is a ribbon along the face whose width is proportional to
+  the pressure: widest at the largest value of the state, zero where the faces do not touch.
 */
 #include "plot.h"
 #include <math.h>
@@ -12,7 +12,7 @@
 static const LamColour Pressure = {0.95, 0.53, 0.0};
 static const double ThinnestGap = 1.1, WidestRibbon = 5; /* points */
 
-/* Pink to dark magenta: brightness falls evenly, and neither walls nor lines have these colours. */
+/* Pink to dark magenta: brightness falls uniformly, and neither walls nor lines have these colours. */
 LamColour LamGapColour(PetscReal share)
 {
   static const PetscReal stops[3][3] = {{1.0, 0.76, 0.85}, {0.95, 0.30, 0.66}, {0.56, 0.0, 0.40}};
@@ -26,7 +26,7 @@ LamColour LamGapColour(PetscReal share)
 
 /* ---- reading ---- */
 
-/* One array of samples; the first one that is read tells how many there are. */
+/* Reads one array of samples; the first one read sets their number. */
 static PetscErrorCode ReadSamples(const char path[], const char group[], const char name[], PetscInt columns,
                                   LamInterface *interface, PetscReal **values)
 {
@@ -117,15 +117,15 @@ void LamInterfaceDrawGaps(LamCanvas canvas, const LamView *view, const LamInterf
     for (PetscInt k = 0; k + 1 < interface->points; k++) {
       const PetscInt i = face * interface->points + k;
 
-      /* false also where a sample faces no wall */
+      /* false also if a sample faces no wall */
       if (interface->gap[i] + interface->gap[i + 1] > 2 * LAM_VISIBLE_GAP) DrawStrip(canvas, view, interface, shift, i);
     }
   }
   cairo_restore(cr);
 }
 
-/* A point of the ribbon's edge at sample k of a face, on the page; side 1: to the left of the samples' direction, -1.
- */
+/* A point of the ribbon's edge at sample k of a face, on the page; side 1: to the left of the samples' direction,
+   -1. */
 static void RibbonEdge(const LamView *view, const LamInterface *interface, const PetscReal shift[2], PetscInt face,
                        PetscInt k, double side, double edge[2])
 {

@@ -1,5 +1,5 @@
 /*
-  Picture of a map: left how the tissue fails, right a number of each point.
+  Picture of a map: left the failure modes, right a number of each point.
 
   Each point is a cell of the picture, whose edges are half-way to its neighbours.
 */
@@ -32,7 +32,7 @@ static LamAxes AxesOf(const LamMapPicture *p)
                    .y = {p->y.edge[0], p->y.edge[p->y.n], p->y.label, y_unit, PETSC_FALSE, {0}}};
 }
 
-/* A cell of the picture; neighbours overlap by a hair, so that no seam shows. */
+/* A cell of the picture; neighbours overlap slightly, so that no seam shows. */
 static void CellPath(cairo_t *cr, const LamAxes *axes, const LamMapPicture *p, PetscInt i)
 {
   const PetscInt x = i % p->x.n, y = i / p->x.n;
@@ -42,7 +42,7 @@ static void CellPath(cairo_t *cr, const LamAxes *axes, const LamMapPicture *p, P
   cairo_rectangle(cr, left, top - hair, right - left + hair, bottom - top + hair);
 }
 
-/* A thin cross, where there is no answer. */
+/* A thin cross, for points that did not converge. */
 static void CrossCell(cairo_t *cr, const LamAxes *axes, const LamMapPicture *p, PetscInt i)
 {
   const double x = LamAxesX(axes, p->x.at[i % p->x.n]), y = LamAxesY(axes, p->y.at[i / p->x.n]), h = 1.8;
@@ -79,7 +79,7 @@ static void DrawField(LamCanvas canvas, const LamAxes *axes, const LamMapPicture
   }
 }
 
-/* ---- the onset, finer than the cells ---- */
+/* ---- the onset, at higher resolution than the cells ---- */
 
 /* Where a row or column of points along the load fails, in the axis' own quantity; NaN: nowhere. */
 static PetscReal OnsetAlong(const LamMapPicture *p, const LamMapSide *side, PetscInt last)
@@ -95,7 +95,7 @@ static PetscBool IsOfLoad(const LamMapSide *side)
   return (PetscBool)(!strcmp(side->quantity, "shear") || !strcmp(side->quantity, "load_factor"));
 }
 
-/* Where an axis is of the load: the load at which each path fails. */
+/* For an axis that is a load quantity: the load at which each path fails. */
 static void DrawOnset(LamCanvas canvas, const LamAxes *axes, const LamMapPicture *p)
 {
   const PetscBool x_is_load = IsOfLoad(&p->x);
@@ -122,7 +122,7 @@ static void DrawOnset(LamCanvas canvas, const LamAxes *axes, const LamMapPicture
 
 /* ---- contours ---- */
 
-/* Where `level` lies between two points; false: not between them. */
+/* Position of `level` between two points; false: not between them. */
 static PetscBool Crossing(const LamMapPicture *p, PetscInt a, PetscInt b, PetscReal level, PetscReal at[2])
 {
   const PetscReal va = p->load_factor[a], vb = p->load_factor[b];
@@ -135,7 +135,7 @@ static PetscBool Crossing(const LamMapPicture *p, PetscInt a, PetscInt b, PetscR
   return PETSC_TRUE;
 }
 
-/* The piece of a contour between four points of one mode; between modes the load factor may jump. */
+/* The segment of a contour between four points of the same mode; between modes the load factor may jump. */
 static PetscBool ContourPiece(const LamMapPicture *p, PetscInt x, PetscInt y, PetscReal level, PetscReal piece[2][2])
 {
   const PetscInt a = y * p->x.n + x, b = a + 1, c = b + p->x.n, d = a + p->x.n;
@@ -147,7 +147,7 @@ static PetscBool ContourPiece(const LamMapPicture *p, PetscInt x, PetscInt y, Pe
   return (PetscBool)(found == 2);
 }
 
-/* A contour with its level once, where there is room for it: at the piece nearest to the diagonal. */
+/* A contour with one label where there is room for it: at the segment nearest to the diagonal. */
 static void DrawContour(LamCanvas canvas, const LamAxes *axes, const LamMapPicture *p, PetscReal level,
                         const char text[])
 {
@@ -222,7 +222,7 @@ static PetscBool Occurs(const LamMapPicture *p, PetscInt mode)
   return PETSC_FALSE;
 }
 
-/* The modes that occur, and what the lines are. Returns the height used. */
+/* Legend of the modes that occur and of the lines. Returns the height used. */
 static double DrawLegend(LamCanvas canvas, LamRect outer, const LamMapPicture *p)
 {
   const double row = 1.6 * LAM_TICK_SIZE, sample = LAM_TICK_SIZE + 3;

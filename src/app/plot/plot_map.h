@@ -1,12 +1,12 @@
 /*
-  Private to the picture of a map: what it shows.
+  Private to the picture of a map: its data.
 */
 #ifndef LAM_PLOT_MAP_H
 #define LAM_PLOT_MAP_H
 
 #include "plot.h"
 
-/* As files name them; any other is drawn as unknown. */
+/* Names as in files; any other is drawn as unknown. */
 #define LAM_MAP_MODES(X)                                                                                               \
   X(LAM_MAP_NONE, "none")                                                                                              \
   X(LAM_MAP_SEPARATION, "separation")                                                                                  \
@@ -16,7 +16,7 @@
   X(LAM_MAP_UNKNOWN, "unknown")
 typedef enum { LAM_MAP_MODES(LAM_ENUM_ENTRY) LAM_MAP_MODE_COUNT } LamMapMode;
 
-/* One axis: where its points and the edges of their cells lie, logarithms where the spacing is. */
+/* One axis: positions of its points and of the edges of their cells, as logarithms if the spacing is logarithmic. */
 typedef struct {
   PetscInt n;
   PetscReal *at, *edge; /* [n], [n + 1]; owned */
@@ -26,8 +26,8 @@ typedef struct {
 
 typedef struct {
   LamMapSide x, y;
-  PetscInt n;             /* points of the map */
-  PetscInt *mode;         /* [n] a LamMapMode, -1: no answer yet; owned */
+  PetscInt n;             /* number of points of the map */
+  PetscInt *mode;         /* [n] a LamMapMode, -1: not computed yet; owned */
   PetscReal *load_factor; /* [n]; owned */
   PetscReal *shear;       /* [n] F12 of the record; owned */
   PetscReal *value;       /* [n] of the field; owned */
@@ -35,12 +35,12 @@ typedef struct {
   LamColourRange range;
 } LamMapPicture;
 
-/* ---- plot_map_read.c: PETSC_ERR_USER_INPUT where the file or the request lacks something ---- */
+/* ---- plot_map_read.c: PETSC_ERR_USER_INPUT if the file lacks data or the request does not fit ---- */
 PetscErrorCode LamMapPictureRead(const LamPlotRequest *request, LamMapPicture *picture);
 PetscErrorCode LamMapPictureDestroy(LamMapPicture *picture);
 
 /* ---- plot_map.c ---- */
-/* The modes alone, with their legend, inside `outer`; *axes: where a way over the map can be drawn. */
+/* Draws the modes alone, with their legend, inside `outer`; *axes: for drawing a path on the map. */
 PetscErrorCode LamMapDrawModes(LamCanvas canvas, LamRect outer, const LamMapPicture *picture, LamAxes *axes);
 
 #endif

@@ -1,5 +1,5 @@
 /*
-  What the picture of a map shows, from its file.
+  Reads the data of the picture of a map from its file.
 */
 #include "plot_map.h"
 #include <math.h>
@@ -78,7 +78,7 @@ static PetscErrorCode ReadSide(const char path[], char letter, LamMapSide *side)
   PetscFunctionReturn(0);
 }
 
-/* The file's numbers of modes follow its own list of names. */
+/* The mode numbers in the file refer to its own list of names. */
 static PetscErrorCode ReadModes(const char path[], LamMapPicture *p)
 {
   PetscInt rank, dims[4], number[16], count = 0;
@@ -101,7 +101,7 @@ static PetscErrorCode ReadModes(const char path[], LamMapPicture *p)
   PetscFunctionReturn(0);
 }
 
-/* A number that every record has: its name in the table of members. */
+/* Finds a scalar member of all records by its name in the table of members. */
 static const LamMember *FindMember(const char name[])
 {
   for (const LamMember *m = LamResponseMembers; m->name; m++)
@@ -109,7 +109,7 @@ static const LamMember *FindMember(const char name[])
   return NULL;
 }
 
-/* The member of a record in physical units; NaN where it has no fields. */
+/* The member of a record in physical units; NaN if it has no fields. */
 static PetscReal MemberValue(const LamMember *member, const LamResponse *record, const LamScales *scales)
 {
   const char *at = (const char *)record + member->offset;

@@ -1,7 +1,7 @@
 /*
   Edges and closed outlines of meshes of nine-node quadrilaterals and six-node triangles.
 
-  Algorithm. Sort all edges by group and nodes: an edge that comes twice lies inside, one that comes once on the
+  Algorithm. Sort all edges by group and nodes: an edge that occurs twice is interior, one that occurs once is on the
   boundary of its group. Boundary edges keep the direction of their element, so the outer loop of a ring runs
   counter-clockwise and that of its lumen clockwise.
 */
@@ -38,7 +38,7 @@ static PetscInt FindStart(PetscInt n, const LamEdge edges[], PetscInt group, Pet
   return found ? (PetscInt)(found - edges) : -1;
 }
 
-/* Follows boundary edges from end to start until each has its place in a loop. */
+/* Follows boundary edges from end to start until each is part of a loop. */
 static PetscErrorCode ChainLoops(PetscInt boundary_count, LamOutline *outline)
 {
   PetscBool *used;

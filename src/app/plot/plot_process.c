@@ -1,6 +1,6 @@
 /*
-  Pictures of a process: numbers against time, the same beside the cells of a state, films of these, and the way of the
-  tissue over a map of its failure.
+  Pictures of a process: quantities against time, the same beside the cells of a state, films of these, and the path of
+  the tissue on a map of its failure.
 */
 #include "plot_process.h"
 #include "plot_map.h"
@@ -12,7 +12,7 @@ static const LamColour Ink = {0.12, 0.12, 0.16}, Now = {0.75, 0.1, 0.1};
 
 /* ---- the four charts ---- */
 
-/* Adds a number of the records. */
+/* Adds a member of the records. */
 static PetscErrorCode AddMember(LamTimeChart *chart, const LamProcessPicture *p, size_t offset, PetscReal factor,
                                 const char label[])
 {
@@ -107,12 +107,12 @@ static PetscErrorCode PlotCharts(const LamPlotRequest *request, const LamProcess
 
 /* ---- films ---- */
 
-/* What all frames share: the window, and the range of colours. */
+/* Shared by all frames: the window, and the colour range. */
 typedef struct {
   const LamWallField *field;
   PetscReal box[4];
   LamColourRange range;
-  PetscInt count, *states; /* whose cells the file has; owned */
+  PetscInt count, *states; /* states whose cells are in the file; owned */
 } Film;
 
 static PetscErrorCode HasCells(const LamProcessPicture *p, PetscInt state, PetscBool *has)
@@ -156,7 +156,7 @@ static PetscErrorCode FindStates(const LamPlotRequest *request, const LamProcess
   PetscFunctionReturn(0);
 }
 
-/* One scale of colours, and one window, for all frames. */
+/* One colour scale and one window for all frames. */
 static PetscErrorCode FindRange(const LamProcessPicture *p, Film *film)
 {
   const PetscReal none[2] = {0, 0}, margin = 1.1;
@@ -246,17 +246,17 @@ static PetscErrorCode PlotFilm(const LamPlotRequest *request, const LamProcessPi
   PetscFunctionReturn(0);
 }
 
-/* ---- the way over a map ---- */
+/* ---- the path on a map ---- */
 
-/* The numbers of a process that an axis of the map is of; NULL: it has none. The map is of the walls of the start:
-   where all their moduli have become s times those, tissue fails as that of the start at p / s and g / s. */
+/* The quantity of a process for an axis of the map; NULL: it has none. The map is for the initial walls: when all
+   wall moduli have become s times the initial ones, tissue fails as the initial tissue does at p / s and g / s. */
 static const PetscReal *AlongSide(const LamProcessPicture *p, const LamMapSide *side)
 {
   if (!strcmp(side->quantity, "turgor")) return p->turgor;
   return !strcmp(side->quantity, "cohesion") ? p->cohesion : NULL;
 }
 
-/* Where state k lies on an axis. */
+/* Position of state k on an axis. */
 static double OnSide(const LamProcessPicture *p, const LamMapSide *side, PetscInt k)
 {
   const PetscReal value = AlongSide(p, side)[k] / p->walls[k];

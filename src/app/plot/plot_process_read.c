@@ -1,5 +1,5 @@
 /*
-  What the pictures of a process show, from its file.
+  Reads the data of the pictures of a process from its file.
 */
 #include "plot_process.h"
 #include <math.h>

@@ -1,5 +1,5 @@
 /*
-  Arrays that a picture cannot do without, read and checked.
+  Reads and checks arrays that a picture requires.
 */
 #include "plot.h"
 
@@ -50,7 +50,7 @@ PetscErrorCode LamPlotReadPoints(const char path[], const char name[], PetscInt 
   PetscFunctionReturn(0);
 }
 
-/* Triangles alone: six columns become nine, the last of them -1. */
+/* For triangles alone: extends six columns to nine, the last three -1. */
 static PetscErrorCode Widen(PetscInt count, PetscInt **elements)
 {
   PetscInt *wide;

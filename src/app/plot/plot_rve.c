@@ -6,7 +6,7 @@
 static const LamColour Ink = {0.12, 0.12, 0.16};
 
 typedef struct {
-  LamDatabase database; /* owned; lends records and keys */
+  LamDatabase database; /* owned; owner of records and keys */
   PetscInt record_count;
   const LamResponse *records;
   const PetscInt64 *keys;
@@ -17,7 +17,7 @@ typedef struct {
   LamTissue tissue;
 } RVEPicture;
 
-/* The asked state, or the last one that has an answer. */
+/* The requested state, or the last converged one. */
 static PetscErrorCode FindState(const LamPlotRequest *request, RVEPicture *p)
 {
   PetscInt i = p->record_count - 1;
@@ -99,7 +99,7 @@ static PetscErrorCode Title(const RVEPicture *p, size_t size, char title[])
 
 static const double KeyRow = 10;
 
-/* Scale bar, and what the dashed line, the paler cells and the ribbons are; as far as `right`. */
+/* Scale bar, and legend of the dashed line, the paler cells and the ribbons; as far as `right`. */
 static void DrawKey(LamCanvas canvas, const LamView *view, double right, const RVEPicture *p)
 {
   cairo_t *cr = LamCanvasCairo(canvas);
@@ -119,7 +119,7 @@ static void DrawKey(LamCanvas canvas, const LamView *view, double right, const R
 
 static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const RVEPicture *p)
 {
-  /* apothems: the nearest neighbours show; at contact less of them, for the sake of the gaps */
+  /* apothems: the nearest neighbours are visible; for contact tissue a smaller part of them, to show the gaps larger */
   const PetscReal none[2] = {0, 0}, margin = p->tissue.has_interface ? 0.5 : 1.1;
   const double right = outer.x + outer.width;
   PetscReal reference[2], box[4];

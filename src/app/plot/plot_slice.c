@@ -1,11 +1,12 @@
 /*
-  What a slice through a table holds: its answers at a raster of deformations, and the nodes that lie in it.
+  Data of a slice through a table: its responses on a raster of deformations, and the nodes that lie in it.
 
   Method
-    F = U has principal logarithmic strains e1, e2 along two axes that are held. With n = (cos a, sin a) along the
-  first, U = exp(e1) n(x)n + exp(e2) m(x)m,   m normal to n. A node with mean strain m, isochoric strain r and first
-  axis at the angle b lies r sin 2(b - a) out of the slice and is drawn at e1, e2 = m +- r cos 2(b - a). The rotations
-  and mirrors of a regular lattice give six images of it.
+
+  F = U has principal logarithmic strains e1, e2 along two fixed axes. With n = (cos a, sin a) along the first, U =
+  exp(e1) n(x)n + exp(e2) m(x)m, m normal to n. A node with mean strain m, isochoric strain r and first axis at the
+  angle b lies r sin 2(b - a) out of the slice and is drawn at e1, e2 = m +- r cos 2(b - a). The rotations and mirrors
+  of a regular lattice give six images of it.
 */
 #include "plot_slice.h"
 #include <jansson.h>
@@ -14,9 +15,9 @@
 #include <string.h>
 
 #define FACE_ANGLE (PETSC_PI / 3)
-#define REACH 0.02  /* of the width of the slice: how far nodes may lie out of it */
+#define REACH 0.02  /* of the width of the slice: distance of nodes to the slice up to which they are drawn */
 #define TINY 1e-9   /* rounding of a suction, C1 + C2 */
-#define MARGIN 0.12 /* of the sample's width: what is drawn around it */
+#define MARGIN 0.12 /* of the sample's width: margin drawn around it */
 
 void LamPrincipalStrains(const PetscReal F[9], PetscReal strain[2], PetscReal *angle)
 {
@@ -49,7 +50,7 @@ static LamLoad LoadAt(const LamSlice *s, const LamScales *scales, PetscReal e1, 
                    .cohesion = s->cohesion * MPa};
 }
 
-/* ---- which slice ---- */
+/* ---- choice of the slice ---- */
 
 PetscErrorCode LamSliceRefuse(const LamPlotRequest *request)
 {
@@ -93,13 +94,13 @@ static PetscReal Suction(const LamLoad *load)
   return load->turgor + load->cohesion;
 }
 
-/* Whether a record is a solved node; states of cells that touch no one are kept beside them. */
+/* Whether a record is a solved node; states of floating cells are stored beside them. */
 static PetscBool IsNode(LamGrid grid, PetscInt64 key)
 {
   return (PetscBool)(LamKeyIsNode(key) && LamGridNodeLevel(grid, key) >= 0);
 }
 
-/* Least and largest suction of the nodes; PETSC_FALSE: there are none. */
+/* Smallest and largest suction of the nodes; PETSC_FALSE: there are no nodes. */
 static PetscBool SuctionRange(LamGrid grid, PetscInt n, const LamResponse records[], const PetscInt64 keys[],
                               PetscReal range[2])
 {
@@ -113,7 +114,7 @@ static PetscBool SuctionRange(LamGrid grid, PetscInt n, const LamResponse record
   return (PetscBool)(range[0] <= range[1]);
 }
 
-/* The load of the node whose suction is nearest; `coarsest`: of those that no refinement made. NULL: there is none. */
+/* The load of the node with the nearest suction; `coarsest`: only nodes of the coarsest level. NULL: there is none. */
 static const LamLoad *NearestLoad(LamGrid grid, PetscInt n, const LamResponse records[], const PetscInt64 keys[],
                                   PetscReal suction, PetscBool coarsest)
 {
@@ -161,7 +162,7 @@ static PetscErrorCode ChooseLoad(const LamPlotRequest *request, LamGrid grid, Pe
   PetscFunctionReturn(0);
 }
 
-/* The scene's sample box, else what the nodes cover, with a margin. */
+/* The scene's sample box, else the range of the nodes, with a margin. */
 static PetscErrorCode ChooseBox(const char path[], LamGrid grid, PetscInt n, const LamResponse records[],
                                 const PetscInt64 keys[], LamSlice *s)
 {
@@ -241,7 +242,7 @@ static PetscErrorCode CollectNodes(LamGrid grid, const LamMicrostructure *micro,
   PetscFunctionReturn(0);
 }
 
-/* ---- answers ---- */
+/* ---- responses ---- */
 
 static LamSliceVerdict VerdictOf(const LamSlice *s, const LamResponse *answer)
 {

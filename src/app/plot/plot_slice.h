@@ -1,22 +1,22 @@
 /*
-  Private to the picture of a table: what a slice through it holds.
+  Private to the picture of a table: the data of a slice through it.
 */
 #ifndef LAM_PLOT_SLICE_H
 #define LAM_PLOT_SLICE_H
 
 #include "plot.h"
 
-/* What the table says at a point of the slice. */
+/* Result of the query at a point of the slice. */
 typedef enum {
   LAM_SLICE_ANSWERED,
-  LAM_SLICE_FLOATING,   /* answered: cells touch no one */
-  LAM_SLICE_INACCURATE, /* refused to the accuracy, answered to any */
+  LAM_SLICE_FLOATING,   /* response: floating cells */
+  LAM_SLICE_INACCURATE, /* no response to the accuracy, but one without accuracy limit */
   LAM_SLICE_KINK,       /* a change of branch, a loss of contact or a failed node nearby */
-  LAM_SLICE_NOTHING,    /* no nodes around: outside the grid, or nobody has asked yet */
+  LAM_SLICE_NOTHING,    /* no nodes around: outside the grid, or not queried yet */
   LAM_SLICE_VERDICT_COUNT
 } LamSliceVerdict;
 
-/* What is drawn of the answers, one panel each. */
+/* Quantities drawn, one panel each. */
 typedef enum {
   LAM_SLICE_POTENTIAL, /* MPa */
   LAM_SLICE_STRESS,    /* MPa */
@@ -37,14 +37,14 @@ typedef struct {
 /* Samples lie at the middles of equal cells of the square [low, high]^2, e1 fastest. */
 typedef struct {
   PetscReal low, high;
-  PetscReal box[2];              /* least and largest strain of the scene's sample; NaN: it has none */
+  PetscReal box[2];              /* smallest and largest strain of the scene's sample; NaN: it has none */
   PetscReal orientation, angle;  /* of face normal 0 to X1, of the first principal axis to that normal; radian */
   LamInterfaceLawType interface; /* of the tissue */
   PetscReal turgor, cohesion;    /* MPa */
-  PetscReal node_suction;        /* MPa, of the nodes that are drawn: nearest to that of the slice */
-  PetscReal accuracy;            /* that the table is asked for */
+  PetscReal node_suction;        /* MPa, of the nodes drawn: nearest to that of the slice */
+  PetscReal accuracy;            /* of the queries */
   LamSliceVerdict *verdict;      /* [sample]; owned */
-  PetscReal *value[LAM_SLICE_PANEL_COUNT]; /* [sample], NaN where there is no answer; owned */
+  PetscReal *value[LAM_SLICE_PANEL_COUNT]; /* [sample], NaN without response; owned */
   PetscInt count[LAM_SLICE_VERDICT_COUNT]; /* samples of each verdict */
   PetscInt table_nodes;                    /* of the whole table */
   PetscInt node_count;
@@ -55,8 +55,8 @@ typedef struct {
 /* Principal logarithmic strains e1 >= e2 of the plane, and the angle of the first to X1 before the deformation. */
 void LamPrincipalStrains(const PetscReal F[9], PetscReal strain[2], PetscReal *angle);
 
-/* ---- plot_slice.c: PETSC_ERR_USER_INPUT where the request does not fit the table ---- */
-/* Refuses a request that chooses a slice, where there is no table. */
+/* ---- plot_slice.c: PETSC_ERR_USER_INPUT if the request does not fit the table ---- */
+/* Rejects a request that chooses a slice if there is no table. */
 PetscErrorCode LamSliceRefuse(const LamPlotRequest *request);
 PetscErrorCode LamSliceRead(const LamPlotRequest *request, LamDatabase database, LamSlice *slice);
 PetscErrorCode LamSliceDestroy(LamSlice *slice);

@@ -1,8 +1,8 @@
 /*
-  Picture of a table: slices through the plane of two principal logarithmic strains whose axes are held.
+  Picture of a table: slices through the plane of two principal logarithmic strains with fixed axes.
 
-  Four panels: the potential, the stress, the estimated error with the nodes that lie in the slice, and what opens.
-  Where the table does not answer, all of them show why.
+  Four panels: the potential, the stress, the estimated error with the nodes that lie in the slice, and the gaps or
+  lumens. Where the table has no response, all panels show the reason.
 */
 #include "plot_slice.h"
 #include <math.h>
@@ -11,14 +11,14 @@
 
 #define FRAME 152.0 /* edge of a panel */
 #define HEADER 54.0 /* height of title and legend */
-#define BELOW 36.0  /* of a panel: numbers, label and air */
+#define BELOW 36.0  /* of a panel: tick labels, label and spacing */
 #define GLYPH 19.0  /* radius of the cell in the header */
 #define NODE_SIZE 5.0
 enum { MOST_LEVELS = 8 }; /* of nodes */
 
 static const LamColour Ink = {0.15, 0.15, 0.15}, White = {1, 1, 1}, Failure = {0.80, 0.15, 0.05};
 
-/* How points without a good answer look; hatched rising, falling or both. */
+/* Appearance of points without a good response; hatched rising, falling or both. */
 typedef struct {
   const char *label;
   PetscBool filled;
@@ -78,7 +78,7 @@ static PetscErrorCode PaintSamples(LamCanvas canvas, LamRect frame, const LamSli
   PetscFunctionReturn(0);
 }
 
-/* Lines through the clip of the canvas; a dark line has a light one below it, so that it shows on any colour. */
+/* Draws lines inside the clip of the canvas; a light line below each dark one makes it visible on any colour. */
 static void Hatch(LamCanvas canvas, LamRect r, const Look *look)
 {
   cairo_t *cr = LamCanvasCairo(canvas);
@@ -101,7 +101,7 @@ static void Hatch(LamCanvas canvas, LamRect r, const Look *look)
   }
 }
 
-/* Hatches the samples of a verdict; rows overlap by a hair, so that no seam shows. */
+/* Hatches the samples of a verdict; rows overlap slightly, so that no seam shows. */
 static void HatchSamples(LamCanvas canvas, LamRect frame, const LamSlice *s, LamSliceVerdict verdict)
 {
   const double edge = frame.width / LAM_SLICE_SAMPLES, hair = 0.1;
@@ -220,7 +220,7 @@ static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const Page *pag
 
 /* ---- header ---- */
 
-/* Room for the next entry of a legend whose rows are `width` wide; moves the pen on. */
+/* Reserves room for the next entry of a legend whose rows are `width` wide; advances the position. */
 typedef struct {
   double left, right, x, y;
 } Pen;
@@ -268,7 +268,7 @@ static void LegendOfVerdict(LamCanvas canvas, Pen *pen, const LamSlice *s, LamSl
   cairo_stroke(cr);
 }
 
-/* Whether the slice has nodes of a kind on each level. Returns the number of levels that it has some on. */
+/* Finds on which levels the slice has nodes of a kind. Returns the number of such levels. */
 static PetscInt FindLevels(const LamSlice *s, LamSliceNodeKind kind, PetscBool occurs[MOST_LEVELS])
 {
   PetscInt found = 0;
@@ -333,7 +333,7 @@ static void Arrow(LamCanvas canvas, double x, double y, double angle, double len
   LamCanvasText(canvas, x + (length + 5.5) * c, y + (length + 5.5) * n, 0.5, 0, LAM_TICK_SIZE, label);
 }
 
-/* A cell and the two axes of stretch. */
+/* A cell and the two principal axes. */
 static void DrawGlyph(LamCanvas canvas, double x, double y, const LamSlice *s)
 {
   const double radius = GLYPH * 0.8;
@@ -373,7 +373,7 @@ static void DrawHeader(LamCanvas canvas, const LamSlice *s)
 
 /* ---- the page ---- */
 
-/* Two decades below the accuracy and one above it, so that tables are drawn alike. */
+/* Two decades below the accuracy and one above it, so that pictures of tables are comparable. */
 static LamColourRange ErrorRange(const LamSlice *s)
 {
   const PetscReal limit = log10(100 * s->accuracy);

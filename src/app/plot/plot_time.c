@@ -1,5 +1,5 @@
 /*
-  Numbers against time, for pictures of processes: their reading, their charts, the names of frames.
+  Quantities against time, for pictures of processes: reading, charts, names of frames.
 */
 #include "plot_time.h"
 #include <math.h>
@@ -58,7 +58,7 @@ PetscErrorCode LamTimeReadGroup(const LamTimeLine *line, const char group[], Pet
 
     PetscCall(PetscSNPrintf(name, sizeof(name), "/process/%s/%s", group, names[k]));
     PetscCall(LamFileReadReals(line->path, name, &found, &rank, dims, &values[*count]));
-    if (!found) continue; /* a parameter that the walls do not have */
+    if (!found) continue; /* a parameter that the wall law does not have */
     PetscCall(PetscFree(values[*count]));
     PetscCall(LamPlotReadReals(line->path, name, line->n, 1, &values[*count]));
     if (!shows(line->n, values[*count])) {

@@ -11,7 +11,7 @@ static const LamWallField Fields[] = {
 };
 
 static const LamColour WallLine = {0.12, 0.12, 0.16}, Lumen = {0.90, 0.945, 0.97}, Reference = {0.80, 0.15, 0.05};
-static const PetscReal NeighbourFade = 0.55; /* share of white in the periodic images */
+static const PetscReal NeighbourFade = 0.55; /* fraction of white in the periodic images */
 
 PetscErrorCode LamWallFieldFind(const char name[], const LamWallField **field)
 {
@@ -87,7 +87,7 @@ void LamTissueCentreReference(const LamTissue *t, PetscReal shift[2])
     for (int k = 0; k < 2; k++) shift[k] += (t->x[2 * i + k] - t->nodes[2 * i + k]) / t->node_count;
 }
 
-/* Images x + F.S of the RVE that show in the view; the RVE itself comes last, so that it lies on top. */
+/* Images x + F.S of the RVE that are visible in the view; the RVE itself comes last, so that it lies on top. */
 static PetscErrorCode VisibleImages(const LamTissue *t, const LamView *view, PetscInt *count, LamImage **images)
 {
   const PetscReal *F = t->F, none[2] = {0, 0};
@@ -112,7 +112,7 @@ static PetscErrorCode VisibleImages(const LamTissue *t, const LamView *view, Pet
   PetscFunctionReturn(0);
 }
 
-/* Path of the outer (or lumen) loops of one image, as far as they show. */
+/* Path of the outer (or lumen) loops of one image, as far as they are visible. */
 static void LoopsPath(LamCanvas canvas, const LamView *view, const LamTissue *t, PetscBool lumens,
                       const PetscReal shift[2])
 {

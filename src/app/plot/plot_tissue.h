@@ -9,7 +9,7 @@
 typedef struct {
   const char *name, *label, *unit; /* name: of the dataset and of --field */
 } LamWallField;
-/* The named field; NULL: the first. PETSC_ERR_USER_INPUT where there is none of this name. */
+/* The field of this name; NULL: the first. PETSC_ERR_USER_INPUT if there is none. */
 PetscErrorCode LamWallFieldFind(const char name[], const LamWallField **field);
 
 typedef struct {
@@ -24,19 +24,20 @@ typedef struct {
 } LamTissue;
 
 /* Reads the mesh in the group `mesh` ("/mesh") of the file and a state's fields in the group `fields` ("/fields/3").
-   PETSC_ERR_USER_INPUT where the file lacks them. */
+   PETSC_ERR_USER_INPUT if the file lacks them. */
 PetscErrorCode LamTissueRead(const char path[], const char mesh[], const char fields[], const LamWallField *field,
                              PetscBool has_interface, const PetscReal F[9], LamTissue *tissue);
 PetscErrorCode LamTissueDestroy(LamTissue *tissue);
 /* A patch has no period. */
 PetscBool LamTissueIsPeriodic(const LamTissue *tissue);
-/* Moves the reference so that both centroids coincide: a translation has no meaning in a periodic tissue. */
+/* Computes the shift of the reference for which both centroids coincide: a translation has no meaning in a periodic
+   tissue. */
 void LamTissueCentreReference(const LamTissue *tissue, PetscReal shift[2]);
-/* Lumens, walls with their field, outlines; everything inside the frame of the view. `reference`: shift of the
+/* Draws lumens, walls with their field, outlines, all inside the frame of the view. `reference`: shift of the
    undeformed outline; NULL: it is not drawn. */
 PetscErrorCode LamTissueDraw(LamCanvas canvas, const LamView *view, const LamTissue *tissue,
                              const LamColourRange *range, const PetscReal reference[2]);
-/* The dashes of what is undeformed, along the current path. */
+/* Strokes the current path with the dashes used for undeformed outlines. */
 void LamStrokeUndeformed(LamCanvas canvas);
 
 #endif

@@ -1,5 +1,5 @@
 /*
-  Zooms into the microstructure: the cells at chosen points of the body, beside it, all at one scale.
+  Zooms into the microstructure: the cells at selected points of the body, beside it, all at the same scale.
 */
 #include "plot_fe2.h"
 #include <math.h>
@@ -10,7 +10,7 @@ static const double Gap = 9, KeyRow = 10, Marker = 3.2; /* points */
 
 /* ---- reading ---- */
 
-/* What concerns all of them: one range of colours for stress, one for gaps, one width of pressure. */
+/* Sets scales common to all zooms: one colour range for stress, one for gaps, one width of pressure. */
 static PetscErrorCode ShareScales(LamZooms *z)
 {
   PetscReal *values, widest = 0, pressure = 0;
@@ -96,7 +96,7 @@ PetscErrorCode LamZoomsDestroy(LamZooms *z)
 
 /* ---- drawing ---- */
 
-/* Half the sides of a square, um, that holds every RVE and a part of its neighbours. */
+/* Half the side of a square, um, that contains every RVE and a part of its neighbours. */
 static PetscReal WindowSize(const LamZooms *z)
 {
   const PetscReal none[2] = {0, 0}, margin = z->has_interface ? 0.5 : 0.8;
@@ -128,7 +128,7 @@ static void ZoomView(const LamZooms *z, PetscInt k, LamRect frame, PetscReal hal
   LamViewFit(frame, window, view);
 }
 
-/* From the point in the body to the near corners of the frame. */
+/* Draws lines from the point in the body to the near corners of the frame. */
 static void DrawLines(LamCanvas canvas, const LamView *body, const PetscReal x[2], LamRect frame)
 {
   cairo_t *cr = LamCanvasCairo(canvas);
@@ -139,7 +139,7 @@ static void DrawLines(LamCanvas canvas, const LamView *body, const PetscReal x[2
     cairo_move_to(cr, point[0], point[1]);
     cairo_line_to(cr, frame.x, frame.y + end * frame.height);
   }
-  LamCanvasSetColour(canvas, Paper); /* around the lines, so that they show on dark colours */
+  LamCanvasSetColour(canvas, Paper); /* outlines the lines, so that they are visible on dark colours */
   cairo_set_line_width(cr, 1.3);
   cairo_stroke_preserve(cr);
   LamCanvasSetColour(canvas, Ink);
@@ -161,7 +161,7 @@ static void DrawMarker(LamCanvas canvas, const LamView *body, const PetscReal x[
   cairo_stroke(cr);
 }
 
-/* Where in the undeformed body the cells are, in the frame's upper left corner. */
+/* Prints the position of the cells in the undeformed body, in the frame's upper left corner. */
 static void DrawLabel(LamCanvas canvas, LamRect frame, const PetscReal place[2])
 {
   cairo_t *cr = LamCanvasCairo(canvas);
@@ -175,7 +175,7 @@ static void DrawLabel(LamCanvas canvas, LamRect frame, const PetscReal place[2])
   LamCanvasText(canvas, frame.x + 3, frame.y + 5.3, 0, 0, LAM_TICK_SIZE, text);
 }
 
-/* From the highest point down, so that lines to the frames do not cross. */
+/* Sorts from the highest point down, so that lines to the frames do not cross. */
 static void Sort(const LamZooms *z, PetscInt order[LAM_PLOT_MAX_ZOOMS])
 {
   for (PetscInt k = 0; k < z->count; k++) {
