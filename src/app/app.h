@@ -44,8 +44,8 @@ PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandInfo(LamArgs *args, int *exit_status);
 
 /* ---- program.c ---- */
-/* Finds the command and runs it. argv[0] is the program's name; arguments after `--`, which replaces the program's
-   name there, are for PETSc alone. `start`: of LamArgs. */
+/* Finds the command and runs it. argv[0] is the program's name; arguments after `--` are for PETSc alone.
+   `start`: of LamArgs. */
 PetscErrorCode LamProgramRun(int argc, char *argv[], PetscErrorCode (*start)(LamArgs *args), int *exit_status);
 
 /* ---- runtime.c ---- */

@@ -15,7 +15,7 @@ typedef struct {
   LamProgress progress;
 } Command;
 
-/* Creates the output folder before anything is measured. */
+/* Creates the output folder if needed, before anything is measured. */
 static PetscErrorCode CheckDirectory(const Command *run)
 {
   struct stat status;

@@ -12,7 +12,7 @@ PetscErrorCode LamNodeCostsCreate(LamGrid grid, LamNodeCosts *costs); /* borrows
 PetscErrorCode LamNodeCostsDestroy(LamNodeCosts *costs);
 /* Records the cost of a node in factorisations, which unlike seconds are the same on every machine. */
 PetscErrorCode LamNodeCostsLearn(LamNodeCosts costs, PetscInt64 key, const LamResponse *response);
-/* Geometric mean over the nearest of the latest nodes; depends on the order in which they were recorded. */
+/* Geometric mean over the nearest of the latest nodes; identical for nodes recorded in the same order. */
 PetscReal LamNodeCostsPredict(LamNodeCosts costs, PetscInt64 key);
 
 #endif

@@ -118,7 +118,7 @@ PetscErrorCode LamBodyStudyPrepare(LamBodyStudy *study)
   PetscFunctionReturn(0);
 }
 
-/* Boundaries move with the load parameter alone, which stays 0 unless the program prescribes it. */
+/* Boundaries move with the load parameter alone, which stays 0 unless a leg prescribes it. */
 static void WarnOfNoLoad(const LamFE2Run *fe2)
 {
   const LamProcessSpec *spec = &fe2->scene->process;

@@ -195,7 +195,7 @@ typedef struct {
 } LamTradeoff;
 /* Measures and judges all settings, on one rank. */
 PetscErrorCode LamTradeoffRun(LamTradeoff *tradeoff);
-/* Whether the planned setting has a result, and a reference or another result to compare with. */
+/* Whether the planned setting has a result, and the reference exists if one is needed. */
 PetscBool LamTradeoffIsSolved(const LamTradeoff *tradeoff);
 PetscErrorCode LamTradeoffDestroy(LamTradeoff *tradeoff);
 

@@ -199,8 +199,8 @@ static inline int LamElementNodes(const PetscInt nodes[9])
 typedef struct {
   PetscInt element_count;
   const PetscReal *x; /* [node][2], borrowed */
-  const PetscInt
-      *elements; /* [element][9]: corners counter-clockwise, mid-edges, centre; triangle: 6, then -1; borrowed */
+  /* [element][9]: corners counter-clockwise, mid-edges, centre; of a triangle six, then -1; borrowed */
+  const PetscInt *elements;
   const PetscReal *values; /* [node], or [element] if per_element; borrowed */
   PetscBool per_element;
 } LamField;

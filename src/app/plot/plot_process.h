@@ -11,7 +11,7 @@
 /* Arrays over the states, as docs/reference/files.md describes them; all owned. */
 typedef struct {
   const char *path;     /* borrowed */
-  LamDatabase database; /* owns the records, which are borrowed from it */
+  LamDatabase database; /* owns `records` */
   LamMicrostructure micro;
   LamScales scales;
   PetscInt n;
