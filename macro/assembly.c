@@ -1,16 +1,16 @@
 /*
   Finite element assembly with the responses of a responder.
 
-  Method. Total Lagrangian, quadratic elements (element.c): F = 1 + sum_a u_a (x) dN_a/dX at every point of the rank in
+  Method. Total Lagrangian, quadratic elements (element.c): F = 1 + sum_a u_a (x) dN_a/dX at all points of the rank in
   one batch, then from the stored P and A f_ai = sum_q w P_ij dN_a/dX_j, K_ai,bk = sum_q w dN_a/dX_j A_ijkl dN_b/dX_l.
-  Where lumens are sealed, their pressures are taken out of both, element by element (sealed.c).
+  If lumens are sealed, their pressures are condensed out of both, element by element (sealed.c).
 
   Reference: Bonet & Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 2nd ed., ch. 9.
 */
 #include <time.h>
 #include "macro_impl.h"
 
-static const PetscReal LARGEST_CHANGE = 0.75; /* of a deformation gradient in one step, Frobenius norm */
+static const PetscReal LARGEST_CHANGE = 0.75; /* largest change of a deformation gradient in one step, Frobenius norm */
 
 /* The load of a material point, at displacements ue[nodes][dim] of its element. */
 static LamLoad PointLoad(LamMacro macro, const LamMacroElement *element, PetscInt q, const PetscScalar ue[])
@@ -59,7 +59,7 @@ static PetscBool SameLoad(const LamLoad *a, const LamLoad *b)
   return a->turgor == b->turgor && a->cohesion == b->cohesion ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* True on all ranks where every point's stored response belongs to its present load. */
+/* True on all ranks if every point's stored response is that of its present load. */
 static PetscErrorCode AllKnown(LamMacro macro, PetscBool *known)
 {
   PetscFunctionBeginUser;
@@ -86,7 +86,7 @@ static void KeepResponse(PetscInt dim, const LamLoad *load, const LamResponse *r
   point->percolating = response->percolating_directions;
 }
 
-/* Writes which point has no response: of all ranks, the one in the element of the lowest number. */
+/* Describes the point without response: among all ranks, the one in the element of the lowest number. */
 static PetscErrorCode DescribeTrouble(LamMacro macro, PetscInt64 failed, PetscInt point)
 {
   struct {
@@ -115,7 +115,7 @@ static PetscErrorCode DescribeTrouble(LamMacro macro, PetscInt64 failed, PetscIn
   PetscFunctionReturn(0);
 }
 
-/* Waits for the other ranks, which may learn of a request to stop from this one's asking. */
+/* Waits for the other ranks while calling macro->stop(), through which they may learn of a stop request. */
 static PetscErrorCode AwaitOthers(LamMacro macro)
 {
   const struct timespec pause = {0, 200000};
@@ -133,7 +133,7 @@ static PetscErrorCode AwaitOthers(LamMacro macro)
   PetscFunctionReturn(0);
 }
 
-/* Whether any rank was asked to stop: a signal may reach only one of them. */
+/* Whether a stop was requested on any rank: a signal may reach only one of them. */
 static PetscErrorCode AskStop(LamMacro macro)
 {
   PetscFunctionBeginUser;
@@ -145,8 +145,8 @@ static PetscErrorCode AskStop(LamMacro macro)
 }
 
 /*
-  An iteration that has gone astray asks for states that are dear to solve, or to look up, and of no use: *ok tells
-  whether no point has changed by more than LARGEST_CHANGE since the last converged state.
+  A diverging iteration queries states that are expensive to solve or to look up, and useless. *ok: whether no point
+  has changed by more than LARGEST_CHANGE since the last converged state.
 */
 static PetscErrorCode CheckChange(LamMacro macro, PetscBool *ok)
 {
@@ -169,7 +169,8 @@ static PetscErrorCode CheckChange(LamMacro macro, PetscBool *ok)
   PetscFunctionReturn(0);
 }
 
-/* Tissue whose moduli are all s times those of the responder's has the energy s Psi(F, p / s, g / s). */
+/* Queries the responder. Tissue whose moduli are all s times those of the responder's has the energy s Psi(F, p / s, g
+   / s). */
 static PetscErrorCode Ask(LamMacro macro)
 {
   LamResponder *responder = macro->responder;
@@ -217,7 +218,7 @@ PetscErrorCode LamMacroEvaluate(LamMacro macro, Vec u, PetscBool *ok)
     KeepResponse(macro->dim, &macro->loads[p], &macro->responses[p], &macro->now[p]);
     macro->now[p].walls = macro->walls;
     if (macro->now[p].known) continue;
-    /* elements are not in the order of their numbers on a rank: name the lowest */
+    /* elements are not sorted by number on a rank: report the lowest */
     if (first < 0 ||
         macro->elements[macro->point_element[p]].number < macro->elements[macro->point_element[first]].number)
       first = p;

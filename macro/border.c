@@ -1,15 +1,16 @@
 /*
-  Unknowns that are no displacement of a node: what a free grip moves by, and the factor of all tractions under load
-  control.
+  Unknowns other than nodal displacements: the free displacement component of a grip, and the factor of all tractions
+  under load control.
 
   With r' the residual, h the equations of the unknowns q, Newton's method solves
 
     (K' B) (du)     (r')
     (C  D) (dq) = - (h )
 
-  by block elimination: a = K'^-1 r', b_l = K'^-1 B_l, (D - C b) dq = -h + C a, du = -a - b dq: one more solve with the
-  factor at hand for each unknown. It happens inside the linear solver that SNES calls once in an iteration, which also
-  moves q by dq. K' is singular at a limit point alone, which no iterate hits; the bordered matrix is regular there.
+  by block elimination: a = K'^-1 r', b_l = K'^-1 B_l, (D - C b) dq = -h + C a, du = -a - b dq: one additional solve
+  per unknown with the same factor. This is done in the linear solver that SNES calls once per iteration, which also
+  updates q by dq. K' is singular only at a limit point, which no iterate hits exactly; the bordered matrix is regular
+  there.
 
   Grip: its nodes' equations are n . u - target - q = 0, h the total force on them, r the unbalanced force:
     B = -1 at these rows,  h = w . r,  C = w . K,  w = 1 at these rows.
@@ -78,7 +79,7 @@ PetscErrorCode LamMacroBordersCreate(LamMacro macro, PetscBool scene)
   PetscFunctionReturn(0);
 }
 
-/* Adds the integrals of N_a over the controlled side to its nodes, and its length. */
+/* Adds the integrals of N_a over a facet of the controlled side to its nodes, and its length to *length. */
 static PetscErrorCode AddMean(LamMacro macro, const LamMacroFacet *facet, PetscInt component, Vec local,
                               PetscReal *length)
 {
@@ -181,7 +182,8 @@ PetscErrorCode LamMacroBorderRows(LamMacro macro, Mat tangent)
   PetscFunctionReturn(0);
 }
 
-/* D_kl: how the equation of border k depends on the unknown l itself. Grips bear tractions; nothing else does. */
+/* D_kl: derivative of the equation of border k with respect to the unknown l. Nonzero only for a grip and the traction
+   factor, since grips may carry tractions. */
 static PetscErrorCode OwnDerivative(LamMacro macro, PetscInt k, PetscInt l, PetscReal *D)
 {
   PetscFunctionBeginUser;

@@ -1,5 +1,5 @@
 /*
-  Which displacements of the body are prescribed, and what acts on it at a load parameter.
+  Prescribed displacements of the body, and its loads at a load parameter.
 
   A node has up to two prescribed directions: components, or the normal of a side of symmetry.
 */
@@ -66,7 +66,7 @@ PetscErrorCode LamMacroBoundaryNames(const LamMacroSpec *spec, LamMacroStep *ste
 
 /* ---- prescribed directions of nodes ---- */
 
-/* Whether two directions of a node are one, which is then prescribed alike by both conditions. */
+/* Whether two conditions in the same direction of a node prescribe the same displacement. */
 static PetscBool Agree(LamMacro macro, const LamConstraint *one, const LamConstraint *other)
 {
   const LamBoundary *boundary = macro->scene->macro.boundary;
@@ -79,7 +79,7 @@ static PetscBool Agree(LamMacro macro, const LamConstraint *one, const LamConstr
              : PETSC_FALSE;
 }
 
-/* The displacement along `wanted` that two other directions of its node leave at factor 1. */
+/* Displacement along `wanted` at factor 1 that follows from two other directions of its node. */
 static PetscReal Implied(const LamConstraint *one, const LamConstraint *two, const LamConstraint *wanted)
 {
   const PetscReal *m = one->normal, *n = two->normal, *w = wanted->normal, det = m[0] * n[1] - m[1] * n[0];
@@ -87,7 +87,8 @@ static PetscReal Implied(const LamConstraint *one, const LamConstraint *two, con
   return ((w[0] * n[1] - w[1] * n[0]) * one->end + (m[0] * w[1] - m[1] * w[0]) * two->end) / det;
 }
 
-/* Adds a direction to those of its node, which are the last ones. *other is an entry that contradicts it, else kept. */
+/* Adds a direction to those of its node, which are the last ones. *other is set to an entry that contradicts it, else
+   unchanged. */
 static void AddConstraint(LamMacro macro, const LamConstraint *constraint, PetscInt *other)
 {
   const PetscReal parallel = 1e-8;
@@ -125,7 +126,8 @@ static PetscErrorCode SideNormal(LamMacro macro, const LamBoundary *boundary, Pe
   PetscFunctionReturn(0);
 }
 
-/* What the entries prescribe at a node, `normals` those of sides of symmetry; *worst = a contradiction, see below. */
+/* Adds the constraints of all entries at a node; normals: those of sides of symmetry; *worst: a contradiction
+   (AddNodes). */
 static void AddNode(LamMacro macro, PetscInt point, PetscInt local, const PetscScalar u[], const PetscReal normals[][2],
                     PetscBool symmetry_only, PetscInt *worst)
 {
@@ -155,12 +157,12 @@ static void AddNode(LamMacro macro, PetscInt point, PetscInt local, const PetscS
   }
 }
 
-/* All that the scene prescribes, counted from the present displacement; or its symmetry alone. */
+/* Adds all prescribed displacements of the scene, measured from the present displacement; or only its symmetry. */
 static PetscErrorCode AddNodes(LamMacro macro, PetscBool symmetry_only)
 {
   const LamMacroSpec *spec = &macro->scene->macro;
   PetscReal normals[LAM_MAX_BOUNDARIES][2];
-  PetscInt worst = -1; /* entries that contradict each other, as one number */
+  PetscInt worst = -1; /* pair of entries that contradict each other, as one number */
   const PetscScalar *u;
 
   PetscFunctionBeginUser;
@@ -186,7 +188,7 @@ static PetscErrorCode AddNodes(LamMacro macro, PetscBool symmetry_only)
 
 /* ---- rigid motions ---- */
 
-/* normal . motion of the three rigid motions at X: along X1, along X2, by a rotation. */
+/* normal . motion for the three rigid motions at X: along X1, along X2, rotation. */
 static void RigidMotions(const PetscReal normal[2], const PetscReal X[2], PetscReal motion[3])
 {
   motion[0] = normal[0];
@@ -194,7 +196,7 @@ static void RigidMotions(const PetscReal normal[2], const PetscReal X[2], PetscR
   motion[2] = normal[1] * X[0] - normal[0] * X[1];
 }
 
-/* Gram matrix of the rigid motions at all constraints; the free component of a grip still feels a rotation. */
+/* Gram matrix of the rigid motions at all constraints; the free component of a grip still restrains the rotation. */
 static PetscErrorCode RigidGram(LamMacro macro, PetscReal gram[9])
 {
   PetscReal border[2 * LAM_MAX_BOUNDARIES + 1][3] = {{0}}; /* count, sum, sum of squares of the rotation */
@@ -222,10 +224,10 @@ static PetscReal Determinant(const PetscReal g[9])
   return g[0] * (g[4] * g[8] - g[5] * g[7]) - g[1] * (g[3] * g[8] - g[5] * g[6]) + g[2] * (g[3] * g[7] - g[4] * g[6]);
 }
 
-/* The conditions hold the body where the Gram matrix of its three rigid motions at them is regular. */
+/* The conditions restrain all rigid motions if their Gram matrix at the constraints is regular. */
 static PetscErrorCode CheckRigidMotions(LamMacro macro)
 {
-  const PetscReal tiny = 1e-10; /* of numbers of order one and more: lengths are in edges of the box */
+  const PetscReal tiny = 1e-10; /* relative to numbers of order one and more: lengths are in edges of the box */
   PetscReal gram[9];
 
   PetscFunctionBeginUser;
@@ -243,7 +245,7 @@ typedef struct {
   PetscReal X[LAM_MACRO_DIM];
 } Place;
 
-/* The owned node that is farthest from a place; of equal ones that of the lowest number. */
+/* The owned node farthest from a place; among equal ones that of the lowest number. */
 static PetscErrorCode FindNode(LamMacro macro, const Place *from, Place *found)
 {
   PetscReal farthest = -1, best;
@@ -254,7 +256,7 @@ static PetscErrorCode FindNode(LamMacro macro, const Place *from, Place *found)
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(macro->comm, &rank));
-  for (int pass = 0; pass < 2; pass++) { /* the greatest distance, then who has it */
+  for (int pass = 0; pass < 2; pass++) { /* first the greatest distance, then the rank that has it */
     for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
       const PetscInt number = macro->node_number[p - macro->mesh_start];
       PetscReal distance = 0;
@@ -280,8 +282,8 @@ static PetscErrorCode FindNode(LamMacro macro, const Place *from, Place *found)
   PetscFunctionReturn(0);
 }
 
-/* Holds a component of a node where this takes a rigid motion that is free yet: basis [*rank][3] of those that are not.
- */
+/* Prescribes a component of a node if this restrains a rigid motion that is still free. basis [*rank][3]: restrained
+   motions. */
 static PetscErrorCode HoldNode(LamMacro macro, const Place *place, const PetscReal normal[2], PetscReal basis[][3],
                                PetscInt *rank)
 {
@@ -309,7 +311,7 @@ static PetscErrorCode HoldNode(LamMacro macro, const Place *place, const PetscRe
   PetscFunctionReturn(0);
 }
 
-/* Orthonormal basis of the rigid motions that the constraints hold. */
+/* Orthonormal basis of the rigid motions restrained by the constraints. */
 static PetscErrorCode HeldMotions(LamMacro macro, PetscReal basis[3][3], PetscInt *rank)
 {
   const PetscReal tiny = 1e-10;
@@ -336,7 +338,7 @@ static int CompareConstraints(const void *a, const void *b)
 
 PetscErrorCode LamMacroHoldRigidMotions(LamMacro macro)
 {
-  const Place far = {.X = {1e3, 1e3}}; /* from there the lower left of the body is farthest */
+  const Place far = {.X = {1e3, 1e3}}; /* a distant point from which the lower left of the body is farthest */
   PetscReal basis[3][3];
   PetscInt rank = 0;
   Place one, other;
@@ -353,7 +355,7 @@ PetscErrorCode LamMacroHoldRigidMotions(LamMacro macro)
   const PetscReal line[2] = {other.X[0] - one.X[0], other.X[1] - one.X[1]}, length = hypot(line[0], line[1]);
   const PetscReal directions[4][2] = {
       {1, 0}, {0, 1}, {-line[1] / length, line[0] / length}, {line[0] / length, line[1] / length}};
-  /* the other node stays on its line with the first one: a body that swells does not turn */
+  /* the other node stays on its line with the first one, so a swelling body does not rotate */
   for (int k = 0; k < 4; k++) PetscCall(HoldNode(macro, k < 2 ? &one : &other, directions[k], basis, &rank));
   qsort(macro->constraints, (size_t)macro->constraint_count, sizeof(*macro->constraints), CompareConstraints);
   PetscFunctionReturn(0);

@@ -1,26 +1,26 @@
 /*
   Private parts of the macroscale solver.
 
-  mesh.c      distribution, numbering, named sets, geometry of elements
-  mesh_disc.c, mesh_gmsh.c   where meshes come from
-  element.c   kinds of elements: shape functions, Gauss points
-  facet.c     geometry of the boundary's pieces
-  boundary.c  prescribed displacements, and which of them there are
-  traction.c  dead and follower tractions
-  obstacle.c  rigid plates and indenters
-  rows.c      equations of nodes whose displacement is prescribed or that touch an obstacle
-  border.c    unknowns that are no displacement of a node: of grips, and the factor of the tractions
-  reaction.c  reactions and work
-  assembly.c  gather F, ask the responder, assemble force and tangent
-  sealed.c    pressures of sealed lumens
-  inflation.c first guess of the inflated body
-  stepping.c  Newton, load steps, cutback
-  instant.c   equilibrium at an instant, for whoever follows the body in time
-  localisation.c    ellipticity at the material points
-  fields.c    what is kept of a response for the results, gathering of fields on rank 0
-  checkpoint.c what a run goes on from
+    mesh.c      distribution, numbering, named sets, geometry of elements
+    mesh_disc.c, mesh_gmsh.c   mesh generation and mesh files
+    element.c   kinds of elements: shape functions, Gauss points
+    facet.c     geometry of the boundary facets
+    boundary.c  prescribed displacements
+    traction.c  dead and follower tractions
+    obstacle.c  rigid plates and indenters
+    rows.c      equations of nodes with prescribed displacement or in contact with an obstacle
+    border.c    unknowns other than nodal displacements: grips and the traction factor
+    reaction.c  reactions and work
+    assembly.c  gather F, query the responder, assemble force and tangent
+    sealed.c    pressures of sealed lumens
+    inflation.c initial guess of the inflated body
+    stepping.c  Newton, load steps, cutback
+    instant.c   equilibrium at an instant, for time integration
+    localisation.c    ellipticity at the material points
+    fields.c    response fields stored for output, gathering of fields on rank 0
+    checkpoint.c restart data
 
-  The dimension `dim` of the body is that of its mesh; nothing but the responder knows that it is 2 (plane strain).
+  The dimension `dim` of the body is that of its mesh; only the responder assumes that it is 2 (plane strain).
 */
 #ifndef LAM_MACRO_IMPL_H
 #define LAM_MACRO_IMPL_H
@@ -31,12 +31,12 @@
 #include <lamella/macro.h>
 
 enum {
-  LAM_MACRO_DIM = 3, /* most of all that follows */
+  LAM_MACRO_DIM = 3, /* upper bounds of all that follows */
   LAM_MACRO_NODES = 27,
   LAM_MACRO_DOFS = LAM_MACRO_DIM * LAM_MACRO_NODES,
   LAM_MACRO_MODES = LAM_MACRO_DIM + 1, /* of an element's pressure */
   LAM_MACRO_KINDS = 2,
-  LAM_MACRO_SETS = 32, /* named boundaries; a bit each */
+  LAM_MACRO_SETS = 32, /* named boundaries; one bit each */
   LAM_MACRO_GROUPS = 32
 };
 
@@ -52,85 +52,85 @@ typedef struct {
 /* An element of this rank. */
 typedef struct {
   const LamMacroKind *kind;
-  PetscInt number;   /* in the undistributed mesh, the same for any count of ranks */
-  PetscInt first;    /* of its material points, which follow each other */
-  PetscInt gradient; /* where its dN/dX begin in LamMacro.gradient: [points][nodes][dim] */
-  PetscInt group;    /* the named region it belongs to; -1: none */
+  PetscInt number;   /* in the undistributed mesh, independent of the number of ranks */
+  PetscInt first;    /* first material point; its points are contiguous */
+  PetscInt gradient; /* offset of its dN/dX in LamMacro.gradient: [points][nodes][dim] */
+  PetscInt group;    /* named region; -1: none */
 } LamMacroElement;
 
-/* A piece of the body's boundary on this rank that belongs to a named set. */
+/* A boundary facet on this rank that belongs to a named set. */
 typedef struct {
   PetscInt point;    /* of the mesh */
-  PetscInt element;  /* inside */
+  PetscInt element;  /* adjacent element */
   unsigned int sets; /* bit k: set k */
 } LamMacroFacet;
 
-/* What the solver keeps of a material point's response. */
+/* The stored response of a material point. */
 typedef struct {
-  PetscBool known; /* the rest belongs to `load` and `walls` */
+  PetscBool known; /* the data below are valid for `load` and `walls` */
   LamLoad load;
-  PetscReal walls; /* moduli over those of the tissue that was asked; NaN: it may answer otherwise now */
+  PetscReal walls; /* factor on the moduli of the responder's tissue; NaN: outdated, the responder may respond
+                      differently now */
   PetscReal P[9];
   PetscReal A[81]; /* [dim][dim][dim][dim] dP_ij/dF_kl */
   PetscReal field[LAM_POINT_FIELD_COUNT];
   PetscInt percolating; /* percolating_directions */
 } LamMaterialPoint;
 
-/* What lumens that are sealed need besides of it; it belongs to the same load. */
+/* Additional response data for sealed lumens, for the same load. */
 typedef struct {
   PetscReal P_turgor[LAM_MACRO_DIM * LAM_MACRO_DIM]; /* [dim][dim] dP/dp */
   PetscReal lumen;                                   /* -dPsi/dp */
   PetscReal curvature;                               /* d2Psi/dp2 */
 } LamSealedPoint;
 
-/* Lumens that keep their water; there where the scene has them. */
+/* Sealed lumens; allocated if the scene has them. */
 typedef struct {
-  PetscBool closed; /* else the turgor is still prescribed: the body inflates */
+  PetscBool closed; /* otherwise turgor is still prescribed: the body inflates */
   PetscInt modes;   /* 1 + dim */
-  PetscReal *shape; /* [points][modes] of the pressure */
-  PetscReal *water; /* [points] the lumen, -dPsi/dp, in which the water has the pressure p0 */
+  PetscReal *shape; /* [points][modes] shape functions of the pressure */
+  PetscReal *water; /* [points] lumen -dPsi/dp at which the water has pressure p0 */
   PetscReal *change,
-      *last_change;               /* [elements][modes] of p - p0, in the last evaluation and the last converged state */
-  Vec u;                          /* displacement of the last evaluation */
+      *last_change; /* [elements][modes] coefficients of p - p0, in the last evaluation and the last converged state */
+  Vec u;            /* displacement of the last evaluation */
   LamSealedPoint *now, *accepted; /* [points] */
 } LamMacroSeal;
 
-/* A direction in which a node's displacement is prescribed; kept by the rank that owns the node, sorted by `local`. */
+/* A prescribed direction of a node; stored on the rank that owns the node, sorted by `local`. */
 typedef struct {
   PetscInt point;                  /* of the mesh */
   PetscInt local;                  /* the node's first index in this rank's part of a global vector */
   PetscReal normal[LAM_MACRO_DIM]; /* unit */
-  PetscReal base;                  /* normal . u where the conditions count from */
-  PetscReal end;                   /* what is added to it at factor 1 */
-  PetscReal target;                /* normal . u wanted now */
-  PetscInt entry;     /* of the scene's conditions, whose history the factor is; -1: the target stays at the base */
-  PetscInt border;    /* whose unknown is added to the target; -1: none */
-  unsigned int sides; /* bit s: the s-th name of the step's prescribes it; 0 where only rigid motions are held */
+  PetscReal base;                  /* normal . u in the configuration from which the conditions are measured */
+  PetscReal end;                   /* increment of base at factor 1 */
+  PetscReal target;                /* present target of normal . u */
+  PetscInt entry;  /* index of the scene's condition whose history gives the factor; -1: the target stays at the base */
+  PetscInt border; /* index of the border whose unknown is added to the target; -1: none */
+  unsigned int sides; /* bit s: prescribed by the step's s-th name; 0 if it only holds rigid motions */
 } LamConstraint;
 
-/* How far the load program has come: the last complete step. */
+/* Progress of the load program: the last complete step. */
 typedef struct {
   PetscBool begun; /* a step is complete */
   PetscInt number;
-  PetscReal load; /* share of the prescribed displacements; the turgor acts in full */
+  PetscReal load; /* fraction of the prescribed displacements; the turgor acts fully */
 } LamMacroProgress;
 
 /* A rigid obstacle: g(x) = n . x - height of a plate, |x - centre| - radius of an indenter; g >= 0 outside. */
 typedef struct {
   PetscInt entry;               /* of the scene's conditions */
   PetscInt side;                /* the step's name */
-  PetscReal normal[2], start;   /* of a plate: from it into the body; height where it first touches */
-  PetscReal first[2], place[2]; /* centre of an indenter where it first touches, and now; of a plate place[0] is its
-                                   height now */
+  PetscReal normal[2], start;   /* plate: normal into the body, and height at first contact */
+  PetscReal first[2], place[2]; /* indenter: centre at first contact, and now; plate: place[0] is its present height */
 } LamObstacle;
 
-/* A node that may touch obstacles; kept by the rank that owns it. */
+/* A node that may touch obstacles; stored on the rank that owns it. */
 typedef struct {
   PetscInt local, point;
   unsigned int obstacles; /* bit o */
   PetscInt constraint;    /* its prescribed direction; -1: none */
-  PetscBool active;       /* touched in the last residual */
-  PetscBool accepted;     /* touched in the last converged state */
+  PetscBool active;       /* in contact in the last residual */
+  PetscBool accepted;     /* in contact in the last converged state */
 } LamObstacleNode;
 
 /* The nearest obstacle of a node. */
@@ -140,8 +140,8 @@ typedef struct {
 } LamTouch;
 
 /*
-  New equations of a node: r'_i = sum_j combine_ij r_j + value_i, where r is the unbalanced force; their derivatives
-  with respect to its own displacement have the further part add_ij.
+  Modified equations of a node: r'_i = sum_j combine_ij r_j + value_i, where r is the unbalanced force. Their
+  derivatives with respect to the node's own displacement have the additional term add_ij.
 */
 typedef struct {
   PetscInt local;
@@ -149,13 +149,13 @@ typedef struct {
 } LamNodeRows;
 
 /*
-  An unknown q beside the displacements, with an equation of its own: the free component of a grip (the total force
+  An unknown q in addition to the displacements, with its own equation: the free component of a grip (the total force
   there is zero), or the factor of all tractions (a mean displacement is prescribed).
 */
 typedef struct {
   PetscInt entry, component; /* of the scene's conditions; entry -1: the factor of the tractions */
-  Vec weight;                /* grip: 1 at its nodes; control: share of each node in the mean */
-  Vec column, row, solved;   /* dr'/dq; derivative of the equation by the displacements; K'^-1 column */
+  Vec weight;                /* grip: 1 at its nodes; control: weight of each node in the mean */
+  Vec column, row, solved;   /* dr'/dq; derivative of the equation with respect to the displacements; K'^-1 column */
   PetscReal now, accepted;   /* q */
   PetscReal equation, base, target;
 } LamMacroBorder;
@@ -166,10 +166,10 @@ struct LamMacro_s {
   LamResponder *responder; /* borrowed */
   LamMacroMonitor monitor;
   void *monitor_ctx;       /* borrowed */
-  LamMacroCutback cutback; /* NULL: nobody listens */
+  LamMacroCutback cutback; /* NULL: no callback */
   void *cutback_ctx;       /* borrowed */
   PetscBool (*stop)(void); /* NULL: never */
-  PetscBool stopped;       /* it was asked for; the same on all ranks */
+  PetscBool stopped;       /* a stop was requested; the same on all ranks */
 
   /* mesh */
   DM dm;
@@ -187,45 +187,45 @@ struct LamMacro_s {
   unsigned int *sets; /* [mesh points] bit k: on set k */
   PetscInt facet_count;
   LamMacroFacet *facets;
-  PetscInt group_count; /* named regions */
+  PetscInt group_count; /* number of named regions */
   char group_name[LAM_MACRO_GROUPS][LAM_NAME_LENGTH];
 
   /* material points */
   PetscInt point_count;
-  PetscInt *point_element; /* [points] the element it is in */
+  PetscInt *point_element; /* [points] element that contains the point */
   PetscReal *weight;       /* [points] area */
   PetscReal *place;        /* [points][dim] reference position */
-  PetscReal *turgor_share; /* [points] turgor of the tissue there, which the program's share multiplies */
+  PetscReal *turgor_share; /* [points] turgor of the tissue there, to be multiplied by `turgor` */
   PetscReal *cohesion;     /* [points] */
   PetscInt *point_index;   /* 0, 1, 2, ... for the responder */
   LamLoad *loads;
   LamResponse *responses;
-  LamMaterialPoint *now, *accepted; /* of the last evaluation and of the last converged state */
+  LamMaterialPoint *now, *accepted; /* at the last evaluation and at the last converged state */
   LamMacroSeal *seal;               /* NULL: turgor is prescribed */
-  LamWaterLaw water_law;            /* of lumens that exchange water; NULL: they keep it */
+  LamWaterLaw water_law;            /* of lumens that exchange water; NULL: their water is constant */
   void *water_ctx;                  /* borrowed */
 
   /* unknowns */
   Vec u, trial, residual;    /* displacement: last converged, Newton iterate; residual of Newton */
-  Vec origin;                /* the displacement that prescribed ones count from */
-  Vec force, force_accepted; /* internal nodal forces of the last evaluation and of the last converged state */
+  Vec origin;                /* displacement from which prescribed displacements are measured */
+  Vec force, force_accepted; /* internal nodal forces at the last evaluation and at the last converged state */
   Mat tangent;
   SNES snes;
   Vec before;             /* displacement of the converged state before the last one */
-  PetscReal passed;       /* load parameters from there to the last one; 0: not known, or on another path */
-  PetscReal prediction;   /* increment of this series of iterations over `passed`, until it is used; 0: none */
-  PetscBool extrapolates; /* predictions are made */
-  PetscReal turgor;       /* share of the turgor that acts now */
-  PetscReal lamella;      /* what the points' cohesion is multiplied by now, ... */
-  PetscReal walls;        /* ... and the moduli of their walls */
+  PetscReal passed;       /* load parameter increment from there to the last one; 0: unknown, or on another path */
+  PetscReal prediction;   /* this increment divided by `passed`, until it is used; 0: no prediction */
+  PetscBool extrapolates; /* predictions are enabled */
+  PetscReal turgor;       /* present fraction of the turgor */
+  PetscReal lamella;      /* present factor on the points' cohesion, ... */
+  PetscReal walls;        /* ... and on the moduli of their walls */
   PetscReal force_scale;  /* largest norm of the element forces in this series of Newton iterations */
-  PetscReal force_floor;  /* what counts at least as that where `lenient` */
+  PetscReal force_floor;  /* lower bound of force_scale where `lenient` */
   PetscReal history[64];
-  char trouble[LAM_MESSAGE_LENGTH - 64]; /* why the last evaluation failed; how far it came is said before it */
+  char trouble[LAM_MESSAGE_LENGTH - 64]; /* why the last evaluation failed; messages prefix how far it came */
 
   /* boundary */
-  PetscReal parameter; /* load parameter that acts now */
-  PetscBool loaded;    /* PETSC_FALSE while the body inflates: the scene's conditions do not act yet */
+  PetscReal parameter; /* present load parameter */
+  PetscBool loaded;    /* PETSC_FALSE during inflation: the scene's conditions do not act yet */
   Vec external;        /* nodal forces of the tractions; with load control at factor 1 */
   PetscInt constraint_count;
   LamConstraint *constraints;
@@ -233,18 +233,18 @@ struct LamMacro_s {
   LamObstacle obstacles[LAM_MAX_BOUNDARIES];
   PetscInt obstacle_node_count;
   LamObstacleNode *obstacle_nodes;
-  PetscBool lenient;   /* answers that jump a little may keep a residual that is next to none */
-  PetscBool thorough;  /* at least one iteration, however small the first residual */
-  PetscBool fresh;     /* no residual yet in this series of iterations */
-  PetscReal violation; /* largest penetration or distance of nodes that are not as they should be, last residual */
+  PetscBool lenient;   /* responses with small jumps: a small residual may remain */
+  PetscBool thorough;  /* at least one iteration, even if the first residual is small */
+  PetscBool fresh;     /* no residual evaluated yet in this series of iterations */
+  PetscReal violation; /* largest penetration or distance of nodes violating the contact conditions, last residual */
   PetscInt row_count;
   LamNodeRows *rows; /* of the last residual */
   PetscInt border_count;
   LamMacroBorder borders[2 * LAM_MAX_BOUNDARIES + 1];
-  KSP solver; /* of the unbordered tangent; NULL where the scene needs no border */
+  KSP solver; /* of the unbordered tangent; NULL if the scene needs no border */
 
   LamMacroProgress progress;
-  LamMacroStep step;    /* being filled */
+  LamMacroStep step;    /* report in progress */
   LamResponder counted; /* counters at the start of the step */
 };
 
@@ -256,97 +256,98 @@ PetscErrorCode LamMacroOwnedIndex(LamMacro macro, PetscInt point, PetscInt *loca
 /* The named set; -1: none. */
 PetscInt LamMacroFindSet(LamMacro macro, const char name[]);
 
-/* mesh_disc.c: a disc of radius 1 or a part of it about the origin, and the names of a facet's sides by its nodes. */
+/* mesh_disc.c: a disc of radius 1 or a part of it about the origin, with named sides. */
 PetscErrorCode LamMacroDiscCreate(MPI_Comm comm, LamDiscPart part, const PetscInt elements[2], DM *dm);
 /* mesh_gmsh.c */
 PetscErrorCode LamMacroGmshCreate(MPI_Comm comm, const char path[], DM *dm);
-/* Whether PETSc may read the file, which it does without looking; `why` says why not. */
+/* Whether the file is safe to read for PETSc, which does not check it; `why`: reason if not. */
 #define LAM_GMSH_WHY 200
 PetscBool LamGmshCheck(const char path[], char why[LAM_GMSH_WHY]);
 
 /* element.c */
-/* The kind for a polytope, made where it is not there yet. PETSC_ERR_SUP where there is none. */
+/* The kind of a polytope, created at its first use. Error PETSC_ERR_SUP if there is none. */
 PetscErrorCode LamMacroKindGet(LamMacro macro, DMPolytopeType polytope, const LamMacroKind **kind);
 PetscErrorCode LamMacroKindsDestroy(LamMacro macro);
-/* Whether a mesh point of this type carries a node of the elements. */
+/* Whether a mesh point of this type has a node of the elements. */
 PetscBool LamMacroHasNode(LamMacro macro, DMPolytopeType type);
 
 /* facet.c */
 /*
-  Nodes of a facet of a plane body, in the order of DMPlex closures: middle, ends; X [3][2] reference positions. *sense
-  is 1 where the facet runs counter-clockwise around the body from its second node to its third, else -1.
+  Nodes of a facet of a plane body, in the order of DMPlex closures: middle, ends; X [3][2] reference positions.
+  *sense is 1 if the facet runs counter-clockwise around the body from its second node to its third, else -1.
 */
 PetscErrorCode LamMacroFacetNodes(LamMacro macro, const LamMacroFacet *facet, PetscReal X[6], PetscReal *sense);
 enum { LAM_FACET_POINTS = 3 };
 /* Shape functions N [3] and their derivatives dN [3] at Gauss point q of a facet, xi = -1..1, and its weight. */
 void LamMacroFacetShape(PetscInt q, PetscReal N[3], PetscReal dN[3], PetscReal *weight);
-/* Outward unit normal of a named set whose facets lie on one straight line; *straight says whether they do. */
+/* Outward unit normal of a named set whose facets lie on one straight line; *straight: whether they do. */
 PetscErrorCode LamMacroStraightNormal(LamMacro macro, PetscInt set, PetscReal normal[2], PetscBool *straight);
 
 /* boundary.c */
-/* Refuses conditions that stand for no boundary of the mesh (PETSC_ERR_USER_INPUT). */
+/* Checks that each condition names a boundary of the mesh (else PETSC_ERR_USER_INPUT). */
 PetscErrorCode LamMacroBoundaryCheck(LamMacro macro);
 /* Whether a mesh point lies on the boundary that a condition names. */
 PetscBool LamMacroIsOn(LamMacro macro, PetscInt p, const char on[]);
-/* Fills the names of the step's sides: each once. */
+/* Sets the names of the step's sides, each once. */
 PetscErrorCode LamMacroBoundaryNames(const LamMacroSpec *spec, LamMacroStep *step);
-/* The number among these of a condition. */
+/* Index of a condition's name among these. */
 PetscInt LamMacroSideNumber(const LamMacroStep *step, const LamBoundary *boundary);
-/* Holds sides of symmetry, and as few components as prevent the rigid motions that they leave. */
+/* Prescribes sides of symmetry, and the minimum of components that prevents the remaining rigid motions. */
 PetscErrorCode LamMacroHoldRigidMotions(LamMacro macro);
 /*
-  Prescribes the scene's displacements, counted from the present ones, and brings the obstacles into touch.
-  PETSC_ERR_USER_INPUT where conditions contradict each other or leave a rigid motion free.
+  Prescribes the scene's displacements, measured from the present ones, and places the obstacles at first contact.
+  PETSC_ERR_USER_INPUT if conditions contradict each other or leave a rigid motion free.
 */
 PetscErrorCode LamMacroHoldBoundaries(LamMacro macro);
-/* Targets, tractions and obstacles at a load parameter. */
+/* Sets targets, tractions and obstacles for a load parameter. */
 PetscErrorCode LamMacroSetLoadFactor(LamMacro macro, PetscReal load_factor);
 
 /* traction.c */
-/* Nodal forces of the tractions at displacement u, as they act at macro->parameter; with load control at factor 1. */
+/* Nodal forces of the tractions at displacement u and macro->parameter; with load control at factor 1. */
 PetscErrorCode LamMacroExternalForce(LamMacro macro, Vec u, Vec external);
-/* Factor of all tractions beside their histories: the unknown of load control, else 1; 0 during inflation. */
+/* Factor of all tractions in addition to their histories: the unknown of load control, else 1; 0 during inflation. */
 PetscReal LamMacroTractionFactor(LamMacro macro);
-/* Adds minus the derivative of the nodal forces. */
+/* Adds minus the derivative of the nodal forces of the tractions. */
 PetscErrorCode LamMacroAddTractionTangent(LamMacro macro, Mat tangent);
 /* Total force of one condition's tractions at displacement u, all ranks. */
 PetscErrorCode LamMacroTractionSum(LamMacro macro, PetscInt entry, Vec u, PetscReal sum[2]);
 
 /* obstacle.c */
-/* Obstacles where they first touch the present body. */
+/* Places the obstacles at first contact with the present body. */
 PetscErrorCode LamMacroObstaclesCreate(LamMacro macro);
 void LamMacroObstaclesMove(LamMacro macro);
 LamTouch LamMacroNearest(LamMacro macro, const LamObstacleNode *node, const PetscScalar u[]);
 
 /* rows.c */
-/* Turns the unbalanced force at displacement u into the residual; the rows stay for the tangent of the same state. */
+/* Converts the unbalanced force at displacement u into the residual. The rows are kept for the tangent at the same
+   state. */
 PetscErrorCode LamMacroConstrainResidual(LamMacro macro, Vec u, Vec residual);
 PetscErrorCode LamMacroConstrainTangent(LamMacro macro, Mat tangent);
-/* The linear part of the change alone, for a derivative of the unbalanced force. */
+/* Applies only the linear part of the rows, for a derivative of the unbalanced force. */
 PetscErrorCode LamMacroCombineRows(LamMacro macro, Vec force);
 
 /* border.c */
-/* Borders of the scene's free grips and load control; without `scene` none. */
+/* Creates the borders of the scene's free grips and load control; none if `scene` is PETSC_FALSE. */
 PetscErrorCode LamMacroBordersCreate(LamMacro macro, PetscBool scene);
 PetscErrorCode LamMacroBordersDestroy(LamMacro macro);
 /* The border of a grip's component; -1: none. */
 PetscInt LamMacroFindBorder(LamMacro macro, PetscInt entry, PetscInt component);
-/* Fills weights, and where the equations count from; after the constraints. */
+/* Sets the weights and the base of the equations; call after the constraints are set. */
 PetscErrorCode LamMacroBordersStart(LamMacro macro);
-/* Residuals of the borders' equations, from the unbalanced force; then, after the rows, the columns. */
+/* Residuals of the borders' equations from the unbalanced force; then, after the rows, the columns. */
 PetscErrorCode LamMacroBorderEquations(LamMacro macro, Vec u, Vec unbalanced);
 PetscErrorCode LamMacroBorderColumns(LamMacro macro);
-/* Derivatives of the equations, from the tangent before its rows change. */
+/* Derivatives of the equations, from the tangent before its rows are modified. */
 PetscErrorCode LamMacroBorderRows(LamMacro macro, Mat tangent);
-/* Makes Newton's linear solver one of the bordered system, where the scene needs it. */
+/* Makes Newton's linear solver that of the bordered system, if the scene needs it. */
 PetscErrorCode LamMacroBorderSolver(LamMacro macro, KSP ksp);
 
 /* reaction.c */
 /* Adds the work of the boundary forces between the last converged state and `trial` (trapezoidal rule). */
 PetscErrorCode LamMacroAddWork(LamMacro macro);
-/* What the sides prescribe at the step's load factor. */
+/* Displacements prescribed at the sides at the step's load factor. */
 void LamMacroDisplacements(LamMacro macro, LamMacroStep *step);
-/* Forces on the body at the named sides, in the last converged state at the parameter that is set. */
+/* Forces on the body at the named sides, in the last converged state at the present parameter. */
 PetscErrorCode LamMacroReactions(LamMacro macro, LamMacroStep *step);
 
 /* assembly.c */
@@ -356,45 +357,48 @@ static inline const PetscReal *LamMacroGradient(LamMacro macro, const LamMacroEl
   return &macro->gradient[element->gradient + q * element->kind->nodes * macro->dim];
 }
 /*
-  Responses of all points at displacement u. *ok is PETSC_FALSE on all ranks where one is missing (`trouble` says which)
-  or a stop was asked for (`stopped`).
-  Nothing is asked where deformation and turgor are those of the last evaluation.
+  Evaluates the responses of all points at displacement u. *ok is PETSC_FALSE on all ranks if one is missing
+  (`trouble` says which) or a stop was requested (`stopped`). The responder is not queried if deformation and turgor
+  are those of the last evaluation.
 */
 PetscErrorCode LamMacroEvaluate(LamMacro macro, Vec u, PetscBool *ok);
-/* Internal nodal forces of the evaluated state; *scale is the norm of the element forces, before they cancel. */
+/* Internal nodal forces of the evaluated state; *scale: norm of the element forces before summation at the nodes. */
 PetscErrorCode LamMacroAssembleForce(LamMacro macro, Vec force, PetscReal *scale);
-/* The same norm of a body whose stress is LAM_STRESS_FLOOR everywhere, in all directions alike. */
+/* The same norm for a body whose stress components all equal LAM_STRESS_FLOOR. */
 PetscErrorCode LamMacroForceFloor(LamMacro macro, PetscReal *scale);
 PetscErrorCode LamMacroAssembleTangent(LamMacro macro, Mat tangent);
 
-/* sealed.c: does nothing, and takes no time, where turgor is prescribed (macro->seal is NULL) */
-/* Whether pressures are unknowns of the body. */
+/* sealed.c: these functions do nothing if turgor is prescribed (macro->seal is NULL) */
+/* Whether pressures are unknowns. */
 PetscBool LamMacroHasPressures(LamMacro macro);
 PetscErrorCode LamMacroSealCreate(LamMacro macro);
 PetscErrorCode LamMacroSealDestroy(LamMacro macro);
 /*
-  Seals the lumens: their water is that of the last converged state, or where the body is not to inflate that of F = 1
-  under the whole turgor, which then becomes the last converged state. *ok: PETSC_FALSE where a point has no response
-  there (`trouble` says which).
+  Seals the lumens with the water of the last converged state. Without inflation it is that of F = 1 under the full
+  turgor, which then becomes the last converged state. *ok is PETSC_FALSE if a point has no response there (`trouble`
+  says which).
 */
 PetscErrorCode LamMacroSealLumens(LamMacro macro, PetscBool *ok);
-/* The pressures go with the displacement from the last evaluation to u, by their linearised equation; LamMacroFollow:
-   where it has changed. */
+/* Update the pressures by their linearised equation for the displacement from the last evaluation to u; LamMacroFollow
+   only if u has changed. */
 PetscErrorCode LamMacroFollow(LamMacro macro, Vec u);
 PetscErrorCode LamMacroMovePressures(LamMacro macro, Vec u);
-/* Turgor of a point over that with which it was sealed. */
+/* Turgor of a point minus that at which it was sealed. */
 PetscReal LamMacroTurgorChange(LamMacro macro, const LamMacroElement *element, PetscInt point);
-/* Keeps what pressures need of the point's response; one that does not know it becomes LAM_OUT_OF_REACH. */
+/* Stores the part of a point's response that pressures need. A response without it gets status LAM_OUT_OF_REACH. */
 PetscErrorCode LamMacroKeepSealed(LamMacro macro, PetscInt point);
-/* Takes the pressures out of an element's forces fe and tangent Ke (NULL: not wanted), of the last evaluation. */
+/* Condenses the pressures out of an element's forces fe and tangent Ke (NULL: not needed), at the last evaluation. */
 PetscErrorCode LamMacroCondense(LamMacro macro, const LamMacroElement *element, PetscScalar fe[], PetscScalar Ke[]);
-/* Derivative by the turgor of what the water law lets a point hold, in the last converged state. */
+/* Derivative with respect to turgor of the lumen prescribed by the water law at a point, in the last converged state.
+ */
 PetscReal LamMacroWaterSlope(LamMacro macro, PetscInt point);
-/* Norm of the pressures' equations in the last evaluation, over that of the water; 0 where nothing is sealed. */
+/* Norm of the residual of the pressures' equations at the last evaluation, relative to the water; 0 if nothing is
+   sealed. */
 PetscErrorCode LamMacroSealedResidual(LamMacro macro, PetscReal *residual);
 PetscErrorCode LamMacroAcceptPressures(LamMacro macro);
 PetscErrorCode LamMacroRejectPressures(LamMacro macro);
-/* Of the last converged state, which is the present one; points [points]: their numbers in the undistributed mesh. */
+/* Archives the last converged state, which must be the present one; points [points]: their numbers in the undistributed
+   mesh. */
 PetscErrorCode LamMacroArchiveSeal(LamMacro macro, LamArchive archive, const PetscInt points[]);
 
 /* checkpoint.c */
@@ -402,26 +406,25 @@ PetscErrorCode LamMacroArchiveSeal(LamMacro macro, LamArchive archive, const Pet
 PetscErrorCode LamMacroArchiveVec(LamMacro macro, LamArchive archive, const char name[], Vec vec);
 
 /* fields.c */
-/* What is kept of a response, by LamPointField. */
-/* localisation.c: of the last converged state, for the report of its step; fills LAM_POINT_ELLIPTICITY of its points.
-   Collective. */
+/* localisation.c: ellipticity at the last converged state, for the step's report; sets LAM_POINT_ELLIPTICITY of its
+   points. Collective. */
 PetscErrorCode LamMacroFindLocalisation(LamMacro macro, LamMacroStep *step);
 void LamMacroKeepFields(const LamResponse *response, PetscReal field[LAM_POINT_FIELD_COUNT]);
 
 /* inflation.c */
-/* Fills u with the homogeneous inflated state of the tissue at the turgor that acts now, where one is found. */
+/* Sets u to the homogeneous inflated state of the tissue at the present turgor, if one is found. */
 PetscErrorCode LamMacroGuessInflated(LamMacro macro, Vec u, PetscBool *found);
 
 /* stepping.c */
 PetscErrorCode LamMacroNewtonCreate(LamMacro macro);
-/* Starts the report of a step; the work adds up over the steps. */
+/* Starts the report of a step; work accumulates over the steps. */
 PetscErrorCode LamMacroStartStep(LamMacro macro, PetscReal *start);
 /* Completes the report of a converged step. */
 PetscErrorCode LamMacroFinishStep(LamMacro macro, PetscInt number, PetscReal load_factor, PetscReal start);
-/* Brings the turgor up, with `inflate` in a body that is not loaded yet, and seals lumens; *converged else `trouble`.
-   The load program acts then from macro->origin on, once boundaries are held. */
+/* Applies the turgor (with `inflate`: to the unloaded body) and seals lumens. If not *converged, `trouble` says why.
+   The load program then starts from macro->origin, once boundaries are prescribed. */
 PetscErrorCode LamMacroBringUpTurgor(LamMacro macro, PetscReal *reached, PetscBool *converged);
-/* Newton from macro->trial, under what acts now; where it fails `trouble` says why. */
+/* Newton's method from macro->trial at the present loads; if it fails, `trouble` says why. */
 PetscErrorCode LamMacroIterate(LamMacro macro, PetscBool *converged);
 
 #endif

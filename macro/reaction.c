@@ -9,7 +9,7 @@ PetscErrorCode LamMacroAddWork(LamMacro macro)
   PetscReal now, before;
 
   PetscFunctionBeginUser;
-  /* internal forces are balanced by those of the boundary, all along: no other nodes contribute */
+  /* internal forces are in equilibrium with those of the boundary throughout: other nodes contribute nothing */
   PetscCall(VecWAXPY(macro->external, -1, macro->u, macro->trial));
   PetscCall(VecDot(macro->force, macro->external, &now));
   PetscCall(VecDot(macro->force_accepted, macro->external, &before));
@@ -17,7 +17,7 @@ PetscErrorCode LamMacroAddWork(LamMacro macro)
   PetscFunctionReturn(0);
 }
 
-/* Parts of a node's force along its one or two directions. */
+/* Components of a node's force along its one or two directions. */
 static void Decompose(PetscInt count, const PetscReal directions[2][2], const PetscReal force[2], PetscReal part[2])
 {
   const PetscReal *m = directions[0], *n = directions[1];
@@ -31,7 +31,7 @@ static void Decompose(PetscInt count, const PetscReal directions[2][2], const Pe
   }
 }
 
-/* A corner's force belongs to the sides that prescribe it, in equal shares: so the reactions of all sides balance. */
+/* Distributes a corner's force equally over the sides that prescribe it, so that the reactions of all sides balance. */
 static void Share(LamMacroStep *step, unsigned int sides, PetscReal part, const PetscReal direction[2])
 {
   for (PetscInt s = 0; s < step->boundary_count; s++) {
@@ -58,8 +58,8 @@ static void AddHeld(LamMacro macro, const PetscScalar r[], LamMacroStep *step)
   }
 }
 
-/* What AddHeld left: a node that slides along a prescribed direction loses the obstacle's part of it to the obstacle.
- */
+/* Adds the forces of obstacles. For a node that slides along a prescribed direction, the obstacle's part is subtracted
+   from the sides that prescribe it. */
 static void AddTouched(LamMacro macro, const PetscScalar u[], const PetscScalar r[], LamMacroStep *step)
 {
   for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {
@@ -77,14 +77,14 @@ static void AddTouched(LamMacro macro, const PetscScalar u[], const PetscScalar 
     if (held && PetscAbsReal(directions[0][0] * touch.normal[1] - directions[0][1] * touch.normal[0]) < 0.1) continue;
     Decompose(own + 1, (const PetscReal(*)[2])directions, force, part);
     Share(step, side, part[own], touch.normal);
-    if (held) { /* AddHeld gave it all of the force along its direction */
+    if (held) { /* AddHeld assigned all of the force along the direction to these sides */
       const PetscReal along = directions[0][0] * touch.normal[0] + directions[0][1] * touch.normal[1];
       Share(step, held->sides, -part[own] * along, directions[0]);
     }
   }
 }
 
-/* During inflation the sides are not held yet: their displacements are 0. */
+/* During inflation the sides are not prescribed yet: their displacements are 0. */
 void LamMacroDisplacements(LamMacro macro, LamMacroStep *step)
 {
   const LamMacroSpec *spec = &macro->scene->macro;

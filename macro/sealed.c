@@ -1,25 +1,24 @@
 /*
-  Sealed lumens of the macroscale body: a mixed element whose pressures are condensed.
+  Sealed lumens of the macroscale body: mixed elements with condensed pressures.
 
-  Method. Where the lumens of a material point keep their water, its pressure p = p0 + q follows from
+  Method. If the water in the lumens of a material point is constant, its pressure p = p0 + q follows from
 
     Pi(u, q) = int [ Psi(F(u), p0 + q) + v q - v q^2 / (2 K_w) ] dV    stationary in u and q,
 
-  v = -dPsi/dp at the point as it was sealed, with the turgor p0: the equation of q says that the lumen is
-  v (1 - q / K_w), in the mean. The responder is always asked at a given pressure, so that databases and caches serve as
-  they are, and no question is amplified by K_w. q is linear in each element, q = sum_a psi_a q_a with psi = 1 and
-  (X - X_c) / h about the element's centre, in reference coordinates, and belongs to that element alone (Q2/P1;
-  triangles with a bubble). With
+  with v = -dPsi/dp when the point was sealed, at turgor p0: by the equation of q the lumen is v (1 - q / K_w) in the
+  mean. The responder is always queried at a given pressure, so databases and caches need no change, and K_w amplifies
+  no query. q is linear in each element, q = sum_a psi_a q_a with psi = 1 and (X - X_c) / h about the element's
+  centre, in reference coordinates, and belongs to that element alone (Q2/P1; triangles with a bubble). With
 
     R_a    = int psi_a [ dPsi/dp + v (1 - q / K_w) ]     f_ai    = int P_ij dN_a/dX_j
     K_ab   = int psi_a psi_b [ d2Psi/dp2 - v / K_w ]     C_a,bi  = int psi_a dP_ij/dp dN_b/dX_j
 
-  Lumens that exchange water with what is around them (body.h) hold w(p0 + q) instead of v (1 - q / K_w); slopes w'
-  then stand for -v / K_w.
+  Lumens that exchange water with their surroundings (body.h) have volume w(p0 + q) instead of v (1 - q / K_w); the
+  slope w' then replaces -v / K_w.
 
   Newton's method for u and q together has the condensed residual f - C^T K^-1 R and tangent A - C^T K^-1 C, and
-  moves the pressures with the displacement,  dq = -K^-1 (R + C du), by their own linearised equation: K_w multiplies no
-  error of the lumen.
+  updates the pressures by their own linearised equation,  dq = -K^-1 (R + C du), so K_w multiplies no error of the
+  lumen.
 
   References: Brezzi & Fortin, Mixed and Hybrid Finite Element Methods, VI.4 (Q2/P1, P2 with a bubble/P1); Magisano,
   Leonetti & Garcea, CMAME 313 (2017) 1004-1025 (independent stresses).
@@ -28,7 +27,8 @@
 
 #include <petscblaslapack.h> /* needs what PETSc's own headers bring */
 
-/* The equations of an element's pressures; columns of `coupling` are those of its displacements, the last that of R. */
+/* The equations of an element's pressures. The columns of `coupling` belong to the element's displacements, the last
+   one to R. */
 typedef struct {
   PetscInt modes, dofs;
   PetscReal coupling[(LAM_MACRO_DOFS + 1) * LAM_MACRO_MODES]; /* [dofs + 1][modes] C, R */
@@ -112,7 +112,7 @@ PetscReal LamMacroTurgorChange(LamMacro macro, const LamMacroElement *element, P
   return change;
 }
 
-/* What a point's lumens are to hold at a turgor that is `change` above that with which they were sealed. */
+/* Prescribed lumen of a point at a turgor `change` above that at which it was sealed, and its slope. */
 static void FindWater(LamMacro macro, PetscInt point, PetscReal change, PetscReal *water, PetscReal *slope)
 {
   const PetscReal sealed = macro->seal->water[point];
@@ -147,7 +147,7 @@ static void AddResidual(LamMacro macro, const LamMacroElement *element, PetscRea
   }
 }
 
-/* Adds what Gauss point q gives to C [dofs][modes] and K [modes][modes]. */
+/* Adds the contribution of Gauss point q to C [dofs][modes] and K [modes][modes]. */
 static void AddPoint(LamMacro macro, const LamMacroElement *element, PetscInt q, PetscReal C[], PetscReal K[])
 {
   const LamMacroSeal *seal = macro->seal;
@@ -161,7 +161,7 @@ static void AddPoint(LamMacro macro, const LamMacroElement *element, PetscInt q,
   const PetscReal curvature = response->curvature + slope;
   for (PetscInt b = 0; b < element->kind->nodes; b++) {
     for (PetscInt i = 0; i < dim; i++) {
-      PetscReal force = 0; /* by the pressure */
+      PetscReal force = 0; /* from the pressure */
       for (PetscInt j = 0; j < dim; j++) force += w * response->P_turgor[dim * i + j] * dN[dim * b + j];
       for (PetscInt a = 0; a < modes; a++) C[(dim * b + i) * modes + a] += shape[a] * force;
     }
@@ -323,7 +323,7 @@ PetscErrorCode LamMacroRejectPressures(LamMacro macro)
   PetscFunctionReturn(0);
 }
 
-/* F = 1 under the whole turgor becomes the last converged state, whether the body is in equilibrium there or not. */
+/* Makes F = 1 under the full turgor the last converged state, whether or not the body is in equilibrium there. */
 static PetscErrorCode StartUndeformed(LamMacro macro, PetscBool *ok)
 {
   PetscReal scale;

@@ -3,19 +3,21 @@
 
   Method. Newton's method with the consistent tangent, full steps; load steps with cutback.
 
-  Algorithm.
-  1. Inflation: only rigid motions are held, the turgor acts at once, first on a guess (inflation.c). Without `inflate`
-  the turgor acts while the prescribed sides are held where they are in the reference state; this belongs to step 1.
-  2. The prescribed displacements count from there and grow in `steps` equal steps.
-  Sealed lumens are sealed after inflation; without `inflate` at F = 1 under the whole turgor, before all else.
-  3. Where Newton fails, a material point has no response, or an iteration goes astray, the increment is halved,
-  MAX_HALVINGS times at most, and doubled again after each success.
+  Algorithm. 1. Inflation: only rigid motions are prescribed and the full turgor acts, first from an initial guess
+  (inflation.c). Without `inflate` the turgor acts while the prescribed sides stay in the reference state; this is
+  part of step 1.
 
-  Converged means: norm of the residual <= RELATIVE_TOLERANCE times the norm of the element forces before they cancel
-  at the nodes (largest in this series of iterations), or <= ABSOLUTE_TOLERANCE (C1 + C2) times the box's first edge,
-  which is the rounding error that responders leave in their stresses; it decides only for a body next to unstressed.
-  Where lumens are sealed, the norm of what they are off their water is also <= RELATIVE_TOLERANCE times the water's.
-  Nodes beside obstacles are where they should be to PENETRATION macro lengths.
+  2. The prescribed displacements are measured from there and grow in `steps` equal steps. Sealed lumens are sealed
+  after inflation; without `inflate` at F = 1 under the full turgor, at the start.
+
+  3. If Newton fails, a material point has no response, or an iterate changes too much, the increment is halved, at
+  most MAX_HALVINGS times; it is doubled again after each success.
+
+  Convergence: norm of the residual <= RELATIVE_TOLERANCE times the norm of the element forces before summation at the
+  nodes (largest in this series of iterations), or <= ABSOLUTE_TOLERANCE (C1 + C2) times the box's first edge. The
+  latter is the rounding error in the stresses of responders; it matters only for a nearly unstressed body. If lumens
+  are sealed, the norm of their volume errors is also <= RELATIVE_TOLERANCE times that of the water. Nodes at
+  obstacles satisfy the contact conditions to PENETRATION macro lengths.
 
   Reference: Wriggers, Nonlinear Finite Element Methods, ch. 5.
 */
@@ -24,13 +26,14 @@
 #include "macro_impl.h"
 
 static const PetscReal RELATIVE_TOLERANCE = 1e-9, ABSOLUTE_TOLERANCE = 1e-10, PENETRATION = 1e-10;
-static const PetscReal ROUNDING = 1e-8; /* residuals below it show no order of convergence any more */
-/* Of a body whose answers are interpolated, at an instant (instant.c) or with pressures: what a table's cells do not
-   agree about where they meet, and records of their own with their neighbours; after so many iterations. */
+static const PetscReal ROUNDING = 1e-8; /* smaller residuals are not used for the order of convergence */
+/* Tolerance after PATIENCE iterations if responses are interpolated and the body is at an instant (instant.c) or has
+   pressures. It allows for the jumps of interpolated responses at boundaries between cells of a table and between
+   neighbouring records. */
 static const PetscReal LENIENT_TOLERANCE = 1e-6;
 enum { MAX_HALVINGS = 8, MAX_ITERATIONS = 15, PATIENCE = 6 };
 
-/* Where the program stands: shares of turgor and of the prescribed displacements. */
+/* State of the load program: fractions of the turgor and of the prescribed displacements. */
 typedef struct {
   PetscReal turgor, load;
 } Stage;
@@ -99,11 +102,12 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
 }
 
 /*
-  The first linear solution d of an increment is the tangent of the path at the last converged state. Where the path
-  came there in the same direction from a state before, by h parameters, u_last - u_before = u' h - u'' h^2 / 2 also
-  tells its curvature, and the first iterate is u_last + d + u'' D^2 / 2, exact to the third order in the increment D:
+  The first linear solution d of an increment is the tangent of the path at the last converged state. If the path came
+  from a previous state in the same direction, h in the load parameter before, u_last - u_before = u' h - u'' h^2 / 2
+  also gives its curvature, and the first iterate is u_last + d + u'' D^2 / 2, exact to the third order in the
+  increment D:
     u'' D^2 / 2 = r d - r^2 (u_last - u_before),  r = D / h.
-  It asks the tissue nothing.
+  No responder query is needed.
 */
 static PetscErrorCode Predict(SNESLineSearch search, Vec x, Vec y, PetscBool *changed, void *ctx)
 {
@@ -192,7 +196,8 @@ static PetscErrorCode KeepHistory(LamMacro macro)
   PetscFunctionReturn(0);
 }
 
-/* Whether answers may jump a little, and the body is at an instant or has pressures, to which errors of lumens add. */
+/* Sets `lenient`: responses are interpolated, and the body is at an instant or has pressures, to which lumen errors
+   add. */
 static PetscErrorCode SetLeniency(LamMacro macro)
 {
   const PetscBool interpolated = (PetscBool)(macro->responder->interpolated > 0);
@@ -231,8 +236,8 @@ PetscErrorCode LamMacroIterate(LamMacro macro, PetscBool *converged)
   PetscFunctionReturn(0);
 }
 
-/* One Newton solution at `stage`, from the last converged state, or from a guess where one is wanted and found, which
- *guesses tells. */
+/* One Newton solve at `stage`, from the last converged state or, if *guesses, from a guess; *guesses on return: whether
+   a guess was found and used. */
 static PetscErrorCode TryStage(LamMacro macro, Stage stage, PetscBool *guesses, PetscBool *converged)
 {
   PetscFunctionBeginUser;
@@ -244,11 +249,11 @@ static PetscErrorCode TryStage(LamMacro macro, Stage stage, PetscBool *guesses, 
   PetscFunctionReturn(0);
 }
 
-/* The same with a guess of the inflated body or a prediction where the path goes on, then without. */
+/* TryStage with a guess of the inflated body or a prediction along the path; if that fails, without. */
 static PetscErrorCode TryIncrement(LamMacro macro, Stage from, Stage to, PetscBool *converged)
 {
   const PetscReal ratio = macro->passed != 0 ? (to.load - from.load) / macro->passed : 0;
-  /* nodes that come to touch an obstacle make a kink in the path: there predictions save nothing */
+  /* a node that comes into contact makes a kink in the path, where predictions save nothing */
   const PetscBool predicts =
       macro->extrapolates && !macro->obstacle_count && from.turgor == to.turgor && ratio > 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscBool guesses = macro->scene->macro.inflate && from.turgor == 0 && to.turgor == 1 ? PETSC_TRUE : PETSC_FALSE;
@@ -266,7 +271,7 @@ static PetscErrorCode TryIncrement(LamMacro macro, Stage from, Stage to, PetscBo
   PetscFunctionReturn(0);
 }
 
-/* Goes from one stage to the next, in smaller increments where that fails. `reached` is how far it came. */
+/* Advances from one stage to another, in smaller increments if that fails. reached: the last converged stage. */
 static PetscErrorCode Advance(LamMacro macro, Stage from, Stage to, Stage *reached, PetscBool *converged)
 {
   const PetscReal smallest = PetscPowRealInt(0.5, MAX_HALVINGS);
@@ -305,13 +310,13 @@ static void MeanIndicators(LamMacro macro, PetscReal sum[4], PetscReal *max_gap)
     sum[0] += macro->weight[p];
     sum[1] += macro->weight[p] * point->field[LAM_POINT_DEBONDED];
     sum[2] += macro->weight[p] * point->load.turgor;
-    /* a database that does not know it at one point does not know it at all: infinite, which MPI_MAX keeps */
+    /* if one point does not know the gap, the maximum is unknown: infinite, which MPI_MAX keeps */
     const PetscReal gap = point->field[LAM_POINT_GAP];
     *max_gap = PetscMax(*max_gap, PetscIsInfOrNanReal(gap) ? INFINITY : gap);
   }
 }
 
-/* Where the responder's time went, and how many answers were interpolated. */
+/* Mean times of the responder, and the number of interpolated responses. */
 static PetscErrorCode MeanTimes(LamMacro macro)
 {
   const LamResponder *responder = macro->responder, *before = &macro->counted;
@@ -341,7 +346,7 @@ PetscErrorCode LamMacroFinishStep(LamMacro macro, PetscInt number, PetscReal loa
   PetscFunctionBeginUser;
   step->step = number;
   step->load_factor = load_factor;
-  PetscCall(LamMacroSetLoadFactor(macro, load_factor)); /* an increment that failed had another one */
+  PetscCall(LamMacroSetLoadFactor(macro, load_factor)); /* a failed increment has set another one */
   LamMacroDisplacements(macro, step);
   PetscCall(LamMacroReactions(macro, step));
   MeanIndicators(macro, sum, &step->max_gap);
@@ -369,7 +374,7 @@ PetscErrorCode LamMacroStartStep(LamMacro macro, PetscReal *start)
   PetscFunctionReturn(0);
 }
 
-/* Hands a step to the monitor; one that is complete is what a run may go on from. */
+/* Passes a step to the monitor. A run can be restarted from a complete step. */
 static PetscErrorCode Report(LamMacro macro, PetscInt number, PetscReal load_factor, PetscBool complete,
                              PetscReal start, PetscBool *stop)
 {
@@ -393,7 +398,8 @@ static PetscErrorCode DescribeEnd(LamMacro macro, PetscInt number, Stage reached
   PetscFunctionReturn(0);
 }
 
-/* The run ends within a step. The increments that converged since the last report were dear: they are reported. */
+/* Ends the run within a step. Increments that converged since the last report are reported, since they were expensive.
+ */
 static PetscErrorCode EndWithinStep(LamMacro macro, PetscInt number, Stage reported, Stage reached, PetscReal start,
                                     char message[LAM_MESSAGE_LENGTH])
 {
@@ -429,7 +435,7 @@ PetscErrorCode LamMacroBringUpTurgor(LamMacro macro, PetscReal *reached, PetscBo
   PetscFunctionReturn(0);
 }
 
-/* The turgor comes up; with `inflate` this is a step of its own, from which the displacements count. */
+/* Applies the turgor; with `inflate` this is a separate step, from which the displacements are measured. */
 static PetscErrorCode Inflate(LamMacro macro, Stage *stage, PetscReal *start, PetscBool *converged, PetscBool *stop)
 {
   PetscFunctionBeginUser;
