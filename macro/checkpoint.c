@@ -1,7 +1,7 @@
 /*
-  What a run goes on from: the state of the body after a complete step, by the numbers of the undistributed mesh.
+  Restart data: the state of the body after a complete step, by the numbers of the undistributed mesh.
 
-  Whoever adds to the state of the solver adds a line to ArchiveState.
+  Every addition to the state of the solver needs a line in ArchiveState.
 */
 #include "macro_impl.h"
 
@@ -34,7 +34,8 @@ PetscErrorCode LamMacroArchiveVec(LamMacro macro, LamArchive archive, const char
   PetscFunctionReturn(0);
 }
 
-/* Numbers of this rank's material points in the undistributed mesh: element after element, all with equal room. */
+/* Numbers of this rank's material points in the undistributed mesh, element by element, with equal space for each
+   element. */
 static PetscErrorCode NumberPoints(LamMacro macro, PetscInt numbers[])
 {
   PetscInt most = 0;
@@ -69,7 +70,7 @@ static PetscErrorCode ArchiveResponder(LamMacro macro, LamArchive archive, const
   PetscFunctionReturn(0);
 }
 
-/* Which nodes touched, as a vector of numbers 0 and 1. */
+/* Nodes in contact, as a vector of 0 and 1. */
 static PetscErrorCode ArchiveTouch(LamMacro macro, LamArchive archive)
 {
   PetscScalar *touches;
@@ -92,7 +93,7 @@ static PetscErrorCode ArchiveTouch(LamMacro macro, LamArchive archive)
   PetscFunctionReturn(0);
 }
 
-/* What the loads and the prediction of the next step need. */
+/* Data for the loads and the prediction of the next step. */
 static PetscErrorCode ArchiveLoads(LamMacro macro, LamArchive archive)
 {
   PetscReal borders[PETSC_STATIC_ARRAY_LENGTH(macro->borders)] = {0};
@@ -131,7 +132,7 @@ PetscErrorCode LamMacroArchive(LamMacro macro, LamArchive archive)
   PetscCall(LamArchiveShared(archive, "progress", sizeof(macro->progress), &macro->progress));
   PetscCall(LamArchiveShared(archive, "work", sizeof(macro->step.work), &macro->step.work));
   PetscCall(LamMacroArchiveVec(macro, archive, "origin", macro->origin));
-  if (LamArchiveIsReading(archive)) { /* conditions count from the displacement that is there */
+  if (LamArchiveIsReading(archive)) { /* conditions are measured from the stored displacement */
     PetscCall(VecCopy(macro->origin, macro->u));
     PetscCall(LamMacroHoldBoundaries(macro));
   }

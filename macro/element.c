@@ -1,10 +1,10 @@
 /*
-  Kinds of elements: quadratic Lagrange elements of PetscFE; in sealed tissue (sealed.c) triangles have a cubic bubble,
-  without which a linear pressure of their own is too rich for them.
+  Kinds of elements: quadratic Lagrange elements of PetscFE; in sealed tissue (sealed.c) triangles have a cubic
+  bubble; without it an element-wise linear pressure is not stable.
 
   Gauss points: quadrilaterals 3 x 3 (hexahedra 3 x 3 x 3), triangles 3 (tetrahedra: the rule of degree 2). Both
   integrate the tangent of undistorted elements with constant material to the element's order. Triangles with a bubble
-  have the 6 points of the rule of degree 4, which is that of the bubble's tangent.
+  have the 6 points of the rule of degree 4, the degree of the bubble's tangent.
 
   Reference: Crouzeix & Raviart, RAIRO R-3 (1973) 33-75, Example 5.
 */
@@ -12,7 +12,7 @@
 
 enum { SIMPLEX_DEGREE = 2, BUBBLE_DEGREE = 4, TENSOR_POINTS = 3 };
 
-/* Whether triangles have a node inside. */
+/* Whether elements of this type have a bubble node. */
 static PetscBool HasBubble(LamMacro macro, DMPolytopeType type)
 {
   return type == DM_POLYTOPE_TRIANGLE && LamMacroHasPressures(macro) ? PETSC_TRUE : PETSC_FALSE;
@@ -37,8 +37,8 @@ static PetscBool IsSimplex(DMPolytopeType type)
 }
 
 /*
-  Puts the bubble b = 27 l1 l2 l3 of a triangle in front of its six functions, from which it takes their value at the
-  centre: N_a - N_a(centre) b. So each is 1 at its own node and 0 at the others.
+  Inserts the bubble b = 27 l1 l2 l3 of a triangle before its six functions and subtracts the functions' values at the
+  centre: N_a - N_a(centre) b. Each function is then 1 at its own node and 0 at the others.
 */
 static PetscErrorCode AddBubble(PetscFE fe, const PetscReal points[], LamMacroKind *kind)
 {
@@ -64,12 +64,12 @@ static PetscErrorCode AddBubble(PetscFE fe, const PetscReal points[], LamMacroKi
   PetscFunctionReturn(0);
 }
 
-/* Fills value, gradient and weight from PetscFE's tables at the quadrature's points. */
+/* Sets value, gradient and weight from PetscFE's tables at the quadrature points. */
 static PetscErrorCode Tabulate(PetscInt dim, PetscFE fe, PetscQuadrature quadrature, PetscBool bubble,
                                LamMacroKind *kind)
 {
   const PetscReal *points, *weights;
-  const PetscInt first = bubble ? 1 : 0; /* of PetscFE's functions */
+  const PetscInt first = bubble ? 1 : 0; /* first of PetscFE's functions */
   PetscTabulation table;
 
   PetscFunctionBeginUser;

@@ -1,5 +1,5 @@
 /*
-  Pieces of a plane body's boundary: quadratic edges.
+  Facets of a plane body's boundary: quadratic edges.
 */
 #include "macro_impl.h"
 
@@ -37,7 +37,7 @@ void LamMacroFacetShape(PetscInt q, PetscReal N[3], PetscReal dN[3], PetscReal *
 
 PetscErrorCode LamMacroStraightNormal(LamMacro macro, PetscInt set, PetscReal normal[2], PetscBool *straight)
 {
-  const PetscReal tiny = 1e-8; /* of lengths of order one */
+  const PetscReal tiny = 1e-8; /* relative to lengths of order one */
   PetscReal sum[2] = {0, 0}, range[2] = {-PETSC_INFINITY, -PETSC_INFINITY}, X[6], sense, length;
 
   PetscFunctionBeginUser;

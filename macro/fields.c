@@ -1,6 +1,6 @@
 /*
-  What is kept of a response for the results; fields of the last converged state, gathered on rank 0 in the numbering of
-  the undistributed mesh.
+  Response fields stored for output; fields of the last converged state, gathered on rank 0 in the numbering of the
+  undistributed mesh.
 */
 #include <math.h>
 #include "macro_impl.h"
@@ -19,14 +19,14 @@ PetscReal LamPointFieldWorse(LamPointField field, PetscReal a, PetscReal b)
   return field == LAM_POINT_ELLIPTICITY ? PetscMin(a, b) : PetscMax(a, b);
 }
 
-/* What the lumens have: of sealed cells the pressure that was reached. */
+/* Turgor of the lumens; with sealed cells the pressure reached. */
 static PetscReal Turgor(const LamResponse *r)
 {
   return isfinite(r->turgor_mean) ? r->turgor_mean : r->load.turgor;
 }
 
-/* A face bears t = g - (contact pressure), and nothing but p + g presses it together (docs/theory/homogenisation.md,
- * Effective-stress principle). */
+/* A face transmits t = g - (contact pressure), and is pressed together only by p + g (docs/theory/homogenisation.md,
+   Effective-stress principle). */
 static PetscReal FaceUnloading(const LamResponse *r)
 {
   const PetscReal pressing = Turgor(r) + r->load.cohesion;
@@ -54,13 +54,13 @@ void LamMacroKeepFields(const LamResponse *response, PetscReal field[LAM_POINT_F
   field[LAM_POINT_WALL] = response->max_wall_tension;
   field[LAM_POINT_NORMAL] = response->max_traction;
   field[LAM_POINT_SHEAR] = response->max_lamella_shear;
-  field[LAM_POINT_ELLIPTICITY] = NAN; /* found for converged states alone (localisation.c) */
+  field[LAM_POINT_ELLIPTICITY] = NAN; /* computed only for converged states (localisation.c) */
   field[LAM_POINT_ERROR] = interpolated ? response->error_estimate : 0;
   field[LAM_POINT_INTERPOLATED] = interpolated;
   field[LAM_POINT_DOUBTFUL] = !response->indicators_trusted;
 }
 
-/* What a rank sends of a node, of an element and of a material point. */
+/* Data sent by a rank per node, element and material point. */
 typedef struct {
   PetscInt number;
   PetscReal X[2], u[2];
@@ -73,12 +73,12 @@ typedef struct {
 } ElementRecord;
 
 typedef struct {
-  PetscInt element, index; /* number of its element, and which of its points */
+  PetscInt element, index; /* number of its element, and its index there */
   LamLoad load;
   PetscReal P[9], field[LAM_POINT_FIELD_COUNT], place[2], position[2], volume;
 } PointRecord;
 
-/* Gathers n items of `size` bytes from each rank on rank 0; `all` is NULL elsewhere. The caller frees it. */
+/* Gathers n items of `size` bytes from each rank on rank 0; `all` is NULL on other ranks. The caller frees it. */
 static PetscErrorCode GatherItems(MPI_Comm comm, size_t size, PetscInt n, const void *items, PetscInt *total,
                                   void **all)
 {
@@ -127,8 +127,8 @@ static PetscErrorCode CollectNodes(LamMacro macro, PetscInt *n, NodeRecord **nod
   PetscFunctionReturn(0);
 }
 
-/* Nodes in VTK's order: corners, mid-edges, centre; a closure lists centre, edges, corners. A triangle's is left out.
- */
+/* Nodes in VTK's order: corners, mid-edges, centre; a closure lists centre, edges, corners. A triangle's centre is
+   omitted. */
 static PetscErrorCode ElementNodes(LamMacro macro, PetscInt e, PetscInt nodes[LAM_FIELD_NODES])
 {
   PetscInt size, *closure = NULL, corners, next[3];
@@ -153,12 +153,12 @@ static PetscReal Determinant(const PetscReal F[9])
   return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
 }
 
-/* Mean of the Cauchy stress P F^T / J over the present volume J w: of the means of P and F it would be another. */
+/* Mean of the Cauchy stress P F^T / J over the current volume J w; it differs from that of the means of P and F. */
 static void MeanCauchy(PetscInt n, const LamMaterialPoint points[], const PetscReal weight[], PetscReal cauchy[9])
 {
   PetscReal volume = 0;
 
-  if (!points[0].known) return; /* nothing has been solved */
+  if (!points[0].known) return; /* nothing has been solved yet */
   for (PetscInt q = 0; q < n; q++) volume += weight[q] * Determinant(points[q].load.F);
   for (PetscInt q = 0; q < n; q++) {
     const PetscReal *P = points[q].P, *F = points[q].load.F;
@@ -312,7 +312,7 @@ static PetscErrorCode GetElements(LamMacro macro, LamMacroFields *fields)
   PetscFunctionReturn(0);
 }
 
-/* After GetElements. */
+/* Call after GetElements. */
 static PetscErrorCode GetPoints(LamMacro macro, LamMacroFields *fields)
 {
   PointRecord *own, *all;

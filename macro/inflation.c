@@ -1,27 +1,27 @@
 /*
-  First guess of an inflated body: the homogeneous deformation in which free tissue carries its turgor without stress.
+  Initial guess of an inflated body: the homogeneous deformation in which free tissue under its turgor is stress-free.
 
-  Method. The full Newton step from F = 1 goes far astray where the tissue is soft against its turgor, as cells that
-  slide are. One material point alone, the one nearest to the middle of the body, tells where to begin: Psi(F, p) is
-  minimised over symmetric F of the plane by Newton's method with the moduli of the eigenvalues of its Hessian, steps of
-  at most STEP, halved where the energy does not fall or the tissue has no answer. Then u = (F - 1) X + c + w x X, the
-  rigid motion fitted to what is held. A guess costs one question an iteration; the body's own Newton iteration judges
-  it.
+  Method. The full Newton step from F = 1 diverges if the tissue is soft relative to its turgor, as tissue of sliding
+  cells is. The initial guess is therefore computed at one material point, the one nearest to the middle of the body:
+  Psi(F, p) is minimised over symmetric plane F by Newton's method with the absolute values of the eigenvalues of its
+  Hessian. Steps are at most STEP long, and halved if the energy does not decrease or there is no response. Then u =
+  (F - 1) X + c + w x X, with the rigid motion fitted to the constraints. The guess costs one query per iteration; the
+  body's own Newton iteration verifies it.
 */
 #include <math.h>
 #include "macro_impl.h"
 #include <petscblaslapack.h>
 
 enum { ITERATIONS = 40, SYMMETRIC = 3 }; /* components 11, 12 = 21, 22 */
-static const PetscReal STEP = 0.1, STRESS = 1e-9 /* of the largest on the way */;
+static const PetscReal STEP = 0.1, STRESS = 1e-9 /* relative to the largest stress during the iteration */;
 
-/* What the middle point says at F. */
+/* Energy of the middle point at F. */
 typedef struct {
   PetscBool known;
   PetscReal energy, gradient[SYMMETRIC], hessian[SYMMETRIC * SYMMETRIC];
 } Energy;
 
-/* The rank and the material point nearest to the mean place. */
+/* Finds the material point nearest to the centroid, and its rank. */
 static PetscErrorCode FindMiddle(LamMacro macro, PetscMPIInt *rank, PetscInt *point)
 {
   PetscReal sum[3] = {0};
@@ -50,7 +50,8 @@ static PetscErrorCode FindMiddle(LamMacro macro, PetscMPIInt *rank, PetscInt *po
 
 static void Project(const LamResponse *response, Energy *energy)
 {
-  static const int moves[4][2] = {{0, 0}, {1, 1}, {3, 1}, {4, 2}}; /* a component of F, with a component of e */
+  static const int moves[4][2] = {
+      {0, 0}, {1, 1}, {3, 1}, {4, 2}}; /* a component of F and the corresponding component of e */
 
   energy->known = LamResponseHasFields(response);
   energy->energy = response->energy;
@@ -114,7 +115,7 @@ static PetscReal Stress(const Energy *energy)
   return largest;
 }
 
-/* Minimises the energy of the middle point; *found where its stress vanishes. */
+/* Minimises the energy of the middle point; *found: its stress vanishes. */
 static PetscErrorCode FreeTissue(LamMacro macro, PetscReal e[SYMMETRIC], PetscBool *found)
 {
   PetscMPIInt rank = 0;
@@ -135,7 +136,7 @@ static PetscErrorCode FreeTissue(LamMacro macro, PetscReal e[SYMMETRIC], PetscBo
     PetscCall(Descend(&now, step));
     for (int i = 0; i < SYMMETRIC; i++) trial[i] = e[i] + share * step[i];
     PetscCall(Ask(macro, rank, point, trial, &next));
-    /* near the end rounding hides what the energy gains */
+    /* near convergence the decrease of the energy is below rounding */
     if (!next.known || (next.energy > now.energy && Stress(&next) > 0.5 * Stress(&now))) {
       share *= 0.5;
       continue;
@@ -147,7 +148,7 @@ static PetscErrorCode FreeTissue(LamMacro macro, PetscReal e[SYMMETRIC], PetscBo
   PetscFunctionReturn(0);
 }
 
-/* The rigid motion c1, c2, w that brings (F - 1) X nearest to what is held. */
+/* Rigid motion c1, c2, w: least-squares fit of (F - 1) X plus the motion to the constraints. */
 static PetscErrorCode FitMotion(LamMacro macro, const PetscReal e[SYMMETRIC], PetscReal motion[3])
 {
   PetscReal sums[12] = {0}; /* of the normal equations: matrix, right side */

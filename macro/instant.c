@@ -1,6 +1,6 @@
 /*
-  The body at an instant, for whoever follows it in time (body.h): equilibrium under given conditions from a given
-  guess, and responses at any state.
+  The body at an instant, for time integration (body.h): equilibrium under given conditions from a given guess, and
+  responses at any state.
 */
 #include <math.h>
 #include "macro_impl.h"
@@ -37,7 +37,7 @@ PetscErrorCode LamMacroStart(LamMacro macro, PetscBool *ok, char message[LAM_MES
   PetscFunctionBeginUser;
   PetscCheck(macro->responder, macro->comm, PETSC_ERR_ORDER, "call LamMacroSetResponder() first");
   message[0] = '\0';
-  macro->extrapolates = PETSC_FALSE; /* guesses are given */
+  macro->extrapolates = PETSC_FALSE; /* guesses are provided by the caller */
   macro->thorough = PETSC_FALSE;
   PetscCall(LamMacroStartStep(macro, &start));
   PetscCall(LamMacroBringUpTurgor(macro, &reached, ok));
@@ -62,7 +62,7 @@ PetscErrorCode LamMacroGetState(LamMacro macro, PetscReal u[], PetscReal pressur
   PetscFunctionReturn(0);
 }
 
-/* Puts the body into the state, under the conditions. */
+/* Sets the body to a state under the given conditions. */
 static PetscErrorCode Enter(LamMacro macro, const LamMacroInstant *instant, const PetscReal u[],
                             const PetscReal pressures[])
 {
@@ -90,7 +90,7 @@ PetscErrorCode LamMacroBalance(LamMacro macro, const LamMacroInstant *instant, c
   PetscFunctionBeginUser;
   PetscCall(Enter(macro, instant, u, pressures));
   macro->prediction = 0;
-  macro->thorough = PETSC_TRUE; /* else what changes little in time would not move the body at all */
+  macro->thorough = PETSC_TRUE; /* otherwise slow changes in time would not move the body at all */
   PetscCall(LamMacroIterate(macro, ok));
   PetscFunctionReturn(0);
 }

@@ -1,10 +1,10 @@
 /*
-  Ellipticity of the tissue at the material points of a converged state: where it is lost the body localises, in bands
+  Ellipticity of the tissue at the material points of a converged state. Where it is lost, the body localises in bands
   as narrow as its elements.
 
-  Of sealed cells the tangent is that with their water: each place keeps its own, so that in a band
+  With sealed cells the tangent includes their water. The water at each point is constant, so the tangent in a band is
     A - dP/dp (x) dP/dp / (w' + d2Psi/dp2),   w' = -v/K_w (sealed.c),
-  resists.
+  (condensed pressure).
 */
 #include <lamella/ellipticity.h>
 #include <math.h>
@@ -23,7 +23,8 @@ static void PointTangent(LamMacro macro, PetscInt p, PetscReal A[16])
     for (int j = 0; j < 4; j++) A[4 * i + j] += share * sealed->P_turgor[i] * sealed->P_turgor[j];
 }
 
-/* The smallest of all ranks, and of equal ones that of the lowest rank, with what `step` says of it. */
+/* Reduces to the smallest value of all ranks (among equal ones that of the lowest rank), with its normal and location.
+ */
 static PetscErrorCode Share(LamMacro macro, LamMacroStep *step)
 {
   struct {

@@ -1,5 +1,5 @@
 /*
-  Life of the macroscale solver: creation, set-up, destruction.
+  Creation, set-up and destruction of the macroscale solver.
 */
 #include <math.h>
 #include "macro_impl.h"

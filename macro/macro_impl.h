@@ -364,7 +364,7 @@ static inline const PetscReal *LamMacroGradient(LamMacro macro, const LamMacroEl
 PetscErrorCode LamMacroEvaluate(LamMacro macro, Vec u, PetscBool *ok);
 /* Internal nodal forces of the evaluated state; *scale: norm of the element forces before summation at the nodes. */
 PetscErrorCode LamMacroAssembleForce(LamMacro macro, Vec force, PetscReal *scale);
-/* The same norm for a body whose stress components all equal LAM_STRESS_FLOOR. */
+/* The same norm for a body whose stress is LAM_STRESS_FLOOR times the identity everywhere. */
 PetscErrorCode LamMacroForceFloor(LamMacro macro, PetscReal *scale);
 PetscErrorCode LamMacroAssembleTangent(LamMacro macro, Mat tangent);
 

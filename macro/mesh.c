@@ -1,17 +1,17 @@
 /*
   Mesh of the macroscale body: quadratic elements over a DMPlex mesh, distributed over the ranks.
 
-  A node sits on every mesh point that the elements have one on: vertices, edges, quadrilaterals. The geometry is
+  Nodes are at the mesh points where the elements have one: vertices, edges, quadrilaterals. The geometry is
   isoparametric: X = sum_a N_a X_a with the same shape functions as the displacement, so edges may be curved.
 */
 #include "macro_impl.h"
 
-#define OUTER "outer facets" /* label of the undistributed mesh's boundary: a rank's own has others, too */
+#define OUTER "outer facets" /* label of the undistributed mesh's boundary; a rank's own boundary has more facets */
 
-/* ---- numbers that do not depend on the ranks ---- */
+/* ---- numbering independent of the ranks ---- */
 
-/* values[mesh points of this rank] from those of the undistributed mesh (all on rank 0), where migration is not NULL.
- */
+/* Migrates values of the undistributed mesh (all on rank 0) to values[mesh points of this rank], if migration is not
+   NULL. */
 static PetscErrorCode Migrate(PetscSF migration, PetscInt **values, PetscInt n)
 {
   PetscInt *own = *values;
@@ -25,7 +25,7 @@ static PetscErrorCode Migrate(PetscSF migration, PetscInt **values, PetscInt n)
   PetscFunctionReturn(0);
 }
 
-/* Of the undistributed mesh: number of each node, and of each point (of which the first are the elements). */
+/* In the undistributed mesh: number of each node, and of each point (the first ones are the elements). */
 static PetscErrorCode NumberPoints(LamMacro macro, PetscInt **nodes, PetscInt **points)
 {
   PetscInt start, end, count = 0;
@@ -100,7 +100,7 @@ static PetscErrorCode AddGroup(LamMacro macro, DMLabel label, PetscInt value, co
   PetscFunctionReturn(0);
 }
 
-/* A side of a box or disc: stratum k + 1 of DMPlex's label of faces. */
+/* Adds the sides of a box or disc: side k is stratum k + 1 of DMPlex's label of faces. */
 static PetscErrorCode AddSides(LamMacro macro, PetscInt count, const char *const names[])
 {
   DMLabel label;
@@ -117,7 +117,7 @@ static PetscErrorCode AddSides(LamMacro macro, PetscInt count, const char *const
   PetscFunctionReturn(0);
 }
 
-/* Labels that PETSc or this file makes: no physical groups. */
+/* Labels made by PETSc or in this file, i.e. not physical groups. */
 static PetscBool IsOwnLabel(const char name[])
 {
   static const char *const own[] = {"depth", "celltype", "Cell Sets", "Face Sets", "Vertex Sets", OUTER};
@@ -181,7 +181,7 @@ static PetscErrorCode NameSets(LamMacro macro)
   PetscFunctionReturn(0);
 }
 
-/* Pieces of the outer boundary that belong to a set. */
+/* Lists the facets of the outer boundary that belong to a set. */
 static PetscErrorCode ListFacets(LamMacro macro)
 {
   PetscInt start, end;
@@ -206,8 +206,9 @@ static PetscErrorCode ListFacets(LamMacro macro)
 /* ---- geometry ---- */
 
 /*
-  The mean of a mesh point's vertices; inside elements with curved edges that of their quadratic map: of a quadrilateral
-  X = sum edges / 2 - sum vertices / 4, of a triangle X = 4/9 sum edges - sum vertices / 9.
+  Position of the node of a mesh point: the mean of its vertices; inside elements with curved edges that of their
+  quadratic map: for a quadrilateral X = sum edges / 2 - sum vertices / 4, for a triangle X = 4/9 sum edges - sum
+  vertices / 9.
 */
 static PetscErrorCode PlaceNode(LamMacro macro, PetscInt point, PetscReal X[])
 {
@@ -234,7 +235,7 @@ static PetscErrorCode PlaceNode(LamMacro macro, PetscInt point, PetscReal X[])
   PetscFunctionReturn(0);
 }
 
-/* A mid-edge node of a disc's rim lies on the circle. */
+/* Moves a mid-edge node of a disc's rim onto the circle. */
 static void MoveToRim(LamMacro macro, PetscInt point)
 {
   const PetscInt rim = LamMacroFindSet(macro, "rim");
@@ -245,14 +246,14 @@ static void MoveToRim(LamMacro macro, PetscInt point)
   for (int i = 0; i < 2; i++) X[i] /= radius;
 }
 
-/* Vertices first, then edges, then cells: each from those before, where the mesh does not say (quadratic Gmsh files).
- */
+/* Positions of vertices, then edges, then cells: from the mesh if it has them (quadratic Gmsh files), else computed
+   from the previous ones. */
 static PetscErrorCode LocateNodes(LamMacro macro)
 {
   PetscSection section;
   Vec coordinates;
   const PetscScalar *x;
-  PetscInt known[2]; /* mesh points that may have coordinates */
+  PetscInt known[2]; /* range of mesh points that may have coordinates */
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(macro->dim * (macro->mesh_end - macro->mesh_start), &macro->position));
@@ -281,7 +282,7 @@ static PetscErrorCode LocateNodes(LamMacro macro)
   PetscFunctionReturn(0);
 }
 
-/* inverse of J[dim][dim] (row-major) and its determinant. */
+/* Inverse of J[dim][dim] (row-major); returns the determinant. */
 static PetscReal Invert(PetscInt dim, const PetscReal J[], PetscReal inverse[])
 {
   if (dim == 2) {
@@ -301,7 +302,7 @@ static PetscReal Invert(PetscInt dim, const PetscReal J[], PetscReal inverse[])
   return det;
 }
 
-/* dN/dX, weight and place of one Gauss point; X [nodes][dim]. */
+/* dN/dX, weight and position of one Gauss point; X [nodes][dim]. */
 static PetscErrorCode MapPoint(LamMacro macro, const LamMacroElement *element, PetscInt q, const PetscReal X[])
 {
   const LamMacroKind *kind = element->kind;
@@ -379,7 +380,7 @@ static PetscErrorCode MapElements(LamMacro macro)
   PetscFunctionReturn(0);
 }
 
-/* ---- all of it ---- */
+/* ---- creation and destruction ---- */
 
 /* The undistributed mesh, in macro lengths. */
 static PetscErrorCode CreateMesh(MPI_Comm comm, const LamMacroSpec *spec, DM *dm)
@@ -405,7 +406,7 @@ static PetscErrorCode CreateMesh(MPI_Comm comm, const LamMacroSpec *spec, DM *dm
   PetscFunctionReturn(0);
 }
 
-/* From facets to their edges and vertices, in all labels of sides; the outer facets get one. */
+/* Extends all labels of sides from facets to their edges and vertices, and labels the outer facets. */
 static PetscErrorCode CompleteLabels(DM dm)
 {
   PetscInt labels;

@@ -1,13 +1,13 @@
 /*
   A disc about the origin, or the half or quarter of it with X2 >= 0 (and X1 >= 0): an inner square of m x m elements
-  per quadrant, and around it k layers that go over from the square to the circle.
+  per quadrant, and around it k layers that blend from the square to the circle.
 
-  Vertices are numbered by their place in the whole square's grid (i, j), |i|, |j| <= m, and by layers along its
-  perimeter; those that no element of the part has are left out.
+  Vertices are numbered by grid position (i, j) in the full square, |i|, |j| <= m, and by layer along its perimeter;
+  vertices that no element of the part uses are omitted.
 */
 #include "macro_impl.h"
 
-static const PetscReal SQUARE = 0.5; /* half the edge of the inner square, over the radius */
+static const PetscReal SQUARE = 0.5; /* half the edge of the inner square relative to the radius */
 
 typedef struct {
   PetscInt m, k; /* elements along half the square's edge, and across the ring */
@@ -23,7 +23,7 @@ static PetscInt SquareIndex(const Disc *disc, PetscInt i, PetscInt j)
   return (i + disc->m) * (2 * disc->m + 1) + j + disc->m;
 }
 
-/* Grid place of point s = 0..8m-1 of the square's perimeter, counter-clockwise from (m, 0). */
+/* Grid position of point s = 0..8m-1 of the square's perimeter, counter-clockwise from (m, 0). */
 static void Perimeter(PetscInt m, PetscInt s, PetscInt *i, PetscInt *j)
 {
   const PetscInt t = (s + m) % (8 * m), side = t / (2 * m), along = t % (2 * m) - m;
@@ -42,7 +42,7 @@ static PetscInt RingIndex(const Disc *disc, PetscInt layer, PetscInt s)
   return layer ? (2 * m + 1) * (2 * m + 1) + (layer - 1) * 8 * m + s : SquareIndex(disc, i, j);
 }
 
-/* The number of a vertex, which gets one and its place where it has none. */
+/* Number of a vertex; at its first use it is numbered and positioned. */
 static PetscInt Vertex(Disc *disc, PetscInt index, const PetscReal X[2])
 {
   if (disc->number[index] < 0) {

@@ -1,11 +1,11 @@
 /*
   Meshes from Gmsh files, read by DMPlex: formats 2.2, 4.0 and 4.1, text and binary; triangles and quadrilaterals,
-  straight or quadratic. Physical groups become labels of their names. PETSc places the nodes of curved edges only where
+  straight or quadratic. Physical groups become labels of their names. PETSc reads the nodes of curved edges only if
   all elements are of one kind.
 */
 #include "macro_impl.h"
 
-/* Rank 0 looks before PETSc does, which trusts the file and whose messages know nothing of it. */
+/* Rank 0 checks the file before PETSc reads it: PETSc does not validate it, and its error messages do not name it. */
 static PetscErrorCode CheckFile(MPI_Comm comm, const char path[])
 {
   char why[LAM_GMSH_WHY] = "";
@@ -21,12 +21,12 @@ static PetscErrorCode CheckFile(MPI_Comm comm, const char path[])
   PetscFunctionReturn(0);
 }
 
-/* Lets PETSc read the file, places of nodes on curved edges included or not; *ierr is what it says. */
+/* Reads the file with PETSc, with or without the nodes on curved edges; *ierr: PETSc's error code. */
 static PetscErrorCode Read(MPI_Comm comm, const char path[], PetscBool curved, DM *dm, PetscErrorCode *ierr)
 {
   static const char *const options[][2] = {{"-dm_plex_gmsh_use_regions", "1"},
                                            {"-dm_plex_gmsh_spacedim", "2"},
-                                           {"-dm_plex_gmsh_periodic", "0"}}; /* sides are not glued */
+                                           {"-dm_plex_gmsh_periodic", "0"}}; /* periodic sides are not identified */
 
   PetscFunctionBeginUser;
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(options); k++)
@@ -36,7 +36,7 @@ static PetscErrorCode Read(MPI_Comm comm, const char path[], PetscBool curved, D
   *dm = NULL;
   *ierr = DMPlexCreateGmshFromFile(comm, path, PETSC_TRUE, dm);
   PetscCall(PetscPopErrorHandler());
-  if (*ierr) PetscCall(DMDestroy(dm)); /* as far as it has got */
+  if (*ierr) PetscCall(DMDestroy(dm)); /* free what was created */
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(options); k++)
     PetscCall(PetscOptionsClearValue(NULL, options[k][0]));
   PetscCall(PetscOptionsClearValue(NULL, "-dm_plex_gmsh_highorder"));

@@ -1,12 +1,12 @@
 /*
-  What is wrong with a Gmsh file.
+  Validation of a Gmsh file before PETSc reads it.
 
   Method
-    PETSc refuses a file that is cut, a node given twice, parametric coordinates and unknown types of elements. It does
-    not check how many nodes, elements and tags there are, which nodes and entities an element names, nor how long a
-  word is: a wrong number makes it crash, hang or read other memory. These are checked here first, by the same grammar:
-    MeshFormat, PhysicalNames, Entities (from 4.0 on), Nodes, Elements. What follows is not read. Also refused is what
-    PETSc drops silently: a line of a side that is on no element.
+    PETSc rejects truncated files, duplicate nodes, parametric coordinates and unknown element types. It does not check
+    the numbers of nodes, elements and tags, the nodes and entities that an element refers to, or the length of a word:
+    a wrong number makes it crash, hang or read other memory. These are checked here first, by the same grammar:
+    MeshFormat, PhysicalNames, Entities (from 4.0 on), Nodes, Elements. Later sections are not read. Also rejected is
+    what PETSc drops silently: a line of a side that is on no element.
 
   References
     C. Geuzaine and J.-F. Remacle, Gmsh Reference Manual, Sections "MSH file format" and "MSH file format version 2".
@@ -24,21 +24,22 @@
 #include <sys/stat.h>
 
 enum { MOST_WORD = 128, MOST_NAME = 120, MOST_TAGS = 16, MOST_NODES = 10 };
-#define MOST_SPAN ((int64_t)1 << 20) /* of the tags of nodes, or SPARSE times as many as there are nodes */
+#define MOST_SPAN ((int64_t)1 << 20) /* largest span of node tags; SPARSE times the number of nodes if larger */
 #define SPARSE 64
 
 typedef struct {
   const char *begin, *at, *end;
   int format; /* 22, 40, 41 */
   PetscBool binary, swapped;
-  int64_t first, span;         /* of the tags of nodes */
-  unsigned char *known;        /* [span] the node is there; owned */
-  PetscHSetIJ entities;        /* dimension, tag; owned */
-  PetscHSetIJ edges, segments; /* smaller node, larger node: of elements of two dimensions, of one; owned */
-  char *why;                   /* LAM_GMSH_WHY long */
+  int64_t first, span;  /* node tags: smallest, range */
+  unsigned char *known; /* [span] the node is there; owned */
+  PetscHSetIJ entities; /* dimension, tag; owned */
+  PetscHSetIJ edges,
+      segments; /* edges of two-dimensional and of one-dimensional elements: smaller node, larger node; owned */
+  char *why;    /* LAM_GMSH_WHY long */
 } Mesh;
 
-/* Always false: the words stay. */
+/* Writes the message to m->why. Always returns PETSC_FALSE. */
 static PetscBool Wrong(const Mesh *m, const char format[], ...)
 {
   int line = 1, length;
@@ -60,7 +61,7 @@ static PetscBool IsGap(char c)
   return (PetscBool)(c == ' ' || (c >= '\t' && c <= '\r'));
 }
 
-/* The gap behind it is passed, too: there binary numbers begin. */
+/* Reads a word and the one blank after it: binary numbers begin there. */
 static PetscBool Word(Mesh *m, char word[MOST_WORD])
 {
   size_t n = 0;
@@ -115,7 +116,7 @@ static PetscBool Integer(Mesh *m, int64_t least, int64_t most, int64_t *value)
                                          : PETSC_TRUE;
 }
 
-/* A tag or a number of things; of `each` bytes at least, so there are no more than the file has room for. */
+/* A tag, or a number of items of at least `each` bytes: limited by the size of the rest of the file. */
 static PetscBool Long(Mesh *m, int64_t each, int64_t *value)
 {
   const int64_t most = each ? (m->end - m->at) / each : INT_MAX - 1;
@@ -155,7 +156,7 @@ static PetscBool Has(PetscHSetIJ set, int64_t a, int64_t b)
   return (PetscBool)(!PetscHSetIJHas(set, key, &has) && has);
 }
 
-/* ---- the front ---- */
+/* ---- header ---- */
 
 static PetscBool Format(Mesh *m)
 {
@@ -174,13 +175,13 @@ static PetscBool Format(Mesh *m)
   return Expect(m, "$EndMeshFormat");
 }
 
-/* Names of labels that PETSc has for itself. */
+/* Label names used by PETSc itself. */
 static PetscBool IsTaken(const char *name, size_t n)
 {
   return (PetscBool)((n == 5 && !memcmp(name, "depth", n)) || (n == 8 && !memcmp(name, "celltype", n)));
 }
 
-/* PETSc takes the name to begin right here, and to end at a colon. */
+/* PETSc expects the name to begin right here, and ends it at a colon. */
 static PetscBool PhysicalName(Mesh *m)
 {
   const char *from, *to, *line;
@@ -216,7 +217,7 @@ static PetscBool Entity(Mesh *m, int dimension)
   int64_t tag, n, ignored;
 
   if (!Integer(m, INT_MIN, INT_MAX, &tag) || !Reals(m, m->format == 41 && !dimension ? 3 : 6)) return PETSC_FALSE;
-  for (int list = 0; list < (dimension ? 2 : 1); list++) { /* of physical groups, of what bounds it */
+  for (int list = 0; list < (dimension ? 2 : 1); list++) { /* physical groups, bounding entities */
     if (!Long(m, 1, &n)) return PETSC_FALSE;
     if (!list && n > MOST_TAGS) return Wrong(m, "more than %d physical groups of one entity", MOST_TAGS);
     for (int64_t i = 0; i < n; i++)
@@ -237,7 +238,7 @@ static PetscBool Entities(Mesh *m)
   return Expect(m, "$EndEntities");
 }
 
-/* What a block begins with: its entity; of elements their type, too. */
+/* Header of a block: its entity, and for elements their type. */
 static PetscBool Block(Mesh *m, PetscBool of_elements, int64_t *third, int64_t *n)
 {
   const PetscBool tag_first = (PetscBool)(m->format == 40);
@@ -260,7 +261,7 @@ static PetscBool KeepTag(Mesh *m, int64_t tags[], int64_t room, int64_t *n, int6
   return PETSC_TRUE;
 }
 
-/* Formats 2.2 and 4.0: each tag with its place; 4.1: all tags first. */
+/* Formats 2.2 and 4.0: each tag with its coordinates; 4.1: all tags first. */
 static PetscBool NodeBlock(Mesh *m, int64_t count, int64_t tags[], int64_t room, int64_t *n)
 {
   int64_t tag;
@@ -298,11 +299,11 @@ static PetscBool MarkNodes(Mesh *m, int64_t n, const int64_t tags[])
     return Wrong(m, "tags of nodes from %lld to %lld", (long long)m->first, (long long)last);
   m->known = calloc((size_t)m->span, 1);
   if (!m->known) return Wrong(m, "no memory for the mesh");
-  for (int64_t i = 0; i < n; i++) m->known[tags[i] - m->first] = 1; /* PETSc refuses a node that is given twice */
+  for (int64_t i = 0; i < n; i++) m->known[tags[i] - m->first] = 1; /* PETSc rejects duplicate nodes */
   return PETSC_TRUE;
 }
 
-/* What format 4.1 says of the tags of its nodes. */
+/* Checks the range of node tags given by format 4.1. */
 static PetscBool RangeHolds(const Mesh *m, int64_t least, int64_t most)
 {
   if (least <= m->first && most >= m->first + m->span - 1 && most - least < m->span + MOST_SPAN) return PETSC_TRUE;
@@ -335,7 +336,7 @@ static const struct {
   int type, corners, nodes;
 } kinds[] = {{15, 1, 1}, {1, 2, 2}, {8, 2, 3}, {2, 3, 3}, {9, 3, 6}, {3, 4, 4}, {10, 4, 9}, {16, 4, 8}};
 
-/* The kind of elements of a type; -1: not read. */
+/* Index of an element type in kinds; -1: not supported. */
 static int FindKind(const Mesh *m, int64_t type)
 {
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(kinds); k++)
@@ -367,7 +368,7 @@ static PetscBool ElementNodes(Mesh *m, int kind)
   return PETSC_TRUE;
 }
 
-/* Format 2.2: in text each element says its type and its tags, in binary numbers a block of them does. */
+/* Format 2.2: each element (text) or each block of elements (binary) states its type and number of tags. */
 static PetscBool OldElements(Mesh *m, int64_t n)
 {
   int64_t first, second, tags, ignored;
@@ -424,7 +425,7 @@ static PetscBool Elements(Mesh *m)
   return Expect(m, "$EndElements");
 }
 
-/* A plane body, and lines on it. */
+/* Checks that there are surface elements, and that every line is an edge of one. */
 static PetscBool Body(Mesh *m)
 {
   PetscHashIJKey *lines;
@@ -441,9 +442,9 @@ static PetscBool Body(Mesh *m)
   return good;
 }
 
-/* ---- all of it ---- */
+/* ---- the file ---- */
 
-/* Comments may stand between sections. */
+/* Next section name; comments between sections are skipped. */
 static PetscBool Section(Mesh *m, char word[MOST_WORD])
 {
   if (!Word(m, word)) return PETSC_FALSE;
@@ -471,7 +472,7 @@ static PetscBool Read(Mesh *m)
   return (PetscBool)(Elements(m) && Body(m));
 }
 
-/* The whole file; NULL: *why says the reason. */
+/* Reads the whole file; returns NULL with the reason in why. */
 static char *Load(const char path[], size_t *size, char why[LAM_GMSH_WHY])
 {
   FILE *file = fopen(path, "rb");

@@ -1,7 +1,8 @@
 /*
-  Rigid, frictionless obstacles: flat plates and round indenters, which nodes of a named side may touch and leave.
+  Rigid, frictionless obstacles: flat plates and round indenters, in unilateral contact with the nodes of a named side.
 
-  A node is kept from the nearest obstacle only: obstacles that a node touches at once (a wedge) are beyond this.
+  Each node is constrained by its nearest obstacle only: simultaneous contact of a node with two obstacles (a wedge)
+  is not covered.
 */
 #include "macro_impl.h"
 
@@ -39,11 +40,11 @@ static PetscErrorCode ListNodes(LamMacro macro)
   PetscFunctionReturn(0);
 }
 
-/* How far the obstacle is moved along its normal, or path, until it touches the first of its nodes. */
+/* Distance along its normal or path by which the obstacle moves until it touches the first of its nodes. */
 static PetscReal Reach(LamMacro macro, const LamObstacle *obstacle, PetscInt o, const PetscScalar u[])
 {
   const LamBoundary *boundary = &macro->scene->macro.boundary[obstacle->entry];
-  const PetscReal *d = obstacle->normal; /* of an indenter: of its path */
+  const PetscReal *d = obstacle->normal; /* for an indenter the direction of its path */
   PetscReal reach = PETSC_INFINITY;
 
   for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {

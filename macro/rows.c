@@ -1,24 +1,25 @@
 /*
-  Equations of nodes whose displacement is prescribed or that touch an obstacle.
+  Equations of nodes with prescribed displacement or in contact with an obstacle.
 
   Prescribed directions stay unknowns: n . u - target = 0, in units of C1 + C2, replaces the force along n; along the
-  tangent t of a node with one direction the equation stays t . r = 0. So the first Newton iteration after a change of
-  the targets spreads the change through the whole body by the tangent of the last converged state: no layer of elements
-  at the boundary is ever crushed.
+  tangent t of a node with one direction the equation stays t . r = 0. The first Newton iteration after a change of
+  the targets therefore distributes the change over the whole body by the tangent of the last converged state, and no
+  layer of elements at the boundary is crushed.
 
-  Obstacles: with the gap g(x) and its normal n(x) = dg/dx, a node's force on the body is lambda n, so the unbalanced
-  force is r = lambda n and lambda = n . r needs no unknown of its own. The complementarity g >= 0, lambda >= 0,
-  g lambda = 0 is min(lambda, g) = 0 (stresses in C1 + C2, lengths in macro lengths): a node is active where lambda > g,
-  and its equations are then g = 0 and t . r = 0; else r = 0. Newton's method on this piecewise smooth function is the
-  primal-dual active set. When an increment begins the obstacles have moved and the forces have not: there a node that
-  touched stays active, too, else all of them would be let go at the first retreat of an obstacle. Derivatives: dg = n .
-  dx; with dn = kappa t (t . dx), kappa = 1 / |x - centre|, and t normal to n, d(t . r) = t . dr - kappa lambda t . dx.
+  Obstacles: with the gap g(x) and its normal n(x) = dg/dx, the force of an obstacle on a node is lambda n, so the
+  unbalanced force is r = lambda n, and lambda = n . r needs no additional unknown. The complementarity g >= 0, lambda
+  >= 0, g lambda = 0 is min(lambda, g) = 0 (stresses in C1 + C2, lengths in macro lengths). A node is active if lambda
+  > g; its equations are then g = 0 and t . r = 0, otherwise r = 0. Newton's method for this piecewise smooth function
+  is the primal-dual active set method. At the start of an increment the obstacles have moved but the forces have not
+  changed. Nodes in contact therefore stay active in the first iteration; otherwise all of them would be released at
+  the first retreat of an obstacle. Derivatives: dg = n . dx; with dn = kappa t (t . dx), kappa = 1 / |x - centre|,
+  and t normal to n, d(t . r) = t . dr - kappa lambda t . dx.
 
   Reference: Hintermueller, Ito & Kunisch, SIAM J. Optim. 13 (2003) 865-888.
 */
 #include "macro_impl.h"
 
-/* The component in which a direction is largest: its equation is the one that is replaced. */
+/* The largest component of a direction: its equation is replaced. */
 static PetscInt Largest(const PetscReal normal[2])
 {
   return PetscAbsReal(normal[1]) > PetscAbsReal(normal[0]) ? 1 : 0;
@@ -29,7 +30,7 @@ static PetscReal Target(LamMacro macro, const LamConstraint *constraint)
   return constraint->target + (constraint->border < 0 ? 0 : macro->borders[constraint->border].now);
 }
 
-/* Row i becomes normal . u - target, whose value is given. */
+/* Sets row i to normal . u - target, with the given value. */
 static void PrescribeRow(LamNodeRows *rows, PetscInt i, const PetscReal normal[2], PetscReal value)
 {
   rows->value[i] = value;
@@ -39,7 +40,7 @@ static void PrescribeRow(LamNodeRows *rows, PetscInt i, const PetscReal normal[2
   }
 }
 
-/* Row i becomes t . r, t the tangent of a normal, with the derivative of t. */
+/* Sets row i to t . r, with t the tangent of a normal, and includes the derivative of t. */
 static void TangentRow(LamNodeRows *rows, PetscInt i, const PetscReal normal[2], PetscReal turning)
 {
   const PetscReal sign = i == 0 ? -1 : 1, t[2] = {-sign * normal[1], sign * normal[0]};
@@ -66,7 +67,7 @@ static LamNodeRows HeldRows(LamMacro macro, const LamConstraint constraints[], P
   return rows;
 }
 
-/* A node without prescribed direction; *active: touched before, becomes: touches. */
+/* Rows of a node without prescribed direction; *active on entry: in contact before, on return: in contact. */
 static LamNodeRows TouchRows(const LamTouch *touch, PetscInt local, const PetscScalar r[], PetscBool *active)
 {
   const PetscReal lambda = touch->normal[0] * PetscRealPart(r[local]) + touch->normal[1] * PetscRealPart(r[local + 1]);
@@ -80,11 +81,11 @@ static LamNodeRows TouchRows(const LamTouch *touch, PetscInt local, const PetscS
   return rows;
 }
 
-/* A node with one prescribed direction m moves along s, the tangent of m: lambda n . s = s . r. */
+/* Rows of a node with one prescribed direction m. It moves along s, the tangent of m: lambda n . s = s . r. */
 static void TouchHeldRows(const LamTouch *touch, const PetscReal m[2], const PetscScalar r[], LamNodeRows *rows,
                           PetscBool *active)
 {
-  const PetscReal aside = 0.1; /* an obstacle that looks along m more than this cannot hold the node */
+  const PetscReal aside = 0.1; /* an obstacle whose normal is closer to m cannot constrain the node */
   const PetscInt i = 1 - Largest(m);
   const PetscReal s[2] = {-m[1], m[0]}, along = touch->normal[0] * s[0] + touch->normal[1] * s[1];
 

@@ -3,15 +3,13 @@
 
   Method. Newton's method with the consistent tangent, full steps; load steps with cutback.
 
-  Algorithm. 1. Inflation: only rigid motions are prescribed and the full turgor acts, first from an initial guess
-  (inflation.c). Without `inflate` the turgor acts while the prescribed sides stay in the reference state; this is
-  part of step 1.
-
+  Algorithm.
+  1. Inflation: only rigid motions are prescribed and the full turgor acts, first from an initial guess (inflation.c).
+     Without `inflate` the turgor acts while the prescribed sides stay in the reference state; this is part of step 1.
   2. The prescribed displacements are measured from there and grow in `steps` equal steps. Sealed lumens are sealed
-  after inflation; without `inflate` at F = 1 under the full turgor, at the start.
-
+     after inflation; without `inflate` at F = 1 under the full turgor, at the start.
   3. If Newton fails, a material point has no response, or an iterate changes too much, the increment is halved, at
-  most MAX_HALVINGS times; it is doubled again after each success.
+     most MAX_HALVINGS times; it is doubled again after each success.
 
   Convergence: norm of the residual <= RELATIVE_TOLERANCE times the norm of the element forces before summation at the
   nodes (largest in this series of iterations), or <= ABSOLUTE_TOLERANCE (C1 + C2) times the box's first edge. The

@@ -1,7 +1,7 @@
 /*
   Tractions on named sides of a plane body.
 
-  Dead: f_a = integral of N_a t over the reference side. Followers, per present area: with tau = dx/dxi the present
+  Dead: f_a = integral of N_a t over the reference side. Followers, per current area: with tau = dx/dxi the present
   tangent of an edge that runs counter-clockwise, ds = |tau| dxi, tangent tau / |tau| and outward normal R tau / |tau|,
   R = (0 1; -1 0), so that
 
