@@ -1,5 +1,5 @@
 /*
-  Reading a scene: file, YAML tree, check against the table of keys, nondimensional data.
+  Reads a scene: file, YAML tree, validation against the table of keys, nondimensional data.
 */
 #include "scene_keys.h"
 #include <errno.h>
@@ -7,7 +7,7 @@
 #include <string.h>
 #include "utf8.h"
 
-/* A scene is some kilobytes; more is the wrong file. */
+/* Scenes have some kilobytes; a larger file is the wrong file. */
 enum { MAX_FILE_SIZE = 1 << 20 };
 
 PetscErrorCode LamSceneDestroy(LamScene **scene)
@@ -24,8 +24,8 @@ PetscErrorCode LamSceneDestroy(LamScene **scene)
   PetscFunctionReturn(0);
 }
 
-/* Bytes that text has not: libfyaml complains about them less clearly, and never returns from a directive that is no
-   UTF-8. */
+/* Rejects bytes that text does not contain: libfyaml's messages for them are less clear, and it never returns from a
+   directive that is not UTF-8. */
 static PetscErrorCode CheckText(const char name[], const char text[], size_t length)
 {
   int line = 1, column = 1;
@@ -85,7 +85,7 @@ PetscErrorCode LamSceneReadText(const char name[], const char text[], LamScene *
   PetscFunctionReturn(0);
 }
 
-/* Reads a stream, which may be a pipe; at most one byte more than a scene may have. */
+/* Reads a stream, which may be a pipe; at most one byte more than the maximum size of a scene. */
 static PetscErrorCode ReadStream(const char path[], char buffer[MAX_FILE_SIZE + 2], size_t *length)
 {
   FILE *stream = fopen(path, "rb");

@@ -1,5 +1,5 @@
 /*
-  The conditions on the sides of the macroscale body: `macro.boundary`.
+  Boundary conditions of the macroscale body: `macro.boundary`.
 */
 #include "scene_rows.h"
 #include <math.h>
@@ -61,16 +61,16 @@ static const LamKey boundary_keys[] = {
 };
 LAM_KEY_TABLE(LamBoundaryKeys, boundary_keys);
 
-/* What is known of the entries so far. */
+/* The entries read so far. */
 typedef struct {
   const LamNode *entry[LAM_MAX_BOUNDARIES]; /* in the file */
-  PetscInt side[LAM_MAX_BOUNDARIES];        /* of a box or disc; -1: of a Gmsh file */
-  PetscBool held[LAM_MAX_BOUNDARIES][2];    /* components that the entry prescribes all along the side */
+  PetscInt side[LAM_MAX_BOUNDARIES];        /* of a box or disc; -1: Gmsh file */
+  PetscBool held[LAM_MAX_BOUNDARIES][2];    /* components that the entry prescribes along the whole side */
 } Conditions;
 
 static const char *const box_sides[] = {LAM_SIDES(LAM_NAME_ENTRY) NULL};
 
-/* The sides that a box or a disc has, by name; NULL: the mesh's file names them. */
+/* Names of the sides of a box or disc; NULL: they are in the mesh file. */
 static const char *const *SideNames(const LamMacroSpec *spec)
 {
   static const char *const disc[][4] = {
@@ -95,7 +95,7 @@ PetscErrorCode LamSceneCheckSide(const LamNode *on, const LamMacroSpec *spec, Pe
   PetscFunctionReturn(0);
 }
 
-/* The component along the normal of a straight side of a box or disc; -1: not straight, or not known. */
+/* The component along the normal of a straight side of a box or disc; -1: not straight, or unknown. */
 static PetscInt NormalComponent(const LamMacroSpec *spec, PetscInt side)
 {
   const char *name = side < 0 ? "" : SideNames(spec)[side];
@@ -106,7 +106,7 @@ static PetscInt NormalComponent(const LamMacroSpec *spec, PetscInt side)
 
 /* ---- one entry ---- */
 
-/* Exactly one key says what the entry is. */
+/* Exactly one key determines the kind of the entry. */
 static PetscErrorCode ChooseKind(const LamNode *entry, LamBoundary *boundary)
 {
   const LamNode *chosen = NULL, *follower = LamNodeFind(entry, "follower");
@@ -146,7 +146,7 @@ static PetscErrorCode CheckPlate(const LamNode *plate, PetscBool curved, LamBoun
   PetscFunctionReturn(0);
 }
 
-/* What the kind asks beyond the bounds of its keys; `curved`: the side is known and not straight. */
+/* Checks of the kind beyond the bounds of its keys; `curved`: the side is known and not straight. */
 static PetscErrorCode CheckKind(const LamNode *entry, PetscBool curved, LamBoundary *boundary)
 {
   const LamNode *chosen = LamNodeFind(entry, LamBoundaryKindNames[boundary->kind]);
@@ -205,7 +205,7 @@ static void FindHeld(const LamMacroSpec *spec, PetscInt side, const LamBoundary 
   }
 }
 
-/* Conditions on one side do not prescribe the same component, nor load or press on what is prescribed. */
+/* Conditions on one side must not prescribe the same component, nor apply a load to a prescribed component. */
 static PetscErrorCode CheckSameSide(const LamMacroSpec *spec, PetscInt b, const Conditions *conditions)
 {
   const LamNode *on = LamNodeFind(conditions->entry[b], "on");
@@ -253,9 +253,9 @@ static PetscErrorCode BuildBoundary(const LamNode *entry, LamScene *scene, Condi
   PetscFunctionReturn(0);
 }
 
-/* ---- boxes, whose sides are known before there is a mesh ---- */
+/* ---- boxes, whose sides are known without a mesh ---- */
 
-/* Whether two conditions that hold component c move a corner that they share alike. */
+/* True if two conditions that prescribe component c move a shared corner equally. */
 static PetscBool MoveAlike(const LamBoundary *one, const LamBoundary *other, PetscInt c)
 {
   if ((one->kind == LAM_BOUNDARY_GRIP && !one->given[c]) || (other->kind == LAM_BOUNDARY_GRIP && !other->given[c]))
@@ -264,7 +264,7 @@ static PetscBool MoveAlike(const LamBoundary *one, const LamBoundary *other, Pet
                      (one->displacement[c] == 0 || LamHistoriesAgree(&one->history, &other->history)));
 }
 
-/* Sides that meet share a corner: both move it, so they agree. */
+/* Adjacent sides must move their shared corner equally. */
 static PetscErrorCode CheckCorners(const LamMacroSpec *spec, const Conditions *conditions)
 {
   PetscFunctionBeginUser;
@@ -285,9 +285,10 @@ static PetscErrorCode CheckCorners(const LamMacroSpec *spec, const Conditions *c
 }
 
 /*
-  Rigid motions of a box: along X1, along X2, and the rotation u = w (-X2, X1). A side holds a translation where its
-  component is given. The rotation changes u1 along the upright sides and u2 along the level ones, so one of these holds
-  it; a component that is constant along its side holds it only together with the opposite side. A grip never turns.
+  Rigid motions of a box: along X1, along X2, and the rotation u = w (-X2, X1). A side constrains a translation if it
+  prescribes the component. The rotation changes u1 along the vertical sides and u2 along the horizontal ones, so that
+  prescribing one of these constrains it; a component that is constant along its side constrains it only together with
+  the opposite side. A grip never rotates.
 */
 static PetscErrorCode CheckRigidMotions(const LamNode *list, const LamMacroSpec *spec, const Conditions *conditions)
 {
@@ -326,7 +327,7 @@ PetscErrorCode LamSceneBuildBoundaries(const LamNode *root, LamScene *scene)
                     LAM_MAX_BOUNDARIES);
   for (const LamNode *entry = list->first; entry; entry = entry->next)
     PetscCall(BuildBoundary(entry, scene, &conditions));
-  if (scene->macro.source == LAM_MESH_BOX) { /* of other bodies the macroscale solver checks it */
+  if (scene->macro.source == LAM_MESH_BOX) { /* the macroscale solver checks other bodies */
     PetscCall(CheckCorners(&scene->macro, &conditions));
     PetscCall(CheckRigidMotions(list, &scene->macro, &conditions));
   }

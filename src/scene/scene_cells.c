@@ -1,5 +1,5 @@
 /*
-  What differs from cell to cell, and what a patch of cells between grips allows.
+  Variation between cells, and checks of a patch of cells between grips.
 */
 #include <lamella/lattice.h>
 #include "scene_rows.h"
@@ -9,7 +9,7 @@
 
 #define OWN "that of the scene's own cell"
 
-/* What a field varies. */
+/* The properties that a field varies. */
 enum { FIELD_WALL, FIELD_THICKNESS, FIELD_TURGOR, FIELD_COHESION, FIELD_COUNT };
 typedef struct {
   PetscReal variation[FIELD_COUNT]; /* coefficients */
@@ -141,7 +141,7 @@ static PetscErrorCode AssignPattern(Variation *v, const LamNode *pattern, const 
   PetscFunctionReturn(0);
 }
 
-/* Shares of all cells, rounded so that they add up, then shuffled. */
+/* Fractions of all cells, rounded so that they add up, then shuffled. */
 static PetscErrorCode AssignRandom(Variation *v, const LamNode *random, const PetscInt cells[2])
 {
   const PetscInt count = cells[0] * cells[1];
@@ -163,7 +163,7 @@ static PetscErrorCode AssignRandom(Variation *v, const LamNode *random, const Pe
   PetscFunctionReturn(0);
 }
 
-/* The one of list, pattern and random that a scene has. */
+/* Exactly one of list, pattern and random is given. */
 static PetscErrorCode AssignKinds(Variation *v, const PetscInt cells[2])
 {
   static const struct {
@@ -261,7 +261,7 @@ static PetscErrorCode BuildField(const LamNode *node, LamScene *scene)
 
 /* ---- variation ---- */
 
-/* Up to rounding of units. */
+/* Equal up to rounding of unit conversion. */
 static PetscBool AreEqual(PetscReal a, PetscReal b)
 {
   return (PetscBool)(fabs(a - b) <= 1e-12 * fabs(b));
@@ -281,7 +281,7 @@ static PetscBool AreSame(const LamCell *a, const LamCell *b)
                      AreEqual(a->cohesion, b->cohesion) && AreSameWalls(&a->wall, &b->wall));
 }
 
-/* Cells that are all the scene's own are no variation, and cost nothing. */
+/* Removes a variation in which all cells equal the scene's own. */
 static PetscErrorCode DropVariation(LamMicrostructure *micro)
 {
   const LamCell own = OwnCell(micro);
@@ -317,11 +317,11 @@ PetscErrorCode LamSceneBuildCells(const LamNode *root, LamScene *scene)
   PetscFunctionReturn(0);
 }
 
-/* ---- what a patch allows ---- */
+/* ---- checks of patches ---- */
 
 /*
-  In contact without cohesion a wall only pushes. A cell between the grips whose outer wall is free is pushed out by its
-  neighbours, and by its own turgor, and nothing brings it back.
+  In contact without cohesion a wall only pushes. A cell between the grips with a free outer wall is pushed out by its
+  neighbours and by its own turgor, and no force restores it.
 */
 static PetscErrorCode CheckHold(const LamNode *root, const LamNode *node, PetscReal cohesion)
 {
@@ -336,7 +336,7 @@ static PetscErrorCode CheckHold(const LamNode *root, const LamNode *node, PetscR
   PetscFunctionReturn(0);
 }
 
-/* Whether a neighbour holds a cell: between two cells the smaller cohesion acts. */
+/* True if the cohesion of a neighbour holds a cell: between two cells the smaller cohesion acts. */
 static PetscBool IsHeldByNeighbour(const LamMicrostructure *micro, PetscInt cell)
 {
   for (PetscInt face = 0; face < LAM_FACES; face++) {
@@ -349,7 +349,7 @@ static PetscBool IsHeldByNeighbour(const LamMicrostructure *micro, PetscInt cell
 
 PetscBool LamSceneNeedsCohesion(const LamMicrostructure *micro)
 {
-  /* of two rows every cell is held by a grip */
+  /* in a patch of two rows a grip holds every cell */
   return (PetscBool)(micro->is_patch && micro->interface == LAM_INTERFACE_CONTACT && micro->sides == LAM_SIDES_FREE &&
                      micro->cells[1] > 2);
 }

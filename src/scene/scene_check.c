@@ -1,5 +1,5 @@
 /*
-  Checks a scene document against the table of keys and reads its values.
+  Validates a scene document against the table of keys and reads its values.
 */
 #include "scene_keys.h"
 #include "quantity_text.h"
@@ -9,7 +9,8 @@
 
 enum { PATH_LENGTH = 80 };
 
-/* The key that was most likely meant by an unknown one in `map`: a similar one there, else one so named elsewhere. */
+/* The most likely intended key for an unknown one in `map`: a similar key there, otherwise one of this name
+   elsewhere. */
 static const LamKey *NearestKey(const LamKey *map, const char name[])
 {
   PetscInt best = (PetscInt)strlen(name) / 3 + 1;
@@ -49,7 +50,7 @@ static PetscErrorCode FailUnknown(const LamNode *node, const LamKey *map)
   PetscFunctionReturn(0);
 }
 
-/* Raises "<reason>; write <what would be right>". */
+/* Raises "<reason>; write <expectation>". */
 static PetscErrorCode FailValue(const LamNode *node, const LamKey *key, PetscBool single, const char reason[])
 {
   char expected[LAM_KEY_TEXT_LENGTH];
@@ -72,7 +73,7 @@ static PetscErrorCode CheckKind(const LamNode *node, const LamKey *key, PetscBoo
   PetscFunctionReturn(0);
 }
 
-/* The number of a text without a unit, or the reason why it is none. */
+/* Scans a number without a unit; returns the reason if it is not one. */
 static const char *ScanPlain(const char text[], LamKeyType type, PetscReal *number)
 {
   const char *end;
@@ -154,7 +155,7 @@ static PetscErrorCode ReadVector(LamNode *node, const LamKey *key)
   PetscFunctionReturn(0);
 }
 
-/* Two rows of two or three of three; 2x2 plain numbers are completed with F33 = 1. */
+/* Reads a tensor of two rows of two or three rows of three; 2x2 plain numbers are completed with F33 = 1. */
 static PetscErrorCode ReadTensor(LamNode *node, const LamKey *key)
 {
   LamValue read = {0};

@@ -1,11 +1,11 @@
 /*
-  Mixed control: of each component either F or P is given.
+  Mixed control: for each component either F or P is given.
 */
 #include "scene_keys.h"
 
 static const char *const names[9] = {"11", "12", "13", "21", "22", "23", "31", "32", "33"};
 
-/* The node of a component, or the tensor's where it is 2x2 and does not show it. */
+/* The node of a component; the tensor's node if the tensor is 2x2 and does not contain it. */
 static const LamNode *Item(const LamNode *tensor, PetscInt i)
 {
   const LamNode *row = tensor->first, *item;

@@ -1,11 +1,11 @@
 /*
-  Messages about scene files: where, which key, which value, what is wrong and what would be right.
+  Error messages for scene files: position, key, value, what is wrong and what would be right.
 */
 #include "scene_yaml.h"
 #include <stdarg.h>
 #include <string.h>
 
-/* PETSc cuts a message at some thousand characters: the parts of unknown length are shortened, each to its share. */
+/* PETSc truncates messages at about a thousand characters: each part of unknown length has its own limit. */
 enum { MESSAGE_LENGTH = 900, NAME_SHOWN = 120, KEY_LENGTH = 120, VALUE_SHOWN = 60, DETAIL_LENGTH = 560 };
 
 /* The path of a node from the root, "load[2].ramp.to". */
@@ -24,7 +24,7 @@ static void NodePath(const LamNode *node, char path[KEY_LENGTH])
   }
 }
 
-/* Copies text in one line, without control characters, cut after `shown` bytes (not within a UTF-8 sequence). */
+/* Copies text as one line, without control characters, truncated after `shown` bytes (not within a UTF-8 sequence). */
 static void CopyPrintable(const char text[], size_t shown, char copy[VALUE_SHOWN + 4])
 {
   size_t length = strlen(text), n = PetscMin(length, shown);

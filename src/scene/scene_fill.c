@@ -1,14 +1,14 @@
 /*
-  From the nodes of a document to the members of structs, nondimensional.
+  Stores document nodes in struct members, nondimensional.
 */
 #include "scene_keys.h"
 #include <math.h>
 #include <string.h>
 
-/* SI: within these nothing over- or underflows, such as work, a stress times an area. */
+/* in SI; within these limits nothing over- or underflows, such as work, a stress times an area */
 #define LARGEST_SCALE 1e100
 
-/* Ratios to the apothem and to C1 + C2 beyond which double precision holds nothing of the walls. */
+/* Larger ratios to the apothem and to C1 + C2 leave no significant digits for the walls in double precision. */
 #define LARGEST_RATIO 1e9
 
 PetscErrorCode LamSceneScale(const LamNode *node, PetscReal si, PetscReal scale, PetscReal *number)
@@ -40,7 +40,7 @@ PetscErrorCode LamSceneResolvePath(const LamNode *node, char path[PETSC_MAX_PATH
   PetscFunctionReturn(0);
 }
 
-/* Reads a default from the table as if it stood in a file. */
+/* Reads a default from the table as if it were in a file. */
 static PetscErrorCode ReadDefault(const LamKey *key, LamValue *value)
 {
   LamDocument document;
@@ -55,7 +55,7 @@ static PetscErrorCode ReadDefault(const LamKey *key, LamValue *value)
   PetscFunctionReturn(0);
 }
 
-/* A component in the units of the struct: um in apothems, mm in macro lengths, stresses in C1 + C2, the rest in SI. */
+/* A component in the struct's units: um in apothems, mm in macro lengths, stresses in C1 + C2, the rest in SI. */
 static PetscErrorCode StoreReal(const LamNode *node, const LamKey *key, const LamScales *scales, PetscReal si,
                                 PetscReal *number)
 {

@@ -94,7 +94,7 @@ void LamKeyBoundsText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH])
              LamBoundWords(&key->upper, PETSC_FALSE), (double)key->upper.value, space, unit);
 }
 
-/* One component: "bonded or contact", "a stress with its unit, larger than 0 MPa". */
+/* Expected text of one component: "bonded or contact", "a stress with its unit, larger than 0 MPa". */
 static void SingleText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH])
 {
   static const char *const articles[] = {"a length",      "a stress", "an angle",       "a time",
@@ -130,7 +130,7 @@ void LamKeyExpectation(const LamKey *key, PetscBool single, char text[LAM_KEY_TE
   } else if (key->size && !single) {
     snprintf(what, sizeof(what), "a list of %d", (int)key->size);
   } else if (key->type == LAM_KEY_NAME || key->type == LAM_KEY_BOOL || key->size || tensor) {
-    snprintf(text, LAM_KEY_TEXT_LENGTH, "%s", what); /* says it all, or the example is of the whole */
+    snprintf(text, LAM_KEY_TEXT_LENGTH, "%s", what); /* sufficient, or the example is of the whole value */
     return;
   }
   if (HasOneValue(key))

@@ -29,10 +29,10 @@ static const LamKey load_keys[] = {
 };
 LAM_KEY_TABLE(LamLoadKeys, load_keys);
 
-/* More states than anyone waits for; keeps a slip in `steps` from filling the memory. */
+/* More states than anyone solves; prevents a mistake in `steps` from filling the memory. */
 enum { MAX_STATES = 1000000 };
 
-/* What an entry prescribes: F and P, or those at the end of its ramp. */
+/* The F and P of an entry, or those at the end of its ramp. */
 typedef struct {
   const LamNode *F, *P;
   PetscInt states;
@@ -84,7 +84,7 @@ static PetscErrorCode ReadTarget(const LamNode *entry, Target *target)
   PetscFunctionReturn(0);
 }
 
-/* The turgor and cohesion of an entry: its own or the scene's. */
+/* Turgor and cohesion of an entry: its own or the scene's. */
 static PetscErrorCode BuildPressures(const LamNode *entry, const LamScene *scene, LamLoad *load)
 {
   const LamNode *turgor = LamNodeFind(entry, "turgor"), *cohesion = LamNodeFind(entry, "cohesion");
@@ -102,7 +102,7 @@ static PetscErrorCode BuildPressures(const LamNode *entry, const LamScene *scene
   PetscFunctionReturn(0);
 }
 
-/* F of one step of a straight path; *known is PETSC_FALSE where a component in the plane is not known yet. */
+/* F of one step of a linear path; *known is PETSC_FALSE if an in-plane component is not known yet. */
 static void StepF(const PetscReal start[9], const PetscReal end[9], const LamStressControl *control, PetscReal s,
                   PetscReal F[9], PetscBool *known)
 {

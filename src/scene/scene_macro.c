@@ -68,7 +68,7 @@ LAM_KEY_TABLE(LamProgramKeys, program_keys);
 
 /* ---- mesh ---- */
 
-/* Exactly one of box, disc and gmsh says where the mesh comes from, and what the unit of length is. */
+/* Exactly one of box, disc and gmsh defines the mesh and the unit of length. */
 static PetscErrorCode BuildMesh(const LamNode *mesh, LamScene *scene)
 {
   static const char *const sources[] = {"box", "disc", "gmsh"};
@@ -141,7 +141,7 @@ static PetscErrorCode BuildProgram(const LamNode *block, LamMacroSpec *spec)
 
 /* ---- control of a displacement ---- */
 
-/* The control finds the factor of the tractions. */
+/* Displacement control determines the factor of the tractions. */
 static PetscErrorCode CheckTractions(const LamNode *block, const LamMacroSpec *spec)
 {
   const LamLoadControl *control = &spec->control;
@@ -192,7 +192,7 @@ static PetscErrorCode BuildControl(const LamNode *block, LamScene *scene)
 /* ---- the block ---- */
 
 /*
-  A body that inflates freely ends at zero total stress, where every mean face traction is zero, whatever the turgor is:
+  A body that inflates freely has zero total stress, and hence zero mean traction on every face, at any turgor:
   contact alone then holds no cell.
 */
 static PetscErrorCode CheckInflation(const LamNode *block, const LamScene *scene)

@@ -1,5 +1,5 @@
 /*
-  The `map` block of a scene: two quantities that vary.
+  The `map` block of a scene: two varying quantities.
 */
 #include "scene_rows.h"
 #include "quantity_text.h"
@@ -9,7 +9,7 @@
 const char *const LamMapQuantityNames[] = {LAM_MAP_QUANTITIES(LAM_NAME_ENTRY)};
 static const char *const spacing_names[] = {"linear", "log"}; /* LamMapAxis.is_log 0 and 1 */
 
-/* The axes of a map are alike. `from` and `to` have the unit of the quantity, so they are read as text. */
+/* Both axes have the same keys. `from` and `to` have the unit of the quantity, so they are read as text. */
 #define MAP_AXIS(axis, sample)                                                                                         \
   {MAP("map." axis), REQUIRED, .example = sample, .help = "The axis " axis "."},                                       \
       {NAME("map." axis ".quantity", LamMapQuantityNames), INTO(LamMapAxis, quantity), REQUIRED,                       \
@@ -43,7 +43,7 @@ typedef enum { PLAIN, STRESS, LENGTH } Kind;
 #define MAP_NUMBER PLAIN
 #define MAP_ROW(X, name, law, kind, need, symbol, example, help, ...) [LAM_MAP_##name] = {MAP_##kind, __VA_ARGS__},
 
-/* What each quantity can be. Bounds in C1 + C2 and apothems. */
+/* Admissible values of each quantity. Bounds in C1 + C2 and apothems. */
 static const struct {
   Kind kind;
   LamBound lower, upper;
@@ -63,7 +63,7 @@ PetscReal LamMapAxisValue(const LamMapAxis *axis, PetscInt i)
 {
   const PetscReal share = (PetscReal)i / (PetscReal)(axis->points - 1);
 
-  if (i == axis->points - 1) return axis->to; /* free of rounding */
+  if (i == axis->points - 1) return axis->to; /* exact */
   return axis->is_log ? axis->from * pow(axis->to / axis->from, share) : (1 - share) * axis->from + share * axis->to;
 }
 
@@ -88,12 +88,12 @@ PetscBool LamMapQuantityIsLoad(LamMapQuantity quantity)
   return (PetscBool)(quantity == LAM_MAP_SHEAR || quantity == LAM_MAP_LOAD_FACTOR);
 }
 
-/* An axis as it stands in the file. */
+/* The nodes of an axis in the file. */
 typedef struct {
   const LamNode *quantity, *from, *to;
 } AxisNodes;
 
-/* An end of an axis, whose unit and bounds are those of its quantity. */
+/* Reads an end of an axis, with unit and bounds of its quantity. */
 static PetscErrorCode ReadEnd(const LamNode *node, LamMapQuantity quantity, const LamScales *scales, PetscReal *number)
 {
   const LamBound *lower = &Quantities[quantity].lower, *upper = &Quantities[quantity].upper, none = {0};
@@ -123,9 +123,9 @@ static PetscErrorCode ReadEnd(const LamNode *node, LamMapQuantity quantity, cons
   PetscFunctionReturn(0);
 }
 
-/* ---- what must fit the rest of the scene ---- */
+/* ---- compatibility with the rest of the scene ---- */
 
-/* An entry of the load that has a turgor or cohesion of its own would hide the axis. */
+/* A turgor or cohesion of a load entry would override the axis. */
 static PetscErrorCode CheckEntries(const char key[], const AxisNodes *nodes)
 {
   const LamNode *list = LamNodeFind(nodes->quantity->document->root, "load");
@@ -139,7 +139,7 @@ static PetscErrorCode CheckEntries(const char key[], const AxisNodes *nodes)
   PetscFunctionReturn(0);
 }
 
-/* The shear that the load reaches is found again by its value, so it only grows, from 0 on. */
+/* The shear is identified by its value along the load, so it must increase from 0. */
 static PetscErrorCode CheckShear(const AxisNodes *nodes, const LamScene *scene, const LamMapAxis *axis)
 {
   PetscReal last = 0;
@@ -185,7 +185,7 @@ static PetscErrorCode CheckAxis(const AxisNodes *nodes, const LamScene *scene, c
     LamSceneCheck(micro->interface != LAM_INTERFACE_CONTACT, nodes->quantity,
                   "law: contact has a cohesion instead; write cohesion, or interface: {law: bonded}");
     break;
-  default: /* of the walls, or without conditions */
+  default: /* wall quantities, or without conditions */
     LamSceneCheck(!micro->cell || (axis->quantity != LAM_MAP_WALL_THICKNESS && k < 0), nodes->quantity,
                   "the cells differ, and a map varies all alike; choose another quantity");
     LamSceneCheck(k < 0 || LamWallLawHas(micro->wall.law, k), nodes->quantity,

@@ -144,8 +144,7 @@ PetscErrorCode LamSceneDestroyProcess(LamScene *scene)
 
 /* ---- surroundings ---- */
 
-/* One entry, where NaN stands for what it does not give; a humidity h is kept as `outside` = ln h, which is negative.
- */
+/* Reads an entry; missing values are NaN. A humidity h is stored as `outside` = ln h, which is negative. */
 static PetscErrorCode ReadSurroundings(const LamNode *entry, const LamScene *scene, LamSurroundings *at)
 {
   const LamNode *outside = LamNodeFind(entry, "outside"), *humidity = LamNodeFind(entry, "humidity");
@@ -162,8 +161,8 @@ static PetscErrorCode ReadSurroundings(const LamNode *entry, const LamScene *sce
   PetscFunctionReturn(0);
 }
 
-/* Fills what entries do not give in a member of them, at an offset: straight between those that do, constant beyond;
-   `otherwise` where none does. */
+/* Fills missing values of a member, given by its offset: linear between the entries that have it, constant outside;
+   `otherwise` if none has it. */
 static void FillSurroundings(LamProcessSpec *spec, size_t offset, PetscReal otherwise)
 {
 #define MEMBER(i) (*(PetscReal *)((char *)&spec->surroundings[i] + offset))
@@ -207,7 +206,7 @@ static PetscErrorCode BuildSurroundings(const LamNode *list, LamScene *scene)
                   "is earlier than the entry before; order them by time");
   }
   FillSurroundings(spec, offsetof(LamSurroundings, temperature), ROOM_TEMPERATURE);
-  for (PetscInt i = 0; i < spec->surroundings_count; i++) /* of air at this temperature: -R T / V_w ln h */
+  for (PetscInt i = 0; i < spec->surroundings_count; i++) /* air at this temperature: -R T / V_w ln h */
     if (spec->surroundings[i].outside < 0)
       spec->surroundings[i].outside *=
           -LAM_GAS_CONSTANT * spec->surroundings[i].temperature / MOLAR_VOLUME / scene->scales.stress;
@@ -218,7 +217,7 @@ static PetscErrorCode BuildSurroundings(const LamNode *list, LamScene *scene)
 
 /* ---- water ---- */
 
-/* Membranes of one kind: all cells have the turgor of the load, which is no suction. */
+/* The membrane model assumes that all cells have the turgor of the load, which must not be negative. */
 static PetscErrorCode CheckTissue(const LamNode *block, const LamMicrostructure *micro, PetscReal turgor)
 {
   PetscFunctionBeginUser;
@@ -255,7 +254,7 @@ static PetscErrorCode BuildWater(const LamNode *block, LamScene *scene)
 
 /* ---- kinetics ---- */
 
-/* Which laws need a key beside their name, and which may have it; the others take no notice of it. */
+/* Which laws need a key beside their name, and which allow it; the others ignore it. */
 static const struct {
   const char *key;
   unsigned int need, have;
@@ -336,7 +335,7 @@ static PetscErrorCode ReadKinetics(const LamNode *entry, LamKinetics *kinetics)
   PetscFunctionReturn(0);
 }
 
-/* Refuses what the tissue does not have. */
+/* Rejects properties that the tissue does not have. */
 static PetscErrorCode CheckChanging(const LamNode *of, LamChanging changing, const LamScene *scene)
 {
   const PetscBool of_water = (PetscBool)(changing == LAM_CHANGING_SOLUTES || changing == LAM_CHANGING_PERMEABILITY ||
@@ -401,7 +400,7 @@ static PetscErrorCode ReadLeg(const LamNode *entry, const LamScene *scene, LamPr
 
 static PetscErrorCode BuildLegs(const LamNode *block, LamScene *scene)
 {
-  /* free of stress in the plane, held against rotation by F21 */
+  /* stress-free in the plane; F21 prevents rotation */
   LamProcessLeg leg = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .control = {.given = {1, 1, 0, 0, 1}, .share = 1}};
   const LamNode *list = LamNodeFind(block, "program"), *repeat = LamNodeFind(block, "repeat");
   LamProcessSpec *spec = &scene->process;

@@ -1,5 +1,5 @@
 /*
-  The load program of the macroscale body: the load parameter at a step, histories over it.
+  The load program of the macroscale body: load parameter of a step, histories as functions of it.
 */
 #include <lamella/scene.h>
 

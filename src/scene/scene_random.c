@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdint.h>
 
-#define REACH 3.0 /* correlation lengths: beyond, the weights are below 2e-8 */
+#define REACH 3.0 /* correlation lengths; weights beyond are below 2e-8 */
 
 static uint64_t Next(uint64_t *state)
 {
@@ -14,7 +14,7 @@ static uint64_t Next(uint64_t *state)
   return z ^ (z >> 31);
 }
 
-/* In (0, 1), neither end. */
+/* Uniform in (0, 1), excluding both ends. */
 static PetscReal Uniform(uint64_t *state)
 {
   return ((PetscReal)(Next(state) >> 12) + 0.5) / 4503599627370496.0;
@@ -46,7 +46,7 @@ static PetscReal Weight(PetscInt d0, PetscInt d1, PetscReal correlation)
   return r <= REACH ? exp(-2.0 * r * r) : 0.0;
 }
 
-/* What the noise of each cell, in a period with all its images, counts for one of them. */
+/* Weights of the noise of each cell, in a period including all its images, for one cell. */
 static void WeighNoise(const LamMicrostructure *micro, PetscInt cell, PetscReal correlation, PetscReal weight[])
 {
   const PetscInt *n = micro->cells, count = n[0] * n[1];
@@ -66,7 +66,7 @@ static void WeighNoise(const LamMicrostructure *micro, PetscInt cell, PetscReal 
     }
 }
 
-/* Standard normal numbers z[property][cell] from independent ones; weight [cell] is for work. */
+/* Correlated standard normal numbers z[property][cell] from independent ones; weight [cell] is work space. */
 static void Smooth(const LamMicrostructure *micro, PetscReal correlation, PetscInt properties, const PetscReal noise[],
                    PetscReal weight[], PetscReal z[])
 {

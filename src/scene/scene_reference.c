@@ -1,5 +1,5 @@
 /*
-  The scene reference, docs/reference/scene.md, from the table of keys.
+  Writes the scene reference, docs/reference/scene.md, from the table of keys.
 */
 #include "scene_keys.h"
 #include "quantity_text.h"
@@ -72,7 +72,7 @@ static void WriteRow(FILE *out, const LamKey *key)
   fprintf(out, " | %s |\n", key->help);
 }
 
-/* Does the key belong to the top-level block, or is it the block itself? */
+/* True if the key belongs to the top-level block, or is the block itself. */
 static PetscBool KeyIsIn(const LamKey *key, const char block[])
 {
   const size_t length = strlen(block);

@@ -1,5 +1,5 @@
 /*
-  `macro.regions` and `macro.fields` of a scene: tissue that differs from place to place.
+  `macro.regions` and `macro.fields` of a scene: tissue that varies with the position.
 */
 #include "scene_rows.h"
 #include "quantity_text.h"
@@ -9,7 +9,7 @@ const char *const LamTissueFieldNames[] = {LAM_TISSUE_FIELDS(LAM_NAME_ENTRY)};
 
 #define AS_RVE "as in `rve`"
 
-/* A field is an expression or a table; `expression` and `table` are texts, read by muParser and as a file. */
+/* A field is an expression or a table; both are texts: `expression` for muParser, `table` a file name. */
 #define TISSUE_FIELD(field, sample, expression_sample, unit_sample, words)                                             \
   {MAP("macro.fields." field), .default_words = "does not vary", .example = sample, .help = words},                    \
       {TEXT("macro.fields." field ".expression"), .default_words = "none: a table instead",                            \
@@ -121,7 +121,7 @@ static PetscErrorCode CheckTissue(const LamNode *entry, LamRegion *r)
   PetscFunctionReturn(0);
 }
 
-/* Cells that differ have thicknesses and moduli of their own. */
+/* Cells that differ have their own thicknesses and moduli. */
 static PetscErrorCode CheckVariation(const LamNode *entry, const LamScene *scene)
 {
   static const char *const own[] = {"cell.apothem", "cell.wall_thickness", "wall"};
@@ -137,7 +137,7 @@ static PetscErrorCode CheckVariation(const LamNode *entry, const LamScene *scene
   PetscFunctionReturn(0);
 }
 
-/* What is not given is as long, and as large, as in the scene's own tissue. */
+/* Missing lengths and moduli have the same physical value as in the scene's own tissue. */
 static PetscErrorCode BuildTissue(const LamNode *entry, const LamScene *scene, LamRegion *r)
 {
   const LamScales *own = &scene->scales, *scales = &r->scales;
@@ -157,9 +157,9 @@ static PetscErrorCode BuildTissue(const LamNode *entry, const LamScene *scene, L
   PetscFunctionReturn(0);
 }
 
-/* ---- where it lies ---- */
+/* ---- location ---- */
 
-/* An expression of x and y in mm, or the file of a table. */
+/* An expression of x and y in mm, or the file name of a table. */
 static PetscErrorCode ReadField(const LamNode *node, LamPlaceField *field)
 {
   char name[PETSC_MAX_PATH_LEN], path[PETSC_MAX_PATH_LEN], reason[LAM_PLACE_FIELD_REASON];

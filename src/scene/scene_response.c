@@ -23,13 +23,13 @@ static const LamKey response_keys[] = {
 };
 LAM_KEY_TABLE(LamResponseKeys, response_keys);
 
-/* Units of memory; udunits has none. */
+/* Units of memory, which udunits does not have. */
 static const struct {
   const char *name;
   PetscReal bytes;
 } units[] = {{"kB", 1e3}, {"MB", 1e6}, {"GB", 1e9}, {"TB", 1e12}};
 
-/* "2 GB"; 0 keeps nothing. */
+/* Reads "2 GB"; 0: keep no states. */
 static PetscErrorCode ReadMemory(const LamNode *node, PetscReal *bytes)
 {
   const char *end;

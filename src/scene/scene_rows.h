@@ -1,5 +1,5 @@
 /*
-  Private to scene reading: what the tables of keys are written with. {STRESS("rve.wall.C1"), REQUIRED, ABOVE(0), ...}
+  Private to scene reading: macros for the tables of keys. {STRESS("rve.wall.C1"), REQUIRED, ABOVE(0), ...}
 */
 #ifndef LAM_SCENE_ROWS_H
 #define LAM_SCENE_ROWS_H
@@ -31,7 +31,7 @@
 #define NAME(key_path, list)                                                                                           \
   .path = key_path, .type = LAM_KEY_NAME, .names = list, .name_count = PETSC_STATIC_ARRAY_LENGTH(list)
 #define NAME_OF(key_path, list, count) .path = key_path, .type = LAM_KEY_NAME, .names = list, .name_count = count
-/* The member that LamSceneFill stores the value in, and the PetscBools that say which of its components are given. */
+/* The member in which LamSceneFill stores the value, and the PetscBools for its given components. */
 #define INTO(type, member) .record = #type, .offset = offsetof(type, member), .room = sizeof(((type *)0)->member)
 #define GIVEN(type, member) .given = offsetof(type, member)
 
@@ -43,7 +43,7 @@
 #define TO(x) .upper = {LAM_BOUND_INCLUDED, x}
 #define BELOW(x) .upper = {LAM_BOUND_EXCLUDED, x}
 
-/* Rows of a wall's keys, from the lists of wall.h. */
+/* Rows of wall keys, from the lists of wall.h. */
 #define WALL_MODULUS(key_path) STRESS(key_path)
 #define WALL_NUMBER(key_path) REAL(key_path)
 #define LAM_FIRST(a, b) a
@@ -55,7 +55,7 @@
    .example = sample,                                                                                                  \
    .help = about ".",                                                                                                  \
    __VA_ARGS__},
-/* Of a wall that is that of `rve`, or as the words `own` say, in all that it leaves out. */
+/* Keys of a wall whose missing values are those of `rve`, or as described by the text `own`. */
 #define LAM_OTHER_WALL(prefix, own)                                                                                    \
   {NAME_OF(prefix ".law", LamWallLawNames, LAM_WALL_LAW_COUNT), INTO(LamWall, law), .default_words = own,              \
    .help = "Law of its wall."},                                                                                        \

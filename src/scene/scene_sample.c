@@ -27,7 +27,7 @@ static const LamKey sample_keys[] = {
 };
 LAM_KEY_TABLE(LamSampleKeys, sample_keys);
 
-/* Where a range is given, its ends are both. */
+/* A range must have both ends. */
 static PetscErrorCode CheckRange(const LamNode *range)
 {
   const LamNode *min = LamNodeFind(range, "min"), *max = LamNodeFind(range, "max");

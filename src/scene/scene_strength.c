@@ -1,5 +1,5 @@
 /*
-  The `strength` block of a scene: what walls and lamella bear.
+  The `strength` block of a scene: strengths of walls and lamella.
 */
 #include "scene_rows.h"
 #include <math.h>

@@ -1,5 +1,5 @@
 /*
-  Walls in a scene: `rve.wall`, and those of kinds of cells and of regions.
+  Walls in a scene: `rve.wall`, and the walls of kinds of cells and of regions.
 */
 #include "scene_rows.h"
 
@@ -27,7 +27,7 @@ static const LamKey wall_keys[] = {
 };
 LAM_KEY_TABLE(LamWallKeys, wall_keys);
 
-/* A parameter that is given, or not, against the law; `own` as in LamSceneReadWall. */
+/* Checks whether a parameter, given or missing, agrees with the law; `own` as in LamSceneReadWall. */
 static PetscErrorCode CheckParameter(const LamNode *map, PetscInt k, const LamWall *own, LamWall *wall)
 {
   const char *name = LamWallParameterNames[k], *law = LamWallLawNames[wall->law];

@@ -1,12 +1,12 @@
 /*
-  YAML text to a tree of nodes, from libfyaml's events: unlike its documents they give every node's place, and leave
-  duplicate keys and depth to be judged here.
+  Parses YAML text into a tree of nodes, from libfyaml's events: unlike its documents they contain the position of
+  every node, and leave duplicate keys and depth to this code.
 */
 #include "scene_yaml.h"
 #include <libfyaml.h>
 #include <string.h>
 
-/* A scene is a few levels deep and aliases may multiply: a file beyond these limits is an accident or an attack. */
+/* Scenes have few levels, and aliases can multiply nodes: a file beyond these limits is an accident or an attack. */
 enum { MAX_DEPTH = 32, MAX_NODES = 400000, MAX_KEYS = 256, MAX_EXCERPT = 80 };
 
 /* The parser with its current event. */
@@ -15,7 +15,7 @@ typedef struct {
   struct fy_parser *parser;
   struct fy_diag *diagnostics;
   struct fy_event *event; /* owned */
-  int depth;              /* of open maps and lists */
+  int depth;              /* nesting depth of maps and lists */
 } Reader;
 
 static void NodeAppend(LamNode *parent, LamNode *node)
@@ -30,7 +30,7 @@ static void NodeAppend(LamNode *parent, LamNode *node)
   if (parent->kind == LAM_NODE_LIST) node->index = parent->count;
 }
 
-/* A scalar without text at a place; the last one below its parent, where that is not NULL. */
+/* Creates an empty scalar at a position; appends it to its parent unless that is NULL. */
 static PetscErrorCode NodeCreate(LamDocument *document, LamNode *parent, int line, int column, LamNode **node)
 {
   PetscFunctionBeginUser;
@@ -80,8 +80,8 @@ static PetscErrorCode TextCopy(const char text[], size_t length, char **copy)
 }
 
 /*
-  The text of a token; the caller frees it. Of libfyaml 0.7 fy_token_get_text loses memory where a text has many
-  escapes, and fy_token_iter_read writes the pieces of a text, such as its lines, over each other.
+  The text of a token; the caller frees it. In libfyaml 0.7 fy_token_get_text leaks memory for texts with many
+  escapes, and fy_token_iter_read overwrites parts of a text, such as its lines, with each other.
 */
 static PetscErrorCode TokenText(struct fy_token *token, char **text)
 {
@@ -106,7 +106,7 @@ static PetscErrorCode TokenText(struct fy_token *token, char **text)
   PetscFunctionReturn(0);
 }
 
-/* A place without a node yet, for messages. */
+/* A position without a node, for messages. */
 static LamNode Place(const LamDocument *document, struct fy_token *token)
 {
   const struct fy_mark *mark = token ? fy_token_start_mark(token) : NULL;
@@ -114,7 +114,7 @@ static LamNode Place(const LamDocument *document, struct fy_token *token)
   return (LamNode){.document = document, .line = mark ? mark->line + 1 : 1, .column = mark ? mark->column + 1 : 1};
 }
 
-/* Goes on to the next event, or raises what libfyaml found wrong with the text. */
+/* Advances to the next event, or raises libfyaml's error. */
 static PetscErrorCode Next(Reader *reader)
 {
   const struct fy_diag_error *error;
@@ -133,7 +133,7 @@ static PetscErrorCode Next(Reader *reader)
   PetscFunctionReturn(0);
 }
 
-/* Where a value starts, its tag and its anchor, whose name the node keeps. */
+/* Sets the position of a value, checks its tag, and stores its anchor name. */
 static PetscErrorCode Start(Reader *reader, LamNode *node, struct fy_token *token, struct fy_token *tag,
                             struct fy_token *anchor)
 {
@@ -157,7 +157,7 @@ static PetscErrorCode ReadScalar(Reader *reader, LamNode *node)
 
   PetscFunctionBeginUser;
   PetscCall(Start(reader, node, token, reader->event->scalar.tag, reader->event->scalar.anchor));
-  if (empty && node->name) { /* where a value is left out its token has no place: it is missed at its key */
+  if (empty && node->name) { /* the token of a missing value has no position: use that of its key */
     node->line = node->name_line;
     node->column = node->name_column;
   }
@@ -167,7 +167,7 @@ static PetscErrorCode ReadScalar(Reader *reader, LamNode *node)
   PetscFunctionReturn(0);
 }
 
-/* Makes `copy` like node and what is below it; all of it stands where the alias does. */
+/* Copies a node and its descendants to `copy`; all get the position of the alias. */
 static PetscErrorCode NodeCopy(LamDocument *document, const LamNode *node, LamNode *copy)
 {
   PetscFunctionBeginUser;
@@ -203,7 +203,7 @@ static PetscErrorCode ReadAlias(Reader *reader, LamNode *node)
   PetscFunctionReturn(0);
 }
 
-/* A key of a map: the node of its value, yet without it. */
+/* Reads a key of a map and creates the node of its value, still empty. */
 static PetscErrorCode ReadKey(Reader *reader, LamNode *map, LamNode **entry)
 {
   const struct fy_event *event = reader->event;
@@ -233,7 +233,7 @@ static PetscErrorCode ReadKey(Reader *reader, LamNode *map, LamNode **entry)
 
 static PetscErrorCode ReadValue(Reader *reader, LamNode *node);
 
-/* A map or list; one written in brackets keeps its text for messages. */
+/* Reads a map or list; one in brackets keeps its text for messages. */
 static PetscErrorCode ReadCollection(Reader *reader, LamNode *node, struct fy_token *token, struct fy_token *tag,
                                      struct fy_token *anchor)
 {
@@ -269,7 +269,7 @@ static PetscErrorCode ReadCollection(Reader *reader, LamNode *node, struct fy_to
   PetscFunctionReturn(0);
 }
 
-/* The value that the current event begins. */
+/* Reads the value that begins at the current event. */
 static PetscErrorCode ReadValue(Reader *reader, LamNode *node)
 {
   const struct fy_event *event = reader->event;
@@ -310,7 +310,7 @@ static PetscErrorCode ReadDocument(Reader *reader)
   PetscFunctionReturn(0);
 }
 
-/* libfyaml would write to stderr what it also collects. */
+/* Suppresses libfyaml's output to stderr; the messages are also collected. */
 static void DiscardOutput(struct fy_diag *diagnostics, void *user, const char *text, size_t length) {}
 
 PetscErrorCode LamDocumentParse(const char name[], const char text[], LamDocument *document)

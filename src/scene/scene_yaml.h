@@ -1,8 +1,8 @@
 /*
-  Private to scene reading: a YAML document as a tree of nodes that know where they stand.
+  Private to scene reading: a YAML document as a tree of nodes with positions.
 
-  Anchors and aliases are resolved (an alias becomes a copy that stands where the alias does); tags, several documents
-  and keys that are not plain words are refused.
+  Anchors and aliases are resolved (an alias becomes a copy at the position of the alias); tags, multiple documents
+  and keys that are not plain words are rejected.
 */
 #ifndef LAM_SCENE_YAML_H
 #define LAM_SCENE_YAML_H
@@ -13,10 +13,10 @@ typedef enum { LAM_NODE_SCALAR, LAM_NODE_MAP, LAM_NODE_LIST } LamNodeKind;
 
 #define LAM_VALUE_SIZE 9
 
-/* What the scene reader makes of a node. */
+/* The value of a node, set by the scene reader. */
 typedef struct {
   PetscInt count;
-  PetscReal number[LAM_VALUE_SIZE];  /* SI; the index of a name; 0 or 1 of a truth value */
+  PetscReal number[LAM_VALUE_SIZE];  /* SI; index of a name; 0 or 1 for a truth value */
   PetscBool is_free[LAM_VALUE_SIZE]; /* the component was left open */
 } LamValue;
 
@@ -28,23 +28,23 @@ struct LamNode_s {
   const LamDocument *document;
   LamNodeKind kind;
   int line, column;  /* of the value, from 1 */
-  char *text;        /* a scalar's text; else how the value looks in the file, shortened, or NULL */
+  char *text;        /* text of a scalar; otherwise the shortened text of the value in the file, or NULL */
   PetscBool is_null; /* a scalar without text, or the plain words null and ~ */
-  char *name;        /* a map's entry: its key; else NULL */
+  char *name;        /* key, if the node is an entry of a map; else NULL */
   int name_line, name_column;
-  PetscInt index; /* a list's item: from 1; else 0 */
-  PetscInt count; /* of a map's entries or a list's items */
+  PetscInt index; /* index from 1, if the node is an item of a list; else 0 */
+  PetscInt count; /* number of entries of a map or items of a list */
   LamNode *parent, *first, *last, *next;
   LamNode *allocated; /* the node allocated before this one */
   char *anchor;       /* its YAML anchor, or NULL */
-  LamNode *anchored;  /* of one with an anchor: that with an anchor before it */
+  LamNode *anchored;  /* previous node with an anchor, if this one has an anchor */
   /* set by the scene reader */
   const struct LamKey_s *key;
   LamValue value;
 };
 
 struct LamDocument_s {
-  const char *name; /* borrowed: what messages call the file */
+  const char *name; /* borrowed: name of the file in messages */
   const char *text; /* borrowed */
   LamNode *root;
   LamNode *allocated; /* the newest node; the document owns them all */
@@ -52,25 +52,25 @@ struct LamDocument_s {
   PetscInt node_count;
 };
 
-/* Parses text. The document must be destroyed also after an error. */
+/* Parses text. The document must be destroyed even after an error. */
 PetscErrorCode LamDocumentParse(const char name[], const char text[], LamDocument *document);
 PetscErrorCode LamDocumentDestroy(LamDocument *document);
 
-/* A map's entry or NULL; `map` may be NULL. */
+/* An entry of a map, or NULL; `map` may be NULL. */
 LamNode *LamNodeEntry(const LamNode *map, const char name[], size_t length);
-/* What stands at a path of keys below `base`, such as "cell.apothem"; NULL where there is nothing. */
+/* The node at a path of keys below `base`, such as "cell.apothem"; NULL: not found. */
 const LamNode *LamNodeFind(const LamNode *base, const char path[]);
 
 /* Raises PETSC_ERR_USER_INPUT with the message "file:line:column: key: value: ...". */
 typedef enum {
-  LAM_MISTAKE_VALUE,  /* points at the node's value and shows it */
-  LAM_MISTAKE_NAME,   /* points at its key */
-  LAM_MISTAKE_MISSING /* of a key that the map `node` lacks */
+  LAM_MISTAKE_VALUE,  /* position and text of the node's value */
+  LAM_MISTAKE_NAME,   /* position of its key */
+  LAM_MISTAKE_MISSING /* a key that is missing in the map `node` */
 } LamMistake;
 PetscErrorCode LamSceneRaise(const LamNode *node, LamMistake mistake, const char key[], const char format[], ...)
     PETSC_ATTRIBUTE_FORMAT(4, 5);
 
-/* PetscCheck for scenes: unless the condition holds the message points at the value, at the key, or says what lacks. */
+/* PetscCheck for scenes: if the condition is false the message refers to the value, to the key, or to a missing key. */
 #define LamSceneUnless(condition, ...)                                                                                 \
   do {                                                                                                                 \
     if (!(condition)) PetscCall(LamSceneRaise(__VA_ARGS__));                                                           \
