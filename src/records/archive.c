@@ -1,8 +1,8 @@
 /*
   Archives: HDF5 files with one dataset of bytes, [items][size], for each name, and its checksum.
 
-  Rank 0 reads and writes, block by block, so that its memory is bounded by BLOCK_BYTES whatever the ranks hold. An
-  error of its own, which it has printed, is everyone's.
+  Rank 0 reads and writes block by block, so that its memory is bounded by BLOCK_BYTES. An error on rank 0 is printed
+  there and returned on all ranks.
 */
 #include <lamella/archive.h>
 #include <string.h>
@@ -16,18 +16,18 @@ struct LamArchive_s {
   PetscMPIInt rank;
   PetscBool reading;
   char path[PETSC_MAX_PATH_LEN], temporary[PETSC_MAX_PATH_LEN];
-  hid_t file; /* rank 0; else, or after an error, invalid */
+  hid_t file; /* valid on rank 0 only, and not after an error */
 };
 
-/* Items of all ranks. `item` is the caller's, with gaps nowhere. */
+/* Items of all ranks. `item` is the caller's, without gaps. */
 typedef struct {
   const char *name;
   size_t size;
-  PetscInt total, n; /* of all ranks, of this one */
+  PetscInt total, n; /* on all ranks, on this rank */
   const PetscInt *numbers;
   char *items;
   hid_t dataset; /* rank 0 */
-  uint32_t sum;  /* of what was written, or read */
+  uint32_t sum;  /* checksum of the data written or read */
 } Array;
 
 static PetscErrorCode ShareError(LamArchive archive, PetscErrorCode ierr)
@@ -36,7 +36,7 @@ static PetscErrorCode ShareError(LamArchive archive, PetscErrorCode ierr)
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Bcast(&code, 1, MPI_INT, 0, archive->comm));
-  /* no SETERRQ: the message has been printed where the error arose */
+  /* no SETERRQ: the message was printed where the error occurred */
   PetscFunctionReturn((PetscErrorCode)code);
 }
 
@@ -56,7 +56,7 @@ static PetscErrorCode CreateDataset(const LamArchive archive, Array *array)
   PetscFunctionReturn(0);
 }
 
-/* *total: the items in the file, where array->total is negative; else they must be as many. */
+/* If array->total is negative it is set to the number of items in the file; otherwise they must agree. */
 static PetscErrorCode OpenDataset(const LamArchive archive, Array *array)
 {
   hsize_t dims[H5S_MAX_RANK] = {0};
@@ -81,7 +81,7 @@ static PetscErrorCode OpenDataset(const LamArchive archive, Array *array)
   PetscFunctionReturn(0);
 }
 
-/* Writes, or reads, rows [first, first + rows) of the dataset. */
+/* Writes or reads rows [first, first + rows) of the dataset. */
 static PetscErrorCode MoveBlock(const LamArchive archive, Array *array, PetscInt first, PetscInt rows, char *block)
 {
   const hsize_t start[2] = {(hsize_t)first, 0}, count[2] = {(hsize_t)rows, (hsize_t)array->size};
@@ -121,7 +121,7 @@ static PetscErrorCode CloseDataset(const LamArchive archive, Array *array)
 
 /* ---- between ranks ---- */
 
-/* The items of all ranks with numbers [first, first + rows) come together on rank 0, in their order. */
+/* Gathers the items with numbers [first, first + rows) of all ranks on rank 0, in their order. */
 static PetscErrorCode GatherBlock(const LamArchive archive, const Array *array, PetscInt first, PetscInt rows,
                                   char *block)
 {

@@ -1,5 +1,5 @@
 /*
-  Files as the operating system has them.
+  File operations of the operating system.
 */
 #include "disk.h"
 #include <errno.h>
@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 enum { COPY_BYTES = 1 << 20 };
-#define TABLE_BYTES 131072 /* more than the header, or the index and attributes of a commit, take */
+#define TABLE_BYTES 131072 /* upper bound for the header, or for the index and attributes of a commit */
 
 /* ---- system calls ---- */
 
@@ -86,7 +86,9 @@ PetscErrorCode LamFileReserve(const char path[], PetscBool create, size_t bytes)
   PetscFunctionBeginUser;
   PetscCheck(fd >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: %s", path, strerror(errno));
   end = lseek(fd, 0, SEEK_END);
-  do error = posix_fallocate(fd, end, (off_t)(bytes + TABLE_BYTES)); /* HDF5 cuts off what it has not used at closing */
+  do
+    error = posix_fallocate(fd, end,
+                            (off_t)(bytes + TABLE_BYTES)); /* HDF5 truncates unused space when it closes the file */
   while (error == EINTR);
   if (error && ftruncate(fd, end)) error = errno;
   close(fd);
@@ -94,7 +96,7 @@ PetscErrorCode LamFileReserve(const char path[], PetscBool create, size_t bytes)
   PetscFunctionReturn(0);
 }
 
-/* 0, or the reason as errno has it. */
+/* Returns 0 or errno. */
 static int CopyBytes(int in, int out, char bytes[COPY_BYTES])
 {
   int error = 0;
@@ -137,7 +139,7 @@ PetscErrorCode LamFilePublish(const char temporary[], const char path[])
   PetscCall(PetscStrncpy(copy, path, sizeof(copy)));
   directory = open(dirname(copy), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (directory >= 0) {
-    LamFsync(directory); /* some file systems cannot; the file itself is on the disk */
+    LamFsync(directory); /* fails on some file systems; the file itself is synced */
     close(directory);
   }
   PetscFunctionReturn(0);

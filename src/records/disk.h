@@ -1,7 +1,6 @@
 /*
-  Private to the record files: files as the operating system has them, without HDF5; and the lock of a writer. Calls
-  that a signal breaks off are begun again: SA_RESTART does not reach all of them, and a program that uses the library
-  may do without it.
+  Private to the record files: file operations without HDF5, and the writer's lock. System calls interrupted by a
+  signal are restarted: SA_RESTART does not cover all of them, and a program that uses the library may not set it.
 */
 #ifndef LAM_DISK_H
 #define LAM_DISK_H
@@ -14,26 +13,26 @@
 
 int LamFsync(int fd);
 int LamFlock(int fd, int operation);
-/* Writes all bytes; 0, or errno. */
+/* Writes all bytes; returns 0 or errno. */
 int LamWriteBytes(int fd, const void *bytes, size_t n);
-/* Now, ISO 8601, UTC. */
+/* The current time, ISO 8601, UTC. */
 void LamTimeNow(char text[LAM_TIME_LENGTH]);
-/* The file behind a link; otherwise the path as it was given, for messages. False: no file there, or too long a path.
- */
+/* Resolves a link to its target; other paths are copied unchanged, for messages. False: no file, or the path is too
+   long. */
 PetscBool LamPathFollow(const char path[], char target[PETSC_MAX_PATH_LEN]);
 /*
-  Reserves `bytes` more on the disk, and some for HDF5's own tables, before HDF5 begins: HDF5 1.10 crashes at exit over
-  data that it could not write. PETSC_ERR_FILE_WRITE with the system's reason. `create`: starts an empty file.
+  Reserves `bytes` more on the disk, plus space for HDF5's tables, before HDF5 writes: HDF5 1.10 crashes at exit if it
+  could not write data. PETSC_ERR_FILE_WRITE with the system's reason. `create`: creates an empty file.
 */
 PetscErrorCode LamFileReserve(const char path[], PetscBool create, size_t bytes);
-/* With the permissions of the first. */
+/* Copies a file with its permissions. */
 PetscErrorCode LamFileCopy(const char from[], const char to[]);
 /* Syncs a closed file and renames it. */
 PetscErrorCode LamFilePublish(const char temporary[], const char path[]);
 
 /* ---- record_lock.c ---- */
 
-/* The writer's lock: the file PATH.lock, which says who holds it. */
+/* The writer's lock: the file PATH.lock, which identifies the holder. */
 typedef struct {
   char path[PETSC_MAX_PATH_LEN];
   int fd; /* -1: not held */
@@ -41,16 +40,16 @@ typedef struct {
 
 PetscErrorCode LamLockTake(const char path[], LamLock *lock);
 PetscErrorCode LamLockRelease(LamLock *lock);
-/* Readers wait while a commit is under way, and a commit waits for readers: milliseconds each. */
+/* Readers wait during a commit, and a commit waits for readers: milliseconds each. */
 void LamLockBeginCommit(LamLock *lock);
 void LamLockEndCommit(LamLock *lock);
-int LamLockBeginRead(const char path[]); /* a descriptor for LamLockEndRead, or -1 where no writer is about */
+int LamLockBeginRead(const char path[]); /* a descriptor for LamLockEndRead, or -1 if there is no writer */
 void LamLockEndRead(int fd);
-/* Who writes to the file. False: no one, or a process of this host that has died. */
+/* The writer of the file. False: none, or a process of this host that has died. */
 typedef struct {
   char host[256], since[LAM_TIME_LENGTH];
   long pid;
-  unsigned long long start; /* clock ticks after boot; 0: not known */
+  unsigned long long start; /* clock ticks after boot; 0: unknown */
 } LamLockHolder;
 PetscBool LamLockGetHolder(const char path[], LamLockHolder *holder);
 

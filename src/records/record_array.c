@@ -86,7 +86,7 @@ typedef struct {
   PetscBool is_text;
 } Opened;
 
-/* Also of one that was opened in part. */
+/* Also closes partly opened objects. */
 static void Close(Opened *o)
 {
   if (o->space >= 0) H5Sclose(o->space);
@@ -94,7 +94,7 @@ static void Close(Opened *o)
   if (o->dataset >= 0) H5Dclose(o->dataset);
 }
 
-/* There cannot be more values than the file has bytes. */
+/* The values must fit into the size of the file. */
 static PetscErrorCode CheckSize(const char path[], hid_t file, const char name[], Opened *o)
 {
   hssize_t count;
@@ -128,7 +128,7 @@ static PetscErrorCode OpenParts(const char path[], hid_t file, const char name[]
   PetscFunctionReturn(0);
 }
 
-/* `type`: of the file, H5I_INVALID_HID: a text of fixed length. */
+/* `type`: type in the file; H5I_INVALID_HID: a text of fixed length. */
 static PetscErrorCode Open(const char path[], hid_t file, const char name[], hid_t type, Opened *o)
 {
   PetscErrorCode ierr;
@@ -142,7 +142,7 @@ static PetscErrorCode Open(const char path[], hid_t file, const char name[], hid
   PetscFunctionReturn(0);
 }
 
-/* Of an array the unit belongs to the sum. */
+/* The checksum of an array includes its unit. */
 static PetscErrorCode CheckSum(const char path[], const char name[], const Opened *o, const void *values)
 {
   PetscBool sound, has;
@@ -171,7 +171,7 @@ static PetscErrorCode ReadInto(const char path[], const char name[], const Opene
   PetscFunctionReturn(0);
 }
 
-/* All values, as they are in the file, with a zero behind them; the caller frees them. */
+/* Reads all values, unconverted, followed by a zero; the caller frees them. */
 static PetscErrorCode Read(const char path[], const char name[], const Opened *o, void **values)
 {
   PetscErrorCode ierr;

@@ -1,11 +1,11 @@
 /*
-  Attributes of record files: texts and numbers of exactly the types that lamella writes. Anything else is refused
+  Attributes of record files: texts and numbers of exactly the types that Lamella writes. Other types are rejected
   before HDF5 reads a value.
 */
 #include "record_internal.h"
 #include <string.h>
 
-#define TEXT_BYTES 65536 /* HDF5 keeps no more beside an object */
+#define TEXT_BYTES 65536 /* HDF5's limit for attributes */
 
 /* ---- writing ---- */
 
@@ -72,7 +72,7 @@ typedef struct {
   hid_t attribute, type, space;
 } Opened;
 
-/* Also of one that was opened in part. */
+/* Also closes partly opened objects. */
 static void Close(Opened *o)
 {
   if (o->space >= 0) H5Sclose(o->space);
@@ -132,7 +132,7 @@ PetscErrorCode LamAttributeReadNumber(const char path[], hid_t object, const cha
   PetscFunctionReturn(0);
 }
 
-/* Allocates *text, also where it cannot be read. */
+/* Allocates *text, also if it cannot be read. */
 static PetscErrorCode ReadText(const char path[], const char name[], const Opened *o, char **text)
 {
   PetscFunctionBeginUser;

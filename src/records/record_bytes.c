@@ -1,9 +1,9 @@
 /*
-  Records between memory and file.
+  Conversion of records between memory and file.
 
-  The writer turns records into the bytes of the file itself and passes them through HDF5 unchanged, so the checksum
-  covers what is on the disk and a reader in any language can test it. The reader does the same. HDF5's own
-  conversion of a record takes 4 us, the copy of its members with the checksum 0.6 us.
+  The writer converts records to the bytes of the file and passes them through HDF5 unchanged, so that the checksum
+  covers the bytes on disk and a reader in any language can verify it. The reader does the same. HDF5's own conversion
+  of a record takes 4 us, copying its members and the checksum 0.6 us.
 */
 #include "record_internal.h"
 #include <math.h>
@@ -117,14 +117,14 @@ static void UnpackMember(const LamMember *m, const unsigned char *bytes, void *v
     *(int *)value = *bytes;
     break;
   case LAM_MEMBER_TEXT:
-    memcpy(value, bytes, (size_t)m->count - 1); /* the last byte is a zero already */
+    memcpy(value, bytes, (size_t)m->count - 1); /* the last byte is already zero */
     break;
   }
 }
 
 /* ---- records ---- */
 
-/* Members that we do not know stay zero. */
+/* Members unknown to this version stay zero. */
 PetscErrorCode LamRecordsPack(PetscInt n, const PetscInt64 keys[], const LamResponse responses[], hid_t file_type,
                               void **bytes)
 {
@@ -156,7 +156,7 @@ PetscErrorCode LamRecordUnpack(const LamRecordLayout *layout, const unsigned cha
   const LamLoad load = {{0}, 0, 0};
 
   PetscFunctionBeginUser;
-  PetscCall(LamResponseInit(&load, response)); /* of what the file lacks nothing is known */
+  PetscCall(LamResponseInit(&load, response)); /* members missing in the file are unknown */
   for (PetscInt k = 0; LamResponseMembers[k].name; k++) {
     const LamMember *m = &LamResponseMembers[k];
 

@@ -2,8 +2,8 @@
   Check of a file.
 
   Method
-    The functions that read a file stop at the first damage. Here each part is read on its own, its error is kept as the
-    part's damage, and the next part is read. Where the number of committed records is not known, all allocated records
+    The functions that read a file stop at the first damage. Here each part is read separately, its error is recorded as
+    damage of the part, and the next part is read. If the number of committed records is unknown, all allocated records
     are read and the sound ones counted; the others may never have been committed.
 */
 #include "record_json.h"
@@ -17,10 +17,10 @@ typedef struct {
   LamHeader header;
   json_t *damaged, *unchecked; /* arrays, owned */
   PetscBool counted;           /* the commit counter is sound */
-  PetscBool scanned;           /* the records could be looked at */
+  PetscBool scanned;           /* the records could be examined */
   PetscBool has_nodes;
   PetscInt sound_records;
-  char words[1024]; /* of the last error */
+  char words[1024]; /* message of the last error */
 } Check;
 
 /* ---- damage ---- */
@@ -39,7 +39,7 @@ static PetscErrorCode KeepWords(MPI_Comm comm, int line, const char *function, c
   return code;
 }
 
-/* Names and texts of a damaged file may not be UTF-8: then other characters than ASCII become question marks. */
+/* Names and texts of a damaged file may not be UTF-8: then non-ASCII bytes become question marks. */
 static json_t *Text(const char text[])
 {
   json_t *string = json_string(text);
@@ -52,7 +52,7 @@ static json_t *Text(const char text[])
   return json_string(copy);
 }
 
-/* The words need not name the part again. */
+/* Removes the part's name from the message. */
 static void AddPart(Check *c, const char part[])
 {
   const size_t n = strlen(part);
@@ -61,7 +61,7 @@ static void AddPart(Check *c, const char part[])
   json_array_append_new(c->damaged, json_pack("{s:o, s:o}", "part", Text(part), "reason", Text(words)));
 }
 
-/* Whether a function that reads `part` ended without error. */
+/* True if the function that reads `part` returned without error. */
 static PetscBool Sound(Check *c, const char part[], PetscErrorCode code)
 {
   if (code && !c->words[0]) snprintf(c->words, sizeof(c->words), "cannot be read");
@@ -70,7 +70,7 @@ static PetscBool Sound(Check *c, const char part[], PetscErrorCode code)
   return (PetscBool)!code;
 }
 
-/* What has no checksum: of an earlier version, or an array that is written over. */
+/* Lists data without checksum: of an earlier version, or an array that was overwritten. */
 static void AddUnsummed(Check *c, hid_t object, const char name[], const char part[])
 {
   PetscBool has;
@@ -91,7 +91,7 @@ static void AddRecord(Check *c, const LamRecordLayout *layout, PetscInt number, 
   json_array_append_new(c->damaged, record);
 }
 
-/* Looks at `n` records; those that cannot be read share a chunk. */
+/* Checks `n` records; those that cannot be read share a chunk. */
 static void CheckBlock(Check *c, LamRecordScan *scan, PetscInt first, PetscInt n, uint32_t *sum)
 {
   const PetscBool read = (PetscBool)!LamRecordScanRead(c->path, scan, first, n);
@@ -189,7 +189,7 @@ static PetscErrorCode CheckGrid(Check *c)
   PetscFunctionReturn(0);
 }
 
-/* ---- all of it ---- */
+/* ---- the whole file ---- */
 
 static void CheckParts(Check *c)
 {
@@ -211,7 +211,7 @@ static void CheckParts(Check *c)
   json_decref(names);
 }
 
-/* A file that is not there, or may not be read, is no damage. */
+/* A missing or unreadable file is an error, not damage. */
 static PetscErrorCode OpenAndCheck(Check *c)
 {
   PetscErrorCode ierr;

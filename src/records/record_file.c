@@ -1,5 +1,5 @@
 /*
-  Record files as HDF5 has them: open, close, sync.
+  Record files in HDF5: open, close, sync.
 */
 #include "record_internal.h"
 #include <errno.h>
@@ -11,15 +11,15 @@
 static PetscErrorCode AccessList(const char path[], hid_t *access)
 {
   PetscFunctionBeginUser;
-  H5dont_atexit(); /* our files are closed; a file that failed must not be tried again when the program ends */
-  H5Eset_auto2(H5E_DEFAULT, NULL, NULL); /* reasons go into our messages */
+  H5dont_atexit();                       /* our files are closed; HDF5 must not retry a failed one at exit */
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL); /* our messages contain the reasons */
   LamCallHDF5(path, PETSC_ERR_LIB, *access = H5Pcreate(H5P_FILE_ACCESS));
   LamCallHDF5(path, PETSC_ERR_LIB, H5Pset_file_locking(*access, 0, 1));
   LamCallHDF5(path, PETSC_ERR_LIB, H5Pset_fclose_degree(*access, H5F_CLOSE_STRONG));
   PetscFunctionReturn(0);
 }
 
-/* Without O_NONBLOCK a pipe would wait for someone to write into it. */
+/* Without O_NONBLOCK opening a pipe would wait for a writer. */
 static PetscErrorCode FileOpen(const char path[], PetscBool write, hid_t *file)
 {
   const int fd = open(path, (write ? O_RDWR : O_RDONLY) | O_CLOEXEC | O_NONBLOCK);
@@ -53,7 +53,7 @@ static PetscErrorCode FileOpen(const char path[], PetscBool write, hid_t *file)
 
     LamHDF5Reason(reason);
     H5Pclose(access);
-    /* a file that is opened for writing has been read before */
+    /* a file opened for writing was readable before */
     PetscCheck(!write, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s: %s", path, reason);
     SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: the file is damaged or cut short: %s", path, reason);
   }

@@ -1,6 +1,6 @@
 /*
   The header of record files: provenance, units, microstructure and the commit counter. It is written once, when the
-  file is made; commits only write over the counter. Every size and type is checked before it is used.
+  file is created; commits only overwrite the counter. Every size and type is checked before it is used.
 */
 #include "record_internal.h"
 #include <lamella/version.h>
@@ -11,7 +11,7 @@
 
 /* ---- writing ---- */
 
-/* The command line of this process, blanks between the arguments. */
+/* The command line of this process, arguments separated by blanks. */
 static void CommandLine(size_t size, char text[])
 {
   FILE *file = fopen("/proc/self/cmdline", "r");
@@ -93,7 +93,7 @@ static PetscErrorCode WriteMicrostructure(const char path[], hid_t file, const L
   PetscFunctionReturn(0);
 }
 
-/* The counter and what it is tested with are written over at each commit. */
+/* Each commit overwrites the counter and its checksums. */
 static PetscErrorCode WriteCounter(const char path[], hid_t dataset)
 {
   const PetscInt64 none = 0;
@@ -119,7 +119,7 @@ static PetscErrorCode WriteEmptyRecords(const char path[], hid_t file)
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE,
               dataset = H5Dcreate2(file, "/records", type, space, H5P_DEFAULT, list, H5P_DEFAULT));
   PetscCall(LamRecordTypeSum(type, &sum));
-  PetscCall(LamSumWrite(path, dataset, LAM_TYPE_SUM, sum)); /* before the counter, which so lies in one sector */
+  PetscCall(LamSumWrite(path, dataset, LAM_TYPE_SUM, sum)); /* before the counter, which then lies in one sector */
   PetscCall(WriteCounter(path, dataset));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dclose(dataset));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Pclose(list));
@@ -129,8 +129,8 @@ static PetscErrorCode WriteEmptyRecords(const char path[], hid_t file)
 }
 
 /*
-  The records come first: so the counter and its checksums lie at the same place in every file, within one page of
-  memory, where HDF5 writes them by one call. A kill cannot come between them.
+  The records are created first: the counter and its checksums then have the same offset in every file, within one
+  page of memory, where HDF5 writes them by one call. A kill cannot interrupt it.
 */
 static PetscErrorCode WriteAll(const char path[], hid_t file, const char kind[], const LamScene *scene)
 {
@@ -160,7 +160,8 @@ PetscErrorCode LamFileCreate(const char path[], const char kind[], const LamScen
   PetscFunctionReturn(0);
 }
 
-/* Files of earlier versions have no checksums of the counter, and get none: it has to be written by one call. */
+/* Files of earlier versions have no checksums of the counter, and get none: the counter has to be written by one
+   call. */
 PetscErrorCode LamCounterWrite(const char path[], hid_t dataset, PetscInt committed, uint32_t records_sum)
 {
   const PetscInt64 count = committed;
@@ -241,7 +242,7 @@ static PetscErrorCode ReadMicrostructure(const char path[], hid_t file, LamHeade
   PetscFunctionReturn(0);
 }
 
-/* Another version may have other attributes, so the version goes before the checksum. */
+/* Other versions may have other attributes, so the version is checked before the checksum. */
 static PetscErrorCode CheckFormat(const char path[], hid_t file, PetscInt *format_version)
 {
   char format[16] = "";

@@ -11,153 +11,154 @@
 
 #define LAM_FORMAT_NAME "lamella"
 #define LAM_FORMAT_VERSION 1
-#define LAM_RECORDS_PER_CHUNK 64 /* some 90 kB: one commit touches one or two chunks */
+#define LAM_RECORDS_PER_CHUNK 64 /* about 90 kB: a commit writes one or two chunks */
 
-/* What to do about a damaged file; ends a message. */
+/* Advice for a damaged file, at the end of a message. */
 #define LAM_SALVAGE "; \"lamella merge NEW.h5 FILE --salvage\" keeps the sound records of a database"
 
 /* ---- record_type.c ---- */
 
 /* The type of a record in the file: key, microstructure, the members of a response, checksum; packed, little-endian. */
 PetscErrorCode LamRecordTypeCreate(hid_t *type);
-/* Checks that every member we know is there, of the type we write, what was added later may be missing; and that all
-   members lie one behind the other, the checksum last. */
+/* Checks that every known member exists with the type that we write, except members added later, and that all
+   members are contiguous with the checksum last. */
 PetscErrorCode LamRecordTypeCheck(const char path[], hid_t file_type);
 
 /* ---- record_bytes.c ---- */
 
 #define LAM_MAX_MEMBERS 96
-#define LAM_MAX_RECORD_BYTES 65536                   /* of any version */
-#define LAM_RECORD_BYTES (sizeof(LamResponse) + 128) /* a record in the file has less */
+#define LAM_MAX_RECORD_BYTES 65536                   /* in any version */
+#define LAM_RECORD_BYTES (sizeof(LamResponse) + 128) /* upper bound for a record in the file */
 
-/* Where the members lie in the bytes of a record, of a type that has passed the check above. */
+/* Offsets of the members in the bytes of a record, of a type that has passed the check above. */
 typedef struct {
-  size_t size;                    /* of a record; its last 4 bytes are the CRC-32 (zlib's) of those before them */
+  size_t size;                    /* of a record; its last 4 bytes are the CRC-32 (zlib's) of the preceding bytes */
   size_t key, microstructure;     /* int64 */
   size_t status, source;          /* one byte each */
-  size_t member[LAM_MAX_MEMBERS]; /* of LamResponseMembers, in their order; LAM_NOT_IN_FILE where it is missing */
+  size_t member[LAM_MAX_MEMBERS]; /* in the order of LamResponseMembers; LAM_NOT_IN_FILE if it is missing */
 } LamRecordLayout;
 
 PetscErrorCode LamRecordLayoutMake(hid_t file_type, LamRecordLayout *layout);
-/* Where the member lies that is at `response_offset` of LamResponse. */
+/* Offset in a record of the member at `response_offset` of LamResponse. */
 size_t LamRecordOffset(const LamRecordLayout *layout, size_t response_offset);
-/* The integer of 8 bytes that begins here. */
+/* Reads an integer of 8 bytes. */
 PetscInt64 LamRecordInt(const unsigned char *bytes);
-/* Turns records into the bytes of the file, checksums included; `bytes` is the caller's to free. */
+/* Converts records to the bytes of the file, including checksums; the caller frees `bytes`. */
 PetscErrorCode LamRecordsPack(PetscInt n, const PetscInt64 keys[], const LamResponse responses[], hid_t file_type,
                               void **bytes);
-/* The way back for one record that has been checked. */
+/* The inverse for one record that has been checked. */
 PetscErrorCode LamRecordUnpack(const LamRecordLayout *layout, const unsigned char *bytes, LamResponse *response);
-/* Checks checksum, status, source and microstructure of a record: the damage in words, or NULL. */
+/* Checks checksum, status, source and microstructure of a record. Returns a description of the damage, or NULL. */
 const char *LamRecordDamage(const LamRecordLayout *layout, const unsigned char *bytes);
-/* The same for n records, the first of which is number `first`; names `path` and the record that is damaged. */
+/* The same for n records from number `first` on; the error names `path` and the damaged record. */
 PetscErrorCode LamRecordsCheck(const char path[], const LamRecordLayout *layout, PetscInt first, PetscInt n,
                                const unsigned char *bytes);
 
 /* ---- record_attribute.c ---- */
 
-/* Attributes of one value. It must be of exactly `file_type`, a text of at most 64 kB: PETSC_ERR_USER_INPUT.
- */
+/* Attributes of one value. The type must be exactly `file_type`, a text has at most 64 kB: PETSC_ERR_USER_INPUT
+   otherwise. */
 PetscErrorCode LamAttributeWriteText(const char path[], hid_t object, const char name[], const char text[]);
 PetscErrorCode LamAttributeWriteNumber(const char path[], hid_t object, const char name[], hid_t file_type,
                                        hid_t memory_type, const void *value);
-/* Writes over the value of one that is there. */
+/* Overwrites the value of an existing attribute. */
 PetscErrorCode LamAttributeUpdate(const char path[], hid_t object, const char name[], hid_t memory_type,
                                   const void *value);
 PetscErrorCode LamAttributeHas(const char path[], hid_t object, const char name[], PetscBool *has);
 PetscErrorCode LamAttributeReadNumber(const char path[], hid_t object, const char name[], hid_t file_type,
                                       hid_t memory_type, void *value);
-PetscErrorCode LamAttributeReadText(const char path[], hid_t object, const char name[], char **text); /* to be freed */
+PetscErrorCode LamAttributeReadText(const char path[], hid_t object, const char name[],
+                                    char **text); /* the caller frees it */
 PetscErrorCode LamAttributeCopyText(const char path[], hid_t object, const char name[], size_t length, char value[]);
 
 /* ---- record_sums.c ---- */
 
-/* Attributes: of the root, texts and arrays; and three of /records. Files of earlier versions lack them. */
+/* Checksum attributes of the root, texts and arrays; and three of /records. Files of earlier versions lack them. */
 #define LAM_SUM "checksum"
 #define LAM_COUNTER_SUM "committed_check" /* of the 8 bytes of `committed` */
 #define LAM_RECORDS_SUM "records_check"   /* of the checksums of the committed records, in their order */
 #define LAM_TYPE_SUM "type_check"         /* of names, offsets and sizes of the members of a record */
 
 PetscErrorCode LamSumWrite(const char path[], hid_t object, const char name[], uint32_t sum);
-/* Of an array that was written over the sum is there, and says nothing. */
+/* Value for an overwritten array, whose checksum is not valid. */
 #define LAM_NO_SUM 0
 PetscErrorCode LamSumHas(const char path[], hid_t object, const char name[], PetscBool *has);
-/* True also where the object has no such attribute. */
+/* True also if the object has no such attribute. */
 PetscErrorCode LamSumMatches(const char path[], hid_t object, const char name[], uint32_t sum, PetscBool *matches);
-/* Of the root's attributes, as they are read. */
+/* Checksum of the root's attributes, as read. */
 PetscErrorCode LamHeaderSum(const char path[], hid_t file, uint32_t *sum);
-/* Of n more bytes behind those that have the sum `before` (0: none). */
+/* Continues the checksum `before` (0: none) with n bytes. */
 uint32_t LamBytesSum(uint32_t before, const void *bytes, size_t n);
 PetscErrorCode LamRecordTypeSum(hid_t file_type, uint32_t *sum);
-/* The same for records, of which only the checksums enter. */
+/* The same for records, using only their checksums. */
 uint32_t LamRecordsSum(uint32_t before, const LamRecordLayout *layout, PetscInt n, const unsigned char *bytes);
 
 /* ---- record_file.c ---- */
 
-/* Opens without HDF5's own locks; closing the file closes all that is open in it. */
+/* Opens without HDF5's own locks; closing the file closes all objects in it. */
 PetscErrorCode LamFileOpenRead(const char path[], hid_t *file);
 PetscErrorCode LamFileOpenWrite(const char path[], hid_t *file);
 PetscErrorCode LamFileOpenNew(const char path[], hid_t *file);
 PetscErrorCode LamFileClose(const char path[], hid_t file);
-/* Brings all that was written to the disk. */
+/* Writes everything to disk. */
 PetscErrorCode LamFileSync(const char path[], hid_t file);
-/* Call a function with the file open: for reading, while no commit is under way; for writing, synced afterwards. */
+/* Call a function with the file open: for reading, while no commit is in progress; for writing, synced afterwards. */
 typedef PetscErrorCode (*LamFileFunction)(const char path[], hid_t file, void *ctx);
 PetscErrorCode LamFileRead(const char path[], LamFileFunction read, void *ctx);
 PetscErrorCode LamFileWrite(const char path[], LamFileFunction write, void *ctx);
 
 /* ---- record_array.c ---- */
 
-/* Whether `name` ("/a/b/c") is there: every part of it. PETSC_ERR_USER_INPUT where one is a link to elsewhere. */
+/* Whether `name` ("/a/b/c") exists, with all its groups. PETSC_ERR_USER_INPUT if one is a soft or external link. */
 PetscErrorCode LamFileHas(const char path[], hid_t file, const char name[], PetscBool *has);
-/* Text dataset; groups are made. */
+/* Writes a text dataset; creates groups. */
 PetscErrorCode LamFileWriteText(const char path[], hid_t file, const char name[], const char text[]);
 PetscErrorCode LamFileGetText(const char path[], hid_t file, const char name[], char **text);
-/* Reads a text or array, whichever it is, and tests its checksum. */
+/* Reads a text or array, and verifies its checksum. */
 PetscErrorCode LamFileCheckValues(const char path[], hid_t file, const char name[]);
 
-/* Refuses what lamella never writes, before any data is read: another layout, filters, data in other files. */
+/* Rejects datasets that Lamella never writes, before any data is read: another layout, filters, data in other files. */
 PetscErrorCode LamDatasetCheck(const char path[], hid_t dataset, const char name[], H5D_layout_t wanted);
 
 /* An array in the file. */
 typedef struct {
   PetscBool found;
   PetscInt rank, dims[4], count;
-  void *values; /* of 8 bytes each; NULL: not found. The caller's to free */
+  void *values; /* of 8 bytes each; NULL: not found. The caller frees them */
 } LamFileArray;
-/* `type`: of the values in the file, which have 8 bytes each. */
+/* `type`: type of the values in the file, which have 8 bytes each. */
 PetscErrorCode LamFileGetArray(const char path[], hid_t file, const char name[], hid_t type, LamFileArray *array);
 
 /* ---- record_scan.c ---- */
 
 /* The number of committed records, checked against its checksum, the extent and the size of the file. */
 PetscErrorCode LamCommittedRead(const char path[], hid_t file, PetscInt *committed);
-/* A block of checked records: n of them, number `first` and on. The bytes are the file's own. */
+/* Receives a block of n checked records from number `first` on. The bytes are those in the file. */
 typedef PetscErrorCode (*LamRecordVisitor)(void *ctx, const LamRecordLayout *layout, PetscInt first, PetscInt n,
                                            const unsigned char *bytes);
-/* Reads the first `count` records once, in blocks, checks them and shows them to the visitor in their order. */
+/* Reads the first `count` records once, in blocks, checks them and passes them to the visitor in their order. */
 PetscErrorCode LamFileScanRecords(const char path[], hid_t file, PetscInt count, LamRecordVisitor visit, void *ctx);
 
-/* The same for those who decide themselves what to make of a damaged record: open, read blocks of at most LAM_BLOCK
-   records into scan->bytes, close. */
+/* The same for callers that handle damaged records: open, read blocks of at most LAM_BLOCK records into scan->bytes,
+   close. */
 typedef struct {
   hid_t dataset, type, space;
   LamRecordLayout layout;
-  unsigned char *bytes; /* of a block, or of all records that there are; owned */
+  unsigned char *bytes; /* of a block, or of all records if there are fewer; owned */
 } LamRecordScan;
 
-#define LAM_BLOCK (8 * LAM_RECORDS_PER_CHUNK) /* 0.9 MB: checked and used while it is in the processor's cache */
+#define LAM_BLOCK (8 * LAM_RECORDS_PER_CHUNK) /* 0.9 MB: fits into the processor's cache for check and use */
 PetscErrorCode LamRecordScanOpen(const char path[], hid_t file, LamRecordScan *scan);
 PetscErrorCode LamRecordScanRead(const char path[], LamRecordScan *scan, PetscInt first, PetscInt n);
 void LamRecordScanClose(LamRecordScan *scan);
-/* Tests the sum of the checksums of all committed records, `count`; more may have been committed since. */
+/* Verifies the sum of the checksums of all committed records, `count`; more may have been committed since. */
 PetscErrorCode LamRecordScanEnd(const char path[], const LamRecordScan *scan, PetscInt count, uint32_t sum);
-/* The number of records that space is allocated for, committed or not. */
+/* The number of allocated records, committed or not. */
 PetscInt LamRecordScanExtent(const LamRecordScan *scan, hid_t file);
 
 /* ---- record_header.c ---- */
 
-/* Attributes of the root group. Texts and the cells of `micro` are owned by the header. */
+/* Attributes of the root group. The header owns the texts and the cells of `micro`. */
 typedef struct {
   char kind[LAM_NAME_LENGTH];
   char creator[LAM_NAME_LENGTH], created[LAM_TIME_LENGTH], host[256];
@@ -173,28 +174,29 @@ typedef struct {
 } LamHeader;
 
 PetscErrorCode LamHeaderDestroy(LamHeader *header);
-/* Makes a file without records: header, microstructure, scene, empty record table. */
+/* Creates a file without records: header, microstructure, scene, empty record table. */
 PetscErrorCode LamFileCreate(const char path[], const char kind[], const LamScene *scene);
-/* Reads and checks the header; `file` is left open. */
+/* Reads and checks the header; `file` stays open. */
 PetscErrorCode LamHeaderRead(const char path[], hid_t file, LamHeader *header);
-/* The same without the number of committed records. *matches: the checksum does; NULL: an error where it does not. */
+/* The same without the number of committed records. *matches: whether the checksum is correct; NULL: an error if
+   not. */
 PetscErrorCode LamHeaderReadRoot(const char path[], hid_t file, PetscBool *matches, LamHeader *header);
-/* Sets the number of committed records and the sum of their checksums; syncs nothing. */
+/* Sets the number of committed records and the sum of their checksums; does not sync. */
 PetscErrorCode LamCounterWrite(const char path[], hid_t dataset, PetscInt committed, uint32_t records_sum);
 
 /* ---- record_target.c ---- */
 
-/* The file that a writer of `path` writes: links are followed, and what CREATE must not replace is refused. */
+/* The file to which a writer of `path` writes: resolves links, and rejects files that CREATE must not replace. */
 PetscErrorCode LamTargetFind(const char path[], const char kind[], LamWriteMode mode, char target[PETSC_MAX_PATH_LEN]);
 
 /* ---- record_preallocate.c ---- */
 
-/* The number of records that space is allocated for, committed ones included. */
+/* The number of allocated records, including committed ones. */
 PetscErrorCode LamFileReadExtent(const char path[], hid_t file, PetscInt *extent);
 /*
-  Allocates space for `records` of them or some more where there is less; *extent: before and after. The file `path` is
-  replaced by a copy, made as `temporary`; killed at any instant, it is as it was. NULL: `temporary` itself, which has
-  no name yet.
+  Allocates space for at least `records` records; *extent: before and after. The file `path` is replaced by a copy,
+  created as `temporary`; after a kill it is unchanged. NULL: extends `temporary` itself, which has not been renamed
+  yet.
 */
 PetscErrorCode LamFilePreallocate(const char path[], const char temporary[], PetscInt records, PetscInt *extent);
 

@@ -1,5 +1,5 @@
 /*
-  What files say of themselves, as JSON.
+  Metadata of files as JSON.
 */
 #ifndef LAM_RECORD_JSON_H
 #define LAM_RECORD_JSON_H
@@ -7,7 +7,7 @@
 #include <jansson.h>
 #include "record_internal.h"
 
-/* Text that may hold anything, as a command line may: null where it is not UTF-8. */
+/* Text that may contain any bytes, such as a command line: null if it is not UTF-8. */
 static inline json_t *LamTextToJSON(const char text[])
 {
   json_t *string = text ? json_string(text) : NULL;
@@ -15,7 +15,7 @@ static inline json_t *LamTextToJSON(const char text[])
   return string ? string : json_null();
 }
 
-/* Who writes to the file: host, process, since; null where no one does. */
+/* The writer of the file: host, process, since; null if there is none. */
 static inline json_t *LamWriterToJSON(const char path[])
 {
   LamLockHolder holder;

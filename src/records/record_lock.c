@@ -1,11 +1,11 @@
 /*
   One writer per file.
 
-  PATH.lock is made with O_CREAT | O_EXCL and says host, process, the process's start (so that a number used again is
-  not taken for the holder) and the time. The lock of a process that has died on this host is taken over, and one that
-  stays without its line: its maker died before it had written it. A maker that was only slow sees afterwards that it
-  has lost the lock. HDF5's own locks are off: they would shut readers out for as long as a writer lives. Instead a
-  commit takes the lock file exclusively (flock) and a reader shares it while it loads.
+  PATH.lock is created with O_CREAT | O_EXCL and contains host, process, start time of the process (which identifies
+  it if its number is reused) and the time. The lock of a process of this host that has died is taken over, and so is
+  one that stays empty: its creator died before writing. A creator that was only slow detects afterwards that it has
+  lost the lock. HDF5's own locks are off: they would exclude readers during a writer's lifetime. Instead a commit
+  locks the lock file exclusively (flock), and a reader shares it while it loads.
 */
 #include "disk.h"
 #include <errno.h>
@@ -18,9 +18,9 @@
 #include <time.h>
 #include <unistd.h>
 
-#define UNWRITTEN_SECONDS 2 /* from its making to its line a lock takes far less */
+#define UNWRITTEN_SECONDS 2 /* a lock is normally written far sooner after its creation */
 
-/* 0 also of a process that has ended and that no one has waited for: what it had open is closed. */
+/* 0 also for a zombie process: its files are closed. */
 static unsigned long long ProcessStart(long pid)
 {
   char path[64], text[1024], *field;
@@ -34,7 +34,7 @@ static unsigned long long ProcessStart(long pid)
   n = fread(text, 1, sizeof(text) - 1, file);
   fclose(file);
   text[n] = '\0';
-  field = strrchr(text, ')'); /* the name before it may hold anything; the start is the 20th field behind it */
+  field = strrchr(text, ')'); /* the name before it may contain anything; the start is the 20th field after it */
   if (field && (field[2] == 'Z' || field[2] == 'X')) return 0;
   for (int i = 0; field && i < 20; i++) field = strchr(field + 1, ' ');
   if (field) sscanf(field, "%llu", &start);
@@ -60,7 +60,7 @@ static PetscBool HolderRead(int fd, LamLockHolder *holder)
                                      holder->since) == 4);
 }
 
-/* Only of a process on this host can we know that it is gone. */
+/* Only the death of a process on this host can be detected. */
 static PetscBool HolderIsDead(const LamLockHolder *holder)
 {
   LamLockHolder self;
@@ -71,7 +71,7 @@ static PetscBool HolderIsDead(const LamLockHolder *holder)
   return (PetscBool)(holder->start && ProcessStart(holder->pid) != holder->start);
 }
 
-/* Whether the open lock still has its name: a user or another writer may have removed it and made one anew. */
+/* True if the open lock still has its name: a user or another writer may have removed and recreated it. */
 static PetscBool IsNamed(int fd, const char path[])
 {
   struct stat opened, named;
@@ -79,7 +79,7 @@ static PetscBool IsNamed(int fd, const char path[])
   return (PetscBool)(!fstat(fd, &opened) && !stat(path, &named) && opened.st_ino == named.st_ino);
 }
 
-/* Waits for the line of a lock that is being made. */
+/* Waits for the line of a lock that is being created; true if it stays empty. */
 static PetscBool StaysUnwritten(int fd)
 {
   const struct timespec pause = {.tv_nsec = 50000000};
@@ -94,7 +94,8 @@ static PetscBool StaysUnwritten(int fd)
   return PETSC_TRUE;
 }
 
-/* Removes the lock at `path` where its holder is dead; the holder otherwise. *removed: try to make it again. */
+/* Removes the lock at `path` if its holder is dead; otherwise an error names the holder. *removed: retry the
+   creation. */
 static PetscErrorCode RemoveStale(const char path[], const char data_path[], PetscBool *removed)
 {
   const int fd = open(path, O_RDONLY | O_CLOEXEC);
@@ -103,9 +104,9 @@ static PetscErrorCode RemoveStale(const char path[], const char data_path[], Pet
 
   PetscFunctionBeginUser;
   *removed = PETSC_TRUE;
-  if (fd < 0) PetscFunctionReturn(0); /* released meanwhile */
+  if (fd < 0) PetscFunctionReturn(0); /* released in the meantime */
   unwritten = StaysUnwritten(fd);
-  LamFlock(fd, LOCK_EX); /* of two that find it stale, the second sees below that it has gone */
+  LamFlock(fd, LOCK_EX); /* if two processes find it stale, the second detects below that it is gone */
   known = HolderRead(fd, &holder);
   if (!IsNamed(fd, path)) {
     close(fd);
@@ -123,7 +124,7 @@ static PetscErrorCode RemoveStale(const char path[], const char data_path[], Pet
   PetscFunctionReturn(0);
 }
 
-/* Says who holds the lock. Synced, for processes on other hosts. */
+/* Writes the holder. Synced, for processes on other hosts. */
 static PetscErrorCode WriteHolder(const char path[], LamLock *lock)
 {
   char text[512];
@@ -173,7 +174,7 @@ PetscErrorCode LamLockRelease(LamLock *lock)
   PetscFunctionReturn(0);
 }
 
-/* Where the file system has no flock the calls fail and a reader may, rarely, meet a half-made commit and say so. */
+/* On a file system without flock the calls fail, and a reader may, rarely, find an incomplete commit and report it. */
 void LamLockBeginCommit(LamLock *lock)
 {
   LamFlock(lock->fd, LOCK_EX);
@@ -184,7 +185,7 @@ void LamLockEndCommit(LamLock *lock)
   LamFlock(lock->fd, LOCK_UN);
 }
 
-/* The writer's lock is beside the file, not beside a link to it. */
+/* The writer's lock is beside the file itself, not beside a link to it. */
 static int OpenLock(const char path[])
 {
   char target[PETSC_MAX_PATH_LEN], name[PETSC_MAX_PATH_LEN];

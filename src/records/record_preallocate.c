@@ -2,10 +2,10 @@
   Preallocation of records.
 
   Method
-    HDF5 changes its index of chunks and the end of the file in several writes, between which the file cannot be read.
-  So a file that has its name is never extended: a copy is, and is synced and renamed. A commit then only writes over
-    bytes that are allocated already, which cannot harm what is committed. Each time the space grows by half: all copies
-    of a file that grows amount to three times its size.
+    HDF5 changes its chunk index and the end of the file in several writes, between which the file is not readable. A
+  file that has its name is therefore never extended: a copy is extended, synced and renamed. A commit then only
+  overwrites allocated bytes, which cannot damage committed records. Each time the space grows by half: all copies of a
+  growing file amount to three times its size.
 */
 #include "record_internal.h"
 #include <unistd.h>
@@ -27,8 +27,8 @@ PetscErrorCode LamFileReadExtent(const char path[], hid_t file, PetscInt *extent
 
 /* ---- in the file itself ---- */
 
-/* HDF5 gives a chunk its place, and fills it, when its first record is written: it is the first of `chunks` from
-   `before` on. */
+/* HDF5 allocates and fills a chunk when its first record is written: writes the first record of each of `chunks`
+   chunks from `before` on. */
 static PetscErrorCode TouchChunks(const char path[], hid_t dataset, hsize_t before, hsize_t chunks)
 {
   const hsize_t stride = LAM_RECORDS_PER_CHUNK;
@@ -57,7 +57,7 @@ static PetscErrorCode Extend(const char path[], hid_t file, void *ctx)
 {
   const Range *r = ctx;
   const hsize_t extent = (hsize_t)r->wanted, chunk = LAM_RECORDS_PER_CHUNK;
-  const hsize_t first = ((hsize_t)r->before + chunk - 1) / chunk * chunk; /* before it is a chunk that is there */
+  const hsize_t first = ((hsize_t)r->before + chunk - 1) / chunk * chunk; /* earlier chunks exist */
   hid_t dataset;
 
   PetscFunctionBeginUser;

@@ -1,5 +1,5 @@
 /*
-  Arrays and texts of files that are opened for them alone.
+  Reads single arrays and texts, opening the file for each.
 */
 #include "record_internal.h"
 #include <string.h>

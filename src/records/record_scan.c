@@ -1,6 +1,6 @@
 /*
-  The records of a file: how many are committed, and their bytes, block by block. What the file says of itself is tested
-  before memory is taken for it.
+  The records of a file: the number committed, and their bytes, block by block. All sizes in the file are checked
+  before memory is allocated for them.
 */
 #include "record_internal.h"
 
@@ -17,7 +17,7 @@ static PetscErrorCode CheckCounter(const char path[], hid_t dataset, PetscInt64 
   PetscFunctionReturn(0);
 }
 
-/* Records are not compressed, so the file is at least as large as they are; nor are chunks longer than it. */
+/* Records are not compressed, so the file is at least as large as they are; nor are chunks larger than it. */
 static PetscErrorCode CheckExtent(const char path[], hid_t file, hid_t dataset, PetscInt64 count)
 {
   hsize_t size, chunk = 0;
@@ -38,7 +38,7 @@ static PetscErrorCode CheckExtent(const char path[], hid_t file, hid_t dataset, 
   PetscFunctionReturn(0);
 }
 
-/* The list /records, nothing read of it yet. What has been opened before an error is the caller's to close, too. */
+/* Opens the list /records without reading it. After an error the caller closes what was opened. */
 static PetscErrorCode OpenList(const char path[], hid_t file, hid_t access, hid_t *dataset, hid_t *space)
 {
   PetscBool has;
@@ -103,7 +103,7 @@ static PetscErrorCode CheckType(const char path[], const LamRecordScan *s)
   PetscFunctionReturn(0);
 }
 
-/* Without HDF5's cache of chunks: each is read once, right into our block. */
+/* Without HDF5's chunk cache: each chunk is read once, directly into our block. */
 static PetscErrorCode Open(const char path[], hid_t file, LamRecordScan *s)
 {
   PetscErrorCode ierr;
@@ -170,7 +170,7 @@ PetscInt LamRecordScanExtent(const LamRecordScan *scan, hid_t file)
 
 /* ---- all of them ---- */
 
-/* Each record may be sound and yet in the place of another: the list has a checksum too, which holds for all of it. */
+/* Sound records may be in the wrong position: the list has its own checksum. */
 PetscErrorCode LamRecordScanEnd(const char path[], const LamRecordScan *s, PetscInt count, uint32_t sum)
 {
   PetscInt64 committed;
@@ -211,7 +211,7 @@ PetscErrorCode LamFileScanRecords(const char path[], hid_t file, PetscInt count,
   PetscFunctionBeginUser;
   PetscCall(LamRecordScanOpen(path, file, &scan));
   ierr = ScanBlocks(path, &scan, count, visit, ctx);
-  LamRecordScanClose(&scan); /* also of damaged records: a program may go on without this file */
+  LamRecordScanClose(&scan); /* even if records are damaged: a program may continue without this file */
   PetscCall(ierr);
   PetscFunctionReturn(0);
 }

@@ -1,6 +1,6 @@
 /*
-  Checksums of what lies beside the records: CRC-32, zlib's. Each is an attribute of its own; files of earlier versions
-  lack them. docs/reference/files.md describes them for readers in other languages.
+  Checksums of everything except the records: CRC-32, zlib's. Each is a separate attribute; files of earlier versions
+  lack them. Format: docs/reference/files.md.
 */
 #include "record_internal.h"
 #include <string.h>
@@ -47,7 +47,7 @@ PetscErrorCode LamSumMatches(const char path[], hid_t object, const char name[],
 
 typedef enum { TEXT, REAL, INT } Kind;
 
-/* The attributes of the root, in the order in which they enter the sum. */
+/* The attributes of the root, in the order of the checksum. */
 static const struct {
   const char *name;
   Kind kind;

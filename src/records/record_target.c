@@ -1,12 +1,12 @@
 /*
-  The file that a writer is to make or go on with: what a new file would replace must be one of its own kind, for it is
-  lost at the first commit.
+  The file that a writer creates or continues. A new file may only replace one of the same kind, which is lost at the
+  first commit.
 */
 #include "record_internal.h"
 #include <string.h>
 #include <sys/stat.h>
 
-/* The reason why a file cannot be read does not matter here: it is not ours to replace. */
+/* Whatever the reason why a file cannot be read, it must not be replaced. */
 static PetscErrorCode CheckReplaceable(const char path[], const char kind[])
 {
   char present[LAM_NAME_LENGTH] = "";

@@ -1,10 +1,10 @@
 /*
-  The type of a record in the file, made from the table of response members.
+  The type of a record in the file, generated from the table of response members.
 */
 #include "record_internal.h"
 #include <string.h>
 
-static const char *const bool_names[] = {"FALSE", "TRUE", NULL}; /* as h5py names them */
+static const char *const bool_names[] = {"FALSE", "TRUE", NULL}; /* h5py's names */
 
 static PetscErrorCode EnumType(const char *const names[], hid_t *type)
 {
@@ -15,7 +15,7 @@ static PetscErrorCode EnumType(const char *const names[], hid_t *type)
   PetscFunctionReturn(0);
 }
 
-/* Reals in threes: 3 numbers are a vector, 9 a second-order tensor, 81 a fourth-order one. */
+/* 3 reals are a vector, 9 a second-order tensor, 81 a fourth-order tensor. */
 static PetscErrorCode RealType(PetscInt count, hid_t *type)
 {
   const hsize_t dims[4] = {3, 3, 3, 3};
@@ -54,7 +54,7 @@ static PetscErrorCode MemberType(const LamMember *m, hid_t *type)
   PetscFunctionReturn(0);
 }
 
-/* Inserts a member behind those before it. Closes `type`. */
+/* Appends a member. Closes `type`. */
 static PetscErrorCode Insert(hid_t compound, const char name[], hid_t type, size_t *end)
 {
   PetscFunctionBeginUser;
@@ -66,7 +66,7 @@ static PetscErrorCode Insert(hid_t compound, const char name[], hid_t type, size
 
 PetscErrorCode LamRecordTypeCreate(hid_t *type)
 {
-  const size_t most = 2 * sizeof(LamResponse); /* room for members that are wider in the file; cut below */
+  const size_t most = 2 * sizeof(LamResponse); /* space for members that are wider in the file; truncated below */
   const char *const numbers[] = {"key", "microstructure"};
   size_t end = 0;
   hid_t member;
@@ -88,9 +88,9 @@ PetscErrorCode LamRecordTypeCreate(hid_t *type)
 }
 
 /*
-  Members that files of format version 1 did not have from its beginning: where one is missing it is not known (NaN,
-  of a count LAM_UNKNOWN_COUNT). Bonded tissue has no gaps, so such files lack nothing. Cells did not differ then, so
-  that dPsi/dp and dPsi/dg are the fractions.
+  Members that were added to format version 1 later: if one is missing it is unknown (NaN, for a count
+  LAM_UNKNOWN_COUNT). Bonded tissue has no gaps, so such files are complete. Cells did not differ then, so that
+  dPsi/dp and dPsi/dg are the fractions.
 */
 static const char *const added_members[] = {"opening_by_face",
                                             "open_by_face",
@@ -132,7 +132,7 @@ static PetscBool WasAdded(const char name[])
   return PETSC_FALSE;
 }
 
-/* Members without gaps or overlaps, in their order, the checksum last. */
+/* Members are contiguous, in their order, with the checksum last. */
 static PetscErrorCode CheckPacked(const char path[], hid_t file_type)
 {
   const int members = H5Tget_nmembers(file_type), last = H5Tget_member_index(file_type, "checksum");
@@ -156,7 +156,7 @@ static PetscErrorCode CheckPacked(const char path[], hid_t file_type)
   PetscFunctionReturn(0);
 }
 
-/* Member i of our type; *problem: how the file's differs, NULL: not at all. */
+/* Compares member i of our type; *problem: the difference in the file's type, NULL: none. */
 static PetscErrorCode CompareMember(const char path[], hid_t ours, int i, hid_t file_type, char name[LAM_NAME_LENGTH],
                                     const char **problem)
 {
@@ -189,7 +189,7 @@ PetscErrorCode LamRecordTypeCheck(const char path[], hid_t file_type)
   PetscCheck(H5Tget_class(file_type) == H5T_COMPOUND, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: /records is not a table of records; the file is damaged or no Lamella file", path);
   PetscCall(LamRecordTypeCreate(&ours));
-  same = (PetscBool)(H5Tequal(ours, file_type) > 0); /* of this version: names, places and types at once */
+  same = (PetscBool)(H5Tequal(ours, file_type) > 0); /* same version: names, offsets and types agree */
   for (int i = 0; !same && i < H5Tget_nmembers(ours) && !problem && !ierr; i++)
     ierr = CompareMember(path, ours, i, file_type, name, &problem);
   H5Tclose(ours);

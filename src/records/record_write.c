@@ -2,9 +2,9 @@
   The writer of record files.
 
   Method
-    Each commit opens the file, writes its records into the preallocated space behind those that are there, syncs,
-  raises the counter, syncs and closes. A kill at any instant leaves the records below the counter as they were; the
-  next commit writes over what lies beyond it. A new file is made under another name and renamed at the first commit.
+    Each commit opens the file, writes its records into the preallocated space after the committed ones, syncs,
+  increases the counter, syncs and closes. After a kill at any instant the records below the counter are unchanged; the
+  next commit overwrites those beyond it. A new file is created under another name and renamed at the first commit.
 */
 #include "record_internal.h"
 #include <errno.h>
@@ -17,10 +17,10 @@ struct LamRecordWriter_s {
   char path[PETSC_MAX_PATH_LEN];
   char temporary[PETSC_MAX_PATH_LEN];
   PetscBool published; /* the file has its own name */
-  PetscBool written;   /* something besides the header */
-  PetscBool begun;     /* LamRecordWriterBegin: no reader sees what is written before the commit */
+  PetscBool written;   /* something besides the header was written */
+  PetscBool begun;     /* LamRecordWriterBegin: readers see nothing before the commit */
   LamLock lock;
-  PetscInt extent; /* records that space is allocated for */
+  PetscInt extent; /* number of allocated records */
   PetscInt n, capacity;
   PetscInt64 *keys; /* owned */
   uint32_t sum;     /* of the checksums of all records */
@@ -49,7 +49,7 @@ static PetscErrorCode CheckSame(const char path[], hid_t file, const char kind[]
   PetscFunctionReturn(0);
 }
 
-/* Appending needs exactly our record type: members that a later version has added would be left empty. */
+/* Appending requires exactly our record type: members added by a later version would be left empty. */
 static PetscErrorCode CheckType(const char path[], hid_t file)
 {
   hid_t dataset, theirs, ours;
@@ -68,7 +68,7 @@ static PetscErrorCode CheckType(const char path[], hid_t file)
   PetscFunctionReturn(0);
 }
 
-/* Keeps the keys of records in the file, and the sum of their checksums. */
+/* Stores the keys of records in the file, and the sum of their checksums. */
 static PetscErrorCode KeepBlockKeys(void *ctx, const LamRecordLayout *layout, PetscInt first, PetscInt n,
                                     const unsigned char *bytes)
 {
@@ -97,7 +97,7 @@ static PetscErrorCode ReadExisting(LamRecordWriter w, hid_t file, const char kin
   PetscFunctionReturn(0);
 }
 
-/* The bytes of a new file's texts. */
+/* Size of a new file's texts. */
 static PetscErrorCode TextBytes(const LamScene *scene, size_t *bytes)
 {
   char hash[LAM_HASH_LENGTH], *json;
@@ -123,7 +123,7 @@ static PetscErrorCode Start(LamRecordWriter w, const char kind[], LamWriteMode m
     PetscCall(LamFileCreate(w->temporary, kind, scene));
     PetscFunctionReturn(0);
   }
-  unlink(w->temporary); /* of a run that was killed */
+  unlink(w->temporary); /* left by a run that was killed */
   PetscCall(LamFileOpenRead(w->path, &file));
   ierr = ReadExisting(w, file, kind, scene);
   H5Fclose(file);
@@ -166,7 +166,7 @@ PetscErrorCode LamRecordWriterOpen(const char path[], const char kind[], LamWrit
 
 /* ---- commit ---- */
 
-/* *sum: of the checksums of all records, those before and those behind it. */
+/* *sum: of the checksums of all records; updated for the appended ones. */
 static PetscErrorCode Append(const char path[], hid_t dataset, hsize_t before, PetscInt n, const PetscInt64 keys[],
                              const LamResponse responses[], uint32_t *sum)
 {
@@ -191,7 +191,7 @@ static PetscErrorCode Append(const char path[], hid_t dataset, hsize_t before, P
   PetscFunctionReturn(0);
 }
 
-/* Someone may have put another file in the place of ours. */
+/* The file may have been replaced by another one. */
 static PetscErrorCode CheckCounter(LamRecordWriter w, const char path[], hid_t dataset)
 {
   PetscInt64 committed;
@@ -213,7 +213,7 @@ typedef struct {
   PetscInt n;
   const PetscInt64 *keys;
   const LamResponse *responses;
-  uint32_t sum; /* of the checksums of all records, with these */
+  uint32_t sum; /* of the checksums of all records, including these */
 } Batch;
 
 static PetscErrorCode AppendAndCount(const char path[], hid_t file, void *ctx)
@@ -291,7 +291,7 @@ PetscErrorCode LamRecordWriterGetKeys(LamRecordWriter writer, PetscInt *n, const
   PetscFunctionReturn(0);
 }
 
-/* A file that holds arrays and no records gets its name here; one that holds nothing leaves no trace. */
+/* A file with arrays but no records gets its name here; an empty one is removed. */
 PetscErrorCode LamRecordWriterClose(LamRecordWriter *writer)
 {
   PetscErrorCode ierr = 0;
@@ -339,10 +339,10 @@ static size_t ArrayCount(const Array *a)
 
 static size_t ArrayBytes(const Array *a)
 {
-  return 8 * (ArrayCount(a) + 1); /* reals and integers alike have 8 bytes in the file */
+  return 8 * (ArrayCount(a) + 1); /* reals and integers both have 8 bytes in the file */
 }
 
-/* Of the bytes in the file, then of the unit. */
+/* Checksum of the bytes in the file, followed by the unit. */
 static uint32_t ArraySum(const Array *a)
 {
   uint32_t sum = 0;
@@ -356,7 +356,7 @@ static uint32_t ArraySum(const Array *a)
   return a->unit ? LamBytesSum(sum, a->unit, strlen(a->unit)) : sum;
 }
 
-/* An array that is written over has no checksum any more: a kill may leave old numbers beside new ones. */
+/* An overwritten array has no valid checksum: a kill may leave old and new numbers. */
 static PetscErrorCode DropSum(const char path[], hid_t file, hid_t dataset)
 {
   const uint32_t none = LAM_NO_SUM;
@@ -371,8 +371,8 @@ static PetscErrorCode DropSum(const char path[], hid_t file, hid_t dataset)
 }
 
 /*
-  Writes over an array of the same shape and type. Nothing but its numbers changes in the file, so a table that grows
-  full commit by commit takes no more room, and a kill leaves each number either old or new.
+  Overwrites an array of the same shape and type. Only its numbers change in the file, so a table that grows full
+  commit by commit takes no more space, and after a kill each number is either old or new.
 */
 static PetscErrorCode Overwrite(const char path[], hid_t file, const Array *a, PetscBool *done)
 {

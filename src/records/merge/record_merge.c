@@ -1,10 +1,10 @@
 /*
-  One database of several.
+  Merges databases.
 
   Method
-    All headers first: files that do not belong together are found before anything is written. Then the records of each
-    file, block by block, into OUT.tmp (record_union.c), which gets the name OUT when it is complete and on the disk.
-    Salvage reads damaged files chunk by chunk and takes the records whose checksum is right.
+    First all headers are read, so that incompatible files are found before anything is written. Then the records of
+  each file are copied block by block to OUT.tmp (record_union.c), which is renamed to OUT when it is complete and
+  synced. Salvage reads damaged files chunk by chunk and keeps the records with a correct checksum.
 */
 #include "record_merge.h"
 #include <errno.h>
@@ -14,7 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define SHARDS_NAME "/merged" /* the files, one a line */
+#define SHARDS_NAME "/merged" /* the files, one per line */
 
 static PetscBool IsStopped(const LamMerge *m)
 {
@@ -24,7 +24,7 @@ static PetscBool IsStopped(const LamMerge *m)
 
 /* ---- records ---- */
 
-/* A LamRecordVisitor */
+/* A LamRecordVisitor. */
 static PetscErrorCode TakeBlock(void *ctx, const LamRecordLayout *layout, PetscInt first, PetscInt n,
                                 const unsigned char *bytes)
 {
@@ -43,13 +43,13 @@ static PetscErrorCode TakeBlock(void *ctx, const LamRecordLayout *layout, PetscI
 
 /* ---- salvage ---- */
 
-enum { MOST_NAMED = 10 }; /* damaged records of a file in messages */
+enum { MOST_NAMED = 10 }; /* damaged records of a file that messages list */
 
 typedef struct {
   LamMerge *merge;
   const char *path;
   LamRecordScan scan;
-  PetscBool counted; /* the commit counter is sound: each record before it should be */
+  PetscBool counted; /* the commit counter is sound: each record below it should be sound */
   PetscInt sound, damaged;
 } Salvage;
 
@@ -93,7 +93,7 @@ static PetscErrorCode TakeSoundChunks(Salvage *s, PetscInt count)
   PetscFunctionReturn(0);
 }
 
-/* Without a counter all allocated records are read; those that are not sound may never have been committed. */
+/* Without a counter all allocated records are read; those that are damaged may never have been committed. */
 static PetscErrorCode TakeSound(LamMerge *m, const char path[], hid_t file)
 {
   Salvage s = {.merge = m, .path = path};
@@ -163,7 +163,7 @@ static PetscErrorCode CheckTarget(const LamMerge *m)
   PetscFunctionReturn(0);
 }
 
-/* The lock of `out` is ours. */
+/* Reports sources that have a writer. Called with the lock of `out`. */
 static PetscErrorCode TellOfWriters(const LamMerge *m)
 {
   PetscFunctionBeginUser;
@@ -179,7 +179,7 @@ static PetscErrorCode TellOfWriters(const LamMerge *m)
   PetscFunctionReturn(0);
 }
 
-/* The files, one a line. */
+/* The files, one per line. */
 static PetscErrorCode ListFiles(const LamMerge *m, char **text)
 {
   size_t length = 1, at = 0;

@@ -1,5 +1,5 @@
 /*
-  Private to merging: a merge under way, and what its result is of.
+  Private to merging: a merge in progress, and the properties of its result.
 */
 #ifndef LAM_RECORD_MERGE_H
 #define LAM_RECORD_MERGE_H
@@ -14,16 +14,16 @@ typedef struct {
   LamMergeReport *report;         /* borrowed */
   LamLock lock;
   LamUnion records;
-  /* of the result, and the files it is taken from */
+  /* properties of the result, and the files from which they come */
   const char *header_from, *grid_from;
   LamScene scene; /* micro, scales, accuracy and text; micro and text owned */
   char hash[LAM_HASH_LENGTH];
   char *grid_text; /* owned; NULL: none */
 } LamMerge;
 
-/* For the user; as printf, without a newline. */
+/* A message for the user; as printf, without a newline. */
 void LamMergeTell(const LamMerge *merge, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
-/* Reads the headers of all files, and finds those that do not belong together. */
+/* Reads the headers of all files, and checks their compatibility. */
 PetscErrorCode LamMergeReadHeaders(LamMerge *merge);
 PetscErrorCode LamMergeCheckHash(const LamMerge *merge, const char path[], const char hash[]);
 

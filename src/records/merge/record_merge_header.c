@@ -1,5 +1,5 @@
 /*
-  What a merged database is of: the headers of its sources.
+  The header of a merged database, from the headers of its sources.
 */
 #include "record_merge.h"
 #include <stdarg.h>
@@ -55,7 +55,7 @@ static PetscErrorCode ReadText(const char path[], hid_t file, const char name[],
   PetscFunctionReturn(0);
 }
 
-/* Converting would lose what we do not know. */
+/* Conversion would lose members of a later version. */
 static PetscErrorCode CheckMembers(const char path[], hid_t file)
 {
   hid_t dataset, theirs, ours;
@@ -87,11 +87,12 @@ static PetscErrorCode CheckMembers(const char path[], hid_t file)
 typedef struct {
   LamHeader header;
   PetscBool salvage;
-  PetscBool matches;  /* the header's checksum does */
+  PetscBool matches;  /* the header's checksum is correct */
   char *grid, *scene; /* NULL: none */
 } Source;
 
-/* The header's checksum and the scene's text may be damaged in salvage: the description of the tissue has its hash. */
+/* In salvage the header's checksum and the scene's text may be damaged: the description of the tissue has its own
+   hash. */
 static PetscErrorCode ReadSource(const char path[], hid_t file, void *ctx)
 {
   Source *s = ctx;
@@ -121,7 +122,7 @@ static PetscErrorCode TakeFirst(LamMerge *m, const char path[], Source *s)
   m->scene.scales = h->scales;
   m->scene.accuracy = h->accuracy;
   m->scene.text = s->scene;
-  h->micro.cell = NULL; /* ours now, as the text */
+  h->micro.cell = NULL; /* ownership moved, as for the text */
   s->scene = NULL;
   PetscFunctionReturn(0);
 }

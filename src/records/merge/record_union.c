@@ -1,10 +1,10 @@
 /*
-  A file that grows by records of other files.
+  Appends records of several files to one file.
 
   Method
-    Of each record two numbers of 64 bits stay in memory: a digest of its state, by which a second record of it is
-    found, and one of all that two solves of it must agree in. Records are copied as bytes, in blocks of whole chunks.
-    Only where two records of a state differ the first is read back from the file.
+    Two numbers of 64 bits per record stay in memory: a digest of its state, which identifies duplicates, and one of the
+    content in which two solves of it must agree. Records are copied as bytes, in blocks of whole chunks. Only if two
+    records of a state differ, the first is read back from the file.
 
   References
     G. L. Steele, D. Lea, C. H. Flood, Fast splittable pseudorandom number generators, OOPSLA 2014 (the finaliser of
@@ -22,15 +22,15 @@ enum { BLOCK = 8 * LAM_RECORDS_PER_CHUNK, WRITE_BLOCKS = 16, LOAD_BYTES = 11 * s
 
 typedef struct {
   uint64_t state, content;
-  PetscInt at; /* number of the record in the file; -1: a free place of the table */
+  PetscInt at; /* number of the record in the file; -1: a free slot of the table */
 } Entry;
 
 struct LamUnion_s {
   char path[PETSC_MAX_PATH_LEN];
   hid_t file, dataset, type;
   LamRecordLayout layout;
-  size_t load, status, P, seconds; /* where they begin in a record */
-  PetscInt n, written;             /* records; those in the file, the others are in `block` */
+  size_t load, status, P, seconds; /* offsets in a record */
+  PetscInt n, written;             /* records in total; in the file, the others are in `block` */
   PetscInt64 next_cache_key;
   unsigned char *block, *kept; /* [BLOCK] records; one record that was read back; owned */
   PetscInt room;               /* for checksums */
@@ -104,7 +104,7 @@ PetscErrorCode LamUnionDestroy(LamUnion *records)
 
 /* ---- the file ---- */
 
-/* Between the file and `bytes`: n records, number `first` and on. */
+/* Transfers n records, from number `first` on, between the file and `bytes`. */
 typedef herr_t (*Transfer)(hid_t, hid_t, hid_t, hid_t, hid_t, void *);
 
 static herr_t Write(hid_t dataset, hid_t type, hid_t memory, hid_t space, hid_t list, void *bytes)
@@ -127,7 +127,8 @@ static PetscErrorCode TransferRecords(LamUnion u, Transfer transfer, PetscInt fi
   PetscFunctionReturn(0);
 }
 
-/* Has the system begin to write, so that the disk is busy while we read on; else it waits for the sync at the end. */
+/* Starts writeback, so that the disk works while more records are read; otherwise all of it waits for the final
+   sync. */
 static PetscErrorCode BeginWriting(LamUnion u)
 {
 #ifdef SYNC_FILE_RANGE_WRITE
@@ -135,7 +136,7 @@ static PetscErrorCode BeginWriting(LamUnion u)
 
   PetscFunctionBeginUser;
   LamCallHDF5(u->path, PETSC_ERR_LIB, H5Fget_vfd_handle(u->file, H5P_DEFAULT, (void **)&fd));
-  (void)sync_file_range(*fd, 0, 0, SYNC_FILE_RANGE_WRITE); /* an error shows at the sync */
+  (void)sync_file_range(*fd, 0, 0, SYNC_FILE_RANGE_WRITE); /* the sync reports errors */
   PetscFunctionReturn(0);
 #else
   (void)u;
@@ -158,7 +159,7 @@ static PetscErrorCode Flush(LamUnion u)
   PetscFunctionReturn(0);
 }
 
-/* What was reserved behind the end is cut off: HDF5 does not know of it. */
+/* Truncates the space reserved after the end, which HDF5 does not know. */
 PetscErrorCode LamUnionFinish(LamUnion u)
 {
   hsize_t bytes;
@@ -225,7 +226,7 @@ static PetscBool IsSameState(LamUnion u, const unsigned char *a, const unsigned 
 
 /* ---- the table of states ---- */
 
-/* The entry of the state, or the free place for it. */
+/* The entry of the state, or the free slot for it. */
 static Entry *Find(const LamUnion u, uint64_t state)
 {
   size_t i = state & (u->capacity - 1);
@@ -249,7 +250,7 @@ static PetscErrorCode GrowTable(LamUnion u)
   PetscFunctionReturn(0);
 }
 
-/* ---- taking ---- */
+/* ---- appending ---- */
 
 static void SetKey(LamUnion u, unsigned char *bytes, PetscInt64 key)
 {
@@ -261,7 +262,7 @@ static void SetKey(LamUnion u, unsigned char *bytes, PetscInt64 key)
   memcpy(bytes + end, &checksum, sizeof(checksum));
 }
 
-/* Of the record number `at`. */
+/* Stores the checksum of record number `at`. */
 static void KeepChecksum(LamUnion u, PetscInt at, const unsigned char *bytes)
 {
   memcpy(&u->checksums[at], bytes + u->layout.size - sizeof(uint32_t), sizeof(uint32_t));
@@ -294,7 +295,7 @@ static PetscErrorCode ReadBack(LamUnion u, PetscInt at)
   PetscFunctionReturn(0);
 }
 
-/* Over the record that was read back; with its key, which of a cache is a new one. */
+/* Replaces the record that was read back, but keeps its key, which is new for a record of a cache. */
 static PetscErrorCode Replace(LamUnion u, PetscInt at, const unsigned char *bytes)
 {
   const PetscInt64 key = LamRecordInt(u->kept + u->layout.key);
@@ -310,7 +311,7 @@ static PetscErrorCode Replace(LamUnion u, PetscInt at, const unsigned char *byte
   PetscFunctionReturn(0);
 }
 
-/* The record that is kept has other numbers; or, once in 2^64 pairs of loads, it is of another state. */
+/* The stored record has other numbers; or, once in 2^64 pairs of loads, it is of another state. */
 static PetscErrorCode Decide(LamUnion u, Entry *entry, uint64_t content, const unsigned char *bytes,
                              LamMergeReport *report)
 {
@@ -327,7 +328,7 @@ static PetscErrorCode Decide(LamUnion u, Entry *entry, uint64_t content, const u
   difference = LamStressError(P, P_kept);
   report->duplicates++;
   report->differing++;
-  if (difference > report->difference) report->difference = difference; /* not a number where one has no stress */
+  if (difference > report->difference) report->difference = difference; /* NaN if one has no stress */
   if (bytes[u->status] != LAM_CONVERGED || u->kept[u->status] == LAM_CONVERGED) PetscFunctionReturn(0);
   PetscCall(Replace(u, entry->at, bytes));
   entry->content = content;

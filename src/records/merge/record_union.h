@@ -1,5 +1,5 @@
 /*
-  Private to merging: a file that grows by records of other files, each state once.
+  Private to merging: appends records of several files to one file, each state once.
 */
 #ifndef LAM_RECORD_UNION_H
 #define LAM_RECORD_UNION_H
@@ -7,18 +7,18 @@
 #include "record_internal.h"
 
 /*
-  Two records are of one state where they have the key of the same node, or where they are of a cache and have the
-  same load, or else the same key and load. Of two the one that has converged is kept, else the first; in the place of
-  the first. Records of a cache get new keys, LAM_CACHE_KEY and on.
+  Two records are of one state if they have the key of the same node, or if they are of a cache and have the same
+  load, or otherwise the same key and load. The converged one of the two is kept, otherwise the first, at the position
+  of the first. Records of a cache are renumbered from LAM_CACHE_KEY.
 */
 typedef struct LamUnion_s *LamUnion;
 
-/* `path`: a file that LamFileCreate has made, without records; it is open until LamUnionDestroy. */
+/* `path`: a file created by LamFileCreate, without records; it stays open until LamUnionDestroy. */
 PetscErrorCode LamUnionCreate(const char path[], LamUnion *records);
-/* Takes the bytes of one record, whose checksum is right, of any version. Counts into `report`. */
+/* Appends the bytes of one record, whose checksum must be correct, of any version. Counts into `report`. */
 PetscErrorCode LamUnionTake(LamUnion records, const LamRecordLayout *layout, const unsigned char *bytes,
                             LamMergeReport *report);
-/* Writes and counts what is left; closes the file. */
+/* Writes and counts the remaining records; closes the file. */
 PetscErrorCode LamUnionFinish(LamUnion records);
 PetscErrorCode LamUnionDestroy(LamUnion *records);
 
