@@ -1,5 +1,5 @@
 /*
-  The way of a body through time: from segment to segment, over jumps and events.
+  Time loop of a body: segments, jumps and events.
 */
 #include "body_impl.h"
 #include "clock.h"
@@ -8,9 +8,9 @@
 
 enum { MAX_HALVINGS = 12 };
 
-/* ---- life ---- */
+/* ---- creation and destruction ---- */
 
-/* The turgor that a program prescribes multiplies that of the points. */
+/* Checks that prescribed turgor can be written as a factor on the turgor of the points. */
 static PetscErrorCode CheckTurgor(const LamScene *scene)
 {
   const LamProcessSpec *spec = &scene->process;
@@ -38,7 +38,7 @@ PetscErrorCode LamBodyCreate(const LamScene *scene, LamMacro macro, LamBody *bod
   PetscFunctionReturn(0);
 }
 
-/* What needs the sizes of the macroscale problem, which its set-up finds. */
+/* Allocates what depends on the sizes of the macroscale problem, which are known after its set-up. */
 static PetscErrorCode Allocate(LamBody body)
 {
   LamMacroSizes *sizes = &body->sizes;
@@ -104,7 +104,7 @@ PetscErrorCode LamBodyDestroy(LamBody *body)
   PetscFunctionReturn(0);
 }
 
-/* ---- a time ---- */
+/* ---- state at a time ---- */
 
 PetscErrorCode LamBodySetTime(LamBody body, PetscReal time, const PetscReal x[], PetscBool *ok)
 {
@@ -157,7 +157,7 @@ PetscErrorCode LamBodyFillWater(LamBody body)
   PetscFunctionReturn(0);
 }
 
-/* Equilibrium under the conditions, which becomes the present state. */
+/* Equilibrium under the conditions; it becomes the present state. */
 static PetscErrorCode Balance(LamBody body, LamWaterMode mode, const LamMacroInstant *instant, PetscBool *ok)
 {
   LamProcess process = body->process;
@@ -219,7 +219,7 @@ static PetscReal Between(PetscReal from, PetscReal to, PetscReal share)
   return from + share * (to - from);
 }
 
-/* What holds on the way of a jump. */
+/* Conditions during a jump. */
 typedef struct {
   LamMacroInstant instant;
   PetscReal temperature, outside;
@@ -236,7 +236,8 @@ static Conditions Mix(const Conditions *from, const Conditions *to, PetscReal sh
   return mix;
 }
 
-/* From one to the other in as many steps as it takes, which need no time; *reached: how far it came. */
+/* Moves from one set of conditions to the other in as many steps as needed, without time passing; *reached: the last
+   conditions with equilibrium. */
 static PetscErrorCode Walk(LamBody body, const Conditions *from, const Conditions *to, Conditions *reached,
                            PetscBool *ok)
 {
@@ -270,8 +271,8 @@ static PetscErrorCode Walk(LamBody body, const Conditions *from, const Condition
   PetscFunctionReturn(0);
 }
 
-/* To the conditions of the segment's start, in any case to an equilibrium there, as far as rounding and interpolation
-   have left it; else, where there is none, back. */
+/* Moves the body to an equilibrium under the conditions of the segment's start, also to remove errors of rounding and
+   interpolation. If there is none, returns to the conditions `from`. */
 static PetscErrorCode Jump(LamBody body, const Conditions *from, PetscBool *ok)
 {
   LamProcess process = body->process;
@@ -290,7 +291,7 @@ static PetscErrorCode Jump(LamBody body, const Conditions *from, PetscBool *ok)
   PetscFunctionReturn(0);
 }
 
-/* Brings the body to the start of the segment. */
+/* Equilibrates the body at the start of the segment. */
 static PetscErrorCode EnterSegment(LamBody body, PetscBool *ok)
 {
   LamProcess process = body->process;
@@ -304,7 +305,7 @@ static PetscErrorCode EnterSegment(LamBody body, PetscBool *ok)
   from = (Conditions){LamBodyInstant(body, tissue->time), tissue->temperature, tissue->outside};
   from.instant.load = tissue->load;
   from.instant.turgor = body->turgor_share;
-  PetscCall(LamMacroForget(body->macro)); /* a cache may have learnt meanwhile */
+  PetscCall(LamMacroForget(body->macro)); /* a cache may have been extended meanwhile */
   PetscCall(Jump(body, &from, ok));
   if (!*ok) PetscFunctionReturn(0);
   tissue->load = segment->load.from;
@@ -316,7 +317,7 @@ static PetscErrorCode EnterSegment(LamBody body, PetscBool *ok)
   PetscFunctionReturn(0);
 }
 
-/* ---- telling ---- */
+/* ---- reports ---- */
 
 /* Sums and extremes over the material points of the present state. */
 static PetscErrorCode Summarise(LamBody body, LamBodyState *state)
@@ -353,7 +354,7 @@ static PetscErrorCode Summarise(LamBody body, LamBodyState *state)
   PetscFunctionReturn(0);
 }
 
-/* Where an event is exceeded most. */
+/* Finds the material point with the largest event function. */
 static PetscErrorCode Locate(LamBody body, LamEvent event, LamBodyState *state)
 {
   struct {
@@ -415,7 +416,7 @@ PetscErrorCode LamBodyTell(LamBody body, const PetscBool happened[LAM_EVENT_COUN
   for (PetscInt k = 0; k < LAM_EVENT_COUNT && happened; k++) {
     if (!happened[k]) continue;
     if (k == LAM_EVENT_TURGOR_LOST || k == LAM_EVENT_TURGOR_FOUND)
-      process->plasmolysed = (PetscBool)(k == LAM_EVENT_TURGOR_LOST); /* somewhere */
+      process->plasmolysed = (PetscBool)(k == LAM_EVENT_TURGOR_LOST); /* at some point */
     else
       process->found[k] = PETSC_TRUE;
     PetscCall(TellEvent(body, (LamEvent)k));
@@ -423,9 +424,9 @@ PetscErrorCode LamBodyTell(LamBody body, const PetscBool happened[LAM_EVENT_COUN
   PetscFunctionReturn(0);
 }
 
-/* ---- the way ---- */
+/* ---- time loop ---- */
 
-/* What has happened by the present state: at the start of a segment what a jump has passed. */
+/* Reports events that have occurred at the present state, such as those passed in a jump at the start of a segment. */
 static PetscErrorCode TellPassed(LamBody body)
 {
   PetscBool happened[LAM_EVENT_COUNT] = {PETSC_FALSE};
@@ -453,7 +454,7 @@ static PetscErrorCode FollowSegment(LamBody body, PetscBool *ok)
   PetscFunctionBeginUser;
   LamProcessNextSegment(process, &process->segment);
   PetscCall(EnterSegment(body, ok));
-  if (!*ok) { /* the body is still where the one before ends */
+  if (!*ok) { /* the body is still at the end of the previous segment */
     process->segment = before;
     PetscFunctionReturn(0);
   }
@@ -525,7 +526,7 @@ static PetscErrorCode FollowAll(LamBody body, PetscBool *ok, char message[LAM_PR
   PetscFunctionReturn(0);
 }
 
-/* Where it ends before its time: the last state that there is. */
+/* Reports the last state if the run ends early. */
 static PetscErrorCode TellLast(LamBody body)
 {
   char why[sizeof(body->process->trouble)];

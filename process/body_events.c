@@ -1,5 +1,5 @@
 /*
-  What is looked for in a body that changes in time: the material point where it is exceeded most.
+  Events in a body that changes in time, at the material point with the largest event function.
 */
 #include "body_impl.h"
 #include <math.h>
@@ -17,11 +17,11 @@ PetscInt LamBodyListEvents(LamBody body, LamEvent events[LAM_EVENT_COUNT])
   PetscInt kept = 0;
 
   for (PetscInt k = 0; k < n; k++)
-    if (events[k] != LAM_EVENT_LIMIT) events[kept++] = events[k]; /* the body ends there */
+    if (events[k] != LAM_EVENT_LIMIT) events[kept++] = events[k]; /* the run of a body ends there */
   return kept;
 }
 
-/* Rises through 0 where the event happens at a point. */
+/* Event function of a point: rises through 0 at the event. */
 static PetscReal Excess(LamBody body, LamEvent event, PetscInt p, const LamMacroPoint *point)
 {
   const LamStrength *strength = &body->process->scene->strength;
@@ -38,10 +38,10 @@ static PetscReal Excess(LamBody body, LamEvent event, PetscInt p, const LamMacro
   case LAM_EVENT_OPENING:
     return point->field[LAM_POINT_OPENING] - body->opening[p] - body->process->spec->opening;
   case LAM_EVENT_PERCOLATION:
-    return point->percolating < 0 ? -1 : 1.5 - (PetscReal)point->percolating; /* below 0: not known */
+    return point->percolating < 0 ? -1 : 1.5 - (PetscReal)point->percolating; /* below 0: unknown */
   case LAM_EVENT_TURGOR_LOST:
     return LamBodyNoTurgor(body) - point->load->turgor;
-  case LAM_EVENT_TURGOR_FOUND: /* where it is found last */
+  case LAM_EVENT_TURGOR_FOUND: /* largest at the point that regains turgor last */
     return 2 * LamBodyNoTurgor(body) - point->load->turgor;
   default:
     return -1;
@@ -62,7 +62,7 @@ PetscErrorCode LamBodyExcess(LamBody body, PetscInt n, const LamEvent events[], 
     for (PetscInt k = 0; k < n; k++) {
       const PetscReal at = Excess(body, events[k], p, &point);
 
-      if (!(at > excess[k])) continue; /* not a number: not known there */
+      if (!(at > excess[k])) continue; /* not a number: unknown there */
       excess[k] = at;
       points[k] = p;
     }

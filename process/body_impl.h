@@ -1,10 +1,10 @@
 /*
   Private parts of a body that changes in time.
 
-  body.c            life, and the way through time
-  body_water.c      water of the cells: what their lumens are to hold at a turgor
-  body_integrate.c  one segment by IDA, whose nonlinear solver is the body's own
-  body_events.c     what is looked for, and where it is
+    body.c            creation, and time loop
+    body_water.c      water of the cells: prescribed volume of the lumens as a function of turgor
+    body_integrate.c  one segment by IDA, with the body's own nonlinear solver
+    body_events.c     events and their locations
 
   Program, surroundings and kinetics are those of process_impl.h.
 */
@@ -14,14 +14,14 @@
 #include "process_impl.h"
 #include <lamella/body.h>
 
-/* How the water of a point follows from its turgor. */
+/* Dependence of a point's water on its turgor. */
 typedef enum {
-  LAM_WATER_GIVEN,  /* it does not: nothing has time to pass */
-  LAM_WATER_PASSES, /* in an implicit step of time */
+  LAM_WATER_GIVEN,  /* constant water: no time passes */
+  LAM_WATER_PASSES, /* implicit time step */
   LAM_WATER_OSMOSIS /* in equilibrium with the surroundings */
 } LamWaterMode;
 
-/* Of a point at the present time: osmotic pressure solutes / (V - dead), flow conductance (sigma (pi - outside) - p).
+/* At a point at the present time: osmotic pressure solutes / (V - dead), flow conductance (sigma (pi - outside) - p).
  */
 typedef struct {
   PetscReal conductance, solutes, dead;
@@ -36,55 +36,56 @@ struct LamBody_s {
   void *monitor_ctx; /* borrowed */
 
   LamMacroSizes sizes;
-  PetscReal *share;       /* [point] of the body's volume */
+  PetscReal *share;       /* [point] volume fraction of the body */
   PetscReal *membrane;    /* [point] */
   LamCells *cells;        /* [point] */
   PetscReal *opening;     /* [point] opening volume at the start */
-  PetscReal turgor_share; /* turgor that is prescribed now, over that of the start */
-  PetscReal sigma;        /* reflection now */
+  PetscReal turgor_share; /* present prescribed turgor relative to that of the start */
+  PetscReal sigma;        /* present reflection coefficient */
   LamDrive *drive;        /* [point] */
   LamWaterMode mode;
-  PetscReal cj, *start, *slope; /* LAM_WATER_PASSES: V' = slope + cj (V - start); borrowed */
+  PetscReal cj, *start, *slope; /* for LAM_WATER_PASSES: V' = slope + cj (V - start); borrowed */
 
   /* the present state */
   PetscReal *u, *pressures, *water;
   LamEvaluation now;   /* properties */
-  PetscReal evaluated; /* time to which the responses of the macroscale solver belong; NaN: unknown */
-  PetscReal clock;     /* when the report of the present state began */
+  PetscReal evaluated; /* time of the present responses of the macroscale solver; NaN: unknown */
+  PetscReal clock;     /* clock at the start of the present state's report */
   PetscInt told;
-  PetscInt steps; /* of time in the segment */
+  PetscInt steps; /* time steps in the segment */
 };
 
 /* ---- body_water.c ---- */
 PetscErrorCode LamBodyWaterCreate(LamBody body);
 /* LamWaterLaw */
 void LamBodyWaterLaw(void *body, PetscInt point, PetscReal turgor, PetscReal *water, PetscReal *slope);
-/* Volume of the protoplast at a turgor that is not negative, and its derivative. */
+/* Protoplast volume at a nonnegative turgor, and its derivative. */
 PetscReal LamBodyProtoplast(LamBody body, PetscInt point, PetscReal turgor, PetscReal *slope);
 /* dV/dt at a turgor. */
 PetscReal LamBodyFlow(LamBody body, PetscInt point, PetscReal water, PetscReal turgor);
-/* What drives the water with the present properties. */
+/* Sets the drives of the water from the present properties. */
 void LamBodyDrives(LamBody body);
 
 /* ---- body.c ---- */
-/* Properties at a time, from the kinetic states, for the body; *ok: PETSC_FALSE where nothing is left of the walls. */
+/* Sets the body's properties at a time from the kinetic states; *ok is PETSC_FALSE if the walls have no stiffness left.
+ */
 PetscErrorCode LamBodySetTime(LamBody body, PetscReal time, const PetscReal x[], PetscBool *ok);
 LamMacroInstant LamBodyInstant(LamBody body, PetscReal time);
 /*
-  The state at a time from u, pressures, water and kinetic states that are nearly so: in equilibrium, without water
-  passing. *ok: found; it is then that of the body and of the macroscale solver.
+  Equilibrium at a time, from approximate u, pressures, water and kinetic states; no water flows. If *ok, it becomes
+  the state of the body and of the macroscale solver.
 */
 PetscErrorCode LamBodySettle(LamBody body, PetscReal time, PetscBool *ok);
 /*
-  The same where V and V' at the time are known as well as the integration knows them, start and slope [point]: water
-  may still pass as in an implicit step of the coefficient c, V' = slope + c (V - start). An error of V would else
-  become one of the turgor as large as cells are stiff that keep their water.
+  As LamBodySettle, if V and V' at the time are known to the accuracy of the integration: start and slope [point].
+  Water may flow as in an implicit step with coefficient c, V' = slope + c (V - start). With constant water an error
+  of V would be amplified to an error of the turgor by the stiffness of sealed cells.
 */
 PetscErrorCode LamBodySettleStep(LamBody body, PetscReal time, PetscReal c, PetscReal start[], PetscReal slope[],
                                  PetscBool *ok);
-/* The water that follows from the turgor of the present state. */
+/* Computes the water from the turgor of the present state. */
 PetscErrorCode LamBodyFillWater(LamBody body);
-/* How water follows where nothing has time to pass. */
+/* Dependence of water on turgor when no time passes. */
 LamWaterMode LamBodyAtOnce(LamBody body);
 PetscErrorCode LamBodyTell(LamBody body, const PetscBool happened[LAM_EVENT_COUNT]);
 
@@ -93,10 +94,10 @@ PetscErrorCode LamBodyIntegrate(LamBody body, PetscBool happened[LAM_EVENT_COUNT
 
 /* ---- body_events.c ---- */
 PetscInt LamBodyListEvents(LamBody body, LamEvent events[LAM_EVENT_COUNT]);
-/* How far events are exceeded where they are most, in what the macroscale solver has evaluated; points [n]: there on
-   this rank. Not yet of all ranks. */
+/* Evaluates the event functions at the last evaluation of the macroscale solver: the maximum over this rank's points;
+   points [n]: where. The caller reduces over the ranks. */
 PetscErrorCode LamBodyExcess(LamBody body, PetscInt n, const LamEvent events[], PetscReal excess[], PetscInt points[]);
-/* Turgor below this is lost. */
+/* Turgor below this counts as lost. */
 PetscReal LamBodyNoTurgor(LamBody body);
 
 #endif

@@ -1,19 +1,19 @@
 /*
   One segment of time of a body, integrated by IDA (SUNDIALS).
 
-  Unknowns: states of the kinetic laws x, which all tissue shares; the water V of each material point; turgor and
+  Unknowns: states of the kinetic laws x, common to all tissue; the water V of each material point; turgor and
   displacement of the body, (q, u). Equations
 
     x' = f(x, T),      V' = Lp A (sigma (pi - pi_out) - p),      equilibrium and lumens of the body for (u, q; V, x, t).
 
-  In an implicit step y' = s + c (y - a), with IDA's s, a, c, the kinetics are solved by themselves, V is a function of
-  p at each point (body_water.c), and what is left is equilibrium of a body whose lumens hold V(p): Newton's method of
-  the macroscale solver, with its condensed tangent, is IDA's nonlinear solver. Predictions, errors, steps, orders and
-  roots are IDA's.
+  In an implicit step y' = s + c (y - a), with IDA's s, a, c, the kinetics are solved separately, and V is a function
+  of p at each point (body_water.c). The remaining problem is equilibrium of a body whose lumens have volume V(p).
+  IDA's nonlinear solver is therefore Newton's method of the macroscale solver with its condensed tangent. IDA
+  controls predictions, errors, steps, orders and roots.
 
-  Errors are those of x and V, the latter as a mean over the body's volume: turgor and displacement follow from these,
-  and are balanced anew wherever they are told or looked at for events, so that neither their interpolation in time nor
-  what is uncertain of interpolated responses limits the steps.
+  Error control covers x and V, the latter as a mean over the body's volume. Turgor and displacement follow from
+  these: equilibrium is solved again for every report and event search, so neither their interpolation in time nor the
+  error of interpolated responses limits the steps.
 
   Reference: Hindmarsh et al., ACM TOMS 31 (2005) 363-396.
 */
@@ -26,9 +26,9 @@
 
 enum { MAX_STEPS = 100000, MAX_FAILURES = 25, MAX_RESTARTS = 3, MAX_HALVINGS = 6, KINETIC_ITERATIONS = 30 };
 #define KINETIC_EXACT 1e-14
-#define LEAST_ADVANCE 1e-9 /* of the duration, that makes a restart worth another one */
+#define LEAST_ADVANCE 1e-9 /* fraction of the duration; a restart that advances less counts towards MAX_RESTARTS */
 
-/* Where the unknowns lie in this rank's y; -1: not there. Rank 0 has the kinetic states. */
+/* Positions of the unknowns in this rank's y; -1: not an unknown. Rank 0 has the kinetic states. */
 typedef struct {
   PetscInt n, state[LAM_PROCESS_KINETIC], water, pressures, u, idle;
 } Layout;
@@ -39,8 +39,8 @@ typedef struct {
   PetscInt total; /* unknowns of all ranks */
   PetscInt event_count;
   LamEvent events[LAM_EVENT_COUNT];
-  PetscReal x[LAM_PROCESS_KINETIC]; /* in the last step's solution, on all ranks */
-  PetscBool pending;                /* a solution that is not accepted yet */
+  PetscReal x[LAM_PROCESS_KINETIC]; /* of the last step's solution, on all ranks */
+  PetscBool pending;                /* a solution has not been accepted yet */
   PetscReal c;                      /* leading coefficient of the last step */
   PetscErrorCode error;             /* of the library, raised inside IDA */
 
@@ -85,7 +85,7 @@ static void Pack(const LamBody body, const Layout *l, PetscReal y[])
   for (PetscInt k = 0; k < body->sizes.displacements; k++) y[l->u + k] = body->u[k];
 }
 
-/* The kinetic states in y, which rank 0 has, on all ranks. */
+/* Broadcasts the kinetic states in y, which rank 0 has. */
 static PetscErrorCode ShareStates(const Integration *in, const PetscReal y[], PetscReal x[])
 {
   PetscFunctionBeginUser;
@@ -118,7 +118,7 @@ static PetscErrorCode Unpack(Integration *in, PetscReal time, const PetscReal y[
 
 /* ---- an implicit step ---- */
 
-/* x of one law with x' = slope + c (x - start) by Newton's method, of at most two states. */
+/* Solves for x of one law, with x' = slope + c (x - start), by Newton's method; at most two states. */
 static PetscBool SolveLaw(const LamKinetics *law, PetscReal temperature, PetscReal c, const PetscReal start[],
                           const PetscReal slope[], PetscReal x[])
 {
@@ -152,7 +152,7 @@ static PetscErrorCode SolveKinetics(Integration *in, PetscReal time, PetscReal c
   for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++) {
     const PetscInt first = LAM_KINETIC_STATES * k, at = in->layout.state[first];
 
-    if (at < 0) continue; /* states of a law follow each other */
+    if (at < 0) continue; /* states of a law are contiguous */
     if (!SolveLaw(&process->spec->kinetics[k], temperature, c, &predicted[at], &rates[at], &in->x[first]))
       *ok = PETSC_FALSE;
   }
@@ -161,7 +161,7 @@ static PetscErrorCode SolveKinetics(Integration *in, PetscReal time, PetscReal c
   PetscFunctionReturn(0);
 }
 
-/* The solution of the step less the prediction. */
+/* Correction: the solution of the step minus the prediction. */
 static PetscErrorCode FillCorrection(Integration *in, const PetscReal predicted[], PetscReal correction[])
 {
   LamBody body = in->body;
@@ -184,7 +184,7 @@ static PetscErrorCode FillCorrection(Integration *in, const PetscReal predicted[
   PetscFunctionReturn(0);
 }
 
-/* How water passes: V' = rates + c (V - start). */
+/* Sets the flow of water in the step: V' = rates + c (V - start). */
 static void SetStep(Integration *in, PetscReal c, PetscReal start[], PetscReal rates[])
 {
   LamBody body = in->body;
@@ -196,7 +196,7 @@ static void SetStep(Integration *in, PetscReal c, PetscReal start[], PetscReal r
   body->slope = water < 0 ? NULL : &rates[water];
 }
 
-/* *flag: 0, or positive where a shorter step may have a solution. */
+/* Solves an implicit step. *flag: 0, or positive if a shorter step may have a solution. */
 static PetscErrorCode SolveStep(Integration *in, PetscReal time, PetscReal c, PetscReal predicted[], PetscReal rates[],
                                 PetscReal correction[], int *flag)
 {
@@ -228,7 +228,7 @@ static PetscErrorCode SolveStep(Integration *in, PetscReal time, PetscReal c, Pe
   PetscFunctionReturn(0);
 }
 
-/* Solve of a SUNNonlinearSolver. */
+/* Solve function of the SUNNonlinearSolver. */
 static int Solve(SUNNonlinearSolver solver, N_Vector y0, N_Vector correction, N_Vector w, PetscReal tolerance,
                  sunbooleantype setup, void *mem)
 {
@@ -249,7 +249,7 @@ static SUNNonlinearSolver_Type SolverType(SUNNonlinearSolver solver)
   return SUNNONLINEARSOLVER_ROOTFIND;
 }
 
-/* IDA gives it the residual, which SolveStep knows. */
+/* IDA passes its residual here; SolveStep does not need it. */
 static int SetSystem(SUNNonlinearSolver solver, SUNNonlinSolSysFn residual)
 {
   return SUN_SUCCESS;
@@ -261,7 +261,7 @@ static int FreeSolver(SUNNonlinearSolver solver)
   return SUN_SUCCESS;
 }
 
-/* IDAResFn; nothing asks it. */
+/* IDAResFn; never called */
 static int Residual(PetscReal t, N_Vector y, N_Vector yp, N_Vector r, void *ctx)
 {
   return -1;
@@ -279,7 +279,7 @@ static int Weights(N_Vector y_vector, N_Vector weight, void *ctx)
   const PetscReal all = (PetscReal)in->total;
   PetscReal *w = N_VGetArrayPointer(weight);
 
-  N_VConst(1, weight); /* also of what has no rate, whose errors are not looked at */
+  N_VConst(1, weight); /* also for algebraic unknowns, whose errors are suppressed */
   for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++)
     if (l->state[k] >= 0) w[l->state[k]] = sqrt(all) / (relative * (PetscAbsReal(y[l->state[k]]) + 1e-3));
   for (PetscInt p = 0; p < body->sizes.points && l->water >= 0; p++)
@@ -289,7 +289,8 @@ static int Weights(N_Vector y_vector, N_Vector weight, void *ctx)
 
 /* ---- roots ---- */
 
-/* Balances the body in IDA's state, unless it is there: as LamBodySettleStep does, but not to stay there. */
+/* Equilibrium of the body at IDA's state, unless already evaluated at that time; as LamBodySettleStep, but the result
+   is not accepted. */
 static PetscErrorCode BalanceAt(Integration *in, PetscReal time, PetscReal y[], PetscReal yp[], PetscBool *ok)
 {
   LamBody body = in->body;
@@ -306,12 +307,12 @@ static PetscErrorCode BalanceAt(Integration *in, PetscReal time, PetscReal y[], 
   const LamMacroInstant instant = LamBodyInstant(body, time);
   PetscCall(LamMacroBalance(body->macro, &instant, &y[l->u], &y[l->pressures], ok));
   PetscCall(LamMacroStopped(body->macro, &body->process->stopped));
-  if (!*ok && !body->process->stopped) { /* from where the step began */
+  if (!*ok && !body->process->stopped) { /* from the start of the step */
     PetscCall(LamMacroReject(body->macro));
     PetscCall(LamMacroBalance(body->macro, &instant, body->u, body->pressures, ok));
     PetscCall(LamMacroStopped(body->macro, &body->process->stopped));
   }
-  body->mode = LamBodyAtOnce(body); /* vectors of IDA are no longer asked */
+  body->mode = LamBodyAtOnce(body); /* the vectors of IDA are no longer used */
   in->pending = PETSC_TRUE;
   body->process->counts.questions++;
   if (*ok)
@@ -332,7 +333,7 @@ static PetscErrorCode FindExcess(Integration *in, PetscReal time, PetscReal y[],
   PetscCall(LamBodyExcess(in->body, in->event_count, in->events, excess, points));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, excess, (PetscMPIInt)in->event_count, MPIU_REAL, MPIU_MAX, in->body->comm));
   for (PetscInt k = 0; k < in->event_count; k++) {
-    if (in->events[k] == LAM_EVENT_TURGOR_FOUND) excess[k] = -excess[k]; /* all of them */
+    if (in->events[k] == LAM_EVENT_TURGOR_FOUND) excess[k] = -excess[k]; /* when all points have regained turgor */
     if (!isfinite(excess[k])) excess[k] = -1;
   }
   PetscFunctionReturn(0);
@@ -348,9 +349,9 @@ static int Roots(PetscReal t, N_Vector y, N_Vector yp, PetscReal excess[], void 
   return in->error || !ok ? -1 : 0;
 }
 
-/* ---- life ---- */
+/* ---- creation and destruction ---- */
 
-/* y' of what has one. */
+/* Sets y' of the differential unknowns. */
 static PetscErrorCode StartRates(Integration *in)
 {
   LamBody body = in->body;
@@ -418,7 +419,7 @@ static PetscErrorCode Create(LamBody body, Integration *in)
   for (PetscInt k = 0; k < in->layout.pressures; k++) N_VGetArrayPointer(in->id)[k] = 1;
   LamCallSUN(IDASetId(in->ida, in->id));
   LamCallSUN(IDASetSuppressAlg(in->ida, SUNTRUE));
-  LamCallSUN(IDASetMaxStep(in->ida, body->process->spec->output)); /* events that pass are not to be missed */
+  LamCallSUN(IDASetMaxStep(in->ida, body->process->spec->output)); /* transient events must not be missed */
   LamCallSUN(IDASetMaxConvFails(in->ida, MAX_FAILURES));
   LamCallSUN(IDASetStopTime(in->ida, segment->end));
   PetscCall(CreateSolver(in));
@@ -437,10 +438,10 @@ static void Destroy(Integration *in)
   if (in->context) SUNContext_Free(&in->context);
 }
 
-/* ---- the way ---- */
+/* ---- time loop ---- */
 
-/* Settles the body in IDA's state at a time within the last step; `keeps`: turgor and displacement are those of the
-   present state, a guess, else those of the interpolation. */
+/* Equilibrium of the body at IDA's state at a time within the last step. keeps: turgor and displacement of the present
+   state are the initial guess, else the interpolated ones. */
 static PetscErrorCode SettleAt(Integration *in, PetscReal time, PetscBool keeps, PetscBool *ok)
 {
   LamBody body = in->body;
@@ -470,8 +471,8 @@ static PetscErrorCode SettleAt(Integration *in, PetscReal time, PetscBool keeps,
   PetscFunctionReturn(0);
 }
 
-/* Settles the body at an output before the end of the step, at `end`: from the interpolation, else from that end, in
-   smaller and smaller ways back. */
+/* Equilibrium at an output before the end of the step, `end`: starting from the interpolated state or, if that fails,
+   from the end of the step in smaller and smaller steps back. */
 static PetscErrorCode SettleOutput(Integration *in, PetscReal end, PetscReal output, PetscBool *ok)
 {
   LamBody body = in->body;
@@ -496,7 +497,7 @@ static PetscErrorCode SettleOutput(Integration *in, PetscReal end, PetscReal out
   PetscFunctionReturn(0);
 }
 
-/* Tells the outputs up to a time that the integrator has passed. */
+/* Reports the outputs up to a time that the integrator has passed. */
 static PetscErrorCode TellUpTo(Integration *in, PetscReal time, PetscBool *ok)
 {
   LamBody body = in->body;
@@ -507,7 +508,7 @@ static PetscErrorCode TellUpTo(Integration *in, PetscReal time, PetscBool *ok)
     const PetscReal at = process->next_output;
 
     if (body->evaluated == at) {
-      PetscCall(Unpack(in, at, N_VGetArrayPointer(in->y))); /* the end of the step */
+      PetscCall(Unpack(in, at, N_VGetArrayPointer(in->y))); /* end of the step */
       if (in->layout.water < 0) PetscCall(LamBodyFillWater(body));
     } else {
       PetscCall(SettleOutput(in, time, at, ok));
@@ -530,7 +531,8 @@ static PetscErrorCode DescribeFailure(LamProcess process, int flag)
   PetscFunctionReturn(0);
 }
 
-/* After a step that IDA has accepted: its solution is that of the body, unless events were looked for elsewhere. */
+/* Call after a step that IDA has accepted: accepts its solution for the body, unless the last evaluation was at another
+   time, for events. */
 static PetscErrorCode TakeStep(Integration *in, PetscReal time)
 {
   PetscFunctionBeginUser;
@@ -539,7 +541,7 @@ static PetscErrorCode TakeStep(Integration *in, PetscReal time)
   else if (in->pending)
     PetscCall(LamMacroReject(in->body->macro));
   in->pending = PETSC_FALSE;
-  in->body->mode = LamBodyAtOnce(in->body); /* vectors of IDA are no longer asked */
+  in->body->mode = LamBodyAtOnce(in->body); /* the vectors of IDA are no longer used */
   PetscFunctionReturn(0);
 }
 
@@ -579,7 +581,7 @@ static PetscErrorCode Follow(Integration *in, PetscBool happened[LAM_EVENT_COUNT
   PetscFunctionReturn(0);
 }
 
-/* From the present state on. */
+/* One integration from the present state. */
 static PetscErrorCode IntegrateOnce(LamBody body, PetscBool happened[LAM_EVENT_COUNT], PetscBool *ok)
 {
   Integration in = {0};
@@ -594,7 +596,8 @@ static PetscErrorCode IntegrateOnce(LamBody body, PetscBool happened[LAM_EVENT_C
   PetscFunctionReturn(0);
 }
 
-/* Answers of a cache change a little, all at once, where it learns; then the way goes on from a new equilibrium. */
+/* The responses of a cache change slightly when it is extended. The integration is then restarted from a new
+   equilibrium. */
 PetscErrorCode LamBodyIntegrate(LamBody body, PetscBool happened[LAM_EVENT_COUNT], PetscBool *ok)
 {
   LamProcess process = body->process;

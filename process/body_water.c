@@ -1,23 +1,23 @@
 /*
   Water of the cells of a body, point by point.
 
-  The flow through membranes is that of evaluate.c. With r = V - V_b, pi = N / r, an implicit step of time
-  V' = s + c (V - a) has the water V(p) with
+  The flow through membranes is that of evaluate.c. With r = V - V_b and pi = N / r, an implicit time step V' = s + c
+  (V - a) gives the water V(p) by
 
     c r^2 + (s - c (a - V_b) + k (sigma pi_out + p)) r = k sigma N,
 
-  whose root is positive; without resistance c = 0 and only the terms with k remain. Its derivative is
+  with its positive root; without resistance c = 0 and only the terms with k remain. Its derivative is
   dr/dp = -k / (c + k sigma N / r^2).
 
-  Where turgor is lost the protoplast leaves the wall and what surrounds the cell fills the rest of the lumen at no
-  pressure. p >= 0 and V <= v, one of them as an equation, is kept by a penalty: the lumen holds V(0) - VOID p at p < 0,
-  so that p falls to -(v - V) / VOID at most, 1e-5 (C1 + C2) for a lumen that is empty.
+  When turgor is lost, the protoplast detaches from the wall, and the surrounding fluid fills the rest of the lumen at
+  zero pressure. The conditions p >= 0 and V <= v, one of them with equality, are enforced by a penalty: at p < 0 the
+  lumen is V(0) - VOID p. So p falls to -(v - V) / VOID, at most 1e-5 (C1 + C2) below 0 for an empty lumen.
 */
 #include "body_impl.h"
 #include <math.h>
 
-static const PetscReal VOID = 1e5;          /* of V0 over C1 + C2 */
-static const PetscReal LARGEST_WATER = 1e3; /* of V0 */
+static const PetscReal VOID = 1e5;          /* V0 / (C1 + C2) */
+static const PetscReal LARGEST_WATER = 1e3; /* V0 */
 
 void LamBodyDrives(LamBody body)
 {
@@ -59,7 +59,7 @@ PetscReal LamBodyProtoplast(LamBody body, PetscInt point, PetscReal turgor, Pets
   const PetscReal held = k * body->sigma * d->solutes, root = sqrt(b * b + 4 * c * held);
 
   r = b > 0 ? 2 * held / (b + root) : c > 0 ? (root - b) / (2 * c) : INFINITY;
-  if (!(r < LARGEST_WATER)) r = LARGEST_WATER; /* in pure water without turgor: without end */
+  if (!(r < LARGEST_WATER)) r = LARGEST_WATER; /* unbounded in pure water without turgor: limited */
   if (r > 0) *slope = -k / (c + held / (r * r));
   return d->dead + r;
 }

@@ -1,12 +1,12 @@
 /*
-  The tissue in a state: what has become of its properties, its response, and the flow of water into its cells.
+  The tissue at a state: its properties, its response, and the flow of water into its cells.
 
   With V the volume of the protoplasts over V0 and v(F, p) the lumen, both per V0, turgid cells have V = v, and
 
     dV/dt = Lp A [ sigma (pi - pi_out) - p ],    pi = pi_0 (T / T_0) (n / n_0) (V_0 - V_b) / (V - V_b),
 
-  A the area of the membranes over V0, that of the lumens of the reference; V_b the non-osmotic volume. Walls whose
-  moduli are s times those of the start have the energy s Psi(F, p / s, g / s): responses scale.
+  A the area of the membranes over V0, that of the lumens of the reference; V_b the non-osmotic volume. Walls with s
+  times the moduli of the start have the energy s Psi(F, p / s, g / s), so responses are scaled.
 
   Sources: Dainty, Adv. Bot. Res. 1 (1963) 279-326 (flow through membranes); van 't Hoff.
 */
@@ -23,7 +23,7 @@ static void FindFactors(LamProcess process, PetscReal time, const PetscReal x[],
         LamKineticsFactor(&process->spec->kinetics[k], time, &x[LAM_KINETIC_STATES * k], e->factor[k].slope);
 }
 
-/* Parameters over those of the start, of moduli without the factor that they share. */
+/* Parameters relative to those of the start; moduli without their common factor. */
 static void FindWalls(LamProcess process, LamEvaluation *e, PetscReal ratio[LAM_WALL_PARAMETER_COUNT])
 {
   PetscReal factor[LAM_WALL_PARAMETER_COUNT];
@@ -71,7 +71,7 @@ PetscErrorCode LamProcessTellWalls(LamProcess process, const PetscReal ratio[LAM
   PetscFunctionReturn(0);
 }
 
-/* The answer of a responder, in the C1 + C2 of the start. */
+/* Queries a responder; the response is in units of C1 + C2 at the start. */
 static PetscErrorCode Ask(LamProcess process, LamResponder *responder, const LamEvaluation *e, LamResponse *response)
 {
   const PetscInt point = 0;
@@ -183,7 +183,7 @@ void LamProcessFlow(LamProcess process, const LamCells *cells, const LamEvaluati
 
 /* ---- for the monitor ---- */
 
-/* dP11/dF11 where P22 is constant; where `seals`, no water passes: dP = A dF + P_p dp, dv = 0. */
+/* dP11/dF11 at constant P22. seals: no water flows, dP = A dF + P_p dp with dv = 0. */
 static PetscReal Firmness(const LamResponse *r, PetscBool seals)
 {
   const int at[2] = {0, 4};

@@ -1,7 +1,7 @@
 /*
-  What is looked for in time: numbers that rise through 0 where it happens.
+  Events in time: functions that rise through 0 at the event.
 
-  All but percolation, which is a count, are continuous and converge with the mesh: tractions and tensions are means
+  All except percolation, which is a count, are continuous and converge with the mesh: tractions and tensions are means
   over a wall's thickness, volumes are derivatives of the potential.
 */
 #include "process_impl.h"
@@ -21,7 +21,7 @@ void LamProcessRatios(LamProcess process, const LamEvaluation *e, PetscReal rati
   ratio[LAM_RATIO_WALL] = e->response.max_wall_tension / (wall * strength->wall);
 }
 
-/* Whether any of the tissue has this interface. */
+/* Whether any part of the tissue has this interface. */
 static PetscBool Has(const LamScene *scene, LamInterfaceLawType interface)
 {
   PetscBool has = (PetscBool)(scene->micro.interface == interface);
@@ -48,7 +48,7 @@ static PetscBool Applies(LamProcess process, LamEvent event)
   case LAM_EVENT_PERCOLATION:
     return contact;
   case LAM_EVENT_SNAP:
-    return PETSC_FALSE; /* found where the integrator ends */
+    return PETSC_FALSE; /* found when the integrator fails */
   case LAM_EVENT_TURGOR_LOST:
     return (PetscBool)!process->plasmolysed;
   case LAM_EVENT_TURGOR_FOUND:
@@ -67,8 +67,8 @@ PetscInt LamProcessListEvents(LamProcess process, LamEvent events[LAM_EVENT_COUN
   return n;
 }
 
-/* What the cells' water adds to dP/dF, over -P_p (x) P_p: no volume passes, dv = 0, or where nothing resists the flow
-   dp = d dv with d = dp/dV of equilibrium; dv = -P_p . dF - Psi_pp dp. */
+/* Coefficient of -P_p (x) P_p that the cells' water adds to dP/dF. Either no water flows, dv = 0, or without resistance
+   to the flow dp = d dv with d = dp/dV of equilibrium; dv = -P_p . dF - Psi_pp dp. */
 static PetscReal WaterStiffness(LamProcess process, const LamEvaluation *e)
 {
   LamFlow flow;
@@ -80,8 +80,8 @@ static PetscReal WaterStiffness(LamProcess process, const LamEvaluation *e)
 }
 
 /*
-  Minus the stiffness against what is free, over C1 + C2: the smallest eigenvalue of the symmetric part of dP/dF of the
-  free components, with their water where it cannot pass at once. Where nothing is free: whether the state is stable.
+  Minus the stiffness in the free components, over C1 + C2: the smallest eigenvalue of the symmetric part of dP/dF,
+  with the water of the cells. Without free components: whether the state is stable.
 */
 static PetscReal LimitExcess(LamProcess process, const LamEvaluation *e)
 {
@@ -98,7 +98,8 @@ static PetscReal LimitExcess(LamProcess process, const LamEvaluation *e)
       A[a][b] = r->tangent[9 * free[a] + free[b]];
       A[a][b] -= r->P_turgor[free[a]] * r->P_turgor[free[b]] * water;
     }
-  /* Gauss: the smallest pivot has the sign of the smallest eigenvalue while that is the only one to change it */
+  /* Gaussian elimination: the smallest pivot has the sign of the smallest eigenvalue as long as only that one changes
+     sign */
   PetscReal smallest = PETSC_INFINITY;
   for (PetscInt k = 0; k < n; k++) {
     smallest = PetscMin(smallest, A[k][k]);
@@ -125,7 +126,7 @@ PetscReal LamProcessExcess(LamProcess process, LamEvent event, const LamEvaluati
   case LAM_EVENT_OPENING:
     return r->opening_fraction - process->opening - process->spec->opening;
   case LAM_EVENT_PERCOLATION:
-    return r->percolating_directions < 0 ? -1 : 1.5 - (PetscReal)r->percolating_directions; /* below 0: not known */
+    return r->percolating_directions < 0 ? -1 : 1.5 - (PetscReal)r->percolating_directions; /* below 0: unknown */
   case LAM_EVENT_TURGOR_LOST:
     return -turgor - LamPlasmolysisTolerance(process) * process->pressure;
   case LAM_EVENT_TURGOR_FOUND:

@@ -1,14 +1,14 @@
 /*
   One segment of time, integrated by IDA (SUNDIALS): variable order and step BDF for differential-algebraic equations.
 
-  Unknowns y: states of the kinetic laws; where water is followed V and p; the free components of F. Equations
+  Unknowns y: states of the kinetic laws; if water is followed, V and p; the free components of F. Equations
 
-    x' = f(x, T),      V' = Lp A drive(V, p, x),      V = v(F, p) or, where the membranes have left the walls, p = 0,
+    x' = f(x, T),      V' = Lp A drive(V, p, x),      V = v(F, p) or, if the membranes are detached, p = 0,
     P_i(F, p, x) = given stress,
 
-  of index 1 as long as the tissue with its water is stiff against what is free. The Jacobian dG/dy + c dG/dy' is made
-  of the response's own derivatives; that by the factor s of the walls follows from P = s P(F, p/s, g/s). Where moduli
-  do not change alike it is that of the common factor alone, which costs an iteration.
+  of index 1 as long as the tissue with its water is stiff in the free components. The Jacobian dG/dy + c dG/dy' uses
+  the derivatives of the response; the derivative with respect to the factor s of the walls follows from P = s P(F,
+  p/s, g/s). If moduli do not change by a common factor, only the common factor is included, which costs an iteration.
 
   Reference: Hindmarsh et al., ACM TOMS 31 (2005) 363-396; Brenan, Campbell & Petzold, Numerical Solution of
   Initial-Value Problems in Differential-Algebraic Equations.
@@ -23,7 +23,7 @@
 
 enum { MAX_STEPS = 1000000 };
 
-/* Where the unknowns lie in y; -1: not there. Where nothing else is unknown a number that stays 0 is. */
+/* Positions of the unknowns in y; -1: not an unknown. idle: a constant 0, if there are no other unknowns. */
 typedef struct {
   PetscInt n, state[LAM_PROCESS_KINETIC], water, turgor, F[9], idle;
 } Layout;
@@ -59,7 +59,7 @@ static Layout LayOut(LamProcess process)
   return l;
 }
 
-/* The tissue that y says at a time; what is prescribed follows the segment. */
+/* The tissue for y at a time; prescribed quantities follow the segment. */
 static LamProcessTissue Unpack(LamProcess process, const Layout *l, PetscReal time, const PetscReal y[])
 {
   const PetscReal elapsed = time - process->segment.start;
@@ -87,7 +87,7 @@ static void Pack(const Layout *l, const LamProcessTissue *tissue, PetscReal y[])
 
 /* ---- the response at y ---- */
 
-/* 0; 1: y has no response, a shorter step may have one; -1: an error of the library, which process->error keeps. */
+/* Returns 0; 1 if y has no response (a shorter step may have one); -1 on a library error, stored in process->error. */
 static int EvaluateAt(Integration *in, PetscReal t, const PetscReal y[], LamProcessTissue *tissue, LamEvaluation *e)
 {
   LamProcess process = in->process;
@@ -178,7 +178,7 @@ static void AddFactor(const Integration *in, const LamEvaluation *e, LamChanging
     if (at[i] >= 0) SM_ELEMENT_D(K, row, at[i]) += derivative * e->factor[which].slope[i];
 }
 
-/* Adds that of something by the cohesion and by the common factor of the walls. */
+/* Adds the derivatives with respect to cohesion and to the common factor of the walls to a row. */
 static void AddProperties(const Integration *in, const LamEvaluation *e, PetscInt row, PetscReal by_cohesion,
                           PetscReal by_walls, SUNMatrix K)
 {
@@ -268,7 +268,7 @@ static int Roots(PetscReal t, N_Vector y, N_Vector yp, PetscReal excess[], void 
   LamEvaluation e;
   const int flag = EvaluateAt(in, t, N_VGetArrayPointer(y), &tissue, &e);
 
-  if (flag) return -1; /* IDA cannot take this back */
+  if (flag) return -1; /* IDA cannot recover from a failure here */
   in->process->error = in->event_count ? LamProcessQueryReference(in->process, &e) : 0;
   if (in->process->error) return -1;
   for (PetscInt k = 0; k < in->event_count; k++) {
@@ -278,9 +278,10 @@ static int Roots(PetscReal t, N_Vector y, N_Vector yp, PetscReal excess[], void 
   return 0;
 }
 
-/* ---- life ---- */
+/* ---- creation and destruction ---- */
 
-/* Kinetic states and strains count against 1, water against itself, turgor against all pressures there are. */
+/* Absolute tolerances: kinetic states and strains relative to 1, water relative to its initial volume, turgor relative
+   to the scale of pressures. */
 static void SetTolerances(Integration *in)
 {
   LamProcess process = in->process;
@@ -301,7 +302,7 @@ static void SetTolerances(Integration *in)
   if (l->idle >= 0) id[l->idle] = 1;
 }
 
-/* y' of what has one: -(residual at y' = 0). */
+/* Sets y' of the differential unknowns: -(residual at y' = 0). */
 static PetscErrorCode StartRates(Integration *in, PetscReal t)
 {
   const PetscReal *id = N_VGetArrayPointer(in->id);
@@ -364,7 +365,7 @@ static void Destroy(Integration *in)
   if (in->context) SUNContext_Free(&in->context);
 }
 
-/* ---- the way ---- */
+/* ---- time loop ---- */
 
 void LamProcessNextOutput(LamProcess process)
 {
@@ -378,7 +379,7 @@ void LamProcessNextOutput(LamProcess process)
   if (process->next_output > end * (1 - 1e-12)) process->next_output = end; /* the last one */
 }
 
-/* Tells the outputs up to a time that the integrator has passed. */
+/* Reports the outputs up to a time that the integrator has passed. */
 static PetscErrorCode TellUpTo(Integration *in, PetscReal time)
 {
   LamProcess process = in->process;

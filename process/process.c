@@ -1,18 +1,18 @@
 /*
-  The way of the tissue through time: from segment to segment, over jumps and events.
+  Time loop of the tissue: segments, jumps and events.
 */
 #include "process_impl.h"
 #include <lamella/body.h>
 #include <math.h>
 
 enum { MAX_SNAPS = 200 };
-#define FIRST_GAP 1e-8 /* shares of the duration that a snap takes, at least and at most */
+#define FIRST_GAP 1e-8 /* smallest and largest time of a snap, as fractions of the duration */
 #define LAST_GAP 1e-4
-#define STILL 1e-7 /* what is prescribed differs by less from where the tissue is: no jump */
+#define STILL 1e-7 /* smaller changes of a prescribed quantity are not a jump */
 
-/* ---- life ---- */
+/* ---- creation and destruction ---- */
 
-/* Which parameters any wall of a tissue has. */
+/* Marks the parameters that are nonzero in any wall of a tissue. */
 static void FindParameters(const LamMicrostructure *micro, PetscBool has[LAM_WALL_PARAMETER_COUNT])
 {
   const PetscInt cells = micro->cell ? micro->cells[0] * micro->cells[1] : 0;
@@ -27,7 +27,7 @@ static void FindParameters(const LamMicrostructure *micro, PetscBool has[LAM_WAL
 PetscBool LamProcessWallsStayAlike(const LamScene *scene)
 {
   const LamKinetics *kinetics =
-      &scene->process.kinetics[LAM_CHANGING_OF_PARAMETER(0)]; /* of C1, which all walls have */
+      &scene->process.kinetics[LAM_CHANGING_OF_PARAMETER(0)]; /* the parameters start with C1, which all walls have */
   PetscBool has[LAM_WALL_PARAMETER_COUNT] = {PETSC_FALSE};
 
   FindParameters(&scene->micro, has);
@@ -117,7 +117,7 @@ PetscErrorCode LamProcessDestroy(LamProcess *process)
   PetscFunctionReturn(0);
 }
 
-/* ---- telling ---- */
+/* ---- reports ---- */
 
 PetscErrorCode LamProcessTell(LamProcess process, const LamProcessTissue *tissue, LamEvent event)
 {
@@ -130,7 +130,7 @@ PetscErrorCode LamProcessTell(LamProcess process, const LamProcessTissue *tissue
   PetscFunctionReturn(0);
 }
 
-/* ---- where the tissue is ---- */
+/* ---- the present state ---- */
 
 static PetscErrorCode EvaluateTissue(LamProcess process, LamEvaluation *e)
 {
@@ -141,7 +141,7 @@ static PetscErrorCode EvaluateTissue(LamProcess process, LamEvaluation *e)
   PetscFunctionReturn(0);
 }
 
-/* The conditions that the tissue is in, with the unknowns of the present segment. */
+/* The present conditions of the tissue, with the unknowns of the present segment. */
 static LamSegment Here(LamProcess process, const PetscReal P[9])
 {
   LamSegment here = process->segment;
@@ -156,7 +156,8 @@ static LamSegment Here(LamProcess process, const PetscReal P[9])
   return here;
 }
 
-/* Temperature and bath act through the flow of water, at once only where nothing resists that. */
+/* Whether the conditions jump. Temperature and bath act through the flow of water, hence instantly only if it has no
+   resistance. */
 static PetscBool Jumps(LamProcess process, const PetscReal P[9])
 {
   const PetscBool at_once = (PetscBool)(process->spec->has_water && !isfinite(process->spec->water.permeability));
@@ -174,9 +175,9 @@ static PetscBool Jumps(LamProcess process, const PetscReal P[9])
   return (PetscBool)(PetscAbsReal(segment->turgor.from - process->tissue.turgor) > STILL);
 }
 
-/* ---- what happens ---- */
+/* ---- events ---- */
 
-/* What follows from an event: membranes leave the walls or meet them, others are not looked for any more. */
+/* Consequences of an event: membranes detach or attach again; other events are not searched for again. */
 static void Note(LamProcess process, LamEvent event)
 {
   if (event == LAM_EVENT_TURGOR_LOST && process->spec->has_water) {
@@ -189,7 +190,7 @@ static void Note(LamProcess process, LamEvent event)
   }
 }
 
-/* Notes and tells what has happened where the tissue is; *ends: it cannot go on from there. */
+/* Records and reports the events at the present state; *ends: the tissue cannot continue. */
 static PetscErrorCode Happen(LamProcess process, const PetscBool happened[LAM_EVENT_COUNT], PetscBool *ends)
 {
   PetscFunctionBeginUser;
@@ -202,7 +203,7 @@ static PetscErrorCode Happen(LamProcess process, const PetscBool happened[LAM_EV
   PetscFunctionReturn(0);
 }
 
-/* After a jump: what has been passed in it. Where water is followed turgor has its own way (ChangeMembranes). */
+/* Events passed in a jump. If water is followed, loss and recovery of turgor are treated in ChangeMembranes. */
 static PetscErrorCode CheckEvents(LamProcess process, PetscBool *ends)
 {
   PetscBool happened[LAM_EVENT_COUNT] = {PETSC_FALSE};
@@ -225,20 +226,20 @@ static PetscErrorCode CheckEvents(LamProcess process, PetscBool *ends)
 
 /* ---- segments ---- */
 
-/* How the tissue takes a change that leaves water no time. */
+/* Type of equilibrium after an instantaneous change. */
 static LamSettle Kind(LamProcess process)
 {
   if (!process->spec->has_water || process->plasmolysed) return LAM_SETTLE_TURGOR;
   return isfinite(process->spec->water.permeability) ? LAM_SETTLE_WATER : LAM_SETTLE_OSMOSIS;
 }
 
-/* The turgor of the segment's start where water is followed: the tissue's own. */
+/* If water is followed, the turgor at the segment's start is that of the tissue. */
 static void KeepTurgor(LamProcess process)
 {
   if (process->spec->has_water) process->segment.turgor = (LamRamp){process->tissue.turgor, 0};
 }
 
-/* Membranes come off, or meet the walls again, in a jump. */
+/* Detaches the membranes, or attaches them again, after a jump. */
 static PetscErrorCode ChangeMembranes(LamProcess process, PetscBool *ok)
 {
   LamEvent event = LAM_EVENT_COUNT;
@@ -253,7 +254,7 @@ static PetscErrorCode ChangeMembranes(LamProcess process, PetscBool *ok)
       process->tissue.water > -e.response.energy_turgor + LamPlasmolysisTolerance(process) * process->cells.water)
     event = LAM_EVENT_TURGOR_FOUND;
   if (event == LAM_EVENT_COUNT) PetscFunctionReturn(0);
-  here = Here(process, e.response.P); /* with the turgor that it has */
+  here = Here(process, e.response.P); /* with its present turgor */
   Note(process, event);
   KeepTurgor(process);
   PetscCall(LamProcessSettle(process, Kind(process), &here, ok));
@@ -261,7 +262,7 @@ static PetscErrorCode ChangeMembranes(LamProcess process, PetscBool *ok)
   PetscFunctionReturn(0);
 }
 
-/* Brings the tissue to the start of the segment: by a jump, or by what rounding and interpolation have left. */
+/* Equilibrates the tissue at the start of the segment: by a jump, or to remove errors of rounding and interpolation. */
 static PetscErrorCode EnterSegment(LamProcess process, PetscBool *ok)
 {
   LamEvaluation e;
@@ -285,7 +286,7 @@ static PetscErrorCode EnterSegment(LamProcess process, PetscBool *ok)
 
 /* ---- snaps ---- */
 
-/* Kinetics and water over a short time, by the midpoint rule and by the present flow. */
+/* Advances kinetics (midpoint rule) and water (present flow) over a short time. */
 static PetscErrorCode Pass(LamProcess process, PetscReal time)
 {
   LamProcessTissue *tissue = &process->tissue;
@@ -313,7 +314,7 @@ static PetscErrorCode Pass(LamProcess process, PetscReal time)
   PetscFunctionReturn(0);
 }
 
-/* Outputs that a snap has passed: what was before it. */
+/* Reports outputs passed in a snap, with the state before it. */
 static PetscErrorCode TellBefore(LamProcess process, const LamProcessTissue *before)
 {
   PetscFunctionBeginUser;
@@ -327,7 +328,7 @@ static PetscErrorCode TellBefore(LamProcess process, const LamProcessTissue *bef
   PetscFunctionReturn(0);
 }
 
-/* Where no step of time however short leads on: the equilibrium that there is a moment later, if it is found. */
+/* If no time step converges, however short: finds an equilibrium a moment later. */
 static PetscErrorCode Snap(LamProcess process, PetscBool *ok)
 {
   const LamProcessTissue before = process->tissue;
@@ -384,11 +385,11 @@ static PetscErrorCode FollowSegment(LamProcess process, PetscBool *ok, PetscBool
 
 /* ---- the start ---- */
 
-/* The tissue free of stress under its turgor, from which deformation counts. */
+/* Finds the stress-free tissue under its turgor, from which deformation is measured. */
 static PetscErrorCode Inflate(LamProcess process, PetscBool *ok)
 {
   const PetscReal none[9] = {0};
-  const PetscInt in_plane[3] = {0, 1, 4}; /* F21 = 0 holds it against rotation */
+  const PetscInt in_plane[3] = {0, 1, 4}; /* F21 = 0 prevents rotation */
   LamSegment *segment = &process->segment, from;
 
   PetscFunctionBeginUser;
@@ -457,9 +458,9 @@ static PetscErrorCode Start(LamProcess process, PetscBool *ok)
   PetscFunctionReturn(0);
 }
 
-/* ---- the way ---- */
+/* ---- time loop ---- */
 
-/* Where it ends before its time: the last state that there is. */
+/* Reports the last state if the run ends early. */
 static PetscErrorCode TellLast(LamProcess process)
 {
   char why[sizeof(process->trouble)];
@@ -483,7 +484,7 @@ static PetscErrorCode FollowAll(LamProcess process, PetscBool *ok, PetscBool *en
   PetscFunctionReturn(0);
 }
 
-/* At a limit point of answers that are interpolated the tissue may go on. */
+/* Reason of the end. At a limit point of interpolated responses the tissue itself may be able to continue. */
 static const char *WhyItEnds(LamProcess process, PetscBool limit)
 {
   const PetscBool contact = (PetscBool)(process->scene->micro.interface == LAM_INTERFACE_CONTACT);

@@ -1,12 +1,12 @@
 /*
   Private parts of the process at a material point.
 
-  process.c    life, and the way through time: segments between the times at which something changes abruptly
-  program.c    what is prescribed and surrounds the tissue at a time
-  evaluate.c   the tissue in a state: properties, response, flow of water, each with its derivatives
-  settle.c     equilibrium at an instant
-  integrate.c  one segment by IDA: residual, Jacobian, roots
-  events.c     what is looked for
+    process.c    creation, and time loop: segments between the times at which something changes abruptly
+    program.c    prescribed quantities and surroundings at a time
+    evaluate.c   the tissue at a state: properties, response, flow of water, each with its derivatives
+    settle.c     equilibrium at an instant
+    integrate.c  one segment by IDA: residual, Jacobian, roots
+    events.c     events
 */
 #ifndef LAM_PROCESS_IMPL_H
 #define LAM_PROCESS_IMPL_H
@@ -14,60 +14,60 @@
 #include <lamella/process.h>
 
 enum {
-  LAM_PROCESS_KINETIC = LAM_CHANGING_COUNT * LAM_KINETIC_STATES, /* most states of the kinetics */
+  LAM_PROCESS_KINETIC = LAM_CHANGING_COUNT * LAM_KINETIC_STATES, /* largest number of kinetic states */
   LAM_PROCESS_UNKNOWNS = LAM_PROCESS_KINETIC + 2 + 9
 };
 
-/* A number that changes straight from `from`, at the start of the segment. */
+/* A quantity that varies linearly in time; `from`: at the start of the segment. */
 typedef struct {
   PetscReal from, slope;
 } LamRamp;
 
-/* What happens between two times without any jump or kink. */
+/* Conditions between two times without any jump or kink. */
 typedef struct {
   PetscReal start, end;
-  LamRamp temperature, outside, turgor; /* turgor: where it is prescribed */
+  LamRamp temperature, outside, turgor; /* turgor: if it is prescribed */
   LamRamp F[9], P[9];
-  LamRamp load;       /* of a body: its load parameter */
+  LamRamp load;       /* load parameter, for a body */
   PetscBool given[9]; /* P is prescribed, F free */
 } LamSegment;
 
-/* The tissue, as it is kept from segment to segment. */
+/* The state of the tissue between segments. */
 typedef struct {
   PetscReal time;
-  PetscReal x[LAM_PROCESS_KINETIC]; /* states of the kinetic laws, two places each */
-  PetscReal F[9];                   /* from the inflated state */
+  PetscReal x[LAM_PROCESS_KINETIC]; /* states of the kinetic laws, two entries each */
+  PetscReal F[9];                   /* relative to the inflated state */
   PetscReal turgor, water;
-  PetscReal temperature, outside; /* of what surrounds it then */
-  PetscReal load;                 /* of a body */
+  PetscReal temperature, outside; /* of the surroundings at that time */
+  PetscReal load;                 /* for a body */
 } LamProcessTissue;
 
-/* A property and its derivatives by the two states of its own law. */
+/* A property and its derivatives with respect to the two states of its own law. */
 typedef struct {
   PetscReal value, slope[LAM_KINETIC_STATES];
 } LamProcessFactor;
 
-/* All of a state that the equations need. */
+/* Evaluation of a state for the equations. */
 typedef struct {
   PetscReal time, temperature, outside;
   LamProcessFactor factor[LAM_CHANGING_COUNT];
   PetscReal walls, cohesion;
-  LamLoad load;         /* F in full, turgor, cohesion */
-  LamResponse response; /* in C1 + C2 of the start */
-  PetscBool ok;         /* it has fields */
+  LamLoad load;         /* total F, turgor, cohesion */
+  LamResponse response; /* in units of C1 + C2 at the start */
+  PetscBool ok;         /* the response has fields */
 } LamEvaluation;
 
 /* The flow of water into the cells per V0 and time, and its derivatives. */
 typedef struct {
-  PetscReal conductance; /* of the membranes: flow = conductance * drive; infinite: drive = 0 */
+  PetscReal conductance; /* of the membranes: flow = conductance * drive; infinite: drive = 0 is the equation */
   PetscReal drive, drive_water, drive_turgor, drive_solutes, drive_reflection;
-  PetscReal osmotic, osmotic_water, osmotic_solutes; /* pressure in the protoplasts, and its derivatives */
+  PetscReal osmotic, osmotic_water, osmotic_solutes; /* osmotic pressure in the protoplasts, and its derivatives */
 } LamFlow;
 
-/* What cells are at the start. */
+/* Properties of the cells at the start. */
 typedef struct {
   PetscReal membrane;       /* area over V0, 1 / apothem */
-  PetscReal water, osmotic; /* volume of the protoplasts over V0, and pressure in them */
+  PetscReal water, osmotic; /* protoplast volume over V0, and osmotic pressure in it */
 } LamCells;
 
 struct LamProcess_s {
@@ -83,43 +83,44 @@ struct LamProcess_s {
   PetscBool (*stop)(void);
 
   PetscBool walls_alike;
-  PetscReal inflation[9]; /* F of the tissue that is free of stress under its turgor at the start */
+  PetscReal inflation[9]; /* F of the stress-free tissue under its turgor at the start */
   LamCells cells;
   PetscReal temperature, opening; /* at the start */
 
-  PetscReal pressure; /* the scale of pressures */
+  PetscReal pressure; /* scale of pressures */
 
-  /* on the way */
+  /* time integration */
   LamProcessTissue tissue;
   LamSegment segment;
-  PetscBool plasmolysed; /* the membranes have left the walls */
-  PetscInt leg, cycle;   /* of the program; cycle = repeat: it is over, and its last part held */
-  PetscReal leg_start, leg_F[9], leg_P[9], leg_load; /* where the present part began */
-  PetscBool found[LAM_EVENT_COUNT];                  /* no longer looked for */
+  PetscBool plasmolysed; /* the membranes are detached from the walls */
+  PetscInt leg,
+      cycle; /* part of the program, and its repetition; cycle = repeat: it is over, and its last part is held */
+  PetscReal leg_start, leg_F[9], leg_P[9], leg_load; /* state at which the present part began */
+  PetscBool found[LAM_EVENT_COUNT];                  /* events that are no longer searched for */
   PetscReal next_output;
   PetscInt64 outputs;
-  LamEvaluation last;   /* the last one that the responder was asked for */
-  PetscReal last_scale; /* wall factor of that */
+  LamEvaluation last;   /* last evaluation for which the responder was queried */
+  PetscReal last_scale; /* wall factor of that evaluation */
   PetscBool last_known;
-  LamResponse judged; /* the judge's last answer, where it has one (judged_known) */
+  LamResponse judged; /* last response of the reference responder, valid if judged_known */
   PetscBool judged_known;
   PetscReal judged_scale;
   PetscBool stopped;
   PetscErrorCode error; /* of the library, raised inside IDA */
-  char trouble[192];    /* why a state had no answer */
+  char trouble[192];    /* why a state has no response */
   PetscInt snaps;
   LamProcessCounts counts;
 };
 
-/* By how much turgor falls below 0, or water exceeds the lumen, before membranes leave the walls or meet them: more
-   than what the integration leaves uncertain, so that cells without turgor do not do both for ever. As a share of the
-   scale. */
+/* Plasmolysis tolerance, relative to the scale: by how much turgor falls below 0 before membranes leave the walls, and
+   by how much water exceeds the lumen before they meet again. It exceeds the integration error, so that cells without
+   turgor do not alternate between both states. */
 static inline PetscReal LamPlasmolysisTolerance(LamProcess process)
 {
   return 3 * process->spec->tolerance;
 }
 
-/* Times that are nearer to each other are one: what rounding makes of sums of them. */
+/* Time tolerance: times closer than this count as equal, since sums of times are rounded. */
 static inline PetscReal LamTimeTolerance(LamProcess process)
 {
   return 1e-12 * process->spec->duration;
@@ -131,70 +132,72 @@ static inline PetscReal LamRampAt(const LamRamp *ramp, PetscReal elapsed)
 }
 
 /* program.c */
-/* Begins the first part of the program where the tissue is, with stress P. */
+/* Starts the first part of the program at the present state of the tissue, with stress P. */
 void LamProcessStartProgram(LamProcess process, const PetscReal P[9]);
 /*
-  The next segment from the tissue's time on, of no length where the program jumps there: in that case, and where it is
-  followed to its end, LamProcessEndSegment makes what comes next the present part. P: stress of the tissue.
+  The next segment from the tissue's time on; its length is zero if the program jumps there. In that case, and if the
+  segment is integrated to its end, LamProcessEndSegment advances to the next part of the program. P: stress of the
+  tissue.
 */
 void LamProcessNextSegment(LamProcess process, LamSegment *segment);
 void LamProcessEndSegment(LamProcess process, const PetscReal P[9]);
 
 /* evaluate.c */
-/* What the tissue has become at a time of the present segment: all of `evaluation` but load and response. ratio: moduli
-   C1, C2, C4 over those of the start, without the factor that they share. */
+/* Sets all of `evaluation` except load and response, at a time of the present segment. ratio: moduli C1, C2, C4
+   relative to the start, without their common factor. */
 void LamProcessProperties(LamProcess process, PetscReal time, const PetscReal x[], LamEvaluation *evaluation,
                           PetscReal ratio[LAM_WALL_PARAMETER_COUNT]);
-/* Tells what solves directly where moduli do not change alike; a new ratio makes all that was known of the response
-   void. */
+/* Passes changed ratios of the moduli to set_walls, if moduli do not change by a common factor. A new ratio invalidates
+   the stored response. */
 PetscErrorCode LamProcessTellWalls(LamProcess process, const PetscReal ratio[LAM_WALL_PARAMETER_COUNT]);
-/* Properties and response at a time of the present segment; evaluation->ok where the response has fields. */
+/* Properties and response at a time of the present segment; evaluation->ok: the response has fields. */
 PetscErrorCode LamProcessEvaluate(LamProcess process, PetscReal time, const PetscReal x[], const PetscReal F[9],
                                   PetscReal turgor, LamEvaluation *evaluation);
-/* The same by the judge, where the indicators of the response are not to be trusted and it has an answer. */
+/* Replaces the response by that of the reference responder if its indicators are not trusted and the reference has a
+   response. */
 PetscErrorCode LamProcessQueryReference(LamProcess process, LamEvaluation *evaluation);
-/* The flow into cells at a water content and turgor. */
+/* Flow of water into the cells at a water content and turgor. */
 void LamProcessFlow(LamProcess process, const LamCells *cells, const LamEvaluation *evaluation, PetscReal water,
                     PetscReal turgor, LamFlow *flow);
-/* dP_i/dF_k, F counted from the inflated state. */
+/* dP_i/dF_k, with F relative to the inflated state. */
 PetscReal LamProcessStiffness(LamProcess process, const LamEvaluation *evaluation, PetscInt i, PetscInt k);
-/* dv/dF_k of the lumen, likewise. */
+/* dv/dF_k of the lumen, with F relative to the inflated state. */
 PetscReal LamProcessLumenSlope(LamProcess process, const LamEvaluation *evaluation, PetscInt k);
-/* The whole state for the monitor. */
+/* Sets the complete state for the monitor. */
 PetscErrorCode LamProcessDescribe(LamProcess process, const LamProcessTissue *tissue, LamProcessState *state);
 
 /* settle.c */
 typedef enum {
-  LAM_SETTLE_TURGOR, /* the turgor is given, water follows */
-  LAM_SETTLE_WATER,  /* the water is given: nothing has time to pass */
+  LAM_SETTLE_TURGOR, /* turgor is prescribed, water follows */
+  LAM_SETTLE_WATER,  /* the water content is constant: no time passes */
   LAM_SETTLE_OSMOSIS /* water is in equilibrium with the surroundings */
 } LamSettle;
 /*
-  Equilibrium of the tissue at its time, from where it is, under the conditions of process->segment at its start; in
-  steps from those of `from` where it is not NULL. *ok: found; else process->trouble says why, and the tissue is as it
-  was. Where turgor is lost on the way it ends there, with a turgor below 0.
+  Equilibrium of the tissue at its present time, from its present state, under the conditions at the start of
+  process->segment; in steps from the conditions `from` if not NULL. If not *ok, process->trouble says why and the
+  tissue is unchanged. If turgor is lost during the steps, it stops there with a turgor below 0.
 */
 PetscErrorCode LamProcessSettle(LamProcess process, LamSettle kind, const LamSegment *from, PetscBool *ok);
 
 /* integrate.c */
-/* Follows the tissue to the end of the segment, or to the next time at which something happens. */
+/* Integrates the tissue to the end of the segment, or to the next event. */
 PetscErrorCode LamProcessIntegrate(LamProcess process, PetscBool happened[LAM_EVENT_COUNT], PetscBool *ok);
 
-/* Goes on to the next output time; infinite behind the last one. */
+/* Advances to the next output time; infinite after the last one. */
 void LamProcessNextOutput(LamProcess process);
 
 /* events.c */
-/* The events that are looked for in this segment. */
+/* Lists the events that are searched for in this segment. */
 PetscInt LamProcessListEvents(LamProcess process, LamEvent events[LAM_EVENT_COUNT]);
 void LamProcessRatios(LamProcess process, const LamEvaluation *evaluation, PetscReal ratio[LAM_RATIO_COUNT]);
-/* How far an event is exceeded: it happens where this rises through 0. */
+/* Event function: the event occurs when it rises through 0. */
 PetscReal LamProcessExcess(LamProcess process, LamEvent event, const LamEvaluation *evaluation, PetscReal water,
                            PetscReal turgor);
 
 /* process.c */
-/* The tissue as it is at the start; nothing has been found or told. */
+/* Resets to the tissue at the start, without events or counts. */
 void LamProcessClear(LamProcess process);
-/* Tells the monitor. */
+/* Reports a state to the monitor. */
 PetscErrorCode LamProcessTell(LamProcess process, const LamProcessTissue *tissue, LamEvent event);
 
 #endif

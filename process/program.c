@@ -1,8 +1,9 @@
 /*
-  What is prescribed and surrounds the tissue at a time.
+  Prescribed quantities and surroundings of the tissue at a time.
 
-  All of it is straight between times at which something jumps or bends: the entries of the surroundings, the points of
-  tabulated kinetics, the ends of the parts of the load program. Between two of these lies a segment.
+  All of them are linear in time between the times at which something jumps or has a kink: the entries of the
+  surroundings, the points of tabulated kinetics, the ends of the parts of the load program. A segment is the interval
+  between two such times.
 */
 #include "process_impl.h"
 #include <math.h>
@@ -12,7 +13,7 @@ static PetscBool IsOver(LamProcess process)
   return (PetscBool)(process->cycle >= process->spec->repeat);
 }
 
-/* The present part of the program; once it is over, the last one. */
+/* The present part of the program, or its last part once it is over. */
 static const LamProcessLeg *Leg(LamProcess process)
 {
   return &process->spec->legs[IsOver(process) ? process->spec->leg_count - 1 : process->leg];
@@ -68,7 +69,7 @@ static void EndAtTables(LamProcess process, LamSegment *segment)
 
 /* ---- load ---- */
 
-/* Where the load parameter passes a point of a history the loads of the body bend. */
+/* The loads of the body have a kink where the load parameter passes a point of a history. */
 static void EndAtHistories(LamProcess process, LamSegment *segment)
 {
   const LamMacroSpec *macro = &process->scene->macro;

@@ -1,22 +1,22 @@
 /*
-  Equilibrium at an instant: at the start, and where something jumps.
+  Equilibrium at an instant: at the start, and after a jump.
 
-  Newton's method for the free components of F and, unless it is given, the turgor p, of
+  Newton's method for the free components of F and, unless prescribed, the turgor p. Equations
 
     P_i(F, p) = given stress,      and one of   v(F, p) = V,   sigma (pi(v) - pi_out) = p,
 
-  with the derivatives of the response. Conditions that are far from those before are gone to in steps along the
-  straight way between the two, which are halved where an iteration fails.
+  with the derivatives of the response. If the conditions are far from the previous ones, they are approached in steps
+  along the straight line between the two; a step is halved if its iteration fails.
 */
 #include "process_impl.h"
 #include <math.h>
 #include <petscblaslapack.h>
 
 enum { MAX_ITERATIONS = 12, MAX_HALVINGS = 20, MAX_TRIES = 60, MOST = 10 };
-#define EXACT 1e-10  /* of the residual: stress in C1 + C2, volume in V0 */
-#define FARTHEST 0.3 /* change of a component of F in an iteration */
+#define EXACT 1e-10  /* tolerance of the residual: stress in C1 + C2, volume in V0 */
+#define FARTHEST 0.3 /* largest change of a component of F in one iteration */
 
-/* What holds at a place on the way; s = 1: the conditions of the segment. */
+/* Intermediate conditions; s = 1: the conditions of the segment. */
 typedef struct {
   PetscReal F[9], P[9], turgor, water, temperature, outside;
 } Conditions;
@@ -24,7 +24,7 @@ typedef struct {
 typedef struct {
   LamSettle kind;
   PetscBool given[9];
-  PetscInt n, component[9]; /* unknown components of F; with the turgor behind them */
+  PetscInt n, component[9]; /* unknown components of F; the turgor follows them */
 } Unknowns;
 
 static Unknowns ListUnknowns(const LamSegment *segment, LamSettle kind)
@@ -59,7 +59,7 @@ static void Linearise(LamProcess process, const Unknowns *u, const Conditions *c
   }
   if (n == u->n) return;
   const PetscReal lumen = -response->energy_turgor;
-  PetscReal slope = 1; /* of the equation by the lumen */
+  PetscReal slope = 1; /* derivative of the equation with respect to the lumen */
   LamFlow flow;
 
   K[u->n * n + u->n] = -response->energy_turgor2;
@@ -92,18 +92,18 @@ static PetscErrorCode SolveDense(PetscInt n, PetscReal K[], PetscReal r[], Petsc
   PetscFunctionReturn(0);
 }
 
-/* A protoplast off the walls, in equilibrium with what surrounds it: pi (V - V_b) is constant. */
+/* A detached protoplast in equilibrium with the surroundings: pi (V - V_b) is constant. */
 static void FillOsmometer(LamProcess process, const LamEvaluation *e, LamProcessTissue *tissue)
 {
   const PetscReal dead = process->spec->water.non_osmotic * process->cells.water;
   LamFlow flow;
 
   LamProcessFlow(process, &process->cells, e, tissue->water, 0, &flow);
-  if (flow.osmotic > 0) /* in pure water without end: more than any lumen */
+  if (flow.osmotic > 0) /* unbounded in pure water: limited to more than any lumen */
     tissue->water = dead + (tissue->water - dead) * flow.osmotic / PetscMax(e->outside, 1e-9 * flow.osmotic);
 }
 
-/* Newton at conditions c from the tissue's state, which it replaces where it succeeds. */
+/* Newton's method at conditions c from the tissue's state, which is replaced on success. */
 static PetscErrorCode Iterate(LamProcess process, const Unknowns *u, const Conditions *c, PetscBool *ok)
 {
   const PetscInt n = Count(u);
@@ -184,7 +184,7 @@ PetscErrorCode LamProcessSettle(LamProcess process, LamSettle kind, const LamSeg
     if (process->stop && process->stop()) process->stopped = PETSC_TRUE;
     if (*ok) {
       if (kind != LAM_SETTLE_TURGOR && process->tissue.turgor < -LamPlasmolysisTolerance(process) * process->pressure)
-        break; /* the membranes leave the walls */
+        break; /* the membranes detach */
       done = next;
       step *= 2;
       continue;

@@ -1,4 +1,4 @@
-/* What the integrations of a point and of a body share in calling SUNDIALS. */
+/* SUNDIALS calls shared by the integration of a point and of a body. */
 #ifndef LAM_SUNDIALS_CALL_H
 #define LAM_SUNDIALS_CALL_H
 
@@ -14,7 +14,8 @@
                lam_sun_flag_);                                                                                         \
   } while (0)
 
-/* SUNDIALS 6 and 7: a context of a communicator, and an integrator whose failures are reported by the process alone. */
+/* SUNDIALS 6 and 7: context of a communicator; integrator without messages of its own, since the process reports
+   failures. */
 #if SUNDIALS_VERSION_MAJOR < 7
 #define SUN_SUCCESS 0
 
@@ -41,7 +42,7 @@ static inline int LamIntegratorSilence(void *ida, SUNContext context)
 }
 #endif
 
-/* IDA looks for these events: numbers that rise through 0. */
+/* Sets the events as IDA's root functions, which rise through 0. */
 static inline PetscErrorCode LamFindRoots(void *ida, PetscInt count, IDARootFn roots)
 {
   int rising[LAM_EVENT_COUNT];
@@ -55,7 +56,7 @@ static inline PetscErrorCode LamFindRoots(void *ida, PetscInt count, IDARootFn r
   PetscFunctionReturn(0);
 }
 
-/* Which of them it has found. */
+/* Marks the events that IDA has found. */
 static inline PetscErrorCode LamRootsFound(void *ida, PetscInt count, const LamEvent events[],
                                            PetscBool happened[LAM_EVENT_COUNT])
 {
