@@ -80,6 +80,7 @@ LAM_EXPORT PetscErrorCode LamDatabaseOpen(const char path[], LamDatabase *databa
 */
 LAM_EXPORT PetscErrorCode LamDatabaseOpenFirst(const char path[], PetscInt first, LamDatabase *database, PetscInt *n,
                                                PetscInt64 *keys[], LamResponse *records[]);
+/* An empty database in memory, with the microstructure, scales and accuracy of the scene. */
 LAM_EXPORT PetscErrorCode LamDatabaseCreateEmpty(const LamScene *scene, LamDatabase *database);
 LAM_EXPORT PetscErrorCode LamDatabaseClose(LamDatabase *database);
 /*

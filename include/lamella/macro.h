@@ -159,16 +159,16 @@ LAM_EXPORT PetscErrorCode LamMacroDescribe(LamMacro macro, PetscInt number, Pets
   X(LAM_POINT_OPENING, "opening_fraction")                                                                             \
   X(LAM_POINT_DEBONDED, "debonded_fraction")                                                                           \
   X(LAM_POINT_OPEN, "open_fraction")                                                                                   \
-  X(LAM_POINT_GAP, "max_gap")               /* apothems */                                                             \
-  X(LAM_POINT_UNLOADING, "face_unloading")  /* what the least pressed face family has lost of the pressure p + g that  \
-                                               holds it closed: 1: contact carries nothing; NaN where p + g is 0, and  \
-                                               of bonded tissue */                                                     \
-  X(LAM_POINT_WALL, "wall_tension")         /* LamResponse.max_wall_tension */                                         \
-  X(LAM_POINT_NORMAL, "lamella_normal")     /* max_traction */                                                         \
-  X(LAM_POINT_SHEAR, "lamella_shear")       /* max_lamella_shear */                                                    \
-  X(LAM_POINT_ELLIPTICITY, "ellipticity")   /* of the tangent (ellipticity.h); sealed cells: with their water. Of an   \
-                                               element's points the smallest counts */                                 \
-  X(LAM_POINT_ERROR, "error_estimate")      /* of an interpolated response; 0: solved */                               \
+  X(LAM_POINT_GAP, "max_gap")              /* apothems */                                                              \
+  X(LAM_POINT_UNLOADING, "face_unloading") /* fraction of the closing pressure p + g that the face family with the     \
+                                              least contact pressure has lost; 1: contact carries nothing; NaN if      \
+                                              p + g is 0, and for bonded tissue */                                     \
+  X(LAM_POINT_WALL, "wall_tension")        /* LamResponse.max_wall_tension */                                          \
+  X(LAM_POINT_NORMAL, "lamella_normal")    /* max_traction */                                                          \
+  X(LAM_POINT_SHEAR, "lamella_shear")      /* max_lamella_shear */                                                     \
+  X(LAM_POINT_ELLIPTICITY, "ellipticity")  /* of the tangent (ellipticity.h), for sealed cells at fixed water; minimum \
+                                              over an element's points */                                              \
+  X(LAM_POINT_ERROR, "error_estimate")     /* of an interpolated response; 0: solved */                                \
   X(LAM_POINT_INTERPOLATED, "interpolated") /* 1: from a database; 0: solved */                                        \
   X(LAM_POINT_DOUBTFUL, "doubtful")         /* 1: indicators are not trusted; else 0 */
 typedef enum { LAM_POINT_FIELDS(LAM_ENUM_ENTRY) LAM_POINT_FIELD_COUNT } LamPointField;

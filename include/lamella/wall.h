@@ -58,6 +58,7 @@ typedef struct {
   PetscReal bulk_modulus;
 } LamWall;
 
+/* Access to parameters by index; `parameter` is a LamWallParameter. */
 LAM_EXPORT PetscReal *LamWallAt(LamWall *wall, PetscInt parameter);
 LAM_EXPORT PetscReal LamWallGet(const LamWall *wall, PetscInt parameter);
 LAM_EXPORT PetscBool LamWallLawHas(LamWallLawType law, PetscInt parameter);
