@@ -14,7 +14,7 @@ PetscErrorCode LamMacroArchiveVec(LamMacro macro, LamArchive archive, const char
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(most, &numbers, most * macro->dim, &nodal));
   PetscCall(VecGetArray(vec, &values));
-  for (int pass = 0; pass < 2; pass++) { /* the second one takes what was read */
+  for (int pass = 0; pass < 2; pass++) { /* the second pass stores the values read */
     n = 0;
     for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
       PetscCall(LamMacroOwnedIndex(macro, p, &local));
@@ -77,7 +77,7 @@ static PetscErrorCode ArchiveTouch(LamMacro macro, LamArchive archive)
 
   PetscFunctionBeginUser;
   if (!macro->obstacle_count) PetscFunctionReturn(0);
-  for (int pass = 0; pass < 2; pass++) { /* the second one takes what was read */
+  for (int pass = 0; pass < 2; pass++) { /* the second pass stores the values read */
     if (pass == 0) PetscCall(VecZeroEntries(macro->external));
     PetscCall(VecGetArray(macro->external, &touches));
     for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {

@@ -79,7 +79,7 @@ PetscErrorCode LamMacroSetUp(LamMacro macro)
   PetscCall(CreateUnknowns(macro));
   PetscCall(LamMacroSealCreate(macro));
   PetscCall(LamMacroNewtonCreate(macro));
-  PetscCall(LamMacroHoldBoundaries(macro)); /* refuses a body that is not held before anything is solved */
+  PetscCall(LamMacroHoldBoundaries(macro)); /* rejects an insufficiently constrained body before anything is solved */
   PetscFunctionReturn(0);
 }
 

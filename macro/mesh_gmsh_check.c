@@ -32,7 +32,7 @@ typedef struct {
   int format; /* 22, 40, 41 */
   PetscBool binary, swapped;
   int64_t first, span;  /* node tags: smallest, range */
-  unsigned char *known; /* [span] the node is there; owned */
+  unsigned char *known; /* [span] the node exists; owned */
   PetscHSetIJ entities; /* dimension, tag; owned */
   PetscHSetIJ edges,
       segments; /* edges of two-dimensional and of one-dimensional elements: smaller node, larger node; owned */

@@ -25,7 +25,7 @@
 */
 #include "macro_impl.h"
 
-#include <petscblaslapack.h> /* needs what PETSc's own headers bring */
+#include <petscblaslapack.h> /* requires that PETSc's own headers come first */
 
 /* The equations of an element's pressures. The columns of `coupling` belong to the element's displacements, the last
    one to R. */

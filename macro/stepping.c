@@ -100,10 +100,10 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
 }
 
 /*
-  The first linear solution d of an increment is the tangent of the path at the last converged state. If the path came
-  from a previous state in the same direction, h in the load parameter before, u_last - u_before = u' h - u'' h^2 / 2
-  also gives its curvature, and the first iterate is u_last + d + u'' D^2 / 2, exact to the third order in the
-  increment D:
+  The first linear solution d of an increment is the tangent of the path at the last converged state. If the path
+  reached that state in the same direction from a previous state, h load parameters before, then u_last - u_before =
+  u' h - u'' h^2 / 2 gives its curvature, and the first iterate is u_last + d + u'' D^2 / 2, exact to the third order
+  in the increment D:
     u'' D^2 / 2 = r d - r^2 (u_last - u_before),  r = D / h.
   No responder query is needed.
 */

@@ -3,7 +3,7 @@
 
   Method. The interrupt callback is called before each factorisation. Once it returns true, all further factorisations
   of the solve are refused and iterations end, so every algorithm under way fails. The response then reports the
-  interrupt instead of that failure, and no other load path is tried.
+  interrupt instead of that failure, and no alternative is tried.
 */
 #include "rve_impl.h"
 
