@@ -67,8 +67,9 @@ static void TellError(PetscErrorCode code)
 }
 
 #ifdef __SANITIZE_ADDRESS__
-/* Called by the leak checker at exit: an error returns without cleaning up, so its memory is left to the system. */
-int __lsan_is_turned_off(void)
+/* Called by the leak checker at exit: an error returns without cleaning up, so its memory is left to the system.
+   Hidden, the checker would not find it. */
+__attribute__((visibility("default"))) int __lsan_is_turned_off(void)
 {
   return LamErrorCode() != 0;
 }

@@ -10,8 +10,6 @@
 #include "interruptible.h"
 #include "shared_grid.h"
 
-const char *const LamFE2ResponseNames[] = {"direct", "cache", "database"};
-
 /* ---- databases ---- */
 
 /* Loads the database as the resumed run had it: the records listed in the checkpoint, in that order. */

@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <sys/resource.h>
 
+const char *const LamFE2ResponseNames[] = {"direct", "cache", "database"};
+
 enum { MOST_CHARACTERS = 1024 };
 
 static void Report(const LamReporter *reporter, PetscBool warning, const char format[], va_list values)

@@ -122,24 +122,11 @@ PetscErrorCode LamStatesMake(const LamScene *scene, LamStates *states);
 PetscInt LamStatesCount(const LamStates *states); /* without those skipped */
 PetscErrorCode LamStatesDestroy(LamStates *states);
 
-/* ---- tradeoff_measure.c ---- */
+/* ---- tradeoff_measurement.c ---- */
 PetscErrorCode LamMeasurementInit(const LamSetting *setting, LamMeasurement *m);
 PetscErrorCode LamMeasurementDestroy(LamMeasurement *m);
-/*
-  Measures the setting of m once more, until LamStopRequested (a signal, or the deadline). A first run without results
-  sets m->reason; a repeat without results leaves m unchanged.
-
-  table: file of the table, for LAM_KNOB_DATABASE (written) or for a body that queries it, whose build time m has
-*/
-PetscErrorCode LamMeasure(const LamScene *scene, const LamStates *states, const char table[], LamMeasurement *m);
 /* Adds a run to m: for a repeat its times; an interrupted one is dropped. Destroys or moves `run`. */
 PetscErrorCode LamMeasurementTake(LamMeasurement *run, LamMeasurement *m);
-
-/* Called by LamMeasure according to the setting, with an m that has no runs: they add one, or set the reason. */
-PetscErrorCode LamMeasureRVE(const LamScene *scene, const LamStates *states, LamMeasurement *m);
-PetscErrorCode LamMeasureTable(const LamScene *scene, const LamStates *states, const char table[], LamMeasurement *m);
-PetscErrorCode LamMeasureMacro(const LamScene *scene, const char table[], LamMeasurement *m);
-
 /* CPU time of all threads of the process, and wall time. */
 typedef struct {
   PetscReal cpu, wall;
@@ -147,6 +134,19 @@ typedef struct {
 LamStopwatch LamStopwatchRead(void);
 /* Stores the times since `start`; state_cpu: average CPU seconds per state. */
 void LamMeasurementAddRun(LamMeasurement *m, LamStopwatch start, PetscReal state_cpu);
+
+/* ---- tradeoff_measure.c ---- */
+/*
+  Measures the setting of m once more, until LamStopRequested (a signal, or the deadline). A first run without results
+  sets m->reason; a repeat without results leaves m unchanged.
+
+  table: file of the table, for LAM_KNOB_DATABASE (written) or for a body that queries it, whose build time m has
+*/
+PetscErrorCode LamMeasure(const LamScene *scene, const LamStates *states, const char table[], LamMeasurement *m);
+/* Called by LamMeasure according to the setting, with an m that has no runs: they add one, or set the reason. */
+PetscErrorCode LamMeasureRVE(const LamScene *scene, const LamStates *states, LamMeasurement *m);
+PetscErrorCode LamMeasureTable(const LamScene *scene, const LamStates *states, const char table[], LamMeasurement *m);
+PetscErrorCode LamMeasureMacro(const LamScene *scene, const char table[], LamMeasurement *m);
 
 /* ---- tradeoff_reference.c ---- */
 /*

@@ -49,7 +49,7 @@ typedef struct Block {
 } Block;
 
 /* HDF5 asks for as much memory as a changed file says, and takes a no. */
-const char *__asan_default_options(void);
+__attribute__((visibility("default"))) const char *__asan_default_options(void);
 const char *__asan_default_options(void)
 {
   return "allocator_may_return_null=1";
@@ -57,14 +57,14 @@ const char *__asan_default_options(void)
 
 /* Where leaks are looked for. These libraries keep memory for later; that it does not grow the resident set shows.
  */
-const char *__lsan_default_suppressions(void);
+__attribute__((visibility("default"))) const char *__lsan_default_suppressions(void);
 const char *__lsan_default_suppressions(void)
 {
   return "leak:libhdf5\nleak:libmpi\nleak:libopen-pal\nleak:libopen-rte\nleak:libfontconfig\nleak:libcairo\nleak:"
          "libpetsc\n";
 }
 
-const char *__lsan_default_options(void);
+__attribute__((visibility("default"))) const char *__lsan_default_options(void);
 const char *__lsan_default_options(void)
 {
   return "print_suppressions=0";
