@@ -60,6 +60,8 @@ LAM_EXPORT PetscReal LamKineticsFactor(const LamKinetics *kinetics, PetscReal t,
 /* rate: dx_i/dt at temperature T; J[i][j]: its derivative with respect to x_j. */
 LAM_EXPORT void LamKineticsRates(const LamKinetics *kinetics, PetscReal temperature, const PetscReal x[],
                                  PetscReal rate[], PetscReal J[LAM_KINETIC_STATES][LAM_KINETIC_STATES]);
+/* The largest factor at any time. */
+LAM_EXPORT PetscReal LamKineticsLargest(const LamKinetics *kinetics);
 /* True if two laws give the same factor at all times. */
 LAM_EXPORT PetscBool LamKineticsAgree(const LamKinetics *one, const LamKinetics *other);
 

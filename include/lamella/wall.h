@@ -30,7 +30,9 @@ LAM_C_BEGIN
 #define LAM_WALL_OWN_PARAMETERS(M, X)                                                                                  \
   M(X, C4, fibre_mooney_rivlin, MODULUS, BY_LAW, "$C$_{4}", "1 MPa", "Fibre modulus", FROM(0))                         \
   M(X, k1, fibre_exponential, MODULUS, BY_LAW, "$k$_{1}", "0.5 MPa", "Modulus of exponential fibres", FROM(0))         \
-  M(X, k2, fibre_exponential, NUMBER, BY_LAW, "$k$_{2}", "5", "Exponent of the fibres", FROM(0))
+  M(X, k2, fibre_exponential, NUMBER, BY_LAW, "$k$_{2}", "5", "Exponent of the fibres", FROM(0))                       \
+  M(X, dispersion, fibre_exponential, NUMBER, OPTIONAL, "dispersion", "0.1",                                           \
+    "Dispersion of the fibres about the wall: 0 all along it, 1/3 in all directions", FROM(0), TO(1.0 / 3.0))
 #define LAM_WALL_PARAMETERS(M, X) LAM_WALL_MATRIX_PARAMETERS(M, X) LAM_WALL_OWN_PARAMETERS(M, X)
 
 #define LAM_WALL_LAW_ENUM(symbol, name, fibres, help) symbol,
@@ -67,7 +69,8 @@ LAM_EXPORT LamWallLawType LamWallOwner(PetscInt parameter); /* a law with this p
 LAM_EXPORT const char *LamWallLacking(LamWallLawType law,
                                       PetscInt parameter); /* "fibres" or "C4", for a law without C4 */
 LAM_EXPORT PetscBool LamWallParameterIsModulus(PetscInt parameter);
-LAM_EXPORT const char *LamWallParameterSymbol(PetscInt parameter); /* for pictures: "$C$_{4}" */
+LAM_EXPORT PetscBool LamWallParameterIsOptional(PetscInt parameter); /* may be left out, and is 0 then */
+LAM_EXPORT const char *LamWallParameterSymbol(PetscInt parameter);   /* for pictures: "$C$_{4}" */
 /* Writes "fibre modulus" to `text`, and returns it. */
 LAM_EXPORT const char *LamWallParameterWords(PetscInt parameter, size_t size, char text[]);
 

@@ -126,14 +126,13 @@ PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[],
 void LamUpdateStresses(LamRVE rve, const LamLoad *load, const PetscReal y[], const PetscReal dy[],
                        const PetscReal dF[9], PetscReal alpha)
 {
-
   for (PetscInt e = 0; e < rve->mesh.element_count; ++e) {
     PetscReal u[LAM_ELEMENT_NODES][2], du[LAM_ELEMENT_NODES][2];
 
     LamGatherDisplacements(rve, load->F, y, e, u);
     LamGatherElement(rve, dF, dy, e, du);
-    LamElementUpdateStress(&rve->geometry[e], (const PetscReal(*)[2])u, (const PetscReal(*)[2])du, load->F[8], dF[8],
-                           alpha, &rve->stress[e]);
+    LamElementUpdateStress(&rve->geometry[e], LamWallOf(rve, e), (const PetscReal(*)[2])u, (const PetscReal(*)[2])du,
+                           load->F[8], dF[8], alpha, &rve->stress[e]);
   }
 }
 

@@ -164,11 +164,48 @@ static inline PetscReal Extension(const LamElementGeometry *geometry, const Pets
   return 2.0 * (m[0] * Hm[0] + m[1] * Hm[1]) + (Hm[0] * Hm[0] + Hm[1] * Hm[1]);
 }
 
+/*
+  Fibre strain E = h:C - 1 with h = d 1 + (1 - 3 d) M (x) M, d the dispersion, C with F33; E = I4 - 1 for d = 0.
+  Its derivatives are dE/dF = 2 F h, d2E/dFdF = 2 (1 (x) h), dE/dF33 = 2 d F33.
+*/
+static inline PetscReal FibreStrain(const LamElementGeometry *geometry, const LamWall *wall, const PetscReal H[4],
+                                    PetscReal F33)
+{
+  const PetscReal extension = Extension(geometry, H), H2 = H[0] * H[0] + H[1] * H[1] + H[2] * H[2] + H[3] * H[3];
+
+  if (wall->dispersion == 0.0) return extension;
+  return extension +
+         wall->dispersion * (2.0 * (H[0] + H[3]) + H2 + (F33 - 1.0) * (F33 + 1.0) /* I1 - 3 */ - 3.0 * extension);
+}
+
 /* A m. */
 static inline void AlongFibre(const LamElementGeometry *geometry, const PetscReal A[4], PetscReal Am[2])
 {
   Am[0] = A[0] * geometry->fibre[0] + A[1] * geometry->fibre[1];
   Am[1] = A[2] * geometry->fibre[0] + A[3] * geometry->fibre[1];
+}
+
+/* dE/dF. */
+static inline void FibreStrainGradient(const LamElementGeometry *geometry, const LamWall *wall, const PetscReal F[4],
+                                       PetscReal dE[4])
+{
+  PetscReal Fm[2];
+
+  AlongFibre(geometry, F, Fm);
+  for (PetscInt r = 0; r < 4; ++r) dE[r] = 2.0 * Fm[r / 2] * geometry->fibre[r % 2];
+  if (wall->dispersion == 0.0) return;
+  for (PetscInt r = 0; r < 4; ++r) dE[r] += wall->dispersion * (2.0 * F[r] - 3.0 * dE[r]);
+}
+
+/* Adds factor/2 times the part of d2E/dFdF that the dispersion multiplies, 2 (1 (x) (1 - 3 M (x) M)). */
+static inline void AddDispersedCurvature(const LamElementGeometry *geometry, PetscReal factor, PetscReal A[4][4])
+{
+  const PetscReal *m = geometry->fibre;
+
+  if (factor == 0.0) return;
+  for (PetscInt i = 0; i < 4; i += 2)
+    for (PetscInt j = 0; j < 2; ++j)
+      for (PetscInt l = 0; l < 2; ++l) A[i + j][i + l] += factor * ((PetscReal)(j == l) - 3.0 * m[j] * m[l]);
 }
 
 PetscBool LamElementIsValid(const LamElementGeometry *geometry, const PetscReal u[][2], PetscReal F33)
@@ -192,7 +229,7 @@ void LamElementEnergy(const LamElementGeometry *geometry, const LamWallLaw *law,
 
     law->matrix(wall, H[g], F33 - 1.0, &matrix);
     LamVolumetric(wall, dilation[g], &volume);
-    if (law->fibre) law->fibre(wall, Extension(geometry, H[g]), &fibre);
+    if (law->fibre) law->fibre(wall, FibreStrain(geometry, wall, H[g], F33), &fibre);
     *energy += geometry->weight[g] * (matrix.W + volume.W + fibre.W);
   }
   *valid = (PetscBool)isfinite(*energy);
@@ -251,23 +288,23 @@ static inline PetscReal PointStress(const LamElementGeometry *geometry, PetscInt
   A[1][2] -= w * p_star;
   A[2][1] -= w * p_star;
   if (law->fibre) {
-    PetscReal F[4], Fm[2], dI4[4];
+    PetscReal F[4], dE[4];
     LamKernel1 fibre;
 
     Deformation(H, F);
-    AlongFibre(geometry, F, Fm);
-    law->fibre(wall, Extension(geometry, H), &fibre);
+    FibreStrainGradient(geometry, wall, F, dE);
+    law->fibre(wall, FibreStrain(geometry, wall, H, F33), &fibre);
     energy += fibre.W;
     stress->sx[g] = fibre.d;
     stress->dds[g] = fibre.dd;
-    for (PetscInt r = 0; r < 4; ++r) dI4[r] = 2.0 * Fm[r / 2] * m[r % 2];
     for (PetscInt r = 0; r < 4; ++r) {
-      P[r] += w * fibre.d * dI4[r];
+      P[r] += w * fibre.d * dE[r];
       for (PetscInt c = 0; c < 4; ++c) {
-        A[r][c] += w * fibre.dd * dI4[r] * dI4[c];
+        A[r][c] += w * fibre.dd * dE[r] * dE[c];
         if (r / 2 == c / 2) A[r][c] += w * 2.0 * stress->s[g] * m[r % 2] * m[c % 2];
       }
     }
+    AddDispersedCurvature(geometry, w * 2.0 * stress->s[g] * wall->dispersion, A);
   }
   return w * energy;
 }
@@ -363,13 +400,14 @@ void LamElementEvaluate(const LamElementGeometry *geometry, const LamWallLaw *la
   }
 }
 
-void LamElementUpdateStress(const LamElementGeometry *geometry, const PetscReal u[][2], const PetscReal du[][2],
-                            PetscReal F33, PetscReal dF33, PetscReal alpha, LamElementStress *stress)
+void LamElementUpdateStress(const LamElementGeometry *geometry, const LamWall *wall, const PetscReal u[][2],
+                            const PetscReal du[][2], PetscReal F33, PetscReal dF33, PetscReal alpha,
+                            LamElementStress *stress)
 {
   PetscReal dc[LAM_PRESSURES] = {0.0, 0.0, 0.0};
 
   for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
-    PetscReal H[4], F[4], dF[4], Fm[2], dFm[2], dJ;
+    PetscReal H[4], F[4], dF[4], Fm[2], dFm[2], dJ, half; /* dE/2 */
 
     Gradient(geometry, g, u, H);
     Deformation(H, F);
@@ -378,7 +416,10 @@ void LamElementUpdateStress(const LamElementGeometry *geometry, const PetscReal 
     for (PetscInt k = 0; k < LAM_PRESSURES; ++k) dc[k] += geometry->weight[g] * geometry->psi[g][k] * dJ;
     AlongFibre(geometry, F, Fm);
     AlongFibre(geometry, dF, dFm);
-    stress->s[g] += alpha * (stress->sx[g] + stress->dds[g] * 2.0 * (Fm[0] * dFm[0] + Fm[1] * dFm[1]) - stress->s[g]);
+    half = Fm[0] * dFm[0] + Fm[1] * dFm[1];
+    if (wall->dispersion != 0.0)
+      half += wall->dispersion * (F[0] * dF[0] + F[1] * dF[1] + F[2] * dF[2] + F[3] * dF[3] + F33 * dF33 - 3.0 * half);
+    stress->s[g] += alpha * (stress->sx[g] + stress->dds[g] * 2.0 * half - stress->s[g]);
   }
   for (PetscInt k = 0; k < LAM_PRESSURES; ++k) {
     PetscReal q = stress->px[k];
@@ -399,7 +440,7 @@ PetscBool LamElementSetConsistentStress(const LamElementGeometry *geometry, cons
   for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
     LamKernel1 fibre = {0};
 
-    if (law->fibre) law->fibre(wall, Extension(geometry, H[g]), &fibre);
+    if (law->fibre) law->fibre(wall, FibreStrain(geometry, wall, H[g], F33), &fibre);
     if (!isfinite(fibre.W)) return PETSC_FALSE;
     stress->s[g] = stress->sx[g] = fibre.d;
     stress->dds[g] = fibre.dd;
@@ -429,10 +470,17 @@ void LamElementStretch33(const LamElementGeometry *geometry, const LamWallLaw *l
     const PetscReal w = geometry->weight[g], cof[4] = {F[g][3], -F[g][2], -F[g][1], F[g][0]};
     /* the pressure field changes by dp with F33; p* dcof is the geometric part */
     const PetscReal p = AtPoint(geometry, g, stress->px), p_star = AtPoint(geometry, g, stress->p);
-    const PetscReal dp = AtPoint(geometry, g, HDf);
+    const PetscReal dp = AtPoint(geometry, g, HDf), dE33 = 2.0 * wall->dispersion * F33;
+    PetscReal dE[4];
     LamKernel k;
 
     law->matrix(wall, H[g], F33 - 1.0, &k);
+    if (law->fibre) {
+      FibreStrainGradient(geometry, wall, F[g], dE);
+      k.P[4] += stress->sx[g] * dE33;
+      k.A[4][4] += stress->dds[g] * dE33 * dE33 + 2.0 * wall->dispersion * stress->s[g];
+      for (PetscInt r = 0; r < 4; ++r) k.A[r][4] += stress->dds[g] * dE33 * dE[r];
+    }
     *force += w * (k.P[4] + p * Det(F[g]));
     *ff += w * k.A[4][4];
     for (PetscInt a = 0; a < 9; ++a)
@@ -464,12 +512,14 @@ void LamElementFields(const LamElementGeometry *geometry, const LamWallLaw *law,
   }
 }
 
-/* Adds factor/2 times d2I4/dFdF. PointStress multiplies this term by the independent fibre stress. */
-static inline void AddFibreCurvature(const LamElementGeometry *geometry, PetscReal factor, PetscReal A[4][4])
+/* Adds factor/2 times d2E/dFdF. PointStress multiplies this term by the independent fibre stress. */
+static inline void AddFibreCurvature(const LamElementGeometry *geometry, const LamWall *wall, PetscReal factor,
+                                     PetscReal A[4][4])
 {
   for (PetscInt i = 0; i < 2; ++i)
     for (PetscInt j = 0; j < 2; ++j)
       for (PetscInt l = 0; l < 2; ++l) A[2 * i + j][2 * i + l] += factor * geometry->fibre[j] * geometry->fibre[l];
+  AddDispersedCurvature(geometry, factor * wall->dispersion, A);
 }
 
 void LamElementWallPoints(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
@@ -494,7 +544,7 @@ void LamElementWallPoints(const LamElementGeometry *geometry, const LamWallLaw *
     /* w J sigma = (w P) F^T; m = Fm / |Fm| */
     for (PetscInt k = 0; k < 2; ++k) tm[k] = (Fm[0] * F[k] + Fm[1] * F[2 + k]) / I4; /* F^T m / |Fm| */
     points[g].tension = Fm[0] * (P[0] * tm[0] + P[1] * tm[1]) + Fm[1] * (P[2] * tm[0] + P[3] * tm[1]);
-    if (law->fibre) AddFibreCurvature(geometry, 2.0 * w * local.sx[g], A);
+    if (law->fibre) AddFibreCurvature(geometry, wall, 2.0 * w * local.sx[g], A);
     points[g].ellipticity = LamShearBandStiffness((const PetscReal(*)[4])A, F);
     points[g].kinked = points[g].ellipticity < 0.0 ? w : 0.0;
   }

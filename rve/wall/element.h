@@ -3,14 +3,14 @@
 
   Energy of one element. The input is the nodal displacement u; its gradient H = F - 1 avoids cancellation at small
   strains.
-    Pi_e = sum_g w_g [ W_matrix(F_g) + W_fibre(I4_g) + U(theta_g) ],
+    Pi_e = sum_g w_g [ W_matrix(F_g) + W_fibre(E_g) + U(theta_g) ],
     theta = projection of J = F33 det F onto span(psi_0, psi_1, psi_2),
   where the psi_k span the linear functions of the reference coordinates and are orthonormal on the element, so
   theta = psi.c with c = sum w psi J. Everything below is a derivative of Pi_e. The pressure is p = psi.q,
   q = sum w psi U'(theta).
 
   Independent stresses (Magisano, Leonetti & Garcea, IJNME 2017; Haggblad & Sundberg, Comput. Struct. 1983): the tangent
-  uses p* and s* = dW_fibre/dI4, which are updated by their own linearised equations; the residual is the gradient of
+  uses p* and s* = dW_fibre/dE, which are updated by their own linearised equations; the residual is the gradient of
   the energy. Newton then converges in few full steps for kappa, C4 >> C1.
 */
 #ifndef LAM_RVE_ELEMENT_H
@@ -35,7 +35,7 @@ typedef struct {
 typedef struct {
   PetscReal p[LAM_PRESSURES], s[LAM_GAUSS];   /* p*, s* */
   PetscReal px[LAM_PRESSURES], sx[LAM_GAUSS]; /* at the last evaluated u */
-  PetscReal dds[LAM_GAUSS];                   /* d2W_fibre/dI4^2 there */
+  PetscReal dds[LAM_GAUSS];                   /* d2W_fibre/dE^2 there */
   PetscReal H[LAM_PRESSURES][LAM_PRESSURES];  /* dq/dc = sum w psi psi U'' */
 } LamElementStress;
 
@@ -63,8 +63,9 @@ void LamElementEvaluate(const LamElementGeometry *geometry, const LamWallLaw *la
 
 /* Updates the independent stresses: stress* += alpha (stress(u) + d stress(u).(du, dF33) - stress*), at the u of the
    last evaluation. */
-void LamElementUpdateStress(const LamElementGeometry *geometry, const PetscReal u[][2], const PetscReal du[][2],
-                            PetscReal F33, PetscReal dF33, PetscReal alpha, LamElementStress *stress);
+void LamElementUpdateStress(const LamElementGeometry *geometry, const LamWall *wall, const PetscReal u[][2],
+                            const PetscReal du[][2], PetscReal F33, PetscReal dF33, PetscReal alpha,
+                            LamElementStress *stress);
 
 /* Sets the independent stresses to the stresses at u. Returns PETSC_FALSE if u is not valid. */
 PetscBool LamElementSetConsistentStress(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,

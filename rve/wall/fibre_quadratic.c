@@ -4,11 +4,11 @@
 */
 #include "wall_law.h"
 
-void LamFibreQuadratic(const LamWall *wall, PetscReal extension, LamKernel1 *out)
+void LamFibreQuadratic(const LamWall *wall, PetscReal strain, LamKernel1 *out)
 {
-  const PetscReal active = wall->fibres == LAM_FIBRES_TENSION && extension <= 0.0 ? 0.0 : wall->C4;
+  const PetscReal active = wall->fibres == LAM_FIBRES_TENSION && strain <= 0.0 ? 0.0 : wall->C4;
 
-  out->W = 0.25 * active * extension * extension;
-  out->d = 0.5 * active * extension;
+  out->W = 0.25 * active * strain * strain;
+  out->d = 0.5 * active * strain;
   out->dd = 0.5 * active;
 }

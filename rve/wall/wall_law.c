@@ -14,7 +14,7 @@ PetscReal LamWallFibreModulus(const LamWall *wall)
   both.fibres = LAM_FIBRES_BOTH;
   for (size_t i = 0; i < sizeof(laws) / sizeof(laws[0]); ++i)
     if (laws[i].type == wall->law && laws[i].fibre) laws[i].fibre(&both, 0.0, &fibre);
-  return 2.0 * fibre.dd;
+  return 2.0 * fibre.dd * PetscSqr(1.0 - 3.0 * wall->dispersion); /* at rest tr C = 3 to first order */
 }
 
 PetscErrorCode LamWallLawGet(LamWallLawType type, const LamWallLaw **law)

@@ -1,11 +1,13 @@
 /*
   Wall laws: a table of pointwise kernels, each an energy density with its first and second derivatives.
 
-  W = W_matrix(F, F33) + W_fibre(I4) + U(J),  plane strain with a prescribed stretch F33 along the prism axis.
+  W = W_matrix(F, F33) + W_fibre(E) + U(J),  plane strain with a prescribed stretch F33 along the prism axis.
   The matrix part is isochoric. U is the same for every law: U(J) = kappa/4 (J^2 - 1 - 2 ln J), applied to the
-  projected dilatation (element.h). I4 = M.CM with the full C and M along the wall (Mihai, Safar & Wyatt, eq. 4.1).
-  Kernels take the deviations from the undeformed wall, H = F - 1, I4 - 1 and J - 1, so that energy and stress keep full
-  relative accuracy at small strains. Unit of energies and stresses: C1 + C2.
+  projected dilatation (element.h). E = I4 - 1, I4 = M.CM with the full C and M along the wall (Mihai, Safar & Wyatt,
+  eq. 4.1); with a dispersion d of the fibres E = d (I1 - 3) + (1 - 3 d) (I4 - 1), I1 = tr C (Gasser, Ogden & Holzapfel,
+  J. R. Soc. Interface 3 (2006) 15-35: the generalised structure tensor). Kernels take deviations from the undeformed
+  wall, H = F - 1, E and J - 1, so that energy and stress keep full relative accuracy at small strains. Unit of energies
+  and stresses: C1 + C2.
   A new law is one kernel file and one row in wall_law.c.
 */
 #ifndef LAM_RVE_WALL_LAW_H
@@ -31,8 +33,8 @@ typedef struct {
   LamWallLawType type;
   /* Isochoric matrix at F = 1 + H, F33 = 1 + H33; requires det F > 0 and F33 > 0. */
   void (*matrix)(const LamWall *wall, const PetscReal H[4], PetscReal H33, LamKernel *out);
-  /* Fibres as a function of I4 = 1 + extension; NULL if the law has no fibres. */
-  void (*fibre)(const LamWall *wall, PetscReal extension, LamKernel1 *out);
+  /* Fibres as a function of their strain E; NULL if the law has no fibres. */
+  void (*fibre)(const LamWall *wall, PetscReal strain, LamKernel1 *out);
 } LamWallLaw;
 
 PetscErrorCode LamWallLawGet(LamWallLawType type, const LamWallLaw **law);
@@ -41,8 +43,8 @@ PetscReal LamWallFibreModulus(const LamWall *wall);
 
 /* Kernels, one file each. */
 void LamMatrixMooneyRivlin(const LamWall *wall, const PetscReal H[4], PetscReal H33, LamKernel *out);
-void LamFibreQuadratic(const LamWall *wall, PetscReal extension, LamKernel1 *out);
-void LamFibreExponential(const LamWall *wall, PetscReal extension, LamKernel1 *out);
+void LamFibreQuadratic(const LamWall *wall, PetscReal strain, LamKernel1 *out);
+void LamFibreExponential(const LamWall *wall, PetscReal strain, LamKernel1 *out);
 
 /* Matrix kernel evaluated at F instead of H = F - 1. */
 static inline void LamMatrixAt(const LamWallLaw *law, const LamWall *wall, const PetscReal F[4], PetscReal F33,

@@ -122,6 +122,16 @@ static PetscBool RatesAgree(const LamRate *one, const LamRate *other)
                      one->half_activity == other->half_activity);
 }
 
+PetscReal LamKineticsLargest(const LamKinetics *kinetics)
+{
+  const PetscBool has_plateau =
+      (PetscBool)(kinetics->law == LAM_KINETIC_FRACTIONAL || kinetics->law == LAM_KINETIC_AUTOCATALYTIC);
+  PetscReal largest = has_plateau ? PetscMax(1.0, kinetics->plateau) : 1.0;
+
+  for (PetscInt i = 0; i < kinetics->count; i++) largest = PetscMax(largest, kinetics->factor[i]);
+  return largest;
+}
+
 PetscBool LamKineticsAgree(const LamKinetics *one, const LamKinetics *other)
 {
   if (one->law != other->law || one->count != other->count) return PETSC_FALSE;

@@ -28,12 +28,12 @@ static double Clean(PetscReal value)
   return fabs(value) < 1e-13 ? 0.0 : (double)value;
 }
 
-/* The wall. Parameters that its law does not have are left out. */
+/* The wall. Parameters that its law does not have are left out, and optional ones that are 0. */
 static void DescribeWall(const LamWall *wall, FILE *out)
 {
   fprintf(out, "\"wall\": {\"law\": \"%s\", ", LamWallLawNames[wall->law]);
   for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++)
-    if (LamWallLawHas(wall->law, k))
+    if (LamWallLawHas(wall->law, k) && !(LamWallParameterIsOptional(k) && LamWallGet(wall, k) == 0))
       fprintf(out, "\"%s\": %.12g, ", LamWallParameterNames[k], Clean(LamWallGet(wall, k)));
   if (LamWallLawHasFibres(wall->law)) fprintf(out, "\"fibres\": \"%s\", ", LamFibresNames[wall->fibres]);
   fprintf(out, "\"bulk_modulus\": %.12g}", Clean(wall->bulk_modulus));
@@ -146,7 +146,9 @@ static PetscBool ParseWall(json_t *object, LamWall *wall)
   wall->fibres = (LamFibres)found[1];
   for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++) {
     if (!LamWallLawHas(wall->law, k)) continue;
-    if (json_unpack(object, "{s:F}", LamWallParameterNames[k], LamWallAt(wall, k))) return PETSC_FALSE;
+    if (json_unpack(object, LamWallParameterIsOptional(k) ? "{s?F}" : "{s:F}", LamWallParameterNames[k],
+                    LamWallAt(wall, k)))
+      return PETSC_FALSE;
   }
   return PETSC_TRUE;
 }

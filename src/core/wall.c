@@ -13,8 +13,11 @@
 #define PARAMETER_NAME(X, name, ...) #name,
 #define IS_MODULUS PETSC_TRUE
 #define IS_NUMBER PETSC_FALSE
+#define IS_ALWAYS PETSC_FALSE
+#define IS_BY_LAW PETSC_FALSE
+#define IS_OPTIONAL PETSC_TRUE
 #define PARAMETER(X, name, law, kind, need, symbol, example, help, ...)                                                \
-  {#law, help, symbol, IS_##kind, offsetof(LamWall, name)},
+  {#law, help, symbol, IS_##kind, IS_##need, offsetof(LamWall, name)},
 
 const char *const LamWallLawNames[] = {LAM_WALL_LAWS(LAW_NAME)};
 const char *const LamFibresNames[] = {LAM_FIBRES(FIBRES_NAME)};
@@ -22,7 +25,7 @@ const char *const LamWallParameterNames[] = {LAM_WALL_PARAMETERS(PARAMETER_NAME,
 static const PetscBool law_fibres[] = {LAM_WALL_LAWS(LAW_FIBRES)};
 static const struct {
   const char *law, *help, *symbol;
-  PetscBool is_modulus;
+  PetscBool is_modulus, is_optional;
   size_t offset;
 } parameters[] = {LAM_WALL_PARAMETERS(PARAMETER, )};
 
@@ -64,6 +67,11 @@ const char *LamWallLacking(LamWallLawType law, PetscInt parameter)
 PetscBool LamWallParameterIsModulus(PetscInt parameter)
 {
   return parameters[parameter].is_modulus;
+}
+
+PetscBool LamWallParameterIsOptional(PetscInt parameter)
+{
+  return parameters[parameter].is_optional;
 }
 
 const char *LamWallParameterSymbol(PetscInt parameter)

@@ -137,6 +137,8 @@ PetscErrorCode LamSceneCheckPatch(const LamNode *root, LamScene *scene);
   NULL: the defaults of the keys.
 */
 PetscErrorCode LamSceneReadWall(const LamNode *map, const LamScales *scales, const LamWall *own, LamWall *wall);
+/* Rejects a factor that takes a wall parameter beyond the upper bound of its key in some wall of the scene. */
+PetscErrorCode LamSceneCheckFactor(const LamNode *node, const LamScene *scene, PetscInt parameter, PetscReal factor);
 /* Rejects an F that is not a deformation gradient in plane strain, if its components are given. */
 PetscErrorCode LamSceneCheckF(const LamNode *node);
 /* Reads the control from the tensors of an entry (P_node NULL: F alone), stresses over `scale`. Rejects components

@@ -367,11 +367,14 @@ static PetscErrorCode BuildKinetics(const LamNode *list, LamScene *scene)
   for (const LamNode *entry = list ? list->first : NULL; entry; entry = entry->next) {
     const LamNode *of = LamNodeFind(entry, "of");
     const LamChanging changing = (LamChanging)of->value.number[0];
+    const PetscInt parameter = (PetscInt)changing - (PetscInt)LAM_CHANGING_OF_PARAMETER(0);
 
     LamSceneCheck(!given[changing], of, "has an entry already; leave one of them out");
     given[changing] = PETSC_TRUE;
     PetscCall(CheckChanging(of, changing, scene));
     PetscCall(ReadKinetics(entry, &scene->process.kinetics[changing]));
+    if (parameter >= 0 && parameter < LAM_WALL_PARAMETER_COUNT)
+      PetscCall(LamSceneCheckFactor(of, scene, parameter, LamKineticsLargest(&scene->process.kinetics[changing])));
   }
   PetscFunctionReturn(0);
 }

@@ -66,6 +66,32 @@ PetscErrorCode LamSceneReadWall(const LamNode *map, const LamScales *scales, con
   PetscFunctionReturn(0);
 }
 
+static PetscReal LargestIn(const LamMicrostructure *micro, PetscInt parameter)
+{
+  const PetscInt cells = micro->cell ? micro->cells[0] * micro->cells[1] : 0;
+  PetscReal largest = LamWallGet(&micro->wall, parameter);
+
+  for (PetscInt c = 0; c < cells; c++) largest = PetscMax(largest, LamWallGet(&micro->cell[c].wall, parameter));
+  return largest;
+}
+
+PetscErrorCode LamSceneCheckFactor(const LamNode *node, const LamScene *scene, PetscInt parameter, PetscReal factor)
+{
+  PetscReal largest = LargestIn(&scene->micro, parameter);
+  char path[LAM_NAME_LENGTH];
+
+  PetscFunctionBeginUser;
+  for (PetscInt r = 0; r < scene->region_count; r++)
+    largest = PetscMax(largest, LargestIn(&scene->regions[r].micro, parameter));
+  snprintf(path, sizeof(path), "rve.wall.%s", LamWallParameterNames[parameter]);
+  const LamBound *upper = &LamKeyFind(path)->upper;
+
+  LamSceneCheck(upper->kind == LAM_BOUND_NONE || factor * largest <= upper->value, node,
+                "%s grows to %g times its value, %g, beyond %g; choose a smaller factor",
+                LamWallParameterNames[parameter], (double)factor, (double)(factor * largest), (double)upper->value);
+  PetscFunctionReturn(0);
+}
+
 static PetscBool TissueHas(const LamMicrostructure *micro, PetscInt parameter)
 {
   const PetscInt cells = micro->cell ? micro->cells[0] * micro->cells[1] : 0;

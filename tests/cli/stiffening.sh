@@ -9,7 +9,7 @@ law='law: fibre_exponential'
 first() { sed -n '$p' "$1" | sed 's/.*"P": \[\([-0-9.e+]*\),.*/\1/'; }
 
 expect 0 "$lamella" check "$scene"
-grep -q 'fibre_exponential: C1 0.1, C2 0.01, k1 0.5, k2 5 (a number) (fibres: both)' out.txt || fail "check: $(cat out.txt)"
+grep -q 'fibre_exponential: C1 0.1, C2 0.01, k1 0.5, k2 5 (a number), dispersion 0 (a number) (fibres: both)' out.txt || fail "check: $(cat out.txt)"
 expect 0 "$lamella" rve "$scene" --json
 cp out.txt stiff.txt
 [ "$(grep -c '"status": "converged"' stiff.txt)" = 3 ] || fail "not three states: $(cat stiff.txt)"
@@ -46,6 +46,20 @@ expect 0 "$lamella" map "$scene" -o m.h5
 expect 0 "$lamella" plot m.h5 -o m.svg
 sed 's/quantity: k2, from: 0, to: 10/quantity: k1, from: 0.1 MPa, to: 1 MPa/' "$scene" >modulus.yaml
 expect 0 "$lamella" map modulus.yaml -o m1.h5
+
+# dispersed fibres: softer along the wall, as soft as the matrix in shear of small strain; not beyond 1/3
+sed 's/k2: 5/k2: 5, dispersion: 0.25/' "$scene" >dispersed.yaml
+expect 0 "$lamella" check dispersed.yaml
+grep -q 'k2 5 (a number), dispersion 0.25 (a number)' out.txt || fail "check: $(cat out.txt)"
+expect 0 "$lamella" rve dispersed.yaml --json
+awk "BEGIN { exit !($(first out.txt) < 0.9 * $(first stiff.txt)) }" || fail "not softer: $(first out.txt)"
+sed 's/k2: 5/k2: 5, dispersion: 0.4/' "$scene" >beyond.yaml
+expect 2 "$lamella" check beyond.yaml
+grep -q 'beyond.yaml:5:.*rve.wall.dispersion: 0.4' err.txt || fail "dispersion 0.4: $(cat err.txt)"
+sed 's/of: k1, law: fractional_conversion, rate: 0.5 .day, plateau: 0.4/of: dispersion, law: fractional_conversion, rate: 0.5 \/day, plateau: 2/' \
+  dispersed.yaml >grows.yaml
+expect 2 "$lamella" check grows.yaml
+grep -q 'dispersion grows to 2 times its value, 0.5, beyond 0.333333' err.txt || fail "a growing dispersion: $(cat err.txt)"
 
 # what a law lacks, or needs
 sed 's/k2: 5/k2: 5, C4: 1 MPa/' "$scene" >both.yaml

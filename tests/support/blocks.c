@@ -296,7 +296,8 @@ void BlocksStep(Blocks *b, const PetscReal solution[])
 
     BlocksGather(b, e, x);
     for (PetscInt i = 0; i < LAM_ELEMENT_DOFS; ++i) dx[i / 2][i % 2] = solution[2 * b->elements[e][i / 2] + i % 2];
-    LamElementUpdateStress(&b->geometry[e], (const PetscReal(*)[2])BlocksDisplaced(b, e, (const PetscReal(*)[2])x).u,
+    LamElementUpdateStress(&b->geometry[e], &b->wall_of[e],
+                           (const PetscReal(*)[2])BlocksDisplaced(b, e, (const PetscReal(*)[2])x).u,
                            (const PetscReal(*)[2])dx, b->F33[e], 0.0, 1.0, &b->stress[e]);
     if (b->plane_stress) BlocksStepThickness(b, e, (const PetscReal(*)[2])x, (const PetscReal(*)[2])dx);
   }

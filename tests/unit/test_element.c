@@ -4,7 +4,8 @@
 #include "support/displaced.h"
 #include "support/random_reals.h"
 
-static const LamWall wall = {.C1 = 0.7, .C2 = 0.3, .C4 = 12.0, .bulk_modulus = 1000.0};
+static const LamWall quadratic = {.C1 = 0.7, .C2 = 0.3, .C4 = 12.0, .bulk_modulus = 1000.0};
+static LamWall wall = {.C1 = 0.7, .C2 = 0.3, .C4 = 12.0, .bulk_modulus = 1000.0};
 static const double fibre[2] = {0.8, 0.6};
 /* node order of LamMesh in units of half edges */
 static const int grid[9][2] = {{0, 0}, {2, 0}, {2, 2}, {0, 2}, {1, 0}, {2, 1}, {1, 2}, {0, 1}, {1, 1}};
@@ -20,7 +21,7 @@ typedef struct {
 static void NewElement(Element *element, uint64_t *seed)
 {
   memset(element, 0, sizeof(*element));
-  assert_int_equal(LamWallLawGet(LAM_WALL_FIBRE_MOONEY_RIVLIN, &element->law), 0);
+  assert_int_equal(LamWallLawGet(wall.law, &element->law), 0);
   for (int a = 0; a < 9; a++) {
     element->X[a][0] = 0.2 * grid[a][0] + RandomReal(seed, -0.02, 0.02);
     element->X[a][1] = 0.1 * grid[a][1] + RandomReal(seed, -0.015, 0.015);
@@ -346,8 +347,8 @@ TEST(StressUpdateIsTheLinearisation)
     moved.F33 += size;
     assert_true(LamElementSetConsistentStress(&moved.geometry, moved.law, &wall,
                                               (const double(*)[2])Displacements(&moved).u, moved.F33, &moved.stress));
-    LamElementUpdateStress(&element.geometry, (const double(*)[2])Displacements(&element).u, (const double(*)[2])dx,
-                           element.F33, size, 1.0, &element.stress);
+    LamElementUpdateStress(&element.geometry, &wall, (const double(*)[2])Displacements(&element).u,
+                           (const double(*)[2])dx, element.F33, size, 1.0, &element.stress);
     error[k] = 0.0;
     for (int p = 0; p < LAM_PRESSURES; p++) error[k] += fabs(element.stress.p[p] - moved.stress.p[p]);
     for (int g = 0; g < LAM_GAUSS; g++) error[k] += fabs(element.stress.s[g] - moved.stress.s[g]);
@@ -417,4 +418,50 @@ TEST(OverflowIsInvalid)
   assert_false(valid);
   assert_false(LamElementSetConsistentStress(&element.geometry, element.law, &steep, (const double(*)[2])u.u, 1.0,
                                              &element.stress));
+}
+
+/* All derivatives of the element, with fibres that are dispersed: E depends on I1, and so on F33. */
+TEST(DispersedFibresFollowFromTheirEnergy)
+{
+  wall = (LamWall){.law = LAM_WALL_FIBRE_EXPONENTIAL,
+                   .C1 = 0.7,
+                   .C2 = 0.3,
+                   .k1 = 6.0,
+                   .k2 = 1.5,
+                   .dispersion = 0.2,
+                   .bulk_modulus = 1000.0};
+  ResidualIsDerivativeOfEnergy(state);
+  ConsistentTangentIsDerivativeOfResidual(state);
+  TangentIsSymmetric(state);
+  Stretch33DerivativesFollowFromEnergy(state);
+  RotationTurnsTheForces(state);
+  StressUpdateIsTheLinearisation(state);
+  wall = quadratic;
+}
+
+/* Affine F and F33 with k1/(2 k2) (exp(k2 E^2) - 1), E = d (I1 - 3) + (1 - 3 d) (I4 - 1) (Gasser, Ogden & Holzapfel
+   2006); for d = 1/3 the direction of the fibres plays no part. */
+TEST(DispersedFibresHaveTheEnergyOfTheirPaper)
+{
+  const double F[4] = {1.2, 0.3, -0.1, 0.9}, F33 = 1.1, Fm[2] = {1.2 * 0.8 + 0.3 * 0.6, -0.1 * 0.8 + 0.9 * 0.6};
+  const double I1 = 1.2 * 1.2 + 0.3 * 0.3 + 0.1 * 0.1 + 0.9 * 0.9 + 1.1 * 1.1, I4 = Fm[0] * Fm[0] + Fm[1] * Fm[1];
+  const double dispersion[3] = {0.0, 0.15, 1.0 / 3.0};
+  uint64_t seed = 5;
+  Element element;
+
+  NewElement(&element, &seed);
+  MoveAffinely(&element, F);
+  element.F33 = F33;
+  const double plain = (wall.C4 = 0.0, Energy(&element));
+
+  wall =
+      (LamWall){.law = LAM_WALL_FIBRE_EXPONENTIAL, .C1 = 0.7, .C2 = 0.3, .k1 = 6.0, .k2 = 1.5, .bulk_modulus = 1000.0};
+  assert_int_equal(LamWallLawGet(wall.law, &element.law), 0);
+  for (int d = 0; d < 3; d++) {
+    const double E = dispersion[d] * (I1 - 3.0) + (1.0 - 3.0 * dispersion[d]) * (I4 - 1.0);
+
+    wall.dispersion = dispersion[d];
+    assert_near(Energy(&element) - plain, Area(&element) * 2.0 * expm1(1.5 * E * E), 1e-12 * plain);
+  }
+  wall = quadratic;
 }

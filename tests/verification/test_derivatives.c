@@ -19,6 +19,7 @@ static int SolveAll(void **state)
       micro.wall.law = LAM_WALL_FIBRE_EXPONENTIAL;
       micro.wall.k1 = 0.5 * micro.wall.C4;
       micro.wall.k2 = 3.0;
+      micro.wall.dispersion = 0.1;
       micro.wall.C4 = 0.0;
     }
     if (s == STATES - 1) micro.wall.law = LAM_WALL_MOONEY_RIVLIN;
