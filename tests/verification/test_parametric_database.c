@@ -52,6 +52,17 @@ static LamMicrostructure Tissue(LamParametricAxis axis, PetscReal value)
 
   if (axis == LAM_FAMILY_WALL_THICKNESS) micro.wall_thickness = value;
   if (axis == LAM_FAMILY_C4) micro.wall.C4 = value * micro.wall.C1;
+  if (axis >= LAM_FAMILY_k1 && axis <= LAM_FAMILY_dispersion) {
+    micro.wall = (LamWall){.law = LAM_WALL_FIBRE_EXPONENTIAL,
+                           .C1 = micro.wall.C1,
+                           .C2 = micro.wall.C2,
+                           .k2 = 3,
+                           .k1 = 0.5 * micro.wall.C4,
+                           .bulk_modulus = micro.wall.bulk_modulus};
+    if (axis == LAM_FAMILY_k1) micro.wall.k1 = value * micro.wall.C1;
+    if (axis == LAM_FAMILY_k2) micro.wall.k2 = value;
+    if (axis == LAM_FAMILY_dispersion) micro.wall.dispersion = value;
+  }
   if (axis == LAM_FAMILY_MATRIX) {
     micro.wall.C1 = 1 / (1 + value);
     micro.wall.C2 = value / (1 + value);
@@ -104,6 +115,15 @@ TEST(fibres_of_any_stiffness)
   static const PetscReal values[KNOTS] = {4, 7, 12, 20};
 
   CheckAxis(LAM_FAMILY_C4, values, 9);
+}
+
+TEST(parameters_of_exponential_fibres)
+{
+  static const PetscReal k1[KNOTS] = {2, 4, 6, 10}, k2[KNOTS] = {0, 2, 4, 6}, dispersion[KNOTS] = {0, 0.04, 0.08, 0.12};
+
+  CheckAxis(LAM_FAMILY_k1, k1, 5);
+  CheckAxis(LAM_FAMILY_k2, k2, 3);
+  CheckAxis(LAM_FAMILY_dispersion, dispersion, 0.05);
 }
 
 TEST(matrices_of_any_kind)
