@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Sets Lamella up on Debian 12 or 13.
-#   ./setup.sh            install what is missing, build, run the main job and show its result
-#   ./setup.sh test       the same up to the build, then the tests
+#   ./setup.sh            install what is missing, build the program, run the main job and show its result
+#   ./setup.sh test       install what is missing, build everything, run the tests
 #   ./setup.sh deps       only install what is missing
 #   ./setup.sh fuzz       install clang, too, and build the targets of tests/fuzz with it
 # Needs root or sudo only where a package is missing.
@@ -73,12 +73,12 @@ case "${1-run}" in
   deps) install_missing "${packages[@]}" "${test_packages[@]}" ;;
   run)
     install_missing "${packages[@]}" "${test_packages[@]}"
-    build release build
+    build release build --target lamella lamella_program
     main_job
     ;;
   test)
     install_missing "${packages[@]}" "${test_packages[@]}"
-    build ci build
+    build release build
     ctest --test-dir build -j2 --output-on-failure -LE 'slow|bench'
     ;;
   fuzz)
