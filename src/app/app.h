@@ -64,14 +64,21 @@ PetscBool LamAppIsRoot(void); /* rank 0, or no MPI */
 const char *LamSuggest(const char word[], const char *const names[]);
 
 /* ---- options.c: GNU-style options from a table ---- */
-typedef enum { LAM_OPTION_FLAG, LAM_OPTION_TEXT } LamOptionType;
+typedef enum {
+  LAM_OPTION_FLAG,     /* PetscBool */
+  LAM_OPTION_TEXT,     /* const char *, borrowed */
+  LAM_OPTION_ACCURACY, /* PetscReal above 0, or inf */
+  LAM_OPTION_FROM_0,   /* PetscInt; this one and the next two: the least that is allowed */
+  LAM_OPTION_FROM_1,
+  LAM_OPTION_FROM_2
+} LamOptionType;
 typedef struct {
   char short_name; /* 0: none */
   const char *long_name;
   LamOptionType type;
   const char *argument; /* shown in the help: "OUT.h5" */
   const char *help;
-  void *value; /* PetscBool * or const char ** */
+  void *value; /* unchanged where the option is not given */
 } LamOption;
 /*
   Parses options (table ends with long_name NULL) and positional arguments. Their number must be exactly
@@ -81,22 +88,29 @@ typedef struct {
 */
 PetscErrorCode LamOptionsParse(LamArgs *args, const char usage[], const char summary[], const LamOption options[],
                                int positional_count, const char *positional[], PetscBool *done, int *exit_status);
-/* Prints, on rank 0, what is wrong with the value of an option; returns PETSC_FALSE. */
-PetscBool LamUsageError(const char command[], const char option[], const char value[], const char problem[],
-                        int *exit_status);
-/* Parses the value of --accuracy: above 0, or inf. NULL leaves *accuracy unchanged; PETSC_FALSE: error printed as
-   above. */
-PetscBool LamAccuracyParse(const char command[], const char text[], PetscReal *accuracy, int *exit_status);
-/* Parses an integer not below `least`, likewise. */
-PetscBool LamCountParse(const char command[], const char option[], const char text[], PetscInt least, PetscInt *count,
-                        int *exit_status);
+/* Prints, on rank 0, what is wrong with the command line: "lamella COMMAND: ..."; returns PETSC_FALSE. */
+PetscBool LamUsageError(const char command[], int *exit_status, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(3, 4);
+
+/* ---- console.c: messages of a study, and a bar on stderr if it is a terminal ---- */
+typedef struct {
+  const char *command; /* "build" */
+  PetscBool json, quiet;
+  PetscBool has_rows; /* the rows of a table on the terminal already show the progress: no bar */
+  PetscBool warned;   /* of localisation, once */
+  PetscReal start, drawn;
+  PetscInt64 first; /* done at the first update */
+} LamConsole;
+LamReporter LamConsoleReporter(LamConsole *console); /* borrows it */
+void LamConsoleClear(LamConsole *console);           /* removes the bar */
+/* Exit status after a stop request, or `unsolved` or not; that of rank 0 on all ranks, as mpirun reports the largest.
+ */
+PetscErrorCode LamShareOutcome(PetscBool unsolved, int *exit_status);
 
 /* ---- output.c ---- */
 /* The JSON object of a solved state, in physical units. state < 0: no "state" member. The caller owns it. */
 PetscErrorCode LamResponseToJSON(const LamResponse *response, const LamScales *scales, PetscInt state,
                                  PetscBool tangent, json_t **object);
 PetscErrorCode LamPrintJSON(json_t *object); /* one line on stdout, rank 0; takes ownership */
-extern const LamReporter LamConsole;         /* warnings and notes on stderr */
 /* Human-readable table of states on stdout, with additional columns for contact tissue and for database responses. */
 PetscErrorCode LamPrintResponseHeader(LamInterfaceLawType interface);
 PetscErrorCode LamPrintAnswerHeader(LamInterfaceLawType interface);
@@ -106,17 +120,6 @@ PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales 
 /* ---- fe2_summary_print.c ---- */
 /* Human-readable summary on `out`, from the JSON object that a file holds. */
 void LamSummaryPrint(FILE *out, const json_t *summary);
-
-/* ---- progress.c: a bar on stderr if it is a terminal, else nothing ---- */
-typedef struct {
-  PetscBool on;
-  PetscInt64 total, first; /* first: done at the first update */
-  PetscReal start, drawn;
-} LamProgress;
-PetscErrorCode LamProgressStart(LamProgress *progress, PetscInt64 total, PetscBool quiet);
-void LamProgressSetTotal(LamProgress *progress, PetscInt64 total);
-PetscErrorCode LamProgressUpdate(LamProgress *progress, PetscInt64 done, PetscInt64 failed);
-PetscErrorCode LamProgressEnd(LamProgress *progress);
 
 /* ---- signals.c: SIGINT, SIGTERM, SIGUSR1 request the study to commit and stop (stop.h) ---- */
 PetscErrorCode LamSignalsInstall(void);

@@ -6,18 +6,8 @@
 #include <stdio.h>
 #include <unistd.h>
 
-static PetscErrorCode UpdateProgress(void *ctx, PetscInt64 done, PetscInt64 total, PetscInt64 failed)
-{
-  LamFE2Report *report = (LamFE2Report *)ctx;
-
-  PetscFunctionBeginUser;
-  LamProgressSetTotal(&report->progress, total);
-  PetscCall(LamProgressUpdate(&report->progress, done, failed));
-  PetscFunctionReturn(0);
-}
-
 /* The outcome of rank 0 applies to all ranks: a signal may have reached one rank only. */
-static PetscErrorCode Report(const LamFE2Run *run, const LamFE2Report *report, LamMacroReason reason,
+static PetscErrorCode Report(const LamFE2Run *run, const LamConsole *console, LamMacroReason reason,
                              const char message[], int *exit_status)
 {
   int status = reason == LAM_MACRO_STOPPED ? LamStopExitStatus() : LAM_EXIT_OK;
@@ -26,12 +16,12 @@ static PetscErrorCode Report(const LamFE2Run *run, const LamFE2Report *report, L
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &status, 1, MPI_INT, MPI_MAX, run->comm));
   *exit_status = reason == LAM_MACRO_NOT_CONVERGED ? LAM_EXIT_UNSOLVED : status;
   if (!LamIsFirst(run->comm) || run->stopped) PetscFunctionReturn(0);
-  if (!report->json) PetscCall(LamFE2ReportEnd(run));
+  if (!console->json) PetscCall(LamFE2ReportEnd(run));
   if (reason == LAM_MACRO_NOT_CONVERGED) fprintf(stderr, "lamella fe2: %s: %s\n", run->scene_path, message);
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Solve(LamFE2Run *run, LamFE2Report *report, int *exit_status)
+static PetscErrorCode Solve(LamFE2Run *run, LamConsole *console, int *exit_status)
 {
   char message[LAM_MESSAGE_LENGTH] = "";
   LamMacroReason reason;
@@ -40,22 +30,17 @@ static PetscErrorCode Solve(LamFE2Run *run, LamFE2Report *report, int *exit_stat
   PetscFunctionBeginUser;
   PetscCall(LamFE2Prepare(run, &finished));
   if (finished) PetscFunctionReturn(0);
-  if (!LamFE2CheckTissuePaths("fe2", run)) {
-    *exit_status = LAM_EXIT_USAGE;
-    PetscFunctionReturn(0);
-  }
-  PetscCall(
-      LamProgressStart(&report->progress, 0, (PetscBool)(report->quiet || (!report->json && isatty(STDOUT_FILENO)))));
+  if (!LamFE2CheckTissuePaths("fe2", run, exit_status)) PetscFunctionReturn(0);
   PetscCall(LamFE2Solve(run, &reason, message));
-  PetscCall(LamProgressEnd(&report->progress));
-  PetscCall(Report(run, report, reason, message, exit_status));
+  LamConsoleClear(console);
+  PetscCall(Report(run, console, reason, message, exit_status));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status)
 {
   LamFE2Run run = LAM_FE2_RUN;
-  LamFE2Report report = {.command = "fe2"};
+  LamConsole console = {.command = "fe2"};
   const char *response = NULL;
   PetscBool done;
   const LamOption options[] = {
@@ -69,8 +54,8 @@ PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status)
        &response},
       {0, "resume", LAM_OPTION_FLAG, NULL, "go on behind the last complete step of OUT.h5, where there is one",
        &run.resume},
-      {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per load step on stdout", &report.json},
-      {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &report.quiet},
+      {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per load step on stdout", &console.json},
+      {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &console.quiet},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
   };
 
@@ -79,16 +64,15 @@ PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status)
                             "Solves the macroscale problem of a scene.", options, 1, &run.scene_path, &done,
                             exit_status));
   if (done) PetscFunctionReturn(0);
-  if (!LamFE2ChooseResponse("fe2", response, &run) || !LamFE2CheckPaths("fe2", &run)) {
-    *exit_status = LAM_EXIT_USAGE;
+  if (!LamFE2ChooseResponse("fe2", response, &run, exit_status) || !LamFE2CheckPaths("fe2", &run, exit_status))
     PetscFunctionReturn(0);
-  }
   PetscCall(args->start(args));
   run.comm = PETSC_COMM_WORLD;
-  run.reporter = (LamReporter){&report, LamFE2ReportMessage, UpdateProgress};
+  run.reporter = LamConsoleReporter(&console);
   run.step = LamFE2ReportStep;
-  run.all_fields = (PetscBool)!report.json;
-  PetscCall(Solve(&run, &report, exit_status));
+  run.all_fields = (PetscBool)!console.json;
+  console.has_rows = (PetscBool)(!console.json && isatty(STDOUT_FILENO));
+  PetscCall(Solve(&run, &console, exit_status));
   PetscCall(LamFE2Destroy(&run));
   PetscFunctionReturn(0);
 }

@@ -6,21 +6,6 @@
 #include "clock.h"
 #include <string.h>
 
-typedef struct {
-  PetscBool json, quiet;
-  LamProgress progress;
-} Report;
-
-static PetscErrorCode UpdateProgress(void *ctx, PetscInt64 done, PetscInt64 total, PetscInt64 failed)
-{
-  Report *report = (Report *)ctx;
-
-  PetscFunctionBeginUser;
-  LamProgressSetTotal(&report->progress, total);
-  PetscCall(LamProgressUpdate(&report->progress, done, failed));
-  PetscFunctionReturn(0);
-}
-
 /* ---- points ---- */
 
 static PetscReal ValueOf(const LamMap *m, LamMapDirection d, PetscInt64 number)
@@ -102,31 +87,18 @@ static void PrintSummary(const LamMap *m)
   if (m->old + m->solved) printf("wrote %s\n", m->path);
 }
 
-/* The outcome of rank 0 applies to all ranks: mpirun reports the largest status. */
-static PetscErrorCode ExitStatus(LamMap *m, int *exit_status)
-{
-  int status = LAM_EXIT_OK;
-
-  PetscFunctionBeginUser;
-  if (m->rank == 0 && LamMapCountMode(m, LAM_FAILURE_UNKNOWN)) status = LAM_EXIT_UNSOLVED;
-  if (LamStopRequested()) status = LamStopExitStatus();
-  PetscCallMPI(MPI_Bcast(&status, 1, MPI_INT, 0, PETSC_COMM_WORLD));
-  *exit_status = status;
-  PetscFunctionReturn(0);
-}
-
 /* ---- the command ---- */
 
 PetscErrorCode LamCommandMap(LamArgs *args, int *exit_status)
 {
   LamMap m = {0};
-  Report report = {0};
+  LamConsole console = {.command = "map"};
   PetscBool done;
   const LamOption options[] = {
       {'o', "output", LAM_OPTION_TEXT, "OUT.h5", "the map, for plot and info", &m.path},
       {0, "resume", LAM_OPTION_FLAG, NULL, "go on with OUT.h5 where it is there", &m.resume},
-      {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per point on stdout", &report.json},
-      {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &report.quiet},
+      {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per point on stdout", &console.json},
+      {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &console.quiet},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
   };
 
@@ -135,19 +107,14 @@ PetscErrorCode LamCommandMap(LamArgs *args, int *exit_status)
                             "Tells how tissue fails over two of the scene's quantities.", options, 1, &m.scene_path,
                             &done, exit_status));
   if (done) PetscFunctionReturn(0);
-  if (!m.path) {
-    fprintf(stderr, "lamella map: the output is missing; give -o OUT.h5\n");
-    *exit_status = LAM_EXIT_USAGE;
-    PetscFunctionReturn(0);
-  }
+  if (!m.path && !LamUsageError("map", exit_status, "the output is missing; give -o OUT.h5")) PetscFunctionReturn(0);
   PetscCall(args->start(args));
-  m.reporter = (LamReporter){&report, LamConsole.message, UpdateProgress};
-  if (report.json) m.point = PrintPoint;
-  PetscCall(LamProgressStart(&report.progress, 0, report.quiet));
+  m.reporter = LamConsoleReporter(&console);
+  if (console.json) m.point = PrintPoint;
   PetscCall(LamMapRun(&m));
-  PetscCall(LamProgressEnd(&report.progress));
-  if (!m.rank && !report.json) PrintSummary(&m);
-  PetscCall(ExitStatus(&m, exit_status));
+  LamConsoleClear(&console);
+  if (!m.rank && !console.json) PrintSummary(&m);
+  PetscCall(LamShareOutcome((PetscBool)(!m.rank && LamMapCountMode(&m, LAM_FAILURE_UNKNOWN)), exit_status));
   PetscCall(LamMapDestroy(&m));
   PetscFunctionReturn(0);
 }

@@ -8,16 +8,6 @@
 #include <stdio.h>
 #include <unistd.h>
 
-static PetscErrorCode UpdateProgress(void *ctx, PetscInt64 done, PetscInt64 total, PetscInt64 failed)
-{
-  LamFE2Report *report = (LamFE2Report *)ctx;
-
-  PetscFunctionBeginUser;
-  LamProgressSetTotal(&report->progress, total);
-  PetscCall(LamProgressUpdate(&report->progress, done, failed));
-  PetscFunctionReturn(0);
-}
-
 static int StatusOf(LamProcessReason reason)
 {
   return reason == LAM_PROCESS_STOPPED ? LamStopExitStatus()
@@ -27,21 +17,21 @@ static int StatusOf(LamProcessReason reason)
 
 /* ---- at a material point ---- */
 
-static PetscErrorCode SolvePoint(LamProcessStudy *study, LamFE2Report *report, int *exit_status)
+static PetscErrorCode SolvePoint(LamProcessStudy *study, LamConsole *console, int *exit_status)
 {
   char message[LAM_PROCESS_MESSAGE] = "";
   LamProcessReason reason;
 
   PetscFunctionBeginUser;
-  PetscCall(LamProgressStart(&report->progress, 0, (PetscBool)(report->quiet || !report->json)));
+  console->has_rows = (PetscBool)!console->json;
   PetscCall(LamProcessSolvePoint(study, &reason, message));
-  PetscCall(LamProgressEnd(&report->progress));
-  if (!study->response.stopped) PetscCall(LamProcessReportEnd(report, study, reason, message));
+  LamConsoleClear(console);
+  if (!study->response.stopped) PetscCall(LamProcessReportEnd(console, study, reason, message));
   *exit_status = StatusOf(reason);
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode RunPoint(const LamFE2Run *run, PetscInt frames, LamFE2Report *report, int *exit_status)
+static PetscErrorCode RunPoint(const LamFE2Run *run, PetscInt frames, LamConsole *console, int *exit_status)
 {
   LamProcessStudy study = {
       .response = *run, .out_path = run->out_path, .frames = frames, .scene = run->scene, .state = LamProcessReport};
@@ -50,7 +40,7 @@ static PetscErrorCode RunPoint(const LamFE2Run *run, PetscInt frames, LamFE2Repo
   PetscFunctionBeginUser;
   study.response.comm = PETSC_COMM_SELF;
   if (LamAppIsRoot()) {
-    ierr = SolvePoint(&study, report, exit_status);
+    ierr = SolvePoint(&study, console, exit_status);
     freed = LamProcessStudyDestroy(&study);
     if (!ierr) ierr = freed;
   }
@@ -62,46 +52,35 @@ static PetscErrorCode RunPoint(const LamFE2Run *run, PetscInt frames, LamFE2Repo
 
 /* ---- of a body ---- */
 
-static PetscErrorCode SolveBody(LamBodyStudy *study, LamFE2Report *report, int *exit_status)
+static PetscErrorCode SolveBody(LamBodyStudy *study, LamConsole *console, int *exit_status)
 {
   LamFE2Run *fe2 = &study->fe2;
   char message[LAM_PROCESS_MESSAGE] = "";
   LamProcessReason reason;
 
   PetscFunctionBeginUser;
-  if (!LamFE2CheckPaths("process", fe2)) {
-    *exit_status = LAM_EXIT_USAGE;
-    PetscFunctionReturn(0);
-  }
+  if (!LamFE2CheckPaths("process", fe2, exit_status)) PetscFunctionReturn(0);
   PetscCall(LamBodyStudyPrepare(study));
-  if (!LamFE2CheckTissuePaths("process", fe2)) {
-    *exit_status = LAM_EXIT_USAGE;
-    PetscFunctionReturn(0);
-  }
-  PetscCall(
-      LamProgressStart(&report->progress, 0, (PetscBool)(report->quiet || (!report->json && isatty(STDOUT_FILENO)))));
+  if (!LamFE2CheckTissuePaths("process", fe2, exit_status)) PetscFunctionReturn(0);
+  console->has_rows = (PetscBool)(!console->json && isatty(STDOUT_FILENO));
   PetscCall(LamBodyStudySolve(study, &reason, message));
-  PetscCall(LamProgressEnd(&report->progress));
+  LamConsoleClear(console);
   *exit_status = StatusOf(reason);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, exit_status, 1, MPI_INT, MPI_MAX, fe2->comm));
   if (!LamAppIsRoot() || fe2->stopped) PetscFunctionReturn(0);
-  if (!report->json) PetscCall(LamBodyReportEnd(study));
+  if (!console->json) PetscCall(LamBodyReportEnd(study));
   if (reason == LAM_PROCESS_ENDED) fprintf(stderr, "lamella process: %s: %s\n", fe2->scene_path, message);
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode RunBody(const LamFE2Run *run, const char frames_text[], LamFE2Report *report, int *exit_status)
+static PetscErrorCode RunBody(const LamFE2Run *run, PetscInt frames, LamConsole *console, int *exit_status)
 {
   LamBodyStudy study = {.fe2 = *run, .state = LamBodyReport};
 
   PetscFunctionBeginUser;
-  if (!frames_text) {
-    PetscCall(SolveBody(&study, report, exit_status));
-  } else {
-    if (LamAppIsRoot())
-      fprintf(stderr, "lamella process: --frames: keeps cells of one material point; of a body `macro.zoom` does\n");
-    *exit_status = LAM_EXIT_USAGE;
-  }
+  if (!frames ||
+      LamUsageError("process", exit_status, "--frames: keeps cells of one material point; of a body `macro.zoom` does"))
+    PetscCall(SolveBody(&study, console, exit_status));
   PetscCall(LamBodyStudyDestroy(&study));
   PetscFunctionReturn(0);
 }
@@ -111,8 +90,8 @@ static PetscErrorCode RunBody(const LamFE2Run *run, const char frames_text[], La
 PetscErrorCode LamCommandProcess(LamArgs *args, int *exit_status)
 {
   LamFE2Run run = LAM_FE2_RUN;
-  LamFE2Report report = {.command = "process"};
-  const char *response = NULL, *frames_text = NULL;
+  LamConsole console = {.command = "process"};
+  const char *response = NULL;
   PetscInt frames = 0;
   PetscBool done;
   const LamOption options[] = {
@@ -124,11 +103,11 @@ PetscErrorCode LamCommandProcess(LamArgs *args, int *exit_status)
        "direct: solve an RVE for each state (default); cache: query, solve what is missing (default with -d); "
        "database: query only",
        &response},
-      {0, "frames", LAM_OPTION_TEXT, "N",
+      {0, "frames", LAM_OPTION_FROM_2, "N",
        "at a material point: keep the cells at N states evenly spread, for a film (default: at events, start and end)",
-       &frames_text},
-      {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per output and event on stdout", &report.json},
-      {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &report.quiet},
+       &frames},
+      {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per output and event on stdout", &console.json},
+      {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &console.quiet},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
   };
 
@@ -137,19 +116,14 @@ PetscErrorCode LamCommandProcess(LamArgs *args, int *exit_status)
       args, "process SCENE [-d DB.h5] [-o OUT.h5] [--response TYPE] [--frames N] [--json]\n               [--quiet]",
       "Follows tissue that changes in time.", options, 1, &run.scene_path, &done, exit_status));
   if (done) PetscFunctionReturn(0);
-  if (!LamFE2ChooseResponse("process", response, &run)) {
-    *exit_status = LAM_EXIT_USAGE;
-    PetscFunctionReturn(0);
-  }
-  if (frames_text && !LamCountParse("process", "--frames", frames_text, 2, &frames, exit_status))
-    PetscFunctionReturn(0);
+  if (!LamFE2ChooseResponse("process", response, &run, exit_status)) PetscFunctionReturn(0);
   PetscCall(args->start(args));
   run.comm = PETSC_COMM_WORLD;
-  run.reporter = (LamReporter){&report, LamFE2ReportMessage, UpdateProgress};
+  run.reporter = LamConsoleReporter(&console);
   PetscCall(LamSceneRead(run.scene_path, &run.scene));
   if (run.scene->has_macro && run.scene->has_process)
-    PetscCall(RunBody(&run, frames_text, &report, exit_status));
+    PetscCall(RunBody(&run, frames, &console, exit_status));
   else
-    PetscCall(RunPoint(&run, frames, &report, exit_status));
+    PetscCall(RunPoint(&run, frames, &console, exit_status));
   PetscFunctionReturn(0);
 }

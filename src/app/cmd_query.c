@@ -9,13 +9,18 @@
 #include <string.h>
 
 typedef struct {
-  const char *deformation, *turgor, *cohesion, *accuracy_text;
+  const char *deformation, *turgor, *cohesion;
   PetscBool json, tangent;
   LamQuerySource from;
-  PetscReal accuracy;
-  LamLoad defaults; /* turgor and cohesion of queries that do not give them */
+  PetscReal accuracy; /* 0: the scene's */
+  LamLoad defaults;   /* turgor and cohesion of queries that do not give them */
   PetscInt answered, refused;
 } Query;
+
+static PetscReal Accuracy(const Query *q)
+{
+  return q->accuracy > 0 ? q->accuracy : q->from.accuracy;
+}
 
 static PetscErrorCode Answer(Query *q, const LamLoad *load)
 {
@@ -24,7 +29,7 @@ static PetscErrorCode Answer(Query *q, const LamLoad *load)
   json_t *object;
 
   PetscFunctionBeginUser;
-  PetscCall(LamDatabaseQuery(q->from.database, load, q->accuracy, &response));
+  PetscCall(LamDatabaseQuery(q->from.database, load, Accuracy(q), &response));
   if (LamResponseHasFields(&response)) LamResponseFindBand(&response);
   if (response.status == LAM_CONVERGED)
     q->answered++;
@@ -77,7 +82,8 @@ static PetscBool ReadStress(const Query *q, const char option[], const char text
 
   if (!text) return PETSC_TRUE;
   if (LamQuantityParse(text, LAM_DIMENSION_STRESS, &pascal))
-    return LamUsageError("query", option, text, "a stress with its unit is wanted, such as \"0.02 MPa\"", exit_status);
+    return LamUsageError("query", exit_status, "%s \"%s\": a stress with its unit is wanted, such as \"0.02 MPa\"",
+                         option, text);
   *stress = pascal / q->from.scales.stress;
   return PETSC_TRUE;
 }
@@ -88,13 +94,11 @@ static PetscBool ReadValues(Query *q, LamLoad *load, int *exit_status)
   char problem[LAM_PROBLEM_LENGTH];
 
   q->defaults = (LamLoad){.turgor = q->from.turgor, .cohesion = q->from.cohesion};
-  q->accuracy = q->from.accuracy;
   if (!ReadStress(q, "-p", q->turgor, &q->defaults.turgor, exit_status)) return PETSC_FALSE;
   if (!ReadStress(q, "-g", q->cohesion, &q->defaults.cohesion, exit_status)) return PETSC_FALSE;
-  if (!LamAccuracyParse("query", q->accuracy_text, &q->accuracy, exit_status)) return PETSC_FALSE;
   *load = q->defaults;
   if (!strcmp(q->deformation, "-") || LamQueryParse(q->deformation, &q->from.scales, load, problem)) return PETSC_TRUE;
-  return LamUsageError("query", "-F", q->deformation, problem, exit_status);
+  return LamUsageError("query", exit_status, "-F \"%s\": %s", q->deformation, problem);
 }
 
 /* ---- human-readable output ---- */
@@ -104,7 +108,7 @@ static void PrintDefaults(const Query *q)
 {
   const PetscReal MPa = 1e-6 * q->from.scales.stress;
 
-  printf("accuracy %.3g %%%s", (double)(100 * q->accuracy), q->accuracy_text ? "" : ", the scene's");
+  printf("accuracy %.3g %%%s", (double)(100 * Accuracy(q)), q->accuracy > 0 ? "" : ", the scene's");
   if (!q->turgor)
     printf("; turgor where not given %.4g MPa, %s", (double)(q->defaults.turgor * MPa), q->from.turgor_origin);
   if (!q->cohesion && q->from.micro.interface == LAM_INTERFACE_CONTACT)
@@ -141,9 +145,9 @@ PetscErrorCode LamCommandQuery(LamArgs *args, int *exit_status)
       {'p', "turgor", LAM_OPTION_TEXT, "PRESSURE",
        "turgor of questions that do not say it, \"0.02 MPa\"; else that of the scene, or of all records", &q.turgor},
       {'g', "cohesion", LAM_OPTION_TEXT, "STRESS", "cohesion of contact tissue, likewise, \"0.001 MPa\"", &q.cohesion},
-      {0, "accuracy", LAM_OPTION_TEXT, "ERROR",
+      {0, "accuracy", LAM_OPTION_ACCURACY, "ERROR",
        "relative error of P that an answer may have by its estimate, 0.01; inf: any; by default the scene's",
-       &q.accuracy_text},
+       &q.accuracy},
       {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per answer on stdout", &q.json},
       {0, "tangent", LAM_OPTION_FLAG, NULL, "the 81 numbers of the tangent too (with --json)", &q.tangent},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
@@ -155,12 +159,10 @@ PetscErrorCode LamCommandQuery(LamArgs *args, int *exit_status)
                             "[--json] [--tangent]",
                             "Answers from a response database; never solves.", options, 1, &path, &done, exit_status));
   if (done) PetscFunctionReturn(0);
-  if (!q.deformation) {
-    fprintf(stderr, "lamella query: the deformation gradient is missing; give -F \"1 0.1 0 1\", or -F - for lines of "
-                    "standard input\n");
-    *exit_status = LAM_EXIT_USAGE;
+  if (!q.deformation &&
+      !LamUsageError("query", exit_status,
+                     "the deformation gradient is missing; give -F \"1 0.1 0 1\", or -F - for lines of standard input"))
     PetscFunctionReturn(0);
-  }
   PetscCall(LamQuerySourceOpen(path, &q.from));
   PetscCall(Run(&q, exit_status));
   PetscCall(LamQuerySourceClose(&q.from));

@@ -14,7 +14,7 @@
 
 typedef struct {
   const char *scene_path, *out_path;
-  PetscBool json, tangent, monitor, quiet, second_mesh, find_onset, find_failure, no_estimate;
+  PetscBool tangent, monitor, second_mesh, find_onset, find_failure, no_estimate;
 
   LamScene *scene;
   LamMeshes meshes;        /* the scene's, and with --second-mesh a finer one */
@@ -22,7 +22,7 @@ typedef struct {
   LamOnset onset;
   LamFailure failure;
   LamRecordWriter writer; /* NULL without -o */
-  LamProgress progress;
+  LamConsole console;
   PetscInt solved, failed;
   PetscInt inaccurate; /* number of states whose estimated error exceeds the prescribed accuracy */
   PetscInt kinked;     /* number of states in which too much of the walls has kinked for an estimate */
@@ -131,7 +131,7 @@ static PetscErrorCode Tell(Run *run, PetscInt number, const LamResponse response
   json_t *object;
 
   PetscFunctionBeginUser;
-  if (run->json) {
+  if (run->console.json) {
     PetscCall(LamResponseToJSON(&responses[0], scales, number, run->tangent, &object));
     SetPrescribed(object, Control(run, number), scales->stress * 1e-6);
     PetscCall(SetCellDifference(object, run, &responses[0]));
@@ -149,7 +149,7 @@ static PetscErrorCode Tell(Run *run, PetscInt number, const LamResponse response
 static PetscErrorCode TellEnd(const Run *run)
 {
   PetscFunctionBeginUser;
-  if (run->json) PetscFunctionReturn(0);
+  if (run->console.json) PetscFunctionReturn(0);
   printf("%" PetscInt_FMT " of %" PetscInt_FMT " states solved, %" PetscInt_FMT " failed, %.3g s\n",
          run->solved - run->failed, run->scene->load_count, run->failed, LamClock() - run->start);
   if (run->out_path) printf("wrote %s\n", run->out_path);
@@ -175,20 +175,21 @@ static LamWanted Wanted(const Run *run)
   LamWanted wanted = LAM_WANT_STRESS | LAM_WANT_INDICATORS;
 
   if (run->tangent) wanted |= LAM_WANT_DERIVATIVES;
-  if (run->json || run->find_failure || !run->no_estimate) wanted |= LAM_WANT_WALLS;
+  if (run->console.json || run->find_failure || !run->no_estimate) wanted |= LAM_WANT_WALLS;
   return run->out_path ? LAM_WANT_ALL : wanted;
 }
 
 static PetscErrorCode Prepare(Run *run)
 {
   const PetscBool contact = (PetscBool)(run->scene->micro.interface == LAM_INTERFACE_CONTACT);
+  const LamReporter reporter = LamConsoleReporter(&run->console);
   LamPlan plan;
 
   PetscFunctionBeginUser;
   PetscCheck(run->scene->load_count, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: has no block `load`, which says what states to solve", run->scene_path);
   PetscCall(LamPlanMake(run->scene, &plan));
-  PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &LamConsole, &plan.micro, run->scene->accuracy));
+  PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &reporter, &plan.micro, run->scene->accuracy));
   run->scene->micro = plan.micro;
   if (run->find_failure && contact) run->second_mesh = PETSC_TRUE; /* separation is determined on two meshes */
   PetscCall(LamMeshesCreate(plan.unknowns < LAM_PARALLEL_UNKNOWNS ? PETSC_COMM_SELF : PETSC_COMM_WORLD, run->scene,
@@ -237,12 +238,11 @@ static void TellDoubts(const Run *run)
 
 static PetscErrorCode SolveStates(Run *run)
 {
-  /* table rows on the terminal already show progress */
-  const PetscBool quiet = (PetscBool)(run->quiet || run->monitor || !run->json);
+  const LamReporter reporter = LamConsoleReporter(&run->console);
 
   PetscFunctionBeginUser;
-  PetscCall(LamProgressStart(&run->progress, run->scene->load_count, quiet));
-  if (!run->json) PetscCall(LamPrintResponseHeader(run->scene->micro.interface));
+  run->console.has_rows = (PetscBool)(run->monitor || !run->console.json);
+  if (!run->console.json) PetscCall(LamPrintResponseHeader(run->scene->micro.interface));
   while (run->solved < run->scene->load_count && !LamStopRequested()) {
     LamResponse responses[2];
 
@@ -256,10 +256,10 @@ static PetscErrorCode SolveStates(Run *run)
     if (run->find_failure) PetscCall(LamFailureWatch(&run->failure, &run->meshes, run->solved, responses));
     if (run->writer) PetscCall(WriteState(run, run->solved, &responses[0]));
     PetscCall(Tell(run, run->solved, responses));
-    PetscCall(LamProgressUpdate(&run->progress, run->solved, run->failed));
+    PetscCall(LamReportProgress(&reporter, run->solved, run->scene->load_count, run->failed));
   }
-  PetscCall(LamProgressEnd(&run->progress));
-  if (!run->quiet) TellDoubts(run);
+  LamConsoleClear(&run->console);
+  if (!run->console.quiet) TellDoubts(run);
   PetscFunctionReturn(0);
 }
 
@@ -278,7 +278,7 @@ static PetscErrorCode FindOnset(Run *run)
 {
   PetscFunctionBeginUser;
   PetscCall(LamOnsetFind(&run->onset, &run->meshes, run->scene->load_count));
-  PetscCall(LamOnsetPrint(&run->onset, &run->scene->scales, run->json));
+  PetscCall(LamOnsetPrint(&run->onset, &run->scene->scales, run->console.json));
   PetscFunctionReturn(0);
 }
 
@@ -286,7 +286,7 @@ static PetscErrorCode TellFailure(Run *run)
 {
   PetscFunctionBeginUser;
   PetscCall(LamFailureConclude(&run->failure));
-  PetscCall(LamFailurePrint(&run->failure, &run->scene->scales, run->json));
+  PetscCall(LamFailurePrint(&run->failure, &run->scene->scales, run->console.json));
   PetscFunctionReturn(0);
 }
 
@@ -331,11 +331,11 @@ static PetscErrorCode RunOnRoot(Run *run, int *exit_status)
 
 PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
 {
-  Run run = {0};
+  Run run = {.console.command = "rve"};
   PetscBool done;
   const LamOption options[] = {
       {'o', "output", LAM_OPTION_TEXT, "OUT.h5", "states and fields, for plot and query", &run.out_path},
-      {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per state on stdout", &run.json},
+      {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per state on stdout", &run.console.json},
       {0, "tangent", LAM_OPTION_FLAG, NULL, "the effective tangent too", &run.tangent},
       {0, "second-mesh", LAM_OPTION_FLAG, NULL,
        "solve contact tissue on a mesh with twice the elements along a face, too: errors, and whether cells separate",
@@ -349,7 +349,7 @@ PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
       {0, "no-estimate", LAM_OPTION_FLAG, NULL, "no estimate of the error: a tenth to a quarter less time",
        &run.no_estimate},
       {0, "monitor", LAM_OPTION_FLAG, NULL, "each Newton iteration on stderr", &run.monitor},
-      {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &run.quiet},
+      {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &run.console.quiet},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
   };
 

@@ -9,10 +9,9 @@
 #include <unistd.h>
 
 typedef struct {
-  const char *directory, *repeats_text, *budget_text, *only;
-  PetscBool json, quiet;
+  const char *directory, *budget_text, *only;
   LamTradeoff tradeoff;
-  LamProgress progress;
+  LamConsole console;
 } Command;
 
 /* Creates the output folder if needed, before anything is measured. */
@@ -37,27 +36,16 @@ static int ExitStatus(const LamTradeoff *t)
   return LamTradeoffIsSolved(t) ? LAM_EXIT_OK : LAM_EXIT_UNSOLVED;
 }
 
-static PetscErrorCode UpdateProgress(void *ctx, PetscInt64 done, PetscInt64 total, PetscInt64 failed)
-{
-  Command *run = (Command *)ctx;
-
-  PetscFunctionBeginUser;
-  LamProgressSetTotal(&run->progress, total);
-  PetscCall(LamProgressUpdate(&run->progress, done, failed));
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode Solve(Command *run, int *exit_status)
 {
   LamTradeoff *t = &run->tradeoff;
 
   PetscFunctionBeginUser;
-  t->reporter = (LamReporter){run, LamConsole.message, UpdateProgress};
+  t->reporter = LamConsoleReporter(&run->console);
   PetscCall(CheckDirectory(run));
-  PetscCall(LamProgressStart(&run->progress, 0, run->quiet));
   PetscCall(LamTradeoffRun(t));
-  PetscCall(LamProgressEnd(&run->progress));
-  if (run->json)
+  LamConsoleClear(&run->console);
+  if (run->console.json)
     PetscCall(LamTradeoffPrintJSON(t));
   else
     LamTradeoffPrint(t);
@@ -80,8 +68,8 @@ static PetscBool ReadFamilies(Command *run, int *exit_status)
 
     while (k < LAM_KNOB_COUNT && strcmp(word, LamKnobNames[k])) k++;
     if (k == LAM_KNOB_COUNT)
-      return LamUsageError("tradeoff", "--only", word, "there are mesh, strategy, cells, tolerance, database, macro",
-                           exit_status);
+      return LamUsageError("tradeoff", exit_status,
+                           "--only \"%s\": there are mesh, strategy, cells, tolerance, database, macro", word);
     run->tradeoff.chosen[k] = PETSC_TRUE;
   }
   return PETSC_TRUE;
@@ -91,15 +79,14 @@ static PetscBool ReadValues(Command *run, int *exit_status)
 {
   char *end;
 
-  if (!LamCountParse("tradeoff", "--repeats", run->repeats_text, 1, &run->tradeoff.repeats, exit_status))
-    return PETSC_FALSE;
   if (run->tradeoff.repeats > LAM_MOST_REPEATS)
-    return LamUsageError("tradeoff", "--repeats", run->repeats_text, "100 at most", exit_status);
+    return LamUsageError("tradeoff", exit_status, "--repeats \"%" PetscInt_FMT "\": %d at most", run->tradeoff.repeats,
+                         LAM_MOST_REPEATS);
   if (run->budget_text) {
     run->tradeoff.budget = strtod(run->budget_text, &end);
     if (end == run->budget_text || *end || !(run->tradeoff.budget > 0) || PetscIsInfReal(run->tradeoff.budget))
-      return LamUsageError("tradeoff", "--budget", run->budget_text, "a number of seconds is wanted, such as 120",
-                           exit_status);
+      return LamUsageError("tradeoff", exit_status, "--budget \"%s\": a number of seconds is wanted, such as 120",
+                           run->budget_text);
   }
   return ReadFamilies(run, exit_status);
 }
@@ -110,26 +97,24 @@ static PetscBool IsSerial(int *exit_status)
   PetscMPIInt size;
 
   MPI_Comm_size(PETSC_COMM_WORLD, &size);
-  if (size == 1) return PETSC_TRUE;
-  if (LamAppIsRoot())
-    fprintf(stderr, "lamella tradeoff: measures the time of one core; run it without mpirun, or on one rank\n");
-  *exit_status = LAM_EXIT_USAGE;
-  return PETSC_FALSE;
+  return (PetscBool)(size == 1 ||
+                     LamUsageError("tradeoff", exit_status,
+                                   "measures the time of one core; run it without mpirun, or on one rank"));
 }
 
 PetscErrorCode LamCommandTradeoff(LamArgs *args, int *exit_status)
 {
-  Command run = {.tradeoff = {.repeats = 3, .budget = 120}};
+  Command run = {.tradeoff = {.repeats = 3, .budget = 120}, .console.command = "tradeoff"};
   PetscBool done;
   const LamOption options[] = {
       {'o', "output", LAM_OPTION_TEXT, "DIR",
        "folder for tradeoff.json, tradeoff.png and .svg (the diagram) and model.json; made where it is missing",
        &run.directory},
       {0, "budget", LAM_OPTION_TEXT, "SECONDS", "how long it may measure, in all; default 120", &run.budget_text},
-      {0, "repeats", LAM_OPTION_TEXT, "N", "how often each setting is measured; default 3", &run.repeats_text},
+      {0, "repeats", LAM_OPTION_FROM_1, "N", "how often each setting is measured; default 3", &run.tradeoff.repeats},
       {0, "only", LAM_OPTION_TEXT, "FAMILY,...", "of mesh, strategy, cells, tolerance, database, macro", &run.only},
-      {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per setting on stdout", &run.json},
-      {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &run.quiet},
+      {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per setting on stdout", &run.console.json},
+      {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &run.console.quiet},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
   };
 

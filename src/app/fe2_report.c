@@ -102,12 +102,12 @@ static void PrintRow(const LamFE2Run *run, const LamMacroStep *step)
 }
 
 /* Once, in the first step in which ellipticity is lost. */
-static void WarnOfLocalisation(LamFE2Report *report, const LamFE2Run *run, const LamMacroStep *step)
+static void WarnOfLocalisation(LamConsole *console, const LamFE2Run *run, const LamMacroStep *step)
 {
   const PetscReal mm = run->scene->scales.macro_length * 1e3;
 
-  if (report->localised || !step->localised_points) return;
-  report->localised = PETSC_TRUE;
+  if (console->warned || !step->localised_points) return;
+  console->warned = PETSC_TRUE;
   LamReportNote(
       &run->reporter,
       "%s: step %d: at %d material points the tissue has lost ellipticity, most at (%.4g, %.4g) mm "
@@ -118,24 +118,17 @@ static void WarnOfLocalisation(LamFE2Report *report, const LamFE2Run *run, const
 
 PetscErrorCode LamFE2ReportStep(void *ctx, const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory)
 {
-  LamFE2Report *report = (LamFE2Report *)ctx;
+  LamConsole *console = (LamConsole *)ctx;
 
   PetscFunctionBeginUser;
-  if (report->json)
+  if (console->json)
     PetscCall(LamPrintJSON(LamFE2StepToJSON(run, step, peak_memory)));
   else {
     if (run->totals.steps == run->resumed_steps) PrintHeader(run, step);
     PrintRow(run, step);
   }
-  WarnOfLocalisation(report, run, step);
+  WarnOfLocalisation(console, run, step);
   PetscFunctionReturn(0);
-}
-
-void LamFE2ReportMessage(void *ctx, PetscBool warning, const char text[])
-{
-  const LamFE2Report *report = (const LamFE2Report *)ctx;
-
-  if (warning || !report->quiet) fprintf(stderr, "lamella %s: %s\n", report->command, text);
 }
 
 PetscErrorCode LamFE2ReportEnd(const LamFE2Run *run)

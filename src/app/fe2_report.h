@@ -7,29 +7,21 @@
 #include "app.h"
 #include "fe2_run.h"
 
-typedef struct {
-  const char *command; /* "fe2" */
-  PetscBool json, quiet;
-  PetscBool localised; /* has been reported */
-  LamProgress progress;
-} LamFE2Report;
-
 /* ---- fe2_options.c ---- */
 /* Sets run->response from the text of --response, NULL: not given. PETSC_FALSE, with a message, if the options
    conflict. */
-PetscBool LamFE2ChooseResponse(const char command[], const char name[], LamFE2Run *run);
+PetscBool LamFE2ChooseResponse(const char command[], const char name[], LamFE2Run *run, int *exit_status);
 /* PETSC_FALSE, with a message, if one file would overwrite another. The second function checks, on all ranks, the
    databases of regions and levels, whose names are derived from that of -d. */
-PetscBool LamFE2CheckPaths(const char command[], const LamFE2Run *run);
-PetscBool LamFE2CheckTissuePaths(const char command[], const LamFE2Run *run);
+PetscBool LamFE2CheckPaths(const char command[], const LamFE2Run *run, int *exit_status);
+PetscBool LamFE2CheckTissuePaths(const char command[], const LamFE2Run *run, int *exit_status);
 
-/* ---- fe2_report.c; on rank 0. ctx: a LamFE2Report ---- */
+/* ---- fe2_report.c; on rank 0. ctx: a LamConsole ---- */
 /* A step as JSON; peak_memory in MB. */
 json_t *LamFE2StepToJSON(const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory);
 /* Prints the row (for the first step with the header) or the JSON object of a step; once, a warning that the tissue
    localises. */
 PetscErrorCode LamFE2ReportStep(void *ctx, const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory);
-void LamFE2ReportMessage(void *ctx, PetscBool warning, const char text[]);
 /* Prints summary and totals. */
 PetscErrorCode LamFE2ReportEnd(const LamFE2Run *run);
 

@@ -5,6 +5,7 @@
 #include "word_distance.h"
 #include <errno.h>
 #include <getopt.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -66,6 +67,50 @@ static void PrintHelp(const char usage[], const char summary[], const LamOption 
   PrintOption('h', "help", NULL, "this text");
 }
 
+/* ---- values ---- */
+
+PetscBool LamUsageError(const char command[], int *exit_status, const char format[], ...)
+{
+  va_list list;
+
+  *exit_status = LAM_EXIT_USAGE;
+  if (!LamAppIsRoot()) return PETSC_FALSE;
+  fprintf(stderr, "lamella %s: ", command);
+  va_start(list, format);
+  vfprintf(stderr, format, list);
+  va_end(list);
+  fputc('\n', stderr);
+  return PETSC_FALSE;
+}
+
+static PetscBool ReadValue(const char command[], const LamOption *option, const char text[], int *exit_status)
+{
+  const int least = (int)option->type - LAM_OPTION_FROM_0;
+  char *end;
+  long count;
+
+  switch (option->type) {
+  case LAM_OPTION_FLAG:
+    *(PetscBool *)option->value = PETSC_TRUE;
+    return PETSC_TRUE;
+  case LAM_OPTION_TEXT:
+    *(const char **)option->value = text;
+    return PETSC_TRUE;
+  case LAM_OPTION_ACCURACY:
+    *(PetscReal *)option->value = strtod(text, &end);
+    if (!*end && *(PetscReal *)option->value > 0) return PETSC_TRUE;
+    return LamUsageError(command, exit_status, "--%s \"%s\": a relative error is wanted, such as 0.01, or inf for any",
+                         option->long_name, text);
+  default:
+    errno = 0;
+    count = strtol(text, &end, 10);
+    *(PetscInt *)option->value = (PetscInt)count;
+    if (!*end && !errno && count >= least && count <= PETSC_MAX_INT) return PETSC_TRUE;
+    return LamUsageError(command, exit_status, "--%s \"%s\": a whole number from %d on is wanted", option->long_name,
+                         text, least);
+  }
+}
+
 /* ---- parsing ---- */
 
 /* Input of getopt_long; the value returned for a long option is its number in the table plus 256. */
@@ -82,7 +127,7 @@ static PetscErrorCode Translate(const LamOption options[], Getopt *g)
   PetscFunctionBeginUser;
   *letter++ = ':'; /* distinguishes a missing value from an unknown option */
   for (; options[n].long_name; n++) {
-    const int takes = options[n].type == LAM_OPTION_TEXT ? required_argument : no_argument;
+    const int takes = options[n].type == LAM_OPTION_FLAG ? no_argument : required_argument;
 
     PetscCheck(n < MOST_OPTIONS, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "more than %d options", MOST_OPTIONS);
     g->names[n] = (struct option){options[n].long_name, takes, NULL, 256 + n};
@@ -97,30 +142,22 @@ static PetscErrorCode Translate(const LamOption options[], Getopt *g)
   PetscFunctionReturn(0);
 }
 
-static void UsageHint(const char command[])
-{
-  if (LamAppIsRoot()) fprintf(stderr, "Try 'lamella %s --help'.\n", command);
-}
-
 /* Reports an option that is unknown or lacks its value. */
-static void TellWrongOption(const LamArgs *args, int code, const Getopt *g)
+static PetscBool TellWrongOption(const LamArgs *args, int code, const Getopt *g, int *exit_status)
 {
   const char *command = args->argv[0], *text = args->argv[optind - 1], *names[MOST_OPTIONS + 2], *near;
+  const PetscBool lacks = (PetscBool)(code == ':');
   int n = 0;
 
-  if (!LamAppIsRoot()) return;
+  if (optopt && optopt < 256)
+    return LamUsageError(command, exit_status, "option '-%c' %s", optopt, lacks ? "needs a value" : "is unknown");
+  if (optopt)
+    return LamUsageError(command, exit_status, "option '%s' %s", text, lacks ? "needs a value" : "takes no value");
   for (; g->names[n].name; n++) names[n] = g->names[n].name;
   names[n] = NULL;
-  if (optopt && optopt < 256)
-    fprintf(stderr, "lamella %s: option '-%c' %s\n", command, optopt, code == ':' ? "needs a value" : "is unknown");
-  else if (optopt)
-    fprintf(stderr, "lamella %s: option '%s' %s\n", command, text, code == ':' ? "needs a value" : "takes no value");
-  else {
-    near = LamSuggest(text + strspn(text, "-"), names);
-    fprintf(stderr, "lamella %s: option '%s' is unknown or ambiguous", command, text);
-    if (near) fprintf(stderr, "; did you mean '--%s'?", near);
-    fputc('\n', stderr);
-  }
+  near = LamSuggest(text + strspn(text, "-"), names);
+  return LamUsageError(command, exit_status, "option '%s' is unknown or ambiguous%s%s%s", text,
+                       near ? "; did you mean '--" : "", near ? near : "", near ? "'?" : "");
 }
 
 static int IndexOf(const LamOption options[], int code)
@@ -133,7 +170,8 @@ static int IndexOf(const LamOption options[], int code)
 }
 
 /* PETSC_FALSE if the usage is wrong. */
-static PetscBool ReadOptions(LamArgs *args, const LamOption options[], const Getopt *g, PetscBool *help)
+static PetscBool ReadOptions(LamArgs *args, const LamOption options[], const Getopt *g, PetscBool *help,
+                             int *exit_status)
 {
   int code;
 
@@ -142,101 +180,43 @@ static PetscBool ReadOptions(LamArgs *args, const LamOption options[], const Get
   while ((code = getopt_long(args->argc, args->argv, g->letters, g->names, NULL)) != -1) {
     const LamOption *option;
 
-    if (code == '?' || code == ':') {
-      TellWrongOption(args, code, g);
-      return PETSC_FALSE;
-    }
+    if (code == '?' || code == ':') return TellWrongOption(args, code, g, exit_status);
     if (code == 'h') {
       *help = PETSC_TRUE;
       return PETSC_TRUE;
     }
     option = &options[IndexOf(options, code)];
-    if (option->type == LAM_OPTION_FLAG) {
-      *(PetscBool *)option->value = PETSC_TRUE;
-    } else if (*optarg) {
-      *(const char **)option->value = optarg;
-    } else {
-      if (LamAppIsRoot())
-        fprintf(stderr, "lamella %s: option '--%s' needs a value\n", args->argv[0], option->long_name);
-      return PETSC_FALSE;
-    }
+    if (option->type != LAM_OPTION_FLAG && !*optarg)
+      return LamUsageError(args->argv[0], exit_status, "option '--%s' needs a value", option->long_name);
+    if (!ReadValue(args->argv[0], option, optarg, exit_status)) return PETSC_FALSE;
   }
   return PETSC_TRUE;
 }
 
 /* count < 0: at least -count. */
-static PetscBool ReadPositional(const LamArgs *args, int count, const char *positional[])
+static PetscBool ReadPositional(const LamArgs *args, int count, const char *positional[], int *exit_status)
 {
   const int given = args->argc - optind;
 
   if (count < 0) count = PetscMax(-count, given);
   for (int i = 0; i < PetscMin(given, count); i++) positional[i] = args->argv[optind + i];
   if (given == count) return PETSC_TRUE;
-  if (LamAppIsRoot()) {
-    if (given < count)
-      fprintf(stderr, "lamella %s: a file name is missing\n", args->argv[0]);
-    else
-      fprintf(stderr, "lamella %s: '%s' is one argument too many\n", args->argv[0], args->argv[optind + count]);
-  }
-  return PETSC_FALSE;
+  if (given < count) return LamUsageError(args->argv[0], exit_status, "a file name is missing");
+  return LamUsageError(args->argv[0], exit_status, "'%s' is one argument too many", args->argv[optind + count]);
 }
 
 PetscErrorCode LamOptionsParse(LamArgs *args, const char usage[], const char summary[], const LamOption options[],
                                int positional_count, const char *positional[], PetscBool *done, int *exit_status)
 {
-  PetscBool help = PETSC_FALSE;
+  PetscBool help = PETSC_FALSE, right;
   Getopt g;
 
   PetscFunctionBeginUser;
-  *done = PETSC_TRUE;
   PetscCall(Translate(options, &g));
-  if (!ReadOptions(args, options, &g, &help)) {
-    UsageHint(args->argv[0]);
-    *exit_status = LAM_EXIT_USAGE;
-  } else if (help) {
-    if (LamAppIsRoot()) PrintHelp(usage, summary, options);
-    *exit_status = LAM_EXIT_OK;
-  } else if (!ReadPositional(args, positional_count, positional)) {
-    UsageHint(args->argv[0]);
-    *exit_status = LAM_EXIT_USAGE;
-  } else {
-    *done = PETSC_FALSE;
-  }
+  right = ReadOptions(args, options, &g, &help, exit_status);
+  if (right && !help) right = ReadPositional(args, positional_count, positional, exit_status);
+  if (!right && LamAppIsRoot()) fprintf(stderr, "Try 'lamella %s --help'.\n", args->argv[0]);
+  if (right && help && LamAppIsRoot()) PrintHelp(usage, summary, options);
+  *done = (PetscBool)(!right || help);
   PetscFunctionReturn(0);
-}
-
-/* ---- values ---- */
-
-PetscBool LamUsageError(const char command[], const char option[], const char value[], const char problem[],
-                        int *exit_status)
-{
-  if (LamAppIsRoot()) fprintf(stderr, "lamella %s: %s \"%s\": %s\n", command, option, value, problem);
-  *exit_status = LAM_EXIT_USAGE;
-  return PETSC_FALSE;
-}
-
-PetscBool LamAccuracyParse(const char command[], const char text[], PetscReal *accuracy, int *exit_status)
-{
-  char *end;
-
-  if (!text) return PETSC_TRUE;
-  *accuracy = strtod(text, &end);
-  if (end != text && !*end && *accuracy > 0) return PETSC_TRUE;
-  return LamUsageError(command, "--accuracy", text, "a relative error is wanted, such as 0.01, or inf for any",
-                       exit_status);
-}
-
-PetscBool LamCountParse(const char command[], const char option[], const char text[], PetscInt least, PetscInt *count,
-                        int *exit_status)
-{
-  char *end, wanted[64];
-  long value;
-
-  if (!text) return PETSC_TRUE;
-  errno = 0;
-  value = strtol(text, &end, 10);
-  *count = (PetscInt)value;
-  if (end != text && !*end && !errno && value >= least && value <= PETSC_MAX_INT) return PETSC_TRUE;
-  snprintf(wanted, sizeof(wanted), "a whole number from %" PetscInt_FMT " on is wanted", least);
-  return LamUsageError(command, option, text, wanted, exit_status);
 }

@@ -10,15 +10,6 @@
 
 #define PASCAL_TO_MPA 1e-6
 
-static void PrintMessage(void *ctx, PetscBool warning, const char text[])
-{
-  (void)ctx;
-  (void)warning;
-  fprintf(stderr, "lamella: %s\n", text);
-}
-
-const LamReporter LamConsole = {NULL, PrintMessage, NULL};
-
 /* ---- JSON ---- */
 
 /* One member in physical units: stresses in MPa. */
@@ -99,8 +90,6 @@ PetscErrorCode LamPrintJSON(json_t *object)
   PetscCall(FlushOutput());
   PetscFunctionReturn(0);
 }
-
-/* Names and units of the columns; `tail`, `tail_units`: of the last columns. */
 
 /* Names and units of the columns; `tail`, `tail_units`: of those at the end. */
 static PetscErrorCode PrintHeader(LamInterfaceLawType interface, const char tail[], const char tail_units[])

@@ -7,13 +7,13 @@
 #include "fe2_report.h"
 #include "process_run.h"
 
-/* ---- process_report.c; ctx: a LamFE2Report ---- */
+/* ---- at a material point; ctx: a LamConsole ---- */
 /* Prints the last state of the history: a row of a table (the first with its header) or a JSON object. */
 PetscErrorCode LamProcessReport(void *ctx, const LamProcessStudy *study);
-PetscErrorCode LamProcessReportEnd(const LamFE2Report *report, const LamProcessStudy *study, LamProcessReason reason,
+PetscErrorCode LamProcessReportEnd(const LamConsole *console, const LamProcessStudy *study, LamProcessReason reason,
                                    const char message[]);
 
-/* ---- process_body_report.c; rank 0 ---- */
+/* ---- of a body; rank 0 ---- */
 PetscErrorCode LamBodyReport(void *ctx, const LamBodyStudy *study, const LamBodyState *state, PetscReal peak_memory);
 PetscErrorCode LamBodyReportEnd(const LamBodyStudy *study);
 

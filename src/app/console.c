@@ -1,0 +1,75 @@
+/*
+  The terminal of a study: its messages, and a bar with the rate and the remaining time, on a terminal only.
+*/
+#include "app.h"
+#include "clock.h"
+#include <unistd.h>
+
+enum { BAR_WIDTH = 24 };
+#define REDRAW_SECONDS 0.1
+
+static void PrintDuration(PetscReal seconds)
+{
+  const long s = (long)(seconds + 0.5);
+
+  if (s >= 3600)
+    fprintf(stderr, "%ld:%02ld:%02ld", s / 3600, s / 60 % 60, s % 60);
+  else
+    fprintf(stderr, "%ld:%02ld", s / 60, s % 60);
+}
+
+static void PrintMessage(void *ctx, PetscBool warning, const char text[])
+{
+  const LamConsole *console = (const LamConsole *)ctx;
+
+  if (warning || !console->quiet) fprintf(stderr, "lamella %s: %s\n", console->command, text);
+}
+
+/* Message and progress functions of a LamReporter; work done by an earlier run does not count for the rate. */
+static PetscErrorCode UpdateBar(void *ctx, PetscInt64 done, PetscInt64 total, PetscInt64 failed)
+{
+  LamConsole *console = (LamConsole *)ctx;
+  const PetscReal now = LamClock();
+  PetscReal rate;
+  int filled;
+
+  PetscFunctionBeginUser;
+  if (console->quiet || console->has_rows || !LamAppIsRoot() || !isatty(STDERR_FILENO)) PetscFunctionReturn(0);
+  if (console->drawn && done < total && now - console->drawn < REDRAW_SECONDS) PetscFunctionReturn(0);
+  if (!console->drawn) {
+    console->start = now;
+    console->first = done;
+  }
+  console->drawn = now;
+  filled = total > 0 ? (int)(BAR_WIDTH * PetscMin(done, total) / total) : BAR_WIDTH;
+  fputs("\r\033[K[", stderr);
+  for (int i = 0; i < BAR_WIDTH; i++) fputc(i < filled ? '#' : '.', stderr);
+  fprintf(stderr, "] %lld/%lld", (long long)done, (long long)total);
+  rate = now > console->start ? (PetscReal)(done - console->first) / (now - console->start) : 0;
+  if (rate > 0) {
+    fprintf(stderr, "  %.3g/s  ", rate);
+    PrintDuration((PetscReal)(total - done) / rate);
+    fputs(" left", stderr);
+  }
+  if (failed) fprintf(stderr, "  %lld failed", (long long)failed);
+  PetscFunctionReturn(0);
+}
+
+LamReporter LamConsoleReporter(LamConsole *console)
+{
+  return (LamReporter){console, PrintMessage, UpdateBar};
+}
+
+void LamConsoleClear(LamConsole *console)
+{
+  if (console->drawn) fputs("\r\033[K", stderr);
+  console->drawn = 0;
+}
+
+PetscErrorCode LamShareOutcome(PetscBool unsolved, int *exit_status)
+{
+  PetscFunctionBeginUser;
+  *exit_status = LamStopRequested() ? LamStopExitStatus() : unsolved ? LAM_EXIT_UNSOLVED : LAM_EXIT_OK;
+  PetscCallMPI(MPI_Bcast(exit_status, 1, MPI_INT, 0, PETSC_COMM_WORLD));
+  PetscFunctionReturn(0);
+}
