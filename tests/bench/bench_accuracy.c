@@ -67,10 +67,7 @@ static PetscErrorCode SolveOn(const Sample *s, Mesh mesh, PetscReal grading, Lam
   micro.along = mesh.along;
   micro.through = mesh.through;
   micro.grading = grading;
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
-  PetscCall(LamRVESetMicrostructure(rve, &micro));
-  PetscCall(LamRVESetUp(rve));
-  PetscCall(LamRVEStateCreate(rve, &state));
+  PetscCall(NewTissue(&micro, &rve, &state));
   PetscCall(LamRVEEstimateCreate(rve, &e));
   for (int k = 0; k < 2; k++) { /* the first one analyses the matrix */
     PetscCall(LamRVEStateReset(rve, state));
@@ -80,8 +77,7 @@ static PetscErrorCode SolveOn(const Sample *s, Mesh mesh, PetscReal grading, Lam
   PetscCall(LamRVEEstimateError(e, state, &copy));
   *estimate = copy.error_estimate;
   PetscCall(LamRVEEstimateDestroy(&e));
-  PetscCall(LamRVEStateDestroy(&state));
-  PetscCall(LamRVEDestroy(&rve));
+  PetscCall(DestroyTissue(&rve, &state));
   PetscFunctionReturn(0);
 }
 

@@ -73,8 +73,7 @@ static PetscErrorCode TissueCreate(int along, int through, Way way, Tissue *tiss
 static PetscErrorCode TissueDestroy(Tissue *tissue)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamRVEStateDestroy(&tissue->state));
-  PetscCall(LamRVEDestroy(&tissue->rve));
+  PetscCall(DestroyTissue(&tissue->rve, &tissue->state));
   PetscFunctionReturn(0);
 }
 

@@ -66,18 +66,14 @@ static PetscErrorCode PrintMeasures(LamInterfaceLawType interface, int m, const 
   LamResponse r;
 
   PetscFunctionBeginUser;
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
-  PetscCall(LamRVESetMicrostructure(rve, &micro));
-  PetscCall(LamRVESetUp(rve));
-  PetscCall(LamRVEStateCreate(rve, &state));
+  PetscCall(NewTissue(&micro, &rve, &state));
   PetscCall(LamRVESolve(rve, load, state, &r));
   PetscCall(PointValues(rve, state, &fibre, &stress));
   PetscCall(Cost(rve, load, &r, &share));
   printf("  %2dx%d  %.4f  %7.4f   %.5f %.5f %8.5f %8.5f %8.5f %8.5f  %.1f %%\n", meshes[m][0], meshes[m][1], fibre,
          stress, r.max_fibre_stretch, r.max_wall_energy, r.max_wall_tension, LamMeanTension(&r), r.max_traction,
          r.max_lamella_shear, 100 * share);
-  PetscCall(LamRVEStateDestroy(&state));
-  PetscCall(LamRVEDestroy(&rve));
+  PetscCall(DestroyTissue(&rve, &state));
   PetscFunctionReturn(0);
 }
 

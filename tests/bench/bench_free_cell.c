@@ -146,9 +146,7 @@ static PetscErrorCode Run(int count)
   PetscLogDouble start, end;
 
   PetscFunctionBeginUser;
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
-  PetscCall(LamRVESetMicrostructure(rve, &micro));
-  PetscCall(LamRVESetUp(rve));
+  PetscCall(NewTissue(&micro, &rve, NULL));
   PetscCall(LamRVEResponderCreate(rve, 0, &solver));
   PetscCall(PetscTime(&start));
   PetscCall(LamFreeCellMake(&micro, COHESION, SUCTION_MIN, SUCTION_MAX, SCALE, KNOTS, &solver, &cell));

@@ -5,6 +5,7 @@
 */
 #include <stdio.h>
 #include "support/load_increments.h"
+#include "support/tissue.h"
 
 static const double increments[] = {1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-6, 1e-4, 1e-3, 1e-2};
 
@@ -34,9 +35,7 @@ static PetscErrorCode PrintLarge(LamInterfaceLawType interface, double turgor)
 
   PetscFunctionBeginUser;
   micro.interface = interface;
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
-  PetscCall(LamRVESetMicrostructure(rve, &micro));
-  PetscCall(LamRVESetUp(rve));
+  PetscCall(NewTissue(&micro, &rve, NULL));
   printf("%s, turgor %.3g C1+C2\n", LamInterfaceLawNames[interface], turgor);
   for (int k = 0; k < LARGE_STEPS; k++) {
     LargeResult l;

@@ -82,9 +82,7 @@ static PetscErrorCode SolveOn(const Sample *s, const Options *o, Mesh mesh, LamR
   PetscFunctionBeginUser;
   micro.along = mesh.along;
   micro.through = mesh.through;
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
-  PetscCall(LamRVESetMicrostructure(rve, &micro));
-  PetscCall(LamRVESetUp(rve));
+  PetscCall(NewTissue(&micro, &rve, NULL));
   PetscCall(LamRVESetInterrupt(rve, IsTooMuch, &count));
   PetscCall(LamRVEStateCreate(rve, &state));
   PetscCall(LamRVEEstimateCreate(rve, &e));
@@ -96,8 +94,7 @@ static PetscErrorCode SolveOn(const Sample *s, const Options *o, Mesh mesh, LamR
     PetscCall(LamRVEEstimateError(e, state, response)); /* each: it keeps a state of its own */
   }
   PetscCall(LamRVEEstimateDestroy(&e));
-  PetscCall(LamRVEStateDestroy(&state));
-  PetscCall(LamRVEDestroy(&rve));
+  PetscCall(DestroyTissue(&rve, &state));
   PetscFunctionReturn(0);
 }
 

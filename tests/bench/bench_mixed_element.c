@@ -127,9 +127,7 @@ static PetscErrorCode PrintTissue(void)
 
   PetscFunctionBeginUser;
   micro.along = 3, micro.through = 1;
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
-  PetscCall(LamRVESetMicrostructure(rve, &micro));
-  PetscCall(LamRVESetUp(rve));
+  PetscCall(NewTissue(&micro, &rve, NULL));
   printf("\nbonded tissue, a solve per question: energy and force, or error of F\n");
   for (int sealed = 0; sealed < 2; sealed++) {
     Problem p = {.scene = &scene, .rve = rve, .amplitude = 1e-5};

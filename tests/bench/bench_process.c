@@ -5,6 +5,7 @@
 */
 #include <lamella/lamella.h>
 #include "clock.h"
+#include "support/tissue.h"
 #include <math.h>
 #include <stdio.h>
 
@@ -99,9 +100,7 @@ static PetscErrorCode Bench(const char *path)
     scene->micro.along = 6;
     scene->micro.through = 2;
     scene->micro.grading = 0;
-    PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
-    PetscCall(LamRVESetMicrostructure(rve, &scene->micro));
-    PetscCall(LamRVESetUp(rve));
+    PetscCall(NewTissue(&scene->micro, &rve, NULL));
     PetscCall(LamRVEResponderCreate(rve, 1, &responder));
   }
   PetscCall(Measure(scene, &responder));

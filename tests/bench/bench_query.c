@@ -28,6 +28,7 @@
 #include "build.h"
 #include "database_internal.h"
 #include "quantile.h"
+#include "support/tissue.h"
 
 #define ACCURACY 0.01
 #define HELD_OUT 100000  /* where the held-out states begin in the sequence */
@@ -433,9 +434,7 @@ static PetscErrorCode Compare(const Tissue *tissue, const Extent *extent)
   snprintf(text, sizeof(text), scene_text, 0.1 * tissue->ratio, law, tissue->contact ? 0.004 : 0.0,
            tissue->contact ? 0.059 : 0.05);
   PetscCall(LamSceneReadText("bench_query", text, &scene));
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
-  PetscCall(LamRVESetMicrostructure(rve, &scene->micro));
-  PetscCall(LamRVESetUp(rve));
+  PetscCall(NewTissue(&scene->micro, &rve, NULL));
   PetscCall(LamRVEResponderCreate(rve, 0, &bench.solver));
   bench.scene = scene;
   PetscCall(SolveHeldOut(&bench));

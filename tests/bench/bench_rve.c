@@ -4,6 +4,7 @@
 #include <petsctime.h>
 #include <lamella/lamella.h>
 #include "solve.h"
+#include "support/tissue.h"
 
 #define REPEATS 41
 
@@ -80,10 +81,7 @@ static PetscErrorCode Run(PetscInt along, PetscInt through)
   Times times = {0};
 
   PetscFunctionBeginUser;
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
-  PetscCall(LamRVESetMicrostructure(rve, &micro));
-  PetscCall(LamRVESetUp(rve));
-  PetscCall(LamRVEStateCreate(rve, &state));
+  PetscCall(NewTissue(&micro, &rve, &state));
   for (PetscInt k = -2; k < REPEATS; ++k) {
     PetscCall(LamRVEStateReset(rve, state));
     PetscCall(LamRVESolve(rve, &load, state, &response));
@@ -95,8 +93,7 @@ static PetscErrorCode Run(PetscInt along, PetscInt through)
          (int)response.unknowns, (int)response.newton_iterations, 1e3 * times.state, 1e3 * times.factor,
          1e3 * times.solve, 1e3 * times.assemble, 1e3 * times.homogenise, 1e3 * times.traction,
          times.state / (response.newton_iterations * (times.factor + times.solve)));
-  PetscCall(LamRVEStateDestroy(&state));
-  PetscCall(LamRVEDestroy(&rve));
+  PetscCall(DestroyTissue(&rve, &state));
   PetscFunctionReturn(0);
 }
 

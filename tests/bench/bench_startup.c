@@ -55,8 +55,7 @@ static PetscErrorCode SolveStates(void)
 
     PetscCall(LamRVESolve(rve, &load, state, &response));
   }
-  PetscCall(LamRVEStateDestroy(&state));
-  PetscCall(LamRVEDestroy(&rve));
+  PetscCall(DestroyTissue(&rve, &state));
   PetscFunctionReturn(0);
 }
 

@@ -146,9 +146,7 @@ static PetscErrorCode Buckling(PetscInt n0, PetscInt n1, PetscInt along, PetscIn
   micro.cells[1] = n1;
   micro.along = along;
   micro.through = through;
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
-  PetscCall(LamRVESetMicrostructure(rve, &micro));
-  PetscCall(LamRVESetUp(rve));
+  PetscCall(NewTissue(&micro, &rve, NULL));
   PetscCall(BucklingOnset(rve, 0.0, 1e-5, &low, &high));
   printf("%d x %d  %2dx%-4d %.5f .. %.5f\n", (int)n0, (int)n1, (int)along, (int)through, low, high);
   PetscCall(LamRVEStateCreate(rve, &state));
@@ -166,8 +164,7 @@ static PetscErrorCode Buckling(PetscInt n0, PetscInt n1, PetscInt along, PetscIn
            strain[k], energy, (int)negative, LamStatusNames[r.status], r.energy, r.P[0], (int)r.newton_iterations,
            1e3 * r.seconds);
   }
-  PetscCall(LamRVEStateDestroy(&state));
-  PetscCall(LamRVEDestroy(&rve));
+  PetscCall(DestroyTissue(&rve, &state));
   PetscFunctionReturn(0);
 }
 
@@ -239,9 +236,7 @@ static PetscErrorCode RoundingFloor(void)
 
       micro.wall_thickness = thickness[k];
       micro.cells[0] = micro.cells[1] = cells;
-      PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
-      PetscCall(LamRVESetMicrostructure(rve, &micro));
-      PetscCall(LamRVESetUp(rve));
+      PetscCall(NewTissue(&micro, &rve, NULL));
       PetscCall(LamAssemble(rve, &load, rve->mesh.class_X, &energy, rve->residual, &valid));
       printf("  %.2f", LamResidualNorm(rve, rve->residual) / LamNewtonTolerance(rve));
       PetscCall(LamRVEDestroy(&rve));

@@ -1,4 +1,5 @@
 #include "cell_patch.h"
+#include "tissue.h"
 
 #define PATCH_ORIENTATION 30.0 /* cells stand on an edge */
 LamMicrostructure PatchTissue(PetscInt columns, PetscInt rows, double orientation, LamInterfaceLawType interface)
@@ -32,8 +33,7 @@ PetscErrorCode PatchCreate(const LamMicrostructure *micro, LamStrategy strategy,
 PetscErrorCode PatchDestroy(LamRVE *rve, LamRVEState *state)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamRVEStateDestroy(state));
-  PetscCall(LamRVEDestroy(rve));
+  PetscCall(DestroyTissue(rve, state));
   PetscFunctionReturn(0);
 }
 

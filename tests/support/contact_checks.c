@@ -67,10 +67,7 @@ PetscErrorCode ComputeComplementarity(const LamMicrostructure *micro, const LamL
 
   PetscFunctionBeginUser;
   out->product = out->tension = out->overlap = out->residual = 0.0;
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
-  PetscCall(LamRVESetMicrostructure(rve, micro));
-  PetscCall(LamRVESetUp(rve));
-  PetscCall(LamRVEStateCreate(rve, &state));
+  PetscCall(NewTissue(micro, &rve, &state));
   PetscCall(LamRVESolve(rve, load, state, &out->response));
   for (PetscInt h = 0; h < rve->contact->count; h++) {
     const double lambda = rve->contact->lambda[h], gap = rve->contact->gap[h];
@@ -80,8 +77,7 @@ PetscErrorCode ComputeComplementarity(const LamMicrostructure *micro, const LamL
     out->overlap = fmax(out->overlap, -gap);
   }
   if (LamResponseHasFields(&out->response)) PetscCall(ContactResidual(rve, load, &out->residual));
-  PetscCall(LamRVEStateDestroy(&state));
-  PetscCall(LamRVEDestroy(&rve));
+  PetscCall(DestroyTissue(&rve, &state));
   PetscFunctionReturn(0);
 }
 
@@ -180,16 +176,12 @@ PetscErrorCode ComputeStaticTractions(double strain, double turgor, double cohes
 
   PetscFunctionBeginUser;
   micro.orientation = 0.1;
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
-  PetscCall(LamRVESetMicrostructure(rve, &micro));
-  PetscCall(LamRVESetUp(rve));
-  PetscCall(LamRVEStateCreate(rve, &state));
+  PetscCall(NewTissue(&micro, &rve, &state));
   PetscCall(LamRVESolve(rve, &load, state, &out->response));
   FaceForces(rve, m, length);
   out->reference = ReferenceTractionError(&out->response, micro.orientation);
   out->current = CurrentTractionError(&out->response, micro.orientation, (const double(*)[2])m, length);
-  PetscCall(LamRVEStateDestroy(&state));
-  PetscCall(LamRVEDestroy(&rve));
+  PetscCall(DestroyTissue(&rve, &state));
   PetscFunctionReturn(0);
 }
 

@@ -103,16 +103,12 @@ PetscErrorCode SweepContact(const ContactState *point, ContactSweep *sweep)
 
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(sweep, sizeof(*sweep)));
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &at.rve));
-  PetscCall(LamRVESetMicrostructure(at.rve, &point->micro));
-  PetscCall(LamRVESetUp(at.rve));
-  PetscCall(LamRVEStateCreate(at.rve, &at.centre));
+  PetscCall(NewTissue(&point->micro, &at.rve, &at.centre));
   PetscCall(LamRVEStateCreate(at.rve, &at.state));
   PetscCall(LamRVESolve(at.rve, &point->load, at.centre, &sweep->response));
   PetscCall(SweepColumns(&at, point->step, sweep));
   PetscCall(LamRVEStateDestroy(&at.state));
-  PetscCall(LamRVEStateDestroy(&at.centre));
-  PetscCall(LamRVEDestroy(&at.rve));
+  PetscCall(DestroyTissue(&at.rve, &at.centre));
   PetscFunctionReturn(0);
 }
 

@@ -1,4 +1,5 @@
 #include "derivative_checks.h"
+#include "tissue.h"
 
 LamMicrostructure RandomTissue(uint64_t *seed)
 {
@@ -53,15 +54,11 @@ PetscErrorCode SweepLoads(const LamMicrostructure *micro, const LamLoad *load, S
 
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(sweep, sizeof(*sweep)));
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
-  PetscCall(LamRVESetMicrostructure(rve, micro));
-  PetscCall(LamRVESetUp(rve));
-  PetscCall(LamRVEStateCreate(rve, &centre));
+  PetscCall(NewTissue(micro, &rve, &centre));
   PetscCall(LamRVEStateCreate(rve, &state));
   PetscCall(LamRVESolve(rve, load, centre, &sweep->response));
   for (int c = 0; c < 6; c++) PetscCall(SweepColumn(rve, centre, state, sweep_columns[c], sweep));
   PetscCall(LamRVEStateDestroy(&state));
-  PetscCall(LamRVEStateDestroy(&centre));
-  PetscCall(LamRVEDestroy(&rve));
+  PetscCall(DestroyTissue(&rve, &centre));
   PetscFunctionReturn(0);
 }

@@ -1,4 +1,5 @@
 #include "digits.h"
+#include "tissue.h"
 
 static int DigitsSolve(void *ctx, const double rhs[], double solution[])
 {
@@ -84,9 +85,7 @@ PetscErrorCode DigitsMeasure(const LamMicrostructure *micro, const LamLoad *load
 
   PetscFunctionBeginUser;
   *digits = (Digits){0};
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
-  PetscCall(LamRVESetMicrostructure(rve, micro));
-  PetscCall(LamRVESetUp(rve));
+  PetscCall(NewTissue(micro, &rve, NULL));
   PetscCall(LamRVESetWanted(rve, wanted));
   PetscCall(LamRVEStateCreate(rve, &state));
   for (PetscInt k = 1; k <= steps; ++k) {
@@ -100,7 +99,6 @@ PetscErrorCode DigitsMeasure(const LamMicrostructure *micro, const LamLoad *load
   digits->unknowns = rve->linear.n;
   digits->tolerance = LamNewtonTolerance(rve);
   if (response.status == LAM_CONVERGED) PetscCall(DigitsCompare(rve, &response, state, solve, digits));
-  PetscCall(LamRVEStateDestroy(&state));
-  PetscCall(LamRVEDestroy(&rve));
+  PetscCall(DestroyTissue(&rve, &state));
   PetscFunctionReturn(0);
 }

@@ -1,4 +1,5 @@
 #include "endurance.h"
+#include "tissue.h"
 
 #define ENDURANCE_POINTS 2
 
@@ -52,8 +53,7 @@ static PetscErrorCode EnduranceTissueDestroy(EnduranceTissue *t)
 {
   PetscFunctionBeginUser;
   PetscCall(LamRVEStateDestroy(&t->state));
-  PetscCall(LamRVEStateDestroy(&t->reference));
-  PetscCall(LamRVEDestroy(&t->rve));
+  PetscCall(DestroyTissue(&t->rve, &t->reference));
   PetscFunctionReturn(0);
 }
 

@@ -1,4 +1,5 @@
 #include "fe2_patch.h"
+#include "tissue.h"
 
 #define SCALES_ALONG 4 /* elements along a face */
 #define SCALES_THROUGH 1
@@ -34,10 +35,7 @@ PetscErrorCode ScalesSolveCells(const ScalesCase *c, PetscInt n, PetscBool is_pa
   PetscFunctionBeginUser;
   *curve = (ScalesCurve){0};
   PetscCall(PetscTime(&start));
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
-  PetscCall(LamRVESetMicrostructure(rve, &micro));
-  PetscCall(LamRVESetUp(rve));
-  PetscCall(LamRVEStateCreate(rve, &state));
+  PetscCall(NewTissue(&micro, &rve, &state));
   for (int s = 0; s <= steps; s++) {
     const LamLoad load = ScalesLoad(c, (double)s / steps);
 
@@ -49,8 +47,7 @@ PetscErrorCode ScalesSolveCells(const ScalesCase *c, PetscInt n, PetscBool is_pa
     curve->debonded[s - 1] = r.debonded_fraction;
     curve->steps = s;
   }
-  PetscCall(LamRVEStateDestroy(&state));
-  PetscCall(LamRVEDestroy(&rve));
+  PetscCall(DestroyTissue(&rve, &state));
   PetscCall(PetscTime(&end));
   curve->seconds = end - start;
   PetscFunctionReturn(0);
@@ -127,9 +124,7 @@ PetscErrorCode ScalesSolveBody(const ScalesCase *c, int elements, int steps, Sca
   *curve = (ScalesCurve){0};
   PetscCall(PetscTime(&start));
   PetscCall(ScalesScene(c, elements, steps, &scene));
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
-  PetscCall(LamRVESetMicrostructure(rve, &scene->micro));
-  PetscCall(LamRVESetUp(rve));
+  PetscCall(NewTissue(&scene->micro, &rve, NULL));
   PetscCall(LamMacroCreate(PETSC_COMM_SELF, &macro));
   PetscCall(LamMacroSetScene(macro, scene));
   PetscCall(LamMacroSetUp(macro));

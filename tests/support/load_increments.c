@@ -1,4 +1,5 @@
 #include "load_increments.h"
+#include "tissue.h"
 
 #define INCREMENT_WATER (2200.0 / TISSUE_STRESS)
 static PetscBool IncrementIsContact(IncrementKind kind)
@@ -50,8 +51,7 @@ PetscErrorCode IncrementDestroy(IncrementTissue *t)
 {
   PetscFunctionBeginUser;
   PetscCall(LamRVEStateDestroy(&t->base));
-  PetscCall(LamRVEStateDestroy(&t->state));
-  PetscCall(LamRVEDestroy(&t->rve));
+  PetscCall(DestroyTissue(&t->rve, &t->state));
   PetscFunctionReturn(0);
 }
 

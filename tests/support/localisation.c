@@ -1,4 +1,5 @@
 #include "localisation.h"
+#include "tissue.h"
 
 #define LOCALISATION_LOW 0.01
 #define LOCALISATION_HIGH 0.04
@@ -24,9 +25,7 @@ PetscErrorCode WaveOnset(const LamMicrostructure *cell, PetscInt n, PetscInt wan
   PetscFunctionBeginUser;
   micro.cells[0] = 1;
   micro.cells[1] = n;
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
-  PetscCall(LamRVESetMicrostructure(rve, &micro));
-  PetscCall(LamRVESetUp(rve));
+  PetscCall(NewTissue(&micro, &rve, NULL));
   while (high - low > width) {
     const double middle = 0.5 * (low + high);
     PetscInt negative;

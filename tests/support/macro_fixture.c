@@ -49,6 +49,35 @@ LamBoundary *FixtureAdd(Fixture *fixture, const char on[], LamBoundaryKind kind)
   return boundary;
 }
 
+void FixtureSymmetry(Fixture *fixture)
+{
+  FixtureAdd(fixture, "left", LAM_BOUNDARY_SYMMETRY);
+  FixtureAdd(fixture, "bottom", LAM_BOUNDARY_SYMMETRY);
+}
+
+void FixtureIndenter(Fixture *fixture, PetscReal radius, PetscReal x, PetscReal y, PetscReal ux, PetscReal uy)
+{
+  LamBoundary *boundary = FixtureAdd(fixture, "top", LAM_BOUNDARY_INDENTER);
+
+  boundary->radius = radius;
+  boundary->at[0] = x;
+  boundary->at[1] = y;
+  boundary->displacement[0] = ux;
+  boundary->displacement[1] = uy;
+}
+
+void FixtureInflate(Fixture *fixture)
+{
+  fixture->scene.turgor = 0.4;
+  fixture->scene.macro.inflate = PETSC_TRUE;
+}
+
+void FixtureLegs(Fixture *fixture, PetscInt n, const LamLeg legs[])
+{
+  fixture->scene.macro.leg_count = n;
+  memcpy(fixture->scene.macro.legs, legs, (size_t)n * sizeof(*legs));
+}
+
 void FixtureDisc(Fixture *fixture, LamDiscPart part, PetscInt along, PetscInt across)
 {
   fixture->scene.macro.source = LAM_MESH_DISC;
@@ -81,9 +110,31 @@ void FixtureSetUp(Fixture *fixture, MPI_Comm comm)
   assert_ok(LamMacroSetMonitor(fixture->macro, FixtureMonitor, fixture));
 }
 
-void FixtureSolve(Fixture *fixture)
+void FixtureRefused(Fixture *fixture)
+{
+  assert_ok(LamMacroCreate(PETSC_COMM_WORLD, &fixture->macro));
+  assert_ok(LamMacroSetScene(fixture->macro, &fixture->scene));
+  assert_ok(PetscPushErrorHandler(PetscIgnoreErrorHandler, NULL));
+  assert_int_equal(LamMacroSetUp(fixture->macro), PETSC_ERR_USER_INPUT);
+  assert_ok(PetscPopErrorHandler());
+}
+
+void FixtureSolve(Fixture *fixture, LamMacroReason reason)
 {
   assert_ok(LamMacroSolve(fixture->macro, &fixture->reason, fixture->message));
+  assert_int_equal(fixture->reason, reason);
+}
+
+void FixtureRun(Fixture *fixture, MPI_Comm comm, LamMacroReason reason)
+{
+  FixtureSetUp(fixture, comm);
+  FixtureSolve(fixture, reason);
+}
+
+const LamMacroFields *FixtureFields(Fixture *fixture)
+{
+  assert_ok(LamMacroGetFields(fixture->macro, &fixture->fields));
+  return &fixture->fields;
 }
 
 const LamMacroStep *FixtureLast(const Fixture *fixture)
@@ -94,8 +145,9 @@ const LamMacroStep *FixtureLast(const Fixture *fixture)
 
 void FixtureDestroy(Fixture *fixture)
 {
+  assert_ok(LamMacroFieldsDestroy(&fixture->fields));
   assert_ok(LamMacroDestroy(&fixture->macro));
-  assert_ok(fixture->responder.destroy(&fixture->responder.ctx));
+  if (fixture->material) assert_ok(fixture->responder.destroy(&fixture->responder.ctx));
 }
 
 void FixtureShear(Fixture *fixture, PetscInt elements, PetscReal shear, PetscInt steps)

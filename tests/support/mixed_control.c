@@ -1,4 +1,5 @@
 #include "mixed_control.h"
+#include "tissue.h"
 
 void MixedLoad(const MixedCase *c, const double before[9], LamLoad *load, LamStressControl *control)
 {
@@ -24,15 +25,11 @@ PetscErrorCode SolveMixedCase(const MixedCase *c, MixedResult *result)
 
   PetscFunctionBeginUser;
   MixedLoad(c, undeformed, &load, &control);
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
-  PetscCall(LamRVESetMicrostructure(rve, &micro));
-  PetscCall(LamRVESetUp(rve));
-  PetscCall(LamRVEStateCreate(rve, &state));
+  PetscCall(NewTissue(&micro, &rve, &state));
   PetscCall(LamRVESolveMixed(rve, &load, &control, state, &result->mixed));
   PetscCall(LamRVEStateReset(rve, state));
   PetscCall(LamRVESolve(rve, &result->mixed.load, state, &result->plain));
-  PetscCall(LamRVEStateDestroy(&state));
-  PetscCall(LamRVEDestroy(&rve));
+  PetscCall(DestroyTissue(&rve, &state));
   result->stress = result->apart = 0.0;
   for (int i = 0; i < 9; i++) {
     if (control.given[i]) result->stress = fmax(result->stress, fabs(result->mixed.P[i] - control.P[i]));

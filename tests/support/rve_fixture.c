@@ -4,9 +4,7 @@ LamRVE NewRVE(const LamMicrostructure *micro)
 {
   LamRVE rve;
 
-  assert_int_equal(LamRVECreate(PETSC_COMM_SELF, &rve), 0);
-  assert_int_equal(LamRVESetMicrostructure(rve, micro), 0);
-  assert_int_equal(LamRVESetUp(rve), 0);
+  CHECK(NewTissue(micro, &rve, NULL));
   return rve;
 }
 
@@ -23,9 +21,8 @@ LamResponse SolveFromReference(LamRVE rve, LamLoad load)
 
 LamResponse SolveTissue(const LamMicrostructure *micro, LamLoad load)
 {
-  LamRVE rve = NewRVE(micro);
-  const LamResponse response = SolveFromReference(rve, load);
+  LamResponse response;
 
-  assert_int_equal(LamRVEDestroy(&rve), 0);
+  CHECK(SolveOnce(micro, &load, &response));
   return response;
 }

@@ -1,4 +1,5 @@
 #include "sealed_cells.h"
+#include "tissue.h"
 
 PetscErrorCode SealedCreate(const LamMicrostructure *micro, const LamLoad *load, double bulk_modulus, SealedTissue *s)
 {
@@ -47,8 +48,7 @@ PetscErrorCode SealedDestroy(SealedTissue *s)
 {
   PetscFunctionBeginUser;
   PetscCall(LamRVEStateDestroy(&s->start));
-  PetscCall(LamRVEStateDestroy(&s->state));
-  PetscCall(LamRVEDestroy(&s->rve));
+  PetscCall(DestroyTissue(&s->rve, &s->state));
   PetscFunctionReturn(0);
 }
 

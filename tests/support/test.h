@@ -3,6 +3,8 @@
   in test.c.
 
     TEST(name) { ... }
+    TEST_IS(name, statement);                             where one statement is all of it
+    TEST_ON(name, type, object, enter, leave) { ... }     on a `type *object` that one statement makes and one unmakes
     TEST_WITH(name, enter, leave) { ... }                 its own set-up and tear-down, or NULL
     TEST_GROUP(.petsc = 1, .setup = s, .teardown = t);    once, where the program needs PETSc or has a set-up of all
 */
@@ -39,6 +41,23 @@ extern const TestGroup TestProgram;
   }                                                                                                                    \
   static void name(void **state)
 #define TEST(name) TEST_WITH(name, NULL, NULL)
+#define TEST_IS(name, ...)                                                                                             \
+  TEST(name)                                                                                                           \
+  {                                                                                                                    \
+    __VA_ARGS__;                                                                                                       \
+  }                                                                                                                    \
+  extern const TestGroup TestProgram /* takes the semicolon */
+#define TEST_ON(name, type, object, enter, leave)                                                                      \
+  static void name##_on(type *object);                                                                                 \
+  TEST(name)                                                                                                           \
+  {                                                                                                                    \
+    type made, *object = &made;                                                                                        \
+                                                                                                                       \
+    enter;                                                                                                             \
+    name##_on(object);                                                                                                 \
+    leave;                                                                                                             \
+  }                                                                                                                    \
+  static void name##_on(type *object)
 #define TEST_GROUP(...) const TestGroup TestProgram = {__VA_ARGS__}
 
 #define CHECK(call) assert_int_equal((call), 0)

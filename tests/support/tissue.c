@@ -18,18 +18,32 @@ LamLoad PlaneLoad(double F11, double F12, double F21, double F22, double turgor)
   return load;
 }
 
+PetscErrorCode NewTissue(const LamMicrostructure *micro, LamRVE *rve, LamRVEState *state)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamRVECreate(PETSC_COMM_SELF, rve));
+  PetscCall(LamRVESetMicrostructure(*rve, micro));
+  PetscCall(LamRVESetUp(*rve));
+  if (state) PetscCall(LamRVEStateCreate(*rve, state));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DestroyTissue(LamRVE *rve, LamRVEState *state)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEStateDestroy(state));
+  PetscCall(LamRVEDestroy(rve));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SolveOnce(const LamMicrostructure *micro, const LamLoad *load, LamResponse *response)
 {
   LamRVE rve;
   LamRVEState state;
 
   PetscFunctionBeginUser;
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
-  PetscCall(LamRVESetMicrostructure(rve, micro));
-  PetscCall(LamRVESetUp(rve));
-  PetscCall(LamRVEStateCreate(rve, &state));
+  PetscCall(NewTissue(micro, &rve, &state));
   PetscCall(LamRVESolve(rve, load, state, response));
-  PetscCall(LamRVEStateDestroy(&state));
-  PetscCall(LamRVEDestroy(&rve));
+  PetscCall(DestroyTissue(&rve, &state));
   PetscFunctionReturn(0);
 }

@@ -120,6 +120,9 @@ static void TearDown(Fixture *fixture)
   assert_ok(LamDatabaseClose(&fixture->database));
 }
 
+/* A test with a `Fixture *fixture` of this kind. */
+#define CACHE_TEST(name, kind) TEST_ON(name, Fixture, fixture, SetUp(fixture, PETSC_COMM_SELF, kind), TearDown(fixture))
+
 static void SetLoad(Fixture *fixture, PetscInt p, PetscReal stretch)
 {
   fixture->loads[p] = (LamLoad){{1 + stretch, 0.3 * stretch, 0, 0, 1, 0, 0, 0, 1}, 0.1, 0};
@@ -129,6 +132,13 @@ static void SetLoad(Fixture *fixture, PetscInt p, PetscReal stretch)
 static void Respond(Fixture *fixture, PetscInt n)
 {
   assert_ok(fixture->cache.respond(fixture->cache.ctx, n, fixture->loads, fixture->points, fixture->responses));
+}
+
+/* One point, stretched so. */
+static void RespondAt(Fixture *fixture, PetscReal stretch)
+{
+  SetLoad(fixture, 0, stretch);
+  Respond(fixture, 1);
 }
 
 static PetscInt RecordCount(const Fixture *fixture)
@@ -169,278 +179,219 @@ static void RefineAround(Fixture *fixture, const LamLoad *load)
 /* ---- what is solved ---- */
 
 /* What is asked the first time is solved for, the second time it is found. */
-TEST(SecondQuestionIsAHit)
+CACHE_TEST(SecondQuestionIsAHit, CACHE)
 {
-  Fixture fixture;
   PetscInt64 solves;
 
-  SetUp(&fixture, PETSC_COMM_SELF, CACHE);
-  SetLoad(&fixture, 0, 0.1);
-  Respond(&fixture, 1);
-  assert_int_equal(fixture.responses[0].source, LAM_SOURCE_DATABASE);
-  assert_int_equal(fixture.cache.hits, 0);
-  assert_true((solves = fixture.cache.solves) > 0);
-  Respond(&fixture, 1);
-  assert_int_equal(fixture.cache.hits, 1);
-  assert_int_equal(fixture.cache.solves, solves);
-  assert_int_equal(fixture.cache.queries, 2);
-  TearDown(&fixture);
+  RespondAt(fixture, 0.1);
+  assert_int_equal(fixture->responses[0].source, LAM_SOURCE_DATABASE);
+  assert_int_equal(fixture->cache.hits, 0);
+  assert_true((solves = fixture->cache.solves) > 0);
+  Respond(fixture, 1);
+  assert_int_equal(fixture->cache.hits, 1);
+  assert_int_equal(fixture->cache.solves, solves);
+  assert_int_equal(fixture->cache.queries, 2);
 }
 
-TEST(AnswersAreAccurate)
+CACHE_TEST(AnswersAreAccurate, CACHE)
 {
-  Fixture fixture;
-
-  SetUp(&fixture, PETSC_COMM_SELF, CACHE);
-  for (PetscInt p = 0; p < POINTS; p++) SetLoad(&fixture, p, 0.02 * p);
-  Respond(&fixture, POINTS);
+  for (PetscInt p = 0; p < POINTS; p++) SetLoad(fixture, p, 0.02 * p);
+  Respond(fixture, POINTS);
   for (PetscInt p = 0; p < POINTS; p++) {
-    assert_int_equal(fixture.responses[p].status, LAM_CONVERGED);
-    assert_true(Error(&fixture, p) < ACCURACY);
+    assert_int_equal(fixture->responses[p].status, LAM_CONVERGED);
+    assert_true(Error(fixture, p) < ACCURACY);
   }
-  TearDown(&fixture);
 }
 
 /* Questions around share the nodes: of many questions most cost nothing. */
-TEST(QuestionsShareNodes)
+CACHE_TEST(QuestionsShareNodes, CACHE)
 {
-  Fixture fixture;
   PetscInt64 solves;
 
-  SetUp(&fixture, PETSC_COMM_SELF, CACHE);
-  SetLoad(&fixture, 0, 0.1);
-  Respond(&fixture, 1);
-  solves = fixture.cache.solves;
-  for (PetscInt p = 0; p < POINTS; p++) SetLoad(&fixture, p, 0.1 + 1e-3 * p);
-  Respond(&fixture, POINTS);
-  assert_int_equal(fixture.cache.solves, solves);
-  TearDown(&fixture);
+  RespondAt(fixture, 0.1);
+  solves = fixture->cache.solves;
+  for (PetscInt p = 0; p < POINTS; p++) SetLoad(fixture, p, 0.1 + 1e-3 * p);
+  Respond(fixture, POINTS);
+  assert_int_equal(fixture->cache.solves, solves);
 }
 
-TEST(NodesAreTheNodeSolvers)
+CACHE_TEST(NodesAreTheNodeSolvers, CACHE_WITH_NODES)
 {
-  Fixture fixture;
-
-  SetUp(&fixture, PETSC_COMM_SELF, CACHE_WITH_NODES);
-  SetLoad(&fixture, 0, 0.1);
-  Respond(&fixture, 1);
-  assert_true(Error(&fixture, 0) < ACCURACY);
-  assert_int_equal(fixture.material->calls, 0);
-  assert_int_equal(fixture.cache.solves, fixture.node_calls);
-  assert_int_equal(RecordCount(&fixture), fixture.node_calls);
-  TearDown(&fixture);
+  RespondAt(fixture, 0.1);
+  assert_true(Error(fixture, 0) < ACCURACY);
+  assert_int_equal(fixture->material->calls, 0);
+  assert_int_equal(fixture->cache.solves, fixture->node_calls);
+  assert_int_equal(RecordCount(fixture), fixture->node_calls);
 }
 
 /* With more accuracy than nodes can give; a question and its mirror image share a solve, and both get their own answer.
  */
-TEST(StatesBesideTheTableStartFromANode)
+CACHE_TEST(StatesBesideTheTableStartFromANode, CACHE_WITH_NODES)
 {
   const PetscReal c = cos(0.3), s = sin(0.3);
-  Fixture fixture;
 
-  SetUp(&fixture, PETSC_COMM_SELF, CACHE_WITH_NODES);
-  fixture.nodes.solve_near = SolveNear;
-  assert_ok(fixture.cache.destroy(&fixture.cache.ctx));
-  assert_ok(LamCacheResponderCreate(PETSC_COMM_SELF, fixture.database, &fixture.solver, &fixture.nodes,
-                                    LAM_OUTSIDE_SOLVE, 1e-14, POINTS, &fixture.cache));
-  SetLoad(&fixture, 0, 0.1);
-  fixture.loads[1] = fixture.loads[0];
-  fixture.loads[1].F[1] *= -1;
-  fixture.loads[2] = fixture.loads[0]; /* R F */
+  fixture->nodes.solve_near = SolveNear;
+  assert_ok(fixture->cache.destroy(&fixture->cache.ctx));
+  assert_ok(LamCacheResponderCreate(PETSC_COMM_SELF, fixture->database, &fixture->solver, &fixture->nodes,
+                                    LAM_OUTSIDE_SOLVE, 1e-14, POINTS, &fixture->cache));
+  SetLoad(fixture, 0, 0.1);
+  fixture->loads[1] = fixture->loads[0];
+  fixture->loads[1].F[1] *= -1;
+  fixture->loads[2] = fixture->loads[0]; /* R F */
   for (int j = 0; j < 2; j++) {
-    fixture.loads[2].F[j] = c * fixture.loads[0].F[j] - s * fixture.loads[0].F[3 + j];
-    fixture.loads[2].F[3 + j] = s * fixture.loads[0].F[j] + c * fixture.loads[0].F[3 + j];
+    fixture->loads[2].F[j] = c * fixture->loads[0].F[j] - s * fixture->loads[0].F[3 + j];
+    fixture->loads[2].F[3 + j] = s * fixture->loads[0].F[j] + c * fixture->loads[0].F[3 + j];
   }
-  for (PetscInt p = 0; p < 3; p++) fixture.points[p] = p;
-  Respond(&fixture, 3);
-  assert_int_equal(fixture.near_calls, 1);
+  for (PetscInt p = 0; p < 3; p++) fixture->points[p] = p;
+  Respond(fixture, 3);
+  assert_int_equal(fixture->near_calls, 1);
   for (PetscInt p = 0; p < 3; p++) {
-    assert_int_equal(fixture.responses[p].source, LAM_SOURCE_SOLVE);
-    assert_true(Error(&fixture, p) < 1e-10);
+    assert_int_equal(fixture->responses[p].source, LAM_SOURCE_SOLVE);
+    assert_true(Error(fixture, p) < 1e-10);
   }
-  TearDown(&fixture);
 }
 
 /* Where no node helps the state is solved as it was asked for, and is found when it is asked for again. */
-TEST(WithoutNodesTheStateIsSolved)
+CACHE_TEST(WithoutNodesTheStateIsSolved, CACHE_WITH_BAD_NODES)
 {
-  Fixture fixture;
   PetscInt64 solves;
 
-  SetUp(&fixture, PETSC_COMM_SELF, CACHE_WITH_BAD_NODES);
-  SetLoad(&fixture, 0, 0.1);
-  Respond(&fixture, 1);
-  assert_int_equal(fixture.responses[0].status, LAM_CONVERGED);
-  assert_int_equal(fixture.responses[0].source, LAM_SOURCE_SOLVE);
-  assert_true(Error(&fixture, 0) < 1e-13);
-  solves = fixture.cache.solves;
-  assert_int_equal(solves, fixture.node_calls + 1);
-  Respond(&fixture, 1);
-  assert_true(Error(&fixture, 0) < 1e-12);
-  assert_int_equal(fixture.cache.solves, solves);
-  assert_int_equal(fixture.cache.hits, 1);
-  TearDown(&fixture);
+  RespondAt(fixture, 0.1);
+  assert_int_equal(fixture->responses[0].status, LAM_CONVERGED);
+  assert_int_equal(fixture->responses[0].source, LAM_SOURCE_SOLVE);
+  assert_true(Error(fixture, 0) < 1e-13);
+  solves = fixture->cache.solves;
+  assert_int_equal(solves, fixture->node_calls + 1);
+  Respond(fixture, 1);
+  assert_true(Error(fixture, 0) < 1e-12);
+  assert_int_equal(fixture->cache.solves, solves);
+  assert_int_equal(fixture->cache.hits, 1);
 }
 
 /* A database without a grid: equal questions, and they alone, share a solve. */
-TEST(WithoutAGridStatesAreSolved)
+CACHE_TEST(WithoutAGridStatesAreSolved, NO_GRID)
 {
-  Fixture fixture;
-
-  SetUp(&fixture, PETSC_COMM_SELF, NO_GRID);
-  for (PetscInt p = 0; p < 4; p++) SetLoad(&fixture, p, 0.1 + 1e-4 * (p / 2) + 1e-15 * p);
-  Respond(&fixture, 4);
-  assert_int_equal(fixture.cache.solves, 2);
-  for (PetscInt p = 0; p < 4; p++) assert_true(Error(&fixture, p) < 1e-13);
-  TearDown(&fixture);
+  for (PetscInt p = 0; p < 4; p++) SetLoad(fixture, p, 0.1 + 1e-4 * (p / 2) + 1e-15 * p);
+  Respond(fixture, 4);
+  assert_int_equal(fixture->cache.solves, 2);
+  for (PetscInt p = 0; p < 4; p++) assert_true(Error(fixture, p) < 1e-13);
 }
 
-TEST(DatabaseAloneNeverSolves)
+CACHE_TEST(DatabaseAloneNeverSolves, NO_SOLVER)
 {
-  Fixture fixture;
   LamResponse answer;
   LamTable table;
 
-  SetUp(&fixture, PETSC_COMM_SELF, NO_SOLVER);
-  SetLoad(&fixture, 0, 0.1);
-  Respond(&fixture, 1);
-  assert_int_equal(fixture.responses[0].status, LAM_OUT_OF_REACH);
-  assert_int_equal(fixture.cache.failures, 1);
-  assert_int_equal(fixture.material->calls, 0);
-  assert_ok(LamDatabaseGetTable(fixture.database, &table));
-  assert_ok(LamTableQuery(table, &fixture.loads[0], ACCURACY, &answer));
+  RespondAt(fixture, 0.1);
+  assert_int_equal(fixture->responses[0].status, LAM_OUT_OF_REACH);
+  assert_int_equal(fixture->cache.failures, 1);
+  assert_int_equal(fixture->material->calls, 0);
+  assert_ok(LamDatabaseGetTable(fixture->database, &table));
+  assert_ok(LamTableQuery(table, &fixture->loads[0], ACCURACY, &answer));
   assert_ok(LamTableDestroy(&table));
   assert_true(answer.reason[0]);
-  assert_string_equal(fixture.responses[0].reason, answer.reason);
-  TearDown(&fixture);
+  assert_string_equal(fixture->responses[0].reason, answer.reason);
 }
 
 /* ---- what fails ---- */
 
 /* A failed solve is the answer to its question, with its status and reason. */
-TEST(FailedSolveIsTheAnswer)
+CACHE_TEST(FailedSolveIsTheAnswer, CACHE)
 {
-  Fixture fixture;
-
-  SetUp(&fixture, PETSC_COMM_SELF, CACHE);
-  fixture.material->largest_strain = 0.05;
-  SetLoad(&fixture, 0, 0.1);
-  SetLoad(&fixture, 1, 0.1001);
-  Respond(&fixture, 2);
+  fixture->material->largest_strain = 0.05;
+  SetLoad(fixture, 0, 0.1);
+  SetLoad(fixture, 1, 0.1001);
+  Respond(fixture, 2);
   for (PetscInt p = 0; p < 2; p++) {
-    assert_int_equal(fixture.responses[p].status, LAM_NOT_CONVERGED);
-    assert_string_equal(fixture.responses[p].reason, "too far");
-    assert_true(fixture.responses[p].load.F[0] == fixture.loads[p].F[0]);
+    assert_int_equal(fixture->responses[p].status, LAM_NOT_CONVERGED);
+    assert_string_equal(fixture->responses[p].reason, "too far");
+    assert_true(fixture->responses[p].load.F[0] == fixture->loads[p].F[0]);
   }
-  assert_int_equal(fixture.cache.failures, 2);
-  TearDown(&fixture);
+  assert_int_equal(fixture->cache.failures, 2);
 }
 
 /* queries = hits + solved for + failures: close questions are solved for by the same nodes, a new answer is no hit. */
-TEST(CountsAddUp)
+CACHE_TEST(CountsAddUp, CACHE)
 {
-  Fixture fixture;
-
-  SetUp(&fixture, PETSC_COMM_SELF, CACHE);
-  fixture.material->largest_strain = 0.3;
-  for (PetscInt p = 0; p < 4; p++) SetLoad(&fixture, p, 0.01 * p);
-  SetLoad(&fixture, 4, 0.35);
-  Respond(&fixture, 5);
-  assert_int_equal(fixture.cache.queries, 5);
-  assert_int_equal(fixture.cache.hits, 0);
-  assert_int_equal(fixture.cache.solves, fixture.solver.solves);
-  assert_int_equal(fixture.cache.solves, RecordCount(&fixture));
-  assert_int_equal(fixture.cache.failures, 1);
-  fixture.loads[5] = fixture.loads[0];
-  fixture.loads[5].F[0] = -1; /* a query refuses it: no hit */
-  fixture.points[5] = 5;
-  Respond(&fixture, 6);
-  assert_int_equal(fixture.cache.queries, 11);
-  assert_int_equal(fixture.cache.hits, 4);
-  assert_int_equal(fixture.cache.failures, 3);
-  TearDown(&fixture);
+  fixture->material->largest_strain = 0.3;
+  for (PetscInt p = 0; p < 4; p++) SetLoad(fixture, p, 0.01 * p);
+  SetLoad(fixture, 4, 0.35);
+  Respond(fixture, 5);
+  assert_int_equal(fixture->cache.queries, 5);
+  assert_int_equal(fixture->cache.hits, 0);
+  assert_int_equal(fixture->cache.solves, fixture->solver.solves);
+  assert_int_equal(fixture->cache.solves, RecordCount(fixture));
+  assert_int_equal(fixture->cache.failures, 1);
+  fixture->loads[5] = fixture->loads[0];
+  fixture->loads[5].F[0] = -1; /* a query refuses it: no hit */
+  fixture->points[5] = 5;
+  Respond(fixture, 6);
+  assert_int_equal(fixture->cache.queries, 11);
+  assert_int_equal(fixture->cache.hits, 4);
+  assert_int_equal(fixture->cache.failures, 3);
 }
 
 /* Of a batch that the solver left unfinished the solved part is kept, and nothing else; nothing is asked again. */
-TEST(StoppedBatchKeepsWhatIsSolved)
+CACHE_TEST(StoppedBatchKeepsWhatIsSolved, CACHE)
 {
-  Fixture fixture;
-
-  SetUp(&fixture, PETSC_COMM_SELF, CACHE);
-  fixture.solver.respond = RespondStopped;
-  SetLoad(&fixture, 0, 0.1);
-  Respond(&fixture, 1);
-  assert_int_equal(fixture.responses[0].status, LAM_OUT_OF_REACH);
-  assert_int_equal(RecordCount(&fixture), 1);
-  assert_int_equal(fixture.material->calls, 1);
-  TearDown(&fixture);
+  fixture->solver.respond = RespondStopped;
+  RespondAt(fixture, 0.1);
+  assert_int_equal(fixture->responses[0].status, LAM_OUT_OF_REACH);
+  assert_int_equal(RecordCount(fixture), 1);
+  assert_int_equal(fixture->material->calls, 1);
 }
 
 /* It refines its table, but solves no state for itself. */
-TEST(StoppingCacheSolvesNodesAlone)
+CACHE_TEST(StoppingCacheSolvesNodes, STOPPING_CACHE)
 {
-  Fixture fixture;
+  RespondAt(fixture, 0.1);
+  assert_int_equal(fixture->responses[0].status, LAM_CONVERGED);
+  assert_int_equal(fixture->cache.interpolated, 1);
+}
 
-  SetUp(&fixture, PETSC_COMM_SELF, STOPPING_CACHE);
-  SetLoad(&fixture, 0, 0.1);
-  Respond(&fixture, 1);
-  assert_int_equal(fixture.responses[0].status, LAM_CONVERGED);
-  assert_int_equal(fixture.cache.interpolated, 1);
-  TearDown(&fixture);
-
-  SetUp(&fixture, PETSC_COMM_SELF, STOPPING_WITH_BAD_NODES);
-  SetLoad(&fixture, 0, 0.1);
-  Respond(&fixture, 1);
-  assert_int_equal(fixture.responses[0].status, LAM_OUT_OF_REACH);
-  assert_true(fixture.responses[0].reason[0] != 0);
-  assert_int_equal(fixture.material->calls, 0);
-  assert_int_equal(fixture.cache.interpolated, 0);
-  assert_int_equal(fixture.cache.failures, 1);
-  TearDown(&fixture);
+CACHE_TEST(StoppingCacheSolvesNothingElse, STOPPING_WITH_BAD_NODES)
+{
+  RespondAt(fixture, 0.1);
+  assert_int_equal(fixture->responses[0].status, LAM_OUT_OF_REACH);
+  assert_true(fixture->responses[0].reason[0] != 0);
+  assert_int_equal(fixture->material->calls, 0);
+  assert_int_equal(fixture->cache.interpolated, 0);
+  assert_int_equal(fixture->cache.failures, 1);
 }
 
 /* ---- models of states beside the table ---- */
 
 /* Where no node helps, the state solved for a point answers it in a neighbourhood, also in the next load step. */
-TEST(SolvedStateAnswersAround)
+CACHE_TEST(SolvedStateAnswersAround, CACHE_WITH_BAD_NODES)
 {
-  Fixture fixture;
   PetscInt64 solves;
 
-  SetUp(&fixture, PETSC_COMM_SELF, CACHE_WITH_BAD_NODES);
-  SetLoad(&fixture, 0, 0.1);
-  Respond(&fixture, 1);
-  solves = fixture.cache.solves;
+  RespondAt(fixture, 0.1);
+  solves = fixture->cache.solves;
   for (PetscInt k = 1; k <= 4; k++) {
-    SetLoad(&fixture, 0, 0.1 + 2e-3 * (PetscReal)k);
-    Respond(&fixture, 1);
-    assert_int_equal(fixture.responses[0].source, LAM_SOURCE_DATABASE);
-    assert_true(Error(&fixture, 0) < ACCURACY);
-    assert_ok(fixture.cache.accept(fixture.cache.ctx));
+    RespondAt(fixture, 0.1 + 2e-3 * (PetscReal)k);
+    assert_int_equal(fixture->responses[0].source, LAM_SOURCE_DATABASE);
+    assert_true(Error(fixture, 0) < ACCURACY);
+    assert_ok(fixture->cache.accept(fixture->cache.ctx));
   }
-  assert_int_equal(fixture.cache.solves, solves);
-  SetLoad(&fixture, 0, 0.2);
-  Respond(&fixture, 1);
-  assert_int_equal(fixture.responses[0].source, LAM_SOURCE_SOLVE);
-  TearDown(&fixture);
+  assert_int_equal(fixture->cache.solves, solves);
+  RespondAt(fixture, 0.2);
+  assert_int_equal(fixture->responses[0].source, LAM_SOURCE_SOLVE);
 }
 
 /* Stress is the derivative of the energy, and the tangent that of stress, away from the state that was solved. */
-TEST(AnswersAroundAreOfOnePotential)
+CACHE_TEST(AnswersAroundAreOfOnePotential, CACHE_WITH_BAD_NODES)
 {
   const PetscReal h = 1e-5;
   LamResponse at[3];
-  Fixture fixture;
 
-  SetUp(&fixture, PETSC_COMM_SELF, CACHE_WITH_BAD_NODES);
-  SetLoad(&fixture, 0, 0.1);
-  Respond(&fixture, 1);
+  RespondAt(fixture, 0.1);
   for (int k = 0; k < 3; k++) {
-    SetLoad(&fixture, 0, 0.108);
-    fixture.loads[0].F[1] += h * (k - 1);
-    Respond(&fixture, 1);
-    assert_int_equal(fixture.responses[0].source, LAM_SOURCE_DATABASE);
-    at[k] = fixture.responses[0];
+    SetLoad(fixture, 0, 0.108);
+    fixture->loads[0].F[1] += h * (k - 1);
+    Respond(fixture, 1);
+    assert_int_equal(fixture->responses[0].source, LAM_SOURCE_DATABASE);
+    at[k] = fixture->responses[0];
   }
   assert_float_equal((at[2].energy - at[0].energy) / (2 * h), at[1].P[1], 1e-8);
   assert_float_equal(at[1].lumen_fraction, -at[1].energy_turgor, 1e-14);
@@ -448,37 +399,25 @@ TEST(AnswersAroundAreOfOnePotential)
     if (i % 3 == 2 || i / 3 == 2) continue;
     assert_float_equal((at[2].P[i] - at[0].P[i]) / (2 * h), at[1].tangent[9 * i + 1], 1e-7);
   }
-  TearDown(&fixture);
 }
 
 /* What a point took to in a step that was given up is forgotten with it. */
-TEST(RejectedStepGivesTheModelBack)
+CACHE_TEST(RejectedStepGivesTheModelBack, CACHE_WITH_BAD_NODES)
 {
-  Fixture fixture;
-
-  SetUp(&fixture, PETSC_COMM_SELF, CACHE_WITH_BAD_NODES);
-  SetLoad(&fixture, 0, 0.1);
-  Respond(&fixture, 1);
-  assert_ok(fixture.cache.accept(fixture.cache.ctx));
-  SetLoad(&fixture, 0, 0.2);
-  Respond(&fixture, 1);
-  assert_ok(fixture.cache.reject(fixture.cache.ctx));
-  SetLoad(&fixture, 0, 0.13); /* too far away to take to the model anew */
-  Respond(&fixture, 1);
-  assert_int_equal(fixture.responses[0].source, LAM_SOURCE_DATABASE);
-  TearDown(&fixture);
+  RespondAt(fixture, 0.1);
+  assert_ok(fixture->cache.accept(fixture->cache.ctx));
+  RespondAt(fixture, 0.2);
+  assert_ok(fixture->cache.reject(fixture->cache.ctx));
+  SetLoad(fixture, 0, 0.13); /* too far away to take to the model anew */
+  Respond(fixture, 1);
+  assert_int_equal(fixture->responses[0].source, LAM_SOURCE_DATABASE);
 }
 
-TEST(QuestionThatIsNoNumberIsInvalid)
+CACHE_TEST(QuestionThatIsNoNumberIsInvalid, NO_GRID)
 {
-  Fixture fixture;
-
-  SetUp(&fixture, PETSC_COMM_SELF, NO_GRID);
-  SetLoad(&fixture, 0, NAN);
-  Respond(&fixture, 1);
-  assert_int_equal(fixture.responses[0].status, LAM_INVALID_F);
-  assert_int_equal(RecordCount(&fixture), 0);
-  TearDown(&fixture);
+  RespondAt(fixture, NAN);
+  assert_int_equal(fixture->responses[0].status, LAM_INVALID_F);
+  assert_int_equal(RecordCount(fixture), 0);
 }
 
 /* A run that goes on with the bytes of another one, and its records in another order, has the same answer. */
@@ -517,98 +456,73 @@ TEST(KeptModelIsFoundAgain)
 }
 
 /* Points close to each other share the states of a few of them. */
-TEST(NeighboursShareModels)
+CACHE_TEST(NeighboursShareModels, CACHE_WITH_BAD_NODES)
 {
-  Fixture fixture;
-
-  SetUp(&fixture, PETSC_COMM_SELF, CACHE_WITH_BAD_NODES);
-  for (PetscInt p = 0; p < POINTS; p++) SetLoad(&fixture, p, 0.1 + 1e-3 * (PetscReal)p);
-  Respond(&fixture, POINTS);
-  assert_int_equal(fixture.cache.solves, fixture.node_calls + 4);
-  for (PetscInt p = 0; p < POINTS; p++) assert_true(Error(&fixture, p) < ACCURACY / 4);
-  TearDown(&fixture);
+  for (PetscInt p = 0; p < POINTS; p++) SetLoad(fixture, p, 0.1 + 1e-3 * (PetscReal)p);
+  Respond(fixture, POINTS);
+  assert_int_equal(fixture->cache.solves, fixture->node_calls + 4);
+  for (PetscInt p = 0; p < POINTS; p++) assert_true(Error(fixture, p) < ACCURACY / 4);
 }
 
 /* A state that failed may be on the other side of a loss of stability: what is not much nearer to one that answers is
    solved. */
-TEST(NoModelIsTakenToBesideAFailure)
+CACHE_TEST(NoModelIsTakenToBesideAFailure, CACHE_WITH_BAD_NODES)
 {
   const PetscReal stretch[] = {0.11, 0.09, 0.098};
-  Fixture fixture;
 
-  SetUp(&fixture, PETSC_COMM_SELF, CACHE_WITH_BAD_NODES);
-  fixture.material->largest_strain = 0.11;
+  fixture->material->largest_strain = 0.11;
   for (PetscInt k = 0; k < 3; k++) {
-    SetLoad(&fixture, 0, stretch[k]);
-    fixture.points[0] = k;
-    Respond(&fixture, 1);
-    assert_int_equal(fixture.responses[0].status, k == 0 ? LAM_NOT_CONVERGED : LAM_CONVERGED);
-    assert_int_equal(fixture.responses[0].source, LAM_SOURCE_SOLVE);
+    SetLoad(fixture, 0, stretch[k]);
+    fixture->points[0] = k;
+    Respond(fixture, 1);
+    assert_int_equal(fixture->responses[0].status, k == 0 ? LAM_NOT_CONVERGED : LAM_CONVERGED);
+    assert_int_equal(fixture->responses[0].source, LAM_SOURCE_SOLVE);
   }
-  TearDown(&fixture);
 }
 
 /* ---- within a load step ---- */
 
-/* How the answer to the first question changes when the table is refined, and then `end` is called. */
-static void CheckThatAnswerStays(PetscErrorCode (*end)(Fixture *))
+/* The answer to the first question stays when the table is refined, until the step is accepted or rejected. */
+static void CheckThatAnswerStays(Fixture *fixture, PetscErrorCode (*end)(void *))
 {
   LamResponse before;
-  Fixture fixture;
 
-  SetUp(&fixture, PETSC_COMM_SELF, CACHE);
-  SetLoad(&fixture, 0, 0.1);
-  Respond(&fixture, 1);
-  before = fixture.responses[0];
-  RefineAround(&fixture, &fixture.loads[0]);
-  Respond(&fixture, 1);
-  assert_memory_equal(fixture.responses[0].P, before.P, sizeof(before.P));
-  assert_memory_equal(&fixture.responses[0].energy, &before.energy, sizeof(before.energy));
-  assert_ok(end(&fixture));
-  Respond(&fixture, 1);
-  assert_memory_not_equal(fixture.responses[0].P, before.P, sizeof(before.P));
-  assert_true(Error(&fixture, 0) < 1e-4);
-  TearDown(&fixture);
+  RespondAt(fixture, 0.1);
+  before = fixture->responses[0];
+  RefineAround(fixture, &fixture->loads[0]);
+  Respond(fixture, 1);
+  assert_memory_equal(fixture->responses[0].P, before.P, sizeof(before.P));
+  assert_memory_equal(&fixture->responses[0].energy, &before.energy, sizeof(before.energy));
+  assert_ok(end(fixture->cache.ctx));
+  Respond(fixture, 1);
+  assert_memory_not_equal(fixture->responses[0].P, before.P, sizeof(before.P));
+  assert_true(Error(fixture, 0) < 1e-4);
 }
 
-static PetscErrorCode CallAccept(Fixture *fixture)
+CACHE_TEST(AnswerStaysUntilTheStepIsAccepted, CACHE)
 {
-  return fixture->cache.accept(fixture->cache.ctx);
+  CheckThatAnswerStays(fixture, fixture->cache.accept);
 }
 
-static PetscErrorCode CallReject(Fixture *fixture)
+CACHE_TEST(AnswerStaysUntilTheStepIsRejected, CACHE)
 {
-  return fixture->cache.reject(fixture->cache.ctx);
-}
-
-TEST(AnswerStaysUntilTheStepIsAccepted)
-{
-  CheckThatAnswerStays(CallAccept);
-}
-
-TEST(AnswerStaysUntilTheStepIsRejected)
-{
-  CheckThatAnswerStays(CallReject);
+  CheckThatAnswerStays(fixture, fixture->cache.reject);
 }
 
 /* A point whose states are solved for themselves goes on so within the step: here out of the plane, then in it. */
-TEST(SolvedPointStaysSolved)
+CACHE_TEST(SolvedPointStaysSolved, CACHE)
 {
-  Fixture fixture;
-
-  SetUp(&fixture, PETSC_COMM_SELF, CACHE);
   for (PetscInt k = 0; k < 3; k++) {
-    SetLoad(&fixture, 0, 0.1);
-    if (k < 2) fixture.loads[0].F[8] = 1.1 + 0.01 * k;
-    Respond(&fixture, 1);
-    assert_int_equal(fixture.responses[0].source, LAM_SOURCE_SOLVE);
+    SetLoad(fixture, 0, 0.1);
+    if (k < 2) fixture->loads[0].F[8] = 1.1 + 0.01 * k;
+    Respond(fixture, 1);
+    assert_int_equal(fixture->responses[0].source, LAM_SOURCE_SOLVE);
   }
-  assert_int_equal(RecordCount(&fixture), 3);
-  assert_ok(fixture.cache.accept(fixture.cache.ctx));
-  fixture.loads[0].F[0] += 1e-3;
-  Respond(&fixture, 1);
-  assert_int_equal(fixture.responses[0].source, LAM_SOURCE_DATABASE);
-  TearDown(&fixture);
+  assert_int_equal(RecordCount(fixture), 3);
+  assert_ok(fixture->cache.accept(fixture->cache.ctx));
+  fixture->loads[0].F[0] += 1e-3;
+  Respond(fixture, 1);
+  assert_int_equal(fixture->responses[0].source, LAM_SOURCE_DATABASE);
 }
 
 /* ---- ranks ---- */

@@ -146,15 +146,8 @@ static void AssertNone(Tissue known)
   LamFreeCellDestroy(&cell);
 }
 
-TEST(a_state_that_fails_leaves_none)
-{
-  AssertNone((Tissue){.failing = 0.5, .touching = INFINITY});
-}
-
-TEST(a_cell_that_stays_in_touch_leaves_none)
-{
-  AssertNone((Tissue){.failing = INFINITY, .touching = 0.5});
-}
+TEST_IS(a_state_that_fails_leaves_none, AssertNone((Tissue){.failing = 0.5, .touching = INFINITY}));
+TEST_IS(a_cell_that_stays_in_touch_leaves_none, AssertNone((Tissue){.failing = INFINITY, .touching = 0.5}));
 
 TEST(tissue_without_free_cells_is_not_solved)
 {

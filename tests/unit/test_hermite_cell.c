@@ -301,10 +301,7 @@ TEST(functions_of_the_space_are_reproduced)
   check_reproduces(Quintic, PairsOfCubicsAndQuintics, 1);
 }
 
-TEST(edges_reproduce_complete_cubics)
-{
-  check_reproduces(Edges, CompleteCubic, 0);
-}
+TEST_IS(edges_reproduce_complete_cubics, check_reproduces(Edges, CompleteCubic, 0));
 
 /* Two cubes side by side in direction k, with random data, known in common on the face between them only. */
 static void RandomNeighbours(uint64_t *seed, int k, double unknown, LamJet low[8], LamJet high[8])

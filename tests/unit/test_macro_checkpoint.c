@@ -139,16 +139,14 @@ static void CheckGoesOn(PetscBool inflate, PetscBool sealed, PetscInt stop_after
   LamArchive archive;
 
   Prepare(&whole, inflate, sealed, -1);
-  FixtureSolve(&whole);
+  FixtureSolve(&whole, LAM_MACRO_DONE);
   Prepare(&first, inflate, sealed, stop_after);
-  FixtureSolve(&first);
-  assert_int_equal(first.reason, LAM_MACRO_STOPPED);
+  FixtureSolve(&first, LAM_MACRO_STOPPED);
   Prepare(&second, inflate, sealed, -1);
   assert_ok(LamArchiveOpen(PETSC_COMM_WORLD, Path, &archive));
   assert_ok(LamMacroArchive(second.macro, archive));
   assert_ok(LamArchiveClose(&archive, PETSC_FALSE));
-  FixtureSolve(&second);
-  assert_int_equal(second.reason, LAM_MACRO_DONE);
+  FixtureSolve(&second, LAM_MACRO_DONE);
   assert_int_equal(first.step_count + second.step_count, whole.step_count);
   for (PetscInt k = 0; k < second.step_count; k++) {
     const LamMacroStep *a = &whole.steps[first.step_count + k], *b = &second.steps[k];
@@ -163,20 +161,9 @@ static void CheckGoesOn(PetscBool inflate, PetscBool sealed, PetscInt stop_after
   FixtureDestroy(&second);
 }
 
-TEST(GoesOnBehindAStep)
-{
-  CheckGoesOn(PETSC_FALSE, PETSC_FALSE, 2);
-}
-
-TEST(GoesOnBehindInflation)
-{
-  CheckGoesOn(PETSC_TRUE, PETSC_FALSE, 0);
-}
-
-TEST(GoesOnBehindAStepOfAnInflatedBody)
-{
-  CheckGoesOn(PETSC_TRUE, PETSC_FALSE, 3);
-}
+TEST_IS(GoesOnBehindAStep, CheckGoesOn(PETSC_FALSE, PETSC_FALSE, 2));
+TEST_IS(GoesOnBehindInflation, CheckGoesOn(PETSC_TRUE, PETSC_FALSE, 0));
+TEST_IS(GoesOnBehindAStepOfAnInflatedBody, CheckGoesOn(PETSC_TRUE, PETSC_FALSE, 3));
 
 TEST(SealedBodyGoesOn)
 {

@@ -5,62 +5,53 @@
 #include "macro_impl.h"
 
 /* Points stand for the area of the body, at places inside their elements. */
-TEST(PointsHaveTheirPlaces)
+MACRO_TEST(PointsHaveTheirPlaces)
 {
   PetscReal moments[3] = {0, 0, 0};
-  LamMacroFields fields;
-  Fixture fixture;
 
-  FixtureScene(&fixture, 4, 2, 0.5, 1);
-  FixtureBoundary(&fixture, "bottom", 0, 0);
-  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
-  assert_ok(LamMacroGetFields(fixture.macro, &fields));
-  for (PetscInt e = 0; e < fields.element_count; e++) {
-    const PetscReal *centre = &fields.nodes[2 * fields.elements[9 * e + 8]];
-    for (PetscInt p = fields.first_point[e]; p < fields.first_point[e + 1]; p++) {
-      const PetscReal *X = &fields.place[2 * p];
+  FixtureScene(fixture, 4, 2, 0.5, 1);
+  FixtureBoundary(fixture, "bottom", 0, 0);
+  FixtureSetUp(fixture, PETSC_COMM_WORLD);
+  const LamMacroFields *fields = FixtureFields(fixture);
+  for (PetscInt e = 0; e < fields->element_count; e++) {
+    const PetscReal *centre = &fields->nodes[2 * fields->elements[9 * e + 8]];
+    for (PetscInt p = fields->first_point[e]; p < fields->first_point[e + 1]; p++) {
+      const PetscReal *X = &fields->place[2 * p];
       for (int i = 0; i < 2; i++) assert_true(PetscAbsReal(X[i] - centre[i]) < 0.125);
-      moments[0] += fields.volume[p];
-      for (int i = 0; i < 2; i++) moments[1 + i] += fields.volume[p] * X[i];
+      moments[0] += fields->volume[p];
+      for (int i = 0; i < 2; i++) moments[1 + i] += fields->volume[p] * X[i];
     }
   }
-  if (fields.element_count) { /* rank 0 */
-    assert_int_equal(fields.point_count, 72);
+  if (fields->element_count) { /* rank 0 */
+    assert_int_equal(fields->point_count, 72);
     assert_near(moments[0], 0.5, 1e-14);
     assert_near(moments[1], 0.25, 1e-14);
     assert_near(moments[2], 0.125, 1e-14);
   }
-  assert_ok(LamMacroFieldsDestroy(&fields));
-  FixtureDestroy(&fixture);
 }
 
 /* The lumen fraction of the synthetic material is J: over the body it adds up to the present area of the body. */
-TEST(MeansAreByVolume)
+MACRO_TEST(MeansAreByVolume)
 {
   PetscReal area = 0, from_means = 0;
-  LamMacroFields fields;
-  Fixture fixture;
 
-  FixtureShear(&fixture, 3, 0.3, 1);
-  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
-  FixtureSolve(&fixture);
-  assert_ok(LamMacroGetFields(fixture.macro, &fields));
-  for (PetscInt e = 0; e < fields.element_count; e++) {
+  FixtureShear(fixture, 3, 0.3, 1);
+  FixtureRun(fixture, PETSC_COMM_WORLD, LAM_MACRO_DONE);
+  const LamMacroFields *fields = FixtureFields(fixture);
+  for (PetscInt e = 0; e < fields->element_count; e++) {
     const PetscInt at = LAM_POINT_FIELD_COUNT * e + LAM_POINT_LUMEN;
     PetscReal largest = 0, element = 0;
-    for (PetscInt p = fields.first_point[e]; p < fields.first_point[e + 1]; p++) {
-      const PetscReal *F = fields.load[p].F, J = fields.point[LAM_POINT_FIELD_COUNT * p + LAM_POINT_LUMEN];
+    for (PetscInt p = fields->first_point[e]; p < fields->first_point[e + 1]; p++) {
+      const PetscReal *F = fields->load[p].F, J = fields->point[LAM_POINT_FIELD_COUNT * p + LAM_POINT_LUMEN];
       assert_near(J, F[0] * F[4] - F[1] * F[3], 1e-13);
       largest = PetscMax(largest, J);
-      element += fields.volume[p];
-      area += fields.volume[p] * J;
+      element += fields->volume[p];
+      area += fields->volume[p] * J;
     }
-    from_means += element * fields.mean[at];
-    assert_near(fields.largest[at], largest, 1e-15);
+    from_means += element * fields->mean[at];
+    assert_near(fields->largest[at], largest, 1e-15);
   }
   assert_near(from_means, area, 1e-13);
-  assert_ok(LamMacroFieldsDestroy(&fields));
-  FixtureDestroy(&fixture);
 }
 
 /* Faces are held closed by p + g; the family that is pressed least decides. Bonded tissue has no such measure. */

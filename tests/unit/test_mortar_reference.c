@@ -130,29 +130,10 @@ static double RelativeError(size_t offset, int n)
   return error;
 }
 
-TEST(WeightsAgree)
-{
-  assert_near(RelativeError(offsetof(Values, weight), HATS), 0.0, TOLERANCE);
-}
-
-TEST(WeightedGapsAgree)
-{
-  assert_near(RelativeError(offsetof(Values, gap), HATS), 0.0, TOLERANCE);
-}
-
-TEST(EnergyAgrees)
-{
-  assert_near(RelativeError(offsetof(Values, energy), 1), 0.0, TOLERANCE);
-}
-
-TEST(GradientAgrees)
-{
-  assert_near(RelativeError(offsetof(Values, gradient), UNKNOWNS), 0.0, TOLERANCE);
-}
-
-TEST(HessianAgrees)
-{
-  assert_near(RelativeError(offsetof(Values, hessian), UNKNOWNS * UNKNOWNS), 0.0, TOLERANCE);
-}
+TEST_IS(WeightsAgree, assert_near(RelativeError(offsetof(Values, weight), HATS), 0.0, TOLERANCE));
+TEST_IS(WeightedGapsAgree, assert_near(RelativeError(offsetof(Values, gap), HATS), 0.0, TOLERANCE));
+TEST_IS(EnergyAgrees, assert_near(RelativeError(offsetof(Values, energy), 1), 0.0, TOLERANCE));
+TEST_IS(GradientAgrees, assert_near(RelativeError(offsetof(Values, gradient), UNKNOWNS), 0.0, TOLERANCE));
+TEST_IS(HessianAgrees, assert_near(RelativeError(offsetof(Values, hessian), UNKNOWNS *UNKNOWNS), 0.0, TOLERANCE));
 
 TEST_GROUP(.setup = ReadStates);

@@ -169,10 +169,7 @@ TEST(a_painted_field_has_the_colours_of_its_values)
   assert_true(abs((int)(pixel & 0xff) - (int)lround(255 * wanted.b)) <= 2);
 }
 
-TEST(a_field_leaves_the_lumen_unpainted)
-{
-  assert_int_equal(painted_pixel(0.2, 0.3), 0xffffff);
-}
+TEST_IS(a_field_leaves_the_lumen_unpainted, assert_int_equal(painted_pixel(0.2, 0.3), 0xffffff));
 
 /* They would be painted for minutes. */
 TEST(images_on_one_another_are_refused)

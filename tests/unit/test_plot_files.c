@@ -227,30 +227,12 @@ static void draws(PetscErrorCode (*plot)(const LamPlotRequest *), const char inp
   assert_memory_equal(bytes, start, strlen(start));
 }
 
-TEST(rve_states_are_drawn_as_png)
-{
-  draws(LamPlotRVE, RVE_FILE, "test_plot_rve.png", "\x89PNG");
-}
-TEST(rve_states_are_drawn_as_svg)
-{
-  draws(LamPlotRVE, RVE_FILE, "test_plot_rve.svg", "<?xml");
-}
-TEST(rve_states_are_drawn_as_pdf)
-{
-  draws(LamPlotRVE, RVE_FILE, "test_plot_rve.PDF", "%PDF");
-}
-TEST(fe2_runs_are_drawn)
-{
-  draws(LamPlotFE2, FE2_FILE, "test_plot_fe2.pdf", "%PDF");
-}
-TEST(databases_are_drawn)
-{
-  draws(LamPlotDatabase, DATABASE_FILE, "test_plot_db.pdf", "%PDF");
-}
-TEST(maps_are_drawn)
-{
-  draws(LamPlotMap, MAP_FILE, "test_plot_map.pdf", "%PDF");
-}
+TEST_IS(rve_states_are_drawn_as_png, draws(LamPlotRVE, RVE_FILE, "test_plot_rve.png", "\x89PNG"));
+TEST_IS(rve_states_are_drawn_as_svg, draws(LamPlotRVE, RVE_FILE, "test_plot_rve.svg", "<?xml"));
+TEST_IS(rve_states_are_drawn_as_pdf, draws(LamPlotRVE, RVE_FILE, "test_plot_rve.PDF", "%PDF"));
+TEST_IS(fe2_runs_are_drawn, draws(LamPlotFE2, FE2_FILE, "test_plot_fe2.pdf", "%PDF"));
+TEST_IS(databases_are_drawn, draws(LamPlotDatabase, DATABASE_FILE, "test_plot_db.pdf", "%PDF"));
+TEST_IS(maps_are_drawn, draws(LamPlotMap, MAP_FILE, "test_plot_map.pdf", "%PDF"));
 
 /* Expects that `plot` refuses the request with `code` and a message that contains `words`, and writes nothing. */
 static void refuses(PetscErrorCode (*plot)(const LamPlotRequest *), const LamPlotRequest *request, PetscErrorCode code,

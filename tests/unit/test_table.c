@@ -428,10 +428,7 @@ static void CompareStress(const AnalyticTable *t, const LamLoad *load)
   }
 }
 
-TEST(stress_is_the_slope_of_the_energy)
-{
-  AtRandomStates(CompareStress);
-}
+TEST_IS(stress_is_the_slope_of_the_energy, AtRandomStates(CompareStress));
 
 static void CompareTangent(const AnalyticTable *t, const LamLoad *load)
 {
@@ -450,10 +447,7 @@ static void CompareTangent(const AnalyticTable *t, const LamLoad *load)
   }
 }
 
-TEST(the_tangent_is_symmetric_and_the_slope_of_the_stress)
-{
-  AtRandomStates(CompareTangent);
-}
+TEST_IS(the_tangent_is_symmetric_and_the_slope_of_the_stress, AtRandomStates(CompareTangent));
 
 static void CompareTurgor(const AnalyticTable *t, const LamLoad *load)
 {
@@ -467,10 +461,7 @@ static void CompareTurgor(const AnalyticTable *t, const LamLoad *load)
   for (int i = 0; i < 4; i++) assert_near(SLOPE(pair, P[in_plane[i]]), r.P_turgor[in_plane[i]], 1e-6);
 }
 
-TEST(derivatives_in_turgor_are_slopes)
-{
-  AtRandomStates(CompareTurgor);
-}
+TEST_IS(derivatives_in_turgor_are_slopes, AtRandomStates(CompareTurgor));
 
 static void CompareCohesion(const AnalyticTable *t, const LamLoad *load)
 {
@@ -485,10 +476,7 @@ static void CompareCohesion(const AnalyticTable *t, const LamLoad *load)
   for (int i = 0; i < 4; i++) assert_near(SLOPE(pair, P[in_plane[i]]), r.P_cohesion[in_plane[i]], 1e-6);
 }
 
-TEST(derivatives_in_cohesion_are_slopes)
-{
-  AtRandomStates(CompareCohesion);
-}
+TEST_IS(derivatives_in_cohesion_are_slopes, AtRandomStates(CompareCohesion));
 
 /* ---- files ---- */
 

@@ -72,32 +72,15 @@ static void AssertNoJump(PetscBool contact, int kind)
   }
 }
 
-TEST(bonded_stress_does_not_jump_at_faces)
-{
-  AssertNoJump(PETSC_FALSE, ON_FACE);
-}
-
-TEST(bonded_stress_does_not_jump_at_planes_of_symmetry)
-{
-  AssertNoJump(PETSC_FALSE, ON_SYMMETRY);
-}
+TEST_IS(bonded_stress_does_not_jump_at_faces, AssertNoJump(PETSC_FALSE, ON_FACE));
+TEST_IS(bonded_stress_does_not_jump_at_planes_of_symmetry, AssertNoJump(PETSC_FALSE, ON_SYMMETRY));
 
 /* Among them those where cells lose touch. */
-TEST(contact_stress_does_not_jump_at_faces)
-{
-  AssertNoJump(PETSC_TRUE, ON_FACE);
-}
-
-TEST(contact_stress_does_not_jump_at_planes_of_symmetry)
-{
-  AssertNoJump(PETSC_TRUE, ON_SYMMETRY);
-}
+TEST_IS(contact_stress_does_not_jump_at_faces, AssertNoJump(PETSC_TRUE, ON_FACE));
+TEST_IS(contact_stress_does_not_jump_at_planes_of_symmetry, AssertNoJump(PETSC_TRUE, ON_SYMMETRY));
 
 /* Many of which belong to some of the columns only. */
-TEST(contact_stress_does_not_jump_at_knots_of_suction)
-{
-  AssertNoJump(PETSC_TRUE, ON_KNOT);
-}
+TEST_IS(contact_stress_does_not_jump_at_knots_of_suction, AssertNoJump(PETSC_TRUE, ON_KNOT));
 
 TEST(stress_does_not_jump_where_cells_lose_touch)
 {
@@ -164,12 +147,5 @@ static void AssertNoWork(PetscBool contact)
   }
 }
 
-TEST(closed_cycles_of_bonded_tissue_cost_no_work)
-{
-  AssertNoWork(PETSC_FALSE);
-}
-
-TEST(closed_cycles_of_tissue_in_contact_cost_no_work)
-{
-  AssertNoWork(PETSC_TRUE);
-}
+TEST_IS(closed_cycles_of_bonded_tissue_cost_no_work, AssertNoWork(PETSC_FALSE));
+TEST_IS(closed_cycles_of_tissue_in_contact_cost_no_work, AssertNoWork(PETSC_TRUE));

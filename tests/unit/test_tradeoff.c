@@ -26,10 +26,7 @@ TEST(test_spread_is_median_and_range)
   assert_true(spread.median == 3);
 }
 
-TEST(test_no_run_has_no_spread)
-{
-  assert_true(isnan(LamSpreadOf(0, NULL).median));
-}
+TEST_IS(test_no_run_has_no_spread, assert_true(isnan(LamSpreadOf(0, NULL).median)));
 
 /* ---- the best ---- */
 

@@ -28,16 +28,10 @@ static void AssertOnset(int cells, double turgor, double expected, double tolera
   assert_int_equal(LamRVEDestroy(&rve), 0);
 }
 
-TEST(OneCellBucklesAtTwoPercent)
-{
-  AssertOnset(1, 0.0, 0.0227, 2e-4);
-}
+TEST_IS(OneCellBucklesAtTwoPercent, AssertOnset(1, 0.0, 0.0227, 2e-4));
 
 /* A pattern of two cells needs half the strain. */
-TEST(FourCellsBuckleAtHalfThatStrain)
-{
-  AssertOnset(2, 0.0, 0.0114, 2e-4);
-}
+TEST_IS(FourCellsBuckleAtHalfThatStrain, AssertOnset(2, 0.0, 0.0114, 2e-4));
 
 /* Past the onset the answer is stable and has less energy than the symmetric solution. */
 TEST(BuckledStateHasLessEnergy)
@@ -89,10 +83,7 @@ TEST(BuckledBranchIsFollowed)
 }
 
 /* At prescribed F turgor does not hold buckling back: in bonded tissue it only adds -p J F^-T (effective stress). */
-TEST(TurgorDoesNotMoveTheOnset)
-{
-  AssertOnset(1, 0.02 / TISSUE_STRESS, 0.0227, 3e-4);
-}
+TEST_IS(TurgorDoesNotMoveTheOnset, AssertOnset(1, 0.02 / TISSUE_STRESS, 0.0227, 3e-4));
 
 /* Largest difference of the four cells under biaxial compression. */
 static double CellDifference(double strain)

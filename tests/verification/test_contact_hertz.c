@@ -26,25 +26,10 @@ static double HalfWidthError(const Hertz *hertz)
   return fabs(hertz->half_width / hertz->half_width_theory - 1.0);
 }
 
-TEST(PeakPressureOnAFlat)
-{
-  assert_near(PeakError(&fine[0]), 0.0, TOLERANCE);
-}
-
-TEST(HalfWidthOnAFlat)
-{
-  assert_near(HalfWidthError(&fine[0]), 0.0, TOLERANCE);
-}
-
-TEST(PeakPressureOnACylinder)
-{
-  assert_near(PeakError(&fine[1]), 0.0, TOLERANCE);
-}
-
-TEST(HalfWidthOnACylinder)
-{
-  assert_near(HalfWidthError(&fine[1]), 0.0, TOLERANCE);
-}
+TEST_IS(PeakPressureOnAFlat, assert_near(PeakError(&fine[0]), 0.0, TOLERANCE));
+TEST_IS(HalfWidthOnAFlat, assert_near(HalfWidthError(&fine[0]), 0.0, TOLERANCE));
+TEST_IS(PeakPressureOnACylinder, assert_near(PeakError(&fine[1]), 0.0, TOLERANCE));
+TEST_IS(HalfWidthOnACylinder, assert_near(HalfWidthError(&fine[1]), 0.0, TOLERANCE));
 
 TEST(ErrorsFallWithTheMesh)
 {

@@ -102,15 +102,8 @@ static double SymmetryError(int along, int through)
   return error;
 }
 
-TEST(SymmetriesOfTheLattice)
-{
-  assert_near(SymmetryError(6, 2), 0.0, SCATTER);
-}
-
-TEST(SymmetriesOfTheLatticeOnAFinerMesh)
-{
-  assert_near(SymmetryError(24, 2), 0.0, OTHER_HATS);
-}
+TEST_IS(SymmetriesOfTheLattice, assert_near(SymmetryError(6, 2), 0.0, SCATTER));
+TEST_IS(SymmetriesOfTheLatticeOnAFinerMesh, assert_near(SymmetryError(24, 2), 0.0, OTHER_HATS));
 
 #define SCENE(cell, wall, cohesion, pressure)                                                                          \
   "version: 1\n"                                                                                                       \

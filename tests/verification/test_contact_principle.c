@@ -18,10 +18,7 @@ static int SolveAll(void **state)
   return 0;
 }
 
-TEST(AllStatesConverge)
-{
-  assert_int_equal(converged, 3 * PRINCIPLE_LOADS * PRINCIPLE_PAIRS);
-}
+TEST_IS(AllStatesConverge, assert_int_equal(converged, 3 * PRINCIPLE_LOADS * PRINCIPLE_PAIRS));
 
 TEST(DifferencesAreSmall)
 {

@@ -109,10 +109,7 @@ TEST(HatsTakenIn)
   AssertUpdates(0, 2, 0.0);
 }
 
-TEST(BothWithCompliance)
-{
-  AssertUpdates(2, 1, 0.01);
-}
+TEST_IS(BothWithCompliance, AssertUpdates(2, 1, 0.01));
 
 TEST(TooManyChangesAreRefused)
 {

@@ -12,10 +12,7 @@ static int SolveAll(void **state)
   return 0;
 }
 
-TEST(RemainderIsSmall)
-{
-  assert_true(remainders[1] < 0.02);
-}
+TEST_IS(RemainderIsSmall, assert_true(remainders[1] < 0.02));
 
 TEST(RemainderFallsAsOneOverBulkModulus)
 {

@@ -76,10 +76,7 @@ TEST(IsNearTheErrorOfBondedTissue)
   assert_true(CountWithin(3, LAM_INTERFACE_BONDED, 0.0, 6) >= STATES - 1);
 }
 
-TEST(IsNearTheErrorOfContactTissue)
-{
-  assert_true(CountWithin(5, LAM_INTERFACE_CONTACT, 0.0, 6) >= STATES - 1);
-}
+TEST_IS(IsNearTheErrorOfContactTissue, assert_true(CountWithin(5, LAM_INTERFACE_CONTACT, 0.0, 6) >= STATES - 1));
 
 /* An odd number of elements along a face cannot be halved. */
 TEST(IsNotKnownForOddMeshes)

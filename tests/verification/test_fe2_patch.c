@@ -21,19 +21,8 @@ static void CheckFalls(int which, int elements)
                 0.8 * ScalesDifference(1, two.opening, limit.opening));
 }
 
-TEST(BondedFreeSidesSheared)
-{
-  CheckFalls(SCALES_BONDED_FREE_SHEARED, 2);
-}
-
-TEST(ContactFreeSidesPulled)
-{
-  CheckFalls(SCALES_CONTACT_FREE_PULLED, 1);
-}
-
-TEST(ContactAffineSidesSheared)
-{
-  CheckFalls(SCALES_CONTACT_AFFINE_SHEARED, 0);
-}
+TEST_IS(BondedFreeSidesSheared, CheckFalls(SCALES_BONDED_FREE_SHEARED, 2));
+TEST_IS(ContactFreeSidesPulled, CheckFalls(SCALES_CONTACT_FREE_PULLED, 1));
+TEST_IS(ContactAffineSidesSheared, CheckFalls(SCALES_CONTACT_AFFINE_SHEARED, 0));
 
 TEST_GROUP(.petsc = 1);

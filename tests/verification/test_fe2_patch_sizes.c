@@ -26,20 +26,9 @@ static void CheckHalves(int which, int elements, double opening)
     assert_near(ScalesDifference(1, extrapolated.opening, limit.opening), 0.0, opening);
 }
 
-TEST(BondedFreeSidesSheared)
-{
-  CheckHalves(SCALES_BONDED_FREE_SHEARED, 4, 0);
-}
-
-TEST(ContactFreeSidesPulled)
-{
-  CheckHalves(SCALES_CONTACT_FREE_PULLED, 2, 0.12);
-}
-
-TEST(ContactAffineSidesSheared)
-{
-  CheckHalves(SCALES_CONTACT_AFFINE_SHEARED, 0, 0.1);
-}
+TEST_IS(BondedFreeSidesSheared, CheckHalves(SCALES_BONDED_FREE_SHEARED, 4, 0));
+TEST_IS(ContactFreeSidesPulled, CheckHalves(SCALES_CONTACT_FREE_PULLED, 2, 0.12));
+TEST_IS(ContactAffineSidesSheared, CheckHalves(SCALES_CONTACT_AFFINE_SHEARED, 0, 0.1));
 
 /* Its cells buckle, two to a period: that is what blocks tend to, not tissue of one cell a period. */
 TEST(ContactAffineSidesPressed)

@@ -33,10 +33,7 @@ static void CheckStress(double h, const IncrementWalk *walk)
   assert_near(walk->stress, 0.0, ROUNDING);
 }
 
-TEST(StressFollowsTheTangent)
-{
-  ForAllKinds(CheckStress);
-}
+TEST_IS(StressFollowsTheTangent, ForAllKinds(CheckStress));
 
 /* One iteration solves; a second follows where the first step was not small. None: an answer that was not solved. */
 static void CheckWork(double h, const IncrementWalk *walk)
@@ -46,10 +43,7 @@ static void CheckWork(double h, const IncrementWalk *walk)
   assert_in_range(walk->factorisations, 1, walk->iterations + 2);
 }
 
-TEST(NoIterationIsWasted)
-{
-  ForAllKinds(CheckWork);
-}
+TEST_IS(NoIterationIsWasted, ForAllKinds(CheckWork));
 
 /* Turgid bonded tissue at one go and in fifty steps: the same state. */
 TEST(LargeStepsEndWhereSmallOnesDo)

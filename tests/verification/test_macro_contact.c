@@ -30,48 +30,41 @@ static PetscReal Moment(LamMacro macro, PetscInt power)
 }
 
 /* a / R = 0.16 and a block 6 times as wide: the half width is 1.8 % below that of the half-space. */
-TEST(ContactWidthIsHertz)
+MACRO_TEST(ContactWidthIsHertz)
 {
   const PetscReal radius = 0.5;
-  Fixture fixture;
   LamBoundary *indenter;
 
-  FixtureScene(&fixture, 40, 40, 1, 2);
-  FixtureAdd(&fixture, "left", LAM_BOUNDARY_SYMMETRY);
-  FixtureBoundary(&fixture, "bottom", 0, 0);
-  indenter = FixtureAdd(&fixture, "top", LAM_BOUNDARY_INDENTER);
+  FixtureScene(fixture, 40, 40, 1, 2);
+  FixtureAdd(fixture, "left", LAM_BOUNDARY_SYMMETRY);
+  FixtureBoundary(fixture, "bottom", 0, 0);
+  indenter = FixtureAdd(fixture, "top", LAM_BOUNDARY_INDENTER);
   indenter->radius = radius;
   indenter->at[1] = 1;
   indenter->displacement[1] = -0.02;
-  FixtureSetUp(&fixture, PETSC_COMM_SELF);
-  FixtureSolve(&fixture);
-  assert_int_equal(fixture.reason, LAM_MACRO_DONE);
-  const PetscReal half = Moment(fixture.macro, 0), square = 4 * Moment(fixture.macro, 2) / half,
+  FixtureRun(fixture, PETSC_COMM_SELF, LAM_MACRO_DONE);
+  const PetscReal half = Moment(fixture->macro, 0), square = 4 * Moment(fixture->macro, 2) / half,
                   hertz = 4 * 2 * half * radius / (PETSC_PI * E_STAR);
-  assert_true(PetscAbsReal(FixtureReaction(&fixture, "top")[1] + half) < 1e-8);
+  assert_true(PetscAbsReal(FixtureReaction(fixture, "top")[1] + half) < 1e-8);
   assert_true(PetscAbsReal(square / hertz - 1) < 0.05);
-  FixtureDestroy(&fixture);
 }
 
 /* No node is in the indenter, none is pulled, and all that are pressed touch it. */
-TEST(ComplementarityHolds)
+MACRO_TEST(ComplementarityHolds)
 {
-  Fixture fixture;
   LamBoundary *indenter;
   const PetscScalar *force, *u;
   PetscInt touching = 0;
 
-  FixtureScene(&fixture, 8, 4, 0.5, 5);
-  FixtureBoundary(&fixture, "bottom", 0, 0);
-  indenter = FixtureAdd(&fixture, "top", LAM_BOUNDARY_INDENTER);
+  FixtureScene(fixture, 8, 4, 0.5, 5);
+  FixtureBoundary(fixture, "bottom", 0, 0);
+  indenter = FixtureAdd(fixture, "top", LAM_BOUNDARY_INDENTER);
   indenter->radius = 0.2;
   indenter->at[0] = 0.55;
   indenter->at[1] = 0.5;
   indenter->displacement[1] = -0.12;
-  FixtureSetUp(&fixture, PETSC_COMM_SELF);
-  FixtureSolve(&fixture);
-  assert_int_equal(fixture.reason, LAM_MACRO_DONE);
-  LamMacro macro = fixture.macro;
+  FixtureRun(fixture, PETSC_COMM_SELF, LAM_MACRO_DONE);
+  LamMacro macro = fixture->macro;
   assert_ok(VecGetArrayRead(macro->force_accepted, &force));
   assert_ok(VecGetArrayRead(macro->u, &u));
   for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {
@@ -89,7 +82,6 @@ TEST(ComplementarityHolds)
   assert_true(touching >= 4);
   assert_ok(VecRestoreArrayRead(macro->u, &u));
   assert_ok(VecRestoreArrayRead(macro->force_accepted, &force));
-  FixtureDestroy(&fixture);
 }
 
 TEST_GROUP(.petsc = 1);

@@ -5,48 +5,39 @@
 #include "support/macro_fixture.h"
 
 /* Between rollers F = diag(1 + ux, 1 + uy) everywhere, and P is the material's there. */
-TEST(HomogeneousDeformationIsExact)
+MACRO_TEST(HomogeneousDeformationIsExact)
 {
   const LamLoad load = {{1.2, 0, 0, 0, 0.9, 0, 0, 0, 1}, 0.1, 0};
-  Fixture fixture;
-  LamMacroFields fields;
   LamResponse exact;
 
-  FixtureBiaxial(&fixture, 0.2, -0.1, 2);
-  fixture.scene.turgor = load.turgor;
-  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
-  FixtureSolve(&fixture);
-  assert_int_equal(fixture.reason, LAM_MACRO_DONE);
+  FixtureBiaxial(fixture, 0.2, -0.1, 2);
+  fixture->scene.turgor = load.turgor;
+  FixtureRun(fixture, PETSC_COMM_WORLD, LAM_MACRO_DONE);
   assert_ok(LamResponseInit(&load, &exact));
-  SyntheticEvaluate(fixture.material, &load, &exact);
-  assert_ok(LamMacroGetFields(fixture.macro, &fields));
-  for (PetscInt k = 0; k < 9 * fields.element_count; k++) {
-    assert_true(PetscAbsReal(fields.F[k] - load.F[k % 9]) < 1e-12);
-    assert_true(PetscAbsReal(fields.P[k] - exact.P[k % 9]) < 1e-12);
+  SyntheticEvaluate(fixture->material, &load, &exact);
+  const LamMacroFields *fields = FixtureFields(fixture);
+  for (PetscInt k = 0; k < 9 * fields->element_count; k++) {
+    assert_true(PetscAbsReal(fields->F[k] - load.F[k % 9]) < 1e-12);
+    assert_true(PetscAbsReal(fields->P[k] - exact.P[k % 9]) < 1e-12);
   }
-  assert_ok(LamMacroFieldsDestroy(&fields));
-  FixtureDestroy(&fixture);
 }
 
 /* Reactions are stress times length of the side. */
-TEST(ReactionsAreStressTimesLength)
+MACRO_TEST(ReactionsAreStressTimesLength)
 {
   const LamLoad load = {{1.2, 0, 0, 0, 0.9, 0, 0, 0, 1}, 0, 0};
-  Fixture fixture;
   LamResponse exact;
 
-  FixtureBiaxial(&fixture, 0.2, -0.1, 2);
-  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
-  FixtureSolve(&fixture);
+  FixtureBiaxial(fixture, 0.2, -0.1, 2);
+  FixtureRun(fixture, PETSC_COMM_WORLD, LAM_MACRO_DONE);
   assert_ok(LamResponseInit(&load, &exact));
-  SyntheticEvaluate(fixture.material, &load, &exact);
-  const LamMacroStep *step = FixtureLast(&fixture); /* sides: left, right, bottom, top */
+  SyntheticEvaluate(fixture->material, &load, &exact);
+  const LamMacroStep *step = FixtureLast(fixture); /* sides: left, right, bottom, top */
   assert_true(PetscAbsReal(step->reaction[0][0] + 0.6 * exact.P[0]) < 1e-11);
   assert_true(PetscAbsReal(step->reaction[1][0] - 0.6 * exact.P[0]) < 1e-11);
   assert_true(PetscAbsReal(step->reaction[2][1] + exact.P[4]) < 1e-11);
   assert_true(PetscAbsReal(step->reaction[3][1] - exact.P[4]) < 1e-11);
   assert_true(step->reaction[3][0] == 0); /* rollers carry nothing sideways */
-  FixtureDestroy(&fixture);
 }
 
 /* Error of the work against the stored energy, after `steps` steps. */
@@ -58,8 +49,7 @@ static PetscReal WorkError(PetscInt steps)
   PetscReal work;
 
   FixtureBiaxial(&fixture, 0.3, 0.1, steps);
-  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
-  FixtureSolve(&fixture);
+  FixtureRun(&fixture, PETSC_COMM_WORLD, LAM_MACRO_DONE);
   assert_ok(LamResponseInit(&load, &exact));
   SyntheticEvaluate(fixture.material, &load, &exact);
   work = FixtureLast(&fixture)->work;
@@ -84,8 +74,7 @@ TEST(ShearConverges)
   for (int k = 0; k < 3; k++) {
     Fixture fixture;
     FixtureShear(&fixture, 2 << k, 0.2, 1);
-    FixtureSetUp(&fixture, PETSC_COMM_WORLD);
-    FixtureSolve(&fixture);
+    FixtureRun(&fixture, PETSC_COMM_WORLD, LAM_MACRO_DONE);
     force[k] = FixtureLast(&fixture)->reaction[1][0];
     FixtureDestroy(&fixture);
   }

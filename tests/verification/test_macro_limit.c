@@ -45,27 +45,24 @@ static PetscReal Sag(const Fixture *fixture)
 }
 
 /* The load rises to 4.9e-5, falls to 1.3e-5 beyond the limit point, and rises again on the other side. */
-TEST(TheForceFallsAndTheRunGoesOn)
+MACRO_TEST(TheForceFallsAndTheRunGoesOn)
 {
   const PetscInt steps = 30;
-  Fixture fixture;
   PetscInt falls = 0, rises = 0;
 
-  ArchScene(&fixture, steps);
-  strcpy(fixture.scene.macro.control.on, "left");
-  fixture.scene.macro.control.component = 1;
-  fixture.scene.macro.control.displacement = -0.15;
-  FixtureSetUp(&fixture, PETSC_COMM_SELF);
-  FixtureSolve(&fixture);
-  for (PetscInt k = 0; k < fixture.step_count; k++) {
-    const PetscReal now = -fixture.steps[k].reaction[2][1], before = k ? -fixture.steps[k - 1].reaction[2][1] : 0;
+  ArchScene(fixture, steps);
+  strcpy(fixture->scene.macro.control.on, "left");
+  fixture->scene.macro.control.component = 1;
+  fixture->scene.macro.control.displacement = -0.15;
+  FixtureRun(fixture, PETSC_COMM_SELF, LAM_MACRO_DONE);
+  for (PetscInt k = 0; k < fixture->step_count; k++) {
+    const PetscReal now = -fixture->steps[k].reaction[2][1], before = k ? -fixture->steps[k - 1].reaction[2][1] : 0;
     if (now < before) falls++;
     if (falls && now > before) rises++;
   }
-  assert_int_equal(fixture.reason, LAM_MACRO_DONE);
+  assert_int_equal(fixture->reason, LAM_MACRO_DONE);
   assert_true(falls >= 3 && rises >= 3);
-  assert_int_equal(FixtureLast(&fixture)->cutbacks, 0);
-  FixtureDestroy(&fixture);
+  assert_int_equal(FixtureLast(fixture)->cutbacks, 0);
 }
 
 /* Before the limit, the load that control finds gives the same state where it is prescribed. */
@@ -78,17 +75,13 @@ TEST(ControlAndLoadAgree)
   strcpy(fixture.scene.macro.control.on, "left");
   fixture.scene.macro.control.component = 1;
   fixture.scene.macro.control.displacement = -0.01;
-  FixtureSetUp(&fixture, PETSC_COMM_SELF);
-  FixtureSolve(&fixture);
-  assert_int_equal(fixture.reason, LAM_MACRO_DONE);
+  FixtureRun(&fixture, PETSC_COMM_SELF, LAM_MACRO_DONE);
   factor = fixture.macro->borders[0].now;
   sag = Sag(&fixture);
   FixtureDestroy(&fixture);
   ArchScene(&fixture, 4);
   fixture.scene.macro.boundary[2].traction[1] *= factor;
-  FixtureSetUp(&fixture, PETSC_COMM_SELF);
-  FixtureSolve(&fixture);
-  assert_int_equal(fixture.reason, LAM_MACRO_DONE);
+  FixtureRun(&fixture, PETSC_COMM_SELF, LAM_MACRO_DONE);
   assert_true(PetscAbsReal(Sag(&fixture) - sag) < 1e-8);
   FixtureDestroy(&fixture);
 }

@@ -43,16 +43,10 @@ static void AssertSameAnswer(LamInterfaceLawType interface, double tolerance)
   assert_near(nested.energy, other.energy, tolerance);
 }
 
-TEST(BondedTissueHasTheSameAnswer)
-{
-  AssertSameAnswer(LAM_INTERFACE_BONDED, 1e-9);
-}
+TEST_IS(BondedTissueHasTheSameAnswer, AssertSameAnswer(LAM_INTERFACE_BONDED, 1e-9));
 
 /* To what the hysteresis of the junction status leaves open. */
-TEST(ContactTissueHasTheSameAnswer)
-{
-  AssertSameAnswer(LAM_INTERFACE_CONTACT, 1e-4);
-}
+TEST_IS(ContactTissueHasTheSameAnswer, AssertSameAnswer(LAM_INTERFACE_CONTACT, 1e-4));
 
 TEST(FewIterationsAreLeftForTheFineMesh)
 {

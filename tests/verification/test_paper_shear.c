@@ -15,25 +15,10 @@ static int Compare(void **state)
   return ComputeShearErrors(&errors) ? 1 : 0;
 }
 
-TEST(NominalStressOfTheKernelsIsExact)
-{
-  assert_near(errors.nominal, 0.0, TOLERANCE);
-}
-
-TEST(CauchyStressOfTheKernelsIsExact)
-{
-  assert_near(errors.cauchy, 0.0, TOLERANCE);
-}
-
-TEST(TractionsOnMaterialPlanesAreExact)
-{
-  assert_near(errors.traction, 0.0, TOLERANCE);
-}
-
-TEST(NodalForcesOfTheElementAreExact)
-{
-  assert_near(errors.force, 0.0, TOLERANCE);
-}
+TEST_IS(NominalStressOfTheKernelsIsExact, assert_near(errors.nominal, 0.0, TOLERANCE));
+TEST_IS(CauchyStressOfTheKernelsIsExact, assert_near(errors.cauchy, 0.0, TOLERANCE));
+TEST_IS(TractionsOnMaterialPlanesAreExact, assert_near(errors.traction, 0.0, TOLERANCE));
+TEST_IS(NodalForcesOfTheElementAreExact, assert_near(errors.force, 0.0, TOLERANCE));
 
 TEST(FieldsOfTheElementAreExact)
 {

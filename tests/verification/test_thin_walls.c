@@ -22,20 +22,9 @@ static void ApproachesTheory(int modulus)
   for (int k = 1; k < 3; k++) assert_true(fabs(ratios[k][modulus] - 1.0) < fabs(ratios[k - 1][modulus] - 1.0));
 }
 
-TEST(YoungsModulusApproachesTheory)
-{
-  ApproachesTheory(0);
-}
-
-TEST(ShearModulusApproachesTheory)
-{
-  ApproachesTheory(1);
-}
-
-TEST(BulkModulusApproachesTheory)
-{
-  ApproachesTheory(2);
-}
+TEST_IS(YoungsModulusApproachesTheory, ApproachesTheory(0));
+TEST_IS(ShearModulusApproachesTheory, ApproachesTheory(1));
+TEST_IS(BulkModulusApproachesTheory, ApproachesTheory(2));
 
 /* Hexagonal symmetry: A1111 - A1122 = 2 A1212 at F = I, as far as rounding of kappa >> G* lets it. */
 TEST(UnloadedHoneycombIsIsotropic)
