@@ -264,7 +264,7 @@ TEST(inflation_is_asked_for_by_turgor)
   assert_int_equal(LamSceneDestroy(&told), 0);
 }
 
-/* A body of contact tissue that is held, or whose lamella has cohesion, may carry turgor; tests/scenes/bad has the
+/* A body of contact tissue that is held, or whose lamella has cohesion, may carry turgor; tests/scenes/bad.txt has the
  * rest.
  */
 TEST(contact_tissue_inflates_with_cohesion)

@@ -1,5 +1,5 @@
 /*
-  Patches and cells that differ, as a scene becomes them. tests/scenes/bad has what is refused.
+  Patches and cells that differ, as a scene becomes them. tests/scenes/bad.txt has what is refused.
 */
 #include "support/test.h"
 #include <lamella/scene.h>
@@ -38,7 +38,7 @@ TEST(a_patch_has_columns_rows_and_affine_sides)
   assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
-/* Bonded cells, cells with cohesion, and cells that a grip holds each stay where they are; tests/scenes/bad has the
+/* Bonded cells, cells with cohesion, and cells that a grip holds each stay where they are; tests/scenes/bad.txt has the
  * rest. */
 TEST(free_sides_are_accepted_where_something_holds_the_cells)
 {

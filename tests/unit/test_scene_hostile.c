@@ -122,6 +122,29 @@ TEST(a_map_of_many_keys_is_refused)
   free(text);
 }
 
+#define RVE                                                                                                            \
+  "version: 1\n"                                                                                                       \
+  "rve:\n"                                                                                                             \
+  "  cell: {apothem: 75 um, wall_thickness: 11.25 um}\n"                                                               \
+  "  wall: {law: mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa}\n"
+
+TEST(too_many_states_are_refused)
+{
+  AssertRefusedRepeat(RVE "load:\n", "  - {ramp: {to: [[1, 0.1], [0, 1]], steps: 10000}}\n", 101, "",
+                      "scene.yaml:106:5: load[101]: {ramp: {to: [[1, 0.1], [0, 1]], steps: 10000}}: "
+                      "more than 1000000 states in all");
+}
+
+TEST(too_many_boundaries_are_refused)
+{
+  AssertRefusedRepeat(RVE "macro:\n"
+                          "  mesh: {box: [10 mm, 10 mm], elements: [8, 8]}\n"
+                          "  boundary:\n"
+                          "    - {on: bottom, displacement: [0 mm, 0 mm]}\n",
+                      "    - {on: right, pressure: 0.001 MPa}\n", 16, "",
+                      "scene.yaml:7:3: macro.boundary: has 17 entries");
+}
+
 TEST(multiplying_aliases_are_refused)
 {
   AssertRefusedText("a: &a [x, x, x, x, x, x, x, x, x, x]\n"
