@@ -141,21 +141,25 @@ LamLoad LoadAt(const AnalyticTable *t, const double u[3], double v, double angle
   return load;
 }
 
-LamResponse Ask(const AnalyticTable *t, const LamLoad *load)
+LamResponse AskFor(const AnalyticTable *t, const LamLoad *load, double accuracy)
 {
   LamResponse r;
   LamTable table;
 
   CHECK(LamDatabaseGetTable(t->database, &table));
-  CHECK(LamTableQuery(table, load, PETSC_INFINITY, &r));
+  CHECK(LamTableQuery(table, load, accuracy, &r));
   CHECK(LamTableDestroy(&table));
   return r;
 }
 
+LamResponse Ask(const AnalyticTable *t, const LamLoad *load)
+{
+  return AskFor(t, load, PETSC_INFINITY);
+}
+
 void AddRough(AnalyticTable *t, int cells, double failing, uint64_t *seed)
 {
-  const int first[3] = {t->grid->contact ? -LAM_ROOT * cells : 0, t->grid->contact ? -LAM_ROOT * cells : 0,
-                        t->grid->contact ? -LAM_ROOT * cells : 0};
+  const int corner = t->grid->contact ? -LAM_ROOT * cells : 0, first[3] = {corner, corner, corner};
 
   AddBlock(t, 0, first, t->grid->contact ? cells + 1 : cells, LAM_ROOT);
   for (int level = 1; level <= 2; level++) {

@@ -1,4 +1,4 @@
-/* Databases of the analytic tissue, node by node; every call is checked with CHECK, which the includer defines. */
+/* Databases of the analytic tissue, node by node. */
 #ifndef LAM_SUPPORT_ANALYTIC_TABLE_H
 #define LAM_SUPPORT_ANALYTIC_TABLE_H
 
@@ -12,6 +12,9 @@ typedef struct {
   LamGrid grid; /* the database's */
   LamDatabase database;
 } AnalyticTable;
+
+/* A test on an `AnalyticTable *t` that `open` gives. */
+#define TABLE_TEST(name, open) TEST_ON(name, AnalyticTable, t, *t = open, AnalyticTableClose(t))
 
 LamScene AnalyticScene(const AnalyticTissue *tissue);
 /* With the free cells' states, without any other node. */
@@ -30,6 +33,8 @@ void AddFailed(AnalyticTable *t, const int i[3], int j);
 void AddBlock(AnalyticTable *t, int level, const int first[3], int cells, int along);
 /* The state at a place, turned by an angle. v: along suction; bonded: none. */
 LamLoad LoadAt(const AnalyticTable *t, const double u[3], double v, double angle);
+LamResponse AskFor(const AnalyticTable *t, const LamLoad *load, double accuracy);
+/* To any accuracy. */
 LamResponse Ask(const AnalyticTable *t, const LamLoad *load);
 /* Root cells of a block, and of the finer nodes of two levels some; also some halves and quarters of suction.
    Of the finer nodes the share `failing` has no solution. */

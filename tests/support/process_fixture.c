@@ -1,4 +1,5 @@
 #include "process_fixture.h"
+#include "tissue.h"
 
 enum { FOLLOWED_STATES = 4000 };
 
@@ -27,9 +28,7 @@ Followed Follow(const char text[])
   assert_int_equal(LamSceneReadText("process.yaml", text, &f.scene), 0);
   f.states = (LamProcessState *)calloc(FOLLOWED_STATES, sizeof(LamProcessState));
   assert_non_null(f.states);
-  assert_int_equal(LamRVECreate(PETSC_COMM_SELF, &f.rve), 0);
-  assert_int_equal(LamRVESetMicrostructure(f.rve, &f.scene->micro), 0);
-  assert_int_equal(LamRVESetUp(f.rve), 0);
+  assert_int_equal(NewTissue(&f.scene->micro, &f.rve, NULL), 0);
   assert_int_equal(LamRVEResponderCreate(f.rve, 1, &f.direct), 0);
   assert_int_equal(LamProcessCreate(f.scene, &f.process), 0);
   assert_int_equal(LamProcessSetResponder(f.process, &f.direct), 0);

@@ -60,6 +60,9 @@ extern const TestGroup TestProgram;
   static void name##_on(type *object)
 #define TEST_GROUP(...) const TestGroup TestProgram = {__VA_ARGS__}
 
+/* OWNED(Table, TableClose) t = ...: `TableClose(&t)` where the block ends. */
+#define OWNED(type, leave) type __attribute__((cleanup(leave)))
+
 #define CHECK(call) assert_int_equal((call), 0)
 
 /* cmocka's assert_float_equal rounds to single precision. */

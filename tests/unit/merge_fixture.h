@@ -4,10 +4,8 @@
 #ifndef LAM_MERGE_FIXTURE_H
 #define LAM_MERGE_FIXTURE_H
 
-#include "record_fixture.h"
-#include <hdf5.h>
+#include "record_bytes.h"
 #include "grid.h"
-#include "record_internal.h"
 
 enum { SHARDS = 3 };
 static char shard_path[SHARDS][160];
@@ -125,77 +123,31 @@ static inline void AssertNothingLeft(void)
 
 static inline void AssertRecord(PetscInt i, PetscInt64 key, const LamResponse *wanted)
 {
-  const LamResponse *records;
   const PetscInt64 *keys;
-  LamDatabase db;
   PetscInt n;
+  const LamResponse *records = OpenRecords(&n, &keys);
 
-  assert_int_equal(LamDatabaseOpen(path, &db), 0);
-  LamDatabaseGetRecords(db, &n, &records, &keys);
   assert_true(i < n);
   assert_true(keys[i] == key);
   AssertSame(&records[i], wanted);
-  LamDatabaseClose(&db);
 }
 
 static inline LamResponse OnlyRecord(void)
 {
-  const LamResponse *records;
-  LamResponse r;
-  LamDatabase db;
   PetscInt n;
+  const LamResponse *records = OpenRecords(&n, NULL);
 
-  assert_int_equal(LamDatabaseOpen(path, &db), 0);
-  LamDatabaseGetRecords(db, &n, &records, NULL);
   assert_int_equal(n, 1);
-  r = records[0];
-  LamDatabaseClose(&db);
-  return r;
+  return records[0];
 }
 
 /* Makes the shard's only record one of a version without this member. */
 static inline void RemoveMember(int shard, const char removed[], const PetscInt64 *key, const LamResponse *record)
 {
-  const hsize_t one = 1, unlimited = H5S_UNLIMITED, chunk = 64;
-  const PetscInt64 committed = 1;
-  hid_t ours, type, file, dataset, attribute, space, list;
-  size_t end = 0;
-  void *bytes;
+  char word[80];
 
-  assert_int_equal(LamRecordTypeCreate(&ours), 0);
-  type = H5Tcreate(H5T_COMPOUND, H5Tget_size(ours));
-  for (int i = 0; i < H5Tget_nmembers(ours); i++) {
-    char *name = H5Tget_member_name(ours, (unsigned)i);
-    const hid_t member = H5Tget_member_type(ours, (unsigned)i);
-
-    if (strcmp(name, removed)) {
-      H5Tinsert(type, name, end, member);
-      end += H5Tget_size(member);
-    }
-    H5Tclose(member);
-    H5free_memory(name);
-  }
-  H5Tset_size(type, end);
-  assert_int_equal(LamRecordsPack(1, key, record, type, &bytes), 0);
-  file = H5Fopen(shard_path[shard], H5F_ACC_RDWR, H5P_DEFAULT);
-  H5Ldelete(file, "/records", H5P_DEFAULT);
-  space = H5Screate_simple(1, &one, &unlimited);
-  list = H5Pcreate(H5P_DATASET_CREATE);
-  H5Pset_chunk(list, 1, &chunk);
-  dataset = H5Dcreate2(file, "/records", type, space, H5P_DEFAULT, list, H5P_DEFAULT);
-  H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes);
-  H5Sclose(space);
-  space = H5Screate(H5S_SCALAR);
-  attribute = H5Acreate2(dataset, "committed", H5T_STD_I64LE, space, H5P_DEFAULT, H5P_DEFAULT);
-  H5Awrite(attribute, H5T_NATIVE_INT64, &committed);
-  H5Aclose(attribute);
-  H5Dclose(dataset);
-  H5Fclose(file);
-  H5Pclose(list);
-  H5Sclose(space);
-  H5Tclose(type);
-  H5Tclose(ours);
-  PetscFree(bytes);
+  snprintf(word, sizeof(word), " %s ", removed);
+  ReplaceRecords(shard_path[shard], ChangedType(word, NULL), 1, key, record);
 }
 
 #define MERGE_TEST(name) TEST_WITH(name, EnterMerge, LeaveMerge)

@@ -13,6 +13,7 @@
 
 static char directory[64], path[128], lock_path[160];
 static char message[2048]; /* of the last error */
+static LamDatabase opened; /* by OpenRecords */
 
 static inline PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function, const char *file,
                                          PetscErrorCode code, PetscErrorType type, const char *text, void *ctx)
@@ -38,6 +39,7 @@ static inline int Leave(void **state)
 {
   char other[160];
 
+  if (opened) LamDatabaseClose(&opened);
   PetscPopErrorHandler();
   unlink(path);
   unlink(lock_path);
@@ -116,15 +118,46 @@ static inline void WriteFile(PetscInt n)
   assert_int_equal(LamRecordWriterClose(&writer), 0);
 }
 
+/* Of the file; they are there until the next call or the end of the test. */
+static inline const LamResponse *OpenRecords(PetscInt *n, const PetscInt64 **keys)
+{
+  const LamResponse *records;
+
+  if (opened) LamDatabaseClose(&opened);
+  assert_int_equal(LamDatabaseOpen(path, &opened), 0);
+  LamDatabaseGetRecords(opened, n, &records, keys);
+  return records;
+}
+
 static inline PetscInt CountRecords(void)
 {
-  LamDatabase db;
   PetscInt n = -1;
 
-  assert_int_equal(LamDatabaseOpen(path, &db), 0);
-  LamDatabaseGetRecords(db, &n, NULL, NULL);
-  LamDatabaseClose(&db);
+  OpenRecords(&n, NULL);
   return n;
+}
+
+static inline void AssertMessage(const char part[])
+{
+  if (!strstr(message, part)) fail_msg("message: %s", message);
+}
+
+static inline void AssertUnreadable(const char part[])
+{
+  LamDatabase db;
+
+  assert_int_equal(LamDatabaseOpen(path, &db), PETSC_ERR_USER_INPUT);
+  AssertMessage(part);
+  AssertMessage(path);
+}
+
+static inline void AssertNotOpened(LamWriteMode mode, PetscErrorCode code, const char part[])
+{
+  LamScene scene = Scene();
+  LamRecordWriter writer;
+
+  assert_int_equal(LamRecordWriterOpen(path, "database", mode, &scene, &writer), code);
+  AssertMessage(part);
 }
 
 static inline void AssertSame(const LamResponse *a, const LamResponse *b)

@@ -99,6 +99,9 @@ static LamFreeCell Make(void)
   return MakeOf(&tissue, &known);
 }
 
+/* A test on a `LamFreeCell *cell` that `make` gives. */
+#define CELL_TEST(name, make) TEST_ON(name, LamFreeCell, cell, *cell = make, LamFreeCellDestroy(cell))
+
 static double RandomSuction(uint64_t *seed)
 {
   return RandomReal(seed, SUCTION_MIN, SUCTION_MAX);
@@ -109,7 +112,7 @@ static double RandomSuction(uint64_t *seed)
 TEST(states_are_moved_apart_until_they_float)
 {
   Tissue known = {.failing = INFINITY, .touching = INFINITY};
-  LamFreeCell cell = MakeOf(&tissue, &known);
+  OWNED(LamFreeCell, LamFreeCellDestroy) cell = MakeOf(&tissue, &known);
   int solves = 0;
 
   for (int j = 0; j < KNOTS; j++) {
@@ -123,17 +126,13 @@ TEST(states_are_moved_apart_until_they_float)
   }
   assert_int_equal(known.solves, solves);
   assert_true(solves > KNOTS);
-  LamFreeCellDestroy(&cell);
 }
 
-TEST(knots_are_even_between_the_ends)
+CELL_TEST(knots_are_even_between_the_ends, Make())
 {
-  LamFreeCell cell = Make();
-
-  assert_true(cell.suction[0] == SUCTION_MIN && cell.suction[KNOTS - 1] == SUCTION_MAX);
+  assert_true(cell->suction[0] == SUCTION_MIN && cell->suction[KNOTS - 1] == SUCTION_MAX);
   for (int j = 2; j < KNOTS; j++)
-    assert_near(Tau(cell.suction[j]) - 2 * Tau(cell.suction[j - 1]) + Tau(cell.suction[j - 2]), 0, 1e-13);
-  LamFreeCellDestroy(&cell);
+    assert_near(Tau(cell->suction[j]) - 2 * Tau(cell->suction[j - 1]) + Tau(cell->suction[j - 2]), 0, 1e-13);
 }
 
 static void AssertNone(Tissue known)
@@ -171,9 +170,8 @@ TEST(tissue_without_free_cells_is_not_solved)
 /* ---- between the knots ---- */
 
 /* With the chain rule from tau to s. */
-TEST(the_spline_is_exact_for_a_cubic_in_tau)
+CELL_TEST(the_spline_is_exact_for_a_cubic_in_tau, Make())
 {
-  LamFreeCell cell = Make();
   uint64_t seed = 1;
 
   for (int k = 0; k < 200; k++) {
@@ -181,17 +179,15 @@ TEST(the_spline_is_exact_for_a_cubic_in_tau)
     double a[3], strain[3];
 
     Polynomial(3, width_of_tau, Tau(s), a);
-    LamFreeCellStrain(&cell, s, strain);
+    LamFreeCellStrain(cell, s, strain);
     assert_near(strain[0], a[0], 1e-14);
     assert_near(strain[1], a[1] * rate, 1e-12);
     assert_near(strain[2], (a[2] - a[1]) * rate * rate, 1e-9);
   }
-  LamFreeCellDestroy(&cell);
 }
 
-TEST(the_energy_is_exact_for_a_quintic)
+CELL_TEST(the_energy_is_exact_for_a_quintic, Make())
 {
-  LamFreeCell cell = Make();
   uint64_t seed = 2;
 
   for (int k = 0; k < 200; k++) {
@@ -199,24 +195,22 @@ TEST(the_energy_is_exact_for_a_quintic)
     double exact[3], energy[3], turgor[2][3];
 
     Polynomial(5, energy_of_s, s, exact);
-    LamFreeCellEnergy(&cell, s, energy, turgor);
+    LamFreeCellEnergy(cell, s, energy, turgor);
     assert_near(energy[0], exact[0], 1e-14);
     assert_near(energy[1], exact[1], 1e-13);
     assert_near(energy[2], exact[2], 1e-10);
   }
-  LamFreeCellDestroy(&cell);
 }
 
-TEST(the_step_in_turgor_is_exact_for_a_cubic_in_tau)
+CELL_TEST(the_step_in_turgor_is_exact_for_a_cubic_in_tau, Make())
 {
-  LamFreeCell cell = Make();
   uint64_t seed = 3;
 
   for (int k = 0; k < 200; k++) {
     const double s = RandomSuction(&seed);
     double energy[3], turgor[2][3];
 
-    LamFreeCellEnergy(&cell, s, energy, turgor);
+    LamFreeCellEnergy(cell, s, energy, turgor);
     for (int i = 0; i < 2; i++) {
       double exact[3];
 
@@ -224,7 +218,6 @@ TEST(the_step_in_turgor_is_exact_for_a_cubic_in_tau)
       for (int order = 0; order < 3; order++) assert_near(turgor[i][order], exact[order], order < 2 ? 1e-13 : 1e-11);
     }
   }
-  LamFreeCellDestroy(&cell);
 }
 
 /* Knots with values that fit nothing. */
@@ -252,62 +245,54 @@ static void All(const LamFreeCell *cell, double s, double y[8])
   y[7] = turgor[1][0];
 }
 
-TEST(derivatives_are_those_of_the_values)
+CELL_TEST(derivatives_are_those_of_the_values, Make())
 {
-  LamFreeCell cell = Make();
   uint64_t seed = 5;
 
-  Roughen(&cell);
+  Roughen(cell);
   for (int k = 0; k < 200; k++) {
     const double s = RandomSuction(&seed), h = 1e-6 * (s + SCALE);
     const double from = fmax(s - h, SUCTION_MIN), to = fmin(s + h, SUCTION_MAX);
     double at[8], left[8], right[8];
 
-    All(&cell, 0.5 * (from + to), at);
-    All(&cell, from, left);
-    All(&cell, to, right);
+    All(cell, 0.5 * (from + to), at);
+    All(cell, from, left);
+    All(cell, to, right);
     for (int i = 0; i < 6; i++)
       if (i % 3 < 2) assert_near((right[i] - left[i]) / (to - from), at[i + 1], 1e-5 * (1 + fabs(at[i + 1])));
   }
-  LamFreeCellDestroy(&cell);
 }
 
-TEST(nothing_jumps_at_a_knot)
+CELL_TEST(nothing_jumps_at_a_knot, Make())
 {
-  LamFreeCell cell = Make();
-
-  Roughen(&cell);
+  Roughen(cell);
   for (int j = 1; j < KNOTS - 1; j++) {
-    const double h = 1e-12 * cell.suction[j];
+    const double h = 1e-12 * cell->suction[j];
     double left[8], right[8];
 
-    All(&cell, cell.suction[j] - h, left);
-    All(&cell, cell.suction[j] + h, right);
+    All(cell, cell->suction[j] - h, left);
+    All(cell, cell->suction[j] + h, right);
     for (int i = 0; i < 8; i++) assert_near(right[i], left[i], 1e-5 * (1 + fabs(left[i])));
-    assert_near(right[3], cell.energy[j], 1e-8);
-    assert_near(right[4], cell.slope[j], 1e-6);
-    assert_near(right[5], cell.curvature[j], 1e-3);
-    assert_near(right[6], cell.turgor_slope[j], 1e-7);
-    assert_near(right[7], cell.turgor_curvature[j], 1e-7);
+    assert_near(right[3], cell->energy[j], 1e-8);
+    assert_near(right[4], cell->slope[j], 1e-6);
+    assert_near(right[5], cell->curvature[j], 1e-3);
+    assert_near(right[6], cell->turgor_slope[j], 1e-7);
+    assert_near(right[7], cell->turgor_curvature[j], 1e-7);
   }
-  LamFreeCellDestroy(&cell);
 }
 
-TEST(the_step_in_turgor_has_a_continuous_slope)
+CELL_TEST(the_step_in_turgor_has_a_continuous_slope, Make())
 {
-  LamFreeCell cell = Make();
-
-  Roughen(&cell);
+  Roughen(cell);
   for (int j = 1; j < KNOTS - 1; j++) {
-    const double s = cell.suction[j], h = 1e-6 * s;
+    const double s = cell->suction[j], h = 1e-6 * s;
     double left[8], at[8], right[8];
 
-    All(&cell, s - h, left);
-    All(&cell, s, at);
-    All(&cell, s + h, right);
+    All(cell, s - h, left);
+    All(cell, s, at);
+    All(cell, s + h, right);
     for (int i = 6; i < 8; i++) assert_near((right[i] - at[i]) / h, (at[i] - left[i]) / h, 1e-2);
   }
-  LamFreeCellDestroy(&cell);
 }
 
 /* ---- JSON ---- */
@@ -332,26 +317,25 @@ static void AssertSameNumbers(const PetscReal a[], const PetscReal b[])
   assert_memory_equal(a, b, KNOTS * sizeof(PetscReal));
 }
 
-TEST(the_text_keeps_every_bit)
+CELL_TEST(the_text_keeps_every_bit, Make())
 {
-  LamFreeCell cell = Make(), copy;
-  json_t *object = TextAndBack(&cell);
+  LamFreeCell copy;
+  json_t *object = TextAndBack(cell);
 
   assert_int_equal(LamFreeCellFromJSON("a.h5", object, &copy), 0);
   json_decref(object);
   assert_int_equal(copy.n, KNOTS);
-  assert_true(copy.scale == cell.scale && copy.cohesion == cell.cohesion);
+  assert_true(copy.scale == cell->scale && copy.cohesion == cell->cohesion);
   assert_null(copy.records);
-  AssertSameNumbers(copy.suction, cell.suction);
-  AssertSameNumbers(copy.strain, cell.strain);
-  AssertSameNumbers(copy.strain_curvature, cell.strain_curvature);
-  AssertSameNumbers(copy.energy, cell.energy);
-  AssertSameNumbers(copy.slope, cell.slope);
-  AssertSameNumbers(copy.curvature, cell.curvature);
-  AssertSameNumbers(copy.turgor_slope, cell.turgor_slope);
-  AssertSameNumbers(copy.turgor_curvature, cell.turgor_curvature);
+  AssertSameNumbers(copy.suction, cell->suction);
+  AssertSameNumbers(copy.strain, cell->strain);
+  AssertSameNumbers(copy.strain_curvature, cell->strain_curvature);
+  AssertSameNumbers(copy.energy, cell->energy);
+  AssertSameNumbers(copy.slope, cell->slope);
+  AssertSameNumbers(copy.curvature, cell->curvature);
+  AssertSameNumbers(copy.turgor_slope, cell->turgor_slope);
+  AssertSameNumbers(copy.turgor_curvature, cell->turgor_curvature);
   LamFreeCellDestroy(&copy);
-  LamFreeCellDestroy(&cell);
 }
 
 TEST(no_free_cell_has_a_text_too)
@@ -380,30 +364,28 @@ static void AssertRefused(json_t *object, const char what[])
   LamFreeCellDestroy(&copy);
 }
 
-TEST(damage_is_refused)
+CELL_TEST(damage_is_refused, Make())
 {
-  LamFreeCell cell = Make();
   json_t *object;
 
   AssertRefused(json_pack("[f]", 1.0), "free cell");
   AssertRefused(json_object(), "scale");
-  object = TextAndBack(&cell);
+  object = TextAndBack(cell);
   json_object_del(object, "slope");
   AssertRefused(object, "slope");
-  object = TextAndBack(&cell);
+  object = TextAndBack(cell);
   json_array_remove(json_object_get(object, "energy"), 3);
   AssertRefused(object, "energy");
-  object = TextAndBack(&cell);
+  object = TextAndBack(cell);
   json_array_set_new(json_object_get(object, "strain"), 3, json_null());
   AssertRefused(object, "strain");
-  object = TextAndBack(&cell);
-  json_array_set_new(json_object_get(object, "suction"), 3, json_real(1.01 * cell.suction[3]));
+  object = TextAndBack(cell);
+  json_array_set_new(json_object_get(object, "suction"), 3, json_real(1.01 * cell->suction[3]));
   AssertRefused(object, "suction");
-  object = TextAndBack(&cell);
+  object = TextAndBack(cell);
   json_object_set_new(object, "scale", json_real(-1));
   AssertRefused(object, "scale");
-  object = TextAndBack(&cell);
+  object = TextAndBack(cell);
   json_object_set_new(object, "suction", json_pack("[f, f]", 0.1, 0.2));
   AssertRefused(object, "2 knots");
-  LamFreeCellDestroy(&cell);
 }

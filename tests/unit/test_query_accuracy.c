@@ -12,9 +12,8 @@ static void AssertRefused(LamDatabase db, LamLoad load, PetscReal accuracy)
 }
 
 /* Without terms of third order nothing is left out, however far the records: the fluid term is exact. */
-TEST(a_quadratic_potential_is_answered_exactly)
+QUERY_TEST(a_quadratic_potential_is_answered_exactly, Make(1, 1))
 {
-  LamDatabase db = Make(1, 1);
   LamResponse exact, r;
 
   cubic = 0;
@@ -25,7 +24,6 @@ TEST(a_quadratic_potential_is_answered_exactly)
   cubic = 1;
   AssertClose(9, r.P, exact.P, 1e-13);
   AssertClose(81, r.tangent, exact.tangent, 1e-12);
-  LamDatabaseClose(&db);
 }
 
 static PetscReal StressErrorAt(PetscReal step)
@@ -47,60 +45,44 @@ TEST(the_stress_error_falls_with_the_square_of_the_distance)
   assert_true(ratio > 3.5 && ratio < 4.5);
 }
 
-TEST(what_is_too_far_is_out_of_reach)
+QUERY_TEST(what_is_too_far_is_out_of_reach, MakeFilled())
 {
-  LamDatabase db = MakeFilled();
   LamLoad load = Load(1.5, 0, 0, 1.5, 0.1);
   LamResponse r;
 
-  assert_int_equal(LamDatabaseQuery(db, &load, PETSC_INFINITY, &r), 0);
-  assert_int_equal(r.status, LAM_OUT_OF_REACH);
+  r = AssertStatus(db, load, LAM_OUT_OF_REACH);
   assert_true(r.distance > 0.04 && isnan(r.energy) && strlen(r.reason) > 0);
-  LamDatabaseClose(&db);
 }
 
-TEST(an_inverted_state_is_invalid)
+QUERY_TEST(an_inverted_state_is_invalid, MakeFilled())
 {
-  LamDatabase db = MakeFilled();
   const LamLoad bad[2] = {Load(-1, 0, 0, 1, 0), Load(NAN, 0, 0, 1, 0)};
 
   for (int i = 0; i < 2; i++) {
-    LamResponse r;
-
-    assert_int_equal(LamDatabaseQuery(db, &bad[i], PETSC_INFINITY, &r), 0);
-    assert_int_equal(r.status, LAM_INVALID_F);
+    AssertStatus(db, bad[i], LAM_INVALID_F);
   }
-  LamDatabaseClose(&db);
 }
 
-TEST(a_stretch_of_the_thickness_is_out_of_reach)
+QUERY_TEST(a_stretch_of_the_thickness_is_out_of_reach, MakeFilled())
 {
-  LamDatabase db = MakeFilled();
   LamLoad load = probe;
-  LamResponse r;
 
   load.F[8] = 1.01;
-  assert_int_equal(LamDatabaseQuery(db, &load, PETSC_INFINITY, &r), 0);
-  assert_int_equal(r.status, LAM_OUT_OF_REACH);
-  LamDatabaseClose(&db);
+  AssertStatus(db, load, LAM_OUT_OF_REACH);
 }
 
-TEST(unstable_and_failed_records_do_not_answer)
+QUERY_TEST(unstable_and_failed_records_do_not_answer, Make(1, 1))
 {
-  LamDatabase db = Make(1, 1);
-  LamResponse records[2] = {Exact(&probe), Exact(&probe)}, r;
+  LamResponse records[2] = {Exact(&probe), Exact(&probe)};
 
   records[0].status = LAM_NOT_CONVERGED;
   records[1].stable = PETSC_FALSE;
   assert_int_equal(LamDatabaseAdd(db, 2, NULL, records), 0);
-  assert_int_equal(LamDatabaseQuery(db, &probe, PETSC_INFINITY, &r), 0);
-  assert_int_equal(r.status, LAM_OUT_OF_REACH);
-  LamDatabaseClose(&db);
+  AssertStatus(db, probe, LAM_OUT_OF_REACH);
 }
 
-TEST(another_branch_answers_its_own_state_alone)
+QUERY_TEST(another_branch_answers_its_own_state_alone, Make(1, 1))
 {
-  LamDatabase db = Make(1, 1);
   LamResponse record = Exact(&probe), r;
   LamLoad near = probe;
 
@@ -111,14 +93,13 @@ TEST(another_branch_answers_its_own_state_alone)
   AssertClose(9, r.P, record.P, 1e-13);
   near.F[0] += 1e-3;
   AssertRefused(db, near, PETSC_INFINITY);
-  LamDatabaseClose(&db);
 }
 
 /* What lies behind a state of another branch, or one that failed, is not answered from this side of it. */
 TEST(a_record_of_another_branch_or_that_failed_forbids_a_blend)
 {
   for (int failed = 0; failed < 2; failed++) {
-    LamDatabase db = MakeFilled();
+    OWNED(LamDatabase, LamDatabaseClose) db = MakeFilled();
     LamLoad beside = probe;
     LamResponse record;
 
@@ -129,13 +110,11 @@ TEST(a_record_of_another_branch_or_that_failed_forbids_a_blend)
     Ask(db, probe);
     assert_int_equal(LamDatabaseAdd(db, 1, NULL, &record), 0);
     AssertRefused(db, probe, PETSC_INFINITY);
-    LamDatabaseClose(&db);
   }
 }
 
-TEST(an_answer_is_given_where_its_estimate_is_within_the_accuracy)
+QUERY_TEST(an_answer_is_given_where_its_estimate_is_within_the_accuracy, MakeFilled())
 {
-  LamDatabase db = MakeFilled();
   const PetscReal estimate = Ask(db, probe).error_estimate;
   LamResponse r;
 
@@ -143,17 +122,14 @@ TEST(an_answer_is_given_where_its_estimate_is_within_the_accuracy)
   AssertRefused(db, probe, 0.99 * estimate);
   assert_int_equal(LamDatabaseQuery(db, &probe, 1.01 * estimate, &r), 0);
   assert_int_equal(r.status, LAM_CONVERGED);
-  LamDatabaseClose(&db);
 }
 
 /* One model has no spread; its distance speaks for it. */
-TEST(the_error_of_a_record_alone_is_estimated_by_its_distance)
+QUERY_TEST(the_error_of_a_record_alone_is_estimated_by_its_distance, Make(1, 1))
 {
-  LamDatabase db = Make(1, 1);
   LamResponse r, exact = Exact(&probe);
 
   AddExact(db, Load(1.05, 0.03, -0.02, 1.01, 0.1));
   r = Ask(db, probe);
   assert_true(r.error_estimate > LamStressError(r.P, exact.P));
-  LamDatabaseClose(&db);
 }

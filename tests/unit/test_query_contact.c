@@ -49,18 +49,8 @@ static void AddContact(LamDatabase db, LamLoad load)
 
 static LamDatabase MakeContact(LamLoad load)
 {
-  LamScene scene = {.micro = {.wall_thickness = 0.15,
-                              .orientation = THETA,
-                              .cells = {1, 1},
-                              .along = 6,
-                              .through = 2,
-                              .wall = {.C1 = 0.9, .C2 = 0.1, .C4 = 9, .bulk_modulus = 1000},
-                              .interface = LAM_INTERFACE_CONTACT},
-                    .scales = {.length = 75e-6, .stress = 0.11e6},
-                    .accuracy = 0.01};
-  LamDatabase db;
+  LamDatabase db = MakeOf(1, 1, LAM_INTERFACE_CONTACT);
 
-  assert_int_equal(LamDatabaseCreateEmpty(&scene, &db), 0);
   AddContact(db, load);
   return db;
 }
@@ -83,7 +73,7 @@ TEST(turgor_and_cohesion_derivatives_belong_to_the_answered_energy)
 
   for (int k = 0; k < 2; k++) {
     const PetscReal dp = k ? 0 : h, dg = k ? h : 0;
-    LamDatabase db = MakeContacts();
+    OWNED(LamDatabase, LamDatabaseClose) db = MakeContacts();
     const LamResponse r = Ask(db, contact_probe);
     const LamResponse plus = Ask(db, At(probe, 0.15 + dp, g + dg)), minus = Ask(db, At(probe, 0.15 - dp, g - dg));
 
@@ -92,7 +82,6 @@ TEST(turgor_and_cohesion_derivatives_belong_to_the_answered_energy)
                 k ? r.energy_cohesion2 : r.energy_turgor_cohesion, 1e-5);
     for (int i = 0; i < 9; i++)
       assert_near((plus.P[i] - minus.P[i]) / (2 * h), k ? r.P_cohesion[i] : r.P_turgor[i], 1e-6);
-    LamDatabaseClose(&db);
   }
 }
 
@@ -113,9 +102,8 @@ TEST(the_opening_follows_its_derivatives)
   LamDatabaseClose(&db);
 }
 
-TEST(gaps_are_known_in_the_state_of_a_record_alone)
+QUERY_TEST(gaps_are_known_in_the_state_of_a_record_alone, MakeContact(contact_probe))
 {
-  LamDatabase db = MakeContact(contact_probe);
   LamLoad near = contact_probe, turned = contact_probe;
   LamResponse r = Ask(db, contact_probe);
 
@@ -133,46 +121,35 @@ TEST(gaps_are_known_in_the_state_of_a_record_alone)
   r = Ask(db, turned);
   assert_near(r.max_gap, 0.01, 1e-15);
   assert_true(isnan(r.fabric[2]));
-  LamDatabaseClose(&db);
 }
 
 /* Turgor for cohesion: the walls feel their sum. */
-TEST(the_distance_is_one_of_suction)
+QUERY_TEST(the_distance_is_one_of_suction, MakeContact(contact_probe))
 {
-  LamDatabase db = MakeContact(contact_probe);
-  LamResponse r;
   LamLoad far = At(probe, 0.15, 0);
 
   assert_true(Ask(db, At(probe, 0.35, 0)).distance < 0.01);
-  assert_int_equal(LamDatabaseQuery(db, &far, PETSC_INFINITY, &r), 0);
-  assert_int_equal(r.status, LAM_OUT_OF_REACH);
-  LamDatabaseClose(&db);
+  AssertStatus(db, far, LAM_OUT_OF_REACH);
 }
 
-TEST(a_record_without_a_tangent_does_not_answer)
+QUERY_TEST(a_record_without_a_tangent_does_not_answer, MakeContact(At(Load(1.05, 0.03, -0.02, 1.01, 0), 0.17, g)))
 {
-  LamResponse floating = ExactContact(contact_probe), r;
-  LamDatabase db = MakeContact(At(Load(1.05, 0.03, -0.02, 1.01, 0), 0.17, g));
+  LamResponse floating = ExactContact(contact_probe);
 
   for (int i = 0; i < 81; i++) floating.tangent[i] = NAN;
   assert_int_equal(LamDatabaseAdd(db, 1, NULL, &floating), 0);
-  assert_int_equal(LamDatabaseQuery(db, &contact_probe, PETSC_INFINITY, &r), 0);
-  assert_int_equal(r.status, LAM_OUT_OF_REACH);
-  LamDatabaseClose(&db);
+  AssertStatus(db, contact_probe, LAM_OUT_OF_REACH);
 }
 
 /* P vanishes with the last contact, or nearly so: a kink, on one side of which all records agree. */
-TEST(cells_that_float_answer_their_own_state_alone)
+QUERY_TEST(cells_that_float_answer_their_own_state_alone, MakeContacts())
 {
-  LamDatabase db = MakeContacts();
-  LamResponse floating = ExactContact(contact_probe), r;
+  LamResponse floating = ExactContact(contact_probe);
   LamLoad near = contact_probe;
 
   floating.floating_cells = 1;
   assert_int_equal(LamDatabaseAdd(db, 1, NULL, &floating), 0);
   Ask(db, contact_probe);
   near.F[0] += 1e-3;
-  assert_int_equal(LamDatabaseQuery(db, &near, PETSC_INFINITY, &r), 0);
-  assert_int_equal(r.status, LAM_OUT_OF_REACH);
-  LamDatabaseClose(&db);
+  AssertStatus(db, near, LAM_OUT_OF_REACH);
 }

@@ -1,10 +1,8 @@
 /* LamFileCheck: each damaged record and part is named, also behind the first. */
 #define _GNU_SOURCE /* memmem */
 #include "support/test.h"
-#include "record_fixture.h"
-#include <hdf5.h>
 #include <jansson.h>
-#include "record_internal.h"
+#include "record_bytes.h"
 
 static json_t *Check(void)
 {
@@ -32,35 +30,9 @@ static const json_t *Damaged(const json_t *check, size_t i)
   return json_array_get(json_object_get(check, "damaged"), i);
 }
 
-static hid_t OpenFile(void)
-{
-  hid_t access = H5Pcreate(H5P_FILE_ACCESS), file;
-
-  H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
-  file = H5Fopen(path, H5F_ACC_RDWR, access);
-  assert_true(file >= 0);
-  H5Pclose(access);
-  return file;
-}
-
-/* Changes a bit of a record behind its key. */
-static void DamageRecord(hsize_t number)
-{
-  const hid_t file = OpenFile(), dataset = H5Dopen2(file, "/records", H5P_DEFAULT), type = H5Dget_type(dataset);
-  const hid_t space = H5Dget_space(dataset), one = H5Screate(H5S_SCALAR);
-  unsigned char *bytes = malloc(H5Tget_size(type));
-
-  H5Sselect_elements(space, H5S_SELECT_SET, 1, &number);
-  assert_true(H5Dread(dataset, type, one, space, H5P_DEFAULT, bytes) >= 0);
-  bytes[200] ^= 4;
-  assert_true(H5Dwrite(dataset, type, one, space, H5P_DEFAULT, bytes) >= 0);
-  free(bytes);
-  H5Fclose(file);
-}
-
 static void Replace(const char name[], const char by[])
 {
-  const hid_t file = OpenFile(), dataset = H5Dopen2(file, name, H5P_DEFAULT), type = H5Dget_type(dataset);
+  const hid_t file = OpenFile(path), dataset = H5Dopen2(file, name, H5P_DEFAULT), type = H5Dget_type(dataset);
 
   assert_true(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, by) >= 0);
   H5Fclose(file);
@@ -68,15 +40,12 @@ static void Replace(const char name[], const char by[])
 
 FILE_TEST(a_sound_file_is_sound_and_wholly_checked)
 {
-  json_t *check;
-
   WriteFile(700);
-  check = Check();
+  json_auto_t *check = Check();
   assert_true(json_is_true(json_object_get(check, "sound")));
   assert_int_equal(Integer(check, "records"), 700);
   assert_int_equal(Integer(check, "sound_records"), 700);
   assert_int_equal(json_array_size(json_object_get(check, "unchecked")), 0);
-  json_decref(check);
 }
 
 /* Changes where the k-th index of a group or of the records, in the order of the file, says that it goes on: nowhere in
@@ -119,67 +88,58 @@ FILE_TEST(each_damaged_record_is_named_with_its_key)
 {
   LamRecordWriter writer = Open(LAM_WRITE_CREATE);
   const hsize_t numbers[3] = {3, 63, 699};
-  json_t *check;
 
   Commit(writer, 1000, 700);
   assert_int_equal(LamRecordWriterClose(&writer), 0);
   for (int i = 0; i < 3; i++) DamageRecord(numbers[i]);
-  check = Check();
+  json_auto_t *check = Check();
   assert_int_equal(Integer(check, "sound_records"), 697);
   assert_int_equal(json_array_size(json_object_get(check, "damaged")), 3);
   for (int i = 0; i < 3; i++) {
     assert_int_equal(Integer(Damaged(check, (size_t)i), "record"), numbers[i]);
     assert_int_equal(Integer(Damaged(check, (size_t)i), "key"), 1000 + numbers[i]);
   }
-  json_decref(check);
 }
 
 FILE_TEST(damage_of_a_record_does_not_hide_that_of_a_text)
 {
-  json_t *check;
-
   WriteFile(5);
   DamageRecord(2);
   Replace("/scene", "version: 2\n");
-  check = Check();
+  json_auto_t *check = Check();
   assert_int_equal(json_array_size(json_object_get(check, "damaged")), 2);
   assert_int_equal(Integer(Damaged(check, 0), "record"), 2);
   assert_string_equal(json_string_value(json_object_get(Damaged(check, 1), "part")), "/scene");
-  json_decref(check);
 }
 
 /* What is sound can be told without it. */
 FILE_TEST(records_are_counted_where_the_counter_is_damaged)
 {
   const PetscInt64 wrong = 1;
-  json_t *check;
   hid_t file;
 
   WriteFile(9);
-  file = OpenFile();
+  file = OpenFile(path);
   assert_int_equal(
       LamAttributeUpdate(path, H5Dopen2(file, "/records", H5P_DEFAULT), "committed", H5T_NATIVE_INT64, &wrong), 0);
   H5Fclose(file);
-  check = Check();
+  json_auto_t *check = Check();
   assert_true(json_is_null(json_object_get(check, "records")));
   assert_int_equal(Integer(check, "sound_records"), 9);
   assert_string_equal(json_string_value(json_object_get(Damaged(check, 0), "part")), "commit counter");
-  json_decref(check);
 }
 
 FILE_TEST(parts_without_a_checksum_are_named)
 {
-  json_t *check;
   hid_t file;
 
   WriteFile(2);
-  file = OpenFile();
+  file = OpenFile(path);
   assert_true(H5Adelete(file, LAM_SUM) >= 0);
   H5Fclose(file);
-  check = Check();
+  json_auto_t *check = Check();
   assert_true(json_is_true(json_object_get(check, "sound")));
   assert_string_equal(json_string_value(json_array_get(json_object_get(check, "unchecked"), 0)), "header");
-  json_decref(check);
 }
 
 FILE_TEST(a_file_that_is_being_written_is_checked_and_its_writer_named)
@@ -203,13 +163,11 @@ FILE_TEST(a_file_that_is_being_written_is_checked_and_its_writer_named)
 FILE_TEST(what_is_no_file_of_lamella_is_damaged)
 {
   FILE *file = fopen(path, "w");
-  json_t *check;
 
   fputs("version: 1\n", file);
   fclose(file);
-  check = Check();
+  json_auto_t *check = Check();
   assert_string_equal(json_string_value(json_object_get(Damaged(check, 0), "part")), "file");
-  json_decref(check);
 }
 
 FILE_TEST(a_missing_file_is_an_error)
@@ -218,5 +176,5 @@ FILE_TEST(a_missing_file_is_an_error)
   char *text;
 
   assert_int_equal(LamFileCheck(path, &sound, &text), PETSC_ERR_FILE_OPEN);
-  assert_non_null(strstr(message, "No such file"));
+  AssertMessage("No such file");
 }

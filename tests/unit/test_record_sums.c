@@ -2,74 +2,13 @@
  */
 #define _GNU_SOURCE /* memmem */
 #include "support/test.h"
-#include "record_fixture.h"
-#include <hdf5.h>
-#include <fcntl.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
-#include "record_internal.h"
-
-static void AssertUnreadable(const char part[])
-{
-  LamDatabase db;
-
-  assert_int_equal(LamDatabaseOpen(path, &db), PETSC_ERR_USER_INPUT);
-  if (!strstr(message, part) || !strstr(message, path)) fail_msg("message: %s", message);
-}
-
-static hid_t OpenFile(void)
-{
-  hid_t access = H5Pcreate(H5P_FILE_ACCESS), file;
-
-  H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
-  file = H5Fopen(path, H5F_ACC_RDWR, access);
-  assert_true(file >= 0);
-  H5Pclose(access);
-  return file;
-}
-
-static void SetNumber(const char object[], const char name[], hid_t type, const void *value)
-{
-  const hid_t file = OpenFile(), attribute = H5Aopen(H5Oopen(file, object, H5P_DEFAULT), name, H5P_DEFAULT);
-
-  assert_true(H5Awrite(attribute, type, value) >= 0);
-  H5Fclose(file);
-}
-
-/* The whole file; the caller frees it. */
-static unsigned char *Bytes(size_t *n)
-{
-  FILE *file = fopen(path, "rb");
-  struct stat info;
-  unsigned char *bytes;
-
-  assert_int_equal(stat(path, &info), 0);
-  *n = (size_t)info.st_size;
-  bytes = malloc(*n);
-  assert_int_equal(fread(bytes, 1, *n, file), *n);
-  fclose(file);
-  return bytes;
-}
+#include "record_bytes.h"
 
 /* Where the bytes of a word begin in the file, its zero included. */
 static size_t Find(const char word[])
 {
-  size_t n;
-  unsigned char *bytes = Bytes(&n);
-  const unsigned char *at = memmem(bytes, n, word, strlen(word) + 1);
-  const size_t place = at ? (size_t)(at - bytes) : n;
-
-  free(bytes);
-  assert_true(place < n);
-  return place;
-}
-
-static void Overwrite(size_t place, const void *bytes, size_t n)
-{
-  const int fd = open(path, O_WRONLY);
-
-  assert_int_equal(pwrite(fd, bytes, n, (off_t)place), n);
-  close(fd);
+  return PlaceOf(path, strlen(word) + 1, word);
 }
 
 /* ---- header ---- */
@@ -79,14 +18,14 @@ FILE_TEST(a_changed_number_of_the_header_is_found)
   const double other = 0.12e6;
 
   WriteFile(2);
-  SetNumber("/", "stress_unit_Pa", H5T_NATIVE_DOUBLE, &other);
+  SetNumber(path, "/", "stress_unit_Pa", H5T_NATIVE_DOUBLE, &other);
   AssertUnreadable("header is damaged");
 }
 
 FILE_TEST(a_changed_text_of_the_header_is_found)
 {
   WriteFile(2);
-  Overwrite(Find("row-major, 11 12 13 21 22 23 31 32 33; tangent[i][j][k][l] = dP_ij/dF_kl"), "c", 1);
+  Overwrite(path, Find("row-major, 11 12 13 21 22 23 31 32 33; tangent[i][j][k][l] = dP_ij/dF_kl"), 1, "c");
   AssertUnreadable("header is damaged");
 }
 
@@ -98,7 +37,7 @@ FILE_TEST(a_lowered_counter_is_found)
   const long long count = 3;
 
   WriteFile(7);
-  SetNumber("/records", "committed", H5T_NATIVE_LLONG, &count);
+  SetNumber(path, "/records", "committed", H5T_NATIVE_LLONG, &count);
   AssertUnreadable("commit counter of /records is damaged (it says 3)");
 }
 
@@ -106,7 +45,7 @@ FILE_TEST(a_lowered_counter_is_found)
 FILE_TEST(a_renamed_member_is_found)
 {
   WriteFile(2);
-  Overwrite(Find("mean_gap"), "n", 1);
+  Overwrite(path, Find("mean_gap"), 1, "n");
   AssertUnreadable("names of the members of /records are damaged");
 }
 
@@ -121,15 +60,15 @@ FILE_TEST(records_in_the_place_of_others_are_found)
   size_t n;
 
   WriteFile(2 * LAM_RECORDS_PER_CHUNK);
-  file = OpenFile();
+  file = OpenFile(path);
   dataset = H5Dopen2(file, "/records", H5P_DEFAULT);
   space = H5Dget_space(dataset);
   H5Dget_num_chunks(dataset, space, &chunks);
   assert_int_equal(chunks, 2);
   for (hsize_t i = 0; i < 2; i++) H5Dget_chunk_info(dataset, space, i, &offset, &filters, &address[i], &bytes);
   H5Fclose(file);
-  all = Bytes(&n);
-  Overwrite(address[0], all + address[1], bytes);
+  all = Bytes(path, &n);
+  Overwrite(path, address[0], bytes, all + address[1]);
   free(all);
   AssertUnreadable("stands in the place of another");
 }
@@ -159,7 +98,7 @@ FILE_TEST(nodes_without_their_grid_are_refused)
 
 static void DeleteSums(void)
 {
-  const hid_t file = OpenFile(), records = H5Dopen2(file, "/records", H5P_DEFAULT);
+  const hid_t file = OpenFile(path), records = H5Dopen2(file, "/records", H5P_DEFAULT);
 
   assert_true(H5Adelete(file, LAM_SUM) >= 0 && H5Adelete(records, LAM_COUNTER_SUM) >= 0);
   assert_true(H5Adelete(records, LAM_RECORDS_SUM) >= 0 && H5Adelete(records, LAM_TYPE_SUM) >= 0);
@@ -187,9 +126,9 @@ FILE_TEST(a_changed_text_is_found)
   char *text;
 
   WriteFile(1);
-  Overwrite(Find("version: 1\n"), "w", 1);
+  Overwrite(path, Find("version: 1\n"), 1, "w");
   assert_int_equal(LamFileReadText(path, "/scene", &found, &text), PETSC_ERR_USER_INPUT);
-  assert_non_null(strstr(message, "/scene is damaged (its checksum differs)"));
+  AssertMessage("/scene is damaged (its checksum differs)");
 }
 
 static void WriteArray(PetscInt times)
@@ -220,16 +159,16 @@ FILE_TEST(a_changed_unit_of_an_array_is_found)
 {
   WriteArray(1);
   assert_int_equal(ReadArray(), 0);
-  Overwrite(Find("apothem"), "b", 1);
+  Overwrite(path, Find("apothem"), 1, "b");
   assert_int_equal(ReadArray(), PETSC_ERR_USER_INPUT);
-  assert_non_null(strstr(message, "/fields/gap is damaged"));
+  AssertMessage("/fields/gap is damaged");
 }
 
 FILE_TEST(an_array_that_was_written_over_has_no_checksum)
 {
   WriteArray(3);
   assert_int_equal(ReadArray(), 0);
-  Overwrite(Find("apothem"), "b", 1);
+  Overwrite(path, Find("apothem"), 1, "b");
   assert_int_equal(ReadArray(), 0);
 }
 
@@ -279,15 +218,15 @@ FILE_TEST(a_flipped_bit_is_found_or_has_no_effect)
 
   WriteFile(3);
   end = Find("reason 0") - 2048;
-  bytes = Bytes(&n);
+  bytes = Bytes(path, &n);
   wanted = Content();
   for (size_t bit = 0; bit < 8 * end; bit += 1009) {
     const unsigned char flipped = (unsigned char)(bytes[bit / 8] ^ 1 << bit % 8);
     int outcome;
 
-    Overwrite(bit / 8, &flipped, 1);
+    Overwrite(path, bit / 8, 1, &flipped);
     outcome = Outcome(wanted);
-    Overwrite(bit / 8, &bytes[bit / 8], 1);
+    Overwrite(path, bit / 8, 1, &bytes[bit / 8]);
     if (outcome > 1) fail_msg("byte %zu bit %zu: %s", bit / 8, bit % 8, outcome > 2 ? "no end" : "read otherwise");
   }
   free(bytes);

@@ -2,8 +2,6 @@
 #define _GNU_SOURCE /* memmem */
 #include "support/test.h"
 #include "merge_fixture.h"
-#include <fcntl.h>
-#include <sys/stat.h>
 
 enum { COUNT = 200 }; /* more than three chunks */
 static PetscInt64 keys[COUNT];
@@ -31,50 +29,15 @@ static PetscErrorCode SalvageShards(PetscInt n)
   return LamDatabaseMerge(path, n, files, &options, &report);
 }
 
-/* Of the first shard: the whole file, with its size. The caller frees it. */
-static unsigned char *Bytes(size_t *size)
+/* Damages the first shard's record of this key. */
+static void DamageKey(PetscInt64 key)
 {
-  const int fd = open(shard_path[0], O_RDONLY);
-  unsigned char *bytes;
-  struct stat info;
-
-  fstat(fd, &info);
-  *size = (size_t)info.st_size;
-  bytes = malloc(*size);
-  assert_int_equal(read(fd, bytes, *size), *size);
-  close(fd);
-  return bytes;
+  Overwrite(shard_path[0], PlaceOf(shard_path[0], sizeof(key), &key) + 500, 8, "damaged.");
 }
 
-static void Overwrite(size_t place, size_t n, const void *bytes)
+static void ReplaceText(const char text[], const char by[])
 {
-  const int fd = open(shard_path[0], O_WRONLY);
-
-  assert_int_equal(pwrite(fd, bytes, n, (off_t)place), n);
-  close(fd);
-}
-
-/* Where these bytes begin. */
-static size_t PlaceOfBytes(size_t n, const void *wanted)
-{
-  size_t size;
-  unsigned char *bytes = Bytes(&size);
-  const unsigned char *at = memmem(bytes, size, wanted, n);
-  const size_t place = (size_t)(at - bytes);
-
-  assert_non_null(at);
-  free(bytes);
-  return place;
-}
-
-static size_t PlaceOf(PetscInt64 key)
-{
-  return PlaceOfBytes(sizeof(key), &key);
-}
-
-static size_t PlaceOfText(const char text[])
-{
-  return PlaceOfBytes(strlen(text), text);
+  Overwrite(shard_path[0], PlaceOf(shard_path[0], strlen(text), text), strlen(by), by);
 }
 
 /* Each record of the result is one that was written. */
@@ -82,26 +45,23 @@ static void AssertAllSound(PetscInt wanted)
 {
   const LamResponse *records;
   const PetscInt64 *found;
-  LamDatabase db;
   PetscInt n;
 
-  assert_int_equal(LamDatabaseOpen(path, &db), 0);
-  LamDatabaseGetRecords(db, &n, &records, &found);
+  records = OpenRecords(&n, &found);
   assert_int_equal(n, wanted);
   for (PetscInt i = 0; i < n; i++) {
     const LamResponse r = NodeResponse(found[i]);
 
     AssertSame(&records[i], &r);
   }
-  LamDatabaseClose(&db);
 }
 
 MERGE_TEST(a_damaged_record_is_refused_and_by_salvage_left_out_and_named)
 {
   WriteSound(0);
-  Overwrite(PlaceOf(keys[70]) + 500, 8, "damaged.");
+  DamageKey(keys[70]);
   assert_int_equal(TryShards(1, 0, PETSC_FALSE), PETSC_ERR_USER_INPUT);
-  assert_non_null(strstr(message, "record 70"));
+  AssertMessage("record 70");
   AssertNothingLeft();
   assert_int_equal(SalvageShards(1), 0);
   AssertAllSound(COUNT - 1);
@@ -112,7 +72,7 @@ MERGE_TEST(a_damaged_record_is_refused_and_by_salvage_left_out_and_named)
 MERGE_TEST(records_damaged_one_behind_the_other_are_counted)
 {
   WriteSound(0);
-  for (int i = 63; i < 67; i++) Overwrite(PlaceOf(keys[i]) + 500, 8, "damaged.");
+  for (int i = 63; i < 67; i++) DamageKey(keys[i]);
   assert_int_equal(SalvageShards(1), 0);
   AssertAllSound(COUNT - 4);
   assert_int_equal(report.left_out, 4);
@@ -121,7 +81,7 @@ MERGE_TEST(records_damaged_one_behind_the_other_are_counted)
 MERGE_TEST(another_file_has_what_one_has_lost)
 {
   WriteSound(0);
-  Overwrite(PlaceOf(keys[5]) + 500, 8, "damaged.");
+  DamageKey(keys[5]);
   WriteSound(1);
   assert_int_equal(SalvageShards(2), 0);
   AssertAllSound(COUNT);
@@ -131,9 +91,9 @@ MERGE_TEST(another_file_has_what_one_has_lost)
 MERGE_TEST(records_that_hdf5_cannot_read_are_left_out)
 {
   WriteSound(0);
-  Overwrite(PlaceOfText("TREE\1"), 4, "EERT");
+  ReplaceText("TREE\1", "EERT");
   assert_int_equal(SalvageShards(1), PETSC_ERR_USER_INPUT);
-  assert_non_null(strstr(message, "not one record is sound"));
+  AssertMessage("not one record is sound");
   AssertNothingLeft();
   WriteShard(1, 2, keys);
   assert_int_equal(SalvageShards(2), 0);
@@ -147,11 +107,11 @@ MERGE_TEST(a_file_that_is_cut_is_refused_by_name)
   size_t size;
 
   WriteSound(0);
-  free(Bytes(&size));
+  free(Bytes(shard_path[0], &size));
   assert_int_equal(truncate(shard_path[0], (off_t)size / 2), 0);
   assert_int_equal(SalvageShards(1), PETSC_ERR_USER_INPUT);
-  assert_non_null(strstr(message, shard_path[0]));
-  assert_non_null(strstr(message, "cut short"));
+  AssertMessage(shard_path[0]);
+  AssertMessage("cut short");
   AssertNothingLeft();
 }
 
@@ -162,10 +122,10 @@ MERGE_TEST(a_damaged_unit_is_told)
   unsigned char *bytes;
 
   WriteSound(0);
-  place = PlaceOfBytes(sizeof(name) - 1, name) + 16 + 24 + 8 + 5;
-  bytes = Bytes(&size);
+  place = PlaceOf(shard_path[0], sizeof(name) - 1, name) + 16 + 24 + 8 + 5;
+  bytes = Bytes(shard_path[0], &size);
   bytes[place] ^= 1;
-  Overwrite(place, 1, bytes + place);
+  Overwrite(shard_path[0], place, 1, bytes + place);
   free(bytes);
   assert_int_equal(SalvageShards(1), 0);
   AssertAllSound(COUNT);
@@ -175,22 +135,10 @@ MERGE_TEST(a_damaged_unit_is_told)
 MERGE_TEST(a_damaged_scene_costs_no_record)
 {
   WriteSound(0);
-  Overwrite(PlaceOfText("version: 1"), 7, "damaged");
+  ReplaceText("version: 1", "damaged");
   assert_int_equal(TryShards(1, 0, PETSC_FALSE), PETSC_ERR_USER_INPUT);
   assert_int_equal(SalvageShards(1), 0);
   AssertAllSound(COUNT);
-}
-
-static void SetCounter(PetscInt64 count)
-{
-  const hid_t file = H5Fopen(shard_path[0], H5F_ACC_RDWR, H5P_DEFAULT);
-  const hid_t dataset = H5Dopen2(file, "/records", H5P_DEFAULT);
-  const hid_t attribute = H5Aopen(dataset, "committed", H5P_DEFAULT);
-
-  H5Awrite(attribute, H5T_NATIVE_INT64, &count);
-  H5Aclose(attribute);
-  H5Dclose(dataset);
-  H5Fclose(file);
 }
 
 MERGE_TEST(a_counter_that_cannot_be_is_not_believed)
@@ -199,7 +147,7 @@ MERGE_TEST(a_counter_that_cannot_be_is_not_believed)
 
   for (int k = 0; k < 3; k++) {
     WriteSound(0);
-    SetCounter(counts[k]);
+    SetNumber(shard_path[0], "/records", "committed", H5T_NATIVE_INT64, &counts[k]);
     assert_int_equal(SalvageShards(1), 0);
     AssertAllSound(COUNT);
     assert_int_equal(report.left_out, 0);
@@ -212,7 +160,7 @@ MERGE_TEST(a_counter_that_cannot_be_is_not_believed)
 MERGE_TEST(a_changed_description_is_not_believed)
 {
   WriteSound(0);
-  Overwrite(PlaceOfText("{\"wall_thickness\": 0.15"), 23, "{\"wall_thickness\": 0.16");
+  ReplaceText("{\"wall_thickness\": 0.15", "{\"wall_thickness\": 0.16");
   assert_int_equal(SalvageShards(1), PETSC_ERR_USER_INPUT);
   AssertNothingLeft();
 }
@@ -220,9 +168,9 @@ MERGE_TEST(a_changed_description_is_not_believed)
 MERGE_TEST(a_damaged_grid_is_not_believed)
 {
   WriteSound(0);
-  Overwrite(PlaceOfText("\"turgor\":0.2"), 12, "\"turgor\":0.3");
+  ReplaceText("\"turgor\":0.2", "\"turgor\":0.3");
   assert_int_equal(SalvageShards(1), PETSC_ERR_USER_INPUT);
-  assert_non_null(strstr(message, LAM_GRID_NAME " is damaged"));
+  AssertMessage(LAM_GRID_NAME " is damaged");
   AssertNothingLeft();
 }
 
@@ -236,7 +184,7 @@ MERGE_TEST(nodes_without_a_grid_are_refused)
   H5Fclose(file);
   for (int salvage = 0; salvage < 2; salvage++) {
     assert_int_equal(TryShards(1, 0, (PetscBool)salvage), PETSC_ERR_USER_INPUT);
-    assert_non_null(strstr(message, LAM_GRID_NAME " is missing"));
+    AssertMessage(LAM_GRID_NAME " is missing");
     AssertNothingLeft();
   }
 }
@@ -253,7 +201,7 @@ MERGE_TEST(a_damaged_record_of_an_earlier_type_is_left_out)
   wanted.min_gap = NAN;
   AssertRecord(0, key, &wanted);
   unlink(path);
-  Overwrite(PlaceOf(key) + 500, 8, "damaged.");
+  DamageKey(key);
   assert_int_equal(SalvageShards(1), PETSC_ERR_USER_INPUT);
-  assert_non_null(strstr(message, "not one record is sound"));
+  AssertMessage("not one record is sound");
 }

@@ -119,7 +119,7 @@ TEST(without_symmetry_nodes_answer_as_their_records)
 TEST(at_corners_all_numbers_are_the_records)
 {
   for (int kind = 0; kind < 2; kind++) {
-    AnalyticTable t = AnalyticTableOpen((PetscBool)kind, 0.1);
+    OWNED(AnalyticTable, AnalyticTableClose) t = AnalyticTableOpen((PetscBool)kind, 0.1);
     const int first[3] = {-2 * LAM_ROOT, -2 * LAM_ROOT, -2 * LAM_ROOT};
     const PetscInt64 *keys;
     PetscInt n;
@@ -144,18 +144,16 @@ TEST(at_corners_all_numbers_are_the_records)
         assert_true(r.tangent[72 + in_plane[i]] == r.tangent[9 * in_plane[i] + 8]);
       }
     }
-    AnalyticTableClose(&t);
   }
 }
 
 /* On demand one interval of suction is solved, and nothing beyond it. */
-TEST(finer_nodes_of_one_interval_bring_the_answer_nearer)
+TABLE_TEST(finer_nodes_of_one_interval_bring_the_answer_nearer, AnalyticTableOpen(PETSC_TRUE, 0.2))
 {
-  AnalyticTable t = AnalyticTableOpen(PETSC_TRUE, 0.2);
   const int corner = -2 * LAM_ROOT;
   const double u[3] = {corner + 20, corner + 11, corner + 37};
-  const LamLoad load = LoadAt(&t, u, 0.9 * LAM_ROOT, 0.3);
-  const LamResponse exact = TissueAnswer(&t.tissue, &load);
+  const LamLoad load = LoadAt(t, u, 0.9 * LAM_ROOT, 0.3);
+  const LamResponse exact = TissueAnswer(&t->tissue, &load);
   double before = 0;
 
   for (int level = 0; level <= 2; level++) {
@@ -166,75 +164,69 @@ TEST(finer_nodes_of_one_interval_bring_the_answer_nearer)
       for (int j = 0; j <= LAM_ROOT; j += LAM_ROOT) {
         const int i[3] = {corner + size * (at % n), corner + size * (at / n % n), corner + size * (at / n / n)};
 
-        AddPlace(&t, i, j);
+        AddPlace(t, i, j);
       }
-    assert_true(Answers(&t, &load, &r));
+    assert_true(Answers(t, &load, &r));
     if (level) assert_true(LamStressError(r.P, exact.P) < 0.7 * before);
     before = LamStressError(r.P, exact.P);
   }
-  AnalyticTableClose(&t);
 }
 
 /* Tissue of one turgor needs no nodes of another. */
-TEST(at_the_suction_of_its_states_a_cell_needs_no_others)
+TABLE_TEST(at_the_suction_of_its_states_a_cell_needs_no_others, AnalyticTableOpen(PETSC_TRUE, 0.2))
 {
-  AnalyticTable t = AnalyticTableOpen(PETSC_TRUE, 0.2);
   const int corner = -2 * LAM_ROOT;
   const double u[3] = {corner + 20, corner + 11, corner + 37};
-  const LamLoad load = LoadAt(&t, u, LAM_ROOT, 0.3), beside = LoadAt(&t, u, 0.9 * LAM_ROOT, 0.3);
-  const LamResponse exact = TissueAnswer(&t.tissue, &load);
+  const LamLoad load = LoadAt(t, u, LAM_ROOT, 0.3), beside = LoadAt(t, u, 0.9 * LAM_ROOT, 0.3);
+  const LamResponse exact = TissueAnswer(&t->tissue, &load);
   LamResponse r;
 
   for (int at = 0; at < 8; at++) {
     const int i[3] = {corner + LAM_ROOT * (at & 1), corner + LAM_ROOT * (at >> 1 & 1), corner + LAM_ROOT * (at >> 2)};
 
-    AddPlace(&t, i, LAM_ROOT);
+    AddPlace(t, i, LAM_ROOT);
   }
-  assert_true(Answers(&t, &load, &r));
+  assert_true(Answers(t, &load, &r));
   assert_true(LamStressError(r.P, exact.P) < 0.02);
   assert_near(r.energy_turgor, exact.energy_turgor, 0.02);
-  assert_false(Answers(&t, &beside, &r));
-  AnalyticTableClose(&t);
+  assert_false(Answers(t, &beside, &r));
 }
 
 /* The state to solve in a question's stead: not turned, in the order of the nodes, near one of them. */
-TEST(a_turned_question_has_the_same_answer)
+TABLE_TEST(a_turned_question_has_the_same_answer, Rough(PETSC_TRUE, 0.2))
 {
-  AnalyticTable t = Rough(PETSC_TRUE, 0.2);
   uint64_t seed = 11;
   LamTable table;
   PetscInt near = 0;
 
-  CHECK(LamDatabaseGetTable(t.database, &table));
+  CHECK(LamDatabaseGetTable(t->database, &table));
   for (int n = 0; n < 50; n++) {
-    const LamLoad load = RandomLoad(&t, &seed);
-    const LamResponse one = TissueAnswer(&t.tissue, &load);
+    const LamLoad load = RandomLoad(t, &seed);
+    const LamResponse one = TissueAnswer(&t->tissue, &load);
     LamLoad turned;
     PetscInt64 key;
     LamResponse other;
 
     CHECK(LamTableTurn(table, &load, &turned, &key));
-    other = TissueAnswer(&t.tissue, &turned);
+    other = TissueAnswer(&t->tissue, &turned);
     assert_near(other.energy, one.energy, 1e-9);
     assert_true(turned.F[1] == turned.F[3]);
     near += key >= 0;
   }
   assert_true(near > 0);
   CHECK(LamTableDestroy(&table));
-  AnalyticTableClose(&t);
 }
 
 /* Solves are symmetric to their mesh's accuracy alone: what swaps two strains must not swap what is solved. */
-TEST(strains_that_are_alike_keep_their_order)
+TABLE_TEST(strains_that_are_alike_keep_their_order, Rough(PETSC_TRUE, 0.2))
 {
-  AnalyticTable t = Rough(PETSC_TRUE, 0.2);
   LamTable table;
 
-  CHECK(LamDatabaseGetTable(t.database, &table));
+  CHECK(LamDatabaseGetTable(t->database, &table));
   for (int k = 0; k < 6; k++) {
     const double e = (k % 2 ? -1 : 1) * 1e-5, f = (k / 2 - 1) * 1e-5;
     const LamLoad load = {
-        .F = {1.03 + e, f, 0, f, 1.03 - e, 0, 0, 0, 1}, .turgor = t.scene.turgor, .cohesion = t.scene.cohesion};
+        .F = {1.03 + e, f, 0, f, 1.03 - e, 0, 0, 0, 1}, .turgor = t->scene.turgor, .cohesion = t->scene.cohesion};
     LamLoad turned;
     PetscInt64 key;
 
@@ -242,7 +234,6 @@ TEST(strains_that_are_alike_keep_their_order)
     for (int i = 0; i < 4; i++) assert_near(turned.F[3 * (i / 2) + i % 2], load.F[3 * (i / 2) + i % 2], 1e-9);
   }
   CHECK(LamTableDestroy(&table));
-  AnalyticTableClose(&t);
 }
 
 /* ---- images ---- */
@@ -262,7 +253,7 @@ static void Image(const AnalyticTable *t, int image, const PetscReal A[9], Petsc
 TEST(images_answer_alike)
 {
   for (int kind = 0; kind < 2; kind++) {
-    AnalyticTable t = Rough((PetscBool)kind, 0.3);
+    OWNED(AnalyticTable, AnalyticTableClose) t = Rough((PetscBool)kind, 0.3);
     uint64_t seed = 3;
 
     for (int n = 0; n < 20; n++) {
@@ -279,24 +270,21 @@ TEST(images_answer_alike)
         for (int i = 0; i < 4; i++) assert_near(other.P[in_plane[i]], P[in_plane[i]], 1e-11);
       }
     }
-    AnalyticTableClose(&t);
   }
 }
 
-TEST(stress_turns_with_the_frame)
+TABLE_TEST(stress_turns_with_the_frame, Rough(PETSC_FALSE, 0))
 {
-  AnalyticTable t = Rough(PETSC_FALSE, 0);
   const double u[3] = {30, 70, 90}, c = cos(0.7), s = sin(0.7);
-  const LamLoad straight = LoadAt(&t, u, 0, 0), turned = LoadAt(&t, u, 0, 0.7);
+  const LamLoad straight = LoadAt(t, u, 0, 0), turned = LoadAt(t, u, 0, 0.7);
   LamResponse r, other;
 
-  assert_true(Answers(&t, &straight, &r));
-  assert_true(Answers(&t, &turned, &other));
+  assert_true(Answers(t, &straight, &r));
+  assert_true(Answers(t, &turned, &other));
   for (int j = 0; j < 2; j++) {
     assert_near(other.P[j], c * r.P[j] - s * r.P[3 + j], 1e-13);
     assert_near(other.P[3 + j], s * r.P[j] + c * r.P[3 + j], 1e-13);
   }
-  AnalyticTableClose(&t);
 }
 
 /* A turned by an angle from both sides, as a material that does not know directions has it. */
@@ -317,7 +305,7 @@ static void TurnTangent(const PetscReal A[81], double angle, double turned[4][4]
 TEST(the_tangent_is_isotropic_without_isochoric_strain)
 {
   for (int kind = 0; kind < 2; kind++) {
-    AnalyticTable t = Rough((PetscBool)kind, 0.3);
+    OWNED(AnalyticTable, AnalyticTableClose) t = Rough((PetscBool)kind, 0.3);
 
     for (int n = 0; n < 30; n++) {
       const double at = (kind ? -2 * LAM_ROOT : 0) + 4.3 * n, u[3] = {at, at, at};
@@ -332,34 +320,31 @@ TEST(the_tangent_is_isotropic_without_isochoric_strain)
         assert_near(r.tangent[9 * in_plane[a / 4] + in_plane[a % 4]], turned[a / 4][a % 4],
                     2e-13 * fmax(1, fabs(r.tangent[0])));
     }
-    AnalyticTableClose(&t);
   }
 }
 
 /* A solver's records are symmetric to its tolerance only. */
-TEST(records_that_are_a_little_asymmetric_make_a_symmetric_answer)
+TABLE_TEST(records_that_are_a_little_asymmetric_make_a_symmetric_answer, AnalyticTableOpen(PETSC_FALSE, 0))
 {
-  AnalyticTable t = AnalyticTableOpen(PETSC_FALSE, 0);
   const double u[3] = {20, 20, 20};
-  const LamLoad load = LoadAt(&t, u, 0, 0);
+  const LamLoad load = LoadAt(t, u, 0, 0);
   uint64_t seed = 4;
   double turned[4][4];
   LamResponse r;
 
   for (int at = 0; at < 8; at++) {
     const int i[3] = {LAM_ROOT * (at & 1), LAM_ROOT * (at >> 1 & 1), LAM_ROOT * (at >> 2)};
-    const PetscInt64 key = KeyOf(&t, i, 0);
+    const PetscInt64 key = KeyOf(t, i, 0);
 
-    r = AnswerOf(&t, key);
+    r = AnswerOf(t, key);
     for (int k = 0; k < 9; k++) r.P[k] += RandomReal(&seed, -1e-6, 1e-6);
     for (int k = 0; k < 81; k++) r.tangent[k] += RandomReal(&seed, -1e-6, 1e-6);
-    if (!HasKey(&t, key)) CHECK(LamDatabaseAdd(t.database, 1, &key, &r));
+    if (!HasKey(t, key)) CHECK(LamDatabaseAdd(t->database, 1, &key, &r));
   }
-  assert_true(Answers(&t, &load, &r));
+  assert_true(Answers(t, &load, &r));
   TurnTangent(r.tangent, 0.4, turned);
   for (int a = 0; a < 16; a++)
     assert_near(r.tangent[9 * in_plane[a / 4] + in_plane[a % 4]], turned[a / 4][a % 4], 1e-13);
-  AnalyticTableClose(&t);
 }
 
 /* ---- one potential ---- */
@@ -384,7 +369,7 @@ typedef void (*Comparison)(const AnalyticTable *t, const LamLoad *load);
 static void AtRandomStates(Comparison compare)
 {
   for (int kind = 0; kind < 2; kind++) {
-    AnalyticTable t = Rough((PetscBool)kind, 0.2);
+    OWNED(AnalyticTable, AnalyticTableClose) t = Rough((PetscBool)kind, 0.2);
     uint64_t seed = 5;
     int compared = 0;
 
@@ -398,7 +383,6 @@ static void AtRandomStates(Comparison compare)
       compared++;
     }
     assert_true(compared > 50);
-    AnalyticTableClose(&t);
   }
 }
 
@@ -507,7 +491,7 @@ static void AssertIdentical(const LamResponse *a, LamResponse *b)
 TEST(a_file_answers_bit_for_bit_as_memory)
 {
   for (int kind = 0; kind < 2; kind++) {
-    AnalyticTable t = Rough((PetscBool)kind, 0.1), read;
+    OWNED(AnalyticTable, AnalyticTableClose) t = Rough((PetscBool)kind, 0.1), read;
     char path[] = "/tmp/lamella_test_table_XXXXXX";
     uint64_t seed = 6;
 
@@ -524,6 +508,5 @@ TEST(a_file_answers_bit_for_bit_as_memory)
       AssertIdentical(&r, &other);
     }
     AnalyticTableClose(&read);
-    AnalyticTableClose(&t);
   }
 }

@@ -51,7 +51,7 @@ static PetscBool Sides(const AnalyticTable *t, int kind, const double u[3], doub
 static void AssertNoJump(PetscBool contact, int kind)
 {
   for (uint64_t set = 1; set <= NODE_SETS; set++) {
-    AnalyticTable t = Rough(contact, set % 2 ? 0 : 0.1, set);
+    OWNED(AnalyticTable, AnalyticTableClose) t = Rough(contact, set % 2 ? 0 : 0.1, set);
     uint64_t seed = 100 + set;
     int compared = 0;
 
@@ -68,7 +68,6 @@ static void AssertNoJump(PetscBool contact, int kind)
       for (int i = 0; i < 4; i++) assert_near(side[1].P[in_plane[i]], side[0].P[in_plane[i]], 1e-8);
     }
     assert_true(compared > POINTS / 10);
-    AnalyticTableClose(&t);
   }
 }
 
@@ -82,22 +81,20 @@ TEST_IS(contact_stress_does_not_jump_at_planes_of_symmetry, AssertNoJump(PETSC_T
 /* Many of which belong to some of the columns only. */
 TEST_IS(contact_stress_does_not_jump_at_knots_of_suction, AssertNoJump(PETSC_TRUE, ON_KNOT));
 
-TEST(stress_does_not_jump_where_cells_lose_touch)
+TABLE_TEST(stress_does_not_jump_where_cells_lose_touch, Rough(PETSC_TRUE, 0, 5))
 {
-  AnalyticTable t = Rough(PETSC_TRUE, 0, 5);
   uint64_t seed = 5;
 
   for (int n = 0; n < POINTS; n++) {
     double u[3] = {0, RandomReal(&seed, 0, 40), RandomReal(&seed, 0, 40)};
-    const double v = RandomReal(&seed, 0, LAM_ROOT * (double)t.grid->tau_cells);
+    const double v = RandomReal(&seed, 0, LAM_ROOT * (double)t->grid->tau_cells);
     LamResponse side[2];
 
-    assert_true(Sides(&t, ON_FACE, u, v, side));
+    assert_true(Sides(t, ON_FACE, u, v, side));
     assert_near(side[1].energy, side[0].energy, 1e-10);
     assert_near(side[1].energy_turgor, side[0].energy_turgor, 1e-9);
     for (int i = 0; i < 4; i++) assert_near(side[1].P[in_plane[i]], side[0].P[in_plane[i]], 1e-9);
   }
-  AnalyticTableClose(&t);
 }
 
 static double TangentJump(const LamResponse side[2])
@@ -114,22 +111,20 @@ static double TangentJump(const LamResponse side[2])
 }
 
 /* Nodes everywhere: what is left is the error of the interpolation. */
-TEST(the_tangent_jumps_little)
+TABLE_TEST(the_tangent_jumps_little, AnalyticTableOpen(PETSC_FALSE, 0.2))
 {
-  AnalyticTable t = AnalyticTableOpen(PETSC_FALSE, 0.2);
   const int first[3] = {0, 0, 0};
   uint64_t seed = 6;
 
-  AddBlock(&t, 1, first, 4, LAM_ROOT);
+  AddBlock(t, 1, first, 4, LAM_ROOT);
   for (int n = 0; n < POINTS; n++) {
     LamResponse side[2];
     double u[3], v;
 
-    RandomPlace(&t, ON_FACE, &seed, u, &v);
-    assert_true(Sides(&t, ON_FACE, u, v, side));
+    RandomPlace(t, ON_FACE, &seed, u, &v);
+    assert_true(Sides(t, ON_FACE, u, v, side));
     assert_true(TangentJump(side) < 2e-3);
   }
-  AnalyticTableClose(&t);
 }
 
 /* ---- work ---- */
@@ -137,13 +132,12 @@ TEST(the_tangent_jumps_little)
 static void AssertNoWork(PetscBool contact)
 {
   for (uint64_t set = 1; set <= NODE_SETS; set++) {
-    AnalyticTable t = Rough(contact, 0, set);
+    OWNED(AnalyticTable, AnalyticTableClose) t = Rough(contact, 0, set);
     uint64_t seed = 200 + set;
     LamLoad corners[5];
 
     CycleCorners(&t, 5, &seed, corners);
     assert_near(CycleWork(&t, 5, corners), 0, 1e-8);
-    AnalyticTableClose(&t);
   }
 }
 

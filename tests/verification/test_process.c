@@ -25,15 +25,16 @@ static PetscReal FreeLumen(LamRVE rve, PetscReal turgor)
 /* ln 2 V / (A Lp (epsilon + pi)) of a free cell, epsilon = V dp/dV, by differences of fresh solves. */
 TEST(turgor_relaxes_with_the_half_time_of_a_free_cell)
 {
-  Followed f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.1 MPa}\n"
-                                        "process:\n"
-                                        "  duration: 5 h\n"
-                                        "  output: 50 s\n"
-                                        "  tolerance: 1e-9\n"
-                                        "  water: {permeability: 1e-7 m/s/MPa, osmotic_pressure: 0.5 MPa}\n"
-                                        "  surroundings:\n"
-                                        "    - {time: 0 s, outside: 0.4 MPa}\n"
-                                        "    - {time: 0 s, outside: 0.4001 MPa}\n");
+  OWNED(Followed, Forget)
+  f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.1 MPa}\n"
+                               "process:\n"
+                               "  duration: 5 h\n"
+                               "  output: 50 s\n"
+                               "  tolerance: 1e-9\n"
+                               "  water: {permeability: 1e-7 m/s/MPa, osmotic_pressure: 0.5 MPa}\n"
+                               "  surroundings:\n"
+                               "    - {time: 0 s, outside: 0.4 MPa}\n"
+                               "    - {time: 0 s, outside: 0.4001 MPa}\n");
   const PetscReal p = f.scene->turgor, dp = 1e-3 * p, MPa = f.scene->scales.stress;
   const PetscReal v = FreeLumen(f.rve, p), epsilon = v * 2 * dp / (FreeLumen(f.rve, p + dp) - FreeLumen(f.rve, p - dp));
   const PetscReal pi = 0.5e6 / MPa, area = 2 * (1 - 0.15), Lp = 1e-13 * MPa / f.scene->scales.length;
@@ -42,21 +43,21 @@ TEST(turgor_relaxes_with_the_half_time_of_a_free_cell)
   const PetscReal found = log(2) * (f.states[12].time - f.states[2].time) / log(first / second);
 
   assert_near(found / half_time, 1, 1e-3);
-  Forget(&f);
 }
 
 TEST(solutes_are_conserved_and_the_flow_makes_up_the_volume)
 {
-  Followed f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.1 MPa}\n"
-                                        "process:\n"
-                                        "  duration: 20 min\n"
-                                        "  output: 2 s\n"
-                                        "  tolerance: 1e-8\n"
-                                        "  water: {permeability: 1e-7 m/s/MPa, osmotic_pressure: 0.5 MPa, "
-                                        "non_osmotic: 0.1}\n"
-                                        "  surroundings:\n"
-                                        "    - {time: 0 s, outside: 0.4 MPa, temperature: 20 degC}\n"
-                                        "    - {time: 600 s, outside: 0.2 MPa, temperature: 40 degC}\n");
+  OWNED(Followed, Forget)
+  f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.1 MPa}\n"
+                               "process:\n"
+                               "  duration: 20 min\n"
+                               "  output: 2 s\n"
+                               "  tolerance: 1e-8\n"
+                               "  water: {permeability: 1e-7 m/s/MPa, osmotic_pressure: 0.5 MPa, "
+                               "non_osmotic: 0.1}\n"
+                               "  surroundings:\n"
+                               "    - {time: 0 s, outside: 0.4 MPa, temperature: 20 degC}\n"
+                               "    - {time: 600 s, outside: 0.2 MPa, temperature: 40 degC}\n");
   const PetscReal start = f.states[0].water, dead = 0.1 * start, k = f.scene->process.water.permeability * 2 * 0.85;
   PetscReal flowed = 0;
 
@@ -76,7 +77,6 @@ TEST(solutes_are_conserved_and_the_flow_makes_up_the_volume)
   }
   assert_near(LastState(&f)->water - start, flowed, 1e-6 * start);
   assert_true(LastState(&f)->water > 1.05 * start);
-  Forget(&f);
 }
 
 #define BATH(permeability)                                                                                             \
@@ -95,7 +95,7 @@ TEST(solutes_are_conserved_and_the_flow_makes_up_the_volume)
 /* In a bath that draws more than the turgor the membranes leave the walls; the protoplast then is an osmometer. */
 TEST(a_plasmolysed_protoplast_follows_boyle_and_van_t_hoff)
 {
-  Followed f = FollowToEnd(BATH("4e-7 m/s/MPa"));
+  OWNED(Followed, Forget) f = FollowToEnd(BATH("4e-7 m/s/MPa"));
   const LamProcessState *lost = FindEvent(&f, LAM_EVENT_TURGOR_LOST), *found = FindEvent(&f, LAM_EVENT_TURGOR_FOUND),
                         *before = NULL;
   const PetscReal v = f.states[0].water;
@@ -110,23 +110,21 @@ TEST(a_plasmolysed_protoplast_follows_boyle_and_van_t_hoff)
   assert_true(found->time > 5 * 3600.0);
   assert_near(LastState(&f)->turgor, LastState(&f)->osmotic - LastState(&f)->outside, 1e-5);
   assert_true(LastState(&f)->turgor > f.states[0].turgor);
-  Forget(&f);
 }
 
 TEST(membranes_that_let_nothing_pass_keep_the_water)
 {
-  Followed f = FollowToEnd(BATH("0 m/s/MPa"));
+  OWNED(Followed, Forget) f = FollowToEnd(BATH("0 m/s/MPa"));
 
   for (PetscInt i = 0; i < f.count; i++) {
     assert_near(f.states[i].water / f.states[0].water, 1, 1e-9);
     assert_near(f.states[i].turgor, f.states[0].turgor, 1e-7);
   }
-  Forget(&f);
 }
 
 TEST(membranes_without_resistance_are_in_equilibrium_at_any_time)
 {
-  Followed f = FollowToEnd(BATH("infinite"));
+  OWNED(Followed, Forget) f = FollowToEnd(BATH("infinite"));
 
   for (PetscInt i = 0; i < f.count; i++) {
     const LamProcessState *s = &f.states[i];
@@ -135,7 +133,6 @@ TEST(membranes_without_resistance_are_in_equilibrium_at_any_time)
   }
   assert_non_null(FindEvent(&f, LAM_EVENT_TURGOR_LOST));
   assert_non_null(FindEvent(&f, LAM_EVENT_TURGOR_FOUND));
-  Forget(&f);
 }
 
 /* ---- kinetics ---- */
@@ -163,30 +160,30 @@ static PetscReal Speed(void)
 
 TEST(laws_follow_their_closed_forms_over_a_step_of_temperature)
 {
-  Followed f = FollowToEnd(CHANGES "    - {of: lamella, law: first_order, rate: 0.3 /day, activation: 60 kJ/mol}\n"
-                                   "    - {of: walls, law: fractional_conversion, rate: 0.2 /day, plateau: 1.5, "
-                                   "activation: 60 kJ/mol}\n");
+  OWNED(Followed, Forget)
+  f = FollowToEnd(CHANGES "    - {of: lamella, law: first_order, rate: 0.3 /day, activation: 60 kJ/mol}\n"
+                          "    - {of: walls, law: fractional_conversion, rate: 0.2 /day, plateau: 1.5, "
+                          "activation: 60 kJ/mol}\n");
   const PetscReal days = 2 + 2 * Speed();
 
   assert_near(LastState(&f)->time, 4 * 86400.0, 1e-6);
   assert_near(f.states[1].factor[LAM_CHANGING_LAMELLA], exp(-0.3), 1e-6);
   assert_near(LastState(&f)->factor[LAM_CHANGING_LAMELLA], exp(-0.3 * days), 1e-6);
   assert_near(LastState(&f)->factor[LAM_CHANGING_WALLS], 1.5 - 0.5 * exp(-0.2 * days), 1e-6);
-  Forget(&f);
 }
 
 TEST(two_fractions_and_enzymes_follow_theirs)
 {
-  Followed f = FollowToEnd(CHANGES "    - {of: lamella, law: two_fractions, rate: 2 /day, second_rate: 0.1 /day, "
-                                   "share: 0.6, activation: 60 kJ/mol, second_activation: 0 kJ/mol}\n"
-                                   "    - {of: walls, law: autocatalytic, rate: 0.5 /day, second_rate: 1 /day, "
-                                   "enzyme: 0.02, plateau: 0.3, activation: 60 kJ/mol}\n");
+  OWNED(Followed, Forget)
+  f = FollowToEnd(CHANGES "    - {of: lamella, law: two_fractions, rate: 2 /day, second_rate: 0.1 /day, "
+                          "share: 0.6, activation: 60 kJ/mol, second_activation: 0 kJ/mol}\n"
+                          "    - {of: walls, law: autocatalytic, rate: 0.5 /day, second_rate: 1 /day, "
+                          "enzyme: 0.02, plateau: 0.3, activation: 60 kJ/mol}\n");
   const PetscReal days = 2 + 2 * Speed();
 
   assert_near(LastState(&f)->factor[LAM_CHANGING_LAMELLA], 0.6 * exp(-2 * days) + 0.4 * exp(-0.1 * 4), 1e-6);
   /* int E dt = ln(1 + E0 (e^(k2 t) - 1)) / k2 */
   assert_near(LastState(&f)->factor[LAM_CHANGING_WALLS], 0.3 + 0.7 * pow(1 + 0.02 * (exp(days) - 1), -0.5), 1e-6);
-  Forget(&f);
 }
 
 /* ---- properties and responses ---- */
@@ -194,8 +191,8 @@ TEST(two_fractions_and_enzymes_follow_theirs)
 /* Walls whose moduli are all halved bear what half of the pressure does in those of the start, half as much. */
 TEST(softened_walls_respond_as_such)
 {
-  Followed f =
-      FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.05 MPa}\n"
+  OWNED(Followed, Forget)
+  f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.05 MPa}\n"
                                "process:\n"
                                "  duration: 1 day\n"
                                "  tolerance: 1e-8\n"
@@ -212,19 +209,19 @@ TEST(softened_walls_respond_as_such)
   for (int i = 0; i < 9; i++) assert_near(last->response.P[i], fresh.P[i], 1e-7);
   assert_near(fresh.P[0], 0, 1e-6);
   assert_near(last->response.energy, fresh.energy, 1e-8);
-  Forget(&f);
 }
 
 /* Walls that lose their fibres alone are another tissue; the responder is told. */
 TEST(walls_may_change_in_their_proportions)
 {
-  Followed f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.05 MPa}\n"
-                                        "process:\n"
-                                        "  duration: 1 day\n"
-                                        "  tolerance: 1e-6\n"
-                                        "  kinetics:\n"
-                                        "    - {of: C4, law: first_order, rate: 1 /day}\n"
-                                        "    - {of: C1, law: first_order, rate: 0.2 /day}\n");
+  OWNED(Followed, Forget)
+  f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.05 MPa}\n"
+                               "process:\n"
+                               "  duration: 1 day\n"
+                               "  tolerance: 1e-6\n"
+                               "  kinetics:\n"
+                               "    - {of: C4, law: first_order, rate: 1 /day}\n"
+                               "    - {of: C1, law: first_order, rate: 0.2 /day}\n");
   LamMicrostructure soft = f.scene->micro;
   const LamProcessState *last = LastState(&f);
 
@@ -235,22 +232,22 @@ TEST(walls_may_change_in_their_proportions)
 
   for (int i = 0; i < 9; i++) assert_near(last->response.P[i], fresh.P[i], 1e-5);
   assert_near(fresh.P[0], 0, 1e-5);
-  Forget(&f);
 }
 
 /* ---- program ---- */
 
 TEST(stress_relaxes_at_constant_strain_as_water_flows)
 {
-  Followed f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.1 MPa}\n"
-                                        "process:\n"
-                                        "  duration: 40 min\n"
-                                        "  output: 10 s\n"
-                                        "  water: {permeability: 4e-7 m/s/MPa, osmotic_pressure: 0.5 MPa}\n"
-                                        "  surroundings: [{time: 0 s, outside: 0.4 MPa}]\n"
-                                        "  program:\n"
-                                        "    - {for: 1 s, F: [[0.95, 0], [0, free]], P: [[x, x], [x, 0 MPa]]}\n"
-                                        "    - {for: 1 h}\n");
+  OWNED(Followed, Forget)
+  f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.1 MPa}\n"
+                               "process:\n"
+                               "  duration: 40 min\n"
+                               "  output: 10 s\n"
+                               "  water: {permeability: 4e-7 m/s/MPa, osmotic_pressure: 0.5 MPa}\n"
+                               "  surroundings: [{time: 0 s, outside: 0.4 MPa}]\n"
+                               "  program:\n"
+                               "    - {for: 1 s, F: [[0.95, 0], [0, free]], P: [[x, x], [x, 0 MPa]]}\n"
+                               "    - {for: 1 h}\n");
   const LamProcessState *pressed = &f.states[1], *last = LastState(&f);
 
   assert_near(pressed->F[0], 0.95, 1e-12);
@@ -259,58 +256,57 @@ TEST(stress_relaxes_at_constant_strain_as_water_flows)
   assert_true(pressed->turgor > 1.02 * f.states[0].turgor);
   assert_true(fabs(last->response.P[0]) < 0.9 * fabs(pressed->response.P[0]));
   assert_near(last->turgor, last->osmotic - last->outside, 1e-3 * last->turgor);
-  Forget(&f);
 }
 
 TEST(a_load_that_is_held_creeps_as_walls_soften)
 {
-  Followed f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.02 MPa}\n"
-                                        "process:\n"
-                                        "  duration: 2 day\n"
-                                        "  output: 1 day\n"
-                                        "  program:\n"
-                                        "    - {for: 10 s, F: [[free, 0], [0, free]], P: [[0.01 MPa, x], [x, 0 MPa]]}\n"
-                                        "  kinetics: [{of: walls, law: first_order, rate: 0.5 /day}]\n");
+  OWNED(Followed, Forget)
+  f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.02 MPa}\n"
+                               "process:\n"
+                               "  duration: 2 day\n"
+                               "  output: 1 day\n"
+                               "  program:\n"
+                               "    - {for: 10 s, F: [[free, 0], [0, free]], P: [[0.01 MPa, x], [x, 0 MPa]]}\n"
+                               "  kinetics: [{of: walls, law: first_order, rate: 0.5 /day}]\n");
   const PetscReal MPa = f.scene->scales.stress * 1e-6;
 
   assert_near(LastState(&f)->response.P[0] * MPa, 0.01, 1e-6);
   assert_true(LastState(&f)->F[0] > f.states[1].F[0] && f.states[1].F[0] > 1.001);
-  Forget(&f);
 }
 
 /* Cells without turgor take up water from where they are. */
 TEST(empty_cells_fill)
 {
-  Followed f = FollowToEnd(PROCESS_CELL "process:\n"
-                                        "  duration: 20 h\n"
-                                        "  water: {permeability: 1e-7 m/s/MPa, osmotic_pressure: 0.3 MPa}\n");
+  OWNED(Followed, Forget)
+  f = FollowToEnd(PROCESS_CELL "process:\n"
+                               "  duration: 20 h\n"
+                               "  water: {permeability: 1e-7 m/s/MPa, osmotic_pressure: 0.3 MPa}\n");
 
   assert_near(f.states[0].turgor, 0, 0);
   assert_near(LastState(&f)->turgor, LastState(&f)->osmotic, 1e-5);
   assert_true(LastState(&f)->turgor > 0.1);
-  Forget(&f);
 }
 
 TEST(a_program_that_repeats_comes_back)
 {
-  Followed f = FollowToEnd(PROCESS_CELL "process:\n"
-                                        "  duration: 40 s\n"
-                                        "  output: 5 s\n"
-                                        "  program:\n"
-                                        "    - {for: 5 s, F: [[1, 0.1], [0, 1]]}\n"
-                                        "    - {for: 5 s, F: [[1, 0], [0, 1]]}\n"
-                                        "  repeat: 3\n");
+  OWNED(Followed, Forget)
+  f = FollowToEnd(PROCESS_CELL "process:\n"
+                               "  duration: 40 s\n"
+                               "  output: 5 s\n"
+                               "  program:\n"
+                               "    - {for: 5 s, F: [[1, 0.1], [0, 1]]}\n"
+                               "    - {for: 5 s, F: [[1, 0], [0, 1]]}\n"
+                               "  repeat: 3\n");
 
   assert_int_equal(f.count, 9);
   for (PetscInt i = 0; i < f.count; i++) assert_near(f.states[i].F[1], i % 2 && i < 6 ? 0.1 : 0, 1e-12);
-  Forget(&f);
 }
 
 /* Ten times 0.1 s is not 1 s in binary numbers. */
 TEST(ends_that_rounding_keeps_apart_are_one)
 {
-  Followed f =
-      FollowToEnd(PROCESS_CELL "process:\n"
+  OWNED(Followed, Forget)
+  f = FollowToEnd(PROCESS_CELL "process:\n"
                                "  duration: 1 s\n"
                                "  output: 0.5 s\n"
                                "  program: [{for: 0.1 s}]\n"
@@ -319,23 +315,22 @@ TEST(ends_that_rounding_keeps_apart_are_one)
 
   assert_int_equal(f.count, 3);
   assert_near(LastState(&f)->time, 1, 0);
-  Forget(&f);
 }
 
 /* ---- events ---- */
 
 TEST(prescribed_turgor_that_jumps_below_0_is_lost)
 {
-  Followed f = FollowToEnd(PROCESS_CELL "process:\n"
-                                        "  duration: 2 h\n"
-                                        "  surroundings:\n"
-                                        "    - {time: 0 h, turgor: 0.02 MPa}\n"
-                                        "    - {time: 1 h, turgor: 0.02 MPa}\n"
-                                        "    - {time: 1 h, turgor: -0.0005 MPa}\n");
+  OWNED(Followed, Forget)
+  f = FollowToEnd(PROCESS_CELL "process:\n"
+                               "  duration: 2 h\n"
+                               "  surroundings:\n"
+                               "    - {time: 0 h, turgor: 0.02 MPa}\n"
+                               "    - {time: 1 h, turgor: 0.02 MPa}\n"
+                               "    - {time: 1 h, turgor: -0.0005 MPa}\n");
 
   assert_non_null(FindEvent(&f, LAM_EVENT_TURGOR_LOST));
   assert_near(FindEvent(&f, LAM_EVENT_TURGOR_LOST)->time, 3600, 1e-6);
-  Forget(&f);
 }
 
 #define ONSET(duration)                                                                                                \
@@ -355,18 +350,17 @@ static PetscReal RatioAt(PetscReal time)
 
   snprintf(duration, sizeof(duration), "%.17g s", (double)time);
   snprintf(text, sizeof(text), ONSET("%s"), duration);
-  Followed f = FollowToEnd(text);
+  OWNED(Followed, Forget) f = FollowToEnd(text);
   const LamProcessState *last = LastState(&f);
   const LamResponse fresh = SolveTissue(&f.scene->micro, last->response.load);
   const PetscReal ratio = fresh.max_traction / (last->factor[LAM_CHANGING_LAMELLA] * f.scene->strength.lamella_normal);
 
-  Forget(&f);
   return ratio;
 }
 
 TEST(an_event_is_where_bisection_with_fresh_solves_finds_it)
 {
-  Followed f = FollowToEnd(ONSET("2 day"));
+  OWNED(Followed, Forget) f = FollowToEnd(ONSET("2 day"));
   const LamProcessState *event = FindEvent(&f, LAM_EVENT_LAMELLA_NORMAL);
   PetscReal low = 60, high = 2 * 86400.0;
 
@@ -381,29 +375,28 @@ TEST(an_event_is_where_bisection_with_fresh_solves_finds_it)
       high = middle;
   }
   assert_near(event->time / (0.5 * (low + high)), 1, 1e-4);
-  Forget(&f);
 }
 
 TEST(stress_over_strength_is_1_at_the_event)
 {
-  Followed f = FollowToEnd(ONSET("2 day"));
+  OWNED(Followed, Forget) f = FollowToEnd(ONSET("2 day"));
   const LamProcessState *event = FindEvent(&f, LAM_EVENT_LAMELLA_NORMAL);
 
   assert_near(event->ratio[LAM_RATIO_LAMELLA_NORMAL], 1, 1e-6);
   assert_true(isnan(event->ratio[LAM_RATIO_WALL]));
-  Forget(&f);
 }
 
 /* Cells that are held by cohesion alone come apart in a snap; behind it the tissue is what a fresh solve finds. */
 TEST(tissue_that_snaps_goes_on_behind)
 {
   const LamStressControl control = {.given = {1, 1, 0, 0, 1}, .share = 1};
-  Followed f = FollowToEnd(PROCESS_CELL "  interface: {law: contact, cohesion: 0.02 MPa}\n"
-                                        "  turgor: {pressure: 0.05 MPa}\n"
-                                        "process:\n"
-                                        "  duration: 2 day\n"
-                                        "  output: 1 day\n"
-                                        "  kinetics: [{of: lamella, law: first_order, rate: 1 /day}]\n");
+  OWNED(Followed, Forget)
+  f = FollowToEnd(PROCESS_CELL "  interface: {law: contact, cohesion: 0.02 MPa}\n"
+                               "  turgor: {pressure: 0.05 MPa}\n"
+                               "process:\n"
+                               "  duration: 2 day\n"
+                               "  output: 1 day\n"
+                               "  kinetics: [{of: lamella, law: first_order, rate: 1 /day}]\n");
   const LamProcessState *snap = FindEvent(&f, LAM_EVENT_SNAP), *last = LastState(&f);
   LamLoad load = last->response.load;
   LamResponse fresh;
@@ -416,27 +409,26 @@ TEST(tissue_that_snaps_goes_on_behind)
   assert_int_equal(LamRVEStateDestroy(&start), 0);
   assert_int_equal(fresh.status, LAM_CONVERGED);
   assert_near(last->response.load.F[0], fresh.load.F[0], 1e-3);
-  Forget(&f);
 }
 
 TEST(walls_that_dissolve_to_nothing_end_it_with_a_reason)
 {
-  Followed f = Follow(PROCESS_CELL "  turgor: {pressure: 0.02 MPa}\n"
-                                   "process:\n"
-                                   "  duration: 100 day\n"
-                                   "  kinetics: [{of: walls, law: first_order, rate: 1 /day}]\n");
+  OWNED(Followed, Forget)
+  f = Follow(PROCESS_CELL "  turgor: {pressure: 0.02 MPa}\n"
+                          "process:\n"
+                          "  duration: 100 day\n"
+                          "  kinetics: [{of: walls, law: first_order, rate: 1 /day}]\n");
 
   assert_int_equal(f.reason, LAM_PROCESS_ENDED);
   assert_true(strlen(f.message) > 20);
   assert_true(LastState(&f)->time > 0);
-  Forget(&f);
 }
 
 /* Nothing holds turgid cells together but g: where that is gone the tissue neither spans nor resists. */
 TEST(a_lamella_that_dissolves_lets_the_cells_float)
 {
-  Followed f =
-      Follow(PROCESS_CELL "  interface: {law: contact, cohesion: 0.05 MPa}\n"
+  OWNED(Followed, Forget)
+  f = Follow(PROCESS_CELL "  interface: {law: contact, cohesion: 0.05 MPa}\n"
                           "  turgor: {pressure: 0.02 MPa}\n"
                           "process:\n"
                           "  duration: 2 day\n"
@@ -445,23 +437,22 @@ TEST(a_lamella_that_dissolves_lets_the_cells_float)
   assert_int_equal(f.reason, LAM_PROCESS_ENDED);
   assert_non_null(FindEvent(&f, LAM_EVENT_LIMIT));
   assert_near(FindEvent(&f, LAM_EVENT_LIMIT)->time, 86400, 86400 * 1e-6);
-  Forget(&f);
 }
 
 TEST(cells_that_are_pulled_apart_no_longer_span_the_tissue)
 {
-  Followed f = Follow(PROCESS_CELL "  interface: {law: contact, cohesion: 0.01 MPa}\n"
-                                   "  turgor: {pressure: 0.02 MPa}\n"
-                                   "process:\n"
-                                   "  duration: 1 min\n"
-                                   "  program: [{for: 1 min, F: [[1.3, 0], [0, 1.3]]}]\n");
+  OWNED(Followed, Forget)
+  f = Follow(PROCESS_CELL "  interface: {law: contact, cohesion: 0.01 MPa}\n"
+                          "  turgor: {pressure: 0.02 MPa}\n"
+                          "process:\n"
+                          "  duration: 1 min\n"
+                          "  program: [{for: 1 min, F: [[1.3, 0], [0, 1.3]]}]\n");
   const LamProcessState *event = FindEvent(&f, LAM_EVENT_PERCOLATION);
 
   assert_non_null(event);
   assert_true(f.states[0].response.percolating_directions == 2);
   assert_true(event->response.percolating_directions < 2);
   assert_true(event->response.opening_fraction > f.states[0].response.opening_fraction + 0.01);
-  Forget(&f);
 }
 
 TEST_GROUP(.petsc = 1);
