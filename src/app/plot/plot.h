@@ -10,8 +10,8 @@
     plot_outline.c   edges and closed outlines of such meshes
     plot_curves.c    stress-load curves
     plot_read.c      arrays of a file, checked
-    plot_rve.c, plot_fe2.c, plot_database.c, plot_map.c, plot_process.c    one kind of file each (plot_map_read.c,
-                     plot_process_read.c: read its data)
+    plot_time.c      quantities against time, films (plot_time.h)
+    plot_rve.c, plot_fe2.c, plot_database.c, plot_map.c, plot_process.c    one kind of file each (plot_map_read.c: data)
     plot_table.c, plot_slice.c    a database's table: its picture, and the data of a slice through it
 
   Lengths on the page are points (1/72 inch), y downwards. Text markup: $...$ italic, _{...} subscript, ^{...}
@@ -57,11 +57,22 @@ double LamCanvasDots(LamCanvas canvas);
 PetscErrorCode LamCanvasBeginImage(LamCanvas canvas, LamRect rect);
 void LamCanvasEndImage(LamCanvas canvas);
 
+/* Ink of axes and legends, and of titles and outlines. */
+static const LamColour LamInk = {0.15, 0.15, 0.15}, LamDarkInk = {0.12, 0.12, 0.16}, LamWhite = {1, 1, 1};
 void LamCanvasSetColour(LamCanvas canvas, LamColour colour);
+/* Add to the current path. */
+void LamCanvasLine(LamCanvas canvas, double x0, double y0, double x1, double y1);
+void LamCanvasBox(LamCanvas canvas, LamRect rect);
+/* Draw the current path, and set the colour; dash: lengths of dashes and gaps, NULL: a full line. */
+void LamCanvasStroke(LamCanvas canvas, LamColour colour, double width, const double dash[2]);
+void LamCanvasFill(LamCanvas canvas, LamColour colour);
+/* Draws inside the rectangle alone, until cairo_restore. */
+void LamCanvasClip(LamCanvas canvas, LamRect rect);
 /* Text with its reference point at the fraction `align` (0 left, 0.5 centre, 1 right) of its width and at the middle
    of its capitals; `angle` in radian, counter-clockwise. */
 void LamCanvasText(LamCanvas canvas, double x, double y, double align, double angle, double size, const char text[]);
 double LamCanvasTextWidth(LamCanvas canvas, double size, const char text[]);
+void LamCanvasTitle(LamCanvas canvas, double x, double y, const char title[]);
 
 typedef enum {
   LAM_MARKER_CIRCLE,
@@ -125,6 +136,14 @@ void LamAxesDraw(LamCanvas canvas, const LamAxes *axes);
 void LamAxesFrame(LamCanvas canvas, const LamAxes *axes);
 double LamAxesX(const LamAxes *axes, PetscReal x);
 double LamAxesY(const LamAxes *axes, PetscReal y);
+/* Adds a point to the current path; joined: with a line from the last one. */
+void LamAxesPath(LamCanvas canvas, const LamAxes *axes, PetscReal x, PetscReal y, PetscBool joined);
+/* A vertical line across the frame, with a text along its left side (NULL: none). */
+void LamAxesMark(LamCanvas canvas, const LamAxes *axes, PetscReal x, LamColour colour, PetscBool dashed,
+                 const char text[]);
+/* Sets empty limits; extends them to a point, if it is finite. */
+void LamAxesEmpty(LamAxes *axes);
+void LamAxesExtend(LamAxes *axes, PetscReal x, PetscReal y);
 
 typedef struct {
   LamColour colour;
@@ -142,9 +161,15 @@ typedef struct {
 } LamSeries;
 PetscErrorCode LamSeriesCreate(PetscInt n, LamSeries *series);
 PetscErrorCode LamSeriesDestroy(LamSeries *series);
-/* Extends [low, high] of both axes to the finite points of the series. */
 void LamSeriesExtend(const LamSeries *series, LamAxes *axes);
 void LamSeriesDraw(LamCanvas canvas, const LamAxes *axes, const LamSeries *series);
+/* The position of the next entry of a legend in rows; left and right end and height of a row, space after an entry. */
+typedef struct {
+  double left, right, row, space, x, y;
+} LamPen;
+LamPen LamPenStart(LamRect outer, double row, double space);
+/* Draws the label of an entry if `draw`; `at`: for its sample, which is `sample` wide, vertically in the middle. */
+void LamPenEntry(LamCanvas canvas, LamPen *pen, double sample, const char label[], PetscBool draw, double at[2]);
 /* A legend in rows, from the top left corner of `outer`; series without a label are left out. Returns its height;
    draws only if `draw`. */
 double LamLegend(LamCanvas canvas, LamRect outer, PetscInt n, const LamSeries series[], PetscBool draw);
@@ -184,6 +209,7 @@ void LamViewFit(LamRect frame, const PetscReal box[4], LamView *view);
 void LamViewPoint(const LamView *view, PetscReal x, PetscReal y, double point[2]);
 void LamBoxEmpty(PetscReal box[4]);
 void LamBoxExtend(PetscReal box[4], PetscInt n, const PetscReal points[], const PetscReal shift[2]);
+void LamBoxWiden(PetscReal box[4], PetscReal margin);
 /* Whether the box, moved by `shift`, is visible in the view. */
 PetscBool LamViewShows(const LamView *view, const PetscReal box[4], const PetscReal shift[2]);
 
@@ -262,9 +288,13 @@ void LamOutlineLoopPath(LamCanvas canvas, const LamView *view, const LamOutline 
 void LamOutlineInnerPath(LamCanvas canvas, const LamView *view, const LamOutline *outline, const PetscReal x[]);
 
 /* ---- plot_read.c: PETSC_ERR_USER_INPUT if the dataset is missing or has the wrong shape; caller frees ---- */
-/* Reads rows x columns numbers. */
+PetscErrorCode LamPlotHas(const char path[], const char name[], PetscBool *has); /* numbers of this name */
+/* Read rows x columns numbers; a text. */
 PetscErrorCode LamPlotReadReals(const char path[], const char name[], PetscInt rows, PetscInt columns,
                                 PetscReal **values);
+PetscErrorCode LamPlotReadInts(const char path[], const char name[], PetscInt rows, PetscInt columns,
+                               PetscInt **values);
+PetscErrorCode LamPlotReadText(const char path[], const char name[], char **text);
 /* Reads points of the plane [count][2] from two or three coordinates each; rows: their number, -1: any. */
 PetscErrorCode LamPlotReadPoints(const char path[], const char name[], PetscInt rows, PetscInt *count,
                                  PetscReal **points);

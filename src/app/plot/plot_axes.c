@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-static const LamColour Ink = {0.15, 0.15, 0.15}, Faint = {0.87, 0.87, 0.87};
-static const double TickLength = 2.5, Gap = 3.0;
+static const LamColour Faint = {0.87, 0.87, 0.87};
+static const double TickLength = 2.5, Gap = 3.0, Dash[2] = {3.2, 1.8}, MarkDash[2] = {1.2, 1.8};
 
 LamTicks LamTicksChoose(PetscReal low, PetscReal high, PetscInt wanted, PetscBool whole)
 {
@@ -134,40 +134,59 @@ double LamAxesY(const LamAxes *axes, PetscReal y)
   return axes->frame.y + axes->frame.height * (1 - (y - axes->y.low) / (axes->y.high - axes->y.low));
 }
 
-static void Line(cairo_t *cr, double x0, double y0, double x1, double y1)
+void LamAxesPath(LamCanvas canvas, const LamAxes *axes, PetscReal x, PetscReal y, PetscBool joined)
 {
-  cairo_move_to(cr, x0, y0);
-  cairo_line_to(cr, x1, y1);
+  (joined ? cairo_line_to : cairo_move_to)(LamCanvasCairo(canvas), LamAxesX(axes, x), LamAxesY(axes, y));
+}
+
+void LamAxesMark(LamCanvas canvas, const LamAxes *axes, PetscReal x, LamColour colour, PetscBool dashed,
+                 const char text[])
+{
+  const double at = LamAxesX(axes, x), top = axes->frame.y;
+
+  LamCanvasLine(canvas, at, top + axes->frame.height, at, top);
+  LamCanvasStroke(canvas, colour, 0.8, dashed ? MarkDash : NULL);
+  if (text) LamCanvasText(canvas, at - 5, top + 3, 1, M_PI_2, LAM_TICK_SIZE, text);
+}
+
+void LamAxesEmpty(LamAxes *axes)
+{
+  axes->x.low = axes->y.low = PETSC_INFINITY;
+  axes->x.high = axes->y.high = -PETSC_INFINITY;
+}
+
+void LamAxesExtend(LamAxes *axes, PetscReal x, PetscReal y)
+{
+  if (!isfinite(x) || !isfinite(y)) return;
+  axes->x.low = PetscMin(axes->x.low, x);
+  axes->x.high = PetscMax(axes->x.high, x);
+  axes->y.low = PetscMin(axes->y.low, y);
+  axes->y.high = PetscMax(axes->y.high, y);
 }
 
 /* Ticks and labels of the x axis (horizontal) or the y axis, and light grid lines across the frame. */
 static void DrawTicks(LamCanvas canvas, const LamAxes *axes, PetscBool horizontal)
 {
-  cairo_t *cr = LamCanvasCairo(canvas);
   const LamRect f = axes->frame;
   const double bottom = f.y + f.height;
   const LamTicks *ticks = horizontal ? &axes->x.ticks : &axes->y.ticks;
 
   for (PetscInt i = 0; i < ticks->count; i++) {
     const PetscReal value = ticks->first + i * ticks->step;
+    const PetscBool zero = (PetscBool)(!ticks->is_log && PetscAbsReal(value) < 1e-9 * ticks->step); /* is emphasised */
     const double at = horizontal ? LamAxesX(axes, value) : LamAxesY(axes, value);
     char text[32];
 
-    LamCanvasSetColour(canvas, Faint);
-    /* zero is emphasised */
-    cairo_set_line_width(cr, !ticks->is_log && PetscAbsReal(value) < 1e-9 * ticks->step ? 1.0 : 0.4);
     if (horizontal)
-      Line(cr, at, f.y, at, bottom);
+      LamCanvasLine(canvas, at, f.y, at, bottom);
     else
-      Line(cr, f.x, at, f.x + f.width, at);
-    cairo_stroke(cr);
-    LamCanvasSetColour(canvas, Ink);
-    cairo_set_line_width(cr, 0.6);
+      LamCanvasLine(canvas, f.x, at, f.x + f.width, at);
+    LamCanvasStroke(canvas, Faint, zero ? 1.0 : 0.4, NULL);
     if (horizontal)
-      Line(cr, at, bottom, at, bottom + TickLength);
+      LamCanvasLine(canvas, at, bottom, at, bottom + TickLength);
     else
-      Line(cr, f.x - TickLength, at, f.x, at);
-    cairo_stroke(cr);
+      LamCanvasLine(canvas, f.x - TickLength, at, f.x, at);
+    LamCanvasStroke(canvas, LamInk, 0.6, NULL);
     LamTicksFormat(ticks, i, text);
     if (horizontal)
       LamCanvasText(canvas, at, bottom + TickLength + Gap + 0.4 * LAM_TICK_SIZE, 0.5, 0, LAM_TICK_SIZE, text);
@@ -180,34 +199,27 @@ static void DrawTicks(LamCanvas canvas, const LamAxes *axes, PetscBool horizonta
 static void DrawMinorTicks(LamCanvas canvas, const LamAxes *axes, PetscBool horizontal)
 {
   const LamAxis *axis = horizontal ? &axes->x : &axes->y;
-  cairo_t *cr = LamCanvasCairo(canvas);
-  const LamRect f = axes->frame;
+  const double left = axes->frame.x, bottom = axes->frame.y + axes->frame.height;
 
   if (!axis->is_log || axis->ticks.step != 1) return;
-  LamCanvasSetColour(canvas, Ink);
-  cairo_set_line_width(cr, 0.4);
   for (PetscReal power = PetscFloorReal(axis->low); power < axis->high; power++)
     for (int digit = 2; digit < 10; digit++) {
       const PetscReal value = power + PetscLog10Real(digit);
+      const double at = horizontal ? LamAxesX(axes, value) : LamAxesY(axes, value);
 
       if (value < axis->low || value > axis->high) continue;
       if (horizontal)
-        Line(cr, LamAxesX(axes, value), f.y + f.height, LamAxesX(axes, value), f.y + f.height + 0.5 * TickLength);
+        LamCanvasLine(canvas, at, bottom, at, bottom + 0.5 * TickLength);
       else
-        Line(cr, f.x - 0.5 * TickLength, LamAxesY(axes, value), f.x, LamAxesY(axes, value));
+        LamCanvasLine(canvas, left - 0.5 * TickLength, at, left, at);
     }
-  cairo_stroke(cr);
+  LamCanvasStroke(canvas, LamInk, 0.4, NULL);
 }
 
 void LamAxesFrame(LamCanvas canvas, const LamAxes *axes)
 {
-  cairo_t *cr = LamCanvasCairo(canvas);
-  const LamRect f = axes->frame;
-
-  LamCanvasSetColour(canvas, Ink);
-  cairo_set_line_width(cr, 0.6);
-  cairo_rectangle(cr, f.x, f.y, f.width, f.height);
-  cairo_stroke(cr);
+  LamCanvasBox(canvas, axes->frame);
+  LamCanvasStroke(canvas, LamInk, 0.6, NULL);
 }
 
 void LamAxesDraw(LamCanvas canvas, const LamAxes *axes)
@@ -215,10 +227,8 @@ void LamAxesDraw(LamCanvas canvas, const LamAxes *axes)
   const LamRect f = axes->frame;
   char label[128];
 
-  DrawTicks(canvas, axes, PETSC_TRUE);
-  DrawTicks(canvas, axes, PETSC_FALSE);
-  DrawMinorTicks(canvas, axes, PETSC_TRUE);
-  DrawMinorTicks(canvas, axes, PETSC_FALSE);
+  for (int y = 0; y < 2; y++) DrawTicks(canvas, axes, (PetscBool)!y);
+  for (int y = 0; y < 2; y++) DrawMinorTicks(canvas, axes, (PetscBool)!y);
   LamAxesFrame(canvas, axes);
   LamAxisLabel(&axes->x, sizeof label, label);
   LamCanvasText(canvas, f.x + 0.5 * f.width,
@@ -245,54 +255,26 @@ PetscErrorCode LamSeriesDestroy(LamSeries *series)
   PetscFunctionReturn(0);
 }
 
-static PetscBool Finite(const LamSeries *series, PetscInt i)
-{
-  return (PetscBool)(!PetscIsInfOrNanReal(series->x[i]) && !PetscIsInfOrNanReal(series->y[i]));
-}
-
 void LamSeriesExtend(const LamSeries *series, LamAxes *axes)
 {
-  for (PetscInt i = 0; i < series->n; i++) {
-    if (!Finite(series, i)) continue;
-    axes->x.low = PetscMin(axes->x.low, series->x[i]);
-    axes->x.high = PetscMax(axes->x.high, series->x[i]);
-    axes->y.low = PetscMin(axes->y.low, series->y[i]);
-    axes->y.high = PetscMax(axes->y.high, series->y[i]);
-  }
+  for (PetscInt i = 0; i < series->n; i++) LamAxesExtend(axes, series->x[i], series->y[i]);
 }
 
-static void SetDash(cairo_t *cr, PetscBool dashed)
+static PetscBool Finite(const LamSeries *series, PetscInt i)
 {
-  const double dash[] = {3.2, 1.8};
-
-  cairo_set_dash(cr, dash, dashed ? 2 : 0, 0);
+  return (PetscBool)(isfinite(series->x[i]) && isfinite(series->y[i]));
 }
 
 void LamSeriesDraw(LamCanvas canvas, const LamAxes *axes, const LamSeries *series)
 {
-  cairo_t *cr = LamCanvasCairo(canvas);
   const LamStyle *style = &series->style;
   const PetscInt stride = style->line && series->n > 40 ? (series->n + 19) / 20 : 1;
   const double size = series->n > 300 ? 2.4 : 3.8;
-  PetscBool drawing = PETSC_FALSE;
 
-  LamCanvasSetColour(canvas, style->colour);
-  if (style->line) {
-    cairo_set_line_width(cr, 1.0);
-    SetDash(cr, style->dashed);
-    for (PetscInt i = 0; i < series->n; i++) {
-      if (!Finite(series, i))
-        drawing = PETSC_FALSE;
-      else if (drawing)
-        cairo_line_to(cr, LamAxesX(axes, series->x[i]), LamAxesY(axes, series->y[i]));
-      else {
-        cairo_move_to(cr, LamAxesX(axes, series->x[i]), LamAxesY(axes, series->y[i]));
-        drawing = PETSC_TRUE;
-      }
-    }
-    cairo_stroke(cr);
-    SetDash(cr, PETSC_FALSE);
-  }
+  for (PetscInt i = 0; i < series->n && style->line; i++)
+    if (Finite(series, i))
+      LamAxesPath(canvas, axes, series->x[i], series->y[i], (PetscBool)(i && Finite(series, i - 1)));
+  LamCanvasStroke(canvas, style->colour, 1.0, style->dashed ? Dash : NULL);
   if (style->marker == LAM_MARKER_COUNT) return; /* line only */
   for (PetscInt i = 0; i < series->n; i++) {
     if (!Finite(series, i) || (i % stride && i != series->n - 1)) continue;
@@ -301,47 +283,51 @@ void LamSeriesDraw(LamCanvas canvas, const LamAxes *axes, const LamSeries *serie
   }
 }
 
+LamPen LamPenStart(LamRect outer, double row, double space)
+{
+  return (LamPen){outer.x, outer.x + outer.width, row, space, outer.x, outer.y + 0.5 * row};
+}
+
+void LamPenEntry(LamCanvas canvas, LamPen *pen, double sample, const char label[], PetscBool draw, double at[2])
+{
+  const double width = sample + Gap + LamCanvasTextWidth(canvas, LAM_TICK_SIZE, label);
+
+  if (pen->x > pen->left && pen->x + width > pen->right) {
+    pen->x = pen->left;
+    pen->y += pen->row;
+  }
+  at[0] = pen->x;
+  at[1] = pen->y;
+  LamCanvasSetColour(canvas, LamInk);
+  if (draw) LamCanvasText(canvas, pen->x + sample + Gap, pen->y, 0, 0, LAM_TICK_SIZE, label);
+  pen->x += width + pen->space;
+}
+
 double LamLegend(LamCanvas canvas, LamRect outer, PetscInt n, const LamSeries series[], PetscBool draw)
 {
-  cairo_t *cr = LamCanvasCairo(canvas);
-  const double row = 1.5 * LAM_TICK_SIZE, space = 7;
-  double x = outer.x, y = outer.y;
+  LamPen pen = LamPenStart(outer, 1.5 * LAM_TICK_SIZE, 7);
+  double at[2];
 
   for (PetscInt i = 0; i < n; i++) {
     const LamStyle *style = &series[i].style;
     const double sample = style->line ? 14 : 6;
-    const double width = sample + Gap + LamCanvasTextWidth(canvas, LAM_TICK_SIZE, series[i].label);
 
     if (!series[i].label[0]) continue;
-    if (x > outer.x && x + width > outer.x + outer.width) {
-      x = outer.x;
-      y += row;
-    }
-    if (draw) {
-      const double middle = y + 0.5 * row;
-
-      LamCanvasSetColour(canvas, style->colour);
-      cairo_set_line_width(cr, 1.0);
-      SetDash(cr, style->dashed);
-      if (style->line) Line(cr, x, middle, x + sample, middle);
-      cairo_stroke(cr);
-      SetDash(cr, PETSC_FALSE);
-      if (style->marker != LAM_MARKER_COUNT)
-        LamCanvasMarker(canvas, x + 0.5 * sample, middle, 3.8, style->marker, style->hollow);
-      LamCanvasSetColour(canvas, Ink);
-      LamCanvasText(canvas, x + sample + Gap, middle, 0, 0, LAM_TICK_SIZE, series[i].label);
-    }
-    x += width + space;
+    LamPenEntry(canvas, &pen, sample, series[i].label, draw, at);
+    if (!draw) continue;
+    if (style->line) LamCanvasLine(canvas, at[0], at[1], at[0] + sample, at[1]);
+    LamCanvasStroke(canvas, style->colour, 1.0, style->dashed ? Dash : NULL);
+    if (style->marker != LAM_MARKER_COUNT)
+      LamCanvasMarker(canvas, at[0] + 0.5 * sample, at[1], 3.8, style->marker, style->hollow);
   }
-  return x == outer.x && y == outer.y ? 0 : y + row - outer.y;
+  return pen.x > outer.x ? pen.y + 0.5 * pen.row - outer.y : 0;
 }
 
 void LamChart(LamCanvas canvas, LamRect outer, LamAxes *axes, PetscInt n, const LamSeries series[])
 {
   double legend;
 
-  axes->x.low = axes->y.low = PETSC_INFINITY;
-  axes->x.high = axes->y.high = -PETSC_INFINITY;
+  LamAxesEmpty(axes);
   for (PetscInt i = 0; i < n; i++) LamSeriesExtend(&series[i], axes);
   LamAxisPad(&axes->x);
   LamAxisPad(&axes->y);

@@ -4,7 +4,6 @@
 #include "plot.h"
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
-#include <ctype.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -31,19 +30,15 @@ struct LamCanvas_s {
 
 static PetscErrorCode FormatOfPath(const char path[], Format *format)
 {
-  size_t length = strlen(path);
+  const size_t length = strlen(path);
 
   PetscFunctionBeginUser;
   for (int i = 0; i < FORMAT_COUNT; i++) {
-    const char *extension = FormatExtensions[i];
-    size_t n = strlen(extension), j = 0;
+    const size_t n = strlen(FormatExtensions[i]);
 
-    if (length <= n) continue;
-    while (j < n && tolower((unsigned char)path[length - n + j]) == extension[j]) j++;
-    if (j == n) {
-      *format = (Format)i;
-      PetscFunctionReturn(0);
-    }
+    if (length <= n || strcasecmp(path + length - n, FormatExtensions[i])) continue;
+    *format = (Format)i;
+    PetscFunctionReturn(0);
   }
   SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: a picture's name must end in .png, .svg or .pdf", path);
 }
@@ -155,9 +150,9 @@ static PetscErrorCode WritePage(LamCanvas c)
 
 PetscBool LamCanvasHasPages(const char path[])
 {
-  const size_t length = strlen(path), n = strlen(FormatExtensions[FORMAT_PDF]);
+  Format format = FORMAT_PNG;
 
-  return (PetscBool)(length > n && !strcasecmp(path + length - n, FormatExtensions[FORMAT_PDF]));
+  return (PetscBool)(!FormatOfPath(path, &format) && format == FORMAT_PDF);
 }
 
 void LamCanvasNextPage(LamCanvas canvas)
@@ -226,6 +221,39 @@ void LamCanvasEndImage(LamCanvas canvas)
 void LamCanvasSetColour(LamCanvas canvas, LamColour colour)
 {
   cairo_set_source_rgb(canvas->cr, colour.r, colour.g, colour.b);
+}
+
+void LamCanvasLine(LamCanvas canvas, double x0, double y0, double x1, double y1)
+{
+  cairo_move_to(canvas->cr, x0, y0);
+  cairo_line_to(canvas->cr, x1, y1);
+}
+
+void LamCanvasBox(LamCanvas canvas, LamRect r)
+{
+  cairo_rectangle(canvas->cr, r.x, r.y, r.width, r.height);
+}
+
+void LamCanvasStroke(LamCanvas canvas, LamColour colour, double width, const double dash[2])
+{
+  LamCanvasSetColour(canvas, colour);
+  cairo_set_line_width(canvas->cr, width);
+  cairo_set_dash(canvas->cr, dash, dash ? 2 : 0, 0);
+  cairo_stroke(canvas->cr);
+  cairo_set_dash(canvas->cr, NULL, 0, 0);
+}
+
+void LamCanvasFill(LamCanvas canvas, LamColour colour)
+{
+  LamCanvasSetColour(canvas, colour);
+  cairo_fill(canvas->cr);
+}
+
+void LamCanvasClip(LamCanvas canvas, LamRect rect)
+{
+  cairo_save(canvas->cr);
+  LamCanvasBox(canvas, rect);
+  cairo_clip(canvas->cr);
 }
 
 /* Names come from files, and cairo fails on bytes that are not UTF-8, such as a truncated last character. */
@@ -305,8 +333,16 @@ void LamCanvasText(LamCanvas canvas, double x, double y, double align, double an
   cairo_new_path(canvas->cr);
 }
 
-static void MarkerPath(cairo_t *cr, double x, double y, double h, LamMarker marker)
+void LamCanvasTitle(LamCanvas canvas, double x, double y, const char title[])
 {
+  LamCanvasSetColour(canvas, LamDarkInk);
+  LamCanvasText(canvas, x, y, 0, 0, LAM_TEXT_SIZE + 0.75, title);
+}
+
+static void MarkerPath(LamCanvas canvas, double x, double y, double h, LamMarker marker)
+{
+  cairo_t *cr = canvas->cr;
+
   switch (marker) {
   case LAM_MARKER_SQUARE:
     cairo_rectangle(cr, x - 0.88 * h, y - 0.88 * h, 1.76 * h, 1.76 * h);
@@ -331,10 +367,8 @@ static void MarkerPath(cairo_t *cr, double x, double y, double h, LamMarker mark
     cairo_arc(cr, x, y, 1.9 * h, 0, 2 * M_PI);
     return;
   case LAM_MARKER_CROSS:
-    cairo_move_to(cr, x - h, y - h);
-    cairo_line_to(cr, x + h, y + h);
-    cairo_move_to(cr, x - h, y + h);
-    cairo_line_to(cr, x + h, y - h);
+    LamCanvasLine(canvas, x - h, y - h, x + h, y + h);
+    LamCanvasLine(canvas, x - h, y + h, x + h, y - h);
     return;
   default:
     cairo_new_sub_path(cr);
@@ -352,7 +386,7 @@ void LamCanvasMarker(LamCanvas canvas, double x, double y, double size, LamMarke
   cairo_set_dash(cr, NULL, 0, 0);
   cairo_set_line_width(cr, marker == LAM_MARKER_CROSS ? 1.2 : 0.8);
   cairo_new_path(cr);
-  MarkerPath(cr, x, y, 0.5 * size, marker);
+  MarkerPath(canvas, x, y, 0.5 * size, marker);
   if (!open && hollow) {
     cairo_pattern_t *colour = cairo_pattern_reference(cairo_get_source(cr));
 

@@ -107,15 +107,12 @@ static void DrawBar(LamCanvas canvas, LamRect bar, const LamColourRange *range, 
   cairo_set_source(cr, colours);
   cairo_fill_preserve(cr);
   cairo_pattern_destroy(colours);
-  LamCanvasSetColour(canvas, (LamColour){0.15, 0.15, 0.15});
-  cairo_set_line_width(cr, 0.5);
-  cairo_stroke(cr);
+  LamCanvasStroke(canvas, LamInk, 0.5, NULL);
 }
 
 void LamColourBar(LamCanvas canvas, LamRect frame, const LamColourRange *range, LamColour (*map)(PetscReal share),
                   const char label[], const char unit[])
 {
-  cairo_t *cr = LamCanvasCairo(canvas);
   const LamRect bar = {frame.x + frame.width + BarGap, frame.y + (range->clipped[1] ? Arrow : 0), BarThickness,
                        frame.height - (range->clipped[0] ? Arrow : 0) - (range->clipped[1] ? Arrow : 0)};
   const LamAxes axes = BarAxes(bar, range, label, unit);
@@ -126,9 +123,8 @@ void LamColourBar(LamCanvas canvas, LamRect frame, const LamColourRange *range, 
   for (PetscInt i = 0; i < axes.y.ticks.count; i++) {
     const double y = LamAxesY(&axes, axes.y.ticks.first + i * axes.y.ticks.step);
 
-    cairo_move_to(cr, right, y);
-    cairo_line_to(cr, right + TickLength, y);
-    cairo_stroke(cr);
+    LamCanvasLine(canvas, right, y, right + TickLength, y);
+    LamCanvasStroke(canvas, LamInk, 0.5, NULL);
     LamTicksFormat(&axes.y.ticks, i, text);
     LamCanvasText(canvas, right + TickLength + TextGap, y, 0, 0, LAM_TICK_SIZE, text);
   }

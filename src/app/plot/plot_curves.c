@@ -127,11 +127,11 @@ static PetscErrorCode StressSeries(PetscInt n, const LamResponse records[], cons
 static PetscErrorCode FailureSeries(PetscInt n, const LamResponse records[], const PetscReal load[],
                                     const LamSeries stresses[4], LamSeries *series)
 {
-  LamAxes limits = {.x = {.low = PETSC_INFINITY, .high = -PETSC_INFINITY},
-                    .y = {.low = PETSC_INFINITY, .high = -PETSC_INFINITY}};
+  LamAxes limits = {.x.low = 0};
   PetscInt failed = 0;
 
   PetscFunctionBeginUser;
+  LamAxesEmpty(&limits);
   for (int c = 0; c < 4; c++) LamSeriesExtend(&stresses[c], &limits);
   if (!(limits.y.low <= limits.y.high)) limits.y.low = limits.y.high = 0;
   PetscCall(LamSeriesCreate(n, series));

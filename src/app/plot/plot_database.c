@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const LamColour Ink = {0.12, 0.12, 0.16}, Failure = {0.80, 0.15, 0.05};
+static const LamColour Failure = {0.80, 0.15, 0.05};
 
 typedef enum { COLOUR_STRESS, COLOUR_TURGOR } ColourBy;
 
@@ -95,7 +95,6 @@ static void DrawMarkers(LamCanvas canvas, const LamAxes *axes, const DatabasePic
         continue;
       }
       LamCanvasSetColour(canvas, LamColourMap(LamColourShare(&p->range, p->value[i])));
-      cairo_new_path(cr);
       cairo_arc(cr, LamAxesX(axes, point[0]), LamAxesY(axes, point[1]), 0.5 * size, 0, 2 * M_PI);
       cairo_fill(cr);
     }
@@ -109,13 +108,10 @@ static PetscErrorCode DrawScatter(LamCanvas canvas, LamRect outer, const Databas
   PetscReal point[2];
 
   PetscFunctionBeginUser;
-  axes->x.low = axes->y.low = PETSC_INFINITY;
-  axes->x.high = axes->y.high = -PETSC_INFINITY;
+  LamAxesEmpty(axes);
   for (PetscInt i = 0; i < p->n; i++) {
-    LamSeries one = {.n = 1, .x = &point[0], .y = &point[1]};
-
     project(p->strain[i], point);
-    LamSeriesExtend(&one, axes);
+    LamAxesExtend(axes, point[0], point[1]);
   }
   LamAxisPad(&axes->x);
   LamAxisPad(&axes->y);
@@ -162,8 +158,7 @@ static PetscErrorCode PlotRecords(const LamPlotRequest *request, LamDatabase dat
   PetscCall(LoadDatabase(request, database, by, &picture));
   PetscCall(LamCanvasCreate(request->output, LAM_PLOT_WIDTH, LAM_PLOT_HEIGHT, &canvas));
   PetscCall(Title(&picture, sizeof title, title));
-  LamCanvasSetColour(canvas, Ink);
-  LamCanvasText(canvas, 9, 12, 0, 0, LAM_TEXT_SIZE + 0.75, title);
+  LamCanvasTitle(canvas, 9, 12, title);
   width = 0.5 * (LAM_PLOT_WIDTH - 18 - 10 - LamColourBarWidth(canvas, &picture.range));
   rect = (LamRect){9, 21, width, LAM_PLOT_HEIGHT - 27};
   PetscCall(DrawScatter(canvas, rect, &picture, &shape, ToVolumeAndShape));

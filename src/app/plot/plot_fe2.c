@@ -53,7 +53,6 @@ static const FE2FieldRow FE2Fields[] = {
     SCALAR("interpolated", "share of interpolated answers", NULL),
 };
 
-static const LamColour Ink = {0.12, 0.12, 0.16};
 static const double ZoomHeight = 236, CurveHeight = 150; /* of a page with zooms */
 
 typedef struct {
@@ -66,8 +65,8 @@ typedef struct {
   PetscInt *elements;   /* owned */
   LamOutline outline;
   LamReactions reactions;
-  LamZooms zooms; /* of the last step */
-  LamBodyTimes times;
+  LamZooms zooms;    /* of the last step */
+  LamTimeLine times; /* of a process; else it has no states */
 } FE2Picture;
 
 static PetscErrorCode FindField(const LamPlotRequest *request, const FE2FieldRow **field)
@@ -124,7 +123,6 @@ static PetscErrorCode FindStep(const LamPlotRequest *request, FE2Picture *p)
   PetscCheck(p->row >= 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "--state %" PetscInt_FMT ": %s holds steps %" PetscInt_FMT " to %" PetscInt_FMT, request->state, path,
              p->steps[0], p->steps[p->step_count - 1]);
-  p->step = p->steps[p->row];
   PetscFunctionReturn(0);
 }
 
@@ -156,6 +154,7 @@ static PetscErrorCode LoadStep(const char path[], PetscInt row, FE2Picture *p)
 static PetscErrorCode LoadFE2(const LamPlotRequest *request, FE2Picture *p)
 {
   const char *path = request->input;
+  PetscBool is_process;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(p, sizeof *p));
@@ -165,7 +164,8 @@ static PetscErrorCode LoadFE2(const LamPlotRequest *request, FE2Picture *p)
   PetscCall(LamPlotReadElements(path, "/macro/elements", p->node_count, &p->element_count, &p->elements));
   PetscCall(LoadStep(path, p->row, p));
   PetscCall(LamReactionsRead(path, p->step_count, &p->reactions));
-  PetscCall(LamBodyTimesRead(path, p->step_count, &p->times));
+  PetscCall(LamPlotHas(path, "/process/time", &is_process));
+  if (is_process) PetscCall(LamTimeLineRead(path, p->step_count, &p->times));
   if (p->row == p->step_count - 1) PetscCall(LamZoomsRead(path, &p->zooms));
   PetscCall(LamOutlineCreate(p->element_count, p->elements, NULL, &p->outline));
   PetscFunctionReturn(0);
@@ -182,7 +182,7 @@ static PetscErrorCode UnloadFE2(FE2Picture *p)
   PetscCall(PetscFree(p->elements));
   PetscCall(LamReactionsDestroy(&p->reactions));
   PetscCall(LamZoomsDestroy(&p->zooms));
-  PetscCall(LamBodyTimesDestroy(&p->times));
+  PetscCall(LamTimeLineDestroy(&p->times));
   PetscFunctionReturn(0);
 }
 
@@ -192,19 +192,14 @@ static PetscErrorCode DrawBody(LamCanvas canvas, const LamView *view, const FE2P
   const LamImage image = {{0, 0}, 0};
   const LamField field = {p->element_count, p->x, p->elements, p->values, PETSC_TRUE};
   const double per_element = sqrt(view->frame.width * view->frame.height / p->element_count); /* points */
-  cairo_t *cr = LamCanvasCairo(canvas);
 
   PetscFunctionBeginUser;
   PetscCall(LamFieldPaint(canvas, view, &field, range, 1, &image));
-  LamCanvasSetColour(canvas, Ink);
-  if (per_element > 4) { /* grid lines of a finer mesh would hide the field */
-    LamOutlineInnerPath(canvas, view, &p->outline, p->x);
-    cairo_set_line_width(cr, 0.3);
-    cairo_stroke(cr);
-  }
+  /* grid lines of a finer mesh would hide the field */
+  if (per_element > 4) LamOutlineInnerPath(canvas, view, &p->outline, p->x);
+  LamCanvasStroke(canvas, LamDarkInk, 0.3, NULL);
   for (PetscInt k = 0; k < p->outline.loop_count; k++) LamOutlineLoopPath(canvas, view, &p->outline, k, p->x, none);
-  cairo_set_line_width(cr, 0.9);
-  cairo_stroke(cr);
+  LamCanvasStroke(canvas, LamDarkInk, 0.9, NULL);
   for (PetscInt k = 0; k < p->outline.loop_count; k++) LamOutlineLoopPath(canvas, view, &p->outline, k, p->nodes, none);
   LamStrokeUndeformed(canvas);
   PetscFunctionReturn(0);
@@ -214,10 +209,8 @@ static PetscErrorCode DrawBody(LamCanvas canvas, const LamView *view, const FE2P
    left, so that it does not cross the lines to them. */
 static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const FE2Picture *p, LamView *view)
 {
-  cairo_t *cr = LamCanvasCairo(canvas);
   const PetscReal none[2] = {0, 0};
-  const char *reference = "undeformed";
-  double y, width, bar_width;
+  double y, bar_width;
   PetscReal box[4];
   LamRect bar;
   LamColourRange range;
@@ -240,43 +233,27 @@ static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const FE2Pictur
   LamColourBar(canvas, bar, &range, LamColourMap, p->field->label, p->field->unit);
   y = outer.y + outer.height + 11;
   LamScaleBar(canvas, view, outer.x, y, 0.18 * outer.width, 1, "mm");
-  width = LamCanvasTextWidth(canvas, LAM_TICK_SIZE, reference);
-  cairo_move_to(cr, outer.x + outer.width - width - 23, y);
-  cairo_rel_line_to(cr, 19, 0);
-  LamStrokeUndeformed(canvas);
-  LamCanvasSetColour(canvas, Ink);
-  LamCanvasText(canvas, outer.x + outer.width, y, 1, 0, LAM_TICK_SIZE, reference);
+  LamUndeformedKey(canvas, outer.x + outer.width, y, "undeformed");
   PetscFunctionReturn(0);
-}
-
-/* "14 day: turgor lost" */
-static void NameMoment(const LamTimeLine *line, PetscInt row, size_t size, char title[])
-{
-  char event[LAM_NAME_LENGTH], number[32];
-
-  LamFormatNumber(line->time[row] / line->seconds, number);
-  LamTimeEventName(line, row, sizeof(event), event);
-  snprintf(title, size, "%s %s%s%s", number, line->unit, event[0] ? ": " : "", event);
 }
 
 static PetscErrorCode DrawTitle(LamCanvas canvas, double x, const FE2Picture *p)
 {
-  char title[128], factor[32];
+  char title[256], factor[32];
 
   PetscFunctionBeginUser;
   LamFormatRatio(p->reactions.load[p->row], factor);
-  if (p->times.there)
-    NameMoment(&p->times.line, p->row, sizeof title, title);
+  if (p->times.n)
+    LamTimeTitle(&p->times, p->row, sizeof title, title);
   else
     PetscCall(PetscSNPrintf(title, sizeof title, "Step %" PetscInt_FMT "%s:  load factor %s,  element means", p->step,
                             p->step ? "" : " (inflated)", factor));
-  LamCanvasSetColour(canvas, Ink);
-  LamCanvasText(canvas, x, 12, 0, 0, LAM_TEXT_SIZE + 0.75, title);
+  LamCanvasTitle(canvas, x, 12, title);
   PetscFunctionReturn(0);
 }
 
 /* Body and reactions side by side; with zooms the body and the zooms, and the reactions below. */
-static PetscErrorCode DrawFE2(const char output[], const FE2Picture *p)
+static PetscErrorCode DrawFE2(const char output[], FE2Picture *p)
 {
   const double row = LAM_PLOT_HEIGHT - 51;
   LamRect left = {9, 25.2, 282, row}, right = {308, 21, LAM_PLOT_WIDTH - 316, LAM_PLOT_HEIGHT - 24};
@@ -295,7 +272,7 @@ static PetscErrorCode DrawFE2(const char output[], const FE2Picture *p)
   PetscCall(DrawTitle(canvas, left.x, p));
   PetscCall(DrawPanel(canvas, left, p, &view));
   if (p->zooms.count) PetscCall(LamZoomsDraw(canvas, zooms, &view, &p->zooms));
-  if (p->times.there)
+  if (p->times.n)
     PetscCall(LamBodyTimesDraw(canvas, right, &p->times, &p->reactions, p->row));
   else
     PetscCall(LamReactionsDraw(canvas, right, &p->reactions));
@@ -305,95 +282,68 @@ static PetscErrorCode DrawFE2(const char output[], const FE2Picture *p)
 
 /* ---- processes ---- */
 
-/* Shared by all frames: the window, and the colour range. */
 typedef struct {
-  PetscReal box[4];
-  LamColourRange range;
-} Frame;
+  const char *path;
+  FE2Picture *picture;
+  PetscInt first; /* row of the first frame */
+  LamFrame frame;
+} Film;
 
-static PetscErrorCode FindFrame(const char path[], PetscInt count, const PetscInt rows[], FE2Picture *p, Frame *frame)
+/* The same window and colours in `count` frames. */
+static PetscErrorCode FindFrame(PetscInt count, Film *film)
 {
   const PetscReal none[2] = {0, 0};
+  FE2Picture *p = film->picture;
   PetscReal *values;
 
   PetscFunctionBeginUser;
-  LamBoxEmpty(frame->box);
-  LamBoxExtend(frame->box, p->node_count, p->nodes, none);
+  film->frame = (LamFrame){.label = p->field->label, .unit = p->field->unit};
+  LamBoxEmpty(film->frame.box);
+  LamBoxExtend(film->frame.box, p->node_count, p->nodes, none);
   PetscCall(PetscMalloc1(count * p->element_count, &values));
   for (PetscInt k = 0; k < count; k++) {
-    PetscCall(LoadStep(path, rows[k], p));
-    LamBoxExtend(frame->box, p->node_count, p->x, none);
+    PetscCall(LoadStep(film->path, film->first + k, p));
+    LamBoxExtend(film->frame.box, p->node_count, p->x, none);
     PetscCall(PetscArraycpy(&values[k * p->element_count], p->values, p->element_count));
   }
-  PetscCall(LamColourRangeFind(count * p->element_count, values, &frame->range));
+  PetscCall(LamColourRangeFind(count * p->element_count, values, &film->frame.range));
   PetscCall(PetscFree(values));
   PetscFunctionReturn(0);
 }
 
-#define BODY_WIDTH 210.0
-
-static PetscErrorCode DrawMoment(LamCanvas canvas, const FE2Picture *p, const Frame *frame)
+/* A LamFrameFunction; ctx: a Film. */
+static PetscErrorCode DrawMoment(LamCanvas canvas, void *ctx, PetscInt k)
 {
-  const LamRect charts = {BODY_WIDTH + 30, 18, LAM_PLOT_WIDTH - BODY_WIDTH - 39, LAM_TIME_HEIGHT - 24};
-  LamRect body = {9, 30, BODY_WIDTH - LamColourBarWidth(canvas, &frame->range), LAM_TIME_HEIGHT - 60};
-  char title[128];
+  const Film *film = (const Film *)ctx;
+  FE2Picture *p = film->picture;
   LamView view;
 
   PetscFunctionBeginUser;
-  NameMoment(&p->times.line, p->row, sizeof(title), title);
-  LamCanvasSetColour(canvas, Ink);
-  LamCanvasText(canvas, body.x, 14, 0, 0, LAM_TEXT_SIZE + 0.75, title);
-  LamViewFit(body, frame->box, &view);
-  PetscCall(DrawBody(canvas, &view, p, &frame->range));
-  LamColourBar(canvas, body, &frame->range, LamColourMap, p->field->label, p->field->unit);
-  LamScaleBar(canvas, &view, body.x, body.y + body.height + 11, 0.25 * body.width, 1, "mm");
-  PetscCall(LamBodyTimesDraw(canvas, charts, &p->times, &p->reactions, p->row));
-  PetscFunctionReturn(0);
-}
-
-/* Draws the states in these rows: pages, or numbered files. */
-static PetscErrorCode DrawMoments(const LamPlotRequest *request, PetscInt count, const PetscInt rows[], FE2Picture *p)
-{
-  const PetscBool pages = LamCanvasHasPages(request->output);
-  char name[PETSC_MAX_PATH_LEN];
-  LamCanvas canvas = NULL;
-  Frame frame;
-
-  PetscFunctionBeginUser;
-  PetscCall(FindFrame(request->input, count, rows, p, &frame));
-  for (PetscInt k = 0; k < count; k++) {
-    PetscCall(LoadStep(request->input, rows[k], p));
-    PetscCall(PetscStrncpy(name, request->output, sizeof(name)));
-    if (!pages && request->film) PetscCall(LamFrameName(request->output, k + 1, sizeof(name), name));
-    if (!canvas)
-      PetscCall(LamCanvasCreate(name, LAM_PLOT_WIDTH, LAM_TIME_HEIGHT, &canvas));
-    else
-      LamCanvasNextPage(canvas);
-    PetscCall(DrawMoment(canvas, p, &frame));
-    if (!pages) PetscCall(LamCanvasFinish(&canvas));
-  }
-  if (canvas) PetscCall(LamCanvasFinish(&canvas));
+  PetscCall(LoadStep(film->path, film->first + k, p));
+  LamFrameBegin(canvas, &p->times, p->row, &film->frame, &view);
+  PetscCall(DrawBody(canvas, &view, p, &film->frame.range));
+  LamScaleBar(canvas, &view, view.frame.x, view.frame.y + view.frame.height + 11, 0.25 * view.frame.width, 1, "mm");
+  PetscCall(LamBodyTimesDraw(canvas, LamFrameCharts(), &p->times, &p->reactions, p->row));
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode DrawProcess(const LamPlotRequest *request, FE2Picture *p)
 {
-  PetscInt *rows, count = request->film ? p->step_count : 1;
+  const PetscInt count = request->film ? p->step_count : 1;
+  Film film = {.path = request->input, .picture = p, .first = request->film ? 0 : p->row};
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(count, &rows));
-  for (PetscInt k = 0; k < count; k++) rows[k] = request->film ? k : p->row;
-  PetscCall(DrawMoments(request, count, rows, p));
-  PetscCall(PetscFree(rows));
+  PetscCall(FindFrame(count, &film));
+  PetscCall(LamFilmDraw(request->output, count, DrawMoment, &film));
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode Draw(const LamPlotRequest *request, FE2Picture *p)
 {
   PetscFunctionBeginUser;
-  PetscCheck(p->times.there || !request->film, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+  PetscCheck(p->times.n || !request->film, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: is of load steps; --film draws files of process", request->input);
-  if (p->times.there && (!p->zooms.count || request->film || request->state >= 0))
+  if (p->times.n && (!p->zooms.count || request->film || request->state >= 0))
     PetscCall(DrawProcess(request, p));
   else
     PetscCall(DrawFE2(request->output, p));

@@ -24,27 +24,18 @@ typedef struct {
 /* Reads the first `count` steps. */
 PetscErrorCode LamReactionsRead(const char path[], PetscInt count, LamReactions *reactions);
 PetscErrorCode LamReactionsDestroy(LamReactions *reactions);
-/* Gets the name of a side. */
-void LamReactionsSideName(const LamReactions *reactions, PetscInt side, size_t size, char name[]);
+/* One component of one side over the steps, 2*side + component, with its label; PETSC_FALSE: it is rounding, as the
+   free component of a roller. */
+PetscBool LamReactionsGet(const LamReactions *reactions, PetscInt column, PetscReal values[],
+                          char label[LAM_SERIES_LABEL]);
 /* Draws the reactions of all sides against the displacement of the loaded one, or else the load factor, and the
    onsets. */
 PetscErrorCode LamReactionsDraw(LamCanvas canvas, LamRect outer, const LamReactions *reactions);
 
 /* ---- plot_fe2_time.c ---- */
-/* Arrays over the steps; owned. */
-typedef struct {
-  PetscBool there; /* the run is one of `process` */
-  LamTimeLine line;
-  PetscReal *turgor[3], *water, *plasmolysed, *debonded; /* turgor: smallest, mean, largest */
-  PetscInt factor_count, ratio_count; /* number of changing factors, of known ratios; names with blanks */
-  PetscReal *factor[16], *ratio[8];
-  char factor_name[16][LAM_NAME_LENGTH], ratio_name[8][LAM_NAME_LENGTH];
-} LamBodyTimes;
-PetscErrorCode LamBodyTimesRead(const char path[], PetscInt steps, LamBodyTimes *times);
-PetscErrorCode LamBodyTimesDestroy(LamBodyTimes *times);
 /* Draws four charts, with a mark at the step `now`. */
-PetscErrorCode LamBodyTimesDraw(LamCanvas canvas, LamRect outer, const LamBodyTimes *times,
-                                const LamReactions *reactions, PetscInt now);
+PetscErrorCode LamBodyTimesDraw(LamCanvas canvas, LamRect outer, LamTimeLine *line, const LamReactions *reactions,
+                                PetscInt now);
 
 /* ---- plot_zoom.c ---- */
 #define LAM_PLOT_MAX_ZOOMS 3

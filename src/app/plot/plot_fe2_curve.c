@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const LamColour Ink = {0.12, 0.12, 0.16}, Onset = {0.45, 0.45, 0.5};
+static const LamColour Onset = {0.45, 0.45, 0.5};
 
 /* ---- reading ---- */
 
@@ -27,18 +27,16 @@ static PetscErrorCode ReadCurve(const char path[], const char name[], PetscInt s
   PetscFunctionReturn(0);
 }
 
-void LamReactionsSideName(const LamReactions *p, PetscInt side, size_t size, char name[])
+/* Gets the name of a side. */
+static void SideName(const LamReactions *p, PetscInt side, size_t size, char name[])
 {
-  const char *start = p->sides;
-  size_t length;
+  const char *start = p->sides + strspn(p->sides, "\n");
 
-  for (PetscInt i = 0;; i++) {
-    while (*start == '\n') start++;
-    length = strcspn(start, "\n");
-    if (i == side) break;
-    start += length;
+  for (; side; side--) {
+    start += strcspn(start, "\n");
+    start += strspn(start, "\n");
   }
-  snprintf(name, size, "%.*s", (int)PetscMin(length, size - 1), start);
+  snprintf(name, size, "%.*s", (int)PetscMin(strcspn(start, "\n"), size - 1), start);
 }
 
 /* Components of the loaded side's displacement along its direction; nothing if the summary names no loaded side. */
@@ -54,7 +52,7 @@ static PetscErrorCode ReadDisplacement(const char path[], LamReactions *p)
   PetscCall(ReadCurve(path, "/macro/curve/displacement", p->count, 2 * p->side_count, &u));
   PetscCall(PetscCalloc1(p->count, &p->x));
   for (PetscInt s = 0; s < p->side_count; s++) {
-    LamReactionsSideName(p, s, sizeof side, side);
+    SideName(p, s, sizeof side, side);
     if (strcmp(side, name)) continue;
     for (PetscInt k = 0; k < p->count; k++) {
       for (size_t i = 0; i < 2; i++) {
@@ -75,8 +73,7 @@ PetscErrorCode LamReactionsRead(const char path[], PetscInt count, LamReactions 
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(p, sizeof *p));
   p->count = count;
-  PetscCall(LamFileReadText(path, "/macro/boundaries", &found, &p->sides));
-  PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no /macro/boundaries to draw", path);
+  PetscCall(LamPlotReadText(path, "/macro/boundaries", &p->sides));
   for (const char *c = p->sides; *c; c++) p->side_count += *c != '\n' && (c[1] == '\n' || !c[1]);
   PetscCall(ReadCurve(path, "/macro/curve/load_factor", count, 1, &p->load));
   PetscCall(ReadCurve(path, "/macro/curve/reaction", count, 2 * p->side_count, &p->reaction));
@@ -100,59 +97,50 @@ PetscErrorCode LamReactionsDestroy(LamReactions *p)
 
 /* ---- drawing ---- */
 
+PetscBool LamReactionsGet(const LamReactions *p, PetscInt column, PetscReal values[], char label[LAM_SERIES_LABEL])
+{
+  const PetscInt columns = 2 * p->side_count;
+  PetscReal largest = 0, own = 0;
+  char side[LAM_NAME_LENGTH];
+
+  for (PetscInt i = 0; i < p->count * columns; i++) largest = PetscMax(largest, PetscAbsReal(p->reaction[i]));
+  for (PetscInt k = 0; k < p->count; k++) {
+    values[k] = p->reaction[k * columns + column];
+    own = PetscMax(own, PetscAbsReal(values[k]));
+  }
+  SideName(p, column / 2, sizeof side, side);
+  snprintf(label, LAM_SERIES_LABEL, "%.40s $R$_{%d}", side, (int)(column % 2 + 1));
+  return (PetscBool) !(own < 1e-6 * largest);
+}
+
 /* One colour per side; filled circles and full lines for component 1, hollow squares and dashes for component 2. */
 static PetscErrorCode ReactionSeries(const LamReactions *p, PetscInt *count, LamSeries series[])
 {
-  PetscReal largest = 0;
-  char name[32];
-
   PetscFunctionBeginUser;
   *count = 0;
-  for (PetscInt i = 0; i < p->count * p->side_count * 2; i++) largest = PetscMax(largest, PetscAbsReal(p->reaction[i]));
-  for (PetscInt side = 0; side < p->side_count; side++) {
-    for (int c = 0; c < 2; c++) {
-      LamSeries *s = &series[*count];
-      PetscReal own = 0;
+  for (PetscInt i = 0; i < 2 * p->side_count; i++) {
+    LamSeries *s = &series[*count];
+    const PetscBool second = (PetscBool)(i % 2);
 
-      PetscCall(LamSeriesCreate(p->count, s));
-      for (PetscInt k = 0; k < p->count; k++) {
-        s->x[k] = p->x ? p->x[k] : p->load[k];
-        s->y[k] = p->reaction[(k * p->side_count + side) * 2 + c];
-        own = PetscMax(own, PetscAbsReal(s->y[k]));
-      }
-      if (own <= 1e-6 * largest) { /* a roller's free component */
-        PetscCall(LamSeriesDestroy(s));
-        continue;
-      }
-      LamReactionsSideName(p, side, sizeof name, name);
-      s->style = (LamStyle){LamColourOfLine(side), c ? LAM_MARKER_SQUARE : LAM_MARKER_CIRCLE, (PetscBool)c, PETSC_TRUE,
-                            (PetscBool)c};
-      snprintf(s->label, sizeof s->label, "%s $R$_{%d}", name, c + 1);
+    PetscCall(LamSeriesCreate(p->count, s));
+    PetscCall(PetscArraycpy(s->x, p->x ? p->x : p->load, p->count));
+    s->style =
+        (LamStyle){LamColourOfLine(i / 2), second ? LAM_MARKER_SQUARE : LAM_MARKER_CIRCLE, second, PETSC_TRUE, second};
+    if (LamReactionsGet(p, i, s->y, s->label))
       (*count)++;
-    }
+    else
+      PetscCall(LamSeriesDestroy(s));
   }
   PetscFunctionReturn(0);
 }
 
-/* A dashed line at the onset of separation or rupture, with its name along it, to the left or right. */
+/* A line at the onset of separation or rupture, with its name. */
 static void DrawOnset(LamCanvas canvas, const LamAxes *axes, const LamReactions *p, const char name[])
 {
   const json_t *onset = json_object_get(p->summary, name);
   const json_t *value = json_object_get(onset, p->x ? "displacement" : "load_factor");
-  const double dash[] = {1.2, 1.8};
-  cairo_t *cr = LamCanvasCairo(canvas);
-  double x;
 
-  if (!json_is_number(value)) return;
-  x = LamAxesX(axes, json_number_value(value));
-  LamCanvasSetColour(canvas, Onset);
-  cairo_set_dash(cr, dash, 2, 0);
-  cairo_set_line_width(cr, 0.8);
-  cairo_move_to(cr, x, axes->frame.y + axes->frame.height);
-  cairo_line_to(cr, x, axes->frame.y);
-  cairo_stroke(cr);
-  cairo_set_dash(cr, NULL, 0, 0);
-  LamCanvasText(canvas, x - 5, axes->frame.y + 3, 1, 0.5 * PETSC_PI, LAM_TICK_SIZE, name);
+  if (json_is_number(value)) LamAxesMark(canvas, axes, json_number_value(value), Onset, PETSC_TRUE, name);
 }
 
 PetscErrorCode LamReactionsDraw(LamCanvas canvas, LamRect outer, const LamReactions *p)
@@ -173,7 +161,6 @@ PetscErrorCode LamReactionsDraw(LamCanvas canvas, LamRect outer, const LamReacti
   LamChart(canvas, outer, &axes, count, series);
   DrawOnset(canvas, &axes, p, "separation");
   DrawOnset(canvas, &axes, p, "rupture");
-  LamCanvasSetColour(canvas, Ink);
   for (PetscInt i = 0; i < count; i++) PetscCall(LamSeriesDestroy(&series[i]));
   PetscCall(PetscFree(series));
   PetscFunctionReturn(0);

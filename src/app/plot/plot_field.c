@@ -42,6 +42,14 @@ void LamBoxExtend(PetscReal box[4], PetscInt n, const PetscReal points[], const 
   }
 }
 
+void LamBoxWiden(PetscReal box[4], PetscReal margin)
+{
+  for (int k = 0; k < 2; k++) {
+    box[k] -= margin;
+    box[2 + k] += margin;
+  }
+}
+
 PetscBool LamViewShows(const LamView *view, const PetscReal box[4], const PetscReal shift[2])
 {
   const PetscReal size[2] = {view->frame.width / view->scale, view->frame.height / view->scale};
@@ -234,7 +242,6 @@ PetscErrorCode LamFieldPaint(LamCanvas canvas, const LamView *view, const LamFie
 double LamScaleBar(LamCanvas canvas, const LamView *view, double x, double y, double width, PetscReal unit_length,
                    const char unit[])
 {
-  cairo_t *cr = LamCanvasCairo(canvas);
   const PetscReal longest = width / (view->scale * unit_length); /* in units */
   const PetscReal power = PetscPowReal(10, PetscFloorReal(PetscLog10Real(longest)));
   const PetscReal length = power * (longest >= 5 * power ? 5 : longest >= 2 * power ? 2 : 1);
@@ -242,11 +249,8 @@ double LamScaleBar(LamCanvas canvas, const LamView *view, double x, double y, do
   char label[64];
 
   snprintf(label, sizeof label, "%g %s", (double)length, unit);
-  LamCanvasSetColour(canvas, (LamColour){0.15, 0.15, 0.15});
-  cairo_set_line_width(cr, 2);
-  cairo_move_to(cr, x, y);
-  cairo_line_to(cr, x + bar, y);
-  cairo_stroke(cr);
+  LamCanvasLine(canvas, x, y, x + bar, y);
+  LamCanvasStroke(canvas, LamInk, 2, NULL);
   LamCanvasText(canvas, x + bar + 4, y, 0, 0, LAM_TICK_SIZE, label);
   return bar + 4 + LamCanvasTextWidth(canvas, LAM_TICK_SIZE, label);
 }

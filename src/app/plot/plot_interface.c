@@ -163,13 +163,10 @@ static void RibbonPath(LamCanvas canvas, const LamView *view, const LamInterface
 void LamInterfaceDrawPressure(LamCanvas canvas, const LamView *view, const LamInterface *interface,
                               const PetscReal shift[2])
 {
-  cairo_t *cr = LamCanvasCairo(canvas);
-
   if (!(interface->largest_pressure > 0)) return;
   for (PetscInt face = 0; face < interface->faces; face++) {
     RibbonPath(canvas, view, interface, shift, face);
-    LamCanvasSetColour(canvas, Pressure);
-    cairo_fill(cr);
+    LamCanvasFill(canvas, Pressure);
   }
 }
 
@@ -180,17 +177,16 @@ void LamInterfaceDrawKey(LamCanvas canvas, double x, double y, const LamInterfac
   char number[32], text[160] = "no contact";
 
   if (interface->largest_pressure > 0) {
-    LamCanvasSetColour(canvas, Pressure);
     cairo_move_to(cr, x, y);
     cairo_line_to(cr, x + length, y - 0.5 * WidestRibbon);
     cairo_line_to(cr, x + length, y + 0.5 * WidestRibbon);
     cairo_close_path(cr);
-    cairo_fill(cr);
+    LamCanvasFill(canvas, Pressure);
     LamFormatNumber(interface->largest_pressure, number);
     snprintf(text, sizeof text, "contact pressure, up to %s MPa%s", number,
              interface->is_open ? "" : ";  no gap above 0.001 apothems");
     x += length + 4;
   }
-  LamCanvasSetColour(canvas, (LamColour){0.15, 0.15, 0.15});
+  LamCanvasSetColour(canvas, LamInk);
   LamCanvasText(canvas, x, y, 0, 0, LAM_TICK_SIZE, text);
 }

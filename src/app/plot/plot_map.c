@@ -8,19 +8,19 @@
 #include <stdio.h>
 #include <string.h>
 
-static const LamColour Ink = {0.15, 0.15, 0.15}, Empty = {0.93, 0.93, 0.93};
+static const LamColour Empty = {0.93, 0.93, 0.93};
 
 /* Colours of Okabe and Ito, some of them lighter. */
 static const struct {
   const char *label;
   LamColour colour;
-} Modes[LAM_MAP_MODE_COUNT] = {
-    [LAM_MAP_NONE] = {"no failure", {0.80, 0.90, 0.78}},
-    [LAM_MAP_SEPARATION] = {"cells separate", {0.34, 0.71, 0.91}},
-    [LAM_MAP_RUPTURE] = {"walls rupture", {0.84, 0.37, 0.00}},
-    [LAM_MAP_BUCKLING] = {"walls buckle", {0.80, 0.60, 0.78}},
-    [LAM_MAP_TURGOR_LOSS] = {"turgor is lost", {0.96, 0.87, 0.45}},
-    [LAM_MAP_UNKNOWN] = {"not known", {1, 1, 1}},
+} Modes[LAM_FAILURE_MODE_COUNT] = {
+    [LAM_FAILURE_NONE] = {"no failure", {0.80, 0.90, 0.78}},
+    [LAM_FAILURE_SEPARATION] = {"cells separate", {0.34, 0.71, 0.91}},
+    [LAM_FAILURE_RUPTURE] = {"walls rupture", {0.84, 0.37, 0.00}},
+    [LAM_FAILURE_BUCKLING] = {"walls buckle", {0.80, 0.60, 0.78}},
+    [LAM_FAILURE_TURGOR_LOSS] = {"turgor is lost", {0.96, 0.87, 0.45}},
+    [LAM_FAILURE_UNKNOWN] = {"not known", {1, 1, 1}},
 };
 
 static LamAxes AxesOf(const LamMapPicture *p)
@@ -32,51 +32,39 @@ static LamAxes AxesOf(const LamMapPicture *p)
                    .y = {p->y.edge[0], p->y.edge[p->y.n], p->y.label, y_unit, PETSC_FALSE, {0}}};
 }
 
-/* A cell of the picture; neighbours overlap slightly, so that no seam shows. */
-static void CellPath(cairo_t *cr, const LamAxes *axes, const LamMapPicture *p, PetscInt i)
+/* Fills a cell of the picture; neighbours overlap slightly, so that no seam shows. */
+static void FillCell(LamCanvas canvas, const LamAxes *axes, const LamMapPicture *p, PetscInt i, LamColour colour)
 {
   const PetscInt x = i % p->x.n, y = i / p->x.n;
   const double left = LamAxesX(axes, p->x.edge[x]), right = LamAxesX(axes, p->x.edge[x + 1]);
   const double bottom = LamAxesY(axes, p->y.edge[y]), top = LamAxesY(axes, p->y.edge[y + 1]), hair = 0.15;
 
-  cairo_rectangle(cr, left, top - hair, right - left + hair, bottom - top + hair);
+  LamCanvasBox(canvas, (LamRect){left, top - hair, right - left + hair, bottom - top + hair});
+  LamCanvasFill(canvas, colour);
 }
 
 /* A thin cross, for points that did not converge. */
-static void CrossCell(cairo_t *cr, const LamAxes *axes, const LamMapPicture *p, PetscInt i)
+static void CrossCell(LamCanvas canvas, const LamAxes *axes, const LamMapPicture *p, PetscInt i)
 {
   const double x = LamAxesX(axes, p->x.at[i % p->x.n]), y = LamAxesY(axes, p->y.at[i / p->x.n]), h = 1.8;
 
-  cairo_set_line_width(cr, 0.7);
-  cairo_move_to(cr, x - h, y - h);
-  cairo_line_to(cr, x + h, y + h);
-  cairo_move_to(cr, x - h, y + h);
-  cairo_line_to(cr, x + h, y - h);
-  cairo_stroke(cr);
+  LamCanvasLine(canvas, x - h, y - h, x + h, y + h);
+  LamCanvasLine(canvas, x - h, y + h, x + h, y - h);
+  LamCanvasStroke(canvas, LamInk, 0.7, NULL);
 }
 
 static void DrawModes(LamCanvas canvas, const LamAxes *axes, const LamMapPicture *p)
 {
-  cairo_t *cr = LamCanvasCairo(canvas);
-
   for (PetscInt i = 0; i < p->n; i++) {
-    LamCanvasSetColour(canvas, p->mode[i] < 0 ? Empty : Modes[p->mode[i]].colour);
-    CellPath(cr, axes, p, i);
-    cairo_fill(cr);
-    LamCanvasSetColour(canvas, Ink);
-    if (p->mode[i] == LAM_MAP_UNKNOWN) CrossCell(cr, axes, p, i);
+    FillCell(canvas, axes, p, i, p->mode[i] < 0 ? Empty : Modes[p->mode[i]].colour);
+    if (p->mode[i] == LAM_FAILURE_UNKNOWN) CrossCell(canvas, axes, p, i);
   }
 }
 
 static void DrawField(LamCanvas canvas, const LamAxes *axes, const LamMapPicture *p)
 {
-  cairo_t *cr = LamCanvasCairo(canvas);
-
-  for (PetscInt i = 0; i < p->n; i++) {
-    LamCanvasSetColour(canvas, isnan(p->value[i]) ? Empty : LamColourMap(LamColourShare(&p->range, p->value[i])));
-    CellPath(cr, axes, p, i);
-    cairo_fill(cr);
-  }
+  for (PetscInt i = 0; i < p->n; i++)
+    FillCell(canvas, axes, p, i, isnan(p->value[i]) ? Empty : LamColourMap(LamColourShare(&p->range, p->value[i])));
 }
 
 /* ---- the onset, at higher resolution than the cells ---- */
@@ -100,24 +88,17 @@ static void DrawOnset(LamCanvas canvas, const LamAxes *axes, const LamMapPicture
 {
   const PetscBool x_is_load = IsOfLoad(&p->x);
   const LamMapSide *load = x_is_load ? &p->x : &p->y, *other = x_is_load ? &p->y : &p->x;
-  cairo_t *cr = LamCanvasCairo(canvas);
   PetscBool drawing = PETSC_FALSE;
 
-  LamCanvasSetColour(canvas, Ink);
-  cairo_set_line_width(cr, 1.0);
   for (PetscInt k = 0; k < other->n; k++) {
     const PetscInt last = x_is_load ? k * p->x.n + p->x.n - 1 : (p->y.n - 1) * p->x.n + k;
     const PetscReal onset = OnsetAlong(p, load, last), at = other->at[k];
-    const double x = LamAxesX(axes, x_is_load ? onset : at), y = LamAxesY(axes, x_is_load ? at : onset);
+    const PetscBool known = (PetscBool)(onset >= load->edge[0]);
 
-    if (isnan(onset) || onset < load->edge[0]) {
-      drawing = PETSC_FALSE;
-      continue;
-    }
-    (drawing ? cairo_line_to : cairo_move_to)(cr, x, y);
-    drawing = PETSC_TRUE;
+    if (known) LamAxesPath(canvas, axes, x_is_load ? onset : at, x_is_load ? at : onset, drawing);
+    drawing = known;
   }
-  cairo_stroke(cr);
+  LamCanvasStroke(canvas, LamInk, 1.0, NULL);
 }
 
 /* ---- contours ---- */
@@ -151,20 +132,16 @@ static PetscBool ContourPiece(const LamMapPicture *p, PetscInt x, PetscInt y, Pe
 static void DrawContour(LamCanvas canvas, const LamAxes *axes, const LamMapPicture *p, PetscReal level,
                         const char text[])
 {
-  cairo_t *cr = LamCanvasCairo(canvas);
   const LamRect f = axes->frame;
   double best = INFINITY, at[2] = {0, 0};
 
-  LamCanvasSetColour(canvas, Ink);
-  cairo_set_line_width(cr, 0.7);
   for (PetscInt y = 0; y + 1 < p->y.n; y++)
     for (PetscInt x = 0; x + 1 < p->x.n; x++) {
       PetscReal piece[2][2];
       double middle[2], far;
 
       if (!ContourPiece(p, x, y, level, piece)) continue;
-      cairo_move_to(cr, LamAxesX(axes, piece[0][0]), LamAxesY(axes, piece[0][1]));
-      cairo_line_to(cr, LamAxesX(axes, piece[1][0]), LamAxesY(axes, piece[1][1]));
+      for (int end = 0; end < 2; end++) LamAxesPath(canvas, axes, piece[end][0], piece[end][1], (PetscBool)end);
       middle[0] = LamAxesX(axes, 0.5 * (piece[0][0] + piece[1][0]));
       middle[1] = LamAxesY(axes, 0.5 * (piece[0][1] + piece[1][1]));
       far = fabs((middle[0] - f.x) / f.width - (f.y + f.height - middle[1]) / f.height);
@@ -172,9 +149,8 @@ static void DrawContour(LamCanvas canvas, const LamAxes *axes, const LamMapPictu
       best = far;
       memcpy(at, middle, sizeof at);
     }
-  cairo_stroke(cr);
-  if (isinf(best)) return;
-  LamCanvasText(canvas, at[0] + 2, at[1] - 4, 0, 0, LAM_TICK_SIZE - 1, text);
+  LamCanvasStroke(canvas, LamInk, 0.7, NULL);
+  if (isfinite(best)) LamCanvasText(canvas, at[0] + 2, at[1] - 4, 0, 0, LAM_TICK_SIZE - 1, text);
 }
 
 static PetscErrorCode DrawContours(LamCanvas canvas, const LamAxes *axes, const LamMapPicture *p)
@@ -196,23 +172,18 @@ static PetscErrorCode DrawContours(LamCanvas canvas, const LamAxes *axes, const 
 
 /* ---- the page ---- */
 
-/* An entry of the legend: a box of a mode's colour, or a line (colour NULL). */
-static void DrawSample(LamCanvas canvas, double x, double y, const LamColour *colour)
+/* The sample of an entry of the legend: a box of a mode's colour, or a line (colour NULL). */
+static void DrawSample(LamCanvas canvas, const double at[2], const LamColour *colour)
 {
   const double box = LAM_TICK_SIZE;
-  cairo_t *cr = LamCanvasCairo(canvas);
 
   if (colour) {
-    cairo_rectangle(cr, x, y - 0.5 * box, box, box);
+    LamCanvasBox(canvas, (LamRect){at[0], at[1] - 0.5 * box, box, box});
     LamCanvasSetColour(canvas, *colour);
-    cairo_fill_preserve(cr);
-  } else {
-    cairo_move_to(cr, x, y);
-    cairo_line_to(cr, x + box, y);
-  }
-  LamCanvasSetColour(canvas, Ink);
-  cairo_set_line_width(cr, colour ? 0.4 : 1.0);
-  cairo_stroke(cr);
+    cairo_fill_preserve(LamCanvasCairo(canvas));
+  } else
+    LamCanvasLine(canvas, at[0], at[1], at[0] + box, at[1]);
+  LamCanvasStroke(canvas, LamInk, colour ? 0.4 : 1.0, NULL);
 }
 
 static PetscBool Occurs(const LamMapPicture *p, PetscInt mode)
@@ -225,25 +196,20 @@ static PetscBool Occurs(const LamMapPicture *p, PetscInt mode)
 /* Legend of the modes that occur and of the lines. Returns the height used. */
 static double DrawLegend(LamCanvas canvas, LamRect outer, const LamMapPicture *p)
 {
-  const double row = 1.6 * LAM_TICK_SIZE, sample = LAM_TICK_SIZE + 3;
-  double x = outer.x, y = outer.y + 0.5 * row;
+  LamPen pen;
+  double at[2];
 
-  for (PetscInt k = 0; k <= LAM_MAP_MODE_COUNT; k++) {
-    const char *label = k < LAM_MAP_MODE_COUNT               ? Modes[k].label
-                        : IsOfLoad(&p->x) || IsOfLoad(&p->y) ? "onset"
-                                                             : "load factor";
-    const double width = sample + LamCanvasTextWidth(canvas, LAM_TICK_SIZE, label) + 9;
-
-    if (k < LAM_MAP_MODE_COUNT && !Occurs(p, k)) continue;
-    if (x > outer.x && x + width > outer.x + outer.width) {
-      x = outer.x;
-      y += row;
-    }
-    DrawSample(canvas, x, y, k < LAM_MAP_MODE_COUNT ? &Modes[k].colour : NULL);
-    LamCanvasText(canvas, x + sample, y, 0, 0, LAM_TICK_SIZE, label);
-    x += width;
+  outer.width -= 9; /* as after each entry */
+  pen = LamPenStart(outer, 1.6 * LAM_TICK_SIZE, 9);
+  for (PetscInt k = 0; k < LAM_FAILURE_MODE_COUNT; k++) {
+    if (!Occurs(p, k)) continue;
+    LamPenEntry(canvas, &pen, LAM_TICK_SIZE, Modes[k].label, PETSC_TRUE, at);
+    DrawSample(canvas, at, &Modes[k].colour);
   }
-  return y + 0.5 * row - outer.y;
+  LamPenEntry(canvas, &pen, LAM_TICK_SIZE, IsOfLoad(&p->x) || IsOfLoad(&p->y) ? "onset" : "load factor", PETSC_TRUE,
+              at);
+  DrawSample(canvas, at, NULL);
+  return pen.y + 0.5 * pen.row - outer.y;
 }
 
 static const char *FieldLabel(const char field[])

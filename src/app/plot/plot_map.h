@@ -5,16 +5,7 @@
 #define LAM_PLOT_MAP_H
 
 #include "plot.h"
-
-/* Names as in files; any other is drawn as unknown. */
-#define LAM_MAP_MODES(X)                                                                                               \
-  X(LAM_MAP_NONE, "none")                                                                                              \
-  X(LAM_MAP_SEPARATION, "separation")                                                                                  \
-  X(LAM_MAP_RUPTURE, "rupture")                                                                                        \
-  X(LAM_MAP_BUCKLING, "buckling")                                                                                      \
-  X(LAM_MAP_TURGOR_LOSS, "turgor_loss")                                                                                \
-  X(LAM_MAP_UNKNOWN, "unknown")
-typedef enum { LAM_MAP_MODES(LAM_ENUM_ENTRY) LAM_MAP_MODE_COUNT } LamMapMode;
+#include "failure.h"
 
 /* One axis: positions of its points and of the edges of their cells, as logarithms if the spacing is logarithmic. */
 typedef struct {
@@ -27,7 +18,7 @@ typedef struct {
 typedef struct {
   LamMapSide x, y;
   PetscInt n;             /* number of points of the map */
-  PetscInt *mode;         /* [n] a LamMapMode, -1: not computed yet; owned */
+  PetscInt *mode;         /* [n] a LamFailureMode, -1: not computed yet; owned */
   PetscReal *load_factor; /* [n]; owned */
   PetscReal *shear;       /* [n] F12 of the record; owned */
   PetscReal *value;       /* [n] of the field; owned */

@@ -6,17 +6,14 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const ModeNames[] = {LAM_MAP_MODES(LAM_NAME_ENTRY)};
-
-static PetscErrorCode ReadText(const char path[], const char name[], size_t size, char text[])
+static PetscErrorCode ReadText(const char path[], char letter, const char name[], char text[LAM_NAME_LENGTH])
 {
-  PetscBool found;
-  char *read;
+  char dataset[LAM_NAME_LENGTH], *read;
 
   PetscFunctionBeginUser;
-  PetscCall(LamFileReadText(path, name, &found, &read));
-  PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no %s to draw", path, name);
-  PetscCall(PetscStrncpy(text, read, size));
+  snprintf(dataset, sizeof dataset, "/map/%c/%s", letter, name);
+  PetscCall(LamPlotReadText(path, dataset, &read));
+  PetscCall(PetscStrncpy(text, read, LAM_NAME_LENGTH));
   PetscCall(PetscFree(read));
   PetscFunctionReturn(0);
 }
@@ -57,12 +54,9 @@ static PetscErrorCode ReadSide(const char path[], char letter, LamMapSide *side)
   PetscBool found;
 
   PetscFunctionBeginUser;
-  snprintf(name, sizeof name, "/map/%c/quantity", letter);
-  PetscCall(ReadText(path, name, sizeof side->quantity, side->quantity));
-  snprintf(name, sizeof name, "/map/%c/unit", letter);
-  PetscCall(ReadText(path, name, sizeof side->unit, side->unit));
-  snprintf(name, sizeof name, "/map/%c/spacing", letter);
-  PetscCall(ReadText(path, name, sizeof spacing, spacing));
+  PetscCall(ReadText(path, letter, "quantity", side->quantity));
+  PetscCall(ReadText(path, letter, "unit", side->unit));
+  PetscCall(ReadText(path, letter, "spacing", spacing));
   snprintf(name, sizeof name, "/map/%c/values", letter);
   PetscCall(LamFileReadReals(path, name, &found, &rank, dims, &side->at));
   PetscCheck(found && rank == 1 && dims[0] > 1, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no %s to draw", path,
@@ -81,23 +75,21 @@ static PetscErrorCode ReadSide(const char path[], char letter, LamMapSide *side)
 /* The mode numbers in the file refer to its own list of names. */
 static PetscErrorCode ReadModes(const char path[], LamMapPicture *p)
 {
-  PetscInt rank, dims[4], number[16], count = 0;
-  char names[512], *rest;
-  PetscBool found;
+  PetscInt number[16], count = 0;
+  char *names, *rest;
 
   PetscFunctionBeginUser;
-  PetscCall(ReadText(path, "/map/modes", sizeof names, names));
+  PetscCall(LamPlotReadText(path, "/map/modes", &names));
   for (char *name = strtok_r(names, "\n", &rest); name && count < 16; name = strtok_r(NULL, "\n", &rest)) {
-    number[count] = LAM_MAP_UNKNOWN;
-    for (PetscInt k = 0; k < LAM_MAP_MODE_COUNT; k++)
-      if (!strcmp(name, ModeNames[k])) number[count] = k;
+    number[count] = LAM_FAILURE_UNKNOWN;
+    for (PetscInt k = 0; k < LAM_FAILURE_MODE_COUNT; k++)
+      if (!strcmp(name, LamFailureModeNames[k])) number[count] = k;
     count++;
   }
-  PetscCall(LamFileReadInts(path, "/map/mode", &found, &rank, dims, &p->mode));
-  PetscCheck(found && rank == 2 && dims[0] == p->y.n && dims[1] == p->x.n, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: /map/mode does not fit the axes; the file is damaged", path);
+  PetscCall(PetscFree(names));
+  PetscCall(LamPlotReadInts(path, "/map/mode", p->y.n, p->x.n, &p->mode));
   for (PetscInt i = 0; i < p->n; i++)
-    if (p->mode[i] >= 0) p->mode[i] = p->mode[i] < count ? number[p->mode[i]] : LAM_MAP_UNKNOWN;
+    if (p->mode[i] >= 0) p->mode[i] = p->mode[i] < count ? number[p->mode[i]] : LAM_FAILURE_UNKNOWN;
   PetscFunctionReturn(0);
 }
 

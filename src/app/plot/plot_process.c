@@ -2,18 +2,49 @@
   Pictures of a process: quantities against time, the same beside the cells of a state, films of these, and the path of
   the tissue on a map of its failure.
 */
-#include "plot_process.h"
 #include "plot_map.h"
+#include "plot_time.h"
+#include "plot_tissue.h"
+#include <lamella/process.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-static const LamColour Ink = {0.12, 0.12, 0.16}, Now = {0.75, 0.1, 0.1};
+static const LamColour Path = {0.75, 0.1, 0.1};
+
+typedef struct {
+  const char *path;     /* borrowed */
+  LamDatabase database; /* owns `records` */
+  LamMicrostructure micro;
+  LamScales scales;
+  PetscInt n;
+  const LamResponse *records; /* of the states */
+  LamTimeLine line;
+} Process;
+
+static PetscErrorCode Read(const char path[], Process *p)
+{
+  const PetscInt64 *keys;
+
+  PetscFunctionBeginUser;
+  *p = (Process){.path = path};
+  PetscCall(LamDatabaseOpen(path, &p->database));
+  PetscCall(LamDatabaseGetRecords(p->database, &p->n, &p->records, &keys));
+  PetscCall(LamDatabaseGetMicrostructure(p->database, &p->micro, &p->scales, NULL));
+  PetscCheck(p->n > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no states", path);
+  PetscCall(LamTimeLineRead(path, p->n, &p->line));
+  PetscFunctionReturn(0);
+}
+
+static PetscBool IsContact(const Process *p)
+{
+  return (PetscBool)(p->micro.interface == LAM_INTERFACE_CONTACT);
+}
 
 /* ---- the four charts ---- */
 
 /* Adds a member of the records. */
-static PetscErrorCode AddMember(LamTimeChart *chart, const LamProcessPicture *p, size_t offset, PetscReal factor,
+static PetscErrorCode AddMember(LamTimeChart *chart, const Process *p, size_t offset, PetscReal factor,
                                 const char label[])
 {
   PetscReal *values;
@@ -27,63 +58,59 @@ static PetscErrorCode AddMember(LamTimeChart *chart, const LamProcessPicture *p,
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode MakeFirmness(const LamProcessPicture *p, LamTimeChart *chart)
+static PetscErrorCode MakePressures(Process *p, LamTimeChart *chart)
 {
-  PetscFunctionBeginUser;
-  *chart = (LamTimeChart){.axes.y = {.label = "firmness $E$", .unit = "MPa"}};
-  PetscCall(LamTimeChartAdd(chart, &p->line, p->firmness, ""));
-  PetscFunctionReturn(0);
-}
+  const PetscReal *osmotic;
 
-static PetscErrorCode MakePressures(const LamProcessPicture *p, LamTimeChart *chart)
-{
   PetscFunctionBeginUser;
   *chart = (LamTimeChart){.axes.y = {.label = "pressure", .unit = "MPa"}};
-  PetscCall(LamTimeChartAdd(chart, &p->line, p->turgor, "turgor"));
-  if (isfinite(p->osmotic[0])) PetscCall(LamTimeChartAdd(chart, &p->line, p->osmotic, "osmotic, in cells"));
-  if (isfinite(p->osmotic[0])) PetscCall(LamTimeChartAdd(chart, &p->line, p->outside, "outside"));
-  if (p->micro.interface == LAM_INTERFACE_CONTACT) PetscCall(LamTimeChartAdd(chart, &p->line, p->cohesion, "cohesion"));
+  PetscCall(LamTimeChartAddColumn(chart, &p->line, "turgor", "turgor"));
+  PetscCall(LamTimeColumn(&p->line, "osmotic_pressure", PETSC_FALSE, &osmotic));
+  if (LamTimeIsKnown(p->n, osmotic)) {
+    PetscCall(LamTimeChartAdd(chart, &p->line, osmotic, "osmotic, in cells"));
+    PetscCall(LamTimeChartAddColumn(chart, &p->line, "outside", "outside"));
+  }
+  if (IsContact(p)) PetscCall(LamTimeChartAddColumn(chart, &p->line, "cohesion", "cohesion"));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode MakeFactors(const LamProcessPicture *p, LamTimeChart *chart)
+static PetscErrorCode MakeFactors(Process *p, LamTimeChart *chart)
 {
   PetscFunctionBeginUser;
   *chart = (LamTimeChart){.axes.y = {.label = "share of the start"}};
-  for (PetscInt k = 0; k < p->factor_count; k++)
-    PetscCall(LamTimeChartAdd(chart, &p->line, p->factor[k], p->factor_name[k]));
-  if (!p->factor_count)
+  PetscCall(LamTimeChartAddGroup(chart, &p->line, "factor", LAM_CHANGING_COUNT, LamChangingNames, LamTimeVaries));
+  if (!chart->n)
     PetscCall(AddMember(chart, p, offsetof(LamResponse, lumen_fraction), 1 / p->records[0].lumen_fraction, "lumen"));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode MakeSeparation(const LamProcessPicture *p, LamTimeChart *chart)
+static PetscErrorCode MakeSeparation(Process *p, LamTimeChart *chart)
 {
-  const PetscBool contact = (PetscBool)(p->micro.interface == LAM_INTERFACE_CONTACT);
   const PetscReal MPa = p->scales.stress * 1e-6;
+
   PetscFunctionBeginUser;
   *chart = (LamTimeChart){.axes.y = {.label = "share of the interface"}};
-  if (contact) {
+  if (IsContact(p)) {
     PetscCall(AddMember(chart, p, offsetof(LamResponse, debonded_fraction), 1, "debonded"));
     PetscCall(AddMember(chart, p, offsetof(LamResponse, open_fraction), 1, "open"));
-  } else if (p->ratio_count) {
-    chart->axes.y.label = "stress over strength";
-    for (PetscInt k = 0; k < p->ratio_count; k++)
-      PetscCall(LamTimeChartAdd(chart, &p->line, p->ratio[k], p->ratio_name[k]));
-  } else {
-    chart->axes.y = (LamAxis){.label = "stress", .unit = "MPa"};
-    PetscCall(AddMember(chart, p, offsetof(LamResponse, max_traction), MPa, "lamella traction"));
-    PetscCall(AddMember(chart, p, offsetof(LamResponse, max_wall_tension), MPa, "wall tension"));
+    PetscFunctionReturn(0);
   }
+  chart->axes.y.label = "stress over strength";
+  PetscCall(LamTimeChartAddGroup(chart, &p->line, "ratio", LAM_RATIO_COUNT, LamRatioNames, LamTimeIsKnown));
+  if (chart->n) PetscFunctionReturn(0);
+  chart->axes.y = (LamAxis){.label = "stress", .unit = "MPa"};
+  PetscCall(AddMember(chart, p, offsetof(LamResponse, max_traction), MPa, "lamella traction"));
+  PetscCall(AddMember(chart, p, offsetof(LamResponse, max_wall_tension), MPa, "wall tension"));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamProcessDraw(LamCanvas canvas, LamRect outer, const LamProcessPicture *p, PetscInt now)
+/* Firmness, pressures, changing quantities and separation against time; `now` >= 0: a state to mark. */
+static PetscErrorCode DrawCharts(LamCanvas canvas, LamRect outer, Process *p, PetscInt now)
 {
-  LamTimeChart charts[4];
+  LamTimeChart charts[4] = {{.axes.y = {.label = "firmness $E$", .unit = "MPa"}}};
 
   PetscFunctionBeginUser;
-  PetscCall(MakeFirmness(p, &charts[0]));
+  PetscCall(LamTimeChartAddColumn(&charts[0], &p->line, "firmness", ""));
   PetscCall(MakePressures(p, &charts[1]));
   PetscCall(MakeFactors(p, &charts[2]));
   PetscCall(MakeSeparation(p, &charts[3]));
@@ -91,63 +118,50 @@ PetscErrorCode LamProcessDraw(LamCanvas canvas, LamRect outer, const LamProcessP
   PetscFunctionReturn(0);
 }
 
-/* ---- pages ---- */
-
-static PetscErrorCode PlotCharts(const LamPlotRequest *request, const LamProcessPicture *p)
+static PetscErrorCode PlotCharts(const LamPlotRequest *request, Process *p)
 {
-  const LamRect outer = {9, 9, LAM_PLOT_WIDTH - 18, LAM_TIME_HEIGHT - 15};
   LamCanvas canvas;
 
   PetscFunctionBeginUser;
   PetscCall(LamCanvasCreate(request->output, LAM_PLOT_WIDTH, LAM_TIME_HEIGHT, &canvas));
-  PetscCall(LamProcessDraw(canvas, outer, p, -1));
+  PetscCall(DrawCharts(canvas, (LamRect){9, 9, LAM_PLOT_WIDTH - 18, LAM_TIME_HEIGHT - 15}, p, -1));
   PetscCall(LamCanvasFinish(&canvas));
   PetscFunctionReturn(0);
 }
 
 /* ---- films ---- */
 
-/* Shared by all frames: the window, and the colour range. */
 typedef struct {
+  Process *process;
   const LamWallField *field;
-  PetscReal box[4];
-  LamColourRange range;
+  LamFrame frame;
   PetscInt count, *states; /* states whose cells are in the file; owned */
 } Film;
 
-static PetscErrorCode HasCells(const LamProcessPicture *p, PetscInt state, PetscBool *has)
+static PetscErrorCode ReadCells(const Film *film, PetscInt k, LamTissue *tissue)
 {
-  PetscInt rank, dims[4];
-  char name[LAM_NAME_LENGTH];
-  PetscReal *x = NULL;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(name, sizeof(name), "/fields/%" PetscInt_FMT "/x", state));
-  PetscCall(LamFileReadReals(p->path, name, has, &rank, dims, &x));
-  PetscCall(PetscFree(x));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ReadCells(const LamProcessPicture *p, const Film *film, PetscInt state, LamTissue *tissue)
-{
+  const Process *p = film->process;
+  const PetscInt state = film->states[k];
   char name[LAM_NAME_LENGTH];
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(name, sizeof(name), "/fields/%" PetscInt_FMT, state));
-  PetscCall(LamTissueRead(p->path, "/mesh", name, film->field, (PetscBool)(p->micro.interface == LAM_INTERFACE_CONTACT),
-                          p->records[state].load.F, tissue));
+  PetscCall(LamTissueRead(p->path, "/mesh", name, film->field, IsContact(p), p->records[state].load.F, tissue));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode FindStates(const LamPlotRequest *request, const LamProcessPicture *p, Film *film)
+static PetscErrorCode FindStates(const LamPlotRequest *request, Film *film)
 {
+  const Process *p = film->process;
+  char name[LAM_NAME_LENGTH];
+  PetscBool has;
+
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(p->n, &film->states));
   for (PetscInt k = 0; k < p->n; k++) {
-    PetscBool has;
-
     if (request->state >= 0 && k != request->state) continue;
-    PetscCall(HasCells(p, k, &has));
+    PetscCall(PetscSNPrintf(name, sizeof(name), "/fields/%" PetscInt_FMT "/x", k));
+    PetscCall(LamPlotHas(p->path, name, &has));
     if (has) film->states[film->count++] = k;
   }
   PetscCheck(film->count, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
@@ -157,143 +171,118 @@ static PetscErrorCode FindStates(const LamPlotRequest *request, const LamProcess
 }
 
 /* One colour scale and one window for all frames. */
-static PetscErrorCode FindRange(const LamProcessPicture *p, Film *film)
+static PetscErrorCode FindFrame(Film *film)
 {
-  const PetscReal none[2] = {0, 0}, margin = 1.1;
+  const PetscReal none[2] = {0, 0};
   PetscReal *ends;
+  LamColourRange range;
   LamTissue tissue;
 
   PetscFunctionBeginUser;
-  LamBoxEmpty(film->box);
+  film->frame = (LamFrame){.label = film->field->label, .unit = film->field->unit};
+  LamBoxEmpty(film->frame.box);
   PetscCall(PetscMalloc1(2 * film->count, &ends));
   for (PetscInt k = 0; k < film->count; k++) {
-    LamColourRange range;
-
-    PetscCall(ReadCells(p, film, film->states[k], &tissue));
+    PetscCall(ReadCells(film, k, &tissue));
     PetscCall(LamColourRangeFind(tissue.node_count, tissue.values, &range));
     ends[2 * k] = range.low;
     ends[2 * k + 1] = range.high;
-    LamBoxExtend(film->box, tissue.node_count, tissue.x, none);
+    LamBoxExtend(film->frame.box, tissue.node_count, tissue.x, none);
     PetscCall(LamTissueDestroy(&tissue));
   }
-  PetscCall(LamColourRangeFind(2 * film->count, ends, &film->range));
+  PetscCall(LamColourRangeFind(2 * film->count, ends, &film->frame.range));
   PetscCall(PetscFree(ends));
-  for (int k = 0; k < 2; k++) {
-    film->box[k] -= margin;
-    film->box[2 + k] += margin;
-  }
+  LamBoxWiden(film->frame.box, 1.1);
   PetscFunctionReturn(0);
 }
 
-#define CELLS_WIDTH 210.0
-
-static PetscErrorCode DrawFrame(LamCanvas canvas, const LamProcessPicture *p, const Film *film, PetscInt state)
+/* A LamFrameFunction; ctx: a Film. */
+static PetscErrorCode DrawFrame(LamCanvas canvas, void *ctx, PetscInt k)
 {
-  const LamRect charts = {CELLS_WIDTH + 30, 18, LAM_PLOT_WIDTH - CELLS_WIDTH - 39, LAM_TIME_HEIGHT - 24};
-  LamRect cells = {9, 30, CELLS_WIDTH - LamColourBarWidth(canvas, &film->range), LAM_TIME_HEIGHT - 60};
-  char title[256], event[LAM_NAME_LENGTH], number[32];
+  const Film *film = (const Film *)ctx;
+  Process *p = film->process;
   LamTissue tissue;
   LamView view;
+  double x, y;
 
   PetscFunctionBeginUser;
-  LamFormatNumber(p->line.time[state] / p->line.seconds, number);
-  LamTimeEventName(&p->line, state, sizeof(event), event);
-  PetscCall(PetscSNPrintf(title, sizeof(title), "%s %s%s%s", number, p->line.unit, event[0] ? ": " : "", event));
-  LamCanvasSetColour(canvas, Ink);
-  LamCanvasText(canvas, cells.x, 14, 0, 0, LAM_TEXT_SIZE + 0.75, title);
-  PetscCall(ReadCells(p, film, state, &tissue));
-  LamViewFit(cells, film->box, &view);
-  PetscCall(LamTissueDraw(canvas, &view, &tissue, &film->range, NULL));
-  LamColourBar(canvas, cells, &film->range, LamColourMap, film->field->label, film->field->unit);
-  LamScaleBar(canvas, &view, cells.x, cells.y + cells.height + 11, 0.25 * cells.width, 1e-6 / p->scales.length, "µm");
-  if (tissue.has_interface) LamInterfaceDrawKey(canvas, cells.x, cells.y + cells.height + 21, &tissue.interface);
+  LamFrameBegin(canvas, &p->line, film->states[k], &film->frame, &view);
+  x = view.frame.x;
+  y = view.frame.y + view.frame.height;
+  PetscCall(ReadCells(film, k, &tissue));
+  PetscCall(LamTissueDraw(canvas, &view, &tissue, &film->frame.range, NULL));
+  LamScaleBar(canvas, &view, x, y + 11, 0.25 * view.frame.width, 1e-6 / p->scales.length, "µm");
+  if (tissue.has_interface) LamInterfaceDrawKey(canvas, x, y + 21, &tissue.interface);
   PetscCall(LamTissueDestroy(&tissue));
-  PetscCall(LamProcessDraw(canvas, charts, p, state));
+  PetscCall(DrawCharts(canvas, LamFrameCharts(), p, film->states[k]));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode DrawFilm(const LamPlotRequest *request, const LamProcessPicture *p, const Film *film)
+static PetscErrorCode PlotFilm(const LamPlotRequest *request, Process *p)
 {
-  const PetscBool pages = LamCanvasHasPages(request->output), single = (PetscBool)(film->count == 1);
-  char name[PETSC_MAX_PATH_LEN];
-  LamCanvas canvas = NULL;
-
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < film->count; k++) {
-    PetscCall(PetscStrncpy(name, request->output, sizeof(name)));
-    if (!pages && !single) PetscCall(LamFrameName(request->output, k + 1, sizeof(name), name));
-    if (!canvas)
-      PetscCall(LamCanvasCreate(name, LAM_PLOT_WIDTH, LAM_TIME_HEIGHT, &canvas));
-    else
-      LamCanvasNextPage(canvas);
-    PetscCall(DrawFrame(canvas, p, film, film->states[k]));
-    if (!pages) PetscCall(LamCanvasFinish(&canvas));
-  }
-  if (canvas) PetscCall(LamCanvasFinish(&canvas));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode PlotFilm(const LamPlotRequest *request, const LamProcessPicture *p)
-{
-  Film film = {0};
+  Film film = {.process = p};
 
   PetscFunctionBeginUser;
   PetscCall(LamWallFieldFind(request->field, &film.field));
-  PetscCall(FindStates(request, p, &film));
-  PetscCall(FindRange(p, &film));
-  PetscCall(DrawFilm(request, p, &film));
+  PetscCall(FindStates(request, &film));
+  PetscCall(FindFrame(&film));
+  PetscCall(LamFilmDraw(request->output, film.count, DrawFrame, &film));
   PetscCall(PetscFree(film.states));
   PetscFunctionReturn(0);
 }
 
 /* ---- the path on a map ---- */
 
-/* The quantity of a process for an axis of the map; NULL: it has none. The map is for the initial walls: when all
-   wall moduli have become s times the initial ones, tissue fails as the initial tissue does at p / s and g / s. */
-static const PetscReal *AlongSide(const LamProcessPicture *p, const LamMapSide *side)
+/*
+  Positions of the states on an axis of the map. The map is for the initial walls: when all wall moduli have become s
+  times the initial ones, tissue fails as the initial tissue does at p / s and g / s.
+*/
+static PetscErrorCode FindPositions(Process *p, const LamMapSide *side, PetscReal **at)
 {
-  if (!strcmp(side->quantity, "turgor")) return p->turgor;
-  return !strcmp(side->quantity, "cohesion") ? p->cohesion : NULL;
+  const PetscReal *values, *walls;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamTimeColumn(&p->line, side->quantity, PETSC_FALSE, &values));
+  PetscCall(LamTimeColumn(&p->line, "walls", PETSC_FALSE, &walls));
+  PetscCall(PetscMalloc1(p->n, at));
+  for (PetscInt k = 0; k < p->n; k++) (*at)[k] = side->is_log ? log10(values[k] / walls[k]) : values[k] / walls[k];
+  PetscFunctionReturn(0);
 }
 
-/* Position of state k on an axis. */
-static double OnSide(const LamProcessPicture *p, const LamMapSide *side, PetscInt k)
+static PetscErrorCode DrawPath(LamCanvas canvas, const LamAxes *axes, const LamMapPicture *map, Process *p)
 {
-  const PetscReal value = AlongSide(p, side)[k] / p->walls[k];
-
-  return side->is_log ? log10(value) : value;
-}
-
-static void DrawWay(LamCanvas canvas, const LamAxes *axes, const LamMapPicture *map, const LamProcessPicture *p)
-{
-  const LamRect f = axes->frame;
-  cairo_t *cr = LamCanvasCairo(canvas);
+  PetscReal *x, *y;
   char name[LAM_NAME_LENGTH];
 
-  cairo_save(cr);
-  cairo_rectangle(cr, f.x, f.y, f.width, f.height);
-  cairo_clip(cr);
-  LamCanvasSetColour(canvas, Now);
-  cairo_set_line_width(cr, 1.3);
-  for (PetscInt k = 0; k < p->n; k++)
-    (k ? cairo_line_to : cairo_move_to)(cr, LamAxesX(axes, OnSide(p, &map->x, k)),
-                                        LamAxesY(axes, OnSide(p, &map->y, k)));
-  cairo_stroke(cr);
+  PetscFunctionBeginUser;
+  PetscCall(FindPositions(p, &map->x, &x));
+  PetscCall(FindPositions(p, &map->y, &y));
+  LamCanvasClip(canvas, axes->frame);
+  for (PetscInt k = 0; k < p->n; k++) LamAxesPath(canvas, axes, x[k], y[k], (PetscBool)(k > 0));
+  LamCanvasStroke(canvas, Path, 1.3, NULL);
   for (PetscInt k = 0; k < p->n; k++) {
-    const double at[2] = {LamAxesX(axes, OnSide(p, &map->x, k)), LamAxesY(axes, OnSide(p, &map->y, k))};
-    const PetscBool ends = (PetscBool)(k == 0 || k == p->n - 1);
+    const double at[2] = {LamAxesX(axes, x[k]), LamAxesY(axes, y[k])};
 
     LamTimeEventName(&p->line, k, sizeof(name), name);
-    if (!ends && !name[0]) continue;
-    LamCanvasSetColour(canvas, Now);
+    if (k > 0 && k < p->n - 1 && !name[0]) continue;
+    LamCanvasSetColour(canvas, Path);
     LamCanvasMarker(canvas, at[0], at[1], 4.2, name[0] ? LAM_MARKER_DIAMOND : LAM_MARKER_CIRCLE, (PetscBool)(k > 0));
-    LamCanvasSetColour(canvas, Ink);
+    LamCanvasSetColour(canvas, LamDarkInk);
     LamCanvasText(canvas, at[0] + 5, at[1] - 5, 0, 0, LAM_TICK_SIZE, name[0] ? name : k ? "end" : "start");
   }
-  cairo_restore(cr);
+  cairo_restore(LamCanvasCairo(canvas));
+  PetscCall(PetscFree(x));
+  PetscCall(PetscFree(y));
+  PetscFunctionReturn(0);
 }
 
-static PetscErrorCode PlotWay(const LamPlotRequest *request, const LamProcessPicture *p)
+/* Whether a process has the quantity of this axis. */
+static PetscBool IsPressure(const LamMapSide *side)
+{
+  return (PetscBool)(!strcmp(side->quantity, "turgor") || !strcmp(side->quantity, "cohesion"));
+}
+
+static PetscErrorCode PlotPath(const LamPlotRequest *request, Process *p)
 {
   const LamPlotRequest of_map = {.input = request->map, .state = -1};
   const double width = 0.55 * LAM_PLOT_WIDTH;
@@ -303,12 +292,12 @@ static PetscErrorCode PlotWay(const LamPlotRequest *request, const LamProcessPic
 
   PetscFunctionBeginUser;
   PetscCall(LamMapPictureRead(&of_map, &map));
-  PetscCheck(AlongSide(p, &map.x) && AlongSide(p, &map.y) && strcmp(map.x.quantity, map.y.quantity), PETSC_COMM_SELF,
+  PetscCheck(IsPressure(&map.x) && IsPressure(&map.y) && strcmp(map.x.quantity, map.y.quantity), PETSC_COMM_SELF,
              PETSC_ERR_USER_INPUT, "--map %s: is of %s and %s; the way of a process is drawn over turgor and cohesion",
              request->map, map.x.quantity, map.y.quantity);
   PetscCall(LamCanvasCreate(request->output, width, LAM_PLOT_HEIGHT, &canvas));
   PetscCall(LamMapDrawModes(canvas, (LamRect){9, 6, width - 18, LAM_PLOT_HEIGHT - 12}, &map, &axes));
-  DrawWay(canvas, &axes, &map, p);
+  PetscCall(DrawPath(canvas, &axes, &map, p));
   PetscCall(LamCanvasFinish(&canvas));
   PetscCall(LamMapPictureDestroy(&map));
   PetscFunctionReturn(0);
@@ -316,16 +305,17 @@ static PetscErrorCode PlotWay(const LamPlotRequest *request, const LamProcessPic
 
 PetscErrorCode LamPlotProcess(const LamPlotRequest *request)
 {
-  LamProcessPicture picture;
+  Process p;
 
   PetscFunctionBeginUser;
-  PetscCall(LamProcessPictureRead(request->input, &picture));
+  PetscCall(Read(request->input, &p));
   if (request->map)
-    PetscCall(PlotWay(request, &picture));
+    PetscCall(PlotPath(request, &p));
   else if (request->film || request->state >= 0)
-    PetscCall(PlotFilm(request, &picture));
+    PetscCall(PlotFilm(request, &p));
   else
-    PetscCall(PlotCharts(request, &picture));
-  PetscCall(LamProcessPictureDestroy(&picture));
+    PetscCall(PlotCharts(request, &p));
+  PetscCall(LamTimeLineDestroy(&p.line));
+  PetscCall(LamDatabaseClose(&p.database));
   PetscFunctionReturn(0);
 }

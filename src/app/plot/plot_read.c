@@ -3,17 +3,30 @@
 */
 #include "plot.h"
 
-static PetscErrorCode CheckShape(const char path[], const char name[], PetscInt rank, const PetscInt dims[4],
-                                 PetscInt rows, PetscInt columns)
+/* rows < 0: any number. */
+static PetscErrorCode Check(const char path[], const char name[], PetscBool found, PetscInt rank,
+                            const PetscInt dims[4], PetscInt rows, PetscInt columns)
 {
   PetscInt size = 1;
 
   PetscFunctionBeginUser;
+  PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no %s to draw", path, name);
   for (PetscInt i = 1; i < rank; i++) size *= dims[i];
   PetscCheck(rank > 0 && dims[0] > 0 && size == columns && (rows < 0 || dims[0] == rows), PETSC_COMM_SELF,
              PETSC_ERR_USER_INPUT,
              "%s: %s is damaged: %" PetscInt_FMT " rows of %" PetscInt_FMT " numbers do not fit the rest of the file",
              path, name, rank > 0 ? dims[0] : 0, size);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamPlotHas(const char path[], const char name[], PetscBool *has)
+{
+  PetscInt rank, dims[4];
+  PetscReal *values = NULL;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileReadReals(path, name, has, &rank, dims, &values));
+  PetscCall(PetscFree(values));
   PetscFunctionReturn(0);
 }
 
@@ -25,8 +38,28 @@ PetscErrorCode LamPlotReadReals(const char path[], const char name[], PetscInt r
 
   PetscFunctionBeginUser;
   PetscCall(LamFileReadReals(path, name, &found, &rank, dims, values));
+  PetscCall(Check(path, name, found, rank, dims, rows, columns));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamPlotReadInts(const char path[], const char name[], PetscInt rows, PetscInt columns, PetscInt **values)
+{
+  PetscBool found;
+  PetscInt rank, dims[4];
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileReadInts(path, name, &found, &rank, dims, values));
+  PetscCall(Check(path, name, found, rank, dims, rows, columns));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamPlotReadText(const char path[], const char name[], char **text)
+{
+  PetscBool found;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileReadText(path, name, &found, text));
   PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no %s to draw", path, name);
-  PetscCall(CheckShape(path, name, rank, dims, rows, columns));
   PetscFunctionReturn(0);
 }
 
@@ -39,12 +72,10 @@ PetscErrorCode LamPlotReadPoints(const char path[], const char name[], PetscInt 
 
   PetscFunctionBeginUser;
   PetscCall(LamFileReadReals(path, name, &found, &rank, dims, &values));
-  PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no %s to draw", path, name);
-  columns = rank == 2 && dims[1] == 3 ? 3 : 2;
-  PetscCall(CheckShape(path, name, rank, dims, rows, columns));
+  columns = found && rank == 2 && dims[1] == 3 ? 3 : 2;
+  PetscCall(Check(path, name, found, rank, dims, rows, columns));
   PetscCall(PetscMalloc1(2 * dims[0], points));
-  for (PetscInt i = 0; i < dims[0]; i++)
-    for (int k = 0; k < 2; k++) (*points)[2 * i + k] = values[columns * i + k];
+  for (PetscInt i = 0; i < 2 * dims[0]; i++) (*points)[i] = values[columns * (i / 2) + i % 2];
   *count = dims[0];
   PetscCall(PetscFree(values));
   PetscFunctionReturn(0);
@@ -71,8 +102,7 @@ PetscErrorCode LamPlotReadElements(const char path[], const char name[], PetscIn
 
   PetscFunctionBeginUser;
   PetscCall(LamFileReadInts(path, name, &found, &rank, dims, elements));
-  PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no %s to draw", path, name);
-  PetscCall(CheckShape(path, name, rank, dims, -1, rank == 2 && dims[1] == 6 ? 6 : 9));
+  PetscCall(Check(path, name, found, rank, dims, -1, found && rank == 2 && dims[1] == 6 ? 6 : 9));
   if (dims[1] == 6) PetscCall(Widen(dims[0], elements));
   for (PetscInt i = 0; i < 9 * dims[0]; i++) {
     const PetscInt node = (*elements)[i];

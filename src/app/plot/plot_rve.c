@@ -3,8 +3,6 @@
 */
 #include "plot_tissue.h"
 
-static const LamColour Ink = {0.12, 0.12, 0.16};
-
 typedef struct {
   LamDatabase database; /* owned; owner of records and keys */
   PetscInt record_count;
@@ -59,14 +57,6 @@ static PetscErrorCode LoadRVE(const LamPlotRequest *request, RVEPicture *p)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode UnloadRVE(RVEPicture *p)
-{
-  PetscFunctionBeginUser;
-  PetscCall(LamTissueDestroy(&p->tissue));
-  PetscCall(LamDatabaseClose(&p->database));
-  PetscFunctionReturn(0);
-}
-
 /* "State 5:  F = [1, 0.3; 0, 1],  p = 0.02 MPa" */
 static PetscErrorCode Title(const RVEPicture *p, size_t size, char title[])
 {
@@ -102,18 +92,12 @@ static const double KeyRow = 10;
 /* Scale bar, and legend of the dashed line, the paler cells and the ribbons; as far as `right`. */
 static void DrawKey(LamCanvas canvas, const LamView *view, double right, const RVEPicture *p)
 {
-  cairo_t *cr = LamCanvasCairo(canvas);
   const LamRect f = view->frame;
   const double y = f.y + f.height + 11;
-  const char *reference = LamTissueIsPeriodic(&p->tissue) ? "undeformed;  paler: periodic images" : "undeformed";
-  const double width = LamCanvasTextWidth(canvas, LAM_TICK_SIZE, reference);
 
   LamScaleBar(canvas, view, f.x, y, 0.18 * f.width, 1e-6 / p->scales.length, "µm");
-  cairo_move_to(cr, right - width - 23, y);
-  cairo_rel_line_to(cr, 19, 0);
-  LamStrokeUndeformed(canvas);
-  LamCanvasSetColour(canvas, Ink);
-  LamCanvasText(canvas, right, y, 1, 0, LAM_TICK_SIZE, reference);
+  LamUndeformedKey(canvas, right, y,
+                   LamTissueIsPeriodic(&p->tissue) ? "undeformed;  paler: periodic images" : "undeformed");
   if (p->tissue.has_interface) LamInterfaceDrawKey(canvas, f.x, y + KeyRow, &p->tissue.interface);
 }
 
@@ -135,10 +119,7 @@ static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const RVEPictur
   LamBoxEmpty(box);
   LamBoxExtend(box, p->tissue.node_count, p->tissue.x, none);
   LamBoxExtend(box, p->tissue.node_count, p->tissue.nodes, reference);
-  for (int k = 0; k < 2; k++) {
-    box[k] -= margin;
-    box[2 + k] += margin;
-  }
+  LamBoxWiden(box, margin);
   LamViewFit(outer, box, &view);
   PetscCall(LamTissueDraw(canvas, &view, &p->tissue, &range, reference));
   LamColourBar(canvas, outer, &range, LamColourMap, p->field->label, p->field->unit);
@@ -161,11 +142,11 @@ PetscErrorCode LamPlotRVE(const LamPlotRequest *request)
   PetscCall(LoadRVE(request, &picture));
   PetscCall(LamCanvasCreate(request->output, LAM_PLOT_WIDTH, LAM_PLOT_HEIGHT, &canvas));
   PetscCall(Title(&picture, sizeof title, title));
-  LamCanvasSetColour(canvas, Ink);
-  LamCanvasText(canvas, left.x, 12, 0, 0, LAM_TEXT_SIZE + 0.75, title);
+  LamCanvasTitle(canvas, left.x, 12, title);
   PetscCall(DrawPanel(canvas, left, &picture));
   PetscCall(LamStressChart(canvas, right, picture.record_count, picture.records, picture.keys, &picture.scales));
   PetscCall(LamCanvasFinish(&canvas));
-  PetscCall(UnloadRVE(&picture));
+  PetscCall(LamTissueDestroy(&picture.tissue));
+  PetscCall(LamDatabaseClose(&picture.database));
   PetscFunctionReturn(0);
 }

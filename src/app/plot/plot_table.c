@@ -16,7 +16,7 @@
 #define NODE_SIZE 5.0
 enum { MOST_LEVELS = 8 }; /* of nodes */
 
-static const LamColour Ink = {0.15, 0.15, 0.15}, White = {1, 1, 1}, Failure = {0.80, 0.15, 0.05};
+static const LamColour Failure = {0.80, 0.15, 0.05};
 
 /* Appearance of points without a good response; hatched rising, falling or both. */
 typedef struct {
@@ -64,7 +64,7 @@ static PetscErrorCode PaintSamples(LamCanvas canvas, LamRect frame, const LamSli
     const PetscBool blank = (PetscBool)(look->filled || isnan(values[i])); /* an indicator may be unknown */
 
     pixels[(n - 1 - i / n) * stride + i % n] =
-        Pixel(blank ? look->filled ? look->fill : White : LamColourMap(LamColourShare(range, values[i])));
+        Pixel(blank ? look->filled ? look->fill : LamWhite : LamColourMap(LamColourShare(range, values[i])));
   }
   cairo_surface_mark_dirty(surface);
   cairo_save(cr);
@@ -81,23 +81,15 @@ static PetscErrorCode PaintSamples(LamCanvas canvas, LamRect frame, const LamSli
 /* Draws lines inside the clip of the canvas; a light line below each dark one makes it visible on any colour. */
 static void Hatch(LamCanvas canvas, LamRect r, const Look *look)
 {
-  cairo_t *cr = LamCanvasCairo(canvas);
+  const double bottom = r.y + r.height;
 
   if (!look->rising && !look->falling) return;
   for (int pass = look->filled; pass < 2; pass++) {
-    LamCanvasSetColour(canvas, pass ? look->line : White);
-    cairo_set_line_width(cr, look->filled ? 0.6 : pass ? 0.4 : 0.9);
-    for (double at = -r.height; at < r.width; at += look->spacing) {
-      if (look->rising) {
-        cairo_move_to(cr, r.x + at, r.y + r.height);
-        cairo_line_to(cr, r.x + at + r.height, r.y);
-      }
-      if (look->falling) {
-        cairo_move_to(cr, r.x + at, r.y);
-        cairo_line_to(cr, r.x + at + r.height, r.y + r.height);
-      }
+    for (double x = r.x - r.height; x < r.x + r.width; x += look->spacing) {
+      if (look->rising) LamCanvasLine(canvas, x, bottom, x + r.height, r.y);
+      if (look->falling) LamCanvasLine(canvas, x, r.y, x + r.height, bottom);
     }
-    cairo_stroke(cr);
+    LamCanvasStroke(canvas, pass ? look->line : LamWhite, look->filled ? 0.6 : pass ? 0.4 : 0.9, NULL);
   }
 }
 
@@ -131,7 +123,7 @@ static void DrawNode(LamCanvas canvas, double x, double y, LamSliceNodeKind kind
 {
   static const LamMarker markers[LAM_SLICE_NODE_KINDS] = {LAM_MARKER_CIRCLE, LAM_MARKER_DIAMOND, LAM_MARKER_CROSS};
 
-  LamCanvasSetColour(canvas, kind == LAM_SLICE_SOUND ? Ink : Failure);
+  LamCanvasSetColour(canvas, kind == LAM_SLICE_SOUND ? LamInk : Failure);
   LamCanvasMarker(canvas, x, y, NodeSize(level), markers[kind], PETSC_TRUE);
 }
 
@@ -153,22 +145,12 @@ static PetscErrorCode DrawNodes(LamCanvas canvas, const LamAxes *axes, const Lam
   PetscFunctionReturn(0);
 }
 
-static void DashedBox(LamCanvas canvas, double x, double y, double width, double height)
+static void DashedBox(LamCanvas canvas, LamRect box)
 {
-  const double dash[] = {3.2, 1.8};
-  cairo_t *cr = LamCanvasCairo(canvas);
-
-  cairo_rectangle(cr, x, y, width, height);
-  for (int pass = 0; pass < 2; pass++) {
-    LamCanvasSetColour(canvas, pass ? Ink : White);
-    cairo_set_line_width(cr, pass ? 0.7 : 1.2);
-    cairo_set_dash(cr, dash, pass ? 2 : 0, 0);
-    if (pass)
-      cairo_stroke(cr);
-    else
-      cairo_stroke_preserve(cr);
-  }
-  cairo_set_dash(cr, dash, 0, 0);
+  LamCanvasBox(canvas, box);
+  LamCanvasStroke(canvas, LamWhite, 1.2, NULL);
+  LamCanvasBox(canvas, box);
+  LamCanvasStroke(canvas, LamInk, 0.7, (const double[]){3.2, 1.8});
 }
 
 static void DrawBox(LamCanvas canvas, const LamAxes *axes, const LamSlice *s)
@@ -176,7 +158,7 @@ static void DrawBox(LamCanvas canvas, const LamAxes *axes, const LamSlice *s)
   const double left = LamAxesX(axes, s->box[0]), top = LamAxesY(axes, s->box[1]);
 
   if (!isnan(s->box[0]))
-    DashedBox(canvas, left, top, LamAxesX(axes, s->box[1]) - left, LamAxesY(axes, s->box[0]) - top);
+    DashedBox(canvas, (LamRect){left, top, LamAxesX(axes, s->box[1]) - left, LamAxesY(axes, s->box[0]) - top});
 }
 
 typedef struct {
@@ -198,21 +180,18 @@ static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const Page *pag
                                     {contact ? "gaps" : "lumens", "% of $V$_{0}"}};
   LamAxes axes = {.x = {.low = s->low, .high = s->high, .label = page->first},
                   .y = {.low = s->low, .high = s->high, .label = page->second}};
-  cairo_t *cr = LamCanvasCairo(canvas);
 
   PetscFunctionBeginUser;
   outer.width -= page->bar;
   LamAxesLayout(canvas, outer, &axes);
   axes.frame.width = axes.frame.height = PetscMin(axes.frame.width, axes.frame.height);
   LamAxesDraw(canvas, &axes);
-  cairo_save(cr);
-  cairo_rectangle(cr, axes.frame.x, axes.frame.y, axes.frame.width, axes.frame.height);
-  cairo_clip(cr);
+  LamCanvasClip(canvas, axes.frame);
   PetscCall(PaintSamples(canvas, axes.frame, s, s->value[panel], &page->range[panel]));
   for (int v = 0; v < LAM_SLICE_VERDICT_COUNT; v++) HatchSamples(canvas, axes.frame, s, (LamSliceVerdict)v);
   DrawBox(canvas, &axes, s);
   if (panel == LAM_SLICE_ERROR) PetscCall(DrawNodes(canvas, &axes, s));
-  cairo_restore(cr);
+  cairo_restore(LamCanvasCairo(canvas));
   LamAxesFrame(canvas, &axes);
   LamColourBar(canvas, axes.frame, &page->range[panel], LamColourMap, names[panel].label, names[panel].unit);
   PetscFunctionReturn(0);
@@ -220,31 +199,11 @@ static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const Page *pag
 
 /* ---- header ---- */
 
-/* Reserves room for the next entry of a legend whose rows are `width` wide; advances the position. */
-typedef struct {
-  double left, right, x, y;
-} Pen;
-static void Advance(LamCanvas canvas, Pen *pen, double sample, const char label[], double at[2])
-{
-  const double width = sample + 3 + LamCanvasTextWidth(canvas, LAM_TICK_SIZE, label);
-
-  if (pen->x > pen->left && pen->x + width > pen->right) {
-    pen->x = pen->left;
-    pen->y += 1.6 * LAM_TICK_SIZE;
-  }
-  at[0] = pen->x;
-  at[1] = pen->y;
-  LamCanvasSetColour(canvas, Ink);
-  LamCanvasText(canvas, pen->x + sample + 3, pen->y, 0, 0, LAM_TICK_SIZE, label);
-  pen->x += width + 9;
-}
-
-static void LegendOfVerdict(LamCanvas canvas, Pen *pen, const LamSlice *s, LamSliceVerdict verdict)
+static void LegendOfVerdict(LamCanvas canvas, LamPen *pen, const LamSlice *s, LamSliceVerdict verdict)
 {
   const Look *look = &Looks[verdict];
-  const double width = 14, height = 7;
-  cairo_t *cr = LamCanvasCairo(canvas);
   char label[64], number[32];
+  LamRect sample;
   double at[2];
 
   if (!look->label || !s->count[verdict]) return;
@@ -253,19 +212,15 @@ static void LegendOfVerdict(LamCanvas canvas, Pen *pen, const LamSlice *s, LamSl
     snprintf(label, sizeof label, "%s %s %%", look->label, number);
   else
     snprintf(label, sizeof label, "%s", look->label);
-  Advance(canvas, pen, width, label, at);
-  cairo_rectangle(cr, at[0], at[1] - 0.5 * height, width, height);
-  cairo_save(cr);
+  LamPenEntry(canvas, pen, 14, label, PETSC_TRUE, at);
+  sample = (LamRect){at[0], at[1] - 3.5, 14, 7};
+  LamCanvasClip(canvas, sample);
   LamCanvasSetColour(canvas, look->filled ? look->fill : LamColourMap(0.6));
-  cairo_fill_preserve(cr);
-  cairo_clip_preserve(cr);
-  cairo_new_path(cr);
-  Hatch(canvas, (LamRect){at[0], at[1] - 0.5 * height, width, height}, look);
-  cairo_restore(cr);
-  LamCanvasSetColour(canvas, Ink);
-  cairo_set_line_width(cr, 0.4);
-  cairo_rectangle(cr, at[0], at[1] - 0.5 * height, width, height);
-  cairo_stroke(cr);
+  cairo_paint(LamCanvasCairo(canvas));
+  Hatch(canvas, sample, look);
+  cairo_restore(LamCanvasCairo(canvas));
+  LamCanvasBox(canvas, sample);
+  LamCanvasStroke(canvas, LamInk, 0.4, NULL);
 }
 
 /* Finds on which levels the slice has nodes of a kind. Returns the number of such levels. */
@@ -282,7 +237,7 @@ static PetscInt FindLevels(const LamSlice *s, LamSliceNodeKind kind, PetscBool o
   return found;
 }
 
-static void LegendOfNodes(LamCanvas canvas, Pen *pen, const LamSlice *s, LamSliceNodeKind kind)
+static void LegendOfNodes(LamCanvas canvas, LamPen *pen, const LamSlice *s, LamSliceNodeKind kind)
 {
   static const char *const labels[LAM_SLICE_NODE_KINDS] = {"node", "node on another branch", "node without an answer"};
   const PetscBool elsewhere =
@@ -299,7 +254,7 @@ static void LegendOfNodes(LamCanvas canvas, Pen *pen, const LamSlice *s, LamSlic
   LamFormatNumber(s->node_suction, number);
   if (elsewhere) snprintf(where, sizeof where, " at %s MPa", number);
   snprintf(label, sizeof label, "%s%s%s", labels[kind], where, found > 1 ? ", coarse to fine" : "");
-  Advance(canvas, pen, sample, label, at);
+  LamPenEntry(canvas, pen, sample, label, PETSC_TRUE, at);
   for (PetscInt level = 0; level < MOST_LEVELS; level++) {
     if (!occurs[level]) continue;
     DrawNode(canvas, at[0] + 0.5 * NodeSize(level), at[1], kind, level);
@@ -307,29 +262,26 @@ static void LegendOfNodes(LamCanvas canvas, Pen *pen, const LamSlice *s, LamSlic
   }
 }
 
-static void DrawLegend(LamCanvas canvas, const LamSlice *s, Pen pen)
+static void DrawLegend(LamCanvas canvas, const LamSlice *s, LamPen pen)
 {
   double at[2];
 
   for (int v = 0; v < LAM_SLICE_VERDICT_COUNT; v++) LegendOfVerdict(canvas, &pen, s, (LamSliceVerdict)v);
   for (int k = 0; k < LAM_SLICE_NODE_KINDS; k++) LegendOfNodes(canvas, &pen, s, (LamSliceNodeKind)k);
   if (isnan(s->box[0])) return;
-  Advance(canvas, &pen, 14, "box of the scene's sample", at);
-  DashedBox(canvas, at[0], at[1] - 3.5, 14, 7);
+  LamPenEntry(canvas, &pen, 14, "box of the scene's sample", PETSC_TRUE, at);
+  DashedBox(canvas, (LamRect){at[0], at[1] - 3.5, 14, 7});
 }
 
 static void Arrow(LamCanvas canvas, double x, double y, double angle, double length, const char label[])
 {
   const double c = cos(angle), n = -sin(angle), head = 3.2; /* the page's y points down */
-  cairo_t *cr = LamCanvasCairo(canvas);
 
-  cairo_move_to(cr, x - length * c, y - length * n);
-  cairo_line_to(cr, x + length * c, y + length * n);
-  for (int side = -1; side < 2; side += 2) {
-    cairo_move_to(cr, x + length * c, y + length * n);
-    cairo_line_to(cr, x + (length - head) * c - 0.5 * side * head * n, y + (length - head) * n + 0.5 * side * head * c);
-  }
-  cairo_stroke(cr);
+  LamCanvasLine(canvas, x - length * c, y - length * n, x + length * c, y + length * n);
+  for (int side = -1; side < 2; side += 2)
+    LamCanvasLine(canvas, x + length * c, y + length * n, x + (length - head) * c - 0.5 * side * head * n,
+                  y + (length - head) * n + 0.5 * side * head * c);
+  LamCanvasStroke(canvas, LamInk, 0.9, NULL);
   LamCanvasText(canvas, x + (length + 5.5) * c, y + (length + 5.5) * n, 0.5, 0, LAM_TICK_SIZE, label);
 }
 
@@ -348,11 +300,7 @@ static void DrawGlyph(LamCanvas canvas, double x, double y, const LamSlice *s)
   cairo_close_path(cr);
   LamCanvasSetColour(canvas, (LamColour){0.80, 0.90, 0.78});
   cairo_fill_preserve(cr);
-  LamCanvasSetColour(canvas, (LamColour){0.45, 0.55, 0.43});
-  cairo_set_line_width(cr, 1.6);
-  cairo_stroke(cr);
-  LamCanvasSetColour(canvas, Ink);
-  cairo_set_line_width(cr, 0.9);
+  LamCanvasStroke(canvas, (LamColour){0.45, 0.55, 0.43}, 1.6, NULL);
   Arrow(canvas, x, y, s->orientation + s->angle, GLYPH, "1");
   Arrow(canvas, x, y, s->orientation + s->angle + M_PI_2, GLYPH, "2");
 }
@@ -365,9 +313,9 @@ static void DrawHeader(LamCanvas canvas, const LamSlice *s)
   LamFormatNumber(contact ? s->turgor + s->cohesion : s->turgor, load);
   snprintf(title, sizeof title, "Table of %" PetscInt_FMT " node%s: slice at %s %s MPa", s->table_nodes,
            s->table_nodes == 1 ? "" : "s", contact ? "suction" : "turgor", load);
-  LamCanvasSetColour(canvas, Ink);
+  LamCanvasSetColour(canvas, LamInk);
   LamCanvasText(canvas, 9, 12, 0, 0, LAM_TEXT_SIZE + 0.75, title);
-  DrawLegend(canvas, s, (Pen){9, LAM_PLOT_WIDTH - 3.4 * GLYPH, 9, 27});
+  DrawLegend(canvas, s, (LamPen){9, LAM_PLOT_WIDTH - 3.4 * GLYPH, 1.6 * LAM_TICK_SIZE, 9, 9, 27});
   DrawGlyph(canvas, LAM_PLOT_WIDTH - 1.6 * GLYPH, 0.5 * HEADER + 2, s);
 }
 

@@ -1,12 +1,13 @@
 /*
-  Quantities against time, for pictures of processes: reading, charts, names of frames.
+  Quantities against time, for pictures of processes: reading, charts, frames of films.
 */
 #include "plot_time.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-static const LamColour Ink = {0.12, 0.12, 0.16}, Event = {0.45, 0.45, 0.5}, Now = {0.75, 0.1, 0.1};
+static const LamColour Event = {0.45, 0.45, 0.5}, Now = {0.75, 0.1, 0.1};
+static const double PictureWidth = 210; /* of a frame, with its colour bar */
 
 /* ---- reading ---- */
 
@@ -23,13 +24,45 @@ const char *LamTimeUnit(PetscReal duration, PetscReal *seconds)
   return units[k].name;
 }
 
-PetscErrorCode LamTimeReadColumn(const LamTimeLine *line, const char name[], PetscReal **values)
+PetscErrorCode LamTimeColumn(LamTimeLine *line, const char name[], PetscBool optional, const PetscReal **values)
 {
   char path[LAM_NAME_LENGTH];
+  PetscInt k = 0;
+  PetscBool has = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(path, sizeof(path), "/process/%s", name));
-  PetscCall(LamPlotReadReals(line->path, path, line->n, 1, values));
+  while (k < line->column_count && strcmp(line->column[k].name, name)) k++;
+  if (k == line->column_count) {
+    PetscCheck(k < LAM_TIME_COLUMNS, PETSC_COMM_SELF, PETSC_ERR_PLIB, "more than %d columns", LAM_TIME_COLUMNS);
+    PetscCall(PetscStrncpy(line->column[k].name, name, LAM_NAME_LENGTH));
+    PetscCall(PetscSNPrintf(path, sizeof(path), "/process/%s", name));
+    if (optional) PetscCall(LamPlotHas(line->path, path, &has));
+    if (has) PetscCall(LamPlotReadReals(line->path, path, line->n, 1, &line->column[k].values));
+    line->column_count++;
+  }
+  *values = line->column[k].values;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamTimeLineRead(const char path[], PetscInt n, LamTimeLine *line)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMemzero(line, sizeof(*line)));
+  line->path = path;
+  line->n = n;
+  PetscCall(LamTimeColumn(line, "time", PETSC_FALSE, &line->time));
+  PetscCall(LamPlotReadInts(path, "/process/event", n, 1, &line->event));
+  PetscCall(LamPlotReadText(path, "/process/events", &line->event_names));
+  line->unit = LamTimeUnit(line->time[n - 1], &line->seconds);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamTimeLineDestroy(LamTimeLine *line)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < line->column_count; k++) PetscCall(PetscFree(line->column[k].values));
+  PetscCall(PetscFree(line->event));
+  PetscCall(PetscFree(line->event_names));
   PetscFunctionReturn(0);
 }
 
@@ -45,65 +78,10 @@ PetscBool LamTimeIsKnown(PetscInt n, const PetscReal values[])
   return (PetscBool)(n > 0 && isfinite(values[0]));
 }
 
-PetscErrorCode LamTimeReadGroup(const LamTimeLine *line, const char group[], PetscInt n, const char *const names[],
-                                PetscBool (*shows)(PetscInt count, const PetscReal values[]), PetscInt *count,
-                                PetscReal *values[], char (*labels)[LAM_NAME_LENGTH])
+static void ReplaceUnderscores(char text[])
 {
-  char name[LAM_NAME_LENGTH];
-
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < n; k++) {
-    PetscInt rank, dims[4];
-    PetscBool found;
-
-    PetscCall(PetscSNPrintf(name, sizeof(name), "/process/%s/%s", group, names[k]));
-    PetscCall(LamFileReadReals(line->path, name, &found, &rank, dims, &values[*count]));
-    if (!found) continue; /* a parameter that the wall law does not have */
-    PetscCall(PetscFree(values[*count]));
-    PetscCall(LamPlotReadReals(line->path, name, line->n, 1, &values[*count]));
-    if (!shows(line->n, values[*count])) {
-      PetscCall(PetscFree(values[*count]));
-      continue;
-    }
-    PetscCall(PetscStrncpy(labels[*count], names[k], LAM_NAME_LENGTH));
-    for (char *c = labels[*count]; *c; c++)
-      if (*c == '_') *c = ' ';
-    (*count)++;
-  }
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ReadEvents(LamTimeLine *line)
-{
-  PetscInt rank, dims[4];
-  PetscBool found;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamFileReadInts(line->path, "/process/event", &found, &rank, dims, &line->event));
-  PetscCheck(found && rank == 1 && dims[0] == line->n, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: /process/event does not fit the rest of the file; it is damaged", line->path);
-  PetscCall(LamFileReadText(line->path, "/process/events", &found, &line->event_names));
-  PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no /process/events to draw", line->path);
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamTimeLineRead(const char path[], PetscInt n, LamTimeLine *line)
-{
-  PetscFunctionBeginUser;
-  *line = (LamTimeLine){.path = path, .n = n};
-  PetscCall(LamTimeReadColumn(line, "time", &line->time));
-  PetscCall(ReadEvents(line));
-  line->unit = LamTimeUnit(line->time[n - 1], &line->seconds);
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamTimeLineDestroy(LamTimeLine *line)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree(line->time));
-  PetscCall(PetscFree(line->event));
-  PetscCall(PetscFree(line->event_names));
-  PetscFunctionReturn(0);
+  for (char *c = text; *c; c++)
+    if (*c == '_') *c = ' ';
 }
 
 void LamTimeEventName(const LamTimeLine *line, PetscInt state, size_t size, char name[])
@@ -114,8 +92,16 @@ void LamTimeEventName(const LamTimeLine *line, PetscInt state, size_t size, char
   if (line->event[state] < 0) return;
   for (PetscInt k = 0; k < line->event[state] && *at; k++) at += strcspn(at, "\n") + (strchr(at, '\n') ? 1 : 0);
   snprintf(name, size, "%.*s", (int)PetscMin(strcspn(at, "\n"), size - 1), at);
-  for (char *c = name; *c; c++)
-    if (*c == '_') *c = ' ';
+  ReplaceUnderscores(name);
+}
+
+void LamTimeTitle(const LamTimeLine *line, PetscInt state, size_t size, char title[])
+{
+  char event[LAM_NAME_LENGTH], number[32];
+
+  LamFormatNumber(line->time[state] / line->seconds, number);
+  LamTimeEventName(line, state, sizeof(event), event);
+  snprintf(title, size, "%s %s%s%s", number, line->unit, event[0] ? ": " : "", event);
 }
 
 /* ---- charts ---- */
@@ -139,19 +125,32 @@ PetscErrorCode LamTimeChartAdd(LamTimeChart *chart, const LamTimeLine *line, con
   PetscFunctionReturn(0);
 }
 
-/* A line across the chart at a time. */
-static void MarkTime(LamCanvas canvas, const LamAxes *axes, PetscReal time, LamColour colour, PetscBool dashed)
+PetscErrorCode LamTimeChartAddColumn(LamTimeChart *chart, LamTimeLine *line, const char name[], const char label[])
 {
-  const double x = LamAxesX(axes, time), dash[] = {1.2, 1.8};
-  cairo_t *cr = LamCanvasCairo(canvas);
+  const PetscReal *values;
 
-  LamCanvasSetColour(canvas, colour);
-  cairo_set_dash(cr, dash, dashed ? 2 : 0, 0);
-  cairo_set_line_width(cr, 0.8);
-  cairo_move_to(cr, x, axes->frame.y + axes->frame.height);
-  cairo_line_to(cr, x, axes->frame.y);
-  cairo_stroke(cr);
-  cairo_set_dash(cr, NULL, 0, 0);
+  PetscFunctionBeginUser;
+  PetscCall(LamTimeColumn(line, name, PETSC_FALSE, &values));
+  PetscCall(LamTimeChartAdd(chart, line, values, label));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamTimeChartAddGroup(LamTimeChart *chart, LamTimeLine *line, const char group[], PetscInt n,
+                                    const char *const names[],
+                                    PetscBool (*shows)(PetscInt count, const PetscReal values[]))
+{
+  const PetscReal *values;
+  char name[LAM_NAME_LENGTH];
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < n; k++) {
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%s/%s", group, names[k]));
+    PetscCall(LamTimeColumn(line, name, PETSC_TRUE, &values)); /* a wall law has only some of the parameters */
+    PetscCall(PetscStrncpy(name, names[k], sizeof(name)));
+    ReplaceUnderscores(name);
+    if (values && shows(line->n, values)) PetscCall(LamTimeChartAdd(chart, line, values, name));
+  }
+  PetscFunctionReturn(0);
 }
 
 static PetscErrorCode Draw(LamCanvas canvas, LamRect outer, const LamTimeLine *line, LamTimeChart *chart,
@@ -164,14 +163,10 @@ static PetscErrorCode Draw(LamCanvas canvas, LamRect outer, const LamTimeLine *l
   LamChart(canvas, outer, &chart->axes, chart->n, chart->series);
   for (PetscInt k = 0; k < line->n; k++) {
     if (line->event[k] < 0) continue;
-    MarkTime(canvas, &chart->axes, line->time[k] / line->seconds, Event, PETSC_TRUE);
     LamTimeEventName(line, k, sizeof(name), name);
-    if (names)
-      LamCanvasText(canvas, LamAxesX(&chart->axes, line->time[k] / line->seconds) - 5, chart->axes.frame.y + 3, 1,
-                    0.5 * PETSC_PI, LAM_TICK_SIZE, name);
+    LamAxesMark(canvas, &chart->axes, line->time[k] / line->seconds, Event, PETSC_TRUE, names ? name : NULL);
   }
-  if (now >= 0) MarkTime(canvas, &chart->axes, line->time[now] / line->seconds, Now, PETSC_FALSE);
-  LamCanvasSetColour(canvas, Ink);
+  if (now >= 0) LamAxesMark(canvas, &chart->axes, line->time[now] / line->seconds, Now, PETSC_FALSE, NULL);
   for (PetscInt k = 0; k < chart->n; k++) PetscCall(LamSeriesDestroy(&chart->series[k]));
   PetscFunctionReturn(0);
 }
@@ -194,11 +189,40 @@ PetscErrorCode LamTimeChartsDraw(LamCanvas canvas, LamRect outer, const LamTimeL
 
 /* ---- frames ---- */
 
-PetscErrorCode LamFrameName(const char path[], PetscInt number, size_t size, char name[])
+LamRect LamFrameCharts(void)
 {
+  return (LamRect){PictureWidth + 30, 18, LAM_PLOT_WIDTH - PictureWidth - 39, LAM_TIME_HEIGHT - 24};
+}
+
+void LamFrameBegin(LamCanvas canvas, const LamTimeLine *line, PetscInt state, const LamFrame *frame, LamView *view)
+{
+  const LamRect picture = {9, 30, PictureWidth - LamColourBarWidth(canvas, &frame->range), LAM_TIME_HEIGHT - 60};
+  char title[256];
+
+  LamTimeTitle(line, state, sizeof(title), title);
+  LamCanvasTitle(canvas, picture.x, 14, title);
+  LamViewFit(picture, frame->box, view);
+  LamColourBar(canvas, picture, &frame->range, LamColourMap, frame->label, frame->unit);
+}
+
+PetscErrorCode LamFilmDraw(const char path[], PetscInt count, LamFrameFunction draw, void *ctx)
+{
+  const PetscBool pages = LamCanvasHasPages(path);
   const char *dot = strrchr(path, '.');
+  char name[PETSC_MAX_PATH_LEN];
+  LamCanvas canvas = NULL;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(name, size, "%.*s-%04d%s", (int)(dot - path), path, (int)number, dot));
+  for (PetscInt k = 0; k < count; k++) {
+    PetscCall(PetscStrncpy(name, path, sizeof(name)));
+    if (!pages && count > 1)
+      PetscCall(PetscSNPrintf(name, sizeof(name), "%.*s-%04d%s", (int)(dot - path), path, (int)(k + 1), dot));
+    if (canvas)
+      LamCanvasNextPage(canvas);
+    else
+      PetscCall(LamCanvasCreate(name, LAM_PLOT_WIDTH, LAM_TIME_HEIGHT, &canvas));
+    PetscCall(draw(canvas, ctx, k));
+    if (!pages || k == count - 1) PetscCall(LamCanvasFinish(&canvas));
+  }
   PetscFunctionReturn(0);
 }

@@ -10,7 +10,7 @@ static const LamWallField Fields[] = {
     {"fibre_stretch", "fibre stretch", NULL},
 };
 
-static const LamColour WallLine = {0.12, 0.12, 0.16}, Lumen = {0.90, 0.945, 0.97}, Reference = {0.80, 0.15, 0.05};
+static const LamColour Lumen = {0.90, 0.945, 0.97}, Reference = {0.80, 0.15, 0.05};
 static const PetscReal NeighbourFade = 0.55; /* fraction of white in the periodic images */
 
 PetscErrorCode LamWallFieldFind(const char name[], const LamWallField **field)
@@ -32,8 +32,7 @@ PetscErrorCode LamWallFieldFind(const char name[], const LamWallField **field)
 PetscErrorCode LamTissueRead(const char path[], const char mesh[], const char fields[], const LamWallField *field,
                              PetscBool has_interface, const PetscReal F[9], LamTissue *t)
 {
-  PetscInt rank, dims[4], count;
-  PetscBool found;
+  PetscInt count;
   char name[96];
 
   PetscFunctionBeginUser;
@@ -46,9 +45,7 @@ PetscErrorCode LamTissueRead(const char path[], const char mesh[], const char fi
   PetscCall(PetscSNPrintf(name, sizeof name, "%s/period", mesh));
   PetscCall(LamPlotReadReals(path, name, 2, 2, &t->period));
   PetscCall(PetscSNPrintf(name, sizeof name, "%s/cell_of", mesh));
-  PetscCall(LamFileReadInts(path, name, &found, &rank, dims, &t->cell_of));
-  PetscCheck(found && rank == 1 && dims[0] == t->element_count, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: %s is missing or damaged", path, name);
+  PetscCall(LamPlotReadInts(path, name, t->element_count, 1, &t->cell_of));
   PetscCall(PetscSNPrintf(name, sizeof name, "%s/x", fields));
   PetscCall(LamPlotReadPoints(path, name, t->node_count, &count, &t->x));
   PetscCall(PetscSNPrintf(name, sizeof name, "%s/%s", fields, field->name));
@@ -172,44 +169,41 @@ static LamColour Fade(LamColour colour, PetscReal fade)
 
 void LamStrokeUndeformed(LamCanvas canvas)
 {
-  cairo_t *cr = LamCanvasCairo(canvas);
-  const double dash[] = {3.5, 2.0};
+  LamCanvasStroke(canvas, Reference, 0.9, (const double[]){3.5, 2.0});
+}
 
-  LamCanvasSetColour(canvas, Reference);
-  cairo_set_dash(cr, dash, 2, 0);
-  cairo_set_line_width(cr, 0.9);
-  cairo_stroke(cr);
-  cairo_set_dash(cr, NULL, 0, 0);
+void LamUndeformedKey(LamCanvas canvas, double right, double y, const char label[])
+{
+  const double left = right - LamCanvasTextWidth(canvas, LAM_TICK_SIZE, label) - 23;
+
+  LamCanvasLine(canvas, left, y, left + 19, y);
+  LamStrokeUndeformed(canvas);
+  LamCanvasSetColour(canvas, LamDarkInk);
+  LamCanvasText(canvas, right, y, 1, 0, LAM_TICK_SIZE, label);
 }
 
 PetscErrorCode LamTissueDraw(LamCanvas canvas, const LamView *view, const LamTissue *t, const LamColourRange *range,
                              const PetscReal reference[2])
 {
-  cairo_t *cr = LamCanvasCairo(canvas);
   const LamField field = {t->element_count, t->x, t->elements, t->values, PETSC_FALSE};
-  const LamRect f = view->frame;
   LamImage *images;
   PetscInt count = 0;
 
   PetscFunctionBeginUser;
   PetscCall(VisibleImages(t, view, &count, &images));
-  cairo_save(cr);
-  cairo_rectangle(cr, f.x, f.y, f.width, f.height);
-  cairo_clip(cr);
+  LamCanvasClip(canvas, view->frame);
   for (PetscInt i = 0; i < count; i++) {
     LoopsPath(canvas, view, t, PETSC_TRUE, images[i].shift);
-    LamCanvasSetColour(canvas, Fade(Lumen, images[i].fade));
-    cairo_fill(cr);
+    LamCanvasFill(canvas, Fade(Lumen, images[i].fade));
   }
   PetscCall(LamFieldPaint(canvas, view, &field, range, count, images));
   for (PetscInt i = 0; i < count; i++) {
-    LamCanvasSetColour(canvas, Fade(WallLine, 0.8 * images[i].fade));
+    const LamColour line = Fade(LamDarkInk, 0.8 * images[i].fade);
+
     LoopsPath(canvas, view, t, PETSC_TRUE, images[i].shift);
-    cairo_set_line_width(cr, 0.4);
-    cairo_stroke(cr);
+    LamCanvasStroke(canvas, line, 0.4, NULL);
     LoopsPath(canvas, view, t, PETSC_FALSE, images[i].shift);
-    cairo_set_line_width(cr, images[i].fade > 0 ? 0.5 : 0.9);
-    cairo_stroke(cr);
+    LamCanvasStroke(canvas, line, images[i].fade > 0 ? 0.5 : 0.9, NULL);
   }
   if (reference) {
     ReferencePath(canvas, view, t, reference);
@@ -219,11 +213,9 @@ PetscErrorCode LamTissueDraw(LamCanvas canvas, const LamView *view, const LamTis
     LamInterfaceDrawPressure(canvas, view, &t->interface, images[i].shift);
     LamInterfaceDrawGaps(canvas, view, &t->interface, images[i].shift);
   }
-  cairo_restore(cr);
-  LamCanvasSetColour(canvas, WallLine);
-  cairo_set_line_width(cr, 0.6);
-  cairo_rectangle(cr, f.x, f.y, f.width, f.height);
-  cairo_stroke(cr);
+  cairo_restore(LamCanvasCairo(canvas));
+  LamCanvasBox(canvas, view->frame);
+  LamCanvasStroke(canvas, LamDarkInk, 0.6, NULL);
   PetscCall(PetscFree(images));
   PetscFunctionReturn(0);
 }

@@ -37,7 +37,9 @@ void LamTissueCentreReference(const LamTissue *tissue, PetscReal shift[2]);
    undeformed outline; NULL: it is not drawn. */
 PetscErrorCode LamTissueDraw(LamCanvas canvas, const LamView *view, const LamTissue *tissue,
                              const LamColourRange *range, const PetscReal reference[2]);
-/* Strokes the current path with the dashes used for undeformed outlines. */
+/* Strokes the current path with the dashes used for undeformed outlines; the legend of these, from `right` to the
+   left. */
 void LamStrokeUndeformed(LamCanvas canvas);
+void LamUndeformedKey(LamCanvas canvas, double right, double y, const char label[]);
 
 #endif

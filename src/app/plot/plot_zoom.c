@@ -5,7 +5,6 @@
 #include <math.h>
 #include <stdio.h>
 
-static const LamColour Ink = {0.12, 0.12, 0.16}, Paper = {1, 1, 1};
 static const double Gap = 9, KeyRow = 10, Marker = 3.2; /* points */
 
 /* ---- reading ---- */
@@ -46,15 +45,12 @@ static PetscErrorCode ReadOne(const char path[], const LamWallField *field, Pets
 {
   char mesh[64], fields[64], samples[96];
   PetscBool has_interface;
-  PetscInt rank, dims[4];
-  PetscReal *from;
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(mesh, sizeof mesh, "/zoom/%" PetscInt_FMT "/mesh", k));
   PetscCall(PetscSNPrintf(fields, sizeof fields, "/zoom/%" PetscInt_FMT "/fields", k));
   PetscCall(PetscSNPrintf(samples, sizeof samples, "%s/interface/from", fields));
-  PetscCall(LamFileReadReals(path, samples, &has_interface, &rank, dims, &from));
-  PetscCall(PetscFree(from));
+  PetscCall(LamPlotHas(path, samples, &has_interface));
   PetscCall(LamTissueRead(path, mesh, fields, field, has_interface, F, tissue));
   PetscFunctionReturn(0);
 }
@@ -131,20 +127,13 @@ static void ZoomView(const LamZooms *z, PetscInt k, LamRect frame, PetscReal hal
 /* Draws lines from the point in the body to the near corners of the frame. */
 static void DrawLines(LamCanvas canvas, const LamView *body, const PetscReal x[2], LamRect frame)
 {
-  cairo_t *cr = LamCanvasCairo(canvas);
   double point[2];
 
   LamViewPoint(body, x[0], x[1], point);
-  for (int end = 0; end < 2; end++) {
-    cairo_move_to(cr, point[0], point[1]);
-    cairo_line_to(cr, frame.x, frame.y + end * frame.height);
+  for (int white = 1; white >= 0; white--) { /* white below, so that the lines are visible on dark colours */
+    for (int end = 0; end < 2; end++) LamCanvasLine(canvas, point[0], point[1], frame.x, frame.y + end * frame.height);
+    LamCanvasStroke(canvas, white ? LamWhite : LamDarkInk, white ? 1.3 : 0.5, NULL);
   }
-  LamCanvasSetColour(canvas, Paper); /* outlines the lines, so that they are visible on dark colours */
-  cairo_set_line_width(cr, 1.3);
-  cairo_stroke_preserve(cr);
-  LamCanvasSetColour(canvas, Ink);
-  cairo_set_line_width(cr, 0.5);
-  cairo_stroke(cr);
 }
 
 static void DrawMarker(LamCanvas canvas, const LamView *body, const PetscReal x[2])
@@ -154,24 +143,21 @@ static void DrawMarker(LamCanvas canvas, const LamView *body, const PetscReal x[
 
   LamViewPoint(body, x[0], x[1], point);
   cairo_rectangle(cr, point[0] - 0.5 * Marker, point[1] - 0.5 * Marker, Marker, Marker);
-  LamCanvasSetColour(canvas, Paper);
+  LamCanvasSetColour(canvas, LamWhite);
   cairo_fill_preserve(cr);
-  LamCanvasSetColour(canvas, Ink);
-  cairo_set_line_width(cr, 0.9);
-  cairo_stroke(cr);
+  LamCanvasStroke(canvas, LamDarkInk, 0.9, NULL);
 }
 
 /* Prints the position of the cells in the undeformed body, in the frame's upper left corner. */
 static void DrawLabel(LamCanvas canvas, LamRect frame, const PetscReal place[2])
 {
-  cairo_t *cr = LamCanvasCairo(canvas);
   char text[64];
 
   snprintf(text, sizeof text, "$X$ = (%.3g, %.3g) mm", (double)place[0], (double)place[1]);
-  cairo_rectangle(cr, frame.x + 0.3, frame.y + 0.3, LamCanvasTextWidth(canvas, LAM_TICK_SIZE, text) + 6, 10);
-  LamCanvasSetColour(canvas, Paper);
-  cairo_fill(cr);
-  LamCanvasSetColour(canvas, Ink);
+  LamCanvasBox(canvas,
+               (LamRect){frame.x + 0.3, frame.y + 0.3, LamCanvasTextWidth(canvas, LAM_TICK_SIZE, text) + 6, 10});
+  LamCanvasFill(canvas, LamWhite);
+  LamCanvasSetColour(canvas, LamDarkInk);
   LamCanvasText(canvas, frame.x + 3, frame.y + 5.3, 0, 0, LAM_TICK_SIZE, text);
 }
 
