@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-static const LamColour Ink = {0.15, 0.15, 0.15}, Shade = {0.93, 0.93, 0.93}, Front = {0.78, 0.78, 0.78};
+static const LamColour Shade = {0.93, 0.93, 0.93}, Front = {0.78, 0.78, 0.78};
 
 #define PANEL_HEIGHT 178.0
 #define GAP 14.0
@@ -94,28 +94,28 @@ static void FindGroups(const LamTradeoff *t, Groups *groups)
 
 /* ---- one panel ---- */
 
+/* A measurement that is drawn. */
+typedef struct {
+  const LamMeasurement *m;
+  PetscInt group;
+  PetscReal time, low, high, error; /* logarithms; low, high: fastest and slowest run */
+  PetscBool optimal;
+} Point;
+
 typedef struct {
   const LamTradeoff *t;
   const Groups *groups;
   LamErrorKind kind;
-  PetscReal scale, floor; /* of the error; errors below the floor are drawn on it */
+  PetscReal scale; /* of the error */
   LamAxes axes;
+  PetscInt n;
+  Point *points; /* in the order of the groups; owned */
   PetscInt boxes;
   LamRect box[MOST_BOXES]; /* occupied by markers and labels */
 } Panel;
 
-/* Position of a measurement, in logarithms; PETSC_FALSE: not drawn. */
-static PetscBool Place(const Panel *p, const LamMeasurement *m, PetscReal at[2])
-{
-  const LamMeasuredError *e = &m->error[p->kind];
-
-  if (!m->runs || !isfinite(e->largest) || (p->kind == LAM_ERROR_MACRO && m->setting.planned)) return PETSC_FALSE;
-  at[0] = PetscLog10Real(m->cpu_spread.median);
-  at[1] = PetscLog10Real(PetscMax(p->scale * e->largest, p->floor));
-  return (PetscBool)(isfinite(at[0]) && isfinite(at[1]));
-}
-
-static void SetFloor(Panel *p)
+/* The smallest error that is drawn; smaller ones are drawn on it. */
+static PetscReal Floor(const Panel *p)
 {
   PetscReal smallest = PETSC_INFINITY;
 
@@ -124,7 +124,32 @@ static void SetFloor(Panel *p)
 
     if (e > 0) smallest = PetscMin(smallest, e);
   }
-  p->floor = p->scale * PetscMax(smallest, p->kind == LAM_ERROR_MACRO ? 0 : p->t->reference.error[p->kind]);
+  return p->scale * PetscMax(smallest, p->kind == LAM_ERROR_MACRO ? 0 : p->t->reference.error[p->kind]);
+}
+
+static PetscErrorCode FindPoints(Panel *p)
+{
+  const PetscReal floor = Floor(p);
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(p->t->n, &p->points));
+  for (PetscInt g = 0; g < p->groups->n; g++)
+    for (PetscInt i = 0; i < p->t->n; i++) {
+      const LamMeasurement *m = &p->t->measured[i];
+      const LamMeasuredError *e = &m->error[p->kind];
+      const Point point = {.m = m,
+                           .group = g,
+                           .time = PetscLog10Real(m->cpu_spread.median),
+                           .low = PetscLog10Real(m->cpu_spread.low),
+                           .high = PetscLog10Real(m->cpu_spread.high),
+                           .error = PetscLog10Real(PetscMax(p->scale * e->largest, floor)),
+                           .optimal = e->optimal};
+
+      if (!Belongs(&p->groups->group[g], &m->setting) || !m->runs || !isfinite(e->largest)) continue;
+      if (p->kind == LAM_ERROR_MACRO && m->setting.planned) continue; /* the reference of the others */
+      if (isfinite(point.time) && isfinite(point.error)) p->points[p->n++] = point;
+    }
+  PetscFunctionReturn(0);
 }
 
 /* The direct response of a body, which has no error in its panel; NULL: there is none, or it is another panel. */
@@ -138,30 +163,19 @@ static const LamMeasurement *FindDirect(const Panel *p)
   return NULL;
 }
 
-/* Whether the panel has any point. */
-static PetscBool SetLimits(Panel *p)
+static void SetLimits(Panel *p)
 {
   const LamMeasurement *direct = FindDirect(p);
   LamAxes *a = &p->axes;
-  PetscReal at[2];
 
-  SetFloor(p);
-  a->x.low = a->y.low = PETSC_INFINITY;
-  a->x.high = a->y.high = -PETSC_INFINITY;
-  for (PetscInt i = 0; i < p->t->n; i++) {
-    const LamMeasurement *m = &p->t->measured[i];
-
-    if (!Place(p, m, at)) continue;
-    a->x.low = PetscMin(a->x.low, PetscLog10Real(m->cpu_spread.low));
-    a->x.high = PetscMax(a->x.high, PetscLog10Real(m->cpu_spread.high));
-    a->y.low = PetscMin(a->y.low, at[1]);
-    a->y.high = PetscMax(a->y.high, at[1]);
+  LamAxesEmpty(a);
+  for (PetscInt i = 0; i < p->n; i++) {
+    LamAxesExtend(a, p->points[i].low, p->points[i].error);
+    LamAxesExtend(a, p->points[i].high, p->points[i].error);
   }
-  if (!(a->x.low <= a->x.high)) return PETSC_FALSE;
   if (direct) a->x.high = PetscMax(a->x.high, PetscLog10Real(direct->cpu_spread.high));
   LamAxisPadLog(&a->x);
   LamAxisPadLog(&a->y);
-  return PETSC_TRUE;
 }
 
 static void Take(Panel *p, LamRect box)
@@ -193,102 +207,70 @@ static void DrawBand(LamCanvas canvas, const Panel *p)
 
   if (!(limit > p->axes.y.low)) return;
   top = LamAxesY(&p->axes, PetscMin(limit, p->axes.y.high));
-  LamCanvasSetColour(canvas, Shade);
-  cairo_rectangle(LamCanvasCairo(canvas), f.x, top, f.width, f.y + f.height - top);
-  cairo_fill(LamCanvasCairo(canvas));
+  LamCanvasBox(canvas, (LamRect){f.x, top, f.width, f.y + f.height - top});
+  LamCanvasFill(canvas, Shade);
 }
 
 /* Joins the best settings by steps: for each point above the steps a setting has no larger error in no more time. */
 static void DrawFront(LamCanvas canvas, const Panel *p)
 {
-  cairo_t *cr = LamCanvasCairo(canvas);
-  PetscReal at[2], last[2] = {-PETSC_INFINITY, 0};
-  PetscBool drawing = PETSC_FALSE;
+  PetscReal last[2] = {-PETSC_INFINITY, 0};
 
-  LamCanvasSetColour(canvas, Front);
-  cairo_set_line_width(cr, 3.5);
-  for (;;) { /* from fast to slow */
-    const LamMeasurement *next = NULL;
-    PetscReal found[2] = {PETSC_INFINITY, 0};
+  for (PetscBool joined = PETSC_FALSE;; joined = PETSC_TRUE) { /* from fast to slow */
+    const Point *next = NULL;
 
-    for (PetscInt i = 0; i < p->t->n; i++) {
-      const LamMeasurement *m = &p->t->measured[i];
+    for (PetscInt i = 0; i < p->n; i++) {
+      const Point *point = &p->points[i];
 
-      if (!m->error[p->kind].optimal || !Place(p, m, at) || at[0] <= last[0] || at[0] >= found[0]) continue;
-      next = m;
-      found[0] = at[0];
-      found[1] = at[1];
+      if (point->optimal && point->time > last[0] && (!next || point->time < next->time)) next = point;
     }
     if (!next) break;
-    if (drawing) {
-      cairo_line_to(cr, LamAxesX(&p->axes, found[0]), LamAxesY(&p->axes, last[1]));
-      cairo_line_to(cr, LamAxesX(&p->axes, found[0]), LamAxesY(&p->axes, found[1]));
-    } else
-      cairo_move_to(cr, LamAxesX(&p->axes, found[0]), LamAxesY(&p->axes, found[1]));
-    drawing = PETSC_TRUE;
-    last[0] = found[0];
-    last[1] = found[1];
+    if (joined) LamAxesPath(canvas, &p->axes, next->time, last[1], PETSC_TRUE);
+    LamAxesPath(canvas, &p->axes, next->time, next->error, joined);
+    last[0] = next->time;
+    last[1] = next->error;
   }
-  cairo_stroke(cr);
+  LamCanvasStroke(canvas, Front, 3.5, NULL);
 }
 
 static void DrawLine(LamCanvas canvas, const Panel *p, PetscInt g)
 {
-  const double dash[] = {3.2, 1.8};
-  cairo_t *cr = LamCanvasCairo(canvas);
   const LamStyle *style = &p->groups->series[g].style;
-  PetscReal at[2];
+  PetscBool joined = PETSC_FALSE;
 
-  LamCanvasSetColour(canvas, style->colour);
-  cairo_set_line_width(cr, 0.7);
-  cairo_set_dash(cr, dash, style->dashed ? 2 : 0, 0);
-  for (PetscInt i = 0; i < p->t->n; i++)
-    if (Belongs(&p->groups->group[g], &p->t->measured[i].setting) && Place(p, &p->t->measured[i], at))
-      cairo_line_to(cr, LamAxesX(&p->axes, at[0]), LamAxesY(&p->axes, at[1]));
-  cairo_stroke(cr);
-  cairo_set_dash(cr, dash, 0, 0);
+  for (PetscInt i = 0; i < p->n; i++) {
+    if (p->points[i].group != g) continue;
+    LamAxesPath(canvas, &p->axes, p->points[i].time, p->points[i].error, joined);
+    joined = PETSC_TRUE;
+  }
+  LamCanvasStroke(canvas, style->colour, 0.7, style->dashed ? (const double[]){3.2, 1.8} : NULL);
 }
 
 /* The spread of its times, the marker, and a ring around the planned one. */
-static void DrawPoint(LamCanvas canvas, Panel *p, const LamStyle *style, const LamMeasurement *m, const PetscReal at[2])
+static void DrawPoint(LamCanvas canvas, Panel *p, const Point *point)
 {
-  cairo_t *cr = LamCanvasCairo(canvas);
-  const double x = LamAxesX(&p->axes, at[0]), y = LamAxesY(&p->axes, at[1]), h = 0.5 * MARKER_SIZE;
-  const double low = LamAxesX(&p->axes, PetscLog10Real(m->cpu_spread.low));
-  const double high = LamAxesX(&p->axes, PetscLog10Real(m->cpu_spread.high));
+  const LamStyle *style = &p->groups->series[point->group].style;
+  const LamSetting *setting = &point->m->setting;
+  const double x = LamAxesX(&p->axes, point->time), y = LamAxesY(&p->axes, point->error), h = 0.5 * MARKER_SIZE;
+  const double low = LamAxesX(&p->axes, point->low), high = LamAxesX(&p->axes, point->high);
 
-  LamCanvasSetColour(canvas, style->colour);
-  cairo_set_line_width(cr, 0.5);
-  cairo_move_to(cr, low, y);
-  cairo_line_to(cr, high, y);
-  cairo_stroke(cr);
+  LamCanvasLine(canvas, low, y, high, y);
+  LamCanvasStroke(canvas, style->colour, 0.5, NULL);
   LamCanvasMarker(canvas, x, y, MARKER_SIZE, style->marker, style->hollow);
-  if (m->setting.planned && m->setting.knob == LAM_KNOB_MESH) { /* other groups have it at the same position */
-    LamCanvasSetColour(canvas, Ink);
+  LamCanvasSetColour(canvas, LamInk);
+  if (setting->planned && setting->knob == LAM_KNOB_MESH) /* other groups have it at the same position */
     LamCanvasMarker(canvas, x, y, MARKER_SIZE, LAM_MARKER_RING, PETSC_FALSE);
-  }
   Take(p, (LamRect){x - h, y - h, 2 * h, 2 * h});
   Take(p, (LamRect){low, y - 0.5, high - low, 1});
 }
 
-static void DrawGroup(LamCanvas canvas, Panel *p, PetscInt g)
-{
-  PetscReal at[2];
-
-  for (PetscInt i = 0; i < p->t->n; i++) {
-    const LamMeasurement *m = &p->t->measured[i];
-
-    if (Belongs(&p->groups->group[g], &m->setting) && Place(p, m, at))
-      DrawPoint(canvas, p, &p->groups->series[g].style, m, at);
-  }
-}
-
 /* Labels a point in the first direction in which there is room. */
-static void DrawLabel(LamCanvas canvas, Panel *p, LamColour colour, const LamMeasurement *m, const PetscReal at[2])
+static void DrawLabel(LamCanvas canvas, Panel *p, const Point *point)
 {
   static const double ways[][2] = {{1, 0}, {-1, 0}, {0, -1}, {0, 1}, {1, -1}, {-1, -1}, {1, 1}, {-1, 1}};
-  const double width = LamCanvasTextWidth(canvas, LABEL_SIZE, m->setting.mark), away = 0.5 * MARKER_SIZE + 1.5;
-  const double x = LamAxesX(&p->axes, at[0]), y = LamAxesY(&p->axes, at[1]);
+  const char *mark = point->m->setting.mark;
+  const double width = LamCanvasTextWidth(canvas, LABEL_SIZE, mark), away = 0.5 * MARKER_SIZE + 1.5;
+  const double x = LamAxesX(&p->axes, point->time), y = LamAxesY(&p->axes, point->error);
 
   for (size_t w = 0; w < PETSC_STATIC_ARRAY_LENGTH(ways); w++) {
     const double cx = x + ways[w][0] * (away + 0.5 * width), cy = y + ways[w][1] * (away + 0.4 * LABEL_SIZE);
@@ -296,70 +278,54 @@ static void DrawLabel(LamCanvas canvas, Panel *p, LamColour colour, const LamMea
 
     if (!IsFree(p, r)) continue;
     cairo_set_source_rgba(LamCanvasCairo(canvas), 1, 1, 1, 0.7); /* lines pass beneath */
-    cairo_rectangle(LamCanvasCairo(canvas), r.x, r.y, r.width, r.height);
+    LamCanvasBox(canvas, r);
     cairo_fill(LamCanvasCairo(canvas));
-    LamCanvasSetColour(canvas, colour);
-    LamCanvasText(canvas, cx, cy, 0.5, 0, LABEL_SIZE, m->setting.mark);
+    LamCanvasSetColour(canvas, p->groups->series[point->group].style.colour);
+    LamCanvasText(canvas, cx, cy, 0.5, 0, LABEL_SIZE, mark);
     Take(p, r);
     return;
   }
 }
 
-/* Order of labelling: 0 best, 1 planned, 2 the others. */
-static int Priority(const Panel *p, const LamMeasurement *m)
-{
-  return m->error[p->kind].optimal ? 0 : m->setting.planned ? 1 : 2;
-}
-
+/* Best ones first, then the planned one, then the others. */
 static void DrawLabels(LamCanvas canvas, Panel *p)
 {
-  PetscReal at[2];
-
   for (int priority = 0; priority < 3; priority++)
-    for (PetscInt g = 0; g < p->groups->n; g++)
-      for (PetscInt i = 0; i < p->t->n; i++) {
-        const LamMeasurement *m = &p->t->measured[i];
+    for (PetscInt i = 0; i < p->n; i++) {
+      const Point *point = &p->points[i];
 
-        if (!Belongs(&p->groups->group[g], &m->setting) || Priority(p, m) != priority || !Place(p, m, at)) continue;
-        DrawLabel(canvas, p, p->groups->series[g].style.colour, m, at);
-      }
+      if (priority == (point->optimal ? 0 : point->m->setting.planned ? 1 : 2)) DrawLabel(canvas, p, point);
+    }
 }
 
 /* Draws the time of the direct response. */
 static void DrawDirect(LamCanvas canvas, Panel *p)
 {
   const LamMeasurement *direct = FindDirect(p);
-  cairo_t *cr = LamCanvasCairo(canvas);
   const LamRect f = p->axes.frame;
   double x;
 
   if (!direct) return;
   x = LamAxesX(&p->axes, PetscLog10Real(direct->cpu_spread.median));
-  LamCanvasSetColour(canvas, Ink);
-  cairo_set_line_width(cr, 0.7);
-  cairo_move_to(cr, x, f.y);
-  cairo_line_to(cr, x, f.y + f.height);
-  cairo_stroke(cr);
+  LamCanvasLine(canvas, x, f.y, x, f.y + f.height);
+  LamCanvasStroke(canvas, LamInk, 0.7, NULL);
   LamCanvasText(canvas, x - 0.8 * LABEL_SIZE, f.y + 4, 1, M_PI_2, LABEL_SIZE, "direct (the reference here)");
 }
 
 static void DrawPanel(LamCanvas canvas, LamRect outer, Panel *p)
 {
-  cairo_t *cr = LamCanvasCairo(canvas);
   const LamRect *f = &p->axes.frame;
 
   LamAxesLayout(canvas, outer, &p->axes);
   DrawBand(canvas, p);
   LamAxesDraw(canvas, &p->axes);
-  cairo_save(cr);
-  cairo_rectangle(cr, f->x - 5, f->y - 5, f->width + 10, f->height + 10);
-  cairo_clip(cr);
+  LamCanvasClip(canvas, (LamRect){f->x - 5, f->y - 5, f->width + 10, f->height + 10});
   DrawFront(canvas, p);
   for (PetscInt g = 0; g < p->groups->n; g++) DrawLine(canvas, p, g);
-  for (PetscInt g = 0; g < p->groups->n; g++) DrawGroup(canvas, p, g);
+  for (PetscInt i = 0; i < p->n; i++) DrawPoint(canvas, p, &p->points[i]);
   DrawDirect(canvas, p);
   DrawLabels(canvas, p);
-  cairo_restore(cr);
+  cairo_restore(LamCanvasCairo(canvas));
 }
 
 /* ---- the page ---- */
@@ -399,7 +365,7 @@ static void DrawNotes(LamCanvas canvas, LamRect outer)
       "Bars: fastest to slowest run. What failed is not there.",
   };
 
-  LamCanvasSetColour(canvas, Ink);
+  LamCanvasSetColour(canvas, LamInk);
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(notes); i++)
     LamCanvasText(canvas, outer.x, outer.y + 1.6 * LAM_TICK_SIZE * ((double)i + 0.5), 0, 0, LAM_TICK_SIZE, notes[i]);
 }
@@ -434,10 +400,18 @@ PetscErrorCode LamTradeoffPlot(const LamTradeoff *t, const char path[])
   PetscCall(PetscMalloc1(LAM_ERROR_KIND_COUNT, &panels));
   FindGroups(t, groups);
   for (int k = 0; k < LAM_ERROR_KIND_COUNT; k++) {
-    panels[n] = PanelOf(t, groups, (LamErrorKind)k);
-    n += SetLimits(&panels[n]);
+    Panel *p = &panels[n];
+
+    *p = PanelOf(t, groups, (LamErrorKind)k);
+    PetscCall(FindPoints(p));
+    SetLimits(p);
+    if (p->n)
+      n++;
+    else
+      PetscCall(PetscFree(p->points));
   }
   PetscCall(DrawPage(path, groups, n, panels));
+  for (PetscInt k = 0; k < n; k++) PetscCall(PetscFree(panels[k].points));
   PetscCall(PetscFree(panels));
   PetscCall(PetscFree(groups));
   PetscFunctionReturn(0);
