@@ -7,6 +7,7 @@
 
 #include "plan.h"
 #include "study.h"
+#include "tradeoff.h"
 
 /* Exit statuses (docs/reference/commands.md). */
 enum {
@@ -117,9 +118,13 @@ PetscErrorCode LamPrintAnswerHeader(LamInterfaceLawType interface);
 PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales *scales, LamInterfaceLawType interface,
                                    PetscInt state);
 
-/* ---- fe2_summary_print.c ---- */
-/* Human-readable summary on `out`, from the JSON object that a file holds. */
-void LamSummaryPrint(FILE *out, const json_t *summary);
+/* ---- tradeoff_plot.c ---- */
+/* Draws the diagram; the ending of `path` selects the format. */
+PetscErrorCode LamTradeoffPlot(const LamTradeoff *t, const char path[]);
+
+/* ---- fe2_report.c ---- */
+/* Human-readable summary of an FE2 run, from the JSON object that its file holds. */
+void LamSummaryPrint(const json_t *summary);
 
 /* ---- signals.c: SIGINT, SIGTERM, SIGUSR1 request the study to commit and stop (stop.h) ---- */
 PetscErrorCode LamSignalsInstall(void);

@@ -171,7 +171,7 @@ static void PrintTable(const json_t *info)
   PrintText("kind", json_object_get(info, "kind"));
   PrintWriter(json_object_get(info, "writer"));
   PrintRun(json_object_get(info, "run"));
-  LamSummaryPrint(stdout, json_object_get(info, "summary"));
+  LamSummaryPrint(json_object_get(info, "summary"));
   PrintMap(json_object_get(info, "map"));
   PrintInteger("records", json_object_get(info, "records"));
   PrintInteger("failed", json_object_get(info, "failed"));

@@ -1,22 +1,297 @@
 /*
-  lamella verify: queries a database at random states and solves the states for which it has a response.
+  lamella verify: queries a database at random states and solves the states for which it has a response. The report:
+  quantiles of errors, measured and estimated, and a verdict.
 */
-#include "audit_report.h"
+#include "app.h"
+#include "audit.h"
 #include "clock.h"
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+/* An audit passes if at most this fraction of the responses exceeds the accuracy, and none exceeds FAR times it. */
+#define SHARE_BEYOND 0.005
+#define FAR 3
+
+/* An estimate is good if it is within this factor of the error, and too small if the error is more than SMALL_FACTOR
+   times as large. */
+#define GOOD_FACTOR 5
+#define SMALL_FACTOR 2
+#define JUDGED_FROM 0.01 /* of the accuracy: pairs of error and estimate below this are not judged */
+
+static const PetscReal Shares[] = {0.5, 0.9, 0.95, 0.99, 1};
+static const char *const ShareNames[] = {"median", "q90", "q95", "q99", "max"};
+enum { SHARE_COUNT = PETSC_STATIC_ARRAY_LENGTH(Shares) };
+
+/* A reported quantity: a member of LamAudited. */
+typedef struct {
+  const char *group, *name; /* in JSON */
+  const char *words;
+  size_t offset;
+  PetscReal scale; /* for human-readable output: 100, percent */
+} Figure;
+
+static const Figure Figures[] = {
+    {"measured", "P", "error of P, %", offsetof(LamAudited, error), 100},
+    {"estimated", "P", "estimated, %", offsetof(LamAudited, estimate), 100},
+    {"measured", "tangent", "error of the tangent, %", offsetof(LamAudited, tangent), 100},
+    {"measured", "opening_fraction", "error of the opening, of V0", offsetof(LamAudited, opening), 1},
+    {"measured", "lumen_fraction", "error of the lumens, of V0", offsetof(LamAudited, lumen), 1},
+};
+enum { FIGURE_COUNT = PETSC_STATIC_ARRAY_LENGTH(Figures) };
+
+typedef struct {
+  PetscReal quantiles[FIGURE_COUNT][SHARE_COUNT]; /* NaN: not known */
+  PetscInt compared, beyond, far;
+  PetscInt judged, good, small; /* estimates */
+  PetscInt worst;               /* response with the largest error; -1: none */
+  PetscReal query_seconds;      /* median */
+  PetscBool holds;
+} Summary;
+
+/* ---- figures ---- */
+
+static int Ascending(const void *a, const void *b)
+{
+  const PetscReal x = *(const PetscReal *)a, y = *(const PetscReal *)b;
+
+  return (x > y) - (x < y);
+}
+
+/* The member at `offset` of all responses in which it is known, sorted. */
+static PetscInt Collect(const LamAudit *a, size_t offset, PetscReal values[])
+{
+  PetscInt n = 0;
+
+  for (PetscInt i = 0; i < a->answered; i++) {
+    const PetscReal value = *(const PetscReal *)(const void *)((const char *)&a->results[i] + offset);
+
+    if (a->results[i].compared && isfinite(value)) values[n++] = value;
+  }
+  if (n) qsort(values, (size_t)n, sizeof(*values), Ascending);
+  return n;
+}
+
+static PetscReal Quantile(PetscInt n, const PetscReal sorted[], PetscReal share)
+{
+  return n ? sorted[PetscMin(n - 1, (PetscInt)(share * (PetscReal)n))] : NAN;
+}
+
+static void JudgeEstimate(const LamAudit *a, const LamAudited *result, Summary *s)
+{
+  const PetscReal error = result->error, estimate = result->estimate;
+  const PetscReal accuracy = isfinite(a->accuracy) ? a->accuracy : a->from->accuracy;
+
+  if (PetscMax(error, estimate) < JUDGED_FROM * accuracy) return;
+  s->judged++;
+  s->good += estimate <= GOOD_FACTOR * error && error <= GOOD_FACTOR * estimate;
+  s->small += !(error <= SMALL_FACTOR * estimate);
+}
+
+static PetscErrorCode Summarise(const LamAudit *a, Summary *s)
+{
+  PetscReal *values;
+  PetscInt n;
+
+  PetscFunctionBeginUser;
+  *s = (Summary){.worst = -1};
+  PetscCall(PetscMalloc1(a->answered, &values));
+  for (int f = 0; f < FIGURE_COUNT; f++) {
+    n = Collect(a, Figures[f].offset, values);
+    for (int q = 0; q < SHARE_COUNT; q++) s->quantiles[f][q] = Quantile(n, values, Shares[q]);
+  }
+  n = Collect(a, offsetof(LamAudited, query_seconds), values);
+  s->query_seconds = Quantile(n, values, 0.5);
+  PetscCall(PetscFree(values));
+  for (PetscInt i = 0; i < a->answered; i++) {
+    const LamAudited *result = &a->results[i];
+
+    if (!result->compared) continue;
+    s->compared++;
+    s->beyond += !(result->error <= a->accuracy);
+    s->far += !(result->error <= FAR * a->accuracy);
+    if (s->worst < 0 || result->error > a->results[s->worst].error) s->worst = i;
+    JudgeEstimate(a, result, s);
+  }
+  s->holds = (PetscBool)(s->compared && (PetscReal)s->beyond <= SHARE_BEYOND * (PetscReal)s->compared && !s->far);
+  PetscFunctionReturn(0);
+}
+
+static PetscReal Share(PetscInt part, PetscInt whole)
+{
+  return whole ? (PetscReal)part / (PetscReal)whole : NAN;
+}
+
+/* ---- JSON output ---- */
+
+static json_t *BoxToJSON(const LamAudit *a)
+{
+  const PetscReal MPa = 1e-6 * a->from->scales.stress;
+
+  return json_pack("{s:o, s:o, s:f, s:s}", "principal_log_strain", LamJSONReals(2, a->box.strain, 1), "turgor",
+                   LamJSONReals(2, a->box.turgor, MPa), "cohesion", (double)(a->box.cohesion * MPa), "origin",
+                   a->box.origin);
+}
+
+static json_t *WorstToJSON(const LamAudit *a, PetscInt worst)
+{
+  const PetscReal MPa = 1e-6 * a->from->scales.stress;
+  const LamLoad *load = &a->loads[worst];
+
+  return json_pack("{s:o, s:f, s:f, s:o, s:o}", "F", LamJSONReals(9, load->F, 1), "turgor",
+                   (double)(load->turgor * MPa), "cohesion", (double)(load->cohesion * MPa), "error",
+                   LamJSONReal(a->results[worst].error), "error_estimate", LamJSONReal(a->results[worst].estimate));
+}
+
+static void AddFigures(const Summary *s, json_t *object)
+{
+  for (int f = 0; f < FIGURE_COUNT; f++) {
+    json_t *group = json_object_get(object, Figures[f].group), *quantiles = json_object();
+
+    if (!group) {
+      group = json_object();
+      json_object_set_new(object, Figures[f].group, group);
+    }
+    for (int q = 0; q < SHARE_COUNT; q++)
+      json_object_set_new(quantiles, ShareNames[q], LamJSONReal(s->quantiles[f][q]));
+    json_object_set_new(group, Figures[f].name, quantiles);
+  }
+}
+
+static PetscErrorCode PrintObject(const LamVerification *v, const Summary *s, PetscReal seconds)
+{
+  const LamAudit *a = &v->audit;
+  json_t *o;
+
+  PetscFunctionBeginUser;
+  o = json_pack("{s:s, s:o, s:I, s:I, s:I, s:I, s:I, s:o, s:o}", "database", v->path, "accuracy",
+                LamJSONReal(a->accuracy), "seed", (json_int_t)a->seed, "asked", (json_int_t)a->asked, "answered",
+                (json_int_t)a->answered, "solved", (json_int_t)a->solved, "compared", (json_int_t)s->compared,
+                "share_answered", LamJSONReal(Share(a->answered, a->asked)), "box", BoxToJSON(a));
+  PetscCheck(o, PETSC_COMM_SELF, PETSC_ERR_LIB, "an audit cannot be written as JSON");
+  json_object_set(o, "refused", a->refused);
+  json_object_set(o, "unsolved", a->unsolved);
+  AddFigures(s, o);
+  json_object_set_new(o, "share_beyond_accuracy", LamJSONReal(Share(s->beyond, s->compared)));
+  json_object_set_new(o, "share_beyond_3_accuracy", LamJSONReal(Share(s->far, s->compared)));
+  json_object_set_new(o, "estimates_judged", json_integer(s->judged));
+  json_object_set_new(o, "share_estimate_within_5", LamJSONReal(Share(s->good, s->judged)));
+  json_object_set_new(o, "share_estimate_too_small_by_2", LamJSONReal(Share(s->small, s->judged)));
+  json_object_set_new(o, "worst", s->worst < 0 ? json_null() : WorstToJSON(a, s->worst));
+  json_object_set_new(o, "query_seconds", LamJSONReal(s->query_seconds));
+  json_object_set_new(o, "seconds", LamJSONReal(seconds));
+  json_object_set_new(o, "holds", json_boolean(s->holds));
+  PetscCall(LamPrintJSON(o));
+  PetscFunctionReturn(0);
+}
+
+/* ---- human-readable output ---- */
+
+static void PrintCounts(const json_t *counts)
+{
+  const char *key;
+  json_t *count;
+
+  json_object_foreach((json_t *)counts, key, count)
+  {
+    printf("  %8lld  %s\n", (long long)json_integer_value(count), key);
+  }
+}
+
+static void PrintAccuracy(const LamAudit *a)
+{
+  if (isfinite(a->accuracy))
+    printf("%-16s %.3g %%\n", "accuracy", (double)(100 * a->accuracy));
+  else
+    printf("%-16s any\n", "accuracy");
+}
+
+static void PrintQuestions(const LamAudit *a, PetscReal seconds, PetscMPIInt ranks)
+{
+  const PetscReal MPa = 1e-6 * a->from->scales.stress, *turgor = a->box.turgor;
+
+  printf("%-16s principal logarithmic strains %.4g to %.4g, turgor %.4g to %.4g MPa", "states",
+         (double)a->box.strain[0], (double)a->box.strain[1], (double)(turgor[0] * MPa), (double)(turgor[1] * MPa));
+  if (a->from->micro.interface == LAM_INTERFACE_CONTACT) printf(", cohesion %.4g MPa", (double)(a->box.cohesion * MPa));
+  printf("; %s\n", a->box.origin);
+  printf("%-16s %" PetscInt_FMT ", seed %" PetscInt_FMT "\n", "asked", a->asked, a->seed);
+  printf("%-16s %" PetscInt_FMT " (%.1f %%)\n", "answered", a->answered,
+         a->asked ? (double)(100 * Share(a->answered, a->asked)) : 0);
+  printf("%-16s %" PetscInt_FMT "\n", "refused", a->asked - a->answered);
+  PrintCounts(a->refused);
+  printf("%-16s %" PetscInt_FMT ", in %.3g s on %d rank%s\n", "solved afresh", a->solved, seconds, (int)ranks,
+         ranks > 1 ? "s" : "");
+  if (json_object_size(a->unsolved)) printf("without solution\n");
+  PrintCounts(a->unsolved);
+}
+
+static void PrintFigures(const Summary *s)
+{
+  printf("\n%-30s %9s %9s %9s %9s %9s\n", "", "median", "90 %", "95 %", "99 %", "largest");
+  for (int f = 0; f < FIGURE_COUNT; f++) {
+    printf("%-30s", Figures[f].words);
+    for (int q = 0; q < SHARE_COUNT; q++) printf(" %9.3g", (double)(Figures[f].scale * s->quantiles[f][q]));
+    putchar('\n');
+  }
+}
+
+static void PrintEstimates(const Summary *s)
+{
+  if (!s->judged) {
+    printf("%-16s of no error above a hundredth of the accuracy\n", "estimates");
+    return;
+  }
+  printf("%-16s %.1f %% within a factor of %d, %.1f %% too small by more than %d, of %" PetscInt_FMT
+         " above a hundredth of the accuracy\n",
+         "estimates", (double)(100 * Share(s->good, s->judged)), GOOD_FACTOR,
+         (double)(100 * Share(s->small, s->judged)), SMALL_FACTOR, s->judged);
+}
+
+static void PrintWorst(const LamAudit *a, PetscInt worst)
+{
+  const LamLoad *load = &a->loads[worst];
+  const PetscReal MPa = 1e-6 * a->from->scales.stress, *F = load->F;
+
+  printf("%-16s at F = %.6f %.6f %.6f %.6f, turgor %.6g MPa: %.3g %%, estimated %.3g %%\n", "largest error",
+         (double)F[0], (double)F[1], (double)F[3], (double)F[4], (double)(load->turgor * MPa),
+         (double)(100 * a->results[worst].error), (double)(100 * a->results[worst].estimate));
+}
+
+static void PrintTable(const LamVerification *v, const Summary *s, PetscReal seconds)
+{
+  const LamAudit *a = &v->audit;
+
+  printf("%-16s %s\n", "database", v->path);
+  PrintAccuracy(a);
+  PrintQuestions(a, seconds, v->ranks);
+  if (!s->compared) {
+    printf("%-16s nothing could be compared\n", "verdict");
+    return;
+  }
+  PrintFigures(s);
+  putchar('\n');
+  PrintEstimates(s);
+  PrintWorst(a, s->worst);
+  printf("%-16s %s: %" PetscInt_FMT " of %" PetscInt_FMT " answers beyond the accuracy (%.2g %% may be), %" PetscInt_FMT
+         " beyond %d times\n",
+         "verdict", s->holds ? "holds" : "does not hold", s->beyond, s->compared, 100 * SHARE_BEYOND, s->far, FAR);
+}
 
 static PetscErrorCode PrintReport(const LamVerification *v, PetscBool json)
 {
-  json_t *object;
+  const PetscReal seconds = LamClock() - v->start;
+  Summary s;
 
   PetscFunctionBeginUser;
-  if (!json) {
-    PetscCall(LamAuditPrint(&v->audit, v->path, LamClock() - v->start, v->ranks));
-    PetscFunctionReturn(0);
-  }
-  PetscCall(LamAuditToJSON(&v->audit, v->path, LamClock() - v->start, &object));
-  PetscCall(LamPrintJSON(object));
+  PetscCall(Summarise(&v->audit, &s));
+  if (json)
+    PetscCall(PrintObject(v, &s, seconds));
+  else
+    PrintTable(v, &s, seconds);
   PetscFunctionReturn(0);
 }
+
+/* ---- the command ---- */
 
 PetscErrorCode LamCommandVerify(LamArgs *args, int *exit_status)
 {

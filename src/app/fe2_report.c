@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include "clock.h"
 #include <lamella/ellipticity.h>
+#include <math.h>
 
 /* Factors from nondimensional to N per mm of thickness, and MPa. */
 static PetscReal ForceUnit(const LamFE2Run *run)
@@ -131,13 +132,93 @@ PetscErrorCode LamFE2ReportStep(void *ctx, const LamFE2Run *run, const LamMacroS
   PetscFunctionReturn(0);
 }
 
+/* ---- summary ---- */
+
+static double Number(const json_t *object, const char key[])
+{
+  const json_t *value = json_object_get(object, key);
+
+  return json_is_number(value) ? json_number_value(value) : NAN;
+}
+
+/* " 0.0812", or "unknown". */
+static void PrintNumber(const char words[], double value)
+{
+  if (isfinite(value))
+    printf("%s %.4g", words, value);
+  else
+    printf("%s unknown", words);
+}
+
+static void PrintOnset(const json_t *onset)
+{
+  const json_t *place = json_object_get(onset, "place");
+
+  printf("%s %s load factor %.4g", json_string_value(json_object_get(onset, "criterion")),
+         json_is_true(json_object_get(onset, "interpolated")) ? "at" : "found at", Number(onset, "load_factor"));
+  if (isfinite(Number(onset, "displacement")))
+    printf(", u %.4g mm, R %.4g N/mm", Number(onset, "displacement"), Number(onset, "reaction"));
+  printf("; element %lld, point %lld at (%.4g, %.4g) mm\n",
+         (long long)json_integer_value(json_object_get(onset, "element")),
+         (long long)json_integer_value(json_object_get(onset, "point")), json_number_value(json_array_get(place, 0)),
+         json_number_value(json_array_get(place, 1)));
+}
+
+static void PrintSlopes(const char name[], const json_t *slopes)
+{
+  printf("  %-18s", name);
+  PrintNumber(" initial", Number(slopes, "initial"));
+  PrintNumber(", final", Number(slopes, "final"));
+  PrintNumber(", secant", Number(slopes, "secant"));
+  printf(" MPa");
+  if (isfinite(Number(slopes, "height")))
+    printf(" (height %.4g mm over length %.4g mm)", Number(slopes, "height"), Number(slopes, "length"));
+  putchar('\n');
+}
+
+/* Prints the first onset of a mode, or the reason if it was not evaluated (not in the object). */
+static void PrintMode(const json_t *summary, const char mode[], const char unjudged[])
+{
+  const json_t *onset = json_object_get(summary, mode);
+
+  printf("  %-18s ", mode);
+  if (!onset)
+    printf("not judged: %s\n", unjudged);
+  else if (json_is_object(onset))
+    PrintOnset(onset);
+  else
+    printf("not reached\n");
+}
+
+void LamSummaryPrint(const json_t *summary)
+{
+  const json_t *loaded = json_object_get(summary, "loaded");
+  const json_t *modulus = json_object_get(summary, "modulus"), *firmness = json_object_get(summary, "firmness");
+  const json_t *direction = json_object_get(loaded, "direction");
+
+  if (!json_object_size(summary)) return;
+  printf("summary\n");
+  if (loaded)
+    printf("  %-18s %s, along (%.3g, %.3g)\n", "loaded side", json_string_value(json_object_get(loaded, "boundary")),
+           json_number_value(json_array_get(direction, 0)), json_number_value(json_array_get(direction, 1)));
+  if (json_object_get(summary, "opening")) PrintMode(summary, "opening", ""); /* contact tissue only */
+  PrintMode(summary, "separation", "the scene has no strength.lamella_normal or lamella_shear");
+  PrintMode(summary, "rupture", "the scene has no strength.wall");
+  if (loaded) PrintSlopes("stiffness", json_object_get(summary, "stiffness"));
+  if (modulus) PrintSlopes("modulus", modulus);
+  if (firmness)
+    printf("  %-18s %.4g N/mm at u %.4g mm, load factor %.4g\n", "largest force", Number(firmness, "reaction"),
+           Number(firmness, "displacement"), Number(firmness, "load_factor"));
+  printf("  %-18s %.4g N mm/mm\n", "work", Number(summary, "work"));
+}
+
 PetscErrorCode LamFE2ReportEnd(const LamFE2Run *run)
 {
   const LamFE2Totals *totals = &run->totals;
   json_t *summary = LamSummaryToJSON(&run->summary);
 
   PetscFunctionBeginUser;
-  LamSummaryPrint(stdout, summary);
+  LamSummaryPrint(summary);
   json_decref(summary);
   printf("%" PetscInt_FMT " steps, %" PetscInt_FMT " Newton iterations, %lld queries, %lld hits, %lld solves, "
          "%lld failures, %.3g s, of these %.2g s for checkpoints; response %s\n",

@@ -5,7 +5,7 @@
   there is room: the best settings first, then the planned one. Grey band at the bottom: errors of the size of the
   reference's.
 */
-#include "tradeoff_report.h"
+#include "app.h"
 #include "plot.h"
 #include <math.h>
 #include <string.h>

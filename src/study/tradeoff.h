@@ -8,9 +8,8 @@
     tradeoff_macro.c      one run of a setting, by the macroscale problem
     tradeoff_reference.c  reference responses, finer than all settings
     tradeoff_judge.c      errors, spread of times, the best settings
-    tradeoff_report.c     report and output
-    tradeoff_plot.c       the work-precision diagram
-    cmd_tradeoff.c        order of the runs and time budget
+
+  In src/app: cmd_tradeoff.c (report and files), tradeoff_plot.c (the work-precision diagram).
 
   Errors and settings follow the work-precision diagrams of SciML (C. Rackauckas and Q. Nie, J. Open Res. Softw. 5
   (2017) 15): all settings get the same queries, start from scratch, in interleaved rounds on one machine; failed runs
