@@ -9,52 +9,19 @@
 #include <fcntl.h>
 #include <hdf5.h>
 #include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include "grid.h"
+#include "support/error_message.h"
+#include "synthetic_nodes.h"
 
 #define RECORDS 150 /* three chunks */
 #define SECONDS 10  /* an open takes some milliseconds */
 
-static const char scene_text[] = "version: 1\n"
-                                 "rve:\n"
-                                 "  cell: {apothem: 75 um, wall_thickness: 11.25 um}\n"
-                                 "  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}\n"
-                                 "  mesh: {along: 6, through: 2}\n"
-                                 "  turgor: {mode: prescribed, pressure: 0.02 MPa}\n";
-
-static char directory[64], path[96], message[2048];
-
-static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
-                                  PetscErrorType type, const char *text, void *ctx)
-{
-  if (type == PETSC_ERROR_INITIAL) snprintf(message, sizeof(message), "%s", text);
-  return code;
-}
+static char directory[64], path[96];
 
 /* ---- the file ---- */
-
-static PetscErrorCode Synthetic(LamGrid grid, PetscInt64 key, PetscInt number, LamResponse *response)
-{
-  PetscReal next = 0.1 + 1e-6 * (double)number;
-  LamLoad load;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamGridNodeLoad(grid, key, &load));
-  PetscCall(LamResponseInit(&load, response));
-  for (const LamMember *m = LamResponseMembers; m->name; m++)
-    for (PetscInt i = 0; m->type == LAM_MEMBER_REAL && i < m->count; i++)
-      ((PetscReal *)((char *)response + m->offset))[i] = next += 1e-3;
-  response->load = load;
-  response->status = LAM_CONVERGED;
-  response->stable = PETSC_TRUE;
-  PetscFunctionReturn(0);
-}
 
 static PetscErrorCode WriteNodes(LamGrid grid, LamRecordWriter writer)
 {
@@ -80,17 +47,13 @@ static PetscErrorCode Write(void)
   LamRecordWriter writer;
   LamScene *scene;
   LamGrid grid;
-  char *text;
 
   PetscFunctionBeginUser;
   PetscCall(LamSceneReadText("bench_damage", scene_text, &scene));
   PetscCall(LamGridCreate(scene, NULL, &grid));
-  PetscCall(LamRecordWriterOpen(path, "database", LAM_WRITE_CREATE, scene, &writer));
-  PetscCall(LamGridGetText(grid, &text));
-  PetscCall(LamRecordWriterText(writer, LAM_GRID_NAME, text));
+  PetscCall(OpenNodes(path, scene, grid, &writer));
   PetscCall(WriteNodes(grid, writer));
   PetscCall(LamRecordWriterClose(&writer));
-  PetscCall(PetscFree(text));
   PetscCall(LamGridDestroy(&grid));
   PetscCall(LamSceneDestroy(&scene));
   PetscFunctionReturn(0);
@@ -165,7 +128,7 @@ static Outcome Open(uint64_t wanted)
 {
   uint64_t found;
 
-  if (Digest(&found)) return strstr(message, path) ? REFUSED : UNNAMED;
+  if (Digest(&found)) return strstr(ErrorMessage, path) ? REFUSED : UNNAMED;
   return found == wanted ? SAME : DIFFERENT;
 }
 
@@ -173,7 +136,7 @@ static Outcome Check(uint64_t unused)
 {
   PetscBool sound;
 
-  if (Inspect(&sound)) return strstr(message, path) ? REFUSED : UNNAMED;
+  if (Inspect(&sound)) return strstr(ErrorMessage, path) ? REFUSED : UNNAMED;
   return sound ? SAME : REFUSED;
 }
 
@@ -295,8 +258,7 @@ int main(int argc, char **argv)
     fprintf(stderr, "usage: bench_damage [--stride BITS] [--zero BYTES] [--list 1]\n");
     return 2;
   }
-  PetscErrorHandlingInitialized = PETSC_TRUE; /* PETSc calls no handler before PetscInitialize, which we do without */
-  PetscPushErrorHandler(KeepMessage, NULL);
+  KeepErrorMessages();
   ierr = Prepare(&run, &wanted);
   if (!ierr) DamageAll(&run, wanted);
   Tidy(&run);

@@ -4,42 +4,17 @@
   in the records are synthetic. The files are removed at the end. Prints figures, asserts nothing.
     bench_merge [--shards N] [--n RECORDS PER SHARD] [--folder FOR THE FILES]
 */
-#include <fcntl.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 #include <petsctime.h>
-#include "grid.h"
-
-static const char scene_text[] = "version: 1\n"
-                                 "rve:\n"
-                                 "  cell: {apothem: 75 um, wall_thickness: 11.25 um}\n"
-                                 "  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}\n"
-                                 "  mesh: {along: 6, through: 2}\n"
-                                 "  turgor: {mode: prescribed, pressure: 0.02 MPa}\n";
+#include "synthetic_nodes.h"
 
 static char folder[128], out[192];
 
 static void ShardPath(PetscInt shard, char path[192])
 {
   snprintf(path, 192, "%s/%" PetscInt_FMT ".h5", folder, shard);
-}
-
-/* The most memory that this process has held, MB. */
-static double Memory(void)
-{
-  FILE *file = fopen("/proc/self/status", "r");
-  char line[256];
-  double MB = 0;
-
-  while (file && fgets(line, sizeof(line), file))
-    if (!strncmp(line, "VmHWM", 5)) MB = atof(line + 6) * 1024 / 1e6;
-  if (file) fclose(file);
-  return MB;
 }
 
 static double FileMB(const char path[])
@@ -59,45 +34,24 @@ static PetscInt64 KeyOf(PetscInt64 number)
   return LamNodeKeyOf(&place);
 }
 
-/* The same in every shard. */
-static PetscErrorCode Synthetic(LamGrid grid, PetscInt64 number, LamResponse *response)
-{
-  PetscReal next = 0.1 + 1e-6 * (double)number;
-  LamLoad load;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamGridNodeLoad(grid, KeyOf(number), &load));
-  PetscCall(LamResponseInit(&load, response));
-  for (const LamMember *m = LamResponseMembers; m->name; m++)
-    for (PetscInt i = 0; m->type == LAM_MEMBER_REAL && i < m->count; i++)
-      ((PetscReal *)((char *)response + m->offset))[i] = next += 1e-3;
-  response->load = load;
-  response->status = LAM_CONVERGED;
-  response->stable = PETSC_TRUE;
-  PetscFunctionReturn(0);
-}
-
 /* Records first .. first + n - 1. */
 static PetscErrorCode WriteShard(const LamScene *scene, LamGrid grid, PetscInt shard, PetscInt64 first, PetscInt n)
 {
   LamRecordWriter writer;
   LamResponse *responses;
   PetscInt64 *keys;
-  char path[192], *text;
+  char path[192];
 
   PetscFunctionBeginUser;
   ShardPath(shard, path);
   PetscCall(PetscMalloc2(n, &responses, n, &keys));
   for (PetscInt i = 0; i < n; i++) {
     keys[i] = KeyOf(first + i);
-    PetscCall(Synthetic(grid, first + i, &responses[i]));
+    PetscCall(Synthetic(grid, keys[i], first + i, &responses[i]));
   }
-  PetscCall(LamGridGetText(grid, &text));
-  PetscCall(LamRecordWriterOpen(path, "database", LAM_WRITE_CREATE, scene, &writer));
-  PetscCall(LamRecordWriterText(writer, LAM_GRID_NAME, text));
+  PetscCall(OpenNodes(path, scene, grid, &writer));
   PetscCall(LamRecordWriterCommit(writer, n, keys, responses));
   PetscCall(LamRecordWriterClose(&writer));
-  PetscCall(PetscFree(text));
   PetscCall(PetscFree2(responses, keys));
   PetscFunctionReturn(0);
 }
@@ -126,7 +80,6 @@ static PetscErrorCode MergeAll(PetscInt shards, PetscBool salvage)
   char(*paths)[192];
   LamMergeReport report;
   PetscLogDouble start, end;
-  double processor;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(shards, &files, shards, &paths));
@@ -137,10 +90,9 @@ static PetscErrorCode MergeAll(PetscInt shards, PetscBool salvage)
   PetscCall(PetscTime(&start));
   PetscCall(LamDatabaseMerge(out, shards, files, &options, &report));
   PetscCall(PetscTime(&end));
-  processor = (double)clock() / CLOCKS_PER_SEC;
   printf("  %-8s %6.2f s, processor %.2f s, at most %.0f MB   %" PetscInt_FMT " records, %lld duplicates, %.0f MB/s\n",
-         salvage ? "salvage" : "merge", end - start, processor, Memory(), report.records, (long long)report.duplicates,
-         FileMB(out) / (end - start));
+         salvage ? "salvage" : "merge", end - start, Processor(), Memory("VmHWM"), report.records,
+         (long long)report.duplicates, FileMB(out) / (end - start));
   PetscCall(PetscFree2(files, paths));
   PetscFunctionReturn(0);
 }

@@ -4,43 +4,13 @@
   synthetic. The file is removed at the end. Prints figures, asserts nothing.
     bench_records [--n NODES] [--block RECORDS PER COMMIT]
 */
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 #include <petsctime.h>
-#include "grid.h"
-
-static const char scene_text[] = "version: 1\n"
-                                 "rve:\n"
-                                 "  cell: {apothem: 75 um, wall_thickness: 11.25 um}\n"
-                                 "  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}\n"
-                                 "  mesh: {along: 6, through: 2}\n"
-                                 "  turgor: {mode: prescribed, pressure: 0.02 MPa}\n";
+#include "synthetic_nodes.h"
 
 static char directory[64], path[96];
-
-/* Processor time of this process, s: on a busy machine less noisy than the clock on the wall. */
-static double Processor(void)
-{
-  return (double)clock() / CLOCKS_PER_SEC;
-}
-
-/* A line of /proc/self/status in MB: VmRSS, the memory held now; VmHWM, the most so far. */
-static double Memory(const char name[])
-{
-  FILE *file = fopen("/proc/self/status", "r");
-  char line[256];
-  double MB = 0;
-
-  while (file && fgets(line, sizeof(line), file))
-    if (!strncmp(line, name, strlen(name))) MB = atof(line + strlen(name) + 1) * 1024 / 1e6;
-  if (file) fclose(file);
-  return MB;
-}
 
 /* Sorted places in three root cells a side, coarse levels first. The caller frees the keys. */
 static PetscErrorCode Places(PetscInt *n, PetscInt64 **keys)
@@ -65,35 +35,6 @@ static PetscErrorCode Places(PetscInt *n, PetscInt64 **keys)
   PetscFunctionReturn(0);
 }
 
-/* Every number differs, as in a file of solves. */
-static PetscErrorCode Synthetic(LamGrid grid, PetscInt64 key, PetscInt number, LamResponse *response)
-{
-  PetscReal next = 0.1 + 1e-6 * (double)number;
-  LamLoad load;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamGridNodeLoad(grid, key, &load));
-  PetscCall(LamResponseInit(&load, response));
-  for (const LamMember *m = LamResponseMembers; m->name; m++)
-    for (PetscInt i = 0; m->type == LAM_MEMBER_REAL && i < m->count; i++)
-      ((PetscReal *)((char *)response + m->offset))[i] = next += 1e-3;
-  response->load = load;
-  response->status = LAM_CONVERGED;
-  response->stable = PETSC_TRUE;
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode WriteGrid(LamGrid grid, LamRecordWriter writer)
-{
-  char *text;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamGridGetText(grid, &text));
-  PetscCall(LamRecordWriterText(writer, LAM_GRID_NAME, text));
-  PetscCall(PetscFree(text));
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode Write(const LamScene *scene, PetscInt n, const PetscInt64 keys[], PetscInt block)
 {
   double processor = 0;
@@ -106,8 +47,7 @@ static PetscErrorCode Write(const LamScene *scene, PetscInt n, const PetscInt64 
   PetscFunctionBeginUser;
   PetscCall(LamGridCreate(scene, NULL, &grid));
   PetscCall(PetscMalloc1(block, &responses));
-  PetscCall(LamRecordWriterOpen(path, "database", LAM_WRITE_CREATE, scene, &writer));
-  PetscCall(WriteGrid(grid, writer));
+  PetscCall(OpenNodes(path, scene, grid, &writer));
   for (PetscInt first = 0; first < n; first += block) {
     const PetscInt count = PetscMin(block, n - first);
 

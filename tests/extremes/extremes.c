@@ -170,22 +170,30 @@ static void End(Worker *worker)
 
 /* ---- the run ---- */
 
-static void ReadDone(Run *run)
+/* Calls `take` with each line of the file of the run; PETSC_FALSE: there is none. */
+static PetscBool ForLines(const char path[], void (*take)(json_t *object, void *ctx), void *ctx)
 {
-  json_error_t error;
-  FILE *file = fopen(run->path, "r");
+  FILE *file = fopen(path, "r");
   char *line = NULL;
   size_t size = 0;
 
   while (file && getline(&line, &size, file) > 0) {
-    json_t *object = json_loads(line, 0, &error);
-    const PetscInt id = (PetscInt)json_integer_value(json_object_get(object, "id"));
+    json_t *object = json_loads(line, 0, NULL);
 
-    if (object && id >= run->first && id < run->end) run->done[id - run->first] = 1;
+    if (object) take(object, ctx);
     json_decref(object);
   }
   free(line);
   if (file) fclose(file);
+  return (PetscBool)(file != NULL);
+}
+
+static void TakeDone(json_t *object, void *ctx)
+{
+  Run *run = ctx;
+  const PetscInt id = (PetscInt)json_integer_value(json_object_get(object, "id"));
+
+  if (id >= run->first && id < run->end) run->done[id - run->first] = 1;
 }
 
 /* A line that a kill has cut ends where it was cut. */
@@ -288,26 +296,31 @@ static int Verdict(json_t *object)
   return -1;
 }
 
+static void TakeVerdict(json_t *object, void *ctx)
+{
+  const json_int_t id = json_integer_value(json_object_get(object, "id"));
+
+  if (id >= 0 && id < ExtremesPairCount()) ((int *)ctx)[id] = Verdict(object);
+}
+
 static int Draw(const Run *run)
 {
   int *verdicts = malloc((size_t)ExtremesPairCount() * sizeof(*verdicts));
-  FILE *file = fopen(run->path, "r");
-  char *line = NULL;
-  size_t size = 0;
+  PetscBool is_read;
 
   for (PetscInt id = 0; id < ExtremesPairCount(); id++) verdicts[id] = -1;
-  while (file && getline(&line, &size, file) > 0) {
-    json_t *object = json_loads(line, 0, NULL);
-    const json_int_t id = json_integer_value(json_object_get(object, "id"));
-
-    if (object && id >= 0 && id < ExtremesPairCount()) verdicts[id] = Verdict(object);
-    json_decref(object);
-  }
-  if (file) fclose(file);
+  is_read = ForLines(run->path, TakeVerdict, verdicts);
   ExtremesPicture(verdicts);
-  free(line);
   free(verdicts);
-  return file ? 0 : 1;
+  return is_read ? 0 : 1;
+}
+
+static void TakeCount(json_t *object, void *ctx)
+{
+  PetscInt(*counts)[2] = ctx;
+  const int verdict = Verdict(object);
+
+  if (verdict >= 0) counts[verdict][json_is_true(json_object_get(object, "contact"))]++;
 }
 
 /* Counts by verdict, bonded and in contact, of what the file holds of this run; whether nothing is worse than an
@@ -315,19 +328,8 @@ static int Draw(const Run *run)
 static PetscBool Summarise(const Run *run)
 {
   PetscInt counts[EXTREMES_VERDICT_COUNT][2] = {{0}}, bad = 0;
-  FILE *file = fopen(run->path, "r");
-  char *line = NULL;
-  size_t size = 0;
 
-  while (file && getline(&line, &size, file) > 0) {
-    json_t *object = json_loads(line, 0, NULL);
-    const int verdict = Verdict(object);
-
-    if (verdict >= 0) counts[verdict][json_is_true(json_object_get(object, "contact"))]++;
-    json_decref(object);
-  }
-  free(line);
-  if (file) fclose(file);
+  ForLines(run->path, TakeCount, counts);
   printf("%-16s %8s %8s\n", "verdict", "bonded", "contact");
   for (int v = 0; v < EXTREMES_VERDICT_COUNT; v++) {
     printf("%-16s %8d %8d\n", ExtremesVerdictNames[v], (int)counts[v][0], (int)counts[v][1]);
@@ -399,7 +401,7 @@ int main(int argc, char **argv)
   if (picture) return Draw(&run);
   run.done = calloc((size_t)(run.end - run.first), 1);
   if (run.list) ReadList(&run);
-  ReadDone(&run);
+  ForLines(run.path, TakeDone, &run);
   run.file = open(run.path, O_RDWR | O_CREAT | O_APPEND, 0644);
   EndLine(run.file);
   signal(SIGPIPE, SIG_IGN);

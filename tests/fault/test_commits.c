@@ -31,7 +31,7 @@ static void AssertKept(PetscInt least, PetscInt most)
   LamDatabase db;
   PetscInt n;
 
-  if (LamDatabaseOpen(copy, &db)) fail_msg("%s", message);
+  if (LamDatabaseOpen(copy, &db)) fail_msg("%s", ErrorMessage);
   LamDatabaseGetRecords(db, &n, &records, &keys);
   assert_in_range(n, least, most);
   for (PetscInt i = 0; i < n; i++) {
@@ -51,7 +51,7 @@ static void AssertGoesOn(PetscInt total)
   LamRecordWriter writer;
   PetscInt n;
 
-  if (LamRecordWriterOpen(copy, "database", LAM_WRITE_APPEND, &scene, &writer)) fail_msg("%s", message);
+  if (LamRecordWriterOpen(copy, "database", LAM_WRITE_APPEND, &scene, &writer)) fail_msg("%s", ErrorMessage);
   LamRecordWriterGetKeys(writer, &n, &keys);
   Commit(writer, n, total - n);
   assert_int_equal(LamRecordWriterClose(&writer), 0);
@@ -238,7 +238,7 @@ COMMITS_TEST(another_file_in_its_place_is_not_written_to)
   writer = Open(LAM_WRITE_APPEND);
   assert_int_equal(rename(copy, path), 0);
   assert_int_equal(LamRecordWriterCommit(writer, 1, &key, &r), PETSC_ERR_FILE_WRITE);
-  assert_non_null(strstr(message, "another program has changed it"));
+  assert_non_null(strstr(ErrorMessage, "another program has changed it"));
   assert_int_equal(LamRecordWriterClose(&writer), 0);
   assert_int_equal(CountRecords(), 5);
 }

@@ -108,7 +108,7 @@ static inline void MergeShards(PetscInt n, PetscInt first)
 {
   const PetscErrorCode ierr = TryShards(n, first, PETSC_FALSE);
 
-  if (ierr) fail_msg("error %d: %s", (int)ierr, message);
+  if (ierr) fail_msg("error %d: %s", (int)ierr, ErrorMessage);
 }
 
 static inline void AssertNothingLeft(void)

@@ -4,6 +4,7 @@
 #ifndef LAM_RECORD_FIXTURE_H
 #define LAM_RECORD_FIXTURE_H
 
+#include "support/error_message.h"
 #include "support/test.h"
 #include <lamella/database.h>
 #include <stdio.h>
@@ -12,15 +13,7 @@
 #include <unistd.h>
 
 static char directory[64], path[128], lock_path[160];
-static char message[2048]; /* of the last error */
 static LamDatabase opened; /* by OpenRecords */
-
-static inline PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function, const char *file,
-                                         PetscErrorCode code, PetscErrorType type, const char *text, void *ctx)
-{
-  if (type == PETSC_ERROR_INITIAL) snprintf(message, sizeof(message), "%s", text);
-  return code;
-}
 
 /* ---- fixtures ---- */
 
@@ -30,9 +23,7 @@ static inline int Enter(void **state)
   if (!mkdtemp(directory)) return -1;
   snprintf(path, sizeof(path), "%s/file.h5", directory);
   snprintf(lock_path, sizeof(lock_path), "%s.lock", path);
-  message[0] = '\0';
-  PetscErrorHandlingInitialized = PETSC_TRUE; /* PETSc calls no handler before PetscInitialize, which we do without */
-  return PetscPushErrorHandler(KeepMessage, NULL);
+  return KeepErrorMessages();
 }
 
 static inline int Leave(void **state)
@@ -139,7 +130,7 @@ static inline PetscInt CountRecords(void)
 
 static inline void AssertMessage(const char part[])
 {
-  if (!strstr(message, part)) fail_msg("message: %s", message);
+  if (!strstr(ErrorMessage, part)) fail_msg("message: %s", ErrorMessage);
 }
 
 static inline void AssertUnreadable(const char part[])

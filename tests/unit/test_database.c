@@ -183,7 +183,7 @@ FILE_TEST(a_file_that_was_replaced_is_noticed)
   Commit(writer, LAM_NODE_KEY + 1, 800);
   assert_int_equal(LamRecordWriterClose(&writer), 0);
   assert_int_equal(LamDatabaseGetRecords(db, NULL, &records, NULL), PETSC_ERR_USER_INPUT);
-  assert_non_null(strstr(message, "record 0 has another key than before"));
+  assert_non_null(strstr(ErrorMessage, "record 0 has another key than before"));
   LamDatabaseClose(&db);
 }
 
@@ -205,7 +205,7 @@ FILE_TEST(a_file_of_another_tissue_is_noticed)
   assert_int_equal(LamRecordWriterCommit(writer, 1, &key, &one), 0);
   assert_int_equal(LamRecordWriterClose(&writer), 0);
   assert_int_equal(LamDatabaseGetRecords(db, NULL, &records, NULL), PETSC_ERR_USER_INPUT);
-  assert_non_null(strstr(message, "was replaced"));
+  assert_non_null(strstr(ErrorMessage, "was replaced"));
   LamDatabaseClose(&db);
 }
 
@@ -218,7 +218,7 @@ FILE_TEST(a_file_that_has_shrunk_is_noticed)
   Commit(writer, LAM_NODE_KEY, 600);
   assert_int_equal(LamRecordWriterClose(&writer), 0);
   assert_int_equal(LamDatabaseGetRecords(db, NULL, &records, NULL), PETSC_ERR_USER_INPUT);
-  assert_non_null(strstr(message, "was replaced"));
+  assert_non_null(strstr(ErrorMessage, "was replaced"));
   LamDatabaseClose(&db);
 }
 

@@ -105,7 +105,7 @@ FILE_TEST(a_description_with_a_cell_too_few_is_refused)
   place[strlen("\"cells\": [2, ")] = '4';
   assert_int_equal(LamMicrostructureParse("file.h5", json, &parsed), PETSC_ERR_USER_INPUT);
   assert_null(parsed.cell);
-  assert_non_null(strstr(message, "file.h5"));
+  assert_non_null(strstr(ErrorMessage, "file.h5"));
   PetscFree(json);
 }
 

@@ -5,22 +5,12 @@
 #include <string.h>
 #include <unistd.h>
 #include "plot.h"
+#include "support/error_message.h"
 
 #define RVE_FILE "test_plot_rve.h5"
 #define FE2_FILE "test_plot_fe2.h5"
 #define DATABASE_FILE "test_plot_database.h5"
 #define MAP_FILE "test_plot_map.h5"
-
-static char Message[1024]; /* of the last error */
-
-static PetscErrorCode keep_message(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
-                                   PetscErrorType type, const char *message, void *ctx)
-{
-  if (type == PETSC_ERROR_INITIAL) snprintf(Message, sizeof Message, "%s", message);
-  return code;
-}
-
-#define OK(call) assert_int_equal((call), 0)
 
 static LamScene Scene;
 
@@ -67,11 +57,11 @@ static void write_states(LamRecordWriter writer, PetscReal nodes[36][2])
     const LamLoad load = {{1, 0.1 * k, 0, 0, 1, 0, 0, 0, 1}, 0.2, 0};
     LamResponse response;
 
-    OK(LamResponseInit(&load, &response));
+    CHECK(LamResponseInit(&load, &response));
     for (int i = 0; i < 9; i++) response.P[i] = 0.01 * k * i;
     response.status = k < 3 ? LAM_CONVERGED : LAM_NO_EQUILIBRIUM;
     if (k == 3) snprintf(response.reason, sizeof response.reason, "limit load");
-    OK(LamRecordWriterCommit(writer, 1, &k, &response));
+    CHECK(LamRecordWriterCommit(writer, 1, &k, &response));
     if (k == 3) return;
     for (int i = 0; i < 36; i++) {
       x[i][0] = nodes[i][0] + load.F[1] * nodes[i][1];
@@ -79,11 +69,11 @@ static void write_states(LamRecordWriter writer, PetscReal nodes[36][2])
       field[i] = 1 + 0.1 * k * nodes[i][0];
     }
     snprintf(name, sizeof name, "/fields/%d/x", (int)k);
-    OK(LamRecordWriterReals(writer, name, 2, points, &x[0][0], "apothem"));
+    CHECK(LamRecordWriterReals(writer, name, 2, points, &x[0][0], "apothem"));
     snprintf(name, sizeof name, "/fields/%d/wall_stress", (int)k);
-    OK(LamRecordWriterReals(writer, name, 1, values, field, "MPa"));
+    CHECK(LamRecordWriterReals(writer, name, 1, values, field, "MPa"));
     snprintf(name, sizeof name, "/fields/%d/fibre_stretch", (int)k);
-    OK(LamRecordWriterReals(writer, name, 1, values, field, "1"));
+    CHECK(LamRecordWriterReals(writer, name, 1, values, field, "1"));
   }
 }
 
@@ -96,13 +86,13 @@ static void write_rve(void)
   LamRecordWriter writer;
 
   make_ring(nodes, elements);
-  OK(LamRecordWriterOpen(RVE_FILE, "rve", LAM_WRITE_CREATE, &Scene, &writer));
-  OK(LamRecordWriterReals(writer, "/mesh/nodes", 2, points, &nodes[0][0], "apothem"));
-  OK(LamRecordWriterInts(writer, "/mesh/elements", 2, quads, &elements[0][0]));
-  OK(LamRecordWriterInts(writer, "/mesh/cell_of", 1, cells, cell_of));
-  OK(LamRecordWriterReals(writer, "/mesh/period", 2, two, &period[0][0], "apothem"));
+  CHECK(LamRecordWriterOpen(RVE_FILE, "rve", LAM_WRITE_CREATE, &Scene, &writer));
+  CHECK(LamRecordWriterReals(writer, "/mesh/nodes", 2, points, &nodes[0][0], "apothem"));
+  CHECK(LamRecordWriterInts(writer, "/mesh/elements", 2, quads, &elements[0][0]));
+  CHECK(LamRecordWriterInts(writer, "/mesh/cell_of", 1, cells, cell_of));
+  CHECK(LamRecordWriterReals(writer, "/mesh/period", 2, two, &period[0][0], "apothem"));
   write_states(writer, nodes);
-  OK(LamRecordWriterClose(&writer));
+  CHECK(LamRecordWriterClose(&writer));
 }
 
 /* One element of 10 mm, sheared in two steps. */
@@ -117,10 +107,10 @@ static void write_fe2(void)
   LamRecordWriter writer;
   char name[64];
 
-  OK(LamRecordWriterOpen(FE2_FILE, "fe2", LAM_WRITE_CREATE, &Scene, &writer));
-  OK(LamRecordWriterReals(writer, "/macro/nodes", 2, points, &nodes[0][0], "mm"));
-  OK(LamRecordWriterInts(writer, "/macro/elements", 2, one, elements));
-  OK(LamRecordWriterText(writer, "/macro/boundaries", "bottom\ntop\n"));
+  CHECK(LamRecordWriterOpen(FE2_FILE, "fe2", LAM_WRITE_CREATE, &Scene, &writer));
+  CHECK(LamRecordWriterReals(writer, "/macro/nodes", 2, points, &nodes[0][0], "mm"));
+  CHECK(LamRecordWriterInts(writer, "/macro/elements", 2, one, elements));
+  CHECK(LamRecordWriterText(writer, "/macro/boundaries", "bottom\ntop\n"));
   for (int k = 0; k < 3; k++) {
     PetscReal u[9][2];
 
@@ -129,69 +119,70 @@ static void write_fe2(void)
       u[i][1] = 0;
     }
     snprintf(name, sizeof name, "/macro/step/%d/u", k);
-    OK(LamRecordWriterReals(writer, name, 2, points, &u[0][0], "mm"));
+    CHECK(LamRecordWriterReals(writer, name, 2, points, &u[0][0], "mm"));
     snprintf(name, sizeof name, "/macro/step/%d/cauchy", k);
-    OK(LamRecordWriterReals(writer, name, 2, one, tensor, "MPa"));
+    CHECK(LamRecordWriterReals(writer, name, 2, one, tensor, "MPa"));
     snprintf(name, sizeof name, "/macro/step/%d/indicator", k);
-    OK(LamRecordWriterReals(writer, name, 2, four, indicator, "1"));
+    CHECK(LamRecordWriterReals(writer, name, 2, four, indicator, "1"));
   }
-  OK(LamRecordWriterReals(writer, "/macro/curve/load_factor", 1, count, load, "1"));
-  OK(LamRecordWriterReals(writer, "/macro/curve/reaction", 3, curve, &reaction[0][0][0], "N/mm"));
-  OK(LamRecordWriterInts(writer, "/macro/steps", 1, count, steps));
-  OK(LamRecordWriterClose(&writer));
+  CHECK(LamRecordWriterReals(writer, "/macro/curve/load_factor", 1, count, load, "1"));
+  CHECK(LamRecordWriterReals(writer, "/macro/curve/reaction", 3, curve, &reaction[0][0][0], "N/mm"));
+  CHECK(LamRecordWriterInts(writer, "/macro/steps", 1, count, steps));
+  CHECK(LamRecordWriterClose(&writer));
 }
 
 static void write_database(void)
 {
   LamRecordWriter writer;
 
-  OK(LamRecordWriterOpen(DATABASE_FILE, "database", LAM_WRITE_CREATE, &Scene, &writer));
+  CHECK(LamRecordWriterOpen(DATABASE_FILE, "database", LAM_WRITE_CREATE, &Scene, &writer));
   for (PetscInt64 k = 0; k < 4; k++) {
     const LamLoad load = {{1 + 0.05 * k, 0.1, 0, 0, 1, 0, 0, 0, 1}, 0, 0};
     LamResponse response;
 
-    OK(LamResponseInit(&load, &response));
+    CHECK(LamResponseInit(&load, &response));
     for (int i = 0; i < 9; i++) response.P[i] = 0.1 * k;
     response.status = k ? LAM_CONVERGED : LAM_NOT_CONVERGED;
-    OK(LamRecordWriterCommit(writer, 1, &k, &response));
+    CHECK(LamRecordWriterCommit(writer, 1, &k, &response));
   }
-  OK(LamRecordWriterClose(&writer));
+  CHECK(LamRecordWriterClose(&writer));
 }
 
 /* Two by three points, the last one not solved yet. */
 static void write_map(void)
 {
+  static const char *const texts[][2] = {{"/map/x/quantity", "shear"},
+                                         {"/map/x/spacing", "linear"},
+                                         {"/map/x/unit", "1"},
+                                         {"/map/y/quantity", "turgor"},
+                                         {"/map/y/spacing", "linear"},
+                                         {"/map/y/unit", "MPa"},
+                                         {"/map/modes", "none\nseparation\nrupture\n"}};
   const PetscInt dims[2] = {2, 3}, nx[1] = {3}, ny[1] = {2}, mode[6] = {0, 1, 1, 0, 2, -1};
   const PetscReal x[3] = {0, 0.1, 0.2}, y[2] = {0, 0.05}, factor[6] = {NAN, 0.5, 0.5, NAN, 0.9, NAN};
   LamRecordWriter writer;
 
-  OK(LamRecordWriterOpen(MAP_FILE, "map", LAM_WRITE_CREATE, &Scene, &writer));
-  OK(LamRecordWriterText(writer, "/map/x/quantity", "shear"));
-  OK(LamRecordWriterText(writer, "/map/x/spacing", "linear"));
-  OK(LamRecordWriterText(writer, "/map/x/unit", "1"));
-  OK(LamRecordWriterReals(writer, "/map/x/values", 1, nx, x, "1"));
-  OK(LamRecordWriterText(writer, "/map/y/quantity", "turgor"));
-  OK(LamRecordWriterText(writer, "/map/y/spacing", "linear"));
-  OK(LamRecordWriterText(writer, "/map/y/unit", "MPa"));
-  OK(LamRecordWriterReals(writer, "/map/y/values", 1, ny, y, "MPa"));
-  OK(LamRecordWriterText(writer, "/map/modes", "none\nseparation\nrupture\n"));
-  OK(LamRecordWriterInts(writer, "/map/mode", 2, dims, mode));
-  OK(LamRecordWriterReals(writer, "/map/load_factor", 2, dims, factor, "1"));
+  CHECK(LamRecordWriterOpen(MAP_FILE, "map", LAM_WRITE_CREATE, &Scene, &writer));
+  for (size_t k = 0; k < sizeof texts / sizeof texts[0]; k++)
+    CHECK(LamRecordWriterText(writer, texts[k][0], texts[k][1]));
+  CHECK(LamRecordWriterReals(writer, "/map/x/values", 1, nx, x, "1"));
+  CHECK(LamRecordWriterReals(writer, "/map/y/values", 1, ny, y, "MPa"));
+  CHECK(LamRecordWriterInts(writer, "/map/mode", 2, dims, mode));
+  CHECK(LamRecordWriterReals(writer, "/map/load_factor", 2, dims, factor, "1"));
   for (PetscInt64 k = 0; k < 5; k++) {
     const LamLoad load = {{1, 0.05 * k, 0, 0, 1, 0, 0, 0, 1}, 0, 0};
     LamResponse response;
 
-    OK(LamResponseInit(&load, &response));
+    CHECK(LamResponseInit(&load, &response));
     response.status = LAM_CONVERGED;
-    OK(LamRecordWriterCommit(writer, 1, &k, &response));
+    CHECK(LamRecordWriterCommit(writer, 1, &k, &response));
   }
-  OK(LamRecordWriterClose(&writer));
+  CHECK(LamRecordWriterClose(&writer));
 }
 
 static int write_files(void **state)
 {
-  PetscErrorHandlingInitialized = PETSC_TRUE; /* before PetscInitialize PETSc calls no handler else */
-  PetscPushErrorHandler(keep_message, NULL);
+  KeepErrorMessages();
   fill_scene();
   write_rve();
   write_fe2();
@@ -218,7 +209,7 @@ static void draws(PetscErrorCode (*plot)(const LamPlotRequest *), const char inp
   char bytes[16] = "";
   FILE *file;
 
-  OK(plot(&request));
+  CHECK(plot(&request));
   file = fopen(output, "rb");
   assert_non_null(file);
   assert_true(fread(bytes, 1, sizeof bytes - 1, file) > strlen(start));
@@ -234,75 +225,39 @@ TEST_IS(fe2_runs_are_drawn, draws(LamPlotFE2, FE2_FILE, "test_plot_fe2.pdf", "%P
 TEST_IS(databases_are_drawn, draws(LamPlotDatabase, DATABASE_FILE, "test_plot_db.pdf", "%PDF"));
 TEST_IS(maps_are_drawn, draws(LamPlotMap, MAP_FILE, "test_plot_map.pdf", "%PDF"));
 
-/* Expects that `plot` refuses the request with `code` and a message that contains `words`, and writes nothing. */
-static void refuses(PetscErrorCode (*plot)(const LamPlotRequest *), const LamPlotRequest *request, PetscErrorCode code,
-                    const char words[])
+typedef PetscErrorCode (*Plot)(const LamPlotRequest *);
+
+/* Expects that `plot` refuses this state and field (NULL: the default) with a message that contains `words`, and writes
+   nothing. */
+static void refuses(Plot plot, const char input[], PetscInt state, const char field[], const char words[])
 {
-  assert_int_equal(plot(request), code);
-  assert_non_null(strstr(Message, words));
-  assert_int_not_equal(access(request->output, F_OK), 0);
+  const LamPlotRequest request = {.input = input, .output = "test_plot_none.pdf", .state = state, .field = field};
+
+  assert_int_equal(plot(&request), PETSC_ERR_USER_INPUT);
+  assert_non_null(strstr(ErrorMessage, words));
+  assert_int_not_equal(access(request.output, F_OK), 0);
 }
 
-TEST(a_state_that_is_not_there_is_refused)
-{
-  const LamPlotRequest request = {.input = RVE_FILE, .output = "test_plot_none.pdf", .state = 7};
-
-  refuses(LamPlotRVE, &request, PETSC_ERR_USER_INPUT, "states 1 to 3");
-}
-
-TEST(a_state_without_an_answer_is_refused_with_its_reason)
-{
-  const LamPlotRequest request = {.input = RVE_FILE, .output = "test_plot_none.pdf", .state = 3};
-
-  refuses(LamPlotRVE, &request, PETSC_ERR_USER_INPUT, "limit load");
-}
-
-TEST(an_unknown_field_is_refused_with_the_known_ones)
-{
-  const LamPlotRequest request = {.input = FE2_FILE, .output = "test_plot_none.pdf", .state = -1, .field = "colour"};
-
-  refuses(LamPlotFE2, &request, PETSC_ERR_USER_INPUT, "von_mises, ");
-}
-
-TEST(a_step_that_is_not_there_is_refused)
-{
-  const LamPlotRequest request = {.input = FE2_FILE, .output = "test_plot_none.pdf", .state = 9};
-
-  refuses(LamPlotFE2, &request, PETSC_ERR_USER_INPUT, "steps 0 to 2");
-}
-
-TEST(a_field_that_the_file_lacks_is_refused)
-{
-  const LamPlotRequest request = {.input = FE2_FILE, .output = "test_plot_none.pdf", .state = -1, .field = "P_12"};
-
-  refuses(LamPlotFE2, &request, PETSC_ERR_USER_INPUT, "/macro/step/2/P");
-}
-
-TEST(a_field_that_no_record_has_is_refused)
-{
-  const LamPlotRequest request = {.input = MAP_FILE, .output = "test_plot_none.pdf", .state = -1, .field = "colour"};
-
-  refuses(LamPlotMap, &request, PETSC_ERR_USER_INPUT, "load_factor");
-}
-
-TEST(a_state_of_a_database_is_refused)
-{
-  const LamPlotRequest request = {.input = DATABASE_FILE, .output = "test_plot_none.pdf", .state = 1};
-
-  refuses(LamPlotDatabase, &request, PETSC_ERR_USER_INPUT, "--state");
-}
+TEST_IS(a_state_that_is_not_there_is_refused, refuses(LamPlotRVE, RVE_FILE, 7, NULL, "states 1 to 3"));
+TEST_IS(a_state_without_an_answer_is_refused_with_its_reason, refuses(LamPlotRVE, RVE_FILE, 3, NULL, "limit load"));
+TEST_IS(an_unknown_field_is_refused_with_the_known_ones, refuses(LamPlotFE2, FE2_FILE, -1, "colour", "von_mises, "));
+TEST_IS(a_step_that_is_not_there_is_refused, refuses(LamPlotFE2, FE2_FILE, 9, NULL, "steps 0 to 2"));
+TEST_IS(a_field_that_the_file_lacks_is_refused, refuses(LamPlotFE2, FE2_FILE, -1, "P_12", "/macro/step/2/P"));
+TEST_IS(a_field_that_no_record_has_is_refused, refuses(LamPlotMap, MAP_FILE, -1, "colour", "load_factor"));
+TEST_IS(a_state_of_a_database_is_refused, refuses(LamPlotDatabase, DATABASE_FILE, 1, NULL, "--state"));
 
 TEST(an_output_that_cannot_be_written_is_an_error_of_output)
 {
   const LamPlotRequest request = {.input = DATABASE_FILE, .output = "no-such-folder/a.pdf", .state = -1};
 
-  refuses(LamPlotDatabase, &request, PETSC_ERR_FILE_WRITE, "no-such-folder/a.pdf");
+  assert_int_equal(LamPlotDatabase(&request), PETSC_ERR_FILE_WRITE);
+  assert_non_null(strstr(ErrorMessage, "no-such-folder/a.pdf"));
 }
 
 TEST(only_three_formats_are_accepted)
 {
   assert_int_equal(LamCanvasCheckPath("a.gif"), PETSC_ERR_USER_INPUT);
-  assert_non_null(strstr(Message, ".png, .svg or .pdf"));
+  assert_non_null(strstr(ErrorMessage, ".png, .svg or .pdf"));
 }
 
 TEST_GROUP(.setup = write_files, .teardown = remove_files);

@@ -5,11 +5,10 @@
 #include <string.h>
 #include <unistd.h>
 #include "plot_slice.h"
+#include "support/error_message.h"
 #include "support/table_fixture.h"
 
 #define FILE_NAME "test_plot_slice.h5"
-#define OK(call) assert_int_equal((call), 0)
-
 static const char Text[] = "version: 1\n"
                            "rve:\n"
                            "  cell: {apothem: 75 um, wall_thickness: 11.25 um, orientation: 20 deg}\n"
@@ -22,15 +21,6 @@ static const char Text[] = "version: 1\n"
                            "accuracy: 0.02\n";
 static const PetscReal MPa = 0.11; /* C1 + C2 */
 static const Synthetic Material = {.mu = 1, .lambda = 2};
-
-static char Message[1024]; /* of the last error */
-
-static PetscErrorCode keep_message(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
-                                   PetscErrorType type, const char *message, void *ctx)
-{
-  if (type == PETSC_ERROR_INITIAL) snprintf(Message, sizeof Message, "%s", message);
-  return code;
-}
 
 /* U with logarithmic strains e1 and e2 along the angle and across. */
 static LamLoad load_of(PetscReal e1, PetscReal e2, PetscReal angle)
@@ -48,11 +38,10 @@ static int write_file(void **state)
   const LamLoad loads[] = {load_of(0.02, 0.05, 0.4), load_of(0.08, 0.01, 0.4), load_of(0.07, 0.08, 0.4)};
   LamScene *scene;
 
-  PetscErrorHandlingInitialized = PETSC_TRUE; /* before PetscInitialize PETSc calls no handler else */
-  PetscPushErrorHandler(keep_message, NULL);
-  OK(LamSceneReadText("test.yaml", Text, &scene));
-  OK(TableFixtureWrite(FILE_NAME, scene, &Material, 3, loads, 1e-4));
-  OK(LamSceneDestroy(&scene));
+  KeepErrorMessages();
+  CHECK(LamSceneReadText("test.yaml", Text, &scene));
+  CHECK(TableFixtureWrite(FILE_NAME, scene, &Material, 3, loads, 1e-4));
+  CHECK(LamSceneDestroy(&scene));
   return 0;
 }
 
@@ -63,13 +52,15 @@ static int remove_file(void **state)
   return 0;
 }
 
-static void read_slice(const LamPlotRequest *request, LamSlice *slice)
+static LamSlice read_slice(const LamPlotRequest *request)
 {
   LamDatabase database;
+  LamSlice slice;
 
-  OK(LamDatabaseOpen(FILE_NAME, &database));
-  OK(LamSliceRead(request, database, slice));
-  OK(LamDatabaseClose(&database));
+  CHECK(LamDatabaseOpen(FILE_NAME, &database));
+  CHECK(LamSliceRead(request, database, &slice));
+  CHECK(LamDatabaseClose(&database));
+  return slice;
 }
 
 static const LamPlotRequest Default = {.input = FILE_NAME, .output = "test_plot_slice.png", .state = -1};
@@ -91,9 +82,8 @@ TEST(a_slice_holds_the_answers_of_the_tissue)
 {
   const LamPlotRequest request = {.input = FILE_NAME, .state = -1, .angle = "15 deg"};
   PetscInt compared = 0;
-  LamSlice slice;
+  OWNED(LamSlice, LamSliceDestroy) slice = read_slice(&request);
 
-  read_slice(&request, &slice);
   for (PetscInt at = 0; at < LAM_SLICE_SAMPLES * LAM_SLICE_SAMPLES; at += 37) {
     const LamLoad load = load_of(LamSliceStrain(&slice, at % LAM_SLICE_SAMPLES),
                                  LamSliceStrain(&slice, at / LAM_SLICE_SAMPLES), 35 * PETSC_PI / 180);
@@ -102,7 +92,7 @@ TEST(a_slice_holds_the_answers_of_the_tissue)
 
     if (slice.verdict[at] != LAM_SLICE_ANSWERED) continue;
     compared++;
-    OK(LamResponseInit(&load, &truth));
+    CHECK(LamResponseInit(&load, &truth));
     SyntheticEvaluate(&Material, &load, &truth);
     for (int k = 0; k < 9; k++) square += truth.P[k] * truth.P[k];
     assert_near(slice.value[LAM_SLICE_STRESS][at], sqrt(square) * MPa, 0.02 * MPa);
@@ -111,7 +101,6 @@ TEST(a_slice_holds_the_answers_of_the_tissue)
     assert_near(slice.value[LAM_SLICE_INDICATOR][at], 100 * truth.lumen_fraction, 0.1);
   }
   assert_true(compared > 100);
-  OK(LamSliceDestroy(&slice));
 }
 
 /* What is above the diagonal at 0 degrees is what is below it at 30: one square shows both ways of stretching a cell.
@@ -120,10 +109,9 @@ TEST(thirty_degrees_are_zero_across)
 {
   const LamPlotRequest request = {.input = FILE_NAME, .state = -1, .angle = "30 deg"};
   const PetscInt n = LAM_SLICE_SAMPLES;
-  LamSlice zero, thirty;
+  OWNED(LamSlice, LamSliceDestroy) zero = read_slice(&Default);
+  OWNED(LamSlice, LamSliceDestroy) thirty = read_slice(&request);
 
-  read_slice(&Default, &zero);
-  read_slice(&request, &thirty);
   for (PetscInt i = 0; i < n; i += 7)
     for (PetscInt j = 0; j < n; j += 5) {
       assert_int_equal(zero.verdict[j * n + i], thirty.verdict[i * n + j]);
@@ -131,31 +119,24 @@ TEST(thirty_degrees_are_zero_across)
       assert_near(zero.value[LAM_SLICE_ERROR][j * n + i], thirty.value[LAM_SLICE_ERROR][i * n + j], 1e-4);
     }
   assert_true(zero.node_count == thirty.node_count);
-  OK(LamSliceDestroy(&zero));
-  OK(LamSliceDestroy(&thirty));
 }
 
 TEST(the_edges_of_a_slice_lie_outside_the_table)
 {
-  LamSlice slice;
+  OWNED(LamSlice, LamSliceDestroy) slice = read_slice(&Default);
 
-  read_slice(&Default, &slice);
   assert_int_equal(slice.verdict[0], LAM_SLICE_NOTHING);
   assert_true(isnan(slice.value[LAM_SLICE_STRESS][0]));
-  OK(LamSliceDestroy(&slice));
 }
 
 TEST(more_accuracy_is_refused_in_more_places)
 {
   const LamPlotRequest strict = {.input = FILE_NAME, .state = -1, .accuracy = "1e-6"};
-  LamSlice loose, tight;
+  OWNED(LamSlice, LamSliceDestroy) loose = read_slice(&Default);
+  OWNED(LamSlice, LamSliceDestroy) tight = read_slice(&strict);
 
-  read_slice(&Default, &loose);
-  read_slice(&strict, &tight);
   assert_true(tight.count[LAM_SLICE_INACCURATE] > loose.count[LAM_SLICE_INACCURATE]);
   assert_true(tight.count[LAM_SLICE_NOTHING] == loose.count[LAM_SLICE_NOTHING]);
-  OK(LamSliceDestroy(&loose));
-  OK(LamSliceDestroy(&tight));
 }
 
 /* The logarithms of the stretches of the three lattice directions, ascending. */
@@ -166,19 +147,18 @@ static void lattice_strains(const PetscReal F[9], PetscReal x[3])
 
     x[k] = log(hypot(F[0] * c + F[1] * s, F[3] * c + F[4] * s));
   }
-  OK(PetscSortReal(3, x));
+  CHECK(PetscSortReal(3, x));
 }
 
 TEST(nodes_are_drawn_where_their_strains_are)
 {
   const LamResponse *records;
   LamDatabase database;
-  LamSlice slice;
+  OWNED(LamSlice, LamSliceDestroy) slice = read_slice(&Default);
   PetscInt n;
 
-  read_slice(&Default, &slice);
-  OK(LamDatabaseOpen(FILE_NAME, &database));
-  OK(LamDatabaseGetRecords(database, &n, &records, NULL));
+  CHECK(LamDatabaseOpen(FILE_NAME, &database));
+  CHECK(LamDatabaseGetRecords(database, &n, &records, NULL));
   assert_true(slice.node_count > 8);
   for (PetscInt i = 0; i < slice.node_count; i++) {
     const LamLoad load = load_of(slice.nodes[i].at[0], slice.nodes[i].at[1], 20 * PETSC_PI / 180);
@@ -191,48 +171,27 @@ TEST(nodes_are_drawn_where_their_strains_are)
     }
     assert_near(best, 0, 1e-9); /* at 0 degrees all nodes lie in the slice, where two strains are equal, or far out */
   }
-  OK(LamDatabaseClose(&database));
-  OK(LamSliceDestroy(&slice));
+  CHECK(LamDatabaseClose(&database));
 }
 
-static void refuses(const LamPlotRequest *request, const char words[])
+static void refuses(LamPlotRequest request, const char words[])
 {
-  assert_int_equal(LamPlotDatabase(request), PETSC_ERR_USER_INPUT);
-  assert_non_null(strstr(Message, words));
+  request.input = FILE_NAME;
+  request.output = "none.png";
+  request.state = -1;
+  assert_int_equal(LamPlotDatabase(&request), PETSC_ERR_USER_INPUT);
+  assert_non_null(strstr(ErrorMessage, words));
 }
 
-TEST(bonded_tissue_has_no_suction)
-{
-  const LamPlotRequest request = {.input = FILE_NAME, .output = "none.png", .state = -1, .suction = "0.02 MPa"};
-
-  refuses(&request, "--suction 0.02 MPa");
-}
-
-TEST(an_angle_needs_its_unit)
-{
-  const LamPlotRequest request = {.input = FILE_NAME, .output = "none.png", .state = -1, .angle = "15"};
-
-  refuses(&request, "unit");
-}
-
-TEST(an_accuracy_is_a_number_above_zero)
-{
-  const LamPlotRequest request = {.input = FILE_NAME, .output = "none.png", .state = -1, .accuracy = "-1"};
-
-  refuses(&request, "--accuracy -1");
-}
-
-TEST(the_records_of_a_table_have_no_slice)
-{
-  const LamPlotRequest request = {
-      .input = FILE_NAME, .output = "none.png", .state = -1, .field = "stress", .angle = "15 deg"};
-
-  refuses(&request, "--angle 15 deg");
-}
+TEST_IS(bonded_tissue_has_no_suction, refuses((LamPlotRequest){.suction = "0.02 MPa"}, "--suction 0.02 MPa"));
+TEST_IS(an_angle_needs_its_unit, refuses((LamPlotRequest){.angle = "15"}, "unit"));
+TEST_IS(an_accuracy_is_a_number_above_zero, refuses((LamPlotRequest){.accuracy = "-1"}, "--accuracy -1"));
+TEST_IS(the_records_of_a_table_have_no_slice,
+        refuses((LamPlotRequest){.field = "stress", .angle = "15 deg"}, "--angle 15 deg"));
 
 TEST(a_table_is_drawn)
 {
-  OK(LamPlotDatabase(&Default));
+  CHECK(LamPlotDatabase(&Default));
   assert_int_equal(access(Default.output, F_OK), 0);
   remove(Default.output);
 }

@@ -260,7 +260,7 @@ FILE_TEST(a_full_disk_is_reported_and_spares_the_records)
   setrlimit(RLIMIT_FSIZE, &small);
   assert_int_equal(LamRecordWriterCommit(writer, 2000, keys, r), PETSC_ERR_FILE_WRITE);
   setrlimit(RLIMIT_FSIZE, &old);
-  assert_non_null(strstr(message, "File too large"));
+  assert_non_null(strstr(ErrorMessage, "File too large"));
   LamRecordWriterClose(&writer);
   assert_int_equal(CountRecords(), 3);
   free(r);

@@ -59,12 +59,10 @@ TEST(a_free_body_is_its_material_point)
   "  kinetics:\n"                                                                                                      \
   "    - {of: lamella, law: first_order, rate: 0.1 /h, activation: 60 kJ/mol}\n"                                       \
   "    - {of: walls, law: autocatalytic, rate: 0.2 /h, second_rate: 2 /h, enzyme: 0.1, plateau: 0.6}\n"
-  Told point = FollowPoint(BODY_TISSUE CHANGES, 1e-7);
-  Told body = FollowBodyToEnd(BODY_TISSUE SQUARE("") CHANGES, 1e-7);
+  OWNED(Told, ForgetTold) point = FollowPoint(BODY_TISSUE CHANGES, 1e-7);
+  OWNED(Told, ForgetTold) body = FollowBodyToEnd(BODY_TISSUE SQUARE("") CHANGES, 1e-7);
 
   AssertAlike(&body, &point, 5e-6);
-  ForgetTold(&point);
-  ForgetTold(&body);
 #undef CHANGES
 }
 
@@ -76,28 +74,26 @@ TEST(a_free_body_is_its_material_point)
  */
 TEST(stress_that_relaxes_is_that_of_the_point)
 {
-  Told free = FollowPoint(BODY_TISSUE RELAXATION, 1e-7);
+  OWNED(Told, ForgetTold) free = FollowPoint(BODY_TISSUE RELAXATION, 1e-7);
   const PetscReal inflated = free.points[0].response.load.F[4];
   char text[2000];
 
   snprintf(text, sizeof(text), "%s  program: [{for: 20 s, F: [[free, 0], [0, %.17g]], P: [[0 MPa, x], [x, x]]}]\n",
            BODY_TISSUE RELAXATION, 1 + 0.1 / inflated);
-  Told point = FollowPoint(text, 1e-7);
-  Told body = FollowBodyToEnd(BODY_TISSUE STRETCHED RELAXATION "  program: [{for: 20 s, load: 1}]\n", 1e-7);
+  OWNED(Told, ForgetTold) point = FollowPoint(text, 1e-7);
+  OWNED(Told, ForgetTold)
+  body = FollowBodyToEnd(BODY_TISSUE STRETCHED RELAXATION "  program: [{for: 20 s, load: 1}]\n", 1e-7);
 
   AssertAlike(&body, &point, 5e-6);
   assert_near(BodyReaction(LastBody(&body), "top")[1], point.points[point.count - 1].response.P[4], 1e-6);
-  ForgetTold(&free);
-  ForgetTold(&point);
-  ForgetTold(&body);
 }
 
 TEST(a_jump_of_the_load_leaves_water_no_time)
 {
-  Told body =
-      FollowBodyToEnd(BODY_TISSUE STRETCHED RELAXATION "  program: [{for: 10 min}, {for: 0 s, load: 1}]\n", 1e-6);
-  Told sudden =
-      FollowBodyToEnd(BODY_TISSUE STRETCHED RELAXATION "  program: [{for: 10 min}, {for: 1 ms, load: 1}]\n", 1e-6);
+  OWNED(Told, ForgetTold)
+  body = FollowBodyToEnd(BODY_TISSUE STRETCHED RELAXATION "  program: [{for: 10 min}, {for: 0 s, load: 1}]\n", 1e-6);
+  OWNED(Told, ForgetTold)
+  sudden = FollowBodyToEnd(BODY_TISSUE STRETCHED RELAXATION "  program: [{for: 10 min}, {for: 1 ms, load: 1}]\n", 1e-6);
   const LamBodyState *a = LastBody(&body), *b = LastBody(&sudden);
   PetscInt k = 0;
 
@@ -105,56 +101,55 @@ TEST(a_jump_of_the_load_leaves_water_no_time)
   assert_near(body.bodies[k].time, 600, 20);
   assert_near(a->step.turgor_mean, b->step.turgor_mean, 1e-5);
   assert_near(BodyReaction(a, "top")[1], BodyReaction(b, "top")[1], 1e-5);
-  ForgetTold(&body);
-  ForgetTold(&sudden);
 }
 
 /* The mean change of F since the start is 0.9: what goes astray is judged from the last state, not from the start. */
 TEST(a_body_that_is_sheared_far_goes_on_over_bends)
 {
-  Told body = FollowBodyToEnd(BODY_TISSUE "macro:\n"
-                                          "  mesh: {box: [10 mm, 10 mm], elements: [2, 2]}\n"
-                                          "  boundary:\n"
-                                          "    - {on: bottom, displacement: [0 mm, 0 mm]}\n"
-                                          "    - {on: top, displacement: [9 mm, 0 mm]}\n"
-                                          "process:\n"
-                                          "  duration: 3 h\n"
-                                          "  kinetics: [{of: walls, law: table, time_unit: h, table: [[0, 1], [2.5, "
-                                          "0.8], [3, 0.7]]}]\n"
-                                          "  program: [{for: 1 h, load: 1}, {for: 1 h}, {for: 1 h, load: 0.9}]\n",
-                              1e-4);
+  OWNED(Told, ForgetTold)
+  body = FollowBodyToEnd(BODY_TISSUE "macro:\n"
+                                     "  mesh: {box: [10 mm, 10 mm], elements: [2, 2]}\n"
+                                     "  boundary:\n"
+                                     "    - {on: bottom, displacement: [0 mm, 0 mm]}\n"
+                                     "    - {on: top, displacement: [9 mm, 0 mm]}\n"
+                                     "process:\n"
+                                     "  duration: 3 h\n"
+                                     "  kinetics: [{of: walls, law: table, time_unit: h, table: [[0, 1], [2.5, "
+                                     "0.8], [3, 0.7]]}]\n"
+                                     "  program: [{for: 1 h, load: 1}, {for: 1 h}, {for: 1 h, load: 0.9}]\n",
+                         1e-4);
 
   assert_near(LastBody(&body)->load, 0.9, 1e-12);
   assert_near(LastBody(&body)->walls, 0.7, 1e-12);
-  ForgetTold(&body);
 }
 
 /* ---- water ---- */
 
 TEST(membranes_that_let_nothing_pass_keep_the_water_of_a_body)
 {
-  Told body = FollowBodyToEnd(BODY_TISSUE SHEARED "process:\n"
-                                                  "  duration: 1 h\n"
-                                                  "  water: {permeability: 0 m/s/MPa, osmotic_pressure: 0.5 MPa}\n"
-                                                  "  program: [{for: 1 h, load: 1}]\n",
-                              1e-5);
+  OWNED(Told, ForgetTold)
+  body = FollowBodyToEnd(BODY_TISSUE SHEARED "process:\n"
+                                             "  duration: 1 h\n"
+                                             "  water: {permeability: 0 m/s/MPa, osmotic_pressure: 0.5 MPa}\n"
+                                             "  program: [{for: 1 h, load: 1}]\n",
+                         1e-5);
 
   for (PetscInt k = 0; k < body.count; k++) assert_near(body.bodies[k].water, 1, 1e-12);
   assert_true(LastBody(&body)->turgor_max > body.bodies[0].turgor_max);
-  ForgetTold(&body);
 }
 
 TEST(membranes_of_a_body_without_resistance_are_in_equilibrium)
 {
-  Told body = FollowBodyToEnd(BODY_TISSUE SQUARE("") "process:\n"
-                                                     "  duration: 1 h\n"
-                                                     "  water: {permeability: infinite, osmotic_pressure: 0.5 MPa, "
-                                                     "non_osmotic: 0.1}\n"
-                                                     "  surroundings:\n"
-                                                     "    - {time: 0 h, outside: 0.45 MPa}\n"
-                                                     "    - {time: 0.5 h, outside: 0.4 MPa}\n"
-                                                     "    - {time: 0.5 h, outside: 0.44 MPa}\n",
-                              1e-6);
+  OWNED(Told, ForgetTold)
+  body = FollowBodyToEnd(BODY_TISSUE SQUARE("") "process:\n"
+                                                "  duration: 1 h\n"
+                                                "  water: {permeability: infinite, osmotic_pressure: 0.5 MPa, "
+                                                "non_osmotic: 0.1}\n"
+                                                "  surroundings:\n"
+                                                "    - {time: 0 h, outside: 0.45 MPa}\n"
+                                                "    - {time: 0.5 h, outside: 0.4 MPa}\n"
+                                                "    - {time: 0.5 h, outside: 0.44 MPa}\n",
+                         1e-6);
   const PetscReal stress = body.scene->scales.stress, osmotic = 0.5e6 / stress;
 
   for (PetscInt k = 0; k < body.count; k++) {
@@ -162,20 +157,20 @@ TEST(membranes_of_a_body_without_resistance_are_in_equilibrium)
 
     assert_near(b->step.turgor_mean, osmotic * 0.9 / (b->water - 0.1) - b->outside, 1e-8);
   }
-  ForgetTold(&body);
 }
 
 /* In the end V - V_b = N / pi_out; back in the first bath the walls are met again. */
 TEST(a_plasmolysed_body_follows_boyle_and_van_t_hoff)
 {
-  Told body = FollowBodyToEnd(BODY_TISSUE SHEARED "process:\n"
-                                                  "  duration: 4 h\n" WATER "  surroundings:\n"
-                                                  "    - {time: 0 h, outside: 0.45 MPa}\n"
-                                                  "    - {time: 0 h, outside: 0.8 MPa}\n"
-                                                  "    - {time: 2 h, outside: 0.8 MPa}\n"
-                                                  "    - {time: 2 h, outside: 0.45 MPa}\n"
-                                                  "  program: [{for: 10 s, load: 1}]\n",
-                              1e-5);
+  OWNED(Told, ForgetTold)
+  body = FollowBodyToEnd(BODY_TISSUE SHEARED "process:\n"
+                                             "  duration: 4 h\n" WATER "  surroundings:\n"
+                                             "    - {time: 0 h, outside: 0.45 MPa}\n"
+                                             "    - {time: 0 h, outside: 0.8 MPa}\n"
+                                             "    - {time: 2 h, outside: 0.8 MPa}\n"
+                                             "    - {time: 2 h, outside: 0.45 MPa}\n"
+                                             "  program: [{for: 10 s, load: 1}]\n",
+                         1e-5);
   const LamBodyState *lost = FindBodyEvent(&body, LAM_EVENT_TURGOR_LOST),
                      *found = FindBodyEvent(&body, LAM_EVENT_TURGOR_FOUND);
   PetscInt k = 0;
@@ -189,7 +184,6 @@ TEST(a_plasmolysed_body_follows_boyle_and_van_t_hoff)
   assert_near(body.bodies[k].water, 0.1 + 0.9 * 0.5 / 0.8, 1e-5);
   assert_near(LastBody(&body)->plasmolysed, 0, 1e-12);
   assert_true(LastBody(&body)->turgor_min > 0.3);
-  ForgetTold(&body);
 }
 
 /* ---- walls ---- */
@@ -197,35 +191,35 @@ TEST(a_plasmolysed_body_follows_boyle_and_van_t_hoff)
 /* Free of load s Psi(F, p / s) is stationary at the same F where p / s is as before. */
 TEST(turgor_that_falls_with_the_walls_leaves_the_shape)
 {
-  Told body = FollowBodyToEnd(BODY_TISSUE STRETCHED "process:\n"
-                                                    "  duration: 1 h\n"
-                                                    "  surroundings:\n"
-                                                    "    - {time: 0 h, turgor: 0.05 MPa}\n"
-                                                    "    - {time: 1 h, turgor: 0.02 MPa}\n"
-                                                    "  kinetics:\n"
-                                                    "    - {of: walls, law: table, time_unit: h, table: [[0, 1], [1, "
-                                                    "0.4]]}\n"
-                                                    "  program: [{for: 0 s, load: 1}]\n",
-                              1e-7);
+  OWNED(Told, ForgetTold)
+  body = FollowBodyToEnd(BODY_TISSUE STRETCHED "process:\n"
+                                               "  duration: 1 h\n"
+                                               "  surroundings:\n"
+                                               "    - {time: 0 h, turgor: 0.05 MPa}\n"
+                                               "    - {time: 1 h, turgor: 0.02 MPa}\n"
+                                               "  kinetics:\n"
+                                               "    - {of: walls, law: table, time_unit: h, table: [[0, 1], [1, "
+                                               "0.4]]}\n"
+                                               "  program: [{for: 0 s, load: 1}]\n",
+                         1e-7);
   const LamBodyState *first = &body.bodies[0], *last = LastBody(&body);
 
   assert_near(last->walls, 0.4, 1e-12);
   assert_near(BodyReaction(last, "top")[1], 0.4 * BodyReaction(first, "top")[1], 1e-8);
-  ForgetTold(&body);
 }
 
 TEST(a_body_whose_walls_dissolve_ends_with_a_reason)
 {
-  Told body = FollowBody(BODY_TISSUE SHEARED "process:\n"
-                                             "  duration: 1 h\n"
-                                             "  kinetics: [{of: walls, law: table, time_unit: h, table: [[0, 1], [0.9, "
-                                             "0], [1, 0]]}]\n",
-                         1e-5);
+  OWNED(Told, ForgetTold)
+  body = FollowBody(BODY_TISSUE SHEARED "process:\n"
+                                        "  duration: 1 h\n"
+                                        "  kinetics: [{of: walls, law: table, time_unit: h, table: [[0, 1], [0.9, "
+                                        "0], [1, 0]]}]\n",
+                    1e-5);
 
   assert_int_equal(body.reason, LAM_PROCESS_ENDED);
   assert_true(strlen(body.message) > 20);
   assert_true(isfinite(LastBody(&body)->step.turgor_mean));
-  ForgetTold(&body);
 }
 
 /* ---- precision ---- */
@@ -241,10 +235,10 @@ TEST(a_body_whose_walls_dissolve_ends_with_a_reason)
 
 TEST(errors_of_a_body_follow_the_tolerance)
 {
-  Told exact = FollowBodyToEnd(BODY_TISSUE SHEARED STORAGE, 1e-9);
+  OWNED(Told, ForgetTold) exact = FollowBodyToEnd(BODY_TISSUE SHEARED STORAGE, 1e-9);
 
   for (PetscReal tolerance = 1e-3; tolerance > 0.5e-7; tolerance /= 10) {
-    Told body = FollowBodyToEnd(BODY_TISSUE SHEARED STORAGE, tolerance);
+    OWNED(Told, ForgetTold) body = FollowBodyToEnd(BODY_TISSUE SHEARED STORAGE, tolerance);
     PetscReal error = 0;
     PetscInt i = 0;
 
@@ -259,28 +253,23 @@ TEST(errors_of_a_body_follow_the_tolerance)
       error = fmax(error, fabs(BodyReaction(a, "top")[0] - BodyReaction(b, "top")[0]));
     }
     if (error > 20 * tolerance) fail_msg("tolerance %g: error %g", tolerance, error);
-    ForgetTold(&body);
   }
-  ForgetTold(&exact);
 }
 
 /* Largest traction over the strength at a time, by a fresh run to there. */
 static PetscReal Excess(PetscReal time)
 {
-  PetscReal ratio;
-  Told body;
+  OWNED(Told, ForgetTold) body;
 
   ReadScene(BODY_TISSUE SHEARED STORAGE, 1e-8, &body);
   body.scene->process.duration = body.scene->process.output = time;
   RunBody(&body);
-  ratio = LastBody(&body)->ratio[LAM_RATIO_LAMELLA_NORMAL];
-  ForgetTold(&body);
-  return ratio - 1;
+  return LastBody(&body)->ratio[LAM_RATIO_LAMELLA_NORMAL] - 1;
 }
 
 TEST(an_event_of_a_body_is_where_bisection_with_fresh_runs_finds_it)
 {
-  Told body = FollowBodyToEnd(BODY_TISSUE SHEARED STORAGE, 1e-7);
+  OWNED(Told, ForgetTold) body = FollowBodyToEnd(BODY_TISSUE SHEARED STORAGE, 1e-7);
   const LamBodyState *event = FindBodyEvent(&body, LAM_EVENT_LAMELLA_NORMAL);
   PetscReal low, high;
 
@@ -295,7 +284,6 @@ TEST(an_event_of_a_body_is_where_bisection_with_fresh_runs_finds_it)
   }
   assert_near(event->time / low, 1, 1e-5);
   assert_near(event->ratio[LAM_RATIO_LAMELLA_NORMAL], 1, 1e-5);
-  ForgetTold(&body);
 }
 
 TEST_GROUP(.petsc = 1);

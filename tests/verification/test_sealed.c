@@ -17,15 +17,22 @@ static int SolveAll(void **state)
   return 0;
 }
 
+static SealedTissue Sealed(const LamMicrostructure *micro, const LamLoad *load, double bulk_modulus)
+{
+  SealedTissue s;
+
+  assert_int_equal(SealedCreate(micro, load, bulk_modulus, &s), 0);
+  return s;
+}
+
 static LamResponse Solve(const LamMicrostructure *micro, const LamLoad *load, double bulk_modulus)
 {
   LamResponse response;
-  SealedTissue s;
+  OWNED(SealedTissue, SealedDestroy) s;
 
   assert_int_equal(SealedCreate(micro, load, bulk_modulus, &s), 0);
   assert_int_equal(SealedSolve(&s, load, &response), 0);
   assert_int_equal(response.status, LAM_CONVERGED);
-  assert_int_equal(SealedDestroy(&s), 0);
   return response;
 }
 
@@ -71,10 +78,9 @@ TEST(TangentFollowsFromThatAtThePressureReached)
     const LamResponse *sealed = &figures[k].sweep.response;
     LamLoad load = states[k].load;
     LamResponse open;
-    SealedTissue s;
+    OWNED(SealedTissue, SealedDestroy) s = Sealed(&states[k].micro, &load, states[k].bulk_modulus);
     double compliance;
 
-    assert_int_equal(SealedCreate(&states[k].micro, &load, states[k].bulk_modulus, &s), 0);
     compliance = s.water[0] / s.bulk_modulus;
     assert_int_equal(LamRVEUnseal(s.rve), 0);
     load.turgor = sealed->turgor_mean;
@@ -88,7 +94,6 @@ TEST(TangentFollowsFromThatAtThePressureReached)
         assert_near(open.tangent[9 * a + b] + open.P_turgor[a] * open.P_turgor[b] / (compliance - open.energy_turgor2),
                     sealed->tangent[9 * a + b], 1e-10 * TangentScale(sealed));
       }
-    assert_int_equal(SealedDestroy(&s), 0);
   }
 }
 
@@ -174,14 +179,13 @@ TEST(AnswerDoesNotNeedTheStateThatWasSealed)
     const LamMicrostructure micro = contact ? ContactTissue(6, 2) : DefaultTissue();
     const LamLoad load = ContactLoad(1, 0.1, 0, 1, 0.02, contact ? 0.002 : 0);
     LamResponse near, far;
-    SealedTissue s;
+    OWNED(SealedTissue, SealedDestroy) s;
 
     assert_int_equal(SealedCreate(&micro, &load, SEALED_WATER, &s), 0);
     assert_int_equal(SealedSolve(&s, &load, &near), 0);
     far = SolveFromReference(s.rve, load);
     assert_int_equal(far.status, LAM_CONVERGED);
     for (int i = 0; i < 9; i++) assert_near(far.P[i], near.P[i], 1e-9);
-    assert_int_equal(SealedDestroy(&s), 0);
   }
 }
 
@@ -212,7 +216,7 @@ TEST(EachPressureHasItsNegativeEigenvalue)
   LamMicrostructure micro = DefaultTissue();
   const LamLoad load = PlaneLoad(1, 0.1, 0, 1, 0.2);
   LamResponse response;
-  SealedTissue s;
+  OWNED(SealedTissue, SealedDestroy) s;
   PetscInt negative;
   PetscBool ok;
 
@@ -223,7 +227,6 @@ TEST(EachPressureHasItsNegativeEigenvalue)
   assert_int_equal(response.negative_eigenvalues, 0);
   assert_int_equal(LamLinearFactor(&s.rve->linear, 0.0, &negative, &ok), 0);
   assert_int_equal(negative, 2);
-  assert_int_equal(SealedDestroy(&s), 0);
 }
 
 static LamResponse SolveFree(SealedTissue *s, LamLoad load)
@@ -243,7 +246,7 @@ TEST(StressMayBePrescribed)
     const LamMicrostructure micro = contact ? ContactTissue(6, 2) : DefaultTissue();
     const LamLoad load = ContactLoad(1, 0.1, 0, 1, 0.02, contact ? 0.02 : 0);
     LamResponse mixed, plain;
-    SealedTissue s;
+    OWNED(SealedTissue, SealedDestroy) s;
 
     assert_int_equal(SealedCreate(&micro, &load, SEALED_WATER, &s), 0);
     mixed = SolveFree(&s, load);
@@ -252,7 +255,6 @@ TEST(StressMayBePrescribed)
     assert_near(mixed.P[4], 0.0, 1e-9);
     assert_int_equal(SealedSolve(&s, &mixed.load, &plain), 0);
     for (int i = 0; i < 9; i++) assert_near(mixed.P[i], plain.P[i], 1e-8);
-    assert_int_equal(SealedDestroy(&s), 0);
   }
 }
 
@@ -262,7 +264,7 @@ TEST(SealedTissueHasNoLimitTurgor)
   const LamLoad load = PlaneLoad(1, 0, 0, 1, 0.05 / TISSUE_STRESS);
   LamMicrostructure micro = DefaultTissue();
   LamResponse sealed;
-  SealedTissue s;
+  OWNED(SealedTissue, SealedDestroy) s;
 
   micro.wall.law = LAM_WALL_MOONEY_RIVLIN;
   assert_int_equal(SealedCreate(&micro, &load, SEALED_WATER, &s), 0);
@@ -271,7 +273,6 @@ TEST(SealedTissueHasNoLimitTurgor)
   assert_true(sealed.turgor_mean < 0.1 * load.turgor);
   assert_int_equal(LamRVEUnseal(s.rve), 0);
   assert_int_equal(SolveFree(&s, load).status, LAM_NO_EQUILIBRIUM);
-  assert_int_equal(SealedDestroy(&s), 0);
 }
 
 /* An RVE that could be sealed and is not is like any other. */
@@ -280,7 +281,7 @@ TEST(UnsealedIsPrescribed)
   const LamMicrostructure micro = ContactTissue(6, 2);
   const LamLoad load = ContactLoad(1, 0.1, 0, 1, 0.02, 0.002);
   LamResponse plain, unsealed;
-  SealedTissue s;
+  OWNED(SealedTissue, SealedDestroy) s;
 
   plain = SolveTissue(&micro, load);
   assert_int_equal(SealedCreate(&micro, &load, SEALED_WATER, &s), 0);
@@ -288,7 +289,6 @@ TEST(UnsealedIsPrescribed)
   unsealed = SolveFromReference(s.rve, load);
   for (int i = 0; i < 9; i++) assert_near(unsealed.P[i], plain.P[i], 1e-10);
   assert_true(unsealed.turgor_mean == load.turgor && unsealed.turgor_spread == 0.0);
-  assert_int_equal(SealedDestroy(&s), 0);
 }
 
 TEST_GROUP(.petsc = 1, .setup = SolveAll);

@@ -145,36 +145,50 @@ static LamResponse AskOne(LamResponder *responder, const LamLoad *load)
   return response;
 }
 
-/* Of a material with known answers, whose whole volume is lumen: p = p0 + K_w (1 - J / J0) exactly. */
-TEST(PressureAndDerivativesAreExact)
-{
-  const double h = 1e-4, water_modulus = 50;
-  LamLoad load = {.F = {1.05, 0.1, 0, -0.02, 0.98, 0, 0, 0, 1.01}, .turgor = 0.3};
+/* Points of a material with known answers, behind the responder that seals them at turgor 0.3. */
+typedef struct {
   LamResponder open, sealed;
   Synthetic *material;
+} Sealed;
+
+static void SealedOpen(double bulk_modulus, Sealed *s)
+{
+  CHECK(SyntheticCreate(POINTS, &s->open, &s->material));
+  CHECK(LamSealedResponderCreate(PETSC_COMM_SELF, &s->open, POINTS, &s->sealed));
+  Inflate(&s->sealed, 0.3, 0);
+  CHECK(s->sealed.seal(s->sealed.ctx, bulk_modulus));
+}
+
+static void SealedClose(Sealed *s)
+{
+  CHECK(s->sealed.destroy(&s->sealed.ctx));
+  CHECK(s->open.destroy(&s->open.ctx));
+}
+
+#define SEALED_TEST(name, bulk_modulus) TEST_ON(name, Sealed, s, SealedOpen(bulk_modulus, s), SealedClose(s))
+
+/* Of a material with known answers, whose whole volume is lumen: p = p0 + K_w (1 - J / J0) exactly. */
+SEALED_TEST(PressureAndDerivativesAreExact, 50)
+{
+  const double h = 1e-4;
+  LamLoad load = {.F = {1.05, 0.1, 0, -0.02, 0.98, 0, 0, 0, 1.01}, .turgor = 0.3};
   LamResponse r;
   double J;
 
-  assert_int_equal(SyntheticCreate(POINTS, &open, &material), 0);
-  assert_int_equal(LamSealedResponderCreate(PETSC_COMM_SELF, &open, POINTS, &sealed), 0);
-  Inflate(&sealed, 0.3, 0);
-  assert_int_equal(sealed.seal(sealed.ctx, water_modulus), 0);
-  r = AskOne(&sealed, &load);
+  r = AskOne(&s->sealed, &load);
   J = (1.05 * 0.98 + 0.1 * 0.02) * 1.01;
-  assert_near(r.turgor_mean, 0.3 + water_modulus * (1 - J), 1e-9);
+  assert_near(r.turgor_mean, 0.3 + 50 * (1 - J), 1e-9);
   for (int k = 0; k < 9; k++) {
     LamResponse plus, minus;
 
     load.F[k] += h;
-    plus = AskOne(&sealed, &load);
+    plus = AskOne(&s->sealed, &load);
     load.F[k] -= 2 * h;
-    minus = AskOne(&sealed, &load);
+    minus = AskOne(&s->sealed, &load);
     load.F[k] += h;
     assert_near(r.P[k], (plus.energy - minus.energy) / (2 * h), 1e-6);
     for (int i = 0; i < 9; i++) assert_near(r.tangent[9 * i + k], (plus.P[i] - minus.P[i]) / (2 * h), 1e-5);
   }
-  assert_int_equal(sealed.destroy(&sealed.ctx), 0);
-  assert_int_equal(open.destroy(&open.ctx), 0);
 }
 
 /* Tissues of other units have the same water: the pressure is as exact as of one. */
@@ -207,47 +221,31 @@ TEST(WaterIsTheSameInAllTissues)
 }
 
 /* A rejected step leaves no trace in the pressures that questions start from. */
-TEST(RejectedStepIsForgotten)
+SEALED_TEST(RejectedStepIsForgotten, 50)
 {
   const LamLoad load = PlaneLoad(1.01, 0, 0, 1, 0.3), far = PlaneLoad(1.2, 0, 0, 1, 0.3);
-  LamResponder open, sealed;
-  Synthetic *material;
   LamResponse before, after;
 
-  assert_int_equal(SyntheticCreate(POINTS, &open, &material), 0);
-  assert_int_equal(LamSealedResponderCreate(PETSC_COMM_SELF, &open, POINTS, &sealed), 0);
-  Inflate(&sealed, 0.3, 0);
-  assert_int_equal(sealed.seal(sealed.ctx, 50), 0);
-  before = AskOne(&sealed, &load);
-  assert_int_equal(sealed.reject(sealed.ctx), 0);
-  (void)AskOne(&sealed, &far);
-  assert_int_equal(sealed.reject(sealed.ctx), 0);
-  after = AskOne(&sealed, &load);
+  before = AskOne(&s->sealed, &load);
+  assert_int_equal(s->sealed.reject(s->sealed.ctx), 0);
+  (void)AskOne(&s->sealed, &far);
+  assert_int_equal(s->sealed.reject(s->sealed.ctx), 0);
+  after = AskOne(&s->sealed, &load);
   assert_memory_equal(before.P, after.P, sizeof(before.P));
-  assert_int_equal(material->rejects, 2);
-  assert_int_equal(sealed.destroy(&sealed.ctx), 0);
-  assert_int_equal(open.destroy(&open.ctx), 0);
+  assert_int_equal(s->material->rejects, 2);
 }
 
 /* Where the tissue has no answer, that is the answer, with its reason and the pressure. */
-TEST(WhatHasNoAnswerIsTold)
+SEALED_TEST(WhatHasNoAnswerIsTold, 50)
 {
   const LamLoad load = PlaneLoad(1.2, 0, 0, 1, 0.3);
-  LamResponder open, sealed;
-  Synthetic *material;
   LamResponse r;
 
-  assert_int_equal(SyntheticCreate(POINTS, &open, &material), 0);
-  assert_int_equal(LamSealedResponderCreate(PETSC_COMM_SELF, &open, POINTS, &sealed), 0);
-  Inflate(&sealed, 0.3, 0);
-  assert_int_equal(sealed.seal(sealed.ctx, 50), 0);
-  material->largest_strain = 0.1;
-  r = AskOne(&sealed, &load);
+  s->material->largest_strain = 0.1;
+  r = AskOne(&s->sealed, &load);
   assert_int_equal(r.status, LAM_NOT_CONVERGED);
   assert_non_null(strstr(r.reason, "sealed, at a pressure of 0.3 (C1+C2): too far"));
-  assert_true(r.load.turgor == 0.3 && sealed.failures == 1);
-  assert_int_equal(sealed.destroy(&sealed.ctx), 0);
-  assert_int_equal(open.destroy(&open.ctx), 0);
+  assert_true(r.load.turgor == 0.3 && s->sealed.failures == 1);
 }
 
 /* A database of (F, turgor) that is filled as it is asked; ctx of the responders on it. */
@@ -292,47 +290,43 @@ static void CloseTable(Tabulated *t)
   assert_int_equal(LamSceneDestroy(&t->scene), 0);
 }
 
+#define TABULATED_TEST(name, interface) TEST_ON(name, Tabulated, t, OpenTable(interface, t), CloseTable(t))
+
 /* Volumes that hardly change: a table made for stress to 1 % gives the pressure, too. */
-TEST(TableOfBondedCellsGivesThePressure)
+TABULATED_TEST(TableOfBondedCellsGivesThePressure, "law: bonded")
 {
   LamResponse solved[POINTS], answered[POINTS];
   LamLoad loads[POINTS];
-  Tabulated t;
 
-  OpenTable("law: bonded", &t);
-  Inflate(&t.direct, t.scene->turgor, 0);
-  Inflate(&t.sealed, t.scene->turgor, 0);
-  assert_int_equal(t.direct.seal(t.direct.ctx, SEALED_WATER), 0);
-  assert_int_equal(t.sealed.seal(t.sealed.ctx, SEALED_WATER), 0);
+  Inflate(&t->direct, t->scene->turgor, 0);
+  Inflate(&t->sealed, t->scene->turgor, 0);
+  assert_int_equal(t->direct.seal(t->direct.ctx, SEALED_WATER), 0);
+  assert_int_equal(t->sealed.seal(t->sealed.ctx, SEALED_WATER), 0);
   for (int i = 0; i < POINTS; i++)
-    loads[i] = PlaneLoad(1.05, 0.1 - 0.05 * i, 0, (1 + 0.02 * i) / 1.05, t.scene->turgor);
-  Ask(&t.direct, loads, solved);
-  Ask(&t.sealed, loads, answered);
+    loads[i] = PlaneLoad(1.05, 0.1 - 0.05 * i, 0, (1 + 0.02 * i) / 1.05, t->scene->turgor);
+  Ask(&t->direct, loads, solved);
+  Ask(&t->sealed, loads, answered);
   for (int i = 0; i < POINTS; i++) {
     assert_int_equal(answered[i].source, LAM_SOURCE_DATABASE);
     assert_true(LamStressError(answered[i].P, solved[i].P) < 0.003);
     assert_near(answered[i].turgor_mean, solved[i].turgor_mean, 0.002);
     assert_near(answered[i].tangent[0] / solved[i].tangent[0], 1, 0.002);
   }
-  CloseTable(&t);
 }
 
 /* Where cells part a table does not know their lumens well enough. */
-TEST(TableOfCellsThatPartIsRefused)
+TABULATED_TEST(TableOfCellsThatPartIsRefused, "law: contact, cohesion: 0.02 MPa")
 {
   LamLoad load = PlaneLoad(1, 0, 0, 1, 0.02 / TISSUE_STRESS);
   LamResponse r;
-  Tabulated t;
 
-  OpenTable("law: contact, cohesion: 0.02 MPa", &t);
-  load.cohesion = t.scene->cohesion;
-  Inflate(&t.sealed, t.scene->turgor, t.scene->cohesion);
-  assert_int_equal(t.sealed.seal(t.sealed.ctx, SEALED_WATER), 0);
-  r = AskOne(&t.sealed, &load);
+  load.cohesion = t->scene->cohesion;
+  Inflate(&t->sealed, t->scene->turgor, t->scene->cohesion);
+  assert_int_equal(t->sealed.seal(t->sealed.ctx, SEALED_WATER), 0);
+  r = AskOne(&t->sealed, &load);
   assert_int_equal(r.source, LAM_SOURCE_DATABASE);
   assert_int_equal(r.status, LAM_OUT_OF_REACH);
   assert_non_null(strstr(r.reason, "solve directly"));
-  CloseTable(&t);
 }
 
 TEST_GROUP(.petsc = 1);
