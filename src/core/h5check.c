@@ -70,3 +70,39 @@ void LamHDF5Reason(char reason[LAM_HDF5_REASON_LENGTH])
   if (end) *end = '\0';
   memmove(reason, words, strlen(words) + 1);
 }
+
+/* ---- closing ---- */
+
+static herr_t Close(hid_t object)
+{
+  switch (H5Iget_type(object)) {
+  case H5I_FILE:
+    return H5Fclose(object);
+  case H5I_DATASET:
+    return H5Dclose(object);
+  case H5I_DATASPACE:
+    return H5Sclose(object);
+  case H5I_DATATYPE:
+    return H5Tclose(object);
+  case H5I_ATTR:
+    return H5Aclose(object);
+  default:
+    return H5Pclose(object);
+  }
+}
+
+static herr_t CloseAll(size_t n, const hid_t objects[])
+{
+  herr_t worst = 0;
+
+  for (size_t i = 0; i < n; i++)
+    if (objects[i] >= 0) worst = PetscMin(worst, Close(objects[i]));
+  return worst;
+}
+
+PetscErrorCode LamCloseListHDF5(const char path[], size_t n, const hid_t objects[])
+{
+  PetscFunctionBeginUser;
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, CloseAll(n, objects));
+  PetscFunctionReturn(0);
+}

@@ -40,4 +40,9 @@ void LamHDF5Reason(char reason[LAM_HDF5_REASON_LENGTH]);
     }                                                                                                                  \
   } while (0)
 
+/* Closes files, datasets, types and other objects in this order, skipping those that were not opened (negative). */
+#define LamCloseHDF5(path, ...)                                                                                        \
+  LamCloseListHDF5(path, sizeof((hid_t[]){__VA_ARGS__}) / sizeof(hid_t), (const hid_t[]){__VA_ARGS__})
+PetscErrorCode LamCloseListHDF5(const char path[], size_t n, const hid_t objects[]);
+
 #endif

@@ -4,38 +4,12 @@
 #include "database_internal.h"
 #include <string.h>
 
-/* ---- capacity ---- */
-
-/* Ensures a capacity of count + n items. */
-static PetscErrorCode Grow(PetscInt count, PetscInt n, size_t size, PetscInt *capacity, void *items)
+PetscErrorCode LamGrow(PetscInt count, PetscInt n, size_t size, PetscInt *capacity, void *items)
 {
   PetscFunctionBeginUser;
   if (count + n <= *capacity) PetscFunctionReturn(0);
   *capacity = PetscMax(2 * *capacity, count + n);
   PetscCall(PetscRealloc((size_t)*capacity * size, (void **)items));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode GrowKeys(LamDatabase db, PetscInt n)
-{
-  PetscFunctionBeginUser;
-  PetscCall(Grow(db->n, n, sizeof(*db->keys), &db->capacity, &db->keys));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode GrowNodes(LamDatabase db, PetscInt n)
-{
-  PetscFunctionBeginUser;
-  PetscCall(Grow(db->nodes.count, n, sizeof(*db->nodes.data), &db->nodes.capacity, &db->nodes.data));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode AddScattered(LamDatabase db, const LamResponse *record)
-{
-  const PetscBool bonded = (PetscBool)(db->header.micro.interface == LAM_INTERFACE_BONDED);
-
-  PetscFunctionBeginUser;
-  PetscCall(LamScatterAdd(&db->scatter, &db->images, bonded, record));
   PetscFunctionReturn(0);
 }
 
@@ -59,6 +33,7 @@ static PetscErrorCode LoadBlock(void *ctx, const LamRecordLayout *layout, PetscI
 {
   Loading *l = ctx;
   LamDatabase db = l->db;
+  LamNodeSet *set = &db->nodes;
 
   PetscFunctionBeginUser;
   if (!first) LamNodeLayoutMake(layout->key, layout->member, &l->nodes);
@@ -73,32 +48,14 @@ static PetscErrorCode LoadBlock(void *ctx, const LamRecordLayout *layout, PetscI
     }
     db->keys[db->n++] = key;
     if (LamKeyIsNode(key)) {
-      PetscCall(GrowNodes(db, db->header.committed - first -
-                                  i)); /* upper bound, allocated once: unused pages stay untouched */
-      LamNodeDataFromBytes(&l->nodes, bytes, &db->nodes.data[db->nodes.count++]);
+      /* upper bound, allocated once: unused pages stay untouched */
+      PetscCall(LamGrow(set->count, db->header.committed - first - i, sizeof(*set->data), &set->capacity, &set->data));
+      LamNodeDataFromBytes(&l->nodes, bytes, &set->data[set->count++]);
       continue;
     }
     PetscCall(LamRecordUnpack(layout, bytes, &record));
-    PetscCall(AddScattered(db, &record));
+    PetscCall(LamScatterAdd(db, &record));
   }
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode LoadGrid(const char path[], hid_t file, LamDatabase db)
-{
-  PetscErrorCode ierr;
-  PetscBool has;
-  char *text;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamFileHas(path, file, LAM_GRID_NAME, &has));
-  PetscCheck(has || !db->nodes.count || strcmp(db->header.kind, "database"), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: holds nodes of a grid, but %s is missing; the file is damaged", path, LAM_GRID_NAME);
-  if (!has) PetscFunctionReturn(0);
-  PetscCall(LamFileGetText(path, file, LAM_GRID_NAME, &text));
-  ierr = LamGridFromText(path, &db->header.micro, text, &db->grid);
-  PetscCall(PetscFree(text));
-  PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 
@@ -117,16 +74,18 @@ static PetscErrorCode Load(const char path[], hid_t file, void *ctx)
 {
   const Loading *loading = ctx;
   LamDatabase db = loading->db;
+  PetscBool required;
 
   PetscFunctionBeginUser;
   PetscCall(LamHeaderRead(path, file, &db->header));
   if (loading->later) PetscCall(MakeLater(path, db->header.committed, loading->later));
   PetscCall(PetscStrallocpy(path, &db->path));
   LamImagesMake(&db->header.micro, &db->images);
-  PetscCall(GrowKeys(db, db->header.committed));
+  PetscCall(LamGrow(db->n, db->header.committed, sizeof(*db->keys), &db->capacity, &db->keys));
   PetscCall(LamFileScanRecords(path, file, db->header.committed, LoadBlock, ctx));
   db->records_first = db->n;
-  PetscCall(LoadGrid(path, file, db));
+  required = (PetscBool)(db->nodes.count && !strcmp(db->header.kind, "database"));
+  PetscCall(LamFileGetGrid(path, file, required, &db->header.micro, &db->grid));
   PetscFunctionReturn(0);
 }
 
@@ -183,7 +142,8 @@ PetscErrorCode LamDatabaseCreateEmpty(const LamScene *scene, LamDatabase *databa
   db->header.scales = scene->scales;
   db->header.accuracy = scene->accuracy;
   PetscCall(LamMicrostructureCopy(&scene->micro, &db->header.micro));
-  PetscCall(PetscStrncpy(db->header.kind, "database", sizeof(db->header.kind)));
+  PetscCall(PetscStrallocpy("database", &db->header.kind));
+  PetscCall(PetscMalloc1(LAM_HASH_LENGTH, &db->header.hash));
   PetscCall(LamMicrostructureDescribe(&scene->micro, &db->header.description, db->header.hash));
   LamImagesMake(&scene->micro, &db->images);
   *database = db;
@@ -311,11 +271,12 @@ PetscErrorCode LamDatabaseGetMicrostructure(LamDatabase database, LamMicrostruct
 PetscErrorCode LamDatabaseAdd(LamDatabase database, PetscInt n, const PetscInt64 keys[], const LamResponse records[])
 {
   const PetscInt held = database->n - database->records_first;
+  LamNodeSet *set = &database->nodes;
 
   PetscFunctionBeginUser;
-  PetscCall(GrowKeys(database, n));
-  PetscCall(GrowNodes(database, n));
-  PetscCall(Grow(held, n, sizeof(*records), &database->records_capacity, &database->records));
+  PetscCall(LamGrow(database->n, n, sizeof(*database->keys), &database->capacity, &database->keys));
+  PetscCall(LamGrow(set->count, n, sizeof(*set->data), &set->capacity, &set->data));
+  PetscCall(LamGrow(held, n, sizeof(*records), &database->records_capacity, &database->records));
   for (PetscInt i = 0; i < n; i++) {
     const PetscInt at = database->n++;
     const PetscInt64 key = keys ? keys[i] : LAM_CACHE_KEY + at;
@@ -323,9 +284,9 @@ PetscErrorCode LamDatabaseAdd(LamDatabase database, PetscInt n, const PetscInt64
     database->keys[at] = key;
     database->records[held + i] = records[i];
     if (LamKeyIsNode(key))
-      LamNodeDataFromResponse(&records[i], key, &database->nodes.data[database->nodes.count++]);
+      LamNodeDataFromResponse(&records[i], key, &set->data[set->count++]);
     else
-      PetscCall(AddScattered(database, &records[i]));
+      PetscCall(LamScatterAdd(database, &records[i]));
   }
   PetscFunctionReturn(0);
 }

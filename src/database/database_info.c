@@ -106,9 +106,9 @@ static PetscErrorCode Describe(LamDatabase db, char **json)
   PetscFunctionBeginUser;
   Summarise(db, &summary);
   object = json_pack("{s:s, s:I, s:I, s:i, s:o, s:o, s:o, s:f}", "kind", h->kind, "records", (json_int_t)db->n,
-                     "failed", (json_int_t)(db->n - summary.counts[LAM_CONVERGED]), "format_version",
-                     (int)h->format_version, "microstructures", Microstructures(db), "statuses", Statuses(&summary),
-                     "coverage", Coverage(h, &summary), "accuracy", h->accuracy);
+                     "failed", (json_int_t)(db->n - summary.counts[LAM_CONVERGED]), "format_version", h->format_version,
+                     "microstructures", Microstructures(db), "statuses", Statuses(&summary), "coverage",
+                     Coverage(h, &summary), "accuracy", h->accuracy);
   json_object_set_new(object, "scattered", json_integer(db->scatter.n));
   PetscCall(AddTable(db, object));
   json_object_set_new(object, "writer", LamWriterToJSON(db->path));

@@ -37,7 +37,7 @@ typedef struct {
 
 /* Records outside the grid, in their order. */
 typedef struct {
-  PetscInt n, capacity;
+  PetscInt n, capacity[3]; /* of the three arrays */
   LamResponse *records;    /* [n] owned */
   LamScattered *states;    /* [n] owned */
   LamScatterPlace *places; /* [n] owned */
@@ -68,6 +68,10 @@ struct LamDatabase_s {
   PetscInt table_count;
 };
 
+/* ---- database.c ---- */
+/* Ensures a capacity of count + n items; `items` points to the array. */
+PetscErrorCode LamGrow(PetscInt count, PetscInt n, size_t size, PetscInt *capacity, void *items);
+
 /* ---- images.c ---- */
 void LamImagesMake(const LamMicrostructure *micro, LamImages *images);
 /* y = M x: the query in the records' frame. */
@@ -78,7 +82,7 @@ void LamImagesBack(const LamImages *images, PetscInt image, PetscReal g[LAM_VARI
 void LamImagesBackHessian(const LamImages *images, PetscInt image, PetscReal H[LAM_VARIABLES][LAM_VARIABLES]);
 
 /* ---- scatter.c ---- */
-PetscErrorCode LamScatterAdd(LamScatter *scatter, const LamImages *images, PetscBool bonded, const LamResponse *record);
+PetscErrorCode LamScatterAdd(LamDatabase database, const LamResponse *record);
 PetscErrorCode LamScatterDestroy(LamScatter *scatter);
 
 /* ---- query_scatter.c ---- */

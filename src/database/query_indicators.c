@@ -15,6 +15,30 @@ static PetscBool SameF(const LamLoad *a, const LamLoad *b)
   return PETSC_TRUE;
 }
 
+/* Without kink_place, which a node does not keep. */
+#define ONE(name, rule) {offsetof(LamResponse, name), 1, PETSC_FALSE},
+#define THREE(name, rule) {offsetof(LamResponse, name), 3, LAM_RULE_##rule == LAM_RULE_FRAME},
+static const struct {
+  size_t offset;
+  int count; /* 3: per face family, or in the frame of the cell, and then valid only in the record's orientation */
+  PetscBool framed;
+} indicators[] = {LAM_NODE_INDICATORS(ONE, THREE)};
+
+static void CopyOwn(const LamResponse *record, const PetscInt face[3], LamResponse *r)
+{
+  const PetscBool oriented = SameF(&record->load, &r->load);
+
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(indicators); i++) {
+    const PetscReal *from = (const PetscReal *)(const void *)((const char *)record + indicators[i].offset);
+    PetscReal *to = (PetscReal *)(void *)((char *)r + indicators[i].offset);
+
+    if (indicators[i].framed && !oriented) continue;
+    for (int k = 0; k < indicators[i].count; k++)
+      to[k] = from[indicators[i].count == 1 || indicators[i].framed ? k : face[k]];
+  }
+  for (int k = 0; k < 3 && oriented; k++) r->kink_place[k] = record->kink_place[k];
+}
+
 /* Bonded tissue has no gaps and stays connected at every load. */
 static void CopyBonded(const LamResponse *record, LamResponse *r)
 {
@@ -26,8 +50,6 @@ static void CopyBonded(const LamResponse *record, LamResponse *r)
   r->max_penetration = record->max_penetration;
   r->debonded_fraction = record->debonded_fraction;
   r->open_fraction = record->open_fraction;
-  r->cell_clusters = record->cell_clusters;
-  r->percolating_directions = record->percolating_directions;
   for (int k = 0; k < 3; k++) {
     r->opening_by_face[k] = record->opening_by_face[k];
     r->debonded_by_face[k] = record->debonded_by_face[k];
@@ -35,66 +57,17 @@ static void CopyBonded(const LamResponse *record, LamResponse *r)
   }
 }
 
-static void CopyContact(const LamResponse *record, const PetscInt face[3], LamResponse *r)
-{
-  for (int k = 0; k < 3; k++) {
-    r->opening_by_face[k] = record->opening_by_face[face[k]];
-    r->debonded_by_face[k] = record->debonded_by_face[face[k]];
-    r->open_by_face[k] = record->open_by_face[face[k]];
-  }
-  r->debonded_fraction = record->debonded_fraction;
-  r->debonded_spread = record->debonded_spread;
-  r->open_fraction = record->open_fraction;
-  r->open_spread = record->open_spread;
-  r->max_gap = record->max_gap;
-  r->min_gap = record->min_gap;
-  r->mean_gap = record->mean_gap;
-  r->max_penetration = record->max_penetration;
-  r->floating_cells = record->floating_cells;
-  r->zero_modes = record->zero_modes;
-  r->cell_clusters = record->cell_clusters;
-  r->percolating_directions = record->percolating_directions;
-}
-
-/*
-  Volumes, and loads of walls and lamella, at the record's own state. Places and the fabric are valid only in the
-  record's orientation.
-*/
-static void CopyLoads(const LamResponse *record, const PetscInt face[3], LamResponse *r)
-{
-  r->lumen_fraction = record->lumen_fraction;
-  r->opening_fraction = record->opening_fraction;
-  r->max_traction = record->max_traction;
-  r->max_lamella_shear = record->max_lamella_shear;
-  r->max_fibre_stretch = record->max_fibre_stretch;
-  r->max_wall_energy = record->max_wall_energy;
-  r->max_wall_tension = record->max_wall_tension;
-  r->wall_ellipticity = record->wall_ellipticity;
-  r->kinked_fraction = record->kinked_fraction;
-  for (int k = 0; k < 3; k++) {
-    r->mean_face_traction[k] = record->mean_face_traction[face[k]];
-    r->mean_wall_tension[k] = record->mean_wall_tension[face[k]];
-    if (!SameF(&record->load, &r->load)) continue;
-    r->fabric[k] = record->fabric[k];
-    r->opening_moment[k] = record->opening_moment[k];
-    r->gap_place[k] = record->gap_place[k];
-    r->normal_place[k] = record->normal_place[k];
-    r->shear_place[k] = record->shear_place[k];
-    r->wall_place[k] = record->wall_place[k];
-    r->kink_place[k] = record->kink_place[k];
-  }
-}
-
 void LamIndicatorsCopy(const LamResponse *record, const PetscInt face[3], PetscBool own, LamInterfaceLawType interface,
                        LamResponse *r)
 {
-  if (interface == LAM_INTERFACE_BONDED)
-    CopyBonded(record, r);
-  else if (own)
-    CopyContact(record, face, r);
-  else
-    r->floating_cells = r->zero_modes = r->cell_clusters = r->percolating_directions = LAM_UNKNOWN_COUNT;
-  if (own) CopyLoads(record, face, r);
+  const PetscBool bonded = (PetscBool)(interface == LAM_INTERFACE_BONDED), known = (PetscBool)(bonded || own);
+
+  if (bonded) CopyBonded(record, r);
+  if (own) CopyOwn(record, face, r);
+  if (!bonded) r->floating_cells = own ? record->floating_cells : LAM_UNKNOWN_COUNT;
+  if (!bonded) r->zero_modes = own ? record->zero_modes : LAM_UNKNOWN_COUNT;
+  r->cell_clusters = known ? record->cell_clusters : LAM_UNKNOWN_COUNT;
+  r->percolating_directions = known ? record->percolating_directions : LAM_UNKNOWN_COUNT;
   r->lowest_eigenvalue = record->lowest_eigenvalue;
   r->negative_eigenvalues = record->negative_eigenvalues;
   r->stable = record->stable;

@@ -46,28 +46,22 @@
 
 /* ---- the blend ---- */
 
-/* A record's model at the query: the expansion's members without the Hessian, in the query's frame. */
-typedef struct {
-  PetscReal energy, P33;
-  LamScatterVector gradient, P33_gradient;
-} Model;
-
+/* A record's model at the query, in the query's frame, but with its Hessian in the record's frame. */
 static void EvaluateModel(const LamScatterSearch *search, const LamScattered *state, PetscInt image,
-                          LamScatterVector delta, Model *m)
+                          LamScatterVector delta, LamExpansion *m)
 {
   const LamImages *images = &search->db->images;
   const LamExpansion *e = &state->model;
 
   for (int a = 0; a < LAM_VARIABLES; a++) delta[a] = search->turned[image][a] - e->x[a];
-  m->energy = e->energy;
-  m->P33 = e->P33;
+  *m = *e;
+  memcpy(m->x, search->x, sizeof(m->x));
   for (int a = 0; a < LAM_VARIABLES; a++) {
     PetscReal slope = 0;
 
     for (int b = 0; b < LAM_VARIABLES; b++) slope += e->hessian[a][b] * delta[b];
     m->energy += (e->gradient[a] + 0.5 * slope) * delta[a];
     m->gradient[a] = e->gradient[a] + slope;
-    m->P33_gradient[a] = e->P33_gradient[a];
     m->P33 += e->P33_gradient[a] * delta[a];
   }
   LamImagesBack(images, image, m->gradient);
@@ -97,7 +91,7 @@ static PetscBool MakeWeight(const LamScatterMetric *metric, const LamScatterVect
 
 /* Sums over the models in reach: of the weights, and of the weights times a model's difference from the first. */
 typedef struct {
-  Model first;
+  LamExpansion first;
   PetscReal W, W_metric, A, A_metric, P33, A3333; /* _metric: the part of the Hessian along the metric */
   LamScatterVector W_slope, A_slope, P33_slope;
   LamScatterMatrix W_hessian, A_hessian;
@@ -105,7 +99,7 @@ typedef struct {
   PetscReal P33_square, P_mean[3], P_square[3][3]; /* P_: of the gradients in C */
 } Sums;
 
-static void AddModel(const Weight *w, const Model *m, Sums *s)
+static void AddModel(const Weight *w, const LamExpansion *m, Sums *s)
 {
   const PetscReal energy = m->energy - s->first.energy, P33 = m->P33 - s->first.P33;
   LamScatterVector slope;
@@ -141,8 +135,8 @@ static void AddState(const LamScatterSearch *search, PetscInt k, PetscReal reach
 
   for (PetscInt i = 0; i < search->db->images.count; i++) {
     LamScatterVector delta;
+    LamExpansion m;
     Weight w;
-    Model m;
 
     if (!(state->images >> i & 1) || LamScatterDistance2(search, state, i) >= reach * reach) continue;
     EvaluateModel(search, state, i, delta, &m);
@@ -242,23 +236,6 @@ static PetscReal LonelyError(const LamScatterSearch *search, PetscReal reach, co
 
 /* ---- the response ---- */
 
-/* The expansion of one record's model at the query, in the query's frame. */
-static void ExpandAt(const LamScatterSearch *search, const LamScatterNearest *at, LamExpansion *e)
-{
-  const LamScattered *state = &search->db->scatter.states[at->state];
-  LamScatterVector delta;
-  Model m;
-
-  EvaluateModel(search, state, at->image, delta, &m);
-  *e = state->model;
-  memcpy(e->x, search->x, sizeof(e->x));
-  e->energy = m.energy;
-  e->P33 = m.P33;
-  memcpy(e->gradient, m.gradient, sizeof(e->gradient));
-  memcpy(e->P33_gradient, m.P33_gradient, sizeof(e->P33_gradient));
-  LamImagesBackHessian(&search->db->images, at->image, e->hessian);
-}
-
 static PetscBool SameNumber(PetscReal a, PetscReal b)
 {
   return (PetscBool)(fabs(a - b) <= 1e-10);
@@ -319,9 +296,11 @@ static void AnswerFromModel(const LamScatterSearch *search, const LamScatterNear
                             LamResponse *r)
 {
   const LamResponse *record = &search->db->scatter.records[at->state];
+  LamScatterVector delta;
   LamExpansion e;
 
-  ExpandAt(search, at, &e);
+  EvaluateModel(search, &search->db->scatter.states[at->state], at->image, delta, &e);
+  LamImagesBackHessian(&search->db->images, at->image, e.hessian);
   r->distance = sqrt(at->distance2);
   r->error_estimate = error;
   Fill(search, at, PETSC_TRUE, &e, record->tangent[80], r);

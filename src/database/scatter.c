@@ -52,32 +52,23 @@ static LamScattered StateOf(const LamImages *images, PetscBool bonded, const Lam
   return state;
 }
 
-static PetscErrorCode Reserve(LamScatter *scatter)
+PetscErrorCode LamScatterAdd(LamDatabase database, const LamResponse *record)
 {
-  PetscFunctionBeginUser;
-  if (scatter->n < scatter->capacity) PetscFunctionReturn(0);
-  scatter->capacity = PetscMax(2 * scatter->capacity, 64);
-  PetscCall(PetscRealloc((size_t)scatter->capacity * sizeof(*scatter->records), &scatter->records));
-  PetscCall(PetscRealloc((size_t)scatter->capacity * sizeof(*scatter->states), &scatter->states));
-  PetscCall(PetscRealloc((size_t)scatter->capacity * sizeof(*scatter->places), &scatter->places));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamScatterAdd(LamScatter *scatter, const LamImages *images, PetscBool bonded, const LamResponse *record)
-{
+  const PetscBool bonded = (PetscBool)(database->header.micro.interface == LAM_INTERFACE_BONDED);
+  LamScatter *scatter = &database->scatter;
   const PetscInt at = scatter->n;
 
   PetscFunctionBeginUser;
-  PetscCall(Reserve(scatter));
+  PetscCall(LamGrow(at, 1, sizeof(*scatter->records), &scatter->capacity[0], &scatter->records));
+  PetscCall(LamGrow(at, 1, sizeof(*scatter->states), &scatter->capacity[1], &scatter->states));
+  PetscCall(LamGrow(at, 1, sizeof(*scatter->places), &scatter->capacity[2], &scatter->places));
   scatter->n++;
   scatter->records[at] = *record;
-  if (HasPlace(&record->load)) {
-    scatter->states[at] = StateOf(images, bonded, record);
-    scatter->places[at] = PlaceOf(scatter->states[at].model.x);
-  } else {
-    scatter->states[at] = (LamScattered){.use = LAM_SCATTER_REFUSES};
-    scatter->places[at] = (LamScatterPlace){.mean = INFINITY};
-  }
+  scatter->states[at] = (LamScattered){.use = LAM_SCATTER_REFUSES};
+  scatter->places[at] = (LamScatterPlace){.mean = INFINITY};
+  if (!HasPlace(&record->load)) PetscFunctionReturn(0);
+  scatter->states[at] = StateOf(&database->images, bonded, record);
+  scatter->places[at] = PlaceOf(scatter->states[at].model.x);
   PetscFunctionReturn(0);
 }
 

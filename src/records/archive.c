@@ -52,7 +52,7 @@ static PetscErrorCode CreateDataset(const LamArchive archive, Array *array)
   LamCallHDF5(archive->path, PETSC_ERR_FILE_WRITE,
               array->dataset =
                   H5Dcreate2(archive->file, array->name, H5T_STD_U8LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
-  LamCallHDF5(archive->path, PETSC_ERR_LIB, H5Sclose(space));
+  PetscCall(LamCloseHDF5(archive->path, space));
   PetscFunctionReturn(0);
 }
 
@@ -71,7 +71,7 @@ static PetscErrorCode OpenDataset(const LamArchive archive, Array *array)
   LamCallHDF5(archive->path, PETSC_ERR_USER_INPUT, array->dataset = H5Dopen2(archive->file, array->name, H5P_DEFAULT));
   LamCallHDF5(archive->path, PETSC_ERR_USER_INPUT, space = H5Dget_space(array->dataset));
   LamCallHDF5(archive->path, PETSC_ERR_USER_INPUT, rank = H5Sget_simple_extent_dims(space, dims, NULL));
-  LamCallHDF5(archive->path, PETSC_ERR_LIB, H5Sclose(space));
+  PetscCall(LamCloseHDF5(archive->path, space));
   if (array->total < 0) array->total = (PetscInt)dims[0];
   same = (PetscBool)(rank == 2 && dims[0] == (hsize_t)array->total && dims[1] == (hsize_t)array->size);
   PetscCheck(same, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
@@ -84,23 +84,10 @@ static PetscErrorCode OpenDataset(const LamArchive archive, Array *array)
 /* Writes or reads rows [first, first + rows) of the dataset. */
 static PetscErrorCode MoveBlock(const LamArchive archive, Array *array, PetscInt first, PetscInt rows, char *block)
 {
-  const hsize_t start[2] = {(hsize_t)first, 0}, count[2] = {(hsize_t)rows, (hsize_t)array->size};
-  const char *path = archive->path;
-  hid_t space, memory;
-
   PetscFunctionBeginUser;
-  LamCallHDF5(path, PETSC_ERR_LIB, space = H5Dget_space(array->dataset));
-  LamCallHDF5(path, PETSC_ERR_LIB, memory = H5Screate_simple(2, count, NULL));
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL));
-  if (archive->reading)
-    LamCallHDF5(path, PETSC_ERR_FILE_READ,
-                H5Dread(array->dataset, H5T_NATIVE_UCHAR, memory, space, H5P_DEFAULT, block));
-  else
-    LamCallHDF5(path, PETSC_ERR_FILE_WRITE,
-                H5Dwrite(array->dataset, H5T_NATIVE_UCHAR, memory, space, H5P_DEFAULT, block));
+  PetscCall(LamRowsTransfer(archive->path, array->dataset, H5T_NATIVE_UCHAR, (PetscBool)!archive->reading,
+                            (hsize_t)first, (hsize_t)rows, block));
   array->sum = LamBytesSum(array->sum, block, (size_t)rows * array->size);
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Sclose(memory));
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Sclose(space));
   PetscFunctionReturn(0);
 }
 
@@ -113,7 +100,7 @@ static PetscErrorCode CloseDataset(const LamArchive archive, Array *array)
     PetscCall(LamSumMatches(archive->path, array->dataset, LAM_SUM, array->sum, &sound));
   else
     PetscCall(LamSumWrite(archive->path, array->dataset, LAM_SUM, array->sum));
-  LamCallHDF5(archive->path, PETSC_ERR_FILE_WRITE, H5Dclose(array->dataset));
+  PetscCall(LamCloseHDF5(archive->path, array->dataset));
   PetscCheck(sound, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s is damaged (its checksum differs)", archive->path,
              array->name);
   PetscFunctionReturn(0);
@@ -258,49 +245,34 @@ PetscErrorCode LamArchiveList(LamArchive archive, const char name[], size_t size
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Make(MPI_Comm comm, const char path[], PetscBool reading, LamArchive *archive)
+static PetscErrorCode Open(MPI_Comm comm, const char path[], PetscBool reading, LamArchive *archive)
 {
+  PetscErrorCode ierr = 0;
+  LamArchive a;
+
   PetscFunctionBeginUser;
   PetscCall(PetscNew(archive));
-  (*archive)->comm = comm;
-  (*archive)->reading = reading;
-  (*archive)->file = H5I_INVALID_HID;
-  PetscCallMPI(MPI_Comm_rank(comm, &(*archive)->rank));
-  PetscCall(PetscStrncpy((*archive)->path, path, sizeof((*archive)->path)));
-  PetscCall(PetscSNPrintf((*archive)->temporary, sizeof((*archive)->temporary), "%s.tmp", path));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode CreateFile(LamArchive archive)
-{
-  PetscFunctionBeginUser;
-  LamCallHDF5(archive->temporary, PETSC_ERR_FILE_OPEN,
-              archive->file = H5Fcreate(archive->temporary, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
-  PetscFunctionReturn(0);
+  a = *archive;
+  a->comm = comm;
+  a->reading = reading;
+  a->file = H5I_INVALID_HID;
+  PetscCallMPI(MPI_Comm_rank(comm, &a->rank));
+  PetscCall(PetscStrncpy(a->path, path, sizeof(a->path)));
+  PetscCall(PetscSNPrintf(a->temporary, sizeof(a->temporary), "%s.tmp", path));
+  if (!a->rank) ierr = reading ? LamFileOpen(path, PETSC_FALSE, &a->file) : LamFileOpenNew(a->temporary, &a->file);
+  ierr = ShareError(a, ierr);
+  if (ierr) PetscCall(PetscFree(*archive));
+  PetscFunctionReturn(ierr);
 }
 
 PetscErrorCode LamArchiveCreate(MPI_Comm comm, const char path[], LamArchive *archive)
 {
-  PetscErrorCode ierr = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(Make(comm, path, PETSC_FALSE, archive));
-  if (!(*archive)->rank) ierr = CreateFile(*archive);
-  ierr = ShareError(*archive, ierr);
-  if (ierr) PetscCall(PetscFree(*archive));
-  PetscFunctionReturn(ierr);
+  return Open(comm, path, PETSC_FALSE, archive);
 }
 
 PetscErrorCode LamArchiveOpen(MPI_Comm comm, const char path[], LamArchive *archive)
 {
-  PetscErrorCode ierr = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(Make(comm, path, PETSC_TRUE, archive));
-  if (!(*archive)->rank) ierr = LamFileOpenRead(path, &(*archive)->file);
-  ierr = ShareError(*archive, ierr);
-  if (ierr) PetscCall(PetscFree(*archive));
-  PetscFunctionReturn(ierr);
+  return Open(comm, path, PETSC_TRUE, archive);
 }
 
 PetscBool LamArchiveIsReading(LamArchive archive)
@@ -313,13 +285,13 @@ static PetscErrorCode CloseFile(LamArchive archive, PetscBool keep)
 {
   PetscFunctionBeginUser;
   if (archive->file < 0) PetscFunctionReturn(0);
-  if (archive->reading || !keep) {
+  if (!archive->reading && !keep) {
     H5Fclose(archive->file);
-    if (!archive->reading) unlink(archive->temporary);
+    unlink(archive->temporary);
     PetscFunctionReturn(0);
   }
-  PetscCall(LamFileClose(archive->temporary, archive->file));
-  PetscCall(LamFilePublish(archive->temporary, archive->path));
+  PetscCall(LamCloseHDF5(archive->path, archive->file));
+  if (!archive->reading) PetscCall(LamFilePublish(archive->temporary, archive->path));
   PetscFunctionReturn(0);
 }
 

@@ -1,5 +1,5 @@
 /*
-  Arrays and texts in open record files.
+  Arrays and texts in record files.
 */
 #include "record_internal.h"
 #include <stdio.h>
@@ -37,28 +37,214 @@ PetscErrorCode LamFileHas(const char path[], hid_t file, const char name[], Pets
   PetscFunctionReturn(0);
 }
 
+/* ---- rows ---- */
+
+static herr_t SelectRows(hid_t dataset, hsize_t first, hsize_t n, hid_t *memory, hid_t *space)
+{
+  hsize_t start[H5S_MAX_RANK] = {first}, count[H5S_MAX_RANK];
+  int rank;
+
+  *space = H5Dget_space(dataset);
+  rank = H5Sget_simple_extent_dims(*space, count, NULL);
+  count[0] = n;
+  *memory = H5Screate_simple(rank, count, NULL);
+  return H5Sselect_hyperslab(*space, H5S_SELECT_SET, start, NULL, count, NULL);
+}
+
+static PetscErrorCode Transfer(const char path[], hid_t dataset, hid_t type, PetscBool write, hid_t memory, hid_t space,
+                               void *rows)
+{
+  PetscFunctionBeginUser;
+  if (write)
+    LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dwrite(dataset, type, memory, space, H5P_DEFAULT, rows));
+  else
+    LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Dread(dataset, type, memory, space, H5P_DEFAULT, rows));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRowsTransfer(const char path[], hid_t dataset, hid_t type, PetscBool write, hsize_t first, hsize_t n,
+                               void *rows)
+{
+  PetscErrorCode ierr;
+  hid_t memory, space;
+
+  PetscFunctionBeginUser;
+  LamCallHDF5(path, PETSC_ERR_LIB, SelectRows(dataset, first, n, &memory, &space));
+  ierr = Transfer(path, dataset, type, write, memory, space, rows);
+  PetscCall(LamCloseHDF5(path, memory, space));
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+/* ---- writing ---- */
+
+typedef struct {
+  const char *name;
+  hid_t file_type, memory_type;
+  PetscInt rank;
+  const PetscInt *dims;
+  const void *values;
+  const char *unit; /* or NULL */
+} Array;
+
+static size_t ArrayCount(const Array *a)
+{
+  size_t count = 1;
+
+  for (PetscInt i = 0; i < a->rank; i++) count *= (size_t)a->dims[i];
+  return count;
+}
+
+/* Checksum of the bytes in the file, followed by the unit. */
+static uint32_t ArraySum(const Array *a)
+{
+  uint32_t sum = 0;
+
+  if (a->file_type == H5T_IEEE_F64LE) sum = LamBytesSum(0, a->values, 8 * ArrayCount(a));
+  for (size_t i = 0; a->file_type != H5T_IEEE_F64LE && i < ArrayCount(a); i++) {
+    const PetscInt64 value = ((const PetscInt *)a->values)[i];
+
+    sum = LamBytesSum(sum, &value, sizeof(value));
+  }
+  return a->unit ? LamBytesSum(sum, a->unit, strlen(a->unit)) : sum;
+}
+
+/* Creates the dataset and its groups. */
+static PetscErrorCode Create(const char path[], hid_t file, const Array *a, uint32_t sum)
+{
+  hid_t groups, space, dataset;
+  hsize_t dims[4];
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < a->rank; i++) dims[i] = (hsize_t)a->dims[i];
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, groups = H5Pcreate(H5P_LINK_CREATE));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Pset_create_intermediate_group(groups, 1));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, space = H5Screate_simple((int)a->rank, dims, NULL));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE,
+              dataset = H5Dcreate2(file, a->name, a->file_type, space, groups, H5P_DEFAULT, H5P_DEFAULT));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dwrite(dataset, a->memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, a->values));
+  if (a->unit) PetscCall(LamAttributeWriteText(path, dataset, "unit", a->unit));
+  PetscCall(LamSumWrite(path, dataset, LAM_SUM, sum));
+  PetscCall(LamCloseHDF5(path, dataset, space, groups));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamFileWriteText(const char path[], hid_t file, const char name[], const char text[])
 {
-  hid_t space, type, groups, dataset;
+  Array array = {.name = name, .values = text};
   PetscBool has;
 
   PetscFunctionBeginUser;
   PetscCall(LamFileHas(path, file, name, &has));
   if (has) LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Ldelete(file, name, H5P_DEFAULT));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, space = H5Screate(H5S_SCALAR));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, type = H5Tcopy(H5T_C_S1));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Tset_size(type, strlen(text) + 1));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Tset_cset(type, H5T_CSET_UTF8));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, groups = H5Pcreate(H5P_LINK_CREATE));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Pset_create_intermediate_group(groups, 1));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE,
-              dataset = H5Dcreate2(file, name, type, space, groups, H5P_DEFAULT, H5P_DEFAULT));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text));
-  PetscCall(LamSumWrite(path, dataset, LAM_SUM, LamBytesSum(0, text, strlen(text))));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dclose(dataset));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Pclose(groups));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Tclose(type));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Sclose(space));
+  PetscCall(LamTextTypeCreate(path, text, &array.file_type));
+  array.memory_type = array.file_type;
+  PetscCall(Create(path, file, &array, LamBytesSum(0, text, strlen(text))));
+  PetscCall(LamCloseHDF5(path, array.file_type));
+  PetscFunctionReturn(0);
+}
+
+/* An overwritten array has no valid checksum: a kill may leave old and new numbers. */
+static PetscErrorCode DropSum(const char path[], hid_t file, hid_t dataset)
+{
+  const uint32_t none = LAM_NO_SUM;
+  PetscBool summed;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamSumHas(path, dataset, LAM_SUM, &summed));
+  if (!summed) PetscFunctionReturn(0);
+  PetscCall(LamAttributeUpdate(path, dataset, LAM_SUM, H5T_NATIVE_UINT32, &none));
+  PetscCall(LamFileSync(path, file));
+  PetscFunctionReturn(0);
+}
+
+/*
+  Overwrites an array of the same shape and type. Only its numbers change in the file, so a table that grows full
+  commit by commit takes no more space, and after a kill each number is either old or new.
+*/
+static PetscErrorCode Overwrite(const char path[], hid_t file, const Array *a, PetscBool *done)
+{
+  hsize_t dims[H5S_MAX_RANK];
+  hid_t dataset, space, type;
+
+  PetscFunctionBeginUser;
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, dataset = H5Dopen2(file, a->name, H5P_DEFAULT));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, space = H5Dget_space(dataset));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, type = H5Dget_type(dataset));
+  *done = (PetscBool)(H5Tequal(type, a->file_type) > 0 && H5Sget_simple_extent_dims(space, dims, NULL) == a->rank);
+  for (PetscInt i = 0; i < a->rank && *done; i++) *done = (PetscBool)(dims[i] == (hsize_t)a->dims[i]);
+  if (*done) PetscCall(DropSum(path, file, dataset));
+  if (*done)
+    LamCallHDF5(path, PETSC_ERR_FILE_WRITE,
+                H5Dwrite(dataset, a->memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, a->values));
+  PetscCall(LamCloseHDF5(path, type, space, dataset));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WriteArray(const char path[], hid_t file, void *ctx)
+{
+  const Array *a = ctx;
+  PetscBool has, done = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileHas(path, file, a->name, &has));
+  if (has) PetscCall(Overwrite(path, file, a, &done));
+  if (done) PetscFunctionReturn(0);
+  if (has) LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Ldelete(file, a->name, H5P_DEFAULT));
+  PetscCall(Create(path, file, a, ArraySum(a)));
+  PetscFunctionReturn(0);
+}
+
+/* Reals and integers both have 8 bytes in the file. */
+static PetscErrorCode WriteBeside(LamRecordWriter writer, Array *array)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(array->rank >= 0 && array->rank <= 4, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "rank %" PetscInt_FMT,
+             array->rank);
+  PetscCall(LamRecordWriterBeside(writer, 8 * (ArrayCount(array) + 1), WriteArray, array));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRecordWriterReals(LamRecordWriter writer, const char name[], PetscInt rank, const PetscInt dims[],
+                                    const PetscReal values[], const char unit[])
+{
+  Array array = {name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, rank, dims, values, unit};
+
+  PetscFunctionBeginUser;
+  PetscCall(WriteBeside(writer, &array));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRecordWriterInts(LamRecordWriter writer, const char name[], PetscInt rank, const PetscInt dims[],
+                                   const PetscInt values[])
+{
+  const hid_t memory = sizeof(PetscInt) == sizeof(PetscInt64) ? H5T_NATIVE_INT64 : H5T_NATIVE_INT;
+  Array array = {name, H5T_STD_I64LE, memory, rank, dims, values, NULL};
+
+  PetscFunctionBeginUser;
+  PetscCall(WriteBeside(writer, &array));
+  PetscFunctionReturn(0);
+}
+
+typedef struct {
+  const char *name, *text;
+} Text;
+
+static PetscErrorCode WriteText(const char path[], hid_t file, void *ctx)
+{
+  const Text *t = ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileWriteText(path, file, t->name, t->text));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRecordWriterText(LamRecordWriter writer, const char name[], const char text[])
+{
+  Text t = {name, text};
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRecordWriterBeside(writer, strlen(text), WriteText, &t));
   PetscFunctionReturn(0);
 }
 
@@ -72,7 +258,7 @@ PetscErrorCode LamDatasetCheck(const char path[], hid_t dataset, const char name
   PetscFunctionBeginUser;
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, list = H5Dget_create_plist(dataset));
   ours = (PetscBool)(H5Pget_layout(list) == wanted && !H5Pget_nfilters(list) && !H5Pget_external_count(list));
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Pclose(list));
+  PetscCall(LamCloseHDF5(path, list));
   PetscCheck(ours, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: %s is compressed, in another file or stored otherwise than lamella does; the file is damaged", path,
              name);
@@ -81,37 +267,10 @@ PetscErrorCode LamDatasetCheck(const char path[], hid_t dataset, const char name
 
 typedef struct {
   hid_t dataset, type, space;
-  hsize_t count;
-  size_t bytes; /* of all values in the file */
-  PetscBool is_text;
 } Opened;
 
-/* Also closes partly opened objects. */
-static void Close(Opened *o)
-{
-  if (o->space >= 0) H5Sclose(o->space);
-  if (o->type >= 0) H5Tclose(o->type);
-  if (o->dataset >= 0) H5Dclose(o->dataset);
-}
-
-/* The values must fit into the size of the file. */
-static PetscErrorCode CheckSize(const char path[], hid_t file, const char name[], Opened *o)
-{
-  hssize_t count;
-  hsize_t size;
-
-  PetscFunctionBeginUser;
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Fget_filesize(file, &size));
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, count = H5Sget_simple_extent_npoints(o->space));
-  o->count = (hsize_t)count;
-  PetscCheck(o->count <= size / PetscMax(H5Tget_size(o->type), 1) && o->count < PETSC_MAX_INT, PETSC_COMM_SELF,
-             PETSC_ERR_USER_INPUT, "%s: %s is said to have %lld values of %zu bytes, the file has %lld; it is damaged",
-             path, name, (long long)count, H5Tget_size(o->type), (long long)size);
-  o->bytes = o->count * H5Tget_size(o->type);
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode OpenParts(const char path[], hid_t file, const char name[], hid_t type, Opened *o)
+/* `type`: type in the file; H5I_INVALID_HID: a text of fixed length. */
+static PetscErrorCode Open(const char path[], hid_t file, const char name[], hid_t type, Opened *o)
 {
   PetscBool same;
 
@@ -124,139 +283,171 @@ static PetscErrorCode OpenParts(const char path[], hid_t file, const char name[]
                                : H5Tget_class(o->type) == H5T_STRING && H5Tis_variable_str(o->type) == 0);
   PetscCheck(same, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: %s is of another type than lamella writes; the file is damaged", path, name);
-  PetscCall(CheckSize(path, file, name, o));
   PetscFunctionReturn(0);
 }
 
-/* `type`: type in the file; H5I_INVALID_HID: a text of fixed length. */
-static PetscErrorCode Open(const char path[], hid_t file, const char name[], hid_t type, Opened *o)
+/* The values must fit into the size of the file. */
+static PetscErrorCode GetShape(const char path[], hid_t file, const char name[], const Opened *o, LamFileArray *array)
 {
-  PetscErrorCode ierr;
-
-  PetscFunctionBeginUser;
-  *o = (Opened){.dataset = H5I_INVALID_HID, .type = H5I_INVALID_HID, .space = H5I_INVALID_HID};
-  o->is_text = (PetscBool)(type < 0);
-  ierr = OpenParts(path, file, name, type, o);
-  if (ierr) Close(o);
-  PetscCall(ierr);
-  PetscFunctionReturn(0);
-}
-
-/* The checksum of an array includes its unit. */
-static PetscErrorCode CheckSum(const char path[], const char name[], const Opened *o, const void *values)
-{
-  PetscBool sound, has;
-  uint32_t sum = LamBytesSum(0, values, o->is_text ? strlen(values) : o->bytes);
-  char *unit;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamSumHas(path, o->dataset, LAM_SUM, &has));
-  if (!has) PetscFunctionReturn(0);
-  PetscCall(LamAttributeHas(path, o->dataset, "unit", &has));
-  if (has) {
-    PetscCall(LamAttributeReadText(path, o->dataset, "unit", &unit));
-    sum = LamBytesSum(sum, unit, strlen(unit));
-    PetscCall(PetscFree(unit));
-  }
-  PetscCall(LamSumMatches(path, o->dataset, LAM_SUM, sum, &sound));
-  PetscCheck(sound, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s is damaged (its checksum differs)", path, name);
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ReadInto(const char path[], const char name[], const Opened *o, void *values)
-{
-  PetscFunctionBeginUser;
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Dread(o->dataset, o->type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
-  PetscCall(CheckSum(path, name, o, values));
-  PetscFunctionReturn(0);
-}
-
-/* Reads all values, unconverted, followed by a zero; the caller frees them. */
-static PetscErrorCode Read(const char path[], const char name[], const Opened *o, void **values)
-{
-  PetscErrorCode ierr;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc(o->bytes + 1, values));
-  ierr = ReadInto(path, name, o, *values);
-  if (ierr) (void)PetscFree(*values);
-  PetscCall(ierr);
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ReadOneText(const char path[], const char name[], const Opened *o, char **text)
-{
-  PetscFunctionBeginUser;
-  PetscCheck(o->count == 1, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s is not one text; the file is damaged", path,
-             name);
-  PetscCall(Read(path, name, o, (void **)text));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamFileGetText(const char path[], hid_t file, const char name[], char **text)
-{
-  PetscErrorCode ierr;
-  PetscBool has;
-  Opened o;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamFileHas(path, file, name, &has));
-  PetscCheck(has, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s is missing; the file is damaged", path, name);
-  PetscCall(Open(path, file, name, H5I_INVALID_HID, &o));
-  ierr = ReadOneText(path, name, &o, text);
-  Close(&o);
-  PetscCall(ierr);
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Dims(const char path[], const char name[], const Opened *o, LamFileArray *array)
-{
-  hsize_t dims[H5S_MAX_RANK];
+  const size_t bytes = PetscMax(H5Tget_size(o->type), 1);
+  hsize_t dims[H5S_MAX_RANK], size;
+  hssize_t count;
   int rank;
 
   PetscFunctionBeginUser;
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Fget_filesize(file, &size));
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, count = H5Sget_simple_extent_npoints(o->space));
+  PetscCheck((hsize_t)count <= size / bytes && count < PETSC_MAX_INT, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: %s is said to have %lld values of %zu bytes, the file has %lld; it is damaged", path, name,
+             (long long)count, H5Tget_size(o->type), (long long)size);
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, rank = H5Sget_simple_extent_dims(o->space, dims, NULL));
   PetscCheck(rank <= 4, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s has rank %d; lamella writes rank 4 at most",
              path, name, rank);
   array->rank = rank;
   for (int i = 0; i < rank; i++) array->dims[i] = (PetscInt)dims[i];
-  array->count = (PetscInt)o->count;
+  array->count = (PetscInt)count;
+  PetscFunctionReturn(0);
+}
+
+/* The checksum of an array includes its unit. */
+static PetscErrorCode CheckSum(const char path[], const char name[], hid_t dataset, const void *values, size_t bytes)
+{
+  uint32_t sum = LamBytesSum(0, values, bytes);
+  PetscBool sound, has;
+  char *unit;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamSumHas(path, dataset, LAM_SUM, &has));
+  if (!has) PetscFunctionReturn(0);
+  PetscCall(LamAttributeHas(path, dataset, "unit", &has));
+  if (has) {
+    PetscCall(LamAttributeReadText(path, dataset, "unit", &unit));
+    sum = LamBytesSum(sum, unit, strlen(unit));
+    PetscCall(PetscFree(unit));
+  }
+  PetscCall(LamSumMatches(path, dataset, LAM_SUM, sum, &sound));
+  PetscCheck(sound, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s is damaged (its checksum differs)", path, name);
+  PetscFunctionReturn(0);
+}
+
+/* Reads all values, unconverted, followed by a zero. */
+static PetscErrorCode Read(const char path[], hid_t file, const char name[], const Opened *o, LamFileArray *array)
+{
+  const PetscBool is_text = (PetscBool)(H5Tget_class(o->type) == H5T_STRING);
+  size_t bytes;
+
+  PetscFunctionBeginUser;
+  PetscCall(GetShape(path, file, name, o, array));
+  PetscCheck(!is_text || array->count == 1, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: %s is not one text; the file is damaged", path, name);
+  bytes = (size_t)array->count * H5Tget_size(o->type);
+  PetscCall(PetscCalloc(bytes + 1, &array->values));
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Dread(o->dataset, o->type, H5S_ALL, H5S_ALL, H5P_DEFAULT, array->values));
+  PetscCall(CheckSum(path, name, o->dataset, array->values, is_text ? strlen(array->values) : bytes));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamFileGetArray(const char path[], hid_t file, const char name[], hid_t type, LamFileArray *array)
 {
+  Opened o = {H5I_INVALID_HID, H5I_INVALID_HID, H5I_INVALID_HID};
   PetscErrorCode ierr;
-  Opened o;
 
   PetscFunctionBeginUser;
   *array = (LamFileArray){0};
   PetscCall(LamFileHas(path, file, name, &array->found));
   if (!array->found) PetscFunctionReturn(0);
-  PetscCall(Open(path, file, name, type, &o));
-  ierr = Dims(path, name, &o, array);
-  if (!ierr) ierr = Read(path, name, &o, &array->values);
-  Close(&o);
+  ierr = Open(path, file, name, type, &o);
+  if (!ierr) ierr = Read(path, file, name, &o, array);
+  if (ierr) PetscCall(PetscFree(array->values));
+  PetscCall(LamCloseHDF5(path, o.space, o.type, o.dataset));
   PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamFileCheckValues(const char path[], hid_t file, const char name[])
+PetscErrorCode LamFileGetText(const char path[], hid_t file, const char name[], char **text)
 {
-  LamFileArray array = {0};
-  H5T_class_t class;
-  hid_t dataset, type;
+  LamFileArray array;
 
   PetscFunctionBeginUser;
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, dataset = H5Dopen2(file, name, H5P_DEFAULT));
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, type = H5Dget_type(dataset));
-  class = H5Tget_class(type);
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Tclose(type));
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Dclose(dataset));
-  if (class == H5T_STRING)
-    PetscCall(LamFileGetText(path, file, name, (char **)&array.values));
-  else
-    PetscCall(LamFileGetArray(path, file, name, class == H5T_FLOAT ? H5T_IEEE_F64LE : H5T_STD_I64LE, &array));
-  PetscCall(PetscFree(array.values));
+  PetscCall(LamFileGetArray(path, file, name, H5I_INVALID_HID, &array));
+  *text = array.values;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFileGetGrid(const char path[], hid_t file, PetscBool required, const LamMicrostructure *micro,
+                              LamGrid *grid)
+{
+  PetscErrorCode ierr;
+  char *text;
+
+  PetscFunctionBeginUser;
+  *grid = NULL;
+  PetscCall(LamFileGetText(path, file, LAM_GRID_NAME, &text));
+  PetscCheck(text || !required, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: %s is missing, though there are nodes of a grid", path, LAM_GRID_NAME);
+  if (!text) PetscFunctionReturn(0);
+  ierr = LamGridFromText(path, micro, text, grid);
+  PetscCall(PetscFree(text));
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+/* ---- reading one array, with the file opened for it ---- */
+
+typedef struct {
+  const char *name;
+  hid_t type;
+  LamFileArray array;
+} Request;
+
+static PetscErrorCode Get(const char path[], hid_t file, void *ctx)
+{
+  Request *r = ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileGetArray(path, file, r->name, r->type, &r->array));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFileReadReals(const char path[], const char name[], PetscBool *found, PetscInt *rank,
+                                PetscInt dims[4], PetscReal **values)
+{
+  Request r = {.name = name, .type = H5T_IEEE_F64LE};
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileRead(path, Get, &r));
+  *found = r.array.found;
+  *rank = r.array.rank;
+  *values = r.array.values;
+  PetscCall(PetscArraycpy(dims, r.array.dims, r.array.rank));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFileReadInts(const char path[], const char name[], PetscBool *found, PetscInt *rank, PetscInt dims[4],
+                               PetscInt **values)
+{
+  Request r = {.name = name, .type = H5T_STD_I64LE};
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileRead(path, Get, &r));
+  *found = r.array.found;
+  *rank = r.array.rank;
+  *values = NULL;
+  if (!r.array.found) PetscFunctionReturn(0);
+  PetscCall(PetscArraycpy(dims, r.array.dims, r.array.rank));
+  PetscCall(PetscMalloc1(r.array.count + 1, values));
+  for (PetscInt i = 0; i < r.array.count; i++) (*values)[i] = (PetscInt)((const PetscInt64 *)r.array.values)[i];
+  PetscCall(PetscFree(r.array.values));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFileReadText(const char path[], const char name[], PetscBool *found, char **text)
+{
+  Request r = {.name = name, .type = H5I_INVALID_HID};
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileRead(path, Get, &r));
+  *found = r.array.found;
+  *text = r.array.values;
   PetscFunctionReturn(0);
 }

@@ -9,17 +9,26 @@
 
 /* ---- writing ---- */
 
-static PetscErrorCode Create(const char path[], hid_t object, const char name[], hid_t type, hid_t memory_type,
-                             const void *value)
+PetscErrorCode LamAttributeWriteNumber(const char path[], hid_t object, const char name[], hid_t file_type,
+                                       hid_t memory_type, const void *value)
 {
   hid_t space, attribute;
 
   PetscFunctionBeginUser;
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, space = H5Screate(H5S_SCALAR));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE,
+              attribute = H5Acreate2(object, name, file_type, space, H5P_DEFAULT, H5P_DEFAULT));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Awrite(attribute, memory_type, value));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Aclose(attribute));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Sclose(space));
+  PetscCall(LamCloseHDF5(path, attribute, space));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamTextTypeCreate(const char path[], const char text[], hid_t *type)
+{
+  PetscFunctionBeginUser;
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, *type = H5Tcopy(H5T_C_S1));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Tset_size(*type, strlen(text) + 1));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Tset_cset(*type, H5T_CSET_UTF8));
   PetscFunctionReturn(0);
 }
 
@@ -28,19 +37,9 @@ PetscErrorCode LamAttributeWriteText(const char path[], hid_t object, const char
   hid_t type;
 
   PetscFunctionBeginUser;
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, type = H5Tcopy(H5T_C_S1));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Tset_size(type, strlen(text) + 1));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Tset_cset(type, H5T_CSET_UTF8));
-  PetscCall(Create(path, object, name, type, type, text));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Tclose(type));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamAttributeWriteNumber(const char path[], hid_t object, const char name[], hid_t file_type,
-                                       hid_t memory_type, const void *value)
-{
-  PetscFunctionBeginUser;
-  PetscCall(Create(path, object, name, file_type, memory_type, value));
+  PetscCall(LamTextTypeCreate(path, text, &type));
+  PetscCall(LamAttributeWriteNumber(path, object, name, type, type, text));
+  PetscCall(LamCloseHDF5(path, type));
   PetscFunctionReturn(0);
 }
 
@@ -52,7 +51,7 @@ PetscErrorCode LamAttributeUpdate(const char path[], hid_t object, const char na
   PetscFunctionBeginUser;
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, attribute = H5Aopen(object, name, H5P_DEFAULT));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Awrite(attribute, memory_type, value));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Aclose(attribute));
+  PetscCall(LamCloseHDF5(path, attribute));
   PetscFunctionReturn(0);
 }
 
@@ -72,29 +71,8 @@ typedef struct {
   hid_t attribute, type, space;
 } Opened;
 
-/* Also closes partly opened objects. */
-static void Close(Opened *o)
-{
-  if (o->space >= 0) H5Sclose(o->space);
-  if (o->type >= 0) H5Tclose(o->type);
-  if (o->attribute >= 0) H5Aclose(o->attribute);
-}
-
-static PetscErrorCode OpenParts(const char path[], hid_t object, const char name[], Opened *o)
-{
-  PetscFunctionBeginUser;
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, o->attribute = H5Aopen(object, name, H5P_DEFAULT));
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, o->type = H5Aget_type(o->attribute));
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, o->space = H5Aget_space(o->attribute));
-  PetscCheck(H5Sget_simple_extent_type(o->space) == H5S_SCALAR, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: attribute \"%s\" is not one value; the file is damaged", path, name);
-  PetscFunctionReturn(0);
-}
-
-/* Opens an attribute of one element. */
 static PetscErrorCode Open(const char path[], hid_t object, const char name[], Opened *o)
 {
-  PetscErrorCode ierr;
   PetscBool has;
 
   PetscFunctionBeginUser;
@@ -102,9 +80,11 @@ static PetscErrorCode Open(const char path[], hid_t object, const char name[], O
   PetscCall(LamAttributeHas(path, object, name, &has));
   PetscCheck(has, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: attribute \"%s\" is missing; the file is damaged or was not written by lamella", path, name);
-  ierr = OpenParts(path, object, name, o);
-  if (ierr) Close(o);
-  PetscCall(ierr);
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, o->attribute = H5Aopen(object, name, H5P_DEFAULT));
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, o->type = H5Aget_type(o->attribute));
+  LamCallHDF5(path, PETSC_ERR_USER_INPUT, o->space = H5Aget_space(o->attribute));
+  PetscCheck(H5Sget_simple_extent_type(o->space) == H5S_SCALAR, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: attribute \"%s\" is not one value; the file is damaged", path, name);
   PetscFunctionReturn(0);
 }
 
@@ -125,9 +105,9 @@ PetscErrorCode LamAttributeReadNumber(const char path[], hid_t object, const cha
   Opened o;
 
   PetscFunctionBeginUser;
-  PetscCall(Open(path, object, name, &o));
-  ierr = ReadNumber(path, name, &o, file_type, memory_type, value);
-  Close(&o);
+  ierr = Open(path, object, name, &o);
+  if (!ierr) ierr = ReadNumber(path, name, &o, file_type, memory_type, value);
+  PetscCall(LamCloseHDF5(path, o.space, o.type, o.attribute));
   PetscCall(ierr);
   PetscFunctionReturn(0);
 }
@@ -151,21 +131,10 @@ PetscErrorCode LamAttributeReadText(const char path[], hid_t object, const char 
 
   PetscFunctionBeginUser;
   *text = NULL;
-  PetscCall(Open(path, object, name, &o));
-  ierr = ReadText(path, name, &o, text);
-  Close(&o);
+  ierr = Open(path, object, name, &o);
+  if (!ierr) ierr = ReadText(path, name, &o, text);
   if (ierr) PetscCall(PetscFree(*text));
+  PetscCall(LamCloseHDF5(path, o.space, o.type, o.attribute));
   PetscCall(ierr);
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamAttributeCopyText(const char path[], hid_t object, const char name[], size_t length, char value[])
-{
-  char *text;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamAttributeReadText(path, object, name, &text));
-  PetscCall(PetscStrncpy(value, text, length));
-  PetscCall(PetscFree(text));
   PetscFunctionReturn(0);
 }

@@ -66,19 +66,6 @@ const char *LamRecordDamage(const LamRecordLayout *layout, const unsigned char *
   return NULL;
 }
 
-PetscErrorCode LamRecordsCheck(const char path[], const LamRecordLayout *layout, PetscInt first, PetscInt n,
-                               const unsigned char *bytes)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < n; i++, bytes += layout->size) {
-    const char *damage = LamRecordDamage(layout, bytes);
-
-    PetscCheck(!damage, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "%s: record %" PetscInt_FMT " is damaged (%s)" LAM_SALVAGE, path, first + i, damage);
-  }
-  PetscFunctionReturn(0);
-}
-
 /* ---- members ---- */
 
 static void PackMember(const LamMember *m, const void *value, unsigned char *bytes)

@@ -20,6 +20,7 @@ typedef struct {
   PetscBool scanned;           /* the records could be examined */
   PetscBool has_nodes;
   PetscInt sound_records;
+  uint32_t sum;     /* of the checksums of the records */
   char words[1024]; /* message of the last error */
 } Check;
 
@@ -39,26 +40,13 @@ static PetscErrorCode KeepWords(MPI_Comm comm, int line, const char *function, c
   return code;
 }
 
-/* Names and texts of a damaged file may not be UTF-8: then non-ASCII bytes become question marks. */
-static json_t *Text(const char text[])
-{
-  json_t *string = json_string(text);
-  char copy[1024];
-
-  if (string) return string;
-  snprintf(copy, sizeof(copy), "%s", text);
-  for (char *c = copy; *c; c++)
-    if (*c & 0x80) *c = '?';
-  return json_string(copy);
-}
-
 /* Removes the part's name from the message. */
 static void AddPart(Check *c, const char part[])
 {
   const size_t n = strlen(part);
   const char *words = !strncmp(c->words, part, n) && c->words[n] == ' ' ? c->words + n + 1 : c->words;
 
-  json_array_append_new(c->damaged, json_pack("{s:o, s:o}", "part", Text(part), "reason", Text(words)));
+  json_array_append_new(c->damaged, json_pack("{s:o, s:o}", "part", LamJSONText(part), "reason", LamJSONText(words)));
 }
 
 /* True if the function that reads `part` returned without error. */
@@ -75,7 +63,7 @@ static void AddUnsummed(Check *c, hid_t object, const char name[], const char pa
 {
   PetscBool has;
 
-  if (!LamSumHas(c->path, object, name, &has) && !has) json_array_append_new(c->unchecked, Text(part));
+  if (!LamSumHas(c->path, object, name, &has) && !has) json_array_append_new(c->unchecked, LamJSONText(part));
   c->words[0] = '\0';
 }
 
@@ -87,50 +75,40 @@ static void AddRecord(Check *c, const LamRecordLayout *layout, PetscInt number, 
   json_t *record = json_pack("{s:I}", "record", (json_int_t)number);
 
   if (bytes) json_object_set_new(record, "key", json_integer(LamRecordInt(bytes + layout->key)));
-  json_object_set_new(record, "reason", Text(reason));
+  json_object_set_new(record, "reason", LamJSONText(reason));
   json_array_append_new(c->damaged, record);
 }
 
-/* Checks `n` records; those that cannot be read share a chunk. */
-static void CheckBlock(Check *c, LamRecordScan *scan, PetscInt first, PetscInt n, uint32_t *sum)
+/* A LamSingleVisitor. */
+static PetscErrorCode CheckRecord(void *ctx, const LamRecordLayout *layout, PetscInt number, const unsigned char *bytes,
+                                  const char damage[])
 {
-  const PetscBool read = (PetscBool)!LamRecordScanRead(c->path, scan, first, n);
+  Check *c = ctx;
 
-  if (!read && n > LAM_RECORDS_PER_CHUNK) {
-    for (PetscInt i = 0; i < n; i += LAM_RECORDS_PER_CHUNK)
-      CheckBlock(c, scan, first + i, PetscMin(LAM_RECORDS_PER_CHUNK, n - i), sum);
-    return;
-  }
-  for (PetscInt i = 0; i < n; i++) {
-    const unsigned char *bytes = read ? scan->bytes + (size_t)i * scan->layout.size : NULL;
-    const char *damage = read ? LamRecordDamage(&scan->layout, bytes) : c->words;
-
-    if (damage && c->counted) AddRecord(c, &scan->layout, first + i, bytes, damage);
-    if (damage) continue;
-    c->sound_records++;
-    if (LamKeyIsNode(LamRecordInt(bytes + scan->layout.key))) c->has_nodes = PETSC_TRUE;
-  }
-  if (read) *sum = LamRecordsSum(*sum, &scan->layout, n, scan->bytes);
-  c->words[0] = '\0';
+  PetscFunctionBeginUser;
+  if (damage && c->counted) AddRecord(c, layout, number, bytes, damage);
+  if (damage) PetscFunctionReturn(0);
+  c->sound_records++;
+  c->sum = LamRecordsSum(c->sum, layout, 1, bytes);
+  if (LamKeyIsNode(LamRecordInt(bytes + layout->key))) c->has_nodes = PETSC_TRUE;
+  PetscFunctionReturn(0);
 }
 
 static PetscErrorCode CheckRecords(Check *c)
 {
   LamRecordScan scan;
   PetscInt count;
-  uint32_t sum = 0;
 
   PetscFunctionBeginUser;
   PetscCall(LamRecordScanOpen(c->path, c->file, &scan));
   count = c->counted ? c->header.committed : LamRecordScanExtent(&scan, c->file);
-  for (PetscInt first = 0; first < count; first += LAM_BLOCK)
-    CheckBlock(c, &scan, first, PetscMin(LAM_BLOCK, count - first), &sum);
+  PetscCall(LamRecordScanAll(c->path, &scan, count, CheckRecord, c));
   if (c->counted && c->sound_records == count)
-    (void)Sound(c, "order of the records", LamRecordScanEnd(c->path, &scan, count, sum));
+    (void)Sound(c, "order of the records", LamRecordScanEnd(c->path, &scan, count, c->sum));
   AddUnsummed(c, scan.dataset, LAM_COUNTER_SUM, "commit counter");
   if (count) AddUnsummed(c, scan.dataset, LAM_RECORDS_SUM, "order of the records");
   AddUnsummed(c, scan.dataset, LAM_TYPE_SUM, "members of the records");
-  LamRecordScanClose(&scan);
+  PetscCall(LamRecordScanClose(c->path, &scan));
   PetscFunctionReturn(0);
 }
 
@@ -141,7 +119,7 @@ static herr_t KeepName(hid_t group, const char name[], const H5L_info_t *info, v
   char path[1024];
 
   snprintf(path, sizeof(path), "/%s", name);
-  return json_array_append_new(ctx, Text(path)) ? -1 : 0;
+  return json_array_append_new(ctx, LamJSONText(path)) ? -1 : 0;
 }
 
 static PetscErrorCode ListNames(Check *c, json_t *names)
@@ -154,37 +132,36 @@ static PetscErrorCode ListNames(Check *c, json_t *names)
 /* H5O_INFO_ALL, as other programs use it: HDF5 then reads the whole index of a group. */
 static PetscErrorCode CheckObject(Check *c, const char name[])
 {
+  LamFileArray array;
+  H5T_class_t class;
   H5O_info_t info;
   PetscBool has;
-  hid_t dataset;
+  hid_t dataset, type, wanted;
+  PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
   if (strcmp(name, "/")) PetscCall(LamFileHas(c->path, c->file, name, &has));
   LamCallHDF5(c->path, PETSC_ERR_USER_INPUT, H5Oget_info_by_name2(c->file, name, &info, H5O_INFO_ALL, H5P_DEFAULT));
   if (info.type == H5O_TYPE_GROUP || !strcmp(name, "/records")) PetscFunctionReturn(0);
-  PetscCall(LamFileCheckValues(c->path, c->file, name));
   LamCallHDF5(c->path, PETSC_ERR_USER_INPUT, dataset = H5Dopen2(c->file, name, H5P_DEFAULT));
-  AddUnsummed(c, dataset, LAM_SUM, name);
-  LamCallHDF5(c->path, PETSC_ERR_LIB, H5Dclose(dataset));
+  LamCallHDF5(c->path, PETSC_ERR_USER_INPUT, type = H5Dget_type(dataset));
+  class = H5Tget_class(type);
+  wanted = class == H5T_STRING ? H5I_INVALID_HID : class == H5T_FLOAT ? H5T_IEEE_F64LE : H5T_STD_I64LE;
+  ierr = LamFileGetArray(c->path, c->file, name, wanted, &array);
+  if (!ierr) AddUnsummed(c, dataset, LAM_SUM, name);
+  PetscCall(PetscFree(array.values));
+  PetscCall(LamCloseHDF5(c->path, type, dataset));
+  PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode CheckGrid(Check *c)
 {
-  PetscErrorCode ierr;
+  const PetscBool required = (PetscBool)(c->has_nodes && !strcmp(c->header.kind, "database"));
   LamGrid grid;
-  PetscBool has;
-  char *text;
 
   PetscFunctionBeginUser;
-  PetscCall(LamFileHas(c->path, c->file, LAM_GRID_NAME, &has));
-  PetscCheck(has || !c->has_nodes || strcmp(c->header.kind, "database"), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: is missing, though there are nodes of a grid", c->path);
-  if (!has) PetscFunctionReturn(0);
-  PetscCall(LamFileGetText(c->path, c->file, LAM_GRID_NAME, &text));
-  ierr = LamGridFromText(c->path, &c->header.micro, text, &grid);
-  PetscCall(PetscFree(text));
-  PetscCall(ierr);
+  PetscCall(LamFileGetGrid(c->path, c->file, required, &c->header.micro, &grid));
   PetscCall(LamGridDestroy(&grid));
   PetscFunctionReturn(0);
 }
@@ -219,7 +196,7 @@ static PetscErrorCode OpenAndCheck(Check *c)
 
   PetscFunctionBeginUser;
   PetscCall(PetscPushErrorHandler(KeepWords, c));
-  ierr = LamFileOpenRead(c->path, &c->file);
+  ierr = LamFileOpen(c->path, PETSC_FALSE, &c->file);
   if (ierr != PETSC_ERR_FILE_OPEN && ierr != PETSC_ERR_FILE_READ && Sound(c, "file", ierr)) CheckParts(c);
   if (c->file >= 0) H5Fclose(c->file);
   LamLockEndRead(lock);
@@ -238,7 +215,7 @@ PetscErrorCode LamFileCheck(const char path[], PetscBool *sound, char **json)
 
   PetscFunctionBeginUser;
   *sound = (PetscBool)!json_array_size(c.damaged);
-  object = json_pack("{s:o, s:b, s:o, s:I, s:o, s:o, s:o}", "file", Text(path), "sound", (int)*sound, "records",
+  object = json_pack("{s:o, s:b, s:o, s:I, s:o, s:o, s:o}", "file", LamJSONText(path), "sound", (int)*sound, "records",
                      c.counted ? json_integer(c.header.committed) : json_null(), "sound_records",
                      (json_int_t)c.sound_records, "damaged", c.damaged, "unchecked", c.unchecked, "writer",
                      LamWriterToJSON(path));

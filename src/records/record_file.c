@@ -20,7 +20,7 @@ static PetscErrorCode AccessList(const char path[], hid_t *access)
 }
 
 /* Without O_NONBLOCK opening a pipe would wait for a writer. */
-static PetscErrorCode FileOpen(const char path[], PetscBool write, hid_t *file)
+PetscErrorCode LamFileOpen(const char path[], PetscBool write, hid_t *file)
 {
   const int fd = open(path, (write ? O_RDWR : O_RDONLY) | O_CLOEXEC | O_NONBLOCK);
   struct stat status;
@@ -57,21 +57,7 @@ static PetscErrorCode FileOpen(const char path[], PetscBool write, hid_t *file)
     PetscCheck(!write, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s: %s", path, reason);
     SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: the file is damaged or cut short: %s", path, reason);
   }
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Pclose(access));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamFileOpenRead(const char path[], hid_t *file)
-{
-  PetscFunctionBeginUser;
-  PetscCall(FileOpen(path, PETSC_FALSE, file));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamFileOpenWrite(const char path[], hid_t *file)
-{
-  PetscFunctionBeginUser;
-  PetscCall(FileOpen(path, PETSC_TRUE, file));
+  PetscCall(LamCloseHDF5(path, access));
   PetscFunctionReturn(0);
 }
 
@@ -82,14 +68,7 @@ PetscErrorCode LamFileOpenNew(const char path[], hid_t *file)
   PetscFunctionBeginUser;
   PetscCall(AccessList(path, &access));
   LamCallHDF5(path, PETSC_ERR_FILE_OPEN, *file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, access));
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Pclose(access));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamFileClose(const char path[], hid_t file)
-{
-  PetscFunctionBeginUser;
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Fclose(file));
+  PetscCall(LamCloseHDF5(path, access));
   PetscFunctionReturn(0);
 }
 
@@ -108,7 +87,7 @@ PetscErrorCode LamFileRead(const char path[], LamFileFunction read, void *ctx)
 {
   hid_t file = H5I_INVALID_HID;
   const int lock = LamLockBeginRead(path);
-  PetscErrorCode ierr = LamFileOpenRead(path, &file);
+  PetscErrorCode ierr = LamFileOpen(path, PETSC_FALSE, &file);
 
   PetscFunctionBeginUser;
   if (!ierr) ierr = read(path, file, ctx);
@@ -124,11 +103,11 @@ PetscErrorCode LamFileWrite(const char path[], LamFileFunction write, void *ctx)
   hid_t file;
 
   PetscFunctionBeginUser;
-  PetscCall(LamFileOpenWrite(path, &file));
+  PetscCall(LamFileOpen(path, PETSC_TRUE, &file));
   ierr = write(path, file, ctx);
   if (!ierr) ierr = LamFileSync(path, file);
   if (ierr) H5Fclose(file);
   PetscCall(ierr);
-  PetscCall(LamFileClose(path, file));
+  PetscCall(LamCloseHDF5(path, file));
   PetscFunctionReturn(0);
 }

@@ -5,9 +5,37 @@
 #include "record_internal.h"
 #include <lamella/version.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
+
+#define DESCRIPTION "/microstructures/%s/description"
+
+typedef enum { TEXT, REAL, INT } Kind;
+
+/* The attributes of the root, in the order of their checksum. */
+static const struct {
+  const char *name;
+  Kind kind;
+  size_t offset;
+} attributes[] = {{"format", TEXT, offsetof(LamHeader, format)},
+                  {"format_version", INT, offsetof(LamHeader, format_version)},
+                  {"kind", TEXT, offsetof(LamHeader, kind)},
+                  {"creator", TEXT, offsetof(LamHeader, creator)},
+                  {"created", TEXT, offsetof(LamHeader, created)},
+                  {"host", TEXT, offsetof(LamHeader, host)},
+                  {"command", TEXT, offsetof(LamHeader, command)},
+                  {"petsc_version", TEXT, offsetof(LamHeader, petsc)},
+                  {"hdf5_version", TEXT, offsetof(LamHeader, hdf5)},
+                  {"mpi_version", TEXT, offsetof(LamHeader, mpi)},
+                  {"units", TEXT, offsetof(LamHeader, units)},
+                  {"index_order", TEXT, offsetof(LamHeader, index_order)},
+                  {"length_unit_m", REAL, offsetof(LamHeader, scales.length)},
+                  {"stress_unit_Pa", REAL, offsetof(LamHeader, scales.stress)},
+                  {"macro_length_unit_m", REAL, offsetof(LamHeader, scales.macro_length)},
+                  {"accuracy", REAL, offsetof(LamHeader, accuracy)},
+                  {"microstructure", TEXT, offsetof(LamHeader, hash)}};
 
 /* ---- writing ---- */
 
@@ -23,73 +51,56 @@ static void CommandLine(size_t size, char text[])
     if (!text[i]) text[i] = ' ';
 }
 
-static void MPIVersion(size_t size, char text[])
+static PetscErrorCode WriteAttributes(const char path[], hid_t file, const LamHeader *h)
 {
-  char version[MPI_MAX_LIBRARY_VERSION_STRING] = "unknown";
+  PetscFunctionBeginUser;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(attributes); i++) {
+    const char *name = attributes[i].name;
+    const void *value = (const char *)h + attributes[i].offset;
+    const PetscBool real = (PetscBool)(attributes[i].kind == REAL);
+
+    if (attributes[i].kind == TEXT)
+      PetscCall(LamAttributeWriteText(path, file, name, *(char *const *)value));
+    else
+      PetscCall(LamAttributeWriteNumber(path, file, name, real ? H5T_IEEE_F64LE : H5T_STD_I32LE,
+                                        real ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT32, value));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WriteHeader(const char path[], hid_t file, const char kind[], const LamScene *scene, char hash[])
+{
+  char now[LAM_TIME_LENGTH], host[256], command[4096], petsc[32], hdf5[32], mpi[MPI_MAX_LIBRARY_VERSION_STRING];
+  const LamHeader header = {
+      .format = LAM_FORMAT_NAME,
+      .format_version = LAM_FORMAT_VERSION,
+      .kind = (char *)kind,
+      .creator = "lamella " LAMELLA_VERSION,
+      .created = now,
+      .host = host,
+      .command = command,
+      .petsc = petsc,
+      .hdf5 = hdf5,
+      .mpi = mpi,
+      .units = "nondimensional: lengths in length_unit_m, stresses in stress_unit_Pa",
+      .index_order = "row-major, 11 12 13 21 22 23 31 32 33; tangent[i][j][k][l] = dP_ij/dF_kl",
+      .scales = scene->scales,
+      .accuracy = scene->accuracy,
+      .hash = hash,
+  };
+  unsigned major, minor, release;
   int length;
 
-  MPI_Get_library_version(version, &length); /* allowed before MPI_Init */
-  version[strcspn(version, ",\n")] = '\0';
-  snprintf(text, size, "%s", version);
-}
-
-static PetscErrorCode WriteProvenance(const char path[], hid_t file)
-{
-  char text[4096], now[LAM_TIME_LENGTH];
-  unsigned major, minor, release;
-
   PetscFunctionBeginUser;
-  PetscCall(LamAttributeWriteText(path, file, "creator", "lamella " LAMELLA_VERSION));
   LamTimeNow(now);
-  PetscCall(LamAttributeWriteText(path, file, "created", now));
-  if (gethostname(text, sizeof(text) - 1)) snprintf(text, sizeof(text), "unknown");
-  PetscCall(LamAttributeWriteText(path, file, "host", text));
-  CommandLine(sizeof(text), text);
-  PetscCall(LamAttributeWriteText(path, file, "command", text));
-  snprintf(text, sizeof(text), "%d.%d.%d", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR);
-  PetscCall(LamAttributeWriteText(path, file, "petsc_version", text));
+  if (gethostname(host, sizeof(host) - 1)) snprintf(host, sizeof(host), "unknown");
+  CommandLine(sizeof(command), command);
+  snprintf(petsc, sizeof(petsc), "%d.%d.%d", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR);
   LamCallHDF5(path, PETSC_ERR_LIB, H5get_libversion(&major, &minor, &release));
-  snprintf(text, sizeof(text), "%u.%u.%u", major, minor, release);
-  PetscCall(LamAttributeWriteText(path, file, "hdf5_version", text));
-  MPIVersion(sizeof(text), text);
-  PetscCall(LamAttributeWriteText(path, file, "mpi_version", text));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode WriteHeader(const char path[], hid_t file, const char kind[], const LamScene *scene)
-{
-  const int version = LAM_FORMAT_VERSION;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamAttributeWriteText(path, file, "format", LAM_FORMAT_NAME));
-  PetscCall(LamAttributeWriteNumber(path, file, "format_version", H5T_STD_I32LE, H5T_NATIVE_INT, &version));
-  PetscCall(LamAttributeWriteText(path, file, "kind", kind));
-  PetscCall(WriteProvenance(path, file));
-  PetscCall(LamAttributeWriteText(path, file, "units",
-                                  "nondimensional: lengths in length_unit_m, stresses in stress_unit_Pa"));
-  PetscCall(LamAttributeWriteText(path, file, "index_order",
-                                  "row-major, 11 12 13 21 22 23 31 32 33; tangent[i][j][k][l] = dP_ij/dF_kl"));
-  PetscCall(
-      LamAttributeWriteNumber(path, file, "length_unit_m", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &scene->scales.length));
-  PetscCall(
-      LamAttributeWriteNumber(path, file, "stress_unit_Pa", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &scene->scales.stress));
-  PetscCall(LamAttributeWriteNumber(path, file, "macro_length_unit_m", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE,
-                                    &scene->scales.macro_length));
-  PetscCall(LamAttributeWriteNumber(path, file, "accuracy", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &scene->accuracy));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode WriteMicrostructure(const char path[], hid_t file, const LamScene *scene)
-{
-  char hash[LAM_HASH_LENGTH], name[64], *json;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamMicrostructureDescribe(&scene->micro, &json, hash));
-  snprintf(name, sizeof(name), "/microstructures/%s/description", hash);
-  PetscCall(LamFileWriteText(path, file, name, json));
-  PetscCall(PetscFree(json));
-  PetscCall(LamAttributeWriteText(path, file, "microstructure", hash));
-  if (scene->text) PetscCall(LamFileWriteText(path, file, "/scene", scene->text));
+  snprintf(hdf5, sizeof(hdf5), "%u.%u.%u", major, minor, release);
+  MPI_Get_library_version(mpi, &length); /* allowed before MPI_Init */
+  mpi[strcspn(mpi, ",\n")] = '\0';
+  PetscCall(WriteAttributes(path, file, &header));
   PetscFunctionReturn(0);
 }
 
@@ -121,10 +132,7 @@ static PetscErrorCode WriteEmptyRecords(const char path[], hid_t file)
   PetscCall(LamRecordTypeSum(type, &sum));
   PetscCall(LamSumWrite(path, dataset, LAM_TYPE_SUM, sum)); /* before the counter, which then lies in one sector */
   PetscCall(WriteCounter(path, dataset));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dclose(dataset));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Pclose(list));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Sclose(space));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Tclose(type));
+  PetscCall(LamCloseHDF5(path, dataset, list, space, type));
   PetscFunctionReturn(0);
 }
 
@@ -134,12 +142,19 @@ static PetscErrorCode WriteEmptyRecords(const char path[], hid_t file)
 */
 static PetscErrorCode WriteAll(const char path[], hid_t file, const char kind[], const LamScene *scene)
 {
+  char hash[LAM_HASH_LENGTH], name[64], *json;
+  PetscErrorCode ierr;
   uint32_t sum;
 
   PetscFunctionBeginUser;
   PetscCall(WriteEmptyRecords(path, file));
-  PetscCall(WriteHeader(path, file, kind, scene));
-  PetscCall(WriteMicrostructure(path, file, scene));
+  PetscCall(LamMicrostructureDescribe(&scene->micro, &json, hash));
+  snprintf(name, sizeof(name), DESCRIPTION, hash);
+  ierr = LamFileWriteText(path, file, name, json);
+  PetscCall(PetscFree(json));
+  PetscCall(ierr);
+  if (scene->text) PetscCall(LamFileWriteText(path, file, "/scene", scene->text));
+  PetscCall(WriteHeader(path, file, kind, scene, hash));
   PetscCall(LamHeaderSum(path, file, &sum));
   PetscCall(LamSumWrite(path, file, LAM_SUM, sum));
   PetscCall(LamFileSync(path, file));
@@ -156,7 +171,7 @@ PetscErrorCode LamFileCreate(const char path[], const char kind[], const LamScen
   ierr = WriteAll(path, file, kind, scene);
   if (ierr) H5Fclose(file);
   PetscCall(ierr);
-  PetscCall(LamFileClose(path, file));
+  PetscCall(LamCloseHDF5(path, file));
   PetscFunctionReturn(0);
 }
 
@@ -182,42 +197,58 @@ PetscErrorCode LamCounterWrite(const char path[], hid_t dataset, PetscInt commit
 PetscErrorCode LamHeaderDestroy(LamHeader *header)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree(header->command));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(attributes); i++)
+    if (attributes[i].kind == TEXT) PetscCall(PetscFree(*(char **)((char *)header + attributes[i].offset)));
   PetscCall(PetscFree(header->description));
   PetscCall(LamMicrostructureDestroy(&header->micro));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ReadProvenance(const char path[], hid_t file, LamHeader *h)
+/* *sum: their checksum. */
+static PetscErrorCode ReadAttributes(const char path[], hid_t file, LamHeader *h, uint32_t *sum)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamAttributeCopyText(path, file, "creator", sizeof(h->creator), h->creator));
-  PetscCall(LamAttributeCopyText(path, file, "created", sizeof(h->created), h->created));
-  PetscCall(LamAttributeCopyText(path, file, "host", sizeof(h->host), h->host));
-  PetscCall(LamAttributeCopyText(path, file, "petsc_version", sizeof(h->petsc), h->petsc));
-  PetscCall(LamAttributeCopyText(path, file, "hdf5_version", sizeof(h->hdf5), h->hdf5));
-  PetscCall(LamAttributeCopyText(path, file, "mpi_version", sizeof(h->mpi), h->mpi));
-  PetscCall(LamAttributeReadText(path, file, "command", &h->command));
+  *sum = 0;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(attributes); i++) {
+    const char *name = attributes[i].name;
+    void *value = (char *)h + attributes[i].offset;
+    const PetscBool real = (PetscBool)(attributes[i].kind == REAL);
+
+    if (attributes[i].kind == TEXT) {
+      PetscCall(LamAttributeReadText(path, file, name, value));
+      *sum = LamBytesSum(*sum, *(char **)value, strlen(*(char **)value) + 1);
+    } else {
+      PetscCall(LamAttributeReadNumber(path, file, name, real ? H5T_IEEE_F64LE : H5T_STD_I32LE,
+                                       real ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT32, value));
+      *sum = LamBytesSum(*sum, value, real ? sizeof(double) : sizeof(int32_t));
+    }
+  }
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ReadScales(const char path[], hid_t file, LamHeader *h)
+PetscErrorCode LamHeaderSum(const char path[], hid_t file, uint32_t *sum)
 {
-  const struct {
-    const char *name;
-    PetscReal *value;
-    PetscBool is_unit; /* positive, however small */
-  } rows[] = {{"length_unit_m", &h->scales.length, PETSC_TRUE},
-              {"stress_unit_Pa", &h->scales.stress, PETSC_TRUE},
-              {"macro_length_unit_m", &h->scales.macro_length, PETSC_FALSE},
-              {"accuracy", &h->accuracy, PETSC_FALSE}};
+  LamHeader header = {0};
+  PetscErrorCode ierr = ReadAttributes(path, file, &header, sum);
 
   PetscFunctionBeginUser;
-  for (size_t i = 0; i < sizeof(rows) / sizeof(rows[0]); i++) {
-    PetscCall(LamAttributeReadNumber(path, file, rows[i].name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, rows[i].value));
-    PetscCheck(isfinite(*rows[i].value) && *rows[i].value >= 0 && (!rows[i].is_unit || *rows[i].value > 0),
+  PetscCall(LamHeaderDestroy(&header));
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+/* Units are positive, however small; a macroscopic length or accuracy of 0 is unknown. */
+static PetscErrorCode CheckNumbers(const char path[], const LamHeader *h)
+{
+  PetscFunctionBeginUser;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(attributes); i++) {
+    const PetscReal *value = (const PetscReal *)(const void *)((const char *)h + attributes[i].offset);
+
+    if (attributes[i].kind != REAL) continue;
+    PetscCheck(isfinite(*value) && *value >= 0 &&
+                   (*value > 0 || (value != &h->scales.length && value != &h->scales.stress)),
                PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: attribute \"%s\" is %g; the file is damaged", path,
-               rows[i].name, (double)*rows[i].value);
+               attributes[i].name, (double)*value);
   }
   PetscFunctionReturn(0);
 }
@@ -228,9 +259,10 @@ static PetscErrorCode ReadMicrostructure(const char path[], hid_t file, LamHeade
   H5G_info_t info;
 
   PetscFunctionBeginUser;
-  PetscCall(LamAttributeCopyText(path, file, "microstructure", sizeof(h->hash), h->hash));
-  snprintf(name, sizeof(name), "/microstructures/%s/description", h->hash);
+  snprintf(name, sizeof(name), DESCRIPTION, h->hash);
   PetscCall(LamFileGetText(path, file, name, &h->description));
+  PetscCheck(h->description, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s is missing; the file is damaged", path,
+             name);
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Gget_info_by_name(file, "/microstructures", &info, H5P_DEFAULT));
   PetscCheck(info.nlinks == 1, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: holds %d microstructures; this version reads files of one", path, (int)info.nlinks);
@@ -242,50 +274,42 @@ static PetscErrorCode ReadMicrostructure(const char path[], hid_t file, LamHeade
   PetscFunctionReturn(0);
 }
 
-/* Other versions may have other attributes, so the version is checked before the checksum. */
-static PetscErrorCode CheckFormat(const char path[], hid_t file, PetscInt *format_version)
+/* Other versions may have other attributes, so the version is checked before all of them are read. */
+static PetscErrorCode CheckFormat(const char path[], hid_t file)
 {
-  char format[16] = "";
+  char *format = NULL, name[16] = "";
   PetscBool has;
   int version;
 
   PetscFunctionBeginUser;
   PetscCall(LamAttributeHas(path, file, "format", &has));
-  if (has) PetscCall(LamAttributeCopyText(path, file, "format", sizeof(format), format));
-  PetscCheck(!strcmp(format, LAM_FORMAT_NAME), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: was not written by lamella (attribute \"format\" is \"%s\", not \"%s\")", path, format,
+  if (has) PetscCall(LamAttributeReadText(path, file, "format", &format));
+  if (has) snprintf(name, sizeof(name), "%s", format);
+  PetscCall(PetscFree(format));
+  PetscCheck(!strcmp(name, LAM_FORMAT_NAME), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: was not written by lamella (attribute \"format\" is \"%s\", not \"%s\")", path, name,
              LAM_FORMAT_NAME);
   PetscCall(LamAttributeReadNumber(path, file, "format_version", H5T_STD_I32LE, H5T_NATIVE_INT, &version));
   PetscCheck(version == LAM_FORMAT_VERSION, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: has format version %d; this lamella reads version %d", path, version, LAM_FORMAT_VERSION);
-  *format_version = version;
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode CheckSum(const char path[], hid_t file, PetscBool *matches)
-{
-  PetscBool sound;
-  uint32_t sum;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamHeaderSum(path, file, &sum));
-  PetscCall(LamSumMatches(path, file, LAM_SUM, sum, &sound));
-  if (matches) *matches = sound;
-  PetscCheck(sound || matches, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: the header is damaged (an attribute of the root has been changed: its checksum differs)" LAM_SALVAGE,
-             path);
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamHeaderReadRoot(const char path[], hid_t file, PetscBool *matches, LamHeader *header)
 {
+  PetscBool sound;
+  uint32_t sum;
+
   PetscFunctionBeginUser;
   memset(header, 0, sizeof(*header));
-  PetscCall(CheckFormat(path, file, &header->format_version));
-  PetscCall(LamAttributeCopyText(path, file, "kind", sizeof(header->kind), header->kind));
-  PetscCall(ReadProvenance(path, file, header));
-  PetscCall(ReadScales(path, file, header));
-  PetscCall(CheckSum(path, file, matches));
+  PetscCall(CheckFormat(path, file));
+  PetscCall(ReadAttributes(path, file, header, &sum));
+  PetscCall(CheckNumbers(path, header));
+  PetscCall(LamSumMatches(path, file, LAM_SUM, sum, &sound));
+  if (matches) *matches = sound;
+  PetscCheck(sound || matches, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: the header is damaged (an attribute of the root has been changed: its checksum differs)" LAM_SALVAGE,
+             path);
   PetscCall(ReadMicrostructure(path, file, header));
   PetscFunctionReturn(0);
 }
@@ -295,5 +319,25 @@ PetscErrorCode LamHeaderRead(const char path[], hid_t file, LamHeader *header)
   PetscFunctionBeginUser;
   PetscCall(LamHeaderReadRoot(path, file, NULL, header));
   PetscCall(LamCommittedRead(path, file, &header->committed));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode GetKind(const char path[], hid_t file, void *kind)
+{
+  LamHeader header;
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  ierr = LamHeaderRead(path, file, &header);
+  if (!ierr) ierr = PetscStrncpy(kind, header.kind, LAM_NAME_LENGTH);
+  PetscCall(LamHeaderDestroy(&header));
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFileReadKind(const char path[], char kind[LAM_NAME_LENGTH])
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamFileRead(path, GetKind, kind));
   PetscFunctionReturn(0);
 }

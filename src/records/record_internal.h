@@ -50,9 +50,6 @@ PetscErrorCode LamRecordsPack(PetscInt n, const PetscInt64 keys[], const LamResp
 PetscErrorCode LamRecordUnpack(const LamRecordLayout *layout, const unsigned char *bytes, LamResponse *response);
 /* Checks checksum, status, source and microstructure of a record. Returns a description of the damage, or NULL. */
 const char *LamRecordDamage(const LamRecordLayout *layout, const unsigned char *bytes);
-/* The same for n records from number `first` on; the error names `path` and the damaged record. */
-PetscErrorCode LamRecordsCheck(const char path[], const LamRecordLayout *layout, PetscInt first, PetscInt n,
-                               const unsigned char *bytes);
 
 /* ---- record_attribute.c ---- */
 
@@ -69,7 +66,8 @@ PetscErrorCode LamAttributeReadNumber(const char path[], hid_t object, const cha
                                       hid_t memory_type, void *value);
 PetscErrorCode LamAttributeReadText(const char path[], hid_t object, const char name[],
                                     char **text); /* the caller frees it */
-PetscErrorCode LamAttributeCopyText(const char path[], hid_t object, const char name[], size_t length, char value[]);
+/* The type of a text in the file; the caller closes it. */
+PetscErrorCode LamTextTypeCreate(const char path[], const char text[], hid_t *type);
 
 /* ---- record_sums.c ---- */
 
@@ -85,8 +83,6 @@ PetscErrorCode LamSumWrite(const char path[], hid_t object, const char name[], u
 PetscErrorCode LamSumHas(const char path[], hid_t object, const char name[], PetscBool *has);
 /* True also if the object has no such attribute. */
 PetscErrorCode LamSumMatches(const char path[], hid_t object, const char name[], uint32_t sum, PetscBool *matches);
-/* Checksum of the root's attributes, as read. */
-PetscErrorCode LamHeaderSum(const char path[], hid_t file, uint32_t *sum);
 /* Continues the checksum `before` (0: none) with n bytes. */
 uint32_t LamBytesSum(uint32_t before, const void *bytes, size_t n);
 PetscErrorCode LamRecordTypeSum(hid_t file_type, uint32_t *sum);
@@ -96,10 +92,8 @@ uint32_t LamRecordsSum(uint32_t before, const LamRecordLayout *layout, PetscInt 
 /* ---- record_file.c ---- */
 
 /* Opens without HDF5's own locks; closing the file closes all objects in it. */
-PetscErrorCode LamFileOpenRead(const char path[], hid_t *file);
-PetscErrorCode LamFileOpenWrite(const char path[], hid_t *file);
+PetscErrorCode LamFileOpen(const char path[], PetscBool write, hid_t *file);
 PetscErrorCode LamFileOpenNew(const char path[], hid_t *file);
-PetscErrorCode LamFileClose(const char path[], hid_t file);
 /* Writes everything to disk. */
 PetscErrorCode LamFileSync(const char path[], hid_t file);
 /* Call a function with the file open: for reading, while no commit is in progress; for writing, synced afterwards. */
@@ -113,9 +107,14 @@ PetscErrorCode LamFileWrite(const char path[], LamFileFunction write, void *ctx)
 PetscErrorCode LamFileHas(const char path[], hid_t file, const char name[], PetscBool *has);
 /* Writes a text dataset; creates groups. */
 PetscErrorCode LamFileWriteText(const char path[], hid_t file, const char name[], const char text[]);
+/* Reads a text and verifies its checksum; NULL: there is none of this name. The caller frees it. */
 PetscErrorCode LamFileGetText(const char path[], hid_t file, const char name[], char **text);
-/* Reads a text or array, and verifies its checksum. */
-PetscErrorCode LamFileCheckValues(const char path[], hid_t file, const char name[]);
+/* The grid of the file; NULL: none, which is an error if it is required. */
+PetscErrorCode LamFileGetGrid(const char path[], hid_t file, PetscBool required, const LamMicrostructure *micro,
+                              LamGrid *grid);
+/* Transfers rows [first, first + n) of a dataset between the file and memory; `type` is that in memory. */
+PetscErrorCode LamRowsTransfer(const char path[], hid_t dataset, hid_t type, PetscBool write, hsize_t first, hsize_t n,
+                               void *rows);
 
 /* Rejects datasets that Lamella never writes, before any data is read: another layout, filters, data in other files. */
 PetscErrorCode LamDatasetCheck(const char path[], hid_t dataset, const char name[], H5D_layout_t wanted);
@@ -124,9 +123,9 @@ PetscErrorCode LamDatasetCheck(const char path[], hid_t dataset, const char name
 typedef struct {
   PetscBool found;
   PetscInt rank, dims[4], count;
-  void *values; /* of 8 bytes each; NULL: not found. The caller frees them */
+  void *values; /* followed by a zero; NULL: not found. The caller frees them */
 } LamFileArray;
-/* `type`: type of the values in the file, which have 8 bytes each. */
+/* Reads an array and verifies its checksum. `type`: of the values in the file; H5I_INVALID_HID: one text. */
 PetscErrorCode LamFileGetArray(const char path[], hid_t file, const char name[], hid_t type, LamFileArray *array);
 
 /* ---- record_scan.c ---- */
@@ -139,18 +138,20 @@ typedef PetscErrorCode (*LamRecordVisitor)(void *ctx, const LamRecordLayout *lay
 /* Reads the first `count` records once, in blocks, checks them and passes them to the visitor in their order. */
 PetscErrorCode LamFileScanRecords(const char path[], hid_t file, PetscInt count, LamRecordVisitor visit, void *ctx);
 
-/* The same for callers that handle damaged records: open, read blocks of at most LAM_BLOCK records into scan->bytes,
-   close. */
+/* The same for callers that handle damaged records: open, visit all, close. */
 typedef struct {
   hid_t dataset, type, space;
   LamRecordLayout layout;
   unsigned char *bytes; /* of a block, or of all records if there are fewer; owned */
 } LamRecordScan;
 
-#define LAM_BLOCK (8 * LAM_RECORDS_PER_CHUNK) /* 0.9 MB: fits into the processor's cache for check and use */
+/* Receives one record; `damage` NULL: it is sound. `bytes` NULL: HDF5 cannot read it. */
+typedef PetscErrorCode (*LamSingleVisitor)(void *ctx, const LamRecordLayout *layout, PetscInt number,
+                                           const unsigned char *bytes, const char damage[]);
 PetscErrorCode LamRecordScanOpen(const char path[], hid_t file, LamRecordScan *scan);
-PetscErrorCode LamRecordScanRead(const char path[], LamRecordScan *scan, PetscInt first, PetscInt n);
-void LamRecordScanClose(LamRecordScan *scan);
+PetscErrorCode LamRecordScanAll(const char path[], LamRecordScan *scan, PetscInt count, LamSingleVisitor visit,
+                                void *ctx);
+PetscErrorCode LamRecordScanClose(const char path[], LamRecordScan *scan);
 /* Verifies the sum of the checksums of all committed records, `count`; more may have been committed since. */
 PetscErrorCode LamRecordScanEnd(const char path[], const LamRecordScan *scan, PetscInt count, uint32_t sum);
 /* The number of allocated records, committed or not. */
@@ -158,17 +159,15 @@ PetscInt LamRecordScanExtent(const LamRecordScan *scan, hid_t file);
 
 /* ---- record_header.c ---- */
 
-/* Attributes of the root group. The header owns the texts and the cells of `micro`. */
+/* Attributes of the root group. The header owns all texts, and the cells of `micro`. */
 typedef struct {
-  char kind[LAM_NAME_LENGTH];
-  char creator[LAM_NAME_LENGTH], created[LAM_TIME_LENGTH], host[256];
-  char petsc[LAM_NAME_LENGTH], hdf5[LAM_NAME_LENGTH], mpi[256];
-  char *command;
-  PetscInt format_version;
+  char *format, *kind, *creator, *created, *host, *command;
+  char *petsc, *hdf5, *mpi; /* versions */
+  char *units, *index_order;
+  int format_version;
   LamScales scales;
   PetscReal accuracy;
-  char hash[LAM_HASH_LENGTH];
-  char *description;
+  char *hash, *description; /* of the microstructure */
   LamMicrostructure micro;
   PetscInt committed;
 } LamHeader;
@@ -181,8 +180,15 @@ PetscErrorCode LamHeaderRead(const char path[], hid_t file, LamHeader *header);
 /* The same without the number of committed records. *matches: whether the checksum is correct; NULL: an error if
    not. */
 PetscErrorCode LamHeaderReadRoot(const char path[], hid_t file, PetscBool *matches, LamHeader *header);
+/* Checksum of the root's attributes, as read. */
+PetscErrorCode LamHeaderSum(const char path[], hid_t file, uint32_t *sum);
 /* Sets the number of committed records and the sum of their checksums; does not sync. */
 PetscErrorCode LamCounterWrite(const char path[], hid_t dataset, PetscInt committed, uint32_t records_sum);
+
+/* ---- record_write.c ---- */
+
+/* Writes something beside the records, of `bytes` bytes: locks, reserves space, syncs. */
+PetscErrorCode LamRecordWriterBeside(LamRecordWriter writer, size_t bytes, LamFileFunction write, void *ctx);
 
 /* ---- record_target.c ---- */
 
@@ -191,8 +197,6 @@ PetscErrorCode LamTargetFind(const char path[], const char kind[], LamWriteMode 
 
 /* ---- record_preallocate.c ---- */
 
-/* The number of allocated records, including committed ones. */
-PetscErrorCode LamFileReadExtent(const char path[], hid_t file, PetscInt *extent);
 /*
   Allocates space for at least `records` records; *extent: before and after. The file `path` is replaced by a copy,
   created as `temporary`; after a kill it is unchanged. NULL: extends `temporary` itself, which has not been renamed

@@ -5,6 +5,7 @@
 #define LAM_RECORD_JSON_H
 
 #include <jansson.h>
+#include "json.h"
 #include "record_internal.h"
 
 /* Text that may contain any bytes, such as a command line: null if it is not UTF-8. */

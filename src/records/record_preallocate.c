@@ -10,21 +10,6 @@
 #include "record_internal.h"
 #include <unistd.h>
 
-PetscErrorCode LamFileReadExtent(const char path[], hid_t file, PetscInt *extent)
-{
-  hid_t dataset, space;
-  hssize_t n;
-
-  PetscFunctionBeginUser;
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, dataset = H5Dopen2(file, "/records", H5P_DEFAULT));
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, space = H5Dget_space(dataset));
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, n = H5Sget_simple_extent_npoints(space));
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Sclose(space));
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Dclose(dataset));
-  *extent = (PetscInt)n;
-  PetscFunctionReturn(0);
-}
-
 /* ---- in the file itself ---- */
 
 /* HDF5 allocates and fills a chunk when its first record is written: writes the first record of each of `chunks`
@@ -42,9 +27,7 @@ static PetscErrorCode TouchChunks(const char path[], hid_t dataset, hsize_t befo
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, memory = H5Screate_simple(1, &chunks, NULL));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Sselect_hyperslab(space, H5S_SELECT_SET, &before, &stride, &chunks, NULL));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dwrite(dataset, type, memory, space, H5P_DEFAULT, zeros));
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Sclose(memory));
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Sclose(space));
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Tclose(type));
+  PetscCall(LamCloseHDF5(path, memory, space, type));
   PetscCall(PetscFree(zeros));
   PetscFunctionReturn(0);
 }
@@ -64,7 +47,7 @@ static PetscErrorCode Extend(const char path[], hid_t file, void *ctx)
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, dataset = H5Dopen2(file, "/records", H5P_DEFAULT));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dset_extent(dataset, &extent));
   if (first < extent) PetscCall(TouchChunks(path, dataset, first, (extent - first + chunk - 1) / chunk));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dclose(dataset));
+  PetscCall(LamCloseHDF5(path, dataset));
   PetscFunctionReturn(0);
 }
 

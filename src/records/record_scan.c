@@ -4,18 +4,9 @@
 */
 #include "record_internal.h"
 
+#define BLOCK (8 * LAM_RECORDS_PER_CHUNK) /* 0.9 MB: fits into the processor's cache for check and use */
+
 /* ---- counter ---- */
-
-static PetscErrorCode CheckCounter(const char path[], hid_t dataset, PetscInt64 count)
-{
-  PetscBool sound;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamSumMatches(path, dataset, LAM_COUNTER_SUM, LamBytesSum(0, &count, sizeof(count)), &sound));
-  PetscCheck(sound, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: the commit counter of /records is damaged (it says %lld)" LAM_SALVAGE, path, (long long)count);
-  PetscFunctionReturn(0);
-}
 
 /* Records are not compressed, so the file is at least as large as they are; nor are chunks larger than it. */
 static PetscErrorCode CheckExtent(const char path[], hid_t file, hid_t dataset, PetscInt64 count)
@@ -28,10 +19,9 @@ static PetscErrorCode CheckExtent(const char path[], hid_t file, hid_t dataset, 
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Fget_filesize(file, &size));
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, type = H5Dget_type(dataset));
   bytes = PetscMax(H5Tget_size(type), 1);
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Tclose(type));
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, list = H5Dget_create_plist(dataset));
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Pget_chunk(list, 1, &chunk));
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Pclose(list));
+  PetscCall(LamCloseHDF5(path, list, type));
   PetscCheck(!count || ((hsize_t)count <= size / bytes && chunk <= size / bytes), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: %lld records of %zu bytes in chunks of %lld are said to be in %lld bytes; the file is damaged", path,
              (long long)count, bytes, (long long)chunk, (long long)size);
@@ -60,6 +50,7 @@ static PetscErrorCode ReadCommitted(const char path[], hid_t file, hid_t dataset
 {
   PetscInt64 count;
   hssize_t extent;
+  PetscBool sound;
 
   PetscFunctionBeginUser;
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, extent = H5Sget_simple_extent_npoints(space));
@@ -67,7 +58,9 @@ static PetscErrorCode ReadCommitted(const char path[], hid_t file, hid_t dataset
   PetscCheck(count >= 0 && count <= (PetscInt64)extent && count < PETSC_MAX_INT, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: %lld records are said to be committed, %lld are there; the file is damaged" LAM_SALVAGE, path,
              (long long)count, (long long)extent);
-  PetscCall(CheckCounter(path, dataset, count));
+  PetscCall(LamSumMatches(path, dataset, LAM_COUNTER_SUM, LamBytesSum(0, &count, sizeof(count)), &sound));
+  PetscCheck(sound, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: the commit counter of /records is damaged (it says %lld)" LAM_SALVAGE, path, (long long)count);
   PetscCall(CheckExtent(path, file, dataset, count));
   *committed = (PetscInt)count;
   PetscFunctionReturn(0);
@@ -81,8 +74,7 @@ PetscErrorCode LamCommittedRead(const char path[], hid_t file, PetscInt *committ
   PetscFunctionBeginUser;
   ierr = OpenList(path, file, H5P_DEFAULT, &dataset, &space);
   if (!ierr) ierr = ReadCommitted(path, file, dataset, space, committed);
-  if (space >= 0) H5Sclose(space);
-  if (dataset >= 0) H5Dclose(dataset);
+  PetscCall(LamCloseHDF5(path, space, dataset));
   PetscCall(ierr);
   PetscFunctionReturn(0);
 }
@@ -114,13 +106,13 @@ static PetscErrorCode Open(const char path[], hid_t file, LamRecordScan *s)
   LamCallHDF5(path, PETSC_ERR_LIB, access = H5Pcreate(H5P_DATASET_ACCESS));
   LamCallHDF5(path, PETSC_ERR_LIB, H5Pset_chunk_cache(access, H5D_CHUNK_CACHE_NSLOTS_DEFAULT, 0, 1));
   ierr = OpenList(path, file, access, &s->dataset, &s->space);
-  H5Pclose(access);
+  PetscCall(LamCloseHDF5(path, access));
   PetscCall(ierr);
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, s->type = H5Dget_type(s->dataset));
   PetscCall(CheckType(path, s));
   PetscCall(LamRecordLayoutMake(s->type, &s->layout));
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, extent = H5Sget_simple_extent_npoints(s->space));
-  PetscCall(PetscMalloc((size_t)PetscMin(LAM_BLOCK, extent) * s->layout.size, &s->bytes));
+  PetscCall(PetscMalloc((size_t)PetscMin(BLOCK, extent) * s->layout.size, &s->bytes));
   PetscFunctionReturn(0);
 }
 
@@ -131,31 +123,16 @@ PetscErrorCode LamRecordScanOpen(const char path[], hid_t file, LamRecordScan *s
   PetscFunctionBeginUser;
   *scan = (LamRecordScan){.dataset = H5I_INVALID_HID, .type = H5I_INVALID_HID, .space = H5I_INVALID_HID};
   ierr = Open(path, file, scan);
-  if (ierr) LamRecordScanClose(scan);
+  if (ierr) PetscCall(LamRecordScanClose(path, scan));
   PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 
-void LamRecordScanClose(LamRecordScan *scan)
+PetscErrorCode LamRecordScanClose(const char path[], LamRecordScan *scan)
 {
-  (void)PetscFree(scan->bytes);
-  if (scan->space >= 0) H5Sclose(scan->space);
-  if (scan->type >= 0) H5Tclose(scan->type);
-  if (scan->dataset >= 0) H5Dclose(scan->dataset);
-}
-
-PetscErrorCode LamRecordScanRead(const char path[], LamRecordScan *scan, PetscInt first, PetscInt n)
-{
-  const hsize_t from = (hsize_t)first, count = (hsize_t)n;
-  hid_t memory;
-  herr_t failed;
-
   PetscFunctionBeginUser;
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Sselect_hyperslab(scan->space, H5S_SELECT_SET, &from, NULL, &count, NULL));
-  LamCallHDF5(path, PETSC_ERR_LIB, memory = H5Screate_simple(1, &count, NULL));
-  failed = H5Dread(scan->dataset, scan->type, memory, scan->space, H5P_DEFAULT, scan->bytes);
-  H5Sclose(memory);
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, failed);
+  PetscCall(PetscFree(scan->bytes));
+  PetscCall(LamCloseHDF5(path, scan->space, scan->type, scan->dataset));
   PetscFunctionReturn(0);
 }
 
@@ -186,16 +163,53 @@ PetscErrorCode LamRecordScanEnd(const char path[], const LamRecordScan *s, Petsc
   PetscFunctionReturn(0);
 }
 
+/* Calls `visit` for n records from number `first` on. Those that HDF5 cannot read share a chunk. */
+static PetscErrorCode ScanEach(const char path[], LamRecordScan *s, PetscInt first, PetscInt n, LamSingleVisitor visit,
+                               void *ctx)
+{
+  PetscErrorCode unreadable;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
+  unreadable = LamRowsTransfer(path, s->dataset, s->type, PETSC_FALSE, (hsize_t)first, (hsize_t)n, s->bytes);
+  PetscCall(PetscPopErrorHandler());
+  if (unreadable && n > LAM_RECORDS_PER_CHUNK) {
+    for (PetscInt i = 0; i < n; i += LAM_RECORDS_PER_CHUNK)
+      PetscCall(ScanEach(path, s, first + i, PetscMin(LAM_RECORDS_PER_CHUNK, n - i), visit, ctx));
+    PetscFunctionReturn(0);
+  }
+  for (PetscInt i = 0; i < n; i++) {
+    const unsigned char *bytes = unreadable ? NULL : s->bytes + (size_t)i * s->layout.size;
+    const char *damage = unreadable ? "HDF5 cannot read it" : LamRecordDamage(&s->layout, bytes);
+
+    PetscCall(visit(ctx, &s->layout, first + i, bytes, damage));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRecordScanAll(const char path[], LamRecordScan *s, PetscInt count, LamSingleVisitor visit, void *ctx)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt first = 0; first < count; first += BLOCK)
+    PetscCall(ScanEach(path, s, first, PetscMin(BLOCK, count - first), visit, ctx));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode ScanBlocks(const char path[], LamRecordScan *s, PetscInt count, LamRecordVisitor visit, void *ctx)
 {
   uint32_t sum = 0;
 
   PetscFunctionBeginUser;
-  for (PetscInt first = 0; first < count; first += LAM_BLOCK) {
-    const PetscInt n = PetscMin(LAM_BLOCK, count - first);
+  for (PetscInt first = 0; first < count; first += BLOCK) {
+    const PetscInt n = PetscMin(BLOCK, count - first);
 
-    PetscCall(LamRecordScanRead(path, s, first, n));
-    PetscCall(LamRecordsCheck(path, &s->layout, first, n, s->bytes));
+    PetscCall(LamRowsTransfer(path, s->dataset, s->type, PETSC_FALSE, (hsize_t)first, (hsize_t)n, s->bytes));
+    for (PetscInt i = 0; i < n; i++) {
+      const char *damage = LamRecordDamage(&s->layout, s->bytes + (size_t)i * s->layout.size);
+
+      PetscCheck(!damage, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+                 "%s: record %" PetscInt_FMT " is damaged (%s)" LAM_SALVAGE, path, first + i, damage);
+    }
     sum = LamRecordsSum(sum, &s->layout, n, s->bytes);
     PetscCall(visit(ctx, &s->layout, first, n, s->bytes));
   }
@@ -211,7 +225,8 @@ PetscErrorCode LamFileScanRecords(const char path[], hid_t file, PetscInt count,
   PetscFunctionBeginUser;
   PetscCall(LamRecordScanOpen(path, file, &scan));
   ierr = ScanBlocks(path, &scan, count, visit, ctx);
-  LamRecordScanClose(&scan); /* even if records are damaged: a program may continue without this file */
+  PetscCall(
+      LamRecordScanClose(path, &scan)); /* even if records are damaged: a program may continue without this file */
   PetscCall(ierr);
   PetscFunctionReturn(0);
 }

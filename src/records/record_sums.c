@@ -43,50 +43,6 @@ PetscErrorCode LamSumMatches(const char path[], hid_t object, const char name[],
   PetscFunctionReturn(0);
 }
 
-/* ---- header ---- */
-
-typedef enum { TEXT, REAL, INT } Kind;
-
-/* The attributes of the root, in the order of the checksum. */
-static const struct {
-  const char *name;
-  Kind kind;
-} header[] = {{"format", TEXT},        {"format_version", INT},  {"kind", TEXT},
-              {"creator", TEXT},       {"created", TEXT},        {"host", TEXT},
-              {"command", TEXT},       {"petsc_version", TEXT},  {"hdf5_version", TEXT},
-              {"mpi_version", TEXT},   {"units", TEXT},          {"index_order", TEXT},
-              {"length_unit_m", REAL}, {"stress_unit_Pa", REAL}, {"macro_length_unit_m", REAL},
-              {"accuracy", REAL},      {"microstructure", TEXT}};
-
-PetscErrorCode LamHeaderSum(const char path[], hid_t file, uint32_t *sum)
-{
-  PetscFunctionBeginUser;
-  *sum = 0;
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(header); i++) {
-    const char *name = header[i].name;
-    char *text;
-    double real;
-    int32_t number;
-
-    switch (header[i].kind) {
-    case TEXT:
-      PetscCall(LamAttributeReadText(path, file, name, &text));
-      *sum = LamBytesSum(*sum, text, strlen(text) + 1);
-      PetscCall(PetscFree(text));
-      break;
-    case REAL:
-      PetscCall(LamAttributeReadNumber(path, file, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &real));
-      *sum = LamBytesSum(*sum, &real, sizeof(real));
-      break;
-    case INT:
-      PetscCall(LamAttributeReadNumber(path, file, name, H5T_STD_I32LE, H5T_NATIVE_INT32, &number));
-      *sum = LamBytesSum(*sum, &number, sizeof(number));
-      break;
-    }
-  }
-  PetscFunctionReturn(0);
-}
-
 /* ---- records ---- */
 
 PetscErrorCode LamRecordTypeSum(hid_t file_type, uint32_t *sum)

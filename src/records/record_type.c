@@ -92,44 +92,20 @@ PetscErrorCode LamRecordTypeCreate(hid_t *type)
   LAM_UNKNOWN_COUNT). Bonded tissue has no gaps, so such files are complete. Cells did not differ then, so that
   dPsi/dp and dPsi/dg are the fractions.
 */
-static const char *const added_members[] = {"opening_by_face",
-                                            "open_by_face",
-                                            "debonded_spread",
-                                            "open_spread",
-                                            "mean_gap",
-                                            "max_penetration",
-                                            "fabric",
-                                            "zero_modes",
-                                            "cell_clusters",
-                                            "percolating_directions",
-                                            "energy_turgor",
-                                            "energy_cohesion",
-                                            "gap_place",
-                                            "opening_moment",
-                                            "normal_place",
-                                            "shear_place",
-                                            "max_lamella_shear",
-                                            "max_fibre_stretch",
-                                            "max_wall_energy",
-                                            "max_wall_tension",
-                                            "wall_place",
-                                            "mean_wall_tension",
-                                            "min_gap",
-                                            "indicators_trusted",
-                                            "turgor_mean",
-                                            "turgor_spread",
-                                            "wall_ellipticity",
-                                            "kink_place",
-                                            "kinked_fraction",
-                                            "ellipticity",
-                                            "localisation_normal",
-                                            "localisation_mode"};
+static const char added_members[] =
+    " opening_by_face open_by_face debonded_spread open_spread mean_gap max_penetration "
+    "fabric zero_modes cell_clusters percolating_directions energy_turgor energy_cohesion "
+    "gap_place opening_moment normal_place shear_place max_lamella_shear max_fibre_stretch "
+    "max_wall_energy max_wall_tension wall_place mean_wall_tension min_gap "
+    "indicators_trusted turgor_mean turgor_spread wall_ellipticity kink_place "
+    "kinked_fraction ellipticity localisation_normal localisation_mode ";
 
 static PetscBool WasAdded(const char name[])
 {
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(added_members); i++)
-    if (!strcmp(name, added_members[i])) return PETSC_TRUE;
-  return PETSC_FALSE;
+  char word[LAM_NAME_LENGTH + 2];
+
+  snprintf(word, sizeof(word), " %s ", name);
+  return (PetscBool)(strstr(added_members, word) != NULL);
 }
 
 /* Members are contiguous, in their order, with the checksum last. */

@@ -15,42 +15,43 @@ typedef struct {
 
 #define IN_PLANE 0, 1, 3, 4
 #define ONE_REAL(name)                                                                                                 \
+  offsetof(LamResponse, name), 1,                                                                                      \
   {                                                                                                                    \
-    offsetof(LamResponse, name), 1,                                                                                    \
-    {                                                                                                                  \
-      0                                                                                                                \
-    }                                                                                                                  \
+    0                                                                                                                  \
   }
 #define IN_PLANE_AND_33(name)                                                                                          \
+  offsetof(LamResponse, name), 5,                                                                                      \
   {                                                                                                                    \
-    offsetof(LamResponse, name), 5,                                                                                    \
-    {                                                                                                                  \
-      IN_PLANE, 8                                                                                                      \
-    }                                                                                                                  \
+    IN_PLANE, 8                                                                                                        \
   }
 
 /* In the order of LamNodeData. */
 static const Row reals[] = {
     {offsetof(LamResponse, load.F), 4, {IN_PLANE}},
-    ONE_REAL(load.turgor),
-    ONE_REAL(load.cohesion),
-    ONE_REAL(energy),
-    IN_PLANE_AND_33(P),
+    {ONE_REAL(load.turgor)},
+    {ONE_REAL(load.cohesion)},
+    {ONE_REAL(energy)},
+    {IN_PLANE_AND_33(P)},
     {offsetof(LamResponse, tangent),
      21,
      {IN_PLANE, 9, 10, 12, 13, 27, 28, 30, 31, 36, 37, 39, 40, 72, 73, 75, 76, 80}}, /* 27 i + 9 j + 3 k + l */
-    IN_PLANE_AND_33(P_turgor),
-    ONE_REAL(energy_turgor),
-    ONE_REAL(energy_turgor2),
-    IN_PLANE_AND_33(P_cohesion),
-    ONE_REAL(energy_cohesion),
-    ONE_REAL(energy_cohesion2),
-    ONE_REAL(energy_turgor_cohesion),
+    {IN_PLANE_AND_33(P_turgor)},
+    {ONE_REAL(energy_turgor)},
+    {ONE_REAL(energy_turgor2)},
+    {IN_PLANE_AND_33(P_cohesion)},
+    {ONE_REAL(energy_cohesion)},
+    {ONE_REAL(energy_cohesion2)},
+    {ONE_REAL(energy_turgor_cohesion)},
 };
 
-#define ONE_INDICATOR(name) {offsetof(LamResponse, name), 1, {0}},
-#define THREE_INDICATORS(name) {offsetof(LamResponse, name), 3, {0, 1, 2}},
+#define ONE_INDICATOR(name, rule) {offsetof(LamResponse, name), 1, {0}},
+#define THREE_INDICATORS(name, rule) {offsetof(LamResponse, name), 3, {0, 1, 2}},
 static const Row indicators[] = {LAM_NODE_INDICATORS(ONE_INDICATOR, THREE_INDICATORS)};
+
+/* Of each count: offset in LamResponse, offset in LamNodeData. */
+#define COUNT(name) {offsetof(LamResponse, name), offsetof(LamNodeData, name)},
+static const size_t counts[][2] = {LAM_NODE_COUNTS(COUNT)};
+_Static_assert(PETSC_STATIC_ARRAY_LENGTH(counts) == LAM_NODE_INTS, "counts of a node");
 
 #define FIRST_REAL offsetof(LamNodeData, F)
 #define FIRST_INDICATOR offsetof(LamNodeData, lumen_fraction)
@@ -80,11 +81,8 @@ void LamNodeDataFromResponse(const LamResponse *response, PetscInt64 key, LamNod
   node->key = key;
   node->status = response->status;
   node->stable = response->stable;
-  node->branch = response->branch;
-  node->floating_cells = response->floating_cells;
-  node->zero_modes = response->zero_modes;
-  node->cell_clusters = response->cell_clusters;
-  node->percolating_directions = response->percolating_directions;
+  for (int k = 0; k < LAM_NODE_INTS; k++)
+    *(PetscInt *)((char *)node + counts[k][1]) = *(const PetscInt *)((const char *)response + counts[k][0]);
   for (size_t r = 0; r < PETSC_STATIC_ARRAY_LENGTH(reals); r++)
     for (PetscInt k = 0; k < reals[r].count; k++)
       *real++ = ((const PetscReal *)((const char *)response + reals[r].member))[reals[r].number[k]];
@@ -116,11 +114,7 @@ void LamNodeLayoutMake(size_t key, const size_t member[], LamNodeLayout *layout)
   layout->key = key;
   layout->status = member[MEMBER(status)];
   layout->stable = member[MEMBER(stable)];
-  layout->branch = member[MEMBER(branch)];
-  layout->floating_cells = member[MEMBER(floating_cells)];
-  layout->zero_modes = member[MEMBER(zero_modes)];
-  layout->cell_clusters = member[MEMBER(cell_clusters)];
-  layout->percolating_directions = member[MEMBER(percolating_directions)];
+  for (int k = 0; k < LAM_NODE_INTS; k++) layout->count[k] = member[LamResponseMemberIndex(counts[k][0])];
 }
 
 static inline PetscReal Real(const unsigned char *bytes, size_t place)
@@ -153,11 +147,7 @@ void LamNodeDataFromBytes(const LamNodeLayout *layout, const unsigned char *byte
   node->key = Integer(bytes + layout->key);
   node->status = (LamStatus)bytes[layout->status];
   node->stable = (PetscBool)bytes[layout->stable];
-  node->branch = Count(bytes, layout->branch);
-  node->floating_cells = Count(bytes, layout->floating_cells);
-  node->zero_modes = Count(bytes, layout->zero_modes);
-  node->cell_clusters = Count(bytes, layout->cell_clusters);
-  node->percolating_directions = Count(bytes, layout->percolating_directions);
+  for (int k = 0; k < LAM_NODE_INTS; k++) *(PetscInt *)((char *)node + counts[k][1]) = Count(bytes, layout->count[k]);
   for (int k = 0; k < LAM_NODE_REALS; k++) real[k] = Real(bytes, layout->real[k]);
   for (int k = 0; k < LAM_NODE_FLOATS; k++) indicator[k] = (float)Real(bytes, layout->indicator[k]);
   /* as LamRecordUnpack does; the fractions are the first two indicators */

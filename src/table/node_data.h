@@ -7,39 +7,53 @@
 
 #include <lamella/response.h>
 
-/* The indicators of a node, in the order of LamResponseMembers. ONE: scalars; THREE: per face, axis or place. */
+/*
+  The indicators of a node, in the order of LamResponseMembers, and how they are interpolated (table_indicators.c).
+  FRAME: places and tensors in the frame of the cell, which are not. ONE: scalars; THREE: per face, axis or place.
+*/
+typedef enum {
+  LAM_RULE_MEAN,
+  LAM_RULE_TENSION,
+  LAM_RULE_TRACTION,
+  LAM_RULE_MAX_TRACTION,
+  LAM_RULE_FRAME
+} LamIndicatorRule;
 #define LAM_NODE_INDICATORS(ONE, THREE)                                                                                \
-  ONE(lumen_fraction)                                                                                                  \
-  ONE(opening_fraction)                                                                                                \
-  THREE(opening_by_face)                                                                                               \
-  ONE(debonded_fraction)                                                                                               \
-  THREE(debonded_by_face)                                                                                              \
-  ONE(open_fraction)                                                                                                   \
-  THREE(open_by_face)                                                                                                  \
-  ONE(debonded_spread)                                                                                                 \
-  ONE(open_spread)                                                                                                     \
-  ONE(max_gap)                                                                                                         \
-  THREE(gap_place)                                                                                                     \
-  ONE(min_gap)                                                                                                         \
-  ONE(mean_gap)                                                                                                        \
-  ONE(max_penetration)                                                                                                 \
-  THREE(fabric)                                                                                                        \
-  THREE(opening_moment)                                                                                                \
-  ONE(max_traction)                                                                                                    \
-  THREE(normal_place)                                                                                                  \
-  ONE(max_lamella_shear)                                                                                               \
-  THREE(shear_place)                                                                                                   \
-  THREE(mean_face_traction)                                                                                            \
-  ONE(max_fibre_stretch)                                                                                               \
-  ONE(max_wall_energy)                                                                                                 \
-  ONE(max_wall_tension)                                                                                                \
-  THREE(wall_place)                                                                                                    \
-  THREE(mean_wall_tension)                                                                                             \
-  ONE(wall_ellipticity)                                                                                                \
-  ONE(kinked_fraction)
+  ONE(lumen_fraction, MEAN)                                                                                            \
+  ONE(opening_fraction, MEAN)                                                                                          \
+  THREE(opening_by_face, MEAN)                                                                                         \
+  ONE(debonded_fraction, MEAN)                                                                                         \
+  THREE(debonded_by_face, MEAN)                                                                                        \
+  ONE(open_fraction, MEAN)                                                                                             \
+  THREE(open_by_face, MEAN)                                                                                            \
+  ONE(debonded_spread, MEAN)                                                                                           \
+  ONE(open_spread, MEAN)                                                                                               \
+  ONE(max_gap, MEAN)                                                                                                   \
+  THREE(gap_place, FRAME)                                                                                              \
+  ONE(min_gap, MEAN)                                                                                                   \
+  ONE(mean_gap, MEAN)                                                                                                  \
+  ONE(max_penetration, MEAN)                                                                                           \
+  THREE(fabric, FRAME)                                                                                                 \
+  THREE(opening_moment, FRAME)                                                                                         \
+  ONE(max_traction, MAX_TRACTION)                                                                                      \
+  THREE(normal_place, FRAME)                                                                                           \
+  ONE(max_lamella_shear, TENSION)                                                                                      \
+  THREE(shear_place, FRAME)                                                                                            \
+  THREE(mean_face_traction, TRACTION)                                                                                  \
+  ONE(max_fibre_stretch, MEAN)                                                                                         \
+  ONE(max_wall_energy, TENSION)                                                                                        \
+  ONE(max_wall_tension, TENSION)                                                                                       \
+  THREE(wall_place, FRAME)                                                                                             \
+  THREE(mean_wall_tension, TENSION)                                                                                    \
+  ONE(wall_ellipticity, MEAN)                                                                                          \
+  ONE(kinked_fraction, MEAN)
 
-#define LAM_NODE_ONE(name) float name;
-#define LAM_NODE_THREE(name) float name[3];
+/* The numbers of cells and directions, and that of branch switches. */
+#define LAM_NODE_COUNTS(X) X(branch) X(floating_cells) X(zero_modes) X(cell_clusters) X(percolating_directions)
+
+#define LAM_NODE_COUNT(name) PetscInt name;
+#define LAM_NODE_ONE(name, rule) float name;
+#define LAM_NODE_THREE(name, rule) float name[3];
 
 /*
   Names, signs and units of LamResponse. In-plane parts in the order 11 12 21 22, the tangent row-major:
@@ -49,8 +63,7 @@ typedef struct {
   PetscInt64 key;
   LamStatus status;
   PetscBool stable;
-  PetscInt branch;
-  PetscInt floating_cells, zero_modes, cell_clusters, percolating_directions;
+  LAM_NODE_COUNTS(LAM_NODE_COUNT)
 
   /* reals, contiguous from F to energy_turgor_cohesion */
   PetscReal F[4], turgor, cohesion; /* the load */
@@ -67,13 +80,14 @@ typedef struct {
   LAM_NODE_INDICATORS(LAM_NODE_ONE, LAM_NODE_THREE)
 } LamNodeData;
 
+#define LAM_NODE_INTS 5
 #define LAM_NODE_REALS 48
 #define LAM_NODE_FLOATS 50
 
 /* Byte offsets of a node's numbers in a record. */
 typedef struct {
   size_t real[LAM_NODE_REALS], indicator[LAM_NODE_FLOATS]; /* LAM_NOT_IN_FILE: unknown */
-  size_t key, status, stable, branch, floating_cells, zero_modes, cell_clusters, percolating_directions;
+  size_t key, status, stable, count[LAM_NODE_INTS];
 } LamNodeLayout;
 
 /* Nodes in memory; owned by the code that fills the set. */

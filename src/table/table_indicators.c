@@ -224,24 +224,16 @@ void LamTableThickness(LamTable table, const LamTablePoint *point, const LamTabl
   So turgor at fixed walls leaves a tension unchanged and lowers a traction by p (with contact: where cohesion decreases
   by as much): the effective-stress principle.
 */
-typedef enum { MEAN, TENSION, TRACTION, MAX_TRACTION } Rule;
-
-#define ONE(name, rule) {offsetof(LamResponse, name), offsetof(LamNodeData, name), 1, rule},
-#define THREE(name, rule) {offsetof(LamResponse, name), offsetof(LamNodeData, name), 3, rule},
-/* Without places and tensors in the frame of the cell. */
+#define COMPONENTS(rule, n) (LAM_RULE_##rule == LAM_RULE_FRAME ? 0 : n)
+#define ROW(name, rule, n)                                                                                             \
+  {offsetof(LamResponse, name), offsetof(LamNodeData, name), COMPONENTS(rule, n), LAM_RULE_##rule},
+#define ONE(name, rule) ROW(name, rule, 1)
+#define THREE(name, rule) ROW(name, rule, 3)
 static const struct {
   size_t response, node;
-  int count; /* 3: per face family */
-  Rule rule;
-} means[] = {
-    ONE(lumen_fraction, MEAN) ONE(opening_fraction, MEAN) THREE(opening_by_face, MEAN) ONE(debonded_fraction, MEAN)
-        THREE(debonded_by_face, MEAN) ONE(open_fraction, MEAN) THREE(open_by_face, MEAN) ONE(debonded_spread, MEAN)
-            ONE(open_spread, MEAN) ONE(max_gap, MEAN) ONE(min_gap, MEAN) ONE(mean_gap, MEAN) ONE(max_penetration, MEAN)
-                ONE(max_traction, MAX_TRACTION) ONE(max_lamella_shear, TENSION) THREE(mean_face_traction, TRACTION)
-                    ONE(max_fibre_stretch, MEAN) ONE(max_wall_energy, TENSION) ONE(max_wall_tension, TENSION)
-                        THREE(mean_wall_tension, TENSION) ONE(wall_ellipticity, MEAN) ONE(kinked_fraction, MEAN)};
-#undef ONE
-#undef THREE
+  int count; /* 3: per face family; 0: not interpolated */
+  LamIndicatorRule rule;
+} means[] = {LAM_NODE_INDICATORS(ONE, THREE)};
 
 /* Of a state: norm of the walls' stress; bases of tractions per lattice direction; base and size of MAX_TRACTION. */
 typedef struct {
@@ -278,15 +270,15 @@ static WallStress WallStressOf(const LamLatticeAxes *axes, const PetscReal F[4],
   return w;
 }
 
-static PetscReal SizeFor(const WallStress *stress, Rule rule)
+static PetscReal SizeFor(const WallStress *stress, LamIndicatorRule rule)
 {
-  return rule == MEAN ? 1 : rule == MAX_TRACTION ? stress->room : stress->size;
+  return rule == LAM_RULE_MEAN ? 1 : rule == LAM_RULE_MAX_TRACTION ? stress->room : stress->size;
 }
 
 /* k: lattice direction of the state. */
-static PetscReal BaseFor(const WallStress *stress, Rule rule, int k)
+static PetscReal BaseFor(const WallStress *stress, LamIndicatorRule rule, int k)
 {
-  return rule == TRACTION ? stress->traction[k] : rule == MAX_TRACTION ? stress->most : 0;
+  return rule == LAM_RULE_TRACTION ? stress->traction[k] : rule == LAM_RULE_MAX_TRACTION ? stress->most : 0;
 }
 
 /* The surrounding states and their wall stresses. */

@@ -230,7 +230,7 @@ static void ChangeText(Edits *e)
   const char *name = Name(e);
   char *text, *spliced;
 
-  if (LamFileGetText(PATH, e->file, name, &text)) return;
+  if (LamFileGetText(PATH, e->file, name, &text) || !text) return;
   spliced = Splice(e, text);
   (void)LamFileWriteText(PATH, e->file, name, spliced);
   free(spliced);
@@ -243,9 +243,10 @@ static void ChangeMicrostructure(Edits *e)
   char hash[LAM_HASH_LENGTH], name[64], *text, *spliced, *described;
   LamMicrostructure micro;
 
-  if (LamAttributeCopyText(PATH, e->file, "microstructure", sizeof(hash), hash)) return;
-  snprintf(name, sizeof(name), "/microstructures/%s/description", hash);
-  if (LamFileGetText(PATH, e->file, name, &text)) return;
+  if (LamAttributeReadText(PATH, e->file, "microstructure", &text)) return;
+  snprintf(name, sizeof(name), "/microstructures/%s/description", text);
+  (void)PetscFree(text);
+  if (LamFileGetText(PATH, e->file, name, &text) || !text) return;
   spliced = Splice(e, text);
   (void)PetscFree(text);
   if (!LamMicrostructureParse(PATH, spliced, &micro)) {

@@ -35,7 +35,7 @@ static PetscErrorCode TakeBlock(void *ctx, const LamRecordLayout *layout, PetscI
   if (IsStopped(m)) PetscFunctionReturn(0);
   for (PetscInt i = 0; i < n; i++, bytes += layout->size) {
     PetscCheck(m->grid_text || !LamKeyIsNode(LamRecordInt(bytes + layout->key)), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "%s: holds nodes of a grid, but %s is missing; the file is damaged", m->grid_from, LAM_GRID_NAME);
+               "%s: %s is missing, though there are nodes of a grid", m->grid_from, LAM_GRID_NAME);
     PetscCall(LamUnionTake(m->records, layout, bytes, m->report));
   }
   PetscFunctionReturn(0);
@@ -48,48 +48,23 @@ enum { MOST_NAMED = 10 }; /* damaged records of a file that messages list */
 typedef struct {
   LamMerge *merge;
   const char *path;
-  LamRecordScan scan;
   PetscBool counted; /* the commit counter is sound: each record below it should be sound */
   PetscInt sound, damaged;
 } Salvage;
 
-/* A chunk that HDF5 cannot read is lost. */
-static PetscErrorCode TakeSoundOfChunk(Salvage *s, PetscInt first, PetscInt n)
+/* A LamSingleVisitor. */
+static PetscErrorCode TakeIfSound(void *ctx, const LamRecordLayout *layout, PetscInt number, const unsigned char *bytes,
+                                  const char damage[])
 {
-  const LamRecordLayout *layout = &s->scan.layout;
-  PetscErrorCode unreadable;
+  Salvage *s = ctx;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
-  unreadable = LamRecordScanRead(s->path, &s->scan, first, n);
-  PetscCall(PetscPopErrorHandler());
-  for (PetscInt i = 0; i < n; i++) {
-    const unsigned char *bytes = s->scan.bytes + (size_t)i * layout->size;
-    const char *damage = unreadable ? "HDF5 cannot read it" : LamRecordDamage(layout, bytes);
-
-    if (!damage) {
-      PetscCall(TakeBlock(s->merge, layout, first + i, 1, bytes));
-      s->sound++;
-    } else if (s->damaged++ < MOST_NAMED && s->counted) {
-      LamMergeTell(s->merge, "%s: record %" PetscInt_FMT " is damaged (%s) and left out", s->path, first + i, damage);
-    }
+  if (!damage) {
+    PetscCall(TakeBlock(s->merge, layout, number, 1, bytes));
+    s->sound++;
+  } else if (s->damaged++ < MOST_NAMED && s->counted) {
+    LamMergeTell(s->merge, "%s: record %" PetscInt_FMT " is damaged (%s) and left out", s->path, number, damage);
   }
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode TakeSoundChunks(Salvage *s, PetscInt count)
-{
-  const PetscInt chunk = LAM_RECORDS_PER_CHUNK;
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < count && !IsStopped(s->merge); i += chunk)
-    PetscCall(TakeSoundOfChunk(s, i, PetscMin(chunk, count - i)));
-  if (s->counted && s->damaged)
-    LamMergeTell(s->merge, "%s: %" PetscInt_FMT " records are sound, %" PetscInt_FMT " damaged", s->path, s->sound,
-                 s->damaged);
-  if (!s->counted)
-    LamMergeTell(s->merge, "%s: %" PetscInt_FMT " records are sound; its commit counter is damaged", s->path, s->sound);
-  if (s->counted) s->merge->report->left_out += s->damaged;
   PetscFunctionReturn(0);
 }
 
@@ -97,6 +72,7 @@ static PetscErrorCode TakeSoundChunks(Salvage *s, PetscInt count)
 static PetscErrorCode TakeSound(LamMerge *m, const char path[], hid_t file)
 {
   Salvage s = {.merge = m, .path = path};
+  LamRecordScan scan;
   PetscErrorCode ierr;
   PetscInt count = 0;
 
@@ -104,11 +80,16 @@ static PetscErrorCode TakeSound(LamMerge *m, const char path[], hid_t file)
   PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
   s.counted = (PetscBool)!LamCommittedRead(path, file, &count);
   PetscCall(PetscPopErrorHandler());
-  PetscCall(LamRecordScanOpen(path, file, &s.scan));
-  if (!s.counted) count = LamRecordScanExtent(&s.scan, file);
-  ierr = TakeSoundChunks(&s, count);
-  LamRecordScanClose(&s.scan);
+  PetscCall(LamRecordScanOpen(path, file, &scan));
+  if (!s.counted) count = LamRecordScanExtent(&scan, file);
+  ierr = LamRecordScanAll(path, &scan, count, TakeIfSound, &s);
+  PetscCall(LamRecordScanClose(path, &scan));
   PetscCall(ierr);
+  if (s.counted && s.damaged)
+    LamMergeTell(m, "%s: %" PetscInt_FMT " records are sound, %" PetscInt_FMT " damaged", path, s.sound, s.damaged);
+  if (!s.counted)
+    LamMergeTell(m, "%s: %" PetscInt_FMT " records are sound; its commit counter is damaged", path, s.sound);
+  if (s.counted) m->report->left_out += s.damaged;
   PetscFunctionReturn(0);
 }
 

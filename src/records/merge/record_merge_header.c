@@ -44,43 +44,30 @@ static PetscErrorCode CheckGrid(LamMerge *m, const char path[], const char text[
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ReadText(const char path[], hid_t file, const char name[], char **text)
-{
-  PetscBool has;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamFileHas(path, file, name, &has));
-  *text = NULL;
-  if (has) PetscCall(LamFileGetText(path, file, name, text));
-  PetscFunctionReturn(0);
-}
-
 /* Conversion would lose members of a later version. */
 static PetscErrorCode CheckMembers(const char path[], hid_t file)
 {
-  hid_t dataset, theirs, ours;
-  int members;
+  PetscBool known = PETSC_TRUE;
+  char name[LAM_NAME_LENGTH];
+  LamRecordScan scan;
+  hid_t ours;
 
   PetscFunctionBeginUser;
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, dataset = H5Dopen2(file, "/records", H5P_DEFAULT));
-  LamCallHDF5(path, PETSC_ERR_USER_INPUT, theirs = H5Dget_type(dataset));
-  PetscCall(LamRecordTypeCheck(path, theirs));
+  PetscCall(LamRecordScanOpen(path, file, &scan));
   PetscCall(LamRecordTypeCreate(&ours));
-  LamCallHDF5(path, PETSC_ERR_LIB, members = H5Tget_nmembers(theirs));
-  for (int i = 0; i < members; i++) {
-    char *name = H5Tget_member_name(theirs, (unsigned)i), copy[LAM_NAME_LENGTH];
-    const PetscBool known = (PetscBool)(H5Tget_member_index(ours, name) >= 0);
+  for (int i = 0; known && i < H5Tget_nmembers(scan.type); i++) {
+    char *member = H5Tget_member_name(scan.type, (unsigned)i);
 
-    snprintf(copy, sizeof(copy), "%s", name);
-    H5free_memory(name);
-    PetscCheck(known, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "%s: its records have a member \"%s\" that this lamella does not know; merge with the version that "
-               "wrote it",
-               path, copy);
+    known = (PetscBool)(H5Tget_member_index(ours, member) >= 0);
+    snprintf(name, sizeof(name), "%s", member);
+    H5free_memory(member);
   }
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Tclose(ours));
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Tclose(theirs));
-  LamCallHDF5(path, PETSC_ERR_LIB, H5Dclose(dataset));
+  PetscCall(LamRecordScanClose(path, &scan));
+  PetscCall(LamCloseHDF5(path, ours));
+  PetscCheck(known, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: its records have a member \"%s\" that this lamella does not know; merge with the version that "
+             "wrote it",
+             path, name);
   PetscFunctionReturn(0);
 }
 
@@ -102,9 +89,9 @@ static PetscErrorCode ReadSource(const char path[], hid_t file, void *ctx)
   s->matches = PETSC_TRUE;
   PetscCall(LamHeaderReadRoot(path, file, s->salvage ? &s->matches : NULL, &s->header));
   PetscCall(CheckMembers(path, file));
-  PetscCall(ReadText(path, file, LAM_GRID_NAME, &s->grid));
+  PetscCall(LamFileGetText(path, file, LAM_GRID_NAME, &s->grid));
   if (s->salvage) PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
-  ierr = ReadText(path, file, "/scene", &s->scene);
+  ierr = LamFileGetText(path, file, "/scene", &s->scene);
   if (s->salvage) PetscCall(PetscPopErrorHandler());
   if (!s->salvage) PetscCall(ierr);
   PetscFunctionReturn(0);

@@ -64,7 +64,7 @@ static PetscErrorCode Open(LamUnion u)
   PetscCall(PetscMalloc2((size_t)BLOCK * u->layout.size, &u->block, u->layout.size, &u->kept));
   u->capacity = 4 * BLOCK;
   PetscCall(ClearTable(u->capacity, &u->entries));
-  PetscCall(LamFileOpenWrite(u->path, &u->file));
+  PetscCall(LamFileOpen(u->path, PETSC_TRUE, &u->file));
   LamCallHDF5(u->path, PETSC_ERR_FILE_WRITE, u->dataset = H5Dopen2(u->file, "/records", H5P_DEFAULT));
   PetscFunctionReturn(0);
 }
@@ -92,9 +92,7 @@ PetscErrorCode LamUnionDestroy(LamUnion *records)
 
   PetscFunctionBeginUser;
   if (!u) PetscFunctionReturn(0);
-  if (u->type >= 0) H5Tclose(u->type);
-  if (u->dataset >= 0) H5Dclose(u->dataset);
-  if (u->file >= 0) H5Fclose(u->file);
+  PetscCall(LamCloseHDF5(u->path, u->type, u->dataset, u->file));
   PetscCall(PetscFree2(u->block, u->kept));
   PetscCall(PetscFree(u->checksums));
   PetscCall(PetscFree(u->entries));
@@ -105,25 +103,10 @@ PetscErrorCode LamUnionDestroy(LamUnion *records)
 /* ---- the file ---- */
 
 /* Transfers n records, from number `first` on, between the file and `bytes`. */
-typedef herr_t (*Transfer)(hid_t, hid_t, hid_t, hid_t, hid_t, void *);
-
-static herr_t Write(hid_t dataset, hid_t type, hid_t memory, hid_t space, hid_t list, void *bytes)
+static PetscErrorCode Transfer(LamUnion u, PetscBool write, PetscInt first, PetscInt n, unsigned char *bytes)
 {
-  return H5Dwrite(dataset, type, memory, space, list, bytes);
-}
-
-static PetscErrorCode TransferRecords(LamUnion u, Transfer transfer, PetscInt first, PetscInt n, unsigned char *bytes)
-{
-  const hsize_t start = (hsize_t)first, count = (hsize_t)n;
-  hid_t space, memory;
-
   PetscFunctionBeginUser;
-  LamCallHDF5(u->path, PETSC_ERR_LIB, space = H5Dget_space(u->dataset));
-  LamCallHDF5(u->path, PETSC_ERR_LIB, memory = H5Screate_simple(1, &count, NULL));
-  LamCallHDF5(u->path, PETSC_ERR_LIB, H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, NULL, &count, NULL));
-  LamCallHDF5(u->path, PETSC_ERR_FILE_WRITE, transfer(u->dataset, u->type, memory, space, H5P_DEFAULT, bytes));
-  LamCallHDF5(u->path, PETSC_ERR_LIB, H5Sclose(memory));
-  LamCallHDF5(u->path, PETSC_ERR_LIB, H5Sclose(space));
+  PetscCall(LamRowsTransfer(u->path, u->dataset, u->type, write, (hsize_t)first, (hsize_t)n, bytes));
   PetscFunctionReturn(0);
 }
 
@@ -153,7 +136,7 @@ static PetscErrorCode Flush(LamUnion u)
   if (!n) PetscFunctionReturn(0);
   PetscCall(LamFileReserve(u->path, PETSC_FALSE, ((size_t)n + LAM_RECORDS_PER_CHUNK) * u->layout.size));
   LamCallHDF5(u->path, PETSC_ERR_FILE_WRITE, H5Dset_extent(u->dataset, &extent));
-  PetscCall(TransferRecords(u, Write, u->written, n, u->block));
+  PetscCall(Transfer(u, PETSC_TRUE, u->written, n, u->block));
   u->written = u->n;
   if (u->written % (WRITE_BLOCKS * BLOCK) == 0) PetscCall(BeginWriting(u));
   PetscFunctionReturn(0);
@@ -167,11 +150,11 @@ PetscErrorCode LamUnionFinish(LamUnion u)
   PetscFunctionBeginUser;
   PetscCall(Flush(u));
   PetscCall(LamCounterWrite(u->path, u->dataset, u->n, LamBytesSum(0, u->checksums, sizeof(uint32_t) * (size_t)u->n)));
-  LamCallHDF5(u->path, PETSC_ERR_FILE_WRITE, H5Dclose(u->dataset));
+  PetscCall(LamCloseHDF5(u->path, u->dataset));
   u->dataset = H5I_INVALID_HID;
   LamCallHDF5(u->path, PETSC_ERR_FILE_WRITE, H5Fflush(u->file, H5F_SCOPE_GLOBAL));
   LamCallHDF5(u->path, PETSC_ERR_FILE_WRITE, H5Fget_filesize(u->file, &bytes));
-  PetscCall(LamFileClose(u->path, u->file));
+  PetscCall(LamCloseHDF5(u->path, u->file));
   u->file = H5I_INVALID_HID;
   PetscCheck(!truncate(u->path, (off_t)bytes), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s: %s", u->path,
              strerror(errno));
@@ -289,7 +272,7 @@ static PetscErrorCode ReadBack(LamUnion u, PetscInt at)
 {
   PetscFunctionBeginUser;
   if (at < u->written)
-    PetscCall(TransferRecords(u, H5Dread, at, 1, u->kept));
+    PetscCall(Transfer(u, PETSC_FALSE, at, 1, u->kept));
   else
     memcpy(u->kept, u->block + (size_t)(at - u->written) * u->layout.size, u->layout.size);
   PetscFunctionReturn(0);
@@ -305,7 +288,7 @@ static PetscErrorCode Replace(LamUnion u, PetscInt at, const unsigned char *byte
   SetKey(u, u->kept, key);
   KeepChecksum(u, at, u->kept);
   if (at < u->written)
-    PetscCall(TransferRecords(u, Write, at, 1, u->kept));
+    PetscCall(Transfer(u, PETSC_TRUE, at, 1, u->kept));
   else
     memcpy(u->block + (size_t)(at - u->written) * u->layout.size, u->kept, u->layout.size);
   PetscFunctionReturn(0);
