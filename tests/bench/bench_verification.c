@@ -6,7 +6,6 @@
 #include "support/buckling.h"
 #include "support/contact_checks.h"
 #include "support/contact_blocks.h"
-#include "support/derivative_checks.h"
 #include "support/effective_stress.h"
 #include "support/extreme_tissue.h"
 #include "support/honeycomb.h"
@@ -62,23 +61,21 @@ static PetscErrorCode Derivatives(void)
   double stress = 0.0, lumen = 0.0, tangent = 0.0, symmetry = 0.0;
 
   PetscFunctionBeginUser;
-  for (int s = 0; s < 6; s++) {
-    uint64_t seed = (uint64_t)(100 + s);
-    const LamMicrostructure micro = RandomTissue(&seed);
-    const LamLoad load = RandomLoad(&seed);
-    Sweep sweep;
+  for (int s = 0; s < RANDOM_STATES; s++) {
+    const ContactState state = RandomState(s);
+    ContactSweep sweep;
     const LamResponse *r = &sweep.response;
 
-    PetscCall(SweepLoads(&micro, &load, &sweep));
-    lumen = PetscMax(lumen, PetscAbsReal(r->lumen_fraction + sweep.energy[SWEEP_TURGOR]));
+    PetscCall(SweepContact(&state, &sweep));
+    lumen = PetscMax(lumen, PetscAbsReal(r->lumen_fraction + sweep.energy[CONTACT_TURGOR]));
     for (int i = 0; i < 5; i++) {
-      const int a = sweep_columns[i];
+      const int a = contact_components[i];
 
-      stress = PetscMax(stress, PetscAbsReal(r->P[a] - sweep.energy[a]));
+      stress = PetscMax(stress, PetscAbsReal(r->P[a] - sweep.energy[i]));
       for (int k = 0; k < 5; k++) {
-        const int b = sweep_columns[k];
+        const int b = contact_components[k];
 
-        tangent = PetscMax(tangent, PetscAbsReal(r->tangent[9 * a + b] - sweep.P[b][a]) / r->tangent[0]);
+        tangent = PetscMax(tangent, PetscAbsReal(r->tangent[9 * a + b] - sweep.P[k][a]) / r->tangent[0]);
         symmetry = PetscMax(symmetry, PetscAbsReal(r->tangent[9 * a + b] - r->tangent[9 * b + a]));
       }
     }

@@ -41,6 +41,23 @@ void ListContactStates(ContactState list[CONTACT_STATES])
   list[5].micro.clearance = 0.01;
 }
 
+ContactState RandomState(int number)
+{
+  ContactState s = {.name = "bonded, random", .micro = DefaultTissue(), .load = PlaneLoad(1, 0, 0, 1, 0), .step = 1e-3};
+  uint64_t seed = (uint64_t)(100 + number);
+
+  s.micro.wall_thickness = RandomReal(&seed, 0.06, 0.25);
+  s.micro.orientation = RandomReal(&seed, 0.0, 1.0);
+  s.micro.grading = 0.7 * s.micro.orientation; /* any */
+  s.load.F[0] += RandomReal(&seed, 0.0, 0.12);
+  s.load.F[1] += RandomReal(&seed, -0.12, 0.12);
+  s.load.F[3] += RandomReal(&seed, -0.12, 0.12);
+  s.load.F[4] += RandomReal(&seed, 0.0, 0.12);
+  s.load.F[8] += RandomReal(&seed, -0.02, 0.04);
+  s.load.turgor = RandomReal(&seed, 0.1, 0.4);
+  return s;
+}
+
 /* Number of hats whose contact or merging differs between the last solve and the centre's; bonded tissue has none. */
 static int ContactChanges(LamRVE rve, const PetscBool active[], const LamContactFace faces[])
 {

@@ -8,6 +8,7 @@
 
 #include "tissue.h"
 #include "solve.h"
+#include "random_reals.h"
 
 #define CONTACT_STATES 6
 #define CONTACT_COLUMNS 7 /* 0..4: components of F; turgor, cohesion */
@@ -35,6 +36,9 @@ LamMicrostructure ContactTissue(PetscInt along, PetscInt through);
 /* Turgor and cohesion in MPa. */
 LamLoad ContactLoad(double F11, double F12, double F21, double F22, double turgor, double cohesion);
 void ListContactStates(ContactState list[CONTACT_STATES]);
+/* Bonded: a wall thickness, orientation, mesh position and load that nothing singles out; F33 differs from 1. */
+#define RANDOM_STATES 6
+ContactState RandomState(int number);
 
 typedef struct {
   LamRVE rve;

@@ -1,104 +1,151 @@
-/* Everything a response holds is a derivative of its energy: finite differences at random states, F33 != 1 among them.
- */
+/* Everything a response holds is a derivative of its energy: finite differences of bonded tissue at random states
+   (F33 != 1 among them), of contact inside one contact set, of patches, and of cells that differ. */
 #include "support/test.h"
 #include "support/rve_fixture.h"
-#include "support/derivative_checks.h"
+#include "support/uneven_cells.h"
 
-#define STATES 6
+enum { BONDED, CONTACT, PATCH, UNEVEN, KINDS };
+static const int counts[KINDS] = {RANDOM_STATES, CONTACT_STATES, PATCH_STATES, UNEVEN_STATES};
+/* Of tangent, couplings and volumes; of the differences' symmetry. */
+static const double second[KINDS] = {1e-7, 1e-7, 1e-6, 1e-6}, symmetry[KINDS] = {1e-6, 1e-8, 1e-6, 1e-6};
 
-static Sweep sweeps[STATES];
+typedef struct {
+  int kind;
+  ContactSweep sweep;
+  ContactDerivativeError error;
+} State;
 
-static int SolveAll(void **state)
+enum { STATES = RANDOM_STATES + CONTACT_STATES + PATCH_STATES + UNEVEN_STATES };
+static State states[STATES];
+#define FOR_STATES(s) for (const State *s = states; s < states + STATES; s++)
+
+static void ListBonded(ContactState list[RANDOM_STATES])
 {
-  for (int s = 0; s < STATES; s++) {
-    uint64_t seed = (uint64_t)(100 + s);
-    LamMicrostructure micro = RandomTissue(&seed);
-    const LamLoad load = RandomLoad(&seed);
+  LamWall *stiffening = &list[0].micro.wall;
 
-    if (s == 0) {
-      micro.wall.law = LAM_WALL_FIBRE_EXPONENTIAL;
-      micro.wall.k1 = 0.5 * micro.wall.C4;
-      micro.wall.k2 = 3.0;
-      micro.wall.dispersion = 0.1;
-      micro.wall.C4 = 0.0;
+  for (int s = 0; s < RANDOM_STATES; s++) list[s] = RandomState(s);
+  stiffening->law = LAM_WALL_FIBRE_EXPONENTIAL;
+  stiffening->k1 = 0.5 * stiffening->C4;
+  stiffening->k2 = 3.0;
+  stiffening->dispersion = 0.1;
+  stiffening->C4 = 0.0;
+  list[RANDOM_STATES - 1].micro.wall.law = LAM_WALL_MOONEY_RIVLIN;
+  list[RANDOM_STATES - 2].micro.cells[0] = 2;
+}
+
+static int SweepAll(void **state)
+{
+  static LamCell cells[UNEVEN_CELLS];
+  ContactState list[KINDS][CONTACT_STATES];
+  State *s = states;
+
+  ListBonded(list[BONDED]);
+  ListContactStates(list[CONTACT]);
+  ListPatchStates(list[PATCH]);
+  ListUnevenStates(cells, list[UNEVEN]);
+  for (int kind = 0; kind < KINDS; kind++)
+    for (int k = 0; k < counts[kind]; k++, s++) {
+      s->kind = kind;
+      if (SweepContact(&list[kind][k], &s->sweep)) return 1;
+      s->error = DerivativeError(&s->sweep);
     }
-    if (s == STATES - 1) micro.wall.law = LAM_WALL_MOONEY_RIVLIN;
-    if (s == STATES - 2) micro.cells[0] = 2;
-    if (SweepLoads(&micro, &load, &sweeps[s])) return 1;
-    if (sweeps[s].response.status != LAM_CONVERGED) return 1;
-  }
   return 0;
+}
+
+TEST(StatesConvergeInsideOneContactSet)
+{
+  FOR_STATES(s)
+  {
+    assert_int_equal(s->sweep.response.status, LAM_CONVERGED);
+    assert_int_equal(s->sweep.switches, 0);
+  }
 }
 
 TEST(StressIsDerivativeOfEnergy)
 {
-  for (int s = 0; s < STATES; s++)
-    for (int c = 0; c < 5; c++)
-      assert_near(sweeps[s].response.P[sweep_columns[c]], sweeps[s].energy[sweep_columns[c]], 1e-8);
+  FOR_STATES(s) assert_near(s->error.stress, 0.0, 1e-8);
 }
 
-TEST(LumenIsDerivativeOfEnergy)
+TEST(DerivativesInTurgorAndCohesionAreThoseOfTheEnergy)
 {
-  for (int s = 0; s < STATES; s++)
-    assert_near(-sweeps[s].response.lumen_fraction, sweeps[s].energy[SWEEP_TURGOR], 1e-8);
+  FOR_STATES(s)
+  {
+    assert_near(s->error.turgor, 0.0, 1e-8);
+    assert_near(s->error.cohesion, 0.0, 1e-8);
+  }
+}
+
+/* Where cells differ dPsi/dp weighs lumens with the turgor factors of their cells, dPsi/dg gaps: neither is a volume.
+ */
+TEST(LumenAndOpeningAreThemWhereCellsAreAlike)
+{
+  FOR_STATES(s)
+  {
+    if (s->kind != UNEVEN) {
+      assert_near(s->error.lumen, 0.0, 1e-8);
+      assert_near(s->error.opening, 0.0, 1e-8);
+    } else {
+      assert_true(s->error.lumen > 1e-3);
+      if (s->sweep.response.opening_fraction > 0.0) assert_true(s->error.opening > 1e-5);
+    }
+  }
 }
 
 TEST(TangentIsDerivativeOfStress)
 {
-  for (int s = 0; s < STATES; s++) {
-    const LamResponse *r = &sweeps[s].response;
-    double largest = 0.0;
+  FOR_STATES(s) assert_near(s->error.tangent, 0.0, second[s->kind]);
+}
 
-    for (int k = 0; k < 5; k++) largest = fmax(largest, r->tangent[10 * sweep_columns[k]]);
-    for (int i = 0; i < 5; i++)
-      for (int k = 0; k < 5; k++) {
-        const int row = sweep_columns[i], column = sweep_columns[k];
-
-        assert_near(r->tangent[9 * row + column], sweeps[s].P[column][row], 1e-7 * largest);
-      }
-  }
+TEST(DifferencesOfTheStressHaveMajorSymmetry)
+{
+  FOR_STATES(s) assert_near(s->error.symmetry, 0.0, symmetry[s->kind]);
 }
 
 TEST(TangentHasMajorSymmetry)
 {
-  for (int s = 0; s < STATES; s++)
-    for (int i = 0; i < 5; i++)
-      for (int k = 0; k < 5; k++) {
-        const int a = sweep_columns[i], b = sweep_columns[k];
+  FOR_STATES(s)
+  for (int i = 0; i < 5; i++)
+    for (int k = 0; k < 5; k++) {
+      const int a = contact_components[i], b = contact_components[k];
 
-        assert_near(sweeps[s].response.tangent[9 * a + b], sweeps[s].response.tangent[9 * b + a], 1e-10);
-      }
+      assert_near(s->sweep.response.tangent[9 * a + b], s->sweep.response.tangent[9 * b + a], 1e-10);
+    }
 }
 
-TEST(TurgorCouplingIsDerivativeOfStress)
+/* And of the volumes. */
+TEST(CouplingsAreDerivativesOfStress)
 {
-  for (int s = 0; s < STATES; s++)
-    for (int i = 0; i < 5; i++)
-      assert_near(sweeps[s].response.P_turgor[sweep_columns[i]], sweeps[s].P[SWEEP_TURGOR][sweep_columns[i]], 1e-7);
+  FOR_STATES(s)
+  {
+    assert_near(s->error.turgor_coupling, 0.0, second[s->kind]);
+    assert_near(s->error.cohesion_coupling, 0.0, second[s->kind]);
+  }
 }
 
-TEST(TurgorCouplingIsDerivativeOfLumen)
+TEST(SecondDerivativesInTurgorAndCohesionAreThoseOfVolumes)
 {
-  for (int s = 0; s < STATES; s++)
-    for (int i = 0; i < 5; i++)
-      assert_near(sweeps[s].response.P_turgor[sweep_columns[i]], -sweeps[s].lumen[sweep_columns[i]], 1e-7);
+  FOR_STATES(s) assert_near(s->error.volumes, 0.0, second[s->kind]);
 }
 
-TEST(SecondTurgorDerivativeIsThatOfLumen)
+/* The moments of the forces on the held walls, x = F X, balance: P F^T is symmetric. */
+TEST(MomentsOfTheBoundaryForcesBalance)
 {
-  for (int s = 0; s < STATES; s++) assert_near(sweeps[s].response.energy_turgor2, -sweeps[s].lumen[SWEEP_TURGOR], 1e-7);
+  FOR_STATES(s)
+  {
+    const double *P = s->sweep.response.P, *F = s->sweep.response.load.F;
+
+    if (s->kind == PATCH) assert_near(P[0] * F[3] + P[1] * F[4], P[3] * F[0] + P[4] * F[1], 1e-9);
+  }
 }
 
 /* What plane strain cannot know is not a number, never zero. */
 TEST(OutOfPlaneShearTangentIsUnknown)
 {
   static const int unknown[4] = {2, 5, 6, 7};
+  const double *tangent = states[0].sweep.response.tangent;
 
   for (int i = 0; i < 4; i++)
-    for (int k = 0; k < 9; k++) {
-      assert_true(isnan(sweeps[0].response.tangent[9 * unknown[i] + k]));
-      assert_true(isnan(sweeps[0].response.tangent[9 * k + unknown[i]]));
-    }
+    for (int k = 0; k < 9; k++) assert_true(isnan(tangent[9 * unknown[i] + k]) && isnan(tangent[9 * k + unknown[i]]));
 }
 
 /* At F = I under turgor walls and fluid carry the same pressure: P = -p 1 up to the walls' compressibility p/kappa. */
@@ -121,4 +168,4 @@ TEST(PressureFillsTheTissueAsBulkModulusGrows)
   }
 }
 
-TEST_GROUP(.petsc = 1, .setup = SolveAll);
+TEST_GROUP(.petsc = 1, .setup = SweepAll);

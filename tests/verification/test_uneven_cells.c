@@ -1,60 +1,11 @@
-/* Cells that differ: derivatives, repeated and shifted patterns, balance of forces, and the weakest lamella. */
+/* Cells that differ (their derivatives: test_derivatives): repeated and shifted patterns, balance of forces, and the
+ * weakest lamella. */
 #include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/uneven_cells.h"
 #include "support/turned_response.h"
 
 static LamCell cells[UNEVEN_CELLS];
-static ContactSweep sweeps[UNEVEN_STATES];
-static ContactDerivativeError errors[UNEVEN_STATES];
-
-static int SweepAll(void **state)
-{
-  ContactState list[UNEVEN_STATES];
-
-  ListUnevenStates(cells, list);
-  for (int s = 0; s < UNEVEN_STATES; s++) {
-    if (SweepContact(&list[s], &sweeps[s])) return 1;
-    errors[s] = DerivativeError(&sweeps[s]);
-  }
-  return 0;
-}
-
-TEST(StatesConvergeInsideOneContactSet)
-{
-  for (int s = 0; s < UNEVEN_STATES; s++) {
-    assert_int_equal(sweeps[s].response.status, LAM_CONVERGED);
-    assert_int_equal(sweeps[s].switches, 0);
-  }
-}
-
-TEST(ResponsesAreDerivativesOfTheEnergy)
-{
-  for (int s = 0; s < UNEVEN_STATES; s++) {
-    assert_near(errors[s].stress, 0.0, 1e-8);
-    assert_near(errors[s].turgor, 0.0, 1e-8);
-    assert_near(errors[s].cohesion, 0.0, 1e-8);
-  }
-}
-
-TEST(TangentAndCouplingsAreDerivativesOfStress)
-{
-  for (int s = 0; s < UNEVEN_STATES; s++) {
-    assert_near(errors[s].tangent, 0.0, 1e-6);
-    assert_near(errors[s].turgor_coupling, 0.0, 1e-6);
-    assert_near(errors[s].cohesion_coupling, 0.0, 1e-6);
-    assert_near(errors[s].volumes, 0.0, 1e-6);
-  }
-}
-
-/* dPsi/dp weighs lumens with the turgor factors of their cells, dPsi/dg gaps: neither is a volume any more. */
-TEST(EnergyDerivativesAreNotVolumes)
-{
-  for (int s = 0; s < UNEVEN_STATES; s++) {
-    assert_true(errors[s].lumen > 1e-3);
-    if (s % 2) assert_true(errors[s].opening > 1e-5);
-  }
-}
 
 TEST(EqualCellsAreTheTissue)
 {
@@ -208,4 +159,4 @@ TEST(WeakLamellaOpensFirst)
   }
 }
 
-TEST_GROUP(.petsc = 1, .setup = SweepAll);
+TEST_GROUP(.petsc = 1);
