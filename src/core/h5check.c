@@ -96,7 +96,7 @@ static herr_t CloseAll(size_t n, const hid_t objects[])
   herr_t worst = 0;
 
   for (size_t i = 0; i < n; i++)
-    if (objects[i] >= 0) worst = PetscMin(worst, Close(objects[i]));
+    if (objects[i] >= 0 && Close(objects[i]) < 0) worst = -1;
   return worst;
 }
 
