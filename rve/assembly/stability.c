@@ -158,7 +158,7 @@ PetscErrorCode LamImproveSoftestMode(LamRVE rve, PetscInt iterations, PetscReal 
 
 void LamAddMode(LamRVE rve, PetscReal factor, const PetscReal mode[], PetscReal to[])
 {
-  const PetscInt pressures = rve->linear.n - rve->linear.lumens;
+  const PetscInt pressures = rve->linear.pressures;
 
   for (PetscInt i = 0; i < rve->linear.positions; ++i) to[2 + i] += factor * mode[i];
   for (PetscInt c = 0; c < rve->linear.lumens; ++c) to[rve->ndof + c] += factor * mode[pressures + c];
@@ -166,7 +166,7 @@ void LamAddMode(LamRVE rve, PetscReal factor, const PetscReal mode[], PetscReal 
 
 PetscReal LamModeSlope(LamRVE rve, const PetscReal mode[], const PetscReal residual[])
 {
-  const PetscInt pressures = rve->linear.n - rve->linear.lumens;
+  const PetscInt pressures = rve->linear.pressures;
   PetscReal slope = 0.0;
 
   for (PetscInt i = 0; i < rve->linear.positions; ++i) slope += mode[i] * residual[2 + i];

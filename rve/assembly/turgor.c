@@ -103,14 +103,13 @@ static void AddAreaRows(LamRVE rve, const PetscReal y[], PetscReal factor)
 
 void LamSealSetOpen(LamRVE rve)
 {
-  for (PetscInt i = rve->linear.n - rve->linear.lumens; i < rve->linear.n; ++i)
-    rve->linear.values[rve->linear.row[i]] = 1.0;
+  for (PetscInt i = rve->linear.pressures; i < rve->linear.n; ++i) rve->linear.values[rve->linear.row[i]] = 1.0;
 }
 
 void LamSealAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal residual[])
 {
   const LamSeal *seal = &rve->seal;
-  const PetscInt first = rve->linear.n - rve->linear.lumens;
+  const PetscInt first = rve->linear.pressures;
 
   LamSealSetOpen(rve);
   if (!seal->closed) return;

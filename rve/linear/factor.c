@@ -10,6 +10,7 @@
 */
 #include "factor.h"
 #include "cholesky.h"
+#include <lamella/rve.h>
 #include <time.h>
 
 #define MOST_FACTORS 8 /* distributed over several ranks, at a time */
@@ -275,7 +276,7 @@ static PetscErrorCode Join(MPI_Comm comm, const Order *order)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamFactorServe(MPI_Comm comm, PetscBool (*waiting)(void *ctx), void *ctx)
+PetscErrorCode LamRVEServe(MPI_Comm comm, PetscBool (*waiting)(void *ctx), void *ctx)
 {
   PetscReal nothing[1] = {0.0};
   Order order;
@@ -294,7 +295,7 @@ PetscErrorCode LamFactorServe(MPI_Comm comm, PetscBool (*waiting)(void *ctx), vo
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamFactorDismiss(MPI_Comm comm)
+PetscErrorCode LamRVEDismiss(MPI_Comm comm)
 {
   const Order order = {ORDER_DISMISS, 0, 0};
 

@@ -1,7 +1,7 @@
 /*
   Factorisation of the symmetric indefinite matrices of the RVE by MUMPS LDL^T through PETSc, on one rank or, for large
   systems, on several. Rank 0 holds the matrix and all vectors; the other ranks of the communicator wait in
-  LamFactorServe and take part in factorisations and solves until LamFactorDismiss.
+  LamRVEServe and take part in factorisations and solves until LamRVEDismiss.
 */
 #ifndef LAM_RVE_FACTOR_H
 #define LAM_RVE_FACTOR_H
@@ -21,9 +21,5 @@ PetscErrorCode LamFactorNumeric(LamFactor factor, PetscInt *negative, PetscBool 
 /* solution = K^-1 rhs, arrays of length n; count right-hand sides, one after the other. */
 PetscErrorCode LamFactorSolve(LamFactor factor, PetscInt count, const PetscReal rhs[], PetscReal solution[]);
 PetscErrorCode LamFactorDestroy(LamFactor *factor);
-
-/* On the other ranks: takes part until rank 0 calls LamFactorDismiss; `waiting` as for LamRVEServe. */
-PetscErrorCode LamFactorServe(MPI_Comm comm, PetscBool (*waiting)(void *ctx), void *ctx);
-PetscErrorCode LamFactorDismiss(MPI_Comm comm);
 
 #endif

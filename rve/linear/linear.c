@@ -8,6 +8,16 @@
 #define LEAST_FALL 1e-3 /* lower bound of the assumed reduction of that work per refinement */
 #define POOR 0.1        /* largest residual reduction of a useful refinement; above it the matrix is factored again */
 
+/*
+  Coupled pairs of groups of unknowns, sorted keys a * groups + b with a <= b. Groups are the classes, with two
+  positions each, the couplings, with their multipliers, and the lumens, with one pressure. Class 0 is prescribed: no
+  keys.
+*/
+typedef struct {
+  PetscInt classes, couplings, groups, count;
+  PetscInt64 *key;
+} Pairs;
+
 static int CompareKeys(const void *a, const void *b)
 {
   const PetscInt64 x = *(const PetscInt64 *)a, y = *(const PetscInt64 *)b;
@@ -15,108 +25,85 @@ static int CompareKeys(const void *a, const void *b)
   return x < y ? -1 : x > y;
 }
 
-/* Sorts keys and keeps one of each. */
-static PetscInt SortUnique(PetscInt n, PetscInt64 keys[])
+static void AddCoupled(PetscInt a, PetscInt b, Pairs *pairs)
 {
-  PetscInt unique = 0;
-
-  if (n == 0) return 0;
-  qsort(keys, (size_t)n, sizeof(*keys), CompareKeys);
-  for (PetscInt i = 0; i < n; ++i)
-    if (i == 0 || keys[i] != keys[i - 1]) keys[unique++] = keys[i];
-  return unique;
+  if (a > 0 && b > 0) pairs->key[pairs->count++] = (PetscInt64)PetscMin(a, b) * pairs->groups + PetscMax(a, b);
 }
 
-/* Appends the keys row * classes + column, row <= column, of all pairs of a set of classes. Class 0 is prescribed: no
-   keys. */
-static void AddClique(PetscInt classes, PetscInt size, const PetscInt members[], PetscInt *n, PetscInt64 keys[])
+/* Adds all pairs of a set of classes. */
+static void AddClique(PetscInt size, const PetscInt members[], Pairs *pairs)
 {
   for (PetscInt a = 0; a < size; ++a)
-    for (PetscInt b = a; b < size; ++b) {
-      const PetscInt ca = members[a], cb = members[b];
-
-      if (ca > 0 && cb > 0) keys[(*n)++] = (PetscInt64)PetscMin(ca, cb) * classes + PetscMax(ca, cb);
-    }
+    for (PetscInt b = a; b < size; ++b) AddCoupled(members[a], members[b], pairs);
 }
 
-/* Sorted unique keys of coupled classes, from elements and from couplings. */
-static PetscErrorCode CollectBlocks(const LamMesh *mesh, const LamCouplings *couplings, PetscInt *count,
-                                    PetscInt64 **blocks)
+static PetscErrorCode FindPairs(const LamMesh *mesh, const LamCouplings *couplings, PetscInt lumens, Pairs *pairs)
 {
-  const PetscInt size = couplings->size;
-  PetscInt n = 0, unique = 0;
-  PetscInt64 *keys;
+  const PetscInt size = couplings->size, inner = mesh->cell_count * mesh->ring_nodes; /* nodes at lumens */
+  PetscInt unique = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(mesh->element_count * 45 + couplings->count * size * (size + 1) / 2, &keys));
+  pairs->classes = mesh->class_count;
+  pairs->couplings = couplings->count;
+  pairs->groups = pairs->classes + pairs->couplings + lumens;
+  PetscCall(PetscMalloc1(mesh->element_count * 45 + couplings->count * (size + 1) * (size + 2) / 2 + inner + lumens,
+                         &pairs->key));
   for (PetscInt e = 0; e < mesh->element_count; ++e) {
     PetscInt members[LAM_ELEMENT_NODES];
 
     for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
       members[a] = mesh->node_class[mesh->elements[LAM_ELEMENT_NODES * e + a]];
-    AddClique(mesh->class_count, LAM_ELEMENT_NODES, members, &n, keys);
+    AddClique(LAM_ELEMENT_NODES, members, pairs);
   }
-  unique = SortUnique(n, keys);
-  n = unique;
-  for (PetscInt g = 0; g < couplings->count; ++g)
-    AddClique(mesh->class_count, size, &couplings->classes[g * size], &n, keys);
-  *count = n > unique ? SortUnique(n, keys) : unique;
-  *blocks = keys;
+  for (PetscInt g = 0; g < couplings->count; ++g) {
+    AddClique(size, &couplings->classes[g * size], pairs);
+    for (PetscInt i = 0; i < size; ++i) AddCoupled(couplings->classes[g * size + i], pairs->classes + g, pairs);
+  }
+  for (PetscInt i = 0; i < inner && lumens; ++i)
+    AddCoupled(mesh->node_class[i * mesh->radial_nodes], pairs->groups - lumens + i / mesh->ring_nodes, pairs);
+  for (PetscInt g = pairs->classes; g < pairs->groups; ++g) AddCoupled(g, g, pairs);
+  qsort(pairs->key, (size_t)pairs->count, sizeof(*pairs->key), CompareKeys);
+  for (PetscInt k = 0; k < pairs->count; ++k)
+    if (k == 0 || pairs->key[k] != pairs->key[k - 1]) pairs->key[unique++] = pairs->key[k];
+  pairs->count = unique;
   PetscFunctionReturn(0);
 }
 
-/* Sorted unique keys class * couplings + coupling of the members of couplings. */
-static PetscErrorCode CollectMembers(const LamCouplings *couplings, PetscInt *count, PetscInt64 **members)
+/* First unknown of a group, and their number. */
+static PetscInt FirstUnknown(const LamLinear *linear, const Pairs *pairs, PetscInt group, PetscInt *size)
 {
-  const PetscInt n = couplings->count * couplings->size;
+  const PetscInt coupling = group - pairs->classes, lumen = coupling - pairs->couplings;
 
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n, members));
-  for (PetscInt i = 0; i < n; ++i)
-    (*members)[i] = (PetscInt64)couplings->classes[i] * couplings->count + i / couplings->size;
-  *count = SortUnique(n, *members);
-  PetscFunctionReturn(0);
+  *size = 2;
+  if (coupling < 0) return 2 * (group - 1);
+  *size = lumen < 0 ? (linear->pressures - linear->positions) / pairs->couplings : 1;
+  return lumen < 0 ? linear->positions + coupling * *size : linear->pressures + lumen;
 }
 
-/*
-  Fills the rows: 2 x 2 class blocks, the diagonal block first, then the multipliers of the couplings of the class,
-  then the pressure of the lumen that the class bounds. Rows of multipliers and pressures hold only their diagonal.
-  Returns the number of entries; only counts if linear->row is NULL.
-*/
-static PetscInt FillRows(const LamMesh *mesh, const LamCouplings *couplings, PetscInt count, const PetscInt64 blocks[],
-                         PetscInt member_count, const PetscInt64 members[], const PetscInt lumen_of[],
-                         LamLinear *linear)
+/* Fills the rows, the diagonal first. The multipliers and pressures of a group are not coupled with each other. Returns
+   the number of entries; only counts if linear->row is NULL. */
+static PetscInt FillRows(const Pairs *pairs, LamLinear *linear)
 {
-  PetscInt at = 0, block = 0, member = 0;
+  PetscInt at = 0;
 
-  for (PetscInt c = 1; c < mesh->class_count; ++c) {
-    PetscInt end = block, member_end;
+  for (PetscInt k = 0, end; k < pairs->count; k = end) {
+    const PetscInt group = (PetscInt)(pairs->key[k] / pairs->groups);
+    PetscInt size;
+    const PetscInt first = FirstUnknown(linear, pairs, group, &size);
 
-    while (end < count && blocks[end] / mesh->class_count == c) ++end;
-    while (member < member_count && members[member] / couplings->count < c) ++member;
-    for (member_end = member; member_end < member_count && members[member_end] / couplings->count == c;) ++member_end;
-    for (PetscInt d = 0; d < 2; ++d) {
-      if (linear->row) linear->row[2 * (c - 1) + d] = at;
-      for (PetscInt b = block; b < end; ++b) {
-        const PetscInt column = 2 * ((PetscInt)(blocks[b] % mesh->class_count) - 1);
+    for (end = k; end < pairs->count && pairs->key[end] / pairs->groups == group;) ++end;
+    for (PetscInt d = 0; d < size; ++d) {
+      if (linear->row) linear->row[first + d] = at;
+      for (PetscInt p = k; p < end; ++p) {
+        PetscInt width;
+        const PetscInt column = FirstUnknown(linear, pairs, (PetscInt)(pairs->key[p] % pairs->groups), &width);
 
-        for (PetscInt k = b > block || d == 0 ? 0 : 1; k < 2; ++k, ++at)
-          if (linear->row) linear->column[at] = column + k;
-      }
-      for (PetscInt g = member; g < member_end; ++g)
-        for (PetscInt k = 0; k < couplings->multipliers; ++k, ++at)
-          if (linear->row)
-            linear->column[at] =
-                linear->positions + (PetscInt)(members[g] % couplings->count) * couplings->multipliers + k;
-      if (lumen_of && lumen_of[c] >= 0) {
-        if (linear->row) linear->column[at] = linear->n - linear->lumens + lumen_of[c];
-        ++at;
+        if (p == k && group >= pairs->classes) width = d + 1;
+        for (PetscInt i = p == k ? d : 0; i < width; ++i, ++at)
+          if (linear->row) linear->column[at] = column + i;
       }
     }
-    block = end;
   }
-  for (PetscInt i = linear->positions; i < linear->n; ++i, ++at)
-    if (linear->row) linear->row[i] = at, linear->column[at] = i;
   if (linear->row) linear->row[linear->n] = at;
   return at;
 }
@@ -140,41 +127,26 @@ PetscInt LamLinearEntry(const LamLinear *linear, PetscInt i, PetscInt j)
   return low;
 }
 
-/* The cell whose lumen a class bounds, -1: none. */
-static PetscErrorCode FindLumens(const LamMesh *mesh, PetscInt **lumen_of)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(mesh->class_count, lumen_of));
-  for (PetscInt c = 0; c < mesh->class_count; ++c) (*lumen_of)[c] = -1;
-  for (PetscInt i = 0; i < mesh->cell_count * mesh->ring_nodes; ++i)
-    (*lumen_of)[mesh->node_class[i * mesh->radial_nodes]] = i / mesh->ring_nodes;
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode LamLinearCreate(const LamMesh *mesh, const LamCouplings *couplings, PetscInt lumens, LamLinear *linear)
 {
   static const LamCouplings none = {0};
-  PetscInt count = 0, member_count = 0, *lumen_of = NULL;
-  PetscInt64 *blocks = NULL, *members = NULL;
+  Pairs pairs = {0};
 
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(linear, sizeof(*linear)));
   if (!couplings) couplings = &none;
-  PetscCall(CollectBlocks(mesh, couplings, &count, &blocks));
-  PetscCall(CollectMembers(couplings, &member_count, &members));
   linear->rate = PETSC_INFINITY;
   linear->positions = 2 * (mesh->class_count - 1);
+  linear->pressures = linear->positions + couplings->count * couplings->multipliers;
   linear->lumens = lumens;
-  linear->n = linear->positions + couplings->count * couplings->multipliers + lumens;
-  if (lumens) PetscCall(FindLumens(mesh, &lumen_of));
-  linear->nonzeros = FillRows(mesh, couplings, count, blocks, member_count, members, lumen_of, linear);
+  linear->n = linear->pressures + lumens;
+  PetscCall(FindPairs(mesh, couplings, lumens, &pairs));
+  linear->nonzeros = FillRows(&pairs, linear);
   PetscCall(PetscMalloc1(linear->nonzeros, &linear->column));
   PetscCall(PetscCalloc1(linear->nonzeros, &linear->values));
   PetscCall(PetscMalloc1(linear->n + 1, &linear->row));
-  (void)FillRows(mesh, couplings, count, blocks, member_count, members, lumen_of, linear);
-  PetscCall(PetscFree(lumen_of));
-  PetscCall(PetscFree(blocks));
-  PetscCall(PetscFree(members));
+  (void)FillRows(&pairs, linear);
+  PetscCall(PetscFree(pairs.key));
   PetscCall(PetscMalloc1(LAM_PAIRS * mesh->element_count, &linear->position));
   for (PetscInt e = 0; e < mesh->element_count; ++e)
     for (PetscInt i = 0, pair = 0; i < LAM_ELEMENT_DOFS; ++i)

@@ -23,6 +23,7 @@ typedef struct {
 typedef struct {
   PetscInt n, nonzeros;
   PetscInt positions;     /* unknowns that are positions */
+  PetscInt pressures;     /* the first unknown that is a pressure */
   PetscInt lumens;        /* unknowns that are pressures */
   PetscInt *row, *column; /* [n+1], [nonzeros]; the diagonal comes first in a row */
   PetscReal *values;      /* [nonzeros] */
@@ -56,6 +57,16 @@ static inline PetscReal LamLargestEntry(PetscInt n, const PetscReal v[])
   PetscReal largest = 0.0;
 
   for (PetscInt i = 0; i < n; ++i) largest = PetscMax(largest, PetscAbsReal(v[i]));
+  return largest;
+}
+
+/* Largest absolute value on the diagonal of the positions. */
+static inline PetscReal LamLargestDiagonal(const LamLinear *linear)
+{
+  PetscReal largest = 0.0;
+
+  for (PetscInt i = 0; i < linear->positions; ++i)
+    largest = PetscMax(largest, PetscAbsReal(linear->values[linear->row[i]]));
   return largest;
 }
 

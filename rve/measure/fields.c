@@ -67,8 +67,7 @@ PetscErrorCode LamRVEGetFields(LamRVE rve, LamRVEState state, PetscReal x[], Pet
   PetscFunctionReturn(0);
 }
 
-/* Restores the solution of a state in the RVE. */
-static PetscErrorCode TakeState(LamRVE rve, LamRVEState state)
+PetscErrorCode LamTakeState(LamRVE rve, LamRVEState state)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(rve->y, state->y, rve->length));
@@ -92,7 +91,7 @@ PetscErrorCode LamRVEGetSoftestMode(LamRVE rve, LamRVEState state, PetscReal *ei
   *eigenvalue = NAN;
   rve->linear.rate = PETSC_INFINITY;
   rve->consistent = PETSC_FALSE;
-  PetscCall(TakeState(rve, state));
+  PetscCall(LamTakeState(rve, state));
   PetscCall(LamFactorConsistent(rve, &state->load, &negative, &ok));
   if (ok) PetscCall(LamSoftestMode(rve, eigenvalue, unknowns));
   largest = LamLargestEntry(rve->linear.positions, unknowns);

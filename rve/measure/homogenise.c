@@ -189,7 +189,7 @@ static void AddContactFace(LamRVE rve, PetscInt f, Condensation *c)
 
 void LamCopyActive(LamRVE rve, const PetscReal column[], PetscReal copy[])
 {
-  const PetscInt positions = rve->linear.positions, pressures = rve->linear.n - rve->linear.lumens;
+  const PetscInt positions = rve->linear.positions, pressures = rve->linear.pressures;
 
   for (PetscInt i = 0; i < rve->linear.n; ++i)
     copy[i] = i < positions || i >= pressures || rve->contact->active[i - positions] ? column[i] : 0.0;
@@ -199,7 +199,7 @@ void LamCopyActive(LamRVE rve, const PetscReal column[], PetscReal copy[])
 static void CopyResidual(LamRVE rve, PetscReal r[])
 {
   const LamContact *contact = rve->contact;
-  const PetscInt positions = rve->linear.positions, pressures = rve->linear.n - rve->linear.lumens;
+  const PetscInt positions = rve->linear.positions, pressures = rve->linear.pressures;
 
   for (PetscInt i = 0; i < rve->ndof; ++i) rve->trial[i] = rve->residual[i];
   if (contact) LamContactAddForce(rve, rve->trial);

@@ -94,7 +94,10 @@ PetscErrorCode LamBondedIndicators(LamRVE rve, const LamLoad *load, LamResponse 
 PetscErrorCode LamFindCollapsedLumen(LamRVE rve, const PetscReal y[], PetscInt *cell);
 /* between: path fractions between which the lumen's walls first touch, as in LamBracketText. */
 PetscErrorCode LamCollapseReason(PetscInt cell, const PetscReal between[2], char reason[], size_t length);
+
 /* ---- fields.c ---- */
+/* Restores the solution of a state in the RVE, with its active set and junction status. */
+PetscErrorCode LamTakeState(LamRVE rve, LamRVEState state);
 /* Coefficients of 1, xi, eta, xi eta in the least-squares fit to the values at the Gauss points of an element. */
 void LamFitBilinear(const PetscReal gauss[LAM_GAUSS], PetscReal c[4]);
 

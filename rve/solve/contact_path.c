@@ -41,7 +41,6 @@ static PetscErrorCode SolveBonded(LamRVE rve, const LamLoad *load, LamRVEState s
   LamResponse response;
 
   PetscFunctionBeginUser;
-  PetscCall(LamRVESetMonitor(rve->bonded, rve->monitor));
   rve->bonded->budget = rve->budget;
   PetscCall(LamRVEStateCopy(state, rve->bonded_state));
   PetscCall(LamRVESolve(rve->bonded, load, rve->bonded_state, &response));
@@ -71,7 +70,7 @@ static PetscErrorCode ReleaseTo(LamRVE rve, const LamLoad *load, LamContactOutco
   the step is short, otherwise in shares, so that each Newton iteration starts near its solution and takes full steps.
   If small shares fail too, descent follows.
 */
-static PetscErrorCode Release(LamRVE rve, const LamLoad *load, LamContactSolution *at, LamContactOutcome *out)
+static PetscErrorCode Release(LamRVE rve, const LamLoad *load, LamRVEState at, LamContactOutcome *out)
 {
   PetscReal share = 1.0, step = 1.0;
   PetscBool ok;
@@ -80,7 +79,7 @@ static PetscErrorCode Release(LamRVE rve, const LamLoad *load, LamContactSolutio
   *out = LAM_NO_OUTCOME;
   PetscCall(LamContactStartBonded(rve, load, &ok));
   if (!ok) PetscFunctionReturn(0);
-  PetscCall(LamContactSave(rve, load, at));
+  LamKeepState(rve, load, 0, at);
   while (share > 0.0 && LamMayIterate(rve)) {
     const PetscInt iterations = rve->work.iterations;
     PetscBool reached = PETSC_FALSE;
@@ -89,7 +88,7 @@ static PetscErrorCode Release(LamRVE rve, const LamLoad *load, LamContactSolutio
     PetscCall(ReleaseTo(rve, load, out, &reached));
     if (reached) {
       share = rve->contact->share;
-      PetscCall(LamContactSave(rve, load, at));
+      LamKeepState(rve, load, 0, at);
       step *= 2.0;
       continue;
     }
@@ -105,26 +104,17 @@ static PetscErrorCode Release(LamRVE rve, const LamLoad *load, LamContactSolutio
   PetscFunctionReturn(0);
 }
 
-/* Descent to `load`, starting from a solution at another load. */
-static PetscErrorCode DescendFrom(LamRVE rve, const LamContactSolution *at, const LamLoad *load, LamContactOutcome *out)
-{
-  PetscFunctionBeginUser;
-  PetscCall(LamContactStartNear(rve, at, load));
-  PetscCall(LamContactDescend(rve, load, out));
-  PetscFunctionReturn(0);
-}
-
 /* Continuation from a solution to `load`; if it fails without a known reason, descent. */
-static PetscErrorCode Substeps(LamRVE rve, LamContactSolution *at, const LamLoad *load, LamContactOutcome *out)
+static PetscErrorCode Substeps(LamRVE rve, LamRVEState at, const LamLoad *load, LamContactOutcome *out)
 {
   PetscFunctionBeginUser;
   PetscCall(LamContactWalk(rve, at, load, out));
-  if (!LamContactIsStable(out) && out->refusal == LAM_NOT_REFUSED) PetscCall(DescendFrom(rve, at, load, out));
+  if (!LamContactIsStable(out) && out->refusal == LAM_NOT_REFUSED) PetscCall(LamContactDescendFrom(rve, at, load, out));
   PetscFunctionReturn(0);
 }
 
 /* Continuation in cohesion, from a solution with a larger one down to `load`. */
-static PetscErrorCode ComeDown(LamRVE rve, const LamLoad *load, LamContactSolution *at, LamContactOutcome *out)
+static PetscErrorCode ComeDown(LamRVE rve, const LamLoad *load, LamRVEState at, LamContactOutcome *out)
 {
   PetscReal added = at->load.cohesion - load->cohesion, factor = EASE;
   LamLoad next = *load;
@@ -137,18 +127,18 @@ static PetscErrorCode ComeDown(LamRVE rve, const LamLoad *load, LamContactSoluti
     PetscCall(LamContactStartNear(rve, at, &next));
     PetscCall(LamContactTry(rve, &next, LAM_NEAR_REACH, out));
     if (LamContactIsStable(out)) {
-      PetscCall(LamContactSave(rve, &next, at));
+      LamKeepState(rve, &next, 0, at);
       added = less;
     } else {
       factor = PetscSqrtReal(factor);
     }
   }
-  if (added > 0.0) PetscCall(DescendFrom(rve, at, load, out));
+  if (added > 0.0) PetscCall(LamContactDescendFrom(rve, at, load, out));
   PetscFunctionReturn(0);
 }
 
 /* Lowers the cohesion to that of `load`, if the state with added cohesion is stable; otherwise no outcome. */
-static PetscErrorCode Loosen(LamRVE rve, const LamLoad *load, LamContactSolution *at, LamContactOutcome *out)
+static PetscErrorCode Loosen(LamRVE rve, const LamLoad *load, LamRVEState at, LamContactOutcome *out)
 {
   PetscFunctionBeginUser;
   if (LamContactIsStable(out))
@@ -159,7 +149,7 @@ static PetscErrorCode Loosen(LamRVE rve, const LamLoad *load, LamContactSolution
 }
 
 /* (iii): solves with an added cohesion at the prescribed F, from the bonded or affine state, then lowers it. */
-static PetscErrorCode TightThenLoose(LamRVE rve, const LamLoad *load, PetscBool has_bonded, LamContactSolution *at,
+static PetscErrorCode TightThenLoose(LamRVE rve, const LamLoad *load, PetscBool has_bonded, LamRVEState at,
                                      LamContactOutcome *out)
 {
   LamLoad tight = *load;
@@ -172,7 +162,7 @@ static PetscErrorCode TightThenLoose(LamRVE rve, const LamLoad *load, PetscBool 
     PetscCall(LamContactStartAffine(rve, &tight));
     PetscCall(LamContactTry(rve, &tight, LAM_FAR, out));
   }
-  PetscCall(LamContactSave(rve, &tight, at));
+  LamKeepState(rve, &tight, 0, at);
   PetscCall(Loosen(rve, load, at, out));
   PetscFunctionReturn(0);
 }
@@ -204,7 +194,7 @@ static LamLoad Slack(const LamLoad *load, PetscReal share)
   Continuation of undeformed tissue in turgor and cohesion, from the largest share of them that can be solved. If cells
   differ, thin walls carry almost no load until they bulge and are taut.
 */
-static PetscErrorCode WalkInTurgor(LamRVE rve, const LamLoad *rest, LamContactSolution *at, LamContactOutcome *out)
+static PetscErrorCode WalkInTurgor(LamRVE rve, const LamLoad *rest, LamRVEState at, LamContactOutcome *out)
 {
   PetscReal share = SLACK * SLACK_FACTOR;
 
@@ -217,7 +207,7 @@ static PetscErrorCode WalkInTurgor(LamRVE rve, const LamLoad *rest, LamContactSo
     slack = Slack(rest, share);
     PetscCall(LamContactStartAffine(rve, &slack));
     PetscCall(LamContactTry(rve, &slack, LAM_FAR, out));
-    PetscCall(LamContactSave(rve, &slack, at));
+    LamKeepState(rve, &slack, 0, at);
   }
   if (!LamContactIsStable(out)) *out = LAM_NO_OUTCOME;
   while (LamContactIsStable(out) && share < 1.0) {
@@ -238,7 +228,7 @@ static PetscErrorCode WalkInTurgor(LamRVE rve, const LamLoad *rest, LamContactSo
   that state is not found, it is solved with an added cohesion first; if that fails too, turgor and cohesion rise in
   steps.
 */
-static PetscErrorCode WalkFromRest(LamRVE rve, const LamLoad *load, LamContactSolution *at, LamContactOutcome *out)
+static PetscErrorCode WalkFromRest(LamRVE rve, const LamLoad *load, LamRVEState at, LamContactOutcome *out)
 {
   const LamLoad rest = Unstretched(rve, load);
   LamLoad tight = rest;
@@ -246,12 +236,12 @@ static PetscErrorCode WalkFromRest(LamRVE rve, const LamLoad *load, LamContactSo
   PetscFunctionBeginUser;
   PetscCall(LamContactStartAffine(rve, &rest));
   PetscCall(LamContactTry(rve, &rest, LAM_FAR, out));
-  PetscCall(LamContactSave(rve, &rest, at));
+  LamKeepState(rve, &rest, 0, at);
   if (!LamContactIsStable(out)) {
     tight.cohesion += TIGHT;
     PetscCall(LamContactStartAffine(rve, &tight));
     PetscCall(LamContactTry(rve, &tight, LAM_FAR, out));
-    PetscCall(LamContactSave(rve, &tight, at));
+    LamKeepState(rve, &tight, 0, at);
     PetscCall(Loosen(rve, &rest, at, out));
   }
   if (!LamContactIsStable(out)) {
@@ -276,7 +266,7 @@ PetscBool LamContactIsNear(const LamLoad *from, const LamLoad *load)
   Solves from the affine state. Its unstressed walls carry little turgor once they are sheared. A turgor above BORNE is
   therefore raised by continuation from BORNE; above MUCH_TURGOR, continuation starts from unstretched tissue.
 */
-static PetscErrorCode TryAffine(LamRVE rve, const LamLoad *load, LamContactSolution *at, LamContactOutcome *out)
+static PetscErrorCode TryAffine(LamRVE rve, const LamLoad *load, LamRVEState at, LamContactOutcome *out)
 {
   const PetscBool bears = (PetscBool)(load->turgor <= BORNE);
   LamLoad start = load->turgor <= MUCH_TURGOR ? *load : Unstretched(rve, load);
@@ -290,14 +280,14 @@ static PetscErrorCode TryAffine(LamRVE rve, const LamLoad *load, LamContactSolut
     *out = LAM_NO_OUTCOME; /* this outcome is of another load */
     PetscFunctionReturn(0);
   }
-  PetscCall(LamContactSave(rve, &start, at));
+  LamKeepState(rve, &start, 0, at);
   PetscCall(Substeps(rve, at, load, out));
   PetscFunctionReturn(0);
 }
 
 /* (ii): the strategy's initial guess. */
 static PetscErrorCode TryStrategy(LamRVE rve, LamStrategy strategy, const LamLoad *load, LamRVEState state,
-                                  PetscBool *has_bonded, LamContactSolution *at, LamContactOutcome *out)
+                                  PetscBool *has_bonded, LamRVEState at, LamContactOutcome *out)
 {
   PetscFunctionBeginUser;
   if (strategy == LAM_TWO_STEP) PetscCall(SolveBonded(rve, load, state->bonded, has_bonded));
@@ -319,7 +309,7 @@ static PetscBool IsCertain(const LamContactOutcome *out)
 /* Kept from attempts without a stable state: the first saddle, the last rejection (or the first certain one). */
 typedef struct {
   LamContactOutcome saddle, refused;
-  LamContactSolution at;
+  LamRVEState at;
   PetscReal eigenvalue; /* of the saddle */
 } SecondBest;
 
@@ -328,7 +318,7 @@ static PetscErrorCode Remember(LamRVE rve, const LamLoad *load, const LamContact
   PetscFunctionBeginUser;
   if (!IsCertain(&best->refused) && (IsCertain(out) || out->refusal != LAM_NOT_REFUSED)) best->refused = *out;
   if (best->saddle.converged || !out->converged || out->negative <= 0) PetscFunctionReturn(0);
-  PetscCall(LamContactSave(rve, load, &best->at));
+  LamKeepState(rve, load, 0, best->at);
   best->saddle = *out;
   best->eigenvalue = rve->lowest_eigenvalue;
   PetscFunctionReturn(0);
@@ -342,23 +332,23 @@ static PetscErrorCode GiveSecondBest(LamRVE rve, const LamLoad *load, const Seco
   *out = best->refused;
   if (!best->saddle.converged) PetscFunctionReturn(0);
   *out = best->saddle;
-  PetscCall(LamContactRestore(rve, &best->at));
+  PetscCall(LamTakeState(rve, best->at));
   PetscCall(LamFactorConsistent(rve, load, &negative, &out->converged));
   rve->lowest_eigenvalue = best->eigenvalue;
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state, LamContactSolution *before,
+static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state, LamRVEState before,
                              LamContactOutcome *out)
 {
   const PetscBool near = (PetscBool)(state->solved && LamContactIsNear(&before->load, load));
   PetscBool has_bonded = PETSC_FALSE;
-  LamContactSolution at;
+  LamRVEState at;
   SecondBest best = {.refused = LAM_NO_OUTCOME, .eigenvalue = NAN};
 
   PetscFunctionBeginUser;
-  PetscCall(LamContactSolutionCreate(rve, &at));
-  PetscCall(LamContactSolutionCreate(rve, &best.at));
+  PetscCall(LamRVEStateCreate(rve, &at));
+  PetscCall(LamRVEStateCreate(rve, &best.at));
   *out = LAM_NO_OUTCOME;
   for (PetscInt k = near ? 0 : 1; k < 7 && !LamContactIsStable(out) && !rve->work.stopped; ++k) {
     PetscCall(Remember(rve, load, out, &best));
@@ -370,13 +360,13 @@ static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state,
       PetscCall(LamContactTry(rve, load, LAM_NEAR_REACH, out));
       if (!LamContactIsStable(out)) PetscCall(Substeps(rve, before, load, out));
     }
-    if (k == 1) PetscCall(TryStrategy(rve, rve->strategy, load, state, &has_bonded, &at, out));
-    if (k == 2) PetscCall(TightThenLoose(rve, load, has_bonded, &at, out));
-    if (k == 3) PetscCall(WalkFromRest(rve, load, &at, out));
+    if (k == 1) PetscCall(TryStrategy(rve, rve->strategy, load, state, &has_bonded, at, out));
+    if (k == 2) PetscCall(TightThenLoose(rve, load, has_bonded, at, out));
+    if (k == 3) PetscCall(WalkFromRest(rve, load, at, out));
     if (k == 4 && state->solved && !near) PetscCall(Substeps(rve, before, load, out));
     if (k == 5 && rve->strategy == LAM_ONE_STEP)
-      PetscCall(TryStrategy(rve, LAM_TWO_STEP, load, state, &has_bonded, &at, out));
-    if (k == 6 && rve->strategy == LAM_ONE_STEP) PetscCall(TightThenLoose(rve, load, has_bonded, &at, out));
+      PetscCall(TryStrategy(rve, LAM_TWO_STEP, load, state, &has_bonded, at, out));
+    if (k == 6 && rve->strategy == LAM_ONE_STEP) PetscCall(TightThenLoose(rve, load, has_bonded, at, out));
     LamContactSettle(out);
   }
   rve->budget = LAM_ITERATION_BUDGET;
@@ -385,8 +375,8 @@ static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state,
     PetscCall(GiveSecondBest(rve, load, &best, out));
   }
   if (out->converged && has_bonded) PetscCall(LamRVEStateCopy(rve->bonded_state, state->bonded));
-  PetscCall(LamContactSolutionDestroy(&at));
-  PetscCall(LamContactSolutionDestroy(&best.at));
+  PetscCall(LamRVEStateDestroy(&at));
+  PetscCall(LamRVEStateDestroy(&best.at));
   PetscFunctionReturn(0);
 }
 
@@ -463,14 +453,13 @@ static LamStatus StatusOf(const LamContactOutcome *out)
 
 PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
 {
-  LamContactSolution before;
+  LamRVEState before;
   LamContactOutcome out;
 
   PetscFunctionBeginUser;
-  PetscCall(LamContactSolutionCreate(rve, &before));
-  PetscCall(LamContactTurnState(rve, state, load, &before));
-  PetscCall(TryAll(rve, load, state, &before, &out));
-  PetscCall(LamContactSolutionDestroy(&before));
+  PetscCall(LamTurnedState(rve, state, load, &before));
+  PetscCall(TryAll(rve, load, state, before, &out));
+  PetscCall(LamRVEStateDestroy(&before));
   response->branch = state->branch + out.branch;
   response->negative_eigenvalues = PetscMax(0, out.negative);
   response->status = StatusOf(&out);

@@ -4,23 +4,9 @@
 
 #include "solve.h"
 
-/* A saved solution, to start from or to restore. */
-typedef struct {
-  LamLoad load;
-  PetscReal *y, *lambda;
-  PetscInt (*hats)[2]; /* [face] junction status: first and last hat */
-} LamContactSolution;
-
 /* ---- contact_start.c ---- */
-PetscErrorCode LamContactSolutionCreate(LamRVE rve, LamContactSolution *solution);
-PetscErrorCode LamContactSolutionDestroy(LamContactSolution *solution);
-PetscErrorCode LamContactSave(LamRVE rve, const LamLoad *load, LamContactSolution *solution);
-/* Restores a solution with its active set and junction status. */
-PetscErrorCode LamContactRestore(LamRVE rve, const LamContactSolution *solution);
-/* Copies the solution of `state`, rotated by the difference between the rotations of the two F. */
-PetscErrorCode LamContactTurnState(LamRVE rve, LamRVEState state, const LamLoad *load, LamContactSolution *solution);
 /* Initial guess: a solution moved affinely to the new load. */
-PetscErrorCode LamContactStartNear(LamRVE rve, const LamContactSolution *from, const LamLoad *load);
+PetscErrorCode LamContactStartNear(LamRVE rve, LamRVEState from, const LamLoad *load);
 /* Initial guess: rve->y := F X with cells swollen by their clearance, stress-free walls, and multipliers that balance
    turgor and cohesion. */
 PetscErrorCode LamContactStartAffine(LamRVE rve, const LamLoad *load);
@@ -61,6 +47,8 @@ typedef struct {
    are rejected. A converged result has its consistent tangent factored. */
 PetscErrorCode LamContactTry(LamRVE rve, const LamLoad *load, PetscReal reach, LamContactOutcome *out);
 PetscErrorCode LamContactDescend(LamRVE rve, const LamLoad *load, LamContactOutcome *out);
+/* The same from a solution at another load. */
+PetscErrorCode LamContactDescendFrom(LamRVE rve, LamRVEState from, const LamLoad *load, LamContactOutcome *out);
 /* LamContactTry with free components of F; saddles are not left. */
 PetscErrorCode LamContactTryMixed(LamRVE rve, LamBorder *border, PetscReal reach, LamContactOutcome *out);
 static inline PetscBool LamContactIsStable(const LamContactOutcome *out)
@@ -78,7 +66,7 @@ static inline void LamContactSettle(LamContactOutcome *out)
 /* ---- contact_walk.c ---- */
 /* Continuation along the straight load path from *at to `load`. On return *at is the last stable solution; if the path
    ends before `load`, *out gives the reason. */
-PetscErrorCode LamContactWalk(LamRVE rve, LamContactSolution *at, const LamLoad *load, LamContactOutcome *out);
+PetscErrorCode LamContactWalk(LamRVE rve, LamRVEState at, const LamLoad *load, LamContactOutcome *out);
 
 /* ---- contact_path.c ---- */
 /* Whether the loads are near enough for Newton to start from a solution at `from`. */

@@ -5,72 +5,12 @@
 */
 #include "contact_path.h"
 
-PetscErrorCode LamContactSolutionCreate(LamRVE rve, LamContactSolution *solution)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(rve->length, &solution->y, rve->contact->count, &solution->lambda, rve->contact->face_count,
-                         &solution->hats));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamContactSolutionDestroy(LamContactSolution *solution)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree3(solution->y, solution->lambda, solution->hats));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamContactSave(LamRVE rve, const LamLoad *load, LamContactSolution *solution)
-{
-  PetscFunctionBeginUser;
-  solution->load = *load;
-  PetscCall(PetscArraycpy(solution->y, rve->y, rve->length));
-  PetscCall(PetscArraycpy(solution->lambda, rve->contact->lambda, rve->contact->count));
-  for (PetscInt f = 0; f < rve->contact->face_count; ++f) {
-    solution->hats[f][0] = rve->contact->faces[f].first;
-    solution->hats[f][1] = rve->contact->faces[f].last;
-  }
-  PetscFunctionReturn(0);
-}
-
-/* Restores the junction status of a solution, which a failed solve may have changed. */
-static void SetJunctions(LamContact *contact, const LamContactSolution *solution)
-{
-  for (PetscInt f = 0; f < contact->face_count; ++f) {
-    contact->faces[f].first = solution->hats[f][0];
-    contact->faces[f].last = solution->hats[f][1];
-  }
-}
-
-PetscErrorCode LamContactRestore(LamRVE rve, const LamContactSolution *solution)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(rve->y, solution->y, rve->length));
-  PetscCall(PetscArraycpy(rve->contact->lambda, solution->lambda, rve->contact->count));
-  SetJunctions(rve->contact, solution);
-  PetscCall(LamContactEvaluate(rve, &solution->load, rve->y, PETSC_FALSE));
-  (void)LamContactFindActive(rve->contact, 0.0);
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamContactTurnState(LamRVE rve, LamRVEState state, const LamLoad *load, LamContactSolution *solution)
-{
-  PetscFunctionBeginUser;
-  solution->load = state->load;
-  PetscCall(PetscArraycpy(solution->y, state->y, rve->length));
-  PetscCall(PetscArraycpy(solution->lambda, state->lambda, rve->contact->count));
-  PetscCall(PetscMemcpy(solution->hats, state->hats, (size_t)state->faces * sizeof(*state->hats)));
-  LamRotatePositions(rve->ndof, solution->y, solution->load.F,
-                     LamRotationAngle(load->F) - LamRotationAngle(solution->load.F));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamContactStartNear(LamRVE rve, const LamContactSolution *from, const LamLoad *load)
+PetscErrorCode LamContactStartNear(LamRVE rve, LamRVEState from, const LamLoad *load)
 {
   PetscFunctionBeginUser;
   LamMoveAffinely(rve, from->y, &from->load, load);
   PetscCall(PetscArraycpy(rve->contact->lambda, from->lambda, rve->contact->count));
-  SetJunctions(rve->contact, from);
+  LamTakeJunctions(rve, from);
   PetscFunctionReturn(0);
 }
 

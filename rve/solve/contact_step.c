@@ -78,7 +78,7 @@ static PetscErrorCode FactorStable(LamRVE rve, PetscBool again, LamContactStep *
 static PetscErrorCode Solve(LamRVE rve, LamContactStep *step)
 {
   const LamContact *contact = rve->contact;
-  const PetscInt positions = rve->linear.positions, pressures = rve->linear.n - rve->linear.lumens;
+  const PetscInt positions = rve->linear.positions, pressures = rve->linear.pressures;
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < positions; ++i) step->rhs[i] = -rve->residual[i + 2];
@@ -93,7 +93,7 @@ static PetscErrorCode Solve(LamRVE rve, LamContactStep *step)
 static PetscErrorCode TakeSolution(LamRVE rve, LamContactStep *step)
 {
   const LamContact *contact = rve->contact;
-  const PetscInt positions = rve->linear.positions, pressures = rve->linear.n - rve->linear.lumens;
+  const PetscInt positions = rve->linear.positions, pressures = rve->linear.pressures;
 
   PetscFunctionBeginUser;
   rve->step[0] = rve->step[1] = 0.0;

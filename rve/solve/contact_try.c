@@ -25,8 +25,7 @@ static PetscReal LargestDifference(PetscInt n, const PetscReal a[], const PetscR
 }
 
 /* Perturbs along the softest mode of the current factorisation and solves; *left: another equilibrium was found. */
-static PetscErrorCode Kick(LamRVE rve, const LamLoad *load, const LamContactSolution *saddle, PetscReal mode[],
-                           PetscBool *left)
+static PetscErrorCode Kick(LamRVE rve, const LamLoad *load, LamRVEState saddle, PetscReal mode[], PetscBool *left)
 {
   LamNewtonOutcome outcome;
 
@@ -44,26 +43,26 @@ static PetscErrorCode Kick(LamRVE rve, const LamLoad *load, const LamContactSolu
 /* Leaves saddles; returns the last one if its mode leads to no other equilibrium. */
 static PetscErrorCode LeaveSaddles(LamRVE rve, const LamLoad *load, LamContactOutcome *out)
 {
-  LamContactSolution saddle;
+  LamRVEState saddle;
   PetscReal *mode;
 
   PetscFunctionBeginUser;
   PetscCall(LamFactorConsistent(rve, load, &out->negative, &out->converged));
   if (!out->converged || out->negative <= 0) PetscFunctionReturn(0);
-  PetscCall(LamContactSolutionCreate(rve, &saddle));
+  PetscCall(LamRVEStateCreate(rve, &saddle));
   PetscCall(PetscMalloc1(rve->linear.n, &mode));
   for (PetscInt k = 0; k < MAX_BRANCH_SWITCHES && out->converged && out->negative > 0; ++k) {
     PetscBool left = PETSC_FALSE;
 
-    PetscCall(LamContactSave(rve, load, &saddle));
-    PetscCall(Kick(rve, load, &saddle, mode, &left));
-    if (!left) PetscCall(LamContactRestore(rve, &saddle));
+    LamKeepState(rve, load, 0, saddle);
+    PetscCall(Kick(rve, load, saddle, mode, &left));
+    if (!left) PetscCall(LamTakeState(rve, saddle));
     PetscCall(LamFactorConsistent(rve, load, &out->negative, &out->converged));
     if (!left) break;
     ++out->branch;
   }
   PetscCall(PetscFree(mode));
-  PetscCall(LamContactSolutionDestroy(&saddle));
+  PetscCall(LamRVEStateDestroy(&saddle));
   PetscFunctionReturn(0);
 }
 
@@ -129,6 +128,14 @@ PetscErrorCode LamContactTryMixed(LamRVE rve, LamBorder *border, PetscReal reach
   if (outcome != LAM_NEWTON_CONVERGED) PetscFunctionReturn(0);
   PetscCall(LamFactorConsistent(rve, &border->load, &out->negative, &out->converged));
   if (LamContactIsStable(out)) PetscCall(Refuse(rve, &border->load, out));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamContactDescendFrom(LamRVE rve, LamRVEState from, const LamLoad *load, LamContactOutcome *out)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamContactStartNear(rve, from, load));
+  PetscCall(LamContactDescend(rve, load, out));
   PetscFunctionReturn(0);
 }
 

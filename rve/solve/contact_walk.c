@@ -20,18 +20,10 @@
 #define HALVINGS 4          /* ... this many times each */
 #define JUMP 2.0 /* ratio of overlap depths of successive states above which walls have slid past each other */
 
-/* Descent to `next`, one smallest step ahead. */
-static PetscErrorCode Snap(LamRVE rve, const LamContactSolution *at, const LamLoad *next, LamContactOutcome *out)
-{
-  PetscFunctionBeginUser;
-  PetscCall(LamContactStartNear(rve, at, next));
-  PetscCall(LamContactDescend(rve, next, out));
-  PetscFunctionReturn(0);
-}
-
 /* Load path with its last two stable states. */
 typedef struct {
-  LamContactSolution *at, earlier;
+  const LamLoad *start, *load;
+  LamRVEState at, earlier;
   PetscReal reached, before; /* path parameters of at and earlier */
   PetscReal failed;          /* path parameter of the next state that is not stable */
   PetscReal depth;           /* overlap of walls at `at`, apothems */
@@ -40,7 +32,7 @@ typedef struct {
   LamKinking kinking;
 } Way;
 
-static PetscErrorCode LowestEigenvalue(LamRVE rve, const LamContactSolution *solution, PetscReal *eigenvalue)
+static PetscErrorCode LowestEigenvalue(LamRVE rve, LamRVEState solution, PetscReal *eigenvalue)
 {
   PetscInt negative;
   PetscReal *mode;
@@ -48,7 +40,7 @@ static PetscErrorCode LowestEigenvalue(LamRVE rve, const LamContactSolution *sol
 
   PetscFunctionBeginUser;
   *eigenvalue = NAN;
-  PetscCall(LamContactRestore(rve, solution));
+  PetscCall(LamTakeState(rve, solution));
   PetscCall(LamFactorConsistent(rve, &solution->load, &negative, &ok));
   if (!ok) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(rve->linear.n, &mode));
@@ -69,11 +61,11 @@ static PetscErrorCode FindLoosening(LamRVE rve, const Way *way, PetscBool *found
   PetscBool ok;
 
   PetscFunctionBeginUser;
-  PetscCall(LamContactRestore(rve, way->at));
+  PetscCall(LamTakeState(rve, way->at));
   for (PetscInt h = 0; h < contact->count; ++h) {
     const PetscReal now = way->at->lambda[h];
 
-    if (!contact->active[h] || now + ahead * (now - way->earlier.lambda[h]) > 0.0) continue;
+    if (!contact->active[h] || now + ahead * (now - way->earlier->lambda[h]) > 0.0) continue;
     contact->active[h] = PETSC_FALSE;
     contact->lambda[h] = 0.0;
     ++count;
@@ -100,7 +92,7 @@ static PetscErrorCode FindCrossing(LamRVE rve, const Way *way, LamContactOutcome
 
   PetscFunctionBeginUser;
   if (way->reached <= way->before || rve->work.stopped) PetscFunctionReturn(0);
-  PetscCall(LowestEigenvalue(rve, &way->earlier, &before));
+  PetscCall(LowestEigenvalue(rve, way->earlier, &before));
   PetscCall(LowestEigenvalue(rve, way->at, &out->eigenvalue));
   fall = PetscSqr(before) - PetscSqr(out->eigenvalue);
   if (rve->monitor)
@@ -118,12 +110,9 @@ static PetscErrorCode FindCrossing(LamRVE rve, const Way *way, LamContactOutcome
 /* Makes the state just found, at path parameter t, the last stable one. */
 static PetscErrorCode Advance(LamRVE rve, const LamLoad *load, PetscReal t, Way *way)
 {
-  const LamContactSolution at = *way->at;
-
   PetscFunctionBeginUser;
-  *way->at = way->earlier;
-  way->earlier = at;
-  PetscCall(LamContactSave(rve, load, way->at));
+  PetscCall(LamRVEStateCopy(way->at, way->earlier));
+  LamKeepState(rve, load, 0, way->at);
   way->before = way->reached;
   way->reached = t;
   PetscFunctionReturn(0);
@@ -136,7 +125,7 @@ static PetscErrorCode Advance(LamRVE rve, const LamLoad *load, PetscReal t, Way 
 static PetscErrorCode FindJump(LamRVE rve, const Way *way, PetscBool *found)
 {
   const PetscReal ahead = CROSSING_MARGIN * (way->failed - way->reached) / (way->reached - way->before);
-  const LamLoad load = LamLoadBetween(&way->earlier.load, &way->at->load, 1.0 + ahead);
+  const LamLoad load = LamLoadBetween(&way->earlier->load, &way->at->load, 1.0 + ahead);
   LamContact *contact = rve->contact;
   PetscInt negative;
   PetscBool ok;
@@ -144,10 +133,10 @@ static PetscErrorCode FindJump(LamRVE rve, const Way *way, PetscBool *found)
   PetscFunctionBeginUser;
   *found = PETSC_FALSE;
   if (way->reached <= way->before || rve->work.stopped) PetscFunctionReturn(0);
-  PetscCall(LamContactRestore(rve, way->at));
-  for (PetscInt i = 0; i < rve->length; ++i) rve->y[i] += ahead * (way->at->y[i] - way->earlier.y[i]);
+  PetscCall(LamTakeState(rve, way->at));
+  for (PetscInt i = 0; i < rve->length; ++i) rve->y[i] += ahead * (way->at->y[i] - way->earlier->y[i]);
   for (PetscInt h = 0; h < contact->count; ++h)
-    contact->lambda[h] += ahead * (way->at->lambda[h] - way->earlier.lambda[h]);
+    contact->lambda[h] += ahead * (way->at->lambda[h] - way->earlier->lambda[h]);
   PetscCall(LamContactEvaluate(rve, &load, rve->y, PETSC_TRUE));
   (void)LamContactFindActive(contact, 0.0);
   PetscCall(LamFactorConsistent(rve, &load, &negative, &ok));
@@ -158,20 +147,23 @@ static PetscErrorCode FindJump(LamRVE rve, const Way *way, PetscBool *found)
   PetscFunctionReturn(0);
 }
 
+static LamLoad LoadAt(const Way *way, PetscReal t)
+{
+  return t >= 1.0 ? *way->load : LamLoadBetween(way->start, way->load, t);
+}
+
 /* Solves at path parameter t, starting from the last stable state. */
-static PetscErrorCode TryAt(LamRVE rve, const LamLoad *start, const LamLoad *load, PetscReal t, const Way *way,
-                            LamLoad *next, LamContactOutcome *out)
+static PetscErrorCode TryAt(LamRVE rve, const Way *way, PetscReal t, LamLoad *next, LamContactOutcome *out)
 {
   PetscFunctionBeginUser;
-  *next = t >= 1.0 ? *load : LamLoadBetween(start, load, t);
+  *next = LoadAt(way, t);
   PetscCall(LamContactStartNear(rve, way->at, next));
   PetscCall(LamContactTry(rve, next, LAM_NEAR_REACH, out));
   PetscFunctionReturn(0);
 }
 
 /* Halves the bracket up to HALVINGS times, until the reason for the path's end is known. */
-static PetscErrorCode Halve(LamRVE rve, const LamLoad *start, const LamLoad *load, Way *way, LamContactOutcome *out,
-                            PetscBool *advanced)
+static PetscErrorCode Halve(LamRVE rve, Way *way, LamContactOutcome *out, PetscBool *advanced)
 {
   PetscFunctionBeginUser;
   *advanced = PETSC_FALSE;
@@ -180,14 +172,14 @@ static PetscErrorCode Halve(LamRVE rve, const LamLoad *start, const LamLoad *loa
     LamContactOutcome tried;
     LamLoad next;
 
-    PetscCall(TryAt(rve, start, load, t, way, &next, &tried));
+    PetscCall(TryAt(rve, way, t, &next, &tried));
     if (!LamContactIsStable(&tried)) {
       out->refusal = tried.refusal;
       out->depth = tried.depth;
       PetscCall(PetscArraycpy(out->cell, tried.cell, 2));
       way->failed = t;
     } else if (*advanced) {
-      PetscCall(LamContactSave(rve, &next, way->at));
+      LamKeepState(rve, &next, 0, way->at);
       way->reached = t;
     } else {
       PetscCall(Advance(rve, &next, t, way));
@@ -198,7 +190,7 @@ static PetscErrorCode Halve(LamRVE rve, const LamLoad *start, const LamLoad *loa
 }
 
 /* Whether the end of the bracket is reached in one step from its start: previous steps were then too long. */
-static PetscErrorCode CrossBracket(LamRVE rve, const LamLoad *start, const LamLoad *load, Way *way, PetscBool *crossed)
+static PetscErrorCode CrossBracket(LamRVE rve, Way *way, PetscBool *crossed)
 {
   const PetscReal t = way->failed, left = way->failed - way->reached;
   LamContactOutcome tried;
@@ -207,7 +199,7 @@ static PetscErrorCode CrossBracket(LamRVE rve, const LamLoad *start, const LamLo
   PetscFunctionBeginUser;
   *crossed = PETSC_FALSE;
   if (!LamMayIterate(rve)) PetscFunctionReturn(0);
-  PetscCall(TryAt(rve, start, load, t, way, &next, &tried));
+  PetscCall(TryAt(rve, way, t, &next, &tried));
   *crossed = LamContactIsStable(&tried);
   if (!*crossed) PetscFunctionReturn(0);
   PetscCall(Advance(rve, &next, t, way));
@@ -221,8 +213,7 @@ static PetscErrorCode CrossBracket(LamRVE rve, const LamLoad *start, const LamLo
   Halves the bracket of a path that ends without a known reason, until the states at its edge give it: an eigenvalue may
   fall steeply only close to the end. The states compared are those at the start and the end of a stage.
 */
-static PetscErrorCode Refine(LamRVE rve, const LamLoad *start, const LamLoad *load, Way *way, LamContactOutcome *out,
-                             PetscBool *crossed)
+static PetscErrorCode Refine(LamRVE rve, Way *way, LamContactOutcome *out, PetscBool *crossed)
 {
   PetscBool advanced = PETSC_TRUE, jumps = PETSC_FALSE;
 
@@ -232,9 +223,8 @@ static PetscErrorCode Refine(LamRVE rve, const LamLoad *start, const LamLoad *lo
 
     PetscCall(FindCrossing(rve, way, out));
     if (out->refusal != LAM_NOT_REFUSED) break;
-    PetscCall(Halve(rve, start, load, way, out, &advanced));
-    if (out->refusal == LAM_NOT_REFUSED && way->failed == failed)
-      PetscCall(CrossBracket(rve, start, load, way, crossed));
+    PetscCall(Halve(rve, way, out, &advanced));
+    if (out->refusal == LAM_NOT_REFUSED && way->failed == failed) PetscCall(CrossBracket(rve, way, crossed));
     if (*crossed) PetscFunctionReturn(0);
   }
   if (out->refusal == LAM_NOT_REFUSED) PetscCall(FindJump(rve, way, &jumps));
@@ -246,8 +236,7 @@ static PetscErrorCode Refine(LamRVE rve, const LamLoad *start, const LamLoad *lo
 
 /* Determines the reason and the bracket of the path's end, or *goes_on: the bracket has been crossed. A solution at a
    load other than the prescribed one is no outcome. */
-static PetscErrorCode End(LamRVE rve, const LamLoad *start, const LamLoad *load, Way *way, LamContactOutcome *out,
-                          PetscBool *goes_on)
+static PetscErrorCode End(LamRVE rve, Way *way, LamContactOutcome *out, PetscBool *goes_on)
 {
   const PetscBool out_of_work = (PetscBool)!LamMayIterate(rve), stable = LamContactIsStable(out);
 
@@ -260,7 +249,7 @@ static PetscErrorCode End(LamRVE rve, const LamLoad *start, const LamLoad *load,
     out->converged = PETSC_FALSE;
   }
   if (!out->converged && out->refusal == LAM_NOT_REFUSED && !out_of_work && !LamIsKinking(&way->kinking))
-    PetscCall(Refine(rve, start, load, way, out, goes_on));
+    PetscCall(Refine(rve, way, out, goes_on));
   if (rve->monitor)
     PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR,
                            "  walk: %.10g to %.10g, refusal %d, negative %d, converged %d, depth %.2g after %.2g%s\n",
@@ -270,20 +259,20 @@ static PetscErrorCode End(LamRVE rve, const LamLoad *start, const LamLoad *load,
 }
 
 /* Continuation until the load is reached or the smallest step fails. */
-static PetscErrorCode Go(LamRVE rve, const LamLoad *start, const LamLoad *load, Way *way, LamContactOutcome *out)
+static PetscErrorCode Go(LamRVE rve, Way *way, LamContactOutcome *out)
 {
   PetscFunctionBeginUser;
   while (way->reached < 1.0 && LamMayIterate(rve)) {
     const PetscReal least = LamIsKinking(&way->kinking) ? LAM_KINKED_SUBSTEP : way->least;
     const PetscReal t = PetscMin(1.0, way->reached + PetscMax(way->step, least));
     const PetscBool last = (PetscBool)(way->step < least);
-    LamLoad next = t >= 1.0 ? *load : LamLoadBetween(start, load, t);
+    LamLoad next = LoadAt(way, t);
 
     if (last) {
       if (out->refusal != LAM_NOT_REFUSED || way->snaps++ >= MAX_SNAPS) break;
-      PetscCall(Snap(rve, way->at, &next, out));
+      PetscCall(LamContactDescendFrom(rve, way->at, &next, out));
     } else {
-      PetscCall(TryAt(rve, start, load, t, way, &next, out));
+      PetscCall(TryAt(rve, way, t, &next, out));
     }
     if (LamContactIsStable(out)) {
       PetscCall(Advance(rve, &next, t, way));
@@ -300,23 +289,29 @@ static PetscErrorCode Go(LamRVE rve, const LamLoad *start, const LamLoad *load, 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamContactWalk(LamRVE rve, LamContactSolution *at, const LamLoad *load, LamContactOutcome *out)
+PetscErrorCode LamContactWalk(LamRVE rve, LamRVEState at, const LamLoad *load, LamContactOutcome *out)
 {
   const LamLoad start = at->load;
-  Way way = {.at = at, .failed = 1.0, .step = FIRST_STEP, .least = MIN_STEP, .kinking = LAM_NO_KINKING};
+  Way way = {.start = &start,
+             .load = load,
+             .at = at,
+             .failed = 1.0,
+             .step = FIRST_STEP,
+             .least = MIN_STEP,
+             .kinking = LAM_NO_KINKING};
   PetscBool goes_on = PETSC_TRUE;
 
   PetscFunctionBeginUser;
   *out = LAM_NO_OUTCOME;
-  PetscCall(LamContactSolutionCreate(rve, &way.earlier));
+  PetscCall(LamRVEStateCreate(rve, &way.earlier));
   LamWatchKinks(rve, &start, at->y, 0.0, &way.kinking);
   while (goes_on) {
     goes_on = PETSC_FALSE;
-    PetscCall(Go(rve, &start, load, &way, out));
-    if (way.reached < 1.0) PetscCall(End(rve, &start, load, &way, out, &goes_on));
+    PetscCall(Go(rve, &way, out));
+    if (way.reached < 1.0) PetscCall(End(rve, &way, out, &goes_on));
   }
   out->branch = way.branch;
   out->kinking = way.kinking;
-  PetscCall(LamContactSolutionDestroy(&way.earlier));
+  PetscCall(LamRVEStateDestroy(&way.earlier));
   PetscFunctionReturn(0);
 }

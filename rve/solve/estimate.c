@@ -46,13 +46,9 @@ PetscErrorCode LamRVEEstimateCreate(LamRVE rve, LamRVEEstimate *estimate)
   if (micro.along % 2 || rve->seal.allowed) PetscFunctionReturn(0);
   micro.along /= 2;
   micro.through = micro.through % 2 ? 1 : micro.through / 2;
-  PetscCall(LamRVECreate(rve->comm, &(*estimate)->coarse));
-  PetscCall(LamRVESetMicrostructure((*estimate)->coarse, &micro));
-  PetscCall(LamRVESetStrategy((*estimate)->coarse, rve->strategy));
+  PetscCall(LamRVECreateLike(rve, &micro, LAM_WANT_STRESS, &(*estimate)->coarse));
   PetscCall(LamRVESetTolerance((*estimate)->coarse, PetscMax(rve->tolerance, 1e-6)));
-  PetscCall(LamRVESetWanted((*estimate)->coarse, LAM_WANT_STRESS));
-  PetscCall(LamRVESetInterrupt((*estimate)->coarse, rve->interrupt, rve->interrupt_ctx));
-  PetscCall(LamRVESetUp((*estimate)->coarse));
+  PetscCall(LamRVESetMonitor((*estimate)->coarse, PETSC_FALSE));
   PetscCall(LamRVEStateCreate((*estimate)->coarse, &(*estimate)->state));
   PetscFunctionReturn(0);
 }

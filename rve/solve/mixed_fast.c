@@ -13,17 +13,14 @@
 static PetscErrorCode TryBonded(LamRVE rve, LamBorder *border, LamRVEState state, PetscBool *solved)
 {
   LamNewtonOutcome outcome;
-  LamLoad start = state->load;
-  PetscReal *from;
+  LamRVEState turned;
   PetscInt negative;
 
   PetscFunctionBeginUser;
   *solved = PETSC_FALSE;
-  PetscCall(PetscMalloc1(rve->length, &from));
-  PetscCall(PetscArraycpy(from, state->y, rve->length));
-  LamRotatePositions(rve->ndof, from, start.F, LamRotationAngle(border->load.F) - LamRotationAngle(start.F));
-  LamMoveAffinely(rve, from, &start, &border->load);
-  PetscCall(PetscFree(from));
+  PetscCall(LamTurnedState(rve, state, &border->load, &turned));
+  LamMoveAffinely(rve, turned->y, &turned->load, &border->load);
+  PetscCall(LamRVEStateDestroy(&turned));
   PetscCall(LamNewtonFast(rve, &border->load, border, &outcome));
   if (outcome != LAM_NEWTON_CONVERGED) PetscFunctionReturn(0);
   PetscCall(LamFactorConsistent(rve, &border->load, &negative, solved));
@@ -34,14 +31,13 @@ static PetscErrorCode TryBonded(LamRVE rve, LamBorder *border, LamRVEState state
 /* Solves contact from the previous state. */
 static PetscErrorCode TryNear(LamRVE rve, LamBorder *border, LamRVEState state, LamContactOutcome *out)
 {
-  LamContactSolution before;
+  LamRVEState before;
 
   PetscFunctionBeginUser;
-  PetscCall(LamContactSolutionCreate(rve, &before));
-  PetscCall(LamContactTurnState(rve, state, &border->load, &before));
-  PetscCall(LamContactStartNear(rve, &before, &border->load));
+  PetscCall(LamTurnedState(rve, state, &border->load, &before));
+  PetscCall(LamContactStartNear(rve, before, &border->load));
   PetscCall(LamContactTryMixed(rve, border, LAM_NEAR_REACH, out));
-  PetscCall(LamContactSolutionDestroy(&before));
+  PetscCall(LamRVEStateDestroy(&before));
   PetscFunctionReturn(0);
 }
 
@@ -53,7 +49,6 @@ static PetscErrorCode TryRelease(LamRVE rve, LamBorder *border, const LamStressC
   PetscBool ok;
 
   PetscFunctionBeginUser;
-  PetscCall(LamRVESetMonitor(rve->bonded, rve->monitor));
   PetscCall(LamRVEStateCopy(state->bonded, rve->bonded_state));
   PetscCall(LamRVESolveMixed(rve->bonded, &border->load, control, rve->bonded_state, &response));
   LamAddWork(rve, &response);

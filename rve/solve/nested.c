@@ -13,29 +13,6 @@
 
 #define LARGE 2000 /* elements, from which a coarser mesh is solved first */
 
-static PetscInt Half(PetscInt n)
-{
-  return (n + 1) / 2;
-}
-
-static PetscErrorCode CreateCoarse(LamRVE rve, LamRVE *coarse)
-{
-  LamMicrostructure micro = rve->micro;
-
-  PetscFunctionBeginUser;
-  micro.along = Half(micro.along);
-  micro.through = Half(micro.through);
-  PetscCall(LamRVECreate(rve->comm, coarse));
-  PetscCall(LamRVESetMicrostructure(*coarse, &micro));
-  PetscCall(LamRVESetStrategy(*coarse, rve->strategy));
-  PetscCall(LamRVESetTolerance(*coarse, rve->tolerance));
-  PetscCall(LamRVESetWanted(*coarse, LAM_WANT_STRESS));
-  PetscCall(LamRVESetInterrupt(*coarse, rve->interrupt, rve->interrupt_ctx));
-  PetscCall(LamRVESetMonitor(*coarse, rve->monitor));
-  PetscCall(LamRVESetUp(*coarse));
-  PetscFunctionReturn(0);
-}
-
 /* Quadratic shape functions at `place`, in elements; first: index of the first of their three nodes. */
 static void Quadratic(PetscReal place, PetscInt elements, PetscInt *first, PetscReal N[3])
 {
@@ -230,12 +207,15 @@ PetscBool LamIsNested(LamRVE rve, const LamRVEState state)
 
 PetscErrorCode LamNestedStart(LamRVE rve, const LamLoad *load, LamRVEState start, LamResponse *coarse_response)
 {
+  LamMicrostructure micro = rve->micro;
   LamRVE coarse;
   LamRVEState state;
   PetscBool nested;
 
   PetscFunctionBeginUser;
-  PetscCall(CreateCoarse(rve, &coarse));
+  micro.along = (micro.along + 1) / 2;
+  micro.through = (micro.through + 1) / 2;
+  PetscCall(LamRVECreateLike(rve, &micro, LAM_WANT_STRESS, &coarse));
   PetscCall(LamRVEStateCreate(coarse, &state));
   nested = LamIsNested(coarse, state);
   PetscCall(LamRVESolve(coarse, load, state, coarse_response));

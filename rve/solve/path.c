@@ -208,20 +208,19 @@ static PetscErrorCode EndOfWay(LamRVE rve, const Way *way, LamStatus *status, ch
 PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, PetscInt *branch, PetscInt *negative,
                              LamStatus *status, char reason[], size_t length)
 {
-  LamLoad start = state->load;
-  PetscReal *from, *saddle;
+  LamRVEState from;
+  PetscReal *saddle;
   Way way = {.branch = state->branch, .kinking = LAM_NO_KINKING};
   Outcome out;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(rve->length, &from, rve->length, &saddle));
-  PetscCall(PetscArraycpy(from, state->y, rve->length));
-  LamRotatePositions(rve->ndof, from, start.F, LamRotationAngle(load->F) - LamRotationAngle(start.F));
+  PetscCall(PetscMalloc1(rve->length, &saddle));
+  PetscCall(LamTurnedState(rve, state, load, &from));
   *branch = state->branch;
-  PetscCall(Step(rve, from, &start, load, PETSC_TRUE, branch, &out));
+  PetscCall(Step(rve, from->y, &from->load, load, PETSC_TRUE, branch, &out));
   if (!IsStable(&out)) {
     PetscCall(PetscArraycpy(saddle, rve->y, rve->length));
-    PetscCall(Substeps(rve, from, &start, load, &way));
+    PetscCall(Substeps(rve, from->y, &from->load, load, &way));
     if (way.between[0] >= 1.0) {
       out = way.end;
       *branch = way.branch;
@@ -232,7 +231,8 @@ PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state,
       PetscCall(LamFactorConsistent(rve, load, &again, &out.converged));
     }
   }
-  PetscCall(PetscFree2(from, saddle));
+  PetscCall(LamRVEStateDestroy(&from));
+  PetscCall(PetscFree(saddle));
   *negative = out.negative;
   if (!out.converged || out.collapsed >= 0) {
     PetscCall(EndOfWay(rve, &way, status, reason, length));

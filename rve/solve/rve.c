@@ -10,20 +10,6 @@ PetscErrorCode LamRVECreate(MPI_Comm comm, LamRVE *rve)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamRVEServe(MPI_Comm comm, PetscBool (*waiting)(void *ctx), void *ctx)
-{
-  PetscFunctionBeginUser;
-  PetscCall(LamFactorServe(comm, waiting, ctx));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamRVEDismiss(MPI_Comm comm)
-{
-  PetscFunctionBeginUser;
-  PetscCall(LamFactorDismiss(comm));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode LamRVESetMicrostructure(LamRVE rve, const LamMicrostructure *micro)
 {
   PetscFunctionBeginUser;
@@ -62,6 +48,7 @@ PetscErrorCode LamRVESetMonitor(LamRVE rve, PetscBool on)
 {
   PetscFunctionBeginUser;
   rve->monitor = on;
+  if (rve->bonded) PetscCall(LamRVESetMonitor(rve->bonded, on));
   PetscFunctionReturn(0);
 }
 
@@ -118,6 +105,7 @@ PetscErrorCode LamRVEChangeModuli(LamRVE rve, const LamMicrostructure *micro)
 /* Set-up that needs no MPI: mesh, element geometry, sparsity pattern, work arrays. */
 static PetscErrorCode SetUpArrays(LamRVE rve)
 {
+  LamCouplings couplings = {0};
   PetscInt cells, lumens;
 
   PetscFunctionBeginUser;
@@ -128,16 +116,12 @@ static PetscErrorCode SetUpArrays(LamRVE rve)
   PetscCall(SetUpWalls(rve));
   PetscCall(LamGeometryCreate(rve));
   if (rve->micro.interface == LAM_INTERFACE_CONTACT) {
-    LamCouplings couplings;
-
     PetscCall(LamContactCreate(&rve->micro, &rve->mesh, &rve->contact));
     couplings =
         (LamCouplings){rve->contact->face_count, rve->contact->chain, rve->contact->hats, rve->contact->classes};
-    PetscCall(LamLinearCreate(&rve->mesh, &couplings, lumens, &rve->linear));
-    PetscCall(LamContactSetMatrix(&rve->linear, rve->contact));
-  } else {
-    PetscCall(LamLinearCreate(&rve->mesh, NULL, lumens, &rve->linear));
   }
+  PetscCall(LamLinearCreate(&rve->mesh, &couplings, lumens, &rve->linear));
+  if (rve->contact) PetscCall(LamContactSetMatrix(&rve->linear, rve->contact));
   rve->ndof = 2 * rve->mesh.class_count;
   rve->length = rve->ndof + lumens;
   PetscCall(PetscCalloc4(rve->length, &rve->y, rve->length, &rve->step, rve->length, &rve->trial, rve->length,
@@ -157,17 +141,26 @@ PetscErrorCode LamRVESetUp(LamRVE rve)
     LamMicrostructure bonded = rve->micro;
 
     bonded.interface = LAM_INTERFACE_BONDED;
-    PetscCall(LamRVECreate(rve->comm, &rve->bonded));
-    PetscCall(LamRVESetMicrostructure(rve->bonded, &bonded));
-    PetscCall(LamRVESetSealable(rve->bonded, rve->seal.allowed));
-    PetscCall(LamRVESetTolerance(rve->bonded, rve->tolerance));
-    PetscCall(LamRVESetWanted(rve->bonded, 0)); /* an initial guess: only its state is used */
-    PetscCall(LamRVESetMonitor(rve->bonded, rve->monitor));
-    PetscCall(LamRVESetInterrupt(rve->bonded, rve->interrupt, rve->interrupt_ctx));
-    PetscCall(LamRVESetUp(rve->bonded));
+    PetscCall(LamRVECreateLike(rve, &bonded, 0, &rve->bonded)); /* an initial guess: only its state is used */
     PetscCall(LamRVEStateCreate(rve->bonded, &rve->bonded_state));
   }
   rve->is_set_up = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVECreateLike(LamRVE rve, const LamMicrostructure *micro, LamWanted wanted, LamRVE *like)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamRVECreate(rve->comm, like));
+  PetscCall(LamRVESetMicrostructure(*like, micro));
+  (*like)->strategy = rve->strategy;
+  (*like)->tolerance = rve->tolerance;
+  (*like)->wanted = wanted;
+  (*like)->monitor = rve->monitor;
+  (*like)->interrupt = rve->interrupt;
+  (*like)->interrupt_ctx = rve->interrupt_ctx;
+  (*like)->seal.allowed = rve->seal.allowed;
+  PetscCall(LamRVESetUp(*like));
   PetscFunctionReturn(0);
 }
 
@@ -194,69 +187,6 @@ PetscErrorCode LamRVEGetUnknowns(LamRVE rve, PetscInt *unknowns)
 {
   PetscFunctionBeginUser;
   *unknowns = rve->linear.n;
-  PetscFunctionReturn(0);
-}
-
-static void ReferenceLoad(LamLoad *load)
-{
-  for (PetscInt i = 0; i < 9; ++i) load->F[i] = i % 4 == 0 ? 1.0 : 0.0;
-  load->turgor = load->cohesion = 0.0;
-}
-
-PetscErrorCode LamRVEStateCreate(LamRVE rve, LamRVEState *state)
-{
-  PetscFunctionBeginUser;
-  PetscCheck(rve->is_set_up, PETSC_COMM_SELF, PETSC_ERR_ORDER, "LamRVESetUp comes before LamRVEStateCreate");
-  PetscCall(PetscNew(state));
-  (*state)->n = rve->length;
-  (*state)->multipliers = rve->contact ? rve->contact->count : 0;
-  (*state)->faces = rve->contact ? rve->contact->face_count : 0;
-  PetscCall(PetscMalloc3((*state)->n, &(*state)->y, (*state)->multipliers, &(*state)->lambda, (*state)->faces,
-                         &(*state)->hats));
-  if (rve->bonded) PetscCall(LamRVEStateCreate(rve->bonded, &(*state)->bonded));
-  PetscCall(LamRVEStateReset(rve, *state));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamRVEStateCopy(LamRVEState from, LamRVEState to)
-{
-  PetscFunctionBeginUser;
-  PetscCheck(from->n == to->n && from->multipliers == to->multipliers, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ,
-             "states of different RVEs");
-  PetscCall(PetscArraycpy(to->y, from->y, from->n));
-  PetscCall(PetscArraycpy(to->lambda, from->lambda, from->multipliers));
-  PetscCall(PetscArraycpy(to->hats, from->hats, from->faces));
-  to->load = from->load;
-  to->branch = from->branch;
-  to->solved = from->solved;
-  if (from->bonded) PetscCall(LamRVEStateCopy(from->bonded, to->bonded));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamRVEStateReset(LamRVE rve, LamRVEState state)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(state->y, rve->mesh.class_X, rve->ndof));
-  PetscCall(PetscArrayzero(state->y + rve->ndof, rve->linear.lumens));
-  PetscCall(PetscArrayzero(state->lambda, state->multipliers));
-  for (PetscInt f = 0; f < state->faces; ++f) {
-    state->hats[f][0] = rve->contact->faces[f].low;
-    state->hats[f][1] = rve->contact->faces[f].high;
-  }
-  ReferenceLoad(&state->load);
-  state->branch = 0;
-  state->solved = PETSC_FALSE;
-  if (rve->bonded) PetscCall(LamRVEStateReset(rve->bonded, state->bonded));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamRVEStateDestroy(LamRVEState *state)
-{
-  PetscFunctionBeginUser;
-  if (!*state) PetscFunctionReturn(0);
-  PetscCall(LamRVEStateDestroy(&(*state)->bonded));
-  PetscCall(PetscFree3((*state)->y, (*state)->lambda, (*state)->hats));
-  PetscCall(PetscFree(*state));
   PetscFunctionReturn(0);
 }
 
@@ -319,20 +249,6 @@ static PetscErrorCode RefuseCollapsedLumen(LamRVE rve, LamResponse *response)
   response->status = LAM_NOT_CONVERGED;
   PetscCall(LamCollapseReason(cell, unknown, response->reason, sizeof(response->reason)));
   PetscFunctionReturn(0);
-}
-
-void LamKeepState(LamRVE rve, const LamLoad *load, PetscInt branch, LamRVEState state)
-{
-  for (PetscInt i = 0; i < rve->ndof; ++i) state->y[i] = rve->y[i];
-  for (PetscInt c = 0; c < rve->linear.lumens; ++c) state->y[rve->ndof + c] = LamTurgor(rve, load, rve->y, c);
-  for (PetscInt h = 0; h < state->multipliers; ++h) state->lambda[h] = rve->contact->lambda[h];
-  for (PetscInt f = 0; f < state->faces; ++f) {
-    state->hats[f][0] = rve->contact->faces[f].first;
-    state->hats[f][1] = rve->contact->faces[f].last;
-  }
-  state->solved = PETSC_TRUE;
-  state->load = *load;
-  state->branch = branch;
 }
 
 PetscErrorCode LamAcceptSolution(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
@@ -421,8 +337,8 @@ PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, L
 
 PetscErrorCode LamRVETimeAssembly(const LamMicrostructure *micro, PetscInt *unknowns, PetscReal *seconds)
 {
+  const LamLoad load = LAM_REFERENCE_LOAD;
   LamRVE rve;
-  LamLoad load;
   PetscReal begin, now;
   PetscInt repeats = 0;
 
@@ -430,7 +346,6 @@ PetscErrorCode LamRVETimeAssembly(const LamMicrostructure *micro, PetscInt *unkn
   PetscCall(PetscNew(&rve));
   PetscCall(LamRVESetMicrostructure(rve, micro));
   PetscCall(SetUpArrays(rve));
-  ReferenceLoad(&load);
   begin = LamClock();
   do {
     PetscReal energy;

@@ -9,7 +9,7 @@
     nested.c                              initial guess from the solution on a coarser mesh
     mixed.c mixed_fast.c mixed_safe.c     states with some components of P prescribed
     estimate.c                            error estimate of P from a mesh with half as many elements
-    rve.c state_bytes.c responder.c       the public interface
+    rve.c state.c responder.c             the public interface
 */
 #ifndef LAM_RVE_SOLVE_H
 #define LAM_RVE_SOLVE_H
@@ -107,7 +107,14 @@ PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamRVEState sta
 /* Completes a response whose status says that rve->y (and the multipliers) solve `load`, with the consistent tangent
    factored: fills its fields and stores the solution in `state`. Rejects the solution if a lumen has collapsed. */
 PetscErrorCode LamAcceptSolution(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
+/* A set-up RVE with another microstructure or mesh and, apart from `wanted`, the settings of `rve`. */
+PetscErrorCode LamRVECreateLike(LamRVE rve, const LamMicrostructure *micro, LamWanted wanted, LamRVE *like);
+
+/* ---- state.c ---- */
+#define LAM_REFERENCE_LOAD ((LamLoad){.F = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}})
 /* Stores the solution held by rve in `state`. */
 void LamKeepState(LamRVE rve, const LamLoad *load, PetscInt branch, LamRVEState state);
+/* Creates a copy of `state` rotated by the difference between the rotations of the two F. */
+PetscErrorCode LamTurnedState(LamRVE rve, LamRVEState state, const LamLoad *load, LamRVEState *turned);
 
 #endif

@@ -1,0 +1,139 @@
+/*
+  States of the RVE: created, copied, packed, kept from a solution.
+*/
+#include "solve.h"
+
+#define MOST_PARTS 12 /* six of the state, six of its bonded state */
+
+/* The data of a state, which are copied or packed one after another. */
+typedef struct {
+  void *at;
+  size_t bytes;
+} Part;
+
+static PetscInt FindParts(LamRVEState s, Part parts[MOST_PARTS])
+{
+  PetscInt count = 0;
+
+  for (; s; s = s->bonded) {
+    parts[count++] = (Part){s->y, (size_t)s->n * sizeof(*s->y)};
+    parts[count++] = (Part){s->lambda, (size_t)s->multipliers * sizeof(*s->lambda)};
+    parts[count++] = (Part){s->hats, (size_t)s->faces * sizeof(*s->hats)};
+    parts[count++] = (Part){&s->load, sizeof(s->load)};
+    parts[count++] = (Part){&s->branch, sizeof(s->branch)};
+    parts[count++] = (Part){&s->solved, sizeof(s->solved)};
+  }
+  return count;
+}
+
+PetscErrorCode LamRVEStateSize(LamRVEState state, size_t *bytes)
+{
+  Part parts[MOST_PARTS];
+  const PetscInt count = FindParts(state, parts);
+
+  PetscFunctionBeginUser;
+  *bytes = 0;
+  for (PetscInt k = 0; k < count; ++k) *bytes += parts[k].bytes;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEStatePack(LamRVEState state, void *bytes)
+{
+  Part parts[MOST_PARTS];
+  const PetscInt count = FindParts(state, parts);
+  char *to = bytes;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < count; to += parts[k++].bytes) PetscCall(PetscMemcpy(to, parts[k].at, parts[k].bytes));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEStateUnpack(const void *bytes, LamRVEState state)
+{
+  Part parts[MOST_PARTS];
+  const PetscInt count = FindParts(state, parts);
+  const char *from = bytes;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < count; from += parts[k++].bytes) PetscCall(PetscMemcpy(parts[k].at, from, parts[k].bytes));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEStateCopy(LamRVEState from, LamRVEState to)
+{
+  Part source[MOST_PARTS], target[MOST_PARTS];
+  const PetscInt count = FindParts(from, source);
+
+  PetscFunctionBeginUser;
+  PetscCheck(from->n == to->n && from->multipliers == to->multipliers, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ,
+             "states of different RVEs");
+  (void)FindParts(to, target);
+  for (PetscInt k = 0; k < count; ++k) PetscCall(PetscMemmove(target[k].at, source[k].at, source[k].bytes));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEStateCreate(LamRVE rve, LamRVEState *state)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(rve->is_set_up, PETSC_COMM_SELF, PETSC_ERR_ORDER, "LamRVESetUp comes before LamRVEStateCreate");
+  PetscCall(PetscNew(state));
+  (*state)->n = rve->length;
+  (*state)->multipliers = rve->contact ? rve->contact->count : 0;
+  (*state)->faces = rve->contact ? rve->contact->face_count : 0;
+  PetscCall(PetscMalloc3((*state)->n, &(*state)->y, (*state)->multipliers, &(*state)->lambda, (*state)->faces,
+                         &(*state)->hats));
+  if (rve->bonded) PetscCall(LamRVEStateCreate(rve->bonded, &(*state)->bonded));
+  PetscCall(LamRVEStateReset(rve, *state));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEStateReset(LamRVE rve, LamRVEState state)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(state->y, rve->mesh.class_X, rve->ndof));
+  PetscCall(PetscArrayzero(state->y + rve->ndof, rve->linear.lumens));
+  PetscCall(PetscArrayzero(state->lambda, state->multipliers));
+  for (PetscInt f = 0; f < state->faces; ++f) {
+    state->hats[f][0] = rve->contact->faces[f].low;
+    state->hats[f][1] = rve->contact->faces[f].high;
+  }
+  state->load = LAM_REFERENCE_LOAD;
+  state->branch = 0;
+  state->solved = PETSC_FALSE;
+  if (rve->bonded) PetscCall(LamRVEStateReset(rve->bonded, state->bonded));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEStateDestroy(LamRVEState *state)
+{
+  PetscFunctionBeginUser;
+  if (!*state) PetscFunctionReturn(0);
+  PetscCall(LamRVEStateDestroy(&(*state)->bonded));
+  PetscCall(PetscFree3((*state)->y, (*state)->lambda, (*state)->hats));
+  PetscCall(PetscFree(*state));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamTurnedState(LamRVE rve, LamRVEState state, const LamLoad *load, LamRVEState *turned)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEStateCreate(rve, turned));
+  PetscCall(LamRVEStateCopy(state, *turned));
+  LamRotatePositions(rve->ndof, (*turned)->y, (*turned)->load.F,
+                     LamRotationAngle(load->F) - LamRotationAngle(state->load.F));
+  PetscFunctionReturn(0);
+}
+
+void LamKeepState(LamRVE rve, const LamLoad *load, PetscInt branch, LamRVEState state)
+{
+  for (PetscInt i = 0; i < rve->ndof; ++i) state->y[i] = rve->y[i];
+  for (PetscInt c = 0; c < rve->linear.lumens; ++c) state->y[rve->ndof + c] = LamTurgor(rve, load, rve->y, c);
+  for (PetscInt h = 0; h < state->multipliers; ++h) state->lambda[h] = rve->contact->lambda[h];
+  for (PetscInt f = 0; f < state->faces; ++f) {
+    state->hats[f][0] = rve->contact->faces[f].first;
+    state->hats[f][1] = rve->contact->faces[f].last;
+  }
+  state->solved = PETSC_TRUE;
+  state->load = *load;
+  state->branch = branch;
+}
