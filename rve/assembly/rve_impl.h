@@ -224,6 +224,13 @@ static inline PetscBool LamMayIterate(LamRVE rve)
   return (PetscBool)(rve->work.iterations < rve->budget && !rve->work.stopped);
 }
 
+/* Marks the factorisation and the assembled values as outdated. */
+static inline void LamForgetFactor(LamRVE rve)
+{
+  rve->linear.rate = PETSC_INFINITY;
+  rve->consistent = PETSC_FALSE;
+}
+
 /* Bending stiffness of the thinnest wall over a length of one apothem, in C1 + C2. A larger initial shift would hide
    its buckling. */
 static inline PetscReal LamBendingStiffness(LamRVE rve)

@@ -86,13 +86,12 @@ PetscErrorCode LamFactorConsistent(LamRVE rve, const LamLoad *load, PetscInt *ne
    with that shift. */
 static PetscErrorCode BracketLowest(LamRVE rve, PetscReal *shift)
 {
-  PetscReal low = 0.0, high = 0.0, diagonal = 0.0;
+  const PetscReal diagonal = LamLargestDiagonal(&rve->linear);
+  PetscReal low = 0.0, high = 0.0;
   PetscInt negative;
   PetscBool ok;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < rve->linear.positions; ++i)
-    diagonal = PetscMax(diagonal, PetscAbsReal(rve->linear.values[rve->linear.row[i]]));
   PetscCall(LamRVEFactor(rve, 0.0, &negative, &ok));
   *shift = 0.0;
   if (ok && negative == LamExpectedNegative(rve)) PetscFunctionReturn(0);

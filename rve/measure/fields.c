@@ -89,8 +89,7 @@ PetscErrorCode LamRVEGetSoftestMode(LamRVE rve, LamRVEState state, PetscReal *ei
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(rve->linear.n, &unknowns));
   *eigenvalue = NAN;
-  rve->linear.rate = PETSC_INFINITY;
-  rve->consistent = PETSC_FALSE;
+  LamForgetFactor(rve);
   PetscCall(LamTakeState(rve, state));
   PetscCall(LamFactorConsistent(rve, &state->load, &negative, &ok));
   if (ok) PetscCall(LamSoftestMode(rve, eigenvalue, unknowns));

@@ -30,6 +30,7 @@
 #define COMPLIANCE_DECAY 0.3  /* factor per iteration */
 #define STEP_LIMIT 0.02       /* apothems, initial guess far from contact */
 #define NEAR_LIMIT 0.2        /* apothems, otherwise */
+#define LEAST_STEP 1e-4       /* least share of a step */
 #define LOOSE_TOLERANCE 1e-4  /* during release of the interface */
 #define ROUNDING_MARGIN 100.0 /* times the tolerance: smaller residuals may be rounding errors, ... */
 #define ROUNDING_STEP 1e-11   /* ... if the step is at most this share of the extent */
@@ -44,21 +45,6 @@ static PetscBool IsAtRounding(LamRVE rve, const LamContactStep *step, PetscReal 
 
   return (PetscBool)(step->shift <= LAM_CONTACT_PROXIMAL && norm <= ROUNDING_MARGIN * tolerance &&
                      rve->contact->largest_step <= ROUNDING_STEP * extent);
-}
-
-/* Step length: limited, then halved until no element volume is inverted; 0: none. */
-static PetscErrorCode StepLength(LamRVE rve, const LamLoad *load, const LamBorder *border, PetscReal limit,
-                                 PetscReal *alpha)
-{
-  PetscFunctionBeginUser;
-  for (*alpha = PetscMin(1.0, limit / PetscMax(rve->contact->largest_step, 1e-300)); *alpha > 1e-4; *alpha *= 0.5) {
-    const LamLoad moved = LamBorderMoved(border, load, *alpha);
-
-    for (PetscInt i = 0; i < rve->ndof; ++i) rve->trial[i] = rve->y[i] + *alpha * rve->step[i];
-    if (LamPositionsAreValid(rve, &moved, rve->trial)) PetscFunctionReturn(0);
-  }
-  *alpha = 0.0;
-  PetscFunctionReturn(0);
 }
 
 static PetscErrorCode Report(LamRVE rve, PetscInt it, PetscReal norm, PetscReal gap, PetscInt changes, PetscReal step,
@@ -125,7 +111,8 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, LamBorder *bord
     PetscCall(LamContactSolveStep(rve, norm, compliance, &step, &ok));
     if (!ok) break;
     rve->contact->largest_step = LamBorderReach(rve, border, rve->step + 2);
-    PetscCall(StepLength(rve, load, border, compliant ? STEP_LIMIT : NEAR_LIMIT, &alpha));
+    alpha = PetscMin(1.0, (compliant ? STEP_LIMIT : NEAR_LIMIT) / PetscMax(rve->contact->largest_step, 1e-300));
+    PetscCall(LamValidStep(rve, load, border, LEAST_STEP, &alpha));
     PetscCall(Report(rve, it, norm, gap, changes, rve->contact->largest_step, alpha, step.shift));
     if (alpha == 0.0 || (!compliant && rve->contact->largest_step > reach)) break;
     at_rounding = (PetscBool)(changes == 0 && IsAtRounding(rve, &step, norm, tolerance));

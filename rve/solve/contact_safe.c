@@ -5,105 +5,23 @@
   solves the linear system of the fast iteration with the active set consistent with the step and a matrix shifted to be
   positive definite on the free motions. It is therefore a descent direction of the merit function
       phi = Pi + mu sum_A D_A max(0, -gap_A),      mu > largest multiplier.
-  The shift limits the step length. A watchdog allows a few steps without decrease, as a large step first violates the
-  constraints of the stiff walls and the next ones restore them; then the iteration returns to the best point and makes
-  a line search. If the matrix is indefinite and the step small, part of the unstable mode is added, so that saddles are
+  The shift limits the step length. A watchdog allows a few steps without decrease (descent.c). If the matrix is
+  indefinite and the step small, part of the unstable mode is added, so that saddles are
   left.
 
-  References. Nocedal & Wright, Numerical Optimization, chapters 15 and 18; Chamberlain et al., Math. Prog. Study 16
-  (1982) 1 (watchdog).
+  Reference. Nocedal & Wright, Numerical Optimization, chapters 15 and 18.
 */
 #include "solve.h"
 
 #define SAFE_ITERATIONS 120
 #define RESTARTS 3           /* after a solution has changed the junction status */
 #define FOLLOW_ITERATIONS 60 /* first iterations, in which the junction status is updated */
-#define WATCHDOG 4           /* steps without decrease before returning to the best point */
-#define STEP_LIMIT 0.05      /* apothems; smaller after a failure, down to ... */
-#define LEAST_STEP_LIMIT 1e-3
-#define LEAST_WEIGHT 0.01 /* minimum mu, C1 + C2 */
+#define LEAST_WEIGHT 0.01    /* minimum mu, C1 + C2 */
 #define SHORTENINGS 6
 #define LEAST_FLOOR 1e-4 /* floors of the shift start from at least this and are dropped below it */
-#define ARMIJO 1e-4
-
-typedef struct {
-  PetscReal energy, violation; /* Pi, and sum D max(0, -gap) */
-} Merit;
-
-typedef struct {
-  PetscReal *y, *lambda; /* the best point so far */
-  Merit merit;
-  PetscReal mu, limit; /* weight of the violation; limit of the step length, apothems */
-  PetscInt without_decrease;
-  PetscBool monotone, known;
-} Best;
-
-static PetscReal Value(Merit merit, PetscReal mu)
-{
-  return merit.energy + mu * merit.violation;
-}
-
-/* Merit of the contact state last evaluated. */
-static Merit MeritOf(LamRVE rve, PetscReal energy)
-{
-  const LamContact *contact = rve->contact;
-  Merit merit = {energy, 0.0};
-
-  for (PetscInt h = 0; h < contact->count; ++h) merit.violation += contact->weight[h] * PetscMax(0.0, -contact->gap[h]);
-  return merit;
-}
-
-/* Halves the step until the merit decreases sufficiently; *alpha = 0 if it does not. */
-static PetscErrorCode LineSearch(LamRVE rve, const LamLoad *load, Merit now, PetscReal mu, PetscReal slope,
-                                 PetscReal rounding, PetscReal *alpha)
-{
-  PetscFunctionBeginUser;
-  for (; *alpha > 1e-5; *alpha *= 0.5) {
-    PetscReal energy;
-    PetscBool valid;
-
-    for (PetscInt i = 0; i < rve->ndof; ++i) rve->trial[i] = rve->y[i] + *alpha * rve->step[i];
-    PetscCall(LamAssembleEnergy(rve, load, rve->trial, &energy, &valid));
-    if (!valid) continue;
-    PetscCall(LamContactEvaluate(rve, load, rve->trial, PETSC_FALSE));
-    if (Value(MeritOf(rve, energy), mu) <= Value(now, mu) + ARMIJO * *alpha * PetscMin(0.0, slope) + rounding)
-      PetscFunctionReturn(0);
-  }
-  *alpha = 0.0;
-  PetscFunctionReturn(0);
-}
-
-/* Stores the point of least merit; returns to it after too many steps without decrease. *moved: rve->y was reset. */
-static PetscErrorCode Watch(LamRVE rve, const LamLoad *load, Merit now, PetscBool valid, PetscReal rounding, Best *best,
-                            PetscBool *moved)
-{
-  PetscFunctionBeginUser;
-  *moved = PETSC_FALSE;
-  if (valid && (!best->known || Value(now, best->mu) < Value(best->merit, best->mu))) {
-    PetscCall(PetscArraycpy(best->y, rve->y, rve->length));
-    PetscCall(PetscArraycpy(best->lambda, rve->contact->lambda, rve->contact->count));
-    best->merit = now;
-    best->known = PETSC_TRUE;
-    best->without_decrease = 0;
-    best->limit = PetscMin(STEP_LIMIT, 1.3 * best->limit);
-    PetscFunctionReturn(0);
-  }
-  if (valid && Value(now, best->mu) <= Value(best->merit, best->mu) + rounding) PetscFunctionReturn(0);
-  if (valid && ++best->without_decrease <= WATCHDOG) PetscFunctionReturn(0);
-  PetscCall(PetscArraycpy(rve->y, best->y, rve->length));
-  PetscCall(PetscArraycpy(rve->contact->lambda, best->lambda, rve->contact->count));
-  (void)LamSetConsistentStresses(rve, load, rve->y);
-  LamSealSetConsistent(rve, load, rve->y);
-  best->without_decrease = 0;
-  best->known = PETSC_FALSE; /* its merit depends on the junction status */
-  best->monotone = PETSC_TRUE;
-  best->limit = PetscMax(LEAST_STEP_LIMIT, 0.25 * best->limit);
-  *moved = PETSC_TRUE;
-  PetscFunctionReturn(0);
-}
 
 /* Keeps mu above the multipliers but of their order: a larger weight on the violation makes steps tiny. */
-static void SetWeight(LamRVE rve, const PetscReal lambda[], Best *best)
+static void SetWeight(LamRVE rve, const PetscReal lambda[], LamDescent *best)
 {
   PetscReal largest = LEAST_WEIGHT;
 
@@ -134,10 +52,10 @@ static PetscErrorCode ShortStep(LamRVE rve, PetscReal norm, PetscReal limit, Lam
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SafeStep(LamRVE rve, const LamLoad *load, PetscReal norm, Merit now, PetscReal rounding,
-                               LamContactStep *step, Best *best, PetscReal *alpha)
+static PetscErrorCode SafeStep(LamRVE rve, const LamLoad *load, PetscReal norm, LamMerit now, LamContactStep *step,
+                               LamDescent *best, PetscReal *alpha)
 {
-  PetscReal slope = 0.0, largest;
+  PetscReal largest;
   PetscBool ok;
 
   PetscFunctionBeginUser;
@@ -147,11 +65,7 @@ static PetscErrorCode SafeStep(LamRVE rve, const LamLoad *load, PetscReal norm, 
   SetWeight(rve, step->lambda, best);
   largest = LamLargestEntry(rve->ndof, rve->step);
   *alpha = PetscMin(1.0, best->limit / PetscMax(largest, 1e-300));
-  if (best->monotone) {
-    for (PetscInt i = 2; i < rve->ndof; ++i) slope += rve->residual[i] * rve->step[i];
-    PetscCall(LineSearch(rve, load, now, best->mu, slope - best->mu * now.violation, rounding, alpha));
-    best->monotone = PETSC_FALSE;
-  }
+  PetscCall(LamDescentSearch(rve, load, now, best, alpha));
   if (rve->monitor)
     PetscCall(
         PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR,
@@ -165,11 +79,10 @@ static PetscErrorCode SafeStep(LamRVE rve, const LamLoad *load, PetscReal norm, 
 PetscErrorCode LamContactNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome)
 {
   const PetscReal tolerance = LamNewtonTolerance(rve);
-  const PetscReal rounding = 1e-14 * rve->stiffest * rve->mesh.V0;
   LamContact *contact = rve->contact;
   PetscInt follow_until = FOLLOW_ITERATIONS, restarts = 0;
   LamContactStep step;
-  Best best = {.mu = LEAST_WEIGHT, .limit = STEP_LIMIT};
+  LamDescent best;
 
   PetscFunctionBeginUser;
   *outcome = LAM_NEWTON_STALLED;
@@ -177,11 +90,12 @@ PetscErrorCode LamContactNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOu
   if (!LamSetConsistentStresses(rve, load, rve->y)) PetscFunctionReturn(0);
   LamSealSetConsistent(rve, load, rve->y);
   PetscCall(LamContactStepCreate(rve, &step));
-  PetscCall(PetscMalloc2(rve->length, &best.y, contact->count, &best.lambda));
+  PetscCall(LamDescentCreate(rve, &best));
+  best.mu = LEAST_WEIGHT;
   for (PetscInt it = 0; it < SAFE_ITERATIONS && LamMayIterate(rve); ++it) {
     PetscReal energy, norm = PETSC_INFINITY, alpha;
     PetscBool valid, moved;
-    Merit now = {0};
+    LamMerit now = {0};
 
     PetscCall(LamContactEvaluate(rve, load, rve->y, (PetscBool)(it < follow_until)));
     PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
@@ -200,14 +114,14 @@ PetscErrorCode LamContactNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOu
         continue;
       }
       PetscCall(LamAssembleEnergy(rve, load, rve->y, &energy, &valid));
-      now = MeritOf(rve, energy);
+      now = LamMeritOf(rve, energy);
     }
-    PetscCall(Watch(rve, load, now, valid, rounding, &best, &moved));
+    PetscCall(LamDescentWatch(rve, load, now, valid, &best, &moved));
     if (moved) continue;
-    PetscCall(SafeStep(rve, load, norm, now, rounding, &step, &best, &alpha));
+    PetscCall(SafeStep(rve, load, norm, now, &step, &best, &alpha));
     if (alpha == 0.0) break;
   }
-  PetscCall(PetscFree2(best.y, best.lambda));
+  PetscCall(LamDescentDestroy(&best));
   PetscCall(LamContactStepDestroy(&step));
   PetscFunctionReturn(0);
 }

@@ -13,7 +13,6 @@
 #define LEAST_SHIFT 1e-9    /* of the largest diagonal entry; small, as cells that hardly touch have little stiffness */
 #define SADDLE_RESIDUAL 1e-3 /* norm below which a small step of an indefinite state is taken to be near a saddle */
 #define CREEPING 0.6         /* the same for small steps longer than this share of the previous one */
-#define ESCAPE_STEP 0.01     /* along a direction of negative curvature, in apothems */
 
 PetscErrorCode LamContactStepCreate(LamRVE rve, LamContactStep *step)
 {
@@ -52,25 +51,12 @@ void LamContactResidual(LamRVE rve, LamContactStep *step, PetscReal *norm)
    needed slow down convergence. */
 static PetscErrorCode FactorStable(LamRVE rve, PetscBool again, LamContactStep *step, PetscBool *ok)
 {
-  const PetscInt expected = LamExpectedNegative(rve);
-  PetscReal diagonal = 0.0, shift = again ? step->shift : PetscMax(step->floor, LAM_CONTACT_PROXIMAL), least;
-  PetscInt negative;
+  PetscReal next = PetscMin(LEAST_SHIFT * LamLargestDiagonal(&rve->linear), LamBendingStiffness(rve));
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < rve->linear.positions; ++i)
-    diagonal = PetscMax(diagonal, PetscAbsReal(rve->linear.values[rve->linear.row[i]]));
-  least = PetscMin(LEAST_SHIFT * diagonal, LamBendingStiffness(rve));
-  for (PetscInt attempt = 0; attempt < 60; ++attempt) {
-    PetscCall(LamRVEFactor(rve, shift, &negative, ok));
-    if (*ok && negative <= expected) break;
-    *ok = PETSC_FALSE;
-    if (shift > diagonal) break;
-    if (shift > LAM_CONTACT_PROXIMAL)
-      shift *= 8.0;
-    else
-      shift = step->shift > LAM_CONTACT_PROXIMAL ? PetscMax(step->shift / 8.0, 8.0 * LAM_CONTACT_PROXIMAL) : least;
-  }
-  step->shift = shift;
+  if (step->shift > LAM_CONTACT_PROXIMAL) next = PetscMax(step->shift / 8.0, 8.0 * LAM_CONTACT_PROXIMAL);
+  if (!again) step->shift = PetscMax(step->floor, LAM_CONTACT_PROXIMAL);
+  PetscCall(LamFactorShifted(rve, LAM_CONTACT_PROXIMAL, next, 8.0, &step->shift, ok));
   PetscFunctionReturn(0);
 }
 
@@ -101,26 +87,6 @@ static PetscErrorCode TakeSolution(LamRVE rve, LamContactStep *step)
   PetscCall(PetscArraycpy(rve->step + rve->ndof, step->solution + pressures, rve->linear.lumens));
   for (PetscInt h = 0; h < contact->count; ++h)
     step->lambda[h] = contact->active[h] ? step->solution[positions + h] : 0.0;
-  PetscFunctionReturn(0);
-}
-
-/*
-  Near a saddle the residual has almost no component along the unstable mode, and shifted Newton steps are slow. Adds to
-  a small step a multiple of that mode, downhill, or with the mode's own sign if the slope is zero. residual: with
-  contact forces.
-*/
-static PetscErrorCode AddNegativeCurvature(LamRVE rve, const PetscReal residual[], PetscReal mode[], PetscReal image[])
-{
-  PetscReal largest, sign;
-
-  PetscFunctionBeginUser;
-  LamStartMode(rve, mode);
-  PetscCall(LamImproveSoftestMode(rve, 12, mode));
-  if (LamModeCurvature(rve, mode, image) >= 0.0) PetscFunctionReturn(0);
-  largest = LamLargestEntry(rve->linear.positions, mode);
-  sign = LamModeSlope(rve, mode, residual) > LamNewtonTolerance(rve) ? -1.0 : 1.0;
-  LamAddMode(rve, sign * ESCAPE_STEP / largest, mode, rve->step);
-  ++rve->work.escapes;
   PetscFunctionReturn(0);
 }
 
@@ -160,11 +126,12 @@ PetscErrorCode LamContactSolveStep(LamRVE rve, PetscReal norm, PetscReal complia
     if (changes == 0) break;
   }
   largest = LamLargestEntry(rve->ndof, rve->step);
-  if (step->shift > LAM_CONTACT_PROXIMAL && largest < 0.5 * ESCAPE_STEP &&
+  if (step->shift > LAM_CONTACT_PROXIMAL && largest < 0.5 * LAM_ESCAPE_STEP &&
       (norm < SADDLE_RESIDUAL || largest > CREEPING * step->before)) {
     PetscCall(PetscArraycpy(step->rhs, rve->residual, rve->length));
     LamContactAddForce(rve, step->rhs);
-    PetscCall(AddNegativeCurvature(rve, step->rhs, step->solution, step->image));
+    LamStartMode(rve, step->solution);
+    PetscCall(LamAddNegativeCurvature(rve, 12, step->rhs, step->solution, step->image));
   }
   step->before = largest;
   PetscFunctionReturn(0);
@@ -174,12 +141,6 @@ void LamContactTakeStep(LamRVE rve, const LamLoad *load, PetscReal alpha, const 
 {
   LamContact *contact = rve->contact;
 
-  LamUpdateStresses(rve, load, rve->y, rve->step, LamBorderStep(step->border), alpha);
-  for (PetscInt i = 0; i < rve->length; ++i) rve->y[i] += alpha * rve->step[i];
+  LamTakeStep(rve, load, step->border, alpha);
   for (PetscInt h = 0; h < contact->count; ++h) contact->lambda[h] += alpha * (step->lambda[h] - contact->lambda[h]);
-  if (step->border) {
-    step->border->load = LamBorderMoved(step->border, load, alpha);
-    step->border->patience = PetscMax(0, step->border->patience - 1);
-  }
-  ++rve->work.iterations;
 }

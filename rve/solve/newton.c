@@ -5,24 +5,18 @@
   independent stresses (element.h). The shift is zero if K is positive definite, otherwise just large enough (inertia
   correction). Sealed lumens add their pressures to x, and one negative eigenvalue each (turgor.c). The fast tier takes
   full steps, shortened only if an element volume would be inverted. The safe tier minimises the energy: steps are
-  limited in length, and a watchdog allows a few steps without decrease, as a large step first violates the stiff
-  constraints and the next ones restore them; then the iteration returns to the best point and makes a monotone line
-  search.
+  limited in length, and a watchdog allows a few steps without decrease (descent.c).
 
   References. Magisano, Leonetti & Garcea, Int. J. Numer. Meth. Engng 109 (2017) 1237 (mixed integration points);
-  Chamberlain et al., Math. Prog. Study 16 (1982) 1 (watchdog); Nocedal & Wright, Numerical Optimization, 3.4.
+  Nocedal & Wright, Numerical Optimization, 3.4.
 */
-#include "newton.h"
+#include "solve.h"
 
 #define FAST_ITERATIONS 25
 #define SAFE_ITERATIONS 400
-#define ROUNDING_MARGIN 1e3 /* times the tolerance: residual that rounding of large stresses may leave */
-#define WATCHDOG 4          /* steps without decrease before the safe tier returns to the best point */
-#define LEAST_SHIFT 1e-7    /* of the largest diagonal entry */
-#define STEP_LIMIT 0.05     /* of the safe tier, in apothems */
-#define ARMIJO 1e-4
+#define ROUNDING_MARGIN 1e3  /* times the tolerance: residual that rounding of large stresses may leave */
+#define LEAST_SHIFT 1e-7     /* of the largest diagonal entry */
 #define SADDLE_RESIDUAL 1e-4 /* residual norm below which an indefinite state is taken to be near a saddle */
-#define ESCAPE_STEP 0.01     /* along a direction of negative curvature, in apothems */
 
 PetscReal LamNewtonTolerance(LamRVE rve)
 {
@@ -66,27 +60,36 @@ PetscErrorCode LamSolveStep(LamRVE rve, LamBorder *border)
   PetscFunctionReturn(0);
 }
 
-static void TrialPosition(LamRVE rve, PetscReal alpha)
+void LamTrialPosition(LamRVE rve, PetscReal alpha)
 {
   for (PetscInt i = 0; i < rve->ndof; ++i) rve->trial[i] = rve->y[i] + alpha * rve->step[i];
 }
 
-PetscErrorCode LamFactorPositive(LamRVE rve, PetscReal least, PetscReal *last_shift, PetscBool *ok)
+PetscErrorCode LamFactorShifted(LamRVE rve, PetscReal base, PetscReal next, PetscReal growth, PetscReal *shift,
+                                PetscBool *ok)
 {
-  PetscReal diagonal = 0.0, shift = 0.0;
+  const PetscReal diagonal = LamLargestDiagonal(&rve->linear);
   PetscInt negative;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < rve->linear.positions; ++i)
-    diagonal = PetscMax(diagonal, PetscAbsReal(rve->linear.values[rve->linear.row[i]]));
-  for (PetscInt attempt = 0; attempt < 40; ++attempt) {
-    PetscCall(LamRVEFactor(rve, shift, &negative, ok));
+  for (PetscInt attempt = 0; attempt < 60; ++attempt) {
+    PetscCall(LamRVEFactor(rve, *shift, &negative, ok));
     if (*ok && negative <= LamExpectedNegative(rve)) break;
     *ok = PETSC_FALSE;
-    if (shift > diagonal) break;
-    shift = shift == 0.0 ? PetscMax(*last_shift / 8.0, PetscMin(least, LEAST_SHIFT * diagonal)) : 4.0 * shift;
+    if (*shift > diagonal) break;
+    *shift = *shift > base ? growth * *shift : next;
   }
-  *last_shift = shift;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFactorPositive(LamRVE rve, PetscReal least, PetscReal *last_shift, PetscBool *ok)
+{
+  const PetscReal first = PetscMin(least, LEAST_SHIFT * LamLargestDiagonal(&rve->linear));
+  const PetscReal next = PetscMax(*last_shift / 8.0, first);
+
+  PetscFunctionBeginUser;
+  *last_shift = 0.0;
+  PetscCall(LamFactorShifted(rve, 0.0, next, 4.0, last_shift, ok));
   PetscFunctionReturn(0);
 }
 
@@ -97,13 +100,13 @@ PetscBool LamAtRounding(LamRVE rve, PetscReal norm, PetscReal tolerance, PetscRe
   return (PetscBool)(largest <= 500.0 * PETSC_MACHINE_EPSILON * extent && norm <= ROUNDING_MARGIN * tolerance);
 }
 
-PetscErrorCode LamValidStep(LamRVE rve, const LamLoad *load, const LamBorder *border, PetscReal *alpha)
+PetscErrorCode LamValidStep(LamRVE rve, const LamLoad *load, const LamBorder *border, PetscReal least, PetscReal *alpha)
 {
   PetscFunctionBeginUser;
-  for (*alpha = 1.0; *alpha > 0.01; *alpha *= 0.5) {
+  for (; *alpha > least; *alpha *= 0.5) {
     const LamLoad moved = LamBorderMoved(border, load, *alpha);
 
-    TrialPosition(rve, *alpha);
+    LamTrialPosition(rve, *alpha);
     if (LamPositionsAreValid(rve, &moved, rve->trial)) PetscFunctionReturn(0);
   }
   *alpha = 0.0;
@@ -114,7 +117,10 @@ void LamTakeStep(LamRVE rve, const LamLoad *load, LamBorder *border, PetscReal a
 {
   LamUpdateStresses(rve, load, rve->y, rve->step, LamBorderStep(border), alpha);
   for (PetscInt i = 0; i < rve->length; ++i) rve->y[i] += alpha * rve->step[i];
-  if (border) border->load = LamBorderMoved(border, load, alpha);
+  if (border) {
+    border->load = LamBorderMoved(border, load, alpha);
+    border->patience = PetscMax(0, border->patience - 1);
+  }
   ++rve->work.iterations;
 }
 
@@ -141,8 +147,7 @@ PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border,
 
   PetscFunctionBeginUser;
   *outcome = LAM_NEWTON_STALLED;
-  rve->linear.rate = PETSC_INFINITY;
-  rve->consistent = PETSC_FALSE;
+  LamForgetFactor(rve);
   for (PetscInt it = 0; it <= FAST_ITERATIONS && !rve->work.stopped; ++it) {
     PetscReal energy, norm;
     PetscBool valid, ok = PETSC_TRUE;
@@ -185,104 +190,49 @@ PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border,
       break;
     }
     if (!(largest < 10.0)) break;
-    PetscCall(LamValidStep(rve, load, border, &alpha));
+    alpha = 1.0;
+    PetscCall(LamValidStep(rve, load, border, LAM_LEAST_STEP, &alpha));
     if (alpha == 0.0) break;
     LamTakeStep(rve, load, border, alpha);
   }
   PetscFunctionReturn(0);
 }
 
-/* State of the safe tier. */
-typedef struct {
-  PetscReal *best; /* [length] y of the lowest energy so far */
-  PetscReal *mode; /* [n] softest mode of the last indefinite matrix */
-  PetscReal best_energy, shift, rounding;
-  PetscInt without_decrease;
-  PetscBool monotone; /* line search on the next step */
-} Descent;
-
-/* Halves the step until the energy decreases sufficiently; *alpha = 0 if it does not. */
-static PetscErrorCode LineSearch(LamRVE rve, const LamLoad *load, PetscReal energy, PetscReal slope, PetscReal rounding,
-                                 PetscReal *alpha)
+PetscErrorCode LamAddNegativeCurvature(LamRVE rve, PetscInt iterations, const PetscReal residual[], PetscReal mode[],
+                                       PetscReal image[])
 {
-  PetscFunctionBeginUser;
-  for (; *alpha > 1e-5; *alpha *= 0.5) {
-    PetscReal trial;
-    PetscBool valid;
-
-    TrialPosition(rve, *alpha);
-    PetscCall(LamAssembleEnergy(rve, load, rve->trial, &trial, &valid));
-    if (valid && trial <= energy + ARMIJO * *alpha * slope + rounding) PetscFunctionReturn(0);
-  }
-  *alpha = 0.0;
-  PetscFunctionReturn(0);
-}
-
-/* Stores the point of lowest energy; returns to it after too many steps without decrease. *moved: rve->y was reset. */
-static PetscErrorCode Watch(LamRVE rve, const LamLoad *load, PetscReal energy, PetscBool valid, Descent *descent,
-                            PetscBool *moved)
-{
-  PetscFunctionBeginUser;
-  *moved = PETSC_FALSE;
-  if (valid && energy < descent->best_energy) {
-    PetscCall(PetscArraycpy(descent->best, rve->y, rve->length));
-    descent->best_energy = energy;
-    descent->without_decrease = 0;
-    PetscFunctionReturn(0);
-  }
-  if (valid && energy <= descent->best_energy + descent->rounding) PetscFunctionReturn(0);
-  if (valid && ++descent->without_decrease <= WATCHDOG) PetscFunctionReturn(0);
-  PetscCall(PetscArraycpy(rve->y, descent->best, rve->length));
-  (void)LamSetConsistentStresses(rve, load, rve->y);
-  LamSealSetConsistent(rve, load, rve->y);
-  descent->without_decrease = 0;
-  descent->monotone = PETSC_TRUE;
-  *moved = PETSC_TRUE;
-  PetscFunctionReturn(0);
-}
-
-/*
-  Adds a downhill multiple of the softest mode to the step, if the mode has negative curvature. Used for small Newton
-  steps of an indefinite matrix: near a saddle the residual has almost no component along that mode, and Newton alone is
-  slow.
-*/
-static PetscErrorCode AddNegativeCurvature(LamRVE rve, Descent *descent)
-{
-  PetscReal slope, largest, sign;
+  PetscReal largest, sign;
 
   PetscFunctionBeginUser;
-  PetscCall(LamImproveSoftestMode(rve, 4, descent->mode));
-  if (LamModeCurvature(rve, descent->mode, rve->trial + 2) >= 0.0) PetscFunctionReturn(0);
-  slope = LamModeSlope(rve, descent->mode, rve->residual);
-  largest = LamLargestEntry(rve->linear.positions, descent->mode);
-  sign = slope > LamNewtonTolerance(rve) ? -1.0 : 1.0; /* if the slope is zero, the mode's own sign */
-  LamAddMode(rve, sign * ESCAPE_STEP / largest, descent->mode, rve->step);
+  PetscCall(LamImproveSoftestMode(rve, iterations, mode));
+  if (LamModeCurvature(rve, mode, image) >= 0.0) PetscFunctionReturn(0);
+  largest = LamLargestEntry(rve->linear.positions, mode);
+  /* if the slope is zero, the mode's own sign */
+  sign = LamModeSlope(rve, mode, residual) > LamNewtonTolerance(rve) ? -1.0 : 1.0;
+  LamAddMode(rve, sign * LAM_ESCAPE_STEP / largest, mode, rve->step);
   ++rve->work.escapes;
   PetscFunctionReturn(0);
 }
 
-/* One step of the safe tier from an assembled state; *alpha = 0: no step found. */
-static PetscErrorCode SafeStep(LamRVE rve, const LamLoad *load, PetscInt it, PetscReal energy, PetscReal norm,
-                               Descent *descent, PetscReal *alpha)
+/* One step of the safe tier from an assembled state; *alpha = 0: no step found. mode: the softest one of the last
+   indefinite matrix. */
+static PetscErrorCode SafeStep(LamRVE rve, const LamLoad *load, PetscInt it, PetscReal norm, LamMerit now,
+                               PetscReal mode[], PetscReal *shift, LamDescent *descent, PetscReal *alpha)
 {
-  PetscReal largest, slope = 0.0;
+  PetscReal largest;
   PetscBool ok;
 
   PetscFunctionBeginUser;
   *alpha = 0.0;
-  PetscCall(LamFactorPositive(rve, PETSC_INFINITY, &descent->shift, &ok));
+  PetscCall(LamFactorPositive(rve, PETSC_INFINITY, shift, &ok));
   if (!ok) PetscFunctionReturn(0);
   PetscCall(LamSolveStep(rve, NULL));
-  if (descent->shift > 0.0 && LamLargestEntry(rve->ndof, rve->step) < 0.5 * ESCAPE_STEP)
-    PetscCall(AddNegativeCurvature(rve, descent));
+  if (*shift > 0.0 && LamLargestEntry(rve->ndof, rve->step) < 0.5 * LAM_ESCAPE_STEP)
+    PetscCall(LamAddNegativeCurvature(rve, 4, rve->residual, mode, rve->trial + 2));
   largest = LamLargestEntry(rve->ndof, rve->step);
-  PetscCall(LamReportIteration(rve, "safe", it, norm, largest, descent->shift));
-  *alpha = largest > STEP_LIMIT ? STEP_LIMIT / largest : 1.0;
-  if (descent->monotone) {
-    for (PetscInt i = 2; i < rve->ndof; ++i) slope += rve->residual[i] * rve->step[i];
-    PetscCall(LineSearch(rve, load, energy, slope, descent->rounding, alpha));
-    descent->monotone = PETSC_FALSE;
-  }
+  PetscCall(LamReportIteration(rve, "safe", it, norm, largest, *shift));
+  *alpha = largest > LAM_DESCENT_LIMIT ? LAM_DESCENT_LIMIT / largest : 1.0;
+  PetscCall(LamDescentSearch(rve, load, now, descent, alpha));
   LamTakeStep(rve, load, NULL, *alpha);
   PetscFunctionReturn(0);
 }
@@ -290,41 +240,42 @@ static PetscErrorCode SafeStep(LamRVE rve, const LamLoad *load, PetscInt it, Pet
 PetscErrorCode LamNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome)
 {
   const PetscReal tolerance = LamNewtonTolerance(rve);
-  Descent descent = {0};
-  PetscReal energy;
+  LamDescent descent;
+  PetscReal *mode, shift = 0.0;
+  LamMerit now = {0};
   PetscBool valid;
 
   PetscFunctionBeginUser;
   *outcome = LAM_NEWTON_STALLED;
-  rve->linear.rate = PETSC_INFINITY;
-  rve->consistent = PETSC_FALSE;
-  PetscCall(LamAssembleEnergy(rve, load, rve->y, &descent.best_energy, &valid));
+  LamForgetFactor(rve);
+  PetscCall(LamAssembleEnergy(rve, load, rve->y, &now.energy, &valid));
   if (!valid) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc2(rve->length, &descent.best, rve->linear.n, &descent.mode));
-  LamStartMode(rve, descent.mode);
   LamSealSetConsistent(rve, load, rve->y);
-  PetscCall(PetscArraycpy(descent.best, rve->y, rve->length));
   (void)LamSetConsistentStresses(rve, load, rve->y);
-  descent.rounding = 1e-14 * rve->stiffest * rve->mesh.V0;
+  PetscCall(LamDescentCreate(rve, &descent));
+  PetscCall(LamDescentKeep(rve, now, &descent));
+  PetscCall(PetscMalloc1(rve->linear.n, &mode));
+  LamStartMode(rve, mode);
   for (PetscInt it = 0; it < SAFE_ITERATIONS && LamMayIterate(rve); ++it) {
     PetscReal norm, alpha;
     PetscBool moved;
 
-    PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
+    PetscCall(LamAssemble(rve, load, rve->y, &now.energy, rve->residual, &valid));
     norm = valid ? LamResidualNorm(rve, rve->residual) : PETSC_INFINITY;
     if (norm <= tolerance) {
       *outcome = LAM_NEWTON_CONVERGED;
       break;
     }
-    PetscCall(Watch(rve, load, energy, valid, &descent, &moved));
+    PetscCall(LamDescentWatch(rve, load, now, valid, &descent, &moved));
     if (moved) continue;
-    PetscCall(SafeStep(rve, load, it, energy, norm, &descent, &alpha));
+    PetscCall(SafeStep(rve, load, it, norm, now, mode, &shift, &descent, &alpha));
     if (LamAtRounding(rve, norm, tolerance, LamLargestEntry(rve->ndof, rve->step))) {
       *outcome = LAM_NEWTON_CONVERGED;
       break;
     }
     if (alpha == 0.0) break;
   }
-  PetscCall(PetscFree2(descent.best, descent.mode));
+  PetscCall(PetscFree(mode));
+  PetscCall(LamDescentDestroy(&descent));
   PetscFunctionReturn(0);
 }

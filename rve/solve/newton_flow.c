@@ -6,7 +6,7 @@
   them, so the residual does not measure progress. Long steps are shortened by a larger shift, which, unlike scaling,
   still restores the constraints. The iteration ends if a lumen closes, as contact inside a lumen is not modelled.
 */
-#include "newton.h"
+#include "solve.h"
 
 #define ITERATIONS 120
 #define BENDING 1.0       /* first shift, in units of LamBendingStiffness */
@@ -72,8 +72,7 @@ PetscErrorCode LamNewtonFlow(LamRVE rve, const LamLoad *load, LamNewtonOutcome *
   PetscFunctionBeginUser;
   *outcome = LAM_NEWTON_STALLED;
   *shut = -1;
-  rve->linear.rate = PETSC_INFINITY;
-  rve->consistent = PETSC_FALSE;
+  LamForgetFactor(rve);
   for (PetscInt it = 0; it < ITERATIONS && LamMayIterate(rve); ++it) {
     PetscReal energy, norm, alpha;
     PetscBool valid, ok, is_shut;
@@ -94,7 +93,8 @@ PetscErrorCode LamNewtonFlow(LamRVE rve, const LamLoad *load, LamNewtonOutcome *
     else if (flow.shift > 0.0 && norm < SADDLE_RESIDUAL)
       *outcome = LAM_NEWTON_NEAR_SADDLE;
     if (*outcome != LAM_NEWTON_STALLED) break;
-    PetscCall(LamValidStep(rve, load, NULL, &alpha));
+    alpha = 1.0;
+    PetscCall(LamValidStep(rve, load, NULL, LAM_LEAST_STEP, &alpha));
     if (alpha == 0.0) break;
     LamTakeStep(rve, load, NULL, alpha);
     if (!(flow.shift > 0.0)) continue;

@@ -95,8 +95,7 @@ PetscErrorCode LamRVEChangeModuli(LamRVE rve, const LamMicrostructure *micro)
   for (PetscInt cell = 0; rve->micro.cell && cell < rve->mesh.cell_count; ++cell)
     CopyModuli(CellWall(micro, cell), &rve->micro.cell[cell].wall);
   FindStiffest(rve);
-  rve->linear.rate = PETSC_INFINITY; /* the factorisation is outdated */
-  rve->consistent = PETSC_FALSE;
+  LamForgetFactor(rve);
   rve->changes++;
   if (rve->bonded) PetscCall(LamRVEChangeModuli(rve->bonded, micro));
   PetscFunctionReturn(0);
@@ -272,8 +271,7 @@ PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamRVEState sta
   response->distance = 0.0;
   rve->work = (LamWork){0};
   rve->lowest_eigenvalue = NAN;
-  rve->linear.rate = PETSC_INFINITY;
-  rve->consistent = PETSC_FALSE;
+  LamForgetFactor(rve);
   LamTakeJunctions(rve, state);
   PetscFunctionReturn(0);
 }

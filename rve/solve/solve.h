@@ -1,7 +1,7 @@
 /*
   Solvers for equilibrium states of the RVE.
 
-    newton.c newton_flow.c newton.h       one equilibrium from an initial guess: fast, flow and safe tiers
+    newton.c newton_flow.c descent.c      one equilibrium from an initial guess: fast, flow and safe tiers
     border.c border.h                     components of F as unknowns, for prescribed stress
     path.c                                initial guess, load substeps, escape from saddles, failure reasons
     contact_step.c contact_update.c contact_newton.c contact_safe.c     one contact equilibrium from an initial guess
@@ -29,6 +29,61 @@ PetscErrorCode LamNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *
 PetscErrorCode LamNewtonFlow(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome, PetscInt *shut);
 /* Tolerance on the residual norm: the larger of 1e-11, rve->tolerance and the rounding error of the stiff forces. */
 PetscReal LamNewtonTolerance(LamRVE rve);
+/* Factors K + shift 1 with the first shift of an increasing sequence that leaves no more negative eigenvalues than
+   expected: *shift; `next` after one that is at most `base`; then `growth` times the last one. */
+PetscErrorCode LamFactorShifted(LamRVE rve, PetscReal base, PetscReal next, PetscReal growth, PetscReal *shift,
+                                PetscBool *ok);
+/* The same for bonded tissue, from 0. least: first nonzero shift tried, if below 1e-7 of the largest diagonal entry;
+   last_shift: in, of the previous factorisation, an eighth of which is tried first if larger; out, of this one. */
+PetscErrorCode LamFactorPositive(LamRVE rve, PetscReal least, PetscReal *last_shift, PetscBool *ok);
+/* rve->step := -K^-1 residual with the current factorisation, or the step of the bordered system; zero for the held
+   class. */
+PetscErrorCode LamSolveStep(LamRVE rve, LamBorder *border);
+/* rve->trial := positions rve->y + alpha rve->step */
+void LamTrialPosition(LamRVE rve, PetscReal alpha);
+/* Halves *alpha until rve->y + alpha rve->step inverts no element volume; 0: none above `least`. */
+#define LAM_LEAST_STEP 0.01 /* least share of a step of bonded tissue */
+PetscErrorCode LamValidStep(LamRVE rve, const LamLoad *load, const LamBorder *border, PetscReal least,
+                            PetscReal *alpha);
+/* Updates positions, independent stresses and the border by alpha times the step. */
+void LamTakeStep(LamRVE rve, const LamLoad *load, LamBorder *border, PetscReal alpha);
+/* Whether a step is at rounding level, so that the iteration ends although the residual, in which large stresses
+   cancel, may stay above the tolerance. largest: of the step's entries. */
+PetscBool LamAtRounding(LamRVE rve, PetscReal norm, PetscReal tolerance, PetscReal largest);
+/* Prints one line if the monitor is on. */
+PetscErrorCode LamReportIteration(LamRVE rve, const char tier[], PetscInt iteration, PetscReal residual, PetscReal step,
+                                  PetscReal shift);
+/* Adds a downhill multiple of the softest mode to rve->step, if the mode has negative curvature. Used for small Newton
+   steps of an indefinite matrix: near a saddle the residual has almost no component along that mode, and Newton alone
+   is slow. iterations: inverse iterations, from `mode` [n]; image [n]: work space. */
+#define LAM_ESCAPE_STEP 0.01 /* largest entry of that multiple, in apothems */
+PetscErrorCode LamAddNegativeCurvature(LamRVE rve, PetscInt iterations, const PetscReal residual[], PetscReal mode[],
+                                       PetscReal image[]);
+
+/* ---- descent.c ---- */
+#define LAM_DESCENT_LIMIT 0.05 /* of a step of a safe tier, in apothems */
+typedef struct {
+  PetscReal energy, violation; /* of walls, turgor and cohesion; sum D max(0, -gap) */
+} LamMerit;
+typedef struct {
+  PetscReal *y, *lambda; /* the best point so far */
+  LamMerit merit;        /* its merit, if `known` */
+  PetscReal mu, limit;   /* weight of the violation; limit of the step length, lower after a return, apothems */
+  PetscReal rounding;    /* of the energy */
+  PetscInt without_decrease;
+  PetscBool monotone, known; /* monotone: line search on the next step */
+} LamDescent;
+PetscErrorCode LamDescentCreate(LamRVE rve, LamDescent *descent);
+PetscErrorCode LamDescentDestroy(LamDescent *descent);
+/* Merit of the contact state last evaluated. */
+LamMerit LamMeritOf(LamRVE rve, PetscReal energy);
+/* If a line search is due: halves the step until the merit decreases sufficiently; *alpha = 0 if it does not. */
+PetscErrorCode LamDescentSearch(LamRVE rve, const LamLoad *load, LamMerit now, LamDescent *descent, PetscReal *alpha);
+/* Stores the present point as the best one. */
+PetscErrorCode LamDescentKeep(LamRVE rve, LamMerit merit, LamDescent *descent);
+/* Stores the point of least merit; returns to it after too many steps without decrease. *moved: rve->y was reset. */
+PetscErrorCode LamDescentWatch(LamRVE rve, const LamLoad *load, LamMerit now, PetscBool valid, LamDescent *descent,
+                               PetscBool *moved);
 
 /* ---- path.c ---- */
 /* Rotation angle of the polar decomposition of the in-plane part of F. */
