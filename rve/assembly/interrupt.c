@@ -6,6 +6,7 @@
   interrupt instead of that failure, and no alternative is tried.
 */
 #include "rve_impl.h"
+#include <stdarg.h>
 
 PetscErrorCode LamRVESetInterrupt(LamRVE rve, PetscBool (*interrupt)(void *ctx), void *ctx)
 {
@@ -39,10 +40,22 @@ void LamAddWork(LamRVE rve, const LamResponse *part)
   if (LamWasStopped(part)) rve->work.stopped = PETSC_TRUE;
 }
 
+PetscErrorCode LamRefuse(LamResponse *response, LamStatus status, const char format[], ...)
+{
+  va_list arguments;
+  size_t length;
+
+  PetscFunctionBeginUser;
+  response->status = status;
+  va_start(arguments, format);
+  PetscCall(PetscVSNPrintf(response->reason, sizeof(response->reason), format, &length, arguments));
+  va_end(arguments);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamGiveUp(LamResponse *response)
 {
   PetscFunctionBeginUser;
-  response->status = LAM_OUT_OF_REACH;
-  PetscCall(PetscStrncpy(response->reason, "stopped before it was solved", sizeof(response->reason)));
+  PetscCall(LamRefuse(response, LAM_OUT_OF_REACH, "stopped before it was solved"));
   PetscFunctionReturn(0);
 }

@@ -4,7 +4,7 @@
     assembly.c     sums over elements: energy, residual, tangent
     turgor.c       areas of lumens, pressures of sealed ones
     contact.c      cell faces in contact: pairs, junctions, active set
-    interrupt.c    factorisations that check the interrupt
+    interrupt.c    factorisations that check the interrupt; refusals
     stability.c    softest mode of a state
     overlap.c interface.c    overlapping cells; gaps and pressures for pictures
 
@@ -215,6 +215,9 @@ static inline PetscBool LamWasStopped(const LamResponse *response)
 {
   return (PetscBool)(response->status == LAM_OUT_OF_REACH);
 }
+/* Sets status and reason of a response without a stable state; format as for PetscSNPrintf. */
+PetscErrorCode LamRefuse(LamResponse *response, LamStatus status, const char format[], ...)
+    __attribute__((format(printf, 3, 4)));
 /* Sets the response of a solve that was stopped. */
 PetscErrorCode LamGiveUp(LamResponse *response);
 /* Limit of the iterations for one state, including substeps: some seconds on the default mesh. */

@@ -154,16 +154,15 @@ void LamWatchKinks(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscRe
     kinking->between[1] = t;
 }
 
-PetscErrorCode LamKinkReason(const LamKinking *kinking, PetscReal reached, char reason[], size_t length)
+PetscErrorCode LamRefuseKinks(const LamKinking *kinking, PetscReal reached, LamStatus status, LamResponse *response)
 {
   char place[80] = " already where the way starts";
 
   PetscFunctionBeginUser;
-  if (kinking->between[0] >= 0.0) PetscCall(LamBracketText(kinking->between, place, sizeof(place)));
-  PetscCall(
-      PetscSNPrintf(reason, length,
-                    "walls lose ellipticity%s and kink ever finer: %.2g %% of them at %.4g, the last stable state "
-                    "on this mesh; `fibres: tension` would not",
-                    place, (double)(100.0 * kinking->share), (double)reached));
+  if (kinking->between[0] >= 0.0) LamBracketText(kinking->between, place, sizeof(place));
+  PetscCall(LamRefuse(response, status,
+                      "walls lose ellipticity%s and kink ever finer: %.2g %% of them at %.4g, the last stable state on "
+                      "this mesh; `fibres: tension` would not",
+                      place, (double)(100.0 * kinking->share), (double)reached));
   PetscFunctionReturn(0);
 }

@@ -346,13 +346,12 @@ PetscErrorCode LamContactIndicators(LamRVE rve, const LamLoad *load, LamResponse
 }
 
 /* All faces are closed; the fabric is that of all faces, from their current chords. */
-PetscErrorCode LamBondedIndicators(LamRVE rve, const LamLoad *load, LamResponse *response)
+void LamBondedIndicators(LamRVE rve, const LamLoad *load, LamResponse *response)
 {
   const LamMesh *mesh = &rve->mesh;
   PetscReal fabric[3] = {0.0, 0.0, 0.0};
   PetscInt edges = 0;
 
-  PetscFunctionBeginUser;
   for (PetscInt e = mesh->through - 1; e < mesh->element_count; e += mesh->through) {
     PetscReal x[LAM_ELEMENT_NODES][2], chord[2];
     const PetscReal *image;
@@ -378,5 +377,4 @@ PetscErrorCode LamBondedIndicators(LamRVE rve, const LamLoad *load, LamResponse 
   response->floating_cells = response->zero_modes = 0;
   response->cell_clusters = 1;
   response->percolating_directions = rve->micro.is_patch ? LAM_UNKNOWN_COUNT : 2;
-  PetscFunctionReturn(0);
 }

@@ -45,28 +45,26 @@ static PetscReal SignedArea(PetscInt n, const PetscReal x[][2])
   return area;
 }
 
-PetscErrorCode LamBracketText(const PetscReal between[2], char text[], size_t length)
+void LamBracketText(const PetscReal between[2], char text[], size_t length)
 {
   const PetscReal narrowness = between[1] / PetscMax(1e-12, between[1] - between[0]);
   const int digits = (int)PetscMax(5.0, PetscCeilReal(PetscLog10Real(PetscMax(1.0, narrowness))) + 1.0);
 
-  PetscFunctionBeginUser;
   text[0] = '\0';
   if (between[1] > between[0])
     (void)snprintf(text, length, " between %.*g and %.*g of the way", digits, (double)between[0], digits,
                    (double)between[1]);
-  PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamCollapseReason(PetscInt cell, const PetscReal between[2], char reason[], size_t length)
+PetscErrorCode LamRefuseCollapse(PetscInt cell, const PetscReal between[2], LamStatus status, LamResponse *response)
 {
   char place[80];
 
   PetscFunctionBeginUser;
-  PetscCall(LamBracketText(between, place, sizeof(place)));
-  PetscCall(PetscSNPrintf(
-      reason, length, "the lumen of cell %d collapses%s: its walls touch, and contact inside a lumen is not modelled",
-      (int)cell, place));
+  LamBracketText(between, place, sizeof(place));
+  PetscCall(LamRefuse(response, status,
+                      "the lumen of cell %d collapses%s: its walls touch, and contact inside a lumen is not modelled",
+                      (int)cell, place));
   PetscFunctionReturn(0);
 }
 

@@ -17,7 +17,7 @@
 extern const PetscInt LamFComponent[LAM_F_COUNT]; /* their indices in a row-major 3 x 3 */
 
 /* Writes " between 0.25 and 0.26 of the way"; empty if the second fraction is not above the first, i.e. unknown. */
-PetscErrorCode LamBracketText(const PetscReal between[2], char text[], size_t length);
+void LamBracketText(const PetscReal between[2], char text[], size_t length);
 
 /* ---- homogenise.c, traction.c, failure.c ---- */
 /* L_q, L_qq and R = L_yq [LAM_F_COUNT][n] for the components of F at rve->y, after LamAssemble there. R has rows for
@@ -82,18 +82,18 @@ static inline PetscBool LamIsKinking(const LamKinking *kinking)
 /* Records a stable state y at fraction t of the path. */
 void LamWatchKinks(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal t, LamKinking *kinking);
 /* reached: path fraction of the last stable state. */
-PetscErrorCode LamKinkReason(const LamKinking *kinking, PetscReal reached, char reason[], size_t length);
+PetscErrorCode LamRefuseKinks(const LamKinking *kinking, PetscReal reached, LamStatus status, LamResponse *response);
 
 /* ---- indicators.c ---- */
 /* Sets the debonding indicators from rve->y and the multipliers; for contact tissue also the tractions. */
 PetscErrorCode LamContactIndicators(LamRVE rve, const LamLoad *load, LamResponse *response);
-PetscErrorCode LamBondedIndicators(LamRVE rve, const LamLoad *load, LamResponse *response);
+void LamBondedIndicators(LamRVE rve, const LamLoad *load, LamResponse *response);
 
 /* ---- lumen.c ---- */
 /* The first cell whose inner loop at positions y intersects itself or is inverted; -1: none. */
 PetscErrorCode LamFindCollapsedLumen(LamRVE rve, const PetscReal y[], PetscInt *cell);
 /* between: path fractions between which the lumen's walls first touch, as in LamBracketText. */
-PetscErrorCode LamCollapseReason(PetscInt cell, const PetscReal between[2], char reason[], size_t length);
+PetscErrorCode LamRefuseCollapse(PetscInt cell, const PetscReal between[2], LamStatus status, LamResponse *response);
 
 /* ---- fields.c ---- */
 /* Restores the solution of a state in the RVE, with its active set and junction status. */

@@ -15,12 +15,11 @@
 #define SAMPLES 8 /* per edge: sub-intervals of the running integrals */
 
 /* Internal forces of the walls at all mesh nodes, not summed over classes: force[node][2]. */
-static PetscErrorCode NodeForces(LamRVE rve, const LamLoad *load, PetscReal force[])
+static void NodeForces(LamRVE rve, const LamLoad *load, PetscReal force[])
 {
   const LamMesh *mesh = &rve->mesh;
 
-  PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(force, 2 * mesh->node_count));
+  (void)PetscArrayzero(force, 2 * mesh->node_count);
   for (PetscInt e = 0; e < mesh->element_count; ++e) {
     PetscReal u[LAM_ELEMENT_NODES][2];
     LamElementResult element;
@@ -33,7 +32,6 @@ static PetscErrorCode NodeForces(LamRVE rve, const LamLoad *load, PetscReal forc
     for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
       for (PetscInt d = 0; d < 2; ++d) force[2 * mesh->elements[LAM_ELEMENT_NODES * e + a] + d] += element.f[2 * a + d];
   }
-  PetscFunctionReturn(0);
 }
 
 /* Whether three cells meet at node i of a face; at the boundary of a patch there are two. */
@@ -229,7 +227,7 @@ PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, LamResponse *re
   PetscCall(PetscMalloc6(2 * rve->mesh.node_count, &force, n, &x, n, &t, n * n, &M, 2 * n, &b, n, &pivots));
   PetscCall(
       PetscMalloc4(count + 1, &sums.normal, count + 1, &sums.shear, count + 1, &sums.back, count + 1, &sums.length));
-  PetscCall(NodeForces(rve, load, force));
+  NodeForces(rve, load, force);
   for (PetscInt face = 0; face < 3; ++face) {
     PetscReal total = 0.0, length = 0.0;
 

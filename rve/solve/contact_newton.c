@@ -112,7 +112,7 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, LamBorder *bord
     if (!ok) break;
     rve->contact->largest_step = LamBorderReach(rve, border, rve->step + 2);
     alpha = PetscMin(1.0, (compliant ? STEP_LIMIT : NEAR_LIMIT) / PetscMax(rve->contact->largest_step, 1e-300));
-    PetscCall(LamValidStep(rve, load, border, LEAST_STEP, &alpha));
+    alpha = LamValidStep(rve, load, border, alpha, LEAST_STEP);
     PetscCall(Report(rve, it, norm, gap, changes, rve->contact->largest_step, alpha, step.shift));
     if (alpha == 0.0 || (!compliant && rve->contact->largest_step > reach)) break;
     at_rounding = (PetscBool)(changes == 0 && IsAtRounding(rve, &step, norm, tolerance));

@@ -96,7 +96,7 @@ static PetscErrorCode Release(LamRVE rve, const LamLoad *load, LamRVEState at, L
     step *= rve->work.iterations == iterations
                 ? PetscMax(0.1, PetscMin(0.5, 0.6 * RELEASE_REACH / rve->contact->largest_step))
                 : 0.5;
-    PetscCall(LamContactStartNear(rve, at, load));
+    LamContactStartNear(rve, at, load);
     if (step < LEAST_RELEASE) break;
   }
   rve->contact->share = 0.0;
@@ -124,7 +124,7 @@ static PetscErrorCode ComeDown(LamRVE rve, const LamLoad *load, LamRVEState at, 
     const PetscReal less = added * factor < LOOSE * TIGHT ? 0.0 : added * factor;
 
     next.cohesion = load->cohesion + less;
-    PetscCall(LamContactStartNear(rve, at, &next));
+    LamContactStartNear(rve, at, &next);
     PetscCall(LamContactTry(rve, &next, LAM_NEAR_REACH, out));
     if (LamContactIsStable(out)) {
       LamKeepState(rve, &next, 0, at);
@@ -159,7 +159,7 @@ static PetscErrorCode TightThenLoose(LamRVE rve, const LamLoad *load, PetscBool 
   if (has_bonded) {
     PetscCall(Release(rve, &tight, at, out));
   } else {
-    PetscCall(LamContactStartAffine(rve, &tight));
+    LamContactStartAffine(rve, &tight);
     PetscCall(LamContactTry(rve, &tight, LAM_FAR, out));
   }
   LamKeepState(rve, &tight, 0, at);
@@ -205,7 +205,7 @@ static PetscErrorCode WalkInTurgor(LamRVE rve, const LamLoad *rest, LamRVEState 
 
     share /= SLACK_FACTOR;
     slack = Slack(rest, share);
-    PetscCall(LamContactStartAffine(rve, &slack));
+    LamContactStartAffine(rve, &slack);
     PetscCall(LamContactTry(rve, &slack, LAM_FAR, out));
     LamKeepState(rve, &slack, 0, at);
   }
@@ -234,12 +234,12 @@ static PetscErrorCode WalkFromRest(LamRVE rve, const LamLoad *load, LamRVEState 
   LamLoad tight = rest;
 
   PetscFunctionBeginUser;
-  PetscCall(LamContactStartAffine(rve, &rest));
+  LamContactStartAffine(rve, &rest);
   PetscCall(LamContactTry(rve, &rest, LAM_FAR, out));
   LamKeepState(rve, &rest, 0, at);
   if (!LamContactIsStable(out)) {
     tight.cohesion += TIGHT;
-    PetscCall(LamContactStartAffine(rve, &tight));
+    LamContactStartAffine(rve, &tight);
     PetscCall(LamContactTry(rve, &tight, LAM_FAR, out));
     LamKeepState(rve, &tight, 0, at);
     PetscCall(Loosen(rve, &rest, at, out));
@@ -273,7 +273,7 @@ static PetscErrorCode TryAffine(LamRVE rve, const LamLoad *load, LamRVEState at,
 
   PetscFunctionBeginUser;
   if (load->turgor <= MUCH_TURGOR) start.turgor = PetscMin(load->turgor, BORNE);
-  PetscCall(LamContactStartAffine(rve, &start));
+  LamContactStartAffine(rve, &start);
   PetscCall(LamContactTry(rve, &start, LAM_FAR, out));
   if (bears) PetscFunctionReturn(0);
   if (!LamContactIsStable(out)) {
@@ -313,15 +313,13 @@ typedef struct {
   PetscReal eigenvalue; /* of the saddle */
 } SecondBest;
 
-static PetscErrorCode Remember(LamRVE rve, const LamLoad *load, const LamContactOutcome *out, SecondBest *best)
+static void Remember(LamRVE rve, const LamLoad *load, const LamContactOutcome *out, SecondBest *best)
 {
-  PetscFunctionBeginUser;
   if (!IsCertain(&best->refused) && (IsCertain(out) || out->refusal != LAM_NOT_REFUSED)) best->refused = *out;
-  if (best->saddle.converged || !out->converged || out->negative <= 0) PetscFunctionReturn(0);
+  if (best->saddle.converged || !out->converged || out->negative <= 0) return;
   LamKeepState(rve, load, 0, best->at);
   best->saddle = *out;
   best->eigenvalue = rve->lowest_eigenvalue;
-  PetscFunctionReturn(0);
 }
 
 static PetscErrorCode GiveSecondBest(LamRVE rve, const LamLoad *load, const SecondBest *best, LamContactOutcome *out)
@@ -351,12 +349,12 @@ static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state,
   PetscCall(LamRVEStateCreate(rve, &best.at));
   *out = LAM_NO_OUTCOME;
   for (PetscInt k = near ? 0 : 1; k < 7 && !LamContactIsStable(out) && !rve->work.stopped; ++k) {
-    PetscCall(Remember(rve, load, out, &best));
+    Remember(rve, load, out, &best);
     if (k > 3 && !state->solved && IsCertain(&best.refused)) break; /* the path from rest has a certain end */
     *out = LAM_NO_OUTCOME;
     rve->budget = k < 3 ? START_BUDGET : LAM_ITERATION_BUDGET;
     if (k == 0) {
-      PetscCall(LamContactStartNear(rve, before, load));
+      LamContactStartNear(rve, before, load);
       PetscCall(LamContactTry(rve, load, LAM_NEAR_REACH, out));
       if (!LamContactIsStable(out)) PetscCall(Substeps(rve, before, load, out));
     }
@@ -371,7 +369,7 @@ static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state,
   }
   rve->budget = LAM_ITERATION_BUDGET;
   if (!LamContactIsStable(out)) {
-    PetscCall(Remember(rve, load, out, &best));
+    Remember(rve, load, out, &best);
     PetscCall(GiveSecondBest(rve, load, &best, out));
   }
   if (out->converged && has_bonded) PetscCall(LamRVEStateCopy(rve->bonded_state, state->bonded));
@@ -389,66 +387,54 @@ static const char *WayText(const LamContactOutcome *out)
   return "";
 }
 
-PetscErrorCode LamContactReason(LamRVE rve, const LamContactOutcome *out, char reason[], size_t length)
+/* What happens at the end of a path, with the two cells and the depth, and why that is the end. */
+static const struct {
+  const char *what, *why;
+} refusals[] = {
+    [LAM_WALLS_OVERLAP] = {"facing walls of cells %d and %d lie %.3g apothems in each other",
+                           "the mesh along the faces is too coarse"},
+    [LAM_CELLS_OVERLAP] = {"a wall of cell %d meets one of cell %d that it does not face",
+                           "cells that change their neighbours are not modelled"},
+    [LAM_WALLS_PASSED] = {"facing walls of cells %d and %d slide past each other",
+                          "cells that change their neighbours are not modelled"},
+    [LAM_SADDLE] = {"stable states end", "beyond, only a saddle was found, with %d negative eigenvalues"},
+    [LAM_CROSSING] = {"stable states end", "their lowest eigenvalue, %.3g (C1+C2) before, crosses zero there"},
+    [LAM_LOOSENING] = {"stable states end", "as walls open there, an eigenvalue jumps below zero"},
+    [LAM_JUMP] = {"stable states end", "the end of a contact passes a node there, and an eigenvalue jumps below zero"},
+};
+
+PetscErrorCode LamContactRefuse(LamRVE rve, const LamContactOutcome *out, LamResponse *response)
 {
-  char place[80];
+  const LamStatus status = IsCertain(out) ? LAM_NO_EQUILIBRIUM : LAM_NOT_CONVERGED;
+  char place[80], what[96], why[96];
   size_t used;
 
   PetscFunctionBeginUser;
-  PetscCall(LamBracketText(out->between, place, sizeof(place)));
-  if (out->converged)
-    PetscCall(PetscSNPrintf(reason, length, "only a saddle was found: %d negative eigenvalues, lowest %.3g (C1+C2)",
-                            (int)out->negative, (double)rve->lowest_eigenvalue));
-  else if (out->refusal == LAM_WALLS_OVERLAP)
-    PetscCall(
-        PetscSNPrintf(reason, length,
-                      "facing walls of cells %d and %d lie %.3g apothems in each other%s: the mesh along the faces "
-                      "is too coarse",
-                      (int)out->cell[0], (int)out->cell[1], (double)out->depth, place));
-  else if (out->refusal == LAM_CELLS_OVERLAP)
-    PetscCall(PetscSNPrintf(reason, length,
-                            "a wall of cell %d meets one of cell %d that it does not face%s: cells that change their "
-                            "neighbours are not modelled",
-                            (int)out->cell[0], (int)out->cell[1], place));
-  else if (out->refusal == LAM_SADDLE)
-    PetscCall(PetscSNPrintf(reason, length,
-                            "stable states end%s: beyond, only a saddle was found, with %d negative eigenvalues", place,
-                            (int)out->negative));
-  else if (out->refusal == LAM_CROSSING)
-    PetscCall(PetscSNPrintf(reason, length,
-                            "stable states end%s: their lowest eigenvalue, %.3g (C1+C2) before, crosses zero there",
-                            place, (double)out->eigenvalue));
-  else if (out->refusal == LAM_LOOSENING)
-    PetscCall(PetscSNPrintf(reason, length, "stable states end%s: as walls open there, an eigenvalue jumps below zero",
-                            place));
-  else if (out->refusal == LAM_JUMP)
-    PetscCall(PetscSNPrintf(reason, length,
-                            "stable states end%s: the end of a contact passes a node there, and an eigenvalue jumps "
-                            "below zero",
-                            place));
-  else if (out->refusal == LAM_WALLS_PASSED)
-    PetscCall(
-        PetscSNPrintf(reason, length,
-                      "facing walls of cells %d and %d slide past each other%s: cells that change their neighbours "
-                      "are not modelled",
-                      (int)out->cell[0], (int)out->cell[1], place));
-  else if (out->refusal == LAM_LUMEN_COLLAPSED)
-    PetscCall(LamCollapseReason(out->cell[0], out->between, reason, length));
-  else if (LamIsKinking(&out->kinking))
-    PetscCall(LamKinkReason(&out->kinking, out->between[0], reason, length));
-  else
-    PetscCall(PetscSNPrintf(reason, length,
-                            "no contact equilibrium found from any start, after %d iterations: give states in between",
-                            (int)rve->work.iterations));
-  used = strlen(reason);
-  PetscCall(PetscSNPrintf(reason + used, length - used, "%s", WayText(out)));
-  PetscFunctionReturn(0);
-}
+  if (out->converged) {
+    PetscCall(LamRefuseSaddle(rve, out->negative, response));
+  } else if (out->refusal == LAM_LUMEN_COLLAPSED) {
+    PetscCall(LamRefuseCollapse(out->cell[0], out->between, status, response));
+  } else if (out->refusal != LAM_NOT_REFUSED) {
+    const char *format = refusals[out->refusal].why;
 
-static LamStatus StatusOf(const LamContactOutcome *out)
-{
-  if (out->converged) return out->negative > 0 ? LAM_UNSTABLE : LAM_CONVERGED;
-  return IsCertain(out) ? LAM_NO_EQUILIBRIUM : LAM_NOT_CONVERGED;
+    LamBracketText(out->between, place, sizeof(place));
+    (void)snprintf(what, sizeof(what), refusals[out->refusal].what, (int)out->cell[0], (int)out->cell[1],
+                   (double)out->depth);
+    if (out->refusal == LAM_CROSSING)
+      (void)snprintf(why, sizeof(why), format, (double)out->eigenvalue);
+    else
+      (void)snprintf(why, sizeof(why), format, (int)out->negative);
+    PetscCall(LamRefuse(response, status, "%s%s: %s", what, place, why));
+  } else if (LamIsKinking(&out->kinking)) {
+    PetscCall(LamRefuseKinks(&out->kinking, out->between[0], status, response));
+  } else {
+    PetscCall(LamRefuse(response, status,
+                        "no contact equilibrium found from any start, after %d iterations: give states in between",
+                        (int)rve->work.iterations));
+  }
+  used = strlen(response->reason);
+  PetscCall(PetscSNPrintf(response->reason + used, sizeof(response->reason) - used, "%s", WayText(out)));
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
@@ -462,9 +448,8 @@ PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState
   PetscCall(LamRVEStateDestroy(&before));
   response->branch = state->branch + out.branch;
   response->negative_eigenvalues = PetscMax(0, out.negative);
-  response->status = StatusOf(&out);
+  response->status = LAM_CONVERGED;
   response->max_penetration = out.converged ? PetscMax(0.0, out.depth) : NAN;
-  if (response->status != LAM_CONVERGED)
-    PetscCall(LamContactReason(rve, &out, response->reason, sizeof(response->reason)));
+  if (!LamContactIsStable(&out)) PetscCall(LamContactRefuse(rve, &out, response));
   PetscFunctionReturn(0);
 }

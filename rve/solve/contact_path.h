@@ -6,10 +6,10 @@
 
 /* ---- contact_start.c ---- */
 /* Initial guess: a solution moved affinely to the new load. */
-PetscErrorCode LamContactStartNear(LamRVE rve, LamRVEState from, const LamLoad *load);
+void LamContactStartNear(LamRVE rve, LamRVEState from, const LamLoad *load);
 /* Initial guess: rve->y := F X with cells swollen by their clearance, stress-free walls, and multipliers that balance
    turgor and cohesion. */
-PetscErrorCode LamContactStartAffine(LamRVE rve, const LamLoad *load);
+void LamContactStartAffine(LamRVE rve, const LamLoad *load);
 /* Initial guess: rve->y := the last solution of rve->bonded, which must have the same F; multipliers fitted to the
    bonding forces; contact->held := the bonding forces that the multipliers do not represent. */
 PetscErrorCode LamContactStartBonded(LamRVE rve, const LamLoad *load, PetscBool *ok);
@@ -71,7 +71,7 @@ PetscErrorCode LamContactWalk(LamRVE rve, LamRVEState at, const LamLoad *load, L
 /* ---- contact_path.c ---- */
 /* Whether the loads are near enough for Newton to start from a solution at `from`. */
 PetscBool LamContactIsNear(const LamLoad *from, const LamLoad *load);
-/* Text of why an outcome is not a stable state. */
-PetscErrorCode LamContactReason(LamRVE rve, const LamContactOutcome *out, char reason[], size_t length);
+/* Sets status and reason of an outcome that is not a stable state. */
+PetscErrorCode LamContactRefuse(LamRVE rve, const LamContactOutcome *out, LamResponse *response);
 
 #endif

@@ -5,13 +5,11 @@
 */
 #include "contact_path.h"
 
-PetscErrorCode LamContactStartNear(LamRVE rve, LamRVEState from, const LamLoad *load)
+void LamContactStartNear(LamRVE rve, LamRVEState from, const LamLoad *load)
 {
-  PetscFunctionBeginUser;
   LamMoveAffinely(rve, from->y, &from->load, load);
-  PetscCall(PetscArraycpy(rve->contact->lambda, from->lambda, rve->contact->count));
+  (void)PetscArraycpy(rve->contact->lambda, from->lambda, rve->contact->count);
   LamTakeJunctions(rve, from);
-  PetscFunctionReturn(0);
 }
 
 /* Swells cells with a clearance until facing walls touch. */
@@ -30,20 +28,18 @@ static void CloseClearance(LamRVE rve, const LamLoad *load)
   }
 }
 
-PetscErrorCode LamContactStartAffine(LamRVE rve, const LamLoad *load)
+void LamContactStartAffine(LamRVE rve, const LamLoad *load)
 {
-  PetscFunctionBeginUser;
   for (PetscInt c = 0; c < rve->mesh.class_count; ++c) {
     const PetscReal *X = &rve->mesh.class_X[2 * c];
 
     for (PetscInt d = 0; d < 2; ++d) rve->y[2 * c + d] = load->F[3 * d] * X[0] + load->F[3 * d + 1] * X[1];
   }
   CloseClearance(rve, load);
-  PetscCall(PetscArrayzero(rve->stress, rve->mesh.element_count));
+  (void)PetscArrayzero(rve->stress, rve->mesh.element_count);
   for (PetscInt c = 0; c < rve->linear.lumens; ++c) rve->y[rve->ndof + c] = load->turgor * LamTurgorFactor(rve, c);
   for (PetscInt h = 0; h < rve->contact->count; ++h)
     rve->contact->lambda[h] = PetscMax(0.0, load->turgor + load->cohesion);
-  PetscFunctionReturn(0);
 }
 
 /* Copies positions and pressures of the bonded solution and sets consistent wall stresses. */

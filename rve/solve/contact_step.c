@@ -76,18 +76,16 @@ static PetscErrorCode Solve(LamRVE rve, LamContactStep *step)
 }
 
 /* Copies the solution to rve->step and the new multipliers. */
-static PetscErrorCode TakeSolution(LamRVE rve, LamContactStep *step)
+static void TakeSolution(LamRVE rve, LamContactStep *step)
 {
   const LamContact *contact = rve->contact;
   const PetscInt positions = rve->linear.positions, pressures = rve->linear.pressures;
 
-  PetscFunctionBeginUser;
   rve->step[0] = rve->step[1] = 0.0;
-  PetscCall(PetscArraycpy(rve->step + 2, step->solution, positions));
-  PetscCall(PetscArraycpy(rve->step + rve->ndof, step->solution + pressures, rve->linear.lumens));
+  (void)PetscArraycpy(rve->step + 2, step->solution, positions);
+  (void)PetscArraycpy(rve->step + rve->ndof, step->solution + pressures, rve->linear.lumens);
   for (PetscInt h = 0; h < contact->count; ++h)
     step->lambda[h] = contact->active[h] ? step->solution[positions + h] : 0.0;
-  PetscFunctionReturn(0);
 }
 
 /* Factors, solves and stores the solution for LamContactUpdateStep, which requires a prescribed F and the minimum
@@ -120,7 +118,7 @@ PetscErrorCode LamContactSolveStep(LamRVE rve, PetscReal norm, PetscReal complia
       PetscCall(LamContactUpdateStep(rve, step->factored, step->first, compliance, step->solution, &updated));
     if (!updated) PetscCall(FactorAndSolve(rve, compliance, (PetscBool)(k > 0), step, ok));
     if (!*ok) PetscFunctionReturn(0);
-    PetscCall(TakeSolution(rve, step));
+    TakeSolution(rve, step);
     if (k + 1 == ACTIVE_SET_SOLVES) break;
     PetscCall(LamContactPredictActive(rve, rve->step, LamBorderStep(step->border), step->lambda, compliance, &changes));
     if (changes == 0) break;

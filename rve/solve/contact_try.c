@@ -134,7 +134,7 @@ PetscErrorCode LamContactTryMixed(LamRVE rve, LamBorder *border, PetscReal reach
 PetscErrorCode LamContactDescendFrom(LamRVE rve, LamRVEState from, const LamLoad *load, LamContactOutcome *out)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamContactStartNear(rve, from, load));
+  LamContactStartNear(rve, from, load);
   PetscCall(LamContactDescend(rve, load, out));
   PetscFunctionReturn(0);
 }

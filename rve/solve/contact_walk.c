@@ -157,7 +157,7 @@ static PetscErrorCode TryAt(LamRVE rve, const Way *way, PetscReal t, LamLoad *ne
 {
   PetscFunctionBeginUser;
   *next = LoadAt(way, t);
-  PetscCall(LamContactStartNear(rve, way->at, next));
+  LamContactStartNear(rve, way->at, next);
   PetscCall(LamContactTry(rve, next, LAM_NEAR_REACH, out));
   PetscFunctionReturn(0);
 }

@@ -67,15 +67,13 @@ PetscErrorCode LamDescentSearch(LamRVE rve, const LamLoad *load, LamMerit now, L
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamDescentKeep(LamRVE rve, LamMerit merit, LamDescent *descent)
+void LamDescentKeep(LamRVE rve, LamMerit merit, LamDescent *descent)
 {
-  PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(descent->y, rve->y, rve->length));
-  if (rve->contact) PetscCall(PetscArraycpy(descent->lambda, rve->contact->lambda, rve->contact->count));
+  (void)PetscArraycpy(descent->y, rve->y, rve->length);
+  if (rve->contact) (void)PetscArraycpy(descent->lambda, rve->contact->lambda, rve->contact->count);
   descent->merit = merit;
   descent->known = PETSC_TRUE;
   descent->without_decrease = 0;
-  PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamDescentWatch(LamRVE rve, const LamLoad *load, LamMerit now, PetscBool valid, LamDescent *descent,
@@ -86,7 +84,7 @@ PetscErrorCode LamDescentWatch(LamRVE rve, const LamLoad *load, LamMerit now, Pe
   PetscFunctionBeginUser;
   *moved = PETSC_FALSE;
   if (valid && (!descent->known || value < best)) {
-    PetscCall(LamDescentKeep(rve, now, descent));
+    LamDescentKeep(rve, now, descent);
     descent->limit = PetscMin(LAM_DESCENT_LIMIT, 1.3 * descent->limit);
     PetscFunctionReturn(0);
   }

@@ -32,23 +32,23 @@ PetscErrorCode LamMixedLook(const LamStressControl *control, const LamResponse *
   PetscFunctionReturn(0);
 }
 
-/* Checks a control for plane-strain tissue. reason: empty if it is valid. */
-static PetscErrorCode CheckControl(const LamStressControl *control, char reason[], size_t length)
+/* Checks a control for plane-strain tissue; an invalid one is refused. */
+static PetscErrorCode CheckControl(const LamStressControl *control, LamResponse *response)
 {
   static const PetscBool in_plane[9] = {1, 1, 0, 1, 1, 0, 0, 0, 1};
 
   PetscFunctionBeginUser;
-  reason[0] = '\0';
   for (PetscInt i = 0; i < 9; ++i) {
     if (!control->given[i]) continue;
     if (!in_plane[i])
-      PetscCall(PetscSNPrintf(reason, length, "P%s is prescribed; plane strain has no F%s to follow it",
-                              component_names[i], component_names[i]));
+      PetscCall(LamRefuse(response, LAM_INVALID_F, "P%s is prescribed; plane strain has no F%s to follow it",
+                          component_names[i], component_names[i]));
     else if (PetscIsInfOrNanReal(control->P[i]))
-      PetscCall(PetscSNPrintf(reason, length, "the prescribed P%s is not finite", component_names[i]));
+      PetscCall(LamRefuse(response, LAM_INVALID_F, "the prescribed P%s is not finite", component_names[i]));
   }
   if (control->given[1] && control->given[3])
-    PetscCall(PetscSNPrintf(reason, length, "F12 and F21 are both free: the tissue can rotate; prescribe one of them"));
+    PetscCall(
+        LamRefuse(response, LAM_INVALID_F, "F12 and F21 are both free: the tissue can rotate; prescribe one of them"));
   PetscFunctionReturn(0);
 }
 
@@ -82,13 +82,12 @@ static PetscErrorCode CallUnstable(const LamMixedView *view, LamResponse *respon
   PetscFunctionBeginUser;
   PetscCall(FindRemedy(view, &component));
   if (component >= 0) PetscCall(PetscSNPrintf(remedy, sizeof(remedy), "F%s", component_names[component]));
-  response->status = LAM_UNSTABLE;
   response->stable = PETSC_FALSE;
   response->lowest_eigenvalue = view->w[0];
-  PetscCall(PetscSNPrintf(response->reason, sizeof(response->reason),
-                          "in equilibrium, but not stable under the prescribed stress: lowest stiffness %.3g (C1+C2); "
-                          "stable where %s is prescribed instead",
-                          (double)view->w[0], remedy));
+  PetscCall(LamRefuse(response, LAM_UNSTABLE,
+                      "in equilibrium, but not stable under the prescribed stress: lowest stiffness %.3g (C1+C2); "
+                      "stable where %s is prescribed instead",
+                      (double)view->w[0], remedy));
   PetscFunctionReturn(0);
 }
 
@@ -144,12 +143,9 @@ PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStress
   }
   rve->wanted |= LAM_WANT_DERIVATIVES; /* needed to assess stability under the prescribed stress */
   PetscCall(LamBeginResponse(rve, load, state, response));
-  PetscCall(LamCheckLoad(load, response->reason, sizeof(response->reason)));
-  if (!response->reason[0]) PetscCall(CheckControl(control, response->reason, sizeof(response->reason)));
-  if (response->reason[0])
-    response->status = LAM_INVALID_F;
-  else
-    PetscCall(SolveTiers(rve, load, control, state, response));
+  PetscCall(LamCheckLoad(load, response));
+  if (response->status != LAM_INVALID_F) PetscCall(CheckControl(control, response));
+  if (response->status != LAM_INVALID_F) PetscCall(SolveTiers(rve, load, control, state, response));
   if (!LamResponseHasFields(response)) /* free components of F are unknown */
     for (PetscInt i = 0; i < 9; ++i)
       if (control->given[i]) response->load.F[i] = NAN;

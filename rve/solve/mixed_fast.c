@@ -35,7 +35,7 @@ static PetscErrorCode TryNear(LamRVE rve, LamBorder *border, LamRVEState state, 
 
   PetscFunctionBeginUser;
   PetscCall(LamTurnedState(rve, state, &border->load, &before));
-  PetscCall(LamContactStartNear(rve, before, &border->load));
+  LamContactStartNear(rve, before, &border->load);
   PetscCall(LamContactTryMixed(rve, border, LAM_NEAR_REACH, out));
   PetscCall(LamRVEStateDestroy(&before));
   PetscFunctionReturn(0);
@@ -76,8 +76,7 @@ static PetscErrorCode TryContact(LamRVE rve, LamBorder *border, LamLoad *load, c
   }
   LamContactSettle(&out);
   *solved = LamContactIsStable(&out);
-  if (out.refusal != LAM_NOT_REFUSED)
-    PetscCall(LamContactReason(rve, &out, response->reason, sizeof(response->reason)));
+  if (out.refusal != LAM_NOT_REFUSED) PetscCall(LamContactRefuse(rve, &out, response));
   response->max_penetration = *solved ? PetscMax(0.0, out.depth) : NAN;
   PetscFunctionReturn(0);
 }
@@ -99,11 +98,8 @@ PetscErrorCode LamMixedFast(LamRVE rve, LamLoad *load, const LamStressControl *c
     response->load = border->load;
     response->status = LAM_CONVERGED;
     response->branch = state->branch;
-    PetscCall(LamAcceptSolution(rve, &border->load, state, response));
   }
-  if (rve->work.stopped) PetscCall(LamGiveUp(response));
-  response->newton_iterations = rve->work.iterations;
-  response->factorisations = rve->work.factorisations;
+  PetscCall(LamEndResponse(rve, &border->load, state, response));
   PetscCall(LamBorderDestroy(&border));
   PetscFunctionReturn(0);
 }

@@ -287,23 +287,23 @@ static PetscBool EndsInFold(const Search *s)
 static PetscErrorCode GiveReason(const Search *s, LamResponse *response)
 {
   const PetscBool limit = EndsInFold(s);
-  const char *what = limit ? "a limit load lies" : "no stable state was found";
+  const LamStatus status = limit ? LAM_NO_EQUILIBRIUM : LAM_NOT_CONVERGED;
 
   PetscFunctionBeginUser;
-  response->status = limit ? LAM_NO_EQUILIBRIUM : LAM_NOT_CONVERGED;
   if (s->failed == 0.0) /* no solution to continue from */
-    PetscCall(PetscStrncpy(response->reason, s->refusal, sizeof(response->reason)));
+    PetscCall(LamRefuse(response, status, "%s", s->refusal));
   else if (s->first_stiffness <= LAM_MIXED_SOFTEST)
-    PetscCall(PetscSNPrintf(response->reason, sizeof(response->reason),
-                            "the state before is not stable under the prescribed stress (stiffness %.3g C1+C2), and no "
-                            "stable one was found from there: prescribe F",
-                            (double)s->first_stiffness));
+    PetscCall(LamRefuse(response, status,
+                        "the state before is not stable under the prescribed stress (stiffness %.3g C1+C2), and no "
+                        "stable one was found from there: prescribe F",
+                        (double)s->first_stiffness));
   else
-    PetscCall(PetscSNPrintf(response->reason, sizeof(response->reason),
-                            "%s between %.4g and %.4g of the way from the state before; stiffness under the prescribed "
-                            "stress %.3g before, %.3g there (C1+C2)%s%.60s",
-                            what, (double)s->reached, (double)s->failed, (double)s->first_stiffness,
-                            (double)s->stiffness, s->refusal[0] ? "; " : "", s->refusal));
+    PetscCall(LamRefuse(response, status,
+                        "%s between %.4g and %.4g of the way from the state before; stiffness under the prescribed "
+                        "stress %.3g before, %.3g there (C1+C2)%s%.60s",
+                        limit ? "a limit load lies" : "no stable state was found", (double)s->reached,
+                        (double)s->failed, (double)s->first_stiffness, (double)s->stiffness, s->refusal[0] ? "; " : "",
+                        s->refusal));
   PetscFunctionReturn(0);
 }
 

@@ -195,8 +195,8 @@ static PetscErrorCode NameMesh(LamRVE rve, LamResponse *response)
   PetscFunctionBeginUser;
   if (!response->reason[0]) PetscFunctionReturn(0);
   PetscCall(PetscStrncpy(reason, response->reason, sizeof(reason)));
-  PetscCall(PetscSNPrintf(response->reason, sizeof(response->reason), "on %d x %d elements: %s", (int)rve->micro.along,
-                          (int)rve->micro.through, reason));
+  PetscCall(LamRefuse(response, response->status, "on %d x %d elements: %s", (int)rve->micro.along,
+                      (int)rve->micro.through, reason));
   PetscFunctionReturn(0);
 }
 

@@ -100,17 +100,15 @@ PetscBool LamAtRounding(LamRVE rve, PetscReal norm, PetscReal tolerance, PetscRe
   return (PetscBool)(largest <= 500.0 * PETSC_MACHINE_EPSILON * extent && norm <= ROUNDING_MARGIN * tolerance);
 }
 
-PetscErrorCode LamValidStep(LamRVE rve, const LamLoad *load, const LamBorder *border, PetscReal least, PetscReal *alpha)
+PetscReal LamValidStep(LamRVE rve, const LamLoad *load, const LamBorder *border, PetscReal alpha, PetscReal least)
 {
-  PetscFunctionBeginUser;
-  for (; *alpha > least; *alpha *= 0.5) {
-    const LamLoad moved = LamBorderMoved(border, load, *alpha);
+  for (; alpha > least; alpha *= 0.5) {
+    const LamLoad moved = LamBorderMoved(border, load, alpha);
 
-    LamTrialPosition(rve, *alpha);
-    if (LamPositionsAreValid(rve, &moved, rve->trial)) PetscFunctionReturn(0);
+    LamTrialPosition(rve, alpha);
+    if (LamPositionsAreValid(rve, &moved, rve->trial)) return alpha;
   }
-  *alpha = 0.0;
-  PetscFunctionReturn(0);
+  return 0.0;
 }
 
 void LamTakeStep(LamRVE rve, const LamLoad *load, LamBorder *border, PetscReal alpha)
@@ -190,8 +188,7 @@ PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border,
       break;
     }
     if (!(largest < 10.0)) break;
-    alpha = 1.0;
-    PetscCall(LamValidStep(rve, load, border, LAM_LEAST_STEP, &alpha));
+    alpha = LamValidStep(rve, load, border, 1.0, LAM_LEAST_STEP);
     if (alpha == 0.0) break;
     LamTakeStep(rve, load, border, alpha);
   }
@@ -253,7 +250,7 @@ PetscErrorCode LamNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *
   LamSealSetConsistent(rve, load, rve->y);
   (void)LamSetConsistentStresses(rve, load, rve->y);
   PetscCall(LamDescentCreate(rve, &descent));
-  PetscCall(LamDescentKeep(rve, now, &descent));
+  LamDescentKeep(rve, now, &descent);
   PetscCall(PetscMalloc1(rve->linear.n, &mode));
   LamStartMode(rve, mode);
   for (PetscInt it = 0; it < SAFE_ITERATIONS && LamMayIterate(rve); ++it) {

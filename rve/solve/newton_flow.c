@@ -93,8 +93,7 @@ PetscErrorCode LamNewtonFlow(LamRVE rve, const LamLoad *load, LamNewtonOutcome *
     else if (flow.shift > 0.0 && norm < SADDLE_RESIDUAL)
       *outcome = LAM_NEWTON_NEAR_SADDLE;
     if (*outcome != LAM_NEWTON_STALLED) break;
-    alpha = 1.0;
-    PetscCall(LamValidStep(rve, load, NULL, LAM_LEAST_STEP, &alpha));
+    alpha = LamValidStep(rve, load, NULL, 1.0, LAM_LEAST_STEP);
     if (alpha == 0.0) break;
     LamTakeStep(rve, load, NULL, alpha);
     if (!(flow.shift > 0.0)) continue;

@@ -184,29 +184,32 @@ static PetscErrorCode Substeps(LamRVE rve, PetscReal y_from[], const LamLoad *st
 }
 
 /* Status and reason if the path ends before the load. */
-static PetscErrorCode EndOfWay(LamRVE rve, const Way *way, LamStatus *status, char reason[], size_t length)
+static PetscErrorCode EndOfWay(LamRVE rve, const Way *way, LamResponse *response)
 {
   const PetscBool out_of_work = (PetscBool)(rve->work.iterations >= rve->budget);
 
   PetscFunctionBeginUser;
-  *status = LAM_NOT_CONVERGED;
-  if (way->end.collapsed >= 0 && !out_of_work) {
-    *status = LAM_NO_EQUILIBRIUM;
-    PetscCall(LamCollapseReason(way->end.collapsed, way->between, reason, length));
-  } else if (LamIsKinking(&way->kinking)) {
-    *status = LAM_NO_EQUILIBRIUM;
-    PetscCall(LamKinkReason(&way->kinking, way->between[0], reason, length));
-  } else {
-    PetscCall(PetscSNPrintf(reason, length,
-                            "no equilibrium found beyond %.4g of the way from the state before, after %d iterations%s",
-                            (double)way->between[0], (int)rve->work.iterations,
-                            out_of_work ? ": give states in between" : " and the smallest substep"));
-  }
+  if (way->end.collapsed >= 0 && !out_of_work)
+    PetscCall(LamRefuseCollapse(way->end.collapsed, way->between, LAM_NO_EQUILIBRIUM, response));
+  else if (LamIsKinking(&way->kinking))
+    PetscCall(LamRefuseKinks(&way->kinking, way->between[0], LAM_NO_EQUILIBRIUM, response));
+  else
+    PetscCall(LamRefuse(response, LAM_NOT_CONVERGED,
+                        "no equilibrium found beyond %.4g of the way from the state before, after %d iterations%s",
+                        (double)way->between[0], (int)rve->work.iterations,
+                        out_of_work ? ": give states in between" : " and the smallest substep"));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, PetscInt *branch, PetscInt *negative,
-                             LamStatus *status, char reason[], size_t length)
+PetscErrorCode LamRefuseSaddle(LamRVE rve, PetscInt negative, LamResponse *response)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamRefuse(response, LAM_UNSTABLE, "only a saddle was found: %d negative eigenvalues, lowest %.3g (C1+C2)",
+                      (int)negative, (double)rve->lowest_eigenvalue));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
 {
   LamRVEState from;
   PetscReal *saddle;
@@ -216,14 +219,14 @@ PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state,
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(rve->length, &saddle));
   PetscCall(LamTurnedState(rve, state, load, &from));
-  *branch = state->branch;
-  PetscCall(Step(rve, from->y, &from->load, load, PETSC_TRUE, branch, &out));
+  response->branch = state->branch;
+  PetscCall(Step(rve, from->y, &from->load, load, PETSC_TRUE, &response->branch, &out));
   if (!IsStable(&out)) {
     PetscCall(PetscArraycpy(saddle, rve->y, rve->length));
     PetscCall(Substeps(rve, from->y, &from->load, load, &way));
     if (way.between[0] >= 1.0) {
       out = way.end;
-      *branch = way.branch;
+      response->branch = way.branch;
     } else if (out.converged && out.collapsed < 0) { /* no stable state: return the unstable one */
       PetscInt again;
 
@@ -233,14 +236,12 @@ PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state,
   }
   PetscCall(LamRVEStateDestroy(&from));
   PetscCall(PetscFree(saddle));
-  *negative = out.negative;
+  response->negative_eigenvalues = out.negative;
   if (!out.converged || out.collapsed >= 0) {
-    PetscCall(EndOfWay(rve, &way, status, reason, length));
+    PetscCall(EndOfWay(rve, &way, response));
     PetscFunctionReturn(0);
   }
-  *status = out.negative > 0 ? LAM_UNSTABLE : LAM_CONVERGED;
-  if (*status == LAM_UNSTABLE)
-    PetscCall(PetscSNPrintf(reason, length, "only a saddle was found: %d negative eigenvalues, lowest %.3g (C1+C2)",
-                            (int)out.negative, (double)rve->lowest_eigenvalue));
+  response->status = LAM_CONVERGED;
+  if (out.negative > 0) PetscCall(LamRefuseSaddle(rve, out.negative, response));
   PetscFunctionReturn(0);
 }

@@ -189,28 +189,26 @@ PetscErrorCode LamRVEGetUnknowns(LamRVE rve, PetscInt *unknowns)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamCheckLoad(const LamLoad *load, char reason[], size_t length)
+PetscErrorCode LamCheckLoad(const LamLoad *load, LamResponse *response)
 {
   const PetscReal *F = load->F, det = F[0] * F[4] - F[1] * F[3];
+  PetscBool finite = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  reason[0] = '\0';
-  for (PetscInt i = 0; i < 9; ++i)
-    if (PetscIsInfOrNanReal(F[i])) {
-      PetscCall(PetscSNPrintf(reason, length, "F has a component that is not finite"));
-      PetscFunctionReturn(0);
-    }
-  if (PetscIsInfOrNanReal(load->turgor))
-    PetscCall(PetscSNPrintf(reason, length, "turgor is not finite"));
+  for (PetscInt i = 0; i < 9; ++i) finite = (PetscBool)(finite && !PetscIsInfOrNanReal(F[i]));
+  if (!finite)
+    PetscCall(LamRefuse(response, LAM_INVALID_F, "F has a component that is not finite"));
+  else if (PetscIsInfOrNanReal(load->turgor))
+    PetscCall(LamRefuse(response, LAM_INVALID_F, "turgor is not finite"));
   else if (!(load->cohesion >= 0.0) || PetscIsInfOrNanReal(load->cohesion))
-    PetscCall(
-        PetscSNPrintf(reason, length, "cohesion is %g; it must be finite and not negative", (double)load->cohesion));
+    PetscCall(LamRefuse(response, LAM_INVALID_F, "cohesion is %g; it must be finite and not negative",
+                        (double)load->cohesion));
   else if (F[2] != 0.0 || F[5] != 0.0 || F[6] != 0.0 || F[7] != 0.0)
-    PetscCall(PetscSNPrintf(reason, length, "F has out-of-plane shear, which plane strain does not carry"));
+    PetscCall(LamRefuse(response, LAM_INVALID_F, "F has out-of-plane shear, which plane strain does not carry"));
   else if (!(det > 0.0) || !(F[8] > 0.0))
-    PetscCall(PetscSNPrintf(reason, length,
-                            "F turns the tissue inside out: in-plane determinant %g, F33 %g; both must be positive",
-                            (double)det, (double)F[8]));
+    PetscCall(LamRefuse(response, LAM_INVALID_F,
+                        "F turns the tissue inside out: in-plane determinant %g, F33 %g; both must be positive",
+                        (double)det, (double)F[8]));
   PetscFunctionReturn(0);
 }
 
@@ -219,11 +217,9 @@ static PetscErrorCode FillFields(LamRVE rve, const LamLoad *load, LamResponse *r
 {
   PetscFunctionBeginUser;
   if (rve->wanted & (LAM_WANT_STRESS | LAM_WANT_DERIVATIVES)) PetscCall(LamHomogenise(rve, load, response));
-  if (!rve->contact && response->status == LAM_CONVERGED && rve->linear.negative > LamExpectedNegative(rve)) {
-    /* the factorisation assumed to be of a nearby matrix was not */
-    response->status = LAM_UNSTABLE;
-    PetscCall(PetscStrncpy(response->reason, "the state is a saddle", sizeof(response->reason)));
-  }
+  /* the factorisation assumed to be of a nearby matrix was not */
+  if (!rve->contact && response->status == LAM_CONVERGED && rve->linear.negative > LamExpectedNegative(rve))
+    PetscCall(LamRefuse(response, LAM_UNSTABLE, "the state is a saddle"));
   if (rve->wanted & LAM_WANT_WALLS) PetscCall(LamWallMeasures(rve, load, response));
   if (!(rve->wanted & LAM_WANT_INDICATORS)) PetscFunctionReturn(0);
   if (rve->contact) {
@@ -231,7 +227,7 @@ static PetscErrorCode FillFields(LamRVE rve, const LamLoad *load, LamResponse *r
     PetscFunctionReturn(0);
   }
   PetscCall(LamFaceTractions(rve, load, response));
-  PetscCall(LamBondedIndicators(rve, load, response));
+  LamBondedIndicators(rve, load, response);
   PetscFunctionReturn(0);
 }
 
@@ -244,15 +240,16 @@ static PetscErrorCode RefuseCollapsedLumen(LamRVE rve, LamResponse *response)
   PetscFunctionBeginUser;
   if (!LamResponseHasFields(response) || rve->contact) PetscFunctionReturn(0); /* contact solves have checked */
   PetscCall(LamFindCollapsedLumen(rve, rve->y, &cell));
-  if (cell < 0) PetscFunctionReturn(0);
-  response->status = LAM_NOT_CONVERGED;
-  PetscCall(LamCollapseReason(cell, unknown, response->reason, sizeof(response->reason)));
+  if (cell >= 0) PetscCall(LamRefuseCollapse(cell, unknown, LAM_NOT_CONVERGED, response));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamAcceptSolution(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
+PetscErrorCode LamEndResponse(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
 {
   PetscFunctionBeginUser;
+  response->newton_iterations = rve->work.iterations;
+  response->factorisations = rve->work.factorisations;
+  if (rve->work.stopped) PetscCall(LamGiveUp(response));
   PetscCall(RefuseCollapsedLumen(rve, response));
   if (!LamResponseHasFields(response)) PetscFunctionReturn(0);
   PetscCall(FillFields(rve, load, response));
@@ -284,8 +281,7 @@ static PetscErrorCode Follow(LamRVE rve, const LamLoad *load, LamRVEState state,
   if (rve->contact)
     PetscCall(LamContactFollowPath(rve, load, state, response));
   else
-    PetscCall(LamFollowPath(rve, load, state, &response->branch, &response->negative_eigenvalues, &response->status,
-                            response->reason, sizeof(response->reason)));
+    PetscCall(LamFollowPath(rve, load, state, response));
   PetscFunctionReturn(0);
 }
 
@@ -304,8 +300,7 @@ static PetscErrorCode FollowNested(LamRVE rve, const LamLoad *load, LamRVEState 
   if (LamResponseHasFields(&coarse)) {
     if (response->status != LAM_CONVERGED && !rve->work.stopped) PetscCall(Follow(rve, load, state, response));
   } else {
-    response->status = coarse.status;
-    PetscCall(PetscStrncpy(response->reason, coarse.reason, sizeof(response->reason)));
+    PetscCall(LamRefuse(response, coarse.status, "%s", coarse.reason));
   }
   PetscFunctionReturn(0);
 }
@@ -316,19 +311,13 @@ PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, L
 
   PetscFunctionBeginUser;
   PetscCall(LamBeginResponse(rve, load, state, response));
-  PetscCall(LamCheckLoad(load, response->reason, sizeof(response->reason)));
-  if (response->reason[0]) {
-    response->status = LAM_INVALID_F;
-    PetscFunctionReturn(0);
-  }
+  PetscCall(LamCheckLoad(load, response));
+  if (response->status == LAM_INVALID_F) PetscFunctionReturn(0);
   if (LamIsNested(rve, state))
     PetscCall(FollowNested(rve, load, state, response));
   else
     PetscCall(Follow(rve, load, state, response));
-  if (rve->work.stopped) PetscCall(LamGiveUp(response));
-  PetscCall(LamAcceptSolution(rve, load, state, response));
-  response->newton_iterations = rve->work.iterations;
-  response->factorisations = rve->work.factorisations;
+  PetscCall(LamEndResponse(rve, load, state, response));
   response->seconds = LamClock() - begin;
   PetscFunctionReturn(0);
 }

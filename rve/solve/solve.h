@@ -41,10 +41,10 @@ PetscErrorCode LamFactorPositive(LamRVE rve, PetscReal least, PetscReal *last_sh
 PetscErrorCode LamSolveStep(LamRVE rve, LamBorder *border);
 /* rve->trial := positions rve->y + alpha rve->step */
 void LamTrialPosition(LamRVE rve, PetscReal alpha);
-/* Halves *alpha until rve->y + alpha rve->step inverts no element volume; 0: none above `least`. */
+/* The first of alpha, alpha/2, ... for which rve->y + alpha rve->step inverts no element volume; 0: none above `least`.
+ */
 #define LAM_LEAST_STEP 0.01 /* least share of a step of bonded tissue */
-PetscErrorCode LamValidStep(LamRVE rve, const LamLoad *load, const LamBorder *border, PetscReal least,
-                            PetscReal *alpha);
+PetscReal LamValidStep(LamRVE rve, const LamLoad *load, const LamBorder *border, PetscReal alpha, PetscReal least);
 /* Updates positions, independent stresses and the border by alpha times the step. */
 void LamTakeStep(LamRVE rve, const LamLoad *load, LamBorder *border, PetscReal alpha);
 /* Whether a step is at rounding level, so that the iteration ends although the residual, in which large stresses
@@ -80,7 +80,7 @@ LamMerit LamMeritOf(LamRVE rve, PetscReal energy);
 /* If a line search is due: halves the step until the merit decreases sufficiently; *alpha = 0 if it does not. */
 PetscErrorCode LamDescentSearch(LamRVE rve, const LamLoad *load, LamMerit now, LamDescent *descent, PetscReal *alpha);
 /* Stores the present point as the best one. */
-PetscErrorCode LamDescentKeep(LamRVE rve, LamMerit merit, LamDescent *descent);
+void LamDescentKeep(LamRVE rve, LamMerit merit, LamDescent *descent);
 /* Stores the point of least merit; returns to it after too many steps without decrease. *moved: rve->y was reset. */
 PetscErrorCode LamDescentWatch(LamRVE rve, const LamLoad *load, LamMerit now, PetscBool valid, LamDescent *descent,
                                PetscBool *moved);
@@ -96,8 +96,9 @@ void LamMoveAffinely(LamRVE rve, const PetscReal from[], const LamLoad *load_fro
 LamLoad LamLoadBetween(const LamLoad *a, const LamLoad *b, PetscReal t);
 /* Finds a stable equilibrium at `load` by continuation from `state`; returns it in rve->y with the consistent tangent
    factored. */
-PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, PetscInt *branch, PetscInt *negative,
-                             LamStatus *status, char reason[], size_t length);
+PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
+
+PetscErrorCode LamRefuseSaddle(LamRVE rve, PetscInt negative, LamResponse *response);
 
 /* ---- contact_step.c ---- */
 #define LAM_CONTACT_PROXIMAL 1e-8 /* shift of every contact step; keeps the matrix regular if a cell has no contact */
@@ -154,14 +155,14 @@ PetscBool LamIsNested(LamRVE rve, const LamRVEState state);
 PetscErrorCode LamNestedStart(LamRVE rve, const LamLoad *load, LamRVEState start, LamResponse *coarse_response);
 
 /* ---- rve.c ---- */
-/* Checks a load for plane-strain tissue. reason: empty if it is valid. */
-PetscErrorCode LamCheckLoad(const LamLoad *load, char reason[], size_t length);
+/* Checks a load for plane-strain tissue; an invalid one is refused. */
+PetscErrorCode LamCheckLoad(const LamLoad *load, LamResponse *response);
 /* Initialises the response and the solver's work data. Resets everything left by the previous solve, so that a result
    depends on load and state alone. */
 PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
-/* Completes a response whose status says that rve->y (and the multipliers) solve `load`, with the consistent tangent
+/* Completes a response. If its status says that rve->y (and the multipliers) solve `load`, with the consistent tangent
    factored: fills its fields and stores the solution in `state`. Rejects the solution if a lumen has collapsed. */
-PetscErrorCode LamAcceptSolution(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
+PetscErrorCode LamEndResponse(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
 /* A set-up RVE with another microstructure or mesh and, apart from `wanted`, the settings of `rve`. */
 PetscErrorCode LamRVECreateLike(LamRVE rve, const LamMicrostructure *micro, LamWanted wanted, LamRVE *like);
 
