@@ -3,35 +3,6 @@
 #define OVERHANG 0.4      /* half-edges by which a hat's centre may lie outside the overlap */
 #define LEAST_WEIGHT 1e-3 /* fraction of a full hat; hats of smaller weight have no multiplier */
 
-/* Outer nodes of face k of a cell, counter-clockwise. */
-static void ChainNodes(const LamMesh *mesh, PetscInt cell, PetscInt k, PetscInt nodes[])
-{
-  for (PetscInt i = 0; i <= 2 * mesh->along; ++i) nodes[i] = LamMeshOuterNode(mesh, cell, 2 * mesh->along * k + i);
-}
-
-/* Finds the matrix indices of the entries of each face. */
-static void FindPositions(const LamLinear *linear, LamContact *contact)
-{
-  const PetscInt dofs = contact->dofs, pairs = dofs * (dofs + 1) / 2;
-
-  for (PetscInt f = 0; f < contact->face_count; ++f) {
-    PetscInt *unknown = &contact->unknown[f * dofs], *position = &contact->position[f * pairs];
-
-    for (PetscInt i = 0; i < dofs; ++i) {
-      const PetscInt class = contact->classes[f * contact->chain + i / 2];
-
-      unknown[i] = class == 0 ? -1 : 2 * (class - 1) + i % 2;
-    }
-    for (PetscInt i = 0, pair = 0; i < dofs; ++i)
-      for (PetscInt j = i; j < dofs; ++j, ++pair) position[pair] = LamLinearEntry(linear, unknown[i], unknown[j]);
-    for (PetscInt h = f * contact->hats; h < (f + 1) * contact->hats; ++h) {
-      contact->diagonal[h] = LamLinearEntry(linear, linear->positions + h, linear->positions + h);
-      for (PetscInt i = 0; i < dofs; ++i)
-        contact->coupling[h * dofs + i] = LamLinearEntry(linear, unknown[i], linear->positions + h);
-    }
-  }
-}
-
 static PetscInt CountFaces(const LamMesh *mesh)
 {
   PetscInt count = 0;
@@ -68,18 +39,18 @@ static void PlaceFaces(const LamMicrostructure *micro, const LamMesh *mesh, LamC
   for (PetscInt cell = 0; cell < mesh->cell_count; ++cell)
     for (PetscInt k = 0; k < 3; ++k) {
       const PetscReal *image;
-      const PetscInt other = LamMeshNeighbour(mesh, cell, k, &image);
-      PetscInt *nodes = &contact->nodes[f * contact->chain];
+      const PetscInt other = LamMeshNeighbour(mesh, cell, k, &image), last = 2 * mesh->along;
 
       if (other < 0) continue;
       contact->faces[f] = NewFace(micro, mesh, cell, k, contact->hats);
-      ChainNodes(mesh, cell, k, nodes);
-      ChainNodes(mesh, other, k + 3, nodes + contact->hats);
       for (PetscInt i = 0; i < contact->chain; ++i) {
-        contact->classes[f * contact->chain + i] = mesh->node_class[nodes[i]];
+        const PetscBool slave = (PetscBool)(i < contact->hats);
+        const PetscInt node = slave ? LamMeshOuterNode(mesh, cell, last * k + i)
+                                    : LamMeshOuterNode(mesh, other, last * (k + 3) + i - contact->hats);
+
+        contact->classes[f * contact->chain + i] = mesh->node_class[node];
         for (PetscInt d = 0; d < 2; ++d)
-          contact->shift[2 * (f * contact->chain + i) + d] =
-              mesh->shift[2 * nodes[i] + d] + (i < contact->hats ? 0.0 : image[d]);
+          contact->shift[2 * (f * contact->chain + i) + d] = mesh->shift[2 * node + d] + (slave ? 0.0 : image[d]);
       }
       ++f;
     }
@@ -101,8 +72,7 @@ PetscErrorCode LamContactCreate(const LamMicrostructure *micro, const LamMesh *m
   PetscCheck((PetscReal)contact->face_count * contact->dofs * contact->dofs < PETSC_MAX_INT, PETSC_COMM_SELF,
              PETSC_ERR_USER_INPUT, "%d cells with %d elements along a face are too many for one RVE",
              (int)mesh->cell_count, (int)along);
-  PetscCall(PetscMalloc5(contact->face_count, &contact->faces, contact->face_count * contact->chain, &contact->nodes,
-                         contact->face_count * contact->chain, &contact->classes,
+  PetscCall(PetscMalloc4(contact->face_count, &contact->faces, contact->face_count * contact->chain, &contact->classes,
                          2 * contact->face_count * contact->chain, &contact->shift, along, &contact->J0));
   PetscCall(PetscCalloc4(contact->count, &contact->lambda, contact->count, &contact->gap, contact->count,
                          &contact->weight, contact->count, &contact->active));
@@ -120,13 +90,22 @@ PetscErrorCode LamContactCreate(const LamMicrostructure *micro, const LamMesh *m
 
 PetscErrorCode LamContactSetMatrix(const LamLinear *linear, LamContact *contact)
 {
-  const PetscInt pairs = contact->dofs * (contact->dofs + 1) / 2;
+  const PetscInt dofs = contact->dofs, pairs = dofs * (dofs + 1) / 2;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(contact->face_count * pairs, &contact->position, contact->count * contact->dofs,
-                         &contact->coupling, contact->count, &contact->diagonal, contact->face_count * contact->dofs,
-                         &contact->unknown));
-  FindPositions(linear, contact);
+  PetscCall(PetscMalloc2(contact->face_count * pairs, &contact->position, contact->count * dofs, &contact->coupling));
+  for (PetscInt f = 0, entry = 0; f < contact->face_count; ++f) {
+    const PetscInt *classes = &contact->classes[f * contact->chain];
+
+    for (PetscInt i = 0; i < dofs; ++i)
+      for (PetscInt j = i; j < dofs; ++j)
+        contact->position[entry++] =
+            LamLinearEntry(linear, LamUnknown(classes[i / 2], i % 2), LamUnknown(classes[j / 2], j % 2));
+    for (PetscInt h = f * contact->hats; h < (f + 1) * contact->hats; ++h)
+      for (PetscInt i = 0; i < dofs; ++i)
+        contact->coupling[h * dofs + i] =
+            LamLinearEntry(linear, LamUnknown(classes[i / 2], i % 2), linear->positions + h);
+  }
   LamGapAreaSetMatrix(linear, &contact->gaps);
   PetscFunctionReturn(0);
 }
@@ -138,10 +117,10 @@ PetscErrorCode LamContactDestroy(LamContact **contact)
   PetscCall(LamMortarSegmentsDestroy(&(*contact)->segments));
   PetscCall(LamMortarResultDestroy(&(*contact)->result));
   PetscCall(LamGapAreaDestroy(&(*contact)->gaps));
-  PetscCall(PetscFree5((*contact)->faces, (*contact)->nodes, (*contact)->classes, (*contact)->shift, (*contact)->J0));
+  PetscCall(PetscFree4((*contact)->faces, (*contact)->classes, (*contact)->shift, (*contact)->J0));
   PetscCall(PetscFree4((*contact)->lambda, (*contact)->gap, (*contact)->weight, (*contact)->active));
   PetscCall(PetscFree3((*contact)->rows, (*contact)->hessian, (*contact)->held));
-  PetscCall(PetscFree4((*contact)->position, (*contact)->coupling, (*contact)->diagonal, (*contact)->unknown));
+  PetscCall(PetscFree2((*contact)->position, (*contact)->coupling));
   PetscCall(PetscFree(*contact));
   PetscFunctionReturn(0);
 }
@@ -151,13 +130,8 @@ static void GatherChains(LamRVE rve, const PetscReal F[9], const PetscReal y[], 
 {
   const LamContact *contact = rve->contact;
 
-  for (PetscInt i = 0; i < contact->chain; ++i) {
-    const PetscInt k = f * contact->chain + i;
-    const PetscReal *S = &contact->shift[2 * k], *position = &y[2 * contact->classes[k]];
-
-    x[i][0] = position[0] + F[0] * S[0] + F[1] * S[1];
-    x[i][1] = position[1] + F[3] * S[0] + F[4] * S[1];
-  }
+  for (PetscInt i = 0, k = f * contact->chain; i < contact->chain; ++i, ++k)
+    LamImagePosition(F, y, contact->classes[k], &contact->shift[2 * k], x[i]);
 }
 
 LamMortarChains LamContactChains(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt f, PetscReal x[][2])
@@ -360,7 +334,7 @@ void LamContactSetRows(LamRVE rve, PetscReal compliance)
     const PetscInt *coupling = &contact->coupling[h * dofs];
     const PetscReal *row = &contact->rows[h * dofs];
 
-    values[contact->diagonal[h]] = contact->active[h] ? -compliance * contact->weight[h] : 1.0;
+    values[rve->linear.row[rve->linear.positions + h]] = contact->active[h] ? -compliance * contact->weight[h] : 1.0;
     for (PetscInt i = 0; i < dofs; ++i)
       if (coupling[i] >= 0) values[coupling[i]] = contact->active[h] ? -row[i] : 0.0;
   }

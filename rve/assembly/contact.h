@@ -35,8 +35,7 @@ typedef struct {
   PetscInt dofs;       /* 2 chain */
   PetscInt count;      /* multipliers: face_count * hats; of face f: f * hats + j */
   LamContactFace *faces;
-  PetscInt *nodes;   /* [face][chain] mesh nodes, counter-clockwise each */
-  PetscInt *classes; /* [face][chain] their classes */
+  PetscInt *classes; /* [face][chain] classes of the nodes, counter-clockwise each */
   PetscReal *shift;  /* [face][chain][2] of the nodes: x = y_class + F shift */
   LamGapArea gaps;
   PetscReal *J0;              /* [along] reference lengths of the edges of a face */
@@ -52,8 +51,6 @@ typedef struct {
   PetscReal hysteresis;       /* hysteresis of the junction status, in half-edges */
   PetscInt *position;         /* [face][dofs (dofs + 1)/2]: matrix index of pairs of dofs, row by row */
   PetscInt *coupling;         /* [count][dofs]: matrix index of dof and multiplier */
-  PetscInt *diagonal;         /* [count] */
-  PetscInt *unknown;          /* [face][dofs] */
   LamMortarSegments segments; /* work space */
   LamMortarResult result;
 } LamContact;

@@ -83,6 +83,10 @@ struct LamRVE_s {
   PetscInt zero_modes;         /* of the consistent tangent last factored */
 };
 
+static inline const LamWall *LamCellWall(const LamMicrostructure *micro, PetscInt cell)
+{
+  return micro->cell ? &micro->cell[cell].wall : &micro->wall;
+}
 /* Law and wall of the cell that an element belongs to. */
 static inline const LamWallLaw *LamLawOf(LamRVE rve, PetscInt element)
 {
@@ -90,7 +94,7 @@ static inline const LamWallLaw *LamLawOf(LamRVE rve, PetscInt element)
 }
 static inline const LamWall *LamWallOf(LamRVE rve, PetscInt element)
 {
-  return rve->micro.cell ? &rve->micro.cell[rve->mesh.cell_of[element]].wall : &rve->micro.wall;
+  return LamCellWall(&rve->micro, rve->mesh.cell_of[element]);
 }
 /* Turgor of a cell relative to that of the load. */
 static inline PetscReal LamTurgorFactor(LamRVE rve, PetscInt cell)
@@ -118,10 +122,14 @@ static inline PetscReal LamFaceThickness(LamRVE rve, PetscInt a, PetscInt b)
 
 static inline void LamNodePosition(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt node, PetscReal x[2])
 {
-  const PetscReal *S = &rve->mesh.shift[2 * node], *position = &y[2 * rve->mesh.node_class[node]];
+  LamImagePosition(F, y, rve->mesh.node_class[node], &rve->mesh.shift[2 * node], x);
+}
+/* Sets y so that a node of the mesh is at x. */
+static inline void LamPlaceNode(LamRVE rve, const PetscReal F[9], PetscInt node, const PetscReal x[2], PetscReal y[])
+{
+  const PetscReal *S = &rve->mesh.shift[2 * node];
 
-  x[0] = position[0] + F[0] * S[0] + F[1] * S[1];
-  x[1] = position[1] + F[3] * S[0] + F[4] * S[1];
+  for (PetscInt d = 0; d < 2; ++d) y[2 * rve->mesh.node_class[node] + d] = x[d] - F[3 * d] * S[0] - F[3 * d + 1] * S[1];
 }
 
 /* ---- assembly.c ---- */

@@ -202,13 +202,10 @@ PetscErrorCode LamMeshCreate(const LamMicrostructure *micro, LamMesh *mesh)
   mesh->element_count = mesh->cell_count * LAM_FACES * micro->along * micro->through;
   mesh->apothem = LamOuterApothem(micro);
   mesh->V0 = 2.0 * PetscSqrtReal(3.0) * (PetscReal)mesh->cell_count;
-  PetscCall(PetscMalloc1(mesh->along + 1, &mesh->ends));
-  PetscCall(PetscMalloc1(2 * mesh->node_count, &mesh->X));
-  PetscCall(PetscMalloc1(LAM_ELEMENT_NODES * mesh->element_count, &mesh->elements));
-  PetscCall(PetscMalloc1(mesh->element_count, &mesh->cell_of));
-  PetscCall(PetscMalloc1(mesh->node_count, &mesh->node_class));
-  PetscCall(PetscMalloc1(2 * mesh->node_count, &mesh->shift));
-  PetscCall(PetscMalloc1(mesh->element_count, &mesh->has_shift));
+  PetscCall(PetscMalloc7(mesh->along + 1, &mesh->ends, 2 * mesh->node_count, &mesh->X,
+                         LAM_ELEMENT_NODES * mesh->element_count, &mesh->elements, mesh->element_count, &mesh->cell_of,
+                         mesh->node_count, &mesh->node_class, 2 * mesh->node_count, &mesh->shift, mesh->element_count,
+                         &mesh->has_shift));
   PetscCall(PetscCalloc3(LAM_FACES * mesh->cell_count, &mesh->neighbour, 2 * LAM_FACES * mesh->cell_count, &mesh->image,
                          LAM_FACES * mesh->cell_count, &mesh->held));
   PlaceEnds(micro->grading, mesh);
@@ -226,13 +223,8 @@ PetscErrorCode LamMeshCreate(const LamMicrostructure *micro, LamMesh *mesh)
 PetscErrorCode LamMeshDestroy(LamMesh *mesh)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree(mesh->ends));
-  PetscCall(PetscFree(mesh->X));
-  PetscCall(PetscFree(mesh->elements));
-  PetscCall(PetscFree(mesh->cell_of));
-  PetscCall(PetscFree(mesh->node_class));
-  PetscCall(PetscFree(mesh->shift));
-  PetscCall(PetscFree(mesh->has_shift));
+  PetscCall(
+      PetscFree7(mesh->ends, mesh->X, mesh->elements, mesh->cell_of, mesh->node_class, mesh->shift, mesh->has_shift));
   PetscCall(PetscFree(mesh->class_X));
   PetscCall(PetscFree3(mesh->neighbour, mesh->image, mesh->held));
   PetscFunctionReturn(0);

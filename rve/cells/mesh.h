@@ -99,6 +99,18 @@ static inline PetscInt LamMeshOuterNode(const LamMesh *mesh, PetscInt cell, Pets
 {
   return (cell * mesh->ring_nodes + around % mesh->ring_nodes) * mesh->radial_nodes + mesh->radial_nodes - 1;
 }
+/* Position of an image of a class: x = y_class + F S. */
+static inline void LamImagePosition(const PetscReal F[9], const PetscReal y[], PetscInt class, const PetscReal S[2],
+                                    PetscReal x[2])
+{
+  x[0] = y[2 * class] + F[0] * S[0] + F[1] * S[1];
+  x[1] = y[2 * class + 1] + F[3] * S[0] + F[4] * S[1];
+}
+/* Number of an unknown position; negative: prescribed. */
+static inline PetscInt LamUnknown(PetscInt class, PetscInt component)
+{
+  return 2 * (class - 1) + component;
+}
 static inline PetscInt LamMeshFaceOfElement(const LamMesh *mesh, PetscInt e)
 {
   return (e / (mesh->along * mesh->through)) % LAM_FACES;

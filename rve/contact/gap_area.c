@@ -11,7 +11,6 @@
 */
 #include "gap_area.h"
 #include "edge_area.h"
-#include "gap_area.h"
 
 /* A node of a face of a cell or of its image. */
 typedef struct {
@@ -115,16 +114,8 @@ void LamGapAreaSetMatrix(const LamLinear *linear, LamGapArea *area)
     LamGapPair *pair = &area->pairs[k];
 
     for (PetscInt i = 0; i < 2; ++i)
-      pair->entry[i] =
-          pair->a == 0 || pair->b == 0 ? -1 : LamLinearEntry(linear, 2 * (pair->a - 1) + i, 2 * (pair->b - 1) + 1 - i);
+      pair->entry[i] = LamLinearEntry(linear, LamUnknown(pair->a, i), LamUnknown(pair->b, 1 - i));
   }
-}
-
-/* Position of one end of a pair. */
-static void Place(const PetscReal F[9], const PetscReal y[], PetscInt class, const PetscReal S[2], PetscReal x[2])
-{
-  x[0] = y[2 * class] + F[0] * S[0] + F[1] * S[1];
-  x[1] = y[2 * class + 1] + F[3] * S[0] + F[4] * S[1];
 }
 
 PetscReal LamGapAreaEvaluate(const LamGapArea *area, const PetscReal F[9], const PetscReal y[], PetscReal *plain)
@@ -135,8 +126,8 @@ PetscReal LamGapAreaEvaluate(const LamGapArea *area, const PetscReal F[9], const
     const LamGapPair *pair = &area->pairs[k];
     PetscReal a[2], b[2], value;
 
-    Place(F, y, pair->a, pair->Sa, a);
-    Place(F, y, pair->b, pair->Sb, b);
+    LamImagePosition(F, y, pair->a, pair->Sa, a);
+    LamImagePosition(F, y, pair->b, pair->Sb, b);
     value = pair->c * (a[0] * b[1] - a[1] * b[0]);
     sum += pair->cohesion * value;
     all += value;
@@ -153,8 +144,8 @@ void LamGapAreaAddGradient(const LamGapArea *area, const PetscReal F[9], const P
     const PetscReal c = factor * pair->cohesion * pair->c;
     PetscReal a[2], b[2];
 
-    Place(F, y, pair->a, pair->Sa, a);
-    Place(F, y, pair->b, pair->Sb, b);
+    LamImagePosition(F, y, pair->a, pair->Sa, a);
+    LamImagePosition(F, y, pair->b, pair->Sb, b);
     gradient[2 * pair->a] += c * b[1];
     gradient[2 * pair->a + 1] -= c * b[0];
     gradient[2 * pair->b] -= c * a[1];
@@ -184,8 +175,8 @@ void LamGapAreaAddShifts(const LamGapArea *area, const PetscReal F[9], const Pet
     const PetscReal c = factor * pair->cohesion * pair->c;
     PetscReal a[2], b[2];
 
-    Place(F, y, pair->a, pair->Sa, a);
-    Place(F, y, pair->b, pair->Sb, b);
+    LamImagePosition(F, y, pair->a, pair->Sa, a);
+    LamImagePosition(F, y, pair->b, pair->Sb, b);
     for (PetscInt q = 0; q < 4; ++q) {
       const PetscInt k = q / 2, l = q % 2;
 

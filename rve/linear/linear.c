@@ -75,7 +75,7 @@ static PetscInt FirstUnknown(const LamLinear *linear, const Pairs *pairs, PetscI
   const PetscInt coupling = group - pairs->classes, lumen = coupling - pairs->couplings;
 
   *size = 2;
-  if (coupling < 0) return 2 * (group - 1);
+  if (coupling < 0) return LamUnknown(group, 0);
   *size = lumen < 0 ? (linear->pressures - linear->positions) / pairs->couplings : 1;
   return lumen < 0 ? linear->positions + coupling * *size : linear->pressures + lumen;
 }
@@ -151,11 +151,11 @@ PetscErrorCode LamLinearCreate(const LamMesh *mesh, const LamCouplings *coupling
   for (PetscInt e = 0; e < mesh->element_count; ++e)
     for (PetscInt i = 0, pair = 0; i < LAM_ELEMENT_DOFS; ++i)
       for (PetscInt j = i; j < LAM_ELEMENT_DOFS; ++j, ++pair) {
-        const PetscInt ci = mesh->node_class[mesh->elements[LAM_ELEMENT_NODES * e + i / 2]];
-        const PetscInt cj = mesh->node_class[mesh->elements[LAM_ELEMENT_NODES * e + j / 2]];
+        const PetscInt *nodes = &mesh->elements[LAM_ELEMENT_NODES * e];
 
         linear->position[LAM_PAIRS * e + pair] =
-            ci == 0 || cj == 0 ? -1 : LamLinearEntry(linear, 2 * (ci - 1) + i % 2, 2 * (cj - 1) + j % 2);
+            LamLinearEntry(linear, LamUnknown(mesh->node_class[nodes[i / 2]], i % 2),
+                           LamUnknown(mesh->node_class[nodes[j / 2]], j % 2));
       }
   PetscFunctionReturn(0);
 }

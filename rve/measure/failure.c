@@ -41,6 +41,15 @@ static void SetShares(PetscReal share[SAMPLES][3])
       share[s][g] = QuadraticIntegral(g, -1.0 + 2.0 * (PetscReal)(s + 1) / SAMPLES) / QuadraticIntegral(g, 1.0);
 }
 
+static void WallPoints(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscInt e, LamWallPoint points[LAM_GAUSS])
+{
+  PetscReal u[LAM_ELEMENT_NODES][2];
+
+  LamGatherDisplacements(rve, load->F, y, e, u);
+  LamElementWallPoints(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, load->F[8],
+                       points);
+}
+
 /* Integrals through the wall at the three Gauss points along the face of element column i; adds the kinked volume. */
 static void SumThroughWall(LamRVE rve, const LamLoad *load, PetscInt cell, PetscInt face, PetscInt i,
                            PetscReal column[3][INTEGRALS], PetscReal *kinked)
@@ -51,12 +60,9 @@ static void SumThroughWall(LamRVE rve, const LamLoad *load, PetscInt cell, Petsc
     for (PetscInt q = 0; q < INTEGRALS; ++q) column[h][q] = 0.0;
   for (PetscInt m = 0; m < rve->mesh.through; ++m) {
     const PetscInt e = LamMeshElement(&rve->mesh, cell, face, i, m);
-    PetscReal u[LAM_ELEMENT_NODES][2];
     LamWallPoint points[LAM_GAUSS];
 
-    LamGatherDisplacements(rve, load->F, rve->y, e, u);
-    LamElementWallPoints(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, load->F[8],
-                         points);
+    WallPoints(rve, load, rve->y, e, points);
     for (PetscInt g = 0; g < LAM_GAUSS; ++g) { /* g / 3 counts along the face, g % 3 through the wall */
       PetscReal *sum = column[g / 3];
 
@@ -126,28 +132,20 @@ PetscErrorCode LamWallMeasures(LamRVE rve, const LamLoad *load, LamResponse *res
   PetscFunctionReturn(0);
 }
 
-void LamFindKinks(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *share)
+void LamWatchKinks(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal t, LamKinking *kinking)
 {
   PetscReal kinked = 0.0, all = 0.0;
 
   for (PetscInt e = 0; e < rve->mesh.element_count; ++e) {
-    PetscReal u[LAM_ELEMENT_NODES][2];
     LamWallPoint points[LAM_GAUSS];
 
-    LamGatherDisplacements(rve, load->F, y, e, u);
-    LamElementWallPoints(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, load->F[8],
-                         points);
+    WallPoints(rve, load, y, e, points);
     for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
       kinked += points[g].kinked;
       all += points[g].reference;
     }
   }
-  *share = kinked / all;
-}
-
-void LamWatchKinks(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal t, LamKinking *kinking)
-{
-  LamFindKinks(rve, load, y, &kinking->share);
+  kinking->share = kinked / all;
   if (kinking->share <= LAM_KINKED_SHARE)
     kinking->between[0] = kinking->between[1] = t;
   else if (!LamIsKinking(kinking))

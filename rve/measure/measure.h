@@ -61,11 +61,9 @@ void LamTakeLargestMean(const LamMesh *mesh, PetscReal thickness, PetscInt cell,
 PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, LamResponse *response);
 /* Sets the wall measures of the response from rve->y. */
 PetscErrorCode LamWallMeasures(LamRVE rve, const LamLoad *load, LamResponse *response);
-/* Volume fraction of the walls that has lost ellipticity at positions y (wall_ellipticity.h). */
-void LamFindKinks(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *share);
-/* Loss of ellipticity of the walls along a load path: the path fractions between which it first occurs, and the volume
-   fraction affected at the last stable state. If walls kink, the end of the path is attributed to that: where it ends
-   then depends on the mesh. */
+/* Loss of ellipticity of the walls (wall_ellipticity.h) along a load path: the path fractions between which it first
+   occurs, and the volume fraction affected at the last stable state. If walls kink, the end of the path is attributed
+   to that: where it ends then depends on the mesh. */
 typedef struct {
   PetscReal between[2]; /* equal: no loss; the first below 0: lost before the path starts */
   PetscReal share;      /* volume fraction of the walls */

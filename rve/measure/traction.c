@@ -10,6 +10,7 @@
   corners diverge under refinement; averages over a length of one wall thickness converge.
 */
 #include "measure.h"
+#include "mortar_impl.h"
 #include <petscblaslapack.h>
 
 #define SAMPLES 8 /* per edge: sub-intervals of the running integrals */
@@ -56,24 +57,19 @@ static void FaceLoads(LamRVE rve, const LamLoad *load, const PetscReal force[], 
     const PetscInt node = LamMeshOuterNode(mesh, cell, last * face + i);
     const PetscInt opposite = LamMeshOuterNode(mesh, other, last * (face + 4) - i);
     const PetscReal share = IsJunctionOfThree(mesh, cell, face, i) ? 3.0 : 2.0;
-    const PetscReal *S = &mesh->shift[2 * node], *position = &rve->y[2 * mesh->node_class[node]];
 
-    for (PetscInt d = 0; d < 2; ++d) {
-      x[i][d] = position[d] + load->F[3 * d] * S[0] + load->F[3 * d + 1] * S[1];
-      f[i][d] = (force[2 * node + d] - force[2 * opposite + d]) / share;
-    }
+    LamNodePosition(rve, load->F, rve->y, node, x[i]);
+    for (PetscInt d = 0; d < 2; ++d) f[i][d] = (force[2 * node + d] - force[2 * opposite + d]) / share;
   }
 }
 
 /* Quadratic edge functions at xi in [-1, 1], and the current tangent dx/dxi. */
 static void EdgePoint(const PetscReal x[][2], PetscReal xi, PetscReal N[3], PetscReal tangent[2])
 {
-  const PetscReal d[3] = {xi - 0.5, -2.0 * xi, xi + 0.5};
+  PetscReal dN[3];
 
-  N[0] = 0.5 * xi * (xi - 1.0);
-  N[1] = 1.0 - xi * xi;
-  N[2] = 0.5 * xi * (xi + 1.0);
-  for (PetscInt k = 0; k < 2; ++k) tangent[k] = d[0] * x[0][k] + d[1] * x[1][k] + d[2] * x[2][k];
+  LamEdgeShape(xi, N, dN);
+  LamEdgeSum(x, dN, tangent);
 }
 
 /* Whether node i of a face is prescribed at F X: its force then contains the reaction, which does not belong to the

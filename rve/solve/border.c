@@ -46,10 +46,10 @@ PetscErrorCode LamBorderAssemble(LamRVE rve, LamBorder *border, PetscReal *norm)
   for (PetscInt k = 0; k < border->count; ++k) {
     const PetscReal *R = border->R + border->q[k] * n + rve->linear.positions;
 
-    border->residual[k] = border->rest[k] = Lq[border->q[k]] - rve->mesh.V0 * border->P[k];
+    border->rest[k] = Lq[border->q[k]] - rve->mesh.V0 * border->P[k];
+    sum += PetscSqr(border->rest[k]);
     for (PetscInt h = 0; h < multipliers; ++h) /* multipliers enter L by -lambda G, so L_q by lambda R */
       if (rve->contact->active[h]) border->rest[k] -= rve->contact->lambda[h] * R[h];
-    sum += PetscSqr(border->residual[k]);
   }
   *norm = PetscSqrtReal(sum);
   PetscFunctionReturn(0);

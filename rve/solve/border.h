@@ -15,12 +15,11 @@
 #include "measure.h"
 
 typedef struct {
-  LamLoad load;                    /* of the iterate, with its current F */
-  PetscInt count;                  /* number of free components */
-  PetscInt q[LAM_F_COUNT];         /* [count] their indices, of LAM_F_COUNT */
-  PetscReal P[LAM_F_COUNT];        /* [count] prescribed stress */
-  PetscReal residual[LAM_F_COUNT]; /* [count] L_q - V0 P at the iterate */
-  PetscReal rest[LAM_F_COUNT]; /* [count] the same without the multiplier terms: right-hand side of the linear system */
+  LamLoad load;                /* of the iterate, with its current F */
+  PetscInt count;              /* number of free components */
+  PetscInt q[LAM_F_COUNT];     /* [count] their indices, of LAM_F_COUNT */
+  PetscReal P[LAM_F_COUNT];    /* [count] prescribed stress */
+  PetscReal rest[LAM_F_COUNT]; /* [count] L_q - V0 P at the iterate, without the multiplier terms */
   PetscReal Lqq[LAM_F_COUNT][LAM_F_COUNT];
   PetscReal *R;              /* [LAM_F_COUNT][n] */
   PetscReal *rhs, *solution; /* [count + 1][n] */

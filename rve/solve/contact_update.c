@@ -42,7 +42,7 @@ static void SetColumn(LamRVE rve, PetscInt hat, PetscBool taken, PetscReal colum
 
   if (!taken) column[rve->linear.positions + hat] = 1.0;
   for (PetscInt i = 0; i < contact->dofs && taken; ++i)
-    if (classes[i / 2] > 0) column[2 * (classes[i / 2] - 1) + i % 2] -= row[i];
+    if (classes[i / 2] > 0) column[LamUnknown(classes[i / 2], i % 2)] -= row[i];
 }
 
 /* mu = S^-1 r by the eigenvectors of S; positive: number of positive eigenvalues. *ok: S is not singular. */

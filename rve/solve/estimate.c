@@ -72,12 +72,10 @@ static void RestrictPositions(LamRVE fine, LamRVEState from, LamRVE coarse, LamR
   for (PetscInt i = 0; i < c->cell_count * c->ring_nodes; ++i)
     for (PetscInt r = 0; r < c->radial_nodes; ++r) {
       const PetscInt node = i * c->radial_nodes + r, same = 2 * i * f->radial_nodes + r * step;
-      const PetscReal *S = &c->shift[2 * node], *F = from->load.F;
       PetscReal x[2];
 
-      LamNodePosition(fine, F, from->y, same, x);
-      for (PetscInt d = 0; d < 2; ++d)
-        to->y[2 * c->node_class[node] + d] = x[d] - F[3 * d] * S[0] - F[3 * d + 1] * S[1];
+      LamNodePosition(fine, from->load.F, from->y, same, x);
+      LamPlaceNode(coarse, from->load.F, node, x, to->y);
     }
 }
 
@@ -130,7 +128,7 @@ static PetscReal Coarseness(LamRVE rve, const PetscReal F[9])
                                   STRAINED * LargestStrain(F) / (PetscReal)micro->along);
 
   for (PetscInt c = 0; c < rve->mesh.cell_count; ++c) {
-    const LamWall *wall = micro->cell ? &micro->cell[c].wall : &micro->wall;
+    const LamWall *wall = LamCellWall(micro, c);
     const PetscReal thickness = LamWallThickness(micro, c);
 
     coarseness = PetscMax(coarseness, thickness / (through * (rve->mesh.apothem - thickness)) / DEEP);

@@ -10,19 +10,24 @@
   does not use this method.
 */
 #include "contact_path.h"
+#include "mortar_impl.h"
 
 #define LARGE 2000 /* elements, from which a coarser mesh is solved first */
+
+/* Element that contains `place` (in elements) and local coordinate in [-1, 1]. */
+static PetscReal Local(PetscReal place, PetscInt elements, PetscInt *element)
+{
+  *element = PetscMax(0, PetscMin((PetscInt)place, elements - 1));
+  return 2.0 * (place - (PetscReal)*element) - 1.0;
+}
 
 /* Quadratic shape functions at `place`, in elements; first: index of the first of their three nodes. */
 static void Quadratic(PetscReal place, PetscInt elements, PetscInt *first, PetscReal N[3])
 {
-  const PetscInt e = PetscMax(0, PetscMin((PetscInt)place, elements - 1));
-  const PetscReal xi = 2.0 * (place - (PetscReal)e) - 1.0;
+  PetscReal dN[3];
 
-  *first = 2 * e;
-  N[0] = 0.5 * xi * (xi - 1.0);
-  N[1] = 1.0 - xi * xi;
-  N[2] = 0.5 * xi * (xi + 1.0);
+  LamEdgeShape(Local(place, elements, first), N, dN);
+  *first *= 2;
 }
 
 /* Position on `other`, in elements along a face, of node or hat `half` of a face of `mesh`, two per element. */
@@ -58,15 +63,12 @@ static void Interpolate(LamRVE coarse, const LamLoad *load, const PetscReal y[],
 static void ProlongPositions(LamRVE coarse, const LamRVEState from, LamRVE rve)
 {
   const LamMesh *mesh = &rve->mesh;
-  const PetscReal *F = from->load.F;
 
   for (PetscInt node = 0; node < mesh->node_count; ++node) {
-    const PetscReal *S = &mesh->shift[2 * node];
     PetscReal x[2];
 
     Interpolate(coarse, &from->load, from->y, mesh, node, x);
-    for (PetscInt d = 0; d < 2; ++d)
-      rve->y[2 * mesh->node_class[node] + d] = x[d] - F[3 * d] * S[0] - F[3 * d + 1] * S[1];
+    LamPlaceNode(rve, from->load.F, node, x, rve->y);
   }
 }
 
@@ -103,13 +105,6 @@ static void FitStresses(LamRVE rve, PetscInt e, PetscReal p[4], PetscReal s[4])
   }
   LamFitBilinear(pressure, p);
   LamFitBilinear(stress->s, s);
-}
-
-/* Element that contains `place` (in elements) and local coordinate in [-1, 1]. */
-static PetscReal Local(PetscReal place, PetscInt elements, PetscInt *element)
-{
-  *element = PetscMax(0, PetscMin((PetscInt)place, elements - 1));
-  return 2.0 * (place - (PetscReal)*element) - 1.0;
 }
 
 /* Interpolates the independent stresses of element (i, m) of a face of the fine mesh. */

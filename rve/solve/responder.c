@@ -98,22 +98,25 @@ static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], cons
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode CopyStates(DirectResponder *direct, LamRVEState from[], LamRVEState to[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < direct->points; ++i) PetscCall(LamRVEStateCopy(from[i], to[i]));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Accept(void *ctx)
 {
   DirectResponder *direct = (DirectResponder *)ctx;
 
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < direct->points; ++i) PetscCall(LamRVEStateCopy(direct->latest[i], direct->accepted[i]));
-  PetscFunctionReturn(0);
+  return CopyStates(direct, direct->latest, direct->accepted);
 }
 
 static PetscErrorCode Reject(void *ctx)
 {
   DirectResponder *direct = (DirectResponder *)ctx;
 
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < direct->points; ++i) PetscCall(LamRVEStateCopy(direct->accepted[i], direct->latest[i]));
-  PetscFunctionReturn(0);
+  return CopyStates(direct, direct->accepted, direct->latest);
 }
 
 static PetscErrorCode Seal(void *ctx, PetscReal bulk_modulus)

@@ -52,16 +52,11 @@ PetscErrorCode LamRVESetMonitor(LamRVE rve, PetscBool on)
   PetscFunctionReturn(0);
 }
 
-static const LamWall *CellWall(const LamMicrostructure *micro, PetscInt cell)
-{
-  return micro->cell ? &micro->cell[cell].wall : &micro->wall;
-}
-
 static void FindStiffest(LamRVE rve)
 {
   rve->stiffest = 0.0;
   for (PetscInt cell = 0; cell < rve->mesh.cell_count; ++cell) {
-    const LamWall *wall = CellWall(&rve->micro, cell);
+    const LamWall *wall = LamCellWall(&rve->micro, cell);
 
     rve->stiffest = PetscMax(rve->stiffest, wall->bulk_modulus + LamWallFibreModulus(wall));
   }
@@ -74,7 +69,7 @@ static PetscErrorCode SetUpWalls(LamRVE rve)
   PetscCall(PetscMalloc1(rve->mesh.cell_count, &rve->law));
   rve->thinnest = 1.0;
   for (PetscInt cell = 0; cell < rve->mesh.cell_count; ++cell) {
-    PetscCall(LamWallLawGet(CellWall(&rve->micro, cell)->law, &rve->law[cell]));
+    PetscCall(LamWallLawGet(LamCellWall(&rve->micro, cell)->law, &rve->law[cell]));
     rve->thinnest = PetscMin(rve->thinnest, LamWallThickness(&rve->micro, cell));
   }
   FindStiffest(rve);
@@ -93,7 +88,7 @@ PetscErrorCode LamRVEChangeModuli(LamRVE rve, const LamMicrostructure *micro)
   PetscCheck(rve->is_set_up, PETSC_COMM_SELF, PETSC_ERR_ORDER, "LamRVESetUp comes before LamRVEChangeModuli");
   CopyModuli(&micro->wall, &rve->micro.wall);
   for (PetscInt cell = 0; rve->micro.cell && cell < rve->mesh.cell_count; ++cell)
-    CopyModuli(CellWall(micro, cell), &rve->micro.cell[cell].wall);
+    CopyModuli(LamCellWall(micro, cell), &rve->micro.cell[cell].wall);
   FindStiffest(rve);
   LamForgetFactor(rve);
   rve->changes++;
