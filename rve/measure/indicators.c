@@ -194,66 +194,49 @@ static PetscBool FaceIsClosed(const LamContact *contact, PetscInt f)
   return PETSC_FALSE;
 }
 
-/* Adds vector v to a basis of `rank` vectors: rank of the lattice that the cycles span. */
-static void AddCycle(const PetscReal v[2], PetscReal basis[2][2], PetscInt *rank)
+/* Groups the cells that closed faces connect. group [cell]: the same number within a group; place [cell]: shift of the
+   image that belongs to the same connected piece as the others of its group. Returns the number of groups. */
+static PetscInt GroupCells(const LamContact *contact, PetscInt cells, PetscInt group[], PetscReal place[][2])
 {
-  const PetscReal size = LamDot(v, v);
+  PetscInt count = cells;
 
-  if (size < 1e-6 || *rank == 2) return;
-  if (*rank == 0 || PetscAbsReal(basis[0][0] * v[1] - basis[0][1] * v[0]) > 1e-3) {
-    basis[*rank][0] = v[0];
-    basis[*rank][1] = v[1];
-    ++*rank;
+  for (PetscInt c = 0; c < cells; ++c) {
+    group[c] = c;
+    place[c][0] = place[c][1] = 0.0;
   }
-}
+  for (PetscInt f = 0; f < contact->face_count; ++f) {
+    const LamContactFace *face = &contact->faces[f];
+    const PetscInt a = face->cell, b = face->other, joined = group[b];
+    PetscReal move[2];
 
-/* Groups of cells connected by closed faces. */
-typedef struct {
-  PetscInt *group;       /* [cell], -1: none yet */
-  PetscReal (*place)[2]; /* [cell]: shift of the image that belongs to the same connected piece as its root */
-} Clusters;
-
-/* Adds all cells that closed faces connect to `root` to its group. */
-static void Grow(const LamContact *contact, PetscInt root, Clusters *clusters)
-{
-  PetscInt *group = clusters->group;
-  PetscBool grown = PETSC_TRUE;
-
-  while (grown) {
-    grown = PETSC_FALSE;
-    for (PetscInt f = 0; f < contact->face_count; ++f) {
-      const LamContactFace *face = &contact->faces[f];
-      const PetscInt a = face->cell, b = face->other;
-      const PetscBool from_a = (PetscBool)(group[a] == group[root]);
-
-      if (!FaceIsClosed(contact, f) || from_a == (PetscBool)(group[b] == group[root])) continue;
-      for (PetscInt d = 0; d < 2; ++d) {
-        if (from_a)
-          clusters->place[b][d] = clusters->place[a][d] + face->shift[d];
-        else
-          clusters->place[a][d] = clusters->place[b][d] - face->shift[d];
-      }
-      group[a] = group[b] = group[root];
-      grown = PETSC_TRUE;
+    if (!FaceIsClosed(contact, f) || group[a] == joined) continue;
+    for (PetscInt d = 0; d < 2; ++d) move[d] = place[a][d] + face->shift[d] - place[b][d];
+    for (PetscInt c = 0; c < cells; ++c) {
+      if (group[c] != joined) continue;
+      group[c] = group[a];
+      for (PetscInt d = 0; d < 2; ++d) place[c][d] += move[d];
     }
+    --count;
   }
+  return count;
 }
 
-/* Rank of the period vectors that the group of `root` spans. A closed face between two cells of one group gives a
-   cycle, i.e. a period vector. */
-static PetscInt Rank(const LamContact *contact, PetscInt root, const Clusters *clusters)
+/* Rank of the period vectors that a group of cells spans. A closed face between two cells of the group gives a cycle,
+   i.e. a period vector. */
+static PetscInt Rank(const LamContact *contact, PetscInt number, const PetscInt group[], const PetscReal place[][2])
 {
-  PetscReal basis[2][2];
+  PetscReal first[2] = {0.0, 0.0};
   PetscInt rank = 0;
 
-  for (PetscInt f = 0; f < contact->face_count; ++f) {
+  for (PetscInt f = 0; f < contact->face_count && rank < 2; ++f) {
     const LamContactFace *face = &contact->faces[f];
     PetscReal v[2];
 
-    if (!FaceIsClosed(contact, f) || clusters->group[face->cell] != clusters->group[root]) continue;
-    for (PetscInt d = 0; d < 2; ++d)
-      v[d] = clusters->place[face->cell][d] + face->shift[d] - clusters->place[face->other][d];
-    AddCycle(v, basis, &rank);
+    if (!FaceIsClosed(contact, f) || group[face->cell] != number) continue;
+    for (PetscInt d = 0; d < 2; ++d) v[d] = place[face->cell][d] + face->shift[d] - place[face->other][d];
+    if (LamDot(v, v) < 1e-6 || (rank == 1 && PetscAbsReal(first[0] * v[1] - first[1] * v[0]) <= 1e-3)) continue;
+    ++rank;
+    for (PetscInt d = 0; d < 2; ++d) first[d] = v[d];
   }
   return rank;
 }
@@ -269,27 +252,24 @@ static PetscErrorCode CountClusters(LamRVE rve, LamResponse *response)
 {
   const LamContact *contact = rve->contact;
   const PetscInt cells = rve->mesh.cell_count;
-  PetscBool *touched;
-  Clusters clusters;
+  PetscInt *group;
+  PetscReal(*place)[2];
+  PetscBool *fixed; /* by a neighbour or a grip */
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(cells, &clusters.group, cells, &clusters.place));
-  PetscCall(PetscCalloc1(cells, &touched));
-  for (PetscInt c = 0; c < cells; ++c) clusters.group[c] = -1;
+  PetscCall(PetscMalloc3(cells, &group, cells, &place, cells, &fixed));
+  response->cell_clusters = GroupCells(contact, cells, group, place);
+  for (PetscInt c = 0; c < cells; ++c) fixed[c] = IsHeld(&rve->mesh, c);
   for (PetscInt f = 0; f < contact->face_count; ++f)
-    if (FaceIsClosed(contact, f)) touched[contact->faces[f].cell] = touched[contact->faces[f].other] = PETSC_TRUE;
-  response->cell_clusters = response->percolating_directions = response->floating_cells = 0;
-  for (PetscInt root = 0; root < cells; ++root) {
-    if (!touched[root] && !IsHeld(&rve->mesh, root)) ++response->floating_cells;
-    if (clusters.group[root] >= 0) continue;
-    clusters.group[root] = response->cell_clusters++;
-    clusters.place[root][0] = clusters.place[root][1] = 0.0;
-    Grow(contact, root, &clusters);
-    response->percolating_directions = PetscMax(response->percolating_directions, Rank(contact, root, &clusters));
+    if (FaceIsClosed(contact, f)) fixed[contact->faces[f].cell] = fixed[contact->faces[f].other] = PETSC_TRUE;
+  response->percolating_directions = response->floating_cells = 0;
+  for (PetscInt c = 0; c < cells; ++c) {
+    response->floating_cells += !fixed[c];
+    response->percolating_directions =
+        PetscMax(response->percolating_directions, Rank(contact, c, group, (const PetscReal(*)[2])place));
   }
   if (rve->micro.is_patch) response->percolating_directions = LAM_UNKNOWN_COUNT; /* there is no period */
-  PetscCall(PetscFree2(clusters.group, clusters.place));
-  PetscCall(PetscFree(touched));
+  PetscCall(PetscFree3(group, place, fixed));
   PetscFunctionReturn(0);
 }
 

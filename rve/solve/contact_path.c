@@ -113,19 +113,22 @@ static PetscErrorCode Substeps(LamRVE rve, LamRVEState at, const LamLoad *load, 
   PetscFunctionReturn(0);
 }
 
-/* Continuation in cohesion, from a solution with a larger one down to `load`. */
-static PetscErrorCode ComeDown(LamRVE rve, const LamLoad *load, LamRVEState at, LamContactOutcome *out)
+/* Continuation in cohesion, from a stable solution with a larger one down to `load`; otherwise no outcome. */
+static PetscErrorCode Loosen(LamRVE rve, const LamLoad *load, LamRVEState at, LamContactOutcome *out)
 {
   PetscReal added = at->load.cohesion - load->cohesion, factor = EASE;
   LamLoad next = *load;
 
   PetscFunctionBeginUser;
+  if (!LamContactIsStable(out)) {
+    *out = LAM_NO_OUTCOME;
+    PetscFunctionReturn(0);
+  }
   while (added > 0.0 && LamMayIterate(rve) && factor <= LEAST_EASE) {
     const PetscReal less = added * factor < LOOSE * TIGHT ? 0.0 : added * factor;
 
     next.cohesion = load->cohesion + less;
-    LamContactStartNear(rve, at, &next);
-    PetscCall(LamContactTry(rve, &next, LAM_NEAR_REACH, out));
+    PetscCall(LamContactTryFrom(rve, at, &next, out));
     if (LamContactIsStable(out)) {
       LamKeepState(rve, &next, 0, at);
       added = less;
@@ -137,14 +140,13 @@ static PetscErrorCode ComeDown(LamRVE rve, const LamLoad *load, LamRVEState at, 
   PetscFunctionReturn(0);
 }
 
-/* Lowers the cohesion to that of `load`, if the state with added cohesion is stable; otherwise no outcome. */
-static PetscErrorCode Loosen(LamRVE rve, const LamLoad *load, LamRVEState at, LamContactOutcome *out)
+/* Solves from the affine state; `at` := the result. */
+static PetscErrorCode TryFar(LamRVE rve, const LamLoad *load, LamRVEState at, LamContactOutcome *out)
 {
   PetscFunctionBeginUser;
-  if (LamContactIsStable(out))
-    PetscCall(ComeDown(rve, load, at, out));
-  else
-    *out = LAM_NO_OUTCOME;
+  LamContactStartAffine(rve, load);
+  PetscCall(LamContactTry(rve, load, LAM_FAR, out));
+  LamKeepState(rve, load, 0, at);
   PetscFunctionReturn(0);
 }
 
@@ -156,12 +158,10 @@ static PetscErrorCode TightThenLoose(LamRVE rve, const LamLoad *load, PetscBool 
 
   PetscFunctionBeginUser;
   tight.cohesion = load->cohesion + TIGHT;
-  if (has_bonded) {
+  if (has_bonded)
     PetscCall(Release(rve, &tight, at, out));
-  } else {
-    LamContactStartAffine(rve, &tight);
-    PetscCall(LamContactTry(rve, &tight, LAM_FAR, out));
-  }
+  else
+    PetscCall(TryFar(rve, &tight, at, out));
   LamKeepState(rve, &tight, 0, at);
   PetscCall(Loosen(rve, load, at, out));
   PetscFunctionReturn(0);
@@ -205,9 +205,7 @@ static PetscErrorCode WalkInTurgor(LamRVE rve, const LamLoad *rest, LamRVEState 
 
     share /= SLACK_FACTOR;
     slack = Slack(rest, share);
-    LamContactStartAffine(rve, &slack);
-    PetscCall(LamContactTry(rve, &slack, LAM_FAR, out));
-    LamKeepState(rve, &slack, 0, at);
+    PetscCall(TryFar(rve, &slack, at, out));
   }
   if (!LamContactIsStable(out)) *out = LAM_NO_OUTCOME;
   while (LamContactIsStable(out) && share < 1.0) {
@@ -231,19 +229,10 @@ static PetscErrorCode WalkInTurgor(LamRVE rve, const LamLoad *rest, LamRVEState 
 static PetscErrorCode WalkFromRest(LamRVE rve, const LamLoad *load, LamRVEState at, LamContactOutcome *out)
 {
   const LamLoad rest = Unstretched(rve, load);
-  LamLoad tight = rest;
 
   PetscFunctionBeginUser;
-  LamContactStartAffine(rve, &rest);
-  PetscCall(LamContactTry(rve, &rest, LAM_FAR, out));
-  LamKeepState(rve, &rest, 0, at);
-  if (!LamContactIsStable(out)) {
-    tight.cohesion += TIGHT;
-    LamContactStartAffine(rve, &tight);
-    PetscCall(LamContactTry(rve, &tight, LAM_FAR, out));
-    LamKeepState(rve, &tight, 0, at);
-    PetscCall(Loosen(rve, &rest, at, out));
-  }
+  PetscCall(TryFar(rve, &rest, at, out));
+  if (!LamContactIsStable(out)) PetscCall(TightThenLoose(rve, &rest, PETSC_FALSE, at, out));
   if (!LamContactIsStable(out)) {
     PetscCall(WalkInTurgor(rve, &rest, at, out));
     if (!LamContactIsStable(out)) PetscFunctionReturn(0);
@@ -273,14 +262,12 @@ static PetscErrorCode TryAffine(LamRVE rve, const LamLoad *load, LamRVEState at,
 
   PetscFunctionBeginUser;
   if (load->turgor <= MUCH_TURGOR) start.turgor = PetscMin(load->turgor, BORNE);
-  LamContactStartAffine(rve, &start);
-  PetscCall(LamContactTry(rve, &start, LAM_FAR, out));
+  PetscCall(TryFar(rve, &start, at, out));
   if (bears) PetscFunctionReturn(0);
   if (!LamContactIsStable(out)) {
     *out = LAM_NO_OUTCOME; /* this outcome is of another load */
     PetscFunctionReturn(0);
   }
-  LamKeepState(rve, &start, 0, at);
   PetscCall(Substeps(rve, at, load, out));
   PetscFunctionReturn(0);
 }
@@ -354,8 +341,7 @@ static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state,
     *out = LAM_NO_OUTCOME;
     rve->budget = k < 3 ? START_BUDGET : LAM_ITERATION_BUDGET;
     if (k == 0) {
-      LamContactStartNear(rve, before, load);
-      PetscCall(LamContactTry(rve, load, LAM_NEAR_REACH, out));
+      PetscCall(LamContactTryFrom(rve, before, load, out));
       if (!LamContactIsStable(out)) PetscCall(Substeps(rve, before, load, out));
     }
     if (k == 1) PetscCall(TryStrategy(rve, rve->strategy, load, state, &has_bonded, at, out));

@@ -48,6 +48,7 @@ typedef struct {
 PetscErrorCode LamContactTry(LamRVE rve, const LamLoad *load, PetscReal reach, LamContactOutcome *out);
 PetscErrorCode LamContactDescend(LamRVE rve, const LamLoad *load, LamContactOutcome *out);
 /* The same from a solution at another load. */
+PetscErrorCode LamContactTryFrom(LamRVE rve, LamRVEState from, const LamLoad *load, LamContactOutcome *out);
 PetscErrorCode LamContactDescendFrom(LamRVE rve, LamRVEState from, const LamLoad *load, LamContactOutcome *out);
 /* LamContactTry with free components of F; saddles are not left. */
 PetscErrorCode LamContactTryMixed(LamRVE rve, LamBorder *border, PetscReal reach, LamContactOutcome *out);

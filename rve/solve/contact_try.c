@@ -118,6 +118,14 @@ PetscErrorCode LamContactTry(LamRVE rve, const LamLoad *load, PetscReal reach, L
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamContactTryFrom(LamRVE rve, LamRVEState from, const LamLoad *load, LamContactOutcome *out)
+{
+  PetscFunctionBeginUser;
+  LamContactStartNear(rve, from, load);
+  PetscCall(LamContactTry(rve, load, LAM_NEAR_REACH, out));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamContactTryMixed(LamRVE rve, LamBorder *border, PetscReal reach, LamContactOutcome *out)
 {
   LamNewtonOutcome outcome;

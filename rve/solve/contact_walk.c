@@ -23,6 +23,7 @@
 /* Load path with its last two stable states. */
 typedef struct {
   const LamLoad *start, *load;
+  LamLoad next; /* of the last step tried */
   LamRVEState at, earlier;
   PetscReal reached, before; /* path parameters of at and earlier */
   PetscReal failed;          /* path parameter of the next state that is not stable */
@@ -53,7 +54,7 @@ static PetscErrorCode LowestEigenvalue(LamRVE rve, LamRVEState solution, PetscRe
   Whether the last stable state is unstable without the contact about to open, in which case an eigenvalue jumps below
   zero. Contact is about to open if its multiplier, extrapolated from the last two states, vanishes.
 */
-static PetscErrorCode FindLoosening(LamRVE rve, const Way *way, PetscBool *found)
+static PetscErrorCode FindLoosening(LamRVE rve, const Way *way, LamContactOutcome *out)
 {
   const PetscReal ahead = CROSSING_MARGIN * (way->failed - way->reached) / (way->reached - way->before);
   LamContact *contact = rve->contact;
@@ -70,10 +71,9 @@ static PetscErrorCode FindLoosening(LamRVE rve, const Way *way, PetscBool *found
     contact->lambda[h] = 0.0;
     ++count;
   }
-  *found = PETSC_FALSE;
   if (count == 0) PetscFunctionReturn(0);
   PetscCall(LamFactorConsistent(rve, &way->at->load, &negative, &ok));
-  *found = (PetscBool)(ok && negative > 0);
+  if (ok && negative > 0) out->refusal = LAM_LOOSENING;
   if (rve->monitor)
     PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR, "  %d hats about to open: %d negative eigenvalues without\n",
                            (int)count, (int)negative));
@@ -88,7 +88,6 @@ static PetscErrorCode FindLoosening(LamRVE rve, const Way *way, PetscBool *found
 static PetscErrorCode FindCrossing(LamRVE rve, const Way *way, LamContactOutcome *out)
 {
   PetscReal before, fall;
-  PetscBool opens = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   if (way->reached <= way->before || rve->work.stopped) PetscFunctionReturn(0);
@@ -101,18 +100,17 @@ static PetscErrorCode FindCrossing(LamRVE rve, const Way *way, LamContactOutcome
   if (fall > 0.0 &&
       PetscSqr(out->eigenvalue) * (way->reached - way->before) <= CROSSING_MARGIN * (way->failed - way->reached) * fall)
     out->refusal = LAM_CROSSING;
-  if (out->refusal == LAM_CROSSING) PetscFunctionReturn(0);
-  PetscCall(FindLoosening(rve, way, &opens));
-  if (opens) out->refusal = LAM_LOOSENING;
+  else
+    PetscCall(FindLoosening(rve, way, out));
   PetscFunctionReturn(0);
 }
 
 /* Makes the state just found, at path parameter t, the last stable one. */
-static PetscErrorCode Advance(LamRVE rve, const LamLoad *load, PetscReal t, Way *way)
+static PetscErrorCode Advance(LamRVE rve, PetscReal t, Way *way)
 {
   PetscFunctionBeginUser;
   PetscCall(LamRVEStateCopy(way->at, way->earlier));
-  LamKeepState(rve, load, 0, way->at);
+  LamKeepState(rve, &way->next, 0, way->at);
   way->before = way->reached;
   way->reached = t;
   PetscFunctionReturn(0);
@@ -122,7 +120,7 @@ static PetscErrorCode Advance(LamRVE rve, const LamLoad *load, PetscReal t, Way 
   Whether the state extrapolated from the last two, CROSSING_MARGIN brackets ahead, has a negative eigenvalue although
   theirs are positive. The stiffness jumps if an end of a face's overlap passes a node or a hat is merged.
 */
-static PetscErrorCode FindJump(LamRVE rve, const Way *way, PetscBool *found)
+static PetscErrorCode FindJump(LamRVE rve, const Way *way, LamContactOutcome *out)
 {
   const PetscReal ahead = CROSSING_MARGIN * (way->failed - way->reached) / (way->reached - way->before);
   const LamLoad load = LamLoadBetween(&way->earlier->load, &way->at->load, 1.0 + ahead);
@@ -131,7 +129,6 @@ static PetscErrorCode FindJump(LamRVE rve, const Way *way, PetscBool *found)
   PetscBool ok;
 
   PetscFunctionBeginUser;
-  *found = PETSC_FALSE;
   if (way->reached <= way->before || rve->work.stopped) PetscFunctionReturn(0);
   PetscCall(LamTakeState(rve, way->at));
   for (PetscInt i = 0; i < rve->length; ++i) rve->y[i] += ahead * (way->at->y[i] - way->earlier->y[i]);
@@ -140,25 +137,22 @@ static PetscErrorCode FindJump(LamRVE rve, const Way *way, PetscBool *found)
   PetscCall(LamContactEvaluate(rve, &load, rve->y, PETSC_TRUE));
   (void)LamContactFindActive(contact, 0.0);
   PetscCall(LamFactorConsistent(rve, &load, &negative, &ok));
-  *found = (PetscBool)(ok && negative > 0);
+  if (ok && negative > 0) out->refusal = LAM_JUMP;
   if (rve->monitor)
     PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR, "  ahead, at %.10g: %d negative eigenvalues\n",
                            (double)(way->reached + ahead * (way->reached - way->before)), (int)negative));
   PetscFunctionReturn(0);
 }
 
-static LamLoad LoadAt(const Way *way, PetscReal t)
-{
-  return t >= 1.0 ? *way->load : LamLoadBetween(way->start, way->load, t);
-}
-
-/* Solves at path parameter t, starting from the last stable state. */
-static PetscErrorCode TryAt(LamRVE rve, const Way *way, PetscReal t, LamLoad *next, LamContactOutcome *out)
+/* Solves at path parameter t, starting from the last stable state; snap: by descent. */
+static PetscErrorCode TryAt(LamRVE rve, Way *way, PetscReal t, PetscBool snap, LamContactOutcome *out)
 {
   PetscFunctionBeginUser;
-  *next = LoadAt(way, t);
-  LamContactStartNear(rve, way->at, next);
-  PetscCall(LamContactTry(rve, next, LAM_NEAR_REACH, out));
+  way->next = t >= 1.0 ? *way->load : LamLoadBetween(way->start, way->load, t);
+  if (snap)
+    PetscCall(LamContactDescendFrom(rve, way->at, &way->next, out));
+  else
+    PetscCall(LamContactTryFrom(rve, way->at, &way->next, out));
   PetscFunctionReturn(0);
 }
 
@@ -170,19 +164,18 @@ static PetscErrorCode Halve(LamRVE rve, Way *way, LamContactOutcome *out, PetscB
   for (PetscInt k = 0; k < HALVINGS && out->refusal == LAM_NOT_REFUSED && LamMayIterate(rve); ++k) {
     const PetscReal t = 0.5 * (way->reached + way->failed);
     LamContactOutcome tried;
-    LamLoad next;
 
-    PetscCall(TryAt(rve, way, t, &next, &tried));
+    PetscCall(TryAt(rve, way, t, PETSC_FALSE, &tried));
     if (!LamContactIsStable(&tried)) {
       out->refusal = tried.refusal;
       out->depth = tried.depth;
       PetscCall(PetscArraycpy(out->cell, tried.cell, 2));
       way->failed = t;
     } else if (*advanced) {
-      LamKeepState(rve, &next, 0, way->at);
+      LamKeepState(rve, &way->next, 0, way->at);
       way->reached = t;
     } else {
-      PetscCall(Advance(rve, &next, t, way));
+      PetscCall(Advance(rve, t, way));
       *advanced = PETSC_TRUE;
     }
   }
@@ -194,15 +187,14 @@ static PetscErrorCode CrossBracket(LamRVE rve, Way *way, PetscBool *crossed)
 {
   const PetscReal t = way->failed, left = way->failed - way->reached;
   LamContactOutcome tried;
-  LamLoad next;
 
   PetscFunctionBeginUser;
   *crossed = PETSC_FALSE;
   if (!LamMayIterate(rve)) PetscFunctionReturn(0);
-  PetscCall(TryAt(rve, way, t, &next, &tried));
+  PetscCall(TryAt(rve, way, t, PETSC_FALSE, &tried));
   *crossed = LamContactIsStable(&tried);
   if (!*crossed) PetscFunctionReturn(0);
-  PetscCall(Advance(rve, &next, t, way));
+  PetscCall(Advance(rve, t, way));
   way->depth = tried.depth;
   way->step = GROWTH * left;
   way->least = left;
@@ -215,7 +207,7 @@ static PetscErrorCode CrossBracket(LamRVE rve, Way *way, PetscBool *crossed)
 */
 static PetscErrorCode Refine(LamRVE rve, Way *way, LamContactOutcome *out, PetscBool *crossed)
 {
-  PetscBool advanced = PETSC_TRUE, jumps = PETSC_FALSE;
+  PetscBool advanced = PETSC_TRUE;
 
   PetscFunctionBeginUser;
   for (PetscInt stage = 0; stage <= STAGES && advanced; ++stage) {
@@ -227,8 +219,7 @@ static PetscErrorCode Refine(LamRVE rve, Way *way, LamContactOutcome *out, Petsc
     if (out->refusal == LAM_NOT_REFUSED && way->failed == failed) PetscCall(CrossBracket(rve, way, crossed));
     if (*crossed) PetscFunctionReturn(0);
   }
-  if (out->refusal == LAM_NOT_REFUSED) PetscCall(FindJump(rve, way, &jumps));
-  if (jumps) out->refusal = LAM_JUMP;
+  if (out->refusal == LAM_NOT_REFUSED) PetscCall(FindJump(rve, way, out));
   out->between[0] = way->reached;
   out->between[1] = way->failed;
   PetscFunctionReturn(0);
@@ -266,17 +257,12 @@ static PetscErrorCode Go(LamRVE rve, Way *way, LamContactOutcome *out)
     const PetscReal least = LamIsKinking(&way->kinking) ? LAM_KINKED_SUBSTEP : way->least;
     const PetscReal t = PetscMin(1.0, way->reached + PetscMax(way->step, least));
     const PetscBool last = (PetscBool)(way->step < least);
-    LamLoad next = LoadAt(way, t);
 
-    if (last) {
-      if (out->refusal != LAM_NOT_REFUSED || way->snaps++ >= MAX_SNAPS) break;
-      PetscCall(LamContactDescendFrom(rve, way->at, &next, out));
-    } else {
-      PetscCall(TryAt(rve, way, t, &next, out));
-    }
+    if (last && (out->refusal != LAM_NOT_REFUSED || way->snaps++ >= MAX_SNAPS)) break;
+    PetscCall(TryAt(rve, way, t, last, out));
     if (LamContactIsStable(out)) {
-      PetscCall(Advance(rve, &next, t, way));
-      LamWatchKinks(rve, &next, way->at->y, t, &way->kinking);
+      PetscCall(Advance(rve, t, way));
+      LamWatchKinks(rve, &way->next, way->at->y, t, &way->kinking);
       way->branch += out->branch + last;
       way->depth = out->depth;
       way->step = last ? 4.0 * least : GROWTH * way->step;
