@@ -54,7 +54,7 @@ PetscErrorCode LamProgramRun(int argc, char *argv[], PetscErrorCode (*start)(Lam
 PetscErrorCode LamRuntimeBegin(void);
 /* Call last: reports the error `code`, once among all ranks; *status is the exit status. */
 void LamRuntimeEnd(PetscErrorCode code, int *status);
-/* For a command that uses record files; before LamRuntimeStart. */
+/* Before LamRuntimeStart. */
 void LamAppStartHDF5(void);
 /* Whether the command may run under mpirun; before it starts MPI. The launcher provides the ranks. */
 void LamRuntimeExpectRanks(PetscBool expect);

@@ -3,9 +3,7 @@
 */
 #include "app.h"
 #include "plot_slice.h"
-#include <errno.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const struct {
@@ -30,27 +28,14 @@ static PetscErrorCode DefaultOutput(const char input[], size_t size, char output
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ParseState(const char text[], PetscInt *state)
-{
-  char *end;
-  long value;
-
-  PetscFunctionBeginUser;
-  errno = 0;
-  value = strtol(text, &end, 10);
-  PetscCheck(*text && !*end && !errno && value >= 0 && value <= PETSC_MAX_INT, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "--state %s: give the number of a state or step, 0 or above", text);
-  *state = (PetscInt)value;
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status)
 {
   LamPlotRequest request = {.state = -1};
-  const char *output = NULL, *state = NULL, *input;
+  const char *input;
   const LamOption options[] = {
-      {'o', "output", LAM_OPTION_TEXT, "FIG.png|.svg|.pdf", "the picture (default: FILE.png)", &output},
-      {0, "state", LAM_OPTION_TEXT, "N", "state of an RVE file, step of an fe2 file (default: the last one)", &state},
+      {'o', "output", LAM_OPTION_TEXT, "FIG.png|.svg|.pdf", "the picture (default: FILE.png)", &request.output},
+      {0, "state", LAM_OPTION_FROM_0, "N", "state of an RVE file, step of an fe2 file (default: the last one)",
+       &request.state},
       {0, "field", LAM_OPTION_TEXT, "NAME", "field that gives the colours (docs/reference/pictures.md lists them)",
        &request.field},
       {0, "film", LAM_OPTION_FLAG, NULL,
@@ -63,7 +48,7 @@ PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status)
        "slice of contact tissue: turgor + cohesion, \"0.02 MPa\" (default: in the middle)", &request.suction},
       {0, "turgor", LAM_OPTION_TEXT, "PRESSURE", "slice of bonded tissue, \"0.02 MPa\" (default: that of the nodes)",
        &request.turgor},
-      {0, "accuracy", LAM_OPTION_TEXT, "SHARE", "slice: the error that is asked for (default: that of the file)",
+      {0, "accuracy", LAM_OPTION_ACCURACY, "SHARE", "slice: the error that is asked for (default: that of the file)",
        &request.accuracy},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL}};
   char kind[LAM_NAME_LENGTH], name[PETSC_MAX_PATH_LEN];
@@ -76,14 +61,12 @@ PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status)
                       "                    [--angle ANGLE] [--suction PRESSURE | --turgor PRESSURE] [--accuracy SHARE]",
                       "Draws what the file holds.", options, 1, &input, &done, exit_status));
   if (done) PetscFunctionReturn(0);
-  if (!output) {
+  if (!request.output) {
     PetscCall(DefaultOutput(input, sizeof name, name));
-    output = name;
+    request.output = name;
   }
-  PetscCall(LamCanvasCheckPath(output));
-  if (state) PetscCall(ParseState(state, &request.state));
+  PetscCall(LamCanvasCheckPath(request.output));
   request.input = input;
-  request.output = output;
   PetscCall(LamFileReadKind(input, kind));
   if (strcmp(kind, "database")) PetscCall(LamSliceRefuse(&request));
   PetscCheck(!strcmp(kind, "process") || ((!request.film || !strcmp(kind, "fe2")) && !request.map), PETSC_COMM_SELF,
@@ -91,7 +74,7 @@ PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status)
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(Plots); i++) {
     if (strcmp(kind, Plots[i].kind)) continue;
     PetscCall(Plots[i].plot(&request));
-    printf("wrote %s\n", output);
+    printf("wrote %s\n", request.output);
     *exit_status = LAM_EXIT_OK;
     PetscFunctionReturn(0);
   }

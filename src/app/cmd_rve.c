@@ -361,7 +361,6 @@ PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
                             &run.scene_path, &done, exit_status));
   if (done) PetscFunctionReturn(0);
   if (run.find_onset) run.second_mesh = PETSC_TRUE;
-  if (run.out_path) LamAppStartHDF5();
   PetscCall(args->start(args));
   if (LamAppIsRoot()) {
     const PetscErrorCode ierr = RunOnRoot(&run, exit_status);

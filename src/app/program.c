@@ -10,21 +10,19 @@ static const struct {
   const char *name, *summary;
   LamCommandFunction run;
   PetscBool solves; /* runs under mpirun; the others need no MPI */
-  PetscBool files;  /* always reads or writes records */
 } Commands[] = {
-    {"check", "read and check a scene; print the plan and its predicted cost", LamCommandCheck, PETSC_FALSE,
-     PETSC_FALSE},
-    {"rve", "solve the RVE along the scene's load", LamCommandRVE, PETSC_TRUE, PETSC_FALSE},
-    {"build", "fill a response database", LamCommandBuild, PETSC_TRUE, PETSC_TRUE},
-    {"query", "one answer, or many, from a database", LamCommandQuery, PETSC_FALSE, PETSC_TRUE},
-    {"verify", "solve part of a database's answers afresh and compare", LamCommandVerify, PETSC_TRUE, PETSC_TRUE},
-    {"fe2", "solve the scene's macroscale problem", LamCommandFE2, PETSC_TRUE, PETSC_TRUE},
-    {"tradeoff", "measure error against time over the scene's knobs", LamCommandTradeoff, PETSC_TRUE, PETSC_TRUE},
-    {"process", "follow tissue that changes in time", LamCommandProcess, PETSC_TRUE, PETSC_TRUE},
-    {"map", "tell how tissue fails over two of its quantities", LamCommandMap, PETSC_TRUE, PETSC_TRUE},
-    {"merge", "make one database of several", LamCommandMerge, PETSC_FALSE, PETSC_TRUE},
-    {"plot", "draw what a file holds", LamCommandPlot, PETSC_FALSE, PETSC_TRUE},
-    {"info", "tell what a file holds, who wrote it, with what", LamCommandInfo, PETSC_FALSE, PETSC_TRUE},
+    {"check", "read and check a scene; print the plan and its predicted cost", LamCommandCheck, PETSC_FALSE},
+    {"rve", "solve the RVE along the scene's load", LamCommandRVE, PETSC_TRUE},
+    {"build", "fill a response database", LamCommandBuild, PETSC_TRUE},
+    {"query", "one answer, or many, from a database", LamCommandQuery, PETSC_FALSE},
+    {"verify", "solve part of a database's answers afresh and compare", LamCommandVerify, PETSC_TRUE},
+    {"fe2", "solve the scene's macroscale problem", LamCommandFE2, PETSC_TRUE},
+    {"tradeoff", "measure error against time over the scene's knobs", LamCommandTradeoff, PETSC_TRUE},
+    {"process", "follow tissue that changes in time", LamCommandProcess, PETSC_TRUE},
+    {"map", "tell how tissue fails over two of its quantities", LamCommandMap, PETSC_TRUE},
+    {"merge", "make one database of several", LamCommandMerge, PETSC_FALSE},
+    {"plot", "draw what a file holds", LamCommandPlot, PETSC_FALSE},
+    {"info", "tell what a file holds, who wrote it, with what", LamCommandInfo, PETSC_FALSE},
 };
 enum { COMMAND_COUNT = PETSC_STATIC_ARRAY_LENGTH(Commands) };
 
@@ -82,7 +80,7 @@ static PetscErrorCode RunCommand(LamArgs *args, int *status)
   for (int i = 0; i < COMMAND_COUNT; i++) {
     if (strcmp(args->argv[0], Commands[i].name)) continue;
     LamRuntimeExpectRanks(Commands[i].solves);
-    if (Commands[i].files) LamAppStartHDF5();
+    LamAppStartHDF5();
     PetscCall(Commands[i].run(args, status));
     PetscFunctionReturn(0);
   }

@@ -54,7 +54,7 @@ done
 expect 0 - "$lamella" plot rve.h5 --state 1 --field fibre_stretch -o first.png
 cmp -s first.png rve.png && fail "state 1 and the last state give the same picture"
 expect 2 "states 1 to 3" "$lamella" plot rve.h5 --state 9
-expect 2 "--state two" "$lamella" plot rve.h5 --state two
+expect 1 '--state "two"' "$lamella" plot rve.h5 --state two
 expect 2 "wall_stress" "$lamella" plot rve.h5 --field colour
 expect 2 ".png, .svg or .pdf" "$lamella" plot rve.h5 -o figure.gif
 expect 4 "no/such/folder.png" "$lamella" plot rve.h5 -o no/such/folder.png
@@ -65,6 +65,7 @@ cmp -s turned.png database.png && fail "slices at 0 and at 15 degrees give the s
 expect 0 - "$lamella" plot database.h5 --field stress -o records.png
 cmp -s records.png database.png && fail "a table and its records give the same picture"
 expect 2 "--suction 0.01 MPa" "$lamella" plot database.h5 --suction "0.01 MPa"
+expect 1 '--accuracy "-1"' "$lamella" plot database.h5 --accuracy -1
 expect 2 "--angle 15 deg" "$lamella" plot rve.h5 --angle "15 deg"
 
 expect 1 - "$lamella" plot

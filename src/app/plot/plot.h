@@ -295,6 +295,15 @@ PetscErrorCode LamPlotReadReals(const char path[], const char name[], PetscInt r
 PetscErrorCode LamPlotReadInts(const char path[], const char name[], PetscInt rows, PetscInt columns,
                                PetscInt **values);
 PetscErrorCode LamPlotReadText(const char path[], const char name[], char **text);
+/* The records of a file, and their tissue; borrowed from the database. */
+typedef struct {
+  PetscInt n;
+  const LamResponse *records;
+  const PetscInt64 *keys;
+  LamMicrostructure micro;
+  LamScales scales;
+} LamPlotRecords;
+PetscErrorCode LamPlotGetRecords(LamDatabase database, LamPlotRecords *records);
 /* Reads points of the plane [count][2] from two or three coordinates each; rows: their number, -1: any. */
 PetscErrorCode LamPlotReadPoints(const char path[], const char name[], PetscInt rows, PetscInt *count,
                                  PetscReal **points);
@@ -327,8 +336,9 @@ typedef struct {
   const char *field; /* NULL: the default for the kind of file */
   PetscBool film;  /* for a process: all states whose cells are in the file, each on its own page or in its own file */
   const char *map; /* for a process: the file of a map on which its path is drawn; NULL: none */
-  /* of a slice through a table, as given by the user; NULL: chosen */
-  const char *angle, *suction, *turgor, *accuracy;
+  /* of a slice through a table, as given by the user; NULL, 0: chosen */
+  const char *angle, *suction, *turgor;
+  PetscReal accuracy;
 } LamPlotRequest;
 PetscErrorCode LamPlotRVE(const LamPlotRequest *request);
 PetscErrorCode LamPlotFE2(const LamPlotRequest *request);

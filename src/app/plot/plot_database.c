@@ -11,8 +11,6 @@
 
 static const LamColour Failure = {0.80, 0.15, 0.05};
 
-typedef enum { COLOUR_STRESS, COLOUR_TURGOR } ColourBy;
-
 typedef struct {
   PetscInt n, failed, outside; /* number of records, of those not converged, of those without a finite strain */
   PetscReal (*strain)[2];      /* e1 >= e2; owned */
@@ -20,40 +18,25 @@ typedef struct {
   LamColourRange range;
 } DatabasePicture;
 
-static PetscErrorCode FindColour(const LamPlotRequest *request, ColourBy *by)
+static PetscErrorCode LoadDatabase(const LamPlotRequest *request, LamDatabase database, PetscBool turgor,
+                                   DatabasePicture *p)
 {
-  PetscFunctionBeginUser;
-  *by = COLOUR_STRESS;
-  if (!request->field || !strcmp(request->field, "stress")) PetscFunctionReturn(0);
-  PetscCheck(!strcmp(request->field, "turgor"), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "--field %s: a database has stress and turgor", request->field);
-  *by = COLOUR_TURGOR;
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode LoadDatabase(const LamPlotRequest *request, LamDatabase database, ColourBy by, DatabasePicture *p)
-{
-  LamMicrostructure micro;
-  LamScales scales;
-  const LamResponse *records;
-  const PetscInt64 *keys;
-  const char *hash;
+  LamPlotRecords of;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(p, sizeof *p));
-  PetscCall(LamDatabaseGetRecords(database, &p->n, &records, &keys));
-  PetscCall(LamDatabaseGetMicrostructure(database, &micro, &scales, &hash));
-  PetscCheck(p->n > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no records to draw", request->input);
+  PetscCall(LamPlotGetRecords(database, &of));
+  PetscCheck(of.n > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no records to draw", request->input);
+  p->n = of.n;
   PetscCall(PetscMalloc1(p->n, &p->strain));
   PetscCall(PetscMalloc1(p->n, &p->value));
   for (PetscInt i = 0; i < p->n; i++) {
-    PetscReal square = 0, angle;
+    const LamResponse *record = &of.records[i];
+    PetscReal angle;
 
-    LamPrincipalStrains(records[i].load.F, p->strain[i], &angle);
-    for (int k = 0; k < 9; k++)
-      if (!PetscIsInfOrNanReal(records[i].P[k])) square += PetscSqr(records[i].P[k]);
-    p->value[i] = (by == COLOUR_STRESS ? PetscSqrtReal(square) : records[i].load.turgor) * scales.stress * 1e-6;
-    if (!LamResponseHasFields(&records[i])) {
+    LamPrincipalStrains(record->load.F, p->strain[i], &angle);
+    p->value[i] = (turgor ? record->load.turgor : LamStressNorm(record->P)) * of.scales.stress * 1e-6;
+    if (!LamResponseHasFields(record)) {
       p->value[i] = NAN;
       p->failed++;
     }
@@ -149,13 +132,14 @@ static PetscErrorCode PlotRecords(const LamPlotRequest *request, LamDatabase dat
   DatabasePicture picture;
   LamCanvas canvas;
   LamRect rect;
-  ColourBy by;
+  const PetscBool turgor = (PetscBool)(request->field && !strcmp(request->field, "turgor"));
   char title[256];
   double width;
 
   PetscFunctionBeginUser;
-  PetscCall(FindColour(request, &by));
-  PetscCall(LoadDatabase(request, database, by, &picture));
+  PetscCheck(turgor || !request->field || !strcmp(request->field, "stress"), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "--field %s: a database has stress and turgor", request->field);
+  PetscCall(LoadDatabase(request, database, turgor, &picture));
   PetscCall(LamCanvasCreate(request->output, LAM_PLOT_WIDTH, LAM_PLOT_HEIGHT, &canvas));
   PetscCall(Title(&picture, sizeof title, title));
   LamCanvasTitle(canvas, 9, 12, title);
@@ -164,8 +148,7 @@ static PetscErrorCode PlotRecords(const LamPlotRequest *request, LamDatabase dat
   PetscCall(DrawScatter(canvas, rect, &picture, &shape, ToVolumeAndShape));
   rect.x += width + 10;
   PetscCall(DrawScatter(canvas, rect, &picture, &principal, ToPrincipal));
-  LamColourBar(canvas, principal.frame, &picture.range, LamColourMap, by == COLOUR_STRESS ? "‖$P$‖" : "turgor $p$",
-               "MPa");
+  LamColourBar(canvas, principal.frame, &picture.range, LamColourMap, turgor ? "turgor $p$" : "‖$P$‖", "MPa");
   PetscCall(LamCanvasFinish(&canvas));
   PetscCall(PetscFree(picture.strain));
   PetscCall(PetscFree(picture.value));

@@ -115,21 +115,17 @@ static PetscReal MemberValue(const LamMember *member, const LamResponse *record,
 static PetscErrorCode ReadRecords(const char path[], const LamMember *member, LamMapPicture *p)
 {
   LamDatabase database;
-  LamMicrostructure micro;
-  LamScales scales;
-  const LamResponse *records;
-  const PetscInt64 *keys;
-  const char *hash;
-  PetscInt n;
+  LamPlotRecords of;
 
   PetscFunctionBeginUser;
   PetscCall(LamDatabaseOpen(path, &database));
-  PetscCall(LamDatabaseGetRecords(database, &n, &records, &keys));
-  PetscCall(LamDatabaseGetMicrostructure(database, &micro, &scales, &hash));
-  for (PetscInt i = 0; i < n; i++) {
-    if (keys[i] < 0 || keys[i] >= p->n) continue;
-    p->shear[keys[i]] = records[i].load.F[1];
-    if (member) p->value[keys[i]] = MemberValue(member, &records[i], &scales);
+  PetscCall(LamPlotGetRecords(database, &of));
+  for (PetscInt i = 0; i < of.n; i++) {
+    const PetscInt64 point = of.keys[i];
+
+    if (point < 0 || point >= p->n) continue;
+    p->shear[point] = of.records[i].load.F[1];
+    if (member) p->value[point] = MemberValue(member, &of.records[i], &of.scales);
   }
   p->unit = member && member->stress_power == 1 ? "MPa" : NULL;
   PetscCall(LamDatabaseClose(&database));

@@ -14,31 +14,25 @@ static const LamColour Path = {0.75, 0.1, 0.1};
 
 typedef struct {
   const char *path;     /* borrowed */
-  LamDatabase database; /* owns `records` */
-  LamMicrostructure micro;
-  LamScales scales;
-  PetscInt n;
-  const LamResponse *records; /* of the states */
+  LamDatabase database; /* owned */
+  LamPlotRecords of;    /* the states */
   LamTimeLine line;
 } Process;
 
 static PetscErrorCode Read(const char path[], Process *p)
 {
-  const PetscInt64 *keys;
-
   PetscFunctionBeginUser;
-  *p = (Process){.path = path};
+  p->path = path;
   PetscCall(LamDatabaseOpen(path, &p->database));
-  PetscCall(LamDatabaseGetRecords(p->database, &p->n, &p->records, &keys));
-  PetscCall(LamDatabaseGetMicrostructure(p->database, &p->micro, &p->scales, NULL));
-  PetscCheck(p->n > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no states", path);
-  PetscCall(LamTimeLineRead(path, p->n, &p->line));
+  PetscCall(LamPlotGetRecords(p->database, &p->of));
+  PetscCheck(p->of.n > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no states", path);
+  PetscCall(LamTimeLineRead(path, p->of.n, &p->line));
   PetscFunctionReturn(0);
 }
 
 static PetscBool IsContact(const Process *p)
 {
-  return (PetscBool)(p->micro.interface == LAM_INTERFACE_CONTACT);
+  return (PetscBool)(p->of.micro.interface == LAM_INTERFACE_CONTACT);
 }
 
 /* ---- the four charts ---- */
@@ -50,9 +44,9 @@ static PetscErrorCode AddMember(LamTimeChart *chart, const Process *p, size_t of
   PetscReal *values;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(p->n, &values));
-  for (PetscInt k = 0; k < p->n; k++)
-    values[k] = factor * *(const PetscReal *)(const void *)((const char *)&p->records[k] + offset);
+  PetscCall(PetscMalloc1(p->of.n, &values));
+  for (PetscInt k = 0; k < p->of.n; k++)
+    values[k] = factor * *(const PetscReal *)(const void *)((const char *)&p->of.records[k] + offset);
   PetscCall(LamTimeChartAdd(chart, &p->line, values, label));
   PetscCall(PetscFree(values));
   PetscFunctionReturn(0);
@@ -66,7 +60,7 @@ static PetscErrorCode MakePressures(Process *p, LamTimeChart *chart)
   *chart = (LamTimeChart){.axes.y = {.label = "pressure", .unit = "MPa"}};
   PetscCall(LamTimeChartAddColumn(chart, &p->line, "turgor", "turgor"));
   PetscCall(LamTimeColumn(&p->line, "osmotic_pressure", PETSC_FALSE, &osmotic));
-  if (LamTimeIsKnown(p->n, osmotic)) {
+  if (LamTimeIsKnown(p->of.n, osmotic)) {
     PetscCall(LamTimeChartAdd(chart, &p->line, osmotic, "osmotic, in cells"));
     PetscCall(LamTimeChartAddColumn(chart, &p->line, "outside", "outside"));
   }
@@ -80,13 +74,13 @@ static PetscErrorCode MakeFactors(Process *p, LamTimeChart *chart)
   *chart = (LamTimeChart){.axes.y = {.label = "share of the start"}};
   PetscCall(LamTimeChartAddGroup(chart, &p->line, "factor", LAM_CHANGING_COUNT, LamChangingNames, LamTimeVaries));
   if (!chart->n)
-    PetscCall(AddMember(chart, p, offsetof(LamResponse, lumen_fraction), 1 / p->records[0].lumen_fraction, "lumen"));
+    PetscCall(AddMember(chart, p, offsetof(LamResponse, lumen_fraction), 1 / p->of.records[0].lumen_fraction, "lumen"));
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode MakeSeparation(Process *p, LamTimeChart *chart)
 {
-  const PetscReal MPa = p->scales.stress * 1e-6;
+  const PetscReal MPa = p->of.scales.stress * 1e-6;
 
   PetscFunctionBeginUser;
   *chart = (LamTimeChart){.axes.y = {.label = "share of the interface"}};
@@ -146,7 +140,7 @@ static PetscErrorCode ReadCells(const Film *film, PetscInt k, LamTissue *tissue)
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(name, sizeof(name), "/fields/%" PetscInt_FMT, state));
-  PetscCall(LamTissueRead(p->path, "/mesh", name, film->field, IsContact(p), p->records[state].load.F, tissue));
+  PetscCall(LamTissueRead(p->path, "/mesh", name, film->field, IsContact(p), p->of.records[state].load.F, tissue));
   PetscFunctionReturn(0);
 }
 
@@ -157,8 +151,8 @@ static PetscErrorCode FindStates(const LamPlotRequest *request, Film *film)
   PetscBool has;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(p->n, &film->states));
-  for (PetscInt k = 0; k < p->n; k++) {
+  PetscCall(PetscMalloc1(p->of.n, &film->states));
+  for (PetscInt k = 0; k < p->of.n; k++) {
     if (request->state >= 0 && k != request->state) continue;
     PetscCall(PetscSNPrintf(name, sizeof(name), "/fields/%" PetscInt_FMT "/x", k));
     PetscCall(LamPlotHas(p->path, name, &has));
@@ -211,7 +205,7 @@ static PetscErrorCode DrawFrame(LamCanvas canvas, void *ctx, PetscInt k)
   y = view.frame.y + view.frame.height;
   PetscCall(ReadCells(film, k, &tissue));
   PetscCall(LamTissueDraw(canvas, &view, &tissue, &film->frame.range, NULL));
-  LamScaleBar(canvas, &view, x, y + 11, 0.25 * view.frame.width, 1e-6 / p->scales.length, "µm");
+  LamScaleBar(canvas, &view, x, y + 11, 0.25 * view.frame.width, 1e-6 / p->of.scales.length, "µm");
   if (tissue.has_interface) LamInterfaceDrawKey(canvas, x, y + 21, &tissue.interface);
   PetscCall(LamTissueDestroy(&tissue));
   PetscCall(DrawCharts(canvas, LamFrameCharts(), p, film->states[k]));
@@ -244,8 +238,8 @@ static PetscErrorCode FindPositions(Process *p, const LamMapSide *side, PetscRea
   PetscFunctionBeginUser;
   PetscCall(LamTimeColumn(&p->line, side->quantity, PETSC_FALSE, &values));
   PetscCall(LamTimeColumn(&p->line, "walls", PETSC_FALSE, &walls));
-  PetscCall(PetscMalloc1(p->n, at));
-  for (PetscInt k = 0; k < p->n; k++) (*at)[k] = side->is_log ? log10(values[k] / walls[k]) : values[k] / walls[k];
+  PetscCall(PetscMalloc1(p->of.n, at));
+  for (PetscInt k = 0; k < p->of.n; k++) (*at)[k] = side->is_log ? log10(values[k] / walls[k]) : values[k] / walls[k];
   PetscFunctionReturn(0);
 }
 
@@ -258,13 +252,13 @@ static PetscErrorCode DrawPath(LamCanvas canvas, const LamAxes *axes, const LamM
   PetscCall(FindPositions(p, &map->x, &x));
   PetscCall(FindPositions(p, &map->y, &y));
   LamCanvasClip(canvas, axes->frame);
-  for (PetscInt k = 0; k < p->n; k++) LamAxesPath(canvas, axes, x[k], y[k], (PetscBool)(k > 0));
+  for (PetscInt k = 0; k < p->of.n; k++) LamAxesPath(canvas, axes, x[k], y[k], (PetscBool)(k > 0));
   LamCanvasStroke(canvas, Path, 1.3, NULL);
-  for (PetscInt k = 0; k < p->n; k++) {
+  for (PetscInt k = 0; k < p->of.n; k++) {
     const double at[2] = {LamAxesX(axes, x[k]), LamAxesY(axes, y[k])};
 
     LamTimeEventName(&p->line, k, sizeof(name), name);
-    if (k > 0 && k < p->n - 1 && !name[0]) continue;
+    if (k > 0 && k < p->of.n - 1 && !name[0]) continue;
     LamCanvasSetColour(canvas, Path);
     LamCanvasMarker(canvas, at[0], at[1], 4.2, name[0] ? LAM_MARKER_DIAMOND : LAM_MARKER_CIRCLE, (PetscBool)(k > 0));
     LamCanvasSetColour(canvas, LamDarkInk);

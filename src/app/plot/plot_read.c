@@ -63,6 +63,14 @@ PetscErrorCode LamPlotReadText(const char path[], const char name[], char **text
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamPlotGetRecords(LamDatabase database, LamPlotRecords *r)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamDatabaseGetRecords(database, &r->n, &r->records, &r->keys));
+  PetscCall(LamDatabaseGetMicrostructure(database, &r->micro, &r->scales, NULL));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamPlotReadPoints(const char path[], const char name[], PetscInt rows, PetscInt *count,
                                  PetscReal **points)
 {

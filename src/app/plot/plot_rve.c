@@ -4,13 +4,9 @@
 #include "plot_tissue.h"
 
 typedef struct {
-  LamDatabase database; /* owned; owner of records and keys */
-  PetscInt record_count;
-  const LamResponse *records;
-  const PetscInt64 *keys;
-  LamMicrostructure micro;
-  LamScales scales;
-  PetscInt index; /* of the state drawn, into records */
+  LamDatabase database; /* owned */
+  LamPlotRecords of;    /* the states */
+  PetscInt index;       /* of the state drawn */
   const LamWallField *field;
   LamTissue tissue;
 } RVEPicture;
@@ -18,22 +14,22 @@ typedef struct {
 /* The requested state, or the last converged one. */
 static PetscErrorCode FindState(const LamPlotRequest *request, RVEPicture *p)
 {
-  PetscInt i = p->record_count - 1;
+  PetscInt i = p->of.n - 1;
 
   PetscFunctionBeginUser;
-  PetscCheck(p->record_count > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no states", request->input);
+  PetscCheck(p->of.n > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no states", request->input);
   if (request->state < 0) {
-    while (i >= 0 && !LamResponseHasFields(&p->records[i])) i--;
+    while (i >= 0 && !LamResponseHasFields(&p->of.records[i])) i--;
     PetscCheck(i >= 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: no state has an answer to draw; the first is %s: %s",
-               request->input, LamStatusNames[p->records[0].status], p->records[0].reason);
+               request->input, LamStatusNames[p->of.records[0].status], p->of.records[0].reason);
   } else {
-    while (i >= 0 && p->keys[i] != request->state) i--;
+    while (i >= 0 && p->of.keys[i] != request->state) i--;
     PetscCheck(i >= 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                "--state %" PetscInt_FMT ": %s holds states %" PetscInt64_FMT " to %" PetscInt64_FMT, request->state,
-               request->input, p->keys[0], p->keys[p->record_count - 1]);
-    PetscCheck(LamResponseHasFields(&p->records[i]), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               request->input, p->of.keys[0], p->of.keys[p->of.n - 1]);
+    PetscCheck(LamResponseHasFields(&p->of.records[i]), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                "--state %" PetscInt_FMT ": has no fields to draw; it is %s: %s", request->state,
-               LamStatusNames[p->records[i].status], p->records[i].reason);
+               LamStatusNames[p->of.records[i].status], p->of.records[i].reason);
   }
   p->index = i;
   PetscFunctionReturn(0);
@@ -41,33 +37,32 @@ static PetscErrorCode FindState(const LamPlotRequest *request, RVEPicture *p)
 
 static PetscErrorCode LoadRVE(const LamPlotRequest *request, RVEPicture *p)
 {
-  const char *path = request->input, *hash;
+  const char *path = request->input;
   char fields[64];
 
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(p, sizeof *p));
   PetscCall(LamWallFieldFind(request->field, &p->field));
   PetscCall(LamDatabaseOpen(path, &p->database));
-  PetscCall(LamDatabaseGetRecords(p->database, &p->record_count, &p->records, &p->keys));
-  PetscCall(LamDatabaseGetMicrostructure(p->database, &p->micro, &p->scales, &hash));
+  PetscCall(LamPlotGetRecords(p->database, &p->of));
   PetscCall(FindState(request, p));
-  PetscCall(PetscSNPrintf(fields, sizeof fields, "/fields/%" PetscInt64_FMT, p->keys[p->index]));
-  PetscCall(LamTissueRead(path, "/mesh", fields, p->field, (PetscBool)(p->micro.interface == LAM_INTERFACE_CONTACT),
-                          p->records[p->index].load.F, &p->tissue));
+  PetscCall(PetscSNPrintf(fields, sizeof fields, "/fields/%" PetscInt64_FMT, p->of.keys[p->index]));
+  PetscCall(LamTissueRead(path, "/mesh", fields, p->field, (PetscBool)(p->of.micro.interface == LAM_INTERFACE_CONTACT),
+                          p->of.records[p->index].load.F, &p->tissue));
   PetscFunctionReturn(0);
 }
 
 /* "State 5:  F = [1, 0.3; 0, 1],  p = 0.02 MPa" */
 static PetscErrorCode Title(const RVEPicture *p, size_t size, char title[])
 {
-  const LamResponse *response = &p->records[p->index];
+  const LamResponse *response = &p->of.records[p->index];
   const PetscReal *F = response->load.F;
   const PetscBool plane = (PetscBool)(F[2] == 0 && F[5] == 0 && F[6] == 0 && F[7] == 0 && F[8] == 1);
   const int n = plane ? 2 : 3;
   char number[32], item[96];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(title, size, "State %" PetscInt64_FMT ":  $F$ = [", p->keys[p->index]));
+  PetscCall(PetscSNPrintf(title, size, "State %" PetscInt64_FMT ":  $F$ = [", p->of.keys[p->index]));
   for (int i = 0; i < n; i++) {
     for (int j = 0; j < n; j++) {
       LamFormatRatio(F[3 * i + j], number);
@@ -75,11 +70,11 @@ static PetscErrorCode Title(const RVEPicture *p, size_t size, char title[])
       PetscCall(PetscStrlcat(title, item, size));
     }
   }
-  LamFormatNumber(response->load.turgor * p->scales.stress * 1e-6, number);
+  LamFormatNumber(response->load.turgor * p->of.scales.stress * 1e-6, number);
   PetscCall(PetscSNPrintf(item, sizeof item, "],  turgor $p$ = %s MPa", number));
   PetscCall(PetscStrlcat(title, item, size));
-  if (p->micro.interface != LAM_INTERFACE_BONDED) {
-    LamFormatNumber(response->load.cohesion * p->scales.stress * 1e-6, number);
+  if (p->of.micro.interface != LAM_INTERFACE_BONDED) {
+    LamFormatNumber(response->load.cohesion * p->of.scales.stress * 1e-6, number);
     PetscCall(PetscSNPrintf(item, sizeof item, ",  cohesion $g$ = %s MPa", number));
     PetscCall(PetscStrlcat(title, item, size));
   }
@@ -95,7 +90,7 @@ static void DrawKey(LamCanvas canvas, const LamView *view, double right, const R
   const LamRect f = view->frame;
   const double y = f.y + f.height + 11;
 
-  LamScaleBar(canvas, view, f.x, y, 0.18 * f.width, 1e-6 / p->scales.length, "µm");
+  LamScaleBar(canvas, view, f.x, y, 0.18 * f.width, 1e-6 / p->of.scales.length, "µm");
   LamUndeformedKey(canvas, right, y,
                    LamTissueIsPeriodic(&p->tissue) ? "undeformed;  paler: periodic images" : "undeformed");
   if (p->tissue.has_interface) LamInterfaceDrawKey(canvas, f.x, y + KeyRow, &p->tissue.interface);
@@ -144,7 +139,7 @@ PetscErrorCode LamPlotRVE(const LamPlotRequest *request)
   PetscCall(Title(&picture, sizeof title, title));
   LamCanvasTitle(canvas, left.x, 12, title);
   PetscCall(DrawPanel(canvas, left, &picture));
-  PetscCall(LamStressChart(canvas, right, picture.record_count, picture.records, picture.keys, &picture.scales));
+  PetscCall(LamStressChart(canvas, right, picture.of.n, picture.of.records, picture.of.keys, &picture.of.scales));
   PetscCall(LamCanvasFinish(&canvas));
   PetscCall(LamTissueDestroy(&picture.tissue));
   PetscCall(LamDatabaseClose(&picture.database));

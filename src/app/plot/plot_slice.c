@@ -35,6 +35,15 @@ void LamPrincipalStrains(const PetscReal F[9], PetscReal strain[2], PetscReal *a
   *angle = 0.5 * atan2(2 * C[1], C[0] - C[2]);
 }
 
+PetscReal LamStressNorm(const PetscReal P[9])
+{
+  PetscReal square = 0;
+
+  for (int k = 0; k < 9; k++)
+    if (isfinite(P[k])) square += PetscSqr(P[k]);
+  return PetscSqrtReal(square);
+}
+
 PetscReal LamSliceStrain(const LamSlice *slice, PetscInt i)
 {
   return slice->low + (slice->high - slice->low) * ((PetscReal)i + 0.5) / LAM_SLICE_SAMPLES;
@@ -50,18 +59,26 @@ static LamLoad LoadAt(const LamSlice *s, const LamScales *scales, PetscReal e1, 
                    .cohesion = s->cohesion * MPa};
 }
 
+/* What the database holds. */
+typedef struct {
+  LamGrid grid;
+  LamPlotRecords of;
+} Nodes;
+
 /* ---- choice of the slice ---- */
 
 PetscErrorCode LamSliceRefuse(const LamPlotRequest *request)
 {
+  char accuracy[32];
   const struct {
     const char *option, *value;
   } options[] = {{"angle", request->angle},
                  {"suction", request->suction},
                  {"turgor", request->turgor},
-                 {"accuracy", request->accuracy}};
+                 {"accuracy", request->accuracy > 0 ? accuracy : NULL}};
 
   PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(accuracy, sizeof accuracy, "%g", (double)request->accuracy));
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(options); i++)
     PetscCheck(!options[i].value, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                "--%s %s: chooses a slice through the table of a database; what is drawn of %s has none",
@@ -69,19 +86,15 @@ PetscErrorCode LamSliceRefuse(const LamPlotRequest *request)
   PetscFunctionReturn(0);
 }
 
+/* That of the request, or else of the file. */
 static PetscErrorCode ReadAccuracy(const LamPlotRequest *request, LamDatabase database, PetscReal *accuracy)
 {
   const char *text;
   json_t *info;
-  char *end;
 
   PetscFunctionBeginUser;
-  if (request->accuracy) {
-    *accuracy = strtod(request->accuracy, &end);
-    PetscCheck(end != request->accuracy && !*end && *accuracy > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "--accuracy %s: a relative error above 0 is wanted, such as 0.01", request->accuracy);
-    PetscFunctionReturn(0);
-  }
+  *accuracy = request->accuracy;
+  if (*accuracy > 0) PetscFunctionReturn(0);
   PetscCall(LamDatabaseGetInfo(database, &text));
   info = json_loads(text, 0, NULL);
   *accuracy = json_number_value(json_object_get(info, "accuracy"));
@@ -95,45 +108,42 @@ static PetscReal Suction(const LamLoad *load)
 }
 
 /* Whether a record is a solved node; states of floating cells are stored beside them. */
-static PetscBool IsNode(LamGrid grid, PetscInt64 key)
+static PetscBool IsNode(const Nodes *nodes, PetscInt i)
 {
-  return (PetscBool)(LamKeyIsNode(key) && LamGridNodeLevel(grid, key) >= 0);
+  return (PetscBool)(LamKeyIsNode(nodes->of.keys[i]) && LamGridNodeLevel(nodes->grid, nodes->of.keys[i]) >= 0);
 }
 
 /* Smallest and largest suction of the nodes; PETSC_FALSE: there are no nodes. */
-static PetscBool SuctionRange(LamGrid grid, PetscInt n, const LamResponse records[], const PetscInt64 keys[],
-                              PetscReal range[2])
+static PetscBool SuctionRange(const Nodes *nodes, PetscReal range[2])
 {
   range[0] = PETSC_INFINITY;
   range[1] = -PETSC_INFINITY;
-  for (PetscInt i = 0; i < n; i++) {
-    if (!IsNode(grid, keys[i])) continue;
-    range[0] = PetscMin(range[0], Suction(&records[i].load));
-    range[1] = PetscMax(range[1], Suction(&records[i].load));
+  for (PetscInt i = 0; i < nodes->of.n; i++) {
+    if (!IsNode(nodes, i)) continue;
+    range[0] = PetscMin(range[0], Suction(&nodes->of.records[i].load));
+    range[1] = PetscMax(range[1], Suction(&nodes->of.records[i].load));
   }
   return (PetscBool)(range[0] <= range[1]);
 }
 
 /* The load of the node with the nearest suction; `coarsest`: only nodes of the coarsest level. NULL: there is none. */
-static const LamLoad *NearestLoad(LamGrid grid, PetscInt n, const LamResponse records[], const PetscInt64 keys[],
-                                  PetscReal suction, PetscBool coarsest)
+static const LamLoad *NearestLoad(const Nodes *nodes, PetscReal suction, PetscBool coarsest)
 {
   const LamLoad *nearest = NULL;
 
-  for (PetscInt i = 0; i < n; i++) {
-    const LamLoad *load = &records[i].load;
+  for (PetscInt i = 0; i < nodes->of.n; i++) {
+    const LamLoad *load = &nodes->of.records[i].load;
 
-    if (!IsNode(grid, keys[i]) || (coarsest && LamGridNodeParent(grid, keys[i]) >= 0)) continue;
+    if (!IsNode(nodes, i) || (coarsest && LamGridNodeParent(nodes->grid, nodes->of.keys[i]) >= 0)) continue;
     if (!nearest || fabs(Suction(load) - suction) < fabs(Suction(nearest) - suction)) nearest = load;
   }
   return nearest;
 }
 
 /* Turgor and cohesion of the slice, and the suction of the nodes in it. */
-static PetscErrorCode ChooseLoad(const LamPlotRequest *request, LamGrid grid, PetscInt n, const LamResponse records[],
-                                 const PetscInt64 keys[], const LamScales *scales, LamSlice *s)
+static PetscErrorCode ChooseLoad(const LamPlotRequest *request, const Nodes *nodes, LamSlice *s)
 {
-  const PetscReal MPa = scales->stress * 1e-6;
+  const PetscReal MPa = nodes->of.scales.stress * 1e-6;
   const PetscBool contact = (PetscBool)(s->interface == LAM_INTERFACE_CONTACT);
   const char *text = contact ? request->suction : request->turgor;
   const LamLoad *node;
@@ -144,17 +154,17 @@ static PetscErrorCode ChooseLoad(const LamPlotRequest *request, LamGrid grid, Pe
              "--suction %s: bonded tissue has none; give its --turgor", request->suction);
   PetscCheck(!contact || !request->turgor, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "--turgor %s: slices of contact tissue have a --suction, which is turgor + cohesion", request->turgor);
-  PetscCheck(SuctionRange(grid, n, records, keys, range), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: its table holds no nodes to draw", request->input);
+  PetscCheck(SuctionRange(nodes, range), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: its table holds no nodes to draw",
+             request->input);
   suction = 0.5 * (range[0] + range[1]);
   if (text) {
     PetscCall(LamQuantityParse(text, LAM_DIMENSION_STRESS, &suction));
-    suction /= scales->stress;
+    suction /= nodes->of.scales.stress;
     PetscCheck(!contact || (suction >= range[0] - TINY && suction <= range[1] + TINY), PETSC_COMM_SELF,
                PETSC_ERR_USER_INPUT, "--suction %s: the nodes of %s cover %.4g to %.4g MPa", text, request->input,
                (double)(range[0] * MPa), (double)(range[1] * MPa));
   }
-  node = NearestLoad(grid, n, records, keys, suction, (PetscBool)!text);
+  node = NearestLoad(nodes, suction, (PetscBool)!text);
   PetscCheck(node, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: its table lacks all coarse nodes", request->input);
   s->node_suction = Suction(node) * MPa;
   s->cohesion = node->cohesion * MPa;
@@ -163,8 +173,7 @@ static PetscErrorCode ChooseLoad(const LamPlotRequest *request, LamGrid grid, Pe
 }
 
 /* The scene's sample box, else the range of the nodes, with a margin. */
-static PetscErrorCode ChooseBox(const char path[], LamGrid grid, PetscInt n, const LamResponse records[],
-                                const PetscInt64 keys[], LamSlice *s)
+static PetscErrorCode ChooseBox(const char path[], const Nodes *nodes, LamSlice *s)
 {
   PetscReal angle, strain[2];
   LamScene *scene = NULL;
@@ -181,9 +190,9 @@ static PetscErrorCode ChooseBox(const char path[], LamGrid grid, PetscInt n, con
     s->high = s->box[1] = scene->sample.stretch_max;
   }
   PetscCall(LamSceneDestroy(&scene));
-  for (PetscInt i = 0; i < n && isnan(s->box[0]); i++) {
-    if (!IsNode(grid, keys[i])) continue;
-    LamPrincipalStrains(records[i].load.F, strain, &angle);
+  for (PetscInt i = 0; i < nodes->of.n && isnan(s->box[0]); i++) {
+    if (!IsNode(nodes, i)) continue;
+    LamPrincipalStrains(nodes->of.records[i].load.F, strain, &angle);
     s->low = isnan(s->low) ? strain[1] : PetscMin(s->low, strain[1]);
     s->high = isnan(s->high) ? strain[0] : PetscMax(s->high, strain[0]);
   }
@@ -222,22 +231,23 @@ static void AddImages(LamSlice *s, PetscInt images, const LamSliceNode *node, co
   }
 }
 
-static PetscErrorCode CollectNodes(LamGrid grid, const LamMicrostructure *micro, const LamScales *scales, PetscInt n,
-                                   const LamResponse records[], const PetscInt64 keys[], LamSlice *s)
+static PetscErrorCode CollectNodes(const Nodes *nodes, LamSlice *s)
 {
+  const LamMicrostructure *micro = &nodes->of.micro;
   const PetscInt images = micro->cells[0] == micro->cells[1] && !micro->cell ? 6 : 1;
-  const PetscReal suction = s->node_suction / (scales->stress * 1e-6);
+  const PetscReal suction = s->node_suction / (nodes->of.scales.stress * 1e-6);
 
   PetscFunctionBeginUser;
   s->reach = REACH * (s->high - s->low);
-  PetscCall(PetscMalloc1(n * images, &s->nodes));
-  for (PetscInt i = 0; i < n; i++) {
-    const LamSliceNode node = {.kind = KindOf(&records[i]), .level = LamGridNodeLevel(grid, keys[i])};
+  PetscCall(PetscMalloc1(nodes->of.n * images, &s->nodes));
+  for (PetscInt i = 0; i < nodes->of.n; i++) {
+    const LamSliceNode node = {.kind = KindOf(&nodes->of.records[i]),
+                               .level = LamGridNodeLevel(nodes->grid, nodes->of.keys[i])};
 
-    if (!IsNode(grid, keys[i])) continue;
+    if (!IsNode(nodes, i)) continue;
     s->table_nodes++;
-    if (fabs(Suction(&records[i].load) - suction) > TINY) continue;
-    AddImages(s, images, &node, &records[i]);
+    if (fabs(Suction(&nodes->of.records[i].load) - suction) > TINY) continue;
+    AddImages(s, images, &node, &nodes->of.records[i]);
   }
   PetscFunctionReturn(0);
 }
@@ -256,12 +266,9 @@ static void KeepAnswer(const LamSlice *s, const LamScales *scales, const LamResp
 {
   const PetscReal MPa = scales->stress * 1e-6;
   const PetscReal share = s->interface == LAM_INTERFACE_CONTACT ? r->opening_fraction : r->lumen_fraction;
-  PetscReal square = 0;
 
-  for (int k = 0; k < 9; k++)
-    if (!PetscIsInfOrNanReal(r->P[k])) square += PetscSqr(r->P[k]);
   s->value[LAM_SLICE_POTENTIAL][at] = (r->energy + r->load.turgor * (r->lumen_fraction + r->opening_fraction)) * MPa;
-  s->value[LAM_SLICE_STRESS][at] = sqrt(square) * MPa;
+  s->value[LAM_SLICE_STRESS][at] = LamStressNorm(r->P) * MPa;
   s->value[LAM_SLICE_ERROR][at] = log10(PetscMax(100 * r->error_estimate, 1e-12));
   s->value[LAM_SLICE_INDICATOR][at] = 100 * share;
 }
@@ -287,30 +294,24 @@ static PetscErrorCode AskRow(LamTable table, const LamScales *scales, LamSlice *
 PetscErrorCode LamSliceRead(const LamPlotRequest *request, LamDatabase database, LamSlice *s)
 {
   const PetscInt n = LAM_SLICE_SAMPLES * LAM_SLICE_SAMPLES;
-  LamMicrostructure micro;
-  LamScales scales;
-  const LamResponse *records;
-  const PetscInt64 *keys;
-  PetscInt record_count;
   LamTable table;
-  LamGrid grid;
+  Nodes nodes;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(s, sizeof *s));
-  PetscCall(LamDatabaseGetMicrostructure(database, &micro, &scales, NULL));
-  PetscCall(LamDatabaseGetRecords(database, &record_count, &records, &keys));
-  PetscCall(LamDatabaseGetGrid(database, &grid));
-  s->interface = micro.interface;
-  s->orientation = micro.orientation;
+  PetscCall(LamPlotGetRecords(database, &nodes.of));
+  PetscCall(LamDatabaseGetGrid(database, &nodes.grid));
+  s->interface = nodes.of.micro.interface;
+  s->orientation = nodes.of.micro.orientation;
   if (request->angle) PetscCall(LamQuantityParse(request->angle, LAM_DIMENSION_ANGLE, &s->angle));
   PetscCall(ReadAccuracy(request, database, &s->accuracy));
-  PetscCall(ChooseLoad(request, grid, record_count, records, keys, &scales, s));
-  PetscCall(ChooseBox(request->input, grid, record_count, records, keys, s));
-  PetscCall(CollectNodes(grid, &micro, &scales, record_count, records, keys, s));
+  PetscCall(ChooseLoad(request, &nodes, s));
+  PetscCall(ChooseBox(request->input, &nodes, s));
+  PetscCall(CollectNodes(&nodes, s));
   PetscCall(PetscMalloc1(n, &s->verdict));
   for (int k = 0; k < LAM_SLICE_PANEL_COUNT; k++) PetscCall(PetscMalloc1(n, &s->value[k]));
   PetscCall(LamDatabaseGetTable(database, &table));
-  for (PetscInt row = 0; row < LAM_SLICE_SAMPLES; row++) PetscCall(AskRow(table, &scales, s, row));
+  for (PetscInt row = 0; row < LAM_SLICE_SAMPLES; row++) PetscCall(AskRow(table, &nodes.of.scales, s, row));
   PetscCall(LamTableDestroy(&table));
   PetscFunctionReturn(0);
 }

@@ -55,6 +55,9 @@ typedef struct {
 /* Principal logarithmic strains e1 >= e2 of the plane, and the angle of the first to X1 before the deformation. */
 void LamPrincipalStrains(const PetscReal F[9], PetscReal strain[2], PetscReal *angle);
 
+/* The norm of the known components. */
+PetscReal LamStressNorm(const PetscReal P[9]);
+
 /* ---- plot_slice.c: PETSC_ERR_USER_INPUT if the request does not fit the table ---- */
 /* Rejects a request that chooses a slice if there is no table. */
 PetscErrorCode LamSliceRefuse(const LamPlotRequest *request);
