@@ -1,0 +1,153 @@
+/*
+  A run of the RVE along the scene's load.
+*/
+#include "rve_run.h"
+#include "clock.h"
+#include "plan.h"
+#include "rounding.h"
+#include "rve_fields.h"
+
+/* Fields are written first, so that a committed record always has them. */
+static PetscErrorCode WriteState(LamRVERun *run, PetscInt number, const LamResponse *response)
+{
+  const PetscInt64 key = number;
+  char group[LAM_NAME_LENGTH];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(group, sizeof(group), "/fields/%" PetscInt_FMT, number));
+  if (LamResponseHasFields(response))
+    PetscCall(LamRVEWriteFields(run->writer, group, run->meshes.rve[0], run->meshes.state[0], &run->scene->scales));
+  if (response->status == LAM_UNSTABLE)
+    PetscCall(LamRVEWriteMode(run->writer, group, run->meshes.rve[0], run->meshes.state[0]));
+  PetscCall(LamRecordWriterCommit(run->writer, 1, &key, response));
+  PetscFunctionReturn(0);
+}
+
+/* A file holds all members. Wall quantities are needed for failure and to decide whether the error estimate is valid.
+ */
+static LamWanted Wanted(const LamRVERun *run)
+{
+  LamWanted wanted = LAM_WANT_STRESS | LAM_WANT_INDICATORS;
+
+  if (run->derivatives) wanted |= LAM_WANT_DERIVATIVES;
+  if (run->walls || run->find_failure || !run->no_estimate) wanted |= LAM_WANT_WALLS;
+  return run->out_path ? LAM_WANT_ALL : wanted;
+}
+
+PetscErrorCode LamRVERunPrepare(LamRVERun *run)
+{
+  const PetscBool contact = (PetscBool)(run->scene->micro.interface == LAM_INTERFACE_CONTACT);
+  LamPlan plan;
+
+  PetscFunctionBeginUser;
+  PetscCheck(run->scene->load_count, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: has no block `load`, which says what states to solve", run->scene->path);
+  PetscCall(LamPlanMake(run->scene, &plan));
+  PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &run->reporter, &plan.micro, run->scene->accuracy));
+  run->scene->micro = plan.micro;
+  if (run->find_failure && contact) run->second_mesh = PETSC_TRUE; /* separation is determined on two meshes */
+  PetscCall(LamMeshesCreate(plan.unknowns < LAM_PARALLEL_UNKNOWNS ? PETSC_COMM_SELF : PETSC_COMM_WORLD, run->scene,
+                            run->second_mesh ? 2 : 1, &run->meshes));
+  PetscCall(LamMeshesSetInterrupt(&run->meshes, LamStopInterrupt, NULL));
+  PetscCall(LamMeshesSetWanted(&run->meshes, Wanted(run)));
+  PetscCall(LamRVESetMonitor(run->meshes.rve[0], run->monitor));
+  if (!run->no_estimate && !run->second_mesh) PetscCall(LamRVEEstimateCreate(run->meshes.rve[0], &run->estimate));
+  PetscCall(LamMeshesSeal(&run->meshes, run->scene, &run->scene->loads[0]));
+  if (run->find_onset) PetscCall(LamOnsetCreate(&run->meshes, &run->onset));
+  if (run->find_failure) {
+    const LamFailureProgram program = {.interface = run->scene->micro.interface,
+                                       .strength = &run->scene->strength,
+                                       .count = run->scene->load_count,
+                                       .loads = run->scene->loads,
+                                       .controls = run->scene->controls};
+
+    PetscCall(LamFailureCreate(&run->meshes, &program, &run->failure));
+  }
+  PetscFunctionReturn(0);
+}
+
+static void CountDoubts(LamRVERun *run, const LamResponse *response)
+{
+  if (response->error_estimate > run->scene->accuracy) run->inaccurate++;
+  if (!(response->kinked_fraction > LAM_KINKED_SHARE)) return;
+  run->kinked++;
+  run->most_kinked = PetscMax(run->most_kinked, response->kinked_fraction);
+}
+
+static void TellDoubts(const LamRVERun *run)
+{
+  if (run->inaccurate)
+    LamReportNote(&run->reporter,
+                  "the estimated error of %d of %d states exceeds the wanted accuracy of %.2g %%: write a finer "
+                  "rve.mesh (it is %d x %d)",
+                  (int)run->inaccurate, (int)run->solved, (double)(100 * run->scene->accuracy),
+                  (int)run->scene->micro.along, (int)run->scene->micro.through);
+  if (run->kinked)
+    LamReportNote(
+        &run->reporter,
+        "in %d of %d states walls are compressed along their fibres beyond C4 (1 - I4) > C1 + C2, in "
+        "up to %.2g %% of their volume: they kink on the scale of the mesh, and the estimate of the error, though "
+        "taken larger there, is no more than a guess; walls with `fibres: tension` have no such limit",
+        (int)run->kinked, (int)run->solved, (double)(100 * run->most_kinked));
+}
+
+const LamStressControl *LamRVERunControl(const LamRVERun *run, PetscInt number)
+{
+  return run->scene->controls ? &run->scene->controls[number - 1] : NULL;
+}
+
+static PetscErrorCode SolveStates(LamRVERun *run)
+{
+
+  PetscFunctionBeginUser;
+  while (run->solved < run->scene->load_count && !LamStopRequested()) {
+    LamResponse responses[2];
+
+    PetscCall(LamMeshesSolve(&run->meshes, &run->scene->loads[run->solved], LamRVERunControl(run, run->solved + 1),
+                             responses));
+    if (run->meshes.stopped) break;
+    if (run->estimate) PetscCall(LamRVEEstimateError(run->estimate, run->meshes.state[0], &responses[0]));
+    run->solved++;
+    if (responses[0].status != LAM_CONVERGED) run->failed++;
+    CountDoubts(run, &responses[0]);
+    if (run->find_onset) PetscCall(LamOnsetWatch(&run->onset, &run->meshes, run->solved, responses));
+    if (run->find_failure) PetscCall(LamFailureWatch(&run->failure, &run->meshes, run->solved, responses));
+    if (run->writer) PetscCall(WriteState(run, run->solved, &responses[0]));
+    if (run->state) PetscCall(run->state(run->reporter.ctx, run, responses));
+    PetscCall(LamReportProgress(&run->reporter, run->solved, run->scene->load_count, run->failed));
+  }
+  TellDoubts(run);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVERunSolve(LamRVERun *run)
+{
+  PetscErrorCode ierr = 0;
+
+  PetscFunctionBeginUser;
+  if (run->out_path) {
+    PetscCall(LamRecordWriterOpen(run->out_path, "rve", LAM_WRITE_CREATE, run->scene, &run->writer));
+    ierr = LamRVEWriteMesh(run->writer, "/mesh", run->meshes.rve[0]);
+  }
+  if (!ierr) ierr = SolveStates(run);
+  if (run->writer) { /* also after an error, to release the lock */
+    const PetscErrorCode closed = LamRecordWriterClose(&run->writer);
+
+    if (!ierr) ierr = closed;
+  }
+  PetscCall(ierr);
+  if (run->find_onset) PetscCall(LamOnsetFind(&run->onset, &run->meshes, run->scene->load_count));
+  if (run->find_failure) PetscCall(LamFailureConclude(&run->failure));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVERunDestroy(LamRVERun *run)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamOnsetDestroy(&run->onset));
+  PetscCall(LamFailureDestroy(&run->failure));
+  PetscCall(LamRVEEstimateDestroy(&run->estimate));
+  PetscCall(LamMeshesDestroy(&run->meshes));
+  PetscCall(LamSceneDestroy(&run->scene));
+  PetscFunctionReturn(0);
+}

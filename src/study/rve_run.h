@@ -1,0 +1,49 @@
+/*
+  A run of the RVE along the scene's load: its states, their file, and the onset of separation and the failure on the
+  way.
+
+  Each state starts from the last converged one, so the states are sequential and one rank solves them.
+
+    LamRVERun run = {.out_path = ..., ...};   options below
+    LamSceneRead(path, &run.scene); LamRVERunPrepare(&run); LamRVERunSolve(&run); LamRVERunDestroy(&run);
+*/
+#ifndef LAM_RVE_RUN_H
+#define LAM_RVE_RUN_H
+
+#include "failure.h"
+#include "study.h"
+#include <lamella/database.h>
+
+typedef struct LamRVERun_s {
+  /* options; all borrowed */
+  const char *out_path;               /* states and fields; NULL: none */
+  PetscBool derivatives, walls;       /* wanted of each state, in addition to what the file and the studies need */
+  PetscBool find_onset, find_failure; /* of contact tissue on two meshes */
+  PetscBool second_mesh;              /* of contact tissue */
+  PetscBool no_estimate, monitor;     /* no estimate of the error; each Newton iteration on stderr */
+  LamReporter reporter;
+  /* Called after each state, number `solved`; ctx: that of the reporter. */
+  PetscErrorCode (*state)(void *ctx, const struct LamRVERun_s *run, const LamResponse responses[2]);
+
+  LamScene *scene;         /* set by the caller; owned */
+  LamMeshes meshes;        /* the scene's, and with second_mesh a finer one */
+  LamRVEEstimate estimate; /* NULL: no estimate */
+  LamOnset onset;
+  LamFailure failure;
+  LamRecordWriter writer; /* NULL without a file */
+  PetscInt solved, failed;
+  PetscInt inaccurate; /* number of states whose estimated error exceeds the prescribed accuracy */
+  PetscInt kinked;     /* number of states in which too much of the walls has kinked for an estimate */
+  PetscReal most_kinked;
+  PetscReal start; /* set by the caller */
+} LamRVERun;
+
+/* Chooses what the scene leaves open, and makes the meshes. PETSC_ERR_USER_INPUT if the scene has no load. */
+PetscErrorCode LamRVERunPrepare(LamRVERun *run);
+/* Solves the states until a stop is requested, and finds onset and failure. Reports notes on doubtful states. */
+PetscErrorCode LamRVERunSolve(LamRVERun *run);
+PetscErrorCode LamRVERunDestroy(LamRVERun *run);
+/* The prescribed stress of state `number`; NULL: none. */
+const LamStressControl *LamRVERunControl(const LamRVERun *run, PetscInt number);
+
+#endif
