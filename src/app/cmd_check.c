@@ -1,35 +1,11 @@
 /*
   lamella check: the model that a scene describes, and its predicted cost. Needs no MPI.
-
-  Method. One assembly is timed on this machine; all other costs are multiples of it. The multiples are measured
-  (docs/reference/commands.md has the figures): they hold within a factor of two from 236 to 10,000 unknowns.
 */
 #include "app.h"
 #include "rounding.h"
 #include "map.h"
 #include "plot_time.h"
 #include <math.h>
-
-/* Cost of an iteration (assembly, factorisation, solve) in assemblies; the second value is for bonded tissue small
-   enough for a factorisation without pivoting (rve/cholesky.h). */
-#define ITERATION_ASSEMBLIES 7.0
-#define SMALL_ITERATION_ASSEMBLIES 4.0
-#define SMALL_UNKNOWNS 3000
-/* Factorisations of a single state, and of a material point during a load step; including the tangent. */
-#define STATE_FACTORISATIONS 6.0
-#define POINT_FACTORISATIONS 5.0
-/* Cost of a state of contact tissue relative to a bonded one: more iterations, and a denser matrix because of the
-   faces. */
-#define CONTACT_FACTOR 4.0
-/* For a map: states that bracket the failure of one path; cost of a state of contact tissue on two meshes relative
-   to the first mesh alone. */
-#define BRACKET_STATES 10
-#define TWO_MESHES 5.0
-/* Resident memory, MB: the program with its libraries; matrix, factor and mesh per unknown; for contact tissue
-   including the bonded RVE from which it starts. */
-#define PROGRAM_MB 50.0
-#define UNKNOWN_MB 0.0015
-#define CONTACT_UNKNOWN_MB 0.003
 
 /* Why a process needs direct solves; NULL: a database can be used. */
 static const char *WhyNoDatabase(const LamScene *scene)
@@ -42,45 +18,8 @@ static const char *WhyNoDatabase(const LamScene *scene)
 typedef struct {
   LamScene *scene;
   LamPlan plan;
-  PetscReal assembly, state, point; /* seconds: one assembly, one state, one query during a macroscale step */
-  PetscReal memory;                 /* MB, one rank */
+  LamCost cost;
 } Check;
-
-/* One cell is timed, whatever the period: its cost is proportional to the number of cells, and a large scene must
-   not be built. */
-static PetscErrorCode Predict(Check *check)
-{
-  const PetscReal n = (PetscReal)check->plan.unknowns;
-  LamMicrostructure cell = check->plan.micro;
-  const PetscReal cells = (PetscReal)cell.cells[0] * (PetscReal)cell.cells[1];
-  const PetscBool contact = (PetscBool)(cell.interface == LAM_INTERFACE_CONTACT);
-  PetscReal iteration;
-  PetscInt unknowns;
-
-  PetscFunctionBeginUser;
-  cell.cells[0] = cell.cells[1] = 1;
-  cell.is_patch = PETSC_FALSE;
-  cell.cell = NULL;
-  PetscCall(LamRVETimeAssembly(&cell, &unknowns, &check->assembly));
-  check->assembly *= cells;
-  iteration = !contact && n <= SMALL_UNKNOWNS ? SMALL_ITERATION_ASSEMBLIES : ITERATION_ASSEMBLIES;
-  iteration *= check->assembly * (contact ? CONTACT_FACTOR : 1);
-  check->state = STATE_FACTORISATIONS * iteration;
-  check->point = POINT_FACTORISATIONS * iteration;
-  /* each material point stores its positions, accepted and trial */
-  check->memory = PROGRAM_MB + (contact ? CONTACT_UNKNOWN_MB : UNKNOWN_MB) * n +
-                  (PetscReal)check->plan.macro_points * 2 * sizeof(PetscReal) * n / 1e6;
-  PetscFunctionReturn(0);
-}
-
-/* Seconds of a map on one rank. */
-static PetscReal MapSeconds(const Check *check)
-{
-  const PetscInt bracket = BRACKET_STATES * LamMapPathCount(check->scene);
-  const PetscReal meshes = check->plan.micro.interface == LAM_INTERFACE_CONTACT ? TWO_MESHES : 1;
-
-  return (PetscReal)(check->plan.map_states + bracket) * meshes * check->state;
-}
 
 /* ---- JSON output ---- */
 
@@ -165,8 +104,8 @@ static PetscErrorCode PrintObject(const Check *check)
                 LamInterfaceLawNames[micro->interface], "wall_law", LamWallLawNames[micro->wall.law], "turgor",
                 LamJSONReal(scene->turgor * MPa), "sealed", scene->sealed, "accuracy", LamJSONReal(scene->accuracy),
                 "mesh", Mesh(check), "unknowns", (json_int_t)plan->unknowns, "seconds_per_assembly",
-                LamJSONReal(check->assembly), "seconds_per_state", LamJSONReal(check->state), "memory_mb",
-                LamJSONReal(check->memory));
+                LamJSONReal(check->cost.assembly), "seconds_per_state", LamJSONReal(check->cost.state), "memory_mb",
+                LamJSONReal(check->cost.memory));
   PetscCheck(o, PETSC_COMM_SELF, PETSC_ERR_LIB, "the plan cannot be written as JSON");
   PetscCall(SetDigits(micro, scene->accuracy, o));
   if (micro->is_patch)
@@ -180,14 +119,15 @@ static PetscErrorCode PrintObject(const Check *check)
     json_object_set_new(o, "strategy", json_string(LamStrategyNames[scene->strategy]));
   }
   if (plan->load_states)
-    json_object_set_new(o, "load", Cost(json_integer(plan->load_states), (PetscReal)plan->load_states * check->state));
+    json_object_set_new(o, "load",
+                        Cost(json_integer(plan->load_states), (PetscReal)plan->load_states * check->cost.state));
   if (scene->has_sample)
     json_object_set_new(o, "sample",
-                        plan->sample_states
-                            ? Cost(json_integer(plan->sample_states), (PetscReal)plan->sample_states * check->state)
-                            : Cost(json_null(), NAN));
+                        plan->sample_states ? Cost(json_integer(plan->sample_states),
+                                                   (PetscReal)plan->sample_states * check->cost.state)
+                                            : Cost(json_null(), NAN));
   if (scene->has_map) {
-    json_t *map = Cost(json_integer(plan->map_states), MapSeconds(check));
+    json_t *map = Cost(json_integer(plan->map_states), check->cost.map);
 
     json_object_set_new(map, "points", json_integer(plan->map_points));
     json_object_set_new(o, "map", map);
@@ -197,7 +137,7 @@ static PetscErrorCode PrintObject(const Check *check)
                         json_pack("{s:o, s:b}", "duration", LamJSONReal(scene->process.duration), "database",
                                   (int)!WhyNoDatabase(scene)));
   if (scene->has_macro) {
-    json_t *macro = Cost(json_integer(plan->macro_states), (PetscReal)plan->macro_states * check->point);
+    json_t *macro = Cost(json_integer(plan->macro_states), (PetscReal)plan->macro_states * check->cost.point);
 
     json_object_set_new(macro, "points", json_integer(plan->macro_points));
     if (scene->region_count) {
@@ -341,7 +281,8 @@ static PetscErrorCode PrintMacro(const Check *check)
     printf("%" PetscInt_FMT " elements, %" PetscInt_FMT " material points", plan->macro_elements, plan->macro_points);
   printf(", %" PetscInt_FMT " load steps%s\n", macro->steps, macro->inflate ? " after inflation" : "");
   PetscCall(PrintRegions(check->scene));
-  if (plan->macro_states) PrintStates("  direct", plan->macro_states, (PetscReal)plan->macro_states * check->point);
+  if (plan->macro_states)
+    PrintStates("  direct", plan->macro_states, (PetscReal)plan->macro_states * check->cost.point);
   PetscFunctionReturn(0);
 }
 
@@ -363,17 +304,17 @@ static PetscErrorCode PrintCost(const Check *check)
 
   PetscFunctionBeginUser;
   printf("%-12s %" PetscInt_FMT "; one state about ", "unknowns", plan->unknowns);
-  PrintSeconds(check->state);
-  printf("\n%-12s about %.0f MB per rank\n", "memory", (double)check->memory);
-  if (plan->load_states) PrintStates("rve", plan->load_states, (PetscReal)plan->load_states * check->state);
+  PrintSeconds(check->cost.state);
+  printf("\n%-12s about %.0f MB per rank\n", "memory", (double)check->cost.memory);
+  if (plan->load_states) PrintStates("rve", plan->load_states, (PetscReal)plan->load_states * check->cost.state);
   if (plan->sample_states)
-    PrintStates("build", plan->sample_states, (PetscReal)plan->sample_states * check->state);
+    PrintStates("build", plan->sample_states, (PetscReal)plan->sample_states * check->cost.state);
   else if (scene->has_sample)
     printf("%-12s states until the error is below %.2g %%\n", "build", (double)(100 * scene->sample.accuracy));
   if (scene->has_map) {
     printf("%-12s %" PetscInt_FMT " points, %" PetscInt_FMT " paths\n", "map", plan->map_points,
            LamMapPathCount(scene));
-    PrintStates("  paths", plan->map_states, MapSeconds(check));
+    PrintStates("  paths", plan->map_states, check->cost.map);
   }
   if (scene->has_process) PrintProcess(scene);
   if (scene->has_macro) PetscCall(PrintMacro(check));
@@ -397,7 +338,7 @@ PetscErrorCode LamCommandCheck(LamArgs *args, int *exit_status)
   if (done) PetscFunctionReturn(0);
   PetscCall(LamSceneRead(path, &check.scene));
   PetscCall(LamPlanMake(check.scene, &check.plan));
-  PetscCall(Predict(&check));
+  PetscCall(LamPlanCost(check.scene, &check.plan, &check.cost));
   if (json) {
     PetscCall(PrintObject(&check));
   } else {

@@ -28,4 +28,13 @@ typedef struct {
 /* Chooses what the scene leaves open; does not override the scene. */
 PetscErrorCode LamPlanMake(const LamScene *scene, LamPlan *plan);
 
+/* What it costs on one rank of this machine. */
+typedef struct {
+  PetscReal assembly, state, point; /* seconds: one assembly, one state, one query during a macroscale step */
+  PetscReal map;                    /* seconds, with the states that bracket the failure; 0: no such block */
+  PetscReal memory;                 /* MB */
+} LamCost;
+/* plan_cost.c: times an assembly. */
+PetscErrorCode LamPlanCost(const LamScene *scene, const LamPlan *plan, LamCost *cost);
+
 #endif
