@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "gather.h"
 #include "quantity_text.h"
 
 enum { MAX_ROWS = 1000000 };
@@ -134,10 +135,8 @@ static PetscErrorCode FindKnots(PetscInt n, const Row rows[], PetscInt axis, Pet
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n, knots));
   for (PetscInt k = 0; k < n; k++) (*knots)[k] = rows[k].x[axis];
-  if (n) qsort(*knots, (size_t)n, sizeof(PetscReal), CompareReals);
-  *count = 0;
-  for (PetscInt k = 0; k < n; k++)
-    if (!*count || (*knots)[k] > (*knots)[*count - 1]) (*knots)[(*count)++] = (*knots)[k];
+  *count = n;
+  LamSortUnique(count, *knots, sizeof(PetscReal), CompareReals);
   PetscFunctionReturn(0);
 }
 

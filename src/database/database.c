@@ -100,7 +100,11 @@ static PetscErrorCode Open(const char path[], Later *later, LamDatabase *databas
   PetscCall(PetscNew(&db));
   loading.db = db;
   ierr = LamFileRead(path, Load, &loading);
-  if (ierr) (void)LamDatabaseClose(&db);
+  if (ierr) {
+    PetscCall(LamDatabaseClose(&db));
+    if (later) PetscCall(PetscFree(later->keys));
+    if (later) PetscCall(PetscFree(later->records));
+  }
   PetscCall(ierr);
   *database = db;
   PetscFunctionReturn(0);
@@ -117,15 +121,9 @@ PetscErrorCode LamDatabaseOpenFirst(const char path[], PetscInt first, LamDataba
                                     PetscInt64 *keys[], LamResponse *records[])
 {
   Later later = {.first = first};
-  PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
-  ierr = Open(path, &later, database);
-  if (ierr) {
-    PetscCall(PetscFree(later.keys));
-    PetscCall(PetscFree(later.records));
-  }
-  PetscCall(ierr);
+  PetscCall(Open(path, &later, database));
   *n = later.n;
   *keys = later.keys;
   *records = later.records;
@@ -160,7 +158,9 @@ PetscErrorCode LamDatabaseClose(LamDatabase *database)
   PetscCall(PetscFree(db->path));
   PetscCall(PetscFree(db->keys));
   PetscCall(PetscFree(db->nodes.data));
-  PetscCall(LamScatterDestroy(&db->scatter));
+  PetscCall(PetscFree(db->scatter.records));
+  PetscCall(PetscFree(db->scatter.states));
+  PetscCall(PetscFree(db->scatter.places));
   PetscCall(PetscFree(db->records));
   PetscCall(PetscFree(db->info));
   PetscCall(LamTableDestroy(&db->table));
@@ -171,66 +171,27 @@ PetscErrorCode LamDatabaseClose(LamDatabase *database)
 
 /* ---- whole responses ---- */
 
-typedef struct {
-  LamDatabase db;
-  LamResponse *records;
-} Unpacking;
-
-static PetscErrorCode UnpackBlock(void *ctx, const LamRecordLayout *layout, PetscInt first, PetscInt n,
-                                  const unsigned char *bytes)
-{
-  const Unpacking *u = ctx;
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = first; i < first + n; i++, bytes += layout->size) {
-    PetscCheck(LamRecordInt(bytes + layout->key) == u->db->keys[i], PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "%s: record %" PetscInt_FMT " has another key than before; the file was replaced while it was in use",
-               u->db->path, i);
-    PetscCall(LamRecordUnpack(layout, bytes, &u->records[i]));
-  }
-  PetscFunctionReturn(0);
-}
-
-/* The file may have grown since it was opened, but must not have been replaced. */
-static PetscErrorCode CheckSame(LamDatabase db, hid_t file)
-{
-  LamHeader header = {0};
-  PetscErrorCode ierr = LamHeaderRead(db->path, file, &header);
-  PetscBool same;
-
-  PetscFunctionBeginUser;
-  same = (PetscBool)(!ierr && !strcmp(header.hash, db->header.hash) && header.committed >= db->records_first);
-  PetscCall(LamHeaderDestroy(&header));
-  PetscCall(ierr);
-  PetscCheck(same, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: the file was replaced while it was in use", db->path);
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Unpack(const char path[], hid_t file, void *ctx)
-{
-  const Unpacking *u = ctx;
-
-  PetscFunctionBeginUser;
-  PetscCall(CheckSame(u->db, file));
-  PetscCall(LamFileScanRecords(path, file, u->db->records_first, UnpackBlock, ctx));
-  PetscFunctionReturn(0);
-}
-
-/* Loads the file's records and puts them in front of those added in memory. */
+/* Loads the file's records and puts them in front of those added in memory. The file may have grown since it was
+   opened, but must not have been replaced. */
 static PetscErrorCode LoadRecords(LamDatabase db)
 {
   const PetscInt count = db->records_first;
-  Unpacking unpacking = {.db = db};
-  PetscErrorCode ierr;
+  Later all = {0};
+  LamDatabase now;
+  PetscBool same;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(db->n, &unpacking.records));
-  ierr = LamFileRead(db->path, Unpack, &unpacking);
-  if (ierr) (void)PetscFree(unpacking.records);
-  PetscCall(ierr);
-  PetscCall(PetscArraycpy(unpacking.records + count, db->records, db->n - count));
+  PetscCall(Open(db->path, &all, &now));
+  same = (PetscBool)(!strcmp(now->header.hash, db->header.hash) && all.n >= count &&
+                     !memcmp(all.keys, db->keys, (size_t)count * sizeof(*db->keys)));
+  PetscCall(LamDatabaseClose(&now));
+  PetscCall(PetscFree(all.keys));
+  if (!same) PetscCall(PetscFree(all.records));
+  PetscCheck(same, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: the file was replaced while it was in use", db->path);
+  PetscCall(PetscRealloc((size_t)db->n * sizeof(*db->records), &all.records));
+  PetscCall(PetscArraycpy(all.records + count, db->records, db->n - count));
   PetscCall(PetscFree(db->records));
-  db->records = unpacking.records;
+  db->records = all.records;
   db->records_capacity = db->n;
   db->records_first = 0;
   PetscFunctionReturn(0);

@@ -96,7 +96,7 @@ static PetscErrorCode AddTable(LamDatabase db, json_t *object)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Describe(LamDatabase db, char **json)
+PetscErrorCode LamDatabaseGetInfo(LamDatabase db, const char *json[])
 {
   const LamHeader *h = &db->header;
   Summary summary;
@@ -122,16 +122,9 @@ static PetscErrorCode Describe(LamDatabase db, char **json)
   text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(15));
   json_decref(object);
   PetscCheck(text, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "the file's header is damaged: a text in it is not UTF-8");
-  PetscCall(PetscStrallocpy(text, json));
+  PetscCall(PetscFree(db->info));
+  PetscCall(PetscStrallocpy(text, &db->info));
   free(text);
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamDatabaseGetInfo(LamDatabase database, const char *json[])
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree(database->info));
-  PetscCall(Describe(database, &database->info));
-  *json = database->info;
+  *json = db->info;
   PetscFunctionReturn(0);
 }

@@ -27,7 +27,7 @@
   References: Shepard, Proc. 23rd ACM National Conference (1968) 517; Franke and Nielson, Int. J. Numer. Meth. Engng 15
   (1980) 1691.
 */
-#include "scatter.h"
+#include "database_internal.h"
 #include "scatter_model.h"
 #include <math.h>
 #include <stdio.h>

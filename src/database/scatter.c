@@ -1,7 +1,7 @@
 /*
   Records outside the grid: their use, their models of the potential, and the search for the nearest.
 */
-#include "scatter.h"
+#include "database_internal.h"
 #include <math.h>
 #include <string.h>
 
@@ -69,16 +69,6 @@ PetscErrorCode LamScatterAdd(LamDatabase database, const LamResponse *record)
   if (!HasPlace(&record->load)) PetscFunctionReturn(0);
   scatter->states[at] = StateOf(&database->images, bonded, record);
   scatter->places[at] = PlaceOf(scatter->states[at].model.x);
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamScatterDestroy(LamScatter *scatter)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree(scatter->records));
-  PetscCall(PetscFree(scatter->states));
-  PetscCall(PetscFree(scatter->places));
-  *scatter = (LamScatter){0};
   PetscFunctionReturn(0);
 }
 

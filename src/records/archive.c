@@ -5,6 +5,7 @@
   there and returned on all ranks.
 */
 #include <lamella/archive.h>
+#include <petscsf.h>
 #include <string.h>
 #include <unistd.h>
 #include "record_internal.h"
@@ -108,50 +109,36 @@ static PetscErrorCode CloseDataset(const LamArchive archive, Array *array)
 
 /* ---- between ranks ---- */
 
-/* Gathers the items with numbers [first, first + rows) of all ranks on rank 0, in their order. */
-static PetscErrorCode GatherBlock(const LamArchive archive, const Array *array, PetscInt first, PetscInt rows,
-                                  char *block)
-{
-  const size_t head = sizeof(PetscInt), stride = head + array->size;
-  PetscMPIInt ranks, bytes = 0, *counts, *starts;
-  char *mine, *all = NULL;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(archive->comm, &ranks));
-  PetscCall(PetscMalloc2(ranks, &counts, ranks + 1, &starts));
-  PetscCall(PetscMalloc((size_t)PetscMin(rows, array->n) * stride, &mine));
-  for (PetscInt k = 0; k < array->n; k++) {
-    if (array->numbers[k] < first || array->numbers[k] >= first + rows) continue;
-    memcpy(mine + bytes, &array->numbers[k], head);
-    memcpy(mine + bytes + head, array->items + (size_t)k * array->size, array->size);
-    bytes += (PetscMPIInt)stride;
-  }
-  PetscCallMPI(MPI_Gather(&bytes, 1, MPI_INT, counts, 1, MPI_INT, 0, archive->comm));
-  starts[0] = 0;
-  for (PetscMPIInt r = 0; r < ranks && !archive->rank; r++) starts[r + 1] = starts[r] + counts[r];
-  if (!archive->rank) PetscCall(PetscMalloc((size_t)starts[ranks], &all));
-  PetscCallMPI(MPI_Gatherv(mine, bytes, MPI_BYTE, all, counts, starts, MPI_BYTE, 0, archive->comm));
-  for (PetscMPIInt at = 0; !archive->rank && at < starts[ranks]; at += (PetscMPIInt)stride) {
-    PetscInt number;
-    memcpy(&number, all + at, head);
-    memcpy(block + (size_t)(number - first) * array->size, all + at + head, array->size);
-  }
-  PetscCall(PetscFree(all));
-  PetscCall(PetscFree(mine));
-  PetscCall(PetscFree2(counts, starts));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode TakeFromBlock(const LamArchive archive, const Array *array, PetscInt first, PetscInt rows,
+/* Moves the items with numbers [first, first + rows) between their ranks and the block on rank 0. */
+static PetscErrorCode ExchangeBlock(const LamArchive archive, const Array *array, PetscInt first, PetscInt rows,
                                     char *block)
 {
+  PetscInt *local, n = 0;
+  PetscSFNode *remote;
+  MPI_Datatype item;
+  PetscSF sf;
+
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Bcast(block, (PetscMPIInt)((size_t)rows * array->size), MPI_BYTE, 0, archive->comm));
+  PetscCall(PetscMalloc2(array->n, &local, array->n, &remote));
   for (PetscInt k = 0; k < array->n; k++) {
-    const PetscInt row = array->numbers[k] - first;
-    if (row >= 0 && row < rows)
-      memcpy(array->items + (size_t)k * array->size, block + (size_t)row * array->size, array->size);
+    if (array->numbers[k] < first || array->numbers[k] >= first + rows) continue;
+    local[n] = k;
+    remote[n++] = (PetscSFNode){.rank = 0, .index = array->numbers[k] - first};
   }
+  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)array->size, MPI_BYTE, &item));
+  PetscCallMPI(MPI_Type_commit(&item));
+  PetscCall(PetscSFCreate(archive->comm, &sf));
+  PetscCall(PetscSFSetGraph(sf, archive->rank ? 0 : rows, n, local, PETSC_COPY_VALUES, remote, PETSC_COPY_VALUES));
+  if (archive->reading) {
+    PetscCall(PetscSFBcastBegin(sf, item, block, array->items, MPI_REPLACE));
+    PetscCall(PetscSFBcastEnd(sf, item, block, array->items, MPI_REPLACE));
+  } else {
+    PetscCall(PetscSFReduceBegin(sf, item, array->items, block, MPI_REPLACE));
+    PetscCall(PetscSFReduceEnd(sf, item, array->items, block, MPI_REPLACE));
+  }
+  PetscCall(PetscSFDestroy(&sf));
+  PetscCallMPI(MPI_Type_free(&item));
+  PetscCall(PetscFree2(local, remote));
   PetscFunctionReturn(0);
 }
 
@@ -166,10 +153,10 @@ static PetscErrorCode MoveBlocks(const LamArchive archive, Array *array)
   for (PetscInt first = 0; first < array->total && !ierr; first += rows) {
     const PetscInt n = PetscMin(rows, array->total - first);
     PetscCall(PetscArrayzero(block, (size_t)n * array->size));
-    if (!archive->reading) PetscCall(GatherBlock(archive, array, first, n, block));
+    if (!archive->reading) PetscCall(ExchangeBlock(archive, array, first, n, block));
     if (!archive->rank) ierr = MoveBlock(archive, array, first, n, block);
     ierr = ShareError(archive, ierr);
-    if (!ierr && archive->reading) PetscCall(TakeFromBlock(archive, array, first, n, block));
+    if (!ierr && archive->reading) PetscCall(ExchangeBlock(archive, array, first, n, block));
   }
   PetscCall(PetscFree(block));
   PetscFunctionReturn(ierr);

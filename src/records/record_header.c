@@ -140,19 +140,16 @@ static PetscErrorCode WriteEmptyRecords(const char path[], hid_t file)
   The records are created first: the counter and its checksums then have the same offset in every file, within one
   page of memory, where HDF5 writes them by one call. A kill cannot interrupt it.
 */
-static PetscErrorCode WriteAll(const char path[], hid_t file, const char kind[], const LamScene *scene)
+static PetscErrorCode WriteAll(const char path[], hid_t file, const char kind[], const LamScene *scene,
+                               const char json[], char hash[])
 {
-  char hash[LAM_HASH_LENGTH], name[64], *json;
-  PetscErrorCode ierr;
+  char name[64];
   uint32_t sum;
 
   PetscFunctionBeginUser;
   PetscCall(WriteEmptyRecords(path, file));
-  PetscCall(LamMicrostructureDescribe(&scene->micro, &json, hash));
   snprintf(name, sizeof(name), DESCRIPTION, hash);
-  ierr = LamFileWriteText(path, file, name, json);
-  PetscCall(PetscFree(json));
-  PetscCall(ierr);
+  PetscCall(LamFileWriteText(path, file, name, json));
   if (scene->text) PetscCall(LamFileWriteText(path, file, "/scene", scene->text));
   PetscCall(WriteHeader(path, file, kind, scene, hash));
   PetscCall(LamHeaderSum(path, file, &sum));
@@ -163,13 +160,17 @@ static PetscErrorCode WriteAll(const char path[], hid_t file, const char kind[],
 
 PetscErrorCode LamFileCreate(const char path[], const char kind[], const LamScene *scene)
 {
+  char hash[LAM_HASH_LENGTH], *json;
+  hid_t file = H5I_INVALID_HID;
   PetscErrorCode ierr;
-  hid_t file;
 
   PetscFunctionBeginUser;
-  PetscCall(LamFileOpenNew(path, &file));
-  ierr = WriteAll(path, file, kind, scene);
-  if (ierr) H5Fclose(file);
+  PetscCall(LamMicrostructureDescribe(&scene->micro, &json, hash));
+  ierr = LamFileReserve(path, PETSC_TRUE, strlen(json) + (scene->text ? strlen(scene->text) : 0));
+  if (!ierr) ierr = LamFileOpenNew(path, &file);
+  if (!ierr) ierr = WriteAll(path, file, kind, scene, json, hash);
+  PetscCall(PetscFree(json));
+  if (ierr && file >= 0) H5Fclose(file);
   PetscCall(ierr);
   PetscCall(LamCloseHDF5(path, file));
   PetscFunctionReturn(0);

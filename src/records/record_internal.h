@@ -100,6 +100,8 @@ PetscErrorCode LamFileSync(const char path[], hid_t file);
 typedef PetscErrorCode (*LamFileFunction)(const char path[], hid_t file, void *ctx);
 PetscErrorCode LamFileRead(const char path[], LamFileFunction read, void *ctx);
 PetscErrorCode LamFileWrite(const char path[], LamFileFunction write, void *ctx);
+/* The file to which a writer of `path` writes: resolves links, and rejects files that CREATE must not replace. */
+PetscErrorCode LamTargetFind(const char path[], const char kind[], LamWriteMode mode, char target[PETSC_MAX_PATH_LEN]);
 
 /* ---- record_array.c ---- */
 
@@ -189,11 +191,6 @@ PetscErrorCode LamCounterWrite(const char path[], hid_t dataset, PetscInt commit
 
 /* Writes something beside the records, of `bytes` bytes: locks, reserves space, syncs. */
 PetscErrorCode LamRecordWriterBeside(LamRecordWriter writer, size_t bytes, LamFileFunction write, void *ctx);
-
-/* ---- record_target.c ---- */
-
-/* The file to which a writer of `path` writes: resolves links, and rejects files that CREATE must not replace. */
-PetscErrorCode LamTargetFind(const char path[], const char kind[], LamWriteMode mode, char target[PETSC_MAX_PATH_LEN]);
 
 /* ---- record_preallocate.c ---- */
 

@@ -12,42 +12,28 @@
 
 /* ---- in the file itself ---- */
 
-/* HDF5 allocates and fills a chunk when its first record is written: writes the first record of each of `chunks`
-   chunks from `before` on. */
-static PetscErrorCode TouchChunks(const char path[], hid_t dataset, hsize_t before, hsize_t chunks)
-{
-  const hsize_t stride = LAM_RECORDS_PER_CHUNK;
-  hid_t type, space, memory;
-  char *zeros;
-
-  PetscFunctionBeginUser;
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, type = H5Dget_type(dataset));
-  PetscCall(PetscCalloc1((size_t)chunks * H5Tget_size(type), &zeros));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, space = H5Dget_space(dataset));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, memory = H5Screate_simple(1, &chunks, NULL));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Sselect_hyperslab(space, H5S_SELECT_SET, &before, &stride, &chunks, NULL));
-  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dwrite(dataset, type, memory, space, H5P_DEFAULT, zeros));
-  PetscCall(LamCloseHDF5(path, memory, space, type));
-  PetscCall(PetscFree(zeros));
-  PetscFunctionReturn(0);
-}
-
 typedef struct {
   PetscInt before, wanted;
 } Range;
 
+/* HDF5 allocates and fills a chunk when its first record is written. */
 static PetscErrorCode Extend(const char path[], hid_t file, void *ctx)
 {
   const Range *r = ctx;
   const hsize_t extent = (hsize_t)r->wanted, chunk = LAM_RECORDS_PER_CHUNK;
   const hsize_t first = ((hsize_t)r->before + chunk - 1) / chunk * chunk; /* earlier chunks exist */
-  hid_t dataset;
+  hid_t dataset, type;
+  char *zeros;
 
   PetscFunctionBeginUser;
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, dataset = H5Dopen2(file, "/records", H5P_DEFAULT));
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Dset_extent(dataset, &extent));
-  if (first < extent) PetscCall(TouchChunks(path, dataset, first, (extent - first + chunk - 1) / chunk));
-  PetscCall(LamCloseHDF5(path, dataset));
+  LamCallHDF5(path, PETSC_ERR_FILE_WRITE, type = H5Dget_type(dataset));
+  PetscCall(PetscCalloc1(H5Tget_size(type), &zeros));
+  for (hsize_t i = first; i < extent; i += chunk)
+    PetscCall(LamRowsTransfer(path, dataset, type, PETSC_TRUE, i, 1, zeros));
+  PetscCall(PetscFree(zeros));
+  PetscCall(LamCloseHDF5(path, type, dataset));
   PetscFunctionReturn(0);
 }
 

@@ -96,29 +96,14 @@ static PetscErrorCode ReadExisting(LamRecordWriter w, hid_t file, const char kin
   PetscFunctionReturn(0);
 }
 
-/* Size of a new file's texts. */
-static PetscErrorCode TextBytes(const LamScene *scene, size_t *bytes)
-{
-  char hash[LAM_HASH_LENGTH], *json;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamMicrostructureDescribe(&scene->micro, &json, hash));
-  *bytes = strlen(json) + (scene->text ? strlen(scene->text) : 0);
-  PetscCall(PetscFree(json));
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode Start(LamRecordWriter w, const char kind[], LamWriteMode mode, const LamScene *scene)
 {
   PetscErrorCode ierr;
-  size_t bytes = 0;
   hid_t file;
 
   PetscFunctionBeginUser;
   w->published = (PetscBool)(mode == LAM_WRITE_APPEND && !access(w->path, F_OK));
   if (!w->published) {
-    PetscCall(TextBytes(scene, &bytes));
-    PetscCall(LamFileReserve(w->temporary, PETSC_TRUE, bytes));
     PetscCall(LamFileCreate(w->temporary, kind, scene));
     PetscFunctionReturn(0);
   }

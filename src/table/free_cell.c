@@ -7,6 +7,7 @@
     differences.
 */
 #include "free_cell.h"
+#include "json.h"
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
@@ -292,14 +293,6 @@ void LamFreeCellEnergy(const LamFreeCell *cell, PetscReal s, PetscReal energy[3]
 
 /* ---- JSON ---- */
 
-static json_t *Reals(PetscInt n, const PetscReal values[])
-{
-  json_t *list = json_array();
-
-  for (PetscInt i = 0; i < n; i++) json_array_append_new(list, json_real(values[i]));
-  return list;
-}
-
 PetscErrorCode LamFreeCellToJSON(const LamFreeCell *cell, json_t **object)
 {
   LamFreeCell borrowed = *cell;
@@ -308,7 +301,7 @@ PetscErrorCode LamFreeCellToJSON(const LamFreeCell *cell, json_t **object)
   *object = json_pack("{s:f, s:f}", "scale", cell->scale, "cohesion", cell->cohesion);
   PetscCheck(*object, PETSC_COMM_SELF, PETSC_ERR_MEM, "no JSON of a free cell: no memory, or not finite");
   for (PetscInt k = 0; k < COLUMNS; k++)
-    json_object_set_new(*object, columns[k].name, Reals(cell->n, *ColumnOf(&borrowed, k)));
+    json_object_set_new(*object, columns[k].name, LamJSONReals(cell->n, *ColumnOf(&borrowed, k), 1));
   PetscFunctionReturn(0);
 }
 

@@ -286,18 +286,16 @@ PetscErrorCode LamGridSolveRecords(LamGrid grid, const LamMicrostructure *micro,
 
 PetscErrorCode LamGridGetText(LamGrid g, char **text)
 {
-  json_t *object = json_pack("{s:f, s:f, s:f}", "origin", g->origin, "step", g->step, "turgor", g->turgor), *cell;
+  json_t *object, *cell;
   char *dumped;
 
   PetscFunctionBeginUser;
+  object = json_pack("{s:f, s:f, s:f}", "origin", g->origin, "step", g->step, "turgor", g->turgor);
   if (g->contact) {
-    json_object_set_new(object, "cohesion", json_real(g->cohesion));
-    json_object_set_new(object, "suction_scale", json_real(g->suction_scale));
-    json_object_set_new(object, "tau_min", json_real(g->tau_min));
-    json_object_set_new(object, "tau_step", json_real(g->tau_step));
-    json_object_set_new(object, "tau_cells", json_integer(g->tau_cells));
     PetscCall(LamFreeCellToJSON(&g->free, &cell));
-    json_object_set_new(object, "free_cell", cell);
+    json_object_update_new(object, json_pack("{s:f, s:f, s:f, s:f, s:I, s:o}", "cohesion", g->cohesion, "suction_scale",
+                                             g->suction_scale, "tau_min", g->tau_min, "tau_step", g->tau_step,
+                                             "tau_cells", (json_int_t)g->tau_cells, "free_cell", cell));
   }
   dumped = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(17));
   json_decref(object);
@@ -306,23 +304,16 @@ PetscErrorCode LamGridGetText(LamGrid g, char **text)
   PetscFunctionReturn(0);
 }
 
-static PetscBool ReadReal(const json_t *object, const char name[], PetscReal *value)
+static PetscBool ReadSuction(json_t *object, LamGrid g)
 {
-  const json_t *item = json_object_get(object, name);
+  json_int_t cells;
 
-  *value = json_number_value(item);
-  return (PetscBool)(json_is_number(item) && isfinite(*value));
-}
-
-static PetscBool ReadSuction(const json_t *object, LamGrid g)
-{
-  const json_int_t cells = json_integer_value(json_object_get(object, "tau_cells"));
-
+  if (json_unpack(object, "{s:F, s:F, s:F, s:F, s:I}", "cohesion", &g->cohesion, "suction_scale", &g->suction_scale,
+                  "tau_min", &g->tau_min, "tau_step", &g->tau_step, "tau_cells", &cells))
+    return PETSC_FALSE;
   g->tau_cells = (PetscInt)PetscMin(PetscMax(cells, 0), LAM_GRID_REACH);
-  return (PetscBool)(ReadReal(object, "cohesion", &g->cohesion) &&
-                     ReadReal(object, "suction_scale", &g->suction_scale) && ReadReal(object, "tau_min", &g->tau_min) &&
-                     ReadReal(object, "tau_step", &g->tau_step) && g->suction_scale > 0 && g->tau_min >= 0 &&
-                     g->tau_step > 0 && g->tau_cells > 0 && g->tau_cells < 4096 / LAM_ROOT);
+  return (PetscBool)(g->suction_scale > 0 && g->tau_min >= 0 && g->tau_step > 0 && g->tau_cells > 0 &&
+                     g->tau_cells < 4096 / LAM_ROOT);
 }
 
 /* Whether the free cell's suctions and cohesion are those of the grid. */
@@ -337,10 +328,11 @@ static PetscBool FreeCellFits(const struct LamGrid_s *g)
                      fabs(free_cell->suction[free_cell->n - 1] - last) < 1e-9 * last);
 }
 
-static PetscErrorCode ReadText(const char path[], const json_t *object, LamGrid g)
+static PetscErrorCode ReadText(const char path[], json_t *object, LamGrid g)
 {
-  PetscBool good = (PetscBool)(ReadReal(object, "origin", &g->origin) && ReadReal(object, "step", &g->step) &&
-                               ReadReal(object, "turgor", &g->turgor) && g->step > 0);
+  PetscBool good = (PetscBool)(!json_unpack(object, "{s:F, s:F, s:F}", "origin", &g->origin, "step", &g->step, "turgor",
+                                            &g->turgor) &&
+                               g->step > 0);
 
   PetscFunctionBeginUser;
   if (good && g->contact) good = ReadSuction(object, g);

@@ -110,7 +110,6 @@ typedef struct {
 PetscErrorCode LamTableMake(const LamNodeSet *source, LamGrid grid, PetscBool uniform, LamTable *table);
 LamTable LamTableReference(LamTable table); /* adds a reference */
 
-/* ---- table_map.c ---- */
 PetscErrorCode LamPlaceMapCreate(PetscInt n, LamPlaceMap *map);
 PetscErrorCode LamPlaceMapDestroy(LamPlaceMap *map);
 void LamPlaceMapSet(LamPlaceMap *map, PetscInt64 key, PetscInt item); /* key must be new */

@@ -10,6 +10,7 @@
 #include "table.h"
 #include "rounded_load.h"
 #include <math.h>
+#include <stdarg.h>
 #include "clock.h"
 #include <stdio.h>
 #include <string.h>
@@ -53,10 +54,15 @@ typedef struct {
 
 /* ---- position ---- */
 
-static PetscBool Refuse(LamResponse *r, const char text[])
+/* As printf, into the reason. */
+PETSC_ATTRIBUTE_FORMAT(2, 3) static PetscBool Refuse(LamResponse *r, const char format[], ...)
 {
+  va_list arguments;
+
   r->status = LAM_OUT_OF_REACH;
-  snprintf(r->reason, sizeof(r->reason), "%s", text);
+  va_start(arguments, format);
+  vsnprintf(r->reason, sizeof(r->reason), format, arguments);
+  va_end(arguments);
   return PETSC_FALSE;
 }
 
@@ -79,27 +85,20 @@ static PetscBool PlaceSuction(LamTable table, const LamLoad *load, Place *place,
   LamTablePoint *point = &place->point;
 
   point->step = grid->contact ? grid->cohesion - load->cohesion : load->turgor - grid->turgor;
-  if (!(fabs(point->step) <= grid->turgor_reach)) {
-    r->status = LAM_OUT_OF_REACH;
-    snprintf(
-        r->reason, sizeof(r->reason),
+  if (!(fabs(point->step) <= grid->turgor_reach))
+    return Refuse(
+        r,
         "turgor is %.4g, that of the database's nodes around %.4g (C1+C2): so different it changes the volume of the "
         "walls; at most %.4g apart",
         (double)load->turgor, (double)(grid->contact ? load->turgor + load->cohesion - grid->cohesion : grid->turgor),
         (double)grid->turgor_reach);
-    return PETSC_FALSE;
-  }
   if (!grid->contact) return PETSC_TRUE;
   point->s = load->turgor + load->cohesion;
   point->tau = LamGridTau(grid, point->s);
   point->v = LAM_ROOT * (point->tau - grid->tau_min) / grid->tau_step;
-  if (!(point->v >= -1e-6) || point->v > LAM_ROOT * grid->tau_cells + 1e-6) {
-    r->status = LAM_OUT_OF_REACH;
-    snprintf(r->reason, sizeof(r->reason), "turgor + cohesion is %.4g (C1+C2), the database covers %.4g to %.4g",
-             (double)point->s, (double)LamGridSuction(grid, 0),
-             (double)LamGridSuction(grid, LAM_ROOT * grid->tau_cells));
-    return PETSC_FALSE;
-  }
+  if (!(point->v >= -1e-6) || point->v > LAM_ROOT * grid->tau_cells + 1e-6)
+    return Refuse(r, "turgor + cohesion is %.4g (C1+C2), the database covers %.4g to %.4g", (double)point->s,
+                  (double)LamGridSuction(grid, 0), (double)LamGridSuction(grid, LAM_ROOT * grid->tau_cells));
   point->v = OnFace(PetscMin(PetscMax(point->v, 0), LAM_ROOT * grid->tau_cells), ROUNDED_SUCTION);
   point->root = PetscMin((int)point->v / LAM_ROOT, (int)grid->tau_cells - 1) * LAM_ROOT;
   if (grid->free.n) LamFreeCellStrain(&grid->free, point->s, place->free_strain);
@@ -230,18 +229,15 @@ typedef struct {
 /* From (y, tau) in sorted axes to (x, s). */
 static void Unsort(LamTable table, const Place *place, Potential *p)
 {
-  static const int pair[3][2] = {{1, 2}, {0, 2}, {0, 1}};
   const LamTableSum *sum = &place->sum;
   const int *axis = place->point.axis;
 
   p->psi.value = sum->phi.value;
   p->turgor.value = sum->turgor1.value;
   for (int k = 0; k < 3; k++) {
-    const int a = axis[pair[k][0]], b = axis[pair[k][1]];
-
     p->psi.gradient[axis[k]] = sum->phi.gradient[k];
     p->psi.hessian[axis[k]] = sum->phi.hessian[k];
-    p->psi.hessian[6 - a - b] = sum->phi.hessian[3 + k];
+    p->psi.hessian[3 + axis[k]] = sum->phi.hessian[3 + k];
     p->turgor.gradient[axis[k]] = sum->turgor1.gradient[k];
     p->gradient_s[axis[k]] = sum->gradient_tau[k];
   }
@@ -337,10 +333,7 @@ static PetscBool Accept(const Place *place, PetscReal accuracy, LamResponse *r)
   if (!place->floating && !place->good)
     return Refuse(r, "the states around are not all of one kind: cells buckle, lose contact or have no solution here");
   if (r->error_estimate <= accuracy) return PETSC_TRUE;
-  r->status = LAM_OUT_OF_REACH;
-  snprintf(r->reason, sizeof(r->reason), "the estimated error is %.2g %%, %.2g %% is asked", 100 * r->error_estimate,
-           100 * accuracy);
-  return PETSC_FALSE;
+  return Refuse(r, "the estimated error is %.2g %%, %.2g %% is asked", 100 * r->error_estimate, 100 * accuracy);
 }
 
 static void Answer(LamTable table, Place *place, PetscReal accuracy, LamResponse *r)
@@ -398,12 +391,7 @@ static void Need(Needs *needs, const int at[3], int j)
   PetscInt64 key;
 
   if (LamPlaceIsFloating(grid, at)) return;
-  for (int k = 0; k < 3; k++) {
-    int rank = grid->symmetric ? 0 : k;
-
-    for (int l = 0; l < 3 && grid->symmetric; l++) rank += at[l] < at[k] || (at[l] == at[k] && l < k);
-    place.i[rank] = at[k];
-  }
+  LamTableSortAxes(grid->symmetric, at, place.i);
   key = LamNodeKeyOf(&place);
   node = LamPlaceMapGet(&needs->table->node_map, LamPlaceMapKey(place.i));
   for (PetscInt s = 0; node >= 0 && s < needs->table->nodes[node].count; s++) {

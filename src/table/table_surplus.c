@@ -15,12 +15,6 @@
 
 static void Subtract(LamTable table, PetscInt n);
 
-/* Entry of a Hessian between two axes. */
-static int Entry3(int a, int b)
-{
-  return a == b ? a : 6 - a - b;
-}
-
 /* The sum of the coarser levels at a node and v along suction, in the cells on the given sides (bit k: below). */
 static PetscBool CoarseSum(LamTable table, const LamTableNode *node, PetscReal v, int sides, LamTableSum *sum,
                            int order[3])
@@ -54,8 +48,6 @@ static PetscBool CoarseSum(LamTable table, const LamTableNode *node, PetscReal v
 
 static void SubtractSum(const LamTableSum *sum, const int order[3], LamTableState *state)
 {
-  static const int pair[3][2] = {{1, 2}, {0, 2}, {0, 1}};
-
   state->phi.value -= sum->phi.value;
   state->tau1 -= sum->tau1;
   state->tau2 -= sum->tau2;
@@ -66,7 +58,7 @@ static void SubtractSum(const LamTableSum *sum, const int order[3], LamTableStat
     state->phi.gradient[k] -= sum->phi.gradient[order[k]];
     state->gradient_tau[k] -= sum->gradient_tau[order[k]];
     state->turgor_gradient[k] -= sum->turgor1.gradient[order[k]];
-    state->phi.hessian[3 + k] -= sum->phi.hessian[Entry3(order[pair[k][0]], order[pair[k][1]])];
+    state->phi.hessian[3 + k] -= sum->phi.hessian[3 + order[k]];
   }
 }
 
@@ -142,7 +134,7 @@ static const LamTableState *FindState(LamTable table, int level, const int at[3]
 /* Difference quotient of d2Phi/dx_a dx_b along the third axis k. *sides: 2 central, 1 one-sided, 0 none. */
 static PetscReal MixedSlope(LamTable table, const LamTableNode *node, const LamTableState *state, int k, int *sides)
 {
-  const int size = LAM_ROOT >> node->level, a = (k + 1) % 3, b = (k + 2) % 3;
+  const int size = LAM_ROOT >> node->level;
   PetscReal mixed[2], length = 0;
 
   *sides = 0;
@@ -154,7 +146,7 @@ static PetscReal MixedSlope(LamTable table, const LamTableNode *node, const LamT
     at[k] += side ? size : -size;
     next = FindState(table, node->level, at, state->j, &order);
     if (!next) continue;
-    mixed[side] = next->phi.hessian[Entry3(LamAxisOrder[order][a], LamAxisOrder[order][b])];
+    mixed[side] = next->phi.hessian[3 + LamAxisOrder[order][k]];
     length += table->grid->step / (1 << node->level);
     (*sides)++;
   }

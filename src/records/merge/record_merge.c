@@ -123,13 +123,11 @@ static PetscErrorCode TakeFile(const char path[], hid_t file, void *ctx)
 
 /* ---- the result ---- */
 
-static PetscErrorCode IsSameFile(const char a[], const char b[], PetscBool *same)
+static PetscBool IsSameFile(const char a[], const char b[])
 {
   struct stat one, other;
 
-  PetscFunctionBeginUser;
-  *same = (PetscBool)(!stat(a, &one) && !stat(b, &other) && one.st_dev == other.st_dev && one.st_ino == other.st_ino);
-  PetscFunctionReturn(0);
+  return (PetscBool)(!stat(a, &one) && !stat(b, &other) && one.st_dev == other.st_dev && one.st_ino == other.st_ino);
 }
 
 static PetscErrorCode CheckTarget(const LamMerge *m)
@@ -138,26 +136,21 @@ static PetscErrorCode CheckTarget(const LamMerge *m)
 
   PetscFunctionBeginUser;
   if (access(m->out, F_OK)) PetscFunctionReturn(0);
-  for (PetscInt i = 0; i < m->n && !among; i++) PetscCall(IsSameFile(m->out, m->files[i], &among));
+  for (PetscInt i = 0; i < m->n && !among; i++) among = IsSameFile(m->out, m->files[i]);
   PetscCheck(among, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: exists; give another file name, remove it, or give it among the files to merge as well", m->out);
   PetscFunctionReturn(0);
 }
 
 /* Reports sources that have a writer. Called with the lock of `out`. */
-static PetscErrorCode TellOfWriters(const LamMerge *m)
+static void TellOfWriters(const LamMerge *m)
 {
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < m->n; i++) {
-    LamLockHolder holder;
-    PetscBool own;
+  LamLockHolder holder;
 
-    PetscCall(IsSameFile(m->out, m->files[i], &own));
-    if (!own && LamLockGetHolder(m->files[i], &holder))
+  for (PetscInt i = 0; i < m->n; i++)
+    if (!IsSameFile(m->out, m->files[i]) && LamLockGetHolder(m->files[i], &holder))
       LamMergeTell(m, "%s: process %ld on %s is writing to it; what it has committed so far is merged", m->files[i],
                    holder.pid, holder.host);
-  }
-  PetscFunctionReturn(0);
 }
 
 /* The files, one per line. */
@@ -189,11 +182,10 @@ static PetscErrorCode WriteTexts(const char path[], hid_t file, void *ctx)
 
 static PetscErrorCode StartFile(LamMerge *m)
 {
-  size_t bytes = (m->grid_text ? strlen(m->grid_text) : 0) + (m->scene.text ? strlen(m->scene.text) : 0);
+  size_t bytes = m->grid_text ? strlen(m->grid_text) : 0;
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < m->n; i++) bytes += strlen(m->files[i]) + 1;
-  PetscCall(LamFileReserve(m->temporary, PETSC_TRUE, bytes));
   PetscCall(LamFileCreate(m->temporary, "database", &m->scene));
   PetscCall(LamFileReserve(m->temporary, PETSC_FALSE, bytes));
   PetscCall(LamFileWrite(m->temporary, WriteTexts, m));
@@ -201,31 +193,24 @@ static PetscErrorCode StartFile(LamMerge *m)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Publish(LamMerge *m)
+static PetscErrorCode MergeLocked(LamMerge *m)
 {
   PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
-  LamLockBeginCommit(&m->lock);
-  ierr = LamFilePublish(m->temporary, m->out);
-  LamLockEndCommit(&m->lock);
-  PetscCall(ierr);
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode MergeLocked(LamMerge *m)
-{
-  PetscFunctionBeginUser;
   PetscCall(CheckTarget(m));
   PetscCall(LamMergeReadHeaders(m));
-  PetscCall(TellOfWriters(m));
+  TellOfWriters(m);
   PetscCall(StartFile(m));
   for (PetscInt i = 0; i < m->n && !IsStopped(m); i++) PetscCall(LamFileRead(m->files[i], TakeFile, m));
   if (m->report->stopped) PetscFunctionReturn(0);
   PetscCheck(m->report->records || !m->options->salvage, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: not one record is sound; build the database anew", m->files[0]);
   PetscCall(LamUnionFinish(m->records));
-  PetscCall(Publish(m));
+  LamLockBeginCommit(&m->lock);
+  ierr = LamFilePublish(m->temporary, m->out);
+  LamLockEndCommit(&m->lock);
+  PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 
