@@ -104,114 +104,6 @@ PetscErrorCode LamBodyDestroy(LamBody *body)
   PetscFunctionReturn(0);
 }
 
-/* ---- state at a time ---- */
-
-PetscErrorCode LamBodySetTime(LamBody body, PetscReal time, const PetscReal x[], PetscBool *ok)
-{
-  LamProcess process = body->process;
-  LamEvaluation *now = &body->now;
-  PetscReal ratio[LAM_WALL_PARAMETER_COUNT];
-
-  PetscFunctionBeginUser;
-  LamProcessProperties(process, time, x, now, ratio);
-  *ok = (PetscBool)(now->walls > 0 && isfinite(now->walls));
-  if (!*ok) {
-    PetscCall(PetscStrncpy(process->trouble, "nothing is left of the walls", sizeof(process->trouble)));
-    PetscFunctionReturn(0);
-  }
-  if (!process->walls_alike && memcmp(process->told_walls, ratio, sizeof(ratio)))
-    PetscCall(LamMacroForget(body->macro));
-  PetscCall(LamProcessTellWalls(process, ratio));
-  if (process->spec->has_water) LamBodyDrives(body);
-  PetscFunctionReturn(0);
-}
-
-LamMacroInstant LamBodyInstant(LamBody body, PetscReal time)
-{
-  const LamSegment *segment = &body->process->segment;
-  const PetscReal elapsed = time - segment->start, turgor = body->process->scene->turgor;
-  LamMacroInstant instant = {.load = LamRampAt(&segment->load, elapsed),
-                             .turgor = 1,
-                             .lamella = body->now.factor[LAM_CHANGING_LAMELLA].value,
-                             .walls = body->now.walls};
-
-  if (!body->process->spec->has_water && turgor != 0) instant.turgor = LamRampAt(&segment->turgor, elapsed) / turgor;
-  return instant;
-}
-
-LamWaterMode LamBodyAtOnce(LamBody body)
-{
-  return isfinite(body->process->spec->water.permeability) ? LAM_WATER_GIVEN : LAM_WATER_OSMOSIS;
-}
-
-PetscErrorCode LamBodyFillWater(LamBody body)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < body->sizes.points && body->process->spec->has_water; p++) {
-    LamMacroPoint point;
-    PetscReal slope;
-
-    PetscCall(LamMacroGetPoint(body->macro, p, &point));
-    body->water[p] = LamBodyProtoplast(body, p, PetscMax(point.load->turgor, 0), &slope);
-  }
-  PetscFunctionReturn(0);
-}
-
-/* Equilibrium under the conditions; it becomes the present state. */
-static PetscErrorCode Balance(LamBody body, LamWaterMode mode, const LamMacroInstant *instant, PetscBool *ok)
-{
-  LamProcess process = body->process;
-
-  PetscFunctionBeginUser;
-  body->evaluated = NAN;
-  body->mode = mode;
-  PetscCall(LamMacroBalance(body->macro, instant, body->u, body->pressures, ok));
-  process->counts.questions++;
-  if (!*ok) {
-    PetscCall(PetscStrncpy(process->trouble, LamMacroTrouble(body->macro), sizeof(process->trouble)));
-    PetscCall(LamMacroStopped(body->macro, &process->stopped));
-    PetscCall(LamMacroReject(body->macro));
-    body->mode = LamBodyAtOnce(body);
-    PetscFunctionReturn(0);
-  }
-  PetscCall(LamMacroAccept(body->macro));
-  PetscCall(LamMacroGetState(body->macro, body->u, body->pressures));
-  PetscCall(LamBodyFillWater(body));
-  body->mode = LamBodyAtOnce(body);
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Settle(LamBody body, LamWaterMode mode, PetscReal time, PetscBool *ok)
-{
-  const LamProcessTissue *tissue = &body->process->tissue;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamBodySetTime(body, time, tissue->x, ok));
-  if (!*ok) PetscFunctionReturn(0);
-  const LamMacroInstant instant = LamBodyInstant(body, time);
-  PetscCall(Balance(body, mode, &instant, ok));
-  if (*ok) body->evaluated = time;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamBodySettle(LamBody body, PetscReal time, PetscBool *ok)
-{
-  PetscFunctionBeginUser;
-  PetscCall(Settle(body, LamBodyAtOnce(body), time, ok));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamBodySettleStep(LamBody body, PetscReal time, PetscReal c, PetscReal start[], PetscReal slope[],
-                                 PetscBool *ok)
-{
-  PetscFunctionBeginUser;
-  body->cj = c;
-  body->start = start;
-  body->slope = slope;
-  PetscCall(Settle(body, LAM_WATER_PASSES, time, ok));
-  PetscFunctionReturn(0);
-}
-
 /* ---- jumps ---- */
 
 static PetscReal Between(PetscReal from, PetscReal to, PetscReal share)
@@ -256,7 +148,7 @@ static PetscErrorCode Walk(LamBody body, const Conditions *from, const Condition
     process->segment.temperature.from = at.temperature;
     process->segment.outside.from = at.outside;
     PetscCall(LamBodySetTime(body, tissue->time, tissue->x, ok));
-    if (*ok) PetscCall(Balance(body, LamBodyAtOnce(body), &at.instant, ok));
+    if (*ok) PetscCall(LamBodyBalance(body, LamBodyAtOnce(body), &at.instant, ok));
     if (*ok) {
       done = next;
       step *= 2;
@@ -317,113 +209,6 @@ static PetscErrorCode EnterSegment(LamBody body, PetscBool *ok)
   PetscFunctionReturn(0);
 }
 
-/* ---- reports ---- */
-
-/* Sums and extremes over the material points of the present state. */
-static PetscErrorCode Summarise(LamBody body, LamBodyState *state)
-{
-  const LamStrength *strength = &body->process->scene->strength;
-  const PetscReal lamella = body->now.factor[LAM_CHANGING_LAMELLA].value,
-                  wall = body->now.factor[LAM_CHANGING_WALL_STRENGTH].value;
-  PetscReal sum[3] = {0}, most[2 + LAM_RATIO_COUNT] = {-PETSC_INFINITY, -PETSC_INFINITY};
-
-  PetscFunctionBeginUser;
-  for (int k = 2; k < 2 + LAM_RATIO_COUNT; k++) most[k] = -PETSC_INFINITY;
-  for (PetscInt p = 0; p < body->sizes.points; p++) {
-    LamMacroPoint point;
-
-    PetscCall(LamMacroGetPoint(body->macro, p, &point));
-    most[0] = PetscMax(most[0], -point.load->turgor);
-    most[1] = PetscMax(most[1], point.load->turgor);
-    most[2] = PetscMax(most[2], point.field[LAM_POINT_NORMAL] / (lamella * strength->lamella_normal));
-    most[3] = PetscMax(most[3], point.field[LAM_POINT_SHEAR] / (lamella * strength->lamella_shear));
-    most[4] = PetscMax(most[4], point.field[LAM_POINT_WALL] / (wall * strength->wall));
-    sum[0] += body->share[p] * body->water[p];
-    sum[1] += body->share[p] * body->cells[p].water;
-    if (point.load->turgor < LamBodyNoTurgor(body)) sum[2] += body->share[p];
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPIU_SUM, body->comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2 + LAM_RATIO_COUNT, MPIU_REAL, MPIU_MAX, body->comm));
-  state->turgor_min = -most[0];
-  state->turgor_max = most[1];
-  state->ratio[LAM_RATIO_LAMELLA_NORMAL] = isfinite(strength->lamella_normal) ? most[2] : NAN;
-  state->ratio[LAM_RATIO_LAMELLA_SHEAR] = isfinite(strength->lamella_shear) ? most[3] : NAN;
-  state->ratio[LAM_RATIO_WALL] = isfinite(strength->wall) ? most[4] : NAN;
-  state->water = body->process->spec->has_water ? sum[0] / sum[1] : NAN;
-  state->plasmolysed = body->process->spec->has_water ? sum[2] : NAN;
-  PetscFunctionReturn(0);
-}
-
-/* Finds the material point with the largest event function. */
-static PetscErrorCode Locate(LamBody body, LamEvent event, LamBodyState *state)
-{
-  struct {
-    double excess;
-    int rank;
-  } mine, most;
-  PetscReal excess;
-  PetscInt p, local, found[2] = {-1, -1};
-
-  PetscFunctionBeginUser;
-  PetscCall(LamBodyExcess(body, 1, &event, &excess, &p));
-  mine.excess = excess;
-  mine.rank = body->rank;
-  PetscCallMPI(MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, body->comm));
-  if (body->rank == most.rank && p >= 0) {
-    LamMacroPoint point;
-
-    PetscCall(LamMacroGetPoint(body->macro, p, &point));
-    PetscCall(LamMacroGetElement(body->macro, p, &local, &found[0], &found[1]));
-    for (int i = 0; i < 2; i++) state->place[i] = point.place[i];
-  }
-  PetscCallMPI(MPI_Bcast(found, 2, MPIU_INT, most.rank, body->comm));
-  PetscCallMPI(MPI_Bcast(state->place, 2, MPIU_REAL, most.rank, body->comm));
-  state->element = found[0];
-  state->point = found[1];
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode TellEvent(LamBody body, LamEvent event)
-{
-  const LamProcess process = body->process;
-  LamBodyState state = {.number = body->told++,
-                        .time = process->tissue.time,
-                        .temperature = body->now.temperature,
-                        .outside = body->now.outside,
-                        .walls = body->now.walls,
-                        .load = process->tissue.load,
-                        .event = event,
-                        .element = -1,
-                        .point = -1,
-                        .place = {NAN, NAN}};
-
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++) state.factor[k] = body->now.factor[k].value;
-  PetscCall(Summarise(body, &state));
-  if (event != LAM_EVENT_COUNT) PetscCall(Locate(body, event, &state));
-  PetscCall(LamMacroDescribe(body->macro, state.number, state.time, body->clock, &state.step));
-  body->clock = LamClock();
-  if (body->monitor) PetscCall(body->monitor(&state, body->monitor_ctx));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamBodyTell(LamBody body, const PetscBool happened[LAM_EVENT_COUNT])
-{
-  LamProcess process = body->process;
-
-  PetscFunctionBeginUser;
-  if (!happened) PetscCall(TellEvent(body, LAM_EVENT_COUNT));
-  for (PetscInt k = 0; k < LAM_EVENT_COUNT && happened; k++) {
-    if (!happened[k]) continue;
-    if (k == LAM_EVENT_TURGOR_LOST || k == LAM_EVENT_TURGOR_FOUND)
-      process->plasmolysed = (PetscBool)(k == LAM_EVENT_TURGOR_LOST); /* at some point */
-    else
-      process->found[k] = PETSC_TRUE;
-    PetscCall(TellEvent(body, (LamEvent)k));
-  }
-  PetscFunctionReturn(0);
-}
-
 /* ---- time loop ---- */
 
 /* Reports events that have occurred at the present state, such as those passed in a jump at the start of a segment. */
@@ -433,13 +218,10 @@ static PetscErrorCode TellPassed(LamBody body)
   LamEvent events[LAM_EVENT_COUNT];
   const PetscInt n = LamBodyListEvents(body, events);
   PetscReal excess[LAM_EVENT_COUNT];
-  PetscInt points[LAM_EVENT_COUNT];
 
   PetscFunctionBeginUser;
-  PetscCall(LamBodyExcess(body, n, events, excess, points));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, excess, (PetscMPIInt)n, MPIU_REAL, MPIU_MAX, body->comm));
-  for (PetscInt k = 0; k < n; k++)
-    happened[events[k]] = (PetscBool)(events[k] == LAM_EVENT_TURGOR_FOUND ? excess[k] < 0 : excess[k] > 0);
+  PetscCall(LamBodyExcess(body, n, events, excess));
+  for (PetscInt k = 0; k < n; k++) happened[events[k]] = (PetscBool)(excess[k] > 0);
   PetscCall(LamBodyTell(body, happened));
   PetscFunctionReturn(0);
 }
@@ -478,11 +260,7 @@ static PetscErrorCode Start(LamBody body, PetscBool *ok, char message[LAM_PROCES
 
   PetscFunctionBeginUser;
   PetscCall(Allocate(body));
-  LamProcessClear(process);
-  LamProcessStartProgram(process, (const PetscReal[9]){0});
-  LamProcessNextSegment(process, &process->segment);
-  process->temperature = tissue->temperature = process->segment.temperature.from;
-  tissue->outside = process->segment.outside.from;
+  PetscCall(LamProcessBegin(process));
   body->told = 0;
   body->turgor_share = 1;
   body->clock = LamClock();
@@ -494,12 +272,6 @@ static PetscErrorCode Start(LamBody body, PetscBool *ok, char message[LAM_PROCES
   if (!*ok) PetscFunctionReturn(0);
   PetscCall(LamMacroGetState(body->macro, body->u, body->pressures));
   process->pressure = PetscMax(1e-3, process->scene->turgor);
-  for (PetscInt p = 0; p < body->sizes.points; p++) {
-    LamMacroPoint point;
-
-    PetscCall(LamMacroGetPoint(body->macro, p, &point));
-    body->opening[p] = point.field[LAM_POINT_OPENING];
-  }
   if (process->spec->has_water) PetscCall(LamBodyWaterCreate(body));
   if (process->spec->has_water && isfinite(process->spec->water.osmotic) && LamBodyAtOnce(body) == LAM_WATER_OSMOSIS)
     tissue->outside = process->spec->water.osmotic - process->scene->turgor / process->spec->water.reflection;
@@ -510,6 +282,7 @@ static PetscErrorCode Start(LamBody body, PetscBool *ok, char message[LAM_PROCES
     LamMacroPoint point;
 
     PetscCall(LamMacroGetPoint(body->macro, p, &point));
+    body->opening[p] = point.field[LAM_POINT_OPENING];
     if (point.load->turgor < LamBodyNoTurgor(body)) process->plasmolysed = PETSC_TRUE; /* from the start: no event */
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &process->plasmolysed, 1, MPIU_BOOL, MPI_LOR, body->comm));
@@ -534,7 +307,7 @@ static PetscErrorCode TellLast(LamBody body)
 
   PetscFunctionBeginUser;
   PetscCall(PetscStrncpy(why, body->process->trouble, sizeof(why)));
-  PetscCall(LamBodySettle(body, body->process->tissue.time, &ok));
+  PetscCall(LamBodySettle(body, LamBodyAtOnce(body), body->process->tissue.time, &ok));
   if (ok) PetscCall(LamBodyTell(body, NULL));
   PetscCall(PetscStrncpy(body->process->trouble, why, sizeof(why)));
   PetscFunctionReturn(0);
@@ -546,11 +319,6 @@ PetscErrorCode LamBodyRun(LamBody body, LamProcessReason *reason, char message[L
   PetscBool ok = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  PetscCheck(
-      process->walls_alike || process->set_walls, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-      "%s: process.kinetics: the parameters of the walls do not change alike, and what answers knows only tissue "
-      "whose walls keep their proportions; solve directly",
-      process->scene->path);
   message[0] = '\0';
   PetscCall(FollowAll(body, &ok, message));
   *reason = process->stopped ? LAM_PROCESS_STOPPED : ok ? LAM_PROCESS_DONE : LAM_PROCESS_ENDED;

@@ -1,10 +1,11 @@
 /*
   Private parts of a body that changes in time.
 
-    body.c            creation, and time loop
     body_water.c      water of the cells: prescribed volume of the lumens as a function of turgor
+    body_state.c      properties and equilibrium at a time
+    body_events.c     events and their locations, and reports of states
     body_integrate.c  one segment by IDA, with the body's own nonlinear solver
-    body_events.c     events and their locations
+    body.c            creation, and time loop
 
   Program, surroundings and kinetics are those of process_impl.h.
 */
@@ -66,38 +67,35 @@ PetscReal LamBodyFlow(LamBody body, PetscInt point, PetscReal water, PetscReal t
 /* Sets the drives of the water from the present properties. */
 void LamBodyDrives(LamBody body);
 
-/* ---- body.c ---- */
+/* ---- body_state.c ---- */
 /* Sets the body's properties at a time from the kinetic states; *ok is PETSC_FALSE if the walls have no stiffness left.
  */
 PetscErrorCode LamBodySetTime(LamBody body, PetscReal time, const PetscReal x[], PetscBool *ok);
 LamMacroInstant LamBodyInstant(LamBody body, PetscReal time);
-/*
-  Equilibrium at a time, from approximate u, pressures, water and kinetic states; no water flows. If *ok, it becomes
-  the state of the body and of the macroscale solver.
-*/
-PetscErrorCode LamBodySettle(LamBody body, PetscReal time, PetscBool *ok);
-/*
-  As LamBodySettle, if V and V' at the time are known to the accuracy of the integration: start and slope [point].
-  Water may flow as in an implicit step with coefficient c, V' = slope + c (V - start). With constant water an error
-  of V would be amplified to an error of the turgor by the stiffness of sealed cells.
-*/
-PetscErrorCode LamBodySettleStep(LamBody body, PetscReal time, PetscReal c, PetscReal start[], PetscReal slope[],
-                                 PetscBool *ok);
-/* Computes the water from the turgor of the present state. */
-PetscErrorCode LamBodyFillWater(LamBody body);
 /* Dependence of water on turgor when no time passes. */
 LamWaterMode LamBodyAtOnce(LamBody body);
+/* Computes the water from the turgor of the present state. */
+PetscErrorCode LamBodyFillWater(LamBody body);
+/* Equilibrium under the conditions, from approximate u, pressures and water. If *ok, it becomes the state of the body
+   and of the macroscale solver. */
+PetscErrorCode LamBodyBalance(LamBody body, LamWaterMode mode, const LamMacroInstant *instant, PetscBool *ok);
+/*
+  The same at a time with the tissue's kinetic states. LAM_WATER_PASSES: if V and V' at the time are known to the
+  accuracy of the integration, water may flow as in an implicit step. With constant water an error of V would be
+  amplified to an error of the turgor by the stiffness of sealed cells.
+*/
+PetscErrorCode LamBodySettle(LamBody body, LamWaterMode mode, PetscReal time, PetscBool *ok);
+
+/* ---- body_events.c ---- */
+PetscInt LamBodyListEvents(LamBody body, LamEvent events[LAM_EVENT_COUNT]);
+/* Event functions at the last evaluation of the macroscale solver: the maximum over the body's points. Collective. */
+PetscErrorCode LamBodyExcess(LamBody body, PetscInt n, const LamEvent events[], PetscReal excess[]);
+/* Turgor below this counts as lost. */
+PetscReal LamBodyNoTurgor(LamBody body);
+/* Reports the present state, for each of the events; NULL: at an output time. */
 PetscErrorCode LamBodyTell(LamBody body, const PetscBool happened[LAM_EVENT_COUNT]);
 
 /* ---- body_integrate.c ---- */
 PetscErrorCode LamBodyIntegrate(LamBody body, PetscBool happened[LAM_EVENT_COUNT], PetscBool *ok);
-
-/* ---- body_events.c ---- */
-PetscInt LamBodyListEvents(LamBody body, LamEvent events[LAM_EVENT_COUNT]);
-/* Evaluates the event functions at the last evaluation of the macroscale solver: the maximum over this rank's points;
-   points [n]: where. The caller reduces over the ranks. */
-PetscErrorCode LamBodyExcess(LamBody body, PetscInt n, const LamEvent events[], PetscReal excess[], PetscInt points[]);
-/* Turgor below this counts as lost. */
-PetscReal LamBodyNoTurgor(LamBody body);
 
 #endif

@@ -18,7 +18,7 @@
   Reference: Hindmarsh et al., ACM TOMS 31 (2005) 363-396.
 */
 #include "body_impl.h"
-#include "sundials_call.h"
+#include "integrator.h"
 #include <math.h>
 #include <nvector/nvector_parallel.h>
 #include <sundials/sundials_nonlinearsolver.h>
@@ -28,68 +28,65 @@ enum { MAX_STEPS = 100000, MAX_FAILURES = 25, MAX_RESTARTS = 3, MAX_HALVINGS = 6
 #define KINETIC_EXACT 1e-14
 #define LEAST_ADVANCE 1e-9 /* fraction of the duration; a restart that advances less counts towards MAX_RESTARTS */
 
-/* Positions of the unknowns in this rank's y; -1: not an unknown. Rank 0 has the kinetic states. */
+/* Positions of the unknowns behind the kinetic states in this rank's y; -1: not an unknown. */
 typedef struct {
-  PetscInt n, state[LAM_PROCESS_KINETIC], water, pressures, u, idle;
+  PetscInt idle, water, pressures, u;
 } Layout;
 
 typedef struct {
+  LamIntegrator base;
   LamBody body;
   Layout layout;
-  PetscInt total; /* unknowns of all ranks */
-  PetscInt event_count;
-  LamEvent events[LAM_EVENT_COUNT];
+  PetscInt total;                   /* unknowns of all ranks */
   PetscReal x[LAM_PROCESS_KINETIC]; /* of the last step's solution, on all ranks */
   PetscBool pending;                /* a solution has not been accepted yet */
   PetscReal c;                      /* leading coefficient of the last step */
   PetscErrorCode error;             /* of the library, raised inside IDA */
-
-  SUNContext context;
-  void *ida;
-  N_Vector y, yp, id;
   SUNNonlinearSolver solver;
 } Integration;
 
 /* ---- unknowns ---- */
 
-static Layout LayOut(LamBody body)
+static void LayOut(Integration *in)
 {
-  const LamProcessSpec *spec = body->process->spec;
-  const LamMacroSizes *sizes = &body->sizes;
-  Layout l = {.water = -1, .pressures = -1, .u = -1, .idle = -1};
+  const LamProcessSpec *spec = in->body->process->spec;
+  const LamMacroSizes *sizes = &in->body->sizes;
+  PetscInt *n = &in->base.n;
+  Layout *l = &in->layout;
 
-  for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++) {
-    const PetscInt law = k / LAM_KINETIC_STATES;
-
-    l.state[k] = body->rank == 0 && k % LAM_KINETIC_STATES < LamKineticsStates(&spec->kinetics[law]) ? l.n++ : -1;
-  }
-  if (body->rank == 0) l.idle = l.n++; /* IDA needs one unknown with a rate */
+  *l = (Layout){.idle = -1, .water = -1};
+  if (in->body->rank == 0) l->idle = (*n)++; /* IDA needs one unknown with a rate */
   if (spec->has_water && isfinite(spec->water.permeability)) {
-    l.water = l.n;
-    l.n += sizes->points;
+    l->water = *n;
+    *n += sizes->points;
   }
-  l.pressures = l.n;
-  l.n += sizes->elements * sizes->modes;
-  l.u = l.n;
-  l.n += sizes->displacements;
-  return l;
+  l->pressures = *n;
+  *n += sizes->elements * sizes->modes;
+  l->u = *n;
+  *n += sizes->displacements;
 }
 
-static void Pack(const LamBody body, const Layout *l, PetscReal y[])
+static PetscErrorCode Pack(const Integration *in, PetscReal y[])
 {
+  const LamBody body = in->body;
+  const LamMacroSizes *sizes = &body->sizes;
+  const Layout *l = &in->layout;
+
+  PetscFunctionBeginUser;
   for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++)
-    if (l->state[k] >= 0) y[l->state[k]] = body->process->tissue.x[k];
+    if (in->base.state[k] >= 0) y[in->base.state[k]] = body->process->tissue.x[k];
   if (l->idle >= 0) y[l->idle] = 0;
-  for (PetscInt p = 0; p < body->sizes.points && l->water >= 0; p++) y[l->water + p] = body->water[p];
-  for (PetscInt k = 0; k < body->sizes.elements * body->sizes.modes; k++) y[l->pressures + k] = body->pressures[k];
-  for (PetscInt k = 0; k < body->sizes.displacements; k++) y[l->u + k] = body->u[k];
+  if (l->water >= 0) PetscCall(PetscArraycpy(&y[l->water], body->water, sizes->points));
+  PetscCall(PetscArraycpy(&y[l->pressures], body->pressures, sizes->elements * sizes->modes));
+  PetscCall(PetscArraycpy(&y[l->u], body->u, sizes->displacements));
+  PetscFunctionReturn(0);
 }
 
 /* Broadcasts the kinetic states in y, which rank 0 has. */
 static PetscErrorCode ShareStates(const Integration *in, const PetscReal y[], PetscReal x[])
 {
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++) x[k] = in->layout.state[k] < 0 ? 0 : y[in->layout.state[k]];
+  for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++) x[k] = in->base.state[k] < 0 ? 0 : y[in->base.state[k]];
   PetscCallMPI(MPI_Bcast(x, LAM_PROCESS_KINETIC, MPIU_REAL, 0, in->body->comm));
   PetscFunctionReturn(0);
 }
@@ -150,7 +147,7 @@ static PetscErrorCode SolveKinetics(Integration *in, PetscReal time, PetscReal c
   PetscFunctionBeginUser;
   *ok = PETSC_TRUE;
   for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++) {
-    const PetscInt first = LAM_KINETIC_STATES * k, at = in->layout.state[first];
+    const PetscInt first = LAM_KINETIC_STATES * k, at = in->base.state[first];
 
     if (at < 0) continue; /* states of a law are contiguous */
     if (!SolveLaw(&process->spec->kinetics[k], temperature, c, &predicted[at], &rates[at], &in->x[first]))
@@ -169,10 +166,10 @@ static PetscErrorCode FillCorrection(Integration *in, const PetscReal predicted[
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++)
-    if (l->state[k] >= 0) correction[l->state[k]] = in->x[k] - predicted[l->state[k]];
+    if (in->base.state[k] >= 0) correction[in->base.state[k]] = in->x[k] - predicted[in->base.state[k]];
   if (l->idle >= 0) correction[l->idle] = 0;
   PetscCall(LamMacroGetState(body->macro, &correction[l->u], &correction[l->pressures]));
-  for (PetscInt k = l->pressures; k < l->n; k++) correction[k] -= predicted[k];
+  for (PetscInt k = l->pressures; k < in->base.n; k++) correction[k] -= predicted[k];
   for (PetscInt p = 0; p < body->sizes.points && l->water >= 0; p++) {
     LamMacroPoint point;
     PetscReal slope;
@@ -184,16 +181,46 @@ static PetscErrorCode FillCorrection(Integration *in, const PetscReal predicted[
   PetscFunctionReturn(0);
 }
 
-/* Sets the flow of water in the step: V' = rates + c (V - start). */
-static void SetStep(Integration *in, PetscReal c, PetscReal start[], PetscReal rates[])
+/* Sets the flow of water in the last step: V' = rates + c (V - start). */
+static LamWaterMode SetStep(Integration *in, PetscReal start[], PetscReal rates[])
 {
   LamBody body = in->body;
   const PetscInt water = in->layout.water;
 
-  body->mode = water < 0 ? LAM_WATER_OSMOSIS : LAM_WATER_PASSES;
-  body->cj = c;
+  body->cj = in->c;
   body->start = water < 0 ? NULL : &start[water];
   body->slope = water < 0 ? NULL : &rates[water];
+  return water < 0 ? LAM_WATER_OSMOSIS : LAM_WATER_PASSES;
+}
+
+/* Equilibrium of the body in the last step at a time with the kinetic states in->x, from the displacement and turgor in
+   y; with `again`, if that fails, from those at the start of the step. The result is pending. */
+static PetscErrorCode Balance(Integration *in, PetscReal time, PetscReal y[], PetscReal yp[], PetscBool again,
+                              PetscBool *ok)
+{
+  LamBody body = in->body;
+  LamProcess process = body->process;
+  const Layout *l = &in->layout;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamBodySetTime(body, time, in->x, ok));
+  if (!*ok) PetscFunctionReturn(0);
+  body->mode = SetStep(in, y, yp);
+  const LamMacroInstant instant = LamBodyInstant(body, time);
+  PetscCall(LamMacroBalance(body->macro, &instant, &y[l->u], &y[l->pressures], ok));
+  PetscCall(LamMacroStopped(body->macro, &process->stopped));
+  if (!*ok && again && !process->stopped) {
+    PetscCall(LamMacroReject(body->macro));
+    PetscCall(LamMacroBalance(body->macro, &instant, body->u, body->pressures, ok));
+    PetscCall(LamMacroStopped(body->macro, &process->stopped));
+  }
+  process->counts.questions++;
+  in->pending = PETSC_TRUE;
+  if (*ok)
+    body->evaluated = time;
+  else
+    PetscCall(PetscStrncpy(process->trouble, LamMacroTrouble(body->macro), sizeof(process->trouble)));
+  PetscFunctionReturn(0);
 }
 
 /* Solves an implicit step. *flag: 0, or positive if a shorter step may have a solution. */
@@ -201,7 +228,6 @@ static PetscErrorCode SolveStep(Integration *in, PetscReal time, PetscReal c, Pe
                                 PetscReal correction[], int *flag)
 {
   LamBody body = in->body;
-  const Layout *l = &in->layout;
   PetscBool ok;
 
   PetscFunctionBeginUser;
@@ -211,19 +237,10 @@ static PetscErrorCode SolveStep(Integration *in, PetscReal time, PetscReal c, Pe
   body->evaluated = NAN;
   PetscCall(ShareStates(in, predicted, in->x));
   PetscCall(SolveKinetics(in, time, c, predicted, rates, &ok));
-  if (ok) PetscCall(LamBodySetTime(body, time, in->x, &ok));
   if (!ok) PetscFunctionReturn(0);
   in->c = c;
-  SetStep(in, c, predicted, rates);
-  const LamMacroInstant instant = LamBodyInstant(body, time);
-  PetscCall(LamMacroBalance(body->macro, &instant, &predicted[l->u], &predicted[l->pressures], &ok));
-  body->process->counts.questions++;
-  in->pending = PETSC_TRUE;
+  PetscCall(Balance(in, time, predicted, rates, PETSC_FALSE, &ok));
   if (ok) PetscCall(FillCorrection(in, predicted, correction));
-  if (!ok)
-    PetscCall(PetscStrncpy(body->process->trouble, LamMacroTrouble(body->macro), sizeof(body->process->trouble)));
-  PetscCall(LamMacroStopped(body->macro, &body->process->stopped));
-  if (ok) body->evaluated = time;
   *flag = body->process->stopped ? -1 : ok ? 0 : SUN_NLS_CONV_RECVR;
   PetscFunctionReturn(0);
 }
@@ -238,7 +255,7 @@ static int Solve(SUNNonlinearSolver solver, N_Vector y0, N_Vector correction, N_
   void *data;
   int flag = -1;
 
-  if (IDAGetNonlinearSystemData(in->ida, &time, &predicted, &rates, &yn, &ypn, &residual, &c, &data)) return -1;
+  if (IDAGetNonlinearSystemData(in->base.ida, &time, &predicted, &rates, &yn, &ypn, &residual, &c, &data)) return -1;
   in->error = SolveStep(in, time, c, N_VGetArrayPointer(predicted), N_VGetArrayPointer(rates),
                         N_VGetArrayPointer(correction), &flag);
   return in->error ? -1 : flag;
@@ -277,11 +294,12 @@ static int Weights(N_Vector y_vector, N_Vector weight, void *ctx)
   const Layout *l = &in->layout;
   const PetscReal *y = N_VGetArrayPointer(y_vector), relative = body->process->spec->tolerance;
   const PetscReal all = (PetscReal)in->total;
+  const PetscInt *state = in->base.state;
   PetscReal *w = N_VGetArrayPointer(weight);
 
   N_VConst(1, weight); /* also for algebraic unknowns, whose errors are suppressed */
   for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++)
-    if (l->state[k] >= 0) w[l->state[k]] = sqrt(all) / (relative * (PetscAbsReal(y[l->state[k]]) + 1e-3));
+    if (state[k] >= 0) w[state[k]] = sqrt(all) / (relative * (PetscAbsReal(y[state[k]]) + 1e-3));
   for (PetscInt p = 0; p < body->sizes.points && l->water >= 0; p++)
     w[l->water + p] = sqrt(all * body->share[p]) / (relative * (PetscAbsReal(y[l->water + p]) + 1e-3));
   return 0;
@@ -289,53 +307,24 @@ static int Weights(N_Vector y_vector, N_Vector weight, void *ctx)
 
 /* ---- roots ---- */
 
-/* Equilibrium of the body at IDA's state, unless already evaluated at that time; as LamBodySettleStep, but the result
-   is not accepted. */
-static PetscErrorCode BalanceAt(Integration *in, PetscReal time, PetscReal y[], PetscReal yp[], PetscBool *ok)
-{
-  LamBody body = in->body;
-  const Layout *l = &in->layout;
-
-  PetscFunctionBeginUser;
-  *ok = PETSC_TRUE;
-  if (body->evaluated == time) PetscFunctionReturn(0);
-  body->evaluated = NAN;
-  PetscCall(ShareStates(in, y, in->x));
-  PetscCall(LamBodySetTime(body, time, in->x, ok));
-  if (!*ok) PetscFunctionReturn(0);
-  SetStep(in, in->c, y, yp);
-  const LamMacroInstant instant = LamBodyInstant(body, time);
-  PetscCall(LamMacroBalance(body->macro, &instant, &y[l->u], &y[l->pressures], ok));
-  PetscCall(LamMacroStopped(body->macro, &body->process->stopped));
-  if (!*ok && !body->process->stopped) { /* from the start of the step */
-    PetscCall(LamMacroReject(body->macro));
-    PetscCall(LamMacroBalance(body->macro, &instant, body->u, body->pressures, ok));
-    PetscCall(LamMacroStopped(body->macro, &body->process->stopped));
-  }
-  body->mode = LamBodyAtOnce(body); /* the vectors of IDA are no longer used */
-  in->pending = PETSC_TRUE;
-  body->process->counts.questions++;
-  if (*ok)
-    body->evaluated = time;
-  else
-    PetscCall(PetscStrncpy(body->process->trouble, LamMacroTrouble(body->macro), sizeof(body->process->trouble)));
-  PetscFunctionReturn(0);
-}
-
+/* Event functions at IDA's state: at an equilibrium, unless already evaluated at that time, which is not accepted. */
 static PetscErrorCode FindExcess(Integration *in, PetscReal time, PetscReal y[], PetscReal yp[], PetscReal excess[],
                                  PetscBool *ok)
 {
-  PetscInt points[LAM_EVENT_COUNT];
+  LamBody body = in->body;
 
   PetscFunctionBeginUser;
-  PetscCall(BalanceAt(in, time, y, yp, ok));
-  if (!*ok) PetscFunctionReturn(0);
-  PetscCall(LamBodyExcess(in->body, in->event_count, in->events, excess, points));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, excess, (PetscMPIInt)in->event_count, MPIU_REAL, MPIU_MAX, in->body->comm));
-  for (PetscInt k = 0; k < in->event_count; k++) {
-    if (in->events[k] == LAM_EVENT_TURGOR_FOUND) excess[k] = -excess[k]; /* when all points have regained turgor */
-    if (!isfinite(excess[k])) excess[k] = -1;
+  *ok = PETSC_TRUE;
+  if (body->evaluated != time) {
+    body->evaluated = NAN;
+    PetscCall(ShareStates(in, y, in->x));
+    PetscCall(Balance(in, time, y, yp, PETSC_TRUE, ok));
+    body->mode = LamBodyAtOnce(body); /* the vectors of IDA are no longer used */
   }
+  if (!*ok) PetscFunctionReturn(0);
+  PetscCall(LamBodyExcess(body, in->base.event_count, in->base.events, excess));
+  for (PetscInt k = 0; k < in->base.event_count; k++)
+    if (!isfinite(excess[k])) excess[k] = -1;
   PetscFunctionReturn(0);
 }
 
@@ -356,20 +345,14 @@ static PetscErrorCode StartRates(Integration *in)
 {
   LamBody body = in->body;
   const LamProcess process = body->process;
-  PetscReal *yp = N_VGetArrayPointer(in->yp);
+  PetscReal *yp = N_VGetArrayPointer(in->base.yp);
+  PetscReal rate[LAM_PROCESS_KINETIC], J[LAM_CHANGING_COUNT][LAM_KINETIC_STATES][LAM_KINETIC_STATES];
 
   PetscFunctionBeginUser;
-  N_VConst(0, in->yp);
-  for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++) {
-    PetscReal rate[LAM_KINETIC_STATES] = {0}, J[LAM_KINETIC_STATES][LAM_KINETIC_STATES];
-    const PetscInt *at = &in->layout.state[LAM_KINETIC_STATES * k];
-
-    if (at[0] < 0) continue;
-    LamKineticsRates(&process->spec->kinetics[k], body->now.temperature, &process->tissue.x[LAM_KINETIC_STATES * k],
-                     rate, J);
-    for (PetscInt i = 0; i < LAM_KINETIC_STATES; i++)
-      if (at[i] >= 0) yp[at[i]] = rate[i];
-  }
+  N_VConst(0, in->base.yp);
+  LamProcessRates(process, body->now.temperature, process->tissue.x, rate, J);
+  for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++)
+    if (in->base.state[k] >= 0) yp[in->base.state[k]] = rate[k];
   for (PetscInt p = 0; p < body->sizes.points && in->layout.water >= 0; p++) {
     LamMacroPoint point;
 
@@ -382,7 +365,7 @@ static PetscErrorCode StartRates(Integration *in)
 static PetscErrorCode CreateSolver(Integration *in)
 {
   PetscFunctionBeginUser;
-  in->solver = SUNNonlinSolNewEmpty(in->context);
+  in->solver = SUNNonlinSolNewEmpty(in->base.context);
   PetscCheck(in->solver, PETSC_COMM_SELF, PETSC_ERR_MEM, "SUNDIALS: no memory for a nonlinear solver");
   in->solver->content = in;
   in->solver->ops->gettype = SolverType;
@@ -394,48 +377,37 @@ static PetscErrorCode CreateSolver(Integration *in)
 
 static PetscErrorCode Create(LamBody body, Integration *in)
 {
-  const LamSegment *segment = &body->process->segment;
+  LamIntegrator *base = &in->base;
 
   PetscFunctionBeginUser;
   in->body = body;
-  in->layout = LayOut(body);
-  in->event_count = LamBodyListEvents(body, in->events);
-  in->total = in->layout.n;
+  PetscCall(LamIntegratorCreate(body->process, body->comm, base));
+  base->event_count = LamBodyListEvents(body, base->events);
+  LayOut(in);
+  in->total = base->n;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &in->total, 1, MPIU_INT, MPI_SUM, body->comm));
-  LamCallSUN(LamContextCreate(body->comm, &in->context));
-  in->y = N_VNew_Parallel(body->comm, in->layout.n, in->total, in->context);
-  PetscCheck(in->y, PETSC_COMM_SELF, PETSC_ERR_MEM, "SUNDIALS: no memory for a vector");
-  in->yp = N_VClone(in->y);
-  Pack(body, &in->layout, N_VGetArrayPointer(in->y));
+  base->y = N_VNew_Parallel(body->comm, base->n, in->total, base->context);
+  PetscCheck(base->y, PETSC_COMM_SELF, PETSC_ERR_MEM, "SUNDIALS: no memory for a vector");
+  base->yp = N_VClone(base->y);
+  base->id = N_VClone(base->y);
+  N_VConst(0, base->id);
+  for (PetscInt k = 0; k < in->layout.pressures; k++) N_VGetArrayPointer(base->id)[k] = 1;
+  PetscCall(Pack(in, N_VGetArrayPointer(base->y)));
   PetscCall(StartRates(in));
-  in->ida = IDACreate(in->context);
-  PetscCheck(in->ida, PETSC_COMM_SELF, PETSC_ERR_MEM, "SUNDIALS: no memory for an integrator");
-  LamCallSUN(LamIntegratorSilence(in->ida, in->context));
-  LamCallSUN(IDAInit(in->ida, Residual, body->process->tissue.time, in->y, in->yp));
-  LamCallSUN(IDASetUserData(in->ida, in));
-  LamCallSUN(IDAWFtolerances(in->ida, Weights));
-  in->id = N_VClone(in->y);
-  N_VConst(0, in->id);
-  for (PetscInt k = 0; k < in->layout.pressures; k++) N_VGetArrayPointer(in->id)[k] = 1;
-  LamCallSUN(IDASetId(in->ida, in->id));
-  LamCallSUN(IDASetSuppressAlg(in->ida, SUNTRUE));
-  LamCallSUN(IDASetMaxStep(in->ida, body->process->spec->output)); /* transient events must not be missed */
-  LamCallSUN(IDASetMaxConvFails(in->ida, MAX_FAILURES));
-  LamCallSUN(IDASetStopTime(in->ida, segment->end));
+  PetscCall(LamIntegratorStart(base, Residual, Roots, in));
+  LamCallSUN(IDAWFtolerances(base->ida, Weights));
+  LamCallSUN(IDASetSuppressAlg(base->ida, SUNTRUE));
+  LamCallSUN(IDASetMaxStep(base->ida, body->process->spec->output)); /* transient events must not be missed */
+  LamCallSUN(IDASetMaxConvFails(base->ida, MAX_FAILURES));
   PetscCall(CreateSolver(in));
-  LamCallSUN(IDASetNonlinearSolver(in->ida, in->solver));
-  PetscCall(LamFindRoots(in->ida, in->event_count, Roots));
+  LamCallSUN(IDASetNonlinearSolver(base->ida, in->solver));
   PetscFunctionReturn(0);
 }
 
 static void Destroy(Integration *in)
 {
-  if (in->ida) IDAFree(&in->ida);
   if (in->solver) SUNNonlinSolFree(in->solver);
-  if (in->id) N_VDestroy(in->id);
-  if (in->yp) N_VDestroy(in->yp);
-  if (in->y) N_VDestroy(in->y);
-  if (in->context) SUNContext_Free(&in->context);
+  LamIntegratorDestroy(&in->base);
 }
 
 /* ---- time loop ---- */
@@ -445,8 +417,8 @@ static void Destroy(Integration *in)
 static PetscErrorCode SettleAt(Integration *in, PetscReal time, PetscBool keeps, PetscBool *ok)
 {
   LamBody body = in->body;
-  const PetscInt n = body->sizes.displacements, m = body->sizes.elements * body->sizes.modes, water = in->layout.water;
-  N_Vector y = N_VClone(in->y), yp = N_VClone(in->y);
+  const PetscInt n = body->sizes.displacements, m = body->sizes.elements * body->sizes.modes;
+  N_Vector y = N_VClone(in->base.y), yp = N_VClone(in->base.y);
   PetscReal *u, *pressures;
   PetscErrorCode ierr = 0;
 
@@ -454,16 +426,14 @@ static PetscErrorCode SettleAt(Integration *in, PetscReal time, PetscBool keeps,
   PetscCall(PetscMalloc2(n, &u, m, &pressures));
   PetscCall(PetscArraycpy(u, body->u, n));
   PetscCall(PetscArraycpy(pressures, body->pressures, m));
-  *ok = (PetscBool)(IDAGetDky(in->ida, time, 0, y) == IDA_SUCCESS && IDAGetDky(in->ida, time, 1, yp) == IDA_SUCCESS);
+  *ok = (PetscBool)(IDAGetDky(in->base.ida, time, 0, y) == IDA_SUCCESS &&
+                    IDAGetDky(in->base.ida, time, 1, yp) == IDA_SUCCESS);
   if (*ok) ierr = Unpack(in, time, N_VGetArrayPointer(y));
   if (*ok && keeps) {
-    for (PetscInt k = 0; k < n; k++) body->u[k] = u[k];
-    for (PetscInt k = 0; k < m; k++) body->pressures[k] = pressures[k];
+    PetscCall(PetscArraycpy(body->u, u, n));
+    PetscCall(PetscArraycpy(body->pressures, pressures, m));
   }
-  if (*ok && !ierr)
-    ierr = water < 0 ? LamBodySettle(body, time, ok)
-                     : LamBodySettleStep(body, time, in->c, &N_VGetArrayPointer(y)[water],
-                                         &N_VGetArrayPointer(yp)[water], ok);
+  if (*ok && !ierr) ierr = LamBodySettle(body, SetStep(in, N_VGetArrayPointer(y), N_VGetArrayPointer(yp)), time, ok);
   PetscCall(PetscFree2(u, pressures));
   N_VDestroy(y);
   N_VDestroy(yp);
@@ -482,7 +452,7 @@ static PetscErrorCode SettleOutput(Integration *in, PetscReal end, PetscReal out
   PetscFunctionBeginUser;
   PetscCall(SettleAt(in, output, PETSC_FALSE, ok));
   if (*ok || body->process->stopped) PetscFunctionReturn(0);
-  PetscCall(Unpack(in, end, N_VGetArrayPointer(in->y)));
+  PetscCall(Unpack(in, end, N_VGetArrayPointer(in->base.y)));
   while (at > output && halvings <= MAX_HALVINGS && !body->process->stopped) {
     const PetscReal next = PetscMax(output, at + way);
 
@@ -508,7 +478,7 @@ static PetscErrorCode TellUpTo(Integration *in, PetscReal time, PetscBool *ok)
     const PetscReal at = process->next_output;
 
     if (body->evaluated == at) {
-      PetscCall(Unpack(in, at, N_VGetArrayPointer(in->y))); /* end of the step */
+      PetscCall(Unpack(in, at, N_VGetArrayPointer(in->base.y))); /* end of the step */
       if (in->layout.water < 0) PetscCall(LamBodyFillWater(body));
     } else {
       PetscCall(SettleOutput(in, time, at, ok));
@@ -517,17 +487,6 @@ static PetscErrorCode TellUpTo(Integration *in, PetscReal time, PetscBool *ok)
     PetscCall(LamBodyTell(body, NULL));
     LamProcessNextOutput(process);
   }
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode DescribeFailure(LamProcess process, int flag)
-{
-  PetscFunctionBeginUser;
-  if (flag == IDA_ERR_FAIL)
-    PetscCall(PetscStrncpy(process->trouble, "the error of a step of time cannot be brought below the tolerance",
-                           sizeof(process->trouble)));
-  else if (!process->trouble[0])
-    PetscCall(PetscSNPrintf(process->trouble, sizeof(process->trouble), "no step of time converges (IDA: %d)", flag));
   PetscFunctionReturn(0);
 }
 
@@ -561,19 +520,18 @@ static PetscErrorCode Follow(Integration *in, PetscBool happened[LAM_EVENT_COUNT
       PetscFunctionReturn(0);
     }
     process->trouble[0] = '\0';
-    flag = IDASolve(in->ida, process->segment.end, &t, in->y, in->yp, IDA_ONE_STEP);
+    flag = IDASolve(in->base.ida, process->segment.end, &t, in->base.y, in->base.yp, IDA_ONE_STEP);
     PetscCall(in->error);
     if (flag < 0) break;
     process->counts.steps++;
     PetscCall(TakeStep(in, t));
     PetscCall(TellUpTo(in, t, ok));
-    if (*ok) PetscCall(Unpack(in, t, N_VGetArrayPointer(in->y)));
+    if (*ok) PetscCall(Unpack(in, t, N_VGetArrayPointer(in->base.y)));
     if (process->stopped) break;
   }
   if (flag < 0 && in->pending) PetscCall(LamMacroReject(body->macro));
-  if (flag < 0 && !process->stopped) PetscCall(DescribeFailure(process, flag));
+  PetscCall(LamIntegratorTake(&in->base, flag, happened));
   if (flag < 0 || process->stopped) *ok = PETSC_FALSE;
-  if (*ok && flag == IDA_ROOT_RETURN) PetscCall(LamRootsFound(in->ida, in->event_count, in->events, happened));
   if (*ok && body->evaluated != t)
     PetscCall(SettleAt(in, t, PETSC_FALSE, ok));
   else if (*ok && in->layout.water < 0)
@@ -588,7 +546,6 @@ static PetscErrorCode IntegrateOnce(LamBody body, PetscBool happened[LAM_EVENT_C
   PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
-  body->process->counts.restarts++;
   ierr = Create(body, &in);
   if (!ierr) ierr = Follow(&in, happened, ok);
   Destroy(&in);
@@ -615,7 +572,7 @@ PetscErrorCode LamBodyIntegrate(LamBody body, PetscBool happened[LAM_EVENT_COUNT
     if (tries == MAX_RESTARTS || body->steps > MAX_STEPS) break;
     PetscCall(PetscStrncpy(why, process->trouble, sizeof(why)));
     PetscCall(LamMacroForget(body->macro));
-    PetscCall(LamBodySettle(body, process->tissue.time, ok));
+    PetscCall(LamBodySettle(body, LamBodyAtOnce(body), process->tissue.time, ok));
     PetscCall(PetscStrncpy(process->trouble, why, sizeof(why)));
     if (!*ok) break;
   }

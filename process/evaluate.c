@@ -45,6 +45,18 @@ void LamProcessProperties(LamProcess process, PetscReal time, const PetscReal x[
   e->cohesion = process->scene->cohesion * e->factor[LAM_CHANGING_LAMELLA].value;
 }
 
+void LamProcessRates(LamProcess process, PetscReal temperature, const PetscReal x[], PetscReal rate[],
+                     PetscReal J[][LAM_KINETIC_STATES][LAM_KINETIC_STATES])
+{
+  for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++) {
+    PetscReal *own = &rate[LAM_KINETIC_STATES * k];
+
+    for (PetscInt i = 0; i < LAM_KINETIC_STATES; i++) own[i] = 0;
+    if (LamKineticsStates(&process->spec->kinetics[k]))
+      LamKineticsRates(&process->spec->kinetics[k], temperature, &x[LAM_KINETIC_STATES * k], own, J[k]);
+  }
+}
+
 /* ---- response ---- */
 
 static void Multiply(const PetscReal A[9], const PetscReal B[9], PetscReal AB[9])
@@ -179,52 +191,4 @@ void LamProcessFlow(LamProcess process, const LamCells *cells, const LamEvaluati
   flow->drive_water = -sigma * flow->osmotic / room;
   flow->drive_solutes = sigma * concentrated;
   flow->drive_reflection = spec->reflection * (flow->osmotic - e->outside);
-}
-
-/* ---- for the monitor ---- */
-
-/* dP11/dF11 at constant P22. seals: no water flows, dP = A dF + P_p dp with dv = 0. */
-static PetscReal Firmness(const LamResponse *r, PetscBool seals)
-{
-  const int at[2] = {0, 4};
-  PetscReal A[2][2];
-
-  for (int i = 0; i < 2; i++)
-    for (int j = 0; j < 2; j++) {
-      A[i][j] = r->tangent[9 * at[i] + at[j]];
-      if (seals) A[i][j] -= r->P_turgor[at[i]] * r->P_turgor[at[j]] / LamResponseConcavity(r);
-    }
-  return A[0][0] - A[0][1] * A[1][0] / A[1][1];
-}
-
-PetscErrorCode LamProcessDescribe(LamProcess process, const LamProcessTissue *tissue, LamProcessState *state)
-{
-  LamEvaluation e;
-  LamFlow flow;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamProcessEvaluate(process, tissue->time, tissue->x, tissue->F, tissue->turgor, &e));
-  PetscCall(LamProcessQueryReference(process, &e));
-  *state = (LamProcessState){.time = tissue->time,
-                             .temperature = e.temperature,
-                             .walls = e.walls,
-                             .turgor = tissue->turgor,
-                             .cohesion = e.cohesion,
-                             .water = NAN,
-                             .osmotic = NAN,
-                             .outside = e.outside,
-                             .firmness = NAN,
-                             .response = e.response,
-                             .event = LAM_EVENT_COUNT};
-  for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++) state->factor[k] = e.factor[k].value;
-  for (PetscInt k = 0; k < LAM_RATIO_COUNT; k++) state->ratio[k] = NAN;
-  PetscCall(PetscArraycpy(state->F, tissue->F, 9));
-  if (process->spec->has_water) {
-    LamProcessFlow(process, &process->cells, &e, tissue->water, tissue->turgor, &flow);
-    state->water = tissue->water;
-    state->osmotic = flow.osmotic;
-  }
-  if (e.ok) LamProcessRatios(process, &e, state->ratio);
-  if (e.ok) state->firmness = Firmness(&e.response, (PetscBool)(process->spec->has_water && !process->plasmolysed));
-  PetscFunctionReturn(0);
 }

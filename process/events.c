@@ -1,5 +1,5 @@
 /*
-  Events in time: functions that rise through 0 at the event.
+  Events in time: functions that rise through 0 at the event; and reports of states.
 
   All except percolation, which is a count, are continuous and converge with the mesh: tractions and tensions are means
   over a wall's thickness, volumes are derivatives of the potential.
@@ -11,15 +11,48 @@
 const char *const LamEventNames[] = {LAM_EVENTS(NAME)};
 const char *const LamRatioNames[] = {LAM_RATIOS(NAME)};
 
-void LamProcessRatios(LamProcess process, const LamEvaluation *e, PetscReal ratio[LAM_RATIO_COUNT])
+/* ---- measures ---- */
+
+static LamEventMeasures Measures(const LamResponse *r)
+{
+  return (LamEventMeasures){r->max_traction, r->max_lamella_shear, r->max_wall_tension, r->opening_fraction,
+                            r->percolating_directions};
+}
+
+void LamProcessRatios(LamProcess process, const LamProcessFactor factor[], const LamEventMeasures *m,
+                      PetscReal ratio[LAM_RATIO_COUNT])
 {
   const LamStrength *strength = &process->scene->strength;
-  const PetscReal lamella = e->factor[LAM_CHANGING_LAMELLA].value, wall = e->factor[LAM_CHANGING_WALL_STRENGTH].value;
+  const PetscReal lamella = factor[LAM_CHANGING_LAMELLA].value, wall = factor[LAM_CHANGING_WALL_STRENGTH].value;
 
-  ratio[LAM_RATIO_LAMELLA_NORMAL] = e->response.max_traction / (lamella * strength->lamella_normal);
-  ratio[LAM_RATIO_LAMELLA_SHEAR] = e->response.max_lamella_shear / (lamella * strength->lamella_shear);
-  ratio[LAM_RATIO_WALL] = e->response.max_wall_tension / (wall * strength->wall);
+  ratio[LAM_RATIO_LAMELLA_NORMAL] = m->normal / (lamella * strength->lamella_normal);
+  ratio[LAM_RATIO_LAMELLA_SHEAR] = m->shear / (lamella * strength->lamella_shear);
+  ratio[LAM_RATIO_WALL] = m->wall / (wall * strength->wall);
 }
+
+PetscReal LamProcessMeasureExcess(LamProcess process, LamEvent event, const LamProcessFactor factor[],
+                                  const LamEventMeasures *m, PetscReal opening)
+{
+  const LamStrength *strength = &process->scene->strength;
+  const PetscReal lamella = factor[LAM_CHANGING_LAMELLA].value, wall = factor[LAM_CHANGING_WALL_STRENGTH].value;
+
+  switch (event) {
+  case LAM_EVENT_LAMELLA_NORMAL:
+    return m->normal - lamella * strength->lamella_normal;
+  case LAM_EVENT_LAMELLA_SHEAR:
+    return m->shear - lamella * strength->lamella_shear;
+  case LAM_EVENT_WALL:
+    return m->wall - wall * strength->wall;
+  case LAM_EVENT_OPENING:
+    return m->opening - opening - process->spec->opening;
+  case LAM_EVENT_PERCOLATION:
+    return m->percolating < 0 ? -1 : 1.5 - (PetscReal)m->percolating; /* below 0: unknown */
+  default:
+    return -1;
+  }
+}
+
+/* ---- events of a material point ---- */
 
 /* Whether any part of the tissue has this interface. */
 static PetscBool Has(const LamScene *scene, LamInterfaceLawType interface)
@@ -112,28 +145,89 @@ static PetscReal LimitExcess(LamProcess process, const LamEvaluation *e)
 PetscReal LamProcessExcess(LamProcess process, LamEvent event, const LamEvaluation *e, PetscReal water,
                            PetscReal turgor)
 {
-  const LamStrength *strength = &process->scene->strength;
-  const PetscReal lamella = e->factor[LAM_CHANGING_LAMELLA].value, wall = e->factor[LAM_CHANGING_WALL_STRENGTH].value;
-  const LamResponse *r = &e->response;
+  const LamEventMeasures measures = Measures(&e->response);
 
   switch (event) {
-  case LAM_EVENT_LAMELLA_NORMAL:
-    return r->max_traction - lamella * strength->lamella_normal;
-  case LAM_EVENT_LAMELLA_SHEAR:
-    return r->max_lamella_shear - lamella * strength->lamella_shear;
-  case LAM_EVENT_WALL:
-    return r->max_wall_tension - wall * strength->wall;
-  case LAM_EVENT_OPENING:
-    return r->opening_fraction - process->opening - process->spec->opening;
-  case LAM_EVENT_PERCOLATION:
-    return r->percolating_directions < 0 ? -1 : 1.5 - (PetscReal)r->percolating_directions; /* below 0: unknown */
   case LAM_EVENT_TURGOR_LOST:
     return -turgor - LamPlasmolysisTolerance(process) * process->pressure;
   case LAM_EVENT_TURGOR_FOUND:
-    return water + r->energy_turgor - LamPlasmolysisTolerance(process) * process->cells.water;
+    return water + e->response.energy_turgor - LamPlasmolysisTolerance(process) * process->cells.water;
   case LAM_EVENT_LIMIT:
     return LimitExcess(process, e);
   default:
-    return -1;
+    return LamProcessMeasureExcess(process, event, e->factor, &measures, process->opening);
   }
+}
+
+/* ---- reports ---- */
+
+/* dP11/dF11 at constant P22. seals: no water flows, dP = A dF + P_p dp with dv = 0. */
+static PetscReal Firmness(const LamResponse *r, PetscBool seals)
+{
+  const int at[2] = {0, 4};
+  PetscReal A[2][2];
+
+  for (int i = 0; i < 2; i++)
+    for (int j = 0; j < 2; j++) {
+      A[i][j] = r->tangent[9 * at[i] + at[j]];
+      if (seals) A[i][j] -= r->P_turgor[at[i]] * r->P_turgor[at[j]] / LamResponseConcavity(r);
+    }
+  return A[0][0] - A[0][1] * A[1][0] / A[1][1];
+}
+
+/* Sets the complete state for the monitor. */
+static PetscErrorCode Describe(LamProcess process, const LamProcessTissue *tissue, LamProcessState *state)
+{
+  LamEvaluation e;
+  LamFlow flow;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamProcessEvaluate(process, tissue->time, tissue->x, tissue->F, tissue->turgor, &e));
+  PetscCall(LamProcessQueryReference(process, &e));
+  *state = (LamProcessState){.time = tissue->time,
+                             .temperature = e.temperature,
+                             .walls = e.walls,
+                             .turgor = tissue->turgor,
+                             .cohesion = e.cohesion,
+                             .water = NAN,
+                             .osmotic = NAN,
+                             .outside = e.outside,
+                             .firmness = NAN,
+                             .response = e.response,
+                             .event = LAM_EVENT_COUNT};
+  for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++) state->factor[k] = e.factor[k].value;
+  for (PetscInt k = 0; k < LAM_RATIO_COUNT; k++) state->ratio[k] = NAN;
+  PetscCall(PetscArraycpy(state->F, tissue->F, 9));
+  if (process->spec->has_water) {
+    LamProcessFlow(process, &process->cells, &e, tissue->water, tissue->turgor, &flow);
+    state->water = tissue->water;
+    state->osmotic = flow.osmotic;
+  }
+  const LamEventMeasures measures = Measures(&e.response);
+  if (e.ok) LamProcessRatios(process, e.factor, &measures, state->ratio);
+  if (e.ok) state->firmness = Firmness(&e.response, (PetscBool)(process->spec->has_water && !process->plasmolysed));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamProcessTell(LamProcess process, const LamProcessTissue *tissue, LamEvent event)
+{
+  LamProcessState state;
+
+  PetscFunctionBeginUser;
+  PetscCall(Describe(process, tissue, &state));
+  state.event = event;
+  if (process->monitor) PetscCall(process->monitor(&state, process->monitor_ctx));
+  PetscFunctionReturn(0);
+}
+
+void LamProcessNextOutput(LamProcess process)
+{
+  const PetscReal end = process->spec->duration;
+
+  if (process->next_output >= end) {
+    process->next_output = PETSC_INFINITY;
+    return;
+  }
+  process->next_output = (PetscReal)++process->outputs * process->spec->output;
+  if (process->next_output > end * (1 - 1e-12)) process->next_output = end; /* the last one */
 }

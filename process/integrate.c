@@ -13,8 +13,7 @@
   Reference: Hindmarsh et al., ACM TOMS 31 (2005) 363-396; Brenan, Campbell & Petzold, Numerical Solution of
   Initial-Value Problems in Differential-Algebraic Equations.
 */
-#include "process_impl.h"
-#include "sundials_call.h"
+#include "integrator.h"
 #include <math.h>
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_types.h>
@@ -23,61 +22,61 @@
 
 enum { MAX_STEPS = 1000000 };
 
-/* Positions of the unknowns in y; -1: not an unknown. idle: a constant 0, if there are no other unknowns. */
+/* Positions of the unknowns besides kinetic states in y; -1: not an unknown. idle: a constant 0, if there are no other
+ * unknowns. */
 typedef struct {
-  PetscInt n, state[LAM_PROCESS_KINETIC], water, turgor, F[9], idle;
+  PetscInt water, turgor, F[9], idle;
 } Layout;
 
 typedef struct {
+  LamIntegrator base;
   LamProcess process;
   Layout layout;
-  PetscInt event_count;
-  LamEvent events[LAM_EVENT_COUNT];
-
-  SUNContext context;
-  void *ida;
-  N_Vector y, yp, tolerance, id;
+  N_Vector tolerance;
   SUNMatrix K;
   SUNLinearSolver solver;
 } Integration;
 
 /* ---- unknowns ---- */
 
-static Layout LayOut(LamProcess process)
+static void LayOut(Integration *in)
 {
-  Layout l = {.water = -1, .turgor = -1, .idle = -1};
+  PetscInt *n = &in->base.n;
+  Layout *l = &in->layout;
 
-  for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++)
-    for (PetscInt i = 0; i < LAM_KINETIC_STATES; i++)
-      l.state[LAM_KINETIC_STATES * k + i] = i < LamKineticsStates(&process->spec->kinetics[k]) ? l.n++ : -1;
-  if (process->spec->has_water) {
-    l.water = l.n++;
-    l.turgor = l.n++;
+  *l = (Layout){.water = -1, .turgor = -1, .idle = -1};
+  if (in->process->spec->has_water) {
+    l->water = (*n)++;
+    l->turgor = (*n)++;
   }
-  for (PetscInt i = 0; i < 9; i++) l.F[i] = process->segment.given[i] ? l.n++ : -1;
-  if (!l.n) l.idle = l.n++;
-  return l;
+  for (PetscInt i = 0; i < 9; i++) l->F[i] = in->process->segment.given[i] ? (*n)++ : -1;
+  if (!*n) l->idle = (*n)++;
 }
 
 /* The tissue for y at a time; prescribed quantities follow the segment. */
-static LamProcessTissue Unpack(LamProcess process, const Layout *l, PetscReal time, const PetscReal y[])
+static LamProcessTissue Unpack(const Integration *in, PetscReal time, N_Vector y_vector)
 {
-  const PetscReal elapsed = time - process->segment.start;
+  const LamSegment *segment = &in->process->segment;
+  const PetscReal elapsed = time - segment->start, *y = N_VGetArrayPointer(y_vector);
+  const PetscInt *state = in->base.state;
+  const Layout *l = &in->layout;
   LamProcessTissue tissue = {.time = time,
-                             .temperature = LamRampAt(&process->segment.temperature, elapsed),
-                             .outside = LamRampAt(&process->segment.outside, elapsed)};
+                             .temperature = LamRampAt(&segment->temperature, elapsed),
+                             .outside = LamRampAt(&segment->outside, elapsed)};
 
-  for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++) tissue.x[k] = l->state[k] < 0 ? 0 : y[l->state[k]];
-  for (PetscInt i = 0; i < 9; i++) tissue.F[i] = l->F[i] < 0 ? LamRampAt(&process->segment.F[i], elapsed) : y[l->F[i]];
-  tissue.turgor = l->turgor < 0 ? LamRampAt(&process->segment.turgor, elapsed) : y[l->turgor];
+  for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++) tissue.x[k] = state[k] < 0 ? 0 : y[state[k]];
+  for (PetscInt i = 0; i < 9; i++) tissue.F[i] = l->F[i] < 0 ? LamRampAt(&segment->F[i], elapsed) : y[l->F[i]];
+  tissue.turgor = l->turgor < 0 ? LamRampAt(&segment->turgor, elapsed) : y[l->turgor];
   tissue.water = l->water < 0 ? 0 : y[l->water];
   return tissue;
 }
 
-static void Pack(const Layout *l, const LamProcessTissue *tissue, PetscReal y[])
+static void Pack(const Integration *in, const LamProcessTissue *tissue, PetscReal y[])
 {
+  const Layout *l = &in->layout;
+
   for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++)
-    if (l->state[k] >= 0) y[l->state[k]] = tissue->x[k];
+    if (in->base.state[k] >= 0) y[in->base.state[k]] = tissue->x[k];
   for (PetscInt i = 0; i < 9; i++)
     if (l->F[i] >= 0) y[l->F[i]] = tissue->F[i];
   if (l->turgor >= 0) y[l->turgor] = tissue->turgor;
@@ -88,11 +87,11 @@ static void Pack(const Layout *l, const LamProcessTissue *tissue, PetscReal y[])
 /* ---- the response at y ---- */
 
 /* Returns 0; 1 if y has no response (a shorter step may have one); -1 on a library error, stored in process->error. */
-static int EvaluateAt(Integration *in, PetscReal t, const PetscReal y[], LamProcessTissue *tissue, LamEvaluation *e)
+static int EvaluateAt(Integration *in, PetscReal t, N_Vector y, LamProcessTissue *tissue, LamEvaluation *e)
 {
   LamProcess process = in->process;
 
-  *tissue = Unpack(process, &in->layout, t, y);
+  *tissue = Unpack(in, t, y);
   process->error = LamProcessEvaluate(process, t, tissue->x, tissue->F, tissue->turgor, e);
   if (process->error) return -1;
   if (process->stop && process->stop()) process->stopped = PETSC_TRUE;
@@ -105,16 +104,12 @@ static int EvaluateAt(Integration *in, PetscReal t, const PetscReal y[], LamProc
 static void KineticResidual(const Integration *in, const LamEvaluation *e, const PetscReal x[], const PetscReal yp[],
                             PetscReal r[])
 {
-  for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++) {
-    const LamKinetics *kinetics = &in->process->spec->kinetics[k];
-    PetscReal rate[LAM_KINETIC_STATES] = {0}, J[LAM_KINETIC_STATES][LAM_KINETIC_STATES];
-    const PetscInt *at = &in->layout.state[LAM_KINETIC_STATES * k];
+  PetscReal rate[LAM_PROCESS_KINETIC], J[LAM_CHANGING_COUNT][LAM_KINETIC_STATES][LAM_KINETIC_STATES];
+  const PetscInt *state = in->base.state;
 
-    if (at[0] < 0) continue;
-    LamKineticsRates(kinetics, e->temperature, &x[LAM_KINETIC_STATES * k], rate, J);
-    for (PetscInt i = 0; i < LAM_KINETIC_STATES; i++)
-      if (at[i] >= 0) r[at[i]] = yp[at[i]] - rate[i];
-  }
+  LamProcessRates(in->process, e->temperature, x, rate, J);
+  for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++)
+    if (state[k] >= 0) r[state[k]] = yp[state[k]] - rate[k];
 }
 
 static void WaterResidual(const Integration *in, const LamEvaluation *e, const LamProcessTissue *tissue,
@@ -131,10 +126,10 @@ static void WaterResidual(const Integration *in, const LamEvaluation *e, const L
 }
 
 /* IDAResFn */
-static int Residual(PetscReal t, N_Vector y_vector, N_Vector yp_vector, N_Vector r_vector, void *ctx)
+static int Residual(PetscReal t, N_Vector y, N_Vector yp_vector, N_Vector r_vector, void *ctx)
 {
   Integration *in = (Integration *)ctx;
-  const PetscReal *y = N_VGetArrayPointer(y_vector), *yp = N_VGetArrayPointer(yp_vector);
+  const PetscReal *yp = N_VGetArrayPointer(yp_vector);
   const LamSegment *segment = &in->process->segment;
   PetscReal *r = N_VGetArrayPointer(r_vector);
   LamProcessTissue tissue;
@@ -156,15 +151,15 @@ static int Residual(PetscReal t, N_Vector y_vector, N_Vector yp_vector, N_Vector
 static void KineticJacobian(const Integration *in, const LamEvaluation *e, const PetscReal x[], PetscReal c,
                             SUNMatrix K)
 {
-  for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++) {
-    PetscReal rate[LAM_KINETIC_STATES] = {0}, J[LAM_KINETIC_STATES][LAM_KINETIC_STATES];
-    const PetscInt *at = &in->layout.state[LAM_KINETIC_STATES * k];
+  PetscReal rate[LAM_PROCESS_KINETIC], J[LAM_CHANGING_COUNT][LAM_KINETIC_STATES][LAM_KINETIC_STATES];
 
-    if (at[0] < 0) continue;
-    LamKineticsRates(&in->process->spec->kinetics[k], e->temperature, &x[LAM_KINETIC_STATES * k], rate, J);
+  LamProcessRates(in->process, e->temperature, x, rate, J);
+  for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++) {
+    const PetscInt *at = &in->base.state[LAM_KINETIC_STATES * k];
+
     for (PetscInt i = 0; i < LAM_KINETIC_STATES && at[i] >= 0; i++)
       for (PetscInt j = 0; j < LAM_KINETIC_STATES && at[j] >= 0; j++)
-        SM_ELEMENT_D(K, at[i], at[j]) = (i == j ? c : 0) - J[i][j];
+        SM_ELEMENT_D(K, at[i], at[j]) = (i == j ? c : 0) - J[k][i][j];
   }
 }
 
@@ -172,7 +167,7 @@ static void KineticJacobian(const Integration *in, const LamEvaluation *e, const
 static void AddFactor(const Integration *in, const LamEvaluation *e, LamChanging which, PetscInt row,
                       PetscReal derivative, SUNMatrix K)
 {
-  const PetscInt *at = &in->layout.state[LAM_KINETIC_STATES * which];
+  const PetscInt *at = &in->base.state[LAM_KINETIC_STATES * which];
 
   for (PetscInt i = 0; i < LAM_KINETIC_STATES; i++)
     if (at[i] >= 0) SM_ELEMENT_D(K, row, at[i]) += derivative * e->factor[which].slope[i];
@@ -249,7 +244,7 @@ static int Jacobian(PetscReal t, PetscReal c, N_Vector y, N_Vector yp, N_Vector 
   Integration *in = (Integration *)ctx;
   LamProcessTissue tissue;
   LamEvaluation e;
-  const int flag = EvaluateAt(in, t, N_VGetArrayPointer(y), &tissue, &e);
+  const int flag = EvaluateAt(in, t, y, &tissue, &e);
 
   if (flag) return flag;
   in->process->counts.jacobians++;
@@ -266,13 +261,13 @@ static int Roots(PetscReal t, N_Vector y, N_Vector yp, PetscReal excess[], void 
   Integration *in = (Integration *)ctx;
   LamProcessTissue tissue;
   LamEvaluation e;
-  const int flag = EvaluateAt(in, t, N_VGetArrayPointer(y), &tissue, &e);
+  const int flag = EvaluateAt(in, t, y, &tissue, &e);
 
   if (flag) return -1; /* IDA cannot recover from a failure here */
-  in->process->error = in->event_count ? LamProcessQueryReference(in->process, &e) : 0;
+  in->process->error = LamProcessQueryReference(in->process, &e);
   if (in->process->error) return -1;
-  for (PetscInt k = 0; k < in->event_count; k++) {
-    excess[k] = LamProcessExcess(in->process, in->events[k], &e, tissue.water, tissue.turgor);
+  for (PetscInt k = 0; k < in->base.event_count; k++) {
+    excess[k] = LamProcessExcess(in->process, in->base.events[k], &e, tissue.water, tissue.turgor);
     if (!isfinite(excess[k])) excess[k] = -1;
   }
   return 0;
@@ -286,17 +281,18 @@ static void SetTolerances(Integration *in)
 {
   LamProcess process = in->process;
   const Layout *l = &in->layout;
-  PetscReal *a = N_VGetArrayPointer(in->tolerance), *id = N_VGetArrayPointer(in->id);
+  PetscReal *a = N_VGetArrayPointer(in->tolerance), *id = N_VGetArrayPointer(in->base.id);
   const PetscReal relative = process->spec->tolerance;
 
-  for (PetscInt k = 0; k < l->n; k++) {
+  for (PetscInt k = 0; k < in->base.n; k++)
     a[k] = relative * (k == l->turgor ? process->pressure : k == l->water ? 1e-3 * process->cells.water : 0.1);
-    id[k] = 0;
-  }
+  N_VConst(0, in->base.id);
   for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++) {
-    if (l->state[k] < 0) continue;
-    a[l->state[k]] = 1e-3 * relative;
-    id[l->state[k]] = 1;
+    const PetscInt at = in->base.state[k];
+
+    if (at < 0) continue;
+    a[at] = 1e-3 * relative;
+    id[at] = 1;
   }
   if (l->water >= 0 && isfinite(process->spec->water.permeability)) id[l->water] = 1;
   if (l->idle >= 0) id[l->idle] = 1;
@@ -305,14 +301,15 @@ static void SetTolerances(Integration *in)
 /* Sets y' of the differential unknowns: -(residual at y' = 0). */
 static PetscErrorCode StartRates(Integration *in, PetscReal t)
 {
-  const PetscReal *id = N_VGetArrayPointer(in->id);
-  PetscReal *yp = N_VGetArrayPointer(in->yp);
-  N_Vector r = N_VClone(in->y);
+  LamIntegrator *base = &in->base;
+  const PetscReal *id = N_VGetArrayPointer(base->id);
+  PetscReal *yp = N_VGetArrayPointer(base->yp);
+  N_Vector r = N_VClone(base->y);
 
   PetscFunctionBeginUser;
-  N_VConst(0, in->yp);
-  const int flag = Residual(t, in->y, in->yp, r, in);
-  for (PetscInt k = 0; k < in->layout.n && !flag; k++)
+  N_VConst(0, base->yp);
+  const int flag = Residual(t, base->y, base->yp, r, in);
+  for (PetscInt k = 0; k < base->n && !flag; k++)
     if (id[k] != 0) yp[k] = -N_VGetArrayPointer(r)[k];
   N_VDestroy(r);
   PetscCall(in->process->error);
@@ -321,75 +318,51 @@ static PetscErrorCode StartRates(Integration *in, PetscReal t)
 
 static PetscErrorCode Create(LamProcess process, Integration *in)
 {
-  const LamSegment *segment = &process->segment;
+  LamIntegrator *base = &in->base;
 
   PetscFunctionBeginUser;
   in->process = process;
-  in->layout = LayOut(process);
-  in->event_count = LamProcessListEvents(process, in->events);
-  LamCallSUN(LamContextCreate(MPI_COMM_NULL, &in->context));
-  in->y = N_VNew_Serial(in->layout.n, in->context);
-  in->yp = N_VClone(in->y);
-  in->tolerance = N_VClone(in->y);
-  in->id = N_VClone(in->y);
-  N_VConst(0, in->y);
-  Pack(&in->layout, &process->tissue, N_VGetArrayPointer(in->y));
+  PetscCall(LamIntegratorCreate(process, MPI_COMM_NULL, base));
+  base->event_count = LamProcessListEvents(process, base->events);
+  LayOut(in);
+  base->y = N_VNew_Serial(base->n, base->context);
+  base->yp = N_VClone(base->y);
+  base->id = N_VClone(base->y);
+  in->tolerance = N_VClone(base->y);
+  Pack(in, &process->tissue, N_VGetArrayPointer(base->y));
   SetTolerances(in);
-  PetscCall(StartRates(in, segment->start));
-  in->ida = IDACreate(in->context);
-  PetscCheck(in->ida, PETSC_COMM_SELF, PETSC_ERR_MEM, "SUNDIALS: no memory for an integrator");
-  LamCallSUN(LamIntegratorSilence(in->ida, in->context));
-  LamCallSUN(IDAInit(in->ida, Residual, segment->start, in->y, in->yp));
-  LamCallSUN(IDASVtolerances(in->ida, process->spec->tolerance, in->tolerance));
-  LamCallSUN(IDASetUserData(in->ida, in));
-  LamCallSUN(IDASetId(in->ida, in->id));
-  LamCallSUN(IDASetMaxNumSteps(in->ida, MAX_STEPS));
-  LamCallSUN(IDASetStopTime(in->ida, segment->end));
-  in->K = SUNDenseMatrix(in->layout.n, in->layout.n, in->context);
-  in->solver = SUNLinSol_Dense(in->y, in->K, in->context);
-  LamCallSUN(IDASetLinearSolver(in->ida, in->solver, in->K));
-  LamCallSUN(IDASetJacFn(in->ida, Jacobian));
-  PetscCall(LamFindRoots(in->ida, in->event_count, Roots));
+  PetscCall(StartRates(in, process->tissue.time));
+  PetscCall(LamIntegratorStart(base, Residual, Roots, in));
+  LamCallSUN(IDASVtolerances(base->ida, process->spec->tolerance, in->tolerance));
+  LamCallSUN(IDASetMaxNumSteps(base->ida, MAX_STEPS));
+  in->K = SUNDenseMatrix(base->n, base->n, base->context);
+  in->solver = SUNLinSol_Dense(base->y, in->K, base->context);
+  LamCallSUN(IDASetLinearSolver(base->ida, in->solver, in->K));
+  LamCallSUN(IDASetJacFn(base->ida, Jacobian));
   PetscFunctionReturn(0);
 }
 
 static void Destroy(Integration *in)
 {
-  if (in->ida) IDAFree(&in->ida);
   if (in->solver) SUNLinSolFree(in->solver);
   if (in->K) SUNMatDestroy(in->K);
-  if (in->id) N_VDestroy(in->id);
   if (in->tolerance) N_VDestroy(in->tolerance);
-  if (in->yp) N_VDestroy(in->yp);
-  if (in->y) N_VDestroy(in->y);
-  if (in->context) SUNContext_Free(&in->context);
+  LamIntegratorDestroy(&in->base);
 }
 
 /* ---- time loop ---- */
-
-void LamProcessNextOutput(LamProcess process)
-{
-  const PetscReal end = process->spec->duration;
-
-  if (process->next_output >= end) {
-    process->next_output = PETSC_INFINITY;
-    return;
-  }
-  process->next_output = (PetscReal)++process->outputs * process->spec->output;
-  if (process->next_output > end * (1 - 1e-12)) process->next_output = end; /* the last one */
-}
 
 /* Reports the outputs up to a time that the integrator has passed. */
 static PetscErrorCode TellUpTo(Integration *in, PetscReal time)
 {
   LamProcess process = in->process;
-  N_Vector y = N_VClone(in->y);
+  N_Vector y = N_VClone(in->base.y);
   PetscErrorCode ierr = 0;
 
   PetscFunctionBeginUser;
   while (!ierr && process->next_output <= time && process->next_output <= process->spec->duration) {
-    const LamProcessTissue tissue = IDAGetDky(in->ida, process->next_output, 0, y) == IDA_SUCCESS
-                                        ? Unpack(process, &in->layout, process->next_output, N_VGetArrayPointer(y))
+    const LamProcessTissue tissue = IDAGetDky(in->base.ida, process->next_output, 0, y) == IDA_SUCCESS
+                                        ? Unpack(in, process->next_output, y)
                                         : process->tissue;
 
     ierr = LamProcessTell(process, &tissue, LAM_EVENT_COUNT);
@@ -397,19 +370,6 @@ static PetscErrorCode TellUpTo(Integration *in, PetscReal time)
   }
   N_VDestroy(y);
   PetscCall(ierr);
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode DescribeFailure(LamProcess process, int flag)
-{
-  PetscFunctionBeginUser;
-  if (flag == IDA_ERR_FAIL)
-    PetscCall(PetscStrncpy(process->trouble, "the error of a step of time cannot be brought below the tolerance",
-                           sizeof(process->trouble)));
-  else if (flag == IDA_LSETUP_FAIL || flag == IDA_LSOLVE_FAIL)
-    PetscCall(PetscStrncpy(process->trouble, "the equations of a step of time are singular", sizeof(process->trouble)));
-  else if (!process->trouble[0])
-    PetscCall(PetscSNPrintf(process->trouble, sizeof(process->trouble), "no step of time converges (IDA: %d)", flag));
   PetscFunctionReturn(0);
 }
 
@@ -422,18 +382,17 @@ static PetscErrorCode Follow(Integration *in, PetscBool happened[LAM_EVENT_COUNT
   PetscFunctionBeginUser;
   while (flag == IDA_SUCCESS && !process->stopped) {
     process->trouble[0] = '\0';
-    flag = IDASolve(in->ida, process->segment.end, &t, in->y, in->yp, IDA_ONE_STEP);
+    flag = IDASolve(in->base.ida, process->segment.end, &t, in->base.y, in->base.yp, IDA_ONE_STEP);
     PetscCall(process->error);
     if (flag < 0) break;
     process->counts.steps++;
     if (process->responder->accept) PetscCall(process->responder->accept(process->responder->ctx));
     PetscCall(TellUpTo(in, t));
-    process->tissue = Unpack(process, &in->layout, t, N_VGetArrayPointer(in->y));
+    process->tissue = Unpack(in, t, in->base.y);
     if (t >= process->segment.end) break;
   }
   *ok = (PetscBool)(flag >= 0 && !process->stopped);
-  if (flag == IDA_ROOT_RETURN) PetscCall(LamRootsFound(in->ida, in->event_count, in->events, happened));
-  if (flag < 0 && !process->stopped) PetscCall(DescribeFailure(process, flag));
+  PetscCall(LamIntegratorTake(&in->base, flag, happened));
   PetscFunctionReturn(0);
 }
 
@@ -444,7 +403,6 @@ PetscErrorCode LamProcessIntegrate(LamProcess process, PetscBool happened[LAM_EV
 
   PetscFunctionBeginUser;
   *ok = PETSC_TRUE;
-  process->counts.restarts++;
   ierr = Create(process, &in);
   if (!ierr) ierr = Follow(&in, happened, ok);
   Destroy(&in);

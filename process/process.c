@@ -117,19 +117,6 @@ PetscErrorCode LamProcessDestroy(LamProcess *process)
   PetscFunctionReturn(0);
 }
 
-/* ---- reports ---- */
-
-PetscErrorCode LamProcessTell(LamProcess process, const LamProcessTissue *tissue, LamEvent event)
-{
-  LamProcessState state;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamProcessDescribe(process, tissue, &state));
-  state.event = event;
-  if (process->monitor) PetscCall(process->monitor(&state, process->monitor_ctx));
-  PetscFunctionReturn(0);
-}
-
 /* ---- the present state ---- */
 
 static PetscErrorCode EvaluateTissue(LamProcess process, LamEvaluation *e)
@@ -290,22 +277,17 @@ static PetscErrorCode EnterSegment(LamProcess process, PetscBool *ok)
 static PetscErrorCode Pass(LamProcess process, PetscReal time)
 {
   LamProcessTissue *tissue = &process->tissue;
+  PetscReal half[LAM_PROCESS_KINETIC], rate[LAM_PROCESS_KINETIC];
+  PetscReal J[LAM_CHANGING_COUNT][LAM_KINETIC_STATES][LAM_KINETIC_STATES];
   LamEvaluation e;
   LamFlow flow;
 
   PetscFunctionBeginUser;
   PetscCall(EvaluateTissue(process, &e));
-  for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++) {
-    const LamKinetics *kinetics = &process->spec->kinetics[k];
-    PetscReal *x = &tissue->x[LAM_KINETIC_STATES * k], half[LAM_KINETIC_STATES], rate[LAM_KINETIC_STATES] = {0},
-              J[LAM_KINETIC_STATES][LAM_KINETIC_STATES];
-
-    if (!LamKineticsStates(kinetics)) continue;
-    LamKineticsRates(kinetics, e.temperature, x, rate, J);
-    for (PetscInt i = 0; i < LAM_KINETIC_STATES; i++) half[i] = x[i] + 0.5 * time * rate[i];
-    LamKineticsRates(kinetics, e.temperature, half, rate, J);
-    for (PetscInt i = 0; i < LAM_KINETIC_STATES; i++) x[i] += time * rate[i];
-  }
+  LamProcessRates(process, e.temperature, tissue->x, rate, J);
+  for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++) half[k] = tissue->x[k] + 0.5 * time * rate[k];
+  LamProcessRates(process, e.temperature, half, rate, J);
+  for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++) tissue->x[k] += time * rate[k];
   if (process->spec->has_water && isfinite(process->spec->water.permeability)) {
     LamProcessFlow(process, &process->cells, &e, tissue->water, tissue->turgor, &flow);
     tissue->water += time * flow.conductance * flow.drive;
@@ -408,23 +390,6 @@ static PetscErrorCode Inflate(LamProcess process, PetscBool *ok)
   PetscFunctionReturn(0);
 }
 
-void LamProcessClear(LamProcess process)
-{
-  LamProcessTissue *tissue = &process->tissue;
-
-  *tissue = (LamProcessTissue){.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-  for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++)
-    LamKineticsStart(&process->spec->kinetics[k], &tissue->x[LAM_KINETIC_STATES * k]);
-  for (int i = 0; i < 9; i++) process->inflation[i] = i % 4 == 0 ? 1 : 0;
-  process->plasmolysed = process->stopped = process->last_known = process->judged_known = PETSC_FALSE;
-  for (PetscInt k = 0; k < LAM_EVENT_COUNT; k++) process->found[k] = PETSC_FALSE;
-  for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++) process->told_walls[k] = 1;
-  process->next_output = 0;
-  process->snaps = 0;
-  process->outputs = 0;
-  process->counts = (LamProcessCounts){0};
-}
-
 static PetscErrorCode Start(LamProcess process, PetscBool *ok)
 {
   const LamWaterSpec *water = &process->spec->water;
@@ -432,12 +397,7 @@ static PetscErrorCode Start(LamProcess process, PetscBool *ok)
   LamFlow flow;
 
   PetscFunctionBeginUser;
-  LamProcessClear(process);
-  LamProcessStartProgram(process, (const PetscReal[9]){0});
-  LamProcessNextSegment(process, &process->segment);
   process->tissue.turgor = process->segment.turgor.from;
-  process->temperature = process->tissue.temperature = process->segment.temperature.from;
-  process->tissue.outside = process->segment.outside.from;
   *ok = PETSC_TRUE;
   if (process->spec->inflate) PetscCall(Inflate(process, ok));
   if (!*ok) PetscFunctionReturn(0);
@@ -502,11 +462,7 @@ PetscErrorCode LamProcessRun(LamProcess process, LamProcessReason *reason, char 
 
   PetscFunctionBeginUser;
   PetscCheck(process->responder, PETSC_COMM_SELF, PETSC_ERR_ORDER, "call LamProcessSetResponder() first");
-  PetscCheck(
-      process->walls_alike || process->set_walls, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-      "%s: process.kinetics: the parameters of the walls do not change alike, and what answers knows only tissue "
-      "whose walls keep their proportions; solve directly",
-      process->scene->path);
+  PetscCall(LamProcessBegin(process));
   message[0] = '\0';
   PetscCall(FollowAll(process, &ok, &ends));
   *reason = process->stopped ? LAM_PROCESS_STOPPED : ok && !ends ? LAM_PROCESS_DONE : LAM_PROCESS_ENDED;

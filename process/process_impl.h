@@ -4,9 +4,10 @@
     process.c    creation, and time loop: segments between the times at which something changes abruptly
     program.c    prescribed quantities and surroundings at a time
     evaluate.c   the tissue at a state: properties, response, flow of water, each with its derivatives
+    events.c     events, and reports of states
     settle.c     equilibrium at an instant
+    integrator.c what a point and a body have in common in their use of IDA
     integrate.c  one segment by IDA: residual, Jacobian, roots
-    events.c     events
 */
 #ifndef LAM_PROCESS_IMPL_H
 #define LAM_PROCESS_IMPL_H
@@ -132,6 +133,8 @@ static inline PetscReal LamRampAt(const LamRamp *ramp, PetscReal elapsed)
 }
 
 /* program.c */
+/* Checks the walls, resets to the tissue at the start, without events or counts, and enters the first segment. */
+PetscErrorCode LamProcessBegin(LamProcess process);
 /* Starts the first part of the program at the present state of the tissue, with stress P. */
 void LamProcessStartProgram(LamProcess process, const PetscReal P[9]);
 /*
@@ -163,8 +166,9 @@ void LamProcessFlow(LamProcess process, const LamCells *cells, const LamEvaluati
 PetscReal LamProcessStiffness(LamProcess process, const LamEvaluation *evaluation, PetscInt i, PetscInt k);
 /* dv/dF_k of the lumen, with F relative to the inflated state. */
 PetscReal LamProcessLumenSlope(LamProcess process, const LamEvaluation *evaluation, PetscInt k);
-/* Sets the complete state for the monitor. */
-PetscErrorCode LamProcessDescribe(LamProcess process, const LamProcessTissue *tissue, LamProcessState *state);
+/* rate [LAM_PROCESS_KINETIC]: dx/dt of all laws; J [LAM_CHANGING_COUNT]: its derivatives, not set without states. */
+void LamProcessRates(LamProcess process, PetscReal temperature, const PetscReal x[], PetscReal rate[],
+                     PetscReal J[][LAM_KINETIC_STATES][LAM_KINETIC_STATES]);
 
 /* settle.c */
 typedef enum {
@@ -183,21 +187,26 @@ PetscErrorCode LamProcessSettle(LamProcess process, LamSettle kind, const LamSeg
 /* Integrates the tissue to the end of the segment, or to the next event. */
 PetscErrorCode LamProcessIntegrate(LamProcess process, PetscBool happened[LAM_EVENT_COUNT], PetscBool *ok);
 
-/* Advances to the next output time; infinite after the last one. */
-void LamProcessNextOutput(LamProcess process);
-
 /* events.c */
 /* Lists the events that are searched for in this segment. */
 PetscInt LamProcessListEvents(LamProcess process, LamEvent events[LAM_EVENT_COUNT]);
-void LamProcessRatios(LamProcess process, const LamEvaluation *evaluation, PetscReal ratio[LAM_RATIO_COUNT]);
-/* Event function: the event occurs when it rises through 0. */
+/* Indicators of a material point that events and ratios are about. */
+typedef struct {
+  PetscReal normal, shear, wall, opening;
+  PetscInt percolating;
+} LamEventMeasures;
+void LamProcessRatios(LamProcess process, const LamProcessFactor factor[], const LamEventMeasures *measures,
+                      PetscReal ratio[LAM_RATIO_COUNT]);
+/* Event function: the event occurs when it rises through 0. Of the measures alone, `opening` at the start; -1 for other
+   events. */
+PetscReal LamProcessMeasureExcess(LamProcess process, LamEvent event, const LamProcessFactor factor[],
+                                  const LamEventMeasures *measures, PetscReal opening);
+/* Of a material point. */
 PetscReal LamProcessExcess(LamProcess process, LamEvent event, const LamEvaluation *evaluation, PetscReal water,
                            PetscReal turgor);
-
-/* process.c */
-/* Resets to the tissue at the start, without events or counts. */
-void LamProcessClear(LamProcess process);
 /* Reports a state to the monitor. */
 PetscErrorCode LamProcessTell(LamProcess process, const LamProcessTissue *tissue, LamEvent event);
+/* Advances to the next output time; infinite after the last one. */
+void LamProcessNextOutput(LamProcess process);
 
 #endif

@@ -16,36 +16,31 @@ enum { MAX_ITERATIONS = 12, MAX_HALVINGS = 20, MAX_TRIES = 60, MOST = 10 };
 #define EXACT 1e-10  /* tolerance of the residual: stress in C1 + C2, volume in V0 */
 #define FARTHEST 0.3 /* largest change of a component of F in one iteration */
 
-/* Intermediate conditions; s = 1: the conditions of the segment. */
-typedef struct {
-  PetscReal F[9], P[9], turgor, water, temperature, outside;
-} Conditions;
-
+/* Unknown components of F, which the turgor follows unless it is prescribed; and the conditions, those at the start of
+   a segment. */
 typedef struct {
   LamSettle kind;
-  PetscBool given[9];
-  PetscInt n, component[9]; /* unknown components of F; the turgor follows them */
-} Unknowns;
+  PetscInt n, component[9];
+  LamSegment at;
+} Problem;
 
-static Unknowns ListUnknowns(const LamSegment *segment, LamSettle kind)
+static Problem MakeProblem(const LamSegment *segment, LamSettle kind)
 {
-  Unknowns u = {.kind = kind};
+  Problem problem = {.kind = kind, .at = *segment};
 
-  for (PetscInt i = 0; i < 9; i++) {
-    u.given[i] = segment->given[i];
-    if (u.given[i]) u.component[u.n++] = i;
-  }
-  return u;
+  for (PetscInt i = 0; i < 9; i++)
+    if (segment->given[i]) problem.component[problem.n++] = i;
+  return problem;
 }
 
-static PetscInt Count(const Unknowns *u)
+static PetscInt Count(const Problem *u)
 {
   return u->n + (u->kind == LAM_SETTLE_TURGOR ? 0 : 1);
 }
 
 /* Residual r and its derivative K, column by column, at the tissue's F and turgor. */
-static void Linearise(LamProcess process, const Unknowns *u, const Conditions *c, const LamProcessTissue *tissue,
-                      const LamEvaluation *e, PetscReal r[], PetscReal K[])
+static void Linearise(LamProcess process, const Problem *u, const LamProcessTissue *tissue, const LamEvaluation *e,
+                      PetscReal r[], PetscReal K[])
 {
   const LamResponse *response = &e->response;
   const PetscInt n = Count(u);
@@ -53,7 +48,7 @@ static void Linearise(LamProcess process, const Unknowns *u, const Conditions *c
   for (PetscInt a = 0; a < u->n; a++) {
     const PetscInt i = u->component[a];
 
-    r[a] = response->P[i] - c->P[i];
+    r[a] = response->P[i] - u->at.P[i].from;
     for (PetscInt b = 0; b < u->n; b++) K[b * n + a] = LamProcessStiffness(process, e, i, u->component[b]);
     if (n > u->n) K[u->n * n + a] = response->P_turgor[i];
   }
@@ -63,7 +58,7 @@ static void Linearise(LamProcess process, const Unknowns *u, const Conditions *c
   LamFlow flow;
 
   K[u->n * n + u->n] = -response->energy_turgor2;
-  r[u->n] = lumen - c->water;
+  r[u->n] = lumen - tissue->water;
   if (u->kind == LAM_SETTLE_OSMOSIS) {
     LamProcessFlow(process, &process->cells, e, lumen, tissue->turgor, &flow);
     r[u->n] = flow.drive;
@@ -103,8 +98,8 @@ static void FillOsmometer(LamProcess process, const LamEvaluation *e, LamProcess
     tissue->water = dead + (tissue->water - dead) * flow.osmotic / PetscMax(e->outside, 1e-9 * flow.osmotic);
 }
 
-/* Newton's method at conditions c from the tissue's state, which is replaced on success. */
-static PetscErrorCode Iterate(LamProcess process, const Unknowns *u, const Conditions *c, PetscBool *ok)
+/* Newton's method under the conditions from the tissue's state, which is replaced on success. */
+static PetscErrorCode Iterate(LamProcess process, const Problem *u, PetscBool *ok)
 {
   const PetscInt n = Count(u);
   LamProcessTissue tissue = process->tissue;
@@ -114,14 +109,14 @@ static PetscErrorCode Iterate(LamProcess process, const Unknowns *u, const Condi
   PetscFunctionBeginUser;
   *ok = PETSC_FALSE;
   for (PetscInt i = 0; i < 9; i++)
-    if (!u->given[i]) tissue.F[i] = c->F[i];
-  if (u->kind == LAM_SETTLE_TURGOR) tissue.turgor = c->turgor;
+    if (!u->at.given[i]) tissue.F[i] = u->at.F[i].from;
+  if (u->kind == LAM_SETTLE_TURGOR) tissue.turgor = u->at.turgor.from;
   for (PetscInt it = 0; it < MAX_ITERATIONS; it++) {
     PetscCall(LamProcessEvaluate(process, tissue.time, tissue.x, tissue.F, tissue.turgor, &e));
     if (!e.ok) PetscFunctionReturn(0);
-    e.temperature = c->temperature;
-    e.outside = c->outside;
-    Linearise(process, u, c, &tissue, &e, r, K);
+    e.temperature = u->at.temperature.from;
+    e.outside = u->at.outside.from;
+    Linearise(process, u, &tissue, &e, r, K);
     const PetscReal norm = Norm(n, r);
     if (norm <= EXACT || (norm <= 1e3 * EXACT && norm >= 0.5 * before)) {
       *ok = PETSC_TRUE;
@@ -146,31 +141,34 @@ static PetscErrorCode Iterate(LamProcess process, const Unknowns *u, const Condi
   }
   if (u->kind != LAM_SETTLE_WATER && !process->plasmolysed) tissue.water = -e.response.energy_turgor;
   if (process->plasmolysed && !isfinite(process->spec->water.permeability)) FillOsmometer(process, &e, &tissue);
-  tissue.temperature = c->temperature;
-  tissue.outside = c->outside;
+  tissue.temperature = u->at.temperature.from;
+  tissue.outside = u->at.outside.from;
   process->tissue = tissue;
   PetscFunctionReturn(0);
 }
 
-static Conditions Between(const LamSegment *from, const LamSegment *to, PetscReal water, PetscReal s)
+static PetscReal Between(const LamRamp *from, const LamRamp *to, PetscReal s)
 {
-  Conditions c = {.water = water,
-                  .turgor = (1 - s) * from->turgor.from + s * to->turgor.from,
-                  .temperature = (1 - s) * from->temperature.from + s * to->temperature.from,
-                  .outside = (1 - s) * from->outside.from + s * to->outside.from};
+  return (1 - s) * from->from + s * to->from;
+}
 
+/* Sets the conditions at a fraction s of the straight line between two. */
+static void SetConditions(const LamSegment *from, const LamSegment *to, PetscReal s, LamSegment *at)
+{
+  at->turgor.from = Between(&from->turgor, &to->turgor, s);
+  at->temperature.from = Between(&from->temperature, &to->temperature, s);
+  at->outside.from = Between(&from->outside, &to->outside, s);
   for (int i = 0; i < 9; i++) {
-    c.F[i] = (1 - s) * from->F[i].from + s * to->F[i].from;
-    c.P[i] = (1 - s) * from->P[i].from + s * to->P[i].from;
+    at->F[i].from = Between(&from->F[i], &to->F[i], s);
+    at->P[i].from = Between(&from->P[i], &to->P[i], s);
   }
-  return c;
 }
 
 PetscErrorCode LamProcessSettle(LamProcess process, LamSettle kind, const LamSegment *from, PetscBool *ok)
 {
   const LamSegment *to = &process->segment;
-  const Unknowns u = ListUnknowns(to, kind);
   const LamProcessTissue start = process->tissue;
+  Problem problem = MakeProblem(to, kind);
   PetscReal done = 0, step = 1;
   PetscInt tries = 0;
 
@@ -178,9 +176,9 @@ PetscErrorCode LamProcessSettle(LamProcess process, LamSettle kind, const LamSeg
   *ok = PETSC_TRUE;
   while (done < 1) {
     const PetscReal next = PetscMin(1, done + step);
-    const Conditions c = Between(from ? from : to, to, start.water, next);
 
-    PetscCall(Iterate(process, &u, &c, ok));
+    SetConditions(from ? from : to, to, next, &problem.at);
+    PetscCall(Iterate(process, &problem, ok));
     if (process->stop && process->stop()) process->stopped = PETSC_TRUE;
     if (*ok) {
       if (kind != LAM_SETTLE_TURGOR && process->tissue.turgor < -LamPlasmolysisTolerance(process) * process->pressure)
