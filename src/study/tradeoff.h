@@ -3,11 +3,10 @@
 
     tradeoff_settings.c   settings of a scene
     tradeoff_states.c     states to solve with each setting
-    tradeoff_measure.c    one run of a setting, by an RVE
-    tradeoff_table.c      one run of a setting, by a table, including its construction
-    tradeoff_macro.c      one run of a setting, by the macroscale problem
+    tradeoff_measure.c    one run of a setting, by an RVE, a table, or the macroscale problem
     tradeoff_reference.c  reference responses, finer than all settings
     tradeoff_judge.c      errors, spread of times, the best settings
+    tradeoff_run.c        order of the runs and time budget
 
   In src/app: cmd_tradeoff.c (report and files), tradeoff_plot.c (the work-precision diagram).
 
@@ -121,7 +120,7 @@ PetscErrorCode LamStatesMake(const LamScene *scene, LamStates *states);
 PetscInt LamStatesCount(const LamStates *states); /* without those skipped */
 PetscErrorCode LamStatesDestroy(LamStates *states);
 
-/* ---- tradeoff_measurement.c ---- */
+/* ---- tradeoff_measure.c ---- */
 PetscErrorCode LamMeasurementInit(const LamSetting *setting, LamMeasurement *m);
 PetscErrorCode LamMeasurementDestroy(LamMeasurement *m);
 /* Adds a run to m: for a repeat its times; an interrupted one is dropped. Destroys or moves `run`. */
@@ -131,10 +130,6 @@ typedef struct {
   PetscReal cpu, wall;
 } LamStopwatch;
 LamStopwatch LamStopwatchRead(void);
-/* Stores the times since `start`; state_cpu: average CPU seconds per state. */
-void LamMeasurementAddRun(LamMeasurement *m, LamStopwatch start, PetscReal state_cpu);
-
-/* ---- tradeoff_measure.c ---- */
 /*
   Measures the setting of m once more, until LamStopRequested (a signal, or the deadline). A first run without results
   sets m->reason; a repeat without results leaves m unchanged.
@@ -142,21 +137,17 @@ void LamMeasurementAddRun(LamMeasurement *m, LamStopwatch start, PetscReal state
   table: file of the table, for LAM_KNOB_DATABASE (written) or for a body that queries it, whose build time m has
 */
 PetscErrorCode LamMeasure(const LamScene *scene, const LamStates *states, const char table[], LamMeasurement *m);
-/* Called by LamMeasure according to the setting, with an m that has no runs: they add one, or set the reason. */
+/* The same by an RVE, with an m that has no runs; m->responses also of states after one that failed. */
 PetscErrorCode LamMeasureRVE(const LamScene *scene, const LamStates *states, LamMeasurement *m);
-PetscErrorCode LamMeasureTable(const LamScene *scene, const LamStates *states, const char table[], LamMeasurement *m);
-PetscErrorCode LamMeasureMacro(const LamScene *scene, const char table[], LamMeasurement *m);
 
 /* ---- tradeoff_reference.c ---- */
 /*
   Refines the mesh until the last two differ by a hundredth of the scene's accuracy in P, or the time is over: errors
   from a tenth of the accuracy on are then resolved. States that take too long are dropped. States at which the two
-  meshes differ by more than a tenth of the scene's accuracy are not used, unless all do.
+  meshes differ by more than a tenth of the scene's accuracy are not used, unless all do. Sets `skip` of states that
+  are not used.
 */
-PetscErrorCode LamReferenceMake(const LamScene *scene, const LamStates *states, PetscReal deadline,
-                                LamReference *reference);
-/* Skips the states that the reference does not use, for all settings. */
-PetscErrorCode LamReferenceSkipUnused(const LamReference *reference, LamStates *states);
+PetscErrorCode LamReferenceMake(const LamScene *scene, LamStates *states, PetscReal deadline, LamReference *reference);
 PetscErrorCode LamReferenceDestroy(LamReference *reference);
 
 /* ---- tradeoff_judge.c ---- */

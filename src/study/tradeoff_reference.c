@@ -25,6 +25,7 @@ enum { RUNGS = PETSC_STATIC_ARRAY_LENGTH(Ladder), FINE_RUNG = 3 }; /* from this 
 #define COST_POWER 1.5 /* exponent of the time in the number of unknowns */
 #define SETTLED 0.1    /* of the scene's accuracy: largest difference of a state that is used */
 
+/* To rounding. */
 static PetscErrorCode Climb(const LamScene *scene, const LamStates *states, int rung, LamMeasurement *m)
 {
   LamSetting setting = {.knob = LAM_KNOB_MESH, .micro = scene->micro, .strategy = scene->strategy};
@@ -65,9 +66,9 @@ static void Compare(const LamScene *scene, PetscInt n, const LamResponse coarser
     reference->difference[s] = known ? LamStressError(coarser[s].P, reference->responses[s].P) : NAN;
   }
   Use(scene->accuracy, n, reference);
-  for (int k = 0; k < LAM_ERROR_KIND_COUNT; k++) {
-    reference->error[k] = reference->used_count && k != LAM_ERROR_MACRO ? 0 : NAN;
-    for (PetscInt s = 0; s < n && k != LAM_ERROR_MACRO; s++)
+  for (int k = 0; k < LAM_ERROR_MACRO; k++) {
+    reference->error[k] = reference->used_count ? 0 : NAN;
+    for (PetscInt s = 0; s < n; s++)
       if (reference->used[s])
         reference->error[k] = PetscMax(reference->error[k], LamErrorOf((LamErrorKind)k, scene->micro.interface,
                                                                        &coarser[s], &reference->responses[s]));
@@ -111,20 +112,12 @@ static void SkipStopped(const LamResponse responses[], LamStates *states)
   }
 }
 
-static PetscInt CountAnswers(PetscInt n, const LamResponse responses[])
-{
-  PetscInt count = 0;
-
-  for (PetscInt s = 0; s < n; s++) count += responses[s].status == LAM_CONVERGED;
-  return count;
-}
-
 static PetscErrorCode ClimbAll(const LamScene *scene, LamStates *states, PetscReal deadline, LamReference *reference)
 {
   PetscFunctionBeginUser;
   for (int rung = 0; rung < RUNGS && !LamStopSignal(); rung++) {
     const LamStopwatch start = LamStopwatchRead();
-    PetscBool knows_less;
+    PetscInt known = 0;
     LamMeasurement m;
 
     if (start.wall + (rung ? PredictSeconds(rung, states, reference) : 0) > deadline) break;
@@ -132,18 +125,17 @@ static PetscErrorCode ClimbAll(const LamScene *scene, LamStates *states, PetscRe
     PetscCall(Climb(scene, states, rung, &m));
     LamStopSetDeadline(PETSC_INFINITY);
     if (m.stopped) SkipStopped(m.responses, states);
-    knows_less = (PetscBool)(CountAnswers(states->n, m.responses) < reference->used_count);
-    if (!knows_less) PetscCall(Take(scene, states->n, &m, reference));
+    for (PetscInt s = 0; s < states->n; s++) known += m.responses[s].status == LAM_CONVERGED;
+    if (known >= reference->used_count) PetscCall(Take(scene, states->n, &m, reference));
     PetscCall(LamMeasurementDestroy(&m));
-    if (knows_less) break;
+    if (known < reference->used_count) break;
     reference->cpu = LamStopwatchRead().cpu - start.cpu;
     if (rung >= FINE_RUNG && reference->used_count && reference->error[LAM_ERROR_P] <= GOAL * scene->accuracy) break;
   }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamReferenceMake(const LamScene *scene, const LamStates *states, PetscReal deadline,
-                                LamReference *reference)
+PetscErrorCode LamReferenceMake(const LamScene *scene, LamStates *states, PetscReal deadline, LamReference *reference)
 {
   LamStates left = *states; /* borrows the loads */
 
@@ -156,12 +148,6 @@ PetscErrorCode LamReferenceMake(const LamScene *scene, const LamStates *states, 
   for (PetscInt s = 0; s < states->n; s++) reference->difference[s] = NAN;
   PetscCall(ClimbAll(scene, &left, deadline, reference));
   PetscCall(PetscFree(left.skip));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamReferenceSkipUnused(const LamReference *reference, LamStates *states)
-{
-  PetscFunctionBeginUser;
   for (PetscInt s = 0; s < states->n && reference->used_count; s++) states->skip[s] = (PetscBool)!reference->used[s];
   PetscFunctionReturn(0);
 }

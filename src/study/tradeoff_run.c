@@ -49,33 +49,23 @@ static const LamMeasurement *FindTable(const LamTradeoff *t, PetscReal accuracy)
   return NULL;
 }
 
-/* Provides the table that a body queries; has_table PETSC_FALSE: m has the reason. */
-static PetscErrorCode UseTable(const LamTradeoff *t, LamMeasurement *m, PetscBool *has_table)
-{
-  const LamMeasurement *table = FindTable(t, m->setting.accuracy);
-
-  PetscFunctionBeginUser;
-  *has_table = (PetscBool)(table != NULL);
-  if (!table) {
-    PetscCall(PetscStrncpy(m->reason, "its table was not built", sizeof(m->reason)));
-    PetscFunctionReturn(0);
-  }
-  m->build_cpu = table->build_cpu;
-  m->build_wall = table->build_wall;
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode Measure(LamTradeoff *t, PetscReal deadline, LamMeasurement *m)
 {
-  PetscBool possible = PETSC_TRUE;
+  const PetscBool queries = (PetscBool)(m->setting.knob == LAM_KNOB_MACRO && m->setting.response == LAM_FE2_DATABASE);
+  const LamMeasurement *table = queries ? FindTable(t, m->setting.accuracy) : NULL;
   char path[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
   PetscCall(TablePath(t, &m->setting, path));
-  if (m->setting.knob == LAM_KNOB_MACRO && m->setting.response == LAM_FE2_DATABASE)
-    PetscCall(UseTable(t, m, &possible));
+  if (table) {
+    m->build_cpu = table->build_cpu;
+    m->build_wall = table->build_wall;
+  }
   LamStopSetDeadline(deadline);
-  if (possible) PetscCall(LamMeasure(t->scene, &t->states, path, m));
+  if (queries && !table)
+    PetscCall(PetscStrncpy(m->reason, "its table was not built", sizeof(m->reason)));
+  else
+    PetscCall(LamMeasure(t->scene, &t->states, path, m));
   LamStopSetDeadline(PETSC_INFINITY);
   t->done++;
   t->failed += !m->runs;
@@ -156,10 +146,7 @@ static PetscBool NeedsReference(const LamTradeoff *t)
 static PetscErrorCode MeasureAll(LamTradeoff *t)
 {
   PetscFunctionBeginUser;
-  if (NeedsReference(t)) {
-    PetscCall(LamReferenceMake(t->scene, &t->states, t->ends[PART_REFERENCE], &t->reference));
-    PetscCall(LamReferenceSkipUnused(&t->reference, &t->states));
-  }
+  if (NeedsReference(t)) PetscCall(LamReferenceMake(t->scene, &t->states, t->ends[PART_REFERENCE], &t->reference));
   PetscCall(MeasureOnce(t, PART_RVE));
   PetscCall(Repeat(t, t->ends[PART_REPEATS], PART_RVE, PART_RVE));
   PetscCall(MeasureOnce(t, PART_TABLES));

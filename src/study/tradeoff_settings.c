@@ -45,17 +45,72 @@ PetscBool LamKnobApplies(const LamScene *scene, LamKnob knob, const char **why)
 
 /* ---- settings ---- */
 
-typedef struct {
-  PetscInt n;
-  LamSetting *settings;
-} List;
-
-static LamSetting *Add(const LamScene *scene, LamKnob knob, List *list)
+/* A body of several tissues would need one table for each. */
+static PetscBool OneTable(const LamScene *scene)
 {
-  LamSetting *s = &list->settings[list->n++];
+  return (PetscBool)(!WhyNotTable(scene) && !scene->region_count && !scene->fields.value[LAM_TISSUE_WALL_THICKNESS]);
+}
 
-  *s = (LamSetting){.knob = knob, .micro = scene->micro, .strategy = scene->strategy, .tolerance = scene->tolerance};
-  return s;
+/* Varies one parameter in settings that are those of the scene; returns their number. */
+static PetscInt VaryMesh(LamSetting settings[])
+{
+  PetscInt n = 0;
+
+  for (PetscInt g = 0; g < COUNT(Gradings); g++)
+    for (PetscInt t = 0; t < COUNT(Through); t++)
+      for (PetscInt a = 0; a < COUNT(Along); a++) {
+        LamMicrostructure *micro = &settings[n++].micro;
+
+        micro->along = Along[a];
+        micro->through = Through[t];
+        micro->grading = Gradings[g];
+      }
+  return n;
+}
+
+static PetscInt VaryResponse(const LamScene *scene, LamSetting settings[])
+{
+  PetscInt n = 1; /* the first one: direct */
+
+  for (LamFE2Response response = LAM_FE2_CACHE; response <= LAM_FE2_DATABASE; response++)
+    for (PetscInt k = 0; k < COUNT(Accuracies) && (response == LAM_FE2_CACHE || OneTable(scene)); k++) {
+      settings[n].response = response;
+      settings[n++].accuracy = Accuracies[k];
+    }
+  return n;
+}
+
+static PetscInt Vary(const LamScene *scene, LamKnob knob, LamSetting settings[])
+{
+  switch (knob) {
+  case LAM_KNOB_MESH:
+    return VaryMesh(settings);
+  case LAM_KNOB_STRATEGY:
+    for (int k = 0; k < LAM_STRATEGY_COUNT; k++) settings[k].strategy = (LamStrategy)k;
+    return LAM_STRATEGY_COUNT;
+  case LAM_KNOB_CELLS:
+    for (PetscInt k = 0; k < COUNT(Cells); k++)
+      for (int d = 0; d < 2; d++) settings[k].micro.cells[d] = Cells[k][d];
+    return COUNT(Cells);
+  case LAM_KNOB_TOLERANCE:
+    for (PetscInt k = 0; k < COUNT(Tolerances); k++) settings[k].tolerance = Tolerances[k];
+    return COUNT(Tolerances);
+  case LAM_KNOB_DATABASE:
+    for (PetscInt k = 0; k < COUNT(Accuracies); k++) settings[k].accuracy = Accuracies[k];
+    return COUNT(Accuracies);
+  default:
+    return VaryResponse(scene, settings);
+  }
+}
+
+/* Of a body direct responses: also the reference of the others. */
+static PetscBool IsPlanned(const LamScene *scene, const LamSetting *s)
+{
+  const LamMicrostructure *a = &s->micro, *b = &scene->micro;
+
+  return (PetscBool)(a->along == b->along && a->through == b->through && a->grading == b->grading &&
+                     a->cells[0] == b->cells[0] && a->cells[1] == b->cells[1] && s->strategy == scene->strategy &&
+                     s->tolerance == scene->tolerance && s->accuracy == 0);
 }
 
 static void NameMesh(LamSetting *s)
@@ -68,142 +123,45 @@ static void NameMesh(LamSetting *s)
   snprintf(s->mark, sizeof(s->mark), "%" PetscInt_FMT, m->along);
 }
 
-static PetscBool SameMesh(const LamMicrostructure *a, const LamMicrostructure *b)
+static void Name(LamSetting *s)
 {
-  return (PetscBool)(a->along == b->along && a->through == b->through && a->grading == b->grading);
-}
+  const char *response = s->knob == LAM_KNOB_DATABASE ? "table" : LamFE2ResponseNames[s->response];
+  const PetscInt *cells = s->micro.cells;
 
-static PetscBool HasMesh(const List *list, const LamMicrostructure *mesh)
-{
-  for (PetscInt i = 0; i < list->n; i++)
-    if (SameMesh(&list->settings[i].micro, mesh)) return PETSC_TRUE;
-  return PETSC_FALSE;
-}
-
-static void AddMeshes(const LamScene *scene, List *list)
-{
-  LamSetting *s;
-
-  for (PetscInt g = 0; g < COUNT(Gradings); g++)
-    for (PetscInt t = 0; t < COUNT(Through); t++)
-      for (PetscInt a = 0; a < COUNT(Along); a++) {
-        s = Add(scene, LAM_KNOB_MESH, list);
-        s->micro.along = Along[a];
-        s->micro.through = Through[t];
-        s->micro.grading = Gradings[g];
-        s->planned = SameMesh(&s->micro, &scene->micro);
-        NameMesh(s);
-      }
-  if (HasMesh(list, &scene->micro)) return;
-  s = Add(scene, LAM_KNOB_MESH, list);
-  s->planned = PETSC_TRUE;
-  NameMesh(s);
-}
-
-static void AddStrategies(const LamScene *scene, List *list)
-{
-  for (int k = 0; k < LAM_STRATEGY_COUNT; k++) {
-    LamSetting *s = Add(scene, LAM_KNOB_STRATEGY, list);
-
-    s->strategy = (LamStrategy)k;
-    s->planned = (PetscBool)(s->strategy == scene->strategy);
-    snprintf(s->label, sizeof(s->label), "%s", LamStrategyNames[k]);
-    snprintf(s->mark, sizeof(s->mark), "%s", k == LAM_TWO_STEP ? "two steps" : "one step");
-  }
-}
-
-static void AddCells(const LamScene *scene, List *list)
-{
-  PetscBool planned = PETSC_FALSE;
-
-  for (PetscInt k = 0; k <= COUNT(Cells); k++) {
-    const PetscInt *cells = k < COUNT(Cells) ? Cells[k] : scene->micro.cells;
-    LamSetting *s;
-
-    if (k == COUNT(Cells) && planned) return;
-    s = Add(scene, LAM_KNOB_CELLS, list);
-    for (int d = 0; d < 2; d++) s->micro.cells[d] = cells[d];
-    s->planned = (PetscBool)(cells[0] == scene->micro.cells[0] && cells[1] == scene->micro.cells[1]);
-    planned = (PetscBool)(planned || s->planned);
+  if (s->knob == LAM_KNOB_MESH) {
+    NameMesh(s);
+  } else if (s->knob == LAM_KNOB_STRATEGY) {
+    snprintf(s->label, sizeof(s->label), "%s", LamStrategyNames[s->strategy]);
+    snprintf(s->mark, sizeof(s->mark), "%s", s->strategy == LAM_TWO_STEP ? "two steps" : "one step");
+  } else if (s->knob == LAM_KNOB_CELLS) {
     snprintf(s->label, sizeof(s->label), "%" PetscInt_FMT " x %" PetscInt_FMT " cells", cells[0], cells[1]);
     snprintf(s->mark, sizeof(s->mark), "%" PetscInt_FMT "x%" PetscInt_FMT, cells[0], cells[1]);
-  }
-}
-
-static void AddTolerances(const LamScene *scene, List *list)
-{
-  PetscBool planned = PETSC_FALSE;
-
-  for (PetscInt k = 0; k <= COUNT(Tolerances); k++) {
-    LamSetting *s;
-
-    if (k == COUNT(Tolerances) && planned) return;
-    s = Add(scene, LAM_KNOB_TOLERANCE, list);
-    if (k < COUNT(Tolerances)) s->tolerance = Tolerances[k];
-    s->planned = (PetscBool)(s->tolerance == scene->tolerance);
-    planned = (PetscBool)(planned || s->planned);
-    if (s->tolerance > 0)
+  } else if (s->accuracy > 0) {
+    snprintf(s->label, sizeof(s->label), "%s, %g %%", response, 100 * (double)s->accuracy);
+    snprintf(s->mark, sizeof(s->mark), "%g %%", 100 * (double)s->accuracy);
+  } else {
+    snprintf(s->label, sizeof(s->label), "%s", s->knob == LAM_KNOB_TOLERANCE ? "rounding" : response);
+    if (s->knob == LAM_KNOB_TOLERANCE && s->tolerance > 0)
       snprintf(s->label, sizeof(s->label), "%g", (double)s->tolerance);
-    else
-      snprintf(s->label, sizeof(s->label), "rounding");
     snprintf(s->mark, sizeof(s->mark), "%.15s", s->label);
-  }
-}
-
-static void NameAnswer(const char how[], LamSetting *s)
-{
-  snprintf(s->label, sizeof(s->label), "%s, %g %%", how, 100 * (double)s->accuracy);
-  snprintf(s->mark, sizeof(s->mark), "%g %%", 100 * (double)s->accuracy);
-}
-
-static void AddTables(const LamScene *scene, List *list)
-{
-  for (PetscInt k = 0; k < COUNT(Accuracies); k++) {
-    LamSetting *s = Add(scene, LAM_KNOB_DATABASE, list);
-
-    s->accuracy = Accuracies[k];
-    NameAnswer("table", s);
-  }
-}
-
-/* A body of several tissues would need one table for each. */
-static PetscBool OneTable(const LamScene *scene)
-{
-  return (PetscBool)(!WhyNotTable(scene) && !scene->region_count && !scene->fields.value[LAM_TISSUE_WALL_THICKNESS]);
-}
-
-static void AddResponses(const LamScene *scene, List *list)
-{
-  LamSetting *s = Add(scene, LAM_KNOB_MACRO, list);
-
-  s->planned = PETSC_TRUE; /* and the reference of the others */
-  snprintf(s->label, sizeof(s->label), "direct");
-  snprintf(s->mark, sizeof(s->mark), "direct");
-  for (PetscInt k = 0; k < COUNT(Accuracies); k++) {
-    s = Add(scene, LAM_KNOB_MACRO, list);
-    s->response = LAM_FE2_CACHE;
-    s->accuracy = Accuracies[k];
-    NameAnswer("cache", s);
-  }
-  for (PetscInt k = 0; k < COUNT(Accuracies) && OneTable(scene); k++) {
-    s = Add(scene, LAM_KNOB_MACRO, list);
-    s->response = LAM_FE2_DATABASE;
-    s->accuracy = Accuracies[k];
-    NameAnswer("database", s);
   }
 }
 
 PetscErrorCode LamSettingsMake(const LamScene *scene, LamKnob knob, PetscInt *n, LamSetting **settings)
 {
-  static void (*const make[])(const LamScene *, List *) = {
-      [LAM_KNOB_MESH] = AddMeshes,          [LAM_KNOB_STRATEGY] = AddStrategies, [LAM_KNOB_CELLS] = AddCells,
-      [LAM_KNOB_TOLERANCE] = AddTolerances, [LAM_KNOB_DATABASE] = AddTables,     [LAM_KNOB_MACRO] = AddResponses};
-  List list = {0};
+  const LamSetting plan = {
+      .knob = knob, .micro = scene->micro, .strategy = scene->strategy, .tolerance = scene->tolerance};
+  PetscBool planned = (PetscBool)(knob == LAM_KNOB_DATABASE); /* there is no table without an accuracy */
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(MOST_SETTINGS, &list.settings));
-  make[knob](scene, &list);
-  *n = list.n;
-  *settings = list.settings;
+  PetscCall(PetscMalloc1(MOST_SETTINGS, settings));
+  for (PetscInt i = 0; i < MOST_SETTINGS; i++) (*settings)[i] = plan;
+  *n = Vary(scene, knob, *settings);
+  for (PetscInt i = 0; i < *n; i++) planned = (PetscBool)(planned || IsPlanned(scene, &(*settings)[i]));
+  if (!planned) ++*n;
+  for (PetscInt i = 0; i < *n; i++) {
+    (*settings)[i].planned = IsPlanned(scene, &(*settings)[i]);
+    Name(&(*settings)[i]);
+  }
   PetscFunctionReturn(0);
 }
