@@ -140,14 +140,14 @@ static void WarnOfIndicators(const LamProcessStudy *study)
         (int)doubtful);
 }
 
-static PetscErrorCode ReportPointEnd(const LamConsole *console, const LamProcessStudy *study, LamProcessReason reason,
-                                     const char message[])
+static PetscErrorCode ReportPointEnd(const LamConsole *console, const LamProcessStudy *study)
 {
   LamProcessCounts counts;
 
   PetscFunctionBeginUser;
   if (!console->quiet) WarnOfIndicators(study);
-  if (reason == LAM_PROCESS_ENDED) fprintf(stderr, "lamella process: %s: %s\n", study->scene->path, message);
+  if (study->reason == LAM_PROCESS_ENDED)
+    fprintf(stderr, "lamella process: %s: %s\n", study->scene->path, study->message);
   if (console->json) PetscFunctionReturn(0);
   PetscCall(LamProcessGetCounts(study->process, &counts));
   printf("%d steps of time, %d questions, %.3g s\n", (int)counts.steps, (int)counts.questions,
@@ -259,15 +259,12 @@ static int StatusOf(LamProcessReason reason)
 
 static PetscErrorCode SolvePoint(LamProcessStudy *study, LamConsole *console, int *exit_status)
 {
-  char message[LAM_PROCESS_MESSAGE] = "";
-  LamProcessReason reason;
-
   PetscFunctionBeginUser;
   console->has_rows = (PetscBool)!console->json;
-  PetscCall(LamProcessSolvePoint(study, &reason, message));
+  PetscCall(LamProcessSolvePoint(study));
   LamConsoleClear(console);
-  if (!study->response.stopped) PetscCall(ReportPointEnd(console, study, reason, message));
-  *exit_status = StatusOf(reason);
+  if (!study->response.stopped) PetscCall(ReportPointEnd(console, study));
+  *exit_status = StatusOf(study->reason);
   PetscFunctionReturn(0);
 }
 
@@ -293,21 +290,19 @@ static PetscErrorCode RunPoint(const LamFE2Run *run, PetscInt frames, LamConsole
 static PetscErrorCode SolveBody(LamBodyStudy *study, LamConsole *console, int *exit_status)
 {
   LamFE2Run *fe2 = &study->fe2;
-  char message[LAM_PROCESS_MESSAGE] = "";
-  LamProcessReason reason;
 
   PetscFunctionBeginUser;
   if (!LamFE2CheckPaths("process", fe2, exit_status)) PetscFunctionReturn(0);
   PetscCall(LamBodyStudyPrepare(study));
   if (!LamFE2CheckTissuePaths("process", fe2, exit_status)) PetscFunctionReturn(0);
   console->has_rows = (PetscBool)(!console->json && isatty(STDOUT_FILENO));
-  PetscCall(LamBodyStudySolve(study, &reason, message));
+  PetscCall(LamBodyStudySolve(study));
   LamConsoleClear(console);
-  *exit_status = StatusOf(reason);
+  *exit_status = StatusOf(study->reason);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, exit_status, 1, MPI_INT, MPI_MAX, fe2->comm));
   if (!LamAppIsRoot() || fe2->stopped) PetscFunctionReturn(0);
   if (!console->json) PetscCall(ReportBodyEnd(study));
-  if (reason == LAM_PROCESS_ENDED) fprintf(stderr, "lamella process: %s: %s\n", fe2->scene_path, message);
+  if (study->reason == LAM_PROCESS_ENDED) fprintf(stderr, "lamella process: %s: %s\n", fe2->scene_path, study->message);
   PetscFunctionReturn(0);
 }
 

@@ -7,34 +7,35 @@
 #include <lamella/database.h>
 #include <lamella/macro.h>
 
-/* Columns of a row other than displacements and reactions: name and unit in both files. */
+/* Columns of a row other than displacements and reactions: name and unit in both files; value (in LamCurveAdd) of a
+   step and its fields. */
 #define LAM_CURVE_COLUMNS(X)                                                                                           \
-  X(LAM_CURVE_STEP, "step", "1")                                                                                       \
-  X(LAM_CURVE_LOAD_FACTOR, "load_factor", "1")                                                                         \
-  X(LAM_CURVE_TIME, "time", "s") /* only for processes */                                                              \
-  X(LAM_CURVE_WORK, "work", "N mm/mm")                                                                                 \
-  X(LAM_CURVE_TURGOR, "turgor_mean", "MPa")                                                                            \
-  X(LAM_CURVE_OPENING, "opening_fraction", "1")   /* mean over the body */                                             \
-  X(LAM_CURVE_DEBONDED, "debonded_fraction", "1") /* likewise */                                                       \
-  X(LAM_CURVE_OPEN, "open_fraction", "1")         /* likewise */                                                       \
-  X(LAM_CURVE_GAP, "max_gap", "apothem")          /* this and the next four: largest over all points */                \
-  X(LAM_CURVE_UNLOADING, "face_unloading_max", "1")                                                                    \
-  X(LAM_CURVE_WALL, "wall_tension_max", "MPa")                                                                         \
-  X(LAM_CURVE_NORMAL, "lamella_normal_max", "MPa")                                                                     \
-  X(LAM_CURVE_SHEAR, "lamella_shear_max", "MPa")                                                                       \
-  X(LAM_CURVE_ELLIPTICITY, "ellipticity_min", "MPa") /* smallest over all points */                                    \
-  X(LAM_CURVE_LOCALISED, "localised_points", "1")    /* points that have lost ellipticity */                           \
-  X(LAM_CURVE_SEPARATED, "separated_share", "1")     /* volume fraction: fe2_summary.h; NaN: not evaluated */          \
-  X(LAM_CURVE_RUPTURED, "ruptured_share", "1")       /* likewise */                                                    \
-  X(LAM_CURVE_ERROR, "error_estimate_max", "1")                                                                        \
-  X(LAM_CURVE_NEWTON, "newton_iterations", "1")                                                                        \
-  X(LAM_CURVE_CUTBACKS, "cutbacks", "1")                                                                               \
-  X(LAM_CURVE_QUERIES, "queries", "1")                                                                                 \
-  X(LAM_CURVE_HITS, "hits", "1")                                                                                       \
-  X(LAM_CURVE_SOLVES, "solves", "1")                                                                                   \
-  X(LAM_CURVE_FAILURES, "failures", "1")                                                                               \
-  X(LAM_CURVE_SECONDS, "seconds", "s")
-#define LAM_CURVE_ENTRY(symbol, name, unit) symbol,
+  X(LAM_CURVE_STEP, "step", "1", step->step)                                                                           \
+  X(LAM_CURVE_LOAD_FACTOR, "load_factor", "1", step->load_factor)                                                      \
+  X(LAM_CURVE_TIME, "time", "s", step->time) /* only for processes */                                                  \
+  X(LAM_CURVE_WORK, "work", "N mm/mm", (step->work) * scales->stress * PetscSqr(scales->macro_length))                 \
+  X(LAM_CURVE_TURGOR, "turgor_mean", "MPa", (step->turgor_mean) * MPa)                                                 \
+  X(LAM_CURVE_OPENING, "opening_fraction", "1", Mean(fields, LAM_POINT_OPENING)) /* mean over the body */              \
+  X(LAM_CURVE_DEBONDED, "debonded_fraction", "1", step->debonded_fraction)       /* likewise */                        \
+  X(LAM_CURVE_OPEN, "open_fraction", "1", Mean(fields, LAM_POINT_OPEN))          /* likewise */                        \
+  X(LAM_CURVE_GAP, "max_gap", "apothem", step->max_gap) /* this and the next four: largest over all points */          \
+  X(LAM_CURVE_UNLOADING, "face_unloading_max", "1", Largest(fields, LAM_POINT_UNLOADING))                              \
+  X(LAM_CURVE_WALL, "wall_tension_max", "MPa", Largest(fields, LAM_POINT_WALL) * MPa)                                  \
+  X(LAM_CURVE_NORMAL, "lamella_normal_max", "MPa", Largest(fields, LAM_POINT_NORMAL) * MPa)                            \
+  X(LAM_CURVE_SHEAR, "lamella_shear_max", "MPa", Largest(fields, LAM_POINT_SHEAR) * MPa)                               \
+  X(LAM_CURVE_ELLIPTICITY, "ellipticity_min", "MPa", (step->ellipticity) * MPa) /* smallest over all points */         \
+  X(LAM_CURVE_LOCALISED, "localised_points", "1", step->localised_points) /* points that have lost ellipticity */      \
+  X(LAM_CURVE_SEPARATED, "separated_share", "1", NAN) /* volume fraction, set by the summary; NaN: not evaluated */    \
+  X(LAM_CURVE_RUPTURED, "ruptured_share", "1", NAN)   /* likewise */                                                   \
+  X(LAM_CURVE_ERROR, "error_estimate_max", "1", Largest(fields, LAM_POINT_ERROR))                                      \
+  X(LAM_CURVE_NEWTON, "newton_iterations", "1", step->newton_iterations)                                               \
+  X(LAM_CURVE_CUTBACKS, "cutbacks", "1", step->cutbacks)                                                               \
+  X(LAM_CURVE_QUERIES, "queries", "1", step->queries)                                                                  \
+  X(LAM_CURVE_HITS, "hits", "1", step->hits)                                                                           \
+  X(LAM_CURVE_SOLVES, "solves", "1", step->solves)                                                                     \
+  X(LAM_CURVE_FAILURES, "failures", "1", step->failures)                                                               \
+  X(LAM_CURVE_SECONDS, "seconds", "s", step->seconds)
+#define LAM_CURVE_ENTRY(symbol, name, unit, value) symbol,
 typedef enum { LAM_CURVE_COLUMNS(LAM_CURVE_ENTRY) LAM_CURVE_COLUMN_COUNT } LamCurveColumn;
 
 /* All in physical units; NaN: not known, or (displacement) free. */
@@ -56,8 +57,6 @@ PetscErrorCode LamCurveAdd(LamCurve *curve, const LamMacroStep *step, const LamM
 PetscErrorCode LamCurveDestroy(LamCurve *curve);
 /* Whether the curve has this column. */
 PetscBool LamCurveHas(const LamCurve *curve, LamCurveColumn column);
-/* Returns a column as an array [count]; the caller frees it. */
-PetscErrorCode LamCurveGetColumn(const LamCurve *curve, LamCurveColumn column, PetscReal **values);
 /* Writes /macro/curve/<name> [step] for every column but `step`, and /macro/curve/displacement and reaction
    [step][side][2]. */
 PetscErrorCode LamCurveWrite(const LamCurve *curve, LamRecordWriter writer);

@@ -1,24 +1,120 @@
 /*
-  Result file of a macroscale run.
+  Result file of a macroscale run, and the XDMF 3 file that describes it: a temporal collection of grids of quadratic
+  elements, readable by ParaView and meshio.
+
+  Every grid names topology and geometry itself: readers differ in their support of references between grids.
+  Reference: https://www.xdmf.org/index.php/XDMF_Model_and_Format
 */
+#include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-#include "fe2_fields.h"
+#include "beside.h"
 #include "fe2_file.h"
 #include "names.h"
+#include "study.h"
+
+/* A field of every step, /macro/step/<number>/<name>: columns of an array of LamMacroFields, times a factor. */
+typedef struct {
+  char name[LAM_NAME_LENGTH];
+  PetscInt columns;       /* 1: scalar; 3: vector, on nodes; 9: tensor */
+  size_t array;           /* offset of the array's pointer in LamMacroFields */
+  PetscInt first, length; /* the first of the columns, and the number of all columns, of the array */
+  LamPointField over;     /* ratio to the strength for this field; LAM_POINT_FIELD_COUNT: no ratio */
+  PetscReal factor;       /* conversion to its unit */
+  const char *unit;       /* static */
+} Field;
+
+enum { MAX_FIELDS = 4 + 2 * (LAM_POINT_FIELD_COUNT + 3) };
+
+/* Layout of /macro/elements. */
+typedef enum {
+  QUADRILATERALS, /* [element][9] */
+  TRIANGLES,      /* [element][6] */
+  MIXED           /* [element][9], -1 after a triangle's nodes; XDMF reads /macro/topology: for each element its type
+                     (XDMF_TRIANGLE_6, XDMF_QUADRILATERAL_9) and its nodes */
+} Topology;
+static const char *const TopologyNames[] = {"Quadrilateral_9", "Triangle_6", "Mixed"};
+enum { XDMF_QUADRILATERAL_9 = 0x23, XDMF_TRIANGLE_6 = 0x24 };
 
 struct LamFE2File_s {
   char path[PETSC_MAX_PATH_LEN];
   LamRecordWriter writer;
   LamScales scales;
-  LamFE2Fields fields;
-  LamXDMFTopology topology;
-  PetscInt topology_length;
+  PetscInt field_count;
+  Field fields[MAX_FIELDS]; /* u, F, P, cauchy, then the scalars */
+  Topology topology;
+  PetscInt topology_length; /* of /macro/topology */
   PetscInt step_count, capacity;
   PetscInt *steps; /* numbers of the complete ones; owned */
   PetscErrorCode (*beside)(LamRecordWriter writer, void *ctx);
   void *beside_ctx; /* borrowed */
 };
+
+/* ---- choice of the fields ---- */
+
+/* The strength for a field, in C1 + C2; NaN: not given, or the field has none. */
+static PetscReal StrengthOf(const LamStrength *strength, LamPointField field)
+{
+  switch (field) {
+  case LAM_POINT_WALL:
+    return strength->wall;
+  case LAM_POINT_NORMAL:
+    return strength->lamella_normal;
+  case LAM_POINT_SHEAR:
+    return strength->lamella_shear;
+  default:
+    return NAN;
+  }
+}
+
+/* Whether a field also has its largest (ellipticity: smallest) value in an element. The others hardly vary within an
+   element. */
+static PetscBool HasLargest(LamPointField field)
+{
+  return (PetscBool)(field != LAM_POINT_TURGOR && field != LAM_POINT_LUMEN && field != LAM_POINT_INTERPOLATED &&
+                     field != LAM_POINT_DOUBTFUL);
+}
+
+static void AddField(LamFE2File file, const char name[], const char ending[], Field field)
+{
+  snprintf(field.name, sizeof(field.name), "%s%s", name, ending);
+  file->fields[file->field_count++] = field;
+}
+
+/* The mean, and the largest value where it differs. */
+static void AddScalars(LamFE2File file, LamPointField k, PetscBool ratio, PetscReal factor, const char unit[])
+{
+  const char *mean = ratio ? "_ratio" : "", *largest = ratio ? "_ratio_max" : "_max";
+  Field field = {.columns = 1,
+                 .array = offsetof(LamMacroFields, mean),
+                 .first = k,
+                 .length = LAM_POINT_FIELD_COUNT,
+                 .over = ratio ? k : LAM_POINT_FIELD_COUNT,
+                 .factor = factor,
+                 .unit = unit};
+
+  AddField(file, LamPointFieldNames[k], mean, field);
+  field.array = offsetof(LamMacroFields, largest);
+  if (HasLargest(k)) AddField(file, LamPointFieldNames[k], k == LAM_POINT_ELLIPTICITY ? "_min" : largest, field);
+}
+
+static void ChooseFields(LamFE2File file, const LamStrength *strength)
+{
+  const PetscReal MPa = file->scales.stress * 1e-6, mm = file->scales.macro_length * 1e3;
+  const Field tensors[] = {{"u", 3, offsetof(LamMacroFields, u), 0, 2, LAM_POINT_FIELD_COUNT, mm, "mm"},
+                           {"F", 9, offsetof(LamMacroFields, F), 0, 9, LAM_POINT_FIELD_COUNT, 1, "1"},
+                           {"P", 9, offsetof(LamMacroFields, P), 0, 9, LAM_POINT_FIELD_COUNT, MPa, "MPa"},
+                           {"cauchy", 9, offsetof(LamMacroFields, cauchy), 0, 9, LAM_POINT_FIELD_COUNT, MPa, "MPa"}};
+
+  for (size_t t = 0; t < PETSC_STATIC_ARRAY_LENGTH(tensors); t++) file->fields[file->field_count++] = tensors[t];
+  for (LamPointField k = 0; k < LAM_POINT_FIELD_COUNT; k++) {
+    const PetscBool stress = LamPointFieldIsStress(k);
+
+    AddScalars(file, k, PETSC_FALSE, stress ? MPa : 1, stress ? "MPa" : k == LAM_POINT_GAP ? "apothem" : "1");
+    if (isfinite(StrengthOf(strength, k))) AddScalars(file, k, PETSC_TRUE, 1, "1");
+  }
+}
 
 PetscErrorCode LamFE2FileOpen(const char path[], LamWriteMode mode, const LamScene *scene, LamFE2File *file)
 {
@@ -26,29 +122,14 @@ PetscErrorCode LamFE2FileOpen(const char path[], LamWriteMode mode, const LamSce
   PetscCall(PetscNew(file));
   PetscCall(PetscStrncpy((*file)->path, path, sizeof((*file)->path)));
   (*file)->scales = scene->scales;
-  LamFE2FieldsChoose(scene, &(*file)->fields);
+  ChooseFields(*file, &scene->strength);
   PetscErrorCode ierr = LamRecordWriterOpen(path, "fe2", mode, scene, &(*file)->writer);
   if (ierr) PetscCall(PetscFree(*file));
   PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 
-/* Writes values * factor as [rows][columns], or [rows] where columns is 1; rows are `stride` long. */
-static PetscErrorCode WriteColumns(LamFE2File file, const char name[], PetscInt rows, PetscInt stride, PetscInt columns,
-                                   const PetscReal values[], PetscReal factor, const char unit[])
-{
-  const PetscInt dims[2] = {rows, columns};
-  PetscReal *scaled;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(rows * columns, &scaled));
-  for (PetscInt r = 0; r < rows; r++) {
-    for (PetscInt c = 0; c < columns; c++) scaled[r * columns + c] = values[r * stride + c] * factor;
-  }
-  PetscCall(LamRecordWriterReals(file->writer, name, columns > 1 ? 2 : 1, dims, scaled, unit));
-  PetscCall(PetscFree(scaled));
-  PetscFunctionReturn(0);
-}
+/* ---- mesh ---- */
 
 static PetscBool IsTriangle(const LamMacroFields *fields, PetscInt e)
 {
@@ -64,7 +145,7 @@ static PetscErrorCode WriteTopology(LamFE2File file, const LamMacroFields *field
   PetscCall(PetscMalloc1(10 * fields->element_count, &topology));
   for (PetscInt e = 0; e < fields->element_count; e++) {
     const PetscInt nodes = IsTriangle(fields, e) ? 6 : 9;
-    topology[n++] = nodes == 6 ? LAM_XDMF_TRIANGLE_6 : LAM_XDMF_QUADRILATERAL_9;
+    topology[n++] = nodes == 6 ? XDMF_TRIANGLE_6 : XDMF_QUADRILATERAL_9;
     for (PetscInt a = 0; a < nodes; a++) topology[n++] = fields->elements[LAM_FIELD_NODES * e + a];
   }
   PetscCall(LamRecordWriterInts(file->writer, "/macro/topology", 1, &n, topology));
@@ -79,80 +160,61 @@ static PetscErrorCode WriteElements(LamFE2File file, const LamMacroFields *field
 
   PetscFunctionBeginUser;
   for (PetscInt e = 0; e < dims[0]; e++) triangles += IsTriangle(fields, e);
-  file->topology = triangles == dims[0] ? LAM_XDMF_TRIANGLES : triangles ? LAM_XDMF_MIXED : LAM_XDMF_QUADRILATERALS;
-  if (file->topology == LAM_XDMF_TRIANGLES) dims[1] = 6;
+  file->topology = triangles == dims[0] ? TRIANGLES : triangles ? MIXED : QUADRILATERALS;
+  if (file->topology == TRIANGLES) dims[1] = 6;
   PetscCall(PetscMalloc1(dims[0] * dims[1], &elements));
   for (PetscInt k = 0; k < dims[0] * dims[1]; k++)
     elements[k] = fields->elements[LAM_FIELD_NODES * (k / dims[1]) + k % dims[1]];
   PetscCall(LamRecordWriterInts(file->writer, "/macro/elements", 2, dims, elements));
   PetscCall(PetscFree(elements));
-  if (file->topology == LAM_XDMF_MIXED) PetscCall(WriteTopology(file, fields));
+  if (file->topology == MIXED) PetscCall(WriteTopology(file, fields));
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode WriteMesh(LamFE2File file, const LamMacroStep *step, const LamMacroFields *fields)
 {
+  const PetscInt dims[2] = {fields->node_count, 2};
   char names[LAM_MAX_BOUNDARIES * LAM_NAME_LENGTH] = "";
 
   PetscFunctionBeginUser;
-  PetscCall(WriteColumns(file, "/macro/nodes", fields->node_count, 2, 2, fields->nodes, file->scales.macro_length * 1e3,
-                         "mm"));
+  PetscCall(LamWriteRows(file->writer, "/macro/nodes", 2, dims, fields->nodes, 2 * sizeof(PetscReal),
+                         file->scales.macro_length * 1e3, "mm"));
   PetscCall(WriteElements(file, fields));
   for (PetscInt s = 0; s < step->boundary_count; s++) LamNamesAppend(sizeof(names), names, "\n", step->boundary[s]);
   PetscCall(LamRecordWriterText(file->writer, "/macro/boundaries", names));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode StepName(PetscInt step, const char name[], char path[128])
+/* ---- steps ---- */
+
+/* Displacements with the third component, 0. */
+static PetscErrorCode WithThird(const LamMacroFields *fields, PetscReal **u)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(path, 128, "/macro/step/%" PetscInt_FMT "/%s", step, name));
+  PetscCall(PetscCalloc1(3 * fields->node_count, u));
+  for (PetscInt k = 0; k < fields->node_count; k++) PetscCall(PetscArraycpy(&(*u)[3 * k], &fields->u[2 * k], 2));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode WriteTensors(LamFE2File file, PetscInt step, const LamMacroFields *fields)
-{
-  const PetscReal MPa = file->scales.stress * 1e-6;
-  char name[128];
-
-  PetscFunctionBeginUser;
-  PetscCall(StepName(step, "F", name));
-  PetscCall(WriteColumns(file, name, fields->element_count, 9, 9, fields->F, 1, "1"));
-  PetscCall(StepName(step, "P", name));
-  PetscCall(WriteColumns(file, name, fields->element_count, 9, 9, fields->P, MPa, "MPa"));
-  PetscCall(StepName(step, "cauchy", name));
-  PetscCall(WriteColumns(file, name, fields->element_count, 9, 9, fields->cauchy, MPa, "MPa"));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode WriteScalars(LamFE2File file, PetscInt step, const LamMacroFields *fields,
-                                   const LamStrength *strength)
-{
-  char name[128];
-
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < file->fields.count; k++) {
-    const LamFE2Scalar *scalar = &file->fields.scalars[k];
-    const PetscReal *values = scalar->largest ? fields->largest : fields->mean;
-    if (!scalar->unit) continue;
-    const PetscReal factor = scalar->over_strength ? 1 / LamFE2Strength(strength, scalar->field) : scalar->factor;
-    PetscCall(StepName(step, file->fields.fields[k].name, name));
-    PetscCall(WriteColumns(file, name, fields->element_count, LAM_POINT_FIELD_COUNT, 1, &values[scalar->field], factor,
-                           scalar->unit));
-  }
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode WriteDisplacement(LamFE2File file, PetscInt step, const LamMacroFields *fields)
+static PetscErrorCode WriteFields(LamFE2File file, PetscInt step, const LamMacroFields *fields,
+                                  const LamStrength *strength)
 {
   PetscReal *u;
-  char name[128];
+  char path[128];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(3 * fields->node_count, &u));
-  for (PetscInt k = 0; k < fields->node_count; k++) PetscCall(PetscArraycpy(&u[3 * k], &fields->u[2 * k], 2));
-  PetscCall(StepName(step, "u", name));
-  PetscCall(WriteColumns(file, name, fields->node_count, 3, 3, u, file->scales.macro_length * 1e3, "mm"));
+  PetscCall(WithThird(fields, &u));
+  for (PetscInt k = 0; k < file->field_count; k++) {
+    const Field *f = &file->fields[k];
+    const PetscBool vector = (PetscBool)(f->columns == 3);
+    const PetscInt dims[2] = {vector ? fields->node_count : fields->element_count, f->columns};
+    const PetscReal *values = vector ? u : *(PetscReal *const *)((const char *)fields + f->array) + f->first;
+    const PetscReal factor = f->over == LAM_POINT_FIELD_COUNT ? f->factor : 1 / StrengthOf(strength, f->over);
+
+    PetscCall(PetscSNPrintf(path, sizeof(path), "/macro/step/%" PetscInt_FMT "/%s", step, f->name));
+    PetscCall(LamWriteRows(file->writer, path, f->columns > 1 ? 2 : 1, dims, values,
+                           (size_t)(vector ? 3 : f->length) * sizeof(PetscReal), factor, f->unit));
+  }
   PetscCall(PetscFree(u));
   PetscFunctionReturn(0);
 }
@@ -172,38 +234,86 @@ static PetscErrorCode WriteSummary(LamFE2File file, const LamSummary *summary)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode KeepStep(LamFE2File file, PetscInt step)
+/* ---- XDMF ---- */
+
+/* Prints the file name without its folder, as XML text. */
+static void PrintName(FILE *out, const char path[])
 {
-  PetscFunctionBeginUser;
-  if (file->step_count == file->capacity) {
-    file->capacity = PetscMax(16, 2 * file->capacity);
-    PetscCall(PetscRealloc((size_t)file->capacity * sizeof(PetscInt), &file->steps));
+  const char *slash = strrchr(path, '/');
+
+  for (const char *c = slash ? slash + 1 : path; *c; c++) {
+    if (*c == '&')
+      fputs("&amp;", out);
+    else if (*c == '<')
+      fputs("&lt;", out);
+    else if (*c == '>')
+      fputs("&gt;", out);
+    else
+      fputc(*c, out);
   }
-  file->steps[file->step_count++] = step;
-  PetscFunctionReturn(0);
 }
 
+static void PrintItem(FILE *out, const LamFE2File file, const char dataset[], const char type[], PetscInt rows,
+                      PetscInt columns)
+{
+  fprintf(out, "          <DataItem Format=\"HDF\" NumberType=\"%s\" Precision=\"8\" Dimensions=\"%" PetscInt_FMT, type,
+          rows);
+  if (columns > 1) fprintf(out, " %" PetscInt_FMT, columns);
+  fputs("\">", out);
+  PrintName(out, file->path);
+  fprintf(out, ":%s</DataItem>\n", dataset);
+}
+
+static void PrintField(FILE *out, const LamFE2File file, const Field *field, PetscInt step, PetscInt rows)
+{
+  const char *type = field->columns == 1 ? "Scalar" : field->columns == 3 ? "Vector" : "Tensor";
+  char dataset[128];
+
+  snprintf(dataset, sizeof(dataset), "/macro/step/%" PetscInt_FMT "/%s", step, field->name);
+  fprintf(out, "        <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"%s\">\n", field->name, type,
+          field->columns == 3 ? "Node" : "Cell");
+  PrintItem(out, file, dataset, "Float", rows, field->columns);
+  fputs("        </Attribute>\n", out);
+}
+
+static void PrintGrid(FILE *out, const LamFE2File file, const LamMacroFields *fields, PetscInt step, PetscReal time)
+{
+  const PetscInt nodes = fields->node_count, elements = fields->element_count;
+
+  fprintf(out, "      <Grid Name=\"step %" PetscInt_FMT "\" GridType=\"Uniform\">\n", step);
+  fprintf(out, "        <Time Value=\"%.17g\"/>\n", (double)time);
+  fprintf(out, "        <Topology TopologyType=\"%s\" NumberOfElements=\"%" PetscInt_FMT "\">\n",
+          TopologyNames[file->topology], elements);
+  if (file->topology == MIXED)
+    PrintItem(out, file, "/macro/topology", "Int", file->topology_length, 1);
+  else
+    PrintItem(out, file, "/macro/elements", "Int", elements, file->topology == TRIANGLES ? 6 : 9);
+  fputs("        </Topology>\n        <Geometry GeometryType=\"XY\">\n", out);
+  PrintItem(out, file, "/macro/nodes", "Float", nodes, 2);
+  fputs("        </Geometry>\n", out);
+  for (PetscInt f = 0; f < file->field_count; f++)
+    PrintField(out, file, &file->fields[f], step, file->fields[f].columns == 3 ? nodes : elements);
+  fputs("      </Grid>\n", out);
+}
+
+/* Rewrites the .xdmf file. It refers to the HDF5 file without folder, so that both can be moved together. */
 static PetscErrorCode WriteXDMF(LamFE2File file, const LamMacroFields *fields, const LamCurve *curve)
 {
-  LamXDMF xdmf = {.node_count = fields->node_count,
-                  .element_count = fields->element_count,
-                  .topology = file->topology,
-                  .topology_length = file->topology_length,
-                  .field_count = file->fields.count,
-                  .fields = file->fields.fields,
-                  .step_count = file->step_count,
-                  .steps = file->steps};
-  PetscReal *times;
+  const LamCurveColumn time = LamCurveHas(curve, LAM_CURVE_TIME) ? LAM_CURVE_TIME : LAM_CURVE_LOAD_FACTOR;
+  LamBeside xdmf;
 
   PetscFunctionBeginUser;
-  PetscCall(
-      LamCurveGetColumn(curve, LamCurveHas(curve, LAM_CURVE_TIME) ? LAM_CURVE_TIME : LAM_CURVE_LOAD_FACTOR, &times));
-  xdmf.times = times;
-  PetscErrorCode ierr = LamXDMFWrite(file->path, &xdmf);
-  PetscCall(PetscFree(times));
-  PetscCall(ierr);
+  PetscCall(LamBesideOpen(file->path, ".xdmf", &xdmf));
+  fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n", xdmf.out);
+  fputs("    <Grid Name=\"load steps\" GridType=\"Collection\" CollectionType=\"Temporal\">\n", xdmf.out);
+  for (PetscInt k = 0; k < file->step_count; k++)
+    PrintGrid(xdmf.out, file, fields, file->steps[k], curve->rows[k].value[time]);
+  fputs("    </Grid>\n  </Domain>\n</Xdmf>\n", xdmf.out);
+  PetscCall(LamBesideClose(&xdmf));
   PetscFunctionReturn(0);
 }
+
+/* ---- the file ---- */
 
 void LamFE2FileSetBeside(LamFE2File file, PetscErrorCode (*write)(LamRecordWriter writer, void *ctx), void *ctx)
 {
@@ -217,10 +327,9 @@ PetscErrorCode LamFE2FileAddStep(LamFE2File file, const LamMacroStep *step, cons
   PetscFunctionBeginUser;
   PetscCall(LamRecordWriterBegin(file->writer));
   if (!file->step_count) PetscCall(WriteMesh(file, step, fields));
-  PetscCall(WriteDisplacement(file, step->step, fields));
-  PetscCall(WriteTensors(file, step->step, fields));
-  PetscCall(WriteScalars(file, step->step, fields, &summary->strength));
-  PetscCall(KeepStep(file, step->step));
+  PetscCall(WriteFields(file, step->step, fields, &summary->strength));
+  PetscCall(LamListGrow(file->step_count, sizeof(PetscInt), &file->capacity, &file->steps));
+  file->steps[file->step_count++] = step->step;
   PetscCall(LamCurveWrite(&summary->curve, file->writer));
   PetscCall(WriteSummary(file, summary));
   if (file->beside) PetscCall(file->beside(file->writer, file->beside_ctx));
@@ -233,10 +342,9 @@ PetscErrorCode LamFE2FileAddStep(LamFE2File file, const LamMacroStep *step, cons
 
 PetscErrorCode LamFE2FileArchive(LamFE2File file, LamArchive archive)
 {
-  struct LamFE2File_s none, *f = file ? file : &none;
+  struct LamFE2File_s none = {0}, *f = file ? file : &none;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMemzero(&none, sizeof(none)));
   PetscCall(LamArchiveShared(archive, "topology", sizeof(f->topology), &f->topology));
   PetscCall(LamArchiveShared(archive, "topology length", sizeof(f->topology_length), &f->topology_length));
   PetscCall(LamArchiveList(archive, "steps", sizeof(PetscInt), &f->step_count, (void **)&f->steps));
@@ -260,17 +368,14 @@ LamRecordWriter LamFE2FileWriter(LamFE2File file)
 
 PetscErrorCode LamFE2FileClose(LamFE2File *file, const char status[])
 {
-  PetscErrorCode ierr = 0;
+  PetscErrorCode ierr = 0, closed;
 
   PetscFunctionBeginUser;
   if (!*file) PetscFunctionReturn(0);
   if (status) ierr = WriteStatus(*file, status);
-  if (ierr)
-    (void)LamRecordWriterClose(&(*file)->writer);
-  else
-    ierr = LamRecordWriterClose(&(*file)->writer);
+  closed = LamRecordWriterClose(&(*file)->writer);
   PetscCall(PetscFree((*file)->steps));
   PetscCall(PetscFree(*file));
-  PetscCall(ierr);
+  PetscCall(ierr ? ierr : closed);
   PetscFunctionReturn(0);
 }

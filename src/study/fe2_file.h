@@ -3,14 +3,14 @@
 
   Kind "fe2", physical units, each array with its unit as attribute "unit":
     /macro/nodes            [node][2]      reference positions, mm
-    /macro/elements, topology              node numbers in VTK's order for quadratic elements: xdmf.h
+    /macro/elements, topology              node numbers in VTK's order for quadratic elements: fe2_file.c
     /macro/boundaries                      names of the sides, one per line
     /macro/step/<k>/u       [node][3]      displacement, mm; the third component is 0
     /macro/step/<k>/F, P, cauchy [element][9]   means over the element, row-major; P and cauchy in MPa;
                                                 cauchy over the deformed volume
     /macro/step/<k>/<name>  [element]      means (<name>) and largest values (<name>_max) over the material points, and
-                                           their ratios to the scene's strengths (<name>_ratio, <name>_ratio_max):
-                                           fe2_fields.h
+                                           their ratios to the strengths that the scene gives (<name>_ratio,
+                                           <name>_ratio_max); ellipticity has <name>_min, its smallest value
     /macro/curve/<name>     [step]; /macro/curve/displacement, reaction [step][side][2], mm and N/mm: fe2_curve.h
     /macro/summary                         JSON, for the steps so far: fe2_summary.h
     /macro/steps            [step]         numbers of the complete steps; written last

@@ -3,17 +3,6 @@
 */
 #include "fe2_run.h"
 
-static PetscErrorCode AddRow(LamFE2Tissue *tissue, PetscInt row)
-{
-  PetscFunctionBeginUser;
-  if (tissue->row_count == tissue->row_capacity) {
-    tissue->row_capacity = PetscMax(64, 2 * tissue->row_capacity);
-    PetscCall(PetscRealloc((size_t)tissue->row_capacity * sizeof(PetscInt), &tissue->rows));
-  }
-  tissue->rows[tissue->row_count++] = row;
-  PetscFunctionReturn(0);
-}
-
 /* Selects those of n new records of the database that its file lacks, with their keys there; *count of them. */
 static PetscErrorCode ChooseNew(LamFE2Tissue *tissue, PetscInt n, const PetscInt64 in_memory[],
                                 const LamResponse records[], PetscInt *count, PetscInt64 keys[], LamResponse chosen[])
@@ -25,7 +14,8 @@ static PetscErrorCode ChooseNew(LamFE2Tissue *tissue, PetscInt n, const PetscInt
   PetscCall(LamRecordWriterGetKeys(tissue->records, &row, &in_file));
   for (PetscInt k = 0; k < n; k++) {
     const PetscInt known = LamKnownRecordsFind(&tissue->known, in_memory[k], &records[k].load);
-    PetscCall(AddRow(tissue, known >= 0 ? known : row++));
+    PetscCall(LamListGrow(tissue->row_count, sizeof(PetscInt), &tissue->row_capacity, &tissue->rows));
+    tissue->rows[tissue->row_count++] = known >= 0 ? known : row++;
     if (known >= 0) continue;
     keys[*count] = LamKeyIsNode(in_memory[k]) ? in_memory[k] : tissue->next_key++;
     chosen[(*count)++] = records[k];
@@ -72,6 +62,17 @@ PetscErrorCode LamFE2OpenTissueFile(LamFE2Tissue *tissue)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamFE2CloseTissueFile(LamFE2Tissue *tissue)
+{
+  PetscErrorCode ierr, closed;
+
+  PetscFunctionBeginUser;
+  ierr = LamFE2RecordTissue(tissue); /* also those of a step that did not converge */
+  closed = LamRecordWriterClose(&tissue->records);
+  PetscCall(ierr ? ierr : closed);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode OpenFiles(LamFE2Run *run)
 {
   const LamWriteMode mode = run->resumed ? LAM_WRITE_APPEND : LAM_WRITE_CREATE;
@@ -97,6 +98,7 @@ PetscErrorCode LamFE2OpenFiles(LamFE2Run *run)
 PetscErrorCode LamFE2RecordStep(LamFE2Run *run, const LamMacroStep *step, const LamMacroFields *fields)
 {
   PetscFunctionBeginUser;
+  if (fields->point_count) PetscCall(LamSummaryAdd(&run->summary, step, fields));
   for (PetscInt t = 0; t < run->tissues.count; t++) PetscCall(LamFE2RecordTissue(&run->tissues.tissues[t]));
   if (run->out) PetscCall(LamFE2FileAddStep(run->out, step, fields, &run->summary));
   PetscFunctionReturn(0);
@@ -108,16 +110,11 @@ PetscErrorCode LamFE2CloseFiles(LamFE2Run *run, const char status[])
 
   PetscFunctionBeginUser;
   for (PetscInt t = 0; t < run->tissues.count; t++) {
-    LamFE2Tissue *tissue = &run->tissues.tissues[t];
-
-    closed = LamFE2RecordTissue(tissue); /* records of a step that did not converge */
-    if (!ierr) ierr = closed;
-    if (tissue->records) closed = LamRecordWriterClose(&tissue->records);
+    closed = LamFE2CloseTissueFile(&run->tissues.tissues[t]);
     if (!ierr) ierr = closed;
   }
   closed = LamFE2FileClose(&run->out, status);
-  if (!ierr) ierr = closed;
-  PetscCall(ierr);
+  PetscCall(ierr ? ierr : closed);
   PetscFunctionReturn(0);
 }
 

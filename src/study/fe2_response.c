@@ -190,11 +190,7 @@ static PetscErrorCode CreateSolver(LamFE2Run *run, LamFE2Tissue *tissue)
   PetscInt kept;
 
   PetscFunctionBeginUser;
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &tissue->rve));
-  PetscCall(LamRVESetMicrostructure(tissue->rve, &tissue->scene.micro));
-  PetscCall(LamRVESetStrategy(tissue->rve, tissue->scene.strategy));
-  PetscCall(LamRVESetTolerance(tissue->rve, tissue->scene.tolerance));
-  PetscCall(LamRVESetUp(tissue->rve));
+  PetscCall(LamSceneRVECreate(&tissue->scene, &tissue->rve));
   PetscCall(LamRVESetInterrupt(tissue->rve, LamStopInterrupt, NULL));
   PetscCall(CountKept(run, tissue, &kept));
   PetscCall(LamRVEResponderCreate(tissue->rve, kept, &tissue->direct));

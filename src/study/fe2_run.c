@@ -20,47 +20,46 @@ PetscErrorCode LamFE2Prepare(LamFE2Run *run, PetscBool *finished)
 }
 
 /* Rank 0: writes and reports the step. */
-static PetscErrorCode EndStep(LamFE2Run *run, const LamMacroStep *step, const LamMacroFields *fields,
-                              PetscReal peak_memory)
+static PetscErrorCode Report(LamFE2Run *run, const LamMacroStep *step, const LamMacroFields *fields,
+                             PetscReal peak_memory, PetscInt64 done, PetscInt64 total)
 {
-  const PetscInt total = run->scene->macro.steps + (run->scene->macro.inflate ? 1 : 0);
-
   PetscFunctionBeginUser;
-  if (fields->point_count) {
-    PetscCall(LamSummaryAdd(&run->summary, step, fields));
-    LamSummaryFind(&run->summary);
-  }
   PetscCall(LamFE2RecordStep(run, step, fields));
   if (run->step) PetscCall(run->step(run->reporter.ctx, run, step, peak_memory));
-  PetscCall(LamReportProgress(&run->reporter, run->totals.steps + 1, total, 0));
+  PetscCall(LamReportProgress(&run->reporter, done, total, 0));
   PetscFunctionReturn(0);
 }
 
-static void Count(const LamMacroStep *step, LamFE2Totals *totals)
+PetscErrorCode LamFE2EndStep(LamFE2Run *run, const LamMacroStep *step, PetscInt64 done, PetscInt64 total)
 {
-  totals->steps++;
-  totals->newton_iterations += step->newton_iterations;
-  totals->queries += step->queries;
-  totals->hits += step->hits;
-  totals->solves += step->solves;
-  totals->failures += step->failures;
-}
-
-/* LamMacroMonitor */
-static PetscErrorCode StepDone(LamMacro macro, const LamMacroStep *step, PetscBool *stop, void *ctx)
-{
-  LamFE2Run *run = (LamFE2Run *)ctx;
+  LamFE2Totals *totals = &run->totals;
   LamMacroFields fields = {0};
   PetscErrorCode ierr = 0;
   PetscReal peak_memory;
 
   PetscFunctionBeginUser;
   PetscCall(LamPeakMemory(run->comm, &peak_memory));
-  if (run->out_path || run->all_fields) PetscCall(LamMacroGetFields(macro, &fields));
-  if (LamIsFirst(run->comm)) ierr = EndStep(run, step, &fields, peak_memory);
+  if (run->out_path || run->all_fields) PetscCall(LamMacroGetFields(run->macro, &fields));
+  if (LamIsFirst(run->comm)) ierr = Report(run, step, &fields, peak_memory, done, total);
   PetscCall(LamMacroFieldsDestroy(&fields));
   PetscCall(LamShareError(run->comm, ierr));
-  Count(step, &run->totals);
+  totals->steps++;
+  totals->newton_iterations += step->newton_iterations;
+  totals->queries += step->queries;
+  totals->hits += step->hits;
+  totals->solves += step->solves;
+  totals->failures += step->failures;
+  PetscFunctionReturn(0);
+}
+
+/* LamMacroMonitor */
+static PetscErrorCode StepDone(LamMacro macro, const LamMacroStep *step, PetscBool *stop, void *ctx)
+{
+  LamFE2Run *run = (LamFE2Run *)ctx;
+  const LamMacroSpec *spec = &run->scene->macro;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFE2EndStep(run, step, run->totals.steps + 1, spec->steps + (spec->inflate ? 1 : 0)));
   *stop = LamStopRequested(); /* on any rank: a signal may reach only one */
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, stop, 1, MPIU_BOOL, MPI_LOR, run->comm));
   if (step->complete) PetscCall(LamFE2CheckpointSave(run, *stop));
@@ -78,46 +77,68 @@ static PetscErrorCode CutBack(LamMacro macro, const char why[], void *ctx)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SolveAndClose(LamFE2Run *run, LamMacroReason *reason, char message[])
+static PetscErrorCode Follow(LamFE2Run *run, LamFE2Follow follow, void *ctx)
 {
-  char status[LAM_MESSAGE_LENGTH + 32] = "done";
+  char status[LAM_MESSAGE_LENGTH + 32];
+  PetscBool stopped = PETSC_FALSE;
   PetscErrorCode ierr = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(LamMacroSetMonitor(run->macro, StepDone, run));
-  PetscCall(LamMacroSetCutback(run->macro, CutBack, run));
-  PetscCall(LamMacroSolve(run->macro, reason, message));
-  if (*reason != LAM_MACRO_STOPPED) ierr = LamFE2Zoom(run);
-  PetscCall(LamShareError(run->comm, ierr));
-  if (*reason == LAM_MACRO_STOPPED) PetscCall(PetscStrncpy(status, "stopped", sizeof(status)));
-  if (*reason == LAM_MACRO_NOT_CONVERGED)
-    PetscCall(PetscSNPrintf(status, sizeof(status), "not converged: %s", message));
-  if (LamIsFirst(run->comm)) ierr = LamFE2CloseFiles(run, status);
-  PetscCall(LamShareError(run->comm, ierr));
-  if (*reason == LAM_MACRO_DONE) PetscCall(LamFE2CheckpointRemove(run));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Solve(LamFE2Run *run, LamMacroReason *reason, char message[])
-{
-  PetscFunctionBeginUser;
-  *reason = LAM_MACRO_STOPPED;
   PetscCall(LamFE2Connect(run));
   if (run->stopped) PetscFunctionReturn(0);
   PetscCall(LamFE2OpenFiles(run));
+  PetscCall(follow(ctx, &stopped, sizeof(status), status));
+  if (!stopped) ierr = LamFE2Zoom(run);
+  PetscCall(LamShareError(run->comm, ierr));
+  if (LamIsFirst(run->comm)) ierr = LamFE2CloseFiles(run, stopped ? "stopped" : status);
+  PetscCall(LamShareError(run->comm, ierr));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFE2FollowInFiles(LamFE2Run *run, LamFE2Follow follow, void *ctx)
+{
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  ierr = Follow(run, follow, ctx);
+  if (ierr) PetscCall(LamFE2CloseAfterError(run));
+  PetscFunctionReturn(ierr);
+}
+
+typedef struct {
+  LamFE2Run *run;
+  LamMacroReason *reason;
+  char *message;
+} Solution;
+
+/* LamFE2Follow */
+static PetscErrorCode SolveSteps(void *ctx, PetscBool *stopped, size_t size, char status[])
+{
+  const Solution *solution = (const Solution *)ctx;
+  LamFE2Run *run = solution->run;
+
+  PetscFunctionBeginUser;
   PetscCall(LamFE2CheckpointStart(run));
-  PetscCall(SolveAndClose(run, reason, message));
+  PetscCall(LamMacroSetMonitor(run->macro, StepDone, run));
+  PetscCall(LamMacroSetCutback(run->macro, CutBack, run));
+  PetscCall(LamMacroSolve(run->macro, solution->reason, solution->message));
+  *stopped = (PetscBool)(*solution->reason == LAM_MACRO_STOPPED);
+  if (*solution->reason == LAM_MACRO_DONE)
+    PetscCall(PetscStrncpy(status, "done", size));
+  else
+    PetscCall(PetscSNPrintf(status, size, "not converged: %s", solution->message));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamFE2Solve(LamFE2Run *run, LamMacroReason *reason, char message[])
 {
-  PetscErrorCode ierr;
+  Solution solution = {run, reason, message};
 
   PetscFunctionBeginUser;
-  ierr = Solve(run, reason, message);
-  if (ierr) PetscCall(LamFE2CloseAfterError(run));
-  PetscFunctionReturn(ierr);
+  *reason = LAM_MACRO_STOPPED;
+  PetscCall(LamFE2FollowInFiles(run, SolveSteps, &solution));
+  if (*reason == LAM_MACRO_DONE) PetscCall(LamFE2CheckpointRemove(run));
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamFE2Destroy(LamFE2Run *run)

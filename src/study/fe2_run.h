@@ -72,6 +72,12 @@ PetscErrorCode LamFE2Prepare(LamFE2Run *run, PetscBool *finished);
 /* message [LAM_MESSAGE_LENGTH]: why it did not converge. *reason LAM_MACRO_STOPPED: by LamStopRequest. */
 PetscErrorCode LamFE2Solve(LamFE2Run *run, LamMacroReason *reason, char message[]);
 PetscErrorCode LamFE2Destroy(LamFE2Run *run);
+/* Writes, counts and reports a step; done, total: progress. */
+PetscErrorCode LamFE2EndStep(LamFE2Run *run, const LamMacroStep *step, PetscInt64 done, PetscInt64 total);
+/* Connects the responders, opens the files, and calls `follow`, which solves all steps and says how they ended:
+   stopped, or a status. Then adds the zooms and closes the files, also after an error. */
+typedef PetscErrorCode (*LamFE2Follow)(void *ctx, PetscBool *stopped, size_t size, char status[]);
+PetscErrorCode LamFE2FollowInFiles(LamFE2Run *run, LamFE2Follow follow, void *ctx);
 
 /* ---- fe2_response.c ---- */
 /* Determines the tissues, loads their databases, chooses the meshes of their RVEs; collective. */
@@ -92,11 +98,12 @@ PetscErrorCode LamFE2ChangeTissueWalls(void *tissue, const PetscReal factor[LAM_
 
 /* ---- fe2_record.c; on rank 0, except LamFE2OpenFiles, which is collective ---- */
 PetscErrorCode LamFE2OpenFiles(LamFE2Run *run);
-/* Adds a step to the results, and the cache's new records to the database file. */
+/* Adds a step to the summary and the results, and the cache's new records to the database file. */
 PetscErrorCode LamFE2RecordStep(LamFE2Run *run, const LamMacroStep *step, const LamMacroFields *fields);
 /* For one tissue: opens its database file for appending; appends the cache's records since the last call. */
 PetscErrorCode LamFE2OpenTissueFile(LamFE2Tissue *tissue);
 PetscErrorCode LamFE2RecordTissue(LamFE2Tissue *tissue);
+PetscErrorCode LamFE2CloseTissueFile(LamFE2Tissue *tissue); /* with the records since then */
 /* Records not yet written are written first, however the run ended. */
 PetscErrorCode LamFE2CloseFiles(LamFE2Run *run, const char status[]);
 /* After an error: writes what records it can and releases the locks; further errors are ignored. */

@@ -2,25 +2,24 @@
   Onsets, stiffness and firmness of a macroscale run.
 */
 #include "fe2_summary.h"
-#include "fe2_fields.h"
 #include "separation.h"
 #include <math.h>
 #include <string.h>
 
-const char *const LamSummaryCriterionNames[] = {LAM_SUMMARY_CRITERIA(LAM_NAME_ENTRY)};
+static const char *const CriterionNames[] = {LAM_SUMMARY_CRITERIA(LAM_NAME_ENTRY)};
+static const char *const ModeNames[] = {LAM_SUMMARY_MODES(LAM_NAME_ENTRY)};
 
-const char *const LamSummaryModeNames[] = {LAM_SUMMARY_MODES(LAM_NAME_ENTRY)};
-
-LamSummaryMode LamSummaryModeOf(LamSummaryCriterion criterion)
+static LamSummaryMode ModeOf(LamSummaryCriterion criterion)
 {
   if (criterion == LAM_SUMMARY_GAP) return LAM_SUMMARY_OPENING;
   return criterion == LAM_SUMMARY_WALL ? LAM_SUMMARY_RUPTURE : LAM_SUMMARY_SEPARATION;
 }
 
-PetscBool LamSummaryIsJudged(const LamSummary *summary, LamSummaryMode mode)
+/* Whether any criterion of the mode is evaluated: it applies to this tissue, and its strength is given if needed. */
+static PetscBool IsJudged(const LamSummary *summary, LamSummaryMode mode)
 {
   for (int c = 0; c < LAM_SUMMARY_CRITERION_COUNT; c++)
-    if (summary->onset[c].judged && LamSummaryModeOf((LamSummaryCriterion)c) == mode) return PETSC_TRUE;
+    if (summary->onset[c].judged && ModeOf((LamSummaryCriterion)c) == mode) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
@@ -108,29 +107,30 @@ static void Keep(const LamSummary *summary, const LamMacroFields *fields, PetscI
   PetscInt element = 0;
 
   while (fields->first_point[element + 1] <= p) element++;
-  onset->reached = PETSC_TRUE;
-  onset->row = summary->curve.count - 1;
-  onset->share = share;
-  onset->element = element;
-  onset->point = p - fields->first_point[element];
-  for (int i = 0; i < 2; i++) onset->place[i] = fields->place[2 * p + i] * mm;
+  *onset = (LamSummaryOnset){.judged = PETSC_TRUE,
+                             .reached = PETSC_TRUE,
+                             .row = summary->curve.count - 1,
+                             .share = share,
+                             .element = element,
+                             .point = p - fields->first_point[element],
+                             .place = {fields->place[2 * p] * mm, fields->place[2 * p + 1] * mm}};
 }
 
 /*
   Finds the point that reaches the criterion first in the interval before this step; of several at the same load, the
   one with the largest measure at the step. Differences of the size of rounding errors are ignored, so that among points
-  that are equal by symmetry the first is reported, for any number of ranks.
+  that are equal by symmetry the first is reported, for any number of ranks. measures: [point][criterion] at the step.
 */
-static void Seek(const LamSummary *summary, const LamMacroFields *fields, LamSummaryCriterion criterion,
-                 LamSummaryOnset *onset)
+static void Seek(const LamSummary *summary, const LamMacroFields *fields, const PetscReal measures[],
+                 LamSummaryCriterion criterion, LamSummaryOnset *onset)
 {
   const PetscReal rounding = 1e-6;
   PetscReal first = 2, largest = 0;
   PetscInt which = -1;
 
   for (PetscInt p = 0; p < fields->point_count; p++) {
-    const PetscReal now = Measure(summary, criterion, &fields->point[p * LAM_POINT_FIELD_COUNT]);
-    const PetscReal share = Crossing(criterion, summary->before[p * LAM_SUMMARY_CRITERION_COUNT + criterion], now);
+    const PetscInt at = p * LAM_SUMMARY_CRITERION_COUNT + criterion;
+    const PetscReal now = measures[at], share = Crossing(criterion, summary->before ? summary->before[at] : NAN, now);
     if (share > 1 || share > first + rounding || (share > first - rounding && !(now > largest * (1 + rounding))))
       continue;
     first = share;
@@ -141,60 +141,42 @@ static void Seek(const LamSummary *summary, const LamMacroFields *fields, LamSum
 }
 
 /* Volume fraction of the points at which any criterion of the mode is reached; NaN: none is evaluated. */
-static PetscReal ReachedShare(const LamSummary *summary, const LamMacroFields *fields, LamSummaryMode mode)
+static PetscReal ReachedShare(const LamSummary *summary, const LamMacroFields *fields, const PetscReal measures[],
+                              LamSummaryMode mode)
 {
   PetscReal volume = 0, reached = 0;
 
   for (PetscInt p = 0; p < fields->point_count; p++) {
     PetscBool any = PETSC_FALSE;
 
-    for (int c = 0; c < LAM_SUMMARY_CRITERION_COUNT; c++) {
-      if (!summary->onset[c].judged || LamSummaryModeOf((LamSummaryCriterion)c) != mode) continue;
-      if (Measure(summary, (LamSummaryCriterion)c, &fields->point[p * LAM_POINT_FIELD_COUNT]) >= 1) any = PETSC_TRUE;
-    }
+    for (int c = 0; c < LAM_SUMMARY_CRITERION_COUNT; c++)
+      if (ModeOf((LamSummaryCriterion)c) == mode && measures[p * LAM_SUMMARY_CRITERION_COUNT + c] >= 1)
+        any = PETSC_TRUE;
     volume += fields->volume[p];
     if (any) reached += fields->volume[p];
   }
-  return LamSummaryIsJudged(summary, mode) ? reached / volume : NAN;
+  return IsJudged(summary, mode) ? reached / volume : NAN;
 }
 
-PetscErrorCode LamSummaryAdd(LamSummary *summary, const LamMacroStep *step, const LamMacroFields *fields)
+static PetscErrorCode AddOnsets(LamSummary *summary, const LamMacroFields *fields)
 {
   const PetscInt n = LAM_SUMMARY_CRITERION_COUNT;
-  PetscReal *row;
+  PetscReal *measures, *row = summary->curve.rows[summary->curve.count - 1].value;
 
   PetscFunctionBeginUser;
-  PetscCall(LamCurveAdd(&summary->curve, step, fields, &summary->scene->scales));
-  row = summary->curve.rows[summary->curve.count - 1].value;
-  row[LAM_CURVE_SEPARATED] = ReachedShare(summary, fields, LAM_SUMMARY_SEPARATION);
-  row[LAM_CURVE_RUPTURED] = ReachedShare(summary, fields, LAM_SUMMARY_RUPTURE);
-  if (!summary->before) {
-    summary->before_count = fields->point_count * n;
-    PetscCall(PetscMalloc1(summary->before_count, &summary->before));
-    for (PetscInt k = 0; k < summary->before_count; k++) summary->before[k] = NAN;
-  }
-  for (int c = 0; c < n; c++) {
-    LamSummaryOnset *onset = &summary->onset[c];
-    if (!onset->judged || onset->reached) continue;
-    Seek(summary, fields, (LamSummaryCriterion)c, onset);
-    for (PetscInt p = 0; p < fields->point_count; p++)
-      summary->before[p * n + c] = Measure(summary, (LamSummaryCriterion)c, &fields->point[p * LAM_POINT_FIELD_COUNT]);
-  }
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamSummaryArchive(LamSummary *summary, LamArchive archive)
-{
-  LamCurve *curve = &summary->curve;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamArchiveShared(archive, "sides", sizeof(curve->side_count), &curve->side_count));
-  PetscCall(LamArchiveShared(archive, "side names", sizeof(curve->side), curve->side));
-  PetscCall(LamArchiveShared(archive, "onsets", sizeof(summary->onset), summary->onset));
-  PetscCall(LamArchiveList(archive, "curves", sizeof(LamCurveRow), &curve->count, (void **)&curve->rows));
-  PetscCall(LamArchiveList(archive, "measures", sizeof(PetscReal), &summary->before_count, (void **)&summary->before));
-  curve->capacity = curve->count;
-  LamSummaryFind(summary);
+  PetscCall(PetscMalloc1(fields->point_count * n, &measures));
+  for (PetscInt k = 0; k < fields->point_count * n; k++)
+    measures[k] = summary->onset[k % n].judged
+                      ? Measure(summary, (LamSummaryCriterion)(k % n), &fields->point[k / n * LAM_POINT_FIELD_COUNT])
+                      : NAN;
+  row[LAM_CURVE_SEPARATED] = ReachedShare(summary, fields, measures, LAM_SUMMARY_SEPARATION);
+  row[LAM_CURVE_RUPTURED] = ReachedShare(summary, fields, measures, LAM_SUMMARY_RUPTURE);
+  for (int c = 0; c < n; c++)
+    if (summary->onset[c].judged && !summary->onset[c].reached)
+      Seek(summary, fields, measures, (LamSummaryCriterion)c, &summary->onset[c]);
+  PetscCall(PetscFree(summary->before));
+  summary->before = measures;
+  summary->before_count = fields->point_count * n;
   PetscFunctionReturn(0);
 }
 
@@ -204,7 +186,7 @@ const LamSummaryOnset *LamSummaryFirst(const LamSummary *summary, LamSummaryMode
 
   for (int c = 0; c < LAM_SUMMARY_CRITERION_COUNT; c++) {
     const LamSummaryOnset *onset = &summary->onset[c];
-    if (!onset->reached || LamSummaryModeOf((LamSummaryCriterion)c) != mode) continue;
+    if (!onset->reached || ModeOf((LamSummaryCriterion)c) != mode) continue;
     if (first && onset->row + onset->share >= first->row + first->share) continue;
     first = onset;
     *criterion = (LamSummaryCriterion)c;
@@ -223,12 +205,13 @@ static PetscReal Along(const LamSummary *summary, const PetscReal vector[2])
   return sum;
 }
 
-PetscReal LamSummaryDisplacement(const LamSummary *summary, PetscInt row)
+/* Displacement (mm) or reaction (N/mm) of the loaded side along its direction, at a row. */
+static PetscReal Displacement(const LamSummary *summary, PetscInt row)
 {
   return Along(summary, summary->curve.rows[row].displacement[summary->side]);
 }
 
-PetscReal LamSummaryReaction(const LamSummary *summary, PetscInt row)
+static PetscReal Reaction(const LamSummary *summary, PetscInt row)
 {
   return Along(summary, summary->curve.rows[row].reaction[summary->side]);
 }
@@ -269,8 +252,8 @@ static PetscReal Tangent(const LamSummary *summary, PetscInt a, PetscInt b, Pets
 
   for (int i = 0; i < 3; i++) {
     if (rows[i] < 0 || rows[i] >= count) break;
-    u[i] = LamSummaryDisplacement(summary, rows[i]);
-    R[i] = LamSummaryReaction(summary, rows[i]);
+    u[i] = Displacement(summary, rows[i]);
+    R[i] = Reaction(summary, rows[i]);
     known++;
   }
   if (known < 2 || u[1] == u[0]) return NAN;
@@ -296,7 +279,8 @@ static void MeasureBox(LamSummary *summary)
   }
 }
 
-void LamSummaryFind(LamSummary *summary)
+/* Finds the loaded side, stiffness and firmness. */
+static void FindStiffness(LamSummary *summary)
 {
   const PetscInt furthest = FindLoadedSide(summary), last = summary->curve.count - 1;
   PetscReal force = 0;
@@ -310,8 +294,125 @@ void LamSummaryFind(LamSummary *summary)
   summary->stiffness.final = Tangent(summary, last, last - 1, last - 2);
   summary->stiffness.secant = Tangent(summary, 0, furthest, -1);
   for (PetscInt k = 0; k <= last; k++) {
-    if (LamSummaryReaction(summary, k) <= force) continue;
-    force = LamSummaryReaction(summary, k);
+    if (Reaction(summary, k) <= force) continue;
+    force = Reaction(summary, k);
     summary->firmest = k;
   }
+}
+
+PetscErrorCode LamSummaryAdd(LamSummary *summary, const LamMacroStep *step, const LamMacroFields *fields)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamCurveAdd(&summary->curve, step, fields, &summary->scene->scales));
+  PetscCall(AddOnsets(summary, fields));
+  FindStiffness(summary);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSummaryArchive(LamSummary *summary, LamArchive archive)
+{
+  LamCurve *curve = &summary->curve;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamArchiveShared(archive, "sides", sizeof(curve->side_count), &curve->side_count));
+  PetscCall(LamArchiveShared(archive, "side names", sizeof(curve->side), curve->side));
+  PetscCall(LamArchiveShared(archive, "onsets", sizeof(summary->onset), summary->onset));
+  PetscCall(LamArchiveList(archive, "curves", sizeof(LamCurveRow), &curve->count, (void **)&curve->rows));
+  PetscCall(LamArchiveList(archive, "measures", sizeof(PetscReal), &summary->before_count, (void **)&summary->before));
+  curve->capacity = curve->count;
+  FindStiffness(summary);
+  PetscFunctionReturn(0);
+}
+
+/* ---- JSON ---- */
+
+/* Linear interpolation between the rows around an onset. */
+static PetscReal At(PetscReal before, PetscReal now, PetscReal share)
+{
+  return share < 1 ? before + share * (now - before) : now;
+}
+
+static json_t *OnsetToJSON(const LamSummary *summary, LamSummaryCriterion criterion, const LamSummaryOnset *onset)
+{
+  const LamCurveRow *rows = summary->curve.rows;
+  const PetscInt row = onset->row, before = PetscMax(0, row - 1);
+  const PetscReal share = onset->share, *now = rows[row].value, *last = rows[before].value;
+  json_t *o = json_object();
+
+  json_object_set_new(o, "criterion", json_string(CriterionNames[criterion]));
+  json_object_set_new(o, "step", json_integer((json_int_t)now[LAM_CURVE_STEP]));
+  json_object_set_new(o, "interpolated", json_boolean(share < 1));
+  json_object_set_new(o, "load_factor",
+                      LamJSONReal(At(last[LAM_CURVE_LOAD_FACTOR], now[LAM_CURVE_LOAD_FACTOR], share)));
+  if (summary->side >= 0) {
+    json_object_set_new(o, "displacement",
+                        LamJSONReal(At(Displacement(summary, before), Displacement(summary, row), share)));
+    json_object_set_new(o, "reaction", LamJSONReal(At(Reaction(summary, before), Reaction(summary, row), share)));
+  }
+  json_object_set_new(o, "element", json_integer(onset->element));
+  json_object_set_new(o, "point", json_integer(onset->point));
+  json_object_set_new(o, "place", LamJSONReals(2, onset->place, 1));
+  return o;
+}
+
+/* Sets the first onset of each mode ("opening", "separation", "rupture"): null if not reached, absent if not evaluated;
+   and the onsets of all evaluated criteria. */
+static void SetOnsets(json_t *o, const LamSummary *summary)
+{
+  json_t *criteria = json_object();
+
+  for (int m = 0; m < LAM_SUMMARY_MODE_COUNT; m++) {
+    LamSummaryCriterion criterion = LAM_SUMMARY_CRITERION_COUNT;
+    const LamSummaryOnset *first = LamSummaryFirst(summary, (LamSummaryMode)m, &criterion);
+
+    if (IsJudged(summary, (LamSummaryMode)m))
+      json_object_set_new(o, ModeNames[m], first ? OnsetToJSON(summary, criterion, first) : json_null());
+  }
+  for (int c = 0; c < LAM_SUMMARY_CRITERION_COUNT; c++) {
+    const LamSummaryOnset *onset = &summary->onset[c];
+
+    if (!onset->judged) continue;
+    json_object_set_new(criteria, CriterionNames[c],
+                        onset->reached ? OnsetToJSON(summary, (LamSummaryCriterion)c, onset) : json_null());
+  }
+  json_object_set_new(o, "criteria", criteria);
+}
+
+static json_t *SlopesToJSON(const LamSummaryStiffness *s, PetscReal factor)
+{
+  return json_pack("{s:o, s:o, s:o}", "initial", LamJSONReal(s->initial * factor), "final",
+                   LamJSONReal(s->final * factor), "secant", LamJSONReal(s->secant * factor));
+}
+
+static void SetLoadedSide(json_t *o, const LamSummary *summary)
+{
+  const PetscReal factor = summary->height / summary->length;
+  const PetscInt k = summary->firmest;
+
+  json_object_set_new(o, "loaded",
+                      json_pack("{s:s, s:o}", "boundary", summary->curve.side[summary->side], "direction",
+                                LamJSONReals(2, summary->direction, 1)));
+  json_object_set_new(o, "stiffness", SlopesToJSON(&summary->stiffness, 1));
+  if (isfinite(factor)) {
+    json_t *modulus = SlopesToJSON(&summary->stiffness, factor);
+    json_object_set_new(modulus, "height", LamJSONReal(summary->height));
+    json_object_set_new(modulus, "length", LamJSONReal(summary->length));
+    json_object_set_new(o, "modulus", modulus);
+  }
+  if (k < 0) return;
+  json_object_set_new(o, "firmness",
+                      json_pack("{s:o, s:o, s:o}", "reaction", LamJSONReal(Reaction(summary, k)), "displacement",
+                                LamJSONReal(Displacement(summary, k)), "load_factor",
+                                LamJSONReal(summary->curve.rows[k].value[LAM_CURVE_LOAD_FACTOR])));
+}
+
+json_t *LamSummaryToJSON(const LamSummary *summary)
+{
+  json_t *o = json_object();
+
+  if (!summary->curve.count) return o;
+  SetOnsets(o, summary);
+  json_object_set_new(o, "work", LamJSONReal(summary->curve.rows[summary->curve.count - 1].value[LAM_CURVE_WORK]));
+  if (summary->side >= 0) SetLoadedSide(o, summary);
+  return o;
 }

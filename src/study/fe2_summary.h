@@ -1,7 +1,7 @@
 /*
   The summary of a macroscale run: onsets of separation and rupture, stiffness, work, firmness. Rank 0.
 
-    LamSummaryAdd(&summary, step, fields) after every step; LamSummaryFind(&summary) computes the rest.
+    LamSummaryCreate(scene, &summary); LamSummaryAdd(&summary, step, fields) after every step.
 
   Onset. Every material point has measures that reach 1 where its tissue fails: tractions of the lamella and tension of
   the walls over their strengths, and in contact tissue the fraction that its faces have lost of the closing pressure.
@@ -32,14 +32,11 @@
   X(LAM_SUMMARY_GAP, "gap")                 /* opening, contact: a gap above LAM_VISIBLE_GAP, on the RVE's mesh */     \
   X(LAM_SUMMARY_WALL, "wall")               /* rupture: wall_tension over its strength */
 typedef enum { LAM_SUMMARY_CRITERIA(LAM_ENUM_ENTRY) LAM_SUMMARY_CRITERION_COUNT } LamSummaryCriterion;
-extern const char *const LamSummaryCriterionNames[];
 #define LAM_SUMMARY_MODES(X)                                                                                           \
   X(LAM_SUMMARY_OPENING, "opening")                                                                                    \
   X(LAM_SUMMARY_SEPARATION, "separation")                                                                              \
   X(LAM_SUMMARY_RUPTURE, "rupture")
 typedef enum { LAM_SUMMARY_MODES(LAM_ENUM_ENTRY) LAM_SUMMARY_MODE_COUNT } LamSummaryMode;
-extern const char *const LamSummaryModeNames[];
-LamSummaryMode LamSummaryModeOf(LamSummaryCriterion criterion);
 
 /* Onset of a criterion. */
 typedef struct {
@@ -64,7 +61,7 @@ typedef struct {
   PetscReal *before; /* [point][criterion] measures at the last step, before_count values; owned */
   PetscInt before_count;
 
-  /* set by LamSummaryFind */
+  /* at the last step */
   PetscInt side;          /* the loaded side; -1: none is moved */
   PetscReal direction[2]; /* of its displacement */
   LamSummaryStiffness stiffness;
@@ -76,25 +73,15 @@ typedef struct {
 /* Borrows the scene. */
 PetscErrorCode LamSummaryCreate(const LamScene *scene, LamSummary *summary);
 PetscErrorCode LamSummaryAdd(LamSummary *summary, const LamMacroStep *step, const LamMacroFields *fields);
-/* May be called after every step. Before the first it finds nothing. */
-void LamSummaryFind(LamSummary *summary);
 PetscErrorCode LamSummaryDestroy(LamSummary *summary);
 /* Writes or reads all steps so far. Collective; results are on rank 0. */
 PetscErrorCode LamSummaryArchive(LamSummary *summary, LamArchive archive);
 /* The earliest onset among the criteria of a mode, and its criterion; NULL: none is reached. */
 const LamSummaryOnset *LamSummaryFirst(const LamSummary *summary, LamSummaryMode mode, LamSummaryCriterion *criterion);
-/* Whether any criterion of the mode is evaluated: it applies to this tissue, and its strength is given if needed. */
-PetscBool LamSummaryIsJudged(const LamSummary *summary, LamSummaryMode mode);
-
 /* Proximity of a point to separation or rupture: the largest measure of the evaluated criteria, 1 at failure; its wall
    tension if there is none. `field`: values by LamPointField. */
 PetscReal LamSummaryDanger(const LamSummary *summary, const PetscReal field[]);
 
-/* Displacement (mm) or reaction (N/mm) of the loaded side along its direction, at a row. */
-PetscReal LamSummaryDisplacement(const LamSummary *summary, PetscInt row);
-PetscReal LamSummaryReaction(const LamSummary *summary, PetscInt row);
-
-/* ---- fe2_summary_json.c ---- */
 json_t *LamSummaryToJSON(const LamSummary *summary);
 
 #endif

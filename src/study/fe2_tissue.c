@@ -376,21 +376,19 @@ static PetscBool Varies(const LamScene *scene)
   return varies;
 }
 
-/* Creates the scene's own tissue, for all points. */
-static PetscErrorCode CreateOne(MPI_Comm comm, const LamScene *scene, const char database_path[],
-                                LamFE2Tissues *tissues)
+PetscErrorCode LamFE2TissuesCreateOne(MPI_Comm comm, const LamScene *scene, const char database_path[], PetscInt points,
+                                      LamFE2Tissues *tissues)
 {
   LamFE2Tissue *tissue;
 
   PetscFunctionBeginUser;
+  *tissues = (LamFE2Tissues){.count = 1, .points = points, .plain = PETSC_TRUE};
   PetscCall(PetscCalloc1(1, &tissues->tissues));
-  tissues->count = 1;
-  tissues->plain = PETSC_TRUE;
   tissue = tissues->tissues;
   tissue->scene = *scene;
   tissue->stress = 1;
   NameDatabase(database_path, tissue);
-  tissue->body_points = tissue->points = tissues->points;
+  tissue->body_points = tissue->points = points;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &tissue->body_points, 1, MPIU_INT64, MPI_SUM, comm));
   PetscFunctionReturn(0);
 }
@@ -405,7 +403,7 @@ PetscErrorCode LamFE2TissuesCreate(MPI_Comm comm, LamMacro macro, const LamScene
   *tissues = (LamFE2Tissues){0};
   PetscCall(LamMacroGetPointCount(macro, &tissues->points));
   if (!Varies(scene)) {
-    PetscCall(CreateOne(comm, scene, database_path, tissues));
+    PetscCall(LamFE2TissuesCreateOne(comm, scene, database_path, tissues->points, tissues));
     PetscFunctionReturn(0);
   }
   PetscCall(FindPlaces(macro, scene, tissues->points, &places));

@@ -49,6 +49,9 @@ typedef struct {
 */
 PetscErrorCode LamFE2TissuesCreate(MPI_Comm comm, LamMacro macro, const LamScene *scene, const char database_path[],
                                    LamFE2Tissues *tissues);
+/* The scene's own tissue alone, for `points` points of this rank. */
+PetscErrorCode LamFE2TissuesCreateOne(MPI_Comm comm, const LamScene *scene, const char database_path[], PetscInt points,
+                                      LamFE2Tissues *tissues);
 PetscErrorCode LamFE2TissuesDestroy(LamFE2Tissues *tissues);
 
 #endif

@@ -14,22 +14,18 @@
 #include "fe2_run.h"
 #include "rve_fields.h"
 
-/* A chosen point; the same on all ranks. */
+/* A chosen point; the same on all ranks. Lengths in macro lengths, stress in C1 + C2 of the scene. */
 typedef struct {
-  PetscInt element, index; /* number of the element; index of the point in it */
+  PetscInt point[2]; /* number of the element; index of the point in it */
   LamLoad load;
-  PetscReal P[9], place[2], position[2]; /* stress in the run; reference and deformed position, macro lengths */
+  PetscReal P[9], place[2], position[2]; /* stress in the run; reference and deformed position */
   PetscInt tissue;
   PetscReal angle; /* orientation of its cells relative to the scene's, radian */
-} Zoom;
 
-/* Results of the zooms, a row for each. */
-typedef struct {
-  PetscInt count;
-  PetscInt point[LAM_MAX_ZOOMS][2];
-  PetscReal place[LAM_MAX_ZOOMS][2], position[LAM_MAX_ZOOMS][2], F[LAM_MAX_ZOOMS][9], P[LAM_MAX_ZOOMS][9];
-  PetscReal turgor[LAM_MAX_ZOOMS], cohesion[LAM_MAX_ZOOMS], difference[LAM_MAX_ZOOMS], apothem[LAM_MAX_ZOOMS];
-} Found;
+  /* rank 0: what is found there */
+  PetscReal F[9]; /* in the axes of the cells, as needed to plot periodic images */
+  PetscReal found[9], difference, apothem;
+} Zoom;
 
 /* ---- choice of points; rank 0 ---- */
 
@@ -74,11 +70,12 @@ static PetscInt MostEndangered(const LamSummary *summary, const LamMacroFields *
   return PetscMax(which, 0);
 }
 
-static void Choose(const LamFE2Run *run, const LamMacroFields *fields, PetscInt *count, Zoom zooms[LAM_MAX_ZOOMS])
+static PetscErrorCode Choose(const LamFE2Run *run, const LamMacroFields *fields, PetscInt *count, Zoom zooms[])
 {
   const LamMacroSpec *spec = &run->scene->macro;
   PetscInt points[LAM_MAX_ZOOMS];
 
+  PetscFunctionBeginUser;
   *count = spec->zoom_count ? spec->zoom_count : 2;
   points[0] = MostEndangered(&run->summary, fields);
   points[1] = Middle(fields);
@@ -87,16 +84,15 @@ static void Choose(const LamFE2Run *run, const LamMacroFields *fields, PetscInt 
   for (PetscInt k = 0; k < *count; k++) {
     const PetscInt p = points[k];
     Zoom *zoom = &zooms[k];
-    while (fields->first_point[zoom->element + 1] <= p) zoom->element++;
-    zoom->index = p - fields->first_point[zoom->element];
+    while (fields->first_point[zoom->point[0] + 1] <= p) zoom->point[0]++;
+    zoom->point[1] = p - fields->first_point[zoom->point[0]];
     zoom->load = fields->load[p];
     zoom->load.turgor = fields->point[p * LAM_POINT_FIELD_COUNT + LAM_POINT_TURGOR]; /* computed if cells are sealed */
-    for (int i = 0; i < 9; i++) zoom->P[i] = fields->point_P[9 * p + i];
-    for (int i = 0; i < 2; i++) {
-      zoom->place[i] = fields->place[2 * p + i];
-      zoom->position[i] = fields->position[2 * p + i];
-    }
+    PetscCall(PetscArraycpy(zoom->P, &fields->point_P[9 * p], 9));
+    PetscCall(PetscArraycpy(zoom->place, &fields->place[2 * p], 2));
+    PetscCall(PetscArraycpy(zoom->position, &fields->position[2 * p], 2));
   }
+  PetscFunctionReturn(0);
 }
 
 /* ---- tissue and state of a point ---- */
@@ -113,7 +109,7 @@ static PetscErrorCode Fetch(LamFE2Run *run, Zoom *zoom, char **bytes)
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(run->comm, &rank));
-  PetscCall(LamMacroFindPoint(run->macro, zoom->element, zoom->index, &point));
+  PetscCall(LamMacroFindPoint(run->macro, zoom->point[0], zoom->point[1], &point));
   owner = point >= 0 ? rank : -1;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &owner, 1, MPI_INT, MPI_MAX, run->comm));
   if (rank == owner && tissues->point) {
@@ -163,119 +159,115 @@ static void BodyStress(const PetscReal own[9], PetscReal angle, PetscReal stress
 
 /* ---- the file; rank 0 ---- */
 
-/* `load`: in the axes of the cells, as needed to plot periodic images. */
-static PetscErrorCode Keep(LamFE2Run *run, const Zoom *zoom, const LamLoad *load, const PetscReal P[9], LamRVE rve,
-                           LamRVEState state, Found *found)
+/* Writes the cells as number `number`. */
+static PetscErrorCode WriteCells(LamFE2Run *run, const Zoom *zoom, PetscInt number, LamRVE rve, LamRVEState state)
 {
-  const PetscReal mm = run->scene->scales.macro_length * 1e3, MPa = run->scene->scales.stress * 1e-6;
   LamScales scales = run->tissues.tissues[zoom->tissue].scene.scales;
   LamRecordWriter writer = LamFE2FileWriter(run->out);
-  const PetscInt k = found->count++;
   char group[LAM_NAME_LENGTH];
 
   PetscFunctionBeginUser;
-  found->point[k][0] = zoom->element;
-  found->point[k][1] = zoom->index;
-  for (int i = 0; i < 2; i++) {
-    found->place[k][i] = zoom->place[i] * mm;
-    found->position[k][i] = zoom->position[i] * mm;
-  }
-  for (int i = 0; i < 9; i++) {
-    found->F[k][i] = load->F[i];
-    found->P[k][i] = P[i] * MPa;
-  }
-  found->turgor[k] = zoom->load.turgor * MPa;
-  found->cohesion[k] = zoom->load.cohesion * MPa;
-  found->difference[k] = LamStressError(zoom->P, P);
-  found->apothem[k] = scales.length * 1e6;
-  PetscCall(PetscSNPrintf(group, sizeof(group), "/zoom/%" PetscInt_FMT "/mesh", k + 1));
+  PetscCall(PetscSNPrintf(group, sizeof(group), "/zoom/%" PetscInt_FMT "/mesh", number));
   PetscCall(LamRVEWriteMesh(writer, group, rve));
-  PetscCall(PetscSNPrintf(group, sizeof(group), "/zoom/%" PetscInt_FMT "/fields", k + 1));
+  PetscCall(PetscSNPrintf(group, sizeof(group), "/zoom/%" PetscInt_FMT "/fields", number));
   scales.stress *= run->walls;
   PetscCall(LamRVEWriteFields(writer, group, rve, state, &scales));
   PetscFunctionReturn(0);
 }
 
-/* For sealed cells the load has the turgor that they have reached. */
+/* Adds the zoom to those found, in place: they are the first ones of the list. For sealed cells the load has the turgor
+   that they have reached. */
 static PetscErrorCode Solve(LamFE2Run *run, const Zoom *zoom, LamRVE rve, const char bytes[], LamRVEState state,
-                            Found *found)
+                            PetscInt *count, Zoom found[])
 {
   const PetscReal mm = run->scene->scales.macro_length * 1e3,
                   stress = run->walls * run->tissues.tissues[zoom->tissue].stress;
   const LamLoad load = OwnLoad(zoom, stress);
   LamResponse response;
-  PetscReal P[9];
+  Zoom own = *zoom;
 
   PetscFunctionBeginUser;
   if (bytes) PetscCall(LamRVEStateUnpack(bytes, state));
   PetscCall(LamRVESolve(rve, &load, state, &response));
-  if (LamResponseHasFields(&response)) {
-    BodyStress(response.P, zoom->angle, stress, P);
-    PetscCall(Keep(run, zoom, &load, P, rve, state, found));
-  } else {
+  if (!LamResponseHasFields(&response)) {
     LamReportNote(&run->reporter, "no zoom at (%.4g, %.4g) mm: %s: %s", (double)(zoom->place[0] * mm),
                   (double)(zoom->place[1] * mm), LamStatusNames[response.status], response.reason);
+    PetscFunctionReturn(0);
   }
+  PetscCall(PetscArraycpy(own.F, load.F, 9));
+  BodyStress(response.P, zoom->angle, stress, own.found);
+  own.difference = LamStressError(zoom->P, own.found);
+  own.apothem = run->tissues.tissues[zoom->tissue].scene.scales.length * 1e6;
+  found[(*count)++] = own;
+  PetscCall(WriteCells(run, zoom, *count, rve, state));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ZoomOne(LamFE2Run *run, const Zoom *zoom, const char bytes[], Found *found)
+static PetscErrorCode ZoomOne(LamFE2Run *run, const Zoom *zoom, const char bytes[], PetscInt *count, Zoom found[])
 {
   const LamScene *scene = &run->tissues.tissues[zoom->tissue].scene;
   LamRVEState state;
   LamRVE rve;
 
   PetscFunctionBeginUser;
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
-  PetscCall(LamRVESetMicrostructure(rve, &scene->micro));
-  PetscCall(LamRVESetStrategy(rve, scene->strategy));
-  PetscCall(LamRVESetTolerance(rve, scene->tolerance));
-  PetscCall(LamRVESetUp(rve));
+  PetscCall(LamSceneRVECreate(scene, &rve));
   PetscCall(LamRVESetInterrupt(rve, LamStopInterrupt, NULL));
   if (run->walls_differ) PetscCall(LamFE2ChangeWalls(rve, &scene->micro, run->wall_ratio));
   PetscCall(LamRVEStateCreate(rve, &state));
-  PetscCall(Solve(run, zoom, rve, bytes, state, found));
+  PetscCall(Solve(run, zoom, rve, bytes, state, count, found));
   PetscCall(LamRVEStateDestroy(&state));
   PetscCall(LamRVEDestroy(&rve));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode WriteRows(LamFE2Run *run, const Found *found)
+static PetscErrorCode WriteRows(LamFE2Run *run, PetscInt n, const Zoom found[])
 {
-  const PetscInt n = found->count, pairs[2] = {n, 2}, tensors[3] = {n, 3, 3};
-  LamRecordWriter writer = LamFE2FileWriter(run->out);
+  const PetscReal mm = run->scene->scales.macro_length * 1e3, MPa = run->scene->scales.stress * 1e-6;
+  const PetscInt pairs[2] = {n, 2}, tensors[3] = {n, 3, 3};
+  const struct {
+    const char *name, *unit;
+    PetscInt rank;
+    const PetscInt *dims;
+    const PetscReal *first;
+    PetscReal factor;
+  } arrays[] = {{"/zoom/place", "mm", 2, pairs, found->place, mm},
+                {"/zoom/position", "mm", 2, pairs, found->position, mm},
+                {"/zoom/F", "1", 3, tensors, found->F, 1},
+                {"/zoom/P", "MPa", 3, tensors, found->found, MPa},
+                {"/zoom/turgor", "MPa", 1, &n, &found->load.turgor, MPa},
+                {"/zoom/cohesion", "MPa", 1, &n, &found->load.cohesion, MPa},
+                {"/zoom/difference", "1", 1, &n, &found->difference, 1},
+                {"/zoom/apothem", "um", 1, &n, &found->apothem, 1}};
+  PetscInt points[LAM_MAX_ZOOMS][2];
 
   PetscFunctionBeginUser;
   if (!n) PetscFunctionReturn(0);
-  PetscCall(LamRecordWriterReals(writer, "/zoom/place", 2, pairs, &found->place[0][0], "mm"));
-  PetscCall(LamRecordWriterReals(writer, "/zoom/position", 2, pairs, &found->position[0][0], "mm"));
-  PetscCall(LamRecordWriterReals(writer, "/zoom/F", 3, tensors, &found->F[0][0], "1"));
-  PetscCall(LamRecordWriterReals(writer, "/zoom/P", 3, tensors, &found->P[0][0], "MPa"));
-  PetscCall(LamRecordWriterReals(writer, "/zoom/turgor", 1, &n, found->turgor, "MPa"));
-  PetscCall(LamRecordWriterReals(writer, "/zoom/cohesion", 1, &n, found->cohesion, "MPa"));
-  PetscCall(LamRecordWriterReals(writer, "/zoom/difference", 1, &n, found->difference, "1"));
-  PetscCall(LamRecordWriterReals(writer, "/zoom/apothem", 1, &n, found->apothem, "um"));
-  PetscCall(LamRecordWriterInts(writer, "/zoom/points", 2, pairs, &found->point[0][0]));
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(arrays); k++)
+    PetscCall(LamWriteRows(LamFE2FileWriter(run->out), arrays[k].name, arrays[k].rank, arrays[k].dims, arrays[k].first,
+                           sizeof(*found), arrays[k].factor, arrays[k].unit));
+  for (PetscInt k = 0; k < n; k++) PetscCall(PetscArraycpy(points[k], found[k].point, 2));
+  PetscCall(LamRecordWriterInts(LamFE2FileWriter(run->out), "/zoom/points", 2, pairs, points[0]));
   PetscFunctionReturn(0);
 }
 
 /* Solves and writes the zooms on rank 0, in one commit. Collective. */
 static PetscErrorCode ZoomAll(LamFE2Run *run, PetscInt count, Zoom zooms[])
 {
+  const PetscBool first = LamIsFirst(run->comm);
   PetscErrorCode ierr = 0;
-  Found found = {0};
+  PetscInt found = 0;
 
   PetscFunctionBeginUser;
-  if (LamIsFirst(run->comm)) ierr = LamRecordWriterBegin(LamFE2FileWriter(run->out));
+  if (first) ierr = LamRecordWriterBegin(LamFE2FileWriter(run->out));
   for (PetscInt k = 0; k < count; k++) {
     char *bytes;
 
     PetscCall(Fetch(run, &zooms[k], &bytes));
-    if (LamIsFirst(run->comm) && !ierr) ierr = ZoomOne(run, &zooms[k], bytes, &found);
+    if (first && !ierr) ierr = ZoomOne(run, &zooms[k], bytes, &found, zooms);
     PetscCall(PetscFree(bytes));
   }
-  if (LamIsFirst(run->comm) && !ierr) ierr = WriteRows(run, &found);
-  if (LamIsFirst(run->comm) && !ierr) ierr = LamRecordWriterCommit(LamFE2FileWriter(run->out), 0, NULL, NULL);
+  if (first && !ierr) ierr = WriteRows(run, found, zooms);
+  if (first && !ierr) ierr = LamRecordWriterCommit(LamFE2FileWriter(run->out), 0, NULL, NULL);
   PetscCall(ierr);
   PetscFunctionReturn(0);
 }
@@ -289,7 +281,7 @@ PetscErrorCode LamFE2Zoom(LamFE2Run *run)
   PetscFunctionBeginUser;
   if (!run->out_path) PetscFunctionReturn(0);
   PetscCall(LamMacroGetFields(run->macro, &fields));
-  if (LamIsFirst(run->comm) && run->totals.steps) Choose(run, &fields, &count, zooms);
+  if (LamIsFirst(run->comm) && run->totals.steps) PetscCall(Choose(run, &fields, &count, zooms));
   PetscCall(LamMacroFieldsDestroy(&fields));
   PetscCallMPI(MPI_Bcast(&count, 1, MPIU_INT, 0, run->comm));
   PetscCallMPI(MPI_Bcast(zooms, sizeof(zooms), MPI_BYTE, 0, run->comm));

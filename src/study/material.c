@@ -35,11 +35,7 @@ static PetscErrorCode ConnectScene(const char path[], LamMaterial m)
              path);
   PetscCall(LamPlanMake(m->scene, &plan));
   m->scene->micro = plan.micro;
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &m->rve));
-  PetscCall(LamRVESetMicrostructure(m->rve, &m->scene->micro));
-  PetscCall(LamRVESetStrategy(m->rve, m->scene->strategy));
-  PetscCall(LamRVESetTolerance(m->rve, m->scene->tolerance));
-  PetscCall(LamRVESetUp(m->rve));
+  PetscCall(LamSceneRVECreate(m->scene, &m->rve));
   PetscCall(LamRVEResponderCreate(m->rve, m->points, &m->responder));
   m->scales = m->scene->scales;
   m->interface = m->scene->micro.interface;

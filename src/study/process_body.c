@@ -18,24 +18,13 @@ static LamStrength StrengthNow(const LamScene *scene, const LamBodyState *state)
   return strength;
 }
 
-/* Rank 0: writes and reports the state. */
-static PetscErrorCode Record(LamBodyStudy *study, const LamBodyState *state, const LamMacroFields *fields,
-                             PetscReal peak_memory)
+/* `step` of LamFE2Run. */
+static PetscErrorCode ReportState(void *ctx, const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory)
 {
-  LamFE2Run *fe2 = &study->fe2;
+  const LamBodyStudy *study = (const LamBodyStudy *)run; /* its first member */
 
   PetscFunctionBeginUser;
-  PetscCall(LamBodyHistoryAdd(&study->history, state));
-  if (fields->point_count) {
-    fe2->summary.strength = StrengthNow(fe2->scene, state);
-    PetscCall(LamSummaryAdd(&fe2->summary, &state->step, fields));
-    LamSummaryFind(&fe2->summary);
-  }
-  PetscCall(LamFE2RecordStep(fe2, &state->step, fields));
-  if (study->state) PetscCall(study->state(fe2->reporter.ctx, study, state, peak_memory));
-  PetscCall(LamReportProgress(&fe2->reporter,
-                              (PetscInt64)(LAM_PROCESS_PARTS * state->time / fe2->scene->process.duration),
-                              LAM_PROCESS_PARTS, 0));
+  if (study->state) PetscCall(study->state(ctx, study, &study->history.states[study->history.count - 1], peak_memory));
   PetscFunctionReturn(0);
 }
 
@@ -44,20 +33,16 @@ static PetscErrorCode StateDone(const LamBodyState *state, void *ctx)
 {
   LamBodyStudy *study = (LamBodyStudy *)ctx;
   LamFE2Run *fe2 = &study->fe2;
-  LamMacroFields fields = {0};
-  PetscErrorCode ierr = 0;
-  PetscReal peak_memory;
+  LamBodyHistory *h = &study->history;
 
   PetscFunctionBeginUser;
-  PetscCall(LamPeakMemory(fe2->comm, &peak_memory));
-  if (fe2->out_path) PetscCall(LamMacroGetFields(fe2->macro, &fields));
-  fe2->totals.queries += state->step.queries;
-  fe2->totals.solves += state->step.solves;
-  fe2->totals.steps++;
+  if (LamIsFirst(fe2->comm)) {
+    PetscCall(LamListGrow(h->count, sizeof(*h->states), &h->capacity, &h->states));
+    h->states[h->count++] = *state;
+  }
+  fe2->summary.strength = StrengthNow(fe2->scene, state);
   fe2->walls = state->walls;
-  if (LamIsFirst(fe2->comm)) ierr = Record(study, state, &fields, peak_memory);
-  PetscCall(LamMacroFieldsDestroy(&fields));
-  PetscCall(LamShareError(fe2->comm, ierr));
+  PetscCall(LamFE2EndStep(fe2, &state->step, LamProcessProgress(fe2->scene, state->time), LAM_PROCESS_PARTS));
   PetscFunctionReturn(0);
 }
 
@@ -105,6 +90,7 @@ PetscErrorCode LamBodyStudyPrepare(LamBodyStudy *study)
 
   PetscFunctionBeginUser;
   fe2->start = LamClock();
+  fe2->step = ReportState;
   PetscCall(LamMacroCreate(fe2->comm, &fe2->macro));
   PetscCall(LamMacroSetScene(fe2->macro, fe2->scene));
   PetscCall(LamBodyCreate(fe2->scene, fe2->macro, &study->body));
@@ -139,45 +125,26 @@ static void WarnOfNoLoad(const LamFE2Run *fe2)
                   fe2->scene_path);
 }
 
-static PetscErrorCode Follow(LamBodyStudy *study, LamProcessReason *reason, char message[])
+/* LamFE2Follow */
+static PetscErrorCode Follow(void *ctx, PetscBool *stopped, size_t size, char status[])
 {
-  LamFE2Run *fe2 = &study->fe2;
-  PetscErrorCode ierr = 0;
-  const char *status;
+  LamBodyStudy *study = (LamBodyStudy *)ctx;
 
   PetscFunctionBeginUser;
-  if (LamIsFirst(fe2->comm) && fe2->out) LamFE2FileSetBeside(fe2->out, LamBodyHistoryWrite, &study->history);
-  PetscCall(LamBodyRun(study->body, reason, message));
-  if (*reason != LAM_PROCESS_STOPPED) ierr = LamFE2Zoom(fe2);
-  PetscCall(LamShareError(fe2->comm, ierr));
-  status = *reason == LAM_PROCESS_DONE ? "done" : *reason == LAM_PROCESS_STOPPED ? "stopped" : message;
-  if (LamIsFirst(fe2->comm)) ierr = LamFE2CloseFiles(fe2, status);
-  PetscCall(LamShareError(fe2->comm, ierr));
+  WarnOfNoLoad(&study->fe2);
+  if (study->fe2.out) LamFE2FileSetBeside(study->fe2.out, LamBodyHistoryWrite, &study->history);
+  PetscCall(LamBodyRun(study->body, &study->reason, study->message));
+  *stopped = (PetscBool)(study->reason == LAM_PROCESS_STOPPED);
+  PetscCall(PetscStrncpy(status, study->reason == LAM_PROCESS_DONE ? "done" : study->message, size));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Solve(LamBodyStudy *study, LamProcessReason *reason, char message[])
+PetscErrorCode LamBodyStudySolve(LamBodyStudy *study)
 {
-  LamFE2Run *fe2 = &study->fe2;
-
   PetscFunctionBeginUser;
-  *reason = LAM_PROCESS_STOPPED;
-  PetscCall(LamFE2Connect(fe2));
-  if (fe2->stopped) PetscFunctionReturn(0);
-  WarnOfNoLoad(fe2);
-  PetscCall(LamFE2OpenFiles(fe2));
-  PetscCall(Follow(study, reason, message));
+  study->reason = LAM_PROCESS_STOPPED;
+  PetscCall(LamFE2FollowInFiles(&study->fe2, Follow, study));
   PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamBodyStudySolve(LamBodyStudy *study, LamProcessReason *reason, char message[])
-{
-  PetscErrorCode ierr;
-
-  PetscFunctionBeginUser;
-  ierr = Solve(study, reason, message);
-  if (ierr) PetscCall(LamFE2CloseAfterError(&study->fe2));
-  PetscFunctionReturn(ierr);
 }
 
 PetscErrorCode LamBodyStudyDestroy(LamBodyStudy *study)

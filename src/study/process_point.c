@@ -1,8 +1,15 @@
 /*
   A process at one material point: its history is sequential and is computed on one rank.
+
+  The result file is of kind "process": records are the responses of the states, with keys from 0; the other quantities
+  are in /process (process_states.c). The microstructure at selected states, for figures, is solved again after the end,
+  each from the previous one.
 */
 #include "process_run.h"
 #include "clock.h"
+#include "rve_fields.h"
+
+#define COMMIT_SECONDS 5.0
 
 /* ---- responses ---- */
 
@@ -12,14 +19,8 @@ static PetscErrorCode Connect(LamProcessStudy *study, LamResponder **responder)
   LamFE2Tissue *tissue;
 
   PetscFunctionBeginUser;
-  response->tissues.count = 1;
-  PetscCall(PetscCalloc1(1, &response->tissues.tissues));
+  PetscCall(LamFE2TissuesCreateOne(PETSC_COMM_SELF, study->scene, response->database_path, 1, &response->tissues));
   tissue = response->tissues.tissues;
-  tissue->scene = *study->scene;
-  tissue->stress = 1;
-  tissue->points = tissue->body_points = 1;
-  if (response->database_path)
-    PetscCall(PetscStrncpy(tissue->database_path, response->database_path, sizeof(tissue->database_path)));
   PetscCall(LamFE2PrepareTissue(response, tissue));
   study->scene->micro = tissue->scene.micro;
   PetscCall(LamFE2ConnectTissue(response, tissue, responder));
@@ -27,27 +28,92 @@ static PetscErrorCode Connect(LamProcessStudy *study, LamResponder **responder)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Disconnect(LamProcessStudy *study)
+/* ---- the file ---- */
+
+/* Commits the states that are not in the file yet. status: "done", "stopped", or why it ended; NULL: it goes on. */
+static PetscErrorCode Commit(LamProcessStudy *study, const char status[])
 {
-  LamFE2Run *response = &study->response;
+  const PetscInt n = study->history.count - study->committed;
+  PetscErrorCode ierr;
+  LamResponse *records;
+  PetscInt64 *keys;
 
   PetscFunctionBeginUser;
-  if (response->tissues.count) PetscCall(LamFE2DisconnectTissue(response->tissues.tissues));
-  PetscCall(PetscFree(response->tissues.tissues));
+  PetscCall(LamRecordWriterBegin(study->writer));
+  if (study->history.count) PetscCall(LamProcessHistoryWrite(study->writer, study->scene, &study->history));
+  if (status) PetscCall(LamRecordWriterText(study->writer, "/process/status", status));
+  PetscCall(PetscMalloc2(n, &keys, n, &records));
+  for (PetscInt k = 0; k < n; k++) {
+    keys[k] = study->committed + k;
+    records[k] = study->history.states[study->committed + k].response;
+  }
+  ierr = LamRecordWriterCommit(study->writer, n, keys, records);
+  PetscCall(PetscFree2(keys, records));
+  PetscCall(ierr);
+  study->committed += n;
+  study->last_commit = LamClock();
   PetscFunctionReturn(0);
 }
 
-/* Writes the states solved by the cache to its database's file, also after an error. */
-static PetscErrorCode CloseDatabase(LamProcessStudy *study)
+/* ---- microstructure ---- */
+
+/* The first and the last state, all events, and study->frames evenly spaced states. */
+static PetscBool IsChosen(const LamProcessStudy *study, PetscInt k)
 {
-  LamFE2Tissue *tissue = study->response.tissues.tissues;
-  PetscErrorCode ierr, closed;
+  const PetscInt n = study->history.count, frames = study->frames;
+
+  if (k == 0 || k == n - 1 || study->history.states[k].event != LAM_EVENT_COUNT) return PETSC_TRUE;
+  return (PetscBool)(frames > 1 && k * (frames - 1) / (n - 1) != (k - 1) * (frames - 1) / (n - 1));
+}
+
+static PetscErrorCode WriteFrame(LamProcessStudy *study, LamRVE rve, LamRVEState at, PetscInt k)
+{
+  const LamProcessState *state = &study->history.states[k];
+  LamScales scales = study->scene->scales;
+  LamLoad load = state->response.load;
+  PetscReal ratio[LAM_WALL_PARAMETER_COUNT];
+  char group[LAM_NAME_LENGTH];
+  LamResponse response;
 
   PetscFunctionBeginUser;
-  if (!tissue || !tissue->records) PetscFunctionReturn(0);
-  ierr = LamFE2RecordTissue(tissue);
-  closed = LamRecordWriterClose(&tissue->records);
-  PetscCall(ierr ? ierr : closed);
+  load.turgor /= state->walls;
+  load.cohesion /= state->walls;
+  scales.stress *= state->walls;
+  (void)LamWallRatios(&study->scene->micro.wall, &state->factor[LAM_CHANGING_OF_PARAMETER(0)], ratio);
+  if (!LamProcessWallsStayAlike(study->scene))
+    PetscCall(LamFE2ChangeTissueWalls(study->response.tissues.tissues, ratio));
+  PetscCall(LamRVESolve(rve, &load, at, &response));
+  if (!LamResponseHasFields(&response)) {
+    LamReportNote(&study->response.reporter, "the cells of state %d are not kept: solved once more it is %s: %s",
+                  (int)k, LamStatusNames[response.status], response.reason);
+    PetscFunctionReturn(0);
+  }
+  PetscCall(PetscSNPrintf(group, sizeof(group), "/fields/%" PetscInt_FMT, k));
+  PetscCall(LamRVEWriteFields(study->writer, group, rve, at, &scales));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WriteFrames(LamProcessStudy *study)
+{
+  LamRVE own = NULL, rve = study->response.tissues.tissues->rve;
+  LamRVEState state;
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  if (!study->writer || !study->history.count) PetscFunctionReturn(0);
+  if (!rve) {
+    PetscCall(LamSceneRVECreate(study->scene, &own));
+    PetscCall(LamRVESetInterrupt(own, LamStopInterrupt, NULL));
+    rve = own;
+  }
+  PetscCall(LamRVESetWanted(rve, LAM_WANT_STRESS));
+  PetscCall(LamRVEStateCreate(rve, &state));
+  ierr = LamRVEWriteMesh(study->writer, "/mesh", rve);
+  for (PetscInt k = 0; k < study->history.count && !ierr && !LamStopRequested(); k++)
+    if (IsChosen(study, k)) ierr = WriteFrame(study, rve, state, k);
+  PetscCall(LamRVEStateDestroy(&state));
+  PetscCall(LamRVEDestroy(&own));
+  PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 
@@ -60,40 +126,41 @@ static PetscErrorCode AddState(const LamProcessState *state, void *ctx)
   LamProcessHistory *h = &study->history;
 
   PetscFunctionBeginUser;
-  if (h->count == h->capacity) {
-    h->capacity = PetscMax(128, 2 * h->capacity);
-    PetscCall(PetscRealloc((size_t)h->capacity * sizeof(LamProcessState), &h->states));
-  }
+  PetscCall(LamListGrow(h->count, sizeof(*h->states), &h->capacity, &h->states));
   h->states[h->count++] = *state;
   if (study->state) PetscCall(study->state(study->response.reporter.ctx, study));
-  PetscCall(LamProcessFileAdd(study, PETSC_FALSE));
-  PetscCall(LamReportProgress(&study->response.reporter,
-                              (PetscInt64)(LAM_PROCESS_PARTS * state->time / study->scene->process.duration),
+  if (study->writer && LamClock() - study->last_commit >= COMMIT_SECONDS) PetscCall(Commit(study, NULL));
+  PetscCall(LamReportProgress(&study->response.reporter, LamProcessProgress(study->scene, state->time),
                               LAM_PROCESS_PARTS, 0));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Follow(LamProcessStudy *study, LamProcessReason *reason, char message[LAM_PROCESS_MESSAGE])
+static PetscErrorCode Follow(LamProcessStudy *study)
 {
-  PetscErrorCode ierr, closed;
   const char *status;
+  PetscErrorCode ierr, closed;
 
   PetscFunctionBeginUser;
-  PetscCall(LamProcessFileOpen(study));
-  ierr = LamProcessRun(study->process, reason, message);
-  status = ierr ? NULL : *reason == LAM_PROCESS_DONE ? "done" : *reason == LAM_PROCESS_STOPPED ? "stopped" : message;
-  if (!ierr && *reason != LAM_PROCESS_STOPPED) ierr = LamProcessFrames(study, study->frames);
-  closed = LamProcessFileClose(study, ierr ? NULL : status);
+  if (study->out_path)
+    PetscCall(LamRecordWriterOpen(study->out_path, "process", LAM_WRITE_CREATE, study->scene, &study->writer));
+  study->last_commit = LamClock();
+  ierr = LamProcessRun(study->process, &study->reason, study->message);
+  status = study->reason == LAM_PROCESS_DONE      ? "done"
+           : study->reason == LAM_PROCESS_STOPPED ? "stopped"
+                                                  : study->message;
+  if (!ierr && study->reason != LAM_PROCESS_STOPPED) ierr = WriteFrames(study);
+  if (!ierr && study->writer) ierr = Commit(study, status);
+  closed = LamRecordWriterClose(&study->writer);
   PetscCall(ierr ? ierr : closed);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamProcessSolvePoint(LamProcessStudy *study, LamProcessReason *reason, char message[])
+PetscErrorCode LamProcessSolvePoint(LamProcessStudy *study)
 {
   LamResponder *responder;
 
   PetscFunctionBeginUser;
-  *reason = LAM_PROCESS_STOPPED;
+  study->reason = LAM_PROCESS_STOPPED;
   study->start = LamClock();
   PetscCall(LamProcessCreate(study->scene, &study->process));
   PetscCall(Connect(study, &responder));
@@ -105,18 +172,19 @@ PetscErrorCode LamProcessSolvePoint(LamProcessStudy *study, LamProcessReason *re
     PetscCall(LamProcessSetReferenceResponder(study->process, &study->response.tissues.tissues->solver));
   PetscCall(LamProcessSetMonitor(study->process, AddState, study));
   PetscCall(LamProcessSetStop(study->process, LamStopRequested));
-  PetscCall(Follow(study, reason, message));
+  PetscCall(Follow(study));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamProcessStudyDestroy(LamProcessStudy *study)
 {
-  PetscErrorCode ierr;
+  LamFE2Tissues *tissues = &study->response.tissues;
+  PetscErrorCode ierr = 0;
 
   PetscFunctionBeginUser;
-  ierr = CloseDatabase(study); /* solved states are kept, also after an error */
+  if (tissues->count) ierr = LamFE2CloseTissueFile(tissues->tissues); /* solved states are kept, also after an error */
   PetscCall(LamProcessDestroy(&study->process));
-  PetscCall(Disconnect(study));
+  PetscCall(LamFE2Disconnect(&study->response));
   PetscCall(PetscFree(study->history.states));
   PetscFunctionReturn(ierr);
 }

@@ -72,3 +72,44 @@ PetscErrorCode LamPeakMemory(MPI_Comm comm, PetscReal *megabytes)
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, megabytes, 1, MPIU_REAL, MPIU_MAX, comm));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode LamSceneRVECreate(const LamScene *scene, LamRVE *rve)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamRVECreate(PETSC_COMM_SELF, rve));
+  PetscCall(LamRVESetMicrostructure(*rve, &scene->micro));
+  PetscCall(LamRVESetStrategy(*rve, scene->strategy));
+  PetscCall(LamRVESetTolerance(*rve, scene->tolerance));
+  PetscCall(LamRVESetUp(*rve));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamListGrow(PetscInt count, size_t size, PetscInt *capacity, void *items)
+{
+  PetscFunctionBeginUser;
+  if (count < *capacity) PetscFunctionReturn(0);
+  *capacity = PetscMax(64, 2 * count);
+  PetscCall(PetscRealloc((size_t)*capacity * size, (void **)items));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamWriteRows(LamRecordWriter writer, const char name[], PetscInt rank, const PetscInt dims[],
+                            const PetscReal values[], size_t row_size, PetscReal factor, const char unit[])
+{
+  PetscInt columns = 1;
+  PetscErrorCode ierr;
+  PetscReal *scaled;
+
+  PetscFunctionBeginUser;
+  for (PetscInt d = 1; d < rank; d++) columns *= dims[d];
+  PetscCall(PetscMalloc1(dims[0] * columns, &scaled));
+  for (PetscInt r = 0; r < dims[0]; r++) {
+    const PetscReal *row = (const PetscReal *)((const char *)values + (size_t)r * row_size);
+
+    for (PetscInt c = 0; c < columns; c++) scaled[r * columns + c] = row[c] * factor;
+  }
+  ierr = LamRecordWriterReals(writer, name, rank, dims, scaled, unit);
+  PetscCall(PetscFree(scaled));
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}

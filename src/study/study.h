@@ -19,4 +19,13 @@ PetscErrorCode LamShareError(MPI_Comm comm, PetscErrorCode ierr);
 /* Largest memory of any rank, MB. Collective. */
 PetscErrorCode LamPeakMemory(MPI_Comm comm, PetscReal *megabytes);
 
+/* An RVE of the scene on this rank, set up. */
+PetscErrorCode LamSceneRVECreate(const LamScene *scene, LamRVE *rve);
+/* Makes room for one more item of `size` bytes in a list of `count`; items: address of the owned pointer. */
+PetscErrorCode LamListGrow(PetscInt count, size_t size, PetscInt *capacity, void *items);
+/* Writes dims[0] rows, times `factor`, as LamRecordWriterReals does; `values`: the first row, each `row_size` bytes
+   behind the previous one. */
+PetscErrorCode LamWriteRows(LamRecordWriter writer, const char name[], PetscInt rank, const PetscInt dims[],
+                            const PetscReal values[], size_t row_size, PetscReal factor, const char unit[]);
+
 #endif
