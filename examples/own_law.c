@@ -55,14 +55,6 @@ static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], cons
   PetscFunctionReturn(0);
 }
 
-/* The law has no state. */
-static PetscErrorCode KeepNothing(void *ctx)
-{
-  PetscFunctionBeginUser;
-  (void)ctx;
-  PetscFunctionReturn(0);
-}
-
 /* A LamMacroMonitor. */
 static PetscErrorCode PrintStep(LamMacro macro, const LamMacroStep *step, PetscBool *stop, void *ctx)
 {
@@ -77,9 +69,10 @@ static PetscErrorCode PrintStep(LamMacro macro, const LamMacroStep *step, PetscB
 
 static PetscErrorCode Run(const char path[])
 {
-  LamResponder responder = {.respond = Respond, .accept = KeepNothing, .reject = KeepNothing};
+  const LamResponderFunctions law = {.respond = Respond}; /* without states that a load step accepts or rejects */
   char message[LAM_MESSAGE_LENGTH];
   LamMacroReason reason;
+  LamResponder responder;
   LamScene *scene;
   LamMacro macro;
 
@@ -88,11 +81,13 @@ static PetscErrorCode Run(const char path[])
   PetscCall(LamMacroCreate(PETSC_COMM_WORLD, &macro));
   PetscCall(LamMacroSetScene(macro, scene));
   PetscCall(LamMacroSetUp(macro));
-  PetscCall(LamMacroSetResponder(macro, &responder));
+  PetscCall(LamResponderCreate(&law, NULL, NULL, &responder));
+  PetscCall(LamMacroSetResponder(macro, responder));
   PetscCall(LamMacroSetMonitor(macro, PrintStep, NULL));
   PetscCall(LamMacroSolve(macro, &reason, message));
   if (reason != LAM_MACRO_DONE) printf("not to the end: %s\n", message);
   PetscCall(LamMacroDestroy(&macro));
+  PetscCall(LamResponderDestroy(&responder));
   PetscCall(LamSceneDestroy(&scene));
   PetscFunctionReturn(0);
 }

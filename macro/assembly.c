@@ -173,13 +173,13 @@ static PetscErrorCode CheckChange(LamMacro macro, PetscBool *ok)
    / s). */
 static PetscErrorCode Ask(LamMacro macro)
 {
-  LamResponder *responder = macro->responder;
+  LamResponder responder = macro->responder;
   const PetscInt n = macro->point_count;
   LamLoad *own;
 
   PetscFunctionBeginUser;
   if (macro->walls == 1) {
-    PetscCall(responder->respond(responder->ctx, n, macro->loads, macro->point_index, macro->responses));
+    PetscCall(LamResponderRespond(responder, n, macro->loads, macro->point_index, macro->responses));
     PetscFunctionReturn(0);
   }
   PetscCall(PetscMalloc1(n, &own));
@@ -188,7 +188,7 @@ static PetscErrorCode Ask(LamMacro macro)
     own[p].turgor /= macro->walls;
     own[p].cohesion /= macro->walls;
   }
-  PetscCall(responder->respond(responder->ctx, n, own, macro->point_index, macro->responses));
+  PetscCall(LamResponderRespond(responder, n, own, macro->point_index, macro->responses));
   PetscCall(PetscFree(own));
   for (PetscInt p = 0; p < n; p++) {
     LamResponseScale(macro->walls, &macro->responses[p]);

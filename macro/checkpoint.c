@@ -52,20 +52,19 @@ static PetscErrorCode NumberPoints(LamMacro macro, PetscInt numbers[])
 
 static PetscErrorCode ArchiveResponder(LamMacro macro, LamArchive archive, const PetscInt numbers[])
 {
-  LamResponder *responder = macro->responder;
   size_t size;
   char *states;
 
   PetscFunctionBeginUser;
-  if (!responder->state_size) PetscFunctionReturn(0);
-  PetscCall(responder->state_size(responder->ctx, &size));
+  PetscCall(LamResponderGetStateSize(macro->responder, &size));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &size, 1, MPI_UNSIGNED_LONG, MPI_MAX, macro->comm));
+  if (!size) PetscFunctionReturn(0);
   PetscCall(PetscCalloc((size_t)macro->point_count * size, &states));
   for (PetscInt p = 0; p < macro->point_count && !LamArchiveIsReading(archive); p++)
-    PetscCall(responder->save(responder->ctx, p, states + (size_t)p * size));
+    PetscCall(LamResponderSave(macro->responder, p, states + (size_t)p * size));
   PetscCall(LamArchiveItems(archive, "tissue states", size, macro->point_count, numbers, states));
   for (PetscInt p = 0; p < macro->point_count && LamArchiveIsReading(archive); p++)
-    PetscCall(responder->load(responder->ctx, p, states + (size_t)p * size));
+    PetscCall(LamResponderLoad(macro->responder, p, states + (size_t)p * size));
   PetscCall(PetscFree(states));
   PetscFunctionReturn(0);
 }

@@ -78,7 +78,7 @@ static PetscErrorCode Ask(LamMacro macro, PetscMPIInt rank, PetscInt point, cons
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(macro->comm, &own));
-  PetscCall(macro->responder->respond(macro->responder->ctx, own == rank, &load, &point, &response));
+  PetscCall(LamResponderRespond(macro->responder, own == rank, &load, &point, &response));
   if (own == rank) Project(&response, energy);
   PetscCallMPI(MPI_Bcast(energy, sizeof(*energy), MPI_BYTE, rank, macro->comm));
   PetscFunctionReturn(0);

@@ -130,7 +130,7 @@ PetscErrorCode LamMacroSetWaterLaw(LamMacro macro, LamWaterLaw law, void *ctx)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamMacroSetResponder(LamMacro macro, LamResponder *responder)
+PetscErrorCode LamMacroSetResponder(LamMacro macro, LamResponder responder)
 {
   PetscFunctionBeginUser;
   macro->responder = responder;

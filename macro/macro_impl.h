@@ -162,8 +162,8 @@ typedef struct {
 
 struct LamMacro_s {
   MPI_Comm comm;
-  const LamScene *scene;   /* borrowed */
-  LamResponder *responder; /* borrowed */
+  const LamScene *scene;  /* borrowed */
+  LamResponder responder; /* borrowed */
   LamMacroMonitor monitor;
   void *monitor_ctx;       /* borrowed */
   LamMacroCutback cutback; /* NULL: no callback */
@@ -244,8 +244,8 @@ struct LamMacro_s {
   KSP solver; /* of the unbordered tangent; NULL if the scene needs no border */
 
   LamMacroProgress progress;
-  LamMacroStep step;    /* report in progress */
-  LamResponder counted; /* counters at the start of the step */
+  LamMacroStep step;            /* report in progress */
+  LamResponderCounters counted; /* counters at the start of the step */
 };
 
 /* mesh.c */

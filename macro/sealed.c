@@ -334,7 +334,7 @@ static PetscErrorCode StartUndeformed(LamMacro macro, PetscBool *ok)
   if (!*ok) PetscFunctionReturn(0);
   PetscCall(LamMacroAssembleForce(macro, macro->force_accepted, &scale));
   PetscCall(PetscArraycpy(macro->accepted, macro->now, macro->point_count));
-  if (macro->responder->accept) PetscCall(macro->responder->accept(macro->responder->ctx));
+  PetscCall(LamResponderAccept(macro->responder));
   PetscFunctionReturn(0);
 }
 

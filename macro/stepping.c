@@ -162,7 +162,7 @@ PetscErrorCode LamMacroAccept(LamMacro macro)
   for (PetscInt b = 0; b < macro->border_count; b++) macro->borders[b].accepted = macro->borders[b].now;
   for (PetscInt k = 0; k < macro->obstacle_node_count; k++)
     macro->obstacle_nodes[k].accepted = macro->obstacle_nodes[k].active;
-  if (macro->responder->accept) PetscCall(macro->responder->accept(macro->responder->ctx));
+  PetscCall(LamResponderAccept(macro->responder));
   PetscFunctionReturn(0);
 }
 
@@ -172,7 +172,7 @@ PetscErrorCode LamMacroReject(LamMacro macro)
   PetscCall(PetscArraycpy(macro->now, macro->accepted, macro->point_count));
   PetscCall(LamMacroRejectPressures(macro));
   for (PetscInt b = 0; b < macro->border_count; b++) macro->borders[b].now = macro->borders[b].accepted;
-  if (macro->responder->reject) PetscCall(macro->responder->reject(macro->responder->ctx));
+  PetscCall(LamResponderReject(macro->responder));
   PetscFunctionReturn(0);
 }
 
@@ -198,7 +198,7 @@ static PetscErrorCode KeepHistory(LamMacro macro)
    add. */
 static PetscErrorCode SetLeniency(LamMacro macro)
 {
-  const PetscBool interpolated = (PetscBool)(macro->responder->interpolated > 0);
+  const PetscBool interpolated = (PetscBool)(LamResponderGetCounters(macro->responder).interpolated > 0);
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Allreduce(&interpolated, &macro->lenient, 1, MPIU_BOOL, MPI_LOR, macro->comm));
@@ -317,10 +317,10 @@ static void MeanIndicators(LamMacro macro, PetscReal sum[4], PetscReal *max_gap)
 /* Mean times of the responder, and the number of interpolated responses. */
 static PetscErrorCode MeanTimes(LamMacro macro)
 {
-  const LamResponder *responder = macro->responder, *before = &macro->counted;
+  const LamResponderCounters counters = LamResponderGetCounters(macro->responder), *before = &macro->counted;
   LamMacroStep *step = &macro->step;
-  PetscReal seconds[2] = {responder->query_seconds - before->query_seconds,
-                          responder->solve_seconds - before->solve_seconds};
+  PetscReal seconds[2] = {counters.query_seconds - before->query_seconds,
+                          counters.solve_seconds - before->solve_seconds};
   PetscMPIInt ranks;
 
   PetscFunctionBeginUser;
@@ -328,7 +328,7 @@ static PetscErrorCode MeanTimes(LamMacro macro)
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, seconds, 2, MPIU_REAL, MPIU_SUM, macro->comm));
   step->query_seconds = seconds[0] / ranks;
   step->solve_seconds = seconds[1] / ranks;
-  step->interpolated = responder->interpolated - before->interpolated;
+  step->interpolated = counters.interpolated - before->interpolated;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &step->interpolated, 1, MPIU_INT64, MPI_SUM, macro->comm));
   PetscFunctionReturn(0);
 }
@@ -336,10 +336,10 @@ static PetscErrorCode MeanTimes(LamMacro macro)
 PetscErrorCode LamMacroFinishStep(LamMacro macro, PetscInt number, PetscReal load_factor, PetscReal start)
 {
   LamMacroStep *step = &macro->step;
-  LamResponder *responder = macro->responder, *before = &macro->counted;
+  const LamResponderCounters counters = LamResponderGetCounters(macro->responder), *before = &macro->counted;
   PetscReal sum[4];
-  PetscInt64 counts[4] = {responder->queries - before->queries, responder->hits - before->hits,
-                          responder->solves - before->solves, responder->failures - before->failures};
+  PetscInt64 counts[4] = {counters.queries - before->queries, counters.hits - before->hits,
+                          counters.solves - before->solves, counters.failures - before->failures};
 
   PetscFunctionBeginUser;
   step->step = number;
@@ -367,7 +367,7 @@ PetscErrorCode LamMacroStartStep(LamMacro macro, PetscReal *start)
 {
   PetscFunctionBeginUser;
   macro->step.newton_iterations = macro->step.cutbacks = 0;
-  macro->counted = *macro->responder;
+  macro->counted = LamResponderGetCounters(macro->responder);
   *start = LamClock();
   PetscFunctionReturn(0);
 }

@@ -84,7 +84,7 @@ PetscErrorCode LamProcessTellWalls(LamProcess process, const PetscReal ratio[LAM
 }
 
 /* Queries a responder; the response is in units of C1 + C2 at the start. */
-static PetscErrorCode Ask(LamProcess process, LamResponder *responder, const LamEvaluation *e, LamResponse *response)
+static PetscErrorCode Ask(LamProcess process, LamResponder responder, const LamEvaluation *e, LamResponse *response)
 {
   const PetscInt point = 0;
   LamLoad own = e->load;
@@ -92,7 +92,7 @@ static PetscErrorCode Ask(LamProcess process, LamResponder *responder, const Lam
   PetscFunctionBeginUser;
   own.turgor /= e->walls;
   own.cohesion /= e->walls;
-  PetscCall(responder->respond(responder->ctx, 1, &own, &point, response));
+  PetscCall(LamResponderRespond(responder, 1, &own, &point, response));
   process->counts.questions++;
   LamResponseScale(e->walls, response);
   response->load = e->load;

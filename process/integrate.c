@@ -386,7 +386,7 @@ static PetscErrorCode Follow(Integration *in, PetscBool happened[LAM_EVENT_COUNT
     PetscCall(process->error);
     if (flag < 0) break;
     process->counts.steps++;
-    if (process->responder->accept) PetscCall(process->responder->accept(process->responder->ctx));
+    PetscCall(LamResponderAccept(process->responder));
     PetscCall(TellUpTo(in, t));
     process->tissue = Unpack(in, t, in->base.y);
     if (t >= process->segment.end) break;

@@ -64,14 +64,14 @@ PetscErrorCode LamProcessCreate(const LamScene *scene, LamProcess *process)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamProcessSetResponder(LamProcess process, LamResponder *responder)
+PetscErrorCode LamProcessSetResponder(LamProcess process, LamResponder responder)
 {
   PetscFunctionBeginUser;
   process->responder = responder;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamProcessSetReferenceResponder(LamProcess process, LamResponder *judge)
+PetscErrorCode LamProcessSetReferenceResponder(LamProcess process, LamResponder judge)
 {
   PetscFunctionBeginUser;
   process->judge = judge;
@@ -450,7 +450,7 @@ static const char *WhyItEnds(LamProcess process, PetscBool limit)
   const PetscBool contact = (PetscBool)(process->scene->micro.interface == LAM_INTERFACE_CONTACT);
 
   if (!limit) return process->trouble;
-  return contact && process->responder->interpolated
+  return contact && LamResponderGetCounters(process->responder).interpolated
              ? "limit point: nothing is left of the stiffness against what is free, as a database sees it; next to a "
                "loss of contact its tangent may be wrong: solve directly to be sure"
              : "limit point: nothing is left of the stiffness against what is free";

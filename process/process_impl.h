@@ -74,8 +74,8 @@ typedef struct {
 struct LamProcess_s {
   const LamScene *scene; /* borrowed */
   const LamProcessSpec *spec;
-  LamResponder *responder; /* borrowed */
-  LamResponder *judge;     /* borrowed; NULL: none */
+  LamResponder responder; /* borrowed */
+  LamResponder judge;     /* borrowed; NULL: none */
   PetscErrorCode (*set_walls)(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT]);
   void *walls_ctx; /* borrowed */
   PetscReal told_walls[LAM_WALL_PARAMETER_COUNT];

@@ -35,7 +35,7 @@ typedef struct {
   nodes: NULL: `solver` solves them, each from the reference state. accuracy: requested relative error of the stress
   (LamStressError). Borrows database, solver and nodes.
 */
-LAM_EXPORT PetscErrorCode LamCacheResponderCreate(MPI_Comm comm, LamDatabase database, LamResponder *solver,
+LAM_EXPORT PetscErrorCode LamCacheResponderCreate(MPI_Comm comm, LamDatabase database, LamResponder solver,
                                                   const LamNodeSolver *nodes, LamOutside outside, PetscReal accuracy,
                                                   PetscInt points, LamResponder *responder);
 

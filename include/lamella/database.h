@@ -160,7 +160,7 @@ typedef struct LamTable_s *LamTable;
   Creates the grid for a scene: the box of `sample`, otherwise the loads given by its turgor and cohesion. Contact
   tissue needs `solver` for the states of free cells. Not collective: create it on one rank and share its text.
 */
-LAM_EXPORT PetscErrorCode LamGridCreate(const LamScene *scene, LamResponder *solver, LamGrid *grid);
+LAM_EXPORT PetscErrorCode LamGridCreate(const LamScene *scene, LamResponder solver, LamGrid *grid);
 LAM_EXPORT PetscErrorCode LamGridFromText(const char path[], const LamMicrostructure *micro, const char text[],
                                           LamGrid *grid);
 LAM_EXPORT PetscErrorCode LamGridGetText(LamGrid grid, char **text); /* JSON; the caller frees it */
@@ -172,7 +172,7 @@ LAM_EXPORT PetscErrorCode LamGridGetRecords(LamGrid grid, PetscInt *n, const Pet
 /* LamGridGetFreeKeys: keys of those records, also for a grid that was read. LamGridSolveRecords solves the records
    again for such a grid. */
 LAM_EXPORT PetscErrorCode LamGridGetFreeKeys(LamGrid grid, PetscInt *n, const PetscInt64 *keys[]);
-LAM_EXPORT PetscErrorCode LamGridSolveRecords(LamGrid grid, const LamMicrostructure *micro, LamResponder *solver);
+LAM_EXPORT PetscErrorCode LamGridSolveRecords(LamGrid grid, const LamMicrostructure *micro, LamResponder solver);
 #define LAM_GRID_NAME "/table/grid" /* written by LamRecordWriterText, before the first node */
 
 /* Node keys lie between sample keys and cache keys. */

@@ -25,9 +25,9 @@ typedef struct {
 } LamHeterogeneousPoint;
 
 typedef struct {
-  const char *name;        /* precedes the reason if there is no response; "": nothing */
-  PetscReal stress;        /* C1 + C2, in units of the body's */
-  LamResponder *responder; /* its points 0, 1, ... are the body's points that contain this tissue, in their order */
+  const char *name;       /* precedes the reason if there is no response; "": nothing */
+  PetscReal stress;       /* C1 + C2, in units of the body's */
+  LamResponder responder; /* its points 0, 1, ... are the body's points that contain this tissue, in their order */
 } LamHeterogeneousTissue;
 
 /* Number of the n points of this rank that contain the tissue. */

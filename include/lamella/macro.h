@@ -3,7 +3,7 @@
 
     LamMacroCreate(comm, &macro); LamMacroSetScene(macro, scene); LamMacroSetUp(macro);
     LamMacroGetPointCount(macro, &points);             to create the responder
-    LamMacroSetResponder(macro, &responder); LamMacroSetMonitor(macro, step_done, ctx); LamMacroSetStop(macro, stop);
+    LamMacroSetResponder(macro, responder); LamMacroSetMonitor(macro, step_done, ctx); LamMacroSetStop(macro, stop);
     LamMacroSolve(macro, &reason, message); LamMacroDestroy(&macro);
 */
 #ifndef LAMELLA_MACRO_H
@@ -73,7 +73,7 @@ LAM_EXPORT PetscErrorCode LamMacroGetPlaces(LamMacro macro, PetscReal X[], Petsc
 LAM_EXPORT PetscErrorCode LamMacroGetGroups(LamMacro macro, PetscInt *count, const char (**names)[LAM_NAME_LENGTH]);
 /* Sets turgor at full inflation and cohesion per point, [point] each. Default: the scene's values. */
 LAM_EXPORT PetscErrorCode LamMacroSetPointTissue(LamMacro macro, const PetscReal turgor[], const PetscReal cohesion[]);
-LAM_EXPORT PetscErrorCode LamMacroSetResponder(LamMacro macro, LamResponder *responder); /* borrows it */
+LAM_EXPORT PetscErrorCode LamMacroSetResponder(LamMacro macro, LamResponder responder); /* borrows it */
 LAM_EXPORT PetscErrorCode LamMacroSetMonitor(LamMacro macro, LamMacroMonitor monitor, void *ctx);
 LAM_EXPORT PetscErrorCode LamMacroSetCutback(LamMacro macro, LamMacroCutback cutback, void *ctx);
 /*

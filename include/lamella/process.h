@@ -78,12 +78,12 @@ typedef PetscErrorCode (*LamProcessMonitor)(const LamProcessState *state, void *
 /* Borrows the scene, which must have a block `process`. */
 LAM_EXPORT PetscErrorCode LamProcessCreate(const LamScene *scene, LamProcess *process);
 /* Borrows it; queries use point 0. */
-LAM_EXPORT PetscErrorCode LamProcessSetResponder(LamProcess process, LamResponder *responder);
+LAM_EXPORT PetscErrorCode LamProcessSetResponder(LamProcess process, LamResponder responder);
 /*
   A second responder that solves. It replaces responses whose indicators are not trusted (indicators_trusted), for
   events and output. Borrows it; NULL: such responses are used and reported as not trusted.
 */
-LAM_EXPORT PetscErrorCode LamProcessSetReferenceResponder(LamProcess process, LamResponder *judge);
+LAM_EXPORT PetscErrorCode LamProcessSetReferenceResponder(LamProcess process, LamResponder judge);
 /*
   Sets the callback for walls whose moduli do not change by a common factor: before queries `set` receives each
   parameter over its initial value, moduli without the common factor. Without it such a process is

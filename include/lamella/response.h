@@ -158,13 +158,12 @@ LAM_EXPORT size_t LamResponseMemberIndex(size_t offset);
 LAM_EXPORT void LamResponseScale(PetscReal stress, LamResponse *response);
 
 /*
-  A responder: the functions through which the macroscale solver obtains responses of the tissue. `respond` is
-  collective over the communicator of the macroscale problem. Point indices are local to a rank, 0..n-1, and identify
-  a material point permanently, so that a responder can keep a state for each; -1: none. A responder that is stopped
-  during a batch returns LAM_OUT_OF_REACH for the rest.
+  A responder: the object through which the macroscale solver obtains responses of the tissue. Its functions, of which
+  only `respond` is needed; the others may be NULL. `respond` is collective over the communicator of the macroscale
+  problem. Point indices are local to a rank, 0..n-1, and identify a material point permanently, so that a responder
+  can keep a state for each; -1: none. A responder that is stopped during a batch returns LAM_OUT_OF_REACH for the rest.
 */
-typedef struct LamResponder_s {
-  void *ctx; /* owned by the responder */
+typedef struct {
   PetscErrorCode (*respond)(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[],
                             LamResponse responses[]);
   PetscErrorCode (*accept)(void *ctx); /* the load step has converged: its states become the new starting points */
@@ -173,25 +172,45 @@ typedef struct LamResponder_s {
      C2, positive and finite). From then on the turgor of a load is the pressure of that water, and turgor_mean of
      the response is the pressure reached (rve.h, LamRVESeal). A query without a point is then
      PETSC_ERR_ARG_OUTOFRANGE; sealing before each point has a response is PETSC_ERR_ORDER. NULL: turgor is always
-     prescribed. */
+     prescribed, and sealing is PETSC_ERR_SUP. */
   PetscErrorCode (*seal)(void *ctx, PetscReal bulk_modulus);
-  PetscErrorCode (*destroy)(void **ctx);
+  PetscErrorCode (*destroy)(void **ctx); /* NULL: ctx is not owned */
   /*
     Serialisation of the states of the last `accept`, for a restart. state_size: maximum over the points of this rank.
-    NULL: there are no states. `load` makes the bytes the accepted state of the point; it is sealed if it was.
+    NULL: there are no states, 0 bytes. `load` makes the bytes the accepted state of the point; it is sealed if it was.
   */
   PetscErrorCode (*state_size)(void *ctx, size_t *bytes);
   PetscErrorCode (*save)(void *ctx, PetscInt point, void *bytes);
   PetscErrorCode (*load)(void *ctx, PetscInt point, const void *bytes);
-  /*
-    Counters of this rank since creation. A query is a hit (answered from the database as it was), a failure (a
-    response without fields), or it required a solve: queries - hits - failures. `solves` counts solves, failed ones
-    included; with a cache those of nodes, each used by many queries, and of states for which no node helps.
-    `interpolated` counts responses from a database, as it was or with nodes solved for the query.
-  */
+} LamResponderFunctions;
+
+/*
+  Counters of this rank since creation. A query is a hit (answered from the database as it was), a failure (a
+  response without fields), or it required a solve: queries - hits - failures. `solves` counts solves, failed ones
+  included; with a cache those of nodes, each used by many queries, and of states for which no node helps.
+  `interpolated` counts responses from a database, as it was or with nodes solved for the query.
+*/
+typedef struct {
   PetscInt64 queries, hits, interpolated, solves, failures;
   PetscReal query_seconds, solve_seconds; /* time in database queries, and in solves */
-} LamResponder;
+} LamResponderCounters;
+
+typedef struct LamResponder_s *LamResponder;
+
+/* Copies the functions. Borrows the counters, which `respond` updates; NULL: none are kept. */
+LAM_EXPORT PetscErrorCode LamResponderCreate(const LamResponderFunctions *functions, void *ctx,
+                                             const LamResponderCounters *counters, LamResponder *responder);
+LAM_EXPORT PetscErrorCode LamResponderDestroy(LamResponder *responder);
+LAM_EXPORT LamResponderCounters LamResponderGetCounters(LamResponder responder);
+/* Call the functions above. */
+LAM_EXPORT PetscErrorCode LamResponderRespond(LamResponder responder, PetscInt n, const LamLoad *loads,
+                                              const PetscInt *points, LamResponse *responses);
+LAM_EXPORT PetscErrorCode LamResponderAccept(LamResponder responder);
+LAM_EXPORT PetscErrorCode LamResponderReject(LamResponder responder);
+LAM_EXPORT PetscErrorCode LamResponderSeal(LamResponder responder, PetscReal bulk_modulus);
+LAM_EXPORT PetscErrorCode LamResponderGetStateSize(LamResponder responder, size_t *bytes);
+LAM_EXPORT PetscErrorCode LamResponderSave(LamResponder responder, PetscInt point, void *bytes);
+LAM_EXPORT PetscErrorCode LamResponderLoad(LamResponder responder, PetscInt point, const void *bytes);
 
 LAM_C_END
 

@@ -2,9 +2,9 @@
   A responder for sealed cells, based on one for prescribed turgor, such as a database. Each material point keeps its
   water, and its pressure is computed.
 
-    LamSealedResponderCreate(comm, &open, points, &sealed);
-    sealed.respond, sealed.accept ...         turgor is prescribed: the tissue is inflated
-    sealed.seal(sealed.ctx, K_w);             from here on the cells are sealed
+    LamSealedResponderCreate(comm, open, points, &sealed);
+    LamResponderRespond(sealed, ...), ...     turgor is prescribed: the tissue is inflated
+    LamResponderSeal(sealed, K_w);            from here on the cells are sealed
 */
 #ifndef LAMELLA_SEALED_H
 #define LAMELLA_SEALED_H
@@ -21,7 +21,7 @@ LAM_C_BEGIN
   database it must be of bonded cells: for cells that separate the lumens are not accurate enough, and the response is
   LAM_OUT_OF_REACH.
 */
-LAM_EXPORT PetscErrorCode LamSealedResponderCreate(MPI_Comm comm, LamResponder *open, PetscInt points,
+LAM_EXPORT PetscErrorCode LamSealedResponderCreate(MPI_Comm comm, LamResponder open, PetscInt points,
                                                    LamResponder *responder);
 
 /*

@@ -13,8 +13,8 @@
 #include <string.h>
 
 typedef struct {
-  LamRVE rve;                     /* borrowed */
-  LamResponder *responder;        /* borrowed, for its counters */
+  LamRVE rve; /* borrowed */
+  LamResponderCounters counters;
   PetscInt points;                /* number of points with stored states */
   LamRVEState *accepted, *latest; /* [points] */
   PetscReal *water;               /* [points][cell] V_w over V0; NULL: turgor is prescribed */
@@ -56,10 +56,18 @@ static PetscErrorCode SolvePoint(DirectResponder *direct, PetscInt point, const 
 static PetscErrorCode Answer(DirectResponder *direct, PetscInt point, const LamLoad *load, LamRVEState state,
                              LamResponse *response)
 {
+  const LamRVE rve = direct->rve;
+
   PetscFunctionBeginUser;
-  ++direct->responder->queries;
+  ++direct->counters.queries;
+  if (rve->interrupt && rve->interrupt(rve->interrupt_ctx)) { /* the rest of a batch could take minutes to refuse */
+    PetscCall(LamResponseInit(load, response));
+    PetscCall(LamGiveUp(response));
+    ++direct->counters.failures;
+    PetscFunctionReturn(0);
+  }
   PetscCall(LamRVEStatePack(state, direct->start));
-  if (!direct->water && direct->changes == direct->rve->changes && LamResponseHasFields(&direct->last) &&
+  if (!direct->water && direct->changes == rve->changes && LamResponseHasFields(&direct->last) &&
       SameLoad(load, &direct->last.load) && !memcmp(direct->start, direct->first, direct->size)) {
     PetscCall(LamRVEStateCopy(direct->end, state));
     *response = direct->last;
@@ -67,13 +75,13 @@ static PetscErrorCode Answer(DirectResponder *direct, PetscInt point, const LamL
     PetscFunctionReturn(0);
   }
   PetscCall(SolvePoint(direct, point, load, state, response));
-  if (response->status != LAM_OUT_OF_REACH) ++direct->responder->solves;
-  if (!LamResponseHasFields(response)) ++direct->responder->failures;
-  direct->responder->solve_seconds += response->seconds;
+  if (response->status != LAM_OUT_OF_REACH) ++direct->counters.solves;
+  if (!LamResponseHasFields(response)) ++direct->counters.failures;
+  direct->counters.solve_seconds += response->seconds;
   PetscCall(LamRVEStateCopy(state, direct->end));
   PetscCall(PetscMemcpy(direct->first, direct->start, direct->size));
   direct->last = *response;
-  direct->changes = direct->rve->changes;
+  direct->changes = rve->changes;
   PetscFunctionReturn(0);
 }
 
@@ -201,12 +209,18 @@ static PetscErrorCode Destroy(void **ctx)
 
 PetscErrorCode LamRVEResponderCreate(LamRVE rve, PetscInt points, LamResponder *responder)
 {
+  LamResponderFunctions functions = {.respond = Respond,
+                                     .accept = Accept,
+                                     .reject = Reject,
+                                     .destroy = Destroy,
+                                     .state_size = StateSize,
+                                     .save = Save,
+                                     .load = Load};
   DirectResponder *direct;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&direct));
   direct->rve = rve;
-  direct->responder = responder;
   direct->points = points;
   PetscCall(PetscMalloc2(points, &direct->accepted, points, &direct->latest));
   for (PetscInt i = 0; i < points; ++i) {
@@ -218,15 +232,7 @@ PetscErrorCode LamRVEResponderCreate(LamRVE rve, PetscInt points, LamResponder *
   PetscCall(LamRVEStateSize(direct->scratch, &direct->size));
   PetscCall(PetscMalloc2(direct->size, &direct->start, direct->size, &direct->first));
   direct->last.status = LAM_OUT_OF_REACH;
-  PetscCall(PetscMemzero(responder, sizeof(*responder)));
-  responder->ctx = direct;
-  responder->respond = Respond;
-  responder->accept = Accept;
-  responder->reject = Reject;
-  if (rve->seal.allowed) responder->seal = Seal;
-  responder->destroy = Destroy;
-  responder->state_size = StateSize;
-  responder->save = Save;
-  responder->load = Load;
+  if (rve->seal.allowed) functions.seal = Seal;
+  PetscCall(LamResponderCreate(&functions, direct, &direct->counters, responder));
   PetscFunctionReturn(0);
 }

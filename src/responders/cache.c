@@ -64,7 +64,7 @@ static PetscErrorCode AskAll(LamCache *cache, Missing *missing)
     if (missing->responses[i].status == LAM_OUT_OF_REACH) missing->at[left++] = i;
   }
   missing->n = left;
-  cache->self->query_seconds += LamClock() - start;
+  cache->counters.query_seconds += LamClock() - start;
   PetscFunctionReturn(0);
 }
 
@@ -85,24 +85,26 @@ static PetscErrorCode SolveNodes(LamCache *cache, PetscInt n, const PetscInt64 k
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < n; k++) {
     PetscCall(cache->nodes->solve(cache->nodes->ctx, keys[k], &responses[k]));
-    if (responses[k].status != LAM_OUT_OF_REACH) cache->self->solves++;
+    if (responses[k].status != LAM_OUT_OF_REACH) cache->counters.solves++;
   }
-  cache->self->solve_seconds += LamClock() - start;
+  cache->counters.solve_seconds += LamClock() - start;
   PetscFunctionReturn(0);
 }
 
 /* Solves all from the reference state. */
 static PetscErrorCode SolveLoads(LamCache *cache, PetscInt n, const LamLoad loads[], LamResponse responses[])
 {
-  const LamResponder before = *cache->solver;
+  const LamResponderCounters before = LamResponderGetCounters(cache->solver);
+  LamResponderCounters after;
   PetscInt *points;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n, &points));
   for (PetscInt k = 0; k < n; k++) points[k] = -1;
-  PetscCall(cache->solver->respond(cache->solver->ctx, n, loads, points, responses));
-  cache->self->solves += cache->solver->solves - before.solves;
-  cache->self->solve_seconds += cache->solver->solve_seconds - before.solve_seconds;
+  PetscCall(LamResponderRespond(cache->solver, n, loads, points, responses));
+  after = LamResponderGetCounters(cache->solver);
+  cache->counters.solves += after.solves - before.solves;
+  cache->counters.solve_seconds += after.solve_seconds - before.solve_seconds;
   PetscCall(PetscFree(points));
   PetscFunctionReturn(0);
 }
@@ -123,8 +125,8 @@ static PetscErrorCode SolveNearNodes(LamCache *cache, PetscInt n, const LamLoad 
       continue;
     }
     PetscCall(cache->nodes->solve_near(cache->nodes->ctx, node, &loads[k], &responses[k]));
-    if (responses[k].status != LAM_OUT_OF_REACH) cache->self->solves++;
-    cache->self->solve_seconds += LamClock() - start;
+    if (responses[k].status != LAM_OUT_OF_REACH) cache->counters.solves++;
+    cache->counters.solve_seconds += LamClock() - start;
   }
   PetscFunctionReturn(0);
 }
@@ -279,7 +281,7 @@ static PetscErrorCode TakeOwnState(LamCache *cache, const LamLoad *load, const L
   if (!LamResponseHasFields(response)) { /* failed, or unstable: a database does not return unstable states */
     *response = *solved;
     if (LamResponseHasFields(solved) && LamLoadCompare(&rounded, &solved->load))
-      PetscCall(cache->solver->respond(cache->solver->ctx, 1, &rounded, &point, response));
+      PetscCall(LamResponderRespond(cache->solver, 1, &rounded, &point, response));
     LamResponseCorrectToLoad(load, response);
   }
   response->source = LAM_SOURCE_SOLVE;
@@ -298,9 +300,9 @@ static PetscErrorCode AdoptAll(LamCache *cache, Missing *missing)
     PetscCall(LamCacheAdopt(cache, &missing->loads[i], missing->points[i], &missing->responses[i]));
     if (missing->responses[i].status == LAM_OUT_OF_REACH) missing->at[left++] = i;
   }
-  if (!missing->solved) cache->self->hits += missing->n - left;
+  if (!missing->solved) cache->counters.hits += missing->n - left;
   missing->n = left;
-  cache->self->query_seconds += LamClock() - start;
+  cache->counters.query_seconds += LamClock() - start;
   PetscFunctionReturn(0);
 }
 
@@ -406,14 +408,14 @@ static PetscErrorCode CacheRespond(void *ctx, PetscInt n, const LamLoad loads[],
     missing.at[i] = i;
   }
   PetscCall(AskAll(cache, &missing));
-  for (PetscInt i = 0; i < n; i++) cache->self->hits += LamResponseHasFields(&responses[i]);
-  cache->self->queries += n;
+  for (PetscInt i = 0; i < n; i++) cache->counters.hits += LamResponseHasFields(&responses[i]);
+  cache->counters.queries += n;
   if (cache->solver) PetscCall(SolveMissing(cache, &missing));
   for (PetscInt i = 0; i < n; i++) {
     const PetscBool answered = LamResponseHasFields(&responses[i]);
 
-    cache->self->failures += !answered;
-    cache->self->interpolated += answered && responses[i].source == LAM_SOURCE_DATABASE;
+    cache->counters.failures += !answered;
+    cache->counters.interpolated += answered && responses[i].source == LAM_SOURCE_DATABASE;
   }
   PetscCall(PetscFree(missing.at));
   PetscCall(LamTableDestroy(&cache->newest));
@@ -426,7 +428,7 @@ static PetscErrorCode CacheAccept(void *ctx)
 
   PetscFunctionBeginUser;
   PetscCall(LamCacheEndStep(cache, PETSC_TRUE));
-  if (cache->solver && cache->solver->accept) PetscCall(cache->solver->accept(cache->solver->ctx));
+  if (cache->solver) PetscCall(LamResponderAccept(cache->solver));
   PetscFunctionReturn(0);
 }
 
@@ -436,7 +438,7 @@ static PetscErrorCode CacheReject(void *ctx)
 
   PetscFunctionBeginUser;
   PetscCall(LamCacheEndStep(cache, PETSC_FALSE));
-  if (cache->solver && cache->solver->reject) PetscCall(cache->solver->reject(cache->solver->ctx));
+  if (cache->solver) PetscCall(LamResponderReject(cache->solver));
   PetscFunctionReturn(0);
 }
 
@@ -453,10 +455,12 @@ static PetscErrorCode CacheDestroy(void **ctx)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamCacheResponderCreate(MPI_Comm comm, LamDatabase database, LamResponder *solver,
+PetscErrorCode LamCacheResponderCreate(MPI_Comm comm, LamDatabase database, LamResponder solver,
                                        const LamNodeSolver *nodes, LamOutside outside, PetscReal accuracy,
                                        PetscInt points, LamResponder *responder)
 {
+  LamResponderFunctions functions = {
+      .respond = CacheRespond, .accept = CacheAccept, .reject = CacheReject, .destroy = CacheDestroy};
   LamCache *cache;
 
   PetscFunctionBeginUser;
@@ -466,17 +470,16 @@ PetscErrorCode LamCacheResponderCreate(MPI_Comm comm, LamDatabase database, LamR
   cache->database = database;
   cache->solver = solver;
   cache->nodes = nodes;
-  cache->self = responder;
   cache->outside = outside;
   cache->accuracy = accuracy;
   cache->n_points = points;
   PetscCall(PetscCalloc1(points, &cache->points));
   for (PetscInt p = 0; p < points; p++) cache->points[p].held.model.state = cache->points[p].accepted.model.state = -1;
-  *responder = (LamResponder){
-      .ctx = cache, .respond = CacheRespond, .accept = CacheAccept, .reject = CacheReject, .destroy = CacheDestroy};
-  if (!solver) PetscFunctionReturn(0);
-  responder->state_size = LamCacheStateSize;
-  responder->save = LamCacheSave;
-  responder->load = LamCacheLoad;
+  if (solver) {
+    functions.state_size = LamCacheStateSize;
+    functions.save = LamCacheSave;
+    functions.load = LamCacheLoad;
+  }
+  PetscCall(LamResponderCreate(&functions, cache, &cache->counters, responder));
   PetscFunctionReturn(0);
 }

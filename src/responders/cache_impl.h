@@ -23,10 +23,10 @@ typedef struct {
 typedef struct {
   MPI_Comm comm;
   LamDatabase database;       /* borrowed */
-  LamResponder *solver;       /* borrowed; NULL: database only */
+  LamResponder solver;        /* borrowed; NULL: database only */
   const LamNodeSolver *nodes; /* borrowed; NULL: `solver` solves nodes */
   LamOutside outside;
-  LamResponder *self; /* the responder's counters; borrowed */
+  LamResponderCounters counters;
   PetscReal accuracy;
   LamTable newest;       /* owned within a `respond`; NULL: the database has no grid */
   LamCachePoint *points; /* [n_points] */

@@ -8,7 +8,7 @@ typedef struct {
   LamHeterogeneousTissue *tissues;
   LamHeterogeneousPoint *points;
   PetscInt (*number)[LAM_BLEND_TERMS]; /* [point] its index in the tissue of each term */
-  LamResponder *self;                  /* the responder's counters; borrowed */
+  LamResponderCounters counters;
 } Mosaic;
 
 /* The queries of one `respond` to one tissue. */
@@ -103,7 +103,7 @@ static PetscErrorCode AskTissue(const Mosaic *mosaic, PetscInt tissue, PetscInt 
       batch->from[batch->n++][1] = k;
     }
   }
-  PetscCall(t->responder->respond(t->responder->ctx, batch->n, batch->loads, batch->points, batch->responses));
+  PetscCall(LamResponderRespond(t->responder, batch->n, batch->loads, batch->points, batch->responses));
   for (PetscInt q = 0; q < batch->n; q++) {
     const PetscInt i = batch->from[q][0];
 
@@ -146,20 +146,19 @@ static PetscErrorCode Combine(const Mosaic *mosaic, const LamHeterogeneousPoint 
 /* Sums the tissues' counters. */
 static void SumCounters(Mosaic *mosaic)
 {
-  LamResponder *sum = mosaic->self;
+  LamResponderCounters *sum = &mosaic->counters;
 
-  sum->queries = sum->hits = sum->interpolated = sum->solves = sum->failures = 0;
-  sum->query_seconds = sum->solve_seconds = 0;
+  *sum = (LamResponderCounters){0};
   for (PetscInt t = 0; t < mosaic->tissue_count; t++) {
-    const LamResponder *responder = mosaic->tissues[t].responder;
+    const LamResponderCounters part = LamResponderGetCounters(mosaic->tissues[t].responder);
 
-    sum->queries += responder->queries;
-    sum->hits += responder->hits;
-    sum->interpolated += responder->interpolated;
-    sum->solves += responder->solves;
-    sum->failures += responder->failures;
-    sum->query_seconds += responder->query_seconds;
-    sum->solve_seconds += responder->solve_seconds;
+    sum->queries += part.queries;
+    sum->hits += part.hits;
+    sum->interpolated += part.interpolated;
+    sum->solves += part.solves;
+    sum->failures += part.failures;
+    sum->query_seconds += part.query_seconds;
+    sum->solve_seconds += part.solve_seconds;
   }
 }
 
@@ -211,11 +210,7 @@ static PetscErrorCode MosaicAccept(void *ctx)
   Mosaic *mosaic = (Mosaic *)ctx;
 
   PetscFunctionBeginUser;
-  for (PetscInt t = 0; t < mosaic->tissue_count; t++) {
-    LamResponder *responder = mosaic->tissues[t].responder;
-
-    if (responder->accept) PetscCall(responder->accept(responder->ctx));
-  }
+  for (PetscInt t = 0; t < mosaic->tissue_count; t++) PetscCall(LamResponderAccept(mosaic->tissues[t].responder));
   PetscFunctionReturn(0);
 }
 
@@ -224,11 +219,7 @@ static PetscErrorCode MosaicReject(void *ctx)
   Mosaic *mosaic = (Mosaic *)ctx;
 
   PetscFunctionBeginUser;
-  for (PetscInt t = 0; t < mosaic->tissue_count; t++) {
-    LamResponder *responder = mosaic->tissues[t].responder;
-
-    if (responder->reject) PetscCall(responder->reject(responder->ctx));
-  }
+  for (PetscInt t = 0; t < mosaic->tissue_count; t++) PetscCall(LamResponderReject(mosaic->tissues[t].responder));
   PetscFunctionReturn(0);
 }
 
@@ -241,7 +232,7 @@ static PetscErrorCode MosaicSeal(void *ctx, PetscReal bulk_modulus)
   for (PetscInt t = 0; t < mosaic->tissue_count; t++) {
     const LamHeterogeneousTissue *tissue = &mosaic->tissues[t];
 
-    PetscCall(tissue->responder->seal(tissue->responder->ctx, bulk_modulus / tissue->stress));
+    PetscCall(LamResponderSeal(tissue->responder, bulk_modulus / tissue->stress));
   }
   PetscFunctionReturn(0);
 }
@@ -258,10 +249,10 @@ static PetscErrorCode StateSize(void *ctx, size_t *bytes)
     size_t sum = 0;
 
     for (PetscInt k = 0; k < mosaic->points[p].count; k++) {
-      const LamResponder *responder = mosaic->tissues[mosaic->points[p].term[k].knot].responder;
+      const LamResponder responder = mosaic->tissues[mosaic->points[p].term[k].knot].responder;
       size_t size;
 
-      PetscCall(responder->state_size(responder->ctx, &size));
+      PetscCall(LamResponderGetStateSize(responder, &size));
       sum += size;
     }
     *bytes = PetscMax(*bytes, sum);
@@ -276,11 +267,11 @@ static PetscErrorCode Save(void *ctx, PetscInt point, void *bytes)
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < mosaic->points[point].count; k++) {
-    const LamResponder *responder = mosaic->tissues[mosaic->points[point].term[k].knot].responder;
+    const LamResponder responder = mosaic->tissues[mosaic->points[point].term[k].knot].responder;
     size_t size;
 
-    PetscCall(responder->save(responder->ctx, mosaic->number[point][k], at));
-    PetscCall(responder->state_size(responder->ctx, &size));
+    PetscCall(LamResponderSave(responder, mosaic->number[point][k], at));
+    PetscCall(LamResponderGetStateSize(responder, &size));
     at += size;
   }
   PetscFunctionReturn(0);
@@ -293,11 +284,11 @@ static PetscErrorCode Load(void *ctx, PetscInt point, const void *bytes)
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < mosaic->points[point].count; k++) {
-    const LamResponder *responder = mosaic->tissues[mosaic->points[point].term[k].knot].responder;
+    const LamResponder responder = mosaic->tissues[mosaic->points[point].term[k].knot].responder;
     size_t size;
 
-    PetscCall(responder->load(responder->ctx, mosaic->number[point][k], at));
-    PetscCall(responder->state_size(responder->ctx, &size));
+    PetscCall(LamResponderLoad(responder, mosaic->number[point][k], at));
+    PetscCall(LamResponderGetStateSize(responder, &size));
     at += size;
   }
   PetscFunctionReturn(0);
@@ -340,28 +331,24 @@ static PetscErrorCode NumberPoints(Mosaic *mosaic)
 PetscErrorCode LamHeterogeneousCreate(PetscInt tissue_count, const LamHeterogeneousTissue tissues[], PetscInt n,
                                       const LamHeterogeneousPoint points[], LamResponder *responder)
 {
-  PetscBool can_seal = PETSC_TRUE;
+  static const LamResponderFunctions functions = {.respond = MosaicRespond,
+                                                  .accept = MosaicAccept,
+                                                  .reject = MosaicReject,
+                                                  .seal = MosaicSeal,
+                                                  .destroy = MosaicDestroy,
+                                                  .state_size = StateSize,
+                                                  .save = Save,
+                                                  .load = Load};
   Mosaic *mosaic;
 
   PetscFunctionBeginUser;
-  for (PetscInt t = 0; t < tissue_count; t++) can_seal = (PetscBool)(can_seal && tissues[t].responder->seal);
   PetscCall(PetscNew(&mosaic));
   mosaic->tissue_count = tissue_count;
   mosaic->n = n;
-  mosaic->self = responder;
   PetscCall(PetscMalloc3(tissue_count, &mosaic->tissues, n, &mosaic->points, n, &mosaic->number));
   PetscCall(PetscArraycpy(mosaic->tissues, tissues, tissue_count));
   PetscCall(PetscArraycpy(mosaic->points, points, n));
   PetscCall(NumberPoints(mosaic));
-  *responder = (LamResponder){.ctx = mosaic,
-                              .respond = MosaicRespond,
-                              .accept = MosaicAccept,
-                              .reject = MosaicReject,
-                              .seal = can_seal ? MosaicSeal : NULL,
-                              .destroy = MosaicDestroy};
-  if (!tissues[0].responder->state_size) PetscFunctionReturn(0);
-  responder->state_size = StateSize;
-  responder->save = Save;
-  responder->load = Load;
+  PetscCall(LamResponderCreate(&functions, mosaic, &mosaic->counters, responder));
   PetscFunctionReturn(0);
 }

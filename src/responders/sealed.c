@@ -16,7 +16,8 @@
 
 typedef struct {
   MPI_Comm comm;
-  LamResponder *open, *self; /* borrowed */
+  LamResponder open;             /* borrowed */
+  LamResponderCounters counters; /* of `open` */
   PetscInt points;
   PetscBool sealed;
   PetscReal bulk_modulus;
@@ -143,7 +144,7 @@ static PetscErrorCode Find(Sealed *s, PetscInt n, const LamLoad loads[], const P
 
     PetscCallMPI(MPI_Allreduce(&count, &most, 1, MPIU_INT, MPI_MAX, s->comm));
     if (!most) break;
-    PetscCall(s->open->respond(s->open->ctx, count, asked, asked_points, answers));
+    PetscCall(LamResponderRespond(s->open, count, asked, asked_points, answers));
     for (PetscInt k = 0; k < count; k++) {
       const PetscInt i = from[k];
 
@@ -185,7 +186,7 @@ static PetscErrorCode RespondOpen(Sealed *s, PetscInt n, const LamLoad loads[], 
                                   LamResponse responses[])
 {
   PetscFunctionBeginUser;
-  PetscCall(s->open->respond(s->open->ctx, n, loads, points, responses));
+  PetscCall(LamResponderRespond(s->open, n, loads, points, responses));
   for (PetscInt i = 0; i < n; i++) {
     if (!points || points[i] < 0 || !LamResponseHasFields(&responses[i])) continue;
     s->lumen[points[i]] = -responses[i].energy_turgor;
@@ -201,11 +202,7 @@ static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], cons
 
   PetscFunctionBeginUser;
   PetscCall(s->sealed ? RespondSealed(s, n, loads, points, responses) : RespondOpen(s, n, loads, points, responses));
-  s->self->queries = s->open->queries;
-  s->self->hits = s->open->hits;
-  s->self->solves = s->open->solves;
-  s->self->failures = s->open->failures;
-  s->self->solve_seconds = s->open->solve_seconds;
+  s->counters = LamResponderGetCounters(s->open);
   PetscFunctionReturn(0);
 }
 
@@ -216,7 +213,7 @@ static PetscErrorCode Accept(void *ctx)
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(s->accepted_lumen, s->lumen, s->points));
   PetscCall(PetscArraycpy(s->accepted_pressure, s->pressure, s->points));
-  PetscCall(s->open->accept(s->open->ctx));
+  PetscCall(LamResponderAccept(s->open));
   PetscFunctionReturn(0);
 }
 
@@ -227,7 +224,7 @@ static PetscErrorCode Reject(void *ctx)
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(s->lumen, s->accepted_lumen, s->points));
   PetscCall(PetscArraycpy(s->pressure, s->accepted_pressure, s->points));
-  PetscCall(s->open->reject(s->open->ctx));
+  PetscCall(LamResponderReject(s->open));
   PetscFunctionReturn(0);
 }
 
@@ -258,8 +255,7 @@ static PetscErrorCode StateSize(void *ctx, size_t *bytes)
   Sealed *s = (Sealed *)ctx;
 
   PetscFunctionBeginUser;
-  *bytes = 0;
-  if (s->open->state_size) PetscCall(s->open->state_size(s->open->ctx, bytes));
+  PetscCall(LamResponderGetStateSize(s->open, bytes));
   *bytes += sizeof(Kept);
   PetscFunctionReturn(0);
 }
@@ -272,7 +268,7 @@ static PetscErrorCode Save(void *ctx, PetscInt point, void *bytes)
 
   PetscFunctionBeginUser;
   memcpy(bytes, &kept, sizeof(kept));
-  if (s->open->save) PetscCall(s->open->save(s->open->ctx, point, (char *)bytes + sizeof(kept)));
+  PetscCall(LamResponderSave(s->open, point, (char *)bytes + sizeof(kept)));
   PetscFunctionReturn(0);
 }
 
@@ -288,7 +284,7 @@ static PetscErrorCode Load(void *ctx, PetscInt point, const void *bytes)
   s->water[point] = kept.water;
   s->lumen[point] = s->accepted_lumen[point] = kept.lumen;
   s->pressure[point] = s->accepted_pressure[point] = kept.pressure;
-  if (s->open->load) PetscCall(s->open->load(s->open->ctx, point, (const char *)bytes + sizeof(kept)));
+  PetscCall(LamResponderLoad(s->open, point, (const char *)bytes + sizeof(kept)));
   PetscFunctionReturn(0);
 }
 
@@ -302,23 +298,23 @@ static PetscErrorCode Destroy(void **ctx)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamSealedResponderCreate(MPI_Comm comm, LamResponder *open, PetscInt points, LamResponder *responder)
+PetscErrorCode LamSealedResponderCreate(MPI_Comm comm, LamResponder open, PetscInt points, LamResponder *responder)
 {
+  static const LamResponderFunctions functions = {.respond = Respond,
+                                                  .accept = Accept,
+                                                  .reject = Reject,
+                                                  .seal = Seal,
+                                                  .destroy = Destroy,
+                                                  .state_size = StateSize,
+                                                  .save = Save,
+                                                  .load = Load};
   Sealed *s;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
-  *s = (Sealed){.comm = comm, .open = open, .self = responder, .points = points};
+  *s = (Sealed){.comm = comm, .open = open, .points = points};
   PetscCall(PetscCalloc5(points, &s->water, points, &s->lumen, points, &s->accepted_lumen, points, &s->pressure, points,
                          &s->accepted_pressure));
-  *responder = (LamResponder){.ctx = s,
-                              .respond = Respond,
-                              .accept = Accept,
-                              .reject = Reject,
-                              .seal = Seal,
-                              .state_size = StateSize,
-                              .save = Save,
-                              .load = Load,
-                              .destroy = Destroy};
+  PetscCall(LamResponderCreate(&functions, s, &s->counters, responder));
   PetscFunctionReturn(0);
 }

@@ -41,7 +41,7 @@ static PetscErrorCode CommitFreeCells(LamBuild *b, LamGrid grid)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode NewGrid(LamBuild *b, LamResponder *solver, LamGrid *grid)
+static PetscErrorCode NewGrid(LamBuild *b, LamResponder solver, LamGrid *grid)
 {
   char *text;
 
@@ -63,7 +63,7 @@ static PetscInt CountFreeCells(PetscInt n, const PetscInt64 keys[])
   return count;
 }
 
-static PetscErrorCode OldGrid(LamBuild *b, LamResponder *solver, LamGrid *grid)
+static PetscErrorCode OldGrid(LamBuild *b, LamResponder solver, LamGrid *grid)
 {
   const PetscInt64 *keys;
   PetscBool found;
@@ -94,8 +94,8 @@ PetscErrorCode LamBuildStart(LamBuild *b)
   PetscFunctionBeginUser;
   PetscCall(LamRVEResponderCreate(b->rve, 0, &solver));
   PetscCall(OpenWriter(b));
-  PetscCall(b->file ? OldGrid(b, &solver, &grid) : NewGrid(b, &solver, &grid));
-  PetscCall(solver.destroy(&solver.ctx));
+  PetscCall(b->file ? OldGrid(b, solver, &grid) : NewGrid(b, solver, &grid));
+  PetscCall(LamResponderDestroy(&solver));
   PetscCall(LamRoundsCreate(b->scene, &b->shard, b->file, &grid, &b->rounds));
   b->there = b->rounds.nodes - b->added;
   PetscFunctionReturn(0);

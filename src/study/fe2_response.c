@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
-#include "interruptible.h"
 #include "shared_grid.h"
 
 /* ---- databases ---- */
@@ -119,7 +118,7 @@ static PetscErrorCode GiveGrid(LamFE2Run *run, LamFE2Tissue *tissue)
                   "%s: its %" PetscInt_FMT " records belong to no grid; a grid is added, on which new ones lie",
                   tissue->database_path, tissue->recorded);
   PetscCall(
-      LamSharedGridMake(run->comm, &tissue->scene, &tissue->solver, tissue->database, &tissue->grid_text, &complete));
+      LamSharedGridMake(run->comm, &tissue->scene, tissue->direct, tissue->database, &tissue->grid_text, &complete));
   run->stopped = (PetscBool)!complete;
   PetscFunctionReturn(0);
 }
@@ -194,7 +193,6 @@ static PetscErrorCode CreateSolver(LamFE2Run *run, LamFE2Tissue *tissue)
   PetscCall(LamRVESetInterrupt(tissue->rve, LamStopInterrupt, NULL));
   PetscCall(CountKept(run, tissue, &kept));
   PetscCall(LamRVEResponderCreate(tissue->rve, kept, &tissue->direct));
-  PetscCall(LamInterruptibleResponderCreate(&tissue->direct, LamStopRequested, &tissue->solver));
   PetscFunctionReturn(0);
 }
 
@@ -214,20 +212,21 @@ static PetscReal AnswerAccuracy(const LamFE2Run *run, const LamFE2Tissue *tissue
   return run->response == LAM_FE2_CACHE && contact ? 0.1 * scene->accuracy : scene->accuracy;
 }
 
-PetscErrorCode LamFE2ConnectTissue(LamFE2Run *run, LamFE2Tissue *tissue, LamResponder **responder)
+PetscErrorCode LamFE2ConnectTissue(LamFE2Run *run, LamFE2Tissue *tissue, LamResponder *responder)
 {
   PetscFunctionBeginUser;
-  *responder = run->response == LAM_FE2_DIRECT ? &tissue->solver : &tissue->cache;
   if (run->response != LAM_FE2_DATABASE) PetscCall(CreateSolver(run, tissue));
+  *responder = tissue->direct;
   if (run->response == LAM_FE2_DIRECT) PetscFunctionReturn(0);
   if (run->response == LAM_FE2_CACHE) {
     PetscCall(GiveGrid(run, tissue));
     if (run->stopped) PetscFunctionReturn(0);
     PetscCall(CreateNodeSolver(tissue));
   }
-  PetscCall(LamCacheResponderCreate(run->comm, tissue->database, tissue->rve ? &tissue->solver : NULL, &tissue->nodes,
+  PetscCall(LamCacheResponderCreate(run->comm, tissue->database, tissue->direct, &tissue->nodes,
                                     tissue->scene.response.outside, AnswerAccuracy(run, tissue), tissue->points,
                                     &tissue->cache));
+  *responder = tissue->cache;
   PetscFunctionReturn(0);
 }
 
@@ -235,7 +234,7 @@ PetscErrorCode LamFE2Connect(LamFE2Run *run)
 {
   LamFE2Tissues *tissues = &run->tissues;
   LamHeterogeneousTissue *parts;
-  LamResponder *responder = NULL;
+  LamResponder responder = NULL;
 
   PetscFunctionBeginUser;
   PetscCall(LamMacroSetStop(run->macro, LamStopRequested));
@@ -248,7 +247,7 @@ PetscErrorCode LamFE2Connect(LamFE2Run *run)
   }
   if (!run->stopped && !tissues->plain) {
     PetscCall(LamHeterogeneousCreate(tissues->count, parts, tissues->points, tissues->point, &run->mosaic));
-    responder = &run->mosaic;
+    responder = run->mosaic;
   }
   PetscCall(PetscFree(parts));
   if (!run->stopped) PetscCall(LamMacroSetResponder(run->macro, responder));
@@ -258,10 +257,9 @@ PetscErrorCode LamFE2Connect(LamFE2Run *run)
 PetscErrorCode LamFE2DisconnectTissue(LamFE2Tissue *tissue)
 {
   PetscFunctionBeginUser;
-  if (tissue->cache.destroy) PetscCall(tissue->cache.destroy(&tissue->cache.ctx));
-  if (tissue->solver.destroy) PetscCall(tissue->solver.destroy(&tissue->solver.ctx));
+  PetscCall(LamResponderDestroy(&tissue->cache));
   PetscCall(LamNodeChainDestroy(&tissue->chain));
-  if (tissue->direct.destroy) PetscCall(tissue->direct.destroy(&tissue->direct.ctx));
+  PetscCall(LamResponderDestroy(&tissue->direct));
   PetscCall(LamRVEDestroy(&tissue->rve));
   PetscCall(LamDatabaseClose(&tissue->database));
   PetscCall(LamKnownRecordsDestroy(&tissue->known));
@@ -273,7 +271,7 @@ PetscErrorCode LamFE2DisconnectTissue(LamFE2Tissue *tissue)
 PetscErrorCode LamFE2Disconnect(LamFE2Run *run)
 {
   PetscFunctionBeginUser;
-  if (run->mosaic.destroy) PetscCall(run->mosaic.destroy(&run->mosaic.ctx));
+  PetscCall(LamResponderDestroy(&run->mosaic));
   for (PetscInt t = 0; t < run->tissues.count; t++) PetscCall(LamFE2DisconnectTissue(&run->tissues.tissues[t]));
   PetscCall(LamFE2TissuesDestroy(&run->tissues));
   PetscFunctionReturn(0);

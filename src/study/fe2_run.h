@@ -50,7 +50,7 @@ typedef struct LamFE2Run_s {
   PetscReal saved, save_seconds, all_save_seconds; /* time of the last checkpoint; its duration; duration of all, s */
   LamArchive archive;                              /* the checkpoint to resume from, until it is read; NULL: none */
   LamFE2Tissues tissues;
-  LamResponder mosaic; /* responder for several tissues; destroy NULL: not in use */
+  LamResponder mosaic; /* responder for several tissues; NULL: not in use */
 
   /* rank 0 only */
   LamFE2File out;
@@ -88,7 +88,7 @@ PetscErrorCode LamFE2Connect(LamFE2Run *run);
 PetscErrorCode LamFE2Disconnect(LamFE2Run *run); /* after the macroscale solver's end */
 /* The same for one tissue: its database and mesh; its responder, unless a stop is requested first (run->stopped). */
 PetscErrorCode LamFE2PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue);
-PetscErrorCode LamFE2ConnectTissue(LamFE2Run *run, LamFE2Tissue *tissue, LamResponder **responder);
+PetscErrorCode LamFE2ConnectTissue(LamFE2Run *run, LamFE2Tissue *tissue, LamResponder *responder);
 PetscErrorCode LamFE2DisconnectTissue(LamFE2Tissue *tissue);
 /* Multiplies each wall parameter of the RVE, relative to those in `micro`, by its factor. */
 PetscErrorCode LamFE2ChangeWalls(LamRVE rve, const LamMicrostructure *micro,

@@ -102,7 +102,7 @@ static PetscErrorCode Choose(const LamFE2Run *run, const LamMacroFields *fields,
 static PetscErrorCode Fetch(LamFE2Run *run, Zoom *zoom, char **bytes)
 {
   const LamFE2Tissues *tissues = &run->tissues;
-  const LamResponder *direct = &tissues->tissues[0].direct;
+  const LamResponder direct = tissues->tissues[0].direct;
   PetscMPIInt rank, owner;
   PetscInt point;
   size_t length = 0;
@@ -123,9 +123,9 @@ static PetscErrorCode Fetch(LamFE2Run *run, Zoom *zoom, char **bytes)
   PetscCallMPI(MPI_Bcast(&zoom->angle, 1, MPIU_REAL, owner, run->comm));
   *bytes = NULL;
   if (!tissues->plain || run->response != LAM_FE2_DIRECT) PetscFunctionReturn(0);
-  PetscCall(direct->state_size(direct->ctx, &length));
+  PetscCall(LamResponderGetStateSize(direct, &length));
   PetscCall(PetscMalloc1(length, bytes));
-  if (rank == owner) PetscCall(direct->save(direct->ctx, point, *bytes));
+  if (rank == owner) PetscCall(LamResponderSave(direct, point, *bytes));
   PetscCallMPI(MPI_Bcast(*bytes, (PetscMPIInt)length, MPI_BYTE, owner, run->comm));
   PetscFunctionReturn(0);
 }

@@ -93,7 +93,7 @@ PetscErrorCode LamMaterialDestroy(LamMaterial *material)
   PetscFunctionBeginUser;
   *material = NULL;
   if (!m) PetscFunctionReturn(0);
-  if (m->responder.destroy) PetscCall(m->responder.destroy(&m->responder.ctx));
+  PetscCall(LamResponderDestroy(&m->responder));
   PetscCall(LamRVEDestroy(&m->rve));
   PetscCall(LamSceneDestroy(&m->scene));
   PetscCall(LamQuerySourceClose(&m->database));
@@ -125,7 +125,7 @@ static PetscErrorCode EvaluateOne(LamMaterial m, int point, const LamLoad *load,
 
   PetscFunctionBeginUser;
   if (m->rve)
-    PetscCall(m->responder.respond(m->responder.ctx, 1, load, &number, response));
+    PetscCall(LamResponderRespond(m->responder, 1, load, &number, response));
   else
     PetscCall(LamDatabaseQuery(m->database.database, load, m->accuracy, response));
   PetscFunctionReturn(0);
@@ -176,14 +176,14 @@ PetscErrorCode LamMaterialEvaluate(LamMaterial m, int n, const int points[], con
 PetscErrorCode LamMaterialAccept(LamMaterial m)
 {
   PetscFunctionBeginUser;
-  if (m->rve) PetscCall(m->responder.accept(m->responder.ctx));
+  if (m->rve) PetscCall(LamResponderAccept(m->responder));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamMaterialReject(LamMaterial m)
 {
   PetscFunctionBeginUser;
-  if (m->rve) PetscCall(m->responder.reject(m->responder.ctx));
+  if (m->rve) PetscCall(LamResponderReject(m->responder));
   PetscFunctionReturn(0);
 }
 
@@ -193,7 +193,7 @@ PetscErrorCode LamMaterialGetStateSize(LamMaterial m, size_t *bytes)
 {
   PetscFunctionBeginUser;
   *bytes = 0;
-  if (m->rve) PetscCall(m->responder.state_size(m->responder.ctx, bytes));
+  if (m->rve) PetscCall(LamResponderGetStateSize(m->responder, bytes));
   PetscFunctionReturn(0);
 }
 
@@ -210,7 +210,7 @@ PetscErrorCode LamMaterialSaveState(LamMaterial m, int point, void *bytes)
 {
   PetscFunctionBeginUser;
   PetscCall(CheckPoint(m, point));
-  PetscCall(m->responder.save(m->responder.ctx, point, bytes));
+  PetscCall(LamResponderSave(m->responder, point, bytes));
   PetscFunctionReturn(0);
 }
 
@@ -218,6 +218,6 @@ PetscErrorCode LamMaterialRestoreState(LamMaterial m, int point, const void *byt
 {
   PetscFunctionBeginUser;
   PetscCall(CheckPoint(m, point));
-  PetscCall(m->responder.load(m->responder.ctx, point, bytes));
+  PetscCall(LamResponderLoad(m->responder, point, bytes));
   PetscFunctionReturn(0);
 }

@@ -13,7 +13,7 @@
 
 /* ---- responses ---- */
 
-static PetscErrorCode Connect(LamProcessStudy *study, LamResponder **responder)
+static PetscErrorCode Connect(LamProcessStudy *study, LamResponder *responder)
 {
   LamFE2Run *response = &study->response;
   LamFE2Tissue *tissue;
@@ -157,7 +157,7 @@ static PetscErrorCode Follow(LamProcessStudy *study)
 
 PetscErrorCode LamProcessSolvePoint(LamProcessStudy *study)
 {
-  LamResponder *responder;
+  LamResponder responder;
 
   PetscFunctionBeginUser;
   study->reason = LAM_PROCESS_STOPPED;
@@ -169,7 +169,7 @@ PetscErrorCode LamProcessSolvePoint(LamProcessStudy *study)
   if (study->response.response == LAM_FE2_DIRECT)
     PetscCall(LamProcessSetWalls(study->process, LamFE2ChangeTissueWalls, study->response.tissues.tissues));
   if (study->response.response == LAM_FE2_CACHE)
-    PetscCall(LamProcessSetReferenceResponder(study->process, &study->response.tissues.tissues->solver));
+    PetscCall(LamProcessSetReferenceResponder(study->process, study->response.tissues.tissues->direct));
   PetscCall(LamProcessSetMonitor(study->process, AddState, study));
   PetscCall(LamProcessSetStop(study->process, LamStopRequested));
   PetscCall(Follow(study));

@@ -31,7 +31,7 @@ static PetscErrorCode MadeDestroy(Made *made)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode MakeOnRoot(const LamScene *scene, LamResponder *solver, Made *made)
+static PetscErrorCode MakeOnRoot(const LamScene *scene, LamResponder solver, Made *made)
 {
   const LamResponse *records;
   const PetscInt64 *keys;
@@ -80,7 +80,7 @@ static PetscErrorCode Share(MPI_Comm comm, PetscMPIInt rank, Made *made)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamSharedGridMake(MPI_Comm comm, const LamScene *scene, LamResponder *solver, LamDatabase database,
+PetscErrorCode LamSharedGridMake(MPI_Comm comm, const LamScene *scene, LamResponder solver, LamDatabase database,
                                  char **text, PetscBool *complete)
 {
   PetscMPIInt rank;

@@ -12,7 +12,7 @@
   LAM_GRID_NAME before the records; the caller frees it. NULL elsewhere. *complete is PETSC_FALSE if a stop was
   requested on rank 0: then no grid is set, since it is built from all of its states or not at all. Collective.
 */
-PetscErrorCode LamSharedGridMake(MPI_Comm comm, const LamScene *scene, LamResponder *solver, LamDatabase database,
+PetscErrorCode LamSharedGridMake(MPI_Comm comm, const LamScene *scene, LamResponder solver, LamDatabase database,
                                  char **text, PetscBool *complete);
 
 #endif

@@ -80,7 +80,7 @@ static PetscBool HasOneCell(const LamMicrostructure *micro)
 }
 
 /* Solves all states, then those that do not float again at larger stretch. *left: number that never floated. */
-static PetscErrorCode SolveStates(const LamFreeCell *cell, LamResponder *solver, PetscInt *left)
+static PetscErrorCode SolveStates(const LamFreeCell *cell, LamResponder solver, PetscInt *left)
 {
   PetscInt *missing, *points;
   LamResponse *answers;
@@ -97,7 +97,7 @@ static PetscErrorCode SolveStates(const LamFreeCell *cell, LamResponder *solver,
       loads[i] = LoadOf(x, cell->suction[missing[i]], cell->cohesion);
       points[i] = -1;
     }
-    PetscCall(solver->respond(solver->ctx, asked, loads, points, answers));
+    PetscCall(LamResponderRespond(solver, asked, loads, points, answers));
     *left = 0;
     for (PetscInt i = 0; i < asked; i++) {
       const PetscInt j = missing[i];
@@ -192,7 +192,7 @@ static void Tabulate(LamFreeCell *cell)
 }
 
 PetscErrorCode LamFreeCellMake(const LamMicrostructure *micro, PetscReal cohesion, PetscReal suction_min,
-                               PetscReal suction_max, PetscReal scale, PetscInt n, LamResponder *solver,
+                               PetscReal suction_max, PetscReal scale, PetscInt n, LamResponder solver,
                                LamFreeCell *cell)
 {
   PetscInt left;

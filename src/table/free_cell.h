@@ -31,7 +31,7 @@ typedef struct {
   gap determines their width. For identical cells pass a microstructure and a solver of one cell instead.
 */
 PetscErrorCode LamFreeCellMake(const LamMicrostructure *micro, PetscReal cohesion, PetscReal suction_min,
-                               PetscReal suction_max, PetscReal scale, PetscInt n, LamResponder *solver,
+                               PetscReal suction_max, PetscReal scale, PetscInt n, LamResponder solver,
                                LamFreeCell *cell);
 PetscErrorCode LamFreeCellDestroy(LamFreeCell *cell);
 /* a(s) and its first two derivatives with respect to s (C2); s must be within the knots. */

@@ -161,7 +161,7 @@ static void LayOutStrains(const LamScene *scene, const LamSample *box, LamGrid g
     g->turgor = scene->turgor;
 }
 
-static PetscErrorCode SolveFreeCell(LamGrid g, const LamMicrostructure *micro, LamResponder *solver, LamFreeCell *cell)
+static PetscErrorCode SolveFreeCell(LamGrid g, const LamMicrostructure *micro, LamResponder solver, LamFreeCell *cell)
 {
   PetscFunctionBeginUser;
   PetscCall(LamFreeCellMake(micro, g->cohesion, LamGridSuction(g, 0), LamGridSuction(g, LAM_ROOT * g->tau_cells),
@@ -169,7 +169,7 @@ static PetscErrorCode SolveFreeCell(LamGrid g, const LamMicrostructure *micro, L
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode LayOutSuction(const LamScene *scene, const LamSample *box, LamResponder *solver, LamGrid g)
+static PetscErrorCode LayOutSuction(const LamScene *scene, const LamSample *box, LamResponder solver, LamGrid g)
 {
   PetscReal s_min = box->turgor_min + scene->cohesion, s_max = box->turgor_max + scene->cohesion;
 
@@ -219,7 +219,7 @@ static void SetTissue(const LamMicrostructure *micro, LamGrid g)
   g->turgor_reach = TURGOR_REACH * softest;
 }
 
-PetscErrorCode LamGridCreate(const LamScene *scene, LamResponder *solver, LamGrid *grid)
+PetscErrorCode LamGridCreate(const LamScene *scene, LamResponder solver, LamGrid *grid)
 {
   const LamMicrostructure *micro = &scene->micro;
   const LamSample *box = scene->has_sample ? &scene->sample : &default_box;
@@ -267,7 +267,7 @@ PetscErrorCode LamGridGetFreeKeys(LamGrid grid, PetscInt *n, const PetscInt64 *k
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamGridSolveRecords(LamGrid grid, const LamMicrostructure *micro, LamResponder *solver)
+PetscErrorCode LamGridSolveRecords(LamGrid grid, const LamMicrostructure *micro, LamResponder solver)
 {
   LamFreeCell again = {0};
 

@@ -47,7 +47,7 @@ static PetscErrorCode Note(LamMacro macro, const LamMacroStep *step, PetscBool *
 /* ---- a share of the questions, solved as well ---- */
 
 typedef struct {
-  LamResponder *cache, direct;
+  LamResponder cache, direct;
   PetscInt count, *number; /* [points] of the sample, -1: not in it */
   PetscInt64 asked, all;
   PetscReal seconds, worst, square;
@@ -59,7 +59,7 @@ static PetscErrorCode SampleRespond(void *ctx, PetscInt n, const LamLoad loads[]
   Sample *s = (Sample *)ctx;
 
   PetscFunctionBeginUser;
-  PetscCall(s->cache->respond(s->cache->ctx, n, loads, points, responses));
+  PetscCall(LamResponderRespond(s->cache, n, loads, points, responses));
   s->all += n;
   for (PetscInt i = 0; i < n; i++) {
     const PetscInt number = points[i] < 0 ? -1 : s->number[points[i]];
@@ -68,7 +68,7 @@ static PetscErrorCode SampleRespond(void *ctx, PetscInt n, const LamLoad loads[]
 
     if (number < 0) continue;
     PetscCall(PetscTime(&start));
-    PetscCall(s->direct.respond(s->direct.ctx, 1, &loads[i], &number, &exact));
+    PetscCall(LamResponderRespond(s->direct, 1, &loads[i], &number, &exact));
     PetscCall(PetscTime(&end));
     s->asked++;
     s->seconds += end - start;
@@ -84,8 +84,8 @@ static PetscErrorCode SampleAccept(void *ctx)
   Sample *s = (Sample *)ctx;
 
   PetscFunctionBeginUser;
-  PetscCall(s->cache->accept(s->cache->ctx));
-  PetscCall(s->direct.accept(s->direct.ctx));
+  PetscCall(LamResponderAccept(s->cache));
+  PetscCall(LamResponderAccept(s->direct));
   PetscFunctionReturn(0);
 }
 
@@ -94,12 +94,12 @@ static PetscErrorCode SampleReject(void *ctx)
   Sample *s = (Sample *)ctx;
 
   PetscFunctionBeginUser;
-  PetscCall(s->cache->reject(s->cache->ctx));
-  PetscCall(s->direct.reject(s->direct.ctx));
+  PetscCall(LamResponderReject(s->cache));
+  PetscCall(LamResponderReject(s->direct));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SampleCreate(LamRVE rve, LamResponder *cache, PetscInt points, PetscInt count, Sample *s)
+static PetscErrorCode SampleCreate(LamRVE rve, LamResponder cache, PetscInt points, PetscInt count, Sample *s)
 {
   uint64_t seed = 7;
 
@@ -134,8 +134,10 @@ static void PrintSample(const Sample *s, PetscReal cache_seconds)
 static PetscErrorCode Run(const LamScene *scene, LamDatabase database, PetscInt sampled, Figures *f)
 {
   char message[LAM_MESSAGE_LENGTH];
-  LamResponder solver, cache = {0}, both;
+  const LamResponderFunctions functions = {.respond = SampleRespond, .accept = SampleAccept, .reject = SampleReject};
+  LamResponder solver, cache = NULL, both = NULL;
   Sample sample = {0};
+  LamResponderCounters counters;
   LamMacroReason reason;
   LamMacro macro;
   PetscLogDouble start, end;
@@ -157,34 +159,36 @@ static PetscErrorCode Run(const LamScene *scene, LamDatabase database, PetscInt 
   if (database) {
     PetscCall(LamDatabaseGetGrid(database, &grid));
     if (!grid) {
-      PetscCall(LamGridCreate(scene, &solver, &grid));
+      PetscCall(LamGridCreate(scene, solver, &grid));
       PetscCall(LamDatabaseSetGrid(database, &grid));
     }
-    PetscCall(LamCacheResponderCreate(PETSC_COMM_SELF, database, &solver, NULL, LAM_OUTSIDE_SOLVE, scene->accuracy,
+    PetscCall(LamCacheResponderCreate(PETSC_COMM_SELF, database, solver, NULL, LAM_OUTSIDE_SOLVE, scene->accuracy,
                                       points, &cache));
   }
   if (sampled) {
-    PetscCall(SampleCreate(rve, &cache, points, sampled, &sample));
-    both = (LamResponder){.ctx = &sample, .respond = SampleRespond, .accept = SampleAccept, .reject = SampleReject};
+    PetscCall(SampleCreate(rve, cache, points, sampled, &sample));
+    PetscCall(LamResponderCreate(&functions, &sample, NULL, &both));
   }
-  PetscCall(LamMacroSetResponder(macro, sampled ? &both : database ? &cache : &solver));
+  PetscCall(LamMacroSetResponder(macro, sampled ? both : database ? cache : solver));
   PetscCall(LamMacroSetMonitor(macro, Note, f));
   PetscCall(LamMacroSolve(macro, &reason, message));
   if (reason != LAM_MACRO_DONE) printf("not done: %s\n", message);
   PetscCall(LamMacroDestroy(&macro));
   if (sampled) {
-    PetscCall(sample.direct.destroy(&sample.direct.ctx));
+    counters = LamResponderGetCounters(cache);
+    PetscCall(LamResponderDestroy(&sample.direct));
     PetscCall(PetscFree(sample.number));
   }
-  if (database) PetscCall(cache.destroy(&cache.ctx));
-  PetscCall(solver.destroy(&solver.ctx));
+  PetscCall(LamResponderDestroy(&both));
+  PetscCall(LamResponderDestroy(&cache));
+  PetscCall(LamResponderDestroy(&solver));
   PetscCall(LamRVEDestroy(&rve));
   PetscCall(PetscTime(&end));
   f->seconds = end - start - sample.seconds;
   if (sampled) {
-    f->hits = cache.hits;
-    f->solves = cache.solves;
-    f->queries = cache.queries;
+    f->hits = counters.hits;
+    f->solves = counters.solves;
+    f->queries = counters.queries;
     PrintSample(&sample, f->seconds);
   }
   PetscFunctionReturn(0);

@@ -37,17 +37,17 @@ static LamLoad LoadOf(const double x[3], double s)
   return load;
 }
 
-static PetscErrorCode Solve(LamResponder *solver, const double x[3], double s, LamResponse *r)
+static PetscErrorCode Solve(LamResponder solver, const double x[3], double s, LamResponse *r)
 {
   const LamLoad load = LoadOf(x, s);
   const PetscInt point = -1;
 
   PetscFunctionBeginUser;
-  PetscCall(solver->respond(solver->ctx, 1, &load, &point, r));
+  PetscCall(LamResponderRespond(solver, 1, &load, &point, r));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CompareBetweenKnots(LamResponder *solver, const LamFreeCell *cell)
+static PetscErrorCode CompareBetweenKnots(LamResponder solver, const LamFreeCell *cell)
 {
   static const double x[3] = {0.35, 0.35, 0.35};
   const double J = exp(2 * x[0]);
@@ -93,7 +93,7 @@ static void Draw(const LamFreeCell *cell, uint64_t *seed, PetscBool is_close, do
 }
 
 /* One state, told of where it touches; *touches, *failed are counted up. */
-static PetscErrorCode Try(LamResponder *solver, double s, const double x[3], double a, int *touches, int *failed)
+static PetscErrorCode Try(LamResponder solver, double s, const double x[3], double a, int *touches, int *failed)
 {
   double P[9] = {0};
   LamResponse r;
@@ -113,7 +113,7 @@ static PetscErrorCode Try(LamResponder *solver, double s, const double x[3], dou
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CountTouching(LamResponder *solver, const LamFreeCell *cell, int count)
+static PetscErrorCode CountTouching(LamResponder solver, const LamFreeCell *cell, int count)
 {
   uint64_t seed = 1;
   int touches = 0, failed = 0, ignored = 0;
@@ -149,13 +149,13 @@ static PetscErrorCode Run(int count)
   PetscCall(NewTissue(&micro, &rve, NULL));
   PetscCall(LamRVEResponderCreate(rve, 0, &solver));
   PetscCall(PetscTime(&start));
-  PetscCall(LamFreeCellMake(&micro, COHESION, SUCTION_MIN, SUCTION_MAX, SCALE, KNOTS, &solver, &cell));
+  PetscCall(LamFreeCellMake(&micro, COHESION, SUCTION_MIN, SUCTION_MAX, SCALE, KNOTS, solver, &cell));
   PetscCall(PetscTime(&end));
-  printf("%d knots from %d solves in %.2f s\n", (int)cell.n, (int)solver.solves, end - start);
-  PetscCall(CompareBetweenKnots(&solver, &cell));
-  PetscCall(CountTouching(&solver, &cell, count));
+  printf("%d knots from %d solves in %.2f s\n", (int)cell.n, (int)LamResponderGetCounters(solver).solves, end - start);
+  PetscCall(CompareBetweenKnots(solver, &cell));
+  PetscCall(CountTouching(solver, &cell, count));
   PetscCall(LamFreeCellDestroy(&cell));
-  PetscCall(solver.destroy(&solver.ctx));
+  PetscCall(LamResponderDestroy(&solver));
   PetscCall(LamRVEDestroy(&rve));
   PetscFunctionReturn(0);
 }

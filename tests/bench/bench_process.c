@@ -25,7 +25,7 @@ static PetscErrorCode Keep(const LamProcessState *state, void *ctx)
   return 0;
 }
 
-static PetscErrorCode Run(LamScene *scene, LamResponder *responder, PetscReal tolerance, Way *way,
+static PetscErrorCode Run(LamScene *scene, LamResponder responder, PetscReal tolerance, Way *way,
                           LamProcessCounts *counts, PetscReal *seconds)
 {
   char message[LAM_PROCESS_MESSAGE];
@@ -65,7 +65,7 @@ static PetscReal Error(const Way *way, const Way *reference)
   return error;
 }
 
-static PetscErrorCode Measure(LamScene *scene, LamResponder *responder)
+static PetscErrorCode Measure(LamScene *scene, LamResponder responder)
 {
   static Way reference, way;
   LamProcessCounts counts;
@@ -103,8 +103,8 @@ static PetscErrorCode Bench(const char *path)
     PetscCall(NewTissue(&scene->micro, &rve, NULL));
     PetscCall(LamRVEResponderCreate(rve, 1, &responder));
   }
-  PetscCall(Measure(scene, &responder));
-  PetscCall(responder.destroy(&responder.ctx));
+  PetscCall(Measure(scene, responder));
+  PetscCall(LamResponderDestroy(&responder));
   PetscCall(LamDatabaseClose(&database));
   PetscCall(LamRVEDestroy(&rve));
   PetscCall(LamSceneDestroy(&scene));

@@ -92,14 +92,14 @@ static PetscErrorCode Together(LamScene *scene, PetscReal tolerance, End *end, L
   PetscCall(LamMacroSetUp(macro));
   PetscCall(LamMacroGetPointCount(macro, &points));
   PetscCall(MakeSoft(points, &responder));
-  PetscCall(LamMacroSetResponder(macro, &responder));
+  PetscCall(LamMacroSetResponder(macro, responder));
   PetscCall(LamBodySetMonitor(body, KeepEnd, end));
   PetscCall(LamBodyRun(body, &reason, message));
   PetscCheck(reason == LAM_PROCESS_DONE, PETSC_COMM_SELF, PETSC_ERR_LIB, "%s", message);
   PetscCall(LamBodyGetCounts(body, counts));
   PetscCall(LamBodyDestroy(&body));
   PetscCall(LamMacroDestroy(&macro));
-  PetscCall(responder.destroy(&responder.ctx));
+  PetscCall(LamResponderDestroy(&responder));
   *seconds = LamClock() - start;
   PetscFunctionReturn(0);
 }
@@ -196,7 +196,7 @@ static PetscErrorCode Splitting(LamScene *scene, PetscInt steps, PetscBool holds
   PetscCall(LamMacroSetUp(s.macro));
   PetscCall(LamMacroGetPointCount(s.macro, &s.points));
   PetscCall(MakeSoft(s.points, &responder));
-  PetscCall(LamMacroSetResponder(s.macro, &responder));
+  PetscCall(LamMacroSetResponder(s.macro, responder));
   PetscCall(LamMacroStart(s.macro, ok, why));
   PetscCall(LamMacroGetState(s.macro, s.u, s.pressures));
   for (PetscInt p = 0; p < s.points; p++) {
@@ -212,7 +212,7 @@ static PetscErrorCode Splitting(LamScene *scene, PetscInt steps, PetscBool holds
                    holds_turgor, ok));
   if (*ok) PetscCall(FindEnd(&s, end));
   PetscCall(LamMacroDestroy(&s.macro));
-  PetscCall(responder.destroy(&responder.ctx));
+  PetscCall(LamResponderDestroy(&responder));
   *seconds = LamClock() - start;
   PetscFunctionReturn(0);
 }

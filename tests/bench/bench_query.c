@@ -266,7 +266,7 @@ static PetscErrorCode Solve(Bench *bench, PetscInt n, const LamLoad loads[], Lam
   for (PetscInt i = 0; i < n; i++) {
     const PetscInt point = -1;
 
-    PetscCall(bench->solver.respond(bench->solver.ctx, 1, &loads[i], &point, &responses[i]));
+    PetscCall(LamResponderRespond(bench->solver, 1, &loads[i], &point, &responses[i]));
   }
   PetscFunctionReturn(0);
 }
@@ -406,7 +406,7 @@ static PetscErrorCode MeasureTable(Bench *bench)
 
   PetscFunctionBeginUser;
   PetscCall(LamDatabaseCreateEmpty(bench->scene, &scheme.database));
-  PetscCall(LamGridCreate(bench->scene, &bench->solver, &grid));
+  PetscCall(LamGridCreate(bench->scene, bench->solver, &grid));
   PetscCall(LamGridGetRecords(grid, &scheme.solves, &keys, &records));
   PetscCall(LamDatabaseAdd(scheme.database, scheme.solves, keys, records));
   PetscCall(LamDatabaseSetGrid(scheme.database, &grid));
@@ -440,13 +440,13 @@ static PetscErrorCode Compare(const Tissue *tissue, const Extent *extent)
   PetscCall(SolveHeldOut(&bench));
   printf("\n%s, C4/C1 = %g: %d held-out states, %d left out; %.0f ms a solve\n", tissue->contact ? "contact" : "bonded",
          (double)tissue->ratio, (int)bench.n, (int)(extent->states - bench.n),
-         1e3 * bench.solver.solve_seconds / extent->states);
+         1e3 * LamResponderGetCounters(bench.solver).solve_seconds / extent->states);
   printf(
       "scheme  solves answers     P error %%: 50 %%, 95 %%, 99 %%, largest     a query     at 1 %%: answered, off\n");
   PetscCall(CompareScattered(&bench));
   PetscCall(MeasureTable(&bench));
   PetscCall(PetscFree(bench.truth));
-  PetscCall(bench.solver.destroy(&bench.solver.ctx));
+  PetscCall(LamResponderDestroy(&bench.solver));
   PetscCall(LamRVEDestroy(&rve));
   PetscCall(LamSceneDestroy(&scene));
   PetscFunctionReturn(0);

@@ -18,16 +18,27 @@ LamScene AnalyticScene(const AnalyticTissue *tissue)
   return scene;
 }
 
+PetscErrorCode AnalyticGridCreate(const LamScene *scene, AnalyticTissue *tissue, LamGrid *grid)
+{
+  const LamResponderFunctions functions = {.respond = TissueRespond};
+  LamResponder solver;
+  PetscErrorCode ierr;
+
+  CHECK(LamResponderCreate(&functions, tissue, NULL, &solver));
+  ierr = LamGridCreate(scene, solver, grid);
+  CHECK(LamResponderDestroy(&solver));
+  return ierr;
+}
+
 AnalyticTable AnalyticTableOpenScene(AnalyticTissue tissue, LamScene scene)
 {
   AnalyticTable t = {.tissue = tissue, .scene = scene};
-  LamResponder solver = {.ctx = &t.tissue, .respond = TissueRespond};
   const LamResponse *records;
   const PetscInt64 *keys;
   LamGrid grid;
   PetscInt n;
 
-  CHECK(LamGridCreate(&t.scene, &solver, &grid));
+  CHECK(AnalyticGridCreate(&t.scene, &t.tissue, &grid));
   CHECK(LamDatabaseCreateEmpty(&t.scene, &t.database));
   CHECK(LamGridGetRecords(grid, &n, &keys, &records));
   CHECK(LamDatabaseAdd(t.database, n, keys, records));

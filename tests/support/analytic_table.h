@@ -17,6 +17,8 @@ typedef struct {
 #define TABLE_TEST(name, open) TEST_ON(name, AnalyticTable, t, *t = open, AnalyticTableClose(t))
 
 LamScene AnalyticScene(const AnalyticTissue *tissue);
+/* LamGridCreate with the tissue as solver. */
+PetscErrorCode AnalyticGridCreate(const LamScene *scene, AnalyticTissue *tissue, LamGrid *grid);
 /* With the free cells' states, without any other node. */
 AnalyticTable AnalyticTableOpenScene(AnalyticTissue tissue, LamScene scene);
 AnalyticTable AnalyticTableOpen(PetscBool contact, double orientation);

@@ -38,7 +38,7 @@ static void MakeMaterial(PetscInt points, Told *told)
   assert_int_equal(SyntheticCreate(points, &told->material, &material), 0);
   material->phi = 0.7;
   material->c = 0.05;
-  told->material.respond = BodyRespond;
+  material->respond = BodyRespond;
 }
 
 void ReadScene(const char text[], PetscReal tolerance, Told *told)
@@ -62,13 +62,13 @@ void RunBody(Told *told)
   assert_int_equal(LamMacroSetUp(macro), 0);
   assert_int_equal(LamMacroGetPointCount(macro, &points), 0);
   MakeMaterial(points, told);
-  assert_int_equal(LamMacroSetResponder(macro, &told->material), 0);
+  assert_int_equal(LamMacroSetResponder(macro, told->material), 0);
   assert_int_equal(LamBodySetMonitor(body, KeepBody, told), 0);
   assert_int_equal(LamBodyRun(body, &told->reason, told->message), 0);
   assert_int_equal(LamBodyGetCounts(body, &told->counts), 0);
   assert_int_equal(LamBodyDestroy(&body), 0);
   assert_int_equal(LamMacroDestroy(&macro), 0);
-  assert_int_equal(told->material.destroy(&told->material.ctx), 0);
+  assert_int_equal(LamResponderDestroy(&told->material), 0);
 }
 
 Told FollowBody(const char text[], PetscReal tolerance)
@@ -96,11 +96,11 @@ Told FollowPoint(const char text[], PetscReal tolerance)
   ReadScene(text, tolerance, &told);
   MakeMaterial(1, &told);
   assert_int_equal(LamProcessCreate(told.scene, &process), 0);
-  assert_int_equal(LamProcessSetResponder(process, &told.material), 0);
+  assert_int_equal(LamProcessSetResponder(process, told.material), 0);
   assert_int_equal(LamProcessSetMonitor(process, KeepPoint, &told), 0);
   assert_int_equal(LamProcessRun(process, &told.reason, told.message), 0);
   assert_int_equal(LamProcessDestroy(&process), 0);
-  assert_int_equal(told.material.destroy(&told.material.ctx), 0);
+  assert_int_equal(LamResponderDestroy(&told.material), 0);
   if (told.reason != LAM_PROCESS_DONE) fail_msg("%s", told.message);
   return told;
 }

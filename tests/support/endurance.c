@@ -92,7 +92,7 @@ PetscErrorCode EnduranceDestroy(Endurance *e)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(e->bytes));
-  PetscCall(e->responder.destroy(&e->responder.ctx));
+  PetscCall(LamResponderDestroy(&e->responder));
   PetscCall(LamRVEEstimateDestroy(&e->estimate));
   PetscCall(EnduranceTissueDestroy(&e->coarse_contact));
   PetscCall(EnduranceTissueDestroy(&e->coarse));
@@ -139,8 +139,8 @@ static PetscErrorCode EnduranceRespond(Endurance *e, const LamLoad *load, PetscI
   LamResponse responses[ENDURANCE_POINTS];
 
   PetscFunctionBeginUser;
-  PetscCall(e->responder.respond(e->responder.ctx, ENDURANCE_POINTS, loads, points, responses));
-  PetscCall(k % 4 ? e->responder.accept(e->responder.ctx) : e->responder.reject(e->responder.ctx));
+  PetscCall(LamResponderRespond(e->responder, ENDURANCE_POINTS, loads, points, responses));
+  PetscCall(k % 4 ? LamResponderAccept(e->responder) : LamResponderReject(e->responder));
   *r = responses[0];
   PetscFunctionReturn(0);
 }

@@ -130,12 +130,12 @@ PetscErrorCode ScalesSolveBody(const ScalesCase *c, int elements, int steps, Sca
   PetscCall(LamMacroSetUp(macro));
   PetscCall(LamMacroGetPointCount(macro, &points));
   PetscCall(LamRVEResponderCreate(rve, points, &responder));
-  PetscCall(LamMacroSetResponder(macro, &responder));
+  PetscCall(LamMacroSetResponder(macro, responder));
   PetscCall(LamMacroSetMonitor(macro, ScalesNoteStep, &body));
   PetscCall(LamMacroSolve(macro, &reason, message));
   if (reason != LAM_MACRO_DONE) curve->steps = 0; /* its last step came only part of its way */
   PetscCall(LamMacroDestroy(&macro));
-  PetscCall(responder.destroy(&responder.ctx));
+  PetscCall(LamResponderDestroy(&responder));
   PetscCall(LamRVEDestroy(&rve));
   PetscCall(LamSceneDestroy(&scene));
   PetscCall(PetscTime(&end));

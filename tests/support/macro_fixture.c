@@ -106,7 +106,7 @@ void FixtureSetUp(Fixture *fixture, MPI_Comm comm)
   assert_ok(LamMacroSetUp(fixture->macro));
   assert_ok(LamMacroGetPointCount(fixture->macro, &points));
   assert_ok(SyntheticCreate(points, &fixture->responder, &fixture->material));
-  assert_ok(LamMacroSetResponder(fixture->macro, &fixture->responder));
+  assert_ok(LamMacroSetResponder(fixture->macro, fixture->responder));
   assert_ok(LamMacroSetMonitor(fixture->macro, FixtureMonitor, fixture));
 }
 
@@ -147,7 +147,7 @@ void FixtureDestroy(Fixture *fixture)
 {
   assert_ok(LamMacroFieldsDestroy(&fixture->fields));
   assert_ok(LamMacroDestroy(&fixture->macro));
-  if (fixture->material) assert_ok(fixture->responder.destroy(&fixture->responder.ctx));
+  if (fixture->material) assert_ok(LamResponderDestroy(&fixture->responder));
 }
 
 void FixtureShear(Fixture *fixture, PetscInt elements, PetscReal shear, PetscInt steps)

@@ -129,7 +129,7 @@ PetscErrorCode ProblemSolve(const Problem *problem, ProblemResult *result)
   unlink(scene.macro.gmsh);
   PetscCall(LamMacroGetPointCount(macro, &points));
   PetscCall(ProblemResponder(problem, points, &responder));
-  PetscCall(LamMacroSetResponder(macro, &responder));
+  PetscCall(LamMacroSetResponder(macro, responder));
   PetscCall(LamMacroSealLumens(macro, &ok));
   PetscCheck(ok, PETSC_COMM_SELF, PETSC_ERR_LIB, "%s", macro->trouble);
   PetscCall(ProblemHold(problem, macro));
@@ -137,7 +137,7 @@ PetscErrorCode ProblemSolve(const Problem *problem, ProblemResult *result)
   PetscCall(SNESSolve(macro->snes, NULL, macro->trial));
   PetscCall(ProblemMeasure(macro, problem, result));
   PetscCall(LamMacroDestroy(&macro));
-  PetscCall(responder.destroy(&responder.ctx));
+  PetscCall(LamResponderDestroy(&responder));
   PetscFunctionReturn(0);
 }
 

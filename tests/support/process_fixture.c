@@ -31,7 +31,7 @@ Followed Follow(const char text[])
   assert_int_equal(NewTissue(&f.scene->micro, &f.rve, NULL), 0);
   assert_int_equal(LamRVEResponderCreate(f.rve, 1, &f.direct), 0);
   assert_int_equal(LamProcessCreate(f.scene, &f.process), 0);
-  assert_int_equal(LamProcessSetResponder(f.process, &f.direct), 0);
+  assert_int_equal(LamProcessSetResponder(f.process, f.direct), 0);
   assert_int_equal(LamProcessSetWalls(f.process, ChangeModuli, &f), 0);
   assert_int_equal(LamProcessSetMonitor(f.process, KeepState, &f), 0);
   assert_int_equal(LamProcessRun(f.process, &f.reason, f.message), 0);
@@ -49,7 +49,7 @@ Followed FollowToEnd(const char text[])
 void Forget(Followed *f)
 {
   assert_int_equal(LamProcessDestroy(&f->process), 0);
-  assert_int_equal(f->direct.destroy(&f->direct.ctx), 0);
+  assert_int_equal(LamResponderDestroy(&f->direct), 0);
   assert_int_equal(LamRVEDestroy(&f->rve), 0);
   assert_int_equal(LamSceneDestroy(&f->scene), 0);
   free(f->states);

@@ -63,8 +63,8 @@ PetscErrorCode SyntheticRespond(void *ctx, PetscInt n, const LamLoad loads[], co
 
   PetscFunctionBeginUser;
   material->calls++;
-  material->self->queries += n;
-  material->self->solves += n;
+  material->counters.queries += n;
+  material->counters.solves += n;
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal *from = points[i] < 0 ? identity : material->accepted[points[i]];
     PetscCall(LamResponseInit(&loads[i], &responses[i]));
@@ -72,13 +72,19 @@ PetscErrorCode SyntheticRespond(void *ctx, PetscInt n, const LamLoad loads[], co
         SyntheticDistance(loads[i].F, from) > material->largest_step) {
       responses[i].status = LAM_NOT_CONVERGED;
       PetscCall(PetscStrncpy(responses[i].reason, material->reason, sizeof(responses[i].reason)));
-      material->self->failures++;
+      material->counters.failures++;
       continue;
     }
     SyntheticEvaluate(material, &loads[i], &responses[i]);
     if (points[i] >= 0) memcpy(material->current[points[i]], loads[i].F, sizeof(identity));
   }
   PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[],
+                              LamResponse responses[])
+{
+  return ((Synthetic *)ctx)->respond(ctx, n, loads, points, responses);
 }
 
 static PetscErrorCode SyntheticAccept(void *ctx)
@@ -114,6 +120,8 @@ static PetscErrorCode SyntheticDestroy(void **ctx)
 
 PetscErrorCode SyntheticCreate(PetscInt points, LamResponder *responder, Synthetic **material)
 {
+  const LamResponderFunctions functions = {
+      .respond = Respond, .accept = SyntheticAccept, .reject = SyntheticReject, .destroy = SyntheticDestroy};
   const PetscReal identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
   PetscFunctionBeginUser;
@@ -124,17 +132,13 @@ PetscErrorCode SyntheticCreate(PetscInt points, LamResponder *responder, Synthet
   (*material)->largest_strain = (*material)->largest_step = PETSC_INFINITY;
   (*material)->reason = "too far";
   (*material)->points = points;
-  (*material)->self = responder;
+  (*material)->respond = SyntheticRespond;
   PetscCall(PetscMalloc1(points, &(*material)->accepted));
   PetscCall(PetscMalloc1(points, &(*material)->current));
   for (PetscInt p = 0; p < points; p++) {
     memcpy((*material)->accepted[p], identity, sizeof(identity));
     memcpy((*material)->current[p], identity, sizeof(identity));
   }
-  *responder = (LamResponder){.ctx = *material,
-                              .respond = SyntheticRespond,
-                              .accept = SyntheticAccept,
-                              .reject = SyntheticReject,
-                              .destroy = SyntheticDestroy};
+  PetscCall(LamResponderCreate(&functions, *material, &(*material)->counters, responder));
   PetscFunctionReturn(0);
 }

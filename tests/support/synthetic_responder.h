@@ -19,7 +19,9 @@ typedef struct {
   PetscInt points;                         /* of which accepted states are kept */
   PetscReal (*accepted)[9], (*current)[9]; /* [points] */
   PetscInt accepts, rejects, calls;
-  LamResponder *self;
+  LamResponderCounters counters;
+  PetscErrorCode (*respond)(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[],
+                            LamResponse responses[]); /* SyntheticRespond */
 } Synthetic;
 
 PetscReal SyntheticInverseTranspose(const PetscReal F[9], PetscReal G[9]);

@@ -107,7 +107,7 @@ static void SetUp(Fixture *fixture, MPI_Comm comm, Kind kind)
   assert_ok(SyntheticCreate(POINTS, &fixture->solver, &fixture->material));
   fixture->nodes =
       (LamNodeSolver){fixture, kind == CACHE_WITH_NODES || kind == STOPPING_CACHE ? SolveNode : FailNode, NULL};
-  assert_ok(LamCacheResponderCreate(comm, fixture->database, kind == NO_SOLVER ? NULL : &fixture->solver,
+  assert_ok(LamCacheResponderCreate(comm, fixture->database, kind == NO_SOLVER ? NULL : fixture->solver,
                                     kind >= CACHE_WITH_NODES ? &fixture->nodes : NULL,
                                     kind >= STOPPING_CACHE ? LAM_OUTSIDE_STOP : LAM_OUTSIDE_SOLVE, ACCURACY, POINTS,
                                     &fixture->cache));
@@ -115,8 +115,8 @@ static void SetUp(Fixture *fixture, MPI_Comm comm, Kind kind)
 
 static void TearDown(Fixture *fixture)
 {
-  assert_ok(fixture->cache.destroy(&fixture->cache.ctx));
-  assert_ok(fixture->solver.destroy(&fixture->solver.ctx));
+  assert_ok(LamResponderDestroy(&fixture->cache));
+  assert_ok(LamResponderDestroy(&fixture->solver));
   assert_ok(LamDatabaseClose(&fixture->database));
 }
 
@@ -131,7 +131,7 @@ static void SetLoad(Fixture *fixture, PetscInt p, PetscReal stretch)
 
 static void Respond(Fixture *fixture, PetscInt n)
 {
-  assert_ok(fixture->cache.respond(fixture->cache.ctx, n, fixture->loads, fixture->points, fixture->responses));
+  assert_ok(LamResponderRespond(fixture->cache, n, fixture->loads, fixture->points, fixture->responses));
 }
 
 /* One point, stretched so. */
@@ -185,12 +185,12 @@ CACHE_TEST(SecondQuestionIsAHit, CACHE)
 
   RespondAt(fixture, 0.1);
   assert_int_equal(fixture->responses[0].source, LAM_SOURCE_DATABASE);
-  assert_int_equal(fixture->cache.hits, 0);
-  assert_true((solves = fixture->cache.solves) > 0);
+  assert_int_equal(LamResponderGetCounters(fixture->cache).hits, 0);
+  assert_true((solves = LamResponderGetCounters(fixture->cache).solves) > 0);
   Respond(fixture, 1);
-  assert_int_equal(fixture->cache.hits, 1);
-  assert_int_equal(fixture->cache.solves, solves);
-  assert_int_equal(fixture->cache.queries, 2);
+  assert_int_equal(LamResponderGetCounters(fixture->cache).hits, 1);
+  assert_int_equal(LamResponderGetCounters(fixture->cache).solves, solves);
+  assert_int_equal(LamResponderGetCounters(fixture->cache).queries, 2);
 }
 
 CACHE_TEST(AnswersAreAccurate, CACHE)
@@ -209,10 +209,10 @@ CACHE_TEST(QuestionsShareNodes, CACHE)
   PetscInt64 solves;
 
   RespondAt(fixture, 0.1);
-  solves = fixture->cache.solves;
+  solves = LamResponderGetCounters(fixture->cache).solves;
   for (PetscInt p = 0; p < POINTS; p++) SetLoad(fixture, p, 0.1 + 1e-3 * p);
   Respond(fixture, POINTS);
-  assert_int_equal(fixture->cache.solves, solves);
+  assert_int_equal(LamResponderGetCounters(fixture->cache).solves, solves);
 }
 
 CACHE_TEST(NodesAreTheNodeSolvers, CACHE_WITH_NODES)
@@ -220,7 +220,7 @@ CACHE_TEST(NodesAreTheNodeSolvers, CACHE_WITH_NODES)
   RespondAt(fixture, 0.1);
   assert_true(Error(fixture, 0) < ACCURACY);
   assert_int_equal(fixture->material->calls, 0);
-  assert_int_equal(fixture->cache.solves, fixture->node_calls);
+  assert_int_equal(LamResponderGetCounters(fixture->cache).solves, fixture->node_calls);
   assert_int_equal(RecordCount(fixture), fixture->node_calls);
 }
 
@@ -231,8 +231,8 @@ CACHE_TEST(StatesBesideTheTableStartFromANode, CACHE_WITH_NODES)
   const PetscReal c = cos(0.3), s = sin(0.3);
 
   fixture->nodes.solve_near = SolveNear;
-  assert_ok(fixture->cache.destroy(&fixture->cache.ctx));
-  assert_ok(LamCacheResponderCreate(PETSC_COMM_SELF, fixture->database, &fixture->solver, &fixture->nodes,
+  assert_ok(LamResponderDestroy(&fixture->cache));
+  assert_ok(LamCacheResponderCreate(PETSC_COMM_SELF, fixture->database, fixture->solver, &fixture->nodes,
                                     LAM_OUTSIDE_SOLVE, 1e-14, POINTS, &fixture->cache));
   SetLoad(fixture, 0, 0.1);
   fixture->loads[1] = fixture->loads[0];
@@ -260,12 +260,12 @@ CACHE_TEST(WithoutNodesTheStateIsSolved, CACHE_WITH_BAD_NODES)
   assert_int_equal(fixture->responses[0].status, LAM_CONVERGED);
   assert_int_equal(fixture->responses[0].source, LAM_SOURCE_SOLVE);
   assert_true(Error(fixture, 0) < 1e-13);
-  solves = fixture->cache.solves;
+  solves = LamResponderGetCounters(fixture->cache).solves;
   assert_int_equal(solves, fixture->node_calls + 1);
   Respond(fixture, 1);
   assert_true(Error(fixture, 0) < 1e-12);
-  assert_int_equal(fixture->cache.solves, solves);
-  assert_int_equal(fixture->cache.hits, 1);
+  assert_int_equal(LamResponderGetCounters(fixture->cache).solves, solves);
+  assert_int_equal(LamResponderGetCounters(fixture->cache).hits, 1);
 }
 
 /* A database without a grid: equal questions, and they alone, share a solve. */
@@ -273,7 +273,7 @@ CACHE_TEST(WithoutAGridStatesAreSolved, NO_GRID)
 {
   for (PetscInt p = 0; p < 4; p++) SetLoad(fixture, p, 0.1 + 1e-4 * (p / 2) + 1e-15 * p);
   Respond(fixture, 4);
-  assert_int_equal(fixture->cache.solves, 2);
+  assert_int_equal(LamResponderGetCounters(fixture->cache).solves, 2);
   for (PetscInt p = 0; p < 4; p++) assert_true(Error(fixture, p) < 1e-13);
 }
 
@@ -284,7 +284,7 @@ CACHE_TEST(DatabaseAloneNeverSolves, NO_SOLVER)
 
   RespondAt(fixture, 0.1);
   assert_int_equal(fixture->responses[0].status, LAM_OUT_OF_REACH);
-  assert_int_equal(fixture->cache.failures, 1);
+  assert_int_equal(LamResponderGetCounters(fixture->cache).failures, 1);
   assert_int_equal(fixture->material->calls, 0);
   assert_ok(LamDatabaseGetTable(fixture->database, &table));
   assert_ok(LamTableQuery(table, &fixture->loads[0], ACCURACY, &answer));
@@ -307,7 +307,7 @@ CACHE_TEST(FailedSolveIsTheAnswer, CACHE)
     assert_string_equal(fixture->responses[p].reason, "too far");
     assert_true(fixture->responses[p].load.F[0] == fixture->loads[p].F[0]);
   }
-  assert_int_equal(fixture->cache.failures, 2);
+  assert_int_equal(LamResponderGetCounters(fixture->cache).failures, 2);
 }
 
 /* queries = hits + solved for + failures: close questions are solved for by the same nodes, a new answer is no hit. */
@@ -317,24 +317,24 @@ CACHE_TEST(CountsAddUp, CACHE)
   for (PetscInt p = 0; p < 4; p++) SetLoad(fixture, p, 0.01 * p);
   SetLoad(fixture, 4, 0.35);
   Respond(fixture, 5);
-  assert_int_equal(fixture->cache.queries, 5);
-  assert_int_equal(fixture->cache.hits, 0);
-  assert_int_equal(fixture->cache.solves, fixture->solver.solves);
-  assert_int_equal(fixture->cache.solves, RecordCount(fixture));
-  assert_int_equal(fixture->cache.failures, 1);
+  assert_int_equal(LamResponderGetCounters(fixture->cache).queries, 5);
+  assert_int_equal(LamResponderGetCounters(fixture->cache).hits, 0);
+  assert_int_equal(LamResponderGetCounters(fixture->cache).solves, LamResponderGetCounters(fixture->solver).solves);
+  assert_int_equal(LamResponderGetCounters(fixture->cache).solves, RecordCount(fixture));
+  assert_int_equal(LamResponderGetCounters(fixture->cache).failures, 1);
   fixture->loads[5] = fixture->loads[0];
   fixture->loads[5].F[0] = -1; /* a query refuses it: no hit */
   fixture->points[5] = 5;
   Respond(fixture, 6);
-  assert_int_equal(fixture->cache.queries, 11);
-  assert_int_equal(fixture->cache.hits, 4);
-  assert_int_equal(fixture->cache.failures, 3);
+  assert_int_equal(LamResponderGetCounters(fixture->cache).queries, 11);
+  assert_int_equal(LamResponderGetCounters(fixture->cache).hits, 4);
+  assert_int_equal(LamResponderGetCounters(fixture->cache).failures, 3);
 }
 
 /* Of a batch that the solver left unfinished the solved part is kept, and nothing else; nothing is asked again. */
 CACHE_TEST(StoppedBatchKeepsWhatIsSolved, CACHE)
 {
-  fixture->solver.respond = RespondStopped;
+  fixture->material->respond = RespondStopped;
   RespondAt(fixture, 0.1);
   assert_int_equal(fixture->responses[0].status, LAM_OUT_OF_REACH);
   assert_int_equal(RecordCount(fixture), 1);
@@ -346,7 +346,7 @@ CACHE_TEST(StoppingCacheSolvesNodes, STOPPING_CACHE)
 {
   RespondAt(fixture, 0.1);
   assert_int_equal(fixture->responses[0].status, LAM_CONVERGED);
-  assert_int_equal(fixture->cache.interpolated, 1);
+  assert_int_equal(LamResponderGetCounters(fixture->cache).interpolated, 1);
 }
 
 CACHE_TEST(StoppingCacheSolvesNothingElse, STOPPING_WITH_BAD_NODES)
@@ -355,8 +355,8 @@ CACHE_TEST(StoppingCacheSolvesNothingElse, STOPPING_WITH_BAD_NODES)
   assert_int_equal(fixture->responses[0].status, LAM_OUT_OF_REACH);
   assert_true(fixture->responses[0].reason[0] != 0);
   assert_int_equal(fixture->material->calls, 0);
-  assert_int_equal(fixture->cache.interpolated, 0);
-  assert_int_equal(fixture->cache.failures, 1);
+  assert_int_equal(LamResponderGetCounters(fixture->cache).interpolated, 0);
+  assert_int_equal(LamResponderGetCounters(fixture->cache).failures, 1);
 }
 
 /* ---- models of states beside the table ---- */
@@ -367,14 +367,14 @@ CACHE_TEST(SolvedStateAnswersAround, CACHE_WITH_BAD_NODES)
   PetscInt64 solves;
 
   RespondAt(fixture, 0.1);
-  solves = fixture->cache.solves;
+  solves = LamResponderGetCounters(fixture->cache).solves;
   for (PetscInt k = 1; k <= 4; k++) {
     RespondAt(fixture, 0.1 + 2e-3 * (PetscReal)k);
     assert_int_equal(fixture->responses[0].source, LAM_SOURCE_DATABASE);
     assert_true(Error(fixture, 0) < ACCURACY);
-    assert_ok(fixture->cache.accept(fixture->cache.ctx));
+    assert_ok(LamResponderAccept(fixture->cache));
   }
-  assert_int_equal(fixture->cache.solves, solves);
+  assert_int_equal(LamResponderGetCounters(fixture->cache).solves, solves);
   RespondAt(fixture, 0.2);
   assert_int_equal(fixture->responses[0].source, LAM_SOURCE_SOLVE);
 }
@@ -405,9 +405,9 @@ CACHE_TEST(AnswersAroundAreOfOnePotential, CACHE_WITH_BAD_NODES)
 CACHE_TEST(RejectedStepGivesTheModelBack, CACHE_WITH_BAD_NODES)
 {
   RespondAt(fixture, 0.1);
-  assert_ok(fixture->cache.accept(fixture->cache.ctx));
+  assert_ok(LamResponderAccept(fixture->cache));
   RespondAt(fixture, 0.2);
-  assert_ok(fixture->cache.reject(fixture->cache.ctx));
+  assert_ok(LamResponderReject(fixture->cache));
   SetLoad(fixture, 0, 0.13); /* too far away to take to the model anew */
   Respond(fixture, 1);
   assert_int_equal(fixture->responses[0].source, LAM_SOURCE_DATABASE);
@@ -433,16 +433,16 @@ TEST(KeptModelIsFoundAgain)
   SetUp(&second, PETSC_COMM_SELF, CACHE_WITH_BAD_NODES);
   for (PetscInt p = 0; p < 2; p++) SetLoad(&first, p, p ? 0.1 : 0.2);
   Respond(&first, 2);
-  assert_ok(first.cache.accept(first.cache.ctx));
+  assert_ok(LamResponderAccept(first.cache));
   assert_ok(LamDatabaseGetRecords(first.database, NULL, &records, NULL));
   for (PetscInt k = RecordCount(&first) - 1; k >= RecordCount(&first) - 2; k--) {
     record = records[k];
     assert_ok(LamDatabaseAdd(second.database, 1, NULL, &record));
   }
-  assert_ok(first.cache.state_size(first.cache.ctx, &size));
+  assert_ok(LamResponderGetStateSize(first.cache, &size));
   assert_ok(PetscMalloc(size, &bytes));
-  assert_ok(first.cache.save(first.cache.ctx, 1, bytes));
-  assert_ok(second.cache.load(second.cache.ctx, 1, bytes));
+  assert_ok(LamResponderSave(first.cache, 1, bytes));
+  assert_ok(LamResponderLoad(second.cache, 1, bytes));
   SetLoad(&first, 1, 0.13); /* too far away to take to the model anew */
   Respond(&first, 2);
   second.loads[0] = first.loads[1];
@@ -460,7 +460,7 @@ CACHE_TEST(NeighboursShareModels, CACHE_WITH_BAD_NODES)
 {
   for (PetscInt p = 0; p < POINTS; p++) SetLoad(fixture, p, 0.1 + 1e-3 * (PetscReal)p);
   Respond(fixture, POINTS);
-  assert_int_equal(fixture->cache.solves, fixture->node_calls + 4);
+  assert_int_equal(LamResponderGetCounters(fixture->cache).solves, fixture->node_calls + 4);
   for (PetscInt p = 0; p < POINTS; p++) assert_true(Error(fixture, p) < ACCURACY / 4);
 }
 
@@ -483,7 +483,7 @@ CACHE_TEST(NoModelIsTakenToBesideAFailure, CACHE_WITH_BAD_NODES)
 /* ---- within a load step ---- */
 
 /* The answer to the first question stays when the table is refined, until the step is accepted or rejected. */
-static void CheckThatAnswerStays(Fixture *fixture, PetscErrorCode (*end)(void *))
+static void CheckThatAnswerStays(Fixture *fixture, PetscErrorCode (*end)(LamResponder))
 {
   LamResponse before;
 
@@ -493,7 +493,7 @@ static void CheckThatAnswerStays(Fixture *fixture, PetscErrorCode (*end)(void *)
   Respond(fixture, 1);
   assert_memory_equal(fixture->responses[0].P, before.P, sizeof(before.P));
   assert_memory_equal(&fixture->responses[0].energy, &before.energy, sizeof(before.energy));
-  assert_ok(end(fixture->cache.ctx));
+  assert_ok(end(fixture->cache));
   Respond(fixture, 1);
   assert_memory_not_equal(fixture->responses[0].P, before.P, sizeof(before.P));
   assert_true(Error(fixture, 0) < 1e-4);
@@ -501,12 +501,12 @@ static void CheckThatAnswerStays(Fixture *fixture, PetscErrorCode (*end)(void *)
 
 CACHE_TEST(AnswerStaysUntilTheStepIsAccepted, CACHE)
 {
-  CheckThatAnswerStays(fixture, fixture->cache.accept);
+  CheckThatAnswerStays(fixture, LamResponderAccept);
 }
 
 CACHE_TEST(AnswerStaysUntilTheStepIsRejected, CACHE)
 {
-  CheckThatAnswerStays(fixture, fixture->cache.reject);
+  CheckThatAnswerStays(fixture, LamResponderReject);
 }
 
 /* A point whose states are solved for themselves goes on so within the step: here out of the plane, then in it. */
@@ -519,7 +519,7 @@ CACHE_TEST(SolvedPointStaysSolved, CACHE)
     assert_int_equal(fixture->responses[0].source, LAM_SOURCE_SOLVE);
   }
   assert_int_equal(RecordCount(fixture), 3);
-  assert_ok(fixture->cache.accept(fixture->cache.ctx));
+  assert_ok(LamResponderAccept(fixture->cache));
   fixture->loads[0].F[0] += 1e-3;
   Respond(fixture, 1);
   assert_int_equal(fixture->responses[0].source, LAM_SOURCE_DATABASE);

@@ -85,10 +85,13 @@ static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], cons
 
 static LamFreeCell MakeOf(const LamMicrostructure *micro, Tissue *known)
 {
-  LamResponder solver = {.ctx = known, .respond = Respond};
+  const LamResponderFunctions functions = {.respond = Respond};
+  LamResponder solver;
   LamFreeCell cell;
 
-  assert_int_equal(LamFreeCellMake(micro, COHESION, SUCTION_MIN, SUCTION_MAX, SCALE, KNOTS, &solver, &cell), 0);
+  assert_int_equal(LamResponderCreate(&functions, known, NULL, &solver), 0);
+  assert_int_equal(LamFreeCellMake(micro, COHESION, SUCTION_MIN, SUCTION_MAX, SCALE, KNOTS, solver, &cell), 0);
+  assert_int_equal(LamResponderDestroy(&solver), 0);
   return cell;
 }
 

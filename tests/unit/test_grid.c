@@ -9,10 +9,9 @@ static LamGrid Make(PetscBool contact)
 {
   AnalyticTissue tissue = {contact, 0.2};
   const LamScene scene = AnalyticScene(&tissue);
-  LamResponder solver = {.ctx = &tissue, .respond = TissueRespond};
   LamGrid grid;
 
-  CHECK(LamGridCreate(&scene, &solver, &grid));
+  CHECK(AnalyticGridCreate(&scene, &tissue, &grid));
   return grid;
 }
 
@@ -147,11 +146,10 @@ TEST(parents_are_coarser_until_there_is_none)
 static void AssertNoGrid(const LamScene *scene, const char what[])
 {
   AnalyticTissue tissue = {PETSC_TRUE, 0};
-  LamResponder solver = {.ctx = &tissue, .respond = TissueRespond};
   LamGrid grid = NULL;
   PetscErrorCode error;
 
-  CATCH(LamGridCreate(scene, &solver, &grid), error);
+  CATCH(AnalyticGridCreate(scene, &tissue, &grid), error);
   assert_int_equal(error, PETSC_ERR_USER_INPUT);
   if (!strstr(scene_message, what)) fail_msg("\"%s\" does not name %s", scene_message, what);
   CHECK(LamGridDestroy(&grid));

@@ -29,7 +29,7 @@ typedef struct {
   LamScene *scene;
   LamRVE rve;
   LamDatabase database;
-  LamResponder solver, cache, *answers;
+  LamResponder solver, cache, answers;
 } Tissue;
 
 static void OpenTissue(const char text[], PetscInt points, PetscBool cached, Tissue *t)
@@ -40,25 +40,25 @@ static void OpenTissue(const char text[], PetscInt points, PetscBool cached, Tis
   assert_int_equal(LamSceneReadText("scene", text, &t->scene), 0);
   t->rve = NewRVE(&t->scene->micro);
   assert_int_equal(LamRVEResponderCreate(t->rve, points, &t->solver), 0);
-  t->answers = &t->solver;
+  t->answers = t->solver;
   if (!cached) return;
   assert_int_equal(LamDatabaseCreateEmpty(t->scene, &t->database), 0);
-  assert_int_equal(LamGridCreate(t->scene, &t->solver, &grid), 0);
+  assert_int_equal(LamGridCreate(t->scene, t->solver, &grid), 0);
   assert_int_equal(LamDatabaseSetGrid(t->database, &grid), 0);
-  assert_int_equal(LamCacheResponderCreate(PETSC_COMM_SELF, t->database, &t->solver, NULL, LAM_OUTSIDE_SOLVE,
+  assert_int_equal(LamCacheResponderCreate(PETSC_COMM_SELF, t->database, t->solver, NULL, LAM_OUTSIDE_SOLVE,
                                            t->scene->accuracy, points, &t->cache),
                    0);
-  t->answers = &t->cache;
+  t->answers = t->cache;
 }
 
 static void CloseTissue(Tissue *t)
 {
   if (t->database) {
-    assert_true(t->cache.interpolated > 0);
-    assert_int_equal(t->cache.destroy(&t->cache.ctx), 0);
+    assert_true(LamResponderGetCounters(t->cache).interpolated > 0);
+    assert_int_equal(LamResponderDestroy(&t->cache), 0);
     assert_int_equal(LamDatabaseClose(&t->database), 0);
   }
-  assert_int_equal(t->solver.destroy(&t->solver.ctx), 0);
+  assert_int_equal(LamResponderDestroy(&t->solver), 0);
   assert_int_equal(LamRVEDestroy(&t->rve), 0);
   assert_int_equal(LamSceneDestroy(&t->scene), 0);
 }

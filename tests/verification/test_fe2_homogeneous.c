@@ -37,13 +37,13 @@ static void SetUp(Body *body)
   assert_int_equal(LamMacroSetUp(body->macro), 0);
   assert_int_equal(LamMacroGetPointCount(body->macro, &points), 0);
   assert_int_equal(LamRVEResponderCreate(body->rve, points, &body->responder), 0);
-  assert_int_equal(LamMacroSetResponder(body->macro, &body->responder), 0);
+  assert_int_equal(LamMacroSetResponder(body->macro, body->responder), 0);
 }
 
 static void TearDown(Body *body)
 {
   assert_int_equal(LamMacroDestroy(&body->macro), 0);
-  assert_int_equal(body->responder.destroy(&body->responder.ctx), 0);
+  assert_int_equal(LamResponderDestroy(&body->responder), 0);
   assert_int_equal(LamRVEDestroy(&body->rve), 0);
   assert_int_equal(LamSceneDestroy(&body->scene), 0);
 }

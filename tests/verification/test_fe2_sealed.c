@@ -39,12 +39,12 @@ static void SolveBody(LamScene *scene, LamMacroFields *fields)
   assert_int_equal(LamMacroSetUp(macro), 0);
   assert_int_equal(LamMacroGetPointCount(macro, &points), 0);
   assert_int_equal(LamRVEResponderCreate(rve, points, &responder), 0);
-  assert_int_equal(LamMacroSetResponder(macro, &responder), 0);
+  assert_int_equal(LamMacroSetResponder(macro, responder), 0);
   assert_int_equal(LamMacroSolve(macro, &reason, message), 0);
   if (reason != LAM_MACRO_DONE) fail_msg("%s", message);
   assert_int_equal(LamMacroGetFields(macro, fields), 0);
   assert_int_equal(LamMacroDestroy(&macro), 0);
-  assert_int_equal(responder.destroy(&responder.ctx), 0);
+  assert_int_equal(LamResponderDestroy(&responder), 0);
   assert_int_equal(LamRVEDestroy(&rve), 0);
 }
 

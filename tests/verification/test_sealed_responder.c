@@ -21,13 +21,13 @@ static LamRVE NewSealable(const LamMicrostructure *micro)
   return rve;
 }
 
-static void Ask(LamResponder *responder, const LamLoad loads[POINTS], LamResponse responses[POINTS])
+static void Ask(LamResponder responder, const LamLoad loads[POINTS], LamResponse responses[POINTS])
 {
-  assert_int_equal(responder->respond(responder->ctx, POINTS, loads, points, responses), 0);
+  assert_int_equal(LamResponderRespond(responder, POINTS, loads, points, responses), 0);
 }
 
 /* Points that are inflated at different F, so that each has water of its own. */
-static void Inflate(LamResponder *responder, double turgor, double cohesion)
+static void Inflate(LamResponder responder, double turgor, double cohesion)
 {
   LamResponse responses[POINTS];
   LamLoad loads[POINTS];
@@ -38,7 +38,7 @@ static void Inflate(LamResponder *responder, double turgor, double cohesion)
   }
   Ask(responder, loads, responses);
   for (int i = 0; i < POINTS; i++) assert_int_equal(responses[i].status, LAM_CONVERGED);
-  assert_int_equal(responder->accept(responder->ctx), 0);
+  assert_int_equal(LamResponderAccept(responder), 0);
 }
 
 static void AssertSameAnswer(const LamResponse *a, const LamResponse *b, double tolerance)
@@ -82,19 +82,20 @@ TEST(BothWaysAgree)
     }
     assert_int_equal(LamRVEResponderCreate(rve, POINTS, &inside), 0);
     assert_int_equal(LamRVEResponderCreate(rve, POINTS, &open), 0);
-    assert_int_equal(LamSealedResponderCreate(PETSC_COMM_SELF, &open, POINTS, &outside), 0);
-    Inflate(&inside, turgor, cohesion);
-    Inflate(&outside, turgor, cohesion);
-    assert_int_equal(inside.seal(inside.ctx, SEALED_WATER), 0);
-    assert_int_equal(outside.seal(outside.ctx, SEALED_WATER), 0);
-    Ask(&inside, loads, in);
-    Ask(&outside, loads, out);
+    assert_int_equal(LamSealedResponderCreate(PETSC_COMM_SELF, open, POINTS, &outside), 0);
+    Inflate(inside, turgor, cohesion);
+    Inflate(outside, turgor, cohesion);
+    assert_int_equal(LamResponderSeal(inside, SEALED_WATER), 0);
+    assert_int_equal(LamResponderSeal(outside, SEALED_WATER), 0);
+    Ask(inside, loads, in);
+    Ask(outside, loads, out);
     for (int i = 0; i < POINTS; i++) AssertSameAnswer(&out[i], &in[i], 1e-8);
     assert_true(fabs(in[0].turgor_mean - in[2].turgor_mean) > 0.01); /* each has its own water */
-    assert_true(outside.queries == open.queries && outside.solves == open.solves);
-    assert_int_equal(inside.destroy(&inside.ctx), 0);
-    assert_int_equal(outside.destroy(&outside.ctx), 0);
-    assert_int_equal(open.destroy(&open.ctx), 0);
+    assert_true(LamResponderGetCounters(outside).queries == LamResponderGetCounters(open).queries &&
+                LamResponderGetCounters(outside).solves == LamResponderGetCounters(open).solves);
+    assert_int_equal(LamResponderDestroy(&inside), 0);
+    assert_int_equal(LamResponderDestroy(&outside), 0);
+    assert_int_equal(LamResponderDestroy(&open), 0);
     assert_int_equal(LamRVEDestroy(&rve), 0);
   }
 }
@@ -105,7 +106,7 @@ TEST(BytesKeepTheWater)
   for (int outside = 0; outside < 2; outside++) {
     const LamMicrostructure micro = DefaultTissue();
     LamRVE rve = NewSealable(&micro);
-    LamResponder direct[2], sealed[2], *r[2];
+    LamResponder direct[2], sealed[2], r[2];
     LamResponse before[POINTS], after[POINTS];
     LamLoad loads[POINTS];
     size_t size;
@@ -113,16 +114,16 @@ TEST(BytesKeepTheWater)
 
     for (int k = 0; k < 2; k++) {
       assert_int_equal(LamRVEResponderCreate(rve, POINTS, &direct[k]), 0);
-      assert_int_equal(LamSealedResponderCreate(PETSC_COMM_SELF, &direct[k], POINTS, &sealed[k]), 0);
-      r[k] = outside ? &sealed[k] : &direct[k];
+      assert_int_equal(LamSealedResponderCreate(PETSC_COMM_SELF, direct[k], POINTS, &sealed[k]), 0);
+      r[k] = outside ? sealed[k] : direct[k];
     }
     Inflate(r[0], 0.2, 0);
-    assert_int_equal(r[0]->seal(r[0]->ctx, SEALED_WATER), 0);
-    assert_int_equal(r[0]->state_size(r[0]->ctx, &size), 0);
+    assert_int_equal(LamResponderSeal(r[0], SEALED_WATER), 0);
+    assert_int_equal(LamResponderGetStateSize(r[0], &size), 0);
     assert_int_equal(PetscMalloc1(size, &bytes), 0);
     for (int i = 0; i < POINTS; i++) {
-      assert_int_equal(r[0]->save(r[0]->ctx, i, bytes), 0);
-      assert_int_equal(r[1]->load(r[1]->ctx, i, bytes), 0);
+      assert_int_equal(LamResponderSave(r[0], i, bytes), 0);
+      assert_int_equal(LamResponderLoad(r[1], i, bytes), 0);
       loads[i] = PlaneLoad(1 + 0.02 * i, 0.1, 0, 1, 0.2);
     }
     Ask(r[0], loads, before);
@@ -130,18 +131,18 @@ TEST(BytesKeepTheWater)
     for (int i = 0; i < POINTS; i++) assert_memory_equal(before[i].P, after[i].P, sizeof(before[i].P));
     assert_int_equal(PetscFree(bytes), 0);
     for (int k = 0; k < 2; k++) {
-      assert_int_equal(sealed[k].destroy(&sealed[k].ctx), 0);
-      assert_int_equal(direct[k].destroy(&direct[k].ctx), 0);
+      assert_int_equal(LamResponderDestroy(&sealed[k]), 0);
+      assert_int_equal(LamResponderDestroy(&direct[k]), 0);
     }
     assert_int_equal(LamRVEDestroy(&rve), 0);
   }
 }
 
-static LamResponse AskOne(LamResponder *responder, const LamLoad *load)
+static LamResponse AskOne(LamResponder responder, const LamLoad *load)
 {
   LamResponse response;
 
-  assert_int_equal(responder->respond(responder->ctx, 1, load, points, &response), 0);
+  assert_int_equal(LamResponderRespond(responder, 1, load, points, &response), 0);
   return response;
 }
 
@@ -154,15 +155,15 @@ typedef struct {
 static void SealedOpen(double bulk_modulus, Sealed *s)
 {
   CHECK(SyntheticCreate(POINTS, &s->open, &s->material));
-  CHECK(LamSealedResponderCreate(PETSC_COMM_SELF, &s->open, POINTS, &s->sealed));
-  Inflate(&s->sealed, 0.3, 0);
-  CHECK(s->sealed.seal(s->sealed.ctx, bulk_modulus));
+  CHECK(LamSealedResponderCreate(PETSC_COMM_SELF, s->open, POINTS, &s->sealed));
+  Inflate(s->sealed, 0.3, 0);
+  CHECK(LamResponderSeal(s->sealed, bulk_modulus));
 }
 
 static void SealedClose(Sealed *s)
 {
-  CHECK(s->sealed.destroy(&s->sealed.ctx));
-  CHECK(s->open.destroy(&s->open.ctx));
+  CHECK(LamResponderDestroy(&s->sealed));
+  CHECK(LamResponderDestroy(&s->open));
 }
 
 #define SEALED_TEST(name, bulk_modulus) TEST_ON(name, Sealed, s, SealedOpen(bulk_modulus, s), SealedClose(s))
@@ -175,16 +176,16 @@ SEALED_TEST(PressureAndDerivativesAreExact, 50)
   LamResponse r;
   double J;
 
-  r = AskOne(&s->sealed, &load);
+  r = AskOne(s->sealed, &load);
   J = (1.05 * 0.98 + 0.1 * 0.02) * 1.01;
   assert_near(r.turgor_mean, 0.3 + 50 * (1 - J), 1e-9);
   for (int k = 0; k < 9; k++) {
     LamResponse plus, minus;
 
     load.F[k] += h;
-    plus = AskOne(&s->sealed, &load);
+    plus = AskOne(s->sealed, &load);
     load.F[k] -= 2 * h;
-    minus = AskOne(&s->sealed, &load);
+    minus = AskOne(s->sealed, &load);
     load.F[k] += h;
     assert_near(r.P[k], (plus.energy - minus.energy) / (2 * h), 1e-6);
     for (int i = 0; i < 9; i++) assert_near(r.tangent[9 * i + k], (plus.P[i] - minus.P[i]) / (2 * h), 1e-5);
@@ -204,20 +205,20 @@ TEST(WaterIsTheSameInAllTissues)
 
   for (int t = 0; t < 2; t++) {
     assert_int_equal(SyntheticCreate(1, &open[t], &material), 0);
-    assert_int_equal(LamSealedResponderCreate(PETSC_COMM_SELF, &open[t], 1, &sealed[t]), 0);
-    tissues[t] = (LamHeterogeneousTissue){"", 1 + 1.5 * t, &sealed[t]};
+    assert_int_equal(LamSealedResponderCreate(PETSC_COMM_SELF, open[t], 1, &sealed[t]), 0);
+    tissues[t] = (LamHeterogeneousTissue){"", 1 + 1.5 * t, sealed[t]};
   }
   assert_int_equal(LamHeterogeneousCreate(2, tissues, 2, mosaic_points, &mosaic), 0);
-  assert_int_equal(mosaic.respond(mosaic.ctx, 2, starts, points, r), 0);
-  assert_int_equal(mosaic.accept(mosaic.ctx), 0);
-  assert_int_equal(mosaic.seal(mosaic.ctx, 50), 0);
-  assert_int_equal(mosaic.respond(mosaic.ctx, 2, loads, points, r), 0);
+  assert_int_equal(LamResponderRespond(mosaic, 2, starts, points, r), 0);
+  assert_int_equal(LamResponderAccept(mosaic), 0);
+  assert_int_equal(LamResponderSeal(mosaic, 50), 0);
+  assert_int_equal(LamResponderRespond(mosaic, 2, loads, points, r), 0);
   for (int t = 0; t < 2; t++) {
     assert_near(r[t].turgor_mean, 0.3 - 50 * 0.01, 1e-9);
-    assert_int_equal(sealed[t].destroy(&sealed[t].ctx), 0);
-    assert_int_equal(open[t].destroy(&open[t].ctx), 0);
+    assert_int_equal(LamResponderDestroy(&sealed[t]), 0);
+    assert_int_equal(LamResponderDestroy(&open[t]), 0);
   }
-  assert_int_equal(mosaic.destroy(&mosaic.ctx), 0);
+  assert_int_equal(LamResponderDestroy(&mosaic), 0);
 }
 
 /* A rejected step leaves no trace in the pressures that questions start from. */
@@ -226,11 +227,11 @@ SEALED_TEST(RejectedStepIsForgotten, 50)
   const LamLoad load = PlaneLoad(1.01, 0, 0, 1, 0.3), far = PlaneLoad(1.2, 0, 0, 1, 0.3);
   LamResponse before, after;
 
-  before = AskOne(&s->sealed, &load);
-  assert_int_equal(s->sealed.reject(s->sealed.ctx), 0);
-  (void)AskOne(&s->sealed, &far);
-  assert_int_equal(s->sealed.reject(s->sealed.ctx), 0);
-  after = AskOne(&s->sealed, &load);
+  before = AskOne(s->sealed, &load);
+  assert_int_equal(LamResponderReject(s->sealed), 0);
+  (void)AskOne(s->sealed, &far);
+  assert_int_equal(LamResponderReject(s->sealed), 0);
+  after = AskOne(s->sealed, &load);
   assert_memory_equal(before.P, after.P, sizeof(before.P));
   assert_int_equal(s->material->rejects, 2);
 }
@@ -242,10 +243,10 @@ SEALED_TEST(WhatHasNoAnswerIsTold, 50)
   LamResponse r;
 
   s->material->largest_strain = 0.1;
-  r = AskOne(&s->sealed, &load);
+  r = AskOne(s->sealed, &load);
   assert_int_equal(r.status, LAM_NOT_CONVERGED);
   assert_non_null(strstr(r.reason, "sealed, at a pressure of 0.3 (C1+C2): too far"));
-  assert_true(r.load.turgor == 0.3 && s->sealed.failures == 1);
+  assert_true(r.load.turgor == 0.3 && LamResponderGetCounters(s->sealed).failures == 1);
 }
 
 /* A database of (F, turgor) that is filled as it is asked; ctx of the responders on it. */
@@ -271,20 +272,20 @@ static void OpenTable(const char interface[], Tabulated *t)
   assert_int_equal(LamRVEResponderCreate(t->rve, 0, &t->solver), 0);
   assert_int_equal(LamRVEResponderCreate(t->rve, POINTS, &t->direct), 0);
   assert_int_equal(LamDatabaseCreateEmpty(t->scene, &t->database), 0);
-  assert_int_equal(LamGridCreate(t->scene, &t->solver, &grid), 0);
+  assert_int_equal(LamGridCreate(t->scene, t->solver, &grid), 0);
   assert_int_equal(LamDatabaseSetGrid(t->database, &grid), 0);
-  assert_int_equal(LamCacheResponderCreate(PETSC_COMM_SELF, t->database, &t->solver, NULL, LAM_OUTSIDE_SOLVE,
+  assert_int_equal(LamCacheResponderCreate(PETSC_COMM_SELF, t->database, t->solver, NULL, LAM_OUTSIDE_SOLVE,
                                            t->scene->accuracy, POINTS, &t->cache),
                    0);
-  assert_int_equal(LamSealedResponderCreate(PETSC_COMM_SELF, &t->cache, POINTS, &t->sealed), 0);
+  assert_int_equal(LamSealedResponderCreate(PETSC_COMM_SELF, t->cache, POINTS, &t->sealed), 0);
 }
 
 static void CloseTable(Tabulated *t)
 {
-  assert_int_equal(t->sealed.destroy(&t->sealed.ctx), 0);
-  assert_int_equal(t->cache.destroy(&t->cache.ctx), 0);
-  assert_int_equal(t->direct.destroy(&t->direct.ctx), 0);
-  assert_int_equal(t->solver.destroy(&t->solver.ctx), 0);
+  assert_int_equal(LamResponderDestroy(&t->sealed), 0);
+  assert_int_equal(LamResponderDestroy(&t->cache), 0);
+  assert_int_equal(LamResponderDestroy(&t->direct), 0);
+  assert_int_equal(LamResponderDestroy(&t->solver), 0);
   assert_int_equal(LamDatabaseClose(&t->database), 0);
   assert_int_equal(LamRVEDestroy(&t->rve), 0);
   assert_int_equal(LamSceneDestroy(&t->scene), 0);
@@ -298,14 +299,14 @@ TABULATED_TEST(TableOfBondedCellsGivesThePressure, "law: bonded")
   LamResponse solved[POINTS], answered[POINTS];
   LamLoad loads[POINTS];
 
-  Inflate(&t->direct, t->scene->turgor, 0);
-  Inflate(&t->sealed, t->scene->turgor, 0);
-  assert_int_equal(t->direct.seal(t->direct.ctx, SEALED_WATER), 0);
-  assert_int_equal(t->sealed.seal(t->sealed.ctx, SEALED_WATER), 0);
+  Inflate(t->direct, t->scene->turgor, 0);
+  Inflate(t->sealed, t->scene->turgor, 0);
+  assert_int_equal(LamResponderSeal(t->direct, SEALED_WATER), 0);
+  assert_int_equal(LamResponderSeal(t->sealed, SEALED_WATER), 0);
   for (int i = 0; i < POINTS; i++)
     loads[i] = PlaneLoad(1.05, 0.1 - 0.05 * i, 0, (1 + 0.02 * i) / 1.05, t->scene->turgor);
-  Ask(&t->direct, loads, solved);
-  Ask(&t->sealed, loads, answered);
+  Ask(t->direct, loads, solved);
+  Ask(t->sealed, loads, answered);
   for (int i = 0; i < POINTS; i++) {
     assert_int_equal(answered[i].source, LAM_SOURCE_DATABASE);
     assert_true(LamStressError(answered[i].P, solved[i].P) < 0.003);
@@ -321,9 +322,9 @@ TABULATED_TEST(TableOfCellsThatPartIsRefused, "law: contact, cohesion: 0.02 MPa"
   LamResponse r;
 
   load.cohesion = t->scene->cohesion;
-  Inflate(&t->sealed, t->scene->turgor, t->scene->cohesion);
-  assert_int_equal(t->sealed.seal(t->sealed.ctx, SEALED_WATER), 0);
-  r = AskOne(&t->sealed, &load);
+  Inflate(t->sealed, t->scene->turgor, t->scene->cohesion);
+  assert_int_equal(LamResponderSeal(t->sealed, SEALED_WATER), 0);
+  r = AskOne(t->sealed, &load);
   assert_int_equal(r.source, LAM_SOURCE_DATABASE);
   assert_int_equal(r.status, LAM_OUT_OF_REACH);
   assert_non_null(strstr(r.reason, "solve directly"));

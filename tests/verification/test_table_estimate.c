@@ -57,7 +57,8 @@ static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], cons
 
 static void Start(const char scene[], Tissue *t)
 {
-  LamResponder responder = {.ctx = &t->solver, .respond = Respond};
+  const LamResponderFunctions functions = {.respond = Respond};
+  LamResponder responder;
   const LamResponse *records;
   const PetscInt64 *keys;
   LamGrid grid;
@@ -68,7 +69,9 @@ static void Start(const char scene[], Tissue *t)
   assert_int_equal(LamRVESetMicrostructure(t->solver.rve, &t->scene->micro), 0);
   assert_int_equal(LamRVESetUp(t->solver.rve), 0);
   assert_int_equal(LamRVEStateCreate(t->solver.rve, &t->solver.state), 0);
-  assert_int_equal(LamGridCreate(t->scene, &responder, &grid), 0);
+  assert_int_equal(LamResponderCreate(&functions, &t->solver, NULL, &responder), 0);
+  assert_int_equal(LamGridCreate(t->scene, responder, &grid), 0);
+  assert_int_equal(LamResponderDestroy(&responder), 0);
   assert_int_equal(LamDatabaseCreateEmpty(t->scene, &t->database), 0);
   assert_int_equal(LamGridGetRecords(grid, &n, &keys, &records), 0);
   assert_int_equal(LamDatabaseAdd(t->database, n, keys, records), 0);
