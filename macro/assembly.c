@@ -32,31 +32,21 @@ static LamLoad PointLoad(LamMacro macro, const LamMacroElement *element, PetscIn
 /* Deformation gradients and turgor of all material points, into macro->loads. */
 static PetscErrorCode GatherLoads(LamMacro macro, Vec u)
 {
-  PetscSection section;
   Vec local;
 
   PetscFunctionBeginUser;
-  PetscCall(DMGetLocalSection(macro->dm, &section));
   PetscCall(DMGetLocalVector(macro->dm, &local));
   PetscCall(DMGlobalToLocal(macro->dm, u, INSERT_VALUES, local));
   for (PetscInt e = 0; e < macro->element_count; e++) {
     const LamMacroElement *element = &macro->elements[e];
     PetscScalar *ue = NULL;
-    PetscCall(DMPlexVecGetClosure(macro->dm, section, local, macro->mesh_start + e, NULL, &ue));
+    PetscCall(DMPlexVecGetClosure(macro->dm, NULL, local, macro->mesh_start + e, NULL, &ue));
     for (PetscInt q = 0; q < element->kind->points; q++)
       macro->loads[element->first + q] = PointLoad(macro, element, q, ue);
-    PetscCall(DMPlexVecRestoreClosure(macro->dm, section, local, macro->mesh_start + e, NULL, &ue));
+    PetscCall(DMPlexVecRestoreClosure(macro->dm, NULL, local, macro->mesh_start + e, NULL, &ue));
   }
   PetscCall(DMRestoreLocalVector(macro->dm, &local));
   PetscFunctionReturn(0);
-}
-
-static PetscBool SameLoad(const LamLoad *a, const LamLoad *b)
-{
-  for (int k = 0; k < 9; k++) {
-    if (a->F[k] != b->F[k]) return PETSC_FALSE;
-  }
-  return a->turgor == b->turgor && a->cohesion == b->cohesion ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* True on all ranks if every point's stored response is that of its present load. */
@@ -65,10 +55,8 @@ static PetscErrorCode AllKnown(LamMacro macro, PetscBool *known)
   PetscFunctionBeginUser;
   *known = PETSC_TRUE;
   for (PetscInt p = 0; p < macro->point_count && *known; p++)
-    *known =
-        macro->now[p].known && macro->now[p].walls == macro->walls && SameLoad(&macro->now[p].load, &macro->loads[p])
-            ? PETSC_TRUE
-            : PETSC_FALSE;
+    *known = (PetscBool)(macro->now[p].known && macro->now[p].walls == macro->walls &&
+                         !memcmp(&macro->now[p].load, &macro->loads[p], sizeof(LamLoad)));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, known, 1, MPIU_BOOL, MPI_LAND, macro->comm));
   PetscFunctionReturn(0);
 }
@@ -246,11 +234,9 @@ static void AddPointForce(LamMacro macro, const LamMacroElement *element, PetscI
 PetscErrorCode LamMacroAssembleForce(LamMacro macro, Vec force, PetscReal *scale)
 {
   PetscReal sum = 0;
-  PetscSection section;
   Vec local;
 
   PetscFunctionBeginUser;
-  PetscCall(DMGetLocalSection(macro->dm, &section));
   PetscCall(DMGetLocalVector(macro->dm, &local));
   PetscCall(VecZeroEntries(local));
   for (PetscInt e = 0; e < macro->element_count; e++) {
@@ -259,7 +245,7 @@ PetscErrorCode LamMacroAssembleForce(LamMacro macro, Vec force, PetscReal *scale
     for (PetscInt q = 0; q < element->kind->points; q++) AddPointForce(macro, element, q, fe);
     PetscCall(LamMacroCondense(macro, element, fe, NULL));
     for (PetscInt k = 0; k < element->kind->nodes * macro->dim; k++) sum += PetscRealPart(fe[k] * fe[k]);
-    PetscCall(DMPlexVecSetClosure(macro->dm, section, local, macro->mesh_start + e, fe, ADD_VALUES));
+    PetscCall(DMPlexVecSetClosure(macro->dm, NULL, local, macro->mesh_start + e, fe, ADD_VALUES));
   }
   PetscCall(VecZeroEntries(force));
   PetscCall(DMLocalToGlobal(macro->dm, local, ADD_VALUES, force));
@@ -312,11 +298,8 @@ static void AddPointTangent(LamMacro macro, const LamMacroElement *element, Pets
 
 PetscErrorCode LamMacroAssembleTangent(LamMacro macro, Mat tangent)
 {
-  PetscSection section, global;
 
   PetscFunctionBeginUser;
-  PetscCall(DMGetLocalSection(macro->dm, &section));
-  PetscCall(DMGetGlobalSection(macro->dm, &global));
   PetscCall(MatZeroEntries(tangent));
   for (PetscInt e = 0; e < macro->element_count; e++) {
     const LamMacroElement *element = &macro->elements[e];
@@ -324,7 +307,7 @@ PetscErrorCode LamMacroAssembleTangent(LamMacro macro, Mat tangent)
     PetscCall(PetscArrayzero(Ke, PetscSqr(element->kind->nodes * macro->dim)));
     for (PetscInt q = 0; q < element->kind->points; q++) AddPointTangent(macro, element, q, Ke);
     PetscCall(LamMacroCondense(macro, element, NULL, Ke));
-    PetscCall(DMPlexMatSetClosure(macro->dm, section, global, tangent, macro->mesh_start + e, Ke, ADD_VALUES));
+    PetscCall(DMPlexMatSetClosure(macro->dm, NULL, NULL, tangent, macro->mesh_start + e, Ke, ADD_VALUES));
   }
   PetscCall(MatAssemblyBegin(tangent, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(tangent, MAT_FINAL_ASSEMBLY));

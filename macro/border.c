@@ -83,12 +83,10 @@ PetscErrorCode LamMacroBordersCreate(LamMacro macro, PetscBool scene)
 static PetscErrorCode AddMean(LamMacro macro, const LamMacroFacet *facet, PetscInt component, Vec local,
                               PetscReal *length)
 {
-  PetscSection section;
   PetscReal X[6], sense;
   PetscScalar share[6] = {0};
 
   PetscFunctionBeginUser;
-  PetscCall(DMGetLocalSection(macro->dm, &section));
   PetscCall(LamMacroFacetNodes(macro, facet, X, &sense));
   for (PetscInt q = 0; q < LAM_FACET_POINTS; q++) {
     PetscReal N[3], dN[3], weight, tau[2] = {0, 0};
@@ -98,7 +96,7 @@ static PetscErrorCode AddMean(LamMacro macro, const LamMacroFacet *facet, PetscI
     for (PetscInt a = 0; a < 3; a++) share[2 * a + component] += weight * N[a];
     *length += weight;
   }
-  PetscCall(DMPlexVecSetClosure(macro->dm, section, local, facet->point, share, ADD_VALUES));
+  PetscCall(DMPlexVecSetClosure(macro->dm, NULL, local, facet->point, share, ADD_VALUES));
   PetscFunctionReturn(0);
 }
 
@@ -159,25 +157,18 @@ PetscErrorCode LamMacroBorderEquations(LamMacro macro, Vec u, Vec unbalanced)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamMacroBorderColumns(LamMacro macro)
+PetscErrorCode LamMacroBorderDerivatives(LamMacro macro, Mat tangent)
 {
   PetscFunctionBeginUser;
   for (PetscInt b = 0; b < macro->border_count; b++) {
     LamMacroBorder *border = &macro->borders[b];
-    if (border->entry >= 0) continue;
+    if (border->entry >= 0) { /* a grip's column is constant, and so is the row of the traction factor */
+      PetscCall(MatMultTranspose(tangent, border->weight, border->row));
+      continue;
+    }
     PetscCall(VecCopy(macro->external, border->column));
     PetscCall(VecScale(border->column, -1));
     PetscCall(LamMacroCombineRows(macro, border->column));
-  }
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamMacroBorderRows(LamMacro macro, Mat tangent)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt b = 0; b < macro->border_count; b++) {
-    LamMacroBorder *border = &macro->borders[b];
-    if (border->entry >= 0) PetscCall(MatMultTranspose(tangent, border->weight, border->row));
   }
   PetscFunctionReturn(0);
 }

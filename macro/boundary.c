@@ -111,24 +111,9 @@ static void AddConstraint(LamMacro macro, const LamConstraint *constraint, Petsc
   macro->constraints[macro->constraint_count++] = *constraint;
 }
 
-/* Normal of an entry's straight side. */
-static PetscErrorCode SideNormal(LamMacro macro, const LamBoundary *boundary, PetscReal normal[2])
-{
-  PetscBool straight;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamMacroStraightNormal(macro, LamMacroFindSet(macro, boundary->on), normal, &straight));
-  PetscCheck(straight, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "macro.boundary: on: %s: %s needs a straight side, which this is not; %s", boundary->on,
-             LamBoundaryKindNames[boundary->kind],
-             boundary->kind == LAM_BOUNDARY_PLATE ? "give the plate's normal, such as normal: [0, -1]"
-                                                  : "name the straight parts of it on their own");
-  PetscFunctionReturn(0);
-}
-
 /* Adds the constraints of all entries at a node; normals: those of sides of symmetry; *worst: a contradiction
    (AddNodes). */
-static void AddNode(LamMacro macro, PetscInt point, PetscInt local, const PetscScalar u[], const PetscReal normals[][2],
+static void AddNode(LamMacro macro, const LamMacroNode *node, const PetscScalar u[], const PetscReal normals[][2],
                     PetscBool symmetry_only, PetscInt *worst)
 {
   const LamMacroSpec *spec = &macro->scene->macro;
@@ -136,10 +121,10 @@ static void AddNode(LamMacro macro, PetscInt point, PetscInt local, const PetscS
   for (PetscInt b = 0; b < spec->boundary_count; b++) {
     const LamBoundary *boundary = &spec->boundary[b];
     const PetscBool symmetry = boundary->kind == LAM_BOUNDARY_SYMMETRY ? PETSC_TRUE : PETSC_FALSE;
-    if (!LamMacroIsOn(macro, point, boundary->on) || (symmetry_only && !symmetry)) continue;
+    if (!LamMacroIsOn(macro, node->point, boundary->on) || (symmetry_only && !symmetry)) continue;
     for (PetscInt i = 0; i < (symmetry ? 1 : macro->dim); i++) {
       const PetscInt border = boundary->kind == LAM_BOUNDARY_GRIP ? LamMacroFindBorder(macro, b, i) : -1;
-      LamConstraint constraint = {.point = point, .local = local, .entry = b, .border = border};
+      LamConstraint constraint = {.point = node->point, .local = node->local, .entry = b, .border = border};
       PetscInt other = -1;
       if (!symmetry && border < 0 &&
           (!boundary->given[i] || (boundary->kind != LAM_BOUNDARY_DISPLACEMENT && boundary->kind != LAM_BOUNDARY_GRIP)))
@@ -148,7 +133,7 @@ static void AddNode(LamMacro macro, PetscInt point, PetscInt local, const PetscS
       if (!symmetry && border < 0) constraint.end = boundary->displacement[i];
       for (PetscInt j = 0; j < 2; j++) {
         constraint.normal[j] = symmetry ? normals[b][j] : i == j;
-        constraint.base += constraint.normal[j] * PetscRealPart(u[local + j]);
+        constraint.base += constraint.normal[j] * PetscRealPart(u[node->local + j]);
       }
       constraint.target = constraint.base;
       AddConstraint(macro, &constraint, &other);
@@ -168,15 +153,13 @@ static PetscErrorCode AddNodes(LamMacro macro, PetscBool symmetry_only)
   PetscFunctionBeginUser;
   macro->constraint_count = 0;
   for (PetscInt b = 0; b < spec->boundary_count; b++) {
-    if (spec->boundary[b].kind == LAM_BOUNDARY_SYMMETRY) PetscCall(SideNormal(macro, &spec->boundary[b], normals[b]));
+    if (spec->boundary[b].kind == LAM_BOUNDARY_SYMMETRY)
+      PetscCall(LamMacroStraightNormal(macro, &spec->boundary[b], normals[b]));
   }
   PetscCall(VecGetArrayRead(macro->u, &u));
-  for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
-    PetscInt local;
-    if (!macro->sets[p - macro->mesh_start]) continue;
-    PetscCall(LamMacroOwnedIndex(macro, p, &local));
-    if (local >= 0) AddNode(macro, p, local, u, (const PetscReal(*)[2])normals, symmetry_only, &worst);
-  }
+  for (PetscInt k = 0; k < macro->node_count; k++)
+    if (macro->sets[macro->nodes[k].point - macro->mesh_start])
+      AddNode(macro, &macro->nodes[k], u, (const PetscReal(*)[2])normals, symmetry_only, &worst);
   PetscCall(VecRestoreArrayRead(macro->u, &u));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPIU_INT, MPI_MAX, macro->comm));
   PetscCheck(worst < 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
@@ -219,29 +202,28 @@ static PetscErrorCode RigidGram(LamMacro macro, PetscReal gram[9])
   PetscFunctionReturn(0);
 }
 
-static PetscReal Determinant(const PetscReal g[9])
-{
-  return g[0] * (g[4] * g[8] - g[5] * g[7]) - g[1] * (g[3] * g[8] - g[5] * g[6]) + g[2] * (g[3] * g[7] - g[4] * g[6]);
-}
-
-/* The conditions restrain all rigid motions if their Gram matrix at the constraints is regular. */
-static PetscErrorCode CheckRigidMotions(LamMacro macro)
+/* Orthonormal basis of the rigid motions restrained by the constraints. */
+static PetscErrorCode HeldMotions(LamMacro macro, PetscReal basis[3][3], PetscInt *rank)
 {
   const PetscReal tiny = 1e-10; /* relative to numbers of order one and more: lengths are in edges of the box */
-  PetscReal gram[9];
+  PetscReal gram[9], eigenvalue[3], work[32];
+  PetscBLASInt n = 3, size = 32, info;
 
   PetscFunctionBeginUser;
   PetscCall(RigidGram(macro, gram));
-  PetscCheck(Determinant(gram) > tiny, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "macro.boundary: the displacements leave the body free to move or turn as a whole; prescribe both "
-             "components somewhere, and enough to prevent rotation (plates and indenters do not count)");
+  LAPACKsyev_("V", "U", &n, gram, &n, eigenvalue, work, &size, &info);
+  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK's syev: info %d", (int)info);
+  *rank = 0;
+  for (int k = 0; k < 3; k++) {
+    if (eigenvalue[k] > tiny) PetscCall(PetscArraycpy(basis[(*rank)++], &gram[3 * k], 3));
+  }
   PetscFunctionReturn(0);
 }
 
 /* A node of the whole mesh. */
 typedef struct {
-  int number, rank;
-  PetscInt point; /* on that rank */
+  int rank;
+  const LamMacroNode *node; /* on that rank */
   PetscReal X[LAM_MACRO_DIM];
 } Place;
 
@@ -257,27 +239,21 @@ static PetscErrorCode FindNode(LamMacro macro, const Place *from, Place *found)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(macro->comm, &rank));
   for (int pass = 0; pass < 2; pass++) { /* first the greatest distance, then the rank that has it */
-    for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
-      const PetscInt number = macro->node_number[p - macro->mesh_start];
+    for (PetscInt k = 0; k < macro->node_count; k++) {
+      const LamMacroNode *node = &macro->nodes[k];
       PetscReal distance = 0;
-      PetscInt local;
-      PetscCall(LamMacroOwnedIndex(macro, p, &local));
-      if (local < 0) continue;
-      for (PetscInt i = 0; i < macro->dim; i++)
-        distance += PetscSqr(macro->position[macro->dim * (p - macro->mesh_start) + i] - from->X[i]);
+      for (PetscInt i = 0; i < macro->dim; i++) distance += PetscSqr(node->X[i] - from->X[i]);
       if (pass == 0) farthest = PetscMax(farthest, distance);
-      if (pass == 0 || distance < best * (1 - 1e-9) || number >= mine.number) continue;
-      mine.number = number;
-      found->point = p;
+      if (pass == 0 || distance < best * (1 - 1e-9) || node->number >= mine.number) continue;
+      mine.number = (int)node->number;
+      found->node = node;
     }
     if (pass == 0) PetscCallMPI(MPI_Allreduce(&farthest, &best, 1, MPIU_REAL, MPIU_MAX, macro->comm));
   }
   mine.rank = rank;
   PetscCallMPI(MPI_Allreduce(&mine, &first, 1, MPI_2INT, MPI_MINLOC, macro->comm));
-  found->number = first.number;
   found->rank = first.rank;
-  if (rank == first.rank)
-    PetscCall(PetscArraycpy(found->X, &macro->position[macro->dim * (found->point - macro->mesh_start)], macro->dim));
+  if (rank == first.rank) PetscCall(PetscArraycpy(found->X, found->node->X, macro->dim));
   PetscCallMPI(MPI_Bcast(found->X, LAM_MACRO_DIM, MPIU_REAL, first.rank, macro->comm));
   PetscFunctionReturn(0);
 }
@@ -290,7 +266,6 @@ static PetscErrorCode HoldNode(LamMacro macro, const Place *place, const PetscRe
   const PetscReal independent = 1e-6;
   PetscReal motion[3], square = 0;
   PetscMPIInt me;
-  PetscInt local;
 
   PetscFunctionBeginUser;
   RigidMotions(normal, place->X, motion);
@@ -305,27 +280,11 @@ static PetscErrorCode HoldNode(LamMacro macro, const Place *place, const PetscRe
   (*rank)++;
   PetscCallMPI(MPI_Comm_rank(macro->comm, &me));
   if (me != place->rank) PetscFunctionReturn(0);
-  PetscCall(LamMacroOwnedIndex(macro, place->point, &local));
-  macro->constraints[macro->constraint_count++] = (LamConstraint){
-      .point = place->point, .local = local, .normal = {normal[0], normal[1]}, .entry = -1, .border = -1};
-  PetscFunctionReturn(0);
-}
-
-/* Orthonormal basis of the rigid motions restrained by the constraints. */
-static PetscErrorCode HeldMotions(LamMacro macro, PetscReal basis[3][3], PetscInt *rank)
-{
-  const PetscReal tiny = 1e-10;
-  PetscReal gram[9], eigenvalue[3], work[32];
-  PetscBLASInt n = 3, size = 32, info;
-
-  PetscFunctionBeginUser;
-  PetscCall(RigidGram(macro, gram));
-  LAPACKsyev_("V", "U", &n, gram, &n, eigenvalue, work, &size, &info);
-  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK's syev: info %d", (int)info);
-  *rank = 0;
-  for (int k = 0; k < 3; k++) {
-    if (eigenvalue[k] > tiny) PetscCall(PetscArraycpy(basis[(*rank)++], &gram[3 * k], 3));
-  }
+  macro->constraints[macro->constraint_count++] = (LamConstraint){.point = place->node->point,
+                                                                  .local = place->node->local,
+                                                                  .normal = {normal[0], normal[1]},
+                                                                  .entry = -1,
+                                                                  .border = -1};
   PetscFunctionReturn(0);
 }
 
@@ -363,11 +322,17 @@ PetscErrorCode LamMacroHoldRigidMotions(LamMacro macro)
 
 PetscErrorCode LamMacroHoldBoundaries(LamMacro macro)
 {
+  PetscReal basis[3][3];
+  PetscInt rank;
+
   PetscFunctionBeginUser;
   macro->loaded = PETSC_TRUE;
   PetscCall(LamMacroBordersCreate(macro, PETSC_TRUE));
   PetscCall(AddNodes(macro, PETSC_FALSE));
-  PetscCall(CheckRigidMotions(macro));
+  PetscCall(HeldMotions(macro, basis, &rank));
+  PetscCheck(rank == 3, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "macro.boundary: the displacements leave the body free to move or turn as a whole; prescribe both "
+             "components somewhere, and enough to prevent rotation (plates and indenters do not count)");
   PetscCall(LamMacroBordersStart(macro));
   PetscCall(LamMacroObstaclesCreate(macro));
   PetscFunctionReturn(0);

@@ -7,28 +7,19 @@
 
 PetscErrorCode LamMacroArchiveVec(LamMacro macro, LamArchive archive, const char name[], Vec vec)
 {
-  const PetscInt most = macro->mesh_end - macro->mesh_start;
-  PetscInt n = 0, local, *numbers;
+  const PetscInt n = macro->node_count, dim = macro->dim;
+  PetscInt *numbers;
   PetscScalar *values, *nodal;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(most, &numbers, most * macro->dim, &nodal));
+  PetscCall(PetscMalloc2(n, &numbers, n * dim, &nodal));
   PetscCall(VecGetArray(vec, &values));
-  for (int pass = 0; pass < 2; pass++) { /* the second pass stores the values read */
-    n = 0;
-    for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
-      PetscCall(LamMacroOwnedIndex(macro, p, &local));
-      if (local < 0) continue;
-      numbers[n] = macro->node_number[p - macro->mesh_start];
-      if (pass == 0)
-        PetscCall(PetscArraycpy(&nodal[n * macro->dim], &values[local], macro->dim));
-      else
-        PetscCall(PetscArraycpy(&values[local], &nodal[n * macro->dim], macro->dim));
-      n++;
-    }
-    if (pass == 0)
-      PetscCall(LamArchiveItems(archive, name, (size_t)macro->dim * sizeof(PetscScalar), n, numbers, nodal));
+  for (PetscInt k = 0; k < n; k++) {
+    numbers[k] = macro->nodes[k].number;
+    PetscCall(PetscArraycpy(&nodal[k * dim], &values[macro->nodes[k].local], dim));
   }
+  PetscCall(LamArchiveItems(archive, name, (size_t)dim * sizeof(PetscScalar), n, numbers, nodal));
+  for (PetscInt k = 0; k < n; k++) PetscCall(PetscArraycpy(&values[macro->nodes[k].local], &nodal[k * dim], dim));
   PetscCall(VecRestoreArray(vec, &values));
   PetscCall(PetscFree2(numbers, nodal));
   PetscFunctionReturn(0);
@@ -76,19 +67,16 @@ static PetscErrorCode ArchiveTouch(LamMacro macro, LamArchive archive)
 
   PetscFunctionBeginUser;
   if (!macro->obstacle_count) PetscFunctionReturn(0);
-  for (int pass = 0; pass < 2; pass++) { /* the second pass stores the values read */
-    if (pass == 0) PetscCall(VecZeroEntries(macro->external));
-    PetscCall(VecGetArray(macro->external, &touches));
-    for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {
-      LamObstacleNode *node = &macro->obstacle_nodes[k];
-      if (pass == 0)
-        touches[node->local] = node->accepted ? 1 : 0;
-      else
-        node->accepted = PetscRealPart(touches[node->local]) > 0.5 ? PETSC_TRUE : PETSC_FALSE;
-    }
-    PetscCall(VecRestoreArray(macro->external, &touches));
-    if (pass == 0) PetscCall(LamMacroArchiveVec(macro, archive, "touch", macro->external));
-  }
+  PetscCall(VecZeroEntries(macro->external));
+  PetscCall(VecGetArray(macro->external, &touches));
+  for (PetscInt k = 0; k < macro->obstacle_node_count; k++)
+    touches[macro->obstacle_nodes[k].local] = macro->obstacle_nodes[k].accepted;
+  PetscCall(VecRestoreArray(macro->external, &touches));
+  PetscCall(LamMacroArchiveVec(macro, archive, "touch", macro->external));
+  PetscCall(VecGetArray(macro->external, &touches));
+  for (PetscInt k = 0; k < macro->obstacle_node_count; k++)
+    macro->obstacle_nodes[k].accepted = (PetscBool)(PetscRealPart(touches[macro->obstacle_nodes[k].local]) > 0.5);
+  PetscCall(VecRestoreArray(macro->external, &touches));
   PetscFunctionReturn(0);
 }
 

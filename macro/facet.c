@@ -35,8 +35,9 @@ void LamMacroFacetShape(PetscInt q, PetscReal N[3], PetscReal dN[3], PetscReal *
   *weight = q == 1 ? 8. / 9 : 5. / 9;
 }
 
-PetscErrorCode LamMacroStraightNormal(LamMacro macro, PetscInt set, PetscReal normal[2], PetscBool *straight)
+PetscErrorCode LamMacroStraightNormal(LamMacro macro, const LamBoundary *boundary, PetscReal normal[2])
 {
+  const PetscInt set = LamMacroFindSet(macro, boundary->on);
   const PetscReal tiny = 1e-8; /* relative to lengths of order one */
   PetscReal sum[2] = {0, 0}, range[2] = {-PETSC_INFINITY, -PETSC_INFINITY}, X[6], sense, length;
 
@@ -60,6 +61,10 @@ PetscErrorCode LamMacroStraightNormal(LamMacro macro, PetscInt set, PetscReal no
     }
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, range, 2, MPIU_REAL, MPIU_MAX, macro->comm));
-  *straight = length > 0 && range[0] + range[1] < tiny ? PETSC_TRUE : PETSC_FALSE;
+  PetscCheck(length > 0 && range[0] + range[1] < tiny, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "macro.boundary: on: %s: %s", boundary->on,
+             boundary->kind == LAM_BOUNDARY_PLATE
+                 ? "plate: the side is curved; say from where the plate looks into the body, such as normal: [0, -1]"
+                 : "symmetry needs a straight side, which this is not; name the straight parts of it on their own");
   PetscFunctionReturn(0);
 }

@@ -60,68 +60,105 @@ void LamMacroKeepFields(const LamResponse *response, PetscReal field[LAM_POINT_F
   field[LAM_POINT_DOUBTFUL] = !response->indicators_trusted;
 }
 
-/* Data sent by a rank per node, element and material point. */
-typedef struct {
-  PetscInt number;
-  PetscReal X[2], u[2];
-} NodeRecord;
+/* ---- the arrays of LamMacroFields ---- */
+
+typedef enum { NODE, ELEMENT, POINT, KINDS } Kind;
 
 typedef struct {
-  PetscInt number, points;
-  PetscInt nodes[LAM_FIELD_NODES];
-  PetscReal F[9], P[9], cauchy[9], mean[LAM_POINT_FIELD_COUNT], largest[LAM_POINT_FIELD_COUNT];
-} ElementRecord;
+  void **array; /* one item per node, element or material point */
+  Kind kind;
+  size_t size; /* of an item, bytes */
+} Member;
 
-typedef struct {
-  PetscInt element, index; /* number of its element, and its index there */
-  LamLoad load;
-  PetscReal P[9], field[LAM_POINT_FIELD_COUNT], place[2], position[2], volume;
-} PointRecord;
+enum { MEMBERS = 14, FIELDS = LAM_POINT_FIELD_COUNT };
 
-/* Gathers n items of `size` bytes from each rank on rank 0; `all` is NULL on other ranks. The caller frees it. */
-static PetscErrorCode GatherItems(MPI_Comm comm, size_t size, PetscInt n, const void *items, PetscInt *total,
-                                  void **all)
+/* All but first_point. */
+static void ListMembers(LamMacroFields *f, Member members[MEMBERS])
 {
-  PetscMPIInt rank, ranks, bytes, *counts = NULL, *starts = NULL;
+  const size_t real = sizeof(PetscReal);
+  const Member list[MEMBERS] = {
+      {(void **)&f->nodes, NODE, 2 * real},
+      {(void **)&f->u, NODE, 2 * real},
+      {(void **)&f->elements, ELEMENT, LAM_FIELD_NODES * sizeof(PetscInt)},
+      {(void **)&f->F, ELEMENT, 9 * real},
+      {(void **)&f->P, ELEMENT, 9 * real},
+      {(void **)&f->cauchy, ELEMENT, 9 * real},
+      {(void **)&f->mean, ELEMENT, FIELDS * real},
+      {(void **)&f->largest, ELEMENT, FIELDS * real},
+      {(void **)&f->point, POINT, FIELDS * real},
+      {(void **)&f->load, POINT, sizeof(LamLoad)},
+      {(void **)&f->point_P, POINT, 9 * real},
+      {(void **)&f->place, POINT, 2 * real},
+      {(void **)&f->position, POINT, 2 * real},
+      {(void **)&f->volume, POINT, real},
+  };
+
+  memcpy(members, list, sizeof(list));
+}
+
+static PetscErrorCode FieldsCreate(const PetscInt n[KINDS], LamMacroFields *fields)
+{
+  Member members[MEMBERS];
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  PetscCallMPI(MPI_Comm_size(comm, &ranks));
-  PetscCall(PetscMPIIntCast((PetscInt)(n * size), &bytes));
-  if (rank == 0) PetscCall(PetscMalloc2(ranks, &counts, ranks + 1, &starts));
-  PetscCallMPI(MPI_Gather(&bytes, 1, MPI_INT, counts, 1, MPI_INT, 0, comm));
-  *all = NULL;
-  *total = 0;
-  if (rank == 0) {
-    starts[0] = 0;
-    for (PetscMPIInt r = 0; r < ranks; r++) starts[r + 1] = starts[r] + counts[r];
-    *total = (PetscInt)(starts[ranks] / size);
-    PetscCall(PetscMalloc(starts[ranks], all));
-  }
-  PetscCallMPI(MPI_Gatherv(items, bytes, MPI_BYTE, *all, counts, starts, MPI_BYTE, 0, comm));
-  PetscCall(PetscFree2(counts, starts));
+  *fields = (LamMacroFields){.node_count = n[NODE], .element_count = n[ELEMENT], .point_count = n[POINT]};
+  ListMembers(fields, members);
+  for (int k = 0; k < MEMBERS; k++)
+    PetscCall(PetscCalloc((size_t)n[members[k].kind] * members[k].size, members[k].array));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CollectNodes(LamMacro macro, PetscInt *n, NodeRecord **nodes)
+PetscErrorCode LamMacroFieldsDestroy(LamMacroFields *fields)
+{
+  Member members[MEMBERS];
+
+  PetscFunctionBeginUser;
+  ListMembers(fields, members);
+  for (int k = 0; k < MEMBERS; k++) PetscCall(PetscFree(*members[k].array));
+  PetscCall(PetscFree(fields->first_point));
+  PetscFunctionReturn(0);
+}
+
+/* Sends this rank's n items of a kind to rank 0; to[n]: their place there. */
+static PetscErrorCode GatherKind(LamMacro macro, Kind kind, PetscInt n, PetscSFNode *to, LamMacroFields *own,
+                                 PetscInt total, LamMacroFields *all)
+{
+  Member from[MEMBERS], into[MEMBERS];
+  MPI_Datatype item;
+  PetscSF sf;
+
+  PetscFunctionBeginUser;
+  ListMembers(own, from);
+  ListMembers(all, into);
+  PetscCall(PetscSFCreate(macro->comm, &sf));
+  PetscCall(PetscSFSetGraph(sf, total, n, NULL, PETSC_COPY_VALUES, to, PETSC_USE_POINTER));
+  for (int k = 0; k < MEMBERS; k++) {
+    if (from[k].kind != kind) continue;
+    PetscCallMPI(MPI_Type_contiguous((int)from[k].size, MPI_BYTE, &item));
+    PetscCallMPI(MPI_Type_commit(&item));
+    PetscCall(PetscSFReduceBegin(sf, item, *from[k].array, *into[k].array, MPI_REPLACE));
+    PetscCall(PetscSFReduceEnd(sf, item, *from[k].array, *into[k].array, MPI_REPLACE));
+    PetscCallMPI(MPI_Type_free(&item));
+  }
+  PetscCall(PetscSFDestroy(&sf));
+  PetscFunctionReturn(0);
+}
+
+/* ---- the fields of one rank ---- */
+
+static PetscErrorCode CollectNodes(LamMacro macro, LamMacroFields *own, PetscSFNode to[])
 {
   const PetscScalar *u;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(macro->mesh_end - macro->mesh_start, nodes));
   PetscCall(VecGetArrayRead(macro->u, &u));
-  *n = 0;
-  for (PetscInt p = 0; p < macro->mesh_end - macro->mesh_start; p++) {
-    NodeRecord *node = &(*nodes)[*n];
-    PetscInt local;
-    PetscCall(LamMacroOwnedIndex(macro, macro->mesh_start + p, &local));
-    if (local < 0) continue;
-    node->number = macro->node_number[p];
+  for (PetscInt k = 0; k < macro->node_count; k++) {
+    const LamMacroNode *node = &macro->nodes[k];
+    to[k].index = node->number;
     for (int i = 0; i < 2; i++) {
-      node->X[i] = macro->position[2 * p + i];
-      node->u[i] = PetscRealPart(u[local + i]);
+      own->nodes[2 * k + i] = node->X[i];
+      own->u[2 * k + i] = PetscRealPart(u[node->local + i]);
     }
-    (*n)++;
   }
   PetscCall(VecRestoreArrayRead(macro->u, &u));
   PetscFunctionReturn(0);
@@ -170,206 +207,123 @@ static void MeanCauchy(PetscInt n, const LamMaterialPoint points[], const PetscR
   }
 }
 
-static void ElementMeans(PetscInt n, const LamMaterialPoint points[], const PetscReal weight[], ElementRecord *record)
+/* Means over the n points of element e, and their most critical values. */
+static void ElementMeans(PetscInt n, const LamMaterialPoint points[], const PetscReal weight[], PetscInt e,
+                         LamMacroFields *own)
 {
-  PetscReal area = 0;
+  PetscReal *mean = &own->mean[FIELDS * e], *largest = &own->largest[FIELDS * e], area = 0;
 
   for (PetscInt q = 0; q < n; q++) area += weight[q];
-  for (int k = 0; k < LAM_POINT_FIELD_COUNT; k++) record->largest[k] = points[0].field[k];
+  for (int k = 0; k < FIELDS; k++) largest[k] = points[0].field[k];
   for (PetscInt q = 0; q < n; q++) {
-    const LamMaterialPoint *point = &points[q];
     const PetscReal share = weight[q] / area;
     for (int k = 0; k < 9; k++) {
-      record->F[k] += share * point->load.F[k];
-      record->P[k] += share * point->P[k];
+      own->F[9 * e + k] += share * points[q].load.F[k];
+      own->P[9 * e + k] += share * points[q].P[k];
     }
-    for (int k = 0; k < LAM_POINT_FIELD_COUNT; k++) {
-      record->mean[k] += share * point->field[k];
-      record->largest[k] = LamPointFieldWorse((LamPointField)k, record->largest[k], point->field[k]);
+    for (int k = 0; k < FIELDS; k++) {
+      mean[k] += share * points[q].field[k];
+      largest[k] = LamPointFieldWorse((LamPointField)k, largest[k], points[q].field[k]);
     }
   }
 }
 
-static PetscErrorCode CollectElements(LamMacro macro, PetscInt *n, ElementRecord **elements)
+static PetscErrorCode CollectElements(LamMacro macro, LamMacroFields *own, PetscSFNode to[])
 {
   PetscFunctionBeginUser;
-  *n = macro->element_count;
-  PetscCall(PetscCalloc1(*n, elements));
-  for (PetscInt e = 0; e < *n; e++) {
+  for (PetscInt e = 0; e < macro->element_count; e++) {
     const LamMacroElement *element = &macro->elements[e];
     const LamMaterialPoint *points = &macro->accepted[element->first];
     const PetscReal *weight = &macro->weight[element->first];
-    ElementRecord *record = &(*elements)[e];
-    record->number = element->number;
-    record->points = element->kind->points;
-    PetscCall(ElementNodes(macro, e, record->nodes));
-    ElementMeans(record->points, points, weight, record);
-    MeanCauchy(record->points, points, weight, record->cauchy);
+    to[e].index = element->number;
+    PetscCall(ElementNodes(macro, e, &own->elements[LAM_FIELD_NODES * e]));
+    ElementMeans(element->kind->points, points, weight, e, own);
+    MeanCauchy(element->kind->points, points, weight, &own->cauchy[9 * e]);
   }
   PetscFunctionReturn(0);
 }
 
 /* Point q of an element, at displacements ue[nodes][dim] of its nodes: x = X + sum_a N_a u_a. */
 static void FillPoint(LamMacro macro, const LamMacroElement *element, PetscInt q, const PetscScalar ue[],
-                      PointRecord *record)
+                      LamMacroFields *own)
 {
   const PetscInt p = element->first + q, nodes = element->kind->nodes;
   const LamMaterialPoint *point = &macro->accepted[p];
 
-  record->element = element->number;
-  record->index = q;
-  record->load = point->load;
-  record->volume = macro->weight[p];
-  for (int k = 0; k < 9; k++) record->P[k] = point->P[k];
-  for (int k = 0; k < LAM_POINT_FIELD_COUNT; k++) record->field[k] = point->field[k];
+  own->load[p] = point->load;
+  own->volume[p] = macro->weight[p];
+  memcpy(&own->point_P[9 * p], point->P, sizeof(point->P));
+  memcpy(&own->point[FIELDS * p], point->field, sizeof(point->field));
   for (int i = 0; i < 2; i++) {
-    record->place[i] = record->position[i] = macro->place[macro->dim * p + i];
+    PetscReal *x = &own->position[2 * p + i];
+    *x = own->place[2 * p + i] = macro->place[macro->dim * p + i];
     for (PetscInt a = 0; a < nodes; a++)
-      record->position[i] += element->kind->value[q * nodes + a] * PetscRealPart(ue[macro->dim * a + i]);
+      *x += element->kind->value[q * nodes + a] * PetscRealPart(ue[macro->dim * a + i]);
   }
 }
 
-static PetscErrorCode CollectPoints(LamMacro macro, PetscInt *n, PointRecord **points)
+static PetscErrorCode CollectPoints(LamMacro macro, const PetscInt first_point[], LamMacroFields *own, PetscSFNode to[])
 {
-  PetscSection section;
   Vec local;
 
   PetscFunctionBeginUser;
-  *n = macro->point_count;
-  PetscCall(PetscMalloc1(*n, points));
-  PetscCall(DMGetLocalSection(macro->dm, &section));
   PetscCall(DMGetLocalVector(macro->dm, &local));
   PetscCall(DMGlobalToLocal(macro->dm, macro->u, INSERT_VALUES, local));
   for (PetscInt e = 0; e < macro->element_count; e++) {
     const LamMacroElement *element = &macro->elements[e];
     PetscScalar *ue = NULL;
-    PetscCall(DMPlexVecGetClosure(macro->dm, section, local, macro->mesh_start + e, NULL, &ue));
-    for (PetscInt q = 0; q < element->kind->points; q++)
-      FillPoint(macro, element, q, ue, &(*points)[element->first + q]);
-    PetscCall(DMPlexVecRestoreClosure(macro->dm, section, local, macro->mesh_start + e, NULL, &ue));
+    PetscCall(DMPlexVecGetClosure(macro->dm, NULL, local, macro->mesh_start + e, NULL, &ue));
+    for (PetscInt q = 0; q < element->kind->points; q++) {
+      FillPoint(macro, element, q, ue, own);
+      to[element->first + q].index = first_point[element->number] + q;
+    }
+    PetscCall(DMPlexVecRestoreClosure(macro->dm, NULL, local, macro->mesh_start + e, NULL, &ue));
   }
   PetscCall(DMRestoreLocalVector(macro->dm, &local));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode GetNodes(LamMacro macro, LamMacroFields *fields)
+/* ---- gathering ---- */
+
+/* first_point of `elements` elements, on all ranks. */
+static PetscErrorCode CountPoints(LamMacro macro, PetscInt elements, PetscInt **first_point)
 {
-  NodeRecord *own, *all;
-  PetscInt n = 0;
-
   PetscFunctionBeginUser;
-  PetscCall(CollectNodes(macro, &n, &own));
-  PetscCall(GatherItems(macro->comm, sizeof(NodeRecord), n, own, &fields->node_count, (void **)&all));
-  PetscCall(PetscFree(own));
-  if (!all) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1(2 * fields->node_count, &fields->nodes));
-  PetscCall(PetscMalloc1(2 * fields->node_count, &fields->u));
-  for (PetscInt k = 0; k < fields->node_count; k++) {
-    PetscCall(PetscArraycpy(&fields->nodes[2 * all[k].number], all[k].X, 2));
-    PetscCall(PetscArraycpy(&fields->u[2 * all[k].number], all[k].u, 2));
-  }
-  PetscCall(PetscFree(all));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode KeepElements(const ElementRecord elements[], LamMacroFields *fields)
-{
-  const PetscInt count = fields->element_count, n = LAM_POINT_FIELD_COUNT;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(LAM_FIELD_NODES * count, &fields->elements));
-  PetscCall(PetscMalloc1(9 * count, &fields->F));
-  PetscCall(PetscMalloc1(9 * count, &fields->P));
-  PetscCall(PetscMalloc1(9 * count, &fields->cauchy));
-  PetscCall(PetscMalloc1(n * count, &fields->mean));
-  PetscCall(PetscMalloc1(n * count, &fields->largest));
-  PetscCall(PetscCalloc1(count + 1, &fields->first_point));
-  for (PetscInt k = 0; k < count; k++) {
-    const ElementRecord *element = &elements[k];
-    PetscCall(PetscArraycpy(&fields->elements[LAM_FIELD_NODES * element->number], element->nodes, LAM_FIELD_NODES));
-    PetscCall(PetscArraycpy(&fields->F[9 * element->number], element->F, 9));
-    PetscCall(PetscArraycpy(&fields->P[9 * element->number], element->P, 9));
-    PetscCall(PetscArraycpy(&fields->cauchy[9 * element->number], element->cauchy, 9));
-    PetscCall(PetscArraycpy(&fields->mean[n * element->number], element->mean, n));
-    PetscCall(PetscArraycpy(&fields->largest[n * element->number], element->largest, n));
-    fields->first_point[element->number + 1] = element->points;
-  }
-  for (PetscInt e = 0; e < count; e++) fields->first_point[e + 1] += fields->first_point[e];
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode GetElements(LamMacro macro, LamMacroFields *fields)
-{
-  ElementRecord *own, *all;
-  PetscInt n = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(CollectElements(macro, &n, &own));
-  PetscCall(GatherItems(macro->comm, sizeof(ElementRecord), n, own, &fields->element_count, (void **)&all));
-  PetscCall(PetscFree(own));
-  if (all) PetscCall(KeepElements(all, fields));
-  PetscCall(PetscFree(all));
-  PetscFunctionReturn(0);
-}
-
-/* Call after GetElements. */
-static PetscErrorCode GetPoints(LamMacro macro, LamMacroFields *fields)
-{
-  PointRecord *own, *all;
-  PetscInt n = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(CollectPoints(macro, &n, &own));
-  PetscCall(GatherItems(macro->comm, sizeof(PointRecord), n, own, &fields->point_count, (void **)&all));
-  PetscCall(PetscFree(own));
-  if (!all) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1(LAM_POINT_FIELD_COUNT * fields->point_count, &fields->point));
-  PetscCall(PetscMalloc1(fields->point_count, &fields->load));
-  PetscCall(PetscMalloc1(9 * fields->point_count, &fields->point_P));
-  PetscCall(PetscMalloc1(2 * fields->point_count, &fields->place));
-  PetscCall(PetscMalloc1(2 * fields->point_count, &fields->position));
-  PetscCall(PetscMalloc1(fields->point_count, &fields->volume));
-  for (PetscInt k = 0; k < fields->point_count; k++) {
-    const PetscInt p = fields->first_point[all[k].element] + all[k].index;
-    PetscCall(PetscArraycpy(&fields->point[LAM_POINT_FIELD_COUNT * p], all[k].field, LAM_POINT_FIELD_COUNT));
-    fields->load[p] = all[k].load;
-    PetscCall(PetscArraycpy(&fields->point_P[9 * p], all[k].P, 9));
-    PetscCall(PetscArraycpy(&fields->place[2 * p], all[k].place, 2));
-    PetscCall(PetscArraycpy(&fields->position[2 * p], all[k].position, 2));
-    fields->volume[p] = all[k].volume;
-  }
-  PetscCall(PetscFree(all));
+  PetscCall(PetscCalloc1(elements + 1, first_point));
+  for (PetscInt e = 0; e < macro->element_count; e++)
+    (*first_point)[macro->elements[e].number + 1] = macro->elements[e].kind->points;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, *first_point, elements + 1, MPIU_INT, MPI_SUM, macro->comm));
+  for (PetscInt e = 0; e < elements; e++) (*first_point)[e + 1] += (*first_point)[e];
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamMacroGetFields(LamMacro macro, LamMacroFields *fields)
 {
-  PetscFunctionBeginUser;
-  PetscCall(PetscMemzero(fields, sizeof(*fields)));
-  PetscCall(GetNodes(macro, fields));
-  PetscCall(GetElements(macro, fields));
-  PetscCall(GetPoints(macro, fields));
-  PetscFunctionReturn(0);
-}
+  const PetscInt n[KINDS] = {macro->node_count, macro->element_count, macro->point_count};
+  PetscInt total[KINDS], *first_point;
+  PetscSFNode *to[KINDS]; /* rank 0, and the item's number */
+  LamMacroFields own;
+  PetscMPIInt rank;
 
-PetscErrorCode LamMacroFieldsDestroy(LamMacroFields *fields)
-{
   PetscFunctionBeginUser;
-  PetscCall(PetscFree(fields->nodes));
-  PetscCall(PetscFree(fields->u));
-  PetscCall(PetscFree(fields->elements));
-  PetscCall(PetscFree(fields->F));
-  PetscCall(PetscFree(fields->P));
-  PetscCall(PetscFree(fields->cauchy));
-  PetscCall(PetscFree(fields->mean));
-  PetscCall(PetscFree(fields->largest));
-  PetscCall(PetscFree(fields->first_point));
-  PetscCall(PetscFree(fields->point));
-  PetscCall(PetscFree(fields->load));
-  PetscCall(PetscFree(fields->point_P));
-  PetscCall(PetscFree(fields->place));
-  PetscCall(PetscFree(fields->position));
-  PetscCall(PetscFree(fields->volume));
+  PetscCallMPI(MPI_Comm_rank(macro->comm, &rank));
+  PetscCall(FieldsCreate(n, &own));
+  PetscCall(PetscCalloc3(n[NODE], &to[NODE], n[ELEMENT], &to[ELEMENT], n[POINT], &to[POINT]));
+  PetscCall(CollectNodes(macro, &own, to[NODE]));
+  PetscCallMPI(MPI_Allreduce(n, total, KINDS, MPIU_INT, MPI_SUM, macro->comm));
+  PetscCall(CountPoints(macro, total[ELEMENT], &first_point));
+  PetscCall(CollectElements(macro, &own, to[ELEMENT]));
+  PetscCall(CollectPoints(macro, first_point, &own, to[POINT]));
+  if (rank) PetscCall(PetscArrayzero(total, KINDS));
+  PetscCall(FieldsCreate(total, fields));
+  for (Kind kind = NODE; kind < KINDS; kind++)
+    PetscCall(GatherKind(macro, kind, n[kind], to[kind], &own, total[kind], fields));
+  if (rank == 0)
+    fields->first_point = first_point;
+  else
+    PetscCall(PetscFree(first_point));
+  PetscCall(PetscFree3(to[NODE], to[ELEMENT], to[POINT]));
+  PetscCall(LamMacroFieldsDestroy(&own));
   PetscFunctionReturn(0);
 }
 

@@ -183,11 +183,9 @@ PetscErrorCode LamMacroGuessInflated(LamMacro macro, Vec u, PetscBool *found)
   if (!*found) PetscFunctionReturn(0);
   PetscCall(FitMotion(macro, e, motion));
   PetscCall(VecGetArray(u, &values));
-  for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
-    const PetscReal *X = &macro->position[2 * (p - macro->mesh_start)];
-    PetscInt local;
-    PetscCall(LamMacroOwnedIndex(macro, p, &local));
-    if (local < 0) continue;
+  for (PetscInt k = 0; k < macro->node_count; k++) {
+    const PetscReal *X = macro->nodes[k].X;
+    const PetscInt local = macro->nodes[k].local;
     values[local] = e[0] * X[0] + e[1] * X[1] + motion[0] - motion[2] * X[1];
     values[local + 1] = e[1] * X[0] + e[2] * X[1] + motion[1] + motion[2] * X[0];
   }

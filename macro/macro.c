@@ -25,20 +25,25 @@ PetscErrorCode LamMacroSetScene(LamMacro macro, const LamScene *scene)
   PetscFunctionReturn(0);
 }
 
+enum { VECTORS = 8 };
+
+static void ListVectors(LamMacro macro, Vec *vectors[VECTORS])
+{
+  Vec *const list[VECTORS] = {&macro->u,     &macro->trial,          &macro->residual, &macro->origin,
+                              &macro->force, &macro->force_accepted, &macro->external, &macro->before};
+
+  memcpy(vectors, list, sizeof(list));
+}
+
 static PetscErrorCode CreatePoints(LamMacro macro)
 {
-  PetscInt n = macro->point_count;
+  const PetscInt n = macro->point_count;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n, &macro->point_index));
-  for (PetscInt p = 0; p < n; p++) macro->point_index[p] = p;
-  PetscCall(PetscCalloc1(n, &macro->loads));
-  PetscCall(PetscCalloc1(n, &macro->responses));
-  PetscCall(PetscCalloc1(n, &macro->now));
-  PetscCall(PetscCalloc1(n, &macro->accepted));
-  PetscCall(PetscMalloc1(n, &macro->turgor_share));
-  PetscCall(PetscMalloc1(n, &macro->cohesion));
+  PetscCall(PetscCalloc7(n, &macro->point_index, n, &macro->loads, n, &macro->responses, n, &macro->now, n,
+                         &macro->accepted, n, &macro->turgor_share, n, &macro->cohesion));
   for (PetscInt p = 0; p < n; p++) {
+    macro->point_index[p] = p;
     macro->turgor_share[p] = macro->scene->turgor;
     macro->cohesion[p] = macro->scene->cohesion;
   }
@@ -47,23 +52,18 @@ static PetscErrorCode CreatePoints(LamMacro macro)
 
 static PetscErrorCode CreateUnknowns(LamMacro macro)
 {
+  Vec *vectors[VECTORS];
   PetscInt local;
 
   PetscFunctionBeginUser;
-  PetscCall(DMCreateGlobalVector(macro->dm, &macro->u));
-  PetscCall(VecDuplicate(macro->u, &macro->trial));
-  PetscCall(VecDuplicate(macro->u, &macro->residual));
-  PetscCall(VecDuplicate(macro->u, &macro->origin));
-  PetscCall(VecDuplicate(macro->u, &macro->force));
-  PetscCall(VecDuplicate(macro->u, &macro->force_accepted));
-  PetscCall(VecZeroEntries(macro->u));
-  PetscCall(VecZeroEntries(macro->origin));
-  PetscCall(VecZeroEntries(macro->force_accepted));
+  ListVectors(macro, vectors);
+  for (int k = 0; k < VECTORS; k++) {
+    PetscCall(DMCreateGlobalVector(macro->dm, vectors[k]));
+    PetscCall(VecZeroEntries(*vectors[k]));
+  }
+  PetscCall(LamMacroListNodes(macro));
   PetscCall(VecGetLocalSize(macro->u, &local));
-  PetscCall(VecDuplicate(macro->u, &macro->external));
-  PetscCall(VecDuplicate(macro->u, &macro->before));
-  PetscCall(PetscMalloc1(local, &macro->constraints));
-  PetscCall(PetscMalloc1(local, &macro->rows));
+  PetscCall(PetscMalloc2(local, &macro->constraints, local, &macro->rows));
   PetscCall(DMSetMatType(macro->dm, MATAIJ));
   PetscCall(DMCreateMatrix(macro->dm, &macro->tangent));
   PetscFunctionReturn(0);
@@ -162,32 +162,22 @@ PetscErrorCode LamMacroSetStop(LamMacro macro, PetscBool (*stop)(void))
 
 PetscErrorCode LamMacroDestroy(LamMacro *macro)
 {
+  LamMacro m = *macro;
+  Vec *vectors[VECTORS];
+
   PetscFunctionBeginUser;
-  if (!*macro) PetscFunctionReturn(0);
-  PetscCall(SNESDestroy(&(*macro)->snes));
-  PetscCall(LamMacroSealDestroy(*macro));
-  PetscCall(MatDestroy(&(*macro)->tangent));
-  PetscCall(VecDestroy(&(*macro)->u));
-  PetscCall(VecDestroy(&(*macro)->trial));
-  PetscCall(VecDestroy(&(*macro)->residual));
-  PetscCall(VecDestroy(&(*macro)->origin));
-  PetscCall(VecDestroy(&(*macro)->force));
-  PetscCall(VecDestroy(&(*macro)->force_accepted));
-  PetscCall(VecDestroy(&(*macro)->external));
-  PetscCall(VecDestroy(&(*macro)->before));
-  PetscCall(LamMacroBordersDestroy(*macro));
-  PetscCall(KSPDestroy(&(*macro)->solver));
-  PetscCall(PetscFree((*macro)->constraints));
-  PetscCall(PetscFree((*macro)->rows));
-  PetscCall(PetscFree((*macro)->obstacle_nodes));
-  PetscCall(PetscFree((*macro)->point_index));
-  PetscCall(PetscFree((*macro)->loads));
-  PetscCall(PetscFree((*macro)->responses));
-  PetscCall(PetscFree((*macro)->now));
-  PetscCall(PetscFree((*macro)->accepted));
-  PetscCall(PetscFree((*macro)->turgor_share));
-  PetscCall(PetscFree((*macro)->cohesion));
-  PetscCall(LamMacroMeshDestroy(*macro));
+  if (!m) PetscFunctionReturn(0);
+  PetscCall(SNESDestroy(&m->snes));
+  PetscCall(LamMacroSealDestroy(m));
+  PetscCall(MatDestroy(&m->tangent));
+  ListVectors(m, vectors);
+  for (int k = 0; k < VECTORS; k++) PetscCall(VecDestroy(vectors[k]));
+  PetscCall(LamMacroBordersDestroy(m));
+  PetscCall(KSPDestroy(&m->solver));
+  PetscCall(PetscFree2(m->constraints, m->rows));
+  PetscCall(PetscFree(m->obstacle_nodes));
+  PetscCall(PetscFree7(m->point_index, m->loads, m->responses, m->now, m->accepted, m->turgor_share, m->cohesion));
+  PetscCall(LamMacroMeshDestroy(m));
   PetscCall(PetscFree(*macro));
   PetscFunctionReturn(0);
 }

@@ -58,6 +58,14 @@ typedef struct {
   PetscInt group;    /* named region; -1: none */
 } LamMacroElement;
 
+/* A node that this rank owns. */
+typedef struct {
+  PetscInt point;     /* of the mesh */
+  PetscInt local;     /* the node's first index in this rank's part of a global vector */
+  PetscInt number;    /* in the undistributed mesh */
+  const PetscReal *X; /* [dim] reference position; borrowed */
+} LamMacroNode;
+
 /* A boundary facet on this rank that belongs to a named set. */
 typedef struct {
   PetscInt point;    /* of the mesh */
@@ -107,6 +115,7 @@ typedef struct {
   PetscInt entry;  /* index of the scene's condition whose history gives the factor; -1: the target stays at the base */
   PetscInt border; /* index of the border whose unknown is added to the target; -1: none */
   unsigned int sides; /* bit s: prescribed by the step's s-th name; 0 if it only holds rigid motions */
+  PetscInt row;       /* its node's LamNodeRows in the last residual */
 } LamConstraint;
 
 /* Progress of the load program: the last complete step. */
@@ -181,8 +190,10 @@ struct LamMacro_s {
   PetscInt mesh_start, mesh_end; /* mesh points (cells, faces, edges, vertices) of this rank; most are nodes */
   PetscInt *node_number;         /* [mesh points] in the undistributed mesh; -1: no node */
   PetscReal *position;           /* [mesh points][dim] reference position of the node */
-  PetscReal *gradient;           /* dN/dX, see LamMacroElement */
-  PetscInt set_count;            /* named boundaries */
+  PetscInt node_count;
+  LamMacroNode *nodes; /* owned by this rank, in the order of their mesh points */
+  PetscReal *gradient; /* dN/dX, see LamMacroElement */
+  PetscInt set_count;  /* named boundaries */
   char set_name[LAM_MACRO_SETS][LAM_NAME_LENGTH];
   unsigned int *sets; /* [mesh points] bit k: on set k */
   PetscInt facet_count;
@@ -251,8 +262,8 @@ struct LamMacro_s {
 /* mesh.c */
 PetscErrorCode LamMacroMeshCreate(LamMacro macro);
 PetscErrorCode LamMacroMeshDestroy(LamMacro macro);
-/* A node's first index in this rank's part of a global vector; -1: no node, or another rank owns it. */
-PetscErrorCode LamMacroOwnedIndex(LamMacro macro, PetscInt point, PetscInt *local);
+/* Lists the nodes of this rank, once there are vectors. */
+PetscErrorCode LamMacroListNodes(LamMacro macro);
 /* The named set; -1: none. */
 PetscInt LamMacroFindSet(LamMacro macro, const char name[]);
 
@@ -280,8 +291,8 @@ PetscErrorCode LamMacroFacetNodes(LamMacro macro, const LamMacroFacet *facet, Pe
 enum { LAM_FACET_POINTS = 3 };
 /* Shape functions N [3] and their derivatives dN [3] at Gauss point q of a facet, xi = -1..1, and its weight. */
 void LamMacroFacetShape(PetscInt q, PetscReal N[3], PetscReal dN[3], PetscReal *weight);
-/* Outward unit normal of a named set whose facets lie on one straight line; *straight: whether they do. */
-PetscErrorCode LamMacroStraightNormal(LamMacro macro, PetscInt set, PetscReal normal[2], PetscBool *straight);
+/* Outward unit normal of a condition's side; PETSC_ERR_USER_INPUT if it is not straight. */
+PetscErrorCode LamMacroStraightNormal(LamMacro macro, const LamBoundary *boundary, PetscReal normal[2]);
 
 /* boundary.c */
 /* Checks that each condition names a boundary of the mesh (else PETSC_ERR_USER_INPUT). */
@@ -334,11 +345,10 @@ PetscErrorCode LamMacroBordersDestroy(LamMacro macro);
 PetscInt LamMacroFindBorder(LamMacro macro, PetscInt entry, PetscInt component);
 /* Sets the weights and the base of the equations; call after the constraints are set. */
 PetscErrorCode LamMacroBordersStart(LamMacro macro);
-/* Residuals of the borders' equations from the unbalanced force; then, after the rows, the columns. */
+/* Residuals of the borders' equations from the unbalanced force. */
 PetscErrorCode LamMacroBorderEquations(LamMacro macro, Vec u, Vec unbalanced);
-PetscErrorCode LamMacroBorderColumns(LamMacro macro);
-/* Derivatives of the equations, from the tangent before its rows are modified. */
-PetscErrorCode LamMacroBorderRows(LamMacro macro, Mat tangent);
+/* Rows and columns of the bordered tangent at the last residual, from the tangent before its rows are modified. */
+PetscErrorCode LamMacroBorderDerivatives(LamMacro macro, Mat tangent);
 /* Makes Newton's linear solver that of the bordered system, if the scene needs it. */
 PetscErrorCode LamMacroBorderSolver(LamMacro macro, KSP ksp);
 

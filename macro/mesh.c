@@ -43,18 +43,24 @@ static PetscErrorCode NumberPoints(LamMacro macro, PetscInt **nodes, PetscInt **
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamMacroOwnedIndex(LamMacro macro, PetscInt point, PetscInt *local)
+PetscErrorCode LamMacroListNodes(LamMacro macro)
 {
   PetscSection section;
-  PetscInt offset, start;
+  PetscInt start, size;
 
   PetscFunctionBeginUser;
-  *local = -1;
-  if (macro->node_number[point - macro->mesh_start] < 0) PetscFunctionReturn(0);
   PetscCall(DMGetGlobalSection(macro->dm, &section));
-  PetscCall(PetscSectionGetOffset(section, point, &offset));
   PetscCall(VecGetOwnershipRange(macro->u, &start, NULL));
-  *local = offset < 0 ? -1 : offset - start;
+  PetscCall(VecGetLocalSize(macro->u, &size));
+  PetscCall(PetscMalloc1(size / macro->dim, &macro->nodes));
+  for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
+    const PetscInt number = macro->node_number[p - macro->mesh_start];
+    PetscInt offset;
+    PetscCall(PetscSectionGetOffset(section, p, &offset));
+    if (number >= 0 && offset >= 0)
+      macro->nodes[macro->node_count++] =
+          (LamMacroNode){p, offset - start, number, &macro->position[macro->dim * (p - macro->mesh_start)]};
+  }
   PetscFunctionReturn(0);
 }
 
@@ -165,19 +171,16 @@ static PetscErrorCode AddPhysicalGroups(LamMacro macro)
 static PetscErrorCode NameSets(LamMacro macro)
 {
   static const char *const box[] = {"bottom", "right", "top", "left"}, *const disc[] = {"rim", "bottom", "left"};
+  const LamMeshSource source = macro->scene->macro.source;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(macro->mesh_end - macro->mesh_start, &macro->sets));
-  switch (macro->scene->macro.source) {
-  case LAM_MESH_BOX:
+  if (source == LAM_MESH_BOX)
     PetscCall(AddSides(macro, 4, box));
-    break;
-  case LAM_MESH_DISC:
+  else if (source == LAM_MESH_DISC)
     PetscCall(AddSides(macro, 3, disc));
-    break;
-  default:
+  else
     PetscCall(AddPhysicalGroups(macro));
-  }
   PetscFunctionReturn(0);
 }
 
@@ -326,7 +329,6 @@ static PetscErrorCode MapPoint(LamMacro macro, const LamMacroElement *element, P
   macro->weight[element->first + q] = kind->weight[q] * det;
   for (PetscInt a = 0; a < kind->nodes; a++) {
     for (PetscInt i = 0; i < dim; i++) {
-      dNdX[dim * a + i] = 0;
       for (PetscInt j = 0; j < dim; j++) dNdX[dim * a + i] += dN[dim * a + j] * inverse[dim * j + i];
     }
   }
@@ -364,10 +366,8 @@ static PetscErrorCode MapElements(LamMacro macro)
     macro->point_count += element->kind->points;
     gradients += element->kind->points * element->kind->nodes * macro->dim;
   }
-  PetscCall(PetscMalloc1(gradients, &macro->gradient));
-  PetscCall(PetscMalloc1(macro->point_count, &macro->weight));
-  PetscCall(PetscCalloc1(macro->point_count * macro->dim, &macro->place));
-  PetscCall(PetscMalloc1(macro->point_count, &macro->point_element));
+  PetscCall(PetscCalloc4(gradients, &macro->gradient, macro->point_count, &macro->weight,
+                         macro->point_count * macro->dim, &macro->place, macro->point_count, &macro->point_element));
   for (PetscInt e = 0; e < macro->element_count; e++) {
     const LamMacroElement *element = &macro->elements[e];
     PetscReal X[LAM_MACRO_DOFS];
@@ -492,12 +492,10 @@ PetscErrorCode LamMacroMeshDestroy(LamMacro macro)
   PetscCall(PetscFree(macro->elements));
   PetscCall(PetscFree(macro->node_number));
   PetscCall(PetscFree(macro->position));
-  PetscCall(PetscFree(macro->gradient));
+  PetscCall(PetscFree(macro->nodes));
   PetscCall(PetscFree(macro->sets));
   PetscCall(PetscFree(macro->facets));
-  PetscCall(PetscFree(macro->point_element));
-  PetscCall(PetscFree(macro->weight));
-  PetscCall(PetscFree(macro->place));
+  PetscCall(PetscFree4(macro->gradient, macro->weight, macro->place, macro->point_element));
   PetscCall(DMDestroy(&macro->dm));
   PetscFunctionReturn(0);
 }

@@ -4,6 +4,7 @@
   Each node is constrained by its nearest obstacle only: simultaneous contact of a node with two obstacles (a wedge)
   is not covered.
 */
+#include <math.h>
 #include "macro_impl.h"
 
 static PetscBool IsObstacle(const LamBoundary *boundary)
@@ -14,23 +15,19 @@ static PetscBool IsObstacle(const LamBoundary *boundary)
 /* Nodes of the obstacles' sides that have at most one prescribed direction; macro->constraints is in their order. */
 static PetscErrorCode ListNodes(LamMacro macro)
 {
-  PetscInt k = 0, size;
-
   PetscFunctionBeginUser;
   PetscCall(PetscFree(macro->obstacle_nodes));
-  PetscCall(VecGetLocalSize(macro->u, &size));
-  PetscCall(PetscMalloc1(size / macro->dim, &macro->obstacle_nodes));
+  PetscCall(PetscMalloc1(macro->node_count, &macro->obstacle_nodes));
   macro->obstacle_node_count = 0;
-  for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
-    LamObstacleNode node = {.point = p, .constraint = -1};
+  for (PetscInt n = 0; n < macro->node_count; n++) {
+    const PetscInt p = macro->nodes[n].point;
+    LamObstacleNode node = {.point = p, .local = macro->nodes[n].local, .constraint = -1};
     PetscInt directions = 0;
-    PetscCall(LamMacroOwnedIndex(macro, p, &node.local));
-    if (node.local < 0) continue;
     for (PetscInt o = 0; o < macro->obstacle_count; o++) {
       if (LamMacroIsOn(macro, p, macro->scene->macro.boundary[macro->obstacles[o].entry].on)) node.obstacles |= 1u << o;
     }
     if (!node.obstacles) continue;
-    for (k = 0; k < macro->constraint_count; k++) {
+    for (PetscInt k = 0; k < macro->constraint_count; k++) {
       if (macro->constraints[k].local != node.local) continue;
       node.constraint = k;
       directions++;
@@ -67,21 +64,15 @@ static PetscReal Reach(LamMacro macro, const LamObstacle *obstacle, PetscInt o, 
 /* From the plate into the body, or along the indenter's path. */
 static PetscErrorCode Direction(LamMacro macro, const LamBoundary *boundary, PetscReal direction[2])
 {
-  PetscReal length;
-  PetscBool straight;
+  const PetscReal length = hypot(boundary->displacement[0], boundary->displacement[1]);
 
   PetscFunctionBeginUser;
   if (boundary->kind == LAM_BOUNDARY_INDENTER) {
-    length = PetscSqrtReal(PetscSqr(boundary->displacement[0]) + PetscSqr(boundary->displacement[1]));
     for (int i = 0; i < 2; i++) direction[i] = boundary->displacement[i] / length;
   } else if (boundary->normal[0] != 0 || boundary->normal[1] != 0) {
     for (int i = 0; i < 2; i++) direction[i] = boundary->normal[i];
   } else {
-    PetscCall(LamMacroStraightNormal(macro, LamMacroFindSet(macro, boundary->on), direction, &straight));
-    PetscCheck(straight, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "macro.boundary: on: %s: plate: the side is curved; say from where the plate looks into the body, such "
-               "as normal: [0, -1]",
-               boundary->on);
+    PetscCall(LamMacroStraightNormal(macro, boundary, direction));
     for (int i = 0; i < 2; i++) direction[i] = -direction[i];
   }
   PetscFunctionReturn(0);

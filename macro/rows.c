@@ -105,29 +105,13 @@ static void FillHeldRows(LamMacro macro, const PetscScalar u[])
   for (PetscInt k = 0; k < macro->constraint_count; k = next) {
     next = k + 1;
     if (next < macro->constraint_count && macro->constraints[next].local == macro->constraints[k].local) next++;
+    macro->constraints[k].row = macro->row_count;
     macro->rows[macro->row_count++] = HeldRows(macro, &macro->constraints[k], next - k, u);
   }
 }
 
-/* The rows of a node among the prescribed ones, by bisection. */
-static LamNodeRows *FindRows(LamMacro macro, PetscInt count, PetscInt local)
-{
-  PetscInt low = 0, high = count - 1;
-
-  while (low < high) {
-    const PetscInt middle = (low + high) / 2;
-    if (macro->rows[middle].local < local)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return &macro->rows[low];
-}
-
 static PetscErrorCode FillObstacleRows(LamMacro macro, const PetscScalar u[], const PetscScalar r[])
 {
-  const PetscInt held = macro->row_count;
-
   PetscFunctionBeginUser;
   macro->violation = 0;
   for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {
@@ -138,8 +122,8 @@ static PetscErrorCode FillObstacleRows(LamMacro macro, const PetscScalar u[], co
       const LamNodeRows rows = TouchRows(&touch, node->local, r, &active);
       if (active) macro->rows[macro->row_count++] = rows;
     } else {
-      TouchHeldRows(&touch, macro->constraints[node->constraint].normal, r, FindRows(macro, held, node->local),
-                    &active);
+      const LamConstraint *held = &macro->constraints[node->constraint];
+      TouchHeldRows(&touch, held->normal, r, &macro->rows[held->row], &active);
     }
     node->active = active;
     macro->violation = PetscMax(macro->violation, active ? PetscAbsReal(touch.gap) : -touch.gap);

@@ -65,18 +65,17 @@ static void FillShape(LamMacro macro, const LamMacroElement *element)
 PetscErrorCode LamMacroSealCreate(LamMacro macro)
 {
   LamMacroSeal *seal;
+  PetscInt changes;
 
   PetscFunctionBeginUser;
   if (!LamMacroHasPressures(macro)) PetscFunctionReturn(0);
   PetscCall(PetscNew(&seal));
   macro->seal = seal;
   seal->modes = 1 + macro->dim;
-  PetscCall(PetscMalloc1(macro->point_count * seal->modes, &seal->shape));
-  PetscCall(PetscMalloc1(macro->point_count, &seal->water));
-  PetscCall(PetscCalloc1(macro->element_count * seal->modes, &seal->change));
-  PetscCall(PetscCalloc1(macro->element_count * seal->modes, &seal->last_change));
-  PetscCall(PetscCalloc1(macro->point_count, &seal->now));
-  PetscCall(PetscCalloc1(macro->point_count, &seal->accepted));
+  changes = macro->element_count * seal->modes;
+  PetscCall(PetscCalloc6(macro->point_count * seal->modes, &seal->shape, macro->point_count, &seal->water, changes,
+                         &seal->change, changes, &seal->last_change, macro->point_count, &seal->now, macro->point_count,
+                         &seal->accepted));
   PetscCall(VecDuplicate(macro->u, &seal->u));
   for (PetscInt e = 0; e < macro->element_count; e++) FillShape(macro, &macro->elements[e]);
   PetscFunctionReturn(0);
@@ -88,12 +87,7 @@ PetscErrorCode LamMacroSealDestroy(LamMacro macro)
 
   PetscFunctionBeginUser;
   if (!seal) PetscFunctionReturn(0);
-  PetscCall(PetscFree(seal->shape));
-  PetscCall(PetscFree(seal->water));
-  PetscCall(PetscFree(seal->change));
-  PetscCall(PetscFree(seal->last_change));
-  PetscCall(PetscFree(seal->now));
-  PetscCall(PetscFree(seal->accepted));
+  PetscCall(PetscFree6(seal->shape, seal->water, seal->change, seal->last_change, seal->now, seal->accepted));
   PetscCall(VecDestroy(&seal->u));
   PetscCall(PetscFree(macro->seal));
   PetscFunctionReturn(0);
@@ -220,25 +214,23 @@ PetscErrorCode LamMacroCondense(LamMacro macro, const LamMacroElement *element, 
 PetscErrorCode LamMacroMovePressures(LamMacro macro, Vec u)
 {
   LamMacroSeal *seal = macro->seal;
-  PetscSection section;
   Vec local;
 
   PetscFunctionBeginUser;
   PetscCall(VecAYPX(seal->u, -1, u)); /* the step */
-  PetscCall(DMGetLocalSection(macro->dm, &section));
   PetscCall(DMGetLocalVector(macro->dm, &local));
   PetscCall(DMGlobalToLocal(macro->dm, seal->u, INSERT_VALUES, local));
   for (PetscInt e = 0; e < macro->element_count; e++) {
     PetscScalar *step = NULL;
     Condensation c;
     PetscCall(CreateCondensation(macro, &macro->elements[e], &c));
-    PetscCall(DMPlexVecGetClosure(macro->dm, section, local, macro->mesh_start + e, NULL, &step));
+    PetscCall(DMPlexVecGetClosure(macro->dm, NULL, local, macro->mesh_start + e, NULL, &step));
     for (PetscInt a = 0; a < c.modes; a++) {
       PetscReal *change = &seal->change[c.modes * e + a];
       *change -= c.solved[c.dofs * c.modes + a];
       for (PetscInt k = 0; k < c.dofs; k++) *change -= c.solved[k * c.modes + a] * PetscRealPart(step[k]);
     }
-    PetscCall(DMPlexVecRestoreClosure(macro->dm, section, local, macro->mesh_start + e, NULL, &step));
+    PetscCall(DMPlexVecRestoreClosure(macro->dm, NULL, local, macro->mesh_start + e, NULL, &step));
   }
   PetscCall(DMRestoreLocalVector(macro->dm, &local));
   PetscCall(VecCopy(u, seal->u));

@@ -55,7 +55,6 @@ static PetscErrorCode FormResidual(SNES snes, Vec u, Vec residual, void *ctx)
   PetscCall(VecWAXPY(residual, -LamMacroTractionFactor(macro), macro->external, macro->force));
   PetscCall(LamMacroBorderEquations(macro, u, residual));
   PetscCall(LamMacroConstrainResidual(macro, u, residual));
-  PetscCall(LamMacroBorderColumns(macro));
   PetscFunctionReturn(0);
 }
 
@@ -67,7 +66,7 @@ static PetscErrorCode FormTangent(SNES snes, Vec u, Mat J, Mat preconditioner, v
   /* SNES has just evaluated the residual at u: the stored responses belong to it */
   PetscCall(LamMacroAssembleTangent(macro, preconditioner));
   PetscCall(LamMacroAddTractionTangent(macro, preconditioner));
-  PetscCall(LamMacroBorderRows(macro, preconditioner));
+  PetscCall(LamMacroBorderDerivatives(macro, preconditioner));
   PetscCall(LamMacroConstrainTangent(macro, preconditioner));
   PetscFunctionReturn(0);
 }
@@ -299,10 +298,13 @@ static PetscErrorCode Advance(LamMacro macro, Stage from, Stage to, Stage *reach
   PetscFunctionReturn(0);
 }
 
-static void MeanIndicators(LamMacro macro, PetscReal sum[4], PetscReal *max_gap)
+/* Means over the body, and the largest gap. */
+static PetscErrorCode MeanIndicators(LamMacro macro, LamMacroStep *step)
 {
-  sum[0] = sum[1] = sum[2] = sum[3] = 0;
-  *max_gap = -PETSC_INFINITY;
+  PetscReal sum[3] = {0};
+
+  PetscFunctionBeginUser;
+  step->max_gap = -PETSC_INFINITY;
   for (PetscInt p = 0; p < macro->point_count; p++) {
     const LamMaterialPoint *point = &macro->accepted[p];
     sum[0] += macro->weight[p];
@@ -310,36 +312,41 @@ static void MeanIndicators(LamMacro macro, PetscReal sum[4], PetscReal *max_gap)
     sum[2] += macro->weight[p] * point->load.turgor;
     /* if one point does not know the gap, the maximum is unknown: infinite, which MPI_MAX keeps */
     const PetscReal gap = point->field[LAM_POINT_GAP];
-    *max_gap = PetscMax(*max_gap, PetscIsInfOrNanReal(gap) ? INFINITY : gap);
+    step->max_gap = PetscMax(step->max_gap, PetscIsInfOrNanReal(gap) ? INFINITY : gap);
   }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPIU_SUM, macro->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &step->max_gap, 1, MPIU_REAL, MPIU_MAX, macro->comm));
+  step->debonded_fraction = sum[1] / sum[0];
+  step->turgor_mean = sum[2] / sum[0];
+  PetscFunctionReturn(0);
 }
 
-/* Mean times of the responder, and the number of interpolated responses. */
-static PetscErrorCode MeanTimes(LamMacro macro)
+/* Counters of the step on all ranks, and mean times. */
+static PetscErrorCode SumCounters(LamMacro macro, LamMacroStep *step)
 {
-  const LamResponderCounters counters = LamResponderGetCounters(macro->responder), *before = &macro->counted;
-  LamMacroStep *step = &macro->step;
-  PetscReal seconds[2] = {counters.query_seconds - before->query_seconds,
-                          counters.solve_seconds - before->solve_seconds};
+  const LamResponderCounters now = LamResponderGetCounters(macro->responder), *before = &macro->counted;
+  PetscInt64 counts[5] = {now.queries - before->queries, now.hits - before->hits, now.solves - before->solves,
+                          now.failures - before->failures, now.interpolated - before->interpolated};
+  PetscReal seconds[2] = {now.query_seconds - before->query_seconds, now.solve_seconds - before->solve_seconds};
   PetscMPIInt ranks;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(macro->comm, &ranks));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counts, 5, MPIU_INT64, MPI_SUM, macro->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, seconds, 2, MPIU_REAL, MPIU_SUM, macro->comm));
+  step->queries = counts[0];
+  step->hits = counts[1];
+  step->solves = counts[2];
+  step->failures = counts[3];
+  step->interpolated = counts[4];
   step->query_seconds = seconds[0] / ranks;
   step->solve_seconds = seconds[1] / ranks;
-  step->interpolated = counters.interpolated - before->interpolated;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &step->interpolated, 1, MPIU_INT64, MPI_SUM, macro->comm));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamMacroFinishStep(LamMacro macro, PetscInt number, PetscReal load_factor, PetscReal start)
 {
   LamMacroStep *step = &macro->step;
-  const LamResponderCounters counters = LamResponderGetCounters(macro->responder), *before = &macro->counted;
-  PetscReal sum[4];
-  PetscInt64 counts[4] = {counters.queries - before->queries, counters.hits - before->hits,
-                          counters.solves - before->solves, counters.failures - before->failures};
 
   PetscFunctionBeginUser;
   step->step = number;
@@ -347,18 +354,9 @@ PetscErrorCode LamMacroFinishStep(LamMacro macro, PetscInt number, PetscReal loa
   PetscCall(LamMacroSetLoadFactor(macro, load_factor)); /* a failed increment has set another one */
   LamMacroDisplacements(macro, step);
   PetscCall(LamMacroReactions(macro, step));
-  MeanIndicators(macro, sum, &step->max_gap);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPIU_SUM, macro->comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &step->max_gap, 1, MPIU_REAL, MPIU_MAX, macro->comm));
-  step->debonded_fraction = sum[1] / sum[0];
-  step->turgor_mean = sum[2] / sum[0];
+  PetscCall(MeanIndicators(macro, step));
   PetscCall(LamMacroFindLocalisation(macro, step));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counts, 4, MPIU_INT64, MPI_SUM, macro->comm));
-  step->queries = counts[0];
-  step->hits = counts[1];
-  step->solves = counts[2];
-  step->failures = counts[3];
-  PetscCall(MeanTimes(macro));
+  PetscCall(SumCounters(macro, step));
   step->seconds = LamClock() - start;
   PetscFunctionReturn(0);
 }

@@ -66,11 +66,9 @@ static PetscErrorCode AddFacetForce(LamMacro macro, const LamMacroFacet *facet, 
 PetscErrorCode LamMacroExternalForce(LamMacro macro, Vec u, Vec external)
 {
   const LamMacroSpec *spec = &macro->scene->macro;
-  PetscSection section;
   Vec displacement, force;
 
   PetscFunctionBeginUser;
-  PetscCall(DMGetLocalSection(macro->dm, &section));
   PetscCall(DMGetLocalVector(macro->dm, &displacement));
   PetscCall(DMGetLocalVector(macro->dm, &force));
   PetscCall(DMGlobalToLocal(macro->dm, u, INSERT_VALUES, displacement));
@@ -83,10 +81,10 @@ PetscErrorCode LamMacroExternalForce(LamMacro macro, Vec u, Vec external)
       const LamMacroFacet *facet = &macro->facets[f];
       PetscScalar *ue = NULL, fe[6] = {0};
       if (!(facet->sets >> set & 1)) continue;
-      PetscCall(DMPlexVecGetClosure(macro->dm, section, displacement, facet->point, NULL, &ue));
+      PetscCall(DMPlexVecGetClosure(macro->dm, NULL, displacement, facet->point, NULL, &ue));
       PetscCall(AddFacetForce(macro, facet, &spec->boundary[b], factor, ue, fe));
-      PetscCall(DMPlexVecRestoreClosure(macro->dm, section, displacement, facet->point, NULL, &ue));
-      PetscCall(DMPlexVecSetClosure(macro->dm, section, force, facet->point, fe, ADD_VALUES));
+      PetscCall(DMPlexVecRestoreClosure(macro->dm, NULL, displacement, facet->point, NULL, &ue));
+      PetscCall(DMPlexVecSetClosure(macro->dm, NULL, force, facet->point, fe, ADD_VALUES));
     }
   }
   PetscCall(VecZeroEntries(external));
@@ -100,13 +98,10 @@ PetscErrorCode LamMacroExternalForce(LamMacro macro, Vec u, Vec external)
 static PetscErrorCode AddFacetTangent(LamMacro macro, const LamMacroFacet *facet, const LamBoundary *boundary,
                                       PetscReal factor, Mat tangent)
 {
-  PetscSection section, global;
   PetscReal X[6], sense, T[4];
   PetscScalar Ke[36] = {0};
 
   PetscFunctionBeginUser;
-  PetscCall(DMGetLocalSection(macro->dm, &section));
-  PetscCall(DMGetGlobalSection(macro->dm, &global));
   PetscCall(LamMacroFacetNodes(macro, facet, X, &sense));
   FollowerMatrix(boundary, factor, T);
   for (PetscInt q = 0; q < LAM_FACET_POINTS; q++) {
@@ -117,7 +112,7 @@ static PetscErrorCode AddFacetTangent(LamMacro macro, const LamMacroFacet *facet
         Ke[6 * row + column] -= sense * weight * N[row / 2] * dN[column / 2] * T[2 * (row % 2) + column % 2];
     }
   }
-  PetscCall(DMPlexMatSetClosure(macro->dm, section, global, tangent, facet->point, Ke, ADD_VALUES));
+  PetscCall(DMPlexMatSetClosure(macro->dm, NULL, NULL, tangent, facet->point, Ke, ADD_VALUES));
   PetscFunctionReturn(0);
 }
 
@@ -149,21 +144,19 @@ PetscErrorCode LamMacroTractionSum(LamMacro macro, PetscInt entry, Vec u, PetscR
   const LamBoundary *boundary = &macro->scene->macro.boundary[entry];
   const PetscInt set = LamMacroFindSet(macro, boundary->on);
   const PetscReal factor = Factor(macro, boundary) * LamMacroTractionFactor(macro);
-  PetscSection section;
   Vec displacement;
 
   PetscFunctionBeginUser;
   sum[0] = sum[1] = 0;
   if (!IsTraction(boundary)) PetscFunctionReturn(0);
-  PetscCall(DMGetLocalSection(macro->dm, &section));
   PetscCall(DMGetLocalVector(macro->dm, &displacement));
   PetscCall(DMGlobalToLocal(macro->dm, u, INSERT_VALUES, displacement));
   for (PetscInt f = 0; f < macro->facet_count; f++) {
     PetscScalar *ue = NULL, fe[6] = {0};
     if (!(macro->facets[f].sets >> set & 1)) continue;
-    PetscCall(DMPlexVecGetClosure(macro->dm, section, displacement, macro->facets[f].point, NULL, &ue));
+    PetscCall(DMPlexVecGetClosure(macro->dm, NULL, displacement, macro->facets[f].point, NULL, &ue));
     PetscCall(AddFacetForce(macro, &macro->facets[f], boundary, factor, ue, fe));
-    PetscCall(DMPlexVecRestoreClosure(macro->dm, section, displacement, macro->facets[f].point, NULL, &ue));
+    PetscCall(DMPlexVecRestoreClosure(macro->dm, NULL, displacement, macro->facets[f].point, NULL, &ue));
     for (PetscInt k = 0; k < 6; k++) sum[k % 2] += PetscRealPart(fe[k]);
   }
   PetscCall(DMRestoreLocalVector(macro->dm, &displacement));

@@ -19,12 +19,11 @@ static PetscErrorCode ProblemHold(const Problem *problem, LamMacro macro)
 {
   PetscFunctionBeginUser;
   macro->constraint_count = 0;
-  for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
-    PetscInt local;
-    PetscCall(LamMacroOwnedIndex(macro, p, &local));
-    for (PetscInt i = 0; i < 2 && local >= 0; i++) {
+  for (PetscInt k = 0; k < macro->node_count; k++) {
+    const PetscInt p = macro->nodes[k].point, local = macro->nodes[k].local;
+    for (PetscInt i = 0; i < 2; i++) {
       PetscReal u;
-      if (!ProblemPrescribes(problem, &macro->position[2 * (p - macro->mesh_start)], i, &u)) continue;
+      if (!ProblemPrescribes(problem, macro->nodes[k].X, i, &u)) continue;
       macro->constraints[macro->constraint_count++] =
           (LamConstraint){.point = p, .local = local, .normal = {i == 0, i == 1}, .end = u, .target = u, .border = -1};
     }

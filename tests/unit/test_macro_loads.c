@@ -190,11 +190,10 @@ static void Deform(LamMacro macro, const PetscReal F[4])
   PetscScalar *u;
 
   assert_ok(VecGetArray(macro->u, &u));
-  for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
-    const PetscReal *X = &macro->position[2 * (p - macro->mesh_start)];
-    PetscInt local;
-    assert_ok(LamMacroOwnedIndex(macro, p, &local));
-    for (int i = 0; i < 2 && local >= 0; i++) u[local + i] = F[2 * i] * X[0] + F[2 * i + 1] * X[1] - X[i];
+  for (PetscInt k = 0; k < macro->node_count; k++) {
+    const PetscReal *X = macro->nodes[k].X;
+    const PetscInt local = macro->nodes[k].local;
+    for (int i = 0; i < 2; i++) u[local + i] = F[2 * i] * X[0] + F[2 * i + 1] * X[1] - X[i];
   }
   assert_ok(VecRestoreArray(macro->u, &u));
 }
