@@ -10,10 +10,9 @@ const char *const LamBoundaryKindNames[] = {LAM_BOUNDARY_KINDS(LAM_NAME_ENTRY)};
 
 static const LamKey boundary_keys[] = {
     {LIST("macro.boundary"), REQUIRED, .example = "[{on: bottom, displacement: [0 mm, 0 mm]}]",
-     .help =
-         "What acts on the sides; each entry is one of `displacement`, `symmetry`, `traction`, `pressure`, `plate`, "
-         "`indenter` and `grip`. A side may have several that do not contradict each other. Displacements, "
-         "symmetry and grips together hold the body against rigid motion; obstacles do not count."},
+     .help = "What acts on the sides; each entry is one of `displacement`, `symmetry`, `traction`, `pressure`, "
+             "`plate`, `indenter` and `grip`. A side may have several that do not contradict each other. "
+             "Displacements, symmetry and grips together hold the body against rigid motion; obstacles do not count."},
     {MAP("macro.boundary[]"), .example = "{on: bottom, displacement: [0 mm, 0 mm]}", .help = "One condition."},
     {TEXT("macro.boundary[].on"), INTO(LamBoundary, on), REQUIRED, .example = "bottom",
      .help = "The name of a side of the box or disc, or of a physical group of the Gmsh file."},
@@ -54,9 +53,8 @@ static const LamKey boundary_keys[] = {
      .help = "A rigid grip: all points of the side move alike. A `free` component bears no total force."},
     {LIST("macro.boundary[].history"), .default_words = "the load parameter itself",
      .example = "[[0, 0], [1, 1], [2, 1]]",
-     .help =
-         "By which factor the entry's displacement, traction or pressure is multiplied: pairs of load parameter and "
-         "factor, straight in between, constant beyond."},
+     .help = "By which factor the entry's displacement, traction or pressure is multiplied: pairs of load parameter "
+             "and factor, straight in between, constant beyond."},
     {REAL("macro.boundary[].history[]"), .size = 2, .example = "[1, 0.5]", .help = "Load parameter and factor."},
 };
 LAM_KEY_TABLE(LamBoundaryKeys, boundary_keys);

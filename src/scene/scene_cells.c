@@ -3,7 +3,6 @@
 */
 #include <lamella/lattice.h>
 #include "scene_rows.h"
-#include "scene_random.h"
 #include <math.h>
 #include <string.h>
 
@@ -71,9 +70,8 @@ LAM_KEY_TABLE(LamVariationKeys, variation_keys);
 
 typedef struct {
   const LamNode *block; /* rve.variation */
-  PetscInt kind_count;
-  LamCell *kinds;    /* [1 + kind_count]; kind 0 is the scene's own cell; owned */
-  PetscInt *kind_of; /* [cell]; owned */
+  PetscInt kind_count;  /* besides kind 0, the scene's own cell */
+  PetscInt kind_of[LAM_MAX_CELLS * LAM_MAX_CELLS];
 } Variation;
 
 static LamCell OwnCell(const LamMicrostructure *micro)
@@ -187,30 +185,21 @@ static PetscErrorCode AssignKinds(Variation *v, const PetscInt cells[2])
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ReadKinds(Variation *v, const LamNode *kinds, LamScene *scene)
-{
-  LamMicrostructure *micro = &scene->micro;
-  PetscInt k = 1;
-
-  PetscFunctionBeginUser;
-  v->kinds[0] = OwnCell(micro);
-  for (const LamNode *kind = kinds->first; kind; kind = kind->next, k++) PetscCall(ReadKind(kind, scene, &v->kinds[k]));
-  PetscCall(AssignKinds(v, micro->cells));
-  for (PetscInt c = 0; c < micro->cells[0] * micro->cells[1]; c++) micro->cell[c] = v->kinds[v->kind_of[c]];
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode BuildKinds(const LamNode *block, const LamNode *kinds, LamScene *scene)
 {
-  const PetscInt *cells = scene->micro.cells;
+  LamMicrostructure *micro = &scene->micro;
   Variation v = {.block = block, .kind_count = kinds->count};
-  PetscErrorCode ierr;
+  LamCell cell = OwnCell(micro);
+  PetscInt k = 0; /* the kind of `cell` */
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(1 + v.kind_count, &v.kinds, cells[0] * cells[1], &v.kind_of));
-  ierr = ReadKinds(&v, kinds, scene);
-  PetscCall(PetscFree2(v.kinds, v.kind_of));
-  PetscCall(ierr);
+  PetscCall(AssignKinds(&v, micro->cells));
+  for (const LamNode *kind = kinds->first;; kind = kind->next, k++) {
+    for (PetscInt c = 0; c < micro->cells[0] * micro->cells[1]; c++)
+      if (v.kind_of[c] == k) micro->cell[c] = cell;
+    if (!kind) break;
+    PetscCall(ReadKind(kind, scene, &cell));
+  }
   PetscFunctionReturn(0);
 }
 

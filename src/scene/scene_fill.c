@@ -108,24 +108,18 @@ static PetscErrorCode Store(const LamNode *node, const LamKey *key, const LamVal
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode GetValue(const LamNode *base, const LamKey *key, const LamNode **node, LamValue *value)
+PetscErrorCode LamSceneGet(const LamNode *base, const char path[], const LamNode **node, LamValue *value)
 {
   const size_t skip = strlen(base->key->path);
+  const LamKey *key = LamKeyFind(path);
 
   PetscFunctionBeginUser;
   *value = (LamValue){0};
-  *node = LamNodeFind(base, key->path + skip + (skip ? 1 : 0));
+  *node = LamNodeFind(base, path + skip + (skip ? 1 : 0));
   if (*node)
     *value = (*node)->value;
   else if (key->default_value)
     PetscCall(ReadDefault(key, value));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamSceneGet(const LamNode *base, const char path[], const LamNode **node, LamValue *value)
-{
-  PetscFunctionBeginUser;
-  PetscCall(GetValue(base, LamKeyFind(path), node, value));
   PetscFunctionReturn(0);
 }
 
@@ -140,7 +134,7 @@ PetscErrorCode LamSceneFillRecord(const LamNode *base, const LamScales *scales, 
     LamValue value;
 
     if (!key->record || strcmp(key->record, record) || strncmp(key->path, path, strlen(path))) continue;
-    PetscCall(GetValue(base, key, &node, &value));
+    PetscCall(LamSceneGet(base, key->path, &node, &value));
     if (value.count) PetscCall(Store(node, key, &value, scales, target));
   }
   PetscFunctionReturn(0);

@@ -94,16 +94,15 @@ void LamKeyBoundsText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH])
              LamBoundWords(&key->upper, PETSC_FALSE), (double)key->upper.value, space, unit);
 }
 
+#define TYPE_PHRASE(type, word, phrase) phrase,
+
 /* Expected text of one component: "bonded or contact", "a stress with its unit, larger than 0 MPa". */
 static void SingleText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH])
 {
   static const char *const articles[] = {"a length",      "a stress", "an angle",       "a time",
                                          "a temperature", "a rate",   "a molar energy", "a permeability"};
-  const char *what = key->unit                                                ? articles[key->dimension]
-                     : key->type == LAM_KEY_INTEGER                           ? "a whole number"
-                     : key->type == LAM_KEY_BOOL                              ? "true or false"
-                     : key->type == LAM_KEY_TEXT || key->type == LAM_KEY_PATH ? "a text"
-                                                                              : "a plain number";
+  static const char *const phrases[] = {LAM_KEY_TYPES(TYPE_PHRASE)};
+  const char *what = key->unit ? articles[key->dimension] : phrases[key->type];
   char bounds[LAM_KEY_TEXT_LENGTH];
   int used = 0;
 
@@ -121,11 +120,7 @@ void LamKeyExpectation(const LamKey *key, PetscBool single, char text[LAM_KEY_TE
   char what[LAM_KEY_TEXT_LENGTH];
 
   SingleText(key, what);
-  if (key->type == LAM_KEY_MAP) {
-    snprintf(what, sizeof(what), "keys and values");
-  } else if (key->type == LAM_KEY_LIST) {
-    snprintf(what, sizeof(what), "a list");
-  } else if (tensor && !single) {
+  if (tensor && !single) {
     snprintf(what, sizeof(what), "2x2 or 3x3 %s", key->unit ? "values with units" : "plain numbers");
   } else if (key->size && !single) {
     snprintf(what, sizeof(what), "a list of %d", (int)key->size);

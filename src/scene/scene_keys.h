@@ -23,19 +23,23 @@
 typedef enum { LAM_TURGOR_MODES(LAM_ENUM_ENTRY) LAM_TURGOR_MODE_COUNT } LamTurgorMode;
 typedef enum { LAM_SIDES(LAM_ENUM_ENTRY) LAM_BOX_COUNT } LamSide;
 
-typedef enum {
-  LAM_KEY_MAP,
-  LAM_KEY_LIST,
-  LAM_KEY_QUANTITY, /* a number with a unit */
-  LAM_KEY_REAL,
-  LAM_KEY_INTEGER,
-  LAM_KEY_NAME, /* one of a few names */
-  LAM_KEY_BOOL,
-  LAM_KEY_TEXT,           /* the node's text is the value */
-  LAM_KEY_PATH,           /* likewise, a file name; relative to the scene's folder */
-  LAM_KEY_TENSOR,         /* 2x2 or 3x3 plain numbers; kept as 3x3 */
-  LAM_KEY_QUANTITY_TENSOR /* likewise, each with a unit; 2x2: the other components are left open */
-} LamKeyType;
+/* Types of keys: what the reference calls a value, and what a message asks for where the key has no unit. A name is one
+   of a few; a text is the node's; a path is a text relative to the scene's folder; tensors are kept as 3x3, and of a
+   2x2 one with units the other components are left open. */
+#define LAM_KEY_TYPES(X)                                                                                               \
+  X(MAP, "map", "keys and values")                                                                                     \
+  X(LIST, "list", "a list")                                                                                            \
+  X(QUANTITY, "", "")                                                                                                  \
+  X(REAL, "number", "a plain number")                                                                                  \
+  X(INTEGER, "whole number", "a whole number")                                                                         \
+  X(NAME, "", "")                                                                                                      \
+  X(BOOL, "true or false", "true or false")                                                                            \
+  X(TEXT, "text", "a text")                                                                                            \
+  X(PATH, "text", "a text")                                                                                            \
+  X(TENSOR, "2x2 or 3x3 numbers", "a plain number")                                                                    \
+  X(QUANTITY_TENSOR, "2x2 or 3x3 stresses", "")
+#define LAM_KEY_TYPE_ENTRY(type, word, phrase) LAM_KEY_##type,
+typedef enum { LAM_KEY_TYPES(LAM_KEY_TYPE_ENTRY) } LamKeyType;
 
 typedef struct {
   enum { LAM_BOUND_NONE, LAM_BOUND_INCLUDED, LAM_BOUND_EXCLUDED } kind;
@@ -125,6 +129,7 @@ PetscErrorCode LamSceneDestroyProcess(LamScene *scene);
 PetscErrorCode LamSceneDestroyRegions(LamScene *scene);
 
 /* scene_cells.c, part of the RVE: variation between cells. */
+#define LAM_MAX_CELLS 64 /* in one direction */
 PetscErrorCode LamSceneBuildCells(const LamNode *root, LamScene *scene);
 /* Rejects a clearance, given at the node, that leaves a cell no lumen. */
 PetscErrorCode LamSceneCheckClearance(const LamNode *node, const LamScales *scales, const LamMicrostructure *micro);
@@ -149,6 +154,24 @@ PetscErrorCode LamSceneReadControl(const LamNode *F_node, const LamNode *P_node,
    starts from the previous state in components that were free. */
 void LamSceneRampControl(const LamStressControl *from, const LamStressControl *to, PetscInt step, PetscInt steps,
                          LamStressControl *control);
+
+/* ---- scene_random.c: random numbers that are equal on all machines ---- */
+
+/* Random permutation with uniform probability (Fisher and Yates). */
+void LamRandomShuffle(PetscInt seed, PetscInt n, PetscInt values[]);
+
+/*
+  Lognormal factors with mean 1 and the coefficients of variation variation[properties], independent between
+  properties: factors[property][cell] (row-major, all cells of `micro`). They are exp(s z - s^2/2), s^2 = ln(1 +
+  variation^2), with z standard normal. correlation 0: z of all cells are independent. Otherwise white noise is
+  weighted with exp(-2 (r/correlation)^2), r in neighbour distances, and scaled to unit variance, so that the
+  correlation of z between two cells is about exp(-(r/correlation)^2); in a period the noise is periodic. Properties
+  without variation have the factor 1 and do not affect the noise of the others.
+*/
+PetscErrorCode LamRandomFactors(const LamMicrostructure *micro, PetscInt seed, PetscReal correlation,
+                                PetscInt properties, const PetscReal variation[], PetscReal factors[]);
+
+/* ---- the rest ---- */
 
 /* Resolves a file name: a path in the file is relative to the scene's folder. */
 PetscErrorCode LamSceneResolvePath(const LamNode *node, char path[PETSC_MAX_PATH_LEN]);

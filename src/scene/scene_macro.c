@@ -27,9 +27,9 @@ static const LamKey mesh_keys[] = {
              "the square in its middle, half as wide."},
     {PATH("macro.mesh.gmsh"), INTO(LamMacroSpec, gmsh), .default_words = "none: one of `box`, `disc`, `gmsh`",
      .example = "fruit.msh",
-     .help =
-         "A Gmsh file, its path relative to the scene's folder: triangles and quadrilaterals in the plane, straight "
-         "or quadratic. Physical curves and points are boundaries, physical surfaces are regions, by their names."},
+     .help = "A Gmsh file, its path relative to the scene's folder: triangles and quadrilaterals in the plane, "
+             "straight or quadratic. Physical curves and points are boundaries, physical surfaces are regions, by "
+             "their names."},
     {LENGTH("macro.mesh.unit", "mm"), ABOVE(0), .default_value = "1 mm", .example = "1 cm",
      .help = "Unit of length of the Gmsh file."},
 };
@@ -232,4 +232,45 @@ PetscErrorCode LamSceneBuildMacro(const LamNode *root, LamScene *scene)
       PetscCall(
           LamSceneScale(item, item->value.number[i], scene->scales.macro_length, &spec->zoom[spec->zoom_count][i]));
   PetscFunctionReturn(0);
+}
+
+/* ---- the program in the solver: load parameter of a step, histories as functions of it ---- */
+
+PetscReal LamHistoryFactor(const LamHistory *history, PetscReal parameter)
+{
+  PetscInt k = 0;
+
+  if (!history->count) return parameter;
+  while (k < history->count && history->parameter[k] < parameter) k++;
+  if (k == 0) return history->factor[0];
+  if (k == history->count) return history->factor[k - 1];
+  const PetscReal from = history->parameter[k - 1], share = (parameter - from) / (history->parameter[k] - from);
+  return (1 - share) * history->factor[k - 1] + share * history->factor[k];
+}
+
+PetscBool LamHistoriesAgree(const LamHistory *one, const LamHistory *other)
+{
+  const LamHistory *both[] = {one, other};
+
+  if (!one->count != !other->count) return PETSC_FALSE;
+  for (int h = 0; h < 2; h++) {
+    for (PetscInt k = 0; k < both[h]->count; k++) {
+      const PetscReal at = both[h]->parameter[k];
+      if (LamHistoryFactor(one, at) != LamHistoryFactor(other, at)) return PETSC_FALSE;
+    }
+  }
+  return PETSC_TRUE;
+}
+
+PetscReal LamMacroParameter(const LamMacroSpec *spec, PetscInt step)
+{
+  PetscReal from = 0;
+
+  if (!spec->leg_count) return (PetscReal)step / spec->steps;
+  for (PetscInt leg = 0;; leg = (leg + 1) % spec->leg_count) {
+    const LamLeg *now = &spec->legs[leg];
+    if (step <= now->steps) return step == now->steps ? now->to : from + step * (now->to - from) / now->steps;
+    step -= now->steps;
+    from = now->to;
+  }
 }

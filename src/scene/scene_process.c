@@ -22,9 +22,8 @@ static const LamKey process_keys[] = {
              "`macro.inflate` says it."},
     {REAL("process.opening"), INTO(LamProcessSpec, opening), ABOVE(0), BELOW(1), .default_value = "0.01",
      .example = "0.02",
-     .help =
-         "What the volume between cells in contact, over that of the tissue, has grown by since the start when they "
-         "count as coming apart."},
+     .help = "What the volume between cells in contact, over that of the tissue, has grown by since the start when "
+             "they count as coming apart."},
     {MAP("process.water"), .default_words = "the turgor is prescribed",
      .example = "{permeability: 1e-7 m/s/MPa, osmotic_pressure: 0.8 MPa}",
      .help = "Water passes the membranes of the cells; turgor at the start is that of `rve.turgor`."},
@@ -42,9 +41,8 @@ static const LamKey process_keys[] = {
      .example = "0.1", .help = "Share of the lumen at the start that is no solution."},
     {LIST("process.surroundings"), .default_words = "20 degC and pure water",
      .example = "[{time: 0 h, temperature: 20 degC}, {time: 1 h, temperature: 90 degC}]",
-     .help =
-         "What surrounds the tissue at times: straight in between, constant beyond; a time that is given twice is a "
-         "jump."},
+     .help = "What surrounds the tissue at times: straight in between, constant beyond; a time that is given twice is "
+             "a jump."},
     {MAP("process.surroundings[]"), .example = "{time: 0 h, temperature: 20 degC}", .help = "At one time."},
     {TIME("process.surroundings[].time"), INTO(LamSurroundings, time), REQUIRED, FROM(0), .example = "1 h",
      .help = "Time, from the start."},
@@ -65,9 +63,9 @@ static const LamKey process_keys[] = {
     {MAP("process.kinetics[]"), .example = "{of: lamella, law: first_order, rate: 0.1 /day}",
      .help = "One property, as a factor X(t) of what it is at the start."},
     {NAME("process.kinetics[].of", LamChangingNames), REQUIRED,
-     .help =
-         "`lamella`: cohesion and strengths of the lamella; `walls`: all moduli of the walls; `C1`, `C2`, `C4`: one "
-         "of them, besides; `wall_strength`; `solutes` in a cell; `permeability` and `reflection` of its membrane."},
+     .help = "`lamella`: cohesion and strengths of the lamella; `walls`: all moduli of the walls; `C1`, `C2`, `C4`: "
+             "one of them, besides; `wall_strength`; `solutes` in a cell; `permeability` and `reflection` of its "
+             "membrane."},
     {NAME_OF("process.kinetics[].law", LamKineticLawNames, LAM_KINETIC_LAW_COUNT), INTO(LamKinetics, law), REQUIRED,
      .help = "`first_order`: X' = -k X; `fractional_conversion`: X' = -k (X - plateau), above 1 it stiffens; "
              "`two_fractions`: one decays with k, the other with k2; `autocatalytic`: an enzyme E' = k2 E (1 - E) acts "
@@ -281,12 +279,12 @@ static PetscErrorCode CheckUses(const LamNode *entry, LamKineticLaw law)
   const char *name = LamKineticLawNames[law];
 
   PetscFunctionBeginUser;
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(uses); k++)
-    LamSceneRequire(!(uses[k].need & (1u << law)) || LamNodeFind(entry, uses[k].key), entry, uses[k].key,
-                    "missing; law: %s needs it", name);
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(uses); k++)
-    LamSceneCheckName(!LamNodeFind(entry, uses[k].key) || (uses[k].have & (1u << law)), LamNodeFind(entry, uses[k].key),
-                      "law: %s has no use for it; leave it out", name);
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(uses); k++) {
+    const LamNode *node = LamNodeFind(entry, uses[k].key);
+
+    LamSceneRequire(node || !(uses[k].need & (1u << law)), entry, uses[k].key, "missing; law: %s needs it", name);
+    LamSceneCheckName(!node || (uses[k].have & (1u << law)), node, "law: %s has no use for it; leave it out", name);
+  }
   PetscFunctionReturn(0);
 }
 

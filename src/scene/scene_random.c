@@ -1,4 +1,10 @@
-#include "scene_random.h"
+/*
+  Random numbers that are equal on all machines.
+
+  Method. splitmix64 (Steele, Lea & Flood, OOPSLA 2014, Figure 12) and the transform of Box & Muller (Ann. Math. Stat.
+  29, 1958). Results are rounded to six decimals, which hides differences in the last digit of a machine's logarithm.
+*/
+#include "scene_keys.h"
 #include <lamella/lattice.h>
 #include <math.h>
 #include <stdint.h>

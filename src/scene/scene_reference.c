@@ -9,38 +9,25 @@ static const char *const introduction =
     "# Scene files\n\n"
     "<!-- Generated from the tables of keys in src/scene; after a change there run the test test_scene_reference with\n"
     "     LAMELLA_UPDATE_DOCS=1 in the environment. -->\n\n"
-    "A scene is a YAML file that describes tissue and what is to be solved. It holds only the blocks it needs: `rve`\n"
-    "always, `load` for `lamella rve`, `sample` for `build`, `macro` for `fe2`, `load` and `map` for `map`, `process` "
-    "for\n"
-    "`process`. Examples are in tests/scenes; besides those of the [tutorial](../tutorial.md):\n"
+    "A scene is a YAML file that describes tissue and what is to be solved. It holds only the blocks it needs:\n"
+    "`rve` always, `load` for `lamella rve`, `sample` for `build`, `macro` for `fe2`, `load` and `map` for `map`,\n"
+    "`process` for `process`. Examples are in tests/scenes; besides those of the [tutorial](../tutorial.md):\n"
     "[uneven-cells.yaml](../../tests/scenes/uneven-cells.yaml) (cells that differ),\n"
     "[hexagons-dry.yaml](../../tests/scenes/hexagons-dry.yaml) (a patch of cells between grips),\n"
     "[shear-sealed.yaml](../../tests/scenes/shear-sealed.yaml) (cells that keep their water).\n\n"
-    "* **Quantities** carry a unit that udunits2 knows, such as `75 um`, `0.1 MPa`, `2 bar`, `30 deg`; ratios, strains "
-    "and\n"
-    "  deformation gradients are plain numbers.\n"
-    "* **Mistakes** are refused before anything is solved; the message names file, line, column, key and value, and "
-    "what\n"
-    "  would be right. The first mistake ends the reading.\n"
-    "* **YAML**: anchors and aliases may be used; merge keys (`<<`), tags and several documents may not. A file has "
-    "at\n"
-    "  most 1 MB.\n"
-    "\n"
+    "* **Quantities** carry a unit that udunits2 knows, such as `75 um`, `0.1 MPa`, `2 bar`, `30 deg`; ratios,\n"
+    "  strains and deformation gradients are plain numbers.\n"
+    "* **Mistakes** are refused before anything is solved; the message names file, line, column, key and value,\n"
+    "  and what would be right. The first mistake ends the reading.\n"
+    "* **YAML**: anchors and aliases may be used; merge keys (`<<`), tags and several documents may not. A file\n"
+    "  has at most 1 MB.\n\n"
     "*Required* means: wherever the block it belongs to is given. In paths, `[]` stands for each item of a list.\n";
+
+#define TYPE_WORD(type, word, phrase) word,
 
 static const char *TypeText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH])
 {
-  static const char *const types[] = {"map",
-                                      "list",
-                                      "",
-                                      "number",
-                                      "whole number",
-                                      "",
-                                      "true or false",
-                                      "text",
-                                      "text",
-                                      "2x2 or 3x3 numbers",
-                                      "2x2 or 3x3 stresses"};
+  static const char *const types[] = {LAM_KEY_TYPES(TYPE_WORD)};
   const char *type = key->type == LAM_KEY_QUANTITY ? LamDimensionNames[key->dimension] : types[key->type];
   size_t used = 0;
 

@@ -23,9 +23,8 @@ const char *const LamTissueFieldNames[] = {LAM_TISSUE_FIELDS(LAM_NAME_ENTRY)};
 static const LamKey region_keys[] = {
     {LIST("macro.regions"), .default_words = "one tissue",
      .example = "[{name: skin, where: y > 9, cell: {wall_thickness: 20 um}}]",
-     .help =
-         "Parts of the body whose tissue is another; what an entry leaves out is as in `rve`. Where several cover a "
-         "point the last one holds."},
+     .help = "Parts of the body whose tissue is another; what an entry leaves out is as in `rve`. Where several cover "
+             "a point the last one holds."},
     {MAP("macro.regions[]"), .example = "{name: skin, where: y > 9, cell: {wall_thickness: 20 um}}",
      .help = "One region."},
     {TEXT("macro.regions[].name"), INTO(LamRegion, name), REQUIRED, .example = "skin",

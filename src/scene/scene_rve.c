@@ -16,21 +16,19 @@ static const LamKey cell_keys[] = {
      .example = "11.25 um", .help = "Thickness t of one cell's wall, less than the apothem; two lumens are 2t apart."},
     {ANGLE("rve.cell.orientation"), INTO(LamScene, micro.orientation), FROM(-360), TO(360), .default_value = "0 deg",
      .example = "30 deg", .help = "Angle of face normal 0 to the X1 axis; the other normals follow at 60 deg."},
-    {INTEGER("rve.cells"), INTO(LamScene, micro.cells), .size = 2, FROM(1), TO(64), .default_value = "[1, 1]",
-     .example = "[2, 2]", .help = "Cells in one period along lattice vectors 0 and 1."},
+    {INTEGER("rve.cells"), INTO(LamScene, micro.cells), .size = 2, FROM(1), TO(LAM_MAX_CELLS),
+     .default_value = "[1, 1]", .example = "[2, 2]", .help = "Cells in one period along lattice vectors 0 and 1."},
     {MAP("rve.patch"), .example = "{columns: 6, rows: 6, sides: affine}",
-     .help =
-         "A block of cells between grips instead of `rve.cells`: the outer walls of its bottom and top rows follow F. "
-         "It is a body, no material point: solved by `rve` and `map`, without `sample` and `macro`."},
-    {INTEGER("rve.patch.columns"), INTO(LamScene, micro.cells[0]), REQUIRED, FROM(1), TO(64), .example = "6",
+     .help = "A block of cells between grips instead of `rve.cells`: the outer walls of its bottom and top rows "
+             "follow F. It is a body, no material point: solved by `rve` and `map`, without `sample` and `macro`."},
+    {INTEGER("rve.patch.columns"), INTO(LamScene, micro.cells[0]), REQUIRED, FROM(1), TO(LAM_MAX_CELLS), .example = "6",
      .help = "Cells in a row, along X1."},
-    {INTEGER("rve.patch.rows"), INTO(LamScene, micro.cells[1]), REQUIRED, FROM(1), TO(64), .example = "6",
+    {INTEGER("rve.patch.rows"), INTO(LamScene, micro.cells[1]), REQUIRED, FROM(1), TO(LAM_MAX_CELLS), .example = "6",
      .help = "Rows of cells, along X2."},
     {NAME_OF("rve.patch.sides", LamPatchSidesNames, LAM_PATCH_SIDES_COUNT), INTO(LamScene, micro.sides),
      .default_value = "affine",
-     .help =
-         "Whether the lateral outer walls follow F, too (`affine`), or are left `free`. Free sides need law `bonded` "
-         "or a cohesion: nothing else holds the outer cells between the grips."},
+     .help = "Whether the lateral outer walls follow F, too (`affine`), or are left `free`. Free sides need law "
+             "`bonded` or a cohesion: nothing else holds the outer cells between the grips."},
 };
 LAM_KEY_TABLE(LamCellKeys, cell_keys);
 
@@ -43,15 +41,13 @@ static const LamKey tissue_keys[] = {
      .example = "0.001 MPa", .help = "Normal traction that parts the cells; only with law `contact`."},
     {LENGTH("rve.interface.clearance", "um"), INTO(LamScene, micro.clearance), FROM(0), .default_value = "0 um",
      .example = "0.1 um",
-     .help =
-         "Distance between facing walls at rest: each cell is smaller than its place by half of it all around; only "
-         "with law `contact`."},
+     .help = "Distance between facing walls at rest: each cell is smaller than its place by half of it all around; "
+             "only with law `contact`."},
     {MAP("rve.turgor"), .example = "{mode: prescribed, pressure: 0.02 MPa}", .help = "Pressure in the lumens."},
     {NAME("rve.turgor.mode", turgor_mode_names), .default_words = "`prescribed` where a pressure is given, else `none`",
-     .help =
-         "`prescribed`: the pressure is given; `sealed`: each cell keeps the water that it has at F = I under that "
-         "pressure (in `fe2` with `macro.inflate`: in the inflated body), and its pressure follows. `build` tabulates "
-         "prescribed turgor alone."},
+     .help = "`prescribed`: the pressure is given; `sealed`: each cell keeps the water that it has at F = I under "
+             "that pressure (in `fe2` with `macro.inflate`: in the inflated body), and its pressure follows. `build` "
+             "tabulates prescribed turgor alone."},
     {STRESS("rve.turgor.pressure"), INTO(LamScene, turgor),
      .default_words = "none: required by modes `prescribed` and `sealed`", .example = "0.02 MPa",
      .help = "Turgor of the tissue; negative is suction."},
@@ -69,14 +65,12 @@ static const LamKey tissue_keys[] = {
              "about 1 - grading to 1 + grading."},
     {PATH("rve.mesh.measured"), INTO(LamScene, measured), .default_words = "the program's own figures",
      .example = "tradeoff/model.json",
-     .help =
-         "File of errors that `lamella tradeoff` has measured for this tissue: what is left open of the mesh is the "
-         "cheapest of those that meets the accuracy."},
+     .help = "File of errors that `lamella tradeoff` has measured for this tissue: what is left open of the mesh is "
+             "the cheapest of those that meets the accuracy."},
     {REAL("rve.tolerance"), INTO(LamScene, tolerance), ABOVE(0), TO(0.1), .default_words = "rounding",
      .example = "1e-6",
-     .help =
-         "Where Newton iterations of the RVE end: residual (forces over (C1 + C2) apothem) and violation of contact. "
-         "Not below rounding."},
+     .help = "Where Newton iterations of the RVE end: residual (forces over (C1 + C2) apothem) and violation of "
+             "contact. Not below rounding."},
     {NAME_OF("rve.strategy", LamStrategyNames, LAM_STRATEGY_COUNT), INTO(LamScene, strategy),
      .default_value = "two_step",
      .help = "How contact is reached: from the bonded state (`two_step`) or at once (`one_step`). No effect on bonded "

@@ -9,9 +9,8 @@ static const LamKey strength_keys[] = {
      .example = "{wall: 0.5 MPa, lamella_normal: 0.02 MPa, lamella_shear: 0.05 MPa}",
      .help = "What the tissue bears, for `lamella rve --failure`."},
     {STRESS("strength.wall"), INTO(LamStrength, wall), ABOVE(0), .default_words = "not known", .example = "0.5 MPa",
-     .help =
-         "Tension of a wall at which it tears: Cauchy stress along it plus the turgor of its cell, averaged over the "
-         "wall's thickness and as long a stretch."},
+     .help = "Tension of a wall at which it tears: Cauchy stress along it plus the turgor of its cell, averaged over "
+             "the wall's thickness and as long a stretch."},
     {STRESS("strength.lamella_normal"), INTO(LamStrength, lamella_normal), ABOVE(0), .default_words = "not known",
      .example = "0.02 MPa",
      .help = "Normal traction, averaged over one wall thickness, that parts bonded cells; contact has its cohesion."},

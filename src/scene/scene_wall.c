@@ -66,23 +66,28 @@ PetscErrorCode LamSceneReadWall(const LamNode *map, const LamScales *scales, con
   PetscFunctionReturn(0);
 }
 
-static PetscReal LargestIn(const LamMicrostructure *micro, PetscInt parameter)
+/* Wall i = 0, 1, ... of the scene's tissue, its cells and its regions, some of them more than once; NULL after the
+ * last. */
+static const LamWall *WallAt(const LamScene *scene, PetscInt i)
 {
-  const PetscInt cells = micro->cell ? micro->cells[0] * micro->cells[1] : 0;
-  PetscReal largest = LamWallGet(&micro->wall, parameter);
+  for (PetscInt r = -1; r < scene->region_count; r++) {
+    const LamMicrostructure *micro = r < 0 ? &scene->micro : &scene->regions[r].micro;
+    const PetscInt cells = micro->cell ? micro->cells[0] * micro->cells[1] : 0;
 
-  for (PetscInt c = 0; c < cells; c++) largest = PetscMax(largest, LamWallGet(&micro->cell[c].wall, parameter));
-  return largest;
+    if (i <= cells) return i == cells ? &micro->wall : &micro->cell[i].wall;
+    i -= cells + 1;
+  }
+  return NULL;
 }
 
 PetscErrorCode LamSceneCheckFactor(const LamNode *node, const LamScene *scene, PetscInt parameter, PetscReal factor)
 {
-  PetscReal largest = LargestIn(&scene->micro, parameter);
+  PetscReal largest = 0;
+  const LamWall *wall;
   char path[LAM_NAME_LENGTH];
 
   PetscFunctionBeginUser;
-  for (PetscInt r = 0; r < scene->region_count; r++)
-    largest = PetscMax(largest, LargestIn(&scene->regions[r].micro, parameter));
+  for (PetscInt i = 0; (wall = WallAt(scene, i)); i++) largest = PetscMax(largest, LamWallGet(wall, parameter));
   snprintf(path, sizeof(path), "rve.wall.%s", LamWallParameterNames[parameter]);
   const LamBound *upper = &LamKeyFind(path)->upper;
 
@@ -92,22 +97,13 @@ PetscErrorCode LamSceneCheckFactor(const LamNode *node, const LamScene *scene, P
   PetscFunctionReturn(0);
 }
 
-static PetscBool TissueHas(const LamMicrostructure *micro, PetscInt parameter)
-{
-  const PetscInt cells = micro->cell ? micro->cells[0] * micro->cells[1] : 0;
-  PetscBool has = LamWallLawHas(micro->wall.law, parameter);
-
-  for (PetscInt c = 0; c < cells; c++) has = (PetscBool)(has || LamWallLawHas(micro->cell[c].wall.law, parameter));
-  return has;
-}
-
 PetscBool LamSceneHasParameter(const LamScene *scene, PetscInt parameter)
 {
-  PetscBool has = TissueHas(&scene->micro, parameter);
+  const LamWall *wall;
 
-  for (PetscInt r = 0; r < scene->region_count; r++)
-    has = (PetscBool)(has || TissueHas(&scene->regions[r].micro, parameter));
-  return has;
+  for (PetscInt i = 0; (wall = WallAt(scene, i)); i++)
+    if (LamWallLawHas(wall->law, parameter)) return PETSC_TRUE;
+  return PETSC_FALSE;
 }
 
 PetscBool LamSceneLacksChanging(const LamScene *scene, LamChanging changing)

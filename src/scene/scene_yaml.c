@@ -70,15 +70,6 @@ const LamNode *LamNodeFind(const LamNode *base, const char path[])
   return base;
 }
 
-static PetscErrorCode TextCopy(const char text[], size_t length, char **copy)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(length + 1, copy));
-  PetscCall(PetscMemcpy(*copy, text, length));
-  (*copy)[length] = '\0';
-  PetscFunctionReturn(0);
-}
-
 /*
   The text of a token; the caller frees it. In libfyaml 0.7 fy_token_get_text leaks memory for texts with many
   escapes, and fy_token_iter_read overwrites parts of a text, such as its lines, with each other.
@@ -106,12 +97,13 @@ static PetscErrorCode TokenText(struct fy_token *token, char **text)
   PetscFunctionReturn(0);
 }
 
-/* A position without a node, for messages. */
-static LamNode Place(const LamDocument *document, struct fy_token *token)
+/* The position of the current event without a node, for messages. */
+static LamNode Place(const Reader *reader)
 {
-  const struct fy_mark *mark = token ? fy_token_start_mark(token) : NULL;
+  const struct fy_mark *mark = fy_event_start_mark(reader->event);
 
-  return (LamNode){.document = document, .line = mark ? mark->line + 1 : 1, .column = mark ? mark->column + 1 : 1};
+  return (LamNode){
+      .document = reader->document, .line = mark ? mark->line + 1 : 1, .column = mark ? mark->column + 1 : 1};
 }
 
 /* Advances to the next event, or raises libfyaml's error. */
@@ -134,13 +126,13 @@ static PetscErrorCode Next(Reader *reader)
 }
 
 /* Sets the position of a value, checks its tag, and stores its anchor name. */
-static PetscErrorCode Start(Reader *reader, LamNode *node, struct fy_token *token, struct fy_token *tag,
-                            struct fy_token *anchor)
+static PetscErrorCode Start(Reader *reader, LamNode *node)
 {
-  const LamNode place = Place(reader->document, token);
+  const LamNode place = Place(reader);
+  struct fy_token *anchor = fy_event_get_anchor_token(reader->event);
 
   PetscFunctionBeginUser;
-  LamSceneCheck(!tag, &place, "YAML tags (!...) are not read; write the value alone");
+  LamSceneCheck(!fy_event_get_tag_token(reader->event), &place, "YAML tags (!...) are not read; write the value alone");
   node->line = place.line;
   node->column = place.column;
   if (!anchor) PetscFunctionReturn(0);
@@ -156,7 +148,7 @@ static PetscErrorCode ReadScalar(Reader *reader, LamNode *node)
   const PetscBool empty = (PetscBool)(fy_token_get_text_length(token) == 0);
 
   PetscFunctionBeginUser;
-  PetscCall(Start(reader, node, token, reader->event->scalar.tag, reader->event->scalar.anchor));
+  PetscCall(Start(reader, node));
   if (empty && node->name) { /* the token of a missing value has no position: use that of its key */
     node->line = node->name_line;
     node->column = node->name_column;
@@ -186,7 +178,7 @@ static PetscErrorCode NodeCopy(LamDocument *document, const LamNode *node, LamNo
 
 static PetscErrorCode ReadAlias(Reader *reader, LamNode *node)
 {
-  const LamNode place = Place(reader->document, reader->event->alias.anchor), *target = reader->document->anchored;
+  const LamNode place = Place(reader), *target = reader->document->anchored;
   char name[48], *text;
 
   PetscFunctionBeginUser;
@@ -207,12 +199,7 @@ static PetscErrorCode ReadAlias(Reader *reader, LamNode *node)
 static PetscErrorCode ReadKey(Reader *reader, LamNode *map, LamNode **entry)
 {
   const struct fy_event *event = reader->event;
-  struct fy_token *token = event->type == FYET_SCALAR           ? event->scalar.value
-                           : event->type == FYET_ALIAS          ? event->alias.anchor
-                           : event->type == FYET_MAPPING_START  ? event->mapping_start.mapping_start
-                           : event->type == FYET_SEQUENCE_START ? event->sequence_start.sequence_start
-                                                                : NULL;
-  LamNode key = Place(reader->document, token);
+  const LamNode key = Place(reader);
   const LamNode *earlier;
 
   PetscFunctionBeginUser;
@@ -220,7 +207,7 @@ static PetscErrorCode ReadKey(Reader *reader, LamNode *map, LamNode **entry)
   LamSceneCheck(event->type == FYET_SCALAR, &key, "a list or map stands where a key should; keys are plain words");
   LamSceneCheck(!event->scalar.tag, &key, "YAML tags (!...) are not read; write the key alone");
   PetscCall(NodeCreate(reader->document, NULL, key.line, key.column, entry));
-  PetscCall(TokenText(token, &(*entry)->name));
+  PetscCall(TokenText(event->scalar.value, &(*entry)->name));
   (*entry)->parent = map; /* for messages */
   LamSceneCheckName(strcmp((*entry)->name, "<<"), *entry, "merge keys are not read; write the keys out");
   earlier = LamNodeEntry(map, (*entry)->name, strlen((*entry)->name));
@@ -234,19 +221,18 @@ static PetscErrorCode ReadKey(Reader *reader, LamNode *map, LamNode **entry)
 static PetscErrorCode ReadValue(Reader *reader, LamNode *node);
 
 /* Reads a map or list; one in brackets keeps its text for messages. */
-static PetscErrorCode ReadCollection(Reader *reader, LamNode *node, struct fy_token *token, struct fy_token *tag,
-                                     struct fy_token *anchor)
+static PetscErrorCode ReadCollection(Reader *reader, LamNode *node)
 {
   const enum fy_event_type end = node->kind == LAM_NODE_MAP ? FYET_MAPPING_END : FYET_SEQUENCE_END;
-  const struct fy_mark *mark = token ? fy_token_start_mark(token) : NULL;
+  const struct fy_mark *mark = fy_event_start_mark(reader->event);
   const size_t start = mark ? mark->input_pos : 0;
   const char *text = reader->document->text + start;
-  const LamNode place = Place(reader->document, token);
+  const LamNode place = Place(reader);
 
   PetscFunctionBeginUser;
   LamSceneCheck(reader->depth++ < MAX_DEPTH, &place, "nested more than %d levels deep; a scene is much flatter",
                 (int)MAX_DEPTH);
-  PetscCall(Start(reader, node, token, tag, anchor));
+  PetscCall(Start(reader, node));
   PetscCall(Next(reader));
   while (reader->event->type != end) {
     LamNode *entry;
@@ -261,30 +247,27 @@ static PetscErrorCode ReadCollection(Reader *reader, LamNode *node, struct fy_to
     PetscCall(Next(reader));
   }
   reader->depth--;
-  token = end == FYET_MAPPING_END ? reader->event->mapping_end.mapping_end : reader->event->sequence_end.sequence_end;
-  mark = token ? fy_token_end_mark(token) : NULL;
-  if (mark && mark->input_pos > start && strchr("[{", *text))
-    PetscCall(
-        TextCopy(text, PetscMin(PetscMin(mark->input_pos - start, strlen(text)), (size_t)MAX_EXCERPT), &node->text));
+  mark = fy_event_end_mark(reader->event);
+  if (mark && mark->input_pos > start && strchr("[{", *text)) {
+    const size_t length = PetscMin(PetscMin(mark->input_pos - start, strlen(text)), (size_t)MAX_EXCERPT);
+
+    PetscCall(PetscCalloc1(length + 1, &node->text));
+    PetscCall(PetscMemcpy(node->text, text, length));
+  }
   PetscFunctionReturn(0);
 }
 
 /* Reads the value that begins at the current event. */
 static PetscErrorCode ReadValue(Reader *reader, LamNode *node)
 {
-  const struct fy_event *event = reader->event;
+  const enum fy_event_type type = reader->event->type;
 
   PetscFunctionBeginUser;
-  if (event->type == FYET_SCALAR) PetscCall(ReadScalar(reader, node));
-  if (event->type == FYET_ALIAS) PetscCall(ReadAlias(reader, node));
-  if (event->type == FYET_MAPPING_START) {
-    node->kind = LAM_NODE_MAP;
-    PetscCall(ReadCollection(reader, node, event->mapping_start.mapping_start, event->mapping_start.tag,
-                             event->mapping_start.anchor));
-  } else if (event->type == FYET_SEQUENCE_START) {
-    node->kind = LAM_NODE_LIST;
-    PetscCall(ReadCollection(reader, node, event->sequence_start.sequence_start, event->sequence_start.tag,
-                             event->sequence_start.anchor));
+  if (type == FYET_SCALAR) PetscCall(ReadScalar(reader, node));
+  if (type == FYET_ALIAS) PetscCall(ReadAlias(reader, node));
+  if (type == FYET_MAPPING_START || type == FYET_SEQUENCE_START) {
+    node->kind = type == FYET_MAPPING_START ? LAM_NODE_MAP : LAM_NODE_LIST;
+    PetscCall(ReadCollection(reader, node));
   }
   PetscFunctionReturn(0);
 }
@@ -299,7 +282,7 @@ static PetscErrorCode ReadDocument(Reader *reader)
   do {
     PetscCall(Next(reader));
     if (reader->event->type == FYET_DOCUMENT_START) {
-      const LamNode place = Place(document, reader->event->document_start.document_start);
+      const LamNode place = Place(reader);
 
       LamSceneCheck(!document->root, &place, "a second YAML document starts here; a file holds one scene");
       PetscCall(NodeCreate(document, NULL, 1, 1, &document->root));

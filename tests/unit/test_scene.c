@@ -2,27 +2,14 @@
   What a scene becomes: nondimensional data, defaults, ramps.
 */
 #include "support/test.h"
-#include <lamella/scene.h>
+#include "unit/test_scene.h"
 #include <math.h>
 #include <string.h>
 
 #define SCENES LAMELLA_SOURCE_DIR "/tests/scenes/"
-#define RVE                                                                                                            \
-  "version: 1\n"                                                                                                       \
-  "rve:\n"                                                                                                             \
-  "  cell: {apothem: 75 um, wall_thickness: 11.25 um}\n"                                                               \
-  "  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}\n"
 #define TURGID RVE "  turgor: {mode: prescribed, pressure: 0.022 MPa}\n"
 #define MACRO "macro:\n  mesh: {box: [10 mm, 5 mm], elements: [8, 4]}\n  boundary:\n"
 #define CLAMPED MACRO "    - {on: bottom, displacement: [0 mm, 0 mm]}\n"
-
-static LamScene *Read(const char text[])
-{
-  LamScene *scene = NULL;
-
-  assert_int_equal(LamSceneReadText("scene.yaml", text, &scene), 0);
-  return scene;
-}
 
 static void AssertNear(PetscReal value, PetscReal expected)
 {

@@ -2,22 +2,11 @@
   Patches and cells that differ, as a scene becomes them. tests/scenes/bad.txt has what is refused.
 */
 #include "support/test.h"
-#include <lamella/scene.h>
+#include "unit/test_scene.h"
 
-#define CELL "version: 1\nrve:\n  cell: {apothem: 75 um, wall_thickness: 11.25 um}\n"
-#define WALL "  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}\n"
-#define RVE CELL WALL
 #define CONTACT "  interface: {law: contact, cohesion: 0.001 MPa}\n"
 #define TWO_BY_THREE RVE "  cells: [2, 3]\n"
 #define KINDS "  variation:\n    kinds: [{turgor: 0.5}, {turgor: 0}]\n"
-
-static LamScene *Read(const char text[])
-{
-  LamScene *scene = NULL;
-
-  assert_int_equal(LamSceneReadText("scene.yaml", text, &scene), 0);
-  return scene;
-}
 
 static void AssertTurgor(const LamScene *scene, int n, const double turgor[])
 {

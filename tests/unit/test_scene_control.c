@@ -3,22 +3,9 @@
   not known when the scene is read.
 */
 #include "support/test.h"
-#include <lamella/scene.h>
+#include "unit/test_scene.h"
 
-#define RVE                                                                                                            \
-  "version: 1\n"                                                                                                       \
-  "rve:\n"                                                                                                             \
-  "  cell: {apothem: 75 um, wall_thickness: 11.25 um}\n"                                                               \
-  "  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}\n"                                         \
-  "load:\n"
-
-static LamScene *Read(const char text[])
-{
-  LamScene *scene = NULL;
-
-  assert_int_equal(LamSceneReadText("scene.yaml", text, &scene), 0);
-  return scene;
-}
+#define LOAD RVE "load:\n"
 
 static void AssertGiven(const LamStressControl *control, const int given[9])
 {
@@ -28,7 +15,7 @@ static void AssertGiven(const LamStressControl *control, const int given[9])
 TEST(free_components_have_a_stress)
 {
   const int given[9] = {1, 0, 0, 0, 1, 0, 0, 0, 0};
-  LamScene *scene = Read(RVE "  - {F: [[free, 0.1], [0, free]], P: [[0 MPa, x], [x, 22 kPa]]}\n");
+  LamScene *scene = Read(LOAD "  - {F: [[free, 0.1], [0, free]], P: [[0 MPa, x], [x, 22 kPa]]}\n");
 
   AssertGiven(&scene->controls[0], given);
   assert_near(scene->controls[0].P[4], 0.2, 1e-14);
@@ -41,7 +28,7 @@ TEST(F33_may_be_free)
 {
   const int given[9] = {0, 0, 0, 0, 0, 0, 0, 0, 1};
   LamScene *scene =
-      Read(RVE "  - {F: [[1, 0, 0], [0, 1.1, 0], [0, 0, free]], P: [[x, x, x], [x, x, x], [x, x, 0 MPa]]}\n");
+      Read(LOAD "  - {F: [[1, 0, 0], [0, 1.1, 0], [0, 0, free]], P: [[x, x, x], [x, x, x], [x, x, 0 MPa]]}\n");
 
   AssertGiven(&scene->controls[0], given);
   assert_int_equal(LamSceneDestroy(&scene), 0);
@@ -49,7 +36,7 @@ TEST(F33_may_be_free)
 
 TEST(plain_scenes_have_no_controls)
 {
-  LamScene *scene = Read(RVE "  - {F: [[1, 0.1], [0, 1]]}\n");
+  LamScene *scene = Read(LOAD "  - {F: [[1, 0.1], [0, 1]]}\n");
 
   assert_null(scene->controls);
   assert_int_equal(LamSceneDestroy(&scene), 0);
@@ -58,8 +45,8 @@ TEST(plain_scenes_have_no_controls)
 /* Stress from 0, then from what was prescribed; a given F straight. */
 TEST(stress_ramps_straight)
 {
-  LamScene *scene = Read(RVE "  - {ramp: {to: [[free, 0.1], [0, 1]], P: [[0.11 MPa, x], [x, x]], steps: 2}}\n"
-                             "  - {ramp: {to: [[free, 0.3], [0, 1]], P: [[0.33 MPa, x], [x, x]], steps: 2}}\n");
+  LamScene *scene = Read(LOAD "  - {ramp: {to: [[free, 0.1], [0, 1]], P: [[0.11 MPa, x], [x, x]], steps: 2}}\n"
+                              "  - {ramp: {to: [[free, 0.3], [0, 1]], P: [[0.33 MPa, x], [x, x]], steps: 2}}\n");
   const double P11[4] = {0.5, 1, 2, 3}, F12[4] = {0.05, 0.1, 0.2, 0.3};
 
   assert_int_equal(scene->load_count, 4);
@@ -73,8 +60,8 @@ TEST(stress_ramps_straight)
 /* F22 was free: its ramp goes straight from what it turned out to be, here 1.06. */
 TEST(a_ramp_goes_on_from_the_F_found)
 {
-  LamScene *scene = Read(RVE "  - {F: [[free, 0], [0, free]], P: [[0 MPa, x], [x, 0 MPa]]}\n"
-                             "  - {ramp: {to: [[free, 0], [0, 1.3]], P: [[0 MPa, x], [x, x]], steps: 3}}\n");
+  LamScene *scene = Read(LOAD "  - {F: [[free, 0], [0, free]], P: [[0 MPa, x], [x, 0 MPa]]}\n"
+                              "  - {ramp: {to: [[free, 0], [0, 1.3]], P: [[0 MPa, x], [x, x]], steps: 3}}\n");
   const double expected[4] = {1.06, 1.14, 1.22, 1.3};
   double F[9] = {1.05, 0, 0, 0, 1.06, 0, 0, 0, 1};
 
@@ -92,8 +79,8 @@ TEST(a_ramp_goes_on_from_the_F_found)
 TEST(prescribed_F_is_what_it_says_after_free_F)
 {
   const double before[9] = {1.05, 0, 0, 0, 1.06, 0, 0, 0, 1};
-  LamScene *scene = Read(RVE "  - {F: [[free, 0], [0, free]], P: [[0 MPa, x], [x, 0 MPa]]}\n"
-                             "  - {F: [[1.2, 0.1], [0, 0.9]]}\n");
+  LamScene *scene = Read(LOAD "  - {F: [[free, 0], [0, free]], P: [[0 MPa, x], [x, 0 MPa]]}\n"
+                              "  - {F: [[1.2, 0.1], [0, 0.9]]}\n");
   const LamLoad load = LamLoadAfter(&scene->loads[1], &scene->controls[1], before);
 
   for (int i = 0; i < 9; i++) assert_near(load.F[i], ((double[9]){1.2, 0.1, 0, 0, 0.9, 0, 0, 0, 1})[i], 0);

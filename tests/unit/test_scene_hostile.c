@@ -2,6 +2,7 @@
   Files that are no scenes, by accident or on purpose: each is refused with a message, none crashes the reader.
 */
 #include "support/test.h"
+#include "test_scene.h"
 #include "test_scene_message.h"
 #include <stdlib.h>
 #include <unistd.h>
@@ -121,12 +122,6 @@ TEST(a_map_of_many_keys_is_refused)
   AssertRefusedText(text, "more than 256 keys");
   free(text);
 }
-
-#define RVE                                                                                                            \
-  "version: 1\n"                                                                                                       \
-  "rve:\n"                                                                                                             \
-  "  cell: {apothem: 75 um, wall_thickness: 11.25 um}\n"                                                               \
-  "  wall: {law: mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa}\n"
 
 TEST(too_many_states_are_refused)
 {

@@ -2,32 +2,17 @@
   The axes of a map: what a scene's block becomes.
 */
 #include "support/test.h"
-#include <lamella/scene.h>
+#include "unit/test_scene.h"
 #include <math.h>
 #include <string.h>
 
-#define SCENE                                                                                                          \
-  "version: 1\n"                                                                                                       \
-  "rve:\n"                                                                                                             \
-  "  cell: {apothem: 75 um, wall_thickness: 11.25 um}\n"                                                               \
-  "  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}\n"                                         \
-  "  interface: {law: contact}\n"                                                                                      \
-  "load:\n"                                                                                                            \
-  "  - {ramp: {to: [[1, 0.3], [0, 1]], steps: 3}}\n"
+#define SCENE RVE "  interface: {law: contact}\nload:\n  - {ramp: {to: [[1, 0.3], [0, 1]], steps: 3}}\n"
 #define TURGOR "  x: {quantity: turgor, from: 0 MPa, to: 2.2 bar, points: 5}\n"
 #define SHEAR "  y: {quantity: shear, from: 0.1, to: 0.3, points: 3}\n"
 
-static LamScene *read_scene(const char text[])
-{
-  LamScene *scene = NULL;
-
-  assert_int_equal(LamSceneReadText("scene.yaml", text, &scene), 0);
-  return scene;
-}
-
 TEST(a_scene_without_the_block_has_no_map)
 {
-  LamScene *scene = read_scene(SCENE);
+  LamScene *scene = Read(SCENE);
 
   assert_false(scene->has_map);
   LamSceneDestroy(&scene);
@@ -35,7 +20,7 @@ TEST(a_scene_without_the_block_has_no_map)
 
 TEST(stresses_become_multiples_of_C1_and_C2)
 {
-  LamScene *scene = read_scene(SCENE "map:\n" TURGOR SHEAR);
+  LamScene *scene = Read(SCENE "map:\n" TURGOR SHEAR);
 
   assert_true(scene->has_map);
   assert_int_equal(scene->map[LAM_MAP_X].quantity, LAM_MAP_TURGOR);
@@ -47,7 +32,7 @@ TEST(stresses_become_multiples_of_C1_and_C2)
 
 TEST(linear_points_have_equal_differences)
 {
-  LamScene *scene = read_scene(SCENE "map:\n" TURGOR SHEAR);
+  LamScene *scene = Read(SCENE "map:\n" TURGOR SHEAR);
   const LamMapAxis *y = &scene->map[LAM_MAP_Y];
 
   for (int i = 0; i < 3; i++) assert_near(LamMapAxisValue(y, i), 0.1 * (i + 1), 1e-15);
@@ -57,7 +42,7 @@ TEST(linear_points_have_equal_differences)
 TEST(log_points_have_equal_ratios)
 {
   LamScene *scene =
-      read_scene(SCENE "map:\n" TURGOR "  y: {quantity: C4, from: 0.11 MPa, to: 11 MPa, points: 3, spacing: log}\n");
+      Read(SCENE "map:\n" TURGOR "  y: {quantity: C4, from: 0.11 MPa, to: 11 MPa, points: 3, spacing: log}\n");
   const LamMapAxis *y = &scene->map[LAM_MAP_Y];
 
   for (int i = 0; i < 3; i++) assert_near(LamMapAxisValue(y, i), pow(10, i), 1e-12);
@@ -66,8 +51,7 @@ TEST(log_points_have_equal_ratios)
 
 TEST(units_bring_the_numbers_back)
 {
-  LamScene *scene =
-      read_scene(SCENE "map:\n" TURGOR "  y: {quantity: wall_thickness, from: 7.5 um, to: 15 um, points: 2}\n");
+  LamScene *scene = Read(SCENE "map:\n" TURGOR "  y: {quantity: wall_thickness, from: 7.5 um, to: 15 um, points: 2}\n");
   PetscReal scale;
 
   assert_string_equal(LamMapQuantityUnit(LAM_MAP_TURGOR, &scene->scales, &scale), "MPa");

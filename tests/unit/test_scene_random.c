@@ -5,7 +5,7 @@
 */
 #include "support/test.h"
 #include <lamella/lattice.h>
-#include <scene_random.h>
+#include <scene_keys.h>
 
 enum { SIDE = 64, COUNT = SIDE * SIDE };
 #define LENGTH 2.0 /* of correlation */

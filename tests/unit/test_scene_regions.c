@@ -2,7 +2,7 @@
   What the regions and fields of a scene become.
 */
 #include "support/test.h"
-#include <lamella/scene.h>
+#include "unit/test_scene.h"
 #include "unit/test_scene_message.h"
 
 #define SCENE                                                                                                          \
@@ -16,14 +16,6 @@
   "macro:\n"                                                                                                           \
   "  mesh: {box: [10 mm, 10 mm], elements: [2, 2]}\n"                                                                  \
   "  boundary: [{on: bottom, displacement: [0 mm, 0 mm]}, {on: top, displacement: [1 mm, 0 mm]}]\n"
-
-static LamScene *Read(const char text[])
-{
-  LamScene *scene;
-
-  assert_int_equal(LamSceneReadText("scene.yaml", text, &scene), 0);
-  return scene;
-}
 
 TEST(what_a_region_leaves_out_is_the_scene_s)
 {

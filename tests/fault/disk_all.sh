@@ -1,9 +1,0 @@
-#!/usr/bin/env bash
-# slow: builds on disks that are full, fail, vanish or cannot be written; every system call fails once. Prints figures.
-shim=$(realpath "$3")
-. "$(dirname "$0")/../cli/common.sh"
-/usr/bin/python3 -c 'import h5py' 2>/dev/null || exit 77
-LD_PRELOAD=$shim "$lamella" --version >out.txt 2>&1 || exit 77 # sanitizers want to be loaded first
-# file systems are mounted in a space of names of our own, where the system lets us have one
-for space in "unshare -m" "unshare -rm" ""; do $space true 2>/dev/null && break; done
-$space /usr/bin/python3 "$source/tests/fault/disk.py" "$lamella" "$shim" 20 1 ${LAMELLA_SEED:-$RANDOM}
