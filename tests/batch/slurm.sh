@@ -33,18 +33,8 @@ runs_again() { is "$1" RUNNING && [ "$(of "$1" Restarts)" = "$2" ]; }
 records() { "$lamella" info "$1" --json 2>/dev/null | sed 's/.*"records":\s*\([0-9]*\).*/\1/' | grep . || echo 0; }
 more() { [ "$(records "$1")" -gt "$2" ]; }
 
-cat >bonded.yaml <<'YAML'
-version: 1
-rve:
-  cell: {apothem: 75 um, wall_thickness: 11.25 um}
-  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
-  interface: {law: bonded}
-  turgor: {mode: prescribed, pressure: 0.02 MPa}
-  mesh: {along: 9, through: 3}
-sample:
-  stretch: {min: 0, max: 0.1}
-  turgor: {min: 0.01 MPa, max: 0.03 MPa}
-  count: 60
+tissue mesh='along: 9, through: 3' >bonded.yaml <<'YAML'
+sample: {stretch: {min: 0, max: 0.1}, turgor: {min: 0.01 MPa, max: 0.03 MPa}, count: 60}
 YAML
 sed 's/law: bonded/law: contact, cohesion: 0.002 MPa/; s/max: 0.1}/max: 0.06}/; s/min: 0.01/min: 0.02/; s/count: 60/count: 120/' \
   bonded.yaml | sed 's/along: 9, through: 3/along: 12, through: 4/' >contact.yaml

@@ -3,12 +3,7 @@
 
 # refused WORDS COMMAND...: status 2, the words on stderr, nothing on stdout
 refused() {
-  words=$1
-  shift
-  "$@" >out.txt 2>err.txt
-  status=$?
-  [ $status -eq 2 ] || fail "exit status $status instead of 2: $*: $(cat err.txt)"
-  grep -qF -e "$words" err.txt || fail "no \"$words\": $*: $(cat err.txt)"
+  expect 2 -e "$(sed 's/[][.*]/\\&/g' <<<"$1")" "${@:2}"
   [ "$(wc -l <err.txt)" -eq 1 ] || fail "more than one line: $*: $(cat err.txt)"
   [ -s out.txt ] && fail "writes to stdout: $*: $(cat out.txt)"
 }

@@ -3,8 +3,16 @@
 #   $lamella, $source           the program and the folder of the sources
 #   fail WORDS                  tells what is wrong; the script goes on, and ends with status 1, as it does where its
 #                               last command fails
-#   expect STATUS COMMAND...    the command ends with that status; what it says is in out.txt and err.txt
-#   same FILE FILE              databases whose records of the same keys are the same, but for times
+#   expect STATUS [-o WORDS] [-e WORDS] COMMAND...
+#                               the command ends with that status; what it says is in out.txt and err.txt, and each of
+#                               -o and -e tells of words (of grep) that stand there
+#   has FILE WORDS...           the file has all of these words (of grep)
+#   ends SIGNAL STATUS PID      a process of this shell ends with that status when it is sent the signal
+#   tissue [BLOCK=KEYS]...      a scene that begins with bonded tissue under turgor, but for the blocks of rve told, and
+#                               goes on with what comes on standard input
+#   same FILE FILE [known|ordered]
+#                               databases whose records of the same keys are the same, but for times; with known the
+#                               second may have others besides, with ordered the order and the grid are the same, too
 set -u
 lamella=$(realpath "$1") source=$(realpath "$2")
 work=$(mktemp -d)
@@ -17,16 +25,44 @@ fail() {
   failures=$((failures + 1))
 }
 
-expect() {
-  wanted=$1
-  shift
-  status=0
-  "$@" >out.txt 2>err.txt || status=$?
-  [ $status -eq "$wanted" ] || fail "exit status $status instead of $wanted: $*: $(cat out.txt err.txt)"
+has() {
+  local words file=$1
+  for words in "${@:2}"; do
+    grep -q -e "$words" "$file" || fail "no \"$words\" in $file: $(cat "$file")"
+  done
 }
 
-# same FILE FILE [known]: the records with the same keys are the same, but for times; their order may differ; with `known`
-# the second file may have others besides
+expect() {
+  local wanted=$1 status=0 OPTIND=2 option words file
+  local -A told=()
+  while getopts o:e: option; do
+    [ "$option" = o ] && told["$OPTARG"]=out.txt || told["$OPTARG"]=err.txt
+  done
+  shift $((OPTIND - 1))
+  "$@" >out.txt 2>err.txt || status=$?
+  [ $status -eq "$wanted" ] || fail "exit status $status instead of $wanted: $*: $(cat out.txt err.txt)"
+  for words in "${!told[@]}"; do
+    file=${told[$words]}
+    grep -q -e "$words" "$file" || fail "no \"$words\" in the $file of $*: $(cat "$file")"
+  done
+}
+
+ends() {
+  local status=0
+  kill -s "$1" "$3" || fail "the run had ended before SIG$1"
+  wait "$3" || status=$?
+  [ $status -eq "$2" ] || fail "exit status $status instead of $2 after SIG$1"
+}
+
+tissue() {
+  local cell='apothem: 75 um, wall_thickness: 11.25 um' wall='law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa'
+  local interface='law: bonded' turgor='mode: prescribed, pressure: 0.02 MPa' mesh='along: 4, through: 1'
+  [ $# = 0 ] || local "$@"
+  printf 'version: 1\nrve:\n'
+  printf '  %s\n' "cell: {$cell}" "wall: {$wall}" "interface: {$interface}" "turgor: {$turgor}" "mesh: {$mesh}"
+  cat
+}
+
 if /usr/bin/python3 -c 'import h5py' 2>/dev/null; then
   same() {
     /usr/bin/python3 - "$@" <<'PYTHON'
@@ -35,11 +71,13 @@ import h5py, numpy, sys
 def records(path):
     with h5py.File(path) as f:
         all = f["records"][: f["records"].attrs["committed"]]
-    return all[all["key"].argsort()]
+        return (all, f["table/grid"][()]) if how == "ordered" else (all[all["key"].argsort()], None)
 
-one, other = records(sys.argv[1]), records(sys.argv[2])
-if sys.argv[3:]:
+how = sys.argv[3] if sys.argv[3:] else None
+(one, grid), (other, its_grid) = records(sys.argv[1]), records(sys.argv[2])
+if how == "known":
     other = other[numpy.isin(other["key"], one["key"])]
+assert grid == its_grid, "the grids differ"
 assert len(one) == len(other), f"{len(one)} and {len(other)} records"
 for name in set(one.dtype.names) - {"seconds", "checksum"}:
     assert one[name].tobytes() == other[name].tobytes(), name  # bytes: a NaN equals itself
@@ -47,9 +85,9 @@ PYTHON
   }
 else
   same() {
-    [ $# = 2 ] || return 0 # answers depend on all nodes around
+    [ "${3:-}" != known ] || return 0 # answers depend on all nodes around
     for file in "$1" "$2"; do
-      printf '1 0.02 0 1\n1.04 0.01 0.02 1.07 ; 0.015 MPa\n' >lines
+      printf '%s ; 0.025 MPa\n' '1 0.02 0 1' '1.04 0.01 0.02 1.07' '1.01 0.01 0 1.02' '1.05 0.05 0 1.02' >lines
       { "$lamella" query "$file" -F - --json --tangent <lines || [ $? = 3 ]; } | sed 's/"seconds": *[^,}]*//' >"$file.json"
     done
     cmp -s "$1.json" "$2.json"

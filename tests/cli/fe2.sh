@@ -4,20 +4,10 @@ set -e
 
 # scene NAME SHEAR STEPS: a body of 2 x 2 elements, inflated, then sheared
 scene() {
-  cat >"$1" <<YAML
-version: 1
-rve:
-  cell: {apothem: 75 um, wall_thickness: 11.25 um}
-  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
-  interface: {law: bonded}
-  turgor: {mode: prescribed, pressure: 0.02 MPa}
-  mesh: {along: 4, through: 1}
+  tissue >"$1" <<YAML
 macro:
   mesh: {box: [10 mm, 10 mm], elements: [2, 2]}
-  boundary:
-    - {on: bottom, displacement: [0 mm, 0 mm]}
-    - {on: top, displacement: [$2, 0 mm]}
-  inflate: true
+  boundary: [{on: bottom, displacement: [0 mm, 0 mm]}, {on: top, displacement: [$2, 0 mm]}]
   steps: $3
 YAML
 }

@@ -3,21 +3,11 @@
 set -e
 /usr/bin/python3 -c 'import h5py' 2>/dev/null || exit 77
 
-cat >block.yaml <<'YAML'
-version: 1
-rve:
-  cell: {apothem: 75 um, wall_thickness: 11.25 um}
-  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
-  interface: {law: bonded}
-  turgor: {mode: prescribed, pressure: 0.02 MPa}
-  mesh: {along: 4, through: 1}
+tissue >block.yaml <<'YAML'
 strength: {wall: 0.2 MPa, lamella_normal: 1 MPa}
 macro:
   mesh: {box: [8 mm, 4 mm], elements: [2, 1]}
-  boundary:
-    - {on: bottom, displacement: [0 mm, 0 mm]}
-    - {on: top, displacement: [free, 0.8 mm]}
-  inflate: true
+  boundary: [{on: bottom, displacement: [0 mm, 0 mm]}, {on: top, displacement: [free, 0.8 mm]}]
   steps: 2
 YAML
 "$lamella" fe2 block.yaml --json -o out.h5 >steps.jsonl

@@ -1,20 +1,10 @@
 # fe2 in sealed tissue: turgor follows the load, a cache answers as well
 . "$(dirname "$0")/common.sh"
 
-cat >block.yaml <<'YAML'
-version: 1
-rve:
-  cell: {apothem: 75 um, wall_thickness: 11.25 um}
-  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
-  interface: {law: bonded}
-  turgor: {mode: sealed, pressure: 0.02 MPa}
-  mesh: {along: 4, through: 1}
+tissue turgor='mode: sealed, pressure: 0.02 MPa' >block.yaml <<'YAML'
 macro:
   mesh: {box: [10 mm, 10 mm], elements: [2, 1]}
-  boundary:
-    - {on: bottom, displacement: [0 mm, 0 mm]}
-    - {on: top, displacement: [1 mm, -0.5 mm]}
-  inflate: true
+  boundary: [{on: bottom, displacement: [0 mm, 0 mm]}, {on: top, displacement: [1 mm, -0.5 mm]}]
   steps: 2
 YAML
 

@@ -3,20 +3,10 @@
 set -e
 /usr/bin/python3 -c 'import h5py, numpy' 2>/dev/null || exit 77
 
-cat >block.yaml <<'YAML'
-version: 1
-rve:
-  cell: {apothem: 75 um, wall_thickness: 11.25 um}
-  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
-  interface: {law: bonded}
-  turgor: {mode: prescribed, pressure: 0.02 MPa}
-  mesh: {along: 4, through: 1}
+tissue >block.yaml <<'YAML'
 macro:
   mesh: {box: [10 mm, 10 mm], elements: [2, 2]}
-  boundary:
-    - {on: bottom, displacement: [0 mm, 0 mm]}
-    - {on: top, displacement: [1 mm, 0 mm]}
-  inflate: true
+  boundary: [{on: bottom, displacement: [0 mm, 0 mm]}, {on: top, displacement: [1 mm, 0 mm]}]
   steps: 1
   zoom: [[9.9 mm, 9.9 mm], [2.5 mm, 2.5 mm]]
 YAML

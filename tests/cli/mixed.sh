@@ -25,12 +25,7 @@ expect 0 "$lamella" rve "$source/tests/scenes/shear-bonded.yaml" --json
 grep -q P_prescribed out.txt && fail "a prescribed stress that nobody prescribed"
 
 # a stress that nothing carries: F is not known, and the next state starts from the last answer
-cat >scene.yaml <<'YAML'
-version: 1
-rve:
-  cell: {apothem: 75 um, wall_thickness: 11.25 um}
-  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
-  mesh: {along: 6, through: 2}
+tissue turgor='mode: none' mesh='along: 6, through: 2' >scene.yaml <<'YAML'
 load:
   - {F: [[free, free], [0, free]], P: [[0 MPa, 0 MPa], [x, -0.05 MPa]]}
   - {F: [[free, 0.1], [0, free]], P: [[0 MPa, x], [x, 0 MPa]]}
@@ -44,14 +39,7 @@ expect 3 "$lamella" rve scene.yaml
 grep -qE '^ +1 +- +- +0.0000 +- ' out.txt || fail "the table shows an F that is not known: $(cat out.txt)"
 
 # separation, the second mesh at the F that the first has found
-cat >contact.yaml <<'YAML'
-version: 1
-rve:
-  cell: {apothem: 75 um, wall_thickness: 11.25 um}
-  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
-  interface: {law: contact, cohesion: 0.02 MPa}
-  turgor: {pressure: 0.02 MPa}
-  mesh: {along: 6, through: 2}
+tissue interface='law: contact, cohesion: 0.02 MPa' mesh='along: 6, through: 2' >contact.yaml <<'YAML'
 load:
   - {F: [[1, free], [0, free]], P: [[x, 0 MPa], [x, -0.01 MPa]]}
 YAML

@@ -2,27 +2,11 @@
 # -o replaces an older result of the same command, and nothing else.
 . "$(dirname "$0")/common.sh"
 set -e -o pipefail
-expect() {
-  local wanted=$1 status=0
-  shift
-  timeout 60 "$@" >out.txt 2>err.txt || status=$?
-  [ "$status" = "$wanted" ] || { cat out.txt err.txt >&2; fail "status $status, wanted $wanted: $*"; }
-}
 
-cat >s.yaml <<'YAML'
-version: 1
-rve:
-  cell: {apothem: 75 um, wall_thickness: 11.25 um}
-  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
-  interface: {law: bonded}
-  turgor: {mode: prescribed, pressure: 0.02 MPa}
-  mesh: {along: 4, through: 1}
+tissue >s.yaml <<'YAML'
 load:
   - {F: [[1, 0.1], [0, 1]]}
-sample:
-  stretch: {min: 0, max: 0.05}
-  turgor: {min: 0.01 MPa, max: 0.03 MPa}
-  count: 3
+sample: {stretch: {min: 0, max: 0.05}, turgor: {min: 0.01 MPa, max: 0.03 MPa}, count: 3}
 YAML
 cp s.yaml before.yaml
 
@@ -36,7 +20,7 @@ expect 2 "$lamella" rve s.yaml -o tissue.db.h5
 grep -q 'tissue.db.h5: exists and is of kind "database"' err.txt || fail "message: $(cat err.txt)"
 cmp -s tissue.db.h5 before.h5 || fail "the database is destroyed"
 mkfifo pipe
-expect 2 "$lamella" rve s.yaml -o pipe
+expect 2 timeout 60 "$lamella" rve s.yaml -o pipe
 [ -p pipe ] || fail "the pipe is replaced"
 [ -z "$(find . -name '*.lock' -o -name '*.tmp')" ] || fail "files are left behind: $(ls)"
 

@@ -1,15 +1,8 @@
 # A signal ends a run in the middle of a solve: the state under way is given up and not recorded.
 . "$(dirname "$0")/common.sh"
 
-cat >fine.yaml <<'YAML'
-version: 1
-rve:
-  cell: {apothem: 75 um, wall_thickness: 11.25 um}
+tissue interface='law: contact, cohesion: 0.001 MPa' turgor='mode: prescribed, pressure: 0.05 MPa' mesh='along: 16, through: 4' >fine.yaml <<'YAML'
   cells: [2, 2]
-  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
-  interface: {law: contact, cohesion: 0.001 MPa}
-  turgor: {mode: prescribed, pressure: 0.05 MPa}
-  mesh: {along: 16, through: 4}
 load:
   - {F: [[1, 0.2], [0, 1]]}
 strength: {wall: 0.25 MPa}

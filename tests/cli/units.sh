@@ -3,32 +3,26 @@
 . "$(dirname "$0")/common.sh"
 /usr/bin/python3 -c 'import json' 2>/dev/null || exit 77
 
-# tissue LENGTH STRESS [MORE]: the example's tissue; LENGTH such as "e6 pm", behind numbers of um; STRESS behind MPa
-tissue() {
-  cat <<YAML
-version: 1
-rve:
-  cell: {apothem: 75$1, wall_thickness: 11.25$1}
-  wall: {law: fibre_mooney_rivlin, C1: 0.1$2, C2: 0.01$2, C4: 1$2, bulk_modulus: 110$2}
-  turgor: {mode: ${3:-prescribed}, pressure: 0.02$2${4:-}}
-  mesh: {along: 2, through: 1}
-YAML
+# measured LENGTH STRESS [MODE MORE]: the example's tissue; LENGTH such as "e6 pm", behind numbers of um; STRESS behind MPa
+measured() {
+  tissue cell="apothem: 75$1, wall_thickness: 11.25$1" turgor="mode: ${3:-prescribed}, pressure: 0.02$2${4:-}" \
+    wall="law: fibre_mooney_rivlin, C1: 0.1$2, C2: 0.01$2, C4: 1$2, bulk_modulus: 110$2" mesh='along: 2, through: 1'
 }
 
 # write FOLDER LENGTH STRESS: the scenes of all commands
 write() {
   mkdir -p "$1"
-  { tissue "$2" "$3"; cat; } >"$1/rve.yaml" <<YAML
+  measured "$2" "$3" >"$1/rve.yaml" <<YAML
 strength: {wall: 0.5$3, lamella_normal: 0.1$3, lamella_shear: 0.05$3}
 load:
   - {F: [[1.02, 0.1], [0, 1]]}
   - {F: [[free, 0.1], [0, free]], P: [[0.001$3, x], [x, 0.003$3]], turgor: 0.03$3}
 YAML
-  { tissue "$2" "$3" sealed ", water_bulk_modulus: 2200$3"; cat; } >"$1/sealed.yaml" <<YAML
+  measured "$2" "$3" sealed ", water_bulk_modulus: 2200$3" >"$1/sealed.yaml" <<YAML
 load:
   - {F: [[free, 0.1], [0, 1.05]], P: [[0.001$3, x], [x, x]]}
 YAML
-  { tissue "$2" "$3"; cat; } >"$1/map.yaml" <<YAML
+  measured "$2" "$3" >"$1/map.yaml" <<YAML
 strength: {wall: 0.25$3, lamella_normal: 0.03$3, lamella_shear: 0.05$3}
 load:
   - {ramp: {to: [[1, 0.4], [0, 1]], steps: 2}}
@@ -36,7 +30,7 @@ map:
   x: {quantity: shear, from: 0.1, to: 0.4, points: 2}
   y: {quantity: turgor, from: 0$3, to: 0.1$3, points: 2}
 YAML
-  { tissue "$2" "$3"; cat; } >"$1/fe2.yaml" <<YAML
+  measured "$2" "$3" >"$1/fe2.yaml" <<YAML
 macro:
   mesh: {box: [10000$2, 10000$2], elements: [2, 1]}
   boundary:

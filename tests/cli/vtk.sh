@@ -4,20 +4,10 @@
 set -e
 /usr/bin/python3 -c 'import vtk, h5py, numpy' 2>/dev/null || exit 77
 
-cat >block.yaml <<'YAML'
-version: 1
-rve:
-  cell: {apothem: 75 um, wall_thickness: 11.25 um}
-  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
-  interface: {law: bonded}
-  turgor: {mode: prescribed, pressure: 0.02 MPa}
-  mesh: {along: 4, through: 1}
+tissue >block.yaml <<'YAML'
 macro:
   mesh: {box: [10 mm, 5 mm], elements: [3, 2]}
-  boundary:
-    - {on: bottom, displacement: [0 mm, 0 mm]}
-    - {on: top, displacement: [0.5 mm, 0 mm]}
-  inflate: true
+  boundary: [{on: bottom, displacement: [0 mm, 0 mm]}, {on: top, displacement: [0.5 mm, 0 mm]}]
   steps: 2
 YAML
 # a square of 4 mm, a quadrilateral beside two triangles

@@ -1,26 +1,13 @@
 # what fe2 writes reads back with meshio, and agrees with the HDF5 file
-set -eu
-lamella=$1
+. "$(dirname "$0")/common.sh"
+set -e
 /usr/bin/python3 -c 'import meshio, h5py' 2>/dev/null || exit 77
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
 
-cat >block.yaml <<'YAML'
-version: 1
-rve:
-  cell: {apothem: 75 um, wall_thickness: 11.25 um}
-  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
-  interface: {law: bonded}
-  turgor: {mode: prescribed, pressure: 0.02 MPa}
-  mesh: {along: 4, through: 1}
+tissue >block.yaml <<'YAML'
 strength: {wall: 0.25 MPa, lamella_normal: 0.08 MPa}
 macro:
   mesh: {box: [10 mm, 5 mm], elements: [2, 1]}
-  boundary:
-    - {on: bottom, displacement: [0 mm, 0 mm]}
-    - {on: top, displacement: [0.5 mm, 0 mm]}
-  inflate: true
+  boundary: [{on: bottom, displacement: [0 mm, 0 mm]}, {on: top, displacement: [0.5 mm, 0 mm]}]
   steps: 1
 YAML
 mkdir results

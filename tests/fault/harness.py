@@ -4,23 +4,22 @@ What the scripts here share: builds that are disturbed, and what must hold of th
 """
 import json
 import os
+import signal
 import subprocess
 import sys
+import time
 
 import h5py
 
-BONDED = """version: 1
+TISSUE = """version: 1
 rve:
   cell: {apothem: 75 um, wall_thickness: 11.25 um}
   wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
   interface: {law: bonded}
   turgor: {mode: prescribed, pressure: 0.02 MPa}
   mesh: {along: 4, through: 1}
-sample:
-  stretch: {min: 0, max: 0.1}
-  turgor: {min: 0.01 MPa, max: 0.03 MPa}
-  count: 70
 """
+BONDED = TISSUE + "sample: {stretch: {min: 0, max: 0.1}, turgor: {min: 0.01 MPa, max: 0.03 MPa}, count: 70}\n"
 # nodes in contact start from others
 CONTACT = (
     BONDED.replace("law: bonded", "law: contact, cohesion: 0.002 MPa")
@@ -44,6 +43,33 @@ def content(path):
         grid = f["table/grid"][()] if "table/grid" in f else None
     names = [n for n in records.dtype.names if n not in ("seconds", "checksum")]
     return {int(r["key"]): b"".join(r[n].tobytes() for n in names) for r in records}, grid
+
+
+def programs(lamella):
+    """Processes of the program that work in this folder."""
+    found = []
+    for pid in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            if os.path.samefile(f"/proc/{pid}/exe", lamella) and os.path.samefile(f"/proc/{pid}/cwd", "."):
+                found.append(int(pid))
+        except OSError:
+            pass
+    return found
+
+
+def reap(lamella, process, limit=LIMIT):
+    """Waits until none of a run's processes is alive."""
+    end = time.monotonic() + limit
+    try:
+        process.wait(limit)
+    except subprocess.TimeoutExpired:
+        send([process.pid, *programs(lamella)], signal.SIGKILL)
+        raise Wrong(f"mpirun does not end within {limit} s of the death of a rank")
+    while ranks := programs(lamella):
+        if time.monotonic() > end:
+            send(ranks, signal.SIGKILL)
+            raise Wrong("a rank lives on")
+        time.sleep(0.01)
 
 
 def is_alive(pid):

@@ -10,36 +10,9 @@ import subprocess
 import sys
 import time
 
-from harness import LIMIT, PATH, SCENES, Fault, Wrong, is_alive, send
+from harness import PATH, SCENES, Fault, Wrong, is_alive, programs, reap, send
 
 KILLS = ["KILL", "TERM, KILL after 0.05 s", "TERM, KILL after 1 s"]
-
-
-def programs(fault):
-    """Processes of the program that work in this folder."""
-    found = []
-    for pid in filter(str.isdigit, os.listdir("/proc")):
-        try:
-            if os.path.samefile(f"/proc/{pid}/exe", fault.lamella) and os.path.samefile(f"/proc/{pid}/cwd", "."):
-                found.append(int(pid))
-        except OSError:
-            pass
-    return found
-
-
-def reap(fault, process):
-    """Waits until none of a run's processes is alive."""
-    end = time.monotonic() + LIMIT
-    try:
-        process.wait(LIMIT)
-    except subprocess.TimeoutExpired:
-        send([process.pid, *programs(fault)], signal.SIGKILL)
-        raise Wrong(f"mpirun does not end within {LIMIT} s of the death of a rank")
-    while ranks := programs(fault):
-        if time.monotonic() > end:
-            send(ranks, signal.SIGKILL)
-            raise Wrong("a rank lives on")
-        time.sleep(0.01)
 
 
 def disturb(fault, command, delay, how, victims):
@@ -47,7 +20,7 @@ def disturb(fault, command, delay, how, victims):
     with open("out", "wb") as out, open("err", "wb") as err:
         process = subprocess.Popen(command, stdout=out, stderr=err)
         time.sleep(delay)
-        ranks = programs(fault) or [process.pid]
+        ranks = programs(fault.lamella) or [process.pid]
         pids = {"one rank": [random.choice(ranks)], "mpirun": [process.pid], "all": [process.pid, *ranks]}[victims]
         if how != "KILL":
             send(pids, signal.SIGTERM)
@@ -56,7 +29,7 @@ def disturb(fault, command, delay, how, victims):
                 process.poll()
                 time.sleep(0.005)
         send(pids, signal.SIGKILL)
-        reap(fault, process)
+        reap(fault.lamella, process)
 
 
 def random_case(fault, seconds, k):

@@ -2,17 +2,8 @@
 # lamella build where one rank is held up all the time: the same records in the same order.
 . "$(dirname "$0")/../cli/common.sh"
 set -e -o pipefail
-cat >s.yaml <<'YAML'
-version: 1
-rve:
-  cell: {apothem: 75 um, wall_thickness: 11.25 um}
-  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
-  interface: {law: contact, cohesion: 0.002 MPa}
-  mesh: {along: 4, through: 1}
-sample:
-  stretch: {min: 0, max: 0.06}
-  turgor: {min: 0.02 MPa, max: 0.03 MPa}
-  count: 60
+tissue interface='law: contact, cohesion: 0.002 MPa' turgor='pressure: 0 MPa' >s.yaml <<'YAML'
+sample: {stretch: {min: 0, max: 0.06}, turgor: {min: 0.02 MPa, max: 0.03 MPa}, count: 60}
 YAML
 "$lamella" build s.yaml -d one.h5 --quiet >/dev/null
 
@@ -33,15 +24,4 @@ while kill -0 $job 2>/dev/null; do
 done
 wait $job || fail "status $? with a slow rank"
 
-/usr/bin/python3 -c 'import h5py' 2>/dev/null || exit 77
-/usr/bin/python3 - <<'PYTHON' || fail "a slow rank changes the records"
-import h5py
-
-def records(path):
-    with h5py.File(path) as f:
-        return f["records"][: f["records"].attrs["committed"]]
-
-one, three = records("one.h5"), records("three.h5")
-for name in set(one.dtype.names) - {"seconds", "checksum"}:
-    assert one[name].tobytes() == three[name].tobytes(), name  # bytes: a NaN equals itself
-PYTHON
+same one.h5 three.h5 ordered || fail "a slow rank changes the records"

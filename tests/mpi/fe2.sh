@@ -3,21 +3,11 @@
 command -v mpirun >/dev/null || exit 77
 set -e
 
-cat >block.yaml <<'YAML'
-version: 1
-rve:
-  cell: {apothem: 75 um, wall_thickness: 11.25 um}
-  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
-  interface: {law: bonded}
-  turgor: {mode: prescribed, pressure: 0.02 MPa}
-  mesh: {along: 4, through: 1}
+tissue >block.yaml <<'YAML'
 strength: {wall: 0.17 MPa}
 macro:
   mesh: {box: [10 mm, 10 mm], elements: [2, 2]}
-  boundary:
-    - {on: bottom, displacement: [0 mm, 0 mm]}
-    - {on: top, displacement: [1 mm, 0.2 mm]}
-  inflate: true
+  boundary: [{on: bottom, displacement: [0 mm, 0 mm]}, {on: top, displacement: [1 mm, 0.2 mm]}]
   steps: 2
 YAML
 # reactions FILE: all of them, one per line

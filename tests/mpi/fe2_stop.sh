@@ -1,16 +1,7 @@
 # slow: a signal to one of two ranks ends fe2 on both in good order
-set -eu
-lamella=$1
-source=$2
+. "$(dirname "$0")/../cli/common.sh"
 command -v mpirun >/dev/null || exit 77
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-
-fail() {
-  echo "$1" >&2
-  exit 1
-}
+set -e
 
 sed 's/elements: \[8, 8\]/elements: [5, 5]/' "$source/tests/scenes/tissue-block.yaml" >direct.yaml
 # a cache solves less often: here its solves take longer

@@ -3,13 +3,7 @@
 command -v mpirun >/dev/null || exit 77
 set -e -o pipefail
 
-cat >s.yaml <<'YAML'
-version: 1
-rve:
-  cell: {apothem: 75 um, wall_thickness: 11.25 um}
-  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
-  interface: {law: bonded}
-  mesh: {along: 4, through: 1}
+tissue turgor='pressure: 0 MPa' >s.yaml <<'YAML'
 strength: {wall: 0.25 MPa, lamella_normal: 0.03 MPa, lamella_shear: 0.05 MPa}
 load:
   - {ramp: {to: [[1, 0.4], [0, 1]], steps: 4}}

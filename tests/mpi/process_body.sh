@@ -1,16 +1,7 @@
 # process of a body on two ranks: the same states to 1e-6, with water and events, from a database and solved directly
-set -eu
-lamella=$1
-source=$2
+. "$(dirname "$0")/../cli/common.sh"
 command -v mpirun >/dev/null || exit 77
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-
-fail() {
-  echo "$1" >&2
-  exit 1
-}
+set -e
 
 sed 's/elements: \[8, 8\]/elements: [3, 2]/' "$source/tests/scenes/storage.yaml" >body.yaml
 sed 's/elements: \[3, 2\]/elements: [2, 1]/; s/1209610 s/7.5 day/; s/output: 1 day/output: 4 day\n  tolerance: 1e-3/' body.yaml >direct.yaml

@@ -2,15 +2,8 @@
 . "$(dirname "$0")/../cli/common.sh"
 command -v mpirun >/dev/null || exit 77
 
-cat >fine.yaml <<'YAML'
-version: 1
-rve:
-  cell: {apothem: 75 um, wall_thickness: 11.25 um}
+tissue interface='law: contact, cohesion: 0.001 MPa' turgor='mode: prescribed, pressure: 0.05 MPa' mesh='along: 24, through: 4' >fine.yaml <<'YAML'
   cells: [2, 2]
-  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
-  interface: {law: contact, cohesion: 0.001 MPa}
-  turgor: {mode: prescribed, pressure: 0.05 MPa}
-  mesh: {along: 24, through: 4}
 load:
   - {ramp: {to: [[1, 0.3], [0, 1]], steps: 20}}
 YAML

@@ -3,15 +3,9 @@
 command -v mpirun >/dev/null || exit 77
 set -e -o pipefail
 
-cat >s.yaml <<'YAML'
-version: 1
-rve:
-  cell: {apothem: 75 um, wall_thickness: 11.25 um}
+tissue mesh='along: 2, through: 1' >s.yaml <<'YAML'
   cells: [2, 1]
-  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
   variation: {kinds: [{wall_thickness: 15 um}], list: [0, 1]}
-  turgor: {pressure: 0.02 MPa}
-  mesh: {along: 2, through: 1}
 sample:
   stretch: {min: 0, max: 0.04}
   count: 30
