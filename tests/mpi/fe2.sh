@@ -1,4 +1,4 @@
-# fe2 on two ranks: the same reactions, summary and zooms to 1e-8, direct and from a cache, also of sealed tissue
+# fe2 on two ranks: the same reactions, summary and zooms to 1e-8, direct and from caches, also of sealed tissue and of regions
 . "$(dirname "$0")/../cli/common.sh"
 command -v mpirun >/dev/null || exit 77
 set -e
@@ -14,7 +14,13 @@ YAML
 reactions() { grep -o '"reaction": *{[^}]*}' "$1" | grep -o '\[[^]]*\]' | tr -d '[],' | tr ' ' '\n' | grep .; }
 
 sed 's/mode: prescribed/mode: sealed/' block.yaml >sealed.yaml
-for case in "block direct" "block cache" "sealed direct"; do
+cat block.yaml - >regions.yaml <<'YAML'
+  regions: [{name: skin, where: y > 5, wall: {C1: 0.15 MPa}}]
+  fields:
+    wall_thickness: {expression: 11 + 0.1 * x, unit: um, levels: 2}
+    orientation: {expression: 3 * x, unit: deg}
+YAML
+for case in "block direct" "block cache" "sealed direct" "regions cache"; do
   scene=${case% *}.yaml
   response=${case#* }
   "$lamella" fe2 $scene --json --response $response -o one.h5 >one.jsonl
