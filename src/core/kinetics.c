@@ -38,22 +38,11 @@ PetscInt LamKineticsStates(const LamKinetics *kinetics)
 
 void LamKineticsStart(const LamKinetics *kinetics, PetscReal x[])
 {
-  switch (kinetics->law) {
-  case LAM_KINETIC_TWO_FRACTIONS:
-    x[0] = kinetics->share;
-    x[1] = 1 - kinetics->share;
-    break;
-  case LAM_KINETIC_AUTOCATALYTIC:
-    x[0] = 1;
-    x[1] = kinetics->enzyme;
-    break;
-  case LAM_KINETIC_FIRST_ORDER:
-  case LAM_KINETIC_FRACTIONAL:
-    x[0] = 1;
-    break;
-  default:
-    break;
-  }
+  const PetscBool two = (PetscBool)(kinetics->law == LAM_KINETIC_TWO_FRACTIONS);
+  const PetscInt states = LamKineticsStates(kinetics);
+
+  if (states > 0) x[0] = two ? kinetics->share : 1;
+  if (states > 1) x[1] = two ? 1 - kinetics->share : kinetics->enzyme;
 }
 
 /* Piecewise linear, constant outside the table. */
@@ -70,18 +59,13 @@ static PetscReal TableFactor(const LamKinetics *kinetics, PetscReal t)
 
 PetscReal LamKineticsFactor(const LamKinetics *kinetics, PetscReal t, const PetscReal x[], PetscReal slope[])
 {
+  const PetscBool two = (PetscBool)(kinetics->law == LAM_KINETIC_TWO_FRACTIONS);
+
   slope[0] = 1;
-  slope[1] = kinetics->law == LAM_KINETIC_TWO_FRACTIONS ? 1 : 0;
-  switch (kinetics->law) {
-  case LAM_KINETIC_CONSTANT:
-    return 1;
-  case LAM_KINETIC_TABLE:
-    return TableFactor(kinetics, t);
-  case LAM_KINETIC_TWO_FRACTIONS:
-    return x[0] + x[1];
-  default:
-    return x[0];
-  }
+  slope[1] = two ? 1 : 0;
+  if (kinetics->law == LAM_KINETIC_CONSTANT) return 1;
+  if (kinetics->law == LAM_KINETIC_TABLE) return TableFactor(kinetics, t);
+  return two ? x[0] + x[1] : x[0];
 }
 
 void LamKineticsRates(const LamKinetics *kinetics, PetscReal temperature, const PetscReal x[], PetscReal rate[],

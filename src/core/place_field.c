@@ -143,17 +143,10 @@ static PetscErrorCode FindKnots(PetscInt n, const Row rows[], PetscInt axis, Pet
 /* Index of the knot at or before x; it is never the last knot. */
 static PetscInt FindKnot(PetscInt n, const PetscReal knots[], PetscReal x)
 {
-  PetscInt low = 0, high = n - 1;
+  PetscInt at;
 
-  while (high - low > 1) {
-    const PetscInt middle = (low + high) / 2;
-
-    if (knots[middle] <= x)
-      low = middle;
-    else
-      high = middle;
-  }
-  return low;
+  (void)PetscFindReal(x, n, knots, 0, &at);
+  return PetscMax(0, PetscMin(at < 0 ? -at - 2 : at, n - 2)); /* not found: -(place to insert) - 1 */
 }
 
 static PetscErrorCode FillTable(LamPlaceField f, PetscInt n, const Row rows[], char reason[])

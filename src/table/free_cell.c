@@ -305,25 +305,20 @@ PetscErrorCode LamFreeCellToJSON(const LamFreeCell *cell, json_t **object)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ReadReal(const char path[], const char name[], const json_t *value, PetscReal *number)
-{
-  PetscFunctionBeginUser;
-  PetscCheck(json_is_number(value), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: \"%s\" of the free cell is not a number; the file is damaged", path, name);
-  *number = json_number_value(value);
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode ReadColumn(const char path[], const json_t *object, PetscInt k, LamFreeCell *cell)
 {
   const json_t *list = json_object_get(object, columns[k].name);
+  PetscReal *values = *ColumnOf(cell, k);
+  PetscBool good = (PetscBool)(json_is_array(list) && (PetscInt)json_array_size(list) == cell->n);
 
   PetscFunctionBeginUser;
-  PetscCheck(json_is_array(list) && (PetscInt)json_array_size(list) == cell->n, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+  for (PetscInt j = 0; good && j < cell->n; j++) {
+    good = (PetscBool)json_is_number(json_array_get(list, (size_t)j));
+    values[j] = json_number_value(json_array_get(list, (size_t)j));
+  }
+  PetscCheck(good, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: \"%s\" of the free cell is no list of %d numbers; the file is damaged", path, columns[k].name,
              (int)cell->n);
-  for (PetscInt j = 0; j < cell->n; j++)
-    PetscCall(ReadReal(path, columns[k].name, json_array_get(list, (size_t)j), &(*ColumnOf(cell, k))[j]));
   PetscFunctionReturn(0);
 }
 
@@ -347,17 +342,18 @@ static PetscErrorCode CheckKnots(const char path[], const LamFreeCell *cell)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamFreeCellFromJSON(const char path[], const json_t *object, LamFreeCell *cell)
+PetscErrorCode LamFreeCellFromJSON(const char path[], json_t *object, LamFreeCell *cell)
 {
   const PetscInt n = (PetscInt)json_array_size(json_object_get(object, columns[0].name));
 
   PetscFunctionBeginUser;
   memset(cell, 0, sizeof(*cell));
-  PetscCheck(json_is_object(object) && (n == 0 || n >= MIN_KNOTS), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: the free cell is no object, or has %d knots, less than %d; the file is damaged", path, (int)n,
-             MIN_KNOTS);
-  PetscCall(ReadReal(path, "scale", json_object_get(object, "scale"), &cell->scale));
-  PetscCall(ReadReal(path, "cohesion", json_object_get(object, "cohesion"), &cell->cohesion));
+  PetscCheck(!json_unpack(object, "{s:F, s:F}", "scale", &cell->scale, "cohesion", &cell->cohesion) &&
+                 (n == 0 || n >= MIN_KNOTS),
+             PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: the free cell has no numbers \"scale\" and \"cohesion\", or %d knots, less than %d; the file is "
+             "damaged",
+             path, (int)n, MIN_KNOTS);
   PetscCall(Allocate(n, cell));
   for (PetscInt k = 0; k < COLUMNS; k++) PetscCall(ReadColumn(path, object, k, cell));
   if (n > 0) PetscCall(CheckKnots(path, cell));

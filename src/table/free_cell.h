@@ -43,6 +43,6 @@ void LamFreeCellStrain(const LamFreeCell *cell, PetscReal s, PetscReal strain[3]
 void LamFreeCellEnergy(const LamFreeCell *cell, PetscReal s, PetscReal energy[3], PetscReal turgor[2][3]);
 /* To and from JSON, with all digits. PETSC_ERR_USER_INPUT naming `path` if the object is not a free cell. */
 PetscErrorCode LamFreeCellToJSON(const LamFreeCell *cell, json_t **object);
-PetscErrorCode LamFreeCellFromJSON(const char path[], const json_t *object, LamFreeCell *cell);
+PetscErrorCode LamFreeCellFromJSON(const char path[], json_t *object, LamFreeCell *cell);
 
 #endif

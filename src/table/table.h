@@ -59,11 +59,11 @@ typedef struct {
 
 extern const int LamAxisOrder[6][3];
 
-/* Hash map with open addressing: index of an item by the key of its place. */
+/* Hash map with open addressing: index of an item by the key of its place, or another key. */
 typedef struct {
   PetscInt64 *keys;
-  PetscInt *items;
-  size_t size; /* power of 2 */
+  PetscInt *items;    /* -1: a free slot */
+  size_t size, count; /* size: a power of 2 */
 } LamPlaceMap;
 
 struct LamTable_s {
@@ -110,9 +110,10 @@ typedef struct {
 PetscErrorCode LamTableMake(const LamNodeSet *source, LamGrid grid, PetscBool uniform, LamTable *table);
 LamTable LamTableReference(LamTable table); /* adds a reference */
 
-PetscErrorCode LamPlaceMapCreate(PetscInt n, LamPlaceMap *map);
+/* For n items at first. */
+PetscErrorCode LamPlaceMapCreate(size_t n, LamPlaceMap *map);
 PetscErrorCode LamPlaceMapDestroy(LamPlaceMap *map);
-void LamPlaceMapSet(LamPlaceMap *map, PetscInt64 key, PetscInt item); /* key must be new */
+PetscErrorCode LamPlaceMapSet(LamPlaceMap *map, PetscInt64 key, PetscInt item); /* key must be new */
 
 static inline size_t LamPlaceMapSlot(const LamPlaceMap *map, PetscInt64 key)
 {

@@ -73,13 +73,13 @@ const LamTableCell *LamTableFindCell(LamTable table, const LamTablePoint *point,
 
 /* ---- the map ---- */
 
-PetscErrorCode LamPlaceMapCreate(PetscInt n, LamPlaceMap *map)
+PetscErrorCode LamPlaceMapCreate(size_t n, LamPlaceMap *map)
 {
   PetscFunctionBeginUser;
   map->size = 16;
-  while (map->size < 2 * (size_t)n) map->size *= 2;
-  PetscCall(PetscMalloc1(map->size, &map->keys));
-  PetscCall(PetscMalloc1(map->size, &map->items));
+  map->count = 0;
+  while (map->size < 2 * n) map->size *= 2;
+  PetscCall(PetscMalloc2(map->size, &map->keys, map->size, &map->items));
   for (size_t k = 0; k < map->size; k++) map->items[k] = -1;
   PetscFunctionReturn(0);
 }
@@ -87,17 +87,34 @@ PetscErrorCode LamPlaceMapCreate(PetscInt n, LamPlaceMap *map)
 PetscErrorCode LamPlaceMapDestroy(LamPlaceMap *map)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree(map->keys));
-  PetscCall(PetscFree(map->items));
+  PetscCall(PetscFree2(map->keys, map->items));
   map->size = 0;
   PetscFunctionReturn(0);
 }
 
-void LamPlaceMapSet(LamPlaceMap *map, PetscInt64 key, PetscInt item)
+static PetscErrorCode Grow(LamPlaceMap *map)
 {
-  size_t k = LamPlaceMapSlot(map, key);
+  LamPlaceMap larger;
 
+  PetscFunctionBeginUser;
+  PetscCall(LamPlaceMapCreate(map->size, &larger));
+  for (size_t k = 0; k < map->size; k++)
+    if (map->items[k] >= 0) PetscCall(LamPlaceMapSet(&larger, map->keys[k], map->items[k]));
+  PetscCall(LamPlaceMapDestroy(map));
+  *map = larger;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamPlaceMapSet(LamPlaceMap *map, PetscInt64 key, PetscInt item)
+{
+  size_t k;
+
+  PetscFunctionBeginUser;
+  if (2 * map->count == map->size) PetscCall(Grow(map));
+  map->count++;
+  k = LamPlaceMapSlot(map, key);
   while (map->items[k] >= 0) k = (k + 1) & (map->size - 1);
   map->keys[k] = key;
   map->items[k] = item;
+  PetscFunctionReturn(0);
 }

@@ -66,7 +66,7 @@ static PetscErrorCode MakeNodes(LamTable table)
   PetscCall(PetscMalloc1(n + 1, &table->states));
   PetscCall(PetscMalloc1(n + 1, &table->nodes));
   PetscCall(PetscMalloc1(n + 1, &table->data));
-  PetscCall(LamPlaceMapCreate(n, &table->node_map));
+  PetscCall(LamPlaceMapCreate((size_t)n, &table->node_map));
   for (PetscInt e = 0; e < n; e++) {
     const LamNodePlace place = LamNodePlaceOf(entries[e].key);
 
@@ -78,7 +78,7 @@ static PetscErrorCode MakeNodes(LamTable table)
       node->level = entries[e].level;
       node->first = table->state_count;
       atomic_init(&node->stage, LAM_NODE_RAW);
-      LamPlaceMapSet(&table->node_map, LamPlaceMapKey(place.i), table->node_count++);
+      PetscCall(LamPlaceMapSet(&table->node_map, LamPlaceMapKey(place.i), table->node_count++));
     }
     table->data[table->state_count++] = entries[e].data;
     node->count++;

@@ -12,6 +12,7 @@
 */
 #define _GNU_SOURCE /* sync_file_range */
 #include "record_union.h"
+#include "table.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <string.h>
@@ -19,11 +20,6 @@
 #include <zlib.h>
 
 enum { BLOCK = 8 * LAM_RECORDS_PER_CHUNK, WRITE_BLOCKS = 16, LOAD_BYTES = 11 * sizeof(PetscReal) };
-
-typedef struct {
-  uint64_t state, content;
-  PetscInt at; /* number of the record in the file; -1: a free slot of the table */
-} Entry;
 
 struct LamUnion_s {
   char path[PETSC_MAX_PATH_LEN];
@@ -33,21 +29,13 @@ struct LamUnion_s {
   PetscInt n, written;             /* records in total; in the file, the others are in `block` */
   PetscInt64 next_cache_key;
   unsigned char *block, *kept; /* [BLOCK] records; one record that was read back; owned */
-  PetscInt room;               /* for checksums */
+  PetscInt room;               /* for checksums and digests */
   uint32_t *checksums;         /* [room] of the records, in their order; owned */
-  size_t used, capacity;       /* of the table; capacity: a power of 2 */
-  Entry *entries;              /* [capacity] hash table with linear probing; owned */
+  uint64_t *contents;          /* [room] digests of what two solves must agree in; owned */
+  LamPlaceMap states;          /* number of a record by the digest of its state */
 };
 
 /* ---- create, destroy ---- */
-
-static PetscErrorCode ClearTable(size_t capacity, Entry **entries)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(capacity, entries));
-  for (size_t i = 0; i < capacity; i++) (*entries)[i].at = -1;
-  PetscFunctionReturn(0);
-}
 
 static PetscErrorCode Open(LamUnion u)
 {
@@ -62,8 +50,7 @@ static PetscErrorCode Open(LamUnion u)
                  u->load + LOAD_BYTES,
              PETSC_COMM_SELF, PETSC_ERR_PLIB, "F, turgor and cohesion do not follow one another in a record");
   PetscCall(PetscMalloc2((size_t)BLOCK * u->layout.size, &u->block, u->layout.size, &u->kept));
-  u->capacity = 4 * BLOCK;
-  PetscCall(ClearTable(u->capacity, &u->entries));
+  PetscCall(LamPlaceMapCreate(BLOCK, &u->states));
   PetscCall(LamFileOpen(u->path, PETSC_TRUE, &u->file));
   LamCallHDF5(u->path, PETSC_ERR_FILE_WRITE, u->dataset = H5Dopen2(u->file, "/records", H5P_DEFAULT));
   PetscFunctionReturn(0);
@@ -95,7 +82,8 @@ PetscErrorCode LamUnionDestroy(LamUnion *records)
   PetscCall(LamCloseHDF5(u->path, u->type, u->dataset, u->file));
   PetscCall(PetscFree2(u->block, u->kept));
   PetscCall(PetscFree(u->checksums));
-  PetscCall(PetscFree(u->entries));
+  PetscCall(PetscFree(u->contents));
+  PetscCall(LamPlaceMapDestroy(&u->states));
   PetscCall(PetscFree(*records));
   PetscFunctionReturn(0);
 }
@@ -207,32 +195,6 @@ static PetscBool IsSameState(LamUnion u, const unsigned char *a, const unsigned 
   return (PetscBool)(LamKeyIsNode(key_a) || !memcmp(a + u->load, b + u->load, LOAD_BYTES));
 }
 
-/* ---- the table of states ---- */
-
-/* The entry of the state, or the free slot for it. */
-static Entry *Find(const LamUnion u, uint64_t state)
-{
-  size_t i = state & (u->capacity - 1);
-
-  while (u->entries[i].at >= 0 && u->entries[i].state != state) i = (i + 1) & (u->capacity - 1);
-  return &u->entries[i];
-}
-
-static PetscErrorCode GrowTable(LamUnion u)
-{
-  const size_t before = u->capacity;
-  Entry *old = u->entries;
-
-  PetscFunctionBeginUser;
-  if (2 * u->used < u->capacity) PetscFunctionReturn(0);
-  PetscCall(ClearTable(2 * before, &u->entries));
-  u->capacity = 2 * before;
-  for (size_t i = 0; i < before; i++)
-    if (old[i].at >= 0) *Find(u, old[i].state) = old[i];
-  PetscCall(PetscFree(old));
-  PetscFunctionReturn(0);
-}
-
 /* ---- appending ---- */
 
 static void SetKey(LamUnion u, unsigned char *bytes, PetscInt64 key)
@@ -251,7 +213,7 @@ static void KeepChecksum(LamUnion u, PetscInt at, const unsigned char *bytes)
   memcpy(&u->checksums[at], bytes + u->layout.size - sizeof(uint32_t), sizeof(uint32_t));
 }
 
-static PetscErrorCode Append(LamUnion u, const unsigned char *bytes)
+static PetscErrorCode Append(LamUnion u, const unsigned char *bytes, uint64_t content)
 {
   unsigned char *place;
 
@@ -259,11 +221,13 @@ static PetscErrorCode Append(LamUnion u, const unsigned char *bytes)
   if (u->n == u->room) {
     u->room = PetscMax(2 * u->room, BLOCK);
     PetscCall(PetscRealloc((size_t)u->room * sizeof(*u->checksums), &u->checksums));
+    PetscCall(PetscRealloc((size_t)u->room * sizeof(*u->contents), &u->contents));
   }
   if (u->n - u->written == BLOCK) PetscCall(Flush(u));
   place = u->block + (size_t)(u->n - u->written) * u->layout.size;
   memcpy(place, bytes, u->layout.size);
   if (LamRecordInt(place + u->layout.key) >= LAM_CACHE_KEY) SetKey(u, place, u->next_cache_key++);
+  u->contents[u->n] = content;
   KeepChecksum(u, u->n++, place);
   PetscFunctionReturn(0);
 }
@@ -295,15 +259,15 @@ static PetscErrorCode Replace(LamUnion u, PetscInt at, const unsigned char *byte
 }
 
 /* The stored record has other numbers; or, once in 2^64 pairs of loads, it is of another state. */
-static PetscErrorCode Decide(LamUnion u, Entry *entry, uint64_t content, const unsigned char *bytes,
+static PetscErrorCode Decide(LamUnion u, PetscInt at, uint64_t content, const unsigned char *bytes,
                              LamMergeReport *report)
 {
   PetscReal P[9], P_kept[9], difference;
 
   PetscFunctionBeginUser;
-  PetscCall(ReadBack(u, entry->at));
+  PetscCall(ReadBack(u, at));
   if (!IsSameState(u, u->kept, bytes)) {
-    PetscCall(Append(u, bytes));
+    PetscCall(Append(u, bytes, content));
     PetscFunctionReturn(0);
   }
   memcpy(P, bytes + u->P, sizeof(P));
@@ -313,26 +277,25 @@ static PetscErrorCode Decide(LamUnion u, Entry *entry, uint64_t content, const u
   report->differing++;
   if (difference > report->difference) report->difference = difference; /* NaN if one has no stress */
   if (bytes[u->status] != LAM_CONVERGED || u->kept[u->status] == LAM_CONVERGED) PetscFunctionReturn(0);
-  PetscCall(Replace(u, entry->at, bytes));
-  entry->content = content;
+  PetscCall(Replace(u, at, bytes));
+  u->contents[at] = content;
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode Take(LamUnion u, const unsigned char *bytes, LamMergeReport *report)
 {
-  const uint64_t state = StateDigest(u, bytes), content = ContentOf(u, bytes);
-  Entry *entry = Find(u, state);
+  const uint64_t content = ContentOf(u, bytes);
+  const PetscInt64 state = (PetscInt64)StateDigest(u, bytes);
+  const PetscInt at = LamPlaceMapGet(&u->states, state);
 
   PetscFunctionBeginUser;
-  if (entry->at < 0) {
-    *entry = (Entry){state, content, u->n};
-    u->used++;
-    PetscCall(Append(u, bytes));
-    PetscCall(GrowTable(u));
-  } else if (entry->content == content) {
+  if (at < 0) {
+    PetscCall(LamPlaceMapSet(&u->states, state, u->n));
+    PetscCall(Append(u, bytes, content));
+  } else if (u->contents[at] == content) {
     report->duplicates++;
   } else {
-    PetscCall(Decide(u, entry, content, bytes, report));
+    PetscCall(Decide(u, at, content, bytes, report));
   }
   report->records = u->n;
   PetscFunctionReturn(0);
