@@ -113,10 +113,12 @@ PetscErrorCode LamResponseToJSON(const LamResponse *response, const LamScales *s
                                  PetscBool tangent, json_t **object);
 PetscErrorCode LamPrintJSON(json_t *object); /* one line on stdout, rank 0; takes ownership */
 /* Human-readable table of states on stdout, with additional columns for contact tissue and for database responses. */
-PetscErrorCode LamPrintResponseHeader(LamInterfaceLawType interface);
-PetscErrorCode LamPrintAnswerHeader(LamInterfaceLawType interface);
+PetscErrorCode LamPrintResponseHeader(LamInterfaceLawType interface, LamSource source);
 PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales *scales, LamInterfaceLawType interface,
                                    PetscInt state);
+
+/* A number in a column of a table, with the notation 'e', 'f' or 'g' of printf; "-" if not known. */
+void LamPrintColumn(int width, int decimals, char notation, PetscReal value);
 
 /* ---- tradeoff_plot.c ---- */
 /* Draws the diagram; the ending of `path` selects the format. */

@@ -16,7 +16,7 @@ static PetscErrorCode Report(const LamFE2Run *run, const LamConsole *console, La
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &status, 1, MPI_INT, MPI_MAX, run->comm));
   *exit_status = reason == LAM_MACRO_NOT_CONVERGED ? LAM_EXIT_UNSOLVED : status;
   if (!LamIsFirst(run->comm) || run->stopped) PetscFunctionReturn(0);
-  if (!console->json) PetscCall(LamFE2ReportEnd(run));
+  if (!console->json) LamFE2ReportEnd(run);
   if (reason == LAM_MACRO_NOT_CONVERGED) fprintf(stderr, "lamella fe2: %s: %s\n", run->scene_path, message);
   PetscFunctionReturn(0);
 }

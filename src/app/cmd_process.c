@@ -42,14 +42,6 @@ static void AddRatios(json_t *o, const PetscReal ratio[], LamEvent event)
   if (event != LAM_EVENT_COUNT) json_object_set_new(o, "event", json_string(LamEventNames[event]));
 }
 
-static void PrintNumber(int width, PetscReal number)
-{
-  if (isfinite(number))
-    printf(" %*.4g", width, (double)number);
-  else
-    printf(" %*s", width, "-");
-}
-
 /* ---- reports of a material point ---- */
 
 static PetscErrorCode PrintPointObject(const LamProcessStudy *study, const LamProcessState *state)
@@ -87,7 +79,7 @@ static void PrintPointHeader(const LamProcessStudy *study, const char unit[])
   printf("\n");
 }
 
-static PetscErrorCode PrintPointRow(const LamProcessStudy *study, const LamProcessState *state)
+static void PrintPointRow(const LamProcessStudy *study, const LamProcessState *state)
 {
   const PetscReal MPa = study->scene->scales.stress * 1e-6;
   const PetscBool contact = (PetscBool)(study->scene->micro.interface == LAM_INTERFACE_CONTACT);
@@ -95,20 +87,18 @@ static PetscErrorCode PrintPointRow(const LamProcessStudy *study, const LamProce
   PetscReal seconds;
   const char *unit = LamTimeUnit(study->scene->process.duration, &seconds);
 
-  PetscFunctionBeginUser;
   if (study->history.count == 1) PrintPointHeader(study, unit);
   printf("%10.5g %8.4g", (double)(state->time / seconds), (double)(state->temperature - 273.15));
-  PrintNumber(9, state->turgor * MPa);
-  PrintNumber(9, state->osmotic * MPa);
-  PrintNumber(9, state->factor[LAM_CHANGING_LAMELLA]);
-  PrintNumber(9, state->walls);
-  PrintNumber(9, state->firmness * MPa);
-  PrintNumber(9, state->F[0]);
-  PrintNumber(9, state->F[4]);
-  PrintNumber(9, contact ? r->opening_fraction : r->max_traction * MPa);
-  PrintNumber(contact ? 8 : 9, contact ? r->debonded_fraction : r->max_wall_tension * MPa);
+  LamPrintColumn(9, 4, 'g', state->turgor * MPa);
+  LamPrintColumn(9, 4, 'g', state->osmotic * MPa);
+  LamPrintColumn(9, 4, 'g', state->factor[LAM_CHANGING_LAMELLA]);
+  LamPrintColumn(9, 4, 'g', state->walls);
+  LamPrintColumn(9, 4, 'g', state->firmness * MPa);
+  LamPrintColumn(9, 4, 'g', state->F[0]);
+  LamPrintColumn(9, 4, 'g', state->F[4]);
+  LamPrintColumn(9, 4, 'g', contact ? r->opening_fraction : r->max_traction * MPa);
+  LamPrintColumn(contact ? 8 : 9, 4, 'g', contact ? r->debonded_fraction : r->max_wall_tension * MPa);
   printf("  %s\n", EventName(state->event));
-  PetscFunctionReturn(0);
 }
 
 static PetscErrorCode ReportPoint(void *ctx, const LamProcessStudy *study)
@@ -120,7 +110,7 @@ static PetscErrorCode ReportPoint(void *ctx, const LamProcessStudy *study)
   if (console->json)
     PetscCall(PrintPointObject(study, state));
   else
-    PetscCall(PrintPointRow(study, state));
+    PrintPointRow(study, state);
   PetscFunctionReturn(0);
 }
 
@@ -188,8 +178,7 @@ static void PrintBodyHeader(const LamBodyStudy *study, const LamBodyState *state
   printf("Turgor: least, mean and largest; reactions in N per mm of thickness.\n");
   printf("%10s %8s %8s %8s %8s %7s %7s %7s %8s", "time", "temp.", "turgor", "turgor", "turgor", "water", "lamella",
          "walls", "load");
-  for (PetscInt s = 0; s < step->boundary_count; s++)
-    for (int i = 0; i < 2; i++) printf(" %*s.%c", 9, step->boundary[s], "xy"[i]);
+  LamFE2PrintSides(&study->fe2, step, PETSC_TRUE);
   printf(" %8s  event\n", "debonded");
   printf("%10s %8s %8s %8s %8s %7s %7s %7s\n", unit, "degC", "MPa", "MPa", "MPa", "share", "share", "share");
 }
@@ -199,22 +188,20 @@ static void PrintBodyRow(const LamBodyStudy *study, const LamBodyState *state)
   const LamScene *scene = study->fe2.scene;
   const LamMacroStep *step = &state->step;
   const PetscReal MPa = scene->scales.stress * 1e-6, mm = scene->scales.macro_length * 1e3;
-  const PetscReal force = scene->scales.stress * scene->scales.macro_length * 1e-3;
   PetscReal seconds;
   const char *unit = LamTimeUnit(scene->process.duration, &seconds);
 
   if (study->history.count == 1) PrintBodyHeader(study, state, unit);
   printf("%10.6g %8.4g", (double)(state->time / seconds), (double)(state->temperature - 273.15));
-  PrintNumber(8, state->turgor_min * MPa);
-  PrintNumber(8, step->turgor_mean * MPa);
-  PrintNumber(8, state->turgor_max * MPa);
-  PrintNumber(7, state->water);
-  PrintNumber(7, state->factor[LAM_CHANGING_LAMELLA]);
-  PrintNumber(7, state->walls);
-  PrintNumber(8, state->load);
-  for (PetscInt s = 0; s < step->boundary_count; s++)
-    for (int i = 0; i < 2; i++) printf(" %11.4e", (double)(step->reaction[s][i] * force));
-  PrintNumber(8, step->debonded_fraction);
+  LamPrintColumn(8, 4, 'g', state->turgor_min * MPa);
+  LamPrintColumn(8, 4, 'g', step->turgor_mean * MPa);
+  LamPrintColumn(8, 4, 'g', state->turgor_max * MPa);
+  LamPrintColumn(7, 4, 'g', state->water);
+  LamPrintColumn(7, 4, 'g', state->factor[LAM_CHANGING_LAMELLA]);
+  LamPrintColumn(7, 4, 'g', state->walls);
+  LamPrintColumn(8, 4, 'g', state->load);
+  LamFE2PrintSides(&study->fe2, step, PETSC_FALSE);
+  LamPrintColumn(8, 4, 'g', step->debonded_fraction);
   printf("  %s", EventName(state->event));
   if (state->element >= 0)
     printf(" at (%.4g, %.4g) mm", (double)(state->place[0] * mm), (double)(state->place[1] * mm));

@@ -122,7 +122,7 @@ static PetscErrorCode Run(Query *q, int *exit_status)
 
   PetscFunctionBeginUser;
   if (!ReadValues(q, &load, exit_status)) PetscFunctionReturn(0);
-  if (!q->json) PetscCall(LamPrintAnswerHeader(q->from.micro.interface));
+  if (!q->json) PetscCall(LamPrintResponseHeader(q->from.micro.interface, LAM_SOURCE_DATABASE));
   if (strcmp(q->deformation, "-"))
     PetscCall(Answer(q, &load));
   else

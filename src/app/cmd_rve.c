@@ -116,7 +116,7 @@ static PetscErrorCode Tell(void *ctx, const LamRVERun *run, const LamResponse re
   }
   PetscCall(LamPrintResponseRow(&responses[0], scales, run->scene->micro.interface, run->solved));
   if (run->second_mesh) PrintSecondMesh(responses);
-  if (run->find_failure) PetscCall(LamFailurePrintState(&responses[0], &run->scene->strength, scales));
+  if (run->find_failure) LamFailurePrintState(&responses[0], &run->scene->strength, scales);
   if (command->tangent) PrintTangent(&responses[0], scales->stress * 1e-6);
   PetscFunctionReturn(0);
 }
@@ -160,7 +160,7 @@ static PetscErrorCode RunOnRoot(Command *command, int *exit_status)
                     "%s: the cells of %s are bonded and never separate; leave it out, or write law: contact",
                     run->find_onset ? "--onset" : "--second-mesh", command->scene_path)) {
     PetscCall(LamRVERunPrepare(run));
-    if (!console->json) PetscCall(LamPrintResponseHeader(run->scene->micro.interface));
+    if (!console->json) PetscCall(LamPrintResponseHeader(run->scene->micro.interface, LAM_SOURCE_SOLVE));
     PetscCall(LamRVERunSolve(run));
     LamConsoleClear(console);
     PetscCall(TellEnd(run, console->json));

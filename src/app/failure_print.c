@@ -34,13 +34,26 @@ static void PrintMeasures(const LamResponse *r, const LamStrength *strength, Pet
   putchar('\n');
 }
 
-PetscErrorCode LamFailurePrintState(const LamResponse *response, const LamStrength *strength, const LamScales *scales)
+void LamFailurePrintState(const LamResponse *response, const LamStrength *strength, const LamScales *scales)
 {
-  PetscFunctionBeginUser;
-  if (!LamResponseHasFields(response)) PetscFunctionReturn(0);
+  if (!LamResponseHasFields(response)) return;
   printf("      ");
   PrintMeasures(response, strength, scales->stress * 1e-6);
-  PetscFunctionReturn(0);
+}
+
+static void PrintLoad(const LamLoad *load, PetscReal MPa)
+{
+  printf("  F = [%.6g, %.6g; %.6g, %.6g], ", (double)load->F[0], (double)load->F[1], (double)load->F[3],
+         (double)load->F[4]);
+  if (load->F[8] != 1) printf("F33 %.6g, ", (double)load->F[8]);
+  printf("turgor %.6g MPa, cohesion %.6g MPa\n", (double)(load->turgor * MPa), (double)(load->cohesion * MPa));
+}
+
+static void AddLoad(json_t *o, const LamLoad *load, PetscReal MPa)
+{
+  json_object_set_new(o, "F", LamJSONReals(9, load->F, 1));
+  json_object_set_new(o, "turgor", LamJSONReal(load->turgor * MPa));
+  json_object_set_new(o, "cohesion", LamJSONReal(load->cohesion * MPa));
 }
 
 /* ---- failure mode, JSON output ---- */
@@ -74,12 +87,8 @@ static PetscReal Ratio(PetscReal wall, PetscReal lamella)
 
 static json_t *ThreeToJSON(PetscReal wall, PetscReal normal, PetscReal shear, PetscReal scale)
 {
-  json_t *o = json_object();
-
-  json_object_set_new(o, "wall", LamJSONReal(wall * scale));
-  json_object_set_new(o, "lamella_normal", LamJSONReal(normal * scale));
-  json_object_set_new(o, "lamella_shear", LamJSONReal(shear * scale));
-  return o;
+  return json_pack("{s:o, s:o, s:o}", "wall", LamJSONReal(wall * scale), "lamella_normal", LamJSONReal(normal * scale),
+                   "lamella_shear", LamJSONReal(shear * scale));
 }
 
 static json_t *FailureToJSON(const LamFailure *failure, PetscReal MPa)
@@ -97,9 +106,7 @@ static json_t *FailureToJSON(const LamFailure *failure, PetscReal MPa)
   json_object_set_new(o, "factor", LamJSONReal(failure->factor));
   json_object_set_new(o, "followed", LamJSONReal(failure->followed));
   if (failure->reason[0]) json_object_set_new(o, "reason", json_string(failure->reason));
-  json_object_set_new(o, "F", LamJSONReals(9, failure->load.F, 1));
-  json_object_set_new(o, "turgor", LamJSONReal(failure->load.turgor * MPa));
-  json_object_set_new(o, "cohesion", LamJSONReal(failure->load.cohesion * MPa));
+  AddLoad(o, &failure->load, MPa);
   json_object_set_new(o, "strength",
                       ThreeToJSON(strength->wall, strength->lamella_normal, strength->lamella_shear, MPa));
   json_object_set_new(o, "measures", ThreeToJSON(wall, normal, shear, MPa));
@@ -155,14 +162,11 @@ static void PrintOnset(LamCriterion criterion, const LamCriterionOnset *onset, L
 static void PrintFailure(const LamFailure *failure, PetscReal MPa)
 {
   const LamResponse *r = &failure->response;
-  const LamLoad *load = &failure->load;
 
   PrintVerdict(failure);
   if (!LamResponseHasFields(r)) return;
-  printf("  F = [%.6g, %.6g; %.6g, %.6g], ", (double)load->F[0], (double)load->F[1], (double)load->F[3],
-         (double)load->F[4]);
-  if (load->F[8] != 1) printf("F33 %.6g, ", (double)load->F[8]);
-  printf("turgor %.6g MPa, cohesion %.6g MPa\n  ", (double)(load->turgor * MPa), (double)(load->cohesion * MPa));
+  PrintLoad(&failure->load, MPa);
+  printf("  ");
   PrintMeasures(r, failure->program.strength, MPa);
   if (isfinite(Ratio(r->max_wall_tension, r->max_traction)))
     printf("  there a wall less than %.4g times as strong as the lamella in normal direction tears first\n",
@@ -207,9 +211,7 @@ static json_t *BracketToJSON(const LamOnset *onset, PetscReal MPa)
   json_object_set_new(o, "states", json_pack("[I, I]", (json_int_t)onset->states[0], (json_int_t)onset->states[1]));
   json_object_set_new(o, "fraction", json_real(onset->bracket[1]));
   json_object_set_new(o, "bracket", LamJSONReals(2, onset->bracket, 1));
-  json_object_set_new(o, "F", LamJSONReals(9, onset->load.F, 1));
-  json_object_set_new(o, "turgor", LamJSONReal(onset->load.turgor * MPa));
-  json_object_set_new(o, "cohesion", LamJSONReal(onset->load.cohesion * MPa));
+  AddLoad(o, &onset->load, MPa);
   json_object_set_new(o, "criterion", json_string(LamSeparationNames[onset->criterion]));
   json_object_set_new(o, "face", json_integer(LoosestFace(&onset->responses[1])));
   gaps = json_array();
@@ -225,15 +227,12 @@ static json_t *BracketToJSON(const LamOnset *onset, PetscReal MPa)
 
 static void PrintBracket(const LamOnset *onset, PetscReal MPa)
 {
-  const LamLoad *load = &onset->load;
-
   printf("onset of separation: between states %" PetscInt_FMT " and %" PetscInt_FMT
          ", at %.4f of the way (bracket %.4f "
          "to %.4f)\n",
          onset->states[0], onset->states[1], (double)onset->bracket[1], (double)onset->bracket[0],
          (double)onset->bracket[1]);
-  printf("  F = [%.6g, %.6g; %.6g, %.6g], turgor %.6g MPa, cohesion %.6g MPa\n", (double)load->F[0], (double)load->F[1],
-         (double)load->F[3], (double)load->F[4], (double)(load->turgor * MPa), (double)(load->cohesion * MPa));
+  PrintLoad(&onset->load, MPa);
   if (onset->criterion == LAM_SEPARATION_GAP)
     printf("  largest gap %.3g and %.3g apothems on the two meshes, above %g\n", (double)onset->responses[0].max_gap,
            (double)onset->responses[1].max_gap, LAM_VISIBLE_GAP);

@@ -8,7 +8,7 @@
 #include "failure.h"
 
 /* Prints one line: stresses of walls and lamella in a state, relative to their strengths if these are given. */
-PetscErrorCode LamFailurePrintState(const LamResponse *response, const LamStrength *strength, const LamScales *scales);
+void LamFailurePrintState(const LamResponse *response, const LamStrength *strength, const LamScales *scales);
 /* {"cell": 0, "face": 0, "along": 0.06}; null if there is no place. */
 json_t *LamPlaceToJSON(const PetscReal place[3]);
 /* Prints one JSON object {"failure": {...}} or a few human-readable lines on stdout. */

@@ -19,47 +19,32 @@ static PetscReal MPa(const LamFE2Run *run)
   return run->scene->scales.stress * 1e-6;
 }
 
-/* Adds the sources of the responses, and the time spent outside of solves. */
-static void AddService(const LamMacroStep *step, json_t *object)
-{
-  const PetscReal other = PetscMax(0, step->seconds - step->query_seconds - step->solve_seconds);
-
-  json_object_set_new(object, "interpolated", json_integer((json_int_t)step->interpolated));
-  json_object_set_new(object, "query_seconds", LamJSONReal(step->query_seconds));
-  json_object_set_new(object, "other_seconds", LamJSONReal(other));
-}
-
-/* For the material point closest to localisation. */
-static void AddLocalisation(const LamFE2Run *run, const LamMacroStep *step, json_t *object)
-{
-  const PetscReal mm = run->scene->scales.macro_length * 1e3;
-
-  json_object_set_new(object, "ellipticity", LamJSONReal(step->ellipticity * MPa(run)));
-  json_object_set_new(object, "localised_points", json_integer((json_int_t)step->localised_points));
-  json_object_set_new(object, "localisation_normal", LamJSONReals(2, step->localisation_normal, 1));
-  json_object_set_new(object, "localisation_place", LamJSONReals(2, step->localisation_place, mm));
-}
-
 json_t *LamFE2StepToJSON(const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory)
 {
   const LamScales *scales = &run->scene->scales;
-  json_t *reaction = json_object(), *object;
+  const PetscReal mm = scales->macro_length * 1e3;
+  json_t *reaction = json_object();
 
   for (PetscInt s = 0; s < step->boundary_count; s++)
     json_object_set_new(reaction, step->boundary[s], LamJSONReals(2, step->reaction[s], ForceUnit(run)));
-  object = json_pack(
-      "{s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o}", "step",
-      (json_int_t)step->step, "load_factor", LamJSONReal(step->load_factor), "reaction", reaction, "work",
+  return json_pack(
+      "{s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:o, s:o, "
+      "s:I, s:o, s:o}",
+      "step", (json_int_t)step->step, "load_factor", LamJSONReal(step->load_factor), "reaction", reaction, "work",
       LamJSONReal(step->work * scales->stress * PetscSqr(scales->macro_length)), "debonded_fraction",
       LamJSONReal(step->debonded_fraction), "max_gap", LamJSONReal(step->max_gap), "turgor_mean",
       LamJSONReal(step->turgor_mean * MPa(run)), "newton_iterations", (json_int_t)step->newton_iterations, "cutbacks",
       (json_int_t)step->cutbacks, "queries", (json_int_t)step->queries, "hits", (json_int_t)step->hits, "solves",
       (json_int_t)step->solves, "failures", (json_int_t)step->failures, "seconds", LamJSONReal(step->seconds),
       "solve_seconds", LamJSONReal(step->solve_seconds), "peak_memory_mb", LamJSONReal(peak_memory), "residuals",
-      LamJSONReals(step->residual_count, step->residuals, 1), "convergence_order", LamJSONReal(step->order));
-  AddLocalisation(run, step, object);
-  AddService(step, object);
-  return object;
+      LamJSONReals(step->residual_count, step->residuals, 1), "convergence_order", LamJSONReal(step->order),
+      /* of the material point closest to localisation */
+      "ellipticity", LamJSONReal(step->ellipticity * MPa(run)), "localised_points", (json_int_t)step->localised_points,
+      "localisation_normal", LamJSONReals(2, step->localisation_normal, 1), "localisation_place",
+      LamJSONReals(2, step->localisation_place, mm),
+      /* sources of the responses, and the time outside of solves */
+      "interpolated", (json_int_t)step->interpolated, "query_seconds", LamJSONReal(step->query_seconds),
+      "other_seconds", LamJSONReal(PetscMax(0, step->seconds - step->query_seconds - step->solve_seconds)));
 }
 
 /* If there are several. */
@@ -77,24 +62,31 @@ static void PrintTissues(const LamFE2Tissues *tissues)
   }
 }
 
+void LamFE2PrintSides(const LamFE2Run *run, const LamMacroStep *step, PetscBool names)
+{
+  for (PetscInt s = 0; s < step->boundary_count; s++)
+    for (int i = 0; i < 2; i++) {
+      if (names)
+        printf(" %9s.%c", step->boundary[s], "xy"[i]);
+      else
+        printf(" %11.4e", (double)(step->reaction[s][i] * ForceUnit(run)));
+    }
+}
+
 static void PrintHeader(const LamFE2Run *run, const LamMacroStep *step)
 {
   PrintTissues(&run->tissues);
   printf("Reactions in N per mm of thickness; solving: seconds of it in RVE solves; residuals relative to the forces "
          "of the elements.\n%4s %7s",
          "step", "load");
-  for (PetscInt s = 0; s < step->boundary_count; s++) {
-    for (int i = 0; i < 2; i++) printf(" %*s.%c", 9, step->boundary[s], "xy"[i]);
-  }
+  LamFE2PrintSides(run, step, PETSC_TRUE);
   printf(" %5s %8s %8s %8s %8s %8s  %s\n", "iter.", "queries", "hits", "solves", "seconds", "solving", "residuals");
 }
 
 static void PrintRow(const LamFE2Run *run, const LamMacroStep *step)
 {
   printf("%4" PetscInt_FMT " %7.4f", step->step, (double)step->load_factor);
-  for (PetscInt s = 0; s < step->boundary_count; s++) {
-    for (int i = 0; i < 2; i++) printf(" %11.4e", (double)(step->reaction[s][i] * ForceUnit(run)));
-  }
+  LamFE2PrintSides(run, step, PETSC_FALSE);
   printf(" %5" PetscInt_FMT " %8lld %8lld %8lld %8.2f %8.2f ", step->newton_iterations, (long long)step->queries,
          (long long)step->hits, (long long)step->solves, (double)step->seconds, (double)step->solve_seconds);
   for (PetscInt k = 0; k < step->residual_count; k++) printf(" %.0e", (double)step->residuals[k]);
@@ -212,12 +204,11 @@ void LamSummaryPrint(const json_t *summary)
   printf("  %-18s %.4g N mm/mm\n", "work", Number(summary, "work"));
 }
 
-PetscErrorCode LamFE2ReportEnd(const LamFE2Run *run)
+void LamFE2ReportEnd(const LamFE2Run *run)
 {
   const LamFE2Totals *totals = &run->totals;
   json_t *summary = LamSummaryToJSON(&run->summary);
 
-  PetscFunctionBeginUser;
   LamSummaryPrint(summary);
   json_decref(summary);
   printf("%" PetscInt_FMT " steps, %" PetscInt_FMT " Newton iterations, %lld queries, %lld hits, %lld solves, "
@@ -225,5 +216,4 @@ PetscErrorCode LamFE2ReportEnd(const LamFE2Run *run)
          totals->steps, totals->newton_iterations, (long long)totals->queries, (long long)totals->hits,
          (long long)totals->solves, (long long)totals->failures, LamClock() - run->start, (double)run->all_save_seconds,
          LamFE2ResponseNames[run->response]);
-  PetscFunctionReturn(0);
 }

@@ -22,7 +22,9 @@ json_t *LamFE2StepToJSON(const LamFE2Run *run, const LamMacroStep *step, PetscRe
 /* Prints the row (for the first step with the header) or the JSON object of a step; once, a warning that the tissue
    localises. */
 PetscErrorCode LamFE2ReportStep(void *ctx, const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory);
+/* The columns of the reactions: names, or numbers in N per mm of thickness. */
+void LamFE2PrintSides(const LamFE2Run *run, const LamMacroStep *step, PetscBool names);
 /* Prints summary and totals. */
-PetscErrorCode LamFE2ReportEnd(const LamFE2Run *run);
+void LamFE2ReportEnd(const LamFE2Run *run);
 
 #endif

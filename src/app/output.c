@@ -91,62 +91,46 @@ PetscErrorCode LamPrintJSON(json_t *object)
   PetscFunctionReturn(0);
 }
 
-/* Names and units of the columns; `tail`, `tail_units`: of those at the end. */
-static PetscErrorCode PrintHeader(LamInterfaceLawType interface, const char tail[], const char tail_units[])
+PetscErrorCode LamPrintResponseHeader(LamInterfaceLawType interface, LamSource source)
 {
-  const PetscBool contact = (PetscBool)(interface == LAM_INTERFACE_CONTACT);
+  const PetscBool contact = (PetscBool)(interface == LAM_INTERFACE_CONTACT),
+                  solve = (PetscBool)(source == LAM_SOURCE_SOLVE);
 
   PetscFunctionBeginUser;
   if (!LamAppIsRoot()) PetscFunctionReturn(0);
   printf("%5s %7s %7s %7s %7s %9s  %-14s %10s %10s %10s %10s %6s %10s", "state", "F11", "F12", "F21", "F22", "turgor",
          "status", "P11", "P12", "P21", "P22", "lumen", "traction");
   if (contact) printf(" %9s %9s %8s %8s %9s %8s", "cohesion", "opening", "debonded", "open", "largest", "floating");
-  printf(" %s\n", tail);
+  printf(" %s\n", solve ? "iter.     time    error" : "error est. indicators     time");
   printf("%5s %7s %7s %7s %7s %9s  %-14s %10s %10s %10s %10s %6s %10s", "", "", "", "", "", "MPa", "", "MPa", "MPa",
          "MPa", "MPa", "of V0", "MPa");
   if (contact) printf(" %9s %9s %8s %8s %9s %8s", "MPa", "of V0", "share", "share", "gap/a", "cells");
-  printf(" %s\n", tail_units);
+  printf(" %s\n", solve ? "            ms        %" : "         %                  us");
   PetscCall(FlushOutput());
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamPrintResponseHeader(LamInterfaceLawType interface)
+void LamPrintColumn(int width, int decimals, char notation, PetscReal value)
 {
-  PetscFunctionBeginUser;
-  PetscCall(PrintHeader(interface, "iter.     time    error", "            ms        %"));
-  PetscFunctionReturn(0);
-}
+  const char format[] = {' ', '%', '*', '.', '*', notation, '\0'};
 
-PetscErrorCode LamPrintAnswerHeader(LamInterfaceLawType interface)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PrintHeader(interface, "error est. indicators     time", "         %                  us"));
-  PetscFunctionReturn(0);
-}
-
-/* A number in a column, fixed ('f') or with exponent ('e'); "-" if not known. */
-static void PrintColumn(int width, int decimals, char notation, PetscReal value)
-{
-  if (!isfinite(value))
-    printf(" %*s", width, "-");
-  else if (notation == 'e')
-    printf(" %*.*e", width, decimals, (double)value);
+  if (isfinite(value))
+    printf(format, width, decimals, (double)value);
   else
-    printf(" %*.*f", width, decimals, (double)value);
+    printf(" %*s", width, "-");
 }
 
 /* The columns of contact tissue. */
 static void PrintContact(const LamResponse *response, PetscReal MPa)
 {
-  printf(" %9.4g", (double)(response->load.cohesion * MPa));
-  PrintColumn(9, 2, 'e', response->opening_fraction);
-  PrintColumn(8, 4, 'f', response->debonded_fraction);
-  PrintColumn(8, 4, 'f', response->open_fraction);
-  PrintColumn(9, 2, 'e', response->max_gap);
-  if (response->floating_cells == LAM_UNKNOWN_COUNT)
-    printf(" %8s", "-");
-  else
-    printf(" %8" PetscInt_FMT, response->floating_cells);
+  const PetscReal floating = response->floating_cells == LAM_UNKNOWN_COUNT ? NAN : (PetscReal)response->floating_cells;
+
+  LamPrintColumn(9, 4, 'g', response->load.cohesion * MPa);
+  LamPrintColumn(9, 2, 'e', response->opening_fraction);
+  LamPrintColumn(8, 4, 'f', response->debonded_fraction);
+  LamPrintColumn(8, 4, 'f', response->open_fraction);
+  LamPrintColumn(9, 2, 'e', response->max_gap);
+  LamPrintColumn(8, 0, 'f', floating);
 }
 
 /* Last columns of a row: the cost of a solve, or the reliability of a database response. */
@@ -154,12 +138,12 @@ static void PrintTail(const LamResponse *response)
 {
   if (response->source == LAM_SOURCE_SOLVE) {
     printf(" %5" PetscInt_FMT, response->newton_iterations);
-    PrintColumn(8, 2, 'f', 1e3 * response->seconds);
-    PrintColumn(8, 3, 'f', 100 * response->error_estimate);
+    LamPrintColumn(8, 2, 'f', 1e3 * response->seconds);
+    LamPrintColumn(8, 3, 'f', 100 * response->error_estimate);
   } else {
-    PrintColumn(10, 4, 'f', 100 * response->error_estimate);
+    LamPrintColumn(10, 4, 'f', 100 * response->error_estimate);
     printf(" %10s", !LamResponseHasFields(response) ? "-" : response->indicators_trusted ? "trusted" : "doubtful");
-    PrintColumn(8, 1, 'f', 1e6 * response->seconds);
+    LamPrintColumn(8, 1, 'f', 1e6 * response->seconds);
   }
 }
 
@@ -191,11 +175,11 @@ PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales 
   PetscFunctionBeginUser;
   if (!LamAppIsRoot()) PetscFunctionReturn(0);
   printf("%5" PetscInt_FMT, state);
-  for (int k = 0; k < 4; k++) PrintColumn(7, 4, 'f', F[in_plane[k]]);
+  for (int k = 0; k < 4; k++) LamPrintColumn(7, 4, 'f', F[in_plane[k]]);
   printf(" %9.4g  %-14s", (double)(response->load.turgor * MPa), LamStatusNames[response->status]);
-  for (int k = 0; k < 4; k++) PrintColumn(10, 3, 'e', response->P[in_plane[k]] * MPa);
-  PrintColumn(6, 4, 'f', response->lumen_fraction);
-  PrintColumn(10, 3, 'e', response->max_traction * MPa);
+  for (int k = 0; k < 4; k++) LamPrintColumn(10, 3, 'e', response->P[in_plane[k]] * MPa);
+  LamPrintColumn(6, 4, 'f', response->lumen_fraction);
+  LamPrintColumn(10, 3, 'e', response->max_traction * MPa);
   if (interface == LAM_INTERFACE_CONTACT) PrintContact(response, MPa);
   PrintTail(response);
   putchar('\n');

@@ -106,21 +106,13 @@ static PetscErrorCode DrawScatter(LamCanvas canvas, LamRect outer, const Databas
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Title(const DatabasePicture *p, size_t size, char title[])
+static void Title(const DatabasePicture *p, size_t size, char title[])
 {
-  char item[96];
+  size_t n = (size_t)snprintf(title, size, "%" PetscInt_FMT " record%s", p->n, p->n == 1 ? "" : "s");
 
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(title, size, "%" PetscInt_FMT " record%s", p->n, p->n == 1 ? "" : "s"));
-  if (p->failed) {
-    PetscCall(PetscSNPrintf(item, sizeof item, ",  %" PetscInt_FMT " without an answer (crosses)", p->failed));
-    PetscCall(PetscStrlcat(title, item, size));
-  }
-  if (p->outside) {
-    PetscCall(PetscSNPrintf(item, sizeof item, ",  %" PetscInt_FMT " without a strain (not drawn)", p->outside));
-    PetscCall(PetscStrlcat(title, item, size));
-  }
-  PetscFunctionReturn(0);
+  if (p->failed)
+    n += (size_t)snprintf(title + n, size - n, ",  %" PetscInt_FMT " without an answer (crosses)", p->failed);
+  if (p->outside) snprintf(title + n, size - n, ",  %" PetscInt_FMT " without a strain (not drawn)", p->outside);
 }
 
 /* The records as points. */
@@ -141,7 +133,7 @@ static PetscErrorCode PlotRecords(const LamPlotRequest *request, LamDatabase dat
              "--field %s: a database has stress and turgor", request->field);
   PetscCall(LoadDatabase(request, database, turgor, &picture));
   PetscCall(LamCanvasCreate(request->output, LAM_PLOT_WIDTH, LAM_PLOT_HEIGHT, &canvas));
-  PetscCall(Title(&picture, sizeof title, title));
+  Title(&picture, sizeof title, title);
   LamCanvasTitle(canvas, 9, 12, title);
   width = 0.5 * (LAM_PLOT_WIDTH - 18 - 10 - LamColourBarWidth(canvas, &picture.range));
   rect = (LamRect){9, 21, width, LAM_PLOT_HEIGHT - 27};

@@ -237,19 +237,17 @@ static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const FE2Pictur
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode DrawTitle(LamCanvas canvas, double x, const FE2Picture *p)
+static void DrawTitle(LamCanvas canvas, double x, const FE2Picture *p)
 {
   char title[256], factor[32];
 
-  PetscFunctionBeginUser;
   LamFormatRatio(p->reactions.load[p->row], factor);
   if (p->times.n)
     LamTimeTitle(&p->times, p->row, sizeof title, title);
   else
-    PetscCall(PetscSNPrintf(title, sizeof title, "Step %" PetscInt_FMT "%s:  load factor %s,  element means", p->step,
-                            p->step ? "" : " (inflated)", factor));
+    snprintf(title, sizeof title, "Step %" PetscInt_FMT "%s:  load factor %s,  element means", p->step,
+             p->step ? "" : " (inflated)", factor);
   LamCanvasTitle(canvas, x, 12, title);
-  PetscFunctionReturn(0);
 }
 
 /* Body and reactions side by side; with zooms the body and the zooms, and the reactions below. */
@@ -269,7 +267,7 @@ static PetscErrorCode DrawFE2(const char output[], FE2Picture *p)
     height = right.y + right.height + 4;
   }
   PetscCall(LamCanvasCreate(output, LAM_PLOT_WIDTH, height, &canvas));
-  PetscCall(DrawTitle(canvas, left.x, p));
+  DrawTitle(canvas, left.x, p);
   PetscCall(DrawPanel(canvas, left, p, &view));
   if (p->zooms.count) PetscCall(LamZoomsDraw(canvas, zooms, &view, &p->zooms));
   if (p->times.n)

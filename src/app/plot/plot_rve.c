@@ -2,6 +2,7 @@
   Picture of a file of RVE states: the deformed tissue at one state, and the stress-load curves of all.
 */
 #include "plot_tissue.h"
+#include <stdio.h>
 
 typedef struct {
   LamDatabase database; /* owned */
@@ -53,33 +54,25 @@ static PetscErrorCode LoadRVE(const LamPlotRequest *request, RVEPicture *p)
 }
 
 /* "State 5:  F = [1, 0.3; 0, 1],  p = 0.02 MPa" */
-static PetscErrorCode Title(const RVEPicture *p, size_t size, char title[])
+static void Title(const RVEPicture *p, size_t size, char title[])
 {
   const LamResponse *response = &p->of.records[p->index];
-  const PetscReal *F = response->load.F;
+  const PetscReal *F = response->load.F, MPa = p->of.scales.stress * 1e-6;
   const PetscBool plane = (PetscBool)(F[2] == 0 && F[5] == 0 && F[6] == 0 && F[7] == 0 && F[8] == 1);
   const int n = plane ? 2 : 3;
-  char number[32], item[96];
+  size_t at = (size_t)snprintf(title, size, "State %" PetscInt64_FMT ":  $F$ = [", p->of.keys[p->index]);
+  char number[32];
 
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(title, size, "State %" PetscInt64_FMT ":  $F$ = [", p->of.keys[p->index]));
-  for (int i = 0; i < n; i++) {
-    for (int j = 0; j < n; j++) {
-      LamFormatRatio(F[3 * i + j], number);
-      PetscCall(PetscSNPrintf(item, sizeof item, "%s%s", j ? ", " : i ? "; " : "", number));
-      PetscCall(PetscStrlcat(title, item, size));
-    }
+  for (int k = 0; k < n * n; k++) {
+    LamFormatRatio(F[3 * (k / n) + k % n], number);
+    at += (size_t)snprintf(title + at, size - at, "%s%s", k % n ? ", " : k ? "; " : "", number);
   }
-  LamFormatNumber(response->load.turgor * p->of.scales.stress * 1e-6, number);
-  PetscCall(PetscSNPrintf(item, sizeof item, "],  turgor $p$ = %s MPa", number));
-  PetscCall(PetscStrlcat(title, item, size));
-  if (p->of.micro.interface != LAM_INTERFACE_BONDED) {
-    LamFormatNumber(response->load.cohesion * p->of.scales.stress * 1e-6, number);
-    PetscCall(PetscSNPrintf(item, sizeof item, ",  cohesion $g$ = %s MPa", number));
-    PetscCall(PetscStrlcat(title, item, size));
-  }
-  if (response->status == LAM_UNSTABLE) PetscCall(PetscStrlcat(title, "  (unstable)", size));
-  PetscFunctionReturn(0);
+  LamFormatNumber(response->load.turgor * MPa, number);
+  at += (size_t)snprintf(title + at, size - at, "],  turgor $p$ = %s MPa", number);
+  LamFormatNumber(response->load.cohesion * MPa, number);
+  if (p->of.micro.interface != LAM_INTERFACE_BONDED)
+    at += (size_t)snprintf(title + at, size - at, ",  cohesion $g$ = %s MPa", number);
+  if (response->status == LAM_UNSTABLE) snprintf(title + at, size - at, "  (unstable)");
 }
 
 static const double KeyRow = 10;
@@ -136,7 +129,7 @@ PetscErrorCode LamPlotRVE(const LamPlotRequest *request)
   PetscFunctionBeginUser;
   PetscCall(LoadRVE(request, &picture));
   PetscCall(LamCanvasCreate(request->output, LAM_PLOT_WIDTH, LAM_PLOT_HEIGHT, &canvas));
-  PetscCall(Title(&picture, sizeof title, title));
+  Title(&picture, sizeof title, title);
   LamCanvasTitle(canvas, left.x, 12, title);
   PetscCall(DrawPanel(canvas, left, &picture));
   PetscCall(LamStressChart(canvas, right, picture.of.n, picture.of.records, picture.of.keys, &picture.of.scales));
