@@ -4,22 +4,38 @@
 #include "app.h"
 #include "rounding.h"
 #include "map.h"
+#include "names.h"
 #include "plot_time.h"
 #include <math.h>
-
-/* Why a process needs direct solves; NULL: a database can be used. */
-static const char *WhyNoDatabase(const LamScene *scene)
-{
-  return LamProcessWallsStayAlike(scene)
-             ? NULL
-             : "moduli of the walls do not change alike: solved directly, as a database would need them as an axis";
-}
 
 typedef struct {
   LamScene *scene;
   LamPlan plan;
+  LamPlan *regions; /* [region] of the body; owned */
   LamCost cost;
+  char digits[256];       /* warning of rounding errors; empty: none */
+  const char *why_direct; /* why a process needs direct solves; NULL: a database can be used */
 } Check;
+
+static PetscErrorCode Plan(const char path[], Check *check)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamSceneRead(path, &check->scene));
+  PetscCall(LamPlanMake(check->scene, &check->plan));
+  PetscCall(LamPlanCost(check->scene, &check->plan, &check->cost));
+  PetscCall(LamDigitsWarning(&check->plan.micro, check->scene->accuracy, check->digits, sizeof(check->digits)));
+  PetscCall(PetscMalloc1(check->scene->region_count, &check->regions));
+  for (PetscInt k = 0; k < check->scene->region_count; k++) {
+    LamScene own = *check->scene;
+
+    own.micro = own.regions[k].micro;
+    PetscCall(LamPlanMake(&own, &check->regions[k]));
+  }
+  if (!LamProcessWallsStayAlike(check->scene))
+    check->why_direct =
+        "moduli of the walls do not change alike: solved directly, as a database would need them as an axis";
+  PetscFunctionReturn(0);
+}
 
 /* ---- JSON output ---- */
 
@@ -44,50 +60,25 @@ static json_t *Spread(const LamCellSpread *spread, PetscReal MPa)
                    "cohesion", LamJSONReals(2, spread->cohesion, 1));
 }
 
-/* The plan of a region's tissue. */
-static PetscErrorCode PlanRegion(const LamScene *scene, const LamRegion *region, LamPlan *plan)
-{
-  LamScene own = *scene;
-
-  PetscFunctionBeginUser;
-  own.micro = region->micro;
-  PetscCall(LamPlanMake(&own, plan));
-  PetscFunctionReturn(0);
-}
-
 /* {name, apothem (um), wall_thickness (apothems), shear_modulus, turgor, cohesion (MPa), mesh, unknowns} of each */
-static PetscErrorCode Regions(const LamScene *scene, json_t **list)
+static json_t *Regions(const Check *check)
 {
-  PetscFunctionBeginUser;
-  *list = json_array();
-  for (PetscInt k = 0; k < scene->region_count; k++) {
-    const LamRegion *region = &scene->regions[k];
+  json_t *list = json_array();
+
+  for (PetscInt k = 0; k < check->scene->region_count; k++) {
+    const LamRegion *region = &check->scene->regions[k];
+    const LamPlan *plan = &check->regions[k];
     const PetscReal MPa = region->scales.stress * 1e-6;
-    LamPlan plan;
 
-    PetscCall(PlanRegion(scene, region, &plan));
-    json_array_append_new(*list,
-                          json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:{s:I, s:I}, s:I}", "name", region->name,
-                                    "apothem", LamJSONReal(1e6 * region->scales.length), "wall_thickness",
-                                    LamJSONReal(region->micro.wall_thickness), "shear_modulus", LamJSONReal(MPa),
-                                    "turgor", LamJSONReal(region->turgor * MPa), "cohesion",
-                                    LamJSONReal(region->cohesion * MPa), "mesh", "along", (json_int_t)plan.micro.along,
-                                    "through", (json_int_t)plan.micro.through, "unknowns", (json_int_t)plan.unknowns));
+    json_array_append_new(list, json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:{s:I, s:I}, s:I}", "name", region->name,
+                                          "apothem", LamJSONReal(1e6 * region->scales.length), "wall_thickness",
+                                          LamJSONReal(region->micro.wall_thickness), "shear_modulus", LamJSONReal(MPa),
+                                          "turgor", LamJSONReal(region->turgor * MPa), "cohesion",
+                                          LamJSONReal(region->cohesion * MPa), "mesh", "along",
+                                          (json_int_t)plan->micro.along, "through", (json_int_t)plan->micro.through,
+                                          "unknowns", (json_int_t)plan->unknowns));
   }
-  PetscFunctionReturn(0);
-}
-
-/* {tangent: bound of the relative rounding error, warning: null if the error is within the accuracy} */
-static PetscErrorCode SetDigits(const LamMicrostructure *micro, PetscReal accuracy, json_t *o)
-{
-  char text[256];
-
-  PetscFunctionBeginUser;
-  PetscCall(LamDigitsWarning(micro, accuracy, text, sizeof(text)));
-  json_object_set_new(
-      o, "rounding",
-      json_pack("{s:o, s:s?}", "tangent", LamJSONReal(LamTangentRounding(micro)), "warning", text[0] ? text : NULL));
-  PetscFunctionReturn(0);
+  return list;
 }
 
 static PetscErrorCode PrintObject(const Check *check)
@@ -96,7 +87,7 @@ static PetscErrorCode PrintObject(const Check *check)
   const LamScene *scene = check->scene;
   const LamMicrostructure *micro = &plan->micro;
   const PetscReal MPa = scene->scales.stress * 1e-6;
-  json_t *o, *regions;
+  json_t *o;
 
   PetscFunctionBeginUser;
   o = json_pack("{s:s, s:b, s:[I,I], s:s, s:s, s:o, s:b, s:o, s:o, s:I, s:o, s:o, s:o}", "scene", scene->path,
@@ -107,7 +98,9 @@ static PetscErrorCode PrintObject(const Check *check)
                 LamJSONReal(check->cost.assembly), "seconds_per_state", LamJSONReal(check->cost.state), "memory_mb",
                 LamJSONReal(check->cost.memory));
   PetscCheck(o, PETSC_COMM_SELF, PETSC_ERR_LIB, "the plan cannot be written as JSON");
-  PetscCall(SetDigits(micro, scene->accuracy, o));
+  json_object_set_new(o, "rounding", /* a bound of that of the tangent; a warning if it is beyond the accuracy */
+                      json_pack("{s:o, s:s?}", "tangent", LamJSONReal(LamTangentRounding(micro)), "warning",
+                                check->digits[0] ? check->digits : NULL));
   if (micro->is_patch)
     json_object_set_new(o, "patch",
                         json_pack("{s:I, s:I, s:s}", "columns", (json_int_t)micro->cells[0], "rows",
@@ -133,17 +126,14 @@ static PetscErrorCode PrintObject(const Check *check)
     json_object_set_new(o, "map", map);
   }
   if (scene->has_process)
-    json_object_set_new(o, "process",
-                        json_pack("{s:o, s:b}", "duration", LamJSONReal(scene->process.duration), "database",
-                                  (int)!WhyNoDatabase(scene)));
+    json_object_set_new(
+        o, "process",
+        json_pack("{s:o, s:b}", "duration", LamJSONReal(scene->process.duration), "database", !check->why_direct));
   if (scene->has_macro) {
     json_t *macro = Cost(json_integer(plan->macro_states), (PetscReal)plan->macro_states * check->cost.point);
 
     json_object_set_new(macro, "points", json_integer(plan->macro_points));
-    if (scene->region_count) {
-      PetscCall(Regions(scene, &regions));
-      json_object_set_new(macro, "regions", regions);
-    }
+    if (scene->region_count) json_object_set_new(macro, "regions", Regions(check));
     json_object_set_new(o, "macro", macro);
   }
   PetscCall(LamPrintJSON(o));
@@ -227,16 +217,6 @@ static void PrintModel(const Check *check)
     printf(" (as the scene says)\n");
 }
 
-static PetscErrorCode PrintDigits(const Check *check)
-{
-  char text[256];
-
-  PetscFunctionBeginUser;
-  PetscCall(LamDigitsWarning(&check->plan.micro, check->scene->accuracy, text, sizeof(text)));
-  if (text[0]) printf("%-12s %s\n", "rounding", text);
-  PetscFunctionReturn(0);
-}
-
 static void PrintStates(const char label[], PetscInt64 states, PetscReal seconds)
 {
   printf("%-12s %lld state%s, about ", label, (long long)states, states == 1 ? "" : "s");
@@ -244,65 +224,60 @@ static void PrintStates(const char label[], PetscInt64 states, PetscReal seconds
   putchar('\n');
 }
 
-static PetscErrorCode PrintRegions(const LamScene *scene)
+static void PrintRegions(const Check *check)
 {
-  PetscFunctionBeginUser;
+  const LamScene *scene = check->scene;
+  char fields[LAM_TISSUE_FIELD_COUNT * LAM_NAME_LENGTH] = "";
+
   for (PetscInt k = 0; k < scene->region_count; k++) {
     const LamRegion *region = &scene->regions[k];
+    const LamPlan *plan = &check->regions[k];
     const PetscReal MPa = region->scales.stress * 1e-6;
-    LamPlan plan;
 
-    PetscCall(PlanRegion(scene, region, &plan));
     printf("  %-10s wall %.4g of the apothem (%.4g um), C1 + C2 %.4g MPa, turgor %.4g MPa", region->name,
            (double)region->micro.wall_thickness, (double)(1e6 * region->scales.length), (double)MPa,
            (double)(region->turgor * MPa));
     if (region->micro.interface == LAM_INTERFACE_CONTACT)
       printf(", cohesion %.4g MPa", (double)(region->cohesion * MPa));
-    printf("; %" PetscInt_FMT " x %" PetscInt_FMT " elements, %" PetscInt_FMT " unknowns\n", plan.micro.along,
-           plan.micro.through, plan.unknowns);
+    printf("; %" PetscInt_FMT " x %" PetscInt_FMT " elements, %" PetscInt_FMT " unknowns\n", plan->micro.along,
+           plan->micro.through, plan->unknowns);
   }
-  for (int f = 0, told = 0; f < LAM_TISSUE_FIELD_COUNT; f++) {
-    if (scene->fields.value[f]) printf("%s%s", told++ ? ", " : "  fields     ", LamTissueFieldNames[f]);
-    if (told && f == LAM_TISSUE_FIELD_COUNT - 1) printf(" by position\n");
-  }
-  PetscFunctionReturn(0);
+  for (int f = 0; f < LAM_TISSUE_FIELD_COUNT; f++)
+    if (scene->fields.value[f]) LamNamesAppend(sizeof(fields), fields, ", ", LamTissueFieldNames[f]);
+  if (fields[0]) printf("  fields     %s by position\n", fields);
 }
 
-static PetscErrorCode PrintMacro(const Check *check)
+static void PrintMacro(const Check *check)
 {
   const LamPlan *plan = &check->plan;
   const LamMacroSpec *macro = &check->scene->macro;
 
-  PetscFunctionBeginUser;
   printf("%-12s ", "fe2");
   if (macro->source == LAM_MESH_GMSH)
     printf("elements of %s", macro->gmsh);
   else
     printf("%" PetscInt_FMT " elements, %" PetscInt_FMT " material points", plan->macro_elements, plan->macro_points);
   printf(", %" PetscInt_FMT " load steps%s\n", macro->steps, macro->inflate ? " after inflation" : "");
-  PetscCall(PrintRegions(check->scene));
+  PrintRegions(check);
   if (plan->macro_states)
     PrintStates("  direct", plan->macro_states, (PetscReal)plan->macro_states * check->cost.point);
-  PetscFunctionReturn(0);
 }
 
-static void PrintProcess(const LamScene *scene)
+static void PrintProcess(const Check *check)
 {
   PetscReal seconds;
-  const char *unit = LamTimeUnit(scene->process.duration, &seconds);
+  const char *unit = LamTimeUnit(check->scene->process.duration, &seconds);
 
-  const char *why = WhyNoDatabase(scene);
-
-  printf("%-12s %.4g %s%s; %s\n", "process", (double)(scene->process.duration / seconds), unit,
-         scene->has_macro ? ", of the body" : "", why ? why : "one database serves at all times");
+  printf("%-12s %.4g %s%s; %s\n", "process", (double)(check->scene->process.duration / seconds), unit,
+         check->scene->has_macro ? ", of the body" : "",
+         check->why_direct ? check->why_direct : "one database serves at all times");
 }
 
-static PetscErrorCode PrintCost(const Check *check)
+static void PrintCost(const Check *check)
 {
   const LamPlan *plan = &check->plan;
   const LamScene *scene = check->scene;
 
-  PetscFunctionBeginUser;
   printf("%-12s %" PetscInt_FMT "; one state about ", "unknowns", plan->unknowns);
   PrintSeconds(check->cost.state);
   printf("\n%-12s about %.0f MB per rank\n", "memory", (double)check->cost.memory);
@@ -316,9 +291,8 @@ static PetscErrorCode PrintCost(const Check *check)
            LamMapPathCount(scene));
     PrintStates("  paths", plan->map_states, check->cost.map);
   }
-  if (scene->has_process) PrintProcess(scene);
-  if (scene->has_macro) PetscCall(PrintMacro(check));
-  PetscFunctionReturn(0);
+  if (scene->has_process) PrintProcess(check);
+  if (scene->has_macro) PrintMacro(check);
 }
 
 PetscErrorCode LamCommandCheck(LamArgs *args, int *exit_status)
@@ -336,16 +310,15 @@ PetscErrorCode LamCommandCheck(LamArgs *args, int *exit_status)
                             "Reads and checks a scene; prints what will be modelled and its predicted cost.", options,
                             1, &path, &done, exit_status));
   if (done) PetscFunctionReturn(0);
-  PetscCall(LamSceneRead(path, &check.scene));
-  PetscCall(LamPlanMake(check.scene, &check.plan));
-  PetscCall(LamPlanCost(check.scene, &check.plan, &check.cost));
+  PetscCall(Plan(path, &check));
   if (json) {
     PetscCall(PrintObject(&check));
   } else {
     PrintModel(&check);
-    PetscCall(PrintDigits(&check));
-    PetscCall(PrintCost(&check));
+    if (check.digits[0]) printf("%-12s %s\n", "rounding", check.digits);
+    PrintCost(&check);
   }
+  PetscCall(PetscFree(check.regions));
   PetscCall(LamSceneDestroy(&check.scene));
   PetscFunctionReturn(0);
 }

@@ -3,6 +3,7 @@
 */
 #include "app.h"
 #include "fe2_summary.h"
+#include "plot_map.h"
 #include <math.h>
 #include <string.h>
 
@@ -23,15 +24,15 @@ static void PrintRange(const char label[], const json_t *range, const char unit[
          json_number_value(json_array_get(range, 1)), unit);
 }
 
-static void PrintStatuses(const json_t *statuses)
+/* One line for each member: statuses, modes. */
+static void PrintCounts(const json_t *counts)
 {
+  char label[64];
   const char *name;
   json_t *count;
 
-  json_object_foreach((json_t *)statuses, name, count)
+  json_object_foreach((json_t *)counts, name, count)
   {
-    char label[64];
-
     snprintf(label, sizeof(label), "  %s", name);
     PrintInteger(label, count);
   }
@@ -83,8 +84,6 @@ static void PrintRun(const json_t *run)
 static void PrintMap(const json_t *map)
 {
   const char *const letters[] = {"x", "y"};
-  const char *mode;
-  json_t *count;
 
   if (!map) return;
   for (size_t a = 0; a < PETSC_STATIC_ARRAY_LENGTH(letters); a++) {
@@ -96,13 +95,7 @@ static void PrintMap(const json_t *map)
            json_number_value(json_object_get(axis, "to")), strcmp(unit, "1") ? " " : "", strcmp(unit, "1") ? unit : "",
            (long long)json_integer_value(json_object_get(axis, "points")));
   }
-  json_object_foreach(json_object_get(map, "modes"), mode, count)
-  {
-    char label[64];
-
-    snprintf(label, sizeof(label), "  %s", mode);
-    PrintInteger(label, count);
-  }
+  PrintCounts(json_object_get(map, "modes"));
 }
 
 /* Prints integers on one line: one per level, coarsest first. */
@@ -175,7 +168,7 @@ static void PrintTable(const json_t *info)
   PrintMap(json_object_get(info, "map"));
   PrintInteger("records", json_object_get(info, "records"));
   PrintInteger("failed", json_object_get(info, "failed"));
-  PrintStatuses(json_object_get(info, "statuses"));
+  PrintCounts(json_object_get(info, "statuses"));
   PrintRange("strain (principal)", json_object_get(coverage, "principal_log_strain"), "");
   PrintRange("turgor", json_object_get(coverage, "turgor"), " MPa");
   PrintRange("cohesion", json_object_get(coverage, "cohesion"), " MPa");
@@ -221,70 +214,29 @@ static PetscErrorCode ReadRun(const char path[], json_t *info)
 
 /* ---- the axes and modes of a map ---- */
 
-static PetscErrorCode ReadAxis(const char path[], char letter, json_t *map)
+static json_t *AxisToJSON(const LamMapSide *side)
 {
-  PetscInt rank, dims[4] = {0};
-  PetscReal *values = NULL;
-  PetscBool found, has_quantity, has_unit;
-  char name[LAM_NAME_LENGTH], *quantity = NULL, *unit = NULL;
-  json_t *axis = json_object();
-
-  PetscFunctionBeginUser;
-  snprintf(name, sizeof(name), "%c", letter);
-  json_object_set_new(map, name, axis);
-  snprintf(name, sizeof(name), "/map/%c/quantity", letter);
-  PetscCall(LamFileReadText(path, name, &has_quantity, &quantity));
-  snprintf(name, sizeof(name), "/map/%c/unit", letter);
-  PetscCall(LamFileReadText(path, name, &has_unit, &unit));
-  snprintf(name, sizeof(name), "/map/%c/values", letter);
-  PetscCall(LamFileReadReals(path, name, &found, &rank, dims, &values));
-  PetscCheck(has_quantity && has_unit && found && rank == 1 && dims[0] > 1, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: the axis %c of the map is missing; the file is damaged", path, letter);
-  json_object_set_new(axis, "quantity", LamJSONText(quantity));
-  json_object_set_new(axis, "unit", LamJSONText(unit));
-  json_object_set_new(axis, "from", LamJSONReal(values[0]));
-  json_object_set_new(axis, "to", LamJSONReal(values[dims[0] - 1]));
-  json_object_set_new(axis, "points", json_integer((json_int_t)dims[0]));
-  PetscCall(PetscFree(quantity));
-  PetscCall(PetscFree(unit));
-  PetscCall(PetscFree(values));
-  PetscFunctionReturn(0);
-}
-
-/* Number of points of each mode. */
-static PetscErrorCode ReadModes(const char path[], json_t *map)
-{
-  PetscInt rank, dims[4] = {0}, *mode = NULL, number = 0;
-  PetscBool found, named;
-  char *names = NULL, *rest = NULL;
-  json_t *modes = json_object();
-
-  PetscFunctionBeginUser;
-  json_object_set_new(map, "modes", modes);
-  PetscCall(LamFileReadText(path, "/map/modes", &named, &names));
-  PetscCall(LamFileReadInts(path, "/map/mode", &found, &rank, dims, &mode));
-  PetscCheck(named && found && rank == 2, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: the modes of the map are missing; the file is damaged", path);
-  for (char *name = strtok_r(names, "\n", &rest); name; name = strtok_r(NULL, "\n", &rest), number++) {
-    PetscInt count = 0;
-
-    for (PetscInt i = 0; i < dims[0] * dims[1]; i++) count += mode[i] == number;
-    if (count) json_object_set_new(modes, name, json_integer((json_int_t)count));
-  }
-  PetscCall(PetscFree(names));
-  PetscCall(PetscFree(mode));
-  PetscFunctionReturn(0);
+  return json_pack("{s:o, s:o, s:o, s:o, s:I}", "quantity", LamJSONText(side->quantity), "unit",
+                   LamJSONText(side->unit), "from", LamJSONReal(side->from), "to", LamJSONReal(side->to), "points",
+                   (json_int_t)side->n);
 }
 
 static PetscErrorCode ReadMap(const char path[], json_t *info)
 {
-  json_t *map = json_object();
+  json_t *modes = json_object();
+  LamMapPicture map;
 
   PetscFunctionBeginUser;
-  json_object_set_new(info, "map", map);
-  PetscCall(ReadAxis(path, 'x', map));
-  PetscCall(ReadAxis(path, 'y', map));
-  PetscCall(ReadModes(path, map));
+  PetscCall(LamMapRead(path, &map));
+  for (PetscInt k = 0; k < LAM_FAILURE_MODE_COUNT; k++) {
+    PetscInt count = 0;
+
+    for (PetscInt i = 0; i < map.n; i++) count += map.mode[i] == k;
+    if (count) json_object_set_new(modes, LamFailureModeNames[k], json_integer((json_int_t)count));
+  }
+  json_object_set_new(info, "map",
+                      json_pack("{s:o, s:o, s:o}", "x", AxisToJSON(&map.x), "y", AxisToJSON(&map.y), "modes", modes));
+  PetscCall(LamMapPictureDestroy(&map));
   PetscFunctionReturn(0);
 }
 

@@ -10,6 +10,7 @@
 /* One axis: positions of its points and of the edges of their cells, as logarithms if the spacing is logarithmic. */
 typedef struct {
   PetscInt n;
+  PetscReal from, to;   /* the first and last value */
   PetscReal *at, *edge; /* [n], [n + 1]; owned */
   PetscBool is_log;
   char quantity[LAM_NAME_LENGTH], unit[LAM_NAME_LENGTH], label[192];
@@ -27,6 +28,7 @@ typedef struct {
 } LamMapPicture;
 
 /* ---- plot_map_read.c: PETSC_ERR_USER_INPUT if the file lacks data or the request does not fit ---- */
+PetscErrorCode LamMapRead(const char path[], LamMapPicture *picture); /* axes and modes alone */
 PetscErrorCode LamMapPictureRead(const LamPlotRequest *request, LamMapPicture *picture);
 PetscErrorCode LamMapPictureDestroy(LamMapPicture *picture);
 

@@ -59,9 +59,11 @@ static PetscErrorCode ReadSide(const char path[], char letter, LamMapSide *side)
   PetscCall(ReadText(path, letter, "spacing", spacing));
   snprintf(name, sizeof name, "/map/%c/values", letter);
   PetscCall(LamFileReadReals(path, name, &found, &rank, dims, &side->at));
-  PetscCheck(found && rank == 1 && dims[0] > 1, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no %s to draw", path,
-             name);
+  PetscCheck(found && rank == 1 && dims[0] > 1, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: holds no %s; it is damaged, or older than this program", path, name);
   side->n = dims[0];
+  side->from = side->at[0];
+  side->to = side->at[side->n - 1];
   side->is_log = (PetscBool)!strcmp(spacing, "log");
   PetscCall(PetscMalloc1(side->n + 1, &side->edge));
   for (PetscInt i = 0; i < side->n && side->is_log; i++) side->at[i] = log10(side->at[i]);
@@ -154,14 +156,21 @@ static PetscErrorCode ReadField(const LamPlotRequest *request, LamMapPicture *p)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamMapRead(const char path[], LamMapPicture *p)
+{
+  PetscFunctionBeginUser;
+  *p = (LamMapPicture){.n = 0};
+  PetscCall(ReadSide(path, 'x', &p->x));
+  PetscCall(ReadSide(path, 'y', &p->y));
+  p->n = p->x.n * p->y.n;
+  PetscCall(ReadModes(path, p));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamMapPictureRead(const LamPlotRequest *request, LamMapPicture *p)
 {
   PetscFunctionBeginUser;
-  memset(p, 0, sizeof *p);
-  PetscCall(ReadSide(request->input, 'x', &p->x));
-  PetscCall(ReadSide(request->input, 'y', &p->y));
-  p->n = p->x.n * p->y.n;
-  PetscCall(ReadModes(request->input, p));
+  PetscCall(LamMapRead(request->input, p));
   PetscCall(LamPlotReadReals(request->input, "/map/load_factor", p->y.n, p->x.n, &p->load_factor));
   PetscCall(ReadField(request, p));
   PetscFunctionReturn(0);

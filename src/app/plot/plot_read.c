@@ -10,7 +10,8 @@ static PetscErrorCode Check(const char path[], const char name[], PetscBool foun
   PetscInt size = 1;
 
   PetscFunctionBeginUser;
-  PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no %s to draw", path, name);
+  PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no %s; it is damaged, or older than this program",
+             path, name);
   for (PetscInt i = 1; i < rank; i++) size *= dims[i];
   PetscCheck(rank > 0 && dims[0] > 0 && size == columns && (rows < 0 || dims[0] == rows), PETSC_COMM_SELF,
              PETSC_ERR_USER_INPUT,
@@ -59,7 +60,8 @@ PetscErrorCode LamPlotReadText(const char path[], const char name[], char **text
 
   PetscFunctionBeginUser;
   PetscCall(LamFileReadText(path, name, &found, text));
-  PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no %s to draw", path, name);
+  PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no %s; it is damaged, or older than this program",
+             path, name);
   PetscFunctionReturn(0);
 }
 
