@@ -5,6 +5,7 @@
 #ifndef LAM_APP_H
 #define LAM_APP_H
 
+#include "failure.h"
 #include "plan.h"
 #include "study.h"
 #include "tradeoff.h"
@@ -54,8 +55,6 @@ PetscErrorCode LamProgramRun(int argc, char *argv[], PetscErrorCode (*start)(Lam
 PetscErrorCode LamRuntimeBegin(void);
 /* Call last: reports the error `code`, once among all ranks; *status is the exit status. */
 void LamRuntimeEnd(PetscErrorCode code, int *status);
-/* Before LamRuntimeStart. */
-void LamAppStartHDF5(void);
 /* Whether the command may run under mpirun; before it starts MPI. The launcher provides the ranks. */
 void LamRuntimeExpectRanks(PetscBool expect);
 /* `start` of LamArgs; LamRuntimeEnd finalises. */
@@ -119,6 +118,16 @@ PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales 
 
 /* A number in a column of a table, with the notation 'e', 'f' or 'g' of printf; "-" if not known. */
 void LamPrintColumn(int width, int decimals, char notation, PetscReal value);
+
+/* ---- failure_print.c ---- */
+/* Prints one line: stresses of walls and lamella in a state, relative to their strengths if these are given. */
+void LamFailurePrintState(const LamResponse *response, const LamStrength *strength, const LamScales *scales);
+/* {"cell": 0, "face": 0, "along": 0.06}; null if there is no place. */
+json_t *LamPlaceToJSON(const PetscReal place[3]);
+/* Prints one JSON object {"failure": {...}} or a few human-readable lines on stdout. */
+PetscErrorCode LamFailurePrint(const LamFailure *failure, const LamScales *scales, PetscBool json);
+/* Prints one JSON object {"onset": {...}} or a few human-readable lines on stdout. */
+PetscErrorCode LamOnsetPrint(const LamOnset *onset, const LamScales *scales, PetscBool json);
 
 /* ---- tradeoff_plot.c ---- */
 /* Draws the diagram; the ending of `path` selects the format. */

@@ -1,7 +1,7 @@
 /*
   lamella map: how tissue fails as a function of two of its quantities.
 */
-#include "failure_print.h"
+#include "app.h"
 #include "map.h"
 #include "clock.h"
 #include <string.h>

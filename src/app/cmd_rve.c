@@ -5,7 +5,6 @@
   to factor the matrices of large RVEs, otherwise they wait.
 */
 #include "app.h"
-#include "failure_print.h"
 #include "rve_run.h"
 #include "clock.h"
 #include <math.h>

@@ -4,7 +4,6 @@
 */
 #include "app.h"
 #include "failure_criteria.h"
-#include "failure_print.h"
 
 #define NO_SHEAR 1e-9 /* C1 + C2: rounding */
 

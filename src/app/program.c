@@ -80,7 +80,6 @@ static PetscErrorCode RunCommand(LamArgs *args, int *status)
   for (int i = 0; i < COMMAND_COUNT; i++) {
     if (strcmp(args->argv[0], Commands[i].name)) continue;
     LamRuntimeExpectRanks(Commands[i].solves);
-    LamAppStartHDF5();
     PetscCall(Commands[i].run(args, status));
     PetscFunctionReturn(0);
   }

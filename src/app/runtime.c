@@ -106,16 +106,6 @@ PetscBool LamAppIsRoot(void)
 }
 
 /*
-  HDF5 crashes in its cleanup after a file that could not be written. The cleanup would run at exit, and in MPI_Finalize
-  if MPI is running when HDF5 is initialised.
-*/
-void LamAppStartHDF5(void)
-{
-  H5dont_atexit();
-  H5open();
-}
-
-/*
   Without a launcher there are no other ranks. Open MPI then need not start a daemon or search for networks, which takes
   longer than many solves.
 */
@@ -237,6 +227,10 @@ PetscErrorCode LamRuntimeBegin(void)
   FillStreams();
   UseOneThread();
   LamFaultsTell();
+  /* HDF5 crashes in its cleanup after a file that could not be written. The cleanup would run at exit, and in
+     MPI_Finalize if MPI is running when HDF5 is initialised. */
+  H5dont_atexit();
+  H5open();
   signal(SIGPIPE, SIG_IGN); /* a closed pipe is reported as a write error */
   signal(SIGXFSZ, SIG_IGN); /* so is a file that exceeds the size limit */
   return LamErrorsKeep();

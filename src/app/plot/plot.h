@@ -207,7 +207,11 @@ typedef struct {
 /* Fits the box {xmin, ymin, xmax, ymax} into the frame, centred, with equal scales. */
 void LamViewFit(LamRect frame, const PetscReal box[4], LamView *view);
 void LamViewPoint(const LamView *view, PetscReal x, PetscReal y, double point[2]);
-void LamBoxEmpty(PetscReal box[4]);
+#define LAM_EMPTY_BOX                                                                                                  \
+  {                                                                                                                    \
+    PETSC_MAX_REAL, PETSC_MAX_REAL, -PETSC_MAX_REAL, -PETSC_MAX_REAL                                                   \
+  }
+/* shift: of the points; NULL: none. */
 void LamBoxExtend(PetscReal box[4], PetscInt n, const PetscReal points[], const PetscReal shift[2]);
 void LamBoxWiden(PetscReal box[4], PetscReal margin);
 /* Whether the box, moved by `shift`, is visible in the view. */
@@ -280,7 +284,7 @@ PetscErrorCode LamOutlineDestroy(LamOutline *outline);
 /* Signed area inside loop `loop` at positions x: negative for holes (lumens). */
 PetscReal LamOutlineLoopArea(const LamOutline *outline, PetscInt loop, const PetscReal x[]);
 /* Adds one curved edge (joined: continues from the current point), a loop, or the edges between elements to the
-   current path; x: positions of the nodes. */
+   current path; x: positions of the nodes; shift: NULL for none. */
 void LamOutlineEdgePath(LamCanvas canvas, const LamView *view, const LamEdge *edge, const PetscReal x[],
                         const PetscReal shift[2], PetscBool joined);
 void LamOutlineLoopPath(LamCanvas canvas, const LamView *view, const LamOutline *outline, PetscInt loop,

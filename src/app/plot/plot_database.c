@@ -13,7 +13,8 @@ static const LamColour Failure = {0.80, 0.15, 0.05};
 
 typedef struct {
   PetscInt n, failed, outside; /* number of records, of those not converged, of those without a finite strain */
-  PetscReal (*strain)[2];      /* e1 >= e2; owned */
+  PetscReal (*shape)[2];       /* m, r; owned */
+  PetscReal (*principal)[2];   /* e1 >= e2; owned */
   PetscReal *value;            /* NaN: not converged; owned */
   LamColourRange range;
 } DatabasePicture;
@@ -28,80 +29,64 @@ static PetscErrorCode LoadDatabase(const LamPlotRequest *request, LamDatabase da
   PetscCall(LamPlotGetRecords(database, &of));
   PetscCheck(of.n > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no records to draw", request->input);
   p->n = of.n;
-  PetscCall(PetscMalloc1(p->n, &p->strain));
+  PetscCall(PetscMalloc1(p->n, &p->shape));
+  PetscCall(PetscMalloc1(p->n, &p->principal));
   PetscCall(PetscMalloc1(p->n, &p->value));
   for (PetscInt i = 0; i < p->n; i++) {
     const LamResponse *record = &of.records[i];
-    PetscReal angle;
+    PetscReal angle, *e = p->principal[i];
 
-    LamPrincipalStrains(record->load.F, p->strain[i], &angle);
+    LamPrincipalStrains(record->load.F, e, &angle);
+    p->shape[i][0] = 0.5 * (e[0] + e[1]);
+    p->shape[i][1] = 0.5 * (e[0] - e[1]);
     p->value[i] = (turgor ? record->load.turgor : LamStressNorm(record->P)) * of.scales.stress * 1e-6;
     if (!LamResponseHasFields(record)) {
       p->value[i] = NAN;
       p->failed++;
     }
-    if (PetscIsInfOrNanReal(p->strain[i][0]) || PetscIsInfOrNanReal(p->strain[i][1])) p->outside++;
+    if (!isfinite(e[0]) || !isfinite(e[1])) p->outside++;
   }
   PetscCall(LamColourRangeFind(p->n, p->value, &p->range));
   PetscFunctionReturn(0);
 }
 
-typedef void (*Projection)(const PetscReal strain[2], PetscReal point[2]);
-static void ToVolumeAndShape(const PetscReal strain[2], PetscReal point[2])
-{
-  point[0] = 0.5 * (strain[0] + strain[1]);
-  point[1] = 0.5 * (strain[0] - strain[1]);
-}
-static void ToPrincipal(const PetscReal strain[2], PetscReal point[2])
-{
-  point[0] = strain[0];
-  point[1] = strain[1];
-}
-
 /* In the order of the records, failures last, so that none is hidden. */
-static void DrawMarkers(LamCanvas canvas, const LamAxes *axes, const DatabasePicture *p, Projection project)
+static void DrawMarkers(LamCanvas canvas, const LamAxes *axes, const DatabasePicture *p, PetscReal (*const at)[2])
 {
   cairo_t *cr = LamCanvasCairo(canvas);
   const double size = p->n > 3000 ? 1.6 : p->n > 300 ? 2.6 : 4;
-  PetscReal point[2];
 
   for (int failures = 0; failures < 2; failures++) {
     for (PetscInt i = 0; i < p->n; i++) {
+      const double x = LamAxesX(axes, at[i][0]), y = LamAxesY(axes, at[i][1]);
       const PetscBool failed = PetscIsNanReal(p->value[i]);
 
-      project(p->strain[i], point);
-      if ((int)failed != failures || PetscIsInfOrNanReal(point[0]) || PetscIsInfOrNanReal(point[1])) continue;
+      if ((int)failed != failures || !isfinite(x) || !isfinite(y)) continue;
       if (failed) {
         LamCanvasSetColour(canvas, Failure);
-        LamCanvasMarker(canvas, LamAxesX(axes, point[0]), LamAxesY(axes, point[1]), size, LAM_MARKER_CROSS,
-                        PETSC_FALSE);
-        continue;
+        LamCanvasMarker(canvas, x, y, size, LAM_MARKER_CROSS, PETSC_FALSE);
+      } else {
+        cairo_arc(cr, x, y, 0.5 * size, 0, 2 * M_PI);
+        LamCanvasFill(canvas, LamColourMap(LamColourShare(&p->range, p->value[i])));
       }
-      LamCanvasSetColour(canvas, LamColourMap(LamColourShare(&p->range, p->value[i])));
-      cairo_arc(cr, LamAxesX(axes, point[0]), LamAxesY(axes, point[1]), 0.5 * size, 0, 2 * M_PI);
-      cairo_fill(cr);
     }
   }
 }
 
-static PetscErrorCode DrawScatter(LamCanvas canvas, LamRect outer, const DatabasePicture *p, LamAxes *axes,
-                                  Projection project)
+static PetscErrorCode DrawScatter(LamCanvas canvas, LamRect outer, const DatabasePicture *p, PetscReal (*const at)[2],
+                                  LamAxes *axes)
 {
   const PetscBool many = (PetscBool)(p->n > 1500);
-  PetscReal point[2];
 
   PetscFunctionBeginUser;
   LamAxesEmpty(axes);
-  for (PetscInt i = 0; i < p->n; i++) {
-    project(p->strain[i], point);
-    LamAxesExtend(axes, point[0], point[1]);
-  }
+  for (PetscInt i = 0; i < p->n; i++) LamAxesExtend(axes, at[i][0], at[i][1]);
   LamAxisPad(&axes->x);
   LamAxisPad(&axes->y);
   LamAxesLayout(canvas, outer, axes);
   LamAxesDraw(canvas, axes);
   if (many) PetscCall(LamCanvasBeginImage(canvas, axes->frame));
-  DrawMarkers(canvas, axes, p, project);
+  DrawMarkers(canvas, axes, p, at);
   if (many) LamCanvasEndImage(canvas);
   PetscFunctionReturn(0);
 }
@@ -137,12 +122,13 @@ static PetscErrorCode PlotRecords(const LamPlotRequest *request, LamDatabase dat
   LamCanvasTitle(canvas, 9, 12, title);
   width = 0.5 * (LAM_PLOT_WIDTH - 18 - 10 - LamColourBarWidth(canvas, &picture.range));
   rect = (LamRect){9, 21, width, LAM_PLOT_HEIGHT - 27};
-  PetscCall(DrawScatter(canvas, rect, &picture, &shape, ToVolumeAndShape));
+  PetscCall(DrawScatter(canvas, rect, &picture, picture.shape, &shape));
   rect.x += width + 10;
-  PetscCall(DrawScatter(canvas, rect, &picture, &principal, ToPrincipal));
+  PetscCall(DrawScatter(canvas, rect, &picture, picture.principal, &principal));
   LamColourBar(canvas, principal.frame, &picture.range, LamColourMap, turgor ? "turgor $p$" : "‖$P$‖", "MPa");
   PetscCall(LamCanvasFinish(&canvas));
-  PetscCall(PetscFree(picture.strain));
+  PetscCall(PetscFree(picture.shape));
+  PetscCall(PetscFree(picture.principal));
   PetscCall(PetscFree(picture.value));
   PetscFunctionReturn(0);
 }

@@ -188,7 +188,6 @@ static PetscErrorCode UnloadFE2(FE2Picture *p)
 
 static PetscErrorCode DrawBody(LamCanvas canvas, const LamView *view, const FE2Picture *p, const LamColourRange *range)
 {
-  const PetscReal none[2] = {0, 0};
   const LamImage image = {{0, 0}, 0};
   const LamField field = {p->element_count, p->x, p->elements, p->values, PETSC_TRUE};
   const double per_element = sqrt(view->frame.width * view->frame.height / p->element_count); /* points */
@@ -198,9 +197,9 @@ static PetscErrorCode DrawBody(LamCanvas canvas, const LamView *view, const FE2P
   /* grid lines of a finer mesh would hide the field */
   if (per_element > 4) LamOutlineInnerPath(canvas, view, &p->outline, p->x);
   LamCanvasStroke(canvas, LamDarkInk, 0.3, NULL);
-  for (PetscInt k = 0; k < p->outline.loop_count; k++) LamOutlineLoopPath(canvas, view, &p->outline, k, p->x, none);
+  for (PetscInt k = 0; k < p->outline.loop_count; k++) LamOutlineLoopPath(canvas, view, &p->outline, k, p->x, NULL);
   LamCanvasStroke(canvas, LamDarkInk, 0.9, NULL);
-  for (PetscInt k = 0; k < p->outline.loop_count; k++) LamOutlineLoopPath(canvas, view, &p->outline, k, p->nodes, none);
+  for (PetscInt k = 0; k < p->outline.loop_count; k++) LamOutlineLoopPath(canvas, view, &p->outline, k, p->nodes, NULL);
   LamStrokeUndeformed(canvas);
   PetscFunctionReturn(0);
 }
@@ -209,9 +208,8 @@ static PetscErrorCode DrawBody(LamCanvas canvas, const LamView *view, const FE2P
    left, so that it does not cross the lines to them. */
 static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const FE2Picture *p, LamView *view)
 {
-  const PetscReal none[2] = {0, 0};
   double y, bar_width;
-  PetscReal box[4];
+  PetscReal box[4] = LAM_EMPTY_BOX;
   LamRect bar;
   LamColourRange range;
 
@@ -225,9 +223,8 @@ static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const FE2Pictur
     bar.x -= 6;
     outer.x += bar_width;
   }
-  LamBoxEmpty(box);
-  LamBoxExtend(box, p->node_count, p->x, none);
-  LamBoxExtend(box, p->node_count, p->nodes, none);
+  LamBoxExtend(box, p->node_count, p->x, NULL);
+  LamBoxExtend(box, p->node_count, p->nodes, NULL);
   LamViewFit(outer, box, view);
   PetscCall(DrawBody(canvas, view, p, &range));
   LamColourBar(canvas, bar, &range, LamColourMap, p->field->label, p->field->unit);
@@ -290,18 +287,16 @@ typedef struct {
 /* The same window and colours in `count` frames. */
 static PetscErrorCode FindFrame(PetscInt count, Film *film)
 {
-  const PetscReal none[2] = {0, 0};
   FE2Picture *p = film->picture;
   PetscReal *values;
 
   PetscFunctionBeginUser;
-  film->frame = (LamFrame){.label = p->field->label, .unit = p->field->unit};
-  LamBoxEmpty(film->frame.box);
-  LamBoxExtend(film->frame.box, p->node_count, p->nodes, none);
+  film->frame = (LamFrame){.box = LAM_EMPTY_BOX, .label = p->field->label, .unit = p->field->unit};
+  LamBoxExtend(film->frame.box, p->node_count, p->nodes, NULL);
   PetscCall(PetscMalloc1(count * p->element_count, &values));
   for (PetscInt k = 0; k < count; k++) {
     PetscCall(LoadStep(film->path, film->first + k, p));
-    LamBoxExtend(film->frame.box, p->node_count, p->x, none);
+    LamBoxExtend(film->frame.box, p->node_count, p->x, NULL);
     PetscCall(PetscArraycpy(&values[k * p->element_count], p->values, p->element_count));
   }
   PetscCall(LamColourRangeFind(count * p->element_count, values, &film->frame.range));

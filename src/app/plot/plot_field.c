@@ -26,18 +26,14 @@ void LamViewPoint(const LamView *view, PetscReal x, PetscReal y, double point[2]
   point[1] = view->frame.y + view->frame.height - (y - view->origin[1]) * view->scale;
 }
 
-void LamBoxEmpty(PetscReal box[4])
-{
-  box[0] = box[1] = PETSC_MAX_REAL;
-  box[2] = box[3] = -PETSC_MAX_REAL;
-}
-
 void LamBoxExtend(PetscReal box[4], PetscInt n, const PetscReal points[], const PetscReal shift[2])
 {
   for (PetscInt i = 0; i < n; i++) {
     for (int k = 0; k < 2; k++) {
-      box[k] = PetscMin(box[k], points[2 * i + k] + shift[k]);
-      box[2 + k] = PetscMax(box[2 + k], points[2 * i + k] + shift[k]);
+      const PetscReal x = points[2 * i + k] + (shift ? shift[k] : 0);
+
+      box[k] = PetscMin(box[k], x);
+      box[2 + k] = PetscMax(box[2 + k], x);
     }
   }
 }
@@ -168,15 +164,13 @@ static Vertex ElementVertex(const LamField *field, const LamColourRange *range, 
    for all elements, so that neighbours share the same points. */
 static int FieldCuts(const LamField *field, const LamView *view, double dots)
 {
-  const PetscReal zero[2] = {0, 0};
   PetscReal largest = 0;
 
   for (PetscInt e = 0; e < field->element_count; e++) {
-    PetscReal box[4];
+    PetscReal box[4] = LAM_EMPTY_BOX;
 
-    LamBoxEmpty(box);
     for (int i = 0; i < LamElementNodes(&field->elements[9 * e]); i++)
-      LamBoxExtend(box, 1, &field->x[2 * field->elements[9 * e + i]], zero);
+      LamBoxExtend(box, 1, &field->x[2 * field->elements[9 * e + i]], NULL);
     largest = PetscMax(largest, PetscMax(box[2] - box[0], box[3] - box[1]));
   }
   return (int)PetscClipInterval(largest * view->scale * dots / 4, 1.0, (double)MAX_CUTS);

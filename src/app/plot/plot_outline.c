@@ -126,11 +126,12 @@ void LamOutlineEdgePath(LamCanvas canvas, const LamView *view, const LamEdge *ed
                         const PetscReal shift[2], PetscBool joined)
 {
   cairo_t *cr = LamCanvasCairo(canvas);
+  const PetscReal dx = shift ? shift[0] : 0, dy = shift ? shift[1] : 0;
   double a[2], m[2], b[2], p[2], q[2];
 
-  LamViewPoint(view, x[2 * edge->start] + shift[0], x[2 * edge->start + 1] + shift[1], a);
-  LamViewPoint(view, x[2 * edge->middle] + shift[0], x[2 * edge->middle + 1] + shift[1], m);
-  LamViewPoint(view, x[2 * edge->end] + shift[0], x[2 * edge->end + 1] + shift[1], b);
+  LamViewPoint(view, x[2 * edge->start] + dx, x[2 * edge->start + 1] + dy, a);
+  LamViewPoint(view, x[2 * edge->middle] + dx, x[2 * edge->middle + 1] + dy, m);
+  LamViewPoint(view, x[2 * edge->end] + dx, x[2 * edge->end + 1] + dy, b);
   for (int k = 0; k < 2; k++) {
     const double control = 2 * m[k] - 0.5 * (a[k] + b[k]);
 
@@ -153,8 +154,6 @@ void LamOutlineLoopPath(LamCanvas canvas, const LamView *view, const LamOutline 
 
 void LamOutlineInnerPath(LamCanvas canvas, const LamView *view, const LamOutline *outline, const PetscReal x[])
 {
-  const PetscReal none[2] = {0, 0};
-
   for (PetscInt i = 0; i < outline->edge_count; i++)
-    if (!outline->edges[i].boundary) LamOutlineEdgePath(canvas, view, &outline->edges[i], x, none, PETSC_FALSE);
+    if (!outline->edges[i].boundary) LamOutlineEdgePath(canvas, view, &outline->edges[i], x, NULL, PETSC_FALSE);
 }

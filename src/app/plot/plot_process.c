@@ -167,21 +167,19 @@ static PetscErrorCode FindStates(const LamPlotRequest *request, Film *film)
 /* One colour scale and one window for all frames. */
 static PetscErrorCode FindFrame(Film *film)
 {
-  const PetscReal none[2] = {0, 0};
   PetscReal *ends;
   LamColourRange range;
   LamTissue tissue;
 
   PetscFunctionBeginUser;
-  film->frame = (LamFrame){.label = film->field->label, .unit = film->field->unit};
-  LamBoxEmpty(film->frame.box);
+  film->frame = (LamFrame){.box = LAM_EMPTY_BOX, .label = film->field->label, .unit = film->field->unit};
   PetscCall(PetscMalloc1(2 * film->count, &ends));
   for (PetscInt k = 0; k < film->count; k++) {
     PetscCall(ReadCells(film, k, &tissue));
     PetscCall(LamColourRangeFind(tissue.node_count, tissue.values, &range));
     ends[2 * k] = range.low;
     ends[2 * k + 1] = range.high;
-    LamBoxExtend(film->frame.box, tissue.node_count, tissue.x, none);
+    LamBoxExtend(film->frame.box, tissue.node_count, tissue.x, NULL);
     PetscCall(LamTissueDestroy(&tissue));
   }
   PetscCall(LamColourRangeFind(2 * film->count, ends, &film->frame.range));

@@ -92,9 +92,9 @@ static void DrawKey(LamCanvas canvas, const LamView *view, double right, const R
 static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const RVEPicture *p)
 {
   /* apothems: the nearest neighbours are visible; for contact tissue a smaller part of them, to show the gaps larger */
-  const PetscReal none[2] = {0, 0}, margin = p->tissue.has_interface ? 0.5 : 1.1;
+  const PetscReal margin = p->tissue.has_interface ? 0.5 : 1.1;
   const double right = outer.x + outer.width;
-  PetscReal reference[2], box[4];
+  PetscReal reference[2], box[4] = LAM_EMPTY_BOX;
   LamColourRange range;
   LamView view;
 
@@ -104,8 +104,7 @@ static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const RVEPictur
   if (p->tissue.has_interface) outer.height -= KeyRow;
   if (p->tissue.interface.is_open) outer.width -= LamColourBarWidth(canvas, &p->tissue.interface.gaps);
   LamTissueCentreReference(&p->tissue, reference);
-  LamBoxEmpty(box);
-  LamBoxExtend(box, p->tissue.node_count, p->tissue.x, none);
+  LamBoxExtend(box, p->tissue.node_count, p->tissue.x, NULL);
   LamBoxExtend(box, p->tissue.node_count, p->tissue.nodes, reference);
   LamBoxWiden(box, margin);
   LamViewFit(outer, box, &view);

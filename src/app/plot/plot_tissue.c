@@ -87,14 +87,13 @@ void LamTissueCentreReference(const LamTissue *t, PetscReal shift[2])
 /* Images x + F.S of the RVE that are visible in the view; the RVE itself comes last, so that it lies on top. */
 static PetscErrorCode VisibleImages(const LamTissue *t, const LamView *view, PetscInt *count, LamImage **images)
 {
-  const PetscReal *F = t->F, none[2] = {0, 0};
+  const PetscReal *F = t->F;
   const PetscInt reach = LamTissueIsPeriodic(t) ? 12 : 0;
-  PetscReal box[4];
+  PetscReal box[4] = LAM_EMPTY_BOX;
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
-  LamBoxEmpty(box);
-  LamBoxExtend(box, t->node_count, t->x, none);
+  LamBoxExtend(box, t->node_count, t->x, NULL);
   PetscCall(PetscMalloc1((2 * reach + 1) * (2 * reach + 1), images));
   for (PetscInt i = -reach; i <= reach; i++) {
     for (PetscInt j = -reach; j <= reach; j++) {
@@ -116,13 +115,11 @@ static void LoopsPath(LamCanvas canvas, const LamView *view, const LamTissue *t,
   cairo_new_path(LamCanvasCairo(canvas));
   for (PetscInt k = 0; k < t->outline.loop_count; k++) {
     const PetscInt first = t->outline.loop_start[k], end = t->outline.loop_start[k + 1];
-    const PetscReal none[2] = {0, 0};
-    PetscReal box[4];
+    PetscReal box[4] = LAM_EMPTY_BOX;
 
     if ((LamOutlineLoopArea(&t->outline, k, t->nodes) < 0) != lumens) continue;
-    LamBoxEmpty(box);
     for (PetscInt i = first; i < end; i++)
-      LamBoxExtend(box, 1, &t->x[2 * t->outline.edges[t->outline.loop_edges[i]].start], none);
+      LamBoxExtend(box, 1, &t->x[2 * t->outline.edges[t->outline.loop_edges[i]].start], NULL);
     if (LamViewShows(view, box, shift)) LamOutlineLoopPath(canvas, view, &t->outline, k, t->x, shift);
   }
 }

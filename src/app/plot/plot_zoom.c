@@ -95,14 +95,13 @@ PetscErrorCode LamZoomsDestroy(LamZooms *z)
 /* Half the side of a square, um, that contains every RVE and a part of its neighbours. */
 static PetscReal WindowSize(const LamZooms *z)
 {
-  const PetscReal none[2] = {0, 0}, margin = z->has_interface ? 0.5 : 0.8;
+  const PetscReal margin = z->has_interface ? 0.5 : 0.8;
   PetscReal half = 0;
 
   for (PetscInt k = 0; k < z->count; k++) {
-    PetscReal box[4];
+    PetscReal box[4] = LAM_EMPTY_BOX;
 
-    LamBoxEmpty(box);
-    LamBoxExtend(box, z->tissue[k].node_count, z->tissue[k].x, none);
+    LamBoxExtend(box, z->tissue[k].node_count, z->tissue[k].x, NULL);
     half = PetscMax(half, z->apothem[k] * (0.5 * PetscMax(box[2] - box[0], box[3] - box[1]) + margin));
   }
   return half;
@@ -111,11 +110,9 @@ static PetscReal WindowSize(const LamZooms *z)
 /* The view of zoom k: its RVE in the middle of the frame. */
 static void ZoomView(const LamZooms *z, PetscInt k, LamRect frame, PetscReal half, LamView *view)
 {
-  const PetscReal none[2] = {0, 0};
-  PetscReal box[4], window[4];
+  PetscReal box[4] = LAM_EMPTY_BOX, window[4];
 
-  LamBoxEmpty(box);
-  LamBoxExtend(box, z->tissue[k].node_count, z->tissue[k].x, none);
+  LamBoxExtend(box, z->tissue[k].node_count, z->tissue[k].x, NULL);
   for (int i = 0; i < 2; i++) {
     const PetscReal middle = 0.5 * (box[i] + box[2 + i]);
     window[i] = middle - half / z->apothem[k];
