@@ -24,35 +24,32 @@ typedef struct {
 
 typedef struct {
   LamDatabase db;
-  LamNodeLayout nodes; /* made with the first block */
+  LamNodeLayout nodes; /* made with the first record */
   Later *later;        /* NULL: load all records */
 } Loading;
 
-static PetscErrorCode LoadBlock(void *ctx, const LamRecordLayout *layout, PetscInt first, PetscInt n,
-                                const unsigned char *bytes)
+static PetscErrorCode LoadRecord(void *ctx, const LamRecordLayout *layout, PetscInt number, const unsigned char *bytes,
+                                 const char damage[])
 {
+  const PetscInt64 key = LamRecordInt(bytes + layout->key);
   Loading *l = ctx;
   LamDatabase db = l->db;
   LamNodeSet *set = &db->nodes;
+  LamResponse record;
 
   PetscFunctionBeginUser;
-  if (!first) LamNodeLayoutMake(layout->key, layout->member, &l->nodes);
-  for (PetscInt i = 0; i < n; i++, bytes += layout->size) {
-    const PetscInt64 key = LamRecordInt(bytes + layout->key);
-    LamResponse record;
-
-    if (l->later && first + i >= l->later->first) {
-      l->later->keys[l->later->n] = key;
-      PetscCall(LamRecordUnpack(layout, bytes, &l->later->records[l->later->n++]));
-      continue;
-    }
-    db->keys[db->n++] = key;
-    if (LamKeyIsNode(key)) {
-      /* upper bound, allocated once: unused pages stay untouched */
-      PetscCall(LamGrow(set->count, db->header.committed - first - i, sizeof(*set->data), &set->capacity, &set->data));
-      LamNodeDataFromBytes(&l->nodes, bytes, &set->data[set->count++]);
-      continue;
-    }
+  if (!number) LamNodeLayoutMake(layout->key, layout->member, &l->nodes);
+  if (l->later && number >= l->later->first) {
+    l->later->keys[l->later->n] = key;
+    PetscCall(LamRecordUnpack(layout, bytes, &l->later->records[l->later->n++]));
+    PetscFunctionReturn(0);
+  }
+  db->keys[db->n++] = key;
+  if (LamKeyIsNode(key)) {
+    /* upper bound, allocated once: unused pages stay untouched */
+    PetscCall(LamGrow(set->count, db->header.committed - number, sizeof(*set->data), &set->capacity, &set->data));
+    LamNodeDataFromBytes(&l->nodes, bytes, &set->data[set->count++]);
+  } else {
     PetscCall(LamRecordUnpack(layout, bytes, &record));
     PetscCall(LamScatterAdd(db, &record));
   }
@@ -82,7 +79,7 @@ static PetscErrorCode Load(const char path[], hid_t file, void *ctx)
   PetscCall(PetscStrallocpy(path, &db->path));
   LamImagesMake(&db->header.micro, &db->images);
   PetscCall(LamGrow(db->n, db->header.committed, sizeof(*db->keys), &db->capacity, &db->keys));
-  PetscCall(LamFileScanRecords(path, file, db->header.committed, LoadBlock, ctx));
+  PetscCall(LamFileScanRecords(path, file, db->header.committed, LoadRecord, ctx));
   db->records_first = db->n;
   required = (PetscBool)(db->nodes.count && !strcmp(db->header.kind, "database"));
   PetscCall(LamFileGetGrid(path, file, required, &db->header.micro, &db->grid));

@@ -79,7 +79,7 @@ static void AddRecord(Check *c, const LamRecordLayout *layout, PetscInt number, 
   json_array_append_new(c->damaged, record);
 }
 
-/* A LamSingleVisitor. */
+/* A LamRecordVisitor. */
 static PetscErrorCode CheckRecord(void *ctx, const LamRecordLayout *layout, PetscInt number, const unsigned char *bytes,
                                   const char damage[])
 {

@@ -134,10 +134,12 @@ PetscErrorCode LamFileGetArray(const char path[], hid_t file, const char name[],
 
 /* The number of committed records, checked against its checksum, the extent and the size of the file. */
 PetscErrorCode LamCommittedRead(const char path[], hid_t file, PetscInt *committed);
-/* Receives a block of n checked records from number `first` on. The bytes are those in the file. */
-typedef PetscErrorCode (*LamRecordVisitor)(void *ctx, const LamRecordLayout *layout, PetscInt first, PetscInt n,
-                                           const unsigned char *bytes);
-/* Reads the first `count` records once, in blocks, checks them and passes them to the visitor in their order. */
+/* Receives one record, whose bytes are those in the file. `damage` NULL: it is sound. `bytes` NULL: HDF5 cannot read
+   it. */
+typedef PetscErrorCode (*LamRecordVisitor)(void *ctx, const LamRecordLayout *layout, PetscInt number,
+                                           const unsigned char *bytes, const char damage[]);
+/* Reads the first `count` records once, in blocks, checks them and passes them to the visitor in their order; a
+   damaged one is an error. */
 PetscErrorCode LamFileScanRecords(const char path[], hid_t file, PetscInt count, LamRecordVisitor visit, void *ctx);
 
 /* The same for callers that handle damaged records: open, visit all, close. */
@@ -147,11 +149,8 @@ typedef struct {
   unsigned char *bytes; /* of a block, or of all records if there are fewer; owned */
 } LamRecordScan;
 
-/* Receives one record; `damage` NULL: it is sound. `bytes` NULL: HDF5 cannot read it. */
-typedef PetscErrorCode (*LamSingleVisitor)(void *ctx, const LamRecordLayout *layout, PetscInt number,
-                                           const unsigned char *bytes, const char damage[]);
 PetscErrorCode LamRecordScanOpen(const char path[], hid_t file, LamRecordScan *scan);
-PetscErrorCode LamRecordScanAll(const char path[], LamRecordScan *scan, PetscInt count, LamSingleVisitor visit,
+PetscErrorCode LamRecordScanAll(const char path[], LamRecordScan *scan, PetscInt count, LamRecordVisitor visit,
                                 void *ctx);
 PetscErrorCode LamRecordScanClose(const char path[], LamRecordScan *scan);
 /* Verifies the sum of the checksums of all committed records, `count`; more may have been committed since. */

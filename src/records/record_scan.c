@@ -164,7 +164,7 @@ PetscErrorCode LamRecordScanEnd(const char path[], const LamRecordScan *s, Petsc
 }
 
 /* Calls `visit` for n records from number `first` on. Those that HDF5 cannot read share a chunk. */
-static PetscErrorCode ScanEach(const char path[], LamRecordScan *s, PetscInt first, PetscInt n, LamSingleVisitor visit,
+static PetscErrorCode ScanEach(const char path[], LamRecordScan *s, PetscInt first, PetscInt n, LamRecordVisitor visit,
                                void *ctx)
 {
   PetscErrorCode unreadable;
@@ -187,7 +187,7 @@ static PetscErrorCode ScanEach(const char path[], LamRecordScan *s, PetscInt fir
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamRecordScanAll(const char path[], LamRecordScan *s, PetscInt count, LamSingleVisitor visit, void *ctx)
+PetscErrorCode LamRecordScanAll(const char path[], LamRecordScan *s, PetscInt count, LamRecordVisitor visit, void *ctx)
 {
   PetscFunctionBeginUser;
   for (PetscInt first = 0; first < count; first += BLOCK)
@@ -195,36 +195,36 @@ PetscErrorCode LamRecordScanAll(const char path[], LamRecordScan *s, PetscInt co
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ScanBlocks(const char path[], LamRecordScan *s, PetscInt count, LamRecordVisitor visit, void *ctx)
+typedef struct {
+  const char *path;
+  LamRecordVisitor visit;
+  void *ctx;
+  uint32_t sum;
+} Strict;
+
+static PetscErrorCode VisitSound(void *ctx, const LamRecordLayout *layout, PetscInt number, const unsigned char *bytes,
+                                 const char damage[])
 {
-  uint32_t sum = 0;
+  Strict *s = ctx;
 
   PetscFunctionBeginUser;
-  for (PetscInt first = 0; first < count; first += BLOCK) {
-    const PetscInt n = PetscMin(BLOCK, count - first);
-
-    PetscCall(LamRowsTransfer(path, s->dataset, s->type, PETSC_FALSE, (hsize_t)first, (hsize_t)n, s->bytes));
-    for (PetscInt i = 0; i < n; i++) {
-      const char *damage = LamRecordDamage(&s->layout, s->bytes + (size_t)i * s->layout.size);
-
-      PetscCheck(!damage, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-                 "%s: record %" PetscInt_FMT " is damaged (%s)" LAM_SALVAGE, path, first + i, damage);
-    }
-    sum = LamRecordsSum(sum, &s->layout, n, s->bytes);
-    PetscCall(visit(ctx, &s->layout, first, n, s->bytes));
-  }
-  PetscCall(LamRecordScanEnd(path, s, count, sum));
+  PetscCheck(!damage, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: record %" PetscInt_FMT " is damaged (%s)" LAM_SALVAGE,
+             s->path, number, damage);
+  s->sum = LamRecordsSum(s->sum, layout, 1, bytes);
+  PetscCall(s->visit(s->ctx, layout, number, bytes, NULL));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamFileScanRecords(const char path[], hid_t file, PetscInt count, LamRecordVisitor visit, void *ctx)
 {
+  Strict strict = {.path = path, .visit = visit, .ctx = ctx};
   LamRecordScan scan;
   PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
   PetscCall(LamRecordScanOpen(path, file, &scan));
-  ierr = ScanBlocks(path, &scan, count, visit, ctx);
+  ierr = LamRecordScanAll(path, &scan, count, VisitSound, &strict);
+  if (!ierr) ierr = LamRecordScanEnd(path, &scan, count, strict.sum);
   PetscCall(
       LamRecordScanClose(path, &scan)); /* even if records are damaged: a program may continue without this file */
   PetscCall(ierr);

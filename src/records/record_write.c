@@ -69,14 +69,14 @@ static PetscErrorCode CheckType(const char path[], hid_t file, PetscInt *extent)
 }
 
 /* Stores the keys of records in the file, and the sum of their checksums. */
-static PetscErrorCode KeepBlockKeys(void *ctx, const LamRecordLayout *layout, PetscInt first, PetscInt n,
-                                    const unsigned char *bytes)
+static PetscErrorCode KeepKey(void *ctx, const LamRecordLayout *layout, PetscInt number, const unsigned char *bytes,
+                              const char damage[])
 {
   LamRecordWriter w = ctx;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < n; i++) w->keys[first + i] = LamRecordInt(bytes + (size_t)i * layout->size + layout->key);
-  w->sum = LamRecordsSum(w->sum, layout, n, bytes);
+  w->keys[number] = LamRecordInt(bytes + layout->key);
+  w->sum = LamRecordsSum(w->sum, layout, 1, bytes);
   PetscFunctionReturn(0);
 }
 
@@ -90,7 +90,7 @@ static PetscErrorCode ReadExisting(LamRecordWriter w, hid_t file, const char kin
   if (!ierr) ierr = CheckType(w->path, file, &w->extent);
   w->n = w->capacity = header.committed;
   if (!ierr) ierr = PetscMalloc1(w->n + 1, &w->keys);
-  if (!ierr) ierr = LamFileScanRecords(w->path, file, w->n, KeepBlockKeys, w);
+  if (!ierr) ierr = LamFileScanRecords(w->path, file, w->n, KeepKey, w);
   PetscCall(LamHeaderDestroy(&header));
   PetscCall(ierr);
   PetscFunctionReturn(0);

@@ -11,13 +11,7 @@
   The indicators of a node, in the order of LamResponseMembers, and how they are interpolated (table_indicators.c).
   FRAME: places and tensors in the frame of the cell, which are not. ONE: scalars; THREE: per face, axis or place.
 */
-typedef enum {
-  LAM_RULE_MEAN,
-  LAM_RULE_TENSION,
-  LAM_RULE_TRACTION,
-  LAM_RULE_MAX_TRACTION,
-  LAM_RULE_FRAME
-} LamIndicatorRule;
+typedef enum { LAM_RULE_MEAN, LAM_RULE_TENSION, LAM_RULE_TRACTION, LAM_RULE_MAX_TRACTION, LAM_RULE_FRAME } LamNodeRule;
 #define LAM_NODE_INDICATORS(ONE, THREE)                                                                                \
   ONE(lumen_fraction, MEAN)                                                                                            \
   ONE(opening_fraction, MEAN)                                                                                          \

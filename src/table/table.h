@@ -19,8 +19,8 @@
 #include "grid.h"
 #include "hermite_cell.h"
 #include "node_data.h"
-#include <pthread.h>
 #include <stdatomic.h>
+#include <threads.h>
 
 /* The surplus of one solved state. */
 typedef struct {
@@ -76,7 +76,7 @@ struct LamTable_s {
   LamTableState *states; /* written under the lock; valid to read when their node's stage is LAM_NODE_MADE */
   LamTableNode *nodes;   /* ascending in level */
   LamPlaceMap node_map;
-  pthread_mutex_t lock;
+  mtx_t lock;
   int levels;          /* finest level of the nodes, plus 1 */
   PetscInt *free_data; /* [grid->free.n] indices in source->data; -1: missing */
 };

@@ -232,7 +232,7 @@ void LamTableThickness(LamTable table, const LamTablePoint *point, const LamTabl
 static const struct {
   size_t response, node;
   int count; /* 3: per face family; 0: not interpolated */
-  LamIndicatorRule rule;
+  LamNodeRule rule;
 } means[] = {LAM_NODE_INDICATORS(ONE, THREE)};
 
 /* Of a state: norm of the walls' stress; bases of tractions per lattice direction; base and size of MAX_TRACTION. */
@@ -270,13 +270,13 @@ static WallStress WallStressOf(const LamLatticeAxes *axes, const PetscReal F[4],
   return w;
 }
 
-static PetscReal SizeFor(const WallStress *stress, LamIndicatorRule rule)
+static PetscReal SizeFor(const WallStress *stress, LamNodeRule rule)
 {
   return rule == LAM_RULE_MEAN ? 1 : rule == LAM_RULE_MAX_TRACTION ? stress->room : stress->size;
 }
 
 /* k: lattice direction of the state. */
-static PetscReal BaseFor(const WallStress *stress, LamIndicatorRule rule, int k)
+static PetscReal BaseFor(const WallStress *stress, LamNodeRule rule, int k)
 {
   return rule == LAM_RULE_TRACTION ? stress->traction[k] : rule == LAM_RULE_MAX_TRACTION ? stress->most : 0;
 }

@@ -90,19 +90,6 @@ static PetscErrorCode MakeNodes(LamTable table)
 
 /* ---- the table ---- */
 
-/* Recursive, because computing a node computes nodes of coarser levels. */
-static PetscErrorCode MakeLock(LamTable table)
-{
-  pthread_mutexattr_t attributes;
-
-  PetscFunctionBeginUser;
-  PetscCheck(!pthread_mutexattr_init(&attributes) && !pthread_mutexattr_settype(&attributes, PTHREAD_MUTEX_RECURSIVE) &&
-                 !pthread_mutex_init(&table->lock, &attributes),
-             PETSC_COMM_SELF, PETSC_ERR_SYS, "the lock of a table cannot be made");
-  pthread_mutexattr_destroy(&attributes);
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode LamTableMake(const LamNodeSet *source, LamGrid grid, PetscBool uniform, LamTable *table)
 {
   LamTable t;
@@ -115,7 +102,9 @@ PetscErrorCode LamTableMake(const LamNodeSet *source, LamGrid grid, PetscBool un
   t->uniform = uniform;
   PetscCall(PetscMalloc1(t->grid->free.n + 1, &t->free_data));
   for (PetscInt m = 0; m < t->grid->free.n; m++) t->free_data[m] = -1;
-  PetscCall(MakeLock(t));
+  /* recursive, because computing a node computes nodes of coarser levels */
+  PetscCheck(mtx_init(&t->lock, mtx_plain | mtx_recursive) == thrd_success, PETSC_COMM_SELF, PETSC_ERR_SYS,
+             "the lock of a table cannot be made");
   PetscCall(MakeNodes(t));
   *table = t;
   PetscFunctionReturn(0);
@@ -136,7 +125,7 @@ PetscErrorCode LamTableDestroy(LamTable *table)
   *table = NULL;
   if (!t || atomic_fetch_sub(&t->references, 1) > 1) PetscFunctionReturn(0);
   PetscCall(LamPlaceMapDestroy(&t->node_map));
-  pthread_mutex_destroy(&t->lock);
+  mtx_destroy(&t->lock);
   PetscCall(PetscFree(t->states));
   PetscCall(PetscFree(t->nodes));
   PetscCall(PetscFree(t->data));

@@ -223,7 +223,7 @@ void LamTableMakeNode(LamTable table, PetscInt n)
 {
   LamTableNode *node = &table->nodes[n];
 
-  pthread_mutex_lock(&table->lock);
+  mtx_lock(&table->lock);
   if (atomic_load_explicit(&node->stage, memory_order_relaxed) != LAM_NODE_MADE) {
     Subtract(table, n);
     for (PetscInt s = node->first; s < node->first + node->count; s++)
@@ -231,5 +231,5 @@ void LamTableMakeNode(LamTable table, PetscInt n)
     if (table->grid->contact) SlopesAlongSuction(table, node);
     atomic_store_explicit(&node->stage, LAM_NODE_MADE, memory_order_release);
   }
-  pthread_mutex_unlock(&table->lock);
+  mtx_unlock(&table->lock);
 }

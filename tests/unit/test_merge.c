@@ -132,17 +132,18 @@ static int CompareKeys(const void *a, const void *b)
 /* All members but times and checksums, by key. */
 MERGE_TEST(the_content_does_not_depend_on_the_order)
 {
-  PetscInt64 keys[30], *sorted[2];
+  PetscInt64 keys[30], found[30], *sorted[2];
 
   for (int i = 0; i < 30; i++) keys[i] = Node(i);
   for (int s = 0; s < 3; s++) WriteShard(s, 14, keys + 8 * s);
   for (int turn = 0; turn < 2; turn++) {
-    const PetscInt64 *found;
+    const PetscInt64 *borrowed;
     PetscInt n;
 
     MergeShards(3, turn);
-    OpenRecords(&n, &found);
+    OpenRecords(&n, &borrowed);
     assert_int_equal(n, 30);
+    memcpy(found, borrowed, sizeof(found)); /* until the file is opened again */
     sorted[turn] = malloc(sizeof(keys));
     memcpy(sorted[turn], found, sizeof(keys));
     qsort(sorted[turn], 30, sizeof(*keys), CompareKeys);

@@ -25,19 +25,16 @@ static PetscBool IsStopped(const LamMerge *m)
 /* ---- records ---- */
 
 /* A LamRecordVisitor. */
-static PetscErrorCode TakeBlock(void *ctx, const LamRecordLayout *layout, PetscInt first, PetscInt n,
-                                const unsigned char *bytes)
+static PetscErrorCode TakeRecord(void *ctx, const LamRecordLayout *layout, PetscInt number, const unsigned char *bytes,
+                                 const char damage[])
 {
   LamMerge *m = ctx;
 
   PetscFunctionBeginUser;
-  (void)first;
   if (IsStopped(m)) PetscFunctionReturn(0);
-  for (PetscInt i = 0; i < n; i++, bytes += layout->size) {
-    PetscCheck(m->grid_text || !LamKeyIsNode(LamRecordInt(bytes + layout->key)), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "%s: %s is missing, though there are nodes of a grid", m->grid_from, LAM_GRID_NAME);
-    PetscCall(LamUnionTake(m->records, layout, bytes, m->report));
-  }
+  PetscCheck(m->grid_text || !LamKeyIsNode(LamRecordInt(bytes + layout->key)), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: %s is missing, though there are nodes of a grid", m->grid_from, LAM_GRID_NAME);
+  PetscCall(LamUnionTake(m->records, layout, bytes, m->report));
   PetscFunctionReturn(0);
 }
 
@@ -52,7 +49,7 @@ typedef struct {
   PetscInt sound, damaged;
 } Salvage;
 
-/* A LamSingleVisitor. */
+/* A LamRecordVisitor. */
 static PetscErrorCode TakeIfSound(void *ctx, const LamRecordLayout *layout, PetscInt number, const unsigned char *bytes,
                                   const char damage[])
 {
@@ -60,7 +57,7 @@ static PetscErrorCode TakeIfSound(void *ctx, const LamRecordLayout *layout, Pets
 
   PetscFunctionBeginUser;
   if (!damage) {
-    PetscCall(TakeBlock(s->merge, layout, number, 1, bytes));
+    PetscCall(TakeRecord(s->merge, layout, number, bytes, NULL));
     s->sound++;
   } else if (s->damaged++ < MOST_NAMED && s->counted) {
     LamMergeTell(s->merge, "%s: record %" PetscInt_FMT " is damaged (%s) and left out", s->path, number, damage);
@@ -101,7 +98,7 @@ static PetscErrorCode TakeCommitted(LamMerge *m, const char path[], hid_t file)
 
   PetscFunctionBeginUser;
   PetscCall(LamCommittedRead(path, file, &committed));
-  PetscCall(LamFileScanRecords(path, file, committed, TakeBlock, m));
+  PetscCall(LamFileScanRecords(path, file, committed, TakeRecord, m));
   PetscFunctionReturn(0);
 }
 
