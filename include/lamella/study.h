@@ -1,5 +1,6 @@
 /*
-  Whole studies, as run by the program's commands: build a database, solve a body in an FE2 run.
+  Whole studies, as run by the program's commands: build a database, solve a body in an FE2 run, follow tissue in
+  time, weigh errors against time.
 
   Needs PetscInitialize. Studies are collective over PETSC_COMM_WORLD. They report to a LamReporter on rank 0, and
   print nothing.
@@ -7,7 +8,7 @@
 #ifndef LAMELLA_STUDY_H
 #define LAMELLA_STUDY_H
 
-#include <lamella/macro.h>
+#include <lamella/body.h>
 #include <lamella/export.h>
 
 LAM_C_BEGIN
@@ -65,6 +66,50 @@ typedef struct {
 /* Solves the macroscale problem of a scene (`macro`). message [LAM_MESSAGE_LENGTH]: why it did not converge. */
 LAM_EXPORT PetscErrorCode LamStudyFE2(const char scene_path[], const LamFE2Options *options, LamMacroReason *reason,
                                       char message[]);
+
+/* ---- tissue that changes in time ---- */
+
+typedef struct {
+  LamFE2Response response;              /* as in LamFE2Options; at a material point a cache needs no database */
+  const char *database_path, *out_path; /* likewise */
+  PetscInt frames; /* at a material point: number of states whose cells are stored, evenly spread; 0: events, ends */
+  LamReporter reporter;
+  /* Called for each output time and each event, on rank 0, for a material point or for a body; in the scene's scales.
+     May be NULL. ctx: the reporter's. */
+  PetscErrorCode (*point)(void *ctx, const LamScales *scales, const LamProcessState *state);
+  PetscErrorCode (*body)(void *ctx, const LamScales *scales, const LamBodyState *state);
+} LamProcessOptions;
+
+/* Follows the tissue of a scene (`process`) at a material point, or that of its body if it has one (`macro`). message
+   [LAM_PROCESS_MESSAGE]: why it ended early. */
+LAM_EXPORT PetscErrorCode LamStudyProcess(const char scene_path[], const LamProcessOptions *options,
+                                          LamProcessReason *reason, char message[]);
+
+/* ---- error against time ---- */
+
+/* A setting of one parameter that trades error for time. Errors are the largest over the states, relative (`opening`:
+   difference); NaN: unknown, or not of this family. */
+typedef struct {
+  const char *family, *setting;            /* "mesh", "12 x 4" */
+  PetscBool planned;                       /* that of the scene and the planner */
+  PetscInt runs;                           /* 0: left out, for this reason: */
+  const char *reason;                      /* "": none */
+  PetscReal core_seconds;                  /* median of the runs */
+  PetscReal P, tangent, opening, reaction; /* errors; reaction: also of the work of a body */
+} LamTradeoffSetting;
+
+typedef struct {
+  const char *family; /* "mesh", "strategy", "cells", "tolerance", "database" or "macro"; NULL: all */
+  PetscInt repeats;
+  PetscReal seconds; /* time limit of all measurements */
+  LamReporter reporter;
+  /* Called for each setting at the end. May be NULL. ctx: the reporter's. */
+  PetscErrorCode (*setting)(void *ctx, const LamTradeoffSetting *setting);
+} LamTradeoffOptions;
+
+/* Measures error and time of the settings of a scene, on one rank. *solved: the plan and a reference have results. */
+LAM_EXPORT PetscErrorCode LamStudyTradeoff(const char scene_path[], const LamTradeoffOptions *options,
+                                           PetscBool *solved);
 
 LAM_C_END
 

@@ -70,6 +70,7 @@ PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status)
   run.comm = PETSC_COMM_WORLD;
   run.reporter = LamConsoleReporter(&console);
   run.step = LamFE2ReportStep;
+  run.step_ctx = &console;
   run.all_fields = (PetscBool)!console.json;
   console.has_rows = (PetscBool)(!console.json && isatty(STDOUT_FILENO));
   PetscCall(Solve(&run, &console, exit_status));

@@ -130,11 +130,14 @@ static void WarnOfIndicators(const LamProcessStudy *study)
         (int)doubtful);
 }
 
-static PetscErrorCode ReportPointEnd(const LamConsole *console, const LamProcessStudy *study)
+static PetscErrorCode ReportPointEnd(void *ctx, const LamProcessStudy *study)
 {
+  LamConsole *console = (LamConsole *)ctx;
   LamProcessCounts counts;
 
   PetscFunctionBeginUser;
+  LamConsoleClear(console);
+  if (study->response.stopped) PetscFunctionReturn(0);
   if (!console->quiet) WarnOfIndicators(study);
   if (study->reason == LAM_PROCESS_ENDED)
     fprintf(stderr, "lamella process: %s: %s\n", study->scene->path, study->message);
@@ -244,32 +247,19 @@ static int StatusOf(LamProcessReason reason)
                                        : LAM_EXIT_OK;
 }
 
-static PetscErrorCode SolvePoint(LamProcessStudy *study, LamConsole *console, int *exit_status)
-{
-  PetscFunctionBeginUser;
-  console->has_rows = (PetscBool)!console->json;
-  PetscCall(LamProcessSolvePoint(study));
-  LamConsoleClear(console);
-  if (!study->response.stopped) PetscCall(ReportPointEnd(console, study));
-  *exit_status = StatusOf(study->reason);
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode RunPoint(const LamFE2Run *run, PetscInt frames, LamConsole *console, int *exit_status)
 {
-  LamProcessStudy study = {
-      .response = *run, .out_path = run->out_path, .frames = frames, .scene = run->scene, .state = ReportPoint};
-  PetscErrorCode ierr = 0, freed;
+  LamProcessStudy study = {.response = *run,
+                           .out_path = run->out_path,
+                           .frames = frames,
+                           .scene = run->scene,
+                           .state = ReportPoint,
+                           .done = ReportPointEnd};
 
   PetscFunctionBeginUser;
-  study.response.comm = PETSC_COMM_SELF;
-  if (LamAppIsRoot()) {
-    ierr = SolvePoint(&study, console, exit_status);
-    freed = LamProcessStudyDestroy(&study);
-    if (!ierr) ierr = freed;
-  }
-  PetscCall(ierr);
-  PetscCall(LamShareError(PETSC_COMM_WORLD, 0));
+  console->has_rows = (PetscBool)!console->json;
+  PetscCall(LamProcessStudyRun(&study));
+  *exit_status = StatusOf(study.reason);
   PetscCall(LamSceneDestroy(&study.response.scene));
   PetscFunctionReturn(0);
 }
@@ -338,6 +328,7 @@ PetscErrorCode LamCommandProcess(LamArgs *args, int *exit_status)
   PetscCall(args->start(args));
   run.comm = PETSC_COMM_WORLD;
   run.reporter = LamConsoleReporter(&console);
+  run.step_ctx = &console;
   PetscCall(LamSceneRead(run.scene_path, &run.scene));
   if (run.scene->has_macro && run.scene->has_process)
     PetscCall(RunBody(&run, frames, &console, exit_status));

@@ -25,7 +25,7 @@ static PetscErrorCode Report(LamFE2Run *run, const LamMacroStep *step, const Lam
 {
   PetscFunctionBeginUser;
   PetscCall(LamFE2RecordStep(run, step, fields));
-  if (run->step) PetscCall(run->step(run->reporter.ctx, run, step, peak_memory));
+  if (run->step) PetscCall(run->step(run->step_ctx, run, step, peak_memory));
   PetscCall(LamReportProgress(&run->reporter, done, total, 0));
   PetscFunctionReturn(0);
 }

@@ -37,9 +37,9 @@ typedef struct LamFE2Run_s {
   PetscBool resume;          /* resume after the last complete step of out_path, if there is one */
   LamFE2Response response;
   LamReporter reporter;
-  /* Called after each step, on rank 0, with the reporter's ctx: the files have the step, `totals` do not yet include
-     it. May be NULL. */
+  /* Called after each step, on rank 0: the files have the step, `totals` do not yet include it. May be NULL. */
   PetscErrorCode (*step)(void *ctx, const struct LamFE2Run_s *run, const LamMacroStep *step, PetscReal peak_memory);
+  void *step_ctx;
   PetscBool all_fields; /* compute the summary even if nothing is written */
 
   LamScene *scene;

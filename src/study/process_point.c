@@ -128,7 +128,7 @@ static PetscErrorCode AddState(const LamProcessState *state, void *ctx)
   PetscFunctionBeginUser;
   PetscCall(LamListGrow(h->count, sizeof(*h->states), &h->capacity, &h->states));
   h->states[h->count++] = *state;
-  if (study->state) PetscCall(study->state(study->response.reporter.ctx, study));
+  if (study->state) PetscCall(study->state(study->response.step_ctx, study));
   if (study->writer && LamClock() - study->last_commit >= COMMIT_SECONDS) PetscCall(Commit(study, NULL));
   PetscCall(LamReportProgress(&study->response.reporter, LamProcessProgress(study->scene, state->time),
                               LAM_PROCESS_PARTS, 0));
@@ -155,7 +155,7 @@ static PetscErrorCode Follow(LamProcessStudy *study)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamProcessSolvePoint(LamProcessStudy *study)
+static PetscErrorCode Solve(LamProcessStudy *study)
 {
   LamResponder responder;
 
@@ -176,7 +176,7 @@ PetscErrorCode LamProcessSolvePoint(LamProcessStudy *study)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamProcessStudyDestroy(LamProcessStudy *study)
+static PetscErrorCode Destroy(LamProcessStudy *study)
 {
   LamFE2Tissues *tissues = &study->response.tissues;
   PetscErrorCode ierr = 0;
@@ -187,4 +187,22 @@ PetscErrorCode LamProcessStudyDestroy(LamProcessStudy *study)
   PetscCall(LamFE2Disconnect(&study->response));
   PetscCall(PetscFree(study->history.states));
   PetscFunctionReturn(ierr);
+}
+
+PetscErrorCode LamProcessStudyRun(LamProcessStudy *study)
+{
+  PetscErrorCode ierr = 0, freed;
+
+  PetscFunctionBeginUser;
+  study->response.comm = PETSC_COMM_SELF;
+  if (LamIsFirst(PETSC_COMM_WORLD)) {
+    ierr = Solve(study);
+    if (!ierr && study->done) ierr = study->done(study->response.step_ctx, study);
+    freed = Destroy(study);
+    if (!ierr) ierr = freed;
+  }
+  PetscCall(LamShareError(PETSC_COMM_WORLD, ierr));
+  PetscCallMPI(MPI_Bcast(&study->reason, 1, MPI_INT, 0, PETSC_COMM_WORLD));
+  PetscCallMPI(MPI_Bcast(study->message, LAM_PROCESS_MESSAGE, MPI_CHAR, 0, PETSC_COMM_WORLD));
+  PetscFunctionReturn(0);
 }

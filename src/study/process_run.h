@@ -29,15 +29,16 @@ PetscErrorCode LamBodyHistoryWrite(LamRecordWriter writer, void *history); /* a 
 #define LAM_PROCESS_PARTS 1000                                             /* of the duration, for progress reports */
 PetscInt64 LamProcessProgress(const LamScene *scene, PetscReal time);      /* parts done */
 
-/* ---- process_point.c; on one rank ---- */
+/* ---- process_point.c ---- */
 /* At a material point. */
 typedef struct LamProcessStudy_s {
   LamFE2Run response;   /* options and one tissue: the responder of the material point */
   const char *out_path; /* NULL: none */
   PetscInt frames;      /* number of states whose microstructure is stored, in addition to those of events */
   LamScene *scene;      /* owned by response.scene */
-  /* Called after each state, the last one of the history; ctx: that of the response's reporter. May be NULL. */
+  /* Called after each state, the last one of the history; ctx: step_ctx of `response`. May be NULL. */
   PetscErrorCode (*state)(void *ctx, const struct LamProcessStudy_s *study);
+  PetscErrorCode (*done)(void *ctx, const struct LamProcessStudy_s *study); /* likewise, at the end */
 
   LamProcess process;
   LamProcessHistory history;
@@ -47,13 +48,13 @@ typedef struct LamProcessStudy_s {
   LamProcessReason reason;
   char message[LAM_PROCESS_MESSAGE]; /* why it ended before its duration */
 } LamProcessStudy;
-PetscErrorCode LamProcessSolvePoint(LamProcessStudy *study);
-PetscErrorCode LamProcessStudyDestroy(LamProcessStudy *study);
+/* On rank 0, while further ranks of PETSC_COMM_WORLD wait; all get reason and message. Frees all but the scene. */
+PetscErrorCode LamProcessStudyRun(LamProcessStudy *study);
 
 /* ---- process_body.c; collective ---- */
 typedef struct LamBodyStudy_s {
   LamFE2Run fe2; /* options, body and tissues; the first member */
-  /* Called after each state, on rank 0; ctx: that of the reporter. May be NULL. */
+  /* Called after each state, on rank 0; ctx: step_ctx of `fe2`. May be NULL. */
   PetscErrorCode (*state)(void *ctx, const struct LamBodyStudy_s *study, const LamBodyState *state,
                           PetscReal peak_memory);
   LamBody body;

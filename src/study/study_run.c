@@ -2,8 +2,10 @@
   Complete studies for other programs.
 */
 #include "build_run.h"
-#include "fe2_run.h"
 #include "clock.h"
+#include "process_run.h"
+#include "tradeoff.h"
+#include <string.h>
 
 /* ---- a response database ---- */
 
@@ -49,22 +51,25 @@ static PetscErrorCode ReportStep(void *ctx, const LamFE2Run *run, const LamMacro
   PetscFunctionReturn(0);
 }
 
-static void ReportMessage(void *ctx, PetscBool warning, const char text[])
+/* A run as the options say; also of a process. */
+static LamFE2Run Run(const char scene_path[], LamFE2Response response, const char database_path[],
+                     const char out_path[], const LamReporter *reporter)
 {
-  const LamReporter *reporter = &((const LamFE2Options *)ctx)->reporter;
+  LamFE2Run run = LAM_FE2_RUN;
 
-  if (reporter->message) reporter->message(reporter->ctx, warning, text);
-}
-
-static PetscErrorCode ReportProgress(void *ctx, PetscInt64 done, PetscInt64 total, PetscInt64 failed)
-{
-  return LamReportProgress(&((const LamFE2Options *)ctx)->reporter, done, total, failed);
+  run.comm = PETSC_COMM_WORLD;
+  run.scene_path = scene_path;
+  run.response = response;
+  run.database_path = database_path;
+  run.out_path = out_path;
+  run.reporter = *reporter;
+  return run;
 }
 
 PetscErrorCode LamStudyFE2(const char scene_path[], const LamFE2Options *options, LamMacroReason *reason,
                            char message[])
 {
-  LamFE2Run run = LAM_FE2_RUN;
+  LamFE2Run run = Run(scene_path, options->response, options->database_path, options->out_path, &options->reporter);
   PetscBool finished;
 
   PetscFunctionBeginUser;
@@ -72,18 +77,109 @@ PetscErrorCode LamStudyFE2(const char scene_path[], const LamFE2Options *options
              "response \"%s\" needs a database", LamFE2ResponseNames[options->response]);
   PetscCheck(options->out_path || !options->resume, PETSC_COMM_SELF, PETSC_ERR_ARG_NULL,
              "a run can only be resumed where out_path has its results");
-  run.comm = PETSC_COMM_WORLD;
-  run.scene_path = scene_path;
-  run.response = options->response;
-  run.database_path = options->database_path;
-  run.out_path = options->out_path;
   run.resume = options->resume;
-  run.reporter = (LamReporter){(void *)options, ReportMessage, ReportProgress};
   run.step = ReportStep;
+  run.step_ctx = (void *)options;
   message[0] = '\0';
   *reason = LAM_MACRO_DONE;
   PetscCall(LamFE2Prepare(&run, &finished));
   if (!finished) PetscCall(LamFE2Solve(&run, reason, message));
   PetscCall(LamFE2Destroy(&run));
+  PetscFunctionReturn(0);
+}
+
+/* ---- tissue that changes in time ---- */
+
+static PetscErrorCode ReportPoint(void *ctx, const LamProcessStudy *study)
+{
+  const LamProcessOptions *options = (const LamProcessOptions *)ctx;
+
+  PetscFunctionBeginUser;
+  if (options->point)
+    PetscCall(
+        options->point(options->reporter.ctx, &study->scene->scales, &study->history.states[study->history.count - 1]));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReportBody(void *ctx, const LamBodyStudy *study, const LamBodyState *state, PetscReal peak_memory)
+{
+  const LamProcessOptions *options = (const LamProcessOptions *)ctx;
+
+  PetscFunctionBeginUser;
+  if (options->body) PetscCall(options->body(options->reporter.ctx, &study->fe2.scene->scales, state));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamStudyProcess(const char scene_path[], const LamProcessOptions *options, LamProcessReason *reason,
+                               char message[])
+{
+  LamBodyStudy body = {
+      .fe2 = Run(scene_path, options->response, options->database_path, options->out_path, &options->reporter),
+      .state = ReportBody};
+  LamProcessStudy point = {.out_path = options->out_path, .frames = options->frames, .state = ReportPoint};
+
+  PetscFunctionBeginUser;
+  PetscCheck(options->database_path || options->response != LAM_FE2_DATABASE, PETSC_COMM_SELF, PETSC_ERR_ARG_NULL,
+             "response \"%s\" needs a database", LamFE2ResponseNames[options->response]);
+  body.fe2.step_ctx = (void *)options;
+  PetscCall(LamSceneRead(scene_path, &body.fe2.scene));
+  if (body.fe2.scene->has_macro && body.fe2.scene->has_process) {
+    PetscCall(LamBodyStudyPrepare(&body));
+    PetscCall(LamBodyStudySolve(&body));
+    *reason = body.reason;
+    PetscCall(PetscStrncpy(message, body.message, LAM_PROCESS_MESSAGE));
+  } else {
+    point.response = body.fe2;
+    point.scene = body.fe2.scene;
+    PetscCall(LamProcessStudyRun(&point));
+    *reason = point.reason;
+    PetscCall(PetscStrncpy(message, point.message, LAM_PROCESS_MESSAGE));
+  }
+  PetscCall(LamBodyStudyDestroy(&body));
+  PetscFunctionReturn(0);
+}
+
+/* ---- error against time ---- */
+
+static PetscErrorCode ReportSettings(const LamTradeoff *t, const LamTradeoffOptions *options)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < t->n && options->setting; i++) {
+    const LamMeasurement *m = &t->measured[i];
+    const LamTradeoffSetting setting = {.family = LamKnobNames[m->setting.knob],
+                                        .setting = m->setting.label,
+                                        .planned = m->setting.planned,
+                                        .runs = m->runs,
+                                        .reason = m->reason,
+                                        .core_seconds = m->cpu_spread.median,
+                                        .P = m->error[LAM_ERROR_P].largest,
+                                        .tangent = m->error[LAM_ERROR_TANGENT].largest,
+                                        .opening = m->error[LAM_ERROR_OPENING].largest,
+                                        .reaction = m->error[LAM_ERROR_MACRO].largest};
+
+    PetscCall(options->setting(options->reporter.ctx, &setting));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamStudyTradeoff(const char scene_path[], const LamTradeoffOptions *options, PetscBool *solved)
+{
+  LamTradeoff t = {
+      .scene_path = scene_path, .repeats = options->repeats, .budget = options->seconds, .reporter = options->reporter};
+  PetscInt families = 0;
+  PetscMPIInt size;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &size));
+  PetscCheck(size == 1, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "measures the time of one core; run it on one rank");
+  for (int k = 0; k < LAM_KNOB_COUNT; k++) {
+    t.chosen[k] = (PetscBool)(!options->family || !strcmp(options->family, LamKnobNames[k]));
+    families += t.chosen[k];
+  }
+  PetscCheck(families, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "family \"%s\": unknown", options->family);
+  PetscCall(LamTradeoffRun(&t));
+  PetscCall(ReportSettings(&t, options));
+  *solved = LamTradeoffIsSolved(&t);
+  PetscCall(LamTradeoffDestroy(&t));
   PetscFunctionReturn(0);
 }

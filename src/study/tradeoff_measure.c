@@ -220,8 +220,8 @@ static PetscErrorCode MeasureMacro(const LamScene *scene, const char table[], La
   run.comm = PETSC_COMM_WORLD;
   run.response = m->setting.response;
   run.database_path = m->setting.response == LAM_FE2_DATABASE ? table : NULL;
-  run.reporter.ctx = &m->outcome;
   run.step = KeepStep;
+  run.step_ctx = &m->outcome;
   PetscCall(LamFE2Prepare(&run, &finished));
   PetscCall(LamFE2Solve(&run, &reason, message));
   if (reason == LAM_MACRO_STOPPED)

@@ -6,6 +6,8 @@
 #include <string.h>
 #include "tradeoff.h"
 
+TEST_GROUP(.petsc = 1);
+
 /* ---- times ---- */
 
 TEST(test_spread_of_one_run)
@@ -249,4 +251,31 @@ TEST(test_each_family_has_the_plan_once)
     CHECK(PetscFree(settings));
   }
   CHECK(LamSceneDestroy(&scene));
+}
+
+/* ---- the study ---- */
+
+static PetscErrorCode Count(void *ctx, const LamTradeoffSetting *setting)
+{
+  PetscInt *counts = (PetscInt *)ctx;
+
+  assert_string_equal(setting->family, "tolerance");
+  assert_true(setting->runs == 1 && setting->core_seconds > 0);
+  assert_true(setting->P >= 0 && isnan(setting->reaction));
+  counts[0]++;
+  counts[1] += setting->planned;
+  return 0;
+}
+
+TEST(test_a_study_reports_the_settings_of_a_family)
+{
+  PetscInt counts[2] = {0};
+  const LamTradeoffOptions options = {
+      .family = "tolerance", .repeats = 1, .seconds = 10, .reporter.ctx = counts, .setting = Count};
+  PetscBool solved = PETSC_FALSE;
+
+  CHECK(LamStudyTradeoff(LAMELLA_SOURCE_DIR "/tests/scenes/shear-bonded.yaml", &options, &solved));
+  assert_true(solved);
+  assert_int_equal(counts[0], 7);
+  assert_int_equal(counts[1], 1);
 }

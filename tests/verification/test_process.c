@@ -4,6 +4,7 @@
 #include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/process_fixture.h"
+#include <lamella/study.h>
 
 /* ---- water ---- */
 
@@ -456,3 +457,24 @@ TEST(cells_that_are_pulled_apart_no_longer_span_the_tissue)
 }
 
 TEST_GROUP(.petsc = 1);
+
+/* ---- the study ---- */
+
+static PetscErrorCode NoteEvent(void *ctx, const LamScales *scales, const LamProcessState *state)
+{
+  if (state->event == LAM_EVENT_LAMELLA_NORMAL) *(PetscReal *)ctx = state->ratio[LAM_RATIO_LAMELLA_NORMAL];
+  return 0;
+}
+
+/* As `lamella process`: the lamella reaches its strength. */
+TEST(a_study_reports_states_and_events)
+{
+  PetscReal ratio = 0;
+  const LamProcessOptions options = {.reporter.ctx = &ratio, .point = NoteEvent};
+  char message[LAM_PROCESS_MESSAGE];
+  LamProcessReason reason = LAM_PROCESS_ENDED;
+
+  assert_int_equal(LamStudyProcess(LAMELLA_SOURCE_DIR "/tests/scenes/ripening.yaml", &options, &reason, message), 0);
+  assert_int_equal(reason, LAM_PROCESS_DONE);
+  assert_near(ratio, 1, 1e-3);
+}
