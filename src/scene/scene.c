@@ -34,13 +34,10 @@ static PetscErrorCode CheckText(const char name[], const char text[], size_t len
   PetscFunctionBeginUser;
   PetscCheck(length <= MAX_FILE_SIZE, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%.200s: larger than %d kB; a scene is a short YAML file", name, (int)MAX_FILE_SIZE / 1024);
-  for (size_t i = 0; i < length; i++) {
-    const unsigned char c = (unsigned char)text[i];
-
-    PetscCheck((c >= 0x20 && c != 0x7F) || c == '\t' || c == '\n' || c == '\r', PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "%.200s: byte %d is 0x%02x, which no text has; a scene is a YAML file", name, (int)i, c);
-  }
-  for (const unsigned char *c = (const unsigned char *)text; *c; c += step) {
+  for (const unsigned char *start = (const unsigned char *)text, *c = start; c < start + length; c += step) {
+    PetscCheck((*c >= 0x20 && *c != 0x7F) || *c == '\t' || *c == '\n' || *c == '\r', PETSC_COMM_SELF,
+               PETSC_ERR_USER_INPUT, "%.200s: byte %d is 0x%02x, which no text has; a scene is a YAML file", name,
+               (int)(c - start), *c);
     step = LamCharacterLength(c);
     PetscCheck(step, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                "%.200s:%d:%d: byte 0x%02x is no UTF-8; save the scene in that encoding", name, line, column, *c);

@@ -7,7 +7,8 @@
 #                               the command ends with that status; what it says is in out.txt and err.txt, and each of
 #                               -o and -e tells of words (of grep) that stand there
 #   has FILE WORDS...           the file has all of these words (of grep)
-#   ends SIGNAL STATUS PID      a process of this shell ends with that status when it is sent the signal
+#   ends SIGNAL STATUS PID [RECEIVER]
+#                               a process of this shell ends with that status when it, or RECEIVER, is sent the signal
 #   tissue [BLOCK=KEYS]...      a scene that begins with bonded tissue under turgor, but for the blocks of rve told, and
 #                               goes on with what comes on standard input
 #   same FILE FILE [known|ordered]
@@ -49,7 +50,7 @@ expect() {
 
 ends() {
   local status=0
-  kill -s "$1" "$3" || fail "the run had ended before SIG$1"
+  kill -s "$1" "${4:-$3}" || fail "the run had ended before SIG$1"
   wait "$3" || status=$?
   [ $status -eq "$2" ] || fail "exit status $status instead of $2 after SIG$1"
 }

@@ -27,8 +27,7 @@ expect 0 -o '60 (0 new)' "$lamella" build more.yaml -d out.h5 --resume --quiet
 cp out.h5 before.h5
 expect 2 "$lamella" merge out.h5 some.h5
 cmp -s out.h5 before.h5 || fail "the result is replaced"
-expect 2 "$lamella" merge new.h5 s.h5 thick.h5
-grep -q 's.h5' err.txt && grep -q 'thick.h5' err.txt || fail "the files are not named: $(cat err.txt)"
+expect 2 -e 's.h5' -e 'thick.h5' "$lamella" merge new.h5 s.h5 thick.h5
 expect 4 "$lamella" merge new.h5 s.h5 missing.h5
 [ ! -e new.h5 ] || fail "a refused merge leaves a file"
 

@@ -11,13 +11,11 @@ YAML
 cp s.yaml before.yaml
 
 # the scene, a database, a pipe
-expect 2 "$lamella" rve s.yaml -o s.yaml
-grep -q 's.yaml: exists and is not a file' err.txt || fail "message: $(cat err.txt)"
+expect 2 -e 's.yaml: exists and is not a file' "$lamella" rve s.yaml -o s.yaml
 cmp -s s.yaml before.yaml || fail "the scene is destroyed"
 "$lamella" build s.yaml -d tissue.db.h5 --quiet >/dev/null
 cp tissue.db.h5 before.h5
-expect 2 "$lamella" rve s.yaml -o tissue.db.h5
-grep -q 'tissue.db.h5: exists and is of kind "database"' err.txt || fail "message: $(cat err.txt)"
+expect 2 -e 'tissue.db.h5: exists and is of kind "database"' "$lamella" rve s.yaml -o tissue.db.h5
 cmp -s tissue.db.h5 before.h5 || fail "the database is destroyed"
 mkfifo pipe
 expect 2 timeout 60 "$lamella" rve s.yaml -o pipe

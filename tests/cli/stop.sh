@@ -14,10 +14,7 @@ stop() {
   "$lamella" rve fine.yaml --json --monitor -o out.h5 >out.txt 2>err.txt &
   pid=$!
   until grep -qs "$3" err.txt || ! kill -0 $pid 2>/dev/null; do sleep 0.01; done
-  kill -s "$1" $pid || fail "$1: the run had ended: $(tail -1 err.txt)"
-  status=0
-  wait $pid || status=$?
-  [ $status -eq "$2" ] || fail "$1: exit status $status: $(cat err.txt)"
+  ends "$1" "$2" $pid
   [ ! -s out.txt ] || fail "$1: a state is told: $(cat out.txt)"
   [ ! -e out.h5 ] || "$lamella" info out.h5 --json | grep -q '"records": 0[,}]' || fail "$1: a state is recorded"
   [ ! -e out.h5.lock ] || fail "$1: the lock is left behind"

@@ -10,11 +10,7 @@ for response in direct cache; do
   mpirun -n 2 "$lamella" fe2 $response.yaml --json --quiet --response $response -o $response.h5 >out.jsonl 2>out.err &
   run=$!
   until [ -f $response.h5 ] || ! kill -0 $run 2>/dev/null; do sleep 0.1; done
-  rank=$(pgrep -P $run | tail -n 1)
-  kill -s TERM "$rank" || fail "$response: the run had ended: $(cat out.err)"
-  status=0
-  wait $run || status=$?
-  [ $status = 143 ] || fail "$response: status $status instead of 143: $(cat out.err)"
+  ends TERM 143 $run "$(pgrep -P $run | tail -n 1)"
   [ "$(wc -l <out.jsonl)" -lt 6 ] || fail "$response: the run went on to its end"
   [ -z "$(ls -A | grep -E 'lock|tmp' || true)" ] || fail "$response: $(ls -A | grep -E 'lock|tmp') is left"
   "$lamella" info $response.h5 >/dev/null || fail "$response: the file of a stopped run cannot be read"

@@ -11,14 +11,11 @@ cmp -s one.cut two.cut || fail "the states depend on the number of ranks: $(diff
 
 # a mistake in the scene, and one in the usage, are told once
 sed 's/\[\[1, 0.1/[[1e200, 0.1/' "$scene" >huge.yaml
-mpirun -n 2 "$lamella" rve huge.yaml 2>err.txt
-[ $? -eq 2 ] || fail "a wrong scene does not end with status 2: $(cat err.txt)"
+expect 2 mpirun -n 2 "$lamella" rve huge.yaml
 [ "$(grep -c 'huge.yaml:11:11' err.txt)" -eq 1 ] || fail "a wrong scene is not told once: $(cat err.txt)"
-mpirun -n 2 "$lamella" build huge.yaml -d db.h5 2>err.txt
-[ $? -eq 2 ] || fail "a wrong scene does not end build with status 2: $(cat err.txt)"
+expect 2 mpirun -n 2 "$lamella" build huge.yaml -d db.h5
 [ "$(grep -c 'huge.yaml:11:11' err.txt)" -eq 1 ] || fail "a wrong scene is not told once by all ranks: $(cat err.txt)"
-mpirun -n 2 "$lamella" rve --no-such-option 2>err.txt
-[ $? -eq 1 ] || fail "a mistake of usage does not end with status 1: $(cat err.txt)"
+expect 1 mpirun -n 2 "$lamella" rve --no-such-option
 [ "$(grep -c 'is unknown' err.txt)" -eq 1 ] || fail "a mistake of usage is not told once: $(cat err.txt)"
 
 # a rank that is alone with its error ends the job, and its words are seen
@@ -27,6 +24,4 @@ cat >alone.sh <<'SH'
 if [ "$OMPI_COMM_WORLD_RANK" = 0 ]; then scene=$2; else scene=missing.yaml; fi
 exec "$1" build "$scene" -d alone.h5
 SH
-mpirun -n 2 sh alone.sh "$lamella" "$source/tests/scenes/tissue-block.yaml" >out.txt 2>err.txt
-[ $? -eq 2 ] || fail "a lone error does not end with its status: $(cat err.txt)"
-grep -q 'lamella: missing.yaml' err.txt || fail "a lone error is not seen: $(cat err.txt)"
+expect 2 -e 'lamella: missing.yaml' mpirun -n 2 sh alone.sh "$lamella" "$source/tests/scenes/tissue-block.yaml"

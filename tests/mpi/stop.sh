@@ -13,10 +13,7 @@ for rank in 1 2; do
   mpirun -n 2 "$lamella" rve fine.yaml --json --monitor -o out.h5 >out.txt 2>err.txt &
   run=$!
   until grep -qs 'contact   0' err.txt || ! kill -0 $run 2>/dev/null; do sleep 0.05; done
-  kill -s TERM "$(pgrep -P $run | sed -n ${rank}p)" || fail "rank $rank: the run had ended: $(cat err.txt)"
-  status=0
-  wait $run || status=$?
-  [ $status -eq 143 ] || fail "rank $rank: status $status: $(tail -3 err.txt)"
+  ends TERM 143 $run "$(pgrep -P $run | sed -n ${rank}p)"
   [ "$(grep -c converged out.txt)" -lt 20 ] || fail "rank $rank: the run went on to its end"
   [ ! -e out.h5.lock ] || fail "rank $rank: the lock is left behind"
   [ ! -e out.h5 ] || "$lamella" info out.h5 >/dev/null || fail "rank $rank: the file cannot be read"

@@ -10,7 +10,12 @@
 #define WALL "  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}\n"
 #define RVE CELL WALL
 
-/* The caller destroys the scene. */
+static inline void LeaveScene(LamScene **scene)
+{
+  assert_int_equal(LamSceneDestroy(scene), 0);
+}
+#define OwnedScene LamScene __attribute__((cleanup(LeaveScene))) /* destroyed where its block ends */
+
 static inline LamScene *Read(const char text[])
 {
   LamScene *scene = NULL;

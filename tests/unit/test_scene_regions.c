@@ -19,7 +19,7 @@
 
 TEST(what_a_region_leaves_out_is_the_scene_s)
 {
-  LamScene *scene = Read(SCENE "  regions: [{name: core}]\n");
+  OwnedScene *scene = Read(SCENE "  regions: [{name: core}]\n");
   const LamRegion *region = scene->regions;
 
   assert_int_equal(scene->region_count, 1);
@@ -29,12 +29,11 @@ TEST(what_a_region_leaves_out_is_the_scene_s)
   assert_memory_equal(&region->scales, &scene->scales, sizeof(region->scales));
   assert_near(region->turgor, scene->turgor, 0);
   assert_near(region->cohesion, scene->cohesion, 0);
-  assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
 TEST(a_region_is_measured_in_its_own_units)
 {
-  LamScene *scene =
+  OwnedScene *scene =
       Read(SCENE "  regions: [{name: skin, where: y > 9, cell: {apothem: 30 um}, wall: {C1: 0.2 MPa, C2: 0.02 MPa}, "
                  "turgor: {pressure: 0.044 MPa}, mesh: {along: 12}}]\n");
   const LamRegion *region = scene->regions;
@@ -51,26 +50,24 @@ TEST(a_region_is_measured_in_its_own_units)
   assert_near(region->cohesion, 0.05, 1e-14);
   assert_int_equal(region->micro.along, 12);
   assert_int_equal(region->micro.through, 2);
-  assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
 TEST(a_bonded_region_has_no_cohesion)
 {
-  LamScene *scene = Read(SCENE "  regions: [{name: skin, interface: {law: bonded}}]\n");
+  OwnedScene *scene = Read(SCENE "  regions: [{name: skin, interface: {law: bonded}}]\n");
 
   assert_int_equal(scene->regions[0].micro.interface, LAM_INTERFACE_BONDED);
   assert_near(scene->regions[0].cohesion, 0, 0);
   assert_near(scene->regions[0].micro.clearance, 0, 0);
-  assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
 TEST(fields_have_units)
 {
   const PetscReal X[2] = {4, 5};
-  LamScene *scene = Read(SCENE "  fields:\n"
-                               "    orientation: {expression: 3 * x, unit: deg}\n"
-                               "    turgor: {expression: 0.01 * y, unit: MPa}\n"
-                               "    wall_thickness: {expression: 11, unit: um, levels: 5}\n");
+  OwnedScene *scene = Read(SCENE "  fields:\n"
+                                 "    orientation: {expression: 3 * x, unit: deg}\n"
+                                 "    turgor: {expression: 0.01 * y, unit: MPa}\n"
+                                 "    wall_thickness: {expression: 11, unit: um, levels: 5}\n");
   const LamTissueFields *fields = &scene->fields;
   PetscReal value;
 
@@ -81,7 +78,6 @@ TEST(fields_have_units)
   assert_null(fields->value[LAM_TISSUE_COHESION]);
   assert_near(fields->unit[LAM_TISSUE_WALL_THICKNESS], 1e-6, 1e-20);
   assert_int_equal(fields->levels, 5);
-  assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
 TEST(mistakes_are_named)
