@@ -48,6 +48,10 @@ static void Fault(int number)
 void LamFaultsTell(void)
 {
 #ifndef __SANITIZE_ADDRESS__ /* AddressSanitizer reports more */
+  void *frame;
+
+  /* The first call loads libgcc, which allocates: in a handler that interrupts malloc it would wait forever. */
+  (void)backtrace(&frame, 1);
   signal(SIGSEGV, Fault);
   signal(SIGBUS, Fault);
 #endif
