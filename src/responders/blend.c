@@ -74,30 +74,12 @@ PetscInt LamBlendAt(PetscInt n, const PetscReal knots[], PetscReal value, LamBle
 
 /* ---- responses ---- */
 
-/* Adds all quantities that are linear in the potential; 33 components are interpolated in the same way. */
-static void AddPotential(PetscReal w, const LamResponse *r, LamResponse *sum)
-{
-  sum->energy += w * r->energy;
-  sum->energy_turgor += w * r->energy_turgor;
-  sum->energy_turgor2 += w * r->energy_turgor2;
-  sum->energy_cohesion += w * r->energy_cohesion;
-  sum->energy_cohesion2 += w * r->energy_cohesion2;
-  sum->energy_turgor_cohesion += w * r->energy_turgor_cohesion;
-  for (int i = 0; i < 9; i++) {
-    sum->P[i] += w * r->P[i];
-    sum->P_turgor[i] += w * r->P_turgor[i];
-    sum->P_cohesion[i] += w * r->P_cohesion[i];
-  }
-  for (int i = 0; i < 81; i++) sum->tangent[i] += w * r->tangent[i];
-}
+/* The quantities that are linear in the potential are contiguous in LamResponse, from `energy` to `turgor_mean`. */
+enum { POTENTIAL = (offsetof(LamResponse, turgor_mean) - offsetof(LamResponse, energy)) / sizeof(PetscReal) };
 
-/* Zeroes the members that AddPotential adds to. */
-static void ClearPotential(LamResponse *r)
+static PetscReal *Potential(const LamResponse *r)
 {
-  r->energy = r->energy_turgor = r->energy_turgor2 = 0;
-  r->energy_cohesion = r->energy_cohesion2 = r->energy_turgor_cohesion = 0;
-  for (int i = 0; i < 9; i++) r->P[i] = r->P_turgor[i] = r->P_cohesion[i] = 0;
-  for (int i = 0; i < 81; i++) r->tangent[i] = 0;
+  return (PetscReal *)((char *)r + offsetof(LamResponse, energy));
 }
 
 /* Interpolates pressures and indicators between the two terms with shares; counts are set where both agree. */
@@ -150,12 +132,12 @@ void LamBlend(PetscInt n, const LamBlendTerm terms[], const LamResponse at[], La
 {
   PetscReal estimate = 0, P[9] = {0};
 
-  ClearPotential(r);
+  for (int k = 0; k < POTENTIAL; k++) Potential(r)[k] = 0;
   r->status = LAM_CONVERGED;
   r->source = LAM_SOURCE_DATABASE;
   r->stable = PETSC_TRUE;
   for (PetscInt i = 0; i < n; i++) {
-    AddPotential(terms[i].weight, &at[i], r);
+    for (int k = 0; k < POTENTIAL; k++) Potential(r)[k] += terms[i].weight * Potential(&at[i])[k];
     AddEffort(&at[i], r);
     estimate += fabs(terms[i].weight) * at[i].error_estimate;
     for (int k = 0; k < 9; k++) P[k] += terms[i].coarse * at[i].P[k];

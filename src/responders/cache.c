@@ -51,8 +51,9 @@ typedef struct {
 
 /* ---- step 1: query ---- */
 
-/* Queries all missing loads; keeps those still without a response. */
-static PetscErrorCode AskAll(LamCache *cache, Missing *missing)
+/* Asks a source for all missing loads; keeps those still without a response. */
+static PetscErrorCode AskAll(LamCache *cache, Missing *missing,
+                             PetscErrorCode (*ask)(LamCache *, const LamLoad *, PetscInt, LamResponse *))
 {
   const PetscReal start = LamClock();
   PetscInt left = 0;
@@ -60,7 +61,8 @@ static PetscErrorCode AskAll(LamCache *cache, Missing *missing)
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < missing->n; k++) {
     const PetscInt i = missing->at[k];
-    PetscCall(LamCacheAsk(cache, &missing->loads[i], missing->points[i], &missing->responses[i]));
+
+    PetscCall(ask(cache, &missing->loads[i], missing->points[i], &missing->responses[i]));
     if (missing->responses[i].status == LAM_OUT_OF_REACH) missing->at[left++] = i;
   }
   missing->n = left;
@@ -75,19 +77,6 @@ static PetscErrorCode GetNewest(LamCache *cache)
   PetscFunctionBeginUser;
   PetscCall(LamTableDestroy(&cache->newest));
   PetscCall(LamDatabaseGetTable(cache->database, &cache->newest));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode SolveNodes(LamCache *cache, PetscInt n, const PetscInt64 keys[], LamResponse responses[])
-{
-  const PetscReal start = LamClock();
-
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < n; k++) {
-    PetscCall(cache->nodes->solve(cache->nodes->ctx, keys[k], &responses[k]));
-    if (responses[k].status != LAM_OUT_OF_REACH) cache->counters.solves++;
-  }
-  cache->counters.solve_seconds += LamClock() - start;
   PetscFunctionReturn(0);
 }
 
@@ -109,9 +98,14 @@ static PetscErrorCode SolveLoads(LamCache *cache, PetscInt n, const LamLoad load
   PetscFunctionReturn(0);
 }
 
-/* Starts at the nearest node, else at the reference state: the response must not depend on the rank that solves. */
-static PetscErrorCode SolveNearNodes(LamCache *cache, PetscInt n, const LamLoad loads[], LamResponse responses[])
+/*
+  Solves nodes (keys not NULL), or else other states. These start at the nearest node, or at the reference state: the
+  response must not depend on the rank that solves.
+*/
+static PetscErrorCode SolveWithNodes(LamCache *cache, PetscInt n, const PetscInt64 keys[], const LamLoad loads[],
+                                     LamResponse responses[])
 {
+  const LamNodeSolver *nodes = cache->nodes;
   PetscInt64 node;
   LamLoad turned;
 
@@ -119,12 +113,16 @@ static PetscErrorCode SolveNearNodes(LamCache *cache, PetscInt n, const LamLoad 
   for (PetscInt k = 0; k < n; k++) {
     const PetscReal start = LamClock();
 
-    PetscCall(LamTableTurn(cache->newest, &loads[k], &turned, &node));
-    if (node < 0) {
-      PetscCall(SolveLoads(cache, 1, &loads[k], &responses[k]));
-      continue;
+    if (keys) {
+      PetscCall(nodes->solve(nodes->ctx, keys[k], &responses[k]));
+    } else {
+      PetscCall(LamTableTurn(cache->newest, &loads[k], &turned, &node));
+      if (node < 0) {
+        PetscCall(SolveLoads(cache, 1, &loads[k], &responses[k]));
+        continue;
+      }
+      PetscCall(nodes->solve_near(nodes->ctx, node, &loads[k], &responses[k]));
     }
-    PetscCall(cache->nodes->solve_near(cache->nodes->ctx, node, &loads[k], &responses[k]));
     if (responses[k].status != LAM_OUT_OF_REACH) cache->counters.solves++;
     cache->counters.solve_seconds += LamClock() - start;
   }
@@ -153,10 +151,8 @@ static PetscErrorCode SolveBatch(LamCache *cache, Batch *batch)
     } else
       loads[n] = batch->loads[k];
   }
-  if (batch->keys && cache->nodes)
-    PetscCall(SolveNodes(cache, n, keys, mine));
-  else if (cache->newest && cache->nodes && cache->nodes->solve_near)
-    PetscCall(SolveNearNodes(cache, n, loads, mine));
+  if (cache->nodes && (batch->keys || (cache->newest && cache->nodes->solve_near)))
+    PetscCall(SolveWithNodes(cache, n, batch->keys ? keys : NULL, loads, mine));
   else
     PetscCall(SolveLoads(cache, n, loads, mine));
   PetscCall(LamGather(cache->comm, sizeof(LamResponse), n, mine, &starts, (void **)&all));
@@ -168,14 +164,15 @@ static PetscErrorCode SolveBatch(LamCache *cache, Batch *batch)
   PetscFunctionReturn(0);
 }
 
-/* Adds all solved states, failed ones too. *stopped: the solver was stopped before it finished the batch. */
-static PetscErrorCode AddBatch(LamCache *cache, const Batch *batch, PetscBool *stopped)
+/* Solves and adds all states, failed ones too. *stopped: the solver was stopped before it finished the batch. */
+static PetscErrorCode SolveAndAdd(LamCache *cache, Batch *batch, PetscBool *stopped)
 {
   LamResponse *records;
   PetscInt64 *keys;
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
+  PetscCall(SolveBatch(cache, batch));
   PetscCall(PetscMalloc2(batch->n, &records, batch->n, &keys));
   for (PetscInt k = 0; k < batch->n; k++) {
     if (batch->responses[k].status == LAM_OUT_OF_REACH) continue;
@@ -186,14 +183,6 @@ static PetscErrorCode AddBatch(LamCache *cache, const Batch *batch, PetscBool *s
   PetscCall(LamDatabaseAdd(cache->database, n, batch->keys ? keys : NULL, records));
   PetscCall(PetscFree2(records, keys));
   PetscCall(GetNewest(cache));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode SolveAndAdd(LamCache *cache, Batch *batch, PetscBool *stopped)
-{
-  PetscFunctionBeginUser;
-  PetscCall(SolveBatch(cache, batch));
-  PetscCall(AddBatch(cache, batch, stopped));
   PetscFunctionReturn(0);
 }
 
@@ -247,7 +236,7 @@ static PetscErrorCode Refine(LamCache *cache, Missing *missing, PetscBool *ends,
   if (!*ends) {
     PetscCall(SolveAndAdd(cache, &batch, stopped));
     missing->solved = PETSC_TRUE;
-    PetscCall(AskAll(cache, missing));
+    PetscCall(AskAll(cache, missing, LamCacheAsk));
   }
   PetscCall(BatchDestroy(&batch));
   PetscFunctionReturn(0);
@@ -285,24 +274,6 @@ static PetscErrorCode TakeOwnState(LamCache *cache, const LamLoad *load, const L
     LamResponseCorrectToLoad(load, response);
   }
   response->source = LAM_SOURCE_SOLVE;
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode AdoptAll(LamCache *cache, Missing *missing)
-{
-  const PetscReal start = LamClock();
-  PetscInt left = 0;
-
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < missing->n; k++) {
-    const PetscInt i = missing->at[k];
-
-    PetscCall(LamCacheAdopt(cache, &missing->loads[i], missing->points[i], &missing->responses[i]));
-    if (missing->responses[i].status == LAM_OUT_OF_REACH) missing->at[left++] = i;
-  }
-  if (!missing->solved) cache->counters.hits += missing->n - left;
-  missing->n = left;
-  cache->counters.query_seconds += LamClock() - start;
   PetscFunctionReturn(0);
 }
 
@@ -364,7 +335,10 @@ static PetscErrorCode SolveThemselves(LamCache *cache, Missing *missing)
 
   PetscFunctionBeginUser;
   while (!stopped) {
-    PetscCall(AdoptAll(cache, missing));
+    const PetscInt before = missing->n;
+
+    PetscCall(AskAll(cache, missing, LamCacheAdopt));
+    if (!missing->solved) cache->counters.hits += before - missing->n;
     PetscCall(CountMissing(cache, missing, &anywhere));
     if (!anywhere) break;
     PetscCall(SolveShare(cache, missing, &stopped));
@@ -407,7 +381,7 @@ static PetscErrorCode CacheRespond(void *ctx, PetscInt n, const LamLoad loads[],
                "material point %" PetscInt_FMT ", of %" PetscInt_FMT, points[i], cache->n_points);
     missing.at[i] = i;
   }
-  PetscCall(AskAll(cache, &missing));
+  PetscCall(AskAll(cache, &missing, LamCacheAsk));
   for (PetscInt i = 0; i < n; i++) cache->counters.hits += LamResponseHasFields(&responses[i]);
   cache->counters.queries += n;
   if (cache->solver) PetscCall(SolveMissing(cache, &missing));

@@ -10,9 +10,9 @@ static const PetscReal ADOPTS = 0.25;
 static const PetscReal OWN_STATE = 1e-8; /* strain: distance of a query from its own record, which is rounded twice */
 enum { SELF_STAYS = 2 };
 
-static PetscBool GoesOnByItself(const LamCachePoint *point)
+PetscBool LamCacheUsesDirectSolve(const LamCache *cache, PetscInt index)
 {
-  return (PetscBool)(point && point->self_solves >= SELF_STAYS);
+  return (PetscBool)(index >= 0 && cache->points[index].self_solves >= SELF_STAYS);
 }
 
 /* NULL: no material point. */
@@ -25,7 +25,6 @@ static LamCachePoint *PointOf(const LamCache *cache, PetscInt point)
 static PetscErrorCode AskTables(LamCache *cache, const LamLoad *load, LamCachePoint *point, LamResponse *response)
 {
   PetscFunctionBeginUser;
-  if (!cache->newest || GoesOnByItself(point)) PetscFunctionReturn(0);
   if (point && point->table) {
     PetscCall(LamTableQuery(point->table, load, cache->accuracy, response));
     if (response->status != LAM_OUT_OF_REACH || point->table == cache->newest) PetscFunctionReturn(0);
@@ -89,7 +88,7 @@ PetscErrorCode LamCacheAsk(LamCache *cache, const LamLoad *load, PetscInt index,
   response->status = LAM_OUT_OF_REACH;
   if (point && point->held.answers) PetscCall(AskModel(cache, load, point, response));
   if (response->status != LAM_OUT_OF_REACH) PetscFunctionReturn(0);
-  PetscCall(AskTables(cache, load, point, response));
+  if (cache->newest && !LamCacheUsesDirectSolve(cache, index)) PetscCall(AskTables(cache, load, point, response));
   if (point && LamResponseHasFields(response)) point->held.answers = PETSC_FALSE;
   if (response->status == LAM_OUT_OF_REACH) PetscCall(AskModel(cache, load, point, response));
   if (response->status == LAM_OUT_OF_REACH) PetscCall(LamCacheAskRecords(cache, load, response));
@@ -106,7 +105,7 @@ PetscErrorCode LamCacheAdopt(LamCache *cache, const LamLoad *load, PetscInt inde
   LamResponse answer = {.status = LAM_OUT_OF_REACH};
 
   PetscFunctionBeginUser;
-  if (!point || GoesOnByItself(point)) PetscFunctionReturn(0);
+  if (!point || LamCacheUsesDirectSolve(cache, index)) PetscFunctionReturn(0);
   LamScatterModelFind(cache->database, &question, &model);
   PetscCall(TryModel(cache, &model, &question, ADOPTS * cache->accuracy, &answer));
   if (!LamResponseHasFields(&answer)) PetscFunctionReturn(0);
@@ -124,11 +123,6 @@ void LamCacheAssignLocalModel(LamCache *cache, const LamLoad *load, PetscInt ind
   if (!point) return;
   LamScatterModelFind(cache->database, &question, &model);
   TakeTo(point, model.state < 0 ? point->held.model : model);
-}
-
-PetscBool LamCacheUsesDirectSolve(const LamCache *cache, PetscInt index)
-{
-  return GoesOnByItself(PointOf(cache, index));
 }
 
 /* ---- load steps ---- */

@@ -19,22 +19,6 @@ typedef struct {
   LamResponse *responses;
 } Batch;
 
-static PetscErrorCode BatchCreate(PetscInt capacity, Batch *batch)
-{
-  PetscFunctionBeginUser;
-  batch->n = 0;
-  PetscCall(PetscMalloc4(capacity, &batch->loads, capacity, &batch->points, capacity, &batch->from, capacity,
-                         &batch->responses));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode BatchDestroy(Batch *batch)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree4(batch->loads, batch->points, batch->from, batch->responses));
-  PetscFunctionReturn(0);
-}
-
 /* ---- rotation and scaling ---- */
 
 /* The load in the axes and units of the tissue: F Q. */
@@ -74,14 +58,6 @@ static void Turn(PetscReal angle, LamResponse *r)
   for (int i = 0; i < 3; i++) TurnRows(&r->tangent[27 * i], 9, 1, 9, c, s); /* ij: j */
 }
 
-/* Converts the response to the axes and units of the body. */
-static void ToBody(const LamLoad *load, PetscReal angle, PetscReal stress, LamResponse *r)
-{
-  LamResponseScale(stress, r);
-  if (angle != 0) Turn(angle, r);
-  r->load = *load;
-}
-
 /* ---- queries ---- */
 
 /* Queries the tissue for all its terms. Responses are in the axes and units of the body. */
@@ -106,40 +82,34 @@ static PetscErrorCode AskTissue(const Mosaic *mosaic, PetscInt tissue, PetscInt 
   PetscCall(LamResponderRespond(t->responder, batch->n, batch->loads, batch->points, batch->responses));
   for (PetscInt q = 0; q < batch->n; q++) {
     const PetscInt i = batch->from[q][0];
+    const PetscReal angle = mosaic->points[points[i]].angle;
 
-    ToBody(&loads[i], mosaic->points[points[i]].angle, t->stress, &batch->responses[q]);
+    LamResponseScale(t->stress, &batch->responses[q]);
+    if (angle != 0) Turn(angle, &batch->responses[q]);
+    batch->responses[q].load = loads[i];
   }
   PetscFunctionReturn(0);
 }
 
-/* Without fields in one term the response has none: copies that term's status and reason. */
-static PetscErrorCode Refuse(const LamHeterogeneousTissue *tissue, const LamResponse *term, LamResponse *response)
-{
-  PetscFunctionBeginUser;
-  PetscCall(LamResponseInit(&term->load, response));
-  response->status = term->status;
-  response->source = term->source;
-  snprintf(response->reason, sizeof(response->reason), "%s%s%.150s", tissue->name, tissue->name[0] ? ": " : "",
-           term->reason);
-  PetscFunctionReturn(0);
-}
-
-/* at[k]: response of term k. */
+/* at[k]: response of term k. Without fields in one term the response has none, with that term's status and reason. */
 static PetscErrorCode Combine(const Mosaic *mosaic, const LamHeterogeneousPoint *point, const LamResponse at[],
                               LamResponse *response)
 {
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < point->count; k++) {
-    if (LamResponseHasFields(&at[k])) continue;
-    PetscCall(Refuse(&mosaic->tissues[point->term[k].knot], &at[k], response));
-    PetscFunctionReturn(0);
-  }
-  if (point->count == 1) {
-    *response = at[0];
-    PetscFunctionReturn(0);
-  }
   PetscCall(LamResponseInit(&at[0].load, response));
-  LamBlend(point->count, point->term, at, response);
+  for (PetscInt k = 0; k < point->count; k++) {
+    const char *name = mosaic->tissues[point->term[k].knot].name;
+
+    if (LamResponseHasFields(&at[k])) continue;
+    response->status = at[k].status;
+    response->source = at[k].source;
+    snprintf(response->reason, sizeof(response->reason), "%s%s%.150s", name, name[0] ? ": " : "", at[k].reason);
+    PetscFunctionReturn(0);
+  }
+  if (point->count == 1)
+    *response = at[0];
+  else
+    LamBlend(point->count, point->term, at, response);
   PetscFunctionReturn(0);
 }
 
@@ -169,12 +139,12 @@ static PetscErrorCode AskTissues(const Mosaic *mosaic, PetscInt n, const LamLoad
   Batch batch;
 
   PetscFunctionBeginUser;
-  PetscCall(BatchCreate(n, &batch));
+  PetscCall(PetscMalloc4(n, &batch.loads, n, &batch.points, n, &batch.from, n, &batch.responses));
   for (PetscInt t = 0; t < mosaic->tissue_count; t++) {
     PetscCall(AskTissue(mosaic, t, n, loads, points, &batch));
     for (PetscInt q = 0; q < batch.n; q++) parts[start[batch.from[q][0]] + batch.from[q][1]] = batch.responses[q];
   }
-  PetscCall(BatchDestroy(&batch));
+  PetscCall(PetscFree4(batch.loads, batch.points, batch.from, batch.responses));
   PetscFunctionReturn(0);
 }
 

@@ -8,16 +8,11 @@
 
 const char *const LamParametricAxisNames[] = {LAM_FAMILY_AXES(LAM_NAME_ENTRY) NULL};
 
-typedef struct {
-  LamDatabase database; /* borrowed */
-  PetscReal value;
-} Knot;
-
 struct LamParametricDatabase_s {
   LamParametricAxis axis;
   PetscInt n;
-  Knot *knots;       /* ascending */
-  PetscReal *values; /* of the knots */
+  PetscReal *values;      /* of the knots, ascending */
+  LamDatabase *databases; /* of the knots; borrowed */
 };
 
 /* ---- the axis ---- */
@@ -85,17 +80,13 @@ static PetscErrorCode FindAxis(PetscInt n, const LamDatabase databases[], LamPar
   PetscFunctionReturn(0);
 }
 
-static int CompareKnots(const void *first, const void *second)
-{
-  const PetscReal a = ((const Knot *)first)->value, b = ((const Knot *)second)->value;
-
-  return (a > b) - (a < b);
-}
-
 PetscErrorCode LamParametricDatabaseCreate(PetscInt n, const LamDatabase databases[], LamParametricDatabase *family)
 {
   LamParametricAxis axis = LAM_FAMILY_WALL_THICKNESS;
   LamParametricDatabase f;
+  LamMicrostructure micro;
+  PetscReal *values;
+  PetscInt *order;
 
   PetscFunctionBeginUser;
   PetscCheck(n >= 2, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "a family needs at least two databases");
@@ -104,19 +95,22 @@ PetscErrorCode LamParametricDatabaseCreate(PetscInt n, const LamDatabase databas
   *family = f;
   f->axis = axis;
   f->n = n;
-  PetscCall(PetscMalloc1(n, &f->knots));
+  PetscCall(PetscMalloc2(n, &f->values, n, &f->databases));
+  PetscCall(PetscMalloc2(n, &values, n, &order));
   for (PetscInt i = 0; i < n; i++) {
-    LamMicrostructure micro;
-
     PetscCall(LamDatabaseGetMicrostructure(databases[i], &micro, NULL, NULL));
-    f->knots[i] = (Knot){databases[i], AxisValue(&micro, axis)};
+    values[i] = AxisValue(&micro, axis);
+    order[i] = i;
   }
-  qsort(f->knots, (size_t)n, sizeof(Knot), CompareKnots);
-  PetscCall(PetscMalloc1(n, &f->values));
-  for (PetscInt i = 0; i < n; i++) f->values[i] = f->knots[i].value;
+  PetscCall(PetscSortRealWithPermutation(n, values, order));
+  for (PetscInt i = 0; i < n; i++) {
+    f->values[i] = values[order[i]];
+    f->databases[i] = databases[order[i]];
+  }
+  PetscCall(PetscFree2(values, order));
   for (PetscInt i = 1; i < n; i++)
-    PetscCheck(!Same(f->knots[i - 1].value, f->knots[i].value), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "two of the databases have %s = %g", LamParametricAxisNames[axis], (double)f->knots[i].value);
+    PetscCheck(!Same(f->values[i - 1], f->values[i]), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "two of the databases have %s = %g", LamParametricAxisNames[axis], (double)f->values[i]);
   PetscFunctionReturn(0);
 }
 
@@ -124,8 +118,7 @@ PetscErrorCode LamParametricDatabaseDestroy(LamParametricDatabase *family)
 {
   PetscFunctionBeginUser;
   if (!*family) PetscFunctionReturn(0);
-  PetscCall(PetscFree((*family)->knots));
-  PetscCall(PetscFree((*family)->values));
+  PetscCall(PetscFree2((*family)->values, (*family)->databases));
   PetscCall(PetscFree(*family));
   PetscFunctionReturn(0);
 }
@@ -135,8 +128,8 @@ PetscErrorCode LamParametricDatabaseGetAxis(LamParametricDatabase family, LamPar
 {
   PetscFunctionBeginUser;
   *axis = family->axis;
-  *least = family->knots[0].value;
-  *most = family->knots[family->n - 1].value;
+  *least = family->values[0];
+  *most = family->values[family->n - 1];
   PetscFunctionReturn(0);
 }
 
@@ -153,21 +146,18 @@ PetscErrorCode LamParametricDatabaseQuery(LamParametricDatabase f, PetscReal val
   PetscCall(LamResponseInit(load, response));
   response->source = LAM_SOURCE_DATABASE;
   response->status = LAM_OUT_OF_REACH;
-  if (!(value >= f->knots[0].value * (1 - SAME) && value <= f->knots[f->n - 1].value * (1 + SAME))) {
+  if (!(value >= f->values[0] * (1 - SAME) && value <= f->values[f->n - 1] * (1 + SAME))) {
     snprintf(response->reason, sizeof(response->reason), "%s = %g is outside the databases, %g to %g",
-             LamParametricAxisNames[f->axis], (double)value, (double)f->knots[0].value,
-             (double)f->knots[f->n - 1].value);
+             LamParametricAxisNames[f->axis], (double)value, (double)f->values[0], (double)f->values[f->n - 1]);
     PetscFunctionReturn(0);
   }
   n = LamBlendAt(f->n, f->values, value, terms);
   for (PetscInt i = 0; i < n; i++) {
-    const Knot *knot = &f->knots[terms[i].knot];
-
-    PetscCall(LamDatabaseQuery(knot->database, load, accuracy, &at[i]));
+    PetscCall(LamDatabaseQuery(f->databases[terms[i].knot], load, accuracy, &at[i]));
     if (at[i].status == LAM_CONVERGED) continue;
     response->status = at[i].status;
     snprintf(response->reason, sizeof(response->reason), "at %s = %g: %.150s", LamParametricAxisNames[f->axis],
-             (double)knot->value, at[i].reason);
+             (double)f->values[terms[i].knot], at[i].reason);
     PetscFunctionReturn(0);
   }
   LamBlend(n, terms, at, response);

@@ -14,6 +14,12 @@
 #define MOST_FAILURES 8 /* pressures without a response */
 #define TOLERANCE 1e-10 /* of p, relative and in units of C1 + C2 */
 
+/* Of a material point. */
+typedef struct {
+  PetscReal lumen; /* of the last open response; 0: none */
+  PetscReal pressure;
+} State;
+
 typedef struct {
   MPI_Comm comm;
   LamResponder open;             /* borrowed */
@@ -21,9 +27,8 @@ typedef struct {
   PetscInt points;
   PetscBool sealed;
   PetscReal bulk_modulus;
-  PetscReal *water;                        /* [points] */
-  PetscReal *lumen, *accepted_lumen;       /* [points] of the last open response; 0: none */
-  PetscReal *pressure, *accepted_pressure; /* [points] */
+  PetscReal *water;      /* [points] */
+  State *now, *accepted; /* [points] */
 } Sealed;
 
 /* The search for one pressure. */
@@ -78,22 +83,6 @@ static void Advance(const Sealed *s, PetscReal p0, PetscReal water, const LamRes
   *p = next;
 }
 
-/* The queries of a round: searches that are not done. */
-static PetscInt Gather(PetscInt n, const LamLoad loads[], const PetscInt points[], const PetscReal p[],
-                       const Search search[], LamLoad asked[], PetscInt asked_points[], PetscInt from[])
-{
-  PetscInt count = 0;
-
-  for (PetscInt i = 0; i < n; i++) {
-    if (search[i].done) continue;
-    asked[count] = loads[i];
-    asked[count].turgor = p[i];
-    asked_points[count] = points[i];
-    from[count++] = i;
-  }
-  return count;
-}
-
 /*
   The error of the pressure is the error of the lumen divided by v_w / K_w - Psi_pp, about 1e-3. A table of bonded cells
   gives lumens to O(p/kappa) from F alone. Where cells separate, the gaps would have to be known far more accurately
@@ -119,7 +108,7 @@ static PetscErrorCode Finish(Sealed *s, PetscInt point, const LamLoad *load, Lam
   PetscFunctionBeginUser;
   if (LamResponseHasFields(r)) PetscCall(Refuse(r));
   if (LamResponseHasFields(r)) {
-    s->pressure[point] = r->load.turgor;
+    s->now[point].pressure = r->load.turgor;
     LamResponseSeal(load->turgor, s->water[point], s->bulk_modulus, r);
     PetscFunctionReturn(0);
   }
@@ -140,8 +129,15 @@ static PetscErrorCode Find(Sealed *s, PetscInt n, const LamLoad loads[], const P
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc4(n, &asked, n, &asked_points, n, &from, n, &answers));
   for (PetscInt round = 0; round < MOST_QUESTIONS && most; round++) {
-    const PetscInt count = Gather(n, loads, points, p, search, asked, asked_points, from);
+    PetscInt count = 0;
 
+    for (PetscInt i = 0; i < n; i++) {
+      if (search[i].done) continue;
+      asked[count] = loads[i];
+      asked[count].turgor = p[i];
+      asked_points[count] = points[i];
+      from[count++] = i;
+    }
     PetscCallMPI(MPI_Allreduce(&count, &most, 1, MPIU_INT, MPI_MAX, s->comm));
     if (!most) break;
     PetscCall(LamResponderRespond(s->open, count, asked, asked_points, answers));
@@ -167,7 +163,7 @@ static PetscErrorCode RespondSealed(Sealed *s, PetscInt n, const LamLoad loads[]
   for (PetscInt i = 0; i < n; i++) {
     PetscCheck(points && points[i] >= 0 && points[i] < s->points, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
                "a sealed answer needs a material point below %d, whose water it is", (int)s->points);
-    p[i] = s->pressure[points[i]];
+    p[i] = s->now[points[i]].pressure;
     search[i] = (Search){.low = -INFINITY, .high = INFINITY, .answered = NAN};
   }
   PetscCall(Find(s, n, loads, points, search, p, responses));
@@ -189,8 +185,7 @@ static PetscErrorCode RespondOpen(Sealed *s, PetscInt n, const LamLoad loads[], 
   PetscCall(LamResponderRespond(s->open, n, loads, points, responses));
   for (PetscInt i = 0; i < n; i++) {
     if (!points || points[i] < 0 || !LamResponseHasFields(&responses[i])) continue;
-    s->lumen[points[i]] = -responses[i].energy_turgor;
-    s->pressure[points[i]] = loads[i].turgor;
+    s->now[points[i]] = (State){-responses[i].energy_turgor, loads[i].turgor};
   }
   PetscFunctionReturn(0);
 }
@@ -211,8 +206,7 @@ static PetscErrorCode Accept(void *ctx)
   Sealed *s = (Sealed *)ctx;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(s->accepted_lumen, s->lumen, s->points));
-  PetscCall(PetscArraycpy(s->accepted_pressure, s->pressure, s->points));
+  PetscCall(PetscArraycpy(s->accepted, s->now, s->points));
   PetscCall(LamResponderAccept(s->open));
   PetscFunctionReturn(0);
 }
@@ -222,8 +216,7 @@ static PetscErrorCode Reject(void *ctx)
   Sealed *s = (Sealed *)ctx;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(s->lumen, s->accepted_lumen, s->points));
-  PetscCall(PetscArraycpy(s->pressure, s->accepted_pressure, s->points));
+  PetscCall(PetscArraycpy(s->now, s->accepted, s->points));
   PetscCall(LamResponderReject(s->open));
   PetscFunctionReturn(0);
 }
@@ -235,10 +228,11 @@ static PetscErrorCode Seal(void *ctx, PetscReal bulk_modulus)
   PetscFunctionBeginUser;
   PetscCheck(bulk_modulus > 0 && isfinite(bulk_modulus), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
              "bulk modulus of water %g; it must be positive and finite", (double)bulk_modulus);
-  for (PetscInt i = 0; i < s->points; i++)
-    PetscCheck(s->accepted_lumen[i] > 0, PETSC_COMM_SELF, PETSC_ERR_ORDER,
+  for (PetscInt i = 0; i < s->points; i++) {
+    PetscCheck(s->accepted[i].lumen > 0, PETSC_COMM_SELF, PETSC_ERR_ORDER,
                "material point %d has no accepted answer whose water it could keep", (int)i);
-  PetscCall(PetscArraycpy(s->water, s->accepted_lumen, s->points));
+    s->water[i] = s->accepted[i].lumen;
+  }
   s->bulk_modulus = bulk_modulus;
   s->sealed = PETSC_TRUE;
   PetscFunctionReturn(0);
@@ -247,7 +241,8 @@ static PetscErrorCode Seal(void *ctx, PetscReal bulk_modulus)
 /* Saved state of a point, in front of the bytes of `open`. */
 typedef struct {
   PetscReal bulk_modulus; /* 0: not sealed */
-  PetscReal water, lumen, pressure;
+  PetscReal water;
+  State state;
 } Kept;
 
 static PetscErrorCode StateSize(void *ctx, size_t *bytes)
@@ -263,8 +258,7 @@ static PetscErrorCode StateSize(void *ctx, size_t *bytes)
 static PetscErrorCode Save(void *ctx, PetscInt point, void *bytes)
 {
   Sealed *s = (Sealed *)ctx;
-  const Kept kept = {s->sealed ? s->bulk_modulus : 0, s->water[point], s->accepted_lumen[point],
-                     s->accepted_pressure[point]};
+  const Kept kept = {s->sealed ? s->bulk_modulus : 0, s->water[point], s->accepted[point]};
 
   PetscFunctionBeginUser;
   memcpy(bytes, &kept, sizeof(kept));
@@ -282,8 +276,7 @@ static PetscErrorCode Load(void *ctx, PetscInt point, const void *bytes)
   s->sealed = (PetscBool)(kept.bulk_modulus > 0);
   s->bulk_modulus = kept.bulk_modulus;
   s->water[point] = kept.water;
-  s->lumen[point] = s->accepted_lumen[point] = kept.lumen;
-  s->pressure[point] = s->accepted_pressure[point] = kept.pressure;
+  s->now[point] = s->accepted[point] = kept.state;
   PetscCall(LamResponderLoad(s->open, point, (const char *)bytes + sizeof(kept)));
   PetscFunctionReturn(0);
 }
@@ -293,7 +286,7 @@ static PetscErrorCode Destroy(void **ctx)
   Sealed *s = (Sealed *)*ctx;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscFree5(s->water, s->lumen, s->accepted_lumen, s->pressure, s->accepted_pressure));
+  PetscCall(PetscFree3(s->water, s->now, s->accepted));
   PetscCall(PetscFree(*ctx));
   PetscFunctionReturn(0);
 }
@@ -313,8 +306,7 @@ PetscErrorCode LamSealedResponderCreate(MPI_Comm comm, LamResponder open, PetscI
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
   *s = (Sealed){.comm = comm, .open = open, .points = points};
-  PetscCall(PetscCalloc5(points, &s->water, points, &s->lumen, points, &s->accepted_lumen, points, &s->pressure, points,
-                         &s->accepted_pressure));
+  PetscCall(PetscCalloc3(points, &s->water, points, &s->now, points, &s->accepted));
   PetscCall(LamResponderCreate(&functions, s, &s->counters, responder));
   PetscFunctionReturn(0);
 }
