@@ -7,6 +7,7 @@
 
   Reference: Bonet & Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 2nd ed., ch. 9.
 */
+#include <math.h>
 #include <time.h>
 #include "macro_impl.h"
 
@@ -77,29 +78,25 @@ static void KeepResponse(PetscInt dim, const LamLoad *load, const LamResponse *r
 /* Describes the point without response: among all ranks, the one in the element of the lowest number. */
 static PetscErrorCode DescribeTrouble(LamMacro macro, PetscInt64 failed, PetscInt point)
 {
-  struct {
-    int element, rank;
-  } mine, first;
-  PetscMPIInt rank;
+  const LamMacroElement *element = point < 0 ? NULL : &macro->elements[macro->point_element[point]];
+  PetscMPIInt rank = 0;
+  PetscBool mine = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(macro->comm, &rank));
-  mine.rank = rank;
-  mine.element = point < 0 ? PETSC_MPI_INT_MAX : (int)macro->elements[macro->point_element[point]].number;
-  PetscCallMPI(MPI_Allreduce(&mine, &first, 1, MPI_2INT, MPI_MINLOC, macro->comm));
-  if (rank == first.rank && point >= 0) {
+  PetscCall(LamMacroFindRank(macro, element ? (double)element->number : INFINITY, &rank, &mine));
+  if (mine && element) {
     const LamResponse *response = &macro->responses[point];
     const PetscReal *F = macro->loads[point].F, *X = &macro->place[macro->dim * point];
     const PetscReal mm = macro->scene->scales.macro_length * 1e3;
     PetscCall(PetscSNPrintf(macro->trouble, sizeof(macro->trouble),
                             "%s: %s; %" PetscInt64_FMT " points without response, the first in element %d, point "
                             "%" PetscInt_FMT " at (%.4g, %.4g) mm: F = [%.5g %.5g %.5g %.5g], turgor %.4g MPa",
-                            LamStatusNames[response->status], response->reason, failed, mine.element,
-                            point - macro->elements[macro->point_element[point]].first, (double)(X[0] * mm),
-                            (double)(X[1] * mm), (double)F[0], (double)F[1], (double)F[3], (double)F[4],
+                            LamStatusNames[response->status], response->reason, failed, (int)element->number,
+                            point - element->first, (double)(X[0] * mm), (double)(X[1] * mm), (double)F[0],
+                            (double)F[1], (double)F[3], (double)F[4],
                             (double)(macro->loads[point].turgor * macro->scene->scales.stress * 1e-6)));
   }
-  PetscCallMPI(MPI_Bcast(macro->trouble, sizeof(macro->trouble), MPI_CHAR, first.rank, macro->comm));
+  PetscCallMPI(MPI_Bcast(macro->trouble, sizeof(macro->trouble), MPI_CHAR, rank, macro->comm));
   PetscFunctionReturn(0);
 }
 

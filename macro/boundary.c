@@ -222,7 +222,8 @@ static PetscErrorCode HeldMotions(LamMacro macro, PetscReal basis[3][3], PetscIn
 
 /* A node of the whole mesh. */
 typedef struct {
-  int rank;
+  PetscMPIInt rank;
+  PetscBool mine;           /* this rank */
   const LamMacroNode *node; /* on that rank */
   PetscReal X[LAM_MACRO_DIM];
 } Place;
@@ -231,30 +232,24 @@ typedef struct {
 static PetscErrorCode FindNode(LamMacro macro, const Place *from, Place *found)
 {
   PetscReal farthest = -1, best;
-  struct {
-    int number, rank;
-  } mine = {PETSC_MPI_INT_MAX, 0}, first;
-  PetscMPIInt rank;
+  double lowest = INFINITY;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(macro->comm, &rank));
   for (int pass = 0; pass < 2; pass++) { /* first the greatest distance, then the rank that has it */
     for (PetscInt k = 0; k < macro->node_count; k++) {
       const LamMacroNode *node = &macro->nodes[k];
       PetscReal distance = 0;
       for (PetscInt i = 0; i < macro->dim; i++) distance += PetscSqr(node->X[i] - from->X[i]);
       if (pass == 0) farthest = PetscMax(farthest, distance);
-      if (pass == 0 || distance < best * (1 - 1e-9) || node->number >= mine.number) continue;
-      mine.number = (int)node->number;
+      if (pass == 0 || distance < best * (1 - 1e-9) || (double)node->number >= lowest) continue;
+      lowest = (double)node->number;
       found->node = node;
     }
     if (pass == 0) PetscCallMPI(MPI_Allreduce(&farthest, &best, 1, MPIU_REAL, MPIU_MAX, macro->comm));
   }
-  mine.rank = rank;
-  PetscCallMPI(MPI_Allreduce(&mine, &first, 1, MPI_2INT, MPI_MINLOC, macro->comm));
-  found->rank = first.rank;
-  if (rank == first.rank) PetscCall(PetscArraycpy(found->X, found->node->X, macro->dim));
-  PetscCallMPI(MPI_Bcast(found->X, LAM_MACRO_DIM, MPIU_REAL, first.rank, macro->comm));
+  PetscCall(LamMacroFindRank(macro, lowest, &found->rank, &found->mine));
+  if (found->mine) PetscCall(PetscArraycpy(found->X, found->node->X, macro->dim));
+  PetscCallMPI(MPI_Bcast(found->X, LAM_MACRO_DIM, MPIU_REAL, found->rank, macro->comm));
   PetscFunctionReturn(0);
 }
 
@@ -265,7 +260,6 @@ static PetscErrorCode HoldNode(LamMacro macro, const Place *place, const PetscRe
 {
   const PetscReal independent = 1e-6;
   PetscReal motion[3], square = 0;
-  PetscMPIInt me;
 
   PetscFunctionBeginUser;
   RigidMotions(normal, place->X, motion);
@@ -278,8 +272,7 @@ static PetscErrorCode HoldNode(LamMacro macro, const Place *place, const PetscRe
   if (square < independent || *rank == 3) PetscFunctionReturn(0);
   for (int m = 0; m < 3; m++) basis[*rank][m] = motion[m] / PetscSqrtReal(square);
   (*rank)++;
-  PetscCallMPI(MPI_Comm_rank(macro->comm, &me));
-  if (me != place->rank) PetscFunctionReturn(0);
+  if (!place->mine) PetscFunctionReturn(0);
   macro->constraints[macro->constraint_count++] = (LamConstraint){.point = place->node->point,
                                                                   .local = place->node->local,
                                                                   .normal = {normal[0], normal[1]},

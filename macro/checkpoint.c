@@ -80,23 +80,9 @@ static PetscErrorCode ArchiveTouch(LamMacro macro, LamArchive archive)
   PetscFunctionReturn(0);
 }
 
-/* Data for the loads and the prediction of the next step. */
-static PetscErrorCode ArchiveLoads(LamMacro macro, LamArchive archive)
-{
-  PetscReal borders[PETSC_STATIC_ARRAY_LENGTH(macro->borders)] = {0};
-
-  PetscFunctionBeginUser;
-  PetscCall(LamMacroArchiveVec(macro, archive, "displacement before", macro->before));
-  PetscCall(LamArchiveShared(archive, "passed", sizeof(macro->passed), &macro->passed));
-  PetscCall(ArchiveTouch(macro, archive));
-  for (PetscInt b = 0; b < macro->border_count; b++) borders[b] = macro->borders[b].accepted;
-  PetscCall(LamArchiveShared(archive, "borders", sizeof(borders), borders));
-  for (PetscInt b = 0; b < macro->border_count; b++) macro->borders[b].accepted = macro->borders[b].now = borders[b];
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode ArchiveState(LamMacro macro, LamArchive archive)
 {
+  PetscReal borders[PETSC_STATIC_ARRAY_LENGTH(macro->borders)] = {0};
   PetscInt *numbers;
 
   PetscFunctionBeginUser;
@@ -106,7 +92,13 @@ static PetscErrorCode ArchiveState(LamMacro macro, LamArchive archive)
   PetscCall(LamMacroArchiveVec(macro, archive, "force", macro->force_accepted));
   PetscCall(LamArchiveItems(archive, "points", sizeof(LamMaterialPoint), macro->point_count, numbers, macro->accepted));
   PetscCall(LamMacroArchiveSeal(macro, archive, numbers));
-  PetscCall(ArchiveLoads(macro, archive));
+  /* for the loads and the prediction of the next step */
+  PetscCall(LamMacroArchiveVec(macro, archive, "displacement before", macro->before));
+  PetscCall(LamArchiveShared(archive, "passed", sizeof(macro->passed), &macro->passed));
+  PetscCall(ArchiveTouch(macro, archive));
+  for (PetscInt b = 0; b < macro->border_count; b++) borders[b] = macro->borders[b].accepted;
+  PetscCall(LamArchiveShared(archive, "borders", sizeof(borders), borders));
+  for (PetscInt b = 0; b < macro->border_count; b++) macro->borders[b].accepted = macro->borders[b].now = borders[b];
   PetscCall(ArchiveResponder(macro, archive, numbers));
   PetscCall(PetscFree(numbers));
   PetscFunctionReturn(0);

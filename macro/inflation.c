@@ -22,16 +22,12 @@ typedef struct {
 } Energy;
 
 /* Finds the material point nearest to the centroid, and its rank. */
-static PetscErrorCode FindMiddle(LamMacro macro, PetscMPIInt *rank, PetscInt *point)
+static PetscErrorCode FindMiddle(LamMacro macro, PetscMPIInt *rank, PetscBool *mine, PetscInt *point)
 {
   PetscReal sum[3] = {0};
-  struct {
-    double distance;
-    int rank;
-  } mine = {HUGE_VAL, 0}, least;
+  double nearest = HUGE_VAL;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(macro->comm, &mine.rank));
   for (PetscInt p = 0; p < macro->point_count; p++) {
     sum[2] += macro->weight[p];
     for (int i = 0; i < 2; i++) sum[i] += macro->weight[p] * macro->place[2 * p + i];
@@ -39,12 +35,11 @@ static PetscErrorCode FindMiddle(LamMacro macro, PetscMPIInt *rank, PetscInt *po
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPIU_SUM, macro->comm));
   for (PetscInt p = 0; p < macro->point_count; p++) {
     const double distance = hypot(macro->place[2 * p] - sum[0] / sum[2], macro->place[2 * p + 1] - sum[1] / sum[2]);
-    if (distance >= mine.distance) continue;
-    mine.distance = distance;
+    if (distance >= nearest) continue;
+    nearest = distance;
     *point = p;
   }
-  PetscCallMPI(MPI_Allreduce(&mine, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, macro->comm));
-  *rank = least.rank;
+  PetscCall(LamMacroFindRank(macro, nearest, rank, mine));
   PetscFunctionReturn(0);
 }
 
@@ -67,19 +62,17 @@ static void Project(const LamResponse *response, Energy *energy)
 }
 
 /* Psi and its derivatives at F = 1 + (e11, e12, e22), the same on all ranks. */
-static PetscErrorCode Ask(LamMacro macro, PetscMPIInt rank, PetscInt point, const PetscReal e[SYMMETRIC],
-                          Energy *energy)
+static PetscErrorCode Ask(LamMacro macro, PetscMPIInt rank, PetscBool mine, PetscInt point,
+                          const PetscReal e[SYMMETRIC], Energy *energy)
 {
   const LamLoad load = {{1 + e[0], e[1], 0, e[1], 1 + e[2], 0, 0, 0, 1},
                         macro->turgor * (macro->point_count ? macro->turgor_share[point] : 0),
                         macro->point_count ? macro->cohesion[point] : 0};
   LamResponse response;
-  PetscMPIInt own;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(macro->comm, &own));
-  PetscCall(LamResponderRespond(macro->responder, own == rank, &load, &point, &response));
-  if (own == rank) Project(&response, energy);
+  PetscCall(LamResponderRespond(macro->responder, mine, &load, &point, &response));
+  if (mine) Project(&response, energy);
   PetscCallMPI(MPI_Bcast(energy, sizeof(*energy), MPI_BYTE, rank, macro->comm));
   PetscFunctionReturn(0);
 }
@@ -119,15 +112,16 @@ static PetscReal Stress(const Energy *energy)
 static PetscErrorCode FreeTissue(LamMacro macro, PetscReal e[SYMMETRIC], PetscBool *found)
 {
   PetscMPIInt rank = 0;
+  PetscBool mine = PETSC_FALSE;
   PetscInt point = 0;
   PetscReal step[SYMMETRIC] = {0}, share = 1, scale = 0;
   Energy now, next;
 
   PetscFunctionBeginUser;
   *found = PETSC_FALSE;
-  PetscCall(FindMiddle(macro, &rank, &point));
+  PetscCall(FindMiddle(macro, &rank, &mine, &point));
   PetscCall(PetscArrayzero(e, SYMMETRIC));
-  PetscCall(Ask(macro, rank, point, e, &now));
+  PetscCall(Ask(macro, rank, mine, point, e, &now));
   for (PetscInt it = 0; it < ITERATIONS && now.known && share > 1e-3; it++) {
     PetscReal trial[SYMMETRIC];
     scale = PetscMax(scale, Stress(&now));
@@ -135,7 +129,7 @@ static PetscErrorCode FreeTissue(LamMacro macro, PetscReal e[SYMMETRIC], PetscBo
     if (*found) break;
     PetscCall(Descend(&now, step));
     for (int i = 0; i < SYMMETRIC; i++) trial[i] = e[i] + share * step[i];
-    PetscCall(Ask(macro, rank, point, trial, &next));
+    PetscCall(Ask(macro, rank, mine, point, trial, &next));
     /* near convergence the decrease of the energy is below rounding */
     if (!next.known || (next.energy > now.energy && Stress(&next) > 0.5 * Stress(&now))) {
       share *= 0.5;

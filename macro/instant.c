@@ -62,9 +62,8 @@ PetscErrorCode LamMacroGetState(LamMacro macro, PetscReal u[], PetscReal pressur
   PetscFunctionReturn(0);
 }
 
-/* Sets the body to a state under the given conditions. */
-static PetscErrorCode Enter(LamMacro macro, const LamMacroInstant *instant, const PetscReal u[],
-                            const PetscReal pressures[])
+PetscErrorCode LamMacroBalance(LamMacro macro, const LamMacroInstant *instant, const PetscReal u[],
+                               const PetscReal pressures[], PetscBool *ok)
 {
   PetscScalar *values;
   PetscInt n;
@@ -78,17 +77,10 @@ static PetscErrorCode Enter(LamMacro macro, const LamMacroInstant *instant, cons
   PetscCall(VecGetArray(macro->trial, &values));
   PetscCall(PetscArraycpy(values, u, n));
   PetscCall(VecRestoreArray(macro->trial, &values));
-  if (!macro->seal) PetscFunctionReturn(0);
-  PetscCall(PetscArraycpy(macro->seal->change, pressures, macro->seal->modes * macro->element_count));
-  PetscCall(VecCopy(macro->trial, macro->seal->u)); /* the pressures belong to it */
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamMacroBalance(LamMacro macro, const LamMacroInstant *instant, const PetscReal u[],
-                               const PetscReal pressures[], PetscBool *ok)
-{
-  PetscFunctionBeginUser;
-  PetscCall(Enter(macro, instant, u, pressures));
+  if (macro->seal) {
+    PetscCall(PetscArraycpy(macro->seal->change, pressures, macro->seal->modes * macro->element_count));
+    PetscCall(VecCopy(macro->trial, macro->seal->u)); /* the pressures belong to it */
+  }
   macro->prediction = 0;
   macro->thorough = PETSC_TRUE; /* otherwise slow changes in time would not move the body at all */
   PetscCall(LamMacroIterate(macro, ok));

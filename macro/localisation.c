@@ -27,20 +27,14 @@ static void PointTangent(LamMacro macro, PetscInt p, PetscReal A[16])
  */
 static PetscErrorCode Share(LamMacro macro, LamMacroStep *step)
 {
-  struct {
-    double value;
-    int rank;
-  } mine, least;
   PetscReal found[5] = {step->ellipticity, step->localisation_normal[0], step->localisation_normal[1],
                         step->localisation_place[0], step->localisation_place[1]};
-  PetscMPIInt rank;
+  PetscMPIInt rank = 0;
+  PetscBool mine = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(macro->comm, &rank));
-  mine.value = isnan(found[0]) ? INFINITY : found[0];
-  mine.rank = rank;
-  PetscCallMPI(MPI_Allreduce(&mine, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, macro->comm));
-  PetscCallMPI(MPI_Bcast(found, 5, MPIU_REAL, least.rank, macro->comm));
+  PetscCall(LamMacroFindRank(macro, isnan(found[0]) ? INFINITY : found[0], &rank, &mine));
+  PetscCallMPI(MPI_Bcast(found, 5, MPIU_REAL, rank, macro->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &step->localised_points, 1, MPIU_INT, MPI_SUM, macro->comm));
   step->ellipticity = found[0];
   for (int i = 0; i < 2; i++) {

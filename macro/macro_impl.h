@@ -259,6 +259,22 @@ struct LamMacro_s {
   LamResponderCounters counted; /* counters at the start of the step */
 };
 
+/* The rank with the smallest value; among equal ones the lowest. Collective. */
+static inline PetscErrorCode LamMacroFindRank(LamMacro macro, double value, PetscMPIInt *rank, PetscBool *mine)
+{
+  struct {
+    double value;
+    int rank;
+  } own = {value, 0}, least;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(macro->comm, &own.rank));
+  PetscCallMPI(MPI_Allreduce(&own, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, macro->comm));
+  *rank = least.rank;
+  *mine = (PetscBool)(own.rank == least.rank);
+  PetscFunctionReturn(0);
+}
+
 /* mesh.c */
 PetscErrorCode LamMacroMeshCreate(LamMacro macro);
 PetscErrorCode LamMacroMeshDestroy(LamMacro macro);

@@ -126,6 +126,22 @@ static PetscBool Long(Mesh *m, int64_t each, int64_t *value)
   return *value < 0 || *value > PetscMin(most, INT_MAX - 1) ? Wrong(m, "%lld of them", (long long)*value) : PETSC_TRUE;
 }
 
+/* Tag of a node or element; in formats before 4.1 a short integer. */
+static PetscBool Tag(Mesh *m, int64_t least, int64_t most, int64_t *value)
+{
+  return m->format == 41 ? Long(m, 0, value) : Integer(m, least, most, value);
+}
+
+/* Skips n short integers. */
+static PetscBool Skip(Mesh *m, int64_t n)
+{
+  int64_t ignored;
+
+  for (int64_t i = 0; i < n; i++)
+    if (!Integer(m, INT_MIN, INT_MAX, &ignored)) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
 static PetscBool Reals(Mesh *m, int64_t n)
 {
   for (int64_t i = 0; i < n; i++) {
@@ -214,14 +230,13 @@ static PetscBool PhysicalNames(Mesh *m)
 
 static PetscBool Entity(Mesh *m, int dimension)
 {
-  int64_t tag, n, ignored;
+  int64_t tag, n;
 
   if (!Integer(m, INT_MIN, INT_MAX, &tag) || !Reals(m, m->format == 41 && !dimension ? 3 : 6)) return PETSC_FALSE;
   for (int list = 0; list < (dimension ? 2 : 1); list++) { /* physical groups, bounding entities */
     if (!Long(m, 1, &n)) return PETSC_FALSE;
     if (!list && n > MOST_TAGS) return Wrong(m, "more than %d physical groups of one entity", MOST_TAGS);
-    for (int64_t i = 0; i < n; i++)
-      if (!Integer(m, INT_MIN, INT_MAX, &ignored)) return PETSC_FALSE;
+    if (!Skip(m, n)) return PETSC_FALSE;
   }
   return Add(m, m->entities, dimension, tag);
 }
@@ -254,21 +269,16 @@ static PetscBool Block(Mesh *m, PetscBool of_elements, int64_t *third, int64_t *
 
 /* ---- nodes ---- */
 
-static PetscBool KeepTag(Mesh *m, int64_t tags[], int64_t room, int64_t *n, int64_t tag)
-{
-  if (*n == room) return Wrong(m, "there are more nodes than $Nodes says");
-  tags[(*n)++] = tag;
-  return PETSC_TRUE;
-}
-
 /* Formats 2.2 and 4.0: each tag with its coordinates; 4.1: all tags first. */
 static PetscBool NodeBlock(Mesh *m, int64_t count, int64_t tags[], int64_t room, int64_t *n)
 {
   int64_t tag;
 
   for (int64_t i = 0; i < count; i++) {
-    if (m->format == 41 ? !Long(m, 0, &tag) : !Integer(m, 0, INT_MAX - 1, &tag)) return PETSC_FALSE;
-    if (!KeepTag(m, tags, room, n, tag) || (m->format < 41 && !Reals(m, 3))) return PETSC_FALSE;
+    if (!Tag(m, 0, INT_MAX - 1, &tag)) return PETSC_FALSE;
+    if (*n == room) return Wrong(m, "there are more nodes than $Nodes says");
+    tags[(*n)++] = tag;
+    if (m->format < 41 && !Reals(m, 3)) return PETSC_FALSE;
   }
   return m->format == 41 ? Reals(m, 3 * count) : PETSC_TRUE;
 }
@@ -354,7 +364,7 @@ static PetscBool ElementNodes(Mesh *m, int kind)
   int64_t node[MOST_NODES];
 
   for (int i = 0; i < kinds[kind].nodes; i++) {
-    if (m->format == 41 ? !Long(m, 0, &node[i]) : !Integer(m, 0, INT_MAX - 1, &node[i])) return PETSC_FALSE;
+    if (!Tag(m, 0, INT_MAX - 1, &node[i])) return PETSC_FALSE;
     if (node[i] < m->first || node[i] - m->first >= m->span || !m->known[node[i] - m->first])
       return Wrong(m, "an element has node %lld, which is not in $Nodes", (long long)node[i]);
     for (int j = 0; j < i; j++)
@@ -371,7 +381,7 @@ static PetscBool ElementNodes(Mesh *m, int kind)
 /* Format 2.2: each element (text) or each block of elements (binary) states its type and number of tags. */
 static PetscBool OldElements(Mesh *m, int64_t n)
 {
-  int64_t first, second, tags, ignored;
+  int64_t first, second, tags;
 
   for (int64_t e = 0; e < n;) {
     int64_t count = 1, type;
@@ -384,9 +394,7 @@ static PetscBool OldElements(Mesh *m, int64_t n)
     if (!count || count > n - e) return Wrong(m, "there are not as many elements as $Elements says");
     kind = FindKind(m, type);
     for (int64_t i = 0; kind >= 0 && i < count; i++, e++) {
-      for (int64_t k = 0; k < tags + m->binary; k++)
-        if (!Integer(m, INT_MIN, INT_MAX, &ignored)) return PETSC_FALSE;
-      if (!ElementNodes(m, kind)) return PETSC_FALSE;
+      if (!Skip(m, tags + m->binary) || !ElementNodes(m, kind)) return PETSC_FALSE;
     }
     if (kind < 0) return PETSC_FALSE;
   }
@@ -406,8 +414,7 @@ static PetscBool ElementBlocks(Mesh *m, int64_t blocks, int64_t n)
     read += count;
     if (read > n) break;
     for (int64_t i = 0; i < count; i++)
-      if ((m->format == 41 ? !Long(m, 0, &ignored) : !Integer(m, INT_MIN, INT_MAX, &ignored)) || !ElementNodes(m, kind))
-        return PETSC_FALSE;
+      if (!Tag(m, INT_MIN, INT_MAX, &ignored) || !ElementNodes(m, kind)) return PETSC_FALSE;
   }
   return read == n ? PETSC_TRUE : Wrong(m, "there are not as many elements as $Elements says");
 }

@@ -382,18 +382,6 @@ static PetscErrorCode Report(LamMacro macro, PetscInt number, PetscReal load_fac
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode DescribeEnd(LamMacro macro, PetscInt number, Stage reached, char message[LAM_MESSAGE_LENGTH])
-{
-  PetscFunctionBeginUser;
-  if (number == 0)
-    PetscCall(PetscSNPrintf(message, LAM_MESSAGE_LENGTH, "turgor: reached %.4g of 1: %s", (double)reached.turgor,
-                            macro->trouble));
-  else
-    PetscCall(PetscSNPrintf(message, LAM_MESSAGE_LENGTH, "step %" PetscInt_FMT ": reached load factor %.4g: %s", number,
-                            (double)reached.load, macro->trouble));
-  PetscFunctionReturn(0);
-}
-
 /* Ends the run within a step. Increments that converged since the last report are reported, since they were expensive.
  */
 static PetscErrorCode EndWithinStep(LamMacro macro, PetscInt number, Stage reported, Stage reached, PetscReal start,
@@ -403,7 +391,12 @@ static PetscErrorCode EndWithinStep(LamMacro macro, PetscInt number, Stage repor
   PetscBool ends = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  if (!macro->stopped) PetscCall(DescribeEnd(macro, number, reached, message));
+  if (!macro->stopped && number == 0)
+    PetscCall(PetscSNPrintf(message, LAM_MESSAGE_LENGTH, "turgor: reached %.4g of 1: %s", (double)reached.turgor,
+                            macro->trouble));
+  else if (!macro->stopped)
+    PetscCall(PetscSNPrintf(message, LAM_MESSAGE_LENGTH, "step %" PetscInt_FMT ": reached load factor %.4g: %s", number,
+                            (double)reached.load, macro->trouble));
   if (reached.load != reported.load || (reached.turgor > reported.turgor && macro->scene->turgor != 0))
     PetscCall(Report(macro, PetscMax(number, first), reached.load, PETSC_FALSE, start, &ends));
   PetscFunctionReturn(0);

@@ -63,9 +63,30 @@ static PetscErrorCode AddFacetForce(LamMacro macro, const LamMacroFacet *facet, 
   PetscFunctionReturn(0);
 }
 
+/* Adds the nodal forces of one condition at a local displacement to a local vector, if it is not NULL, and to `sum`. */
+static PetscErrorCode AddForces(LamMacro macro, const LamBoundary *boundary, PetscReal factor, Vec displacement,
+                                Vec force, PetscReal sum[2])
+{
+  const PetscInt set = LamMacroFindSet(macro, boundary->on);
+
+  PetscFunctionBeginUser;
+  for (PetscInt f = 0; f < macro->facet_count; f++) {
+    const LamMacroFacet *facet = &macro->facets[f];
+    PetscScalar *ue = NULL, fe[6] = {0};
+    if (!(facet->sets >> set & 1)) continue;
+    PetscCall(DMPlexVecGetClosure(macro->dm, NULL, displacement, facet->point, NULL, &ue));
+    PetscCall(AddFacetForce(macro, facet, boundary, factor, ue, fe));
+    PetscCall(DMPlexVecRestoreClosure(macro->dm, NULL, displacement, facet->point, NULL, &ue));
+    if (force) PetscCall(DMPlexVecSetClosure(macro->dm, NULL, force, facet->point, fe, ADD_VALUES));
+    for (PetscInt k = 0; k < 6; k++) sum[k % 2] += PetscRealPart(fe[k]);
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamMacroExternalForce(LamMacro macro, Vec u, Vec external)
 {
   const LamMacroSpec *spec = &macro->scene->macro;
+  PetscReal sum[2] = {0, 0};
   Vec displacement, force;
 
   PetscFunctionBeginUser;
@@ -74,18 +95,9 @@ PetscErrorCode LamMacroExternalForce(LamMacro macro, Vec u, Vec external)
   PetscCall(DMGlobalToLocal(macro->dm, u, INSERT_VALUES, displacement));
   PetscCall(VecZeroEntries(force));
   for (PetscInt b = 0; b < spec->boundary_count; b++) {
-    const PetscInt set = LamMacroFindSet(macro, spec->boundary[b].on);
     const PetscReal factor = Factor(macro, &spec->boundary[b]);
     if (!IsTraction(&spec->boundary[b]) || factor == 0) continue;
-    for (PetscInt f = 0; f < macro->facet_count; f++) {
-      const LamMacroFacet *facet = &macro->facets[f];
-      PetscScalar *ue = NULL, fe[6] = {0};
-      if (!(facet->sets >> set & 1)) continue;
-      PetscCall(DMPlexVecGetClosure(macro->dm, NULL, displacement, facet->point, NULL, &ue));
-      PetscCall(AddFacetForce(macro, facet, &spec->boundary[b], factor, ue, fe));
-      PetscCall(DMPlexVecRestoreClosure(macro->dm, NULL, displacement, facet->point, NULL, &ue));
-      PetscCall(DMPlexVecSetClosure(macro->dm, NULL, force, facet->point, fe, ADD_VALUES));
-    }
+    PetscCall(AddForces(macro, &spec->boundary[b], factor, displacement, force, sum));
   }
   PetscCall(VecZeroEntries(external));
   PetscCall(DMLocalToGlobal(macro->dm, force, ADD_VALUES, external));
@@ -142,7 +154,6 @@ PetscErrorCode LamMacroAddTractionTangent(LamMacro macro, Mat tangent)
 PetscErrorCode LamMacroTractionSum(LamMacro macro, PetscInt entry, Vec u, PetscReal sum[2])
 {
   const LamBoundary *boundary = &macro->scene->macro.boundary[entry];
-  const PetscInt set = LamMacroFindSet(macro, boundary->on);
   const PetscReal factor = Factor(macro, boundary) * LamMacroTractionFactor(macro);
   Vec displacement;
 
@@ -151,14 +162,7 @@ PetscErrorCode LamMacroTractionSum(LamMacro macro, PetscInt entry, Vec u, PetscR
   if (!IsTraction(boundary)) PetscFunctionReturn(0);
   PetscCall(DMGetLocalVector(macro->dm, &displacement));
   PetscCall(DMGlobalToLocal(macro->dm, u, INSERT_VALUES, displacement));
-  for (PetscInt f = 0; f < macro->facet_count; f++) {
-    PetscScalar *ue = NULL, fe[6] = {0};
-    if (!(macro->facets[f].sets >> set & 1)) continue;
-    PetscCall(DMPlexVecGetClosure(macro->dm, NULL, displacement, macro->facets[f].point, NULL, &ue));
-    PetscCall(AddFacetForce(macro, &macro->facets[f], boundary, factor, ue, fe));
-    PetscCall(DMPlexVecRestoreClosure(macro->dm, NULL, displacement, macro->facets[f].point, NULL, &ue));
-    for (PetscInt k = 0; k < 6; k++) sum[k % 2] += PetscRealPart(fe[k]);
-  }
+  PetscCall(AddForces(macro, boundary, factor, displacement, NULL, sum));
   PetscCall(DMRestoreLocalVector(macro->dm, &displacement));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPIU_SUM, macro->comm));
   PetscFunctionReturn(0);
