@@ -8,14 +8,20 @@ LamRVE NewRVE(const LamMicrostructure *micro)
   return rve;
 }
 
-LamResponse SolveFromReference(LamRVE rve, LamLoad load)
+LamRVEState NewState(LamRVE rve)
 {
-  LamResponse response;
   LamRVEState state;
 
-  assert_int_equal(LamRVEStateCreate(rve, &state), 0);
-  assert_int_equal(LamRVESolve(rve, &load, state, &response), 0);
-  assert_int_equal(LamRVEStateDestroy(&state), 0);
+  CHECK(LamRVEStateCreate(rve, &state));
+  return state;
+}
+
+LamResponse SolveFromReference(LamRVE rve, LamLoad load)
+{
+  OWNED(LamRVEState, LamRVEStateDestroy) state = NewState(rve);
+  LamResponse response;
+
+  CHECK(LamRVESolve(rve, &load, state, &response));
   return response;
 }
 
@@ -25,4 +31,18 @@ LamResponse SolveTissue(const LamMicrostructure *micro, LamLoad load)
 
   CHECK(SolveOnce(micro, &load, &response));
   return response;
+}
+
+LamResponse SolveDefaultTissue(LamLoad load)
+{
+  const LamMicrostructure micro = DefaultTissue();
+
+  return SolveTissue(&micro, load);
+}
+
+LamResponse SolveContactTissue(LamLoad load)
+{
+  const LamMicrostructure micro = ContactTissue(6, 2);
+
+  return SolveTissue(&micro, load);
 }

@@ -3,11 +3,15 @@
 #define LAM_SUPPORT_RVE_FIXTURE_H
 
 #include "test.h"
-#include "tissue.h"
+#include "contact_tissue.h"
 
 LamRVE NewRVE(const LamMicrostructure *micro);
+LamRVEState NewState(LamRVE rve);
 /* Solves from F = I in one go. */
 LamResponse SolveFromReference(LamRVE rve, LamLoad load);
 LamResponse SolveTissue(const LamMicrostructure *micro, LamLoad load);
+/* The default tissue; the same in contact. */
+LamResponse SolveDefaultTissue(LamLoad load);
+LamResponse SolveContactTissue(LamLoad load);
 
 #endif

@@ -280,7 +280,7 @@ CACHE_TEST(WithoutAGridStatesAreSolved, NO_GRID)
 CACHE_TEST(DatabaseAloneNeverSolves, NO_SOLVER)
 {
   LamResponse answer;
-  LamTable table;
+  OWNED(LamTable, LamTableDestroy) table;
 
   RespondAt(fixture, 0.1);
   assert_int_equal(fixture->responses[0].status, LAM_OUT_OF_REACH);
@@ -288,7 +288,6 @@ CACHE_TEST(DatabaseAloneNeverSolves, NO_SOLVER)
   assert_int_equal(fixture->material->calls, 0);
   assert_ok(LamDatabaseGetTable(fixture->database, &table));
   assert_ok(LamTableQuery(table, &fixture->loads[0], ACCURACY, &answer));
-  assert_ok(LamTableDestroy(&table));
   assert_true(answer.reason[0]);
   assert_string_equal(fixture->responses[0].reason, answer.reason);
 }

@@ -18,7 +18,7 @@ TEST(SolvesADefiniteSystem)
   const double x[2 * N] = {1, -2, 3, 0.5, 4, 0, 1, 0, -1, 2};
   double values[9], b[2 * N], found[2 * N];
   PetscBool definite;
-  LamCholesky c;
+  OWNED(LamCholesky, LamCholeskyDestroy) c;
 
   SetValues(2.5, values);
   for (int k = 0; k < 2; k++)
@@ -29,7 +29,6 @@ TEST(SolvesADefiniteSystem)
   assert_true(definite);
   assert_int_equal(LamCholeskySolve(c, 2, b, found), 0);
   for (int i = 0; i < 2 * N; i++) assert_near(found[i], x[i], 1e-14);
-  assert_int_equal(LamCholeskyDestroy(&c), 0);
 }
 
 /* The values change in place: an indefinite and a singular matrix are told, and a definite one after them is solved. */
@@ -38,7 +37,7 @@ TEST(TellsWhatIsNotDefinite)
   static const double diagonal[4] = {1.0, 0.0, -3.0, 2.5};
   double values[9] = {0};
   PetscBool definite;
-  LamCholesky c;
+  OWNED(LamCholesky, LamCholeskyDestroy) c;
 
   assert_int_equal(LamCholeskyCreate(N, row, column, values, &c), 0);
   for (int k = 0; k < 4; k++) {
@@ -46,7 +45,6 @@ TEST(TellsWhatIsNotDefinite)
     assert_int_equal(LamCholeskyNumeric(c, &definite), 0);
     assert_int_equal(definite, k == 3);
   }
-  assert_int_equal(LamCholeskyDestroy(&c), 0);
 }
 
 TEST_GROUP(.petsc = 1);

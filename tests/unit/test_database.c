@@ -120,7 +120,7 @@ static LamDatabase OpenMixed(void)
 
 FILE_TEST(nodes_and_other_records_are_kept_apart)
 {
-  LamDatabase db = OpenMixed();
+  OWNED(LamDatabase, LamDatabaseClose) db = OpenMixed();
   const PetscInt64 *keys;
   PetscInt n;
 
@@ -135,14 +135,13 @@ FILE_TEST(nodes_and_other_records_are_kept_apart)
     assert_true(db->nodes.data[i].key == LAM_NODE_KEY + i && db->nodes.data[i].energy == wanted.energy);
   }
   assert_null(db->records);
-  LamDatabaseClose(&db);
 }
 
 FILE_TEST(whole_responses_come_in_the_order_of_the_file_and_then_of_memory)
 {
   const LamResponse added[2] = {Response(11), Response(12)}, *records;
   const PetscInt64 more[2] = {LAM_NODE_KEY + 1000, LAM_NODE_KEY + 1001}, *keys;
-  LamDatabase db = OpenMixed();
+  OWNED(LamDatabase, LamDatabaseClose) db = OpenMixed();
   PetscInt n;
 
   assert_int_equal(LamDatabaseAdd(db, 2, more, added), 0);
@@ -157,13 +156,12 @@ FILE_TEST(whole_responses_come_in_the_order_of_the_file_and_then_of_memory)
   }
   assert_int_equal(db->nodes.count, 707);
   assert_int_equal(db->scatter.n, 5);
-  LamDatabaseClose(&db);
 }
 
 FILE_TEST(added_records_are_given_without_the_file)
 {
   const LamResponse added[2] = {Response(11), Response(12)}, *records;
-  LamDatabase db = OpenMixed();
+  OWNED(LamDatabase, LamDatabaseClose) db = OpenMixed();
   PetscInt n;
 
   assert_int_equal(LamDatabaseAdd(db, 2, NULL, added), 0);
@@ -171,20 +169,18 @@ FILE_TEST(added_records_are_given_without_the_file)
   assert_int_equal(LamDatabaseGetAdded(db, 709, &n, &records), 0);
   assert_int_equal(n, 1);
   AssertSame(records, &added[1]);
-  LamDatabaseClose(&db);
 }
 
 FILE_TEST(a_file_that_was_replaced_is_noticed)
 {
   const LamResponse *records;
-  LamDatabase db = OpenMixed();
+  OWNED(LamDatabase, LamDatabaseClose) db = OpenMixed();
   LamRecordWriter writer = Open(LAM_WRITE_CREATE);
 
   Commit(writer, LAM_NODE_KEY + 1, 800);
   assert_int_equal(LamRecordWriterClose(&writer), 0);
   assert_int_equal(LamDatabaseGetRecords(db, NULL, &records, NULL), PETSC_ERR_USER_INPUT);
   assert_non_null(strstr(ErrorMessage, "was replaced"));
-  LamDatabaseClose(&db);
 }
 
 /* The same keys, but of another tissue. */
@@ -194,7 +190,7 @@ FILE_TEST(a_file_of_another_tissue_is_noticed)
   const PetscInt64 key = LAM_NODE_KEY;
   LamScene scene = Scene();
   LamRecordWriter writer = Open(LAM_WRITE_CREATE);
-  LamDatabase db;
+  OWNED(LamDatabase, LamDatabaseClose) db;
 
   WriteGrid(writer);
   Commit(writer, LAM_NODE_KEY, 1);
@@ -206,28 +202,25 @@ FILE_TEST(a_file_of_another_tissue_is_noticed)
   assert_int_equal(LamRecordWriterClose(&writer), 0);
   assert_int_equal(LamDatabaseGetRecords(db, NULL, &records, NULL), PETSC_ERR_USER_INPUT);
   assert_non_null(strstr(ErrorMessage, "was replaced"));
-  LamDatabaseClose(&db);
 }
 
 FILE_TEST(a_file_that_has_shrunk_is_noticed)
 {
   const LamResponse *records;
-  LamDatabase db = OpenMixed();
+  OWNED(LamDatabase, LamDatabaseClose) db = OpenMixed();
   LamRecordWriter writer = Open(LAM_WRITE_CREATE);
 
   Commit(writer, LAM_NODE_KEY, 600);
   assert_int_equal(LamRecordWriterClose(&writer), 0);
   assert_int_equal(LamDatabaseGetRecords(db, NULL, &records, NULL), PETSC_ERR_USER_INPUT);
   assert_non_null(strstr(ErrorMessage, "was replaced"));
-  LamDatabaseClose(&db);
 }
 
 FILE_TEST(info_counts_nodes_too)
 {
-  LamDatabase db = OpenMixed();
+  OWNED(LamDatabase, LamDatabaseClose) db = OpenMixed();
   const char *json;
 
   assert_int_equal(LamDatabaseGetInfo(db, &json), 0);
   assert_non_null(strstr(json, "\"records\":708,\"failed\":589")); /* one in six has converged: 118 nodes, one other */
-  LamDatabaseClose(&db);
 }

@@ -86,12 +86,11 @@ static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], cons
 static LamFreeCell MakeOf(const LamMicrostructure *micro, Tissue *known)
 {
   const LamResponderFunctions functions = {.respond = Respond};
-  LamResponder solver;
+  OWNED(LamResponder, LamResponderDestroy) solver;
   LamFreeCell cell;
 
   assert_int_equal(LamResponderCreate(&functions, known, NULL, &solver), 0);
   assert_int_equal(LamFreeCellMake(micro, COHESION, SUCTION_MIN, SUCTION_MAX, SCALE, KNOTS, solver, &cell), 0);
-  assert_int_equal(LamResponderDestroy(&solver), 0);
   return cell;
 }
 
@@ -140,12 +139,11 @@ CELL_TEST(knots_are_even_between_the_ends, Make())
 
 static void AssertNone(Tissue known)
 {
-  LamFreeCell cell = MakeOf(&tissue, &known);
+  OWNED(LamFreeCell, LamFreeCellDestroy) cell = MakeOf(&tissue, &known);
 
   assert_int_equal(cell.n, 0);
   assert_null(cell.suction);
   assert_null(cell.records);
-  LamFreeCellDestroy(&cell);
 }
 
 TEST_IS(a_state_that_fails_leaves_none, AssertNone((Tissue){.failing = 0.5, .touching = INFINITY}));
@@ -162,11 +160,10 @@ TEST(tissue_without_free_cells_is_not_solved)
   none[3].cells[1] = 2; /* these drift apart */
   for (int k = 0; k < 4; k++) {
     Tissue known = {.failing = INFINITY, .touching = INFINITY};
-    LamFreeCell cell = MakeOf(&none[k], &known);
+    OWNED(LamFreeCell, LamFreeCellDestroy) cell = MakeOf(&none[k], &known);
 
     assert_int_equal(cell.n, 0);
     assert_int_equal(known.solves, 0);
-    LamFreeCellDestroy(&cell);
   }
 }
 
@@ -322,7 +319,7 @@ static void AssertSameNumbers(const PetscReal a[], const PetscReal b[])
 
 CELL_TEST(the_text_keeps_every_bit, Make())
 {
-  LamFreeCell copy;
+  OWNED(LamFreeCell, LamFreeCellDestroy) copy;
   json_t *object = TextAndBack(cell);
 
   assert_int_equal(LamFreeCellFromJSON("a.h5", object, &copy), 0);
@@ -338,33 +335,30 @@ CELL_TEST(the_text_keeps_every_bit, Make())
   AssertSameNumbers(copy.curvature, cell->curvature);
   AssertSameNumbers(copy.turgor_slope, cell->turgor_slope);
   AssertSameNumbers(copy.turgor_curvature, cell->turgor_curvature);
-  LamFreeCellDestroy(&copy);
 }
 
 TEST(no_free_cell_has_a_text_too)
 {
   const LamFreeCell none = {.n = 0};
   json_t *object = TextAndBack(&none);
-  LamFreeCell copy;
+  OWNED(LamFreeCell, LamFreeCellDestroy) copy;
 
   assert_int_equal(LamFreeCellFromJSON("a.h5", object, &copy), 0);
   assert_int_equal(copy.n, 0);
   json_decref(object);
-  LamFreeCellDestroy(&copy);
 }
 
 /* Takes over the object. */
 static void AssertRefused(json_t *object, const char what[])
 {
   PetscErrorCode error;
-  LamFreeCell copy;
+  OWNED(LamFreeCell, LamFreeCellDestroy) copy;
 
   CATCH(LamFreeCellFromJSON("a.h5", object, &copy), error);
   assert_int_equal(error, PETSC_ERR_USER_INPUT);
   assert_non_null(strstr(scene_message, "a.h5"));
   if (!strstr(scene_message, what)) fail_msg("\"%s\" does not name %s", scene_message, what);
   json_decref(object);
-  LamFreeCellDestroy(&copy);
 }
 
 CELL_TEST(damage_is_refused, Make())

@@ -83,23 +83,21 @@ static void AssertStrains(LamGrid grid, const int i[3], int j)
 TEST(a_node_has_the_strains_of_its_place)
 {
   for (int contact = 0; contact < 2; contact++) {
-    LamGrid grid = Make((PetscBool)contact);
+    OWNED(LamGrid, LamGridDestroy) grid = Make((PetscBool)contact);
 
     AssertStrains(grid, (int[3]){0, 0, 0}, 0);
     AssertStrains(grid, (int[3]){-64, 3, 100}, 17);
-    CHECK(LamGridDestroy(&grid));
   }
 }
 
 TEST(strains_that_no_state_has_give_no_F)
 {
-  LamGrid grid = Make(PETSC_FALSE);
+  OWNED(LamGrid, LamGridDestroy) grid = Make(PETSC_FALSE);
   const LamNodePlace place = {{-6000, -6000, 6000}, 0};
   LamLoad load;
 
   CHECK(LamGridNodeLoad(grid, LamNodeKeyOf(&place), &load));
   assert_true(load.F[0] == 0 && load.F[4] == 0);
-  CHECK(LamGridDestroy(&grid));
 }
 
 TEST(the_box_of_the_sample_is_covered)
@@ -119,7 +117,7 @@ TEST(the_box_of_the_sample_is_covered)
 /* Of sorted places sorted ones; a root node has none. */
 TEST(parents_are_coarser_until_there_is_none)
 {
-  LamGrid grid = Make(PETSC_TRUE);
+  OWNED(LamGrid, LamGridDestroy) grid = Make(PETSC_TRUE);
   uint64_t seed = 1;
 
   for (int n = 0; n < 200; n++) {
@@ -138,7 +136,6 @@ TEST(parents_are_coarser_until_there_is_none)
     assert_int_equal(LamNodeLevel(&place), 0);
     assert_int_equal(place.j % LAM_ROOT, 0);
   }
-  CHECK(LamGridDestroy(&grid));
 }
 
 /* ---- refusals ---- */
@@ -146,13 +143,12 @@ TEST(parents_are_coarser_until_there_is_none)
 static void AssertNoGrid(const LamScene *scene, const char what[])
 {
   AnalyticTissue tissue = {PETSC_TRUE, 0};
-  LamGrid grid = NULL;
+  OWNED(LamGrid, LamGridDestroy) grid = NULL;
   PetscErrorCode error;
 
   CATCH(AnalyticGridCreate(scene, &tissue, &grid), error);
   assert_int_equal(error, PETSC_ERR_USER_INPUT);
   if (!strstr(scene_message, what)) fail_msg("\"%s\" does not name %s", scene_message, what);
-  CHECK(LamGridDestroy(&grid));
 }
 
 TEST(a_patch_has_no_grid)
@@ -187,7 +183,8 @@ TEST(the_text_keeps_every_bit)
 {
   for (int contact = 0; contact < 2; contact++) {
     const LamMicrostructure micro = MicroOf((PetscBool)contact);
-    LamGrid grid = Make((PetscBool)contact), copy;
+    OWNED(LamGrid, LamGridDestroy) grid = Make((PetscBool)contact);
+    OWNED(LamGrid, LamGridDestroy) copy;
     char *text, *again;
 
     CHECK(LamGridGetText(grid, &text));
@@ -198,8 +195,6 @@ TEST(the_text_keeps_every_bit)
     for (PetscInt m = 0; m < grid->free.n; m++) assert_true(copy->free_keys[m] == grid->free_keys[m]);
     CHECK(PetscFree(text));
     CHECK(PetscFree(again));
-    CHECK(LamGridDestroy(&copy));
-    CHECK(LamGridDestroy(&grid));
   }
 }
 
@@ -218,7 +213,7 @@ static void AssertRefused(PetscBool contact, const char text[])
 /* Takes over the value. */
 static void AssertMemberRefused(PetscBool contact, const char name[], json_t *value)
 {
-  LamGrid grid = Make(contact);
+  OWNED(LamGrid, LamGridDestroy) grid = Make(contact);
   json_t *object;
   char *text;
 
@@ -234,7 +229,6 @@ static void AssertMemberRefused(PetscBool contact, const char name[], json_t *va
   AssertRefused(contact, text);
   free(text);
   json_decref(object);
-  CHECK(LamGridDestroy(&grid));
 }
 
 TEST(a_text_without_a_member_is_refused)

@@ -27,7 +27,7 @@ TEST(neighbours_and_held_walls_are_those_of_the_mesh)
   for (int i = 0; i < BLOCKS; i++)
     for (int degrees = -360; degrees <= 360; degrees += 10) {
       const LamMicrostructure micro = Block(i, degrees);
-      LamMesh mesh;
+      OWNED(LamMesh, LamMeshDestroy) mesh;
 
       assert_int_equal(LamMeshCreate(&micro, &mesh), 0);
       for (PetscInt k = 0; k < LAM_FACES * mesh.cell_count; k++) {
@@ -36,7 +36,6 @@ TEST(neighbours_and_held_walls_are_those_of_the_mesh)
         assert_int_equal(LamLatticeNeighbour(&micro, k / LAM_FACES, k % LAM_FACES, NULL, &held), mesh.neighbour[k]);
         assert_int_equal(held, mesh.held[k]);
       }
-      assert_int_equal(LamMeshDestroy(&mesh), 0);
     }
 }
 

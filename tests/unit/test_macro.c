@@ -217,7 +217,7 @@ TEST(StopEndsWithinAStep)
 MACRO_TEST(CauchyIsTheMeanOverThePresentVolume)
 {
   PetscReal error = 0, of_means = 0;
-  LamMacroFields fields;
+  OWNED(LamMacroFields, LamMacroFieldsDestroy) fields;
 
   FixtureShear(fixture, 2, 0.6, 2);
   FixtureRun(fixture, PETSC_COMM_SELF, LAM_MACRO_DONE);
@@ -242,7 +242,6 @@ MACRO_TEST(CauchyIsTheMeanOverThePresentVolume)
   }
   assert_true(error < 1e-13);
   assert_true(of_means > 1e-4); /* the stress of the means is another one */
-  assert_ok(LamMacroFieldsDestroy(&fields));
 }
 
 /* The last converged state serves the next step's first iteration: the material is asked once per iteration. */

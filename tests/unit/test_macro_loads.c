@@ -24,13 +24,12 @@ static void Exact(const Fixture *fixture, PetscReal a, PetscReal b, LamResponse 
 static PetscReal Spread(const Fixture *fixture, PetscReal F[9])
 {
   PetscReal spread = 0;
-  LamMacroFields fields;
+  OWNED(LamMacroFields, LamMacroFieldsDestroy) fields;
 
   assert_ok(LamMacroGetFields(fixture->macro, &fields));
   for (PetscInt k = 0; k < 9 * fields.element_count; k++)
     spread = PetscMax(spread, PetscAbsReal(fields.F[k] - fields.F[k % 9]));
   if (fields.element_count) assert_ok(PetscArraycpy(F, fields.F, 9));
-  assert_ok(LamMacroFieldsDestroy(&fields));
   MPI_Bcast(F, 9, MPIU_REAL, 0, PETSC_COMM_WORLD);
   MPI_Bcast(&spread, 1, MPIU_REAL, 0, PETSC_COMM_WORLD);
   return spread;

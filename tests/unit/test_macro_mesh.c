@@ -117,7 +117,7 @@ TEST(ObliqueSymmetryIsUprightTurned)
   GmshWrite(path, 3, 3, GMSH_QUADRILATERALS, Turned);
   for (int turned = 0; turned < 2; turned++) {
     Fixture fixture;
-    LamMacroFields fields;
+    OWNED(LamMacroFields, LamMacroFieldsDestroy) fields;
     FixtureScene(&fixture, 3, 3, 1, 2);
     if (turned) UseGmsh(&fixture, path);
     FixtureSymmetry(&fixture);
@@ -129,7 +129,6 @@ TEST(ObliqueSymmetryIsUprightTurned)
     FixtureRun(&fixture, PETSC_COMM_SELF, LAM_MACRO_DONE);
     assert_ok(LamMacroGetFields(fixture.macro, &fields));
     for (int ij = 0; ij < 4; ij++) P[turned][ij] = fields.P[3 * (ij / 2) + ij % 2];
-    assert_ok(LamMacroFieldsDestroy(&fields));
     const PetscReal *left = FixtureReaction(&fixture, "left");
     force[turned] = PetscSqrtReal(left[0] * left[0] + left[1] * left[1]);
     FixtureDestroy(&fixture);

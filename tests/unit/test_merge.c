@@ -166,7 +166,7 @@ MERGE_TEST(the_header_is_of_the_first_file_with_the_smallest_accuracy)
   LamScene scene = ShardScene();
   LamScales scales;
   const char *json;
-  LamDatabase db;
+  OWNED(LamDatabase, LamDatabaseClose) db;
 
   WriteShard(0, 1, keys);
   scene.accuracy = 0.001;
@@ -178,7 +178,6 @@ MERGE_TEST(the_header_is_of_the_first_file_with_the_smallest_accuracy)
   assert_true(scales.length == ShardScene().scales.length);
   LamDatabaseGetInfo(db, &json);
   assert_non_null(strstr(json, "\"accuracy\":0.001"));
-  LamDatabaseClose(&db);
 }
 
 MERGE_TEST(records_of_an_earlier_type_get_the_present_one)

@@ -25,12 +25,11 @@ static LamMesh NewMesh(const LamMicrostructure *micro)
 TEST(OneCellHas644Unknowns)
 {
   const LamMicrostructure micro = Cells(1, 1, 0.0);
-  LamMesh mesh = NewMesh(&micro);
+  OWNED(LamMesh, LamMeshDestroy) mesh = NewMesh(&micro);
 
   assert_int_equal(mesh.element_count, 72);
   assert_int_equal(mesh.node_count, 360);
   assert_int_equal(2 * (mesh.class_count - 1), 644);
-  assert_int_equal(LamMeshDestroy(&mesh), 0);
 }
 
 /* n cells share n times the classes of one cell: every class is counted once per period. */
@@ -40,10 +39,9 @@ TEST(ClassesGrowWithTheNumberOfCells)
 
   for (int k = 0; k < 4; k++) {
     const LamMicrostructure micro = Cells(cells[k][0], cells[k][1], 0.3);
-    LamMesh mesh = NewMesh(&micro);
+    OWNED(LamMesh, LamMeshDestroy) mesh = NewMesh(&micro);
 
     assert_int_equal(mesh.class_count, 323 * cells[k][0] * cells[k][1]);
-    assert_int_equal(LamMeshDestroy(&mesh), 0);
   }
 }
 
@@ -51,12 +49,11 @@ TEST(ClassesGrowWithTheNumberOfCells)
 TEST(VolumeIsThatOfThePeriod)
 {
   const LamMicrostructure micro = Cells(2, 3, 0.4);
-  LamMesh mesh = NewMesh(&micro);
+  OWNED(LamMesh, LamMeshDestroy) mesh = NewMesh(&micro);
   const double parallelogram = mesh.period[0][0] * mesh.period[1][1] - mesh.period[0][1] * mesh.period[1][0];
 
   assert_near(mesh.V0, 6 * 2.0 * sqrt(3.0), 1e-12);
   assert_near(parallelogram, mesh.V0, 1e-12);
-  assert_int_equal(LamMeshDestroy(&mesh), 0);
 }
 
 static LamElementGeometry Geometry(const LamMesh *mesh, int e)
@@ -75,7 +72,7 @@ static LamElementGeometry Geometry(const LamMesh *mesh, int e)
 TEST(ElementsFillTheRing)
 {
   LamMicrostructure micro = Cells(1, 1, 0.2);
-  LamMesh mesh;
+  OWNED(LamMesh, LamMeshDestroy) mesh;
   double area = 0.0;
 
   micro.wall_thickness = 0.23;
@@ -86,7 +83,6 @@ TEST(ElementsFillTheRing)
     for (int g = 0; g < LAM_GAUSS; g++) area += geometry.weight[g];
   }
   assert_near(area, 2.0 * sqrt(3.0) * (1.0 - 0.77 * 0.77), 1e-13);
-  assert_int_equal(LamMeshDestroy(&mesh), 0);
 }
 
 /* A shift is a whole number of periods along each period vector, and moves the class's node onto the node. */
@@ -96,7 +92,7 @@ TEST(ShiftsArePeriodVectors)
 
   for (int k = 0; k < 3; k++) {
     const LamMicrostructure micro = Cells(cells[k][0], cells[k][1], 0.3);
-    LamMesh mesh = NewMesh(&micro);
+    OWNED(LamMesh, LamMeshDestroy) mesh = NewMesh(&micro);
     const double(*p)[2] = (const double(*)[2])mesh.period;
     const double det = p[0][0] * p[1][1] - p[0][1] * p[1][0];
 
@@ -108,7 +104,6 @@ TEST(ShiftsArePeriodVectors)
       assert_near(n, round(n), 1e-12);
       for (int d = 0; d < 2; d++) assert_near(Y[d] + S[d], X[d], 1e-12);
     }
-    assert_int_equal(LamMeshDestroy(&mesh), 0);
   }
 }
 
@@ -116,7 +111,7 @@ TEST(ShiftsArePeriodVectors)
 TEST(OuterNodesAreSharedByTwoOrThreeCells)
 {
   const LamMicrostructure micro = Cells(2, 2, 0.0);
-  LamMesh mesh = NewMesh(&micro);
+  OWNED(LamMesh, LamMeshDestroy) mesh = NewMesh(&micro);
   int shared[4] = {0, 0, 0, 0}, *members = calloc((size_t)mesh.class_count, sizeof(int));
 
   for (int i = 0; i < mesh.node_count; i++) members[mesh.node_class[i]]++;
@@ -128,17 +123,15 @@ TEST(OuterNodesAreSharedByTwoOrThreeCells)
   assert_int_equal(shared[2], 3 * 11 * 4); /* three faces a cell with 11 nodes between corners */
   assert_int_equal(shared[1], 4 * 72 * 4); /* four of five layers are not outer */
   free(members);
-  assert_int_equal(LamMeshDestroy(&mesh), 0);
 }
 
 TEST(LumenNodesHaveNoShift)
 {
   const LamMicrostructure micro = Cells(1, 1, 0.0);
-  LamMesh mesh = NewMesh(&micro);
+  OWNED(LamMesh, LamMeshDestroy) mesh = NewMesh(&micro);
 
   for (int i = 0; i < mesh.node_count; i += (int)mesh.radial_nodes)
     assert_true(mesh.shift[2 * i] == 0.0 && mesh.shift[2 * i + 1] == 0.0);
-  assert_int_equal(LamMeshDestroy(&mesh), 0);
 }
 
 /* Elements at the ends of a face are 1 - grading as long as those of an even mesh, to first order; the mesh is
@@ -146,7 +139,7 @@ TEST(LumenNodesHaveNoShift)
 TEST(GradedElementsAreSmallAtTheCorners)
 {
   LamMicrostructure micro = Cells(1, 1, 0.0);
-  LamMesh mesh;
+  OWNED(LamMesh, LamMeshDestroy) mesh;
 
   micro.along = 40;
   micro.grading = 0.6;
@@ -156,13 +149,12 @@ TEST(GradedElementsAreSmallAtTheCorners)
   for (int i = 0; i <= 40; i++) assert_near(mesh.ends[i] + mesh.ends[40 - i], 1.0, 1e-15);
   assert_near(LamShortestEdge(&mesh), 2 / sqrt(3.0) * mesh.ends[1], 1e-15);
   assert_near(LamLongestEdge(&mesh), 2 / sqrt(3.0) * (mesh.ends[20] - mesh.ends[19]), 1e-15);
-  assert_int_equal(LamMeshDestroy(&mesh), 0);
 }
 
 TEST(PlacesAndSharesOfAFaceAreInverse)
 {
   LamMicrostructure micro = Cells(1, 1, 0.0);
-  LamMesh mesh;
+  OWNED(LamMesh, LamMeshDestroy) mesh;
 
   micro.grading = 0.7;
   mesh = NewMesh(&micro);
@@ -170,7 +162,6 @@ TEST(PlacesAndSharesOfAFaceAreInverse)
     assert_near(LamMeshPlace(&mesh, LamMeshShare(&mesh, 0.25 * i)), 0.25 * i, 1e-14);
     assert_near(LamMeshShare(&mesh, LamMeshPlace(&mesh, i / 24.0)), i / 24.0, 1e-15);
   }
-  assert_int_equal(LamMeshDestroy(&mesh), 0);
 }
 
 TEST(ImpossibleWallThicknessIsRefused)

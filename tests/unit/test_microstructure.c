@@ -66,7 +66,7 @@ FILE_TEST(a_description_tells_all_and_has_the_same_hash_again)
   for (int law = 0; law < LAM_INTERFACE_LAW_COUNT; law++) {
     LamCell cell[6];
     const LamMicrostructure micro = Uneven(cell, (LamInterfaceLawType)law);
-    LamMicrostructure parsed;
+    OWNED(LamMicrostructure, LamMicrostructureDestroy) parsed;
     char hash[2][LAM_HASH_LENGTH], *json[2];
 
     assert_int_equal(LamMicrostructureDescribe(&micro, &json[0], hash[0]), 0);
@@ -77,7 +77,6 @@ FILE_TEST(a_description_tells_all_and_has_the_same_hash_again)
     assert_int_equal(LamMicrostructureDescribe(&parsed, &json[1], hash[1]), 0);
     assert_string_equal(json[0], json[1]);
     assert_string_equal(hash[0], hash[1]);
-    assert_int_equal(LamMicrostructureDestroy(&parsed), 0);
     for (int i = 0; i < 2; i++) PetscFree(json[i]);
   }
 }
@@ -113,12 +112,11 @@ FILE_TEST(a_copy_owns_its_cells)
 {
   LamCell cell[6];
   const LamMicrostructure micro = Uneven(cell, LAM_INTERFACE_CONTACT);
-  LamMicrostructure copy;
+  OWNED(LamMicrostructure, LamMicrostructureDestroy) copy;
 
   assert_int_equal(LamMicrostructureCopy(&micro, &copy), 0);
   assert_ptr_not_equal(copy.cell, micro.cell);
   AssertSameCells(&copy, &micro);
-  assert_int_equal(LamMicrostructureDestroy(&copy), 0);
 }
 
 /* A record answers for its images under the lattice's symmetry: one cell that differs breaks it. */

@@ -29,31 +29,28 @@ static LamNodeCosts New(void)
 
 TEST(one_that_is_known_is_what_all_cost)
 {
-  LamNodeCosts costs = New();
+  OWNED(LamNodeCosts, LamNodeCostsDestroy) costs = New();
 
   Learn(costs, Key(0, 0), 25);
   assert_near(LamNodeCostsPredict(costs, Key(50, 7)), 25, 1e-12);
-  LamNodeCostsDestroy(&costs);
 }
 
 TEST(the_four_nearest_count)
 {
-  LamNodeCosts costs = New();
+  OWNED(LamNodeCosts, LamNodeCostsDestroy) costs = New();
 
   for (int i = 0; i < 4; i++) Learn(costs, Key(20 + i, 0), 1000);
   for (int i = 0; i < 4; i++) Learn(costs, Key(i, 0), i < 2 ? 10 : 40);
   for (int i = 0; i < 4; i++) Learn(costs, Key(40 + i, 0), 1000);
   assert_near(LamNodeCostsPredict(costs, Key(0, 0)), 20, 1e-9); /* the geometric mean */
   assert_near(LamNodeCostsPredict(costs, Key(30, 0)), 1000, 1e-7);
-  LamNodeCostsDestroy(&costs);
 }
 
 TEST(the_oldest_are_forgotten)
 {
-  LamNodeCosts costs = New();
+  OWNED(LamNodeCosts, LamNodeCostsDestroy) costs = New();
 
   for (int i = 0; i < 10; i++) Learn(costs, Key(0, 0), 500);
   for (int i = 0; i < 1024; i++) Learn(costs, Key(9, i), 5);
   assert_near(LamNodeCostsPredict(costs, Key(0, 0)), 5, 1e-9);
-  LamNodeCostsDestroy(&costs);
 }

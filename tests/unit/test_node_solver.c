@@ -46,10 +46,9 @@ static void AssertSame(LamResponse a, LamResponse b)
 
 static LamResponse SolveAlone(PetscInt64 key)
 {
-  LamNodeChain chain = NewChain(LAM_INTERFACE_CONTACT, ROOM);
+  OWNED(LamNodeChain, LamNodeChainDestroy) chain = NewChain(LAM_INTERFACE_CONTACT, ROOM);
   const LamResponse response = Solve(chain, key);
 
-  assert_int_equal(LamNodeChainDestroy(&chain), 0);
   return response;
 }
 
@@ -59,7 +58,7 @@ TEST(ChildStartsFromItsParent)
 {
   const PetscInt64 child = Key(0, HALF, LAM_ROOT, 0), parent = LamGridNodeParent(&grid, child);
   LamResponse first, second;
-  LamRVEState before;
+  OWNED(LamRVEState, LamRVEStateDestroy) before;
   LamLoad load;
 
   assert_int_equal(parent, Key(0, 0, LAM_ROOT, 0));
@@ -72,7 +71,6 @@ TEST(ChildStartsFromItsParent)
   AssertSame(SolveAlone(parent), first);
   AssertSame(SolveAlone(child), second);
   assert_true(memcmp(SolveFromReference(rve, load).P, second.P, sizeof(second.P))); /* another start, other bits */
-  assert_int_equal(LamRVEStateDestroy(&before), 0);
 }
 
 static const int family[][4] = {
@@ -99,12 +97,11 @@ TEST(OrderAndMemoryDoNotMatter)
   for (int n = 0; n < FAMILY; n++) alone[n] = SolveAlone(FamilyKey(n));
   for (int k = 2; k < 2 * FAMILY; k++) {
     const int between = k % FAMILY;
-    LamNodeChain chain = NewChain(LAM_INTERFACE_CONTACT, k < FAMILY ? ROOM : 0);
+    OWNED(LamNodeChain, LamNodeChainDestroy) chain = NewChain(LAM_INTERFACE_CONTACT, k < FAMILY ? ROOM : 0);
 
     AssertSame(Solve(chain, FamilyKey(0)), alone[0]);
     AssertSame(Solve(chain, FamilyKey(between)), alone[between]);
     AssertSame(Solve(chain, FamilyKey(1)), alone[1]);
-    assert_int_equal(LamNodeChainDestroy(&chain), 0);
   }
 }
 
@@ -132,11 +129,10 @@ static PetscBool Stop(void)
 TEST(StoppedNodesAreLeftOut)
 {
   const PetscInt64 key = Key(0, 0, LAM_ROOT, 0);
-  LamNodeChain chain;
+  OWNED(LamNodeChain, LamNodeChainDestroy) chain;
 
   assert_int_equal(LamNodeChainCreate(rve, LAM_INTERFACE_CONTACT, &grid, ROOM, Stop, &chain), 0);
   assert_int_equal(Solve(chain, key).status, LAM_OUT_OF_REACH);
-  assert_int_equal(LamNodeChainDestroy(&chain), 0);
 }
 
 /* ---- bonded ---- */
@@ -144,12 +140,11 @@ TEST(StoppedNodesAreLeftOut)
 TEST(BondedNodesStartFromTheReference)
 {
   const PetscInt64 child = Key(0, HALF, LAM_ROOT, 0);
-  LamNodeChain chain = NewChain(LAM_INTERFACE_BONDED, ROOM);
+  OWNED(LamNodeChain, LamNodeChainDestroy) chain = NewChain(LAM_INTERFACE_BONDED, ROOM);
   LamLoad load;
 
   assert_int_equal(LamGridNodeLoad(&grid, child, &load), 0);
   AssertSame(Solve(chain, child), SolveFromReference(rve, load));
-  assert_int_equal(LamNodeChainDestroy(&chain), 0);
 }
 
 static int SetUp(void **state)

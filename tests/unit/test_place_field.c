@@ -44,20 +44,18 @@ static PetscReal At(LamPlaceField field, PetscReal x, PetscReal y)
 
 TEST(expressions_are_of_x_and_y)
 {
-  LamPlaceField field = Expression("30 * x / 10 + sqrt(y) * cos(pi)");
+  OWNED(LamPlaceField, LamPlaceFieldDestroy) field = Expression("30 * x / 10 + sqrt(y) * cos(pi)");
 
   assert_near(At(field, 2, 9), 3, 1e-14);
   assert_near(At(field, 0, 4), -2, 1e-14);
-  assert_int_equal(LamPlaceFieldDestroy(&field), 0);
 }
 
 TEST(comparisons_are_one_or_zero)
 {
-  LamPlaceField field = Expression("y > 9 && x <= 1");
+  OWNED(LamPlaceField, LamPlaceFieldDestroy) field = Expression("y > 9 && x <= 1");
 
   assert_near(At(field, 1, 9.5), 1, 0);
   assert_near(At(field, 1.5, 9.5), 0, 0);
-  assert_int_equal(LamPlaceFieldDestroy(&field), 0);
 }
 
 TEST(what_is_no_expression_is_refused)
@@ -79,7 +77,7 @@ TEST(a_place_without_value_is_named)
   const PetscReal X[2] = {0, 2.5};
 
   for (size_t i = 0; i < sizeof(bad) / sizeof(*bad); i++) {
-    LamPlaceField field = Expression(bad[i]);
+    OWNED(LamPlaceField, LamPlaceFieldDestroy) field = Expression(bad[i]);
     PetscErrorCode error;
     PetscReal value;
 
@@ -87,27 +85,26 @@ TEST(a_place_without_value_is_named)
     assert_int_equal(error, PETSC_ERR_USER_INPUT);
     assert_non_null(strstr(scene_message, NAME ": "));
     assert_non_null(strstr(scene_message, "x = 0 mm, y = 2.5 mm"));
-    assert_int_equal(LamPlaceFieldDestroy(&field), 0);
   }
 }
 
 TEST(tables_are_bilinear_between_their_rows)
 {
   char reason[LAM_PLACE_FIELD_REASON];
-  LamPlaceField field = Table("x_mm,y_mm,MPa\n10, 0, 3\n0,0,1\n0,4,2\r\n4,0,1\n\n10,4,8\n4,4,6\n", reason);
+  OWNED(LamPlaceField, LamPlaceFieldDestroy)
+  field = Table("x_mm,y_mm,MPa\n10, 0, 3\n0,0,1\n0,4,2\r\n4,0,1\n\n10,4,8\n4,4,6\n", reason);
 
   assert_string_equal(reason, "");
   assert_near(At(field, 0, 0), 1, 1e-14);
   assert_near(At(field, 10, 4), 8, 1e-14);
   assert_near(At(field, 2, 2), 0.25 * (1 + 1 + 2 + 6), 1e-14);
   assert_near(At(field, 7, 1), 0.75 * 2 + 0.25 * 7, 1e-14);
-  assert_int_equal(LamPlaceFieldDestroy(&field), 0);
 }
 
 TEST(a_place_outside_the_table_is_named)
 {
   char reason[LAM_PLACE_FIELD_REASON];
-  LamPlaceField field = Table("x,y,v\n0,0,1\n0,1,1\n1,0,1\n1,1,1\n", reason);
+  OWNED(LamPlaceField, LamPlaceFieldDestroy) field = Table("x,y,v\n0,0,1\n0,1,1\n1,0,1\n1,1,1\n", reason);
   const PetscReal X[2] = {0.5, 1.25};
   PetscErrorCode error;
   PetscReal value;
@@ -115,7 +112,6 @@ TEST(a_place_outside_the_table_is_named)
   CATCH(LamPlaceFieldEvaluate(field, X, &value), error);
   assert_int_equal(error, PETSC_ERR_USER_INPUT);
   assert_non_null(strstr(scene_message, ".csv: has no value at x = 0.5 mm, y = 1.25 mm: y is from 0 to 1 mm"));
-  assert_int_equal(LamPlaceFieldDestroy(&field), 0);
 }
 
 TEST(tables_that_are_no_grids_are_refused)

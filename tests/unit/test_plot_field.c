@@ -93,30 +93,28 @@ TEST(a_view_shows_its_box_in_the_middle)
 
 TEST(a_ring_has_an_outer_loop_and_a_lumen)
 {
-  LamOutline outline;
+  OWNED(LamOutline, LamOutlineDestroy) outline;
   PetscReal areas[2];
 
   assert_int_equal(LamOutlineCreate(RING_ELEMENTS, &Ring[0][0], NULL, &outline), 0);
   assert_int_equal(outline.loop_count, 2);
   for (int k = 0; k < 2; k++) areas[k] = LamOutlineLoopArea(&outline, k, &RingX[0][0]);
   assert_true(fabs(fmin(areas[0], areas[1]) + 4) < 1e-12 && fabs(fmax(areas[0], areas[1]) - 16) < 1e-12);
-  assert_int_equal(LamOutlineDestroy(&outline), 0);
 }
 
 TEST(each_group_has_an_outline_of_its_own)
 {
   const PetscInt cells[RING_ELEMENTS] = {0, 0, 1, 1};
-  LamOutline outline;
+  OWNED(LamOutline, LamOutlineDestroy) outline;
 
   assert_int_equal(LamOutlineCreate(RING_ELEMENTS, &Ring[0][0], cells, &outline), 0);
   assert_int_equal(outline.loop_count, 2);
   for (int k = 0; k < 2; k++) assert_true(fabs(LamOutlineLoopArea(&outline, k, &RingX[0][0]) - 6) < 1e-12);
-  assert_int_equal(LamOutlineDestroy(&outline), 0);
 }
 
 TEST(the_area_of_curved_edges_is_exact)
 {
-  LamOutline outline;
+  OWNED(LamOutline, LamOutlineDestroy) outline;
   PetscReal x[RING_NODES][2], area = 0;
 
   for (int i = 0; i < RING_NODES; i++)
@@ -126,7 +124,6 @@ TEST(the_area_of_curved_edges_is_exact)
   assert_int_equal(LamOutlineCreate(RING_ELEMENTS, &Ring[0][0], NULL, &outline), 0);
   for (int k = 0; k < 2; k++) area = fmax(area, LamOutlineLoopArea(&outline, k, &x[0][0]));
   assert_true(fabs(area - (16 + 4 * 1.6)) < 1e-12);
-  assert_int_equal(LamOutlineDestroy(&outline), 0);
 }
 
 /* Paints the ring with nodal values equal to the abscissa, in a PNG of 400 x 400 pixels, and reads the colour at (x,

@@ -36,12 +36,11 @@ static LamLoad load_of(PetscReal e1, PetscReal e2, PetscReal angle)
 static int write_file(void **state)
 {
   const LamLoad loads[] = {load_of(0.02, 0.05, 0.4), load_of(0.08, 0.01, 0.4), load_of(0.07, 0.08, 0.4)};
-  LamScene *scene;
+  OWNED(LamScene *, LamSceneDestroy) scene;
 
   KeepErrorMessages();
   CHECK(LamSceneReadText("test.yaml", Text, &scene));
   CHECK(TableFixtureWrite(FILE_NAME, scene, &Material, 3, loads, 1e-4));
-  CHECK(LamSceneDestroy(&scene));
   return 0;
 }
 
@@ -54,12 +53,11 @@ static int remove_file(void **state)
 
 static LamSlice read_slice(const LamPlotRequest *request)
 {
-  LamDatabase database;
+  OWNED(LamDatabase, LamDatabaseClose) database;
   LamSlice slice;
 
   CHECK(LamDatabaseOpen(FILE_NAME, &database));
   CHECK(LamSliceRead(request, database, &slice));
-  CHECK(LamDatabaseClose(&database));
   return slice;
 }
 
@@ -153,7 +151,7 @@ static void lattice_strains(const PetscReal F[9], PetscReal x[3])
 TEST(nodes_are_drawn_where_their_strains_are)
 {
   const LamResponse *records;
-  LamDatabase database;
+  OWNED(LamDatabase, LamDatabaseClose) database;
   OWNED(LamSlice, LamSliceDestroy) slice = read_slice(&Default);
   PetscInt n;
 
@@ -171,7 +169,6 @@ TEST(nodes_are_drawn_where_their_strains_are)
     }
     assert_near(best, 0, 1e-9); /* at 0 degrees all nodes lie in the slice, where two strains are equal, or far out */
   }
-  CHECK(LamDatabaseClose(&database));
 }
 
 static void refuses(LamPlotRequest request, const char words[])

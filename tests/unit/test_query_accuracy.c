@@ -28,13 +28,12 @@ QUERY_TEST(a_quadratic_potential_is_answered_exactly, Make(1, 1))
 
 static PetscReal StressErrorAt(PetscReal step)
 {
-  LamDatabase db = Make(1, 1);
+  OWNED(LamDatabase, LamDatabaseClose) db = Make(1, 1);
   const LamLoad near = Load(1.1 + step, 0.1 - step, step, 1 + 0.5 * step, 0.3 + step);
   LamResponse exact = Exact(&near), r;
 
   AddExact(db, Load(1.1, 0.1, 0, 1, 0.3));
   r = Ask(db, near);
-  LamDatabaseClose(&db);
   return LamStressError(r.P, exact.P);
 }
 

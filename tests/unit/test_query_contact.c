@@ -88,7 +88,7 @@ TEST(turgor_and_cohesion_derivatives_belong_to_the_answered_energy)
 /* Without terms of third order the models of the record and of its images agree. */
 TEST(the_opening_follows_its_derivatives)
 {
-  LamDatabase db;
+  OWNED(LamDatabase, LamDatabaseClose) db;
   LamResponse exact, r;
 
   cubic = 0;
@@ -99,7 +99,6 @@ TEST(the_opening_follows_its_derivatives)
   AssertClose(1, &r.opening_fraction, &exact.opening_fraction, 1e-14);
   AssertClose(9, r.P_cohesion, exact.P_cohesion, 1e-14);
   AssertClose(1, &r.energy_turgor_cohesion, &exact.energy_turgor_cohesion, 1e-14);
-  LamDatabaseClose(&db);
 }
 
 QUERY_TEST(gaps_are_known_in_the_state_of_a_record_alone, MakeContact(contact_probe))

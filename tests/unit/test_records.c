@@ -53,7 +53,7 @@ FILE_TEST(the_microstructure_and_the_scales_come_back)
   const LamScene scene = Scene();
   LamMicrostructure micro;
   LamScales scales;
-  LamDatabase db;
+  OWNED(LamDatabase, LamDatabaseClose) db;
 
   WriteFile(1);
   assert_int_equal(LamDatabaseOpen(path, &db), 0);
@@ -62,7 +62,6 @@ FILE_TEST(the_microstructure_and_the_scales_come_back)
   assert_near(micro.wall_thickness, 0.15, 1e-14);
   assert_int_equal(micro.along, 6);
   assert_true(scales.stress == 0.11e6 && scales.length == 75e-6);
-  LamDatabaseClose(&db);
 }
 
 /* The extent is raised by hand, as by a commit that was killed before it raised the counter. */
@@ -203,11 +202,10 @@ FILE_TEST(what_is_not_there_is_not_found)
 FILE_TEST(info_counts_records_and_failures)
 {
   const char *json;
-  LamDatabase db;
+  OWNED(LamDatabase, LamDatabaseClose) db;
 
   WriteFile(12);
   assert_int_equal(LamDatabaseOpen(path, &db), 0);
   assert_int_equal(LamDatabaseGetInfo(db, &json), 0);
   assert_non_null(strstr(json, "\"records\":12,\"failed\":10,\"format_version\":1"));
-  LamDatabaseClose(&db);
 }

@@ -196,7 +196,7 @@ TABLE_TEST(at_the_suction_of_its_states_a_cell_needs_no_others, AnalyticTableOpe
 TABLE_TEST(a_turned_question_has_the_same_answer, Rough(PETSC_TRUE, 0.2))
 {
   uint64_t seed = 11;
-  LamTable table;
+  OWNED(LamTable, LamTableDestroy) table;
   PetscInt near = 0;
 
   CHECK(LamDatabaseGetTable(t->database, &table));
@@ -214,13 +214,12 @@ TABLE_TEST(a_turned_question_has_the_same_answer, Rough(PETSC_TRUE, 0.2))
     near += key >= 0;
   }
   assert_true(near > 0);
-  CHECK(LamTableDestroy(&table));
 }
 
 /* Solves are symmetric to their mesh's accuracy alone: what swaps two strains must not swap what is solved. */
 TABLE_TEST(strains_that_are_alike_keep_their_order, Rough(PETSC_TRUE, 0.2))
 {
-  LamTable table;
+  OWNED(LamTable, LamTableDestroy) table;
 
   CHECK(LamDatabaseGetTable(t->database, &table));
   for (int k = 0; k < 6; k++) {
@@ -233,7 +232,6 @@ TABLE_TEST(strains_that_are_alike_keep_their_order, Rough(PETSC_TRUE, 0.2))
     CHECK(LamTableTurn(table, &load, &turned, &key));
     for (int i = 0; i < 4; i++) assert_near(turned.F[3 * (i / 2) + i % 2], load.F[3 * (i / 2) + i % 2], 1e-9);
   }
-  CHECK(LamTableDestroy(&table));
 }
 
 /* ---- images ---- */
@@ -491,13 +489,13 @@ static void AssertIdentical(const LamResponse *a, LamResponse *b)
 TEST(a_file_answers_bit_for_bit_as_memory)
 {
   for (int kind = 0; kind < 2; kind++) {
-    OWNED(AnalyticTable, AnalyticTableClose) t = Rough((PetscBool)kind, 0.1), read;
+    OWNED(AnalyticTable, AnalyticTableClose) t = Rough((PetscBool)kind, 0.1);
+    OWNED(AnalyticTable, AnalyticTableClose) read = t;
     char path[] = "/tmp/lamella_test_table_XXXXXX";
     uint64_t seed = 6;
 
     close(mkstemp(path));
     WriteTable(&t, path);
-    read = t;
     CHECK(LamDatabaseOpen(path, &read.database));
     unlink(path);
     for (int n = 0; n < 200; n++) {
@@ -507,6 +505,5 @@ TEST(a_file_answers_bit_for_bit_as_memory)
 
       AssertIdentical(&r, &other);
     }
-    AnalyticTableClose(&read);
   }
 }

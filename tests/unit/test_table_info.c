@@ -16,14 +16,13 @@ static const char scene_text[] = "version: 1\n"
 static LamDatabase Make(void)
 {
   LamDatabase database;
-  LamScene *scene;
+  OWNED(LamScene *, LamSceneDestroy) scene;
   LamGrid grid;
 
   assert_int_equal(LamSceneReadText("test_table_info", scene_text, &scene), 0);
   assert_int_equal(LamDatabaseCreateEmpty(scene, &database), 0);
   assert_int_equal(LamGridCreate(scene, NULL, &grid), 0);
   assert_int_equal(LamDatabaseSetGrid(database, &grid), 0);
-  LamSceneDestroy(&scene);
   return database;
 }
 
@@ -33,14 +32,13 @@ static PetscInt Fill(LamDatabase database, PetscReal accuracy, LamStatus last)
   const LamLoad load = {.F = {1.05, 0, 0, 0, 1.04, 0, 0, 0, 1}, .turgor = 0.1};
   const Synthetic material = {.mu = 0.5, .lambda = 2};
   PetscInt64 keys[LAM_MAX_NEEDS];
-  LamTable table;
+  OWNED(LamTable, LamTableDestroy) table;
   LamGrid grid;
   PetscInt n;
 
   assert_int_equal(LamDatabaseGetGrid(database, &grid), 0);
   assert_int_equal(LamDatabaseGetTable(database, &table), 0);
   assert_int_equal(LamTableNeeds(table, &load, accuracy, &n, keys), 0);
-  assert_int_equal(LamTableDestroy(&table), 0);
   for (PetscInt i = 0; i < n; i++) {
     LamResponse response;
     LamLoad node;
@@ -72,7 +70,7 @@ static json_int_t At(const json_t *table, const char name[], size_t level)
 
 TEST(nodes_and_cells_are_counted_by_level)
 {
-  LamDatabase database = Make();
+  OWNED(LamDatabase, LamDatabaseClose) database = Make();
   const PetscInt coarse = Fill(database, 1e-3, LAM_CONVERGED), fine = Fill(database, 1e-12, LAM_CONVERGED);
   json_t *info = Info(database), *table = json_object_get(info, "table");
 
@@ -85,12 +83,11 @@ TEST(nodes_and_cells_are_counted_by_level)
   assert_int_equal(At(table, "cells_by_level", 1), 1);
   assert_int_equal(At(table, "mixed_cells_by_level", 0), 0);
   json_decref(info);
-  LamDatabaseClose(&database);
 }
 
 TEST(the_extent_is_that_of_the_nodes)
 {
-  LamDatabase database = Make();
+  OWNED(LamDatabase, LamDatabaseClose) database = Make();
   json_t *info, *table, *strain;
 
   (void)Fill(database, 1e-3, LAM_CONVERGED);
@@ -101,7 +98,6 @@ TEST(the_extent_is_that_of_the_nodes)
   assert_near(json_number_value(json_array_get(strain, 1)), 0.1, 1e-12);
   assert_near(json_number_value(json_object_get(json_object_get(table, "grid"), "turgor")), 0.01, 1e-12);
   json_decref(info);
-  LamDatabaseClose(&database);
 }
 
 TEST(a_node_that_cannot_be_used_is_told)
@@ -113,7 +109,7 @@ TEST(a_node_that_cannot_be_used_is_told)
   } cases[] = {{LAM_UNSTABLE, "unstable", 1, 1}, {LAM_NOT_CONVERGED, "failed", 0, 0}};
 
   for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
-    LamDatabase database = Make();
+    OWNED(LamDatabase, LamDatabaseClose) database = Make();
     json_t *info, *table;
 
     (void)Fill(database, 1e-3, cases[i].status);
@@ -123,7 +119,6 @@ TEST(a_node_that_cannot_be_used_is_told)
     assert_int_equal(At(table, "cells_by_level", 0), cases[i].complete);
     assert_int_equal(At(table, "mixed_cells_by_level", 0), cases[i].mixed);
     json_decref(info);
-    LamDatabaseClose(&database);
   }
 }
 
@@ -131,7 +126,7 @@ TEST(records_of_no_grid_are_counted_apart)
 {
   const LamLoad load = {.F = {1.05, 0, 0, 0, 1.04, 0, 0, 0, 1}, .turgor = 0.1};
   const Synthetic material = {.mu = 0.5, .lambda = 2};
-  LamDatabase database = Make();
+  OWNED(LamDatabase, LamDatabaseClose) database = Make();
   LamResponse response;
   json_t *info;
 
@@ -142,5 +137,4 @@ TEST(records_of_no_grid_are_counted_apart)
   assert_int_equal(json_integer_value(json_object_get(info, "scattered")), 1);
   assert_int_equal(json_integer_value(json_object_get(json_object_get(info, "table"), "nodes")), 0);
   json_decref(info);
-  LamDatabaseClose(&database);
 }

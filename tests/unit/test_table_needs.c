@@ -8,12 +8,11 @@ static const int in_plane[4] = {0, 1, 3, 4};
 
 static PetscInt Needs(const AnalyticTable *t, const LamLoad *load, double accuracy, PetscInt64 keys[LAM_MAX_NEEDS])
 {
-  LamTable table;
+  OWNED(LamTable, LamTableDestroy) table;
   PetscInt n;
 
   CHECK(LamDatabaseGetTable(t->database, &table));
   CHECK(LamTableNeeds(table, load, accuracy, &n, keys));
-  CHECK(LamTableDestroy(&table));
   return n;
 }
 
@@ -150,7 +149,7 @@ TABLE_TEST(far_out_no_node_helps, AnalyticTableOpen(PETSC_FALSE, 0.2))
 
 static void AssertRefusedWith(LamStatus status, PetscBool stable, PetscInt branch)
 {
-  AnalyticTable t = AnalyticTableOpen(PETSC_FALSE, 0.2);
+  OWNED(AnalyticTable, AnalyticTableClose) t = AnalyticTableOpen(PETSC_FALSE, 0.2);
   const LamLoad load = Inside(&t);
   const int corner[3] = {LAM_ROOT, LAM_ROOT, LAM_ROOT};
   PetscInt64 keys[LAM_MAX_NEEDS];
@@ -166,7 +165,6 @@ static void AssertRefusedWith(LamStatus status, PetscBool stable, PetscInt branc
   SolveNeeds(&t, &load, PETSC_INFINITY, 4);
   r = Ask(&t, &load);
   assert_int_equal(r.status, LAM_CONVERGED);
-  AnalyticTableClose(&t);
 }
 
 TEST(a_cell_with_an_unstable_corner_is_refused_its_children_are_not)
@@ -343,7 +341,7 @@ TEST(any_key_of_a_node_can_be_in_a_file)
     uint64_t seed = 3;
     LamResponse record;
     LamLoad load;
-    AnalyticTable t;
+    OWNED(AnalyticTable, AnalyticTableClose) t;
 
     if (kind == 2) scene.micro.cells[0] = 2; /* no symmetry */
     t = AnalyticTableOpenScene(tissue, scene);
@@ -356,7 +354,6 @@ TEST(any_key_of_a_node_can_be_in_a_file)
       CHECK(LamDatabaseAdd(t.database, 1, &key, &record));
     }
     assert_int_equal(Ask(&t, &load).status, LAM_OUT_OF_REACH);
-    AnalyticTableClose(&t);
   }
 }
 

@@ -122,12 +122,11 @@ static void ReadInThreads(LamTable table)
 
 TEST(threads_that_ask_a_table_are_answered_alike)
 {
-  LamTable table;
+  OWNED(LamTable, LamTableDestroy) table;
 
   assert_int_equal(LamDatabaseGetTable(database, &table), 0);
   AskAlone(table);
   ReadInThreads(table);
-  assert_int_equal(LamTableDestroy(&table), 0);
 }
 
 /* The first question, asked by one thread alone, makes the table. */
@@ -140,12 +139,11 @@ TEST(threads_that_ask_a_database_are_answered_alike)
 /* No node of this table has been made before the threads ask. */
 TEST(threads_that_make_the_nodes_of_a_table_are_answered_alike)
 {
-  LamTable table;
+  OWNED(LamTable, LamTableDestroy) table;
 
   AskAlone(NULL);
   assert_int_equal(LamTableMake(&database->nodes, database->grid, PETSC_TRUE, &table), 0);
   ReadInThreads(table);
-  assert_int_equal(LamTableDestroy(&table), 0);
 }
 
 TEST_GROUP(.setup = Setup, .teardown = Teardown);

@@ -151,24 +151,22 @@ static LamMeasurement Measured(PetscInt runs, PetscReal time, PetscReal work)
 /* The outcome of a body is the reference of others: what is unfinished must not replace it. */
 TEST(test_a_repeat_cut_short_changes_nothing)
 {
-  LamMeasurement m = Measured(1, 5, 2), repeat = Measured(0, 0, 0.5);
+  OWNED(LamMeasurement, LamMeasurementDestroy) m = Measured(1, 5, 2), repeat = Measured(0, 0, 0.5);
   const LamMacroOutcome outcome = m.outcome;
 
   CHECK(LamMeasurementTake(&repeat, &m));
   assert_int_equal(m.runs, 1);
   assert_string_equal(m.reason, "");
   assert_memory_equal(&m.outcome, &outcome, sizeof(outcome));
-  CHECK(LamMeasurementDestroy(&m));
 }
 
 TEST(test_a_repeat_adds_its_times)
 {
-  LamMeasurement m = Measured(1, 5, 2), repeat = Measured(1, 4, 2);
+  OWNED(LamMeasurement, LamMeasurementDestroy) m = Measured(1, 5, 2), repeat = Measured(1, 4, 2);
 
   CHECK(LamMeasurementTake(&repeat, &m));
   assert_int_equal(m.runs, 2);
   assert_true(m.cpu[0] == 5 && m.cpu[1] == 4);
-  CHECK(LamMeasurementDestroy(&m));
 }
 
 TEST(test_a_first_run_says_why_there_is_none)
@@ -212,7 +210,7 @@ static PetscBool Applies(const LamScene *scene, LamKnob knob)
 
 TEST(test_knobs_of_bonded_tissue)
 {
-  LamScene *scene = Scene("bonded", "");
+  OWNED(LamScene *, LamSceneDestroy) scene = Scene("bonded", "");
 
   assert_true(Applies(scene, LAM_KNOB_MESH));
   assert_true(Applies(scene, LAM_KNOB_CELLS));
@@ -220,23 +218,21 @@ TEST(test_knobs_of_bonded_tissue)
   assert_false(Applies(scene, LAM_KNOB_STRATEGY));
   assert_false(Applies(scene, LAM_KNOB_DATABASE));
   assert_false(Applies(scene, LAM_KNOB_MACRO));
-  CHECK(LamSceneDestroy(&scene));
 }
 
 TEST(test_knobs_of_contact_with_a_sample_box)
 {
-  LamScene *scene = Scene("contact", "sample: {stretch: {min: 0, max: 0.1}}\n");
+  OWNED(LamScene *, LamSceneDestroy) scene = Scene("contact", "sample: {stretch: {min: 0, max: 0.1}}\n");
 
   assert_true(Applies(scene, LAM_KNOB_STRATEGY));
   assert_true(Applies(scene, LAM_KNOB_DATABASE));
-  CHECK(LamSceneDestroy(&scene));
 }
 
 /* Every family has the planned setting once, whatever it is; settings of one family differ in name. */
 TEST(test_each_family_has_the_plan_once)
 {
   const LamKnob knobs[] = {LAM_KNOB_MESH, LAM_KNOB_STRATEGY, LAM_KNOB_CELLS, LAM_KNOB_TOLERANCE};
-  LamScene *scene = Scene("contact", "  cells: [3, 1]\n  tolerance: 0.001\n");
+  OWNED(LamScene *, LamSceneDestroy) scene = Scene("contact", "  cells: [3, 1]\n  tolerance: 0.001\n");
 
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(knobs); k++) {
     LamSetting *settings;
@@ -250,7 +246,6 @@ TEST(test_each_family_has_the_plan_once)
     assert_int_equal(planned, 1);
     CHECK(PetscFree(settings));
   }
-  CHECK(LamSceneDestroy(&scene));
 }
 
 /* ---- the study ---- */

@@ -15,7 +15,7 @@ static LamRVE CellsRVE(int n)
 
 static void AssertOnset(int cells, double turgor, double expected, double tolerance)
 {
-  LamRVE rve = CellsRVE(cells);
+  OWNED(LamRVE, LamRVEDestroy) rve = CellsRVE(cells);
   double low = 0.002, high = 0.03, energy;
   PetscInt negative[2];
 
@@ -25,7 +25,6 @@ static void AssertOnset(int cells, double turgor, double expected, double tolera
   assert_int_equal(negative[0], 0);
   assert_true(negative[1] > 0);
   assert_near(0.5 * (low + high), expected, tolerance);
-  assert_int_equal(LamRVEDestroy(&rve), 0);
 }
 
 TEST_IS(OneCellBucklesAtTwoPercent, AssertOnset(1, 0.0, 0.0227, 2e-4));
@@ -37,7 +36,7 @@ TEST_IS(FourCellsBuckleAtHalfThatStrain, AssertOnset(2, 0.0, 0.0114, 2e-4));
 TEST(BuckledStateHasLessEnergy)
 {
   for (int cells = 1; cells < 3; cells++) {
-    LamRVE rve = CellsRVE(cells);
+    OWNED(LamRVE, LamRVEDestroy) rve = CellsRVE(cells);
     const LamResponse r = SolveFromReference(rve, PlaneLoad(1 - BEYOND, 0, 0, 1 - BEYOND, 0));
     double symmetric;
     PetscInt negative;
@@ -48,7 +47,6 @@ TEST(BuckledStateHasLessEnergy)
     assert_true(r.stable);
     assert_int_equal(r.negative_eigenvalues, 0);
     assert_true(r.energy < 0.98 * symmetric);
-    assert_int_equal(LamRVEDestroy(&rve), 0);
   }
 }
 
@@ -57,12 +55,11 @@ TEST(BuckledStateHasLessEnergy)
 TEST(BuckledBranchIsFollowed)
 {
   const double step = 0.002;
-  LamRVE rve = CellsRVE(1);
-  LamRVEState point;
+  OWNED(LamRVE, LamRVEDestroy) rve = CellsRVE(1);
+  OWNED(LamRVEState, LamRVEStateDestroy) point = NewState(rve);
   LamResponse now, before;
   double first = 0.0, work = 0.0;
 
-  assert_int_equal(LamRVEStateCreate(rve, &point), 0);
   for (int k = 0; k <= 5; k++) {
     const double stretch = 0.976 - step * k;
     const LamLoad load = PlaneLoad(stretch, 0, 0, stretch, 0);
@@ -78,8 +75,6 @@ TEST(BuckledBranchIsFollowed)
     assert_true(fabs(now.P[0] - before.P[0]) < 0.05 * 0.0078);
   }
   assert_near(now.energy - first, work, 1e-6);
-  assert_int_equal(LamRVEStateDestroy(&point), 0);
-  assert_int_equal(LamRVEDestroy(&rve), 0);
 }
 
 /* At prescribed F turgor does not hold buckling back: in bonded tissue it only adds -p J F^-T (effective stress). */
@@ -89,17 +84,14 @@ TEST_IS(TurgorDoesNotMoveTheOnset, AssertOnset(1, 0.02 / TISSUE_STRESS, 0.0227, 
 static double CellDifference(double strain)
 {
   const LamLoad load = PlaneLoad(1 - strain, 0, 0, 1 - strain, 0);
-  LamRVE rve = CellsRVE(2);
-  LamRVEState at;
+  OWNED(LamRVE, LamRVEDestroy) rve = CellsRVE(2);
+  OWNED(LamRVEState, LamRVEStateDestroy) at = NewState(rve);
   LamResponse r;
   double difference;
 
-  assert_int_equal(LamRVEStateCreate(rve, &at), 0);
   assert_int_equal(LamRVESolve(rve, &load, at, &r), 0);
   assert_int_equal(r.status, LAM_CONVERGED);
   assert_int_equal(LamRVEGetCellDifference(rve, at, &difference), 0);
-  assert_int_equal(LamRVEStateDestroy(&at), 0);
-  assert_int_equal(LamRVEDestroy(&rve), 0);
   return difference;
 }
 
@@ -134,13 +126,12 @@ TEST(EnergyFallsAlongTheModeOfAnUnstableState)
 {
   const LamLoad load = PlaneLoad(1 - BEYOND, 0, 0, 1 - BEYOND, 0);
   const double h = 1e-4;
-  LamRVE rve = CellsRVE(1);
-  LamRVEState at;
+  OWNED(LamRVE, LamRVEDestroy) rve = CellsRVE(1);
+  OWNED(LamRVEState, LamRVEStateDestroy) at = NewState(rve);
   double *mode = calloc((size_t)rve->ndof, sizeof(*mode)), *y = calloc((size_t)rve->ndof, sizeof(*y));
   double eigenvalue, square = 0, second = 0;
   PetscBool ok;
 
-  assert_int_equal(LamRVEStateCreate(rve, &at), 0);
   assert_int_equal(SolveSymmetric(rve, &load, &ok), 0);
   assert_true(ok);
   LamKeepState(rve, &load, 0, at);
@@ -154,8 +145,6 @@ TEST(EnergyFallsAlongTheModeOfAnUnstableState)
   assert_near(second / (eigenvalue * square), 1.0, 1e-3);
   free(mode);
   free(y);
-  assert_int_equal(LamRVEStateDestroy(&at), 0);
-  assert_int_equal(LamRVEDestroy(&rve), 0);
 }
 
 TEST_GROUP(.petsc = 1);

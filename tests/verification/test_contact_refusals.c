@@ -96,8 +96,8 @@ TEST(FailureLeavesTheState)
   LamMicrostructure micro = ContactTissue(6, 2);
   const LamLoad hopeless = ContactLoad(0.3, 0, 0, 0.3, 0, 0), load = ContactLoad(1, 0.1, 0, 1, 0.02, 0);
   LamResponse fresh, failed, after;
-  LamRVEState point;
-  LamRVE rve;
+  OWNED(LamRVEState, LamRVEStateDestroy) point;
+  OWNED(LamRVE, LamRVEDestroy) rve;
 
   fresh = SolveTissue(&micro, load);
   assert_int_equal(LamRVECreate(PETSC_COMM_SELF, &rve), 0);
@@ -109,8 +109,6 @@ TEST(FailureLeavesTheState)
   assert_int_equal(LamRVESolve(rve, &load, point, &after), 0);
   assert_int_equal(after.newton_iterations, fresh.newton_iterations);
   for (int i = 0; i < 9; i++) assert_near(after.P[i], fresh.P[i], 1e-12);
-  assert_int_equal(LamRVEStateDestroy(&point), 0);
-  assert_int_equal(LamRVEDestroy(&rve), 0);
 }
 
 TEST_GROUP(.petsc = 1);

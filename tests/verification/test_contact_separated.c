@@ -14,9 +14,7 @@ static const double apart[APART][4] = {
 /* Free tissue moved apart; cohesion in MPa. */
 static LamResponse SolveApart(int k, double cohesion)
 {
-  const LamMicrostructure micro = ContactTissue(6, 2);
-
-  return SolveTissue(&micro, ContactLoad(apart[k][0], apart[k][1], apart[k][2], apart[k][3], 0, cohesion));
+  return SolveContactTissue(ContactLoad(apart[k][0], apart[k][1], apart[k][2], apart[k][3], 0, cohesion));
 }
 
 TEST(StateIsConvergedAndFloats)
@@ -83,12 +81,11 @@ TEST(GapIsThatOfTheFaces)
 /* Walls of a cell that bulges face each other at their middles, wherever the next cell is. */
 TEST(SmallestGapGivesTheWidthOfTheCell)
 {
-  const LamMicrostructure micro = ContactTissue(6, 2);
   double width[3];
 
   for (int k = 0; k < 3; k++) {
     const double stretch = exp(0.2 + 0.3 * k);
-    const LamResponse r = SolveTissue(&micro, ContactLoad(stretch, 0, 0, stretch, 0.03, 0.0025));
+    const LamResponse r = SolveContactTissue(ContactLoad(stretch, 0, 0, stretch, 0.03, 0.0025));
 
     assert_int_equal(r.floating_cells, 1);
     width[k] = 2.0 * stretch - r.min_gap;
@@ -99,8 +96,7 @@ TEST(SmallestGapGivesTheWidthOfTheCell)
 
 TEST(SmallestGapIsZeroWhereWallsTouch)
 {
-  const LamMicrostructure micro = ContactTissue(6, 2);
-  const LamResponse r = SolveTissue(&micro, ContactLoad(1.0, 0.3, 0, 1.0, 0, 0.0025));
+  const LamResponse r = SolveContactTissue(ContactLoad(1.0, 0.3, 0, 1.0, 0, 0.0025));
 
   assert_true(r.open_fraction > 0.1 && r.debonded_fraction < 1.0);
   assert_true(r.min_gap == 0.0);
@@ -108,8 +104,7 @@ TEST(SmallestGapIsZeroWhereWallsTouch)
 
 TEST(BondedTissueHasNoSmallestGap)
 {
-  const LamMicrostructure micro = DefaultTissue();
-  const LamResponse r = SolveTissue(&micro, PlaneLoad(1.0, 0.1, 0, 1.0, 0.1));
+  const LamResponse r = SolveDefaultTissue(PlaneLoad(1.0, 0.1, 0, 1.0, 0.1));
 
   assert_int_equal(r.status, LAM_CONVERGED);
   assert_true(isnan(r.min_gap));

@@ -74,7 +74,7 @@ static LamProcessState FollowPoint(const char text[], PetscBool cached)
   LamProcessReason reason;
   char message[LAM_PROCESS_MESSAGE];
   LamProcessState last;
-  LamProcess process;
+  OWNED(LamProcess, LamProcessDestroy) process;
   Tissue t;
 
   OpenTissue(text, 1, cached, &t);
@@ -83,7 +83,6 @@ static LamProcessState FollowPoint(const char text[], PetscBool cached)
   assert_int_equal(LamProcessSetMonitor(process, KeepPoint, &last), 0);
   assert_int_equal(LamProcessRun(process, &reason, message), 0);
   if (reason != LAM_PROCESS_DONE) fail_msg("%s", message);
-  assert_int_equal(LamProcessDestroy(&process), 0);
   CloseTissue(&t);
   return last;
 }
@@ -110,8 +109,8 @@ static LamBodyState FollowBody(const char text[], PetscBool cached, PetscReal *f
   char message[LAM_PROCESS_MESSAGE];
   LamBodyState last;
   PetscInt points;
-  LamMacro macro;
-  LamBody body;
+  OWNED(LamMacro, LamMacroDestroy) macro;
+  OWNED(LamBody, LamBodyDestroy) body;
   Tissue t;
 
   OpenTissue(text, 9, cached, &t);
@@ -126,8 +125,6 @@ static LamBodyState FollowBody(const char text[], PetscBool cached, PetscReal *f
   assert_int_equal(LamBodyRun(body, &reason, message), 0);
   if (reason != LAM_PROCESS_DONE) fail_msg("%s", message);
   *force = last.step.reaction[1][0];
-  assert_int_equal(LamBodyDestroy(&body), 0);
-  assert_int_equal(LamMacroDestroy(&macro), 0);
   CloseTissue(&t);
   return last;
 }
@@ -162,7 +159,7 @@ static LamMacroStep SolveSealedBody(const char text[], PetscBool cached)
   char message[LAM_MESSAGE_LENGTH];
   LamMacroReason reason;
   LamMacroStep last;
-  LamMacro macro;
+  OWNED(LamMacro, LamMacroDestroy) macro;
   Tissue t;
 
   OpenTissue(text, 9, cached, &t);
@@ -173,7 +170,6 @@ static LamMacroStep SolveSealedBody(const char text[], PetscBool cached)
   assert_int_equal(LamMacroSetMonitor(macro, KeepStep, &last), 0);
   assert_int_equal(LamMacroSolve(macro, &reason, message), 0);
   if (reason != LAM_MACRO_DONE) fail_msg("%s", message);
-  assert_int_equal(LamMacroDestroy(&macro), 0);
   CloseTissue(&t);
   return last;
 }

@@ -77,7 +77,7 @@ TEST(BondedTissueHasTheMatrixOfItsWalls)
 
   for (size_t k = 0; k < sizeof(cells) / sizeof(cells[0]); k++) {
     LamMicrostructure micro = DefaultTissue();
-    LamRVE rve;
+    OWNED(LamRVE, LamRVEDestroy) rve;
 
     micro.cells[0] = cells[k][0];
     micro.cells[1] = cells[k][1];
@@ -87,7 +87,6 @@ TEST(BondedTissueHasTheMatrixOfItsWalls)
     assert_int_equal(rve->linear.nonzeros, 4 * CountPairs(&rve->mesh) - (rve->mesh.class_count - 1));
     assert_null(rve->contact);
     assert_null(rve->bonded);
-    assert_int_equal(LamRVEDestroy(&rve), 0);
   }
 }
 
@@ -97,7 +96,7 @@ TEST(SolvesAsWallsAloneDo)
   const LamLoad load = PlaneLoad(1.02, 0.1, 0, 1, 0);
   Solved s = Solve(&micro, &load);
   LamResponse response;
-  LamRVE bare = NULL;
+  OWNED(LamRVE, BareDestroy) bare = NULL;
 
   assert_int_equal(BareCreate(&micro, &bare), 0);
   assert_int_equal(BareSolve(bare, &load, &response), 0);
@@ -108,7 +107,6 @@ TEST(SolvesAsWallsAloneDo)
   assert_true(s.response.factorisations <= response.factorisations);
   for (PetscInt i = 0; i < bare->ndof; i++) assert_true(fabs(s.state->y[i] - bare->y[i]) < 1e-12);
   for (int i = 0; i < 9; i++) assert_true(fabs(s.response.P[i] - response.P[i]) < 1e-14);
-  assert_int_equal(BareDestroy(&bare), 0);
   Destroy(&s);
 }
 
@@ -196,15 +194,13 @@ TEST(PrescribedStressDerivesInAnyCase)
   LamResponse responses[2];
 
   for (int k = 0; k < 2; k++) {
-    LamRVE rve = NewRVE(&micro);
-    LamRVEState at;
+    OWNED(LamRVE, LamRVEDestroy) rve = NewRVE(&micro);
+    OWNED(LamRVEState, LamRVEStateDestroy) at;
 
     assert_int_equal(LamRVESetWanted(rve, k ? LAM_WANT_STRESS : LAM_WANT_ALL), 0);
     assert_int_equal(LamRVEStateCreate(rve, &at), 0);
     assert_int_equal(LamRVESolveMixed(rve, &load, &control, at, &responses[k]), 0);
     assert_int_equal(responses[k].status, LAM_CONVERGED);
-    assert_int_equal(LamRVEStateDestroy(&at), 0);
-    assert_int_equal(LamRVEDestroy(&rve), 0);
   }
   assert_memory_equal(responses[0].load.F, responses[1].load.F, sizeof(responses[0].load.F));
   assert_memory_equal(responses[0].P, responses[1].P, sizeof(responses[0].P));

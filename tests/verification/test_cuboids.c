@@ -14,10 +14,9 @@ static CuboidsProfile unequal[PRESSURES];
 static CuboidsProfile Profile(CuboidsSetup setup)
 {
   CuboidsProfile profile;
-  Cuboids cuboids;
+  OWNED(Cuboids, CuboidsDestroy) cuboids;
 
   assert_int_equal(CuboidsCompute(&setup, &cuboids, &profile), 0);
-  assert_int_equal(CuboidsDestroy(&cuboids), 0);
   return profile;
 }
 
@@ -75,7 +74,7 @@ TEST(ForcesBalanceAcrossTheInterface)
 {
   CuboidsSetup setup = CuboidsUnequal(N, SHEAR, 0.02);
   CuboidsProfile profile;
-  Cuboids cuboids;
+  OWNED(Cuboids, CuboidsDestroy) cuboids;
   double left[2], right[2], contact[2];
 
   assert_int_equal(CuboidsCompute(&setup, &cuboids, &profile), 0);
@@ -85,7 +84,6 @@ TEST(ForcesBalanceAcrossTheInterface)
   for (int d = 0; d < 2; d++) assert_near(left[d] + right[d], 0.0, 1e-8);
   assert_near(left[0] + contact[0] + setup.pressure, 0.0, 0.01 * setup.pressure);
   assert_near(left[1] + contact[1] - setup.pressure * SHEAR, 0.0, 0.01 * setup.pressure);
-  assert_int_equal(CuboidsDestroy(&cuboids), 0);
 }
 
 /* Up to pressure over bulk modulus, here a tenth of the default. */

@@ -15,9 +15,9 @@ static LamLoad Load(int k)
 
 static LamResponse EstimatedOf(const LamMicrostructure *micro, LamLoad load, LamWanted wanted)
 {
-  LamRVE rve = NewRVE(micro);
-  LamRVEState state;
-  LamRVEEstimate estimate;
+  OWNED(LamRVE, LamRVEDestroy) rve = NewRVE(micro);
+  OWNED(LamRVEState, LamRVEStateDestroy) state;
+  OWNED(LamRVEEstimate, LamRVEEstimateDestroy) estimate;
   LamResponse response;
 
   assert_int_equal(LamRVESetWanted(rve, wanted), 0);
@@ -25,9 +25,6 @@ static LamResponse EstimatedOf(const LamMicrostructure *micro, LamLoad load, Lam
   assert_int_equal(LamRVEEstimateCreate(rve, &estimate), 0);
   assert_int_equal(LamRVESolve(rve, &load, state, &response), 0);
   assert_int_equal(LamRVEEstimateError(estimate, state, &response), 0);
-  assert_int_equal(LamRVEEstimateDestroy(&estimate), 0);
-  assert_int_equal(LamRVEStateDestroy(&state), 0);
-  assert_int_equal(LamRVEDestroy(&rve), 0);
   return response;
 }
 
@@ -115,12 +112,11 @@ TEST(IsTheWholeDifferenceWhereErrorsFallSlowly)
 TEST(ChangesNothingOfTheState)
 {
   LamMicrostructure micro = DefaultTissue();
-  LamRVE rve = NewRVE(&micro);
+  OWNED(LamRVE, LamRVEDestroy) rve = NewRVE(&micro);
   const LamResponse alone = SolveFromReference(rve, Load(1)), both = Estimated(&micro, Load(1));
 
   assert_int_equal(alone.factorisations, both.factorisations); /* the estimate's are not the state's */
   assert_memory_equal(alone.P, both.P, sizeof(alone.P));
-  assert_int_equal(LamRVEDestroy(&rve), 0);
 }
 
 TEST_GROUP(.petsc = 1);

@@ -52,7 +52,7 @@ TEST(StressIsThatOfOneRVE)
 {
   Body body;
   LamMacroReason reason;
-  LamMacroFields fields;
+  OWNED(LamMacroFields, LamMacroFieldsDestroy) fields;
   LamResponse exact;
   char message[LAM_MESSAGE_LENGTH];
 
@@ -62,7 +62,6 @@ TEST(StressIsThatOfOneRVE)
   exact = SolveFromReference(body.rve, PlaneLoad(1.1, 0, 0, 0.98, body.scene->turgor));
   assert_int_equal(LamMacroGetFields(body.macro, &fields), 0);
   for (PetscInt k = 0; k < 9 * fields.element_count; ++k) assert_true(fabs(fields.P[k] - exact.P[k % 9]) < 1e-8);
-  assert_int_equal(LamMacroFieldsDestroy(&fields), 0);
   TearDown(&body);
 }
 

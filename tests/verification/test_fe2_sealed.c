@@ -27,9 +27,9 @@ static const PetscReal stretch[2] = {1.1, 0.9095};
 /* Solves the body on this mesh; the scene says what it is made of. */
 static void SolveBody(LamScene *scene, LamMacroFields *fields)
 {
-  LamRVE rve = NewRVE(&scene->micro);
-  LamResponder responder;
-  LamMacro macro;
+  OWNED(LamRVE, LamRVEDestroy) rve = NewRVE(&scene->micro);
+  OWNED(LamResponder, LamResponderDestroy) responder;
+  OWNED(LamMacro, LamMacroDestroy) macro;
   LamMacroReason reason;
   PetscInt points;
   char message[LAM_MESSAGE_LENGTH];
@@ -43,19 +43,16 @@ static void SolveBody(LamScene *scene, LamMacroFields *fields)
   assert_int_equal(LamMacroSolve(macro, &reason, message), 0);
   if (reason != LAM_MACRO_DONE) fail_msg("%s", message);
   assert_int_equal(LamMacroGetFields(macro, fields), 0);
-  assert_int_equal(LamMacroDestroy(&macro), 0);
-  assert_int_equal(LamResponderDestroy(&responder), 0);
-  assert_int_equal(LamRVEDestroy(&rve), 0);
 }
 
 /* The same tissue sealed in the RVE solve. */
 static LamResponse SolveSealed(const LamScene *scene)
 {
   LamLoad load = PlaneLoad(1, 0, 0, 1, scene->turgor);
-  LamRVEState state;
+  OWNED(LamRVEState, LamRVEStateDestroy) state;
   LamResponse response;
   PetscReal water;
-  LamRVE rve;
+  OWNED(LamRVE, LamRVEDestroy) rve;
 
   assert_int_equal(LamRVECreate(PETSC_COMM_SELF, &rve), 0);
   assert_int_equal(LamRVESetMicrostructure(rve, &scene->micro), 0);
@@ -69,16 +66,14 @@ static LamResponse SolveSealed(const LamScene *scene)
   load.F[4] = stretch[1];
   assert_int_equal(LamRVESolve(rve, &load, state, &response), 0);
   assert_int_equal(response.status, LAM_CONVERGED);
-  assert_int_equal(LamRVEStateDestroy(&state), 0);
-  assert_int_equal(LamRVEDestroy(&rve), 0);
   return response;
 }
 
 /* Relative to their own sizes: in water a rounding error of J is 1e4 times as large in the pressure. */
 TEST(StressIsThatOfOneSealedRVE)
 {
-  LamScene *scene;
-  LamMacroFields fields;
+  OWNED(LamScene *, LamSceneDestroy) scene;
+  OWNED(LamMacroFields, LamMacroFieldsDestroy) fields;
 
   assert_int_equal(LamSceneReadText("sealed", scene_text, &scene), 0);
   const LamResponse exact = SolveSealed(scene);
@@ -87,8 +82,6 @@ TEST(StressIsThatOfOneSealedRVE)
   for (PetscInt k = 0; k < 9 * fields.element_count; ++k)
     assert_true(fabs(fields.P[k] - exact.P[k % 9]) < 1e-8 * fabs(exact.P[0]));
   assert_true(fabs(fields.mean[LAM_POINT_TURGOR] - exact.turgor_mean) < 1e-8 * fabs(exact.turgor_mean));
-  assert_int_equal(LamMacroFieldsDestroy(&fields), 0);
-  assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
 /* In a distorted mesh of quadrilaterals, and of triangles, a homogeneous deformation has one F and one turgor. */
@@ -98,8 +91,8 @@ TEST(PatchTest)
   const PetscReal F[9] = {stretch[0], 0, 0, 0, stretch[1], 0, 0, 0, 1};
 
   for (int k = 0; k < 4; k++) {
-    LamScene *scene;
-    LamMacroFields fields;
+    OWNED(LamScene *, LamSceneDestroy) scene;
+    OWNED(LamMacroFields, LamMacroFieldsDestroy) fields;
     assert_int_equal(LamSceneReadText("sealed", scene_text, &scene), 0);
     scene->sealed = (PetscBool)(k / 2);
     scene->macro.source = LAM_MESH_GMSH;
@@ -111,8 +104,6 @@ TEST(PatchTest)
       assert_true(fabs(fields.mean[LAM_POINT_FIELD_COUNT * e + LAM_POINT_TURGOR] / fields.mean[LAM_POINT_TURGOR] - 1) <
                   1e-10);
     }
-    assert_int_equal(LamMacroFieldsDestroy(&fields), 0);
-    assert_int_equal(LamSceneDestroy(&scene), 0);
   }
 }
 
@@ -123,7 +114,7 @@ TEST(CookHasTheOrderOfTheElement)
 
   micro.along = 3;
   micro.through = 1;
-  LamRVE rve = NewRVE(&micro);
+  OWNED(LamRVE, LamRVEDestroy) rve = NewRVE(&micro);
   for (int sealed = 0; sealed < 2; sealed++) {
     const LamScene scene = {.sealed = (PetscBool)sealed, .water_bulk_modulus = 2e4};
     Problem problem = {.kind = PROBLEM_COOK, .n = 1, .amplitude = 0.5, .scene = &scene, .rve = rve};
@@ -136,7 +127,6 @@ TEST(CookHasTheOrderOfTheElement)
     }
     assert_true(OrderOf(force) > 2);
   }
-  assert_int_equal(LamRVEDestroy(&rve), 0);
 }
 
 TEST_GROUP(.petsc = 1);

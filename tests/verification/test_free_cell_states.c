@@ -17,12 +17,11 @@ static LamFreeCell cell;
 
 static LamFreeCell Make(LamRVE solved, const LamMicrostructure *micro, PetscInt n)
 {
-  LamResponder solver;
+  OWNED(LamResponder, LamResponderDestroy) solver;
   LamFreeCell made;
 
   assert_int_equal(LamRVEResponderCreate(solved, 0, &solver), 0);
   assert_int_equal(LamFreeCellMake(micro, COHESION, SUCTION_MIN, SUCTION_MAX, SCALE, n, solver, &made), 0);
-  assert_int_equal(LamResponderDestroy(&solver), 0);
   return made;
 }
 

@@ -11,7 +11,7 @@ static const double increments[] = {1e-13, 1e-12, 1e-9, 1e-6, 1e-4};
 static void ForAllKinds(void (*check)(double h, const IncrementWalk *walk))
 {
   for (int kind = 0; kind < INCREMENT_KIND_COUNT; kind++) {
-    IncrementTissue t;
+    OWNED(IncrementTissue, IncrementDestroy) t;
 
     assert_int_equal(IncrementCreate((IncrementKind)kind, &t), 0);
     assert_int_equal(t.at.status, LAM_CONVERGED);
@@ -22,7 +22,6 @@ static void ForAllKinds(void (*check)(double h, const IncrementWalk *walk))
       assert_int_equal(walk.solved, INCREMENT_STEPS);
       check(increments[i], &walk);
     }
-    assert_int_equal(IncrementDestroy(&t), 0);
   }
 }
 
@@ -49,7 +48,7 @@ TEST_IS(NoIterationIsWasted, ForAllKinds(CheckWork));
 TEST(LargeStepsEndWhereSmallOnesDo)
 {
   const LamMicrostructure micro = DefaultTissue();
-  LamRVE rve = NewRVE(&micro);
+  OWNED(LamRVE, LamRVEDestroy) rve = NewRVE(&micro);
 
   for (int k = 0; k < LARGE_STEPS; k++) {
     LargeResult l;
@@ -61,7 +60,6 @@ TEST(LargeStepsEndWhereSmallOnesDo)
     else
       assert_int_equal(l.once.status, l.small.status);
   }
-  assert_int_equal(LamRVEDestroy(&rve), 0);
 }
 
 TEST_GROUP(.petsc = 1);

@@ -55,20 +55,17 @@ TEST(RotationOfTheObserver)
 TEST(RotationOfASolutionCostsNothing)
 {
   const LamMicrostructure micro = DefaultTissue();
-  LamRVE rve = NewRVE(&micro);
-  LamRVEState point;
+  OWNED(LamRVE, LamRVEDestroy) rve = NewRVE(&micro);
+  OWNED(LamRVEState, LamRVEStateDestroy) point = NewState(rve);
   LamLoad load = LoadOf(0, F0[0]);
   LamResponse r;
   double Q[9];
 
   RotationTensor(1.3, Q);
-  assert_int_equal(LamRVEStateCreate(rve, &point), 0);
   assert_int_equal(LamRVESolve(rve, &load, point, &r), 0);
   TurnTensor(Q, F0[0], turned_identity, load.F);
   assert_int_equal(LamRVESolve(rve, &load, point, &r), 0);
   assert_in_range(r.newton_iterations, 0, 1);
-  assert_int_equal(LamRVEStateDestroy(&point), 0);
-  assert_int_equal(LamRVEDestroy(&rve), 0);
 }
 
 /* The cell is the same after each symmetry R of the hexagon: P(R F R^T) = R P(F) R^T. */
@@ -155,28 +152,24 @@ TEST(PathToTheLoad)
   const LamMicrostructure micro = DefaultTissue();
   const LamResponse a = SolveTissue(&micro, LoadOf(0, F0[0]));
   const LamLoad way[2] = {PlaneLoad(1.1, -0.1, 0.1, 1.1, 3.0 * TURGOR), LoadOf(0, F0[0])};
-  LamRVE rve = NewRVE(&micro);
-  LamRVEState point;
+  OWNED(LamRVE, LamRVEDestroy) rve = NewRVE(&micro);
+  OWNED(LamRVEState, LamRVEStateDestroy) point = NewState(rve);
   LamResponse b;
 
-  assert_int_equal(LamRVEStateCreate(rve, &point), 0);
   for (int k = 0; k < 2; k++) assert_int_equal(LamRVESolve(rve, &way[k], point, &b), 0);
   AssertTurnedResponse(&a, &b, turned_identity, turned_identity, TOLERANCE);
-  assert_int_equal(LamRVEStateDestroy(&point), 0);
-  assert_int_equal(LamRVEDestroy(&rve), 0);
 }
 
 /* Stresses in Pa of the one load of a scene. */
 static void SolveScene(const char text[], double P[9])
 {
-  LamScene *scene;
+  OWNED(LamScene *, LamSceneDestroy) scene;
   LamResponse r;
 
   assert_int_equal(LamSceneReadText("units.yaml", text, &scene), 0);
   r = SolveTissue(&scene->micro, scene->loads[0]);
   assert_int_equal(r.status, LAM_CONVERGED);
   for (int i = 0; i < 9; i++) P[i] = scene->scales.stress * r.P[i];
-  assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
 #define SCENE(cell, wall, interface, pressure)                                                                         \

@@ -32,7 +32,7 @@ static void ArchScene(Fixture *fixture, PetscInt steps)
 /* Displacement of the middle of the arch. */
 static PetscReal Sag(const Fixture *fixture)
 {
-  LamMacroFields fields;
+  OWNED(LamMacroFields, LamMacroFieldsDestroy) fields;
   PetscReal sag = 0;
 
   assert_ok(LamMacroGetFields(fixture->macro, &fields));
@@ -40,7 +40,6 @@ static PetscReal Sag(const Fixture *fixture)
     if (PetscAbsReal(fields.nodes[2 * n]) < 1e-12 && PetscAbsReal(fields.nodes[2 * n + 1]) < 1e-12)
       sag = fields.u[2 * n + 1];
   }
-  assert_ok(LamMacroFieldsDestroy(&fields));
   return sag;
 }
 

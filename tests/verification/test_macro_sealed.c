@@ -44,7 +44,7 @@ TEST(PatchTest)
 {
   for (int k = 0; k < 2; k++) {
     Fixture fixture;
-    LamMacroFields fields;
+    OWNED(LamMacroFields, LamMacroFieldsDestroy) fields;
     FixtureScene(&fixture, 1, 1, 1, 1);
     FixtureRollers(&fixture, 0.1, -0.06);
     FixtureSeal(&fixture, 0.2, 2000);
@@ -58,7 +58,6 @@ TEST(PatchTest)
       for (int i = 0; i < 9; i++) assert_true(PetscAbsReal(fields.F[9 * e + i] - F[i]) < 1e-10);
       assert_true(PetscAbsReal(fields.mean[LAM_POINT_FIELD_COUNT * e + LAM_POINT_TURGOR] - turgor) < 1e-10);
     }
-    assert_ok(LamMacroFieldsDestroy(&fields));
     FixtureDestroy(&fixture);
   }
 }

@@ -17,16 +17,13 @@ static LamMicrostructure Tissue(LamInterfaceLawType interface)
 /* By way of another state, from which the solve at the load starts: it is a state before, so no coarser mesh is. */
 static LamResponse SolveInTwoSteps(const LamMicrostructure *micro, LamLoad first, LamLoad load)
 {
-  LamRVE rve = NewRVE(micro);
+  OWNED(LamRVE, LamRVEDestroy) rve = NewRVE(micro);
   LamResponse response;
-  LamRVEState state;
+  OWNED(LamRVEState, LamRVEStateDestroy) state = NewState(rve);
 
-  assert_int_equal(LamRVEStateCreate(rve, &state), 0);
   assert_int_equal(LamRVESolve(rve, &first, state, &response), 0);
   assert_int_equal(response.status, LAM_CONVERGED);
   assert_int_equal(LamRVESolve(rve, &load, state, &response), 0);
-  assert_int_equal(LamRVEStateDestroy(&state), 0);
-  assert_int_equal(LamRVEDestroy(&rve), 0);
   return response;
 }
 

@@ -75,17 +75,14 @@ TEST(SolutionIsItsOwnStart)
 {
   const LamMicrostructure micro = DefaultTissue();
   const LamLoad load = PlaneLoad(1.02, 0.1, 0, 1, TURGOR);
-  LamRVE rve = NewRVE(&micro);
-  LamRVEState point;
+  OWNED(LamRVE, LamRVEDestroy) rve = NewRVE(&micro);
+  OWNED(LamRVEState, LamRVEStateDestroy) point = NewState(rve);
   LamResponse first, again;
 
-  assert_int_equal(LamRVEStateCreate(rve, &point), 0);
   assert_int_equal(LamRVESolve(rve, &load, point, &first), 0);
   assert_int_equal(LamRVESolve(rve, &load, point, &again), 0);
   assert_int_equal(again.newton_iterations, 0);
   assert_true(LamStressError(again.P, first.P) < 1e-12);
-  assert_int_equal(LamRVEStateDestroy(&point), 0);
-  assert_int_equal(LamRVEDestroy(&rve), 0);
 }
 
 /* Rounding grows with the size of the RVE and with the slenderness of the elements; the tolerance must follow it. */

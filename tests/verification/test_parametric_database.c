@@ -30,11 +30,10 @@ static void Build(const LamMicrostructure *micro, LamDatabase *db)
   for (int s = 0; s < STATES; s++)
     for (int round = 0; round < 8; round++) {
       LamResponse nodes[LAM_MAX_NEEDS];
-      LamTable table;
+      OWNED(LamTable, LamTableDestroy) table;
 
       assert_int_equal(LamDatabaseGetTable(*db, &table), 0);
       assert_int_equal(LamTableNeeds(table, &loads[s], ASKED / 5, &n, keys), 0);
-      assert_int_equal(LamTableDestroy(&table), 0);
       if (!n) break;
       for (PetscInt k = 0; k < n; k++) {
         LamLoad load;
@@ -75,7 +74,7 @@ static void CheckAxis(LamParametricAxis axis, const PetscReal values[KNOTS], Pet
 {
   LamDatabase databases[KNOTS];
   LamMicrostructure micro = Tissue(axis, between);
-  LamParametricDatabase family;
+  OWNED(LamParametricDatabase, LamParametricDatabaseDestroy) family;
   LamParametricAxis found;
   PetscReal least, most;
 
@@ -99,7 +98,6 @@ static void CheckAxis(LamParametricAxis axis, const PetscReal values[KNOTS], Pet
     assert_true(LamStressError(answer.P, truth.P) < 2 * answer.error_estimate + ASKED / 10);
     assert_near(answer.lumen_fraction, truth.lumen_fraction, 1e-3);
   }
-  assert_int_equal(LamParametricDatabaseDestroy(&family), 0);
   for (int i = 0; i < KNOTS; i++) assert_int_equal(LamDatabaseClose(&databases[i]), 0);
 }
 
@@ -136,7 +134,7 @@ TEST(matrices_of_any_kind)
 TEST(at_a_knot_the_answer_is_its_database_s)
 {
   LamDatabase databases[2];
-  LamParametricDatabase family;
+  OWNED(LamParametricDatabase, LamParametricDatabaseDestroy) family;
 
   for (int i = 0; i < 2; i++) {
     const LamMicrostructure micro = Tissue(LAM_FAMILY_C4, i ? 10 : 8);
@@ -151,14 +149,13 @@ TEST(at_a_knot_the_answer_is_its_database_s)
     assert_int_equal(LamParametricDatabaseQuery(family, 8, &loads[s], INFINITY, &answer), 0);
     for (int i = 0; i < 9; i++) assert_near(answer.P[i], own.P[i], 1e-12);
   }
-  assert_int_equal(LamParametricDatabaseDestroy(&family), 0);
   for (int i = 0; i < 2; i++) assert_int_equal(LamDatabaseClose(&databases[i]), 0);
 }
 
 TEST(beyond_the_knots_is_refused)
 {
   LamDatabase databases[2];
-  LamParametricDatabase family;
+  OWNED(LamParametricDatabase, LamParametricDatabaseDestroy) family;
   LamResponse answer;
 
   for (int i = 0; i < 2; i++) {
@@ -170,7 +167,6 @@ TEST(beyond_the_knots_is_refused)
   assert_int_equal(LamParametricDatabaseQuery(family, 11, &loads[0], INFINITY, &answer), 0);
   assert_int_equal(answer.status, LAM_OUT_OF_REACH);
   assert_non_null(strstr(answer.reason, "C4/C1 = 11"));
-  assert_int_equal(LamParametricDatabaseDestroy(&family), 0);
   for (int i = 0; i < 2; i++) assert_int_equal(LamDatabaseClose(&databases[i]), 0);
 }
 

@@ -115,17 +115,14 @@ TEST(CellsAndGapsFillThePatch)
     const LamMicrostructure micro = PatchTissue(3, 3, orientation, LAM_INTERFACE_CONTACT);
     const LamLoad load = ContactLoad(1.03, 0.2, -0.02, 1.01, 0.01, 0);
     const double V0 = 9.0 * 2.0 * sqrt(3.0), J = 1.03 * 1.01 + 0.2 * 0.02;
-    LamRVE rve = NewRVE(&micro);
-    LamRVEState solution;
+    OWNED(LamRVE, LamRVEDestroy) rve = NewRVE(&micro);
+    OWNED(LamRVEState, LamRVEStateDestroy) solution = NewState(rve);
     LamResponse r;
 
-    assert_int_equal(LamRVEStateCreate(rve, &solution), 0);
     assert_int_equal(LamRVESolve(rve, &load, solution, &r), 0);
     assert_int_equal(r.status, LAM_CONVERGED);
     assert_true(r.opening_fraction > 1e-3);
     assert_near(r.opening_fraction, J - AreaOfCells(rve, solution) / V0, 1e-12);
-    assert_int_equal(LamRVEStateDestroy(&solution), 0);
-    assert_int_equal(LamRVEDestroy(&rve), 0);
   }
 }
 

@@ -64,7 +64,7 @@ static void Differences(LamRVE rve, LamRVEState centre, const LamResponse *r, in
                         double curvature[5])
 {
   static const double step[4] = {-2, -1, 1, 2}, weight[4] = {1, -8, 8, -1};
-  LamRVEState state;
+  OWNED(LamRVEState, LamRVEStateDestroy) state;
 
   assert_int_equal(LamRVEStateCreate(rve, &state), 0);
   *slope = 0;
@@ -86,17 +86,15 @@ static void Differences(LamRVE rve, LamRVEState centre, const LamResponse *r, in
     *slope += w * moved.energy;
     for (int i = 0; i < 5; i++) curvature[i] += w * moved.P[contact_components[i]];
   }
-  assert_int_equal(LamRVEStateDestroy(&state), 0);
 }
 
 static void CheckDerivatives(const LamMicrostructure *micro)
 {
   const LamLoad load = PatchLoad();
-  LamRVE rve = NewRVE(micro);
-  LamRVEState centre;
+  OWNED(LamRVE, LamRVEDestroy) rve = NewRVE(micro);
+  OWNED(LamRVEState, LamRVEStateDestroy) centre = NewState(rve);
   LamResponse r;
 
-  assert_int_equal(LamRVEStateCreate(rve, &centre), 0);
   assert_int_equal(LamRVESolve(rve, &load, centre, &r), 0);
   assert_int_equal(r.status, LAM_CONVERGED);
   for (int column = 0; column < CONTACT_COLUMNS; column++) {
@@ -107,8 +105,6 @@ static void CheckDerivatives(const LamMicrostructure *micro)
     assert_near(Slope(&r, column), slope, 1e-8);
     for (int i = 0; i < 5; i++) assert_near(Curvature(&r, i, column), curvature[i], 1e-7 * TangentScale(&r));
   }
-  assert_int_equal(LamRVEStateDestroy(&centre), 0);
-  assert_int_equal(LamRVEDestroy(&rve), 0);
 }
 
 TEST(DerivativesOfBondedPatches)

@@ -14,12 +14,11 @@ static PetscReal FreeLumen(LamRVE rve, PetscReal turgor)
   const LamStressControl control = {.given = {1, 1, 0, 0, 1}, .share = 1};
   LamLoad load = PlaneLoad(1, 0, 0, 1, turgor);
   LamResponse response;
-  LamRVEState state;
+  OWNED(LamRVEState, LamRVEStateDestroy) state;
 
   assert_int_equal(LamRVEStateCreate(rve, &state), 0);
   assert_int_equal(LamRVESolveMixed(rve, &load, &control, state, &response), 0);
   assert_int_equal(response.status, LAM_CONVERGED);
-  assert_int_equal(LamRVEStateDestroy(&state), 0);
   return response.lumen_fraction;
 }
 
@@ -401,13 +400,12 @@ TEST(tissue_that_snaps_goes_on_behind)
   const LamProcessState *snap = FindEvent(&f, LAM_EVENT_SNAP), *last = LastState(&f);
   LamLoad load = last->response.load;
   LamResponse fresh;
-  LamRVEState start;
+  OWNED(LamRVEState, LamRVEStateDestroy) start;
 
   assert_non_null(snap);
   assert_near(snap->time / 86400, 0.5757, 0.002);
   assert_int_equal(LamRVEStateCreate(f.rve, &start), 0);
   assert_int_equal(LamRVESolveMixed(f.rve, &load, &control, start, &fresh), 0);
-  assert_int_equal(LamRVEStateDestroy(&start), 0);
   assert_int_equal(fresh.status, LAM_CONVERGED);
   assert_near(last->response.load.F[0], fresh.load.F[0], 1e-3);
 }

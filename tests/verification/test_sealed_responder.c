@@ -71,7 +71,7 @@ TEST(BothWaysAgree)
   for (int contact = 0; contact < 2; contact++) {
     const LamMicrostructure micro = contact ? ContactTissue(6, 2) : DefaultTissue();
     const double turgor = 0.02 / TISSUE_STRESS, cohesion = contact ? 0.005 / TISSUE_STRESS : 0;
-    LamRVE rve = NewSealable(&micro);
+    OWNED(LamRVE, LamRVEDestroy) rve = NewSealable(&micro);
     LamResponder inside, open, outside;
     LamResponse in[POINTS], out[POINTS];
     LamLoad loads[POINTS];
@@ -96,7 +96,6 @@ TEST(BothWaysAgree)
     assert_int_equal(LamResponderDestroy(&inside), 0);
     assert_int_equal(LamResponderDestroy(&outside), 0);
     assert_int_equal(LamResponderDestroy(&open), 0);
-    assert_int_equal(LamRVEDestroy(&rve), 0);
   }
 }
 
@@ -105,7 +104,7 @@ TEST(BytesKeepTheWater)
 {
   for (int outside = 0; outside < 2; outside++) {
     const LamMicrostructure micro = DefaultTissue();
-    LamRVE rve = NewSealable(&micro);
+    OWNED(LamRVE, LamRVEDestroy) rve = NewSealable(&micro);
     LamResponder direct[2], sealed[2], r[2];
     LamResponse before[POINTS], after[POINTS];
     LamLoad loads[POINTS];
@@ -134,7 +133,6 @@ TEST(BytesKeepTheWater)
       assert_int_equal(LamResponderDestroy(&sealed[k]), 0);
       assert_int_equal(LamResponderDestroy(&direct[k]), 0);
     }
-    assert_int_equal(LamRVEDestroy(&rve), 0);
   }
 }
 

@@ -58,7 +58,7 @@ static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], cons
 static void Start(const char scene[], Tissue *t)
 {
   const LamResponderFunctions functions = {.respond = Respond};
-  LamResponder responder;
+  OWNED(LamResponder, LamResponderDestroy) responder;
   const LamResponse *records;
   const PetscInt64 *keys;
   LamGrid grid;
@@ -71,7 +71,6 @@ static void Start(const char scene[], Tissue *t)
   assert_int_equal(LamRVEStateCreate(t->solver.rve, &t->solver.state), 0);
   assert_int_equal(LamResponderCreate(&functions, &t->solver, NULL, &responder), 0);
   assert_int_equal(LamGridCreate(t->scene, responder, &grid), 0);
-  assert_int_equal(LamResponderDestroy(&responder), 0);
   assert_int_equal(LamDatabaseCreateEmpty(t->scene, &t->database), 0);
   assert_int_equal(LamGridGetRecords(grid, &n, &keys, &records), 0);
   assert_int_equal(LamDatabaseAdd(t->database, n, keys, records), 0);
@@ -93,13 +92,12 @@ static void Refine(Tissue *t, const LamLoad *load, PetscReal accuracy)
 
   while (n) {
     PetscInt64 keys[LAM_MAX_NEEDS];
-    LamTable table;
+    OWNED(LamTable, LamTableDestroy) table;
     LamGrid grid;
 
     assert_int_equal(LamDatabaseGetGrid(t->database, &grid), 0);
     assert_int_equal(LamDatabaseGetTable(t->database, &table), 0);
     assert_int_equal(LamTableNeeds(table, load, accuracy, &n, keys), 0);
-    assert_int_equal(LamTableDestroy(&table), 0);
     for (PetscInt k = 0; k < n; k++) {
       LamResponse response;
       LamLoad node;
@@ -127,7 +125,7 @@ static LamLoad RandomLoad(uint64_t *seed, const LamSample *box)
 static int Compare(Tissue *t, PetscReal accuracy, int n, Pair pairs[])
 {
   uint64_t seed = 1;
-  LamTable table;
+  OWNED(LamTable, LamTableDestroy) table;
   int answered = 0;
 
   for (int i = 0; i < n; i++) {
@@ -145,7 +143,6 @@ static int Compare(Tissue *t, PetscReal accuracy, int n, Pair pairs[])
     assert_int_equal(Respond(&t->solver, 1, &load, NULL, &pair->solve), 0);
     if (pair->solve.status == LAM_CONVERGED) answered++;
   }
-  assert_int_equal(LamTableDestroy(&table), 0);
   return answered;
 }
 

@@ -92,7 +92,7 @@ TEST(ForcesOnEveryCellBalance)
   const LamMicrostructure micro = UnevenTissue(PETSC_FALSE, LAM_INTERFACE_CONTACT, cells);
   const LamLoad load = UnevenLoad(&micro);
   double sums[UNEVEN_CELLS][3] = {{0}};
-  LamRVE rve = NewRVE(&micro);
+  OWNED(LamRVE, LamRVEDestroy) rve = NewRVE(&micro);
   const LamResponse r = SolveFromReference(rve, load);
 
   assert_int_equal(r.status, LAM_CONVERGED);
@@ -100,7 +100,6 @@ TEST(ForcesOnEveryCellBalance)
   AddForcesOnCells(rve, &load, sums);
   for (int k = 0; k < UNEVEN_CELLS; k++)
     for (int i = 0; i < 3; i++) assert_near(sums[k][i], 0.0, 1e-9);
-  assert_int_equal(LamRVEDestroy(&rve), 0);
 }
 
 /* Largest gap of the faces of a cell, and of all the others. */
@@ -129,9 +128,9 @@ static void StretchWithWeakCell(PetscInt weak, double cohesion, double largest[2
   LamMicrostructure micro = UnevenTissue(PETSC_FALSE, LAM_INTERFACE_CONTACT, cells);
   const LamLoad load = ContactLoad(1.004, 0, 0, 1.004, 0, 0.01);
   LamCell alike[UNEVEN_CELLS];
-  LamRVEState state;
+  OWNED(LamRVEState, LamRVEStateDestroy) state;
   LamResponse r;
-  LamRVE rve;
+  OWNED(LamRVE, LamRVEDestroy) rve;
 
   for (int k = 0; k < UNEVEN_CELLS; k++) alike[k] = PlainCell(&micro);
   alike[weak].cohesion = cohesion;
@@ -141,8 +140,6 @@ static void StretchWithWeakCell(PetscInt weak, double cohesion, double largest[2
   assert_int_equal(LamRVESolve(rve, &load, state, &r), 0);
   assert_int_equal(r.status, LAM_CONVERGED);
   FindGaps(rve, state, weak, largest);
-  assert_int_equal(LamRVEStateDestroy(&state), 0);
-  assert_int_equal(LamRVEDestroy(&rve), 0);
 }
 
 /* Where the lamella of one cell holds half of what the others hold, tissue opens around that cell. */

@@ -108,13 +108,12 @@ static void AssertSameScene(const LamScene *a, const LamScene *b)
 /* Compares the scene that a system gives with the usual one. */
 static void CheckSystem(const System *s, Tissue tissue)
 {
-  LamScene *scene = ReadSystem(s, tissue), *expected = ReadSystem(&usual, tissue);
+  OWNED(LamScene *, LamSceneDestroy) scene = ReadSystem(s, tissue);
+  OWNED(LamScene *, LamSceneDestroy) expected = ReadSystem(&usual, tissue);
 
   AssertSameScene(scene, expected);
   AssertSameNumber(scene->scales.length, expected->scales.length * s->size);
   AssertSameNumber(scene->scales.stress, expected->scales.stress * s->stiffness);
-  assert_int_equal(LamSceneDestroy(&scene), 0);
-  assert_int_equal(LamSceneDestroy(&expected), 0);
 }
 
 /* The tissue itself, written in each pair of units; and one that has as many of them as it has um and MPa. */
@@ -135,11 +134,11 @@ TEST(AllUnitsAreRead)
 
 static void SolveSystem(const System *s, Tissue tissue, LamResponse r[2])
 {
-  LamScene *scene = ReadSystem(s, tissue);
+  OWNED(LamScene *, LamSceneDestroy) scene = ReadSystem(s, tissue);
   LamLoad start = scene->loads[0], load;
   PetscReal water[1];
-  LamRVEState state;
-  LamRVE rve;
+  OWNED(LamRVEState, LamRVEStateDestroy) state;
+  OWNED(LamRVE, LamRVEDestroy) rve;
 
   for (int i = 0; i < 9; i++) start.F[i] = i % 4 == 0;
   assert_int_equal(LamRVECreate(PETSC_COMM_SELF, &rve), 0);
@@ -155,9 +154,6 @@ static void SolveSystem(const System *s, Tissue tissue, LamResponse r[2])
   assert_int_equal(LamRVESolve(rve, &scene->loads[0], state, &r[0]), 0);
   load = LamLoadAfter(&scene->loads[1], &scene->controls[1], r[0].load.F);
   assert_int_equal(LamRVESolveMixed(rve, &load, &scene->controls[1], state, &r[1]), 0);
-  assert_int_equal(LamRVEStateDestroy(&state), 0);
-  assert_int_equal(LamRVEDestroy(&rve), 0);
-  assert_int_equal(LamSceneDestroy(&scene), 0);
 }
 
 /* Of all real members, against the largest of an array; small ones against 1, C1 + C2 or apothem. */
