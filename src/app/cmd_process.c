@@ -52,15 +52,12 @@ static PetscErrorCode PrintPointObject(const LamProcessStudy *study, const LamPr
 
   PetscFunctionBeginUser;
   PetscCall(LamResponseToJSON(&state->response, scales, study->history.count, PETSC_FALSE, &o));
-  json_object_set_new(o, "time", LamJSONReal(state->time));
-  json_object_set_new(o, "temperature", LamJSONReal(state->temperature));
-  json_object_set_new(o, "F_inflated", LamJSONReals(9, state->F, 1));
-  json_object_set_new(o, "water", LamJSONReal(state->water));
-  json_object_set_new(o, "osmotic_pressure", LamJSONReal(state->osmotic * MPa));
-  json_object_set_new(o, "outside", LamJSONReal(state->outside * MPa));
-  json_object_set_new(o, "firmness", LamJSONReal(state->firmness * MPa));
-  json_object_set_new(o, "walls", LamJSONReal(state->walls));
-  json_object_set_new(o, "factors", FactorsToJSON(&study->scene->process, state->factor));
+  json_object_update_new(
+      o, json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "time", LamJSONReal(state->time), "temperature",
+                   LamJSONReal(state->temperature), "F_inflated", LamJSONReals(9, state->F, 1), "water",
+                   LamJSONReal(state->water), "osmotic_pressure", LamJSONReal(state->osmotic * MPa), "outside",
+                   LamJSONReal(state->outside * MPa), "firmness", LamJSONReal(state->firmness * MPa), "walls",
+                   LamJSONReal(state->walls), "factors", FactorsToJSON(&study->scene->process, state->factor)));
   AddRatios(o, state->ratio, state->event);
   PetscCall(LamPrintJSON(o));
   PetscFunctionReturn(0);
@@ -157,20 +154,17 @@ static json_t *BodyToJSON(const LamBodyStudy *study, const LamBodyState *state, 
   const PetscReal MPa = scales->stress * 1e-6;
   json_t *o = LamFE2StepToJSON(&study->fe2, &state->step, peak_memory);
 
-  json_object_set_new(o, "time", LamJSONReal(state->time));
-  json_object_set_new(o, "temperature", LamJSONReal(state->temperature));
-  json_object_set_new(o, "outside", LamJSONReal(state->outside * MPa));
-  json_object_set_new(o, "walls", LamJSONReal(state->walls));
-  json_object_set_new(o, "factors", FactorsToJSON(&study->fe2.scene->process, state->factor));
-  json_object_set_new(o, "water", LamJSONReal(state->water));
-  json_object_set_new(o, "turgor_min", LamJSONReal(state->turgor_min * MPa));
-  json_object_set_new(o, "turgor_max", LamJSONReal(state->turgor_max * MPa));
-  json_object_set_new(o, "plasmolysed", LamJSONReal(state->plasmolysed));
+  json_object_update_new(
+      o, json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "time", LamJSONReal(state->time), "temperature",
+                   LamJSONReal(state->temperature), "outside", LamJSONReal(state->outside * MPa), "walls",
+                   LamJSONReal(state->walls), "factors", FactorsToJSON(&study->fe2.scene->process, state->factor),
+                   "water", LamJSONReal(state->water), "turgor_min", LamJSONReal(state->turgor_min * MPa), "turgor_max",
+                   LamJSONReal(state->turgor_max * MPa), "plasmolysed", LamJSONReal(state->plasmolysed)));
   AddRatios(o, state->ratio, state->event);
   if (state->event == LAM_EVENT_COUNT) return o;
-  json_object_set_new(o, "element", json_integer((json_int_t)state->element));
-  json_object_set_new(o, "point", json_integer((json_int_t)state->point));
-  json_object_set_new(o, "place", LamJSONReals(2, state->place, scales->macro_length * 1e3));
+  json_object_update_new(o, json_pack("{s:I, s:I, s:o}", "element", (json_int_t)state->element, "point",
+                                      (json_int_t)state->point, "place",
+                                      LamJSONReals(2, state->place, scales->macro_length * 1e3)));
   return o;
 }
 

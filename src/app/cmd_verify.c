@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* An audit passes if at most this fraction of the responses exceeds the accuracy, and none exceeds FAR times it. */
 #define SHARE_BEYOND 0.005
@@ -143,45 +144,39 @@ static json_t *WorstToJSON(const LamAudit *a, PetscInt worst)
                    LamJSONReal(a->results[worst].error), "error_estimate", LamJSONReal(a->results[worst].estimate));
 }
 
-static void AddFigures(const Summary *s, json_t *object)
+/* The quantiles of the figures of a group. */
+static json_t *GroupToJSON(const Summary *s, const char group[])
 {
-  for (int f = 0; f < FIGURE_COUNT; f++) {
-    json_t *group = json_object_get(object, Figures[f].group), *quantiles = json_object();
+  json_t *o = json_object();
 
-    if (!group) {
-      group = json_object();
-      json_object_set_new(object, Figures[f].group, group);
-    }
+  for (int f = 0; f < FIGURE_COUNT; f++) {
+    json_t *quantiles;
+
+    if (strcmp(Figures[f].group, group)) continue;
+    quantiles = json_object();
     for (int q = 0; q < SHARE_COUNT; q++)
       json_object_set_new(quantiles, ShareNames[q], LamJSONReal(s->quantiles[f][q]));
-    json_object_set_new(group, Figures[f].name, quantiles);
+    json_object_set_new(o, Figures[f].name, quantiles);
   }
+  return o;
 }
 
 static PetscErrorCode PrintObject(const LamVerification *v, const Summary *s, PetscReal seconds)
 {
   const LamAudit *a = &v->audit;
-  json_t *o;
 
   PetscFunctionBeginUser;
-  o = json_pack("{s:s, s:o, s:I, s:I, s:I, s:I, s:I, s:o, s:o}", "database", v->path, "accuracy",
-                LamJSONReal(a->accuracy), "seed", (json_int_t)a->seed, "asked", (json_int_t)a->asked, "answered",
-                (json_int_t)a->answered, "solved", (json_int_t)a->solved, "compared", (json_int_t)s->compared,
-                "share_answered", LamJSONReal(Share(a->answered, a->asked)), "box", BoxToJSON(a));
-  PetscCheck(o, PETSC_COMM_SELF, PETSC_ERR_LIB, "an audit cannot be written as JSON");
-  json_object_set(o, "refused", a->refused);
-  json_object_set(o, "unsolved", a->unsolved);
-  AddFigures(s, o);
-  json_object_set_new(o, "share_beyond_accuracy", LamJSONReal(Share(s->beyond, s->compared)));
-  json_object_set_new(o, "share_beyond_3_accuracy", LamJSONReal(Share(s->far, s->compared)));
-  json_object_set_new(o, "estimates_judged", json_integer(s->judged));
-  json_object_set_new(o, "share_estimate_within_5", LamJSONReal(Share(s->good, s->judged)));
-  json_object_set_new(o, "share_estimate_too_small_by_2", LamJSONReal(Share(s->small, s->judged)));
-  json_object_set_new(o, "worst", s->worst < 0 ? json_null() : WorstToJSON(a, s->worst));
-  json_object_set_new(o, "query_seconds", LamJSONReal(s->query_seconds));
-  json_object_set_new(o, "seconds", LamJSONReal(seconds));
-  json_object_set_new(o, "holds", json_boolean(s->holds));
-  PetscCall(LamPrintJSON(o));
+  PetscCall(LamPrintJSON(json_pack(
+      "{s:s, s:o, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:O, s:O, s:o, s:o, s:o, s:o, s:I, s:o, s:o, s:o, s:o, s:o, s:b}",
+      "database", v->path, "accuracy", LamJSONReal(a->accuracy), "seed", (json_int_t)a->seed, "asked",
+      (json_int_t)a->asked, "answered", (json_int_t)a->answered, "solved", (json_int_t)a->solved, "compared",
+      (json_int_t)s->compared, "share_answered", LamJSONReal(Share(a->answered, a->asked)), "box", BoxToJSON(a),
+      "refused", a->refused, "unsolved", a->unsolved, "measured", GroupToJSON(s, "measured"), "estimated",
+      GroupToJSON(s, "estimated"), "share_beyond_accuracy", LamJSONReal(Share(s->beyond, s->compared)),
+      "share_beyond_3_accuracy", LamJSONReal(Share(s->far, s->compared)), "estimates_judged", (json_int_t)s->judged,
+      "share_estimate_within_5", LamJSONReal(Share(s->good, s->judged)), "share_estimate_too_small_by_2",
+      LamJSONReal(Share(s->small, s->judged)), "worst", s->worst < 0 ? json_null() : WorstToJSON(a, s->worst),
+      "query_seconds", LamJSONReal(s->query_seconds), "seconds", LamJSONReal(seconds), "holds", s->holds)));
   PetscFunctionReturn(0);
 }
 

@@ -247,6 +247,77 @@ static void DrawTitle(LamCanvas canvas, double x, const FE2Picture *p)
   LamCanvasTitle(canvas, x, 12, title);
 }
 
+/* ---- time histories ---- */
+
+static PetscErrorCode MakeForces(const LamTimeLine *line, const LamReactions *reactions, LamTimeChart *chart)
+{
+  char label[LAM_SERIES_LABEL];
+  PetscReal *values;
+
+  PetscFunctionBeginUser;
+  *chart = (LamTimeChart){.axes.y = {.label = "reaction $R$", .unit = "N/mm"}};
+  PetscCall(PetscMalloc1(line->n, &values));
+  for (PetscInt c = 0; c < 2 * reactions->side_count; c++)
+    if (LamReactionsGet(reactions, c, values, label)) PetscCall(LamTimeChartAdd(chart, line, values, label));
+  PetscCall(PetscFree(values));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MakeTurgor(LamTimeLine *line, LamTimeChart *chart)
+{
+  PetscFunctionBeginUser;
+  *chart = (LamTimeChart){.axes.y = {.label = "turgor $p$", .unit = "MPa"}};
+  PetscCall(LamTimeChartAddColumn(chart, line, "turgor_min", "least"));
+  PetscCall(LamTimeChartAddColumn(chart, line, "turgor_mean", "mean"));
+  PetscCall(LamTimeChartAddColumn(chart, line, "turgor_max", "largest"));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MakeShares(LamTimeLine *line, LamTimeChart *chart)
+{
+  const PetscReal *water;
+
+  PetscFunctionBeginUser;
+  *chart = (LamTimeChart){.axes.y = {.label = "share of the start"}};
+  PetscCall(LamTimeChartAddGroup(chart, line, "factor", LAM_CHANGING_COUNT, LamChangingNames, LamTimeVaries));
+  PetscCall(LamTimeColumn(line, "water", PETSC_FALSE, &water));
+  if (LamTimeIsKnown(line->n, water)) PetscCall(LamTimeChartAdd(chart, line, water, "water"));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MakeDamage(LamTimeLine *line, LamTimeChart *chart)
+{
+  const PetscReal *plasmolysed;
+
+  PetscFunctionBeginUser;
+  *chart = (LamTimeChart){.axes.y = {.label = "stress over strength"}};
+  PetscCall(LamTimeChartAddGroup(chart, line, "ratio", LAM_RATIO_COUNT, LamRatioNames, LamTimeIsKnown));
+  if (!chart->n) {
+    chart->axes.y.label = "share";
+    PetscCall(LamTimeChartAddColumn(chart, line, "debonded_fraction", "debonded"));
+  }
+  PetscCall(LamTimeColumn(line, "plasmolysed", PETSC_FALSE, &plasmolysed));
+  if (LamTimeIsKnown(line->n, plasmolysed) && LamTimeVaries(line->n, plasmolysed))
+    PetscCall(LamTimeChartAdd(chart, line, plasmolysed, "without turgor"));
+  PetscFunctionReturn(0);
+}
+
+/* Four charts, with a mark at the step drawn. */
+static PetscErrorCode DrawTimes(LamCanvas canvas, LamRect outer, FE2Picture *p)
+{
+  LamTimeChart charts[4];
+
+  PetscFunctionBeginUser;
+  PetscCall(MakeForces(&p->times, &p->reactions, &charts[0]));
+  PetscCall(MakeTurgor(&p->times, &charts[1]));
+  PetscCall(MakeShares(&p->times, &charts[2]));
+  PetscCall(MakeDamage(&p->times, &charts[3]));
+  PetscCall(LamTimeChartsDraw(canvas, outer, &p->times, charts, p->row));
+  PetscFunctionReturn(0);
+}
+
+/* ---- the page ---- */
+
 /* Body and reactions side by side; with zooms the body and the zooms, and the reactions below. */
 static PetscErrorCode DrawFE2(const char output[], FE2Picture *p)
 {
@@ -268,7 +339,7 @@ static PetscErrorCode DrawFE2(const char output[], FE2Picture *p)
   PetscCall(DrawPanel(canvas, left, p, &view));
   if (p->zooms.count) PetscCall(LamZoomsDraw(canvas, zooms, &view, &p->zooms));
   if (p->times.n)
-    PetscCall(LamBodyTimesDraw(canvas, right, &p->times, &p->reactions, p->row));
+    PetscCall(DrawTimes(canvas, right, p));
   else
     PetscCall(LamReactionsDraw(canvas, right, &p->reactions));
   PetscCall(LamCanvasFinish(&canvas));
@@ -316,7 +387,7 @@ static PetscErrorCode DrawMoment(LamCanvas canvas, void *ctx, PetscInt k)
   LamFrameBegin(canvas, &p->times, p->row, &film->frame, &view);
   PetscCall(DrawBody(canvas, &view, p, &film->frame.range));
   LamScaleBar(canvas, &view, view.frame.x, view.frame.y + view.frame.height + 11, 0.25 * view.frame.width, 1, "mm");
-  PetscCall(LamBodyTimesDraw(canvas, LamFrameCharts(), &p->times, &p->reactions, p->row));
+  PetscCall(DrawTimes(canvas, LamFrameCharts(), p));
   PetscFunctionReturn(0);
 }
 

@@ -1,6 +1,6 @@
 /*
-  Pictures of FE2 runs: declarations shared by their parts. plot_fe2.c draws the body and the page, plot_fe2_curve.c the
-  reactions, plot_fe2_time.c the time histories, plot_zoom.c the microstructure at selected points.
+  Pictures of FE2 runs: declarations shared by their parts. plot_fe2.c draws the body, its time histories and the page,
+  plot_fe2_curve.c the reactions, plot_zoom.c the microstructure at selected points.
 */
 #ifndef LAM_PLOT_FE2_H
 #define LAM_PLOT_FE2_H
@@ -31,11 +31,6 @@ PetscBool LamReactionsGet(const LamReactions *reactions, PetscInt column, PetscR
 /* Draws the reactions of all sides against the displacement of the loaded one, or else the load factor, and the
    onsets. */
 PetscErrorCode LamReactionsDraw(LamCanvas canvas, LamRect outer, const LamReactions *reactions);
-
-/* ---- plot_fe2_time.c ---- */
-/* Draws four charts, with a mark at the step `now`. */
-PetscErrorCode LamBodyTimesDraw(LamCanvas canvas, LamRect outer, LamTimeLine *line, const LamReactions *reactions,
-                                PetscInt now);
 
 /* ---- plot_zoom.c ---- */
 #define LAM_PLOT_MAX_ZOOMS 3

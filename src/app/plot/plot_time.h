@@ -1,5 +1,5 @@
 /*
-  Quantities against time in pictures of processes: at a material point (plot_process.c), of a body (plot_fe2_time.c);
+  Quantities against time in pictures of processes: at a material point (plot_process.c), of a body (plot_fe2.c);
   films.
 */
 #ifndef LAM_PLOT_TIME_H
