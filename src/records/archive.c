@@ -205,22 +205,14 @@ PetscErrorCode LamArchiveShared(LamArchive archive, const char name[], size_t si
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Count(LamArchive archive, const char name[], PetscInt *n)
+PetscErrorCode LamArchiveList(LamArchive archive, const char name[], size_t size, PetscInt *n, void **items)
 {
   char counter[PETSC_MAX_PATH_LEN];
+  PetscInt *numbers, mine;
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(counter, sizeof(counter), "%s count", name));
   PetscCall(LamArchiveShared(archive, counter, sizeof(*n), n));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamArchiveList(LamArchive archive, const char name[], size_t size, PetscInt *n, void **items)
-{
-  PetscInt *numbers, mine;
-
-  PetscFunctionBeginUser;
-  PetscCall(Count(archive, name, n));
   mine = archive->rank ? 0 : *n;
   if (archive->reading) *items = NULL;
   if (archive->reading && mine) PetscCall(PetscMalloc((size_t)mine * size, items));

@@ -54,6 +54,13 @@ static uint32_t Checksum(const LamRecordLayout *layout, const unsigned char *byt
   return (uint32_t)crc32(0, bytes, (uInt)(layout->size - sizeof(uint32_t)));
 }
 
+void LamRecordSeal(const LamRecordLayout *layout, unsigned char *bytes)
+{
+  const uint32_t checksum = Checksum(layout, bytes);
+
+  memcpy(bytes + layout->size - sizeof(checksum), &checksum, sizeof(checksum));
+}
+
 const char *LamRecordDamage(const LamRecordLayout *layout, const unsigned char *bytes)
 {
   uint32_t stored;
@@ -123,8 +130,6 @@ PetscErrorCode LamRecordsPack(PetscInt n, const PetscInt64 keys[], const LamResp
   PetscCall(PetscCalloc(((size_t)n + 1) * layout.size, bytes));
   packed = *bytes;
   for (PetscInt i = 0; i < n; i++, packed += layout.size) {
-    uint32_t checksum;
-
     memcpy(packed + layout.key, &keys[i], sizeof(keys[i]));
     for (PetscInt k = 0; LamResponseMembers[k].name; k++) {
       const LamMember *m = &LamResponseMembers[k];
@@ -132,8 +137,7 @@ PetscErrorCode LamRecordsPack(PetscInt n, const PetscInt64 keys[], const LamResp
       if (layout.member[k] == LAM_NOT_IN_FILE) continue;
       PackMember(m, (const char *)&responses[i] + m->offset, packed + layout.member[k]);
     }
-    checksum = Checksum(&layout, packed);
-    memcpy(packed + layout.size - sizeof(checksum), &checksum, sizeof(checksum));
+    LamRecordSeal(&layout, packed);
   }
   PetscFunctionReturn(0);
 }

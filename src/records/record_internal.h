@@ -48,6 +48,8 @@ PetscErrorCode LamRecordsPack(PetscInt n, const PetscInt64 keys[], const LamResp
                               void **bytes);
 /* The inverse for one record that has been checked. */
 PetscErrorCode LamRecordUnpack(const LamRecordLayout *layout, const unsigned char *bytes, LamResponse *response);
+/* Writes the checksum of a record into it. */
+void LamRecordSeal(const LamRecordLayout *layout, unsigned char *bytes);
 /* Checks checksum, status, source and microstructure of a record. Returns a description of the damage, or NULL. */
 const char *LamRecordDamage(const LamRecordLayout *layout, const unsigned char *bytes);
 

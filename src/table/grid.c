@@ -50,15 +50,10 @@ LamNodePlace LamNodePlaceOf(PetscInt64 key)
   return place;
 }
 
+/* The coarsest level with this coordinate: by the power of 2 in it. */
 static int LevelOf(int i)
 {
-  int level = LAM_FINEST;
-
-  while (level > 0 && i % 2 == 0) {
-    i /= 2;
-    level--;
-  }
-  return level;
+  return i ? PetscMax(0, LAM_FINEST - __builtin_ctz((unsigned)i)) : 0;
 }
 
 int LamNodeLevel(const LamNodePlace *place)
@@ -143,22 +138,13 @@ PetscInt64 LamGridNodeParent(LamGrid grid, PetscInt64 key)
 
 /* ---- creation ---- */
 
-/* All three lattice directions are equivalent if the period has equal cell counts and cells do not differ. */
-static PetscBool IsSymmetric(const LamMicrostructure *micro)
-{
-  return (PetscBool)(micro->cells[0] == micro->cells[1] && !micro->cell);
-}
-
 static void LayOutStrains(const LamScene *scene, const LamSample *box, LamGrid g)
 {
   const PetscReal range = box->stretch_max - box->stretch_min;
 
   g->step = g->contact ? CONTACT_STEP : range / PetscMax(1, PetscCeilReal(range / BONDED_STEP - 1e-9));
   g->origin = g->contact ? 0 : box->stretch_min;
-  if (scene->has_sample)
-    g->turgor = 0.5 * (box->turgor_min + box->turgor_max);
-  else
-    g->turgor = scene->turgor;
+  g->turgor = scene->has_sample ? 0.5 * (box->turgor_min + box->turgor_max) : scene->turgor;
 }
 
 static PetscErrorCode SolveFreeCell(LamGrid g, const LamMicrostructure *micro, LamResponder solver, LamFreeCell *cell)
@@ -214,7 +200,8 @@ static void SetTissue(const LamMicrostructure *micro, LamGrid g)
   for (PetscInt c = 0; micro->cell && c < micro->cells[0] * micro->cells[1]; c++)
     softest = PetscMin(softest, micro->cell[c].wall.bulk_modulus);
   g->contact = (PetscBool)(micro->interface == LAM_INTERFACE_CONTACT);
-  g->symmetric = IsSymmetric(micro);
+  /* all three lattice directions are equivalent if the period has equal cell counts and cells do not differ */
+  g->symmetric = (PetscBool)(micro->cells[0] == micro->cells[1] && !micro->cell);
   g->axes = LamLatticeAxesOf(micro->orientation);
   g->turgor_reach = TURGOR_REACH * softest;
 }

@@ -15,31 +15,29 @@
 
 static void Subtract(LamTable table, PetscInt n);
 
-/* The sum of the coarser levels at a node and v along suction, in the cells on the given sides (bit k: below). */
+/*
+  The sum of the coarser levels at a node and v along suction, in the cells on the given sides (bit k: below).
+  *order: axis k of the node is axis order[k] of the sum.
+*/
 static PetscBool CoarseSum(LamTable table, const LamTableNode *node, PetscReal v, int sides, LamTableSum *sum,
-                           int order[3])
+                           const int **order)
 {
   LamTablePoint point = {.tau = table->grid->tau_min + table->grid->tau_step * v / LAM_ROOT, .v = v};
-  PetscReal nudged[3];
+  int shifted[3], sorted[3]; /* in quarters */
 
   memset(sum, 0, sizeof(*sum));
   point.s = table->grid->contact ? table->grid->suction_scale * expm1(point.tau) : 0;
   point.root = PetscMin((int)v / LAM_ROOT, (int)table->grid->tau_cells - 1) * LAM_ROOT;
   /* sorted after a shift to the sides, since cells are found by their sorted corner */
-  for (int k = 0; k < 3; k++) nudged[k] = node->i[k] + (sides >> k & 1 ? -0.25 : 0.25);
-  for (int k = 0; k < 3; k++) {
-    order[k] = 0;
-    for (int l = 0; l < 3 && table->grid->symmetric; l++)
-      order[k] += nudged[l] < nudged[k] || (nudged[l] == nudged[k] && l < k);
-    if (!table->grid->symmetric) order[k] = k;
-  }
+  for (int k = 0; k < 3; k++) shifted[k] = 4 * node->i[k] + (sides >> k & 1 ? -1 : 1);
+  *order = LamAxisOrder[LamTableSortAxes(table->grid->symmetric, shifted, sorted)];
   for (int level = 0; level < node->level; level++) {
     const LamTableCell *cell;
     LamTableCell around;
 
-    for (int k = 0; k < 3; k++) point.u[order[k]] = nudged[k];
+    for (int k = 0; k < 3; k++) point.u[k] = 0.25 * sorted[k];
     cell = LamTableFindCell(table, &point, level, &around);
-    for (int k = 0; k < 3; k++) point.u[order[k]] = node->i[k];
+    for (int k = 0; k < 3; k++) point.u[(*order)[k]] = node->i[k];
     if (!level && !cell) return PETSC_FALSE;
     if (cell) LamTableAddCell(table, cell, &point, PETSC_FALSE, sum);
   }
@@ -82,9 +80,9 @@ static void MakeSurplus(LamTable table, const LamTableNode *node, LamTableState 
   }
   for (int sides = 0; sides < 8; sides++) {
     LamTableSum sum;
-    int order[3];
+    const int *order;
 
-    if ((sides & ~faces) || !CoarseSum(table, node, state->j, sides, &sum, order)) continue;
+    if ((sides & ~faces) || !CoarseSum(table, node, state->j, sides, &sum, &order)) continue;
     for (int k = 0; k < 3; k++) {
       const PetscReal pure = sum.phi.hessian[order[k]];
 
@@ -96,7 +94,7 @@ static void MakeSurplus(LamTable table, const LamTableNode *node, LamTableState 
     }
     if (subtracted) continue;
     SubtractSum(&sum, order, state);
-    if (CoarseSum(table, node, PetscMax(state->j - BESIDE, 0), sides, &sum, order)) state->tau2_minus -= sum.tau2;
+    if (CoarseSum(table, node, PetscMax(state->j - BESIDE, 0), sides, &sum, &order)) state->tau2_minus -= sum.tau2;
     subtracted = PETSC_TRUE;
   }
   for (int k = 0; k < 3; k++) {

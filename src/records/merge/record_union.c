@@ -17,7 +17,6 @@
 #include <fcntl.h>
 #include <string.h>
 #include <unistd.h>
-#include <zlib.h>
 
 enum { BLOCK = 8 * LAM_RECORDS_PER_CHUNK, WRITE_BLOCKS = 16, LOAD_BYTES = 11 * sizeof(PetscReal) };
 
@@ -199,12 +198,8 @@ static PetscBool IsSameState(LamUnion u, const unsigned char *a, const unsigned 
 
 static void SetKey(LamUnion u, unsigned char *bytes, PetscInt64 key)
 {
-  const size_t end = u->layout.size - sizeof(uint32_t);
-  uint32_t checksum;
-
   memcpy(bytes + u->layout.key, &key, sizeof(key));
-  checksum = (uint32_t)crc32(0, bytes, (uInt)end);
-  memcpy(bytes + end, &checksum, sizeof(checksum));
+  LamRecordSeal(&u->layout, bytes);
 }
 
 /* Stores the checksum of record number `at`. */
