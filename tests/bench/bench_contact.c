@@ -70,13 +70,6 @@ static PetscErrorCode TissueCreate(int along, int through, Way way, Tissue *tiss
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode TissueDestroy(Tissue *tissue)
-{
-  PetscFunctionBeginUser;
-  PetscCall(DestroyTissue(&tissue->rve, &tissue->state));
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode Solve(const Tissue *tissue, const LamLoad *load, LamResponse *response)
 {
   PetscFunctionBeginUser;
@@ -103,7 +96,7 @@ static PetscErrorCode AddReferences(int n, Case list[])
     list[k].has_reference = IsSolved(&response);
     PetscCall(PetscArraycpy(list[k].P_reference, response.P, 9));
   }
-  PetscCall(TissueDestroy(&tissue));
+  PetscCall(DestroyTissue(&tissue.rve, &tissue.state));
   PetscFunctionReturn(0);
 }
 
@@ -139,7 +132,7 @@ static PetscErrorCode MeasureMesh(int mesh, int repeats, int n, Case list[])
     PetscCall(Solve(&tissue[w], &list[n - 1].load, &warm));
   }
   for (int k = 0; k < n; k++) PetscCall(MeasureCase(tissue, repeats, &list[k], list[k].result[mesh]));
-  for (int w = 0; w < WAYS; w++) PetscCall(TissueDestroy(&tissue[w]));
+  for (int w = 0; w < WAYS; w++) PetscCall(DestroyTissue(&tissue[w].rve, &tissue[w].state));
   PetscFunctionReturn(0);
 }
 

@@ -1,12 +1,11 @@
 /*
   How many random states of contact tissue are solved, from F = I in one go; prints figures, asserts nothing.
 
-    bench_contact_random [--random N] [--first K] [--along A] [--through B] [--seed S] [--scenes DIR]
+    bench_contact_random [--random N] [--first K] [--along A] [--through B] [--seed S]
       --random N              states of each box; default 50
       --first K               leaves out the first K states of each box, so that shares can run apart; default 0
       --along A, --through B  mesh; default 6 x 2
       --seed S                of the random numbers; default 1
-      --scenes DIR            writes a scene of every state that fails, for `lamella rve`
 
   Boxes of principal logarithmic strains e1, e2:
     asked   |e1 - e2| <= 0.3 and -0.05 <= (e1 + e2)/2 <= 0.3
@@ -14,16 +13,13 @@
   with any principal direction, rotation and orientation, t/a from 0.03 to 0.4, turgor up to 0.05 MPa and cohesion up to
   0.01 MPa. Their sum is at least 0.002 MPa in nine states of ten, and zero in the rest.
 */
-#include <errno.h>
 #include <getopt.h>
 #include <stdio.h>
-#include <sys/stat.h>
 #include <unistd.h>
 #include "support/contact_tissue.h"
 #include "quantile.h"
 #include "support/random_reals.h"
 
-#define APOTHEM 75.0 /* um, in scenes */
 #define DRY_SHARE 0.1
 #define LEAST_PRESSURE 0.002 /* of p + g, MPa, of states that are not dry */
 
@@ -33,7 +29,6 @@ static const char *const box_names[BOXES] = {"asked", "wide"};
 typedef struct {
   int count, first, along, through;
   uint64_t seed;
-  const char *scenes; /* directory, NULL: none are written */
 } Options;
 
 typedef struct {
@@ -97,31 +92,6 @@ static Sample Draw(Box box, const Options *options, uint64_t *seed)
 }
 
 /* ---- failures ---- */
-static PetscErrorCode WriteScene(const Options *options, Box box, int number, const Sample *s, const char reason[])
-{
-  const double *F = s->load.F;
-  char path[PETSC_MAX_PATH_LEN];
-  FILE *file;
-
-  PetscFunctionBeginUser;
-  PetscCheck(mkdir(options->scenes, 0777) == 0 || errno == EEXIST, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s",
-             options->scenes);
-  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s-%d.yaml", options->scenes, box_names[box], number));
-  file = fopen(path, "w");
-  PetscCheck(file, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s", path);
-  fprintf(file, "# seed %llu, box %s, state %d: %s\nversion: 1\nrve:\n", (unsigned long long)options->seed,
-          box_names[box], number, reason);
-  fprintf(file, "  cell: {apothem: %g um, wall_thickness: %.17g um, orientation: %.17g rad}\n", APOTHEM,
-          APOTHEM * s->micro.wall_thickness, s->micro.orientation);
-  fprintf(file, "  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}\n");
-  fprintf(file, "  interface: {law: contact, cohesion: %.17g MPa}\n", s->cohesion);
-  fprintf(file, "  turgor: {mode: prescribed, pressure: %.17g MPa}\n", s->turgor);
-  fprintf(file, "  mesh: {along: %d, through: %d}\n", options->along, options->through);
-  fprintf(file, "load:\n  - {F: [[%.17g, %.17g], [%.17g, %.17g]]}\n", F[0], F[1], F[3], F[4]);
-  PetscCheck(fclose(file) == 0, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s", path);
-  PetscFunctionReturn(0);
-}
-
 static void PrintFailure(Box box, int number, const Sample *s, const LamResponse *r)
 {
   printf("  %s %d: e %.3f %.3f at %.0f deg, rotation %.0f, t/a %.3f, orientation %.1f, p %.4f, g %.4f MPa: %s, %d "
@@ -191,10 +161,7 @@ static PetscErrorCode RunBox(Box box, const Options *options)
     if (k < options->first) continue;
     PetscCall(SolveOnce(&sample.micro, &sample.load, &response));
     Count(&sample, &response, &tally);
-    if (response.status != LAM_CONVERGED || !response.stable) {
-      PrintFailure(box, k, &sample, &response);
-      if (options->scenes) PetscCall(WriteScene(options, box, k, &sample, response.reason));
-    }
+    if (response.status != LAM_CONVERGED || !response.stable) PrintFailure(box, k, &sample, &response);
     ShowProgress(box, options, &tally);
   }
   PrintTally(box, &tally);
@@ -204,13 +171,10 @@ static PetscErrorCode RunBox(Box box, const Options *options)
 
 static PetscBool ReadOptions(int argc, char **argv, Options *options)
 {
-  static const struct option names[] = {{"random", required_argument, NULL, 'n'},
-                                        {"first", required_argument, NULL, 'k'},
-                                        {"along", required_argument, NULL, 'a'},
-                                        {"through", required_argument, NULL, 't'},
-                                        {"seed", required_argument, NULL, 's'},
-                                        {"scenes", required_argument, NULL, 'd'},
-                                        {NULL, 0, NULL, 0}};
+  static const struct option names[] = {
+      {"random", required_argument, NULL, 'n'}, {"first", required_argument, NULL, 'k'},
+      {"along", required_argument, NULL, 'a'},  {"through", required_argument, NULL, 't'},
+      {"seed", required_argument, NULL, 's'},   {NULL, 0, NULL, 0}};
   int code;
 
   while ((code = getopt_long(argc, argv, "", names, NULL)) != -1) {
@@ -224,8 +188,6 @@ static PetscBool ReadOptions(int argc, char **argv, Options *options)
       options->through = atoi(optarg);
     else if (code == 's')
       options->seed = strtoull(optarg, NULL, 10);
-    else if (code == 'd')
-      options->scenes = optarg;
     else
       return PETSC_FALSE;
   }
@@ -234,7 +196,7 @@ static PetscBool ReadOptions(int argc, char **argv, Options *options)
 
 int main(int argc, char **argv)
 {
-  Options options = {50, 0, 6, 2, 1, NULL};
+  Options options = {50, 0, 6, 2, 1};
 
   if (!ReadOptions(argc, argv, &options)) return 1;
   if (PetscInitialize(NULL, NULL, NULL, NULL)) return 1;

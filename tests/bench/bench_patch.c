@@ -186,7 +186,7 @@ static PetscErrorCode PrintDirections(PetscBool full)
     PetscCall(PatchCreate(&micro, LAM_TWO_STEP, &rve, &state));
     for (int s = 1; s <= (sizes[k] > LARGEST_BLOCK ? 5 : 6); s++)
       PetscCall(PrintDirection(rve, state, sizes[k], 0.05 * s));
-    PetscCall(PatchDestroy(&rve, &state));
+    PetscCall(DestroyTissue(&rve, &state));
   }
   PetscFunctionReturn(0);
 }

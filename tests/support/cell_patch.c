@@ -30,13 +30,6 @@ PetscErrorCode PatchCreate(const LamMicrostructure *micro, LamStrategy strategy,
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PatchDestroy(LamRVE *rve, LamRVEState *state)
-{
-  PetscFunctionBeginUser;
-  PetscCall(DestroyTissue(rve, state));
-  PetscFunctionReturn(0);
-}
-
 static ContactState PatchState(const char *name, PetscInt columns, PetscInt rows, double orientation,
                                LamInterfaceLawType interface, LamPatchSides sides)
 {
@@ -103,7 +96,7 @@ PetscErrorCode SolvePatchStates(LamResponse list[PATCH_TURGORS][LAM_STRATEGY_COU
       PetscCall(LamRVEStateReset(rve, state));
       PetscCall(LamRVESolve(rve, &load, state, &list[p][strategy]));
     }
-    PetscCall(PatchDestroy(&rve, &state));
+    PetscCall(DestroyTissue(&rve, &state));
   }
   PetscFunctionReturn(0);
 }

@@ -17,7 +17,6 @@ LamMicrostructure PatchTissue(PetscInt columns, PetscInt rows, double orientatio
 /* n x n cells in contact, as in the paper. */
 LamMicrostructure PaperPatch(PetscInt n);
 PetscErrorCode PatchCreate(const LamMicrostructure *micro, LamStrategy strategy, LamRVE *rve, LamRVEState *state);
-PetscErrorCode PatchDestroy(LamRVE *rve, LamRVEState *state);
 
 /* ---- derivatives ---- */
 

@@ -101,27 +101,27 @@ void FixtureSetUp(Fixture *fixture, MPI_Comm comm)
 {
   PetscInt points;
 
-  assert_ok(LamMacroCreate(comm, &fixture->macro));
-  assert_ok(LamMacroSetScene(fixture->macro, &fixture->scene));
-  assert_ok(LamMacroSetUp(fixture->macro));
-  assert_ok(LamMacroGetPointCount(fixture->macro, &points));
-  assert_ok(SyntheticCreate(points, &fixture->responder, &fixture->material));
-  assert_ok(LamMacroSetResponder(fixture->macro, fixture->responder));
-  assert_ok(LamMacroSetMonitor(fixture->macro, FixtureMonitor, fixture));
+  CHECK(LamMacroCreate(comm, &fixture->macro));
+  CHECK(LamMacroSetScene(fixture->macro, &fixture->scene));
+  CHECK(LamMacroSetUp(fixture->macro));
+  CHECK(LamMacroGetPointCount(fixture->macro, &points));
+  CHECK(SyntheticCreate(points, &fixture->responder, &fixture->material));
+  CHECK(LamMacroSetResponder(fixture->macro, fixture->responder));
+  CHECK(LamMacroSetMonitor(fixture->macro, FixtureMonitor, fixture));
 }
 
 void FixtureRefused(Fixture *fixture)
 {
-  assert_ok(LamMacroCreate(PETSC_COMM_WORLD, &fixture->macro));
-  assert_ok(LamMacroSetScene(fixture->macro, &fixture->scene));
-  assert_ok(PetscPushErrorHandler(PetscIgnoreErrorHandler, NULL));
+  CHECK(LamMacroCreate(PETSC_COMM_WORLD, &fixture->macro));
+  CHECK(LamMacroSetScene(fixture->macro, &fixture->scene));
+  CHECK(PetscPushErrorHandler(PetscIgnoreErrorHandler, NULL));
   assert_int_equal(LamMacroSetUp(fixture->macro), PETSC_ERR_USER_INPUT);
-  assert_ok(PetscPopErrorHandler());
+  CHECK(PetscPopErrorHandler());
 }
 
 void FixtureSolve(Fixture *fixture, LamMacroReason reason)
 {
-  assert_ok(LamMacroSolve(fixture->macro, &fixture->reason, fixture->message));
+  CHECK(LamMacroSolve(fixture->macro, &fixture->reason, fixture->message));
   assert_int_equal(fixture->reason, reason);
 }
 
@@ -133,7 +133,7 @@ void FixtureRun(Fixture *fixture, MPI_Comm comm, LamMacroReason reason)
 
 const LamMacroFields *FixtureFields(Fixture *fixture)
 {
-  assert_ok(LamMacroGetFields(fixture->macro, &fixture->fields));
+  CHECK(LamMacroGetFields(fixture->macro, &fixture->fields));
   return &fixture->fields;
 }
 
@@ -145,9 +145,9 @@ const LamMacroStep *FixtureLast(const Fixture *fixture)
 
 void FixtureDestroy(Fixture *fixture)
 {
-  assert_ok(LamMacroFieldsDestroy(&fixture->fields));
-  assert_ok(LamMacroDestroy(&fixture->macro));
-  if (fixture->material) assert_ok(LamResponderDestroy(&fixture->responder));
+  CHECK(LamMacroFieldsDestroy(&fixture->fields));
+  CHECK(LamMacroDestroy(&fixture->macro));
+  if (fixture->material) CHECK(LamResponderDestroy(&fixture->responder));
 }
 
 void FixtureShear(Fixture *fixture, PetscInt elements, PetscReal shear, PetscInt steps)

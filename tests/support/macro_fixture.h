@@ -8,7 +8,6 @@
 #include <lamella/macro.h>
 #include "synthetic_responder.h"
 
-#define assert_ok(call) assert_int_equal((call), 0)
 enum { FIXTURE_MAX_STEPS = 64 };
 
 typedef struct {

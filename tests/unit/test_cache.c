@@ -5,8 +5,6 @@
 #include <lamella/cache.h>
 #include "support/synthetic_responder.h"
 
-#define assert_ok(call) assert_int_equal((call), 0)
-
 enum { POINTS = 12 };
 
 #define ACCURACY 0.01
@@ -99,25 +97,25 @@ static void SetUp(Fixture *fixture, MPI_Comm comm, Kind kind)
                                              .wall = {.C1 = 0.9, .C2 = 0.1, .C4 = 9, .bulk_modulus = 1000},
                                              .along = 4,
                                              .through = 1};
-  assert_ok(LamDatabaseCreateEmpty(&fixture->scene, &fixture->database));
+  CHECK(LamDatabaseCreateEmpty(&fixture->scene, &fixture->database));
   if (kind != NO_GRID) {
-    assert_ok(LamGridCreate(&fixture->scene, NULL, &grid));
-    assert_ok(LamDatabaseSetGrid(fixture->database, &grid));
+    CHECK(LamGridCreate(&fixture->scene, NULL, &grid));
+    CHECK(LamDatabaseSetGrid(fixture->database, &grid));
   }
-  assert_ok(SyntheticCreate(POINTS, &fixture->solver, &fixture->material));
+  CHECK(SyntheticCreate(POINTS, &fixture->solver, &fixture->material));
   fixture->nodes =
       (LamNodeSolver){fixture, kind == CACHE_WITH_NODES || kind == STOPPING_CACHE ? SolveNode : FailNode, NULL};
-  assert_ok(LamCacheResponderCreate(comm, fixture->database, kind == NO_SOLVER ? NULL : fixture->solver,
-                                    kind >= CACHE_WITH_NODES ? &fixture->nodes : NULL,
-                                    kind >= STOPPING_CACHE ? LAM_OUTSIDE_STOP : LAM_OUTSIDE_SOLVE, ACCURACY, POINTS,
-                                    &fixture->cache));
+  CHECK(LamCacheResponderCreate(comm, fixture->database, kind == NO_SOLVER ? NULL : fixture->solver,
+                                kind >= CACHE_WITH_NODES ? &fixture->nodes : NULL,
+                                kind >= STOPPING_CACHE ? LAM_OUTSIDE_STOP : LAM_OUTSIDE_SOLVE, ACCURACY, POINTS,
+                                &fixture->cache));
 }
 
 static void TearDown(Fixture *fixture)
 {
-  assert_ok(LamResponderDestroy(&fixture->cache));
-  assert_ok(LamResponderDestroy(&fixture->solver));
-  assert_ok(LamDatabaseClose(&fixture->database));
+  CHECK(LamResponderDestroy(&fixture->cache));
+  CHECK(LamResponderDestroy(&fixture->solver));
+  CHECK(LamDatabaseClose(&fixture->database));
 }
 
 /* A test with a `Fixture *fixture` of this kind. */
@@ -131,7 +129,7 @@ static void SetLoad(Fixture *fixture, PetscInt p, PetscReal stretch)
 
 static void Respond(Fixture *fixture, PetscInt n)
 {
-  assert_ok(LamResponderRespond(fixture->cache, n, fixture->loads, fixture->points, fixture->responses));
+  CHECK(LamResponderRespond(fixture->cache, n, fixture->loads, fixture->points, fixture->responses));
 }
 
 /* One point, stretched so. */
@@ -145,7 +143,7 @@ static PetscInt RecordCount(const Fixture *fixture)
 {
   PetscInt n;
 
-  assert_ok(LamDatabaseGetRecords(fixture->database, &n, NULL, NULL));
+  CHECK(LamDatabaseGetRecords(fixture->database, &n, NULL, NULL));
   return n;
 }
 
@@ -154,7 +152,7 @@ static PetscReal Error(const Fixture *fixture, PetscInt p)
 {
   LamResponse exact;
 
-  assert_ok(LamResponseInit(&fixture->loads[p], &exact));
+  CHECK(LamResponseInit(&fixture->loads[p], &exact));
   SyntheticEvaluate(fixture->material, &fixture->loads[p], &exact);
   return LamStressError(fixture->responses[p].P, exact.P);
 }
@@ -168,11 +166,11 @@ static void RefineAround(Fixture *fixture, const LamLoad *load)
   PetscInt n;
 
   for (int round = 0; round < 4; round++) {
-    assert_ok(LamDatabaseGetTable(fixture->database, &table));
-    assert_ok(LamTableNeeds(table, load, 1e-6, &n, keys));
-    for (PetscInt k = 0; k < n; k++) assert_ok(SolveNode(fixture, keys[k], &records[k]));
-    assert_ok(LamDatabaseAdd(fixture->database, n, keys, records));
-    assert_ok(LamTableDestroy(&table));
+    CHECK(LamDatabaseGetTable(fixture->database, &table));
+    CHECK(LamTableNeeds(table, load, 1e-6, &n, keys));
+    for (PetscInt k = 0; k < n; k++) CHECK(SolveNode(fixture, keys[k], &records[k]));
+    CHECK(LamDatabaseAdd(fixture->database, n, keys, records));
+    CHECK(LamTableDestroy(&table));
   }
 }
 
@@ -231,9 +229,9 @@ CACHE_TEST(StatesBesideTheTableStartFromANode, CACHE_WITH_NODES)
   const PetscReal c = cos(0.3), s = sin(0.3);
 
   fixture->nodes.solve_near = SolveNear;
-  assert_ok(LamResponderDestroy(&fixture->cache));
-  assert_ok(LamCacheResponderCreate(PETSC_COMM_SELF, fixture->database, fixture->solver, &fixture->nodes,
-                                    LAM_OUTSIDE_SOLVE, 1e-14, POINTS, &fixture->cache));
+  CHECK(LamResponderDestroy(&fixture->cache));
+  CHECK(LamCacheResponderCreate(PETSC_COMM_SELF, fixture->database, fixture->solver, &fixture->nodes, LAM_OUTSIDE_SOLVE,
+                                1e-14, POINTS, &fixture->cache));
   SetLoad(fixture, 0, 0.1);
   fixture->loads[1] = fixture->loads[0];
   fixture->loads[1].F[1] *= -1;
@@ -286,8 +284,8 @@ CACHE_TEST(DatabaseAloneNeverSolves, NO_SOLVER)
   assert_int_equal(fixture->responses[0].status, LAM_OUT_OF_REACH);
   assert_int_equal(LamResponderGetCounters(fixture->cache).failures, 1);
   assert_int_equal(fixture->material->calls, 0);
-  assert_ok(LamDatabaseGetTable(fixture->database, &table));
-  assert_ok(LamTableQuery(table, &fixture->loads[0], ACCURACY, &answer));
+  CHECK(LamDatabaseGetTable(fixture->database, &table));
+  CHECK(LamTableQuery(table, &fixture->loads[0], ACCURACY, &answer));
   assert_true(answer.reason[0]);
   assert_string_equal(fixture->responses[0].reason, answer.reason);
 }
@@ -371,7 +369,7 @@ CACHE_TEST(SolvedStateAnswersAround, CACHE_WITH_BAD_NODES)
     RespondAt(fixture, 0.1 + 2e-3 * (PetscReal)k);
     assert_int_equal(fixture->responses[0].source, LAM_SOURCE_DATABASE);
     assert_true(Error(fixture, 0) < ACCURACY);
-    assert_ok(LamResponderAccept(fixture->cache));
+    CHECK(LamResponderAccept(fixture->cache));
   }
   assert_int_equal(LamResponderGetCounters(fixture->cache).solves, solves);
   RespondAt(fixture, 0.2);
@@ -404,9 +402,9 @@ CACHE_TEST(AnswersAroundAreOfOnePotential, CACHE_WITH_BAD_NODES)
 CACHE_TEST(RejectedStepGivesTheModelBack, CACHE_WITH_BAD_NODES)
 {
   RespondAt(fixture, 0.1);
-  assert_ok(LamResponderAccept(fixture->cache));
+  CHECK(LamResponderAccept(fixture->cache));
   RespondAt(fixture, 0.2);
-  assert_ok(LamResponderReject(fixture->cache));
+  CHECK(LamResponderReject(fixture->cache));
   SetLoad(fixture, 0, 0.13); /* too far away to take to the model anew */
   Respond(fixture, 1);
   assert_int_equal(fixture->responses[0].source, LAM_SOURCE_DATABASE);
@@ -432,16 +430,16 @@ TEST(KeptModelIsFoundAgain)
   SetUp(&second, PETSC_COMM_SELF, CACHE_WITH_BAD_NODES);
   for (PetscInt p = 0; p < 2; p++) SetLoad(&first, p, p ? 0.1 : 0.2);
   Respond(&first, 2);
-  assert_ok(LamResponderAccept(first.cache));
-  assert_ok(LamDatabaseGetRecords(first.database, NULL, &records, NULL));
+  CHECK(LamResponderAccept(first.cache));
+  CHECK(LamDatabaseGetRecords(first.database, NULL, &records, NULL));
   for (PetscInt k = RecordCount(&first) - 1; k >= RecordCount(&first) - 2; k--) {
     record = records[k];
-    assert_ok(LamDatabaseAdd(second.database, 1, NULL, &record));
+    CHECK(LamDatabaseAdd(second.database, 1, NULL, &record));
   }
-  assert_ok(LamResponderGetStateSize(first.cache, &size));
-  assert_ok(PetscMalloc(size, &bytes));
-  assert_ok(LamResponderSave(first.cache, 1, bytes));
-  assert_ok(LamResponderLoad(second.cache, 1, bytes));
+  CHECK(LamResponderGetStateSize(first.cache, &size));
+  CHECK(PetscMalloc(size, &bytes));
+  CHECK(LamResponderSave(first.cache, 1, bytes));
+  CHECK(LamResponderLoad(second.cache, 1, bytes));
   SetLoad(&first, 1, 0.13); /* too far away to take to the model anew */
   Respond(&first, 2);
   second.loads[0] = first.loads[1];
@@ -449,7 +447,7 @@ TEST(KeptModelIsFoundAgain)
   Respond(&second, 1);
   assert_int_equal(second.responses[0].source, LAM_SOURCE_DATABASE);
   assert_memory_equal(second.responses[0].P, first.responses[1].P, sizeof(first.responses[1].P));
-  assert_ok(PetscFree(bytes));
+  CHECK(PetscFree(bytes));
   TearDown(&first);
   TearDown(&second);
 }
@@ -492,7 +490,7 @@ static void CheckThatAnswerStays(Fixture *fixture, PetscErrorCode (*end)(LamResp
   Respond(fixture, 1);
   assert_memory_equal(fixture->responses[0].P, before.P, sizeof(before.P));
   assert_memory_equal(&fixture->responses[0].energy, &before.energy, sizeof(before.energy));
-  assert_ok(end(fixture->cache));
+  CHECK(end(fixture->cache));
   Respond(fixture, 1);
   assert_memory_not_equal(fixture->responses[0].P, before.P, sizeof(before.P));
   assert_true(Error(fixture, 0) < 1e-4);
@@ -518,7 +516,7 @@ CACHE_TEST(SolvedPointStaysSolved, CACHE)
     assert_int_equal(fixture->responses[0].source, LAM_SOURCE_SOLVE);
   }
   assert_int_equal(RecordCount(fixture), 3);
-  assert_ok(LamResponderAccept(fixture->cache));
+  CHECK(LamResponderAccept(fixture->cache));
   fixture->loads[0].F[0] += 1e-3;
   Respond(fixture, 1);
   assert_int_equal(fixture->responses[0].source, LAM_SOURCE_DATABASE);
@@ -549,8 +547,8 @@ TEST(RecordsDoNotDependOnRanks)
   Respond(&all, n);
   assert_true(RecordCount(&one) > 10);
   assert_int_equal(RecordCount(&one), RecordCount(&all));
-  assert_ok(LamDatabaseGetRecords(one.database, NULL, &a, &a_keys));
-  assert_ok(LamDatabaseGetRecords(all.database, NULL, &b, &b_keys));
+  CHECK(LamDatabaseGetRecords(one.database, NULL, &a, &a_keys));
+  CHECK(LamDatabaseGetRecords(all.database, NULL, &b, &b_keys));
   for (PetscInt k = 0; k < RecordCount(&one); k++) {
     assert_int_equal(a_keys[k], b_keys[k]);
     assert_memory_equal(&a[k].load, &b[k].load, sizeof(LamLoad));

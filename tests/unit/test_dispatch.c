@@ -9,7 +9,6 @@
 
 TEST_GROUP(.petsc = 1);
 
-#define CHECK(call) assert_int_equal((call), 0)
 enum { TASKS = 300, MOST = 2 * TASKS, FAIL_AFTER = 20 };
 enum { BYTES = 20000 }; /* larger than what MPI sends before the receiver takes it */
 

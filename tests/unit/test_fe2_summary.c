@@ -15,10 +15,9 @@ typedef struct {
 } Run;
 
 /* A body of 20 x 10 mm, C1 + C2 = 0.1 MPa, whose top is moved. */
-static Run *Begin(LamInterfaceLawType interface, LamStrength strength)
+static void Begin(Run *run, LamInterfaceLawType interface, LamStrength strength)
 {
-  Run *run = (Run *)test_calloc(1, sizeof(Run));
-
+  memset(run, 0, sizeof(*run));
   run->scene.scales = (LamScales){.length = 75e-6, .stress = 0.1e6, .macro_length = 0.02};
   run->scene.macro.box[0] = 1;
   run->scene.macro.box[1] = 0.5;
@@ -40,7 +39,6 @@ static Run *Begin(LamInterfaceLawType interface, LamStrength strength)
   run->first_point[1] = 2;
   run->first_point[2] = POINTS;
   assert_int_equal(LamSummaryCreate(&run->scene, &run->summary), 0);
-  return run;
 }
 
 /* A step in which the top has been moved by `u` mm along X1, against a force of R N/mm. */
@@ -54,19 +52,16 @@ static void Add(Run *run, PetscReal u, PetscReal R)
   run->step.step++;
 }
 
-static void End(Run *run)
-{
-  assert_int_equal(LamSummaryDestroy(&run->summary), 0);
-  test_free(run);
-}
-
 static const LamStrength none = {NAN, NAN, NAN}, walls = {.wall = 2, .lamella_normal = NAN, .lamella_shear = NAN};
 
+/* A test with a `Run *run` of such a body. */
+#define RUN_TEST(name, interface, strength)                                                                            \
+  TEST_ON(name, Run, run, Begin(run, interface, strength), CHECK(LamSummaryDestroy(&run->summary)))
+
 /* Of two points that tear between the same two steps the one that does so first, at the interpolated share. */
-TEST(the_first_point_is_found_between_steps)
+RUN_TEST(the_first_point_is_found_between_steps, LAM_INTERFACE_BONDED, walls)
 {
   const PetscReal before[POINTS] = {0, 1, 1.2, 0}, after[POINTS] = {1, 3, 4.2, 1}; /* strength 2: at 1/2, at 4/15 */
-  Run *run = Begin(LAM_INTERFACE_BONDED, walls);
   const LamSummaryOnset *onset = &run->summary.onset[LAM_SUMMARY_WALL];
   LamSummaryCriterion criterion;
 
@@ -83,25 +78,20 @@ TEST(the_first_point_is_found_between_steps)
   assert_near(onset->place[0], 4, 1e-12); /* mm */
   assert_ptr_equal(LamSummaryFirst(&run->summary, LAM_SUMMARY_RUPTURE, &criterion), onset);
   assert_null(LamSummaryFirst(&run->summary, LAM_SUMMARY_SEPARATION, &criterion));
-  End(run);
 }
 
 /* Points 1 and 2 are torn: volumes 2 and 3 of 10. Nothing is judged without a strength. */
-TEST(shares_are_of_the_volume)
+RUN_TEST(shares_are_of_the_volume, LAM_INTERFACE_BONDED, walls)
 {
-  Run *run = Begin(LAM_INTERFACE_BONDED, walls);
-
   run->point[1][LAM_POINT_WALL] = run->point[2][LAM_POINT_WALL] = 2;
   Add(run, 1, 0);
   assert_near(run->summary.curve.rows[0].value[LAM_CURVE_RUPTURED], 0.5, 1e-14);
   assert_true(isnan(run->summary.curve.rows[0].value[LAM_CURVE_SEPARATED]));
-  End(run);
 }
 
 /* A gap that opens between two steps is told with the step that has it; what is there at the first step, with that. */
-TEST(what_cannot_be_interpolated_is_not)
+RUN_TEST(what_cannot_be_interpolated_is_not, LAM_INTERFACE_CONTACT, walls)
 {
-  Run *run = Begin(LAM_INTERFACE_CONTACT, walls);
   const LamSummaryOnset *onset = run->summary.onset;
 
   run->point[3][LAM_POINT_WALL] = 3;
@@ -112,13 +102,11 @@ TEST(what_cannot_be_interpolated_is_not)
   Add(run, 2, 0);
   assert_true(onset[LAM_SUMMARY_GAP].reached && onset[LAM_SUMMARY_GAP].share == 1);
   assert_int_equal(onset[LAM_SUMMARY_GAP].row, 1);
-  End(run);
 }
 
 /* Cells that are pressed together have separated when a face has lost that, not when they open at a junction. */
-TEST(an_opening_is_no_separation)
+RUN_TEST(an_opening_is_no_separation, LAM_INTERFACE_CONTACT, none)
 {
-  Run *run = Begin(LAM_INTERFACE_CONTACT, none);
   LamSummaryCriterion criterion = LAM_SUMMARY_CRITERION_COUNT;
 
   run->point[0][LAM_POINT_UNLOADING] = 0.5;
@@ -131,13 +119,11 @@ TEST(an_opening_is_no_separation)
   assert_non_null(LamSummaryFirst(&run->summary, LAM_SUMMARY_SEPARATION, &criterion));
   assert_int_equal(criterion, LAM_SUMMARY_UNLOADED);
   assert_near(run->summary.onset[criterion].share, 0.499 / 0.999, 1e-14);
-  End(run);
 }
 
 /* Where nothing presses cells together a gap separates them. */
-TEST(dry_cells_separate_by_a_gap)
+RUN_TEST(dry_cells_separate_by_a_gap, LAM_INTERFACE_CONTACT, none)
 {
-  Run *run = Begin(LAM_INTERFACE_CONTACT, none);
   LamSummaryCriterion criterion;
 
   for (int p = 0; p < POINTS; p++) run->point[p][LAM_POINT_UNLOADING] = NAN;
@@ -147,15 +133,13 @@ TEST(dry_cells_separate_by_a_gap)
   Add(run, 2, 0);
   assert_non_null(LamSummaryFirst(&run->summary, LAM_SUMMARY_SEPARATION, &criterion));
   assert_near(run->summary.curve.rows[1].value[LAM_CURVE_SEPARATED], 0.3, 1e-14);
-  End(run);
 }
 
 /* Of R = 3 u + u^2 the tangents are exact, whatever the steps are; moduli are over 10 mm across and 20 mm along the
  * top. */
-TEST(tangents_of_a_parabola_are_exact)
+RUN_TEST(tangents_of_a_parabola_are_exact, LAM_INTERFACE_BONDED, none)
 {
   const PetscReal u[] = {0, 0.5, 0.8, 1.7, 2};
-  Run *run = Begin(LAM_INTERFACE_BONDED, none);
 
   for (int k = 0; k < 5; k++) Add(run, u[k], 3 * u[k] + u[k] * u[k]);
   assert_int_equal(run->summary.side, 1);
@@ -163,18 +147,15 @@ TEST(tangents_of_a_parabola_are_exact)
   assert_near(run->summary.stiffness.final, 7, 1e-12);
   assert_near(run->summary.stiffness.secant, 5, 1e-12);
   assert_near(run->summary.height / run->summary.length, 0.5, 1e-14);
-  End(run);
 }
 
 /* Loading and unloading: the secant goes to the turning point, the final tangent is that of the way back. */
-TEST(a_cycle_has_its_turning_point)
+RUN_TEST(a_cycle_has_its_turning_point, LAM_INTERFACE_BONDED, none)
 {
   const PetscReal u[] = {0, 1, 2, 1}, R[] = {0, 3, 4, 2};
-  Run *run = Begin(LAM_INTERFACE_BONDED, none);
 
   for (int k = 0; k < 4; k++) Add(run, u[k], R[k]);
   assert_near(run->summary.stiffness.secant, 2, 1e-12);
   assert_near(run->summary.stiffness.final, 2, 1e-12);
   assert_int_equal(run->summary.firmest, 2);
-  End(run);
 }

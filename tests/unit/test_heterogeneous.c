@@ -64,6 +64,8 @@ static void TearDown(Fixture *fixture)
   for (int t = 0; t < TISSUES; t++) assert_int_equal(LamResponderDestroy(&fixture->responder[t]), 0);
 }
 
+#define MOSAIC_TEST(name) TEST_ON(name, Fixture, fixture, SetUp(fixture), TearDown(fixture))
+
 static LamResponse Ask(Fixture *fixture, PetscInt point, LamLoad load)
 {
   LamResponse response;
@@ -81,16 +83,14 @@ static LamLoad RandomLoad(uint64_t *seed)
   return load;
 }
 
-TEST(stress_and_tangent_are_derivatives_of_the_energy)
+MOSAIC_TEST(stress_and_tangent_are_derivatives_of_the_energy)
 {
   const PetscReal h = 1e-5;
   uint64_t seed = 7;
-  Fixture fixture;
 
-  SetUp(&fixture);
   for (PetscInt p = 0; p < POINTS; p++) {
     const LamLoad load = RandomLoad(&seed);
-    const LamResponse at = Ask(&fixture, p, load);
+    const LamResponse at = Ask(fixture, p, load);
 
     for (int kl = 0; kl < 9; kl++) {
       LamLoad plus = load, minus = load;
@@ -98,36 +98,32 @@ TEST(stress_and_tangent_are_derivatives_of_the_energy)
 
       plus.F[kl] += h;
       minus.F[kl] -= h;
-      after = Ask(&fixture, p, plus);
-      before = Ask(&fixture, p, minus);
+      after = Ask(fixture, p, plus);
+      before = Ask(fixture, p, minus);
       assert_near(at.P[kl], (after.energy - before.energy) / (2 * h), 1e-8);
       for (int ij = 0; ij < 9; ij++) assert_near(at.tangent[9 * ij + kl], (after.P[ij] - before.P[ij]) / (2 * h), 1e-7);
     }
   }
-  TearDown(&fixture);
 }
 
-TEST(turgor_is_in_the_units_of_the_body)
+MOSAIC_TEST(turgor_is_in_the_units_of_the_body)
 {
   const PetscReal h = 1e-5;
   uint64_t seed = 8;
-  Fixture fixture;
 
-  SetUp(&fixture);
   for (PetscInt p = 0; p < POINTS; p++) {
     LamLoad load = RandomLoad(&seed);
-    const LamResponse at = Ask(&fixture, p, load);
+    const LamResponse at = Ask(fixture, p, load);
     LamResponse after, before;
 
     load.turgor += h;
-    after = Ask(&fixture, p, load);
+    after = Ask(fixture, p, load);
     load.turgor -= 2 * h;
-    before = Ask(&fixture, p, load);
+    before = Ask(fixture, p, load);
     assert_near(at.energy_turgor, (after.energy - before.energy) / (2 * h), 1e-9);
     for (int k = 0; k < 9; k++) assert_near(at.P_turgor[k], (after.P[k] - before.P[k]) / (2 * h), 1e-9);
     assert_near(at.lumen_fraction, -at.energy_turgor, 1e-12);
   }
-  TearDown(&fixture);
 }
 
 TEST(the_angle_turns_the_stiff_direction)
@@ -149,42 +145,36 @@ TEST(the_angle_turns_the_stiff_direction)
   TearDown(&fixture);
 }
 
-TEST(each_tissue_is_asked_once_and_told_of_the_end)
+MOSAIC_TEST(each_tissue_is_asked_once_and_told_of_the_end)
 {
   const PetscInt all[POINTS] = {0, 1, 2, 3};
   LamResponse responses[POINTS];
   LamLoad loads[POINTS];
   uint64_t seed = 9;
-  Fixture fixture;
 
-  SetUp(&fixture);
   for (int p = 0; p < POINTS; p++) loads[p] = RandomLoad(&seed);
-  assert_int_equal(LamResponderRespond(fixture.mosaic, POINTS, loads, all, responses), 0);
-  assert_int_equal(LamResponderRespond(fixture.mosaic, 0, NULL, NULL, NULL), 0);
-  assert_int_equal(LamResponderAccept(fixture.mosaic), 0);
-  assert_int_equal(LamResponderReject(fixture.mosaic), 0);
+  assert_int_equal(LamResponderRespond(fixture->mosaic, POINTS, loads, all, responses), 0);
+  assert_int_equal(LamResponderRespond(fixture->mosaic, 0, NULL, NULL, NULL), 0);
+  assert_int_equal(LamResponderAccept(fixture->mosaic), 0);
+  assert_int_equal(LamResponderReject(fixture->mosaic), 0);
   for (int t = 0; t < TISSUES; t++) {
-    assert_int_equal(fixture.material[t]->calls, 2);
-    assert_int_equal(fixture.material[t]->accepts, 1);
-    assert_int_equal(fixture.material[t]->rejects, 1);
+    assert_int_equal(fixture->material[t]->calls, 2);
+    assert_int_equal(fixture->material[t]->accepts, 1);
+    assert_int_equal(fixture->material[t]->rejects, 1);
   }
-  assert_int_equal(LamResponderGetCounters(fixture.mosaic).queries, 6); /* the blended point asks three tissues */
-  assert_int_equal(LamResponderGetCounters(fixture.mosaic).solves, 6);
-  TearDown(&fixture);
+  assert_int_equal(LamResponderGetCounters(fixture->mosaic).queries, 6); /* the blended point asks three tissues */
+  assert_int_equal(LamResponderGetCounters(fixture->mosaic).solves, 6);
 }
 
-TEST(a_term_without_answer_is_named)
+MOSAIC_TEST(a_term_without_answer_is_named)
 {
   const LamLoad load = {{1, 0.5, 0, 0, 1, 0, 0, 0, 1}, 0.1, 0};
   const PetscInt blended = 2;
   LamResponse response;
-  Fixture fixture;
 
-  SetUp(&fixture);
-  fixture.material[1]->largest_strain = 0.1;
-  assert_int_equal(LamResponderRespond(fixture.mosaic, 1, &load, &blended, &response), 0);
+  fixture->material[1]->largest_strain = 0.1;
+  assert_int_equal(LamResponderRespond(fixture->mosaic, 1, &load, &blended, &response), 0);
   assert_int_equal(response.status, LAM_NOT_CONVERGED);
   assert_string_equal(response.reason, "skin: too far");
   for (int k = 0; k < 9; k++) assert_true(response.load.F[k] == load.F[k]);
-  TearDown(&fixture);
 }

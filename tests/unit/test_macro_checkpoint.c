@@ -30,10 +30,10 @@ static void WriteArchive(Contents *contents, PetscBool keep)
 {
   LamArchive archive;
 
-  assert_ok(LamArchiveCreate(PETSC_COMM_SELF, Path, &archive));
+  CHECK(LamArchiveCreate(PETSC_COMM_SELF, Path, &archive));
   assert_false(LamArchiveIsReading(archive));
-  assert_ok(Transfer(archive, contents));
-  assert_ok(LamArchiveClose(&archive, keep));
+  CHECK(Transfer(archive, contents));
+  CHECK(LamArchiveClose(&archive, keep));
 }
 
 TEST(WhatIsWrittenIsRead)
@@ -43,15 +43,15 @@ TEST(WhatIsWrittenIsRead)
   LamArchive archive;
 
   WriteArchive(&written, PETSC_TRUE);
-  assert_ok(LamArchiveOpen(PETSC_COMM_SELF, Path, &archive));
+  CHECK(LamArchiveOpen(PETSC_COMM_SELF, Path, &archive));
   assert_true(LamArchiveIsReading(archive));
-  assert_ok(Transfer(archive, &read));
-  assert_ok(LamArchiveClose(&archive, PETSC_FALSE));
+  CHECK(Transfer(archive, &read));
+  CHECK(LamArchiveClose(&archive, PETSC_FALSE));
   assert_int_equal(read.shared, 7);
   assert_memory_equal(read.items, written.items, sizeof(read.items));
   assert_int_equal(read.count, 2);
   assert_memory_equal(read.list, list, sizeof(list));
-  assert_ok(PetscFree(read.list));
+  CHECK(PetscFree(read.list));
   unlink(Path);
 }
 
@@ -62,9 +62,9 @@ TEST(WhatIsNotKeptLeavesTheFileBefore)
 
   WriteArchive(&first, PETSC_TRUE);
   WriteArchive(&second, PETSC_FALSE);
-  assert_ok(LamArchiveOpen(PETSC_COMM_SELF, Path, &archive));
-  assert_ok(Transfer(archive, &read));
-  assert_ok(LamArchiveClose(&archive, PETSC_FALSE));
+  CHECK(LamArchiveOpen(PETSC_COMM_SELF, Path, &archive));
+  CHECK(Transfer(archive, &read));
+  CHECK(LamArchiveClose(&archive, PETSC_FALSE));
   assert_int_equal(read.shared, 1);
   unlink(Path);
 }
@@ -77,12 +77,12 @@ TEST(AnotherCountIsRefused)
   LamArchive archive;
 
   WriteArchive(&contents, PETSC_TRUE);
-  assert_ok(LamArchiveOpen(PETSC_COMM_SELF, Path, &archive));
-  assert_ok(PetscPushErrorHandler(PetscIgnoreErrorHandler, NULL));
+  CHECK(LamArchiveOpen(PETSC_COMM_SELF, Path, &archive));
+  CHECK(PetscPushErrorHandler(PetscIgnoreErrorHandler, NULL));
   assert_int_equal(LamArchiveItems(archive, "items", sizeof(items[0]), 2, numbers, items), PETSC_ERR_USER_INPUT);
   assert_int_equal(LamArchiveItems(archive, "others", sizeof(items[0]), 2, numbers, items), PETSC_ERR_USER_INPUT);
-  assert_ok(PetscPopErrorHandler());
-  assert_ok(LamArchiveClose(&archive, PETSC_FALSE));
+  CHECK(PetscPopErrorHandler());
+  CHECK(LamArchiveClose(&archive, PETSC_FALSE));
   unlink(Path);
 }
 
@@ -129,7 +129,7 @@ static void Prepare(Fixture *fixture, PetscBool inflate, PetscBool sealed, Petsc
   fixture->scene.macro.inflate = inflate;
   FixtureSetUp(fixture, PETSC_COMM_WORLD);
   fixture->stop_after = stop_after;
-  assert_ok(LamMacroSetMonitor(fixture->macro, SaveMonitor, fixture));
+  CHECK(LamMacroSetMonitor(fixture->macro, SaveMonitor, fixture));
 }
 
 /* A run that is stopped after a step, and one that goes on from there, are one that is not stopped, bit for bit. */
@@ -143,9 +143,9 @@ static void CheckGoesOn(PetscBool inflate, PetscBool sealed, PetscInt stop_after
   Prepare(&first, inflate, sealed, stop_after);
   FixtureSolve(&first, LAM_MACRO_STOPPED);
   Prepare(&second, inflate, sealed, -1);
-  assert_ok(LamArchiveOpen(PETSC_COMM_WORLD, Path, &archive));
-  assert_ok(LamMacroArchive(second.macro, archive));
-  assert_ok(LamArchiveClose(&archive, PETSC_FALSE));
+  CHECK(LamArchiveOpen(PETSC_COMM_WORLD, Path, &archive));
+  CHECK(LamMacroArchive(second.macro, archive));
+  CHECK(LamArchiveClose(&archive, PETSC_FALSE));
   FixtureSolve(&second, LAM_MACRO_DONE);
   assert_int_equal(first.step_count + second.step_count, whole.step_count);
   for (PetscInt k = 0; k < second.step_count; k++) {

@@ -61,7 +61,7 @@ TEST(UnloadingIsOfTheLeastPressedFaces)
   PetscReal field[LAM_POINT_FIELD_COUNT];
   LamResponse response;
 
-  assert_ok(LamResponseInit(&load, &response));
+  CHECK(LamResponseInit(&load, &response));
   for (int k = 0; k < 3; k++) response.mean_face_traction[k] = -0.3 + 0.1 * k; /* contact pressures 0.4, 0.3, 0.2 */
   response.min_gap = 0;
   LamMacroKeepFields(&response, field);

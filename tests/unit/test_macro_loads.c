@@ -16,7 +16,7 @@ static void Exact(const Fixture *fixture, PetscReal a, PetscReal b, LamResponse 
 {
   const LamLoad load = {{a, 0, 0, 0, b, 0, 0, 0, 1}, 0, 0};
 
-  assert_ok(LamResponseInit(&load, exact));
+  CHECK(LamResponseInit(&load, exact));
   SyntheticEvaluate(fixture->material, &load, exact);
 }
 
@@ -26,10 +26,10 @@ static PetscReal Spread(const Fixture *fixture, PetscReal F[9])
   PetscReal spread = 0;
   OWNED(LamMacroFields, LamMacroFieldsDestroy) fields;
 
-  assert_ok(LamMacroGetFields(fixture->macro, &fields));
+  CHECK(LamMacroGetFields(fixture->macro, &fields));
   for (PetscInt k = 0; k < 9 * fields.element_count; k++)
     spread = PetscMax(spread, PetscAbsReal(fields.F[k] - fields.F[k % 9]));
-  if (fields.element_count) assert_ok(PetscArraycpy(F, fields.F, 9));
+  if (fields.element_count) CHECK(PetscArraycpy(F, fields.F, 9));
   MPI_Bcast(F, 9, MPIU_REAL, 0, PETSC_COMM_WORLD);
   MPI_Bcast(&spread, 1, MPIU_REAL, 0, PETSC_COMM_WORLD);
   return spread;
@@ -44,44 +44,44 @@ static void CheckTangent(Fixture *fixture, PetscReal size)
   Vec *work, u, direction, product, plus, minus;
   LamMacro macro = fixture->macro;
 
-  assert_ok(LamMacroSetLoadFactor(macro, 1));
-  assert_ok(VecDuplicateVecs(macro->u, 5, &work));
+  CHECK(LamMacroSetLoadFactor(macro, 1));
+  CHECK(VecDuplicateVecs(macro->u, 5, &work));
   u = work[0], direction = work[1], product = work[2], plus = work[3], minus = work[4];
-  assert_ok(PetscRandomCreate(PETSC_COMM_WORLD, &random));
-  assert_ok(PetscRandomSetInterval(random, -size, size));
-  assert_ok(VecSetRandom(u, random));
-  assert_ok(VecSetRandom(direction, random));
+  CHECK(PetscRandomCreate(PETSC_COMM_WORLD, &random));
+  CHECK(PetscRandomSetInterval(random, -size, size));
+  CHECK(VecSetRandom(u, random));
+  CHECK(VecSetRandom(direction, random));
   for (PetscInt b = 0; b < macro->border_count; b++) {
     macro->borders[b].now = 0.02 + 0.01 * b;
     step[b] = 0.3 * (b + 1) * size;
   }
-  assert_ok(SNESComputeFunction(macro->snes, u, plus));
-  assert_ok(SNESComputeJacobian(macro->snes, u, macro->tangent, macro->tangent));
-  assert_ok(MatMult(macro->tangent, direction, product));
+  CHECK(SNESComputeFunction(macro->snes, u, plus));
+  CHECK(SNESComputeJacobian(macro->snes, u, macro->tangent, macro->tangent));
+  CHECK(MatMult(macro->tangent, direction, product));
   for (PetscInt b = 0; b < macro->border_count; b++) {
-    assert_ok(VecAXPY(product, step[b], macro->borders[b].column));
-    assert_ok(VecDot(macro->borders[b].row, direction, &equation[b]));
+    CHECK(VecAXPY(product, step[b], macro->borders[b].column));
+    CHECK(VecDot(macro->borders[b].row, direction, &equation[b]));
     for (PetscInt l = 0; l < macro->border_count; l++) {
       PetscReal D = 0;
       if (macro->borders[b].entry >= 0 && macro->borders[l].entry < 0)
-        assert_ok(VecDot(macro->borders[b].weight, macro->external, &D));
+        CHECK(VecDot(macro->borders[b].weight, macro->external, &D));
       equation[b] -= D * step[l];
     }
   }
   for (int side = 1; side >= -1; side -= 2) {
-    assert_ok(VecAXPY(u, side == 1 ? h : -2 * h, direction));
+    CHECK(VecAXPY(u, side == 1 ? h : -2 * h, direction));
     for (PetscInt b = 0; b < macro->border_count; b++) macro->borders[b].now += (side == 1 ? h : -2 * h) * step[b];
-    assert_ok(SNESComputeFunction(macro->snes, u, side == 1 ? plus : minus));
+    CHECK(SNESComputeFunction(macro->snes, u, side == 1 ? plus : minus));
     for (PetscInt b = 0; b < macro->border_count; b++) equation[b] -= side * macro->borders[b].equation / (2 * h);
   }
-  assert_ok(VecAXPY(plus, -1, minus));
-  assert_ok(VecAXPY(product, -1 / (2 * h), plus));
-  assert_ok(VecNorm(product, NORM_2, &error));
-  assert_ok(VecNorm(plus, NORM_2, &norm));
+  CHECK(VecAXPY(plus, -1, minus));
+  CHECK(VecAXPY(product, -1 / (2 * h), plus));
+  CHECK(VecNorm(product, NORM_2, &error));
+  CHECK(VecNorm(plus, NORM_2, &norm));
   assert_true(error < 1e-8 * norm / (2 * h));
   for (PetscInt b = 0; b < macro->border_count; b++) assert_true(PetscAbsReal(equation[b]) < 1e-8 * norm / (2 * h));
-  assert_ok(PetscRandomDestroy(&random));
-  assert_ok(VecDestroyVecs(5, &work));
+  CHECK(PetscRandomDestroy(&random));
+  CHECK(VecDestroyVecs(5, &work));
 }
 
 /* Prescribed components included. */
@@ -188,13 +188,13 @@ static void Deform(LamMacro macro, const PetscReal F[4])
 {
   PetscScalar *u;
 
-  assert_ok(VecGetArray(macro->u, &u));
+  CHECK(VecGetArray(macro->u, &u));
   for (PetscInt k = 0; k < macro->node_count; k++) {
     const PetscReal *X = macro->nodes[k].X;
     const PetscInt local = macro->nodes[k].local;
     for (int i = 0; i < 2; i++) u[local + i] = F[2 * i] * X[0] + F[2 * i + 1] * X[1] - X[i];
   }
-  assert_ok(VecRestoreArray(macro->u, &u));
+  CHECK(VecRestoreArray(macro->u, &u));
 }
 
 /* The right side of a square becomes F e2: tangent F e2, outward normal that turned by -90 degrees, per present length.
@@ -210,9 +210,9 @@ MACRO_TEST(FollowerTractionTurns)
   Set(boundary->traction, t[0], t[1]);
   boundary->follower = PETSC_TRUE;
   FixtureSetUp(fixture, PETSC_COMM_WORLD);
-  assert_ok(LamMacroSetLoadFactor(fixture->macro, 1));
+  CHECK(LamMacroSetLoadFactor(fixture->macro, 1));
   Deform(fixture->macro, F);
-  assert_ok(LamMacroTractionSum(fixture->macro, 2, fixture->macro->u, sum));
+  CHECK(LamMacroTractionSum(fixture->macro, 2, fixture->macro->u, sum));
   assert_true(PetscAbsReal(sum[0] - (t[0] * F[1] + t[1] * F[3])) < 1e-14);
   assert_true(PetscAbsReal(sum[1] - (t[0] * F[3] - t[1] * F[1])) < 1e-14);
 }

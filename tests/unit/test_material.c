@@ -1,8 +1,5 @@
 /* The material law for other programs: SI units, states, threads, words of errors. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
+#include "support/test.h"
 #include <math.h>
 #include <pthread.h>
 #include <string.h>
@@ -12,7 +9,7 @@
 static const char scene_path[] = LAMELLA_SOURCE_DIR "/tests/scenes/shear-contact.yaml";
 static const double sheared[9] = {1, 0.05, 0, 0, 1, 0, 0, 0, 1};
 
-static void stress_and_tangent_are_those_of_the_rve_in_pascal(void **state)
+TEST(stress_and_tangent_are_those_of_the_rve_in_pascal)
 {
   double P[9], tangent[81], turgor, cohesion;
   LamMaterialInfo info;
@@ -53,7 +50,7 @@ static void stress_and_tangent_are_those_of_the_rve_in_pascal(void **state)
 }
 
 /* The load step after the one that was saved ends in the same numbers. */
-static void a_restored_state_goes_on_as_the_one_saved(void **state)
+TEST(a_restored_state_goes_on_as_the_one_saved)
 {
   const int points[1] = {0};
   const double further[9] = {1, 0.12, 0, 0, 1, 0, 0, 0, 1};
@@ -80,7 +77,7 @@ static void a_restored_state_goes_on_as_the_one_saved(void **state)
   PetscFree(bytes);
 }
 
-static void a_state_without_a_response_has_no_numbers_but_a_reason(void **state)
+TEST(a_state_without_a_response_has_no_numbers_but_a_reason)
 {
   const double inverted[9] = {-1, 0, 0, 0, 1, 0, 0, 0, 1};
   double P[9];
@@ -95,7 +92,7 @@ static void a_state_without_a_response_has_no_numbers_but_a_reason(void **state)
   LamMaterialDestroy(&material);
 }
 
-static void errors_are_kept_in_words(void **state)
+TEST(errors_are_kept_in_words)
 {
   LamMaterial material;
 
@@ -121,7 +118,7 @@ static void *Evaluate(void *different)
   return NULL;
 }
 
-static void threads_get_what_one_gets_alone(void **state)
+TEST(threads_get_what_one_gets_alone)
 {
   const LamBuildOptions options = {0};
   LamBuildResult result;
@@ -149,18 +146,9 @@ static void threads_get_what_one_gets_alone(void **state)
   unlink(path);
 }
 
-int main(int argc, char *argv[])
+static int KeepErrors(void **state)
 {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(stress_and_tangent_are_those_of_the_rve_in_pascal),
-      cmocka_unit_test(a_restored_state_goes_on_as_the_one_saved),
-      cmocka_unit_test(a_state_without_a_response_has_no_numbers_but_a_reason),
-      cmocka_unit_test(errors_are_kept_in_words),
-      cmocka_unit_test(threads_get_what_one_gets_alone),
-  };
-  int failed;
-
-  if (LamErrorsKeep() || PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() ? 1 : failed;
+  return LamErrorsKeep() ? 1 : 0;
 }
+
+TEST_GROUP(.petsc = 1, .setup = KeepErrors);

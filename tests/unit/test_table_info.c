@@ -72,7 +72,8 @@ TEST(nodes_and_cells_are_counted_by_level)
 {
   OWNED(LamDatabase, LamDatabaseClose) database = Make();
   const PetscInt coarse = Fill(database, 1e-3, LAM_CONVERGED), fine = Fill(database, 1e-12, LAM_CONVERGED);
-  json_t *info = Info(database), *table = json_object_get(info, "table");
+  json_auto_t *info = Info(database);
+  json_t *table = json_object_get(info, "table");
 
   assert_true(coarse > 0 && fine > 0);
   assert_int_equal(json_integer_value(json_object_get(table, "nodes")), coarse + fine);
@@ -82,13 +83,13 @@ TEST(nodes_and_cells_are_counted_by_level)
   assert_int_equal(At(table, "cells_by_level", 0), 1);
   assert_int_equal(At(table, "cells_by_level", 1), 1);
   assert_int_equal(At(table, "mixed_cells_by_level", 0), 0);
-  json_decref(info);
 }
 
 TEST(the_extent_is_that_of_the_nodes)
 {
   OWNED(LamDatabase, LamDatabaseClose) database = Make();
-  json_t *info, *table, *strain;
+  json_auto_t *info = NULL;
+  json_t *table, *strain;
 
   (void)Fill(database, 1e-3, LAM_CONVERGED);
   info = Info(database);
@@ -97,7 +98,6 @@ TEST(the_extent_is_that_of_the_nodes)
   assert_near(json_number_value(json_array_get(strain, 0)), 0, 1e-12);
   assert_near(json_number_value(json_array_get(strain, 1)), 0.1, 1e-12);
   assert_near(json_number_value(json_object_get(json_object_get(table, "grid"), "turgor")), 0.01, 1e-12);
-  json_decref(info);
 }
 
 TEST(a_node_that_cannot_be_used_is_told)
@@ -110,7 +110,8 @@ TEST(a_node_that_cannot_be_used_is_told)
 
   for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
     OWNED(LamDatabase, LamDatabaseClose) database = Make();
-    json_t *info, *table;
+    json_auto_t *info = NULL;
+    json_t *table;
 
     (void)Fill(database, 1e-3, cases[i].status);
     info = Info(database);
@@ -118,7 +119,6 @@ TEST(a_node_that_cannot_be_used_is_told)
     assert_int_equal(json_integer_value(json_object_get(json_object_get(table, "flags"), cases[i].flag)), 1);
     assert_int_equal(At(table, "cells_by_level", 0), cases[i].complete);
     assert_int_equal(At(table, "mixed_cells_by_level", 0), cases[i].mixed);
-    json_decref(info);
   }
 }
 
@@ -128,7 +128,7 @@ TEST(records_of_no_grid_are_counted_apart)
   const Synthetic material = {.mu = 0.5, .lambda = 2};
   OWNED(LamDatabase, LamDatabaseClose) database = Make();
   LamResponse response;
-  json_t *info;
+  json_auto_t *info = NULL;
 
   LamResponseInit(&load, &response);
   SyntheticEvaluate(&material, &load, &response);
@@ -136,5 +136,4 @@ TEST(records_of_no_grid_are_counted_apart)
   info = Info(database);
   assert_int_equal(json_integer_value(json_object_get(info, "scattered")), 1);
   assert_int_equal(json_integer_value(json_object_get(json_object_get(info, "table"), "nodes")), 0);
-  json_decref(info);
 }

@@ -1,4 +1,5 @@
-/* What the answer must not depend on: the observer, the lattice's symmetry, the number of cells, the user's units. */
+/* What the answer must not depend on: the observer, the lattice's symmetry, the number of cells, the path
+ * (units: test_unit_systems). */
 #include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/contact_checks.h"
@@ -158,60 +159,6 @@ TEST(PathToTheLoad)
 
   for (int k = 0; k < 2; k++) assert_int_equal(LamRVESolve(rve, &way[k], point, &b), 0);
   AssertTurnedResponse(&a, &b, turned_identity, turned_identity, TOLERANCE);
-}
-
-/* Stresses in Pa of the one load of a scene. */
-static void SolveScene(const char text[], double P[9])
-{
-  OWNED(LamScene *, LamSceneDestroy) scene;
-  LamResponse r;
-
-  assert_int_equal(LamSceneReadText("units.yaml", text, &scene), 0);
-  r = SolveTissue(&scene->micro, scene->loads[0]);
-  assert_int_equal(r.status, LAM_CONVERGED);
-  for (int i = 0; i < 9; i++) P[i] = scene->scales.stress * r.P[i];
-}
-
-#define SCENE(cell, wall, interface, pressure)                                                                         \
-  "version: 1\n"                                                                                                       \
-  "rve:\n"                                                                                                             \
-  "  cell: " cell "\n"                                                                                                 \
-  "  wall: " wall "\n"                                                                                                 \
-  "  interface: {" interface "}\n"                                                                                     \
-  "  turgor: {mode: prescribed, pressure: " pressure "}\n"                                                             \
-  "  mesh: {along: 6, through: 2}\n"                                                                                   \
-  "load:\n"                                                                                                            \
-  "  - {F: [[1.02, 0.1], [0, 1]]}\n"
-/* One tissue in three systems of units. */
-#define UNITS(micro, metre, bar)                                                                                       \
-  {                                                                                                                    \
-    SCENE("{apothem: 75 um, wall_thickness: 11.25 um, orientation: 30 deg}",                                           \
-          "{law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa, bulk_modulus: 110 MPa}", micro,            \
-          "0.02 MPa"),                                                                                                 \
-        SCENE("{apothem: 7.5e-5 m, wall_thickness: 1.125e-5 m, orientation: 0.5235987755982988 rad}",                  \
-              "{law: fibre_mooney_rivlin, C1: 1e5 Pa, C2: 1e4 Pa, C4: 1e6 Pa, bulk_modulus: 1.1e8 Pa}", metre,         \
-              "2e4 Pa"),                                                                                               \
-        SCENE("{apothem: 0.075 mm, wall_thickness: 11250 nm, orientation: 30 deg}",                                    \
-              "{law: fibre_mooney_rivlin, C1: 1 bar, C2: 0.1 bar, C4: 10 bar, bulk_modulus: 1100 bar}", bar,           \
-              "200 mbar")                                                                                              \
-  }
-
-TEST(SystemOfUnits)
-{
-  static const char *const scenes[2][3] = {
-      UNITS("law: bonded", "law: bonded", "law: bonded"),
-      UNITS("law: contact, cohesion: 2 kPa", "law: contact, cohesion: 2e3 Pa", "law: contact, cohesion: 20 mbar")};
-
-  FOR_INTERFACES(contact)
-  {
-    double first[9], P[9];
-
-    SolveScene(scenes[contact][0], first);
-    for (int k = 1; k < 3; k++) {
-      SolveScene(scenes[contact][k], P);
-      for (int i = 0; i < 9; i++) assert_near(P[i], first[i], TOLERANCE * fabs(first[0]));
-    }
-  }
 }
 
 TEST_GROUP(.petsc = 1);

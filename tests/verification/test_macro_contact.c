@@ -17,15 +17,15 @@ static PetscReal Moment(LamMacro macro, PetscInt power)
   const PetscScalar *force, *u;
   PetscReal sum = 0;
 
-  assert_ok(VecGetArrayRead(macro->force_accepted, &force));
-  assert_ok(VecGetArrayRead(macro->u, &u));
+  CHECK(VecGetArrayRead(macro->force_accepted, &force));
+  CHECK(VecGetArrayRead(macro->u, &u));
   for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {
     const LamObstacleNode *node = &macro->obstacle_nodes[k];
     const PetscReal x = macro->position[2 * (node->point - macro->mesh_start)] + PetscRealPart(u[node->local]);
     sum -= PetscRealPart(force[node->local + 1]) * PetscPowRealInt(x, power);
   }
-  assert_ok(VecRestoreArrayRead(macro->u, &u));
-  assert_ok(VecRestoreArrayRead(macro->force_accepted, &force));
+  CHECK(VecRestoreArrayRead(macro->u, &u));
+  CHECK(VecRestoreArrayRead(macro->force_accepted, &force));
   return sum;
 }
 
@@ -65,8 +65,8 @@ MACRO_TEST(ComplementarityHolds)
   indenter->displacement[1] = -0.12;
   FixtureRun(fixture, PETSC_COMM_SELF, LAM_MACRO_DONE);
   LamMacro macro = fixture->macro;
-  assert_ok(VecGetArrayRead(macro->force_accepted, &force));
-  assert_ok(VecGetArrayRead(macro->u, &u));
+  CHECK(VecGetArrayRead(macro->force_accepted, &force));
+  CHECK(VecGetArrayRead(macro->u, &u));
   for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {
     const LamObstacleNode *node = &macro->obstacle_nodes[k];
     const LamTouch touch = LamMacroNearest(macro, node, u);
@@ -80,8 +80,8 @@ MACRO_TEST(ComplementarityHolds)
     if (touch.gap < 1e-10) touching++;
   }
   assert_true(touching >= 4);
-  assert_ok(VecRestoreArrayRead(macro->u, &u));
-  assert_ok(VecRestoreArrayRead(macro->force_accepted, &force));
+  CHECK(VecRestoreArrayRead(macro->u, &u));
+  CHECK(VecRestoreArrayRead(macro->force_accepted, &force));
 }
 
 TEST_GROUP(.petsc = 1);

@@ -35,7 +35,7 @@ static PetscReal Sag(const Fixture *fixture)
   OWNED(LamMacroFields, LamMacroFieldsDestroy) fields;
   PetscReal sag = 0;
 
-  assert_ok(LamMacroGetFields(fixture->macro, &fields));
+  CHECK(LamMacroGetFields(fixture->macro, &fields));
   for (PetscInt n = 0; n < fields.node_count; n++) {
     if (PetscAbsReal(fields.nodes[2 * n]) < 1e-12 && PetscAbsReal(fields.nodes[2 * n + 1]) < 1e-12)
       sag = fields.u[2 * n + 1];

@@ -53,7 +53,7 @@ TEST(PatchTest)
     Solve(&fixture);
     const PetscReal turgor = SealedTurgor(&fixture, 0.2, 1.1 * 0.94), F[9] = {1.1, 0, 0, 0, 0.94, 0, 0, 0, 1};
     assert_true(PetscAbsReal(turgor - 0.2) > 0.1);
-    assert_ok(LamMacroGetFields(fixture.macro, &fields));
+    CHECK(LamMacroGetFields(fixture.macro, &fields));
     for (PetscInt e = 0; e < fields.element_count; e++) {
       for (int i = 0; i < 9; i++) assert_true(PetscAbsReal(fields.F[9 * e + i] - F[i]) < 1e-10);
       assert_true(PetscAbsReal(fields.mean[LAM_POINT_FIELD_COUNT * e + LAM_POINT_TURGOR] - turgor) < 1e-10);
@@ -67,13 +67,13 @@ static void SetAffine(LamMacro macro, const PetscReal H[4], Vec u)
 {
   PetscScalar *values;
 
-  assert_ok(VecGetArray(u, &values));
+  CHECK(VecGetArray(u, &values));
   for (PetscInt k = 0; k < macro->node_count; k++) {
     const PetscReal *X = macro->nodes[k].X;
     const PetscInt local = macro->nodes[k].local;
     for (PetscInt i = 0; i < 2; i++) values[local + i] = H[2 * i] * X[0] + H[2 * i + 1] * X[1];
   }
-  assert_ok(VecRestoreArray(u, &values));
+  CHECK(VecRestoreArray(u, &values));
 }
 
 /* At displacement u, with the pressures that belong to it. */
@@ -83,10 +83,10 @@ static void EvaluateAt(LamMacro macro, Vec u)
   PetscBool ok;
 
   for (int k = 0; k < 10 && residual > 1e-14; k++) {
-    assert_ok(LamMacroMovePressures(macro, u));
-    assert_ok(LamMacroEvaluate(macro, u, &ok));
+    CHECK(LamMacroMovePressures(macro, u));
+    CHECK(LamMacroEvaluate(macro, u, &ok));
     assert_true(ok);
-    assert_ok(LamMacroSealedResidual(macro, &residual));
+    CHECK(LamMacroSealedResidual(macro, &residual));
   }
   assert_true(residual < 1e-13);
 }
@@ -107,17 +107,17 @@ TEST(AffineFieldIsInBalance)
     for (int b = 0; b < 2; b++) FixtureBoundary(&fixture, b ? "left" : "right", NAN, NAN);
     SetUp(&fixture);
     LamMacro macro = fixture.macro;
-    assert_ok(LamMacroSealLumens(macro, &ok));
+    CHECK(LamMacroSealLumens(macro, &ok));
     SetAffine(macro, H, macro->trial);
     EvaluateAt(macro, macro->trial);
-    assert_ok(LamMacroAssembleForce(macro, macro->force, &scale));
-    assert_ok(VecGetArrayRead(macro->force, &force));
+    CHECK(LamMacroAssembleForce(macro, macro->force, &scale));
+    CHECK(VecGetArrayRead(macro->force, &force));
     for (PetscInt n = 0; n < macro->node_count; n++) {
       const PetscInt local = macro->nodes[n].local;
       if (macro->sets[macro->nodes[n].point - macro->mesh_start]) continue;
       for (PetscInt i = 0; i < 2; i++) assert_true(PetscAbsReal(force[local + i]) < 1e-12 * scale);
     }
-    assert_ok(VecRestoreArrayRead(macro->force, &force));
+    CHECK(VecRestoreArrayRead(macro->force, &force));
     FixtureDestroy(&fixture);
   }
 }
@@ -138,27 +138,27 @@ static PetscReal TangentError(GmshElements elements, PetscInt seed)
   SetUp(&fixture);
   LamMacro macro = fixture.macro;
   Vec *vectors[] = {&u, &direction, &product, &at, &force[0], &force[1]};
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(vectors); k++) assert_ok(VecDuplicate(macro->u, vectors[k]));
-  assert_ok(PetscRandomCreate(PETSC_COMM_SELF, &random));
-  assert_ok(PetscRandomSetInterval(random, -0.008, 0.008));
-  assert_ok(PetscRandomSetSeed(random, (unsigned long)seed));
-  assert_ok(PetscRandomSeed(random));
-  assert_ok(VecSetRandom(u, random));
-  assert_ok(VecSetRandom(direction, random));
-  assert_ok(LamMacroSealLumens(macro, &ok));
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(vectors); k++) CHECK(VecDuplicate(macro->u, vectors[k]));
+  CHECK(PetscRandomCreate(PETSC_COMM_SELF, &random));
+  CHECK(PetscRandomSetInterval(random, -0.008, 0.008));
+  CHECK(PetscRandomSetSeed(random, (unsigned long)seed));
+  CHECK(PetscRandomSeed(random));
+  CHECK(VecSetRandom(u, random));
+  CHECK(VecSetRandom(direction, random));
+  CHECK(LamMacroSealLumens(macro, &ok));
   EvaluateAt(macro, u);
-  assert_ok(LamMacroAssembleTangent(macro, macro->tangent));
-  assert_ok(MatMult(macro->tangent, direction, product));
+  CHECK(LamMacroAssembleTangent(macro, macro->tangent));
+  CHECK(MatMult(macro->tangent, direction, product));
   for (int k = 0; k < 2; k++) {
-    assert_ok(VecWAXPY(at, k ? -h : h, direction, u));
+    CHECK(VecWAXPY(at, k ? -h : h, direction, u));
     EvaluateAt(macro, at);
-    assert_ok(LamMacroAssembleForce(macro, force[k], &scale));
+    CHECK(LamMacroAssembleForce(macro, force[k], &scale));
   }
-  assert_ok(VecAXPBYPCZ(force[0], -1 / (2 * h), -1, 1 / (2 * h), force[1], product));
-  assert_ok(VecNorm(force[0], NORM_2, &error));
-  assert_ok(VecNorm(product, NORM_2, &norm));
-  assert_ok(PetscRandomDestroy(&random));
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(vectors); k++) assert_ok(VecDestroy(vectors[k]));
+  CHECK(VecAXPBYPCZ(force[0], -1 / (2 * h), -1, 1 / (2 * h), force[1], product));
+  CHECK(VecNorm(force[0], NORM_2, &error));
+  CHECK(VecNorm(product, NORM_2, &norm));
+  CHECK(PetscRandomDestroy(&random));
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(vectors); k++) CHECK(VecDestroy(vectors[k]));
   FixtureDestroy(&fixture);
   return error / norm;
 }
@@ -310,9 +310,9 @@ TEST(ErrorsFallWithTheSquare)
   for (int k = 0; k < 2; k++) {
     Problem p = {PROBLEM_SMOOTH, 16, element_kinds[k], 1e-6, PETSC_TRUE, &scene, .mu = 1, .lambda = 2, .phi = 0.8};
     ProblemResult coarse, fine;
-    assert_ok(ProblemSolve(&p, &coarse));
+    CHECK(ProblemSolve(&p, &coarse));
     p.n = 32;
-    assert_ok(ProblemSolve(&p, &fine));
+    CHECK(ProblemSolve(&p, &fine));
     assert_true(fine.residual_count && fine.strain < 0.32 * coarse.strain && fine.turgor < 0.32 * coarse.turgor);
     assert_true(fine.strain < 1e-3 && fine.turgor < 1e-2);
   }
