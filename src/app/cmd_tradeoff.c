@@ -226,9 +226,10 @@ static json_t *States(const LamTradeoff *t)
 static json_t *Reference(const LamTradeoff *t)
 {
   const LamReference *r = &t->reference;
-  json_t *error = json_object();
+  json_t *error;
 
   if (!r->used_count) return json_null();
+  error = json_object();
   for (int k = 0; k < LAM_ERROR_MACRO; k++) json_object_set_new(error, LamErrorNames[k], LamJSONReal(r->error[k]));
   return json_pack("{s:o, s:o, s:o, s:o, s:I}", "mesh", Mesh(&r->micro), "told_from", Mesh(&r->other), "error", error,
                    "core_seconds", LamJSONReal(r->cpu), "states_used", (json_int_t)r->used_count);
