@@ -25,7 +25,9 @@ PetscErrorCode LamFileOpen(const char path[], PetscBool write, hid_t *file)
 {
   const int fd = open(path, (write ? O_RDWR : O_RDONLY) | O_CLOEXEC | O_NONBLOCK);
   struct stat status;
+  char reason[LAM_HDF5_REASON_LENGTH];
   unsigned char byte;
+  PetscBool is_hdf5;
   hid_t access;
 
   PetscFunctionBeginUser;
@@ -43,22 +45,16 @@ PetscErrorCode LamFileOpen(const char path[], PetscBool write, hid_t *file)
   }
   close(fd);
   PetscCall(AccessList(path, &access));
-  if (H5Fis_hdf5(path) <= 0) {
-    H5Pclose(access);
-    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: is not an HDF5 file; a file written by lamella is wanted",
-            path);
-  }
-  *file = H5Fopen(path, write ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access);
-  if (*file < 0) {
-    char reason[LAM_HDF5_REASON_LENGTH];
-
-    LamHDF5Reason(reason);
-    H5Pclose(access);
-    /* a file opened for writing was readable before */
-    PetscCheck(!write, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s: %s", path, reason);
-    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: the file is damaged or cut short: %s", path, reason);
-  }
+  is_hdf5 = (PetscBool)(H5Fis_hdf5(path) > 0);
+  *file = is_hdf5 ? H5Fopen(path, write ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access) : H5I_INVALID_HID;
+  if (*file < 0) LamHDF5Reason(reason);
   PetscCall(LamCloseHDF5(path, access));
+  PetscCheck(is_hdf5, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: is not an HDF5 file; a file written by lamella is wanted", path);
+  /* a file opened for writing was readable before */
+  PetscCheck(*file >= 0 || !write, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s: %s", path, reason);
+  PetscCheck(*file >= 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: the file is damaged or cut short: %s", path,
+             reason);
   PetscFunctionReturn(0);
 }
 
