@@ -289,16 +289,6 @@ static PetscErrorCode Start(LamBody body, PetscBool *ok, char message[LAM_PROCES
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode FollowAll(LamBody body, PetscBool *ok, char message[LAM_PROCESS_MESSAGE])
-{
-  LamProcess process = body->process;
-
-  PetscFunctionBeginUser;
-  PetscCall(Start(body, ok, message));
-  while (*ok && !process->stopped && process->tissue.time < process->spec->duration) PetscCall(FollowSegment(body, ok));
-  PetscFunctionReturn(0);
-}
-
 /* Reports the last state if the run ends early. */
 static PetscErrorCode TellLast(LamBody body)
 {
@@ -320,7 +310,8 @@ PetscErrorCode LamBodyRun(LamBody body, LamProcessReason *reason, char message[L
 
   PetscFunctionBeginUser;
   message[0] = '\0';
-  PetscCall(FollowAll(body, &ok, message));
+  PetscCall(Start(body, &ok, message));
+  while (ok && !process->stopped && process->tissue.time < process->spec->duration) PetscCall(FollowSegment(body, &ok));
   *reason = process->stopped ? LAM_PROCESS_STOPPED : ok ? LAM_PROCESS_DONE : LAM_PROCESS_ENDED;
   if (*reason != LAM_PROCESS_ENDED || message[0]) PetscFunctionReturn(0);
   if (process->tissue.time > 0) PetscCall(TellLast(body));

@@ -16,32 +16,20 @@
 
 /* ---- properties ---- */
 
-static void FindFactors(LamProcess process, PetscReal time, const PetscReal x[], LamEvaluation *e)
-{
-  for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++)
-    e->factor[k].value =
-        LamKineticsFactor(&process->spec->kinetics[k], time, &x[LAM_KINETIC_STATES * k], e->factor[k].slope);
-}
-
-/* Parameters relative to those of the start; moduli without their common factor. */
-static void FindWalls(LamProcess process, LamEvaluation *e, PetscReal ratio[LAM_WALL_PARAMETER_COUNT])
-{
-  PetscReal factor[LAM_WALL_PARAMETER_COUNT];
-
-  for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++) factor[k] = e->factor[LAM_CHANGING_OF_PARAMETER(k)].value;
-  e->walls = e->factor[LAM_CHANGING_WALLS].value * LamWallRatios(&process->scene->micro.wall, factor, ratio);
-}
-
 void LamProcessProperties(LamProcess process, PetscReal time, const PetscReal x[], LamEvaluation *e,
                           PetscReal ratio[LAM_WALL_PARAMETER_COUNT])
 {
   const PetscReal elapsed = time - process->segment.start;
+  PetscReal walls[LAM_WALL_PARAMETER_COUNT];
 
   e->time = time;
   e->temperature = LamRampAt(&process->segment.temperature, elapsed);
   e->outside = LamRampAt(&process->segment.outside, elapsed);
-  FindFactors(process, time, x, e);
-  FindWalls(process, e, ratio);
+  for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++)
+    e->factor[k].value =
+        LamKineticsFactor(&process->spec->kinetics[k], time, &x[LAM_KINETIC_STATES * k], e->factor[k].slope);
+  for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++) walls[k] = e->factor[LAM_CHANGING_OF_PARAMETER(k)].value;
+  e->walls = e->factor[LAM_CHANGING_WALLS].value * LamWallRatios(&process->scene->micro.wall, walls, ratio);
   e->cohesion = process->scene->cohesion * e->factor[LAM_CHANGING_LAMELLA].value;
 }
 

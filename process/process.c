@@ -434,16 +434,6 @@ static PetscErrorCode TellLast(LamProcess process)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode FollowAll(LamProcess process, PetscBool *ok, PetscBool *ends)
-{
-  PetscFunctionBeginUser;
-  PetscCall(Start(process, ok));
-  while (*ok && !*ends && !process->stopped && process->tissue.time < process->spec->duration)
-    PetscCall(FollowSegment(process, ok, ends));
-  if (!*ok && !process->stopped && process->tissue.time > 0) PetscCall(TellLast(process));
-  PetscFunctionReturn(0);
-}
-
 /* Reason of the end. At a limit point of interpolated responses the tissue itself may be able to continue. */
 static const char *WhyItEnds(LamProcess process, PetscBool limit)
 {
@@ -464,7 +454,10 @@ PetscErrorCode LamProcessRun(LamProcess process, LamProcessReason *reason, char 
   PetscCheck(process->responder, PETSC_COMM_SELF, PETSC_ERR_ORDER, "call LamProcessSetResponder() first");
   PetscCall(LamProcessBegin(process));
   message[0] = '\0';
-  PetscCall(FollowAll(process, &ok, &ends));
+  PetscCall(Start(process, &ok));
+  while (ok && !ends && !process->stopped && process->tissue.time < process->spec->duration)
+    PetscCall(FollowSegment(process, &ok, &ends));
+  if (!ok && !process->stopped && process->tissue.time > 0) PetscCall(TellLast(process));
   *reason = process->stopped ? LAM_PROCESS_STOPPED : ok && !ends ? LAM_PROCESS_DONE : LAM_PROCESS_ENDED;
   if (*reason == LAM_PROCESS_ENDED)
     PetscCall(PetscSNPrintf(message, LAM_PROCESS_MESSAGE, "ended at %.6g s: %s", (double)process->tissue.time,

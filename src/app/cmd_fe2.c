@@ -7,33 +7,30 @@
 #include <unistd.h>
 
 /* The outcome of rank 0 applies to all ranks: a signal may have reached one rank only. */
-static PetscErrorCode Report(const LamFE2Run *run, const LamConsole *console, LamMacroReason reason,
-                             const char message[], int *exit_status)
+static PetscErrorCode Report(const LamFE2Run *run, const LamConsole *console, int *exit_status)
 {
-  int status = reason == LAM_MACRO_STOPPED ? LamStopExitStatus() : LAM_EXIT_OK;
+  int status = run->reason == LAM_MACRO_STOPPED ? LamStopExitStatus() : LAM_EXIT_OK;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &status, 1, MPI_INT, MPI_MAX, run->comm));
-  *exit_status = reason == LAM_MACRO_NOT_CONVERGED ? LAM_EXIT_UNSOLVED : status;
+  *exit_status = run->reason == LAM_MACRO_NOT_CONVERGED ? LAM_EXIT_UNSOLVED : status;
   if (!LamIsFirst(run->comm) || run->stopped) PetscFunctionReturn(0);
   if (!console->json) LamFE2ReportEnd(run);
-  if (reason == LAM_MACRO_NOT_CONVERGED) fprintf(stderr, "lamella fe2: %s: %s\n", run->scene_path, message);
+  if (run->reason == LAM_MACRO_NOT_CONVERGED) fprintf(stderr, "lamella fe2: %s: %s\n", run->scene_path, run->message);
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode Solve(LamFE2Run *run, LamConsole *console, int *exit_status)
 {
-  char message[LAM_MESSAGE_LENGTH] = "";
-  LamMacroReason reason;
   PetscBool finished;
 
   PetscFunctionBeginUser;
   PetscCall(LamFE2Prepare(run, &finished));
   if (finished) PetscFunctionReturn(0);
   if (!LamFE2CheckTissuePaths("fe2", run, exit_status)) PetscFunctionReturn(0);
-  PetscCall(LamFE2Solve(run, &reason, message));
+  PetscCall(LamFE2Solve(run));
   LamConsoleClear(console);
-  PetscCall(Report(run, console, reason, message, exit_status));
+  PetscCall(Report(run, console, exit_status));
   PetscFunctionReturn(0);
 }
 

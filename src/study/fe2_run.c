@@ -105,39 +105,30 @@ PetscErrorCode LamFE2FollowInFiles(LamFE2Run *run, LamFE2Follow follow, void *ct
   PetscFunctionReturn(ierr);
 }
 
-typedef struct {
-  LamFE2Run *run;
-  LamMacroReason *reason;
-  char *message;
-} Solution;
-
 /* LamFE2Follow */
 static PetscErrorCode SolveSteps(void *ctx, PetscBool *stopped, size_t size, char status[])
 {
-  const Solution *solution = (const Solution *)ctx;
-  LamFE2Run *run = solution->run;
+  LamFE2Run *run = (LamFE2Run *)ctx;
 
   PetscFunctionBeginUser;
   PetscCall(LamFE2CheckpointStart(run));
   PetscCall(LamMacroSetMonitor(run->macro, StepDone, run));
   PetscCall(LamMacroSetCutback(run->macro, CutBack, run));
-  PetscCall(LamMacroSolve(run->macro, solution->reason, solution->message));
-  *stopped = (PetscBool)(*solution->reason == LAM_MACRO_STOPPED);
-  if (*solution->reason == LAM_MACRO_DONE)
+  PetscCall(LamMacroSolve(run->macro, &run->reason, run->message));
+  *stopped = (PetscBool)(run->reason == LAM_MACRO_STOPPED);
+  if (run->reason == LAM_MACRO_DONE)
     PetscCall(PetscStrncpy(status, "done", size));
   else
-    PetscCall(PetscSNPrintf(status, size, "not converged: %s", solution->message));
+    PetscCall(PetscSNPrintf(status, size, "not converged: %s", run->message));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamFE2Solve(LamFE2Run *run, LamMacroReason *reason, char message[])
+PetscErrorCode LamFE2Solve(LamFE2Run *run)
 {
-  Solution solution = {run, reason, message};
-
   PetscFunctionBeginUser;
-  *reason = LAM_MACRO_STOPPED;
-  PetscCall(LamFE2FollowInFiles(run, SolveSteps, &solution));
-  if (*reason == LAM_MACRO_DONE) PetscCall(LamFE2CheckpointRemove(run));
+  run->reason = LAM_MACRO_STOPPED;
+  PetscCall(LamFE2FollowInFiles(run, SolveSteps, run));
+  if (run->reason == LAM_MACRO_DONE) PetscCall(LamFE2CheckpointRemove(run));
   PetscFunctionReturn(0);
 }
 

@@ -10,7 +10,7 @@
 
     LamFE2Run run = LAM_FE2_RUN;
     run.comm = ..., run.scene_path = ..., run.out_path = ...;   options below
-    LamFE2Prepare(&run, &finished);  LamFE2Solve(&run, &reason, message);  LamFE2Destroy(&run);
+    LamFE2Prepare(&run, &finished);  LamFE2Solve(&run);  LamFE2Destroy(&run);
 
   Rank 0 writes the files. If it fails, it raises the error, and the other ranks return the same code.
 */
@@ -62,6 +62,8 @@ typedef struct LamFE2Run_s {
 
   LamFE2Totals totals;
   PetscReal start;
+  LamMacroReason reason;            /* LAM_MACRO_STOPPED: by LamStopRequest */
+  char message[LAM_MESSAGE_LENGTH]; /* why it did not converge */
 } LamFE2Run;
 
 #define LAM_FE2_RUN ((LamFE2Run){.walls = 1})
@@ -69,8 +71,7 @@ typedef struct LamFE2Run_s {
 /* ---- fe2_run.c; collective ---- */
 /* Reads and checks all input; writes nothing. *finished: with `resume`, out_path already has all steps. */
 PetscErrorCode LamFE2Prepare(LamFE2Run *run, PetscBool *finished);
-/* message [LAM_MESSAGE_LENGTH]: why it did not converge. *reason LAM_MACRO_STOPPED: by LamStopRequest. */
-PetscErrorCode LamFE2Solve(LamFE2Run *run, LamMacroReason *reason, char message[]);
+PetscErrorCode LamFE2Solve(LamFE2Run *run); /* sets reason and message */
 PetscErrorCode LamFE2Destroy(LamFE2Run *run);
 /* Writes, counts and reports a step; done, total: progress. */
 PetscErrorCode LamFE2EndStep(LamFE2Run *run, const LamMacroStep *step, PetscInt64 done, PetscInt64 total);

@@ -334,16 +334,13 @@ static PetscReal At(PetscReal before, PetscReal now, PetscReal share)
 
 static json_t *OnsetToJSON(const LamSummary *summary, LamSummaryCriterion criterion, const LamSummaryOnset *onset)
 {
-  const LamCurveRow *rows = summary->curve.rows;
   const PetscInt row = onset->row, before = PetscMax(0, row - 1);
-  const PetscReal share = onset->share, *now = rows[row].value, *last = rows[before].value;
-  json_t *o = json_object();
+  const PetscReal share = onset->share, *now = summary->curve.rows[row].value,
+                  *last = summary->curve.rows[before].value;
+  json_t *o = json_pack("{s:s, s:I, s:b, s:o}", "criterion", CriterionNames[criterion], "step",
+                        (json_int_t)now[LAM_CURVE_STEP], "interpolated", share < 1, "load_factor",
+                        LamJSONReal(At(last[LAM_CURVE_LOAD_FACTOR], now[LAM_CURVE_LOAD_FACTOR], share)));
 
-  json_object_set_new(o, "criterion", json_string(CriterionNames[criterion]));
-  json_object_set_new(o, "step", json_integer((json_int_t)now[LAM_CURVE_STEP]));
-  json_object_set_new(o, "interpolated", json_boolean(share < 1));
-  json_object_set_new(o, "load_factor",
-                      LamJSONReal(At(last[LAM_CURVE_LOAD_FACTOR], now[LAM_CURVE_LOAD_FACTOR], share)));
   if (summary->side >= 0) {
     json_object_set_new(o, "displacement",
                         LamJSONReal(At(Displacement(summary, before), Displacement(summary, row), share)));

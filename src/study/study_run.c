@@ -80,10 +80,10 @@ PetscErrorCode LamStudyFE2(const char scene_path[], const LamFE2Options *options
   run.resume = options->resume;
   run.step = ReportStep;
   run.step_ctx = (void *)options;
-  message[0] = '\0';
-  *reason = LAM_MACRO_DONE;
   PetscCall(LamFE2Prepare(&run, &finished));
-  if (!finished) PetscCall(LamFE2Solve(&run, reason, message));
+  if (!finished) PetscCall(LamFE2Solve(&run));
+  *reason = run.reason;
+  PetscCall(PetscStrncpy(message, run.message, LAM_MESSAGE_LENGTH));
   PetscCall(LamFE2Destroy(&run));
   PetscFunctionReturn(0);
 }

@@ -208,8 +208,6 @@ static PetscErrorCode MeasureMacro(const LamScene *scene, const char table[], La
   LamStopwatch start = LamStopwatchRead();
   LamFE2Run run = LAM_FE2_RUN;
   LamScene own = *scene;
-  char message[LAM_MESSAGE_LENGTH] = "";
-  LamMacroReason reason;
   PetscBool finished;
 
   PetscFunctionBeginUser;
@@ -223,11 +221,11 @@ static PetscErrorCode MeasureMacro(const LamScene *scene, const char table[], La
   run.step = KeepStep;
   run.step_ctx = &m->outcome;
   PetscCall(LamFE2Prepare(&run, &finished));
-  PetscCall(LamFE2Solve(&run, &reason, message));
-  if (reason == LAM_MACRO_STOPPED)
+  PetscCall(LamFE2Solve(&run));
+  if (run.reason == LAM_MACRO_STOPPED)
     PetscCall(PetscStrncpy(m->reason, "stopped: the time was over", sizeof(m->reason)));
-  else if (reason == LAM_MACRO_NOT_CONVERGED)
-    PetscCall(PetscSNPrintf(m->reason, sizeof(m->reason), "%.180s", message));
+  else if (run.reason == LAM_MACRO_NOT_CONVERGED)
+    PetscCall(PetscSNPrintf(m->reason, sizeof(m->reason), "%.180s", run.message));
   start.cpu -= m->build_cpu;
   start.wall -= m->build_wall;
   if (!m->reason[0]) AddRun(m, start, NAN);
