@@ -117,13 +117,3 @@ PetscErrorCode LamFE2CloseFiles(LamFE2Run *run, const char status[])
   PetscCall(ierr ? ierr : closed);
   PetscFunctionReturn(0);
 }
-
-PetscErrorCode LamFE2CloseAfterError(LamFE2Run *run)
-{
-  PetscFunctionBeginUser;
-  if (!LamIsFirst(run->comm)) PetscFunctionReturn(0);
-  PetscCall(PetscPushErrorHandler(PetscIgnoreErrorHandler, NULL));
-  (void)LamFE2CloseFiles(run, NULL);
-  PetscCall(PetscPopErrorHandler());
-  PetscFunctionReturn(0);
-}

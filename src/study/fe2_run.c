@@ -101,7 +101,11 @@ PetscErrorCode LamFE2FollowInFiles(LamFE2Run *run, LamFE2Follow follow, void *ct
 
   PetscFunctionBeginUser;
   ierr = Follow(run, follow, ctx);
-  if (ierr) PetscCall(LamFE2CloseAfterError(run));
+  if (ierr && LamIsFirst(run->comm)) { /* what records it can; further errors are ignored */
+    PetscCall(PetscPushErrorHandler(PetscIgnoreErrorHandler, NULL));
+    (void)LamFE2CloseFiles(run, NULL);
+    PetscCall(PetscPopErrorHandler());
+  }
   PetscFunctionReturn(ierr);
 }
 

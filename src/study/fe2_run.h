@@ -107,8 +107,6 @@ PetscErrorCode LamFE2RecordTissue(LamFE2Tissue *tissue);
 PetscErrorCode LamFE2CloseTissueFile(LamFE2Tissue *tissue); /* with the records since then */
 /* Records not yet written are written first, however the run ended. */
 PetscErrorCode LamFE2CloseFiles(LamFE2Run *run, const char status[]);
-/* After an error: writes what records it can and releases the locks; further errors are ignored. */
-PetscErrorCode LamFE2CloseAfterError(LamFE2Run *run);
 
 /* ---- fe2_checkpoint.c; collective ---- */
 /*

@@ -1,8 +1,7 @@
 /*
   lamella tradeoff: error against time for every parameter that trades one for the other.
 
-    tradeoff_settings.c   settings of a scene
-    tradeoff_states.c     states to solve with each setting
+    tradeoff_settings.c   settings of a scene, and states to solve with each
     tradeoff_measure.c    one run of a setting, by an RVE, a table, or the macroscale problem
     tradeoff_reference.c  reference responses, finer than all settings
     tradeoff_judge.c      errors, spread of times, the best settings
@@ -114,11 +113,8 @@ typedef struct {
 PetscBool LamKnobApplies(const LamScene *scene, LamKnob knob, const char **why);
 /* All settings of a parameter; the caller frees. */
 PetscErrorCode LamSettingsMake(const LamScene *scene, LamKnob knob, PetscInt *n, LamSetting **settings);
-
-/* ---- tradeoff_states.c ---- */
 PetscErrorCode LamStatesMake(const LamScene *scene, LamStates *states);
 PetscInt LamStatesCount(const LamStates *states); /* without those skipped */
-PetscErrorCode LamStatesDestroy(LamStates *states);
 
 /* ---- tradeoff_measure.c ---- */
 PetscErrorCode LamMeasurementInit(const LamSetting *setting, LamMeasurement *m);
@@ -148,7 +144,6 @@ PetscErrorCode LamMeasureRVE(const LamScene *scene, const LamStates *states, Lam
   are not used.
 */
 PetscErrorCode LamReferenceMake(const LamScene *scene, LamStates *states, PetscReal deadline, LamReference *reference);
-PetscErrorCode LamReferenceDestroy(LamReference *reference);
 
 /* ---- tradeoff_judge.c ---- */
 LamSpread LamSpreadOf(PetscInt n, const PetscReal values[]);

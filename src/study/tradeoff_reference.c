@@ -151,12 +151,3 @@ PetscErrorCode LamReferenceMake(const LamScene *scene, LamStates *states, PetscR
   for (PetscInt s = 0; s < states->n && reference->used_count; s++) states->skip[s] = (PetscBool)!reference->used[s];
   PetscFunctionReturn(0);
 }
-
-PetscErrorCode LamReferenceDestroy(LamReference *reference)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree(reference->responses));
-  PetscCall(PetscFree(reference->used));
-  PetscCall(PetscFree(reference->difference));
-  PetscFunctionReturn(0);
-}

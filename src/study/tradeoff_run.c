@@ -258,8 +258,11 @@ PetscErrorCode LamTradeoffDestroy(LamTradeoff *t)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < t->n; i++) PetscCall(LamMeasurementDestroy(&t->measured[i]));
   PetscCall(PetscFree(t->measured));
-  PetscCall(LamReferenceDestroy(&t->reference));
-  PetscCall(LamStatesDestroy(&t->states));
+  PetscCall(PetscFree(t->reference.responses));
+  PetscCall(PetscFree(t->reference.used));
+  PetscCall(PetscFree(t->reference.difference));
+  PetscCall(PetscFree(t->states.loads));
+  PetscCall(PetscFree(t->states.skip));
   PetscCall(LamSceneDestroy(&t->scene));
   PetscFunctionReturn(0);
 }
