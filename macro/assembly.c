@@ -100,14 +100,16 @@ static PetscErrorCode DescribeTrouble(LamMacro macro, PetscInt64 failed, PetscIn
   PetscFunctionReturn(0);
 }
 
-/* Waits for the other ranks while calling macro->stop(), through which they may learn of a stop request. */
-static PetscErrorCode AwaitOthers(LamMacro macro)
+/* Whether a stop was requested on any rank: a signal may reach only one of them. While this rank waits for the others
+   it calls macro->stop(), through which they may learn of a request. */
+static PetscErrorCode AskStop(LamMacro macro)
 {
   const struct timespec pause = {0, 200000};
   MPI_Request request;
   int done = 0;
 
   PetscFunctionBeginUser;
+  if (!macro->stop) PetscFunctionReturn(0);
   PetscCallMPI(MPI_Ibarrier(macro->comm, &request));
   for (;;) {
     PetscCallMPI(MPI_Test(&request, &done, MPI_STATUS_IGNORE));
@@ -115,15 +117,6 @@ static PetscErrorCode AwaitOthers(LamMacro macro)
     (void)macro->stop();
     nanosleep(&pause, NULL);
   }
-  PetscFunctionReturn(0);
-}
-
-/* Whether a stop was requested on any rank: a signal may reach only one of them. */
-static PetscErrorCode AskStop(LamMacro macro)
-{
-  PetscFunctionBeginUser;
-  if (!macro->stop) PetscFunctionReturn(0);
-  PetscCall(AwaitOthers(macro));
   macro->stopped = macro->stop();
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &macro->stopped, 1, MPIU_BOOL, MPI_LOR, macro->comm));
   PetscFunctionReturn(0);

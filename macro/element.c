@@ -118,12 +118,3 @@ PetscErrorCode LamMacroKindGet(LamMacro macro, DMPolytopeType polytope, const La
   PetscCall(PetscFEDestroy(&fe));
   PetscFunctionReturn(0);
 }
-
-PetscErrorCode LamMacroKindsDestroy(LamMacro macro)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < macro->kind_count; k++)
-    PetscCall(PetscFree3(macro->kinds[k].value, macro->kinds[k].gradient, macro->kinds[k].weight));
-  macro->kind_count = 0;
-  PetscFunctionReturn(0);
-}

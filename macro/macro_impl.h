@@ -294,7 +294,6 @@ PetscBool LamGmshCheck(const char path[], char why[LAM_GMSH_WHY]);
 /* element.c */
 /* The kind of a polytope, created at its first use. Error PETSC_ERR_SUP if there is none. */
 PetscErrorCode LamMacroKindGet(LamMacro macro, DMPolytopeType polytope, const LamMacroKind **kind);
-PetscErrorCode LamMacroKindsDestroy(LamMacro macro);
 /* Whether a mesh point of this type has a node of the elements. */
 PetscBool LamMacroHasNode(LamMacro macro, DMPolytopeType type);
 
@@ -340,6 +339,10 @@ PetscErrorCode LamMacroAddTractionTangent(LamMacro macro, Mat tangent);
 PetscErrorCode LamMacroTractionSum(LamMacro macro, PetscInt entry, Vec u, PetscReal sum[2]);
 
 /* obstacle.c */
+static inline PetscBool LamMacroIsObstacle(const LamBoundary *boundary)
+{
+  return (PetscBool)(boundary->kind == LAM_BOUNDARY_PLATE || boundary->kind == LAM_BOUNDARY_INDENTER);
+}
 /* Places the obstacles at first contact with the present body. */
 PetscErrorCode LamMacroObstaclesCreate(LamMacro macro);
 void LamMacroObstaclesMove(LamMacro macro);

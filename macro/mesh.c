@@ -388,21 +388,17 @@ static PetscErrorCode CreateMesh(MPI_Comm comm, const LamMacroSpec *spec, DM *dm
   const PetscReal lower[2] = {0, 0};
 
   PetscFunctionBeginUser;
-  switch (spec->source) {
-  case LAM_MESH_BOX:
+  if (spec->source == LAM_MESH_BOX)
 #if PETSC_VERSION_GE(3, 22, 0)
     PetscCall(DMPlexCreateBoxMesh(comm, 2, PETSC_FALSE, spec->elements, lower, spec->box, NULL, PETSC_TRUE, 0,
                                   PETSC_TRUE, dm));
 #else
     PetscCall(DMPlexCreateBoxMesh(comm, 2, PETSC_FALSE, spec->elements, lower, spec->box, NULL, PETSC_TRUE, dm));
 #endif
-    break;
-  case LAM_MESH_DISC:
+  else if (spec->source == LAM_MESH_DISC)
     PetscCall(LamMacroDiscCreate(comm, spec->disc, spec->elements, dm));
-    break;
-  default:
+  else
     PetscCall(LamMacroGmshCreate(comm, spec->gmsh, dm));
-  }
   PetscFunctionReturn(0);
 }
 
@@ -488,7 +484,8 @@ PetscErrorCode LamMacroMeshCreate(LamMacro macro)
 PetscErrorCode LamMacroMeshDestroy(LamMacro macro)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamMacroKindsDestroy(macro));
+  for (PetscInt k = 0; k < macro->kind_count; k++)
+    PetscCall(PetscFree3(macro->kinds[k].value, macro->kinds[k].gradient, macro->kinds[k].weight));
   PetscCall(PetscFree(macro->elements));
   PetscCall(PetscFree(macro->node_number));
   PetscCall(PetscFree(macro->position));

@@ -7,11 +7,6 @@
 #include <math.h>
 #include "macro_impl.h"
 
-static PetscBool IsObstacle(const LamBoundary *boundary)
-{
-  return boundary->kind == LAM_BOUNDARY_PLATE || boundary->kind == LAM_BOUNDARY_INDENTER ? PETSC_TRUE : PETSC_FALSE;
-}
-
 /* Nodes of the obstacles' sides that have at most one prescribed direction; macro->constraints is in their order. */
 static PetscErrorCode ListNodes(LamMacro macro)
 {
@@ -86,7 +81,7 @@ PetscErrorCode LamMacroObstaclesCreate(LamMacro macro)
   PetscFunctionBeginUser;
   macro->obstacle_count = macro->obstacle_node_count = 0;
   for (PetscInt b = 0; b < spec->boundary_count; b++) {
-    if (!IsObstacle(&spec->boundary[b])) continue;
+    if (!LamMacroIsObstacle(&spec->boundary[b])) continue;
     LamObstacle *obstacle = &macro->obstacles[macro->obstacle_count++];
     *obstacle = (LamObstacle){.entry = b, .side = LamMacroSideNumber(&macro->step, &spec->boundary[b])};
     PetscCall(Direction(macro, &spec->boundary[b], obstacle->normal));
@@ -96,12 +91,8 @@ PetscErrorCode LamMacroObstaclesCreate(LamMacro macro)
   PetscCall(VecGetArrayRead(macro->u, &u));
   for (PetscInt o = 0; o < macro->obstacle_count; o++) {
     LamObstacle *obstacle = &macro->obstacles[o];
-    obstacle->start = Reach(macro, obstacle, o, u);
-  }
-  PetscCall(VecRestoreArrayRead(macro->u, &u));
-  for (PetscInt o = 0; o < macro->obstacle_count; o++) {
-    LamObstacle *obstacle = &macro->obstacles[o];
     const LamBoundary *boundary = &spec->boundary[obstacle->entry];
+    obstacle->start = Reach(macro, obstacle, o, u);
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &obstacle->start, 1, MPIU_REAL, MPIU_MIN, macro->comm));
     PetscCheck(obstacle->start < PETSC_INFINITY, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                "macro.boundary: on: %s: %s: %s", boundary->on, LamBoundaryKindNames[boundary->kind],
@@ -110,6 +101,7 @@ PetscErrorCode LamMacroObstaclesCreate(LamMacro macro)
                    : "its path misses the nodes of this side; move `at`, or take a larger radius or a finer mesh");
     for (int i = 0; i < 2; i++) obstacle->first[i] = boundary->at[i] + obstacle->start * obstacle->normal[i];
   }
+  PetscCall(VecRestoreArrayRead(macro->u, &u));
   LamMacroObstaclesMove(macro);
   PetscFunctionReturn(0);
 }

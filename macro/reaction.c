@@ -92,8 +92,7 @@ void LamMacroDisplacements(LamMacro macro, LamMacroStep *step)
   for (PetscInt s = 0; s < step->boundary_count; s++) step->displacement[s][0] = step->displacement[s][1] = NAN;
   for (PetscInt b = 0; b < spec->boundary_count; b++) {
     const LamBoundary *boundary = &spec->boundary[b];
-    const PetscBool obstacle =
-        boundary->kind == LAM_BOUNDARY_PLATE || boundary->kind == LAM_BOUNDARY_INDENTER ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool obstacle = LamMacroIsObstacle(boundary);
     PetscReal *displacement = step->displacement[LamMacroSideNumber(step, boundary)];
     if (!obstacle && boundary->kind != LAM_BOUNDARY_DISPLACEMENT && boundary->kind != LAM_BOUNDARY_GRIP) continue;
     for (int i = 0; i < 2; i++) {

@@ -11,14 +11,6 @@ typedef struct {
   LamResponderCounters counters;
 } Mosaic;
 
-/* The queries of one `respond` to one tissue. */
-typedef struct {
-  PetscInt n;
-  LamLoad *loads;
-  PetscInt *points, (*from)[2]; /* from: [n] the query and the term of each */
-  LamResponse *responses;
-} Batch;
-
 /* ---- rotation and scaling ---- */
 
 /* The load in the axes and units of the tissue: F Q. */
@@ -59,37 +51,6 @@ static void Turn(PetscReal angle, LamResponse *r)
 }
 
 /* ---- queries ---- */
-
-/* Queries the tissue for all its terms. Responses are in the axes and units of the body. */
-static PetscErrorCode AskTissue(const Mosaic *mosaic, PetscInt tissue, PetscInt n, const LamLoad loads[],
-                                const PetscInt points[], Batch *batch)
-{
-  const LamHeterogeneousTissue *t = &mosaic->tissues[tissue];
-
-  PetscFunctionBeginUser;
-  batch->n = 0;
-  for (PetscInt i = 0; i < n; i++) {
-    const LamHeterogeneousPoint *point = &mosaic->points[points[i]];
-
-    for (PetscInt k = 0; k < point->count; k++) {
-      if (point->term[k].knot != tissue) continue;
-      batch->loads[batch->n] = ToTissue(&loads[i], point->angle, t->stress);
-      batch->points[batch->n] = mosaic->number[points[i]][k];
-      batch->from[batch->n][0] = i;
-      batch->from[batch->n++][1] = k;
-    }
-  }
-  PetscCall(LamResponderRespond(t->responder, batch->n, batch->loads, batch->points, batch->responses));
-  for (PetscInt q = 0; q < batch->n; q++) {
-    const PetscInt i = batch->from[q][0];
-    const PetscReal angle = mosaic->points[points[i]].angle;
-
-    LamResponseScale(t->stress, &batch->responses[q]);
-    if (angle != 0) Turn(angle, &batch->responses[q]);
-    batch->responses[q].load = loads[i];
-  }
-  PetscFunctionReturn(0);
-}
 
 /* at[k]: response of term k. Without fields in one term the response has none, with that term's status and reason. */
 static PetscErrorCode Combine(const Mosaic *mosaic, const LamHeterogeneousPoint *point, const LamResponse at[],
@@ -132,19 +93,44 @@ static void SumCounters(Mosaic *mosaic)
   }
 }
 
-/* parts: responses of query i from start[i] on, one per term. */
+/* Queries each tissue for all its terms. parts: responses of query i from start[i] on, one per term, in the axes and
+   units of the body. */
 static PetscErrorCode AskTissues(const Mosaic *mosaic, PetscInt n, const LamLoad loads[], const PetscInt points[],
                                  const PetscInt start[], LamResponse parts[])
 {
-  Batch batch;
+  PetscInt *numbers, *query, *part;
+  LamResponse *responses;
+  LamLoad *own;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(n, &batch.loads, n, &batch.points, n, &batch.from, n, &batch.responses));
+  PetscCall(PetscMalloc5(n, &own, n, &numbers, n, &query, n, &part, n, &responses));
   for (PetscInt t = 0; t < mosaic->tissue_count; t++) {
-    PetscCall(AskTissue(mosaic, t, n, loads, points, &batch));
-    for (PetscInt q = 0; q < batch.n; q++) parts[start[batch.from[q][0]] + batch.from[q][1]] = batch.responses[q];
+    const LamHeterogeneousTissue *tissue = &mosaic->tissues[t];
+    PetscInt count = 0;
+
+    for (PetscInt i = 0; i < n; i++) {
+      const LamHeterogeneousPoint *point = &mosaic->points[points[i]];
+
+      for (PetscInt k = 0; k < point->count; k++) {
+        if (point->term[k].knot != t) continue;
+        own[count] = ToTissue(&loads[i], point->angle, tissue->stress);
+        numbers[count] = mosaic->number[points[i]][k];
+        query[count] = i;
+        part[count++] = start[i] + k;
+      }
+    }
+    PetscCall(LamResponderRespond(tissue->responder, count, own, numbers, responses));
+    for (PetscInt q = 0; q < count; q++) {
+      const PetscReal angle = mosaic->points[points[query[q]]].angle;
+      LamResponse *r = &parts[part[q]];
+
+      *r = responses[q];
+      LamResponseScale(tissue->stress, r);
+      if (angle != 0) Turn(angle, r);
+      r->load = loads[query[q]];
+    }
   }
-  PetscCall(PetscFree4(batch.loads, batch.points, batch.from, batch.responses));
+  PetscCall(PetscFree5(own, numbers, query, part, responses));
   PetscFunctionReturn(0);
 }
 
