@@ -320,47 +320,27 @@ static PetscErrorCode SolveShare(LamCache *cache, Missing *missing, PetscBool *s
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CountMissing(LamCache *cache, const Missing *missing, PetscInt *anywhere)
-{
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Allreduce(&missing->n, anywhere, 1, MPIU_INT, MPI_SUM, cache->comm));
-  PetscFunctionReturn(0);
-}
-
-/* Step 3. */
-static PetscErrorCode SolveThemselves(LamCache *cache, Missing *missing)
-{
-  PetscBool stopped = PETSC_FALSE;
-  PetscInt anywhere;
-
-  PetscFunctionBeginUser;
-  while (!stopped) {
-    const PetscInt before = missing->n;
-
-    PetscCall(AskAll(cache, missing, LamCacheAdopt));
-    if (!missing->solved) cache->counters.hits += before - missing->n;
-    PetscCall(CountMissing(cache, missing, &anywhere));
-    if (!anywhere) break;
-    PetscCall(SolveShare(cache, missing, &stopped));
-  }
-  PetscFunctionReturn(0);
-}
-
 /* Steps 2 and 3. */
 static PetscErrorCode SolveMissing(LamCache *cache, Missing *missing)
 {
-  PetscBool ends = (PetscBool)!cache->newest, stopped = PETSC_FALSE;
+  PetscBool ends = (PetscBool)!cache->newest, stopped = PETSC_FALSE; /* ends: no further node helps */
   PetscInt anywhere;
 
   PetscFunctionBeginUser;
   for (PetscInt round = 0; !stopped; round++) {
-    PetscCall(CountMissing(cache, missing, &anywhere));
-    if (!anywhere) break;
-    if (ends || round == MAX_ROUNDS) {
-      if (cache->outside == LAM_OUTSIDE_SOLVE) PetscCall(SolveThemselves(cache, missing));
-      break;
+    const PetscBool themselves = (PetscBool)(ends || round >= MAX_ROUNDS);
+    const PetscInt before = missing->n;
+
+    if (themselves && cache->outside == LAM_OUTSIDE_SOLVE) {
+      PetscCall(AskAll(cache, missing, LamCacheAdopt));
+      if (!missing->solved) cache->counters.hits += before - missing->n;
     }
-    PetscCall(Refine(cache, missing, &ends, &stopped));
+    PetscCallMPI(MPI_Allreduce(&missing->n, &anywhere, 1, MPIU_INT, MPI_SUM, cache->comm));
+    if (!anywhere || (themselves && cache->outside == LAM_OUTSIDE_STOP)) break;
+    if (themselves)
+      PetscCall(SolveShare(cache, missing, &stopped));
+    else
+      PetscCall(Refine(cache, missing, &ends, &stopped));
   }
   PetscFunctionReturn(0);
 }

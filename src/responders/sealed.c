@@ -25,14 +25,14 @@ typedef struct {
   LamResponder open;             /* borrowed */
   LamResponderCounters counters; /* of `open` */
   PetscInt points;
-  PetscBool sealed;
-  PetscReal bulk_modulus;
-  PetscReal *water;      /* [points] */
-  State *now, *accepted; /* [points] */
+  PetscReal bulk_modulus; /* 0: not sealed */
+  PetscReal *water;       /* [points] */
+  State *now, *accepted;  /* [points] */
 } Sealed;
 
 /* The search for one pressure. */
 typedef struct {
+  PetscReal pressure;  /* to be asked next */
   PetscReal low, high; /* bounds of the root */
   PetscReal answered;  /* the last pressure with a response; NaN: none yet */
   PetscInt failures;
@@ -60,27 +60,27 @@ void LamResponseSeal(PetscReal p0, PetscReal water, PetscReal bulk_modulus, LamR
   r->turgor_spread = 0;
 }
 
-/* Processes the response at pressure *p: sets the next pressure, or `done`. */
-static void Advance(const Sealed *s, PetscReal p0, PetscReal water, const LamResponse *r, Search *search, PetscReal *p)
+/* Processes the response at the pressure: sets the next one, or `done`. */
+static void Advance(const Sealed *s, PetscReal p0, PetscReal water, const LamResponse *r, Search *search)
 {
-  PetscReal next = *p;
+  const PetscReal p = search->pressure;
+  PetscReal next = p;
 
   if (LamResponseHasFields(r)) {
     const PetscReal compliance = water / s->bulk_modulus;
-    const PetscReal excess = r->energy_turgor + water - compliance * (*p - p0);
+    const PetscReal excess = r->energy_turgor + water - compliance * (p - p0);
     const PetscReal step = excess / (compliance - LamResponseConcavity(r));
 
-    search->answered = *p;
-    search->done = (PetscBool)(fabs(step) <= TOLERANCE * (1 + fabs(*p)));
-    *(excess > 0 ? &search->low : &search->high) = *p;
-    next = *p + step;
+    search->answered = p;
+    search->done = (PetscBool)(fabs(step) <= TOLERANCE * (1 + fabs(p)));
+    *(excess > 0 ? &search->low : &search->high) = p;
+    next = p + step;
   } else {
     search->done = (PetscBool)(isnan(search->answered) || ++search->failures == MOST_FAILURES);
-    *(*p > search->answered ? &search->high : &search->low) = *p;
+    *(p > search->answered ? &search->high : &search->low) = p;
   }
   if (search->done) return;
-  if (!(next > search->low && next < search->high)) next = 0.5 * (search->low + search->high);
-  *p = next;
+  search->pressure = next > search->low && next < search->high ? next : 0.5 * (search->low + search->high);
 }
 
 /*
@@ -120,7 +120,7 @@ static PetscErrorCode Finish(Sealed *s, PetscInt point, const LamLoad *load, Lam
 }
 
 static PetscErrorCode Find(Sealed *s, PetscInt n, const LamLoad loads[], const PetscInt points[], Search search[],
-                           PetscReal p[], LamResponse responses[])
+                           LamResponse responses[])
 {
   PetscInt *asked_points, *from, most = 1;
   LamResponse *answers;
@@ -134,7 +134,7 @@ static PetscErrorCode Find(Sealed *s, PetscInt n, const LamLoad loads[], const P
     for (PetscInt i = 0; i < n; i++) {
       if (search[i].done) continue;
       asked[count] = loads[i];
-      asked[count].turgor = p[i];
+      asked[count].turgor = search[i].pressure;
       asked_points[count] = points[i];
       from[count++] = i;
     }
@@ -145,7 +145,7 @@ static PetscErrorCode Find(Sealed *s, PetscInt n, const LamLoad loads[], const P
       const PetscInt i = from[k];
 
       responses[i] = answers[k];
-      Advance(s, loads[i].turgor, s->water[points[i]], &answers[k], &search[i], &p[i]);
+      Advance(s, loads[i].turgor, s->water[points[i]], &answers[k], &search[i]);
     }
   }
   PetscCall(PetscFree4(asked, asked_points, from, answers));
@@ -155,18 +155,16 @@ static PetscErrorCode Find(Sealed *s, PetscInt n, const LamLoad loads[], const P
 static PetscErrorCode RespondSealed(Sealed *s, PetscInt n, const LamLoad loads[], const PetscInt points[],
                                     LamResponse responses[])
 {
-  PetscReal *p;
   Search *search;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(n, &p, n, &search));
+  PetscCall(PetscMalloc1(n, &search));
   for (PetscInt i = 0; i < n; i++) {
     PetscCheck(points && points[i] >= 0 && points[i] < s->points, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
                "a sealed answer needs a material point below %d, whose water it is", (int)s->points);
-    p[i] = s->now[points[i]].pressure;
-    search[i] = (Search){.low = -INFINITY, .high = INFINITY, .answered = NAN};
+    search[i] = (Search){.pressure = s->now[points[i]].pressure, .low = -INFINITY, .high = INFINITY, .answered = NAN};
   }
-  PetscCall(Find(s, n, loads, points, search, p, responses));
+  PetscCall(Find(s, n, loads, points, search, responses));
   for (PetscInt i = 0; i < n; i++) {
     if (!search[i].done && LamResponseHasFields(&responses[i])) {
       responses[i].status = LAM_NOT_CONVERGED;
@@ -174,19 +172,7 @@ static PetscErrorCode RespondSealed(Sealed *s, PetscInt n, const LamLoad loads[]
     }
     PetscCall(Finish(s, points[i], &loads[i], &responses[i]));
   }
-  PetscCall(PetscFree2(p, search));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode RespondOpen(Sealed *s, PetscInt n, const LamLoad loads[], const PetscInt points[],
-                                  LamResponse responses[])
-{
-  PetscFunctionBeginUser;
-  PetscCall(LamResponderRespond(s->open, n, loads, points, responses));
-  for (PetscInt i = 0; i < n; i++) {
-    if (!points || points[i] < 0 || !LamResponseHasFields(&responses[i])) continue;
-    s->now[points[i]] = (State){-responses[i].energy_turgor, loads[i].turgor};
-  }
+  PetscCall(PetscFree(search));
   PetscFunctionReturn(0);
 }
 
@@ -196,7 +182,14 @@ static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], cons
   Sealed *s = (Sealed *)ctx;
 
   PetscFunctionBeginUser;
-  PetscCall(s->sealed ? RespondSealed(s, n, loads, points, responses) : RespondOpen(s, n, loads, points, responses));
+  if (s->bulk_modulus > 0) {
+    PetscCall(RespondSealed(s, n, loads, points, responses));
+  } else {
+    PetscCall(LamResponderRespond(s->open, n, loads, points, responses));
+    for (PetscInt i = 0; i < n; i++)
+      if (points && points[i] >= 0 && LamResponseHasFields(&responses[i]))
+        s->now[points[i]] = (State){-responses[i].energy_turgor, loads[i].turgor};
+  }
   s->counters = LamResponderGetCounters(s->open);
   PetscFunctionReturn(0);
 }
@@ -234,7 +227,6 @@ static PetscErrorCode Seal(void *ctx, PetscReal bulk_modulus)
     s->water[i] = s->accepted[i].lumen;
   }
   s->bulk_modulus = bulk_modulus;
-  s->sealed = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
@@ -258,7 +250,7 @@ static PetscErrorCode StateSize(void *ctx, size_t *bytes)
 static PetscErrorCode Save(void *ctx, PetscInt point, void *bytes)
 {
   Sealed *s = (Sealed *)ctx;
-  const Kept kept = {s->sealed ? s->bulk_modulus : 0, s->water[point], s->accepted[point]};
+  const Kept kept = {s->bulk_modulus, s->water[point], s->accepted[point]};
 
   PetscFunctionBeginUser;
   memcpy(bytes, &kept, sizeof(kept));
@@ -273,7 +265,6 @@ static PetscErrorCode Load(void *ctx, PetscInt point, const void *bytes)
 
   PetscFunctionBeginUser;
   memcpy(&kept, bytes, sizeof(kept));
-  s->sealed = (PetscBool)(kept.bulk_modulus > 0);
   s->bulk_modulus = kept.bulk_modulus;
   s->water[point] = kept.water;
   s->now[point] = s->accepted[point] = kept.state;
