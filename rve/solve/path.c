@@ -130,16 +130,6 @@ static PetscErrorCode Step(LamRVE rve, const PetscReal from[], const LamLoad *lo
   PetscFunctionReturn(0);
 }
 
-LamLoad LamLoadBetween(const LamLoad *a, const LamLoad *b, PetscReal t)
-{
-  LamLoad load = *b;
-
-  for (PetscInt i = 0; i < 9; ++i) load.F[i] = (1.0 - t) * a->F[i] + t * b->F[i];
-  load.turgor = (1.0 - t) * a->turgor + t * b->turgor;
-  load.cohesion = (1.0 - t) * a->cohesion + t * b->cohesion;
-  return load;
-}
-
 /* Substeps along a straight load path. */
 typedef struct {
   PetscReal between[2]; /* path parameters of the last stable state and of the next failure */

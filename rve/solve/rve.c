@@ -303,15 +303,16 @@ static PetscErrorCode FollowNested(LamRVE rve, const LamLoad *load, LamRVEState 
 PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
 {
   const PetscReal begin = LamClock();
+  const PetscBool interrupted = rve->work.stopped; /* the solve before this one */
 
   PetscFunctionBeginUser;
   PetscCall(LamBeginResponse(rve, load, state, response));
   PetscCall(LamCheckLoad(load, response));
   if (response->status == LAM_INVALID_F) PetscFunctionReturn(0);
-  if (LamIsNested(rve, state))
-    PetscCall(FollowNested(rve, load, state, response));
-  else
-    PetscCall(Follow(rve, load, state, response));
+  /* after an interrupted solve, before the first assembly: the rest of an interrupted batch costs nothing */
+  rve->work.stopped = (PetscBool)(interrupted && rve->interrupt && rve->interrupt(rve->interrupt_ctx));
+  if (!rve->work.stopped)
+    PetscCall(LamIsNested(rve, state) ? FollowNested(rve, load, state, response) : Follow(rve, load, state, response));
   PetscCall(LamEndResponse(rve, load, state, response));
   response->seconds = LamClock() - begin;
   PetscFunctionReturn(0);

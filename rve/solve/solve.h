@@ -15,6 +15,7 @@
 #define LAM_RVE_SOLVE_H
 
 #include "border.h"
+#include "load.h"
 #include "measure.h"
 
 /* ---- newton.c ---- */
@@ -92,8 +93,6 @@ PetscReal LamRotationAngle(const PetscReal F[9]);
 void LamRotatePositions(PetscInt n, PetscReal y[], PetscReal F[9], PetscReal angle);
 /* rve->y := from [length] + (F_to - F_from) X, with the independent wall stresses and the pressures of `from`. */
 void LamMoveAffinely(LamRVE rve, const PetscReal from[], const LamLoad *load_from, const LamLoad *load_to);
-/* Load at parameter t in [0, 1] of the straight load path from a to b. */
-LamLoad LamLoadBetween(const LamLoad *a, const LamLoad *b, PetscReal t);
 /* Finds a stable equilibrium at `load` by continuation from `state`; returns it in rve->y with the consistent tangent
    factored. */
 PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);

@@ -1,9 +1,19 @@
 /*
-  Admissible loads in plane strain.
+  Loads: straight paths, admissible loads in plane strain.
 */
-#include <lamella/response.h>
+#include "load.h"
 #include <math.h>
 #include <stdio.h>
+
+LamLoad LamLoadBetween(const LamLoad *a, const LamLoad *b, PetscReal t)
+{
+  LamLoad load = *b;
+
+  for (int i = 0; i < 9; i++) load.F[i] = (1 - t) * a->F[i] + t * b->F[i];
+  load.turgor = (1 - t) * a->turgor + t * b->turgor;
+  load.cohesion = (1 - t) * a->cohesion + t * b->cohesion;
+  return load;
+}
 
 PetscBool LamPlaneStrain(const PetscReal F[9])
 {

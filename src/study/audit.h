@@ -57,10 +57,9 @@ typedef struct {
   PetscReal start;
 
   /* every rank */
-  LamMicrostructure micro;
+  LamMicrostructure micro; /* rank 0: cells borrowed from the database; else owned */
   LamStrategy strategy;
-  PetscInt count;
-  LamLoad *loads; /* [count] */
+  LamLoad *loads; /* of the audit; rank 0: borrowed, else owned */
   LamRVE rve;
   LamRVEState state;
 

@@ -8,28 +8,22 @@
 
 /* ---- solves ---- */
 
-/* Broadcasts the tissue and the states drawn by rank 0. */
-static PetscErrorCode Share(LamVerification *v)
+/* Shares the tissue and the states drawn by rank 0, which owns both. */
+static PetscErrorCode Share(LamVerification *v, PetscErrorCode ierr)
 {
   const MPI_Comm comm = PETSC_COMM_WORLD;
   LamMicrostructure *micro = &v->micro;
-  LamCell *cells = micro->cell; /* on rank 0: the database's */
-  int has_cells = cells != NULL;
-  PetscInt n;
+  size_t cells = 0, loads = (size_t)v->audit.answered * sizeof(*v->loads);
 
   PetscFunctionBeginUser;
+  if (micro->cell) cells = (size_t)(micro->cells[0] * micro->cells[1]) * sizeof(LamCell);
+  v->loads = v->audit.loads;
+  PetscCall(LamShareError(comm, ierr));
   PetscCallMPI(MPI_Bcast(micro, sizeof(*micro), MPI_BYTE, 0, comm));
   PetscCallMPI(MPI_Bcast(&v->strategy, 1, MPI_INT, 0, comm));
-  PetscCallMPI(MPI_Bcast(&has_cells, 1, MPI_INT, 0, comm));
-  PetscCallMPI(MPI_Bcast(&v->count, 1, MPIU_INT, 0, comm));
-  n = has_cells ? micro->cells[0] * micro->cells[1] : 0;
-  PetscCall(PetscMalloc1(n, &micro->cell));
-  if (v->rank == 0) PetscCall(PetscArraycpy(micro->cell, cells, n));
-  PetscCallMPI(MPI_Bcast(micro->cell, (PetscMPIInt)((size_t)n * sizeof(LamCell)), MPI_BYTE, 0, comm));
-  if (!has_cells) PetscCall(PetscFree(micro->cell));
-  PetscCall(PetscMalloc1(v->count, &v->loads));
-  if (v->rank == 0) PetscCall(PetscArraycpy(v->loads, v->audit.loads, v->count));
-  for (PetscInt i = 0; i < v->count; i++) PetscCallMPI(MPI_Bcast(&v->loads[i], sizeof(LamLoad), MPI_BYTE, 0, comm));
+  PetscCall(LamShareBytes(comm, 0, &cells, &micro->cell));
+  PetscCall(LamShareBytes(comm, 0, &loads, &v->loads));
+  if (!cells) PetscCall(PetscFree(micro->cell));
   PetscFunctionReturn(0);
 }
 
@@ -65,8 +59,8 @@ static PetscErrorCode Arrive(void *ctx, PetscInt64 index, const void *result)
   PetscFunctionBeginUser;
   if (fresh->status == LAM_OUT_OF_REACH) PetscFunctionReturn(0); /* stopped */
   PetscCall(LamAuditCompare(&v->audit, (PetscInt)index, fresh));
-  PetscCall(
-      LamReportProgress(&v->reporter, v->audit.solved, v->count, (PetscInt64)json_object_size(v->audit.unsolved)));
+  PetscCall(LamReportProgress(&v->reporter, v->audit.solved, v->audit.answered,
+                              (PetscInt64)json_object_size(v->audit.unsolved)));
   PetscFunctionReturn(0);
 }
 
@@ -79,7 +73,6 @@ static PetscErrorCode Begin(LamVerification *v)
   PetscCall(LamAuditCreate(&v->from, v->accuracy ? v->accuracy : v->from.accuracy, v->samples, v->seed, &v->audit));
   v->micro = v->from.micro;
   v->strategy = v->from.scene->strategy;
-  v->count = v->audit.answered;
   PetscFunctionReturn(0);
 }
 
@@ -88,7 +81,7 @@ static PetscErrorCode RunRoot(LamVerification *v)
   PetscBool complete;
 
   PetscFunctionBeginUser;
-  PetscCall(LamDispatchAdd(v->dispatch, 0, v->count, 1));
+  PetscCall(LamDispatchAdd(v->dispatch, 0, v->audit.answered, 1));
   PetscCall(LamDispatchRun(v->dispatch, NULL, NULL, &complete));
   PetscFunctionReturn(0);
 }
@@ -102,8 +95,7 @@ static PetscErrorCode RunAll(LamVerification *v)
   PetscErrorCode ierr = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(LamShareError(PETSC_COMM_WORLD, root ? Begin(v) : 0));
-  PetscCall(Share(v));
+  PetscCall(Share(v, root ? Begin(v) : 0));
   PetscCall(CreateRVE(v));
   if (root)
     ierr = RunRoot(v);
@@ -132,11 +124,12 @@ PetscErrorCode LamVerificationDestroy(LamVerification *v)
   if (v->rank == 0) {
     PetscCall(LamAuditDestroy(&v->audit));
     PetscCall(LamQuerySourceClose(&v->from));
+  } else {
+    PetscCall(PetscFree(v->loads));
+    PetscCall(PetscFree(v->micro.cell));
   }
   PetscCall(LamRVEStateDestroy(&v->state));
   PetscCall(LamRVEDestroy(&v->rve));
-  PetscCall(PetscFree(v->loads));
-  PetscCall(PetscFree(v->micro.cell));
   PetscCall(LamDispatchDestroy(&v->dispatch));
   PetscFunctionReturn(0);
 }

@@ -5,6 +5,7 @@
 #define LAM_BUILD_H
 
 #include "study.h"
+#include "known_records.h"
 #include "node_costs.h"
 
 /*
@@ -79,21 +80,15 @@ PetscErrorCode LamCoverageDestroy(LamCoverage *coverage);
   replaces the solve of its node, in the round that lacks this node only. Therefore a resumed build requests the same
   nodes as an uninterrupted one, whatever else the file holds.
 */
-typedef struct {
-  PetscInt64 key;
-  const LamResponse *record; /* borrowed from the file */
-} LamKnownNode;
-
 enum { LAM_OPEN_ROUNDS = 2 };
 
 typedef struct {
-  const LamScene *scene; /* borrowed */
-  const LamShard *shard; /* borrowed */
-  LamGrid grid;          /* owned by the table */
-  LamDatabase table;     /* nodes of complete rounds; owned */
-  LamNodeCosts costs;    /* fitted to them; owned */
-  PetscInt known_count;
-  LamKnownNode *known;     /* [known_count], sorted; owned */
+  const LamScene *scene;   /* borrowed */
+  const LamShard *shard;   /* borrowed */
+  LamGrid grid;            /* owned by the table */
+  LamDatabase table;       /* nodes of complete rounds; owned */
+  LamNodeCosts costs;      /* fitted to them; owned */
+  LamKnownRecords known;   /* the records of the file; owned */
   PetscInt64 most;         /* largest number of nodes */
   PetscInt64 nodes;        /* in the table */
   PetscInt64 known_failed; /* records found in the file that did not converge */
@@ -105,9 +100,9 @@ typedef struct {
   PetscBool dry; /* the table lacks no nodes except those of open rounds */
 } LamRounds;
 
-/* `file`: the database to be resumed, or NULL; borrowed. Takes ownership of the grid. */
-PetscErrorCode LamRoundsCreate(const LamScene *scene, const LamShard *shard, LamDatabase file, LamGrid *grid,
-                               LamRounds *rounds);
+/* `known`: the records of the database to be resumed. Takes ownership of them and of the grid. */
+PetscErrorCode LamRoundsCreate(const LamScene *scene, const LamShard *shard, const LamKnownRecords *known,
+                               LamGrid *grid, LamRounds *rounds);
 /*
   Closes complete rounds and opens the next. *round: the round that was opened (call again); NULL: none can be opened
   now. If none is open either, the build is finished.
@@ -115,8 +110,6 @@ PetscErrorCode LamRoundsCreate(const LamScene *scene, const LamShard *shard, Lam
 PetscErrorCode LamRoundsNext(LamRounds *rounds, LamRound **round);
 /* Stores the response of a missing node of an open round. PETSC_ERR_PLIB if the node is in none. */
 PetscErrorCode LamRoundsArrive(LamRounds *rounds, PetscInt64 key, const LamResponse *response);
-/* The record of a node in the file, or NULL. */
-const LamResponse *LamRoundsKnown(const LamRounds *rounds, PetscInt64 key);
 /* Whether the rounds ended because MOST_IDLE rounds in a row hardly increased the coverage. */
 PetscBool LamRoundsAreIdle(const LamRounds *rounds);
 /* Number of nodes of the table and of open rounds; number of those that have a response. */

@@ -100,16 +100,20 @@ static PetscErrorCode QueryState(LamTable table, const LamLoad *load, PetscReal 
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode QueryAll(const LamScene *scene, const PetscInt states[], LamTable table, PetscReal accuracy,
-                               PetscInt enough, const LamRound *under_way, LamCoverage *coverage)
+PetscErrorCode LamCoverageCompute(const LamScene *scene, const LamShard *shard, LamDatabase database,
+                                  PetscReal accuracy, PetscInt enough, const LamRound *under_way, LamCoverage *coverage)
 {
+  const PetscBool contact = (PetscBool)(scene->micro.interface == LAM_INTERFACE_CONTACT);
   PetscReal *errors, error;
+  PetscInt *states, n = 0;
+  LamTable table;
   Need *needs;
-  PetscInt n = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(coverage->states, &errors));
-  PetscCall(PetscMalloc1(coverage->states, &needs));
+  *coverage = (LamCoverage){0};
+  PetscCall(LamShardStates(scene, shard, contact ? CONTACT_STATES : BONDED_STATES, &coverage->states, &states));
+  PetscCall(LamDatabaseGetTable(database, &table));
+  PetscCall(PetscMalloc2(coverage->states, &errors, coverage->states, &needs));
   for (PetscInt i = 0; i < coverage->states; i++) {
     LamLoad load;
 
@@ -123,28 +127,10 @@ static PetscErrorCode QueryAll(const LamScene *scene, const PetscInt states[], L
   }
   PetscCall(PetscSortReal(coverage->reached, errors));
   coverage->error = coverage->reached ? errors[(PetscInt)(QUANTILE * (PetscReal)(coverage->reached - 1))] : NAN;
-  PetscCall(PetscFree(errors));
   PetscCall(ChooseNodes(n, needs, enough, coverage));
-  PetscCall(PetscFree(needs));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamCoverageCompute(const LamScene *scene, const LamShard *shard, LamDatabase database,
-                                  PetscReal accuracy, PetscInt enough, const LamRound *under_way, LamCoverage *coverage)
-{
-  const PetscBool contact = (PetscBool)(scene->micro.interface == LAM_INTERFACE_CONTACT);
-  PetscErrorCode ierr;
-  PetscInt *states;
-  LamTable table;
-
-  PetscFunctionBeginUser;
-  *coverage = (LamCoverage){0};
-  PetscCall(LamShardStates(scene, shard, contact ? CONTACT_STATES : BONDED_STATES, &coverage->states, &states));
-  PetscCall(LamDatabaseGetTable(database, &table));
-  ierr = QueryAll(scene, states, table, accuracy, enough, under_way, coverage);
+  PetscCall(PetscFree2(errors, needs));
   PetscCall(LamTableDestroy(&table));
   PetscCall(PetscFree(states));
-  PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 

@@ -19,38 +19,23 @@ enum { MOST_IDLE = 6 };
 #define FIRST_ACCURACY 0.125
 #define LAST_ACCURACY 1e-6
 
-static int CompareKnown(const void *a, const void *b)
+/* Adds the file's records of free cells to the table where the grid has none. */
+static PetscErrorCode AddFreeCells(LamRounds *rounds)
 {
-  const PetscInt64 x = ((const LamKnownNode *)a)->key, y = ((const LamKnownNode *)b)->key;
-
-  return (x > y) - (x < y);
-}
-
-/* Lists the nodes of the file. Those of free cells belong to the grid and are in the table from the start. */
-static PetscErrorCode FindKnown(LamDatabase file, LamRounds *rounds)
-{
-  const PetscBool from_grid = (PetscBool)(rounds->nodes > 0);
-  const LamResponse *records;
-  const PetscInt64 *keys;
-  PetscInt n;
+  const LamKnownRecords *known = &rounds->known;
 
   PetscFunctionBeginUser;
-  PetscCall(LamDatabaseGetRecords(file, &n, &records, &keys));
-  PetscCall(PetscMalloc1(n, &rounds->known));
-  for (PetscInt i = 0; i < n; i++) {
-    if (LamKeyIsFreeCell(keys[i])) {
-      if (from_grid) continue;
-      PetscCall(LamDatabaseAdd(rounds->table, 1, &keys[i], &records[i]));
-      rounds->nodes++;
-    } else if (LamKeyIsNode(keys[i]))
-      rounds->known[rounds->known_count++] = (LamKnownNode){keys[i], &records[i]};
+  if (rounds->nodes) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < known->n; i++) {
+    if (!LamKeyIsFreeCell(known->keys[i])) continue;
+    PetscCall(LamDatabaseAdd(rounds->table, 1, &known->keys[i], &known->records[i]));
+    rounds->nodes++;
   }
-  if (rounds->known_count) qsort(rounds->known, (size_t)rounds->known_count, sizeof(*rounds->known), CompareKnown);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamRoundsCreate(const LamScene *scene, const LamShard *shard, LamDatabase file, LamGrid *grid,
-                               LamRounds *rounds)
+PetscErrorCode LamRoundsCreate(const LamScene *scene, const LamShard *shard, const LamKnownRecords *known,
+                               LamGrid *grid, LamRounds *rounds)
 {
   const LamResponse *records;
   const PetscInt64 *keys;
@@ -59,6 +44,7 @@ PetscErrorCode LamRoundsCreate(const LamScene *scene, const LamShard *shard, Lam
   PetscFunctionBeginUser;
   *rounds = (LamRounds){.scene = scene,
                         .shard = shard,
+                        .known = *known,
                         .most = PetscMax(1, (scene->sample.count ? scene->sample.count : MOST_NODES) / shard->count),
                         .accuracy = scene->sample.count ? PETSC_INFINITY : scene->sample.accuracy};
   PetscCall(LamDatabaseCreateEmpty(scene, &rounds->table));
@@ -68,18 +54,8 @@ PetscErrorCode LamRoundsCreate(const LamScene *scene, const LamShard *shard, Lam
   rounds->grid = *grid;
   PetscCall(LamDatabaseSetGrid(rounds->table, grid));
   PetscCall(LamNodeCostsCreate(rounds->grid, &rounds->costs));
-  if (file) PetscCall(FindKnown(file, rounds));
+  PetscCall(AddFreeCells(rounds));
   PetscFunctionReturn(0);
-}
-
-const LamResponse *LamRoundsKnown(const LamRounds *rounds, PetscInt64 key)
-{
-  const LamKnownNode wanted = {.key = key};
-  const LamKnownNode *found = NULL;
-
-  if (rounds->known_count)
-    found = bsearch(&wanted, rounds->known, (size_t)rounds->known_count, sizeof(wanted), CompareKnown);
-  return found ? found->record : NULL;
 }
 
 /* ---- nodes that the table lacks ---- */
@@ -143,7 +119,7 @@ static PetscErrorCode LookUp(LamRounds *rounds, LamRound *round)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < round->n; i++) {
-    const LamResponse *found = LamRoundsKnown(rounds, round->keys[i]);
+    const LamResponse *found = LamKnownRecordsGet(&rounds->known, round->keys[i], NULL);
 
     round->solved[i] = (PetscBool)(found != NULL);
     if (!found) {
@@ -320,6 +296,6 @@ PetscErrorCode LamRoundsDestroy(LamRounds *rounds)
   PetscCall(LamCoverageDestroy(&rounds->coverage));
   PetscCall(LamNodeCostsDestroy(&rounds->costs));
   PetscCall(LamDatabaseClose(&rounds->table));
-  PetscCall(PetscFree(rounds->known));
+  PetscCall(LamKnownRecordsDestroy(&rounds->known));
   PetscFunctionReturn(0);
 }

@@ -35,7 +35,6 @@ typedef struct LamBuild_s {
 
   /* on rank 0 */
   LamRecordWriter writer;
-  LamDatabase file; /* the existing database; NULL: none */
   LamRounds rounds;
   LamPending pending;
   PetscBool opening;                                  /* rounds are being opened: prevents recursion */

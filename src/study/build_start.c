@@ -4,44 +4,45 @@
 #include "build_run.h"
 #include <unistd.h>
 
-static PetscErrorCode OpenWriter(LamBuild *b)
+/* *exists: the file is there; its records are `known`. */
+static PetscErrorCode OpenWriter(LamBuild *b, PetscBool *exists, LamKnownRecords *known)
 {
-  const PetscBool exists = (PetscBool)!access(b->path, F_OK);
+  LamResponse *records;
+  LamDatabase file;
+  PetscInt64 *keys;
+  PetscInt n;
 
   PetscFunctionBeginUser;
-  PetscCheck(b->resume || !exists, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+  *exists = (PetscBool)!access(b->path, F_OK);
+  PetscCheck(b->resume || !*exists, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: exists; give --resume to go on with it, or remove it", b->path);
   PetscCall(LamRecordWriterOpen(b->path, "database", LAM_WRITE_APPEND, b->scene, &b->writer));
-  if (exists) PetscCall(LamDatabaseOpen(b->path, &b->file));
+  if (!*exists) PetscFunctionReturn(0);
+  PetscCall(LamDatabaseOpenFirst(b->path, 0, &file, &n, &keys, &records));
+  PetscCall(LamDatabaseClose(&file));
+  PetscCall(LamKnownRecordsSet(known, 0, n, keys, records));
   PetscFunctionReturn(0);
 }
 
-/* Commits the grid's free-cell records that the file lacks. */
-static PetscErrorCode CommitFreeCells(LamBuild *b, LamGrid grid)
+/* Commits the grid's free-cell records that are not in `known`, the records of the file. */
+static PetscErrorCode CommitFreeCells(LamBuild *b, const LamKnownRecords *known, LamGrid grid)
 {
   const LamResponse *records;
-  const PetscInt64 *keys, *there;
-  PetscInt n, n_there, missing = 0;
+  const PetscInt64 *keys;
+  PetscInt n;
 
   PetscFunctionBeginUser;
   PetscCall(LamGridGetRecords(grid, &n, &keys, &records));
-  PetscCall(LamRecordWriterGetKeys(b->writer, &n_there, &there));
-  for (PetscInt i = 0; i < n; i++) {
-    PetscInt k = 0;
-
-    while (k < n_there && there[k] != keys[i]) k++;
-    if (k < n_there) continue;
-    PetscCall(LamBuildTake(b, keys[i], &records[i]));
-    missing++;
-  }
+  for (PetscInt i = 0; i < n; i++)
+    if (!LamKnownRecordsGet(known, keys[i], NULL)) PetscCall(LamBuildTake(b, keys[i], &records[i]));
   PetscCall(LamRecordWriterCommit(b->writer, b->pending.n, b->pending.keys,
                                   b->pending.responses)); /* 0 records: only gives a new file its name */
-  b->added = missing;
+  b->added = b->pending.n;
   b->pending.n = 0;
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode NewGrid(LamBuild *b, LamResponder solver, LamGrid *grid)
+static PetscErrorCode NewGrid(LamBuild *b, const LamKnownRecords *none, LamResponder solver, LamGrid *grid)
 {
   char *text;
 
@@ -50,24 +51,15 @@ static PetscErrorCode NewGrid(LamBuild *b, LamResponder solver, LamGrid *grid)
   PetscCall(LamGridGetText(*grid, &text));
   PetscCall(LamRecordWriterText(b->writer, LAM_GRID_NAME, text));
   PetscCall(PetscFree(text));
-  PetscCall(CommitFreeCells(b, *grid));
+  PetscCall(CommitFreeCells(b, none, *grid));
   PetscFunctionReturn(0);
 }
 
-/* Number of free-cell records among the keys. */
-static PetscInt CountFreeCells(PetscInt n, const PetscInt64 keys[])
-{
-  PetscInt count = 0;
-
-  for (PetscInt i = 0; i < n; i++) count += LamKeyIsFreeCell(keys[i]);
-  return count;
-}
-
-static PetscErrorCode OldGrid(LamBuild *b, LamResponder solver, LamGrid *grid)
+static PetscErrorCode OldGrid(LamBuild *b, const LamKnownRecords *known, LamResponder solver, LamGrid *grid)
 {
   const PetscInt64 *keys;
-  PetscBool found;
-  PetscInt n, wanted;
+  PetscBool found, lost = PETSC_FALSE;
+  PetscInt n;
   char *text;
 
   PetscFunctionBeginUser;
@@ -78,25 +70,28 @@ static PetscErrorCode OldGrid(LamBuild *b, LamResponder solver, LamGrid *grid)
              b->path, LAM_GRID_NAME);
   PetscCall(LamGridFromText(b->path, &b->scene->micro, text, grid));
   PetscCall(PetscFree(text));
-  PetscCall(LamGridGetFreeKeys(*grid, &wanted, &keys));
-  PetscCall(LamRecordWriterGetKeys(b->writer, &n, &keys));
-  if (CountFreeCells(n, keys) >= wanted) PetscFunctionReturn(0);
-  PetscCall(LamGridSolveRecords(*grid, &b->scene->micro, solver)); /* some were lost from a damaged file */
-  PetscCall(CommitFreeCells(b, *grid));
+  PetscCall(LamGridGetFreeKeys(*grid, &n, &keys));
+  for (PetscInt i = 0; i < n; i++)
+    if (!LamKnownRecordsGet(known, keys[i], NULL)) lost = PETSC_TRUE; /* from a damaged file */
+  if (!lost) PetscFunctionReturn(0);
+  PetscCall(LamGridSolveRecords(*grid, &b->scene->micro, solver));
+  PetscCall(CommitFreeCells(b, known, *grid));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamBuildStart(LamBuild *b)
 {
+  LamKnownRecords known = {0};
   LamResponder solver;
+  PetscBool exists;
   LamGrid grid;
 
   PetscFunctionBeginUser;
   PetscCall(LamRVEResponderCreate(b->rve, 0, &solver));
-  PetscCall(OpenWriter(b));
-  PetscCall(b->file ? OldGrid(b, solver, &grid) : NewGrid(b, solver, &grid));
+  PetscCall(OpenWriter(b, &exists, &known));
+  PetscCall(exists ? OldGrid(b, &known, solver, &grid) : NewGrid(b, &known, solver, &grid));
   PetscCall(LamResponderDestroy(&solver));
-  PetscCall(LamRoundsCreate(b->scene, &b->shard, b->file, &grid, &b->rounds));
+  PetscCall(LamRoundsCreate(b->scene, &b->shard, &known, &grid, &b->rounds));
   b->there = b->rounds.nodes - b->added;
   PetscFunctionReturn(0);
 }

@@ -8,7 +8,7 @@
     exception: an unsolved node delays the nodes after it for half a minute at most.
 */
 #include "build_run.h"
-#include "plan.h"
+#include "error_model.h"
 #include "rounding.h"
 #include "clock.h"
 #include <string.h>
@@ -57,14 +57,6 @@ static PetscErrorCode Arrive(void *ctx, PetscInt64 key, const LamResponse *respo
   PetscFunctionReturn(0);
 }
 
-/* LamNodeCallbacks.known */
-static const LamResponse *Known(void *ctx, PetscInt64 key)
-{
-  const LamBuild *b = ctx;
-
-  return LamRoundsKnown(&b->rounds, key);
-}
-
 static PetscErrorCode SolveRounds(LamBuild *b)
 {
   PetscBool complete;
@@ -81,18 +73,16 @@ static PetscErrorCode SolveRounds(LamBuild *b)
 static PetscErrorCode ShareGrid(LamBuild *b)
 {
   char *text = NULL;
-  PetscInt length;
+  size_t length = 0;
   LamGrid grid;
 
   PetscFunctionBeginUser;
   if (!b->rank) {
     PetscCall(LamDatabaseGetGrid(b->rounds.table, &grid));
     PetscCall(LamGridGetText(grid, &text));
-    length = (PetscInt)strlen(text) + 1;
+    length = strlen(text) + 1;
   }
-  PetscCallMPI(MPI_Bcast(&length, 1, MPIU_INT, 0, b->leaders));
-  if (!text) PetscCall(PetscMalloc1(length, &text));
-  PetscCallMPI(MPI_Bcast(text, (PetscMPIInt)length, MPI_CHAR, 0, b->leaders));
+  PetscCall(LamShareBytes(b->leaders, 0, &length, &text));
   PetscCall(LamGridFromText(b->path, &b->scene->micro, text, &b->grid));
   PetscCall(PetscFree(text));
   PetscFunctionReturn(0);
@@ -114,7 +104,7 @@ static PetscErrorCode CreateRVE(LamBuild *b)
 /* On ranks that solve an RVE alone or lead a team that does; rank 0 writes the file. */
 static PetscErrorCode RunLeader(LamBuild *b)
 {
-  const LamNodeCallbacks callbacks = {.ctx = b, .arrived = Arrive, .known = Known};
+  const LamNodeCallbacks callbacks = {.ctx = b, .arrived = Arrive, .known = &b->rounds.known};
   const PetscBool root = (PetscBool)(b->rank == 0);
   PetscErrorCode ierr;
 
@@ -171,15 +161,12 @@ static PetscErrorCode CreateTeams(LamBuild *b)
 
 PetscErrorCode LamBuildPrepare(LamBuild *b, const char scene_path[])
 {
-  LamPlan plan;
-
   PetscFunctionBeginUser;
   PetscCall(LamSceneRead(scene_path, &b->scene));
   PetscCheck(b->scene->has_sample, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: has no block `sample`, which says what states to build from", scene_path);
-  PetscCall(LamPlanMake(b->scene, &plan));
-  PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &b->reporter, &plan.micro, b->scene->accuracy));
-  b->scene->micro = plan.micro;
+  PetscCall(LamChooseMesh(b->scene));
+  PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &b->reporter, &b->scene->micro, b->scene->accuracy));
   PetscFunctionReturn(0);
 }
 
@@ -198,7 +185,6 @@ PetscErrorCode LamBuildDestroy(LamBuild *b)
   PetscCall(PetscFree(b->pending.keys));
   PetscCall(PetscFree(b->pending.responses));
   PetscCall(LamRoundsDestroy(&b->rounds));
-  PetscCall(LamDatabaseClose(&b->file));
   PetscCall(LamGridDestroy(&b->grid));
   PetscCallMPI(MPI_Comm_free(&b->team));
   if (b->leaders != MPI_COMM_NULL) PetscCallMPI(MPI_Comm_free(&b->leaders));

@@ -1,4 +1,11 @@
+/*
+  The mesh of a scene. The cheapest one whose error of P stays below the prescribed accuracy for the scene's walls and
+  loads, by the model below. A body of cells in contact depends on their tangent, which is uneven because contact moves
+  from node to node: 4-8 % with 6 elements along a face, 2 % with 12, below 1 % with BODY_ALONG
+  (docs/results/performance.md, FE²).
+*/
 #include "error_model.h"
+#include "wall_law.h"
 #include <jansson.h>
 #include <math.h>
 #include <string.h>
@@ -20,7 +27,10 @@ static const struct {
 } Meshes[] = {{4, 1}, {4, 2}, {6, 2}, {8, 2}, {10, 2}, {12, 2}, {8, 4}, {12, 4}, {16, 4}, {20, 6}, {28, 8}};
 enum { MESH_COUNT = PETSC_STATIC_ARRAY_LENGTH(Meshes) };
 
-#define LEAST_STRAIN 0.02 /* smallest strain of the fit */
+#define BODY_ALONG 16
+#define BODY_ACCURACY 0.01 /* not applied if the prescribed accuracy is coarser */
+#define USUAL_STRAIN 0.2   /* for bodies, whose strains are not known in advance */
+#define LEAST_STRAIN 0.02  /* smallest strain of the fit */
 #define LEAST_FIBRES 1.0
 
 PetscReal LamStrainSize(const PetscReal F[9])
@@ -103,5 +113,46 @@ PetscErrorCode LamMeasuredMesh(const char path[], const char hash[], PetscReal a
              "%s: none of its meshes has an error below the accuracy of %g; the least is %g. Ask for less, or leave "
              "`measured` out",
              path, (double)accuracy, least);
+  PetscFunctionReturn(0);
+}
+
+/* ---- the mesh of a scene ---- */
+
+/* The largest strain for which the scene queries an RVE. */
+static PetscReal LargestStrain(const LamScene *scene)
+{
+  PetscReal strain = scene->has_macro || (!scene->load_count && !scene->has_sample) ? USUAL_STRAIN : 0.0;
+
+  for (PetscInt i = 0; i < scene->load_count; i++) strain = PetscMax(strain, LamStrainSize(scene->loads[i].F));
+  if (scene->has_sample)
+    strain = PetscMax(strain, PetscSqrtReal(2.0) * PetscMax(PetscAbsReal(scene->sample.stretch_min),
+                                                            PetscAbsReal(scene->sample.stretch_max)));
+  return strain;
+}
+
+PetscErrorCode LamChooseMesh(LamScene *scene)
+{
+  LamMicrostructure *micro = &scene->micro;
+  const PetscBool uneven = (PetscBool)(scene->has_macro && micro->interface == LAM_INTERFACE_CONTACT);
+  LamErrorCase c = {micro->interface, micro->wall_thickness, LamWallFibreModulus(&micro->wall) / micro->wall.C1,
+                    LargestStrain(scene)};
+  PetscInt along, through;
+  PetscReal grading;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; micro->cell && k < micro->cells[0] * micro->cells[1]; k++)
+    c.thickness = PetscMax(c.thickness, micro->cell[k].wall_thickness);
+  if (scene->measured[0] && !micro->along) {
+    char hash[LAM_HASH_LENGTH];
+
+    PetscCall(LamMicrostructureHashTissue(micro, hash));
+    PetscCall(LamMeasuredMesh(scene->measured, hash, scene->accuracy, &along, &through, &grading));
+  } else {
+    LamCheapestMesh(&c, scene->accuracy, &along, &through, &grading);
+  }
+  if (uneven && scene->accuracy <= BODY_ACCURACY) along = PetscMax(along, BODY_ALONG);
+  if (micro->grading < 0.0) micro->grading = micro->along ? 0.0 : grading;
+  if (!micro->along) micro->along = along;
+  if (!micro->through) micro->through = through;
   PetscFunctionReturn(0);
 }

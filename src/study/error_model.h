@@ -30,4 +30,7 @@ void LamCheapestMesh(const LamErrorCase *c, PetscReal accuracy, PetscInt *along,
 PetscErrorCode LamMeasuredMesh(const char path[], const char hash[], PetscReal accuracy, PetscInt *along,
                                PetscInt *through, PetscReal *grading);
 
+/* Chooses along, through and grading of scene->micro where the scene leaves them open. */
+PetscErrorCode LamChooseMesh(LamScene *scene);
+
 #endif

@@ -23,13 +23,6 @@ const char *const LamCriterionNames[] = {LAM_CRITERIA(LAM_NAME_ENTRY)};
 
 static const LamStrength not_given = {NAN, NAN, NAN};
 
-/* A solved point on the load path between two states. */
-typedef struct {
-  PetscReal share; /* fraction of the load path */
-  LamResponse responses[2];
-  LamRVEState states[2]; /* owned */
-} Point;
-
 /* The load path from one state to the next. */
 typedef struct {
   LamMeshes *meshes;
@@ -38,7 +31,7 @@ typedef struct {
   LamLoad ends[2];
   LamStressControl control; /* at share 1; components of F that follow are already in the loads */
   PetscReal P[9];           /* at share 0 */
-} Way;
+} Path;
 
 LamFailureMode LamFailureModeOf(LamCriterion criterion)
 {
@@ -55,15 +48,15 @@ LamFailureMode LamFailureModeOf(LamCriterion criterion)
 
 /* ---- points ---- */
 
-static PetscErrorCode PointCreate(const LamMeshes *meshes, Point *point)
+static PetscErrorCode PointCreate(const LamMeshes *meshes, LamPathPoint *point)
 {
   PetscFunctionBeginUser;
-  *point = (Point){0};
+  *point = (LamPathPoint){0};
   for (PetscInt m = 0; m < meshes->count; m++) PetscCall(LamRVEStateCreate(meshes->rve[m], &point->states[m]));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode PointDestroy(Point *point)
+static PetscErrorCode PointDestroy(LamPathPoint *point)
 {
   PetscFunctionBeginUser;
   for (PetscInt m = 0; m < 2; m++) PetscCall(LamRVEStateDestroy(&point->states[m]));
@@ -77,7 +70,7 @@ static PetscErrorCode CopyStates(const LamMeshes *meshes, const LamRVEState from
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode PointCopy(const LamMeshes *meshes, const Point *from, Point *to)
+static PetscErrorCode PointCopy(const LamMeshes *meshes, const LamPathPoint *from, LamPathPoint *to)
 {
   PetscFunctionBeginUser;
   to->share = from->share;
@@ -86,37 +79,27 @@ static PetscErrorCode PointCopy(const LamMeshes *meshes, const Point *from, Poin
   PetscFunctionReturn(0);
 }
 
-static LamLoad LoadAt(const Way *way, PetscReal share)
+static LamStressControl ControlAt(const Path *path, PetscReal share)
 {
-  const LamLoad *a = &way->ends[0], *b = &way->ends[1];
-  LamLoad load;
+  LamStressControl control = path->control;
 
-  for (int i = 0; i < 9; i++) load.F[i] = (1 - share) * a->F[i] + share * b->F[i];
-  load.turgor = (1 - share) * a->turgor + share * b->turgor;
-  load.cohesion = (1 - share) * a->cohesion + share * b->cohesion;
-  return load;
-}
-
-static LamStressControl ControlAt(const Way *way, PetscReal share)
-{
-  LamStressControl control = way->control;
-
-  for (int i = 0; i < 9 && share < 1; i++) control.P[i] = (1 - share) * way->P[i] + share * way->control.P[i];
+  for (int i = 0; i < 9 && share < 1; i++) control.P[i] = (1 - share) * path->P[i] + share * path->control.P[i];
   return control;
 }
 
 /* The load path to a load, from a state with load `before` and stress P. `control` may be NULL. */
-static Way MakeWay(LamMeshes *meshes, PetscReal from, PetscReal reach, const LamLoad *before, const PetscReal P[9],
-                   const LamLoad *load, const LamStressControl *control)
+static Path MakePath(LamMeshes *meshes, PetscReal from, PetscReal reach, const LamLoad *before, const PetscReal P[9],
+                     const LamLoad *load, const LamStressControl *control)
 {
-  Way way = {.meshes = meshes, .from = from, .reach = reach, .ends = {*before, LamLoadAfter(load, control, before->F)}};
+  Path path = {
+      .meshes = meshes, .from = from, .reach = reach, .ends = {*before, LamLoadAfter(load, control, before->F)}};
 
-  if (control) way.control = *control;
+  if (control) path.control = *control;
   for (int i = 0; i < 9; i++) {
-    way.P[i] = P[i];
-    way.control.follows[i] = PETSC_FALSE;
+    path.P[i] = P[i];
+    path.control.follows[i] = PETSC_FALSE;
   }
-  return way;
+  return path;
 }
 
 /* With one mesh, its response is used for both. */
@@ -126,11 +109,12 @@ static void Complete(const LamMeshes *meshes, LamResponse responses[2])
 }
 
 /* Solves at a fraction of the load path, starting from the states of `start`. *known: a solution was found. */
-static PetscErrorCode SolveAt(const Way *way, const Point *start, PetscReal share, Point *point, PetscBool *known)
+static PetscErrorCode SolveAt(const Path *path, const LamPathPoint *start, PetscReal share, LamPathPoint *point,
+                              PetscBool *known)
 {
-  LamMeshes *meshes = way->meshes;
-  const LamLoad load = LoadAt(way, share);
-  const LamStressControl control = ControlAt(way, share);
+  LamMeshes *meshes = path->meshes;
+  const LamLoad load = LamLoadBetween(&path->ends[0], &path->ends[1], share);
+  const LamStressControl control = ControlAt(path, share);
 
   PetscFunctionBeginUser;
   PetscCall(CopyStates(meshes, start->states, meshes->state));
@@ -148,13 +132,13 @@ static PetscErrorCode SolveAt(const Way *way, const Point *start, PetscReal shar
 /* Bracket of one criterion. */
 typedef struct {
   LamCriterion criterion;
-  Point *low;  /* not reached */
-  Point *high; /* reached */
+  LamPathPoint *low;  /* not reached */
+  LamPathPoint *high; /* reached */
   PetscReal excess[2];
   PetscInt tries;
 } Search;
 
-static PetscReal ExcessOf(const LamFailure *failure, const Search *search, const Point *point)
+static PetscReal ExcessOf(const LamFailure *failure, const Search *search, const LamPathPoint *point)
 {
   return LamCriterionExcess(search->criterion, failure, search->low->responses, point->responses);
 }
@@ -173,18 +157,19 @@ static PetscReal NextShare(const Search *search)
 }
 
 /* Narrows the bracket to RESOLUTION; *known is PETSC_FALSE if a load in it has no solution. */
-static PetscErrorCode Narrow(LamFailure *failure, const Way *way, Search *search, Point *point, PetscBool *known)
+static PetscErrorCode Narrow(LamFailure *failure, const Path *path, Search *search, LamPathPoint *point,
+                             PetscBool *known)
 {
   PetscFunctionBeginUser;
   *known = PETSC_TRUE;
   while (search->high->share - search->low->share > RESOLUTION) {
     PetscReal excess;
 
-    PetscCall(SolveAt(way, search->low, NextShare(search), point, known));
+    PetscCall(SolveAt(path, search->low, NextShare(search), point, known));
     if (!*known) break;
     excess = ExcessOf(failure, search, point);
     search->excess[excess >= 0] = excess;
-    PetscCall(PointCopy(way->meshes, point, excess >= 0 ? search->high : search->low));
+    PetscCall(PointCopy(path->meshes, point, excess >= 0 ? search->high : search->low));
     search->tries++;
   }
   PetscFunctionReturn(0);
@@ -207,43 +192,43 @@ static const PetscReal *PlaceOf(const LamResponse *r, LamCriterion criterion)
   }
 }
 
-static void KeepOnset(LamFailure *failure, const Way *way, const Search *search)
+static void KeepOnset(LamFailure *failure, const Path *path, const Search *search)
 {
   LamCriterionOnset *onset = &failure->onset[search->criterion];
   const PetscReal *place = PlaceOf(&search->high->responses[0], search->criterion);
 
-  onset->bracket[0] = way->from + way->reach * search->low->share;
-  onset->bracket[1] = onset->factor = way->from + way->reach * search->high->share;
+  onset->bracket[0] = path->from + path->reach * search->low->share;
+  onset->bracket[1] = onset->factor = path->from + path->reach * search->high->share;
   onset->response = search->high->responses[0];
   for (PetscInt i = 0; i < 3; i++) onset->place[i] = place ? place[i] : NAN;
 }
 
 /* Finds the onset of the criterion between two points. It is discarded if only a long step reaches the criterion. */
-static PetscErrorCode Seek(LamFailure *failure, const Way *way, LamCriterion criterion, const Point *from,
-                           const Point *to)
+static PetscErrorCode Seek(LamFailure *failure, const Path *path, LamCriterion criterion, const LamPathPoint *from,
+                           const LamPathPoint *to)
 {
-  Point low, high, point;
+  LamPathPoint low, high, point;
   Search search = {.criterion = criterion, .low = &low, .high = &high};
   PetscBool known, confirmed = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  PetscCall(PointCreate(way->meshes, &low));
-  PetscCall(PointCreate(way->meshes, &high));
-  PetscCall(PointCreate(way->meshes, &point));
-  PetscCall(PointCopy(way->meshes, from, &low));
-  PetscCall(PointCopy(way->meshes, to, &high));
+  PetscCall(PointCreate(path->meshes, &low));
+  PetscCall(PointCreate(path->meshes, &high));
+  PetscCall(PointCreate(path->meshes, &point));
+  PetscCall(PointCopy(path->meshes, from, &low));
+  PetscCall(PointCopy(path->meshes, to, &high));
   search.excess[0] = ExcessOf(failure, &search, &low);
   search.excess[1] = ExcessOf(failure, &search, &high);
   for (PetscInt k = 0; k < ATTEMPTS; k++) {
-    PetscCall(Narrow(failure, way, &search, &point, &known));
+    PetscCall(Narrow(failure, path, &search, &point, &known));
     if (!known || criterion != LAM_CRITERION_STABILITY) break;
-    PetscCall(SolveAt(way, &low, high.share, &point, &known));
+    PetscCall(SolveAt(path, &low, high.share, &point, &known));
     confirmed = (PetscBool)(!known || ExcessOf(failure, &search, &point) >= 0);
     if (confirmed) break;
-    PetscCall(PointCopy(way->meshes, &point, &low)); /* still on the stable branch: its end lies further along */
-    PetscCall(PointCopy(way->meshes, to, &high));
+    PetscCall(PointCopy(path->meshes, &point, &low)); /* still on the stable branch: its end lies further along */
+    PetscCall(PointCopy(path->meshes, to, &high));
   }
-  if (confirmed) KeepOnset(failure, way, &search);
+  if (confirmed) KeepOnset(failure, path, &search);
   PetscCall(PointDestroy(&low));
   PetscCall(PointDestroy(&high));
   PetscCall(PointDestroy(&point));
@@ -253,7 +238,7 @@ static PetscErrorCode Seek(LamFailure *failure, const Way *way, LamCriterion cri
 /* ---- from state to state ---- */
 
 /* Finds the onsets of all criteria that are reached at `to` and were not reached before. */
-static PetscErrorCode Judge(LamFailure *failure, const Way *way, const Point *from, const Point *to)
+static PetscErrorCode Judge(LamFailure *failure, const Path *path, const LamPathPoint *from, const LamPathPoint *to)
 {
   PetscFunctionBeginUser;
   for (int c = 0; c < LAM_CRITERION_COUNT; c++) {
@@ -261,20 +246,19 @@ static PetscErrorCode Judge(LamFailure *failure, const Way *way, const Point *fr
 
     if (!failure->onset[c].judged || !isnan(failure->onset[c].factor)) continue;
     if (!(LamCriterionExcess(criterion, failure, from->responses, to->responses) >= 0)) continue; /* NaN: not reached */
-    PetscCall(Seek(failure, way, criterion, from, to));
+    PetscCall(Seek(failure, path, criterion, from, to));
   }
   PetscFunctionReturn(0);
 }
 
 /* Makes `point` the last solved one. */
-static PetscErrorCode Accept(LamFailure *failure, const Way *way, const Point *point)
+static PetscErrorCode Accept(LamFailure *failure, const Path *path, const LamPathPoint *point)
 {
   PetscFunctionBeginUser;
-  failure->followed = way->from + way->reach * point->share;
-  for (PetscInt m = 0; m < 2; m++) failure->last[m] = point->responses[m];
+  failure->followed = path->from + path->reach * point->share;
   if (LamIsTurgid(&point->responses[0])) failure->turgid = PETSC_TRUE;
   if (LamIsTaut(&point->responses[0])) failure->taut = PETSC_TRUE;
-  PetscCall(CopyStates(way->meshes, point->states, failure->before));
+  PetscCall(PointCopy(path->meshes, point, &failure->last));
   PetscFunctionReturn(0);
 }
 
@@ -288,28 +272,28 @@ static PetscErrorCode KeepReason(LamFailure *failure, PetscReal factor, const La
   PetscFunctionReturn(0);
 }
 
-/* `to` has no solution: bisects the path from `from` to it and evaluates the criteria at the solved points. */
-static PetscErrorCode Approach(LamFailure *failure, const Way *way, Point *from, Point *to)
+/* `to` has no solution: bisects the path from the last point to it and evaluates the criteria at the solved points. */
+static PetscErrorCode Approach(LamFailure *failure, const Path *path, const LamPathPoint *to)
 {
+  const LamPathPoint *from = &failure->last;
   PetscReal unknown = 1;
-  Point point;
+  LamPathPoint point;
 
   PetscFunctionBeginUser;
-  PetscCall(KeepReason(failure, way->from + way->reach, to->responses));
-  PetscCall(PointCreate(way->meshes, &point));
+  PetscCall(KeepReason(failure, path->from + path->reach, to->responses));
+  PetscCall(PointCreate(path->meshes, &point));
   for (PetscInt k = 0; k < APPROACHES; k++) {
     PetscBool known;
 
-    PetscCall(SolveAt(way, from, 0.5 * (from->share + unknown), &point, &known));
-    if (way->meshes->stopped) break;
+    PetscCall(SolveAt(path, from, 0.5 * (from->share + unknown), &point, &known));
+    if (path->meshes->stopped) break;
     if (!known) {
       unknown = point.share;
-      PetscCall(KeepReason(failure, way->from + way->reach * unknown, point.responses));
+      PetscCall(KeepReason(failure, path->from + path->reach * unknown, point.responses));
       continue;
     }
-    PetscCall(Judge(failure, way, from, &point));
-    PetscCall(Accept(failure, way, &point));
-    PetscCall(PointCopy(way->meshes, &point, from));
+    PetscCall(Judge(failure, path, from, &point));
+    PetscCall(Accept(failure, path, &point));
   }
   PetscCall(PointDestroy(&point));
   PetscFunctionReturn(0);
@@ -322,56 +306,53 @@ static PetscBool IsReached(const LamFailure *failure)
   return PETSC_FALSE;
 }
 
-/* Evaluates the first solved load, at `way->from`, by itself: criteria reached there have their onset there or before.
+/* Evaluates the first solved load, at `path->from`, by itself: criteria reached there have their onset there or before.
  */
-static PetscErrorCode JudgeFirst(LamFailure *failure, const Way *way, const Point *point)
+static PetscErrorCode JudgeFirst(LamFailure *failure, const Path *path, const LamPathPoint *point)
 {
-  Point start;
+  LamPathPoint start;
 
   PetscFunctionBeginUser;
-  PetscCall(PointCreate(way->meshes, &start)); /* the stress-free reference */
+  PetscCall(PointCreate(path->meshes, &start)); /* the stress-free reference */
   for (PetscInt m = 0; m < 2; m++) start.responses[m] = point->responses[m];
   start.responses[0].branch = 0;
-  PetscCall(Judge(failure, way, &start, point));
-  PetscCall(Accept(failure, way, point));
+  PetscCall(Judge(failure, path, &start, point));
+  PetscCall(Accept(failure, path, point));
   PetscCall(PointDestroy(&start));
   PetscFunctionReturn(0);
 }
 
 /* Evaluates a new state and the load path to it. */
-static PetscErrorCode Take(LamFailure *failure, LamMeshes *meshes, PetscInt number, Point *to)
+static PetscErrorCode Take(LamFailure *failure, LamMeshes *meshes, PetscInt number, LamPathPoint *to)
 {
   const PetscBool known = LamHaveFields(to->responses), first = (PetscBool)isnan(failure->followed);
   const LamFailureProgram *program = &failure->program;
-  Way way = MakeWay(meshes, (PetscReal)(number - 1), 1, &failure->last[0].load, failure->last[0].P,
-                    &program->loads[number - 1], program->controls ? &program->controls[number - 1] : NULL);
-  Point from;
+  Path path =
+      MakePath(meshes, (PetscReal)(number - 1), 1, &failure->last.responses[0].load, failure->last.responses[0].P,
+               &program->loads[number - 1], program->controls ? &program->controls[number - 1] : NULL);
 
   PetscFunctionBeginUser;
-  PetscCall(PointCreate(meshes, &from));
-  PetscCall(CopyStates(meshes, failure->before, from.states));
-  for (PetscInt m = 0; m < 2; m++) from.responses[m] = failure->last[m];
+  failure->last.share = 0;
   if (first && known) {
-    way =
-        MakeWay(meshes, (PetscReal)number, 0, &to->responses[0].load, to->responses[0].P, &to->responses[0].load, NULL);
+    path = MakePath(meshes, (PetscReal)number, 0, &to->responses[0].load, to->responses[0].P, &to->responses[0].load,
+                    NULL);
     to->share = 0;
-    PetscCall(JudgeFirst(failure, &way, to));
+    PetscCall(JudgeFirst(failure, &path, to));
   } else if (first) {
     PetscCall(KeepReason(failure, (PetscReal)number, to->responses));
   } else if (known) {
     to->share = 1;
-    PetscCall(Judge(failure, &way, &from, to));
-    PetscCall(Accept(failure, &way, to));
+    PetscCall(Judge(failure, &path, &failure->last, to));
+    PetscCall(Accept(failure, &path, to));
   } else {
-    PetscCall(Approach(failure, &way, &from, to));
+    PetscCall(Approach(failure, &path, to));
   }
-  PetscCall(PointDestroy(&from));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamFailureWatch(LamFailure *failure, LamMeshes *meshes, PetscInt number, const LamResponse responses[2])
 {
-  Point point;
+  LamPathPoint point;
 
   PetscFunctionBeginUser;
   if (failure->reason[0] || (failure->program.stop_at_first && IsReached(failure))) PetscFunctionReturn(0);
@@ -395,18 +376,18 @@ static PetscErrorCode Begin(LamFailure *failure, LamMeshes *meshes)
   const PetscReal none[9] = {0};
   LamLoad load = program->loads[0];
   PetscBool known;
-  Point reference, zero;
-  Way way;
+  LamPathPoint reference, zero;
+  Path path;
 
   PetscFunctionBeginUser;
   for (int i = 0; i < 9; i++) load.F[i] = i % 4 ? 0 : 1;
-  way = MakeWay(meshes, 0, 0, &load, none, &load, program->controls);
-  PetscCall(LamResponseInit(&load, &failure->last[0]));
+  path = MakePath(meshes, 0, 0, &load, none, &load, program->controls);
+  PetscCall(LamResponseInit(&load, &failure->last.responses[0]));
   PetscCall(PointCreate(meshes, &reference));
   reference.responses[0].load = load;
   PetscCall(PointCreate(meshes, &zero));
-  PetscCall(SolveAt(&way, &reference, 0, &zero, &known));
-  if (known) PetscCall(JudgeFirst(failure, &way, &zero));
+  PetscCall(SolveAt(&path, &reference, 0, &zero, &known));
+  if (known) PetscCall(JudgeFirst(failure, &path, &zero));
   PetscCall(PointDestroy(&reference));
   PetscCall(PointDestroy(&zero));
   PetscFunctionReturn(0);
@@ -414,7 +395,7 @@ static PetscErrorCode Begin(LamFailure *failure, LamMeshes *meshes)
 
 PetscErrorCode LamFailureCreate(LamMeshes *meshes, const LamFailureProgram *program, LamFailure *failure)
 {
-  Point present;
+  LamPathPoint present;
 
   PetscFunctionBeginUser;
   *failure = (LamFailure){.factor = NAN, .followed = NAN, .criterion = LAM_CRITERION_COUNT, .program = *program};
@@ -425,7 +406,7 @@ PetscErrorCode LamFailureCreate(LamMeshes *meshes, const LamFailureProgram *prog
     *onset = (LamCriterionOnset){.factor = NAN, .bracket = {NAN, NAN}, .place = {NAN, NAN, NAN}};
     onset->judged = LamCriterionIsJudged((LamCriterion)c, program->interface, failure->program.strength);
   }
-  for (PetscInt m = 0; m < meshes->count; m++) PetscCall(LamRVEStateCreate(meshes->rve[m], &failure->before[m]));
+  PetscCall(PointCreate(meshes, &failure->last));
   PetscCall(PointCreate(meshes, &present));
   PetscCall(CopyStates(meshes, meshes->state, present.states));
   PetscCall(Begin(failure, meshes));
@@ -452,8 +433,8 @@ PetscErrorCode LamFailureConclude(LamFailure *failure)
   }
   failure->mode = LamFailureModeOf(failure->criterion);
   if (failure->criterion == LAM_CRITERION_COUNT && failure->reason[0]) failure->mode = LAM_FAILURE_UNKNOWN;
-  failure->response =
-      failure->criterion == LAM_CRITERION_COUNT ? failure->last[0] : failure->onset[failure->criterion].response;
+  failure->response = failure->criterion == LAM_CRITERION_COUNT ? failure->last.responses[0]
+                                                                : failure->onset[failure->criterion].response;
   failure->load = failure->response.load;
   PetscFunctionReturn(0);
 }
@@ -461,7 +442,7 @@ PetscErrorCode LamFailureConclude(LamFailure *failure)
 PetscErrorCode LamFailureDestroy(LamFailure *failure)
 {
   PetscFunctionBeginUser;
-  for (PetscInt m = 0; m < 2; m++) PetscCall(LamRVEStateDestroy(&failure->before[m]));
+  PetscCall(PointDestroy(&failure->last));
   PetscFunctionReturn(0);
 }
 

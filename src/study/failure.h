@@ -55,6 +55,13 @@ typedef struct {
   LamResponse response; /* at `factor`, on the first mesh */
 } LamCriterionOnset;
 
+/* A solved point on the load path between two states. */
+typedef struct {
+  PetscReal share; /* fraction of the load path */
+  LamResponse responses[2];
+  LamRVEState states[2]; /* owned */
+} LamPathPoint;
+
 typedef struct {
   LamFailureMode mode;
   LamCriterion criterion;                       /* reached first; LAM_CRITERION_COUNT: none */
@@ -67,8 +74,7 @@ typedef struct {
 
   LamFailureProgram program;
   PetscBool turgid, taut; /* turgor was positive before; walls were taut (LamIsTaut) before */
-  LamResponse last[2];    /* responses at `followed`, on both meshes */
-  LamRVEState before[2];  /* states at `followed`; owned */
+  LamPathPoint last;      /* at `followed`; owned */
 } LamFailure;
 
 /*

@@ -2,7 +2,7 @@
   Responders of the material points of an FE2 run: RVE solves, a database, or both.
 */
 #include "fe2_run.h"
-#include "plan.h"
+#include "error_model.h"
 #include "rounding.h"
 #include <stdio.h>
 #include <string.h>
@@ -73,13 +73,10 @@ static PetscErrorCode CheckDatabase(LamFE2Run *run, LamFE2Tissue *tissue)
 
 PetscErrorCode LamFE2PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue)
 {
-  LamPlan plan;
-
   PetscFunctionBeginUser;
   if (run->response != LAM_FE2_DIRECT) PetscCall(OpenDatabase(run, tissue));
-  PetscCall(LamPlanMake(&tissue->scene, &plan));
-  PetscCall(LamWarnOfDigits(run->comm, &run->reporter, &plan.micro, tissue->scene.accuracy));
-  tissue->scene.micro = plan.micro;
+  PetscCall(LamChooseMesh(&tissue->scene));
+  PetscCall(LamWarnOfDigits(run->comm, &run->reporter, &tissue->scene.micro, tissue->scene.accuracy));
   if (tissue->database)
     PetscCall(CheckDatabase(run, tissue));
   else if (run->response == LAM_FE2_CACHE)
@@ -90,14 +87,15 @@ PetscErrorCode LamFE2PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue)
 PetscErrorCode LamFE2PrepareResponse(LamFE2Run *run)
 {
   LamFE2Tissues *tissues = &run->tissues;
-  LamPlan plan;
 
   PetscFunctionBeginUser;
   PetscCall(LamFE2TissuesCreate(run->comm, run->macro, run->scene, run->database_path, tissues));
   for (PetscInt t = 0; t < tissues->count; t++) PetscCall(LamFE2PrepareTissue(run, &tissues->tissues[t]));
   /* for the scene's own tissue, as written to the files */
-  PetscCall(LamPlanMake(run->scene, &plan));
-  run->scene->micro = tissues->tissues[0].name[0] ? plan.micro : tissues->tissues[0].scene.micro;
+  if (tissues->tissues[0].name[0])
+    PetscCall(LamChooseMesh(run->scene));
+  else
+    run->scene->micro = tissues->tissues[0].scene.micro;
   if (tissues->turgor) PetscCall(LamMacroSetPointTissue(run->macro, tissues->turgor, tissues->cohesion));
   PetscFunctionReturn(0);
 }
@@ -130,8 +128,7 @@ static PetscErrorCode CreateNodeSolver(LamFE2Tissue *tissue)
 
   PetscFunctionBeginUser;
   PetscCall(LamDatabaseGetGrid(tissue->database, &grid));
-  PetscCall(LamNodeChainCreate(tissue->rve, tissue->scene.micro.interface, grid, LAM_NODE_MEMORY, LamStopRequested,
-                               &tissue->chain));
+  PetscCall(LamNodeChainCreate(tissue->rve, tissue->scene.micro.interface, grid, LAM_NODE_MEMORY, &tissue->chain));
   tissue->solved = (LamNodeSolver){tissue->chain, LamNodeChainSolve, LamNodeChainSolveNear};
   tissue->known.solver = &tissue->solved;
   tissue->nodes = (LamNodeSolver){&tissue->known, LamKnownRecordsSolve, LamKnownRecordsSolveNear};

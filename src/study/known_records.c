@@ -58,14 +58,21 @@ PetscInt LamKnownRecordsFind(const LamKnownRecords *known, PetscInt64 key, const
   return -1;
 }
 
+const LamResponse *LamKnownRecordsGet(const LamKnownRecords *known, PetscInt64 key, const LamLoad *load)
+{
+  const PetscInt row = LamKnownRecordsFind(known, key, load);
+
+  return row >= 0 ? &known->records[row - known->first] : NULL;
+}
+
 PetscErrorCode LamKnownRecordsSolve(void *ctx, PetscInt64 key, LamResponse *response)
 {
   const LamKnownRecords *known = ctx;
-  const PetscInt row = LamKnownRecordsFind(known, key, NULL);
+  const LamResponse *record = LamKnownRecordsGet(known, key, NULL);
 
   PetscFunctionBeginUser;
-  if (row >= 0)
-    *response = known->records[row - known->first];
+  if (record)
+    *response = *record;
   else
     PetscCall(known->solver->solve(known->solver->ctx, key, response));
   PetscFunctionReturn(0);
@@ -74,11 +81,11 @@ PetscErrorCode LamKnownRecordsSolve(void *ctx, PetscInt64 key, LamResponse *resp
 PetscErrorCode LamKnownRecordsSolveNear(void *ctx, PetscInt64 key, const LamLoad *load, LamResponse *response)
 {
   const LamKnownRecords *known = ctx;
-  const PetscInt row = LamKnownRecordsFind(known, LAM_CACHE_KEY, load);
+  const LamResponse *record = LamKnownRecordsGet(known, LAM_CACHE_KEY, load);
 
   PetscFunctionBeginUser;
-  if (row >= 0)
-    *response = known->records[row - known->first];
+  if (record)
+    *response = *record;
   else
     PetscCall(known->solver->solve_near(known->solver->ctx, key, load, response));
   PetscFunctionReturn(0);

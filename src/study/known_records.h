@@ -26,6 +26,8 @@ PetscErrorCode LamKnownRecordsSet(LamKnownRecords *known, PetscInt first, PetscI
 PetscErrorCode LamKnownRecordsDestroy(LamKnownRecords *known);
 /* Row of the file with this node, or with this off-grid state; -1: none. */
 PetscInt LamKnownRecordsFind(const LamKnownRecords *known, PetscInt64 key, const LamLoad *load);
+/* That record; NULL: none. */
+const LamResponse *LamKnownRecordsGet(const LamKnownRecords *known, PetscInt64 key, const LamLoad *load);
 /* Functions of a LamNodeSolver, ctx a LamKnownRecords: return the record if there is one, else call the solver. */
 PetscErrorCode LamKnownRecordsSolve(void *ctx, PetscInt64 key, LamResponse *response);
 PetscErrorCode LamKnownRecordsSolveNear(void *ctx, PetscInt64 key, const LamLoad *load, LamResponse *response);

@@ -49,11 +49,11 @@ typedef struct {
   PetscReal *place;           /* [point][3]; owned */
 } LamMapTable;
 
-PetscErrorCode LamMapTableCreate(const LamScene *scene, LamMapTable *table);
+/* Reads the points marked in `known` [point] from a file. path NULL: a new table. PETSC_ERR_USER_INPUT if the file
+   lacks the arrays. */
+PetscErrorCode LamMapTableCreate(const LamScene *scene, const char path[], const PetscBool known[], LamMapTable *table);
 PetscErrorCode LamMapTableDestroy(LamMapTable *table);
 void LamMapTableSet(LamMapTable *table, const LamMapPoint *point);
-/* Reads the points marked in `known`. PETSC_ERR_USER_INPUT if the file lacks them. */
-PetscErrorCode LamMapTableRead(const char path[], const PetscBool known[], LamMapTable *table);
 PetscErrorCode LamMapTableWrite(LamRecordWriter writer, const LamMapTable *table);
 /* Writes the axes and the names of modes and criteria; once, before the table. */
 PetscErrorCode LamMapAxesWrite(LamRecordWriter writer, const LamScene *scene);

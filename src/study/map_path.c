@@ -10,7 +10,7 @@
   computed.
 */
 #include "map.h"
-#include "plan.h"
+#include "error_model.h"
 #include <math.h>
 #include <string.h>
 
@@ -108,7 +108,6 @@ static void SetQuantity(LamScene *scene, LamMapQuantity quantity, PetscReal valu
 static PetscErrorCode CopyScene(const LamScene *scene, PetscInt path, LamScene *copy)
 {
   PetscInt at[LAM_MAP_AXIS_COUNT];
-  LamPlan plan;
 
   PetscFunctionBeginUser;
   *copy = *scene;
@@ -117,8 +116,7 @@ static PetscErrorCode CopyScene(const LamScene *scene, PetscInt path, LamScene *
   PointOf(scene, path, 0, at);
   for (int a = 0; a < LAM_MAP_AXIS_COUNT; a++)
     SetQuantity(copy, scene->map[a].quantity, LamMapAxisValue(&scene->map[a], at[a]));
-  PetscCall(LamPlanMake(copy, &plan)); /* other walls may need another mesh */
-  copy->micro = plan.micro;
+  PetscCall(LamChooseMesh(copy)); /* other walls may need another mesh */
   PetscFunctionReturn(0);
 }
 
@@ -138,7 +136,7 @@ static PetscReal CutPlace(const LamScene *scene, PetscInt cut)
 }
 
 /* The scene's state at the end of the step that contains `place`, from 0. */
-static PetscInt WayOf(PetscReal place)
+static PetscInt StepOf(PetscReal place)
 {
   return PetscMax((PetscInt)ceil(place) - 1, 0);
 }
@@ -146,16 +144,12 @@ static PetscInt WayOf(PetscReal place)
 /* State at `place` of the scene's load; state 0 is F = I at the turgor and cohesion of state 1. */
 static LamLoad LoadAt(const LamScene *scene, PetscReal place)
 {
-  const PetscInt k = WayOf(place);
+  const PetscInt k = StepOf(place);
   const PetscReal share = place - (PetscReal)k;
   const LamLoad *to = &scene->loads[k];
-  LamLoad from = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .turgor = to->turgor, .cohesion = to->cohesion}, load;
+  const LamLoad start = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .turgor = to->turgor, .cohesion = to->cohesion};
 
-  if (k) from = scene->loads[k - 1];
-  for (int i = 0; i < 9; i++) load.F[i] = share < 1 ? (1 - share) * from.F[i] + share * to->F[i] : to->F[i];
-  load.turgor = (1 - share) * from.turgor + share * to->turgor;
-  load.cohesion = (1 - share) * from.cohesion + share * to->cohesion;
-  return load;
+  return LamLoadBetween(k ? &scene->loads[k - 1] : &start, to, share);
 }
 
 /*
@@ -165,7 +159,7 @@ static LamLoad LoadAt(const LamScene *scene, PetscReal place)
 */
 static LamStressControl ControlAt(const LamScene *scene, PetscReal before, PetscReal place)
 {
-  const PetscInt k = WayOf(place);
+  const PetscInt k = StepOf(place);
   const PetscReal share = place - (PetscReal)k, done = PetscMax(before - (PetscReal)k, 0);
   LamStressControl control = scene->controls[k], from = {0};
 
@@ -186,7 +180,7 @@ static void AddState(const LamScene *scene, Path *path)
   if (!path->controls) return;
   path->controls[n] = ControlAt(scene, n ? path->place[n - 1] : 0, place);
   for (int i = 0; i < 9; i++)
-    if (path->controls[n].follows[i]) path->loads[n].F[i] = scene->loads[WayOf(place)].F[i];
+    if (path->controls[n].follows[i]) path->loads[n].F[i] = scene->loads[StepOf(place)].F[i];
 }
 
 /* Zero without turgor, and for sealed cells, which start with their full turgor. */

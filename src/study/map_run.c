@@ -11,7 +11,7 @@
 #include "rounding.h"
 #include "dispatch.h"
 #include "map.h"
-#include "plan.h"
+#include "error_model.h"
 #include "clock.h"
 #include <string.h>
 #include <unistd.h>
@@ -120,7 +120,7 @@ static PetscErrorCode FindTodo(LamMap *m)
                i);
     known[keys[i]] = PETSC_TRUE;
   }
-  if (m->old) PetscCall(LamMapTableRead(m->path, known, &m->table));
+  PetscCall(LamMapTableCreate(m->scene, m->old ? m->path : NULL, known, &m->table));
   for (PetscInt p = 0; p < m->paths; p++)
     if (!known[LamMapPointNumber(m->scene, p, 0)]) m->todo[m->todo_count++] = p;
   PetscCall(PetscFree(known));
@@ -134,13 +134,10 @@ static PetscErrorCode OpenWriter(LamMap *m)
 {
   const PetscBool goes_on = (PetscBool)(m->resume && !access(m->path, F_OK));
   LamScene described = *m->scene;
-  LamPlan plan;
 
   PetscFunctionBeginUser;
-  PetscCall(LamPlanMake(m->scene, &plan));
-  PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &m->reporter, &plan.micro, m->scene->accuracy));
-  described.micro = plan.micro;
-  PetscCall(LamMapTableCreate(m->scene, &m->table));
+  PetscCall(LamChooseMesh(&described));
+  PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &m->reporter, &described.micro, m->scene->accuracy));
   PetscCall(PetscMalloc1(LamMapPointCount(m->scene), &m->waiting));
   PetscCall(
       LamRecordWriterOpen(m->path, "map", m->resume ? LAM_WRITE_APPEND : LAM_WRITE_CREATE, &described, &m->writer));

@@ -4,11 +4,6 @@
 #include "map.h"
 #include <math.h>
 
-static PetscInt Count(const LamMapTable *table)
-{
-  return table->points[LAM_MAP_X] * table->points[LAM_MAP_Y];
-}
-
 static void Clear(LamMapTable *table, PetscInt i)
 {
   table->mode[i] = table->criterion[i] = -1;
@@ -16,21 +11,52 @@ static void Clear(LamMapTable *table, PetscInt i)
   for (int k = 0; k < 3; k++) table->place[3 * i + k] = NAN;
 }
 
-PetscErrorCode LamMapTableCreate(const LamScene *scene, LamMapTable *table)
+/* Reads an array with `wanted` numbers: integers, or reals where `ints` is NULL. */
+static PetscErrorCode Read(const char path[], const char name[], PetscInt wanted, PetscInt **ints, PetscReal **reals)
+{
+  PetscInt rank = 0, dims[4], count;
+  PetscBool found;
+
+  PetscFunctionBeginUser;
+  PetscCall(ints ? LamFileReadInts(path, name, &found, &rank, dims, ints)
+                 : LamFileReadReals(path, name, &found, &rank, dims, reals));
+  count = found ? 1 : 0;
+  for (PetscInt i = 0; i < rank; i++) count *= dims[i];
+  PetscCheck(count == wanted, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: %s holds %" PetscInt_FMT " numbers instead of %" PetscInt_FMT "; the file is damaged, begin it anew",
+             path, name, count, wanted);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMapTableCreate(const LamScene *scene, const char path[], const PetscBool known[], LamMapTable *table)
 {
   const PetscInt n = LamMapPointCount(scene);
 
   PetscFunctionBeginUser;
   for (int a = 0; a < LAM_MAP_AXIS_COUNT; a++) table->points[a] = scene->map[a].points;
-  PetscCall(PetscMalloc4(n, &table->mode, n, &table->criterion, n, &table->load_factor, 3 * n, &table->place));
-  for (PetscInt i = 0; i < n; i++) Clear(table, i);
+  if (path) {
+    PetscCall(Read(path, "/map/mode", n, &table->mode, NULL));
+    PetscCall(Read(path, "/map/criterion", n, &table->criterion, NULL));
+    PetscCall(Read(path, "/map/load_factor", n, NULL, &table->load_factor));
+    PetscCall(Read(path, "/map/place", 3 * n, NULL, &table->place));
+  } else {
+    PetscCall(PetscMalloc1(n, &table->mode));
+    PetscCall(PetscMalloc1(n, &table->criterion));
+    PetscCall(PetscMalloc1(n, &table->load_factor));
+    PetscCall(PetscMalloc1(3 * n, &table->place));
+  }
+  for (PetscInt i = 0; i < n; i++)
+    if (!known[i]) Clear(table, i);
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamMapTableDestroy(LamMapTable *table)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree4(table->mode, table->criterion, table->load_factor, table->place));
+  PetscCall(PetscFree(table->mode));
+  PetscCall(PetscFree(table->criterion));
+  PetscCall(PetscFree(table->load_factor));
+  PetscCall(PetscFree(table->place));
   PetscFunctionReturn(0);
 }
 
@@ -101,62 +127,5 @@ PetscErrorCode LamMapTableWrite(LamRecordWriter writer, const LamMapTable *table
   PetscCall(LamRecordWriterInts(writer, "/map/criterion", 2, dims, table->criterion));
   PetscCall(LamRecordWriterReals(writer, "/map/load_factor", 2, dims, table->load_factor, "1"));
   PetscCall(LamRecordWriterReals(writer, "/map/place", 3, dims, table->place, "1"));
-  PetscFunctionReturn(0);
-}
-
-/* ---- reading ---- */
-
-/* Checks that an array exists and has `width` numbers for each point. */
-static PetscErrorCode CheckArray(const char path[], const char name[], PetscBool found, PetscInt rank,
-                                 const PetscInt dims[4], PetscInt wanted)
-{
-  PetscInt count = found ? 1 : 0;
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < rank; i++) count *= dims[i];
-  PetscCheck(count == wanted, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: %s holds %" PetscInt_FMT " numbers instead of %" PetscInt_FMT "; the file is damaged, begin it anew",
-             path, name, count, wanted);
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ReadInts(const char path[], const char name[], PetscInt count, PetscInt values[])
-{
-  PetscInt rank = 0, dims[4], *read = NULL;
-  PetscBool found;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamFileReadInts(path, name, &found, &rank, dims, &read));
-  PetscCall(CheckArray(path, name, found, rank, dims, count));
-  PetscCall(PetscArraycpy(values, read, count));
-  PetscCall(PetscFree(read));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ReadReals(const char path[], const char name[], PetscInt count, PetscReal values[])
-{
-  PetscInt rank = 0, dims[4];
-  PetscReal *read = NULL;
-  PetscBool found;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamFileReadReals(path, name, &found, &rank, dims, &read));
-  PetscCall(CheckArray(path, name, found, rank, dims, count));
-  PetscCall(PetscArraycpy(values, read, count));
-  PetscCall(PetscFree(read));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamMapTableRead(const char path[], const PetscBool known[], LamMapTable *table)
-{
-  const PetscInt n = Count(table);
-
-  PetscFunctionBeginUser;
-  PetscCall(ReadInts(path, "/map/mode", n, table->mode));
-  PetscCall(ReadInts(path, "/map/criterion", n, table->criterion));
-  PetscCall(ReadReals(path, "/map/load_factor", n, table->load_factor));
-  PetscCall(ReadReals(path, "/map/place", 3 * n, table->place));
-  for (PetscInt i = 0; i < n; i++)
-    if (!known[i]) Clear(table, i);
   PetscFunctionReturn(0);
 }

@@ -3,7 +3,7 @@
 */
 #include <lamella/material.h>
 #include "query_source.h"
-#include "plan.h"
+#include "error_model.h"
 #include "rounding.h"
 #include <math.h>
 
@@ -25,16 +25,13 @@ struct LamMaterial_s {
 
 static PetscErrorCode ConnectScene(const char path[], LamMaterial m)
 {
-  LamPlan plan;
-
   PetscFunctionBeginUser;
   PetscCall(LamSceneRead(path, &m->scene));
   PetscCheck(!m->scene->micro.is_patch, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: rve.patch: a patch between grips is a body of its own and no material point; take a period "
              "(rve.cells)",
              path);
-  PetscCall(LamPlanMake(m->scene, &plan));
-  m->scene->micro = plan.micro;
+  PetscCall(LamChooseMesh(m->scene));
   PetscCall(LamSceneRVECreate(m->scene, &m->rve));
   PetscCall(LamRVEResponderCreate(m->rve, m->points, &m->responder));
   m->scales = m->scene->scales;

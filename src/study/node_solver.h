@@ -23,12 +23,11 @@ PetscBool LamNodeLeads(const LamResponse *response);
 typedef struct LamNodeChain_s *LamNodeChain;
 
 /*
-  One per rank and RVE; borrows rve and grid. Caches the latest solved nodes, using at most `memory` bytes. Once `stop`
-  (NULL: never) is true, nodes are LAM_OUT_OF_REACH.
+  One per rank and RVE; borrows rve and grid. Caches the latest solved nodes, using at most `memory` bytes.
 */
 #define LAM_NODE_MEMORY ((size_t)256 << 20)
 PetscErrorCode LamNodeChainCreate(LamRVE rve, LamInterfaceLawType interface, LamGrid grid, size_t memory,
-                                  PetscBool (*stop)(void), LamNodeChain *chain);
+                                  LamNodeChain *chain);
 /*
   `chain`: a LamNodeChain; with this function it is a LamNodeSolver (cache.h). Bonded tissue is solved from the
   reference; contact tissue from its parent if LamNodeLeads holds for that, which is solved in the same way.

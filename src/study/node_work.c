@@ -65,7 +65,7 @@ static PetscErrorCode GetNode(LamNodeWork w, PetscInt64 key, Node **node)
   PetscCall(PetscNew(node));
   (*node)->key = key;
   PetscCheck(tsearch(*node, &w->nodes, CompareNodes), PETSC_COMM_SELF, PETSC_ERR_MEM, "node");
-  known = w->callbacks.known ? w->callbacks.known(w->callbacks.ctx, key) : NULL;
+  known = w->callbacks.known ? LamKnownRecordsGet(w->callbacks.known, key, NULL) : NULL;
   (*node)->solved = (PetscBool)(known != NULL);
   (*node)->leads = (PetscBool)(known && LamNodeLeads(known));
   PetscFunctionReturn(0);

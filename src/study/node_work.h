@@ -8,6 +8,7 @@
 #define LAM_NODE_WORK_H
 
 #include "dispatch.h"
+#include "known_records.h"
 #include "node_solver.h"
 
 typedef struct LamNodeWork_s *LamNodeWork;
@@ -17,8 +18,7 @@ typedef struct {
   void *ctx; /* borrowed */
   /* Receives the response of a requested node. */
   PetscErrorCode (*arrived)(void *ctx, PetscInt64 key, const LamResponse *response);
-  /* Returns the record of a node in the file, or NULL. */
-  const LamResponse *(*known)(void *ctx, PetscInt64 key);
+  const LamKnownRecords *known; /* records of the file; NULL: none. Borrowed */
 } LamNodeCallbacks;
 
 /* Collective over comm; borrows rve, grid and callbacks (NULL on workers). `memory`: bytes for states on rank 0. */

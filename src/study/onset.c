@@ -91,21 +91,11 @@ PetscErrorCode LamOnsetWatch(LamOnset *onset, const LamMeshes *meshes, PetscInt 
   PetscFunctionReturn(0);
 }
 
-static LamLoad Between(const LamLoad ends[2], PetscReal share)
-{
-  LamLoad load;
-
-  for (int i = 0; i < 9; i++) load.F[i] = (1 - share) * ends[0].F[i] + share * ends[1].F[i];
-  load.turgor = (1 - share) * ends[0].turgor + share * ends[1].turgor;
-  load.cohesion = (1 - share) * ends[0].cohesion + share * ends[1].cohesion;
-  return load;
-}
-
 /* Solves in the middle of the bracket and halves it; a load that does not converge ends the search. */
 static PetscErrorCode Halve(LamOnset *onset, LamMeshes *meshes)
 {
   const PetscReal middle = 0.5 * (onset->bracket[0] + onset->bracket[1]);
-  const LamLoad load = Between(onset->ends, middle);
+  const LamLoad load = LamLoadBetween(&onset->ends[0], &onset->ends[1], middle);
   LamSeparation separation;
   LamResponse responses[2];
 

@@ -1,12 +1,6 @@
 /*
   What a scene requires: mesh, unknowns, number of solves.
-
-  Mesh. The cheapest one whose error of P stays below the prescribed accuracy for the scene's walls and loads, by the
-  model of error_model.h. A body of cells in contact depends on their tangent, which is uneven because contact moves
-  from node to node: 4-8 % with 6 elements along a face, 2 % with 12, below 1 % with BODY_ALONG
-  (docs/results/performance.md, FE²).
 */
-#include "wall_law.h"
 #include "error_model.h"
 #include "map.h"
 #include "plan.h"
@@ -14,51 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define BODY_ALONG 16
-#define BODY_ACCURACY 0.01 /* not applied if the prescribed accuracy is coarser */
-#define USUAL_STRAIN 0.2   /* for bodies, whose strains are not known in advance */
-
 /* Queries per material point and load step: 3 to 4 Newton iterations. */
 #define ANSWERS_PER_STEP 3.5
 #define POINTS_PER_ELEMENT 9 /* 3 x 3 Gauss points of a quadratic element */
-
-/* The largest strain for which the scene queries an RVE. */
-static PetscReal LargestStrain(const LamScene *scene)
-{
-  PetscReal strain = scene->has_macro || (!scene->load_count && !scene->has_sample) ? USUAL_STRAIN : 0.0;
-
-  for (PetscInt i = 0; i < scene->load_count; i++) strain = PetscMax(strain, LamStrainSize(scene->loads[i].F));
-  if (scene->has_sample)
-    strain = PetscMax(strain, PetscSqrtReal(2.0) * PetscMax(PetscAbsReal(scene->sample.stretch_min),
-                                                            PetscAbsReal(scene->sample.stretch_max)));
-  return strain;
-}
-
-static PetscErrorCode ChooseMesh(const LamScene *scene, LamMicrostructure *micro)
-{
-  const PetscBool uneven = (PetscBool)(scene->has_macro && micro->interface == LAM_INTERFACE_CONTACT);
-  LamErrorCase c = {micro->interface, micro->wall_thickness, LamWallFibreModulus(&micro->wall) / micro->wall.C1,
-                    LargestStrain(scene)};
-  PetscInt along, through;
-  PetscReal grading;
-
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; micro->cell && k < micro->cells[0] * micro->cells[1]; k++)
-    c.thickness = PetscMax(c.thickness, micro->cell[k].wall_thickness);
-  if (scene->measured[0] && !micro->along) {
-    char hash[LAM_HASH_LENGTH];
-
-    PetscCall(LamMicrostructureHashTissue(micro, hash));
-    PetscCall(LamMeasuredMesh(scene->measured, hash, scene->accuracy, &along, &through, &grading));
-  } else {
-    LamCheapestMesh(&c, scene->accuracy, &along, &through, &grading);
-  }
-  if (uneven && scene->accuracy <= BODY_ACCURACY) along = PetscMax(along, BODY_ALONG);
-  if (micro->grading < 0.0) micro->grading = micro->along ? 0.0 : grading;
-  if (!micro->along) micro->along = along;
-  if (!micro->through) micro->through = through;
-  PetscFunctionReturn(0);
-}
 
 /* Numbers of faces and corners of the outer loops whose nodes are separate unknowns, and of pairs of facing walls. */
 typedef struct {
@@ -167,9 +119,11 @@ static PetscInt CountElements(const LamMacroSpec *macro)
 
 PetscErrorCode LamPlanMake(const LamScene *scene, LamPlan *plan)
 {
+  LamScene meshed = *scene;
+
   PetscFunctionBeginUser;
-  *plan = (LamPlan){.micro = scene->micro, .load_states = scene->load_count};
-  PetscCall(ChooseMesh(scene, &plan->micro));
+  PetscCall(LamChooseMesh(&meshed));
+  *plan = (LamPlan){.micro = meshed.micro, .load_states = scene->load_count};
   plan->unknowns = CountUnknowns(&plan->micro);
   if (scene->sealed) plan->unknowns += scene->micro.cells[0] * scene->micro.cells[1]; /* the pressures */
   PetscCall(MeasureSpread(&plan->micro, &plan->spread));

@@ -25,7 +25,7 @@ typedef struct {
   PetscInt map_points, map_states;       /* of `map`, without the states that bracket the failure; 0: no such block */
 } LamPlan;
 #define LAM_PARALLEL_UNKNOWNS 20000 /* of one RVE: from this size on several ranks factor its matrix together */
-/* Chooses what the scene leaves open; does not override the scene. */
+/* With the mesh of LamChooseMesh (error_model.h). */
 PetscErrorCode LamPlanMake(const LamScene *scene, LamPlan *plan);
 
 /* What it costs on one rank of this machine. */

@@ -62,6 +62,20 @@ PetscErrorCode LamShareError(MPI_Comm comm, PetscErrorCode ierr)
   PetscFunctionReturn((PetscErrorCode)code);
 }
 
+PetscErrorCode LamShareBytes(MPI_Comm comm, PetscErrorCode ierr, size_t *size, void *bytes)
+{
+  PetscMPIInt count = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamShareError(comm, ierr));
+  if (LamIsFirst(comm)) PetscCall(PetscMPIIntCast((PetscInt)*size, &count));
+  PetscCallMPI(MPI_Bcast(&count, 1, MPI_INT, 0, comm));
+  *size = (size_t)count;
+  if (!LamIsFirst(comm)) PetscCall(PetscMalloc(*size, (void **)bytes));
+  PetscCallMPI(MPI_Bcast(*(void **)bytes, count, MPI_BYTE, 0, comm));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamPeakMemory(MPI_Comm comm, PetscReal *megabytes)
 {
   struct rusage usage;

@@ -7,6 +7,7 @@
 #include <lamella/lamella.h>
 #include <lamella/study.h>
 #include "json.h"
+#include "load.h"
 #include "stop.h"
 
 void LamReportNote(const LamReporter *reporter, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
@@ -16,6 +17,9 @@ PetscErrorCode LamReportProgress(const LamReporter *reporter, PetscInt64 done, P
 PetscBool LamIsFirst(MPI_Comm comm); /* rank 0 */
 /* Raises an error of rank 0 on all ranks; rank 0 has already reported it. Collective. */
 PetscErrorCode LamShareError(MPI_Comm comm, PetscErrorCode ierr);
+/* Broadcasts *bytes [*size] of rank 0, and with it its error as LamShareError; the other ranks get a copy that they
+   free. Collective. */
+PetscErrorCode LamShareBytes(MPI_Comm comm, PetscErrorCode ierr, size_t *size, void *bytes);
 /* Largest memory of any rank, MB. Collective. */
 PetscErrorCode LamPeakMemory(MPI_Comm comm, PetscReal *megabytes);
 

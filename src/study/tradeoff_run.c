@@ -9,7 +9,7 @@
   does not affect one setting alone; then tables and bodies. A setting that takes more than half of the remaining time
   of its part is abandoned.
 */
-#include "plan.h"
+#include "error_model.h"
 #include "rounding.h"
 #include "tradeoff.h"
 #include <errno.h>
@@ -209,14 +209,11 @@ static PetscErrorCode RemoveFolder(const LamTradeoff *t)
 
 static PetscErrorCode Prepare(LamTradeoff *t)
 {
-  LamPlan plan;
-
   PetscFunctionBeginUser;
   t->start = LamClock();
   PetscCall(LamSceneRead(t->scene_path, &t->scene));
-  PetscCall(LamPlanMake(t->scene, &plan));
-  PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &t->reporter, &plan.micro, t->scene->accuracy));
-  t->scene->micro = plan.micro;
+  PetscCall(LamChooseMesh(t->scene));
+  PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &t->reporter, &t->scene->micro, t->scene->accuracy));
   PetscCall(LamStatesMake(t->scene, &t->states));
   PetscCheck(t->states.n || IsStopped(), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: no state of its block load has an answer on the planned mesh", t->scene_path);

@@ -25,7 +25,7 @@ static LamNodeChain NewChain(LamInterfaceLawType interface, size_t memory)
 {
   LamNodeChain chain;
 
-  assert_int_equal(LamNodeChainCreate(rve, interface, &grid, memory, NULL, &chain), 0);
+  assert_int_equal(LamNodeChainCreate(rve, interface, &grid, memory, &chain), 0);
   return chain;
 }
 
@@ -121,7 +121,7 @@ TEST(FailedParentIsPassedOver)
   grid = usual;
 }
 
-static PetscBool Stop(void)
+static PetscBool Stop(void *ctx)
 {
   return PETSC_TRUE;
 }
@@ -129,10 +129,11 @@ static PetscBool Stop(void)
 TEST(StoppedNodesAreLeftOut)
 {
   const PetscInt64 key = Key(0, 0, LAM_ROOT, 0);
-  OWNED(LamNodeChain, LamNodeChainDestroy) chain;
+  OWNED(LamNodeChain, LamNodeChainDestroy) chain = NewChain(LAM_INTERFACE_CONTACT, ROOM);
 
-  assert_int_equal(LamNodeChainCreate(rve, LAM_INTERFACE_CONTACT, &grid, ROOM, Stop, &chain), 0);
+  assert_int_equal(LamRVESetInterrupt(rve, Stop, NULL), 0);
   assert_int_equal(Solve(chain, key).status, LAM_OUT_OF_REACH);
+  assert_int_equal(LamRVESetInterrupt(rve, NULL, NULL), 0);
 }
 
 /* ---- bonded ---- */

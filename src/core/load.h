@@ -1,0 +1,9 @@
+#ifndef LAM_LOAD_H
+#define LAM_LOAD_H
+
+#include <lamella/response.h>
+
+/* The load at parameter t of the straight load path from a (0) to b (1). */
+LamLoad LamLoadBetween(const LamLoad *a, const LamLoad *b, PetscReal t);
+
+#endif
