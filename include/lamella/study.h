@@ -1,6 +1,6 @@
 /*
-  Whole studies, as run by the program's commands: build a database, solve a body in an FE2 run, follow tissue in
-  time, weigh errors against time.
+  Whole studies, as run by the program's commands: build and verify a database, map failure, solve a body in an FE2
+  run, follow tissue in time, weigh errors against time.
 
   Needs PetscInitialize. Studies are collective over PETSC_COMM_WORLD. They report to a LamReporter on rank 0, and
   print nothing.
@@ -46,6 +46,44 @@ typedef struct {
 /* Builds the database at database_path over the sample box of a scene (`sample`). result: on rank 0. */
 LAM_EXPORT PetscErrorCode LamStudyBuild(const char scene_path[], const char database_path[],
                                         const LamBuildOptions *options, LamBuildResult *result);
+
+/* ---- a database verified ---- */
+
+typedef struct {
+  PetscInt samples;   /* responses that are compared with fresh solves */
+  PetscInt seed;      /* another one draws other states */
+  PetscReal accuracy; /* relative error of P that is asked for; 0: that of the database */
+  LamReporter reporter;
+} LamVerifyOptions;
+
+typedef struct {
+  PetscInt queries, responses; /* random states queried; those with a response */
+  PetscInt compared, beyond;   /* responses compared with a converged solve; those with an error above the accuracy */
+  PetscReal error;             /* of P, below which 95 % of those compared are; NaN: none compared */
+  PetscReal seconds;
+  PetscBool stopped;
+} LamVerifyResult;
+
+/* Queries a database at random states, and solves those with a response afresh. result: on rank 0. */
+LAM_EXPORT PetscErrorCode LamStudyVerify(const char database_path[], const LamVerifyOptions *options,
+                                         LamVerifyResult *result);
+
+/* ---- a failure map ---- */
+
+typedef struct {
+  PetscBool resume; /* continue an existing file */
+  LamReporter reporter;
+} LamMapOptions;
+
+typedef struct {
+  PetscInt points, solved, unknown; /* in the file, solved by this run, of unknown failure */
+  PetscReal seconds;
+  PetscBool stopped;
+} LamMapResult;
+
+/* Finds how tissue fails over two quantities of a scene (`map`), and writes it to map_path. result: on rank 0. */
+LAM_EXPORT PetscErrorCode LamStudyMap(const char scene_path[], const char map_path[], const LamMapOptions *options,
+                                      LamMapResult *result);
 
 /* ---- a body ---- */
 

@@ -1,10 +1,13 @@
 /*
   Complete studies for other programs.
 */
+#include "audit.h"
 #include "build_run.h"
 #include "clock.h"
+#include "map.h"
 #include "process_run.h"
 #include "tradeoff.h"
+#include <math.h>
 #include <string.h>
 
 /* ---- a response database ---- */
@@ -36,6 +39,63 @@ PetscErrorCode LamStudyBuild(const char scene_path[], const char database_path[]
   PetscCall(LamBuildTable(&build));
   if (!build.rank) FillResult(&build, result);
   PetscCall(LamBuildDestroy(&build));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode FillVerifyResult(const LamVerification *v, LamVerifyResult *result)
+{
+  const LamAudit *audit = &v->audit;
+  PetscReal *errors;
+
+  PetscFunctionBeginUser;
+  *result = (LamVerifyResult){.queries = audit->asked,
+                              .responses = audit->answered,
+                              .error = NAN,
+                              .seconds = LamClock() - v->start,
+                              .stopped = LamStopRequested()};
+  PetscCall(PetscMalloc1(audit->answered, &errors));
+  for (PetscInt i = 0; i < audit->answered; i++) {
+    if (!audit->results[i].compared) continue;
+    errors[result->compared++] = audit->results[i].error;
+    result->beyond += !(audit->results[i].error <= audit->accuracy);
+  }
+  PetscCall(PetscSortReal(result->compared, errors));
+  if (result->compared) result->error = errors[(PetscInt)(0.95 * (PetscReal)(result->compared - 1))];
+  PetscCall(PetscFree(errors));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamStudyVerify(const char database_path[], const LamVerifyOptions *options, LamVerifyResult *result)
+{
+  LamVerification v = {.path = database_path,
+                       .samples = options->samples,
+                       .seed = options->seed,
+                       .accuracy = options->accuracy,
+                       .reporter = options->reporter};
+
+  PetscFunctionBeginUser;
+  PetscCall(LamVerificationRun(&v));
+  if (!v.rank) PetscCall(FillVerifyResult(&v, result));
+  PetscCall(LamVerificationDestroy(&v));
+  PetscFunctionReturn(0);
+}
+
+/* ---- a failure map ---- */
+
+PetscErrorCode LamStudyMap(const char scene_path[], const char map_path[], const LamMapOptions *options,
+                           LamMapResult *result)
+{
+  LamMap map = {.scene_path = scene_path, .path = map_path, .resume = options->resume, .reporter = options->reporter};
+
+  PetscFunctionBeginUser;
+  PetscCall(LamMapRun(&map));
+  if (!map.rank)
+    *result = (LamMapResult){.points = map.old + map.solved,
+                             .solved = map.solved,
+                             .unknown = LamMapCountMode(&map, LAM_FAILURE_UNKNOWN),
+                             .seconds = LamClock() - map.start,
+                             .stopped = LamStopRequested()};
+  PetscCall(LamMapDestroy(&map));
   PetscFunctionReturn(0);
 }
 

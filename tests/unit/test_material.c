@@ -121,6 +121,7 @@ static void *Evaluate(void *different)
 TEST(threads_get_what_one_gets_alone)
 {
   const LamBuildOptions options = {0};
+  LamVerifyResult verified;
   LamBuildResult result;
   pthread_t thread[THREADS];
   int different[THREADS];
@@ -132,6 +133,8 @@ TEST(threads_get_what_one_gets_alone)
   unlink(path);
   assert_int_equal(LamStudyBuild(LAMELLA_SOURCE_DIR "/tests/scenes/tissue-block.yaml", path, &options, &result), 0);
   assert_true(result.records > 0 && result.answered > 0.9);
+  assert_int_equal(LamStudyVerify(path, &(LamVerifyOptions){.samples = 20, .seed = 1}, &verified), 0);
+  assert_true(verified.responses == 20 && verified.compared == 20 && verified.error > 0 && verified.error < 0.05);
   assert_int_equal(LamMaterialCreateFromDatabase(path, &shared), 0);
   for (int i = 0; i < STATES; i++)
     memcpy(F[i], (double[9]){1 + 1e-4 * i, 1e-5 * i, 0, 0, 1.01, 0, 0, 0, 1}, sizeof(F[i]));
@@ -143,6 +146,21 @@ TEST(threads_get_what_one_gets_alone)
     assert_false(different[t]);
   }
   LamMaterialDestroy(&shared);
+  unlink(path);
+}
+
+TEST(a_map_is_made_without_the_program)
+{
+  LamMapResult map;
+  char path[] = "/tmp/test_map_XXXXXX";
+  const int file = mkstemp(path);
+
+  assert_true(file >= 0);
+  close(file);
+  unlink(path);
+  assert_int_equal(
+      LamStudyMap(LAMELLA_SOURCE_DIR "/tests/scenes/map-shear-turgor.yaml", path, &(LamMapOptions){0}, &map), 0);
+  assert_true(map.points == 54 && map.solved == 54 && !map.unknown && !map.stopped);
   unlink(path);
 }
 
