@@ -60,12 +60,6 @@ static PetscErrorCode Answer(DirectResponder *direct, PetscInt point, const LamL
 
   PetscFunctionBeginUser;
   ++direct->counters.queries;
-  if (rve->interrupt && rve->interrupt(rve->interrupt_ctx)) { /* the rest of a batch could take minutes to refuse */
-    PetscCall(LamResponseInit(load, response));
-    PetscCall(LamGiveUp(response));
-    ++direct->counters.failures;
-    PetscFunctionReturn(0);
-  }
   PetscCall(LamRVEStatePack(state, direct->start));
   if (!direct->water && direct->changes == rve->changes && LamResponseHasFields(&direct->last) &&
       SameLoad(load, &direct->last.load) && !memcmp(direct->start, direct->first, direct->size)) {

@@ -3,7 +3,7 @@
   path, and the onset of separation.
 */
 #include "app.h"
-#include "failure_criteria.h"
+#include "failure.h"
 
 #define NO_SHEAR 1e-9 /* C1 + C2: rounding */
 

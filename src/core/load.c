@@ -15,6 +15,14 @@ LamLoad LamLoadBetween(const LamLoad *a, const LamLoad *b, PetscReal t)
   return load;
 }
 
+LamLoad LamLoadOfStrains(PetscReal first, PetscReal second, PetscReal angle, PetscReal turgor, PetscReal cohesion)
+{
+  const PetscReal e0 = exp(first), e1 = exp(second), c = cos(angle), s = sin(angle);
+  const PetscReal U11 = c * c * e0 + s * s * e1, U12 = c * s * (e0 - e1), U22 = s * s * e0 + c * c * e1;
+
+  return (LamLoad){.F = {U11, U12, 0, U12, U22, 0, 0, 0, 1}, .turgor = turgor, .cohesion = cohesion};
+}
+
 PetscBool LamPlaneStrain(const PetscReal F[9])
 {
   const PetscReal tiny = 10 * PETSC_MACHINE_EPSILON;

@@ -71,17 +71,13 @@ static PetscReal Uniform(uint64_t *state, PetscReal least, PetscReal most)
   return least + (most - least) * (PetscReal)(z >> 11) * 0x1p-53;
 }
 
-/* F is the right stretch U. */
 static LamLoad Draw(const LamAuditBox *box, uint64_t *state)
 {
-  const PetscReal e0 = exp(Uniform(state, box->strain[0], box->strain[1]));
-  const PetscReal e1 = exp(Uniform(state, box->strain[0], box->strain[1]));
-  const PetscReal angle = Uniform(state, 0, PETSC_PI), c = cos(angle), s = sin(angle);
-  const PetscReal U11 = c * c * e0 + s * s * e1, U12 = c * s * (e0 - e1), U22 = s * s * e0 + c * c * e1;
+  const PetscReal first = Uniform(state, box->strain[0], box->strain[1]);
+  const PetscReal second = Uniform(state, box->strain[0], box->strain[1]);
+  const PetscReal angle = Uniform(state, 0, PETSC_PI);
 
-  return (LamLoad){.F = {U11, U12, 0, U12, U22, 0, 0, 0, 1},
-                   .turgor = Uniform(state, box->turgor[0], box->turgor[1]),
-                   .cohesion = box->cohesion};
+  return LamLoadOfStrains(first, second, angle, Uniform(state, box->turgor[0], box->turgor[1]), box->cohesion);
 }
 
 static void Count(json_t *counts, const char key[])

@@ -78,11 +78,9 @@ static PetscErrorCode Begin(LamVerification *v)
 
 static PetscErrorCode RunRoot(LamVerification *v)
 {
-  PetscBool complete;
-
   PetscFunctionBeginUser;
   PetscCall(LamDispatchAdd(v->dispatch, 0, v->audit.answered, 1));
-  PetscCall(LamDispatchRun(v->dispatch, NULL, NULL, &complete));
+  PetscCall(LamDispatchRun(v->dispatch, NULL, NULL, NULL));
   PetscFunctionReturn(0);
 }
 

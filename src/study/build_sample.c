@@ -8,7 +8,6 @@
     nodes.
 */
 #include "build.h"
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -34,15 +33,12 @@ void LamSampleLoad(const LamScene *scene, PetscInt64 index, LamLoad *load)
   const LamSample *box = &scene->sample;
   const LamMicrostructure *micro = &scene->micro;
   const PetscReal wedge = micro->cells[0] == micro->cells[1] && !micro->cell ? PETSC_PI / 6 : PETSC_PI / 2;
-  const PetscReal e0 = exp(Between(box->stretch_min, box->stretch_max, RadicalInverse(index + 1, 2)));
-  const PetscReal e1 = exp(Between(box->stretch_min, box->stretch_max, RadicalInverse(index + 1, 3)));
+  const PetscReal first = Between(box->stretch_min, box->stretch_max, RadicalInverse(index + 1, 2));
+  const PetscReal second = Between(box->stretch_min, box->stretch_max, RadicalInverse(index + 1, 3));
   const PetscReal angle = micro->orientation + wedge * RadicalInverse(index + 1, 5);
-  const PetscReal c = cos(angle), s = sin(angle);
-  const PetscReal U11 = c * c * e0 + s * s * e1, U12 = c * s * (e0 - e1), U22 = s * s * e0 + c * c * e1;
+  const PetscReal turgor = Between(box->turgor_min, box->turgor_max, RadicalInverse(index + 1, 7));
 
-  *load = (LamLoad){.F = {U11, U12, 0, U12, U22, 0, 0, 0, 1},
-                    .turgor = Between(box->turgor_min, box->turgor_max, RadicalInverse(index + 1, 7)),
-                    .cohesion = scene->cohesion};
+  *load = LamLoadOfStrains(first, second, angle, turgor, scene->cohesion);
 }
 
 /* ---- shards ---- */

@@ -59,12 +59,10 @@ static PetscErrorCode Arrive(void *ctx, PetscInt64 key, const LamResponse *respo
 
 static PetscErrorCode SolveRounds(LamBuild *b)
 {
-  PetscBool complete;
-
   PetscFunctionBeginUser;
   b->last_commit = b->last_taken = LamClock();
   PetscCall(OpenRounds(b));
-  PetscCall(LamNodeWorkRun(b->work, LamBuildCommitAll, &complete));
+  PetscCall(LamNodeWorkRun(b->work, LamBuildCommitAll));
   PetscCall(LamBuildCommitAll(b));
   PetscFunctionReturn(0);
 }
@@ -90,17 +88,6 @@ static PetscErrorCode ShareGrid(LamBuild *b)
 
 /* ---- ranks ---- */
 
-static PetscErrorCode CreateRVE(LamBuild *b)
-{
-  PetscFunctionBeginUser;
-  PetscCall(LamRVECreate(b->team, &b->rve));
-  PetscCall(LamRVESetMicrostructure(b->rve, &b->scene->micro));
-  PetscCall(LamRVESetStrategy(b->rve, b->scene->strategy));
-  PetscCall(LamRVESetTolerance(b->rve, b->scene->tolerance));
-  PetscCall(LamRVESetUp(b->rve));
-  PetscFunctionReturn(0);
-}
-
 /* On ranks that solve an RVE alone or lead a team that does; rank 0 writes the file. */
 static PetscErrorCode RunLeader(LamBuild *b)
 {
@@ -109,7 +96,7 @@ static PetscErrorCode RunLeader(LamBuild *b)
   PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
-  PetscCall(CreateRVE(b));
+  PetscCall(LamSceneRVECreate(b->team, b->scene, &b->rve));
   ierr = root ? LamBuildStart(b) : 0;
   if (ierr) (void)LamRecordWriterClose(&b->writer);
   PetscCall(LamShareError(b->leaders, ierr));

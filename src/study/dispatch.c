@@ -306,7 +306,7 @@ PetscErrorCode LamDispatchRun(LamDispatch dispatch, PetscErrorCode (*stopped)(vo
   dispatch->failed = (PetscBool)(ierr != 0);
   stop = StopWorkers(dispatch);
   PetscCall(ierr ? ierr : stop);
-  *complete = (PetscBool)!dispatch->unfinished;
+  if (complete) *complete = (PetscBool)!dispatch->unfinished;
   PetscFunctionReturn(0);
 }
 

@@ -32,7 +32,7 @@ PetscErrorCode LamDispatchAdd(LamDispatch dispatch, PetscInt64 first, PetscInt64
 /*
   Rank 0: runs all tasks, including those that `worked` adds. A signal on any rank ends the run: current tasks are
   interrupted, and `stopped` (or NULL) is called with `ctx` at once, before the workers have left. Results that they
-  have sent by then are still passed to `worked`. *complete: all tasks are done.
+  have sent by then are still passed to `worked`. *complete (or NULL): all tasks are done.
 */
 PetscErrorCode LamDispatchRun(LamDispatch dispatch, PetscErrorCode (*stopped)(void *ctx), void *ctx,
                               PetscBool *complete);

@@ -12,7 +12,7 @@
   A state without a solution ends the evaluation. Before that, the path to it is bisected APPROACHES times, so that
   criteria reached on its solvable part are found.
 */
-#include "failure_criteria.h"
+#include "failure.h"
 
 const char *const LamFailureModeNames[] = {LAM_FAILURE_MODES(LAM_NAME_ENTRY)};
 const char *const LamCriterionNames[] = {LAM_CRITERIA(LAM_NAME_ENTRY)};

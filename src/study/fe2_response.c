@@ -186,7 +186,7 @@ static PetscErrorCode CreateSolver(LamFE2Run *run, LamFE2Tissue *tissue)
   PetscInt kept;
 
   PetscFunctionBeginUser;
-  PetscCall(LamSceneRVECreate(&tissue->scene, &tissue->rve));
+  PetscCall(LamSceneRVECreate(PETSC_COMM_SELF, &tissue->scene, &tissue->rve));
   PetscCall(LamRVESetInterrupt(tissue->rve, LamStopInterrupt, NULL));
   PetscCall(CountKept(run, tissue, &kept));
   PetscCall(LamRVEResponderCreate(tissue->rve, kept, &tissue->direct));

@@ -210,7 +210,7 @@ static PetscErrorCode ZoomOne(LamFE2Run *run, const Zoom *zoom, const char bytes
   LamRVE rve;
 
   PetscFunctionBeginUser;
-  PetscCall(LamSceneRVECreate(scene, &rve));
+  PetscCall(LamSceneRVECreate(PETSC_COMM_SELF, scene, &rve));
   PetscCall(LamRVESetInterrupt(rve, LamStopInterrupt, NULL));
   if (run->walls_differ) PetscCall(LamFE2ChangeWalls(rve, &scene->micro, run->wall_ratio));
   PetscCall(LamRVEStateCreate(rve, &state));

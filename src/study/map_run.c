@@ -148,22 +148,10 @@ static PetscErrorCode OpenWriter(LamMap *m)
 
 static PetscErrorCode RunRoot(LamMap *m)
 {
-  PetscBool complete;
-
   PetscFunctionBeginUser;
   PetscCall(LamDispatchAdd(m->dispatch, 0, m->todo_count, 1));
-  PetscCall(LamDispatchRun(m->dispatch, NULL, NULL, &complete));
+  PetscCall(LamDispatchRun(m->dispatch, NULL, NULL, NULL));
   PetscCall(Commit(m));
-  PetscFunctionReturn(0);
-}
-
-/* Closes the file in all cases, also after an error. */
-static PetscErrorCode CloseAfter(LamMap *m, PetscErrorCode ierr)
-{
-  const PetscErrorCode closed = LamRecordWriterClose(&m->writer);
-
-  PetscFunctionBeginUser;
-  PetscCall(ierr ? ierr : closed);
   PetscFunctionReturn(0);
 }
 
@@ -171,18 +159,19 @@ static PetscErrorCode CloseAfter(LamMap *m, PetscErrorCode ierr)
 static PetscErrorCode RunAll(LamMap *m)
 {
   const PetscBool root = (PetscBool)(m->rank == 0);
-  PetscErrorCode ierr = root ? OpenWriter(m) : 0;
+  PetscErrorCode ierr = root ? OpenWriter(m) : 0, closed = 0;
 
   PetscFunctionBeginUser;
   if (ierr) (void)LamRecordWriterClose(&m->writer);
   PetscCall(LamShareError(PETSC_COMM_WORLD, ierr));
   PetscCallMPI(MPI_Bcast(m->todo, (PetscMPIInt)m->paths, MPIU_INT, 0, PETSC_COMM_WORLD));
   if (root) {
-    ierr = CloseAfter(m, RunRoot(m));
+    ierr = RunRoot(m);
+    closed = LamRecordWriterClose(&m->writer); /* also after an error */
   } else {
     PetscCall(LamDispatchServe(m->dispatch));
   }
-  PetscCall(LamShareError(PETSC_COMM_WORLD, ierr));
+  PetscCall(LamShareError(PETSC_COMM_WORLD, ierr ? ierr : closed));
   PetscFunctionReturn(0);
 }
 

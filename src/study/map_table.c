@@ -88,20 +88,19 @@ static PetscErrorCode WriteNames(LamRecordWriter writer, const char name[], Pets
 
 static PetscErrorCode WriteAxis(LamRecordWriter writer, char letter, const LamMapAxis *axis, const LamScales *scales)
 {
-  char name[LAM_NAME_LENGTH];
-  const char *unit;
   PetscReal *values, scale;
+  const char *const unit = LamMapQuantityUnit(axis->quantity, scales, &scale);
+  const char *const names[] = {"quantity", "spacing", "unit"};
+  const char *const texts[] = {LamMapQuantityNames[axis->quantity], axis->is_log ? "log" : "linear", unit};
+  char name[LAM_NAME_LENGTH];
 
   PetscFunctionBeginUser;
-  unit = LamMapQuantityUnit(axis->quantity, scales, &scale);
   PetscCall(PetscMalloc1(axis->points, &values));
   for (PetscInt i = 0; i < axis->points; i++) values[i] = LamMapAxisValue(axis, i) * scale;
-  PetscCall(PetscSNPrintf(name, sizeof(name), "/map/%c/quantity", letter));
-  PetscCall(LamRecordWriterText(writer, name, LamMapQuantityNames[axis->quantity]));
-  PetscCall(PetscSNPrintf(name, sizeof(name), "/map/%c/spacing", letter));
-  PetscCall(LamRecordWriterText(writer, name, axis->is_log ? "log" : "linear"));
-  PetscCall(PetscSNPrintf(name, sizeof(name), "/map/%c/unit", letter));
-  PetscCall(LamRecordWriterText(writer, name, unit));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(names); i++) {
+    PetscCall(PetscSNPrintf(name, sizeof(name), "/map/%c/%s", letter, names[i]));
+    PetscCall(LamRecordWriterText(writer, name, texts[i]));
+  }
   PetscCall(PetscSNPrintf(name, sizeof(name), "/map/%c/values", letter));
   PetscCall(LamRecordWriterReals(writer, name, 1, &axis->points, values, unit));
   PetscCall(PetscFree(values));

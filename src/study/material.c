@@ -32,7 +32,7 @@ static PetscErrorCode ConnectScene(const char path[], LamMaterial m)
              "(rve.cells)",
              path);
   PetscCall(LamChooseMesh(m->scene));
-  PetscCall(LamSceneRVECreate(m->scene, &m->rve));
+  PetscCall(LamSceneRVECreate(PETSC_COMM_SELF, m->scene, &m->rve));
   PetscCall(LamRVEResponderCreate(m->rve, m->points, &m->responder));
   m->scales = m->scene->scales;
   m->interface = m->scene->micro.interface;

@@ -227,10 +227,10 @@ static PetscErrorCode Solved(void *ctx, PetscInt64 key, const void *result)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamNodeWorkRun(LamNodeWork work, PetscErrorCode (*stopped)(void *ctx), PetscBool *complete)
+PetscErrorCode LamNodeWorkRun(LamNodeWork work, PetscErrorCode (*stopped)(void *ctx))
 {
   PetscFunctionBeginUser;
-  PetscCall(LamDispatchRun(work->dispatch, stopped, work->callbacks.ctx, complete));
+  PetscCall(LamDispatchRun(work->dispatch, stopped, work->callbacks.ctx, NULL));
   PetscFunctionReturn(0);
 }
 

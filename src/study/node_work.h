@@ -30,7 +30,7 @@ PetscErrorCode LamNodeWorkDestroy(LamNodeWork *work);
 /* Rank 0: requests a node with this predicted cost. `arrived` may be called before this returns. */
 PetscErrorCode LamNodeWorkRequest(LamNodeWork work, PetscInt64 key, PetscReal cost);
 /* Rank 0: returns when all requested nodes have arrived, or after a signal; `stopped` as in LamDispatchRun. */
-PetscErrorCode LamNodeWorkRun(LamNodeWork work, PetscErrorCode (*stopped)(void *ctx), PetscBool *complete);
+PetscErrorCode LamNodeWorkRun(LamNodeWork work, PetscErrorCode (*stopped)(void *ctx));
 PetscErrorCode LamNodeWorkServe(LamNodeWork work); /* workers */
 
 #endif

@@ -102,7 +102,7 @@ static PetscErrorCode WriteFrames(LamProcessStudy *study)
   PetscFunctionBeginUser;
   if (!study->writer || !study->history.count) PetscFunctionReturn(0);
   if (!rve) {
-    PetscCall(LamSceneRVECreate(study->scene, &own));
+    PetscCall(LamSceneRVECreate(PETSC_COMM_SELF, study->scene, &own));
     PetscCall(LamRVESetInterrupt(own, LamStopInterrupt, NULL));
     rve = own;
   }

@@ -87,10 +87,10 @@ PetscErrorCode LamPeakMemory(MPI_Comm comm, PetscReal *megabytes)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamSceneRVECreate(const LamScene *scene, LamRVE *rve)
+PetscErrorCode LamSceneRVECreate(MPI_Comm comm, const LamScene *scene, LamRVE *rve)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, rve));
+  PetscCall(LamRVECreate(comm, rve));
   PetscCall(LamRVESetMicrostructure(*rve, &scene->micro));
   PetscCall(LamRVESetStrategy(*rve, scene->strategy));
   PetscCall(LamRVESetTolerance(*rve, scene->tolerance));

@@ -23,8 +23,8 @@ PetscErrorCode LamShareBytes(MPI_Comm comm, PetscErrorCode ierr, size_t *size, v
 /* Largest memory of any rank, MB. Collective. */
 PetscErrorCode LamPeakMemory(MPI_Comm comm, PetscReal *megabytes);
 
-/* An RVE of the scene on this rank, set up. */
-PetscErrorCode LamSceneRVECreate(const LamScene *scene, LamRVE *rve);
+/* An RVE of the scene, whose mesh is chosen, set up; comm as for LamRVECreate. */
+PetscErrorCode LamSceneRVECreate(MPI_Comm comm, const LamScene *scene, LamRVE *rve);
 /* Makes room for one more item of `size` bytes in a list of `count`; items: address of the owned pointer. */
 PetscErrorCode LamListGrow(PetscInt count, size_t size, PetscInt *capacity, void *items);
 /* Writes dims[0] rows, times `factor`, as LamRecordWriterReals does; `values`: the first row, each `row_size` bytes

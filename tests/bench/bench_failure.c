@@ -4,7 +4,7 @@
 */
 #include <petsctime.h>
 #include <stdio.h>
-#include "failure_criteria.h"
+#include "failure.h"
 #include "support/failing_tissue.h"
 #include "solve.h"
 

@@ -1,6 +1,6 @@
 /* The verdict from what a load program gave: which criterion decides, when, and when there is none. */
 #include "support/test.h"
-#include "failure_criteria.h"
+#include "failure.h"
 
 static const LamStrength strength = {.wall = 5, .lamella_normal = 1, .lamella_shear = 0.5};
 
