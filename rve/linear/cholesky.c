@@ -107,10 +107,8 @@ PetscErrorCode LamCholeskyCreate(PetscInt n, PetscInt row[], PetscInt column[], 
   c->n = n;
   c->nonzeros = row[n];
   c->values = values;
-  PetscCall(PetscMalloc2(n, &c->place, c->nonzeros, &c->from));
-  PetscCall(PetscCalloc1(n + 1, &c->row));
-  PetscCall(PetscMalloc1(c->nonzeros, &c->column));
-  PetscCall(PetscMalloc1(c->nonzeros, &c->entries));
+  PetscCall(PetscCalloc5(n, &c->place, c->nonzeros, &c->from, n + 1, &c->row, c->nonzeros, &c->column, c->nonzeros,
+                         &c->entries));
   PetscCall(Order(c, row, column));
   PetscCall(Renumber(c, row, column));
   PetscCall(Analyse(c));
@@ -168,10 +166,7 @@ PetscErrorCode LamCholeskyDestroy(LamCholesky *cholesky)
   PetscCall(MatDestroy(&c->matrix));
   PetscCall(VecDestroy(&c->rhs));
   PetscCall(VecDestroy(&c->solution));
-  PetscCall(PetscFree2(c->place, c->from));
-  PetscCall(PetscFree(c->row));
-  PetscCall(PetscFree(c->column));
-  PetscCall(PetscFree(c->entries));
+  PetscCall(PetscFree5(c->place, c->from, c->row, c->column, c->entries));
   PetscCall(PetscFree(c));
   *cholesky = NULL;
   PetscFunctionReturn(0);

@@ -100,7 +100,7 @@ static PetscErrorCode Release(LamRVE rve, const LamLoad *load, LamRVEState at, L
     if (step < LEAST_RELEASE) break;
   }
   rve->contact->share = 0.0;
-  if (share > 0.0) PetscCall(LamContactDescend(rve, load, out));
+  if (share > 0.0) PetscCall(LamContactTry(rve, load, LAM_DESCENT, out));
   PetscFunctionReturn(0);
 }
 
@@ -109,7 +109,8 @@ static PetscErrorCode Substeps(LamRVE rve, LamRVEState at, const LamLoad *load, 
 {
   PetscFunctionBeginUser;
   PetscCall(LamContactWalk(rve, at, load, out));
-  if (!LamContactIsStable(out) && out->refusal == LAM_NOT_REFUSED) PetscCall(LamContactDescendFrom(rve, at, load, out));
+  if (!LamContactIsStable(out) && out->refusal == LAM_NOT_REFUSED)
+    PetscCall(LamContactTryFrom(rve, at, load, LAM_DESCENT, out));
   PetscFunctionReturn(0);
 }
 
@@ -128,7 +129,7 @@ static PetscErrorCode Loosen(LamRVE rve, const LamLoad *load, LamRVEState at, La
     const PetscReal less = added * factor < LOOSE * TIGHT ? 0.0 : added * factor;
 
     next.cohesion = load->cohesion + less;
-    PetscCall(LamContactTryFrom(rve, at, &next, out));
+    PetscCall(LamContactTryFrom(rve, at, &next, LAM_NEAR_REACH, out));
     if (LamContactIsStable(out)) {
       LamKeepState(rve, &next, 0, at);
       added = less;
@@ -136,7 +137,7 @@ static PetscErrorCode Loosen(LamRVE rve, const LamLoad *load, LamRVEState at, La
       factor = PetscSqrtReal(factor);
     }
   }
-  if (added > 0.0) PetscCall(LamContactDescendFrom(rve, at, load, out));
+  if (added > 0.0) PetscCall(LamContactTryFrom(rve, at, load, LAM_DESCENT, out));
   PetscFunctionReturn(0);
 }
 
@@ -341,7 +342,7 @@ static PetscErrorCode TryAll(LamRVE rve, const LamLoad *load, LamRVEState state,
     *out = LAM_NO_OUTCOME;
     rve->budget = k < 3 ? START_BUDGET : LAM_ITERATION_BUDGET;
     if (k == 0) {
-      PetscCall(LamContactTryFrom(rve, before, load, out));
+      PetscCall(LamContactTryFrom(rve, before, load, LAM_NEAR_REACH, out));
       if (!LamContactIsStable(out)) PetscCall(Substeps(rve, before, load, out));
     }
     if (k == 1) PetscCall(TryStrategy(rve, rve->strategy, load, state, &has_bonded, at, out));

@@ -42,14 +42,13 @@ typedef struct {
   LamKinking kinking; /* of walls on that path */
 } LamContactOutcome;
 #define LAM_NO_OUTCOME ((LamContactOutcome){.kinking = LAM_NO_KINKING})
-#define LAM_NEAR_REACH 0.5 /* apothems: from a near initial guess, Newton stops at a larger step */
-/* Solve from the current initial guess, by full Newton steps or by descent. Saddles are left; unacceptable solutions
-   are rejected. A converged result has its consistent tangent factored. */
+/* Solve from the current initial guess, by full Newton steps no longer than `reach`, or by descent. Saddles are left;
+   unacceptable solutions are rejected. A converged result has its consistent tangent factored. */
+#define LAM_DESCENT -1.0
 PetscErrorCode LamContactTry(LamRVE rve, const LamLoad *load, PetscReal reach, LamContactOutcome *out);
-PetscErrorCode LamContactDescend(LamRVE rve, const LamLoad *load, LamContactOutcome *out);
 /* The same from a solution at another load. */
-PetscErrorCode LamContactTryFrom(LamRVE rve, LamRVEState from, const LamLoad *load, LamContactOutcome *out);
-PetscErrorCode LamContactDescendFrom(LamRVE rve, LamRVEState from, const LamLoad *load, LamContactOutcome *out);
+PetscErrorCode LamContactTryFrom(LamRVE rve, LamRVEState from, const LamLoad *load, PetscReal reach,
+                                 LamContactOutcome *out);
 /* LamContactTry with free components of F; saddles are not left. */
 PetscErrorCode LamContactTryMixed(LamRVE rve, LamBorder *border, PetscReal reach, LamContactOutcome *out);
 static inline PetscBool LamContactIsStable(const LamContactOutcome *out)

@@ -8,63 +8,11 @@
 */
 #include "contact_path.h"
 
-#define MAX_BRANCH_SWITCHES 4
-#define KICK 0.01         /* apothems: perturbation along an unstable mode */
 #define EDGE_SHARE 0.2    /* penetration attributed to the mesh, in edge lengths, ... */
 #define WALL_SHARE 0.25   /* ... or in wall thicknesses, ... */
 #define DEEPEST_WALL 0.05 /* ... but the latter at most this, apothems; ... */
 #define HALF_WALL 0.5     /* ... accepted up to this share of the wall thickness */
 #define OF_MESH 0.5       /* share of the depth to be found across from each other; less: walls have slid past */
-
-static PetscReal LargestDifference(PetscInt n, const PetscReal a[], const PetscReal b[])
-{
-  PetscReal largest = 0.0;
-
-  for (PetscInt i = 0; i < n; ++i) largest = PetscMax(largest, PetscAbsReal(a[i] - b[i]));
-  return largest;
-}
-
-/* Perturbs along the softest mode of the current factorisation and solves; *left: another equilibrium was found. */
-static PetscErrorCode Kick(LamRVE rve, const LamLoad *load, LamRVEState saddle, PetscReal mode[], PetscBool *left)
-{
-  LamNewtonOutcome outcome;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamSoftestMode(rve, &rve->lowest_eigenvalue, mode));
-  if (rve->monitor)
-    PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR, "  saddle: lowest eigenvalue %.3e; leaving it\n",
-                           (double)rve->lowest_eigenvalue));
-  LamAddMode(rve, KICK / LamLargestEntry(rve->linear.positions, mode), mode, rve->y);
-  PetscCall(LamContactNewton(rve, load, NULL, LAM_NEAR_REACH, &outcome));
-  *left = (PetscBool)(outcome == LAM_NEWTON_CONVERGED && LargestDifference(rve->ndof, rve->y, saddle->y) > 0.1 * KICK);
-  PetscFunctionReturn(0);
-}
-
-/* Leaves saddles; returns the last one if its mode leads to no other equilibrium. */
-static PetscErrorCode LeaveSaddles(LamRVE rve, const LamLoad *load, LamContactOutcome *out)
-{
-  LamRVEState saddle;
-  PetscReal *mode;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamFactorConsistent(rve, load, &out->negative, &out->converged));
-  if (!out->converged || out->negative <= 0) PetscFunctionReturn(0);
-  PetscCall(LamRVEStateCreate(rve, &saddle));
-  PetscCall(PetscMalloc1(rve->linear.n, &mode));
-  for (PetscInt k = 0; k < MAX_BRANCH_SWITCHES && out->converged && out->negative > 0; ++k) {
-    PetscBool left = PETSC_FALSE;
-
-    LamKeepState(rve, load, 0, saddle);
-    PetscCall(Kick(rve, load, saddle, mode, &left));
-    if (!left) PetscCall(LamTakeState(rve, saddle));
-    PetscCall(LamFactorConsistent(rve, load, &out->negative, &out->converged));
-    if (!left) break;
-    ++out->branch;
-  }
-  PetscCall(PetscFree(mode));
-  PetscCall(LamRVEStateDestroy(&saddle));
-  PetscFunctionReturn(0);
-}
 
 static PetscErrorCode Refuse(LamRVE rve, const LamLoad *load, LamContactOutcome *out)
 {
@@ -95,34 +43,28 @@ static PetscErrorCode Refuse(LamRVE rve, const LamLoad *load, LamContactOutcome 
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Judge(LamRVE rve, const LamLoad *load, LamNewtonOutcome outcome, PetscInt escapes,
-                            LamContactOutcome *out)
-{
-  PetscFunctionBeginUser;
-  *out = LAM_NO_OUTCOME;
-  out->converged = (PetscBool)(outcome == LAM_NEWTON_CONVERGED);
-  if (rve->work.escapes > escapes) ++out->branch;
-  if (out->converged) PetscCall(LeaveSaddles(rve, load, out));
-  if (out->converged) PetscCall(Refuse(rve, load, out));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode LamContactTry(LamRVE rve, const LamLoad *load, PetscReal reach, LamContactOutcome *out)
 {
   const PetscInt escapes = rve->work.escapes;
   LamNewtonOutcome outcome;
 
   PetscFunctionBeginUser;
-  PetscCall(LamContactNewton(rve, load, NULL, reach, &outcome));
-  PetscCall(Judge(rve, load, outcome, escapes, out));
+  PetscCall(reach == LAM_DESCENT ? LamContactNewtonSafe(rve, load, &outcome)
+                                 : LamContactNewton(rve, load, NULL, reach, &outcome));
+  *out = LAM_NO_OUTCOME;
+  out->converged = (PetscBool)(outcome == LAM_NEWTON_CONVERGED);
+  if (rve->work.escapes > escapes) ++out->branch;
+  if (out->converged) PetscCall(LamLeaveSaddles(rve, load, &out->branch, &out->negative, &out->converged));
+  if (out->converged) PetscCall(Refuse(rve, load, out));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamContactTryFrom(LamRVE rve, LamRVEState from, const LamLoad *load, LamContactOutcome *out)
+PetscErrorCode LamContactTryFrom(LamRVE rve, LamRVEState from, const LamLoad *load, PetscReal reach,
+                                 LamContactOutcome *out)
 {
   PetscFunctionBeginUser;
   LamContactStartNear(rve, from, load);
-  PetscCall(LamContactTry(rve, load, LAM_NEAR_REACH, out));
+  PetscCall(LamContactTry(rve, load, reach, out));
   PetscFunctionReturn(0);
 }
 
@@ -136,24 +78,5 @@ PetscErrorCode LamContactTryMixed(LamRVE rve, LamBorder *border, PetscReal reach
   if (outcome != LAM_NEWTON_CONVERGED) PetscFunctionReturn(0);
   PetscCall(LamFactorConsistent(rve, &border->load, &out->negative, &out->converged));
   if (LamContactIsStable(out)) PetscCall(Refuse(rve, &border->load, out));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamContactDescendFrom(LamRVE rve, LamRVEState from, const LamLoad *load, LamContactOutcome *out)
-{
-  PetscFunctionBeginUser;
-  LamContactStartNear(rve, from, load);
-  PetscCall(LamContactDescend(rve, load, out));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamContactDescend(LamRVE rve, const LamLoad *load, LamContactOutcome *out)
-{
-  const PetscInt escapes = rve->work.escapes;
-  LamNewtonOutcome outcome;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamContactNewtonSafe(rve, load, &outcome));
-  PetscCall(Judge(rve, load, outcome, escapes, out));
   PetscFunctionReturn(0);
 }

@@ -144,15 +144,12 @@ static PetscErrorCode FindJump(LamRVE rve, const Way *way, LamContactOutcome *ou
   PetscFunctionReturn(0);
 }
 
-/* Solves at path parameter t, starting from the last stable state; snap: by descent. */
-static PetscErrorCode TryAt(LamRVE rve, Way *way, PetscReal t, PetscBool snap, LamContactOutcome *out)
+/* Solves at path parameter t, starting from the last stable state. */
+static PetscErrorCode TryAt(LamRVE rve, Way *way, PetscReal t, PetscReal reach, LamContactOutcome *out)
 {
   PetscFunctionBeginUser;
   way->next = t >= 1.0 ? *way->load : LamLoadBetween(way->start, way->load, t);
-  if (snap)
-    PetscCall(LamContactDescendFrom(rve, way->at, &way->next, out));
-  else
-    PetscCall(LamContactTryFrom(rve, way->at, &way->next, out));
+  PetscCall(LamContactTryFrom(rve, way->at, &way->next, reach, out));
   PetscFunctionReturn(0);
 }
 
@@ -165,7 +162,7 @@ static PetscErrorCode Halve(LamRVE rve, Way *way, LamContactOutcome *out, PetscB
     const PetscReal t = 0.5 * (way->reached + way->failed);
     LamContactOutcome tried;
 
-    PetscCall(TryAt(rve, way, t, PETSC_FALSE, &tried));
+    PetscCall(TryAt(rve, way, t, LAM_NEAR_REACH, &tried));
     if (!LamContactIsStable(&tried)) {
       out->refusal = tried.refusal;
       out->depth = tried.depth;
@@ -191,7 +188,7 @@ static PetscErrorCode CrossBracket(LamRVE rve, Way *way, PetscBool *crossed)
   PetscFunctionBeginUser;
   *crossed = PETSC_FALSE;
   if (!LamMayIterate(rve)) PetscFunctionReturn(0);
-  PetscCall(TryAt(rve, way, t, PETSC_FALSE, &tried));
+  PetscCall(TryAt(rve, way, t, LAM_NEAR_REACH, &tried));
   *crossed = LamContactIsStable(&tried);
   if (!*crossed) PetscFunctionReturn(0);
   PetscCall(Advance(rve, t, way));
@@ -259,7 +256,7 @@ static PetscErrorCode Go(LamRVE rve, Way *way, LamContactOutcome *out)
     const PetscBool last = (PetscBool)(way->step < least);
 
     if (last && (out->refusal != LAM_NOT_REFUSED || way->snaps++ >= MAX_SNAPS)) break;
-    PetscCall(TryAt(rve, way, t, last, out));
+    PetscCall(TryAt(rve, way, t, last ? LAM_DESCENT : LAM_NEAR_REACH, out));
     if (LamContactIsStable(out)) {
       PetscCall(Advance(rve, t, way));
       LamWatchKinks(rve, &way->next, way->at->y, t, &way->kinking);

@@ -12,7 +12,9 @@
 
 #define MIN_SUBSTEP (1.0 / 512.0)
 #define MAX_BRANCH_SWITCHES 6
-#define KICK 0.02 /* apothems: perturbation along an unstable mode */
+#define MAX_CONTACT_SWITCHES 4
+#define KICK 0.02         /* apothems: perturbation along an unstable mode, ... */
+#define CONTACT_KICK 0.01 /* ... of contact tissue */
 
 PetscReal LamRotationAngle(const PetscReal F[9])
 {
@@ -37,6 +39,16 @@ void LamRotatePositions(PetscInt n, PetscReal y[], PetscReal F[9], PetscReal ang
   }
 }
 
+PetscErrorCode LamTurnedState(LamRVE rve, LamRVEState state, const LamLoad *load, LamRVEState *turned)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEStateCreate(rve, turned));
+  PetscCall(LamRVEStateCopy(state, *turned));
+  LamRotatePositions(rve->ndof, (*turned)->y, (*turned)->load.F,
+                     LamRotationAngle(load->F) - LamRotationAngle(state->load.F));
+  PetscFunctionReturn(0);
+}
+
 void LamMoveAffinely(LamRVE rve, const PetscReal from[], const LamLoad *load_from, const LamLoad *load_to)
 {
   const PetscReal *A = load_from->F, *B = load_to->F;
@@ -53,38 +65,42 @@ void LamMoveAffinely(LamRVE rve, const PetscReal from[], const LamLoad *load_fro
   for (PetscInt i = rve->ndof; i < rve->length; ++i) rve->y[i] = from[i];
 }
 
-/* Leaves saddles downhill until the state is stable. On return the consistent tangent is factored. */
-static PetscErrorCode LeaveSaddle(LamRVE rve, const LamLoad *load, PetscInt *branch, PetscInt *negative, PetscBool *ok)
+PetscErrorCode LamLeaveSaddles(LamRVE rve, const LamLoad *load, PetscInt *branch, PetscInt *negative, PetscBool *ok)
 {
-  PetscReal *mode, *saddle;
-  PetscInt unstable;
+  const PetscReal kick = rve->contact ? CONTACT_KICK : KICK;
+  LamRVEState saddle;
+  PetscReal *mode;
 
   PetscFunctionBeginUser;
   PetscCall(LamFactorConsistent(rve, load, negative, ok));
-  if (!*ok || *negative == 0) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc2(rve->linear.n, &mode, rve->length, &saddle));
-  for (PetscInt k = 0; k<MAX_BRANCH_SWITCHES && * ok && * negative> 0; ++k) {
+  if (!*ok || *negative <= 0) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(rve->linear.n, &mode));
+  PetscCall(LamRVEStateCreate(rve, &saddle));
+  for (PetscInt k = 0; k < (rve->contact ? MAX_CONTACT_SWITCHES : MAX_BRANCH_SWITCHES) && *ok && *negative > 0; ++k) {
     LamNewtonOutcome outcome;
+    PetscReal moved = rve->contact ? 0.0 : kick; /* Newton may return to a saddle, descent does not */
 
-    PetscCall(PetscArraycpy(saddle, rve->y, rve->length));
-    unstable = *negative;
+    LamKeepState(rve, load, 0, saddle);
     PetscCall(LamSoftestMode(rve, &rve->lowest_eigenvalue, mode));
     if (rve->monitor)
       PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR,
-                             "  saddle: %d negative eigenvalues, lowest %.3e; leaving it\n", (int)unstable,
+                             "  saddle: %d negative eigenvalues, lowest %.3e; leaving it\n", (int)*negative,
                              (double)rve->lowest_eigenvalue));
-    LamAddMode(rve, KICK / LamLargestEntry(rve->linear.positions, mode), mode, rve->y);
-    PetscCall(LamNewtonSafe(rve, load, &outcome));
-    if (outcome == LAM_NEWTON_CONVERGED) {
+    LamAddMode(rve, kick / LamLargestEntry(rve->linear.positions, mode), mode, rve->y);
+    PetscCall(rve->contact ? LamContactNewton(rve, load, NULL, LAM_NEAR_REACH, &outcome)
+                           : LamNewtonSafe(rve, load, &outcome));
+    for (PetscInt i = 0; i < rve->ndof; ++i) moved = PetscMax(moved, PetscAbsReal(rve->y[i] - saddle->y[i]));
+    if (outcome == LAM_NEWTON_CONVERGED && moved > 0.1 * kick) {
       ++*branch;
       PetscCall(LamFactorConsistent(rve, load, negative, ok));
     } else {
-      PetscCall(PetscArraycpy(rve->y, saddle, rve->length));
+      PetscCall(LamTakeState(rve, saddle));
       PetscCall(LamFactorConsistent(rve, load, negative, ok));
       break;
     }
   }
-  PetscCall(PetscFree2(mode, saddle));
+  PetscCall(PetscFree(mode));
+  PetscCall(LamRVEStateDestroy(&saddle));
   PetscFunctionReturn(0);
 }
 
@@ -125,7 +141,7 @@ static PetscErrorCode Step(LamRVE rve, const PetscReal from[], const LamLoad *lo
   if (rve->work.escapes > escapes) ++*branch;
   out->collapsed = shut;
   if (outcome != LAM_NEWTON_CONVERGED) PetscFunctionReturn(0);
-  PetscCall(LeaveSaddle(rve, load_to, branch, &out->negative, &out->converged));
+  PetscCall(LamLeaveSaddles(rve, load_to, branch, &out->negative, &out->converged));
   if (out->converged) PetscCall(LamFindCollapsedLumen(rve, rve->y, &out->collapsed));
   PetscFunctionReturn(0);
 }

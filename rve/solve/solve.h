@@ -91,12 +91,17 @@ PetscErrorCode LamDescentWatch(LamRVE rve, const LamLoad *load, LamMerit now, Pe
 PetscReal LamRotationAngle(const PetscReal F[9]);
 /* Rotates positions y[n] and their deformation gradient F by `angle` about the origin. */
 void LamRotatePositions(PetscInt n, PetscReal y[], PetscReal F[9], PetscReal angle);
+/* Creates a copy of `state` rotated by the difference between the rotations of the two F. */
+PetscErrorCode LamTurnedState(LamRVE rve, LamRVEState state, const LamLoad *load, LamRVEState *turned);
 /* rve->y := from [length] + (F_to - F_from) X, with the independent wall stresses and the pressures of `from`. */
 void LamMoveAffinely(LamRVE rve, const PetscReal from[], const LamLoad *load_from, const LamLoad *load_to);
 /* Finds a stable equilibrium at `load` by continuation from `state`; returns it in rve->y with the consistent tangent
    factored. */
 PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
 
+/* Leaves saddles until the state is stable; if the mode of one leads to no other equilibrium, returns to it. branch:
+   counts those left. On return the consistent tangent is factored. */
+PetscErrorCode LamLeaveSaddles(LamRVE rve, const LamLoad *load, PetscInt *branch, PetscInt *negative, PetscBool *ok);
 PetscErrorCode LamRefuseSaddle(LamRVE rve, PetscInt negative, LamResponse *response);
 
 /* ---- contact_step.c ---- */
@@ -140,6 +145,7 @@ void LamContactTakeStep(LamRVE rve, const LamLoad *load, PetscReal alpha, const 
    contact, and steps are shortened. Safe: descent on the energy, starting from consistent stresses. border: as in
    LamNewtonFast. */
 #define LAM_FAR 0.0
+#define LAM_NEAR_REACH 0.5 /* from a near initial guess */
 PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, LamBorder *border, PetscReal reach,
                                 LamNewtonOutcome *outcome);
 PetscErrorCode LamContactNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome);
@@ -169,7 +175,5 @@ PetscErrorCode LamRVECreateLike(LamRVE rve, const LamMicrostructure *micro, LamW
 #define LAM_REFERENCE_LOAD ((LamLoad){.F = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}})
 /* Stores the solution held by rve in `state`. */
 void LamKeepState(LamRVE rve, const LamLoad *load, PetscInt branch, LamRVEState state);
-/* Creates a copy of `state` rotated by the difference between the rotations of the two F. */
-PetscErrorCode LamTurnedState(LamRVE rve, LamRVEState state, const LamLoad *load, LamRVEState *turned);
 
 #endif

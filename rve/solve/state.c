@@ -114,16 +114,6 @@ PetscErrorCode LamRVEStateDestroy(LamRVEState *state)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamTurnedState(LamRVE rve, LamRVEState state, const LamLoad *load, LamRVEState *turned)
-{
-  PetscFunctionBeginUser;
-  PetscCall(LamRVEStateCreate(rve, turned));
-  PetscCall(LamRVEStateCopy(state, *turned));
-  LamRotatePositions(rve->ndof, (*turned)->y, (*turned)->load.F,
-                     LamRotationAngle(load->F) - LamRotationAngle(state->load.F));
-  PetscFunctionReturn(0);
-}
-
 void LamKeepState(LamRVE rve, const LamLoad *load, PetscInt branch, LamRVEState state)
 {
   for (PetscInt i = 0; i < rve->ndof; ++i) state->y[i] = rve->y[i];
