@@ -72,8 +72,9 @@ PetscErrorCode LamContactCreate(const LamMicrostructure *micro, const LamMesh *m
   PetscCheck((PetscReal)contact->face_count * contact->dofs * contact->dofs < PETSC_MAX_INT, PETSC_COMM_SELF,
              PETSC_ERR_USER_INPUT, "%d cells with %d elements along a face are too many for one RVE",
              (int)mesh->cell_count, (int)along);
-  PetscCall(PetscMalloc4(contact->face_count, &contact->faces, contact->face_count * contact->chain, &contact->classes,
-                         2 * contact->face_count * contact->chain, &contact->shift, along, &contact->J0));
+  PetscCall(PetscMalloc5(contact->face_count, &contact->faces, contact->face_count * contact->chain, &contact->classes,
+                         2 * contact->face_count * contact->chain, &contact->shift, along, &contact->J0, contact->chain,
+                         &contact->x));
   PetscCall(PetscCalloc4(contact->count, &contact->lambda, contact->count, &contact->gap, contact->count,
                          &contact->weight, contact->count, &contact->active));
   PetscCall(PetscCalloc3(contact->count * contact->dofs, &contact->rows,
@@ -117,7 +118,7 @@ PetscErrorCode LamContactDestroy(LamContact **contact)
   PetscCall(LamMortarSegmentsDestroy(&(*contact)->segments));
   PetscCall(LamMortarResultDestroy(&(*contact)->result));
   PetscCall(LamGapAreaDestroy(&(*contact)->gaps));
-  PetscCall(PetscFree4((*contact)->faces, (*contact)->classes, (*contact)->shift, (*contact)->J0));
+  PetscCall(PetscFree5((*contact)->faces, (*contact)->classes, (*contact)->shift, (*contact)->J0, (*contact)->x));
   PetscCall(PetscFree4((*contact)->lambda, (*contact)->gap, (*contact)->weight, (*contact)->active));
   PetscCall(PetscFree3((*contact)->rows, (*contact)->hessian, (*contact)->held));
   PetscCall(PetscFree2((*contact)->position, (*contact)->coupling));
@@ -125,21 +126,23 @@ PetscErrorCode LamContactDestroy(LamContact **contact)
   PetscFunctionReturn(0);
 }
 
-/* Current positions of both chains of a face; x[chain][2]. */
-static void GatherChains(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt f, PetscReal x[][2])
+/* Sets contact->x to the positions of both chains of a face. */
+static void GatherChains(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt f)
 {
   const LamContact *contact = rve->contact;
 
   for (PetscInt i = 0, k = f * contact->chain; i < contact->chain; ++i, ++k)
-    LamImagePosition(F, y, contact->classes[k], &contact->shift[2 * k], x[i]);
+    LamImagePosition(F, y, contact->classes[k], &contact->shift[2 * k], contact->x[i]);
 }
 
-LamMortarChains LamContactChains(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt f, PetscReal x[][2])
+LamMortarChains LamContactChains(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt f)
 {
-  const LamMortarChains chains = {rve->mesh.along, rve->mesh.along, (const PetscReal(*)[2])x,
-                                  (const PetscReal(*)[2])(x + rve->contact->hats), rve->contact->J0};
+  LamContact *contact = rve->contact;
+  const LamMortarChains chains = {rve->mesh.along, rve->mesh.along, (const PetscReal(*)[2])contact->x,
+                                  (const PetscReal(*)[2])(contact->x + contact->hats), contact->J0};
 
-  GatherChains(rve, F, y, f, x);
+  GatherChains(rve, F, y, f);
+  LamMortarFindSegments(&chains, &contact->segments);
   return chains;
 }
 
@@ -207,16 +210,13 @@ static void MergeHats(LamContact *contact, PetscInt f)
 PetscErrorCode LamContactEvaluate(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscBool follow)
 {
   LamContact *contact = rve->contact;
-  PetscReal(*x)[2];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(contact->chain, &x));
   for (PetscInt f = 0; f < contact->face_count; ++f) {
-    const LamMortarChains chains = LamContactChains(rve, load->F, y, f, x);
+    const LamMortarChains chains = LamContactChains(rve, load->F, y, f);
     LamContactFace *face = &contact->faces[f];
     PetscReal *lambda = &contact->lambda[f * contact->hats];
 
-    LamMortarFindSegments(&chains, &contact->segments);
     if (follow) Junction(contact, face, &face->first, &face->last);
     SpreadMultipliers(face, contact->hats, lambda);
     LamMortarEvaluate(&chains, &contact->segments, lambda, LAM_MORTAR_POINTS, &contact->result);
@@ -226,27 +226,22 @@ PetscErrorCode LamContactEvaluate(LamRVE rve, const LamLoad *load, const PetscRe
   }
   for (PetscInt h = 0; h < contact->count; ++h)
     contact->gap[h] = contact->weight[h] > 0.0 ? contact->gap[h] / contact->weight[h] : 0.0;
-  PetscCall(PetscFree(x));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamContactStatusHolds(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscBool *holds)
 {
   LamContact *contact = rve->contact;
-  PetscReal(*x)[2];
 
   PetscFunctionBeginUser;
   *holds = PETSC_TRUE;
-  PetscCall(PetscMalloc1(contact->chain, &x));
   for (PetscInt f = 0; f < contact->face_count; ++f) {
-    const LamMortarChains chains = LamContactChains(rve, load->F, y, f, x);
     PetscInt first = contact->faces[f].first, last = contact->faces[f].last;
 
-    LamMortarFindSegments(&chains, &contact->segments);
+    (void)LamContactChains(rve, load->F, y, f);
     Junction(contact, &contact->faces[f], &first, &last);
     if (first != contact->faces[f].first || last != contact->faces[f].last) *holds = PETSC_FALSE;
   }
-  PetscCall(PetscFree(x));
   PetscFunctionReturn(0);
 }
 
@@ -344,19 +339,17 @@ PetscErrorCode LamContactPredictActive(LamRVE rve, const PetscReal step[], const
                                        const PetscReal lambda[], PetscReal compliance, PetscInt *changes)
 {
   LamContact *contact = rve->contact;
-  PetscReal(*dx)[2];
 
   PetscFunctionBeginUser;
   *changes = 0;
-  PetscCall(PetscMalloc1(contact->chain, &dx));
   for (PetscInt h = 0; h < contact->count; ++h) {
     const PetscReal *row = &contact->rows[h * contact->dofs];
     PetscReal gap = contact->gap[h];
     PetscBool active;
 
-    if (h % contact->hats == 0) GatherChains(rve, dF, step, h / contact->hats, dx);
+    if (h % contact->hats == 0) GatherChains(rve, dF, step, h / contact->hats);
     if (!Carries(contact, h)) continue;
-    for (PetscInt i = 0; i < contact->dofs; ++i) gap += row[i] * dx[i / 2][i % 2] / contact->weight[h];
+    for (PetscInt i = 0; i < contact->dofs; ++i) gap += row[i] * contact->x[i / 2][i % 2] / contact->weight[h];
     gap += compliance * lambda[h];
     active = (PetscBool)(lambda[h] - LAM_CONTACT_SCALE * gap > 0.0);
     /* the gap of an active hat is zero: rounding must not open it */
@@ -364,7 +357,6 @@ PetscErrorCode LamContactPredictActive(LamRVE rve, const PetscReal step[], const
     *changes += active != contact->active[h];
     contact->active[h] = active;
   }
-  PetscCall(PetscFree(dx));
   PetscFunctionReturn(0);
 }
 

@@ -51,7 +51,8 @@ typedef struct {
   PetscReal hysteresis;       /* hysteresis of the junction status, in half-edges */
   PetscInt *position;         /* [face][dofs (dofs + 1)/2]: matrix index of pairs of dofs, row by row */
   PetscInt *coupling;         /* [count][dofs]: matrix index of dof and multiplier */
-  LamMortarSegments segments; /* work space */
+  PetscReal (*x)[2];          /* [chain] work space: chains of a face, ... */
+  LamMortarSegments segments; /* ... their segments */
   LamMortarResult result;
 } LamContact;
 

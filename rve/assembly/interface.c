@@ -48,16 +48,13 @@ PetscErrorCode LamRVEGetInterface(LamRVE rve, LamRVEState state, PetscReal from[
 {
   LamContact *contact = rve->contact;
   PetscInt faces, points;
-  PetscReal(*x)[2];
 
   PetscFunctionBeginUser;
   PetscCall(LamRVEGetInterfaceSize(rve, &faces, &points));
   if (faces == 0) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1(contact->chain, &x));
   for (PetscInt f = 0; f < faces; ++f) {
-    const LamMortarChains chains = LamContactChains(rve, state->load.F, state->y, f, x);
+    const LamMortarChains chains = LamContactChains(rve, state->load.F, state->y, f);
 
-    LamMortarFindSegments(&chains, &contact->segments);
     for (PetscInt i = 0; i < points; ++i) {
       const PetscInt k = f * points + i;
       const PetscReal s = (PetscReal)i / POINTS_PER_EDGE;
@@ -75,22 +72,19 @@ PetscErrorCode LamRVEGetInterface(LamRVE rve, LamRVEState state, PetscReal from[
         pressure[k] = edge < 0 ? 0.0 : PressureAt(contact, &state->lambda[f * contact->hats], s, Xs, state->load.F[8]);
     }
   }
-  PetscCall(PetscFree(x));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamFacingDepth(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscReal *depth)
 {
   LamContact *contact = rve->contact;
-  PetscReal(*x)[2], nearest[2];
+  PetscReal nearest[2];
 
   PetscFunctionBeginUser;
   *depth = 0.0;
-  PetscCall(PetscMalloc1(contact->chain, &x));
   for (PetscInt f = 0; f < contact->face_count; ++f) {
-    const LamMortarChains chains = LamContactChains(rve, F, y, f, x);
+    const LamMortarChains chains = LamContactChains(rve, F, y, f);
 
-    LamMortarFindSegments(&chains, &contact->segments);
     for (PetscInt i = 0; i <= POINTS_PER_EDGE * rve->mesh.along; ++i) {
       const PetscReal s = (PetscReal)i / POINTS_PER_EDGE;
       const PetscInt edge = FacingEdge(&contact->segments, s);
@@ -98,6 +92,5 @@ PetscErrorCode LamFacingDepth(LamRVE rve, const PetscReal F[9], const PetscReal 
       if (edge >= 0) *depth = PetscMax(*depth, -LamMortarGap(&chains, s, edge, nearest));
     }
   }
-  PetscCall(PetscFree(x));
   PetscFunctionReturn(0);
 }

@@ -187,8 +187,8 @@ void LamTurgorMeasures(LamRVE rve, const LamLoad *load, LamResponse *response);
 PetscErrorCode LamContactCreate(const LamMicrostructure *micro, const LamMesh *mesh, LamContact **contact);
 PetscErrorCode LamContactSetMatrix(const LamLinear *linear, LamContact *contact);
 PetscErrorCode LamContactDestroy(LamContact **contact);
-/* Chains of face f at positions y; they point into the work space x[chain][2]. */
-LamMortarChains LamContactChains(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt f, PetscReal x[][2]);
+/* Chains of face f at positions y, in contact->x; their segments are in contact->segments. */
+LamMortarChains LamContactChains(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt f);
 /* Gaps, weights, rows and second derivatives at positions y with the present multipliers. follow: update the junction
    status from y; otherwise it is kept. */
 PetscErrorCode LamContactEvaluate(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscBool follow);

@@ -114,16 +114,6 @@ static PetscErrorCode BracketLowest(LamRVE rve, PetscReal *shift)
   PetscFunctionReturn(0);
 }
 
-static PetscReal Normalise(PetscInt n, PetscReal v[])
-{
-  PetscReal norm = 0.0;
-
-  for (PetscInt i = 0; i < n; ++i) norm += v[i] * v[i];
-  norm = PetscSqrtReal(norm);
-  for (PetscInt i = 0; i < n; ++i) v[i] /= norm;
-  return norm;
-}
-
 void LamStartMode(LamRVE rve, PetscReal mode[])
 {
   for (PetscInt i = 0; i < rve->linear.n; ++i) mode[i] = 0.0; /* modes have no multiplier components */
@@ -144,7 +134,8 @@ PetscErrorCode LamImproveSoftestMode(LamRVE rve, PetscInt iterations, PetscReal 
                              rve->linear.lumens)); /* the pressures of the solution follow from its positions */
     PetscCall(LamLinearSolveOnce(&rve->linear, 1, mode, next));
     PetscCall(PetscArraycpy(mode, next, positions));
-    norm = Normalise(positions, mode);
+    norm = PetscSqrtReal(LamInnerProduct(positions, mode, mode));
+    for (PetscInt i = 0; i < positions; ++i) mode[i] /= norm;
     for (PetscInt i = pressures; i < n; ++i) mode[i] = next[i] / norm;
   }
   PetscCall(PetscFree(next));
@@ -157,34 +148,24 @@ PetscErrorCode LamImproveSoftestMode(LamRVE rve, PetscInt iterations, PetscReal 
 
 void LamAddMode(LamRVE rve, PetscReal factor, const PetscReal mode[], PetscReal to[])
 {
-  const PetscInt pressures = rve->linear.pressures;
-
   for (PetscInt i = 0; i < rve->linear.positions; ++i) to[2 + i] += factor * mode[i];
-  for (PetscInt c = 0; c < rve->linear.lumens; ++c) to[rve->ndof + c] += factor * mode[pressures + c];
+  for (PetscInt c = 0; c < rve->linear.lumens; ++c) to[rve->ndof + c] += factor * mode[rve->linear.pressures + c];
 }
 
 PetscReal LamModeSlope(LamRVE rve, const PetscReal mode[], const PetscReal residual[])
 {
-  const PetscInt pressures = rve->linear.pressures;
-  PetscReal slope = 0.0;
-
-  for (PetscInt i = 0; i < rve->linear.positions; ++i) slope += mode[i] * residual[2 + i];
-  for (PetscInt c = 0; c < rve->linear.lumens; ++c) slope += mode[pressures + c] * residual[rve->ndof + c];
-  return slope;
+  return LamInnerProduct(rve->linear.positions, mode, residual + 2) +
+         LamInnerProduct(rve->linear.lumens, mode + rve->linear.pressures, residual + rve->ndof);
 }
 
 PetscReal LamModeCurvature(LamRVE rve, const PetscReal mode[], PetscReal image[])
 {
-  PetscReal curvature = 0.0;
-
   LamLinearMultiply(&rve->linear, mode, image);
-  for (PetscInt i = 0; i < rve->linear.n; ++i) curvature += mode[i] * image[i];
-  return curvature;
+  return LamInnerProduct(rve->linear.n, mode, image);
 }
 
 PetscErrorCode LamSoftestMode(LamRVE rve, PetscReal *eigenvalue, PetscReal mode[])
 {
-  const PetscInt n = rve->linear.n;
   PetscReal shift, *image;
 
   PetscFunctionBeginUser;
@@ -193,7 +174,7 @@ PetscErrorCode LamSoftestMode(LamRVE rve, PetscReal *eigenvalue, PetscReal mode[
   PetscCall(BracketLowest(rve, &shift));
   if (rve->work.stopped) PetscFunctionReturn(0);
   PetscCall(LamImproveSoftestMode(rve, 30, mode));
-  PetscCall(PetscMalloc1(n, &image));
+  PetscCall(PetscMalloc1(rve->linear.n, &image));
   *eigenvalue = LamModeCurvature(rve, mode, image);
   PetscCall(PetscFree(image));
   PetscFunctionReturn(0);

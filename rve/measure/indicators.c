@@ -151,13 +151,11 @@ static PetscErrorCode AddFace(LamRVE rve, const LamLoad *load, PetscInt f, Sums 
   FamilySums *family = &sums->family[contact->faces[f].face];
   const LamMortarSegments *segments = &contact->segments;
   const PetscReal named_gap = sums->named_gap;
-  PetscReal(*x)[2], *force, *length, J0 = 0.0;
-  LamMortarChains chains;
+  const LamMortarChains chains = LamContactChains(rve, load->F, rve->y, f);
+  PetscReal *force, *length, J0 = 0.0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(contact->chain, &x, count + 1, &force, count + 1, &length));
-  chains = LamContactChains(rve, load->F, rve->y, f, x);
-  LamMortarFindSegments(&chains, &contact->segments);
+  PetscCall(PetscMalloc2(count + 1, &force, count + 1, &length));
   for (PetscInt k = 0; k + 1 < segments->count; ++k)
     SampleSegment(&chains, segments->s[k], segments->s[k + 1], segments->master[k], family, sums);
   if (sums->named_gap > named_gap) {
@@ -173,7 +171,7 @@ static PetscErrorCode AddFace(LamRVE rve, const LamLoad *load, PetscInt f, Sums 
   family->current_length += length[count];
   family->force += force[count];
   if (segments->count == 0) family->open += J0;
-  AddJumps(&chains, contact->hats, (const PetscReal(*)[2])x, sums->jumps);
+  AddJumps(&chains, contact->hats, (const PetscReal(*)[2])contact->x, sums->jumps);
   LamTakeLargestMean(&rve->mesh, thickness, contact->faces[f].cell, contact->faces[f].face, count, force, length,
                      &sums->traction);
   for (PetscInt j = 0; j < contact->hats; ++j) {
@@ -183,7 +181,7 @@ static PetscErrorCode AddFace(LamRVE rve, const LamLoad *load, PetscInt f, Sums 
     family->closed += contact->weight[h];
     AddFabric(&chains, j, contact->weight[h], sums->fabric);
   }
-  PetscCall(PetscFree3(x, force, length));
+  PetscCall(PetscFree2(force, length));
   PetscFunctionReturn(0);
 }
 

@@ -43,10 +43,7 @@ typedef struct {
   PetscReal
       place[3]; /* cell, face, middle of the segment as a fraction of the face, counter-clockwise around the cell */
 } LamLargestMean;
-#define LAM_NO_MEAN                                                                                                    \
-  {                                                                                                                    \
-    .value = -PETSC_MAX_REAL, .named = -PETSC_MAX_REAL, .place = { NAN, NAN, NAN }                                     \
-  }
+#define LAM_NO_MEAN ((LamLargestMean){-PETSC_MAX_REAL, -PETSC_MAX_REAL, {NAN, NAN, NAN}})
 /* Value of the largest mean; NaN in a patch of one cell, which has no face between cells. */
 static inline PetscReal LamLargestMeanValue(const LamLargestMean *largest)
 {
@@ -68,10 +65,7 @@ typedef struct {
   PetscReal between[2]; /* equal: no loss; the first below 0: lost before the path starts */
   PetscReal share;      /* volume fraction of the walls */
 } LamKinking;
-#define LAM_NO_KINKING                                                                                                 \
-  {                                                                                                                    \
-    .between = { -1.0, -1.0 }                                                                                          \
-  }
+#define LAM_NO_KINKING ((LamKinking){.between = {-1.0, -1.0}})
 #define LAM_KINKED_SUBSTEP (1.0 / 64.0) /* smallest substep if walls kink */
 static inline PetscBool LamIsKinking(const LamKinking *kinking)
 {

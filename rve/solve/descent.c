@@ -44,12 +44,11 @@ LamMerit LamMeritOf(LamRVE rve, PetscReal energy)
 
 PetscErrorCode LamDescentSearch(LamRVE rve, const LamLoad *load, LamMerit now, LamDescent *descent, PetscReal *alpha)
 {
-  PetscReal slope = 0.0;
+  PetscReal slope = LamInnerProduct(rve->ndof - 2, rve->residual + 2, rve->step + 2);
 
   PetscFunctionBeginUser;
   if (!descent->monotone) PetscFunctionReturn(0);
   descent->monotone = PETSC_FALSE;
-  for (PetscInt i = 2; i < rve->ndof; ++i) slope += rve->residual[i] * rve->step[i];
   slope = PetscMin(0.0, slope - descent->mu * now.violation);
   for (; *alpha > 1e-5; *alpha *= 0.5) {
     PetscReal energy;

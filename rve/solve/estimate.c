@@ -63,42 +63,30 @@ PetscErrorCode LamRVEEstimateDestroy(LamRVEEstimate *estimate)
   PetscFunctionReturn(0);
 }
 
-/* Copies the positions of the nodes common to both meshes. */
-static void RestrictPositions(LamRVE fine, LamRVEState from, LamRVE coarse, LamRVEState to)
+/* Initial guess of contact tissue: positions of the nodes common to both meshes, contact pressures of the common hats,
+   and the nearest junction status. */
+static PetscErrorCode StartContact(LamRVEEstimate e, LamRVEState from)
 {
-  const LamMesh *f = &fine->mesh, *c = &coarse->mesh;
-  const PetscInt step = f->through / c->through;
+  const LamMesh *f = &e->rve->mesh, *c = &e->coarse->mesh;
+  const PetscInt step = f->through / c->through, hats = e->coarse->contact->hats;
+  LamRVEState to = e->state;
 
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEStateReset(e->coarse, to));
   for (PetscInt i = 0; i < c->cell_count * c->ring_nodes; ++i)
     for (PetscInt r = 0; r < c->radial_nodes; ++r) {
-      const PetscInt node = i * c->radial_nodes + r, same = 2 * i * f->radial_nodes + r * step;
       PetscReal x[2];
 
-      LamNodePosition(fine, from->load.F, from->y, same, x);
-      LamPlaceNode(coarse, from->load.F, node, x, to->y);
+      LamNodePosition(e->rve, from->load.F, from->y, 2 * i * f->radial_nodes + r * step, x);
+      LamPlaceNode(e->coarse, from->load.F, i * c->radial_nodes + r, x, to->y);
     }
-}
-
-/* Copies the contact pressures of the common hats and the nearest junction status. */
-static void RestrictContact(LamRVE fine, LamRVEState from, LamRVE coarse, LamRVEState to)
-{
-  const PetscInt hats = coarse->contact->hats;
-
-  for (PetscInt f = 0; f < to->faces; ++f) {
-    for (PetscInt j = 0; j < hats; ++j) to->lambda[f * hats + j] = from->lambda[f * fine->contact->hats + 2 * j];
-    to->hats[f][0] = (from->hats[f][0] + 1) / 2;
-    to->hats[f][1] = from->hats[f][1] / 2;
+  for (PetscInt k = 0; k < to->faces; ++k) {
+    for (PetscInt j = 0; j < hats; ++j) to->lambda[k * hats + j] = from->lambda[k * e->rve->contact->hats + 2 * j];
+    to->hats[k][0] = (from->hats[k][0] + 1) / 2;
+    to->hats[k][1] = from->hats[k][1] / 2;
   }
-}
-
-static PetscErrorCode StartContact(LamRVEEstimate e, LamRVEState state)
-{
-  PetscFunctionBeginUser;
-  PetscCall(LamRVEStateReset(e->coarse, e->state));
-  RestrictPositions(e->rve, state, e->coarse, e->state);
-  RestrictContact(e->rve, state, e->coarse, e->state);
-  e->state->load = state->load;
-  e->state->solved = PETSC_TRUE;
+  to->load = from->load;
+  to->solved = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 

@@ -73,21 +73,24 @@ static PetscErrorCode FindRemedy(const LamMixedView *view, PetscInt *remedy)
   PetscFunctionReturn(0);
 }
 
-/* Sets status and reason of an equilibrium that is unstable under the prescribed stress. */
-static PetscErrorCode CallUnstable(const LamMixedView *view, LamResponse *response)
+/* Refuses an equilibrium that is unstable under the prescribed stress. */
+static PetscErrorCode CheckStability(const LamStressControl *control, LamResponse *response)
 {
   char remedy[32] = "all of F";
   PetscInt component;
+  LamMixedView view;
 
   PetscFunctionBeginUser;
-  PetscCall(FindRemedy(view, &component));
+  PetscCall(LamMixedLook(control, response, &view));
+  if (LamMixedIsStable(&view)) PetscFunctionReturn(0);
+  PetscCall(FindRemedy(&view, &component));
   if (component >= 0) PetscCall(PetscSNPrintf(remedy, sizeof(remedy), "F%s", component_names[component]));
   response->stable = PETSC_FALSE;
-  response->lowest_eigenvalue = view->w[0];
+  response->lowest_eigenvalue = view.w[0];
   PetscCall(LamRefuse(response, LAM_UNSTABLE,
                       "in equilibrium, but not stable under the prescribed stress: lowest stiffness %.3g (C1+C2); "
                       "stable where %s is prescribed instead",
-                      (double)view->w[0], remedy));
+                      (double)view.w[0], remedy));
   PetscFunctionReturn(0);
 }
 
@@ -96,7 +99,6 @@ static PetscErrorCode SolveTiers(LamRVE rve, const LamLoad *load, const LamStres
                                  LamResponse *response)
 {
   LamRVEState fast;
-  LamMixedView view;
   LamLoad guess = *load;
   LamResponse safe;
 
@@ -104,18 +106,12 @@ static PetscErrorCode SolveTiers(LamRVE rve, const LamLoad *load, const LamStres
   PetscCall(LamRVEStateCreate(rve, &fast));
   PetscCall(LamRVEStateCopy(state, fast));
   PetscCall(LamMixedFast(rve, &guess, control, fast, response));
-  if (LamResponseHasFields(response)) {
-    PetscCall(LamMixedLook(control, response, &view));
-    if (!LamMixedIsStable(&view)) PetscCall(CallUnstable(&view, response));
-  }
+  if (LamResponseHasFields(response)) PetscCall(CheckStability(control, response));
   if (response->status != LAM_CONVERGED && !LamWasStopped(response)) {
     const PetscInt iterations = response->newton_iterations, factorisations = response->factorisations;
 
     PetscCall(LamMixedSafe(rve, &guess, control, state, &safe));
-    if (safe.status == LAM_UNSTABLE) {
-      PetscCall(LamMixedLook(control, &safe, &view));
-      if (!LamMixedIsStable(&view)) PetscCall(CallUnstable(&view, &safe));
-    }
+    if (safe.status == LAM_UNSTABLE) PetscCall(CheckStability(control, &safe));
     if (safe.status == LAM_CONVERGED || LamWasStopped(&safe) || !LamResponseHasFields(response)) {
       *response = safe;
       PetscCall(LamRVEStateCopy(state, fast));

@@ -99,7 +99,8 @@ static PetscErrorCode TryFast(Search *s, const LamLoad *guess, const LamStressCo
 }
 
 /* Load and control at path parameter t from `start`; the free components of F are guessed from `now`. */
-static void AskBetween(const Search *s, const LamResponse *start, PetscReal t, LamLoad *load, LamStressControl *control)
+static void ControlBetween(const Search *s, const LamResponse *start, PetscReal t, LamLoad *load,
+                           LamStressControl *control)
 {
   *load = LamLoadBetween(&start->load, s->load, t);
   *control = *s->control;
@@ -125,7 +126,7 @@ static PetscErrorCode Continue(Search *s)
     LamLoad load;
     PetscBool solved;
 
-    AskBetween(s, &start, t, &load, &control);
+    ControlBetween(s, &start, t, &load, &control);
     PetscCall(TryFast(s, &load, &control, &solved));
     if (solved) {
       Swap(s);

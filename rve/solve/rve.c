@@ -52,27 +52,19 @@ PetscErrorCode LamRVESetMonitor(LamRVE rve, PetscBool on)
   PetscFunctionReturn(0);
 }
 
-static void FindStiffest(LamRVE rve)
-{
-  rve->stiffest = 0.0;
-  for (PetscInt cell = 0; cell < rve->mesh.cell_count; ++cell) {
-    const LamWall *wall = LamCellWall(&rve->micro, cell);
-
-    rve->stiffest = PetscMax(rve->stiffest, wall->bulk_modulus + LamWallFibreModulus(wall));
-  }
-}
-
 /* Sets the wall law of each cell and the extremes over the cells. */
 static PetscErrorCode SetUpWalls(LamRVE rve)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(rve->mesh.cell_count, &rve->law));
   rve->thinnest = 1.0;
+  rve->stiffest = 0.0;
   for (PetscInt cell = 0; cell < rve->mesh.cell_count; ++cell) {
-    PetscCall(LamWallLawGet(LamCellWall(&rve->micro, cell)->law, &rve->law[cell]));
+    const LamWall *wall = LamCellWall(&rve->micro, cell);
+
+    PetscCall(LamWallLawGet(wall->law, &rve->law[cell]));
     rve->thinnest = PetscMin(rve->thinnest, LamWallThickness(&rve->micro, cell));
+    rve->stiffest = PetscMax(rve->stiffest, wall->bulk_modulus + LamWallFibreModulus(wall));
   }
-  FindStiffest(rve);
   PetscFunctionReturn(0);
 }
 
@@ -89,7 +81,7 @@ PetscErrorCode LamRVEChangeModuli(LamRVE rve, const LamMicrostructure *micro)
   CopyModuli(&micro->wall, &rve->micro.wall);
   for (PetscInt cell = 0; rve->micro.cell && cell < rve->mesh.cell_count; ++cell)
     CopyModuli(LamCellWall(micro, cell), &rve->micro.cell[cell].wall);
-  FindStiffest(rve);
+  PetscCall(SetUpWalls(rve));
   LamForgetFactor(rve);
   rve->changes++;
   if (rve->bonded) PetscCall(LamRVEChangeModuli(rve->bonded, micro));
@@ -107,6 +99,7 @@ static PetscErrorCode SetUpArrays(LamRVE rve)
   cells = rve->mesh.cell_count;
   lumens = rve->seal.allowed ? cells : 0;
   rve->budget = LAM_ITERATION_BUDGET;
+  PetscCall(PetscMalloc1(cells, &rve->law));
   PetscCall(SetUpWalls(rve));
   PetscCall(LamGeometryCreate(rve));
   if (rve->micro.interface == LAM_INTERFACE_CONTACT) {
