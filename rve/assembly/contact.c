@@ -229,20 +229,17 @@ PetscErrorCode LamContactEvaluate(LamRVE rve, const LamLoad *load, const PetscRe
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamContactStatusHolds(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscBool *holds)
+PetscBool LamContactStatusHolds(LamRVE rve, const LamLoad *load, const PetscReal y[])
 {
-  LamContact *contact = rve->contact;
-
-  PetscFunctionBeginUser;
-  *holds = PETSC_TRUE;
-  for (PetscInt f = 0; f < contact->face_count; ++f) {
-    PetscInt first = contact->faces[f].first, last = contact->faces[f].last;
+  for (PetscInt f = 0; f < rve->contact->face_count; ++f) {
+    const LamContactFace *face = &rve->contact->faces[f];
+    PetscInt first = face->first, last = face->last;
 
     (void)LamContactChains(rve, load->F, y, f);
-    Junction(contact, &contact->faces[f], &first, &last);
-    if (first != contact->faces[f].first || last != contact->faces[f].last) *holds = PETSC_FALSE;
+    Junction(rve->contact, face, &first, &last);
+    if (first != face->first || last != face->last) return PETSC_FALSE;
   }
-  PetscFunctionReturn(0);
+  return PETSC_TRUE;
 }
 
 static PetscBool Carries(const LamContact *contact, PetscInt h)
@@ -335,13 +332,12 @@ void LamContactSetRows(LamRVE rve, PetscReal compliance)
   }
 }
 
-PetscErrorCode LamContactPredictActive(LamRVE rve, const PetscReal step[], const PetscReal dF[9],
-                                       const PetscReal lambda[], PetscReal compliance, PetscInt *changes)
+PetscInt LamContactPredictActive(LamRVE rve, const PetscReal step[], const PetscReal dF[9], const PetscReal lambda[],
+                                 PetscReal compliance)
 {
   LamContact *contact = rve->contact;
+  PetscInt changes = 0;
 
-  PetscFunctionBeginUser;
-  *changes = 0;
   for (PetscInt h = 0; h < contact->count; ++h) {
     const PetscReal *row = &contact->rows[h * contact->dofs];
     PetscReal gap = contact->gap[h];
@@ -354,10 +350,10 @@ PetscErrorCode LamContactPredictActive(LamRVE rve, const PetscReal step[], const
     active = (PetscBool)(lambda[h] - LAM_CONTACT_SCALE * gap > 0.0);
     /* the gap of an active hat is zero: rounding must not open it */
     if (contact->active[h] && lambda[h] > 0.0) active = PETSC_TRUE;
-    *changes += active != contact->active[h];
+    changes += active != contact->active[h];
     contact->active[h] = active;
   }
-  PetscFunctionReturn(0);
+  return changes;
 }
 
 void LamTakeJunctions(LamRVE rve, LamRVEState state)

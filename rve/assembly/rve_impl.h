@@ -193,7 +193,7 @@ LamMortarChains LamContactChains(LamRVE rve, const PetscReal F[9], const PetscRe
    status from y; otherwise it is kept. */
 PetscErrorCode LamContactEvaluate(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscBool follow);
 /* Whether the junction status agrees with positions y. */
-PetscErrorCode LamContactStatusHolds(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscBool *holds);
+PetscBool LamContactStatusHolds(LamRVE rve, const LamLoad *load, const PetscReal y[]);
 /* Updates the active set from the last evaluation: lambda - c (gap + compliance lambda) > 0. Returns the number of
    changes. */
 PetscInt LamContactFindActive(LamContact *contact, PetscReal compliance);
@@ -204,8 +204,8 @@ PetscReal LamContactComplementarity(const LamContact *contact);
 void LamContactAddForce(LamRVE rve, PetscReal residual[]);
 /* Predicts the active set by the present linearisation, for positions changed by `step` [ndof], F changed by dF, and
    multipliers lambda. Returns the number of changes. */
-PetscErrorCode LamContactPredictActive(LamRVE rve, const PetscReal step[], const PetscReal dF[9],
-                                       const PetscReal lambda[], PetscReal compliance, PetscInt *changes);
+PetscInt LamContactPredictActive(LamRVE rve, const PetscReal step[], const PetscReal dF[9], const PetscReal lambda[],
+                                 PetscReal compliance);
 /* Adds the second derivative of -sum lambda G to linear.values. */
 void LamContactAddCurvature(LamRVE rve);
 /* Sets the junction statuses to those of the state; the previous solve may have left others. */

@@ -130,13 +130,12 @@ PetscErrorCode LamRVEGetCellDifference(LamRVE rve, LamRVEState state, PetscReal 
 PetscErrorCode LamRVEGetMesh(LamRVE rve, LamRVEMesh *mesh)
 {
   PetscFunctionBeginUser;
-  mesh->node_count = rve->mesh.node_count;
-  mesh->element_count = rve->mesh.element_count;
-  mesh->cell_count = rve->mesh.cell_count;
-  mesh->nodes = rve->mesh.X;
-  mesh->elements = rve->mesh.elements;
-  mesh->cell_of = rve->mesh.cell_of;
-  for (PetscInt k = 0; k < 2; ++k)
-    for (PetscInt d = 0; d < 2; ++d) mesh->period[k][d] = rve->mesh.period[k][d];
+  *mesh = (LamRVEMesh){.node_count = rve->mesh.node_count,
+                       .element_count = rve->mesh.element_count,
+                       .cell_count = rve->mesh.cell_count,
+                       .nodes = rve->mesh.X,
+                       .elements = rve->mesh.elements,
+                       .cell_of = rve->mesh.cell_of};
+  PetscCall(PetscMemcpy(mesh->period, rve->mesh.period, sizeof(mesh->period)));
   PetscFunctionReturn(0);
 }

@@ -78,8 +78,7 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, LamBorder *bord
   PetscFunctionBeginUser;
   *outcome = LAM_NEWTON_STALLED;
   rve->contact->hysteresis = LAM_HYSTERESIS;
-  PetscCall(LamContactStepCreate(rve, &step));
-  step.border = border;
+  PetscCall(LamContactStepCreate(rve, border, &step));
   for (PetscInt it = 0; it <= most && LamMayIterate(rve); ++it) {
     const PetscReal compliance =
         compliant && it < COMPLIANT_ITERATIONS ? first * PetscPowReal(COMPLIANCE_DECAY, (PetscReal)it) : 0.0;
@@ -95,14 +94,9 @@ PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, LamBorder *bord
     PetscCall(LamBorderAssemble(rve, border, &norm));
     gap = LamContactComplementarity(rve->contact);
     if (compliance == 0.0 && (norm <= tolerance || at_rounding) && gap <= gap_tolerance) {
-      PetscBool holds;
-
       PetscCall(Report(rve, it, norm, gap, changes, 0.0, 0.0, 0.0));
-      PetscCall(LamContactStatusHolds(rve, load, rve->y, &holds));
-      *outcome = LAM_NEWTON_CONVERGED;
-      if (holds) break;
-      *outcome = LAM_NEWTON_STALLED;
-      if (restarts++ == RESTARTS) break;
+      if (LamContactStatusHolds(rve, load, rve->y)) *outcome = LAM_NEWTON_CONVERGED;
+      if (*outcome == LAM_NEWTON_CONVERGED || restarts++ == RESTARTS) break;
       rve->contact->hysteresis += LAM_MORE_HYSTERESIS;
       follow_until = it + 2;
       continue;

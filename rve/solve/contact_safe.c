@@ -89,7 +89,7 @@ PetscErrorCode LamContactNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOu
   contact->hysteresis = LAM_HYSTERESIS;
   if (!LamSetConsistentStresses(rve, load, rve->y)) PetscFunctionReturn(0);
   LamSealSetConsistent(rve, load, rve->y);
-  PetscCall(LamContactStepCreate(rve, &step));
+  PetscCall(LamContactStepCreate(rve, NULL, &step));
   PetscCall(LamDescentCreate(rve, &best));
   best.mu = LEAST_WEIGHT;
   for (PetscInt it = 0; it < SAFE_ITERATIONS && LamMayIterate(rve); ++it) {
@@ -103,11 +103,8 @@ PetscErrorCode LamContactNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOu
       LamContactResidual(rve, &step, &norm);
       (void)LamContactFindActive(contact, 0.0);
       if (norm <= tolerance && LamContactComplementarity(contact) <= LamGapTolerance(rve)) {
-        PetscBool holds;
-
-        PetscCall(LamContactStatusHolds(rve, load, rve->y, &holds));
-        if (holds) *outcome = LAM_NEWTON_CONVERGED;
-        if (holds || restarts++ == RESTARTS) break;
+        if (LamContactStatusHolds(rve, load, rve->y)) *outcome = LAM_NEWTON_CONVERGED;
+        if (*outcome == LAM_NEWTON_CONVERGED || restarts++ == RESTARTS) break;
         contact->hysteresis += LAM_MORE_HYSTERESIS;
         follow_until = it + 2;
         best.known = PETSC_FALSE;

@@ -14,15 +14,12 @@
 #define SADDLE_RESIDUAL 1e-3 /* norm below which a small step of an indefinite state is taken to be near a saddle */
 #define CREEPING 0.6         /* the same for small steps longer than this share of the previous one */
 
-PetscErrorCode LamContactStepCreate(LamRVE rve, LamContactStep *step)
+PetscErrorCode LamContactStepCreate(LamRVE rve, LamBorder *border, LamContactStep *step)
 {
   const PetscInt n = rve->linear.n;
 
   PetscFunctionBeginUser;
-  step->shift = step->floor = 0.0;
-  step->before = PETSC_INFINITY;
-  step->border = NULL;
-  step->updates = PETSC_FALSE;
+  *step = (LamContactStep){.before = PETSC_INFINITY, .border = border};
   PetscCall(PetscMalloc6(n + 2, &step->rhs, n, &step->solution, rve->contact->count, &step->lambda, n, &step->image, n,
                          &step->first, rve->contact->count, &step->factored));
   PetscFunctionReturn(0);
@@ -108,7 +105,6 @@ PetscErrorCode LamContactSolveStep(LamRVE rve, PetscReal norm, PetscReal complia
                                    PetscBool *ok)
 {
   PetscReal largest;
-  PetscInt changes;
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < ACTIVE_SET_SOLVES; ++k) {
@@ -120,8 +116,7 @@ PetscErrorCode LamContactSolveStep(LamRVE rve, PetscReal norm, PetscReal complia
     if (!*ok) PetscFunctionReturn(0);
     TakeSolution(rve, step);
     if (k + 1 == ACTIVE_SET_SOLVES) break;
-    PetscCall(LamContactPredictActive(rve, rve->step, LamBorderStep(step->border), step->lambda, compliance, &changes));
-    if (changes == 0) break;
+    if (!LamContactPredictActive(rve, rve->step, LamBorderStep(step->border), step->lambda, compliance)) break;
   }
   largest = LamLargestEntry(rve->ndof, rve->step);
   if (step->shift > LAM_CONTACT_PROXIMAL && largest < 0.5 * LAM_ESCAPE_STEP &&

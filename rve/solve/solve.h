@@ -122,7 +122,7 @@ typedef struct {
   PetscReal before;                  /* largest entry of the previous step */
   LamBorder *border;                 /* borrowed; NULL: F is prescribed */
 } LamContactStep;
-PetscErrorCode LamContactStepCreate(LamRVE rve, LamContactStep *step);
+PetscErrorCode LamContactStepCreate(LamRVE rve, LamBorder *border, LamContactStep *step);
 PetscErrorCode LamContactStepDestroy(LamContactStep *step);
 /* Call after LamAssemble. Subtracts the held forces from rve->residual; norm: of the residual including contact
    forces. */
